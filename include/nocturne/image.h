@@ -1,0 +1,92 @@
+/* nocturne/image.h: linear pictures, PNG and OpenEXR, exposure and tone mapping, error figures.
+ *
+ * A noc_image holds linear Rec.709 in cd/m2, three floats a pixel, rows from the top. */
+#ifndef NOCTURNE_IMAGE_H
+#define NOCTURNE_IMAGE_H
+
+#include <nocturne/log.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define NOC_IMAGE_MAX_SIDE 32768
+
+typedef struct noc_image {
+    int width, height;
+    float *rgb;              /* width * height * 3; owned */
+    uint8_t *emitter;        /* NULL, or width * height: 1 where the pixel, or one next to it, sees an emitter; owned */
+} noc_image;
+
+NOC_API noc_image *noc_image_create(int width, int height, noc_log *log); /* black; NULL after reporting an error */
+NOC_API void noc_image_destroy(noc_image *image);
+
+typedef enum noc_tonemap { NOC_TONEMAP_FILMIC, NOC_TONEMAP_REINHARD, NOC_TONEMAP_LINEAR } noc_tonemap;
+
+typedef struct noc_display_params {
+    bool auto_exposure;   /* default true */
+    double ev100;         /* used when auto_exposure is false: luminance of 1.2 * 2^ev100 maps to 1 before tone mapping */
+    double compensation;  /* stops added to the automatic exposure; default 0 */
+    noc_tonemap tonemap;
+} noc_display_params;
+
+#define noc_display_default_params() ((noc_display_params){ .auto_exposure = true, .tonemap = NOC_TONEMAP_FILMIC })
+
+/* The automatic exposure of a picture, as EV100. */
+NOC_API double noc_image_auto_ev100(const noc_image *image);
+/* 8-bit sRGB, 3 bytes a pixel into out (width * height * 3). */
+NOC_API void noc_image_to_srgb8(const noc_image *image, const noc_display_params *params, uint8_t *out);
+
+/* Text recorded in the file: PNG tEXt / EXR string attributes. */
+typedef struct noc_image_meta {
+    size_t count;
+    const char *const *keys;
+    const char *const *values;
+} noc_image_meta;
+
+/* Writers write beside the target and rename at the end, so a failure or an interruption leaves no half-written file.
+ * The format follows the name's ending, .png or .exr. EXR keeps linear float cd/m2 and the emitter mask; PNG is displayed. */
+NOC_API noc_status noc_image_write(const noc_image *image, const char *path, const noc_display_params *display,
+                                   const noc_image_meta *meta, noc_log *log);
+NOC_API noc_status noc_image_write_srgb8(const uint8_t *rgb, int width, int height, const char *path,
+                                         const noc_image_meta *meta, noc_log *log);
+/* Reads by content. PNG is taken as sRGB and turned linear with white = 1 (units are lost; compare says so). */
+NOC_API noc_image *noc_image_read(const char *path, noc_log *log, bool *is_linear);
+
+/* Error figures of picture x against reference r (docs/estimator.md, "Error figures"). */
+typedef struct noc_metrics {
+    double rmse8;   /* 8-bit sRGB, 0..255, both shown with the reference's exposure */
+    double rmse;    /* linear luminance, cd/m2 */
+    double relmse;  /* mean((x-r)^2 / (r^2 + e^2)), e = 1% of the reference's mean */
+    double bias;    /* mean(x) / mean(r) */
+    double mean_x, mean_r;
+    size_t pixels;
+} noc_metrics;
+
+typedef struct noc_comparison {
+    noc_metrics all;          /* every pixel */
+    noc_metrics all_clamped;  /* both clamped to ceiling */
+    noc_metrics dark;         /* pixels that see no emitter within one pixel (needs a mask in r, else equal to all) */
+    noc_metrics dark_clamped;
+    double ceiling;           /* cd/m2 */
+    bool has_mask;
+} noc_comparison;
+
+typedef struct noc_compare_params {
+    double ceiling;             /* cd/m2; default 10 */
+    noc_display_params display; /* for RMSE-8 */
+} noc_compare_params;
+
+#define noc_compare_default_params() ((noc_compare_params){ .ceiling = 10, .display = noc_display_default_params() })
+
+NOC_API noc_status noc_image_compare(const noc_image *x, const noc_image *r, const noc_compare_params *params,
+                                     noc_comparison *out, noc_log *log);
+/* Signed difference in a diverging colour map with a legend (blue: x darker, red: x brighter), as 8-bit sRGB.
+ * *out is malloc'ed (free it), its size in *width, *height. */
+NOC_API noc_status noc_image_difference(const noc_image *x, const noc_image *r, uint8_t **out, int *width, int *height,
+                                        noc_log *log);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

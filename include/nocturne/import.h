@@ -1,0 +1,74 @@
+/* nocturne/import.h: from files to a scene. Inputs are told apart by content, never by name: CityGML (plain, .gz, .zip),
+ * OBJ, OpenStreetMap XML and PBF, Overpass JSON, GeoJSON, CSV. Several inputs make one scene. */
+#ifndef NOCTURNE_IMPORT_H
+#define NOCTURNE_IMPORT_H
+
+#include <nocturne/scene.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct noc_import_params {
+    const char *crs;        /* CRS of inputs that name none (any PROJ definition), NULL: such inputs fail if they need one */
+    const char *scene_crs;  /* CRS of the scene; NULL: the first input's if projected in metres, else UTM of its centre */
+    int lod;                /* highest CityGML level of detail taken, 0..4; default 3. The best one at or under it wins */
+    bool infer_lamps;       /* place lamps by a rule where the inputs hold none; default true */
+    double lamp_height;     /* m, where not tagged; default 6 */
+    double lamp_lumens;     /* lm, where neither flux nor wattage is known; default 5000 */
+    double lamp_kelvin;     /* K, where not known; default 3000 */
+    noc_progress progress;
+} noc_import_params;
+
+#define noc_import_default_params() \
+    ((noc_import_params){ .lod = 3, .infer_lamps = true, .lamp_height = 6, .lamp_lumens = 5000, .lamp_kelvin = 3000 })
+
+/* Why a feature was skipped or repaired: a short reason, how often, and the ids of the first few. */
+typedef struct noc_report_line {
+    const char *reason;     /* "self-intersecting ring", "unresolved xlink", ... */
+    bool repaired;          /* true: used after repair; false: skipped */
+    size_t count;
+    const char *examples;   /* up to 5 ids, comma separated */
+} noc_report_line;
+
+typedef struct noc_report_file {
+    const char *path, *format; /* "CityGML 2.0", "GeoJSON", ... */
+    const char *crs;           /* as understood: "EPSG:25832 (ETRS89 / UTM zone 32N)", "" if none */
+    const char *crs_given;     /* as spelled in the file, "" if none */
+    uint64_t bytes;            /* as stored */
+    uint64_t bytes_read;       /* after decompression */
+    double seconds;
+    bool has_extent;
+    double extent_min[3], extent_max[3]; /* in the file's CRS, easting northing height (x y z) order */
+    size_t objects;            /* top-level features */
+    size_t buildings;
+    size_t polygons;           /* used */
+    size_t polygons_by_class[NOC_CLASS_COUNT];
+    size_t lod_used[5];        /* buildings by the level of detail that was taken */
+    size_t triangles, lamps, lights;
+    size_t line_count;
+    const noc_report_line *lines;
+} noc_report_file;
+
+typedef struct noc_report noc_report; /* owned by the caller */
+
+NOC_API size_t noc_report_file_count(const noc_report *report);
+NOC_API const noc_report_file *noc_report_get_file(const noc_report *report, size_t index);
+NOC_API void noc_report_destroy(noc_report *report);
+
+/* Loads all paths into the scene as one, stands the lamps on the ground, and commits. "builtin:city" is the procedural
+ * city. On failure the scene must be destroyed. *report may be NULL; where given it is set even on failure (possibly NULL). */
+NOC_API noc_status noc_scene_load(noc_scene *scene, const char *const *paths, size_t path_count,
+                                  const noc_import_params *params, noc_report **report);
+
+/* Reads one file into a throwaway scene and reports what it holds; used by `nocturne info`. A file without a CRS is fine. */
+NOC_API noc_status noc_inspect(noc_log *log, const char *path, const noc_import_params *params, noc_report **report);
+
+/* Converts between the scene's local frame and any CRS (NULL: the scene's own). xyz in place, easting northing height
+ * (or longitude latitude height in degrees) order. */
+NOC_API noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xyz[3]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

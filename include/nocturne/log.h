@@ -1,0 +1,64 @@
+/* nocturne/log.h: status codes, the log, and how errors reach the embedding program.
+ *
+ * Every function that can fail returns a noc_status (or NULL / a negative index) and reports the reason exactly once
+ * through the noc_log it was given, at level NOC_LOG_ERROR, with the file and the place in it where there is one.
+ * A noc_log may be used from several threads at once; its callback is called with a lock held, one message at a time. */
+#ifndef NOCTURNE_LOG_H
+#define NOCTURNE_LOG_H
+
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(__GNUC__)
+#define NOC_API __attribute__((visibility("default")))
+#define NOC_PRINTF(f, a) __attribute__((format(printf, f, a)))
+#else
+#define NOC_API
+#define NOC_PRINTF(f, a)
+#endif
+
+typedef enum noc_status {
+    NOC_OK = 0,
+    NOC_ERR_ARGUMENT,    /* a parameter is out of its documented range */
+    NOC_ERR_IO,          /* a file cannot be opened, read or written */
+    NOC_ERR_FORMAT,      /* a file is not what it says, or is damaged */
+    NOC_ERR_MEMORY,      /* a large allocation (image, frame, scene) was refused */
+    NOC_ERR_UNSUPPORTED, /* this build lacks the part, or the format has a feature that is not read */
+    NOC_ERR_CANCELLED,   /* the progress callback asked to stop */
+} noc_status;
+
+typedef enum noc_log_level { NOC_LOG_ERROR, NOC_LOG_WARN, NOC_LOG_INFO, NOC_LOG_DEBUG } noc_log_level;
+
+typedef struct noc_log noc_log;
+
+typedef struct noc_log_params {
+    noc_log_level level;                                            /* messages above this level are dropped */
+    void (*message)(void *user, noc_log_level level, const char *text); /* NULL: to stderr, one line a message */
+    void *user;
+} noc_log_params;
+
+#define noc_log_default_params() ((noc_log_params){ .level = NOC_LOG_WARN })
+
+/* NULL params means the defaults. Returns NULL only when out of memory. */
+NOC_API noc_log *noc_log_create(const noc_log_params *params);
+NOC_API void noc_log_destroy(noc_log *log); /* NULL is allowed */
+/* Text of the last error reported to this log, "" if none; valid until the next error. Not for use while other threads log. */
+NOC_API const char *noc_log_last_error(const noc_log *log);
+NOC_API const char *noc_status_text(noc_status status);
+
+/* Progress of long work. done runs from 0 to 1; return false to cancel. Called from the thread that started the work. */
+typedef struct noc_progress {
+    bool (*update)(void *user, const char *what, double done);
+    void *user;
+} noc_progress;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

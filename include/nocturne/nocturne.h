@@ -1,0 +1,22 @@
+/* nocturne/nocturne.h: all of the public API. A renderer of cities at night: see README.md and docs/architecture.md. */
+#ifndef NOCTURNE_NOCTURNE_H
+#define NOCTURNE_NOCTURNE_H
+
+#include <nocturne/image.h>
+#include <nocturne/import.h>
+#include <nocturne/log.h>
+#include <nocturne/option.h>
+#include <nocturne/render.h>
+#include <nocturne/scene.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+NOC_API const char *noc_version(void);  /* "0.1.0" */
+NOC_API const char *noc_features(void); /* parts of this build: "embree 3.13.5, gdal 3.6.2, no vulkan" */
+
+#ifdef __cplusplus
+}
+#endif
+#endif

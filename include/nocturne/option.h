@@ -1,0 +1,48 @@
+/* nocturne/option.h: the tables of options that the command line, its help, its errors and the docs are made from.
+ * An option names one field of a params struct. */
+#ifndef NOCTURNE_OPTION_H
+#define NOCTURNE_OPTION_H
+
+#include <nocturne/image.h>
+#include <nocturne/import.h>
+#include <nocturne/render.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum noc_option_kind {
+    NOC_OPTION_BOOL,   /* --name / --no-name; bool */
+    NOC_OPTION_INT,    /* int */
+    NOC_OPTION_UINT,   /* uint32_t */
+    NOC_OPTION_REAL,   /* double */
+    NOC_OPTION_CHOICE, /* an enum (int), one of choices, in order from 0 */
+    NOC_OPTION_TEXT,   /* const char *; points at the caller's text */
+} noc_option_kind;
+
+typedef struct noc_option {
+    const char *name;      /* long name without dashes; NULL ends a table */
+    const char *group;     /* heading in the help */
+    noc_option_kind kind;
+    size_t offset;         /* of the field in its struct */
+    double min, max;       /* INT, UINT, REAL; inclusive */
+    const char *choices;   /* CHOICE: "a|b|c" */
+    const char *unit;      /* "m", "px", "cd/m2", "" */
+    const char *help;      /* one line */
+} noc_option;
+
+NOC_API const noc_option *noc_render_options(void);  /* fields of noc_render_params */
+NOC_API const noc_option *noc_display_options(void); /* fields of noc_display_params */
+NOC_API const noc_option *noc_import_options(void);  /* fields of noc_import_params */
+NOC_API const noc_option *noc_city_options(void);    /* fields of noc_city_params */
+
+/* Sets one field from text. value is NULL for a bare bool; NOC_ERR_ARGUMENT, reported with the option's name, the text
+ * and what would be right. For BOOL, "true/false/on/off/yes/no/1/0". */
+NOC_API noc_status noc_option_set(const noc_option *option, void *params, const char *value, noc_log *log);
+/* The field's present value as text, for help and metadata. Returns the length, like snprintf. */
+NOC_API int noc_option_get(const noc_option *option, const void *params, char *text, size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,101 @@
+/* nocturne/render.h: direct light of a committed scene, by the methods of docs/estimator.md. */
+#ifndef NOCTURNE_RENDER_H
+#define NOCTURNE_RENDER_H
+
+#include <nocturne/image.h>
+#include <nocturne/scene.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum noc_method { NOC_METHOD_REFERENCE, NOC_METHOD_IS, NOC_METHOD_RIS, NOC_METHOD_RESTIR } noc_method;
+typedef enum noc_bias { NOC_BIAS_BIASED, NOC_BIAS_MIS, NOC_BIAS_PAIRWISE } noc_bias;
+typedef enum noc_path { NOC_PATH_AUTO, NOC_PATH_SCALAR, NOC_PATH_WIDE } noc_path;
+
+typedef struct noc_render_params {
+    int width, height;          /* 1..NOC_IMAGE_MAX_SIDE */
+    noc_method method;
+    int candidates;             /* M: light candidates a pixel and frame, 1..1024 */
+    int rays;                   /* reference: shadow rays a pixel and frame, 1..1024 */
+    /* reuse (restir only) */
+    bool temporal, spatial;
+    int neighbours;             /* k, 0..16 */
+    double radius;              /* pixels, 1..64 */
+    int passes;                 /* spatial passes, 1..4 */
+    double history;             /* cap of M as a multiple of a frame's candidates, 0..1000 */
+    noc_bias bias;
+    bool bias_rays;             /* visibility in the target of the combination: unbiased */
+    bool visibility_reuse;      /* one shadow ray after the candidates */
+    bool final_ray;             /* shadow ray to the chosen light; off = unshadowed */
+    double reject_depth;        /* relative distance to a neighbour's plane that rejects it */
+    double reject_normal;       /* cosine between normals that rejects it */
+    /* picture */
+    uint32_t seed;
+    bool jitter;                /* sub-pixel positions change from frame to frame */
+    bool accumulate;            /* running mean over frames, else the last frame alone */
+    double sky;                 /* luminance of the sky at the zenith, cd/m2; 0 = off */
+    bool emitters;              /* emitters seen directly are shown */
+    noc_path path;              /* scalar C, or the wide code for this machine */
+} noc_render_params;
+
+#define noc_render_default_params()                                                                                    \
+    ((noc_render_params){ .width = 1280, .height = 720, .method = NOC_METHOD_RESTIR, .candidates = 32, .rays = 64,     \
+                          .temporal = true, .spatial = true, .neighbours = 5, .radius = 10, .passes = 1,              \
+                          .history = 20, .bias = NOC_BIAS_PAIRWISE, .bias_rays = true, .visibility_reuse = true,       \
+                          .final_ray = true, .reject_depth = 0.1, .reject_normal = 0.9, .seed = 1, .jitter = true,     \
+                          .accumulate = true, .sky = 0.02, .emitters = true, .path = NOC_PATH_AUTO })
+
+typedef struct noc_renderer noc_renderer;
+
+typedef struct noc_renderer_params {
+    int threads;              /* 0: one a core */
+    const char *backend;      /* NULL or "embree" */
+} noc_renderer_params;
+
+#define noc_renderer_default_params() ((noc_renderer_params){ 0 })
+
+/* The scene must be committed and outlive the renderer. NULL after reporting an error. */
+NOC_API noc_renderer *noc_renderer_create(const noc_scene *scene, const noc_renderer_params *params, noc_log *log);
+NOC_API void noc_renderer_destroy(noc_renderer *renderer);
+
+/* Renders one frame. History and accumulation start anew when size, method or any other parameter changes; accumulation
+ * also when the camera moves (history then reprojects). progress may be NULL; when it cancels, the frame is dropped, what
+ * was accumulated stays, and NOC_ERR_CANCELLED is returned. */
+NOC_API noc_status noc_renderer_frame(noc_renderer *renderer, const noc_camera *camera, const noc_render_params *params,
+                                      const noc_progress *progress);
+NOC_API void noc_renderer_reset(noc_renderer *renderer); /* forgets history and accumulation, frame number too */
+
+/* Copy of the picture so far (accumulated or last frame), with its emitter mask. NULL before the first frame. */
+NOC_API noc_image *noc_renderer_image(noc_renderer *renderer);
+
+typedef enum noc_pass {
+    NOC_PASS_PRIMARY, NOC_PASS_CANDIDATES, NOC_PASS_VISIBILITY, NOC_PASS_TEMPORAL, NOC_PASS_SPATIAL, NOC_PASS_SHADE,
+    NOC_PASS_SKY, NOC_PASS_COUNT
+} noc_pass;
+
+NOC_API const char *noc_pass_name(noc_pass pass);
+
+typedef struct noc_frame_stats {
+    uint64_t frames;                        /* accumulated so far */
+    double wall_seconds;                    /* of the last frame */
+    double cpu_seconds;                     /* process CPU time of the last frame */
+    double pass_seconds[NOC_PASS_COUNT];    /* thread seconds summed over threads, last frame */
+    uint64_t rays_primary, rays_shadow;     /* of the last frame */
+    uint64_t dropped;                       /* samples dropped for being NaN or infinite, since the last reset */
+    double build_seconds;                   /* of the ray tracing structure */
+    size_t memory_bytes;                    /* of the renderer, without the scene */
+    const char *path;                       /* "scalar", "avx2 x8", "avx512 x16", ... */
+} noc_frame_stats;
+
+NOC_API void noc_renderer_get_stats(const noc_renderer *renderer, noc_frame_stats *stats);
+
+/* The trace floor: the rays of one frame of these parameters (primary, visibility, final, and bias rays when they are on)
+ * traced through the same structure and nothing else, to the lights that frame chose. Wall seconds into *seconds. */
+NOC_API noc_status noc_renderer_trace_floor(noc_renderer *renderer, const noc_camera *camera,
+                                            const noc_render_params *params, double *seconds);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,145 @@
+/* nocturne/scene.h: what is rendered: meshes, materials by semantic class, lights.
+ *
+ * Coordinates are metres in the scene's local frame, z up. Where the scene has a CRS, crs = local + origin (doubles).
+ * Colours are linear Rec.709; emission is photometric: 0.2126 R + 0.7152 G + 0.0722 B is luminance in cd/m2 (for point
+ * luminaires: luminous intensity in cd). A scene is not thread-safe while it is being changed; once committed it may be
+ * read by any number of renderers. */
+#ifndef NOCTURNE_SCENE_H
+#define NOCTURNE_SCENE_H
+
+#include <nocturne/log.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct noc_scene noc_scene;
+
+/* Semantic class of a surface. Every class has a default material (noc_class_material). */
+typedef enum noc_class {
+    NOC_CLASS_OTHER,
+    NOC_CLASS_WALL,
+    NOC_CLASS_ROOF,
+    NOC_CLASS_GROUND,       /* a building's ground surface */
+    NOC_CLASS_CLOSURE,      /* virtual surface that closes a volume: read and counted, not rendered */
+    NOC_CLASS_WINDOW,
+    NOC_CLASS_DOOR,
+    NOC_CLASS_INSTALLATION, /* balconies, chimneys, stairs */
+    NOC_CLASS_TERRAIN,
+    NOC_CLASS_ROAD,
+    NOC_CLASS_SIDEWALK,
+    NOC_CLASS_GREEN,        /* lawns, plant cover, land use */
+    NOC_CLASS_TREE,
+    NOC_CLASS_WATER,
+    NOC_CLASS_BRIDGE,
+    NOC_CLASS_FURNITURE,
+    NOC_CLASS_LAMP,         /* poles and housings */
+    NOC_CLASS_VEHICLE,
+    NOC_CLASS_COUNT
+} noc_class;
+
+NOC_API const char *noc_class_name(noc_class cls); /* "wall", "roof", ... */
+
+/* Surface: Lambert plus one glossy lobe (isotropic GGX, Schlick Fresnel). */
+typedef struct noc_material {
+    float albedo[3];   /* diffuse reflectance, 0..1 */
+    float f0;          /* reflectance of the glossy lobe at normal incidence, 0..1; 0 = purely diffuse */
+    float roughness;   /* 0.05..1, GGX alpha = roughness^2 */
+    float emission[3]; /* radiance, cd/m2; a mesh with emission becomes triangle lights */
+    bool two_sided;    /* emission leaves both sides; reflection always works on both sides */
+    noc_class cls;
+} noc_material;
+
+NOC_API noc_material noc_class_material(noc_class cls);
+
+typedef struct noc_mesh {
+    size_t vertex_count;
+    const double *positions;  /* 3 a vertex, local metres */
+    size_t triangle_count;
+    const uint32_t *indices;  /* 3 a triangle, counter-clockwise seen from outside */
+    int material;             /* from noc_scene_add_material */
+    const char *name;         /* object id, gml:id; may be NULL. Copied */
+} noc_mesh;
+
+typedef enum noc_light_kind {
+    NOC_LIGHT_SPHERE,        /* position = centre, radius */
+    NOC_LIGHT_DISC,          /* position = centre, radius, direction = the way it faces */
+    NOC_LIGHT_TRIANGLE,      /* position = corner, edges; faces edge_u x edge_v */
+    NOC_LIGHT_PARALLELOGRAM, /* position = corner, edges; faces edge_u x edge_v */
+    NOC_LIGHT_POINT,         /* position; isotropic, emission is intensity in cd */
+} noc_light_kind;
+
+/* One light. Its visible shape is made with it, except for points. */
+typedef struct noc_light {
+    noc_light_kind kind;
+    double position[3];
+    double edge_u[3], edge_v[3];
+    double direction[3];
+    double radius;
+    float emission[3]; /* cd/m2, or cd for NOC_LIGHT_POINT; one-sided */
+    const char *name;  /* may be NULL; copied */
+    bool inferred;     /* placed by a rule, not found in data */
+} noc_light;
+
+NOC_API noc_scene *noc_scene_create(noc_log *log); /* log may be NULL; it must outlive the scene */
+NOC_API void noc_scene_destroy(noc_scene *scene);
+
+/* These return an index >= 0, or -1 after reporting an error. Non-finite or degenerate geometry is an error here; bad
+ * triangles inside a mesh (zero area, index out of range, non-finite) are dropped and counted. */
+NOC_API int noc_scene_add_material(noc_scene *scene, const noc_material *material);
+NOC_API int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh);
+NOC_API int noc_scene_add_light(noc_scene *scene, const noc_light *light);
+
+/* Freezes the scene for rendering: makes triangle lights of emissive meshes. noc_scene_load commits by itself. */
+NOC_API noc_status noc_scene_commit(noc_scene *scene);
+
+/* Place of the scene in the world: crs is any definition PROJ reads, NULL for none. */
+NOC_API noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double origin[3]);
+
+typedef struct noc_scene_info {
+    size_t triangles, vertices, meshes, materials;
+    size_t lights, lights_by_kind[5], lights_inferred;
+    size_t triangles_by_class[NOC_CLASS_COUNT];
+    size_t triangles_dropped;
+    double bounds_min[3], bounds_max[3]; /* local; of everything that is rendered */
+    double origin[3];
+    const char *crs;      /* name for people, "" if none; owned by the scene */
+    size_t memory_bytes;
+} noc_scene_info;
+
+NOC_API void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info);
+
+/* Height of the highest ground (terrain, road, sidewalk, green, building ground) under or over (x, y), local metres.
+ * Returns false where there is none. */
+NOC_API bool noc_scene_ground(const noc_scene *scene, double x, double y, double *z);
+
+/* Pinhole camera. */
+typedef struct noc_camera {
+    double eye[3], target[3]; /* local metres */
+    double up[3];
+    double fov_deg;           /* vertical field of view */
+} noc_camera;
+
+#define noc_camera_default() ((noc_camera){ .up = { 0, 0, 1 }, .fov_deg = 50 })
+
+typedef enum noc_view { NOC_VIEW_STREET, NOC_VIEW_AERIAL, NOC_VIEW_OVERVIEW } noc_view;
+
+/* A camera derived from the city: street stands at eye height in open ground near lamps and looks along it, aerial flies
+ * over the roofs, overview sees the whole extent. aspect = width / height of the picture. */
+NOC_API noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect, noc_camera *camera);
+
+/* The built-in procedural night city. The same seed and size give the same city on every machine. */
+typedef struct noc_city_params {
+    uint32_t seed;
+    double size;         /* edge of the square it covers, metres, 150..5000 */
+    double lit_windows;  /* share of windows that are lit, 0..1 */
+} noc_city_params;
+
+#define noc_city_default_params() ((noc_city_params){ .seed = 1, .size = 420, .lit_windows = 0.35 })
+
+NOC_API noc_status noc_scene_add_city(noc_scene *scene, const noc_city_params *params);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

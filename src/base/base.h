@@ -1,0 +1,72 @@
+/* base: memory, arrays, strings, errors, threads. Knows nothing of the rest. */
+#ifndef NOC_BASE_H
+#define NOC_BASE_H
+
+#include <nocturne/log.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define NOC_COUNT(a) (sizeof(a) / sizeof((a)[0]))
+#define NOC_MIN(a, b) ((a) < (b) ? (a) : (b))
+#define NOC_MAX(a, b) ((a) > (b) ? (a) : (b))
+#define NOC_CLAMP(x, lo, hi) NOC_MIN(NOC_MAX(x, lo), hi)
+
+/* Small allocations: these print and abort when memory is gone. */
+void *noc_alloc(size_t size);                 /* uninitialised */
+void *noc_calloc(size_t count, size_t size);  /* zeroed */
+void *noc_realloc(void *p, size_t size);
+char *noc_strdup(const char *s);              /* NULL stays NULL */
+char *noc_format(const char *fmt, ...) NOC_PRINTF(1, 2); /* free() it */
+/* Large allocations whose size a user decides: 64-byte aligned, zeroed; NULL when refused or when count * size overflows. */
+void *noc_alloc_large(size_t count, size_t size);
+
+/* Growable array: NOC_ARRAY(float) a = { 0 }; array_push(&a, 1.f); ... array_free(&a). */
+#define NOC_ARRAY(T) struct { T *data; size_t len, cap; }
+#define array_reserve(a, n) \
+    ((n) > (a)->cap ? ((a)->data = noc_array_grow((a)->data, &(a)->cap, (n), sizeof(*(a)->data)), (void)0) : (void)0)
+#define array_push(a, ...) (array_reserve((a), (a)->len + 1), (a)->data[(a)->len++] = (__VA_ARGS__), (void)0)
+#define array_append(a, src, n) \
+    (array_reserve((a), (a)->len + (n)), (n) ? (void)memcpy((a)->data + (a)->len, (src), (n) * sizeof(*(a)->data)) : (void)0, \
+     (void)((a)->len += (n)))
+#define array_free(a) (free((a)->data), (a)->data = NULL, (a)->len = (a)->cap = 0, (void)0)
+void *noc_array_grow(void *data, size_t *cap, size_t need, size_t item);
+
+/* Arena: everything in it is freed at once. Zero-initialise; not thread-safe. */
+typedef struct noc_arena { struct noc_arena_block *head; size_t bytes; } noc_arena;
+void *arena_alloc(noc_arena *arena, size_t size); /* zeroed, 16-byte aligned */
+char *arena_strdup(noc_arena *arena, const char *s);
+char *arena_strndup(noc_arena *arena, const char *s, size_t n);
+char *arena_format(noc_arena *arena, const char *fmt, ...) NOC_PRINTF(2, 3);
+void arena_free(noc_arena *arena);
+
+/* Log. log may be NULL everywhere (then warnings and errors go nowhere). noc_error returns its status, so
+ * `return noc_error(log, NOC_ERR_FORMAT, "%s:%d: ...", path, line, ...)`. */
+noc_status noc_error(noc_log *log, noc_status status, const char *fmt, ...) NOC_PRINTF(3, 4);
+void noc_warn(noc_log *log, const char *fmt, ...) NOC_PRINTF(2, 3);
+void noc_info(noc_log *log, const char *fmt, ...) NOC_PRINTF(2, 3);
+void noc_debug(noc_log *log, const char *fmt, ...) NOC_PRINTF(2, 3);
+
+/* Numbers and text, independent of the locale. */
+bool noc_parse_double(const char *s, double *out);           /* the whole string must be one finite number (blanks around it allowed) */
+const char *noc_scan_double(const char *s, const char *end, double *out); /* next number in [s, end): position after it, NULL if none */
+bool noc_parse_int(const char *s, long long *out);
+bool noc_ieq(const char *a, const char *b);                   /* ASCII case-insensitive equality; NULL equals nothing */
+
+double noc_wall_seconds(void);
+double noc_cpu_seconds(void);                                 /* of the process, all threads */
+
+/* Thread pool. run() calls fn(ctx, item, worker) for item in [0, items), spread over the workers (0 <= worker < threads);
+ * the caller is worker 0. Returns when all are done. One run at a time. */
+typedef struct noc_pool noc_pool;
+noc_pool *noc_pool_create(int threads); /* 0: one a core */
+void noc_pool_destroy(noc_pool *pool);
+int noc_pool_threads(const noc_pool *pool);
+void noc_pool_run(noc_pool *pool, size_t items, void (*fn)(void *ctx, size_t item, int worker), void *ctx);
+
+/* String interning / id -> index map: open addressing, keys are copied into the map's arena. */
+typedef struct noc_map { struct noc_map_slot *slots; size_t len, cap; noc_arena keys; } noc_map;
+bool map_get(const noc_map *map, const char *key, uint64_t *value);
+bool map_put(noc_map *map, const char *key, uint64_t value); /* true if new; else the old value is replaced */
+void map_free(noc_map *map);
+
+#endif

@@ -1,0 +1,189 @@
+#include "base/base.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+static void out_of_memory(size_t size) {
+    fprintf(stderr, "nocturne: out of memory (%zu bytes)\n", size);
+    abort();
+}
+
+void *noc_alloc(size_t size) {
+    void *p = malloc(size ? size : 1);
+    if (!p)
+        out_of_memory(size);
+    return p;
+}
+
+void *noc_calloc(size_t count, size_t size) {
+    void *p = calloc(count ? count : 1, size ? size : 1);
+    if (!p)
+        out_of_memory(count * size);
+    return p;
+}
+
+void *noc_realloc(void *p, size_t size) {
+    void *q = realloc(p, size ? size : 1);
+    if (!q)
+        out_of_memory(size);
+    return q;
+}
+
+char *noc_strdup(const char *s) {
+    if (!s)
+        return NULL;
+    size_t n = strlen(s) + 1;
+    return memcpy(noc_alloc(n), s, n);
+}
+
+static char *format_v(const char *fmt, va_list ap) {
+    va_list copy;
+    va_copy(copy, ap);
+    int n = vsnprintf(NULL, 0, fmt, copy);
+    va_end(copy);
+    char *s = noc_alloc((size_t)(n < 0 ? 0 : n) + 1);
+    if (n < 0)
+        s[0] = 0;
+    else
+        vsnprintf(s, (size_t)n + 1, fmt, ap);
+    return s;
+}
+
+char *noc_format(const char *fmt, ...) {
+    va_list ap;
+    va_start(ap, fmt);
+    char *s = format_v(fmt, ap);
+    va_end(ap);
+    return s;
+}
+
+void *noc_alloc_large(size_t count, size_t size) {
+    size_t bytes;
+    if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX - 63)
+        return NULL;
+    bytes = (bytes + 63) & ~(size_t)63;
+    void *p = aligned_alloc(64, bytes ? bytes : 64);
+    if (p)
+        memset(p, 0, bytes);
+    return p;
+}
+
+void *noc_array_grow(void *data, size_t *cap, size_t need, size_t item) {
+    size_t n = *cap ? *cap + *cap / 2 : 16;
+    n = NOC_MAX(n, need);
+    size_t bytes;
+    if (__builtin_mul_overflow(n, item, &bytes))
+        out_of_memory(SIZE_MAX);
+    *cap = n;
+    return noc_realloc(data, bytes);
+}
+
+struct noc_arena_block {
+    struct noc_arena_block *next;
+    size_t used, size;
+    _Alignas(16) unsigned char data[];
+};
+
+void *arena_alloc(noc_arena *arena, size_t size) {
+    if (size > SIZE_MAX / 2)
+        out_of_memory(size);
+    size = (size + 15) & ~(size_t)15;
+    struct noc_arena_block *b = arena->head;
+    if (!b || b->size - b->used < size) {
+        size_t room = NOC_MAX(size, (size_t)64 * 1024 - sizeof(*b));
+        b = noc_alloc(sizeof(*b) + room);
+        b->used = 0;
+        b->size = room;
+        b->next = arena->head;
+        arena->head = b;
+        arena->bytes += sizeof(*b) + room;
+    }
+    void *p = b->data + b->used;
+    b->used += size;
+    return memset(p, 0, size);
+}
+
+char *arena_strndup(noc_arena *arena, const char *s, size_t n) {
+    char *p = arena_alloc(arena, n + 1);
+    memcpy(p, s, n);
+    return p;
+}
+
+char *arena_strdup(noc_arena *arena, const char *s) { return s ? arena_strndup(arena, s, strlen(s)) : NULL; }
+
+char *arena_format(noc_arena *arena, const char *fmt, ...) {
+    va_list ap;
+    va_start(ap, fmt);
+    char *s = format_v(fmt, ap);
+    va_end(ap);
+    char *p = arena_strdup(arena, s);
+    free(s);
+    return p;
+}
+
+void arena_free(noc_arena *arena) {
+    for (struct noc_arena_block *b = arena->head, *next; b; b = next) {
+        next = b->next;
+        free(b);
+    }
+    *arena = (noc_arena){ 0 };
+}
+
+struct noc_map_slot {
+    char *key;
+    uint64_t value;
+    uint32_t hash;
+};
+
+static uint32_t hash_text(const char *s) {
+    uint32_t h = 2166136261u;
+    for (; *s; s++)
+        h = (h ^ (unsigned char)*s) * 16777619u;
+    return h ^ h >> 15;
+}
+
+/* The slot of key, or the empty one where it would go. cap is a power of two and never full. */
+static struct noc_map_slot *find_slot(const noc_map *map, const char *key, uint32_t hash) {
+    for (size_t i = hash & (map->cap - 1);; i = (i + 1) & (map->cap - 1)) {
+        struct noc_map_slot *s = &map->slots[i];
+        if (!s->key || (s->hash == hash && !strcmp(s->key, key)))
+            return s;
+    }
+}
+
+bool map_get(const noc_map *map, const char *key, uint64_t *value) {
+    if (!map->cap)
+        return false;
+    const struct noc_map_slot *s = find_slot(map, key, hash_text(key));
+    if (s->key && value)
+        *value = s->value;
+    return s->key != NULL;
+}
+
+bool map_put(noc_map *map, const char *key, uint64_t value) {
+    if (map->len * 4 >= map->cap * 3) {
+        noc_map bigger = { .cap = map->cap ? map->cap * 2 : 64, .keys = map->keys, .len = map->len };
+        bigger.slots = noc_calloc(bigger.cap, sizeof(*bigger.slots));
+        for (size_t i = 0; i < map->cap; i++)
+            if (map->slots[i].key)
+                *find_slot(&bigger, map->slots[i].key, map->slots[i].hash) = map->slots[i];
+        free(map->slots);
+        *map = bigger;
+    }
+    uint32_t hash = hash_text(key);
+    struct noc_map_slot *s = find_slot(map, key, hash);
+    bool fresh = !s->key;
+    if (fresh) {
+        s->key = arena_strdup(&map->keys, key);
+        s->hash = hash;
+        map->len++;
+    }
+    s->value = value;
+    return fresh;
+}
+
+void map_free(noc_map *map) {
+    free(map->slots);
+    arena_free(&map->keys);
+    *map = (noc_map){ 0 };
+}

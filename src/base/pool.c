@@ -1,0 +1,106 @@
+#include "base/base.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <unistd.h>
+
+struct worker {
+    noc_pool *pool;
+    pthread_t thread;
+    int index;
+};
+
+struct noc_pool {
+    int threads;
+    struct worker *workers; /* threads - 1 of them: the caller is worker 0 */
+    pthread_mutex_t lock;
+    pthread_cond_t start, done;
+    uint64_t run;           /* counts runs; a change wakes the workers */
+    int busy;
+    bool stop;
+    void (*fn)(void *, size_t, int);
+    void *ctx;
+    size_t items;
+    atomic_size_t next;
+};
+
+static void work(noc_pool *pool, int index) {
+    for (size_t i; (i = atomic_fetch_add(&pool->next, 1)) < pool->items;)
+        pool->fn(pool->ctx, i, index);
+}
+
+static void *worker_main(void *arg) {
+    struct worker *w = arg;
+    noc_pool *pool = w->pool;
+    uint64_t seen = 0;
+    pthread_mutex_lock(&pool->lock);
+    for (;;) {
+        while (!pool->stop && pool->run == seen)
+            pthread_cond_wait(&pool->start, &pool->lock);
+        if (pool->stop)
+            break;
+        seen = pool->run;
+        pthread_mutex_unlock(&pool->lock);
+        work(pool, w->index);
+        pthread_mutex_lock(&pool->lock);
+        if (!--pool->busy)
+            pthread_cond_signal(&pool->done);
+    }
+    pthread_mutex_unlock(&pool->lock);
+    return NULL;
+}
+
+noc_pool *noc_pool_create(int threads) {
+    if (threads <= 0)
+        threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    threads = NOC_CLAMP(threads, 1, 1024);
+    noc_pool *pool = noc_calloc(1, sizeof(*pool));
+    pthread_mutex_init(&pool->lock, NULL);
+    pthread_cond_init(&pool->start, NULL);
+    pthread_cond_init(&pool->done, NULL);
+    pool->workers = noc_calloc((size_t)threads, sizeof(*pool->workers));
+    pool->threads = 1;
+    for (int i = 1; i < threads; i++) {
+        struct worker *w = &pool->workers[i - 1];
+        *w = (struct worker){ .pool = pool, .index = i };
+        if (pthread_create(&w->thread, NULL, worker_main, w))
+            break;
+        pool->threads++;
+    }
+    return pool;
+}
+
+void noc_pool_destroy(noc_pool *pool) {
+    if (!pool)
+        return;
+    pthread_mutex_lock(&pool->lock);
+    pool->stop = true;
+    pthread_cond_broadcast(&pool->start);
+    pthread_mutex_unlock(&pool->lock);
+    for (int i = 1; i < pool->threads; i++)
+        pthread_join(pool->workers[i - 1].thread, NULL);
+    pthread_cond_destroy(&pool->start);
+    pthread_cond_destroy(&pool->done);
+    pthread_mutex_destroy(&pool->lock);
+    free(pool->workers);
+    free(pool);
+}
+
+int noc_pool_threads(const noc_pool *pool) { return pool->threads; }
+
+void noc_pool_run(noc_pool *pool, size_t items, void (*fn)(void *, size_t, int), void *ctx) {
+    pool->fn = fn;
+    pool->ctx = ctx;
+    pool->items = items;
+    atomic_store(&pool->next, 0);
+    pthread_mutex_lock(&pool->lock);
+    pool->busy = pool->threads - 1;
+    pool->run++;
+    pthread_cond_broadcast(&pool->start);
+    pthread_mutex_unlock(&pool->lock);
+    work(pool, 0);
+    pthread_mutex_lock(&pool->lock);
+    while (pool->busy)
+        pthread_cond_wait(&pool->done, &pool->lock);
+    pthread_mutex_unlock(&pool->lock);
+}

@@ -1,0 +1,116 @@
+#include "base/base.h"
+
+#include <errno.h>
+#include <locale.h>
+#include <math.h>
+#include <pthread.h>
+#include <time.h>
+
+static locale_t c_locale;
+static pthread_once_t c_locale_once = PTHREAD_ONCE_INIT;
+
+static void make_c_locale(void) { c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0); }
+
+static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+const char *noc_scan_double(const char *s, const char *end, double *out) {
+    while (s < end && is_blank(*s))
+        s++;
+    const char *stop = s;
+    while (stop < end && !is_blank(*stop))
+        stop++;
+    char text[64];
+    size_t n = (size_t)(stop - s);
+    if (!n || n >= sizeof(text))
+        return NULL;
+    memcpy(text, s, n);
+    text[n] = 0;
+    return noc_parse_double(text, out) ? stop : NULL;
+}
+
+/* Plain decimals with up to 15 digits convert exactly with one division; the rest goes to strtod. */
+static bool parse_plain(const char *s, double *out) {
+    static const double pow10[] = { 1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15 };
+    bool negative = *s == '-';
+    if (*s == '-' || *s == '+')
+        s++;
+    uint64_t v = 0;
+    int digits = 0, decimals = 0;
+    bool dot = false;
+    for (; *s; s++) {
+        if (*s == '.' && !dot) {
+            dot = true;
+        } else if (*s >= '0' && *s <= '9') {
+            if (++digits > 15)
+                return false;
+            v = v * 10 + (uint64_t)(*s - '0');
+            decimals += dot;
+        } else {
+            return false;
+        }
+    }
+    if (!digits)
+        return false;
+    double d = (double)v / pow10[decimals];
+    *out = negative ? -d : d;
+    return true;
+}
+
+bool noc_parse_double(const char *s, double *out) {
+    if (!s)
+        return false;
+    while (is_blank(*s))
+        s++;
+    if (parse_plain(s, out))
+        return true;
+    if (!*s || *s == 'n' || *s == 'N' || strpbrk(s, "xX")) /* no hexadecimal, no "nan" */
+        return false;
+    pthread_once(&c_locale_once, make_c_locale);
+    char *end;
+    double d = strtod_l(s, &end, c_locale);
+    if (end == s)
+        return false;
+    while (is_blank(*end))
+        end++;
+    if (*end || !isfinite(d))
+        return false;
+    *out = d;
+    return true;
+}
+
+bool noc_parse_int(const char *s, long long *out) {
+    if (!s)
+        return false;
+    while (is_blank(*s))
+        s++;
+    char *end;
+    errno = 0;
+    long long v = strtoll(s, &end, 10);
+    if (end == s || errno)
+        return false;
+    while (is_blank(*end))
+        end++;
+    if (*end)
+        return false;
+    *out = v;
+    return true;
+}
+
+static char lower(char c) { return c >= 'A' && c <= 'Z' ? (char)(c + 32) : c; }
+
+bool noc_ieq(const char *a, const char *b) {
+    if (!a || !b)
+        return false;
+    for (; *a && lower(*a) == lower(*b); a++, b++)
+        ;
+    return lower(*a) == lower(*b);
+}
+
+static double seconds(clockid_t clock) {
+    struct timespec t;
+    clock_gettime(clock, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+double noc_wall_seconds(void) { return seconds(CLOCK_MONOTONIC); }
+double noc_cpu_seconds(void) { return seconds(CLOCK_PROCESS_CPUTIME_ID); }

@@ -1,0 +1,27 @@
+/* city: from the geo model to the scene. */
+#ifndef NOC_CITY_H
+#define NOC_CITY_H
+
+#include "geo/geo.h"
+#include <nocturne/import.h>
+
+/* Lamps stand on the ground by a downward ray, on a pole with a head. */
+typedef struct city_lamp_params {
+    double height, lumens, kelvin;
+} city_lamp_params;
+
+/* Adds pole, head and light for one lamp whose xyz is local metres (z NaN: on the ground). Returns the number of lights
+ * added, 0 if it was skipped (reported in issues). */
+int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, bool inferred, geo_issues *issues);
+
+/* Places lamps by a rule where the data holds none: along roads if there are any, else around the buildings. Returns the
+ * number of lights added; all are marked as inferred. */
+int city_infer_lamps(noc_scene *scene, const city_lamp_params *params, geo_issues *issues);
+
+/* Linear Rec.709 of a black body / daylight at a colour temperature, luminance 1. Source: see lamp.c. */
+void city_kelvin_rgb(double kelvin, float rgb[3]);
+
+/* A flat ground plane under a city without terrain, a little larger than it, at the height its buildings stand at. */
+void city_add_ground(noc_scene *scene);
+
+#endif

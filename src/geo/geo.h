@@ -1,0 +1,110 @@
+/* geo: a city as surveyors keep it. Double coordinates in the file's own CRS, semantics, and the sink that readers feed. */
+#ifndef NOC_GEO_H
+#define NOC_GEO_H
+
+#include "base/base.h"
+#include <nocturne/scene.h> /* noc_class */
+
+/* ---- coordinate reference systems (crs.c: the only PROJ calls of the library) ---- */
+
+typedef struct geo_crs geo_crs;
+
+/* From any spelling: EPSG:n, URNs and URLs of OGC (compound ones too), urn:adv, "CH1903", WKT, PROJ strings. NULL after
+ * reporting what was not understood (and where: `place` is put before the message, e.g. "city.gml:12"). */
+geo_crs *geo_crs_create(const char *definition, const char *place, noc_log *log);
+geo_crs *geo_crs_utm(double lon, double lat); /* WGS 84 UTM zone of a place */
+geo_crs *geo_crs_clone(const geo_crs *crs);
+void geo_crs_destroy(geo_crs *crs);
+const char *geo_crs_name(const geo_crs *crs);       /* "EPSG:25832 (ETRS89 / UTM zone 32N)" */
+bool geo_crs_is_geographic(const geo_crs *crs);
+bool geo_crs_is_metric(const geo_crs *crs);         /* projected, axes in metres */
+bool geo_crs_lat_first(const geo_crs *crs);         /* the authority's order is northing/latitude first */
+bool geo_crs_equal(const geo_crs *a, const geo_crs *b); /* same horizontal CRS */
+
+/* Transform between two CRSs; not thread-safe, one a thread. Points are easting northing height (lon lat height, degrees):
+ * axis order is normalised. Height passes through unchanged. */
+typedef struct geo_transform geo_transform;
+geo_transform *geo_transform_create(const geo_crs *from, const geo_crs *to, noc_log *log);
+void geo_transform_destroy(geo_transform *t);
+/* In place; points that cannot be transformed become NaN. Returns how many failed. */
+size_t geo_transform_points(geo_transform *t, double *xyz, size_t count);
+
+/* ---- what readers emit ---- */
+
+typedef enum geo_kind {
+    GEO_BUILDING, GEO_TERRAIN, GEO_TRANSPORT, GEO_VEGETATION, GEO_WATER, GEO_FURNITURE, GEO_BRIDGE, GEO_LANDUSE, GEO_OTHER,
+    GEO_KIND_COUNT
+} geo_kind;
+
+typedef struct geo_object {
+    geo_kind kind;
+    const char *id;   /* gml:id, "" if none; valid during the call */
+    int lod;          /* taken, -1 if not applicable */
+} geo_object;
+
+/* Rings without the repeated last point. Coordinates in the file's CRS, easting northing height order. */
+typedef struct geo_polygon {
+    noc_class cls;
+    const char *id;          /* polygon's gml:id, else its object's; never NULL */
+    size_t ring_count;       /* first one exterior */
+    const size_t *ring_size; /* points a ring */
+    const double *xyz;       /* 3 a point, rings one after the other */
+} geo_polygon;
+
+/* A lamp as tagged. NaN / 0 / NULL where unknown. */
+typedef struct geo_lamp {
+    double xyz[3];        /* file CRS; xyz[2] NaN: stands on the ground */
+    double height;        /* of the light above the ground, m */
+    double direction;     /* degrees clockwise from north the head faces, NaN: none */
+    int count;            /* heads on the pole; 0 = unknown */
+    double lumens, watts, kelvin;
+    float rgb[3];         /* colour tag; negative if none */
+    enum { GEO_LAMP_STREET, GEO_LAMP_LANTERN, GEO_LAMP_FLOOD } type;
+    enum { GEO_SOURCE_UNKNOWN, GEO_SOURCE_LED, GEO_SOURCE_SODIUM, GEO_SOURCE_MERCURY, GEO_SOURCE_METAL_HALIDE,
+           GEO_SOURCE_FLUORESCENT, GEO_SOURCE_INCANDESCENT, GEO_SOURCE_GAS } source;
+    enum { GEO_MOUNT_UNKNOWN, GEO_MOUNT_POLE, GEO_MOUNT_WALL, GEO_MOUNT_SUSPENDED } mount;
+    const char *id;
+} geo_lamp;
+
+/* Counted reasons: kept by the importer, a line a reason in the report. */
+typedef struct geo_issues geo_issues;
+void geo_issue(geo_issues *issues, bool repaired, const char *reason, const char *id); /* reason: a literal */
+
+/* The importer's side. Readers call these; any status but NOC_OK makes the reader stop and return it. */
+typedef struct geo_sink {
+    void *ctx;
+    noc_log *log;
+    geo_issues *issues;
+    /* srsName as spelled; called before the first coordinate it applies to, again when it changes. Returns in *lat_first
+     * whether the file's tuples are in latitude/northing first order; the reader swaps them before emitting. */
+    noc_status (*crs)(void *ctx, const char *srs_name, const char *place, bool *lat_first);
+    noc_status (*begin_object)(void *ctx, const geo_object *object);
+    noc_status (*polygon)(void *ctx, const geo_polygon *polygon);
+    noc_status (*end_object)(void *ctx);
+    noc_status (*lamp)(void *ctx, const geo_lamp *lamp);
+    /* fraction of the file read; false: cancelled */
+    bool (*progress)(void *ctx, double done);
+} geo_sink;
+
+/* ---- polygons (polygon.c) ---- */
+
+/* Cleans (repeated points, spikes, non-finite values) and triangulates a polygon with holes, keeping the exterior ring's
+ * orientation. Non-planar ones are triangulated in their best plane, keeping their vertices. What was repaired or is
+ * beyond repair goes to `issues`. Returns triangles as index triples into the cleaned points. */
+typedef struct geo_triangles {
+    NOC_ARRAY(double) xyz;       /* 3 a vertex */
+    NOC_ARRAY(uint32_t) indices; /* 3 a triangle */
+} geo_triangles;
+
+/* Points in metres. Appends to out; returns false if the polygon was skipped. */
+bool geo_triangulate(const geo_polygon *polygon, geo_triangles *out, geo_issues *issues);
+void geo_triangles_free(geo_triangles *t);
+
+/* Issues storage, used by the importer. */
+geo_issues *geo_issues_create(void);
+void geo_issues_destroy(geo_issues *issues);
+size_t geo_issues_count(const geo_issues *issues);
+void geo_issues_get(const geo_issues *issues, size_t i, const char **reason, bool *repaired, size_t *count,
+                    const char **examples);
+
+#endif

@@ -1,0 +1,37 @@
+/* import: one reader a format, in one table; told apart by content. Readers emit into a geo_sink, or, for meshes that are
+ * already triangles with materials, into a scene. */
+#ifndef NOC_IMPORT_H
+#define NOC_IMPORT_H
+
+#include "geo/geo.h"
+#include <nocturne/import.h>
+
+/* Sequential bytes of a plain, gzip or zip file (the first member of a zip that a reader's probe accepts). */
+typedef struct noc_stream noc_stream;
+noc_stream *noc_stream_open(const char *path, noc_log *log); /* NULL after reporting an error; directories are an error */
+void noc_stream_close(noc_stream *s);
+/* Up to size bytes; *got = 0 at the end. A truncated or damaged archive is NOC_ERR_FORMAT, reported. */
+noc_status noc_stream_read(noc_stream *s, void *data, size_t size, size_t *got);
+noc_status noc_stream_rewind(noc_stream *s);
+const char *noc_stream_name(const noc_stream *s);     /* path, or path!member */
+uint64_t noc_stream_size(const noc_stream *s);        /* bytes as stored */
+uint64_t noc_stream_read_bytes(const noc_stream *s);  /* bytes delivered since open or rewind */
+double noc_stream_progress(const noc_stream *s);      /* share of the stored bytes consumed, 0..1 */
+
+typedef struct noc_reader {
+    const char *name;  /* "CityGML" */
+    enum { NOC_READS_CITY, NOC_READS_MESH, NOC_READS_LAMPS } reads;
+    /* Does the beginning of the (decompressed) content look like this format? head is size bytes and then a 0. */
+    bool (*probe)(const char *head, size_t size);
+    /* Reads everything. *format gets a static or interned description ("CityGML 2.0"). Exactly one of these is set. */
+    noc_status (*read)(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format);
+    noc_status (*read_mesh)(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,
+                            geo_issues *issues, const char **format);
+    const char *missing; /* not NULL: this build lacks the part; the text says which */
+} noc_reader;
+
+/* The table, ended by a NULL name. */
+extern const noc_reader noc_reader_citygml, noc_reader_mesh, noc_reader_overpass, noc_reader_vector;
+
+
+#endif

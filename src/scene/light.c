@@ -1,0 +1,174 @@
+/* Lights and the shapes they show. */
+#include "scene/scene.h"
+
+#include <math.h>
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static double length(const double a[3]) { return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
+
+/* Two unit vectors u, v with u x v = n / |n|. */
+static void frame(const double n[3], double u[3], double v[3]) {
+    double l = length(n), z[3] = { n[0] / l, n[1] / l, n[2] / l };
+    double helper[3] = { fabs(z[0]) < 0.5, fabs(z[0]) >= 0.5, 0 };
+    cross(helper, z, u);
+    l = length(u);
+    for (int i = 0; i < 3; i++)
+        u[i] /= l;
+    cross(z, u, v);
+}
+
+static bool all_finite(const double *v, int n) {
+    for (int i = 0; i < n; i++)
+        if (!(fabs(v[i]) < 1e7))
+            return false;
+    return true;
+}
+
+enum { DISC_SIDES = 24 };
+
+static size_t disc_shape(const noc_light *l, const double u[3], const double v[3], double *xyz, uint32_t *indices) {
+    for (int i = 0; i < DISC_SIDES; i++) {
+        double t = 2 * M_PI * i / DISC_SIDES;
+        for (int k = 0; k < 3; k++)
+            xyz[3 * i + k] = l->position[k] + l->radius * (cos(t) * u[k] + sin(t) * v[k]);
+    }
+    for (uint32_t i = 0; i + 2 < DISC_SIDES; i++) {
+        indices[3 * i] = 0;
+        indices[3 * i + 1] = i + 1;
+        indices[3 * i + 2] = i + 2;
+    }
+    return DISC_SIDES;
+}
+
+enum { SPHERE_RINGS = 8, SPHERE_SIDES = 12 };
+
+/* Inscribed, so that no point of the true sphere lies behind its own shape. */
+static size_t sphere_shape(const noc_light *l, double *xyz, uint32_t *indices, size_t *triangles) {
+    size_t n = 0, t = 0;
+    for (int j = 0; j <= SPHERE_RINGS; j++)
+        for (int i = 0; i < SPHERE_SIDES; i++, n++) {
+            double theta = M_PI * j / SPHERE_RINGS, phi = 2 * M_PI * i / SPHERE_SIDES;
+            xyz[3 * n] = l->position[0] + l->radius * sin(theta) * cos(phi);
+            xyz[3 * n + 1] = l->position[1] + l->radius * sin(theta) * sin(phi);
+            xyz[3 * n + 2] = l->position[2] + l->radius * cos(theta);
+        }
+    for (uint32_t j = 0; j < SPHERE_RINGS; j++)
+        for (uint32_t i = 0; i < SPHERE_SIDES; i++) {
+            uint32_t a = j * SPHERE_SIDES + i, b = j * SPHERE_SIDES + (i + 1) % SPHERE_SIDES;
+            uint32_t c = a + SPHERE_SIDES, d = b + SPHERE_SIDES;
+            uint32_t quad[6] = { a, c, d, a, d, b };
+            for (int k = 0; k < 6; k += 3) {
+                if ((k == 3 && j == 0) || (k == 0 && j == SPHERE_RINGS - 1))
+                    continue; /* the poles' degenerate halves */
+                memcpy(indices + 3 * t++, quad + k, 3 * sizeof(uint32_t));
+            }
+        }
+    *triangles = t;
+    return n;
+}
+
+/* The material that shows a light: emits, reflects nothing. Lights of one colour share it. */
+static int light_material(noc_scene *scene, const noc_light *l) {
+    noc_material m = { .roughness = 1, .cls = NOC_CLASS_LAMP, .two_sided = false };
+    memcpy(m.emission, l->emission, sizeof(m.emission));
+    for (size_t i = scene->materials.len; i-- > 0 && i + 64 > scene->materials.len;) {
+        const noc_material *have = &scene->materials.data[i];
+        if (have->cls == m.cls && have->albedo[0] == 0 && have->albedo[1] == 0 && have->albedo[2] == 0 && have->f0 == 0 &&
+            !have->two_sided && !memcmp(have->emission, m.emission, sizeof(m.emission)))
+            return (int)i;
+    }
+    return noc_scene_add_material(scene, &m);
+}
+
+int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
+    const char *name = l->name ? l->name : "unnamed";
+    noc_light_record r = { .kind = (uint32_t)l->kind, .flags = l->inferred ? 2u : 0u };
+    double u[3] = { 0 }, v[3] = { 0 }, n[3], area = 0;
+    const char *wrong = NULL;
+    if (scene->committed)
+        wrong = "the scene is committed";
+    else if (!all_finite(l->position, 3))
+        wrong = "its position is not finite, or further than 10 000 km from the origin";
+    for (int i = 0; i < 3 && !wrong; i++)
+        if (!(l->emission[i] >= 0 && l->emission[i] <= 1e12f))
+            wrong = "its emission is negative or not finite";
+    bool round = l->kind == NOC_LIGHT_SPHERE || l->kind == NOC_LIGHT_DISC;
+    if (!wrong && round && !(l->radius >= 1e-4 && l->radius < 1e5))
+        wrong = "its radius must be in 0.0001..100000 m";
+    if (!wrong && l->kind == NOC_LIGHT_DISC && !(all_finite(l->direction, 3) && length(l->direction) > 0))
+        wrong = "a disc needs a direction";
+    bool flat = l->kind == NOC_LIGHT_TRIANGLE || l->kind == NOC_LIGHT_PARALLELOGRAM;
+    if (!wrong && flat) {
+        cross(l->edge_u, l->edge_v, n);
+        area = length(n) * (l->kind == NOC_LIGHT_TRIANGLE ? 0.5 : 1);
+        if (!all_finite(l->edge_u, 3) || !all_finite(l->edge_v, 3) || !(area > 1e-10))
+            wrong = "its edges span no area";
+    }
+    if (!wrong && (unsigned)l->kind > NOC_LIGHT_POINT)
+        wrong = "unknown kind";
+    if (wrong) {
+        noc_error(scene->log, NOC_ERR_ARGUMENT, "light %s: %s", name, wrong);
+        return -1;
+    }
+
+    double xyz[3 * (SPHERE_RINGS + 1) * SPHERE_SIDES];
+    uint32_t indices[3 * 2 * SPHERE_RINGS * SPHERE_SIDES];
+    size_t vertices = 0, triangles = 0;
+    r.radius = (float)l->radius;
+    switch (l->kind) {
+    case NOC_LIGHT_SPHERE:
+        area = 4 * M_PI * l->radius * l->radius;
+        vertices = sphere_shape(l, xyz, indices, &triangles);
+        break;
+    case NOC_LIGHT_DISC:
+        frame(l->direction, u, v);
+        area = M_PI * l->radius * l->radius;
+        vertices = disc_shape(l, u, v, xyz, indices);
+        triangles = DISC_SIDES - 2;
+        break;
+    case NOC_LIGHT_TRIANGLE:
+    case NOC_LIGHT_PARALLELOGRAM:
+        for (int k = 0; k < 3; k++) {
+            xyz[k] = l->position[k];
+            xyz[3 + k] = l->position[k] + l->edge_u[k];
+            xyz[6 + k] = l->position[k] + l->edge_u[k] + (l->kind == NOC_LIGHT_PARALLELOGRAM) * l->edge_v[k];
+            xyz[9 + k] = l->position[k] + l->edge_v[k];
+            if (l->kind == NOC_LIGHT_TRIANGLE)
+                xyz[6 + k] = xyz[9 + k];
+        }
+        memcpy(indices, (uint32_t[]){ 0, 1, 2, 0, 2, 3 }, 6 * sizeof(uint32_t));
+        vertices = l->kind == NOC_LIGHT_TRIANGLE ? 3 : 4;
+        triangles = l->kind == NOC_LIGHT_TRIANGLE ? 1 : 2;
+        break;
+    case NOC_LIGHT_POINT:
+        r.radius = 0;
+        break;
+    }
+    for (int k = 0; k < 3; k++) {
+        r.p[k] = (float)l->position[k];
+        r.a[k] = (float)(flat ? l->edge_u[k] : l->radius * u[k]);
+        r.b[k] = (float)(flat ? l->edge_v[k] : l->radius * v[k]);
+        r.e[k] = l->emission[k];
+    }
+    r.area = (float)area;
+    uint32_t index = (uint32_t)scene->lights.len;
+    if (triangles) {
+        int material = light_material(scene, l);
+        size_t first = scene->triangle_light.len;
+        noc_mesh mesh = { .vertex_count = vertices, .positions = xyz, .triangle_count = triangles, .indices = indices,
+                          .material = material, .name = l->name };
+        if (material < 0 || noc_scene_add_mesh(scene, &mesh) < 0)
+            return -1;
+        for (size_t t = first; t < scene->triangle_light.len; t++)
+            scene->triangle_light.data[t] = index;
+    }
+    array_push(&scene->lights, r);
+    array_push(&scene->light_names, arena_strdup(&scene->names, l->name));
+    scene->lights_inferred += l->inferred;
+    return (int)index;
+}

@@ -1,0 +1,67 @@
+/* scene: the flat arrays that backends render. Filled through the public functions of nocturne/scene.h. */
+#ifndef NOC_SCENE_H
+#define NOC_SCENE_H
+
+#include "base/base.h"
+#include <nocturne/scene.h>
+
+#define NOC_NO_LIGHT UINT32_MAX
+
+/* 64 bytes, 4-byte scalars only: the same record for C and shaders (core/light.h says what each kind keeps where). */
+typedef struct noc_light_record {
+    float p[3];      /* centre or corner */
+    uint32_t kind;   /* noc_light_kind */
+    float a[3];      /* edge u; disc: first radius vector */
+    float radius;
+    float b[3];      /* edge v; disc: second radius vector; the light faces a x b */
+    uint32_t flags;  /* bit 0: two-sided; bit 1: inferred */
+    float e[3];      /* cd/m2; point: cd */
+    float area;      /* m2; 0 for points */
+} noc_light_record;
+_Static_assert(sizeof(noc_light_record) == 64, "light records are one cache line");
+
+/* 32 bytes. */
+typedef struct noc_material_record {
+    float albedo[3];
+    float f0;
+    float emission[3];
+    float alpha;     /* roughness^2 */
+} noc_material_record;
+_Static_assert(sizeof(noc_material_record) == 32, "material records are half a cache line");
+
+typedef struct noc_scene_mesh {
+    uint32_t first_triangle, triangle_count;
+    int material;
+    const char *name; /* in scene->names */
+} noc_scene_mesh;
+
+struct noc_scene {
+    noc_log *log;
+    double origin[3];
+    char *crs_name;       /* for people */
+    struct geo_crs *crs;  /* set by the importer; owned; NULL if none */
+    void (*crs_free)(struct geo_crs *);
+
+    /* Triangle soup: vertices are 3 floats (Embree needs 4 bytes of padding after the last: reserve one more). */
+    NOC_ARRAY(float) positions;            /* 3 a vertex */
+    NOC_ARRAY(uint32_t) indices;           /* 3 a triangle */
+    NOC_ARRAY(uint32_t) triangle_material; /* index into material_records */
+    NOC_ARRAY(uint32_t) triangle_light;    /* light that this triangle shows, or NOC_NO_LIGHT */
+    NOC_ARRAY(noc_scene_mesh) meshes;
+    NOC_ARRAY(noc_material) materials;
+    NOC_ARRAY(noc_material_record) material_records; /* parallel to materials */
+    NOC_ARRAY(noc_light_record) lights;    /* data is 64-byte aligned after commit */
+    NOC_ARRAY(const char *) light_names;   /* parallel to lights, entries may be NULL */
+    noc_arena names;
+    size_t triangles_dropped, lights_inferred;
+    double bounds_min[3], bounds_max[3];
+    bool committed;
+    struct noc_ground *ground;             /* built on first use of noc_scene_ground; freed with the scene */
+};
+
+/* ground.c: grid over the ground triangles for vertical rays. Invalidated by adding meshes. */
+void noc_ground_free(struct noc_ground *ground);
+/* Highest surface of any class at (x, y), for placing cameras and lamps under roofs. */
+bool noc_scene_top(const noc_scene *scene, double x, double y, double *z);
+
+#endif

@@ -1,0 +1,33 @@
+/* What every test program includes. */
+#ifndef NOC_TEST_H
+#define NOC_TEST_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+/* after the standard headers */
+#include <cmocka.h>
+
+/* Path of a file below shared/ (real data), or NULL where it is absent: then the test skips, saying so. */
+static inline const char *shared_path(const char *relative) {
+    static char path[4096];
+    const char *shared = getenv("NOC_SHARED");
+    if (!shared)
+        return NULL;
+    snprintf(path, sizeof(path), "%s/%s", shared, relative);
+    return access(path, R_OK) ? NULL : path;
+}
+
+#define REQUIRE_SHARED(var, relative)                                                                                  \
+    const char *var = shared_path(relative);                                                                           \
+    if (!var) {                                                                                                        \
+        print_message("# skipped: shared/%s is not here\n", relative);                                                 \
+        skip();                                                                                                        \
+    }
+
+#endif
