@@ -1,0 +1,201 @@
+/* The tables behind the command line, its help, its errors and docs/options.md. Each row names a field of a params struct;
+ * what a row does not say (the default) is in that struct's default macro, so it cannot be stated twice. */
+#include "base/base.h"
+
+#include <float.h>
+#include <locale.h>
+#include <nocturne/option.h>
+#include <stdio.h>
+
+#define BOOL(st, f, n, g, h) { n, g, NOC_OPTION_BOOL, offsetof(st, f), 0, 1, NULL, "", h }
+#define INT(st, f, n, g, lo, hi, u, h) { n, g, NOC_OPTION_INT, offsetof(st, f), lo, hi, NULL, u, h }
+#define UINT(st, f, n, g, h) { n, g, NOC_OPTION_UINT, offsetof(st, f), 0, UINT32_MAX, NULL, "", h }
+#define REAL(st, f, n, g, lo, hi, u, h) { n, g, NOC_OPTION_REAL, offsetof(st, f), lo, hi, NULL, u, h }
+#define CHOICE(st, f, n, g, c, h) { n, g, NOC_OPTION_CHOICE, offsetof(st, f), 0, 0, c, "", h }
+#define TEXT(st, f, n, g, u, h) { n, g, NOC_OPTION_TEXT, offsetof(st, f), 0, 0, NULL, u, h }
+#define END { NULL, NULL, NOC_OPTION_BOOL, 0, 0, 0, NULL, NULL, NULL }
+
+#define P noc_render_params
+static const noc_option render_options[] = {
+    INT(P, width, "width", "Picture", 1, NOC_IMAGE_MAX_SIDE, "px", "width of the picture"),
+    INT(P, height, "height", "Picture", 1, NOC_IMAGE_MAX_SIDE, "px", "height of the picture"),
+    UINT(P, seed, "seed", "Picture", "start of the random numbers; equal seeds give equal pictures"),
+    BOOL(P, jitter, "jitter", "Picture", "move sub-pixel positions from frame to frame (antialiasing)"),
+    BOOL(P, accumulate, "accumulate", "Picture", "mean of all frames; off: the last frame alone"),
+    REAL(P, sky, "sky", "Picture", 0, 1e6, "cd/m2", "luminance of the sky at the zenith; 0 = no sky"),
+    BOOL(P, emitters, "emitters", "Picture", "show light sources that are seen directly"),
+
+    CHOICE(P, method, "method", "Estimator", "reference|is|ris|restir", "how direct light is estimated"),
+    INT(P, candidates, "candidates", "Estimator", 1, 1024, "", "ris, restir: light candidates a pixel and frame (M)"),
+    INT(P, rays, "rays", "Estimator", 1, 1024, "", "reference: shadow rays a pixel and frame"),
+    BOOL(P, final_ray, "final-ray", "Estimator", "shadow ray to the chosen light; off: light passes through walls"),
+    CHOICE(P, path, "path", "Estimator", "auto|scalar|wide", "code that runs: scalar C, or wide for this processor"),
+
+    BOOL(P, temporal, "temporal", "Reuse (restir)", "reuse samples of the previous frame"),
+    BOOL(P, spatial, "spatial", "Reuse (restir)", "reuse samples of neighbouring pixels"),
+    INT(P, neighbours, "neighbours", "Reuse (restir)", 0, 16, "", "neighbours a pixel and pass (k)"),
+    REAL(P, radius, "radius", "Reuse (restir)", 1, 64, "px", "radius that neighbours are drawn from"),
+    INT(P, passes, "passes", "Reuse (restir)", 1, 4, "", "spatial passes"),
+    REAL(P, history, "history", "Reuse (restir)", 0, 1000, "", "cap of the history, in frames' worth of candidates"),
+    CHOICE(P, bias, "bias", "Reuse (restir)", "biased|mis|pairwise", "weights of the combination"),
+    BOOL(P, bias_rays, "bias-rays", "Reuse (restir)", "visibility in those weights: no bias, more rays"),
+    BOOL(P, visibility_reuse, "visibility-reuse", "Reuse (restir)", "one shadow ray after the candidates"),
+    REAL(P, reject_depth, "reject-depth", "Reuse (restir)", 0, 10, "",
+         "distance to a neighbour's plane that rejects it, share of depth"),
+    REAL(P, reject_normal, "reject-normal", "Reuse (restir)", -1, 1, "", "cosine between normals under which one is rejected"),
+    END,
+};
+#undef P
+
+#define P noc_display_params
+static const noc_option display_options[] = {
+    BOOL(P, auto_exposure, "auto-exposure", "Display", "measure the picture; off: ev100 decides"),
+    REAL(P, ev100, "ev100", "Display", -30, 30, "EV", "exposure when auto-exposure is off"),
+    REAL(P, compensation, "compensation", "Display", -20, 20, "stops", "added to the automatic exposure; more is brighter"),
+    CHOICE(P, tonemap, "tonemap", "Display", "filmic|reinhard|linear", "curve from luminance to the screen"),
+    END,
+};
+#undef P
+
+#define P noc_import_params
+static const noc_option import_options[] = {
+    TEXT(P, crs, "crs", "City", "CRS", "CRS of inputs that name none (EPSG:n, WKT, PROJ)"),
+    TEXT(P, scene_crs, "scene-crs", "City", "CRS", "CRS of the scene; else the first input's, or UTM"),
+    INT(P, lod, "lod", "City", 0, 4, "", "highest CityGML level of detail that is taken"),
+    BOOL(P, infer_lamps, "infer-lamps", "City", "place lamps by a rule where no input holds any"),
+    REAL(P, lamp_height, "lamp-height", "City", 0.5, 60, "m", "height of lamps that are not tagged"),
+    REAL(P, lamp_lumens, "lamp-lumens", "City", 0, 1e7, "lm", "flux of lamps with neither flux nor wattage"),
+    REAL(P, lamp_kelvin, "lamp-kelvin", "City", 1000, 25000, "K", "colour temperature of lamps that tell none"),
+    END,
+};
+#undef P
+
+#define P noc_city_params
+static const noc_option city_options[] = {
+    UINT(P, seed, "city-seed", "Built-in city", "another number, another city"),
+    REAL(P, size, "city-size", "Built-in city", 150, 5000, "m", "edge of the square it covers"),
+    REAL(P, lit_windows, "city-lit", "Built-in city", 0, 1, "", "share of windows that are lit"),
+    END,
+};
+#undef P
+
+const noc_option *noc_render_options(void) { return render_options; }
+const noc_option *noc_display_options(void) { return display_options; }
+const noc_option *noc_import_options(void) { return import_options; }
+const noc_option *noc_city_options(void) { return city_options; }
+
+/* Messages quote what was given; a quote of pages helps nobody. */
+#define QUOTE "\"%.60s%s\""
+#define QUOTED(s) (s), strlen(s) > 60 ? "..." : ""
+
+static int format_real(char *text, size_t size, double v) {
+    char shortest[40];
+    for (int digits = 6; digits <= 17; digits++) {
+        snprintf(shortest, sizeof(shortest), "%.*g", digits, v);
+        if (strtod(shortest, NULL) == v)
+            break;
+    }
+    /* The embedding program may have set a locale whose decimal point is a comma. */
+    const char *point = localeconv()->decimal_point;
+    char *at = point && *point && strcmp(point, ".") ? strstr(shortest, point) : NULL;
+    if (at) {
+        *at = '.';
+        memmove(at + 1, at + strlen(point), strlen(at + strlen(point)) + 1);
+    }
+    return snprintf(text, size, "%s", shortest);
+}
+
+static noc_status set_bool(const noc_option *o, bool *field, const char *value, noc_log *log) {
+    static const char *const yes[] = { "true", "on", "yes", "1" }, *const no[] = { "false", "off", "no", "0" };
+    if (!value) {
+        *field = true;
+        return NOC_OK;
+    }
+    for (size_t i = 0; i < NOC_COUNT(yes); i++) {
+        if (noc_ieq(value, yes[i]) || noc_ieq(value, no[i])) {
+            *field = noc_ieq(value, yes[i]);
+            return NOC_OK;
+        }
+    }
+    return noc_error(log, NOC_ERR_ARGUMENT, "%s: " QUOTE " is neither true nor false", o->name, QUOTED(value));
+}
+
+static noc_status set_choice(const noc_option *o, void *field, const char *value, noc_log *log) {
+    size_t length = strlen(value);
+    int index = 0;
+    for (const char *c = o->choices; *c; index++) {
+        size_t n = strcspn(c, "|");
+        if (n == length && !strncmp(c, value, n)) {
+            memcpy(field, &index, sizeof(index));
+            return NOC_OK;
+        }
+        c += n + (c[n] == '|');
+    }
+    return noc_error(log, NOC_ERR_ARGUMENT, "%s: " QUOTE " is none of %s", o->name, QUOTED(value), o->choices);
+}
+
+static noc_status range_error(const noc_option *o, const char *value, noc_log *log) {
+    char lo[40], hi[40];
+    format_real(lo, sizeof(lo), o->min);
+    format_real(hi, sizeof(hi), o->max);
+    return noc_error(log, NOC_ERR_ARGUMENT, "%s: " QUOTE " is outside %s to %s%s%s", o->name, QUOTED(value), lo, hi,
+                     *o->unit ? " " : "", o->unit);
+}
+
+static noc_status set_number(const noc_option *o, void *field, const char *value, noc_log *log) {
+    double real;
+    if (!noc_parse_double(value, &real))
+        return noc_error(log, NOC_ERR_ARGUMENT, "%s: " QUOTE " is not a number", o->name, QUOTED(value));
+    if (!(real >= o->min && real <= o->max))
+        return range_error(o, value, log);
+    if (o->kind == NOC_OPTION_REAL) {
+        memcpy(field, &real, sizeof(real));
+        return NOC_OK;
+    }
+    if (real != (double)(long long)real)
+        return noc_error(log, NOC_ERR_ARGUMENT, "%s: " QUOTE " is not a whole number", o->name, QUOTED(value));
+    if (o->kind == NOC_OPTION_INT) {
+        int i = (int)real;
+        memcpy(field, &i, sizeof(i));
+    } else {
+        uint32_t u = (uint32_t)real;
+        memcpy(field, &u, sizeof(u));
+    }
+    return NOC_OK;
+}
+
+noc_status noc_option_set(const noc_option *option, void *params, const char *value, noc_log *log) {
+    void *field = (char *)params + option->offset;
+    if (option->kind == NOC_OPTION_BOOL)
+        return set_bool(option, field, value, log);
+    if (!value || !*value)
+        return noc_error(log, NOC_ERR_ARGUMENT, "%s: needs a value", option->name);
+    switch (option->kind) {
+    case NOC_OPTION_CHOICE: return set_choice(option, field, value, log);
+    case NOC_OPTION_TEXT: memcpy(field, &value, sizeof(value)); return NOC_OK;
+    default: return set_number(option, field, value, log);
+    }
+}
+
+static int get_choice(const noc_option *o, int index, char *text, size_t size) {
+    const char *c = o->choices;
+    for (; index > 0 && *c; index--) {
+        c += strcspn(c, "|");
+        c += *c == '|';
+    }
+    return snprintf(text, size, "%.*s", index ? 0 : (int)strcspn(c, "|"), c);
+}
+
+int noc_option_get(const noc_option *option, const void *params, char *text, size_t size) {
+    union { bool b; int i; uint32_t u; double d; const char *s; } v;
+    const char *field = (const char *)params + option->offset;
+    switch (option->kind) {
+    case NOC_OPTION_BOOL: memcpy(&v.b, field, sizeof(v.b)); return snprintf(text, size, "%s", v.b ? "true" : "false");
+    case NOC_OPTION_INT: memcpy(&v.i, field, sizeof(v.i)); return snprintf(text, size, "%d", v.i);
+    case NOC_OPTION_UINT: memcpy(&v.u, field, sizeof(v.u)); return snprintf(text, size, "%u", v.u);
+    case NOC_OPTION_REAL: memcpy(&v.d, field, sizeof(v.d)); return format_real(text, size, v.d);
+    case NOC_OPTION_CHOICE: memcpy(&v.i, field, sizeof(v.i)); return get_choice(option, v.i, text, size);
+    case NOC_OPTION_TEXT: memcpy(&v.s, field, sizeof(v.s)); return snprintf(text, size, "%s", v.s ? v.s : "");
+    }
+    return snprintf(text, size, "%s", "");
+}

@@ -1,0 +1,200 @@
+#include "../test.h"
+#include "base/base.h"
+#include <locale.h>
+#include <nocturne/option.h>
+
+static noc_render_params render;
+static noc_display_params display;
+static noc_import_params import;
+static noc_city_params city;
+
+static const struct { const noc_option *(*table)(void); void *params; size_t size; } tables[] = {
+    { noc_render_options, &render, sizeof(render) },
+    { noc_display_options, &display, sizeof(display) },
+    { noc_import_options, &import, sizeof(import) },
+    { noc_city_options, &city, sizeof(city) },
+};
+
+static int setup(void **state) {
+    render = noc_render_default_params();
+    display = noc_display_default_params();
+    import = noc_import_default_params();
+    city = noc_city_default_params();
+    return 0;
+}
+
+static const noc_option *find(const noc_option *table, const char *name) {
+    for (; table->name; table++)
+        if (!strcmp(table->name, name))
+            return table;
+    fail_msg("no option %s", name);
+    return NULL;
+}
+
+static size_t field_size(noc_option_kind kind) {
+    switch (kind) {
+    case NOC_OPTION_BOOL: return sizeof(bool);
+    case NOC_OPTION_REAL: return sizeof(double);
+    case NOC_OPTION_TEXT: return sizeof(char *);
+    default: return sizeof(int);
+    }
+}
+
+/* Fields lie in their struct without overlapping, and names are unique over all tables, since one command line takes all. */
+static void rows_are_sound(void **state) {
+    noc_map names = { 0 };
+    for (size_t t = 0; t < NOC_COUNT(tables); t++) {
+        unsigned char used[sizeof(noc_render_params)] = { 0 };
+        for (const noc_option *o = tables[t].table(); o->name; o++) {
+            assert_true(map_put(&names, o->name, 1));
+            assert_true(o->group && o->unit && o->help && *o->help && strlen(o->help) < 80);
+            assert_int_equal(o->kind == NOC_OPTION_CHOICE, o->choices != NULL);
+            assert_true(strncmp(o->name, "no-", 3) != 0);
+            size_t size = field_size(o->kind);
+            assert_true(o->offset + size <= tables[t].size && o->offset % size == 0);
+            for (size_t i = 0; i < size; i++)
+                assert_int_equal(used[o->offset + i]++, 0);
+        }
+    }
+    map_free(&names);
+}
+
+/* The default of every option, as text, is a value that the option takes and that changes nothing. */
+static void defaults_round_trip(void **state) {
+    for (size_t t = 0; t < NOC_COUNT(tables); t++) {
+        for (const noc_option *o = tables[t].table(); o->name; o++) {
+            char before[64], after[64];
+            assert_true(noc_option_get(o, tables[t].params, before, sizeof(before)) < (int)sizeof(before));
+            if (o->kind == NOC_OPTION_TEXT && !*before)
+                continue;
+            unsigned char *copy = malloc(tables[t].size);
+            memcpy(copy, tables[t].params, tables[t].size);
+            assert_int_equal(noc_option_set(o, tables[t].params, before, NULL), NOC_OK);
+            assert_memory_equal(copy, tables[t].params, tables[t].size);
+            noc_option_get(o, tables[t].params, after, sizeof(after));
+            assert_string_equal(before, after);
+            free(copy);
+        }
+    }
+}
+
+/* Every choice and both ends of every range are taken and read back; one step beyond is an error that changes nothing. */
+static void ranges_and_choices(void **state) {
+    for (size_t t = 0; t < NOC_COUNT(tables); t++) {
+        for (const noc_option *o = tables[t].table(); o->name; o++) {
+            char text[64], back[64], before[64];
+            if (o->kind == NOC_OPTION_CHOICE) {
+                const char *c = o->choices;
+                for (int i = 0; *c; i++) {
+                    int n = (int)strcspn(c, "|"), stored;
+                    snprintf(text, sizeof(text), "%.*s", n, c);
+                    assert_int_equal(noc_option_set(o, tables[t].params, text, NULL), NOC_OK);
+                    memcpy(&stored, (char *)tables[t].params + o->offset, sizeof(stored));
+                    assert_int_equal(stored, i);
+                    noc_option_get(o, tables[t].params, back, sizeof(back));
+                    assert_string_equal(back, text);
+                    c += n + (c[n] == '|');
+                }
+            } else if (o->kind != NOC_OPTION_BOOL && o->kind != NOC_OPTION_TEXT) {
+                double ends[] = { o->min, o->max }, beyond[] = { o->min - 1, o->max + 1 };
+                for (int i = 0; i < 2; i++) {
+                    snprintf(text, sizeof(text), "%.17g", ends[i]);
+                    assert_int_equal(noc_option_set(o, tables[t].params, text, NULL), NOC_OK);
+                    noc_option_get(o, tables[t].params, before, sizeof(before));
+                    assert_true(strtod(before, NULL) == ends[i]);
+                    snprintf(text, sizeof(text), "%.17g", beyond[i]);
+                    assert_int_equal(noc_option_set(o, tables[t].params, text, NULL), NOC_ERR_ARGUMENT);
+                    noc_option_get(o, tables[t].params, back, sizeof(back));
+                    assert_string_equal(back, before);
+                }
+            }
+        }
+    }
+}
+
+static void bools(void **state) {
+    const noc_option *o = find(noc_render_options(), "temporal");
+    static const struct { const char *text; bool value; } good[] = { { NULL, true }, { "off", false }, { "on", true },
+        { "No", false }, { "YES", true }, { "0", false }, { "1", true }, { "false", false }, { "true", true } };
+    for (size_t i = 0; i < NOC_COUNT(good); i++) {
+        render.temporal = !good[i].value;
+        assert_int_equal(noc_option_set(o, &render, good[i].text, NULL), NOC_OK);
+        assert_int_equal(render.temporal, good[i].value);
+    }
+    static const char *const bad[] = { "", "2", "maybe", "true " };
+    for (size_t i = 0; i < NOC_COUNT(bad); i++)
+        assert_int_equal(noc_option_set(o, &render, bad[i], NULL), NOC_ERR_ARGUMENT);
+}
+
+static void ignore(void *user, noc_log_level level, const char *text) {}
+
+static void bad_values_are_told(void **state) {
+    static const struct { const noc_option *(*table)(void); const char *name, *value, *part; } bad[] = {
+        { noc_render_options, "width", "abc", "not a number" },
+        { noc_render_options, "width", "0", "1 to 32768 px" },
+        { noc_render_options, "width", "-3", "outside" },
+        { noc_render_options, "width", "100000", "outside" },
+        { noc_render_options, "width", "12.5", "not a whole number" },
+        { noc_render_options, "width", "", "needs a value" },
+        { noc_render_options, "width", NULL, "needs a value" },
+        { noc_render_options, "seed", "4294967296", "outside" },
+        { noc_render_options, "radius", "nan", "not a number" },
+        { noc_render_options, "radius", "1e999", "not a number" },
+        { noc_render_options, "radius", "5 m", "not a number" },
+        { noc_render_options, "method", "reSTIR", "reference|is|ris|restir" },
+        { noc_render_options, "method", "is|ris", "none of" },
+        { noc_render_options, "method", "i", "none of" },
+        { noc_display_options, "tonemap", "aces", "filmic|reinhard|linear" },
+        { noc_import_options, "crs", "", "needs a value" },
+        { noc_city_options, "city-size", "149", "150 to 5000 m" },
+    };
+    for (size_t i = 0; i < NOC_COUNT(bad); i++) {
+        void *params = bad[i].table == noc_render_options ? (void *)&render : bad[i].table == noc_display_options ? (void *)&display
+            : bad[i].table == noc_import_options ? (void *)&import : (void *)&city;
+        noc_log *log = noc_log_create(&(noc_log_params){ .message = ignore });
+        assert_int_equal(noc_option_set(find(bad[i].table(), bad[i].name), params, bad[i].value, log), NOC_ERR_ARGUMENT);
+        if (!strstr(noc_log_last_error(log), bad[i].part) || !strstr(noc_log_last_error(log), bad[i].name))
+            fail_msg("%s=%s: \"%s\"", bad[i].name, bad[i].value ? bad[i].value : "", noc_log_last_error(log));
+        noc_log_destroy(log);
+    }
+}
+
+static void text_points_at_the_callers(void **state) {
+    char text[] = "EPSG:25832", back[4];
+    const noc_option *o = find(noc_import_options(), "crs");
+    assert_int_equal(noc_option_set(o, &import, text, NULL), NOC_OK);
+    assert_ptr_equal(import.crs, text);
+    assert_int_equal(noc_option_get(o, &import, back, sizeof(back)), (int)strlen(text)); /* like snprintf */
+    assert_string_equal(back, "EPS");
+    assert_int_equal(noc_option_get(o, &import, NULL, 0), (int)strlen(text));
+}
+
+static void reals_survive_locales(void **state) {
+    const noc_option *o = find(noc_render_options(), "sky");
+    static const char *const locales[] = { "de_DE.UTF-8", "de_DE", "fr_FR.UTF-8", "cs_CZ.UTF-8", "C" };
+    for (size_t i = 0; i < NOC_COUNT(locales); i++) {
+        if (!setlocale(LC_ALL, locales[i]))
+            continue;
+        char text[40];
+        render.sky = 0.1;
+        noc_option_get(o, &render, text, sizeof(text));
+        assert_string_equal(text, "0.1");
+        assert_int_equal(noc_option_set(o, &render, "0.30000000000000004", NULL), NOC_OK);
+        noc_option_get(o, &render, text, sizeof(text));
+        assert_string_equal(text, "0.30000000000000004");
+        setlocale(LC_ALL, "C");
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(rows_are_sound, setup),
+        cmocka_unit_test_setup(defaults_round_trip, setup),
+        cmocka_unit_test_setup(ranges_and_choices, setup),
+        cmocka_unit_test_setup(bools, setup),
+        cmocka_unit_test_setup(bad_values_are_told, setup),
+        cmocka_unit_test_setup(text_points_at_the_callers, setup),
+        cmocka_unit_test_setup(reals_survive_locales, setup),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
