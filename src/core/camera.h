@@ -1,0 +1,39 @@
+/* core/camera.h: pinhole camera. Pixel coordinates run from (0, 0) at the top left corner to (width, height). */
+#ifndef CORE_CAMERA_H
+#define CORE_CAMERA_H
+
+#include "core/dialect.h"
+
+struct camera {
+    v3 eye;
+    v3 right;   /* from the picture's centre to its right edge, at distance 1 */
+    v3 up;      /* to its upper edge */
+    v3 forward; /* unit */
+    real inv_right2; /* 1 / |right|^2 */
+    real inv_up2;
+    real width;
+    real height;
+};
+
+#ifndef CORE_GLSL
+typedef struct camera camera;
+#endif
+
+/* Unnormalised direction through a place in the picture. */
+FN v3 camera_direction(camera c, real px, real py) {
+    real x = px / c.width * K(2.0f) - K(1.0f);
+    real y = K(1.0f) - py / c.height * K(2.0f);
+    return add3(c.forward, add3(mul3(c.right, x), mul3(c.up, y)));
+}
+
+/* Where a point is seen: pixel coordinates in x, y and depth along the view in z (not in front of the camera: z <= 0). */
+FN v3 camera_project(camera c, v3 p) {
+    v3 d = sub3(p, c.eye);
+    real z = dot3(d, c.forward);
+    real inv = K(1.0f) / sel(z > K(0.0f), z, K(1.0f));
+    real x = dot3(d, c.right) * inv * c.inv_right2;
+    real y = dot3(d, c.up) * inv * c.inv_up2;
+    return V3((x + K(1.0f)) * K(0.5f) * c.width, (K(1.0f) - y) * K(0.5f) * c.height, z);
+}
+
+#endif

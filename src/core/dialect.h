@@ -1,0 +1,129 @@
+/* core/dialect.h: one language, three readers.
+ *
+ * Everything in src/core is written so that it is scalar C, C with LANES values in each variable, and GLSL. The reader is
+ * chosen before inclusion: CORE_GLSL (a shader), CORE_LANES = 4, 8 or 16 (wide GNU C), or neither (scalar C).
+ *
+ * Rules: functions are pure and return structs, no pointers, no out-parameters. Operators work on real and u32; vectors go
+ * through add3, mul3, dot3, ... A choice that depends on data is sel(mask, a, b), with and_/or_/not_ on masks; a real branch
+ * only as `if (ANY(mask))` around work that sel then picks from. Loops have uniform bounds. Literals are K(0.5f) and KU(7u),
+ * uniform integers K(F32(n)) and KU(U32(n)). No enum, static, union, typedef, cast, ternary or compound literal outside this
+ * file; no identifiers that GLSL reserves (sample, buffer, filter, input, output, half, patch, smooth, flat, active, common).
+ * Resources come through bridge functions that take CTX, which is a context pointer in C and nothing in GLSL. EXACT marks
+ * variables whose rounding must be the same everywhere. Compile with -ffp-contract=off and never with -ffast-math. */
+#ifndef CORE_DIALECT_H
+#define CORE_DIALECT_H
+
+#if defined(CORE_GLSL)
+
+#define FN
+#define EXACT precise
+#define CTX
+#define PASS
+#define real float
+#define u32 uint
+#define mask bool
+#define v3 vec3
+#define K(x) (x)
+#define KU(x) (x)
+#define F32(x) float(x)
+#define U32(x) uint(x)
+#define V3(x, y, z) vec3(x, y, z)
+#define sel(c, a, b) ((c) ? (a) : (b))
+#define selu(c, a, b) ((c) ? (a) : (b))
+#define and_(a, b) ((a) && (b))
+#define or_(a, b) ((a) || (b))
+#define not_(a) (!(a))
+#define ANY(c) (c)
+#define sqrt_ sqrt
+#define to_real(u) float(u)
+#define to_u32(f) uint(f)
+#define shl(a, n) ((a) << (n))
+#define shr(a, n) ((a) >> (n))
+
+#else /* C */
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#define FN static inline
+#define EXACT
+#define CTX const struct core_context *ctx,
+#define PASS ctx,
+#define F32(x) ((float)(x))
+#define U32(x) ((uint32_t)(x))
+#define shl(a, n) ((a) << (n))
+#define shr(a, n) ((a) >> (n))
+
+struct core_context; /* the includer's own: what its bridge functions read */
+
+#if defined(CORE_LANES)
+
+typedef float real __attribute__((vector_size(4 * CORE_LANES)));
+typedef uint32_t u32 __attribute__((vector_size(4 * CORE_LANES)));
+typedef int32_t mask __attribute__((vector_size(4 * CORE_LANES)));
+#define K(x) ((real){ 0 } + (float)(x))
+#define KU(x) ((u32){ 0 } + (uint32_t)(x))
+#include "core/wide.h" /* sel, selu, sqrt_, to_real, to_u32, ANY for this instruction set */
+#define and_(a, b) ((a) & (b))
+#define or_(a, b) ((a) | (b))
+#define not_(a) (~(a))
+
+#else /* scalar */
+
+typedef float real;
+typedef uint32_t u32;
+typedef bool mask;
+#define K(x) (x)
+#define KU(x) (x)
+FN real sel(mask c, real a, real b) { return c ? a : b; }
+FN u32 selu(mask c, u32 a, u32 b) { return c ? a : b; }
+FN real sqrt_(real a) { return sqrtf(a); }
+FN real to_real(u32 u) { return (float)(int32_t)u; }
+FN u32 to_u32(real f) { return (u32)(int32_t)f; }
+#define and_(a, b) ((a) && (b))
+#define or_(a, b) ((a) || (b))
+#define not_(a) (!(a))
+#define ANY(c) (c)
+
+#endif
+
+typedef struct { real x, y, z; } v3;
+#define V3(x, y, z) ((v3){ x, y, z })
+
+#endif
+
+/* to_real takes values below 2^31, to_u32 truncates values in [0, 2^31). */
+
+FN real min_(real a, real b) { return sel(a < b, a, b); }
+FN real max_(real a, real b) { return sel(a > b, a, b); }
+FN real abs_(real a) { return sel(a < K(0.0f), K(0.0f) - a, a); }
+FN v3 add3(v3 a, v3 b) { return V3(a.x + b.x, a.y + b.y, a.z + b.z); }
+FN v3 sub3(v3 a, v3 b) { return V3(a.x - b.x, a.y - b.y, a.z - b.z); }
+FN v3 mul3(v3 a, real s) { return V3(a.x * s, a.y * s, a.z * s); }
+FN v3 tint3(v3 a, v3 b) { return V3(a.x * b.x, a.y * b.y, a.z * b.z); }
+FN v3 sel3(mask c, v3 a, v3 b) { return V3(sel(c, a.x, b.x), sel(c, a.y, b.y), sel(c, a.z, b.z)); }
+FN v3 fill3(real s) { return V3(s, s, s); }
+
+FN real dot3(v3 a, v3 b) {
+    EXACT real d = a.x * b.x + a.y * b.y + a.z * b.z;
+    return d;
+}
+
+FN v3 cross3(v3 a, v3 b) {
+    EXACT real x = a.y * b.z - a.z * b.y;
+    EXACT real y = a.z * b.x - a.x * b.z;
+    EXACT real z = a.x * b.y - a.y * b.x;
+    return V3(x, y, z);
+}
+
+/* Luminance of linear Rec.709. */
+FN real luminance(v3 c) {
+    EXACT real y = K(0.2126f) * c.x + K(0.7152f) * c.y + K(0.0722f) * c.z;
+    return y;
+}
+
+#define CORE_PI 3.14159265358979f
+#define CORE_INV_PI 0.318309886183791f
+
+#endif

@@ -1,0 +1,112 @@
+/* core/light.h: the kinds of light, each a map from the unit square to what a receiving point gets.
+ *
+ * A sample is (light, u, v), u and v in the unit square. light_sample returns the direction and distance to the point that
+ * (u, v) stands for as seen from y, and `le`: radiance times the Jacobian of that map, so that the light's contribution to
+ * reflected radiance is the integral over the unit square of f_r * cos(theta_y) * le * V. For flat lights the map is uniform
+ * in area (le = L cos(theta_l) A / d^2); for spheres it is uniform in the solid angle of the visible cone (le = L * angle:
+ * no 1 / d^2 spikes; Shirley, Wang and Zimmerman 1996, section 3.2); for points it is constant (le = I / d^2). Emission is
+ * one-sided unless flagged. */
+#ifndef CORE_LIGHT_H
+#define CORE_LIGHT_H
+
+#include "core/warp.h"
+
+#define LIGHT_SPHERE 0u
+#define LIGHT_DISC 1u
+#define LIGHT_TRIANGLE 2u
+#define LIGHT_PARALLELOGRAM 3u
+#define LIGHT_POINT 4u
+#define LIGHT_TWO_SIDED 1u /* flag */
+
+struct light {
+    v3 p;       /* centre or corner */
+    u32 kind;
+    v3 a;       /* edge u; disc: first radius vector */
+    real radius;
+    v3 b;       /* edge v; disc: second radius vector; faces a x b */
+    u32 flags;
+    v3 e;       /* radiance, cd/m2; point: intensity, cd */
+    real area;
+};
+
+struct light_sample {
+    v3 wi;      /* unit, from y towards the light */
+    real dist;  /* m */
+    v3 le;      /* 0 where the light cannot reach y */
+};
+
+#ifndef CORE_GLSL
+typedef struct light light;
+typedef struct light_sample light_sample;
+#endif
+
+FN light_sample sample_round(light l, v3 y, real u, real v) {
+    light_sample s;
+    v3 w = sub3(l.p, y);
+    EXACT real d2 = dot3(w, w);
+    real r2 = l.radius * l.radius;
+    mask outside = d2 > r2 * K(1.000001f);
+    real inv = K(1.0f) / sqrt_(max_(d2, K(1e-20f)));
+    v3 axis = mul3(w, inv);
+    real sin2 = sel(outside, r2 / max_(d2, K(1e-20f)), K(0.0f));
+    real cos_max = sqrt_(max_(K(1.0f) - sin2, K(0.0f)));
+    EXACT real cap = sin2 / (K(1.0f) + cos_max); /* 1 - cos_max without cancellation */
+    EXACT real k = u * cap;                      /* 1 - cos(theta) */
+    EXACT real st2 = k * (K(2.0f) - k);
+    real st = sqrt_(max_(st2, K(0.0f)));
+    v3 cs = circle(v);
+    s.wi = around(axis, st * cs.x, st * cs.y, K(1.0f) - k);
+    EXACT real h2 = r2 - d2 * st2;
+    EXACT real t = (K(1.0f) - k) * (d2 * inv) - sqrt_(max_(h2, K(0.0f)));
+    s.dist = t;
+    real angle = K(2.0f * CORE_PI) * cap;
+    s.le = mul3(l.e, sel(outside, angle, K(0.0f)));
+    return s;
+}
+
+FN light_sample sample_flat(light l, v3 y, real u, real v) {
+    light_sample s;
+    mask disc = l.kind == KU(LIGHT_DISC);
+    mask tri = l.kind == KU(LIGHT_TRIANGLE);
+    mask point = l.kind == KU(LIGHT_POINT);
+    mask fold = and_(tri, (u + v) > K(1.0f));
+    real su = sel(fold, K(1.0f) - u, u);
+    real sv = sel(fold, K(1.0f) - v, v);
+    if (ANY(disc)) {
+        v3 cs = circle(v);
+        real r = sqrt_(u);
+        su = sel(disc, r * cs.x, su);
+        sv = sel(disc, r * cs.y, sv);
+    }
+    su = sel(point, K(0.0f), su);
+    sv = sel(point, K(0.0f), sv);
+    v3 x = add3(l.p, add3(mul3(l.a, su), mul3(l.b, sv)));
+    v3 d = sub3(x, y);
+    EXACT real d2 = max_(dot3(d, d), K(1e-12f));
+    real dist = sqrt_(d2);
+    real inv = K(1.0f) / dist;
+    EXACT real facing = K(0.0f) - dot3(cross3(l.a, l.b), d);
+    mask both = (l.flags & KU(LIGHT_TWO_SIDED)) == KU(LIGHT_TWO_SIDED);
+    facing = sel(both, abs_(facing), max_(facing, K(0.0f)));
+    real share = sel(disc, K(CORE_PI), sel(tri, K(0.5f), K(1.0f)));
+    EXACT real g = share * facing * inv / d2;
+    g = sel(point, K(1.0f) / d2, g);
+    s.wi = mul3(d, inv);
+    s.dist = dist;
+    s.le = mul3(l.e, g);
+    return s;
+}
+
+FN light_sample sample_light(light l, v3 y, real u, real v) {
+    mask round = l.kind == KU(LIGHT_SPHERE);
+    light_sample s = sample_flat(l, y, u, v);
+    if (ANY(round)) {
+        light_sample r = sample_round(l, y, u, v);
+        s.wi = sel3(round, r.wi, s.wi);
+        s.dist = sel(round, r.dist, s.dist);
+        s.le = sel3(round, r.le, s.le);
+    }
+    return s;
+}
+
+#endif

@@ -1,0 +1,52 @@
+/* core/random.h: every random number is a pure function of (seed, pixel, frame, dimension). */
+#ifndef CORE_RANDOM_H
+#define CORE_RANDOM_H
+
+#include "core/dialect.h"
+
+/* A 32-bit finaliser of two multiplications (constants by C. Wellons' search for low bias). */
+FN u32 hash_u32(u32 x) {
+    x = x ^ shr(x, 16);
+    x = x * KU(0x7feb352du);
+    x = x ^ shr(x, 15);
+    x = x * KU(0x846ca68bu);
+    x = x ^ shr(x, 16);
+    return x;
+}
+
+/* One key a pixel and frame; seed and frame are uniform. */
+FN u32 rng_key(u32 seed, u32 pixel, u32 frame) {
+    return hash_u32(pixel + hash_u32(frame + hash_u32(seed + KU(0x68bc21ebu))));
+}
+
+FN u32 rng_bits(u32 key, u32 dimension) { return hash_u32(key + dimension * KU(0x9e3779b9u)); }
+
+/* [0, 1), 24 bits. */
+FN real unit_real(u32 bits) { return to_real(shr(bits, 8)) * K(5.9604644775390625e-8f); }
+FN real rng(u32 key, u32 dimension) { return unit_real(rng_bits(key, dimension)); }
+
+/* Two 16-bit numbers in (0, 1) from one draw: centres of a 65536 x 65536 grid's cells. */
+FN real unit_low(u32 bits) { return (to_real(bits & KU(0xffffu)) + K(0.5f)) * K(1.52587890625e-5f); }
+FN real unit_high(u32 bits) { return (to_real(shr(bits, 16)) + K(0.5f)) * K(1.52587890625e-5f); }
+
+/* floor(bits * n / 2^32): uniform in [0, n) to within n / 2^32, exact in all three readers. */
+FN u32 scale_u32(u32 bits, u32 n) {
+    u32 ah = shr(bits, 16);
+    u32 al = bits & KU(0xffffu);
+    u32 nh = shr(n, 16);
+    u32 nl = n & KU(0xffffu);
+    u32 low = shr(al * nl, 16);
+    u32 m1 = ah * nl + low;
+    u32 m2 = al * nh + (m1 & KU(0xffffu));
+    return ah * nh + shr(m1, 16) + shr(m2, 16);
+}
+
+/* Dimensions, so that no two uses share one. */
+#define DIM_JITTER 0u
+#define DIM_SKY 2u
+#define DIM_TEMPORAL 8u
+#define DIM_RAYS 16u       /* reference, is */
+#define DIM_SPATIAL 64u    /* + 64 a pass: 2 a neighbour for its place, 1 for its choice */
+#define DIM_CANDIDATE 512u /* + 3 a candidate */
+
+#endif

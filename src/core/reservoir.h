@@ -1,0 +1,103 @@
+/* core/reservoir.h: weighted reservoir sampling and resampled importance sampling (Talbot et al. 2005; Bitterli et al. 2020,
+ * Algorithms 2 to 6). Includers supply the bridge light_load(CTX i). */
+#ifndef CORE_RESERVOIR_H
+#define CORE_RESERVOIR_H
+
+#include "core/random.h"
+#include "core/surface.h"
+
+/* What survives a pass: a sample, its unbiased contribution weight W, and how many candidates stand behind it. */
+struct resv {
+    u32 light;
+    real u;
+    real v;
+    real w;  /* W; 0: no sample */
+    real m;  /* M */
+    real p;  /* p_hat of the sample at its own pixel, unshadowed */
+};
+
+/* A reservoir being filled. */
+struct stream {
+    u32 light;
+    real u;
+    real v;
+    real p;     /* target of the sample held */
+    real w_sum;
+    real m;
+    real tag;   /* whatever the caller wants to remember of the sample held */
+};
+
+#ifndef CORE_GLSL
+typedef struct resv resv;
+typedef struct stream stream;
+light light_load(CTX u32 i);
+#endif
+
+FN stream stream_empty() {
+    stream s;
+    s.light = KU(0u);
+    s.u = K(0.5f);
+    s.v = K(0.5f);
+    s.p = K(0.0f);
+    s.w_sum = K(0.0f);
+    s.m = K(0.0f);
+    s.tag = K(0.0f);
+    return s;
+}
+
+FN resv resv_empty() {
+    resv r;
+    r.light = KU(0u);
+    r.u = K(0.5f);
+    r.v = K(0.5f);
+    r.w = K(0.0f);
+    r.m = K(0.0f);
+    r.p = K(0.0f);
+    return r;
+}
+
+/* Offers a sample of resampling weight w >= 0 that stands for m candidates; xi in [0, 1). */
+FN stream stream_add(stream s, u32 id, real u, real v, real p, real w, real m, real tag, real xi) {
+    EXACT real sum = s.w_sum + w;
+    mask take = xi * sum < w;
+    s.w_sum = sum;
+    s.light = selu(take, id, s.light);
+    s.u = sel(take, u, s.u);
+    s.v = sel(take, v, s.v);
+    s.p = sel(take, p, s.p);
+    s.tag = sel(take, tag, s.tag);
+    s.m = s.m + m;
+    return s;
+}
+
+/* W = scale * w_sum / p_hat. */
+FN resv stream_end(stream s, real scale) {
+    resv r;
+    r.light = s.light;
+    r.u = s.u;
+    r.v = s.v;
+    r.m = s.m;
+    r.p = s.p;
+    mask held = s.p > K(0.0f);
+    EXACT real w = scale * s.w_sum / sel(held, s.p, K(1.0f));
+    r.w = sel(and_(held, w < K(1e30f)), w, K(0.0f));
+    return r;
+}
+
+/* Streaming RIS over `count` lights picked uniformly, m candidates: W = (1/m) sum(p_hat / pmf) / p_hat(chosen), pmf = 1/count
+ * over (light) times 1 over the unit square. count > 0. */
+FN resv ris_uniform(CTX surf s, u32 key, u32 count, int m) {
+    stream st = stream_empty();
+    for (int i = 0; i < m; i++) {
+        u32 dim = KU(DIM_CANDIDATE + 3u * U32(i));
+        u32 id = scale_u32(rng_bits(key, dim), count);
+        u32 place = rng_bits(key, dim + KU(1u));
+        real u = unit_low(place);
+        real v = unit_high(place);
+        real p = target(s, light_load(PASS id), u, v);
+        st = stream_add(st, id, u, v, p, p, K(1.0f), K(0.0f), rng(key, dim + KU(2u)));
+    }
+    return stream_end(st, to_real(count) / K(F32(m)));
+}
+
+#endif
