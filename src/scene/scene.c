@@ -111,6 +111,10 @@ int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
         noc_error(scene->log, NOC_ERR_ARGUMENT, "mesh %s: no material %d", name, mesh->material);
         return -1;
     }
+    if ((mesh->vertex_count && !mesh->positions) || (mesh->triangle_count && !mesh->indices)) {
+        noc_error(scene->log, NOC_ERR_ARGUMENT, "mesh %s: positions or indices are missing", name);
+        return -1;
+    }
     size_t first_vertex = scene->positions.len / 3, first_triangle = scene->indices.len / 3;
     if (mesh->vertex_count > UINT32_MAX - first_vertex || mesh->triangle_count > UINT32_MAX - 1 - first_triangle) {
         noc_error(scene->log, NOC_ERR_UNSUPPORTED, "mesh %s: more than 4294967295 vertices or triangles in a scene", name);
@@ -145,8 +149,6 @@ int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
                          .material = mesh->material,
                          .name = arena_strdup(&scene->names, mesh->name) };
     array_push(&scene->meshes, m);
-    noc_ground_free(scene->ground);
-    scene->ground = NULL;
     return (int)scene->meshes.len - 1;
 }
 
@@ -155,8 +157,8 @@ static void make_triangle_lights(noc_scene *scene) {
     for (size_t i = 0; i < scene->meshes.len; i++) {
         const noc_scene_mesh *m = &scene->meshes.data[i];
         const noc_material *mat = &scene->materials.data[m->material];
-        if (!(mat->emission[0] > 0 || mat->emission[1] > 0 || mat->emission[2] > 0))
-            continue;
+        if (!(mat->emission[0] > 0 || mat->emission[1] > 0 || mat->emission[2] > 0) || mat->cls == NOC_CLASS_CLOSURE)
+            continue; /* closures are not rendered, so they do not shine either */
         for (size_t t = m->first_triangle; t < (size_t)m->first_triangle + m->triangle_count; t++) {
             if (scene->triangle_light.data[t] != NOC_NO_LIGHT)
                 continue;
@@ -196,6 +198,9 @@ noc_status noc_scene_commit(noc_scene *scene) {
 }
 
 noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double origin[3]) {
+    for (int k = 0; k < 3; k++)
+        if (!origin || !isfinite(origin[k]))
+            return noc_error(scene->log, NOC_ERR_ARGUMENT, "scene: the origin must be three finite numbers");
     free(scene->crs_name);
     scene->crs_name = noc_strdup(crs);
     memcpy(scene->origin, origin, sizeof(scene->origin));

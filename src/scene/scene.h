@@ -59,9 +59,10 @@ struct noc_scene {
     struct noc_ground *ground;             /* built on first use of noc_scene_ground; freed with the scene */
 };
 
-/* ground.c: grid over the ground triangles for vertical rays. Invalidated by adding meshes. */
+/* ground.c: grid over the triangles for vertical rays. Made at the first query, and kept up to date by the next ones: asking
+ * and adding meshes in turn is cheap. Thread-safe while the scene is not being changed. */
 void noc_ground_free(struct noc_ground *ground);
-/* Highest surface of any class at (x, y), for placing cameras and lamps under roofs. */
+/* Highest surface of any class but closures and the shapes of lamps at (x, y), for placing cameras and lamps. */
 bool noc_scene_top(const noc_scene *scene, double x, double y, double *z);
 
 #endif
