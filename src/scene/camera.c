@@ -1,0 +1,347 @@
+/* Views derived from any city: what its triangles cover and where its lights are decides, never a name or a place.
+ *
+ * All choices are maxima over a fixed list of candidates in a fixed order, so the same scene gives the same camera. */
+#include "scene/scene.h"
+
+#include <float.h>
+#include <math.h>
+
+typedef struct view_light {
+    double p[3];
+    double weight; /* about the square root of its flux, so that one floodlight does not outweigh a street */
+    bool lamp;     /* as opposed to a window */
+} view_light;
+
+/* The city as the presets see it. */
+typedef struct view_city {
+    const noc_scene *scene;
+    double min[3], max[3];
+    double hot[2];               /* middle of the densest lit part */
+    NOC_ARRAY(view_light) lights; /* around it */
+} view_city;
+
+enum { SAMPLES = 8192, HOT_CELLS = 64, NEAR_LIGHTS = 4000 };
+
+static int compare_doubles(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Bounds of what is rendered; where strays make them much larger than nearly all triangles need, those of nearly all. */
+static void city_bounds(view_city *city) {
+    const noc_scene *s = city->scene;
+    size_t triangles = s->triangle_light.len, n = NOC_MIN(triangles, (size_t)SAMPLES);
+    double *v = noc_alloc(n * sizeof(*v));
+    for (int k = 0; k < 3; k++) {
+        for (size_t i = 0; i < n; i++)
+            v[i] = s->positions.data[3 * (size_t)s->indices.data[3 * (i * triangles / n) + i % 3] + (size_t)k];
+        qsort(v, n, sizeof(*v), compare_doubles);
+        double lo = v[n / 200], hi = v[n - 1 - n / 200], margin = (hi - lo) * 0.02 + 1;
+        city->min[k] = s->bounds_min[k];
+        city->max[k] = s->bounds_max[k];
+        if (n > 400 && city->max[k] - city->min[k] > 3 * (hi - lo) + 100) {
+            city->min[k] = NOC_MAX(city->min[k], lo - margin);
+            city->max[k] = NOC_MIN(city->max[k], hi + margin);
+        }
+    }
+    free(v);
+}
+
+static void light_centre(const noc_light_record *r, double p[3]) {
+    double share = r->kind == NOC_LIGHT_TRIANGLE ? 1.0 / 3 : r->kind == NOC_LIGHT_PARALLELOGRAM ? 0.5 : 0;
+    for (int k = 0; k < 3; k++)
+        p[k] = r->p[k] + share * ((double)r->a[k] + r->b[k]);
+}
+
+static double light_weight(const noc_light_record *r) {
+    double y = 0.2126 * r->e[0] + 0.7152 * r->e[1] + 0.0722 * r->e[2];
+    return sqrt(y * (r->kind == NOC_LIGHT_POINT ? 4 * M_PI : M_PI * r->area));
+}
+
+/* Without lights, buildings stand in for them: a corner of every so many of their triangles. */
+static size_t source_count(const view_city *city) {
+    const noc_scene *s = city->scene;
+    return s->lights.len ? s->lights.len : NOC_MIN(s->triangle_light.len, (size_t)4 * SAMPLES);
+}
+
+static bool source_get(const view_city *city, size_t i, view_light *out) {
+    const noc_scene *s = city->scene;
+    *out = (view_light){ .weight = 1 };
+    if (s->lights.len) {
+        const noc_light_record *r = &s->lights.data[i];
+        light_centre(r, out->p);
+        out->weight = light_weight(r);
+        out->lamp = r->kind == NOC_LIGHT_SPHERE || r->kind == NOC_LIGHT_DISC || r->kind == NOC_LIGHT_POINT;
+        return out->weight > 0;
+    }
+    size_t t = i * s->triangle_light.len / source_count(city);
+    noc_class cls = s->materials.data[s->triangle_material.data[t]].cls;
+    for (int k = 0; k < 3; k++)
+        out->p[k] = s->positions.data[3 * (size_t)s->indices.data[3 * t] + (size_t)k];
+    return cls == NOC_CLASS_WALL || cls == NOC_CLASS_ROOF || cls == NOC_CLASS_OTHER;
+}
+
+static int hot_cell(const view_city *city, int k, double x) {
+    double c = (x - city->min[k]) / (city->max[k] - city->min[k]) * HOT_CELLS;
+    return !(c > 0) ? 0 : c >= HOT_CELLS ? HOT_CELLS - 1 : (int)c;
+}
+
+static double distance2(const double a[2], const double b[2]) { return hypot(a[0] - b[0], a[1] - b[1]); }
+
+/* The densest lit part: the best window of a histogram of weights, the middle of the city where nothing shines. */
+static void find_hot(view_city *city) {
+    double *h = noc_calloc(HOT_CELLS * HOT_CELLS, sizeof(*h)), best = 0, cell[2];
+    size_t n = source_count(city);
+    view_light l;
+    for (int k = 0; k < 2; k++) {
+        city->hot[k] = 0.5 * (city->min[k] + city->max[k]);
+        cell[k] = (city->max[k] - city->min[k]) / HOT_CELLS;
+    }
+    for (size_t i = 0; i < n; i++)
+        if (source_get(city, i, &l))
+            h[hot_cell(city, 1, l.p[1]) * HOT_CELLS + hot_cell(city, 0, l.p[0])] += NOC_MIN(l.weight, 200.0);
+    int rx = (int)NOC_CLAMP(50 / NOC_MAX(cell[0], 1e-6), 1, 12), ry = (int)NOC_CLAMP(50 / NOC_MAX(cell[1], 1e-6), 1, 12);
+    for (int y = 0; y < HOT_CELLS; y++)
+        for (int x = 0; x < HOT_CELLS; x++) {
+            double sum = 0;
+            for (int v = NOC_MAX(y - ry, 0); v <= NOC_MIN(y + ry, HOT_CELLS - 1); v++)
+                for (int u = NOC_MAX(x - rx, 0); u <= NOC_MIN(x + rx, HOT_CELLS - 1); u++)
+                    sum += h[v * HOT_CELLS + u];
+            if (sum > best * 1.0001) {
+                best = sum;
+                city->hot[0] = city->min[0] + (x + 0.5) * cell[0];
+                city->hot[1] = city->min[1] + (y + 0.5) * cell[1];
+            }
+        }
+    free(h);
+}
+
+/* Keeps the lights around the hot spot, thinned evenly if they are many. */
+static void gather_lights(view_city *city, double radius) {
+    size_t n = source_count(city), inside = 0;
+    view_light l;
+    for (int pass = 0; pass < 2; pass++) {
+        size_t seen = 0, stride = inside / NEAR_LIGHTS + 1;
+        for (size_t i = 0; i < n; i++) {
+            if (!source_get(city, i, &l) || distance2(l.p, city->hot) > radius)
+                continue;
+            if (pass && seen % stride == 0)
+                array_push(&city->lights, l);
+            seen++;
+        }
+        inside = seen;
+    }
+}
+
+/* Light that a view from eye along (dx, dy) takes in, nearer ones counting more. */
+static double light_in_view(const view_city *city, const double eye[3], double dx, double dy, double half_angle, double reach,
+                            bool lamps_only) {
+    double sum = 0, cosine = cos(half_angle);
+    for (size_t i = 0; i < city->lights.len; i++) {
+        const view_light *l = &city->lights.data[i];
+        double x = l->p[0] - eye[0], y = l->p[1] - eye[1], d = sqrt(x * x + y * y);
+        if (d > 6 && d < reach && x * dx + y * dy > cosine * d && (!lamps_only || l->lamp))
+            sum += l->weight / (d + 30);
+    }
+    return sum;
+}
+
+static double half_width(double fov_deg, double aspect) { return atan(tan(fov_deg * M_PI / 360) * aspect); }
+
+static void overview(const view_city *city, double aspect, noc_camera *camera) {
+    double size[3], centre[3];
+    for (int k = 0; k < 3; k++) {
+        size[k] = city->max[k] - city->min[k];
+        centre[k] = 0.5 * (city->min[k] + city->max[k]);
+    }
+    /* from the south, or the east where the city is longer that way, turned so that no street is seen end on */
+    double yaw = (size[1] > 1.2 * size[0] ? 0 : -M_PI / 2) + 0.42, pitch = 0.55;
+    double d[3] = { cos(yaw) * cos(pitch), sin(yaw) * cos(pitch), sin(pitch) };
+    double right[3] = { -sin(yaw), cos(yaw), 0 }, up[3] = { -cos(yaw) * sin(pitch), -sin(yaw) * sin(pitch), cos(pitch) };
+    camera->fov_deg = 36;
+    double tv = tan(camera->fov_deg * M_PI / 360), th = tv * aspect, distance = 0.1;
+    for (int i = 0; i < 8; i++) {
+        double q[3], along = 0, x = 0, y = 0;
+        for (int k = 0; k < 3; k++) {
+            q[k] = (i >> k & 1 ? 0.5 : -0.5) * size[k];
+            along += q[k] * d[k], x += q[k] * right[k], y += q[k] * up[k];
+        }
+        distance = NOC_MAX(distance, along + NOC_MAX(fabs(x) / th, fabs(y) / tv) * 1.02);
+    }
+    for (int k = 0; k < 3; k++) {
+        camera->target[k] = centre[k];
+        camera->eye[k] = centre[k] + distance * d[k];
+    }
+}
+
+/* Highest surface within r of (x, y), on a pattern of 25 points; fallback where nothing is. */
+static double top_around(const noc_scene *scene, double x, double y, double r, double fallback) {
+    double best = -DBL_MAX, z;
+    for (int j = -2; j <= 2; j++)
+        for (int i = -2; i <= 2; i++)
+            if (noc_scene_top(scene, x + i * r / 2, y + j * r / 2, &z))
+                best = NOC_MAX(best, z);
+    return best == -DBL_MAX ? fallback : best;
+}
+
+/* How much of the way from eye to target runs clear over the roofs, 0..1. */
+static double clear_share(const noc_scene *scene, const double eye[3], const double target[3]) {
+    enum { STEPS = 40 };
+    for (int i = 1; i < STEPS; i++) {
+        double t = (double)i / STEPS, p[3], z;
+        for (int k = 0; k < 3; k++)
+            p[k] = eye[k] + t * (target[k] - eye[k]);
+        if (noc_scene_top(scene, p[0], p[1], &z) && z > p[2])
+            return t;
+    }
+    return 1;
+}
+
+static void aerial(view_city *city, double aspect, noc_camera *camera) {
+    const noc_scene *scene = city->scene;
+    double extent = NOC_MAX(city->max[0] - city->min[0], city->max[1] - city->min[1]);
+    double reach = NOC_CLAMP(0.36 * extent, 2, 170), ground = city->min[2], best = -1;
+    camera->fov_deg = 48;
+    gather_lights(city, 500);
+    if (!noc_scene_ground(scene, city->hot[0], city->hot[1], &ground))
+        noc_scene_top(scene, city->hot[0], city->hot[1], &ground);
+    for (int i = 0; i < 24; i++) {
+        double yaw = 2 * M_PI * (i + 0.35) / 24, dx = cos(yaw), dy = sin(yaw);
+        double eye[3] = { city->hot[0] - dx * reach, city->hot[1] - dy * reach, 0 };
+        double target[3] = { city->hot[0], city->hot[1], ground + NOC_MIN(6, 0.04 * reach) };
+        double roofs = top_around(scene, eye[0], eye[1], 0.25 * reach, ground);
+        eye[2] = NOC_MAX(roofs + 0.14 * reach, ground + 0.42 * reach);
+        double inside = 1; /* looking in from beyond the edge is worse than from over the city */
+        for (int k = 0; k < 2; k++)
+            inside *= eye[k] > city->min[k] && eye[k] < city->max[k] ? 1 : 0.8;
+        double steep = (eye[2] - ground) / reach; /* a tower below would lift the eye too high */
+        double score = (1e-6 + light_in_view(city, eye, dx, dy, half_width(camera->fov_deg, aspect), 500, false)) * inside *
+                       (0.2 + clear_share(scene, eye, target)) / (1 + NOC_MAX(steep - 0.5, 0) * 3);
+        if (score > best * 1.0001) {
+            best = score;
+            memcpy(camera->eye, eye, sizeof(eye));
+            memcpy(camera->target, target, sizeof(target));
+        }
+    }
+}
+
+/* Where a person stands: ground, or for models without it, whatever is lowest of what can be stood on. */
+static bool standing(const noc_scene *scene, double x, double y, double *z) {
+    double top;
+    if (!noc_scene_top(scene, x, y, &top))
+        return false;
+    if (!noc_scene_ground(scene, x, y, z))
+        *z = top;
+    return top - *z < 0.3;
+}
+
+/* Room to stand: level ground, open sky, for a metre and a half around. */
+static bool open_place(const noc_scene *scene, double x, double y, double *z) {
+    if (!standing(scene, x, y, z))
+        return false;
+    for (int i = 0; i < 8; i++) {
+        double h;
+        if (!standing(scene, x + 1.5 * cos(i * M_PI / 4), y + 1.5 * sin(i * M_PI / 4), &h) || fabs(h - *z) > 0.8)
+            return false;
+    }
+    return true;
+}
+
+enum { STREET_REACH = 130 };
+
+/* Distance to the first thing as high as the eye along a direction. Leaving the model ends the view too. */
+static double free_distance(const noc_scene *scene, const double eye[3], double dx, double dy) {
+    double step = 1.2;
+    for (double d = step; d < STREET_REACH; d += step) {
+        double z;
+        if (!noc_scene_top(scene, eye[0] + d * dx, eye[1] + d * dy, &z) || z > eye[2] - 0.1 + 0.03 * d)
+            return d;
+        step = 1.2 + 0.02 * d;
+    }
+    return STREET_REACH;
+}
+
+/* Best direction from one place; returns its score. */
+static double street_look(const view_city *city, const double eye[3], double aspect, double fov, double *yaw) {
+    enum { DIRECTIONS = 32 };
+    double best = 0, free_way[DIRECTIONS];
+    for (int i = 0; i < DIRECTIONS; i++)
+        free_way[i] = free_distance(city->scene, eye, cos(2 * M_PI * i / DIRECTIONS), sin(2 * M_PI * i / DIRECTIONS));
+    for (int i = 0; i < DIRECTIONS; i++) {
+        double a = 2 * M_PI * i / DIRECTIONS, dx = cos(a), dy = sin(a);
+        double beside = NOC_MIN(free_way[(i + 1) % DIRECTIONS], free_way[(i + DIRECTIONS - 1) % DIRECTIONS]);
+        double lamps = light_in_view(city, eye, dx, dy, half_width(fov, aspect), 100, true);
+        double all = light_in_view(city, eye, dx, dy, half_width(fov, aspect), 100, false);
+        /* a long way ahead, some room beside it, lamps along it; lit fronts help */
+        double way = NOC_MIN(free_way[i], 110.0) * NOC_MIN(beside, 12.0) / 12;
+        double score = way * (1e-3 + lamps + 0.5 * NOC_MIN(all - lamps, 2 * lamps + 10));
+        if (score > best * 1.0001) {
+            best = score;
+            *yaw = a;
+        }
+    }
+    return best;
+}
+
+static bool street(view_city *city, double aspect, noc_camera *camera) {
+    enum { PLACES = 120, AROUND = 4, FALLBACK_GRID = 40 };
+    const noc_scene *scene = city->scene;
+    double best = 0, extent[2] = { city->max[0] - city->min[0], city->max[1] - city->min[1] };
+    camera->fov_deg = 55;
+    gather_lights(city, 250);
+    size_t lamps = 0, n = 0;
+    for (size_t i = 0; i < city->lights.len; i++)
+        lamps += city->lights.data[i].lamp;
+    size_t of = lamps ? lamps : city->lights.len, stride = of / PLACES + 1;
+    /* beside lamps (or lit fronts); if none of those places will do, on a grid over the city */
+    for (int round = 0; round < 2 && !(best > 0); round++) {
+        size_t count = round ? FALLBACK_GRID * FALLBACK_GRID : city->lights.len;
+        for (size_t i = 0; i < count; i++) {
+            if (!round && ((lamps && !city->lights.data[i].lamp) || n++ % stride))
+                continue;
+            for (int j = 0; j < (round ? 1 : AROUND); j++) {
+                double eye[3], z, yaw = 0, a = 2 * M_PI * j / AROUND + (double)i, r = 3 + 2.5 * (j & 1);
+                if (round) {
+                    eye[0] = city->min[0] + extent[0] * ((double)(i % FALLBACK_GRID) + 0.5) / FALLBACK_GRID;
+                    eye[1] = city->min[1] + extent[1] * ((double)(i / FALLBACK_GRID) + 0.5) / FALLBACK_GRID;
+                } else {
+                    eye[0] = city->lights.data[i].p[0] + r * cos(a);
+                    eye[1] = city->lights.data[i].p[1] + r * sin(a);
+                }
+                if (!open_place(scene, eye[0], eye[1], &z))
+                    continue;
+                eye[2] = z + 1.7;
+                double score = street_look(city, eye, aspect, camera->fov_deg, &yaw);
+                if (score > best * 1.0001) {
+                    best = score;
+                    memcpy(camera->eye, eye, sizeof(eye));
+                    camera->target[0] = eye[0] + 30 * cos(yaw);
+                    camera->target[1] = eye[1] + 30 * sin(yaw);
+                    camera->target[2] = eye[2] + 2.2; /* a little up: fronts rather than pavement */
+                }
+            }
+        }
+    }
+    return best > 0;
+}
+
+noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect, noc_camera *camera) {
+    if (!(aspect >= 0.01 && aspect <= 100))
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the aspect must be in 0.01..100");
+    if ((unsigned)view > NOC_VIEW_OVERVIEW)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: no view %d", (int)view);
+    if (!scene->triangle_light.len)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the scene is empty, so no view can be derived from it");
+    view_city city = { .scene = scene };
+    noc_camera c = noc_camera_default();
+    city_bounds(&city);
+    find_hot(&city);
+    if (view == NOC_VIEW_AERIAL)
+        aerial(&city, aspect, &c);
+    /* a model with nowhere to stand is looked at from outside */
+    if (view == NOC_VIEW_OVERVIEW || (view == NOC_VIEW_STREET && !street(&city, aspect, &c)))
+        overview(&city, aspect, &c);
+    array_free(&city.lights);
+    *camera = c;
+    return NOC_OK;
+}
