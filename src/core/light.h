@@ -99,7 +99,12 @@ FN light_sample sample_flat(light l, v3 y, real u, real v) {
 
 FN light_sample sample_light(light l, v3 y, real u, real v) {
     mask round = l.kind == KU(LIGHT_SPHERE);
-    light_sample s = sample_flat(l, y, u, v);
+    light_sample s;
+    s.wi = fill3(K(0.0f));
+    s.dist = K(0.0f);
+    s.le = fill3(K(0.0f));
+    if (ANY(not_(round)))
+        s = sample_flat(l, y, u, v);
     if (ANY(round)) {
         light_sample r = sample_round(l, y, u, v);
         s.wi = sel3(round, r.wi, s.wi);

@@ -30,7 +30,7 @@ struct stream {
 #ifndef CORE_GLSL
 typedef struct resv resv;
 typedef struct stream stream;
-light light_load(CTX u32 i);
+FN light light_load(CTX u32 i); /* static inline where it is defined, so that wide code pays for what it uses only */
 #endif
 
 FN stream stream_empty() {

@@ -1,5 +1,8 @@
-/* core/surface.h: the receiving point and what it reflects: Lambert plus one isotropic GGX lobe (Walter et al. 2007; Smith
- * shadowing, height-correlated: Heitz 2014, eq. 99; Schlick 1994 Fresnel). Both parts work on the side that is seen. */
+/* core/surface.h: the receiving point and what it reflects: a diffuse part plus one isotropic GGX lobe (Walter et al. 2007;
+ * Smith shadowing, height-correlated: Heitz 2014, eq. 99; Schlick 1994 Fresnel). Without gloss (f0 = 0) the diffuse part is
+ * Lambert's. Under gloss it is what Fresnel lets in and out again (Shirley et al. 1997; Ashikhmin and Shirley 2000, eq. 5),
+ * so that no surface reflects more than it gets, also where a bright wall is seen at a grazing angle. Reciprocal. Both parts
+ * work on the side that is seen. */
 #ifndef CORE_SURFACE_H
 #define CORE_SURFACE_H
 
@@ -18,33 +21,55 @@ struct surf {
 typedef struct surf surf;
 #endif
 
+/* (1 - x)^5. */
+FN real fifth(real x) {
+    real c = K(1.0f) - x;
+    EXACT real c2 = c * c;
+    EXACT real f = c2 * c2 * c;
+    return f;
+}
+
+/* The glossy lobe over cos(theta), 1/sr. */
 FN real glossy(surf s, v3 wi, real nl) {
     v3 h = add3(wi, s.wo);
     real h2 = max_(dot3(h, h), K(1e-12f));
-    h = mul3(h, K(1.0f) / sqrt_(h2));
+    EXACT real inv = K(1.0f) / sqrt_(h2);
+    h = mul3(h, inv);
+    v3 nxh = cross3(s.n, h);
     real nv = max_(dot3(s.n, s.wo), K(1e-4f));
     real nh = dot3(s.n, h);
     real vh = max_(dot3(s.wo, h), K(0.0f));
-    real a2 = s.alpha * s.alpha;
-    EXACT real q = nh * nh * (a2 - K(1.0f)) + K(1.0f);
+    EXACT real a2 = s.alpha * s.alpha;
+    EXACT real q = nh * nh * a2 + dot3(nxh, nxh); /* 1 + nh^2 (a2 - 1) without cancellation */
     EXACT real d = a2 / max_(K(CORE_PI) * q * q, K(1e-20f));
     EXACT real gl = nl * sqrt_(a2 + nv * nv * (K(1.0f) - a2));
     EXACT real gv = nv * sqrt_(a2 + nl * nl * (K(1.0f) - a2));
-    real c = K(1.0f) - vh;
-    real c2 = c * c;
-    EXACT real fr = s.f0 + (K(1.0f) - s.f0) * (c2 * c2 * c);
+    EXACT real fr = s.f0 + (K(1.0f) - s.f0) * fifth(vh);
     EXACT real f = d * fr * K(0.5f) / max_(gl + gv, K(1e-10f));
     return f;
+}
+
+/* The diffuse part under gloss, relative to Lambert's. */
+FN real under_gloss(surf s, real nl) {
+    real nv = max_(dot3(s.n, s.wo), K(0.0f));
+    EXACT real in_ = K(1.0f) - fifth(nl * K(0.5f));
+    EXACT real out_ = K(1.0f) - fifth(nv * K(0.5f));
+    EXACT real share = K(1.21739130434783f) * (K(1.0f) - s.f0) * in_ * out_; /* 28/23: the mean of in_ is 23/28 */
+    return share;
 }
 
 /* f_r * cos(theta), 1/sr. */
 FN v3 reflect(surf s, v3 wi) {
     real nl = max_(dot3(s.n, wi), K(0.0f));
-    EXACT real kd = (K(1.0f) - s.f0) * K(CORE_INV_PI) * nl;
-    v3 f = mul3(s.albedo, kd);
+    EXACT real kd = K(CORE_INV_PI) * nl;
+    real ks = K(0.0f);
     mask shiny = and_(s.f0 > K(0.0f), nl > K(0.0f));
-    if (ANY(shiny))
-        f = add3(f, fill3(sel(shiny, glossy(s, wi, nl) * nl, K(0.0f))));
+    if (ANY(shiny)) {
+        kd = sel(shiny, kd * under_gloss(s, nl), kd);
+        EXACT real g = glossy(s, wi, nl) * nl;
+        ks = sel(shiny, g, ks);
+    }
+    EXACT v3 f = add3(mul3(s.albedo, kd), fill3(ks));
     return f;
 }
 
