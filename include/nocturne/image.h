@@ -77,7 +77,8 @@ typedef struct noc_compare_params {
     noc_display_params display; /* for RMSE-8 */
 } noc_compare_params;
 
-#define noc_compare_default_params() ((noc_compare_params){ .ceiling = 10, .display = noc_display_default_params() })
+#define noc_compare_default_params() \
+    ((noc_compare_params){ .ceiling = 10, .display = { .auto_exposure = true, .tonemap = NOC_TONEMAP_FILMIC } })
 
 NOC_API noc_status noc_image_compare(const noc_image *x, const noc_image *r, const noc_compare_params *params,
                                      noc_comparison *out, noc_log *log);

@@ -1,0 +1,208 @@
+/* Parsing of a command's arguments by its option tables. */
+#include "cli.h"
+
+#include <ctype.h>
+#include <locale.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ROW(n, f, h) { n, "General", NOC_OPTION_BOOL, offsetof(cli_args, f), 0, 1, NULL, "", h }
+static const noc_option common_options[] = {
+    ROW("quiet", quiet, "say nothing but errors"),
+    ROW("verbose", verbose, "say more about what is read and done"),
+    ROW("help", help, "this text"),
+    { NULL },
+};
+const noc_option *cli_common_options(void) { return common_options; }
+
+bool cli_hidden(const cli_set *set, const noc_option *option) {
+    for (const char *const *name = set->hidden; name && *name; name++)
+        if (!strcmp(*name, option->name))
+            return true;
+    return false;
+}
+
+char cli_short_name(const noc_option *option) {
+    static const char *const names[] = { "output", "quiet", "verbose", "help" };
+    for (size_t i = 0; i < sizeof(names) / sizeof(*names); i++)
+        if (!strcmp(option->name, names[i]))
+            return *names[i];
+    return 0;
+}
+
+bool cli_given(const cli_args *args, const char *name) {
+    for (size_t i = 0; i < args->given_count; i++)
+        if (!strcmp(args->given[i]->name, name))
+            return true;
+    return false;
+}
+
+/* Edits (insert, delete, replace, swap neighbours) between two short words; long ones count as far apart. */
+static int distance(const char *a, const char *b) {
+    enum { MAX = 40 };
+    int rows[3][MAX + 1];
+    size_t n = strlen(a), m = strlen(b);
+    if (n > MAX || m > MAX)
+        return MAX;
+    for (size_t j = 0; j <= m; j++)
+        rows[0][j] = (int)j;
+    for (size_t i = 1; i <= n; i++) {
+        int *row = rows[i % 3], *above = rows[(i + 2) % 3], *above2 = rows[(i + 1) % 3];
+        row[0] = (int)i;
+        for (size_t j = 1; j <= m; j++) {
+            int best = above[j - 1] + (a[i - 1] != b[j - 1]);
+            best = above[j] + 1 < best ? above[j] + 1 : best;
+            best = row[j - 1] + 1 < best ? row[j - 1] + 1 : best;
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && above2[j - 2] + 1 < best)
+                best = above2[j - 2] + 1;
+            row[j] = best;
+        }
+    }
+    return rows[n % 3][m];
+}
+
+const char *cli_nearest(const char *word, const char *const *words, size_t count) {
+    size_t length = strlen(word);
+    const char *nearest = NULL;
+    int least = length < 4 ? 2 : 3 + (int)length / 6;
+    for (size_t i = 0; i < count; i++) {
+        int d = distance(word, words[i]);
+        /* A word that was only begun: --cand for --candidates. */
+        if (length >= 3 && !strncmp(word, words[i], length))
+            d = 1;
+        if (d < least && d < (int)strlen(words[i])) {
+            least = d;
+            nearest = words[i];
+        }
+    }
+    return nearest;
+}
+
+bool cli_parse_numbers(const char *text, char separator, size_t count, double *out) {
+    for (size_t i = 0; i < count; i++) {
+        char *end;
+        if (isspace((unsigned char)*text) || strspn(text, "+-.0123456789") == 0)
+            return false; /* strtod would take blanks, "nan" and "inf" */
+        out[i] = strtod(text, &end);
+        if (end == text || !isfinite(out[i]) || *end != (i + 1 < count ? separator : 0))
+            return false;
+        text = end + 1;
+    }
+    return true;
+}
+
+/* One option of the command by its long (short_name 0) or short name. */
+static const noc_option *find(const cli_command *command, const char *name, size_t length, char short_name, size_t *offset) {
+    for (const cli_set *set = command->sets; set->table; set++) {
+        for (const noc_option *o = set->table(); o->name; o++) {
+            bool match = short_name ? cli_short_name(o) == short_name : strlen(o->name) == length && !strncmp(o->name, name, length);
+            if (match && !cli_hidden(set, o)) {
+                *offset = set->offset;
+                return o;
+            }
+        }
+    }
+    return NULL;
+}
+
+static int unknown(const cli_command *command, const char *given) {
+    const char *words[2 * CLI_GIVEN];
+    char negated[CLI_GIVEN][40], name[64];
+    size_t count = 0, negations = 0;
+    for (const cli_set *set = command->sets; set->table; set++) {
+        for (const noc_option *o = set->table(); o->name && count + 2 < 2 * CLI_GIVEN; o++) {
+            if (cli_hidden(set, o))
+                continue;
+            words[count++] = o->name;
+            if (o->kind == NOC_OPTION_BOOL && negations < CLI_GIVEN) {
+                snprintf(negated[negations], sizeof(*negated), "no-%s", o->name);
+                words[count++] = negated[negations++];
+            }
+        }
+    }
+    snprintf(name, sizeof(name), "%.*s", (int)strcspn(given, "="), given);
+    const char *nearest = cli_nearest(name + strspn(name, "-"), words, count);
+    char shown[80];
+    cli_clean(shown, sizeof(shown), given);
+    return nearest ? cli_usage(command, "no option %s; is it --%s?", shown, nearest) : cli_usage(command, "no option %s", shown);
+}
+
+static void keep_message(void *user, noc_log_level level, const char *text) { snprintf(user, 256, "%s", text); }
+
+static int set_option(const cli_command *command, const noc_option *o, void *params, const char *value, cli_args *args) {
+    char message[256] = "";
+    /* Which of two outputs is meant nobody can know; for the rest the last one wins, as scripts expect. */
+    if (!strcmp(o->name, "output") && cli_given(args, "output"))
+        return cli_usage(command, "-o is given twice; one picture, one file");
+    noc_log *log = noc_log_create(&(noc_log_params){ .message = keep_message, .user = message });
+    noc_status status = noc_option_set(o, params, value, log);
+    noc_log_destroy(log);
+    if (status)
+        return cli_usage(command, "--%s", message);
+    if (!cli_given(args, o->name) && args->given_count < CLI_GIVEN)
+        args->given[args->given_count++] = o;
+    return CLI_OK;
+}
+
+/* A following word is a value unless it looks like an option; "-3,4,5" is a value. */
+static bool is_value(const char *word) {
+    return word && !(word[0] == '-' && (word[1] == '-' || isalpha((unsigned char)word[1])));
+}
+
+/* One word that begins with a dash; *index moves on when the next word is its value. */
+static int parse_option(const cli_command *command, int argc, char **argv, int *index, void *args) {
+    const char *word = argv[*index], *value = NULL;
+    size_t offset = 0;
+    bool is_short = word[1] != '-', off = false;
+    const char *name = word + (is_short ? 1 : 2);
+    size_t length = strcspn(name, "=");
+    const noc_option *o = find(command, name, length, is_short ? *name : 0, &offset);
+    size_t ignored;
+    if (is_short && o && name[1] && (o->kind == NOC_OPTION_BOOL || find(command, name, length, 0, &ignored)))
+        o = NULL; /* neither -qv nor -output is a thing here */
+    if (!o && !is_short && length > 3 && !strncmp(name, "no-", 3)) {
+        o = find(command, name + 3, length - 3, 0, &offset);
+        off = o && o->kind == NOC_OPTION_BOOL;
+        o = off ? o : NULL;
+    }
+    if (!o)
+        return unknown(command, word);
+    if (is_short && name[1])
+        value = name + 1 + (name[1] == '='); /* -oFILE, -o=FILE */
+    else if (!is_short && name[length] == '=')
+        value = name + length + 1;
+    if (off) {
+        if (value)
+            return cli_usage(command, "--no-%s takes no value", o->name);
+        value = "false";
+    }
+    if (o->kind != NOC_OPTION_BOOL && !value) {
+        if (*index + 1 >= argc || !is_value(argv[*index + 1]))
+            return cli_usage(command, "%.*s needs a value", 60, word);
+        value = argv[++*index];
+    }
+    return set_option(command, o, (char *)args + offset, value, args);
+}
+
+int cli_parse(const cli_command *command, int argc, char **argv, void *args) {
+    cli_args *common = args;
+    memcpy(args, command->defaults, command->args_size);
+    common->inputs = cli_alloc(sizeof(char *) * (size_t)(argc + 1));
+    bool options = true;
+    for (int i = 0; i < argc; i++) {
+        const char *word = argv[i];
+        if (options && !strcmp(word, "--")) {
+            options = false;
+        } else if (options && word[0] == '-' && word[1]) {
+            int status = parse_option(command, argc, argv, &i, args);
+            if (status)
+                return status;
+        } else if (!*word) {
+            return cli_usage(command, "an argument is empty");
+        } else {
+            common->inputs[common->input_count++] = word;
+        }
+    }
+    return CLI_OK;
+}

@@ -1,0 +1,53 @@
+#include "render.h"
+
+#include <math.h>
+#include <string.h>
+
+int cli_parse_camera(render_job *job) {
+    const render_args *args = job->args;
+    if (!args->eye != !args->target)
+        return cli_usage(&cli_render, "--%s needs --%s too", args->eye ? "eye" : "target", args->eye ? "target" : "eye");
+    if (args->eye && cli_given(&args->common, "view"))
+        return cli_usage(&cli_render, "--view and --eye exclude each other");
+    if (args->camera_crs && !args->eye)
+        return cli_usage(&cli_render, "--camera-crs is for --eye and --target");
+    if (!args->eye)
+        return CLI_OK;
+    if (!cli_parse_numbers(args->eye, ',', 3, job->eye))
+        return cli_usage(&cli_render, "--eye: \"%.60s\" is not X,Y,Z", args->eye);
+    if (!cli_parse_numbers(args->target, ',', 3, job->target))
+        return cli_usage(&cli_render, "--target: \"%.60s\" is not X,Y,Z", args->target);
+    if (!memcmp(job->eye, job->target, sizeof(job->eye)))
+        return cli_usage(&cli_render, "--eye and --target are the same place");
+    return CLI_OK;
+}
+
+noc_status cli_place_camera(render_job *job) {
+    const render_args *args = job->args;
+    job->camera = noc_camera_default();
+    if (!args->eye) {
+        noc_status status = noc_scene_camera(job->scene, (noc_view)args->view,
+                                             (double)args->render.width / args->render.height, &job->camera);
+        if (status)
+            return status;
+        if (cli_given(&args->common, "fov"))
+            job->camera.fov_deg = args->fov;
+        return NOC_OK;
+    }
+    memcpy(job->camera.eye, job->eye, sizeof(job->eye));
+    memcpy(job->camera.target, job->target, sizeof(job->target));
+    job->camera.fov_deg = args->fov;
+    if (args->camera_crs) {
+        const char *crs = strcmp(args->camera_crs, "scene") ? args->camera_crs : NULL;
+        noc_status status = noc_scene_to_local(job->scene, crs, job->camera.eye);
+        status = status ? status : noc_scene_to_local(job->scene, crs, job->camera.target);
+        if (status)
+            return status;
+    }
+    /* Looking straight down or up, "up" is north. */
+    double dx = job->camera.target[0] - job->camera.eye[0], dy = job->camera.target[1] - job->camera.eye[1],
+           dz = job->camera.target[2] - job->camera.eye[2];
+    if (hypot(dx, dy) < 1e-6 * fabs(dz))
+        memcpy(job->camera.up, (double[3]){ 0, 1, 0 }, sizeof(job->camera.up));
+    return NOC_OK;
+}

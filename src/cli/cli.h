@@ -1,0 +1,86 @@
+/* cli: the program on top of the library. Public headers only. One file a subcommand; what they share is here. */
+#ifndef NOC_CLI_H
+#define NOC_CLI_H
+
+#include <nocturne/nocturne.h>
+#include <stdio.h>
+
+/* Exit statuses. An interruption by signal n ends with 128 + n, as shells do: 130 after Ctrl-C. */
+enum { CLI_OK = 0, CLI_FAILURE = 1, CLI_USAGE = 2, CLI_INTERRUPTED = 128 };
+
+#define CLI_SETS 8
+#define CLI_GIVEN 96
+
+/* What every command's arguments begin with. */
+typedef struct cli_args {
+    const char **inputs; /* those that are no options; point into argv */
+    size_t input_count;
+    bool help, quiet, verbose;
+    const noc_option *given[CLI_GIVEN]; /* options that were set, in order */
+    size_t given_count;
+} cli_args;
+
+/* An option table and where its params struct lies in the command's arguments. */
+typedef struct cli_set {
+    const noc_option *(*table)(void);
+    size_t offset;
+    const char *const *hidden; /* names of rows that this command does not offer, NULL-ended; may be NULL */
+} cli_set;
+
+typedef struct cli_command {
+    const char *name, *arguments, *summary; /* "render", "INPUT... -o FILE", "..." */
+    const char *notes;                      /* end of the help: examples */
+    cli_set sets[CLI_SETS];                 /* ended by a NULL table */
+    size_t args_size;
+    const void *defaults;                   /* args_size bytes; the first member is a cli_args */
+    int (*run)(void *args);                 /* returns the exit status */
+} cli_command;
+
+extern const cli_command cli_render, cli_info, cli_compare;
+extern const cli_command *const cli_commands[]; /* NULL-ended */
+const cli_command *cli_find_command(const char *name);
+
+/* args.c */
+const noc_option *cli_common_options(void); /* quiet, verbose, help: fields of cli_args */
+bool cli_hidden(const cli_set *set, const noc_option *option);
+int cli_parse(const cli_command *command, int argc, char **argv, void *args); /* CLI_OK or CLI_USAGE, reported */
+bool cli_given(const cli_args *args, const char *name);
+char cli_short_name(const noc_option *option);                                /* 'o' of output, 0 if none */
+const char *cli_nearest(const char *word, const char *const *words, size_t count); /* NULL if none is near */
+bool cli_parse_numbers(const char *text, char separator, size_t count, double *out); /* exactly count finite numbers */
+
+/* help.c */
+void cli_help(const cli_command *command, FILE *out); /* NULL: of the program */
+void cli_help_markdown(FILE *out);                     /* docs/options.md */
+
+/* text.c: messages and numbers for people and for machines. */
+void cli_error(const char *fmt, ...) NOC_PRINTF(1, 2);            /* one line on stderr, after "nocturne: " */
+int cli_usage(const cli_command *command, const char *fmt, ...) NOC_PRINTF(2, 3); /* the same, and where to read on; CLI_USAGE */
+noc_log *cli_log_create(const cli_args *args);
+void *cli_alloc(size_t size);                                     /* zeroed; ends the program when memory is gone */
+char *cli_format(const char *fmt, ...) NOC_PRINTF(1, 2);          /* free() it */
+const char *cli_count(char text[32], uint64_t n);                 /* 1234567 -> "1,234,567" */
+const char *cli_bytes(char text[32], uint64_t n);                 /* "4.1 MB" */
+const char *cli_seconds(char text[32], double s);                 /* "0.42 s", "2 min 05 s" */
+const char *cli_clean(char *text, size_t size, const char *from); /* control characters blanked, long text cut short */
+void cli_json_text(FILE *out, const char *text);                  /* quoted and escaped; valid UTF-8 whatever came in */
+void cli_json_number(FILE *out, double v);                        /* null where it is not finite */
+bool cli_flush(FILE *out);                                        /* false after saying that stdout could not be written */
+
+/* progress.c: one line on stderr, only where that is a terminal; and the signals that end the work early. */
+void cli_progress_start(bool quiet);
+void cli_progress_show(double done, double left, const char *fmt, ...) NOC_PRINTF(3, 4); /* left: seconds, < 0 unknown */
+void cli_progress_clear(void);
+void cli_catch_signals(void);  /* the first signal is remembered, the second ends the program */
+int cli_interrupted(void);     /* its number, 0 if there was none */
+double cli_now(void);          /* wall clock, seconds */
+
+/* render.c: --exposure, which compare takes too */
+int cli_parse_exposure(const cli_command *command, const char *text, noc_display_params *display);
+
+/* output.c */
+typedef enum cli_ending { CLI_PNG = 1, CLI_EXR = 2 } cli_ending;
+/* Can path be written as one of these formats? Asked before the long work. CLI_OK, or an exit status after reporting. */
+int cli_check_output(const cli_command *command, const char *path, int endings, const cli_args *args);
+
+#endif

@@ -1,0 +1,144 @@
+/* nocturne compare: error figures of a picture against a reference. */
+#include "cli.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct compare_args {
+    cli_args common;
+    const char *output, *exposure;
+    bool json;
+    noc_compare_params compare;
+} compare_args;
+
+#define A compare_args
+static const noc_option own_options[] = {
+    { "output", "Output", NOC_OPTION_TEXT, offsetof(A, output), 0, 0, NULL, "FILE", "difference picture to write, .png" },
+    { "json", "Output", NOC_OPTION_BOOL, offsetof(A, json), 0, 1, NULL, "", "print JSON instead of a table" },
+    { "ceiling", "Figures", NOC_OPTION_REAL, offsetof(A, compare.ceiling), 1e-6, 1e9, NULL, "cd/m2",
+      "both pictures are cut off here in the clamped rows" },
+    { "exposure", "Display", NOC_OPTION_TEXT, offsetof(A, exposure), 0, 0, NULL, "EV",
+      "\"auto\" (of the reference), or EV100: for RMSE-8" },
+    { NULL },
+};
+static const noc_option *options(void) { return own_options; }
+static int run(void *arguments);
+
+static const compare_args defaults = { .exposure = "auto", .compare = noc_compare_default_params() };
+static const char *const by_exposure[] = { "auto-exposure", "ev100", NULL };
+
+const cli_command cli_compare = {
+    "compare", "PICTURE REFERENCE", "Prints how far a picture is from a reference of the same size.",
+    "RMSE-8 is on 8-bit sRGB, 0 to 255, after the same exposure and tone map; RMSE and relMSE on linear luminance;\n"
+    "bias is mean(picture) / mean(reference). Definitions: docs/estimator.md.\n"
+    "Examples\n"
+    "  nocturne compare restir.exr reference.exr -o difference.png\n",
+    { { options, 0, NULL }, { noc_display_options, offsetof(A, compare.display), by_exposure }, { cli_common_options, 0, NULL } },
+    sizeof(compare_args), &defaults, run,
+};
+
+static void print_row(const char *name, const noc_metrics *m) {
+    char pixels[32];
+    printf("  %-28s %10s  %8.3f  %10.5g  %10.5g  ", name, cli_count(pixels, m->pixels), m->rmse8, m->rmse, m->relmse);
+    printf(isfinite(m->bias) ? "%8.4f\n" : "       -\n", m->bias);
+}
+
+static void print_table(const compare_args *args, const noc_comparison *c, const noc_image *image) {
+    char a[160], b[160], clamped[48];
+    printf("%s against %s, %d x %d\n\n", cli_clean(a, sizeof(a), args->common.inputs[0]),
+           cli_clean(b, sizeof(b), args->common.inputs[1]), image->width, image->height);
+    printf("  %-28s %10s  %8s  %10s  %10s  %8s\n", "", "pixels", "RMSE-8", "RMSE cd/m2", "relMSE", "bias");
+    print_row("all pixels", &c->all);
+    snprintf(clamped, sizeof(clamped), "  clamped to %.6g cd/m2", c->ceiling);
+    print_row(clamped, &c->all_clamped);
+    if (c->has_mask) {
+        print_row("pixels that see no emitter", &c->dark);
+        print_row(clamped, &c->dark_clamped);
+    } else {
+        printf("  the reference has no emitter mask: no figures without emitters\n");
+    }
+    printf("\n  mean luminance %.6g against %.6g cd/m2\n", c->all.mean_x, c->all.mean_r);
+}
+
+static void json_row(const char *name, const noc_metrics *m, bool last) {
+    const struct { const char *key; double value; } fields[] = {
+        { "pixels", (double)m->pixels }, { "rmse8", m->rmse8 }, { "rmse", m->rmse }, { "relmse", m->relmse },
+        { "bias", m->bias }, { "mean", m->mean_x }, { "mean_reference", m->mean_r },
+    };
+    printf("  \"%s\": {", name);
+    for (size_t i = 0; i < sizeof(fields) / sizeof(*fields); i++) {
+        printf("%s\"%s\": ", i ? ", " : "", fields[i].key);
+        cli_json_number(stdout, fields[i].value);
+    }
+    printf("}%s\n", last ? "" : ",");
+}
+
+static void print_json(const compare_args *args, const noc_comparison *c, const noc_image *image) {
+    printf("{\n  \"picture\": ");
+    cli_json_text(stdout, args->common.inputs[0]);
+    printf(",\n  \"reference\": ");
+    cli_json_text(stdout, args->common.inputs[1]);
+    printf(",\n  \"width\": %d, \"height\": %d, \"ceiling\": ", image->width, image->height);
+    cli_json_number(stdout, c->ceiling);
+    printf(",\n");
+    json_row("all", &c->all, false);
+    json_row("all_clamped", &c->all_clamped, !c->has_mask);
+    if (c->has_mask) {
+        json_row("no_emitter", &c->dark, false);
+        json_row("no_emitter_clamped", &c->dark_clamped, true);
+    }
+    printf("}\n");
+}
+
+static noc_status write_difference(const compare_args *args, const noc_image *x, const noc_image *r, noc_log *log) {
+    uint8_t *rgb = NULL;
+    int width, height;
+    noc_status status = noc_image_difference(x, r, &rgb, &width, &height, log);
+    if (status)
+        return status;
+    char *software = cli_format("nocturne %s", noc_version());
+    const char *keys[] = { "software", "picture" }, *values[] = { software, "signed difference of luminance" };
+    status = noc_image_write_srgb8(rgb, width, height, args->output, &(noc_image_meta){ 2, keys, values }, log);
+    free(software);
+    free(rgb);
+    return status;
+}
+
+static int compare(const compare_args *args, noc_log *log) {
+    noc_image *pictures[2] = { NULL };
+    bool linear[2] = { false };
+    noc_status status = NOC_OK;
+    noc_comparison figures;
+    for (int i = 0; i < 2 && !status; i++) {
+        pictures[i] = noc_image_read(args->common.inputs[i], log, &linear[i]);
+        status = pictures[i] ? NOC_OK : NOC_ERR_FORMAT;
+    }
+    if (!status && linear[0] != linear[1] && !args->common.quiet)
+        cli_error("warning: one picture is linear, the other displayed: only .exr against .exr compares luminances");
+    else if (!status && !linear[0] && !args->common.quiet)
+        cli_error("warning: .png has no units: RMSE is relative to white, not cd/m2");
+    status = status ? status : noc_image_compare(pictures[0], pictures[1], &args->compare, &figures, log);
+    if (!status && args->output)
+        status = write_difference(args, pictures[0], pictures[1], log);
+    if (!status)
+        (args->json ? print_json : print_table)(args, &figures, pictures[0]);
+    noc_image_destroy(pictures[0]);
+    noc_image_destroy(pictures[1]);
+    return status ? CLI_FAILURE : CLI_OK;
+}
+
+static int run(void *arguments) {
+    compare_args *args = arguments;
+    if (args->common.input_count != 2)
+        return cli_usage(&cli_compare, "two pictures are compared: the one, and the reference");
+    int status = cli_parse_exposure(&cli_compare, args->exposure, &args->compare.display);
+    if (!status && args->output)
+        status = cli_check_output(&cli_compare, args->output, CLI_PNG, &args->common);
+    if (status)
+        return status;
+    noc_log *log = cli_log_create(&args->common);
+    status = compare(args, log);
+    noc_log_destroy(log);
+    return cli_flush(stdout) ? status : CLI_FAILURE;
+}

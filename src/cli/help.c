@@ -1,0 +1,147 @@
+/* Help for people and docs/options.md, both from the option tables. */
+#include "cli.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+/* "--width N", "--[no-]jitter", "-o, --output FILE" */
+static void spell(char *out, size_t size, const noc_option *o, const void *defaults) {
+    char dash[8] = "", placeholder[24] = "";
+    if (cli_short_name(o))
+        snprintf(dash, sizeof(dash), "-%c, ", cli_short_name(o));
+    switch (o->kind) {
+    case NOC_OPTION_BOOL: break;
+    case NOC_OPTION_TEXT: snprintf(placeholder, sizeof(placeholder), " %s", o->unit); break;
+    case NOC_OPTION_CHOICE: snprintf(placeholder, sizeof(placeholder), " NAME"); break;
+    case NOC_OPTION_REAL: snprintf(placeholder, sizeof(placeholder), " X"); break;
+    default: snprintf(placeholder, sizeof(placeholder), " N");
+    }
+    bool on = o->kind == NOC_OPTION_BOOL && *((const char *)defaults + o->offset);
+    snprintf(out, size, "%s--%s%s%s", dash, on ? "[no-]" : "", o->name, placeholder);
+}
+
+/* "[10 px]", "[on]"; empty where the option is simply absent by default. */
+static void spell_default(char *out, size_t size, const noc_option *o, const void *defaults) {
+    char value[64];
+    noc_option_get(o, defaults, value, sizeof(value));
+    if (o->kind == NOC_OPTION_BOOL)
+        snprintf(out, size, "%s", *((const char *)defaults + o->offset) ? "[on]" : "");
+    else if (!*value)
+        *out = 0;
+    else
+        snprintf(out, size, "[%s%s%s]", value, o->kind != NOC_OPTION_TEXT && *o->unit ? " " : "",
+                 o->kind != NOC_OPTION_TEXT ? o->unit : "");
+}
+
+static int width(FILE *out) {
+    struct winsize size;
+    if (!isatty(fileno(out)) || ioctl(fileno(out), TIOCGWINSZ, &size) || size.ws_col < 60)
+        return 100;
+    return size.ws_col < 120 ? size.ws_col : 120;
+}
+
+/* Words of text, wrapped, the first line at the present column. */
+static void wrap(FILE *out, const char *text, int column, int columns) {
+    int at = column;
+    while (*text) {
+        int n = (int)strcspn(text, " ");
+        if (at + n > columns && at > column) {
+            fprintf(out, "\n%*s", column, "");
+            at = column;
+        }
+        fprintf(out, "%.*s", n, text);
+        at += n;
+        text += n;
+        if (*text == ' ') {
+            text++;
+            if (at + 1 + (int)strcspn(text, " ") <= columns) {
+                fputc(' ', out);
+                at++;
+            } else {
+                fprintf(out, "\n%*s", column, "");
+                at = column;
+            }
+        }
+    }
+    fputc('\n', out);
+}
+
+static void print_option(FILE *out, const noc_option *o, const void *defaults, int columns) {
+    enum { COLUMN = 26 };
+    char left[64], value[80], right[320];
+    spell(left, sizeof(left), o, defaults);
+    spell_default(value, sizeof(value), o, defaults);
+    snprintf(right, sizeof(right), "%s%s%s%s%s", o->help, o->kind == NOC_OPTION_CHOICE ? ": " : "",
+             o->kind == NOC_OPTION_CHOICE ? o->choices : "", *value ? " " : "", value);
+    fprintf(out, "  %-*s", COLUMN - 2, left);
+    if (strlen(left) > COLUMN - 4)
+        fprintf(out, "\n%*s", COLUMN, "");
+    wrap(out, right, COLUMN, columns);
+}
+
+typedef void visit_fn(FILE *out, const noc_option *o, const void *defaults, int columns);
+
+/* Options of all the command's tables by group, groups in the order in which they first appear. */
+static void each_group(const cli_command *command, FILE *out, const char *heading, visit_fn *visit, int columns) {
+    const char *done[32];
+    size_t done_count = 0;
+    for (const cli_set *first = command->sets; first->table; first++) {
+        for (const noc_option *f = first->table(); f->name; f++) {
+            bool seen = cli_hidden(first, f) || done_count == 32;
+            for (size_t i = 0; i < done_count; i++)
+                seen |= !strcmp(done[i], f->group);
+            if (seen)
+                continue;
+            done[done_count++] = f->group;
+            fprintf(out, heading, f->group);
+            for (const cli_set *set = command->sets; set->table; set++)
+                for (const noc_option *o = set->table(); o->name; o++)
+                    if (!strcmp(o->group, f->group) && !cli_hidden(set, o))
+                        visit(out, o, (const char *)command->defaults + set->offset, columns);
+        }
+    }
+}
+
+void cli_help(const cli_command *command, FILE *out) {
+    if (command) {
+        fprintf(out, "nocturne %s %s\n\n%s\n", command->name, command->arguments, command->summary);
+        each_group(command, out, "\n%s\n", print_option, width(out));
+        fprintf(out, "\n%s", command->notes);
+        return;
+    }
+    fprintf(out, "nocturne %s: pictures and figures of cities at night\n\n", noc_version());
+    for (const cli_command *const *c = cli_commands; *c; c++)
+        fprintf(out, "  nocturne %-8s %s\n  %17s %s\n", (*c)->name, (*c)->arguments, "", (*c)->summary);
+    fprintf(out, "  nocturne help [COMMAND]\n  nocturne --version\n\n"
+                 "Try: nocturne render builtin:city -o night.png\n");
+}
+
+static void markdown_row(FILE *out, const noc_option *o, const void *defaults, int columns) {
+    char left[64], value[64], range[96] = "";
+    spell(left, sizeof(left), o, defaults);
+    noc_option_get(o, defaults, value, sizeof(value));
+    if (o->kind == NOC_OPTION_INT || o->kind == NOC_OPTION_UINT || o->kind == NOC_OPTION_REAL) {
+        snprintf(range, sizeof(range), "%.10g to %.10g%s%s", o->min, o->max, *o->unit ? " " : "", o->unit);
+    } else if (o->kind == NOC_OPTION_CHOICE) {
+        size_t at = 0;
+        for (const char *c = o->choices; *c && at + 4 < sizeof(range); c++)
+            at += (size_t)snprintf(range + at, sizeof(range) - at, *c == '|' ? ", " : "%c", *c);
+    } else if (o->kind == NOC_OPTION_BOOL) {
+        snprintf(left, sizeof(left), "%s%c%s--[no-]%s", cli_short_name(o) ? "-" : "", cli_short_name(o) ? cli_short_name(o) : ' ',
+                 cli_short_name(o) ? ", " : "", o->name);
+        snprintf(value, sizeof(value), "%s", *((const char *)defaults + o->offset) ? "on" : "off");
+    }
+    fprintf(out, "| `%s` | %s | %s | %s |\n", left + strspn(left, " "), o->help, value, range);
+}
+
+void cli_help_markdown(FILE *out) {
+    fprintf(out, "# Options\n\nMade by `tools/update-docs.sh` from the option tables (`src/render/options.c`, `src/cli/`); a test holds "
+                 "the two equal. Write `--option value` or `--option=value`.\n");
+    for (const cli_command *const *c = cli_commands; *c; c++) {
+        fprintf(out, "\n## nocturne %s %s\n\n%s\n", (*c)->name, (*c)->arguments, (*c)->summary);
+        each_group(*c, out, "\n### %s\n\n| Option | What it does | Default | Values |\n|---|---|---|---|\n", markdown_row, 0);
+        fprintf(out, "\n```\n%s```\n", (*c)->notes);
+    }
+}

@@ -1,0 +1,187 @@
+/* nocturne info: what files hold, and what of it is usable. */
+#include "info.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define A info_args
+static const noc_option own_options[] = {
+    { "json", "Output", NOC_OPTION_BOOL, offsetof(A, json), 0, 1, NULL, "", "print JSON instead of text" },
+    { NULL },
+};
+static const noc_option *options(void) { return own_options; }
+static int run(void *arguments);
+
+static const info_args defaults = { .import = noc_import_default_params(), .city = noc_city_default_params() };
+/* Nothing is placed, so the rules for placing do not matter here. */
+static const char *const placing[] = { "scene-crs", "infer-lamps", "lamp-height", "lamp-lumens", "lamp-kelvin", NULL };
+
+const cli_command cli_info = {
+    "info", "FILE...", "Tells what files hold: format, CRS, extent, objects, lamps, and what was skipped or repaired.",
+    "Examples\n"
+    "  nocturne info city.gml lamps.geojson\n"
+    "  nocturne info --json city.gml.gz\n",
+    { { options, 0, NULL }, { noc_import_options, offsetof(A, import), placing }, { noc_city_options, offsetof(A, city), NULL },
+      { cli_common_options, 0, NULL } },
+    sizeof(info_args), &defaults, run,
+};
+
+static void print_counts(const char *title, const size_t counts[NOC_CLASS_COUNT]) {
+    char a[32];
+    for (int i = 0; i < NOC_CLASS_COUNT; i++)
+        if (counts[i])
+            printf("    %-13s %10s%s\n", noc_class_name((noc_class)i), cli_count(a, counts[i]), title);
+}
+
+static void print_lines(const noc_report_file *file, bool repaired) {
+    char a[32], examples[400], reason[160];
+    bool first = true;
+    for (size_t i = 0; i < file->line_count; i++) {
+        const noc_report_line *line = &file->lines[i];
+        if (line->repaired != repaired)
+            continue;
+        printf("  %-11s %s x %s", first ? repaired ? "repaired" : "skipped" : "", cli_count(a, line->count),
+               cli_clean(reason, sizeof(reason), line->reason));
+        if (line->examples && *line->examples)
+            printf(": %s", cli_clean(examples, sizeof(examples), line->examples));
+        putchar('\n');
+        first = false;
+    }
+}
+
+static void print_source(const noc_report_file *file) {
+    char a[32], b[32], c[32], text[240];
+    printf("  %-11s %s\n", "format", cli_clean(text, sizeof(text), file->format && *file->format ? file->format : "unknown"));
+    printf("  %-11s %s", "size", cli_bytes(a, file->bytes));
+    if (file->bytes_read > file->bytes)
+        printf(", %s unpacked", cli_bytes(b, file->bytes_read));
+    printf("; read in %s", cli_seconds(c, file->seconds));
+    if (file->seconds > 0.001)
+        printf(" (%.0f MB/s)", 1e-6 * (double)file->bytes_read / file->seconds);
+    bool known = file->crs && *file->crs;
+    printf("\n  %-11s %s", "CRS", known ? cli_clean(text, sizeof(text), file->crs) : "none");
+    if (file->crs_given && *file->crs_given)
+        printf(", given as \"%s\"", cli_clean(text, sizeof(text), file->crs_given));
+    else if (!known)
+        printf(" (to put it in place: --crs EPSG:n)");
+    putchar('\n');
+}
+
+static void print_extent(const noc_report_file *file) {
+    const double *lo = file->extent_min, *hi = file->extent_max;
+    if (!file->has_extent)
+        return;
+    /* Only a guess at the unit, so only the number of decimals hangs on it: degrees need more. */
+    bool small = hi[0] <= 360 && lo[0] >= -360 && hi[1] <= 90 && lo[1] >= -90;
+    int decimals = small ? 6 : 2;
+    printf("  %-11s x %.*f to %.*f, y %.*f to %.*f, z %.2f to %.2f\n", "extent", decimals, lo[0], decimals, hi[0], decimals, lo[1],
+           decimals, hi[1], lo[2], hi[2]);
+}
+
+static void print_file(const noc_report_file *file) {
+    char a[32], b[32], path[400];
+    printf("%s\n", cli_clean(path, sizeof(path), file->path));
+    print_source(file);
+    print_extent(file);
+    printf("  %-11s %s", "objects", cli_count(a, file->objects));
+    if (file->buildings)
+        printf(", %s of them buildings", cli_count(b, file->buildings));
+    const char *before = " (";
+    for (int i = 0; i < 5; i++) {
+        if (file->lod_used[i]) {
+            printf("%s%s in LOD%d", before, cli_count(a, file->lod_used[i]), i);
+            before = ", ";
+        }
+    }
+    printf("%s\n", *before == ',' ? ")" : "");
+    if (file->polygons) {
+        printf("  %-11s %s, %s triangles\n", "surfaces", cli_count(a, file->polygons), cli_count(b, file->triangles));
+        print_counts("", file->polygons_by_class);
+    } else if (file->triangles) {
+        printf("  %-11s %s\n", "triangles", cli_count(a, file->triangles));
+    }
+    if (file->lamps)
+        printf("  %-11s %s\n", "lamps", cli_count(a, file->lamps));
+    if (file->lights)
+        printf("  %-11s %s\n", "lights", cli_count(a, file->lights));
+    print_lines(file, false);
+    print_lines(file, true);
+}
+
+static void print_scene(const char *name, const noc_scene_info *info) {
+    char a[32], b[32];
+    printf("%s\n  %-11s built-in procedural city\n", name, "format");
+    printf("  %-11s x %.2f to %.2f, y %.2f to %.2f, z %.2f to %.2f\n", "extent", info->bounds_min[0], info->bounds_max[0],
+           info->bounds_min[1], info->bounds_max[1], info->bounds_min[2], info->bounds_max[2]);
+    printf("  %-11s %s in %s meshes\n", "triangles", cli_count(a, info->triangles), cli_count(b, info->meshes));
+    print_counts("", info->triangles_by_class);
+    printf("  %-11s %s\n", "lights", cli_count(a, info->lights));
+    static const char *const kinds[] = { "sphere", "disc", "triangle", "parallelogram", "point" };
+    for (int i = 0; i < 5; i++)
+        if (info->lights_by_kind[i])
+            printf("    %-13s %10s\n", kinds[i], cli_count(a, info->lights_by_kind[i]));
+}
+
+static bool load_progress(void *user, const char *what, double done) {
+    cli_progress_show(done, -1, "%s", what);
+    return !cli_interrupted();
+}
+
+static noc_status inspect_city(const info_args *args, noc_log *log, noc_scene **scene) {
+    *scene = noc_scene_create(log);
+    noc_status status = *scene ? noc_scene_add_city(*scene, &args->city) : NOC_ERR_MEMORY;
+    return status ? status : noc_scene_commit(*scene);
+}
+
+static noc_status inspect(const info_args *args, const char *path, noc_log *log, bool first) {
+    noc_report *report = NULL;
+    noc_scene *scene = NULL;
+    noc_status status;
+    if (!strcmp(path, "builtin:city"))
+        status = inspect_city(args, log, &scene);
+    else
+        status = noc_inspect(log, path, &args->import, &report);
+    cli_progress_clear();
+    if (args->json && status != NOC_ERR_CANCELLED) {
+        fputs(first ? "\n" : ",\n", stdout);
+        noc_scene_info info = { 0 };
+        if (scene && !status)
+            noc_scene_get_info(scene, &info);
+        cli_info_json(path, status ? noc_log_last_error(log) : NULL, status || scene ? NULL : report, scene && !status ? &info : NULL);
+    } else if (!status && scene) {
+        noc_scene_info info;
+        noc_scene_get_info(scene, &info);
+        print_scene(path, &info);
+    } else if (!status) {
+        for (size_t i = 0; i < noc_report_file_count(report); i++)
+            print_file(noc_report_get_file(report, i));
+    }
+    noc_report_destroy(report);
+    noc_scene_destroy(scene);
+    return status;
+}
+
+static int run(void *arguments) {
+    info_args *args = arguments;
+    if (!args->common.input_count)
+        return cli_usage(&cli_info, "which file?");
+    cli_catch_signals();
+    cli_progress_start(args->common.quiet);
+    args->import.progress = (noc_progress){ load_progress, NULL };
+    noc_log *log = cli_log_create(&args->common);
+    int status = CLI_OK;
+    if (args->json)
+        printf("{\"nocturne\": \"%s\", \"files\": [", noc_version());
+    /* A bad file does not keep the others from being told about. */
+    for (size_t i = 0; i < args->common.input_count && !cli_interrupted(); i++)
+        if (inspect(args, args->common.inputs[i], log, i == 0))
+            status = CLI_FAILURE;
+    if (args->json)
+        printf("\n]}\n");
+    noc_log_destroy(log);
+    if (cli_interrupted()) {
+        cli_error("interrupted");
+        status = CLI_INTERRUPTED + cli_interrupted();
+    }
+    return cli_flush(stdout) ? status : CLI_FAILURE;
+}

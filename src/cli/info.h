@@ -1,0 +1,17 @@
+/* nocturne info: what its files share. */
+#ifndef NOC_CLI_INFO_H
+#define NOC_CLI_INFO_H
+
+#include "cli.h"
+
+typedef struct info_args {
+    cli_args common;
+    bool json;
+    noc_import_params import;
+    noc_city_params city;
+} info_args;
+
+/* One input as a JSON object: an error, a report, or the scene of the built-in city; the others are NULL. */
+void cli_info_json(const char *path, const char *error, const noc_report *report, const noc_scene_info *scene);
+
+#endif

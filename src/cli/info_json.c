@@ -1,0 +1,110 @@
+#include "info.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void key(const char *name) { printf(",\n    \"%s\": ", name); }
+
+static void text(const char *name, const char *value) {
+    key(name);
+    cli_json_text(stdout, value);
+}
+
+static void number(const char *name, double value) {
+    key(name);
+    cli_json_number(stdout, value);
+}
+
+static void triple(const char *name, const double v[3]) {
+    key(name);
+    for (int i = 0; i < 3; i++) {
+        fputs(i ? ", " : "[", stdout);
+        cli_json_number(stdout, v[i]);
+    }
+    putchar(']');
+}
+
+static void classes(const char *name, const size_t counts[NOC_CLASS_COUNT]) {
+    key(name);
+    const char *before = "{";
+    for (int i = 0; i < NOC_CLASS_COUNT; i++) {
+        if (counts[i]) {
+            printf("%s\"%s\": %zu", before, noc_class_name((noc_class)i), counts[i]);
+            before = ", ";
+        }
+    }
+    printf("%s}", *before == '{' ? "{" : "");
+}
+
+/* Example ids come as one comma-separated text. */
+static void examples(const char *list) {
+    putchar('[');
+    for (const char *at = list ? list : ""; *at;) {
+        size_t n = strcspn(at, ",");
+        char *one = cli_format("%.*s", (int)n, at);
+        cli_json_text(stdout, one + strspn(one, " "));
+        free(one);
+        at += n + (at[n] == ',');
+        if (*at)
+            fputs(", ", stdout);
+    }
+    putchar(']');
+}
+
+static void lines(const noc_report_file *file) {
+    key("issues");
+    putchar('[');
+    for (size_t i = 0; i < file->line_count; i++) {
+        const noc_report_line *line = &file->lines[i];
+        printf("%s\n      {\"action\": \"%s\", \"count\": %zu, \"reason\": ", i ? "," : "", line->repaired ? "repaired" : "skipped",
+               line->count);
+        cli_json_text(stdout, line->reason);
+        fputs(", \"examples\": ", stdout);
+        examples(line->examples);
+        putchar('}');
+    }
+    putchar(']');
+}
+
+static void report_file(const noc_report_file *file) {
+    text("format", file->format);
+    text("crs", file->crs);
+    text("crs_given", file->crs_given);
+    number("bytes", (double)file->bytes);
+    number("bytes_unpacked", (double)file->bytes_read);
+    number("seconds", file->seconds);
+    if (file->has_extent) {
+        triple("extent_min", file->extent_min);
+        triple("extent_max", file->extent_max);
+    }
+    number("objects", (double)file->objects);
+    number("buildings", (double)file->buildings);
+    key("buildings_by_lod");
+    for (int i = 0; i < 5; i++)
+        printf("%s%zu", i ? ", " : "[", file->lod_used[i]);
+    putchar(']');
+    number("polygons", (double)file->polygons);
+    classes("polygons_by_class", file->polygons_by_class);
+    number("triangles", (double)file->triangles);
+    number("lamps", (double)file->lamps);
+    number("lights", (double)file->lights);
+    lines(file);
+}
+
+void cli_info_json(const char *path, const char *error, const noc_report *report, const noc_scene_info *scene) {
+    fputs("  {\"path\": ", stdout);
+    cli_json_text(stdout, path);
+    if (error)
+        text("error", error);
+    for (size_t i = 0; report && i < noc_report_file_count(report); i++)
+        report_file(noc_report_get_file(report, i));
+    if (scene) {
+        text("format", "built-in city");
+        triple("extent_min", scene->bounds_min);
+        triple("extent_max", scene->bounds_max);
+        number("triangles", (double)scene->triangles);
+        classes("triangles_by_class", scene->triangles_by_class);
+        number("lights", (double)scene->lights);
+    }
+    putchar('}');
+}

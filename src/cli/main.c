@@ -1,0 +1,81 @@
+/* nocturne: pictures and figures of cities at night. */
+#include "cli.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const cli_command *const cli_commands[] = { &cli_render, &cli_info, &cli_compare, NULL };
+
+const cli_command *cli_find_command(const char *name) {
+    for (const cli_command *const *c = cli_commands; *c; c++)
+        if (!strcmp((*c)->name, name))
+            return *c;
+    return NULL;
+}
+
+static int unknown_command(const char *name) {
+    const char *words[8];
+    size_t count = 0;
+    for (const cli_command *const *c = cli_commands; *c; c++)
+        words[count++] = (*c)->name;
+    words[count++] = "help";
+    const char *nearest = cli_nearest(name, words, count);
+    char shown[80];
+    cli_clean(shown, sizeof(shown), name);
+    if (nearest)
+        return cli_usage(NULL, "no command \"%s\"; is it %s?", shown, nearest);
+    FILE *file = fopen(name, "rb");
+    if (file)
+        fclose(file);
+    return file || !strncmp(name, "builtin:", 8)
+        ? cli_usage(NULL, "\"%s\" is no command; to draw it: nocturne render %s -o night.png", shown, shown)
+        : cli_usage(NULL, "no command \"%s\"", shown);
+}
+
+static int help(int argc, char **argv) {
+    const cli_command *command = NULL;
+    if (argc > 1)
+        return cli_usage(NULL, "help takes one command");
+    if (argc && !strcmp(argv[0], "--markdown")) { /* how docs/options.md is made */
+        cli_help_markdown(stdout);
+        return cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
+    }
+    if (argc && strcmp(argv[0], "help") && !(command = cli_find_command(argv[0])))
+        return unknown_command(argv[0]);
+    cli_help(command, stdout);
+    return cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
+}
+
+static int run(const cli_command *command, int argc, char **argv) {
+    cli_args *args = cli_alloc(command->args_size);
+    int status = cli_parse(command, argc, argv, args);
+    if (!status && args->help) {
+        cli_help(command, stdout);
+        status = cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
+    } else if (!status) {
+        status = command->run(args);
+    }
+    free(args->inputs);
+    free(args);
+    return status;
+}
+
+int main(int argc, char **argv) {
+    if (argc < 2) {
+        cli_help(NULL, stderr);
+        return CLI_USAGE;
+    }
+    const char *name = argv[1];
+    if (!strcmp(name, "--version")) {
+        printf("nocturne %s (%s)\n", noc_version(), noc_features());
+        return cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
+    }
+    if (!strcmp(name, "help") || !strcmp(name, "--help") || !strcmp(name, "-h"))
+        return help(argc - 2, argv + 2);
+    const cli_command *command = cli_find_command(name);
+    if (command)
+        return run(command, argc - 2, argv + 2);
+    if (*name == '-')
+        return cli_usage(NULL, "the command comes first: nocturne render INPUT... -o night.png");
+    return unknown_command(name);
+}

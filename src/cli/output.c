@@ -1,0 +1,56 @@
+#include "cli.h"
+
+#include <errno.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <stdlib.h>
+
+static bool has_ending(const char *path, const char *ending) {
+    size_t n = strlen(path), m = strlen(ending);
+    return n > m && path[n - m - 1] != '/' && !strcasecmp(path + n - m, ending);
+}
+
+/* The writer makes a new file beside the target and renames it: what counts is the folder, not the file. */
+static int check_folder(const char *path, const char *shown) {
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? cli_format("%.*s", slash == path ? 1 : (int)(slash - path), path) : cli_format(".");
+    struct stat st;
+    int status = CLI_FAILURE;
+    if (stat(folder, &st))
+        cli_error("%s: its folder cannot be used: %s", shown, strerror(errno));
+    else if (!S_ISDIR(st.st_mode))
+        cli_error("%s: what should be its folder is a file", shown);
+    else if (access(folder, W_OK | X_OK))
+        cli_error("%s: its folder cannot be written: %s", shown, strerror(errno));
+    else
+        status = CLI_OK;
+    free(folder);
+    return status;
+}
+
+int cli_check_output(const cli_command *command, const char *path, int endings, const cli_args *args) {
+    char shown[120];
+    cli_clean(shown, sizeof(shown), path);
+    struct stat st, input;
+    bool exists = !stat(path, &st);
+    if (exists && S_ISDIR(st.st_mode)) {
+        cli_error("%s is a folder; name a file in it", shown);
+        return CLI_FAILURE;
+    }
+    bool png = has_ending(path, ".png"), exr = has_ending(path, ".exr");
+    if (!((endings & CLI_PNG) && png) && !((endings & CLI_EXR) && exr))
+        return cli_usage(command, "%s must end in .png%s: the ending decides the format", shown, endings & CLI_EXR ? " or .exr" : "");
+    if (exists && !S_ISREG(st.st_mode)) {
+        cli_error("%s is no ordinary file and is left alone", shown);
+        return CLI_FAILURE;
+    }
+    for (size_t i = 0; exists && i < args->input_count; i++) {
+        if (!stat(args->inputs[i], &input) && input.st_dev == st.st_dev && input.st_ino == st.st_ino) {
+            cli_error("%s is an input too; it would be overwritten", shown);
+            return CLI_FAILURE;
+        }
+    }
+    return check_folder(path, shown);
+}

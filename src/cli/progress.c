@@ -1,0 +1,79 @@
+#include "cli.h"
+
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <time.h>
+#include <unistd.h>
+
+static bool shown_at_all, on_screen;
+static double last_shown;
+static volatile sig_atomic_t caught;
+
+double cli_now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+void cli_progress_start(bool quiet) {
+    const char *term = getenv("TERM");
+    shown_at_all = !quiet && isatty(STDERR_FILENO) && !(term && !strcmp(term, "dumb"));
+    last_shown = 0;
+}
+
+static int columns(void) {
+    struct winsize size;
+    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) || size.ws_col < 20 ? 80 : size.ws_col;
+}
+
+void cli_progress_show(double done, double left, const char *fmt, ...) {
+    double now = cli_now();
+    if (!shown_at_all || now - last_shown < 0.1)
+        return;
+    last_shown = now;
+    char what[160], line[256];
+    va_list ap;
+    va_start(ap, fmt);
+    vsnprintf(what, sizeof(what), fmt, ap);
+    va_end(ap);
+    done = done > 0 ? done < 1 ? done : 1 : 0;
+    enum { BAR = 24 };
+    char bar[BAR + 1];
+    for (int i = 0; i < BAR; i++)
+        bar[i] = i < (int)(done * BAR + 0.5) ? '#' : '.';
+    bar[BAR] = 0;
+    int n = snprintf(line, sizeof(line), "[%s] %3d%%  %s", bar, (int)(done * 100), what);
+    if (left >= 0 && n < (int)sizeof(line) && left < 360000)
+        snprintf(line + n, sizeof(line) - (size_t)n, "  %d:%02d left", (int)left / 60, (int)left % 60);
+    cli_clean(line, sizeof(line), line);
+    /* One line rewritten in place: it must not wrap. */
+    fprintf(stderr, "\r%.*s\033[K", columns() - 1, line);
+    fflush(stderr);
+    on_screen = true;
+}
+
+void cli_progress_clear(void) {
+    if (!on_screen)
+        return;
+    fputs("\r\033[K", stderr);
+    fflush(stderr);
+    on_screen = false;
+}
+
+static void on_signal(int number) {
+    caught = number;
+    /* Whoever asks twice means it. */
+    signal(SIGINT, SIG_DFL);
+    signal(SIGTERM, SIG_DFL);
+}
+
+void cli_catch_signals(void) {
+    struct sigaction action = { .sa_handler = on_signal, .sa_flags = SA_RESTART };
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
+int cli_interrupted(void) { return caught; }

@@ -1,0 +1,214 @@
+/* nocturne render: inputs to a picture. */
+#include "render.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define A render_args
+#define TEXT(n, g, f, u, h) { n, g, NOC_OPTION_TEXT, offsetof(A, f), 0, 0, NULL, u, h }
+static const noc_option own_options[] = {
+    TEXT("output", "Output", output, "FILE", "picture to write: .png as displayed, .exr linear in cd/m2"),
+    { "frames", "Output", NOC_OPTION_INT, offsetof(A, frames), 1, 1e9, NULL, "", "frames that are rendered and averaged" },
+    { "time", "Output", NOC_OPTION_REAL, offsetof(A, time), 0, 1e9, NULL, "s",
+      "render for about this long instead; 0 = no limit" },
+    { "stats", "Output", NOC_OPTION_BOOL, offsetof(A, stats), 0, 1, NULL, "", "print times by pass, rays and the trace floor" },
+    { "threads", "Output", NOC_OPTION_INT, offsetof(A, threads), 0, 1024, NULL, "", "threads; 0 = one a core" },
+    { "view", "Camera", NOC_OPTION_CHOICE, offsetof(A, view), 0, 0, "street|aerial|overview", "", "camera derived from the city" },
+    TEXT("eye", "Camera", eye, "X,Y,Z", "place of the camera, metres in the scene's local frame, z up"),
+    TEXT("target", "Camera", target, "X,Y,Z", "what it looks at"),
+    TEXT("camera-crs", "Camera", camera_crs, "CRS", "eye and target are easting,northing,height in this CRS; \"scene\": the scene's"),
+    { "fov", "Camera", NOC_OPTION_REAL, offsetof(A, fov), 1, 170, NULL, "degrees", "vertical field of view" },
+    TEXT("size", "Picture", size, "WxH", "width and height at once, such as 1920x1080"),
+    TEXT("exposure", "Display", exposure, "EV", "\"auto\", or EV100: one more halves the brightness"),
+    { NULL },
+};
+static const noc_option *options(void) { return own_options; }
+
+static int run(void *arguments);
+
+static const render_args defaults = {
+    .frames = 16, .view = NOC_VIEW_STREET, .fov = 50, .exposure = "auto",
+    .render = noc_render_default_params(), .display = noc_display_default_params(),
+    .import = noc_import_default_params(), .city = noc_city_default_params(),
+};
+static const char *const by_exposure[] = { "auto-exposure", "ev100", NULL }; /* --exposure says both */
+
+const cli_command cli_render = {
+    "render", "INPUT... -o FILE", "Draws a city at night. Inputs (cities, meshes, lamps; builtin:city) make one scene.",
+    "Examples\n"
+    "  nocturne render builtin:city -o night.png\n"
+    "  nocturne render city.gml lamps.geojson --view aerial --size 1920x1080 -o city.png\n"
+    "  nocturne render city.gml --method reference --frames 64 --sky 0 -o reference.exr\n"
+    "Ctrl-C saves the picture so far and ends with status 130; a second one ends at once.\n",
+    { { options, 0, NULL },
+      { noc_render_options, offsetof(A, render), NULL },
+      { noc_display_options, offsetof(A, display), by_exposure },
+      { noc_import_options, offsetof(A, import), NULL },
+      { noc_city_options, offsetof(A, city), NULL },
+      { cli_common_options, 0, NULL } },
+    sizeof(render_args), &defaults, run,
+};
+
+static int parse_size(render_args *args) {
+    double size[2];
+    if (!args->size)
+        return CLI_OK;
+    if (!cli_parse_numbers(args->size, 'x', 2, size) || size[0] != (int)size[0] || size[1] != (int)size[1])
+        return cli_usage(&cli_render, "--size: \"%.60s\" is not WIDTHxHEIGHT", args->size);
+    if (!(size[0] >= 1 && size[0] <= NOC_IMAGE_MAX_SIDE && size[1] >= 1 && size[1] <= NOC_IMAGE_MAX_SIDE))
+        return cli_usage(&cli_render, "--size: a side is 1 to %d px, not %.60s", NOC_IMAGE_MAX_SIDE, args->size);
+    if (cli_given(&args->common, "width") || cli_given(&args->common, "height"))
+        return cli_usage(&cli_render, "--size and --width or --height exclude each other");
+    args->render.width = (int)size[0];
+    args->render.height = (int)size[1];
+    return CLI_OK;
+}
+
+int cli_parse_exposure(const cli_command *command, const char *text, noc_display_params *display) {
+    if (!strcmp(text, "auto"))
+        return CLI_OK;
+    display->auto_exposure = false;
+    if (!cli_parse_numbers(text, 0, 1, &display->ev100) || display->ev100 < -30 || display->ev100 > 30)
+        return cli_usage(command, "--exposure: \"%.60s\" is neither auto nor an EV100 of -30 to 30", text);
+    return CLI_OK;
+}
+
+/* All that can be wrong with the arguments is found before any file is read. */
+static int check(render_job *job) {
+    render_args *args = job->args;
+    if (!args->common.input_count)
+        return cli_usage(&cli_render, "nothing to draw: name a city model, or builtin:city");
+    if (!args->output)
+        return cli_usage(&cli_render, "where to? -o night.png");
+    int status = parse_size(args);
+    status = status ? status : cli_parse_exposure(&cli_render, args->exposure, &args->display);
+    status = status ? status : cli_parse_camera(job);
+    return status ? status : cli_check_output(&cli_render, args->output, CLI_PNG | CLI_EXR, &args->common);
+}
+
+static bool load_progress(void *user, const char *what, double done) {
+    cli_progress_show(done, -1, "%s", what);
+    return !cli_interrupted();
+}
+
+/* The built-in city takes its own options, so it is added here; the rest is loaded onto it. */
+static noc_status load(render_job *job) {
+    render_args *args = job->args;
+    const char **files = cli_alloc(sizeof(char *) * args->common.input_count);
+    size_t count = 0;
+    noc_status status = NOC_OK;
+    bool city = false;
+    for (size_t i = 0; i < args->common.input_count && !status; i++) {
+        if (strcmp(args->common.inputs[i], "builtin:city")) {
+            files[count++] = args->common.inputs[i];
+        } else if (!city) {
+            city = true;
+            cli_progress_show(0, -1, "building the city");
+            status = noc_scene_add_city(job->scene, &args->city);
+        }
+    }
+    args->import.progress = (noc_progress){ load_progress, NULL };
+    if (!status)
+        status = count ? noc_scene_load(job->scene, files, count, &args->import, NULL) : noc_scene_commit(job->scene);
+    free(files);
+    cli_progress_clear();
+    noc_scene_get_info(job->scene, &job->scene_info);
+    job->loaded = cli_now();
+    return status;
+}
+
+static bool frame_progress(void *user, const char *what, double done) {
+    const render_job *job = user;
+    const render_args *args = job->args;
+    double spent = cli_now() - job->ready, share = (job->frames + done) / args->frames;
+    if (args->time > 0) {
+        cli_progress_show(spent / args->time, args->time > spent ? args->time - spent : 0, "frame %d", job->frames + 1);
+    } else {
+        double left = share > 0 && spent > 0.5 ? spent / share - spent : -1;
+        cli_progress_show(share, left, "frame %d of %d", job->frames + 1, args->frames);
+    }
+    return !cli_interrupted();
+}
+
+static void add_stats(render_job *job) {
+    noc_renderer_get_stats(job->renderer, &job->last);
+    job->frame_seconds += job->last.wall_seconds;
+    job->cpu_seconds += job->last.cpu_seconds;
+    for (int i = 0; i < NOC_PASS_COUNT; i++)
+        job->pass_seconds[i] += job->last.pass_seconds[i];
+    job->frames++;
+}
+
+static noc_status render_frames(render_job *job) {
+    const render_args *args = job->args;
+    noc_progress progress = { frame_progress, job };
+    /* With a time limit alone, time decides; with both, whichever comes first. */
+    int limit = args->time > 0 && !cli_given(&args->common, "frames") ? 1000000000 : args->frames;
+    noc_status status = NOC_OK;
+    job->ready = cli_now();
+    while (!status && job->frames < limit && !cli_interrupted()) {
+        double spent = cli_now() - job->ready;
+        if (args->time > 0 && job->frames && spent + 0.5 * job->frame_seconds / job->frames > args->time)
+            break;
+        status = noc_renderer_frame(job->renderer, &job->camera, &args->render, &progress);
+        if (!status)
+            add_stats(job);
+    }
+    cli_progress_clear();
+    job->rendered = cli_now();
+    return status;
+}
+
+/* Ctrl-C is no failure of the work: what is complete is kept. */
+static bool is_failure(noc_status status) { return status && !(status == NOC_ERR_CANCELLED && cli_interrupted()); }
+
+static int work(render_job *job) {
+    render_args *args = job->args;
+    noc_status status = load(job);
+    if (!status && !cli_interrupted())
+        status = cli_place_camera(job);
+    if (!status && !cli_interrupted()) {
+        job->renderer = noc_renderer_create(job->scene, &(noc_renderer_params){ .threads = args->threads }, job->log);
+        status = job->renderer ? render_frames(job) : NOC_ERR_MEMORY;
+    }
+    if (is_failure(status))
+        return CLI_FAILURE;
+    int ending = cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;
+    if (!job->frames) {
+        cli_error("interrupted: no frame was complete, nothing was saved");
+        return ending;
+    }
+    if (args->stats && !ending &&
+        noc_renderer_trace_floor(job->renderer, &job->camera, &args->render, &job->floor_seconds))
+        return CLI_FAILURE;
+    if (cli_write_picture(job))
+        return CLI_FAILURE;
+    if (ending && args->time > 0)
+        cli_error("interrupted: saved %d frames to %s", job->frames, args->output);
+    else if (ending)
+        cli_error("interrupted: saved %d of %d frames to %s", job->frames, args->frames, args->output);
+    if (!args->common.quiet)
+        cli_print_summary(job);
+    if (args->stats)
+        cli_print_stats(job);
+    return cli_flush(stdout) ? ending : CLI_FAILURE;
+}
+
+static int run(void *arguments) {
+    render_job job = { .args = arguments };
+    int status = check(&job);
+    if (status)
+        return status;
+    cli_catch_signals();
+    cli_progress_start(job.args->common.quiet);
+    job.started = cli_now();
+    job.log = cli_log_create(&job.args->common);
+    job.scene = noc_scene_create(job.log);
+    status = job.scene ? work(&job) : CLI_FAILURE;
+    cli_progress_clear();
+    noc_image_destroy(job.image);
+    noc_renderer_destroy(job.renderer);
+    noc_scene_destroy(job.scene);
+    noc_log_destroy(job.log);
+    return status;
+}

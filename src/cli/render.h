@@ -1,0 +1,50 @@
+/* nocturne render: what its files share. */
+#ifndef NOC_CLI_RENDER_H
+#define NOC_CLI_RENDER_H
+
+#include "cli.h"
+
+typedef struct render_args {
+    cli_args common;
+    const char *output;
+    int frames;
+    double time;             /* s; 0: no limit */
+    int threads;
+    bool stats;
+    int view;                /* noc_view */
+    const char *eye, *target, *camera_crs;
+    double fov;
+    const char *size, *exposure;
+    noc_render_params render;
+    noc_display_params display;
+    noc_import_params import;
+    noc_city_params city;
+} render_args;
+
+/* One run of the command: inputs to picture. */
+typedef struct render_job {
+    render_args *args;
+    double eye[3], target[3]; /* as given; used when --eye was */
+    noc_log *log;
+    noc_scene *scene;
+    noc_renderer *renderer;
+    noc_image *image;
+    noc_camera camera;
+    noc_scene_info scene_info;
+    noc_frame_stats last;     /* of the last complete frame */
+    double started, loaded, ready, rendered; /* wall clock */
+    int frames;               /* complete */
+    double frame_seconds, cpu_seconds, pass_seconds[NOC_PASS_COUNT]; /* summed over complete frames */
+    double floor_seconds;     /* trace floor of one frame; 0: not measured */
+} render_job;
+
+/* camera.c */
+int cli_parse_camera(render_job *job);      /* --eye, --target: checked before the long work */
+noc_status cli_place_camera(render_job *job); /* once the scene is there */
+
+/* report.c */
+void cli_print_summary(const render_job *job);
+void cli_print_stats(const render_job *job);
+noc_status cli_write_picture(render_job *job); /* with all of its metadata */
+
+#endif

@@ -1,0 +1,137 @@
+/* What nocturne render says and writes at the end. */
+#include "render.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+typedef struct meta_text { char *keys[160], *values[160]; size_t count; } meta_text;
+
+static void add(meta_text *meta, const char *key, char *value) {
+    if (meta->count == sizeof(meta->keys) / sizeof(*meta->keys))
+        abort(); /* a fixed set of keys: only a change of the tables can bring this about */
+    meta->keys[meta->count] = cli_format("%s", key);
+    meta->values[meta->count++] = value;
+}
+
+/* Everything needed to make the picture again: each option by name, and what the program decided by itself. */
+static void add_options(meta_text *meta, const render_args *args) {
+    for (const cli_set *set = cli_render.sets; set->table; set++) {
+        for (const noc_option *o = set->table(); o->name; o++) {
+            static const char *const told_otherwise[] = { "output", "view", "eye", "target", "camera-crs", "fov", "stats", "frames",
+                                                          "size", "exposure", "time", NULL };
+            if (cli_hidden(&(cli_set){ .hidden = told_otherwise }, o))
+                continue;
+            const void *params = (const char *)args + set->offset;
+            int n = noc_option_get(o, params, NULL, 0);
+            char *value = cli_alloc((size_t)n + 1);
+            noc_option_get(o, params, value, (size_t)n + 1);
+            add(meta, o->name, value);
+        }
+    }
+}
+
+static char *join_inputs(const render_args *args) {
+    char *text = cli_format("%s", "");
+    for (size_t i = 0; i < args->common.input_count; i++) {
+        const char *slash = strrchr(args->common.inputs[i], '/'); /* a file's folder is nobody else's business */
+        char *longer = cli_format("%s%s%s", text, i ? ", " : "", slash ? slash + 1 : args->common.inputs[i]);
+        free(text);
+        text = longer;
+    }
+    return text;
+}
+
+static bool is_exr(const char *path) {
+    size_t n = strlen(path);
+    return n >= 4 && (path[n - 1] | 32) == 'r';
+}
+
+static double ev100(const render_job *job) {
+    const noc_display_params *display = &job->args->display;
+    return display->auto_exposure ? noc_image_auto_ev100(job->image) - display->compensation : display->ev100;
+}
+
+noc_status cli_write_picture(render_job *job) {
+    const render_args *args = job->args;
+    const noc_camera *c = &job->camera;
+    job->image = noc_renderer_image(job->renderer);
+    if (!job->image)
+        return NOC_ERR_MEMORY;
+    meta_text meta = { .count = 0 };
+    add(&meta, "software", cli_format("nocturne %s", noc_version()));
+    add(&meta, "inputs", join_inputs(args));
+    if (is_exr(args->output))
+        add(&meta, "units", cli_format("cd/m2"));
+    else
+        add(&meta, "exposure", cli_format("EV100 %.3f", ev100(job)));
+    add(&meta, "frames", cli_format("%d", job->frames));
+    add(&meta, "camera-eye", cli_format("%.9g %.9g %.9g", c->eye[0], c->eye[1], c->eye[2]));
+    add(&meta, "camera-target", cli_format("%.9g %.9g %.9g", c->target[0], c->target[1], c->target[2]));
+    add(&meta, "camera-up", cli_format("%.9g %.9g %.9g", c->up[0], c->up[1], c->up[2]));
+    add(&meta, "camera-fov", cli_format("%.9g", c->fov_deg));
+    add(&meta, "scene-crs-name", cli_format("%s", job->scene_info.crs ? job->scene_info.crs : ""));
+    add(&meta, "scene-origin", cli_format("%.12g %.12g %.12g", job->scene_info.origin[0], job->scene_info.origin[1],
+                                          job->scene_info.origin[2]));
+    add_options(&meta, args);
+    noc_status status = noc_image_write(job->image, args->output, &args->display,
+        &(noc_image_meta){ meta.count, (const char *const *)meta.keys, (const char *const *)meta.values }, job->log);
+    for (size_t i = 0; i < meta.count; i++) {
+        free(meta.keys[i]);
+        free(meta.values[i]);
+    }
+    return status;
+}
+
+static uint64_t peak_memory(void) {
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) ? 0 : (uint64_t)usage.ru_maxrss * 1024;
+}
+
+static const char *choice_name(const char *option, const void *params, char *text, size_t size) {
+    for (const noc_option *o = noc_render_options(); o->name; o++)
+        if (!strcmp(o->name, option))
+            noc_option_get(o, params, text, size);
+    return text;
+}
+
+void cli_print_summary(const render_job *job) {
+    const render_args *args = job->args;
+    const noc_scene_info *scene = &job->scene_info;
+    char a[32], b[32], c[32], name[24] = "", path[240];
+    printf("%s\n", cli_clean(path, sizeof(path), args->output));
+    printf("  picture   %d x %d, %d frame%s of %s, %s%.2f EV100\n", args->render.width, args->render.height, job->frames,
+           job->frames == 1 ? "" : "s", choice_name("method", &args->render, name, sizeof(name)),
+           is_exr(args->output) ? "linear cd/m2, automatic exposure would be " : "exposure ", ev100(job));
+    printf("  scene     %s triangles, %s lights", cli_count(a, scene->triangles), cli_count(b, scene->lights));
+    if (scene->lights_inferred)
+        printf(" (%s placed by a rule, not found in data)", cli_count(c, scene->lights_inferred));
+    printf("%s%s\n", scene->crs && *scene->crs ? ", " : "", scene->crs ? scene->crs : "");
+    printf("  camera    eye %.2f,%.2f,%.2f  target %.2f,%.2f,%.2f  fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
+           job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2], job->camera.fov_deg);
+    printf("  time      %s: loading %s, ", cli_seconds(a, cli_now() - job->started), cli_seconds(b, job->loaded - job->started));
+    printf("ray tracing structure %s, ", cli_seconds(a, job->last.build_seconds));
+    printf("%s a frame (%s)\n", cli_seconds(a, job->frame_seconds / job->frames), job->last.path ? job->last.path : "");
+    printf("  memory    %s at most\n", cli_bytes(a, peak_memory()));
+    if (job->last.dropped)
+        printf("  dropped   %s samples that were not finite\n", cli_count(a, job->last.dropped));
+}
+
+void cli_print_stats(const render_job *job) {
+    double sum = 0;
+    for (int i = 0; i < NOC_PASS_COUNT; i++)
+        sum += job->pass_seconds[i];
+    printf("\n  %-12s %10s %7s   thread time of a frame, mean of %d\n", "pass", "ms", "share", job->frames);
+    for (int i = 0; i < NOC_PASS_COUNT; i++)
+        printf("  %-12s %10.2f %6.1f%%\n", noc_pass_name((noc_pass)i), 1e3 * job->pass_seconds[i] / job->frames,
+               sum > 0 ? 100 * job->pass_seconds[i] / sum : 0);
+    double frame = job->frame_seconds / job->frames;
+    char a[32], b[32];
+    printf("  %-12s %10.2f           wall; %.2f processor\n", "frame", 1e3 * frame, 1e3 * job->cpu_seconds / job->frames);
+    printf("  %-12s %s primary, %s shadow (last frame)\n", "rays", cli_count(a, job->last.rays_primary),
+           cli_count(b, job->last.rays_shadow));
+    if (job->floor_seconds > 0)
+        printf("  %-12s %10.2f           wall; the frame takes %.2f times as long\n", "trace floor", 1e3 * job->floor_seconds,
+               frame / job->floor_seconds);
+    printf("  %-12s %s\n", "memory", cli_bytes(a, job->last.memory_bytes));
+}

@@ -1,0 +1,162 @@
+#include "cli.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Names come from files and from the command line: none of their control characters may reach a terminal. */
+const char *cli_clean(char *text, size_t size, const char *from) {
+    size_t n = strlen(from);
+    if (n < size)
+        memmove(text, from, n + 1);
+    else
+        snprintf(text, size, "%.*s...", (int)size - 4, from);
+    for (char *c = text; *c; c++)
+        if ((unsigned char)*c < 32 || *c == 127)
+            *c = ' ';
+    return text;
+}
+
+static void vreport(const char *prefix, const char *fmt, va_list ap) {
+    char text[1024], clean[1024];
+    vsnprintf(text, sizeof(text), fmt, ap);
+    cli_progress_clear();
+    fprintf(stderr, "nocturne: %s%s\n", prefix, cli_clean(clean, sizeof(clean), text));
+}
+
+void cli_error(const char *fmt, ...) {
+    va_list ap;
+    va_start(ap, fmt);
+    vreport("", fmt, ap);
+    va_end(ap);
+}
+
+int cli_usage(const cli_command *command, const char *fmt, ...) {
+    va_list ap;
+    va_start(ap, fmt);
+    vreport("", fmt, ap);
+    va_end(ap);
+    fprintf(stderr, "Try 'nocturne help%s%s'.\n", command ? " " : "", command ? command->name : "");
+    return CLI_USAGE;
+}
+
+static void log_message(void *user, noc_log_level level, const char *text) {
+    cli_progress_clear();
+    fprintf(stderr, "nocturne: %s%s\n", level == NOC_LOG_WARN ? "warning: " : "", text);
+}
+
+noc_log *cli_log_create(const cli_args *args) {
+    noc_log *log = noc_log_create(&(noc_log_params){
+        .level = args->quiet ? NOC_LOG_ERROR : args->verbose ? NOC_LOG_DEBUG : NOC_LOG_WARN,
+        .message = log_message,
+    });
+    if (!log) {
+        cli_error("out of memory");
+        exit(CLI_FAILURE);
+    }
+    return log;
+}
+
+void *cli_alloc(size_t size) {
+    void *p = calloc(1, size ? size : 1);
+    if (!p) {
+        cli_error("out of memory");
+        exit(CLI_FAILURE);
+    }
+    return p;
+}
+
+char *cli_format(const char *fmt, ...) {
+    va_list ap, again;
+    va_start(ap, fmt);
+    va_copy(again, ap);
+    int n = vsnprintf(NULL, 0, fmt, ap);
+    char *text = cli_alloc((size_t)n + 1);
+    vsnprintf(text, (size_t)n + 1, fmt, again);
+    va_end(again);
+    va_end(ap);
+    return text;
+}
+
+const char *cli_count(char text[32], uint64_t n) {
+    char digits[24];
+    int count = snprintf(digits, sizeof(digits), "%llu", (unsigned long long)n);
+    char *out = text;
+    for (int i = 0; i < count; i++) {
+        if (i && (count - i) % 3 == 0)
+            *out++ = ',';
+        *out++ = digits[i];
+    }
+    *out = 0;
+    return text;
+}
+
+const char *cli_bytes(char text[32], uint64_t n) {
+    static const char *const units[] = { "bytes", "kB", "MB", "GB", "TB" };
+    double v = (double)n;
+    size_t unit = 0;
+    for (; v >= 999.5 && unit < 4; unit++)
+        v /= 1000;
+    snprintf(text, 32, unit && v < 9.95 ? "%.1f %s" : "%.0f %s", v, n == 1 ? "byte" : units[unit]);
+    return text;
+}
+
+const char *cli_seconds(char text[32], double s) {
+    if (s < 9.995)
+        snprintf(text, 32, "%.2f s", s);
+    else if (s < 99.5)
+        snprintf(text, 32, "%.1f s", s);
+    else if (s < 3599.5)
+        snprintf(text, 32, "%d min %02d s", (int)(s + 0.5) / 60, (int)(s + 0.5) % 60);
+    else
+        snprintf(text, 32, "%.0f h %02.0f min", floor(s / 3600), floor(fmod(s, 3600) / 60));
+    return text;
+}
+
+/* Length of the well-formed UTF-8 sequence at s, 0 if it is none. */
+static int utf8_length(const unsigned char *s) {
+    if (s[0] < 0x80)
+        return 1;
+    int n = s[0] >= 0xf5 ? 0 : s[0] >= 0xf0 ? 4 : s[0] >= 0xe0 ? 3 : s[0] >= 0xc2 ? 2 : 0;
+    for (int i = 1; i < n; i++)
+        if ((s[i] & 0xc0) != 0x80)
+            return 0;
+    /* overlong forms, surrogates, beyond U+10FFFF */
+    if ((s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] > 0x9f) || (s[0] == 0xf0 && s[1] < 0x90) ||
+        (s[0] == 0xf4 && s[1] > 0x8f))
+        return 0;
+    return n;
+}
+
+void cli_json_text(FILE *out, const char *text) {
+    fputc('"', out);
+    for (const unsigned char *s = (const unsigned char *)(text ? text : ""); *s;) {
+        int n = utf8_length(s);
+        if (!n) {
+            fputs("\\ufffd", out);
+            s++;
+        } else if (*s < 32 || *s == '"' || *s == '\\' || *s == 127) {
+            fprintf(out, "\\u%04x", *s++);
+        } else {
+            fwrite(s, 1, (size_t)n, out);
+            s += n;
+        }
+    }
+    fputc('"', out);
+}
+
+void cli_json_number(FILE *out, double v) {
+    if (isfinite(v))
+        fprintf(out, "%.15g", v);
+    else
+        fputs("null", out);
+}
+
+bool cli_flush(FILE *out) {
+    errno = 0;
+    if (!fflush(out) && !ferror(out))
+        return true;
+    cli_error("standard output: %s", errno ? strerror(errno) : "cannot be written");
+    return false;
+}
