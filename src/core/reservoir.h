@@ -33,7 +33,7 @@ typedef struct stream stream;
 FN light light_load(CTX u32 i); /* static inline where it is defined, so that wide code pays for what it uses only */
 #endif
 
-FN stream stream_empty() {
+FN stream stream_empty(void) {
     stream s;
     s.light = KU(0u);
     s.u = K(0.5f);
@@ -45,7 +45,7 @@ FN stream stream_empty() {
     return s;
 }
 
-FN resv resv_empty() {
+FN resv resv_empty(void) {
     resv r;
     r.light = KU(0u);
     r.u = K(0.5f);

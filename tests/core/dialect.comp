@@ -1,0 +1,20 @@
+#version 460
+/* The dialect kernel as a compute shader. */
+#extension GL_GOOGLE_include_directive : require
+#define CORE_GLSL 1
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) writeonly buffer answers { uint bits[]; } answer;
+layout(push_constant) uniform constants { uint items; };
+
+#include "core/dialect.h"
+
+void put_u32(uint item, int slot, uint x) { answer.bits[uint(slot) * items + item] = x; }
+void put_real(uint item, int slot, float x) { put_u32(item, slot, floatBitsToUint(x)); }
+
+#include "dialect_kernel.h"
+
+void main() {
+    if (gl_GlobalInvocationID.x < items)
+        dialect_item(gl_GlobalInvocationID.x);
+}

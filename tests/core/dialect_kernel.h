@@ -1,0 +1,180 @@
+/* Every function of src/core on random input, in the dialect itself: compiled as scalar C, as wide C and as GLSL. One item is
+ * one set of inputs, made from its number alone; what the functions answer goes out through the bridge, slot by slot.
+ * Includers supply put_real(CTX item, slot, x) and put_u32(CTX item, slot, x); ITEM_SLOTS is the number of slots. */
+#ifndef DIALECT_KERNEL_H
+#define DIALECT_KERNEL_H
+
+#include "core/camera.h"
+#include "core/light.h"
+#include "core/random.h"
+
+#define ITEM_SLOTS 104
+#define KERNEL_LIGHTS 1000u
+
+/* Signed, of a magnitude that differs from item to item: 1/16 to 4096. */
+FN real any_real(u32 key, u32 dim) {
+    real x = rng(key, dim) * K(2.0f) - K(1.0f);
+    u32 size = shr(rng_bits(key, dim + KU(1u)), 28);
+    real scale = sel(size < KU(4u), K(0.0625f), sel(size < KU(10u), K(8.0f), sel(size < KU(14u), K(256.0f), K(4096.0f))));
+    return x * scale;
+}
+
+FN v3 any_v3(u32 key, u32 dim) { return V3(any_real(key, dim), any_real(key, dim + KU(2u)), any_real(key, dim + KU(4u))); }
+
+FN v3 unit3(v3 a) {
+    real d2 = dot3(a, a);
+    EXACT real inv = K(1.0f) / sqrt_(max_(d2, K(1e-12f)));
+    return mul3(a, inv);
+}
+
+FN light any_light(u32 key) {
+    light l;
+    l.p = any_v3(key, KU(0u));
+    l.kind = scale_u32(rng_bits(key, KU(6u)), KU(5u));
+    l.a = mul3(any_v3(key, KU(7u)), K(0.01f));
+    l.b = mul3(any_v3(key, KU(13u)), K(0.01f));
+    l.radius = rng(key, KU(19u)) * K(2.0f);
+    l.flags = shr(rng_bits(key, KU(20u)), 31);
+    l.e = mul3(V3(rng(key, KU(21u)), rng(key, KU(22u)), rng(key, KU(23u))), K(5000.0f));
+    l.area = K(1.0f);
+    return l;
+}
+
+FN light light_load(CTX u32 i) { return any_light(hash_u32(i + KU(77u))); }
+
+#include "core/reuse.h" /* GLSL wants the bridge above it */
+
+FN surf any_surf(u32 key) {
+    surf s;
+    s.p = any_v3(key, KU(0u));
+    s.n = unit3(any_v3(key, KU(6u)));
+    s.wo = unit3(any_v3(key, KU(12u)));
+    s.wo = sel3(dot3(s.n, s.wo) < K(0.0f), sub3(fill3(K(0.0f)), s.wo), s.wo);
+    s.albedo = V3(rng(key, KU(18u)), rng(key, KU(19u)), rng(key, KU(20u)));
+    real f0 = rng(key, KU(21u)) * K(2.0f) - K(1.0f);
+    s.f0 = max_(f0, K(0.0f)); /* half of them are diffuse */
+    real rough = K(0.05f) + K(0.95f) * rng(key, KU(22u));
+    s.alpha = rough * rough;
+    return s;
+}
+
+FN void put_v3(CTX u32 item, int slot, v3 a) {
+    put_real(PASS item, slot, a.x);
+    put_real(PASS item, slot + 1, a.y);
+    put_real(PASS item, slot + 2, a.z);
+}
+
+FN void put_sample(CTX u32 item, int slot, light_sample s) {
+    put_v3(PASS item, slot, s.wi);
+    put_real(PASS item, slot + 3, s.dist);
+    put_v3(PASS item, slot + 4, s.le);
+}
+
+FN void put_resv(CTX u32 item, int slot, resv r) {
+    put_u32(PASS item, slot, r.light);
+    put_real(PASS item, slot + 1, r.u);
+    put_real(PASS item, slot + 2, r.v);
+    put_real(PASS item, slot + 3, r.w);
+    put_real(PASS item, slot + 4, r.m);
+    put_real(PASS item, slot + 5, r.p);
+}
+
+/* Slots 0 to 19. */
+FN void numbers(CTX u32 item, u32 key) {
+    u32 bits = rng_bits(key, KU(1000u));
+    real t = rng(key, KU(1001u));
+    put_u32(PASS item, 0, bits);
+    put_real(PASS item, 1, t);
+    put_real(PASS item, 2, unit_low(bits));
+    put_real(PASS item, 3, unit_high(bits));
+    put_u32(PASS item, 4, scale_u32(bits, rng_bits(key, KU(1002u))));
+    put_u32(PASS item, 5, scale_u32(bits, KU(1000u)));
+    put_v3(PASS item, 6, circle(t));
+    v3 n = unit3(any_v3(key, KU(1010u)));
+    put_v3(PASS item, 9, around(n, t, rng(key, KU(1003u)), rng(key, KU(1004u))));
+    put_v3(PASS item, 12, cosine_hemisphere(n, t, rng(key, KU(1005u))));
+    put_v3(PASS item, 15, cross3(n, any_v3(key, KU(1020u))));
+    put_real(PASS item, 18, luminance(any_v3(key, KU(1030u))));
+    put_real(PASS item, 19, sqrt_(t));
+}
+
+/* Slots 20 to 54: 7 a kind; 55: a light of any kind. */
+FN void lights(CTX u32 item, u32 key, v3 y, light any) {
+    light l = any;
+    real u = rng(key, KU(2000u));
+    real v = rng(key, KU(2001u));
+    for (int kind = 0; kind < 5; kind++) {
+        l.kind = KU(U32(kind));
+        put_sample(PASS item, 20 + 7 * kind, sample_light(l, y, u, v));
+    }
+    put_real(PASS item, 55, sample_light(any, y, u, v).dist);
+}
+
+/* Slots 56 to 70. */
+FN void surfaces(CTX u32 item, u32 key, surf s, light any) {
+    v3 wi = unit3(any_v3(key, KU(2010u)));
+    put_v3(PASS item, 56, reflect(s, wi));
+    surf d = s;
+    d.f0 = K(0.0f);
+    put_v3(PASS item, 59, reflect(d, wi));
+    put_real(PASS item, 62, target(s, any, rng(key, KU(2020u)), rng(key, KU(2021u))));
+    camera c;
+    c.eye = any_v3(key, KU(2030u));
+    c.forward = unit3(any_v3(key, KU(2036u)));
+    c.right = any_v3(key, KU(2042u));
+    c.up = any_v3(key, KU(2048u));
+    EXACT real right2 = K(1.0f) / dot3(c.right, c.right);
+    EXACT real up2 = K(1.0f) / dot3(c.up, c.up);
+    c.inv_right2 = right2;
+    c.inv_up2 = up2;
+    c.width = K(1280.0f);
+    c.height = K(720.0f);
+    put_v3(PASS item, 63, camera_project(c, s.p));
+    put_v3(PASS item, 66, camera_direction(c, rng(key, KU(2054u)) * K(1280.0f), rng(key, KU(2055u)) * K(720.0f)));
+    put_real(PASS item, 69, abs_(wi.x));
+    put_real(PASS item, 70, to_real(to_u32(abs_(s.p.x))));
+}
+
+/* Slots 71 to 95. */
+FN void reservoirs(CTX u32 item, u32 key, surf s) {
+    resv one = ris_uniform(PASS s, key, KU(KERNEL_LIGHTS), 1);
+    resv r = ris_uniform(PASS s, key + KU(1u), KU(KERNEL_LIGHTS), 16);
+    put_resv(PASS item, 71, one);
+    put_resv(PASS item, 77, r);
+    put_resv(PASS item, 83, resv_cap(r, K(7.0f)));
+    stream st = stream_empty();
+    st = stream_add(st, one.light, one.u, one.v, one.p, one.p * one.w, one.m, K(1.0f), rng(key, KU(3000u)));
+    st = stream_add(st, r.light, r.u, r.v, r.p, r.p * r.w * r.m, r.m, K(2.0f), rng(key, KU(3001u)));
+    put_resv(PASS item, 89, stream_end(st, K(1.0f) / st.m));
+    put_real(PASS item, 95, st.tag);
+}
+
+/* Slots 96 to 103. */
+FN void reuse(CTX u32 item, u32 key) {
+    real p_i = rng(key, KU(3010u));
+    real p_q = max_(rng(key, KU(3011u)) * K(2.0f) - K(1.0f), K(0.0f));
+    real m_n = rng(key, KU(3012u)) * K(100.0f);
+    real m_c = rng(key, KU(3013u)) * K(32.0f);
+    real share = rng(key, KU(3014u));
+    put_real(PASS item, 96, mis_scale(p_q, m_n));
+    put_real(PASS item, 97, mis_scale(p_i, p_q));
+    put_real(PASS item, 98, pair_share(m_n, p_i, m_c, p_q));
+    put_real(PASS item, 99, pair_weight(share, m_n, p_i, m_c, p_q, rng(key, KU(3015u)) * K(900.0f)));
+    put_real(PASS item, 100, pair_canonical(share, m_n, p_i, m_c, p_q));
+    put_real(PASS item, 101, min_(p_i, p_q));
+    put_real(PASS item, 102, max_(p_i, p_q));
+    put_u32(PASS item, 103, selu(p_i < p_q, item, key));
+}
+
+FN void dialect_item(CTX u32 item) {
+    u32 key = rng_key(KU(5u), item, KU(9u));
+    surf s = any_surf(hash_u32(key + KU(1u)));
+    light any = any_light(hash_u32(key + KU(2u)));
+    numbers(PASS item, key);
+    lights(PASS item, key, s.p, any);
+    surfaces(PASS item, key, s, any);
+    reservoirs(PASS item, key, s);
+    reuse(PASS item, key);
+}
+
+#endif

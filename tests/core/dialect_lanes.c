@@ -1,0 +1,43 @@
+/* The dialect kernel as C with CORE_LANES values a variable, or scalar: one object for each instruction set. */
+#include <string.h>
+
+#if defined(CORE_LANES)
+#define LANES CORE_LANES
+#else
+#define LANES 1
+#endif
+#include "core/dialect.h"
+
+struct core_context {
+    uint32_t *out; /* slot-major: slot * items + item */
+    uint32_t items, first;
+};
+
+FN void put_u32(CTX u32 item, int slot, u32 x) {
+    (void)item;
+    memcpy(ctx->out + (size_t)slot * ctx->items + ctx->first, &x, sizeof(x));
+}
+
+FN void put_real(CTX u32 item, int slot, real x) {
+    (void)item;
+    memcpy(ctx->out + (size_t)slot * ctx->items + ctx->first, &x, sizeof(x));
+}
+
+#include "dialect_kernel.h"
+
+#define JOIN2(a, b) a##b
+#define JOIN(a, b) JOIN2(a, b)
+
+/* items must be a multiple of the lanes. */
+void JOIN(dialect_run_, LANES)(uint32_t *out, uint32_t items);
+void JOIN(dialect_run_, LANES)(uint32_t *out, uint32_t items) {
+    uint32_t lane[LANES];
+    for (uint32_t first = 0; first < items; first += LANES) {
+        struct core_context ctx = { out, items, first };
+        for (uint32_t i = 0; i < LANES; i++)
+            lane[i] = first + i;
+        u32 item;
+        memcpy(&item, lane, sizeof(item));
+        dialect_item(&ctx, item);
+    }
+}

@@ -1,0 +1,190 @@
+/* One source, three readers: every function of src/core gives the same bits as scalar C, as C of 4, 8 and 16 lanes, and as
+ * GLSL on a Vulkan device that rounds as C does; on other devices it stays within a tolerance. */
+#include "../test.h"
+
+#include <math.h>
+
+#define ITEM_SLOTS 104
+#define ITEMS 16384u
+
+void dialect_run_1(uint32_t *out, uint32_t items);
+void dialect_run_4(uint32_t *out, uint32_t items);
+#if defined(HAVE_X86_WIDE)
+void dialect_run_8(uint32_t *out, uint32_t items);
+void dialect_run_16(uint32_t *out, uint32_t items);
+#endif
+
+#if defined(HAVE_VULKAN)
+#include "dialect_spv.h"
+#include "vulkan_run.h"
+#endif
+
+/* First slot of each group of dialect_kernel.h, for messages. */
+static const struct { int first; const char *name; } groups[] = {
+    { 0, "random bits" },  { 1, "rng" },           { 2, "unit_low" },    { 3, "unit_high" },      { 4, "scale_u32" },
+    { 6, "circle" },       { 9, "around" },        { 12, "cosine_hemisphere" }, { 15, "cross3" }, { 18, "luminance" },
+    { 19, "sqrt_" },       { 20, "sphere" },       { 27, "disc" },       { 34, "triangle" },      { 41, "parallelogram" },
+    { 48, "point" },       { 55, "sample_light" }, { 56, "reflect, glossy" }, { 59, "reflect, diffuse" }, { 62, "target" },
+    { 63, "camera_project" }, { 66, "camera_direction" }, { 69, "abs_" }, { 70, "to_u32" },       { 71, "ris_uniform, 1 candidate" },
+    { 77, "ris_uniform" }, { 83, "resv_cap" },     { 89, "stream" },     { 95, "stream tag" },    { 96, "mis_scale" },
+    { 98, "pair_share" },  { 99, "pair_weight" },  { 100, "pair_canonical" }, { 101, "min_, max_" }, { 103, "selu" },
+};
+
+static bool holds_integers(int slot) {
+    return slot == 0 || slot == 4 || slot == 5 || slot == 71 || slot == 77 || slot == 83 || slot == 89 || slot == 103;
+}
+
+static const char *group_name(int slot) {
+    const char *name = "";
+    for (size_t i = 0; i < sizeof(groups) / sizeof(groups[0]) && groups[i].first <= slot; i++)
+        name = groups[i].name;
+    return name;
+}
+
+static float as_float(uint32_t bits) {
+    float f;
+    memcpy(&f, &bits, sizeof(f));
+    return f;
+}
+
+/* The same bits; any NaN is as good as another, and devices may flush subnormal numbers to 0. */
+static bool same(uint32_t a, uint32_t b, bool integer, bool flushes) {
+    if (a == b)
+        return true;
+    if (integer)
+        return false;
+    float x = as_float(a), y = as_float(b);
+    return (isnan(x) && isnan(y)) || (flushes && fabsf(x) < 1.2e-38f && fabsf(y) < 1.2e-38f);
+}
+
+static uint32_t *run(void (*kernel)(uint32_t *, uint32_t)) {
+    uint32_t *out = calloc((size_t)ITEMS * ITEM_SLOTS, sizeof(*out));
+    assert_non_null(out);
+    kernel(out, ITEMS);
+    return out;
+}
+
+static void expect_same(const char *what, const uint32_t *have, const uint32_t *want, bool flushes) {
+    size_t different = 0;
+    for (int slot = 0; slot < ITEM_SLOTS; slot++) {
+        size_t here = 0;
+        for (size_t i = 0, at = (size_t)slot * ITEMS; i < ITEMS; i++, at++) {
+            if (same(have[at], want[at], holds_integers(slot), flushes))
+                continue;
+            if (!here++)
+                print_message("# %s: slot %d (%s), item %zu: %08x (%.9g), scalar C has %08x (%.9g)\n", what, slot, group_name(slot),
+                              i, (unsigned)have[at], as_float(have[at]), (unsigned)want[at], as_float(want[at]));
+        }
+        different += here;
+    }
+    print_message("# %s: %zu of %zu values differ from scalar C\n", what, different, (size_t)ITEMS * ITEM_SLOTS);
+    assert_int_equal(different, 0);
+}
+
+/* The comparison would be worth nothing if the kernel answered the same everywhere. */
+static void test_kernel_is_alive(void **state) {
+    uint32_t *out = run(dialect_run_1);
+    for (int slot = 0; slot < ITEM_SLOTS; slot++) {
+        size_t equal = 0, bad = 0;
+        for (size_t i = 0, at = (size_t)slot * ITEMS; i < ITEMS; i++, at++) {
+            equal += out[at] == out[(size_t)slot * ITEMS];
+            bad += !holds_integers(slot) && !isfinite(as_float(out[at]));
+        }
+        /* 8: z of circle; the others: M */
+        bool constant = slot == 8 || slot == 75 || slot == 81 || slot == 87 || slot == 93;
+        if (!constant && equal == ITEMS)
+            fail_msg("slot %d (%s) is constant", slot, group_name(slot));
+        if (bad)
+            fail_msg("slot %d (%s): %zu values are NaN or infinite", slot, group_name(slot), bad);
+    }
+    free(out);
+}
+
+static void compare_wide(const char *name, void (*kernel)(uint32_t *, uint32_t)) {
+    uint32_t *want = run(dialect_run_1), *have = run(kernel);
+    expect_same(name, have, want, false);
+    free(want);
+    free(have);
+}
+
+static void test_4_lanes(void **state) { compare_wide("4 lanes", dialect_run_4); }
+
+#if defined(HAVE_X86_WIDE)
+static void test_8_lanes(void **state) {
+    if (!__builtin_cpu_supports("avx2")) {
+        print_message("# skipped: this machine has no AVX2\n");
+        skip();
+    }
+    compare_wide("8 lanes", dialect_run_8);
+}
+
+static void test_16_lanes(void **state) {
+    if (!__builtin_cpu_supports("avx512f") || !__builtin_cpu_supports("avx512dq")) {
+        print_message("# skipped: this machine has no AVX-512\n");
+        skip();
+    }
+    compare_wide("16 lanes", dialect_run_16);
+}
+#endif
+
+#if defined(HAVE_VULKAN)
+/* Devices that do not round as C does: relative 1e-3 for nearly all values (Vulkan allows 2.5 ulp for a division, and
+ * subtractions magnify it); where a choice tips over, the whole reservoir is another one. */
+static void expect_close(const char *what, const uint32_t *have, const uint32_t *want) {
+    size_t off = 0;
+    for (int slot = 0; slot < ITEM_SLOTS; slot++)
+        for (size_t i = 0, at = (size_t)slot * ITEMS; i < ITEMS; i++, at++) {
+            float x = as_float(have[at]), y = as_float(want[at]);
+            off += !same(have[at], want[at], holds_integers(slot), true) &&
+                   (holds_integers(slot) || !(fabsf(x - y) <= 1e-3f * fabsf(y) + 1e-5f));
+        }
+    double share = (double)off / ((double)ITEMS * ITEM_SLOTS);
+    print_message("# %s: %.3g of the values are off\n", what, share);
+    assert_true(share < 1e-3);
+}
+
+static void test_glsl(void **state) {
+    uint32_t *want = run(dialect_run_1), *have = calloc((size_t)ITEMS * ITEM_SLOTS, sizeof(*have));
+    assert_non_null(have);
+    vulkan_run gpu;
+    uint32_t number = 0, push = ITEMS;
+    for (; vulkan_open(&gpu, number); number++) {
+        print_message("# %s%s\n", gpu.device, gpu.validated ? "" : " (without the validation layer)");
+        bool ok = vulkan_compute(&gpu, dialect_spv, sizeof(dialect_spv), &push, sizeof(push), (ITEMS + 63) / 64, have,
+                                 (size_t)ITEMS * ITEM_SLOTS * sizeof(*have));
+        if (!ok)
+            print_message("# %s\n", gpu.why);
+        vulkan_close(&gpu);
+        assert_true(ok);
+        assert_int_equal(gpu.messages, 0);
+        if (gpu.software)
+            expect_same(gpu.device, have, want, true);
+        else
+            expect_close(gpu.device, have, want);
+    }
+    free(want);
+    free(have);
+    if (!number) {
+        print_message("# skipped: no Vulkan device: %s\n", gpu.why);
+        skip();
+    }
+}
+#else
+static void test_glsl(void **state) {
+    print_message("# skipped: built without Vulkan or without glslangValidator\n");
+    skip();
+}
+#endif
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_kernel_is_alive),
+        cmocka_unit_test(test_4_lanes),
+#if defined(HAVE_X86_WIDE)
+        cmocka_unit_test(test_8_lanes),
+        cmocka_unit_test(test_16_lanes),
+#endif
+        cmocka_unit_test(test_glsl),
+    };
+    return cmocka_run_group_tests_name("dialect", tests, NULL, NULL);
+}
