@@ -26,7 +26,7 @@ typedef enum noc_tonemap { NOC_TONEMAP_FILMIC, NOC_TONEMAP_REINHARD, NOC_TONEMAP
 typedef struct noc_display_params {
     bool auto_exposure;   /* default true */
     double ev100;         /* used when auto_exposure is false: luminance of 1.2 * 2^ev100 maps to 1 before tone mapping */
-    double compensation;  /* stops added to the automatic exposure; default 0 */
+    double compensation;  /* stops added to the automatic exposure, positive is brighter; default 0 */
     noc_tonemap tonemap;
 } noc_display_params;
 

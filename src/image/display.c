@@ -1,0 +1,144 @@
+/* Exposure and tone mapping: how a picture in cd/m2 is shown. None of this enters a measurement except RMSE-8. */
+#include "image/internal.h"
+
+#include <math.h>
+
+/* Automatic exposure
+ *
+ * A picture of a night is mostly black, with a few emitters a thousand times brighter than what they light. What should be
+ * shown well is what is lit. So:
+ *   1. Luminance is averaged over a grid of at most METER_CELLS a side, which takes the noise out of few samples. Pixels
+ *      of the emitter mask do not count, unless nothing else is lit.
+ *   2. Of the cells that are lit at all, the brightest METER_TRIM are left out: emitters without a mask, glare, fireflies.
+ *   3. The key is the mean of log luminance over the rest, each weighted by the square root of its luminance: a faint sky
+ *      over half of the picture then weighs little, and the brightest spot does not decide alone.
+ *   4. The exposure puts the key at METER_KEY of white: under the 0.18 of a day, so that a night stays a night.
+ * Every step scales with the picture: 2^k times the light is k more EV. Without any light the answer is METER_BLACK. */
+#define METER_CELLS 256
+#define METER_TRIM 0.08
+#define METER_KEY 0.12
+#define METER_BLACK 3.0
+
+static int compare_float(const void *a, const void *b) {
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Mean luminance of the lit cells, unsorted; returns their number. */
+static size_t meter_cells(const noc_image *image, bool use_mask, float *cells) {
+    int side = (NOC_MAX(image->width, image->height) + METER_CELLS - 1) / METER_CELLS;
+    size_t lit = 0;
+    for (int y0 = 0; y0 < image->height; y0 += side)
+        for (int x0 = 0; x0 < image->width; x0 += side) {
+            double sum = 0;
+            size_t count = 0;
+            for (int y = y0; y < NOC_MIN(y0 + side, image->height); y++)
+                for (int x = x0; x < NOC_MIN(x0 + side, image->width); x++) {
+                    size_t i = (size_t)y * (size_t)image->width + (size_t)x;
+                    if ((use_mask && image->emitter[i]) || !image_finite(image->rgb + 3 * i))
+                        continue;
+                    sum += NOC_MAX(image_luminance(image->rgb + 3 * i), 0);
+                    count++;
+                }
+            if (sum > 0 && sum < HUGE_VAL)
+                cells[lit++] = (float)(sum / (double)count);
+        }
+    return lit;
+}
+
+double noc_image_auto_ev100(const noc_image *image) {
+    float *cells = noc_alloc(METER_CELLS * METER_CELLS * sizeof(float));
+    size_t lit = meter_cells(image, image->emitter != NULL, cells);
+    if (!lit && image->emitter)
+        lit = meter_cells(image, false, cells);
+    qsort(cells, lit, sizeof(float), compare_float);
+    lit -= (size_t)(METER_TRIM * (double)lit);
+    double sum = 0, weights = 0;
+    for (size_t i = 0; i < lit; i++) {
+        if (!(cells[i] > 0)) /* a mean too small for float */
+            continue;
+        double weight = sqrt(cells[i]);
+        sum += weight * log2(cells[i]);
+        weights += weight;
+    }
+    free(cells);
+    return weights > 0 ? sum / weights - log2(IMAGE_SATURATION * METER_KEY) : METER_BLACK;
+}
+
+double display_ev100(const noc_image *image, const noc_display_params *params) {
+    noc_display_params p = params ? *params : noc_display_default_params();
+    double ev = p.auto_exposure ? noc_image_auto_ev100(image) - p.compensation : p.ev100;
+    return isfinite(ev) ? NOC_CLAMP(ev, -100.0, 100.0) : METER_BLACK;
+}
+
+const char *tonemap_name(noc_tonemap tonemap) {
+    switch (tonemap) {
+    case NOC_TONEMAP_FILMIC: return "filmic";
+    case NOC_TONEMAP_REINHARD: return "reinhard";
+    case NOC_TONEMAP_LINEAR: return "linear";
+    }
+    return "linear";
+}
+
+/* The filmic curve is (a x^2 + b x) / (c x^2 + d x + 1), with b the slope of its toe (0.7: blacks gently deepened) and a, c, d
+ * solved from three conditions: mid-grey 0.18 stays where it is, the contrast there is 1.05 (slope in log-log), and white
+ * is reached at 16, 6.5 stops above mid-grey. a d > b c and a, b > 0, so it rises everywhere. */
+#define FILMIC_A 6.553
+#define FILMIC_B 0.7
+#define FILMIC_C 6.359
+#define FILMIC_D 3.742
+
+double tonemap_curve(noc_tonemap tonemap, double x) {
+    switch (tonemap) {
+    case NOC_TONEMAP_FILMIC: {
+        if (x > 1e6) /* where x^2 means nothing more */
+            return 1;
+        double y = x * (FILMIC_A * x + FILMIC_B) / (x * (FILMIC_C * x + FILMIC_D) + 1);
+        return NOC_MIN(y, 1);
+    }
+    case NOC_TONEMAP_REINHARD: return x > 1e9 ? 1 : x / (1 + x);
+    case NOC_TONEMAP_LINEAR: break;
+    }
+    return NOC_MIN(x, 1);
+}
+
+void display_init(display_map *d, noc_tonemap tonemap, double ev100) {
+    d->tonemap = tonemap;
+    d->scale = exp2(-ev100) / IMAGE_SATURATION;
+    srgb8_table_init(&d->srgb);
+}
+
+/* Exposed value at which a quarter of the chroma has gone. */
+#define DESATURATION 3.0
+
+/* The curve is applied to the largest component, and the others keep their ratio to it, so hue holds (a curve a channel turns
+ * sodium lamps lemon). Film and eyes see a strong coloured light as white: the colour is mixed with white of the same peak by
+ * (p / (p + DESATURATION))^2, nothing at mid-grey, a quarter at p = 3, and nearly all of it far above. Both factors rise
+ * with exposure, so every channel does. The linear tone map shows what is there, clipped. */
+void display_pixel(const display_map *d, const float rgb[3], uint8_t out[3]) {
+    double v[3], peak = 0;
+    bool finite = image_finite(rgb);
+    for (int k = 0; k < 3; k++) {
+        v[k] = finite ? NOC_MAX(rgb[k] * d->scale, 0) : 0;
+        peak = NOC_MAX(peak, v[k]);
+    }
+    if (d->tonemap != NOC_TONEMAP_LINEAR && peak > 0) {
+        double level = tonemap_curve(d->tonemap, peak);
+        double white = peak / (peak + DESATURATION);
+        white = peak > 1e9 ? 1 : white * white;
+        for (int k = 0; k < 3; k++) {
+            double ratio = v[k] / peak;
+            v[k] = level * (ratio + (1 - ratio) * white);
+        }
+    }
+    for (int k = 0; k < 3; k++)
+        out[k] = srgb8_encode(&d->srgb, (float)v[k]);
+}
+
+void noc_image_to_srgb8(const noc_image *image, const noc_display_params *params, uint8_t *out) {
+    display_map d;
+    display_init(&d, params ? params->tonemap : NOC_TONEMAP_FILMIC, display_ev100(image, params));
+    size_t n = image_pixels(image);
+    for (size_t i = 0; i < n; i++)
+        display_pixel(&d, image->rgb + 3 * i, out + 3 * i);
+}

@@ -1,0 +1,258 @@
+/* OpenEXR, reading, by its C core: flat scanline and tiled parts, half, float and uint, R G B or Y, any compression it knows. */
+#include "image/internal.h"
+
+#include <openexr.h>
+
+typedef struct exr_reader {
+    exr_context_t context;
+    int part;
+    const uint8_t *data;
+    size_t size;
+    const char *name;
+    noc_log *log;
+    noc_status status;
+    noc_image *image;
+    float *mask;          /* emitter channel, as floats */
+    exr_attr_box2i_t window;
+    bool grey;            /* Y alone */
+    bool has_mask;
+    bool tiled;
+    exr_decode_pipeline_t decode;
+    bool decode_ready;
+} exr_reader;
+
+static noc_status status_of(exr_result_t code) {
+    switch (code) {
+    case EXR_ERR_OUT_OF_MEMORY: return NOC_ERR_MEMORY;
+    case EXR_ERR_FEATURE_NOT_IMPLEMENTED: return NOC_ERR_UNSUPPORTED;
+    default: return NOC_ERR_FORMAT;
+    }
+}
+
+static void on_error(exr_const_context_t context, exr_result_t code, const char *message) {
+    void *user = NULL;
+    exr_reader *r = exr_get_user_data(context, &user) == EXR_ERR_SUCCESS ? user : NULL;
+    if (r && r->status == NOC_OK)
+        r->status = noc_error(r->log, status_of(code), "%s: EXR: %s", r->name, message);
+}
+
+/* Returns false when a step failed; the handler has reported it, or it is reported here. */
+static bool ok(exr_reader *r, exr_result_t result) {
+    if (result != EXR_ERR_SUCCESS && r->status == NOC_OK)
+        r->status = noc_error(r->log, status_of(result), "%s: EXR: %s", r->name, exr_get_default_error_message(result));
+    return r->status == NOC_OK;
+}
+
+static int64_t read_data(exr_const_context_t context, void *user, void *buffer, uint64_t size, uint64_t offset,
+                         exr_stream_error_func_ptr_t report) {
+    const exr_reader *r = user;
+    if (offset > r->size)
+        return 0;
+    uint64_t n = NOC_MIN(size, r->size - offset);
+    memcpy(buffer, r->data + offset, n);
+    return (int64_t)n;
+}
+
+static int64_t query_size(exr_const_context_t context, void *user) {
+    const exr_reader *r = user;
+    return (int64_t)r->size;
+}
+
+static const exr_attr_chlist_entry_t *find_channel(const exr_attr_chlist_t *list, const char *name) {
+    for (int i = 0; i < list->num_channels; i++)
+        if (strcmp(list->entries[i].name.str, name) == 0)
+            return &list->entries[i];
+    return NULL;
+}
+
+static bool has_picture(const exr_attr_chlist_t *list) {
+    return (find_channel(list, "R") && find_channel(list, "G") && find_channel(list, "B")) || find_channel(list, "Y");
+}
+
+/* The first flat part with a picture. */
+static bool choose_part(exr_reader *r) {
+    int count = 0;
+    if (!ok(r, exr_get_count(r->context, &count)))
+        return false;
+    bool flat = false;
+    for (r->part = 0; r->part < count; r->part++) {
+        exr_storage_t storage;
+        const exr_attr_chlist_t *list = NULL;
+        if (!ok(r, exr_get_storage(r->context, r->part, &storage)) || !ok(r, exr_get_channels(r->context, r->part, &list)))
+            return false;
+        r->tiled = storage == EXR_STORAGE_TILED;
+        if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
+            continue;
+        flat = true;
+        if (!has_picture(list))
+            continue;
+        r->grey = !(find_channel(list, "R") && find_channel(list, "G") && find_channel(list, "B"));
+        r->has_mask = find_channel(list, "emitter") != NULL;
+        for (int i = 0; i < list->num_channels; i++)
+            if (list->entries[i].x_sampling != 1 || list->entries[i].y_sampling != 1) {
+                r->status = noc_error(r->log, NOC_ERR_UNSUPPORTED, "%s: EXR: channel '%s' is subsampled, which is not read",
+                                      r->name, list->entries[i].name.str);
+                return false;
+            }
+        return true;
+    }
+    r->status = flat ? noc_error(r->log, NOC_ERR_FORMAT, "%s: EXR: has neither channels R, G, B nor Y", r->name)
+                     : noc_error(r->log, NOC_ERR_UNSUPPORTED, "%s: EXR: deep pixels are not read", r->name);
+    return false;
+}
+
+/* Largest ratio of unpacked to packed bytes, by compression; 0: no useful bound. */
+static double packing_bound(exr_compression_t compression) {
+    switch (compression) {
+    case EXR_COMPRESSION_NONE: return 1;
+    case EXR_COMPRESSION_RLE: return 128;
+    case EXR_COMPRESSION_ZIPS:
+    case EXR_COMPRESSION_ZIP:
+    case EXR_COMPRESSION_PXR24: return 1400; /* deflate's 1032, and PXR24 drops a quarter before it */
+    default: return 0;
+    }
+}
+
+/* A file that cannot hold what it declares is known before any memory is given to it. */
+static bool plausible(exr_reader *r, double width, double height) {
+    exr_compression_t compression;
+    const exr_attr_chlist_t *list = NULL;
+    int32_t chunks = 0;
+    uint64_t chunk_bytes = 0;
+    if (!ok(r, exr_get_compression(r->context, r->part, &compression)) || !ok(r, exr_get_channels(r->context, r->part, &list)) ||
+        !ok(r, exr_get_chunk_count(r->context, r->part, &chunks)) ||
+        !ok(r, exr_get_chunk_unpacked_size(r->context, r->part, &chunk_bytes)))
+        return false;
+    double bytes = 0, bound = packing_bound(compression);
+    for (int i = 0; i < list->num_channels; i++)
+        bytes += width * height * (list->entries[i].pixel_type == EXR_PIXEL_HALF ? 2 : 4);
+    /* Each chunk has 8 bytes in the table and at least 8 of its own. */
+    if (16.0 * chunks <= (double)r->size && (bound == 0 || bytes <= bound * (double)r->size) && chunk_bytes < 1u << 31)
+        return true;
+    r->status = noc_error(r->log, NOC_ERR_FORMAT, "%s: EXR: %.0f x %.0f pixels in %d channels cannot be in a file of %zu bytes",
+                          r->name, width, height, list->num_channels, r->size);
+    return false;
+}
+
+static bool make_image(exr_reader *r) {
+    if (!ok(r, exr_get_data_window(r->context, r->part, &r->window)))
+        return false;
+    double width = (double)r->window.max.x - r->window.min.x + 1, height = (double)r->window.max.y - r->window.min.y + 1;
+    if (!(width >= 1 && height >= 1 && width <= NOC_IMAGE_MAX_SIDE && height <= NOC_IMAGE_MAX_SIDE)) {
+        r->status = noc_error(r->log, NOC_ERR_FORMAT, "%s: EXR: %.0f x %.0f pixels is outside 1..%d a side", r->name, width,
+                              height, NOC_IMAGE_MAX_SIDE);
+        return false;
+    }
+    if (!plausible(r, width, height))
+        return false;
+    r->image = noc_image_create((int)width, (int)height, r->log);
+    if (!r->image || (r->has_mask && !image_add_mask(r->image, r->log))) {
+        r->status = NOC_ERR_MEMORY;
+        return false;
+    }
+    if (r->has_mask && !(r->mask = noc_alloc_large(image_pixels(r->image), sizeof(float))))
+        r->status = noc_error(r->log, NOC_ERR_MEMORY, "%s: no memory for its mask", r->name);
+    return r->status == NOC_OK;
+}
+
+/* Where the channels of a chunk go: x, y are relative to the data window. */
+static void set_targets(exr_reader *r, size_t x, size_t y) {
+    size_t width = (size_t)r->image->width, first = y * width + x;
+    for (int i = 0; i < r->decode.channel_count; i++) {
+        exr_coding_channel_info_t *ch = &r->decode.channels[i];
+        const char *n = ch->channel_name;
+        int k = strcmp(n, "R") == 0 ? 0 : strcmp(n, "G") == 0 ? 1 : strcmp(n, "B") == 0 ? 2 : -1;
+        if (r->grey)
+            k = strcmp(n, "Y") == 0 ? 0 : -1;
+        bool mask = r->mask && strcmp(n, "emitter") == 0;
+        ch->decode_to_ptr = NULL;
+        if (k < 0 && !mask)
+            continue;
+        ch->user_data_type = EXR_PIXEL_FLOAT;
+        ch->user_bytes_per_element = 4;
+        ch->user_pixel_stride = mask ? 4 : 12;
+        ch->user_line_stride = ch->user_pixel_stride * r->image->width;
+        ch->decode_to_ptr = (uint8_t *)(mask ? r->mask + first : r->image->rgb + 3 * first + k);
+    }
+}
+
+/* x, y and the largest size the chunk may have here. */
+static bool read_chunk(exr_reader *r, const exr_chunk_info_t *chunk, int x, int y) {
+    if (chunk->width < 1 || chunk->height < 1 || chunk->width > r->image->width - x || chunk->height > r->image->height - y) {
+        r->status = noc_error(r->log, NOC_ERR_FORMAT, "%s: EXR: the chunk at %d, %d has a wrong size", r->name, x, y);
+        return false;
+    }
+    bool first = !r->decode_ready;
+    r->decode_ready = true;
+    if (!ok(r, first ? exr_decoding_initialize(r->context, r->part, chunk, &r->decode)
+                     : exr_decoding_update(r->context, r->part, chunk, &r->decode)))
+        return false;
+    set_targets(r, (size_t)x, (size_t)y);
+    /* The routine depends on the layout, and the last chunk of a row may have another one. */
+    return ok(r, exr_decoding_choose_default_routines(r->context, r->part, &r->decode)) &&
+           ok(r, exr_decoding_run(r->context, r->part, &r->decode));
+}
+
+static bool read_scanlines(exr_reader *r) {
+    int32_t lines = 0;
+    if (!ok(r, exr_get_scanlines_per_chunk(r->context, r->part, &lines)))
+        return false;
+    for (int y = 0; y < r->image->height; y += NOC_MAX(lines, 1)) {
+        exr_chunk_info_t chunk;
+        if (!ok(r, exr_read_scanline_chunk_info(r->context, r->part, r->window.min.y + y, &chunk)) || !read_chunk(r, &chunk, 0, y))
+            return false;
+    }
+    return true;
+}
+
+/* The full-size level of a tiled part. */
+static bool read_tiles(exr_reader *r) {
+    int32_t tw = 0, th = 0;
+    if (!ok(r, exr_get_tile_sizes(r->context, r->part, 0, 0, &tw, &th)))
+        return false;
+    if (tw < 1 || th < 1) {
+        r->status = noc_error(r->log, NOC_ERR_FORMAT, "%s: EXR: tiles of %d x %d pixels", r->name, tw, th);
+        return false;
+    }
+    for (int ty = 0; ty <= (r->image->height - 1) / th; ty++)
+        for (int tx = 0; tx <= (r->image->width - 1) / tw; tx++) {
+            exr_chunk_info_t chunk;
+            if (!ok(r, exr_read_tile_chunk_info(r->context, r->part, tx, ty, 0, 0, &chunk)) ||
+                !read_chunk(r, &chunk, tx * tw, ty * th))
+                return false;
+        }
+    return true;
+}
+
+static void finish_image(exr_reader *r) {
+    size_t n = image_pixels(r->image);
+    for (size_t i = 0; r->grey && i < n; i++)
+        r->image->rgb[3 * i + 1] = r->image->rgb[3 * i + 2] = r->image->rgb[3 * i];
+    for (size_t i = 0; r->mask && i < n; i++)
+        r->image->emitter[i] = r->mask[i] != 0; /* not-a-number counts as an emitter: then it is left out */
+}
+
+noc_image *image_read_exr(const uint8_t *data, size_t size, const char *name, noc_log *log) {
+    exr_reader r = { .data = data, .size = size, .name = name, .log = log };
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    init.user_data = &r;
+    init.read_fn = read_data;
+    init.size_fn = query_size;
+    init.error_handler_fn = on_error;
+    init.max_image_width = init.max_image_height = NOC_IMAGE_MAX_SIDE;
+    init.max_tile_width = init.max_tile_height = NOC_IMAGE_MAX_SIDE;
+    init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
+    if (ok(&r, exr_start_read(&r.context, name, &init)) && choose_part(&r) && make_image(&r) &&
+        (r.tiled ? read_tiles(&r) : read_scanlines(&r)))
+        finish_image(&r);
+    if (r.decode_ready)
+        exr_decoding_destroy(r.context, &r.decode);
+    if (r.context)
+        exr_finish(&r.context);
+    free(r.mask);
+    if (r.status != NOC_OK) {
+        noc_image_destroy(r.image);
+        return NULL;
+    }
+    return r.image;
+}

@@ -1,0 +1,143 @@
+/* OpenEXR, writing, by its C core: linear float cd/m2, ZIP, with units and mask. */
+#include "image/internal.h"
+
+#include <errno.h>
+#include <openexr.h>
+
+typedef struct exr_writer {
+    exr_context_t context;
+    int part;
+    output *out;
+    const noc_image *image;
+    noc_log *log;
+    noc_status status;
+    float *rgb;         /* one chunk, finite */
+    uint16_t *emitter;  /* one chunk, half */
+} exr_writer;
+
+static void on_error(exr_const_context_t context, exr_result_t code, const char *message) {
+    void *user = NULL;
+    exr_writer *w = exr_get_user_data(context, &user) == EXR_ERR_SUCCESS ? user : NULL;
+    if (w && w->status == NOC_OK)
+        w->status = noc_error(w->log, code == EXR_ERR_OUT_OF_MEMORY ? NOC_ERR_MEMORY : NOC_ERR_IO, "%s: EXR: %s",
+                              w->out->path, message);
+}
+
+static int64_t write_data(exr_const_context_t context, void *user, const void *buffer, uint64_t size, uint64_t offset,
+                          exr_stream_error_func_ptr_t report) {
+    exr_writer *w = user;
+    FILE *f = w->out->file;
+    /* Seeking flushes, and only the table of chunks at the end goes back. */
+    if ((uint64_t)ftello(f) != offset && fseeko(f, (off_t)offset, SEEK_SET) != 0)
+        w->status = output_failed(w->out, w->log);
+    else if (fwrite(buffer, 1, size, f) == size)
+        return (int64_t)size;
+    else if (w->status == NOC_OK)
+        w->status = output_failed(w->out, w->log);
+    return -1;
+}
+
+/* Returns false when a step failed; the handler has reported it, or it is reported here. */
+static bool ok(exr_writer *w, exr_result_t result) {
+    if (result != EXR_ERR_SUCCESS && w->status == NOC_OK)
+        w->status = noc_error(w->log, NOC_ERR_IO, "%s: EXR: %s", w->out->path, exr_get_default_error_message(result));
+    return w->status == NOC_OK;
+}
+
+static bool write_header(exr_writer *w, const meta_list *meta) {
+    static const exr_attr_chromaticities_t rec709 = { 0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f };
+    exr_context_t c = w->context;
+    bool good = ok(w, exr_add_part(c, NULL, EXR_STORAGE_SCANLINE, &w->part)) &&
+                ok(w, exr_initialize_required_attr_simple(c, w->part, w->image->width, w->image->height, EXR_COMPRESSION_ZIP));
+    static const char *const colours[] = { "B", "G", "R" };
+    for (int k = 0; k < 3 && good; k++)
+        good = ok(w, exr_add_channel(c, w->part, colours[k], EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
+    if (w->image->emitter && good)
+        good = ok(w, exr_add_channel(c, w->part, "emitter", EXR_PIXEL_HALF, EXR_PERCEPTUALLY_LINEAR, 1, 1));
+    good = good && ok(w, exr_attr_set_chromaticities(c, w->part, "chromaticities", &rec709)) &&
+           ok(w, exr_attr_set_float(c, w->part, "whiteLuminance", 1)) && ok(w, exr_set_longname_support(c, 1));
+    for (size_t i = 0; good && i < meta->entries.len; i++) {
+        const meta_entry *e = &meta->entries.data[i];
+        const exr_attribute_t *old = NULL;
+        /* "Channels" may be a key, "channels" is what the format itself needs. */
+        if (exr_get_attribute_by_name(c, w->part, e->key, &old) == EXR_ERR_SUCCESS && old && old->type != EXR_ATTR_STRING)
+            w->status = noc_error(w->log, NOC_ERR_ARGUMENT, "%s: EXR: metadata key '%s' is taken by the format", w->out->path,
+                                  e->key);
+        good = w->status == NOC_OK && ok(w, exr_attr_set_string(c, w->part, e->key, e->value));
+    }
+    return good && ok(w, exr_write_header(c));
+}
+
+/* Copies the rows of a chunk, without what is not finite. */
+static void fill_chunk(exr_writer *w, int y0, int rows) {
+    const noc_image *image = w->image;
+    size_t n = (size_t)rows * (size_t)image->width, first = (size_t)y0 * (size_t)image->width;
+    for (size_t i = 0; i < n; i++) {
+        const float *rgb = image->rgb + 3 * (first + i);
+        bool finite = image_finite(rgb);
+        for (int k = 0; k < 3; k++)
+            w->rgb[3 * i + (size_t)k] = finite ? rgb[k] : 0;
+        if (image->emitter)
+            w->emitter[i] = image->emitter[first + i] ? 0x3c00 : 0; /* half 1 */
+    }
+}
+
+static bool set_channels(exr_writer *w, exr_encode_pipeline_t *encode) {
+    for (int i = 0; i < encode->channel_count; i++) {
+        exr_coding_channel_info_t *ch = &encode->channels[i];
+        bool mask = strcmp(ch->channel_name, "emitter") == 0;
+        int k = ch->channel_name[0] == 'R' ? 0 : ch->channel_name[0] == 'G' ? 1 : 2;
+        ch->user_pixel_stride = mask ? 2 : 12;
+        ch->user_line_stride = ch->user_pixel_stride * w->image->width;
+        ch->encode_from_ptr = mask ? (const uint8_t *)w->emitter : (const uint8_t *)(w->rgb + k);
+    }
+    return true;
+}
+
+static void write_chunks(exr_writer *w) {
+    int32_t lines = 0;
+    if (!ok(w, exr_get_scanlines_per_chunk(w->context, w->part, &lines)))
+        return;
+    size_t n = (size_t)lines * (size_t)w->image->width;
+    w->rgb = noc_alloc_large(n, 3 * sizeof(float));
+    w->emitter = w->image->emitter ? noc_alloc_large(n, sizeof(uint16_t)) : NULL;
+    if (!w->rgb || (w->image->emitter && !w->emitter)) {
+        w->status = noc_error(w->log, NOC_ERR_MEMORY, "%s: EXR: no memory", w->out->path);
+        return;
+    }
+    exr_encode_pipeline_t encode = EXR_ENCODE_PIPELINE_INITIALIZER;
+    bool good = true;
+    for (int y = 0; good && y < w->image->height; y += lines) {
+        exr_chunk_info_t chunk;
+        good = ok(w, exr_write_scanline_chunk_info(w->context, w->part, y, &chunk));
+        if (good && y == 0)
+            good = ok(w, exr_encoding_initialize(w->context, w->part, &chunk, &encode)) && set_channels(w, &encode) &&
+                   ok(w, exr_encoding_choose_default_routines(w->context, w->part, &encode));
+        else if (good)
+            good = ok(w, exr_encoding_update(w->context, w->part, &chunk, &encode)) && set_channels(w, &encode);
+        if (good) {
+            fill_chunk(w, y, chunk.height);
+            good = ok(w, exr_encoding_run(w->context, w->part, &encode));
+        }
+    }
+    if (encode.context)
+        exr_encoding_destroy(w->context, &encode);
+}
+
+noc_status image_write_exr(output *o, const noc_image *image, const meta_list *meta, noc_log *log) {
+    exr_writer w = { .out = o, .image = image, .log = log };
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    init.user_data = &w;
+    init.write_fn = write_data;
+    init.error_handler_fn = on_error;
+    if (ok(&w, exr_start_write(&w.context, o->path, EXR_WRITE_FILE_DIRECTLY, &init)) && write_header(&w, meta))
+        write_chunks(&w);
+    /* Writes the table of chunks, also after an error: the temporary file goes away then. */
+    if (w.context) {
+        exr_result_t result = exr_finish(&w.context);
+        ok(&w, result);
+    }
+    free(w.rgb);
+    free(w.emitter);
+    return w.status;
+}

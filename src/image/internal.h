@@ -1,0 +1,71 @@
+/* image, inside: what the files of this room share. */
+#ifndef NOC_IMAGE_INTERNAL_H
+#define NOC_IMAGE_INTERNAL_H
+
+#include "base/base.h"
+#include <nocturne/image.h>
+#include <stdio.h>
+
+/* Photometric luminance of linear Rec.709. */
+static inline double image_luminance(const float rgb[3]) {
+    return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+}
+static inline bool image_finite(const float rgb[3]) {
+    return __builtin_isfinite(rgb[0]) && __builtin_isfinite(rgb[1]) && __builtin_isfinite(rgb[2]);
+}
+static inline size_t image_pixels(const noc_image *image) { return (size_t)image->width * (size_t)image->height; }
+
+/* image.c. The mask all zero; false after reporting when refused. */
+bool image_add_mask(noc_image *image, noc_log *log);
+/* Luminance of 1.2 cd/m2 * 2^EV100 is where a camera of that exposure saturates. */
+#define IMAGE_SATURATION 1.2
+
+/* srgb.c: the transfer function of IEC 61966-2-1, exactly. */
+double srgb_encode(double linear); /* display linear -> code value, both 0..1 */
+double srgb_decode(double code);
+typedef struct srgb8_table { float threshold[255]; } srgb8_table; /* linear value where code i turns into i + 1 */
+void srgb8_table_init(srgb8_table *table);
+uint8_t srgb8_encode(const srgb8_table *table, float linear);     /* the nearest code; clamps; NaN gives 0 */
+
+/* display.c: from cd/m2 to 8-bit sRGB, one pixel at a time. */
+typedef struct display_map {
+    noc_tonemap tonemap;
+    double scale; /* multiplies cd/m2 */
+    srgb8_table srgb;
+} display_map;
+/* ev100 is the exposure in effect (display_ev100). */
+void display_init(display_map *d, noc_tonemap tonemap, double ev100);
+double display_ev100(const noc_image *image, const noc_display_params *params); /* params NULL: defaults */
+void display_pixel(const display_map *d, const float rgb[3], uint8_t out[3]);
+double tonemap_curve(noc_tonemap tonemap, double x);
+const char *tonemap_name(noc_tonemap tonemap);
+
+/* output.c: a file that appears under its name only when it is complete. */
+typedef struct output {
+    FILE *file;
+    char *path;      /* the target, as given: for messages */
+    char *target;    /* with symbolic links resolved */
+    char *temporary; /* beside target */
+} output;
+noc_status output_open(output *o, const char *path, noc_log *log); /* on failure nothing is left, and o need not be closed */
+/* Closes; if status is NOC_OK renames, else removes. Returns status, or the reported failure of the closing or renaming. */
+noc_status output_close(output *o, noc_status status, noc_log *log);
+noc_status output_failed(output *o, noc_log *log); /* reports errno as a failure of writing */
+
+/* Metadata of a file: the caller's and ours; the caller's win where the keys are equal. */
+typedef struct meta_entry { const char *key, *value; } meta_entry;
+typedef struct meta_list { NOC_ARRAY(meta_entry) entries; noc_arena text; } meta_list;
+void meta_add(meta_list *list, const char *key, const char *fmt, ...) NOC_PRINTF(3, 4); /* ours, first; short text */
+/* The caller's; replaces ours of the same key. An error where a key or value cannot be written. */
+noc_status meta_add_all(meta_list *list, const noc_image_meta *meta, const char *path, noc_log *log);
+void meta_free(meta_list *list);
+
+/* png.c and exr.c. Readers take the whole file; name is for messages. */
+noc_status image_write_png(output *o, const uint8_t *rgb, int width, int height, const meta_list *meta, noc_log *log);
+noc_status image_write_exr(output *o, const noc_image *image, const meta_list *meta, noc_log *log);
+noc_image *image_read_png(const uint8_t *data, size_t size, const char *name, noc_log *log);
+noc_image *image_read_exr(const uint8_t *data, size_t size, const char *name, noc_log *log);
+/* Either, told apart by their first bytes. is_linear may be NULL. */
+noc_image *image_read_memory(const uint8_t *data, size_t size, const char *name, noc_log *log, bool *is_linear);
+
+#endif

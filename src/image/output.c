@@ -1,0 +1,125 @@
+/* Files that appear under their name only when they are complete, and what is written into them as text. */
+#include "image/internal.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static noc_status fail(const char *path, const char *what, noc_log *log) {
+    return noc_error(log, NOC_ERR_IO, "%s: %s: %s", path, what, strerror(errno));
+}
+
+/* The target itself: what a symbolic link points to is replaced, not the link. */
+static char *resolve(const char *path) {
+    char *real = realpath(path, NULL);
+    return real ? real : noc_strdup(path);
+}
+
+/* ".name.pid-n.part" in the target's folder: renaming works only within a file system. */
+static char *temporary_name(const char *target, int attempt) {
+    const char *slash = strrchr(target, '/');
+    int folder = slash ? (int)(slash + 1 - target) : 0;
+    /* A name may be 255 bytes at most: of a long one only the beginning is kept. */
+    return noc_format("%.*s.%.200s.%ld-%d.part", folder, target, target + folder, (long)getpid(), attempt);
+}
+
+static void output_free(output *o) {
+    free(o->path);
+    free(o->target);
+    free(o->temporary);
+    memset(o, 0, sizeof(*o));
+}
+
+noc_status output_open(output *o, const char *path, noc_log *log) {
+    *o = (output){ .path = noc_strdup(path), .target = resolve(path) };
+    noc_status status;
+    struct stat st;
+    int fd = -1;
+    /* Renaming would replace a device or a pipe by a plain file. */
+    if (stat(o->target, &st) == 0 && !S_ISREG(st.st_mode)) {
+        status = noc_error(log, NOC_ERR_IO, "%s: cannot be written: %s", path,
+                           S_ISDIR(st.st_mode) ? "it is a directory" : "it is not a regular file");
+        goto fail;
+    }
+    for (int attempt = 0; fd < 0 && attempt < 1000; attempt++) {
+        free(o->temporary);
+        o->temporary = temporary_name(o->target, attempt);
+        fd = open(o->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (fd < 0 && errno != EEXIST)
+            break;
+    }
+    o->file = fd >= 0 ? fdopen(fd, "w+b") : NULL;
+    if (o->file)
+        return NOC_OK;
+    status = fail(path, "cannot be written", log);
+    if (fd >= 0) {
+        close(fd);
+        unlink(o->temporary);
+    }
+fail:
+    output_free(o);
+    return status;
+}
+
+noc_status output_failed(output *o, noc_log *log) { return fail(o->path, "writing failed", log); }
+
+noc_status output_close(output *o, noc_status status, noc_log *log) {
+    /* What is still buffered may be what no longer fits on the disk. */
+    if (fclose(o->file) != 0 && status == NOC_OK)
+        status = output_failed(o, log);
+    if (status == NOC_OK && rename(o->temporary, o->target) != 0)
+        status = fail(o->path, "cannot be written", log);
+    if (status != NOC_OK)
+        unlink(o->temporary);
+    output_free(o);
+    return status;
+}
+
+void meta_add(meta_list *list, const char *key, const char *fmt, ...) {
+    char text[256];
+    va_list ap;
+    va_start(ap, fmt);
+    vsnprintf(text, sizeof(text), fmt, ap);
+    va_end(ap);
+    meta_entry entry = { arena_strdup(&list->text, key), arena_strdup(&list->text, text) };
+    array_push(&list->entries, entry);
+}
+
+static meta_entry *find(meta_list *list, const char *key) {
+    for (size_t i = 0; i < list->entries.len; i++)
+        if (strcmp(list->entries.data[i].key, key) == 0)
+            return &list->entries.data[i];
+    return NULL;
+}
+
+/* The stricter of the two formats decides: a PNG keyword has 1 to 79 characters and single spaces inside only. */
+static bool good_key(const char *key) {
+    size_t n = key ? strlen(key) : 0;
+    if (n < 1 || n > 79 || key[0] == ' ' || key[n - 1] == ' ' || strstr(key, "  "))
+        return false;
+    for (size_t i = 0; i < n; i++)
+        if (key[i] < 32 || key[i] > 126)
+            return false;
+    return true;
+}
+
+noc_status meta_add_all(meta_list *list, const noc_image_meta *meta, const char *path, noc_log *log) {
+    for (size_t i = 0; meta && i < meta->count; i++) {
+        if (!good_key(meta->keys[i]) || !meta->values[i])
+            return noc_error(log, NOC_ERR_ARGUMENT, "%s: metadata entry %zu: a key has 1 to 79 printable ASCII characters, single "
+                             "spaces inside, and a value", path, i);
+        meta_entry entry = { meta->keys[i], meta->values[i] }; /* outlive the list */
+        meta_entry *old = find(list, entry.key);
+        if (old)
+            *old = entry;
+        else
+            array_push(&list->entries, entry);
+    }
+    return NOC_OK;
+}
+
+void meta_free(meta_list *list) {
+    array_free(&list->entries);
+    arena_free(&list->text);
+}

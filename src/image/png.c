@@ -1,0 +1,200 @@
+/* PNG by libpng: 8-bit sRGB is written; every colour type and depth is read, as sRGB. */
+#include "image/internal.h"
+
+#include <png.h>
+#include <setjmp.h>
+
+typedef struct png_job {
+    png_structp png;
+    png_infop info;
+    jmp_buf escape;   /* where libpng's errors go */
+    const char *name; /* for messages */
+    noc_log *log;
+    noc_status status;
+    output *out;         /* writing */
+    const uint8_t *data; /* reading */
+    size_t size, at;
+    noc_image *image;
+    png_byte *buffer; /* one row, or all of an interlaced picture */
+    float *table;     /* code value to linear */
+} png_job;
+
+static void on_error(png_structp png, png_const_charp message) {
+    png_job *job = png_get_error_ptr(png);
+    if (job->status == NOC_OK)
+        job->status = noc_error(job->log, NOC_ERR_FORMAT, "%s: PNG: %s", job->name, message);
+    longjmp(job->escape, 1);
+}
+
+static void on_warning(png_structp png, png_const_charp message) {
+    png_job *job = png_get_error_ptr(png);
+    noc_debug(job->log, "%s: PNG: %s", job->name, message);
+}
+
+static void write_data(png_structp png, png_bytep data, png_size_t size) {
+    png_job *job = png_get_io_ptr(png);
+    if (fwrite(data, 1, size, job->out->file) == size)
+        return;
+    job->status = output_failed(job->out, job->log);
+    png_error(png, "writing failed");
+}
+
+static void flush_data(png_structp png) { (void)png; }
+
+static void read_data(png_structp png, png_bytep data, png_size_t size) {
+    png_job *job = png_get_io_ptr(png);
+    if (size > job->size - job->at) {
+        job->status = noc_error(job->log, NOC_ERR_FORMAT, "%s: PNG: the file ends too early, at byte %zu", job->name, job->size);
+        png_error(png, "end of file");
+    }
+    memcpy(data, job->data + job->at, size);
+    job->at += size;
+}
+
+static bool is_ascii(const char *s) {
+    for (; *s; s++)
+        if ((unsigned char)*s > 126)
+            return false;
+    return true;
+}
+
+/* tEXt is Latin-1, iTXt UTF-8: plain ASCII goes into the one that every program reads. */
+static void set_text(png_job *job, const meta_list *meta) {
+    for (size_t i = 0; i < meta->entries.len; i++) {
+        const meta_entry *e = &meta->entries.data[i];
+        png_text text = { .key = (char *)(uintptr_t)e->key, .text = (char *)(uintptr_t)e->value };
+        text.compression = is_ascii(e->value) ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
+        png_set_text(job->png, job->info, &text, 1);
+    }
+}
+
+noc_status image_write_png(output *o, const uint8_t *rgb, int width, int height, const meta_list *meta, noc_log *log) {
+    png_job job = { .name = o->path, .log = log, .out = o };
+    job.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
+    job.info = job.png ? png_create_info_struct(job.png) : NULL;
+    if (!job.info) {
+        png_destroy_write_struct(&job.png, NULL);
+        return noc_error(log, NOC_ERR_MEMORY, "%s: PNG: no memory", o->path);
+    }
+    if (setjmp(job.escape) == 0) {
+        png_set_write_fn(job.png, &job, write_data, flush_data);
+        png_set_IHDR(job.png, job.info, (png_uint_32)width, (png_uint_32)height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                     PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        png_set_sRGB_gAMA_and_cHRM(job.png, job.info, PNG_sRGB_INTENT_PERCEPTUAL);
+        set_text(&job, meta);
+        png_write_info(job.png, job.info);
+        for (int y = 0; y < height; y++)
+            png_write_row(job.png, rgb + (size_t)y * (size_t)width * 3);
+        png_write_end(job.png, NULL);
+    }
+    png_destroy_write_struct(&job.png, &job.info);
+    return job.status;
+}
+
+/* Everything becomes RGBA of 8 or 16 bits, in the machine's byte order. */
+static int set_transforms(png_job *job) {
+    int depth = png_get_bit_depth(job->png, job->info), colour = png_get_color_type(job->png, job->info);
+    png_set_expand(job->png); /* palettes, 1 to 4 bits, tRNS */
+    if (!(colour & PNG_COLOR_MASK_COLOR))
+        png_set_gray_to_rgb(job->png);
+    png_set_add_alpha(job->png, 0xffff, PNG_FILLER_AFTER); /* where there is none yet */
+#if __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+    if (depth == 16)
+        png_set_swap(job->png);
+#endif
+    return depth == 16 ? 16 : 8;
+}
+
+/* Linear values of all codes. */
+static float *decode_table(int depth) {
+    int codes = 1 << depth;
+    float *table = noc_alloc((size_t)codes * sizeof(float));
+    for (int i = 0; i < codes; i++)
+        table[i] = (float)srgb_decode((double)i / (codes - 1));
+    return table;
+}
+
+/* Over black: colour times alpha, in linear light. */
+static void store_row(float *rgb, const png_byte *row, int width, int depth, const float *table) {
+    float opaque = (float)((1 << depth) - 1);
+    for (size_t x = 0; x < (size_t)width; x++) {
+        uint16_t v[4];
+        if (depth == 16)
+            memcpy(v, row + 8 * x, sizeof(v));
+        else
+            for (int k = 0; k < 4; k++)
+                v[k] = row[4 * x + (size_t)k];
+        for (int k = 0; k < 3; k++)
+            rgb[3 * x + (size_t)k] = table[v[k]] * ((float)v[3] / opaque);
+    }
+}
+
+/* Deflate packs 1032 to 1 at most: a file that cannot hold its picture is known before any memory is given to it. */
+static bool plausible(png_job *job) {
+    double packed = (double)png_get_rowbytes(job->png, job->info) * png_get_image_height(job->png, job->info);
+    if (packed / 1032 <= (double)job->size)
+        return true;
+    job->status = noc_error(job->log, NOC_ERR_FORMAT, "%s: PNG: %u x %u pixels cannot be in a file of %zu bytes", job->name,
+                            png_get_image_width(job->png, job->info), png_get_image_height(job->png, job->info), job->size);
+    return false;
+}
+
+/* libpng may jump out of here, so what must be freed is kept in the job. */
+static void read_pixels(png_job *job) {
+    png_set_read_fn(job->png, job, read_data);
+    png_set_user_limits(job->png, NOC_IMAGE_MAX_SIDE, NOC_IMAGE_MAX_SIDE);
+    png_set_chunk_malloc_max(job->png, 64u << 20);
+    png_set_chunk_cache_max(job->png, 256);
+    png_read_info(job->png, job->info);
+    if (!plausible(job))
+        return;
+    int width = (int)png_get_image_width(job->png, job->info), height = (int)png_get_image_height(job->png, job->info);
+    int depth = set_transforms(job);
+    int passes = png_set_interlace_handling(job->png);
+    png_read_update_info(job->png, job->info);
+    size_t row_bytes = png_get_rowbytes(job->png, job->info), rows = passes > 1 ? (size_t)height : 1;
+    if (row_bytes != (size_t)width * 4 * (size_t)(depth / 8))
+        png_error(job->png, "unexpected layout of a row");
+    job->image = noc_image_create(width, height, job->log);
+    if (!job->image) {
+        job->status = NOC_ERR_MEMORY;
+        return;
+    }
+    job->buffer = noc_alloc_large(rows, row_bytes);
+    if (!job->buffer) {
+        job->status = noc_error(job->log, NOC_ERR_MEMORY, "%s: no memory for %d x %d pixels", job->name, width, height);
+        return;
+    }
+    job->table = decode_table(depth);
+    /* An interlaced picture is whole only after its last pass: its rows are kept until then. */
+    for (int pass = 0; pass < passes - 1; pass++)
+        for (size_t y = 0; y < rows; y++)
+            png_read_row(job->png, job->buffer + y * row_bytes, NULL);
+    for (int y = 0; y < height; y++) {
+        png_byte *row = job->buffer + (rows > 1 ? (size_t)y : 0) * row_bytes;
+        png_read_row(job->png, row, NULL);
+        store_row(job->image->rgb + (size_t)y * (size_t)width * 3, row, width, depth, job->table);
+    }
+    png_read_end(job->png, NULL);
+}
+
+noc_image *image_read_png(const uint8_t *data, size_t size, const char *name, noc_log *log) {
+    png_job job = { .name = name, .log = log, .data = data, .size = size };
+    job.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
+    job.info = job.png ? png_create_info_struct(job.png) : NULL;
+    if (!job.info) {
+        png_destroy_read_struct(&job.png, NULL, NULL);
+        noc_error(log, NOC_ERR_MEMORY, "%s: PNG: no memory", name);
+        return NULL;
+    }
+    if (setjmp(job.escape) == 0)
+        read_pixels(&job);
+    png_destroy_read_struct(&job.png, &job.info, NULL);
+    free(job.buffer);
+    free(job.table);
+    if (job.status != NOC_OK) {
+        noc_image_destroy(job.image);
+        return NULL;
+    }
+    return job.image;
+}

@@ -1,0 +1,372 @@
+/* Pictures to files and back: PNG, OpenEXR, metadata, errors. */
+#include "test.h"
+
+#include "image/internal.h"
+
+#include <math.h>
+#include <openexr.h>
+#include <png.h>
+#include <sys/stat.h>
+#include <dirent.h>
+
+static char folder[] = "/tmp/noc-image-XXXXXX";
+static char warnings[4096];
+static int error_count;
+
+static void on_message(void *user, noc_log_level level, const char *text) {
+    (void)user;
+    if (level == NOC_LOG_WARN)
+        snprintf(warnings, sizeof(warnings), "%s", text);
+    error_count += level == NOC_LOG_ERROR;
+}
+
+static noc_log *log_;
+
+static int set_up(void **state) {
+    (void)state;
+    log_ = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = on_message });
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int tear_down(void **state) {
+    (void)state;
+    noc_log_destroy(log_);
+    DIR *d = opendir(folder);
+    for (struct dirent *e; d && (e = readdir(d));)
+        unlinkat(dirfd(d), e->d_name, 0);
+    if (d)
+        closedir(d);
+    return rmdir(folder);
+}
+
+static const char *in_folder(const char *name) {
+    static char path[4][512];
+    static int turn;
+    turn = (turn + 1) % 4;
+    snprintf(path[turn], sizeof(path[turn]), "%s/%s", folder, name);
+    return path[turn];
+}
+
+static size_t files_in_folder(void) {
+    size_t n = 0;
+    DIR *d = opendir(folder);
+    for (struct dirent *e; (e = readdir(d));)
+        n += strcmp(e->d_name, ".") && strcmp(e->d_name, "..");
+    closedir(d);
+    return n;
+}
+
+/* Values over many magnitudes, small negative ones too. */
+static noc_image *random_image(int width, int height, bool mask) {
+    noc_image *image = noc_image_create(width, height, log_);
+    uint32_t s = 12345;
+    for (size_t i = 0; i < 3 * image_pixels(image); i++) {
+        s = s * 1664525u + 1013904223u;
+        image->rgb[i] = exp2f((float)(s >> 8) / 16777216.f * 40 - 20) * (s & 64 ? 1 : -1e-3f);
+    }
+    if (mask) {
+        assert_true(image_add_mask(image, log_));
+        for (size_t i = 0; i < image_pixels(image); i++)
+            image->emitter[i] = i % 7 == 0;
+    }
+    return image;
+}
+
+static void exr_keeps_every_bit(void **state) {
+    (void)state;
+    /* One chunk holds 16 lines: sizes below, at and beyond it. */
+    static const int sizes[][2] = { { 1, 1 }, { 7, 16 }, { 33, 17 }, { 130, 71 } };
+    for (size_t k = 0; k < NOC_COUNT(sizes); k++)
+        for (int mask = 0; mask < 2; mask++) {
+            noc_image *a = random_image(sizes[k][0], sizes[k][1], mask);
+            assert_int_equal(noc_image_write(a, in_folder("a.EXR"), NULL, NULL, log_), NOC_OK);
+            bool linear = false;
+            noc_image *b = noc_image_read(in_folder("a.EXR"), log_, &linear);
+            assert_non_null(b);
+            assert_true(linear);
+            assert_int_equal(b->width, a->width);
+            assert_int_equal(b->height, a->height);
+            assert_memory_equal(a->rgb, b->rgb, 3 * sizeof(float) * image_pixels(a));
+            assert_int_equal(b->emitter != NULL, mask);
+            if (mask)
+                assert_memory_equal(a->emitter, b->emitter, image_pixels(a));
+            noc_image_destroy(a);
+            noc_image_destroy(b);
+        }
+}
+
+static void png_is_within_quantisation(void **state) {
+    (void)state;
+    noc_image *a = noc_image_create(256, 3, log_);
+    for (int y = 0; y < 3; y++)
+        for (int x = 0; x < 256; x++)
+            for (int k = 0; k < 3; k++)
+                a->rgb[3 * (y * 256 + x) + k] = (float)(1.2 * srgb_decode((x + 0.3 * y) / 256.0) * (k == y ? 1 : 0.5));
+    noc_display_params linear = { .ev100 = 0, .tonemap = NOC_TONEMAP_LINEAR };
+    assert_int_equal(noc_image_write(a, in_folder("a.png"), &linear, NULL, log_), NOC_OK);
+    bool is_linear = true;
+    noc_image *b = noc_image_read(in_folder("a.png"), log_, &is_linear);
+    assert_non_null(b);
+    assert_false(is_linear);
+    for (size_t i = 0; i < 3 * image_pixels(a); i++)
+        assert_true(fabs(srgb_encode(a->rgb[i] / 1.2) - srgb_encode(b->rgb[i])) <= 0.5 / 255 + 1e-6);
+    noc_image_destroy(a);
+    noc_image_destroy(b);
+}
+
+static void srgb8_survives(void **state) {
+    (void)state;
+    uint8_t rgb[16 * 16 * 3];
+    for (size_t i = 0; i < sizeof(rgb); i++)
+        rgb[i] = (uint8_t)i;
+    assert_int_equal(noc_image_write_srgb8(rgb, 16, 16, in_folder("s.PNG"), NULL, log_), NOC_OK);
+    noc_image *b = noc_image_read(in_folder("s.PNG"), log_, NULL);
+    assert_non_null(b);
+    for (size_t i = 0; i < sizeof(rgb); i++)
+        assert_int_equal(lrint(255 * srgb_encode(b->rgb[i])), rgb[i]);
+    noc_image_destroy(b);
+}
+
+static const char *text_of_png(const char *path, const char *key, bool *has_srgb) {
+    static char text[256];
+    text[0] = 0;
+    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(png);
+    FILE *f = fopen(path, "rb");
+    assert_non_null(f);
+    png_init_io(png, f);
+    png_read_info(png, info);
+    png_textp list = NULL;
+    int n = 0, intent;
+    png_get_text(png, info, &list, &n);
+    for (int i = 0; i < n; i++)
+        if (strcmp(list[i].key, key) == 0)
+            snprintf(text, sizeof(text), "%s", list[i].text);
+    *has_srgb = png_get_sRGB(png, info, &intent) != 0;
+    png_destroy_read_struct(&png, &info, NULL);
+    fclose(f);
+    return text;
+}
+
+static const char *const keys[] = { "crs", "Comment", "Software" };
+static const char *const values[] = { "EPSG:25832", "Straßenlaternen 夜", "mine" };
+static const noc_image_meta meta = { 3, keys, values };
+
+static void png_holds_metadata(void **state) {
+    (void)state;
+    noc_image *a = random_image(4, 4, false);
+    noc_display_params display = { .ev100 = 2.5, .tonemap = NOC_TONEMAP_REINHARD };
+    const char *path = in_folder("m.png");
+    assert_int_equal(noc_image_write(a, path, &display, &meta, log_), NOC_OK);
+    bool srgb = false;
+    assert_string_equal(text_of_png(path, "crs", &srgb), "EPSG:25832");
+    assert_true(srgb);
+    assert_string_equal(text_of_png(path, "Comment", &srgb), values[1]);
+    assert_string_equal(text_of_png(path, "Software", &srgb), "mine");
+    assert_string_equal(text_of_png(path, "ev100", &srgb), "2.5000");
+    assert_string_equal(text_of_png(path, "tonemap", &srgb), "reinhard");
+    noc_image_destroy(a);
+}
+
+static const char *text_of_exr(exr_context_t c, const char *key) {
+    const char *s = NULL;
+    int32_t n = 0;
+    assert_int_equal(exr_attr_get_string(c, 0, key, &n, &s), EXR_ERR_SUCCESS);
+    return s;
+}
+
+static void exr_holds_units_and_metadata(void **state) {
+    (void)state;
+    noc_image *a = random_image(4, 4, true);
+    const char *path = in_folder("m.exr");
+    assert_int_equal(noc_image_write(a, path, NULL, &meta, log_), NOC_OK);
+    exr_context_t c;
+    assert_int_equal(exr_start_read(&c, path, NULL), EXR_ERR_SUCCESS);
+    assert_string_equal(text_of_exr(c, "units"), "cd/m2");
+    assert_string_equal(text_of_exr(c, "crs"), "EPSG:25832");
+    assert_string_equal(text_of_exr(c, "Comment"), values[1]);
+    assert_string_equal(text_of_exr(c, "Software"), "mine");
+    float white = 0;
+    exr_attr_chromaticities_t primaries;
+    assert_int_equal(exr_attr_get_float(c, 0, "whiteLuminance", &white), EXR_ERR_SUCCESS);
+    assert_true(white == 1);
+    assert_int_equal(exr_attr_get_chromaticities(c, 0, "chromaticities", &primaries), EXR_ERR_SUCCESS);
+    assert_true(primaries.red_x == 0.64f && primaries.white_y == 0.329f);
+    const exr_attr_chlist_t *list;
+    exr_compression_t compression;
+    assert_int_equal(exr_get_channels(c, 0, &list), EXR_ERR_SUCCESS);
+    assert_int_equal(exr_get_compression(c, 0, &compression), EXR_ERR_SUCCESS);
+    assert_int_equal(compression, EXR_COMPRESSION_ZIP);
+    assert_int_equal(list->num_channels, 4);
+    assert_string_equal(list->entries[3].name.str, "emitter");
+    exr_finish(&c);
+    noc_image_destroy(a);
+}
+
+static void bad_metadata_is_refused(void **state) {
+    (void)state;
+    noc_image *a = random_image(2, 2, false);
+    static const char *const bad[] = { "", " x", "x ", "a  b", "tab\t", "\xc3\xa4",
+        "0123456789012345678901234567890123456789012345678901234567890123456789012345678901" };
+    const char *value = "v";
+    size_t before = files_in_folder();
+    for (size_t i = 0; i < NOC_COUNT(bad); i++)
+        assert_int_equal(noc_image_write(a, in_folder("bad.png"), NULL, &(noc_image_meta){ 1, &bad[i], &value }, log_),
+                         NOC_ERR_ARGUMENT);
+    const char *taken = "channels";
+    assert_int_equal(noc_image_write(a, in_folder("bad.exr"), NULL, &(noc_image_meta){ 1, &taken, &value }, log_),
+                     NOC_ERR_ARGUMENT);
+    assert_int_equal(files_in_folder(), before);
+    noc_image_destroy(a);
+}
+
+static void non_finite_never_reaches_a_file(void **state) {
+    (void)state;
+    noc_image *a = random_image(20, 20, false);
+    a->rgb[3] = NAN;
+    a->rgb[10] = INFINITY;
+    warnings[0] = 0;
+    assert_int_equal(noc_image_write(a, in_folder("n.exr"), NULL, NULL, log_), NOC_OK);
+    assert_non_null(strstr(warnings, "2 of 400 pixels"));
+    noc_image *b = noc_image_read(in_folder("n.exr"), log_, NULL);
+    for (size_t i = 0; i < 3 * image_pixels(a); i++) {
+        bool bad = (i >= 3 && i < 6) || (i >= 9 && i < 12);
+        assert_true(b->rgb[i] == (bad ? 0 : a->rgb[i]));
+    }
+    noc_display_params display = { .ev100 = 0 };
+    uint8_t shown[20 * 20 * 3];
+    noc_image_to_srgb8(a, &display, shown);
+    assert_int_equal(shown[3] | shown[4] | shown[5] | shown[9] | shown[10] | shown[11], 0);
+    noc_image_destroy(a);
+    noc_image_destroy(b);
+}
+
+static void one_error(noc_status got, noc_status expected, const char *part) {
+    assert_int_equal(got, expected);
+    assert_int_equal(error_count, 1);
+    assert_non_null(strstr(noc_log_last_error(log_), part));
+    error_count = 0;
+}
+
+static void writing_fails_once_and_leaves_nothing(void **state) {
+    (void)state;
+    noc_image *a = random_image(3, 3, false);
+    size_t before = files_in_folder();
+    error_count = 0;
+    one_error(noc_image_write(a, in_folder("a.jpg"), NULL, NULL, log_), NOC_ERR_UNSUPPORTED, ".png or .exr");
+    one_error(noc_image_write(a, "png", NULL, NULL, log_), NOC_ERR_UNSUPPORTED, ".png or .exr");
+    one_error(noc_image_write(a, ".exr", NULL, NULL, log_), NOC_ERR_UNSUPPORTED, ".png or .exr");
+    one_error(noc_image_write_srgb8((uint8_t[3]){ 0 }, 1, 1, in_folder("a.exr"), NULL, log_), NOC_ERR_UNSUPPORTED, "use .png");
+    one_error(noc_image_write_srgb8((uint8_t[3]){ 0 }, 0, 1, in_folder("a.png"), NULL, log_), NOC_ERR_ARGUMENT, "0 x 1");
+    one_error(noc_image_write(a, in_folder("missing/a.exr"), NULL, NULL, log_), NOC_ERR_IO, "No such file");
+    one_error(noc_image_write(a, in_folder("missing/a.png"), NULL, NULL, log_), NOC_ERR_IO, "No such file");
+    assert_int_equal(files_in_folder(), before);
+    mkdir(in_folder("d.png"), 0777);
+    one_error(noc_image_write(a, in_folder("d.png"), NULL, NULL, log_), NOC_ERR_IO, "it is a directory");
+    rmdir(in_folder("d.png"));
+    assert_int_equal(symlink("/dev/full", in_folder("full.exr")), 0);
+    one_error(noc_image_write(a, in_folder("full.exr"), NULL, NULL, log_), NOC_ERR_IO, "not a regular file");
+    unlink(in_folder("full.exr"));
+    assert_int_equal(files_in_folder(), before);
+    noc_image_destroy(a);
+}
+
+/* A failing disk: the stream of the temporary file is one that refuses every byte. */
+static void a_full_disk_is_reported(void **state) {
+    (void)state;
+    if (access("/dev/full", W_OK) != 0)
+        skip();
+    noc_image *a = random_image(64, 64, true);
+    size_t before = files_in_folder();
+    for (int exr = 0; exr < 2; exr++) {
+        error_count = 0;
+        output o;
+        assert_int_equal(output_open(&o, in_folder(exr ? "f.exr" : "f.png"), log_), NOC_OK);
+        o.file = freopen("/dev/full", "wb", o.file);
+        assert_non_null(o.file);
+        meta_list list = { 0 };
+        uint8_t rgb[64 * 64 * 3] = { 0 };
+        noc_status status = exr ? image_write_exr(&o, a, &list, log_) : image_write_png(&o, rgb, 64, 64, &list, log_);
+        one_error(output_close(&o, status, log_), NOC_ERR_IO, "No space left");
+        assert_int_equal(files_in_folder(), before);
+    }
+    noc_image_destroy(a);
+}
+
+static void an_old_picture_survives_a_failure(void **state) {
+    (void)state;
+    noc_image *a = random_image(9, 9, false);
+    assert_int_equal(noc_image_write(a, in_folder("old.exr"), NULL, NULL, log_), NOC_OK);
+    output o;
+    assert_int_equal(output_open(&o, in_folder("old.exr"), log_), NOC_OK);
+    fputs("half of a picture", o.file);
+    assert_int_equal(output_close(&o, NOC_ERR_CANCELLED, log_), NOC_ERR_CANCELLED);
+    noc_image *b = noc_image_read(in_folder("old.exr"), log_, NULL);
+    assert_non_null(b);
+    assert_memory_equal(a->rgb, b->rgb, 3 * sizeof(float) * image_pixels(a));
+    noc_image_destroy(a);
+    noc_image_destroy(b);
+}
+
+static void a_link_is_followed(void **state) {
+    (void)state;
+    noc_image *a = random_image(2, 2, false);
+    assert_int_equal(noc_image_write(a, in_folder("real.exr"), NULL, NULL, log_), NOC_OK);
+    assert_int_equal(symlink("real.exr", in_folder("link.exr")), 0);
+    a->rgb[0] = 77;
+    assert_int_equal(noc_image_write(a, in_folder("link.exr"), NULL, NULL, log_), NOC_OK);
+    struct stat st;
+    assert_int_equal(lstat(in_folder("link.exr"), &st), 0);
+    assert_true(S_ISLNK(st.st_mode));
+    noc_image *b = noc_image_read(in_folder("real.exr"), log_, NULL);
+    assert_true(b->rgb[0] == 77);
+    noc_image_destroy(a);
+    noc_image_destroy(b);
+}
+
+static void reading_fails_once(void **state) {
+    (void)state;
+    error_count = 0;
+    assert_null(noc_image_read(in_folder("missing.png"), log_, NULL));
+    one_error(NOC_OK, NOC_OK, "No such file");
+    assert_null(noc_image_read(folder, log_, NULL));
+    one_error(NOC_OK, NOC_OK, "directory");
+    FILE *f = fopen(in_folder("text.png"), "wb");
+    fputs("this is not a picture", f);
+    fclose(f);
+    assert_null(noc_image_read(in_folder("text.png"), log_, NULL));
+    one_error(NOC_OK, NOC_OK, "neither a PNG nor an OpenEXR file");
+    f = fopen(in_folder("empty.exr"), "wb");
+    fclose(f);
+    assert_null(noc_image_read(in_folder("empty.exr"), log_, NULL));
+    one_error(NOC_OK, NOC_OK, "neither a PNG nor an OpenEXR file");
+}
+
+static void sizes_are_checked(void **state) {
+    (void)state;
+    error_count = 0;
+    assert_null(noc_image_create(0, 5, log_));
+    one_error(NOC_OK, NOC_OK, "0 x 5");
+    assert_null(noc_image_create(5, NOC_IMAGE_MAX_SIDE + 1, log_));
+    one_error(NOC_OK, NOC_OK, "32769");
+    noc_image_destroy(NULL);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(exr_keeps_every_bit),
+        cmocka_unit_test(png_is_within_quantisation),
+        cmocka_unit_test(srgb8_survives),
+        cmocka_unit_test(png_holds_metadata),
+        cmocka_unit_test(exr_holds_units_and_metadata),
+        cmocka_unit_test(bad_metadata_is_refused),
+        cmocka_unit_test(non_finite_never_reaches_a_file),
+        cmocka_unit_test(writing_fails_once_and_leaves_nothing),
+        cmocka_unit_test(a_full_disk_is_reported),
+        cmocka_unit_test(an_old_picture_survives_a_failure),
+        cmocka_unit_test(a_link_is_followed),
+        cmocka_unit_test(reading_fails_once),
+        cmocka_unit_test(sizes_are_checked),
+    };
+    return cmocka_run_group_tests_name("image files", tests, set_up, tear_down);
+}
