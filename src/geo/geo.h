@@ -20,9 +20,14 @@ bool geo_crs_is_geographic(const geo_crs *crs);
 bool geo_crs_is_metric(const geo_crs *crs);         /* projected, axes in metres */
 bool geo_crs_lat_first(const geo_crs *crs);         /* the authority's order is northing/latitude first */
 bool geo_crs_equal(const geo_crs *a, const geo_crs *b); /* same horizontal CRS */
+/* Longitude and latitude (degrees, WGS 84) of a point given easting northing; false if it has none. Not thread-safe. */
+bool geo_crs_lonlat(geo_crs *crs, double x, double y, double lonlat[2]);
+/* How far a point (easting northing) lies outside the area the CRS is meant for: degrees, 0 inside, INFINITY where it has
+ * no place on Earth. What tells exchanged axes and wrong CRSs. Not thread-safe. */
+double geo_crs_outside(geo_crs *crs, double x, double y);
 
 /* Transform between two CRSs; not thread-safe, one a thread. Points are easting northing height (lon lat height, degrees):
- * axis order is normalised. Height passes through unchanged. */
+ * axis order is normalised. Height passes through unchanged, but for its unit (feet to metres). */
 typedef struct geo_transform geo_transform;
 geo_transform *geo_transform_create(const geo_crs *from, const geo_crs *to, noc_log *log);
 void geo_transform_destroy(geo_transform *t);

@@ -1,0 +1,338 @@
+/* Coordinate reference systems and transforms: the only PROJ calls of the library. */
+#include "geo/crs_spelling.h"
+#include "geo/geo.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <proj.h>
+#include <stdio.h>
+
+struct geo_crs {
+    PJ_CONTEXT *context; /* one each: PROJ contexts are not thread-safe */
+    PJ *pj;              /* horizontal; a three-dimensional one is used as if at height 0 */
+    PJ *to_wgs84;        /* made on first use of geo_crs_lonlat */
+    char *name;
+    bool geographic, metric, lat_first;
+    double height_unit;  /* metres */
+    bool has_area;
+    double west, south, east, north; /* area of use, degrees on WGS 84; west > east across the antimeridian */
+};
+
+static void ignore_message(void *user, int level, const char *text) {
+    (void)user, (void)level, (void)text; /* what matters becomes our own errors */
+}
+
+static PJ_CONTEXT *context_create(void) {
+    PJ_CONTEXT *context = proj_context_create();
+    proj_log_func(context, NULL, ignore_message);
+    proj_context_set_enable_network(context, 0); /* grids that are not installed are not fetched */
+    return context;
+}
+
+/* ---- reading a definition ---- */
+
+static bool same_name(const char *a, const char *b) {
+    for (;; a++, b++) {
+        while (*a && !isalnum((unsigned char)*a))
+            a++;
+        while (*b && !isalnum((unsigned char)*b))
+            b++;
+        if (tolower((unsigned char)*a) != tolower((unsigned char)*b))
+            return false;
+        if (!*a)
+            return true;
+    }
+}
+
+/* WKT, PROJ strings, PROJJSON, and CRSs by their full name. PROJ also guesses from parts of names ("foo" gives
+ * Amersfoort), so a name counts only if it is the name of what came out. */
+static PJ *create_free_form(PJ_CONTEXT *context, const char *definition) {
+    while (isspace((unsigned char)*definition))
+        definition++;
+    if (*definition == '+' && !strstr(definition, "+type=crs")) {
+        char *text = noc_format("%s +type=crs", definition);
+        PJ *pj = proj_create(context, text);
+        free(text);
+        return pj;
+    }
+    bool is_text = *definition == '+' || *definition == '{' || strchr(definition, '[') || strstr(definition, "+proj=");
+    PJ *pj = proj_create(context, definition);
+    if (pj && !is_text && !same_name(proj_get_name(pj), definition)) {
+        proj_destroy(pj);
+        return NULL;
+    }
+    return pj;
+}
+
+static PJ *create_registered(PJ_CONTEXT *context, const char *name) {
+    const char *colon = strchr(name, ':');
+    char *authority = noc_format("%.*s", (int)(colon - name), name);
+    PJ *pj = proj_create_from_database(context, authority, colon + 1, PJ_CATEGORY_CRS, false, NULL);
+    /* codes of ESRI are often given as if they were EPSG's */
+    if (!pj && !strcmp(authority, "EPSG"))
+        pj = proj_create_from_database(context, "ESRI", colon + 1, PJ_CATEGORY_CRS, false, NULL);
+    free(authority);
+    return pj;
+}
+
+static PJ *replace(PJ *old, PJ *new) {
+    proj_destroy(old);
+    return new;
+}
+
+/* Metres of one unit of an axis; 0 where there is no such axis. */
+static double axis_unit(PJ_CONTEXT *context, const PJ *crs, int axis) {
+    double unit = 0;
+    PJ *cs = proj_crs_get_coordinate_system(context, crs);
+    if (!cs || !proj_cs_get_axis_info(context, cs, axis, NULL, NULL, NULL, &unit, NULL, NULL, NULL))
+        unit = 0;
+    proj_destroy(cs);
+    return unit;
+}
+
+/* Leaves the horizontal part of crs->pj; notes the unit of heights where a vertical part or a third axis names one. */
+static void reduce_to_horizontal(geo_crs *crs) {
+    PJ_CONTEXT *context = crs->context;
+    if (crs->pj && proj_get_type(crs->pj) == PJ_TYPE_COMPOUND_CRS) {
+        PJ *vertical = proj_crs_get_sub_crs(context, crs->pj, 1);
+        if (vertical && proj_get_type(vertical) == PJ_TYPE_BOUND_CRS)
+            vertical = replace(vertical, proj_get_source_crs(context, vertical));
+        if (vertical)
+            crs->height_unit = axis_unit(context, vertical, 0);
+        proj_destroy(vertical);
+        crs->pj = replace(crs->pj, proj_crs_get_sub_crs(context, crs->pj, 0));
+    }
+    if (!crs->pj)
+        return;
+    double third = axis_unit(context, crs->pj, 2);
+    if (third > 0)
+        crs->height_unit = third;
+}
+
+static bool is_direction(const char *direction, const char *a, const char *b) {
+    return noc_ieq(direction, a) || noc_ieq(direction, b);
+}
+
+/* Type, axes, units, area of use. False if it is not a CRS of the ground (geocentric, vertical, local). */
+static bool inspect(geo_crs *crs) {
+    PJ_CONTEXT *context = crs->context;
+    const PJ *pj = crs->pj;
+    PJ *source = NULL;
+    if (proj_get_type(pj) == PJ_TYPE_BOUND_CRS)
+        pj = source = proj_get_source_crs(context, pj);
+    PJ_TYPE type = pj ? proj_get_type(pj) : PJ_TYPE_UNKNOWN;
+    crs->geographic = type == PJ_TYPE_GEOGRAPHIC_2D_CRS || type == PJ_TYPE_GEOGRAPHIC_3D_CRS;
+    bool ok = crs->geographic || type == PJ_TYPE_PROJECTED_CRS;
+    PJ *cs = ok ? proj_crs_get_coordinate_system(context, pj) : NULL;
+    const char *name0 = "", *direction0 = "", *direction1 = "";
+    double unit0 = 0, unit1 = 0;
+    ok = cs && proj_cs_get_axis_info(context, cs, 0, &name0, NULL, &direction0, &unit0, NULL, NULL, NULL) &&
+         proj_cs_get_axis_info(context, cs, 1, NULL, NULL, &direction1, &unit1, NULL, NULL, NULL);
+    if (ok) {
+        bool polar = !is_direction(direction0, "east", "west") && !is_direction(direction1, "east", "west");
+        crs->lat_first = polar ? !strncasecmp(name0, "northing", 8) : is_direction(direction0, "north", "south");
+        crs->metric = !crs->geographic && unit0 == 1 && unit1 == 1 &&
+                      noc_ieq(crs->lat_first ? direction0 : direction1, "north") &&
+                      noc_ieq(crs->lat_first ? direction1 : direction0, "east");
+        /* Where nothing is said about heights: a projected CRS in feet has its heights in feet too. */
+        if (!(crs->height_unit > 0))
+            crs->height_unit = crs->geographic ? 1 : unit0;
+        crs->has_area = proj_get_area_of_use(context, pj, &crs->west, &crs->south, &crs->east, &crs->north, NULL) &&
+                        crs->west > -1000; /* -1000: not known */
+        const char *authority = proj_get_id_auth_name(pj, 0), *code = proj_get_id_code(pj, 0), *name = proj_get_name(pj);
+        crs->name = authority && code ? noc_format("%s:%s (%s)", authority, code, name) : noc_strdup(name);
+    }
+    proj_destroy(cs);
+    proj_destroy(source);
+    return ok;
+}
+
+geo_crs *geo_crs_create(const char *definition, const char *place, noc_log *log) {
+    if (!place)
+        place = "";
+    const char *between = *place ? ": " : "";
+    geo_crs *crs = noc_calloc(1, sizeof(*crs));
+    crs->context = context_create();
+    crs_spelling spelling;
+    bool registered = crs_spelling_parse(definition, &spelling);
+    crs->pj = registered ? create_registered(crs->context, spelling.horizontal) : create_free_form(crs->context, definition);
+    if (!crs->pj) {
+        if (!proj_context_get_database_metadata(crs->context, "EPSG.VERSION"))
+            noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sPROJ finds no proj.db, so no CRS can be read", place, between);
+        else
+            noc_error(log, NOC_ERR_FORMAT, "%s%sthe CRS \"%.200s\" is not understood%s%s", place, between, definition,
+                      registered ? ": no registered " : "", registered ? spelling.horizontal : "");
+        geo_crs_destroy(crs);
+        return NULL;
+    }
+    reduce_to_horizontal(crs);
+    if (spelling.vertical[0]) {
+        PJ *vertical = create_registered(crs->context, spelling.vertical);
+        if (vertical && proj_get_type(vertical) == PJ_TYPE_VERTICAL_CRS)
+            crs->height_unit = axis_unit(crs->context, vertical, 0);
+        proj_destroy(vertical);
+    }
+    if (!crs->pj || !inspect(crs)) {
+        noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sthe CRS \"%.200s\" is neither geographic nor projected", place, between,
+                  definition);
+        geo_crs_destroy(crs);
+        return NULL;
+    }
+    return crs;
+}
+
+geo_crs *geo_crs_utm(double lon, double lat) {
+    int zone = (int)NOC_CLAMP(floor((lon + 180) / 6) + 1, 1, 60);
+    char text[24];
+    snprintf(text, sizeof(text), "EPSG:%d", (lat < 0 ? 32700 : 32600) + zone);
+    return geo_crs_create(text, NULL, NULL);
+}
+
+geo_crs *geo_crs_clone(const geo_crs *crs) {
+    if (!crs)
+        return NULL;
+    geo_crs *copy = noc_alloc(sizeof(*copy));
+    *copy = *crs;
+    copy->context = context_create();
+    copy->pj = proj_clone(copy->context, crs->pj);
+    copy->to_wgs84 = NULL;
+    copy->name = noc_strdup(crs->name);
+    return copy;
+}
+
+void geo_crs_destroy(geo_crs *crs) {
+    if (!crs)
+        return;
+    proj_destroy(crs->to_wgs84);
+    proj_destroy(crs->pj);
+    proj_context_destroy(crs->context);
+    free(crs->name);
+    free(crs);
+}
+
+const char *geo_crs_name(const geo_crs *crs) { return crs ? crs->name : ""; }
+bool geo_crs_is_geographic(const geo_crs *crs) { return crs->geographic; }
+bool geo_crs_is_metric(const geo_crs *crs) { return crs->metric; }
+bool geo_crs_lat_first(const geo_crs *crs) { return crs->lat_first; }
+
+bool geo_crs_equal(const geo_crs *a, const geo_crs *b) {
+    return a && b && (a == b || proj_is_equivalent_to_with_ctx(a->context, a->pj, b->pj, PJ_COMP_EQUIVALENT));
+}
+
+/* ---- area of use ---- */
+
+bool geo_crs_lonlat(geo_crs *crs, double x, double y, double lonlat[2]) {
+    if (!crs->to_wgs84) {
+        PJ *wgs84 = proj_create(crs->context, "OGC:CRS84");
+        crs->to_wgs84 = wgs84 ? proj_create_crs_to_crs_from_pj(crs->context, crs->pj, wgs84, NULL, NULL) : NULL;
+        proj_destroy(wgs84);
+        if (!crs->to_wgs84)
+            return false;
+    }
+    if (!isfinite(x) || !isfinite(y) || (crs->geographic && fabs(y) > 400))
+        return false;
+    PJ_COORD c = proj_coord(crs->lat_first ? y : x, crs->lat_first ? x : y, 0, HUGE_VAL);
+    c = proj_trans(crs->to_wgs84, PJ_FWD, c);
+    proj_errno_reset(crs->to_wgs84);
+    if (!isfinite(c.xy.x) || !isfinite(c.xy.y) || fabs(c.xy.y) > 90)
+        return false;
+    lonlat[0] = c.xy.x;
+    lonlat[1] = c.xy.y;
+    return true;
+}
+
+double geo_crs_outside(geo_crs *crs, double x, double y) {
+    double p[2];
+    if (!geo_crs_lonlat(crs, x, y, p))
+        return INFINITY;
+    if (!crs->has_area)
+        return 0;
+    double east = crs->east < crs->west ? crs->east + 360 : crs->east, lon = p[0];
+    while (lon < crs->west - 180)
+        lon += 360;
+    double dx = NOC_MAX(crs->west - lon, lon - east);
+    if (dx > 0) /* perhaps nearer the other way round */
+        dx = NOC_MIN(dx, NOC_MAX(crs->west - (lon + 360), lon + 360 - east));
+    double dy = NOC_MAX(crs->south - p[1], p[1] - crs->north);
+    return NOC_MAX(NOC_MAX(dx, dy), 0);
+}
+
+/* ---- transforms ---- */
+
+struct geo_transform {
+    PJ_CONTEXT *context;
+    PJ *pj;             /* NULL: identity */
+    bool swap_from, swap_to;
+    double height_scale;
+    noc_log *log;
+    char *names;        /* for the message about accuracy; NULL once it was checked */
+};
+
+geo_transform *geo_transform_create(const geo_crs *from, const geo_crs *to, noc_log *log) {
+    geo_transform *t = noc_calloc(1, sizeof(*t));
+    t->swap_from = from->lat_first;
+    t->swap_to = to->lat_first;
+    t->height_scale = from->height_unit / to->height_unit;
+    if (geo_crs_equal(from, to))
+        return t;
+    t->log = log;
+    t->context = context_create();
+    t->pj = proj_create_crs_to_crs_from_pj(t->context, from->pj, to->pj, NULL, NULL);
+    if (!t->pj) {
+        noc_error(log, NOC_ERR_UNSUPPORTED, "no transformation is known from %s to %s", from->name, to->name);
+        geo_transform_destroy(t);
+        return NULL;
+    }
+    t->names = noc_format("%s to %s", from->name, to->name);
+    return t;
+}
+
+void geo_transform_destroy(geo_transform *t) {
+    if (!t)
+        return;
+    proj_destroy(t->pj);
+    if (t->context)
+        proj_context_destroy(t->context);
+    free(t->names);
+    free(t);
+}
+
+/* Where PROJ knows no path between two datums it takes them for one: that may be 100 m off, so it is said once. */
+static void check_accuracy(geo_transform *t) {
+    PJ *used = proj_trans_get_last_used_operation(t->pj);
+    if (!used)
+        return;
+    if (proj_coordoperation_has_ballpark_transformation(t->context, used))
+        noc_warn(t->log, "%s: no datum shift is known here, positions may be off by up to a few hundred metres", t->names);
+    proj_destroy(used);
+    free(t->names);
+    t->names = NULL;
+}
+
+size_t geo_transform_points(geo_transform *t, double *xyz, size_t count) {
+    if (t->height_scale != 1)
+        for (size_t i = 0; i < count; i++)
+            xyz[3 * i + 2] *= t->height_scale;
+    size_t failed = 0;
+    if (t->pj && count) {
+        double *first = xyz + t->swap_from, *second = xyz + !t->swap_from;
+        /* without z: it is the height's own business, and NaN there (a lamp on the ground) must not spoil x and y */
+        proj_trans_generic(t->pj, PJ_FWD, first, 3 * sizeof(double), count, second, 3 * sizeof(double), count, NULL, 0, 0,
+                           NULL, 0, 0);
+        proj_errno_reset(t->pj);
+    }
+    for (size_t i = 0; i < count; i++) {
+        double *p = xyz + 3 * i;
+        if (!isfinite(p[0]) || !isfinite(p[1])) {
+            p[0] = p[1] = p[2] = NAN;
+            failed++;
+        } else if (t->pj && t->swap_from != t->swap_to) {
+            double x = p[0];
+            p[0] = p[1];
+            p[1] = x;
+        }
+    }
+    if (t->names && failed < count)
+        check_accuracy(t);
+    return failed;
+}

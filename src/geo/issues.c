@@ -1,0 +1,76 @@
+/* Reasons why features were skipped or repaired, counted, with the ids of the first few. */
+#include "geo/geo.h"
+
+#define EXAMPLES 5
+
+struct line {
+    const char *reason; /* a literal */
+    bool repaired;
+    size_t count;
+    int example_count;
+    const char *examples[EXAMPLES];
+    char *joined;       /* made on request */
+};
+
+struct geo_issues {
+    NOC_ARRAY(struct line) lines;
+    noc_arena names;
+};
+
+geo_issues *geo_issues_create(void) { return noc_calloc(1, sizeof(geo_issues)); }
+
+void geo_issues_destroy(geo_issues *issues) {
+    if (!issues)
+        return;
+    for (size_t i = 0; i < issues->lines.len; i++)
+        free(issues->lines.data[i].joined);
+    array_free(&issues->lines);
+    arena_free(&issues->names);
+    free(issues);
+}
+
+/* There are a few dozen reasons at most, and those in use come first: a linear search. */
+static struct line *find_line(geo_issues *issues, bool repaired, const char *reason) {
+    for (size_t i = 0; i < issues->lines.len; i++) {
+        struct line *l = &issues->lines.data[i];
+        if (l->repaired == repaired && (l->reason == reason || !strcmp(l->reason, reason)))
+            return l;
+    }
+    array_push(&issues->lines, (struct line){ .reason = reason, .repaired = repaired });
+    return &issues->lines.data[issues->lines.len - 1];
+}
+
+void geo_issue(geo_issues *issues, bool repaired, const char *reason, const char *id) {
+    if (!issues)
+        return;
+    struct line *l = find_line(issues, repaired, reason);
+    l->count++;
+    if (!id || !*id || l->example_count == EXAMPLES)
+        return;
+    for (int i = 0; i < l->example_count; i++)
+        if (!strcmp(l->examples[i], id))
+            return;
+    l->examples[l->example_count++] = arena_strdup(&issues->names, id);
+    free(l->joined);
+    l->joined = NULL;
+}
+
+size_t geo_issues_count(const geo_issues *issues) { return issues ? issues->lines.len : 0; }
+
+void geo_issues_get(const geo_issues *issues, size_t i, const char **reason, bool *repaired, size_t *count,
+                    const char **examples) {
+    struct line *l = &issues->lines.data[i];
+    *reason = l->reason;
+    *repaired = l->repaired;
+    *count = l->count;
+    if (!l->joined) {
+        size_t size = 1;
+        for (int k = 0; k < l->example_count; k++)
+            size += strlen(l->examples[k]) + 2;
+        char *p = l->joined = noc_alloc(size);
+        *p = 0;
+        for (int k = 0; k < l->example_count; k++)
+            p = stpcpy(stpcpy(p, k ? ", " : ""), l->examples[k]);
+    }
+    *examples = l->joined;
+}

@@ -1,0 +1,362 @@
+/* Polygons as surveyors deliver them, cleaned and cut into triangles. */
+#include "geo/geo.h"
+#include "geo/tessellate.h"
+
+#include <math.h>
+
+#define SAME_POINT 1e-4    /* m; neighbouring points nearer than this are one */
+#define PLANE_TOLERANCE 0.01 /* m; points further off the best plane make a polygon non-planar */
+#define LARGEST 1e6        /* m; no surface of a city is wider, and floats could not hold it */
+#define SMALLEST_AREA 1e-8 /* m2 */
+
+/* A polygon at work: cleaned points of all rings, relative to `centre`, and the same in the coordinates of its plane. */
+struct work {
+    const char *id;
+    geo_issues *issues;
+    NOC_ARRAY(double) xyz;
+    NOC_ARRAY(double) uv;
+    NOC_ARRAY(size_t) ring_size;
+    double centre[3], normal[3];
+};
+
+static void subtract(const double *a, const double *b, double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = a[k] - b[k];
+}
+
+static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static void cross(const double *a, const double *b, double out[3]) {
+    double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+    out[0] = x, out[1] = y, out[2] = z;
+}
+
+static bool near(const double *a, const double *b) {
+    double d[3];
+    subtract(a, b, d);
+    return dot(d, d) < SAME_POINT * SAME_POINT;
+}
+
+/* Is b the tip of a spike: does the ring come back from it the way it went? */
+static bool is_spike(const double *a, const double *b, const double *c) {
+    double in[3], out[3], n[3];
+    subtract(b, a, in);
+    subtract(c, b, out);
+    if (dot(in, out) >= 0)
+        return false;
+    cross(in, out, n);
+    double longer = NOC_MAX(dot(in, in), dot(out, out));
+    return dot(n, n) < SAME_POINT * SAME_POINT * longer;
+}
+
+struct defects {
+    bool repeated, spike, non_finite;
+};
+
+/* Removes what the last points of the ring p[0..n) show; removing a spike may bring another to light. */
+static size_t clean_end(double *p, size_t n, struct defects *found) {
+    for (;;) {
+        if (n >= 2 && near(p + 3 * (n - 2), p + 3 * (n - 1))) {
+            found->repeated = true;
+            n--;
+        } else if (n >= 3 && is_spike(p + 3 * (n - 3), p + 3 * (n - 2), p + 3 * (n - 1))) {
+            found->spike = true;
+            memmove(p + 3 * (n - 2), p + 3 * (n - 1), 3 * sizeof(double));
+            n--;
+        } else {
+            return n;
+        }
+    }
+}
+
+/* The same where the ring closes. */
+static size_t clean_seam(double *p, size_t n, struct defects *found) {
+    while (n >= 3) {
+        if (near(p, p + 3 * (n - 1))) {
+            found->repeated = true;
+            n--;
+        } else if (is_spike(p + 3 * (n - 2), p + 3 * (n - 1), p)) {
+            found->spike = true;
+            n--;
+        } else if (is_spike(p + 3 * (n - 1), p, p + 3)) {
+            found->spike = true;
+            memmove(p, p + 3, 3 * --n * sizeof(double));
+        } else {
+            break;
+        }
+    }
+    return n;
+}
+
+/* Appends one ring, cleaned; returns its number of points. */
+static size_t add_ring(struct work *w, const double *xyz, size_t count, struct defects *found) {
+    size_t first = w->xyz.len;
+    array_reserve(&w->xyz, first + 3 * count);
+    double *p = w->xyz.data + first;
+    size_t n = 0;
+    for (size_t i = 0; i < count; i++) {
+        double q[3];
+        subtract(xyz + 3 * i, w->centre, q);
+        if (!isfinite(q[0]) || !isfinite(q[1]) || !isfinite(q[2])) {
+            found->non_finite = true;
+            continue;
+        }
+        memcpy(p + 3 * n++, q, sizeof(q));
+        n = clean_end(p, n, found);
+    }
+    n = clean_seam(p, n, found);
+    w->xyz.len = first + 3 * n;
+    return n;
+}
+
+/* Newell's normal: twice the area as a vector; exact for planar rings, the best plane's for others. */
+static void newell(const double *p, size_t n, double normal[3]) {
+    normal[0] = normal[1] = normal[2] = 0;
+    for (size_t i = 1; i + 1 < n; i++) {
+        double a[3], b[3], c[3];
+        subtract(p + 3 * i, p, a);
+        subtract(p + 3 * (i + 1), p, b);
+        cross(a, b, c);
+        for (int k = 0; k < 3; k++)
+            normal[k] += c[k];
+    }
+}
+
+/* The widest triangle of a fan: a plane for rings whose parts cancel (a bow tie has no area by Newell). */
+static void widest(const double *p, size_t n, double normal[3]) {
+    double best = -1;
+    for (size_t i = 1; i + 1 < n; i++) {
+        double a[3], b[3], c[3];
+        subtract(p + 3 * i, p, a);
+        subtract(p + 3 * (i + 1), p, b);
+        cross(a, b, c);
+        if (dot(c, c) > best) {
+            best = dot(c, c);
+            memcpy(normal, c, sizeof(c));
+        }
+    }
+}
+
+/* The plane of the exterior ring, turned as the ring is; false if it has none. */
+static bool find_plane(struct work *w) {
+    size_t n = w->ring_size.data[0];
+    double size = 0;
+    for (size_t i = 0; i < w->xyz.len; i++)
+        size = NOC_MAX(size, fabs(w->xyz.data[i]));
+    if (!(size < LARGEST)) {
+        geo_issue(w->issues, false, "polygon wider than 1000 km", w->id);
+        return false;
+    }
+    double wide[3] = { 0 };
+    newell(w->xyz.data, n, w->normal);
+    widest(w->xyz.data, n, wide);
+    if (dot(w->normal, w->normal) < 1e-6 * dot(wide, wide)) {
+        double sign = dot(w->normal, wide) < 0 ? -1 : 1;
+        for (int k = 0; k < 3; k++)
+            w->normal[k] = sign * wide[k];
+    }
+    double length = sqrt(dot(w->normal, w->normal));
+    if (!(length >= 2 * SMALLEST_AREA)) {
+        geo_issue(w->issues, false, "polygon without area", w->id);
+        return false;
+    }
+    for (int k = 0; k < 3; k++)
+        w->normal[k] /= length;
+    return true;
+}
+
+/* Coordinates in the plane, counter-clockwise as seen against the normal; reports how flat the polygon is. */
+static void project(struct work *w) {
+    double u[3] = { 0 }, v[3];
+    const double *n = w->normal;
+    int least = fabs(n[0]) < fabs(n[1]) ? (fabs(n[0]) < fabs(n[2]) ? 0 : 2) : (fabs(n[1]) < fabs(n[2]) ? 1 : 2);
+    u[least] = 1;
+    cross(n, u, v);
+    double length = sqrt(dot(v, v));
+    for (int k = 0; k < 3; k++)
+        v[k] /= length;
+    cross(v, n, u);
+    size_t count = w->xyz.len / 3;
+    array_reserve(&w->uv, 2 * count);
+    w->uv.len = 2 * count;
+    double lowest = INFINITY, highest = -INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        const double *p = w->xyz.data + 3 * i;
+        w->uv.data[2 * i] = dot(p, u);
+        w->uv.data[2 * i + 1] = dot(p, v);
+        double height = dot(p, n);
+        lowest = NOC_MIN(lowest, height);
+        highest = NOC_MAX(highest, height);
+    }
+    if (highest - lowest > 2 * PLANE_TOLERANCE)
+        geo_issue(w->issues, true, "non-planar polygon", w->id);
+}
+
+static double signed_area(const double *uv, size_t n) {
+    double sum = 0;
+    for (size_t i = 1; i + 1 < n; i++) {
+        const double *a = uv + 2 * i, *b = a + 2;
+        sum += (a[0] - uv[0]) * (b[1] - uv[1]) - (a[1] - uv[1]) * (b[0] - uv[0]);
+    }
+    return sum / 2;
+}
+
+static bool inside(const double *uv, size_t n, double x, double y) {
+    bool in = false;
+    for (size_t i = 0, j = n - 1; i < n; j = i++) {
+        const double *a = uv + 2 * i, *b = uv + 2 * j;
+        if ((a[1] > y) != (b[1] > y) && x < (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]) + a[0])
+            in = !in;
+    }
+    return in;
+}
+
+static void reverse_ring(struct work *w, size_t first, size_t n) {
+    for (size_t i = 0, j = n - 1; i < j; i++, j--) {
+        for (size_t k = 0; k < 3; k++) {
+            double *a = &w->xyz.data[3 * (first + i) + k], *b = &w->xyz.data[3 * (first + j) + k], t = *a;
+            *a = *b, *b = t;
+        }
+        for (size_t k = 0; k < 2; k++) {
+            double *a = &w->uv.data[2 * (first + i) + k], *b = &w->uv.data[2 * (first + j) + k], t = *a;
+            *a = *b, *b = t;
+        }
+    }
+}
+
+/* Does any of the ring's edges (of a sample of them, if there are many) have its middle in the exterior ring? Corners say
+ * less: they may touch it. */
+static bool lies_in_exterior(const struct work *w, const double *uv, size_t n) {
+    size_t step = n / 64 + 1;
+    for (size_t i = 0; i < n; i += step) {
+        const double *a = uv + 2 * i, *b = uv + 2 * ((i + 1) % n);
+        if (inside(w->uv.data, w->ring_size.data[0], (a[0] + b[0]) / 2, (a[1] + b[1]) / 2))
+            return true;
+    }
+    return false;
+}
+
+/* Holes must run against the exterior and lie in it. The rest is the tessellator's: the winding rule ignores what is
+ * outside, and what is cut out twice. */
+static void check_holes(struct work *w) {
+    size_t first = w->ring_size.data[0];
+    for (size_t r = 1; r < w->ring_size.len; first += w->ring_size.data[r++]) {
+        size_t n = w->ring_size.data[r];
+        double *uv = w->uv.data + 2 * first;
+        if (!lies_in_exterior(w, uv, n))
+            geo_issue(w->issues, true, "interior ring outside the exterior", w->id);
+        if (signed_area(uv, n) > 0) {
+            geo_issue(w->issues, true, "interior ring turned like the exterior", w->id);
+            reverse_ring(w, first, n);
+        }
+    }
+}
+
+/* Rings cleaned into w, plane found, holes turned. False if the polygon was skipped. */
+static bool prepare(struct work *w, const geo_polygon *polygon) {
+    struct defects found = { 0 };
+    const double *p = polygon->xyz;
+    size_t count = polygon->ring_count ? polygon->ring_size[0] : 0, i = 0;
+    while (i < count && !(isfinite(p[3 * i]) && isfinite(p[3 * i + 1]) && isfinite(p[3 * i + 2])))
+        i++;
+    if (i < count)
+        memcpy(w->centre, p + 3 * i, sizeof(w->centre));
+    for (size_t r = 0; r < polygon->ring_count; p += 3 * polygon->ring_size[r++]) {
+        size_t n = add_ring(w, p, polygon->ring_size[r], &found);
+        if (n < 3) {
+            geo_issue(w->issues, r > 0, r ? "interior ring with too few points" : "ring with too few points", w->id);
+            if (!r)
+                return false;
+            w->xyz.len -= 3 * n;
+            continue;
+        }
+        array_push(&w->ring_size, n);
+    }
+    if (!w->ring_size.len) {
+        geo_issue(w->issues, false, "ring with too few points", w->id);
+        return false;
+    }
+    if (!find_plane(w))
+        return false;
+    if (found.non_finite)
+        geo_issue(w->issues, true, "coordinates that are not finite", w->id);
+    if (found.repeated)
+        geo_issue(w->issues, true, "repeated point", w->id);
+    if (found.spike)
+        geo_issue(w->issues, true, "spike", w->id);
+    project(w);
+    check_holes(w);
+    return true;
+}
+
+static double corner(const double *uv, size_t a, size_t b, size_t c) {
+    const double *p = uv + 2 * a, *q = uv + 2 * b, *r = uv + 2 * c;
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+}
+
+/* Most polygons of a city are triangles and quadrilaterals. A quadrilateral is cut along the shorter diagonal of those
+ * that lie inside it; where neither does, it crosses itself and the tessellator must do it. */
+static bool cut_simple(const struct work *w, geo_triangles *out) {
+    size_t n = w->ring_size.data[0];
+    if (w->ring_size.len > 1 || n > 4)
+        return false;
+    const double *uv = w->uv.data;
+    uint32_t v = (uint32_t)(out->xyz.len / 3);
+    if (n == 3) {
+        array_append(&out->indices, ((uint32_t[]){ v, v + 1, v + 2 }), 3);
+        return true;
+    }
+    bool ac = corner(uv, 0, 1, 2) > 0 && corner(uv, 0, 2, 3) > 0, bd = corner(uv, 1, 2, 3) > 0 && corner(uv, 1, 3, 0) > 0;
+    if (!ac && !bd)
+        return false;
+    if (ac && bd) {
+        double p[3], q[3];
+        subtract(w->xyz.data + 6, w->xyz.data, p);
+        subtract(w->xyz.data + 9, w->xyz.data + 3, q);
+        ac = dot(p, p) <= dot(q, q);
+    }
+    if (ac)
+        array_append(&out->indices, ((uint32_t[]){ v, v + 1, v + 2, v, v + 2, v + 3 }), 6);
+    else
+        array_append(&out->indices, ((uint32_t[]){ v + 1, v + 2, v + 3, v + 1, v + 3, v }), 6);
+    return true;
+}
+
+static bool triangulate(struct work *w, geo_triangles *out) {
+    size_t first_index = out->indices.len, first_vertex = out->xyz.len;
+    if (out->xyz.len / 3 + w->xyz.len / 3 > UINT32_MAX / 2)
+        return false;
+    bool simple = cut_simple(w, out);
+    array_append(&out->xyz, w->xyz.data, w->xyz.len);
+    if (!simple) {
+        tessellation t = tessellate(w->uv.data, w->ring_size.data, w->ring_size.len, out, first_vertex / 3);
+        if (t.crossings)
+            geo_issue(w->issues, true, "self-intersecting ring", w->id);
+        else if (t.touches && w->ring_size.len == 1) /* a hole may touch the exterior */
+            geo_issue(w->issues, true, "self-touching ring", w->id);
+        if (!t.ok || out->indices.len == first_index) {
+            geo_issue(w->issues, false, t.ok ? "polygon without area" : "polygon that cannot be triangulated", w->id);
+            out->indices.len = first_index;
+            out->xyz.len = first_vertex;
+            return false;
+        }
+    }
+    for (size_t i = first_vertex; i < out->xyz.len; i += 3)
+        for (size_t k = 0; k < 3; k++)
+            out->xyz.data[i + k] += w->centre[k];
+    return true;
+}
+
+bool geo_triangulate(const geo_polygon *polygon, geo_triangles *out, geo_issues *issues) {
+    struct work w = { .id = polygon->id, .issues = issues };
+    bool ok = prepare(&w, polygon) && triangulate(&w, out);
+    array_free(&w.xyz);
+    array_free(&w.uv);
+    array_free(&w.ring_size);
+    return ok;
+}
+
+void geo_triangles_free(geo_triangles *t) {
+    array_free(&t->xyz);
+    array_free(&t->indices);
+}
