@@ -82,10 +82,9 @@ const char *cli_nearest(const char *word, const char *const *words, size_t count
 bool cli_parse_numbers(const char *text, char separator, size_t count, double *out) {
     for (size_t i = 0; i < count; i++) {
         char *end;
-        if (isspace((unsigned char)*text) || strspn(text, "+-.0123456789") == 0)
-            return false; /* strtod would take blanks, "nan" and "inf" */
         out[i] = strtod(text, &end);
-        if (end == text || !isfinite(out[i]) || *end != (i + 1 < count ? separator : 0))
+        /* strtod also takes blanks, "nan", "inf" and hexadecimal. */
+        if (end == text || strspn(text, "+-.0123456789eE") < (size_t)(end - text) || !isfinite(out[i]) || *end != (i + 1 < count ? separator : 0))
             return false;
         text = end + 1;
     }

@@ -30,8 +30,8 @@ static const char *const by_exposure[] = { "auto-exposure", "ev100", NULL };
 
 const cli_command cli_compare = {
     "compare", "PICTURE REFERENCE", "Prints how far a picture is from a reference of the same size.",
-    "RMSE-8 is on 8-bit sRGB, 0 to 255, after the same exposure and tone map; RMSE and relMSE on linear luminance;\n"
-    "bias is mean(picture) / mean(reference). Definitions: docs/estimator.md.\n"
+    "RMSE-8 is on 8-bit sRGB, 0 to 255, after the same exposure and tone map; RMSE and relMSE are on\n"
+    "linear luminance; bias is mean(picture) / mean(reference). Definitions: docs/estimator.md.\n"
     "Examples\n"
     "  nocturne compare restir.exr reference.exr -o difference.png\n",
     { { options, 0, NULL }, { noc_display_options, offsetof(A, compare.display), by_exposure }, { cli_common_options, 0, NULL } },

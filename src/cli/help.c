@@ -69,7 +69,7 @@ static void wrap(FILE *out, const char *text, int column, int columns) {
 }
 
 static void print_option(FILE *out, const noc_option *o, const void *defaults, int columns) {
-    enum { COLUMN = 26 };
+    enum { COLUMN = 28 };
     char left[64], value[80], right[320];
     spell(left, sizeof(left), o, defaults);
     spell_default(value, sizeof(value), o, defaults);

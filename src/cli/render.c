@@ -137,6 +137,8 @@ static void add_stats(render_job *job) {
     for (int i = 0; i < NOC_PASS_COUNT; i++)
         job->pass_seconds[i] += job->last.pass_seconds[i];
     job->frames++;
+    if (job->args->common.verbose)
+        cli_error("frame %d: %.3f s", job->frames, job->last.wall_seconds);
 }
 
 static noc_status render_frames(render_job *job) {

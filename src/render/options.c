@@ -2,7 +2,6 @@
  * what a row does not say (the default) is in that struct's default macro, so it cannot be stated twice. */
 #include "base/base.h"
 
-#include <float.h>
 #include <locale.h>
 #include <nocturne/option.h>
 #include <stdio.h>
@@ -90,6 +89,8 @@ const noc_option *noc_city_options(void) { return city_options; }
 
 static int format_real(char *text, size_t size, double v) {
     char shortest[40];
+    if (v == (double)(long long)NOC_CLAMP(v, -1e15, 1e15))
+        return snprintf(text, size, "%lld", (long long)v);
     for (int digits = 6; digits <= 17; digits++) {
         snprintf(shortest, sizeof(shortest), "%.*g", digits, v);
         if (strtod(shortest, NULL) == v)

@@ -1,0 +1,50 @@
+# Sourced by the tests of the program: runs it, looks at what it says, and prints TAP.
+# NOC_PROGRAM is the program; the working folder is a fresh one that goes away at the end.
+set -u
+program=${NOC_PROGRAM:?names the program to test}
+source_dir=${NOC_SOURCE:?names the source folder}
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+count=0 failed=0
+
+# result STATUS NAME [WHY]: one line of TAP
+result() {
+    count=$((count + 1))
+    if [ "$1" = 0 ]; then
+        echo "ok $count - $2"
+    else
+        failed=$((failed + 1))
+        echo "not ok $count - $2"
+        [ -n "${3:-}" ] && echo "# $3"
+        for f in out err; do
+            [ -s $f ] && sed "s/^/# $f: /" $f | head -n 20 | tr -cd '\11\12\40-\176'
+        done
+    fi
+    return 0
+}
+
+skip() { count=$((count + 1)); echo "ok $count - $1 # SKIP $2"; }
+
+# run ARGUMENT...: the program's output in out and err, its status in $status
+run() {
+    "$program" "$@" >out 2>err </dev/null
+    status=$?
+}
+
+# expect NAME STATUS PATTERN ARGUMENT...: ends with this status, and says what matches the (extended) pattern on stderr
+expect() {
+    name=$1 expected=$2 pattern=$3
+    shift 3
+    run "$@"
+    why=
+    [ "$status" = "$expected" ] || why="status $status, not $expected"
+    grep -Eq -- "$pattern" err || why="$why; stderr does not say: $pattern"
+    [ -z "$why" ]; result $? "$name" "$why"
+}
+
+finish() {
+    echo "1..$count"
+    [ "$failed" = 0 ]
+    exit
+}
