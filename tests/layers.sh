@@ -1,0 +1,130 @@
+#!/bin/sh
+# Holds the arrows of docs/architecture.md: reads every #include under src/ and fails when one turns back. TAP.
+set -u
+root=${NOC_SOURCE:-$(cd "$(dirname "$0")/.." && pwd)}
+
+# A room, and the rooms whose headers it may use besides its own and base's.
+arrows='
+base:
+core:
+scene:
+geo: scene
+image:
+light: scene core
+city: geo scene
+import: geo city scene
+render: light scene image core
+backend: render light scene core
+cli:
+'
+# Libraries that one room alone may touch.
+owners='
+embree[34]/ backend
+rtcore.h backend
+proj.h geo
+gdal|ogr_|cpl_ import
+assimp/ import
+expat.h import
+jansson.h import
+zip.h import
+GL/glu.h geo
+png.h image
+openexr image
+'
+
+# violations FOLDER: one line each
+violations() {
+    find "$1" -name '*.[ch]' | sort | while read -r file; do
+        room=${file#"$1"/}
+        room=${room%%/*}
+        awk -v file="${file#"$1"/}" -v room="$room" -v arrows="$arrows" -v owners="$owners" '
+            BEGIN {
+                n = split(arrows, line, "\n")
+                for (i = 1; i <= n; i++) {
+                    m = split(line[i], word, /[: ]+/)
+                    known[word[1]] = 1
+                    for (j = 2; j <= m; j++)
+                        if (word[1] == room) allowed[word[j]] = 1
+                }
+                if (!(room in known)) print file ": no such room in tests/layers.sh: " room
+                allowed[room] = 1
+                if (room != "core" && room != "cli") allowed["base"] = 1
+                split(owners, owner, "\n")
+            }
+            /^[ \t]*#[ \t]*include[ \t]*"/ {
+                split($0, part, "\""); path = part[2]
+                if (path ~ /\.\.\//) print file ": climbs out of its room: " path
+                if (index(path, "/")) {
+                    other = path; sub(/\/.*/, "", other)
+                    if ((other in known) && !(other in allowed)) print file ": " room " may not use " path
+                    if (other == "backend" && room == "backend") {
+                        mine = file; sub(/^backend\//, "", mine); sub(/\/.*/, "", mine)
+                        theirs = path; sub(/^backend\//, "", theirs); sub(/\/.*/, "", theirs)
+                        if (mine != theirs) print file ": one backend may not use another: " path
+                    }
+                }
+            }
+            /^[ \t]*#[ \t]*include[ \t]*</ {
+                path = $0; sub(/.*</, "", path); sub(/>.*/, "", path)
+                if (room == "core" && path ~ /^nocturne\//) print file ": core may not use " path
+                for (i in owner) {
+                    split(owner[i], word, " ")
+                    if (owner[i] != "" && path ~ "^(" word[1] ")" && word[2] != room)
+                        print file ": only " word[2] " may use " path
+                }
+            }' "$file"
+    done
+}
+
+count=0 failed=0
+result() {
+    count=$((count + 1))
+    if [ "$1" = 0 ]; then echo "ok $count - $2"; else failed=1; echo "not ok $count - $2"; fi
+}
+
+found=$(violations "$root/src")
+[ -z "$found" ]; result $? "every arrow points down"
+[ -n "$found" ] && echo "$found" | sed 's/^/# /'
+
+# The check itself: a tree where each of these lines is wrong.
+tree=$(mktemp -d) || exit 1
+trap 'rm -rf "$tree"' EXIT
+wrong() {
+    mkdir -p "$tree/$(dirname "$1")"
+    printf '%s\n' "$2" >"$tree/$1"
+    [ -n "$(violations "$tree")" ]; result $? "notices $1: $2"
+    rm -r "${tree:?}"/*
+}
+wrong base/a.c '#include "scene/scene.h"'
+wrong core/a.h '#include "base/base.h"'
+wrong core/a.h '#include <nocturne/log.h>'
+wrong scene/a.c '  #  include "render/backend.h"'
+wrong cli/a.c '#include "base/base.h"'
+wrong cli/a.c '#include "../base/base.h"'
+wrong backend/embree/a.c '#include "backend/vulkan/b.h"'
+wrong render/a.c '#include <embree3/rtcore.h>'
+wrong import/a.c '#include <proj.h>'
+wrong attic/a.c 'int x;'
+mkdir -p "$tree/render" && echo '#include "scene/scene.h"' >"$tree/render/a.c"
+[ -z "$(violations "$tree")" ]; result $? "lets an arrow pass that points down"
+
+# Every public header compiles alone.
+compiler=$(command -v cc || command -v gcc || command -v clang)
+alone() {
+    for header in "$root"/include/nocturne/*.h; do
+        echo "#include <nocturne/$(basename "$header")>" >"$tree/alone.c"
+        $compiler -fsyntax-only -Wall -Wextra -Werror "$@" -I"$root/include" "$tree/alone.c" || return 1
+    done
+}
+alone -x c -std=c11 >"$tree/log" 2>&1; result $? "public headers compile alone as C"
+sed 's/^/# /' "$tree/log"
+echo 'int x;' >"$tree/probe.cc"
+if $compiler -x c++ -fsyntax-only "$tree/probe.cc" 2>/dev/null; then
+    alone -x c++ -std=c++14 >"$tree/log" 2>&1; result $? "public headers compile alone as C++"
+    sed 's/^/# /' "$tree/log"
+else
+    count=$((count + 1))
+    echo "ok $count - public headers compile alone as C++ # SKIP no C++ compiler here"
+fi
+echo "1..$count"
+exit $failed
