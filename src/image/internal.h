@@ -68,4 +68,7 @@ noc_image *image_read_exr(const uint8_t *data, size_t size, const char *name, no
 /* Either, told apart by their first bytes. is_linear may be NULL. */
 noc_image *image_read_memory(const uint8_t *data, size_t size, const char *name, noc_log *log, bool *is_linear);
 
+/* compare.c. Same size, and every pixel finite: a figure that silently left some out would not be one. */
+noc_status image_check_pair(const noc_image *x, const noc_image *r, noc_log *log);
+
 #endif

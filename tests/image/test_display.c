@@ -1,0 +1,258 @@
+/* Exposure, tone mapping, the sRGB transfer. */
+#include "test.h"
+
+#include "image/internal.h"
+
+#include <math.h>
+
+static uint32_t seed = 1;
+static double uniform(void) {
+    seed = seed * 1664525u + 1013904223u;
+    return (seed >> 8) / 16777216.0;
+}
+
+static void srgb_known_values(void **state) {
+    (void)state;
+    /* IEC 61966-2-1, by hand: (linear, code). */
+    static const double known[][2] = { { 0, 0 }, { 1, 1 }, { 0.5, 0.7353569830524495 }, { 0.18, 0.46135612950044164 },
+        { 0.001, 0.01292 }, { 0.0031308, 0.040449936 } };
+    for (size_t i = 0; i < NOC_COUNT(known); i++) {
+        assert_true(fabs(srgb_encode(known[i][0]) - known[i][1]) < 1e-6);
+        assert_true(fabs(srgb_decode(known[i][1]) - known[i][0]) < 1e-6);
+    }
+    for (int i = 0; i <= 1000; i++)
+        assert_true(fabs(srgb_encode(srgb_decode(i / 1000.0)) - i / 1000.0) < 1e-6);
+}
+
+static void srgb8_rounds_to_nearest(void **state) {
+    (void)state;
+    srgb8_table table;
+    srgb8_table_init(&table);
+    for (int i = 0; i < 256; i++)
+        assert_int_equal(srgb8_encode(&table, (float)srgb_decode(i / 255.0)), i);
+    for (int i = 0; i < 20000; i++) {
+        double x = i / 19999.0, exact = 255 * srgb_encode(x);
+        if (fabs(exact - floor(exact) - 0.5) > 1e-4) /* at a tie, float decides */
+            assert_int_equal(srgb8_encode(&table, (float)x), (int)floor(exact + 0.5));
+    }
+    assert_int_equal(srgb8_encode(&table, -1), 0);
+    assert_int_equal(srgb8_encode(&table, NAN), 0);
+    assert_int_equal(srgb8_encode(&table, INFINITY), 255);
+}
+
+static const noc_tonemap maps[] = { NOC_TONEMAP_FILMIC, NOC_TONEMAP_REINHARD, NOC_TONEMAP_LINEAR };
+
+static void curves_rise_within_range(void **state) {
+    (void)state;
+    for (size_t k = 0; k < NOC_COUNT(maps); k++) {
+        assert_true(tonemap_curve(maps[k], 0) == 0);
+        double last = 0;
+        for (double x = 1e-8; x < 1e12; x *= 1.01) {
+            double y = tonemap_curve(maps[k], x);
+            assert_true(y >= last && y <= 1);
+            if (y < 0.999 && maps[k] != NOC_TONEMAP_LINEAR)
+                assert_true(y > last);
+            last = y;
+        }
+        assert_true(last > 0.999);
+    }
+    /* What the filmic curve was solved for. */
+    assert_true(fabs(tonemap_curve(NOC_TONEMAP_FILMIC, 0.18) - 0.18) < 1e-4);
+    assert_true(fabs(tonemap_curve(NOC_TONEMAP_FILMIC, 16) - 1) < 1e-4);
+    double slope = log(tonemap_curve(NOC_TONEMAP_FILMIC, 0.1818) / tonemap_curve(NOC_TONEMAP_FILMIC, 0.1782)) / log(0.1818 / 0.1782);
+    assert_true(fabs(slope - 1.05) < 1e-3);
+}
+
+/* Any colour: more exposure never darkens a channel, and ends in white; greys stay grey. */
+static void colours_rise_to_white(void **state) {
+    (void)state;
+    for (size_t k = 0; k < 2; k++)
+        for (int i = 0; i < 200; i++) {
+            float colour[3] = { (float)uniform(), (float)uniform(), (float)(i % 5 ? uniform() : 0) };
+            bool grey = i % 7 == 0;
+            if (grey)
+                colour[1] = colour[2] = colour[0];
+            uint8_t last[3] = { 0 };
+            for (double ev = 12; ev > -30; ev -= 0.5) {
+                display_map d;
+                uint8_t out[3];
+                display_init(&d, maps[k], ev);
+                display_pixel(&d, colour, out);
+                for (int c = 0; c < 3; c++)
+                    assert_true(out[c] >= last[c]);
+                assert_true(!grey || (out[0] == out[1] && out[1] == out[2]));
+                memcpy(last, out, 3);
+            }
+            assert_true(last[0] >= 254 && last[1] >= 254 && last[2] >= 254);
+        }
+}
+
+/* The order of the channels is kept, and the place of the middle one between the others: that is hue. */
+static void hue_holds(void **state) {
+    (void)state;
+    const float sodium[3] = { 1, 0.5f, 0.05f };
+    for (double ev = 4; ev > -6; ev -= 0.25) {
+        display_map d;
+        uint8_t out[3];
+        display_init(&d, NOC_TONEMAP_FILMIC, ev);
+        display_pixel(&d, sodium, out);
+        assert_true(out[0] >= out[1] && out[1] >= out[2]);
+        double v[3];
+        for (int k = 0; k < 3; k++)
+            v[k] = srgb_decode(out[k] / 255.0);
+        if (v[0] - v[2] > 0.2) /* enough colour left to measure in 8 bits */
+            assert_true(fabs((v[1] - v[2]) / (v[0] - v[2]) - 0.45 / 0.95) < 0.04);
+    }
+}
+
+static void linear_is_exact(void **state) {
+    (void)state;
+    noc_image *a = noc_image_create(2, 1, NULL);
+    noc_display_params p = { .ev100 = 3, .tonemap = NOC_TONEMAP_LINEAR };
+    /* 1.2 * 2^3 cd/m2 is white; half of that is code 188. */
+    for (int k = 0; k < 3; k++) {
+        a->rgb[k] = 9.6f;
+        a->rgb[3 + k] = 4.8f;
+    }
+    uint8_t out[6];
+    noc_image_to_srgb8(a, &p, out);
+    assert_int_equal(out[0], 255);
+    assert_int_equal(out[4], 188);
+    noc_image_destroy(a);
+}
+
+/* A street at night: black sky, dim facades, a lit road, a few emitters with a mask. */
+static noc_image *night(int width, int height, bool mask) {
+    noc_image *a = noc_image_create(width, height, NULL);
+    if (mask)
+        assert_true(image_add_mask(a, NULL));
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            size_t i = (size_t)(y * width + x);
+            double v = y < height / 2 ? 0 : y < 3 * height / 4 ? 0.1 : 1;
+            v *= 0.5 + uniform();
+            if (uniform() < 0.01) {
+                v = 5000;
+                if (mask)
+                    a->emitter[i] = 1;
+            }
+            for (int k = 0; k < 3; k++)
+                a->rgb[3 * i + (size_t)k] = (float)v;
+        }
+    return a;
+}
+
+static void exposure_scales_with_the_light(void **state) {
+    (void)state;
+    for (int mask = 0; mask < 2; mask++) {
+        noc_image *a = night(300, 200, mask);
+        double ev = noc_image_auto_ev100(a);
+        for (int k = -20; k <= 20; k += 4) {
+            noc_image *b = night(1, 1, false);
+            noc_image scaled = *a;
+            scaled.rgb = noc_alloc(image_pixels(a) * 3 * sizeof(float));
+            for (size_t i = 0; i < 3 * image_pixels(a); i++)
+                scaled.rgb[i] = ldexpf(a->rgb[i], k);
+            assert_true(fabs(noc_image_auto_ev100(&scaled) - ev - k) < 1e-9);
+            free(scaled.rgb);
+            noc_image_destroy(b);
+        }
+        noc_image_destroy(a);
+    }
+}
+
+static void exposure_meters_what_is_lit(void **state) {
+    (void)state;
+    noc_image *a = night(600, 400, true);
+    double ev = noc_image_auto_ev100(a);
+    /* The road, around 1 cd/m2, is shown neither dark nor burnt. */
+    noc_display_params p = noc_display_default_params();
+    uint8_t *out = noc_alloc(600 * 400 * 3);
+    noc_image_to_srgb8(a, &p, out);
+    double mean = 0;
+    for (size_t i = 320 * 600; i < 400 * 600; i++)
+        mean += out[3 * i + 1] / (80.0 * 600);
+    assert_true(mean > 90 && mean < 215);
+    free(out);
+    /* Emitters count for nothing: a thousand times brighter ones change nothing. */
+    for (size_t i = 0; i < image_pixels(a); i++)
+        for (int k = 0; k < 3 && a->emitter[i]; k++)
+            a->rgb[3 * i + (size_t)k] *= 1000;
+    assert_true(fabs(noc_image_auto_ev100(a) - ev) < 1e-12);
+    /* Nor does a black sky of any size. */
+    noc_image *b = noc_image_create(600, 1600, NULL);
+    assert_true(image_add_mask(b, NULL));
+    size_t at = image_pixels(b) - image_pixels(a);
+    memcpy(b->rgb + 3 * at, a->rgb, image_pixels(a) * 3 * sizeof(float));
+    memcpy(b->emitter + at, a->emitter, image_pixels(a));
+    assert_true(fabs(noc_image_auto_ev100(b) - ev) < 0.2);
+    noc_image_destroy(a);
+    noc_image_destroy(b);
+}
+
+/* Without a mask a few emitters move the exposure by less than two stops. */
+static void exposure_stands_emitters_without_mask(void **state) {
+    (void)state;
+    seed = 1;
+    noc_image *a = night(256, 200, true);
+    seed = 1;
+    noc_image *b = night(256, 200, false);
+    assert_true(fabs(noc_image_auto_ev100(a) - noc_image_auto_ev100(b)) < 2);
+    noc_image_destroy(a);
+    noc_image_destroy(b);
+}
+
+static void exposure_of_odd_pictures_is_sane(void **state) {
+    (void)state;
+    noc_image *a = noc_image_create(40, 30, NULL);
+    double black = noc_image_auto_ev100(a);
+    assert_true(black == 3);
+    a->rgb[0] = NAN;
+    a->rgb[5] = INFINITY;
+    assert_true(noc_image_auto_ev100(a) == black);
+    for (size_t i = 0; i < 3 * image_pixels(a); i++)
+        a->rgb[i] = -1;
+    assert_true(noc_image_auto_ev100(a) == black);
+    for (size_t i = 0; i < 3 * image_pixels(a); i++)
+        a->rgb[i] = 1e-44f;
+    assert_true(isfinite(noc_image_auto_ev100(a)));
+    /* Every pixel an emitter: then they are metered after all. */
+    assert_true(image_add_mask(a, NULL));
+    memset(a->emitter, 1, image_pixels(a));
+    for (size_t i = 0; i < 3 * image_pixels(a); i++)
+        a->rgb[i] = 100;
+    assert_true(fabs(noc_image_auto_ev100(a) - log2(100 / (1.2 * 0.12))) < 1e-6);
+    noc_image_destroy(a);
+}
+
+static void compensation_brightens(void **state) {
+    (void)state;
+    noc_image *a = night(64, 64, false);
+    noc_display_params p = noc_display_default_params();
+    double ev = display_ev100(a, &p);
+    p.compensation = 1.5;
+    assert_true(fabs(display_ev100(a, &p) - (ev - 1.5)) < 1e-12);
+    p.auto_exposure = false;
+    p.ev100 = 7;
+    assert_true(display_ev100(a, &p) == 7);
+    p.ev100 = NAN;
+    assert_true(isfinite(display_ev100(a, &p)));
+    noc_image_destroy(a);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(srgb_known_values),
+        cmocka_unit_test(srgb8_rounds_to_nearest),
+        cmocka_unit_test(curves_rise_within_range),
+        cmocka_unit_test(colours_rise_to_white),
+        cmocka_unit_test(hue_holds),
+        cmocka_unit_test(linear_is_exact),
+        cmocka_unit_test(exposure_scales_with_the_light),
+        cmocka_unit_test(exposure_meters_what_is_lit),
+        cmocka_unit_test(exposure_stands_emitters_without_mask),
+        cmocka_unit_test(exposure_of_odd_pictures_is_sane),
+        cmocka_unit_test(compensation_brightens),
+    };
+    return cmocka_run_group_tests_name("image display", tests, NULL, NULL);
+}
