@@ -84,20 +84,50 @@ FN resv stream_end(stream s, real scale) {
     return r;
 }
 
+/* The light of candidate i. */
+FN u32 candidate_light(u32 key, u32 count, int i) {
+    return scale_u32(rng_bits(key, KU(DIM_CANDIDATE + 3u * U32(i))), count);
+}
+
+/* Offers candidate i, a light that was picked uniformly. */
+FN stream stream_candidate(CTX stream st, surf s, u32 key, u32 id, int i) {
+    u32 dim = KU(DIM_CANDIDATE + 3u * U32(i));
+    u32 place = rng_bits(key, dim + KU(1u));
+    real u = unit_low(place);
+    real v = unit_high(place);
+    real p = target(s, light_load(PASS id), u, v);
+    return stream_add(st, id, u, v, p, p, K(1.0f), K(0.0f), rng(key, dim + KU(2u)));
+}
+
 /* Streaming RIS over `count` lights picked uniformly, m candidates: W = (1/m) sum(p_hat / pmf) / p_hat(chosen), pmf = 1/count
  * over (light) times 1 over the unit square. count > 0. */
 FN resv ris_uniform(CTX surf s, u32 key, u32 count, int m) {
     stream st = stream_empty();
-    for (int i = 0; i < m; i++) {
-        u32 dim = KU(DIM_CANDIDATE + 3u * U32(i));
-        u32 id = scale_u32(rng_bits(key, dim), count);
-        u32 place = rng_bits(key, dim + KU(1u));
-        real u = unit_low(place);
-        real v = unit_high(place);
-        real p = target(s, light_load(PASS id), u, v);
-        st = stream_add(st, id, u, v, p, p, K(1.0f), K(0.0f), rng(key, dim + KU(2u)));
+    for (int i = 0; i < m; i++)
+        st = stream_candidate(PASS st, s, key, candidate_light(key, count, i), i);
+    return stream_end(st, to_real(count) / K(F32(m)));
+}
+
+#ifndef CORE_GLSL
+/* The same, bit for bit, where memory is slower than arithmetic: lights are asked for RIS_AHEAD to 2 RIS_AHEAD candidates
+ * before they are looked at. records: as core/wide_load.h's light_prefetch takes them. */
+#ifdef CORE_WIDE_LOAD_H
+#define RIS_AHEAD 8
+FN resv ris_uniform_ahead(CTX const float *records, surf s, u32 key, u32 count, int m) {
+    stream st = stream_empty();
+    u32 ids[2][RIS_AHEAD]; /* this batch and the next one */
+    for (int i = 0; i < m + RIS_AHEAD; i += RIS_AHEAD) {
+        for (int j = i; j < i + RIS_AHEAD && j < m; j++) {
+            u32 id = candidate_light(key, count, j);
+            light_prefetch(records, id);
+            ids[j / RIS_AHEAD & 1][j % RIS_AHEAD] = id;
+        }
+        for (int j = i - RIS_AHEAD; j >= 0 && j < i && j < m; j++)
+            st = stream_candidate(PASS st, s, key, ids[j / RIS_AHEAD & 1][j % RIS_AHEAD], j);
     }
     return stream_end(st, to_real(count) / K(F32(m)));
 }
+#endif
+#endif
 
 #endif
