@@ -1,0 +1,45 @@
+/* The smallest use of the library: a city at night into a PNG.
+ *   cc minimal.c $(pkg-config --cflags --libs nocturne) -o minimal && ./minimal night.png */
+#include <nocturne/nocturne.h>
+#include <stdio.h>
+
+static noc_status draw(noc_scene *scene, noc_log *log, const char *path) {
+    noc_render_params params = noc_render_default_params();
+    params.width = 320;
+    params.height = 180;
+
+    noc_camera camera;
+    noc_status status = noc_scene_camera(scene, NOC_VIEW_AERIAL, (double)params.width / params.height, &camera);
+    if (status)
+        return status;
+    noc_renderer *renderer = noc_renderer_create(scene, &noc_renderer_default_params(), log);
+    if (!renderer)
+        return NOC_ERR_MEMORY;
+    for (int frame = 0; frame < 8 && !status; frame++)
+        status = noc_renderer_frame(renderer, &camera, &params, NULL);
+
+    noc_image *image = status ? NULL : noc_renderer_image(renderer);
+    if (image)
+        status = noc_image_write(image, path, &noc_display_default_params(), NULL, log);
+    noc_image_destroy(image);
+    noc_renderer_destroy(renderer);
+    return status;
+}
+
+int main(int argc, char **argv) {
+    noc_log *log = noc_log_create(NULL); /* NULL: warnings and errors to stderr */
+    noc_scene *scene = noc_scene_create(log);
+    noc_city_params city = noc_city_default_params();
+    city.size = 150;
+
+    /* For real cities: noc_scene_load(scene, paths, count, &import_params, NULL), which also commits. */
+    noc_status status = noc_scene_add_city(scene, &city);
+    if (!status)
+        status = noc_scene_commit(scene);
+    if (!status)
+        status = draw(scene, log, argc > 1 ? argv[1] : "minimal.png");
+
+    noc_scene_destroy(scene);
+    noc_log_destroy(log);
+    return status ? 1 : 0;
+}
