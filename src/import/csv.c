@@ -1,0 +1,323 @@
+/* Tables of lamps with a header line: commas, semicolons, tabs or bars, quotes as in RFC 4180, UTF-8 or Latin-1. */
+#include "import/lamp_tags.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define MAX_FIELD (1 << 20)
+#define MAX_FIELDS 4096
+
+typedef struct csv {
+    noc_stream *stream;
+    noc_log *log;
+    char separator;
+    char chunk[1 << 14];
+    size_t len, pos;
+    size_t line;            /* where the present record began, from 1 */
+    size_t next_line;
+    NOC_ARRAY(char) text;   /* fields of the record, each ended by a 0 */
+    NOC_ARRAY(size_t) start;
+    bool ended;
+} csv;
+
+/* Next byte, -1 at the end, -2 on an error that was reported. */
+static int next_byte(csv *c, noc_status *status) {
+    if (c->pos == c->len) {
+        c->pos = 0;
+        *status = noc_stream_read(c->stream, c->chunk, sizeof(c->chunk), &c->len);
+        if (*status || !c->len) {
+            c->len = 0;
+            return *status ? -2 : -1;
+        }
+    }
+    return (unsigned char)c->chunk[c->pos++];
+}
+
+static noc_status bad(csv *c, const char *cause) {
+    return noc_error(c->log, NOC_ERR_FORMAT, "%s:%zu: %s", noc_stream_name(c->stream), c->line, cause);
+}
+
+/* Reads a record; at the end of the table leaves no fields. */
+static noc_status read_record(csv *c) {
+    noc_status status = NOC_OK;
+    c->text.len = c->start.len = 0;
+    c->line = c->next_line;
+    bool quoted = false, was_quoted = false;
+    for (size_t field = 0;;) {
+        int ch = next_byte(c, &status);
+        if (ch == -2)
+            return status;
+        if (ch == -1 && quoted)
+            return bad(c, "a quote is not closed before the end of the file");
+        if (ch == -1 && !c->start.len && c->text.len == 0)
+            return NOC_OK;
+        if (ch == 0)
+            return bad(c, "a zero byte: this is no text");
+        if (ch == '\n')
+            c->next_line++;
+        bool end_record = ch == -1 || (ch == '\n' && !quoted);
+        if (quoted && ch == '"') {
+            quoted = false; /* a second one, at once, is a quote in the text */
+            was_quoted = true;
+            continue;
+        }
+        if (!quoted && ch == '"' && (c->text.len == field || was_quoted)) {
+            if (was_quoted)
+                array_push(&c->text, '"');
+            quoted = true;
+            was_quoted = false;
+            continue;
+        }
+        was_quoted = false;
+        if (!end_record && (quoted || ch != c->separator)) {
+            if (c->text.len - field > MAX_FIELD)
+                return bad(c, "a field longer than 1 MB");
+            array_push(&c->text, (char)ch);
+            continue;
+        }
+        if (end_record && c->text.len > field && c->text.data[c->text.len - 1] == '\r')
+            c->text.len--;
+        if (c->start.len == MAX_FIELDS)
+            return bad(c, "more than 4096 columns");
+        array_push(&c->text, '\0');
+        array_push(&c->start, field);
+        field = c->text.len;
+        if (end_record)
+            return NOC_OK;
+    }
+}
+
+static const char *field(const csv *c, size_t i) { return c->text.data + c->start.data[i]; }
+
+/* The separator that is found most often in the first line, outside quotes; 0 if there is none. */
+static char find_separator(const char *head, size_t size) {
+    static const char separators[] = ",;\t|";
+    size_t count[4] = { 0 };
+    bool quoted = false;
+    for (size_t i = 0; i < size && head[i] && (quoted || head[i] != '\n'); i++) {
+        const char *s = strchr(separators, head[i]);
+        quoted ^= head[i] == '"';
+        if (s && !quoted)
+            count[s - separators]++;
+    }
+    int best = 0;
+    for (int i = 1; i < 4; i++)
+        if (count[i] > count[best])
+            best = i;
+    return count[best] ? separators[best] : 0;
+}
+
+typedef struct columns {
+    char **names; /* owned */
+    size_t count;
+    int lon, lat, x, y, wkt, lat_lon, z; /* -1: none */
+    bool tags, inventory;
+} columns;
+
+static int find_column(const columns *cols, lamp_field wanted) {
+    int best = -1, best_rank = 0;
+    for (size_t i = 0; i < cols->count; i++) {
+        const lamp_column *c = lamp_column_find(cols->names[i]);
+        if (c && c->field == wanted && (best < 0 || c->rank < best_rank)) {
+            best = (int)i;
+            best_rank = c->rank;
+        }
+    }
+    return best;
+}
+
+static bool has_place(const columns *c) {
+    return (c->lon >= 0 && c->lat >= 0) || (c->x >= 0 && c->y >= 0) || c->wkt >= 0 || c->lat_lon >= 0;
+}
+
+static void understand(columns *cols) {
+    cols->lon = find_column(cols, LAMP_FIELD_LON);
+    cols->lat = find_column(cols, LAMP_FIELD_LAT);
+    cols->x = find_column(cols, LAMP_FIELD_X);
+    cols->y = find_column(cols, LAMP_FIELD_Y);
+    cols->wkt = find_column(cols, LAMP_FIELD_WKT);
+    cols->lat_lon = find_column(cols, LAMP_FIELD_LAT_LON);
+    cols->z = find_column(cols, LAMP_FIELD_ELEVATION);
+    for (size_t i = 0; i < cols->count; i++)
+        cols->tags |= lamp_key_tells(cols->names[i]);
+    cols->inventory = !cols->tags && lamp_columns_tell((const char *const *)cols->names, cols->count);
+}
+
+static void free_columns(columns *cols) {
+    for (size_t i = 0; i < cols->count; i++)
+        free(cols->names[i]);
+    free(cols->names);
+}
+
+bool lamp_csv_probe(const char *head, size_t size) {
+    if (size >= 3 && !memcmp(head, "\xef\xbb\xbf", 3)) {
+        head += 3;
+        size -= 3;
+    }
+    size_t line = 0;
+    while (line < size && head[line] && head[line] != '\n')
+        line++;
+    char separator = find_separator(head, size);
+    if (!separator || (line < size && !head[line]) || *head == '{' || *head == '<')
+        return false;
+    columns cols = { 0 };
+    char *copy = noc_format("%.*s", (int)line, head), *rest = copy, *name;
+    char ends[3] = { separator, '\r', 0 };
+    cols.names = noc_calloc(line + 2, sizeof(*cols.names));
+    while ((name = strsep(&rest, ends)))
+        if (*name)
+            cols.names[cols.count++] = noc_strdup(name); /* folding drops the quotes */
+    understand(&cols);
+    bool yes = has_place(&cols);
+    free_columns(&cols);
+    free(copy);
+    return yes;
+}
+
+/* Numbers in "POINT (x y)" (any dimension) or "(lat, lon)". */
+static bool two_numbers(const char *text, double *a, double *b) {
+    char copy[128];
+    size_t n = 0;
+    const char *p = text;
+    while (*p && n + 1 < sizeof(copy)) {
+        if (strchr("0123456789.-+eE", *p))
+            copy[n++] = *p;
+        else if (n && copy[n - 1] != ' ')
+            copy[n++] = ' ';
+        p++;
+    }
+    copy[n] = 0;
+    const char *q = noc_scan_double(copy, copy + n, a);
+    return q && noc_scan_double(q, copy + n, b);
+}
+
+static bool read_wkt(const char *text, double *x, double *y) {
+    const char *p = strstr(text, "POINT");
+    if (!p)
+        p = strstr(text, "Point");
+    p = p ? strchr(p, '(') : NULL;
+    return p && two_numbers(p, x, y);
+}
+
+static bool read_place(const csv *c, const columns *cols, double *x, double *y) {
+    *x = *y = NAN;
+    if (cols->lon >= 0 && cols->lat >= 0)
+        return lamp_coordinate(field(c, (size_t)cols->lon), x) && lamp_coordinate(field(c, (size_t)cols->lat), y);
+    if (cols->lat_lon >= 0)
+        return two_numbers(field(c, (size_t)cols->lat_lon), y, x);
+    if (cols->wkt >= 0)
+        return read_wkt(field(c, (size_t)cols->wkt), x, y);
+    return lamp_coordinate(field(c, (size_t)cols->x), x) && lamp_coordinate(field(c, (size_t)cols->y), y);
+}
+
+/* Opens the table: header read, the next record is the first row. */
+static noc_status read_header(csv *c, columns *cols) {
+    noc_status status = noc_stream_rewind(c->stream);
+    if (status)
+        return status;
+    c->pos = c->len = 0;
+    c->next_line = 1;
+    status = noc_stream_read(c->stream, c->chunk, sizeof(c->chunk), &c->len);
+    if (status)
+        return status;
+    if (c->len >= 3 && !memcmp(c->chunk, "\xef\xbb\xbf", 3))
+        c->pos = 3;
+    c->separator = find_separator(c->chunk + c->pos, c->len - c->pos);
+    status = read_record(c);
+    if (status || cols->count)
+        return status;
+    cols->names = noc_calloc(c->start.len + 1, sizeof(*cols->names));
+    for (; cols->count < c->start.len; cols->count++)
+        cols->names[cols->count] = noc_strdup(field(c, cols->count));
+    understand(cols);
+    if (!has_place(cols))
+        return bad(c, "no columns with coordinates (longitude and latitude, or x and y) in the header");
+    return NOC_OK;
+}
+
+/* Columns called x and y without a CRS: degrees if every one of them could be. */
+static noc_status looks_like_degrees(csv *c, columns *cols, bool *degrees) {
+    size_t inside = 0, outside = 0;
+    noc_status status;
+    while (!(status = read_record(c)) && c->start.len) {
+        double x, y;
+        if (c->start.len != cols->count || !read_place(c, cols, &x, &y))
+            continue;
+        if (fabs(x) <= 180 && fabs(y) <= 90)
+            inside++;
+        else
+            outside++;
+    }
+    *degrees = inside > 0 && outside == 0;
+    return status ? status : read_header(c, cols);
+}
+
+static noc_status settle_crs(csv *c, columns *cols, lamp_writer *w, const noc_import_params *params) {
+    bool degrees = (cols->lon >= 0 && cols->lat >= 0) || cols->lat_lon >= 0;
+    bool given = params && params->crs;
+    if (!degrees && !given) {
+        noc_status status = looks_like_degrees(c, cols, &degrees);
+        if (status)
+            return status;
+        if (degrees)
+            noc_info(c->log, "%s: its coordinates name no CRS and lie within 180 by 90: taken as WGS 84 degrees", w->place);
+    }
+    w->geographic = degrees;
+    return lamp_writer_crs(w, degrees ? LAMP_WGS84 : NULL);
+}
+
+static noc_status read_rows(csv *c, const columns *cols, lamp_writer *w) {
+    lamp_tag *tags = noc_calloc(cols->count + 1, sizeof(*tags));
+    noc_status status;
+    while (!(status = read_record(c)) && c->start.len) {
+        char row[32];
+        snprintf(row, sizeof(row), "line %zu", c->line);
+        if (c->start.len == 1 && !*field(c, 0))
+            continue; /* an empty line */
+        if (c->start.len != cols->count) {
+            geo_issue(w->sink->issues, false, "row with too few or too many columns", row);
+            continue;
+        }
+        for (size_t i = 0; i < cols->count; i++)
+            tags[i] = (lamp_tag){ cols->names[i], field(c, i) };
+        tags[cols->count] = (lamp_tag){ "fid", row }; /* an id for want of a better one */
+        double x, y, z;
+        if (!read_place(c, cols, &x, &y))
+            x = y = NAN;
+        if (cols->z < 0 || !lamp_coordinate(field(c, (size_t)cols->z), &z))
+            z = NAN;
+        status = lamp_writer_point(w, tags, cols->count + 1, cols->inventory, x, y, z);
+        if (!status && w->features % 1024 == 0 && w->sink->progress &&
+            !w->sink->progress(w->sink->ctx, noc_stream_progress(c->stream)))
+            status = NOC_ERR_CANCELLED;
+        if (status)
+            break;
+    }
+    free(tags);
+    return status;
+}
+
+noc_status lamp_csv_read(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
+    *format = "CSV";
+    csv *c = noc_calloc(1, sizeof(*c));
+    c->stream = stream;
+    c->log = sink->log;
+    columns cols = { 0 };
+    lamp_writer w = { .sink = sink, .place = noc_stream_name(stream) };
+    noc_status status = read_header(c, &cols);
+    if (!status && !cols.tags && !cols.inventory)
+        noc_warn(sink->log, "%s: no column tells that its points are lamps (such as lamp_type, wattage, mast_height); none is read",
+                 w.place);
+    else if (!status) {
+        status = settle_crs(c, &cols, &w, params);
+        if (!status)
+            status = read_rows(c, &cols, &w);
+        if (!status)
+            status = lamp_writer_end(&w);
+    }
+    free_columns(&cols);
+    array_free(&c->text);
+    array_free(&c->start);
+    free(c);
+    return status;
+}

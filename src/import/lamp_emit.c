@@ -1,0 +1,78 @@
+/* What all readers of lamps do with a feature once they have its tags and its place. */
+#include "import/lamp_tags.h"
+
+#include <math.h>
+
+noc_status lamp_writer_crs(lamp_writer *w, const char *crs) {
+    /* tuples come to us in easting northing order already: traditional GIS order, whatever the authority says */
+    bool lat_first = false;
+    return w->sink->crs(w->sink->ctx, crs ? crs : "", w->place, &lat_first);
+}
+
+static bool on_earth(double lon, double lat) { return fabs(lon) <= 180 && fabs(lat) <= 90; }
+
+noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count, bool inventory, double x, double y, double z) {
+    w->features++;
+    lamp_verdict verdict = lamp_verdict_of(tags, count, inventory);
+    if (verdict == LAMP_NONE)
+        return NOC_OK;
+    geo_lamp lamp = { .xyz = { x, y, isfinite(z) && z != 0 ? z : NAN } }; /* 0: written for want of a height */
+    lamp_read(tags, count, &lamp, verdict == LAMP_ACTIVE ? w->sink->issues : NULL);
+    if (!lamp_accept(verdict, lamp.id, w->sink->issues))
+        return NOC_OK;
+    if (!isfinite(x) || !isfinite(y)) {
+        geo_issue(w->sink->issues, false, "lamp without a place", lamp.id);
+        return NOC_OK;
+    }
+    if (w->geographic && !on_earth(x, y)) {
+        w->off_earth++;
+        geo_issue(w->sink->issues, false, "lamp whose longitude or latitude is out of range", lamp.id);
+        return NOC_OK;
+    }
+    if (x == 0 && y == 0) {
+        geo_issue(w->sink->issues, false, "lamp at 0, 0: no place given", lamp.id);
+        return NOC_OK;
+    }
+    w->lamps++;
+    return w->sink->lamp(w->sink->ctx, &lamp);
+}
+
+noc_status lamp_writer_end(lamp_writer *w) {
+    if (w->off_earth > w->lamps)
+        return noc_error(w->sink->log, NOC_ERR_FORMAT,
+                         "%s: its coordinates are no longitudes and latitudes, and it names no other CRS; give one with --crs",
+                         w->place);
+    if (!w->lamps)
+        noc_warn(w->sink->log, "%s: no street lamp among its %zu point features", w->place, w->features);
+    return NOC_OK;
+}
+
+noc_status lamp_read_all(noc_stream *stream, noc_log *log, char **data, size_t *size) {
+    *data = NULL;
+    *size = 0;
+    size_t cap = 0;
+    for (;;) {
+        if (cap - *size < (1 << 16)) {
+            cap = cap ? cap * 2 : NOC_MIN((size_t)noc_stream_size(stream) + (1 << 17), (size_t)1 << 30);
+            char *grown = realloc(*data, cap); /* the file's author decides how much: no abort */
+            if (!grown) {
+                free(*data);
+                *data = NULL;
+                return noc_error(log, NOC_ERR_MEMORY, "%s: no memory to hold it", noc_stream_name(stream));
+            }
+            *data = grown;
+        }
+        size_t got;
+        noc_status status = noc_stream_read(stream, *data + *size, cap - *size - 1, &got);
+        if (status) {
+            free(*data);
+            *data = NULL;
+            return status;
+        }
+        if (!got)
+            break;
+        *size += got;
+    }
+    (*data)[*size] = 0;
+    return NOC_OK;
+}

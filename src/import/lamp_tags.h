@@ -1,0 +1,110 @@
+/* What tags and table columns say about a lamp: shared by every reader of lamps.
+ *
+ * Keys are compared after folding: accents dropped, lower case, letters and digits only, so that `light:count`,
+ * `LIGHT_COUNT` and `Light count` are one key. OSM tags and the columns of municipal inventories use the same table
+ * (lamp_words.c), in several languages. */
+#ifndef NOC_LAMP_TAGS_H
+#define NOC_LAMP_TAGS_H
+
+#include "import/import.h"
+
+typedef struct lamp_tag {
+    const char *key, *value; /* value NULL or "": not given */
+} lamp_tag;
+
+typedef enum lamp_verdict {
+    LAMP_NONE,     /* not a lamp */
+    LAMP_ACTIVE,
+    LAMP_INACTIVE, /* a lamp that is gone, switched off for good or not built yet */
+    LAMP_INDOORS,  /* a lamp in a building, a tunnel or under ground */
+} lamp_verdict;
+
+/* By OSM tags: highway=street_lamp and its kin, with lifecycle prefixes. In an inventory every row is a lamp, and only
+ * its status columns decide. */
+lamp_verdict lamp_verdict_of(const lamp_tag *tags, size_t count, bool inventory);
+
+/* Is one of these the key of a tag that makes a lamp (highway, man_made, ...)? */
+bool lamp_key_tells(const char *key);
+/* Do these columns, together, belong to an inventory of lamps? One column that only lamps have is enough (LampType,
+ * lumens), or two that lamps usually have (mast number, mast length, wattage). */
+bool lamp_columns_tell(const char *const *names, size_t count);
+
+/* Fills everything but xyz, which is left as it is except for a missing height taken from an elevation column. Values
+ * that cannot be understood are counted in issues (which may be NULL) and left unknown. lamp->id points into tags or is "". */
+void lamp_read(const lamp_tag *tags, size_t count, geo_lamp *lamp, geo_issues *issues);
+
+/* Counts what the verdict says about a skipped feature; true if it is a lamp to be read. */
+bool lamp_accept(lamp_verdict verdict, const char *id, geo_issues *issues);
+
+/* ---- on their way to the sink (lamp_emit.c) ---- */
+
+#define LAMP_WGS84 "OGC:CRS84"
+
+typedef struct lamp_writer {
+    geo_sink *sink;
+    const char *place;      /* file, for messages */
+    bool geographic;        /* x and y are degrees: checked to be on Earth */
+    size_t features, lamps; /* seen; emitted */
+    size_t off_earth;       /* lamps whose degrees are no longitude and latitude */
+} lamp_writer;
+
+/* Tells the sink the CRS. NULL: the file names none; the sink knows whether --crs says it. */
+noc_status lamp_writer_crs(lamp_writer *w, const char *crs);
+/* One point feature: judged, read and handed on, or skipped and counted. z may be NaN. */
+noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count, bool inventory, double x, double y, double z);
+/* At the end: an error where degrees were expected and nearly all lamps lie outside the Earth, a warning without lamps. */
+noc_status lamp_writer_end(lamp_writer *w);
+
+/* CSV with a header, without GDAL (csv.c). */
+bool lamp_csv_probe(const char *head, size_t size);
+noc_status lamp_csv_read(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format);
+
+/* The whole content of a stream, with a 0 behind it; *data is malloc'ed. For formats that are parsed in memory. */
+noc_status lamp_read_all(noc_stream *stream, noc_log *log, char **data, size_t *size);
+
+/* ---- words (lamp_words.c) ---- */
+
+typedef enum lamp_field {
+    LAMP_FIELD_NONE, LAMP_FIELD_HEIGHT, LAMP_FIELD_DIRECTION, LAMP_FIELD_COUNT, LAMP_FIELD_LUMENS, LAMP_FIELD_WATTS,
+    LAMP_FIELD_KELVIN, LAMP_FIELD_COLOUR, LAMP_FIELD_TYPE, LAMP_FIELD_MOUNT, LAMP_FIELD_STATUS, LAMP_FIELD_ID,
+    LAMP_FIELD_ELEVATION, LAMP_FIELD_LON, LAMP_FIELD_LAT, LAMP_FIELD_X, LAMP_FIELD_Y, LAMP_FIELD_WKT,
+    LAMP_FIELD_LAT_LON, LAMP_FIELD_TOTAL
+} lamp_field;
+
+typedef struct lamp_column {
+    const char *key;    /* folded */
+    lamp_field field;
+    int rank;           /* 0 is believed first where several columns speak of the same */
+    int strength;       /* towards lamp_columns_tell, which asks for 2 */
+} lamp_column;
+
+/* NULL if the key means nothing to us. "WATTAGE1", "POLEHEIGHT_DESC" are found as "wattage", "poleheight". */
+const lamp_column *lamp_column_find(const char *key);
+
+/* Folds text into out (always terminated): ASCII lower case letters and digits; UTF-8 or Latin-1 accents dropped. With
+ * blanks, every run of anything else becomes one blank. Returns the length. */
+size_t lamp_fold(const char *text, bool blanks, char *out, size_t size);
+
+/* Words in folded text (with blanks). Return -1 where none is found. */
+int lamp_source_word(const char *folded, bool *low_pressure); /* geo_lamp.source */
+int lamp_type_word(const char *folded);                       /* geo_lamp.type */
+int lamp_mount_word(const char *folded);                      /* geo_lamp.mount */
+bool lamp_inactive_word(const char *folded);
+/* Kelvin for words of white and of sodium light, linear Rec.709 for others. */
+bool lamp_colour_word(const char *folded, double *kelvin, float rgb[3]);
+
+/* ---- values (lamp_value.c) ---- */
+
+typedef enum lamp_unit { LAMP_METRES, LAMP_WATTS, LAMP_LUMENS, LAMP_KELVIN, LAMP_PLAIN } lamp_unit;
+
+/* "16 ft", "5,5 m", "16'6\"", "2x70 W", "3,000 K", "8.5;6". *times gets the factor of "2x", else 1. */
+bool lamp_quantity(const char *text, lamp_unit unit, double *value, int *times);
+/* Degrees clockwise from north: "135", "135 deg", "NNE", "south-west". */
+bool lamp_direction(const char *text, double *degrees);
+/* A coordinate: degrees or metres, decimal comma allowed; "52.5 N", "13.4 W". */
+bool lamp_coordinate(const char *text, double *value);
+bool lamp_blank(const char *text); /* NULL, "", "N/A", "-", "null", "none", "unknown" */
+/* sRGB "#rrggbb" or "#rgb" as linear Rec.709. */
+bool lamp_hex_colour(const char *text, float rgb[3]);
+
+#endif
