@@ -24,7 +24,7 @@ typedef struct canvas {
 void canvas_fill(canvas *c, int x, int y, int width, int height, const uint8_t rgb[3]);
 
 /* text.c: 5 x 7 pixel letters in cells of 6, times scale. ASCII; Latin-1 superscript two (0xb2) and multiplication sign (0xd7).
- * Unknown characters are drawn as a box. */
+ * Unknown characters are drawn as a box. g, p, q and y reach two pixels below TEXT_HEIGHT. */
 #define TEXT_HEIGHT 7
 int text_width(const char *s, int scale);
 void text_draw(canvas *c, int x, int y, const char *s, int scale, const uint8_t rgb[3]);
