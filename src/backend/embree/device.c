@@ -1,0 +1,206 @@
+/* The ray tracing structure and the rays: the only rtc* calls. */
+#include "backend/embree/embree.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static void report(void *user, enum RTCError code, const char *text) {
+    embree_state *s = user;
+    if (code != RTC_ERROR_NONE)
+        noc_error(s->log, code == RTC_ERROR_OUT_OF_MEMORY ? NOC_ERR_MEMORY : NOC_ERR_UNSUPPORTED, "embree: %s",
+                  text && *text ? text : "unknown error");
+}
+
+static bool keep_size(void *user, ssize_t bytes, bool post) {
+    embree_state *s = user;
+    (void)post;
+    atomic_fetch_add(&s->build_bytes, bytes);
+    return true;
+}
+
+noc_status noc_embree_build(embree_state *s) {
+    const noc_scene *scene = s->scene;
+    double start = noc_wall_seconds();
+    char config[64];
+    snprintf(config, sizeof(config), "threads=%d", noc_pool_threads(s->pool));
+    s->device = rtcNewDevice(config);
+    if (!s->device)
+        return noc_error(s->log, NOC_ERR_UNSUPPORTED, "embree: no device (error %d)", (int)rtcGetDeviceError(NULL));
+    rtcSetDeviceErrorFunction(s->device, report, s);
+    rtcSetDeviceMemoryMonitorFunction(s->device, keep_size, s);
+    s->rtc = rtcNewScene(s->device);
+    /* Robust: without it rays slip through the edges between walls, and every slip is a bright pixel in a dark room. */
+    rtcSetSceneFlags(s->rtc, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(s->rtc, RTC_BUILD_QUALITY_MEDIUM);
+    size_t triangles = scene->indices.len / 3;
+    if (triangles) {
+        RTCGeometry geometry = rtcNewGeometry(s->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_MEDIUM);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, scene->positions.data, 0, 12,
+                                   scene->positions.len / 3);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->indices.data, 0, 12,
+                                   triangles);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(s->rtc, geometry);
+        rtcReleaseGeometry(geometry);
+    }
+    rtcCommitScene(s->rtc);
+    s->build_seconds = noc_wall_seconds() - start;
+    switch (rtcGetDeviceError(s->device)) {
+    case RTC_ERROR_NONE: return NOC_OK;
+    case RTC_ERROR_OUT_OF_MEMORY: return NOC_ERR_MEMORY;
+    default: return NOC_ERR_UNSUPPORTED; /* reported above */
+    }
+}
+
+void noc_embree_release(embree_state *s) {
+    if (s->rtc)
+        rtcReleaseScene(s->rtc);
+    if (s->device)
+        rtcReleaseDevice(s->device);
+    s->rtc = NULL;
+    s->device = NULL;
+}
+
+static void lane_mask(uint32_t valid, int out[BLOCK]) {
+    for (int l = 0; l < BLOCK; l++)
+        out[l] = -(int)(valid >> l & 1);
+}
+
+static void fill_rays(const rayblock *rays, float far, struct RTCRay16 *r) {
+    memcpy(r->org_x, rays->o, sizeof(rays->o));
+    memcpy(r->dir_x, rays->d[0], sizeof(rays->d[0]));
+    memcpy(r->dir_y, rays->d[1], sizeof(rays->d[1]));
+    memcpy(r->dir_z, rays->d[2], sizeof(rays->d[2]));
+    for (int l = 0; l < BLOCK; l++) {
+        r->tnear[l] = 0;
+        r->time[l] = 0;
+        r->tfar[l] = far;
+        r->mask[l] = UINT32_MAX;
+        r->id[l] = 0;
+        r->flags[l] = 0;
+    }
+}
+
+static void keep(embree_state *s, worker *w, const rayblock *rays, uint32_t valid, bool primary) {
+    if (s->recording)
+        array_push(&w->packets, (packet){ .rays = *rays, .valid = valid, .primary = primary });
+}
+
+static uint32_t trace_free(embree_state *s, const rayblock *rays, uint32_t valid) {
+    ALIGNED int lanes[BLOCK];
+    ALIGNED struct RTCRay16 r;
+    lane_mask(valid, lanes);
+    fill_rays(rays, 1, &r);
+    rt_occluded16(lanes, s->rtc, &r);
+    uint32_t clear = 0;
+    for (int l = 0; l < BLOCK; l++)
+        clear |= (uint32_t)(r.tfar[l] >= 0) << l;
+    return clear & valid;
+}
+
+uint32_t noc_embree_free(embree_state *s, worker *w, const rayblock *rays, uint32_t valid) {
+    if (!valid)
+        return 0;
+    w->rays_shadow += (uint64_t)__builtin_popcount(valid);
+    keep(s, w, rays, valid, false);
+    return trace_free(s, rays, valid);
+}
+
+/* The hit point from its triangle in doubles: in its plane to half a unit in the last place, however large the triangle.
+ * o + t d would be off by the precision of t. */
+static void fill_hit(const noc_scene *scene, const struct RTCRayHit16 *h, int l, gblock *g) {
+    uint32_t prim = h->hit.primID[l];
+    const uint32_t *v = scene->indices.data + 3 * (size_t)prim;
+    const float *a = scene->positions.data + 3 * (size_t)v[0], *b = scene->positions.data + 3 * (size_t)v[1],
+                *c = scene->positions.data + 3 * (size_t)v[2];
+    double e[3], f[3], p[3], toward = 0;
+    for (int k = 0; k < 3; k++) {
+        e[k] = (double)b[k] - a[k];
+        f[k] = (double)c[k] - a[k];
+        p[k] = a[k] + h->hit.u[l] * e[k] + h->hit.v[l] * f[k];
+    }
+    double n[3] = { e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0] };
+    double d[3] = { h->ray.dir_x[l], h->ray.dir_y[l], h->ray.dir_z[l] };
+    double inv = 1 / sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (int k = 0; k < 3; k++)
+        toward += n[k] * d[k];
+    bool front = toward < 0;
+    inv = front ? inv : -inv;
+    g->px[l] = (float)p[0];
+    g->py[l] = (float)p[1];
+    g->pz[l] = (float)p[2];
+    g->nx[l] = (float)(n[0] * inv);
+    g->ny[l] = (float)(n[1] * inv);
+    g->nz[l] = (float)(n[2] * inv);
+    g->depth[l] = (float)(h->ray.tfar[l] * sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+    g->material[l] = scene->triangle_material.data[prim];
+    uint32_t light = scene->triangle_light.data[prim];
+    if (light != NOC_NO_LIGHT && !front && !(scene->lights.data[light].flags & 1))
+        light = NOC_NO_LIGHT; /* the dark back of a one-sided emitter */
+    g->light[l] = light;
+}
+
+void noc_embree_primary(embree_state *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g) {
+    ALIGNED int lanes[BLOCK];
+    ALIGNED struct RTCRayHit16 h;
+    *g = (gblock){ 0 };
+    memset(g->material, 0xff, sizeof(g->material));
+    memset(g->light, 0xff, sizeof(g->light));
+    w->rays_primary += (uint64_t)__builtin_popcount(valid);
+    keep(s, w, rays, valid, true);
+    lane_mask(valid, lanes);
+    fill_rays(rays, INFINITY, &h.ray);
+    memset(h.hit.geomID, 0xff, sizeof(h.hit.geomID));
+    memset(h.hit.instID, 0xff, sizeof(h.hit.instID));
+    rt_intersect16(lanes, s->rtc, &h);
+    for (int l = 0; l < BLOCK; l++)
+        if (valid >> l & 1 && h.hit.geomID[l] != RTC_INVALID_GEOMETRY_ID)
+            fill_hit(s->scene, &h, l, g);
+}
+
+/* Packets of one worker are traced in runs of so many by whoever is free. */
+enum { REPLAY_RUN = 64 };
+
+struct replay {
+    embree_state *s;
+    struct replay_item { const packet *first; size_t count; } *items;
+};
+
+static void replay_run(void *ctx, size_t item, int index) {
+    struct replay *r = ctx;
+    (void)index;
+    for (size_t i = 0; i < r->items[item].count; i++) {
+        const packet *p = r->items[item].first + i;
+        if (!p->primary) {
+            trace_free(r->s, &p->rays, p->valid);
+            continue;
+        }
+        ALIGNED int lanes[BLOCK];
+        ALIGNED struct RTCRayHit16 h;
+        lane_mask(p->valid, lanes);
+        fill_rays(&p->rays, INFINITY, &h.ray);
+        memset(h.hit.geomID, 0xff, sizeof(h.hit.geomID));
+        rt_intersect16(lanes, r->s->rtc, &h);
+    }
+}
+
+double noc_embree_replay(embree_state *s) {
+    NOC_ARRAY(struct replay_item) items = { 0 };
+    for (int i = 0; i < s->worker_count; i++) {
+        const worker *w = &s->workers[i];
+        for (size_t k = 0; k < w->packets.len; k += REPLAY_RUN)
+            array_push(&items, (struct replay_item){ w->packets.data + k, NOC_MIN((size_t)REPLAY_RUN, w->packets.len - k) });
+    }
+    struct replay r = { s, items.data };
+    double start = noc_wall_seconds();
+    noc_pool_run(s->pool, items.len, replay_run, &r);
+    double seconds = noc_wall_seconds() - start;
+    array_free(&items);
+    return seconds;
+}
+
+size_t noc_embree_build_bytes(const embree_state *s) {
+    ssize_t bytes = atomic_load(&((embree_state *)s)->build_bytes);
+    return bytes > 0 ? (size_t)bytes : 0;
+}

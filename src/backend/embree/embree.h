@@ -1,0 +1,108 @@
+/* State of the Embree backend. */
+#ifndef NOC_EMBREE_H
+#define NOC_EMBREE_H
+
+#include "backend/embree/kernels.h"
+#include "backend/embree/rt.h"
+
+#include <stdatomic.h>
+#include <sys/types.h>
+
+enum { TILE_BLOCKS = 4 }; /* a tile is 4x4 blocks: 16x16 pixels */
+
+/* A packet kept for the trace floor. */
+typedef struct packet {
+    rayblock rays;
+    uint32_t valid;
+    bool primary;
+} packet;
+
+/* One a thread; a multiple of a cache line apart. */
+typedef struct worker {
+    ALIGNED double seconds[NOC_PASS_COUNT];
+    uint64_t rays_primary, rays_shadow, dropped;
+    neighbour *neighbours; /* MAX_NEIGHBOURS */
+    reference_scratch reference;
+    NOC_ARRAY(packet) packets;
+} worker;
+
+/* Buffers of one picture; every array has an entry a block. */
+typedef struct frame_buffers {
+    int width, height, sets;
+    int blocks_x, blocks_y, tiles_x, tiles_y;
+    gblock *g[2];
+    rblock *r[NOC_RESERVOIR_SETS];
+    uint16_t *visible[NOC_RESERVOIR_SETS]; /* lanes whose sample is known to be seen from its own pixel */
+    cblock *colour;    /* of the frame being made */
+    cblock *picture;   /* mean, or last frame */
+    uint16_t *emitter; /* lanes that saw an emitter in a frame of the mean */
+    size_t bytes;
+} frame_buffers;
+
+typedef struct embree_state {
+    const noc_scene *scene;
+    noc_log *log;
+    noc_pool *pool;
+    RTCDevice device;
+    RTCScene rtc;
+    double build_seconds;
+    _Atomic ssize_t build_bytes; /* held by Embree */
+    noc_material_record no_material; /* stands in where the scene has none */
+    frame_buffers b;
+    worker *workers;
+    int worker_count;
+    bool recording;
+    const kernels *kernels; /* of the last stage */
+} embree_state;
+
+/* A stage at work: what every tile needs. */
+typedef struct stage_run {
+    embree_state *s;
+    struct core_context ctx;
+    const noc_stage *stage;
+    const kernels *k;
+    const noc_progress *progress;
+    const char *what;
+    double from, to;
+    size_t tiles;
+    atomic_size_t done;
+    atomic_bool cancelled;
+} stage_run;
+
+/* The blocks of a tile, one after the other. */
+typedef struct tile {
+    int x0, y0, x1, y1; /* blocks */
+} tile;
+
+/* device.c */
+noc_status noc_embree_build(embree_state *s);
+void noc_embree_release(embree_state *s);
+/* Traces the segments of `valid`; returns the lanes that nothing blocks. Counts, and keeps them when recording. */
+uint32_t noc_embree_free(embree_state *s, worker *w, const rayblock *rays, uint32_t valid);
+/* Nearest hits of camera rays into a block; lanes outside `valid` see nothing. */
+void noc_embree_primary(embree_state *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g);
+double noc_embree_replay(embree_state *s);
+size_t noc_embree_build_bytes(const embree_state *s);
+
+/* passes.c: one pass over one tile */
+void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t);
+
+/* reuse.c: temporal and spatial combination of one block */
+void noc_embree_temporal(stage_run *run, worker *w, int bx, int by);
+void noc_embree_spatial(stage_run *run, worker *w, int bx, int by);
+
+static inline uint32_t lanes_inside(const frame_buffers *b, int bx, int by) {
+    uint32_t lanes = 0;
+    for (int l = 0; l < BLOCK; l++)
+        lanes |= (uint32_t)(bx * BLOCK_SIDE + (l & 3) < b->width && by * BLOCK_SIDE + (l >> 2) < b->height) << l;
+    return lanes;
+}
+
+static inline uint32_t lanes_with_surface(const gblock *g) {
+    uint32_t lanes = 0;
+    for (int l = 0; l < BLOCK; l++)
+        lanes |= (uint32_t)(g->material[l] != NO_SURFACE) << l;
+    return lanes;
+}
+
+#endif

@@ -1,0 +1,82 @@
+/* What is computed between rays, for one block of 16 pixels at a time: core/ in scalar C and in wide C, behind one table an
+ * instruction set. Ray tracing stays outside: a kernel leaves segments, passes.c has them traced and calls the next one.
+ * Lanes are told apart by bits of a uint32_t. Scalar and wide tables give the same bits. */
+#ifndef NOC_EMBREE_KERNELS_H
+#define NOC_EMBREE_KERNELS_H
+
+#include "backend/embree/blocks.h"
+#include "render/backend.h"
+
+enum { MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32 };
+
+/* Uniform for a frame: what core's bridge functions read. */
+struct core_context {
+    const noc_light_record *lights;
+    uint32_t light_count;
+    const noc_material_record *materials; /* at least one */
+    const noc_frame *frame;
+};
+
+/* A reservoir of another pixel with that pixel's surface; lanes outside `lanes` were rejected and have m = w = 0. */
+typedef struct neighbour {
+    gblock g;
+    rblock r;
+    uint32_t lanes;
+} neighbour;
+
+/* What a combination remembers between its kernels. */
+typedef struct combination {
+    ALIGNED float u[BLOCK], v[BLOCK], p[BLOCK], w_sum[BLOCK], m[BLOCK], tag[BLOCK]; /* stream of the sample held */
+    uint32_t light[BLOCK];
+    float others[BLOCK];                  /* sum of the neighbours' M */
+    float p_at[MAX_NEIGHBOURS][BLOCK];    /* target of the held (mis) or canonical (pairwise) sample at each neighbour */
+} combination;
+
+/* Scratch of the reference method, one a worker. */
+typedef struct reference_scratch {
+    float (*sums)[BLOCK];      /* unshadowed luminance a chunk of lights */
+    uint32_t (*light)[BLOCK];  /* entry, lane: `rays` entries */
+    float (*w)[BLOCK];
+    uint32_t count[BLOCK];     /* entries a lane */
+} reference_scratch;
+
+typedef struct kernels {
+    const char *name;
+    /* M candidates a lane of `lanes`; w = m = 0 elsewhere. x, y: pixel of lane 0. */
+    void (*candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m, rblock *out);
+    /* Where this frame's surfaces were in the previous picture, in pixels; returns the lanes that were in front of it. */
+    uint32_t (*project)(const struct core_context *ctx, const gblock *g, float px[BLOCK], float py[BLOCK]);
+    /* Segments from g to the samples. */
+    void (*segments)(const struct core_context *ctx, const gblock *g, const uint32_t *light, const float *u, const float *v,
+                     rayblock *out);
+    /* Combination by 1/M or by the balance rule: offers the canonical reservoir and the neighbours' samples. The stream's
+     * tag is 0 for the canonical one, i + 1 for neighbour i. dim: first random dimension, 3 a neighbour. */
+    void (*offer)(const struct core_context *ctx, const gblock *g, const rblock *own, const neighbour *n, int k, int x,
+                  int y, uint32_t dim, combination *c);
+    /* p_at for the sample held by the stream (c->light, u, v); eye: the neighbours' camera. */
+    void (*targets)(const struct core_context *ctx, const float eye[3], const neighbour *n, int k, const uint32_t *light,
+                    const float *u, const float *v, combination *c);
+    void (*end_biased)(const combination *c, rblock *out);
+    void (*end_mis)(const combination *c, const rblock *own, const neighbour *n, int k, const uint32_t *visible,
+                    rblock *out);
+    /* Pairwise; visible[i]: the canonical sample is seen from neighbour i. Leaves the tag in c. */
+    void (*end_pairwise)(const struct core_context *ctx, const gblock *g, const rblock *own, const neighbour *n, int k,
+                         const uint32_t *visible, int x, int y, uint32_t dim, combination *c, rblock *out);
+    /* rgb += reflected * w for `lanes`; returns the lanes whose sum was not finite: those keep what they had. */
+    uint32_t (*shade)(const struct core_context *ctx, const gblock *g, const rblock *r, uint32_t lanes, cblock *out);
+    /* The lights' unshadowed luminance at each lane, then entries placed over it: see reference.c. */
+    void (*reference)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y,
+                      reference_scratch *scratch);
+    /* (u, v) that `reference` used for a lane's light. */
+    void (*reference_place)(const struct core_context *ctx, int x, int y, rblock *r);
+    /* One cosine-distributed direction a lane, as a ray of length `reach`; then its light, where it is free. */
+    void (*sky_rays)(const struct core_context *ctx, const gblock *g, int x, int y, rayblock *out);
+    uint32_t (*sky_shade)(const struct core_context *ctx, const gblock *g, const rayblock *rays, uint32_t lanes,
+                          cblock *out);
+    void (*sky_background)(const struct core_context *ctx, uint32_t lanes, int x, int y, cblock *out);
+} kernels;
+
+extern const kernels noc_kernels_scalar, noc_kernels_baseline, noc_kernels_avx2, noc_kernels_avx512;
+const kernels *noc_pick_kernels(noc_path path);
+
+#endif

@@ -1,0 +1,156 @@
+/* Bridge between core/ and blocks of pixels: loads, stores, masks and light records for CORE_LANES lanes (scalar: 1). */
+#ifndef NOC_EMBREE_LANES_H
+#define NOC_EMBREE_LANES_H
+
+#include "backend/embree/kernels.h"
+
+#include "core/camera.h"
+#include "core/random.h"
+#include "core/reservoir.h"
+#include "core/reuse.h"
+#include "core/shadow.h"
+#include "core/sky.h"
+#include "core/wide_load.h"
+
+#include <string.h>
+
+#if defined(CORE_LANES)
+enum { LANES = CORE_LANES };
+FN real rload(const float *p) { real r; memcpy(&r, p, sizeof(r)); return r; }
+FN u32 uload(const uint32_t *p) { u32 r; memcpy(&r, p, sizeof(r)); return r; }
+FN mask mload(uint32_t lanes, int first) {
+    u32 bit;
+    for (int i = 0; i < LANES; i++)
+        bit[i] = 1u << i;
+    return (mask)((KU(lanes >> first) & bit) != KU(0u));
+}
+FN uint32_t mbits(mask m) {
+#if CORE_LANES == 16 && defined(__AVX512F__)
+    return (uint32_t)_mm512_movepi32_mask((__m512i)m);
+#elif CORE_LANES == 8 && defined(__AVX2__)
+    return (uint32_t)_mm256_movemask_ps((__m256)m);
+#else
+    uint32_t bits = 0;
+    for (int i = 0; i < LANES; i++)
+        bits |= (m[i] ? 1u : 0u) << i;
+    return bits;
+#endif
+}
+#else
+enum { LANES = 1 };
+FN real rload(const float *p) { return *p; }
+FN u32 uload(const uint32_t *p) { return *p; }
+FN mask mload(uint32_t lanes, int first) { return lanes >> first & 1; }
+FN uint32_t mbits(mask m) { return m; }
+#endif
+FN void rstore(float *p, real v) { memcpy(p, &v, sizeof(v)); }
+FN void ustore(uint32_t *p, u32 v) { memcpy(p, &v, sizeof(v)); }
+
+/* Pixel of the lanes from `first` in the block whose lane 0 is (x, y). */
+FN u32 lane_numbers(int first) {
+    uint32_t n[LANES];
+    for (int i = 0; i < LANES; i++)
+        n[i] = (uint32_t)(first + i);
+    return uload(n);
+}
+FN u32 lane_x(int x, int first) { return KU((uint32_t)x) + (lane_numbers(first) & KU(3u)); }
+FN u32 lane_y(int y, int first) { return KU((uint32_t)y) + shr(lane_numbers(first), 2); }
+
+FN u32 key_of(const struct core_context *ctx, int x, int y, int first) {
+    const noc_frame *f = ctx->frame;
+    u32 pixel = lane_y(y, first) * KU((uint32_t)f->params->width) + lane_x(x, first);
+    return rng_key(KU(f->params->seed), pixel, KU(f->index));
+}
+
+FN v3 splat3(const float a[3]) { return V3(K(a[0]), K(a[1]), K(a[2])); }
+
+FN camera camera_load(const noc_frame_camera *f) {
+    camera c;
+    c.eye = splat3(f->eye);
+    c.right = splat3(f->right);
+    c.up = splat3(f->up);
+    c.forward = splat3(f->forward);
+    c.inv_right2 = K(f->inv_right2);
+    c.inv_up2 = K(f->inv_up2);
+    c.width = K(f->width);
+    c.height = K(f->height);
+    return c;
+}
+
+FN light light_load(CTX u32 i) { return light_from_records((const float *)ctx->lights, i); }
+
+/* The same light in every lane. */
+FN light light_splat(CTX uint32_t i) {
+    const noc_light_record *r = ctx->lights + i;
+    light l;
+    l.p = splat3(r->p);
+    l.kind = KU(r->kind);
+    l.a = splat3(r->a);
+    l.radius = K(r->radius);
+    l.b = splat3(r->b);
+    l.flags = KU(r->flags);
+    l.e = splat3(r->e);
+    l.area = K(r->area);
+    return l;
+}
+
+/* Element `field` of each lane's material record. */
+FN real material_field(const noc_material_record *base, u32 index, int field) {
+#if defined(CORE_LANES) && CORE_LANES == 16 && defined(__AVX512F__)
+    return (real)_mm512_i32gather_ps((__m512i)shl(index, 3), (const float *)base + field, 4);
+#else
+    float f[LANES];
+    uint32_t at[LANES];
+    ustore(at, index);
+    for (int i = 0; i < LANES; i++)
+        f[i] = ((const float *)(base + at[i]))[field];
+    return rload(f);
+#endif
+}
+
+/* The receiving surfaces, seen from eye. Lanes without a surface get n = 0, and so reflect nothing. */
+FN surf surf_load(CTX const gblock *g, int l, const float eye[3]) {
+    surf s;
+    s.p = V3(rload(g->px + l), rload(g->py + l), rload(g->pz + l));
+    s.n = V3(rload(g->nx + l), rload(g->ny + l), rload(g->nz + l));
+    v3 d = sub3(splat3(eye), s.p);
+    s.wo = mul3(d, K(1.0f) / sqrt_(max_(dot3(d, d), K(1e-20f))));
+    u32 m = uload(g->material + l);
+    m = selu(m == KU(NO_SURFACE), KU(0u), m);
+    s.albedo = V3(material_field(ctx->materials, m, 0), material_field(ctx->materials, m, 1),
+                  material_field(ctx->materials, m, 2));
+    s.f0 = material_field(ctx->materials, m, 3);
+    s.alpha = material_field(ctx->materials, m, 7);
+    return s;
+}
+
+FN resv resv_load(const rblock *b, int l) {
+    resv r;
+    r.light = uload(b->light + l);
+    r.u = rload(b->u + l);
+    r.v = rload(b->v + l);
+    r.w = rload(b->w + l);
+    r.m = rload(b->m + l);
+    r.p = rload(b->p + l);
+    return r;
+}
+
+FN void resv_store(rblock *b, int l, resv r) {
+    ustore(b->light + l, r.light);
+    rstore(b->u + l, r.u);
+    rstore(b->v + l, r.v);
+    rstore(b->w + l, r.w);
+    rstore(b->m + l, r.m);
+    rstore(b->p + l, r.p);
+}
+
+FN void ray_store(rayblock *b, int l, v3 o, v3 d) {
+    rstore(b->o[0] + l, o.x);
+    rstore(b->o[1] + l, o.y);
+    rstore(b->o[2] + l, o.z);
+    rstore(b->d[0] + l, d.x);
+    rstore(b->d[1] + l, d.y);
+    rstore(b->d[2] + l, d.z);
+}
+
+#endif

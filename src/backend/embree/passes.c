@@ -1,0 +1,163 @@
+/* One pass over one tile: kernels and rays in turn, block by block. */
+#include "backend/embree/embree.h"
+
+#include "core/camera.h"
+
+static size_t block_at(const frame_buffers *b, int bx, int by) { return (size_t)by * b->blocks_x + bx; }
+
+static uint32_t lanes_with_sample(const rblock *r) {
+    uint32_t lanes = 0;
+    for (int l = 0; l < BLOCK; l++)
+        lanes |= (uint32_t)(r->w[l] > 0) << l;
+    return lanes;
+}
+
+static v3 vec(const float a[3]) { return V3(a[0], a[1], a[2]); }
+
+static void primary(stage_run *run, worker *w, int bx, int by) {
+    const noc_frame *f = run->ctx.frame;
+    const noc_frame_camera *c = &f->camera;
+    frame_buffers *b = &run->s->b;
+    camera cam = { .right = vec(c->right), .up = vec(c->up), .forward = vec(c->forward), .width = c->width,
+                   .height = c->height };
+    rayblock rays;
+    for (int l = 0; l < BLOCK; l++) {
+        v3 d = camera_direction(cam, (float)(bx * BLOCK_SIDE + (l & 3)) + c->jitter[0],
+                                (float)(by * BLOCK_SIDE + (l >> 2)) + c->jitter[1]);
+        for (int k = 0; k < 3; k++)
+            rays.o[k][l] = c->eye[k];
+        rays.d[0][l] = d.x;
+        rays.d[1][l] = d.y;
+        rays.d[2][l] = d.z;
+    }
+    noc_embree_primary(run->s, w, &rays, lanes_inside(b, bx, by), &b->g[f->gbuffer][block_at(b, bx, by)]);
+}
+
+static void candidates(stage_run *run, worker *w, int bx, int by) {
+    frame_buffers *b = &run->s->b;
+    const noc_render_params *p = run->ctx.frame->params;
+    size_t at = block_at(b, bx, by);
+    const gblock *g = &b->g[run->ctx.frame->gbuffer][at];
+    int m = p->method == NOC_METHOD_IS ? 1 : p->candidates;
+    (void)w;
+    run->k->candidates(&run->ctx, g, lanes_with_surface(g), bx * BLOCK_SIDE, by * BLOCK_SIDE, m,
+                       &b->r[run->stage->target][at]);
+    b->visible[run->stage->target][at] = 0;
+}
+
+static void visibility(stage_run *run, worker *w, int bx, int by) {
+    frame_buffers *b = &run->s->b;
+    size_t at = block_at(b, bx, by);
+    rblock *r = &b->r[run->stage->target][at];
+    uint32_t lanes = lanes_with_sample(r);
+    if (!lanes)
+        return;
+    rayblock rays;
+    run->k->segments(&run->ctx, &b->g[run->ctx.frame->gbuffer][at], r->light, r->u, r->v, &rays);
+    uint32_t seen = noc_embree_free(run->s, w, &rays, lanes);
+    for (int l = 0; l < BLOCK; l++)
+        if (!(seen >> l & 1))
+            r->w[l] = 0;
+    b->visible[run->stage->target][at] = (uint16_t)seen;
+}
+
+/* Emitters seen directly begin the block's colour. */
+static void show_emitters(stage_run *run, const gblock *g, uint16_t *seen, cblock *c) {
+    const noc_scene *scene = run->s->scene;
+    uint32_t lanes = 0;
+    memset(c, 0, sizeof(*c));
+    for (int l = 0; l < BLOCK; l++) {
+        if (g->light[l] == NOC_NO_LIGHT)
+            continue;
+        lanes |= 1u << l;
+        for (int k = 0; run->ctx.frame->params->emitters && k < 3; k++)
+            c->rgb[k][l] = scene->lights.data[g->light[l]].e[k];
+    }
+    *seen = (uint16_t)((run->ctx.frame->accumulated ? *seen : 0) | lanes);
+}
+
+static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, int bx, int by, cblock *c) {
+    const noc_render_params *p = run->ctx.frame->params;
+    uint32_t surfaces = lanes_with_surface(g), dropped = 0, most = 0;
+    if (!surfaces)
+        return 0;
+    int x = bx * BLOCK_SIDE, y = by * BLOCK_SIDE;
+    reference_scratch *e = &w->reference;
+    run->k->reference(&run->ctx, g, surfaces, x, y, e);
+    for (int l = 0; l < BLOCK; l++)
+        most = NOC_MAX(most, e->count[l]);
+    for (uint32_t i = 0; i < most; i++) {
+        rblock r;
+        uint32_t lanes = 0;
+        for (int l = 0; l < BLOCK; l++) {
+            bool on = i < e->count[l];
+            lanes |= (uint32_t)on << l;
+            r.light[l] = on ? e->light[i][l] : 0;
+            r.w[l] = on ? e->w[i][l] : 0;
+        }
+        run->k->reference_place(&run->ctx, x, y, &r);
+        if (p->final_ray) {
+            rayblock rays;
+            run->k->segments(&run->ctx, g, r.light, r.u, r.v, &rays);
+            lanes = noc_embree_free(run->s, w, &rays, lanes);
+        }
+        dropped |= run->k->shade(&run->ctx, g, &r, lanes, c);
+    }
+    return dropped;
+}
+
+static void shade(stage_run *run, worker *w, int bx, int by) {
+    const noc_frame *f = run->ctx.frame;
+    frame_buffers *b = &run->s->b;
+    size_t at = block_at(b, bx, by);
+    const gblock *g = &b->g[f->gbuffer][at];
+    cblock *c = &b->colour[at];
+    show_emitters(run, g, &b->emitter[at], c);
+    if (!run->ctx.light_count)
+        return;
+    if (f->params->method == NOC_METHOD_REFERENCE) {
+        w->dropped += (uint64_t)__builtin_popcount(shade_reference(run, w, g, bx, by, c));
+        return;
+    }
+    const rblock *r = &b->r[run->stage->target][at];
+    uint32_t lanes = lanes_with_sample(r), known = b->visible[run->stage->target][at], ask = lanes & ~known;
+    if (f->params->final_ray && ask) {
+        rayblock rays;
+        run->k->segments(&run->ctx, g, r->light, r->u, r->v, &rays);
+        lanes = (lanes & known) | noc_embree_free(run->s, w, &rays, ask);
+    }
+    if (lanes)
+        w->dropped += (uint64_t)__builtin_popcount(run->k->shade(&run->ctx, g, r, lanes, c));
+}
+
+static void sky(stage_run *run, worker *w, int bx, int by) {
+    frame_buffers *b = &run->s->b;
+    size_t at = block_at(b, bx, by);
+    const gblock *g = &b->g[run->ctx.frame->gbuffer][at];
+    uint32_t surfaces = lanes_with_surface(g), background = lanes_inside(b, bx, by) & ~surfaces;
+    int x = bx * BLOCK_SIDE, y = by * BLOCK_SIDE;
+    if (background)
+        run->k->sky_background(&run->ctx, background, x, y, &b->colour[at]);
+    if (!surfaces)
+        return;
+    rayblock rays;
+    run->k->sky_rays(&run->ctx, g, x, y, &rays);
+    uint32_t lanes = noc_embree_free(run->s, w, &rays, surfaces);
+    if (lanes)
+        w->dropped += (uint64_t)__builtin_popcount(run->k->sky_shade(&run->ctx, g, &rays, lanes, &b->colour[at]));
+}
+
+void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
+    static void (*const passes[NOC_PASS_COUNT])(stage_run *, worker *, int, int) = {
+        [NOC_PASS_PRIMARY] = primary,   [NOC_PASS_CANDIDATES] = candidates,     [NOC_PASS_VISIBILITY] = visibility,
+        [NOC_PASS_TEMPORAL] = noc_embree_temporal, [NOC_PASS_SPATIAL] = noc_embree_spatial, [NOC_PASS_SHADE] = shade,
+        [NOC_PASS_SKY] = sky,
+    };
+    bool needs_light = pass == NOC_PASS_CANDIDATES || pass == NOC_PASS_VISIBILITY || pass == NOC_PASS_TEMPORAL ||
+                       pass == NOC_PASS_SPATIAL;
+    if (needs_light && !run->ctx.light_count)
+        return;
+    for (int by = t.y0; by < t.y1; by++)
+        for (int bx = t.x0; bx < t.x1; bx++)
+            passes[pass](run, w, bx, by);
+}

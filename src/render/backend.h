@@ -1,0 +1,106 @@
+/* backend: what a device must be able to do to render. renderer.c validates, keeps history and decides what is run in
+ * which order (frame.c); a backend only executes, so that methods, history and views are the same on every device. */
+#ifndef NOC_BACKEND_H
+#define NOC_BACKEND_H
+
+#include "scene/scene.h"
+#include <nocturne/render.h>
+
+/* Camera as rays use it, in the scene's local frame: the fields of core/camera.h, and the place of this frame's rays in
+ * their pixels, 0..1. */
+typedef struct noc_frame_camera {
+    float eye[3], right[3], up[3], forward[3];
+    float inv_right2, inv_up2, width, height;
+    float jitter[2];
+} noc_frame_camera;
+
+/* Sets of reservoirs. The schedule names them; a backend holds NOC_RESERVOIR_SETS of them, or as many as it was told. */
+enum { NOC_RESERVOIR_SETS = 3 };
+
+/* One frame. Nothing in it changes while the frame is run. */
+typedef struct noc_frame {
+    const noc_render_params *params;
+    uint32_t index;            /* since the last reset: the frame's random numbers */
+    uint64_t accumulated;      /* frames in the mean so far; 0 starts it anew */
+    noc_frame_camera camera, previous;
+    bool history;              /* the frame before is of the same size and parameters: its reservoirs can be reused */
+    int history_set;           /* set that holds the previous frame's reservoirs */
+    int gbuffer;               /* 0 or 1: this frame's G-buffer; the other one holds the previous frame's */
+} noc_frame;
+
+/* A run over all pixels of passes that only look at their own pixel, or at what an earlier stage (or frame) has left. */
+typedef struct noc_stage {
+    uint32_t passes;           /* 1 << noc_pass, done in the order of noc_pass */
+    int source, target;        /* reservoirs read from other pixels; reservoirs worked on and left behind */
+    int round;                 /* number of the spatial pass */
+    bool resolve_visibility;   /* leave no sample whose visibility at its own pixel is unknown */
+} noc_stage;
+
+enum { NOC_MAX_STAGES = 8 };
+
+typedef struct noc_schedule {
+    noc_stage stages[NOC_MAX_STAGES];
+    int count;
+    int sets;                  /* reservoir sets that are used */
+    int next_history;          /* set that feeds the next frame, -1: none */
+} noc_schedule;
+
+typedef struct noc_backend {
+    const char *name;
+    /* Builds the ray tracing structure. *state is only set on success. */
+    noc_status (*create)(const noc_scene *scene, const noc_renderer_params *params, noc_log *log, void **state);
+    void (*destroy)(void *state);
+    /* What a picture takes, to be held against the machine before anything is allocated. */
+    size_t (*bytes_a_pixel)(int reservoir_sets);
+    /* Buffers for pictures of this size, with so many reservoir sets; what was held is lost, also when this fails. */
+    noc_status (*resize)(void *state, int width, int height, int reservoir_sets);
+    /* progress may be NULL; from..to is the stage's share of the frame. NOC_ERR_CANCELLED leaves the picture as it was. */
+    noc_status (*stage)(void *state, const noc_frame *frame, const noc_stage *stage, const noc_progress *progress,
+                        double from, double to);
+    /* Adds the frame to the picture: into the mean, or in its place when frame->accumulated is 0. */
+    void (*accumulate)(void *state, const noc_frame *frame);
+    /* Picture and emitter mask (1 where the pixel itself sees an emitter in a frame of the mean). */
+    void (*read)(void *state, noc_image *image);
+    /* Adds up into stats: pass_seconds, rays, dropped, all since the last call; sets build_seconds, memory and path. */
+    void (*stats)(void *state, noc_frame_stats *stats);
+    /* Rays of the stages run between record(true) and record(false) are kept; replay traces them and nothing else. */
+    void (*record)(void *state, bool on);
+    noc_status (*replay)(void *state, double *seconds);
+} noc_backend;
+
+extern const noc_backend noc_backend_embree;
+
+/* frame.c */
+/* Everything of a params struct and a camera that can be wrong, as one reported error. */
+noc_status noc_check_render_params(const noc_render_params *params, noc_log *log);
+noc_status noc_check_camera(const noc_camera *camera, noc_log *log);
+void noc_make_frame_camera(const noc_camera *camera, const noc_render_params *params, uint32_t frame,
+                           noc_frame_camera *out);
+/* What to run for these parameters. history_set: set with the previous frame's reservoirs. */
+void noc_make_schedule(const noc_render_params *params, int history_set, noc_schedule *schedule);
+/* Visibility is a part of the reservoirs' own target functions, and of their combination: see docs/estimator.md. */
+static inline bool noc_uses_bias_rays(const noc_render_params *p) {
+    return p->method == NOC_METHOD_RESTIR && p->bias != NOC_BIAS_BIASED && p->bias_rays && p->visibility_reuse &&
+           p->final_ray;
+}
+
+/* history.c: what may be carried from frame to frame. */
+typedef struct noc_history {
+    bool started;             /* params and camera are those of an earlier frame */
+    bool reusable;            /* that frame was completed, and its reservoirs are there */
+    noc_render_params params;
+    noc_camera camera;
+    noc_frame_camera view;
+    uint32_t index;           /* of the next frame */
+    uint64_t accumulated;
+    int set, gbuffer;
+} noc_history;
+
+void noc_history_reset(noc_history *history);
+/* Describes the next frame; forgets what this camera and these parameters make useless. */
+void noc_history_begin(noc_history *history, const noc_camera *camera, const noc_render_params *params, noc_frame *frame);
+/* The frame was completed, or dropped. */
+void noc_history_end(noc_history *history, const noc_frame *frame, int next_set);
+void noc_history_drop(noc_history *history);
+
+#endif

@@ -1,0 +1,153 @@
+/* What is rendered in one frame, and in which order. */
+#include "render/backend.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static noc_status wrong(noc_log *log, const char *name, double value, const char *right) {
+    return noc_error(log, NOC_ERR_ARGUMENT, "render: %s is %g, must be %s", name, value, right);
+}
+
+noc_status noc_check_render_params(const noc_render_params *p, noc_log *log) {
+    const struct {
+        const char *name;
+        double value, min, max;
+    } ranges[] = {
+        { "width", p->width, 1, NOC_IMAGE_MAX_SIDE },
+        { "height", p->height, 1, NOC_IMAGE_MAX_SIDE },
+        { "candidates", p->candidates, 1, 1024 },
+        { "rays", p->rays, 1, 1024 },
+        { "neighbours", p->neighbours, 0, 16 },
+        { "radius", p->radius, 1, 64 },
+        { "passes", p->passes, 1, 4 },
+        { "history", p->history, 0, 1000 },
+        { "reject_depth", p->reject_depth, 0, 1e6 },
+        { "reject_normal", p->reject_normal, -1, 1 },
+        { "sky", p->sky, 0, 1e6 },
+    };
+    for (size_t i = 0; i < NOC_COUNT(ranges); i++)
+        if (!(ranges[i].value >= ranges[i].min && ranges[i].value <= ranges[i].max)) { /* also for NaN */
+            char right[64];
+            snprintf(right, sizeof(right), "in %g..%g", ranges[i].min, ranges[i].max);
+            return wrong(log, ranges[i].name, ranges[i].value, right);
+        }
+    if ((unsigned)p->method > NOC_METHOD_RESTIR)
+        return wrong(log, "method", p->method, "a noc_method");
+    if ((unsigned)p->bias > NOC_BIAS_PAIRWISE)
+        return wrong(log, "bias", p->bias, "a noc_bias");
+    if ((unsigned)p->path > NOC_PATH_WIDE)
+        return wrong(log, "path", p->path, "a noc_path");
+    return NOC_OK;
+}
+
+typedef struct { double x, y, z; } vec;
+
+static vec cross(vec a, vec b) { return (vec){ a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x }; }
+static double norm(vec a) { return sqrt(a.x * a.x + a.y * a.y + a.z * a.z); }
+static vec scale(vec a, double s) { return (vec){ a.x * s, a.y * s, a.z * s }; }
+static vec load(const double *a) { return (vec){ a[0], a[1], a[2] }; }
+
+noc_status noc_check_camera(const noc_camera *c, noc_log *log) {
+    for (int i = 0; i < 3; i++)
+        if (!(fabs(c->eye[i]) < 1e7 && fabs(c->target[i]) < 1e7 && isfinite(c->up[i])))
+            return noc_error(log, NOC_ERR_ARGUMENT, "camera: eye, target and up must be finite and within 10 000 km");
+    if (!(c->fov_deg >= 0.01 && c->fov_deg <= 179))
+        return noc_error(log, NOC_ERR_ARGUMENT, "camera: field of view is %g degrees, must be in 0.01..179", c->fov_deg);
+    vec eye = load(c->eye), target = load(c->target);
+    vec forward = { target.x - eye.x, target.y - eye.y, target.z - eye.z };
+    double l = norm(forward), up = norm(load(c->up));
+    if (!(l > 1e-9))
+        return noc_error(log, NOC_ERR_ARGUMENT, "camera: eye and target are the same point");
+    if (!(up > 1e-30 && up < 1e30))
+        return noc_error(log, NOC_ERR_ARGUMENT, "camera: up has no direction");
+    return NOC_OK;
+}
+
+static void store(vec a, float out[3]) {
+    out[0] = (float)a.x;
+    out[1] = (float)a.y;
+    out[2] = (float)a.z;
+}
+
+/* Place of a frame's rays in their pixels: the R2 sequence (Roberts 2018), begun at the pixel's centre, moved by the
+ * seed. A low-discrepancy sequence over frames converges edges faster than random places. */
+static void frame_jitter(const noc_render_params *p, uint32_t frame, float out[2]) {
+    static const double step[2] = { 0.75487766624669276, 0.56984029099805327 };
+    for (int i = 0; i < 2; i++) {
+        double start = fmod(p->seed * step[1 - i], 1.0);
+        double x = p->jitter ? fmod(0.5 + start + frame * step[i], 1.0) : 0.5;
+        out[i] = NOC_MIN((float)x, 0x1.fffffep-1f);
+    }
+}
+
+void noc_make_frame_camera(const noc_camera *camera, const noc_render_params *params, uint32_t frame,
+                           noc_frame_camera *out) {
+    vec eye = load(camera->eye), target = load(camera->target), up = load(camera->up);
+    vec forward = { target.x - eye.x, target.y - eye.y, target.z - eye.z };
+    forward = scale(forward, 1 / norm(forward));
+    up = scale(up, 1 / norm(up));
+    vec right = cross(forward, up);
+    if (norm(right) < 1e-6) { /* looking along up: any other direction stands in for it */
+        up = fabs(forward.y) < 0.9 ? (vec){ 0, 1, 0 } : (vec){ 1, 0, 0 };
+        right = cross(forward, up);
+    }
+    right = scale(right, 1 / norm(right));
+    up = cross(right, forward);
+    double t = tan(camera->fov_deg * M_PI / 360), aspect = (double)params->width / params->height;
+    *out = (noc_frame_camera){ .width = (float)params->width, .height = (float)params->height };
+    store(eye, out->eye);
+    store(forward, out->forward);
+    store(scale(right, t * aspect), out->right);
+    store(scale(up, t), out->up);
+    out->inv_right2 = (float)(1 / (t * aspect * t * aspect));
+    out->inv_up2 = (float)(1 / (t * t));
+    frame_jitter(params, frame, out->jitter);
+}
+
+#define BIT(pass) (1u << NOC_PASS_##pass)
+
+/* Reservoir sets: `history` is read by the temporal pass only, so it is free to take the first spatial pass's output. The
+ * temporal output is what feeds the next frame: biased spatial output fed back compounds its bias (picks.md: -19 to -57%),
+ * and unbiased output fed back correlates neighbours (bench/bench_error measures both). */
+void noc_make_schedule(const noc_render_params *p, int history_set, noc_schedule *s) {
+    *s = (noc_schedule){ .sets = 1, .next_history = -1 };
+    uint32_t shade = BIT(SHADE) | (p->sky > 0 ? BIT(SKY) : 0);
+    bool restir = p->method == NOC_METHOD_RESTIR;
+    bool spatial = restir && p->spatial && p->neighbours > 0;
+    noc_stage first = { .passes = BIT(PRIMARY) };
+    if (p->method != NOC_METHOD_REFERENCE)
+        first.passes |= BIT(CANDIDATES);
+    if ((restir || p->method == NOC_METHOD_RIS) && p->visibility_reuse && p->final_ray)
+        first.passes |= BIT(VISIBILITY);
+    if (!restir) {
+        first.passes |= shade;
+        s->stages[s->count++] = first;
+        return;
+    }
+    int rounds = spatial ? p->passes : 0;
+    bool resolve = noc_uses_bias_rays(p);
+    int history = history_set < 0 ? 0 : history_set, fresh = p->temporal ? (history + 1) % 2 : 0;
+    if (p->temporal || rounds)
+        s->sets = 2;
+    if (rounds > 1)
+        s->sets = 3;
+    first.target = fresh;
+    first.source = history;
+    first.resolve_visibility = resolve;
+    if (p->temporal) {
+        first.passes |= BIT(TEMPORAL);
+        s->next_history = fresh;
+    }
+    if (!rounds)
+        first.passes |= shade;
+    s->stages[s->count++] = first;
+    int from = fresh, to = 1 - fresh;
+    for (int i = 0; i < rounds; i++) {
+        bool last = i == rounds - 1;
+        s->stages[s->count++] = (noc_stage){ .passes = BIT(SPATIAL) | (last ? shade : 0), .source = from, .target = to,
+                                             .round = i, .resolve_visibility = resolve && !last };
+        int next = from == fresh ? 2 : from; /* the temporal output is never overwritten: it is the next history */
+        from = to;
+        to = next;
+    }
+}

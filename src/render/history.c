@@ -1,0 +1,55 @@
+/* What may be carried from frame to frame: reservoirs, G-buffer, the running mean. */
+#include "render/backend.h"
+
+#include <math.h>
+
+void noc_history_reset(noc_history *history) { *history = (noc_history){ .set = -1 }; }
+
+static bool same_vec(const double a[3], const double b[3]) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
+
+static bool same_camera(const noc_camera *a, const noc_camera *b) {
+    return same_vec(a->eye, b->eye) && same_vec(a->target, b->target) && same_vec(a->up, b->up) && a->fov_deg == b->fov_deg;
+}
+
+/* Field by field: the padding of two equal structs may differ. */
+static bool same_params(const noc_render_params *a, const noc_render_params *b) {
+    return a->width == b->width && a->height == b->height && a->method == b->method && a->candidates == b->candidates &&
+           a->rays == b->rays && a->temporal == b->temporal && a->spatial == b->spatial &&
+           a->neighbours == b->neighbours && a->radius == b->radius && a->passes == b->passes &&
+           a->history == b->history && a->bias == b->bias && a->bias_rays == b->bias_rays &&
+           a->visibility_reuse == b->visibility_reuse && a->final_ray == b->final_ray &&
+           a->reject_depth == b->reject_depth && a->reject_normal == b->reject_normal && a->seed == b->seed &&
+           a->jitter == b->jitter && a->accumulate == b->accumulate && a->sky == b->sky &&
+           a->emitters == b->emitters && a->path == b->path;
+}
+
+void noc_history_begin(noc_history *h, const noc_camera *camera, const noc_render_params *params, noc_frame *frame) {
+    if (h->started && !same_params(&h->params, params))
+        noc_history_reset(h);
+    if (h->started && !same_camera(&h->camera, camera))
+        h->accumulated = 0;
+    *frame = (noc_frame){ .params = params,
+                          .index = h->index,
+                          .accumulated = params->accumulate ? h->accumulated : 0,
+                          .history = h->started && h->reusable,
+                          .history_set = h->set,
+                          .gbuffer = 1 - h->gbuffer };
+    noc_make_frame_camera(camera, params, h->index, &frame->camera);
+    frame->previous = frame->history ? h->view : frame->camera;
+    h->started = true;
+    h->reusable = false; /* until the frame is completed */
+    h->params = *params;
+    h->camera = *camera;
+}
+
+void noc_history_end(noc_history *h, const noc_frame *frame, int next_set) {
+    h->view = frame->camera;
+    h->gbuffer = frame->gbuffer;
+    h->set = next_set;
+    h->reusable = next_set >= 0;
+    h->accumulated = frame->accumulated + 1;
+    h->index++;
+}
+
+/* The dropped frame's random numbers are not used again, so that what replaces it is independent of where it stopped. */
+void noc_history_drop(noc_history *h) { h->index++; }

@@ -1,0 +1,79 @@
+/* Scenes and pictures for the tests of render and its backends. */
+#ifndef NOC_TEST_ROOMS_H
+#define NOC_TEST_ROOMS_H
+
+#include "../test.h"
+
+#include "base/base.h"
+#include "render/backend.h"
+
+#include <math.h>
+
+static inline int matte(noc_scene *s, float albedo) {
+    return noc_scene_add_material(s, &(noc_material){ .albedo = { albedo, albedo, albedo }, .roughness = 1 });
+}
+
+/* A parallelogram at p with edges a, b; faces a x b. */
+static inline void add_quad(noc_scene *s, int material, const double p[3], const double a[3], const double b[3]) {
+    double xyz[12];
+    for (int k = 0; k < 3; k++) {
+        xyz[k] = p[k];
+        xyz[3 + k] = p[k] + a[k];
+        xyz[6 + k] = p[k] + a[k] + b[k];
+        xyz[9 + k] = p[k] + b[k];
+    }
+    noc_mesh m = { .vertex_count = 4, .positions = xyz, .triangle_count = 2,
+                   .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 }, .material = material };
+    assert_true(noc_scene_add_mesh(s, &m) >= 0);
+}
+
+#define QUAD(s, m, px, py, pz, ax, ay, az, bx, by, bz) \
+    add_quad(s, m, (double[3]){ px, py, pz }, (double[3]){ ax, ay, az }, (double[3]){ bx, by, bz })
+
+/* A horizontal square floor around (x, y) at height z, seen from above. */
+static inline void add_floor(noc_scene *s, int material, double x, double y, double z, double half) {
+    QUAD(s, material, x - half, y - half, z, 2 * half, 0, 0, 0, 2 * half, 0);
+}
+
+static inline noc_camera look(double ex, double ey, double ez, double tx, double ty, double tz, double fov) {
+    return (noc_camera){ .eye = { ex, ey, ez }, .target = { tx, ty, tz }, .up = { 0, 0, 1 }, .fov_deg = fov };
+}
+
+/* Params for measurements: no sky, no jitter. */
+static inline noc_render_params measure(int width, int height, noc_method method) {
+    noc_render_params p = noc_render_default_params();
+    p.width = width;
+    p.height = height;
+    p.method = method;
+    p.sky = 0;
+    p.jitter = false;
+    return p;
+}
+
+static inline double luma(const float *c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
+
+/* The picture of `frames` accumulated frames with a fresh renderer. */
+static inline noc_image *render(const noc_scene *s, const noc_camera *c, const noc_render_params *p, int frames) {
+    noc_renderer *r = noc_renderer_create(s, NULL, NULL);
+    assert_non_null(r);
+    for (int i = 0; i < frames; i++)
+        assert_int_equal(noc_renderer_frame(r, c, p, NULL), NOC_OK);
+    noc_image *image = noc_renderer_image(r);
+    assert_non_null(image);
+    noc_renderer_destroy(r);
+    return image;
+}
+
+/* The point of a horizontal plane that a pixel's centre sees. */
+static inline void floor_point(const noc_camera *c, const noc_render_params *p, int x, int y, double z, double out[3]) {
+    noc_frame_camera f;
+    noc_make_frame_camera(c, p, 0, &f);
+    double sx = 2 * (x + 0.5) / p->width - 1, sy = 1 - 2 * (y + 0.5) / p->height, d[3];
+    for (int k = 0; k < 3; k++)
+        d[k] = f.forward[k] + sx * f.right[k] + sy * f.up[k];
+    double t = (z - c->eye[2]) / d[2];
+    for (int k = 0; k < 3; k++)
+        out[k] = c->eye[k] + t * d[k];
+}
+
+#endif

@@ -1,0 +1,125 @@
+/* Pictures against what can be computed by hand: units and geometry end to end. */
+#include "rooms.h"
+
+static noc_scene *scene_done(noc_scene *s) {
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    return s;
+}
+
+/* E = I cos^3 / h^2 under a point luminaire; L = E albedo / pi. Exact in one frame: one light, no occlusion. */
+static void point_over_plane(void **state) {
+    (void)state;
+    for (double far = 0; far <= 5000; far += 5000) {
+        noc_scene *s = noc_scene_create(NULL);
+        add_floor(s, matte(s, 0.5f), far, -far, 0, 40);
+        double h = 6, intensity = 300;
+        noc_light l = { .kind = NOC_LIGHT_POINT, .position = { far + 1, -far + 2, h }, .emission = { 300, 300, 300 } };
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+        scene_done(s);
+        noc_camera c = look(far, -far - 12, 9, far, -far, 0, 50);
+        for (int m = NOC_METHOD_REFERENCE; m <= NOC_METHOD_RESTIR; m++) {
+            noc_render_params p = measure(48, 32, (noc_method)m);
+            noc_image *image = render(s, &c, &p, 2);
+            for (int y = 12; y < 32; y += 3)
+                for (int x = 0; x < 48; x += 5) {
+                    double q[3];
+                    floor_point(&c, &p, x, y, 0, q);
+                    double dx = q[0] - far - 1, dy = q[1] + far - 2, cosine = h / sqrt(dx * dx + dy * dy + h * h);
+                    double e = intensity * cosine * cosine * cosine / (h * h);
+                    double got = luma(image->rgb + 3 * (y * 48 + x));
+                    assert_true(fabs(got - e * 0.5 / M_PI) < (far > 0 ? 2e-3 : 2e-5) * e);
+                }
+            noc_image_destroy(image);
+        }
+        noc_scene_destroy(s);
+    }
+}
+
+/* Illuminance factor of a rectangle [x0, x1] x [y0, y1] at height h, parallel to the plane, facing down: E = L F' with
+ * F' = pi * form factor, summed from its corners (Howell, configuration factor B-4). */
+static double corner(double x, double y, double h) {
+    double a = sqrt(h * h + x * x), b = sqrt(h * h + y * y);
+    return 0.5 * (x / a * atan(y / a) + y / b * atan(x / b));
+}
+
+static double rectangle(double x0, double x1, double y0, double y1, double h) {
+    return corner(x1, y1, h) - corner(x0, y1, h) - corner(x1, y0, h) + corner(x0, y0, h);
+}
+
+static void rectangle_over_plane(void **state) {
+    (void)state;
+    noc_scene *s = noc_scene_create(NULL);
+    add_floor(s, matte(s, 0.4f), 0, 0, 0, 30);
+    /* faces down: edge_u x edge_v = -z */
+    noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { -1, -2, 3 }, .edge_u = { 0, 4, 0 }, .edge_v = { 3, 0, 0 },
+                    .emission = { 50, 50, 50 } };
+    assert_true(noc_scene_add_light(s, &l) >= 0);
+    scene_done(s);
+    noc_camera c = look(0, -9, 2.5, 0, 0, 0, 60);
+    for (int m = NOC_METHOD_REFERENCE; m <= NOC_METHOD_RESTIR; m++) {
+        noc_render_params p = measure(32, 16, (noc_method)m);
+        p.temporal = false; /* frames independent: their spread says how far off the mean may be */
+        int frames = 400;
+        noc_renderer *r = noc_renderer_create(s, NULL, NULL);
+        double sum[32 * 16] = { 0 }, square[32 * 16] = { 0 };
+        p.accumulate = false;
+        for (int i = 0; i < frames; i++) {
+            assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+            noc_image *image = noc_renderer_image(r);
+            for (int k = 0; k < 32 * 16; k++) {
+                double v = luma(image->rgb + 3 * k);
+                sum[k] += v;
+                square[k] += v * v;
+            }
+            noc_image_destroy(image);
+        }
+        noc_renderer_destroy(r);
+        int checked = 0;
+        for (int y = 8; y < 16; y++)
+            for (int x = 1; x < 32; x += 3) {
+                double q[3];
+                floor_point(&c, &p, x, y, 0, q);
+                int k = y * 32 + x;
+                double mean = sum[k] / frames, error = sqrt(fmax(square[k] / frames - mean * mean, 0) / frames);
+                double want = 50 * rectangle(-1 - q[0], 2 - q[0], -2 - q[1], 2 - q[1], 3) * 0.4 / M_PI;
+                assert_true(fabs(mean - want) < 5 * error + 2e-5 * want);
+                assert_true(error < 0.05 * want); /* tight enough to mean something */
+                checked++;
+            }
+        assert_true(checked > 50);
+    }
+    noc_scene_destroy(s);
+}
+
+/* A floor lit with 100 lx by a far small lamp reads 100 lx: pi L / albedo. */
+static void hundred_lux(void **state) {
+    (void)state;
+    noc_scene *s = noc_scene_create(NULL);
+    add_floor(s, matte(s, 0.25f), 0, 0, 0, 5);
+    noc_light l = { .kind = NOC_LIGHT_SPHERE, .position = { 0, 0, 100 }, .radius = 0.5 };
+    /* E = L pi r^2 / d^2 on the axis of a sphere */
+    for (int k = 0; k < 3; k++)
+        l.emission[k] = (float)(100 * 100.0 * 100.0 / (M_PI * 0.5 * 0.5));
+    assert_true(noc_scene_add_light(s, &l) >= 0);
+    scene_done(s);
+    noc_camera c = look(0, -1, 4, 0, 0, 0, 3);
+    for (int m = NOC_METHOD_REFERENCE; m <= NOC_METHOD_RESTIR; m++) {
+        noc_render_params p = measure(8, 8, (noc_method)m);
+        noc_image *image = render(s, &c, &p, 64);
+        double mean = 0;
+        for (int k = 0; k < 64; k++)
+            mean += luma(image->rgb + 3 * k) / 64;
+        assert_true(fabs(mean * M_PI / 0.25 - 100) < 0.05);
+        noc_image_destroy(image);
+    }
+    noc_scene_destroy(s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(point_over_plane),
+        cmocka_unit_test(rectangle_over_plane),
+        cmocka_unit_test(hundred_lux),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
