@@ -1,0 +1,284 @@
+/* citygml: one top-level city object at a time.
+ *
+ * The parser (citygml_parse.c) collects an object with everything below it in an arena: features, geometries, surfaces.
+ * At its end citygml_select.c resolves references, chooses a level of detail and says which surfaces are shown, and
+ * citygml_emit.c hands those to the sink. References into other objects are settled by further passes over the file
+ * (citygml.c), so that memory is bounded by the largest object and by what is referenced across objects. */
+#ifndef NOC_CITYGML_H
+#define NOC_CITYGML_H
+
+#include "import/import.h"
+
+#include <expat.h>
+
+#define CG_MAX_DEPTH 200          /* elements in elements */
+#define CG_MAX_NUMBERS (1u << 27) /* in one ring; more is taken for an attack */
+#define CG_MAX_CRS 64             /* different srsNames in one file */
+#define CG_MAX_OBJECT ((size_t)4 << 30) /* bytes of one top-level object */
+#define CG_NONE UINT32_MAX
+#define CG_EMITTED UINT32_MAX
+
+/* ---- names (citygml_names.c) ---- */
+
+typedef enum cg_code {
+    CG_FOREIGN, /* not CityGML or GML, or of no use here: skipped with all in it */
+    CG_PLAIN,   /* a property or wrapper without meaning of its own: looked into */
+    CG_MODEL, CG_MEMBER,
+    CG_FEATURE,           /* value: index into cg_feature_types */
+    CG_GEOMETRY_PROPERTY, /* value: lod * 16 + role */
+    CG_FUNCTION,          /* function, usage, class: tells roads from pavements */
+    CG_IMPLICIT, CG_MATRIX, CG_REFERENCE_POINT, CG_RELATIVE_GEOMETRY,
+    CG_BOUNDED_BY, CG_ENVELOPE,
+    CG_AGGREGATE,         /* MultiSurface, Solid, Surface, TriangulatedSurface, ... */
+    CG_SURFACE_PROPERTY,  /* surfaceMember, baseSurface, ...: may be an xlink */
+    CG_ORIENTABLE, CG_POLYGON,
+    CG_EXTERIOR, CG_INTERIOR, CG_RING, CG_ARC,
+    CG_POS_LIST, CG_POS, CG_COORDINATES,
+} cg_code;
+
+typedef struct cg_name {
+    uint8_t code;
+    uint8_t value;
+    uint8_t version; /* major CityGML version of the namespace, 0 where it is not CityGML's */
+} cg_name;
+
+/* What a geometry property says about its content. */
+typedef enum cg_role { CG_ROLE_SURFACES, CG_ROLE_SOLID, CG_ROLE_FOOTPRINT, CG_ROLE_ROOF_EDGE } cg_role;
+
+typedef enum cg_part {
+    CG_PART_BODY,         /* an object or a part of it: chooses its level of detail */
+    CG_PART_INSTALLATION, /* follows the body, but may stay at a lower level */
+    CG_PART_SPACE,        /* groups others; its own geometry is empty space (3.0) */
+    CG_PART_BOUNDARY,     /* a surface with a meaning: wall, traffic area, water surface */
+    CG_PART_OPENING,
+    CG_PART_GROUP,        /* CityObjectGroup: members written inside it are objects of their own */
+    CG_PART_INTERIOR,     /* skipped silently: a night view from outside needs no rooms */
+    CG_PART_UNREAD,       /* skipped and counted */
+} cg_part;
+
+typedef struct cg_feature_type {
+    const char *name;
+    uint8_t part;
+    uint8_t kind; /* geo_kind */
+    uint8_t cls;  /* noc_class; OTHER in buildings: by the polygon's normal */
+} cg_feature_type;
+
+extern const cg_feature_type cg_feature_types[];
+
+typedef struct cg_names { struct cg_name_slot *slots; size_t len; noc_arena arena; } cg_names;
+/* name as expat gives it: namespace, '\n', local name. */
+cg_name cg_names_get(cg_names *names, const char *name);
+void cg_names_free(cg_names *names);
+const char *cg_local_name(const char *name);
+
+/* ---- coordinates as text (citygml_text.c) ---- */
+
+/* Collects numbers from character data that comes in pieces. */
+typedef struct cg_numbers {
+    NOC_ARRAY(double) values;
+    char token[64];      /* a number cut by the end of a piece */
+    uint32_t token_len;
+    bool bad;            /* something that is no number, or too many of them */
+    char cs, ts, decimal; /* gml:coordinates; 0, 0, '.' for lists separated by blanks */
+    uint32_t tuple;      /* gml:coordinates: numbers a tuple, 0 before the first ended */
+    uint32_t in_tuple;
+} cg_numbers;
+
+void cg_numbers_begin(cg_numbers *n, char decimal, char cs, char ts);
+void cg_numbers_add(cg_numbers *n, const char *text, size_t size);
+void cg_numbers_end(cg_numbers *n);
+
+/* ---- one top-level object ---- */
+
+typedef struct cg_polygon {
+    const char *id;       /* NULL if none */
+    uint32_t srs;         /* index into parser.srs, CG_NONE if none applies */
+    uint32_t ring_count;
+    uint32_t shown;       /* selection it was last chosen in; 0: none; CG_EMITTED: stored, and given to the sink */
+    const size_t *ring_size;
+    const double *xyz;    /* 3 a point, in the file's tuple order */
+} cg_polygon;
+
+typedef struct cg_surface {
+    cg_polygon *polygon; /* or NULL: a reference */
+    const char *href;    /* id without '#'; NULL also where the reference leads out of the file */
+    uint32_t geometry;
+    bool flip;
+} cg_surface;
+
+typedef struct cg_implicit {
+    double matrix[16];   /* row by row */
+    double point[3];
+    uint32_t srs;
+    bool has_point;
+} cg_implicit;
+
+typedef struct cg_geometry {
+    uint8_t lod, role;
+    uint32_t feature;
+    cg_implicit *implicit; /* NULL for coordinates in the CRS */
+} cg_geometry;
+
+typedef struct cg_feature {
+    const cg_feature_type *type;
+    const char *id;        /* "" if none */
+    uint32_t parent;
+    int function;          /* noc_class told by function, usage or class, -1 if none */
+} cg_feature;
+
+/* Where an id leads: a run of surfaces in document order. */
+typedef struct cg_target {
+    const char *id;
+    uint32_t first, count;
+    bool flip; /* orientation in force outside the element with this id */
+} cg_target;
+
+typedef struct cg_object {
+    noc_arena arena;
+    NOC_ARRAY(cg_feature) features; /* the first is the object itself */
+    NOC_ARRAY(cg_geometry) geometries;
+    NOC_ARRAY(cg_surface) surfaces;
+    NOC_ARRAY(cg_target) targets;
+} cg_object;
+
+/* A surface with references followed. */
+typedef struct cg_item {
+    cg_polygon *polygon; /* NULL: nothing here (yet) */
+    uint32_t geometry;
+    bool flip, shown;
+    bool stored;         /* a copy of another object's surface */
+    bool elsewhere;      /* that other object shows it */
+} cg_item;
+
+/* A body's choice; unused for features that belong to another body. */
+typedef struct cg_body {
+    uint32_t owner;            /* the body of this feature */
+    uint8_t levels, waiting;   /* bit i: has geometry of level i; has references of level i that lead nowhere yet */
+    int8_t lod;                /* chosen, -1 if none */
+    bool boundaries;           /* at that level there are surfaces with a meaning */
+} cg_body;
+
+typedef struct cg_selection {
+    NOC_ARRAY(cg_item) items;
+    NOC_ARRAY(const char *) missing; /* ids that no surface of this object and no stored one has */
+    NOC_ARRAY(uint64_t) shapes;      /* hash set of the shapes already shown; 0: free slot */
+    NOC_ARRAY(cg_body) bodies;       /* parallel to the object's features */
+    int lod;                         /* of the object; -1: nothing to show */
+    bool above;                      /* there is geometry, but only over the highest level asked for */
+    size_t shown, duplicates;
+} cg_selection;
+
+/* ---- references between objects ---- */
+
+/* What other objects refer to: copies that live as long as the import. */
+typedef struct cg_stored {
+    NOC_ARRAY(cg_item) items; /* elsewhere: its own object shows it */
+    bool found;
+} cg_stored;
+
+typedef struct cg_store {
+    noc_arena arena;
+    noc_map wanted; /* id -> index into entries */
+    NOC_ARRAY(cg_stored) entries;
+} cg_store;
+
+/* ---- the parser ---- */
+
+typedef struct cg_frame {
+    cg_name name;
+    bool flip;
+    bool in_reference_point;
+    uint32_t feature, geometry, srs;
+    uint32_t dimension;    /* srsDimension, 0 where not given */
+    uint32_t first_surface; /* of an element with an id */
+    const char *id;
+} cg_frame;
+
+typedef struct cg_parser {
+    XML_Parser xml;
+    noc_stream *stream;
+    geo_sink *sink;
+    int max_lod;
+    const char **format;
+    noc_status status;
+    int pass;               /* 1, 2, 3 */
+    int version;            /* major, 0 until seen */
+
+    cg_names names;
+    cg_frame frames[CG_MAX_DEPTH];
+    uint32_t depth;
+    uint32_t skip;          /* elements open inside a skipped one, itself included */
+
+    cg_object object;
+    cg_selection selection;
+    size_t ordinal;         /* of the top-level object, from 1 */
+    NOC_ARRAY(size_t) deferred; /* ordinals that wait for surfaces of other objects, ascending */
+    size_t deferred_next, deferred_kept; /* position in it; of those seen in the second pass, how many wait on */
+    cg_store store;
+    uint32_t selections;    /* marks polygons as shown in the present selection */
+
+    /* polygon being read */
+    NOC_ARRAY(double) xyz;
+    NOC_ARRAY(size_t) rings;
+    const char *polygon_id;
+    NOC_ARRAY(char) terrain_id; /* ids of triangles must not pile up in the arena */
+    bool in_polygon, in_ring, ring_exterior, has_exterior;
+    bool polygon_counted;   /* a fault of one of its rings has been reported */
+    const char *ring_fault; /* why the ring cannot be used, NULL if it can */
+    bool ring_curved;
+    size_t ring_first;      /* index into xyz of the ring's first number */
+    cg_numbers numbers;
+    enum { CG_TEXT_NONE, CG_TEXT_NUMBERS, CG_TEXT_WORD } text;
+    char word[128];
+    uint32_t word_len;
+    bool plateau_code;      /* the code list named beside the word is one of Project PLATEAU */
+
+    /* CRSs in the order met; names live in the arena */
+    noc_arena persistent;
+    struct { const char *name; unsigned long line; } srs[CG_MAX_CRS];
+    uint32_t srs_count;
+    uint32_t sink_srs;      /* the one the sink was told last; CG_UNTOLD before the first */
+    bool lat_first;
+
+    /* scratch of the emitter */
+    NOC_ARRAY(double) out;
+    NOC_ARRAY(size_t) out_rings;
+    bool object_open;       /* begin_object was called and end_object not yet */
+    size_t emitted, dropped;
+} cg_parser;
+
+#define CG_UNTOLD (UINT32_MAX - 1)
+
+/* citygml_parse.c: expat handlers; user data is the parser. */
+void cg_start_element(void *user, const XML_Char *name, const XML_Char **attributes);
+void cg_end_element(void *user, const XML_Char *name);
+void cg_characters(void *user, const XML_Char *text, int size);
+/* Reports "file:line: cause", stops the parser, and returns the status. */
+noc_status cg_fail(cg_parser *p, noc_status status, const char *fmt, ...) NOC_PRINTF(3, 4);
+/* Counts a defect of the file; once, though the file may be read several times. */
+void cg_issue(cg_parser *p, bool repaired, const char *reason, const char *id);
+void cg_object_clear(cg_object *object);
+void cg_object_free(cg_object *object);
+
+/* citygml_ring.c: rings and polygons from coordinates. */
+void cg_polygon_begin(cg_parser *p, const char *id);
+void cg_polygon_end(cg_parser *p, const cg_frame *frame);
+void cg_ring_begin(cg_parser *p, bool exterior);
+void cg_ring_end(cg_parser *p, const cg_frame *frame);
+/* The numbers collected are tuples of the ring: dimension 2 or 3, 0: as many as a position has. */
+void cg_ring_add(cg_parser *p, cg_code code, uint32_t dimension);
+/* id for reports: the polygon's, else the nearest feature's that has one. */
+const char *cg_report_id(const cg_parser *p, const char *polygon_id, uint32_t feature);
+
+/* citygml_select.c */
+void cg_resolve(cg_parser *p);  /* surfaces and stored ones -> selection.items, .missing */
+void cg_select(cg_parser *p);   /* level of detail, what is shown */
+int cg_function_class(const cg_feature_type *type, const char *word, bool plateau); /* noc_class or -1 */
+
+/* citygml_emit.c */
+void cg_object_end(cg_parser *p);                       /* a top-level object is complete */
+void cg_emit_polygon(cg_parser *p, const cg_polygon *polygon, uint32_t geometry, bool flip);
+void cg_emit_end(cg_parser *p);                         /* closes the sink's object if one is open */
+void cg_store_free(cg_store *store);
+
+#endif

@@ -1,0 +1,343 @@
+/* citygml_emit.c: complete objects to the sink; surfaces that other objects refer to into the store. */
+#include "import/citygml.h"
+
+#include <math.h>
+
+static void stop(cg_parser *p, noc_status status) {
+    if (!status || p->status)
+        return;
+    p->status = status; /* the sink has reported it */
+    XML_StopParser(p->xml, XML_FALSE);
+}
+
+/* ---- coordinates ---- */
+
+/* Tells the sink the CRS of what comes next. Polygons without one take the first that the file names. */
+static void tell_crs(cg_parser *p, uint32_t srs) {
+    if (srs == CG_NONE && p->srs_count)
+        srs = 0;
+    if (srs == p->sink_srs)
+        return;
+    p->sink_srs = srs;
+    p->lat_first = false;
+    const char *name = noc_stream_name(p->stream);
+    char *place = srs == CG_NONE ? noc_strdup(name) : noc_format("%s:%lu", name, p->srs[srs].line);
+    stop(p, p->sink->crs(p->sink->ctx, srs == CG_NONE ? NULL : p->srs[srs].name, place, &p->lat_first));
+    free(place);
+}
+
+/* Latitude comes first in geographic CRSs and hardly elsewhere, where it would be no latitude. */
+static bool in_degrees(const cg_parser *p, const double *point) {
+    return p->lat_first && fabs(point[0]) <= 180 && fabs(point[1]) <= 90;
+}
+
+/* Metres east and north of a point, a degree, on the GRS 80 ellipsoid. */
+static void metres_a_degree(double latitude, double *east, double *north) {
+    const double a = 6378137, e2 = 0.00669438002290, degree = 0.017453292519943295;
+    double sine = sin(latitude * degree), w = 1 - e2 * sine * sine;
+    *east = a / sqrt(w) * cos(latitude * degree) * degree;
+    *north = a * (1 - e2) / (w * sqrt(w)) * degree;
+}
+
+/* A prototype's point: turned and scaled, in metres about the reference point. */
+static void place_point(const cg_parser *p, const cg_implicit *implicit, double *point) {
+    const double *m = implicit->matrix;
+    double local[3], anchor[3];
+    for (int i = 0; i < 3; i++)
+        local[i] = m[4 * i] * point[0] + m[4 * i + 1] * point[1] + m[4 * i + 2] * point[2] + m[4 * i + 3];
+    anchor[0] = implicit->point[p->lat_first ? 1 : 0];
+    anchor[1] = implicit->point[p->lat_first ? 0 : 1];
+    anchor[2] = implicit->point[2];
+    double east = 1, north = 1;
+    if (in_degrees(p, anchor))
+        metres_a_degree(anchor[1], &east, &north);
+    point[0] = anchor[0] + (fabs(east) > 1e-6 ? local[0] / east : 0);
+    point[1] = anchor[1] + local[1] / north;
+    point[2] = anchor[2] + local[2];
+}
+
+/* Into p->out, p->out_rings: easting northing height, turned over where asked. */
+static void transform(cg_parser *p, const cg_polygon *polygon, const cg_implicit *implicit, bool flip) {
+    p->out.len = p->out_rings.len = 0;
+    const double *in = polygon->xyz;
+    for (uint32_t r = 0; r < polygon->ring_count; r++) {
+        size_t points = polygon->ring_size[r], first = p->out.len, numbers = 3 * points;
+        array_push(&p->out_rings, points);
+        array_append(&p->out, in, numbers);
+        for (size_t i = 0; flip && i < points; i++)
+            memcpy(p->out.data + first + 3 * i, in + 3 * (points - 1 - i), 3 * sizeof(double));
+        in += numbers;
+    }
+    for (size_t i = 0; i < p->out.len; i += 3) {
+        double *point = p->out.data + i;
+        if (implicit) {
+            place_point(p, implicit, point);
+        } else if (p->lat_first) {
+            double latitude = point[0];
+            point[0] = point[1];
+            point[1] = latitude;
+        }
+    }
+}
+
+/* ---- classes ---- */
+
+/* Of a polygon that says nothing of itself: up is roof, down is ground, the rest wall. */
+static noc_class class_by_normal(const cg_parser *p) {
+    const double *xyz = p->out.data;
+    double east = 1, north = 1, n[3] = { 0 };
+    if (in_degrees(p, xyz))
+        metres_a_degree(xyz[1], &east, &north);
+    size_t points = p->out_rings.data[0];
+    for (size_t i = 0; i < points; i++) {
+        double a[3], b[3];
+        for (int k = 0; k < 3; k++) {
+            double scale = k == 0 ? east : k == 1 ? north : 1;
+            a[k] = (xyz[3 * i + k] - xyz[k]) * scale;
+            b[k] = (xyz[3 * ((i + 1) % points) + k] - xyz[k]) * scale;
+        }
+        n[0] += a[1] * b[2] - a[2] * b[1];
+        n[1] += a[2] * b[0] - a[0] * b[2];
+        n[2] += a[0] * b[1] - a[1] * b[0];
+    }
+    double steep = 0.25 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]); /* walls lean by less than 15 degrees */
+    return n[2] > steep ? NOC_CLASS_ROOF : n[2] < -steep ? NOC_CLASS_GROUND : NOC_CLASS_WALL;
+}
+
+static noc_class class_of(const cg_parser *p, const cg_geometry *g) {
+    const cg_feature *feature = &p->object.features.data[g->feature];
+    const cg_feature_type *type = feature->type;
+    geo_kind kind = p->object.features.data[0].type->kind;
+    if (feature->function >= 0)
+        return (noc_class)feature->function;
+    if (kind == GEO_BRIDGE)
+        return type->part == CG_PART_OPENING || type->cls == NOC_CLASS_CLOSURE ? (noc_class)type->cls : NOC_CLASS_BRIDGE;
+    if (kind != GEO_BUILDING || type->part != CG_PART_BODY)
+        return (noc_class)type->cls;
+    return g->role == CG_ROLE_FOOTPRINT   ? NOC_CLASS_GROUND
+           : g->role == CG_ROLE_ROOF_EDGE ? NOC_CLASS_ROOF
+                                          : class_by_normal(p);
+}
+
+/* ---- objects ---- */
+
+static void begin_object(cg_parser *p, int lod) {
+    const cg_feature *feature = &p->object.features.data[0];
+    geo_object object = { .kind = feature->type->kind, .id = feature->id, .lod = lod };
+    p->object_open = true;
+    stop(p, p->sink->begin_object(p->sink->ctx, &object));
+}
+
+void cg_emit_end(cg_parser *p) {
+    if (!p->object_open)
+        return;
+    p->object_open = false;
+    if (!p->status)
+        stop(p, p->sink->end_object(p->sink->ctx));
+}
+
+void cg_emit_polygon(cg_parser *p, const cg_polygon *polygon, uint32_t geometry, bool flip) {
+    const cg_geometry *g = &p->object.geometries.data[geometry];
+    tell_crs(p, g->implicit ? g->implicit->srs : polygon->srs);
+    bool terrain = p->object.features.data[0].type->kind == GEO_TERRAIN;
+    if (!p->status && !p->object_open)
+        begin_object(p, terrain ? -1 : p->selection.lod);
+    if (p->status)
+        return;
+    transform(p, polygon, g->implicit, flip);
+    geo_polygon out = { .cls = class_of(p, g), .id = cg_report_id(p, polygon->id, g->feature),
+                        .ring_count = p->out_rings.len, .ring_size = p->out_rings.data, .xyz = p->out.data };
+    stop(p, p->sink->polygon(p->sink->ctx, &out));
+    p->emitted++;
+}
+
+/* Where the post of a lamp stands, as far as its surfaces or its reference point tell. */
+static bool find_lamp(cg_parser *p, geo_lamp *lamp) {
+    double low = INFINITY, high = -INFINITY, sum[2] = { 0 };
+    size_t count = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t i = 0; i < p->selection.items.len && p->selection.lod >= 0; i++) {
+            const cg_item *item = &p->selection.items.data[i];
+            if (!item->shown || p->status)
+                continue;
+            const cg_implicit *implicit = p->object.geometries.data[item->geometry].implicit;
+            tell_crs(p, implicit ? implicit->srs : item->polygon->srs);
+            transform(p, item->polygon, implicit, false);
+            for (size_t k = 0; k < p->out.len; k += 3) {
+                const double *point = p->out.data + k;
+                low = fmin(low, point[2]);
+                high = fmax(high, point[2]);
+                if (pass == 0 || point[2] > low + 0.3)
+                    continue;
+                sum[0] += point[0]; /* the foot, not the arm */
+                sum[1] += point[1];
+                count++;
+            }
+        }
+    }
+    if (count) {
+        lamp->xyz[0] = sum[0] / (double)count;
+        lamp->xyz[1] = sum[1] / (double)count;
+        lamp->xyz[2] = low;
+        lamp->height = high - low >= 2 && high - low <= 25 ? high - low : NAN;
+        return true;
+    }
+    for (size_t i = 0; i < p->object.geometries.len; i++) {
+        const cg_implicit *implicit = p->object.geometries.data[i].implicit;
+        if (!implicit || !implicit->has_point)
+            continue;
+        tell_crs(p, implicit->srs);
+        memset(lamp->xyz, 0, sizeof(lamp->xyz));
+        place_point(p, implicit, lamp->xyz);
+        return true;
+    }
+    return false;
+}
+
+/* A street lamp's model gives way to a lamp that shines: its own housing would stand in its light. */
+static bool emit_lamp(cg_parser *p) {
+    const cg_feature *feature = &p->object.features.data[0];
+    if (feature->type->kind != GEO_FURNITURE || feature->function != NOC_CLASS_LAMP)
+        return false;
+    geo_lamp lamp = { .height = NAN, .direction = NAN, .lumens = NAN, .watts = NAN, .kelvin = NAN,
+                      .rgb = { -1, -1, -1 }, .id = feature->id };
+    if (!find_lamp(p, &lamp) || p->status)
+        return p->status != NOC_OK;
+    stop(p, p->sink->lamp(p->sink->ctx, &lamp));
+    return true;
+}
+
+static void emit_object(cg_parser *p) {
+    cg_selection *s = &p->selection;
+    for (size_t i = 0; i < s->missing.len; i++)
+        geo_issue(p->sink->issues, false, "unresolved xlink", s->missing.data[i]);
+    p->dropped += s->duplicates;
+    if (emit_lamp(p))
+        return;
+    if (!s->shown && !s->duplicates)
+        geo_issue(p->sink->issues, false,
+                  s->above ? "no geometry at or under the level of detail asked for" : "object without geometry",
+                  cg_report_id(p, NULL, 0));
+    for (size_t i = 0; s->shown && i < s->items.len && !p->status; i++) {
+        const cg_item *item = &s->items.data[i];
+        if (!item->shown)
+            continue;
+        cg_emit_polygon(p, item->polygon, item->geometry, item->flip);
+        if (item->stored && !p->object.geometries.data[item->geometry].implicit)
+            item->polygon->shown = CG_EMITTED;
+    }
+    cg_emit_end(p);
+}
+
+/* ---- the store ---- */
+
+static cg_polygon *copy_polygon(cg_store *store, const cg_polygon *polygon) {
+    cg_polygon *copy = arena_alloc(&store->arena, sizeof(*copy));
+    size_t *sizes = arena_alloc(&store->arena, polygon->ring_count * sizeof(size_t));
+    size_t points = 0;
+    for (uint32_t r = 0; r < polygon->ring_count; r++)
+        points += sizes[r] = polygon->ring_size[r];
+    double *xyz = arena_alloc(&store->arena, 3 * points * sizeof(double));
+    memcpy(xyz, polygon->xyz, 3 * points * sizeof(double));
+    *copy = *polygon;
+    copy->id = arena_strdup(&store->arena, polygon->id);
+    copy->ring_size = sizes;
+    copy->xyz = xyz;
+    copy->shown = 0;
+    return copy;
+}
+
+/* Surfaces that an id of this object leads to; references among them only where they stay in it. */
+static void store_target(cg_parser *p, const cg_target *target, cg_stored *stored, bool flip, int links) {
+    const cg_object *object = &p->object;
+    for (uint32_t i = target->first; i < target->first + target->count; i++) {
+        const cg_surface *s = &object->surfaces.data[i];
+        bool turned = flip ^ s->flip ^ target->flip;
+        if (!s->href) {
+            bool elsewhere = s->polygon->shown == p->selections || object->geometries.data[s->geometry].implicit;
+            array_push(&stored->items, (cg_item){ .polygon = copy_polygon(&p->store, s->polygon), .flip = turned,
+                                                  .elsewhere = elsewhere });
+            continue;
+        }
+        for (size_t k = 0; k < object->targets.len && links < 4; k++) {
+            if (strcmp(object->targets.data[k].id, s->href))
+                continue;
+            store_target(p, &object->targets.data[k], stored, turned, links + 1);
+            break;
+        }
+    }
+}
+
+/* Keeps what other objects want of this one. */
+static void collect(cg_parser *p) {
+    bool selected = false;
+    for (size_t i = 0; i < p->object.targets.len; i++) {
+        const cg_target *target = &p->object.targets.data[i];
+        uint64_t index;
+        if (!map_get(&p->store.wanted, target->id, &index) || p->store.entries.data[index].found)
+            continue;
+        if (!selected) { /* to know which of them the object shows by itself */
+            cg_resolve(p);
+            cg_select(p);
+            selected = true;
+        }
+        p->store.entries.data[index].found = true;
+        store_target(p, target, &p->store.entries.data[index], false, 0);
+        if (p->store.arena.bytes > CG_MAX_OBJECT)
+            cg_fail(p, NOC_ERR_MEMORY, "surfaces that are shared between objects need more than %zu GiB of memory",
+                    CG_MAX_OBJECT >> 30);
+    }
+}
+
+static void want_missing(cg_parser *p) {
+    uint64_t index;
+    for (size_t i = 0; i < p->selection.missing.len; i++) {
+        if (map_get(&p->store.wanted, p->selection.missing.data[i], &index))
+            continue;
+        map_put(&p->store.wanted, p->selection.missing.data[i], p->store.entries.len);
+        array_push(&p->store.entries, (cg_stored){ 0 });
+    }
+    array_push(&p->deferred, p->ordinal);
+}
+
+void cg_store_free(cg_store *store) {
+    for (size_t i = 0; i < store->entries.len; i++)
+        array_free(&store->entries.data[i].items);
+    array_free(&store->entries);
+    map_free(&store->wanted);
+    arena_free(&store->arena);
+}
+
+/* The first pass shows every object that is complete in itself; the second gathers what the others refer to, and shows
+ * those whose references led backwards; the third shows the rest. */
+static void finish_object(cg_parser *p) {
+    if (p->pass == 2)
+        collect(p);
+    bool turn = p->pass == 1 || (p->deferred_next < p->deferred.len && p->deferred.data[p->deferred_next] == p->ordinal);
+    if (!turn || p->status)
+        return;
+    if (p->pass > 1)
+        p->deferred_next++;
+    cg_resolve(p);
+    if (p->selection.missing.len && p->pass == 1) {
+        want_missing(p);
+    } else if (p->selection.missing.len && p->pass == 2) {
+        p->deferred.data[p->deferred_kept++] = p->ordinal;
+    } else {
+        cg_select(p);
+        emit_object(p);
+    }
+}
+
+void cg_object_end(cg_parser *p) {
+    if (p->object.features.data[0].type->kind == GEO_TERRAIN) {
+        for (size_t i = 0; i < p->object.surfaces.len; i++)
+            cg_issue(p, false, "unresolved xlink", p->object.surfaces.data[i].href);
+        if (!p->object_open)
+            cg_issue(p, false, "object without geometry", cg_report_id(p, NULL, 0));
+        cg_emit_end(p);
+    } else {
+        finish_object(p);
+    }
+    cg_object_clear(&p->object);
+}

@@ -1,0 +1,304 @@
+/* stream.c: sequential bytes of a plain, gzip or zip file, told apart by their first bytes. */
+#include "import/import.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zip.h>
+#include <zlib.h>
+
+#define INPUT_SIZE (64 * 1024)
+
+struct noc_stream {
+    noc_log *log;
+    char *path, *name;
+    enum { STREAM_PLAIN, STREAM_GZIP, STREAM_ZIP } kind;
+    uint64_t stored;     /* size of the file */
+    uint64_t delivered;  /* bytes handed out since open or rewind */
+    noc_status failed;   /* a stream that failed once stays failed, and reports it once */
+    bool ended;
+    /* plain and gzip */
+    int fd;
+    uint64_t consumed;   /* bytes taken from fd */
+    z_stream z;
+    bool z_open, z_member_done;
+    unsigned char *input;
+    /* zip */
+    zip_t *zip;
+    zip_file_t *member;
+    zip_uint64_t member_index;
+    uint64_t member_size;
+};
+
+static noc_status fail(noc_stream *s, noc_status status, const char *cause) {
+    s->failed = status;
+    return noc_error(s->log, status, "%s: %s", s->name, cause);
+}
+
+/* ---- plain ---- */
+
+static noc_status read_fd(noc_stream *s, void *data, size_t size, size_t *got) {
+    ssize_t n;
+    do
+        n = read(s->fd, data, size);
+    while (n < 0 && errno == EINTR);
+    *got = n < 0 ? 0 : (size_t)n;
+    s->consumed += *got;
+    return n < 0 ? fail(s, NOC_ERR_IO, strerror(errno)) : NOC_OK;
+}
+
+/* ---- gzip ---- */
+
+static noc_status gzip_start(noc_stream *s) {
+    if (!s->input)
+        s->input = noc_alloc(INPUT_SIZE);
+    s->z = (z_stream){ 0 };
+    s->z_member_done = false;
+    if (inflateInit2(&s->z, 15 + 16) != Z_OK)
+        return fail(s, NOC_ERR_MEMORY, "out of memory for decompression");
+    s->z_open = true;
+    return NOC_OK;
+}
+
+/* Moves what is left of the input to the front and fills up behind it. */
+static noc_status gzip_fill(noc_stream *s, bool *at_end) {
+    memmove(s->input, s->z.next_in ? s->z.next_in : s->input, s->z.avail_in);
+    s->z.next_in = s->input;
+    size_t got;
+    noc_status status = read_fd(s, s->input + s->z.avail_in, INPUT_SIZE - s->z.avail_in, &got);
+    s->z.avail_in += (uInt)got;
+    *at_end = got == 0;
+    return status;
+}
+
+/* After a member: another one may follow directly (gzip files may be concatenated); anything else is not ours. */
+static noc_status gzip_next_member(noc_stream *s) {
+    bool at_end = false;
+    while (s->z.avail_in < 2 && !at_end) {
+        noc_status status = gzip_fill(s, &at_end);
+        if (status)
+            return status;
+    }
+    if (s->z.avail_in >= 2 && s->z.next_in[0] == 0x1f && s->z.next_in[1] == 0x8b) {
+        inflateReset(&s->z);
+        s->z_member_done = false;
+        return NOC_OK;
+    }
+    if (s->z.avail_in)
+        noc_warn(s->log, "%s: bytes after the gzip data are ignored", s->name);
+    s->ended = true;
+    return NOC_OK;
+}
+
+static noc_status read_gzip(noc_stream *s, void *data, size_t size, size_t *got) {
+    s->z.next_out = data;
+    s->z.avail_out = (uInt)NOC_MIN(size, (size_t)1 << 30);
+    uInt room = s->z.avail_out;
+    noc_status status = NOC_OK;
+    while (s->z.avail_out == room && !s->ended) {
+        if (s->z_member_done) {
+            if ((status = gzip_next_member(s)))
+                return status;
+            continue;
+        }
+        bool at_end = false;
+        if (s->z.avail_in == 0 && (status = gzip_fill(s, &at_end)))
+            return status;
+        if (at_end)
+            return fail(s, NOC_ERR_FORMAT, "truncated gzip data");
+        int z = inflate(&s->z, Z_NO_FLUSH);
+        if (z == Z_STREAM_END)
+            s->z_member_done = true;
+        else if (z == Z_MEM_ERROR)
+            return fail(s, NOC_ERR_MEMORY, "out of memory for decompression");
+        else if (z != Z_OK && z != Z_BUF_ERROR)
+            return fail(s, NOC_ERR_FORMAT, s->z.msg ? s->z.msg : "damaged gzip data");
+    }
+    *got = room - s->z.avail_out;
+    return NOC_OK;
+}
+
+/* ---- zip ---- */
+
+static bool ends_with(const char *text, const char *end) {
+    size_t n = strlen(text), m = strlen(end);
+    return n >= m && noc_ieq(text + n - m, end);
+}
+
+/* The first member whose name says that it is a model or a map; else the first file at all. -1: none. */
+static zip_int64_t zip_choose(zip_t *zip) {
+    static const char *const known[] = { ".gml", ".xml", ".citygml", ".obj", ".json", ".geojson", ".osm", ".csv" };
+    zip_int64_t first = -1, count = zip_get_num_entries(zip, 0);
+    for (zip_int64_t i = 0; i < count; i++) {
+        const char *name = zip_get_name(zip, (zip_uint64_t)i, ZIP_FL_ENC_GUESS);
+        /* macOS archives hold a shadow file of the same ending beside every file. */
+        if (!name || !*name || ends_with(name, "/") || !strncmp(name, "__MACOSX/", 9))
+            continue;
+        for (size_t k = 0; k < NOC_COUNT(known); k++)
+            if (ends_with(name, known[k]))
+                return i;
+        if (first < 0)
+            first = i;
+    }
+    return first;
+}
+
+static noc_status zip_fail(noc_stream *s, const char *what, const char *cause) {
+    char *text = noc_format("%s: %s", what, cause);
+    noc_status status = fail(s, NOC_ERR_FORMAT, text);
+    free(text);
+    return status;
+}
+
+static noc_status zip_start(noc_stream *s) {
+    s->member = zip_fopen_index(s->zip, s->member_index, 0);
+    return s->member ? NOC_OK : zip_fail(s, "damaged or unreadable zip member", zip_strerror(s->zip));
+}
+
+static noc_status zip_open_archive(noc_stream *s) {
+    int code;
+    s->zip = zip_open(s->path, ZIP_RDONLY, &code);
+    if (!s->zip) {
+        zip_error_t error;
+        zip_error_init_with_code(&error, code);
+        noc_status status = zip_fail(s, "damaged or truncated zip archive", zip_error_strerror(&error));
+        zip_error_fini(&error);
+        return status;
+    }
+    zip_int64_t index = zip_choose(s->zip);
+    if (index < 0)
+        return fail(s, NOC_ERR_FORMAT, "zip archive without a file in it");
+    s->member_index = (zip_uint64_t)index;
+    char *name = noc_format("%s!%s", s->path, zip_get_name(s->zip, s->member_index, ZIP_FL_ENC_GUESS));
+    free(s->name);
+    s->name = name;
+    zip_stat_t stat;
+    zip_stat_init(&stat);
+    if (!zip_stat_index(s->zip, s->member_index, 0, &stat)) {
+        if (stat.valid & ZIP_STAT_SIZE)
+            s->member_size = stat.size;
+        if ((stat.valid & ZIP_STAT_ENCRYPTION_METHOD) && stat.encryption_method != ZIP_EM_NONE)
+            return fail(s, NOC_ERR_UNSUPPORTED, "encrypted zip member");
+    }
+    return zip_start(s);
+}
+
+static noc_status read_zip(noc_stream *s, void *data, size_t size, size_t *got) {
+    zip_int64_t n = zip_fread(s->member, data, size);
+    if (n < 0)
+        return zip_fail(s, "damaged or truncated zip member", zip_file_strerror(s->member));
+    *got = (size_t)n;
+    s->ended = n == 0;
+    return NOC_OK;
+}
+
+/* ---- the stream ---- */
+
+/* Opens the file itself, before anything is known of its content. */
+static noc_status open_file(noc_stream *s) {
+    s->fd = open(s->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a pipe without a writer must not block */
+    struct stat stat;
+    if (s->fd < 0 || fstat(s->fd, &stat))
+        return fail(s, NOC_ERR_IO, strerror(errno));
+    if (S_ISDIR(stat.st_mode))
+        return fail(s, NOC_ERR_IO, "is a directory");
+    if (!S_ISREG(stat.st_mode))
+        return fail(s, NOC_ERR_IO, "is not a regular file");
+    if (stat.st_size == 0)
+        return fail(s, NOC_ERR_FORMAT, "empty file");
+    s->stored = (uint64_t)stat.st_size;
+    return NOC_OK;
+}
+
+static noc_status start(noc_stream *s) {
+    unsigned char magic[4] = { 0 };
+    size_t got = 0;
+    noc_status status = read_fd(s, magic, sizeof(magic), &got);
+    if (status)
+        return status;
+    if (got >= 2 && magic[0] == 0x1f && magic[1] == 0x8b)
+        s->kind = STREAM_GZIP;
+    else if (got == 4 && (!memcmp(magic, "PK\3\4", 4) || !memcmp(magic, "PK\5\6", 4)))
+        s->kind = STREAM_ZIP;
+    return s->kind == STREAM_ZIP ? zip_open_archive(s) : noc_stream_rewind(s);
+}
+
+noc_stream *noc_stream_open(const char *path, noc_log *log) {
+    noc_stream *s = noc_calloc(1, sizeof(*s));
+    s->log = log;
+    s->path = noc_strdup(path);
+    s->name = noc_strdup(path);
+    s->fd = -1;
+    if (open_file(s) || start(s)) {
+        noc_stream_close(s);
+        return NULL;
+    }
+    return s;
+}
+
+void noc_stream_close(noc_stream *s) {
+    if (!s)
+        return;
+    if (s->member)
+        zip_fclose(s->member);
+    if (s->zip)
+        zip_discard(s->zip);
+    if (s->z_open)
+        inflateEnd(&s->z);
+    if (s->fd >= 0)
+        close(s->fd);
+    free(s->input);
+    free(s->path);
+    free(s->name);
+    free(s);
+}
+
+noc_status noc_stream_read(noc_stream *s, void *data, size_t size, size_t *got) {
+    *got = 0;
+    if (s->failed)
+        return s->failed;
+    if (s->ended || !size)
+        return NOC_OK;
+    noc_status status;
+    if (s->kind == STREAM_GZIP) {
+        status = read_gzip(s, data, size, got);
+    } else if (s->kind == STREAM_ZIP) {
+        status = read_zip(s, data, size, got);
+    } else {
+        status = read_fd(s, data, size, got);
+        s->ended = !*got;
+    }
+    s->delivered += *got;
+    return status;
+}
+
+noc_status noc_stream_rewind(noc_stream *s) {
+    s->delivered = s->consumed = 0;
+    s->ended = false;
+    s->failed = NOC_OK;
+    if (s->kind == STREAM_ZIP) {
+        if (s->member)
+            zip_fclose(s->member);
+        return zip_start(s);
+    }
+    if (lseek(s->fd, 0, SEEK_SET) < 0)
+        return fail(s, NOC_ERR_IO, strerror(errno));
+    if (s->kind == STREAM_PLAIN)
+        return NOC_OK;
+    if (s->z_open)
+        inflateEnd(&s->z);
+    s->z_open = false;
+    return gzip_start(s);
+}
+
+const char *noc_stream_name(const noc_stream *s) { return s->name; }
+uint64_t noc_stream_size(const noc_stream *s) { return s->stored; }
+uint64_t noc_stream_read_bytes(const noc_stream *s) { return s->delivered; }
+
+double noc_stream_progress(const noc_stream *s) {
+    uint64_t done = s->kind == STREAM_ZIP ? s->delivered : s->consumed;
+    uint64_t all = s->kind == STREAM_ZIP ? s->member_size : s->stored;
+    return all ? NOC_MIN((double)done / (double)all, 1) : 1;
+}
