@@ -129,11 +129,9 @@ static void markdown_row(FILE *out, const noc_option *o, const void *defaults, i
         for (const char *c = o->choices; *c && at + 4 < sizeof(range); c++)
             at += (size_t)snprintf(range + at, sizeof(range) - at, *c == '|' ? ", " : "%c", *c);
     } else if (o->kind == NOC_OPTION_BOOL) {
-        snprintf(left, sizeof(left), "%s%c%s--[no-]%s", cli_short_name(o) ? "-" : "", cli_short_name(o) ? cli_short_name(o) : ' ',
-                 cli_short_name(o) ? ", " : "", o->name);
         snprintf(value, sizeof(value), "%s", *((const char *)defaults + o->offset) ? "on" : "off");
     }
-    fprintf(out, "| `%s` | %s | %s | %s |\n", left + strspn(left, " "), o->help, value, range);
+    fprintf(out, "| `%s` | %s | %s | %s |\n", left, o->help, value, range);
 }
 
 void cli_help_markdown(FILE *out) {

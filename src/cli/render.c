@@ -114,6 +114,9 @@ static noc_status load(render_job *job) {
     cli_progress_clear();
     noc_scene_get_info(job->scene, &job->scene_info);
     job->loaded = cli_now();
+    if (!status && args->common.verbose)
+        cli_error("%zu triangles, %zu lights, loaded in %.2f s", job->scene_info.triangles, job->scene_info.lights,
+                  job->loaded - job->started);
     return status;
 }
 

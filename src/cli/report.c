@@ -19,7 +19,7 @@ static void add_options(meta_text *meta, const render_args *args) {
     for (const cli_set *set = cli_render.sets; set->table; set++) {
         for (const noc_option *o = set->table(); o->name; o++) {
             static const char *const told_otherwise[] = { "output", "view", "eye", "target", "camera-crs", "fov", "stats", "frames",
-                                                          "size", "exposure", "time", NULL };
+                                                          "size", "exposure", "time", "threads", "quiet", "verbose", "help", NULL };
             if (cli_hidden(&(cli_set){ .hidden = told_otherwise }, o))
                 continue;
             const void *params = (const char *)args + set->offset;
@@ -66,10 +66,10 @@ noc_status cli_write_picture(render_job *job) {
     else
         add(&meta, "exposure", cli_format("EV100 %.3f", ev100(job)));
     add(&meta, "frames", cli_format("%d", job->frames));
-    add(&meta, "camera-eye", cli_format("%.9g %.9g %.9g", c->eye[0], c->eye[1], c->eye[2]));
-    add(&meta, "camera-target", cli_format("%.9g %.9g %.9g", c->target[0], c->target[1], c->target[2]));
-    add(&meta, "camera-up", cli_format("%.9g %.9g %.9g", c->up[0], c->up[1], c->up[2]));
-    add(&meta, "camera-fov", cli_format("%.9g", c->fov_deg));
+    add(&meta, "camera-eye", cli_format("%.17g %.17g %.17g", c->eye[0], c->eye[1], c->eye[2]));
+    add(&meta, "camera-target", cli_format("%.17g %.17g %.17g", c->target[0], c->target[1], c->target[2]));
+    add(&meta, "camera-up", cli_format("%.17g %.17g %.17g", c->up[0], c->up[1], c->up[2]));
+    add(&meta, "camera-fov", cli_format("%.17g", c->fov_deg));
     add(&meta, "scene-crs-name", cli_format("%s", job->scene_info.crs ? job->scene_info.crs : ""));
     add(&meta, "scene-origin", cli_format("%.12g %.12g %.12g", job->scene_info.origin[0], job->scene_info.origin[1],
                                           job->scene_info.origin[2]));

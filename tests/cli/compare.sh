@@ -1,0 +1,30 @@
+#!/bin/sh
+# Error figures of pictures that the program made itself.
+. "$(dirname "$0")/lib.sh"
+small='builtin:city --city-size 150 --size 64x36'
+"$program" render $small -q --method reference --frames 4 -o reference.exr || exit 1
+"$program" render $small -q --method is --frames 1 -o is.exr || exit 1
+"$program" render $small -q --method is --frames 1 -o is.png || exit 1
+"$program" render $small -q --size 32x36 --frames 1 -o narrow.exr || exit 1
+
+run compare reference.exr reference.exr
+test $status = 0 && grep -Eq '^  all pixels +2,304 +0\.000 +0 +0 +1\.0000$' out && grep -q 'no emitter' out && test ! -s err
+result $? "a picture is equal to itself"
+run compare is.exr reference.exr --ceiling 2 -o difference.png
+test $status = 0 && grep -q 'clamped to 2 cd/m2' out && test "$(head -c 4 difference.png | tail -c 3)" = PNG
+result $? "a noisy one is not, and there is a difference picture"
+awk '/^  all pixels/ { found = $4 > 1 && $5 > 0 && $6 > 0 } END { exit !found }' out; result $? "its figures are not zero"
+run compare is.exr reference.exr --json
+grep -q '"no_emitter_clamped": {"pixels": [0-9]' out; result $? "figures as JSON"
+run compare is.png is.png
+test $status = 0 && grep -q 'no units' err; result $? "PNG against PNG says that units are lost"
+run compare is.png reference.exr
+test $status = 0 && grep -q 'linear' err; result $? "PNG against EXR says what it is worth"
+expect "pictures of different sizes" 1 '(64.*36|32.*36)' compare narrow.exr reference.exr -o d.png
+expect "a missing picture" 1 'missing.exr' compare missing.exr reference.exr
+expect "a folder" 1 'nocturne: ' compare . reference.exr
+head -c 500 reference.exr >cut.exr
+expect "a picture cut short" 1 'cut.exr' compare cut.exr reference.exr
+expect "no picture at all" 1 'lib.sh' compare "$source_dir/tests/cli/lib.sh" reference.exr
+test ! -e d.png; result $? "nothing is written after an error"
+finish

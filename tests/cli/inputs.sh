@@ -1,0 +1,72 @@
+#!/bin/sh
+# Inputs that are no use: status 1, one line that names the file, no picture, no crash. And one that is.
+. "$(dirname "$0")/lib.sh"
+gml=$source_dir/tests/cli/city.gml
+mkdir folder
+: >empty.gml
+head -c 3000 /dev/urandom >noise.gml
+printf '\211PNG\r\n\032\n and nothing more' >picture.gml
+printf '\037\213\010\000' >cut.gml.gz
+printf 'PK\003\004' >cut.zip
+printf '<?xml version="1.0"?><html><body>no city</body></html>' >page.gml
+printf '{"type": "Feat' >cut.geojson
+head -c 900 "$gml" >cut.gml
+gzip -c "$gml" >whole.gml.gz && head -c 400 whole.gml.gz >half.gml.gz
+long=$(head -c 10000 /dev/zero | tr '\0' x)
+bytes=$(printf 'caf\351\377.gml')
+
+for input in missing.gml folder empty.gml noise.gml picture.gml cut.gml.gz cut.zip page.gml cut.geojson cut.gml half.gml.gz /dev/zero \
+    /dev/null builtin:town "$bytes" "$long"; do
+    shown=$(printf '%.40s' "$input" | tr -cd '\40-\176')
+    for command in "render -o x.png" info; do
+        run $command "$input"
+        test $status = 1 && test "$(grep -vc warning err)" = 1 && test ! -e x.png
+        result $? "$command of $shown" "status $status"
+    done
+done
+run render "$gml" missing.gml -o x.png
+test $status = 1 && grep -q missing.gml err && test ! -e x.png; result $? "one missing file of two"
+
+run info "$gml"
+test $status = 0 && grep -q 'CityGML 2.0' out && grep -q 'EPSG:25832' out && grep -Eq 'wall +4$' out && grep -Eq 'roof +1$' out &&
+    grep -Eq 'skipped +1 x .*(two-points|stump)' out && grep -q '1 in LOD2' out
+result $? "info of a house"
+run info whole.gml.gz "$gml"
+test $status = 0 && test "$(grep -c '^  format' out)" = 2; result $? "info of two files, one packed"
+run info missing.gml "$gml"
+test $status = 1 && grep -q 'CityGML 2.0' out && grep -q missing.gml err; result $? "a missing file does not hide the next"
+run info --json "$gml" missing.gml builtin:city --city-size 150
+if command -v python3 >/dev/null 2>&1; then
+    python3 - out >err <<'END'
+import json, sys
+files = json.load(open(sys.argv[1]))["files"]
+assert len(files) == 3, files
+house, missing, city = files
+assert house["polygons_by_class"] == {"wall": 4, "roof": 1, "ground": 1}, house
+assert house["extent_min"] == [678000, 5403000, 400] and house["extent_max"] == [678010, 5403008, 406], house
+assert house["buildings_by_lod"] == [0, 0, 1, 0, 0], house
+assert any(i["action"] == "skipped" and i["count"] == 1 for i in house["issues"]), house
+assert "missing.gml" in missing["error"], missing
+assert city["triangles"] > 1000 and city["lights"] > 10, city
+END
+    result $? "info as JSON"
+else
+    skip "info as JSON" "no python3 here"
+fi
+
+# A camera in the file's coordinates is the same as one in the scene's frame, which the metadata places in the world.
+view='--size 48x27 --frames 1'
+run render "$gml" $view --camera-crs EPSG:25832 --eye 678030,5402980,412 --target 678005,5403004,403 -o a.png
+test $status = 0; result $? "a camera in CRS coordinates"
+meta() { tr '\0' '\n' <"$1" | tr -c '\n\40-\176' '\n' | sed -n "/tEXt$2\$/{n;p;q;}"; }
+set -- $(meta a.png scene-origin)
+test $# = 3 && run render "$gml" $view -o b.png \
+    --eye "$(echo "678030 5402980 412 $*" | awk '{printf "%.3f,%.3f,%.3f", $1-$4, $2-$5, $3-$6}')" \
+    --target "$(echo "678005 5403004 403 $*" | awk '{printf "%.3f,%.3f,%.3f", $1-$4, $2-$5, $3-$6}')"
+run compare a.png b.png --json
+grep -q '"all": {.*"rmse8": 0,' out; result $? "is the same as in the scene's frame"
+run render "$gml" $view --camera-crs EPSG:nonsense --eye 0,0,0 --target 1,1,1 -o c.png
+test $status = 1 && test ! -e c.png; result $? "a camera in no known CRS"
+run render builtin:city --city-size 150 $view --camera-crs EPSG:25832 --eye 0,0,0 --target 1,1,1 -o c.png
+test $status = 1 && test ! -e c.png; result $? "a camera in a CRS where the scene has none"
+finish

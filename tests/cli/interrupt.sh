@@ -1,0 +1,42 @@
+#!/bin/sh
+# Ctrl-C: the picture so far is saved and that is said; before the first frame nothing is.
+. "$(dirname "$0")/lib.sh"
+
+# interrupt SIGNAL WHEN ARGUMENT...: starts the program, sends the signal once stderr matches WHEN
+interrupt() {
+    signal=$1 when=$2
+    shift 2
+    : >err
+    "$program" "$@" >out 2>err </dev/null &
+    pid=$!
+    tries=0
+    until grep -q "$when" err; do
+        tries=$((tries + 1))
+        [ $tries -gt 1200 ] && break
+        kill -0 $pid 2>/dev/null || break
+        sleep 0.1
+    done
+    kill -"$signal" $pid 2>/dev/null
+    wait $pid
+    status=$?
+}
+
+city='builtin:city --city-size 150 --size 64x36'
+interrupt INT 'frame 2:' render $city --frames 1e9 -v -o a.png
+test $status = 130 && grep -Eq 'interrupted: saved [0-9]+ of 1000000000 frames to a.png' err; result $? "Ctrl-C saves the picture so far"
+test "$(head -c 4 a.png | tail -c 3)" = PNG; result $? "which is whole"
+frames=$(sed -n 's/.*saved \([0-9]*\) of.*/\1/p' err)
+test "$(tr '\0' '\n' <a.png | tr -c '\n\40-\176' '\n' | sed -n '/tEXtframes$/{n;p;q;}')" = "$frames"
+result $? "and tells how many frames it holds" "$frames"
+interrupt TERM 'frame 2:' render $city --frames 1e9 -v -o b.exr
+test $status = 143 && grep -q 'interrupted: saved' err && test -s b.exr; result $? "SIGTERM too, with its own status"
+
+# One frame of many reference rays a pixel takes minutes: it is interrupted before it is complete.
+long='builtin:city --city-size 150 --size 4000x4000 --method reference --rays 1024'
+interrupt INT 'triangles' render $long -v -o c.png
+test $status = 130 && grep -q 'interrupted: .* nothing was saved' err && test ! -e c.png; result $? "before the first frame nothing is saved"
+test "$(ls)" = "a.png
+b.exr
+err
+out"; result $? "and nothing is left behind" "$(ls | tr '\n' ' ')"
+finish

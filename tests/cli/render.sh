@@ -1,0 +1,78 @@
+#!/bin/sh
+# Pictures of a small built-in city: what is written, what is said, and that it can be made again.
+. "$(dirname "$0")/lib.sh"
+small='builtin:city --city-size 150 --size 64x36 --frames 2'
+
+# png_size FILE: "WIDTH HEIGHT" from its header
+png_size() { od -An -tu1 -j16 -N8 "$1" | awk '{print $1*16777216+$2*65536+$3*256+$4, $5*16777216+$6*65536+$7*256+$8}'; }
+# meta FILE KEY: the value of a text chunk of a PNG
+meta() { tr '\0' '\n' <"$1" | tr -c '\n\40-\176' '\n' | sed -n "/tEXt$2\$/{n;p;q;}"; }
+
+run render $small -o a.png
+test $status = 0 && test ! -s err; result $? "renders the built-in city"
+test "$(png_size a.png)" = "64 36"; result $? "the picture has the size asked for" "$(png_size a.png)"
+grep -q '^a.png$' out && grep -Eq '[0-9] triangles, [0-9,]+ lights' out && grep -q '2 frames of restir' out && grep -q 'a frame' out &&
+    grep -q 'memory .*B at most' out
+result $? "the summary tells path, size, frames, triangles, lights, times, memory"
+test "$(ls)" = "a.png
+err
+out"; result $? "nothing else is left behind" "$(ls | tr '\n' ' ')"
+
+run render $small -o b.png
+cmp -s a.png b.png; result $? "the same arguments, the same file"
+run render $small --threads 1 -o b.png && run render $small --threads 3 -o c.png
+cmp -s b.png c.png && cmp -s a.png b.png; result $? "any number of threads, the same file"
+run render $small --seed 2 -o b.png
+test $status = 0 && ! cmp -s a.png b.png; result $? "another seed, another picture"
+run render $small --city-seed 9 -o b.png
+test $status = 0 && ! cmp -s a.png b.png; result $? "another city, another picture"
+
+eye=$(meta a.png camera-eye | tr ' ' ,) target=$(meta a.png camera-target | tr ' ' ,) fov=$(meta a.png camera-fov)
+run render $small --eye "$eye" --target "$target" --fov "$fov" -o b.png
+test -n "$eye" && cmp -s a.png b.png; result $? "the camera in the metadata gives the same file" "$eye $target $fov"
+test "$(meta a.png method)" = restir && test "$(meta a.png seed)" = 1 && test "$(meta a.png frames)" = 2 && test "$(meta a.png city-size)" = 150 &&
+    meta a.png software | grep -q '^nocturne '
+result $? "the options are in the metadata"
+
+run render $small -o a.exr
+test $status = 0 && grep -aq 'cd/m2' a.exr && grep -aq 'camera-eye' a.exr && grep -aq 'scene-origin' a.exr && grep -aq 'candidates' a.exr
+result $? "EXR with units, camera and options"
+run render $small -q -o b.PNG
+test $status = 0 && test ! -s out && test ! -s err && cmp -s a.png b.PNG; result $? "quiet says nothing; endings in capitals count"
+
+for view in street aerial overview; do
+    run render $small --view $view -o $view.png
+    test $status = 0; result $? "view $view"
+done
+! cmp -s street.png aerial.png && ! cmp -s aerial.png overview.png; result $? "the views differ"
+for method in reference is ris; do
+    run render $small --method $method -o b.png
+    test $status = 0 && ! cmp -s a.png b.png; result $? "method $method"
+done
+for switch in --no-temporal --no-spatial --no-bias-rays --no-visibility-reuse --no-final-ray --no-jitter --no-accumulate --no-emitters \
+    --sky=0 --exposure=3 --compensation=1 --tonemap=linear --candidates=4 --neighbours=2 --bias=mis --city-lit=1 --fov=80; do
+    run render $small $switch -o b.png
+    test $status = 0 && ! cmp -s a.png b.png; result $? "$switch changes the picture"
+done
+# Later settings win, so that scripts can add to a command.
+run render $small --seed 2 --seed 1 -o b.png
+cmp -s a.png b.png; result $? "the last of two settings wins"
+run render $small --no-jitter --jitter -o b.png
+cmp -s a.png b.png; result $? "a switch can be switched back"
+
+run render builtin:city --city-size 150 --size 32x18 --time 0.3 -o b.png
+test $status = 0 && test "$(meta b.png frames)" -ge 1; result $? "--time ends by itself"
+run render $small --stats -o b.png
+test $status = 0 && grep -q 'trace floor' out && grep -q 'primary' out; result $? "--stats prints the passes"
+run render $small -v -o b.png
+test $status = 0 && grep -q 'frame 2: ' err; result $? "--verbose tells of every frame"
+if command -v script >/dev/null 2>&1; then
+    TERM=vt100 script -qec "'$program' render $small --frames 40 -o b.png" /dev/null </dev/null >out 2>err
+    status=$?
+    test $status = 0 && grep -q 'frame [0-9]* of 40' out; result $? "a terminal gets a progress line"
+    tr '\r' '\n' <out | tail -n 1 | grep -q 'frame' && false || true
+    result $? "which is erased at the end"
+else
+    skip "a terminal gets a progress line" "no script(1) here"
+fi
+finish
