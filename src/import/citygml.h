@@ -146,6 +146,7 @@ typedef struct cg_item {
     cg_polygon *polygon; /* NULL: nothing here (yet) */
     uint32_t geometry;
     bool flip, shown;
+    bool twin;           /* not shown, for the same shape is already */
     bool stored;         /* a copy of another object's surface */
     bool elsewhere;      /* that other object shows it */
 } cg_item;
@@ -267,7 +268,7 @@ void cg_ring_begin(cg_parser *p, bool exterior);
 void cg_ring_end(cg_parser *p, const cg_frame *frame);
 /* The numbers collected are tuples of the ring: dimension 2 or 3, 0: as many as a position has. */
 void cg_ring_add(cg_parser *p, cg_code code, uint32_t dimension);
-/* id for reports: the polygon's, else the nearest feature's that has one. */
+/* id for reports: the polygon's, else the nearest feature's that has one, else what the object is. Never NULL. */
 const char *cg_report_id(const cg_parser *p, const char *polygon_id, uint32_t feature);
 
 /* citygml_select.c */

@@ -220,6 +220,9 @@ static void emit_object(cg_parser *p) {
                   cg_report_id(p, NULL, 0));
     for (size_t i = 0; s->shown && i < s->items.len && !p->status; i++) {
         const cg_item *item = &s->items.data[i];
+        if (item->twin)
+            geo_issue(p->sink->issues, true, "polygon given twice",
+                      cg_report_id(p, item->polygon->id, p->object.geometries.data[item->geometry].feature));
         if (!item->shown)
             continue;
         cg_emit_polygon(p, item->polygon, item->geometry, item->flip);

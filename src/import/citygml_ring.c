@@ -6,10 +6,13 @@
 const char *cg_report_id(const cg_parser *p, const char *polygon_id, uint32_t feature) {
     if (polygon_id)
         return polygon_id;
-    for (; feature < p->object.features.len; feature = p->object.features.data[feature].parent)
-        if (*p->object.features.data[feature].id)
-            return p->object.features.data[feature].id;
-    return "";
+    const cg_feature *f = NULL;
+    for (; feature < p->object.features.len; feature = f->parent) {
+        f = &p->object.features.data[feature];
+        if (*f->id)
+            return f->id;
+    }
+    return f ? f->type->name : "";
 }
 
 void cg_polygon_begin(cg_parser *p, const char *id) {

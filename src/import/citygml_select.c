@@ -190,7 +190,7 @@ static void show(cg_parser *p, cg_item *item, bool compare, bool remember) {
     if (!p->object.geometries.data[item->geometry].implicit) {
         bool again = polygon->shown == p->selections || polygon->shown == CG_EMITTED || item->elsewhere;
         if (!again && remember && !add_shape(s, polygon))
-            again = compare;
+            item->twin = again = compare;
         if (again) {
             s->duplicates++;
             return;
