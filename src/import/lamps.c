@@ -1,0 +1,109 @@
+/* Once all surfaces are in: ground where there is none, and the lamps on it. */
+#include "city/city.h"
+#include "import/load.h"
+
+#include <math.h>
+
+#define OUTSIDE 2000.0       /* m; lamps farther than this from the city do not light it */
+#define GROUND_SHARE 0.2     /* of the extent that streets and lawns cover when they are the ground */
+
+typedef struct extent {
+    bool any;
+    double lo[2], hi[2];
+} extent;
+
+static double distance_outside(const extent *e, const double *p) {
+    double d[2];
+    for (int k = 0; k < 2; k++)
+        d[k] = NOC_MAX(NOC_MAX(e->lo[k] - p[k], p[k] - e->hi[k]), 0);
+    return hypot(d[0], d[1]);
+}
+
+static extent city_extent(const noc_scene *scene) {
+    extent e = { .any = scene->indices.len > 0 };
+    for (int k = 0; e.any && k < 2; k++) {
+        e.lo[k] = scene->bounds_min[k];
+        e.hi[k] = scene->bounds_max[k];
+    }
+    return e;
+}
+
+/* Buildings without terrain stand on a plane of ours, unless their streets are there. Scenes that are no cities (meshes)
+ * are left as they are. */
+static bool needs_ground(const importer *im, const extent *e) {
+    if (!im->buildings || !e->any)
+        return false;
+    for (size_t t = 0; t < im->scene->triangle_material.len; t++)
+        if (im->scene->materials.data[im->scene->triangle_material.data[t]].cls == NOC_CLASS_TERRAIN)
+            return false;
+    return im->street_area < GROUND_SHARE * (e->hi[0] - e->lo[0]) * (e->hi[1] - e->lo[1]);
+}
+
+static bool shines(const noc_scene *scene) {
+    if (scene->lights.len)
+        return true;
+    for (size_t i = 0; i < scene->meshes.len; i++) {
+        const float *e = scene->materials.data[scene->meshes.data[i].material].emission;
+        if (e[0] > 0 || e[1] > 0 || e[2] > 0)
+            return true;
+    }
+    return false;
+}
+
+static bool go_on(importer *im, double done) {
+    const noc_progress *progress = &im->params->progress;
+    if (progress->update && !progress->update(progress->user, "lamps", done))
+        im->cancelled = true;
+    return !im->cancelled;
+}
+
+/* Stands the lamps that were read; *nearest is the distance to the nearest of those outside. */
+static size_t stand_lamps(importer *im, const extent *e, const city_lamp_params *params, double *nearest) {
+    size_t outside = 0;
+    *nearest = INFINITY;
+    for (size_t i = 0; i < im->lamps.len; i++) {
+        const pending_lamp *p = &im->lamps.data[i];
+        input *in = &im->inputs[p->input];
+        double d = e->any ? distance_outside(e, p->lamp.xyz) : 0;
+        if (d > OUTSIDE) {
+            geo_issue(in->issues, false, "lamp more than 2 km outside the city", p->lamp.id);
+            *nearest = NOC_MIN(*nearest, d);
+            outside++;
+            continue;
+        }
+        in->file.lights += (size_t)NOC_MAX(city_add_lamp(im->scene, &p->lamp, params, false, in->issues), 0);
+        if (i % 256 == 0 && !go_on(im, 0.9 + 0.1 * (double)i / (double)im->lamps.len))
+            break;
+    }
+    return outside;
+}
+
+noc_status finish_city(importer *im) {
+    noc_scene *scene = im->scene;
+    extent e = city_extent(scene);
+    bool is_city = im->buildings > 0 || im->street_area > 0;
+    if (!go_on(im, 0.9))
+        return NOC_ERR_CANCELLED;
+    if (needs_ground(im, &e)) {
+        city_add_ground(scene);
+        noc_info(im->log, "no terrain in the inputs: a ground is laid under the buildings");
+    }
+    city_lamp_params params = { im->params->lamp_height, im->params->lamp_lumens, im->params->lamp_kelvin };
+    double nearest;
+    size_t outside = stand_lamps(im, &e, &params, &nearest);
+    if (im->cancelled)
+        return NOC_ERR_CANCELLED;
+    if (outside && outside == im->lamps.len)
+        noc_warn(im->log, "all %zu lamps lie outside the city, the nearest %.1f km away: is one of the CRSs wrong?", outside,
+                 nearest / 1000);
+    else if (outside)
+        noc_info(im->log, "%zu of %zu lamps lie outside the city and are left out", outside, im->lamps.len);
+    if (!im->params->infer_lamps || !is_city || shines(scene))
+        return NOC_OK;
+    geo_issues *issues = geo_issues_create();
+    int lights = city_infer_lamps(scene, &params, issues);
+    geo_issues_destroy(issues);
+    noc_warn(im->log, "no lamps in the inputs%s: %d placed by a rule (inferred, not surveyed)",
+             im->lamps.len ? " that could be used" : "", NOC_MAX(lights, 0));
+    return NOC_OK;
+}

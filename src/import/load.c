@@ -1,0 +1,250 @@
+/* Runs the inputs: all are opened and recognised before any is read; then cities, meshes and lamps, in that order, so that
+ * the city settles the place and the lamps find their ground. */
+#include "import/load.h"
+#include "city/city.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define HEAD_SIZE 65536
+#define BUILTIN "builtin:city"
+
+static noc_status check_params(const noc_import_params *p, noc_log *log) {
+    if (p->lod < 0 || p->lod > 4)
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: lod is %d, not 0..4", p->lod);
+    if (!(p->lamp_height > 0 && p->lamp_height < 1000))
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp height is %g m, not within 0..1000", p->lamp_height);
+    if (!(p->lamp_lumens > 0 && p->lamp_lumens < 1e9))
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp flux is %g lm, not within 0..1e9", p->lamp_lumens);
+    if (!(p->lamp_kelvin >= 1000 && p->lamp_kelvin <= 40000))
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp colour is %g K, not within 1000..40000", p->lamp_kelvin);
+    return NOC_OK;
+}
+
+/* Reads as much of the head as there is, then a 0. */
+static noc_status read_head(noc_stream *stream, char *head, size_t *size) {
+    *size = 0;
+    for (;;) {
+        size_t got;
+        noc_status status = noc_stream_read(stream, head + *size, HEAD_SIZE - *size, &got);
+        if (status)
+            return status;
+        *size += got;
+        if (!got || *size == HEAD_SIZE) {
+            head[*size] = 0;
+            return NOC_OK;
+        }
+    }
+}
+
+/* "CityGML, OBJ, ...", for the message about a file that is none of them. */
+static char *format_names(const noc_reader *const *readers) {
+    char *text = noc_strdup("");
+    for (; *readers; readers++) {
+        char *longer = noc_format("%s%s%s", text, *text ? ", " : "", (*readers)->name);
+        free(text);
+        text = longer;
+    }
+    return text;
+}
+
+static noc_status recognise(importer *im, input *in, const noc_reader *const *readers) {
+    if (!strcmp(in->path, BUILTIN))
+        return NOC_OK;
+    noc_stream *stream = noc_stream_open(in->path, im->log);
+    if (!stream)
+        return NOC_ERR_IO;
+    char *head = noc_alloc(HEAD_SIZE + 1);
+    size_t size;
+    noc_status status = read_head(stream, head, &size);
+    if (!status) {
+        in->bytes = noc_stream_size(stream);
+        in->reader = find_reader(readers, head, size);
+        if (!size) {
+            status = noc_error(im->log, NOC_ERR_FORMAT, "%s: the file is empty", noc_stream_name(stream));
+        } else if (!in->reader) {
+            char *names = format_names(readers);
+            status = noc_error(im->log, NOC_ERR_FORMAT, "%s: in none of the formats that are read (%s)",
+                               noc_stream_name(stream), names);
+            free(names);
+        } else if (in->reader->missing) {
+            status = noc_error(im->log, NOC_ERR_UNSUPPORTED, "%s: this is %s, but %s", noc_stream_name(stream),
+                               in->reader->name, in->reader->missing);
+        }
+    }
+    free(head);
+    noc_stream_close(stream);
+    return status;
+}
+
+/* Extent of the vertices from first_float on, for meshes, which do not pass the sink. */
+static void mesh_extent(const noc_scene *scene, size_t first_float, noc_report_file *file) {
+    for (size_t i = first_float; i + 2 < scene->positions.len; i += 3)
+        for (size_t k = 0; k < 3; k++) {
+            double x = (double)scene->positions.data[i + k];
+            bool first = i == first_float;
+            file->extent_min[k] = first ? x : NOC_MIN(file->extent_min[k], x);
+            file->extent_max[k] = first ? x : NOC_MAX(file->extent_max[k], x);
+            file->has_extent = true;
+        }
+}
+
+static noc_status read_mesh(importer *im, input *in, noc_stream *stream) {
+    noc_status status = place_mesh(im);
+    if (status)
+        return status;
+    size_t triangles = im->scene->indices.len / 3, floats = im->scene->positions.len, meshes = im->scene->meshes.len;
+    status = in->reader->read_mesh(in->path, stream, im->params, im->scene, in->issues, &in->file.format);
+    in->file.triangles = im->scene->indices.len / 3 - triangles;
+    in->file.objects = im->scene->meshes.len - meshes;
+    mesh_extent(im->scene, floats, &in->file);
+    for (size_t i = meshes; i < im->scene->meshes.len; i++) {
+        const noc_scene_mesh *m = &im->scene->meshes.data[i];
+        const float *e = im->scene->materials.data[m->material].emission;
+        if (e[0] > 0 || e[1] > 0 || e[2] > 0)
+            in->file.lights += m->triangle_count;
+    }
+    return status;
+}
+
+static noc_status read_builtin(importer *im, input *in) {
+    size_t triangles = im->scene->indices.len / 3, lights = im->scene->lights.len;
+    noc_city_params params = noc_city_default_params();
+    noc_status status = noc_scene_add_city(im->scene, &params);
+    in->file.format = "built-in city";
+    in->file.triangles = im->scene->indices.len / 3 - triangles;
+    in->file.lights = im->scene->lights.len - lights;
+    return status;
+}
+
+static noc_status read_input(importer *im, size_t index) {
+    input *in = &im->inputs[index];
+    im->current = index;
+    in->started = true;
+    double start = noc_wall_seconds();
+    if (!in->reader) {
+        noc_status status = read_builtin(im, in);
+        in->file.seconds = noc_wall_seconds() - start;
+        return status;
+    }
+    noc_stream *stream = noc_stream_open(in->path, im->log);
+    if (!stream)
+        return NOC_ERR_IO;
+    noc_status status;
+    in->file.format = in->reader->name;
+    if (in->reader->read_mesh) {
+        status = read_mesh(im, in, stream);
+    } else {
+        geo_sink sink = sink_create(im);
+        status = in->reader->read(stream, im->params, &sink, &in->file.format);
+        if (!status)
+            status = sink_flush(im); /* of a reader that gives no objects */
+    }
+    if (im->cancelled)
+        status = NOC_ERR_CANCELLED;
+    place_finish_file(im);
+    in->file.bytes = in->bytes;
+    in->file.bytes_read = noc_stream_read_bytes(stream);
+    in->file.seconds = noc_wall_seconds() - start;
+    im->bytes_before += (double)in->bytes;
+    noc_stream_close(stream);
+    return status;
+}
+
+static int stage(const input *in) {
+    return !in->reader || in->reader->reads == NOC_READS_CITY ? 0 : in->reader->reads == NOC_READS_MESH ? 1 : 2;
+}
+
+static noc_status run(importer *im, const noc_reader *const *readers) {
+    for (size_t i = 0; i < im->input_count; i++) {
+        noc_status status = recognise(im, &im->inputs[i], readers);
+        if (status)
+            return status;
+        im->bytes_total += (double)im->inputs[i].bytes;
+    }
+    for (int s = 0; s < 3; s++)
+        for (size_t i = 0; i < im->input_count; i++) {
+            noc_status status = stage(&im->inputs[i]) == s ? read_input(im, i) : NOC_OK;
+            if (status)
+                return status;
+        }
+    return im->inspect ? NOC_OK : finish_city(im);
+}
+
+noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const char *const *paths, size_t path_count,
+                       const noc_import_params *params, bool inspect, noc_report **report) {
+    const noc_import_params defaults = noc_import_default_params();
+    if (report)
+        *report = NULL;
+    if (!params)
+        params = &defaults;
+    noc_status status = check_params(params, scene->log);
+    if (status)
+        return status;
+    if (!path_count)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "import: no input");
+    if (scene->committed)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "import: the scene is committed");
+    importer im = { .log = scene->log, .scene = scene, .params = params, .inspect = inspect, .input_count = path_count };
+    im.report = report_create();
+    im.inputs = noc_calloc(path_count, sizeof(*im.inputs));
+    for (size_t i = 0; i < path_count; i++) {
+        im.inputs[i] = (input){ .path = paths[i], .file = { .path = paths[i] } };
+        im.inputs[i].issues = geo_issues_create();
+    }
+    status = run(&im, readers);
+    if (!status && !inspect)
+        status = noc_scene_commit(scene);
+    if (status == NOC_ERR_CANCELLED)
+        noc_info(scene->log, "import: cancelled");
+    for (size_t i = 0; i < path_count; i++) {
+        if (im.inputs[i].started)
+            report_add(im.report, &im.inputs[i].file, im.inputs[i].issues);
+        geo_issues_destroy(im.inputs[i].issues);
+    }
+    free(im.inputs);
+    place_destroy(&im);
+    sink_destroy(&im);
+    if (report)
+        *report = im.report;
+    else
+        noc_report_destroy(im.report);
+    return status;
+}
+
+noc_status noc_scene_load(noc_scene *scene, const char *const *paths, size_t path_count, const noc_import_params *params,
+                          noc_report **report) {
+    return load_inputs(scene, noc_readers, paths, path_count, params, false, report);
+}
+
+noc_status noc_inspect(noc_log *log, const char *path, const noc_import_params *params, noc_report **report) {
+    noc_scene *scene = noc_scene_create(log);
+    noc_status status = load_inputs(scene, noc_readers, &path, 1, params, true, report);
+    noc_scene_destroy(scene);
+    return status;
+}
+
+noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xyz[3]) {
+    if (crs) {
+        if (!scene->crs && !scene->crs_name)
+            return noc_error(scene->log, NOC_ERR_ARGUMENT, "the scene has no CRS, so coordinates in %s have no place in it",
+                             crs);
+        geo_crs *from = geo_crs_create(crs, NULL, scene->log);
+        geo_crs *to = scene->crs ? geo_crs_clone(scene->crs) : geo_crs_create(scene->crs_name, "scene", scene->log);
+        geo_transform *t = from && to ? geo_transform_create(from, to, scene->log) : NULL;
+        double p[3] = { xyz[0], xyz[1], xyz[2] };
+        noc_status status = !from || !to ? NOC_ERR_ARGUMENT : !t ? NOC_ERR_UNSUPPORTED : NOC_OK;
+        if (t && geo_transform_points(t, p, 1))
+            status = noc_error(scene->log, NOC_ERR_ARGUMENT, "%.10g %.10g in %s has no place in the scene's CRS", xyz[0],
+                               xyz[1], geo_crs_name(from));
+        geo_transform_destroy(t);
+        geo_crs_destroy(from);
+        geo_crs_destroy(to);
+        if (status)
+            return status;
+        memcpy(xyz, p, sizeof(p));
+    }
+    for (int k = 0; k < 3; k++)
+        xyz[k] -= scene->origin[k];
+    return NOC_OK;
+}

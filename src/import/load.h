@@ -1,0 +1,103 @@
+/* load: from files to a scene. load.c runs the inputs, sink.c takes what city readers emit, place.c settles where the
+ * scene is, lamps.c stands the lamps. */
+#ifndef NOC_IMPORT_LOAD_H
+#define NOC_IMPORT_LOAD_H
+
+#include "import/import.h"
+#include "scene/scene.h"
+
+#define PALETTE 8 /* materials of a class that varies from building to building */
+
+/* One CRS as one file spells it. */
+typedef struct source_crs {
+    char *spelling;           /* "" where the file names none */
+    size_t input;             /* whose coordinates it is about: axis decisions hold for one file */
+    geo_crs *crs;             /* NULL: local metres */
+    geo_transform *to_scene;  /* NULL until the first coordinate, and for local metres */
+    bool ready;               /* to_scene is made, if one is needed */
+    bool axes_decided, swap;
+    int tries;
+    double shift_x;           /* zone number before the easting */
+} source_crs;
+
+typedef struct input {
+    const char *path;
+    const noc_reader *reader; /* NULL: built-in */
+    uint64_t bytes;
+    geo_issues *issues;
+    noc_report_file file;     /* texts in the report's arena */
+    bool started;
+} input;
+
+typedef struct pending_lamp {
+    geo_lamp lamp;            /* local metres; id in importer.names */
+    size_t input;
+} pending_lamp;
+
+typedef struct importer {
+    noc_log *log;
+    noc_scene *scene;
+    const noc_import_params *params;
+    noc_report *report;
+    bool inspect;
+    input *inputs;
+    size_t input_count, current;
+    /* place of the scene (place.c) */
+    bool placed;
+    geo_crs *scene_crs;       /* belongs to the scene; NULL: local metres */
+    double origin[3];
+    const char *placed_by;    /* path of the input that settled it */
+    NOC_ARRAY(source_crs *) sources;
+    source_crs *source;       /* of the coordinates that come next */
+    /* the object that is being read (sink.c) */
+    char *object_id;
+    NOC_ARRAY(double) scratch;
+    geo_triangles surfaces[NOC_CLASS_COUNT];
+    int material[NOC_CLASS_COUNT][PALETTE]; /* index + 1 in the scene, 0 if not made yet */
+    size_t buildings;
+    double street_area;       /* m2 of roads, pavements and lawns, seen from above */
+    NOC_ARRAY(pending_lamp) lamps;
+    noc_arena names;
+    /* progress */
+    double bytes_total, bytes_before;
+    bool cancelled;
+} importer;
+
+struct noc_report {
+    noc_arena arena;
+    NOC_ARRAY(noc_report_file) files;
+};
+
+/* report.c */
+noc_report *report_create(void);
+/* Adds the file with the issues' lines. */
+void report_add(noc_report *report, const noc_report_file *file, const geo_issues *issues);
+
+/* readers.c: first reader in a NULL-ended list whose probe takes the head; NULL if none. */
+extern const noc_reader *const noc_readers[];
+const noc_reader *find_reader(const noc_reader *const *readers, const char *head, size_t size);
+
+/* place.c */
+noc_status place_crs(importer *im, const char *srs_name, const char *place, bool *lat_first);
+/* Coordinates as emitted (the extent is taken of them) to local metres, in place. *usable is false if they cannot be
+ * transformed. The first ones settle the scene's CRS and origin. */
+noc_status place_points(importer *im, double *xyz, size_t count, const char *id, bool *usable);
+/* Meshes have no CRS: the scene's frame is theirs. */
+noc_status place_mesh(importer *im);
+void place_finish_file(importer *im);
+void place_destroy(importer *im);
+
+/* sink.c */
+geo_sink sink_create(importer *im);
+noc_status sink_flush(importer *im);
+void sink_destroy(importer *im);
+int sink_material(importer *im, noc_class cls, const char *id);
+
+/* lamps.c: ground where there is none, then lamps. */
+noc_status finish_city(importer *im);
+
+/* load.c: noc_scene_load and noc_inspect with a table of readers of one's own (tests bring theirs). */
+noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const char *const *paths, size_t path_count,
+                       const noc_import_params *params, bool inspect, noc_report **report);
+
+#endif

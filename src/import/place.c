@@ -1,0 +1,304 @@
+/* Where the scene is: which CRS the coordinates of a file are in, which one the scene gets, and the way between.
+ *
+ * Axis order. Geographic CRSs come in the order of their authority (latitude first for EPSG:6697), however they are
+ * spelled. Projected ones come easting first: several of them are northing first by the authority's book (EPSG:31466 to
+ * 31469, 31256), but files do not follow it. Where the first coordinates fit the CRS's area of use only the other way
+ * round, the other way it is, and the report says so. */
+#include "import/load.h"
+
+#include <ctype.h>
+#include <math.h>
+
+#define AXIS_TRIES 16      /* polygons that are looked at before the order of axes is left as it is */
+#define FAR_OUTSIDE 3.0    /* degrees outside the CRS's area of use that are worth a warning */
+#define LOCAL_ORIGIN 100e3 /* m; local coordinates nearer to zero than this keep it as the origin */
+
+static bool is_blank(const char *text) {
+    while (text && isspace((unsigned char)*text))
+        text++;
+    return !text || !*text;
+}
+
+static source_crs *find_source(importer *im, const char *spelling) {
+    for (size_t i = 0; i < im->sources.len; i++)
+        if (im->sources.data[i]->input == im->current && !strcmp(im->sources.data[i]->spelling, spelling))
+            return im->sources.data[i];
+    return NULL;
+}
+
+/* The CRS that `spelling` means for this run; *crs is NULL for local metres. */
+static noc_status resolve(importer *im, const char *spelling, const char *place, geo_crs **crs) {
+    *crs = NULL;
+    const char *fallback = is_blank(im->params->crs) ? NULL : im->params->crs;
+    if (*spelling) {
+        *crs = geo_crs_create(spelling, place, NULL);
+        if (*crs)
+            return NOC_OK;
+        if (!fallback && !im->inspect)
+            return noc_error(im->log, NOC_ERR_FORMAT,
+                             "%s: the CRS \"%.200s\" is not understood, or is neither geographic nor projected: say with "
+                             "--crs which one it is", place, spelling);
+        noc_warn(im->log, "%s: the CRS \"%.200s\" is not understood: %s%s", place, spelling,
+                 fallback ? "taken as " : "taken as local metres", fallback ? fallback : "");
+    }
+    if (!fallback)
+        return NOC_OK;
+    *crs = geo_crs_create(fallback, "--crs", im->log);
+    return *crs ? NOC_OK : NOC_ERR_ARGUMENT;
+}
+
+noc_status place_crs(importer *im, const char *srs_name, const char *place, bool *lat_first) {
+    input *in = &im->inputs[im->current];
+    const char *spelling = is_blank(srs_name) ? "" : srs_name;
+    source_crs *source = find_source(im, spelling);
+    if (!source) {
+        geo_crs *crs;
+        noc_status status = resolve(im, spelling, place ? place : in->path, &crs);
+        if (status)
+            return status;
+        source = noc_calloc(1, sizeof(*source));
+        source->spelling = noc_strdup(spelling);
+        source->input = im->current;
+        source->crs = crs;
+        array_push(&im->sources, source);
+    }
+    im->source = source;
+    if (lat_first)
+        *lat_first = source->crs && geo_crs_is_geographic(source->crs) && geo_crs_lat_first(source->crs);
+    return NOC_OK;
+}
+
+/* ---- axes ---- */
+
+/* Swaps the axes, or takes the zone number off the easting (32 512 345 m instead of 512 345 m), if that is what brings the
+ * point into the CRS's area of use. */
+static void decide_axes(importer *im, source_crs *s, double x, double y, const char *id) {
+    geo_issues *issues = im->inputs[im->current].issues;
+    double zone = floor(x / 1e6) * 1e6;
+    double given = geo_crs_outside(s->crs, x, y);
+    if (given == 0) {
+        s->axes_decided = true;
+    } else if (geo_crs_outside(s->crs, y, x) == 0) {
+        s->axes_decided = s->swap = true;
+        noc_warn(im->log, "%s: the coordinates fit %s only with their axes exchanged: done", im->inputs[im->current].path,
+                 geo_crs_name(s->crs));
+        geo_issue(issues, true, "axes exchanged to fit the CRS", id);
+    } else if (!geo_crs_is_geographic(s->crs) && zone >= 1e6 && zone <= 60e6 &&
+               geo_crs_outside(s->crs, x - zone, y) == 0) {
+        s->axes_decided = true;
+        s->shift_x = -zone;
+        geo_issue(issues, true, "zone number taken off the easting", id);
+    } else if (++s->tries == AXIS_TRIES) {
+        s->axes_decided = true;
+        if (given > FAR_OUTSIDE)
+            noc_warn(im->log, "%s: the coordinates lie far outside the area that %s is for: is it the right CRS?",
+                     im->inputs[im->current].path, geo_crs_name(s->crs));
+    }
+}
+
+static void fix_axes(importer *im, source_crs *s, double *xyz, size_t count, const char *id) {
+    if (!s->crs)
+        return;
+    for (size_t i = 0; i < count && !s->axes_decided; i++)
+        if (isfinite(xyz[3 * i]) && isfinite(xyz[3 * i + 1])) {
+            decide_axes(im, s, xyz[3 * i], xyz[3 * i + 1], id);
+            break;
+        }
+    if (!s->swap && s->shift_x == 0)
+        return;
+    for (size_t i = 0; i < count; i++) {
+        double *p = xyz + 3 * i, x = p[0];
+        if (s->swap) {
+            p[0] = p[1];
+            p[1] = x;
+        }
+        p[0] += s->shift_x;
+    }
+}
+
+/* ---- the scene's place ---- */
+
+/* The CRS the scene is asked to have, if any: by parameter, or set on the scene before. */
+static noc_status wanted_crs(importer *im, geo_crs **crs) {
+    *crs = NULL;
+    bool by_parameter = !is_blank(im->params->scene_crs);
+    const char *definition = by_parameter ? im->params->scene_crs : im->scene->crs_name;
+    if (is_blank(definition) || im->inspect)
+        return NOC_OK;
+    *crs = geo_crs_create(definition, by_parameter ? "--scene-crs" : "scene", im->log);
+    if (!*crs)
+        return NOC_ERR_ARGUMENT;
+    if (geo_crs_is_metric(*crs))
+        return NOC_OK;
+    noc_error(im->log, NOC_ERR_ARGUMENT, "%s: a scene's CRS must be projected, in metres", geo_crs_name(*crs));
+    geo_crs_destroy(*crs);
+    *crs = NULL;
+    return NOC_ERR_ARGUMENT;
+}
+
+static void set_place(importer *im, geo_crs *crs, const double origin[3]) {
+    im->placed = true;
+    im->placed_by = im->inputs[im->current].path;
+    im->scene_crs = crs;
+    memcpy(im->origin, origin, sizeof(im->origin));
+    noc_scene_set_crs(im->scene, crs ? geo_crs_name(crs) : NULL, im->origin);
+    if (im->scene->crs && im->scene->crs_free)
+        im->scene->crs_free(im->scene->crs);
+    im->scene->crs = crs;
+    im->scene->crs_free = geo_crs_destroy;
+}
+
+/* Settles CRS and origin by the first coordinates, given in their own CRS. Heights stay what they are: z has no origin. */
+static noc_status settle(importer *im, const source_crs *source, const double point[3]) {
+    geo_crs *crs;
+    bool preset = im->scene->crs_name && is_blank(im->params->scene_crs) && !im->inspect;
+    noc_status status = wanted_crs(im, &crs);
+    if (status)
+        return status;
+    if (!source->crs) {
+        if (crs) {
+            geo_crs_destroy(crs);
+            return noc_error(im->log, NOC_ERR_ARGUMENT, "%s names no CRS: say with --crs which one it is in",
+                             im->inputs[im->current].path);
+        }
+        bool near_zero = fabs(point[0]) < LOCAL_ORIGIN && fabs(point[1]) < LOCAL_ORIGIN;
+        set_place(im, NULL, (double[3]){ near_zero ? 0 : round(point[0]), near_zero ? 0 : round(point[1]), 0 });
+        return NOC_OK;
+    }
+    double lonlat[2], p[3] = { point[0], point[1], 0 };
+    if (!crs && geo_crs_is_metric(source->crs))
+        crs = geo_crs_clone(source->crs);
+    else if (!crs && geo_crs_lonlat(source->crs, point[0], point[1], lonlat))
+        crs = geo_crs_utm(lonlat[0], lonlat[1]);
+    geo_transform *t = crs ? geo_transform_create(source->crs, crs, im->log) : NULL;
+    bool ok = t && !geo_transform_points(t, p, 1);
+    geo_transform_destroy(t);
+    if (!ok) {
+        geo_crs_destroy(crs);
+        return noc_error(im->log, NOC_ERR_FORMAT, "%s: the first coordinates (%.10g %.10g) have no place in %s",
+                         im->inputs[im->current].path, point[0], point[1], geo_crs_name(source->crs));
+    }
+    set_place(im, crs, preset ? im->scene->origin : (double[3]){ round(p[0]), round(p[1]), 0 });
+    return NOC_OK;
+}
+
+/* Makes the way from the source to the scene, once. */
+static noc_status prepare(importer *im, source_crs *s, const double point[3]) {
+    const char *path = im->inputs[im->current].path;
+    if (!im->placed) {
+        noc_status status = settle(im, s, point);
+        if (status)
+            return status;
+    }
+    if (!s->crs && im->scene_crs)
+        return noc_error(im->log, NOC_ERR_FORMAT, "%s names no CRS, but %s does (%s): say with --crs which one it is in",
+                         path, im->placed_by, geo_crs_name(im->scene_crs));
+    if (s->crs && !im->scene_crs)
+        return noc_error(im->log, NOC_ERR_FORMAT, "%s names no CRS, but %s does (%s): say with --crs which one it is in",
+                         im->placed_by, path, geo_crs_name(s->crs));
+    if (s->crs) {
+        s->to_scene = geo_transform_create(s->crs, im->scene_crs, im->log);
+        if (!s->to_scene)
+            return NOC_ERR_UNSUPPORTED;
+    }
+    s->ready = true;
+    noc_report_file *file = &im->inputs[im->current].file;
+    if (!file->crs) {
+        file->crs = s->crs ? arena_strdup(&im->report->arena, geo_crs_name(s->crs)) : "";
+        file->crs_given = arena_strdup(&im->report->arena, s->spelling);
+    }
+    return NOC_OK;
+}
+
+/* Widens the file's extent; *centre is that of these points alone. False if none is finite. */
+static bool take_extent(noc_report_file *file, const double *xyz, size_t count, double centre[3]) {
+    double lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY };
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) {
+            double x = xyz[3 * i + (size_t)k];
+            if (isfinite(x)) {
+                lo[k] = NOC_MIN(lo[k], x);
+                hi[k] = NOC_MAX(hi[k], x);
+            }
+        }
+    if (!(lo[0] <= hi[0] && lo[1] <= hi[1]))
+        return false;
+    bool has_height = lo[2] <= hi[2]; /* lamps may have none */
+    for (int k = 0; k < 3; k++) {
+        if (k == 2 && !has_height)
+            lo[k] = hi[k] = file->has_extent ? file->extent_min[2] : 0;
+        centre[k] = lo[k] + (hi[k] - lo[k]) / 2;
+        file->extent_min[k] = file->has_extent ? NOC_MIN(file->extent_min[k], lo[k]) : lo[k];
+        file->extent_max[k] = file->has_extent ? NOC_MAX(file->extent_max[k], hi[k]) : hi[k];
+    }
+    file->has_extent = true;
+    return true;
+}
+
+noc_status place_points(importer *im, double *xyz, size_t count, const char *id, bool *usable) {
+    *usable = false;
+    input *in = &im->inputs[im->current];
+    if (!im->source) {
+        noc_status status = place_crs(im, NULL, in->path, NULL);
+        if (status)
+            return status;
+    }
+    source_crs *s = im->source;
+    double centre[3];
+    fix_axes(im, s, xyz, count, id);
+    if (!take_extent(&in->file, xyz, count, centre)) {
+        geo_issue(in->issues, false, "coordinates that are not finite", id);
+        return NOC_OK;
+    }
+    if (!s->ready) {
+        noc_status status = prepare(im, s, centre);
+        if (status)
+            return status;
+    }
+    if (s->to_scene && geo_transform_points(s->to_scene, xyz, count)) {
+        geo_issue(in->issues, false, "coordinates that have no place in the scene's CRS", id);
+        return NOC_OK;
+    }
+    for (size_t i = 0; i < 3 * count; i++)
+        xyz[i] -= im->origin[i % 3];
+    *usable = true;
+    return NOC_OK;
+}
+
+noc_status place_mesh(importer *im) {
+    const char *path = im->inputs[im->current].path;
+    if (im->placed) {
+        noc_info(im->log, "%s: coordinates are taken as metres from the scene's origin (%.0f %.0f)", path, im->origin[0],
+                 im->origin[1]);
+        return NOC_OK;
+    }
+    geo_crs *crs;
+    noc_status status = wanted_crs(im, &crs);
+    if (status)
+        return status;
+    if (!crs && !is_blank(im->params->crs) && !im->inspect) {
+        crs = geo_crs_create(im->params->crs, "--crs", im->log);
+        if (!crs)
+            return NOC_ERR_ARGUMENT;
+        if (!geo_crs_is_metric(crs)) {
+            geo_crs_destroy(crs);
+            return noc_error(im->log, NOC_ERR_ARGUMENT, "--crs %s: %s is in metres, so its CRS must be projected, in metres",
+                             im->params->crs, path);
+        }
+    }
+    set_place(im, crs, (double[3]){ 0, 0, 0 });
+    return NOC_OK;
+}
+
+void place_finish_file(importer *im) { im->source = NULL; }
+
+void place_destroy(importer *im) {
+    for (size_t i = 0; i < im->sources.len; i++) {
+        source_crs *s = im->sources.data[i];
+        geo_transform_destroy(s->to_scene);
+        geo_crs_destroy(s->crs);
+        free(s->spelling);
+        free(s);
+    }
+    array_free(&im->sources);
+}

@@ -1,0 +1,36 @@
+#include "import/load.h"
+
+noc_report *report_create(void) { return noc_calloc(1, sizeof(noc_report)); }
+
+size_t noc_report_file_count(const noc_report *report) { return report ? report->files.len : 0; }
+
+const noc_report_file *noc_report_get_file(const noc_report *report, size_t index) {
+    return report && index < report->files.len ? &report->files.data[index] : NULL;
+}
+
+void noc_report_destroy(noc_report *report) {
+    if (!report)
+        return;
+    array_free(&report->files);
+    arena_free(&report->arena);
+    free(report);
+}
+
+static const char *keep(noc_report *report, const char *text) { return arena_strdup(&report->arena, text ? text : ""); }
+
+void report_add(noc_report *report, const noc_report_file *file, const geo_issues *issues) {
+    noc_report_file f = *file;
+    f.path = keep(report, f.path);
+    f.format = keep(report, f.format);
+    f.crs = keep(report, f.crs);
+    f.crs_given = keep(report, f.crs_given);
+    f.line_count = geo_issues_count(issues);
+    noc_report_line *lines = arena_alloc(&report->arena, f.line_count * sizeof(*lines));
+    for (size_t i = 0; i < f.line_count; i++) {
+        geo_issues_get(issues, i, &lines[i].reason, &lines[i].repaired, &lines[i].count, &lines[i].examples);
+        lines[i].reason = keep(report, lines[i].reason);
+        lines[i].examples = keep(report, lines[i].examples);
+    }
+    f.lines = lines;
+    array_push(&report->files, f);
+}

@@ -1,0 +1,190 @@
+/* What city readers emit becomes meshes: one an object and class, so that ids stay findable and a mesh has one material. */
+#include "import/load.h"
+
+#include <math.h>
+
+#define FLUSH_TRIANGLES 500000 /* of one object and class: terrain is not kept twice */
+
+/* ---- materials ---- */
+
+/* Façades and roofs differ from building to building. Diffuse reflectances, linear; their mean is near the class's own
+ * material. */
+static const float wall_albedo[PALETTE][3] = {
+    { .58f, .54f, .47f }, /* light plaster */
+    { .52f, .45f, .33f }, /* cream plaster */
+    { .46f, .37f, .27f }, /* sandstone */
+    { .40f, .40f, .39f }, /* concrete */
+    { .33f, .20f, .15f }, /* brick */
+    { .55f, .55f, .54f }, /* white paint, weathered */
+    { .45f, .34f, .28f }, /* pink plaster */
+    { .38f, .39f, .35f }, /* grey green plaster */
+};
+static const float roof_albedo[PALETTE][3] = {
+    { .30f, .13f, .08f }, /* new clay tiles */
+    { .23f, .11f, .08f }, /* clay tiles */
+    { .18f, .10f, .08f }, /* old clay tiles */
+    { .27f, .15f, .10f }, /* light clay tiles */
+    { .13f, .13f, .14f }, /* slate */
+    { .22f, .21f, .20f }, /* concrete tiles */
+    { .17f, .12f, .10f }, /* brown tiles */
+    { .30f, .29f, .27f }, /* gravel */
+};
+
+/* Neighbouring ids differ in a letter: all bits of the hash must depend on it. */
+static uint32_t hash_id(const char *id) {
+    uint32_t h = 2166136261u;
+    for (; *id; id++)
+        h = (h ^ (unsigned char)*id) * 16777619u;
+    h = (h ^ h >> 16) * 0x85ebca6bu;
+    h = (h ^ h >> 13) * 0xc2b2ae35u;
+    return h ^ h >> 16;
+}
+
+int sink_material(importer *im, noc_class cls, const char *id) {
+    const float(*albedo)[3] = cls == NOC_CLASS_WALL ? wall_albedo : cls == NOC_CLASS_ROOF ? roof_albedo : NULL;
+    uint32_t h = hash_id(id);
+    uint32_t k = !albedo ? 0 : (cls == NOC_CLASS_WALL ? h : h >> 8) % PALETTE;
+    int *index = &im->material[cls][k];
+    if (!*index) {
+        noc_material m = noc_class_material(cls);
+        if (albedo)
+            memcpy(m.albedo, albedo[k], sizeof(m.albedo));
+        *index = noc_scene_add_material(im->scene, &m) + 1;
+    }
+    return *index - 1;
+}
+
+/* ---- surfaces ---- */
+
+static bool is_street(noc_class cls) {
+    return cls == NOC_CLASS_ROAD || cls == NOC_CLASS_SIDEWALK || cls == NOC_CLASS_GREEN || cls == NOC_CLASS_TERRAIN ||
+           cls == NOC_CLASS_WATER;
+}
+
+static double area_from_above(const geo_triangles *t) {
+    double sum = 0;
+    for (size_t i = 0; i < t->indices.len; i += 3) {
+        const double *a = t->xyz.data + 3 * (size_t)t->indices.data[i], *b = t->xyz.data + 3 * (size_t)t->indices.data[i + 1],
+                     *c = t->xyz.data + 3 * (size_t)t->indices.data[i + 2];
+        sum += fabs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
+    }
+    return sum;
+}
+
+static noc_status flush_class(importer *im, noc_class cls) {
+    geo_triangles *t = &im->surfaces[cls];
+    if (!t->indices.len)
+        return NOC_OK;
+    const char *id = im->object_id ? im->object_id : "";
+    noc_mesh mesh = { .vertex_count = t->xyz.len / 3, .positions = t->xyz.data, .triangle_count = t->indices.len / 3,
+                      .indices = t->indices.data, .material = sink_material(im, cls, id), .name = *id ? id : NULL };
+    if (mesh.material < 0 || noc_scene_add_mesh(im->scene, &mesh) < 0)
+        return NOC_ERR_UNSUPPORTED; /* said by the scene */
+    im->inputs[im->current].file.triangles += mesh.triangle_count;
+    if (is_street(cls))
+        im->street_area += area_from_above(t);
+    t->xyz.len = t->indices.len = 0;
+    return NOC_OK;
+}
+
+noc_status sink_flush(importer *im) {
+    for (int c = 0; c < NOC_CLASS_COUNT; c++) {
+        noc_status status = flush_class(im, (noc_class)c);
+        if (status)
+            return status;
+    }
+    return NOC_OK;
+}
+
+static noc_status on_crs(void *ctx, const char *srs_name, const char *place, bool *lat_first) {
+    return place_crs(ctx, srs_name, place, lat_first);
+}
+
+static noc_status on_begin_object(void *ctx, const geo_object *object) {
+    importer *im = ctx;
+    noc_report_file *file = &im->inputs[im->current].file;
+    noc_status status = sink_flush(im);
+    free(im->object_id);
+    im->object_id = noc_strdup(object->id);
+    file->objects++;
+    if (object->kind == GEO_BUILDING) {
+        im->buildings++;
+        file->buildings++;
+        if (object->lod >= 0 && object->lod < (int)NOC_COUNT(file->lod_used))
+            file->lod_used[object->lod]++;
+    }
+    return status;
+}
+
+static noc_status on_end_object(void *ctx) {
+    importer *im = ctx;
+    noc_status status = sink_flush(im);
+    free(im->object_id);
+    im->object_id = NULL;
+    return status;
+}
+
+static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
+    importer *im = ctx;
+    input *in = &im->inputs[im->current];
+    noc_class cls = (unsigned)polygon->cls < NOC_CLASS_COUNT ? polygon->cls : NOC_CLASS_OTHER;
+    size_t count = 0;
+    for (size_t r = 0; r < polygon->ring_count; r++)
+        count += polygon->ring_size[r];
+    size_t numbers = 3 * count;
+    im->scratch.len = 0;
+    array_append(&im->scratch, polygon->xyz, numbers);
+    bool usable;
+    noc_status status = place_points(im, im->scratch.data, count, polygon->id, &usable);
+    if (status || !usable)
+        return status;
+    if (cls != NOC_CLASS_CLOSURE) {
+        geo_polygon local = *polygon;
+        local.xyz = im->scratch.data;
+        if (!geo_triangulate(&local, &im->surfaces[cls], in->issues))
+            return NOC_OK;
+    }
+    in->file.polygons++;
+    in->file.polygons_by_class[cls]++;
+    return im->surfaces[cls].indices.len >= 3 * FLUSH_TRIANGLES ? flush_class(im, cls) : NOC_OK;
+}
+
+static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
+    importer *im = ctx;
+    pending_lamp p = { .lamp = *lamp, .input = im->current };
+    bool usable;
+    noc_status status = place_points(im, p.lamp.xyz, 1, lamp->id ? lamp->id : "", &usable);
+    if (status || !usable)
+        return status;
+    im->inputs[im->current].file.lamps++;
+    if (im->inspect)
+        return NOC_OK;
+    p.lamp.id = arena_strdup(&im->names, lamp->id ? lamp->id : "");
+    array_push(&im->lamps, p);
+    return NOC_OK;
+}
+
+static bool on_progress(void *ctx, double done) {
+    importer *im = ctx;
+    const noc_progress *progress = &im->params->progress;
+    double bytes = im->bytes_before + NOC_CLAMP(done, 0, 1) * (double)im->inputs[im->current].bytes;
+    if (progress->update && !progress->update(progress->user, im->inputs[im->current].path,
+                                              0.9 * (im->bytes_total > 0 ? bytes / im->bytes_total : 1)))
+        im->cancelled = true;
+    return !im->cancelled;
+}
+
+geo_sink sink_create(importer *im) {
+    return (geo_sink){ .ctx = im, .log = im->log, .issues = im->inputs[im->current].issues, .crs = on_crs,
+                       .begin_object = on_begin_object, .polygon = on_polygon, .end_object = on_end_object,
+                       .lamp = on_lamp, .progress = on_progress };
+}
+
+void sink_destroy(importer *im) {
+    for (int c = 0; c < NOC_CLASS_COUNT; c++)
+        geo_triangles_free(&im->surfaces[c]);
+    array_free(&im->scratch);
+    free(im->object_id);
+    array_free(&im->lamps);
+    arena_free(&im->names);
+}
