@@ -97,10 +97,8 @@ static noc_status write_difference(const compare_args *args, const noc_image *x,
     noc_status status = noc_image_difference(x, r, &rgb, &width, &height, log);
     if (status)
         return status;
-    char *software = cli_format("nocturne %s", noc_version());
-    const char *keys[] = { "software", "picture" }, *values[] = { software, "signed difference of luminance" };
-    status = noc_image_write_srgb8(rgb, width, height, args->output, &(noc_image_meta){ 2, keys, values }, log);
-    free(software);
+    const char *keys[] = { "picture" }, *values[] = { "signed difference of luminance, cd/m2" };
+    status = noc_image_write_srgb8(rgb, width, height, args->output, &(noc_image_meta){ 1, keys, values }, log);
     free(rgb);
     return status;
 }

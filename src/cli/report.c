@@ -14,13 +14,13 @@ static void add(meta_text *meta, const char *key, char *value) {
     meta->values[meta->count++] = value;
 }
 
-/* Everything needed to make the picture again: each option by name, and what the program decided by itself. */
+/* Everything needed to make the picture again, besides what the writer adds (units, exposure): each option by name. */
 static void add_options(meta_text *meta, const render_args *args) {
     for (const cli_set *set = cli_render.sets; set->table; set++) {
         for (const noc_option *o = set->table(); o->name; o++) {
             static const char *const told_otherwise[] = { "output", "view", "eye", "target", "camera-crs", "fov", "stats", "frames",
                                                           "size", "exposure", "time", "threads", "quiet", "verbose", "help", NULL };
-            if (cli_hidden(&(cli_set){ .hidden = told_otherwise }, o))
+            if (cli_hidden(set, o) || cli_hidden(&(cli_set){ .hidden = told_otherwise }, o))
                 continue;
             const void *params = (const char *)args + set->offset;
             int n = noc_option_get(o, params, NULL, 0);
@@ -59,12 +59,7 @@ noc_status cli_write_picture(render_job *job) {
     if (!job->image)
         return NOC_ERR_MEMORY;
     meta_text meta = { .count = 0 };
-    add(&meta, "software", cli_format("nocturne %s", noc_version()));
     add(&meta, "inputs", join_inputs(args));
-    if (is_exr(args->output))
-        add(&meta, "units", cli_format("cd/m2"));
-    else
-        add(&meta, "exposure", cli_format("EV100 %.3f", ev100(job)));
     add(&meta, "frames", cli_format("%d", job->frames));
     add(&meta, "camera-eye", cli_format("%.17g %.17g %.17g", c->eye[0], c->eye[1], c->eye[2]));
     add(&meta, "camera-target", cli_format("%.17g %.17g %.17g", c->target[0], c->target[1], c->target[2]));

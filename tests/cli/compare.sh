@@ -11,7 +11,7 @@ run compare reference.exr reference.exr
 test $status = 0 && grep -Eq '^  all pixels +2,304 +0\.000 +0 +0 +1\.0000$' out && grep -q 'no emitter' out && test ! -s err
 result $? "a picture is equal to itself"
 run compare is.exr reference.exr --ceiling 2 -o difference.png
-test $status = 0 && grep -q 'clamped to 2 cd/m2' out && test "$(head -c 4 difference.png | tail -c 3)" = PNG
+test $status = 0 && grep -q 'clamped to 2 cd/m2' out && meta difference.png size >/dev/null
 result $? "a noisy one is not, and there is a difference picture"
 awk '/^  all pixels/ { found = $4 > 1 && $5 > 0 && $6 > 0 } END { exit !found }' out; result $? "its figures are not zero"
 run compare is.exr reference.exr --json

@@ -43,6 +43,9 @@ expect() {
     [ -z "$why" ]; result $? "$name" "$why"
 }
 
+# meta FILE KEY: a text chunk of a PNG, or its "size"; fails where the file is not a whole PNG
+meta() { python3 "$source_dir/tests/cli/png_text.py" "$@"; }
+
 finish() {
     echo "1..$count"
     [ "$failed" = 0 ]

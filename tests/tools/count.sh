@@ -1,0 +1,51 @@
+#!/bin/sh
+# tools/count-tests.py, which `make check` believes: every way in which a test program can end.
+set -u
+source_dir=${NOC_SOURCE:?names the source folder}
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+mkdir "$work/meson-logs"
+log=$work/meson-logs/testlog.json
+count=0 failed=0
+
+# program NAME RESULT STDOUT: one line of Meson's log
+program() { printf '{"name": "%s", "result": "%s", "stdout": "%s"}\n' "$1" "$2" "$3" >>"$log"; }
+
+# expect NAME STATUS LAST-LINE [LINE]: of the log so far, which is then emptied
+expect() {
+    count=$((count + 1))
+    python3 "$source_dir/tools/count-tests.py" "$work" >"$work/out" 2>&1
+    if [ $? = "$2" ] && [ "$(tail -n 1 "$work/out")" = "$3" ] && { [ -z "${4:-}" ] || grep -qxF "$4" "$work/out"; }; then
+        echo "ok $count - $1"
+    else
+        failed=1
+        echo "not ok $count - $1"
+        sed 's/^/# /' "$work/out"
+    fi
+    : >"$log"
+}
+
+program a OK '1..2\nok 1 - x\nok 2 - y\n# ok - tests\n'
+program b OK 'ok 1 - z\n1..1\n'
+expect "all pass" 0 "3 passed, 0 failed, 0 skipped"
+program a FAIL '1..2\nok 1 - x\nnot ok 2 - y\n# why\n# not ok - tests\n'
+expect "one fails" 1 "1 passed, 1 failed, 0 skipped" "failed: a y"
+program a OK '1..2\n# skipped: shared/x is not here\nnot ok 1 # SKIP x\nok 2 - y\n'
+expect "cmocka skips" 0 "1 passed, 0 failed, 1 skipped" "skipped: a x (shared/x is not here)"
+program a OK 'ok 1 - x # SKIP no such device\nok 2 - y\n1..2\n'
+expect "a shell test skips" 0 "1 passed, 0 failed, 1 skipped" "skipped: a x (no such device)"
+program a ERROR '1..5\nok 1 - x\nok 2 - y\n'
+expect "a crash half-way: what was not reached has failed" 1 "2 passed, 3 failed, 0 skipped" "failed: a (not reached) (ERROR)"
+program a ERROR 'ok 1 - x\n'
+expect "a shell test that stops without its plan" 1 "1 passed, 1 failed, 0 skipped"
+program a ERROR '1..1\nok 1 - x\n'
+expect "a bad status after good tests, as of a leak" 1 "1 passed, 1 failed, 0 skipped" "failed: a (at the end) (ERROR)"
+program a TIMEOUT ''
+expect "nothing said at all" 1 "0 passed, 1 failed, 0 skipped"
+program a OK 'no TAP here\n'
+program b FAIL ''
+program c SKIP ''
+expect "programs without TAP are one test each" 1 "1 passed, 1 failed, 1 skipped"
+expect "no tests are no success" 1 "0 passed, 0 failed, 0 skipped"
+echo "1..$count"
+exit $failed
