@@ -1,6 +1,6 @@
 /* How many light candidates (draw, point on the light, unshadowed target, reservoir) a core makes a second, by instruction
  * set, by the layout of the lights in memory, and by what is lit by what. Million a second of thread CPU time, the best of
- * three runs. All rows of one scene must agree on every choice and weight: the checksums are compared.
+ * RUNS. All rows of one scene must agree on every choice and weight: the checksums are compared.
  * Usage: bench_candidates [surfaces [M]] */
 #include "candidates.h"
 
@@ -18,6 +18,8 @@ _Static_assert(offsetof(noc_light_record, kind) == offsetof(light, kind) &&
                    offsetof(noc_light_record, e) == offsetof(light, e) &&
                    offsetof(noc_light_record, area) == offsetof(light, area) && sizeof(light) == sizeof(noc_light_record),
                "records are what core/wide_load.h loads");
+
+enum { RUNS = 9 };
 
 static double cpu_seconds(void) {
     struct timespec t;
@@ -55,7 +57,7 @@ static void make_surfaces(float *f[13], uint32_t count, float f0) {
 
 static double measure(candidates_fn *fn, const candidates_job *job, int layout, uint64_t *sum) {
     double best = 0;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < RUNS; i++) {
         double t = cpu_seconds();
         *sum = fn(job, layout);
         t = cpu_seconds() - t;
@@ -114,7 +116,7 @@ static bool bench_scene(const char *name, candidates_job *job, noc_light_record 
 }
 
 int main(int argc, char **argv) {
-    uint32_t surfaces = argc > 1 ? (uint32_t)NOC_CLAMP(atoi(argv[1]), 16, 1 << 24) & ~15u : 1u << 16;
+    uint32_t surfaces = argc > 1 ? (uint32_t)NOC_CLAMP(atoi(argv[1]), 16, 1 << 24) & ~15u : 1u << 14;
     candidates_job job = { .surface_count = surfaces, .m = argc > 2 ? NOC_CLAMP(atoi(argv[2]), 1, 1024) : 32 };
     float *f[13];
     for (int i = 0; i < 13; i++)

@@ -35,10 +35,18 @@
 #define not_(a) (!(a))
 #define ANY(c) (c)
 #define sqrt_ sqrt
+#define abs_ abs
 #define to_real(u) float(u)
 #define to_u32(f) uint(f)
 #define shl(a, n) ((a) << (n))
 #define shr(a, n) ((a) >> (n))
+float min_(float a, float b) { return a < b ? a : b; } /* b where either is NaN */
+float max_(float a, float b) { return a > b ? a : b; }
+uint high_u32(uint a, uint b) {
+    uint high, low;
+    umulExtended(a, b, high, low);
+    return high;
+}
 
 #else /* C */
 
@@ -46,7 +54,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#if defined(CORE_LANES)
+#define FN static inline __attribute__((always_inline)) /* a call would pass wide structs through memory */
+#else
 #define FN static inline
+#endif
 #define EXACT
 #define CTX const struct core_context *ctx,
 #define PASS ctx,
@@ -64,7 +76,7 @@ typedef uint32_t u32 __attribute__((vector_size(4 * CORE_LANES)));
 typedef int32_t mask __attribute__((vector_size(4 * CORE_LANES)));
 #define K(x) ((real){ 0 } + (float)(x))
 #define KU(x) ((u32){ 0 } + (uint32_t)(x))
-#include "core/wide.h" /* sel, selu, sqrt_, to_real, to_u32, ANY for this instruction set */
+#include "core/wide.h" /* sel, selu, min_, max_, abs_, sqrt_, high_u32, to_real, to_u32, ANY for this instruction set */
 #define and_(a, b) ((a) & (b))
 #define or_(a, b) ((a) | (b))
 #define not_(a) (~(a))
@@ -79,6 +91,10 @@ typedef bool mask;
 FN real sel(mask c, real a, real b) { return c ? a : b; }
 FN u32 selu(mask c, u32 a, u32 b) { return c ? a : b; }
 FN real sqrt_(real a) { return sqrtf(a); }
+FN real abs_(real a) { return fabsf(a); }
+FN real min_(real a, real b) { return a < b ? a : b; }
+FN real max_(real a, real b) { return a > b ? a : b; }
+FN u32 high_u32(u32 a, u32 b) { return (u32)((uint64_t)a * b >> 32); }
 FN real to_real(u32 u) { return (float)(int32_t)u; }
 FN u32 to_u32(real f) { return (u32)(int32_t)f; }
 #define and_(a, b) ((a) && (b))
@@ -93,11 +109,9 @@ typedef struct { real x, y, z; } v3;
 
 #endif
 
-/* to_real takes values below 2^31, to_u32 truncates values in [0, 2^31). */
+/* to_real takes values below 2^31, to_u32 truncates values in [0, 2^31). min_ and max_ give b where either is NaN. high_u32
+ * is the upper half of the 64-bit product. */
 
-FN real min_(real a, real b) { return sel(a < b, a, b); }
-FN real max_(real a, real b) { return sel(a > b, a, b); }
-FN real abs_(real a) { return sel(a < K(0.0f), K(0.0f) - a, a); }
 FN v3 add3(v3 a, v3 b) { return V3(a.x + b.x, a.y + b.y, a.z + b.z); }
 FN v3 sub3(v3 a, v3 b) { return V3(a.x - b.x, a.y - b.y, a.z - b.z); }
 FN v3 mul3(v3 a, real s) { return V3(a.x * s, a.y * s, a.z * s); }

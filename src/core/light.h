@@ -66,31 +66,38 @@ FN light_sample sample_round(light l, v3 y, real u, real v) {
 
 FN light_sample sample_flat(light l, v3 y, real u, real v) {
     light_sample s;
-    mask disc = l.kind == KU(LIGHT_DISC);
-    mask tri = l.kind == KU(LIGHT_TRIANGLE);
-    mask point = l.kind == KU(LIGHT_POINT);
-    mask fold = and_(tri, (u + v) > K(1.0f));
-    real su = sel(fold, K(1.0f) - u, u);
-    real sv = sel(fold, K(1.0f) - v, v);
-    if (ANY(disc)) {
-        v3 cs = circle(v);
-        real r = sqrt_(u);
-        su = sel(disc, r * cs.x, su);
-        sv = sel(disc, r * cs.y, sv);
+    real su = u;
+    real sv = v;
+    real share = K(1.0f); /* area / |a x b|; 0 for points */
+    real bare = K(0.0f);  /* 1 for points */
+    mask plain = or_(l.kind == KU(LIGHT_PARALLELOGRAM), l.kind == KU(LIGHT_SPHERE)); /* spheres: see sample_light */
+    if (ANY(not_(plain))) {
+        mask disc = l.kind == KU(LIGHT_DISC);
+        mask tri = l.kind == KU(LIGHT_TRIANGLE);
+        mask point = l.kind == KU(LIGHT_POINT);
+        mask fold = and_(tri, (u + v) > K(1.0f));
+        su = sel(fold, K(1.0f) - u, u);
+        sv = sel(fold, K(1.0f) - v, v);
+        if (ANY(disc)) {
+            v3 cs = circle(v);
+            real r = sqrt_(u);
+            su = sel(disc, r * cs.x, su);
+            sv = sel(disc, r * cs.y, sv);
+        }
+        su = sel(point, K(0.0f), su);
+        sv = sel(point, K(0.0f), sv);
+        share = sel(disc, K(CORE_PI), sel(tri, K(0.5f), sel(point, K(0.0f), share)));
+        bare = sel(point, K(1.0f), bare);
     }
-    su = sel(point, K(0.0f), su);
-    sv = sel(point, K(0.0f), sv);
     v3 x = add3(l.p, add3(mul3(l.a, su), mul3(l.b, sv)));
     v3 d = sub3(x, y);
     EXACT real d2 = max_(dot3(d, d), K(1e-12f));
     real dist = sqrt_(d2);
-    real inv = K(1.0f) / dist;
+    EXACT real inv = K(1.0f) / dist;
     EXACT real facing = K(0.0f) - dot3(cross3(l.a, l.b), d);
-    mask both = (l.flags & KU(LIGHT_TWO_SIDED)) == KU(LIGHT_TWO_SIDED);
+    mask both = (l.flags & KU(LIGHT_TWO_SIDED)) != KU(0u);
     facing = sel(both, abs_(facing), max_(facing, K(0.0f)));
-    real share = sel(disc, K(CORE_PI), sel(tri, K(0.5f), K(1.0f)));
-    EXACT real g = share * facing * inv / d2;
-    g = sel(point, K(1.0f) / d2, g);
+    EXACT real g = (share * facing * inv + bare) * (inv * inv);
     s.wi = mul3(d, inv);
     s.dist = dist;
     s.le = mul3(l.e, g);

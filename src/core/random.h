@@ -29,17 +29,8 @@ FN real rng(u32 key, u32 dimension) { return unit_real(rng_bits(key, dimension))
 FN real unit_low(u32 bits) { return (to_real(bits & KU(0xffffu)) + K(0.5f)) * K(1.52587890625e-5f); }
 FN real unit_high(u32 bits) { return (to_real(shr(bits, 16)) + K(0.5f)) * K(1.52587890625e-5f); }
 
-/* floor(bits * n / 2^32): uniform in [0, n) to within n / 2^32, exact in all three readers. */
-FN u32 scale_u32(u32 bits, u32 n) {
-    u32 ah = shr(bits, 16);
-    u32 al = bits & KU(0xffffu);
-    u32 nh = shr(n, 16);
-    u32 nl = n & KU(0xffffu);
-    u32 low = shr(al * nl, 16);
-    u32 m1 = ah * nl + low;
-    u32 m2 = al * nh + (m1 & KU(0xffffu));
-    return ah * nh + shr(m1, 16) + shr(m2, 16);
-}
+/* floor(bits * n / 2^32): uniform in [0, n) to within n / 2^32. */
+FN u32 scale_u32(u32 bits, u32 n) { return high_u32(bits, n); }
 
 /* Dimensions, so that no two uses share one. */
 #define DIM_JITTER 0u

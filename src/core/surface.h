@@ -58,27 +58,50 @@ FN real under_gloss(surf s, real nl) {
     return share;
 }
 
-/* f_r * cos(theta), 1/sr. */
-FN v3 reflect(surf s, v3 wi) {
+/* f_r * cos(theta) = albedo * diffuse + gloss, 1/sr. */
+struct lobes {
+    real diffuse;
+    real gloss;
+};
+
+#ifndef CORE_GLSL
+typedef struct lobes lobes;
+#endif
+
+FN lobes reflect_lobes(surf s, v3 wi) {
+    lobes f;
     real nl = max_(dot3(s.n, wi), K(0.0f));
-    EXACT real kd = K(CORE_INV_PI) * nl;
-    real ks = K(0.0f);
+    f.diffuse = K(CORE_INV_PI) * nl;
+    f.gloss = K(0.0f);
     mask shiny = and_(s.f0 > K(0.0f), nl > K(0.0f));
     if (ANY(shiny)) {
-        kd = sel(shiny, kd * under_gloss(s, nl), kd);
-        EXACT real g = glossy(s, wi, nl) * nl;
-        ks = sel(shiny, g, ks);
+        EXACT real kd = f.diffuse * under_gloss(s, nl);
+        EXACT real ks = glossy(s, wi, nl) * nl;
+        f.diffuse = sel(shiny, kd, f.diffuse);
+        f.gloss = sel(shiny, ks, f.gloss);
     }
-    EXACT v3 f = add3(mul3(s.albedo, kd), fill3(ks));
     return f;
+}
+
+/* f_r * cos(theta), 1/sr. */
+FN v3 reflect(surf s, v3 wi) {
+    lobes f = reflect_lobes(s, wi);
+    return add3(mul3(s.albedo, f.diffuse), fill3(f.gloss));
 }
 
 /* Unshadowed reflected radiance over the unit square of one light, linear rgb, cd/m2. */
 FN v3 reflected(surf s, light_sample l) { return tint3(reflect(s, l.wi), l.le); }
 
-/* The target p_hat: its luminance. NaN (from overflow) counts as 0. */
+/* The target p_hat: its luminance. NaN and what overflows count as 0. */
 FN real target(surf s, light l, real u, real v) {
-    real p = luminance(reflected(s, sample_light(l, s.p, u, v)));
+    light_sample ls = sample_light(l, s.p, u, v);
+    lobes f = reflect_lobes(s, ls.wi);
+    EXACT real p = luminance(tint3(s.albedo, ls.le)) * f.diffuse;
+    mask shiny = f.gloss > K(0.0f);
+    if (ANY(shiny)) {
+        EXACT real both = p + luminance(ls.le) * f.gloss;
+        p = sel(shiny, both, p);
+    }
     return sel(and_(p > K(0.0f), p < K(1e30f)), p, K(0.0f));
 }
 

@@ -80,6 +80,7 @@ FN wide_quad wide_quad_load(const float *quarter, const uint32_t *at) {
 FN light light_from_records(const float *records, u32 index) {
     uint32_t at[CORE_LANES];
     memcpy(at, &index, sizeof(at));
+    __asm__("" : "+m"(at)); /* through memory: taking a vector apart in registers is slower */
     wide_quad p = wide_quad_load(records, at), a = wide_quad_load(records + 4, at);
     wide_quad b = wide_quad_load(records + 8, at), e = wide_quad_load(records + 12, at);
     light l = { V3(p.f[0], p.f[1], p.f[2]), (u32)p.f[3], V3(a.f[0], a.f[1], a.f[2]), a.f[3],
@@ -88,8 +89,11 @@ FN light light_from_records(const float *records, u32 index) {
 }
 
 FN void light_prefetch(const float *records, u32 index) {
+    uint32_t at[CORE_LANES];
+    memcpy(at, &index, sizeof(at));
+    __asm__("" : "+m"(at));
     for (int i = 0; i < CORE_LANES; i++)
-        __builtin_prefetch(records + (size_t)index[i] * LIGHT_RECORD_FLOATS);
+        __builtin_prefetch(records + (size_t)at[i] * LIGHT_RECORD_FLOATS);
 }
 
 #else /* scalar: struct light is the record */
