@@ -2,7 +2,7 @@
  * where bias rays are on. The canonical reservoir c is q's own; neighbours come from other pixels or from the last frame.
  *
  * biased    w_i = M_i p_q(x_i) W_i,   W = w_sum / (p_q(y) sum M_j)                                (Bitterli 2020, Alg. 4)
- * mis       the same weights,         W = w_sum / p_q(y) * M_s p_s(y) / sum_j M_j p_j(y)          (Bitterli 2020, Alg. 6)
+ * mis       the same weights,         W = w_sum / p_q(y) * p_s(y) / sum_j M_j p_j(y), y from s     (Bitterli 2020, Alg. 6)
  * pairwise  w_i = m_i p_q(x_i) W_i with m_i = s_i a_i(x_i), m_c = sum_i s_i (1 - a_i(x_c)), where s_i = M_i / M_N is the
  *           neighbour's share of M_N = sum of the neighbours' M and a_i(x) = M_N p_i(x) / (M_N p_i(x) + M_c p_q(x)):
  *           the balance heuristic between c and each neighbour in turn. sum m = 1 for every x, and m_i = M_i / M where all
@@ -12,7 +12,7 @@
 
 #include "core/reservoir.h"
 
-/* W with its weight when the 1/M or the balance rule is used: see above. held: M_s p_s(y); all: sum_j M_j p_j(y). */
+/* W with its weight when the 1/M or the balance rule is used: see above. held: p_s(y); all: sum_j M_j p_j(y). */
 FN real mis_scale(real held, real all) { return sel(all > K(0.0f), held / sel(all > K(0.0f), all, K(1.0f)), K(0.0f)); }
 
 /* a_i(x): the neighbour's share against the canonical one. Where neither can make x it is 0. */

@@ -111,13 +111,12 @@ static void end_mis(const combination *c, const rblock *own, const neighbour *n,
                     rblock *out) {
     for (int l = 0; l < BLOCK; l += LANES) {
         stream s = stream_of(c, l);
-        real held = rload(own->m + l) * s.p;
-        real all = held;
+        real held = s.p;
+        real all = rload(own->m + l) * s.p;
         for (int i = 0; i < k; i++) {
             real p = sel(mload(visible[i], l), rload(c->p_at[i] + l), K(0.0f));
-            real share = rload(n[i].r.m + l) * p;
-            all = all + share;
-            held = sel(s.tag == K(F32(i + 1)), share, held);
+            all = all + rload(n[i].r.m + l) * p;
+            held = sel(s.tag == K(F32(i + 1)), p, held);
         }
         resv_store(out, l, stream_end(s, mis_scale(held, all)));
     }

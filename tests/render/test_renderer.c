@@ -1,0 +1,329 @@
+/* The renderer's contract: errors, empty scenes, cancelling, what is kept from frame to frame, the same picture on every
+ * path and number of threads. */
+#include "rooms.h"
+
+static noc_scene *small_street(int lights, bool floor) {
+    noc_scene *s = noc_scene_create(NULL);
+    int wall = matte(s, 0.5f);
+    int wet = noc_scene_add_material(s, &(noc_material){ .albedo = { 0.2f, 0.15f, 0.1f }, .f0 = 0.05f, .roughness = 0.4f });
+    if (floor) {
+        add_floor(s, wet, 0, 0, 0, 20);
+        QUAD(s, wall, -8, 6, 0, 16, 0, 0, 0, 0, 8);
+        for (int i = 0; i < 3; i++)
+            QUAD(s, wall, -5 + 4 * i, 1, 0, 1.5, 0.5, 0, 0, 0, 3);
+    }
+    for (int i = 0; i < lights; i++) {
+        noc_light l = { .kind = (noc_light_kind)(i % 5), .position = { -7 + 0.31 * i, 5.9 - 0.2 * (i % 5), 1 + i % 7 },
+                        .edge_u = { 0.4, 0, 0 }, .edge_v = { 0, 0, 0.7 }, .direction = { 0, -1, -0.5 }, .radius = 0.1,
+                        .emission = { 20.f + (float)i, 25, 10 } };
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+    }
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    return s;
+}
+
+static noc_camera view(double t) { return look(1 + t, -10, 4, 0.5 * t, 0, 2, 60); }
+
+static bool same(const noc_image *a, const noc_image *b) {
+    size_t n = (size_t)a->width * a->height;
+    return a->width == b->width && a->height == b->height && !memcmp(a->rgb, b->rgb, n * 3 * sizeof(float)) &&
+           !memcmp(a->emitter, b->emitter, n);
+}
+
+static bool all_finite(const noc_image *a) {
+    for (size_t i = 0; i < (size_t)a->width * a->height * 3; i++)
+        if (!isfinite(a->rgb[i]) || a->rgb[i] < 0)
+            return false;
+    return true;
+}
+
+static double brightness(const noc_image *a) {
+    double sum = 0;
+    size_t n = (size_t)a->width * a->height;
+    for (size_t i = 0; i < n; i++)
+        sum += luma(a->rgb + 3 * i);
+    return sum / (double)n;
+}
+
+/* Four frames under a moving camera. */
+static noc_image *moving(const noc_scene *s, const noc_render_params *p, int threads) {
+    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = threads }, NULL);
+    for (int i = 0; i < 4; i++) {
+        noc_camera c = view(i < 3 ? 0.2 * i : 0.4);
+        assert_int_equal(noc_renderer_frame(r, &c, p, NULL), NOC_OK);
+    }
+    noc_image *image = noc_renderer_image(r);
+    assert_true(all_finite(image));
+    noc_renderer_destroy(r);
+    return image;
+}
+
+static noc_render_params variant(int i) {
+    noc_render_params p = measure(45, 31, NOC_METHOD_RESTIR); /* neither a multiple of 4 nor of 16 */
+    p.jitter = true;
+    p.sky = 0.05;
+    p.candidates = 8;
+    switch (i) {
+    case 0: p.method = NOC_METHOD_REFERENCE; p.rays = 7; break;
+    case 1: p.method = NOC_METHOD_REFERENCE; p.rays = 100; break; /* more rays than lights */
+    case 2: p.method = NOC_METHOD_IS; break;
+    case 3: p.method = NOC_METHOD_RIS; break;
+    case 4: p.bias = NOC_BIAS_BIASED; break;
+    case 5: p.bias = NOC_BIAS_MIS; p.passes = 3; break;
+    case 6: p.bias = NOC_BIAS_PAIRWISE; p.passes = 2; p.neighbours = 16; p.radius = 30; break;
+    case 7: p.visibility_reuse = false; p.bias_rays = false; break;
+    case 8: p.final_ray = false; break;
+    case 9: p.temporal = false; break;
+    case 10: p.spatial = false; break;
+    }
+    return p;
+}
+enum { VARIANTS = 11 };
+
+static void scalar_and_wide_agree(void **state) {
+    (void)state;
+    noc_scene *s = small_street(40, true);
+    for (int i = 0; i < VARIANTS; i++) {
+        noc_render_params p = variant(i);
+        p.path = NOC_PATH_SCALAR;
+        noc_image *a = moving(s, &p, 2);
+        p.path = NOC_PATH_WIDE;
+        noc_image *b = moving(s, &p, 2);
+        assert_true(same(a, b));
+        assert_true(brightness(a) > 0.01);
+        noc_image_destroy(a);
+        noc_image_destroy(b);
+    }
+    noc_scene_destroy(s);
+}
+
+static void threads_and_seeds(void **state) {
+    (void)state;
+    noc_scene *s = small_street(40, true);
+    for (int i = 0; i < VARIANTS; i++) {
+        noc_render_params p = variant(i);
+        noc_image *a = moving(s, &p, 1), *b = moving(s, &p, 2), *c = moving(s, &p, 3);
+        p.seed++;
+        noc_image *d = moving(s, &p, 2);
+        assert_true(same(a, b) && same(b, c));
+        assert_false(same(a, d));
+        noc_image_destroy(a);
+        noc_image_destroy(b);
+        noc_image_destroy(c);
+        noc_image_destroy(d);
+    }
+    noc_scene_destroy(s);
+}
+
+static void empty_scenes(void **state) {
+    (void)state;
+    for (int i = 0; i < VARIANTS; i++)
+        for (int kind = 0; kind < 4; kind++) {
+            noc_scene *s = small_street(kind & 1, kind >> 1); /* no or one light, no or some surfaces */
+            noc_render_params p = variant(i);
+            noc_image *image = moving(s, &p, 2);
+            assert_true(brightness(image) > 0); /* the sky */
+            noc_image_destroy(image);
+            p.sky = 0;
+            image = moving(s, &p, 2);
+            if (!(kind & 1))
+                assert_true(brightness(image) == 0);
+            noc_image_destroy(image);
+            noc_scene_destroy(s);
+        }
+    noc_scene *s = noc_scene_create(NULL); /* nothing at all, not even a material */
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    noc_render_params p = variant(4);
+    noc_image *image = moving(s, &p, 2);
+    assert_true(brightness(image) > 0);
+    noc_image_destroy(image);
+    noc_scene_destroy(s);
+}
+
+/* ---- errors ---- */
+
+static void drop(void *user, noc_log_level level, const char *text) { (void)user, (void)level, (void)text; }
+
+static void wrong_arguments(void **state) {
+    (void)state;
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_ERROR, .message = drop });
+    noc_scene *s = small_street(3, true), *raw = noc_scene_create(NULL);
+    assert_null(noc_renderer_create(raw, NULL, log));
+    assert_non_null(strstr(noc_log_last_error(log), "not committed"));
+    assert_null(noc_renderer_create(s, &(noc_renderer_params){ .backend = "abacus" }, log));
+    assert_non_null(strstr(noc_log_last_error(log), "abacus"));
+    assert_null(noc_renderer_create(s, &(noc_renderer_params){ .threads = -3 }, log));
+    noc_renderer *r = noc_renderer_create(s, NULL, log);
+    noc_camera c = view(0);
+    const struct { const char *name; size_t at; bool real; } fields[] = {
+        { "width", offsetof(noc_render_params, width) },           { "height", offsetof(noc_render_params, height) },
+        { "candidates", offsetof(noc_render_params, candidates) }, { "rays", offsetof(noc_render_params, rays) },
+        { "neighbours", offsetof(noc_render_params, neighbours) }, { "passes", offsetof(noc_render_params, passes) },
+        { "radius", offsetof(noc_render_params, radius), true },   { "history", offsetof(noc_render_params, history), true },
+        { "reject_normal", offsetof(noc_render_params, reject_normal), true },
+        { "reject_depth", offsetof(noc_render_params, reject_depth), true },
+        { "sky", offsetof(noc_render_params, sky), true },
+    };
+    for (size_t i = 0; i < NOC_COUNT(fields); i++) {
+        noc_render_params p = noc_render_default_params();
+        if (fields[i].real)
+            *(double *)((char *)&p + fields[i].at) = i & 1 ? NAN : -1e9;
+        else
+            *(int *)((char *)&p + fields[i].at) = i & 1 ? -1 : 1 << 30;
+        assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_ERR_ARGUMENT);
+        assert_non_null(strstr(noc_log_last_error(log), fields[i].name));
+    }
+    noc_render_params p = measure(16, 16, (noc_method)9);
+    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_ERR_ARGUMENT);
+    p = measure(16, 16, NOC_METHOD_RIS);
+    noc_camera bad[] = { c, c, c, c, c };
+    bad[0].eye[1] = NAN;
+    bad[1].fov_deg = 180;
+    memcpy(bad[2].target, bad[2].eye, sizeof(bad[2].eye));
+    memset(bad[3].up, 0, sizeof(bad[3].up));
+    bad[4].target[0] = 1e30;
+    for (size_t i = 0; i < NOC_COUNT(bad); i++)
+        assert_int_equal(noc_renderer_frame(r, &bad[i], &p, NULL), NOC_ERR_ARGUMENT);
+    assert_null(noc_renderer_image(r)); /* nothing has been rendered */
+    p.width = p.height = NOC_IMAGE_MAX_SIDE; /* 170 GB and more: refused before anything is allocated */
+    if ((uint64_t)sysconf(_SC_PHYS_PAGES) * (uint64_t)sysconf(_SC_PAGESIZE) < (uint64_t)150e9) {
+        assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_ERR_MEMORY);
+        assert_non_null(strstr(noc_log_last_error(log), "GB"));
+    }
+    p = measure(16, 16, NOC_METHOD_RIS);
+    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK); /* and it still works */
+    noc_camera down = look(0, 0, 9, 0, 0, 0, 60); /* along up */
+    assert_int_equal(noc_renderer_frame(r, &down, &p, NULL), NOC_OK);
+    noc_renderer_destroy(r);
+    noc_renderer_destroy(NULL);
+    noc_scene_destroy(s);
+    noc_scene_destroy(raw);
+    noc_log_destroy(log);
+}
+
+/* ---- what is kept ---- */
+
+static bool count_down(void *user, const char *what, double done) {
+    (void)what;
+    assert_true(done >= 0 && done <= 1);
+    return --*(int *)user > 0;
+}
+
+static void cancelled_frames(void **state) {
+    (void)state;
+    noc_scene *s = small_street(40, true);
+    noc_render_params p = measure(160, 96, NOC_METHOD_RESTIR);
+    noc_camera c = view(0);
+    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 2 }, NULL);
+    int left = 3;
+    noc_progress stop = { count_down, &left };
+    assert_int_equal(noc_renderer_frame(r, &c, &p, &stop), NOC_ERR_CANCELLED);
+    assert_null(noc_renderer_image(r)); /* not one frame yet */
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+    noc_image *before = noc_renderer_image(r);
+    for (int i = 1; i < 60; i += 7) { /* in every stage */
+        left = i;
+        noc_status status = noc_renderer_frame(r, &c, &p, &stop);
+        if (status == NOC_OK)
+            break;
+        assert_int_equal(status, NOC_ERR_CANCELLED);
+        noc_image *after = noc_renderer_image(r);
+        assert_true(same(before, after));
+        noc_image_destroy(after);
+        noc_frame_stats stats;
+        noc_renderer_get_stats(r, &stats);
+        assert_int_equal(stats.frames, 3);
+    }
+    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+    noc_image_destroy(before);
+    noc_renderer_destroy(r);
+    noc_scene_destroy(s);
+}
+
+static uint64_t frames_of(noc_renderer *r) {
+    noc_frame_stats stats;
+    noc_renderer_get_stats(r, &stats);
+    return stats.frames;
+}
+
+static void frames_and_resets(void **state) {
+    (void)state;
+    noc_scene *s = small_street(40, true);
+    noc_render_params p = measure(32, 32, NOC_METHOD_RESTIR);
+    noc_camera c = view(0), d = view(1);
+    noc_renderer *r = noc_renderer_create(s, NULL, NULL);
+    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+    noc_image *first = noc_renderer_image(r);
+    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+    assert_int_equal(frames_of(r), 2);
+    assert_int_equal(noc_renderer_frame(r, &d, &p, NULL), NOC_OK); /* moved: the mean starts anew */
+    assert_int_equal(frames_of(r), 1);
+    assert_int_equal(noc_renderer_frame(r, &d, &p, NULL), NOC_OK);
+    assert_int_equal(frames_of(r), 2);
+    p.radius = 7;
+    assert_int_equal(noc_renderer_frame(r, &d, &p, NULL), NOC_OK); /* other parameters too */
+    assert_int_equal(frames_of(r), 1);
+    p.radius = measure(1, 1, NOC_METHOD_RESTIR).radius;
+    noc_renderer_reset(r);
+    assert_null(noc_renderer_image(r));
+    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+    noc_image *again = noc_renderer_image(r);
+    assert_true(same(first, again)); /* a reset forgets everything */
+    noc_frame_stats stats;
+    noc_renderer_get_stats(r, &stats);
+    assert_int_equal(stats.rays_primary, 32 * 32);
+    assert_true(stats.rays_shadow > 0 && stats.memory_bytes > 0 && stats.wall_seconds > 0);
+    double seconds = 0;
+    assert_int_equal(noc_renderer_trace_floor(r, &c, &p, &seconds), NOC_OK);
+    assert_true(seconds > 0);
+    assert_int_equal(frames_of(r), 2); /* it was a frame like any other */
+    noc_image_destroy(first);
+    noc_image_destroy(again);
+    noc_renderer_destroy(r);
+    noc_scene_destroy(s);
+}
+
+static void emitter_mask(void **state) {
+    (void)state;
+    noc_scene *s = noc_scene_create(NULL);
+    noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { -0.5, 0, -0.5 }, .edge_u = { 1, 0, 0 },
+                    .edge_v = { 0, 0, 1 }, .emission = { 5, 5, 5 } }; /* faces -y, and fills a tenth of the picture */
+    assert_true(noc_scene_add_light(s, &l) >= 0);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    noc_render_params p = measure(40, 40, NOC_METHOD_RIS);
+    for (int back = 0; back < 2; back++) {
+        noc_camera c = look(0, back ? 5 : -5, 0, 0, 0, 0, 35);
+        noc_image *image = render(s, &c, &p, 1);
+        int lit = 0, masked = 0;
+        for (int y = 0; y < 40; y++)
+            for (int x = 0; x < 40; x++) {
+                bool on = image->rgb[3 * (y * 40 + x)] > 0, near = false;
+                for (int j = -1; j <= 1; j++)
+                    for (int i = -1; i <= 1; i++)
+                        if (x + i >= 0 && x + i < 40 && y + j >= 0 && y + j < 40)
+                            near |= image->rgb[3 * ((y + j) * 40 + x + i)] > 0;
+                lit += on;
+                masked += image->emitter[y * 40 + x];
+                assert_int_equal(image->emitter[y * 40 + x], near);
+                assert_true(!on || image->rgb[3 * (y * 40 + x)] == 5);
+            }
+        assert_true(back ? lit == 0 && masked == 0 : lit > 100 && masked > lit);
+        noc_image_destroy(image);
+    }
+    p.emitters = false;
+    noc_camera c = look(0, -5, 0, 0, 0, 0, 35);
+    noc_image *image = render(s, &c, &p, 1);
+    assert_true(brightness(image) == 0);
+    noc_image_destroy(image);
+    noc_scene_destroy(s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(scalar_and_wide_agree), cmocka_unit_test(threads_and_seeds), cmocka_unit_test(empty_scenes),
+        cmocka_unit_test(wrong_arguments),       cmocka_unit_test(cancelled_frames),  cmocka_unit_test(frames_and_resets),
+        cmocka_unit_test(emitter_mask),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

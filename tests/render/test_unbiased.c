@@ -1,0 +1,247 @@
+/* Every method that is called unbiased, against the reference: the mean of independent short runs lies within 4 standard
+ * errors of it, in every tile and over the whole picture, at frames 1, 3 and 6 of a run, with a resting and a moving camera.
+ * The same comparison must reject the biased combinations: a test that accepts everything proves nothing. */
+#include "rooms.h"
+
+enum { W = 24, H = 16, TILE = 8, TILES = (W / TILE) * (H / TILE), FRAMES = 6, CHECKS = 3 };
+static const int check_at[CHECKS] = { 1, 3, 6 };
+
+typedef struct { double sum[TILES + 1], square[TILES + 1]; size_t n; } moments;
+
+static void add_picture(moments *m, const noc_image *image) {
+    double tile[TILES + 1] = { 0 };
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            double v = luma(image->rgb + 3 * (y * W + x));
+            tile[y / TILE * (W / TILE) + x / TILE] += v / (TILE * TILE);
+            tile[TILES] += v / (W * H);
+        }
+    for (int t = 0; t <= TILES; t++) {
+        m->sum[t] += tile[t];
+        m->square[t] += tile[t] * tile[t];
+    }
+    m->n++;
+}
+
+static double mean_of(const moments *m, int t) { return m->sum[t] / (double)m->n; }
+static double error_of(const moments *m, int t) {
+    double mean = mean_of(m, t);
+    return sqrt(fmax(m->square[t] / (double)m->n - mean * mean, 0) / (double)m->n);
+}
+
+/* ---- scenes ---- */
+
+static noc_scene *finish(noc_scene *s) {
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    return s;
+}
+
+/* A yard with a glossy floor, two walls, boxes that stand in the light, and lights of every kind: 3 x 60 windows, lamps. */
+static noc_scene *yard(void) {
+    noc_scene *s = noc_scene_create(NULL);
+    int wall = matte(s, 0.5f);
+    int wet = noc_scene_add_material(s, &(noc_material){ .albedo = { 0.15f, 0.16f, 0.2f }, .f0 = 0.05f, .roughness = 0.3f });
+    add_floor(s, wet, 0, 0, 0, 15);
+    QUAD(s, wall, -10, 10, 0, 20, 0, 0, 0, 0, 12);   /* faces -y */
+    QUAD(s, wall, -10, -10, 0, 0, 20, 0, 0, 0, 12);  /* faces +x */
+    for (int i = 0; i < 12; i++) {
+        double x = -8 + 3.2 * (i % 6), y = 4 - 0.7 * (i % 6) - 4 * (i / 6);
+        QUAD(s, wall, x, y, 0, 1.5, 0, 0, 0, 0, 3);
+        QUAD(s, wall, x + 1.5, y, 0, 0, 1.5, 0, 0, 0, 3);
+        QUAD(s, wall, x, y, 3, 1.5, 0, 0, 0, 1.5, 0);
+    }
+    for (int i = 0; i < 180; i++) {
+        double x = -9.5 + 1.05 * (i % 18), z = 0.8 + 1.1 * (i / 18);
+        noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { x, 9.99, z }, .edge_u = { 0.5, 0, 0 },
+                        .edge_v = { 0, 0, 0.6 }, .emission = { 3.f + (float)(i * 7 % 11), 4.f, 1.f + (float)(i % 5) } };
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+    }
+    for (int i = 0; i < 6; i++) {
+        noc_light lamp = { .kind = NOC_LIGHT_SPHERE, .position = { -5 + 2.5 * i, -4 + i % 3, 4.5 }, .radius = 0.15,
+                           .emission = { 900, 700, 400 } };
+        assert_true(noc_scene_add_light(s, &lamp) >= 0);
+    }
+    noc_light disc = { .kind = NOC_LIGHT_DISC, .position = { 4, 0, 6 }, .direction = { 0.2, 0, -1 }, .radius = 0.4,
+                       .emission = { 200, 200, 250 } };
+    noc_light triangle = { .kind = NOC_LIGHT_TRIANGLE, .position = { -9.9, 0, 3 }, .edge_u = { 0, 1, 0 },
+                           .edge_v = { 0, 0, 1 }, .emission = { 80, 20, 20 } };
+    noc_light point = { .kind = NOC_LIGHT_POINT, .position = { 0, -6, 3.5 }, .emission = { 20, 30, 20 } };
+    assert_true(noc_scene_add_light(s, &disc) >= 0);
+    assert_true(noc_scene_add_light(s, &triangle) >= 0);
+    assert_true(noc_scene_add_light(s, &point) >= 0);
+    return finish(s);
+}
+
+/* One large window and a fence of boards before it: half of everything is penumbra. */
+static noc_scene *one_light(void) {
+    noc_scene *s = noc_scene_create(NULL);
+    int m = matte(s, 0.6f);
+    add_floor(s, m, 0, 0, 0, 12);
+    for (int i = 0; i < 9; i++)
+        QUAD(s, m, -6 + 1.4 * i, 3, 0, 0.7, 0, 0, 0, 0, 2.5);
+    noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { -4, 8, 0.5 }, .edge_u = { 8, 0, 0 }, .edge_v = { 0, 0, 3 },
+                    .emission = { 100, 100, 100 } };
+    assert_true(noc_scene_add_light(s, &l) >= 0);
+    return finish(s);
+}
+
+static noc_camera camera_at(int frame, bool moving) {
+    double t = moving ? 0.35 * frame : 0;
+    return look(2 + t, -11 + 0.3 * t, 4.5, 0.5 + 0.5 * t, 0, 1, 62);
+}
+
+/* ---- comparison ---- */
+
+typedef struct config {
+    const char *name;
+    noc_method method;
+    noc_bias bias;
+    bool temporal, spatial, rays, reuse;
+    int passes, neighbours;
+} config;
+
+static noc_render_params params_of(const config *c, uint32_t seed) {
+    noc_render_params p = measure(W, H, c->method);
+    p.seed = seed;
+    p.candidates = 8;
+    p.accumulate = false;
+    p.emitters = false; /* the same in all methods, and much brighter than what they differ in */
+    p.bias = c->bias;
+    p.temporal = c->temporal;
+    p.spatial = c->spatial;
+    p.bias_rays = c->rays;
+    p.visibility_reuse = c->reuse;
+    p.passes = c->passes ? c->passes : 1;
+    p.neighbours = c->neighbours ? c->neighbours : 3;
+    p.radius = 5;
+    p.history = 8;
+    /* neighbours that differ much: what is hardest on the combination's weights */
+    p.reject_normal = 0.2;
+    p.reject_depth = 0.5;
+    return p;
+}
+
+typedef struct result { moments at[CHECKS]; } result;
+
+static result measure_runs(const noc_scene *s, const config *c, bool moving, int runs) {
+    result out = { 0 };
+    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 2 }, NULL);
+    assert_non_null(r);
+    for (int run = 0; run < runs; run++) {
+        noc_render_params p = params_of(c, (uint32_t)run * 7919 + 17);
+        noc_renderer_reset(r);
+        for (int f = 1, at = 0; f <= FRAMES; f++) {
+            noc_camera cam = camera_at(f, moving);
+            assert_int_equal(noc_renderer_frame(r, &cam, &p, NULL), NOC_OK);
+            if (f != check_at[at])
+                continue;
+            noc_image *image = noc_renderer_image(r);
+            add_picture(&out.at[at++], image);
+            noc_image_destroy(image);
+        }
+    }
+    noc_frame_stats stats;
+    noc_renderer_get_stats(r, &stats);
+    assert_int_equal(stats.dropped, 0);
+    noc_renderer_destroy(r);
+    return out;
+}
+
+static result measure_reference(const noc_scene *s, bool moving, int frames) {
+    result out = { 0 };
+    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 2 }, NULL);
+    config c = { .method = NOC_METHOD_REFERENCE };
+    noc_render_params p = params_of(&c, 99);
+    p.rays = 32;
+    for (int at = 0; at < CHECKS; at++) {
+        if (!moving && at) {
+            out.at[at] = out.at[0];
+            continue;
+        }
+        noc_camera cam = camera_at(check_at[at], moving);
+        for (int f = 0; f < frames; f++) {
+            assert_int_equal(noc_renderer_frame(r, &cam, &p, NULL), NOC_OK);
+            noc_image *image = noc_renderer_image(r);
+            add_picture(&out.at[at], image);
+            noc_image_destroy(image);
+        }
+    }
+    noc_renderer_destroy(r);
+    return out;
+}
+
+/* Largest distance in standard errors over tiles, picture and checked frames; *bias: of the whole picture at the last. */
+static double worst(const result *x, const result *reference, double *bias, double *error) {
+    double z = 0;
+    for (int at = 0; at < CHECKS; at++)
+        for (int t = 0; t <= TILES; t++) {
+            double d = mean_of(&x->at[at], t) - mean_of(&reference->at[at], t);
+            double e = hypot(error_of(&x->at[at], t), error_of(&reference->at[at], t));
+            if (mean_of(&reference->at[at], t) > 0)
+                z = fmax(z, fabs(d) / fmax(e, 1e-7 * mean_of(&reference->at[at], t)));
+        }
+    double r = mean_of(&reference->at[CHECKS - 1], TILES);
+    *bias = mean_of(&x->at[CHECKS - 1], TILES) / r - 1;
+    *error = error_of(&x->at[CHECKS - 1], TILES) / r;
+    return z;
+}
+
+static const config unbiased[] = {
+    { "is", NOC_METHOD_IS },
+    { "ris", NOC_METHOD_RIS, .reuse = true },
+    { "mis + rays", NOC_METHOD_RESTIR, NOC_BIAS_MIS, .temporal = true, .spatial = true, .rays = true, .reuse = true },
+    { "mis + rays, spatial", NOC_METHOD_RESTIR, NOC_BIAS_MIS, .spatial = true, .rays = true, .reuse = true },
+    { "mis + rays, 2 passes", NOC_METHOD_RESTIR, NOC_BIAS_MIS, .temporal = true, .spatial = true, .rays = true,
+      .reuse = true, .passes = 2 },
+    { "mis unshadowed", NOC_METHOD_RESTIR, NOC_BIAS_MIS, .temporal = true, .spatial = true },
+    { "pairwise + rays", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .spatial = true, .rays = true,
+      .reuse = true },
+    { "pairwise + rays, temporal", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .rays = true, .reuse = true },
+    { "pairwise + rays, 2 passes, k = 8", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .spatial = true,
+      .rays = true, .reuse = true, .passes = 2, .neighbours = 8 },
+    { "pairwise unshadowed", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .spatial = true },
+};
+
+static const config biased[] = {
+    { "biased", NOC_METHOD_RESTIR, NOC_BIAS_BIASED, .temporal = true, .spatial = true, .reuse = true },
+    { "mis, no rays", NOC_METHOD_RESTIR, NOC_BIAS_MIS, .temporal = true, .spatial = true, .reuse = true },
+    { "pairwise, no rays", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .spatial = true, .reuse = true },
+};
+
+static void check_scene(noc_scene *s, int runs, bool moving, int reference_frames) {
+    result reference = measure_reference(s, moving, reference_frames);
+    int wrong = 0;
+    for (size_t i = 0; i < NOC_COUNT(unbiased); i++) {
+        double bias, error;
+        result x = measure_runs(s, &unbiased[i], moving, runs);
+        double z = worst(&x, &reference, &bias, &error);
+        print_message("# %-32s %5.2f standard errors, %+.2f%% +- %.2f%%%s\n", unbiased[i].name, z, 100 * bias, 100 * error,
+                      z < 4 ? "" : "  WRONG");
+        wrong += z >= 4;
+    }
+    for (size_t i = 0; i < NOC_COUNT(biased); i++) {
+        double bias, error;
+        result x = measure_runs(s, &biased[i], moving, runs);
+        double z = worst(&x, &reference, &bias, &error);
+        print_message("# %-32s %5.2f standard errors, %+.2f%% +- %.2f%%%s\n", biased[i].name, z, 100 * bias, 100 * error,
+                      z > 4 ? " (as it should be)" : "  NOT DETECTED");
+        wrong += z <= 4;
+    }
+    noc_scene_destroy(s);
+    assert_int_equal(wrong, 0);
+}
+
+static void many_lights_resting(void **state) { (void)state; check_scene(yard(), 500, false, 600); }
+static void many_lights_moving(void **state) { (void)state; check_scene(yard(), 500, true, 400); }
+static void one_light_resting(void **state) { (void)state; check_scene(one_light(), 300, false, 1500); }
+static void one_light_moving(void **state) { (void)state; check_scene(one_light(), 300, true, 1500); }
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(many_lights_resting),
+        cmocka_unit_test(many_lights_moving),
+        cmocka_unit_test(one_light_resting),
+        cmocka_unit_test(one_light_moving),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
