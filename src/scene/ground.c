@@ -60,10 +60,8 @@ static bool is_obstacle(const noc_scene *scene, size_t t) {
 }
 
 /* What a lamp or a person stands on. Water is no ground; a bridge's deck is, where it is given as road or sidewalk. */
-static bool is_ground(noc_class cls) {
-    return cls == NOC_CLASS_TERRAIN || cls == NOC_CLASS_ROAD || cls == NOC_CLASS_SIDEWALK || cls == NOC_CLASS_GREEN ||
-           cls == NOC_CLASS_GROUND;
-}
+#define GROUND_CLASSES                                                                                                 \
+    (1u << NOC_CLASS_TERRAIN | 1u << NOC_CLASS_ROAD | 1u << NOC_CLASS_SIDEWALK | 1u << NOC_CLASS_GREEN | 1u << NOC_CLASS_GROUND)
 
 static int cell_of(const struct noc_ground *g, int axis, double x) {
     double c = (x - g->min[axis]) * g->inv_cell[axis];
@@ -225,28 +223,32 @@ static bool triangle_height(const noc_scene *scene, size_t t, double x, double y
     return true;
 }
 
-static void consider(const noc_scene *scene, size_t t, bool ground_only, double x, double y, double *best) {
+static void consider(const noc_scene *scene, size_t t, uint32_t classes, double x, double y, double *best) {
     double h;
-    if ((!ground_only || is_ground(material_of(scene, t)->cls)) && triangle_height(scene, t, x, y, &h) && h > *best)
+    if ((classes >> material_of(scene, t)->cls & 1) && triangle_height(scene, t, x, y, &h) && h > *best)
         *best = h;
 }
 
-static bool highest(const noc_scene *scene, bool ground_only, double x, double y, double *z) {
+bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, double y, double *z) {
     if (!(fabs(x) < 1e8 && fabs(y) < 1e8) || !scene->triangle_light.len)
         return false;
     const struct noc_ground *g = ground_of(scene);
     size_t c = (size_t)cell_of(g, 1, y) * (size_t)g->nx + (size_t)cell_of(g, 0, x);
     double best = -DBL_MAX;
     for (uint32_t i = g->offsets[c]; i < g->offsets[c + 1]; i++)
-        consider(scene, g->ids[i], ground_only, x, y, &best);
+        consider(scene, g->ids[i], classes, x, y, &best);
     for (uint32_t l = g->chains ? g->chains[c] : NO_LINK; l != NO_LINK; l = g->links.data[l].next)
-        consider(scene, g->links.data[l].triangle, ground_only, x, y, &best);
+        consider(scene, g->links.data[l].triangle, classes, x, y, &best);
     if (best == -DBL_MAX)
         return false;
     *z = best;
     return true;
 }
 
-bool noc_scene_ground(const noc_scene *scene, double x, double y, double *z) { return highest(scene, true, x, y, z); }
+bool noc_scene_ground(const noc_scene *scene, double x, double y, double *z) {
+    return noc_scene_highest(scene, GROUND_CLASSES, x, y, z);
+}
 
-bool noc_scene_top(const noc_scene *scene, double x, double y, double *z) { return highest(scene, false, x, y, z); }
+bool noc_scene_top(const noc_scene *scene, double x, double y, double *z) {
+    return noc_scene_highest(scene, UINT32_MAX, x, y, z);
+}

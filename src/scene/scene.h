@@ -64,5 +64,7 @@ struct noc_scene {
 void noc_ground_free(struct noc_ground *ground);
 /* Highest surface of any class but closures and the shapes of lamps at (x, y), for placing cameras and lamps. */
 bool noc_scene_top(const noc_scene *scene, double x, double y, double *z);
+/* The same among some classes: classes has bit 1u << noc_class set for each. */
+bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, double y, double *z);
 
 #endif

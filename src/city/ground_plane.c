@@ -1,0 +1,246 @@
+/* A ground for a city that comes without one.
+ *
+ * Cells of a coarse grid that hold a building's foot or a piece of street know their height: the lowest in them. The others
+ * are filled in from coarser grids and smoothed, so that the ground runs evenly between the buildings. The result lies a
+ * little under what it was made from: it fills gaps, and never covers a street. A level city gets one plane. */
+#include "city/city.h"
+#include "scene/scene.h"
+
+#include <float.h>
+#include <math.h>
+
+#define CELL 12.0   /* m */
+#define MAX_SIDE 256
+#define UNDER 0.02  /* m below what stands on it */
+#define LEVEL 0.05  /* m: less than this is flat */
+#define STEEPEST 0.6 /* what rises faster from its surroundings is a dormer or a tower, not a foot */
+
+typedef struct field {
+    int nx, ny;
+    double min[2], step[2];
+    float *height; /* nx * ny; unknown: NaN */
+    bool *fixed;
+} field;
+
+static bool is_base(noc_class cls) {
+    return cls == NOC_CLASS_WALL || cls == NOC_CLASS_GROUND || cls == NOC_CLASS_ROAD || cls == NOC_CLASS_SIDEWALK ||
+           cls == NOC_CLASS_GREEN || cls == NOC_CLASS_DOOR || cls == NOC_CLASS_TERRAIN;
+}
+
+static const float *corner(const noc_scene *scene, size_t t, int i) {
+    return scene->positions.data + 3 * (size_t)scene->indices.data[3 * t + i];
+}
+
+static bool has_bases(const noc_scene *scene) {
+    for (size_t t = 0; t < scene->triangle_light.len; t++)
+        if (is_base(scene->materials.data[scene->triangle_material.data[t]].cls))
+            return true;
+    return false;
+}
+
+static int cell_index(const field *f, int axis, double x) {
+    return (int)NOC_CLAMP((x - f->min[axis]) / f->step[axis], 0, (axis ? f->ny : f->nx) - 1);
+}
+
+static void lower(field *f, double x, double y, double z) {
+    float *h = &f->height[(size_t)cell_index(f, 1, y) * (size_t)f->nx + (size_t)cell_index(f, 0, x)];
+    if (!(*h <= z))
+        *h = (float)z;
+}
+
+/* Corners and, where a triangle is larger than a cell, points on it. */
+static void add_triangle(field *f, const float *a, const float *b, const float *c) {
+    double span = NOC_MAX(hypot((double)b[0] - a[0], (double)b[1] - a[1]), hypot((double)c[0] - a[0], (double)c[1] - a[1]));
+    int n = (int)NOC_CLAMP(2 * span / NOC_MIN(f->step[0], f->step[1]), 1, 600);
+    for (int i = 0; i <= n; i++)
+        for (int j = 0; i + j <= n; j++) {
+            double u = (double)i / n, v = (double)j / n, w = 1 - u - v;
+            lower(f, w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1], w * a[2] + u * b[2] + v * c[2]);
+        }
+}
+
+static int compare_floats(const void *a, const void *b) {
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Forgets cells that stand higher over any other than the steepest ground would: walls that begin on a roof. */
+static void drop_towers(field *f) {
+    size_t n = (size_t)f->nx * (size_t)f->ny;
+    float *limit = noc_alloc(n * sizeof(*limit));
+    for (size_t i = 0; i < n; i++)
+        limit[i] = isnan(f->height[i]) ? INFINITY : f->height[i];
+    float rise = (float)(STEEPEST * NOC_MIN(f->step[0], f->step[1]));
+    for (int pass = 0; pass < 4; pass++) { /* sweeps there and back carry the limit over the whole grid */
+        bool back = pass & 1;
+        for (int j = 0; j < f->ny; j++)
+            for (int i = 0; i < f->nx; i++) {
+                int x = back ? f->nx - 1 - i : i, y = back ? f->ny - 1 - j : j, d = back ? 1 : -1;
+                size_t k = (size_t)y * (size_t)f->nx + (size_t)x;
+                if (x + d >= 0 && x + d < f->nx)
+                    limit[k] = NOC_MIN(limit[k], limit[k + (size_t)(ptrdiff_t)d] + rise);
+                if (y + d >= 0 && y + d < f->ny)
+                    limit[k] = NOC_MIN(limit[k], limit[(size_t)(y + d) * (size_t)f->nx + (size_t)x] + rise);
+            }
+    }
+    for (size_t i = 0; i < n; i++)
+        if (f->height[i] > limit[i] + .01f)
+            f->height[i] = NAN;
+    free(limit);
+}
+
+/* Forgets cells that lie absurdly below or above the rest (a building at height 0 in a town at 400 m). Returns how many
+ * cells know their height, with the lowest and highest. */
+static size_t drop_outliers(field *f, double *lo, double *hi) {
+    size_t n = (size_t)f->nx * (size_t)f->ny, known = 0;
+    float *sorted = noc_alloc((n + 1) * sizeof(*sorted));
+    for (size_t i = 0; i < n; i++)
+        if (!isnan(f->height[i]))
+            sorted[known++] = f->height[i];
+    *lo = *hi = 0;
+    size_t kept = 0;
+    if (known) {
+        qsort(sorted, known, sizeof(*sorted), compare_floats);
+        double q1 = sorted[known / 4], q3 = sorted[known - 1 - known / 4], slack = 30 + 4 * (q3 - q1);
+        *lo = DBL_MAX;
+        *hi = -DBL_MAX;
+        for (size_t i = 0; i < n; i++) {
+            if (f->height[i] < q1 - slack || f->height[i] > q3 + slack)
+                f->height[i] = NAN;
+        }
+        drop_towers(f);
+        for (size_t i = 0; i < n; i++) {
+            f->fixed[i] = !isnan(f->height[i]);
+            if (f->fixed[i]) {
+                *lo = NOC_MIN(*lo, f->height[i]);
+                *hi = NOC_MAX(*hi, f->height[i]);
+                kept++;
+            }
+        }
+    }
+    free(sorted);
+    return kept;
+}
+
+/* Relaxes the free cells towards the mean of their neighbours. */
+static void relax(field *f, int rounds) {
+    for (int r = 0; r < rounds; r++)
+        for (int y = 0; y < f->ny; y++)
+            for (int x = 0; x < f->nx; x++) {
+                size_t i = (size_t)y * (size_t)f->nx + (size_t)x;
+                if (f->fixed[i])
+                    continue;
+                float sum = 0;
+                int n = 0;
+                const int step[4][2] = { { -1, 0 }, { 1, 0 }, { 0, -1 }, { 0, 1 } };
+                for (int k = 0; k < 4; k++) {
+                    int u = x + step[k][0], v = y + step[k][1];
+                    if (u >= 0 && v >= 0 && u < f->nx && v < f->ny) {
+                        sum += f->height[(size_t)v * (size_t)f->nx + (size_t)u];
+                        n++;
+                    }
+                }
+                if (n)
+                    f->height[i] = sum / (float)n;
+            }
+}
+
+/* Fills the unknown cells: from a grid of half the size, then relaxed. At least one cell is known. */
+static void fill(field *f) {
+    if (f->nx == 1 && f->ny == 1)
+        return;
+    field half = { .nx = (f->nx + 1) / 2, .ny = (f->ny + 1) / 2 };
+    size_t n = (size_t)half.nx * (size_t)half.ny;
+    half.height = noc_calloc(n, sizeof(*half.height));
+    half.fixed = noc_calloc(n, sizeof(*half.fixed));
+    int *count = noc_calloc(n, sizeof(*count));
+    for (int y = 0; y < f->ny; y++)
+        for (int x = 0; x < f->nx; x++) {
+            size_t i = (size_t)y * (size_t)f->nx + (size_t)x, k = (size_t)(y / 2) * (size_t)half.nx + (size_t)(x / 2);
+            if (f->fixed[i]) {
+                half.height[k] += f->height[i];
+                count[k]++;
+            }
+        }
+    for (size_t k = 0; k < n; k++) {
+        half.fixed[k] = count[k] > 0;
+        half.height[k] = count[k] ? half.height[k] / (float)count[k] : NAN;
+    }
+    free(count);
+    fill(&half);
+    for (int y = 0; y < f->ny; y++)
+        for (int x = 0; x < f->nx; x++) {
+            size_t i = (size_t)y * (size_t)f->nx + (size_t)x;
+            if (!f->fixed[i])
+                f->height[i] = half.height[(size_t)(y / 2) * (size_t)half.nx + (size_t)(x / 2)];
+        }
+    free(half.height);
+    free(half.fixed);
+    relax(f, 40);
+}
+
+static void add_mesh(noc_scene *scene, const field *f, double z, bool level) {
+    noc_material m = noc_class_material(NOC_CLASS_TERRAIN);
+    int nx = level ? 2 : f->nx, ny = level ? 2 : f->ny;
+    double *xyz = noc_alloc((size_t)nx * (size_t)ny * 3 * sizeof(*xyz));
+    uint32_t *indices = noc_alloc((size_t)(nx - 1) * (size_t)(ny - 1) * 6 * sizeof(*indices));
+    size_t v = 0, t = 0;
+    for (int y = 0; y < ny; y++)
+        for (int x = 0; x < nx; x++) {
+            /* cell centres; the outermost run to the rim */
+            double u = x == 0 ? 0 : x == nx - 1 ? f->nx : x + .5, w = y == 0 ? 0 : y == ny - 1 ? f->ny : y + .5;
+            xyz[v++] = f->min[0] + u * f->step[0];
+            xyz[v++] = f->min[1] + w * f->step[1];
+            xyz[v++] = (level ? z : f->height[(size_t)y * (size_t)f->nx + (size_t)x]) - UNDER;
+        }
+    for (int y = 0; y + 1 < ny; y++)
+        for (int x = 0; x + 1 < nx; x++) {
+            uint32_t a = (uint32_t)(y * nx + x), b = a + 1, c = a + (uint32_t)nx, d = c + 1;
+            uint32_t quad[6] = { a, b, d, a, d, c };
+            memcpy(indices + t, quad, sizeof(quad));
+            t += 6;
+        }
+    noc_mesh mesh = { .vertex_count = v / 3, .positions = xyz, .triangle_count = t / 3, .indices = indices,
+                      .material = noc_scene_add_material(scene, &m), .name = "ground" };
+    if (mesh.material >= 0)
+        noc_scene_add_mesh(scene, &mesh);
+    free(xyz);
+    free(indices);
+}
+
+void city_add_ground(noc_scene *scene) {
+    if (!scene->indices.len || scene->committed)
+        return;
+    field f = { 0 };
+    double size[2];
+    for (int k = 0; k < 2; k++) {
+        double extent = scene->bounds_max[k] - scene->bounds_min[k], margin = NOC_MAX(60, .1 * extent);
+        f.min[k] = scene->bounds_min[k] - margin;
+        size[k] = extent + 2 * margin;
+    }
+    f.nx = (int)NOC_CLAMP(ceil(size[0] / CELL), 2, MAX_SIDE);
+    f.ny = (int)NOC_CLAMP(ceil(size[1] / CELL), 2, MAX_SIDE);
+    f.step[0] = size[0] / f.nx;
+    f.step[1] = size[1] / f.ny;
+    size_t n = (size_t)f.nx * (size_t)f.ny;
+    f.height = noc_alloc(n * sizeof(*f.height));
+    f.fixed = noc_calloc(n, sizeof(*f.fixed));
+    for (size_t i = 0; i < n; i++)
+        f.height[i] = NAN;
+    if (has_bases(scene))
+        for (size_t t = 0; t < scene->triangle_light.len; t++)
+            if (is_base(scene->materials.data[scene->triangle_material.data[t]].cls))
+                add_triangle(&f, corner(scene, t, 0), corner(scene, t, 1), corner(scene, t, 2));
+    double lo, hi;
+    size_t known = drop_outliers(&f, &lo, &hi);
+    if (!known)
+        add_mesh(scene, &f, scene->bounds_min[2], true);
+    else if (hi - lo < LEVEL)
+        add_mesh(scene, &f, lo, true);
+    else {
+        fill(&f);
+        add_mesh(scene, &f, 0, false);
+    }
+    free(f.height);
+    free(f.fixed);
+}

@@ -1,0 +1,169 @@
+/* Lamps by a rule, where the data holds none: along the edges of roads, else around the buildings.
+ *
+ * Candidates are taken at short steps along the edges, in the order of the scene's triangles, and the first ones win: each
+ * keeps a distance from all that were accepted before it. So lamps stand at about that distance along a street, on its two
+ * sides in turn where it is narrower than that, and the same scene always gets the same lamps. */
+#include "city/lamp.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define ROAD_SPACING 28.0   /* m between lamps along roads: usual for poles of 6 to 8 m (EN 13201 classes P and M5) */
+#define WALL_SPACING 25.0
+#define WALL_DISTANCE 3.0   /* m in front of a wall */
+#define KERB_DISTANCE 0.6   /* m behind the road's edge */
+#define MAX_LAMPS 200000
+
+/* ---- places that are taken, by cells as large as the spacing ---- */
+
+typedef struct spot {
+    double x, y;
+    uint32_t next; /* in the same bucket, index + 1 */
+} spot;
+
+typedef struct spots {
+    double spacing;
+    NOC_ARRAY(spot) list;
+    uint32_t bucket[1 << 14]; /* index + 1 */
+} spots;
+
+static uint32_t bucket_of(int64_t cx, int64_t cy) {
+    uint64_t h = (uint64_t)cx * 0x9e3779b97f4a7c15u ^ (uint64_t)cy * 0xc2b2ae3d27d4eb4fu;
+    return (uint32_t)((h ^ h >> 29) * 0xbf58476d1ce4e5b9u >> 50);
+}
+
+static bool keep_distance(spots *s, double x, double y) {
+    int64_t cx = (int64_t)floor(x / s->spacing), cy = (int64_t)floor(y / s->spacing);
+    for (int64_t j = cy - 1; j <= cy + 1; j++)
+        for (int64_t i = cx - 1; i <= cx + 1; i++)
+            for (uint32_t k = s->bucket[bucket_of(i, j)]; k; k = s->list.data[k - 1].next)
+                if (hypot(s->list.data[k - 1].x - x, s->list.data[k - 1].y - y) < s->spacing)
+                    return false;
+    return true;
+}
+
+static void take(spots *s, double x, double y) {
+    uint32_t *first = &s->bucket[bucket_of((int64_t)floor(x / s->spacing), (int64_t)floor(y / s->spacing))];
+    array_push(&s->list, (spot){ x, y, *first });
+    *first = (uint32_t)s->list.len;
+}
+
+/* ---- the placing of one ---- */
+
+typedef struct inference {
+    noc_scene *scene;
+    const city_lamp_params *params;
+    geo_issues *issues;
+    spots *spots;
+    int lights, lamps;
+} inference;
+
+/* A lamp at (x, y), facing (dx, dy), unless the place will not do. */
+static void propose(inference *in, double x, double y, double dx, double dy, double near_z) {
+    if (in->lamps >= MAX_LAMPS || !keep_distance(in->spots, x, y))
+        return;
+    double z;
+    if (!noc_scene_ground(in->scene, x, y, &z))
+        z = near_z;
+    if (fabs(z - near_z) > 4 || site_covered(in->scene, x, y, z))
+        return;
+    char id[32];
+    snprintf(id, sizeof(id), "inferred-%d", in->lamps + 1);
+    geo_lamp lamp = { .xyz = { x, y, z }, .height = NAN, .direction = atan2(dx, dy) * 180 / M_PI, .lumens = NAN, .watts = NAN,
+                      .kelvin = NAN, .rgb = { -1, -1, -1 }, .id = id };
+    int lights = city_add_lamp(in->scene, &lamp, in->params, true, in->issues);
+    if (!lights)
+        return;
+    take(in->spots, x, y);
+    in->lights += lights;
+    in->lamps++;
+}
+
+static const float *corner(const noc_scene *scene, size_t t, int i) {
+    return scene->positions.data + 3 * (size_t)scene->indices.data[3 * t + i];
+}
+
+static noc_class class_of(const noc_scene *scene, size_t t) {
+    return scene->materials.data[scene->triangle_material.data[t]].cls;
+}
+
+/* Candidates along an edge, `off` metres to its right; facing back over it (or, with `outward`, on to the right). */
+static void along_edge(inference *in, const float *a, const float *b, double off, bool outward) {
+    /* copied: adding lamps moves the scene's arrays */
+    double p[3] = { a[0], a[1], a[2] }, d[3] = { (double)b[0] - a[0], (double)b[1] - a[1], (double)b[2] - a[2] };
+    double length = hypot(d[0], d[1]);
+    if (length < .5)
+        return;
+    double right[2] = { d[1] / length, -d[0] / length };
+    int steps = (int)NOC_CLAMP(length / 4, 1, 1e5);
+    for (int i = 0; i < steps; i++) {
+        double t = (i + .5) / steps, sign = outward ? 1 : -1;
+        propose(in, p[0] + t * d[0] + off * right[0], p[1] + t * d[1] + off * right[1], sign * right[0], sign * right[1],
+                p[2] + t * d[2]);
+    }
+}
+
+/* Is the spot a little to the right of the middle of an edge on a road? */
+static bool road_beside(const noc_scene *scene, const float *a, const float *b, double off) {
+    double d[2] = { (double)b[0] - a[0], (double)b[1] - a[1] }, length = hypot(d[0], d[1]), z;
+    double x = (a[0] + (double)b[0]) / 2 + off * d[1] / length, y = (a[1] + (double)b[1]) / 2 - off * d[0] / length;
+    return noc_scene_highest(scene, 1u << NOC_CLASS_ROAD, x, y, &z) && fabs(z - (a[2] + (double)b[2]) / 2) < 2;
+}
+
+/* The outer edges of roads: those with no road on their other side. */
+static void along_roads(inference *in) {
+    size_t triangles = in->scene->triangle_light.len;
+    for (size_t t = 0; t < triangles; t++) {
+        if (class_of(in->scene, t) != NOC_CLASS_ROAD)
+            continue;
+        const float *v[3] = { corner(in->scene, t, 0), corner(in->scene, t, 1), corner(in->scene, t, 2) };
+        double area = ((double)v[1][0] - v[0][0]) * ((double)v[2][1] - v[0][1]) -
+                      ((double)v[1][1] - v[0][1]) * ((double)v[2][0] - v[0][0]);
+        for (int i = 0; i < 3; i++) {
+            /* counter-clockwise seen from above, so that right of the edge is outside; arrays may have moved meanwhile */
+            const float *a = corner(in->scene, t, area > 0 ? i : (i + 1) % 3);
+            const float *b = corner(in->scene, t, area > 0 ? (i + 1) % 3 : i);
+            if (area != 0 && hypot((double)b[0] - a[0], (double)b[1] - a[1]) >= .5 && !road_beside(in->scene, a, b, .3))
+                along_edge(in, a, b, KERB_DISTANCE, false);
+        }
+    }
+}
+
+/* In front of walls, seen from above: the lower edge of each wall triangle that begins near the ground. */
+static void around_buildings(inference *in) {
+    size_t triangles = in->scene->triangle_light.len;
+    for (size_t t = 0; t < triangles; t++) {
+        if (class_of(in->scene, t) != NOC_CLASS_WALL)
+            continue;
+        int low = 0;
+        for (int i = 1; i < 3; i++) /* the edge whose opposite corner is highest */
+            if (corner(in->scene, t, i)[2] > corner(in->scene, t, low)[2])
+                low = i;
+        const float *a = corner(in->scene, t, (low + 1) % 3), *b = corner(in->scene, t, (low + 2) % 3);
+        double x = (a[0] + (double)b[0]) / 2, y = (a[1] + (double)b[1]) / 2, z;
+        if (fabs((double)a[2] - b[2]) > 1 || (site_ground(in->scene, x, y, &z) && NOC_MIN(a[2], b[2]) > z + 1))
+            continue;
+        /* a wall seen from outside runs counter-clockwise, so the street is on the right of its lower edge; where the wall
+         * is given inside out, the left side is tried */
+        double d[2] = { (double)b[0] - a[0], (double)b[1] - a[1] }, l = hypot(d[0], d[1]);
+        if (l < .5)
+            continue;
+        bool inside_out = site_covered(in->scene, x + d[1] / l, y - d[0] / l, NOC_MIN(a[2], b[2]));
+        along_edge(in, inside_out ? b : a, inside_out ? a : b, WALL_DISTANCE, true);
+    }
+}
+
+int city_infer_lamps(noc_scene *scene, const city_lamp_params *params, geo_issues *issues) {
+    inference in = { .scene = scene, .params = params, .issues = issues, .spots = noc_calloc(1, sizeof(spots)) };
+    noc_scene_info info;
+    noc_scene_get_info(scene, &info);
+    bool roads = info.triangles_by_class[NOC_CLASS_ROAD] > 0;
+    in.spots->spacing = roads ? ROAD_SPACING : WALL_SPACING;
+    if (roads)
+        along_roads(&in);
+    else
+        around_buildings(&in);
+    array_free(&in.spots->list);
+    free(in.spots);
+    return in.lights;
+}

@@ -1,0 +1,293 @@
+/* Lamps: where one stands, which light its tags mean, and its emission from lumens and colour temperature.
+ *
+ * Emission. A disc facing down radiates like a Lambertian surface on one side: flux = pi L A = pi^2 r^2 L. A sphere
+ * radiates L from every point: flux = pi L 4 pi r^2 = 4 pi^2 r^2 L. The radius is a choice of ours; the flux is the lamp's. */
+#include "city/lamp.h"
+
+#include <math.h>
+
+#define MAX_HEADS 24
+
+/* What a source means where its lumens and its colour are not tagged.
+ *
+ * lumens_per_watt: of the luminaire. For discharge and thermal lamps, the middle of the lamp's range in the IES Lighting
+ * Handbook (10th ed., ch. 7: high pressure sodium 70..140, metal halide 65..115, mercury 35..60, fluorescent 50..100,
+ * incandescent and halogen 10..20 lm/W) times 0.75, the usual light output ratio of a street luminaire. LEDs are rated as
+ * luminaires: 110 lm/W is typical of those installed in the 2010s and 2020s. Gas mantles give 1 to 2 lumens a watt of gas.
+ * kelvin: correlated colour temperatures of the same handbook. Sodium is no black body; a Planckian of 2050 K has nearly its
+ * chromaticity (high pressure; low pressure lamps carry a colour of their own from the reader). */
+static const struct {
+    double lumens_per_watt, kelvin, lumens; /* 0: the parameter's */
+} sources[] = {
+    [GEO_SOURCE_UNKNOWN] = { 80, 0, 0 },
+    [GEO_SOURCE_LED] = { 110, 0, 0 },
+    [GEO_SOURCE_SODIUM] = { 78, 2050, 0 },
+    [GEO_SOURCE_MERCURY] = { 36, 4100, 0 },
+    [GEO_SOURCE_METAL_HALIDE] = { 68, 4000, 0 },
+    [GEO_SOURCE_FLUORESCENT] = { 56, 4000, 0 },
+    [GEO_SOURCE_INCANDESCENT] = { 11, 2700, 0 },
+    [GEO_SOURCE_GAS] = { 1.5, 2700, 600 }, /* a lantern of four mantles, not a 5000 lm luminaire */
+};
+
+/* Krystek's approximation of the Planckian locus in CIE 1960 (u, v), 1000..15000 K: M. Krystek, "An algorithm to calculate
+ * correlated colour temperature", Color Research & Application 10 (1985) 38-40. Then (u, v) -> (x, y) -> XYZ with Y = 1 ->
+ * linear Rec.709 (IEC 61966-2-1 matrix). What lies outside the gamut is clipped, and the luminance made 1 again. */
+void city_kelvin_rgb(double kelvin, float rgb[3]) {
+    double t = isfinite(kelvin) ? NOC_CLAMP(kelvin, 1000, 15000) : 6500;
+    double u = (0.860117757 + 1.54118254e-4 * t + 1.28641212e-7 * t * t) / (1 + 8.42420235e-4 * t + 7.08145163e-7 * t * t);
+    double v = (0.317398726 + 4.22806245e-5 * t + 4.20481691e-8 * t * t) / (1 - 2.89741816e-5 * t + 1.61456053e-7 * t * t);
+    double d = 2 * u - 8 * v + 4, x = 3 * u / d, y = 2 * v / d;
+    double X = x / y, Z = (1 - x - y) / y;
+    double c[3] = { 3.2404542 * X - 1.5371385 - 0.4985314 * Z, -0.9692660 * X + 1.8760108 + 0.0415560 * Z,
+                    0.0556434 * X - 0.2040259 + 1.0572252 * Z };
+    for (int i = 0; i < 3; i++)
+        c[i] = NOC_MAX(c[i], 0);
+    double luminance = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+    for (int i = 0; i < 3; i++)
+        rgb[i] = (float)(c[i] / luminance);
+}
+
+/* ---- what the tags mean ---- */
+
+typedef struct fitting {
+    enum { FITTING_DISC, FITTING_SPHERE, FITTING_FLOOD } kind;
+    double height, radius, lumens;
+    int heads;
+    float emission[3];
+} fitting;
+
+static double known(double tagged, double otherwise) { return isfinite(tagged) && tagged > 0 ? tagged : otherwise; }
+
+static void lamp_colour(const geo_lamp *lamp, const city_lamp_params *params, float rgb[3]) {
+    double luminance = 0.2126 * lamp->rgb[0] + 0.7152 * lamp->rgb[1] + 0.0722 * lamp->rgb[2];
+    bool tagged = lamp->rgb[0] >= 0 && lamp->rgb[1] >= 0 && lamp->rgb[2] >= 0 && luminance > 0 && isfinite(luminance);
+    if (tagged) {
+        for (int i = 0; i < 3; i++)
+            rgb[i] = (float)(lamp->rgb[i] / luminance);
+        return;
+    }
+    double source = sources[lamp->source].kelvin;
+    city_kelvin_rgb(known(lamp->kelvin, source > 0 ? source : params->kelvin), rgb);
+}
+
+static fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *params) {
+    fitting f = { .height = known(lamp->height, params->height) };
+    f.heads = NOC_CLAMP(lamp->count, 1, MAX_HEADS);
+    double otherwise = known(sources[lamp->source].lumens, params->lumens);
+    if (isfinite(lamp->watts) && lamp->watts > 0)
+        otherwise = lamp->watts * sources[lamp->source].lumens_per_watt;
+    f.lumens = known(lamp->lumens, otherwise);
+    if (lamp->type == GEO_LAMP_FLOOD)
+        f.kind = FITTING_FLOOD;
+    else if (lamp->type == GEO_LAMP_LANTERN || (f.height < 3.5 && lamp->mount != GEO_MOUNT_SUSPENDED))
+        f.kind = FITTING_SPHERE; /* low lamps are lanterns and bollards: an arm would be in the way */
+    else
+        f.kind = FITTING_DISC;
+    /* bollards and ground lights have small heads */
+    f.radius = f.kind == FITTING_SPHERE ? NOC_CLAMP(.06 * f.height, .05, .18) : .15;
+    double luminance = f.lumens / (M_PI * M_PI * f.radius * f.radius * (f.kind == FITTING_SPHERE ? 4 : 1));
+    float rgb[3];
+    lamp_colour(lamp, params, rgb);
+    for (int i = 0; i < 3; i++)
+        f.emission[i] = (float)(luminance * rgb[i]);
+    return f;
+}
+
+/* ---- where it stands ---- */
+
+typedef struct placing {
+    double foot[3];
+    double facing[2];  /* unit vector the heads look along */
+    bool on_wall;
+    double wall[2];    /* the wall it hangs on */
+} placing;
+
+/* Which way a lamp faces that says nothing and has nothing near: any, but always the same for the same place. */
+static void arbitrary_facing(const double p[3], double facing[2]) {
+    uint32_t h = (uint32_t)(int64_t)floor(p[0] * 4) * 0x9e3779b1u ^ (uint32_t)(int64_t)floor(p[1] * 4) * 0x85ebca77u;
+    h = (h ^ h >> 15) * 0x2c1b3c6du;
+    double a = 2 * M_PI * (h >> 8) / 16777216.0;
+    facing[0] = sin(a);
+    facing[1] = cos(a);
+}
+
+/* Height of the foot. */
+static void stand(const noc_scene *scene, const geo_lamp *lamp, double foot[3], geo_issues *issues) {
+    if (site_ground(scene, foot[0], foot[1], &foot[2]))
+        return;
+    foot[2] = lamp->xyz[2];
+    if (isfinite(foot[2]))
+        return;
+    if (noc_scene_top(scene, foot[0], foot[1], &foot[2])) /* a scene without classes: whatever is there */
+        return;
+    foot[2] = isfinite(scene->bounds_min[2]) ? scene->bounds_min[2] : 0;
+    geo_issue(issues, true, "lamp outside of the ground: put at the lowest height of the scene", lamp->id);
+}
+
+/* False if the lamp cannot be placed: counted. */
+static bool place(const noc_scene *scene, const geo_lamp *lamp, placing *p, geo_issues *issues) {
+    memcpy(p->foot, lamp->xyz, sizeof(p->foot));
+    stand(scene, lamp, p->foot, issues);
+    bool faces = isfinite(lamp->direction);
+    if (faces) {
+        p->facing[0] = sin(lamp->direction * M_PI / 180);
+        p->facing[1] = cos(lamp->direction * M_PI / 180);
+    }
+    if (site_covered(scene, p->foot[0], p->foot[1], p->foot[2])) {
+        double away[2], was[2] = { p->foot[0], p->foot[1] }, z;
+        if (!site_free_spot(scene, &p->foot[0], &p->foot[1], p->foot[2], 3, away)) {
+            geo_issue(issues, false, "lamp inside a building, further than 3 m from its outside", lamp->id);
+            return false;
+        }
+        geo_issue(issues, true, "lamp inside a building: moved out of it", lamp->id);
+        if (site_ground(scene, p->foot[0], p->foot[1], &z))
+            p->foot[2] = z;
+        p->on_wall = lamp->mount == GEO_MOUNT_WALL;
+        memcpy(p->wall, was, sizeof(was));
+        if (!faces || p->on_wall)
+            memcpy(p->facing, away, sizeof(away));
+        faces = true;
+    }
+    if (site_taken(scene, p->foot[0], p->foot[1], p->foot[2])) {
+        double side[2];
+        arbitrary_facing(p->foot, side);
+        for (double r = .7; r < 3 && site_taken(scene, p->foot[0], p->foot[1], p->foot[2]); r += .7)
+            for (int k = 0; k < 2; k++)
+                p->foot[k] += .7 * side[k];
+        geo_issue(issues, true, "two lamps at one place: moved apart", lamp->id);
+    }
+    if (!faces && !site_facing(scene, p->foot[0], p->foot[1], p->foot[2], p->facing))
+        arbitrary_facing(p->foot, p->facing);
+    if (lamp->mount == GEO_MOUNT_WALL && !p->on_wall) { /* beside its wall: the bracket reaches back to it */
+        p->on_wall = true;
+        for (int k = 0; k < 2; k++)
+            p->wall[k] = p->foot[k] - .6 * p->facing[k];
+    }
+    return true;
+}
+
+/* ---- building it ---- */
+
+typedef struct builder {
+    noc_scene *scene;
+    const geo_lamp *lamp;
+    const fitting *fitting;
+    const placing *placing;
+    bool inferred, pole;
+    lamp_shape shape;
+} builder;
+
+static bool add_light(const builder *b, const double position[3], const double direction[3]) {
+    noc_light light = { .kind = b->fitting->kind == FITTING_SPHERE ? NOC_LIGHT_SPHERE : NOC_LIGHT_DISC,
+                        .radius = b->fitting->radius, .name = b->lamp->id, .inferred = b->inferred };
+    memcpy(light.position, position, sizeof(light.position));
+    memcpy(light.direction, direction, sizeof(light.direction));
+    memcpy(light.emission, b->fitting->emission, sizeof(light.emission));
+    return noc_scene_add_light(b->scene, &light) >= 0;
+}
+
+/* How far a head is off the pole's axis. A single lantern sits on top. */
+static double reach(const builder *b) {
+    const fitting *f = b->fitting;
+    if (!b->pole)
+        return f->heads > 1 ? .35 : 0;
+    switch (f->kind) {
+    case FITTING_SPHERE:
+        return f->heads > 1 ? f->radius + .25 : 0;
+    case FITTING_FLOOD:
+        return .35;
+    default:
+        return NOC_CLAMP(.15 * f->height, .6, 1.5);
+    }
+}
+
+static const double down[3] = { 0, 0, -1 };
+
+/* One head towards (dx, dy), its light at the lamp's height; `root` is where its arm begins. */
+static bool add_head(builder *b, double dx, double dy, const double root[3]) {
+    const fitting *f = b->fitting;
+    const double *foot = b->placing->foot;
+    double off = reach(b), z = foot[2] + f->height;
+    double at[3] = { foot[0] + off * dx, foot[1] + off * dy, z };
+    const double along[3] = { dx, dy, 0 };
+    if (f->kind == FITTING_SPHERE) {
+        if (off > 0 || !b->pole) {
+            double end[3] = { at[0], at[1], z - f->radius - .02 };
+            if (root)
+                shape_bar(&b->shape, root, end, .02);
+        }
+        return add_light(b, at, down);
+    }
+    double gap = .01; /* the light's disc hangs below its housing, which never lies before it */
+    if (f->kind == FITTING_FLOOD) {
+        const double tilt = 50 * M_PI / 180; /* from straight down */
+        double look[3] = { sin(tilt) * dx, sin(tilt) * dy, -cos(tilt) }, side[3] = { -dy, dx, 0 }, face[3], back[3];
+        for (int k = 0; k < 3; k++) {
+            face[k] = at[k] - gap * look[k];
+            back[k] = at[k] - .14 * look[k];
+        }
+        shape_housing(&b->shape, face, look, side, f->radius * 1.3, f->radius * 1.15, .13);
+        if (root)
+            shape_bar(&b->shape, root, back, .025);
+        return add_light(b, at, look);
+    }
+    double face[3] = { at[0], at[1], z + gap }, neck[3] = { at[0] - .3 * dx, at[1] - .3 * dy, z + .07 };
+    shape_housing(&b->shape, face, down, along, f->radius * 1.9, f->radius * 1.15, .12);
+    if (root && off > .3)
+        shape_bar(&b->shape, root, neck, .03);
+    return add_light(b, at, down);
+}
+
+static int add_heads(builder *b) {
+    const fitting *f = b->fitting;
+    const placing *p = b->placing;
+    /* the top of the pole, or where the bracket leaves the wall */
+    double top = p->foot[2] + f->height, root[3] = { p->foot[0], p->foot[1], top };
+    bool has_root = b->pole || p->on_wall;
+    if (p->on_wall) {
+        memcpy(root, p->wall, sizeof(p->wall));
+        root[2] = top + .15;
+    } else if (f->kind == FITTING_SPHERE) {
+        root[2] = top - (f->heads > 1 ? f->radius + .25 : 0);
+    }
+    int lights = 0;
+    for (int i = 0; i < f->heads; i++) {
+        double a = 2 * M_PI * i / f->heads, c = cos(a), s = sin(a);
+        double dx = c * p->facing[0] - s * p->facing[1], dy = s * p->facing[0] + c * p->facing[1];
+        lights += add_head(b, dx, dy, has_root ? root : NULL);
+    }
+    return lights;
+}
+
+static void add_pole(builder *b) {
+    const fitting *f = b->fitting;
+    double foot[3] = { b->placing->foot[0], b->placing->foot[1], b->placing->foot[2] - .1 }; /* into the ground */
+    double top = b->placing->foot[2] + f->height;
+    if (f->kind == FITTING_SPHERE)
+        top -= f->heads > 1 ? f->radius + .22 : f->radius + .005; /* under the globe, or above the roots of its arms */
+    else
+        top += .08;
+    double foot_radius = NOC_CLAMP(.045 + .006 * f->height, .03, .2), top_radius = NOC_MIN(foot_radius * .6, f->radius * .4);
+    if (top > foot[2] + .12)
+        shape_pole(&b->shape, foot, top, foot_radius, top_radius);
+}
+
+int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, bool inferred, geo_issues *issues) {
+    if (!isfinite(lamp->xyz[0]) || !isfinite(lamp->xyz[1])) {
+        geo_issue(issues, false, "lamp without a place", lamp->id);
+        return 0;
+    }
+    placing p = { 0 };
+    if (!place(scene, lamp, &p, issues))
+        return 0;
+    fitting f = choose_fitting(lamp, params);
+    builder b = { .scene = scene, .lamp = lamp, .fitting = &f, .placing = &p, .inferred = inferred,
+                  .pole = !p.on_wall && lamp->mount != GEO_MOUNT_SUSPENDED };
+    if (b.pole)
+        add_pole(&b);
+    int lights = add_heads(&b);
+    if (!shape_add(&b.shape, scene, lamp->id) || !lights) /* the scene said why */
+        geo_issue(issues, false, "lamp that the scene refused", lamp->id);
+    shape_free(&b.shape);
+    return lights;
+}

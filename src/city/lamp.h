@@ -1,0 +1,40 @@
+/* lamp: where a lamp stands (site.c), what it looks like (lamp_shape.c), how it shines (lamp.c). */
+#ifndef NOC_CITY_LAMP_H
+#define NOC_CITY_LAMP_H
+
+#include "city/city.h"
+#include "scene/scene.h"
+
+/* ---- sites (site.c); local metres ---- */
+
+/* Height of the ground at (x, y), or of the nearest within a few metres. */
+bool site_ground(const noc_scene *scene, double x, double y, double *z);
+/* Is (x, y), with ground at z, under a roof or in a wall? */
+bool site_covered(const noc_scene *scene, double x, double y, double z);
+/* Nearest spot within `reach` that no building covers; away[2] is the unit vector that leads there. */
+bool site_free_spot(const noc_scene *scene, double *x, double *y, double z, double reach, double away[2]);
+/* Unit vector from (x, y) to what a lamp there should light: the nearest road, else away from the nearest building. */
+bool site_facing(const noc_scene *scene, double x, double y, double z, double facing[2]);
+/* Does a lamp stand there already? */
+bool site_taken(const noc_scene *scene, double x, double y, double z);
+
+/* ---- shapes (lamp_shape.c) ---- */
+
+typedef struct lamp_shape {
+    NOC_ARRAY(double) xyz;
+    NOC_ARRAY(uint32_t) indices;
+} lamp_shape;
+
+/* Tapered hexagonal pole with a cap: 16 triangles. */
+void shape_pole(lamp_shape *s, const double foot[3], double top_z, double foot_radius, double top_radius);
+/* Square bar between two points: 8 triangles. */
+void shape_bar(lamp_shape *s, const double from[3], const double to[3], double half_width);
+/* Closed housing behind a face: centre of the face, the unit vector it looks along, a unit vector along its length.
+ * 12 triangles. */
+void shape_housing(lamp_shape *s, const double centre[3], const double look[3], const double along[3], double half_length,
+                   double half_width, double depth);
+/* Adds it as one mesh of class LAMP; false after an error that was reported. */
+bool shape_add(lamp_shape *s, noc_scene *scene, const char *name);
+void shape_free(lamp_shape *s);
+
+#endif

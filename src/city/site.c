@@ -1,0 +1,88 @@
+/* Where lamps can stand: vertical queries around a spot, in rings. */
+#include "city/lamp.h"
+
+#include <math.h>
+
+#define BIT(cls) (1u << NOC_CLASS_##cls)
+#define BUILDING (BIT(ROOF) | BIT(WALL) | BIT(WINDOW) | BIT(DOOR) | BIT(INSTALLATION))
+
+enum { DIRECTIONS = 16 };
+
+static void direction(int i, double d[2]) {
+    d[0] = sin(2 * M_PI * i / DIRECTIONS);
+    d[1] = cos(2 * M_PI * i / DIRECTIONS);
+}
+
+bool site_ground(const noc_scene *scene, double x, double y, double *z) {
+    if (noc_scene_ground(scene, x, y, z))
+        return true;
+    for (double r = .5; r <= 4; r += .5)
+        for (int i = 0; i < DIRECTIONS; i++) {
+            double d[2];
+            direction(i, d);
+            if (noc_scene_ground(scene, x + r * d[0], y + r * d[1], z))
+                return true;
+        }
+    return false;
+}
+
+bool site_covered(const noc_scene *scene, double x, double y, double z) {
+    double top;
+    return noc_scene_highest(scene, BUILDING, x, y, &top) && top > z + .5;
+}
+
+bool site_free_spot(const noc_scene *scene, double *x, double *y, double z, double reach, double away[2]) {
+    for (double r = .25; r <= reach; r += .25)
+        for (int i = 0; i < DIRECTIONS; i++) {
+            double d[2];
+            direction(i, d);
+            if (site_covered(scene, *x + r * d[0], *y + r * d[1], z))
+                continue;
+            /* a hand's breadth from the wall, where there is room */
+            double step = site_covered(scene, *x + (r + .3) * d[0], *y + (r + .3) * d[1], z) ? r : r + .3;
+            *x += step * d[0];
+            *y += step * d[1];
+            memcpy(away, d, sizeof(d));
+            return true;
+        }
+    return false;
+}
+
+/* Mean direction of the spots that satisfy a test on the nearest ring where any does. */
+static bool nearest(const noc_scene *scene, uint32_t classes, double x, double y, double min_z, double reach, double mean[2]) {
+    for (double r = 1; r <= reach; r += 1) {
+        double sum[2] = { 0 };
+        for (int i = 0; i < DIRECTIONS; i++) {
+            double d[2], top;
+            direction(i, d);
+            if (noc_scene_highest(scene, classes, x + r * d[0], y + r * d[1], &top) && top > min_z) {
+                sum[0] += d[0];
+                sum[1] += d[1];
+            }
+        }
+        double l = hypot(sum[0], sum[1]);
+        if (l > .1) { /* else it lies all around, or nowhere */
+            mean[0] = sum[0] / l;
+            mean[1] = sum[1] / l;
+            return true;
+        }
+    }
+    return false;
+}
+
+bool site_facing(const noc_scene *scene, double x, double y, double z, double facing[2]) {
+    double top;
+    bool on_road = noc_scene_highest(scene, BIT(ROAD), x, y, &top);
+    if (!on_road && nearest(scene, BIT(ROAD), x, y, z - 3, 8, facing))
+        return true;
+    if (!nearest(scene, BUILDING, x, y, z + 1, 12, facing))
+        return false;
+    facing[0] = -facing[0];
+    facing[1] = -facing[1];
+    return true;
+}
+
+bool site_taken(const noc_scene *scene, double x, double y, double z) {
+    double top;
+    return noc_scene_highest(scene, BIT(LAMP), x, y, &top) && top > z + .2;
+}
