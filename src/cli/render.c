@@ -73,6 +73,16 @@ int cli_parse_exposure(const cli_command *command, const char *text, noc_display
     return CLI_OK;
 }
 
+static int check_city(const render_args *args) {
+    for (size_t i = 0; i < args->common.input_count; i++)
+        if (!strcmp(args->common.inputs[i], "builtin:city"))
+            return CLI_OK;
+    for (const noc_option *o = noc_city_options(); o->name; o++)
+        if (cli_given(&args->common, o->name))
+            return cli_usage(&cli_render, "--%s is for the input builtin:city", o->name);
+    return CLI_OK;
+}
+
 /* All that can be wrong with the arguments is found before any file is read. */
 static int check(render_job *job) {
     render_args *args = job->args;
@@ -80,7 +90,8 @@ static int check(render_job *job) {
         return cli_usage(&cli_render, "nothing to draw: name a city model, or builtin:city");
     if (!args->output)
         return cli_usage(&cli_render, "where to? -o night.png");
-    int status = parse_size(args);
+    int status = check_city(args);
+    status = status ? status : parse_size(args);
     status = status ? status : cli_parse_exposure(&cli_render, args->exposure, &args->display);
     status = status ? status : cli_parse_camera(job);
     return status ? status : cli_check_output(&cli_render, args->output, CLI_PNG | CLI_EXR, &args->common);

@@ -54,6 +54,7 @@ expect "target without eye" 2 '--target needs --eye' render $c -o a.png --target
 expect "eye at target" 2 'the same place' render $c -o a.png --eye 1,2,3 --target 1,2,3.0
 expect "eye and view" 2 'exclude each other' render $c -o a.png --eye 1,2,3 --target 0,0,0 --view aerial
 expect "camera CRS without eye" 2 '--camera-crs is for' render $c -o a.png --camera-crs EPSG:25832
+expect "options of a city that is not drawn" 2 '--city-size is for the input builtin:city' render city.gml -o a.png --city-size 200
 expect "field of view of 0" 2 'fov: "0" is outside 1 to 170 degrees' render $c -o a.png --fov 0
 for e in bright 31 -31 1,2 ''; do
     expect "exposure '$e'" 2 'exposure: ' render $c -o a.png "--exposure=$e"
