@@ -159,18 +159,39 @@ static void overview(const view_city *city, double aspect, noc_camera *camera) {
     double d[3] = { cos(yaw) * cos(pitch), sin(yaw) * cos(pitch), sin(pitch) };
     double right[3] = { -sin(yaw), cos(yaw), 0 }, up[3] = { -cos(yaw) * sin(pitch), -sin(yaw) * sin(pitch), cos(pitch) };
     camera->fov_deg = 36;
-    double tv = tan(camera->fov_deg * M_PI / 360), th = tv * aspect, distance = 0.1;
-    for (int i = 0; i < 8; i++) {
-        double q[3], along = 0, x = 0, y = 0;
-        for (int k = 0; k < 3; k++) {
-            q[k] = (i >> k & 1 ? 0.5 : -0.5) * size[k];
-            along += q[k] * d[k], x += q[k] * right[k], y += q[k] * up[k];
+    /* frame what is there, not the box around it: the nearest distance, then the middle of what is seen */
+    double tv = tan(camera->fov_deg * M_PI / 360) / 1.04, th = tv * aspect;
+    double shift[2] = { 0, 0 }, distance = 0.1;
+    const noc_scene *s = city->scene;
+    size_t triangles = s->triangle_light.len, n = NOC_MIN(triangles, (size_t)SAMPLES);
+    for (int round = 0; round < 4; round++) {
+        double lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
+        for (int pass = 0; pass < 2; pass++) {
+            for (size_t i = 0; i < n + 8; i++) {
+                double along = 0, x = -shift[0], y = -shift[1];
+                for (int k = 0; k < 3; k++) { /* the corners of the ground, then samples of all there is */
+                    double c = i < 8 ? (k == 2 || !(i >> k & 1) ? city->min[k] : city->max[k])
+                                     : s->positions.data[3 * (size_t)s->indices.data[3 * ((i - 8) * triangles / n) + i % 3] + (size_t)k];
+                    double q = NOC_CLAMP(c, city->min[k], city->max[k]) - centre[k];
+                    along += q * d[k], x += q * right[k], y += q * up[k];
+                }
+                if (!pass) {
+                    double need = along + NOC_MAX(fabs(x) / th, fabs(y) / tv);
+                    distance = i ? NOC_MAX(distance, need) : need;
+                    continue;
+                }
+                lo[0] = NOC_MIN(lo[0], x / (distance - along)), hi[0] = NOC_MAX(hi[0], x / (distance - along));
+                lo[1] = NOC_MIN(lo[1], y / (distance - along)), hi[1] = NOC_MAX(hi[1], y / (distance - along));
+            }
+            distance = NOC_MAX(distance, 0.1);
         }
-        distance = NOC_MAX(distance, along + NOC_MAX(fabs(x) / th, fabs(y) / tv) * 1.02);
+        if (round < 3)
+            for (int k = 0; k < 2; k++)
+                shift[k] += 0.5 * (lo[k] + hi[k]) * distance;
     }
     for (int k = 0; k < 3; k++) {
-        camera->target[k] = centre[k];
-        camera->eye[k] = centre[k] + distance * d[k];
+        camera->target[k] = centre[k] + shift[0] * right[k] + shift[1] * up[k];
+        camera->eye[k] = camera->target[k] + distance * d[k];
     }
 }
 
@@ -197,6 +218,13 @@ static double clear_share(const noc_scene *scene, const double eye[3], const dou
     return 1;
 }
 
+/* The same to both sides of the target: nothing tall may stand across the picture. */
+static double clear_aside(const noc_scene *scene, const double eye[3], const double target[3]) {
+    double dx = target[0] - eye[0], dy = target[1] - eye[1];
+    double left[3] = { target[0] - 0.35 * dy, target[1] + 0.35 * dx, target[2] + 4 }, right[3] = { target[0] + 0.35 * dy, target[1] - 0.35 * dx, target[2] + 4 };
+    return 0.5 * (clear_share(scene, eye, left) + clear_share(scene, eye, right));
+}
+
 static void aerial(view_city *city, double aspect, noc_camera *camera) {
     const noc_scene *scene = city->scene;
     double extent = NOC_MAX(city->max[0] - city->min[0], city->max[1] - city->min[1]);
@@ -210,13 +238,15 @@ static void aerial(view_city *city, double aspect, noc_camera *camera) {
         double eye[3] = { city->hot[0] - dx * reach, city->hot[1] - dy * reach, 0 };
         double target[3] = { city->hot[0], city->hot[1], ground + NOC_MIN(6, 0.04 * reach) };
         double roofs = top_around(scene, eye[0], eye[1], 0.25 * reach, ground);
-        eye[2] = NOC_MAX(roofs + 0.14 * reach, ground + 0.42 * reach);
-        double inside = 1; /* looking in from beyond the edge is worse than from over the city */
-        for (int k = 0; k < 2; k++)
-            inside *= eye[k] > city->min[k] && eye[k] < city->max[k] ? 1 : 0.8;
+        eye[2] = NOC_MAX(roofs + 0.1 * reach, ground + 0.36 * reach);
+        double inside = 1; /* looking in from beyond the edge, or out over it, is worse than from over the city */
+        for (int k = 0; k < 2; k++) {
+            double edge = 0.1 * (city->max[k] - city->min[k]);
+            inside *= eye[k] > city->min[k] + edge && eye[k] < city->max[k] - edge ? 1 : 0.45;
+        }
         double steep = (eye[2] - ground) / reach; /* a tower below would lift the eye too high */
         double score = (1e-6 + light_in_view(city, eye, dx, dy, half_width(camera->fov_deg, aspect), 500, false)) * inside *
-                       (0.2 + clear_share(scene, eye, target)) / (1 + NOC_MAX(steep - 0.5, 0) * 3);
+                       (0.1 + clear_share(scene, eye, target)) * (0.1 + clear_aside(scene, eye, target)) / (1 + NOC_MAX(steep - 0.5, 0) * 3);
         if (score > best * 1.0001) {
             best = score;
             memcpy(camera->eye, eye, sizeof(eye));
@@ -254,7 +284,8 @@ static double free_distance(const noc_scene *scene, const double eye[3], double 
     double step = 1.2;
     for (double d = step; d < STREET_REACH; d += step) {
         double z;
-        if (!noc_scene_top(scene, eye[0] + d * dx, eye[1] + d * dy, &z) || z > eye[2] - 0.1 + 0.03 * d)
+        /* nearby, anything over the knee is in the way (a parked car); further on, what reaches over the eye is */
+        if (!noc_scene_top(scene, eye[0] + d * dx, eye[1] + d * dy, &z) || z > eye[2] + (d < 14 ? -1.2 : -0.1 + 0.03 * d))
             return d;
         step = 1.2 + 0.02 * d;
     }
