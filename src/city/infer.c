@@ -1,8 +1,9 @@
 /* Lamps by a rule, where the data holds none: along the edges of roads, else around the buildings.
  *
  * Candidates are taken at short steps along the edges, in the order of the scene's triangles, and the first ones win: each
- * keeps a distance from all that were accepted before it. So lamps stand at about that distance along a street, on its two
- * sides in turn where it is narrower than that, and the same scene always gets the same lamps. */
+ * keeps a distance from all that were accepted before it. Along roads a first round asks for twice that distance on the
+ * same kerb, so that the lamps of the other kerb stand between them; a second round fills where there is no other kerb. The
+ * same scene always gets the same lamps. */
 #include "city/lamp.h"
 
 #include <math.h>
@@ -17,12 +18,13 @@
 /* ---- places that are taken, by cells as large as the spacing ---- */
 
 typedef struct spot {
-    double x, y;
+    double x, y, facing[2];
     uint32_t next; /* in the same bucket, index + 1 */
 } spot;
 
 typedef struct spots {
-    double spacing;
+    double spacing, cell; /* cell: twice the spacing */
+    bool alternate;
     NOC_ARRAY(spot) list;
     uint32_t bucket[1 << 14]; /* index + 1 */
 } spots;
@@ -32,19 +34,27 @@ static uint32_t bucket_of(int64_t cx, int64_t cy) {
     return (uint32_t)((h ^ h >> 29) * 0xbf58476d1ce4e5b9u >> 50);
 }
 
-static bool keep_distance(spots *s, double x, double y) {
-    int64_t cx = (int64_t)floor(x / s->spacing), cy = (int64_t)floor(y / s->spacing);
+/* Too near, or, while sides alternate, on the same kerb within twice the spacing? */
+static bool conflicts(const spots *s, const spot *have, double x, double y, const double facing[2]) {
+    double dx = have->x - x, dy = have->y - y, distance = hypot(dx, dy);
+    bool same_kerb = have->facing[0] * facing[0] + have->facing[1] * facing[1] > .7 &&
+                     fabs(dx * facing[0] + dy * facing[1]) < 4;
+    return distance < .9 * s->spacing || (s->alternate && same_kerb && distance < 1.9 * s->spacing);
+}
+
+static bool keeps_distance(const spots *s, double x, double y, const double facing[2]) {
+    int64_t cx = (int64_t)floor(x / s->cell), cy = (int64_t)floor(y / s->cell);
     for (int64_t j = cy - 1; j <= cy + 1; j++)
         for (int64_t i = cx - 1; i <= cx + 1; i++)
             for (uint32_t k = s->bucket[bucket_of(i, j)]; k; k = s->list.data[k - 1].next)
-                if (hypot(s->list.data[k - 1].x - x, s->list.data[k - 1].y - y) < s->spacing)
+                if (conflicts(s, &s->list.data[k - 1], x, y, facing))
                     return false;
     return true;
 }
 
-static void take(spots *s, double x, double y) {
-    uint32_t *first = &s->bucket[bucket_of((int64_t)floor(x / s->spacing), (int64_t)floor(y / s->spacing))];
-    array_push(&s->list, (spot){ x, y, *first });
+static void take(spots *s, double x, double y, const double facing[2]) {
+    uint32_t *first = &s->bucket[bucket_of((int64_t)floor(x / s->cell), (int64_t)floor(y / s->cell))];
+    array_push(&s->list, (spot){ x, y, { facing[0], facing[1] }, *first });
     *first = (uint32_t)s->list.len;
 }
 
@@ -60,7 +70,8 @@ typedef struct inference {
 
 /* A lamp at (x, y), facing (dx, dy), unless the place will not do. */
 static void propose(inference *in, double x, double y, double dx, double dy, double near_z) {
-    if (in->lamps >= MAX_LAMPS || !keep_distance(in->spots, x, y))
+    const double facing[2] = { dx, dy };
+    if (in->lamps >= MAX_LAMPS || !keeps_distance(in->spots, x, y, facing))
         return;
     double z;
     if (!noc_scene_ground(in->scene, x, y, &z))
@@ -74,7 +85,7 @@ static void propose(inference *in, double x, double y, double dx, double dy, dou
     int lights = city_add_lamp(in->scene, &lamp, in->params, true, in->issues);
     if (!lights)
         return;
-    take(in->spots, x, y);
+    take(in->spots, x, y, facing);
     in->lights += lights;
     in->lamps++;
 }
@@ -159,9 +170,12 @@ int city_infer_lamps(noc_scene *scene, const city_lamp_params *params, geo_issue
     noc_scene_get_info(scene, &info);
     bool roads = info.triangles_by_class[NOC_CLASS_ROAD] > 0;
     in.spots->spacing = roads ? ROAD_SPACING : WALL_SPACING;
-    if (roads)
+    in.spots->cell = 2 * in.spots->spacing;
+    for (int round = 0; roads && round < 2; round++) {
+        in.spots->alternate = round == 0;
         along_roads(&in);
-    else
+    }
+    if (!roads)
         around_buildings(&in);
     array_free(&in.spots->list);
     free(in.spots);

@@ -1,0 +1,387 @@
+/* Lamps: flux and colour in closed form, standing on the ground, shapes, inference, a ground for cities without. */
+#include "../test.h"
+
+#include "city/city.h"
+#include "scene/scene.h"
+
+#include <math.h>
+
+static const city_lamp_params defaults = { .height = 6, .lumens = 5000, .kelvin = 3000 };
+
+static int material(noc_scene *scene, noc_class cls) {
+    noc_material m = noc_class_material(cls);
+    return noc_scene_add_material(scene, &m);
+}
+
+static void add_plane(noc_scene *scene, noc_class cls, double x0, double y0, double x1, double y1, double z, double slope) {
+    double xyz[12] = { x0, y0, z + slope * x0, x1, y0, z + slope * x1, x1, y1, z + slope * x1, x0, y1, z + slope * x0 };
+    noc_mesh mesh = { .vertex_count = 4, .positions = xyz, .triangle_count = 2, .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+                      .material = material(scene, cls) };
+    assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
+}
+
+/* Walls (counter-clockwise from outside) and a flat roof. */
+static void add_building(noc_scene *scene, double x0, double y0, double x1, double y1, double z0, double z1) {
+    double xyz[24] = { x0, y0, z0, x1, y0, z0, x1, y1, z0, x0, y1, z0, x0, y0, z1, x1, y0, z1, x1, y1, z1, x0, y1, z1 };
+    uint32_t walls[24];
+    for (uint32_t i = 0, n = 0; i < 4; i++) {
+        uint32_t a = i, b = (i + 1) % 4, quad[6] = { a, b, b + 4, a, b + 4, a + 4 };
+        memcpy(walls + n, quad, sizeof(quad));
+        n += 6;
+    }
+    noc_mesh mesh = { .vertex_count = 8, .positions = xyz, .triangle_count = 8, .indices = walls,
+                      .material = material(scene, NOC_CLASS_WALL) };
+    assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
+    noc_mesh roof = { .vertex_count = 8, .positions = xyz, .triangle_count = 2, .indices = (uint32_t[]){ 4, 5, 6, 4, 6, 7 },
+                      .material = material(scene, NOC_CLASS_ROOF) };
+    assert_true(noc_scene_add_mesh(scene, &roof) >= 0);
+}
+
+static geo_lamp lamp_at(double x, double y) {
+    return (geo_lamp){ .xyz = { x, y, NAN }, .height = NAN, .direction = NAN, .lumens = NAN, .watts = NAN, .kelvin = NAN,
+                       .rgb = { -1, -1, -1 }, .id = "lamp" };
+}
+
+static double luminance(const float e[3]) { return 0.2126 * e[0] + 0.7152 * e[1] + 0.0722 * e[2]; }
+
+/* Lumens that a light of the scene gives off. */
+static double flux(const noc_light_record *l) {
+    double area = l->kind == NOC_LIGHT_SPHERE ? 4 * M_PI * l->radius * l->radius : M_PI * l->radius * l->radius;
+    return M_PI * luminance(l->e) * area;
+}
+
+static size_t issues_with(const geo_issues *issues, const char *text) {
+    size_t sum = 0;
+    for (size_t i = 0; i < geo_issues_count(issues); i++) {
+        const char *reason, *examples;
+        bool repaired;
+        size_t count;
+        geo_issues_get(issues, i, &reason, &repaired, &count, &examples);
+        sum += strstr(reason, text) ? count : 0;
+    }
+    return sum;
+}
+
+/* xy of linear Rec.709. */
+static void chromaticity(const float c[3], double xy[2]) {
+    double X = 0.4124564 * c[0] + 0.3575761 * c[1] + 0.1804375 * c[2];
+    double Y = 0.2126729 * c[0] + 0.7151522 * c[1] + 0.0721750 * c[2];
+    double Z = 0.0193339 * c[0] + 0.1191920 * c[1] + 0.9503041 * c[2];
+    xy[0] = X / (X + Y + Z);
+    xy[1] = Y / (X + Y + Z);
+}
+
+static void test_kelvin(void **state) {
+    /* black body chromaticities, CIE 1931 (CIE 15: illuminant A is 2856 K) */
+    static const double table[][3] = { { 2856, .4476, .4074 }, { 4000, .3805, .3768 }, { 6500, .3135, .3237 }, { 10000, .2807, .2884 } };
+    for (size_t i = 0; i < NOC_COUNT(table); i++) {
+        float rgb[3];
+        double xy[2];
+        city_kelvin_rgb(table[i][0], rgb);
+        chromaticity(rgb, xy);
+        assert_float_equal(xy[0], table[i][1], .002);
+        assert_float_equal(xy[1], table[i][2], .002);
+        assert_float_equal(luminance(rgb), 1, 1e-5);
+    }
+    for (double k = -1000; k < 1e6; k += 333) { /* anything gives a colour */
+        float rgb[3];
+        city_kelvin_rgb(k, rgb);
+        assert_true(rgb[0] >= 0 && rgb[1] >= 0 && rgb[2] >= 0);
+        assert_float_equal(luminance(rgb), 1, 1e-4);
+    }
+}
+
+static void test_flux(void **state) {
+    noc_scene *scene = noc_scene_create(NULL);
+    add_plane(scene, NOC_CLASS_TERRAIN, -100, -100, 100, 100, 5, 0);
+    geo_lamp l = lamp_at(0, 0);
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, NULL), 1); /* the parameter's lumens, a disc */
+    l = lamp_at(20, 0);
+    l.type = GEO_LAMP_LANTERN;
+    l.lumens = 1200;
+    l.height = 4;
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, NULL), 1); /* tagged lumens, a sphere */
+    l = lamp_at(40, 0);
+    l.source = GEO_SOURCE_LED;
+    l.watts = 50;
+    l.count = 3;
+    l.height = 9;
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, true, NULL), 3); /* watts, each head */
+    l = lamp_at(60, 0);
+    l.type = GEO_LAMP_FLOOD;
+    l.direction = 90;
+    l.lumens = 20000;
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, NULL), 1);
+    static const double expected[] = { 5000, 1200, 5500, 5500, 5500, 20000 };
+    assert_int_equal(scene->lights.len, NOC_COUNT(expected));
+    for (size_t i = 0; i < scene->lights.len; i++)
+        assert_float_equal(flux(&scene->lights.data[i]) / expected[i], 1, 1e-4);
+    const noc_light_record *r = scene->lights.data;
+    assert_int_equal(r[0].kind, NOC_LIGHT_DISC);
+    assert_float_equal(r[0].p[2], 11, 1e-4); /* ground 5 + height 6 */
+    assert_int_equal(r[1].kind, NOC_LIGHT_SPHERE);
+    assert_float_equal(r[1].p[0], 20, 1e-4);
+    assert_float_equal(r[1].p[2], 9, 1e-4);
+    for (int i = 2; i < 5; i++)
+        assert_true(r[i].flags & 2);
+    assert_float_equal(r[2].p[0] + r[3].p[0] + r[4].p[0], 120, 1e-3); /* evenly around the pole */
+    /* the flood faces east and down: its normal is a x b */
+    double nx = r[5].a[1] * r[5].b[2] - r[5].a[2] * r[5].b[1], nz = r[5].a[0] * r[5].b[1] - r[5].a[1] * r[5].b[0];
+    assert_true(nx > 0 && nz < 0);
+    noc_scene_destroy(scene);
+}
+
+static void test_direction_and_sources(void **state) {
+    noc_scene *scene = noc_scene_create(NULL);
+    add_plane(scene, NOC_CLASS_SIDEWALK, -50, -50, 50, 0, 0, 0);
+    add_plane(scene, NOC_CLASS_ROAD, -50, 0, 50, 8, -.1, 0);
+    geo_lamp l = lamp_at(0, -1); /* untagged: over the road, north of it */
+    l.source = GEO_SOURCE_SODIUM;
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, NULL), 1);
+    l = lamp_at(20, -1);
+    l.direction = 180; /* tagged: away from it */
+    l.kelvin = 6500;
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, NULL), 1);
+    l = lamp_at(-20, -1);
+    l.rgb[0] = 0;
+    l.rgb[1] = 0;
+    l.rgb[2] = 1;
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, NULL), 1);
+    const noc_light_record *r = scene->lights.data;
+    assert_true(r[0].p[1] > -.5 && r[1].p[1] < -1.5);
+    assert_true(r[0].e[0] > 2 * r[0].e[2]);          /* sodium is orange */
+    assert_float_equal(r[1].e[0] / r[1].e[2], 1, .1); /* 6500 K is white */
+    assert_true(r[2].e[2] > 0 && r[2].e[0] == 0);
+    for (int i = 0; i < 3; i++)
+        assert_float_equal(flux(&r[i]) / 5000, 1, 1e-4);
+    noc_scene_destroy(scene);
+}
+
+static bool ray_hits(const noc_scene *scene, const double o[3], const double d[3], double reach) {
+    for (size_t t = 0; t < scene->triangle_light.len; t++) {
+        const float *v[3];
+        double e1[3], e2[3], p[3], s[3], q[3];
+        for (int i = 0; i < 3; i++)
+            v[i] = scene->positions.data + 3 * (size_t)scene->indices.data[3 * t + i];
+        for (int k = 0; k < 3; k++) {
+            e1[k] = (double)v[1][k] - v[0][k];
+            e2[k] = (double)v[2][k] - v[0][k];
+            s[k] = o[k] - v[0][k];
+        }
+        for (int k = 0; k < 3; k++)
+            p[k] = d[(k + 1) % 3] * e2[(k + 2) % 3] - d[(k + 2) % 3] * e2[(k + 1) % 3];
+        double det = e1[0] * p[0] + e1[1] * p[1] + e1[2] * p[2];
+        if (fabs(det) < 1e-14)
+            continue;
+        double u = (s[0] * p[0] + s[1] * p[1] + s[2] * p[2]) / det;
+        for (int k = 0; k < 3; k++)
+            q[k] = s[(k + 1) % 3] * e1[(k + 2) % 3] - s[(k + 2) % 3] * e1[(k + 1) % 3];
+        double w = (d[0] * q[0] + d[1] * q[1] + d[2] * q[2]) / det, x = (e2[0] * q[0] + e2[1] * q[1] + e2[2] * q[2]) / det;
+        if (u >= 0 && w >= 0 && u + w <= 1 && x > 1e-3 && x < reach && scene->triangle_light.data[t] == NOC_NO_LIGHT)
+            return true;
+    }
+    return false;
+}
+
+/* Points of the ground around a lamp see it: its housing never stands before it, its pole only to a sliver. */
+static void test_own_shape_does_not_shadow(void **state) {
+    for (int kind = 0; kind < 3; kind++)
+        for (int heads = 1; heads <= 4; heads++) {
+            noc_scene *scene = noc_scene_create(NULL);
+            geo_lamp l = lamp_at(0, 0);
+            l.xyz[2] = 0;
+            l.type = kind == 0 ? GEO_LAMP_STREET : kind == 1 ? GEO_LAMP_LANTERN : GEO_LAMP_FLOOD;
+            l.count = heads;
+            l.direction = 30;
+            assert_int_equal(city_add_lamp(scene, &l, &defaults, false, NULL), heads);
+            size_t rays = 0, blocked = 0;
+            const noc_light_record *r = scene->lights.data;
+            double n[3];
+            for (int k = 0; k < 3; k++)
+                n[k] = r->a[(k + 1) % 3] * r->b[(k + 2) % 3] - r->a[(k + 2) % 3] * r->b[(k + 1) % 3];
+            for (int i = 0; i < 400; i++) {
+                double a = 2 * M_PI * (i % 40) / 40, distance = 2 + i / 40;
+                double d[3] = { distance * sin(a) - r->p[0], distance * cos(a) - r->p[1], -r->p[2] };
+                if (r->kind == NOC_LIGHT_DISC && d[0] * n[0] + d[1] * n[1] + d[2] * n[2] <= 0)
+                    continue;
+                double len = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), o[3];
+                double start = r->kind == NOC_LIGHT_SPHERE ? r->radius : 0;
+                for (int k = 0; k < 3; k++) {
+                    d[k] /= len;
+                    o[k] = r->p[k] + start * d[k];
+                }
+                rays++;
+                blocked += ray_hits(scene, o, d, len - start - 1e-3);
+            }
+            assert_true(rays > 100);
+            assert_true(blocked * 100 <= rays * (heads == 1 ? 4 : 8));
+            noc_scene_info info;
+            noc_scene_get_info(scene, &info);
+            if (heads == 1 && kind == 0)
+                assert_true(info.triangles <= 60);
+            noc_scene_destroy(scene);
+        }
+}
+
+static void test_inside_building(void **state) {
+    noc_scene *scene = noc_scene_create(NULL);
+    geo_issues *issues = geo_issues_create();
+    add_plane(scene, NOC_CLASS_TERRAIN, -100, -100, 100, 100, 0, 0);
+    add_building(scene, 0, 0, 30, 30, 0, 12);
+    geo_lamp l = lamp_at(1, 15); /* a metre inside the western wall */
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, issues), 1);
+    assert_true(scene->lights.data[0].p[0] < 0);
+    l.xyz[1] = 20;
+    l.mount = GEO_MOUNT_WALL;
+    l.height = 4;
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, issues), 1);
+    assert_true(scene->lights.data[1].p[0] < 0 && scene->lights.data[1].p[0] > -1.5);
+    assert_int_equal(issues_with(issues, "moved out"), 2);
+    l = lamp_at(15, 15); /* in its middle */
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, issues), 0);
+    assert_int_equal(issues_with(issues, "further than 3 m"), 1);
+    l = lamp_at(NAN, 0);
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, issues), 0);
+    geo_issues_destroy(issues);
+    noc_scene_destroy(scene);
+}
+
+static void test_odd_grounds(void **state) {
+    noc_scene *scene = noc_scene_create(NULL);
+    geo_issues *issues = geo_issues_create();
+    add_plane(scene, NOC_CLASS_TERRAIN, -10, -10, 10, 10, 100, .1);
+    geo_lamp l = lamp_at(5, 0);
+    l.xyz[2] = 350; /* another height system: the ground counts */
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, issues), 1);
+    assert_float_equal(scene->lights.data[0].p[2], 106.5, 1e-3);
+    l = lamp_at(12, 0); /* two metres beside it */
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, issues), 1);
+    assert_float_equal(scene->lights.data[1].p[2], 107, .1);
+    l = lamp_at(50, 0);
+    l.xyz[2] = 98;
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, issues), 1);
+    assert_float_equal(scene->lights.data[2].p[2], 104, 1e-3);
+    assert_int_equal(geo_issues_count(issues), 0);
+    l = lamp_at(70, 0);
+    assert_int_equal(city_add_lamp(scene, &l, &defaults, false, issues), 1);
+    assert_int_equal(issues_with(issues, "lowest height"), 1);
+    for (int i = 0; i < 3; i++) { /* three at one place stand side by side */
+        l = lamp_at(-5, -5);
+        assert_int_equal(city_add_lamp(scene, &l, &defaults, false, issues), 1);
+    }
+    assert_int_equal(issues_with(issues, "moved apart"), 2);
+    geo_issues_destroy(issues);
+    noc_scene_destroy(scene);
+}
+
+static double nearest_pair(const noc_scene *scene) {
+    double best = INFINITY;
+    for (size_t i = 0; i < scene->lights.len; i++)
+        for (size_t k = 0; k < i; k++)
+            best = fmin(best, hypot((double)scene->lights.data[i].p[0] - scene->lights.data[k].p[0],
+                                    (double)scene->lights.data[i].p[1] - scene->lights.data[k].p[1]));
+    return best;
+}
+
+static void test_infer_roads(void **state) {
+    noc_scene *scene = noc_scene_create(NULL);
+    add_plane(scene, NOC_CLASS_SIDEWALK, -300, -20, 300, 20, 0, 0);
+    add_plane(scene, NOC_CLASS_ROAD, -300, -4, 0, 4, .01, 0);
+    add_plane(scene, NOC_CLASS_ROAD, 0, -4, 300, 4, .01, 0); /* the seam between the two is no kerb */
+    add_building(scene, 100, 4.2, 200, 20, 0, 10);
+    int lights = city_infer_lamps(scene, &defaults, NULL);
+    assert_int_equal(lights, scene->lights.len);
+    assert_int_equal(lights, scene->lights_inferred);
+    assert_true(lights >= 17 && lights <= 40);
+    assert_true(nearest_pair(scene) > 25);
+    int north = 0;
+    for (int i = 0; i < lights; i++) {
+        const float *p = scene->lights.data[i].p;
+        assert_true(fabsf(p[1]) < 5.5f); /* the head hangs over the kerb */
+        assert_false(p[1] > 4.2f && p[0] > 100 && p[0] < 200);
+        north += p[1] > 0;
+    }
+    assert_true(north > 3 && lights - north > 3);
+    /* the same again */
+    noc_scene *again = noc_scene_create(NULL);
+    add_plane(again, NOC_CLASS_SIDEWALK, -300, -20, 300, 20, 0, 0);
+    add_plane(again, NOC_CLASS_ROAD, -300, -4, 0, 4, .01, 0);
+    add_plane(again, NOC_CLASS_ROAD, 0, -4, 300, 4, .01, 0);
+    add_building(again, 100, 4.2, 200, 20, 0, 10);
+    assert_int_equal(city_infer_lamps(again, &defaults, NULL), lights);
+    assert_memory_equal(again->lights.data, scene->lights.data, (size_t)lights * sizeof(noc_light_record));
+    noc_scene_destroy(again);
+    noc_scene_destroy(scene);
+}
+
+static void test_infer_buildings(void **state) {
+    noc_scene *scene = noc_scene_create(NULL);
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 4; k++)
+            add_building(scene, i * 50, k * 50, i * 50 + 30, k * 50 + 30, 0, 10);
+    city_add_ground(scene);
+    int lights = city_infer_lamps(scene, &defaults, NULL);
+    assert_true(lights >= 30);
+    assert_true(nearest_pair(scene) > 20);
+    for (int i = 0; i < lights; i++) {
+        const float *p = scene->lights.data[i].p;
+        double x = fmod(p[0] + 500, 50), y = fmod(p[1] + 500, 50);
+        assert_false(p[0] > 0 && p[0] < 180 && p[1] > 0 && p[1] < 180 && x < 30 && y < 30);
+        assert_float_equal(p[2], 6, .1);
+    }
+    noc_scene_destroy(scene);
+    scene = noc_scene_create(NULL); /* nothing there: nothing placed */
+    assert_int_equal(city_infer_lamps(scene, &defaults, NULL), 0);
+    noc_scene_destroy(scene);
+}
+
+static void test_add_ground(void **state) {
+    noc_scene *scene = noc_scene_create(NULL); /* level: one plane */
+    add_building(scene, 0, 0, 30, 30, 7, 20);
+    add_building(scene, 100, 50, 130, 80, 7, 20);
+    city_add_ground(scene);
+    double z;
+    assert_true(noc_scene_ground(scene, 60, 40, &z));
+    assert_float_equal(z, 7 - .02, 1e-4);
+    assert_true(noc_scene_ground(scene, -55, -55, &z) && !noc_scene_ground(scene, -500, 0, &z));
+    noc_scene_info info;
+    noc_scene_get_info(scene, &info);
+    assert_int_equal(info.triangles_by_class[NOC_CLASS_TERRAIN], 2);
+    noc_scene_destroy(scene);
+
+    scene = noc_scene_create(NULL); /* a slope of 5 percent with a street, a dormer, and a building at a wrong height */
+    for (int i = 0; i < 8; i++)
+        for (int k = 0; k < 8; k++)
+            add_building(scene, i * 40, k * 40, i * 40 + 15, k * 40 + 15, 200 + i * 2, 212 + i * 2);
+    add_building(scene, 205, 205, 208, 208, 222, 225);
+    add_building(scene, 130, 30, 135, 35, 0, 5);
+    add_plane(scene, NOC_CLASS_ROAD, 0, 20, 300, 26, 200, .05);
+    city_add_ground(scene);
+    for (double x = 1; x < 290; x += 1) {
+        assert_true(noc_scene_ground(scene, x, 23, &z));
+        assert_float_equal(z, 200 + .05 * x, 1e-3); /* the street, not covered by the ground */
+        assert_true(noc_scene_ground(scene, x, 110, &z));
+        assert_float_equal(z, 200 + .05 * x, 1.2);
+    }
+    assert_true(noc_scene_ground(scene, 206, 206, &z) && z < 212);
+    noc_scene_destroy(scene);
+    scene = noc_scene_create(NULL);
+    city_add_ground(scene); /* nothing to stand under */
+    assert_int_equal(scene->indices.len, 0);
+    noc_scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_kelvin),
+        cmocka_unit_test(test_flux),
+        cmocka_unit_test(test_direction_and_sources),
+        cmocka_unit_test(test_own_shape_does_not_shadow),
+        cmocka_unit_test(test_inside_building),
+        cmocka_unit_test(test_odd_grounds),
+        cmocka_unit_test(test_infer_roads),
+        cmocka_unit_test(test_infer_buildings),
+        cmocka_unit_test(test_add_ground),
+    };
+    return cmocka_run_group_tests_name("city/lamp", tests, NULL, NULL);
+}
