@@ -1,0 +1,150 @@
+/* Shadow rays at both ends: nothing leaks, nothing shadows itself, near the origin and far from it; one-sided emission; sky. */
+#include "rooms.h"
+
+static double sum(const noc_image *image) {
+    double s = 0;
+    for (int i = 0; i < image->width * image->height; i++)
+        s += luma(image->rgb + 3 * i);
+    return s;
+}
+
+/* A wall at y = 0 facing -y, a floor before it, and a window `off` metres before (or behind) the wall, turned by 30 degrees
+ * around z so that nothing is aligned with an axis. */
+static noc_scene *walled(double x0, double y0, double off, double angle) {
+    noc_scene *s = noc_scene_create(NULL);
+    int m = matte(s, 0.5f);
+    double c = cos(angle), d = sin(angle);
+    QUAD(s, m, x0 - 40 * c, y0 - 40 * d, 0, 80 * c, 80 * d, 0, 0, 0, 9);
+    add_floor(s, m, x0, y0, 0, 30);
+    noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM,
+                    .position = { x0 - c + off * d, y0 - d - off * c, 1 },
+                    .edge_u = { 2 * c, 2 * d, 0 }, .edge_v = { 0, 0, 1.5 }, .emission = { 10, 10, 10 } };
+    assert_true(noc_scene_add_light(s, &l) >= 0);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    return s;
+}
+
+static void windows_near_walls(void **state) {
+    (void)state;
+    const double places[][2] = { { 0, 0 }, { 100, -60 }, { 1000, 700 }, { 10000, 0 }, { -7000, 7100 } };
+    for (size_t i = 0; i < NOC_COUNT(places); i++)
+        for (int turn = 0; turn < 2; turn++) {
+            double x = places[i][0], y = places[i][1], angle = turn ? M_PI / 6 : 0;
+            noc_camera c = look(x + 2, y - 12, 7, x, y, 0.5, 60);
+            noc_render_params p = measure(96, 64, NOC_METHOD_REFERENCE);
+            p.emitters = false;
+            noc_scene *before = walled(x, y, 0.01, angle), *behind = walled(x, y, -0.01, angle);
+            noc_image *traced = render(before, &c, &p, 4);
+            p.final_ray = false;
+            noc_image *open = render(before, &c, &p, 4);
+            p.final_ray = true;
+            noc_image *leak = render(behind, &c, &p, 4);
+            assert_true(sum(open) > 1);
+            for (int k = 0; k < 96 * 64 * 3; k++) {
+                assert_true(traced->rgb[k] == open->rgb[k]); /* neither wall nor window blocks the window */
+                assert_true(leak->rgb[k] == 0);
+            }
+            noc_image_destroy(traced);
+            noc_image_destroy(open);
+            noc_image_destroy(leak);
+            noc_scene_destroy(before);
+            noc_scene_destroy(behind);
+        }
+}
+
+/* Lamps of every kind over bumpy ground far away: what is lit from above is lit everywhere, without acne. */
+static void no_acne(void **state) {
+    (void)state;
+    for (int kind = 0; kind <= NOC_LIGHT_POINT; kind++)
+        for (double far = 0; far <= 10000; far += 10000) {
+            noc_scene *s = noc_scene_create(NULL);
+            int m = matte(s, 0.5f);
+            for (int i = 0; i < 8; i++) /* a shallow valley: no facet hides another from the lamp */
+                QUAD(s, m, far - 8 + 2 * i, far - 20, 0.05 * (i - 4) * (i - 4), 2, 0, 0.05 * (2 * (i - 4) + 1), 0, 40, 0);
+            noc_light l = { .kind = (noc_light_kind)kind, .position = { far + 0.3, far, 9 }, .radius = 0.2,
+                            .edge_u = { 0, 0.5, 0 }, .edge_v = { 0.5, 0, 0 }, .direction = { 0, 0, -1 },
+                            .emission = { 500, 500, 500 } };
+            assert_true(noc_scene_add_light(s, &l) >= 0);
+            assert_int_equal(noc_scene_commit(s), NOC_OK);
+            noc_camera c = look(far, far - 14, 12, far, far, 0, 40);
+            noc_render_params p = measure(64, 48, NOC_METHOD_RIS);
+            p.emitters = false;
+            noc_image *traced = render(s, &c, &p, 3);
+            p.final_ray = false;
+            noc_image *open = render(s, &c, &p, 3);
+            assert_true(sum(open) > 1);
+            for (int k = 0; k < 64 * 48 * 3; k++)
+                assert_true(traced->rgb[k] == open->rgb[k]);
+            noc_image_destroy(traced);
+            noc_image_destroy(open);
+            noc_scene_destroy(s);
+        }
+}
+
+/* Light leaves the front only, unless the material says otherwise; what stands behind stays dark. */
+static void one_sided(void **state) {
+    (void)state;
+    for (int two = 0; two < 2; two++) {
+        noc_scene *s = noc_scene_create(NULL);
+        noc_material glow = { .roughness = 1, .emission = { 30, 30, 30 }, .two_sided = two };
+        add_floor(s, matte(s, 0.5f), 0, 0, 0, 20);
+        QUAD(s, noc_scene_add_material(s, &glow), -1, 0, 1, 2, 0, 0, 0, 0, 2); /* faces -y */
+        assert_int_equal(noc_scene_commit(s), NOC_OK);
+        for (int m = NOC_METHOD_REFERENCE; m <= NOC_METHOD_RESTIR; m++) {
+            noc_render_params p = measure(32, 24, (noc_method)m);
+            p.emitters = false;
+            noc_camera front = look(0, -9, 6, 0, -4, 0, 20), back = look(0, 9, 6, 0, 4, 0, 20);
+            noc_image *a = render(s, &front, &p, 4), *b = render(s, &back, &p, 4);
+            assert_true(sum(a) > 1);
+            assert_true(two ? fabs(sum(b) / sum(a) - 1) < 0.1 : sum(b) == 0);
+            noc_image_destroy(a);
+            noc_image_destroy(b);
+        }
+        noc_scene_destroy(s);
+    }
+}
+
+/* An open white floor under the sky alone: E = integral of L cos over the upper half; a roof takes it away. */
+static void sky_light(void **state) {
+    (void)state;
+    noc_scene *s = noc_scene_create(NULL);
+    add_floor(s, matte(s, 1), 0, 0, 0, 50);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    noc_render_params p = measure(16, 16, NOC_METHOD_RESTIR);
+    p.sky = 0.2;
+    noc_camera c = look(0, -1, 5, 0, 0, 0, 20);
+    noc_image *image = render(s, &c, &p, 400);
+    /* L = zenith (1 + 3 (1 - z)^4): E = 2 pi zenith (1/2 + 3 / 30) */
+    double want = 0.2 * 2 * (0.5 + 3.0 / 30);
+    assert_true(fabs(sum(image) / 256 - want) < 0.01 * want);
+    noc_image_destroy(image);
+    noc_camera up = look(0, 0, 1, 0, 0.001, 9, 2);
+    image = render(s, &up, &p, 1);
+    assert_true(fabs(sum(image) / 256 - 0.2) < 1e-3); /* the zenith itself */
+    assert_true(image->rgb[2] > image->rgb[0]);
+    noc_image_destroy(image);
+    noc_scene_destroy(s);
+    s = noc_scene_create(NULL);
+    int m = matte(s, 1);
+    add_floor(s, m, 0, 0, 0, 50);
+    for (int side = 0; side < 2; side++) {
+        QUAD(s, m, -20, -20 + 40 * side, -1, 40, 0, 0, 0, 0, 21);
+        QUAD(s, m, -20 + 40 * side, -20, -1, 0, 40, 0, 0, 0, 21);
+    }
+    add_floor(s, m, 0, 0, 20, 20);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    image = render(s, &c, &p, 50);
+    assert_true(sum(image) == 0); /* a closed room: not one ray slips through its edges */
+    noc_image_destroy(image);
+    noc_scene_destroy(s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(windows_near_walls),
+        cmocka_unit_test(no_acne),
+        cmocka_unit_test(one_sided),
+        cmocka_unit_test(sky_light),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
