@@ -97,6 +97,7 @@ typedef struct cg_polygon {
     uint32_t shown;       /* selection it was last chosen in; 0: none; CG_EMITTED: stored, and given to the sink */
     const size_t *ring_size;
     const double *xyz;    /* 3 a point, in the file's tuple order */
+    struct cg_polygon *copy; /* in the store, NULL if none: one, however many ids lead to it */
 } cg_polygon;
 
 typedef struct cg_surface {

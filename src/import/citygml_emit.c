@@ -234,7 +234,9 @@ static void emit_object(cg_parser *p) {
 
 /* ---- the store ---- */
 
-static cg_polygon *copy_polygon(cg_store *store, const cg_polygon *polygon) {
+static cg_polygon *copy_polygon(cg_store *store, cg_polygon *polygon) {
+    if (polygon->copy)
+        return polygon->copy;
     cg_polygon *copy = arena_alloc(&store->arena, sizeof(*copy));
     size_t *sizes = arena_alloc(&store->arena, polygon->ring_count * sizeof(size_t));
     size_t points = 0;
@@ -247,7 +249,7 @@ static cg_polygon *copy_polygon(cg_store *store, const cg_polygon *polygon) {
     copy->ring_size = sizes;
     copy->xyz = xyz;
     copy->shown = 0;
-    return copy;
+    return polygon->copy = copy;
 }
 
 /* Surfaces that an id of this object leads to; references among them only where they stay in it. */
