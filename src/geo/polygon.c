@@ -264,7 +264,9 @@ static bool prepare(struct work *w, const geo_polygon *polygon) {
     for (size_t r = 0; r < polygon->ring_count; p += 3 * polygon->ring_size[r++]) {
         size_t n = add_ring(w, p, polygon->ring_size[r], &found);
         if (n < 3) {
-            geo_issue(w->issues, r > 0, r ? "interior ring with too few points" : "ring with too few points", w->id);
+            bool few = polygon->ring_size[r] < 3;
+            geo_issue(w->issues, r > 0, r ? few ? "interior ring with too few points" : "collapsed interior ring"
+                                          : few ? "ring with too few points" : "collapsed ring", w->id);
             if (!r)
                 return false;
             w->xyz.len -= 3 * n;
@@ -322,6 +324,23 @@ static bool cut_simple(const struct work *w, geo_triangles *out) {
     return true;
 }
 
+/* Points in a straight line give the tessellator triangles without area: they show nothing. */
+static void drop_flat_triangles(geo_triangles *t, size_t first_index) {
+    size_t kept = first_index;
+    for (size_t i = first_index; i < t->indices.len; i += 3) {
+        const uint32_t *v = t->indices.data + i;
+        double a[3], b[3], n[3];
+        subtract(t->xyz.data + 3 * (size_t)v[1], t->xyz.data + 3 * (size_t)v[0], a);
+        subtract(t->xyz.data + 3 * (size_t)v[2], t->xyz.data + 3 * (size_t)v[0], b);
+        cross(a, b, n);
+        if (dot(n, n) > 4 * SMALLEST_AREA * SMALLEST_AREA) {
+            memmove(t->indices.data + kept, v, 3 * sizeof(*v));
+            kept += 3;
+        }
+    }
+    t->indices.len = kept;
+}
+
 static bool triangulate(struct work *w, geo_triangles *out) {
     size_t first_index = out->indices.len, first_vertex = out->xyz.len;
     if (out->xyz.len / 3 + w->xyz.len / 3 > UINT32_MAX / 2)
@@ -334,6 +353,7 @@ static bool triangulate(struct work *w, geo_triangles *out) {
             geo_issue(w->issues, true, "self-intersecting ring", w->id);
         else if (t.touches && w->ring_size.len == 1) /* a hole may touch the exterior */
             geo_issue(w->issues, true, "self-touching ring", w->id);
+        drop_flat_triangles(out, first_index);
         if (!t.ok || out->indices.len == first_index) {
             geo_issue(w->issues, false, t.ok ? "polygon without area" : "polygon that cannot be triangulated", w->id);
             out->indices.len = first_index;

@@ -80,7 +80,9 @@ tessellation tessellate(const double *uv, const size_t *ring_size, size_t ring_c
     }
     gluTessEndPolygon(tess);
     gluDeleteTess(tess);
-    /* the last triangle is whole unless GLU gave up */
-    job.result.ok = job.result.ok && (out->indices.len - job.first_index) % 3 == 0;
+    if ((out->indices.len - job.first_index) % 3) { /* GLU gave up in a triangle */
+        out->indices.len = job.first_index;
+        job.result.ok = false;
+    }
     return job.result;
 }

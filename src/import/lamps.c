@@ -71,7 +71,8 @@ static size_t stand_lamps(importer *im, const extent *e, const city_lamp_params 
             outside++;
             continue;
         }
-        in->file.lights += (size_t)NOC_MAX(city_add_lamp(im->scene, &p->lamp, params, false, in->issues), 0);
+        int lights = city_add_lamp(im->scene, &p->lamp, params, false, in->issues);
+        in->file.lights += lights > 0 ? (size_t)lights : 0;
         if (i % 256 == 0 && !go_on(im, 0.9 + 0.1 * (double)i / (double)im->lamps.len))
             break;
     }

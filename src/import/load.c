@@ -3,8 +3,8 @@
 #include "import/load.h"
 #include "city/city.h"
 
-#include <math.h>
-#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #define HEAD_SIZE 65536
 #define BUILTIN "builtin:city"
@@ -48,12 +48,18 @@ static char *format_names(const noc_reader *const *readers) {
     return text;
 }
 
+/* The status of a stream that did not open: why was said already. */
+static noc_status open_status(const char *path) {
+    struct stat st;
+    return !stat(path, &st) && S_ISREG(st.st_mode) && !access(path, R_OK) ? NOC_ERR_FORMAT : NOC_ERR_IO;
+}
+
 static noc_status recognise(importer *im, input *in, const noc_reader *const *readers) {
     if (!strcmp(in->path, BUILTIN))
         return NOC_OK;
     noc_stream *stream = noc_stream_open(in->path, im->log);
     if (!stream)
-        return NOC_ERR_IO;
+        return open_status(in->path);
     char *head = noc_alloc(HEAD_SIZE + 1);
     size_t size;
     noc_status status = read_head(stream, head, &size);
@@ -129,7 +135,7 @@ static noc_status read_input(importer *im, size_t index) {
     }
     noc_stream *stream = noc_stream_open(in->path, im->log);
     if (!stream)
-        return NOC_ERR_IO;
+        return open_status(in->path);
     noc_status status;
     in->file.format = in->reader->name;
     if (in->reader->read_mesh) {
