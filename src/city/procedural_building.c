@@ -35,7 +35,7 @@ static house house_make(const town *t, uint32_t seed, town_way way) {
         h.front.sill = 0.9;
         h.roof = ROOF_FLAT;
     } else {
-        h.front.bay = town_range(&rng, 2.3, 2.9);
+        h.front.bay = town_range(&rng, 2.1, 2.6);
         h.front.width = town_range(&rng, 1.05, 1.3);
         h.front.height = town_range(&rng, 1.6, 1.9);
         h.front.sill = 0.75;
@@ -49,7 +49,7 @@ static house house_make(const town *t, uint32_t seed, town_way way) {
     h.eave = h.front.base + town_facade_height(&h.front);
     h.back = h.front;
     h.back.deep = h.back.shops = h.back.door = h.back.balconies = false;
-    h.back.bay += 0.8;
+    h.back.bay += 0.4;
     h.back.seed = town_hash(seed, 13);
     return h;
 }
@@ -143,9 +143,11 @@ static void pitched_roof(town *t, const house *h, const lot *l, const profile *r
     }
     if (h->dormers) {
         bool mansard = h->roof == ROOF_MANSARD;
-        int n = NOC_CLAMP((int)((front->length - 3) / 3.1), 0, 8);
+        /* not through the slope around the corner */
+        double from = front->mitre0 > 0 ? 5 : 1.5, to = front->length - (front->mitre1 > 0 ? 5 : 1.5);
+        int n = NOC_CLAMP((int)((to - from) / 3.1), 0, 8);
         for (int i = 0; i < n; i++) {
-            double s = 1.5 + (front->length - 3) * (i + 0.5) / n;
+            double s = from + (to - from) * (i + 0.5) / n;
             dormer(t, front, h, s, mansard ? 0.35 : 1.3, h->eave + (mansard ? 0.75 : 1.0), mansard ? 1.5 : 2.4, i);
         }
     }

@@ -116,7 +116,7 @@ void town_park(town *t, const town_poly *block, int id) {
             for (int i = 0; i < lawn.n; i++)
                 clear = clear && to_segment(p, gate[i], centre) > 6.5;
             if (clear)
-                town_tree(t, town_warp(t, p), TOWN_KERB, 10.5, 110, town_hash(rng.state, 1));
+                town_tree(t, town_warp(t, p), TOWN_KERB, 10.5, 180, town_hash(rng.state, 1));
         }
     town_flush(t, "block %d/park", id);
 }
@@ -241,7 +241,7 @@ void town_square(town *t, const town_poly *block, int id) {
             if (((int)(s / 8.5)) % 2 == 0)
                 town_globe_lamp(t, at, TOWN_KERB + 0.03, LIGHT_WHITE);
             else if (town_chance(&rng, 0.75))
-                town_tree(t, at, TOWN_KERB, 7.5, 110, town_hash(rng.state, 2));
+                town_tree(t, at, TOWN_KERB, 7.5, 160, town_hash(rng.state, 2));
             else
                 town_bench(t, at, e.dir, TOWN_KERB + 0.03);
         }
@@ -268,7 +268,7 @@ void town_plaza(town *t, const town_poly *block, int id) {
         for (int i = 0; i < inner.n; i++) {
             vec2 p = toward(c, inner.p[i], 0.62);
             if (distance(p, c) > 3.5)
-                town_tree(t, town_warp(t, p), TOWN_KERB, 7.5, 110, town_hash(t->params.seed, (uint32_t)(id * 32 + i)));
+                town_tree(t, town_warp(t, p), TOWN_KERB, 7.5, 160, town_hash(t->params.seed, (uint32_t)(id * 32 + i)));
         }
     }
     town_flush(t, "block %d/plaza", id);
@@ -282,7 +282,7 @@ void town_courtyard(town *t, const town_poly *yard, int id) {
     for (int i = 0; i < yard->n && area > 250; i++) {
         vec2 p = toward(c, yard->p[i], town_range(&rng, 0.3, 0.55));
         if (town_chance(&rng, 0.8))
-            town_tree(t, town_warp(t, p), TOWN_KERB, 7.5, 110, town_hash(rng.state, 9));
+            town_tree(t, town_warp(t, p), TOWN_KERB, 7.5, 160, town_hash(rng.state, 9));
     }
     if (area > 500)
         town_globe_lamp(t, town_warp(t, c), TOWN_KERB + 0.04, LIGHT_WARM);

@@ -10,7 +10,7 @@
 static void crown(town *t, vec2 p, double z, double radius, double height, int sprays, uint32_t seed) {
     town_mat mat = TM_LEAF + (town_mat)(seed % 4);
     town_rng rng = { town_hash(seed, 41) };
-    double scale = 3.6 / sqrt((double)sprays); /* fewer are larger: the same cover */
+    double scale = 3.1 / sqrt((double)sprays); /* fewer are larger: the same cover */
     for (int i = 0; i < sprays; i++) {
         double up = 1 - 2 * (i + 0.5) / sprays, turn = 0.618034 * i; /* evenly over the sphere */
         double ring = sqrt(1 - up * up), out[3] = { ring * town_cos(turn), ring * town_sin(turn), up };
@@ -160,13 +160,13 @@ void town_kerbside(town *t, const town_poly *block, int id) {
             else
                 town_globe_lamp(t, at, TOWN_KERB, LIGHT_WHITE);
         }
-        double step = avenue ? 8.7 : 13;
+        double step = avenue ? 10.3 : 13;
         for (double s = 3.5 + 0.37 * spacing; s < e.length - 5 && (avenue || way == WAY_QUAY || (id + k) % 3 == 0); s += step) {
             double phase = (s - first) / spacing, off = fabs(phase - floor(phase + 0.5)) * spacing;
             if (off < 2.4 || town_chance(&rng, 0.1))
                 continue; /* clear of the lamps */
             town_wall_point(&e, s, 0, -1.3, road);
-            town_tree(t, town_warp(t, (vec2){ road[0], road[1] }), TOWN_KERB, avenue ? 8.6 : 7, 150, town_hash(rng.state, 77));
+            town_tree(t, town_warp(t, (vec2){ road[0], road[1] }), TOWN_KERB, avenue ? 8.6 : 7, 220, town_hash(rng.state, 77));
         }
         for (double s = 9; s < e.length - 9; s += 5.7) {
             if (!town_chance(&rng, avenue ? 0.3 : 0.42))
@@ -234,7 +234,7 @@ static void markings(town *t, int along) {
             if (fabs(dd.x * (p.y - da.y) - dd.y * (p.x - da.x)) < dw + 6 && g->kind != WAY_AVENUE)
                 continue;
             if (g->kind == WAY_AVENUE)
-                plan_quad(t, TM_MARKING, along, s, s + 3, middle - 0.07, middle + 0.07, 0.01);
+                plan_quad(t, TM_MARKING, along, s, s + 3, middle - 0.07, middle + 0.07, 0.004);
         }
         for (size_t j = 1; j + 1 < other->gaps.len && g->kind == WAY_AVENUE; j++)
             for (int side = 0; side < 2; side++) { /* bars lie along the traffic they stop */
@@ -243,7 +243,7 @@ static void markings(town *t, int along) {
                 if (o->river) /* before the bridge */
                     continue;
                 for (double c = g->lo + 0.8; c < g->hi - 0.8; c += 1.05)
-                    plan_quad(t, TM_MARKING, along, s, s + 3, c, c + 0.52, 0.01);
+                    plan_quad(t, TM_MARKING, along, s, s + 3, c, c + 0.52, 0.004);
             }
     }
 }

@@ -147,9 +147,9 @@ static void window(town *t, const town_wall *w, const town_facade *f, int storey
 static void balcony(town *t, const town_wall *w, const double r[4], double floor) {
     double s0 = r[0] - 0.35, s1 = r[1] + 0.35;
     wall_box(t, TM_CONCRETE, w, s0, s1, floor - 0.14, floor, 0, 1.0, 0, 0);
-    wall_box(t, TM_POLE, w, s0, s1, floor + 0.95, floor + 1.0, 0.94, 1.0, 0, 0);
-    for (double s = s0 + 0.04; s < s1; s += (s1 - s0 - 0.08) / 9 - 1e-6)
-        town_wall_rect(t, TM_POLE, w, s - 0.012, s + 0.012, floor, floor + 0.95, 0.97);
+    wall_box(t, TM_METAL, w, s0, s1, floor + 0.95, floor + 1.0, 0.94, 1.0, 0, 0);
+    for (double s = s0 + 0.04; s < s1; s += (s1 - s0 - 0.08) / 7 - 1e-6)
+        town_wall_rect(t, TM_METAL, w, s - 0.012, s + 0.012, floor, floor + 0.95, 0.97);
 }
 
 /* ---- shops ---- */
@@ -161,7 +161,7 @@ static void shop(town *t, const town_wall *w, const town_facade *f, int column, 
     double kind = town_next(&rng);
     int colour = LIGHT_WARM + town_below(&rng, 4);
     double level = levels[town_below(&rng, NOC_COUNT(levels))];
-    if (kind < 0.5 && r[0] > 4 && r[1] < w->length - 4) { /* rooms keep clear of the corners */
+    if (kind < 0.5 && r[0] > 6 && r[1] < w->length - 6) { /* rooms keep clear of the corners */
         const double depth = 2.6, sm = 0.5 * (r[0] + r[1]), z = r[3] - 0.03;
         recess(t, TM_SHOP, TM_SHOP, w, r, depth);
         noc_light panel = { .kind = NOC_LIGHT_PARALLELOGRAM, .name = "shop" }; /* in the ceiling, facing down */
@@ -184,7 +184,7 @@ static void shop(town *t, const town_wall *w, const town_facade *f, int column, 
             for (int i = 0; i < panes; i++) { /* one brightness a pane: displays, a poster, the door */
                 double a = r[0] + (r[1] - r[0]) * i / panes, b = r[0] + (r[1] - r[0]) * (i + 1) / panes;
                 double lo = town_chance(&rng, 0.35) ? r[2] + 0.7 : r[2] + 0.12;
-                town_wall_light(t, w, a + 0.05, b - 0.05, lo, r[3] - 0.08, -0.2, colour, level * town_range(&rng, 0.35, 0.6), "shop");
+                town_wall_light(t, w, a + 0.05, b - 0.05, lo, r[3] - 0.08, -0.2, colour, level * (0.35 + 0.1 * town_below(&rng, 3)), "shop");
                 if (i)
                     town_wall_rect(t, TM_FRAME, w, a - 0.05, a + 0.05, r[2], r[3], -0.17);
             }

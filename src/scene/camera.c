@@ -133,15 +133,15 @@ static void gather_lights(view_city *city, double radius) {
     }
 }
 
-/* Light that a view from eye along (dx, dy) takes in, nearer ones counting more. */
+/* Light that a view from eye along (dx, dy) takes in; at `soft` metres a light counts half as much as at none. */
 static double light_in_view(const view_city *city, const double eye[3], double dx, double dy, double half_angle, double reach,
-                            bool lamps_only) {
+                            double soft, bool lamps_only) {
     double sum = 0, cosine = cos(half_angle);
     for (size_t i = 0; i < city->lights.len; i++) {
         const view_light *l = &city->lights.data[i];
         double x = l->p[0] - eye[0], y = l->p[1] - eye[1], d = sqrt(x * x + y * y);
         if (d > 6 && d < reach && x * dx + y * dy > cosine * d && (!lamps_only || l->lamp))
-            sum += l->weight / (d + 30);
+            sum += l->weight / (d + soft);
     }
     return sum;
 }
@@ -155,7 +155,7 @@ static void overview(const view_city *city, double aspect, noc_camera *camera) {
         centre[k] = 0.5 * (city->min[k] + city->max[k]);
     }
     /* from the south, or the east where the city is longer that way, turned so that no street is seen end on */
-    double yaw = (size[1] > 1.2 * size[0] ? 0 : -M_PI / 2) + 0.42, pitch = 0.55;
+    double yaw = (size[1] > 1.2 * size[0] ? 0 : -M_PI / 2) + 0.3, pitch = 0.55;
     double d[3] = { cos(yaw) * cos(pitch), sin(yaw) * cos(pitch), sin(pitch) };
     double right[3] = { -sin(yaw), cos(yaw), 0 }, up[3] = { -cos(yaw) * sin(pitch), -sin(yaw) * sin(pitch), cos(pitch) };
     camera->fov_deg = 36;
@@ -245,7 +245,7 @@ static void aerial(view_city *city, double aspect, noc_camera *camera) {
             inside *= eye[k] > city->min[k] + edge && eye[k] < city->max[k] - edge ? 1 : 0.45;
         }
         double steep = (eye[2] - ground) / reach; /* a tower below would lift the eye too high */
-        double score = (1e-6 + light_in_view(city, eye, dx, dy, half_width(camera->fov_deg, aspect), 500, false)) * inside *
+        double score = (1e-6 + light_in_view(city, eye, dx, dy, half_width(camera->fov_deg, aspect), 500, 200, false)) * inside *
                        (0.1 + clear_share(scene, eye, target)) * (0.1 + clear_aside(scene, eye, target)) / (1 + NOC_MAX(steep - 0.5, 0) * 3);
         if (score > best * 1.0001) {
             best = score;
@@ -301,8 +301,8 @@ static double street_look(const view_city *city, const double eye[3], double asp
     for (int i = 0; i < DIRECTIONS; i++) {
         double a = 2 * M_PI * i / DIRECTIONS, dx = cos(a), dy = sin(a);
         double beside = NOC_MIN(free_way[(i + 1) % DIRECTIONS], free_way[(i + DIRECTIONS - 1) % DIRECTIONS]);
-        double lamps = light_in_view(city, eye, dx, dy, half_width(fov, aspect), 100, true);
-        double all = light_in_view(city, eye, dx, dy, half_width(fov, aspect), 100, false);
+        double lamps = light_in_view(city, eye, dx, dy, half_width(fov, aspect), 100, 30, true);
+        double all = light_in_view(city, eye, dx, dy, half_width(fov, aspect), 100, 30, false);
         /* a long way ahead, some room beside it, lamps along it; lit fronts help */
         double way = NOC_MIN(free_way[i], 110.0) * NOC_MIN(beside, 12.0) / 12;
         double score = way * (1e-3 + lamps + 0.5 * NOC_MIN(all - lamps, 2 * lamps + 10));

@@ -76,7 +76,7 @@ static size_t sphere_shape(const noc_light *l, double *xyz, uint32_t *indices, s
 static int light_material(noc_scene *scene, const noc_light *l) {
     noc_material m = { .roughness = 1, .cls = NOC_CLASS_LAMP, .two_sided = false };
     memcpy(m.emission, l->emission, sizeof(m.emission));
-    for (size_t i = scene->materials.len; i-- > 0 && i + 64 > scene->materials.len;) {
+    for (size_t i = scene->materials.len; i-- > 0 && i + 256 > scene->materials.len;) {
         const noc_material *have = &scene->materials.data[i];
         if (have->cls == m.cls && have->albedo[0] == 0 && have->albedo[1] == 0 && have->albedo[2] == 0 && have->f0 == 0 &&
             !have->two_sided && !memcmp(have->emission, m.emission, sizeof(m.emission)))
