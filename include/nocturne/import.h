@@ -9,6 +9,8 @@
 extern "C" {
 #endif
 
+typedef enum noc_obj_up { NOC_OBJ_UP_Y, NOC_OBJ_UP_Z } noc_obj_up;
+
 typedef struct noc_import_params {
     const char *crs;        /* CRS of inputs that name none (any PROJ definition), NULL: such inputs fail if they need one */
     const char *scene_crs;  /* CRS of the scene; NULL: the first input's if projected in metres, else UTM of its centre */
@@ -17,6 +19,7 @@ typedef struct noc_import_params {
     double lamp_height;     /* m, where not tagged; default 6 */
     double lamp_lumens;     /* lm, where neither flux nor wattage is known; default 5000 */
     double lamp_kelvin;     /* K, where not known; default 3000 */
+    noc_obj_up obj_up;      /* axis of OBJ files that points up (they do not say it); default y, as most programs write */
     noc_progress progress;
 } noc_import_params;
 

@@ -46,33 +46,3 @@ noc_status lamp_writer_end(lamp_writer *w) {
         noc_warn(w->sink->log, "%s: no street lamp among its %zu point features", w->place, w->features);
     return NOC_OK;
 }
-
-noc_status lamp_read_all(noc_stream *stream, noc_log *log, char **data, size_t *size) {
-    *data = NULL;
-    *size = 0;
-    size_t cap = 0;
-    for (;;) {
-        if (cap - *size < (1 << 16)) {
-            cap = cap ? cap * 2 : NOC_MIN((size_t)noc_stream_size(stream) + (1 << 17), (size_t)1 << 30);
-            char *grown = realloc(*data, cap); /* the file's author decides how much: no abort */
-            if (!grown) {
-                free(*data);
-                *data = NULL;
-                return noc_error(log, NOC_ERR_MEMORY, "%s: no memory to hold it", noc_stream_name(stream));
-            }
-            *data = grown;
-        }
-        size_t got;
-        noc_status status = noc_stream_read(stream, *data + *size, cap - *size - 1, &got);
-        if (status) {
-            free(*data);
-            *data = NULL;
-            return status;
-        }
-        if (!got)
-            break;
-        *size += got;
-    }
-    (*data)[*size] = 0;
-    return NOC_OK;
-}

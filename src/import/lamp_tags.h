@@ -59,9 +59,6 @@ noc_status lamp_writer_end(lamp_writer *w);
 bool lamp_csv_probe(const char *head, size_t size);
 noc_status lamp_csv_read(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format);
 
-/* The whole content of a stream, with a 0 behind it; *data is malloc'ed. For formats that are parsed in memory. */
-noc_status lamp_read_all(noc_stream *stream, noc_log *log, char **data, size_t *size);
-
 /* ---- words (lamp_words.c) ---- */
 
 typedef enum lamp_field {

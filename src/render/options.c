@@ -65,6 +65,7 @@ static const noc_option import_options[] = {
     REAL(P, lamp_height, "lamp-height", "City", 0.5, 60, "m", "height of lamps that are not tagged"),
     REAL(P, lamp_lumens, "lamp-lumens", "City", 0, 1e7, "lm", "flux of lamps with neither flux nor wattage"),
     REAL(P, lamp_kelvin, "lamp-kelvin", "City", 1000, 25000, "K", "colour temperature of lamps that tell none"),
+    CHOICE(P, obj_up, "obj-up", "City", "y|z", "axis of OBJ files that points up"),
     END,
 };
 #undef P

@@ -1,0 +1,342 @@
+/* Wavefront OBJ with MTL through Assimp. Researchers' night scenes come so, with their lamps as emissive surfaces.
+ *
+ * Units: metres, in the scene's local frame. OBJ does not say which axis is up; y is what most programs write, and
+ * noc_import_params.obj_up says otherwise. MTL: Kd is the diffuse reflectance (linear), Ke the radiance in cd/m2, Ks with
+ * illum 2 and above the reflectance of the glossy lobe at normal incidence, Ns its Blinn-Phong exponent n, turned into the
+ * GGX lobe of the same width, alpha^2 = 2 / (n + 2) (Walter et al. 2007, eq. 37 ff.). Textures are not read. */
+#include "import/import.h"
+#include "noc_config.h"
+#include "scene/scene.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* ---- probe ---- */
+
+static bool is_keyword(const char *line, size_t len) {
+    static const char *const keywords[] = { "v", "vt", "vn", "vp", "f", "o", "g", "s", "l", "p", "usemtl", "mtllib", "usemap",
+                                            "maplib", "deg", "cstype", "bevel", "lod", "fo" };
+    size_t n = 0;
+    while (n < len && line[n] != ' ' && line[n] != '\t' && line[n] != '\r')
+        n++;
+    for (size_t i = 0; i < NOC_COUNT(keywords); i++)
+        if (strlen(keywords[i]) == n && !memcmp(line, keywords[i], n))
+            return true;
+    return false;
+}
+
+/* Statements of OBJ in every line that is seen whole, one of them a vertex, a group or a material. */
+static bool probe(const char *head, size_t size) {
+    size_t statements = 0;
+    for (const char *p = head, *end = head + size; p < end;) {
+        const char *line = p, *stop = memchr(p, '\n', (size_t)(end - p));
+        p = stop ? stop + 1 : end;
+        size_t len = (size_t)((stop ? stop : end) - line);
+        while (len && (*line == ' ' || *line == '\t')) {
+            line++;
+            len--;
+        }
+        if (!len || *line == '#' || *line == '\r')
+            continue;
+        if (!is_keyword(line, len))
+            return statements > 0 && !stop; /* the last line may be cut */
+        statements++;
+    }
+    return statements > 0;
+}
+
+#if NOC_HAVE_ASSIMP
+
+#include <assimp/ObjMaterial.h>
+#include <assimp/cfileio.h>
+#include <assimp/cimport.h>
+#include <assimp/config.h>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <sys/stat.h>
+
+#define MAX_MTL ((size_t)256 << 20)
+
+/* The whole content, with a 0 behind it. */
+static noc_status read_all(noc_stream *stream, noc_log *log, char **data, size_t *size) {
+    *data = NULL;
+    *size = 0;
+    size_t cap = 0;
+    for (;;) {
+        if (cap - *size < (1 << 16)) {
+            cap = cap ? cap * 2 : NOC_MIN((size_t)noc_stream_size(stream) + (1 << 17), (size_t)1 << 30);
+            char *grown = realloc(*data, cap); /* the file's author decides how much: no abort */
+            if (!grown) {
+                free(*data);
+                *data = NULL;
+                return noc_error(log, NOC_ERR_MEMORY, "%s: no memory to hold it", noc_stream_name(stream));
+            }
+            *data = grown;
+        }
+        size_t got;
+        noc_status status = noc_stream_read(stream, *data + *size, cap - *size - 1, &got);
+        if (status) {
+            free(*data);
+            *data = NULL;
+            return status;
+        }
+        if (!got)
+            break;
+        *size += got;
+    }
+    (*data)[*size] = 0;
+    return NOC_OK;
+}
+
+/* ---- files as Assimp sees them: the OBJ from our stream, MTLs from beside it ---- */
+
+#define ROOT "@/" /* names that begin so lie in the OBJ's folder */
+
+typedef struct library {
+    const char *folder;   /* of the OBJ, with a slash at its end, or "" */
+    char *main_name;      /* what the OBJ is called to Assimp: its content decides, so always .obj */
+    char *data;
+    size_t size;
+    char *missing;        /* first library that could not be opened */
+} library;
+
+typedef struct open_file {
+    char *data;
+    size_t size, pos;
+    bool owned;
+} open_file;
+
+static size_t file_read(struct aiFile *f, char *to, size_t size, size_t count) {
+    open_file *o = (open_file *)f->UserData;
+    size_t items = size ? NOC_MIN(count, (o->size - o->pos) / size) : 0;
+    memcpy(to, o->data + o->pos, items * size);
+    o->pos += items * size;
+    return items;
+}
+
+static size_t file_write(struct aiFile *f, const char *from, size_t size, size_t count) { return 0; }
+static size_t file_tell(struct aiFile *f) { return ((open_file *)f->UserData)->pos; }
+static size_t file_size(struct aiFile *f) { return ((open_file *)f->UserData)->size; }
+static void file_flush(struct aiFile *f) {}
+
+static enum aiReturn file_seek(struct aiFile *f, size_t offset, enum aiOrigin origin) {
+    open_file *o = (open_file *)f->UserData;
+    size_t base = origin == aiOrigin_CUR ? o->pos : origin == aiOrigin_END ? o->size : 0;
+    size_t pos = base + offset; /* offsets from the end come as wrapped negatives */
+    if (pos > o->size)
+        return aiReturn_FAILURE;
+    o->pos = pos;
+    return aiReturn_SUCCESS;
+}
+
+static char *load_plain(const char *path, size_t *size) {
+    struct stat st;
+    FILE *f = !stat(path, &st) && S_ISREG(st.st_mode) && (size_t)st.st_size <= MAX_MTL ? fopen(path, "rb") : NULL;
+    if (!f)
+        return NULL;
+    char *data = noc_alloc((size_t)st.st_size + 1);
+    *size = fread(data, 1, (size_t)st.st_size, f);
+    fclose(f);
+    data[*size] = 0;
+    return data;
+}
+
+static struct aiFile *library_open(struct aiFileIO *io, const char *name, const char *mode) {
+    library *lib = (library *)io->UserData;
+    open_file o = { 0 };
+    if (!strcmp(name, lib->main_name)) {
+        o = (open_file){ .data = lib->data, .size = lib->size };
+    } else {
+        const char *relative = !strncmp(name, ROOT, strlen(ROOT)) ? name + strlen(ROOT) : name;
+        while (*relative == '.' && relative[1] == '/')
+            relative += 2;
+        char *path = noc_format("%s%s", *relative == '/' ? "" : lib->folder, relative);
+        o.data = load_plain(path, &o.size);
+        o.owned = true;
+        if (!o.data && !lib->missing)
+            lib->missing = noc_strdup(path);
+        free(path);
+        if (!o.data)
+            return NULL;
+    }
+    struct aiFile *f = noc_calloc(1, sizeof(*f));
+    open_file *held = noc_alloc(sizeof(*held));
+    *held = o;
+    *f = (struct aiFile){ .ReadProc = file_read, .WriteProc = file_write, .TellProc = file_tell, .FileSizeProc = file_size,
+                          .SeekProc = file_seek, .FlushProc = file_flush, .UserData = (char *)held };
+    return f;
+}
+
+static void library_close(struct aiFileIO *io, struct aiFile *f) {
+    open_file *o = (open_file *)f->UserData;
+    if (o->owned)
+        free(o->data);
+    free(o);
+    free(f);
+}
+
+/* ---- materials ---- */
+
+static bool get_colour(const struct aiMaterial *m, const char *key, float rgb[3]) {
+    struct aiColor4D c = { 0 };
+    if (aiGetMaterialColor(m, key, 0, 0, &c) != aiReturn_SUCCESS)
+        return false;
+    rgb[0] = c.r;
+    rgb[1] = c.g;
+    rgb[2] = c.b;
+    return true;
+}
+
+static bool get_float(const struct aiMaterial *m, const char *key, float *value) {
+    ai_real x;
+    unsigned one = 1;
+    if (aiGetMaterialFloatArray(m, key, 0, 0, &x, &one) != aiReturn_SUCCESS || !isfinite(x))
+        return false;
+    *value = (float)x;
+    return true;
+}
+
+static void clamp_colour(float rgb[3], float hi, bool *changed) {
+    for (int i = 0; i < 3; i++) {
+        float x = rgb[i] >= 0 ? NOC_MIN(rgb[i], hi) : 0; /* NaN becomes 0 */
+        *changed |= x != rgb[i];
+        rgb[i] = x;
+    }
+}
+
+static noc_material convert_material(const struct aiMaterial *m, const char *name, geo_issues *issues) {
+    noc_material out = noc_class_material(NOC_CLASS_OTHER);
+    float ks[3] = { 0 }, ns = 0, opacity = 1;
+    int illum = -1;
+    unsigned one = 1;
+    bool changed = false;
+    get_colour(m, "$clr.diffuse", out.albedo);
+    get_colour(m, "$clr.emissive", out.emission);
+    clamp_colour(out.albedo, 1, &changed);
+    clamp_colour(out.emission, 1e12f, &changed);
+    if (aiGetMaterialIntegerArray(m, "$mat.illum", 0, 0, &illum, &one) != aiReturn_SUCCESS)
+        illum = -1;
+    if (illum >= 2 && get_colour(m, "$clr.specular", ks) && get_float(m, "$mat.shininess", &ns)) {
+        clamp_colour(ks, 1, &changed);
+        out.f0 = 0.2126f * ks[0] + 0.7152f * ks[1] + 0.0722f * ks[2];
+        out.f0 = NOC_MIN(out.f0, 1);
+        float alpha2 = 2 / (NOC_MAX(ns, 0) + 2);
+        out.roughness = NOC_CLAMP(sqrtf(sqrtf(alpha2)), .05f, 1);
+    }
+    /* together they reflect no more than falls in */
+    float most = NOC_MAX(out.albedo[0], NOC_MAX(out.albedo[1], out.albedo[2]));
+    if (most + out.f0 > 1)
+        for (int i = 0; i < 3; i++)
+            out.albedo[i] *= (1 - out.f0) / most;
+    if (changed)
+        geo_issue(issues, true, "material values out of range, clamped", name);
+    if (get_float(m, "$mat.opacity", &opacity) && opacity < 1)
+        geo_issue(issues, true, "transparent material, rendered opaque", name);
+    return out;
+}
+
+/* ---- meshes ---- */
+
+static noc_status add_mesh(noc_scene *scene, const struct aiMesh *m, int material, bool z_up) {
+    double *xyz = noc_alloc_large((size_t)m->mNumVertices * 3, sizeof(*xyz));
+    uint32_t *indices = noc_alloc_large((size_t)m->mNumFaces * 3, sizeof(*indices));
+    noc_status status = NOC_OK;
+    if (!xyz || !indices) {
+        status = noc_error(scene->log, NOC_ERR_MEMORY, "mesh %s: no memory for %u vertices", m->mName.data, m->mNumVertices);
+    } else {
+        size_t n = 0;
+        for (size_t i = 0; i < m->mNumVertices; i++) {
+            const struct aiVector3D *v = &m->mVertices[i];
+            xyz[3 * i] = v->x;
+            xyz[3 * i + 1] = z_up ? v->y : -v->z;
+            xyz[3 * i + 2] = z_up ? v->z : v->y;
+        }
+        for (size_t i = 0; i < m->mNumFaces; i++)
+            if (m->mFaces[i].mNumIndices == 3) {
+                for (int k = 0; k < 3; k++)
+                    indices[3 * n + (size_t)k] = m->mFaces[i].mIndices[k];
+                n++;
+            }
+        noc_mesh mesh = { .vertex_count = m->mNumVertices, .positions = xyz, .triangle_count = n, .indices = indices,
+                          .material = material, .name = m->mName.length ? m->mName.data : NULL };
+        if (n && noc_scene_add_mesh(scene, &mesh) < 0)
+            status = NOC_ERR_UNSUPPORTED;
+    }
+    free(xyz);
+    free(indices);
+    return status;
+}
+
+static noc_status add_scene(const struct aiScene *from, noc_scene *scene, bool z_up, geo_issues *issues) {
+    int *materials = noc_alloc((from->mNumMaterials + 1) * sizeof(*materials));
+    noc_status status = NOC_OK;
+    memset(materials, 0xff, (from->mNumMaterials + 1) * sizeof(*materials));
+    for (unsigned i = 0; i < from->mNumMeshes && !status; i++) {
+        const struct aiMesh *m = from->mMeshes[i];
+        if (!m->mVertices || m->mMaterialIndex >= from->mNumMaterials)
+            continue;
+        int *material = &materials[m->mMaterialIndex];
+        if (*material < 0) {
+            struct aiString name = { 0 };
+            aiGetMaterialString(from->mMaterials[m->mMaterialIndex], "?mat.name", 0, 0, &name);
+            noc_material converted = convert_material(from->mMaterials[m->mMaterialIndex], name.data, issues);
+            *material = noc_scene_add_material(scene, &converted);
+        }
+        status = *material < 0 ? NOC_ERR_ARGUMENT : add_mesh(scene, m, *material, z_up);
+    }
+    free(materials);
+    return status;
+}
+
+static noc_status read_obj(const char *path, library *lib, const noc_import_params *params, noc_scene *scene, geo_issues *issues) {
+    struct aiFileIO io = { .OpenProc = library_open, .CloseProc = library_close, .UserData = (char *)lib };
+    struct aiPropertyStore *settings = aiCreatePropertyStore();
+    aiSetImportPropertyInteger(settings, AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    aiSetImportPropertyInteger(settings, AI_CONFIG_PP_RVC_FLAGS,
+                               aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
+                                   aiComponent_TEXCOORDS | aiComponent_TEXTURES);
+    const struct aiScene *from = aiImportFileExWithProperties(
+        lib->main_name, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices,
+        &io, settings);
+    noc_status status;
+    if (!from) {
+        const char *why = aiGetErrorString();
+        status = noc_error(scene->log, NOC_ERR_FORMAT, "%s: OBJ: %s", path, why && *why ? why : "not readable");
+    } else {
+        if (lib->missing)
+            noc_warn(scene->log, "%s: its materials in %s cannot be opened: default material", path, lib->missing);
+        status = add_scene(from, scene, params && params->obj_up == NOC_OBJ_UP_Z, issues);
+    }
+    aiReleaseImport(from);
+    aiReleasePropertyStore(settings);
+    return status;
+}
+
+static noc_status read_mesh(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,
+                            geo_issues *issues, const char **format) {
+    *format = "OBJ";
+    library lib = { 0 };
+    noc_status status = read_all(stream, scene->log, &lib.data, &lib.size);
+    if (status)
+        return status;
+    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strchr(base, '.');
+    char *folder = noc_format("%.*s", (int)(base - path), path);
+    lib.folder = folder;
+    lib.main_name = noc_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
+    status = read_obj(path, &lib, params, scene, issues);
+    free(folder);
+    free(lib.main_name);
+    free(lib.missing);
+    free(lib.data);
+    return status;
+}
+
+const noc_reader noc_reader_mesh = { .name = "OBJ", .reads = NOC_READS_MESH, .probe = probe, .read_mesh = read_mesh };
+
+#else
+
+const noc_reader noc_reader_mesh = { .name = "OBJ", .reads = NOC_READS_MESH, .probe = probe,
+                                     .missing = "OBJ files need Assimp, which this build is without" };
+
+#endif

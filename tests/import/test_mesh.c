@@ -1,0 +1,194 @@
+/* OBJ and MTL: units, axes, emission, gloss, n-gons, missing libraries, broken files. */
+#include "lamp_sink.h"
+
+#include "scene/scene.h"
+#include <sys/stat.h>
+
+typedef struct loaded {
+    noc_log *log;
+    noc_scene *scene;
+    geo_issues *issues;
+    noc_status status;
+    char error[1024], warning[1024];
+    int errors, warnings;
+    const char *format;
+} loaded;
+
+static void on_message(void *user, noc_log_level level, const char *text) {
+    loaded *l = user;
+    snprintf(level == NOC_LOG_ERROR ? l->error : l->warning, 1024, "%s", text);
+    *(level == NOC_LOG_ERROR ? &l->errors : &l->warnings) += 1;
+}
+
+static char folder[200];
+
+static void write_file(const char *name, const void *data, size_t size) {
+    char path[300];
+    snprintf(path, sizeof(path), "%s/%s", folder, name);
+    FILE *f = fopen(path, "wb");
+    assert_non_null(f);
+    assert_int_equal(fwrite(data, 1, size, f), size);
+    fclose(f);
+}
+
+static void load(loaded *l, const char *name, noc_obj_up up) {
+    *l = (loaded){ 0 };
+    char path[300];
+    snprintf(path, sizeof(path), "%s/%s", folder, name);
+    l->log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = on_message, .user = l });
+    l->scene = noc_scene_create(l->log);
+    l->issues = geo_issues_create();
+    noc_import_params params = noc_import_default_params();
+    params.obj_up = up;
+    noc_stream *stream = noc_stream_open(path, l->log);
+    l->status = stream ? noc_reader_mesh.read_mesh(path, stream, &params, l->scene, l->issues, &l->format) : NOC_ERR_IO;
+    noc_stream_close(stream);
+}
+
+static void unload(loaded *l) {
+    noc_scene_destroy(l->scene);
+    geo_issues_destroy(l->issues);
+    noc_log_destroy(l->log);
+}
+
+static const char obj[] = "# a test\n"
+                          "mtllib test.mtl\n"
+                          "o floor\n"
+                          "v 0 0 0\nv 10 0 0\nv 10 0 -10\nv 5 0 -12\nv 0 0 -10\n"
+                          "usemtl ground\n"
+                          "f 1 2 3 4 5\n"
+                          "o lamp\n"
+                          "v 4 5 -4\nv 5 5 -4\nv 5 5 -5\n"
+                          "usemtl glow\n"
+                          "f 8 7 6\n"
+                          "l 1 2\n";
+static const char mtl[] = "newmtl ground\nKd 0.2 0.3 0.4\nKs 0.04 0.04 0.04\nNs 98\nillum 2\n"
+                          "newmtl glow\nKd 0.9 0.9 0.9\nKs 0.5 0.5 0.5\nNs 0\nKe 12000 8000 4000.5\nd 0.5\nillum 2\n";
+
+static const noc_material *material_of(const loaded *l, const char *mesh) {
+    for (size_t i = 0; i < l->scene->meshes.len; i++)
+        if (!strcmp(l->scene->meshes.data[i].name, mesh))
+            return &l->scene->materials.data[l->scene->meshes.data[i].material];
+    fail_msg("no mesh %s", mesh);
+    return NULL;
+}
+
+static void test_reads(void **state) {
+    loaded l;
+    write_file("test.mtl", mtl, strlen(mtl));
+    write_file("named.anything", obj, strlen(obj)); /* the content decides */
+    load(&l, "named.anything", NOC_OBJ_UP_Y);
+    assert_int_equal(l.status, NOC_OK);
+    assert_int_equal(l.warnings + l.errors, 0);
+    assert_string_equal(l.format, "OBJ");
+    noc_scene_info info;
+    noc_scene_get_info(l.scene, &info);
+    assert_int_equal(info.triangles, 4); /* a pentagon and a triangle; lines are left out */
+    assert_float_equal(info.bounds_max[1], 12, 1e-5);
+    assert_float_equal(info.bounds_max[2], 5, 1e-5);
+    const noc_material *ground = material_of(&l, "floor"), *glow = material_of(&l, "lamp");
+    assert_float_equal(ground->albedo[1], .3, 1e-6);
+    assert_float_equal(ground->f0, .04, 1e-6);
+    assert_float_equal(ground->roughness * ground->roughness, sqrt(2. / 100), 1e-5); /* alpha^2 = 2 / (98 + 2) */
+    assert_float_equal(glow->emission[0], 12000, 1e-2);
+    assert_float_equal(glow->emission[2], 4000.5, 1e-2);
+    assert_true(glow->albedo[0] + glow->f0 <= 1.00001f);
+    assert_int_equal(geo_issues_count(l.issues), 1); /* transparency */
+    assert_int_equal(noc_scene_commit(l.scene), NOC_OK);
+    assert_int_equal(l.scene->lights.len, 1);
+    const noc_light_record *r = l.scene->lights.data;
+    assert_true(r->a[0] * r->b[1] - r->a[1] * r->b[0] < 0); /* wound to face down; the turn of axes keeps it */
+    unload(&l);
+    load(&l, "named.anything", NOC_OBJ_UP_Z);
+    noc_scene_get_info(l.scene, &info);
+    assert_float_equal(info.bounds_min[2], -12, 1e-5);
+    assert_float_equal(info.bounds_max[1], 5, 1e-5);
+    unload(&l);
+}
+
+static void test_missing_library(void **state) {
+    loaded l;
+    const char text[] = "mtllib sub/none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
+    write_file("missing.obj", text, strlen(text));
+    load(&l, "missing.obj", NOC_OBJ_UP_Y);
+    assert_int_equal(l.status, NOC_OK);
+    assert_int_equal(l.warnings, 1);
+    assert_non_null(strstr(l.warning, "sub/none.mtl"));
+    assert_int_equal(l.scene->indices.len, 3);
+    unload(&l);
+}
+
+static void test_probe(void **state) {
+    static const char *const yes[] = { "v 1 2 3\n", "# x\n\nmtllib a.mtl\no b\nv 1", "\r\ng roof\r\nusemtl x\r\n" };
+    static const char *const no[] = { "", "<?xml version='1.0'?>", "{\"a\": 1}", "vertex 1 2 3\n", "lon,lat,lamp\n1,2,3\n",
+                                      "ply\nformat ascii 1.0\n", "# only a comment\n" };
+    for (size_t i = 0; i < NOC_COUNT(yes); i++)
+        assert_true(noc_reader_mesh.probe(yes[i], strlen(yes[i])));
+    for (size_t i = 0; i < NOC_COUNT(no); i++)
+        assert_false(noc_reader_mesh.probe(no[i], strlen(no[i])));
+}
+
+/* Cut, with bytes changed, with mad indices: an error with the file's name, or a scene; never a crash. */
+static void test_broken(void **state) {
+    static const char *const bad[] = { "v 0 0 0\nf 1 2 3\n# an index too large\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -7 -8 -9\n# negative\n",
+                                       "v nan inf 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n# numbers\n", "v\nv 1\nf\nf 1\nusemtl\nmtllib\no\ng\n",
+                                       "f 99999999999999999999 1 2\nv 1 2 3\n# overflow\n", "v 1 2 3\n", "o only\ng names\n# no faces\n" };
+    loaded l;
+    for (size_t i = 0; i < NOC_COUNT(bad); i++) {
+        write_file("bad.obj", bad[i], strlen(bad[i]));
+        load(&l, "bad.obj", NOC_OBJ_UP_Y);
+        assert_int_equal(l.errors, l.status != NOC_OK);
+        if (l.status)
+            assert_non_null(strstr(l.error, "bad.obj"));
+        unload(&l);
+    }
+    uint32_t seed = 1;
+    for (int i = 0; i < 400; i++) {
+        char text[sizeof(obj)], library[sizeof(mtl)];
+        memcpy(text, obj, sizeof(obj));
+        memcpy(library, mtl, sizeof(mtl));
+        size_t size = strlen(obj);
+        for (int k = 0; k < i % 7; k++) {
+            seed = seed * 1664525u + 1013904223u;
+            text[(seed >> 8) % size] = (char)(seed >> 3);
+            library[(seed >> 7) % strlen(mtl)] = (char)(seed >> 5);
+        }
+        if (i % 2)
+            size = size * (size_t)(i % 50) / 50 + 1;
+        write_file("test.mtl", library, strlen(mtl));
+        write_file("bad.obj", text, size);
+        load(&l, "bad.obj", NOC_OBJ_UP_Y);
+        assert_int_equal(l.errors > 0, l.status != NOC_OK);
+        unload(&l);
+    }
+}
+
+static int set_up(void **state) {
+    const char *tmp = getenv("TMPDIR");
+    snprintf(folder, sizeof(folder), "%s/nocturne-mesh-%d", tmp && *tmp ? tmp : "/tmp", (int)getpid());
+    return mkdir(folder, 0700);
+}
+
+static int tear_down(void **state) {
+    static const char *const files[] = { "test.mtl", "named.anything", "missing.obj", "bad.obj" };
+    for (size_t i = 0; i < NOC_COUNT(files); i++) {
+        char path[300];
+        snprintf(path, sizeof(path), "%s/%s", folder, files[i]);
+        unlink(path);
+    }
+    return rmdir(folder);
+}
+
+int main(void) {
+    if (noc_reader_mesh.missing) {
+        print_message("1..0 # SKIP built without Assimp\n");
+        return 0;
+    }
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_reads),
+        cmocka_unit_test(test_missing_library),
+        cmocka_unit_test(test_probe),
+        cmocka_unit_test(test_broken),
+    };
+    return cmocka_run_group_tests_name("import/mesh", tests, set_up, tear_down);
+}
