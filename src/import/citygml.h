@@ -82,6 +82,7 @@ typedef struct cg_numbers {
     char cs, ts, decimal; /* gml:coordinates; 0, 0, '.' for lists separated by blanks */
     uint32_t tuple;      /* gml:coordinates: numbers a tuple, 0 before the first ended */
     uint32_t in_tuple;
+    bool after_cs;       /* nothing but blanks since the last separator of numbers */
 } cg_numbers;
 
 void cg_numbers_begin(cg_numbers *n, char decimal, char cs, char ts);

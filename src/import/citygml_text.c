@@ -33,7 +33,7 @@ static const char *scan_plain(const char *s, const char *end, double *out) {
 void cg_numbers_begin(cg_numbers *n, char decimal, char cs, char ts) {
     n->values.len = 0;
     n->token_len = 0;
-    n->bad = false;
+    n->bad = n->after_cs = false;
     n->decimal = decimal;
     n->cs = cs;
     n->ts = ts;
@@ -102,12 +102,14 @@ static void add_list(cg_numbers *n, const char *s, const char *end) {
 /* gml:coordinates: separators of one's own choice, and blanks besides. */
 static void add_tuples(cg_numbers *n, const char *s, const char *end) {
     for (; s < end; s++) {
-        bool tuple_ends = *s == n->ts || (is_blank(*s) && is_blank(n->ts));
-        if (tuple_ends || *s == n->cs || is_blank(*s)) {
+        bool blank = is_blank(*s), tuple_ends = *s == n->ts || (blank && is_blank(n->ts));
+        if (tuple_ends || *s == n->cs || blank) {
             end_token(n);
-            if (tuple_ends)
+            if (tuple_ends && !(blank && n->after_cs)) /* "1, 2" is one tuple */
                 end_tuple(n);
+            n->after_cs = *s == n->cs || (blank && n->after_cs);
         } else {
+            n->after_cs = false;
             add_to_token(n, *s == n->decimal ? '.' : *s);
         }
     }

@@ -132,7 +132,7 @@ static noc_status city_read(city_sink *s, const char *path, int lod) {
 }
 
 /* Reads a document from memory. */
-static noc_status city_read_bytes(city_sink *s, const void *data, size_t size, int lod) {
+static inline noc_status city_read_bytes(city_sink *s, const void *data, size_t size, int lod) {
     char path[] = "/tmp/noc-citygml-XXXXXX";
     int fd = mkstemp(path);
     assert_true(fd >= 0);
@@ -144,7 +144,7 @@ static noc_status city_read_bytes(city_sink *s, const void *data, size_t size, i
 }
 
 /* How often a reason was counted. */
-static size_t city_issue(const city_sink *s, const char *wanted) {
+static inline size_t city_issue(const city_sink *s, const char *wanted) {
     for (size_t i = 0; i < geo_issues_count(s->sink.issues); i++) {
         const char *reason, *examples;
         bool repaired;
@@ -157,7 +157,7 @@ static size_t city_issue(const city_sink *s, const char *wanted) {
 }
 
 /* The polygon of an id; fails if there is not exactly one. */
-static const seen_polygon *city_find(const city_sink *s, const char *id) {
+static inline const seen_polygon *city_find(const city_sink *s, const char *id) {
     const seen_polygon *found = NULL;
     for (size_t i = 0; i < s->polygons.len; i++) {
         if (strcmp(s->polygons.data[i].id, id))
