@@ -27,7 +27,7 @@ static const noc_option *options(void) { return own_options; }
 static int run(void *arguments);
 
 static const render_args defaults = {
-    .frames = 16, .view = NOC_VIEW_STREET, .fov = 50, .exposure = "auto",
+    .frames = 32, .view = NOC_VIEW_STREET, .fov = 50, .exposure = "auto",
     .render = noc_render_default_params(), .display = noc_display_default_params(),
     .import = noc_import_default_params(), .city = noc_city_default_params(),
 };
