@@ -1,0 +1,268 @@
+/* core/light.h: every kind of light against closed forms, and on input that no city holds. */
+#include "core_test.h"
+#include "core/surface.h"
+
+static const float L = 100; /* cd/m2, or cd */
+
+static light make_sphere(v3 centre, float r) {
+    return (light){ .p = centre, .kind = LIGHT_SPHERE, .radius = r, .e = { L, L, L } };
+}
+static light make_flat(uint32_t kind, v3 p, v3 a, v3 b) {
+    return (light){ .p = p, .kind = kind, .a = a, .b = b, .e = { L, L, L } };
+}
+static light make_disc(v3 centre, v3 n, float r) {
+    v3 a = normalised(cross3(fabsf(n.z) < 0.9f ? V3(0, 0, 1) : V3(1, 0, 0), n));
+    return make_flat(LIGHT_DISC, centre, mul3(a, r), mul3(cross3(n, a), r));
+}
+
+/* Irradiance by the midpoint rule over the unit square. */
+static double irradiance(light l, v3 y, v3 n, int side) {
+    double sum = 0;
+    for (int i = 0; i < side; i++)
+        for (int j = 0; j < side; j++) {
+            light_sample s = sample_light(l, y, ((float)i + 0.5f) / (float)side, ((float)j + 0.5f) / (float)side);
+            double c = (double)n.x * s.wi.x + (double)n.y * s.wi.y + (double)n.z * s.wi.z;
+            sum += c > 0 ? c * s.le.x : 0;
+        }
+    return sum / ((double)side * side);
+}
+
+/* Lambert's formula for a polygon (corners in order, seen from its front), clipped by the receiver's horizon; doubles. */
+static double polygon_irradiance(const v3 *corners, int count, v3 y, v3 n) {
+    double p[16][3], h[16], q[16][3];
+    int m = 0;
+    for (int i = 0; i < count; i++) {
+        p[i][0] = (double)corners[i].x - y.x;
+        p[i][1] = (double)corners[i].y - y.y;
+        p[i][2] = (double)corners[i].z - y.z;
+        h[i] = p[i][0] * n.x + p[i][1] * n.y + p[i][2] * n.z;
+    }
+    for (int i = 0; i < count; i++) {
+        int j = (i + 1) % count;
+        if (h[i] >= 0)
+            memcpy(q[m++], p[i], sizeof(p[i]));
+        if ((h[i] >= 0) != (h[j] >= 0)) {
+            double t = h[i] / (h[i] - h[j]);
+            for (int k = 0; k < 3; k++)
+                q[m][k] = p[i][k] + t * (p[j][k] - p[i][k]);
+            m++;
+        }
+    }
+    double e = 0;
+    for (int i = 0; i < m; i++) {
+        const double *a = q[i], *b = q[(i + 1) % m];
+        double c[3] = { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0] };
+        double sine = sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
+        if (sine > 0)
+            e += atan2(sine, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) * (c[0] * n.x + c[1] * n.y + c[2] * n.z) / sine;
+    }
+    return fabs(e) * L / 2;
+}
+
+static void test_sphere(void **state) {
+    dice d = { 1 };
+    for (int i = 0; i < 300; i++) {
+        v3 c = random_in_box(&d, 50), n = random_direction(&d);
+        double r = uniform(&d, 0.05, 3), dist = r * uniform(&d, 1.05, 30);
+        double up = uniform(&d, r / dist, 1); /* cosine between n and the axis: the whole sphere over the horizon */
+        v3 t = normalised(cross3(n, random_direction(&d)));
+        v3 axis = add3(mul3(n, (float)up), mul3(t, (float)sqrt(1 - up * up)));
+        v3 y = sub3(c, mul3(axis, (float)dist));
+        double w[3] = { (double)c.x - y.x, (double)c.y - y.y, (double)c.z - y.z }; /* as rounded */
+        double d2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
+        double cosine = (w[0] * n.x + w[1] * n.y + w[2] * n.z) / sqrt(d2);
+        double rf = (float)r;
+        if (cosine < rf / sqrt(d2) + 1e-4)
+            continue;
+        assert_close(irradiance(make_sphere(c, (float)r), y, n, 64), CORE_PI * L * rf * rf / d2 * cosine, 2e-3);
+    }
+    /* point-like, and near enough to fill half the sky */
+    v3 up = V3(0, 0, 1), o = V3(0, 0, 0);
+    assert_close(irradiance(make_sphere(V3(0, 0, 1e5f), 0.1f), o, up, 64), CORE_PI * L * 1e-12, 1e-4);
+    assert_close(irradiance(make_sphere(V3(0, 0, 1.001f), 1), o, up, 512), CORE_PI * L / (1.001 * 1.001), 2e-3);
+}
+
+static void test_disc(void **state) {
+    dice d = { 2 };
+    for (int i = 0; i < 100; i++) {
+        v3 n = random_direction(&d), y = random_in_box(&d, 20);
+        double r = uniform(&d, 0.05, 2), dist = r * uniform(&d, 0.2, 20);
+        light l = make_disc(add3(y, mul3(n, (float)dist)), mul3(n, -1), (float)r);
+        assert_close(irradiance(l, y, n, 256), CORE_PI * L * r * r / (r * r + dist * dist), 2e-3);
+    }
+}
+
+/* Polygons at any receiver: above, below and across its horizon, from both sides. */
+static void check_polygon(uint32_t kind, uint64_t seed) {
+    dice d = { seed };
+    int lit = 0, dark = 0;
+    for (int i = 0; i < 120; i++) {
+        v3 p = random_in_box(&d, 3), a = random_in_box(&d, 2), b = random_in_box(&d, 2);
+        v3 y = random_in_box(&d, 5), n = random_direction(&d);
+        v3 f = cross3(a, b), w = sub3(y, p);
+        double height = dot3(f, w) / sqrtf(dot3(f, f));
+        if (fabs(height) < 0.5)
+            continue; /* the midpoint rule would need a finer grid */
+        light l = make_flat(kind, p, a, b);
+        double have = irradiance(l, y, n, 256);
+        v3 corners[4] = { p, add3(p, a), add3(p, add3(a, b)), add3(p, b) };
+        if (kind == LIGHT_TRIANGLE)
+            corners[2] = corners[3];
+        double want = polygon_irradiance(corners, kind == LIGHT_TRIANGLE ? 3 : 4, y, n);
+        if (height < 0) {
+            assert_true(have == 0);
+            dark++;
+            l.flags = LIGHT_TWO_SIDED;
+            have = irradiance(l, y, n, 256);
+        }
+        if (fabs(have - want) > 2e-3 * want + 1e-4 * L)
+            fail_msg("receiver %d: %g lx by sampling, %g lx by Lambert's formula", i, have, want);
+        lit += want > 0.01 * L;
+    }
+    assert_true(lit > 20 && dark > 20);
+}
+static void test_parallelogram(void **state) { check_polygon(LIGHT_PARALLELOGRAM, 3); }
+static void test_triangle(void **state) { check_polygon(LIGHT_TRIANGLE, 4); }
+
+static void test_point(void **state) {
+    dice d = { 5 };
+    for (int i = 0; i < 300; i++) {
+        light l = { .p = random_in_box(&d, 30), .kind = LIGHT_POINT, .e = { L, L, L } };
+        v3 y = random_in_box(&d, 30), n = random_direction(&d);
+        double w[3] = { (double)l.p.x - y.x, (double)l.p.y - y.y, (double)l.p.z - y.z };
+        double d2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
+        double c = (w[0] * n.x + w[1] * n.y + w[2] * n.z) / sqrt(d2);
+        if (fabs(c) > 0.01)
+            assert_close(irradiance(l, y, n, 2), c > 0 ? L * c / d2 : 0, 1e-4);
+    }
+}
+
+/* The place a sample stands for lies on the light, on the side that y sees, in the direction that is told. */
+static void test_samples_lie_on_the_light(void **state) {
+    dice d = { 6 };
+    for (int i = 0; i < 20000; i++) {
+        uint32_t kind = (uint32_t)(roll(&d) % 5);
+        v3 p = random_in_box(&d, 10), y = random_in_box(&d, 20);
+        v3 a = random_in_box(&d, 2), b = random_in_box(&d, 2);
+        light l = make_flat(kind, p, a, b);
+        l.flags = LIGHT_TWO_SIDED;
+        if (kind == LIGHT_DISC)
+            l = make_disc(p, random_direction(&d), (float)uniform(&d, 0.1, 2));
+        if (kind == LIGHT_SPHERE)
+            l = make_sphere(p, (float)uniform(&d, 0.1, 2));
+        float u = (float)uniform(&d, 0, 1), v = (float)uniform(&d, 0, 1);
+        light_sample s = sample_light(l, y, u, v);
+        if (kind == LIGHT_SPHERE && s.le.x == 0)
+            continue; /* inside */
+        v3 x = add3(y, mul3(s.wi, s.dist)), w = sub3(x, l.p);
+        assert_true(fabsf(dot3(s.wi, s.wi) - 1) < 1e-5f);
+        if (kind == LIGHT_POINT) {
+            assert_true(dot3(w, w) < 1e-8f);
+        } else if (kind == LIGHT_SPHERE) {
+            assert_true(fabsf(sqrtf(dot3(w, w)) - l.radius) < 2e-3f * l.radius + 2e-4f);
+            assert_true(dot3(w, s.wi) <= 2e-2f * l.radius);
+        } else {
+            v3 n = cross3(l.a, l.b);
+            assert_true(fabsf(dot3(w, n)) < 2e-5f * (1 + sqrtf(dot3(n, n))) * 20);
+            /* coordinates along the edges, by Cramer's rule in the light's plane */
+            double n2 = dot3(n, n);
+            double cu = dot3(cross3(w, l.b), n) / n2, cv = dot3(cross3(l.a, w), n) / n2, e = 2e-4 / sqrt(n2) + 1e-4;
+            if (kind == LIGHT_DISC)
+                assert_true(cu * cu + cv * cv < 1 + 2 * e);
+            else
+                assert_true(cu > -e && cv > -e && (kind == LIGHT_TRIANGLE ? cu + cv < 1 + 2 * e : cu < 1 + e && cv < 1 + e));
+        }
+    }
+}
+
+static void test_receiver_where_no_light_comes(void **state) {
+    dice d = { 7 };
+    for (int i = 0; i < 2000; i++) {
+        float u = (float)uniform(&d, 0, 1), v = (float)uniform(&d, 0, 1);
+        light s = make_sphere(random_in_box(&d, 100), (float)uniform(&d, 0.1, 5));
+        v3 inside = add3(s.p, mul3(random_direction(&d), s.radius * (float)uniform(&d, 0, 0.999)));
+        light_sample got = sample_light(s, inside, u, v);
+        assert_true(got.le.x == 0 && got.le.y == 0 && got.le.z == 0 && finite3(got.wi) && isfinite(got.dist));
+        /* in the plane of a flat light: a horizontal one, so that the heights are equal to the bit */
+        uint32_t kind = LIGHT_DISC + (uint32_t)(roll(&d) % 3);
+        light f = make_flat(kind, V3(1, 2, 3), V3(2, 0, 0), V3(0, 2, 0));
+        v3 beside = V3((float)uniform(&d, -5, 5), (float)uniform(&d, -5, 5), 3);
+        got = sample_light(f, beside, u, v);
+        assert_true(got.le.x == 0 && finite3(got.wi) && isfinite(got.dist));
+        /* behind: nothing, unless the light has two sides */
+        v3 behind = V3(beside.x, beside.y, (float)uniform(&d, -5, 2.9));
+        assert_true(sample_light(f, behind, u, v).le.x == 0);
+        f.flags = LIGHT_TWO_SIDED;
+        light_sample two = sample_light(f, behind, u, v);
+        f.flags = 0;
+        assert_true(two.le.x > 0);
+        assert_close(two.le.x, sample_light(f, V3(behind.x, behind.y, 6 - behind.z), u, v).le.x, 1e-4);
+    }
+}
+
+/* Numbers that break things. */
+static float odd_number(dice *d, double largest) {
+    switch (roll(d) % 8) {
+    case 0: return 0;
+    case 1: return (float)uniform(d, -1e-6, 1e-6);
+    case 2: return (float)uniform(d, -1e-30, 1e-30);
+    case 3: return (float)(roll(d) & 1 ? largest : -largest);
+    case 4: return (float)floor(uniform(d, -3, 3));
+    default: return (float)(uniform(d, -1, 1) * pow(10, uniform(d, -6, log10(largest))));
+    }
+}
+static v3 odd_v3(dice *d, double largest) { return V3(odd_number(d, largest), odd_number(d, largest), odd_number(d, largest)); }
+
+/* Coordinates to 10,000 km, lights to 10 km, 1e9 cd/m2: nothing but finite numbers comes out. */
+static void test_extreme_input(void **state) {
+    dice d = { 8 };
+    size_t lit = 0;
+    for (int i = 0; i < 400000; i++) {
+        light l = { .p = odd_v3(&d, 1e7), .kind = (uint32_t)(roll(&d) % 5), .a = odd_v3(&d, 1e4), .b = odd_v3(&d, 1e4),
+                    .radius = fabsf(odd_number(&d, 1e4)), .flags = (uint32_t)(roll(&d) & 1), .e = { 1e9f, 1e9f, 1e9f } };
+        surf s = { .p = roll(&d) % 4 ? odd_v3(&d, 1e7) : add3(l.p, odd_v3(&d, 1)), .n = random_direction(&d),
+                   .albedo = { .5f, .5f, .5f }, .f0 = roll(&d) & 1 ? 0 : 0.5f, .alpha = roll(&d) & 1 ? 0.0025f : 1 };
+        s.wo = roll(&d) % 4 ? random_direction(&d) : s.n;
+        float u = (float)(roll(&d) % 3) / 2, v = (float)uniform(&d, 0, 1);
+        light_sample got = sample_light(l, s.p, u, v);
+        v3 c = reflected(s, got);
+        float p = target(s, l, u, v);
+        if (!finite3(got.wi) || !isfinite(got.dist) || !finite3(got.le) || !finite3(c))
+            fail_msg("case %d, kind %u: wi %g %g %g, dist %g, le %g", i, l.kind, got.wi.x, got.wi.y, got.wi.z, got.dist, got.le.x);
+        assert_true(got.le.x >= 0 && got.dist >= -l.radius && p >= 0 && isfinite(p));
+        lit += p > 0;
+    }
+    assert_true(lit > 10000);
+}
+
+/* Whatever is put in, even NaN and infinity: a target is a finite number that is not negative. */
+static void test_target_of_nonsense(void **state) {
+    dice d = { 9 };
+    static const float bad[] = { NAN, INFINITY, -INFINITY, 1e38f, -1e38f, 0, 1, 1e-45f };
+    for (int i = 0; i < 100000; i++) {
+        float f[32];
+        for (int j = 0; j < 32; j++)
+            f[j] = roll(&d) % 3 ? (float)uniform(&d, -2, 2) : bad[roll(&d) % 8];
+        light l = { .p = { f[0], f[1], f[2] }, .kind = (uint32_t)(roll(&d) % 5), .a = { f[3], f[4], f[5] },
+                    .b = { f[6], f[7], f[8] }, .radius = f[9], .e = { f[10], f[11], f[12] } };
+        surf s = { .p = { f[13], f[14], f[15] }, .n = { f[16], f[17], f[18] }, .wo = { f[19], f[20], f[21] },
+                   .albedo = { f[22], f[23], f[24] }, .f0 = f[25], .alpha = f[26] };
+        float p = target(s, l, (float)uniform(&d, 0, 1), (float)uniform(&d, 0, 1));
+        assert_true(p >= 0 && isfinite(p));
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_sphere),
+        cmocka_unit_test(test_disc),
+        cmocka_unit_test(test_parallelogram),
+        cmocka_unit_test(test_triangle),
+        cmocka_unit_test(test_point),
+        cmocka_unit_test(test_samples_lie_on_the_light),
+        cmocka_unit_test(test_receiver_where_no_light_comes),
+        cmocka_unit_test(test_extreme_input),
+        cmocka_unit_test(test_target_of_nonsense),
+    };
+    return cmocka_run_group_tests_name("light", tests, NULL, NULL);
+}
