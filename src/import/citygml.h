@@ -12,9 +12,9 @@
 #include <expat.h>
 
 #define CG_MAX_DEPTH 200          /* elements in elements */
-#define CG_MAX_NUMBERS (1u << 27) /* in one ring; more is taken for an attack */
+#define CG_MAX_NUMBERS (1u << 25) /* in one polygon; more is taken for an attack */
 #define CG_MAX_CRS 64             /* different srsNames in one file */
-#define CG_MAX_OBJECT ((size_t)4 << 30) /* bytes of one top-level object */
+#define CG_MAX_OBJECT ((size_t)1 << 30) /* bytes of one top-level object, and of what is shared between objects */
 #define CG_NONE UINT32_MAX
 #define CG_EMITTED UINT32_MAX
 
@@ -141,6 +141,8 @@ typedef struct cg_object {
     NOC_ARRAY(cg_geometry) geometries;
     NOC_ARRAY(cg_surface) surfaces;
     NOC_ARRAY(cg_target) targets;
+    noc_map ids;          /* of targets, once a reference asks */
+    size_t steps;         /* references followed so far */
 } cg_object;
 
 /* A surface with references followed. */
@@ -149,6 +151,7 @@ typedef struct cg_item {
     uint32_t geometry;
     bool flip, shown;
     bool twin;           /* not shown, for the same shape is already */
+    bool local;          /* written as part of an implicit geometry: its coordinates are no places */
     bool stored;         /* a copy of another object's surface */
     bool elsewhere;      /* that other object shows it */
 } cg_item;
@@ -167,6 +170,7 @@ typedef struct cg_selection {
     NOC_ARRAY(uint64_t) shapes;      /* hash set of the shapes already shown; 0: free slot */
     NOC_ARRAY(cg_body) bodies;       /* parallel to the object's features */
     int lod;                         /* of the object; -1: nothing to show */
+    bool tangled;                    /* some references led in circles or multiplied each other, and were given up */
     bool above;                      /* there is geometry, but only over the highest level asked for */
     size_t shown, duplicates;
 } cg_selection;
@@ -260,6 +264,8 @@ void cg_characters(void *user, const XML_Char *text, int size);
 noc_status cg_fail(cg_parser *p, noc_status status, const char *fmt, ...) NOC_PRINTF(3, 4);
 /* Counts a defect of the file; once, though the file may be read several times. */
 void cg_issue(cg_parser *p, bool repaired, const char *reason, const char *id);
+/* Whether the object may still grow; false after an error. */
+bool cg_object_room(cg_parser *p);
 void cg_object_clear(cg_object *object);
 void cg_object_free(cg_object *object);
 
@@ -275,6 +281,8 @@ const char *cg_report_id(const cg_parser *p, const char *polygon_id, uint32_t fe
 
 /* citygml_select.c */
 void cg_resolve(cg_parser *p);  /* surfaces and stored ones -> selection.items, .missing */
+/* Appends what an id leads to, for a surface of that geometry. */
+void cg_follow(cg_parser *p, const char *id, uint32_t geometry, bool flip);
 void cg_select(cg_parser *p);   /* level of detail, what is shown */
 int cg_function_class(const cg_feature_type *type, const char *word, bool plateau); /* noc_class or -1 */
 

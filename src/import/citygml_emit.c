@@ -211,6 +211,8 @@ static void emit_object(cg_parser *p) {
     cg_selection *s = &p->selection;
     for (size_t i = 0; i < s->missing.len; i++)
         geo_issue(p->sink->issues, false, "unresolved xlink", s->missing.data[i]);
+    if (s->tangled)
+        geo_issue(p->sink->issues, false, "xlinks that lead in circles", cg_report_id(p, NULL, 0));
     p->dropped += s->duplicates;
     if (emit_lamp(p))
         return;
@@ -252,25 +254,24 @@ static cg_polygon *copy_polygon(cg_store *store, cg_polygon *polygon) {
     return polygon->copy = copy;
 }
 
-/* Surfaces that an id of this object leads to; references among them only where they stay in it. */
-static void store_target(cg_parser *p, const cg_target *target, cg_stored *stored, bool flip, int links) {
-    const cg_object *object = &p->object;
-    for (uint32_t i = target->first; i < target->first + target->count; i++) {
-        const cg_surface *s = &object->surfaces.data[i];
-        bool turned = flip ^ s->flip ^ target->flip;
-        if (!s->href) {
-            bool elsewhere = s->polygon->shown == p->selections || object->geometries.data[s->geometry].implicit;
-            array_push(&stored->items, (cg_item){ .polygon = copy_polygon(&p->store, s->polygon), .flip = turned,
-                                                  .elsewhere = elsewhere });
+/* Moves the surfaces that an id led to, from position `first` of the selection, into the store. */
+static void store_items(cg_parser *p, size_t first, cg_stored *stored) {
+    cg_selection *s = &p->selection;
+    for (size_t i = first; i < s->items.len; i++) {
+        cg_item item = s->items.data[i];
+        if (!item.polygon)
             continue;
-        }
-        for (size_t k = 0; k < object->targets.len && links < 4; k++) {
-            if (strcmp(object->targets.data[k].id, s->href))
-                continue;
-            store_target(p, &object->targets.data[k], stored, turned, links + 1);
-            break;
-        }
+        bool shown = item.stored ? item.elsewhere : item.polygon->shown == p->selections;
+        array_push(&stored->items,
+                   (cg_item){ .polygon = item.stored ? item.polygon : copy_polygon(&p->store, item.polygon),
+                              .flip = item.flip, .local = item.local, .elsewhere = shown });
     }
+    s->items.len = first;
+    stored->found = true;
+}
+
+static void too_much_shared(cg_parser *p) {
+    cg_fail(p, NOC_ERR_MEMORY, "what objects share with each other needs more than %zu MiB of memory", CG_MAX_OBJECT >> 20);
 }
 
 /* Keeps what other objects want of this one. */
@@ -286,11 +287,11 @@ static void collect(cg_parser *p) {
             cg_select(p);
             selected = true;
         }
-        p->store.entries.data[index].found = true;
-        store_target(p, target, &p->store.entries.data[index], false, 0);
+        size_t first = p->selection.items.len;
+        cg_follow(p, target->id, 0, false);
+        store_items(p, first, &p->store.entries.data[index]);
         if (p->store.arena.bytes > CG_MAX_OBJECT)
-            cg_fail(p, NOC_ERR_MEMORY, "surfaces that are shared between objects need more than %zu GiB of memory",
-                    CG_MAX_OBJECT >> 30);
+            too_much_shared(p);
     }
 }
 
@@ -303,6 +304,8 @@ static void want_missing(cg_parser *p) {
         array_push(&p->store.entries, (cg_stored){ 0 });
     }
     array_push(&p->deferred, p->ordinal);
+    if (p->store.wanted.keys.bytes + p->store.entries.len * sizeof(cg_stored) > CG_MAX_OBJECT)
+        too_much_shared(p);
 }
 
 void cg_store_free(cg_store *store) {

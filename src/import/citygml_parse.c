@@ -23,8 +23,20 @@ void cg_issue(cg_parser *p, bool repaired, const char *reason, const char *id) {
         geo_issue(p->sink->issues, repaired, reason, id);
 }
 
+bool cg_object_room(cg_parser *p) {
+    const cg_object *o = &p->object;
+    size_t bytes = o->arena.bytes + o->features.len * sizeof(cg_feature) + o->geometries.len * sizeof(cg_geometry) +
+                   o->surfaces.len * sizeof(cg_surface) + o->targets.len * sizeof(cg_target);
+    if (bytes > CG_MAX_OBJECT)
+        cg_fail(p, NOC_ERR_MEMORY, "one object (\"%s\") needs more than %zu MiB of memory", cg_report_id(p, NULL, 0),
+                CG_MAX_OBJECT >> 20);
+    return !p->status;
+}
+
 void cg_object_clear(cg_object *object) {
     arena_free(&object->arena);
+    map_free(&object->ids);
+    object->steps = 0;
     object->features.len = object->geometries.len = object->surfaces.len = object->targets.len = 0;
 }
 
@@ -113,10 +125,8 @@ static void add_reference(cg_parser *p, const cg_frame *frame, const char *href)
         cg_issue(p, false, href[0] == '#' || !href[0] ? "unresolved xlink" : "xlink into another file", href);
         return;
     }
-    if (object->arena.bytes > CG_MAX_OBJECT || object->surfaces.len >= CG_NONE) {
-        cg_fail(p, NOC_ERR_MEMORY, "one object needs more than %zu GiB of memory", CG_MAX_OBJECT >> 30);
+    if (!cg_object_room(p))
         return;
-    }
     array_push(&object->surfaces, (cg_surface){ .href = arena_strdup(&object->arena, href + 1),
                                                 .geometry = frame->geometry, .flip = frame->flip });
 }
@@ -168,6 +178,8 @@ static bool start_feature(cg_parser *p, cg_frame *frame, const attributes *a) {
     if (top) {
         cg_object_clear(&p->object);
         p->ordinal++;
+    } else if (!cg_object_room(p)) {
+        return false;
     }
     cg_feature feature = { .type = type, .id = a->id ? arena_strdup(&p->object.arena, a->id) : "",
                            .parent = frame->feature, .function = -1 };
@@ -179,7 +191,7 @@ static bool start_feature(cg_parser *p, cg_frame *frame, const attributes *a) {
 }
 
 static bool start_geometry_property(cg_parser *p, cg_frame *frame, const attributes *a) {
-    if (frame->feature == CG_NONE || frame->geometry != CG_NONE ||
+    if (frame->feature == CG_NONE || frame->geometry != CG_NONE || !cg_object_room(p) ||
         p->object.features.data[frame->feature].type->part == CG_PART_SPACE)
         return false;
     cg_geometry geometry = { .lod = frame->name.value >> 4, .role = frame->name.value & 15, .feature = frame->feature };

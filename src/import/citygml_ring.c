@@ -58,8 +58,8 @@ void cg_ring_add(cg_parser *p, cg_code code, uint32_t dimension) {
         dimension = 3;
     if (p->numbers.bad)
         p->ring_fault = "coordinates that are not numbers";
-    else if (p->xyz.len - p->ring_first + count > CG_MAX_NUMBERS)
-        p->ring_fault = "ring with too many points";
+    else if (p->xyz.len + count > CG_MAX_NUMBERS)
+        p->ring_fault = "polygon with too many points";
     else if (!count && code != CG_POS)
         return; /* an empty list: too few points, found at the ring's end */
     else if ((dimension != 2 && dimension != 3) || count % dimension)
@@ -124,11 +124,8 @@ void cg_polygon_end(cg_parser *p, const cg_frame *frame) {
             cg_emit_polygon(p, &polygon, frame->geometry, frame->flip);
         return;
     }
-    if (object->arena.bytes > CG_MAX_OBJECT || object->surfaces.len >= CG_NONE) {
-        cg_fail(p, NOC_ERR_MEMORY, "one object (\"%s\") needs more than %zu GiB of memory", cg_report_id(p, NULL, 0),
-                CG_MAX_OBJECT >> 30);
+    if (!cg_object_room(p))
         return;
-    }
     polygon.ring_size = arena_copy(&object->arena, p->rings.data, p->rings.len * sizeof(size_t));
     polygon.xyz = arena_copy(&object->arena, p->xyz.data, p->xyz.len * sizeof(double));
     array_push(&object->surfaces, (cg_surface){ .polygon = arena_copy(&object->arena, &polygon, sizeof(polygon)),

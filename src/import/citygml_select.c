@@ -12,12 +12,6 @@
 
 /* ---- references ---- */
 
-typedef struct resolver {
-    cg_parser *p;
-    noc_map ids;
-    size_t limit; /* references may multiply each other: an attack beyond this many items */
-} resolver;
-
 static cg_part part_of(const cg_object *object, uint32_t geometry) {
     return (cg_part)object->features.data[object->geometries.data[geometry].feature].type->part;
 }
@@ -34,52 +28,58 @@ static void take_stored(cg_parser *p, const cg_stored *stored, uint32_t geometry
     }
 }
 
-static void follow(resolver *r, const char *href, uint32_t geometry, bool flip, int links) {
-    cg_parser *p = r->p;
-    const cg_object *object = &p->object;
+static void follow(cg_parser *p, const char *id, uint32_t geometry, bool flip, int links) {
+    cg_object *object = &p->object;
     cg_selection *selection = &p->selection;
+    /* References that lead in circles or multiply each other end here. */
+    if (links == MAX_LINKS || ++object->steps > object->surfaces.len * 4 + 65536) {
+        selection->tangled = true;
+        return;
+    }
     uint64_t index;
-    if (!map_get(&r->ids, href, &index)) {
-        if (map_get(&p->store.wanted, href, &index) && p->store.entries.data[index].found) {
+    if (!map_get(&object->ids, id, &index)) {
+        if (map_get(&p->store.wanted, id, &index) && p->store.entries.data[index].found) {
             take_stored(p, &p->store.entries.data[index], geometry, flip);
             return;
         }
-        array_push(&selection->missing, href);
+        array_push(&selection->missing, id);
         array_push(&selection->items, (cg_item){ .geometry = geometry });
         return;
     }
-    if (links == MAX_LINKS || selection->items.len > r->limit)
-        return;
     const cg_target *target = &object->targets.data[index];
     for (uint32_t i = target->first; i < target->first + target->count; i++) {
         const cg_surface *s = &object->surfaces.data[i];
         bool turned = flip ^ s->flip ^ target->flip;
         if (s->href)
-            follow(r, s->href, geometry, turned, links + 1);
-        else
-            array_push(&selection->items, (cg_item){ .polygon = s->polygon, .geometry = geometry, .flip = turned });
+            follow(p, s->href, geometry, turned, links + 1);
+        else if (++object->steps <= object->surfaces.len * 4 + 65536)
+            array_push(&selection->items, (cg_item){ .polygon = s->polygon, .geometry = geometry, .flip = turned,
+                                                     .local = object->geometries.data[s->geometry].implicit != NULL });
     }
 }
 
+void cg_follow(cg_parser *p, const char *id, uint32_t geometry, bool flip) {
+    cg_object *object = &p->object;
+    if (!object->ids.len)
+        for (size_t i = object->targets.len; i-- > 0;) /* backwards: of two equal ids the first holds */
+            map_put(&object->ids, object->targets.data[i].id, i);
+    follow(p, id, geometry, flip, 0);
+}
+
 void cg_resolve(cg_parser *p) {
-    const cg_object *object = &p->object;
-    resolver r = { .p = p, .limit = object->surfaces.len * 4 + 65536 };
+    cg_object *object = &p->object;
+    object->steps = 0;
+    p->selection.tangled = false;
     p->selection.items.len = p->selection.missing.len = 0;
-    bool references = false;
-    for (size_t i = 0; i < object->surfaces.len && !references; i++)
-        references = object->surfaces.data[i].href != NULL;
-    uint64_t old;
-    for (size_t i = 0; references && i < object->targets.len; i++)
-        if (!map_get(&r.ids, object->targets.data[i].id, &old)) /* the first of two equal ids */
-            map_put(&r.ids, object->targets.data[i].id, i);
     for (size_t i = 0; i < object->surfaces.len; i++) {
         const cg_surface *s = &object->surfaces.data[i];
         if (s->href)
-            follow(&r, s->href, s->geometry, s->flip, 0);
+            cg_follow(p, s->href, s->geometry, s->flip);
         else
-            array_push(&p->selection.items, (cg_item){ .polygon = s->polygon, .geometry = s->geometry, .flip = s->flip });
+            array_push(&p->selection.items,
+                       (cg_item){ .polygon = s->polygon, .geometry = s->geometry, .flip = s->flip,
+                                  .local = object->geometries.data[s->geometry].implicit != NULL });
     }
-    map_free(&r.ids);
 }
 
 /* ---- level of detail ---- */
@@ -98,6 +98,9 @@ static uint32_t body_of(const cg_object *object, uint32_t feature) {
     }
 }
 
+/* Coordinates about a reference point, used as if they were places. */
+static bool misplaced(const cg_item *item, const cg_geometry *g) { return item->local && !g->implicit; }
+
 static int highest(unsigned levels) { return levels ? 31 - __builtin_clz(levels) : -1; }
 
 static void find_levels(cg_parser *p) {
@@ -109,6 +112,8 @@ static void find_levels(cg_parser *p) {
     for (size_t i = 0; i < s->items.len; i++) {
         const cg_geometry *g = &object->geometries.data[s->items.data[i].geometry];
         cg_body *body = &s->bodies.data[s->bodies.data[g->feature].owner];
+        if (misplaced(&s->items.data[i], g))
+            continue;
         if (s->items.data[i].polygon)
             body->levels |= (uint8_t)(1u << g->lod);
         else
@@ -240,7 +245,8 @@ void cg_select(cg_parser *p) {
             cg_item *item = &s->items.data[i];
             const cg_geometry *g = &object->geometries.data[item->geometry];
             const cg_body *body = &s->bodies.data[s->bodies.data[g->feature].owner];
-            if (!item->polygon || g->lod != body->lod || is_boundary(object, item->geometry) != (meaning == 1))
+            if (!item->polygon || misplaced(item, g) || g->lod != body->lod ||
+                is_boundary(object, item->geometry) != (meaning == 1))
                 continue;
             /* What the boundaries say already. A road's own surface is the sum of its traffic areas as well. */
             bool told = meaning == 0 && body->boundaries && (g->role == CG_ROLE_SOLID || transport);

@@ -280,6 +280,10 @@ static void test_references_that_fail(void **state) {
     /* In a circle, and many times over. */
     expect(MODEL(MEMBER(BUILDING("A", "<b:lod2MultiSurface><g:MultiSurface g:id='m'>" LINK("m") LINK("m") LINK("m")
                                       MEMBERS(SQUARE("a", "1", "1")) "</g:MultiSurface></b:lod2MultiSurface>"))), 3, "a");
+#define TEN(x) x x x x x x x x x x
+    expect(MODEL(MEMBER(BUILDING("A", "<b:lod2MultiSurface><g:MultiSurface g:id='m'>" TEN(TEN(LINK("m")))
+                                      "</g:MultiSurface></b:lod2MultiSurface>"))), 3, "");
+    assert_int_equal(city_issue(&sink, "xlinks that lead in circles"), 1);
 }
 
 static void test_implicit_geometry(void **state) {
