@@ -1,0 +1,105 @@
+/* Time of a frame by pass, the trace floor, and their ratio.
+ *
+ *   bench_frame [SCENE [VIEW [WIDTH HEIGHT [FRAMES]]]]     default: city street 1920 1080 4
+ *
+ * M = 32, k = 5, no sky. Wall seconds are the median over the frames after the first (which has no history); pass times are
+ * thread seconds. The floor is traced after each frame from the very rays of that frame. */
+#include "bench_scene.h"
+
+typedef struct variant {
+    const char *name;
+    noc_method method;
+    noc_bias bias;
+    bool rays, spatial, temporal;
+    noc_path path;
+} variant;
+
+static const variant variants[] = {
+    { "ris", NOC_METHOD_RIS },
+    { "restir biased", NOC_METHOD_RESTIR, NOC_BIAS_BIASED, false, true, true },
+    { "restir mis", NOC_METHOD_RESTIR, NOC_BIAS_MIS, false, true, true },
+    { "restir pairwise", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, false, true, true },
+    { "restir mis + rays", NOC_METHOD_RESTIR, NOC_BIAS_MIS, true, true, true },
+    { "restir pairwise + rays", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, true },
+    { "restir pairwise, scalar", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, false, true, true, NOC_PATH_SCALAR },
+};
+
+static int by_size(const void *a, const void *b) {
+    double d = *(const double *)a - *(const double *)b;
+    return (d > 0) - (d < 0);
+}
+
+static double median(double *x, int n) {
+    qsort(x, (size_t)n, sizeof(*x), by_size);
+    return x[n / 2];
+}
+
+static bool measure(const noc_scene *scene, const noc_camera *camera, const variant *v, int width, int height, int frames) {
+    noc_render_params p = noc_render_default_params();
+    p.width = width;
+    p.height = height;
+    p.method = v->method;
+    p.bias = v->bias;
+    p.bias_rays = v->rays;
+    p.spatial = v->spatial;
+    p.temporal = v->temporal;
+    p.path = v->path;
+    p.sky = 0;
+    noc_renderer *r = noc_renderer_create(scene, NULL, NULL);
+    double wall[64], floor[64], pass[NOC_PASS_COUNT] = { 0 };
+    noc_frame_stats stats;
+    bool ok = r && noc_renderer_frame(r, camera, &p, NULL) == NOC_OK;
+    for (int i = 0; ok && i < frames; i++) {
+        ok = noc_renderer_frame(r, camera, &p, NULL) == NOC_OK;
+        noc_renderer_get_stats(r, &stats);
+        wall[i] = stats.wall_seconds;
+        for (int k = 0; k < NOC_PASS_COUNT; k++)
+            pass[k] += stats.pass_seconds[k] / frames;
+        ok = ok && noc_renderer_trace_floor(r, camera, &p, &floor[i]) == NOC_OK;
+    }
+    if (ok) {
+        double w = median(wall, frames), f = median(floor, frames), total = 0;
+        for (int k = 0; k < NOC_PASS_COUNT; k++)
+            total += pass[k];
+        printf("%-24s %7.1f ms  floor %7.1f ms  ratio %4.2f  %5.1f M rays  %s |", v->name, 1e3 * w, 1e3 * f, w / f,
+               1e-6 * (double)(stats.rays_primary + stats.rays_shadow), stats.path);
+        for (int k = 0; k < NOC_PASS_COUNT; k++)
+            if (pass[k] > 0)
+                printf(" %s %.0f%%", noc_pass_name((noc_pass)k), 100 * pass[k] / total);
+        printf("\n");
+        fflush(stdout);
+    }
+    noc_renderer_destroy(r);
+    return ok;
+}
+
+int main(int argc, char **argv) {
+    const char *spec = argc > 1 ? argv[1] : "city", *view = argc > 2 ? argv[2] : "street";
+    int width = argc > 4 ? atoi(argv[3]) : 1920, height = argc > 4 ? atoi(argv[4]) : 1080;
+    int frames = argc > 5 ? atoi(argv[5]) : 4;
+    if (width < 1 || height < 1 || frames < 1 || frames > 64) {
+        fprintf(stderr, "usage: bench_frame [SCENE [VIEW [WIDTH HEIGHT [FRAMES]]]]\n");
+        return 2;
+    }
+    noc_log *log = noc_log_create(NULL);
+    noc_scene *scene = bench_scene(spec, log);
+    noc_camera camera;
+    if (!scene || noc_scene_camera(scene, bench_view(view), (double)width / height, &camera) != NOC_OK)
+        return 1;
+    noc_scene_info info;
+    noc_scene_get_info(scene, &info);
+    noc_renderer *r = noc_renderer_create(scene, NULL, log);
+    noc_frame_stats stats;
+    if (!r)
+        return 1;
+    noc_renderer_get_stats(r, &stats);
+    printf("%s, %s, %d x %d: %zu triangles, %zu lights, built in %.0f ms\n", spec, view, width, height, info.triangles,
+           info.lights, 1e3 * stats.build_seconds);
+    noc_renderer_destroy(r);
+    bool ok = true;
+    for (size_t i = 0; ok && i < sizeof(variants) / sizeof(variants[0]); i++)
+        ok = measure(scene, &camera, &variants[i], width, height, frames);
+    noc_scene_destroy(scene);
+    noc_log_destroy(log);
+    return ok ? 0 : 1;
+}

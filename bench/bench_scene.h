@@ -1,0 +1,35 @@
+/* Scenes that the frame benches take from their command lines. */
+#ifndef NOC_BENCH_SCENE_H
+#define NOC_BENCH_SCENE_H
+
+#include <nocturne/nocturne.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* "city" or "city:METRES" is the built-in city. NULL after saying why. */
+static inline noc_scene *bench_scene(const char *spec, noc_log *log) {
+    noc_scene *scene = noc_scene_create(log);
+    noc_city_params city = noc_city_default_params();
+    noc_status status;
+    if (!strncmp(spec, "city", 4) && (spec[4] == ':' || !spec[4])) {
+        if (spec[4] == ':')
+            city.size = atof(spec + 5);
+        status = noc_scene_add_city(scene, &city);
+        status = status == NOC_OK ? noc_scene_commit(scene) : status;
+    } else {
+        fprintf(stderr, "%s: not a scene\n", spec);
+        status = NOC_ERR_ARGUMENT;
+    }
+    if (status == NOC_OK)
+        return scene;
+    noc_scene_destroy(scene);
+    return NULL;
+}
+
+static inline noc_view bench_view(const char *name) {
+    return !strcmp(name, "aerial") ? NOC_VIEW_AERIAL : !strcmp(name, "overview") ? NOC_VIEW_OVERVIEW : NOC_VIEW_STREET;
+}
+
+#endif
