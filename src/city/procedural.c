@@ -16,11 +16,11 @@ static int add_material(town *t, noc_class cls, float r, float g, float b, float
 /* Reflectances of dry materials; renders and paints between 0.25 and 0.65, as on real fronts. */
 static void add_materials(town *t) {
     static const struct { town_mat mat; noc_class cls; float r, g, b, f0, roughness; } table[] = {
-        { TM_WALL, NOC_CLASS_WALL, .60f, .53f, .42f, 0, 1 },         { TM_WALL + 1, NOC_CLASS_WALL, .55f, .44f, .28f, 0, 1 },
-        { TM_WALL + 2, NOC_CLASS_WALL, .62f, .58f, .52f, 0, 1 },     { TM_WALL + 3, NOC_CLASS_WALL, .50f, .34f, .25f, 0, 1 },
+        { TM_WALL, NOC_CLASS_WALL, .60f, .53f, .42f, 0, 1 },         { TM_WALL + 1, NOC_CLASS_WALL, .60f, .52f, .38f, 0, 1 },
+        { TM_WALL + 2, NOC_CLASS_WALL, .62f, .58f, .52f, 0, 1 },     { TM_WALL + 3, NOC_CLASS_WALL, .56f, .45f, .36f, 0, 1 },
         { TM_WALL + 4, NOC_CLASS_WALL, .33f, .17f, .12f, 0, 1 },     { TM_WALL + 5, NOC_CLASS_WALL, .46f, .48f, .46f, 0, 1 },
-        { TM_WALL + 6, NOC_CLASS_WALL, .58f, .50f, .34f, 0, 1 },     { TM_WALL + 7, NOC_CLASS_WALL, .40f, .42f, .34f, 0, 1 },
-        { TM_WALL + 8, NOC_CLASS_WALL, .64f, .60f, .55f, 0, 1 },     { TM_WALL + 9, NOC_CLASS_WALL, .52f, .40f, .36f, 0, 1 },
+        { TM_WALL + 6, NOC_CLASS_WALL, .58f, .50f, .34f, 0, 1 },     { TM_WALL + 7, NOC_CLASS_WALL, .46f, .52f, .45f, 0, 1 },
+        { TM_WALL + 8, NOC_CLASS_WALL, .64f, .60f, .55f, 0, 1 },     { TM_WALL + 9, NOC_CLASS_WALL, .50f, .54f, .60f, 0, 1 },
         { TM_TILES, NOC_CLASS_ROOF, .30f, .13f, .08f, .02f, .7f },   { TM_TILES_DARK, NOC_CLASS_ROOF, .19f, .11f, .09f, .02f, .7f },
         { TM_SLATE, NOC_CLASS_ROOF, .11f, .12f, .14f, .04f, .45f },  { TM_COPPER, NOC_CLASS_ROOF, .20f, .35f, .28f, .05f, .5f },
         { TM_FLAT_ROOF, NOC_CLASS_ROOF, .20f, .20f, .20f, 0, 1 },    { TM_STONE, NOC_CLASS_WALL, .56f, .53f, .48f, 0, 1 },
@@ -29,7 +29,7 @@ static void add_materials(town *t) {
         { TM_DOOR, NOC_CLASS_DOOR, .20f, .12f, .07f, .04f, .5f },    { TM_SHOP, NOC_CLASS_OTHER, .62f, .60f, .56f, 0, 1 },
         { TM_SHOP_DARK, NOC_CLASS_DOOR, .04f, .05f, .06f, .06f, .12f }, { TM_SHOP_FLOOR, NOC_CLASS_OTHER, .34f, .28f, .21f, .04f, .4f },
         { TM_AWNING, NOC_CLASS_INSTALLATION, .50f, .10f, .08f, 0, 1 }, { TM_AWNING + 1, NOC_CLASS_INSTALLATION, .10f, .26f, .34f, 0, 1 },
-        { TM_AWNING + 2, NOC_CLASS_INSTALLATION, .62f, .55f, .38f, 0, 1 }, { TM_ROAD, NOC_CLASS_ROAD, .085f, .085f, .09f, .045f, .42f },
+        { TM_AWNING + 2, NOC_CLASS_INSTALLATION, .62f, .55f, .38f, 0, 1 }, { TM_ROAD, NOC_CLASS_ROAD, .095f, .095f, .10f, .04f, .55f },
         { TM_MARKING, NOC_CLASS_ROAD, .55f, .55f, .52f, .03f, .6f }, { TM_SIDEWALK, NOC_CLASS_SIDEWALK, .25f, .24f, .22f, .02f, .7f },
         { TM_KERBSTONE, NOC_CLASS_SIDEWALK, .38f, .37f, .35f, 0, 1 }, { TM_PAVING, NOC_CLASS_SIDEWALK, .30f, .27f, .23f, .03f, .55f },
         { TM_GRAVEL, NOC_CLASS_SIDEWALK, .40f, .35f, .27f, 0, 1 },   { TM_LAWN, NOC_CLASS_GREEN, .08f, .14f, .045f, 0, 1 },
@@ -46,15 +46,15 @@ static void add_materials(town *t) {
     _Static_assert(NOC_COUNT(table) == TM_COUNT, "every surface has a material");
     for (size_t i = 0; i < NOC_COUNT(table); i++)
         t->material[table[i].mat] = add_material(t, table[i].cls, table[i].r, table[i].g, table[i].b, table[i].f0, table[i].roughness);
-    static const double kelvin[] = { [LIGHT_SODIUM] = 2080, [LIGHT_CANDLE] = 2350, [LIGHT_WARM] = 2750, [LIGHT_WHITE] = 3200,
-                                     [LIGHT_NEUTRAL] = 4000, [LIGHT_COOL] = 5200, [LIGHT_SCREEN] = 8500 };
+    static const double kelvin[] = { [LIGHT_SODIUM] = 2080, [LIGHT_CANDLE] = 2350, [LIGHT_WARM] = 2750, [LIGHT_WHITE] = 3400,
+                                     [LIGHT_NEUTRAL] = 4100, [LIGHT_COOL] = 5500, [LIGHT_SCREEN] = 8500 };
     for (size_t i = 0; i < NOC_COUNT(kelvin); i++)
         city_kelvin_rgb(kelvin[i], t->white[i]);
 }
 
 /* Divides one axis into blocks of uneven width and the streets between them. */
 static void axis_make(town *t, int axis, bool river) {
-    double total = 2 * t->half, width[256], sum = 0, streets = 10, river_width = 2 * (TOWN_QUAY_STREET + TOWN_PROMENADE) + 34;
+    double total = 2 * t->half, width[256], sum = 0, streets = 18, river_width = 2 * (TOWN_QUAY_STREET + TOWN_PROMENADE) + 34;
     int n = NOC_CLAMP((int)((total - (river ? river_width : 0)) / 74), 1, 120);
     town_rng rng = { town_hash(t->params.seed, 40u + (uint32_t)axis) };
     town_gap gap[256] = { 0 };
@@ -71,8 +71,8 @@ static void axis_make(town *t, int axis, bool river) {
     double x = -t->half;
     for (int i = 0; i <= n; i++) {
         bool rim = i == 0 || i == n;
-        double w = rim ? 5 : gap[i].hi;
-        town_gap g = { .lo = x, .hi = x + w, .kind = rim ? WAY_SIDE : gap[i].kind, .river = gap[i].river };
+        double w = rim ? 9 : gap[i].hi; /* a ring road */
+        town_gap g = { .lo = x, .hi = x + w, .kind = rim ? WAY_QUAY : gap[i].kind, .river = gap[i].river };
         array_push(&t->axis[axis].gaps, g);
         x += w + (i < n ? width[i] / sum * (total - streets) : 0);
     }
@@ -184,17 +184,21 @@ static void block_build(town *t, const town_poly *block, role r, int id) {
     town_kerbside(t, block, id);
 }
 
-/* Cuts the slanting avenue out of the blocks south of the river. */
+/* The slanting avenue runs through the houses south of the river. */
+static bool cut_by_diagonal(const town *t, int i, int j) {
+    for (int k = 0; k <= j; k++)
+        if (t->axis[1].gaps.data[k].river)
+            return false;
+    return role_of(t, i, j) == ROLE_HOUSES && t->axis[1].gaps.len >= 4;
+}
+
 static void cell_build(town *t, int i, int j, int *id) {
     town_poly whole = cell_poly(t, i, j), right, left;
     role r = role_of(t, i, j);
     vec2 a, d;
     double w;
     town_diagonal(t, &a, &d, &w);
-    bool south = true;
-    for (int k = 0; k <= j; k++)
-        south = south && !t->axis[1].gaps.data[k].river;
-    if (!south || r != ROLE_HOUSES || t->axis[1].gaps.len < 4) {
+    if (!cut_by_diagonal(t, i, j)) {
         block_build(t, &whole, r, (*id)++);
         return;
     }
@@ -203,6 +207,28 @@ static void cell_build(town *t, int i, int j, int *id) {
     town_poly_clip(&right, (vec2){ a.x + w * d.y, a.y - w * d.x }, (vec2){ -d.x, -d.y }, WAY_AVENUE);
     block_build(t, &left, r, (*id)++);
     block_build(t, &right, r, (*id)++);
+}
+
+/* Dashes along the slanting avenue, between the streets it crosses and outside the places it does not enter. */
+static void diagonal_markings(town *t) {
+    vec2 a, d;
+    double w;
+    town_diagonal(t, &a, &d, &w);
+    for (double s = -3 * t->half; s < 3 * t->half; s += 7) {
+        vec2 p = { a.x + s * d.x, a.y + s * d.y }, c[4];
+        for (int j = 0; j + 1 < (int)t->axis[1].gaps.len; j++)
+            for (int i = 0; i + 1 < (int)t->axis[0].gaps.len; i++) {
+                town_poly cell = cell_poly(t, i, j);
+                bool inside = p.x > cell.p[0].x + 3 && p.x < cell.p[2].x - 3 && p.y > cell.p[0].y + 3 && p.y < cell.p[2].y - 3;
+                if (!inside || !cut_by_diagonal(t, i, j))
+                    continue;
+                town_rect(p, d, 1.5, 0.07, c);
+                for (int k = 0; k < 4; k++)
+                    c[k] = town_warp(t, c[k]);
+                town_flat(t, TM_MARKING, c, 4, 0.004);
+            }
+    }
+    town_flush(t, "road markings");
 }
 
 /* Lawn and trees from the rim of the plan to the edge of the square that the city covers. */
@@ -222,8 +248,12 @@ static void belt(town *t) {
             q[0] = out[0];
             q[1] = out[1];
             town_flat(t, TM_LAWN, q, 4, 0.05);
+            if (i % 2) { /* across the ring road, so that its fronts are lit */
+                town_wall rim = town_wall_make(q[3], q[2]);
+                town_globe_lamp(t, (vec2){ q[3].x + 1.2 * rim.out.x, q[3].y + 1.2 * rim.out.y }, 0.05, LIGHT_NEUTRAL);
+            }
             for (int k = 0; k < 2; k++) {
-                double f = town_range(&rng, 0.3, 0.9), g = town_next(&rng);
+                double f = town_range(&rng, 0.35, 0.9), g = town_next(&rng);
                 vec2 a = { q[3].x + f * (q[0].x - q[3].x), q[3].y + f * (q[0].y - q[3].y) };
                 vec2 b = { q[2].x + f * (q[1].x - q[2].x), q[2].y + f * (q[1].y - q[2].y) };
                 town_tree(t, (vec2){ a.x + g * (b.x - a.x), a.y + g * (b.y - a.y) }, 0.05, 9, 70, town_hash(rng.state, 4));
@@ -252,6 +282,7 @@ noc_status noc_scene_add_city(noc_scene *scene, const noc_city_params *params) {
     for (int j = 0; j + 1 < (int)t->axis[1].gaps.len && !t->failed; j++)
         for (int i = 0; i + 1 < (int)t->axis[0].gaps.len && !t->failed; i++)
             cell_build(t, i, j, &id);
+    diagonal_markings(t);
     belt(t);
     bool failed = t->failed;
     for (int m = 0; m < TM_COUNT; m++) {

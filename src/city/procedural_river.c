@@ -45,7 +45,7 @@ static void banks(town *t, const town_gap *g, double x0, double x1) {
         int lamps = (int)((x1 - x0 - 6) / 19) + 1;
         for (int i = 0; i < lamps && x1 - x0 > 12; i++) {
             double x = x0 + (x1 - x0) * (i + 0.5) / lamps;
-            town_globe_lamp(t, at(t, x, lamp), TOWN_KERB, LIGHT_WHITE);
+            town_globe_lamp(t, at(t, x, lamp), TOWN_KERB, LIGHT_NEUTRAL);
             for (int k = -1; k <= 1; k += 2)
                 if (fabs(x + 4.8 * k - x0) > 4 && fabs(x + 4.8 * k - x1) > 4)
                     town_tree(t, at(t, x + 4.8 * k, tree), TOWN_KERB, 6.8, 200, town_hash(t->params.seed, (uint32_t)(int)(x * 8 + 40000) + (uint32_t)side));

@@ -148,7 +148,7 @@ void town_kerbside(town *t, const town_poly *block, int id) {
         if (way == WAY_NONE || e.length < 14)
             continue;
         bool avenue = sodium_street(way);
-        double spacing = avenue ? 26 : 24, first = 6 + ((k + id) & 1 ? 0.5 * spacing : 0) * (e.length > 40);
+        double spacing = avenue ? 26 : 21, first = 6 + ((k + id) & 1 ? 0.5 * spacing : 0) * (e.length > 40);
         double road[3];
         for (double s = first; s < e.length - 4; s += spacing) {
             town_wall_point(&e, s, 0, -0.65, road);
@@ -158,7 +158,7 @@ void town_kerbside(town *t, const town_poly *block, int id) {
             if (avenue)
                 town_arm_lamp(t, at, TOWN_KERB, town_wall_make(at, over).dir);
             else
-                town_globe_lamp(t, at, TOWN_KERB, LIGHT_WHITE);
+                town_globe_lamp(t, at, TOWN_KERB, LIGHT_NEUTRAL);
         }
         double step = avenue ? 10.3 : 13;
         for (double s = 3.5 + 0.37 * spacing; s < e.length - 5 && (avenue || way == WAY_QUAY || (id + k) % 3 == 0); s += step) {

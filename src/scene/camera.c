@@ -36,7 +36,7 @@ static void city_bounds(view_city *city) {
         for (size_t i = 0; i < n; i++)
             v[i] = s->positions.data[3 * (size_t)s->indices.data[3 * (i * triangles / n) + i % 3] + (size_t)k];
         qsort(v, n, sizeof(*v), compare_doubles);
-        double lo = v[n / 200], hi = v[n - 1 - n / 200], margin = (hi - lo) * 0.02 + 1;
+        double lo = v[n / 50], hi = v[n - 1 - n / 50], margin = (hi - lo) * 0.02 + 1;
         city->min[k] = s->bounds_min[k];
         city->max[k] = s->bounds_max[k];
         if (n > 400 && city->max[k] - city->min[k] > 3 * (hi - lo) + 100) {
@@ -97,8 +97,11 @@ static void find_hot(view_city *city) {
         city->hot[k] = 0.5 * (city->min[k] + city->max[k]);
         cell[k] = (city->max[k] - city->min[k]) / HOT_CELLS;
     }
+    size_t lamps = 0; /* where there are lamps they decide: an office tower is bright, but streets are what one looks at */
     for (size_t i = 0; i < n; i++)
-        if (source_get(city, i, &l))
+        lamps += source_get(city, i, &l) && l.lamp;
+    for (size_t i = 0; i < n; i++)
+        if (source_get(city, i, &l) && (lamps < 8 || l.lamp))
             h[hot_cell(city, 1, l.p[1]) * HOT_CELLS + hot_cell(city, 0, l.p[0])] += NOC_MIN(l.weight, 200.0);
     int rx = (int)NOC_CLAMP(50 / NOC_MAX(cell[0], 1e-6), 1, 12), ry = (int)NOC_CLAMP(50 / NOC_MAX(cell[1], 1e-6), 1, 12);
     for (int y = 0; y < HOT_CELLS; y++)

@@ -1,0 +1,220 @@
+/* Camera presets: on the built-in city, on odd little scenes, and on none. */
+#include "../test.h"
+
+#include "scene/scene.h"
+
+#include <math.h>
+
+static void add_box(noc_scene *scene, noc_class cls, double x0, double y0, double x1, double y1, double z0, double z1) {
+    noc_material m = noc_class_material(cls);
+    double p[24];
+    for (int i = 0; i < 8; i++) {
+        p[3 * i] = i & 1 ? x1 : x0;
+        p[3 * i + 1] = i & 2 ? y1 : y0;
+        p[3 * i + 2] = i & 4 ? z1 : z0;
+    }
+    static const uint32_t faces[36] = { 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5 };
+    noc_mesh mesh = { .vertex_count = 8, .positions = p, .triangle_count = 12, .indices = faces, .material = noc_scene_add_material(scene, &m) };
+    assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
+}
+
+static void check_sane(const noc_camera *c) {
+    double d = 0;
+    for (int k = 0; k < 3; k++) {
+        assert_true(isfinite(c->eye[k]) && isfinite(c->target[k]));
+        d += (c->target[k] - c->eye[k]) * (c->target[k] - c->eye[k]);
+    }
+    assert_true(d > 1e-6);
+    assert_true(c->fov_deg > 10 && c->fov_deg < 90);
+    assert_true(c->up[2] == 1);
+    /* not straight down or up: the picture's upright is defined */
+    assert_true(hypot(c->target[0] - c->eye[0], c->target[1] - c->eye[1]) > 1e-3 * sqrt(d));
+}
+
+static void all_views(const noc_scene *scene) {
+    static const double aspects[] = { 0.5, 1, 16.0 / 9, 4 };
+    for (int v = 0; v < 3; v++)
+        for (size_t i = 0; i < NOC_COUNT(aspects); i++) {
+            noc_camera a, b;
+            assert_int_equal(noc_scene_camera(scene, (noc_view)v, aspects[i], &a), NOC_OK);
+            assert_int_equal(noc_scene_camera(scene, (noc_view)v, aspects[i], &b), NOC_OK);
+            assert_memory_equal(&a, &b, sizeof(a));
+            check_sane(&a);
+        }
+}
+
+/* Coordinates in the picture, -1..1 from edge to edge; false behind the camera. */
+static bool project(const noc_camera *c, double aspect, const double p[3], double *x, double *y) {
+    double f[3], r[3], u[3], l = 0, lr = 0, d[3] = { 0 };
+    for (int k = 0; k < 3; k++)
+        f[k] = c->target[k] - c->eye[k], l += f[k] * f[k];
+    for (int k = 0; k < 3; k++)
+        f[k] /= sqrt(l);
+    for (int k = 0; k < 3; k++)
+        r[k] = f[(k + 1) % 3] * c->up[(k + 2) % 3] - f[(k + 2) % 3] * c->up[(k + 1) % 3], lr += r[k] * r[k];
+    for (int k = 0; k < 3; k++)
+        r[k] /= sqrt(lr);
+    for (int k = 0; k < 3; k++)
+        u[k] = r[(k + 1) % 3] * f[(k + 2) % 3] - r[(k + 2) % 3] * f[(k + 1) % 3];
+    for (int k = 0; k < 3; k++)
+        d[0] += (p[k] - c->eye[k]) * r[k], d[1] += (p[k] - c->eye[k]) * u[k], d[2] += (p[k] - c->eye[k]) * f[k];
+    double t = tan(c->fov_deg * M_PI / 360);
+    *x = d[0] / (d[2] * t * aspect);
+    *y = d[1] / (d[2] * t);
+    return d[2] > 0;
+}
+
+static void check_overview(const noc_scene *scene, double aspect) {
+    noc_camera c;
+    double lo[2] = { 9, 9 }, hi[2] = { -9, -9 };
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEW_OVERVIEW, aspect, &c), NOC_OK);
+    for (size_t i = 0; i < scene->indices.len; i++) {
+        const float *v = scene->positions.data + 3 * (size_t)scene->indices.data[i];
+        double p[3] = { v[0], v[1], v[2] }, x, y;
+        assert_true(project(&c, aspect, p, &x, &y));
+        lo[0] = fmin(lo[0], x), hi[0] = fmax(hi[0], x), lo[1] = fmin(lo[1], y), hi[1] = fmax(hi[1], y);
+    }
+    assert_true(lo[0] >= -1.001 && hi[0] <= 1.001 && lo[1] >= -1.001 && hi[1] <= 1.001); /* all of it */
+    assert_true(hi[0] - lo[0] > 1.6 || hi[1] - lo[1] > 1.6);                             /* and not from too far */
+}
+
+static void check_street(const noc_scene *scene) {
+    noc_camera c;
+    double ground, top, aspect = 16.0 / 9;
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEW_STREET, aspect, &c), NOC_OK);
+    assert_true(noc_scene_ground(scene, c.eye[0], c.eye[1], &ground));
+    assert_true(noc_scene_top(scene, c.eye[0], c.eye[1], &top));
+    assert_true(fabs(c.eye[2] - ground - 1.7) < 1e-9);
+    assert_true(top - ground < 0.3); /* under the open sky */
+    double dx = c.target[0] - c.eye[0], dy = c.target[1] - c.eye[1], l = hypot(dx, dy);
+    for (double d = 0; d < 12; d += 0.5) { /* nothing in front of the nose */
+        double z;
+        assert_true(noc_scene_top(scene, c.eye[0] + d * dx / l, c.eye[1] + d * dy / l, &z));
+        assert_true(z < c.eye[2] + 0.5);
+    }
+    int lamps = 0;
+    for (size_t i = 0; i < scene->lights.len; i++) {
+        const noc_light_record *r = &scene->lights.data[i];
+        double p[3] = { r->p[0], r->p[1], r->p[2] }, x, y;
+        lamps += (r->kind == NOC_LIGHT_SPHERE || r->kind == NOC_LIGHT_DISC) && project(&c, aspect, p, &x, &y) && fabs(x) < 1 && fabs(y) < 1;
+    }
+    assert_true(lamps >= 3);
+}
+
+static void check_aerial(const noc_scene *scene) {
+    noc_camera c;
+    double z;
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEW_AERIAL, 16.0 / 9, &c), NOC_OK);
+    if (noc_scene_top(scene, c.eye[0], c.eye[1], &z))
+        assert_true(c.eye[2] > z + 3); /* over the roofs */
+    assert_true(c.eye[2] > c.target[2]);
+}
+
+static void test_builtin_city(void **state) {
+    for (uint32_t seed = 1; seed < 4; seed++) {
+        noc_scene *scene = noc_scene_create(NULL);
+        noc_city_params params = noc_city_default_params();
+        params.seed = seed;
+        params.size = 180 + 110 * seed;
+        assert_int_equal(noc_scene_add_city(scene, &params), NOC_OK);
+        assert_int_equal(noc_scene_commit(scene), NOC_OK);
+        check_overview(scene, 16.0 / 9);
+        check_overview(scene, 0.7);
+        check_aerial(scene);
+        check_street(scene);
+        noc_scene_destroy(scene);
+    }
+}
+
+/* Houses in rows and nothing else: no lights, no ground but what they stand on. */
+static void test_without_lights(void **state) {
+    for (int ground = 0; ground < 2; ground++) {
+        noc_scene *scene = noc_scene_create(NULL);
+        for (int j = 0; j < 5; j++)
+            for (int i = 0; i < 5; i++)
+                add_box(scene, NOC_CLASS_WALL, i * 30, j * 40, i * 30 + 18, j * 40 + 25, 100, 112);
+        if (ground)
+            add_box(scene, NOC_CLASS_TERRAIN, -20, -20, 180, 220, 99, 100);
+        all_views(scene);
+        check_overview(scene, 1.5);
+        check_aerial(scene);
+        noc_camera c;
+        assert_int_equal(noc_scene_camera(scene, NOC_VIEW_STREET, 1.5, &c), NOC_OK);
+        if (ground)
+            assert_true(fabs(c.eye[2] - 101.7) < 1e-4);
+        noc_scene_destroy(scene);
+    }
+}
+
+/* One lamp in one street: the eye stands in it, not in a house, and sees the lamp. */
+static void test_one_lamp(void **state) {
+    noc_scene *scene = noc_scene_create(NULL);
+    add_box(scene, NOC_CLASS_ROAD, -100, -100, 100, 100, -1, 0);
+    add_box(scene, NOC_CLASS_WALL, -100, -60, 100, -6, 0, 15);
+    add_box(scene, NOC_CLASS_WALL, -100, 6, 100, 60, 0, 15);
+    noc_light lamp = { .kind = NOC_LIGHT_DISC, .position = { 10, 0, 8 }, .direction = { 0, 0, -1 }, .radius = 0.2, .emission = { 9e3f, 9e3f, 9e3f } };
+    assert_true(noc_scene_add_light(scene, &lamp) == 0);
+    all_views(scene);
+    noc_camera c;
+    double x, y;
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEW_STREET, 16.0 / 9, &c), NOC_OK);
+    assert_true(fabs(c.eye[1]) < 6 && fabs(c.eye[2] - 1.7) < 1e-6);
+    assert_true(fabs(c.target[0] - c.eye[0]) > 20); /* along the street */
+    assert_true(project(&c, 16.0 / 9, lamp.position, &x, &y) && fabs(x) < 1);
+    noc_scene_destroy(scene);
+}
+
+static void test_odd_scenes(void **state) {
+    noc_scene *scene = noc_scene_create(NULL);
+    noc_camera c = noc_camera_default();
+    for (int v = 0; v < 3; v++)
+        assert_int_equal(noc_scene_camera(scene, (noc_view)v, 1, &c), NOC_ERR_ARGUMENT);
+    noc_light point = { .kind = NOC_LIGHT_POINT, .emission = { 1, 1, 1 } };
+    assert_int_equal(noc_scene_add_light(scene, &point), 0); /* lights alone have no shape to look at */
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEW_STREET, 1, &c), NOC_ERR_ARGUMENT);
+
+    static const double triangles[][9] = {
+        { 0, 0, 0, 1, 0, 0, 0, 1, 0 },                                     /* small, flat */
+        { 5, 5, 0, 5, 5, 3, 5, 6, 0 },                                     /* upright */
+        { -3e5, 0, 10, 4e5, 100, 20, 0, 2e5, 30 },                         /* very large */
+        { 1234567, 7654321, 100, 1234568, 7654321, 100, 1234567, 7654322, 100 }, /* very far */
+    };
+    noc_material m = noc_class_material(NOC_CLASS_OTHER);
+    for (size_t i = 0; i < NOC_COUNT(triangles); i++) {
+        noc_scene *one = noc_scene_create(NULL);
+        noc_mesh mesh = { .vertex_count = 3, .positions = triangles[i], .triangle_count = 1, .indices = (uint32_t[]){ 0, 1, 2 },
+                          .material = noc_scene_add_material(one, &m) };
+        assert_int_equal(noc_scene_add_mesh(one, &mesh), 0);
+        all_views(one);
+        noc_scene_destroy(one);
+    }
+    add_box(scene, NOC_CLASS_WALL, 0, 0, 1, 1, 0, 1);
+    all_views(scene);
+    static const double bad[] = { 0, -1, NAN, INFINITY };
+    for (size_t i = 0; i < NOC_COUNT(bad); i++)
+        assert_int_equal(noc_scene_camera(scene, NOC_VIEW_AERIAL, bad[i], &c), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_scene_camera(scene, (noc_view)3, 1, &c), NOC_ERR_ARGUMENT);
+    assert_true(c.fov_deg == 50); /* untouched by errors */
+    noc_scene_destroy(scene);
+}
+
+/* One stray triangle far away does not pull the views off the city. */
+static void test_stray(void **state) {
+    noc_scene *scene = noc_scene_create(NULL);
+    for (int j = 0; j < 10; j++)
+        for (int i = 0; i < 10; i++)
+            add_box(scene, NOC_CLASS_WALL, i * 30, j * 40, i * 30 + 18, j * 40 + 25, 0, 12);
+    add_box(scene, NOC_CLASS_OTHER, 90000, 90000, 90001, 90001, 0, 1);
+    for (int v = 0; v < 3; v++) {
+        noc_camera c;
+        assert_int_equal(noc_scene_camera(scene, (noc_view)v, 1.5, &c), NOC_OK);
+        assert_true(fabs(c.target[0] - 150) < 400 && fabs(c.target[1] - 200) < 400);
+    }
+    noc_scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_builtin_city), cmocka_unit_test(test_without_lights), cmocka_unit_test(test_one_lamp),
+                                        cmocka_unit_test(test_odd_scenes), cmocka_unit_test(test_stray) };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
