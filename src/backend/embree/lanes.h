@@ -12,6 +12,7 @@
 #include "core/sky.h"
 #include "core/wide_load.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #if defined(CORE_LANES)
@@ -77,6 +78,15 @@ FN camera camera_load(const noc_frame_camera *f) {
     return c;
 }
 
+#if !defined(CORE_LANES)
+_Static_assert(offsetof(noc_light_record, kind) == offsetof(light, kind) && offsetof(noc_light_record, a) == offsetof(light, a) &&
+                   offsetof(noc_light_record, radius) == offsetof(light, radius) &&
+                   offsetof(noc_light_record, b) == offsetof(light, b) &&
+                   offsetof(noc_light_record, flags) == offsetof(light, flags) &&
+                   offsetof(noc_light_record, e) == offsetof(light, e) &&
+                   offsetof(noc_light_record, area) == offsetof(light, area),
+               "light_from_records loads the scene's records");
+#endif
 FN light light_load(CTX u32 i) { return light_from_records((const float *)ctx->lights, i); }
 
 /* The same light in every lane. */
