@@ -58,7 +58,7 @@ void cli_error(const char *fmt, ...) NOC_PRINTF(1, 2);            /* one line on
 int cli_usage(const cli_command *command, const char *fmt, ...) NOC_PRINTF(2, 3); /* the same, and where to read on; CLI_USAGE */
 noc_log *cli_log_create(const cli_args *args);
 void *cli_alloc(size_t size);                                     /* zeroed; ends the program when memory is gone */
-char *cli_format(const char *fmt, ...) NOC_PRINTF(1, 2);          /* free() it */
+char *cli_format(const char *fmt, ...) NOC_PRINTF(1, 2) __attribute__((nonnull(1))); /* free() it */
 const char *cli_count(char text[32], uint64_t n);                 /* 1234567 -> "1,234,567" */
 const char *cli_bytes(char text[32], uint64_t n);                 /* "4.1 MB" */
 const char *cli_seconds(char text[32], double s);                 /* "0.42 s", "2 min 05 s" */
@@ -71,6 +71,7 @@ bool cli_flush(FILE *out);                                        /* false after
 void cli_progress_start(bool quiet);
 void cli_progress_show(double done, double left, const char *fmt, ...) NOC_PRINTF(3, 4); /* left: seconds, < 0 unknown */
 void cli_progress_clear(void);
+bool cli_load_progress(void *user, const char *what, double done); /* for noc_progress; cancels when interrupted */
 void cli_catch_signals(void);  /* the first signal is remembered, the second ends the program */
 int cli_interrupted(void);     /* its number, 0 if there was none */
 double cli_now(void);          /* wall clock, seconds */

@@ -34,7 +34,7 @@ static void print_counts(const char *title, const size_t counts[NOC_CLASS_COUNT]
 }
 
 static void print_lines(const noc_report_file *file, bool repaired) {
-    char a[32], examples[400], reason[160];
+    char a[32], examples[72], reason[160]; /* a line holds an id or two; JSON has all of them */
     bool first = true;
     for (size_t i = 0; i < file->line_count; i++) {
         const noc_report_line *line = &file->lines[i];
@@ -56,7 +56,7 @@ static void print_source(const noc_report_file *file) {
     if (file->bytes_read > file->bytes)
         printf(", %s unpacked", cli_bytes(b, file->bytes_read));
     printf("; read in %s", cli_seconds(c, file->seconds));
-    if (file->seconds > 0.001)
+    if (file->bytes_read > 1000000 && file->seconds > 0)
         printf(" (%.0f MB/s)", 1e-6 * (double)file->bytes_read / file->seconds);
     bool known = file->crs && *file->crs;
     printf("\n  %-11s %s", "CRS", known ? cli_clean(text, sizeof(text), file->crs) : "none");
@@ -74,15 +74,14 @@ static void print_extent(const noc_report_file *file) {
     /* Only a guess at the unit, so only the number of decimals hangs on it: degrees need more. */
     bool small = hi[0] <= 360 && lo[0] >= -360 && hi[1] <= 90 && lo[1] >= -90;
     int decimals = small ? 6 : 2;
-    printf("  %-11s x %.*f to %.*f, y %.*f to %.*f, z %.2f to %.2f\n", "extent", decimals, lo[0], decimals, hi[0], decimals, lo[1],
-           decimals, hi[1], lo[2], hi[2]);
+    printf("  %-11s x %.*f to %.*f, y %.*f to %.*f", "extent", decimals, lo[0], decimals, hi[0], decimals, lo[1], decimals, hi[1]);
+    if (lo[2] != 0 || hi[2] != 0)
+        printf(", z %.2f to %.2f", lo[2], hi[2]);
+    putchar('\n');
 }
 
-static void print_file(const noc_report_file *file) {
-    char a[32], b[32], path[400];
-    printf("%s\n", cli_clean(path, sizeof(path), file->path));
-    print_source(file);
-    print_extent(file);
+static void print_objects(const noc_report_file *file) {
+    char a[32], b[32];
     printf("  %-11s %s", "objects", cli_count(a, file->objects));
     if (file->buildings)
         printf(", %s of them buildings", cli_count(b, file->buildings));
@@ -94,6 +93,15 @@ static void print_file(const noc_report_file *file) {
         }
     }
     printf("%s\n", *before == ',' ? ")" : "");
+}
+
+static void print_file(const noc_report_file *file) {
+    char a[32], b[32], path[400];
+    printf("%s\n", cli_clean(path, sizeof(path), file->path));
+    print_source(file);
+    print_extent(file);
+    if (file->objects || !file->lamps)
+        print_objects(file);
     if (file->polygons) {
         printf("  %-11s %s, %s triangles\n", "surfaces", cli_count(a, file->polygons), cli_count(b, file->triangles));
         print_counts("", file->polygons_by_class);
@@ -120,11 +128,6 @@ static void print_scene(const char *name, const noc_scene_info *info) {
     for (int i = 0; i < 5; i++)
         if (info->lights_by_kind[i])
             printf("    %-13s %10s\n", kinds[i], cli_count(a, info->lights_by_kind[i]));
-}
-
-static bool load_progress(void *user, const char *what, double done) {
-    cli_progress_show(done, -1, "%s", what);
-    return !cli_interrupted();
 }
 
 static noc_status inspect_city(const info_args *args, noc_log *log, noc_scene **scene) {
@@ -167,7 +170,7 @@ static int run(void *arguments) {
         return cli_usage(&cli_info, "which file?");
     cli_catch_signals();
     cli_progress_start(args->common.quiet);
-    args->import.progress = (noc_progress){ load_progress, NULL };
+    args->import.progress = (noc_progress){ cli_load_progress, NULL };
     noc_log *log = cli_log_create(&args->common);
     int status = CLI_OK;
     if (args->json)

@@ -62,6 +62,12 @@ void cli_progress_clear(void) {
     on_screen = false;
 }
 
+bool cli_load_progress(void *user, const char *what, double done) {
+    const char *slash = strrchr(what, '/'); /* of a file the name is enough */
+    cli_progress_show(done, -1, "%s%s", slash ? "reading " : "", slash ? slash + 1 : what);
+    return !cli_interrupted();
+}
+
 static void on_signal(int number) {
     caught = number;
     /* Whoever asks twice means it. */

@@ -97,11 +97,6 @@ static int check(render_job *job) {
     return status ? status : cli_check_output(&cli_render, args->output, CLI_PNG | CLI_EXR, &args->common);
 }
 
-static bool load_progress(void *user, const char *what, double done) {
-    cli_progress_show(done, -1, "%s", what);
-    return !cli_interrupted();
-}
-
 /* The built-in city takes its own options, so it is added here; the rest is loaded onto it. */
 static noc_status load(render_job *job) {
     render_args *args = job->args;
@@ -118,7 +113,7 @@ static noc_status load(render_job *job) {
             status = noc_scene_add_city(job->scene, &args->city);
         }
     }
-    args->import.progress = (noc_progress){ load_progress, NULL };
+    args->import.progress = (noc_progress){ cli_load_progress, NULL };
     if (!status)
         status = count ? noc_scene_load(job->scene, files, count, &args->import, NULL) : noc_scene_commit(job->scene);
     free(files);
