@@ -8,7 +8,7 @@
 #include "core/light.h"
 #include "core/random.h"
 
-#define ITEM_SLOTS 104
+#define ITEM_SLOTS 114
 #define KERNEL_LIGHTS 1000u
 
 /* Signed, of a magnitude that differs from item to item: 1/16 to 4096. */
@@ -43,6 +43,8 @@ FN light any_light(u32 key) {
 FN light light_load(CTX u32 i) { return any_light(hash_u32(i + KU(77u))); }
 
 #include "core/reuse.h" /* GLSL wants the bridge above it */
+#include "core/shadow.h"
+#include "core/sky.h"
 
 FN surf any_surf(u32 key) {
     surf s;
@@ -166,6 +168,15 @@ FN void reuse(CTX u32 item, u32 key) {
     put_u32(PASS item, 103, selu(p_i < p_q, item, key));
 }
 
+/* Slots 104 to 113. */
+FN void rays(CTX u32 item, u32 key, surf s, light any) {
+    segment g = shadow_segment(s.p, s.n, any, rng(key, KU(3020u)), rng(key, KU(3021u)));
+    put_v3(PASS item, 104, g.o);
+    put_v3(PASS item, 107, g.d);
+    put_v3(PASS item, 110, sky_radiance(s.n, rng(key, KU(3022u))));
+    put_real(PASS item, 113, stand_off(max_abs3(mul3(s.p, K(100.0f)))));
+}
+
 FN void dialect_item(CTX u32 item) {
     u32 key = rng_key(KU(5u), item, KU(9u));
     surf s = any_surf(hash_u32(key + KU(1u)));
@@ -175,6 +186,7 @@ FN void dialect_item(CTX u32 item) {
     surfaces(PASS item, key, s, any);
     reservoirs(PASS item, key, s);
     reuse(PASS item, key);
+    rays(PASS item, key, s, any);
 }
 
 #endif

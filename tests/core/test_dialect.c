@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#define ITEM_SLOTS 104
+#define ITEM_SLOTS 114
 #define ITEMS 16384u
 
 void dialect_run_1(uint32_t *out, uint32_t items);
@@ -28,6 +28,7 @@ static const struct { int first; const char *name; } groups[] = {
     { 63, "camera_project" }, { 66, "camera_direction" }, { 69, "abs_" }, { 70, "to_u32" },       { 71, "ris_uniform, 1 candidate" },
     { 77, "ris_uniform" }, { 83, "resv_cap" },     { 89, "stream" },     { 95, "stream tag" },    { 96, "mis_scale" },
     { 98, "pair_share" },  { 99, "pair_weight" },  { 100, "pair_canonical" }, { 101, "min_, max_" }, { 103, "selu" },
+    { 104, "shadow_segment, begin" }, { 107, "shadow_segment, way" }, { 110, "sky_radiance" }, { 113, "stand_off" },
 };
 
 static bool holds_integers(int slot) {
