@@ -17,8 +17,7 @@ typedef struct exr_reader {
     bool grey;            /* Y alone */
     bool has_mask;
     bool tiled;
-    exr_decode_pipeline_t decode;
-    bool decode_ready;
+    int x, y;             /* of the chunk being unpacked, relative to the window */
 } exr_reader;
 
 static noc_status status_of(exr_result_t code) {
@@ -155,51 +154,126 @@ static bool make_image(exr_reader *r) {
     return r->status == NOC_OK;
 }
 
-/* Where the channels of a chunk go: x, y are relative to the data window. */
-static void set_targets(exr_reader *r, size_t x, size_t y) {
-    size_t width = (size_t)r->image->width, first = y * width + x;
-    for (int i = 0; i < r->decode.channel_count; i++) {
-        exr_coding_channel_info_t *ch = &r->decode.channels[i];
-        const char *n = ch->channel_name;
-        int k = strcmp(n, "R") == 0 ? 0 : strcmp(n, "G") == 0 ? 1 : strcmp(n, "B") == 0 ? 2 : -1;
-        if (r->grey)
-            k = strcmp(n, "Y") == 0 ? 0 : -1;
-        bool mask = r->mask && strcmp(n, "emitter") == 0;
-        ch->decode_to_ptr = NULL;
-        if (k < 0 && !mask)
+/* IEEE binary16, exactly. */
+static float half_to_float(uint16_t h) {
+    uint32_t sign = (uint32_t)(h & 0x8000) << 16, exponent = h >> 10 & 31, mantissa = h & 1023, bits;
+    if (exponent == 0) { /* zero and subnormal: a multiple of 2^-24 */
+        float f = (float)mantissa * 0x1p-24f;
+        return sign ? -f : f;
+    }
+    if (exponent == 31)
+        bits = sign | 0x7f800000 | mantissa << 13;
+    else
+        bits = sign | (exponent + 112) << 23 | mantissa << 13;
+    float f;
+    memcpy(&f, &bits, sizeof(f));
+    return f;
+}
+
+/* One line of one channel: little-endian samples to every stride-th float. */
+static void unpack_line(const uint8_t *from, int type, int width, float *to, int stride) {
+    for (int x = 0; x < width; x++, to += stride) {
+        if (type == EXR_PIXEL_HALF) {
+            *to = half_to_float((uint16_t)(from[2 * x] | from[2 * x + 1] << 8));
             continue;
-        ch->user_data_type = EXR_PIXEL_FLOAT;
-        ch->user_bytes_per_element = 4;
-        ch->user_pixel_stride = mask ? 4 : 12;
-        ch->user_line_stride = ch->user_pixel_stride * r->image->width;
-        ch->decode_to_ptr = (uint8_t *)(mask ? r->mask + first : r->image->rgb + 3 * first + k);
+        }
+        const uint8_t *p = from + 4 * x;
+        uint32_t bits = (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+        if (type == EXR_PIXEL_UINT)
+            *to = (float)bits;
+        else
+            memcpy(to, &bits, sizeof(bits));
     }
 }
 
-/* x, y and the largest size the chunk may have here. */
-static bool read_chunk(exr_reader *r, const exr_chunk_info_t *chunk, int x, int y) {
-    if (chunk->width < 1 || chunk->height < 1 || chunk->width > r->image->width - x || chunk->height > r->image->height - y) {
+/* Where a channel's pixel (x, y) goes, NULL for channels that are not wanted. */
+static float *target(exr_reader *r, const char *channel, size_t x, size_t y, int *stride) {
+    size_t pixel = y * (size_t)r->image->width + x;
+    *stride = 1;
+    if (r->mask && strcmp(channel, "emitter") == 0)
+        return r->mask + pixel;
+    const char *found = strlen(channel) == 1 ? strchr(r->grey ? "Y" : "RGB", channel[0]) : NULL;
+    *stride = 3;
+    return found ? r->image->rgb + 3 * pixel + (found - (r->grey ? "Y" : "RGB")) : NULL;
+}
+
+/* In the pipeline in place of the library's own: in 3.1 some of those trust sizes in the file (a chunk stored with fewer bytes
+ * than its pixels need was read beyond its buffer). Lines of a chunk follow each other, in each its channels, planar. */
+static exr_result_t unpack_chunk(exr_decode_pipeline_t *decode) {
+    exr_reader *r = decode->decoding_user_data;
+    const exr_chunk_info_t *chunk = &decode->chunk;
+    const uint8_t *from = decode->unpacked_buffer;
+    size_t line_bytes = 0;
+    for (int i = 0; i < decode->channel_count; i++)
+        line_bytes += (size_t)chunk->width * (size_t)decode->channels[i].bytes_per_element;
+    if (!from || chunk->unpacked_size != line_bytes * (size_t)chunk->height)
+        return EXR_ERR_CORRUPT_CHUNK;
+    for (int y = 0; y < chunk->height; y++)
+        for (int i = 0; i < decode->channel_count; i++) {
+            const exr_coding_channel_info_t *ch = &decode->channels[i];
+            int stride;
+            float *to = target(r, ch->channel_name, (size_t)r->x, (size_t)(r->y + y), &stride);
+            if (to)
+                unpack_line(from, ch->data_type, chunk->width, to, stride);
+            from += (size_t)chunk->width * (size_t)ch->bytes_per_element;
+        }
+    return EXR_ERR_SUCCESS;
+}
+
+/* Buffers begin as zeros, so that what a damaged chunk leaves out is black and not what was in memory before; and have some bytes
+ * more than asked for, since decoders of bit streams read ahead. */
+static void *alloc_buffer(exr_transcoding_pipeline_buffer_id_t id, size_t size) {
+    return size < SIZE_MAX - 64 ? calloc(1, size + 64) : NULL;
+}
+static void free_buffer(exr_transcoding_pipeline_buffer_id_t id, void *buffer) { free(buffer); }
+
+static bool run_pipeline(exr_reader *r, const exr_chunk_info_t *chunk, exr_decode_pipeline_t *decode) {
+    if (!ok(r, exr_decoding_initialize(r->context, r->part, chunk, decode)))
+        return false;
+    decode->decoding_user_data = r;
+    decode->alloc_fn = alloc_buffer;
+    decode->free_fn = free_buffer;
+    for (int i = 0; i < decode->channel_count; i++) { /* only looked at for choosing, and never as plain planes */
+        exr_coding_channel_info_t *ch = &decode->channels[i];
+        ch->user_data_type = EXR_PIXEL_FLOAT;
+        ch->user_bytes_per_element = 4;
+        ch->user_pixel_stride = 12;
+        ch->user_line_stride = 12 * r->image->width;
+        ch->decode_to_ptr = (uint8_t *)r->image->rgb;
+    }
+    if (!ok(r, exr_decoding_choose_default_routines(r->context, r->part, decode)))
+        return false;
+    decode->unpack_and_convert_fn = unpack_chunk;
+    return ok(r, exr_decoding_run(r->context, r->part, decode));
+}
+
+/* The chunk at (x, y), relative to the data window, which must be width x height. */
+static bool read_chunk(exr_reader *r, const exr_chunk_info_t *chunk, int x, int y, int width, int height) {
+    bool stored = chunk->compression == EXR_COMPRESSION_NONE;
+    if (chunk->width != width || chunk->height != height || chunk->packed_size == 0 || chunk->packed_size > r->size ||
+        (stored && chunk->packed_size != chunk->unpacked_size)) {
         r->status = noc_error(r->log, NOC_ERR_FORMAT, "%s: EXR: the chunk at %d, %d has a wrong size", r->name, x, y);
         return false;
     }
-    bool first = !r->decode_ready;
-    r->decode_ready = true;
-    if (!ok(r, first ? exr_decoding_initialize(r->context, r->part, chunk, &r->decode)
-                     : exr_decoding_update(r->context, r->part, chunk, &r->decode)))
-        return false;
-    set_targets(r, (size_t)x, (size_t)y);
-    /* The routine depends on the layout, and the last chunk of a row may have another one. */
-    return ok(r, exr_decoding_choose_default_routines(r->context, r->part, &r->decode)) &&
-           ok(r, exr_decoding_run(r->context, r->part, &r->decode));
+    r->x = x;
+    r->y = y;
+    /* A pipeline a chunk: one that is used again keeps buffers of the chunk before. */
+    exr_decode_pipeline_t decode = EXR_DECODE_PIPELINE_INITIALIZER;
+    bool good = run_pipeline(r, chunk, &decode);
+    if (decode.context)
+        exr_decoding_destroy(r->context, &decode);
+    return good;
 }
 
 static bool read_scanlines(exr_reader *r) {
     int32_t lines = 0;
     if (!ok(r, exr_get_scanlines_per_chunk(r->context, r->part, &lines)))
         return false;
-    for (int y = 0; y < r->image->height; y += NOC_MAX(lines, 1)) {
+    lines = NOC_MAX(lines, 1);
+    for (int y = 0; y < r->image->height; y += lines) {
         exr_chunk_info_t chunk;
-        if (!ok(r, exr_read_scanline_chunk_info(r->context, r->part, r->window.min.y + y, &chunk)) || !read_chunk(r, &chunk, 0, y))
+        if (!ok(r, exr_read_scanline_chunk_info(r->context, r->part, r->window.min.y + y, &chunk)) ||
+            !read_chunk(r, &chunk, 0, y, r->image->width, NOC_MIN(lines, r->image->height - y)))
             return false;
     }
     return true;
@@ -218,7 +292,8 @@ static bool read_tiles(exr_reader *r) {
         for (int tx = 0; tx <= (r->image->width - 1) / tw; tx++) {
             exr_chunk_info_t chunk;
             if (!ok(r, exr_read_tile_chunk_info(r->context, r->part, tx, ty, 0, 0, &chunk)) ||
-                !read_chunk(r, &chunk, tx * tw, ty * th))
+                !read_chunk(r, &chunk, tx * tw, ty * th, NOC_MIN(tw, r->image->width - tx * tw),
+                            NOC_MIN(th, r->image->height - ty * th)))
                 return false;
         }
     return true;
@@ -245,8 +320,6 @@ noc_image *image_read_exr(const uint8_t *data, size_t size, const char *name, no
     if (ok(&r, exr_start_read(&r.context, name, &init)) && choose_part(&r) && make_image(&r) &&
         (r.tiled ? read_tiles(&r) : read_scanlines(&r)))
         finish_image(&r);
-    if (r.decode_ready)
-        exr_decoding_destroy(r.context, &r.decode);
     if (r.context)
         exr_finish(&r.context);
     free(r.mask);
