@@ -42,7 +42,9 @@ noc_status lamp_writer_end(lamp_writer *w) {
         return noc_error(w->sink->log, NOC_ERR_FORMAT,
                          "%s: its coordinates are no longitudes and latitudes, and it names no other CRS; give one with --crs",
                          w->place);
-    if (!w->lamps)
-        noc_warn(w->sink->log, "%s: no street lamp among its %zu point features", w->place, w->features);
+    if (!w->lamps && w->features)
+        noc_warn(w->sink->log, "%s: none of its %zu features is a street lamp in use", w->place, w->features);
+    else if (!w->lamps)
+        noc_warn(w->sink->log, "%s: no tag and no column of it tells of street lamps", w->place);
     return NOC_OK;
 }

@@ -44,7 +44,7 @@ typedef struct lamp_writer {
     geo_sink *sink;
     const char *place;      /* file, for messages */
     bool geographic;        /* x and y are degrees: checked to be on Earth */
-    size_t features, lamps; /* seen; emitted */
+    size_t features, lamps; /* looked at; emitted */
     size_t off_earth;       /* lamps whose degrees are no longitude and latitude */
 } lamp_writer;
 

@@ -129,7 +129,8 @@ static bool ends_with(const char *text, const char *end) {
 
 /* The first member whose name says that it is a model or a map; else the first file at all. -1: none. */
 static zip_int64_t zip_choose(zip_t *zip) {
-    static const char *const known[] = { ".gml", ".xml", ".citygml", ".obj", ".json", ".geojson", ".osm", ".csv" };
+    static const char *const known[] = { ".gml", ".xml", ".citygml", ".obj", ".json", ".geojson", ".osm", ".pbf", ".csv",
+                                         ".shp", ".gpkg", ".fgb" };
     zip_int64_t first = -1, count = zip_get_num_entries(zip, 0);
     for (zip_int64_t i = 0; i < count; i++) {
         const char *name = zip_get_name(zip, (zip_uint64_t)i, ZIP_FL_ENC_GUESS);

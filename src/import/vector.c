@@ -461,4 +461,4 @@ static noc_status read_vector(noc_stream *stream, const noc_import_params *param
 }
 
 /* Never `missing`: CSV needs no GDAL, and the others say so one by one. */
-const noc_reader noc_reader_vector = { .name = "map", .reads = NOC_READS_LAMPS, .probe = probe, .read = read_vector };
+const noc_reader noc_reader_vector = { .name = "OpenStreetMap, GeoJSON, CSV", .reads = NOC_READS_LAMPS, .probe = probe, .read = read_vector };

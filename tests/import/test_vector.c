@@ -4,6 +4,12 @@
 #include "import/lamp_tags.h"
 #include "noc_config.h"
 
+#if NOC_HAVE_GDAL
+#include <gdal.h>
+#include <ogr_api.h>
+#include <ogr_srs_api.h>
+#endif
+
 /* ---- real data ---- */
 
 static const struct {
@@ -310,6 +316,72 @@ static void test_osm(void **state) {
     lamp_sink_end(&s);
 }
 
+#if NOC_HAVE_GDAL
+/* Five lamps in a file of one of GDAL's other formats. */
+static void write_map(const char *driver, const char *path, int epsg, double x, double y) {
+    OGRRegisterAll();
+    GDALDatasetH dataset = GDALCreate(GDALGetDriverByName(driver), path, 0, 0, 0, GDT_Unknown, NULL);
+    assert_non_null(dataset);
+    OGRSpatialReferenceH srs = OSRNewSpatialReference(NULL);
+    assert_int_equal(OSRImportFromEPSG(srs, epsg), OGRERR_NONE);
+    OGRLayerH layer = GDALDatasetCreateLayer(dataset, "lamps", srs, wkbPoint, NULL);
+    OGRFieldDefnH type = OGR_Fld_Create("LampType", OFTString), watts = OGR_Fld_Create("wattage", OFTReal);
+    assert_int_equal(OGR_L_CreateField(layer, type, 1), OGRERR_NONE);
+    assert_int_equal(OGR_L_CreateField(layer, watts, 1), OGRERR_NONE);
+    for (int i = 0; i < 5; i++) {
+        OGRFeatureH feature = OGR_F_Create(OGR_L_GetLayerDefn(layer));
+        OGR_F_SetFieldString(feature, 0, "LED");
+        OGR_F_SetFieldDouble(feature, 1, 40 + i);
+        OGRGeometryH point = OGR_G_CreateGeometry(wkbPoint);
+        OGR_G_SetPoint_2D(point, 0, x + i, y);
+        assert_int_equal(OGR_F_SetGeometryDirectly(feature, point), OGRERR_NONE);
+        assert_int_equal(OGR_L_CreateFeature(layer, feature), OGRERR_NONE);
+        OGR_F_Destroy(feature);
+    }
+    OGR_Fld_Destroy(type);
+    OGR_Fld_Destroy(watts);
+    OSRDestroySpatialReference(srs);
+    GDALClose(dataset);
+}
+#endif
+
+/* GeoPackage, Shapefile (EPSG:31256 is northing first by the book, and written easting first) and FlatGeobuf. */
+static void test_other_maps(void **state) {
+#if NOC_HAVE_GDAL
+    static const struct {
+        const char *driver, *ending, *format, *crs;
+        int epsg;
+        double x, y;
+    } maps[] = { { "GPKG", ".gpkg", "GeoPackage", "EPSG:25832", 25832, 500000, 5600000 },
+                 { "ESRI Shapefile", ".shp", "Shapefile", "EPSG:31256", 31256, 2000, 340000 },
+                 { "FlatGeobuf", ".fgb", "FlatGeobuf", "EPSG:5514", 5514, -743000, -1043000 } };
+    for (size_t i = 0; i < NOC_COUNT(maps); i++) {
+        char path[300];
+        snprintf(path, sizeof(path), "%s%s", temp_file("", 0), maps[i].ending);
+        write_map(maps[i].driver, path, maps[i].epsg, maps[i].x, maps[i].y);
+        lamp_sink s;
+        lamp_sink_start(&s);
+        assert_int_equal(read_lamps(&s, path, NULL), NOC_OK);
+        assert_string_equal(s.format, maps[i].format);
+        assert_string_equal(s.crs, maps[i].crs);
+        assert_int_equal(s.lamps.len, 5);
+        bool seen[5] = { false };
+        for (int k = 0; k < 5; k++) {
+            const geo_lamp *l = &s.lamps.data[k];
+            int n = (int)lround(l->watts) - 40;
+            assert_true(n >= 0 && n < 5 && !seen[n]);
+            seen[n] = true;
+            assert_float_equal(l->xyz[0], maps[i].x + n, 1e-6);
+            assert_float_equal(l->xyz[1], maps[i].y, 1e-6);
+        }
+        lamp_sink_end(&s);
+        GDALDeleteDataset(GDALGetDriverByName(maps[i].driver), path);
+    }
+#else
+    skip();
+#endif
+}
+
 /* ---- broken files ---- */
 
 static char *slurp(const char *path, size_t *size) {
@@ -383,7 +455,7 @@ int main(void) {
         cmocka_unit_test(test_real_counts), cmocka_unit_test(test_washington), cmocka_unit_test(test_heights),
         cmocka_unit_test(test_quantities),  cmocka_unit_test(test_directions), cmocka_unit_test(test_words),
         cmocka_unit_test(test_verdicts),    cmocka_unit_test(test_csv),        cmocka_unit_test(test_geojson),
-        cmocka_unit_test(test_osm),         cmocka_unit_test(test_cut),        cmocka_unit_test(test_mutated),
+        cmocka_unit_test(test_osm),         cmocka_unit_test(test_other_maps), cmocka_unit_test(test_cut),        cmocka_unit_test(test_mutated),
     };
     return cmocka_run_group_tests_name("import/vector", tests, NULL, tear_down);
 }
