@@ -4,13 +4,11 @@
 
 static void candidates(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m, rblock *out) {
     for (int l = 0; l < BLOCK; l += LANES) {
-        resv r = resv_empty();
         mask on = mload(lanes, l);
+        resv r = resv_empty();
         if (ctx->light_count && ANY(on))
-            r = ris_uniform_ahead(ctx, (const float *)ctx->lights, surf_load(ctx, g, l, ctx->frame->camera.eye),
-                                  key_of(ctx, x, y, l), KU(ctx->light_count), m);
-        r.w = sel(on, r.w, K(0.0f));
-        r.m = sel(on, K((float)m), K(0.0f));
+            r = resv_sel(on, ris_uniform_ahead(ctx, (const float *)ctx->lights, surf_load(ctx, g, l, ctx->frame->camera.eye),
+                                               key_of(ctx, x, y, l), KU(ctx->light_count), m), r);
         resv_store(out, l, r);
     }
 }

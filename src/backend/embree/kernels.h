@@ -77,6 +77,9 @@ typedef struct kernels {
 } kernels;
 
 extern const kernels noc_kernels_scalar, noc_kernels_baseline, noc_kernels_avx2, noc_kernels_avx512;
+/* All that this machine can run: scalar first, the widest last. Returns how many. */
+enum { NOC_MAX_KERNELS = 4 };
+int noc_runnable_kernels(const kernels *out[NOC_MAX_KERNELS]);
 const kernels *noc_pick_kernels(noc_path path);
 
 #endif

@@ -154,6 +154,17 @@ FN void resv_store(rblock *b, int l, resv r) {
     rstore(b->p + l, r.p);
 }
 
+FN resv resv_sel(mask c, resv a, resv b) {
+    resv r;
+    r.light = selu(c, a.light, b.light);
+    r.u = sel(c, a.u, b.u);
+    r.v = sel(c, a.v, b.v);
+    r.w = sel(c, a.w, b.w);
+    r.m = sel(c, a.m, b.m);
+    r.p = sel(c, a.p, b.p);
+    return r;
+}
+
 FN void ray_store(rayblock *b, int l, v3 o, v3 d) {
     rstore(b->o[0] + l, o.x);
     rstore(b->o[1] + l, o.y);

@@ -1,0 +1,168 @@
+/* Every kernel table this machine can run gives the scalar table's bits, on random blocks: surfaces behind and before the
+ * lights, missing surfaces, empty reservoirs, rejected neighbours, lights of all kinds. */
+#include "../render/rooms.h"
+
+#include "backend/embree/kernels.h"
+
+enum { LIGHTS = 77, MATERIALS = 9, ROUNDS = 40 };
+
+static uint32_t state_ = 1;
+static uint32_t bits(void) { return state_ = state_ * 1664525u + 1013904223u, state_ >> 4 ^ state_ << 7; }
+static float real_in(float lo, float hi) { return lo + (hi - lo) * (float)(bits() >> 8 & 0xffff) / 65536.f; }
+
+typedef struct world {
+    ALIGNED noc_light_record lights[LIGHTS];
+    noc_material_record materials[MATERIALS];
+    noc_render_params params;
+    noc_frame frame;
+    struct core_context ctx;
+} world;
+
+static void make_world(world *w) {
+    for (int i = 0; i < LIGHTS; i++) {
+        noc_light_record *r = &w->lights[i];
+        *r = (noc_light_record){ .kind = (uint32_t)i % 5, .flags = (uint32_t)(i % 3 == 0), .radius = real_in(0.05f, 1) };
+        for (int k = 0; k < 3; k++) {
+            r->p[k] = real_in(-10, 10);
+            r->a[k] = real_in(-1, 1);
+            r->b[k] = real_in(-1, 1);
+            r->e[k] = real_in(0, 100);
+        }
+    }
+    for (int i = 0; i < MATERIALS; i++)
+        w->materials[i] = (noc_material_record){ .albedo = { real_in(0, 1), real_in(0, 1), real_in(0, 1) },
+                                                 .f0 = i % 2 ? real_in(0, 0.2f) : 0, .alpha = real_in(0.01f, 1) };
+    w->params = measure(64, 48, NOC_METHOD_RESTIR);
+    w->params.sky = 0.3;
+    w->params.rays = 9;
+    w->frame = (noc_frame){ .params = &w->params, .index = bits() };
+    noc_camera c = look(20, 3, 4, 0, 0, 0, 50), d = look(19, 4, 4, 0, 0, 1, 50);
+    noc_make_frame_camera(&c, &w->params, 3, &w->frame.camera);
+    noc_make_frame_camera(&d, &w->params, 2, &w->frame.previous);
+    w->ctx = (struct core_context){ w->lights, LIGHTS, w->materials, &w->frame };
+}
+
+static void random_surface(gblock *g) {
+    for (int l = 0; l < BLOCK; l++) {
+        float n[3] = { real_in(-1, 1), real_in(-1, 1), real_in(-1, 1) };
+        float inv = 1 / sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + 1e-6f);
+        bool none = bits() % 7 == 0;
+        g->px[l] = none ? 0 : real_in(-10, 10);
+        g->py[l] = none ? 0 : real_in(-10, 10);
+        g->pz[l] = none ? 0 : real_in(-10, 10);
+        g->nx[l] = none ? 0 : n[0] * inv;
+        g->ny[l] = none ? 0 : n[1] * inv;
+        g->nz[l] = none ? 0 : n[2] * inv;
+        g->depth[l] = none ? 0 : real_in(1, 30);
+        g->material[l] = none ? NO_SURFACE : bits() % MATERIALS;
+        g->light[l] = NOC_NO_LIGHT;
+    }
+}
+
+static void random_reservoirs(rblock *r) {
+    for (int l = 0; l < BLOCK; l++) {
+        bool empty = bits() % 4 == 0;
+        r->light[l] = bits() % LIGHTS;
+        r->u[l] = real_in(0, 1);
+        r->v[l] = real_in(0, 1);
+        r->w[l] = empty ? 0 : real_in(0, 50);
+        r->p[l] = empty ? 0 : real_in(0, 5);
+        r->m[l] = (float)(bits() % 60);
+    }
+}
+
+/* Everything the kernels leave behind, for one random world. */
+typedef struct trace {
+    rblock candidates, biased, mis, pairwise;
+    combination offered, paired;
+    rayblock segments, sky;
+    cblock shaded, reference;
+    ALIGNED float px[BLOCK], py[BLOCK];
+    uint32_t front, entries[BLOCK], dropped;
+} trace;
+
+static void shade_reference(const kernels *k, const world *w, const gblock *g, trace *t) {
+    static float sums[LIGHTS / REFERENCE_CHUNK + 1][BLOCK], weight[1024][BLOCK];
+    static uint32_t light[1024][BLOCK];
+    reference_scratch e = { sums, light, weight, { 0 } };
+    k->reference(&w->ctx, g, 0xffff, 4, 8, &e);
+    memcpy(t->entries, e.count, sizeof(e.count));
+    for (uint32_t i = 0; i < 16; i++) {
+        rblock r = { 0 };
+        uint32_t lanes = 0;
+        for (int l = 0; l < BLOCK; l++)
+            if (i < e.count[l]) {
+                lanes |= 1u << l;
+                r.light[l] = light[i][l];
+                r.w[l] = weight[i][l];
+            }
+        k->reference_place(&w->ctx, 4, 8, &r);
+        t->dropped |= k->shade(&w->ctx, g, &r, lanes, &t->reference);
+    }
+}
+
+static void run_all(const kernels *k, const world *w, const gblock *g, const rblock *own, const neighbour *n, int count,
+                    const uint32_t *seen, trace *t) {
+    memset(t, 0, sizeof(*t));
+    k->candidates(&w->ctx, g, 0xbeef, 4, 8, 13, &t->candidates);
+    t->front = k->project(&w->ctx, g, t->px, t->py);
+    k->segments(&w->ctx, g, own->light, own->u, own->v, &t->segments);
+    k->offer(&w->ctx, g, own, n, count, 4, 8, 64, &t->offered);
+    k->targets(&w->ctx, w->frame.camera.eye, n, count, t->offered.light, t->offered.u, t->offered.v, &t->offered);
+    k->end_biased(&t->offered, &t->biased);
+    k->end_mis(&t->offered, own, n, count, seen, &t->mis);
+    k->targets(&w->ctx, w->frame.previous.eye, n, count, own->light, own->u, own->v, &t->paired);
+    k->end_pairwise(&w->ctx, g, own, n, count, seen, 4, 8, 64, &t->paired, &t->pairwise);
+    t->dropped |= k->shade(&w->ctx, g, own, 0x7ffe, &t->shaded);
+    k->sky_rays(&w->ctx, g, 4, 8, &t->sky);
+    t->dropped |= k->sky_shade(&w->ctx, g, &t->sky, 0xffff, &t->shaded);
+    k->sky_background(&w->ctx, 0x00f0, 4, 8, &t->shaded);
+    shade_reference(k, w, g, t);
+}
+
+static void tables_agree(void **state) {
+    (void)state;
+    const kernels *all[NOC_MAX_KERNELS];
+    int tables = noc_runnable_kernels(all), lit = 0;
+    assert_true(tables >= 2);
+    static neighbour n[MAX_NEIGHBOURS];
+    static world w;
+    static trace want, have;
+    for (int round = 0; round < ROUNDS; round++) {
+        gblock g;
+        rblock own;
+        uint32_t seen[MAX_NEIGHBOURS];
+        int count = round % (MAX_NEIGHBOURS + 1);
+        make_world(&w);
+        random_surface(&g);
+        random_reservoirs(&own);
+        for (int i = 0; i < count; i++) {
+            random_surface(&n[i].g);
+            random_reservoirs(&n[i].r);
+            n[i].lanes = bits() & 0xffff;
+            for (int l = 0; l < BLOCK; l++)
+                if (!(n[i].lanes >> l & 1))
+                    n[i].r.m[l] = n[i].r.w[l] = 0;
+            seen[i] = bits() & 0xffff;
+        }
+        run_all(all[0], &w, &g, &own, n, count, seen, &want);
+        for (int k = 1; k < tables; k++) {
+            run_all(all[k], &w, &g, &own, n, count, seen, &have);
+            if (memcmp(&want, &have, sizeof(want))) {
+                size_t at = 0;
+                while (((char *)&want)[at] == ((char *)&have)[at])
+                    at++;
+                fail_msg("%s differs from scalar in round %d at byte %zu", all[k]->name, round, at);
+            }
+        }
+        for (int l = 0; l < BLOCK; l++)
+            lit += want.candidates.w[l] > 0 && want.reference.rgb[1][l] > 0;
+    }
+    assert_true(lit > ROUNDS * 4); /* the blocks were not all dark */
+    print_message("# %d tables, the widest %s\n", tables, all[tables - 1]->name);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = { cmocka_unit_test(tables_agree) };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
