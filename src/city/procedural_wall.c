@@ -66,7 +66,7 @@ void town_wall_light(town *t, const town_wall *w, double s0, double s1, double z
 
 /* Rooms are lit in groups: two windows of one flat share lamp and brightness, an office storey often works as one. */
 static bool window_lit(const town *t, const town_facade *f, int storey, int column, int *colour, double *luminance) {
-    static const double levels[] = { 18, 28, 42, 60, 85, 120, 170, 240 };
+    static const double levels[] = { 20, 26, 34, 45, 60, 85, 120, 170 };
     uint32_t group = town_hash(f->seed, (uint32_t)(storey * 64 + (f->office ? column / 3 : column / 2)));
     town_rng rng = { group };
     double share = t->params.lit_windows, u = town_next(&rng);
