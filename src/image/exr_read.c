@@ -197,8 +197,8 @@ static float *target(exr_reader *r, const char *channel, size_t x, size_t y, int
     return found ? r->image->rgb + 3 * pixel + (found - (r->grey ? "Y" : "RGB")) : NULL;
 }
 
-/* In the pipeline in place of the library's own: in 3.1 some of those trust sizes in the file (a chunk stored with fewer bytes
- * than its pixels need was read beyond its buffer). Lines of a chunk follow each other, in each its channels, planar. */
+/* In the pipeline in place of the library's own routines: one of those, in 3.1.5, was seen to write outside the picture on a
+ * damaged tiled file. Lines of a chunk follow each other, in each its channels, planar. */
 static exr_result_t unpack_chunk(exr_decode_pipeline_t *decode) {
     exr_reader *r = decode->decoding_user_data;
     const exr_chunk_info_t *chunk = &decode->chunk;
