@@ -3,6 +3,7 @@
 #include "../test.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 #define ITEM_SLOTS 114
 #define ITEMS 16384u
