@@ -1,5 +1,8 @@
 # Thin: the real rules are Meson's. Each target installs what it misses (Debian, Ubuntu), configures and builds.
 PREFIX ?= /usr/local
+# On a terminal ninja keeps to one line; elsewhere it would fill a log.
+NINJA = ninja $$([ -t 1 ] || echo --quiet)
+SANITIZE = -Db_sanitize=address,undefined -Dbuildtype=debugoptimized -Dbench=false
 
 .PHONY: help demo build check asan install clean deps deps-check
 
@@ -16,9 +19,13 @@ deps:
 deps-check:
 	@tools/install-deps.sh check
 
-build: deps
-	@[ -e build/build.ninja ] || meson setup build --prefix $(PREFIX) >/dev/null
-	@ninja -C build --quiet nocturne
+build/build.ninja: | deps
+	@meson setup build --prefix $(PREFIX) >build.log 2>&1 || { cat build.log; rm -rf build build.log; exit 1; }
+	@mv build.log build/setup.log
+	@echo "Building ..."
+
+build: deps build/build.ninja
+	@$(NINJA) -C build nocturne
 
 demo: build
 	@build/nocturne render builtin:city -o night.png
@@ -29,16 +36,15 @@ demo: build
 	@echo "  build/nocturne render CITY.gml LAMPS.geojson -o city.png    (where to get them: docs/formats.md)"
 	@echo "  build/nocturne help render"
 
-check: deps-check
-	@[ -e build/build.ninja ] || meson setup build --prefix $(PREFIX) >/dev/null
+# Tests need packages that the program does not: a build folder made without them must look again.
+check: deps-check build/build.ninja
 	@[ -e build/.tests ] || { meson configure build -Dtests=enabled && touch build/.tests; }
-	@ninja -C build --quiet
+	@$(NINJA) -C build
 	@tools/run-tests.sh build
 
 asan: deps-check
-	@[ -e build-asan/build.ninja ] || meson setup build-asan -Db_sanitize=address,undefined -Dbuildtype=debugoptimized \
-		-Dbench=false -Dtests=enabled >/dev/null
-	@ninja -C build-asan --quiet
+	@[ -e build-asan/build.ninja ] || meson setup build-asan $(SANITIZE) -Dtests=enabled >/dev/null
+	@$(NINJA) -C build-asan
 	@tools/run-tests.sh build-asan --timeout-multiplier 4
 
 install: build

@@ -102,6 +102,9 @@ void cli_print_summary(const render_job *job) {
     if (scene->lights_inferred)
         printf(" (%s placed by a rule, not found in data)", cli_count(c, scene->lights_inferred));
     printf("%s%s\n", scene->crs && *scene->crs ? ", " : "", scene->crs ? scene->crs : "");
+    if (job->skipped || job->repaired)
+        printf("  inputs    features skipped: %s, repaired: %s (nocturne info tells which and why)\n", cli_count(a, job->skipped),
+               cli_count(b, job->repaired));
     printf("  camera    eye %.2f,%.2f,%.2f  target %.2f,%.2f,%.2f  fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
            job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2], job->camera.fov_deg);
     printf("  time      %s: loading %s, ", cli_seconds(a, cli_now() - job->started), cli_seconds(b, job->loaded - job->started));

@@ -27,6 +27,9 @@ done
 run render "$gml" missing.gml -o x.png
 test $status = 1 && grep -q missing.gml err && test ! -e x.png; result $? "one missing file of two"
 
+grep -v surfaceMember "$gml" >bare.gml
+expect "a city without surfaces" 1 'no surface that can be drawn' render bare.gml -o x.png
+
 run info "$gml"
 test $status = 0 && grep -q 'CityGML 2.0' out && grep -q 'EPSG:25832' out && grep -Eq 'wall +4$' out && grep -Eq 'roof +1$' out &&
     grep -Eq 'skipped +1 x .*(two-points|stump)' out && grep -q '1 in LOD2' out
@@ -54,6 +57,7 @@ result $? "info as JSON"
 view='--size 48x27 --frames 1'
 run render "$gml" $view --camera-crs EPSG:25832 --eye 678030,5402980,412 --target 678005,5403004,403 -o a.png
 test $status = 0; result $? "a camera in CRS coordinates"
+grep -q 'features skipped: 1, repaired: 0' out; result $? "the summary tells that something was skipped"
 set -- $(meta a.png scene-origin)
 test $# = 3 && run render "$gml" $view -o b.png \
     --eye "$(echo "678030 5402980 412 $*" | awk '{printf "%.3f,%.3f,%.3f", $1-$4, $2-$5, $3-$6}')" \
