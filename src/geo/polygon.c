@@ -7,6 +7,7 @@
 #define SAME_POINT 1e-4    /* m; neighbouring points nearer than this are one */
 #define PLANE_TOLERANCE 0.01 /* m; points further off the best plane make a polygon non-planar */
 #define LARGEST 1e6        /* m; no surface of a city is wider, and floats could not hold it */
+#define MOST_HOLES 1000    /* that are compared with each other */
 #define SMALLEST_AREA 1e-8 /* m2 */
 
 /* A polygon at work: cleaned points of all rings, relative to `centre`, and the same in the coordinates of its plane. */
@@ -236,6 +237,21 @@ static bool lies_in_exterior(const struct work *w, const double *uv, size_t n) {
     return false;
 }
 
+/* Is the ring the same as an earlier interior ring, begun at whatever point? Their corner sums tell. */
+static bool is_repeated(const struct work *w, size_t ring, size_t first) {
+    size_t n = w->ring_size.data[ring], at = w->ring_size.data[0];
+    for (size_t r = 1; r < ring; at += w->ring_size.data[r++]) {
+        if (w->ring_size.data[r] != n)
+            continue;
+        double d[3] = { 0 };
+        for (size_t i = 0; i < 3 * n; i++)
+            d[i % 3] += w->xyz.data[3 * at + i] - w->xyz.data[3 * first + i];
+        if (dot(d, d) < SAME_POINT * SAME_POINT * (double)n)
+            return true;
+    }
+    return false;
+}
+
 /* Holes must run against the exterior and lie in it. The rest is the tessellator's: the winding rule ignores what is
  * outside, and what is cut out twice. */
 static void check_holes(struct work *w) {
@@ -243,6 +259,8 @@ static void check_holes(struct work *w) {
     for (size_t r = 1; r < w->ring_size.len; first += w->ring_size.data[r++]) {
         size_t n = w->ring_size.data[r];
         double *uv = w->uv.data + 2 * first;
+        if (r <= MOST_HOLES && is_repeated(w, r, first))
+            geo_issue(w->issues, true, "interior ring given twice", w->id);
         if (!lies_in_exterior(w, uv, n))
             geo_issue(w->issues, true, "interior ring outside the exterior", w->id);
         if (signed_area(uv, n) > 0) {

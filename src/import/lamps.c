@@ -5,7 +5,7 @@
 #include <math.h>
 
 #define OUTSIDE 2000.0       /* m; lamps farther than this from the city do not light it */
-#define GROUND_SHARE 0.2     /* of the extent that streets and lawns cover when they are the ground */
+#define GROUND_SHARE 0.2     /* of the extent that streets, lawns and water cover when they are the ground */
 
 typedef struct extent {
     bool any;
@@ -36,7 +36,7 @@ static bool needs_ground(const importer *im, const extent *e) {
     for (size_t t = 0; t < im->scene->triangle_material.len; t++)
         if (im->scene->materials.data[im->scene->triangle_material.data[t]].cls == NOC_CLASS_TERRAIN)
             return false;
-    return im->street_area < GROUND_SHARE * (e->hi[0] - e->lo[0]) * (e->hi[1] - e->lo[1]);
+    return im->open_area < GROUND_SHARE * (e->hi[0] - e->lo[0]) * (e->hi[1] - e->lo[1]);
 }
 
 static bool shines(const noc_scene *scene) {
@@ -82,7 +82,8 @@ static size_t stand_lamps(importer *im, const extent *e, const city_lamp_params 
 noc_status finish_city(importer *im) {
     noc_scene *scene = im->scene;
     extent e = city_extent(scene);
-    bool is_city = im->buildings > 0 || im->street_area > 0;
+    if (!e.any && !im->lamps.len && !scene->lights.len)
+        noc_warn(im->log, "the inputs hold nothing that can be seen: no surfaces and no lamps");
     if (!go_on(im, 0.9))
         return NOC_ERR_CANCELLED;
     if (needs_ground(im, &e)) {
@@ -99,12 +100,16 @@ noc_status finish_city(importer *im) {
                  nearest / 1000);
     else if (outside)
         noc_info(im->log, "%zu of %zu lamps lie outside the city and are left out", outside, im->lamps.len);
-    if (!im->params->infer_lamps || !is_city || shines(scene))
+    bool has_streets = im->buildings > 0 || im->has_roads;
+    if (!im->params->infer_lamps || !has_streets || shines(scene))
         return NOC_OK;
     geo_issues *issues = geo_issues_create();
     int lights = city_infer_lamps(scene, &params, issues);
     geo_issues_destroy(issues);
-    noc_warn(im->log, "no lamps in the inputs%s: %d placed by a rule (inferred, not surveyed)",
-             im->lamps.len ? " that could be used" : "", NOC_MAX(lights, 0));
+    const char *usable = im->lamps.len ? " that could be used" : "";
+    if (lights > 0)
+        noc_warn(im->log, "no lamps in the inputs%s: %d placed by a rule (inferred, not surveyed)", usable, lights);
+    else
+        noc_warn(im->log, "no lamps in the inputs%s, and no place for any was found", usable);
     return NOC_OK;
 }

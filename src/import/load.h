@@ -17,6 +17,7 @@ typedef struct source_crs {
     bool ready;               /* to_scene is made, if one is needed */
     bool axes_decided, swap;
     int tries;
+    double outside;           /* degrees outside the CRS's area of use, of the last try */
     double shift_x;           /* zone number before the easting */
 } source_crs;
 
@@ -55,7 +56,8 @@ typedef struct importer {
     geo_triangles surfaces[NOC_CLASS_COUNT];
     int material[NOC_CLASS_COUNT][PALETTE]; /* index + 1 in the scene, 0 if not made yet */
     size_t buildings;
-    double street_area;       /* m2 of roads, pavements and lawns, seen from above */
+    bool has_roads;
+    double open_area;         /* m2 of terrain, roads, pavements, lawns and water, seen from above */
     NOC_ARRAY(pending_lamp) lamps;
     noc_arena names;
     /* progress */

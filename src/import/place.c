@@ -88,11 +88,9 @@ static void decide_axes(importer *im, source_crs *s, double x, double y, const c
         s->axes_decided = true;
         s->shift_x = -zone;
         geo_issue(issues, true, "zone number taken off the easting", id);
-    } else if (++s->tries == AXIS_TRIES) {
-        s->axes_decided = true;
-        if (given > FAR_OUTSIDE)
-            noc_warn(im->log, "%s: the coordinates lie far outside the area that %s is for: is it the right CRS?",
-                     im->inputs[im->current].path, geo_crs_name(s->crs));
+    } else {
+        s->outside = given;
+        s->axes_decided = ++s->tries == AXIS_TRIES;
     }
 }
 
@@ -290,7 +288,16 @@ noc_status place_mesh(importer *im) {
     return NOC_OK;
 }
 
-void place_finish_file(importer *im) { im->source = NULL; }
+void place_finish_file(importer *im) {
+    im->source = NULL;
+    for (size_t i = 0; i < im->sources.len; i++) {
+        const source_crs *s = im->sources.data[i];
+        bool doubtful = s->tries && (!s->axes_decided || s->tries == AXIS_TRIES);
+        if (s->input == im->current && doubtful && s->outside > FAR_OUTSIDE)
+            noc_warn(im->log, "%s: the coordinates lie far outside the area that %s is for: is it the right CRS?",
+                     im->inputs[im->current].path, geo_crs_name(s->crs));
+    }
+}
 
 void place_destroy(importer *im) {
     for (size_t i = 0; i < im->sources.len; i++) {

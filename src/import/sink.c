@@ -56,7 +56,7 @@ int sink_material(importer *im, noc_class cls, const char *id) {
 
 /* ---- surfaces ---- */
 
-static bool is_street(noc_class cls) {
+static bool is_open_ground(noc_class cls) {
     return cls == NOC_CLASS_ROAD || cls == NOC_CLASS_SIDEWALK || cls == NOC_CLASS_GREEN || cls == NOC_CLASS_TERRAIN ||
            cls == NOC_CLASS_WATER;
 }
@@ -81,8 +81,9 @@ static noc_status flush_class(importer *im, noc_class cls) {
     if (mesh.material < 0 || noc_scene_add_mesh(im->scene, &mesh) < 0)
         return NOC_ERR_UNSUPPORTED; /* said by the scene */
     im->inputs[im->current].file.triangles += mesh.triangle_count;
-    if (is_street(cls))
-        im->street_area += area_from_above(t);
+    if (is_open_ground(cls))
+        im->open_area += area_from_above(t);
+    im->has_roads = im->has_roads || cls == NOC_CLASS_ROAD || cls == NOC_CLASS_SIDEWALK;
     t->xyz.len = t->indices.len = 0;
     return NOC_OK;
 }

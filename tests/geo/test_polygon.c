@@ -140,9 +140,9 @@ static void test_holes(void **state) {
     expect_issue(run((double[]){ SQUARE(0, 0, 10), 1, 1, 0, 2, 2, 0 }, small, 2), 100,
                  "interior ring with too few points");
     expect_issue(run((double[]){ SQUARE(0, 0, 10), SQUARE(1, 1, 0) }, two, 2), 100, "collapsed interior ring");
-    struct result twice = run((double[]){ SQUARE(0, 0, 10), HOLE(2, 2, 3), HOLE(2, 2, 3) }, three, 3);
-    assert_close(twice.area, 91, 1e-9);
-    geo_issues_destroy(twice.issues);
+    expect_issue(run((double[]){ SQUARE(0, 0, 10), HOLE(2, 2, 3), HOLE(2, 2, 3) }, three, 3), 91, "interior ring given twice");
+    expect_issue(run((double[]){ SQUARE(0, 0, 10), HOLE(2, 2, 3), 5, 2, 0, 2, 2, 0, 2, 5, 0, 5, 5, 0 }, three, 3), 91,
+                 "interior ring given twice");
     struct result nested = run((double[]){ SQUARE(0, 0, 10), HOLE(2, 2, 5), HOLE(3, 3, 1) }, three, 3);
     assert_close(nested.area, 75, 1e-9);
     geo_issues_destroy(nested.issues);
@@ -271,6 +271,33 @@ static void test_garbage(void **state) {
     }
 }
 
+/* A few thousand random points cross each other a million times: that is refused, not worked on for minutes. */
+static void test_tangle(void **state) {
+    (void)state;
+    enum { N = 4000 };
+    double *p = noc_alloc(sizeof(double[3 * N]));
+    for (size_t i = 0; i < 3 * N; i++)
+        p[i] = i % 3 == 2 ? 0 : 100 * uniform();
+    expect_skipped(run(p, (size_t[]){ N }, 1), "polygon that cannot be triangulated");
+    /* as many points of an honest ring are no trouble: a comb of teeth a metre apart */
+    for (size_t i = 0; i < N; i++) {
+        double tooth = (double)(i / 4);
+        p[3 * i] = tooth + 0.25 * (double)(i % 4), p[3 * i + 1] = i % 4 == 1 || i % 4 == 2 ? 50 : 1, p[3 * i + 2] = 0;
+    }
+    p[1] = p[3 * N - 2] = 0; /* closes below the gaps */
+    double area = 0;
+    for (size_t i = 0; i < N; i++) {
+        size_t j = (i + 1) % N;
+        area += (p[3 * i] * p[3 * j + 1] - p[3 * j] * p[3 * i + 1]) / 2;
+    }
+    struct result r = run(p, (size_t[]){ N }, 1);
+    assert_true(r.ok);
+    assert_close(r.area, fabs(area), 1e-6);
+    assert_int_equal(r.triangles, N - 2);
+    geo_issues_destroy(r.issues);
+    free(p);
+}
+
 static void test_issue_examples(void **state) {
     (void)state;
     geo_issues *issues = geo_issues_create();
@@ -293,7 +320,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_simple_shapes),  cmocka_unit_test(test_star),    cmocka_unit_test(test_holes),
         cmocka_unit_test(test_repairs),        cmocka_unit_test(test_non_planar), cmocka_unit_test(test_skipped),
-        cmocka_unit_test(test_random_polygons), cmocka_unit_test(test_garbage), cmocka_unit_test(test_issue_examples),
+        cmocka_unit_test(test_random_polygons), cmocka_unit_test(test_garbage), cmocka_unit_test(test_tangle), cmocka_unit_test(test_issue_examples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -305,6 +305,12 @@ static void test_axes(void **state) {
             assert_true(has_line(f, cases[i].reason, 1));
         finish(&r);
     }
+    /* no order of axes helps: said once, and taken as it is */
+    LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:31466\npolygon 2 1 1 0 3 1 0 3 4 0\npolygon 2 1 1 9 3 1 9 3 4 9\n"));
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.warnings, 1);
+    assert_non_null(strstr(r.last_warning, "is it the right CRS?"));
+    finish(&r);
     /* the decision is one of a file: a second file in the same CRS decides for itself */
     LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:25832\npolygon 2 5404000 678000 0 5404000 678009 0 5404009 678009 0\n"),
          file("b", "FAKE city\ncrs EPSG:25832\npolygon 2 678000 5404000 0 678009 5404000 0 678009 5404009 0\n"));
@@ -445,6 +451,15 @@ static void test_inferred_lamps(void **state) {
     LOAD(&r, p, file("a", CITY));
     assert_int_equal(r.info.lights, 0);
     assert_int_equal(r.warnings, 0);
+    finish(&r);
+    /* terrain alone is no place for lamps, and nothing at all is worth a word */
+    LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:25832\npolygon 8 677900 5403900 370 678100 5403900 370 678000 5404200 370\n"));
+    assert_int_equal(r.info.lights + (size_t)r.warnings, 0);
+    finish(&r);
+    LOAD(&r, DEFAULTS, file("a", "FAKE city\n"));
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.warnings, 1);
+    assert_non_null(strstr(r.last_warning, "nothing that can be seen"));
     finish(&r);
     /* what shines already, and what is no city, gets none */
     LOAD(&r, DEFAULTS, file("m", "FAKE mesh\n"));
