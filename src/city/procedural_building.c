@@ -162,7 +162,7 @@ static void pitched_roof(town *t, const house *h, const lot *l, const profile *r
 
 /* A roof terrace behind a parapet, with what stands on such roofs. */
 static void flat_roof(town *t, const vec2 *p, int n, double z, double parapet, town_mat wall, uint32_t seed) {
-    vec2 inner[TOWN_POLY_MAX], centre = { 0, 0 };
+    vec2 inner[TOWN_POLY_MAX] = { { 0 } }, centre = { 0, 0 };
     for (int i = 0; i < n; i++) {
         vec2 a = p[(i + n - 1) % n], b = p[i], c = p[(i + 1) % n];
         town_wall u = town_wall_make(a, b), v = town_wall_make(b, c);

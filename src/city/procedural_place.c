@@ -112,9 +112,9 @@ void town_park(town *t, const town_poly *block, int id) {
     for (double y = lo.y; y < hi.y; y += 7.5)
         for (double x = lo.x; x < hi.x; x += 7.5) {
             vec2 p = { x + town_range(&rng, 0, 6), y + town_range(&rng, 0, 6) };
-            bool clear = contains(&inner, p) && distance(p, centre) > 12 && town_chance(&rng, 0.72);
+            bool clear = contains(&inner, p) && distance(p, centre) > 11 && town_chance(&rng, 0.85);
             for (int i = 0; i < lawn.n; i++)
-                clear = clear && to_segment(p, gate[i], centre) > 6.5;
+                clear = clear && to_segment(p, gate[i], centre) > 4.8;
             if (clear)
                 town_tree(t, town_warp(t, p), TOWN_KERB, 10.5, 180, town_hash(rng.state, 1));
         }

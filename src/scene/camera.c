@@ -16,6 +16,7 @@ typedef struct view_light {
 typedef struct view_city {
     const noc_scene *scene;
     double min[3], max[3];
+    double middle[2];            /* half of the triangles lie to each side */
     double hot[2];               /* middle of the densest lit part */
     NOC_ARRAY(view_light) lights; /* around it */
 } view_city;
@@ -37,6 +38,8 @@ static void city_bounds(view_city *city) {
             v[i] = s->positions.data[3 * (size_t)s->indices.data[3 * (i * triangles / n) + i % 3] + (size_t)k];
         qsort(v, n, sizeof(*v), compare_doubles);
         double lo = v[n / 50], hi = v[n - 1 - n / 50], margin = (hi - lo) * 0.02 + 1;
+        if (k < 2)
+            city->middle[k] = v[n / 2];
         city->min[k] = s->bounds_min[k];
         city->max[k] = s->bounds_max[k];
         if (n > 400 && city->max[k] - city->min[k] > 3 * (hi - lo) + 100) {
@@ -247,6 +250,9 @@ static void aerial(view_city *city, double aspect, noc_camera *camera) {
             double edge = 0.1 * (city->max[k] - city->min[k]);
             inside *= eye[k] > city->min[k] + edge && eye[k] < city->max[k] - edge ? 1 : 0.45;
         }
+        /* with the city behind the lights rather than behind the eye */
+        double mx = city->middle[0] - city->hot[0], my = city->middle[1] - city->hot[1];
+        inside *= 1 + 0.6 * (mx * dx + my * dy) / NOC_MAX(hypot(mx, my), reach);
         double steep = (eye[2] - ground) / reach; /* a tower below would lift the eye too high */
         double score = (1e-6 + light_in_view(city, eye, dx, dy, half_width(camera->fov_deg, aspect), 500, 200, false)) * inside *
                        (0.1 + clear_share(scene, eye, target)) * (0.1 + clear_aside(scene, eye, target)) / (1 + NOC_MAX(steep - 0.5, 0) * 3);
@@ -282,25 +288,43 @@ static bool open_place(const noc_scene *scene, double x, double y, double *z) {
 
 enum { STREET_REACH = 130 };
 
-/* Distance to the first thing as high as the eye along a direction. Leaving the model ends the view too. */
-static double free_distance(const noc_scene *scene, const double eye[3], double dx, double dy) {
+/* Distance to the first thing as high as the eye along a direction, and whether it is a wall, or a tree, rather than a
+ * car. Leaving the model ends the view too. */
+static double free_distance(const noc_scene *scene, const double eye[3], double dx, double dy, bool *wall) {
     double step = 1.2;
+    *wall = false;
     for (double d = step; d < STREET_REACH; d += step) {
         double z;
         /* nearby, anything over the knee is in the way (a parked car); further on, what reaches over the eye is */
-        if (!noc_scene_top(scene, eye[0] + d * dx, eye[1] + d * dy, &z) || z > eye[2] + (d < 14 ? -1.2 : -0.1 + 0.03 * d))
+        if (!noc_scene_top(scene, eye[0] + d * dx, eye[1] + d * dy, &z))
             return d;
+        if (z > eye[2] + (d < 14 ? -1.2 : -0.1 + 0.03 * d)) {
+            *wall = z > eye[2] + 2;
+            return d;
+        }
         step = 1.2 + 0.02 * d;
     }
     return STREET_REACH;
+}
+
+/* Rays march past poles; a lamp this near has one right before the eye. */
+static bool pole_in_view(const view_city *city, const double eye[3], double dx, double dy, double half_angle) {
+    for (size_t i = 0; i < city->lights.len; i++) {
+        const view_light *l = &city->lights.data[i];
+        double x = l->p[0] - eye[0], y = l->p[1] - eye[1], d = hypot(x, y);
+        if (l->lamp && d < 8 && x * dx + y * dy > cos(half_angle) * d - 1)
+            return true;
+    }
+    return false;
 }
 
 /* Best direction from one place; returns its score. */
 static double street_look(const view_city *city, const double eye[3], double aspect, double fov, double *yaw) {
     enum { DIRECTIONS = 32 };
     double best = 0, free_way[DIRECTIONS];
+    bool wall[DIRECTIONS];
     for (int i = 0; i < DIRECTIONS; i++)
-        free_way[i] = free_distance(city->scene, eye, cos(2 * M_PI * i / DIRECTIONS), sin(2 * M_PI * i / DIRECTIONS));
+        free_way[i] = free_distance(city->scene, eye, cos(2 * M_PI * i / DIRECTIONS), sin(2 * M_PI * i / DIRECTIONS), &wall[i]);
     for (int i = 0; i < DIRECTIONS; i++) {
         double a = 2 * M_PI * i / DIRECTIONS, dx = cos(a), dy = sin(a);
         double beside = NOC_MIN(free_way[(i + 1) % DIRECTIONS], free_way[(i + DIRECTIONS - 1) % DIRECTIONS]);
@@ -308,7 +332,12 @@ static double street_look(const view_city *city, const double eye[3], double asp
         double all = light_in_view(city, eye, dx, dy, half_width(fov, aspect), 100, 30, false);
         /* a long way ahead, some room beside it, lamps along it; lit fronts help */
         double way = NOC_MIN(free_way[i], 110.0) * NOC_MIN(beside, 12.0) / 12;
-        double score = way * (1e-3 + lamps + 0.5 * NOC_MIN(all - lamps, 2 * lamps + 10));
+        int fronts = 0; /* a street has houses to its sides */
+        for (int j = i + DIRECTIONS - 4; j <= i + DIRECTIONS + 4; j++)
+            fronts += wall[j % DIRECTIONS] && free_way[j % DIRECTIONS] < 70;
+        double aside = NOC_MIN(free_way[(i + 2) % DIRECTIONS], free_way[(i + DIRECTIONS - 2) % DIRECTIONS]);
+        way *= (0.2 + NOC_MIN(aside, 9.0) / 9) * (pole_in_view(city, eye, dx, dy, half_width(fov, aspect)) ? 0.2 : 1);
+        double score = way * (1 + NOC_MIN(fronts, 5)) * (1e-3 + lamps + 0.5 * NOC_MIN(all - lamps, 2 * lamps + 10));
         if (score > best * 1.0001) {
             best = score;
             *yaw = a;
@@ -318,7 +347,7 @@ static double street_look(const view_city *city, const double eye[3], double asp
 }
 
 static bool street(view_city *city, double aspect, noc_camera *camera) {
-    enum { PLACES = 120, AROUND = 4, FALLBACK_GRID = 40 };
+    enum { PLACES = 60, AROUND = 12, FALLBACK_GRID = 40 };
     const noc_scene *scene = city->scene;
     double best = 0, extent[2] = { city->max[0] - city->min[0], city->max[1] - city->min[1] };
     camera->fov_deg = 55;
@@ -334,7 +363,7 @@ static bool street(view_city *city, double aspect, noc_camera *camera) {
             if (!round && ((lamps && !city->lights.data[i].lamp) || n++ % stride))
                 continue;
             for (int j = 0; j < (round ? 1 : AROUND); j++) {
-                double eye[3], z, yaw = 0, a = 2 * M_PI * j / AROUND + (double)i, r = 3 + 2.5 * (j & 1);
+                double eye[3], z, yaw = 0, a = 2 * M_PI * j / AROUND + (double)i, r = 3 + 3.2 * (j % 3);
                 if (round) {
                     eye[0] = city->min[0] + extent[0] * ((double)(i % FALLBACK_GRID) + 0.5) / FALLBACK_GRID;
                     eye[1] = city->min[1] + extent[1] * ((double)(i / FALLBACK_GRID) + 0.5) / FALLBACK_GRID;
