@@ -29,8 +29,8 @@ static house house_make(const town *t, uint32_t seed, town_way way) {
     if (h.front.shops && !avenue)
         h.front.ground = 4.1;
     if (modern < 0.22) { /* after-war: wide windows, flat roof */
-        h.front.bay = town_range(&rng, 3.1, 3.7);
-        h.front.width = town_range(&rng, 1.9, 2.4);
+        h.front.bay = town_range(&rng, 2.8, 3.4);
+        h.front.width = town_range(&rng, 1.7, 2.2);
         h.front.height = 1.45;
         h.front.sill = 0.9;
         h.roof = ROOF_FLAT;
@@ -44,7 +44,7 @@ static house house_make(const town *t, uint32_t seed, town_way way) {
     h.front.balconies = town_chance(&rng, 0.3);
     h.tiles = h.roof == ROOF_MANSARD ? (town_chance(&rng, 0.75) ? TM_SLATE : TM_COPPER) : tiles[town_below(&rng, 4)];
     h.rise = h.roof == ROOF_GABLE ? town_range(&rng, 3.8, 5.0) : h.roof == ROOF_MANSARD ? 3.9 : 0.7;
-    h.dormers = h.roof == ROOF_MANSARD || (h.roof == ROOF_GABLE && town_chance(&rng, 0.45));
+    h.dormers = h.roof == ROOF_MANSARD || (h.roof == ROOF_GABLE && town_chance(&rng, 0.65));
     h.chimney = town_chance(&rng, 0.8);
     h.eave = h.front.base + town_facade_height(&h.front);
     h.back = h.front;

@@ -161,7 +161,7 @@ static void shop(town *t, const town_wall *w, const town_facade *f, int column, 
     double kind = town_next(&rng);
     int colour = LIGHT_WARM + town_below(&rng, 4);
     double level = levels[town_below(&rng, NOC_COUNT(levels))];
-    if (kind < 0.5 && r[0] > 6 && r[1] < w->length - 6) { /* rooms keep clear of the corners */
+    if (kind < 0.7 && r[0] > 6 && r[1] < w->length - 6) { /* rooms keep clear of the corners */
         const double depth = 2.6, sm = 0.5 * (r[0] + r[1]), z = r[3] - 0.03;
         recess(t, TM_SHOP, TM_SHOP, w, r, depth);
         noc_light panel = { .kind = NOC_LIGHT_PARALLELOGRAM, .name = "shop" }; /* in the ceiling, facing down */
@@ -179,12 +179,12 @@ static void shop(town *t, const town_wall *w, const town_facade *f, int column, 
         wall_box(t, TM_WOOD, w, sm - 0.7, sm + 0.5, r[2], r[2] + 0.8, -1.3, -0.8, 0, 0);
     } else {
         recess(t, TM_FRAME, TM_SHOP_DARK, w, r, 0.22);
-        if (kind < 0.82) {
+        if (kind < 0.87) {
             int panes = 3;
             for (int i = 0; i < panes; i++) { /* one brightness a pane: displays, a poster, the door */
                 double a = r[0] + (r[1] - r[0]) * i / panes, b = r[0] + (r[1] - r[0]) * (i + 1) / panes;
                 double lo = town_chance(&rng, 0.35) ? r[2] + 0.7 : r[2] + 0.12;
-                town_wall_light(t, w, a + 0.05, b - 0.05, lo, r[3] - 0.08, -0.2, colour, level * (0.35 + 0.1 * town_below(&rng, 3)), "shop");
+                town_wall_light(t, w, a + 0.05, b - 0.05, lo, r[3] - 0.08, -0.2, colour, level * (0.3 + 0.12 * town_below(&rng, 3)), "shop");
                 if (i)
                     town_wall_rect(t, TM_FRAME, w, a - 0.05, a + 0.05, r[2], r[3], -0.17);
             }
