@@ -28,7 +28,7 @@ build: deps build/build.ninja
 	@$(NINJA) -C build nocturne
 
 demo: build
-	@build/nocturne render builtin:city -o night.png
+	@build/nocturne render builtin:city --frames 32 --time 45 -o night.png
 	@echo
 	@echo "Try next"
 	@echo "  build/nocturne render builtin:city --view aerial --size 1920x1080 -o aerial.png"
@@ -38,7 +38,7 @@ demo: build
 
 # Tests need packages that the program does not: a build folder made without them must look again.
 check: deps-check build/build.ninja
-	@[ -e build/.tests ] || { meson configure build -Dtests=enabled && touch build/.tests; }
+	@[ -e build/.tests ] || { meson setup --reconfigure build -Dtests=enabled >build/setup.log && touch build/.tests; }
 	@$(NINJA) -C build
 	@tools/run-tests.sh build
 

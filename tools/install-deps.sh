@@ -31,6 +31,7 @@ need() {
 }
 
 compiler() { have cc || have gcc || have clang; }
+cplusplus() { have c++ || have g++ || have clang++; }
 libc() { header stdio.h; }
 embree() { header embree4/rtcore.h || header embree3/rtcore.h; }
 need gcc "C compiler" compiler
@@ -50,6 +51,7 @@ need libpng-dev "PNG pictures" module libpng
 need libzip-dev "zipped city models" module libzip
 need zlib1g-dev "gzipped city models" module zlib
 if [ "$purpose" = check ]; then
+    need g++ "tests that the headers serve C++ too" cplusplus
     need libcmocka-dev "unit tests" module cmocka
     need glslang-tools "tests that the estimator compiles as GLSL" have glslangValidator
     need libvulkan-dev "runs that GLSL in tests" module vulkan
