@@ -54,11 +54,7 @@ uint high_u32(uint a, uint b) {
 #include <stdbool.h>
 #include <stdint.h>
 
-#if defined(CORE_LANES)
-#define FN static inline __attribute__((always_inline)) /* a call would pass wide structs through memory */
-#else
-#define FN static inline
-#endif
+#define FN static inline __attribute__((always_inline)) /* a call would pass structs through memory */
 #define EXACT
 #define CTX const struct core_context *ctx,
 #define PASS ctx,

@@ -41,6 +41,12 @@ FN u32 high_u32(u32 a, u32 b) {
 
 FN real sel(mask c, real a, real b) { return (real)(((mask)a & c) | ((mask)b & ~c)); }
 FN u32 selu(mask c, u32 a, u32 b) { return (u32)(((mask)a & c) | ((mask)b & ~c)); }
+#if CORE_LANES == 4 && defined(__SSE2__)
+FN real sqrt_(real a) { return (real)_mm_sqrt_ps((__m128)a); }
+FN real min_(real a, real b) { return (real)_mm_min_ps((__m128)a, (__m128)b); }
+FN real max_(real a, real b) { return (real)_mm_max_ps((__m128)a, (__m128)b); }
+#define ANY(c) (_mm_movemask_ps((__m128)(c)) != 0)
+#else
 FN real sqrt_(real a) {
     real r;
     for (int i = 0; i < CORE_LANES; i++)
@@ -49,15 +55,6 @@ FN real sqrt_(real a) {
 }
 FN real min_(real a, real b) { return sel(a < b, a, b); }
 FN real max_(real a, real b) { return sel(a > b, a, b); }
-FN u32 high_u32(u32 a, u32 b) {
-    u32 r;
-    for (int i = 0; i < CORE_LANES; i++)
-        r[i] = (uint32_t)((uint64_t)a[i] * b[i] >> 32);
-    return r;
-}
-#if CORE_LANES == 4 && defined(__SSE2__)
-#define ANY(c) (_mm_movemask_ps((__m128)(c)) != 0)
-#else
 FN bool wide_any(mask c) {
     int32_t any = 0;
     for (int i = 0; i < CORE_LANES; i++)
@@ -66,6 +63,12 @@ FN bool wide_any(mask c) {
 }
 #define ANY(c) wide_any(c)
 #endif
+FN u32 high_u32(u32 a, u32 b) {
+    u32 r;
+    for (int i = 0; i < CORE_LANES; i++)
+        r[i] = (uint32_t)((uint64_t)a[i] * b[i] >> 32);
+    return r;
+}
 
 #endif
 
