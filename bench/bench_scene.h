@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* "city" or "city:METRES" is the built-in city. NULL after saying why. */
+/* "city" or "city:METRES" is the built-in city, anything else files to load as one scene, with commas between them. NULL
+ * after saying why. */
 static inline noc_scene *bench_scene(const char *spec, noc_log *log) {
     noc_scene *scene = noc_scene_create(log);
     noc_city_params city = noc_city_default_params();
@@ -19,8 +20,13 @@ static inline noc_scene *bench_scene(const char *spec, noc_log *log) {
         status = noc_scene_add_city(scene, &city);
         status = status == NOC_OK ? noc_scene_commit(scene) : status;
     } else {
-        fprintf(stderr, "%s: not a scene\n", spec);
-        status = NOC_ERR_ARGUMENT;
+        const char *paths[16];
+        size_t count = 0;
+        char *copy = strdup(spec);
+        for (char *rest = copy, *path; copy && count < 16 && (path = strtok_r(rest, ",", &rest));)
+            paths[count++] = path;
+        status = noc_scene_load(scene, paths, count, NULL, NULL);
+        free(copy);
     }
     if (status == NOC_OK)
         return scene;
