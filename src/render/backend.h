@@ -84,6 +84,11 @@ static inline bool noc_uses_bias_rays(const noc_render_params *p) {
            p->final_ray;
 }
 
+/* May the last spatial output feed the next frame? See noc_make_schedule. */
+static inline bool noc_feeds_spatial(const noc_render_params *p) {
+    return p->bias == NOC_BIAS_PAIRWISE && (noc_uses_bias_rays(p) || !(p->visibility_reuse && p->final_ray));
+}
+
 /* history.c: what may be carried from frame to frame. */
 typedef struct noc_history {
     bool started;             /* params and camera are those of an earlier frame */

@@ -140,6 +140,29 @@ static void empty_scenes(void **state) {
     noc_scene_destroy(s);
 }
 
+/* Lamps brighter than the sun that touch, hold or lie in what they light, slivers, a camera in a wall: not one number that is
+ * not finite reaches the picture. */
+static void hostile_scenes(void **state) {
+    (void)state;
+    noc_scene *s = noc_scene_create(NULL);
+    int mirror = noc_scene_add_material(s, &(noc_material){ .albedo = { 1, 1, 1 }, .f0 = 1, .roughness = 0.05f });
+    add_floor(s, mirror, 0, 0, 0, 20);
+    QUAD(s, mirror, -20, 3, -1, 40, 0, 0, 0, 0, 1e-5);
+    QUAD(s, mirror, 1, -10, 3.5, 1e-3, 0, 0, 0, 0, 9); /* through the camera's eye */
+    for (int i = 0; i < 25; i++) {
+        noc_light l = { .kind = (noc_light_kind)(i % 5), .position = { -2 + 0.2 * i, 0.1 * (i % 4), i < 10 ? 0 : 1e-4 * i },
+                        .edge_u = { i % 3 ? 1e-4 : 3, 0, 0 }, .edge_v = { 0, 2, i % 2 }, .direction = { 0, 0, -1 },
+                        .radius = i % 2 ? 1e-4 : 4, .emission = { 1e12f, 1e-30f, 1e12f } };
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+    }
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    for (int i = 0; i < VARIANTS; i++) {
+        noc_render_params p = variant(i);
+        noc_image_destroy(moving(s, &p, 2)); /* checks every number */
+    }
+    noc_scene_destroy(s);
+}
+
 /* ---- errors ---- */
 
 static void drop(void *user, noc_log_level level, const char *text) { (void)user, (void)level, (void)text; }
@@ -323,7 +346,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scalar_and_wide_agree), cmocka_unit_test(threads_and_seeds), cmocka_unit_test(empty_scenes),
         cmocka_unit_test(wrong_arguments),       cmocka_unit_test(cancelled_frames),  cmocka_unit_test(frames_and_resets),
-        cmocka_unit_test(emitter_mask),
+        cmocka_unit_test(emitter_mask),          cmocka_unit_test(hostile_scenes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -23,7 +23,7 @@ static void free_workers(embree_state *s) {
         free(w->reference.sums);
         free(w->reference.light);
         free(w->reference.w);
-        array_free(&w->packets);
+        free(w->packets);
     }
     free(s->workers);
 }
@@ -207,9 +207,18 @@ static void stats(void *state, noc_frame_stats *out) {
     out->path = s->kernels->name;
 }
 
-static void forget_packets(embree_state *s) {
-    for (int i = 0; i < s->worker_count; i++)
-        array_free(&s->workers[i].packets);
+/* Returns whether all of them had been kept. */
+static bool forget_packets(embree_state *s) {
+    bool whole = true;
+    for (int i = 0; i < s->worker_count; i++) {
+        worker *w = &s->workers[i];
+        whole = whole && !w->packets_lost;
+        free(w->packets);
+        w->packets = NULL;
+        w->packet_count = w->packet_room = 0;
+        w->packets_lost = false;
+    }
+    return whole;
 }
 
 static void record(void *state, bool on) {
@@ -220,9 +229,12 @@ static void record(void *state, bool on) {
 }
 
 static noc_status replay(void *state, double *seconds) {
-    *seconds = noc_embree_replay(state);
-    forget_packets(state);
-    return NOC_OK;
+    embree_state *s = state;
+    *seconds = noc_embree_replay(s);
+    if (forget_packets(s))
+        return NOC_OK;
+    return noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory to keep the rays of a frame of %d x %d", s->b.width,
+                     s->b.height);
 }
 
 const noc_backend noc_backend_embree = {

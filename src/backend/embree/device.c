@@ -83,8 +83,22 @@ static void fill_rays(const rayblock *rays, float far, struct RTCRay16 *r) {
 }
 
 static void keep(embree_state *s, worker *w, const rayblock *rays, uint32_t valid, bool primary) {
-    if (s->recording)
-        array_push(&w->packets, (packet){ .rays = *rays, .valid = valid, .primary = primary });
+    if (!s->recording || w->packets_lost)
+        return;
+    if (w->packet_count == w->packet_room) {
+        size_t room = w->packet_room ? w->packet_room * 2 : 4096;
+        packet *more = noc_alloc_large(room, sizeof(*more));
+        if (!more) {
+            w->packets_lost = true;
+            return;
+        }
+        if (w->packet_count)
+            memcpy(more, w->packets, w->packet_count * sizeof(*more));
+        free(w->packets);
+        w->packets = more;
+        w->packet_room = room;
+    }
+    w->packets[w->packet_count++] = (packet){ .rays = *rays, .valid = valid, .primary = primary };
 }
 
 static uint32_t trace_free(embree_state *s, const rayblock *rays, uint32_t valid) {
@@ -189,8 +203,8 @@ double noc_embree_replay(embree_state *s) {
     NOC_ARRAY(struct replay_item) items = { 0 };
     for (int i = 0; i < s->worker_count; i++) {
         const worker *w = &s->workers[i];
-        for (size_t k = 0; k < w->packets.len; k += REPLAY_RUN)
-            array_push(&items, (struct replay_item){ w->packets.data + k, NOC_MIN((size_t)REPLAY_RUN, w->packets.len - k) });
+        for (size_t k = 0; k < w->packet_count; k += REPLAY_RUN)
+            array_push(&items, (struct replay_item){ w->packets + k, NOC_MIN((size_t)REPLAY_RUN, w->packet_count - k) });
     }
     struct replay r = { s, items.data };
     double start = noc_wall_seconds();

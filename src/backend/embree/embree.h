@@ -23,7 +23,9 @@ typedef struct worker {
     uint64_t rays_primary, rays_shadow, dropped;
     neighbour *neighbours; /* MAX_NEIGHBOURS */
     reference_scratch reference;
-    NOC_ARRAY(packet) packets;
+    packet *packets; /* kept while recording */
+    size_t packet_count, packet_room;
+    bool packets_lost; /* there was no memory for all of them */
 } worker;
 
 /* Buffers of one picture; every array has an entry a block. */
