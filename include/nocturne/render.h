@@ -11,12 +11,16 @@ extern "C" {
 
 typedef enum noc_method { NOC_METHOD_REFERENCE, NOC_METHOD_IS, NOC_METHOD_RIS, NOC_METHOD_RESTIR } noc_method;
 typedef enum noc_bias { NOC_BIAS_BIASED, NOC_BIAS_MIS, NOC_BIAS_PAIRWISE } noc_bias;
+/* Where light candidates come from: docs/estimator.md, "Candidates". */
+typedef enum noc_candidates { NOC_CANDIDATES_UNIFORM, NOC_CANDIDATES_LISTS } noc_candidates;
 typedef enum noc_path { NOC_PATH_AUTO, NOC_PATH_SCALAR, NOC_PATH_WIDE } noc_path;
 
 typedef struct noc_render_params {
     int width, height;          /* 1..NOC_IMAGE_MAX_SIDE */
     noc_method method;
-    int candidates;             /* M: light candidates a pixel and frame, 1..1024 */
+    noc_candidates candidates;  /* ris, restir: source of the light candidates */
+    int draws;                  /* M: candidates a pixel and frame, 1..1024 */
+    int list, tail;             /* lists: strongest lights of a tile, 0..128; draws from all others, 1..128 */
     int rays;                   /* reference: shadow rays a pixel and frame, 1..1024 */
     /* reuse (restir only) */
     bool temporal, spatial;
@@ -41,7 +45,8 @@ typedef struct noc_render_params {
 } noc_render_params;
 
 #define noc_render_default_params()                                                                                    \
-    ((noc_render_params){ .width = 1280, .height = 720, .method = NOC_METHOD_RESTIR, .candidates = 32, .rays = 64,     \
+    ((noc_render_params){ .width = 1280, .height = 720, .method = NOC_METHOD_RESTIR, .candidates = NOC_CANDIDATES_LISTS, \
+                          .draws = 32, .list = 32, .tail = 32, .rays = 64,                                            \
                           .temporal = true, .spatial = true, .neighbours = 5, .radius = 10, .passes = 1,              \
                           .history = 20, .bias = NOC_BIAS_PAIRWISE, .bias_rays = true, .visibility_reuse = true,       \
                           .final_ray = true, .reject_depth = 0.1, .reject_normal = 0.9, .seed = 1, .jitter = true,     \

@@ -204,10 +204,11 @@ static int work(render_job *job) {
         cli_error("interrupted: no frame was complete, nothing was saved");
         return ending;
     }
+    if (cli_write_picture(job))
+        return CLI_FAILURE;
+    /* After the picture: the floor is measured on one more frame. */
     if (args->stats && !ending &&
         noc_renderer_trace_floor(job->renderer, &job->camera, &args->render, &job->floor_seconds))
-        return CLI_FAILURE;
-    if (cli_write_picture(job))
         return CLI_FAILURE;
     if (ending && args->time > 0)
         cli_error("interrupted: saved %d frames to %s", job->frames, args->output);

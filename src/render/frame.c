@@ -15,7 +15,9 @@ noc_status noc_check_render_params(const noc_render_params *p, noc_log *log) {
     } ranges[] = {
         { "width", p->width, 1, NOC_IMAGE_MAX_SIDE },
         { "height", p->height, 1, NOC_IMAGE_MAX_SIDE },
-        { "candidates", p->candidates, 1, 1024 },
+        { "draws", p->draws, 1, 1024 },
+        { "list", p->list, 0, 128 },
+        { "tail", p->tail, 1, 128 },
         { "rays", p->rays, 1, 1024 },
         { "neighbours", p->neighbours, 0, 16 },
         { "radius", p->radius, 1, 64 },
@@ -33,6 +35,8 @@ noc_status noc_check_render_params(const noc_render_params *p, noc_log *log) {
         }
     if ((unsigned)p->method > NOC_METHOD_RESTIR)
         return wrong(log, "method", p->method, "a noc_method");
+    if ((unsigned)p->candidates > NOC_CANDIDATES_LISTS)
+        return wrong(log, "candidates", p->candidates, "a noc_candidates");
     if ((unsigned)p->bias > NOC_BIAS_PAIRWISE)
         return wrong(log, "bias", p->bias, "a noc_bias");
     if ((unsigned)p->path > NOC_PATH_WIDE)

@@ -14,7 +14,7 @@ static bool same_camera(const noc_camera *a, const noc_camera *b) {
 /* Field by field: the padding of two equal structs may differ. */
 static bool same_params(const noc_render_params *a, const noc_render_params *b) {
     return a->width == b->width && a->height == b->height && a->method == b->method && a->candidates == b->candidates &&
-           a->rays == b->rays && a->temporal == b->temporal && a->spatial == b->spatial &&
+           a->draws == b->draws && a->list == b->list && a->tail == b->tail && a->rays == b->rays && a->temporal == b->temporal && a->spatial == b->spatial &&
            a->neighbours == b->neighbours && a->radius == b->radius && a->passes == b->passes &&
            a->history == b->history && a->bias == b->bias && a->bias_rays == b->bias_rays &&
            a->visibility_reuse == b->visibility_reuse && a->final_ray == b->final_ray &&

@@ -25,7 +25,10 @@ static const noc_option render_options[] = {
     BOOL(P, emitters, "emitters", "Picture", "show light sources that are seen directly"),
 
     CHOICE(P, method, "method", "Estimator", "reference|is|ris|restir", "how direct light is estimated"),
-    INT(P, candidates, "candidates", "Estimator", 1, 1024, "", "ris, restir: light candidates a pixel and frame (M)"),
+    CHOICE(P, candidates, "candidates", "Estimator", "uniform|lists", "ris, restir: where light candidates come from"),
+    INT(P, draws, "draws", "Estimator", 1, 1024, "", "light candidates a pixel and frame (M)"),
+    INT(P, list, "list", "Estimator", 0, 128, "", "lists: strongest lights of a tile, seen by each of its pixels"),
+    INT(P, tail, "tail", "Estimator", 1, 128, "", "lists: draws a tile from all other lights"),
     INT(P, rays, "rays", "Estimator", 1, 1024, "", "reference: shadow rays a pixel and frame"),
     BOOL(P, final_ray, "final-ray", "Estimator", "shadow ray to the chosen light; off: light passes through walls"),
     CHOICE(P, path, "path", "Estimator", "auto|scalar|wide", "code that runs: scalar C, or wide for this processor"),

@@ -45,7 +45,7 @@ for method in reference is ris; do
     test $status = 0 && ! cmp -s a.png b.png; result $? "method $method"
 done
 for switch in --no-temporal --no-spatial --no-bias-rays --no-visibility-reuse --no-final-ray --no-jitter --no-accumulate --no-emitters \
-    --sky=0 --exposure=3 --compensation=1 --tonemap=linear --candidates=4 --neighbours=2 --bias=mis --city-lit=1 --fov=80; do
+    --sky=0 --exposure=3 --compensation=1 --tonemap=linear --candidates=uniform --list=3 --tail=3 --neighbours=2 --bias=mis --city-lit=1 --fov=80; do
     run render $small $switch -o b.png
     test $status = 0 && ! cmp -s a.png b.png; result $? "$switch changes the picture"
 done

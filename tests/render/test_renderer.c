@@ -62,7 +62,10 @@ static noc_render_params variant(int i) {
     noc_render_params p = measure(45, 31, NOC_METHOD_RESTIR); /* neither a multiple of 4 nor of 16 */
     p.jitter = true;
     p.sky = 0.05;
-    p.candidates = 8;
+    p.draws = 8;
+    p.candidates = i < 11 ? NOC_CANDIDATES_UNIFORM : NOC_CANDIDATES_LISTS;
+    p.list = 6; /* of 40 lights */
+    p.tail = 5;
     switch (i) {
     case 0: p.method = NOC_METHOD_REFERENCE; p.rays = 7; break;
     case 1: p.method = NOC_METHOD_REFERENCE; p.rays = 100; break; /* more rays than lights */
@@ -75,10 +78,12 @@ static noc_render_params variant(int i) {
     case 8: p.final_ray = false; break;
     case 9: p.temporal = false; break;
     case 10: p.spatial = false; break;
+    case 11: p.method = NOC_METHOD_RIS; break;
+    case 12: break; /* restir from lists */
     }
     return p;
 }
-enum { VARIANTS = 11 };
+enum { VARIANTS = 13 };
 
 static void scalar_and_wide_agree(void **state) {
     (void)state;
@@ -180,7 +185,7 @@ static void wrong_arguments(void **state) {
     noc_camera c = view(0);
     const struct { const char *name; size_t at; bool real; } fields[] = {
         { "width", offsetof(noc_render_params, width) },           { "height", offsetof(noc_render_params, height) },
-        { "candidates", offsetof(noc_render_params, candidates) }, { "rays", offsetof(noc_render_params, rays) },
+        { "draws", offsetof(noc_render_params, draws) }, { "rays", offsetof(noc_render_params, rays) },
         { "neighbours", offsetof(noc_render_params, neighbours) }, { "passes", offsetof(noc_render_params, passes) },
         { "radius", offsetof(noc_render_params, radius), true },   { "history", offsetof(noc_render_params, history), true },
         { "reject_normal", offsetof(noc_render_params, reject_normal), true },

@@ -98,12 +98,16 @@ typedef struct config {
     noc_bias bias;
     bool temporal, spatial, rays, reuse;
     int passes, neighbours;
+    int list; /* > 0: lists of so many lights and as many draws from the rest */
 } config;
 
 static noc_render_params params_of(const config *c, uint32_t seed) {
     noc_render_params p = measure(W, H, c->method);
     p.seed = seed;
-    p.candidates = 8;
+    p.draws = 8;
+    p.candidates = c->list ? NOC_CANDIDATES_LISTS : NOC_CANDIDATES_UNIFORM;
+    p.list = c->list;
+    p.tail = c->list ? c->list : 1;
     p.accumulate = false;
     p.emitters = false; /* the same in all methods, and much brighter than what they differ in */
     p.bias = c->bias;
@@ -189,6 +193,10 @@ static double worst(const result *x, const result *reference, double *bias, doub
 static const config unbiased[] = {
     { "is", NOC_METHOD_IS },
     { "ris", NOC_METHOD_RIS, .reuse = true },
+    { "ris, lists of 6", NOC_METHOD_RIS, .reuse = true, .list = 6 },
+    { "ris, lists of 12", NOC_METHOD_RIS, .list = 12 },
+    { "pairwise + rays, lists of 4", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .spatial = true,
+      .rays = true, .reuse = true, .list = 4 },
     { "mis + rays", NOC_METHOD_RESTIR, NOC_BIAS_MIS, .temporal = true, .spatial = true, .rays = true, .reuse = true },
     { "mis + rays, spatial", NOC_METHOD_RESTIR, NOC_BIAS_MIS, .spatial = true, .rays = true, .reuse = true },
     { "mis + rays, 2 passes", NOC_METHOD_RESTIR, NOC_BIAS_MIS, .temporal = true, .spatial = true, .rays = true,

@@ -23,6 +23,7 @@ typedef struct worker {
     uint64_t rays_primary, rays_shadow, dropped;
     neighbour *neighbours; /* MAX_NEIGHBOURS */
     reference_scratch reference;
+    list_scratch lists;
     packet *packets; /* kept while recording */
     size_t packet_count, packet_room;
     bool packets_lost; /* there was no memory for all of them */
@@ -51,6 +52,7 @@ typedef struct embree_state {
     _Atomic ssize_t build_bytes; /* held by Embree */
     noc_material_record no_material; /* stands in where the scene has none */
     frame_buffers b;
+    noc_clusters *clusters; /* made when first needed */
     worker *workers;
     int worker_count;
     bool recording;

@@ -216,11 +216,14 @@ static void sky_background(const struct core_context *ctx, uint32_t lanes, int x
     }
 }
 
+#include "backend/embree/lists.h"
 #include "backend/embree/reference.h"
 
 const kernels KERNELS = {
     .name = KERNELS_NAME,
     .candidates = candidates,
+    .list_build = list_build,
+    .list_candidates = list_candidates,
     .project = project,
     .segments = segments,
     .offer = offer,

@@ -5,9 +5,17 @@
 #define NOC_EMBREE_KERNELS_H
 
 #include "backend/embree/blocks.h"
+#include "light/clusters.h"
 #include "render/backend.h"
 
-enum { MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32 };
+enum { MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32, LIST_ENTRIES = 128, LIST_EXAMPLES = 8, OPENED_CLUSTERS = 96, SCORE_BINS = 1024 };
+
+/* What the pixels of a tile evaluate: core/lists.h. */
+typedef struct light_list {
+    uint32_t count;
+    uint32_t light[2 * LIST_ENTRIES];
+    float weight[2 * LIST_ENTRIES];
+} light_list;
 
 /* Uniform for a frame: what core's bridge functions read. */
 struct core_context {
@@ -15,6 +23,8 @@ struct core_context {
     uint32_t light_count;
     const noc_material_record *materials; /* at least one */
     const noc_frame *frame;
+    const noc_clusters *clusters; /* lists only */
+    const light_list *list;       /* of the tile */
 };
 
 /* A reservoir of another pixel with that pixel's surface; lanes outside `lanes` were rejected and have m = w = 0. */
@@ -40,10 +50,24 @@ typedef struct reference_scratch {
     uint32_t count[BLOCK];     /* entries a lane */
 } reference_scratch;
 
+/* Scratch of list building, one a worker. */
+typedef struct list_scratch {
+    light_list list;
+    float *scores; /* a cluster, padded */
+    ALIGNED uint32_t light[OPENED_CLUSTERS * NOC_CLUSTER_LIGHTS];
+    ALIGNED float light_scores[OPENED_CLUSTERS * NOC_CLUSTER_LIGHTS];
+    uint16_t bins[SCORE_BINS];
+} list_scratch;
+
 typedef struct kernels {
     const char *name;
     /* M candidates a lane of `lanes`; w = m = 0 elsewhere. x, y: pixel of lane 0. */
     void (*candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m, rblock *out);
+    /* The list of a tile of `blocks` blocks. choice and rotation are independent numbers in [0, 1): the scores depend on
+     * the first, and the tail's start must not depend on the scores. Then candidates from it. */
+    void (*list_build)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks,
+                       float choice, float rotation, list_scratch *scratch, light_list *out);
+    void (*list_candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, rblock *out);
     /* Where this frame's surfaces were in the previous picture, in pixels; returns the lanes that were in front of it. */
     uint32_t (*project)(const struct core_context *ctx, const gblock *g, float px[BLOCK], float py[BLOCK]);
     /* Segments from g to the samples. */

@@ -2,6 +2,7 @@
 #include "backend/embree/embree.h"
 
 #include "core/camera.h"
+#include "core/random.h"
 
 static size_t block_at(const frame_buffers *b, int bx, int by) { return (size_t)by * b->blocks_x + bx; }
 
@@ -38,11 +39,42 @@ static void candidates(stage_run *run, worker *w, int bx, int by) {
     const noc_render_params *p = run->ctx.frame->params;
     size_t at = block_at(b, bx, by);
     const gblock *g = &b->g[run->ctx.frame->gbuffer][at];
-    int m = p->method == NOC_METHOD_IS ? 1 : p->candidates;
+    int m = p->method == NOC_METHOD_IS ? 1 : p->draws;
     (void)w;
     run->k->candidates(&run->ctx, g, lanes_with_surface(g), bx * BLOCK_SIDE, by * BLOCK_SIDE, m,
                        &b->r[run->stage->target][at]);
     b->visible[run->stage->target][at] = 0;
+}
+
+/* All candidates of a tile: from its list, where that is asked for, else each block's own. */
+static void tile_candidates(stage_run *run, worker *w, tile t) {
+    const noc_frame *f = run->ctx.frame;
+    frame_buffers *b = &run->s->b;
+    if (f->params->candidates != NOC_CANDIDATES_LISTS || f->params->method == NOC_METHOD_IS) {
+        for (int by = t.y0; by < t.y1; by++)
+            for (int bx = t.x0; bx < t.x1; bx++)
+                candidates(run, w, bx, by);
+        return;
+    }
+    const gblock *g[TILE_BLOCKS * TILE_BLOCKS];
+    uint32_t lanes[TILE_BLOCKS * TILE_BLOCKS];
+    int n = 0;
+    for (int by = t.y0; by < t.y1; by++)
+        for (int bx = t.x0; bx < t.x1; bx++, n++) {
+            g[n] = &b->g[f->gbuffer][block_at(b, bx, by)];
+            lanes[n] = lanes_with_surface(g[n]);
+        }
+    u32 key = rng_key(f->params->seed, (uint32_t)(t.y0 * b->blocks_x + t.x0), f->index);
+    run->k->list_build(&run->ctx, g, lanes, n, rng(key, DIM_LIST), rng(key, DIM_LIST + 1), &w->lists, &w->lists.list);
+    struct core_context ctx = run->ctx;
+    ctx.list = &w->lists.list;
+    n = 0;
+    for (int by = t.y0; by < t.y1; by++)
+        for (int bx = t.x0; bx < t.x1; bx++, n++) {
+            size_t at = block_at(b, bx, by);
+            run->k->list_candidates(&ctx, g[n], lanes[n], bx * BLOCK_SIDE, by * BLOCK_SIDE, &b->r[run->stage->target][at]);
+            b->visible[run->stage->target][at] = 0;
+        }
 }
 
 static void visibility(stage_run *run, worker *w, int bx, int by) {
@@ -149,7 +181,7 @@ static void sky(stage_run *run, worker *w, int bx, int by) {
 
 void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
     static void (*const passes[NOC_PASS_COUNT])(stage_run *, worker *, int, int) = {
-        [NOC_PASS_PRIMARY] = primary,   [NOC_PASS_CANDIDATES] = candidates,     [NOC_PASS_VISIBILITY] = visibility,
+        [NOC_PASS_PRIMARY] = primary, [NOC_PASS_VISIBILITY] = visibility,
         [NOC_PASS_TEMPORAL] = noc_embree_temporal, [NOC_PASS_SPATIAL] = noc_embree_spatial, [NOC_PASS_SHADE] = shade,
         [NOC_PASS_SKY] = sky,
     };
@@ -157,6 +189,10 @@ void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
                        pass == NOC_PASS_SPATIAL;
     if (needs_light && !run->ctx.light_count)
         return;
+    if (pass == NOC_PASS_CANDIDATES) {
+        tile_candidates(run, w, t);
+        return;
+    }
     for (int by = t.y0; by < t.y1; by++)
         for (int bx = t.x0; bx < t.x1; bx++)
             passes[pass](run, w, bx, by);

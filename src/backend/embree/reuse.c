@@ -127,7 +127,7 @@ void noc_embree_temporal(stage_run *run, worker *w, int bx, int by) {
     uint32_t front = run->k->project(&run->ctx, g, px, py) & surfaces;
     neighbour *n = w->neighbours;
     clear(n);
-    float m_max = (float)(p->history * p->candidates);
+    float m_max = (float)(p->history * p->draws);
     for (int l = 0; l < BLOCK; l++) {
         if (!(front >> l & 1) || !(px[l] >= 0 && px[l] < (float)b->width && py[l] >= 0 && py[l] < (float)b->height))
             continue;
