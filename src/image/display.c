@@ -5,18 +5,23 @@
 
 /* Automatic exposure
  *
- * A picture of a night is mostly black, with a few emitters a thousand times brighter than what they light. What should be
- * shown well is what is lit. So:
+ * A picture of a night is mostly dark, with pools of light and a few emitters a thousand times brighter than what they
+ * light. What lamps light decides; what only the sky lights stays dark, however much of the picture it covers. So:
  *   1. Luminance is averaged over a grid of at most METER_CELLS a side, which takes the noise out of few samples. Pixels
- *      of the emitter mask do not count, unless nothing else is lit.
- *   2. Of the cells that are lit at all, the brightest METER_TRIM are left out: emitters without a mask, glare, fireflies.
- *   3. The key is the mean of log luminance over the rest, each weighted by the square root of its luminance: a faint sky
- *      over half of the picture then weighs little, and the brightest spot does not decide alone.
- *   4. The exposure puts the key at METER_KEY of white: under the 0.18 of a day, so that a night stays a night.
- * Every step scales with the picture: 2^k times the light is k more EV. Without any light the answer is METER_BLACK. */
+ *      of the emitter mask do not count, unless nothing else is lit. Of a picture without a mask the brightest
+ *      METER_TRIM of the lit cells are left out: emitters, glare.
+ *   2. The lit cells are ranked. The one that METER_BRIGHT of them stay under is shown at METER_BRIGHT_AT of white, as far
+ *      as a street is lit, that is the lit road.
+ *   3. Seen from afar, lamps light a hundredth of a picture, and rank METER_BRIGHT lies in the dark between them. The cell at
+ *      METER_PEAK, then the middle of a lamp's pool, is never shown above METER_PEAK_AT of white: the tone map takes that
+ *      just before it burns. This is the floor of the exposure.
+ * Ranks scale with the picture: 2^k times the light is k more EV. Without any light the answer is METER_BLACK. */
 #define METER_CELLS 256
 #define METER_TRIM 0.08
-#define METER_KEY 0.12
+#define METER_BRIGHT 0.95
+#define METER_BRIGHT_AT 0.54
+#define METER_PEAK 0.9995
+#define METER_PEAK_AT 3.5
 #define METER_BLACK 3.0
 
 static int compare_float(const void *a, const void *b) {
@@ -46,23 +51,27 @@ static size_t meter_cells(const noc_image *image, bool use_mask, float *cells) {
     return lit;
 }
 
+/* Of n sorted cells the one at a rank between 0 and 1, between two by interpolation. */
+static double cell_at(const float *cells, size_t n, double rank) {
+    double at = rank * (double)(n - 1);
+    size_t i = (size_t)at, next = NOC_MIN(i + 1, n - 1);
+    return cells[i] + (at - (double)i) * ((double)cells[next] - cells[i]);
+}
+
 double noc_image_auto_ev100(const noc_image *image) {
     float *cells = noc_alloc(METER_CELLS * METER_CELLS * sizeof(float));
     size_t lit = meter_cells(image, image->emitter != NULL, cells);
+    bool masked = image->emitter && lit;
     if (!lit && image->emitter)
         lit = meter_cells(image, false, cells);
     qsort(cells, lit, sizeof(float), compare_float);
-    lit -= (size_t)(METER_TRIM * (double)lit);
-    double sum = 0, weights = 0;
-    for (size_t i = 0; i < lit; i++) {
-        if (!(cells[i] > 0)) /* a mean too small for float */
-            continue;
-        double weight = sqrt(cells[i]);
-        sum += weight * log2(cells[i]);
-        weights += weight;
-    }
+    if (!masked)
+        lit -= (size_t)(METER_TRIM * (double)lit);
+    double white = 0;
+    if (lit)
+        white = NOC_MAX(cell_at(cells, lit, METER_BRIGHT) / METER_BRIGHT_AT, cell_at(cells, lit, METER_PEAK) / METER_PEAK_AT);
     free(cells);
-    return weights > 0 ? sum / weights - log2(IMAGE_SATURATION * METER_KEY) : METER_BLACK;
+    return white > 0 ? log2(white / IMAGE_SATURATION) : METER_BLACK;
 }
 
 double display_ev100(const noc_image *image, const noc_display_params *params) {
