@@ -235,15 +235,16 @@ static noc_status read_header(csv *c, columns *cols) {
     return NOC_OK;
 }
 
-/* Columns called x and y without a CRS: degrees if every one of them could be. */
-static noc_status looks_like_degrees(csv *c, columns *cols, bool *degrees) {
+/* Columns called x and y without a CRS: degrees if every one of them could be, and none of them lies where `given` (NULL
+ * if there is none) is for. --crs is often meant for the city beside the table. */
+static noc_status looks_like_degrees(csv *c, columns *cols, geo_crs *given, bool *degrees) {
     size_t inside = 0, outside = 0;
     noc_status status;
     while (!(status = read_record(c)) && c->start.len) {
         double x, y;
         if (c->start.len != cols->count || !read_place(c, cols, &x, &y))
             continue;
-        if (fabs(x) <= 180 && fabs(y) <= 90)
+        if (fabs(x) <= 180 && fabs(y) <= 90 && !(given && geo_crs_outside(given, x, y) == 0))
             inside++;
         else
             outside++;
@@ -254,14 +255,16 @@ static noc_status looks_like_degrees(csv *c, columns *cols, bool *degrees) {
 
 static noc_status settle_crs(csv *c, columns *cols, lamp_writer *w, const noc_import_params *params) {
     bool degrees = (cols->lon >= 0 && cols->lat >= 0) || cols->lat_lon >= 0;
-    bool given = params && params->crs;
-    if (!degrees && !given) {
-        noc_status status = looks_like_degrees(c, cols, &degrees);
-        if (status)
-            return status;
-        if (degrees)
+    geo_crs *given = params && params->crs && *params->crs ? geo_crs_create(params->crs, "--crs", NULL) : NULL;
+    noc_status status = NOC_OK;
+    if (!degrees && !(given && geo_crs_is_geographic(given))) {
+        status = looks_like_degrees(c, cols, given, &degrees);
+        if (!status && degrees)
             noc_info(c->log, "%s: its coordinates name no CRS and lie within 180 by 90: taken as WGS 84 degrees", w->place);
     }
+    geo_crs_destroy(given);
+    if (status)
+        return status;
     w->geographic = degrees;
     return lamp_writer_crs(w, degrees ? LAMP_WGS84 : NULL);
 }

@@ -18,6 +18,12 @@ uint64_t noc_stream_size(const noc_stream *s);        /* bytes as stored */
 uint64_t noc_stream_read_bytes(const noc_stream *s);  /* bytes delivered since open or rewind */
 double noc_stream_progress(const noc_stream *s);      /* share of the stored bytes consumed, 0..1 */
 
+/* Takes a mesh's coordinates (x east, y north, z up, as the file has them) to the scene's frame, in place. */
+typedef struct mesh_place {
+    void *ctx;
+    noc_status (*points)(void *ctx, double *xyz, size_t count);
+} mesh_place;
+
 typedef struct noc_reader {
     const char *name;  /* "CityGML" */
     enum { NOC_READS_CITY, NOC_READS_MESH, NOC_READS_LAMPS } reads;
@@ -26,7 +32,7 @@ typedef struct noc_reader {
     /* Reads everything. *format gets a static or interned description ("CityGML 2.0"). Exactly one of these is set. */
     noc_status (*read)(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format);
     noc_status (*read_mesh)(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,
-                            geo_issues *issues, const char **format);
+                            const mesh_place *place, geo_issues *issues, const char **format);
     const char *missing; /* not NULL: this build lacks the part; the text says which */
 } noc_reader;
 

@@ -1,8 +1,9 @@
-/* Runs the inputs: all are opened and recognised before any is read; then cities, meshes and lamps, in that order, so that
- * the city settles the place and the lamps find their ground. */
+/* Runs the inputs: all are opened and recognised before any is read; then cities, meshes and lamps, in an order that lets
+ * the city settle the place. Lamps are stood on the ground at the end. */
 #include "import/load.h"
 #include "city/city.h"
 
+#include <math.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -83,16 +84,34 @@ static noc_status recognise(importer *im, input *in, const noc_reader *const *re
     return status;
 }
 
-/* Extent of the vertices from first_float on, for meshes, which do not pass the sink. */
-static void mesh_extent(const noc_scene *scene, size_t first_float, noc_report_file *file) {
-    for (size_t i = first_float; i + 2 < scene->positions.len; i += 3)
-        for (size_t k = 0; k < 3; k++) {
-            double x = (double)scene->positions.data[i + k];
-            bool first = i == first_float;
-            file->extent_min[k] = first ? x : NOC_MIN(file->extent_min[k], x);
-            file->extent_max[k] = first ? x : NOC_MAX(file->extent_max[k], x);
-            file->has_extent = true;
+#define FAR_AWAY 20e3 /* m between a mesh and the rest of the scene that are worth a warning */
+
+/* Bounds of all that is in the scene so far, waiting lamps among it. Empty: lo > hi. */
+static void bounds_so_far(const importer *im, double lo[2], double hi[2]) {
+    for (int k = 0; k < 2; k++) {
+        lo[k] = im->scene->bounds_min[k];
+        hi[k] = im->scene->bounds_max[k];
+        for (size_t i = 0; i < im->lamps.len; i++) {
+            lo[k] = NOC_MIN(lo[k], im->lamps.data[i].lamp.xyz[k]);
+            hi[k] = NOC_MAX(hi[k], im->lamps.data[i].lamp.xyz[k]);
         }
+    }
+}
+
+static void warn_if_far(const importer *im, const double lo[2], const double hi[2], size_t first_float) {
+    double a[2] = { INFINITY, INFINITY }, b[2] = { -INFINITY, -INFINITY }, gap = 0;
+    for (size_t i = first_float; i + 2 < im->scene->positions.len; i += 3)
+        for (size_t k = 0; k < 2; k++) {
+            double x = (double)im->scene->positions.data[i + k];
+            a[k] = NOC_MIN(a[k], x);
+            b[k] = NOC_MAX(b[k], x);
+        }
+    for (int k = 0; k < 2; k++)
+        gap = NOC_MAX(gap, NOC_MAX(a[k] - hi[k], lo[k] - b[k]));
+    if (lo[0] <= hi[0] && a[0] <= b[0] && gap > FAR_AWAY)
+        noc_warn(im->log, "%s: lies %.0f km from the rest of the scene: %s", im->inputs[im->current].path, gap / 1000,
+                 im->mesh_from_origin ? "if its coordinates are those of a CRS, say with --crs which one"
+                                      : "are its coordinates in the CRS that --crs says?");
 }
 
 static noc_status read_mesh(importer *im, input *in, noc_stream *stream) {
@@ -100,10 +119,14 @@ static noc_status read_mesh(importer *im, input *in, noc_stream *stream) {
     if (status)
         return status;
     size_t triangles = im->scene->indices.len / 3, floats = im->scene->positions.len, meshes = im->scene->meshes.len;
-    status = in->reader->read_mesh(in->path, stream, im->params, im->scene, in->issues, &in->file.format);
+    const mesh_place place = { im, place_mesh_points };
+    double lo[2], hi[2];
+    bounds_so_far(im, lo, hi);
+    status = in->reader->read_mesh(in->path, stream, im->params, im->scene, &place, in->issues, &in->file.format);
+    if (!status)
+        warn_if_far(im, lo, hi, floats);
     in->file.triangles = im->scene->indices.len / 3 - triangles;
     in->file.objects = im->scene->meshes.len - meshes;
-    mesh_extent(im->scene, floats, &in->file);
     for (size_t i = meshes; i < im->scene->meshes.len; i++) {
         const noc_scene_mesh *m = &im->scene->meshes.data[i];
         const float *e = im->scene->materials.data[m->material].emission;
@@ -157,8 +180,12 @@ static noc_status read_input(importer *im, size_t index) {
     return status;
 }
 
-static int stage(const input *in) {
-    return !in->reader || in->reader->reads == NOC_READS_CITY ? 0 : in->reader->reads == NOC_READS_MESH ? 1 : 2;
+/* A mesh in a CRS may settle the place; one that names none counts from the origin that the others settle. */
+static int stage(const importer *im, const input *in) {
+    if (!in->reader || in->reader->reads == NOC_READS_CITY)
+        return 0;
+    bool in_crs = im->params->crs && *im->params->crs;
+    return in->reader->reads == NOC_READS_LAMPS ? 2 : in_crs ? 1 : 3;
 }
 
 static noc_status run(importer *im, const noc_reader *const *readers) {
@@ -168,9 +195,9 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
             return status;
         im->bytes_total += (double)im->inputs[i].bytes;
     }
-    for (int s = 0; s < 3; s++)
+    for (int s = 0; s < 4; s++)
         for (size_t i = 0; i < im->input_count; i++) {
-            noc_status status = stage(&im->inputs[i]) == s ? read_input(im, i) : NOC_OK;
+            noc_status status = stage(im, &im->inputs[i]) == s ? read_input(im, i) : NOC_OK;
             if (status)
                 return status;
         }

@@ -50,6 +50,7 @@ typedef struct importer {
     const char *placed_by;    /* path of the input that settled it */
     NOC_ARRAY(source_crs *) sources;
     source_crs *source;       /* of the coordinates that come next */
+    bool mesh_from_origin;    /* the mesh that is read is in metres from the scene's origin */
     /* the object that is being read (sink.c) */
     char *object_id;
     NOC_ARRAY(double) scratch;
@@ -84,8 +85,10 @@ noc_status place_crs(importer *im, const char *srs_name, const char *place, bool
 /* Coordinates as emitted (the extent is taken of them) to local metres, in place. *usable is false if they cannot be
  * transformed. The first ones settle the scene's CRS and origin. */
 noc_status place_points(importer *im, double *xyz, size_t count, const char *id, bool *usable);
-/* Meshes have no CRS: the scene's frame is theirs. */
+/* Meshes name no CRS. With --crs they are in it; without, they are metres from the scene's origin where the scene has a CRS,
+ * else in the same local metres as all the rest. */
 noc_status place_mesh(importer *im);
+noc_status place_mesh_points(void *importer, double *xyz, size_t count);
 void place_finish_file(importer *im);
 void place_destroy(importer *im);
 

@@ -1,10 +1,11 @@
 /* Wavefront OBJ with MTL through Assimp. Researchers' night scenes come so, with their lamps as emissive surfaces.
  *
- * Units: metres, in the scene's local frame. OBJ does not say which axis is up; y is what most programs write, and
+ * Units: metres; import/place.c says where the coordinates belong. OBJ does not say which axis is up; y is what most programs write, and
  * noc_import_params.obj_up says otherwise. MTL: Kd is the diffuse reflectance (linear), Ke the radiance in cd/m2, Ks with
  * illum 2 and above the reflectance of the glossy lobe at normal incidence, Ns its Blinn-Phong exponent n, turned into the
  * GGX lobe of the same width, alpha^2 = 2 / (n + 2) (Walter et al. 2007, eq. 37 ff.). Textures are not read. */
 #include "import/import.h"
+#include "import/obj_offset.h"
 #include "noc_config.h"
 #include "scene/scene.h"
 
@@ -238,7 +239,16 @@ static noc_material convert_material(const struct aiMaterial *m, const char *nam
 
 /* ---- meshes ---- */
 
-static noc_status add_mesh(noc_scene *scene, const struct aiMesh *m, int material, bool z_up) {
+typedef struct mesh_target {
+    noc_scene *scene;
+    const mesh_place *place;
+    const double *offset; /* of the coordinates as Assimp has them, in the file's axes */
+    geo_issues *issues;
+    bool z_up;
+} mesh_target;
+
+static noc_status add_mesh(const mesh_target *to, const struct aiMesh *m, int material) {
+    noc_scene *scene = to->scene;
     double *xyz = noc_alloc_large((size_t)m->mNumVertices * 3, sizeof(*xyz));
     uint32_t *indices = noc_alloc_large((size_t)m->mNumFaces * 3, sizeof(*indices));
     noc_status status = NOC_OK;
@@ -248,10 +258,12 @@ static noc_status add_mesh(noc_scene *scene, const struct aiMesh *m, int materia
         size_t n = 0;
         for (size_t i = 0; i < m->mNumVertices; i++) {
             const struct aiVector3D *v = &m->mVertices[i];
-            xyz[3 * i] = v->x;
-            xyz[3 * i + 1] = z_up ? v->y : -v->z;
-            xyz[3 * i + 2] = z_up ? v->z : v->y;
+            double x = v->x + to->offset[0], y = v->y + to->offset[1], z = v->z + to->offset[2];
+            xyz[3 * i] = x;
+            xyz[3 * i + 1] = to->z_up ? y : -z;
+            xyz[3 * i + 2] = to->z_up ? z : y;
         }
+        status = to->place->points(to->place->ctx, xyz, m->mNumVertices);
         for (size_t i = 0; i < m->mNumFaces; i++)
             if (m->mFaces[i].mNumIndices == 3) {
                 for (int k = 0; k < 3; k++)
@@ -260,7 +272,7 @@ static noc_status add_mesh(noc_scene *scene, const struct aiMesh *m, int materia
             }
         noc_mesh mesh = { .vertex_count = m->mNumVertices, .positions = xyz, .triangle_count = n, .indices = indices,
                           .material = material, .name = m->mName.length ? m->mName.data : NULL };
-        if (n && noc_scene_add_mesh(scene, &mesh) < 0)
+        if (!status && n && noc_scene_add_mesh(scene, &mesh) < 0)
             status = NOC_ERR_UNSUPPORTED;
     }
     free(xyz);
@@ -268,7 +280,7 @@ static noc_status add_mesh(noc_scene *scene, const struct aiMesh *m, int materia
     return status;
 }
 
-static noc_status add_scene(const struct aiScene *from, noc_scene *scene, bool z_up, geo_issues *issues) {
+static noc_status add_scene(const struct aiScene *from, const mesh_target *to) {
     int *materials = noc_alloc((from->mNumMaterials + 1) * sizeof(*materials));
     noc_status status = NOC_OK;
     memset(materials, 0xff, (from->mNumMaterials + 1) * sizeof(*materials));
@@ -280,16 +292,16 @@ static noc_status add_scene(const struct aiScene *from, noc_scene *scene, bool z
         if (*material < 0) {
             struct aiString name = { 0 };
             aiGetMaterialString(from->mMaterials[m->mMaterialIndex], "?mat.name", 0, 0, &name);
-            noc_material converted = convert_material(from->mMaterials[m->mMaterialIndex], name.data, issues);
-            *material = noc_scene_add_material(scene, &converted);
+            noc_material converted = convert_material(from->mMaterials[m->mMaterialIndex], name.data, to->issues);
+            *material = noc_scene_add_material(to->scene, &converted);
         }
-        status = *material < 0 ? NOC_ERR_ARGUMENT : add_mesh(scene, m, *material, z_up);
+        status = *material < 0 ? NOC_ERR_ARGUMENT : add_mesh(to, m, *material);
     }
     free(materials);
     return status;
 }
 
-static noc_status read_obj(const char *path, library *lib, const noc_import_params *params, noc_scene *scene, geo_issues *issues) {
+static noc_status read_obj(const char *path, library *lib, const mesh_target *to) {
     struct aiFileIO io = { .OpenProc = library_open, .CloseProc = library_close, .UserData = (char *)lib };
     struct aiPropertyStore *settings = aiCreatePropertyStore();
     aiSetImportPropertyInteger(settings, AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -302,11 +314,11 @@ static noc_status read_obj(const char *path, library *lib, const noc_import_para
     noc_status status;
     if (!from) {
         const char *why = aiGetErrorString();
-        status = noc_error(scene->log, NOC_ERR_FORMAT, "%s: OBJ: %s", path, why && *why ? why : "not readable");
+        status = noc_error(to->scene->log, NOC_ERR_FORMAT, "%s: OBJ: %s", path, why && *why ? why : "not readable");
     } else {
         if (lib->missing)
-            noc_warn(scene->log, "%s: its materials in %s cannot be opened: default material", path, lib->missing);
-        status = add_scene(from, scene, params && params->obj_up == NOC_OBJ_UP_Z, issues);
+            noc_warn(to->scene->log, "%s: its materials in %s cannot be opened: default material", path, lib->missing);
+        status = add_scene(from, to);
     }
     aiReleaseImport(from);
     aiReleasePropertyStore(settings);
@@ -314,17 +326,24 @@ static noc_status read_obj(const char *path, library *lib, const noc_import_para
 }
 
 static noc_status read_mesh(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,
-                            geo_issues *issues, const char **format) {
+                            const mesh_place *place, geo_issues *issues, const char **format) {
     *format = "OBJ";
     library lib = { 0 };
+    double offset[3];
     noc_status status = read_all(stream, scene->log, &lib.data, &lib.size);
-    if (status)
+    if (!status)
+        status = obj_take_offset(&lib.data, &lib.size, offset, noc_stream_name(stream), scene->log);
+    if (status) {
+        free(lib.data);
         return status;
+    }
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strchr(base, '.');
     char *folder = noc_format("%.*s", (int)(base - path), path);
     lib.folder = folder;
     lib.main_name = noc_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
-    status = read_obj(path, &lib, params, scene, issues);
+    const mesh_target to = { .scene = scene, .place = place, .offset = offset, .issues = issues,
+                             .z_up = params && params->obj_up == NOC_OBJ_UP_Z };
+    status = read_obj(path, &lib, &to);
     free(folder);
     free(lib.main_name);
     free(lib.missing);

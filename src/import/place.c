@@ -263,29 +263,55 @@ noc_status place_points(importer *im, double *xyz, size_t count, const char *id,
     return NOC_OK;
 }
 
+/* A mesh whose coordinates count from the scene's origin may be the first input, or the only one. */
+static noc_status settle_by_scene(importer *im) {
+    geo_crs *crs;
+    bool preset = im->scene->crs_name && is_blank(im->params->scene_crs) && !im->inspect;
+    noc_status status = wanted_crs(im, &crs);
+    if (!status && crs)
+        set_place(im, crs, preset ? im->scene->origin : (double[3]){ 0, 0, 0 });
+    return status;
+}
+
 noc_status place_mesh(importer *im) {
     const char *path = im->inputs[im->current].path;
-    if (im->placed) {
-        noc_info(im->log, "%s: coordinates are taken as metres from the scene's origin (%.0f %.0f)", path, im->origin[0],
-                 im->origin[1]);
-        return NOC_OK;
-    }
-    geo_crs *crs;
-    noc_status status = wanted_crs(im, &crs);
-    if (status)
-        return status;
-    if (!crs && !is_blank(im->params->crs) && !im->inspect) {
-        crs = geo_crs_create(im->params->crs, "--crs", im->log);
+    im->source = NULL;
+    im->mesh_from_origin = false;
+    if (!is_blank(im->params->crs)) {
+        geo_crs *crs = geo_crs_create(im->params->crs, "--crs", im->log);
+        bool metric = crs && geo_crs_is_metric(crs);
+        geo_crs_destroy(crs);
         if (!crs)
             return NOC_ERR_ARGUMENT;
-        if (!geo_crs_is_metric(crs)) {
-            geo_crs_destroy(crs);
-            return noc_error(im->log, NOC_ERR_ARGUMENT, "--crs %s: %s is in metres, so its CRS must be projected, in metres",
-                             im->params->crs, path);
-        }
+        if (metric)
+            return NOC_OK;
+        return noc_error(im->log, NOC_ERR_ARGUMENT, "--crs %s: %s is in metres, so its CRS must be projected, in metres",
+                         im->params->crs, path);
     }
-    set_place(im, crs, (double[3]){ 0, 0, 0 });
+    if (!im->placed) {
+        noc_status status = settle_by_scene(im);
+        if (status)
+            return status;
+    }
+    im->mesh_from_origin = im->placed && im->scene_crs;
+    if (im->mesh_from_origin)
+        noc_info(im->log, "%s: coordinates are taken as metres from the scene's origin (%.0f %.0f)", path, im->origin[0],
+                 im->origin[1]);
     return NOC_OK;
+}
+
+noc_status place_mesh_points(void *ctx, double *xyz, size_t count) {
+    importer *im = ctx;
+    bool usable;
+    if (im->mesh_from_origin) {
+        double centre[3];
+        take_extent(&im->inputs[im->current].file, xyz, count, centre);
+        return NOC_OK;
+    }
+    noc_status status = place_points(im, xyz, count, "", &usable);
+    for (size_t i = 0; i < 3 * count && !status && !usable; i++)
+        xyz[i] -= im->origin[i % 3]; /* what has no place is NaN: the scene leaves out its triangles alone */
+    return status;
 }
 
 void place_finish_file(importer *im) {

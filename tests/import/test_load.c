@@ -99,12 +99,18 @@ static noc_status fake_read(noc_stream *stream, const noc_import_params *params,
     return status;
 }
 
+static double mesh_x, mesh_y; /* where the fake mesh lies */
+
 static noc_status fake_mesh(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,
-                            geo_issues *issues, const char **format) {
+                            const mesh_place *place, geo_issues *issues, const char **format) {
     (void)path, (void)stream, (void)params, (void)issues;
     noc_material shining = noc_class_material(NOC_CLASS_OTHER);
     shining.emission[0] = 1;
-    noc_mesh mesh = { .vertex_count = 3, .positions = (double[]){ 0, 0, 0, 5, 0, 0, 0, 5, 0 }, .triangle_count = 1,
+    double xyz[] = { mesh_x, mesh_y, 0, mesh_x + 5, mesh_y, 0, mesh_x, mesh_y + 5, 0 };
+    noc_status status = place->points(place->ctx, xyz, 3);
+    if (status)
+        return status;
+    noc_mesh mesh = { .vertex_count = 3, .positions = xyz, .triangle_count = 1,
                       .indices = (uint32_t[]){ 0, 1, 2 }, .material = noc_scene_add_material(scene, &shining) };
     reads++;
     *format = "fake mesh";
@@ -471,6 +477,52 @@ static void test_inferred_lamps(void **state) {
     finish(&r);
 }
 
+/* A mesh names no CRS: with --crs it is in it, in doubles; without, it counts from the origin, wherever in the list it is. */
+static void test_mesh_place(void **state) {
+    (void)state;
+    struct run r;
+    noc_import_params p = with_crs("EPSG:25832", NULL);
+    const char *city = file("a", CITY "object 2 r -1\npolygon 9 678090 5403590 0 678120 5403590 0 678120 5403620 0\nend\n");
+    const char *mesh = file("m", "FAKE mesh\n");
+    p.infer_lamps = false;
+    mesh_x = 678100;
+    mesh_y = 5403580;
+    LOAD(&r, p, mesh, city);
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.warnings, 0);
+    const noc_scene_mesh *m = r.scene->meshes.data; /* the one that shines */
+    while (!(r.scene->materials.data[m->material].emission[0] > 0))
+        m++;
+    const float *v = &r.scene->positions.data[3 * (size_t)r.scene->indices.data[3 * (size_t)m->first_triangle]];
+    assert_float_equal(v[0] + r.scene->origin[0], 678100, 1e-3);
+    assert_float_equal(v[1] + r.scene->origin[1], 5403580, 1e-3);
+    assert_string_equal(noc_report_get_file(r.report, 0)->crs, noc_report_get_file(r.report, 1)->crs);
+    assert_float_equal(noc_report_get_file(r.report, 0)->extent_max[0], 678105, 0);
+    finish(&r);
+    p.crs = NULL; /* map coordinates, but nobody says so */
+    LOAD(&r, p, mesh, city);
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.warnings, 1);
+    assert_non_null(strstr(r.last_warning, "from the rest of the scene"));
+    finish(&r);
+    LOAD(&r, p, mesh); /* alone: local metres, near a local origin */
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.warnings, 0);
+    assert_float_equal(r.scene->origin[0], 678103, 1);
+    assert_float_equal(r.info.bounds_max[0] + r.scene->origin[0], 678105, 1e-3);
+    finish(&r);
+    mesh_x = mesh_y = 0;
+    LOAD(&r, p, mesh, file("l", "FAKE lamps\ncrs EPSG:25832\nlamp 678100 5403580 5\n")); /* lamps settle the place just so */
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.warnings, 0);
+    assert_float_equal(r.scene->origin[0], 678100, 0);
+    finish(&r);
+    p.crs = "EPSG:4326"; /* degrees are no metres */
+    LOAD(&r, p, mesh, city);
+    assert_int_equal(r.status, NOC_ERR_ARGUMENT);
+    finish(&r);
+}
+
 /* Houses without terrain stand on ground that is laid for them; with terrain they do not. */
 static void test_ground(void **state) {
     (void)state;
@@ -699,6 +751,7 @@ int main(void) {
         cmocka_unit_test(test_city),         cmocka_unit_test(test_geographic),      cmocka_unit_test(test_axes),
         cmocka_unit_test(test_scene_crs),    cmocka_unit_test(test_missing_crs),     cmocka_unit_test(test_lamps),
         cmocka_unit_test(test_inferred_lamps), cmocka_unit_test(test_ground),        cmocka_unit_test(test_materials_vary),
+        cmocka_unit_test(test_mesh_place),
         cmocka_unit_test(test_errors),       cmocka_unit_test(test_bad_features),    cmocka_unit_test(test_progress),
         cmocka_unit_test(test_inspect),      cmocka_unit_test(test_ingolstadt),      cmocka_unit_test(test_other_cities),
     };

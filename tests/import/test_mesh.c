@@ -20,6 +20,18 @@ static void on_message(void *user, noc_log_level level, const char *text) {
     *(level == NOC_LOG_ERROR ? &l->errors : &l->warnings) += 1;
 }
 
+static noc_status as_it_is(void *ctx, double *xyz, size_t count) { return NOC_OK; }
+
+/* takes the map's origin off, as the importer does */
+static noc_status from_munich(void *ctx, double *xyz, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        xyz[3 * i] -= 678100;
+        xyz[3 * i + 1] -= 5403580;
+    }
+    return NOC_OK;
+}
+
+static noc_status (*place_by)(void *, double *, size_t) = as_it_is;
 static char folder[200];
 
 static void write_file(const char *name, const void *data, size_t size) {
@@ -41,7 +53,7 @@ static void load(loaded *l, const char *name, noc_obj_up up) {
     noc_import_params params = noc_import_default_params();
     params.obj_up = up;
     noc_stream *stream = noc_stream_open(path, l->log);
-    l->status = stream ? noc_reader_mesh.read_mesh(path, stream, &params, l->scene, l->issues, &l->format) : NOC_ERR_IO;
+    l->status = stream ? noc_reader_mesh.read_mesh(path, stream, &params, l->scene, &(mesh_place){ NULL, place_by }, l->issues, &l->format) : NOC_ERR_IO;
     noc_stream_close(stream);
 }
 
@@ -104,6 +116,47 @@ static void test_reads(void **state) {
     assert_float_equal(info.bounds_min[2], -12, 1e-5);
     assert_float_equal(info.bounds_max[1], 5, 1e-5);
     unload(&l);
+}
+
+/* Floats have a step of 0.5 m at a northing of 5.4e6: stairs in map coordinates must keep theirs of 0.17 m. */
+static void test_map_coordinates(void **state) {
+    loaded l;
+    char text[4000];
+    for (int up = 0; up < 2; up++) {
+        /* a stray vertex at zero comes first; one has a weight, one a colour */
+        int n = snprintf(text, sizeof(text), "v 0 0 0\n");
+        for (int i = 0; i < 20; i++) {
+            double e = 678100.25, north = 5403580.5 + .17 * i, h = 517 + .17 * i;
+            double y = up == NOC_OBJ_UP_Z ? north : h, z = up == NOC_OBJ_UP_Z ? h : -north;
+            if (i == 3)
+                n += snprintf(text + n, sizeof(text) - (size_t)n, "v %.3f %.3f %.3f 2\r\n", 2 * e, 2 * y, 2 * z);
+            else
+                n += snprintf(text + n, sizeof(text) - (size_t)n, "  v %.3f %.3f %.3f%s\r\n", e, y, z, i == 5 ? " 1 0 0" : "");
+            n += snprintf(text + n, sizeof(text) - (size_t)n, "v %.3f %.3f %.3f\n", e + 2, y, z);
+        }
+        n += snprintf(text + n, sizeof(text) - (size_t)n, "o stair\n");
+        for (int i = 0; i < 19; i++)
+            n += snprintf(text + n, sizeof(text) - (size_t)n, "f %d %d %d\n", 2 * i + 2, 2 * i + 3, 2 * i + 4);
+        write_file("map.obj", text, (size_t)n);
+        place_by = from_munich;
+        load(&l, "map.obj", (noc_obj_up)up);
+        place_by = as_it_is;
+        assert_int_equal(l.status, NOC_OK);
+        assert_int_equal(l.scene->indices.len, 19 * 3);
+        bool seen[20] = { 0 };
+        for (size_t i = 0; i < l.scene->indices.len; i++) {
+            const float *v = &l.scene->positions.data[3 * (size_t)l.scene->indices.data[i]];
+            int step = (int)lround((v[1] - .5) / .17);
+            assert_in_range(step, 0, 19);
+            seen[step] = true;
+            assert_float_equal(v[0], v[0] > 1 ? 2.25 : .25, 2e-4);
+            assert_float_equal(v[1], .5 + .17 * step, 2e-4);
+            assert_float_equal(v[2], 517 + .17 * step, 2e-4);
+        }
+        for (int i = 0; i < 20; i++)
+            assert_true(seen[i]);
+        unload(&l);
+    }
 }
 
 static void test_missing_library(void **state) {
@@ -170,7 +223,7 @@ static int set_up(void **state) {
 }
 
 static int tear_down(void **state) {
-    static const char *const files[] = { "test.mtl", "named.anything", "missing.obj", "bad.obj" };
+    static const char *const files[] = { "test.mtl", "named.anything", "missing.obj", "bad.obj", "map.obj" };
     for (size_t i = 0; i < NOC_COUNT(files); i++) {
         char path[300];
         snprintf(path, sizeof(path), "%s/%s", folder, files[i]);
@@ -186,6 +239,7 @@ int main(void) {
     }
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_reads),
+        cmocka_unit_test(test_map_coordinates),
         cmocka_unit_test(test_missing_library),
         cmocka_unit_test(test_probe),
         cmocka_unit_test(test_broken),

@@ -242,6 +242,22 @@ static void test_csv(void **state) {
     expect_csv("lon,lat,lamp_type\n8.5,50.5\n8.5,50.5,LED,more\n,,LED\n1e3,0,LED\n8.5,50.5,LED\n9,51,LED", NOC_OK, 2, NULL);
     expect_csv("lon,lat,lamp_type\n8.5,50.5,\"LED\n", NOC_ERR_FORMAT, 0, NULL);
     expect_csv("lon,lat,lamp_type\n500000,5600000,LED\n500001,5600001,LED\n", NOC_ERR_FORMAT, 0, NULL);
+    /* --crs is for the city beside it: degrees stay degrees, unless they are metres there */
+    static const struct { const char *given, *row, *crs; } beside[] = {
+        { "EPSG:25832", "8.5,50.5", "OGC:CRS84" }, { "EPSG:25832", "500000,5600000", "" }, { "EPSG:4326", "8.5,50.5", "" },
+        { "+proj=tmerc +lat_0=50 +lon_0=8 +datum=WGS84 +type=crs", "8.5,50.5", "" },
+    };
+    for (size_t i = 0; i < NOC_COUNT(beside); i++) {
+        lamp_sink s;
+        char text[100];
+        noc_import_params params = noc_import_default_params();
+        params.crs = beside[i].given;
+        snprintf(text, sizeof(text), "X,Y,wattage,cct\n%s,70,3000\n", beside[i].row);
+        lamp_sink_start(&s);
+        assert_int_equal(read_lamps_text(&s, text, &params), NOC_OK);
+        assert_string_equal(s.crs, beside[i].crs);
+        lamp_sink_end(&s);
+    }
     lamp_sink s;
     lamp_sink_start(&s);
     assert_int_equal(read_lamps_text(&s, "lon,lat,lamp_type\n8.5,50.5\nx,y,LED\n500,0,LED\n8.5,50.5,LED\n9,51,LED", NULL), NOC_OK);
