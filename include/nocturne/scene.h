@@ -101,7 +101,7 @@ typedef struct noc_scene_info {
     size_t lights, lights_by_kind[5], lights_inferred;
     size_t triangles_by_class[NOC_CLASS_COUNT];
     size_t triangles_dropped;
-    double bounds_min[3], bounds_max[3]; /* local; of everything that is rendered */
+    double bounds_min[3], bounds_max[3]; /* local; of all that is rendered but the empty country around a city */
     double origin[3];
     const char *crs;      /* name for people, "" if none; owned by the scene */
     size_t memory_bytes;

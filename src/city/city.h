@@ -8,7 +8,12 @@
 /* Lamps stand on the ground by a downward ray, on a pole with a head. */
 typedef struct city_lamp_params {
     double height, lumens, kelvin;
+    bool has_floor;
+    double floor; /* where a lamp stands that has no ground near: taken before any lamp is stood */
 } city_lamp_params;
+
+/* Lowest height of the scene, lamps aside; 0 if it is empty. */
+double city_floor(const noc_scene *scene);
 
 /* Adds pole, head and light for one lamp whose xyz is local metres (z NaN: on the ground). Returns the number of lights
  * added, 0 if it was skipped (reported in issues). */
@@ -21,7 +26,17 @@ int city_infer_lamps(noc_scene *scene, const city_lamp_params *params, geo_issue
 /* Linear Rec.709 of a black body / daylight at a colour temperature, luminance 1. Source: see lamp.c. */
 void city_kelvin_rgb(double kelvin, float rgb[3]);
 
-/* A flat ground plane under a city without terrain, a little larger than it, at the height its buildings stand at. */
-void city_add_ground(noc_scene *scene);
+/* A ground under a city without terrain, a little larger than it, at the height its buildings stand at; skirts from walls
+ * that stand over it; its surroundings. points (3 doubles each, local; heights may be NaN) are places it must reach too. */
+void city_add_ground(noc_scene *scene, const double *points, size_t point_count);
+
+/* Is the edge from a to b the level lower edge of a piece of wall whose third corner is c? */
+bool city_wall_foot(const float *a, const float *b, const float *c);
+
+/* Extends walls down to the terrain they stand over. */
+void city_add_skirts(noc_scene *scene);
+
+/* Country around the city, to the horizon: from a rim (count points, counter-clockwise, around its own middle) outwards. */
+void city_add_surroundings(noc_scene *scene, const double *rim, size_t count, int material);
 
 #endif

@@ -1,8 +1,9 @@
 /* A ground for a city that comes without one.
  *
- * Cells of a coarse grid that hold a building's foot or a piece of street know their height: the lowest in them. The others
- * are filled in from coarser grids and smoothed, so that the ground runs evenly between the buildings. The result lies a
- * little under what it was made from: it fills gaps, and never covers a street. A level city gets one plane. */
+ * Cells of a coarse grid that hold feet of buildings or pieces of street know their height: the mean of the feet, but no
+ * higher than a street there. The others are filled in from coarser grids and all are smoothed, so that the ground runs
+ * evenly between the buildings. It fills gaps and does not cover streets; walls that then stand over it get skirts, and those
+ * that reach into it do not show it. A level city gets one plane. Around it the land runs on to the horizon. */
 #include "city/city.h"
 #include "scene/scene.h"
 
@@ -13,12 +14,14 @@
 #define MAX_SIDE 256
 #define UNDER 0.02  /* m below what stands on it */
 #define LEVEL 0.05  /* m: less than this is flat */
+#define FOOT 1.5    /* m: what begins higher over the lowest in its cell is no foot */
 #define STEEPEST 0.6 /* what rises faster from its surroundings is a dormer or a tower, not a foot */
 
 typedef struct field {
     int nx, ny;
     double min[2], step[2];
     float *height; /* nx * ny; unknown: NaN */
+    float *street; /* lowest street in the cell, or beside it where it has none; INFINITY */
     bool *fixed;
 } field;
 
@@ -31,9 +34,20 @@ static const float *corner(const noc_scene *scene, size_t t, int i) {
     return scene->positions.data + 3 * (size_t)scene->indices.data[3 * t + i];
 }
 
+static noc_class class_of(const noc_scene *scene, size_t t) {
+    return scene->materials.data[scene->triangle_material.data[t]].cls;
+}
+
+static bool is_street(noc_class cls) { return is_base(cls) && cls != NOC_CLASS_WALL && cls != NOC_CLASS_GROUND && cls != NOC_CLASS_DOOR; }
+
+/* Without buildings and streets, what else stands on the ground. */
+static bool is_thing(noc_class cls) {
+    return cls == NOC_CLASS_FURNITURE || cls == NOC_CLASS_TREE || cls == NOC_CLASS_WATER || cls == NOC_CLASS_VEHICLE;
+}
+
 static bool has_bases(const noc_scene *scene) {
     for (size_t t = 0; t < scene->triangle_light.len; t++)
-        if (is_base(scene->materials.data[scene->triangle_material.data[t]].cls))
+        if (is_base(class_of(scene, t)))
             return true;
     return false;
 }
@@ -42,20 +56,26 @@ static int cell_index(const field *f, int axis, double x) {
     return (int)NOC_CLAMP((x - f->min[axis]) / f->step[axis], 0, (axis ? f->ny : f->nx) - 1);
 }
 
-static void lower(field *f, double x, double y, double z) {
-    float *h = &f->height[(size_t)cell_index(f, 1, y) * (size_t)f->nx + (size_t)cell_index(f, 0, x)];
-    if (!(*h <= z))
-        *h = (float)z;
+static size_t cell_at(const field *f, double x, double y) {
+    return (size_t)cell_index(f, 1, y) * (size_t)f->nx + (size_t)cell_index(f, 0, x);
+}
+
+static void lower(field *f, double x, double y, double z, bool street) {
+    size_t i = cell_at(f, x, y);
+    if (!(f->height[i] <= z))
+        f->height[i] = (float)z;
+    if (street && z < f->street[i])
+        f->street[i] = (float)z;
 }
 
 /* Corners and, where a triangle is larger than a cell, points on it. */
-static void add_triangle(field *f, const float *a, const float *b, const float *c) {
+static void add_triangle(field *f, const float *a, const float *b, const float *c, bool street) {
     double span = NOC_MAX(hypot((double)b[0] - a[0], (double)b[1] - a[1]), hypot((double)c[0] - a[0], (double)c[1] - a[1]));
     int n = (int)NOC_CLAMP(2 * span / NOC_MIN(f->step[0], f->step[1]), 1, 600);
     for (int i = 0; i <= n; i++)
         for (int j = 0; i + j <= n; j++) {
             double u = (double)i / n, v = (double)j / n, w = 1 - u - v;
-            lower(f, w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1], w * a[2] + u * b[2] + v * c[2]);
+            lower(f, w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1], w * a[2] + u * b[2] + v * c[2], street);
         }
 }
 
@@ -179,6 +199,85 @@ static void fill(field *f) {
     relax(f, 40);
 }
 
+/* Raises known cells from the lowest point in them to the mean of the feet there. */
+static void raise_to_feet(field *f, const noc_scene *scene) {
+    size_t n = (size_t)f->nx * (size_t)f->ny;
+    double *sum = noc_calloc(n, 2 * sizeof(*sum)), *weight = sum + n;
+    for (size_t t = 0; t < scene->triangle_light.len; t++) {
+        noc_class cls = class_of(scene, t);
+        for (int i = 0; i < 3 && (cls == NOC_CLASS_WALL || cls == NOC_CLASS_GROUND); i++) {
+            const float *a = corner(scene, t, i), *b = corner(scene, t, (i + 1) % 3), *c = corner(scene, t, (i + 2) % 3);
+            if (cls == NOC_CLASS_WALL && !city_wall_foot(a, b, c))
+                continue;
+            double length = hypot((double)b[0] - a[0], (double)b[1] - a[1]);
+            int steps = (int)NOC_CLAMP(length / 3, 1, 1000);
+            for (int k = 0; k < steps; k++) {
+                double u = (k + .5) / steps, z = a[2] + u * ((double)b[2] - a[2]);
+                size_t cell = cell_at(f, a[0] + u * ((double)b[0] - a[0]), a[1] + u * ((double)b[1] - a[1]));
+                if (f->fixed[cell] && z <= f->height[cell] + FOOT) {
+                    sum[cell] += z * length / steps;
+                    weight[cell] += length / steps;
+                }
+            }
+        }
+    }
+    for (size_t i = 0; i < n; i++)
+        if (weight[i] > 0)
+            f->height[i] = (float)(sum[i] / weight[i]);
+    free(sum);
+}
+
+/* Cells beside streets must not rise over them where the two meet. */
+static void spread_streets(field *f) {
+    size_t n = (size_t)f->nx * (size_t)f->ny;
+    float *own = noc_alloc(n * sizeof(*own));
+    memcpy(own, f->street, n * sizeof(*own));
+    for (int y = 0; y < f->ny; y++)
+        for (int x = 0; x < f->nx; x++) {
+            size_t i = (size_t)y * (size_t)f->nx + (size_t)x;
+            for (int k = 0; k < 9 && isinf(own[i]); k++) {
+                int u = NOC_CLAMP(x + k % 3 - 1, 0, f->nx - 1), v = NOC_CLAMP(y + k / 3 - 1, 0, f->ny - 1);
+                f->street[i] = NOC_MIN(f->street[i], own[(size_t)v * (size_t)f->nx + (size_t)u]);
+            }
+        }
+    free(own);
+}
+
+/* Evens out what differs from cell to cell. */
+static void smooth(field *f, int rounds) {
+    size_t n = (size_t)f->nx * (size_t)f->ny;
+    float *old = noc_alloc(n * sizeof(*old));
+    for (int r = 0; r <= rounds; r++) {
+        for (size_t i = 0; i < n; i++)
+            old[i] = f->height[i] = NOC_MIN(f->height[i], f->street[i]);
+        for (int y = 0; y < f->ny && r < rounds; y++)
+            for (int x = 0; x < f->nx; x++) {
+                float sum = 0;
+                for (int k = 0; k < 9; k++) {
+                    static const float kernel[3] = { .25f, .5f, .25f };
+                    int u = NOC_CLAMP(x + k % 3 - 1, 0, f->nx - 1), v = NOC_CLAMP(y + k / 3 - 1, 0, f->ny - 1);
+                    sum += kernel[k % 3] * kernel[k / 3] * old[(size_t)v * (size_t)f->nx + (size_t)u];
+                }
+                f->height[(size_t)y * (size_t)f->nx + (size_t)x] = sum;
+            }
+    }
+    free(old);
+}
+
+/* The rim of an nx by ny grid of vertices, counter-clockwise. */
+static void surround(noc_scene *scene, const double *xyz, int nx, int ny, int material) {
+    size_t count = 2 * (size_t)(nx - 1) + 2 * (size_t)(ny - 1), n = 0;
+    double *rim = noc_alloc(count * 3 * sizeof(*rim));
+    for (int side = 0; side < 4; side++)
+        for (int i = 0; i < (side % 2 ? ny : nx) - 1; i++) {
+            int x = side == 0 ? i : side == 1 ? nx - 1 : side == 2 ? nx - 1 - i : 0;
+            int y = side == 0 ? 0 : side == 1 ? i : side == 2 ? ny - 1 : ny - 1 - i;
+            memcpy(rim + 3 * n++, xyz + 3 * ((size_t)y * (size_t)nx + (size_t)x), 3 * sizeof(*rim));
+        }
+    city_add_surroundings(scene, rim, count, material);
+    free(rim);
+}
+
 static void add_mesh(noc_scene *scene, const field *f, double z, bool level) {
     noc_material m = noc_class_material(NOC_CLASS_TERRAIN);
     int nx = level ? 2 : f->nx, ny = level ? 2 : f->ny;
@@ -202,45 +301,68 @@ static void add_mesh(noc_scene *scene, const field *f, double z, bool level) {
         }
     noc_mesh mesh = { .vertex_count = v / 3, .positions = xyz, .triangle_count = t / 3, .indices = indices,
                       .material = noc_scene_add_material(scene, &m), .name = "ground" };
-    if (mesh.material >= 0)
-        noc_scene_add_mesh(scene, &mesh);
+    if (mesh.material >= 0 && noc_scene_add_mesh(scene, &mesh) >= 0)
+        surround(scene, xyz, nx, ny, mesh.material);
     free(xyz);
     free(indices);
 }
 
-void city_add_ground(noc_scene *scene) {
-    if (!scene->indices.len || scene->committed)
-        return;
-    field f = { 0 };
+/* Cells of what is there; the ground is to reach under all of it, and the points. */
+static void make_field(field *f, const noc_scene *scene, const double *points, size_t point_count) {
     double size[2];
     for (int k = 0; k < 2; k++) {
-        double extent = scene->bounds_max[k] - scene->bounds_min[k], margin = NOC_MAX(60, .1 * extent);
-        f.min[k] = scene->bounds_min[k] - margin;
-        size[k] = extent + 2 * margin;
+        double lo = scene->bounds_min[k], hi = scene->bounds_max[k];
+        for (size_t i = 0; i < point_count; i++) {
+            lo = NOC_MIN(lo, points[3 * i + (size_t)k]);
+            hi = NOC_MAX(hi, points[3 * i + (size_t)k]);
+        }
+        double margin = NOC_MAX(60, .1 * (hi - lo));
+        f->min[k] = lo - margin;
+        size[k] = hi - lo + 2 * margin;
     }
-    f.nx = (int)NOC_CLAMP(ceil(size[0] / CELL), 2, MAX_SIDE);
-    f.ny = (int)NOC_CLAMP(ceil(size[1] / CELL), 2, MAX_SIDE);
-    f.step[0] = size[0] / f.nx;
-    f.step[1] = size[1] / f.ny;
-    size_t n = (size_t)f.nx * (size_t)f.ny;
-    f.height = noc_alloc(n * sizeof(*f.height));
-    f.fixed = noc_calloc(n, sizeof(*f.fixed));
-    for (size_t i = 0; i < n; i++)
-        f.height[i] = NAN;
-    if (has_bases(scene))
-        for (size_t t = 0; t < scene->triangle_light.len; t++)
-            if (is_base(scene->materials.data[scene->triangle_material.data[t]].cls))
-                add_triangle(&f, corner(scene, t, 0), corner(scene, t, 1), corner(scene, t, 2));
+    f->nx = (int)NOC_CLAMP(ceil(size[0] / CELL), 2, MAX_SIDE);
+    f->ny = (int)NOC_CLAMP(ceil(size[1] / CELL), 2, MAX_SIDE);
+    f->step[0] = size[0] / f->nx;
+    f->step[1] = size[1] / f->ny;
+    size_t n = (size_t)f->nx * (size_t)f->ny;
+    f->height = noc_alloc(n * sizeof(*f->height));
+    f->street = noc_alloc(n * sizeof(*f->street));
+    f->fixed = noc_calloc(n, sizeof(*f->fixed));
+    for (size_t i = 0; i < n; i++) {
+        f->height[i] = NAN;
+        f->street[i] = INFINITY;
+    }
+}
+
+void city_add_ground(noc_scene *scene, const double *points, size_t point_count) {
+    if ((!scene->indices.len && !point_count) || scene->committed)
+        return;
+    field f = { 0 };
+    make_field(&f, scene, points, point_count);
+    bool bases = has_bases(scene);
+    for (size_t t = 0; t < scene->triangle_light.len; t++) {
+        noc_class cls = class_of(scene, t);
+        if (bases ? is_base(cls) : is_thing(cls))
+            add_triangle(&f, corner(scene, t, 0), corner(scene, t, 1), corner(scene, t, 2), is_street(cls));
+    }
+    for (size_t i = 0; i < point_count; i++)
+        if (isfinite(points[3 * i + 2]))
+            lower(&f, points[3 * i], points[3 * i + 1], points[3 * i + 2], false);
     double lo, hi;
     size_t known = drop_outliers(&f, &lo, &hi);
     if (!known)
-        add_mesh(scene, &f, scene->bounds_min[2], true);
+        add_mesh(scene, &f, scene->indices.len ? scene->bounds_min[2] : 0, true);
     else if (hi - lo < LEVEL)
         add_mesh(scene, &f, lo, true);
     else {
+        raise_to_feet(&f, scene);
+        spread_streets(&f);
         fill(&f);
+        smooth(&f, 2);
         add_mesh(scene, &f, 0, false);
+        city_add_skirts(scene);
     }
     free(f.height);
+    free(f.street);
     free(f.fixed);
 }

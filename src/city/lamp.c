@@ -111,8 +111,19 @@ static void arbitrary_facing(const double p[3], double facing[2]) {
     facing[1] = cos(a);
 }
 
+double city_floor(const noc_scene *scene) {
+    double floor = INFINITY;
+    for (size_t t = 0; t < scene->triangle_material.len; t++) {
+        noc_class cls = scene->materials.data[scene->triangle_material.data[t]].cls;
+        for (int i = 0; i < 3 && cls != NOC_CLASS_LAMP && cls != NOC_CLASS_CLOSURE; i++)
+            floor = NOC_MIN(floor, scene->positions.data[3 * (size_t)scene->indices.data[3 * t + (size_t)i] + 2]);
+    }
+    return isfinite(floor) ? floor : 0;
+}
+
 /* Height of the foot. */
-static void stand(const noc_scene *scene, const geo_lamp *lamp, double foot[3], geo_issues *issues) {
+static void stand(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, double foot[3],
+                  geo_issues *issues) {
     if (site_ground(scene, foot[0], foot[1], &foot[2]))
         return;
     foot[2] = lamp->xyz[2];
@@ -120,14 +131,19 @@ static void stand(const noc_scene *scene, const geo_lamp *lamp, double foot[3], 
         return;
     if (noc_scene_top(scene, foot[0], foot[1], &foot[2])) /* a scene without classes: whatever is there */
         return;
-    foot[2] = isfinite(scene->bounds_min[2]) ? scene->bounds_min[2] : 0;
+    if (site_ground_far(scene, foot[0], foot[1], &foot[2])) {
+        geo_issue(issues, true, "lamp outside of the ground: put at the height of the nearest", lamp->id);
+        return;
+    }
+    foot[2] = params->has_floor ? params->floor : city_floor(scene);
     geo_issue(issues, true, "lamp outside of the ground: put at the lowest height of the scene", lamp->id);
 }
 
 /* False if the lamp cannot be placed: counted. */
-static bool place(const noc_scene *scene, const geo_lamp *lamp, placing *p, geo_issues *issues) {
+static bool place(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, placing *p,
+                  geo_issues *issues) {
     memcpy(p->foot, lamp->xyz, sizeof(p->foot));
-    stand(scene, lamp, p->foot, issues);
+    stand(scene, lamp, params, p->foot, issues);
     bool faces = isfinite(lamp->direction);
     if (faces) {
         p->facing[0] = sin(lamp->direction * M_PI / 180);
@@ -278,7 +294,7 @@ int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params
         return 0;
     }
     placing p = { 0 };
-    if (!place(scene, lamp, &p, issues))
+    if (!place(scene, lamp, params, &p, issues))
         return 0;
     fitting f = choose_fitting(lamp, params);
     builder b = { .scene = scene, .lamp = lamp, .fitting = &f, .placing = &p, .inferred = inferred,

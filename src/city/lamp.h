@@ -9,6 +9,8 @@
 
 /* Height of the ground at (x, y), or of the nearest within a few metres. */
 bool site_ground(const noc_scene *scene, double x, double y, double *z);
+/* Height of the nearest ground within a few hundred metres. */
+bool site_ground_far(const noc_scene *scene, double x, double y, double *z);
 /* Is (x, y), with ground at z, under a roof or in a wall? */
 bool site_covered(const noc_scene *scene, double x, double y, double z);
 /* Nearest spot within `reach` that no building covers; away[2] is the unit vector that leads there. */

@@ -284,6 +284,9 @@ noc_status noc_scene_add_city(noc_scene *scene, const noc_city_params *params) {
             cell_build(t, i, j, &id);
     diagonal_markings(t);
     belt(t);
+    double edge = 0.5 * params->size;
+    const double rim[12] = { -edge, -edge, 0.05, edge, -edge, 0.05, edge, edge, 0.05, -edge, edge, 0.05 };
+    city_add_surroundings(scene, rim, 4, t->material[TM_LAWN]);
     bool failed = t->failed;
     for (int m = 0; m < TM_COUNT; m++) {
         array_free(&t->batch[m].xyz);

@@ -26,6 +26,17 @@ bool site_ground(const noc_scene *scene, double x, double y, double *z) {
     return false;
 }
 
+bool site_ground_far(const noc_scene *scene, double x, double y, double *z) {
+    for (double r = 4; r < 600; r *= 1.2)
+        for (int i = 0; i < DIRECTIONS; i++) {
+            double d[2];
+            direction(i, d);
+            if (noc_scene_ground(scene, x + r * d[0], y + r * d[1], z))
+                return true;
+        }
+    return false;
+}
+
 bool site_covered(const noc_scene *scene, double x, double y, double z) {
     double top;
     return noc_scene_highest(scene, BUILDING, x, y, &top) && top > z + .5;

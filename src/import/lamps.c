@@ -28,15 +28,40 @@ static extent city_extent(const noc_scene *scene) {
     return e;
 }
 
-/* Buildings without terrain stand on a plane of ours, unless their streets are there. Scenes that are no cities (meshes)
- * are left as they are. */
+/* What comes without terrain stands on a ground of ours, unless its streets and lawns are there; so do lamps alone. Scenes
+ * that are no cities (meshes) are left as they are. */
 static bool needs_ground(const importer *im, const extent *e) {
-    if (!im->buildings || !e->any)
+    bool city = false;
+    for (size_t i = 0; i < im->input_count; i++)
+        city = city || (im->inputs[i].reader && !im->inputs[i].reader->read_mesh && im->inputs[i].file.triangles);
+    if (!e->any)
+        return im->lamps.len > 0;
+    if (!city)
         return false;
     for (size_t t = 0; t < im->scene->triangle_material.len; t++)
         if (im->scene->materials.data[im->scene->triangle_material.data[t]].cls == NOC_CLASS_TERRAIN)
             return false;
     return im->open_area < GROUND_SHARE * (e->hi[0] - e->lo[0]) * (e->hi[1] - e->lo[1]);
+}
+
+/* Under the city and the lamps that belong to it. Heights of lamps count only where nothing else has any: they often come
+ * from another height system. */
+static void lay_ground(importer *im, const extent *e) {
+    double *points = noc_alloc((im->lamps.len + 1) * 3 * sizeof(*points));
+    size_t n = 0;
+    for (size_t i = 0; i < im->lamps.len; i++) {
+        const double *p = im->lamps.data[i].lamp.xyz;
+        if (!isfinite(p[0]) || !isfinite(p[1]) || (e->any && distance_outside(e, p) > OUTSIDE))
+            continue;
+        memcpy(points + 3 * n, p, 3 * sizeof(*points));
+        if (e->any)
+            points[3 * n + 2] = NAN;
+        n++;
+    }
+    city_add_ground(im->scene, points, n);
+    free(points);
+    noc_info(im->log, e->any ? "no terrain in the inputs: a ground is laid under the city"
+                             : "no surfaces in the inputs: a ground is laid under the lamps");
 }
 
 static bool shines(const noc_scene *scene) {
@@ -86,11 +111,10 @@ noc_status finish_city(importer *im) {
         noc_warn(im->log, "the inputs hold nothing that can be seen: no surfaces and no lamps");
     if (!go_on(im, 0.9))
         return NOC_ERR_CANCELLED;
-    if (needs_ground(im, &e)) {
-        city_add_ground(scene);
-        noc_info(im->log, "no terrain in the inputs: a ground is laid under the buildings");
-    }
-    city_lamp_params params = { im->params->lamp_height, im->params->lamp_lumens, im->params->lamp_kelvin };
+    if (needs_ground(im, &e))
+        lay_ground(im, &e);
+    city_lamp_params params = { im->params->lamp_height, im->params->lamp_lumens, im->params->lamp_kelvin, true,
+                                city_floor(scene) };
     double nearest;
     size_t outside = stand_lamps(im, &e, &params, &nearest);
     if (im->cancelled)
@@ -101,8 +125,16 @@ noc_status finish_city(importer *im) {
     else if (outside)
         noc_info(im->log, "%zu of %zu lamps lie outside the city and are left out", outside, im->lamps.len);
     bool has_streets = im->buildings > 0 || im->has_roads;
-    if (!im->params->infer_lamps || !has_streets || shines(scene))
+    if (shines(scene))
         return NOC_OK;
+    if (!im->params->infer_lamps || !has_streets) {
+        bool warned = outside && outside == im->lamps.len;
+        if ((e.any || im->lamps.len) && !warned)
+            noc_warn(im->log, "nothing in the scene shines: %s", im->params->infer_lamps ?
+                     "the inputs hold no lamps that could be used, and no streets or buildings to place some along" :
+                     "the inputs hold no lamps that could be used, and none are to be placed");
+        return NOC_OK;
+    }
     geo_issues *issues = geo_issues_create();
     int lights = city_infer_lamps(scene, &params, issues);
     geo_issues_destroy(issues);
@@ -110,6 +142,6 @@ noc_status finish_city(importer *im) {
     if (lights > 0)
         noc_warn(im->log, "no lamps in the inputs%s: %d placed by a rule (inferred, not surveyed)", usable, lights);
     else
-        noc_warn(im->log, "no lamps in the inputs%s, and no place for any was found", usable);
+        noc_warn(im->log, "no lamps in the inputs%s, and no place for any was found: nothing in the scene shines", usable);
     return NOC_OK;
 }

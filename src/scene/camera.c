@@ -31,11 +31,11 @@ static int compare_doubles(const void *a, const void *b) {
 /* Bounds of what is rendered; where strays make them much larger than nearly all triangles need, those of nearly all. */
 static void city_bounds(view_city *city) {
     const noc_scene *s = city->scene;
-    size_t triangles = s->triangle_light.len, n = NOC_MIN(triangles, (size_t)SAMPLES);
+    size_t triangles = noc_scene_city_triangles(s), n = NOC_MIN(triangles, (size_t)SAMPLES);
     double *v = noc_alloc(n * sizeof(*v));
     for (int k = 0; k < 3; k++) {
         for (size_t i = 0; i < n; i++)
-            v[i] = s->positions.data[3 * (size_t)s->indices.data[3 * (i * triangles / n) + i % 3] + (size_t)k];
+            v[i] = s->positions.data[3 * (size_t)s->indices.data[3 * noc_scene_city_triangle(s, i * triangles / n) + i % 3] + (size_t)k];
         qsort(v, n, sizeof(*v), compare_doubles);
         double lo = v[n / 50], hi = v[n - 1 - n / 50], margin = (hi - lo) * 0.02 + 1;
         if (k < 2)
@@ -64,7 +64,7 @@ static double light_weight(const noc_light_record *r) {
 /* Without lights, buildings stand in for them: a corner of every so many of their triangles. */
 static size_t source_count(const view_city *city) {
     const noc_scene *s = city->scene;
-    return s->lights.len ? s->lights.len : NOC_MIN(s->triangle_light.len, (size_t)4 * SAMPLES);
+    return s->lights.len ? s->lights.len : NOC_MIN(noc_scene_city_triangles(s), (size_t)4 * SAMPLES);
 }
 
 static bool source_get(const view_city *city, size_t i, view_light *out) {
@@ -77,7 +77,7 @@ static bool source_get(const view_city *city, size_t i, view_light *out) {
         out->lamp = r->kind == NOC_LIGHT_SPHERE || r->kind == NOC_LIGHT_DISC || r->kind == NOC_LIGHT_POINT;
         return out->weight > 0;
     }
-    size_t t = i * s->triangle_light.len / source_count(city);
+    size_t t = noc_scene_city_triangle(s, i * noc_scene_city_triangles(s) / source_count(city));
     noc_class cls = s->materials.data[s->triangle_material.data[t]].cls;
     for (int k = 0; k < 3; k++)
         out->p[k] = s->positions.data[3 * (size_t)s->indices.data[3 * t] + (size_t)k];
@@ -169,15 +169,16 @@ static void overview(const view_city *city, double aspect, noc_camera *camera) {
     double tv = tan(camera->fov_deg * M_PI / 360) / 1.04, th = tv * aspect;
     double shift[2] = { 0, 0 }, distance = 0.1;
     const noc_scene *s = city->scene;
-    size_t triangles = s->triangle_light.len, n = NOC_MIN(triangles, (size_t)SAMPLES);
+    size_t triangles = noc_scene_city_triangles(s), n = NOC_MIN(triangles, (size_t)SAMPLES);
     for (int round = 0; round < 4; round++) {
         double lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
         for (int pass = 0; pass < 2; pass++) {
             for (size_t i = 0; i < n + 8; i++) {
                 double along = 0, x = -shift[0], y = -shift[1];
                 for (int k = 0; k < 3; k++) { /* the corners of the ground, then samples of all there is */
+                    size_t t = i < 8 ? 0 : noc_scene_city_triangle(s, (i - 8) * triangles / n);
                     double c = i < 8 ? (k == 2 || !(i >> k & 1) ? city->min[k] : city->max[k])
-                                     : s->positions.data[3 * (size_t)s->indices.data[3 * ((i - 8) * triangles / n) + i % 3] + (size_t)k];
+                                     : s->positions.data[3 * (size_t)s->indices.data[3 * t + i % 3] + (size_t)k];
                     double q = NOC_CLAMP(c, city->min[k], city->max[k]) - centre[k];
                     along += q * d[k], x += q * right[k], y += q * up[k];
                 }
@@ -393,7 +394,7 @@ noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the aspect must be in 0.01..100");
     if ((unsigned)view > NOC_VIEW_OVERVIEW)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: no view %d", (int)view);
-    if (!scene->triangle_light.len)
+    if (!noc_scene_city_triangles(scene))
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the scene is empty, so no view can be derived from it");
     view_city city = { .scene = scene };
     noc_camera c = noc_camera_default();

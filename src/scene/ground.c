@@ -53,6 +53,8 @@ static const noc_material *material_of(const noc_scene *scene, size_t t) {
  * is not rendered. Exactly vertical triangles have no area from above. */
 static bool is_obstacle(const noc_scene *scene, size_t t) {
     const noc_material *m = material_of(scene, t);
+    if (t - scene->backdrop_first < scene->backdrop_count) /* unsigned: what comes before is far beyond */
+        return false;
     if (m->cls == NOC_CLASS_CLOSURE || (m->cls == NOC_CLASS_LAMP && (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0)))
         return false;
     const float *a = corner(scene, t, 0), *b = corner(scene, t, 1), *c = corner(scene, t, 2);
@@ -87,9 +89,12 @@ static void grid_bounds(struct noc_ground *g, const noc_scene *scene, size_t tri
     enum { SAMPLES = 4096 };
     float *xs = noc_alloc(SAMPLES * sizeof(*xs));
     for (int k = 0; k < 2; k++) {
-        size_t n = NOC_MIN(triangles, (size_t)SAMPLES);
-        for (size_t i = 0; i < n; i++)
-            xs[i] = corner(scene, i * triangles / n, (int)(i % 3))[k];
+        size_t n = 0, samples = NOC_MIN(triangles, (size_t)SAMPLES);
+        for (size_t i = 0; i < samples; i++) {
+            size_t t = i * triangles / samples;
+            if (t - scene->backdrop_first >= scene->backdrop_count)
+                xs[n++] = corner(scene, t, (int)(i % 3))[k];
+        }
         qsort(xs, n, sizeof(*xs), compare_floats);
         double lo = n ? xs[n / 50] : 0, hi = n ? xs[n - 1 - n / 50] : 0, margin = (hi - lo) * 0.08 + 1;
         g->min[k] = lo - margin;

@@ -152,6 +152,22 @@ int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
     return (int)scene->meshes.len - 1;
 }
 
+bool noc_scene_add_backdrop(noc_scene *scene, const noc_mesh *mesh) {
+    if (scene->backdrop_count)
+        return false;
+    double lo[3], hi[3];
+    memcpy(lo, scene->bounds_min, sizeof(lo));
+    memcpy(hi, scene->bounds_max, sizeof(hi));
+    int index = noc_scene_add_mesh(scene, mesh);
+    memcpy(scene->bounds_min, lo, sizeof(lo));
+    memcpy(scene->bounds_max, hi, sizeof(hi));
+    if (index < 0)
+        return false;
+    scene->backdrop_first = scene->meshes.data[index].first_triangle;
+    scene->backdrop_count = scene->meshes.data[index].triangle_count;
+    return true;
+}
+
 /* A light a triangle, for every mesh whose material emits and whose triangles do not show a light yet. */
 static void make_triangle_lights(noc_scene *scene) {
     for (size_t i = 0; i < scene->meshes.len; i++) {

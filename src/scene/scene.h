@@ -55,9 +55,20 @@ struct noc_scene {
     noc_arena names;
     size_t triangles_dropped, lights_inferred;
     double bounds_min[3], bounds_max[3];
+    uint32_t backdrop_first, backdrop_count; /* triangles around the city: drawn, but no part of it */
     bool committed;
     struct noc_ground *ground;             /* built on first use of noc_scene_ground; freed with the scene */
 };
+
+/* Adds what lies around the city, to the horizon. It is rendered and that is all: bounds, cameras and vertical rays do not
+ * know it. A scene has one; false, and nothing happens, if it has one already or the mesh was refused. */
+bool noc_scene_add_backdrop(noc_scene *scene, const noc_mesh *mesh);
+
+/* Triangles of the city itself: their number, and the i-th. */
+static inline size_t noc_scene_city_triangles(const noc_scene *s) { return s->triangle_light.len - s->backdrop_count; }
+static inline size_t noc_scene_city_triangle(const noc_scene *s, size_t i) {
+    return i < s->backdrop_first ? i : i + s->backdrop_count;
+}
 
 /* ground.c: grid over the triangles for vertical rays. Made at the first query, and kept up to date by the next ones: asking
  * and adding meshes in turn is cheap. Thread-safe while the scene is not being changed. */

@@ -264,7 +264,8 @@ static void test_odd_grounds(void **state) {
     assert_int_equal(geo_issues_count(issues), 0);
     l = lamp_at(70, 0);
     assert_int_equal(city_add_lamp(scene, &l, &defaults, false, issues), 1);
-    assert_int_equal(issues_with(issues, "lowest height"), 1);
+    assert_int_equal(issues_with(issues, "height of the nearest"), 1);
+    assert_float_equal(scene->lights.data[3].p[2], 107, .5); /* near the rim, 60 m off */
     for (int i = 0; i < 3; i++) { /* three at one place stand side by side */
         l = lamp_at(-5, -5);
         assert_int_equal(city_add_lamp(scene, &l, &defaults, false, issues), 1);
@@ -319,7 +320,7 @@ static void test_infer_buildings(void **state) {
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < 4; k++)
             add_building(scene, i * 50, k * 50, i * 50 + 30, k * 50 + 30, 0, 10);
-    city_add_ground(scene);
+    city_add_ground(scene, NULL, 0);
     int lights = city_infer_lamps(scene, &defaults, NULL);
     assert_true(lights >= 30);
     assert_true(nearest_pair(scene) > 20);
@@ -335,18 +336,66 @@ static void test_infer_buildings(void **state) {
     noc_scene_destroy(scene);
 }
 
+/* Lamps without ground near them do not sink with each other's feet, in a scene with a ground far off and without any. */
+static void test_no_ground(void **state) {
+    (void)state;
+    for (int with_ground = 0; with_ground < 2; with_ground++) {
+        noc_scene *scene = noc_scene_create(NULL);
+        geo_issues *issues = geo_issues_create();
+        if (with_ground)
+            add_plane(scene, NOC_CLASS_ROAD, -5, -5, 5, 5, 30, 0);
+        for (int i = 0; i < 1000; i++) {
+            geo_lamp l = lamp_at(20 + 7 * (i % 40), 20 + 7 * (double)(i / 40));
+            assert_int_equal(city_add_lamp(scene, &l, &defaults, false, issues), 1);
+            assert_float_equal(scene->lights.data[i].p[2], (with_ground ? 30 : 0) + 6, 1e-3);
+        }
+        geo_issues_destroy(issues);
+        noc_scene_destroy(scene);
+    }
+}
+
+/* Walls that stand over the ground are extended down to it: buildings side by side with feet at different heights. */
+static void test_skirts(void **state) {
+    (void)state;
+    noc_scene *scene = noc_scene_create(NULL);
+    for (int i = 0; i < 20; i++)
+        add_building(scene, i * 9, 0, i * 9 + 8, 8, 50 + .9 * (i % 3), 60);
+    city_add_ground(scene, NULL, 0);
+    int under = 0;
+    for (int i = 0; i < 20; i++) { /* the south wall, in its middle */
+        double x = i * 9 + 4, foot = 50 + .9 * (i % 3), ground, lowest = foot;
+        assert_true(noc_scene_ground(scene, x, -.01, &ground));
+        for (size_t t = 0; t < scene->triangle_light.len; t++)
+            for (int k = 0; k < 3; k++) {
+                const float *v = scene->positions.data + 3 * (size_t)scene->indices.data[3 * t + (size_t)k];
+                bool wall = scene->materials.data[scene->triangle_material.data[t]].cls == NOC_CLASS_WALL;
+                if (wall && fabs(v[0] - x) < 4.5 && fabs(v[1]) < .01)
+                    lowest = fmin(lowest, v[2]);
+            }
+        under += ground < foot - .01;
+        assert_true(lowest < ground);
+    }
+    assert_true(under > 3); /* else there was nothing to extend */
+    noc_scene_destroy(scene);
+}
+
 static void test_add_ground(void **state) {
     noc_scene *scene = noc_scene_create(NULL); /* level: one plane */
     add_building(scene, 0, 0, 30, 30, 7, 20);
     add_building(scene, 100, 50, 130, 80, 7, 20);
-    city_add_ground(scene);
+    city_add_ground(scene, NULL, 0);
     double z;
     assert_true(noc_scene_ground(scene, 60, 40, &z));
     assert_float_equal(z, 7 - .02, 1e-4);
     assert_true(noc_scene_ground(scene, -55, -55, &z) && !noc_scene_ground(scene, -500, 0, &z));
     noc_scene_info info;
     noc_scene_get_info(scene, &info);
-    assert_int_equal(info.triangles_by_class[NOC_CLASS_TERRAIN], 2);
+    assert_int_equal(info.triangles_by_class[NOC_CLASS_TERRAIN] - scene->backdrop_count, 2);
+    assert_true(scene->backdrop_count > 0 && scene->backdrop_count < 100);
+    double far = 0; /* the land runs on to the horizon, and the bounds do not know it */
+    for (size_t i = 0; i < scene->positions.len; i += 3)
+        far = fmax(far, fabs(scene->positions.data[i]));
+    assert_true(far > 8000 && info.bounds_max[0] < 200 && info.bounds_min[0] > -70);
     noc_scene_destroy(scene);
 
     scene = noc_scene_create(NULL); /* a slope of 5 percent with a street, a dormer, and a building at a wrong height */
@@ -356,7 +405,7 @@ static void test_add_ground(void **state) {
     add_building(scene, 205, 205, 208, 208, 222, 225);
     add_building(scene, 130, 30, 135, 35, 0, 5);
     add_plane(scene, NOC_CLASS_ROAD, 0, 20, 300, 26, 200, .05);
-    city_add_ground(scene);
+    city_add_ground(scene, NULL, 0);
     for (double x = 1; x < 290; x += 1) {
         assert_true(noc_scene_ground(scene, x, 23, &z));
         assert_float_equal(z, 200 + .05 * x, 1e-3); /* the street, not covered by the ground */
@@ -366,7 +415,7 @@ static void test_add_ground(void **state) {
     assert_true(noc_scene_ground(scene, 206, 206, &z) && z < 212);
     noc_scene_destroy(scene);
     scene = noc_scene_create(NULL);
-    city_add_ground(scene); /* nothing to stand under */
+    city_add_ground(scene, NULL, 0); /* nothing to stand under */
     assert_int_equal(scene->indices.len, 0);
     noc_scene_destroy(scene);
 }
@@ -381,6 +430,8 @@ int main(void) {
         cmocka_unit_test(test_odd_grounds),
         cmocka_unit_test(test_infer_roads),
         cmocka_unit_test(test_infer_buildings),
+        cmocka_unit_test(test_no_ground),
+        cmocka_unit_test(test_skirts),
         cmocka_unit_test(test_add_ground),
     };
     return cmocka_run_group_tests_name("city/lamp", tests, NULL, NULL);

@@ -312,7 +312,7 @@ static void test_axes(void **state) {
         finish(&r);
     }
     /* no order of axes helps: said once, and taken as it is */
-    LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:31466\npolygon 2 1 1 0 3 1 0 3 4 0\npolygon 2 1 1 9 3 1 9 3 4 9\n"));
+    LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:31466\npolygon 2 1 1 0 3 1 0 3 4 0\npolygon 2 1 1 9 3 1 9 3 4 9\nlamp 2 2\n"));
     assert_int_equal(r.status, NOC_OK);
     assert_int_equal(r.warnings, 1);
     assert_non_null(strstr(r.last_warning, "is it the right CRS?"));
@@ -322,7 +322,7 @@ static void test_axes(void **state) {
          file("b", "FAKE city\ncrs EPSG:25832\npolygon 2 678000 5404000 0 678009 5404000 0 678009 5404009 0\n"));
     assert_true(has_line(noc_report_get_file(r.report, 0), "axes exchanged to fit the CRS", 1));
     assert_int_equal(noc_report_get_file(r.report, 1)->line_count, 0);
-    assert_close(r.info.bounds_max[0] - r.info.bounds_min[0], 9, 1e-3);
+    assert_close(r.info.bounds_max[0] - r.info.bounds_min[0], 9 + 120, 1e-3); /* and the ground's margin */
     finish(&r);
 }
 
@@ -440,6 +440,14 @@ static void test_lamps(void **state) {
     assert_int_equal(r.status, NOC_OK);
     assert_string_equal(r.info.crs, "EPSG:32633 (WGS 84 / UTM zone 33N)");
     assert_true(r.info.lights >= 2);
+    double ground, z; /* they light a ground, and all stand on it */
+    for (size_t i = 0; i < r.info.lights; i++) {
+        const float *at = r.scene->lights.data[i].p;
+        assert_true(noc_scene_ground(r.scene, at[0], at[1], &z));
+        ground = i ? ground : z;
+        assert_close(z, ground, 1e-3);
+        assert_close(at[2] - z, 6, 1e-3);
+    }
     finish(&r);
 }
 
@@ -456,11 +464,14 @@ static void test_inferred_lamps(void **state) {
     p.infer_lamps = false;
     LOAD(&r, p, file("a", CITY));
     assert_int_equal(r.info.lights, 0);
-    assert_int_equal(r.warnings, 0);
+    assert_int_equal(r.warnings, 1); /* a dark scene is said to be one */
+    assert_non_null(strstr(r.last_warning, "nothing in the scene shines"));
     finish(&r);
-    /* terrain alone is no place for lamps, and nothing at all is worth a word */
+    /* terrain alone is no place for lamps; that, and nothing at all, is worth a word */
     LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:25832\npolygon 8 677900 5403900 370 678100 5403900 370 678000 5404200 370\n"));
-    assert_int_equal(r.info.lights + (size_t)r.warnings, 0);
+    assert_int_equal(r.info.lights, 0);
+    assert_int_equal(r.warnings, 1);
+    assert_non_null(strstr(r.last_warning, "nothing in the scene shines"));
     finish(&r);
     LOAD(&r, DEFAULTS, file("a", "FAKE city\n"));
     assert_int_equal(r.status, NOC_OK);
@@ -484,6 +495,7 @@ static void test_mesh_place(void **state) {
     noc_import_params p = with_crs("EPSG:25832", NULL);
     const char *city = file("a", CITY "object 2 r -1\npolygon 9 678090 5403590 0 678120 5403590 0 678120 5403620 0\nend\n");
     const char *mesh = file("m", "FAKE mesh\n");
+    p.infer_lamps = false;
     p.infer_lamps = false;
     mesh_x = 678100;
     mesh_y = 5403580;

@@ -68,8 +68,9 @@ static void check_overview(const noc_scene *scene, double aspect) {
     noc_camera c;
     double lo[2] = { 9, 9 }, hi[2] = { -9, -9 };
     assert_int_equal(noc_scene_camera(scene, NOC_VIEW_OVERVIEW, aspect, &c), NOC_OK);
-    for (size_t i = 0; i < scene->indices.len; i++) {
-        const float *v = scene->positions.data + 3 * (size_t)scene->indices.data[i];
+    for (size_t i = 0; i < 3 * noc_scene_city_triangles(scene); i++) {
+        size_t index = 3 * noc_scene_city_triangle(scene, i / 3) + i % 3;
+        const float *v = scene->positions.data + 3 * (size_t)scene->indices.data[index];
         double p[3] = { v[0], v[1], v[2] }, x, y;
         assert_true(project(&c, aspect, p, &x, &y));
         lo[0] = fmin(lo[0], x), hi[0] = fmax(hi[0], x), lo[1] = fmin(lo[1], y), hi[1] = fmax(hi[1], y);
