@@ -38,7 +38,9 @@ static noc_class class_of(const noc_scene *scene, size_t t) {
     return scene->materials.data[scene->triangle_material.data[t]].cls;
 }
 
-static bool is_street(noc_class cls) { return is_base(cls) && cls != NOC_CLASS_WALL && cls != NOC_CLASS_GROUND && cls != NOC_CLASS_DOOR; }
+static bool is_street(noc_class cls) {
+    return is_base(cls) && cls != NOC_CLASS_WALL && cls != NOC_CLASS_GROUND && cls != NOC_CLASS_DOOR;
+}
 
 /* Without buildings and streets, what else stands on the ground. */
 static bool is_thing(noc_class cls) {
@@ -358,10 +360,10 @@ void city_add_ground(noc_scene *scene, const double *points, size_t point_count)
         raise_to_feet(&f, scene);
         spread_streets(&f);
         fill(&f);
-        smooth(&f, 2);
+        smooth(&f, 6);
         add_mesh(scene, &f, 0, false);
-        city_add_skirts(scene);
     }
+    city_add_skirts(scene);
     free(f.height);
     free(f.street);
     free(f.fixed);
