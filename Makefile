@@ -20,7 +20,7 @@ deps-check:
 	@tools/install-deps.sh check
 
 build/build.ninja: | deps
-	@meson setup build --prefix $(PREFIX) >build.log 2>&1 || { cat build.log; rm -rf build build.log; exit 1; }
+	@meson setup build --prefix $(abspath $(PREFIX)) >build.log 2>&1 || { cat build.log; rm -rf build build.log; exit 1; }
 	@mv build.log build/setup.log
 	@echo "Building ..."
 
@@ -47,8 +47,11 @@ asan: deps-check
 	@$(NINJA) -C build-asan
 	@tools/run-tests.sh build-asan --timeout-multiplier 4
 
+# PREFIX may differ from that of an earlier `make build`; nothing is built but what is installed.
 install: build
-	@meson install -C build
+	@meson setup --reconfigure build --prefix $(abspath $(PREFIX)) >build/setup.log || { cat build/setup.log; exit 1; }
+	@$(NINJA) -C build nocturne
+	@meson install -C build --no-rebuild --quiet
 
 clean:
 	rm -rf build build-asan night.png

@@ -1,4 +1,4 @@
-/* The smallest use of the library: a city at night into a PNG.
+/* The smallest use of the library: a city at night into a PNG. README.md tells where pkg-config finds it.
  *   cc minimal.c $(pkg-config --cflags --libs nocturne) -o minimal && ./minimal night.png */
 #include <nocturne/nocturne.h>
 #include <stdio.h>

@@ -122,9 +122,15 @@ echo 'int x;' >"$tree/probe.cc"
 if $compiler -x c++ -fsyntax-only "$tree/probe.cc" 2>/dev/null; then
     alone -x c++ -std=c++14 >"$tree/log" 2>&1; result $? "public headers compile alone as C++"
     sed 's/^/# /' "$tree/log"
+    $compiler -x c++ -std=c++14 -Wall -Wextra -Wpedantic -Wshadow -Werror -I"$root/include" "$root/tests/cli/defaults.cc" \
+        -o "$tree/defaults" -lstdc++ >"$tree/log" 2>&1 && "$tree/defaults"
+    result $? "default parameters can be had in C++, and their addresses"
+    sed 's/^/# /' "$tree/log"
 else
-    count=$((count + 1))
-    echo "ok $count - public headers compile alone as C++ # SKIP no C++ compiler here"
+    for what in "public headers compile alone as C++" "default parameters can be had in C++, and their addresses"; do
+        count=$((count + 1))
+        echo "ok $count - $what # SKIP no C++ compiler here"
+    done
 fi
 echo "1..$count"
 exit $failed

@@ -30,7 +30,12 @@ typedef struct noc_display_params {
     noc_tonemap tonemap;
 } noc_display_params;
 
-#define noc_display_default_params() ((noc_display_params){ .auto_exposure = true, .tonemap = NOC_TONEMAP_FILMIC })
+#define NOC_DISPLAY_DEFAULTS(set) set(auto_exposure, true) set(tonemap, NOC_TONEMAP_FILMIC)
+#ifdef __cplusplus
+NOC_DEFAULT_PARAMS(noc_display_params, noc_display_default_params, NOC_DISPLAY_DEFAULTS)
+#else
+#define noc_display_default_params() ((noc_display_params){ NOC_DISPLAY_DEFAULTS(NOC_DEFAULT_IN_C) })
+#endif
 
 /* The automatic exposure of a picture, as EV100. */
 NOC_API double noc_image_auto_ev100(const noc_image *image);
@@ -77,8 +82,12 @@ typedef struct noc_compare_params {
     noc_display_params display; /* for RMSE-8 */
 } noc_compare_params;
 
-#define noc_compare_default_params() \
-    ((noc_compare_params){ .ceiling = 10, .display = { .auto_exposure = true, .tonemap = NOC_TONEMAP_FILMIC } })
+#define NOC_COMPARE_DEFAULTS(set) set(ceiling, 10) set(display.auto_exposure, true) set(display.tonemap, NOC_TONEMAP_FILMIC)
+#ifdef __cplusplus
+NOC_DEFAULT_PARAMS(noc_compare_params, noc_compare_default_params, NOC_COMPARE_DEFAULTS)
+#else
+#define noc_compare_default_params() ((noc_compare_params){ NOC_COMPARE_DEFAULTS(NOC_DEFAULT_IN_C) })
+#endif
 
 NOC_API noc_status noc_image_compare(const noc_image *x, const noc_image *r, const noc_compare_params *params,
                                      noc_comparison *out, noc_log *log);

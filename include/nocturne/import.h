@@ -23,8 +23,12 @@ typedef struct noc_import_params {
     noc_progress progress;
 } noc_import_params;
 
-#define noc_import_default_params() \
-    ((noc_import_params){ .lod = 3, .infer_lamps = true, .lamp_height = 6, .lamp_lumens = 5000, .lamp_kelvin = 3000 })
+#define NOC_IMPORT_DEFAULTS(set) set(lod, 3) set(infer_lamps, true) set(lamp_height, 6) set(lamp_lumens, 5000) set(lamp_kelvin, 3000)
+#ifdef __cplusplus
+NOC_DEFAULT_PARAMS(noc_import_params, noc_import_default_params, NOC_IMPORT_DEFAULTS)
+#else
+#define noc_import_default_params() ((noc_import_params){ NOC_IMPORT_DEFAULTS(NOC_DEFAULT_IN_C) })
+#endif
 
 /* Why a feature was skipped or repaired: a short reason, how often, and the ids of the first few. */
 typedef struct noc_report_line {

@@ -23,6 +23,21 @@ extern "C" {
 #define NOC_PRINTF(f, a)
 #endif
 
+/* Defaults are lists of set(field, value), stated once for both languages. Each noc_X_default_params() gives a noc_X_params
+ * whose address may be taken: in C it is a compound literal (fit for initialisers), in C++ a constant that lasts. */
+#define NOC_DEFAULT_IN_C(field, value) .field = value,
+#ifdef __cplusplus
+#define NOC_DEFAULT_IN_CXX(field, value) field = value;
+#define NOC_DEFAULT_PARAMS(params, function, list)                   \
+    extern "C++" inline const params &function() {                   \
+        struct defaults : params {                                   \
+            defaults() : params() { list(NOC_DEFAULT_IN_CXX) }       \
+        };                                                           \
+        static const defaults value;                                 \
+        return value;                                                \
+    }
+#endif
+
 typedef enum noc_status {
     NOC_OK = 0,
     NOC_ERR_ARGUMENT,    /* a parameter is out of its documented range */
@@ -43,7 +58,12 @@ typedef struct noc_log_params {
     void *user;
 } noc_log_params;
 
-#define noc_log_default_params() ((noc_log_params){ .level = NOC_LOG_WARN })
+#define NOC_LOG_DEFAULTS(set) set(level, NOC_LOG_WARN)
+#ifdef __cplusplus
+NOC_DEFAULT_PARAMS(noc_log_params, noc_log_default_params, NOC_LOG_DEFAULTS)
+#else
+#define noc_log_default_params() ((noc_log_params){ NOC_LOG_DEFAULTS(NOC_DEFAULT_IN_C) })
+#endif
 
 /* NULL params means the defaults. Returns NULL only when out of memory. */
 NOC_API noc_log *noc_log_create(const noc_log_params *params);

@@ -14,7 +14,7 @@ extern "C" {
 #endif
 
 NOC_API const char *noc_version(void);  /* "0.1.0" */
-NOC_API const char *noc_features(void); /* parts of this build: "embree 3.13.5, gdal 3.6.2, no vulkan" */
+NOC_API const char *noc_features(void); /* parts of this build: "embree 3.13.5, gdal 3.6.2, assimp 5.2.4" */
 
 #ifdef __cplusplus
 }

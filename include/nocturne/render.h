@@ -44,13 +44,18 @@ typedef struct noc_render_params {
     noc_path path;              /* scalar C, or the wide code for this machine */
 } noc_render_params;
 
-#define noc_render_default_params()                                                                                    \
-    ((noc_render_params){ .width = 1280, .height = 720, .method = NOC_METHOD_RESTIR, .candidates = NOC_CANDIDATES_LISTS, \
-                          .draws = 32, .list = 32, .tail = 32, .rays = 64,                                            \
-                          .temporal = true, .spatial = true, .neighbours = 5, .radius = 10, .passes = 1,              \
-                          .history = 20, .bias = NOC_BIAS_PAIRWISE, .bias_rays = true, .visibility_reuse = true,       \
-                          .final_ray = true, .reject_depth = 0.1, .reject_normal = 0.9, .seed = 1, .jitter = true,     \
-                          .accumulate = true, .sky = 0.02, .emitters = true, .path = NOC_PATH_AUTO })
+#define NOC_RENDER_DEFAULTS(set) \
+    set(width, 1280) set(height, 720) set(method, NOC_METHOD_RESTIR) set(candidates, NOC_CANDIDATES_LISTS) \
+    set(draws, 32) set(list, 32) set(tail, 32) set(rays, 64) set(temporal, true) set(spatial, true) \
+    set(neighbours, 5) set(radius, 10) set(passes, 1) set(history, 20) set(bias, NOC_BIAS_PAIRWISE) \
+    set(bias_rays, true) set(visibility_reuse, true) set(final_ray, true) set(reject_depth, 0.1) \
+    set(reject_normal, 0.9) set(seed, 1) set(jitter, true) set(accumulate, true) set(sky, 0.02) \
+    set(emitters, true) set(path, NOC_PATH_AUTO)
+#ifdef __cplusplus
+NOC_DEFAULT_PARAMS(noc_render_params, noc_render_default_params, NOC_RENDER_DEFAULTS)
+#else
+#define noc_render_default_params() ((noc_render_params){ NOC_RENDER_DEFAULTS(NOC_DEFAULT_IN_C) })
+#endif
 
 typedef struct noc_renderer noc_renderer;
 
@@ -59,7 +64,12 @@ typedef struct noc_renderer_params {
     const char *backend;      /* NULL or "embree" */
 } noc_renderer_params;
 
-#define noc_renderer_default_params() ((noc_renderer_params){ 0 })
+#define NOC_RENDERER_DEFAULTS(set) set(threads, 0)
+#ifdef __cplusplus
+NOC_DEFAULT_PARAMS(noc_renderer_params, noc_renderer_default_params, NOC_RENDERER_DEFAULTS)
+#else
+#define noc_renderer_default_params() ((noc_renderer_params){ NOC_RENDERER_DEFAULTS(NOC_DEFAULT_IN_C) })
+#endif
 
 /* The scene must be committed and outlive the renderer. NULL after reporting an error. */
 NOC_API noc_renderer *noc_renderer_create(const noc_scene *scene, const noc_renderer_params *params, noc_log *log);

@@ -135,7 +135,12 @@ typedef struct noc_city_params {
     double lit_windows;  /* share of windows that are lit, 0..1 */
 } noc_city_params;
 
-#define noc_city_default_params() ((noc_city_params){ .seed = 1, .size = 420, .lit_windows = 0.35 })
+#define NOC_CITY_DEFAULTS(set) set(seed, 1) set(size, 420) set(lit_windows, 0.35)
+#ifdef __cplusplus
+NOC_DEFAULT_PARAMS(noc_city_params, noc_city_default_params, NOC_CITY_DEFAULTS)
+#else
+#define noc_city_default_params() ((noc_city_params){ NOC_CITY_DEFAULTS(NOC_DEFAULT_IN_C) })
+#endif
 
 NOC_API noc_status noc_scene_add_city(noc_scene *scene, const noc_city_params *params);
 

@@ -1,21 +1,18 @@
 #include <nocturne/nocturne.h>
 #include "noc_config.h"
 
-#define TEXT_(x) #x
-#define TEXT(x) TEXT_(x)
-
 const char *noc_version(void) { return NOC_VERSION; }
 
 const char *noc_features(void) {
-    return "embree " TEXT(NOC_EMBREE) ", "
+    return "embree " NOC_EMBREE_VERSION ", "
 #if NOC_HAVE_GDAL
-           "gdal"
+           "gdal " NOC_GDAL_VERSION
 #else
            "no gdal (lamps from OSM, GeoJSON and CSV are not read)"
 #endif
            ", "
 #if NOC_HAVE_ASSIMP
-           "assimp";
+           "assimp " NOC_ASSIMP_VERSION;
 #else
            "no assimp (OBJ is not read)";
 #endif

@@ -81,7 +81,7 @@ out"
 result $? "nothing was written" "$(ls | tr '\n' ' ')"
 
 run --version
-test $status = 0 && grep -Eq '^nocturne [0-9]+\.[0-9]+\.[0-9]+ \(' out; result $? "--version"
+test $status = 0 && grep -Eq '^nocturne [0-9]+\.[0-9]+\.[0-9]+ \(embree [0-9]+\.[0-9.]+, ' out; result $? "--version"
 for h in help --help -h; do
     run $h
     test $status = 0 && grep -q 'nocturne compare' out && test ! -s err; result $? "$h"
