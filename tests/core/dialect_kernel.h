@@ -8,7 +8,7 @@
 #include "core/light.h"
 #include "core/random.h"
 
-#define ITEM_SLOTS 114
+#define ITEM_SLOTS 126
 #define KERNEL_LIGHTS 1000u
 
 /* Signed, of a magnitude that differs from item to item: 1/16 to 4096. */
@@ -168,13 +168,21 @@ FN void reuse(CTX u32 item, u32 key) {
     put_u32(PASS item, 103, selu(p_i < p_q, item, key));
 }
 
-/* Slots 104 to 113. */
+/* Slots 104 to 125. */
 FN void rays(CTX u32 item, u32 key, surf s, light any) {
     segment g = shadow_segment(s.p, s.n, any, rng(key, KU(3020u)), rng(key, KU(3021u)));
     put_v3(PASS item, 104, g.o);
     put_v3(PASS item, 107, g.d);
     put_v3(PASS item, 110, sky_radiance(s.n, rng(key, KU(3022u))));
     put_real(PASS item, 113, stand_off(max_abs3(mul3(s.p, K(100.0f)))));
+    v3 at = sky_numbers(key, item);
+    put_real(PASS item, 114, at.x);
+    put_real(PASS item, 115, at.y);
+    v3 d = sky_direction(s, at.x, at.y);
+    put_v3(PASS item, 116, d);
+    put_v3(PASS item, 119, visible_normal_direction(s, at.x, at.y));
+    put_real(PASS item, 122, sky_density(s, unit3(any_v3(key, KU(3030u)))));
+    put_v3(PASS item, 123, sky_backdrop(s.n, rng(key, KU(3022u))));
 }
 
 FN void dialect_item(CTX u32 item) {

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#define ITEM_SLOTS 114
+#define ITEM_SLOTS 126
 #define ITEMS 16384u
 
 void dialect_run_1(uint32_t *out, uint32_t items);
@@ -30,6 +30,8 @@ static const struct { int first; const char *name; } groups[] = {
     { 77, "ris_uniform" }, { 83, "resv_cap" },     { 89, "stream" },     { 95, "stream tag" },    { 96, "mis_scale" },
     { 98, "pair_share" },  { 99, "pair_weight" },  { 100, "pair_canonical" }, { 101, "min_, max_" }, { 103, "selu" },
     { 104, "shadow_segment, begin" }, { 107, "shadow_segment, way" }, { 110, "sky_radiance" }, { 113, "stand_off" },
+    { 114, "sky_numbers" }, { 116, "sky_direction" }, { 119, "visible_normal_direction" }, { 122, "sky_density" },
+    { 123, "sky_backdrop" },
 };
 
 static bool holds_integers(int slot) {

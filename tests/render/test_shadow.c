@@ -1,6 +1,8 @@
 /* Shadow rays at both ends: nothing leaks, nothing shadows itself, near the origin and far from it; one-sided emission; sky. */
 #include "rooms.h"
 
+#include "core/sky.h"
+
 static double sum(const noc_image *image) {
     double s = 0;
     for (int i = 0; i < image->width * image->height; i++)
@@ -139,12 +141,89 @@ static void sky_light(void **state) {
     noc_scene_destroy(s);
 }
 
+/* Light of the sky that a floor sends towards wo, by the midpoint rule: no sampling, so nothing of core/sky.h but the sky. */
+static double sky_integral(surf s, double zenith) {
+    enum { RINGS = 4000, TURNS = 2880 };
+    double total = 0;
+    for (int i = 0; i < RINGS; i++)
+        for (int k = 0; k < TURNS; k++) {
+            double z = (i + 0.5) / RINGS, r = sqrt(1 - z * z), t = 2 * M_PI * (k + 0.5) / TURNS;
+            v3 d = { (float)(r * cos(t)), (float)(r * sin(t)), (float)z };
+            total += luminance(tint3(reflect(s, d), sky_radiance(d, (float)zenith)));
+        }
+    return total * 2 * M_PI / RINGS / TURNS;
+}
+
+static double sky_on_floor(double albedo, double f0, double roughness, double height, int frames, uint32_t seed,
+                           double want, double *noise) {
+    noc_scene *s = noc_scene_create(NULL);
+    noc_material m = { .albedo = { (float)albedo, (float)albedo, (float)albedo }, .f0 = (float)f0, .roughness = (float)roughness };
+    add_floor(s, noc_scene_add_material(s, &m), 0, 0, 0, 50);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    noc_render_params p = measure(64, 64, NOC_METHOD_RIS);
+    p.sky = 0.2;
+    p.seed = seed;
+    noc_camera c = look(0, -10, height, 0, 0, 0, 0.05); /* so narrow that every pixel sees the same */
+    noc_image *image = render(s, &c, &p, frames);
+    double mean = sum(image) / 4096, square = 0;
+    for (int i = 0; i < 4096; i++)
+        square += pow(luma(image->rgb + 3 * i) / want - 1, 2) / 4096;
+    *noise = sqrt(square);
+    noc_image_destroy(image);
+    noc_scene_destroy(s);
+    return mean;
+}
+
+/* Matte, satin, glossy and nearly mirroring floors, black and white, seen from above and at a grazing angle: the mean over
+ * independent pixels of one frame, and over frames, is the integral. */
+static void sky_on_gloss(void **state) {
+    (void)state;
+    static const struct { double albedo, f0, roughness, height; } floors[] = {
+        { 0.5, 0, 1, 6 },      { 0.8, 0.04, 0.4, 6 }, { 0.8, 0.04, 0.15, 1.5 }, { 0, 0.5, 0.3, 4 },
+        { 0.3, 0.5, 0.1, 8 },  { 0, 0.04, 0.15, 6 },  { 0.05, 0.02, 0.3, 0.7 }, { 0.2, 1, 0.6, 3 },
+    };
+    for (size_t i = 0; i < NOC_COUNT(floors); i++) {
+        double h = floors[i].height, d = sqrt(100 + h * h), noise;
+        surf s = { .n = { 0, 0, 1 }, .wo = { 0, (float)(-10 / d), (float)(h / d) }, .f0 = (float)floors[i].f0,
+                   .albedo = { (float)floors[i].albedo, (float)floors[i].albedo, (float)floors[i].albedo },
+                   .alpha = (float)(floors[i].roughness * floors[i].roughness) };
+        double want = sky_integral(s, 0.2);
+        for (int frames = 1; frames <= 16; frames += 15) {
+            double mean = sky_on_floor(floors[i].albedo, floors[i].f0, floors[i].roughness, h, frames, (uint32_t)i, want, &noise);
+            double error = noise / 64; /* 4096 independent pixels */
+            print_message("# albedo %g f0 %g roughness %g: %d frames %.5f of %.5f, noise %.3f\n", floors[i].albedo,
+                          floors[i].f0, floors[i].roughness, frames, mean, want, noise);
+            assert_true(fabs(mean / want - 1) < 4 * error + 1e-3);
+            assert_true(noise < (frames == 1 ? 1 : 0.15)); /* no fireflies; frames are spread evenly */
+        }
+    }
+}
+
+/* Under the horizon the background fades smoothly, and meets the sky there without a step. */
+static void horizon_fades(void **state) {
+    (void)state;
+    double last = luminance(sky_backdrop(V3(1, 0, 0), 1)), at_horizon = luminance(sky_radiance(V3(1, 0, 0), 1));
+    assert_true(fabs(last - at_horizon) < 1e-6);
+    for (double a = 0.1; a <= 90; a += 0.1) {
+        double down = a * M_PI / 180;
+        v3 d = { (float)cos(down), 0, (float)-sin(down) };
+        double y = luminance(sky_backdrop(d, 1));
+        assert_true(y <= last && last - y < 0.02 * at_horizon);
+        assert_true(a < 15 || y < 0.05 * at_horizon);
+        last = y;
+        d.z = -d.z; /* above, background and light are one */
+        assert_true(luminance(sky_backdrop(d, 1)) == luminance(sky_radiance(d, 1)));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(windows_near_walls),
         cmocka_unit_test(no_acne),
         cmocka_unit_test(one_sided),
         cmocka_unit_test(sky_light),
+        cmocka_unit_test(sky_on_gloss),
+        cmocka_unit_test(horizon_fades),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

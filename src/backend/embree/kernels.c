@@ -180,13 +180,12 @@ static uint32_t shade(const struct core_context *ctx, const gblock *g, const rbl
 static void sky_rays(const struct core_context *ctx, const gblock *g, int x, int y, rayblock *out) {
     const float reach = 1e7f; /* further than any scene */
     for (int l = 0; l < BLOCK; l += LANES) {
-        u32 bits = rng_bits(key_of(ctx, x, y, l), KU(DIM_SKY));
-        v3 p = V3(rload(g->px + l), rload(g->py + l), rload(g->pz + l));
-        v3 n = V3(rload(g->nx + l), rload(g->ny + l), rload(g->nz + l));
-        mask on = dot3(n, n) > K(0.5f);
-        n = sel3(on, n, V3(K(0.0f), K(0.0f), K(1.0f)));
-        v3 d = cosine_hemisphere(n, unit_low(bits), unit_high(bits));
-        ray_store(out, l, add3(p, mul3(n, stand_off(max_abs3(p)))), mul3(d, K(reach)));
+        v3 at = sky_numbers(key_in(ctx, x, y, l, 0), KU(ctx->frame->index));
+        surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
+        mask on = dot3(s.n, s.n) > K(0.5f);
+        s.n = sel3(on, s.n, V3(K(0.0f), K(0.0f), K(1.0f)));
+        v3 d = sky_direction(s, at.x, at.y);
+        ray_store(out, l, add3(s.p, mul3(s.n, stand_off(max_abs3(s.p)))), mul3(d, K(reach)));
     }
 }
 
@@ -198,8 +197,9 @@ static uint32_t sky_shade(const struct core_context *ctx, const gblock *g, const
         surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
         v3 d = V3(rload(rays->d[0] + l), rload(rays->d[1] + l), rload(rays->d[2] + l));
         d = mul3(d, K(1e-7f));
-        real c = max_(dot3(s.n, d), K(1e-4f));
-        v3 f = mul3(tint3(reflect(s, d), sky_radiance(d, zenith)), K(CORE_PI) / c);
+        real p = sky_density(s, d);
+        mask some = p > K(0.0f);
+        v3 f = mul3(tint3(reflect(s, d), sky_radiance(d, zenith)), sel(some, K(1.0f) / sel(some, p, K(1.0f)), K(0.0f)));
         dropped |= add_colour(out, l, f, lanes);
     }
     return dropped;
@@ -212,7 +212,7 @@ static void sky_background(const struct core_context *ctx, uint32_t lanes, int x
         v3 d = camera_direction(cam, to_real(lane_x(x, l)) + K(ctx->frame->camera.jitter[0]),
                                 to_real(lane_y(y, l)) + K(ctx->frame->camera.jitter[1]));
         d = mul3(d, K(1.0f) / sqrt_(dot3(d, d)));
-        add_colour(out, l, sky_radiance(d, zenith), lanes);
+        add_colour(out, l, sky_backdrop(d, zenith), lanes);
     }
 }
 

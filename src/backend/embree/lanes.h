@@ -57,10 +57,13 @@ FN u32 lane_numbers(int first) {
 FN u32 lane_x(int x, int first) { return KU((uint32_t)x) + (lane_numbers(first) & KU(3u)); }
 FN u32 lane_y(int y, int first) { return KU((uint32_t)y) + shr(lane_numbers(first), 2); }
 
-FN u32 key_of(const struct core_context *ctx, int x, int y, int first) {
+FN u32 key_in(const struct core_context *ctx, int x, int y, int first, uint32_t frame) {
     const noc_frame *f = ctx->frame;
     u32 pixel = lane_y(y, first) * KU((uint32_t)f->params->width) + lane_x(x, first);
-    return rng_key(KU(f->params->seed), pixel, KU(f->index));
+    return rng_key(KU(f->params->seed), pixel, KU(frame));
+}
+FN u32 key_of(const struct core_context *ctx, int x, int y, int first) {
+    return key_in(ctx, x, y, first, ctx->frame->index);
 }
 
 FN v3 splat3(const float a[3]) { return V3(K(a[0]), K(a[1]), K(a[2])); }
