@@ -38,6 +38,21 @@ typedef struct noc_report_line {
     const char *examples;   /* up to 5 ids, comma separated */
 } noc_report_line;
 
+/* What makes a lamp's light. */
+typedef enum noc_lamp_source {
+    NOC_SOURCE_UNKNOWN,
+    NOC_SOURCE_LED,
+    NOC_SOURCE_SODIUM,
+    NOC_SOURCE_MERCURY,
+    NOC_SOURCE_METAL_HALIDE,
+    NOC_SOURCE_FLUORESCENT,
+    NOC_SOURCE_INCANDESCENT,
+    NOC_SOURCE_GAS,
+    NOC_SOURCE_COUNT
+} noc_lamp_source;
+
+NOC_API const char *noc_lamp_source_name(noc_lamp_source source); /* "unknown", "LED", "sodium", ... */
+
 typedef struct noc_report_file {
     const char *path, *format; /* "CityGML 2.0", "GeoJSON", ... */
     const char *crs;           /* as understood: "EPSG:25832 (ETRS89 / UTM zone 32N)", "" if none */
@@ -53,6 +68,10 @@ typedef struct noc_report_file {
     size_t polygons_by_class[NOC_CLASS_COUNT];
     size_t lod_used[5];        /* buildings by the level of detail that was taken */
     size_t triangles, lamps, lights;
+    size_t lamp_heads;         /* of all lamps: each makes a light; a lamp that does not tell has one */
+    size_t lamps_with_height, lamps_with_lumens, lamps_with_watts, lamps_with_colour, lamps_with_direction; /* tagged */
+    double lamp_height_min, lamp_height_max; /* of those tagged, m */
+    size_t lamps_by_source[NOC_SOURCE_COUNT];
     size_t line_count;
     const noc_report_line *lines;
 } noc_report_file;

@@ -6,8 +6,6 @@
 
 #include <math.h>
 
-#define MAX_HEADS 24
-
 /* What a source means where its lumens and its colour are not tagged.
  *
  * lumens_per_watt: of the luminaire. For discharge and thermal lamps, the middle of the lamp's range in the IES Lighting
@@ -72,7 +70,7 @@ static void lamp_colour(const geo_lamp *lamp, const city_lamp_params *params, fl
 
 static fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *params) {
     fitting f = { .height = known(lamp->height, params->height) };
-    f.heads = NOC_CLAMP(lamp->count, 1, MAX_HEADS);
+    f.heads = NOC_CLAMP(lamp->count, 1, GEO_MAX_HEADS);
     double otherwise = known(sources[lamp->source].lumens, params->lumens);
     if (isfinite(lamp->watts) && lamp->watts > 0)
         otherwise = lamp->watts * sources[lamp->source].lumens_per_watt;

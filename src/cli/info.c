@@ -95,6 +95,31 @@ static void print_objects(const noc_report_file *file) {
     printf("%s\n", *before == ',' ? ")" : "");
 }
 
+static void print_lamps(const noc_report_file *file) {
+    char a[32], b[32];
+    printf("  %-11s %s", "lamps", cli_count(a, file->lamps));
+    if (file->lamp_heads != file->lamps)
+        printf(" with %s heads, each a light", cli_count(b, file->lamp_heads));
+    putchar('\n');
+    const struct { const char *name; size_t count; } known[] = {
+        { "height", file->lamps_with_height }, { "lumens", file->lamps_with_lumens }, { "watts", file->lamps_with_watts },
+        { "colour", file->lamps_with_colour }, { "direction", file->lamps_with_direction },
+    };
+    for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {
+        if (!known[i].count)
+            continue;
+        printf("    %-13s %10s, %.1f%%", known[i].name, cli_count(a, known[i].count),
+               100.0 * (double)known[i].count / (double)file->lamps);
+        if (i == 0)
+            printf(": %.4g to %.4g m", file->lamp_height_min, file->lamp_height_max);
+        putchar('\n');
+    }
+    for (int s = 0; s < NOC_SOURCE_COUNT; s++)
+        if (file->lamps_by_source[s] && (s != NOC_SOURCE_UNKNOWN || file->lamps_by_source[s] != file->lamps))
+            printf("    %-13s %10s, %.1f%%\n", s == NOC_SOURCE_UNKNOWN ? "source?" : noc_lamp_source_name((noc_lamp_source)s),
+                   cli_count(a, file->lamps_by_source[s]), 100.0 * (double)file->lamps_by_source[s] / (double)file->lamps);
+}
+
 static void print_file(const noc_report_file *file) {
     char a[32], b[32], path[400];
     printf("%s\n", cli_clean(path, sizeof(path), file->path));
@@ -109,7 +134,7 @@ static void print_file(const noc_report_file *file) {
         printf("  %-11s %s\n", "triangles", cli_count(a, file->triangles));
     }
     if (file->lamps)
-        printf("  %-11s %s\n", "lamps", cli_count(a, file->lamps));
+        print_lamps(file);
     if (file->lights)
         printf("  %-11s %s\n", "lights", cli_count(a, file->lights));
     print_lines(file, false);

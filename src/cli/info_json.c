@@ -66,6 +66,28 @@ static void lines(const noc_report_file *file) {
     putchar(']');
 }
 
+static void lamp_details(const noc_report_file *file) {
+    number("lamp_heads", (double)file->lamp_heads);
+    number("lamps_with_height", (double)file->lamps_with_height);
+    if (file->lamps_with_height) {
+        number("lamp_height_min", file->lamp_height_min);
+        number("lamp_height_max", file->lamp_height_max);
+    }
+    number("lamps_with_lumens", (double)file->lamps_with_lumens);
+    number("lamps_with_watts", (double)file->lamps_with_watts);
+    number("lamps_with_colour", (double)file->lamps_with_colour);
+    number("lamps_with_direction", (double)file->lamps_with_direction);
+    key("lamps_by_source");
+    const char *before = "{";
+    for (int s = 0; s < NOC_SOURCE_COUNT; s++) {
+        if (file->lamps_by_source[s]) {
+            printf("%s\"%s\": %zu", before, noc_lamp_source_name((noc_lamp_source)s), file->lamps_by_source[s]);
+            before = ", ";
+        }
+    }
+    putchar('}');
+}
+
 static void report_file(const noc_report_file *file) {
     text("format", file->format);
     text("crs", file->crs);
@@ -87,6 +109,8 @@ static void report_file(const noc_report_file *file) {
     classes("polygons_by_class", file->polygons_by_class);
     number("triangles", (double)file->triangles);
     number("lamps", (double)file->lamps);
+    if (file->lamps)
+        lamp_details(file);
     number("lights", (double)file->lights);
     lines(file);
 }

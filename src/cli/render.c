@@ -97,14 +97,6 @@ static int check(render_job *job) {
     return status ? status : cli_check_output(&cli_render, args->output, CLI_PNG | CLI_EXR, &args->common);
 }
 
-static void count_issues(render_job *job, const noc_report *report) {
-    for (size_t i = 0; report && i < noc_report_file_count(report); i++) {
-        const noc_report_file *file = noc_report_get_file(report, i);
-        for (size_t j = 0; j < file->line_count; j++)
-            *(file->lines[j].repaired ? &job->repaired : &job->skipped) += file->lines[j].count;
-    }
-}
-
 /* The built-in city takes its own options, so it is added here; the rest is loaded onto it. */
 static noc_status load(render_job *job) {
     render_args *args = job->args;
@@ -122,11 +114,8 @@ static noc_status load(render_job *job) {
         }
     }
     args->import.progress = (noc_progress){ cli_load_progress, NULL };
-    noc_report *report = NULL;
     if (!status)
-        status = count ? noc_scene_load(job->scene, files, count, &args->import, &report) : noc_scene_commit(job->scene);
-    count_issues(job, report);
-    noc_report_destroy(report);
+        status = count ? noc_scene_load(job->scene, files, count, &args->import, &job->report) : noc_scene_commit(job->scene);
     free(files);
     cli_progress_clear();
     noc_scene_get_info(job->scene, &job->scene_info);
@@ -235,6 +224,7 @@ static int run(void *arguments) {
     cli_progress_clear();
     noc_image_destroy(job.image);
     noc_renderer_destroy(job.renderer);
+    noc_report_destroy(job.report);
     noc_scene_destroy(job.scene);
     noc_log_destroy(job.log);
     return status;

@@ -31,7 +31,7 @@ typedef struct render_job {
     noc_image *image;
     noc_camera camera;
     noc_scene_info scene_info;
-    size_t skipped, repaired; /* features of the inputs */
+    noc_report *report;       /* on the inputs; NULL without any */
     noc_frame_stats last;     /* of the last complete frame */
     double started, loaded, ready, rendered; /* wall clock */
     int frames;               /* complete */

@@ -90,6 +90,56 @@ static const char *choice_name(const char *option, const void *params, char *tex
     return text;
 }
 
+typedef struct issue {
+    const noc_report_line *line; /* of the first file that has it */
+    size_t count;                /* in all files */
+} issue;
+
+/* What was skipped before what was repaired, then the most frequent; the order of the files decides between equals. */
+static int compare_issues(const void *a, const void *b) {
+    const issue *x = a, *y = b;
+    if (x->line->repaired != y->line->repaired)
+        return x->line->repaired ? 1 : -1;
+    return x->count != y->count ? (x->count < y->count ? 1 : -1) : (x->line > y->line) - (x->line < y->line);
+}
+
+/* The inputs' and the lamps' troubles, the same reason in several files as one. */
+static void print_issues(const noc_report *report) {
+    enum { SHOWN = 8 };
+    size_t lines = 0, n = 0, skipped = 0, repaired = 0;
+    for (size_t i = 0; i < noc_report_file_count(report); i++)
+        lines += noc_report_get_file(report, i)->line_count;
+    if (!lines)
+        return;
+    issue *issues = cli_alloc(lines * sizeof(*issues));
+    for (size_t i = 0; i < noc_report_file_count(report); i++) {
+        const noc_report_file *file = noc_report_get_file(report, i);
+        for (size_t j = 0; j < file->line_count; j++) {
+            const noc_report_line *line = &file->lines[j];
+            size_t k = 0;
+            while (k < n && (issues[k].line->repaired != line->repaired || strcmp(issues[k].line->reason, line->reason)))
+                k++;
+            if (k == n)
+                issues[n++] = (issue){ line, 0 };
+            issues[k].count += line->count;
+            *(line->repaired ? &repaired : &skipped) += line->count;
+        }
+    }
+    qsort(issues, n, sizeof(*issues), compare_issues);
+    char a[32], b[32], reason[160], examples[72];
+    printf("  inputs    features skipped: %s, repaired: %s\n", cli_count(a, skipped), cli_count(b, repaired));
+    for (size_t i = 0; i < n && i < SHOWN; i++) {
+        const noc_report_line *line = issues[i].line;
+        printf("            %s x %s", cli_count(a, issues[i].count), cli_clean(reason, sizeof(reason), line->reason));
+        if (line->examples && *line->examples)
+            printf(": %s", cli_clean(examples, sizeof(examples), line->examples));
+        putchar('\n');
+    }
+    if (n > SHOWN)
+        printf("            and for %s other reasons\n", cli_count(a, n - SHOWN));
+    free(issues);
+}
+
 void cli_print_summary(const render_job *job) {
     const render_args *args = job->args;
     const noc_scene_info *scene = &job->scene_info;
@@ -102,9 +152,7 @@ void cli_print_summary(const render_job *job) {
     if (scene->lights_inferred)
         printf(" (%s placed by a rule, not found in data)", cli_count(c, scene->lights_inferred));
     printf("%s%s\n", scene->crs && *scene->crs ? ", " : "", scene->crs ? scene->crs : "");
-    if (job->skipped || job->repaired)
-        printf("  inputs    features skipped: %s, repaired: %s (nocturne info tells which and why)\n", cli_count(a, job->skipped),
-               cli_count(b, job->repaired));
+    print_issues(job->report);
     printf("  camera    eye %.2f,%.2f,%.2f  target %.2f,%.2f,%.2f  fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
            job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2], job->camera.fov_deg);
     printf("  time      %s: loading %s, ", cli_seconds(a, cli_now() - job->started), cli_seconds(b, job->loaded - job->started));

@@ -56,6 +56,8 @@ typedef struct geo_polygon {
     const double *xyz;       /* 3 a point, rings one after the other */
 } geo_polygon;
 
+#define GEO_MAX_HEADS 24 /* on one pole */
+
 /* A lamp as tagged. NaN / 0 / NULL where unknown. */
 typedef struct geo_lamp {
     double xyz[3];        /* file CRS; xyz[2] NaN: stands on the ground */

@@ -2,6 +2,15 @@
 
 noc_report *report_create(void) { return noc_calloc(1, sizeof(noc_report)); }
 
+const char *noc_lamp_source_name(noc_lamp_source source) {
+    static const char *const names[NOC_SOURCE_COUNT] = {
+        [NOC_SOURCE_UNKNOWN] = "unknown", [NOC_SOURCE_LED] = "LED", [NOC_SOURCE_SODIUM] = "sodium",
+        [NOC_SOURCE_MERCURY] = "mercury", [NOC_SOURCE_METAL_HALIDE] = "metal halide",
+        [NOC_SOURCE_FLUORESCENT] = "fluorescent", [NOC_SOURCE_INCANDESCENT] = "incandescent", [NOC_SOURCE_GAS] = "gas",
+    };
+    return (unsigned)source < NOC_SOURCE_COUNT ? names[source] : "unknown";
+}
+
 size_t noc_report_file_count(const noc_report *report) { return report ? report->files.len : 0; }
 
 const noc_report_file *noc_report_get_file(const noc_report *report, size_t index) {

@@ -150,6 +150,24 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
     return im->surfaces[cls].indices.len >= 3 * FLUSH_TRIANGLES ? flush_class(im, cls) : NOC_OK;
 }
 
+_Static_assert((int)GEO_SOURCE_LED == NOC_SOURCE_LED && (int)GEO_SOURCE_GAS == NOC_SOURCE_GAS, "sources are those of the report");
+
+/* What a lamp tells of itself, for the report. */
+static void count_lamp(noc_report_file *file, const geo_lamp *lamp) {
+    file->lamps++;
+    file->lamp_heads += (size_t)NOC_CLAMP(lamp->count, 1, GEO_MAX_HEADS);
+    if (isfinite(lamp->height) && lamp->height > 0) {
+        file->lamp_height_min = file->lamps_with_height ? NOC_MIN(file->lamp_height_min, lamp->height) : lamp->height;
+        file->lamp_height_max = NOC_MAX(file->lamp_height_max, lamp->height);
+        file->lamps_with_height++;
+    }
+    file->lamps_with_lumens += isfinite(lamp->lumens) && lamp->lumens > 0;
+    file->lamps_with_watts += isfinite(lamp->watts) && lamp->watts > 0;
+    file->lamps_with_colour += (isfinite(lamp->kelvin) && lamp->kelvin > 0) || lamp->rgb[0] >= 0;
+    file->lamps_with_direction += isfinite(lamp->direction) != 0;
+    file->lamps_by_source[(unsigned)lamp->source < NOC_SOURCE_COUNT ? lamp->source : GEO_SOURCE_UNKNOWN]++;
+}
+
 static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     importer *im = ctx;
     pending_lamp p = { .lamp = *lamp, .input = im->current };
@@ -157,7 +175,7 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     noc_status status = place_points(im, p.lamp.xyz, 1, lamp->id ? lamp->id : "", &usable);
     if (status || !usable)
         return status;
-    im->inputs[im->current].file.lamps++;
+    count_lamp(&im->inputs[im->current].file, lamp);
     if (im->inspect)
         return NOC_OK;
     p.lamp.id = arena_strdup(&im->names, lamp->id ? lamp->id : "");

@@ -53,11 +53,33 @@ assert city["triangles"] > 1000 and city["lights"] > 10, city
 END
 result $? "info as JSON"
 
+# What lamps tell of themselves: two heads, 8 m and sodium on one; nothing on the other.
+printf '{"type": "FeatureCollection", "features": [{"type": "Feature", "id": "a", "properties": {"highway": "street_lamp",
+    "height": "8", "lamp_count": "2", "light:method": "high_pressure_sodium", "light:count": "2"},
+    "geometry": {"type": "Point", "coordinates": [11.42, 48.76]}}, {"type": "Feature", "id": "b",
+    "properties": {"highway": "street_lamp"}, "geometry": {"type": "Point", "coordinates": [11.421, 48.76]}}]}' >lamps.geojson
+run info lamps.geojson
+grep -q 'lamps  *2 with 3 heads' out && grep -Eq 'height  *1, 50.0%: 8 to 8 m' out && grep -Eq 'sodium  *1, 50.0%' out
+result $? "info tells what is known of lamps"
+run info --json lamps.geojson
+python3 - out <<'END'
+import json, sys
+f = json.load(open(sys.argv[1]))["files"][0]
+assert (f["lamps"], f["lamp_heads"], f["lamps_with_height"], f["lamps_with_watts"]) == (2, 3, 1, 0), f
+assert f["lamps_by_source"] == {"unknown": 1, "sodium": 1} and f["lamp_height_max"] == 8, f
+END
+result $? "and so as JSON"
+
 # A camera in the file's coordinates is the same as one in the scene's frame, which the metadata places in the world.
 view='--size 48x27 --frames 1'
 run render "$gml" $view --camera-crs EPSG:25832 --eye 678030,5402980,412 --target 678005,5403004,403 -o a.png
 test $status = 0; result $? "a camera in CRS coordinates"
 grep -q 'features skipped: 1, repaired: 0' out; result $? "the summary tells that something was skipped"
+grep -Eq '^ +1 x .*(two-points|stump)' out; result $? "and why"
+printf '{"type": "FeatureCollection", "features": [{"type": "Feature", "id": "far", "properties": {"highway": "street_lamp"},
+    "geometry": {"type": "Point", "coordinates": [11.6, 48.76]}}]}' >far.geojson
+run render "$gml" far.geojson $view -o far.png
+grep -q '1 x lamp more than 2 km outside the city: far' out; result $? "the summary tells why a lamp is not there"
 set -- $(meta a.png scene-origin)
 test $# = 3 && run render "$gml" $view -o b.png \
     --eye "$(echo "678030 5402980 412 $*" | awk '{printf "%.3f,%.3f,%.3f", $1-$4, $2-$5, $3-$6}')" \
