@@ -2,7 +2,9 @@
 #include "image/internal.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static bool ends_in(const char *path, const char *ending) {
     size_t n = strlen(path), m = strlen(ending);
@@ -125,17 +127,17 @@ noc_image *image_read_memory(const uint8_t *data, size_t size, const char *name,
 static uint8_t *read_file(FILE *file, const char *path, size_t *size, noc_log *log) {
     struct stat st;
     uint8_t head[8];
+    if (fstat(fileno(file), &st) != 0 || (!S_ISREG(st.st_mode) && !S_ISDIR(st.st_mode))) {
+        noc_error(log, NOC_ERR_IO, "%s: not a regular file", path);
+        return NULL;
+    }
     size_t got = fread(head, 1, sizeof(head), file);
-    if (ferror(file) || fstat(fileno(file), &st) != 0) {
+    if (ferror(file)) {
         noc_error(log, NOC_ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
         return NULL;
     }
     if (probe(head, got) == FORMAT_UNKNOWN) {
         noc_error(log, NOC_ERR_FORMAT, "%s: neither a PNG nor an OpenEXR file", path);
-        return NULL;
-    }
-    if (!S_ISREG(st.st_mode)) {
-        noc_error(log, NOC_ERR_IO, "%s: not a regular file", path);
         return NULL;
     }
     *size = (size_t)st.st_size;
@@ -154,9 +156,12 @@ static uint8_t *read_file(FILE *file, const char *path, size_t *size, noc_log *l
 }
 
 noc_image *noc_image_read(const char *path, noc_log *log, bool *is_linear) {
-    FILE *file = fopen(path, "rbe");
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a pipe without a writer must not block */
+    FILE *file = fd >= 0 ? fdopen(fd, "rb") : NULL;
     if (!file) {
         noc_error(log, NOC_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
+        if (fd >= 0)
+            close(fd);
         return NULL;
     }
     size_t size;
