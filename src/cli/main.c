@@ -1,6 +1,7 @@
 /* nocturne: pictures and figures of cities at night. */
 #include "cli.h"
 
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -61,6 +62,7 @@ static int run(const cli_command *command, int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
+    signal(SIGXFSZ, SIG_IGN); /* a file over the size limit is a failed write: said, and nothing is left behind */
     if (argc < 2) {
         cli_help(NULL, stderr);
         return CLI_USAGE;
