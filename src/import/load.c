@@ -15,7 +15,7 @@ static noc_status check_params(const noc_import_params *p, noc_log *log) {
         return noc_error(log, NOC_ERR_ARGUMENT, "import: lod is %d, not 0..4", p->lod);
     if (!(p->lamp_height > 0 && p->lamp_height < 1000))
         return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp height is %g m, not within 0..1000", p->lamp_height);
-    if (!(p->lamp_lumens > 0 && p->lamp_lumens < 1e9))
+    if (!(p->lamp_lumens >= 0 && p->lamp_lumens < 1e9))
         return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp flux is %g lm, not within 0..1e9", p->lamp_lumens);
     if (!(p->lamp_kelvin >= 1000 && p->lamp_kelvin <= 40000))
         return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp colour is %g K, not within 1000..40000", p->lamp_kelvin);
