@@ -40,5 +40,6 @@ FN u32 scale_u32(u32 bits, u32 n) { return high_u32(bits, n); }
 #define DIM_RAYS 16u       /* reference, is */
 #define DIM_SPATIAL 64u    /* + 64 a pass: 2 a neighbour for its place, 1 for its choice */
 #define DIM_CANDIDATE 512u /* + 3 a candidate */
+#define DIM_PICK 4096u     /* + 1 a candidate: pickers that need a second number */
 
 #endif

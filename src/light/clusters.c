@@ -1,73 +1,8 @@
 #include "light/clusters.h"
 
+#include "light/bound.h"
+
 #include <math.h>
-
-/* What sorting and grouping need of a light. */
-typedef struct leaf {
-    uint64_t key;
-    uint32_t id;
-} leaf;
-
-typedef struct bound {
-    float p[3], radius; /* sphere around it */
-    float n[3];         /* way it faces; 0: every way */
-    float intensity;
-} bound;
-
-static float luminance(const float e[3]) { return 0.2126f * e[0] + 0.7152f * e[1] + 0.0722f * e[2]; }
-
-float noc_light_intensity(const noc_light_record *l) {
-    float y = luminance(l->e);
-    switch (l->kind) {
-    case NOC_LIGHT_SPHERE: return y * (float)M_PI * l->radius * l->radius;
-    case NOC_LIGHT_POINT: return y;
-    default: return y * l->area;
-    }
-}
-
-static bound bound_of(const noc_light_record *l) {
-    bound b = { .intensity = noc_light_intensity(l) };
-    memcpy(b.p, l->p, sizeof(b.p));
-    if (l->kind == NOC_LIGHT_SPHERE || l->kind == NOC_LIGHT_POINT) {
-        b.radius = l->radius;
-        return b;
-    }
-    if (!(l->flags & 1)) {
-        double n[3] = { (double)l->a[1] * l->b[2] - (double)l->a[2] * l->b[1],
-                        (double)l->a[2] * l->b[0] - (double)l->a[0] * l->b[2],
-                        (double)l->a[0] * l->b[1] - (double)l->a[1] * l->b[0] };
-        double len = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        for (int k = 0; k < 3 && len > 0; k++)
-            b.n[k] = (float)(n[k] / len);
-    }
-    if (l->kind == NOC_LIGHT_DISC) {
-        b.radius = l->radius;
-        return b;
-    }
-    float share = l->kind == NOC_LIGHT_TRIANGLE ? 1.f / 3 : 0.5f, far = 0;
-    for (int k = 0; k < 3; k++)
-        b.p[k] = l->p[k] + share * (l->a[k] + l->b[k]);
-    for (int corner = 0; corner < 4; corner++) {
-        float d2 = 0;
-        for (int k = 0; k < 3; k++) {
-            float c = l->p[k] + (corner & 1 ? l->a[k] : 0) + (corner & 2 ? l->b[k] : 0) - b.p[k];
-            d2 += c * c;
-        }
-        if (l->kind == NOC_LIGHT_PARALLELOGRAM || corner != 3)
-            far = fmaxf(far, d2);
-    }
-    b.radius = sqrtf(far);
-    return b;
-}
-
-static uint64_t spread(uint64_t x) { /* 20 bits to every third */
-    x &= 0xfffff;
-    x = (x | x << 32) & 0x1f00000000ffffull;
-    x = (x | x << 16) & 0x1f0000ff0000ffull;
-    x = (x | x << 8) & 0x100f00f00f00f00full;
-    x = (x | x << 4) & 0x10c30c30c30c30c3ull;
-    return (x | x << 2) & 0x1249249249249249ull;
-}
 
 /* Face of the cube that a direction points through; 6 for none. */
 static unsigned face(const float n[3]) {
@@ -78,24 +13,8 @@ static unsigned face(const float n[3]) {
     return n[axis] == 0 ? 6 : 2u * (unsigned)axis + (n[axis] < 0);
 }
 
-/* Stable, least significant byte first. scratch has n entries. */
-static void radix_sort(leaf *a, leaf *scratch, size_t n) {
-    for (int shift = 0; shift < 64; shift += 8) {
-        size_t at[257] = { 0 };
-        for (size_t i = 0; i < n; i++)
-            at[(a[i].key >> shift & 255) + 1]++;
-        if (at[(a[0].key >> shift & 255) + 1] == n)
-            continue;
-        for (int i = 0; i < 256; i++)
-            at[i + 1] += at[i];
-        for (size_t i = 0; i < n; i++)
-            scratch[at[a[i].key >> shift & 255]++] = a[i];
-        memcpy(a, scratch, n * sizeof(*a));
-    }
-}
-
 /* Key: place in coarse cells, direction, place inside the cell; a cell holds some 16 lights a direction on average. */
-static void sort_lights(const bound *bounds, leaf *leaves, leaf *scratch, size_t n) {
+static void sort_lights(const noc_light_bound *bounds, noc_light_key *leaves, noc_light_key *scratch, size_t n) {
     float lo[3] = { INFINITY, INFINITY, INFINITY }, size = 0;
     float hi[3] = { -INFINITY, -INFINITY, -INFINITY };
     for (size_t i = 0; i < n; i++)
@@ -112,30 +31,30 @@ static void sort_lights(const bound *bounds, leaf *leaves, leaf *scratch, size_t
         coarse++;
     int below = 3 * (20 - coarse);
     for (size_t i = 0; i < n; i++) {
-        const bound *b = &bounds[leaves[i].id];
+        const noc_light_bound *b = &bounds[leaves[i].id];
         uint64_t m = 0;
         for (int k = 0; k < 3; k++)
-            m |= spread((uint64_t)((b->p[k] - lo[k]) * scale)) << k;
+            m |= noc_spread_bits((uint64_t)((b->p[k] - lo[k]) * scale)) << k;
         leaves[i].key = (m >> below) << (below + 3) | (uint64_t)face(b->n) << below | (m & (((uint64_t)1 << below) - 1));
     }
-    radix_sort(leaves, scratch, n);
+    noc_sort_keys(leaves, scratch, n);
 }
 
 /* Do both face alike enough to share a cone? */
-static bool alike(const bound *a, const bound *b) {
+static bool alike(const noc_light_bound *a, const noc_light_bound *b) {
     bool any_a = a->n[0] == 0 && a->n[1] == 0 && a->n[2] == 0, any_b = b->n[0] == 0 && b->n[1] == 0 && b->n[2] == 0;
     if (any_a || any_b)
         return any_a == any_b;
     return a->n[0] * b->n[0] + a->n[1] * b->n[1] + a->n[2] * b->n[2] > 0.7f;
 }
 
-static void close_cluster(noc_clusters *c, const bound *bounds, uint32_t first, uint32_t end) {
+static void close_cluster(noc_clusters *c, const noc_light_bound *bounds, uint32_t first, uint32_t end) {
     size_t i = c->count++;
     c->first[i] = first;
     c->first[i + 1] = end;
     float lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY }, n[3] = { 0 }, power = 0;
     for (uint32_t j = first; j < end; j++) {
-        const bound *b = &bounds[c->ids[j]];
+        const noc_light_bound *b = &bounds[c->ids[j]];
         c->intensity[j] = b->intensity;
         power += b->intensity;
         for (int k = 0; k < 3; k++) {
@@ -150,7 +69,7 @@ static void close_cluster(noc_clusters *c, const bound *bounds, uint32_t first, 
         n[k] = len > 0 ? n[k] / len : 0;
     }
     for (uint32_t j = first; j < end; j++) {
-        const bound *b = &bounds[c->ids[j]];
+        const noc_light_bound *b = &bounds[c->ids[j]];
         float d[3] = { b->p[0] - centre[0], b->p[1] - centre[1], b->p[2] - centre[2] };
         r = fmaxf(r, sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) + b->radius);
         cone = fminf(cone, b->n[0] * n[0] + b->n[1] * n[1] + b->n[2] * n[2]);
@@ -185,8 +104,8 @@ static bool allocate(noc_clusters *c, size_t lights) {
 noc_clusters *noc_clusters_create(const noc_scene *scene, noc_log *log) {
     size_t n = 0, all = scene->lights.len;
     noc_clusters *c = noc_calloc(1, sizeof(*c));
-    bound *bounds = noc_alloc_large(all, sizeof(*bounds));
-    leaf *leaves = noc_alloc_large(2 * all, sizeof(*leaves));
+    noc_light_bound *bounds = noc_alloc_large(all, sizeof(*bounds));
+    noc_light_key *leaves = noc_alloc_large(2 * all, sizeof(*leaves));
     if (!bounds || !leaves || !allocate(c, all)) {
         noc_error(log, NOC_ERR_MEMORY, "light clusters: no memory for %zu lights", all);
         noc_clusters_destroy(c);
@@ -194,7 +113,7 @@ noc_clusters *noc_clusters_create(const noc_scene *scene, noc_log *log) {
         goto done;
     }
     for (size_t i = 0; i < all; i++) {
-        bounds[i] = bound_of(&scene->lights.data[i]);
+        bounds[i] = noc_bound_light(&scene->lights.data[i]);
         if (bounds[i].intensity > 0)
             leaves[n++].id = (uint32_t)i;
     }

@@ -24,7 +24,4 @@ typedef struct noc_clusters {
 noc_clusters *noc_clusters_create(const noc_scene *scene, noc_log *log);
 void noc_clusters_destroy(noc_clusters *clusters); /* NULL is allowed */
 
-/* Greatest luminous intensity of a light, cd: radiance times projected area. */
-float noc_light_intensity(const noc_light_record *light);
-
 #endif

@@ -18,6 +18,8 @@ noc_status noc_check_render_params(const noc_render_params *p, noc_log *log) {
         { "draws", p->draws, 1, 1024 },
         { "list", p->list, 0, 128 },
         { "tail", p->tail, 1, 128 },
+        { "influence", p->influence, 0, 1e6 },
+        { "uniform_every", p->uniform_every, 1, 1024 },
         { "rays", p->rays, 1, 1024 },
         { "neighbours", p->neighbours, 0, 16 },
         { "radius", p->radius, 1, 64 },
@@ -35,7 +37,7 @@ noc_status noc_check_render_params(const noc_render_params *p, noc_log *log) {
         }
     if ((unsigned)p->method > NOC_METHOD_RESTIR)
         return wrong(log, "method", p->method, "a noc_method");
-    if ((unsigned)p->candidates > NOC_CANDIDATES_LISTS)
+    if ((unsigned)p->candidates > NOC_CANDIDATES_BVH)
         return wrong(log, "candidates", p->candidates, "a noc_candidates");
     if ((unsigned)p->bias > NOC_BIAS_PAIRWISE)
         return wrong(log, "bias", p->bias, "a noc_bias");

@@ -25,10 +25,12 @@ static const noc_option render_options[] = {
     BOOL(P, emitters, "emitters", "Picture", "show light sources that are seen directly"),
 
     CHOICE(P, method, "method", "Estimator", "reference|is|ris|restir", "how direct light is estimated"),
-    CHOICE(P, candidates, "candidates", "Estimator", "uniform|lists", "ris, restir: where light candidates come from"),
+    CHOICE(P, candidates, "candidates", "Estimator", "uniform|lists|power|bvh", "ris, restir: where light candidates come from"),
     INT(P, draws, "draws", "Estimator", 1, 1024, "", "light candidates a pixel and frame (M)"),
     INT(P, list, "list", "Estimator", 0, 128, "", "lists: strongest lights of a tile, seen by each of its pixels"),
     INT(P, tail, "tail", "Estimator", 1, 128, "", "lists: draws a tile from all other lights"),
+    REAL(P, influence, "influence", "Estimator", 0, 1e6, "m", "bvh: reach of a light of 1 cd; 0 = found for the scene"),
+    INT(P, uniform_every, "uniform-every", "Estimator", 1, 1024, "", "bvh: of so many draws one is from all lights"),
     INT(P, rays, "rays", "Estimator", 1, 1024, "", "reference: shadow rays a pixel and frame"),
     BOOL(P, final_ray, "final-ray", "Estimator", "shadow ray to the chosen light; off: light passes through walls"),
     CHOICE(P, path, "path", "Estimator", "auto|scalar|wide", "code that runs: scalar C, or wide for this processor"),

@@ -80,10 +80,12 @@ static noc_render_params variant(int i) {
     case 10: p.spatial = false; break;
     case 11: p.method = NOC_METHOD_RIS; break;
     case 12: break; /* restir from lists */
+    case 13: p.candidates = NOC_CANDIDATES_POWER; break;
+    case 14: p.candidates = NOC_CANDIDATES_BVH; break;
     }
     return p;
 }
-enum { VARIANTS = 13 };
+enum { VARIANTS = 15 };
 
 static void scalar_and_wide_agree(void **state) {
     (void)state;
@@ -191,6 +193,8 @@ static void wrong_arguments(void **state) {
         { "reject_normal", offsetof(noc_render_params, reject_normal), true },
         { "reject_depth", offsetof(noc_render_params, reject_depth), true },
         { "sky", offsetof(noc_render_params, sky), true },
+        { "influence", offsetof(noc_render_params, influence), true },
+        { "uniform_every", offsetof(noc_render_params, uniform_every) },
     };
     for (size_t i = 0; i < NOC_COUNT(fields); i++) {
         noc_render_params p = noc_render_default_params();

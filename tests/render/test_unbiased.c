@@ -99,13 +99,14 @@ typedef struct config {
     bool temporal, spatial, rays, reuse;
     int passes, neighbours;
     int list; /* > 0: lists of so many lights and as many draws from the rest */
+    noc_candidates picker; /* list = 0 */
 } config;
 
 static noc_render_params params_of(const config *c, uint32_t seed) {
     noc_render_params p = measure(W, H, c->method);
     p.seed = seed;
     p.draws = 8;
-    p.candidates = c->list ? NOC_CANDIDATES_LISTS : NOC_CANDIDATES_UNIFORM;
+    p.candidates = c->list ? NOC_CANDIDATES_LISTS : c->picker;
     p.list = c->list;
     p.tail = c->list ? c->list : 1;
     p.accumulate = false;
@@ -193,6 +194,8 @@ static double worst(const result *x, const result *reference, double *bias, doub
 static const config unbiased[] = {
     { "is", NOC_METHOD_IS },
     { "ris", NOC_METHOD_RIS, .reuse = true },
+    { "ris, power", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_POWER },
+    { "ris, bvh", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH },
     { "ris, lists of 6", NOC_METHOD_RIS, .reuse = true, .list = 6 },
     { "ris, lists of 12", NOC_METHOD_RIS, .list = 12 },
     { "pairwise + rays, lists of 4", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .spatial = true,

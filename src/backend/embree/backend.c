@@ -24,7 +24,6 @@ static void free_workers(embree_state *s) {
         free(w->reference.light);
         free(w->reference.w);
         free(w->packets);
-        free(w->lists.scores);
     }
     free(s->workers);
 }
@@ -34,7 +33,7 @@ static void destroy(void *state) {
     if (!s)
         return;
     noc_embree_release(s);
-    noc_clusters_destroy(s->clusters);
+    noc_embree_release_lights(s);
     free_buffers(&s->b);
     free_workers(s);
     noc_pool_destroy(s->pool);
@@ -137,38 +136,18 @@ static void run_tile(void *arg, size_t item, int index) {
         atomic_store(&run->cancelled, true);
 }
 
-/* What this frame's candidates are drawn from. */
-static noc_status prepare_lights(embree_state *s, const noc_render_params *p) {
-    if (p->candidates != NOC_CANDIDATES_LISTS || s->clusters)
-        return NOC_OK;
-    noc_clusters *c = noc_clusters_create(s->scene, s->log);
-    bool ok = c != NULL;
-    for (int i = 0; i < s->worker_count && ok; i++)
-        ok = (s->workers[i].lists.scores = noc_alloc_large(c->padded, sizeof(float))) != NULL ||
-             noc_error(s->log, NOC_ERR_MEMORY, "light lists: no memory for %zu clusters", c->padded) == NOC_OK;
-    if (ok) {
-        s->clusters = c;
-        return NOC_OK;
-    }
-    for (int i = 0; i < s->worker_count; i++) {
-        free(s->workers[i].lists.scores);
-        s->workers[i].lists.scores = NULL;
-    }
-    noc_clusters_destroy(c);
-    return NOC_ERR_MEMORY;
-}
-
 static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st, const noc_progress *progress,
                         double from, double to) {
     embree_state *s = state;
     s->kernels = noc_pick_kernels(frame->params->path);
-    noc_status status = prepare_lights(s, frame->params);
+    noc_status status = noc_embree_prepare_lights(s, frame->params);
     if (status != NOC_OK)
         return status;
     const noc_scene *scene = s->scene;
     stage_run run = { .s = s,
                       .ctx = { scene->lights.data, (uint32_t)scene->lights.len,
-                               scene->material_records.len ? scene->material_records.data : &s->no_material, frame, s->clusters, NULL },
+                               scene->material_records.len ? scene->material_records.data : &s->no_material, frame,
+                               s->clusters, NULL, s->alias, NULL, 0 },
                       .stage = st, .k = s->kernels, .progress = progress, .what = "rendering", .from = from, .to = to,
                       .tiles = (size_t)s->b.tiles_x * s->b.tiles_y };
     noc_pool_run(s->pool, run.tiles, run_tile, &run);
@@ -229,7 +208,7 @@ static void stats(void *state, noc_frame_stats *out) {
         w->rays_primary = w->rays_shadow = w->dropped = 0;
     }
     out->build_seconds = s->build_seconds;
-    out->memory_bytes = s->b.bytes + noc_embree_build_bytes(s) + (s->clusters ? s->clusters->bytes : 0);
+    out->memory_bytes = s->b.bytes + noc_embree_build_bytes(s) + noc_embree_light_bytes(s);
     out->path = s->kernels->name;
 }
 

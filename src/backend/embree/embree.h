@@ -24,6 +24,8 @@ typedef struct worker {
     neighbour *neighbours; /* MAX_NEIGHBOURS */
     reference_scratch reference;
     list_scratch lists;
+    pick_block picks;
+    noc_found found;
     packet *packets; /* kept while recording */
     size_t packet_count, packet_room;
     bool packets_lost; /* there was no memory for all of them */
@@ -52,7 +54,9 @@ typedef struct embree_state {
     _Atomic ssize_t build_bytes; /* held by Embree */
     noc_material_record no_material; /* stands in where the scene has none */
     frame_buffers b;
-    noc_clusters *clusters; /* made when first needed */
+    noc_clusters *clusters; /* these are made when first needed */
+    noc_alias *alias;
+    noc_influence *influence;
     worker *workers;
     int worker_count;
     bool recording;
@@ -87,6 +91,11 @@ uint32_t noc_embree_free(embree_state *s, worker *w, const rayblock *rays, uint3
 void noc_embree_primary(embree_state *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g);
 double noc_embree_replay(embree_state *s);
 size_t noc_embree_build_bytes(const embree_state *s);
+
+/* lights.c: what the candidates of these parameters are drawn from */
+noc_status noc_embree_prepare_lights(embree_state *s, const noc_render_params *p);
+void noc_embree_release_lights(embree_state *s);
+size_t noc_embree_light_bytes(const embree_state *s);
 
 /* passes.c: one pass over one tile */
 void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t);

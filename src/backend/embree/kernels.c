@@ -217,6 +217,7 @@ static void sky_background(const struct core_context *ctx, uint32_t lanes, int x
 }
 
 #include "backend/embree/lists.h"
+#include "backend/embree/picks.h"
 #include "backend/embree/reference.h"
 
 const kernels KERNELS = {
@@ -224,6 +225,8 @@ const kernels KERNELS = {
     .candidates = candidates,
     .list_build = list_build,
     .list_candidates = list_candidates,
+    .pick_power = pick_power,
+    .given = given,
     .project = project,
     .segments = segments,
     .offer = offer,

@@ -5,10 +5,13 @@
 #define NOC_EMBREE_KERNELS_H
 
 #include "backend/embree/blocks.h"
+#include "light/alias.h"
 #include "light/clusters.h"
+#include "light/influence.h"
 #include "render/backend.h"
 
-enum { MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32, LIST_ENTRIES = 128, LIST_EXAMPLES = 8, OPENED_CLUSTERS = 96, SCORE_BINS = 1024 };
+enum { MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32, LIST_ENTRIES = 128, LIST_EXAMPLES = 8, OPENED_CLUSTERS = 96, SCORE_BINS = 1024,
+       PICK_AHEAD = 8 };
 
 /* What the pixels of a tile evaluate: core/lists.h. */
 typedef struct light_list {
@@ -16,6 +19,12 @@ typedef struct light_list {
     uint32_t light[2 * LIST_ENTRIES];
     float weight[2 * LIST_ENTRIES];
 } light_list;
+
+/* Candidates that a picker has drawn for the pixels of a block: draw, lane. PICK_AHEAD more are there than draws. */
+typedef struct pick_block {
+    uint32_t (*light)[BLOCK];
+    float (*inverse)[BLOCK]; /* 1 / pmf; 0: nothing was picked */
+} pick_block;
 
 /* Uniform for a frame: what core's bridge functions read. */
 struct core_context {
@@ -25,6 +34,9 @@ struct core_context {
     const noc_frame *frame;
     const noc_clusters *clusters; /* lists only */
     const light_list *list;       /* of the tile */
+    const noc_alias *alias;       /* power only */
+    const pick_block *picks;      /* of the block; read from lane `lane` on */
+    int lane;
 };
 
 /* A reservoir of another pixel with that pixel's surface; lanes outside `lanes` were rejected and have m = w = 0. */
@@ -68,6 +80,10 @@ typedef struct kernels {
     void (*list_build)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks,
                        float choice, float rotation, list_scratch *scratch, light_list *out);
     void (*list_candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, rblock *out);
+    /* Light pickers: m candidates for every lane of a block; then a reservoir of such candidates. */
+    void (*pick_power)(const struct core_context *ctx, int x, int y, int m, pick_block *out);
+    void (*given)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
+                  const pick_block *picks, rblock *out);
     /* Where this frame's surfaces were in the previous picture, in pixels; returns the lanes that were in front of it. */
     uint32_t (*project)(const struct core_context *ctx, const gblock *g, float px[BLOCK], float py[BLOCK]);
     /* Segments from g to the samples. */

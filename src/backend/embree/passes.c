@@ -34,15 +34,45 @@ static void primary(stage_run *run, worker *w, int bx, int by) {
     noc_embree_primary(run->s, w, &rays, lanes_inside(b, bx, by), &b->g[f->gbuffer][block_at(b, bx, by)]);
 }
 
+static void pick_influence(stage_run *run, worker *w, const gblock *g, uint32_t lanes, int x, int y, int m) {
+    const noc_frame *f = run->ctx.frame;
+    const noc_influence *v = run->s->influence;
+    noc_query q = { { g->px, g->py, g->pz }, { g->nx, g->ny, g->nz }, lanes,
+                    f->params->influence > 0 ? (float)f->params->influence : v->scale };
+    uint32_t keys[BLOCK];
+    for (int l = 0; l < BLOCK; l++) {
+        uint32_t pixel = (uint32_t)(y + (l >> 2)) * (uint32_t)f->params->width + (uint32_t)(x + (l & 3));
+        keys[l] = rng_key(f->params->seed, pixel, f->index);
+    }
+    noc_influence_query(v, &q, &w->found);
+    noc_influence_draw(v, &q, &w->found, keys, m, f->params->uniform_every, w->picks.light, w->picks.inverse);
+}
+
+/* Draws a block's candidates from whatever these parameters name but the uniform draws and the lists. */
+static void pick_lights(stage_run *run, worker *w, const gblock *g, uint32_t lanes, int x, int y, int m) {
+    switch (run->ctx.frame->params->candidates) {
+    case NOC_CANDIDATES_POWER: run->k->pick_power(&run->ctx, x, y, m, &w->picks); break;
+    case NOC_CANDIDATES_BVH: pick_influence(run, w, g, lanes, x, y, m); break;
+    case NOC_CANDIDATES_UNIFORM:
+    case NOC_CANDIDATES_LISTS: break;
+    }
+}
+
 static void candidates(stage_run *run, worker *w, int bx, int by) {
     frame_buffers *b = &run->s->b;
     const noc_render_params *p = run->ctx.frame->params;
     size_t at = block_at(b, bx, by);
     const gblock *g = &b->g[run->ctx.frame->gbuffer][at];
-    int m = p->method == NOC_METHOD_IS ? 1 : p->draws;
-    (void)w;
-    run->k->candidates(&run->ctx, g, lanes_with_surface(g), bx * BLOCK_SIDE, by * BLOCK_SIDE, m,
-                       &b->r[run->stage->target][at]);
+    rblock *r = &b->r[run->stage->target][at];
+    uint32_t lanes = lanes_with_surface(g);
+    int m = p->method == NOC_METHOD_IS ? 1 : p->draws, x = bx * BLOCK_SIDE, y = by * BLOCK_SIDE;
+    bool given = p->method != NOC_METHOD_IS && p->candidates != NOC_CANDIDATES_UNIFORM;
+    if (given && lanes)
+        pick_lights(run, w, g, lanes, x, y, m);
+    if (given)
+        run->k->given(&run->ctx, g, lanes, x, y, m, &w->picks, r);
+    else
+        run->k->candidates(&run->ctx, g, lanes, x, y, m, r);
     b->visible[run->stage->target][at] = 0;
 }
 

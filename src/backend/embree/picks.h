@@ -1,0 +1,78 @@
+/* Candidates of the light pickers (core/alias.h, core/tree.h, light/influence.h), included by kernels.c: a picking step fills
+ * a pick_block, `given` evaluates it. */
+#ifndef NOC_EMBREE_PICKS_H
+#define NOC_EMBREE_PICKS_H
+
+#include "core/alias.h"
+#include "core/given.h"
+
+/* Words of memory, one a lane. */
+FN u32 word_gather(const void *base, u32 index) {
+#if defined(CORE_LANES) && CORE_LANES == 16 && defined(__AVX512F__)
+    return (u32)_mm512_i32gather_epi32((__m512i)index, base, 4);
+#elif defined(CORE_LANES) && CORE_LANES == 8 && defined(__AVX2__)
+    return (u32)_mm256_i32gather_epi32(base, (__m256i)index, 4);
+#else
+    uint32_t at[LANES];
+    ustore(at, index);
+    for (int i = 0; i < LANES; i++)
+        at[i] = ((const uint32_t *)base)[at[i]];
+    return uload(at);
+#endif
+}
+FN real real_gather(const void *base, u32 index) {
+    u32 bits = word_gather(base, index);
+    real r;
+    memcpy(&r, &bits, sizeof(r));
+    return r;
+}
+
+FN alias_slot alias_load(CTX u32 i) {
+    u32 at = shl(i, 2);
+    alias_slot s;
+    s.keep = real_gather(ctx->alias->slots, at);
+    s.other = word_gather(ctx->alias->slots, at + KU(1u));
+    s.inverse = real_gather(ctx->alias->slots, at + KU(2u));
+    s.inverse_other = real_gather(ctx->alias->slots, at + KU(3u));
+    return s;
+}
+
+/* Candidate i, while the light of a later one is asked for. Entries up to PICK_AHEAD past the last are there to be read. */
+FN pick pick_load(CTX int i) {
+    light_prefetch((const float *)ctx->lights, uload(ctx->picks->light[i + PICK_AHEAD] + ctx->lane));
+    pick p;
+    p.light = uload(ctx->picks->light[i] + ctx->lane);
+    p.inverse = rload(ctx->picks->inverse[i] + ctx->lane);
+    return p;
+}
+
+static void pick_power(const struct core_context *ctx, int x, int y, int m, pick_block *out) {
+    for (int l = 0; l < BLOCK; l += LANES) {
+        u32 key = key_of(ctx, x, y, l);
+        for (int i = 0; i < m; i++) {
+            pick p = { KU(0u), K(0.0f) };
+            if (ctx->alias->count)
+                p = alias_draw(ctx, KU(ctx->alias->count), rng_bits(key, KU(DIM_CANDIDATE + 3u * U32(i))),
+                               rng(key, KU(DIM_PICK + U32(i))));
+            ustore(out->light[i] + l, p.light);
+            rstore(out->inverse[i] + l, p.inverse);
+        }
+    }
+}
+
+static void given(const struct core_context *frame, const gblock *g, uint32_t lanes, int x, int y, int m,
+                  const pick_block *picks, rblock *out) {
+    struct core_context c = *frame;
+    const struct core_context *ctx = &c;
+    c.picks = picks;
+    for (int l = 0; l < BLOCK; l += LANES) {
+        mask on = mload(lanes, l);
+        resv r = resv_empty();
+        c.lane = l;
+        if (ctx->light_count && ANY(on))
+            r = resv_sel(on, ris_given(ctx, surf_load(ctx, g, l, ctx->frame->camera.eye), key_of(ctx, x, y, l), m), r);
+        resv_store(out, l, r);
+    }
+}
+
+#endif

@@ -1,0 +1,33 @@
+/* light/bound: what structures over lights need of each: where it is, which way it faces, how strong it is; and an order in
+ * which lights that lie close together follow each other. */
+#ifndef NOC_LIGHT_BOUND_H
+#define NOC_LIGHT_BOUND_H
+
+#include "scene/scene.h"
+
+typedef struct noc_light_bound {
+    float p[3], radius; /* sphere around it, shape included */
+    float n[3];         /* way it faces; 0: every way */
+    float intensity;    /* greatest luminous intensity, cd */
+} noc_light_bound;
+
+typedef struct noc_light_key {
+    uint64_t key;
+    uint32_t id;
+} noc_light_key;
+
+noc_light_bound noc_bound_light(const noc_light_record *light);
+
+/* Greatest luminous intensity of a light, cd: radiance times projected area. */
+float noc_light_intensity(const noc_light_record *light);
+
+/* Luminous flux of a light over all directions that it emits to, lm. */
+double noc_light_flux(const noc_light_record *light);
+
+/* 20 bits to every third: three of them make a Morton code. */
+uint64_t noc_spread_bits(uint64_t x);
+
+/* By key, stable, least significant byte first. scratch has n entries. */
+void noc_sort_keys(noc_light_key *keys, noc_light_key *scratch, size_t n);
+
+#endif
