@@ -49,7 +49,8 @@ asan: deps-check
 
 # PREFIX may differ from that of an earlier `make build`; nothing is built but what is installed.
 install: build
-	@meson setup --reconfigure build --prefix $(abspath $(PREFIX)) >build/setup.log || { cat build/setup.log; exit 1; }
+	@meson configure build --prefix $(abspath $(PREFIX))
+	@$(NINJA) -C build build.ninja >build/setup.log || { cat build/setup.log; exit 1; }
 	@$(NINJA) -C build nocturne
 	@meson install -C build --no-rebuild --quiet
 

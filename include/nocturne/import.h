@@ -61,6 +61,7 @@ typedef struct noc_report_file {
     uint64_t bytes_read;       /* after decompression */
     double seconds;
     bool has_extent;
+    bool degrees;              /* the extent's x and y are longitude and latitude */
     double extent_min[3], extent_max[3]; /* in the file's CRS, easting northing height (x y z) order */
     size_t objects;            /* top-level features */
     size_t buildings;

@@ -22,6 +22,24 @@ int cli_parse_camera(render_job *job) {
     return CLI_OK;
 }
 
+#define FAR_AWAY 20 /* extents of the scene */
+
+static void warn_if_far(render_job *job) {
+    const noc_scene_info *scene = &job->scene_info;
+    double extent = 0, distance = 0;
+    for (int k = 0; k < 3; k++) {
+        extent = hypot(extent, scene->bounds_max[k] - scene->bounds_min[k]);
+        distance = hypot(distance, job->camera.eye[k] - (scene->bounds_min[k] + scene->bounds_max[k]) / 2);
+    }
+    if (job->args->common.quiet || !(distance > FAR_AWAY * extent))
+        return;
+    job->far_away = true;
+    const char *hint = job->args->camera_crs ? "are eye and --camera-crs right?"
+                       : scene->crs && *scene->crs ? "are these coordinates of the scene's CRS? then add --camera-crs scene"
+                                                   : "eye is in metres from the scene's origin";
+    cli_error("warning: the camera is %.0f km away from a scene of %.1f km: %s", distance / 1000, extent / 1000, hint);
+}
+
 noc_status cli_place_camera(render_job *job) {
     const render_args *args = job->args;
     job->camera = noc_camera_default();
@@ -30,13 +48,13 @@ noc_status cli_place_camera(render_job *job) {
                                              (double)args->render.width / args->render.height, &job->camera);
         if (status)
             return status;
-        if (cli_given(&args->common, "fov"))
+        if (args->fov > 0)
             job->camera.fov_deg = args->fov;
         return NOC_OK;
     }
     memcpy(job->camera.eye, job->eye, sizeof(job->eye));
     memcpy(job->camera.target, job->target, sizeof(job->target));
-    job->camera.fov_deg = args->fov;
+    job->camera.fov_deg = args->fov > 0 ? args->fov : 50;
     if (args->camera_crs) {
         const char *crs = strcmp(args->camera_crs, "scene") ? args->camera_crs : NULL;
         noc_status status = noc_scene_to_local(job->scene, crs, job->camera.eye);
@@ -44,6 +62,7 @@ noc_status cli_place_camera(render_job *job) {
         if (status)
             return status;
     }
+    warn_if_far(job);
     /* Looking straight down or up, "up" is north. */
     double dx = job->camera.target[0] - job->camera.eye[0], dy = job->camera.target[1] - job->camera.eye[1],
            dz = job->camera.target[2] - job->camera.eye[2];

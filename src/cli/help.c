@@ -22,13 +22,22 @@ static void spell(char *out, size_t size, const noc_option *o, const void *defau
     snprintf(out, size, "%s--%s%s%s", dash, on ? "[no-]" : "", o->name, placeholder);
 }
 
+/* A default out of the option's range stands for its absence. */
+static bool is_absent(const noc_option *o, const void *defaults) {
+    double value;
+    if (o->kind != NOC_OPTION_REAL)
+        return false;
+    memcpy(&value, (const char *)defaults + o->offset, sizeof(value));
+    return !(value >= o->min && value <= o->max);
+}
+
 /* "[10 px]", "[on]"; empty where the option is simply absent by default. */
 static void spell_default(char *out, size_t size, const noc_option *o, const void *defaults) {
     char value[64];
     noc_option_get(o, defaults, value, sizeof(value));
     if (o->kind == NOC_OPTION_BOOL)
         snprintf(out, size, "%s", *((const char *)defaults + o->offset) ? "[on]" : "");
-    else if (!*value)
+    else if (!*value || is_absent(o, defaults))
         *out = 0;
     else
         snprintf(out, size, "[%s%s%s]", value, o->kind != NOC_OPTION_TEXT && *o->unit ? " " : "",
@@ -122,6 +131,8 @@ static void markdown_row(FILE *out, const noc_option *o, const void *defaults, i
     char left[64], value[64], range[96] = "";
     spell(left, sizeof(left), o, defaults);
     noc_option_get(o, defaults, value, sizeof(value));
+    if (is_absent(o, defaults))
+        *value = 0;
     if (o->kind == NOC_OPTION_INT || o->kind == NOC_OPTION_UINT || o->kind == NOC_OPTION_REAL) {
         snprintf(range, sizeof(range), "%.10g to %.10g%s%s", o->min, o->max, *o->unit ? " " : "", o->unit);
     } else if (o->kind == NOC_OPTION_CHOICE) {

@@ -62,7 +62,7 @@ static void print_source(const noc_report_file *file) {
     printf("\n  %-11s %s", "CRS", known ? cli_clean(text, sizeof(text), file->crs) : "none");
     if (file->crs_given && *file->crs_given)
         printf(", given as \"%s\"", cli_clean(text, sizeof(text), file->crs_given));
-    else if (!known)
+    else if (!known && file->has_extent)
         printf(" (to put it in place: --crs EPSG:n)");
     putchar('\n');
 }
@@ -71,9 +71,7 @@ static void print_extent(const noc_report_file *file) {
     const double *lo = file->extent_min, *hi = file->extent_max;
     if (!file->has_extent)
         return;
-    /* Only a guess at the unit, so only the number of decimals hangs on it: degrees need more. */
-    bool small = hi[0] <= 360 && lo[0] >= -360 && hi[1] <= 90 && lo[1] >= -90;
-    int decimals = small ? 6 : 2;
+    int decimals = file->degrees ? 6 : 2;
     printf("  %-11s x %.*f to %.*f, y %.*f to %.*f", "extent", decimals, lo[0], decimals, hi[0], decimals, lo[1], decimals, hi[1]);
     if (lo[2] != 0 || hi[2] != 0)
         printf(", z %.2f to %.2f", lo[2], hi[2]);

@@ -17,7 +17,7 @@ static const noc_option own_options[] = {
     TEXT("eye", "Camera", eye, "X,Y,Z", "place of the camera, metres in the scene's local frame, z up"),
     TEXT("target", "Camera", target, "X,Y,Z", "what it looks at"),
     TEXT("camera-crs", "Camera", camera_crs, "CRS", "eye and target are easting,northing,height in this CRS; \"scene\": the scene's"),
-    { "fov", "Camera", NOC_OPTION_REAL, offsetof(A, fov), 1, 170, NULL, "degrees", "vertical field of view" },
+    { "fov", "Camera", NOC_OPTION_REAL, offsetof(A, fov), 1, 170, NULL, "degrees", "vertical field of view; else that of the view, with --eye 50" },
     TEXT("size", "Picture", size, "WxH", "width and height at once, such as 1920x1080"),
     TEXT("exposure", "Display", exposure, "EV", "\"auto\", or EV100: one more halves the brightness"),
     { NULL },
@@ -27,7 +27,7 @@ static const noc_option *options(void) { return own_options; }
 static int run(void *arguments);
 
 static const render_args defaults = {
-    .frames = 32, .view = NOC_VIEW_STREET, .fov = 50, .exposure = "auto",
+    .frames = 32, .view = NOC_VIEW_STREET, .exposure = "auto",
     .render = noc_render_default_params(), .display = noc_display_default_params(),
     .import = noc_import_default_params(), .city = noc_city_default_params(),
 };
@@ -195,6 +195,7 @@ static int work(render_job *job) {
     }
     if (cli_write_picture(job))
         return CLI_FAILURE;
+    cli_warn_of_picture(job);
     /* After the picture: the floor is measured on one more frame. */
     if (args->stats && !ending &&
         noc_renderer_trace_floor(job->renderer, &job->camera, &args->render, &job->floor_seconds))

@@ -13,7 +13,7 @@ typedef struct render_args {
     bool stats;
     int view;                /* noc_view */
     const char *eye, *target, *camera_crs;
-    double fov;
+    double fov;              /* 0: not given */
     const char *size, *exposure;
     noc_render_params render;
     noc_display_params display;
@@ -30,6 +30,7 @@ typedef struct render_job {
     noc_renderer *renderer;
     noc_image *image;
     noc_camera camera;
+    bool far_away;            /* the camera is, and it was said */
     noc_scene_info scene_info;
     noc_report *report;       /* on the inputs; NULL without any */
     noc_frame_stats last;     /* of the last complete frame */
@@ -46,6 +47,7 @@ noc_status cli_place_camera(render_job *job); /* once the scene is there */
 /* report.c */
 void cli_print_summary(const render_job *job);
 void cli_print_stats(const render_job *job);
+void cli_warn_of_picture(const render_job *job); /* once it is written */
 noc_status cli_write_picture(render_job *job); /* with all of its metadata */
 
 #endif

@@ -47,9 +47,13 @@ static bool is_exr(const char *path) {
     return n >= 4 && (path[n - 1] | 32) == 'r';
 }
 
+static double auto_ev100(const render_job *job) {
+    return noc_image_auto_ev100(job->image) - job->args->display.compensation;
+}
+
 static double ev100(const render_job *job) {
     const noc_display_params *display = &job->args->display;
-    return display->auto_exposure ? noc_image_auto_ev100(job->image) - display->compensation : display->ev100;
+    return display->auto_exposure ? auto_ev100(job) : display->ev100;
 }
 
 noc_status cli_write_picture(render_job *job) {
@@ -76,6 +80,28 @@ noc_status cli_write_picture(render_job *job) {
         free(meta.values[i]);
     }
     return status;
+}
+
+static bool is_black(const noc_image *image) {
+    size_t n = (size_t)image->width * (size_t)image->height * 3;
+    for (size_t i = 0; i < n; i++)
+        if (image->rgb[i] > 0)
+            return false;
+    return true;
+}
+
+/* Pictures that are no failure of the program, but hardly what was wanted. */
+void cli_warn_of_picture(const render_job *job) {
+    const noc_render_params *p = &job->args->render;
+    if (job->args->common.quiet || job->far_away || !job->scene_info.lights)
+        return;
+    bool black = is_black(job->image);
+    if (p->final_ray && !job->last.rays_shadow && black)
+        cli_error("warning: the picture is black: the camera sees nothing that a lamp could light");
+    else if (p->final_ray && !job->last.rays_shadow)
+        cli_error("warning: the camera sees nothing that a lamp could light: only the sky, or lamps themselves");
+    else if (black)
+        cli_error("warning: the picture is black, no light reaches what the camera sees: is it inside a building?");
 }
 
 static uint64_t peak_memory(void) {
@@ -147,7 +173,8 @@ void cli_print_summary(const render_job *job) {
     printf("%s\n", cli_clean(path, sizeof(path), args->output));
     printf("  picture   %d x %d, %d frame%s of %s, %s%.2f EV100\n", args->render.width, args->render.height, job->frames,
            job->frames == 1 ? "" : "s", choice_name("method", &args->render, name, sizeof(name)),
-           is_exr(args->output) ? "linear cd/m2, automatic exposure would be " : "exposure ", ev100(job));
+           is_exr(args->output) ? "linear cd/m2, automatic exposure would be " : "exposure ",
+           is_exr(args->output) ? auto_ev100(job) : ev100(job));
     printf("  scene     %s triangles, %s lights", cli_count(a, scene->triangles), cli_count(b, scene->lights));
     if (scene->lights_inferred)
         printf(" (%s placed by a rule, not found in data)", cli_count(c, scene->lights_inferred));

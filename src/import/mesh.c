@@ -260,7 +260,7 @@ static noc_status add_mesh(const mesh_target *to, const struct aiMesh *m, int ma
             const struct aiVector3D *v = &m->mVertices[i];
             double x = v->x + to->offset[0], y = v->y + to->offset[1], z = v->z + to->offset[2];
             xyz[3 * i] = x;
-            xyz[3 * i + 1] = to->z_up ? y : -z;
+            xyz[3 * i + 1] = to->z_up ? y : 0 - z; /* no -0 */
             xyz[3 * i + 2] = to->z_up ? z : y;
         }
         status = to->place->points(to->place->ctx, xyz, m->mNumVertices);

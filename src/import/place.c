@@ -203,6 +203,7 @@ static noc_status prepare(importer *im, source_crs *s, const double point[3]) {
     noc_report_file *file = &im->inputs[im->current].file;
     if (!file->crs) {
         file->crs = s->crs ? arena_strdup(&im->report->arena, geo_crs_name(s->crs)) : "";
+        file->degrees = s->crs && geo_crs_is_geographic(s->crs);
         file->crs_given = arena_strdup(&im->report->arena, s->spelling);
     }
     return NOC_OK;

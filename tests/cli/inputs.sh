@@ -90,4 +90,24 @@ run render "$gml" $view --camera-crs EPSG:nonsense --eye 0,0,0 --target 1,1,1 -o
 test $status = 1 && test ! -e c.png; result $? "a camera in no known CRS"
 run render builtin:city --city-size 150 $view --camera-crs EPSG:25832 --eye 0,0,0 --target 1,1,1 -o c.png
 test $status = 1 && test ! -e c.png; result $? "a camera in a CRS where the scene has none"
+
+# Pictures that succeed and show nothing: said, with the likely cause.
+expect "a camera in map coordinates" 0 'km away from a scene .*--camera-crs scene' \
+    render "$gml" $view --eye 678030,5402980,412 --target 678005,5403004,403 -o d.png
+expect "a camera that looks at the sky" 0 'sees nothing that a lamp could light' \
+    render "$gml" $view --eye 20,-20,430 --target 20,-20,1000 -o d.png
+expect "a camera inside a building" 0 'inside a building' \
+    render "$gml" $view --camera-crs scene --eye 678005,5403004,402 --target 678006,5403004,402 -o d.png
+run render "$gml" $view --camera-crs EPSG:25832 --eye 678030,5402980,412 --target 678005,5403004,403 -o d.png
+test "$(grep -c 'warning' err)" = 1 && grep -q 'placed by a rule' err; result $? "and a good one brings no such warning"
+run render "$gml" $view --camera-crs EPSG:25832 --eye 678030,5402980,412 --target 678005,5403004,403 --exposure 17 -o d.exr
+test $status = 0 && grep -q 'automatic exposure would be' out && ! grep -q '17.00' out
+result $? "the automatic exposure of an EXR is not the one given"
+
+# A mesh: metres, in the CRS that --crs says; the file of which nothing is read is asked for none.
+printf 'v 0 0 0\nv 1 0 0\nv 0 0 -1\nf 1 2 3\n' >ground.obj
+run info ground.obj
+grep -q 'CRS  *none (to put it in place' out && grep -q 'x 0.00 to 1.00, y 0.00 to 1.00' out; result $? "info of an OBJ"
+run info --crs EPSG:32618 ground.obj
+grep -q 'CRS  *EPSG:32618' out && grep -q 'x 0.00 to 1.00,' out; result $? "info of an OBJ with --crs"
 finish

@@ -80,6 +80,8 @@ err
 out"
 result $? "nothing was written" "$(ls | tr '\n' ' ')"
 
+run help render
+grep -q -- '--fov X .*that of the view' out && ! grep -A1 -- '--fov X' out | grep -q '\['; result $? "--fov has no default of its own"
 run --version
 test $status = 0 && grep -Eq '^nocturne [0-9]+\.[0-9]+\.[0-9]+ \(embree [0-9]+\.[0-9.]+, ' out; result $? "--version"
 for h in help --help -h; do
