@@ -63,7 +63,7 @@ static const noc_option display_options[] = {
 
 #define P noc_import_params
 static const noc_option import_options[] = {
-    TEXT(P, crs, "crs", "City", "CRS", "CRS of inputs that name none (EPSG:n, WKT, PROJ)"),
+    TEXT(P, crs, "crs", "City", "CRS", "CRS of inputs that name none, such as OBJ (EPSG:n, WKT, PROJ)"),
     TEXT(P, scene_crs, "scene-crs", "City", "CRS", "CRS of the scene; else the first input's, or UTM"),
     INT(P, lod, "lod", "City", 0, 4, "", "highest CityGML level of detail that is taken"),
     BOOL(P, infer_lamps, "infer-lamps", "City", "place lamps by a rule where no input holds any"),
