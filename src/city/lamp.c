@@ -291,6 +291,10 @@ int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params
         geo_issue(issues, false, "lamp without a place", lamp->id);
         return 0;
     }
+    if (fabs(lamp->xyz[0]) > FARTHEST || fabs(lamp->xyz[1]) > FARTHEST) {
+        geo_issue(issues, false, "lamp more than 9000 km from the scene's origin", lamp->id);
+        return 0;
+    }
     placing p = { 0 };
     if (!place(scene, lamp, params, &p, issues))
         return 0;
