@@ -117,13 +117,13 @@ void display_init(display_map *d, noc_tonemap tonemap, double ev100) {
     srgb8_table_init(&d->srgb);
 }
 
-/* Exposed value at which a quarter of the chroma has gone. */
-#define DESATURATION 3.0
+/* Exposed value at which a quarter of the chroma has gone: warm windows and pools stay warm, lamps themselves turn white. */
+#define DESATURATION 6.0
 
 /* The curve is applied to the largest component, and the others keep their ratio to it, so hue holds (a curve a channel turns
  * sodium lamps lemon). Film and eyes see a strong coloured light as white: the colour is mixed with white of the same peak by
- * (p / (p + DESATURATION))^2, nothing at mid-grey, a quarter at p = 3, and nearly all of it far above. Both factors rise
- * with exposure, so every channel does. The linear tone map shows what is there, clipped. */
+ * (p / (p + DESATURATION))^2, nothing at mid-grey, a quarter at p = DESATURATION, and nearly all of it far above. Both
+ * factors rise with exposure, so every channel does. The linear tone map shows what is there, clipped. */
 void display_pixel(const display_map *d, const float rgb[3], uint8_t out[3]) {
     double v[3], peak = 0;
     bool finite = image_finite(rgb);

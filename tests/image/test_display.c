@@ -105,6 +105,21 @@ static void hue_holds(void **state) {
     }
 }
 
+/* A window of 3000 K (Planck's colour in Rec.709, about 1 : 0.53 : 0.19) that shines four stops above white is bright and still
+ * clearly warm; a thousand times white it is as good as white. */
+static void warm_stays_warm(void **state) {
+    (void)state;
+    const float warm[3] = { 1, 0.53f, 0.19f };
+    display_map d;
+    uint8_t window[3], lamp[3];
+    display_init(&d, NOC_TONEMAP_FILMIC, -log2(1.2 * 16));
+    display_pixel(&d, warm, window);
+    assert_true(window[0] > 250 && window[0] - window[2] > 45);
+    display_init(&d, NOC_TONEMAP_FILMIC, -log2(1.2 * 1000));
+    display_pixel(&d, warm, lamp);
+    assert_true(lamp[2] > 250);
+}
+
 static void linear_is_exact(void **state) {
     (void)state;
     noc_image *a = noc_image_create(2, 1, NULL);
@@ -270,6 +285,7 @@ int main(void) {
         cmocka_unit_test(curves_rise_within_range),
         cmocka_unit_test(colours_rise_to_white),
         cmocka_unit_test(hue_holds),
+        cmocka_unit_test(warm_stays_warm),
         cmocka_unit_test(linear_is_exact),
         cmocka_unit_test(exposure_scales_with_the_light),
         cmocka_unit_test(exposure_meters_what_is_lit),
