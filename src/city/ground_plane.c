@@ -27,7 +27,7 @@ typedef struct field {
 
 static bool is_base(noc_class cls) {
     return cls == NOC_CLASS_WALL || cls == NOC_CLASS_GROUND || cls == NOC_CLASS_ROAD || cls == NOC_CLASS_SIDEWALK ||
-           cls == NOC_CLASS_GREEN || cls == NOC_CLASS_DOOR || cls == NOC_CLASS_TERRAIN;
+           cls == NOC_CLASS_GREEN || cls == NOC_CLASS_WATER || cls == NOC_CLASS_DOOR || cls == NOC_CLASS_TERRAIN;
 }
 
 static const float *corner(const noc_scene *scene, size_t t, int i) {
@@ -38,13 +38,14 @@ static noc_class class_of(const noc_scene *scene, size_t t) {
     return scene->materials.data[scene->triangle_material.data[t]].cls;
 }
 
+/* What the ground must not cover. */
 static bool is_street(noc_class cls) {
     return is_base(cls) && cls != NOC_CLASS_WALL && cls != NOC_CLASS_GROUND && cls != NOC_CLASS_DOOR;
 }
 
 /* Without buildings and streets, what else stands on the ground. */
 static bool is_thing(noc_class cls) {
-    return cls == NOC_CLASS_FURNITURE || cls == NOC_CLASS_TREE || cls == NOC_CLASS_WATER || cls == NOC_CLASS_VEHICLE;
+    return cls == NOC_CLASS_FURNITURE || cls == NOC_CLASS_TREE || cls == NOC_CLASS_VEHICLE;
 }
 
 static bool has_bases(const noc_scene *scene) {

@@ -27,7 +27,7 @@ void city_add_surroundings(noc_scene *scene, const double *rim, size_t count, in
         least = NOC_MIN(least, (hi[k] - lo[k]) / 2);
     }
     /* rings are the rim, larger; heights go over into their mean */
-    double growth = pow(NOC_MAX(HORIZON / NOC_MAX(least, 1), 3), 1.0 / RINGS);
+    double growth = pow(NOC_CLAMP(HORIZON / NOC_MAX(least, 1), 10, 1e4), 1.0 / RINGS);
     double *xyz = noc_alloc((RINGS + 1) * count * 3 * sizeof(*xyz));
     uint32_t *indices = noc_alloc(RINGS * count * 6 * sizeof(*indices));
     size_t t = 0;

@@ -41,7 +41,15 @@ static bool needs_ground(const importer *im, const extent *e) {
     for (size_t t = 0; t < im->scene->triangle_material.len; t++)
         if (im->scene->materials.data[im->scene->triangle_material.data[t]].cls == NOC_CLASS_TERRAIN)
             return false;
-    return im->open_area < GROUND_SHARE * (e->hi[0] - e->lo[0]) * (e->hi[1] - e->lo[1]);
+    extent all = *e; /* with the lamps that stand beside it */
+    for (size_t i = 0; i < im->lamps.len; i++) {
+        const double *p = im->lamps.data[i].lamp.xyz;
+        for (int k = 0; k < 2 && distance_outside(e, p) <= OUTSIDE; k++) {
+            all.lo[k] = NOC_MIN(all.lo[k], p[k]);
+            all.hi[k] = NOC_MAX(all.hi[k], p[k]);
+        }
+    }
+    return im->open_area < GROUND_SHARE * (all.hi[0] - all.lo[0]) * (all.hi[1] - all.lo[1]);
 }
 
 /* Under the city and the lamps that belong to it. Heights of lamps count only where nothing else has any: they often come

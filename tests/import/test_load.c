@@ -435,6 +435,19 @@ static void test_lamps(void **state) {
     assert_int_equal(r.warnings, 1);
     assert_non_null(strstr(r.last_warning, "all 1 lamps lie outside"));
     finish(&r);
+    /* a piece of street and lamps around it: there is a ground under them, and it does not cover the street */
+    LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:25832\nobject 2 r -1\npolygon 9 678000 5404000 370 678030 5404000 370 "
+                                 "678030 5404020 370 678000 5404020 370\nend\n"),
+         file("l", "FAKE lamps\ncrs EPSG:25832\nlamp 678015 5404010\nlamp 678100 5404080\nlamp 677900 5404010\n"));
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.info.lights, 3);
+    for (size_t i = 0; i < 3; i++) {
+        double height;
+        assert_true(noc_scene_ground(r.scene, r.scene->lights.data[i].p[0], r.scene->lights.data[i].p[1], &height));
+        assert_close(height + r.scene->origin[2], i ? 370 - .02 : 370, 1e-3);
+        assert_close(r.scene->lights.data[i].p[2] - height, 6, .03);
+    }
+    finish(&r);
     /* lamps alone make a scene too: nothing they could be outside of */
     LOAD(&r, DEFAULTS, file("l", "FAKE lamps\ncrs EPSG:4326\nlamp 52.5 13.4\nlamp 52.6 13.4\n"));
     assert_int_equal(r.status, NOC_OK);
