@@ -6,6 +6,8 @@
 
 #include <math.h>
 
+#define FARTHEST 9e6 /* m; a scene ends at 1e7 */
+
 /* What a source means where its lumens and its colour are not tagged.
  *
  * lumens_per_watt: of the luminaire. For discharge and thermal lamps, the middle of the lamp's range in the IES Lighting
