@@ -3,8 +3,9 @@
  *   bench_error [SCENE [VIEW [WIDTH HEIGHT [REFERENCE_FRAMES [CACHE]]]]]     default: city street 480 270 64 build
  *
  * RMSE-8 and relMSE clamped to 10 cd/m2, and unclamped bias (docs/estimator.md, "Error figures") on pixels that see no
- * emitter, after 1, 2, 4, 8, 16 and 32 frames: accumulated, and of that frame alone. The reference is kept as EXR in the CACHE folder under
- * a name made of everything that it depends on: scene content, camera, size and frames. */
+ * emitter, after 1, 2, 4, 8, 16 and 32 frames: accumulated, and of that frame alone. Candidates are uniform where the name
+ * does not say lists. The reference is kept as EXR in the CACHE folder under a name made of everything that it depends on:
+ * scene content, camera, size and frames. */
 #include "bench_scene.h"
 
 #include "render/backend.h"
@@ -19,6 +20,7 @@ typedef struct variant {
     noc_method method;
     noc_bias bias;
     bool rays, no_temporal;
+    noc_candidates candidates;
 } variant;
 
 static const variant variants[] = {
@@ -30,6 +32,9 @@ static const variant variants[] = {
     { "restir pairwise", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE },
     { "restir pairwise + rays", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true },
     { "spatial pairwise + rays", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true },
+    { "ris, lists", NOC_METHOD_RIS, .candidates = NOC_CANDIDATES_LISTS },
+    { "pairwise + rays, lists", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, .candidates = NOC_CANDIDATES_LISTS },
+    { "spatial p. + rays, lists", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, NOC_CANDIDATES_LISTS },
 };
 
 static uint64_t mix(uint64_t h, const void *data, size_t size) {
@@ -63,6 +68,7 @@ static noc_render_params params_of(const variant *v, int width, int height) {
         p.method = v->method;
         p.bias = v->bias;
         p.bias_rays = v->rays;
+        p.candidates = v->candidates;
         p.temporal = !v->no_temporal;
     }
     return p;

@@ -2,7 +2,7 @@
  *
  *   bench_frame [SCENE [VIEW [WIDTH HEIGHT [FRAMES]]]]     default: city street 1920 1080 4
  *
- * M = 32, k = 5, no sky. Wall seconds are the median over the frames after the first (which has no history); pass times are
+ * M = 32, k = 5, no sky, uniform candidates unless the name says lists (32 + 32). Wall seconds are the median over the frames after the first (which has no history); pass times are
  * thread seconds. The floor is traced after each frame from the very rays of that frame. */
 #include "bench_scene.h"
 
@@ -12,6 +12,7 @@ typedef struct variant {
     noc_bias bias;
     bool rays, spatial, temporal;
     noc_path path;
+    noc_candidates candidates;
 } variant;
 
 static const variant variants[] = {
@@ -21,6 +22,8 @@ static const variant variants[] = {
     { "restir pairwise", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, false, true, true },
     { "restir mis + rays", NOC_METHOD_RESTIR, NOC_BIAS_MIS, true, true, true },
     { "restir pairwise + rays", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, true },
+    { "ris, lists", NOC_METHOD_RIS, .candidates = NOC_CANDIDATES_LISTS },
+    { "pairwise + rays, lists", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, true, .candidates = NOC_CANDIDATES_LISTS },
     { "restir pairwise, scalar", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, false, true, true, NOC_PATH_SCALAR },
 };
 
@@ -44,6 +47,7 @@ static bool measure(const noc_scene *scene, const noc_camera *camera, const vari
     p.spatial = v->spatial;
     p.temporal = v->temporal;
     p.path = v->path;
+    p.candidates = v->candidates;
     p.sky = 0;
     noc_renderer *r = noc_renderer_create(scene, NULL, NULL);
     double wall[64], floor[64], pass[NOC_PASS_COUNT] = { 0 };
