@@ -12,7 +12,8 @@ extern "C" {
 typedef enum noc_method { NOC_METHOD_REFERENCE, NOC_METHOD_IS, NOC_METHOD_RIS, NOC_METHOD_RESTIR } noc_method;
 typedef enum noc_bias { NOC_BIAS_BIASED, NOC_BIAS_MIS, NOC_BIAS_PAIRWISE } noc_bias;
 /* Where light candidates come from: docs/estimator.md, "Candidates". */
-typedef enum noc_candidates { NOC_CANDIDATES_UNIFORM, NOC_CANDIDATES_LISTS, NOC_CANDIDATES_POWER, NOC_CANDIDATES_BVH } noc_candidates;
+typedef enum noc_candidates { NOC_CANDIDATES_UNIFORM, NOC_CANDIDATES_LISTS, NOC_CANDIDATES_POWER, NOC_CANDIDATES_BVH,
+                             NOC_CANDIDATES_TREE } noc_candidates;
 typedef enum noc_path { NOC_PATH_AUTO, NOC_PATH_SCALAR, NOC_PATH_WIDE } noc_path;
 
 typedef struct noc_render_params {

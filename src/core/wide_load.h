@@ -14,7 +14,7 @@
 
 #if defined(CORE_LANES)
 
-/* Four fields of all lanes. */
+/* Four fields of all lanes, of records that are `stride` floats apart (a multiple of 4). */
 typedef struct { real f[4]; } wide_quad;
 
 #if CORE_LANES == 16 && defined(__AVX512F__)
@@ -25,11 +25,11 @@ typedef __m512 wide_row;
 #define wide_unpackhi _mm512_unpackhi_ps
 #define wide_shuffle _mm512_shuffle_ps
 /* Part i of the row: the quarter of the record of lane 4 i + j. */
-FN wide_row wide_row_load(const float *quarter, const uint32_t at[16], int j) {
-    __m512 r = _mm512_castps128_ps512(_mm_load_ps(quarter + (size_t)at[j] * LIGHT_RECORD_FLOATS));
-    r = _mm512_insertf32x4(r, _mm_load_ps(quarter + (size_t)at[4 + j] * LIGHT_RECORD_FLOATS), 1);
-    r = _mm512_insertf32x4(r, _mm_load_ps(quarter + (size_t)at[8 + j] * LIGHT_RECORD_FLOATS), 2);
-    return _mm512_insertf32x4(r, _mm_load_ps(quarter + (size_t)at[12 + j] * LIGHT_RECORD_FLOATS), 3);
+FN wide_row wide_row_load(const float *quarter, size_t stride, const uint32_t at[16], int j) {
+    __m512 r = _mm512_castps128_ps512(_mm_load_ps(quarter + (size_t)at[j] * stride));
+    r = _mm512_insertf32x4(r, _mm_load_ps(quarter + (size_t)at[4 + j] * stride), 1);
+    r = _mm512_insertf32x4(r, _mm_load_ps(quarter + (size_t)at[8 + j] * stride), 2);
+    return _mm512_insertf32x4(r, _mm_load_ps(quarter + (size_t)at[12 + j] * stride), 3);
 }
 
 #elif CORE_LANES == 8 && defined(__AVX2__)
@@ -39,9 +39,9 @@ typedef __m256 wide_row;
 #define wide_unpacklo _mm256_unpacklo_ps
 #define wide_unpackhi _mm256_unpackhi_ps
 #define wide_shuffle _mm256_shuffle_ps
-FN wide_row wide_row_load(const float *quarter, const uint32_t at[8], int j) {
-    __m256 r = _mm256_castps128_ps256(_mm_load_ps(quarter + (size_t)at[j] * LIGHT_RECORD_FLOATS));
-    return _mm256_insertf128_ps(r, _mm_load_ps(quarter + (size_t)at[4 + j] * LIGHT_RECORD_FLOATS), 1);
+FN wide_row wide_row_load(const float *quarter, size_t stride, const uint32_t at[8], int j) {
+    __m256 r = _mm256_castps128_ps256(_mm_load_ps(quarter + (size_t)at[j] * stride));
+    return _mm256_insertf128_ps(r, _mm_load_ps(quarter + (size_t)at[4 + j] * stride), 1);
 }
 
 #elif CORE_LANES == 4 && defined(__x86_64__)
@@ -51,16 +51,16 @@ typedef __m128 wide_row;
 #define wide_unpacklo _mm_unpacklo_ps
 #define wide_unpackhi _mm_unpackhi_ps
 #define wide_shuffle _mm_shuffle_ps
-FN wide_row wide_row_load(const float *quarter, const uint32_t at[4], int j) {
-    return _mm_load_ps(quarter + (size_t)at[j] * LIGHT_RECORD_FLOATS);
+FN wide_row wide_row_load(const float *quarter, size_t stride, const uint32_t at[4], int j) {
+    return _mm_load_ps(quarter + (size_t)at[j] * stride);
 }
 
 #endif
 
 #if defined(WIDE_IN_REGISTERS)
-FN wide_quad wide_quad_load(const float *quarter, const uint32_t *at) {
-    wide_row r0 = wide_row_load(quarter, at, 0), r1 = wide_row_load(quarter, at, 1);
-    wide_row r2 = wide_row_load(quarter, at, 2), r3 = wide_row_load(quarter, at, 3);
+FN wide_quad wide_quad_load(const float *quarter, size_t stride, const uint32_t *at) {
+    wide_row r0 = wide_row_load(quarter, stride, at, 0), r1 = wide_row_load(quarter, stride, at, 1);
+    wide_row r2 = wide_row_load(quarter, stride, at, 2), r3 = wide_row_load(quarter, stride, at, 3);
     wide_row lo01 = wide_unpacklo(r0, r1), lo23 = wide_unpacklo(r2, r3);
     wide_row hi01 = wide_unpackhi(r0, r1), hi23 = wide_unpackhi(r2, r3);
     wide_quad q = { { (real)wide_shuffle(lo01, lo23, 0x44), (real)wide_shuffle(lo01, lo23, 0xee),
@@ -68,11 +68,11 @@ FN wide_quad wide_quad_load(const float *quarter, const uint32_t *at) {
     return q;
 }
 #else
-FN wide_quad wide_quad_load(const float *quarter, const uint32_t *at) {
+FN wide_quad wide_quad_load(const float *quarter, size_t stride, const uint32_t *at) {
     wide_quad q;
     for (int i = 0; i < CORE_LANES; i++)
         for (int k = 0; k < 4; k++)
-            q.f[k][i] = quarter[(size_t)at[i] * LIGHT_RECORD_FLOATS + k];
+            q.f[k][i] = quarter[(size_t)at[i] * stride + k];
     return q;
 }
 #endif
@@ -81,8 +81,8 @@ FN light light_from_records(const float *records, u32 index) {
     uint32_t at[CORE_LANES];
     memcpy(at, &index, sizeof(at));
     __asm__("" : "+m"(at)); /* through memory: taking a vector apart in registers is slower */
-    wide_quad p = wide_quad_load(records, at), a = wide_quad_load(records + 4, at);
-    wide_quad b = wide_quad_load(records + 8, at), e = wide_quad_load(records + 12, at);
+    wide_quad p = wide_quad_load(records, LIGHT_RECORD_FLOATS, at), a = wide_quad_load(records + 4, LIGHT_RECORD_FLOATS, at);
+    wide_quad b = wide_quad_load(records + 8, LIGHT_RECORD_FLOATS, at), e = wide_quad_load(records + 12, LIGHT_RECORD_FLOATS, at);
     light l = { V3(p.f[0], p.f[1], p.f[2]), (u32)p.f[3], V3(a.f[0], a.f[1], a.f[2]), a.f[3],
                 V3(b.f[0], b.f[1], b.f[2]), (u32)b.f[3], V3(e.f[0], e.f[1], e.f[2]), e.f[3] };
     return l;

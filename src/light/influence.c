@@ -206,40 +206,84 @@ float noc_influence_pmf(const noc_influence *v, const noc_query *q, const noc_fo
 /* ---- S_r ---- */
 
 /* Surface points that S_r is found for, and how many volumes should hold the median one. */
-enum { EXAMPLES = 1024, HANDFUL = 8 };
+enum { EXAMPLES = 512, HANDFUL = 8 };
 
 typedef struct example {
     float p[3], n[3];
 } example;
 
-/* Points spread evenly over the area of all surfaces. Returns how many there are. */
-static int take_examples(const noc_scene *s, example *out) {
+typedef struct box {
+    float lo[3], hi[3];
+} box;
+
+/* Where light can be looked for: around all lights, as far again as a tenth of their spread. */
+static box box_of_lights(const noc_influence *v, size_t lights) {
+    box b = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+    float size = 0;
+    for (size_t i = 0; i < lights; i++)
+        for (int k = 0; k < 3; k++) {
+            b.lo[k] = fminf(b.lo[k], v->volumes[v->ids[i]].c[k]);
+            b.hi[k] = fmaxf(b.hi[k], v->volumes[v->ids[i]].c[k]);
+            size = fmaxf(size, b.hi[k] - b.lo[k]);
+        }
+    for (int k = 0; k < 3; k++) {
+        b.lo[k] -= 10 + 0.1f * size;
+        b.hi[k] += 10 + 0.1f * size;
+    }
+    return b;
+}
+
+/* Edges a, b and unit normal n of a triangle from its first corner p; returns its area inside the box, about. */
+static double triangle(const noc_scene *s, size_t t, const box *in, const float **p, float a[3], float b[3], float n[3]) {
+    const float *c[3];
+    for (int i = 0; i < 3; i++)
+        c[i] = s->positions.data + 3 * (size_t)s->indices.data[3 * t + (size_t)i];
+    double share = 1;
+    for (int k = 0; k < 3; k++) {
+        a[k] = c[1][k] - c[0][k];
+        b[k] = c[2][k] - c[0][k];
+        float lo = fminf(c[0][k], fminf(c[1][k], c[2][k])), hi = fmaxf(c[0][k], fmaxf(c[1][k], c[2][k]));
+        float inside = fminf(hi, in->hi[k]) - fmaxf(lo, in->lo[k]);
+        share *= inside < 0 ? 0 : hi > lo ? inside / (hi - lo) : 1;
+    }
+    *p = c[0];
+    for (int k = 0; k < 3; k++)
+        n[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+    double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
+    for (int k = 0; k < 3 && length > 0; k++)
+        n[k] /= (float)length;
+    return 0.5 * length * share;
+}
+
+/* Points spread evenly over the area of all surfaces in the box: land to the horizon has nothing to say about streets.
+ * Returns how many there are. */
+static int take_examples(const noc_scene *s, const box *in, example *out) {
     size_t triangles = s->indices.len / 3;
     double total = 0, sum = 0;
-    int count = 0;
+    int goal = 0, count = 0;
     for (int pass = 0; pass < 2; pass++)
         for (size_t t = 0; t < triangles; t++) {
-            const float *c[3];
-            for (int i = 0; i < 3; i++)
-                c[i] = s->positions.data + 3 * (size_t)s->indices.data[3 * t + i];
+            const float *p;
             float a[3], b[3];
-            for (int k = 0; k < 3; k++) {
-                a[k] = c[1][k] - c[0][k];
-                b[k] = c[2][k] - c[0][k];
-            }
-            float n[3] = { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0] };
-            double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
+            example e;
+            double area = triangle(s, t, in, &p, a, b, e.n);
             if (!pass) {
-                total += length;
+                total += area;
                 continue;
             }
-            for (sum += length; count < EXAMPLES && sum > total * ((count + 0.5) / EXAMPLES) && length > 0; count++) {
-                float u = rng(7u, 2 * (uint32_t)count), v = rng(7u, 2 * (uint32_t)count + 1);
-                float fold = u + v > 1 ? 1 : 0;
-                for (int k = 0; k < 3; k++) {
-                    out[count].p[k] = c[0][k] + fabsf(fold - u) * a[k] + fabsf(fold - v) * b[k];
-                    out[count].n[k] = n[k] / (float)length;
+            for (sum += area; goal < EXAMPLES && area > 0 && sum > total * ((goal + 0.5) / EXAMPLES); goal++) {
+                bool inside = false;
+                for (uint32_t attempt = 0; attempt < 64 && !inside; attempt++) {
+                    uint32_t key = rng_key(7u, (uint32_t)goal, attempt);
+                    float u = rng(key, 0), v = rng(key, 1), fold = u + v > 1 ? 1 : 0;
+                    inside = true;
+                    for (int k = 0; k < 3; k++) {
+                        e.p[k] = p[k] + fabsf(fold - u) * a[k] + fabsf(fold - v) * b[k];
+                        inside = inside && e.p[k] >= in->lo[k] && e.p[k] <= in->hi[k];
+                    }
                 }
+                if (inside)
+                    out[count++] = e;
             }
         }
     return count;
@@ -267,13 +311,14 @@ static bool holds_enough(const noc_influence *v, const example *e, float scale, 
  * are not that many lights, the reach of the first is what counts. */
 static float find_scale(const noc_influence *v, const noc_scene *scene, size_t lights) {
     example *e = noc_alloc(EXAMPLES * sizeof(*e));
-    int n = take_examples(scene, e), lit = 0, handful = (int)NOC_MIN(HANDFUL, (lights + 1) / 2);
+    box in = box_of_lights(v, lights);
+    int n = take_examples(scene, &in, e), lit = 0, handful = (int)NOC_MIN(HANDFUL, (lights + 1) / 2);
     const float widest = 1e6f;
     for (int i = 0; i < n; i++)
         if (holds_enough(v, &e[i], widest, handful))
             e[lit++] = e[i];
     float lo = -20, hi = log2f(widest);
-    for (int step = 0; step < 24 && lit; step++) {
+    for (int step = 0; step < 16 && lit; step++) {
         float at = 0.5f * (lo + hi);
         int enough = 0;
         for (int i = 0; i < lit; i++)

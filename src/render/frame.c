@@ -37,7 +37,7 @@ noc_status noc_check_render_params(const noc_render_params *p, noc_log *log) {
         }
     if ((unsigned)p->method > NOC_METHOD_RESTIR)
         return wrong(log, "method", p->method, "a noc_method");
-    if ((unsigned)p->candidates > NOC_CANDIDATES_BVH)
+    if ((unsigned)p->candidates > NOC_CANDIDATES_TREE)
         return wrong(log, "candidates", p->candidates, "a noc_candidates");
     if ((unsigned)p->bias > NOC_BIAS_PAIRWISE)
         return wrong(log, "bias", p->bias, "a noc_bias");

@@ -25,7 +25,7 @@ static const noc_option render_options[] = {
     BOOL(P, emitters, "emitters", "Picture", "show light sources that are seen directly"),
 
     CHOICE(P, method, "method", "Estimator", "reference|is|ris|restir", "how direct light is estimated"),
-    CHOICE(P, candidates, "candidates", "Estimator", "uniform|lists|power|bvh", "ris, restir: where light candidates come from"),
+    CHOICE(P, candidates, "candidates", "Estimator", "uniform|lists|power|bvh|tree", "ris, restir: where light candidates come from"),
     INT(P, draws, "draws", "Estimator", 1, 1024, "", "light candidates a pixel and frame (M)"),
     INT(P, list, "list", "Estimator", 0, 128, "", "lists: strongest lights of a tile, seen by each of its pixels"),
     INT(P, tail, "tail", "Estimator", 1, 128, "", "lists: draws a tile from all other lights"),

@@ -4,20 +4,30 @@
 #include "../render/rooms.h"
 
 #include "light/alias.h"
+#include "light/bound.h"
 #include "light/influence.h"
+#include "light/tree.h"
 
 #include "core/alias.h"
 #include "core/influence.h"
 #include "core/surface.h"
+#include "core/tree.h"
 
 struct core_context {
     const noc_alias *alias;
+    const noc_tree *tree;
 };
 
 FN alias_slot alias_load(CTX u32 i) {
     alias_slot s;
     memcpy(&s, &ctx->alias->slots[i], sizeof(s));
     return s;
+}
+
+FN tree_node tree_load(CTX u32 i) {
+    tree_node n;
+    memcpy(&n, &ctx->tree->nodes[i], sizeof(n));
+    return n;
 }
 
 /* ---- worlds ---- */
@@ -73,6 +83,7 @@ static double shine(const noc_scene *s, surf y, uint32_t i) {
 typedef struct picker {
     const noc_scene *scene;
     const noc_alias *alias;
+    const noc_tree *tree;
     const noc_influence *influence;
     noc_found found;
     noc_query q;
@@ -110,20 +121,24 @@ static void draw(picker *p, pick out[DRAWS]) {
             out[i] = (pick){ ids[i][5], inverse[i][5] };
         return;
     }
-    struct core_context ctx = { p->alias };
+    struct core_context ctx = { p->alias, p->tree };
     for (int i = 0; i < DRAWS; i++) {
         out[i] = (pick){ 0, 0 };
-        if (p->alias->count)
+        if (p->tree && p->tree->count)
+            out[i] = tree_draw(&ctx, p->y.p, p->y.n, bits(), p->tree->depth);
+        if (p->alias && p->alias->count)
             out[i] = alias_draw(&ctx, p->alias->count, bits(), unit_real(bits()));
     }
 }
 
 static double pmf(picker *p, uint32_t id) {
-    struct core_context ctx = { p->alias };
+    struct core_context ctx = { p->alias, p->tree };
     double x = 0;
     if (p->influence)
         x = noc_influence_pmf(p->influence, &p->q, &p->found, 5, DRAWS, EVERY, id);
-    else if (p->alias->count)
+    else if (p->tree && p->tree->count && noc_light_intensity(&p->scene->lights.data[id]) > 0)
+        x = tree_pmf(&ctx, p->y.p, p->y.n, p->tree->paths[id], p->tree->depth);
+    else if (p->alias && p->alias->count)
         x = alias_pmf(&ctx, id);
     return x * (1 + (id & 1 ? p->wrong : 0));
 }
@@ -180,7 +195,7 @@ static void check(const noc_scene *s, picker *p, bool draws_anything) {
         draws_are_pmf(p);
         assert_true(fabs(total_pmf(p) - (draws_anything ? 1 : 0)) < 1e-4);
         if (surface < 3) {
-            double z = distance(p, n > 10000 ? 40000 : 10000);
+            double z = distance(p, n > 10000 ? 15000 : 5000);
             if (!(z < 4.5))
                 fail_msg("%zu lights, surface %d: %.1f standard errors from the sum over all lights", n, surface, z);
         }
@@ -303,11 +318,77 @@ static void influence_scale(void **state) {
     noc_scene_destroy(s);
 }
 
+static void tree(void **state) {
+    (void)state;
+    for (size_t i = 0; i < NOC_COUNT(worlds); i++) {
+        noc_scene *s = world(worlds[i].lights, worlds[i].what);
+        picker p = { .tree = noc_tree_create(s, NULL) };
+        assert_true(p.tree->depth <= NOC_TREE_DEPTH);
+        check(s, &p, worlds[i].what != ALL_DARK);
+        noc_tree_destroy((noc_tree *)p.tree);
+        noc_scene_destroy(s);
+    }
+}
+
+/* Lights in a row whose distances double, and 1000 in one place beside them: the way down stays within its bits, and every
+ * light is at the end of its own way. */
+static void tree_of_uneven_lights(void **state) {
+    (void)state;
+    noc_scene *s = noc_scene_create(NULL);
+    for (int i = 0; i < 1060; i++) {
+        noc_light l = { .kind = NOC_LIGHT_POINT, .position = { i < 60 ? ldexp(1e-6, i / 3) : 0, 0, 3 }, .emission = { 1, 1, 1 } };
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+    }
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    picker p = { .tree = noc_tree_create(s, NULL) };
+    assert_true(p.tree->depth >= 11 && p.tree->depth <= NOC_TREE_DEPTH);
+    for (uint32_t i = 0; i < 1060; i++) {
+        uint32_t at = 0, path = p.tree->paths[i];
+        for (; p.tree->nodes[at].child; path >>= 1)
+            at = p.tree->nodes[at].child + (path & 1);
+        assert_int_equal(p.tree->nodes[at].light, i);
+    }
+    check(s, &p, true);
+    noc_tree_destroy((noc_tree *)p.tree);
+    noc_scene_destroy(s);
+}
+
+/* A node's sphere and cone hold all lights below it, and its power is theirs. */
+static void tree_bounds_hold(void **state) {
+    (void)state;
+    noc_scene *s = world(2000, MIXED);
+    noc_tree *t = noc_tree_create(s, NULL);
+    for (uint32_t i = 0; i < 2000; i++) {
+        noc_light_bound b = noc_bound_light(&s->lights.data[i]);
+        uint32_t path = t->paths[i];
+        for (uint32_t at = 0;; path >>= 1) {
+            const noc_tree_node *n = &t->nodes[at];
+            double d2 = 0, c = 0;
+            for (int k = 0; k < 3; k++) {
+                d2 += (double)(b.p[k] - n->c[k]) * (b.p[k] - n->c[k]);
+                c += (double)b.n[k] * n->axis[k];
+            }
+            bool any = b.n[0] == 0 && b.n[1] == 0 && b.n[2] == 0;
+            assert_true(sqrt(d2) + b.radius <= n->radius * 1.000001);
+            assert_true((any ? -1 : c) >= n->cos_cone);
+            assert_true(n->power >= b.intensity * 0.9999f);
+            if (!n->child)
+                break;
+            float both = t->nodes[n->child].power + t->nodes[n->child + 1].power;
+            assert_true(fabsf(both - n->power) <= 1e-3f * n->power);
+            at = n->child + (path & 1);
+        }
+    }
+    noc_tree_destroy(t);
+    noc_scene_destroy(s);
+}
+
 /* A pmf that is wrong by a fifth for every other light must not pass. */
 static void wrong_pmf_is_seen(void **state) {
     (void)state;
     noc_scene *s = world(50, MIXED);
-    picker all[] = { { .alias = noc_alias_create(s, NULL) }, { .influence = noc_influence_create(s, NULL) } };
+    picker all[] = { { .alias = noc_alias_create(s, NULL) }, { .influence = noc_influence_create(s, NULL) },
+                     { .tree = noc_tree_create(s, NULL) } };
     for (size_t i = 0; i < NOC_COUNT(all); i++) {
         picker *p = &all[i];
         p->scene = s;
@@ -320,6 +401,7 @@ static void wrong_pmf_is_seen(void **state) {
     }
     noc_alias_destroy((noc_alias *)all[0].alias);
     noc_influence_destroy((noc_influence *)all[1].influence);
+    noc_tree_destroy((noc_tree *)all[2].tree);
     noc_scene_destroy(s);
 }
 
@@ -330,6 +412,9 @@ int main(void) {
         cmocka_unit_test(influence_volumes),
         cmocka_unit_test(influence_query_is_exact),
         cmocka_unit_test(influence_scale),
+        cmocka_unit_test(tree),
+        cmocka_unit_test(tree_of_uneven_lights),
+        cmocka_unit_test(tree_bounds_hold),
         cmocka_unit_test(wrong_pmf_is_seen),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -82,10 +82,11 @@ static noc_render_params variant(int i) {
     case 12: break; /* restir from lists */
     case 13: p.candidates = NOC_CANDIDATES_POWER; break;
     case 14: p.candidates = NOC_CANDIDATES_BVH; break;
+    case 15: p.candidates = NOC_CANDIDATES_TREE; break;
     }
     return p;
 }
-enum { VARIANTS = 15 };
+enum { VARIANTS = 16 };
 
 static void scalar_and_wide_agree(void **state) {
     (void)state;

@@ -196,6 +196,7 @@ static const config unbiased[] = {
     { "ris", NOC_METHOD_RIS, .reuse = true },
     { "ris, power", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_POWER },
     { "ris, bvh", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH },
+    { "ris, tree", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_TREE },
     { "ris, lists of 6", NOC_METHOD_RIS, .reuse = true, .list = 6 },
     { "ris, lists of 12", NOC_METHOD_RIS, .list = 12 },
     { "pairwise + rays, lists of 4", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .spatial = true,

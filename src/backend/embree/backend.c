@@ -147,7 +147,7 @@ static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st
     stage_run run = { .s = s,
                       .ctx = { scene->lights.data, (uint32_t)scene->lights.len,
                                scene->material_records.len ? scene->material_records.data : &s->no_material, frame,
-                               s->clusters, NULL, s->alias, NULL, 0 },
+                               s->clusters, NULL, s->alias, s->tree, NULL, 0 },
                       .stage = st, .k = s->kernels, .progress = progress, .what = "rendering", .from = from, .to = to,
                       .tiles = (size_t)s->b.tiles_x * s->b.tiles_y };
     noc_pool_run(s->pool, run.tiles, run_tile, &run);

@@ -57,6 +57,7 @@ typedef struct embree_state {
     noc_clusters *clusters; /* these are made when first needed */
     noc_alias *alias;
     noc_influence *influence;
+    noc_tree *tree;
     worker *workers;
     int worker_count;
     bool recording;

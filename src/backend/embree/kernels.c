@@ -226,6 +226,7 @@ const kernels KERNELS = {
     .list_build = list_build,
     .list_candidates = list_candidates,
     .pick_power = pick_power,
+    .pick_tree = pick_tree,
     .given = given,
     .project = project,
     .segments = segments,

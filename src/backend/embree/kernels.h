@@ -8,6 +8,7 @@
 #include "light/alias.h"
 #include "light/clusters.h"
 #include "light/influence.h"
+#include "light/tree.h"
 #include "render/backend.h"
 
 enum { MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32, LIST_ENTRIES = 128, LIST_EXAMPLES = 8, OPENED_CLUSTERS = 96, SCORE_BINS = 1024,
@@ -35,6 +36,7 @@ struct core_context {
     const noc_clusters *clusters; /* lists only */
     const light_list *list;       /* of the tile */
     const noc_alias *alias;       /* power only */
+    const noc_tree *tree;         /* tree only */
     const pick_block *picks;      /* of the block; read from lane `lane` on */
     int lane;
 };
@@ -82,6 +84,7 @@ typedef struct kernels {
     void (*list_candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, rblock *out);
     /* Light pickers: m candidates for every lane of a block; then a reservoir of such candidates. */
     void (*pick_power)(const struct core_context *ctx, int x, int y, int m, pick_block *out);
+    void (*pick_tree)(const struct core_context *ctx, const gblock *g, int x, int y, int m, pick_block *out);
     void (*given)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                   const pick_block *picks, rblock *out);
     /* Where this frame's surfaces were in the previous picture, in pixels; returns the lanes that were in front of it. */

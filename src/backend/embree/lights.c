@@ -48,6 +48,10 @@ noc_status noc_embree_prepare_lights(embree_state *s, const noc_render_params *p
         if (!s->influence && !(s->influence = noc_influence_create(s->scene, s->log)))
             return NOC_ERR_MEMORY;
         break;
+    case NOC_CANDIDATES_TREE:
+        if (!s->tree && !(s->tree = noc_tree_create(s->scene, s->log)))
+            return NOC_ERR_MEMORY;
+        break;
     }
     return prepare_picks(s);
 }
@@ -56,6 +60,7 @@ void noc_embree_release_lights(embree_state *s) {
     noc_clusters_destroy(s->clusters);
     noc_alias_destroy(s->alias);
     noc_influence_destroy(s->influence);
+    noc_tree_destroy(s->tree);
     for (int i = 0; i < s->worker_count; i++) {
         worker *w = &s->workers[i];
         free(w->lists.scores);
@@ -69,5 +74,6 @@ size_t noc_embree_light_bytes(const embree_state *s) {
     size_t bytes = s->clusters ? s->clusters->bytes : 0;
     bytes += s->alias ? s->alias->bytes : 0;
     bytes += s->influence ? s->influence->bytes : 0;
+    bytes += s->tree ? s->tree->bytes : 0;
     return bytes;
 }
