@@ -122,7 +122,7 @@ void cli_help(const cli_command *command, FILE *out) {
     }
     fprintf(out, "nocturne %s: pictures and figures of cities at night\n\n", noc_version());
     for (const cli_command *const *c = cli_commands; *c; c++)
-        fprintf(out, "  nocturne %-8s %s\n  %17s %s\n", (*c)->name, (*c)->arguments, "", (*c)->summary);
+        fprintf(out, "  nocturne %-10s %s\n  %19s %s\n", (*c)->name, (*c)->arguments, "", (*c)->summary);
     fprintf(out, "  nocturne help [COMMAND]\n  nocturne --version\n\n"
                  "Try: nocturne render builtin:city -o night.png\n");
 }

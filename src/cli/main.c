@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const cli_command *const cli_commands[] = { &cli_render, &cli_info, &cli_compare, NULL };
+const cli_command *const cli_commands[] = { &cli_render, &cli_info, &cli_compare, &cli_experiment, NULL };
 
 const cli_command *cli_find_command(const char *name) {
     for (const cli_command *const *c = cli_commands; *c; c++)

@@ -1,0 +1,204 @@
+/* nocturne experiment: configurations over frames against one reference, as a spec says. */
+#include "experiment.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define A experiment_args
+static const noc_option own_options[] = {
+    { "output", "Output", NOC_OPTION_TEXT, offsetof(A, output), 0, 0, NULL, "FOLDER",
+      "folder for rows, plots, crops and report; else the spec's name without .json" },
+    { "cache", "Output", NOC_OPTION_TEXT, offsetof(A, cache), 0, 0, NULL, "FOLDER",
+      "folder that references are kept in; else nocturne in the user's cache folder" },
+    { "threads", "Output", NOC_OPTION_INT, offsetof(A, threads), 0, 1024, NULL, "", "threads; 0 = one a core" },
+    { NULL },
+};
+static const noc_option *options(void) { return own_options; }
+static int run(void *arguments);
+
+static const experiment_args defaults = { .threads = 0 };
+
+const cli_command cli_experiment = {
+    "experiment", "SPEC [-o FOLDER]", "Measures error and time of methods and settings against a reference, as a JSON file says.",
+    "FOLDER gets results.csv, plots (SVG), first frames side by side (PNG) and report.md. What a spec may hold\n"
+    "is told in docs/experiments.md; some are ready in experiments/.\n"
+    "Examples\n"
+    "  nocturne experiment experiments/methods-and-bias.json -o methods\n"
+    "Ctrl-C ends with status 130; the same command goes on where it stopped.\n",
+    { { options, 0, NULL }, { cli_common_options, 0, NULL } },
+    sizeof(experiment_args), &defaults, run,
+};
+
+/* Makes a folder and those above it. */
+static int make_folder(const char *path) {
+    char *part = cli_format("%s", path);
+    bool failed = false;
+    for (char *c = part + 1; !failed; c++) {
+        char end = *c;
+        if (end && end != '/')
+            continue;
+        *c = 0;
+        failed = mkdir(part, 0777) && errno != EEXIST && errno != EISDIR;
+        *c = end;
+        if (!end)
+            break;
+    }
+    struct stat st;
+    if (!failed && !stat(path, &st) && !S_ISDIR(st.st_mode)) {
+        failed = true;
+        errno = ENOTDIR;
+    }
+    if (!failed && access(path, W_OK | X_OK))
+        failed = true;
+    if (failed)
+        cli_error("%s: this folder cannot be used: %s", path, strerror(errno));
+    free(part);
+    return failed ? CLI_FAILURE : CLI_OK;
+}
+
+static char *output_folder(const experiment_args *args) {
+    if (args->output)
+        return cli_format("%s", args->output);
+    const char *spec = args->common.inputs[0], *slash = strrchr(spec, '/'), *name = slash ? slash + 1 : spec;
+    const char *dot = strrchr(name, '.');
+    return dot && dot > name ? cli_format("%.*s", (int)(dot - name), name) : cli_format("%s.results", name);
+}
+
+static char *cache_folder(const experiment_lab *lab) {
+    const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+    if (lab->args->cache)
+        return cli_format("%s", lab->args->cache);
+    if (cache && *cache == '/')
+        return cli_format("%s/nocturne", cache);
+    return home && *home == '/' ? cli_format("%s/.cache/nocturne", home) : cli_format("%s/cache", lab->folder);
+}
+
+static int open_folders(experiment_lab *lab) {
+    lab->folder = output_folder(lab->args);
+    lab->cache = cache_folder(lab);
+    char *pictures = cli_format("%s/pictures", lab->folder);
+    int status = make_folder(lab->folder);
+    status = status ? status : make_folder(pictures);
+    status = status ? status : make_folder(lab->cache);
+    free(pictures);
+    if (status)
+        return status;
+    lab->lock = open(lab->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lab->lock >= 0 && flock(lab->lock, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK) {
+        cli_error("%s: another experiment is writing there", lab->folder);
+        return CLI_FAILURE;
+    }
+    return experiment_open_table(lab);
+}
+
+static void plan(experiment_lab *lab) {
+    const experiment_spec *spec = &lab->spec;
+    lab->run_count = spec->scene_count * spec->camera_count * (size_t)spec->repetitions * spec->config_count;
+    lab->runs = cli_alloc(sizeof(*lab->runs) * lab->run_count);
+    lab->scene_infos = cli_alloc(sizeof(*lab->scene_infos) * spec->scene_count);
+    lab->crops = cli_alloc(sizeof(*lab->crops) * spec->scene_count * spec->camera_count);
+    for (size_t i = 0; i < lab->run_count; i++) {
+        experiment_run *run = &lab->runs[i];
+        size_t rest = i / spec->config_count;
+        run->config = i % spec->config_count;
+        run->repetition = (int)(rest % (size_t)spec->repetitions);
+        rest /= (size_t)spec->repetitions;
+        run->camera = rest % spec->camera_count;
+        run->scene = rest / spec->camera_count;
+        size_t frames = (size_t)spec->configs[run->config].frames;
+        for (int mode = 0; mode < EXPERIMENT_MODES; mode++) {
+            if (spec->accumulate != mode && spec->accumulate != EXPERIMENT_MODES)
+                continue;
+            run->rows[mode] = cli_alloc(sizeof(experiment_row) * frames);
+            lab->rows_total += frames;
+        }
+    }
+}
+
+/* All runs under one camera of the present scene. */
+static int work_camera(experiment_lab *lab, size_t scene, size_t camera) {
+    const experiment_spec *spec = &lab->spec;
+    int status = experiment_make_reference(lab, scene, camera);
+    experiment_run *runs = experiment_find_run(lab, scene, camera, 0, 0);
+    size_t count = (size_t)spec->repetitions * spec->config_count;
+    for (size_t i = 0; !status && i < count; i++) {
+        experiment_run_key(lab, &runs[i]);
+        experiment_claim(lab, &runs[i]);
+    }
+    for (size_t i = 0; !status && i < count; i++)
+        status = experiment_measure(lab, &runs[i]);
+    cli_progress_clear();
+    if (!status) {
+        char *slug = experiment_slug(lab, scene, camera), *name = cli_format("%s-first.png", slug);
+        status = experiment_make_crops(lab, scene, camera, name);
+        free(name);
+        free(slug);
+    }
+    noc_image_destroy(lab->reference);
+    lab->reference = NULL;
+    return status;
+}
+
+static int work(experiment_lab *lab) {
+    const experiment_spec *spec = &lab->spec;
+    int status = CLI_OK;
+    lab->started = cli_now();
+    for (size_t scene = 0; !status && scene < spec->scene_count; scene++) {
+        status = experiment_load_scene(lab, scene);
+        for (size_t camera = 0; !status && camera < spec->camera_count; camera++)
+            status = cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : work_camera(lab, scene, camera);
+        noc_scene_destroy(lab->scene);
+        lab->scene = NULL;
+    }
+    if (status > CLI_INTERRUPTED)
+        cli_error("interrupted: %zu of %zu rows are in %s/results.csv; the same command goes on there", lab->rows_done,
+                  lab->rows_total, lab->folder);
+    status = status ? status : experiment_tidy_table(lab);
+    status = status ? status : experiment_write_report(lab);
+    if (!status && !lab->args->common.quiet)
+        printf("%s/report.md: %zu rows, %zu of them made now\n", lab->folder, lab->rows_total, lab->rows_total - lab->rows_old);
+    return status;
+}
+
+static int finish(experiment_lab *lab, int status) {
+    cli_progress_clear();
+    if (lab->csv && fclose(lab->csv) && !status) {
+        cli_error("%s/results.csv: %s", lab->folder, strerror(errno));
+        status = CLI_FAILURE;
+    }
+    for (size_t i = 0; i < lab->run_count; i++)
+        for (int mode = 0; mode < EXPERIMENT_MODES; mode++)
+            free(lab->runs[i].rows[mode]);
+    free(lab->runs);
+    free(lab->scene_infos);
+    free(lab->crops);
+    free(lab->stored);
+    free(lab->folder);
+    free(lab->cache);
+    if (lab->lock >= 0)
+        close(lab->lock);
+    return status;
+}
+
+static int run(void *arguments) {
+    experiment_lab lab = { .args = arguments, .lock = -1 };
+    if (lab.args->common.input_count != 1)
+        return cli_usage(&cli_experiment, "one spec, a JSON file: docs/experiments.md tells what it holds");
+    int status = experiment_read_spec(&lab.spec, lab.args->common.inputs[0]);
+    if (!status) {
+        cli_catch_signals();
+        cli_progress_start(lab.args->common.quiet);
+        lab.log = cli_log_create(&lab.args->common);
+        plan(&lab);
+        status = open_folders(&lab);
+        status = finish(&lab, status ? status : work(&lab));
+        noc_log_destroy(lab.log);
+    }
+    experiment_free_spec(&lab.spec);
+    return cli_flush(stdout) ? status : CLI_FAILURE;
+}

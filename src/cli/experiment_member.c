@@ -1,0 +1,99 @@
+/* Members of the spec's objects: each is an option of a table, under the same name and the same rules as on the command line. */
+#include "experiment.h"
+
+#include <jansson.h>
+#include <stdlib.h>
+#include <string.h>
+
+int experiment_wrong(const experiment_spec *spec, const char *place, const char *fmt, ...) {
+    char text[600];
+    va_list ap;
+    va_start(ap, fmt);
+    vsnprintf(text, sizeof(text), fmt, ap);
+    va_end(ap);
+    return cli_usage(&cli_experiment, "%.200s: %s%s%s", spec->path, place, *place ? ": " : "", text);
+}
+
+char *experiment_keep(experiment_spec *spec, char *text) {
+    char **longer = realloc(spec->texts, sizeof(char *) * (spec->text_count + 1));
+    if (!longer) {
+        cli_error("out of memory");
+        exit(CLI_FAILURE);
+    }
+    spec->texts = longer;
+    return spec->texts[spec->text_count++] = text;
+}
+
+const noc_option *experiment_option(const cli_set *sets, const char *name, size_t *offset) {
+    for (const cli_set *set = sets; set->table; set++) {
+        for (const noc_option *o = set->table(); o->name; o++) {
+            if (!strcmp(o->name, name) && !cli_hidden(set, o)) {
+                *offset = set->offset;
+                return o;
+            }
+        }
+    }
+    return NULL;
+}
+
+static int unknown(const experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others, const char *name) {
+    const char *words[2 * CLI_GIVEN];
+    size_t count = 0;
+    for (const cli_set *set = sets; set->table; set++)
+        for (const noc_option *o = set->table(); o->name && count < CLI_GIVEN; o++)
+            if (!cli_hidden(set, o))
+                words[count++] = o->name;
+    for (; others && *others && count < 2 * CLI_GIVEN; others++)
+        words[count++] = *others;
+    const char *nearest = cli_nearest(name, words, count);
+    return nearest ? experiment_wrong(spec, place, "no option \"%.60s\"; is it \"%s\"?", name, nearest)
+                   : experiment_wrong(spec, place, "no option \"%.60s\"", name);
+}
+
+/* A value as it would be written on the command line; NULL where JSON has no such thing there. An array of numbers is a list. */
+static char *spell(const json_t *value) {
+    switch (json_typeof(value)) {
+    case JSON_STRING: return cli_format("%s", json_string_value(value));
+    case JSON_TRUE: return cli_format("true");
+    case JSON_FALSE: return cli_format("false");
+    case JSON_INTEGER: return cli_format("%" JSON_INTEGER_FORMAT, json_integer_value(value));
+    case JSON_REAL: return cli_format("%.17g", json_real_value(value));
+    case JSON_ARRAY: break;
+    default: return NULL;
+    }
+    char *text = cli_format("%s", "");
+    size_t i;
+    json_t *item;
+    json_array_foreach((json_t *)value, i, item) {
+        char *number = json_is_number(item) ? spell(item) : NULL;
+        char *longer = number ? cli_format("%s%s%s", text, i ? "," : "", number) : NULL;
+        free(text);
+        free(number);
+        if (!longer)
+            return NULL;
+        text = longer;
+    }
+    return text;
+}
+
+static void keep_message(void *user, noc_log_level level, const char *text) { snprintf(user, 256, "%s", text); }
+
+int experiment_set(experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others, void *params,
+                   const char *name, json_t *value) {
+    size_t offset = 0;
+    for (const char *const *other = others; other && *other; other++)
+        if (!strcmp(*other, name))
+            return CLI_OK;
+    const noc_option *o = experiment_option(sets, name, &offset);
+    if (!o)
+        return unknown(spec, place, sets, others, name);
+    char *text = spell(value);
+    if (!text)
+        return experiment_wrong(spec, place, "%s: this cannot be its value", name);
+    experiment_keep(spec, text);
+    char message[256] = "";
+    noc_log *log = noc_log_create(&(noc_log_params){ .message = keep_message, .user = message });
+    noc_status status = noc_option_set(o, (char *)params + offset, text, log);
+    noc_log_destroy(log);
+    return status ? experiment_wrong(spec, place, "%s", message) : CLI_OK;
+}

@@ -1,0 +1,293 @@
+/* report.md: what was measured, on what, and how to make it again. */
+#include "experiment.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static const int shown_frames[] = { 1, 2, 4, 8, 16, 20, 32, 64, 128, 256, 1024, 4096 };
+enum { SHOWN = sizeof(shown_frames) / sizeof(*shown_frames) };
+static const double targets[] = { 1, 0.3, 0.1 };
+static const char *const mode_names[] = { "Each frame alone", "Mean of the frames so far" };
+
+/* Letters and digits stay, the rest becomes dashes. */
+static void add_slug(char *out, const char *text) {
+    for (const char *c = text; *c; c++)
+        *out++ = isalnum((unsigned char)*c) ? (char)tolower((unsigned char)*c) : '-';
+    *out = 0;
+}
+
+/* Numbers keep apart names that differ in other characters alone. */
+char *experiment_slug(const experiment_lab *lab, size_t scene, size_t camera) {
+    char a[84], b[84];
+    add_slug(a, lab->spec.scenes[scene].name);
+    add_slug(b, lab->spec.cameras[camera].name);
+    return cli_format("%zu-%s-%s", scene * lab->spec.camera_count + camera + 1, a, b);
+}
+
+FILE *experiment_create(const experiment_lab *lab, const char *name, char **temporary) {
+    *temporary = cli_format("%s/.%s.new", lab->folder, name);
+    FILE *file = fopen(*temporary, "w");
+    if (!file) {
+        cli_error("%s/%s: %s", lab->folder, name, strerror(errno));
+        free(*temporary);
+    }
+    return file;
+}
+
+int experiment_finish(const experiment_lab *lab, FILE *file, const char *name, char *temporary) {
+    char *path = cli_format("%s/%s", lab->folder, name);
+    bool failed = ferror(file);
+    failed = fclose(file) || failed;
+    failed = failed || rename(temporary, path);
+    if (failed) {
+        cli_error("%s: %s", path, strerror(errno));
+        unlink(temporary);
+    }
+    free(path);
+    free(temporary);
+    return failed ? CLI_FAILURE : CLI_OK;
+}
+
+/* Text in a cell of a table. */
+static void cell(FILE *out, const char *text) {
+    fputc(' ', out);
+    for (const char *c = text; *c; c++) {
+        if (strchr("|\\`*_<>[]", *c))
+            fputc('\\', out);
+        fputc(*c, out);
+    }
+    fputs(" |", out);
+}
+
+static void number(FILE *out, double v, const char *fmt) {
+    char text[40] = "-";
+    if (isfinite(v))
+        snprintf(text, sizeof(text), fmt, v);
+    fprintf(out, " %s |", text);
+}
+
+static void table_head(FILE *out, const char *first, size_t columns) {
+    fprintf(out, "\n%s\n|---|", first);
+    for (size_t i = 0; i < columns; i++)
+        fputs("--:|", out);
+    fputc('\n', out);
+}
+
+/* The command line as a shell would read it. */
+static void print_command(FILE *out) {
+    char text[8192];
+    FILE *file = fopen("/proc/self/cmdline", "rb");
+    size_t n = file ? fread(text, 1, sizeof(text), file) : 0;
+    if (file)
+        fclose(file);
+    for (size_t i = 0; i < n;) {
+        size_t length = strnlen(text + i, n - i);
+        bool plain = length && strspn(text + i, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%") == length;
+        fputs(i ? plain ? " " : " '" : plain ? "" : "'", out);
+        for (size_t j = i; j < i + length; j++) {
+            if (text[j] == '\'')
+                fputs("'\\''", out);
+            else
+                fputc((unsigned char)text[j] < 32 ? '?' : text[j], out);
+        }
+        fputs(plain ? "" : "'", out);
+        i += length + 1;
+    }
+}
+
+/* Options of a configuration that are not the renderer's defaults. */
+static void print_options(FILE *out, const noc_render_params *params) {
+    static const char *const above[] = { "width", "height", "seed", "accumulate", NULL };
+    noc_render_params usual = noc_render_default_params();
+    bool any = false;
+    for (const noc_option *o = noc_render_options(); o->name; o++) {
+        char mine[80], theirs[80];
+        noc_option_get(o, params, mine, sizeof(mine));
+        noc_option_get(o, &usual, theirs, sizeof(theirs));
+        if (cli_hidden(&(cli_set){ .hidden = above }, o) || (!strcmp(mine, theirs) && strcmp(o->name, "method")))
+            continue;
+        fprintf(out, "%s`%s %s`", any ? ", " : " ", o->name, mine);
+        any = true;
+    }
+    fputs(any ? " |" : " - |", out);
+}
+
+static void print_setting(FILE *out, const experiment_lab *lab) {
+    const experiment_spec *spec = &lab->spec;
+    char date[40] = "", text[32], memory[32];
+    time_t now = time(NULL);
+    strftime(date, sizeof(date), "%Y-%m-%d %H:%M UTC", gmtime(&now));
+    fprintf(out, "# %s\n\n", spec->title ? spec->title : spec->path);
+    if (spec->note)
+        fprintf(out, "%s\n\n", spec->note);
+    fprintf(out, "Made by nocturne %s (%s) on %s, on %s; the code that ran: %s.\n\n    ", noc_version(), noc_features(), date,
+            experiment_machine(), *lab->path ? lab->path : "none, all rows were there");
+    print_command(out);
+    fprintf(out, "\n\nPictures of %d x %d px, %d frames, %d repetition%s with different seeds; figures are means over them.\n"
+                 "Reference: %d frames of %d shadow rays a pixel, %s.\n", spec->width, spec->height, spec->frames, spec->repetitions,
+            spec->repetitions == 1 ? "" : "s", spec->reference.frames, spec->reference.params.rays,
+            spec->reference.params.jitter ? "jittered" : "through the centres of pixels");
+    fprintf(out, "All rows: [results.csv](results.csv). Definitions of the figures: docs/estimator.md, \"Error figures\".\n");
+    table_head(out, "| Scene | Triangles | Lights | Memory |", 3);
+    for (size_t i = 0; i < spec->scene_count; i++) {
+        fputc('|', out);
+        cell(out, spec->scenes[i].name);
+        fprintf(out, " %s |", cli_count(text, lab->scene_infos[i].triangles));
+        fprintf(out, " %s | %s |\n", cli_count(text, lab->scene_infos[i].lights), cli_bytes(memory, lab->scene_infos[i].memory_bytes));
+    }
+    fprintf(out, "\n| Configuration | Options that are not the defaults, and the method |\n|---|---|\n");
+    for (size_t i = 0; i < spec->config_count; i++) {
+        fputc('|', out);
+        cell(out, spec->configs[i].name);
+        print_options(out, &spec->configs[i].params);
+        fputc('\n', out);
+    }
+}
+
+static void print_crops(FILE *out, const experiment_lab *lab, size_t index, const char *slug) {
+    const experiment_crop *crop = &lab->crops[index];
+    if (!crop->made)
+        return;
+    fprintf(out, "\n![First frames](%s-first.png)\n\nFirst frames, row by row as in this table; the part of %d x %d px at (%d, %d), "
+                 "enlarged %d times, all with the reference's exposure.\n\n|", slug, crop->width, crop->height, crop->x, crop->y, crop->scale);
+    size_t columns = (size_t)crop->columns, count = lab->spec.config_count + 1;
+    for (size_t i = 0; i < (count + columns - 1) / columns * columns; i++) {
+        cell(out, !i ? "reference" : i < count ? lab->spec.configs[i - 1].name : "");
+        if (i + 1 == columns) {
+            fputs("\n|", out);
+            for (size_t j = 0; j < columns; j++)
+                fputs("---|", out);
+        }
+        if ((i + 1) % columns == 0)
+            fputs(i + 1 < count ? "\n|" : "\n", out);
+    }
+}
+
+/* Frames that a table shows: those of the list that are there, and the last. */
+static int frames_of(const experiment_spec *spec, int out[SHOWN + 1]) {
+    int most = 1, count = 0;
+    for (size_t i = 0; i < spec->config_count; i++)
+        most = spec->configs[i].frames > most ? spec->configs[i].frames : most;
+    for (int i = 0; i < SHOWN && shown_frames[i] <= most; i++)
+        out[count++] = shown_frames[i];
+    if (out[count - 1] != most)
+        out[count++] = most;
+    return count;
+}
+
+static void print_errors(FILE *out, experiment_series s, const char *what, int column, const char *fmt, bool bias) {
+    int frames[SHOWN + 1], count = frames_of(&s.lab->spec, frames);
+    char head[400];
+    int at = snprintf(head, sizeof(head), "| %s, frame |", what);
+    for (int i = 0; i < count; i++)
+        at += snprintf(head + at, sizeof(head) - (size_t)at, " %d |", frames[i]);
+    table_head(out, head, (size_t)count);
+    for (s.config = 0; s.config < s.lab->spec.config_count; s.config++) {
+        fputc('|', out);
+        cell(out, s.lab->spec.configs[s.config].name);
+        for (int i = 0; i < count; i++) {
+            double v = experiment_at(&s, column, frames[i]);
+            number(out, bias ? 100 * (v - 1) : v, fmt);
+        }
+        fputc('\n', out);
+    }
+}
+
+static void print_times(FILE *out, experiment_series s) {
+    const experiment_spec *spec = &s.lab->spec;
+    table_head(out, "| Frame times | first, CPU ms | median, CPU ms | median, wall ms | shadow rays, millions | ray tracing structure, ms | renderer's memory |", 6);
+    for (s.config = 0; s.config < spec->config_count; s.config++) {
+        char memory[32];
+        fputc('|', out);
+        cell(out, spec->configs[s.config].name);
+        number(out, 1e3 * experiment_at(&s, COL_CPU, 1), "%.1f");
+        number(out, 1e3 * experiment_median(&s, COL_CPU), "%.1f");
+        number(out, 1e3 * experiment_median(&s, COL_WALL), "%.1f");
+        number(out, 1e-6 * experiment_median(&s, COL_RAYS), "%.2f");
+        number(out, 1e3 * experiment_median(&s, COL_BUILD), "%.1f");
+        double bytes = experiment_median(&s, COL_MEMORY);
+        fprintf(out, " %s |\n", bytes >= 0 ? cli_bytes(memory, (uint64_t)bytes) : "-");
+    }
+}
+
+/* CPU seconds to an error, and errors after CPU seconds. */
+static void print_equal_time(FILE *out, experiment_series s) {
+    const experiment_spec *spec = &s.lab->spec;
+    int column = spec->figure == EXPERIMENT_RMSE8 ? spec->all_pixels ? COL_CLAMPED_ALL : COL_CLAMPED : experiment_column(spec);
+    char head[400];
+    int at = snprintf(head, sizeof(head), "| CPU seconds to relMSE |");
+    for (size_t i = 0; i < 3; i++)
+        at += snprintf(head + at, sizeof(head) - (size_t)at, " %g |", targets[i]);
+    for (size_t i = 0; i < spec->time_count; i++)
+        at += snprintf(head + at, sizeof(head) - (size_t)at, " relMSE after %g s |", spec->times[i]);
+    table_head(out, head, 3 + spec->time_count);
+    for (s.config = 0; s.config < spec->config_count; s.config++) {
+        fputc('|', out);
+        cell(out, spec->configs[s.config].name);
+        for (size_t i = 0; i < 3; i++) {
+            double seconds = experiment_time_to(&s, column, targets[i]);
+            if (seconds > 0 || isnan(seconds))
+                number(out, seconds, "%.3g");
+            else
+                number(out, experiment_at(&s, COL_CPU_TOTAL, 1), "under %.3g");
+        }
+        for (size_t i = 0; i < spec->time_count; i++)
+            number(out, experiment_error_after(&s, column, spec->times[i]), "%.3g");
+        fputc('\n', out);
+    }
+    fprintf(out, "\nBetween frames by interpolation in logarithms; \"under\": the first frame is better already; -: not reached in the "
+                 "frames rendered, or before the first frame is done.\n");
+}
+
+static int print_view(FILE *out, experiment_lab *lab, size_t scene, size_t camera) {
+    const experiment_spec *spec = &lab->spec;
+    char *slug = experiment_slug(lab, scene, camera), clamped[48];
+    int status = CLI_OK;
+    experiment_series s = { lab, scene, camera, 0, 0 };
+    fprintf(out, "\n## %s, %s\n", spec->scenes[scene].name, spec->cameras[camera].name);
+    print_crops(out, lab, scene * spec->camera_count + camera, slug);
+    snprintf(clamped, sizeof(clamped), "relMSE clamped to %g cd/m2", spec->ceiling);
+    for (int mode = EXPERIMENT_MODES - 1; mode >= 0; mode--) {
+        if (spec->accumulate != mode && spec->accumulate != EXPERIMENT_MODES)
+            continue;
+        s.mode = mode;
+        fprintf(out, "\n### %s\n", mode_names[mode]);
+        for (int over_time = 0; !status && over_time <= (mode == EXPERIMENT_ACCUMULATED); over_time++) {
+            char *name = cli_format("%s-%s-%s.svg", slug, mode ? "mean" : "alone", over_time ? "cpu" : "frames");
+            status = experiment_plot(lab, scene, camera, mode, over_time, name);
+            fprintf(out, "\n![Error over %s](%s)\n", over_time ? "CPU time" : "frames", name);
+            free(name);
+        }
+        int first = spec->all_pixels ? COL_RMSE8_ALL : COL_RMSE8;
+        fprintf(out, "\nOn %s:\n", spec->all_pixels ? "all pixels" : "pixels that see no emitter");
+        print_errors(out, s, clamped, first + 2, "%.3g", false);
+        print_errors(out, s, "relMSE", first + 1, "%.3g", false);
+        print_errors(out, s, "RMSE-8", first, "%.2f", false);
+        print_errors(out, s, "Bias, %", first + 3, "%+.2f", true);
+        if (mode == EXPERIMENT_ACCUMULATED || spec->accumulate == EXPERIMENT_ALONE) {
+            print_equal_time(out, s);
+            print_times(out, s);
+        }
+    }
+    free(slug);
+    return status;
+}
+
+int experiment_write_report(experiment_lab *lab) {
+    char *temporary;
+    FILE *out = experiment_create(lab, "report.md", &temporary);
+    if (!out)
+        return CLI_FAILURE;
+    print_setting(out, lab);
+    int status = CLI_OK;
+    for (size_t scene = 0; !status && scene < lab->spec.scene_count; scene++)
+        for (size_t camera = 0; !status && camera < lab->spec.camera_count; camera++)
+            status = print_view(out, lab, scene, camera);
+    int finished = experiment_finish(lab, out, "report.md", temporary);
+    return status ? status : finished;
+}

@@ -1,0 +1,239 @@
+/* Scenes, cameras and the reference of an experiment. A reference is kept in the cache folder under a hash of all that it
+ * depends on; the files there may be deleted at any time. */
+#include "experiment.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+/* FNV-1a of 128 bits: no guard against malice, but no two experiments meet by chance. */
+typedef struct hash_state { unsigned __int128 h; } hash_state;
+
+static hash_state hash_start(void) { return (hash_state){ ((unsigned __int128)0x6c62272e07bb0142u << 64) | 0x62b821756295c58du }; }
+
+static void hash_bytes(hash_state *hash, const void *data, size_t size) {
+    const unsigned __int128 prime = ((unsigned __int128)1 << 88) | 0x13b;
+    const unsigned char *p = data;
+    for (size_t i = 0; i < size; i++)
+        hash->h = (hash->h ^ p[i]) * prime;
+}
+
+static void hash_text(hash_state *hash, const char *text) { hash_bytes(hash, text, strlen(text) + 1); }
+
+static void hash_finish(const hash_state *hash, char key[EXPERIMENT_KEY]) {
+    snprintf(key, EXPERIMENT_KEY, "%016llx%016llx", (unsigned long long)(hash->h >> 64), (unsigned long long)hash->h);
+}
+
+/* Each option by name and value: an option that is new to the tables is part of the hash without a word here. */
+static void hash_options(hash_state *hash, const noc_option *table, const void *params) {
+    for (const noc_option *o = table; o->name; o++) {
+        int n = noc_option_get(o, params, NULL, 0);
+        char *value = cli_alloc((size_t)n + 1);
+        noc_option_get(o, params, value, (size_t)n + 1);
+        hash_text(hash, o->name);
+        hash_text(hash, value);
+        free(value);
+    }
+}
+
+static int hash_file(hash_state *hash, const char *path) {
+    FILE *file = fopen(path, "rb");
+    if (!file) {
+        cli_error("%s: %s", path, strerror(errno));
+        return CLI_FAILURE;
+    }
+    enum { SIZE = 1 << 16 };
+    unsigned char *buffer = cli_alloc(SIZE);
+    for (size_t n; (n = fread(buffer, 1, SIZE, file)) > 0;)
+        hash_bytes(hash, buffer, n);
+    bool failed = ferror(file);
+    if (failed)
+        cli_error("%s: cannot be read", path);
+    free(buffer);
+    fclose(file);
+    return failed ? CLI_FAILURE : CLI_OK;
+}
+
+int experiment_load_scene(experiment_lab *lab, size_t index) {
+    experiment_scene *scene = &lab->spec.scenes[index];
+    const char **files = cli_alloc(sizeof(char *) * scene->input_count);
+    size_t count = 0;
+    bool city = false;
+    noc_status status = NOC_OK;
+    lab->scene = noc_scene_create(lab->log);
+    for (size_t i = 0; i < scene->input_count && lab->scene && !status; i++) {
+        if (strcmp(scene->inputs[i], "builtin:city")) {
+            files[count++] = scene->inputs[i];
+        } else if (!city) {
+            city = true;
+            cli_progress_show(0, -1, "building the city");
+            status = noc_scene_add_city(lab->scene, &scene->city);
+        }
+    }
+    scene->import.progress = (noc_progress){ cli_load_progress, NULL };
+    if (lab->scene && !status)
+        status = count ? noc_scene_load(lab->scene, files, count, &scene->import, NULL) : noc_scene_commit(lab->scene);
+    free(files);
+    cli_progress_clear();
+    if (!lab->scene || status)
+        return cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_FAILURE;
+    noc_scene_get_info(lab->scene, &lab->scene_infos[index]);
+    if (!lab->scene_infos[index].triangles) {
+        cli_error("%s: its inputs hold no surface that can be drawn", scene->name);
+        return CLI_FAILURE;
+    }
+    return CLI_OK;
+}
+
+/* What the picture shows: inputs, options, camera, and a few figures of the scene, for the code that makes it may change
+ * without its version. */
+static int hash_view(const experiment_lab *lab, size_t index, hash_state *hash) {
+    const experiment_scene *scene = &lab->spec.scenes[index];
+    const noc_scene_info *info = &lab->scene_infos[index];
+    hash_text(hash, noc_version());
+    for (size_t i = 0; i < scene->input_count; i++) {
+        bool builtin = !strncmp(scene->inputs[i], "builtin:", 8);
+        int status = CLI_OK;
+        if (builtin)
+            hash_text(hash, scene->inputs[i]);
+        else
+            status = hash_file(hash, scene->inputs[i]);
+        if (status)
+            return status;
+    }
+    hash_options(hash, noc_import_options(), &scene->import);
+    hash_options(hash, noc_city_options(), &scene->city);
+    uint64_t counts[] = { info->triangles, info->vertices, info->meshes, info->materials, info->lights };
+    hash_bytes(hash, counts, sizeof(counts));
+    hash_bytes(hash, info->bounds_min, sizeof(info->bounds_min));
+    hash_bytes(hash, info->bounds_max, sizeof(info->bounds_max));
+    const noc_camera *c = &lab->camera;
+    hash_bytes(hash, c->eye, sizeof(c->eye));
+    hash_bytes(hash, c->target, sizeof(c->target));
+    hash_bytes(hash, c->up, sizeof(c->up));
+    hash_bytes(hash, &c->fov_deg, sizeof(c->fov_deg));
+    return CLI_OK;
+}
+
+static bool frame_progress(void *user, const char *what, double done) {
+    const int *at = user; /* frame, of how many */
+    cli_progress_show((at[0] - 1 + done) / at[1], -1, "reference, frame %d of %d", at[0], at[1]);
+    return !cli_interrupted();
+}
+
+static void ignore(void *user, noc_log_level level, const char *text) {}
+
+/* NULL where there is none, or none that is whole. */
+static noc_image *read_cached(const experiment_lab *lab, const char *path) {
+    if (access(path, R_OK))
+        return NULL;
+    noc_log *log = noc_log_create(&(noc_log_params){ .message = ignore });
+    bool linear = false;
+    noc_image *image = noc_image_read(path, log, &linear);
+    noc_log_destroy(log);
+    if (image && linear && image->width == lab->spec.width && image->height == lab->spec.height)
+        return image;
+    noc_image_destroy(image);
+    return NULL;
+}
+
+static int render_reference(experiment_lab *lab, const char *path) {
+    const experiment_spec *spec = &lab->spec;
+    noc_renderer *renderer = noc_renderer_create(lab->scene, &(noc_renderer_params){ .threads = lab->args->threads }, lab->log);
+    noc_status status = renderer ? NOC_OK : NOC_ERR_MEMORY;
+    int at[2] = { 1, spec->reference.frames };
+    for (; !status && at[0] <= at[1]; at[0]++)
+        status = noc_renderer_frame(renderer, &lab->camera, &spec->reference.params, &(noc_progress){ frame_progress, at });
+    cli_progress_clear();
+    lab->reference = status ? NULL : noc_renderer_image(renderer);
+    noc_renderer_destroy(renderer);
+    if (cli_interrupted())
+        return CLI_INTERRUPTED + cli_interrupted();
+    noc_display_params display = noc_display_default_params();
+    const char *keys[] = { "content", "made-by" }, *values[] = { lab->reference_key, noc_version() };
+    if (!lab->reference || noc_image_write(lab->reference, path, &display, &(noc_image_meta){ 2, keys, values }, lab->log))
+        return CLI_FAILURE;
+    return CLI_OK;
+}
+
+int experiment_make_reference(experiment_lab *lab, size_t scene, size_t camera) {
+    experiment_spec *spec = &lab->spec;
+    experiment_camera *c = &spec->cameras[camera];
+    c->args.render.width = spec->width;
+    c->args.render.height = spec->height;
+    render_job job = { .args = &c->args, .scene = lab->scene, .log = lab->log, .scene_info = lab->scene_infos[scene] };
+    memcpy(job.eye, c->eye, sizeof(job.eye));
+    memcpy(job.target, c->target, sizeof(job.target));
+    if (cli_place_camera(&job))
+        return CLI_FAILURE;
+    lab->camera = job.camera;
+    hash_state hash = hash_start();
+    int status = hash_view(lab, scene, &hash);
+    if (status)
+        return status;
+    hash_options(&hash, noc_render_options(), &spec->reference.params);
+    hash_bytes(&hash, &spec->reference.frames, sizeof(spec->reference.frames));
+    hash_finish(&hash, lab->reference_key);
+    char *path = cli_format("%s/reference-%s.exr", lab->cache, lab->reference_key), took[32];
+    lab->reference = read_cached(lab, path);
+    bool quiet = lab->args->common.quiet;
+    if (lab->reference) {
+        if (!quiet)
+            printf("%s, %s: reference from %s\n", spec->scenes[scene].name, c->name, path);
+    } else {
+        double start = cli_now();
+        status = render_reference(lab, path);
+        if (!status && !quiet)
+            printf("%s, %s: reference made in %s: %s\n", spec->scenes[scene].name, c->name, cli_seconds(took, cli_now() - start), path);
+    }
+    fflush(stdout);
+    free(path);
+    return status;
+}
+
+noc_render_params experiment_params(const experiment_lab *lab, const experiment_run *run) {
+    noc_render_params p = lab->spec.configs[run->config].params;
+    p.seed = lab->spec.seed + (uint32_t)run->repetition;
+    p.accumulate = false; /* the mean is made here, so that one run gives both curves */
+    return p;
+}
+
+const char *experiment_machine(void) {
+    static char machine[256];
+    if (*machine)
+        return machine;
+    char line[256], model[128] = "unknown processor";
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    while (file && fgets(line, sizeof(line), file)) {
+        char *colon = strchr(line, ':');
+        if (!colon || strncmp(line, "model name", 10))
+            continue;
+        line[strcspn(line, "\n")] = 0;
+        snprintf(model, sizeof(model), "%.120s", colon + 1 + strspn(colon + 1, " "));
+        break;
+    }
+    if (file)
+        fclose(file);
+    struct utsname name = { .sysname = "" };
+    uname(&name);
+    snprintf(machine, sizeof(machine), "%s, %ld processors, %.20s %.40s", model, sysconf(_SC_NPROCESSORS_ONLN), name.sysname, name.machine);
+    return machine;
+}
+
+void experiment_run_key(const experiment_lab *lab, experiment_run *run) {
+    const experiment_spec *spec = &lab->spec;
+    noc_render_params params = experiment_params(lab, run);
+    hash_state hash = hash_start();
+    hash_text(&hash, lab->reference_key);
+    hash_text(&hash, spec->scenes[run->scene].name);
+    hash_text(&hash, spec->cameras[run->camera].name);
+    hash_text(&hash, spec->configs[run->config].name);
+    hash_text(&hash, experiment_machine()); /* times of two machines do not mix */
+    hash_options(&hash, noc_render_options(), &params);
+    hash_bytes(&hash, &run->repetition, sizeof(run->repetition));
+    hash_bytes(&hash, &lab->args->threads, sizeof(lab->args->threads));
+    hash_bytes(&hash, &spec->ceiling, sizeof(spec->ceiling));
+    hash_finish(&hash, run->key);
+}

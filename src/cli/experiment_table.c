@@ -1,0 +1,191 @@
+/* results.csv: one row a configuration, camera, repetition, frame and mode, appended as they come. Its key column tells which
+ * settings a row belongs to, so an experiment goes on where it stopped and never mixes in rows of other settings. */
+#include "experiment.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char header[] =
+    "scene,camera,configuration,repetition,mode,frame,seed,wall_s,cpu_s,wall_total_s,cpu_total_s,rmse8,relmse,relmse_clamped,"
+    "bias,rmse8_all,relmse_all,relmse_clamped_all,bias_all,build_s,memory_bytes,rays_shadow,dropped,key";
+static const char *const modes[] = { "alone", "accumulated" };
+enum { TELLING = 7, FIELDS = TELLING + COL_COUNT + 1, MODE = 4, FRAME = 5 };
+
+/* Splits a line in place; a field in quotes may hold commas and doubled quotes. false: not this many fields. */
+static bool split(char *line, char *fields[FIELDS]) {
+    char *c = line;
+    for (int i = 0; i < FIELDS; i++) {
+        bool quoted = *c == '"';
+        char *out = fields[i] = c += quoted;
+        for (; quoted ? *c && !(*c == '"' && c[1] != '"') : *c && *c != ','; c++) {
+            c += quoted && *c == '"';
+            *out++ = *c;
+        }
+        if (quoted && *c++ != '"')
+            return false;
+        char end = *c;
+        *out = 0;
+        if (end != (i + 1 < FIELDS ? ',' : 0))
+            return false;
+        c++;
+    }
+    return true;
+}
+
+static bool parse_row(char *line, experiment_stored *row) {
+    char *fields[FIELDS], *end;
+    if (!split(line, fields) || strlen(fields[FIELDS - 1]) != EXPERIMENT_KEY - 1)
+        return false;
+    memcpy(row->key, fields[FIELDS - 1], EXPERIMENT_KEY);
+    row->mode = strcmp(fields[MODE], modes[EXPERIMENT_ACCUMULATED]) ? EXPERIMENT_ALONE : EXPERIMENT_ACCUMULATED;
+    row->frame = atoi(fields[FRAME]);
+    row->claimed = false;
+    for (int i = 0; i < COL_COUNT; i++) {
+        row->values[i] = strtod(fields[TELLING + i], &end);
+        if (*end || end == fields[TELLING + i])
+            return false;
+    }
+    return row->frame > 0;
+}
+
+static void quote(FILE *out, const char *text) {
+    bool plain = !strpbrk(text, ",\"");
+    if (!plain)
+        fputc('"', out);
+    for (const char *c = text; *c; c++) {
+        if (*c == '"')
+            fputc('"', out);
+        fputc(*c, out);
+    }
+    fputs(plain ? "," : "\",", out);
+}
+
+static void print_row(const experiment_lab *lab, FILE *out, const experiment_run *run, int mode, int frame) {
+    const experiment_spec *spec = &lab->spec;
+    quote(out, spec->scenes[run->scene].name);
+    quote(out, spec->cameras[run->camera].name);
+    quote(out, spec->configs[run->config].name);
+    fprintf(out, "%d,%s,%d,%u,", run->repetition + 1, modes[mode], frame, experiment_params(lab, run).seed);
+    for (int i = 0; i < COL_COUNT; i++)
+        fprintf(out, "%.9g,", run->rows[mode][frame - 1].values[i]);
+    fprintf(out, "%s\n", run->key);
+}
+
+/* Reads what earlier sessions left. *whole: bytes up to the end of the last whole line; -1 where the file is no such table. */
+static int read_table(experiment_lab *lab, const char *path, long *whole) {
+    *whole = 0;
+    FILE *file = fopen(path, "r");
+    if (!file && errno == ENOENT)
+        return CLI_OK;
+    if (!file) {
+        cli_error("%s: %s", path, strerror(errno));
+        return CLI_FAILURE;
+    }
+    char *line = NULL;
+    size_t size = 0, room = 0;
+    bool first = true;
+    for (ssize_t n; (n = getline(&line, &size, file)) > 0 && line[n - 1] == '\n'; *whole += n) {
+        line[n - 1] = 0;
+        if (first && strcmp(line, header)) {
+            *whole = -1;
+            break;
+        }
+        if (lab->stored_count == room) {
+            room = room ? 2 * room : 256;
+            lab->stored = realloc(lab->stored, room * sizeof(*lab->stored));
+            if (!lab->stored) {
+                cli_error("out of memory");
+                exit(CLI_FAILURE);
+            }
+        }
+        if (!first && parse_row(line, &lab->stored[lab->stored_count]))
+            lab->stored_count++;
+        first = false;
+    }
+    free(line);
+    fclose(file);
+    return CLI_OK;
+}
+
+static int open_for_rows(experiment_lab *lab, const char *path, long whole) {
+    lab->csv = fopen(path, whole ? "r+" : "w");
+    bool ok = lab->csv != NULL;
+    if (ok && whole) /* a line that was cut short when the program was killed */
+        ok = !ftruncate(fileno(lab->csv), whole) && !fseek(lab->csv, 0, SEEK_END);
+    else if (ok)
+        ok = fprintf(lab->csv, "%s\n", header) > 0 && !fflush(lab->csv);
+    if (!ok)
+        cli_error("%s: %s", path, strerror(errno));
+    return ok ? CLI_OK : CLI_FAILURE;
+}
+
+static int put_aside(const experiment_lab *lab, const char *path) {
+    char *old = cli_format("%s/results.old.csv", lab->folder);
+    int status = rename(path, old) ? CLI_FAILURE : CLI_OK;
+    if (status)
+        cli_error("%s: %s", path, strerror(errno));
+    free(old);
+    return status;
+}
+
+int experiment_open_table(experiment_lab *lab) {
+    char *path = cli_format("%s/results.csv", lab->folder);
+    long whole;
+    int status = read_table(lab, path, &whole);
+    if (!status && whole < 0) {
+        cli_error("warning: %s is a table of another kind; it is kept as results.old.csv", path);
+        status = put_aside(lab, path);
+        whole = 0;
+    }
+    status = status ? status : open_for_rows(lab, path, whole);
+    free(path);
+    return status;
+}
+
+void experiment_claim(experiment_lab *lab, experiment_run *run) {
+    for (size_t i = 0; i < lab->stored_count; i++) {
+        experiment_stored *row = &lab->stored[i];
+        if (row->claimed || strcmp(row->key, run->key))
+            continue;
+        row->claimed = true;
+        if (!run->rows[row->mode] || row->frame > lab->spec.configs[run->config].frames)
+            continue; /* asked for before, not now: it stays in the table */
+        experiment_row *mine = &run->rows[row->mode][row->frame - 1];
+        lab->rows_done += !mine->done;
+        lab->rows_old += !mine->done;
+        mine->done = true;
+        memcpy(mine->values, row->values, sizeof(mine->values));
+    }
+}
+
+int experiment_append(experiment_lab *lab, const experiment_run *run, int mode, int frame) {
+    print_row(lab, lab->csv, run, mode, frame);
+    if (!fflush(lab->csv))
+        return CLI_OK;
+    cli_error("%s/results.csv: %s", lab->folder, strerror(errno));
+    return CLI_FAILURE;
+}
+
+int experiment_tidy_table(experiment_lab *lab) {
+    size_t others = 0;
+    for (size_t i = 0; i < lab->stored_count; i++)
+        others += !lab->stored[i].claimed;
+    if (!others)
+        return CLI_OK;
+    cli_error("%zu rows of results.csv came from other settings; they are kept in results.old.csv", others);
+    char *path = cli_format("%s/results.csv", lab->folder), *temporary;
+    int status = put_aside(lab, path);
+    FILE *file = status ? NULL : experiment_create(lab, "results.csv", &temporary);
+    free(path);
+    if (!file)
+        return CLI_FAILURE;
+    fprintf(file, "%s\n", header);
+    for (size_t r = 0; r < lab->run_count; r++)
+        for (int frame = 1; frame <= lab->spec.configs[lab->runs[r].config].frames; frame++)
+            for (int mode = 0; mode < EXPERIMENT_MODES; mode++)
+                if (lab->runs[r].rows[mode] && lab->runs[r].rows[mode][frame - 1].done)
+                    print_row(lab, file, &lab->runs[r], mode, frame);
+    return experiment_finish(lab, file, "results.csv", temporary);
+}

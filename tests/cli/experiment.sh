@@ -1,0 +1,179 @@
+#!/bin/sh
+# The laboratory: rows, resuming, the reference's cache, report and plots, and what is wrong with a spec.
+. "$(dirname "$0")/lib.sh"
+cat >spec.json <<'SPEC'
+{
+  "scene": { "name": "city", "inputs": ["builtin:city"], "city-size": 150 },
+  "cameras": [ { "name": "street", "view": "street" }, { "name": "up <&> \"high\"", "eye": [0, -60, 90], "target": [0, 0, 0], "fov": 60 } ],
+  "size": "48x32", "frames": 3, "repetitions": 2,
+  "reference": { "rays": 8, "frames": 2 },
+  "configurations": [ { "name": "is|", "method": "is" }, { "name": "ris, *", "method": "ris", "candidates": "*" } ]
+}
+SPEC
+
+# rows FOLDER [FRAMES]: the table without times, sorted; fails where a row has not as many fields as the header
+rows() {
+    python3 -c '
+import csv, sys
+table = list(csv.reader(open(sys.argv[1] + "/results.csv")))
+assert all(len(row) == len(table[0]) for row in table)
+drop = [i for i, name in enumerate(table[0]) if name in ("wall_s", "cpu_s", "wall_total_s", "cpu_total_s", "build_s")]
+frame = table[0].index("frame")
+last = int(sys.argv[2]) if len(sys.argv) > 2 else 1 << 30
+for row in [table[0]] + sorted(r for r in table[1:] if int(r[frame]) <= last):
+    print([v for i, v in enumerate(row) if i not in drop])' "$@"
+}
+
+run experiment spec.json -o a --cache cache
+choices=$("$program" help render | tr -s '\n ' ' ' | grep -o 'candidates come from: [a-z|]*' | sed 's/.*: //' | tr '|' '\n' | grep -c .)
+expected=$((2 * 2 * (1 + choices) * 3 * 2)) # cameras, repetitions, configurations, frames, modes
+rows a >a.rows
+test $status = 0 && test "$(wc -l <a/results.csv)" = $((expected + 1)) && test "$choices" -ge 2 && test -s a.rows
+result $? "one row a configuration, camera, repetition, frame and mode; \"*\" is each choice" "$(wc -l <a/results.csv), not $((expected + 1))"
+head -n 1 a/results.csv | grep -q '^scene,camera,configuration,repetition,mode,frame,seed,wall_s,cpu_s,.*relmse_clamped,bias.*,build_s,memory_bytes'
+result $? "the header names the columns"
+python3 - <<'CHECK'
+import csv
+rows = list(csv.DictReader(open("a/results.csv")))
+of = lambda **want: [r for r in rows if all(r[k] == v for k, v in want.items())]
+# Times add up, the first frame is its own mean, repetitions differ, and lists beat plain sampling from the first frame on.
+for r in rows:
+    if r["frame"] == "1":
+        assert r["cpu_s"] == r["cpu_total_s"]
+        other = of(key=r["key"], frame="1", mode="alone")[0]
+        assert abs(float(other["relmse"]) - float(r["relmse"])) <= 1e-6 * float(r["relmse"])
+    else:
+        before = of(key=r["key"], mode=r["mode"], frame=str(int(r["frame"]) - 1))[0]
+        assert abs(float(before["cpu_total_s"]) + float(r["cpu_s"]) - float(r["cpu_total_s"])) < 1e-7
+one, two = (of(configuration="is|", camera="street", repetition=n, frame="3", mode="accumulated")[0] for n in "12")
+assert one["relmse"] != two["relmse"] and one["seed"] != two["seed"]
+error = lambda name: sum(float(r["rmse8"]) for r in of(configuration=name, camera="street", frame="1", mode="alone"))
+assert error("ris, lists") < 0.8 * error("is|"), (error("ris, lists"), error("is|"))
+CHECK
+result $? "times add up, repetitions have their own seeds, and the figures tell methods apart"
+
+# A figure of the table is what compare says of the pictures that are kept.
+key=$(python3 -c 'import csv; print([r["key"] for r in csv.DictReader(open("a/results.csv")) if r["camera"] == "street"][0])')
+for reference in cache/*.exr; do "$program" compare --json "a/pictures/$key.exr" "$reference"; done >compared
+python3 -c '
+import csv, re
+row = [r for r in csv.DictReader(open("a/results.csv")) if r["key"] == "'"$key"'" and r["frame"] == "1"][0]
+said = [float(x) for x in re.findall(r"\"no_emitter\": .*?\"relmse\": ([^,]*)", open("compared").read())]
+assert any(abs(float(row["relmse"]) - x) < 1e-6 * x for x in said), (row["relmse"], said)'
+result $? "its figures are those of nocturne compare"
+
+# The report: its links lead somewhere, plots are XML with a curve for each configuration, crops are whole.
+links=$(grep -o '](\([^)]*\))' a/report.md | sed 's/^](//; s/)$//' | sort -u)
+missing=
+for link in $links; do [ -s "a/$link" ] || missing="$missing $link"; done
+test -z "$missing" && test "$(echo "$links" | grep -c '\.svg$')" = 6 && test "$(echo "$links" | grep -c '\.png$')" = 2
+result $? "report.md links to six plots and two sheets of crops, which are there" "$missing $links"
+grep -q '^| is\\| | ' a/report.md && grep -q -- 'experiment spec.json -o a --cache cache' a/report.md
+result $? "names are escaped in it, and the command is told"
+python3 - "$((1 + choices))" a/*.svg <<'CHECK'
+import sys, xml.etree.ElementTree as tree
+svg = "{http://www.w3.org/2000/svg}"
+for path in sys.argv[2:]:
+    root = tree.parse(path).getroot()
+    lines = root.findall(".//" + svg + "polyline")
+    assert len(lines) == int(sys.argv[1]), path
+    width, height = (float(root.get(k)) for k in ("width", "height"))
+    for line in lines:
+        points = [tuple(map(float, p.split(","))) for p in line.get("points").split()]
+        assert len(points) == 3 and all(0 < x < width and 0 < y < height for x, y in points), (path, points)
+    text = "|".join("".join(t.itertext()) for t in root.iter(svg + "text"))
+    assert "is|" in text and "ris, lists" in text and ("frame" in text or "seconds" in text), text
+CHECK
+result $? "plots are well-formed, with a curve and a name for each configuration"
+if command -v xmllint >/dev/null; then xmllint --noout a/*.svg 2>err; result $? "xmllint agrees"; else skip "xmllint agrees" "no xmllint here"; fi
+sheet=$(for f in a/*.png; do meta "$f" size; done | sort -u)
+panels=$((2 + choices)) columns=$((2 + choices > 4 ? 4 : 2 + choices))
+test "$sheet" = "$((columns * 320 + (columns - 1) * 4)) $(((panels + columns - 1) / columns * (220 + 4) - 4))"
+result $? "crops: the reference and each configuration, a third of the picture enlarged" "$sheet"
+
+# Again: nothing is measured, the reference is not made.
+before=$(ls -i --full-time cache) table=$(cksum <a/results.csv)
+run experiment spec.json -o a --cache cache
+test $status = 0 && grep -q ', 0 of them made now' out && test "$(cksum <a/results.csv)" = "$table"; result $? "finished rows are not made again"
+test "$(grep -c 'reference from cache/' out)" = 2 && test "$before" = "$(ls -i --full-time cache)"; result $? "nor is the reference"
+
+# Killed while a line was being written, in the middle of a run; a picture deleted.
+cp -r a b
+head -c $(($(head -n 12 a/results.csv | wc -c) + 70)) a/results.csv >b/results.csv
+rm "b/pictures/$key.exr"
+run experiment spec.json -o b --cache cache
+rows b >b.rows
+test $status = 0 && cmp -s a.rows b.rows && grep -q " $((expected - 11)) of them made now" out && test -s "b/pictures/$key.exr"
+result $? "after a kill the rest is made, and the rows are the same" "$(diff a.rows b.rows | head -n 5)"
+test "$(head -n 12 a/results.csv)" = "$(head -n 12 b/results.csv)"; result $? "those that were there are kept as they were"
+
+# Ctrl-C in the middle of 20000 frames.
+sed 's/"frames": 3/"frames": 20000/; s/"repetitions": 2/"repetitions": 1/' spec.json >long.json
+mkdir c
+"$program" experiment long.json -o c --cache cache >out 2>err </dev/null &
+pid=$!
+tries=0
+until [ "$(cat c/results.csv 2>/dev/null | wc -l)" -gt 12 ]; do
+    tries=$((tries + 1))
+    [ $tries -gt 600 ] && break
+    sleep 0.1
+done
+kill -INT $pid
+wait $pid
+status=$?
+told=$(sed -n 's/.*interrupted: \([0-9]*\) of [0-9]* rows are in c.results.csv; the same command goes on there/\1/p' err)
+test $status = 130 && test "$told" = $(($(wc -l <c/results.csv) - 1)) && test ! -e c/report.md; result $? "Ctrl-C keeps the rows, and says how to go on"
+sed 's/"repetitions": 2/"repetitions": 1/' spec.json >short.json
+run experiment short.json -o c --cache cache
+rows c 3 >c.rows
+run experiment short.json -o d --cache cache
+rows d 3 >d.rows
+cmp -s c.rows d.rows; result $? "and it does, to the same rows" "$(diff c.rows d.rows | head -n 5)"
+
+# Other settings under the same names: their rows are not mixed.
+sed 's/"method": "is"/"method": "is", "emitters": false/' short.json >other.json
+run experiment other.json -o d --cache cache
+test $status = 0 && grep -q '12 rows of results.csv came from other settings' err && test "$(wc -l <d/results.csv)" = $((expected / 2 + 1)) && test "$(wc -l <d/results.old.csv)" = $((expected / 2 + 13))
+result $? "rows of other settings are put aside"
+for f in cache/*.exr; do head -c 300 "$f" >cut && cp cut "$f"; done
+run experiment short.json -o e --cache cache
+rows e >e.rows
+test $status = 0 && test "$(grep -c 'reference made' out)" = 2 && cmp -s d.rows e.rows && test ! -s err; result $? "a damaged reference is made again"
+
+# wrong NAME PATTERN SED: the spec with one thing wrong
+wrong() {
+    sed "$3" spec.json >wrong.json
+    expect "$1" 2 "^nocturne: wrong.json$2" experiment wrong.json -o w --cache cache
+}
+wrong "JSON that breaks off, with its line" ':4:' 's/"size": /"size" /'
+wrong "a member given twice" ':4:.*duplicate' 's/"frames": 3/"frames": 3, "frames": 4/'
+wrong "an unknown option, with the nearest" ': configurations\[1\]: no option "candidatse"; is it "candidates"\?' 's/"candidates"/"candidatse"/'
+wrong "an unknown member" ': no option "framse"; is it "frames"\?' 's/"frames": 3/"framse": 3/'
+wrong "an unknown choice" ': configurations\[0\]: method: "iss" is none of reference' 's/"is" }/"iss" }/'
+wrong "a number out of range" ': reference: rays: "0" is outside 1 to 1024' 's/"rays": 8/"rays": 0/'
+wrong "what is no value" ': configurations\[0\]: method: this cannot be its value' 's/"is" }/{} }/'
+wrong "a size that is none" ': size: "48" is not' 's/48x32/48/'
+wrong "two configurations of one name" ': configurations: the name "is\|" is given twice' 's/"ris, \*", "method": "ris", "candidates": "\*"/"is|", "method": "ris"/'
+wrong "a configuration without a name" ': configurations\[0\]: it needs a name' 's/"name": "is|",//'
+wrong "a camera with eye alone" ': cameras\[1\]: eye and target' 's/, "target": \[0, 0, 0\]//'
+wrong "no scene" ': it needs one of scene' '/"scene"/d'
+wrong "options of a city that is not drawn" ': scene: city-size is for' 's/builtin:city/city.gml/'
+wrong "configurations that are no list" ': it needs scenes, cameras and configurations' 's/"configurations".*/"configurations": 3/'
+wrong "too many rows" ': it asks for more than' 's/"frames": 3/"frames": 100000/'
+echo '[1]' >wrong.json
+expect "a spec that is no object" 2 'one object' experiment wrong.json -o w
+: >wrong.json
+expect "an empty spec" 2 'wrong.json:1:' experiment wrong.json -o w
+expect "a spec that is not there" 1 '^nocturne: .*missing.json.*No such file' experiment missing.json -o w
+expect "no spec" 2 'one spec' experiment -o w
+test ! -e w; result $? "nothing is written after an error"
+sed 's/"builtin:city"\], "city-size": 150/"gone.gml"]/' spec.json >gone.json
+expect "an input that is not there" 1 'gone.gml' experiment gone.json -o w --cache cache
+: >file
+expect "a folder that cannot be" 1 'file/w: this folder cannot be used: Not a directory' experiment spec.json -o file/w --cache cache
+expect "a cache that cannot be" 1 'file: this folder cannot be used' experiment spec.json -o w --cache file
+for spec in "$source_dir"/experiments/*.json; do
+    # The ready specs are right up to their folder, which cannot be made.
+    expect "$(basename "$spec") is right" 1 'file/w: this folder' experiment "$spec" -o file/w
+done
+finish
