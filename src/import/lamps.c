@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#define COARSE_DISTANCE 100e3 /* m */
 #define OUTSIDE 2000.0       /* m; lamps farther than this from the city do not light it */
 #define GROUND_SHARE 0.2     /* of the extent that streets, lawns and water cover when they are the ground */
 
@@ -83,6 +84,22 @@ static bool shines(const noc_scene *scene) {
     return false;
 }
 
+/* Positions are floats from the origin on: far from it they are coarse. */
+static void warn_if_coarse(const importer *im) {
+    const noc_scene *scene = im->scene;
+    size_t far = 0, vertices = scene->positions.len / 3;
+    double farthest = 0;
+    for (size_t i = 0; i < vertices; i++) {
+        double d = hypot((double)scene->positions.data[3 * i], (double)scene->positions.data[3 * i + 1]);
+        far += d > COARSE_DISTANCE;
+        farthest = NOC_MAX(farthest, d);
+    }
+    if (far && !im->far_said)
+        noc_warn(im->log, "%zu of %zu vertices lie more than %.0f km from the scene's origin, the farthest %.0f km: positions "
+                          "there are rounded to about %.2g m", far, vertices, COARSE_DISTANCE / 1e3, farthest / 1e3,
+                 ldexp(1, ilogb(farthest) - 24));
+}
+
 static bool go_on(importer *im, double done) {
     const noc_progress *progress = &im->params->progress;
     if (progress->update && !progress->update(progress->user, "lamps", done))
@@ -119,6 +136,7 @@ noc_status finish_city(importer *im) {
         noc_warn(im->log, "the inputs hold nothing that can be seen: no surfaces and no lamps");
     if (!go_on(im, 0.9))
         return NOC_ERR_CANCELLED;
+    warn_if_coarse(im);
     if (needs_ground(im, &e))
         lay_ground(im, &e);
     city_lamp_params params = { im->params->lamp_height, im->params->lamp_lumens, im->params->lamp_kelvin, true,

@@ -98,7 +98,7 @@ static void bounds_so_far(const importer *im, double lo[2], double hi[2]) {
     }
 }
 
-static void warn_if_far(const importer *im, const double lo[2], const double hi[2], size_t first_float) {
+static void warn_if_far(importer *im, const double lo[2], const double hi[2], size_t first_float) {
     double a[2] = { INFINITY, INFINITY }, b[2] = { -INFINITY, -INFINITY }, gap = 0;
     for (size_t i = first_float; i + 2 < im->scene->positions.len; i += 3)
         for (size_t k = 0; k < 2; k++) {
@@ -108,7 +108,9 @@ static void warn_if_far(const importer *im, const double lo[2], const double hi[
         }
     for (int k = 0; k < 2; k++)
         gap = NOC_MAX(gap, NOC_MAX(a[k] - hi[k], lo[k] - b[k]));
-    if (lo[0] <= hi[0] && a[0] <= b[0] && gap > FAR_AWAY)
+    bool far = lo[0] <= hi[0] && a[0] <= b[0] && gap > FAR_AWAY;
+    im->far_said = im->far_said || far;
+    if (far)
         noc_warn(im->log, "%s: lies %.0f km from the rest of the scene: %s", im->inputs[im->current].path, gap / 1000,
                  im->mesh_from_origin ? "if its coordinates are those of a CRS, say with --crs which one"
                                       : "are its coordinates in the CRS that --crs says?");
@@ -165,9 +167,15 @@ static noc_status read_input(importer *im, size_t index) {
         status = read_mesh(im, in, stream);
     } else {
         geo_sink sink = sink_create(im);
+        struct look_ahead *ahead = im->placed ? NULL : ahead_create(im, &sink);
         status = in->reader->read(stream, im->params, &sink, &in->file.format);
+        if (ahead) { /* after an error too: the report holds what came before it */
+            noc_status released = ahead_release(ahead);
+            status = status ? status : released;
+        }
         if (!status)
             status = sink_flush(im); /* of a reader that gives no objects */
+        ahead_destroy(ahead);
     }
     if (im->cancelled)
         status = NOC_ERR_CANCELLED;

@@ -48,6 +48,8 @@ typedef struct importer {
     geo_crs *scene_crs;       /* belongs to the scene; NULL: local metres */
     double origin[3];
     const char *placed_by;    /* path of the input that settled it */
+    bool far_said;            /* that an input lies far from the others */
+    NOC_ARRAY(double) given;  /* the points that are placed, as they were given */
     NOC_ARRAY(source_crs *) sources;
     source_crs *source;       /* of the coordinates that come next */
     bool mesh_from_origin;    /* the mesh that is read is in metres from the scene's origin */
@@ -81,6 +83,16 @@ extern const noc_reader *const noc_readers[];
 const noc_reader *find_reader(const noc_reader *const *readers, const char *head, size_t size);
 
 /* place.c */
+typedef struct place_sample {
+    source_crs *source;
+    double xyz[3];
+    const char *id;
+} place_sample;
+/* Centre of the finite ones of some points; false if there are none. */
+bool place_centre(const double *xyz, size_t count, double centre[3]);
+/* Settles the scene's CRS and origin by where a file's first objects lie: by the first one, unless it lies far from the
+ * middle of them. Nothing happens without samples. */
+noc_status place_settle(importer *im, const place_sample *samples, size_t count);
 noc_status place_crs(importer *im, const char *srs_name, const char *place, bool *lat_first);
 /* Coordinates as emitted (the extent is taken of them) to local metres, in place. *usable is false if they cannot be
  * transformed. The first ones settle the scene's CRS and origin. */
@@ -91,6 +103,11 @@ noc_status place_mesh(importer *im);
 noc_status place_mesh_points(void *importer, double *xyz, size_t count);
 void place_finish_file(importer *im);
 void place_destroy(importer *im);
+
+/* ahead.c: puts itself before a sink until the place is settled. */
+struct look_ahead *ahead_create(importer *im, geo_sink *sink);
+noc_status ahead_release(struct look_ahead *a); /* settles the place with what there is, and passes everything on */
+void ahead_destroy(struct look_ahead *a);       /* NULL is allowed */
 
 /* sink.c */
 geo_sink sink_create(importer *im);

@@ -11,6 +11,9 @@
 
 #define AXIS_TRIES 16      /* polygons that are looked at before the order of axes is left as it is */
 #define FAR_OUTSIDE 3.0    /* degrees outside the CRS's area of use that are worth a warning */
+#define STRAY_METRES 20e3  /* a first object this far from the middle of the first ones does not settle the place */
+#define STRAY_DEGREES 0.2
+#define NOWHERE 1e8        /* m from the origin: farther than anything on Earth in any projection in use */
 #define LOCAL_ORIGIN 100e3 /* m; local coordinates nearer to zero than this keep it as the origin */
 
 static bool is_blank(const char *text) {
@@ -146,7 +149,7 @@ static void set_place(importer *im, geo_crs *crs, const double origin[3]) {
     im->scene->crs_free = geo_crs_destroy;
 }
 
-/* Settles CRS and origin by the first coordinates, given in their own CRS. Heights stay what they are: z has no origin. */
+/* Settles CRS and origin by a point, given in their own CRS. Heights stay what they are: z has no origin. */
 static noc_status settle(importer *im, const source_crs *source, const double point[3]) {
     geo_crs *crs;
     bool preset = im->scene->crs_name && is_blank(im->params->scene_crs) && !im->inspect;
@@ -209,29 +212,97 @@ static noc_status prepare(importer *im, source_crs *s, const double point[3]) {
     return NOC_OK;
 }
 
-/* Widens the file's extent; *centre is that of these points alone. False if none is finite. */
-static bool take_extent(noc_report_file *file, const double *xyz, size_t count, double centre[3]) {
-    double lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY };
-    for (size_t i = 0; i < count; i++)
-        for (int k = 0; k < 3; k++) {
-            double x = xyz[3 * i + (size_t)k];
-            if (isfinite(x)) {
-                lo[k] = NOC_MIN(lo[k], x);
-                hi[k] = NOC_MAX(hi[k], x);
-            }
+/* Bounds of the finite coordinates; heights may have none (lo > hi). False if no place at all is finite. */
+static bool bounds_of(const double *xyz, size_t count, double lo[3], double hi[3]) {
+    for (int k = 0; k < 3; k++) {
+        lo[k] = INFINITY;
+        hi[k] = -INFINITY;
+    }
+    for (size_t i = 0; i < 3 * count; i++)
+        if (isfinite(xyz[i])) {
+            lo[i % 3] = NOC_MIN(lo[i % 3], xyz[i]);
+            hi[i % 3] = NOC_MAX(hi[i % 3], xyz[i]);
         }
-    if (!(lo[0] <= hi[0] && lo[1] <= hi[1]))
-        return false;
+    return lo[0] <= hi[0] && lo[1] <= hi[1];
+}
+
+static void centre_of(const double lo[3], const double hi[3], double centre[3]) {
+    for (int k = 0; k < 3; k++)
+        centre[k] = lo[k] <= hi[k] ? lo[k] + (hi[k] - lo[k]) / 2 : 0;
+}
+
+bool place_centre(const double *xyz, size_t count, double centre[3]) {
+    double lo[3], hi[3];
+    bool any = bounds_of(xyz, count, lo, hi);
+    if (any)
+        centre_of(lo, hi, centre);
+    return any;
+}
+
+static void widen_extent(noc_report_file *file, const double lo[3], const double hi[3]) {
     bool has_height = lo[2] <= hi[2]; /* lamps may have none */
     for (int k = 0; k < 3; k++) {
+        double a = lo[k], b = hi[k];
         if (k == 2 && !has_height)
-            lo[k] = hi[k] = file->has_extent ? file->extent_min[2] : 0;
-        centre[k] = lo[k] + (hi[k] - lo[k]) / 2;
-        file->extent_min[k] = file->has_extent ? NOC_MIN(file->extent_min[k], lo[k]) : lo[k];
-        file->extent_max[k] = file->has_extent ? NOC_MAX(file->extent_max[k], hi[k]) : hi[k];
+            a = b = file->has_extent ? file->extent_min[2] : 0;
+        file->extent_min[k] = file->has_extent ? NOC_MIN(file->extent_min[k], a) : a;
+        file->extent_max[k] = file->has_extent ? NOC_MAX(file->extent_max[k], b) : b;
     }
     file->has_extent = true;
-    return true;
+}
+
+static int compare_doubles(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The CRS that most samples are in, the earlier one of equals. */
+static source_crs *commonest_source(const place_sample *samples, size_t count) {
+    source_crs *best = NULL;
+    size_t most = 0;
+    for (size_t i = 0; i < count; i++) {
+        size_t n = 0;
+        for (size_t j = 0; j < count; j++)
+            n += samples[j].source == samples[i].source;
+        if (n > most) {
+            most = n;
+            best = samples[i].source;
+        }
+    }
+    return best;
+}
+
+noc_status place_settle(importer *im, const place_sample *samples, size_t count) {
+    if (!count)
+        return NOC_OK;
+    source_crs *s = commonest_source(samples, count);
+    double *axis[2] = { noc_alloc(count * sizeof(double)), noc_alloc(count * sizeof(double)) };
+    double first[3] = { 0 }, point[3] = { 0 };
+    size_t n = 0, in_area = 0;
+    for (int pass = 0; pass < 3; pass++) /* decides about the axes; counts; takes */
+        for (size_t i = 0; i < count; i++) {
+            double p[3];
+            memcpy(p, samples[i].xyz, sizeof(p));
+            fix_axes(im, samples[i].source, p, 1, samples[i].id);
+            if (pass == 0 || samples[i].source != s)
+                continue;
+            bool inside = s->crs && geo_crs_outside(s->crs, p[0], p[1]) <= FAR_OUTSIDE;
+            in_area += pass == 1 && inside;
+            if (pass == 1 || (in_area && !inside)) /* what lies where the CRS is not for, only if all does */
+                continue;
+            if (n == 0)
+                memcpy(first, p, sizeof(p));
+            axis[0][n] = p[0];
+            axis[1][n++] = p[1];
+        }
+    for (int k = 0; k < 2; k++) {
+        qsort(axis[k], n, sizeof(double), compare_doubles);
+        point[k] = axis[k][(n - 1) / 2];
+        free(axis[k]);
+    }
+    double stray = s->crs && geo_crs_is_geographic(s->crs) ? STRAY_DEGREES : STRAY_METRES;
+    bool by_first = fabs(first[0] - point[0]) <= stray && fabs(first[1] - point[1]) <= stray;
+    return prepare(im, s, by_first ? first : point);
 }
 
 noc_status place_points(importer *im, double *xyz, size_t count, const char *id, bool *usable) {
@@ -243,23 +314,37 @@ noc_status place_points(importer *im, double *xyz, size_t count, const char *id,
             return status;
     }
     source_crs *s = im->source;
-    double centre[3];
+    double lo[3], hi[3], centre[3];
     fix_axes(im, s, xyz, count, id);
-    if (!take_extent(&in->file, xyz, count, centre)) {
+    im->given.len = 0;
+    if (!bounds_of(xyz, count, lo, hi)) {
         geo_issue(in->issues, false, "coordinates that are not finite", id);
         return NOC_OK;
     }
+    centre_of(lo, hi, centre);
     if (!s->ready) {
         noc_status status = prepare(im, s, centre);
         if (status)
             return status;
     }
-    if (s->to_scene && geo_transform_points(s->to_scene, xyz, count)) {
-        geo_issue(in->issues, false, "coordinates that have no place in the scene's CRS", id);
+    size_t numbers = 3 * count;
+    array_append(&im->given, xyz, numbers);
+    size_t astray = 0, failed = 0;
+    if (s->to_scene)
+        failed = geo_transform_points(s->to_scene, xyz, count);
+    for (size_t i = 0; i < numbers; i++)
+        if (isfinite(xyz[i]) && !(fabs(xyz[i] - im->origin[i % 3]) < NOWHERE)) {
+            xyz[i] = NAN;
+            astray++;
+        }
+    if (failed || astray) {
+        geo_issue(in->issues, false, failed ? "coordinates that have no place in the scene's CRS"
+                                            : "coordinates that lie nowhere on Earth", id);
         return NOC_OK;
     }
     for (size_t i = 0; i < 3 * count; i++)
         xyz[i] -= im->origin[i % 3];
+    widen_extent(&in->file, lo, hi);
     *usable = true;
     return NOC_OK;
 }
@@ -305,14 +390,24 @@ noc_status place_mesh_points(void *ctx, double *xyz, size_t count) {
     importer *im = ctx;
     bool usable;
     if (im->mesh_from_origin) {
-        double centre[3];
-        take_extent(&im->inputs[im->current].file, xyz, count, centre);
+        double lo[3], hi[3];
+        if (bounds_of(xyz, count, lo, hi))
+            widen_extent(&im->inputs[im->current].file, lo, hi);
         return NOC_OK;
     }
     noc_status status = place_points(im, xyz, count, "", &usable);
-    for (size_t i = 0; i < 3 * count && !status && !usable; i++)
-        xyz[i] -= im->origin[i % 3]; /* what has no place is NaN: the scene leaves out its triangles alone */
-    return status;
+    if (status || usable)
+        return status;
+    /* what has no place is NaN: the scene leaves out its triangles alone */
+    for (size_t i = 0; i < 3 * count; i++) {
+        xyz[i] -= im->origin[i % 3];
+        if (i < im->given.len && !isfinite(xyz[i]))
+            im->given.data[i] = NAN;
+    }
+    double lo[3], hi[3];
+    if (im->given.len == 3 * count && bounds_of(im->given.data, count, lo, hi))
+        widen_extent(&im->inputs[im->current].file, lo, hi);
+    return NOC_OK;
 }
 
 void place_finish_file(importer *im) {
@@ -335,4 +430,5 @@ void place_destroy(importer *im) {
         free(s);
     }
     array_free(&im->sources);
+    array_free(&im->given);
 }

@@ -1,0 +1,165 @@
+/* Looks at a file's first objects before the scene's place is settled: a sink between the reader and the importer's own,
+ * which keeps what comes until there is enough of it, and from then on passes everything through. So one stray object at
+ * the beginning does not decide where the whole city lies. */
+#include "import/load.h"
+
+#include <math.h>
+
+#define ENOUGH_OBJECTS 64
+#define ENOUGH_POINTS 200000
+
+/* What a reader emitted, in its order. Texts and arrays in the arena. */
+typedef struct ahead_event {
+    enum { AHEAD_BEGIN, AHEAD_POLYGON, AHEAD_END, AHEAD_LAMP } kind;
+    source_crs *source;
+    union {
+        geo_object object;
+        geo_polygon polygon;
+        geo_lamp lamp;
+    } u;
+} ahead_event;
+
+struct look_ahead {
+    importer *im;
+    geo_sink sink; /* where everything goes in the end */
+    bool passing;
+    bool in_object, sampled; /* in an object whose place is known */
+    size_t points;
+    noc_arena arena;
+    NOC_ARRAY(ahead_event) events;
+    NOC_ARRAY(place_sample) samples;
+};
+
+static noc_status replay(struct look_ahead *a, const ahead_event *e) {
+    a->im->source = e->source;
+    switch (e->kind) {
+    case AHEAD_BEGIN: return a->sink.begin_object(a->sink.ctx, &e->u.object);
+    case AHEAD_POLYGON: return a->sink.polygon(a->sink.ctx, &e->u.polygon);
+    case AHEAD_END: return a->sink.end_object(a->sink.ctx);
+    case AHEAD_LAMP: break;
+    }
+    return a->sink.lamp(a->sink.ctx, &e->u.lamp);
+}
+
+noc_status ahead_release(struct look_ahead *a) {
+    if (a->passing)
+        return NOC_OK;
+    a->passing = true;
+    source_crs *source = a->im->source;
+    noc_status status = a->im->placed ? NOC_OK : place_settle(a->im, a->samples.data, a->samples.len);
+    for (size_t i = 0; i < a->events.len && !status; i++)
+        status = replay(a, &a->events.data[i]);
+    a->im->source = source;
+    array_free(&a->events);
+    array_free(&a->samples);
+    arena_free(&a->arena);
+    return status;
+}
+
+static ahead_event *push(struct look_ahead *a, int kind) {
+    array_push(&a->events, (ahead_event){ .kind = kind, .source = a->im->source });
+    return &a->events.data[a->events.len - 1];
+}
+
+/* Coordinates need a CRS, even if the file names none. */
+static noc_status ensure_source(struct look_ahead *a) {
+    return a->im->source ? NOC_OK : place_crs(a->im, NULL, a->im->inputs[a->im->current].path, NULL);
+}
+
+/* One sample an object: what has many polygons counts no more than what has one. */
+static noc_status keep_points(struct look_ahead *a, const double *xyz, size_t count, const char *id) {
+    place_sample s = { .source = a->im->source, .id = id };
+    if (!(a->in_object && a->sampled) && place_centre(xyz, count, s.xyz)) {
+        array_push(&a->samples, s);
+        a->sampled = true;
+    }
+    a->points += count;
+    return a->samples.len >= ENOUGH_OBJECTS || a->points >= ENOUGH_POINTS ? ahead_release(a) : NOC_OK;
+}
+
+static noc_status on_crs(void *ctx, const char *srs_name, const char *place, bool *lat_first) {
+    struct look_ahead *a = ctx;
+    return a->sink.crs(a->sink.ctx, srs_name, place, lat_first);
+}
+
+static noc_status on_begin_object(void *ctx, const geo_object *object) {
+    struct look_ahead *a = ctx;
+    if (a->passing)
+        return a->sink.begin_object(a->sink.ctx, object);
+    ahead_event *e = push(a, AHEAD_BEGIN);
+    e->u.object = *object;
+    e->u.object.id = arena_strdup(&a->arena, object->id);
+    a->in_object = true;
+    a->sampled = false;
+    return NOC_OK;
+}
+
+static noc_status on_end_object(void *ctx) {
+    struct look_ahead *a = ctx;
+    if (a->passing)
+        return a->sink.end_object(a->sink.ctx);
+    push(a, AHEAD_END);
+    a->in_object = false;
+    return NOC_OK;
+}
+
+static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
+    struct look_ahead *a = ctx;
+    if (a->passing)
+        return a->sink.polygon(a->sink.ctx, polygon);
+    noc_status status = ensure_source(a);
+    if (status)
+        return status;
+    size_t count = 0;
+    for (size_t r = 0; r < polygon->ring_count; r++)
+        count += polygon->ring_size[r];
+    size_t *ring_size = arena_alloc(&a->arena, (polygon->ring_count + 1) * sizeof(*ring_size));
+    double *xyz = arena_alloc(&a->arena, (count + 1) * 3 * sizeof(*xyz));
+    if (polygon->ring_count)
+        memcpy(ring_size, polygon->ring_size, polygon->ring_count * sizeof(*ring_size));
+    if (count)
+        memcpy(xyz, polygon->xyz, count * 3 * sizeof(*xyz));
+    geo_polygon kept = *polygon;
+    kept.ring_size = ring_size;
+    kept.xyz = xyz;
+    kept.id = arena_strdup(&a->arena, polygon->id);
+    push(a, AHEAD_POLYGON)->u.polygon = kept;
+    return keep_points(a, xyz, count, kept.id);
+}
+
+static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
+    struct look_ahead *a = ctx;
+    if (a->passing)
+        return a->sink.lamp(a->sink.ctx, lamp);
+    noc_status status = ensure_source(a);
+    if (status)
+        return status;
+    geo_lamp kept = *lamp;
+    kept.id = lamp->id ? arena_strdup(&a->arena, lamp->id) : NULL;
+    push(a, AHEAD_LAMP)->u.lamp = kept;
+    a->in_object = false;
+    return keep_points(a, lamp->xyz, 1, kept.id ? kept.id : "");
+}
+
+static bool on_progress(void *ctx, double done) {
+    struct look_ahead *a = ctx;
+    return a->sink.progress(a->sink.ctx, done);
+}
+
+struct look_ahead *ahead_create(importer *im, geo_sink *sink) {
+    struct look_ahead *a = noc_calloc(1, sizeof(*a));
+    a->im = im;
+    a->sink = *sink;
+    *sink = (geo_sink){ .ctx = a, .log = sink->log, .issues = sink->issues, .crs = on_crs, .begin_object = on_begin_object,
+                        .polygon = on_polygon, .end_object = on_end_object, .lamp = on_lamp, .progress = on_progress };
+    return a;
+}
+
+void ahead_destroy(struct look_ahead *a) {
+    if (!a)
+        return;
+    array_free(&a->events);
+    array_free(&a->samples);
+    arena_free(&a->arena);
+    free(a);
+}
