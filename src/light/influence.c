@@ -20,14 +20,14 @@ static void order(noc_influence *v, noc_light_key *keys, size_t n) {
     float lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY }, size = 0, most = 0;
     for (size_t i = 0; i < n; i++) {
         const noc_influence_volume *a = &v->volumes[keys[i].id];
-        most = fmaxf(most, a->root);
+        most = NOC_MAX(most, a->root);
         for (int k = 0; k < 3; k++) {
-            lo[k] = fminf(lo[k], a->c[k]);
-            hi[k] = fmaxf(hi[k], a->c[k]);
+            lo[k] = NOC_MIN(lo[k], a->c[k]);
+            hi[k] = NOC_MAX(hi[k], a->c[k]);
         }
     }
     for (int k = 0; k < 3; k++)
-        size = fmaxf(size, hi[k] - lo[k]);
+        size = NOC_MAX(size, hi[k] - lo[k]);
     float scale = size > 0 ? 1048575.f / size : 0;
     for (size_t i = 0; i < n; i++) {
         const noc_influence_volume *a = &v->volumes[keys[i].id];
@@ -35,7 +35,7 @@ static void order(noc_influence *v, noc_light_key *keys, size_t n) {
         uint64_t m = (uint64_t)smaller << 60;
         for (int k = 0; k < 3; k++)
             m |= noc_spread_bits((uint64_t)((a->c[k] - lo[k]) * scale)) << k;
-        keys[i].key = m;
+        keys[i].key = m & ~0xffffffull; /* 12 bits an axis will do, and sort faster */
     }
     noc_sort_keys(keys, keys + v->count, n);
     for (size_t i = 0; i < n; i++)
@@ -68,10 +68,10 @@ static bool build_levels(noc_influence *v, size_t lights) {
             const noc_influence_node *from = &v->nodes[level - 1][i];
             float lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY }, root = 0;
             for (int s = 0; s < WIDTH && from->root[s] > 0; s++) {
-                root = fmaxf(root, from->root[s]);
+                root = NOC_MAX(root, from->root[s]);
                 for (int k = 0; k < 3; k++) {
-                    lo[k] = fminf(lo[k], from->lo[k][s]);
-                    hi[k] = fmaxf(hi[k], from->hi[k][s]);
+                    lo[k] = NOC_MIN(lo[k], from->lo[k][s]);
+                    hi[k] = NOC_MAX(hi[k], from->hi[k][s]);
                 }
             }
             set_child(&to[i / WIDTH], i % WIDTH, lo, hi, root);
@@ -222,9 +222,9 @@ static box box_of_lights(const noc_influence *v, size_t lights) {
     float size = 0;
     for (size_t i = 0; i < lights; i++)
         for (int k = 0; k < 3; k++) {
-            b.lo[k] = fminf(b.lo[k], v->volumes[v->ids[i]].c[k]);
-            b.hi[k] = fmaxf(b.hi[k], v->volumes[v->ids[i]].c[k]);
-            size = fmaxf(size, b.hi[k] - b.lo[k]);
+            b.lo[k] = NOC_MIN(b.lo[k], v->volumes[v->ids[i]].c[k]);
+            b.hi[k] = NOC_MAX(b.hi[k], v->volumes[v->ids[i]].c[k]);
+            size = NOC_MAX(size, b.hi[k] - b.lo[k]);
         }
     for (int k = 0; k < 3; k++) {
         b.lo[k] -= 10 + 0.1f * size;
@@ -233,17 +233,20 @@ static box box_of_lights(const noc_influence *v, size_t lights) {
     return b;
 }
 
-/* Edges a, b and unit normal n of a triangle from its first corner p; returns its area inside the box, about. */
+/* Edges a, b and unit normal n of a triangle from its first corner p; returns its area inside the box, about. Triangles that
+ * show a light count as nothing. */
 static double triangle(const noc_scene *s, size_t t, const box *in, const float **p, float a[3], float b[3], float n[3]) {
     const float *c[3];
+    if (s->triangle_light.len > t && s->triangle_light.data[t] != NOC_NO_LIGHT)
+        return 0;
     for (int i = 0; i < 3; i++)
         c[i] = s->positions.data + 3 * (size_t)s->indices.data[3 * t + (size_t)i];
     double share = 1;
     for (int k = 0; k < 3; k++) {
         a[k] = c[1][k] - c[0][k];
         b[k] = c[2][k] - c[0][k];
-        float lo = fminf(c[0][k], fminf(c[1][k], c[2][k])), hi = fmaxf(c[0][k], fmaxf(c[1][k], c[2][k]));
-        float inside = fminf(hi, in->hi[k]) - fmaxf(lo, in->lo[k]);
+        float lo = c[0][k] + NOC_MIN(0, NOC_MIN(a[k], b[k])), hi = c[0][k] + NOC_MAX(0, NOC_MAX(a[k], b[k]));
+        float inside = NOC_MIN(hi, in->hi[k]) - NOC_MAX(lo, in->lo[k]);
         share *= inside < 0 ? 0 : hi > lo ? inside / (hi - lo) : 1;
     }
     *p = c[0];
@@ -263,8 +266,8 @@ static int take_examples(const noc_scene *s, const box *in, example *out) {
     int goal = 0, count = 0;
     for (int pass = 0; pass < 2; pass++)
         for (size_t t = 0; t < triangles; t++) {
-            const float *p;
-            float a[3], b[3];
+            const float *p = NULL;
+            float a[3] = { 0 }, b[3] = { 0 };
             example e;
             double area = triangle(s, t, in, &p, a, b, e.n);
             if (!pass) {

@@ -51,8 +51,8 @@ static float heap_cost(const heap *h, float least) {
     return h->power * area * (2 - mean);
 }
 
-static int bin_of(const noc_light_bound *b, int axis, float lo, float scale) {
-    return NOC_CLAMP((int)((b->p[axis] - lo) * scale), 0, BINS - 1);
+static int bin_of(const noc_light_bound *b, int axis, float lo, float scale, int bins) {
+    return NOC_CLAMP((int)((b->p[axis] - lo) * scale), 0, bins - 1);
 }
 
 /* Cheapest of the splits between bins on all three axes. Returns the number of lights on the first side, 0 where all lie in
@@ -67,25 +67,25 @@ static uint32_t split(build *b, uint32_t first, uint32_t end, const heap *all) {
         }
     for (int k = 0; k < 3; k++)
         size = NOC_MAX(size, all->hi[k] - all->lo[k]);
-    int axis = -1, edge = 0;
+    int axis = -1, edge = 0, n_bins = end - first < 16 ? 4 : BINS;
     for (int k = 0; k < 3; k++) {
         if (!(hi[k] > lo[k]))
             continue;
         heap bins[BINS], sum = empty_heap;
-        float scale = BINS / (hi[k] - lo[k]), above[BINS] = { 0 };
+        float scale = (float)n_bins / (hi[k] - lo[k]), above[BINS] = { 0 };
         if (!(scale < 1e30f))
             continue;
-        for (int i = 0; i < BINS; i++)
+        for (int i = 0; i < n_bins; i++)
             bins[i] = empty_heap;
         for (uint32_t i = first; i < end; i++)
-            heap_add(&bins[bin_of(&l[i], k, lo[k], scale)], &l[i]);
-        for (int i = BINS - 1; i > 0; i--) {
+            heap_add(&bins[bin_of(&l[i], k, lo[k], scale, n_bins)], &l[i]);
+        for (int i = n_bins - 1; i > 0; i--) {
             heap_join(&sum, &bins[i]);
             above[i] = sum.count ? heap_cost(&sum, 0.01f * size) : INFINITY;
         }
         sum = empty_heap;
         float longer = size / (hi[k] - lo[k]); /* against thin slabs */
-        for (int i = 0; i < BINS - 1; i++) {
+        for (int i = 0; i < n_bins - 1; i++) {
             heap_join(&sum, &bins[i]);
             float cost = sum.count ? (heap_cost(&sum, 0.01f * size) + above[i + 1]) * longer : INFINITY;
             if (cost < best) {
@@ -97,10 +97,10 @@ static uint32_t split(build *b, uint32_t first, uint32_t end, const heap *all) {
     }
     if (axis < 0)
         return 0;
-    float scale = BINS / (hi[axis] - lo[axis]);
+    float scale = (float)n_bins / (hi[axis] - lo[axis]);
     uint32_t i = first, j = end;
     while (i < j) {
-        if (bin_of(&l[i], axis, lo[axis], scale) <= edge) {
+        if (bin_of(&l[i], axis, lo[axis], scale, n_bins) <= edge) {
             i++;
             continue;
         }
@@ -166,7 +166,7 @@ static void grow(build *b, uint32_t lights) {
             t->depth = NOC_MAX(t->depth, w.depth);
             continue;
         }
-        if (w.depth + 1 + bits_for(n - 1) <= NOC_TREE_DEPTH)
+        if (n > 2 && w.depth + 1 + bits_for(n - 1) <= NOC_TREE_DEPTH)
             left = split(b, w.first, w.end, &all);
         if (!left || left == n)
             left = n / 2;
