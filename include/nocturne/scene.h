@@ -85,7 +85,8 @@ NOC_API noc_scene *noc_scene_create(noc_log *log); /* log may be NULL; it must o
 NOC_API void noc_scene_destroy(noc_scene *scene);
 
 /* These return an index >= 0, or -1 after reporting an error. Non-finite or degenerate geometry is an error here; bad
- * triangles inside a mesh (zero area, index out of range, non-finite) are dropped and counted. */
+ * triangles inside a mesh (zero area, index out of range, non-finite) are dropped and counted. A committed scene takes
+ * nothing more. */
 NOC_API int noc_scene_add_material(noc_scene *scene, const noc_material *material);
 NOC_API int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh);
 NOC_API int noc_scene_add_light(noc_scene *scene, const noc_light *light);
@@ -128,7 +129,8 @@ typedef enum noc_view { NOC_VIEW_STREET, NOC_VIEW_AERIAL, NOC_VIEW_OVERVIEW } no
  * over the roofs, overview sees the whole extent. aspect = width / height of the picture. */
 NOC_API noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect, noc_camera *camera);
 
-/* The built-in procedural night city. The same seed and size give the same city on every machine. */
+/* The built-in procedural night city. The same seed and size give the same city on every machine. NULL params are the
+ * defaults. */
 typedef struct noc_city_params {
     uint32_t seed;
     double size;         /* edge of the square it covers, metres, 150..5000 */

@@ -263,6 +263,8 @@ static void belt(town *t) {
 }
 
 noc_status noc_scene_add_city(noc_scene *scene, const noc_city_params *params) {
+    noc_city_params defaults = noc_city_default_params();
+    params = params ? params : &defaults;
     if (!(params->size >= 150 && params->size <= 5000))
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "city: size %g m is not in 150..5000 m", params->size);
     if (!(params->lit_windows >= 0 && params->lit_windows <= 1))

@@ -390,8 +390,9 @@ static bool street(view_city *city, double aspect, noc_camera *camera) {
 }
 
 noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect, noc_camera *camera) {
-    if (!(aspect >= 0.01 && aspect <= 100))
-        return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the aspect must be in 0.01..100");
+    if (!(aspect > 0 && isfinite(aspect)))
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the aspect is %g, must be finite and more than 0", aspect);
+    aspect = NOC_CLAMP(aspect, 0.01, 100); /* what slits of pictures see decides nothing */
     if ((unsigned)view > NOC_VIEW_OVERVIEW)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: no view %d", (int)view);
     if (!noc_scene_city_triangles(scene))

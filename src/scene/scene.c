@@ -69,6 +69,10 @@ void noc_scene_destroy(noc_scene *scene) {
 static bool in_range(float x, float lo, float hi) { return x >= lo && x <= hi; } /* false for NaN */
 
 int noc_scene_add_material(noc_scene *scene, const noc_material *m) {
+    if (scene->committed) {
+        noc_error(scene->log, NOC_ERR_ARGUMENT, "material: the scene is committed");
+        return -1;
+    }
     bool ok = in_range(m->f0, 0, 1) && in_range(m->roughness, 0.05f, 1) && (unsigned)m->cls < NOC_CLASS_COUNT;
     for (int i = 0; i < 3; i++)
         ok = ok && in_range(m->albedo[i], 0, 1) && in_range(m->emission[i], 0, 1e12f);

@@ -247,11 +247,21 @@ static void test_bad_params(void **state) {
     noc_log_destroy(log);
 }
 
+static void test_no_params(void **state) {
+    noc_scene *given = noc_scene_create(NULL), *none = noc_scene_create(NULL);
+    assert_int_equal(noc_scene_add_city(given, &noc_city_default_params()), NOC_OK);
+    assert_int_equal(noc_scene_add_city(none, NULL), NOC_OK);
+    assert_int_equal(none->positions.len, given->positions.len);
+    assert_memory_equal(none->positions.data, given->positions.data, given->positions.len * sizeof(float));
+    noc_scene_destroy(given);
+    noc_scene_destroy(none);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_deterministic), cmocka_unit_test(test_sizes), cmocka_unit_test(test_large),
         cmocka_unit_test(test_lit_share),     cmocka_unit_test(test_lamps), cmocka_unit_test(test_windows_on_walls),
-        cmocka_unit_test(test_no_surface_twice), cmocka_unit_test(test_bad_params),
+        cmocka_unit_test(test_no_surface_twice), cmocka_unit_test(test_bad_params), cmocka_unit_test(test_no_params),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

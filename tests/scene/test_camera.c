@@ -215,8 +215,26 @@ static void test_stray(void **state) {
     noc_scene_destroy(scene);
 }
 
+/* Pictures may be slits of one pixel: every size has a view, and only what is no aspect is refused. */
+static void test_slits(void **state) {
+    noc_scene *scene = noc_scene_create(NULL);
+    add_box(scene, NOC_CLASS_TERRAIN, -100, -100, 100, 100, -1, 0);
+    add_box(scene, NOC_CLASS_WALL, 10, 10, 30, 40, 0, 12);
+    static const double good[] = { 1.0 / 32768, 1 / 500.0, 4097 / 3.0, 32768 }, bad[] = { 0, -1, NAN, INFINITY };
+    noc_camera c;
+    for (int v = 0; v < 3; v++) {
+        for (size_t i = 0; i < NOC_COUNT(good); i++) {
+            assert_int_equal(noc_scene_camera(scene, (noc_view)v, good[i], &c), NOC_OK);
+            check_sane(&c);
+        }
+        for (size_t i = 0; i < NOC_COUNT(bad); i++)
+            assert_int_equal(noc_scene_camera(scene, (noc_view)v, bad[i], &c), NOC_ERR_ARGUMENT);
+    }
+    noc_scene_destroy(scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_builtin_city), cmocka_unit_test(test_without_lights), cmocka_unit_test(test_one_lamp),
-                                        cmocka_unit_test(test_odd_scenes), cmocka_unit_test(test_stray) };
+                                        cmocka_unit_test(test_odd_scenes), cmocka_unit_test(test_stray), cmocka_unit_test(test_slits) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -281,9 +281,26 @@ static void test_empty(void **state) {
     noc_scene_destroy(NULL);
 }
 
+static void test_committed(void **state) {
+    fixture *f = *state;
+    assert_int_equal(noc_scene_commit(f->scene), NOC_OK);
+    size_t materials = f->scene->materials.len;
+    noc_material m = noc_class_material(NOC_CLASS_WALL);
+    noc_mesh mesh = { .material = f->mat };
+    noc_light light = { .kind = NOC_LIGHT_POINT, .emission = { 1, 1, 1 } };
+    f->messages = 0;
+    assert_int_equal(noc_scene_add_material(f->scene, &m), -1);
+    assert_non_null(strstr(noc_log_last_error(f->log), "material: the scene is committed"));
+    assert_int_equal(noc_scene_add_mesh(f->scene, &mesh), -1);
+    assert_int_equal(noc_scene_add_light(f->scene, &light), -1);
+    assert_int_equal(f->messages, 3);
+    assert_int_equal(f->scene->materials.len, materials);
+}
+
 int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
     const struct CMUnitTest tests[] = { TEST(test_materials),       TEST(test_meshes),          TEST(test_shapes), TEST(test_bad_lights),
-                                        TEST(test_light_materials), TEST(test_emissive_meshes), TEST(test_empty) };
+                                        TEST(test_light_materials), TEST(test_emissive_meshes), TEST(test_empty),
+                                        TEST(test_committed) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
