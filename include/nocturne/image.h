@@ -55,6 +55,9 @@ NOC_API noc_status noc_image_write(const noc_image *image, const char *path, con
                                    const noc_image_meta *meta, noc_log *log);
 NOC_API noc_status noc_image_write_srgb8(const uint8_t *rgb, int width, int height, const char *path,
                                          const noc_image_meta *meta, noc_log *log);
+/* Could a file be written under this name? Makes and removes the writers' file beside it; the target is left alone. To be
+ * asked before long work. */
+NOC_API noc_status noc_image_check_path(const char *path, noc_log *log);
 /* Reads by content. PNG is taken as sRGB and turned linear with white = 1 (units are lost; compare says so). */
 NOC_API noc_image *noc_image_read(const char *path, noc_log *log, bool *is_linear);
 

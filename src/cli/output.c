@@ -34,7 +34,7 @@ int cli_check_output(const cli_command *command, const char *path, int endings, 
     char shown[120];
     cli_clean(shown, sizeof(shown), path);
     struct stat st, input;
-    bool exists = !stat(path, &st);
+    bool exists = !stat(path, &st), too_long = !exists && errno == ENAMETOOLONG;
     if (exists && S_ISDIR(st.st_mode)) {
         cli_error("%s is a folder; name a file in it", shown);
         return CLI_FAILURE;
@@ -52,5 +52,15 @@ int cli_check_output(const cli_command *command, const char *path, int endings, 
             return CLI_FAILURE;
         }
     }
-    return check_folder(path, shown);
+    if (too_long) {
+        cli_error("%s: cannot be written: %s", shown, strerror(ENAMETOOLONG));
+        return CLI_FAILURE;
+    }
+    int status = check_folder(path, shown);
+    if (status)
+        return status;
+    noc_log *log = cli_log_create(args);
+    status = noc_image_check_path(path, log) ? CLI_FAILURE : CLI_OK;
+    noc_log_destroy(log);
+    return status;
 }

@@ -173,6 +173,19 @@ static noc_status render_frames(render_job *job) {
 /* Ctrl-C is no failure of the work: what is complete is kept. */
 static bool is_failure(noc_status status) { return status && !(status == NOC_ERR_CANCELLED && cli_interrupted()); }
 
+/* What the picture and its writing take is asked for before the frames: an hour's work must not fail at its end. It is not
+ * touched, so it costs addresses only. */
+static noc_status reserve(render_job *job) {
+    const noc_render_params *p = &job->args->render;
+    size_t bytes = (size_t)p->width * (size_t)p->height * 20 + ((size_t)8 << 20);
+    job->room = malloc(bytes);
+    if (job->room)
+        return NOC_OK;
+    char text[32];
+    cli_error("no memory for a picture of %d x %d (%s)", p->width, p->height, cli_bytes(text, bytes));
+    return NOC_ERR_MEMORY;
+}
+
 static int work(render_job *job) {
     render_args *args = job->args;
     noc_status status = load(job);
@@ -182,6 +195,8 @@ static int work(render_job *job) {
     }
     if (!status && !cli_interrupted())
         status = cli_place_camera(job);
+    if (!status)
+        status = reserve(job);
     if (!status && !cli_interrupted()) {
         job->renderer = noc_renderer_create(job->scene, &(noc_renderer_params){ .threads = args->threads }, job->log);
         status = job->renderer ? render_frames(job) : NOC_ERR_MEMORY;
@@ -223,6 +238,7 @@ static int run(void *arguments) {
     job.scene = noc_scene_create(job.log);
     status = job.scene ? work(&job) : CLI_FAILURE;
     cli_progress_clear();
+    free(job.room);
     noc_image_destroy(job.image);
     noc_renderer_destroy(job.renderer);
     noc_report_destroy(job.report);

@@ -29,6 +29,7 @@ typedef struct render_job {
     noc_scene *scene;
     noc_renderer *renderer;
     noc_image *image;
+    void *room;               /* memory that the picture and its file will take, held while frames are rendered */
     noc_camera camera;
     bool far_away;            /* the camera is, and it was said */
     noc_scene_info scene_info;

@@ -59,6 +59,8 @@ static double ev100(const render_job *job) {
 noc_status cli_write_picture(render_job *job) {
     const render_args *args = job->args;
     const noc_camera *c = &job->camera;
+    free(job->room);
+    job->room = NULL;
     job->image = noc_renderer_image(job->renderer);
     if (!job->image)
         return NOC_ERR_MEMORY;

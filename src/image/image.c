@@ -1,6 +1,7 @@
 /* Pictures in memory. */
 #include "image/internal.h"
 
+#include <math.h>
 #include <unistd.h>
 
 /* Memory of the machine. A picture beyond it is refused here: the kernel would promise it, and then kill the program. */
@@ -13,7 +14,7 @@ static void *alloc_pixels(int width, int height, size_t size, noc_log *log) {
     double bytes = (double)width * height * (double)size;
     void *p = bytes < machine_bytes() ? noc_alloc_large((size_t)width * (size_t)height, size) : NULL;
     if (!p)
-        noc_error(log, NOC_ERR_MEMORY, "image: no memory for %d x %d pixels (%.1f GB)", width, height, bytes * 1e-9);
+        noc_error(log, NOC_ERR_MEMORY, "image: no memory for %d x %d pixels (%.0f MB)", width, height, ceil(bytes * 1e-6));
     return p;
 }
 

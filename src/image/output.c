@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,10 +11,22 @@ static noc_status fail(const char *path, const char *what, noc_log *log) {
     return noc_error(log, NOC_ERR_IO, "%s: %s: %s", path, what, strerror(errno));
 }
 
-/* The target itself: what a symbolic link points to is replaced, not the link. */
+/* The target itself: what a symbolic link points to is replaced (or made, where it is not there yet), not the link. */
 static char *resolve(const char *path) {
     char *real = realpath(path, NULL);
-    return real ? real : noc_strdup(path);
+    if (real)
+        return real;
+    char *at = noc_strdup(path), to[PATH_MAX];
+    for (int links = 0; links < 40; links++) { /* as many as the kernel follows */
+        ssize_t n = readlink(at, to, sizeof(to));
+        if (n < 0 || n == sizeof(to))
+            break;
+        const char *slash = strrchr(at, '/');
+        char *next = noc_format("%.*s%.*s", slash && to[0] != '/' ? (int)(slash + 1 - at) : 0, at, (int)n, to);
+        free(at);
+        at = next;
+    }
+    return at;
 }
 
 /* ".name.pid-n.part" in the target's folder: renaming works only within a file system. */
@@ -36,6 +49,11 @@ noc_status output_open(output *o, const char *path, noc_log *log) {
     noc_status status;
     struct stat st;
     int fd = -1;
+    /* A name that is too long, a ring of links: found now, not when the file is renamed. */
+    if (lstat(o->target, &st) != 0 ? errno != ENOENT : S_ISLNK(st.st_mode) && (errno = ELOOP)) {
+        status = fail(path, "cannot be written", log);
+        goto fail;
+    }
     /* Renaming would replace a device or a pipe by a plain file. */
     if (stat(o->target, &st) == 0 && !S_ISREG(st.st_mode)) {
         status = noc_error(log, NOC_ERR_IO, "%s: cannot be written: %s", path,
@@ -74,6 +92,17 @@ noc_status output_close(output *o, noc_status status, noc_log *log) {
         unlink(o->temporary);
     output_free(o);
     return status;
+}
+
+noc_status noc_image_check_path(const char *path, noc_log *log) {
+    output o;
+    noc_status status = output_open(&o, path, log);
+    if (status != NOC_OK)
+        return status;
+    fclose(o.file);
+    unlink(o.temporary);
+    output_free(&o);
+    return NOC_OK;
 }
 
 void meta_add(meta_list *list, const char *key, const char *fmt, ...) {

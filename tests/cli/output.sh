@@ -27,6 +27,30 @@ expect "an input behind a link" 1 'is an input too' render input.png -o link.png
 expect "compare onto an input" 1 'is an input too' compare input.png file -o input.png
 test "$(cat input.png)" = x && test -p pipe.png && test -L device.png && test -d folder.png && test -z "$(ls folder folder.png | grep png$)"
 result $? "all is as it was"
+long=$(head -c 251 /dev/zero | tr '\0' x)
+small="$c --city-size 150 --size 1x500 --frames 1 -q"
+expect "a name of 256 bytes" 1 'too long' render $c -o "x$long.png"
+run render $small -o "$long.png"
+test $status = 0 && test "$(meta "$long.png" size)" = "1 500"; result $? "one of 255 bytes can be written, and a slit has a view"
+ln -s ring.png ring.png
+expect "a ring of links" 1 'symbolic links' render $c -o ring.png
+if [ -d /proc/self ]; then
+    expect "a folder that takes no files" 1 '^nocturne: /proc/x.png: cannot be written' render $c -o /proc/x.png
+else
+    skip "a folder that takes no files" "no /proc here"
+fi
+ln -s later.png dangling.png
+run render $small -o dangling.png
+test $status = 0 && test -L dangling.png && test "$(meta later.png size)" = "1 500"; result $? "a link to what is not there yet is followed"
+test -z "$(ls -A | grep part$)"; result $? "no temporary file is left"
+# Sanitizers take more addresses than this by themselves.
+if (ulimit -v 4000000 && "$program" --version) >out 2>err; then
+    (ulimit -v 4000000; "$program" render $c --city-size 150 --size 20000x20000 -v -o big.png) >out 2>err
+    test $? = 1 && grep -q 'no memory for a picture of 20000 x 20000 (8.0 GB)' err && ! grep -q 'frame 1' err
+    result $? "memory for the picture is found missing before it is rendered"
+else
+    skip "memory for the picture is found missing before it is rendered" "the program cannot run in 4 GB of addresses"
+fi
 # Root may write everywhere: then somebody else tries.
 mkdir locked && chmod 555 locked && chmod 755 .
 other=

@@ -324,6 +324,53 @@ static void a_link_is_followed(void **state) {
     noc_image_destroy(b);
 }
 
+/* A link to what is not there yet: that is made, in the link's folder, and the link stays. */
+static void a_dangling_link_is_followed(void **state) {
+    (void)state;
+    noc_image *a = random_image(2, 2, false);
+    assert_int_equal(mkdir(in_folder("sub"), 0777), 0);
+    assert_int_equal(symlink("sub/second.exr", in_folder("first.exr")), 0);
+    assert_int_equal(symlink("made.exr", in_folder("sub/second.exr")), 0);
+    assert_int_equal(noc_image_write(a, in_folder("first.exr"), NULL, NULL, log_), NOC_OK);
+    struct stat st;
+    assert_int_equal(lstat(in_folder("first.exr"), &st), 0);
+    assert_true(S_ISLNK(st.st_mode));
+    assert_int_equal(lstat(in_folder("sub/second.exr"), &st), 0);
+    assert_true(S_ISLNK(st.st_mode));
+    assert_int_equal(lstat(in_folder("sub/made.exr"), &st), 0);
+    assert_true(S_ISREG(st.st_mode));
+    noc_image_destroy(a);
+    unlink(in_folder("sub/made.exr"));
+    unlink(in_folder("sub/second.exr"));
+    rmdir(in_folder("sub"));
+}
+
+/* What a writer would fail on, asked before: the same errors, and nothing is left or changed. */
+static void paths_are_checked_before(void **state) {
+    (void)state;
+    size_t before = files_in_folder();
+    assert_int_equal(noc_image_check_path(in_folder("new.exr"), log_), NOC_OK);
+    assert_int_equal(files_in_folder(), before);
+    FILE *f = fopen(in_folder("given.exr"), "w");
+    fputs("old", f);
+    fclose(f);
+    assert_int_equal(noc_image_check_path(in_folder("given.exr"), log_), NOC_OK);
+    struct stat st;
+    assert_int_equal(stat(in_folder("given.exr"), &st), 0);
+    assert_int_equal(st.st_size, 3);
+    unlink(in_folder("given.exr"));
+    char name[300];
+    memset(name, 'x', sizeof(name));
+    strcpy(name + 252, ".exr"); /* 256 bytes: one more than a name may have */
+    one_error(noc_image_check_path(in_folder(name), log_), NOC_ERR_IO, "too long");
+    assert_int_equal(noc_image_check_path(in_folder(name + 1), log_), NOC_OK);
+    one_error(noc_image_check_path(in_folder("missing/a.exr"), log_), NOC_ERR_IO, "No such file");
+    assert_int_equal(symlink("ring.exr", in_folder("ring.exr")), 0);
+    one_error(noc_image_check_path(in_folder("ring.exr"), log_), NOC_ERR_IO, "symbolic links");
+    unlink(in_folder("ring.exr"));
+    assert_int_equal(files_in_folder(), before);
+}
+
 static void reading_fails_once(void **state) {
     (void)state;
     error_count = 0;
@@ -365,6 +412,8 @@ int main(void) {
         cmocka_unit_test(a_full_disk_is_reported),
         cmocka_unit_test(an_old_picture_survives_a_failure),
         cmocka_unit_test(a_link_is_followed),
+        cmocka_unit_test(a_dangling_link_is_followed),
+        cmocka_unit_test(paths_are_checked_before),
         cmocka_unit_test(reading_fails_once),
         cmocka_unit_test(sizes_are_checked),
     };
