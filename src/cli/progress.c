@@ -68,18 +68,26 @@ bool cli_load_progress(void *user, const char *what, double done) {
     return !cli_interrupted();
 }
 
+static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
+enum { SIGNALS = sizeof(signals) / sizeof(*signals) };
+
 static void on_signal(int number) {
     caught = number;
-    /* Whoever asks twice means it. */
-    signal(SIGINT, SIG_DFL);
-    signal(SIGTERM, SIG_DFL);
+    /* Whoever asks twice means it. What was ignored from the start stays so. */
+    for (int i = 0; i < SIGNALS; i++) {
+        struct sigaction now;
+        if (!sigaction(signals[i], NULL, &now) && now.sa_handler == on_signal)
+            signal(signals[i], SIG_DFL);
+    }
 }
 
+/* Those that are ignored are so for a reason: nohup, or a shell's job in the background. */
 void cli_catch_signals(void) {
-    struct sigaction action = { .sa_handler = on_signal, .sa_flags = SA_RESTART };
+    struct sigaction action = { .sa_handler = on_signal, .sa_flags = SA_RESTART }, now;
     sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+    for (int i = 0; i < SIGNALS; i++)
+        if (!sigaction(signals[i], NULL, &now) && now.sa_handler != SIG_IGN)
+            sigaction(signals[i], &action, NULL);
 }
 
 int cli_interrupted(void) { return caught; }

@@ -110,7 +110,7 @@ test "$(head -n 12 a/results.csv)" = "$(head -n 12 b/results.csv)"; result $? "t
 # Ctrl-C in the middle of 20000 frames.
 sed 's/"frames": 3/"frames": 20000/; s/"repetitions": 2/"repetitions": 1/' spec.json >long.json
 mkdir c
-"$program" experiment long.json -o c --cache cache >out 2>err </dev/null &
+env --default-signal=INT "$program" experiment long.json -o c --cache cache >out 2>err </dev/null &
 pid=$!
 tries=0
 until [ "$(cat c/results.csv 2>/dev/null | wc -l)" -gt 12 ]; do

@@ -7,7 +7,8 @@ interrupt() {
     signal=$1 when=$2
     shift 2
     : >err
-    "$program" "$@" >out 2>err </dev/null &
+    # A shell makes its background jobs ignore SIGINT, and what is ignored stays so.
+    env --default-signal=INT "$program" "$@" >out 2>err </dev/null &
     pid=$!
     tries=0
     until grep -q "$when" err; do
@@ -30,6 +31,20 @@ test "$(meta a.png frames)" = "$frames"
 result $? "and tells how many frames it holds" "$frames"
 interrupt TERM 'frame 2:' render $city --frames 1e9 -v -o b.exr
 test $status = 143 && grep -q 'interrupted: saved' err && test -s b.exr; result $? "SIGTERM too, with its own status"
+
+interrupt HUP 'frame 2:' render $city --frames 1e9 -v -o c.exr
+test $status = 129 && grep -q 'interrupted: saved' err && test -s c.exr; result $? "and SIGHUP, when the terminal goes"
+rm c.exr
+# ignored from the start, as under nohup: goes on to the end
+: >err
+env --ignore-signal=HUP,INT "$program" render $city --time 2 -v -o c.exr >out 2>err </dev/null &
+pid=$!
+until grep -q 'frame 2:' err || ! kill -0 $pid; do sleep 0.1; done
+kill -HUP $pid && kill -INT $pid
+sent=$?
+wait $pid
+test $? = 0 && test $sent = 0 && test -s c.exr && ! grep -q interrupted err; result $? "signals that are ignored stay so"
+rm c.exr
 
 # One frame of many reference rays a pixel takes minutes: it is interrupted before it is complete.
 long='builtin:city --city-size 150 --size 4000x4000 --method reference --rays 1024'
