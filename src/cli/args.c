@@ -81,12 +81,17 @@ const char *cli_nearest(const char *word, const char *const *words, size_t count
 
 bool cli_parse_numbers(const char *text, char separator, size_t count, double *out) {
     for (size_t i = 0; i < count; i++) {
-        char *end;
-        out[i] = strtod(text, &end);
-        /* strtod also takes blanks, "nan", "inf" and hexadecimal. */
-        if (end == text || strspn(text, "+-.0123456789eE") < (size_t)(end - text) || !isfinite(out[i]) || *end != (i + 1 < count ? separator : 0))
+        /* strtod alone would also take blanks, "nan", "inf", and the 0x16 of 0x16 pixels as hexadecimal. */
+        char number[400], *end;
+        size_t n = strspn(text, "+-.0123456789eE");
+        if (!n || n >= sizeof(number) || text[n] != (i + 1 < count ? separator : 0))
             return false;
-        text = end + 1;
+        memcpy(number, text, n);
+        number[n] = 0;
+        out[i] = strtod(number, &end);
+        if (end != number + n || !isfinite(out[i]))
+            return false;
+        text += n + 1;
     }
     return true;
 }

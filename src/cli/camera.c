@@ -17,6 +17,12 @@ int cli_parse_camera(render_job *job) {
         return cli_usage(&cli_render, "--eye: \"%.60s\" is not X,Y,Z", args->eye);
     if (!cli_parse_numbers(args->target, ',', 3, job->target))
         return cli_usage(&cli_render, "--target: \"%.60s\" is not X,Y,Z", args->target);
+    /* Local coordinates go as far as the library's cameras; those of a CRS may have a zone before them. */
+    double limit = args->camera_crs ? 1e9 : 1e7;
+    for (int k = 0; k < 3; k++)
+        if (!(fabs(job->eye[k]) < limit && fabs(job->target[k]) < limit))
+            return cli_usage(&cli_render, "--%s: \"%.60s\" is more than %g km away", fabs(job->eye[k]) < limit ? "target" : "eye",
+                             fabs(job->eye[k]) < limit ? args->target : args->eye, limit / 1000);
     if (!memcmp(job->eye, job->target, sizeof(job->eye)))
         return cli_usage(&cli_render, "--eye and --target are the same place");
     return CLI_OK;

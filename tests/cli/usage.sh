@@ -44,6 +44,11 @@ expect "a bool that is none" 2 'temporal: "maybe" is neither true nor false' ren
 for size in 0x0 0x10 10x0 -1x5 100000x100000 32769x1 10 10x 10x10x10 10,10 axb 1e9x1 10.5x10 ' 10x10' 'infx10' '0x10x10'; do
     expect "size '$size'" 2 '--size: ' render $c -o a.png "--size=$size"
 done
+for size in 0x0 0x10 10x0; do
+    expect "size '$size' is too small, not misspelt" 2 "a side is 1 to 32768 px, not $size" render $c -o a.png --size $size
+done
+expect "an eye beyond all bounds" 2 '--eye: "1e300,0,0" is more than 10000 km away' render $c -o a.png --eye 1e300,0,0 --target 0,0,0
+expect "a target beyond them" 2 '--target: "0,-1e7,0" is more than' render $c -o a.png --eye 0,0,0 --target 0,-1e7,0
 expect "size and width" 2 'exclude each other' render $c -o a.png --size 10x10 --width 10
 for v in 1,2 1,2,3,4 a,b,c '1,2,' ',,,' 'nan,0,0' '1, 2, 3' 1e999,0,0; do
     expect "eye '$v'" 2 '--eye: .* is not X,Y,Z' render $c -o a.png --eye "$v" --target 0,0,0
