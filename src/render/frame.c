@@ -36,13 +36,13 @@ noc_status noc_check_render_params(const noc_render_params *p, noc_log *log) {
             return wrong(log, ranges[i].name, ranges[i].value, right);
         }
     if ((unsigned)p->method > NOC_METHOD_RESTIR)
-        return wrong(log, "method", p->method, "a noc_method");
+        return wrong(log, "method", (int)p->method, "a noc_method");
     if ((unsigned)p->candidates > NOC_CANDIDATES_TREE)
-        return wrong(log, "candidates", p->candidates, "a noc_candidates");
+        return wrong(log, "candidates", (int)p->candidates, "a noc_candidates");
     if ((unsigned)p->bias > NOC_BIAS_PAIRWISE)
-        return wrong(log, "bias", p->bias, "a noc_bias");
+        return wrong(log, "bias", (int)p->bias, "a noc_bias");
     if ((unsigned)p->path > NOC_PATH_WIDE)
-        return wrong(log, "path", p->path, "a noc_path");
+        return wrong(log, "path", (int)p->path, "a noc_path");
     return NOC_OK;
 }
 

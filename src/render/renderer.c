@@ -134,6 +134,8 @@ static noc_status check(noc_renderer *r, const noc_camera *camera, const noc_ren
 
 noc_status noc_renderer_frame(noc_renderer *r, const noc_camera *camera, const noc_render_params *params,
                               const noc_progress *progress) {
+    const noc_render_params defaults = noc_render_default_params();
+    params = params ? params : &defaults;
     noc_status status = check(r, camera, params);
     return status == NOC_OK ? run_frame(r, camera, params, progress) : status;
 }
@@ -179,6 +181,8 @@ void noc_renderer_get_stats(const noc_renderer *r, noc_frame_stats *stats) { *st
 
 noc_status noc_renderer_trace_floor(noc_renderer *r, const noc_camera *camera, const noc_render_params *params,
                                     double *seconds) {
+    const noc_render_params defaults = noc_render_default_params();
+    params = params ? params : &defaults;
     noc_status status = check(r, camera, params);
     if (status != NOC_OK)
         return status;

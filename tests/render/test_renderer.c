@@ -236,6 +236,33 @@ static void wrong_arguments(void **state) {
 
 /* ---- what is kept ---- */
 
+/* A value that is no choice is told as it was given; no params are the defaults. */
+static void negative_choices_and_no_params(void **state) {
+    (void)state;
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_ERROR, .message = drop });
+    noc_scene *s = small_street(3, true);
+    noc_renderer *r = noc_renderer_create(s, NULL, log);
+    noc_camera c = view(0);
+    static const struct { const char *says; size_t at; } fields[] = {
+        { "method is -1,", offsetof(noc_render_params, method) }, { "candidates is -1,", offsetof(noc_render_params, candidates) },
+        { "bias is -1,", offsetof(noc_render_params, bias) },     { "path is -1,", offsetof(noc_render_params, path) },
+    };
+    for (size_t i = 0; i < NOC_COUNT(fields); i++) {
+        noc_render_params p = noc_render_default_params();
+        memcpy((char *)&p + fields[i].at, &(int){ -1 }, sizeof(int));
+        assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_ERR_ARGUMENT);
+        assert_non_null(strstr(noc_log_last_error(log), fields[i].says));
+    }
+    assert_int_equal(noc_renderer_frame(r, &c, NULL, NULL), NOC_OK);
+    noc_image *image = noc_renderer_image(r);
+    assert_int_equal(image->width, noc_render_default_params().width);
+    assert_int_equal(image->height, noc_render_default_params().height);
+    noc_image_destroy(image);
+    noc_renderer_destroy(r);
+    noc_scene_destroy(s);
+    noc_log_destroy(log);
+}
+
 static bool count_down(void *user, const char *what, double done) {
     (void)what;
     assert_true(done >= 0 && done <= 1);
@@ -357,6 +384,7 @@ int main(void) {
         cmocka_unit_test(scalar_and_wide_agree), cmocka_unit_test(threads_and_seeds), cmocka_unit_test(empty_scenes),
         cmocka_unit_test(wrong_arguments),       cmocka_unit_test(cancelled_frames),  cmocka_unit_test(frames_and_resets),
         cmocka_unit_test(emitter_mask),          cmocka_unit_test(hostile_scenes),
+        cmocka_unit_test(negative_choices_and_no_params),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
