@@ -338,7 +338,7 @@ static noc_status read_mesh(const char *path, noc_stream *stream, const noc_impo
         return status;
     }
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strchr(base, '.');
-    char *folder = noc_format("%.*s", (int)(base - path), path);
+    char *folder = slash ? noc_format("%.*s", (int)(base - path), path) : noc_strdup("");
     lib.folder = folder;
     lib.main_name = noc_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
     const mesh_target to = { .scene = scene, .place = place, .offset = offset, .issues = issues,

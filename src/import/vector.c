@@ -8,7 +8,9 @@
 #include <math.h>
 #include <stdio.h>
 
-static bool has(const char *head, size_t size, const char *text) { return memmem(head, size, text, strlen(text)) != NULL; }
+static bool has(const char *head, size_t size, const char *text) {
+    return head && memmem(head, size, text, strlen(text)) != NULL;
+}
 
 typedef struct map_format {
     const char *name;
