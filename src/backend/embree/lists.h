@@ -148,7 +148,7 @@ static uint32_t score_lights(const struct core_context *ctx, const examples *e, 
     uint32_t n = 0;
     for (uint32_t i = 0; i < count; i++) {
         uint32_t cluster = opened[i];
-        float bound = 0.02f * s->scores[cluster] / c->power[cluster];
+        float bound = 0.08f * s->scores[cluster] / c->power[cluster];
         for (uint32_t j = c->first[cluster]; j < c->first[cluster + 1]; j++, n++) {
             s->light[n] = c->ids[j];
             s->light_scores[n] = bound * c->intensity[j];
