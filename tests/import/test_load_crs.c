@@ -1,0 +1,222 @@
+/* CRS of the inputs and of the scene, axes, and where a mesh that names none lies: through the importer, from a fake reader. */
+#include "fake_reader.h"
+
+static noc_import_params with_crs(const char *crs, const char *scene_crs) {
+    noc_import_params p = DEFAULTS;
+    p.crs = crs;
+    p.scene_crs = scene_crs;
+    return p;
+}
+
+/* Geographic input: the scene gets the UTM zone of its place; tuples are latitude first, and the house stays 10 m. */
+static void test_geographic(void **state) {
+    (void)state;
+    struct run r;
+    LOAD(&r, DEFAULTS, file("tokyo", "FAKE city\ncrs http://www.opengis.net/def/crs/EPSG/0/6697\nobject 0 b 1\n"
+                                     "polygon 2 35.6812 139.7671 9 35.6812 139.7672 9 35.6813 139.7672 9 35.6813 139.7671 9\nend\n"));
+    assert_int_equal(r.status, NOC_OK);
+    assert_string_equal(r.info.crs, "EPSG:32654 (WGS 84 / UTM zone 54N)");
+    const noc_report_file *f = noc_report_get_file(r.report, 0);
+    assert_string_equal(f->crs, "EPSG:6668 (JGD2011)");
+    assert_close(f->extent_min[0], 139.7671, 1e-9);
+    assert_close(f->extent_min[1], 35.6812, 1e-9);
+    /* 1e-4 degrees: 9.05 m by 11.1 m there, the diagonal 14.3 m */
+    float lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
+    const noc_scene_mesh *m = &r.scene->meshes.data[0];
+    for (size_t k = 3 * (size_t)m->first_triangle; k < 3 * (size_t)(m->first_triangle + m->triangle_count); k++)
+        for (int c = 0; c < 2; c++) {
+            float x = r.scene->positions.data[3 * (size_t)r.scene->indices.data[k] + (size_t)c];
+            lo[c] = NOC_MIN(lo[c], x), hi[c] = NOC_MAX(hi[c], x);
+        }
+    assert_close(hypot((double)(hi[0] - lo[0]), (double)(hi[1] - lo[1])), 14.4, 0.4);
+    finish(&r);
+}
+
+static void test_axes(void **state) {
+    (void)state;
+    struct run r;
+    static const struct {
+        const char *text, *reason;
+        double x, y; /* of the first corner, as understood */
+    } cases[] = {
+        /* northing first, against practice, in a CRS that has it so by the book; and in one that has not */
+        { "crs EPSG:31468\npolygon 2 5400000 4458000 0 5400000 4458009 0 5400009 4458009 0\n", "axes exchanged to fit the CRS", 4458000, 5400000 },
+        { "crs EPSG:25832\npolygon 2 5404000 678000 0 5404000 678009 0 5404009 678009 0\n", "axes exchanged to fit the CRS", 678000, 5404000 },
+        { "crs EPSG:5514\npolygon 2 -1043000 -743100 0 -1043000 -743000 0 -1042900 -743000 0\n", "axes exchanged to fit the CRS", -743100, -1043000 },
+        /* easting first, as practically always */
+        { "crs EPSG:31468\npolygon 2 4458000 5400000 0 4458009 5400000 0 4458009 5400009 0\n", NULL, 4458000, 5400000 },
+        { "crs EPSG:31256\npolygon 2 3000 341000 0 3009 341000 0 3009 341009 0\n", NULL, 3000, 341000 },
+        /* longitude first under a name that has latitude first: only this order has such a place */
+        { "crs EPSG:4258\npolygon 2 11.4 48.7 0 11.4001 48.7 0 11.4001 48.7001 0\n", "axes exchanged to fit the CRS", 11.4, 48.7 },
+        { "crs urn:ogc:def:crs:EPSG::4326\npolygon 2 150.1 -33.7 0 150.1001 -33.7 0 150.1001 -33.7001 0\n", "axes exchanged to fit the CRS", 150.1, -33.7 },
+        { "crs EPSG:4326\npolygon 2 48.7 11.4 0 48.7 11.4001 0 48.7001 11.4001 0\n", NULL, 11.4, 48.7 },
+        { "crs urn:adv:crs:ETRS89_UTM32*DE_DHHN92_NH\npolygon 2 32678000 5404000 0 32678009 5404000 0 32678009 5404009 0\n",
+          "zone number taken off the easting", 678000, 5404000 },
+    };
+    for (size_t i = 0; i < NOC_COUNT(cases); i++) {
+        char text[400];
+        snprintf(text, sizeof(text), "FAKE city\n%s", cases[i].text);
+        LOAD(&r, DEFAULTS, file("axes", text));
+        assert_int_equal(r.status, NOC_OK);
+        const noc_report_file *f = noc_report_get_file(r.report, 0);
+        assert_close(f->extent_min[0], cases[i].x, 1e-6);
+        assert_close(f->extent_min[1], NOC_MIN(cases[i].y, f->extent_max[1]), 1e-3);
+        assert_int_equal(f->line_count, cases[i].reason ? 1 : 0);
+        if (cases[i].reason)
+            assert_true(has_line(f, cases[i].reason, 1));
+        finish(&r);
+    }
+    /* no order of axes helps: said once, and taken as it is */
+    LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:31466\npolygon 2 1 1 0 3 1 0 3 4 0\npolygon 2 1 1 9 3 1 9 3 4 9\nlamp 2 2\n"));
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.warnings, 1);
+    assert_non_null(strstr(r.last_warning, "is it the right CRS?"));
+    finish(&r);
+    /* the decision is one of a file: a second file in the same CRS decides for itself */
+    LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:25832\npolygon 2 5404000 678000 0 5404000 678009 0 5404009 678009 0\n"),
+         file("b", "FAKE city\ncrs EPSG:25832\npolygon 2 678000 5404000 0 678009 5404000 0 678009 5404009 0\n"));
+    assert_true(has_line(noc_report_get_file(r.report, 0), "axes exchanged to fit the CRS", 1));
+    assert_int_equal(noc_report_get_file(r.report, 1)->line_count, 0);
+    assert_close(r.info.bounds_max[0] - r.info.bounds_min[0], 9 + 120, 1e-3); /* and the ground's margin */
+    finish(&r);
+}
+
+static void test_scene_crs(void **state) {
+    (void)state;
+    struct run r;
+    LOAD(&r, with_crs(NULL, "EPSG:25833"), file("a", CITY));
+    assert_int_equal(r.status, NOC_OK);
+    assert_string_equal(r.info.crs, "EPSG:25833 (ETRS89 / UTM zone 33N)");
+    /* any CRS to local, and the scene's own */
+    double p[3] = { 678000.5, 5404000.5, 370 }, q[3] = { 1, 2, 3 };
+    assert_int_equal(noc_scene_to_local(r.scene, "EPSG:25832", p), NOC_OK);
+    assert_close(p[0], r.info.bounds_min[0], 500); /* zone 33 is turned a little; in the ground plane's margin or so */
+    assert_close(p[2], 370, 0);
+    assert_int_equal(noc_scene_to_local(r.scene, NULL, q), NOC_OK);
+    assert_close(q[0], 1 - r.info.origin[0], 0);
+    assert_close(q[2], 3, 0);
+    assert_int_equal(noc_scene_to_local(r.scene, "nonsense", q), NOC_ERR_ARGUMENT);
+    double nowhere[3] = { NAN, 0, 0 };
+    assert_int_equal(noc_scene_to_local(r.scene, "EPSG:4326", nowhere), NOC_ERR_ARGUMENT);
+    finish(&r);
+    /* a scene's CRS is projected, in metres; and must be readable */
+    LOAD(&r, with_crs(NULL, "EPSG:4326"), file("a", CITY));
+    assert_int_equal(r.status, NOC_ERR_ARGUMENT);
+    finish(&r);
+    LOAD(&r, with_crs(NULL, "EPSG:2263"), file("a", CITY));
+    assert_int_equal(r.status, NOC_ERR_ARGUMENT);
+    finish(&r);
+    LOAD(&r, with_crs(NULL, "what"), file("a", CITY));
+    assert_int_equal(r.status, NOC_ERR_ARGUMENT);
+    finish(&r);
+    /* set on the scene before: kept, with its origin */
+    start(&r);
+    noc_scene_set_crs(r.scene, "EPSG:25832", (double[]){ 678000, 5404000, 300 });
+    load_with(&r, DEFAULTS, false, PATHS(file("a", CITY)));
+    assert_int_equal(r.status, NOC_OK);
+    assert_close(r.info.origin[2], 300, 0);
+    double corner[3] = { 678000.5, 5404000.5, 370 };
+    assert_int_equal(noc_scene_to_local(r.scene, "EPSG:25832", corner), NOC_OK);
+    assert_close(corner[0], 0.5, 1e-6);
+    assert_close(corner[2], 70, 1e-6);
+    finish(&r);
+}
+
+static void test_missing_crs(void **state) {
+    (void)state;
+    struct run r;
+    const char *local = file("local.city", "FAKE city\ncrs\n" HOUSE), *lamps = file("near.lamps", NEAR_LAMP);
+    /* alone, it is local metres */
+    LOAD(&r, DEFAULTS, local);
+    assert_int_equal(r.status, NOC_OK);
+    assert_string_equal(r.info.crs, "");
+    double p[3] = { 11.4, 48.7, 0 };
+    assert_int_equal(noc_scene_to_local(r.scene, "EPSG:4326", p), NOC_ERR_ARGUMENT);
+    finish(&r);
+    /* with one that names a CRS, in either order, it is an error that names the file and the option */
+    LOAD(&r, DEFAULTS, local, lamps);
+    assert_int_equal(r.status, NOC_ERR_FORMAT);
+    assert_non_null(strstr(noc_log_last_error(r.log), "local.city names no CRS"));
+    assert_non_null(strstr(noc_log_last_error(r.log), "--crs"));
+    finish(&r);
+    LOAD(&r, DEFAULTS, file("a", CITY), local);
+    assert_int_equal(r.status, NOC_ERR_FORMAT);
+    assert_non_null(strstr(noc_log_last_error(r.log), "local.city names no CRS"));
+    finish(&r);
+    LOAD(&r, with_crs("EPSG:25832", NULL), local, lamps);
+    assert_int_equal(r.status, NOC_OK);
+    assert_string_equal(r.info.crs, "EPSG:25832 (ETRS89 / UTM zone 32N)");
+    assert_int_equal(noc_report_get_file(r.report, 1)->lamps, 1);
+    assert_true(r.info.lights >= 1);
+    finish(&r);
+    /* a name that is not understood: --crs says what to take; without it that is an error */
+    const char *odd = file("odd", "FAKE city\ncrs Local Grid 7\n" HOUSE);
+    LOAD(&r, with_crs("EPSG:25832", NULL), odd);
+    assert_int_equal(r.status, NOC_OK);
+    assert_true(r.warnings > 0);
+    finish(&r);
+    LOAD(&r, DEFAULTS, odd);
+    assert_int_equal(r.status, NOC_ERR_FORMAT);
+    assert_non_null(strstr(noc_log_last_error(r.log), "--crs"));
+    finish(&r);
+    LOAD(&r, with_crs("nonsense", NULL), local);
+    assert_int_equal(r.status, NOC_ERR_ARGUMENT);
+    finish(&r);
+    LOAD(&r, with_crs(NULL, "EPSG:25832"), local);
+    assert_int_equal(r.status, NOC_ERR_ARGUMENT);
+    finish(&r);
+}
+
+/* A mesh names no CRS: with --crs it is in it, in doubles; without, it counts from the origin, wherever in the list it is. */
+static void test_mesh_place(void **state) {
+    (void)state;
+    struct run r;
+    noc_import_params p = with_crs("EPSG:25832", NULL);
+    const char *city = file("a", CITY "object 2 r -1\npolygon 9 678090 5403590 0 678120 5403590 0 678120 5403620 0\nend\n");
+    const char *mesh = file("m", "FAKE mesh\n");
+    p.infer_lamps = false;
+    p.infer_lamps = false;
+    mesh_x = 678100;
+    mesh_y = 5403580;
+    LOAD(&r, p, mesh, city);
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.warnings, 0);
+    const noc_scene_mesh *m = r.scene->meshes.data; /* the one that shines */
+    while (!(r.scene->materials.data[m->material].emission[0] > 0))
+        m++;
+    const float *v = &r.scene->positions.data[3 * (size_t)r.scene->indices.data[3 * (size_t)m->first_triangle]];
+    assert_float_equal(v[0] + r.scene->origin[0], 678100, 1e-3);
+    assert_float_equal(v[1] + r.scene->origin[1], 5403580, 1e-3);
+    assert_string_equal(noc_report_get_file(r.report, 0)->crs, noc_report_get_file(r.report, 1)->crs);
+    assert_float_equal(noc_report_get_file(r.report, 0)->extent_max[0], 678105, 0);
+    finish(&r);
+    p.crs = NULL; /* map coordinates, but nobody says so */
+    LOAD(&r, p, mesh, city);
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.warnings, 1);
+    assert_non_null(strstr(r.last_warning, "from the rest of the scene"));
+    finish(&r);
+    LOAD(&r, p, mesh); /* alone: local metres, near a local origin */
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.warnings, 0);
+    assert_float_equal(r.scene->origin[0], 678103, 1);
+    assert_float_equal(r.info.bounds_max[0] + r.scene->origin[0], 678105, 1e-3);
+    finish(&r);
+    mesh_x = mesh_y = 0;
+    LOAD(&r, p, mesh, file("l", "FAKE lamps\ncrs EPSG:25832\nlamp 678100 5403580 5\n")); /* lamps settle the place just so */
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.warnings, 0);
+    assert_float_equal(r.scene->origin[0], 678100, 0);
+    finish(&r);
+    p.crs = "EPSG:4326"; /* degrees are no metres */
+    LOAD(&r, p, mesh, city);
+    assert_int_equal(r.status, NOC_ERR_ARGUMENT);
+    finish(&r);
+}
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_geographic), cmocka_unit_test(test_axes), cmocka_unit_test(test_scene_crs),
+        cmocka_unit_test(test_missing_crs), cmocka_unit_test(test_mesh_place),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
