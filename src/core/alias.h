@@ -15,8 +15,8 @@ struct alias_slot {
 
 #ifndef CORE_GLSL
 typedef struct alias_slot alias_slot;
-FN alias_slot alias_load(CTX u32 i);
 #endif
+FN alias_slot alias_load(CTX u32 i);
 
 /* bits choose the slot, xi (in [0, 1), independent of them) whether its light is kept. count > 0. */
 FN pick alias_draw(CTX u32 count, u32 bits, real xi) {

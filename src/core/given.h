@@ -6,9 +6,7 @@
 #include "core/pick.h"
 #include "core/reservoir.h"
 
-#ifndef CORE_GLSL
 FN pick pick_load(CTX int i);
-#endif
 
 /* W = (1/m) sum(p_hat / pmf) / p_hat(chosen); draws that picked nothing count in m. Places and choices are those of
  * ris_uniform. */

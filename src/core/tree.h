@@ -1,7 +1,7 @@
 /* core/tree.h: stochastic descent of a light tree (Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with
  * Adaptive Tree Splitting"; for real time: Moreau, Pharr and Clarberg 2019). A node bounds its lights by a sphere and a cone
  * of the directions they face and knows the sum of their intensities; at each node one child is chosen in proportion to
- * core/cones.h's bound of what it could give the surface. A child is only left out for certain where none of its lights can
+ * a bound of what it could give the surface. A child is only left out for certain where none of its lights can
  * reach the surface. Every leaf is one light, and the turns to it are kept as bits, so that pmf can take the same way.
  * Includers supply tree_load(CTX node). */
 #ifndef CORE_TREE_H
@@ -19,8 +19,8 @@ struct tree_node {
 
 #ifndef CORE_GLSL
 typedef struct tree_node tree_node;
-FN tree_node tree_load(CTX u32 i);
 #endif
+FN tree_node tree_load(CTX u32 i);
 
 /* A surface point is a bound of size 0. */
 FN cone_bound tree_receiver(v3 p, v3 n) {
@@ -33,11 +33,33 @@ FN cone_bound tree_receiver(v3 p, v3 n) {
     return r;
 }
 
+/* What the lights of a node could give the surface: 0 only if none of them can reach it. As core/cones.h's cluster_score,
+ * with lower floors: there a floor guards a whole cluster against a loose bound; here it would give the windows beside a
+ * window in a wall, which shine past that wall, more draws than those across the street. Inside a node the distance is taken
+ * as half its size. */
+FN real tree_score(cone_bound y, cone_bound lights, real power) {
+    v3 d = sub3(lights.c, y.c);
+    real d2 = dot3(d, d);
+    real size2 = lights.radius * lights.radius;
+    mask apart = d2 > size2 * K(1.0001f);
+    real inv = K(1.0f) / sqrt_(max_(d2, K(1e-20f)));
+    d = mul3(d, inv);
+    real sin_reach = min_(lights.radius * inv, K(1.0f));
+    real cos_reach = sin_of(sin_reach);
+    real r = cosine_bound(y, d, cos_reach, sin_reach);
+    real e = cosine_bound(lights, mul3(d, K(-1.0f)), cos_reach, sin_reach);
+    mask never = and_(apart, or_(r < K(-1e-3f), e < K(-1e-3f)));
+    r = sel(apart, max_(r, K(2e-3f)), K(1.0f));
+    e = sel(apart, max_(e, K(2e-3f)), K(1.0f));
+    real score = min_(power * r * e / max_(max_(d2, size2 * K(0.25f)), K(1e-6f)), K(1e30f));
+    return sel(never, K(0.0f), score);
+}
+
 /* Probability of the first of two children. Where neither can reach the surface, any will do. Where both can, neither is
  * left out by rounding. */
 FN real tree_share(cone_bound y, tree_node a, tree_node b) {
-    real ia = cluster_score(y, a.bound, a.power);
-    real ib = cluster_score(y, b.bound, b.power);
+    real ia = tree_score(y, a.bound, a.power);
+    real ib = tree_score(y, b.bound, b.power);
     mask none = ia + ib <= K(0.0f);
     ia = sel(none, K(1.0f), ia);
     ib = sel(none, K(1.0f), ib);
