@@ -66,12 +66,24 @@ typedef struct inference {
     geo_issues *issues;
     spots *spots;
     int lights, lamps;
+    const noc_progress *progress;
+    double done; /* 0..1 */
+    unsigned asked;
+    bool cancelled;
 } inference;
+
+/* Asks now and then whether to go on. */
+static bool go_on(inference *in) {
+    if (in->asked++ % 256 == 0 && in->progress && in->progress->update &&
+        !in->progress->update(in->progress->user, "lamps", in->done))
+        in->cancelled = true;
+    return !in->cancelled;
+}
 
 /* A lamp at (x, y), facing (dx, dy), unless the place will not do. */
 static void propose(inference *in, double x, double y, double dx, double dy, double near_z) {
     const double facing[2] = { dx, dy };
-    if (in->lamps >= MAX_LAMPS || !keeps_distance(in->spots, x, y, facing))
+    if (in->lamps >= MAX_LAMPS || !go_on(in) || !keeps_distance(in->spots, x, y, facing))
         return;
     double z;
     if (!noc_scene_ground(in->scene, x, y, &z))
@@ -107,7 +119,7 @@ static void along_edge(inference *in, const float *a, const float *b, double off
         return;
     double right[2] = { d[1] / length, -d[0] / length };
     int steps = (int)NOC_CLAMP(length / 4, 1, 1e5);
-    for (int i = 0; i < steps; i++) {
+    for (int i = 0; i < steps && !in->cancelled; i++) {
         double t = (i + .5) / steps, sign = outward ? 1 : -1;
         propose(in, p[0] + t * d[0] + off * right[0], p[1] + t * d[1] + off * right[1], sign * right[0], sign * right[1],
                 p[2] + t * d[2]);
@@ -122,9 +134,10 @@ static bool road_beside(const noc_scene *scene, const float *a, const float *b, 
 }
 
 /* The outer edges of roads: those with no road on their other side. */
-static void along_roads(inference *in) {
+static void along_roads(inference *in, int round) {
     size_t triangles = in->scene->triangle_light.len;
-    for (size_t t = 0; t < triangles; t++) {
+    for (size_t t = 0; t < triangles && go_on(in); t++) {
+        in->done = (round + (double)t / (double)triangles) / 2;
         if (class_of(in->scene, t) != NOC_CLASS_ROAD)
             continue;
         const float *v[3] = { corner(in->scene, t, 0), corner(in->scene, t, 1), corner(in->scene, t, 2) };
@@ -143,7 +156,8 @@ static void along_roads(inference *in) {
 /* In front of walls, seen from above: the lower edge of each wall triangle that begins near the ground. */
 static void around_buildings(inference *in) {
     size_t triangles = in->scene->triangle_light.len;
-    for (size_t t = 0; t < triangles; t++) {
+    for (size_t t = 0; t < triangles && go_on(in); t++) {
+        in->done = (double)t / (double)triangles;
         if (class_of(in->scene, t) != NOC_CLASS_WALL)
             continue;
         int low = 0;
@@ -164,8 +178,10 @@ static void around_buildings(inference *in) {
     }
 }
 
-int city_infer_lamps(noc_scene *scene, const city_lamp_params *params, geo_issues *issues) {
-    inference in = { .scene = scene, .params = params, .issues = issues, .spots = noc_calloc(1, sizeof(spots)) };
+noc_status city_infer_lamps(noc_scene *scene, const city_lamp_params *params, const noc_progress *progress,
+                            geo_issues *issues, int *lights) {
+    inference in = { .scene = scene, .params = params, .issues = issues, .progress = progress,
+                     .spots = noc_calloc(1, sizeof(spots)) };
     noc_scene_info info;
     noc_scene_get_info(scene, &info);
     bool roads = info.triangles_by_class[NOC_CLASS_ROAD] > 0;
@@ -173,11 +189,12 @@ int city_infer_lamps(noc_scene *scene, const city_lamp_params *params, geo_issue
     in.spots->cell = 2 * in.spots->spacing;
     for (int round = 0; roads && round < 2; round++) {
         in.spots->alternate = round == 0;
-        along_roads(&in);
+        along_roads(&in, round);
     }
     if (!roads)
         around_buildings(&in);
     array_free(&in.spots->list);
     free(in.spots);
-    return in.lights;
+    *lights = in.lights;
+    return in.cancelled ? NOC_ERR_CANCELLED : NOC_OK;
 }

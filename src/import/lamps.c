@@ -107,6 +107,11 @@ static bool go_on(importer *im, double done) {
     return !im->cancelled;
 }
 
+static bool infer_update(void *user, const char *what, double done) {
+    (void)what;
+    return go_on(user, 0.9 + 0.1 * done);
+}
+
 /* Stands the lamps that were read; *nearest is the distance to the nearest of those outside. */
 static size_t stand_lamps(importer *im, const extent *e, const city_lamp_params *params, double *nearest) {
     size_t outside = 0;
@@ -162,8 +167,11 @@ noc_status finish_city(importer *im) {
         return NOC_OK;
     }
     geo_issues *issues = geo_issues_create();
-    int lights = city_infer_lamps(scene, &params, issues);
+    int lights;
+    noc_status status = city_infer_lamps(scene, &params, &(noc_progress){ infer_update, im }, issues, &lights);
     geo_issues_destroy(issues);
+    if (status)
+        return status;
     const char *usable = im->lamps.len ? " that could be used" : "";
     if (lights > 0)
         noc_warn(im->log, "no lamps in the inputs%s: %d placed by a rule (inferred, not surveyed)", usable, lights);

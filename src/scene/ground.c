@@ -84,23 +84,36 @@ static int compare_floats(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Bounds of nearly all triangles, from a sample: one stray triangle far away must not make the cells too large. */
+/* Lamps are added while rays are asked for, along one street after the other: they do not say how large the city is. */
+static bool is_city(const noc_scene *scene, size_t t) {
+    return t - scene->backdrop_first >= scene->backdrop_count && material_of(scene, t)->cls != NOC_CLASS_LAMP;
+}
+
+/* Bounds of nearly all triangles of the city, from a sample: one stray triangle far away must not make the cells too
+ * large. Of all triangles where there are none but lamps'. */
 static void grid_bounds(struct noc_ground *g, const noc_scene *scene, size_t triangles, double size[2]) {
     enum { SAMPLES = 4096 };
-    float *xs = noc_alloc(SAMPLES * sizeof(*xs));
-    for (int k = 0; k < 2; k++) {
-        size_t n = 0, samples = NOC_MIN(triangles, (size_t)SAMPLES);
-        for (size_t i = 0; i < samples; i++) {
-            size_t t = i * triangles / samples;
-            if (t - scene->backdrop_first >= scene->backdrop_count)
-                xs[n++] = corner(scene, t, (int)(i % 3))[k];
+    size_t city = 0, n = 0, seen = 0;
+    for (size_t t = 0; t < triangles; t++)
+        city += is_city(scene, t);
+    size_t all = city ? city : triangles, samples = NOC_MIN(all, (size_t)SAMPLES);
+    float *xs[2] = { noc_alloc(SAMPLES * sizeof(float)), noc_alloc(SAMPLES * sizeof(float)) };
+    for (size_t t = 0; t < triangles && n < samples; t++) {
+        if (city && !is_city(scene, t))
+            continue;
+        if (seen++ == n * all / samples) {
+            for (int k = 0; k < 2; k++)
+                xs[k][n] = corner(scene, t, (int)(n % 3))[k];
+            n++;
         }
-        qsort(xs, n, sizeof(*xs), compare_floats);
-        double lo = n ? xs[n / 50] : 0, hi = n ? xs[n - 1 - n / 50] : 0, margin = (hi - lo) * 0.08 + 1;
+    }
+    for (int k = 0; k < 2; k++) {
+        qsort(xs[k], n, sizeof(float), compare_floats);
+        double lo = n ? xs[k][n / 50] : 0, hi = n ? xs[k][n - 1 - n / 50] : 0, margin = (hi - lo) * 0.08 + 1;
         g->min[k] = lo - margin;
         size[k] = hi - lo + 2 * margin;
+        free(xs[k]);
     }
-    free(xs);
 }
 
 /* Sets the resolution and counts the list entries it needs. */
@@ -248,6 +261,14 @@ bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, doubl
         return false;
     *z = best;
     return true;
+}
+
+size_t noc_ground_load(const noc_scene *scene, double x, double y) {
+    const struct noc_ground *g = ground_of(scene);
+    size_t c = (size_t)cell_of(g, 1, y) * (size_t)g->nx + (size_t)cell_of(g, 0, x), n = g->offsets[c + 1] - g->offsets[c];
+    for (uint32_t l = g->chains ? g->chains[c] : NO_LINK; l != NO_LINK; l = g->links.data[l].next)
+        n++;
+    return n;
 }
 
 bool noc_scene_ground(const noc_scene *scene, double x, double y, double *z) {

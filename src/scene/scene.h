@@ -77,5 +77,7 @@ void noc_ground_free(struct noc_ground *ground);
 bool noc_scene_top(const noc_scene *scene, double x, double y, double *z);
 /* The same among some classes: classes has bit 1u << noc_class set for each. */
 bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, double y, double *z);
+/* How many triangles a ray at (x, y) looks at: what a query costs. */
+size_t noc_ground_load(const noc_scene *scene, double x, double y);
 
 #endif

@@ -284,13 +284,47 @@ static double nearest_pair(const noc_scene *scene) {
     return best;
 }
 
+static int infer(noc_scene *scene) {
+    int lights;
+    assert_int_equal(city_infer_lamps(scene, &defaults, NULL, NULL, &lights), NOC_OK);
+    return lights;
+}
+
+static bool stop_at_third(void *user, const char *what, double done) {
+    int *calls = user;
+    assert_string_equal(what, "lamps");
+    assert_true(done >= 0 && done <= 1);
+    return ++*calls < 3;
+}
+
+/* Placing by a rule tells its progress, and ends early when it is told to. */
+static void test_infer_cancelled(void **state) {
+    (void)state;
+    int all = 0;
+    for (int cancel = 0; cancel < 2; cancel++) {
+        noc_scene *scene = noc_scene_create(NULL);
+        for (int i = 0; i < 200; i++)
+            add_building(scene, i * 50, 0, i * 50 + 30, 30, 0, 10);
+        city_add_ground(scene, NULL, 0);
+        int lights, calls = 0;
+        noc_progress progress = { stop_at_third, &calls };
+        noc_status status = city_infer_lamps(scene, &defaults, cancel ? &progress : NULL, NULL, &lights);
+        assert_int_equal(status, cancel ? NOC_ERR_CANCELLED : NOC_OK);
+        if (!cancel)
+            all = lights;
+        else
+            assert_true(calls == 3 && lights > 0 && lights < all / 2);
+        noc_scene_destroy(scene);
+    }
+}
+
 static void test_infer_roads(void **state) {
     noc_scene *scene = noc_scene_create(NULL);
     add_plane(scene, NOC_CLASS_SIDEWALK, -300, -20, 300, 20, 0, 0);
     add_plane(scene, NOC_CLASS_ROAD, -300, -4, 0, 4, .01, 0);
     add_plane(scene, NOC_CLASS_ROAD, 0, -4, 300, 4, .01, 0); /* the seam between the two is no kerb */
     add_building(scene, 100, 4.2, 200, 20, 0, 10);
-    int lights = city_infer_lamps(scene, &defaults, NULL);
+    int lights = infer(scene);
     assert_int_equal(lights, scene->lights.len);
     assert_int_equal(lights, scene->lights_inferred);
     assert_true(lights >= 17 && lights <= 40);
@@ -309,7 +343,7 @@ static void test_infer_roads(void **state) {
     add_plane(again, NOC_CLASS_ROAD, -300, -4, 0, 4, .01, 0);
     add_plane(again, NOC_CLASS_ROAD, 0, -4, 300, 4, .01, 0);
     add_building(again, 100, 4.2, 200, 20, 0, 10);
-    assert_int_equal(city_infer_lamps(again, &defaults, NULL), lights);
+    assert_int_equal(infer(again), lights);
     assert_memory_equal(again->lights.data, scene->lights.data, (size_t)lights * sizeof(noc_light_record));
     noc_scene_destroy(again);
     noc_scene_destroy(scene);
@@ -321,7 +355,7 @@ static void test_infer_buildings(void **state) {
         for (int k = 0; k < 4; k++)
             add_building(scene, i * 50, k * 50, i * 50 + 30, k * 50 + 30, 0, 10);
     city_add_ground(scene, NULL, 0);
-    int lights = city_infer_lamps(scene, &defaults, NULL);
+    int lights = infer(scene);
     assert_true(lights >= 30);
     assert_true(nearest_pair(scene) > 20);
     for (int i = 0; i < lights; i++) {
@@ -332,7 +366,7 @@ static void test_infer_buildings(void **state) {
     }
     noc_scene_destroy(scene);
     scene = noc_scene_create(NULL); /* nothing there: nothing placed */
-    assert_int_equal(city_infer_lamps(scene, &defaults, NULL), 0);
+    assert_int_equal(infer(scene), 0);
     noc_scene_destroy(scene);
 }
 
@@ -428,7 +462,7 @@ int main(void) {
         cmocka_unit_test(test_own_shape_does_not_shadow),
         cmocka_unit_test(test_inside_building),
         cmocka_unit_test(test_odd_grounds),
-        cmocka_unit_test(test_infer_roads),
+        cmocka_unit_test(test_infer_roads), cmocka_unit_test(test_infer_cancelled),
         cmocka_unit_test(test_infer_buildings),
         cmocka_unit_test(test_no_ground),
         cmocka_unit_test(test_skirts),

@@ -194,6 +194,26 @@ static void test_ask_and_add(void **ctx) {
     noc_scene_destroy(scene);
 }
 
+/* A wide scene of few triangles, and many lamps placed along one of its edges: a ray must not look at all of them. */
+static void test_wide(void **ctx) {
+    enum { LAMPS = 20000, EACH = 3 };
+    noc_scene *scene = noc_scene_create(NULL);
+    int ground = material(scene, NOC_CLASS_GROUND), wall = material(scene, NOC_CLASS_WALL), lamp = material(scene, NOC_CLASS_LAMP);
+    add_plane(scene, ground, 0, 0, 1e6, 1e6, 0);
+    add_triangle(scene, wall, (double[]){ 0, 0, 0, 1e6, 0, 0, 1e6, 0, 100 });
+    double looked = 0, z;
+    for (int i = 0; i < LAMPS; i++) {
+        double x = 10 + 28.0 * i;
+        looked += (double)noc_ground_load(scene, x, 10);
+        assert_true(noc_scene_ground(scene, x, 10, &z) && z == 0);
+        for (int k = 0; k < EACH; k++)
+            add_triangle(scene, lamp, (double[]){ x, 10, k, x + .2, 10, k, x, 10.2, k });
+    }
+    /* all that are there: LAMPS / 2 * EACH a ray. Twenty times less is what a grid over the whole gives. */
+    assert_true(looked / LAMPS < LAMPS / 2.0 * EACH / 20);
+    noc_scene_destroy(scene);
+}
+
 typedef struct asked { const noc_scene *scene; int wrong[64]; } asked;
 
 static void ask(void *ctx, size_t item, int worker) {
@@ -223,6 +243,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_classes),    cmocka_unit_test(test_highest_wins), cmocka_unit_test(test_random),
         cmocka_unit_test(test_watertight), cmocka_unit_test(test_ask_and_add),  cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_wide),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
