@@ -8,7 +8,7 @@
 #include "core/light.h"
 #include "core/random.h"
 
-#define ITEM_SLOTS 126
+#define ITEM_SLOTS 141
 #define KERNEL_LIGHTS 1000u
 
 /* Signed, of a magnitude that differs from item to item: 1/16 to 4096. */
@@ -45,6 +45,10 @@ FN light light_load(CTX u32 i) { return any_light(hash_u32(i + KU(77u))); }
 #include "core/reuse.h" /* GLSL wants the bridge above it */
 #include "core/shadow.h"
 #include "core/sky.h"
+#include "core/alias.h"
+#include "core/given.h"
+#include "core/influence.h"
+#include "core/tree.h"
 
 FN surf any_surf(u32 key) {
     surf s;
@@ -58,6 +62,38 @@ FN surf any_surf(u32 key) {
     real rough = K(0.05f) + K(0.95f) * rng(key, KU(22u));
     s.alpha = rough * rough;
     return s;
+}
+
+FN alias_slot alias_load(CTX u32 i) {
+    alias_slot s;
+    u32 key = hash_u32(i + KU(5u));
+    s.keep = rng(key, KU(0u));
+    s.other = scale_u32(rng_bits(key, KU(1u)), KU(KERNEL_LIGHTS));
+    s.inverse = rng(key, KU(2u)) * K(1000.0f);
+    s.inverse_other = rng(key, KU(3u)) * K(1000.0f);
+    return s;
+}
+
+/* A whole tree of 255 nodes. */
+FN tree_node tree_load(CTX u32 i) {
+    tree_node n;
+    u32 key = hash_u32(i + KU(6u));
+    n.bound.c = any_v3(key, KU(0u));
+    n.bound.radius = rng(key, KU(6u)) * K(100.0f);
+    n.bound.axis = unit3(any_v3(key, KU(7u)));
+    n.bound.cos_cone = rng(key, KU(13u)) * K(2.0f) - K(1.0f);
+    n.bound.sin_cone = sin_of(n.bound.cos_cone);
+    n.power = rng(key, KU(14u)) * K(100.0f);
+    n.child = selu(i < KU(127u), i * KU(2u) + KU(1u), KU(0u));
+    n.light = i;
+    return n;
+}
+
+FN pick pick_load(CTX int i) {
+    pick p;
+    p.light = KU(37u * U32(i));
+    p.inverse = K(1.0f + F32(i));
+    return p;
 }
 
 FN void put_v3(CTX u32 item, int slot, v3 a) {
@@ -185,6 +221,30 @@ FN void rays(CTX u32 item, u32 key, surf s, light any) {
     put_v3(PASS item, 123, sky_backdrop(s.n, rng(key, KU(3022u))));
 }
 
+/* Slots 126 to 140. */
+FN void pickers(CTX u32 item, u32 key, surf s) {
+    u32 bits = rng_bits(key, KU(3060u));
+    pick a = alias_draw(PASS KU(KERNEL_LIGHTS), bits, rng(key, KU(3061u)));
+    put_u32(PASS item, 126, a.light);
+    put_real(PASS item, 127, a.inverse);
+    put_real(PASS item, 128, alias_pmf(PASS a.light));
+    pick t = tree_draw(PASS s.p, s.n, bits, 7);
+    put_u32(PASS item, 129, t.light);
+    put_real(PASS item, 130, t.inverse);
+    put_real(PASS item, 131, tree_pmf(PASS s.p, s.n, bits, 7));
+    influence v;
+    v.c = add3(s.p, any_v3(key, KU(3070u)));
+    v.n = unit3(any_v3(key, KU(3076u)));
+    v.size = rng(key, KU(3082u));
+    v.root = rng(key, KU(3083u)) * K(100.0f);
+    mask held = influence_holds(v, s.p, s.n, K(3.0f));
+    u32 n_f = shr(bits, 27);
+    put_real(PASS item, 132, sel(held, K(1.0f), K(0.0f)));
+    put_real(PASS item, 133, influence_pmf(held, n_f, KU(KERNEL_LIGHTS), 32, 4));
+    put_u32(PASS item, 134, influence_uniform(n_f, 30, 4));
+    put_resv(PASS item, 135, ris_given(PASS s, key, 8));
+}
+
 FN void dialect_item(CTX u32 item) {
     u32 key = rng_key(KU(5u), item, KU(9u));
     surf s = any_surf(hash_u32(key + KU(1u)));
@@ -195,6 +255,7 @@ FN void dialect_item(CTX u32 item) {
     reservoirs(PASS item, key, s);
     reuse(PASS item, key);
     rays(PASS item, key, s, any);
+    pickers(PASS item, key, s);
 }
 
 #endif
