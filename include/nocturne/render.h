@@ -78,9 +78,9 @@ NOC_DEFAULT_PARAMS(noc_renderer_params, noc_renderer_default_params, NOC_RENDERE
 NOC_API noc_renderer *noc_renderer_create(const noc_scene *scene, const noc_renderer_params *params, noc_log *log);
 NOC_API void noc_renderer_destroy(noc_renderer *renderer);
 
-/* Renders one frame; NULL params are the defaults. History and accumulation start anew when size, method or any other parameter changes; accumulation
- * also when the camera moves (history then reprojects). progress may be NULL; when it cancels, the frame is dropped, what
- * was accumulated stays, and NOC_ERR_CANCELLED is returned. */
+/* Renders one frame; NULL params are the defaults. History and accumulation start anew when size, method or any other
+ * parameter changes; accumulation also when the camera moves (history then reprojects). progress may be NULL; when it
+ * cancels, the frame is dropped, what was accumulated stays, and NOC_ERR_CANCELLED is returned. */
 NOC_API noc_status noc_renderer_frame(noc_renderer *renderer, const noc_camera *camera, const noc_render_params *params,
                                       const noc_progress *progress);
 NOC_API void noc_renderer_reset(noc_renderer *renderer); /* forgets history and accumulation, frame number too */

@@ -19,6 +19,26 @@ static noc_status check_params(const noc_import_params *p, noc_log *log) {
         return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp flux is %g lm, not within 0..1e9", p->lamp_lumens);
     if (!(p->lamp_kelvin >= 1000 && p->lamp_kelvin <= 40000))
         return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp colour is %g K, not within 1000..40000", p->lamp_kelvin);
+    if ((unsigned)p->obj_up > NOC_OBJ_UP_Z)
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: obj_up is %d, not a noc_obj_up", (int)p->obj_up);
+    return NOC_OK;
+}
+
+/* --crs and --scene-crs must be understood even where no input needs them. */
+static noc_status check_crs(const noc_import_params *p, noc_log *log) {
+    const struct { const char *option, *crs; bool metric; } given[] = { { "--crs", p->crs, false },
+                                                                        { "--scene-crs", p->scene_crs, true } };
+    for (size_t i = 0; i < NOC_COUNT(given); i++) {
+        if (!given[i].crs || !given[i].crs[strspn(given[i].crs, " \t\r\n")])
+            continue;
+        geo_crs *crs = geo_crs_create(given[i].crs, given[i].option, log);
+        bool usable = crs && (!given[i].metric || geo_crs_is_metric(crs));
+        if (crs && !usable)
+            noc_error(log, NOC_ERR_ARGUMENT, "%s: a scene's CRS must be projected, in metres", geo_crs_name(crs));
+        geo_crs_destroy(crs);
+        if (!usable)
+            return NOC_ERR_ARGUMENT;
+    }
     return NOC_OK;
 }
 
@@ -161,6 +181,10 @@ static noc_status read_input(importer *im, size_t index) {
     noc_stream *stream = noc_stream_open(in->path, im->log);
     if (!stream)
         return open_status(in->path);
+    size_t unread = noc_stream_unread(stream);
+    if (unread)
+        noc_warn(im->log, "%s: the archive's %zu other member%s like it %s not read: unpack it to read them", noc_stream_name(stream),
+                 unread, unread == 1 ? "" : "s", unread == 1 ? "is" : "are");
     noc_status status;
     in->file.format = in->reader->name;
     if (in->reader->read_mesh) {
@@ -180,6 +204,8 @@ static noc_status read_input(importer *im, size_t index) {
     if (im->cancelled)
         status = NOC_ERR_CANCELLED;
     place_finish_file(im);
+    if (!status && noc_stream_trailing(stream))
+        noc_warn(im->log, "%s: bytes after the gzip data are ignored", in->path);
     in->file.bytes = in->bytes;
     in->file.bytes_read = noc_stream_read_bytes(stream);
     in->file.seconds = noc_wall_seconds() - start;
@@ -220,6 +246,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     if (!params)
         params = &defaults;
     noc_status status = check_params(params, scene->log);
+    if (!status)
+        status = check_crs(params, scene->log);
     if (status)
         return status;
     if (!path_count)
