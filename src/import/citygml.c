@@ -71,6 +71,8 @@ static noc_status xml_error(cg_parser *p) {
                                                "US-ASCII are");
     if (code == XML_ERROR_NO_MEMORY)
         return cg_fail(p, NOC_ERR_MEMORY, "out of memory");
+    if (code == XML_ERROR_NO_ELEMENTS || code == XML_ERROR_UNCLOSED_TOKEN)
+        return cg_fail(p, NOC_ERR_FORMAT, "the file ends too early: is it cut? (%s)", XML_ErrorString(code));
     return cg_fail(p, NOC_ERR_FORMAT, "%s", XML_ErrorString(code));
 }
 

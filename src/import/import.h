@@ -6,7 +6,7 @@
 #include "geo/geo.h"
 #include <nocturne/import.h>
 
-/* Sequential bytes of a plain, gzip or zip file (the first member of a zip that a reader's probe accepts). */
+/* Sequential bytes of a plain, gzip or zip file (one member of a zip: the first whose name tells a model or map best). */
 typedef struct noc_stream noc_stream;
 noc_stream *noc_stream_open(const char *path, noc_log *log); /* NULL after reporting an error; directories are an error */
 void noc_stream_close(noc_stream *s);
@@ -16,6 +16,8 @@ noc_status noc_stream_rewind(noc_stream *s);
 const char *noc_stream_name(const noc_stream *s);     /* path, or path!member */
 uint64_t noc_stream_size(const noc_stream *s);        /* bytes as stored */
 uint64_t noc_stream_read_bytes(const noc_stream *s);  /* bytes delivered since open or rewind */
+size_t noc_stream_unread(const noc_stream *s);        /* other members of a zip that look like models, too */
+bool noc_stream_trailing(const noc_stream *s);        /* bytes followed the gzip data, and were ignored; known at the end */
 double noc_stream_progress(const noc_stream *s);      /* share of the stored bytes consumed, 0..1 */
 
 /* Takes a mesh's coordinates (x east, y north, z up, as the file has them) to the scene's frame, in place. */

@@ -183,7 +183,7 @@ static noc_status read_input(importer *im, size_t index) {
         return open_status(in->path);
     size_t unread = noc_stream_unread(stream);
     if (unread)
-        noc_warn(im->log, "%s: the archive's %zu other member%s like it %s not read: unpack it to read them", noc_stream_name(stream),
+        noc_warn(im->log, "%s: the archive holds %zu more file%s like it, which %s not read: unpack it to read all", noc_stream_name(stream),
                  unread, unread == 1 ? "" : "s", unread == 1 ? "is" : "are");
     noc_status status;
     in->file.format = in->reader->name;
@@ -203,7 +203,7 @@ static noc_status read_input(importer *im, size_t index) {
     }
     if (im->cancelled)
         status = NOC_ERR_CANCELLED;
-    place_finish_file(im);
+    place_finish_file(im, status == NOC_OK);
     if (!status && noc_stream_trailing(stream))
         noc_warn(im->log, "%s: bytes after the gzip data are ignored", in->path);
     in->file.bytes = in->bytes;

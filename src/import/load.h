@@ -101,7 +101,7 @@ noc_status place_points(importer *im, double *xyz, size_t count, const char *id,
  * else in the same local metres as all the rest. */
 noc_status place_mesh(importer *im);
 noc_status place_mesh_points(void *importer, double *xyz, size_t count);
-void place_finish_file(importer *im);
+void place_finish_file(importer *im, bool read);
 void place_destroy(importer *im);
 
 /* ahead.c: puts itself before a sink until the place is settled. */

@@ -179,6 +179,10 @@ static noc_status settle(importer *im, const source_crs *source, const double po
         return noc_error(im->log, NOC_ERR_FORMAT, "%s: the first coordinates (%.10g %.10g) have no place in %s",
                          im->inputs[im->current].path, point[0], point[1], geo_crs_name(source->crs));
     }
+    double outside = preset || is_blank(im->params->scene_crs) ? 0 : geo_crs_outside(crs, p[0], p[1]);
+    if (outside > FAR_OUTSIDE)
+        noc_warn(im->log, "%s: the coordinates lie far outside the area that --scene-crs %s is for",
+                 im->inputs[im->current].path, geo_crs_name(crs));
     set_place(im, crs, preset ? im->scene->origin : (double[3]){ round(p[0]), round(p[1]), 0 });
     return NOC_OK;
 }
@@ -410,12 +414,12 @@ noc_status place_mesh_points(void *ctx, double *xyz, size_t count) {
     return NOC_OK;
 }
 
-void place_finish_file(importer *im) {
+void place_finish_file(importer *im, bool read) {
     im->source = NULL;
     for (size_t i = 0; i < im->sources.len; i++) {
         const source_crs *s = im->sources.data[i];
         bool doubtful = s->tries && (!s->axes_decided || s->tries == AXIS_TRIES);
-        if (s->input == im->current && doubtful && s->outside > FAR_OUTSIDE)
+        if (read && s->input == im->current && doubtful && s->outside > FAR_OUTSIDE)
             noc_warn(im->log, "%s: the coordinates lie far outside the area that %s is for: is it the right CRS?",
                      im->inputs[im->current].path, geo_crs_name(s->crs));
     }

@@ -24,12 +24,14 @@ struct noc_stream {
     uint64_t consumed;   /* bytes taken from fd */
     z_stream z;
     bool z_open, z_member_done;
+    bool trailing;       /* bytes follow that are not gzip's */
     unsigned char *input;
     /* zip */
     zip_t *zip;
     zip_file_t *member;
     zip_uint64_t member_index;
     uint64_t member_size;
+    size_t unread;       /* other members that look as if they should be read, too */
 };
 
 static noc_status fail(noc_stream *s, noc_status status, const char *cause) {
@@ -86,8 +88,7 @@ static noc_status gzip_next_member(noc_stream *s) {
         s->z_member_done = false;
         return NOC_OK;
     }
-    if (s->z.avail_in)
-        noc_warn(s->log, "%s: bytes after the gzip data are ignored", s->name);
+    s->trailing = s->z.avail_in > 0;
     s->ended = true;
     return NOC_OK;
 }
@@ -127,23 +128,39 @@ static bool ends_with(const char *text, const char *end) {
     return n >= m && noc_ieq(text + n - m, end);
 }
 
-/* The first member whose name says that it is a model or a map; else the first file at all. -1: none. */
-static zip_int64_t zip_choose(zip_t *zip) {
-    static const char *const known[] = { ".gml", ".xml", ".citygml", ".obj", ".json", ".geojson", ".osm", ".pbf", ".csv",
-                                         ".shp", ".gpkg", ".fgb" };
-    zip_int64_t first = -1, count = zip_get_num_entries(zip, 0);
+/* 3: a model's ending, 2: a model's or a map's, 1: another (metadata is often XML or JSON, beside the model), 0: any file;
+ * -1: no file. */
+static int zip_rank(const char *name) {
+    static const char *const endings[][8] = { { ".xml", ".json" },
+                                              { ".geojson", ".osm", ".pbf", ".csv", ".shp", ".gpkg", ".fgb" },
+                                              { ".gml", ".citygml", ".obj" } };
+    /* macOS archives hold a shadow file of the same ending beside every file. */
+    if (!name || !*name || ends_with(name, "/") || !strncmp(name, "__MACOSX/", 9))
+        return -1;
+    for (size_t rank = 0; rank < NOC_COUNT(endings); rank++)
+        for (size_t k = 0; k < NOC_COUNT(endings[rank]) && endings[rank][k]; k++)
+            if (ends_with(name, endings[rank][k]))
+                return (int)rank + 1;
+    return 0;
+}
+
+/* The first of the members whose names say most clearly that they are a model or a map; -1: there is no file. *alike is
+ * how many others rank as high. */
+static zip_int64_t zip_choose(zip_t *zip, size_t *alike) {
+    zip_int64_t best = -1, count = zip_get_num_entries(zip, 0);
+    int best_rank = -1;
+    *alike = 0;
     for (zip_int64_t i = 0; i < count; i++) {
-        const char *name = zip_get_name(zip, (zip_uint64_t)i, ZIP_FL_ENC_GUESS);
-        /* macOS archives hold a shadow file of the same ending beside every file. */
-        if (!name || !*name || ends_with(name, "/") || !strncmp(name, "__MACOSX/", 9))
-            continue;
-        for (size_t k = 0; k < NOC_COUNT(known); k++)
-            if (ends_with(name, known[k]))
-                return i;
-        if (first < 0)
-            first = i;
+        int rank = zip_rank(zip_get_name(zip, (zip_uint64_t)i, ZIP_FL_ENC_GUESS));
+        if (rank > best_rank) {
+            best = i;
+            best_rank = rank;
+            *alike = 0;
+        } else if (rank > 0 && rank == best_rank) {
+            ++*alike;
+        }
     }
-    return first;
+    return best;
 }
 
 static noc_status zip_fail(noc_stream *s, const char *what, const char *cause) {
@@ -168,7 +185,7 @@ static noc_status zip_open_archive(noc_stream *s) {
         zip_error_fini(&error);
         return status;
     }
-    zip_int64_t index = zip_choose(s->zip);
+    zip_int64_t index = zip_choose(s->zip, &s->unread);
     if (index < 0)
         return fail(s, NOC_ERR_FORMAT, "zip archive without a file in it");
     s->member_index = (zip_uint64_t)index;
@@ -297,6 +314,9 @@ noc_status noc_stream_rewind(noc_stream *s) {
 const char *noc_stream_name(const noc_stream *s) { return s->name; }
 uint64_t noc_stream_size(const noc_stream *s) { return s->stored; }
 uint64_t noc_stream_read_bytes(const noc_stream *s) { return s->delivered; }
+
+bool noc_stream_trailing(const noc_stream *s) { return s->trailing; }
+size_t noc_stream_unread(const noc_stream *s) { return s->unread; }
 
 double noc_stream_progress(const noc_stream *s) {
     uint64_t done = s->kind == STREAM_ZIP ? s->delivered : s->consumed;

@@ -102,6 +102,29 @@ static void test_extent(void **state) {
     }
 }
 
+/* --crs and --scene-crs are looked at even where nothing needs them; a scene's CRS far from the data is said. */
+static void test_options(void **state) {
+    (void)state;
+    double origin[3], hi[2];
+    write_city("EPSG:25832", CITY({ 678000, 5403000 }));
+    noc_import_params p = unlit();
+    for (int i = 0; i < 3; i++) {
+        p.crs = i == 0 ? "nonsense" : NULL;
+        p.scene_crs = i == 1 ? "nonsense" : i == 2 ? "EPSG:4326" : NULL;
+        for (int inspect = 0; inspect < 2; inspect++) {
+            assert_int_equal(load(&p, inspect, origin, hi), NOC_ERR_ARGUMENT);
+            assert_int_equal(errors, 1);
+        }
+    }
+    p.crs = NULL;
+    p.scene_crs = "EPSG:32633"; /* the zone beside it */
+    assert_int_equal(load(&p, false, origin, hi), NOC_OK);
+    assert_int_equal(warnings, 1);
+    p.scene_crs = "EPSG:32640";
+    assert_int_equal(load(&p, false, origin, hi), NOC_OK);
+    assert_int_equal(warnings, 2);
+}
+
 static int set_up(void **state) {
     (void)state;
     return mkstemp(path) >= 0 ? 0 : -1;
@@ -113,6 +136,7 @@ static int tear_down(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_origin), cmocka_unit_test(test_extent) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_origin), cmocka_unit_test(test_extent),
+                                        cmocka_unit_test(test_options) };
     return cmocka_run_group_tests_name("import/place", tests, set_up, tear_down);
 }
