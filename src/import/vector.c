@@ -91,6 +91,21 @@ typedef struct gdal_errors {
     size_t warnings;
 } gdal_errors;
 
+/* Cuts long numbers in a message: files may hold some of hundreds of digits. */
+static void shorten_numbers(char *text) {
+    enum { LONGEST = 40 };
+    char *out = text;
+    size_t digits = 0;
+    for (const char *p = text; *p; p++) {
+        digits = *p >= '0' && *p <= '9' ? digits + 1 : 0;
+        if (digits <= LONGEST)
+            *out++ = *p;
+        else if (digits <= LONGEST + 3)
+            *out++ = '.';
+    }
+    *out = 0;
+}
+
 static void CPL_STDCALL on_gdal_error(CPLErr level, CPLErrorNum code, const char *text) {
     gdal_errors *errors = CPLGetErrorHandlerUserData();
     if (level < CE_Failure) {
@@ -102,6 +117,7 @@ static void CPL_STDCALL on_gdal_error(CPLErr level, CPLErrorNum code, const char
     for (char *p = errors->text; *p; p++) /* one line */
         if ((unsigned char)*p < ' ')
             *p = ' ';
+    shorten_numbers(errors->text);
     (void)code;
 }
 
