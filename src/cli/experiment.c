@@ -102,6 +102,7 @@ static void plan(experiment_lab *lab) {
     lab->runs = cli_alloc(sizeof(*lab->runs) * lab->run_count);
     lab->scene_infos = cli_alloc(sizeof(*lab->scene_infos) * spec->scene_count);
     lab->crops = cli_alloc(sizeof(*lab->crops) * spec->scene_count * spec->camera_count);
+    lab->noises = cli_alloc(sizeof(*lab->noises) * spec->scene_count * spec->camera_count);
     for (size_t i = 0; i < lab->run_count; i++) {
         experiment_run *run = &lab->runs[i];
         size_t rest = i / spec->config_count;
@@ -177,6 +178,7 @@ static int finish(experiment_lab *lab, int status) {
     free(lab->runs);
     free(lab->scene_infos);
     free(lab->crops);
+    free(lab->noises);
     free(lab->stored);
     free(lab->folder);
     free(lab->cache);

@@ -30,7 +30,11 @@ typedef struct experiment_config {
     const char *name;
     noc_render_params params;
     int frames;
+    int entry, choice; /* of the spec's list; where it stands for several choices, which of them, else -1 */
 } experiment_config;
+
+/* Noise of a reference itself: estimated relMSE. NaN: not known. */
+typedef struct experiment_noise { double relmse, clamped, relmse_all, clamped_all; } experiment_noise;
 
 enum { EXPERIMENT_ALONE, EXPERIMENT_ACCUMULATED, EXPERIMENT_MODES }; /* values of "accumulate": false, true, both */
 enum { EXPERIMENT_CLAMPED, EXPERIMENT_RELMSE, EXPERIMENT_RMSE8 };    /* of "figure" */
@@ -110,6 +114,7 @@ typedef struct experiment_lab {
     /* kept for the report */
     noc_scene_info *scene_infos; /* a scene */
     experiment_crop *crops;      /* a scene and camera */
+    experiment_noise *noises;    /* a scene and camera */
 } experiment_lab;
 
 /* experiment_spec.c */
@@ -130,6 +135,11 @@ int experiment_make_reference(experiment_lab *lab, size_t scene, size_t camera);
 void experiment_run_key(const experiment_lab *lab, experiment_run *run);
 noc_render_params experiment_params(const experiment_lab *lab, const experiment_run *run);
 const char *experiment_machine(void);
+
+/* experiment_noise.c: kept beside the reference. half: the mean of its first frames, NULL where it has one frame alone. */
+experiment_noise experiment_measure_noise(const experiment_lab *lab, const noc_image *half, int half_frames);
+void experiment_keep_noise(const char *reference, const experiment_noise *noise);
+experiment_noise experiment_read_noise(const char *reference);
 
 /* experiment_run.c */
 int experiment_measure(experiment_lab *lab, experiment_run *run);

@@ -128,9 +128,9 @@ static void print_setting(FILE *out, const experiment_lab *lab) {
     fprintf(out, "Made by nocturne %s (%s) on %s, on %s; the code that ran: %s.\n\n    ", noc_version(), noc_features(), date,
             experiment_machine(), *lab->path ? lab->path : "none, all rows were there");
     print_command(out);
-    fprintf(out, "\n\nPictures of %d x %d px, %d frames, %d repetition%s with different seeds; figures are means over them.\n"
+    fprintf(out, "\n\nPictures of %d x %d px, %d frames, %d repetition%s.\n"
                  "Reference: %d frames of %d shadow rays a pixel, %s.\n", spec->width, spec->height, spec->frames, spec->repetitions,
-            spec->repetitions == 1 ? "" : "s", spec->reference.frames, spec->reference.params.rays,
+            spec->repetitions == 1 ? "" : "s with different seeds, of which figures are means", spec->reference.frames, spec->reference.params.rays,
             spec->reference.params.jitter ? "jittered" : "through the centres of pixels");
     fprintf(out, "All rows: [results.csv](results.csv). Definitions of the figures: docs/estimator.md, \"Error figures\".\n");
     table_head(out, "| Scene | Triangles | Lights | Memory |", 3);
@@ -154,7 +154,8 @@ static void print_crops(FILE *out, const experiment_lab *lab, size_t index, cons
     if (!crop->made)
         return;
     fprintf(out, "\n![First frames](%s-first.png)\n\nFirst frames, row by row as in this table; the part of %d x %d px at (%d, %d), "
-                 "enlarged %d times, all with the reference's exposure.\n\n|", slug, crop->width, crop->height, crop->x, crop->y, crop->scale);
+                 "enlarged %d times, all with the reference's exposure.\n\n|",
+            slug, crop->width, crop->height, crop->x, crop->y, crop->scale);
     size_t columns = (size_t)crop->columns, count = lab->spec.config_count + 1;
     for (size_t i = 0; i < (count + columns - 1) / columns * columns; i++) {
         cell(out, !i ? "reference" : i < count ? lab->spec.configs[i - 1].name : "");
@@ -200,7 +201,8 @@ static void print_errors(FILE *out, experiment_series s, const char *what, int c
 
 static void print_times(FILE *out, experiment_series s) {
     const experiment_spec *spec = &s.lab->spec;
-    table_head(out, "| Frame times | first, CPU ms | median, CPU ms | median, wall ms | shadow rays, millions | ray tracing structure, ms | renderer's memory |", 6);
+    table_head(out, "| Frame times | first, CPU ms | median, CPU ms | median, wall ms | shadow rays, millions | "
+                    "ray tracing structure, ms | renderer's memory |", 6);
     for (s.config = 0; s.config < spec->config_count; s.config++) {
         char memory[32];
         fputc('|', out);
@@ -244,12 +246,21 @@ static void print_equal_time(FILE *out, experiment_series s) {
                  "frames rendered, or before the first frame is done.\n");
 }
 
+static void print_noise(FILE *out, const experiment_lab *lab, size_t index) {
+    const experiment_noise *n = &lab->noises[index];
+    bool all = lab->spec.all_pixels;
+    if (isfinite(n->relmse))
+        fprintf(out, "\nThe reference's own noise is a relMSE of about %.2g, clamped %.2g: errors near it say nothing.\n",
+                all ? n->relmse_all : n->relmse, all ? n->clamped_all : n->clamped);
+}
+
 static int print_view(FILE *out, experiment_lab *lab, size_t scene, size_t camera) {
     const experiment_spec *spec = &lab->spec;
     char *slug = experiment_slug(lab, scene, camera), clamped[48];
     int status = CLI_OK;
     experiment_series s = { lab, scene, camera, 0, 0 };
     fprintf(out, "\n## %s, %s\n", spec->scenes[scene].name, spec->cameras[camera].name);
+    print_noise(out, lab, scene * spec->camera_count + camera);
     print_crops(out, lab, scene * spec->camera_count + camera, slug);
     snprintf(clamped, sizeof(clamped), "relMSE clamped to %g cd/m2", spec->ceiling);
     for (int mode = EXPERIMENT_MODES - 1; mode >= 0; mode--) {

@@ -139,22 +139,30 @@ static noc_image *read_cached(const experiment_lab *lab, const char *path) {
     return NULL;
 }
 
-static int render_reference(experiment_lab *lab, const char *path) {
+static int render_reference(experiment_lab *lab, const char *path, experiment_noise *noise) {
     const experiment_spec *spec = &lab->spec;
     noc_renderer *renderer = noc_renderer_create(lab->scene, &(noc_renderer_params){ .threads = lab->args->threads }, lab->log);
     noc_status status = renderer ? NOC_OK : NOC_ERR_MEMORY;
-    int at[2] = { 1, spec->reference.frames };
-    for (; !status && at[0] <= at[1]; at[0]++)
+    int at[2] = { 1, spec->reference.frames }, halfway = spec->reference.frames / 2;
+    noc_image *half = NULL;
+    for (; !status && at[0] <= at[1]; at[0]++) {
         status = noc_renderer_frame(renderer, &lab->camera, &spec->reference.params, &(noc_progress){ frame_progress, at });
+        if (!status && at[0] == halfway)
+            half = noc_renderer_image(renderer);
+    }
     cli_progress_clear();
     lab->reference = status ? NULL : noc_renderer_image(renderer);
     noc_renderer_destroy(renderer);
+    if (lab->reference)
+        *noise = experiment_measure_noise(lab, half, halfway);
+    noc_image_destroy(half);
     if (cli_interrupted())
         return CLI_INTERRUPTED + cli_interrupted();
     noc_display_params display = noc_display_default_params();
     const char *keys[] = { "content", "made-by" }, *values[] = { lab->reference_key, noc_version() };
     if (!lab->reference || noc_image_write(lab->reference, path, &display, &(noc_image_meta){ 2, keys, values }, lab->log))
         return CLI_FAILURE;
+    experiment_keep_noise(path, noise);
     return CLI_OK;
 }
 
@@ -175,16 +183,19 @@ int experiment_make_reference(experiment_lab *lab, size_t scene, size_t camera) 
         return status;
     hash_options(&hash, noc_render_options(), &spec->reference.params);
     hash_bytes(&hash, &spec->reference.frames, sizeof(spec->reference.frames));
+    hash_bytes(&hash, &spec->ceiling, sizeof(spec->ceiling)); /* of the noise that is kept beside it */
     hash_finish(&hash, lab->reference_key);
     char *path = cli_format("%s/reference-%s.exr", lab->cache, lab->reference_key), took[32];
     lab->reference = read_cached(lab, path);
     bool quiet = lab->args->common.quiet;
+    experiment_noise *noise = &lab->noises[scene * spec->camera_count + camera];
     if (lab->reference) {
+        *noise = experiment_read_noise(path);
         if (!quiet)
             printf("%s, %s: reference from %s\n", spec->scenes[scene].name, c->name, path);
     } else {
         double start = cli_now();
-        status = render_reference(lab, path);
+        status = render_reference(lab, path, noise);
         if (!status && !quiet)
             printf("%s, %s: reference made in %s: %s\n", spec->scenes[scene].name, c->name, cli_seconds(took, cli_now() - start), path);
     }

@@ -49,9 +49,13 @@ static const char *const by_spec[] = { "width", "height", "accumulate", NULL };
 
 static const cli_set spec_sets[] = { { spec_table, 0, NULL }, { NULL } };
 static const cli_set shared_sets[] = { { noc_render_options, 0, said_above }, { NULL } };
-static const cli_set reference_sets[] = { { reference_table, 0, NULL }, { noc_render_options, offsetof(S, reference.params), by_spec }, { NULL } };
+static const cli_set reference_sets[] = {
+    { reference_table, 0, NULL }, { noc_render_options, offsetof(S, reference.params), by_spec }, { NULL }
+};
 static const cli_set scene_sets[] = {
-    { noc_import_options, offsetof(experiment_scene, import), NULL }, { noc_city_options, offsetof(experiment_scene, city), NULL }, { NULL }
+    { noc_import_options, offsetof(experiment_scene, import), NULL },
+    { noc_city_options, offsetof(experiment_scene, city), NULL },
+    { NULL }
 };
 static const cli_set camera_sets[] = { { camera_table, offsetof(experiment_camera, args), NULL }, { NULL } };
 static const cli_set config_sets[] = {
@@ -146,7 +150,8 @@ static int read_camera(S *spec, const char *place, json_t *object, experiment_ca
     return CLI_OK;
 }
 
-/* The option of a configuration that stands for all its choices ("*"); *status where more than one does. */
+/* The option of a configuration that stands for several of its choices: "*" for all, or an array of them. *status where more
+ * than one does. */
 static const noc_option *starred(S *spec, const char *place, json_t *object, int *status) {
     const noc_option *found = NULL;
     const char *name;
@@ -154,51 +159,68 @@ static const noc_option *starred(S *spec, const char *place, json_t *object, int
     json_object_foreach(object, name, value) {
         size_t offset;
         const noc_option *o = experiment_option(config_sets, name, &offset);
-        if (!o || o->kind != NOC_OPTION_CHOICE || !json_is_string(value) || strcmp(json_string_value(value), "*"))
+        bool star = json_is_string(value) && !strcmp(json_string_value(value), "*");
+        if (!o || o->kind != NOC_OPTION_CHOICE || !(star || json_array_size(value)))
             continue;
         if (found)
-            *status = experiment_wrong(spec, place, "\"*\" stands for all choices of one option, not of two");
+            *status = experiment_wrong(spec, place, "one option may have several choices, not two");
         found = o;
     }
     return found;
 }
 
-/* "ris, *" and lists -> "ris, lists" */
-static char *star_name(const char *name, const char *choice, int length) {
-    const char *star = strchr(name, '*');
-    return star ? cli_format("%.*s%.*s%s", (int)(star - name), name, length, choice, star + 1)
-                : cli_format("%s, %.*s", name, length, choice);
+/* The choices meant by a value of starred: a new array. */
+static json_t *choices_of(const noc_option *option, json_t *value) {
+    if (json_is_array(value))
+        return json_incref(value);
+    json_t *all = json_array();
+    for (const char *c = option->choices; *c;) {
+        size_t length = strcspn(c, "|");
+        json_array_append_new(all, json_stringn(c, length));
+        c += length + (c[length] == '|');
+    }
+    return all;
 }
 
-static experiment_config *add_config(S *spec, const noc_render_params *shared) {
+/* "ris, *" and lists -> "ris, lists" */
+static char *star_name(const char *name, const char *choice) {
+    const char *star = strchr(name, '*');
+    return star ? cli_format("%.*s%s%s", (int)(star - name), name, choice, star + 1) : cli_format("%s, %s", name, choice);
+}
+
+static experiment_config *add_config(S *spec, const noc_render_params *shared, size_t entry, int choice) {
     spec->configs = realloc(spec->configs, sizeof(experiment_config) * (spec->config_count + 1));
     if (!spec->configs) {
         cli_error("out of memory");
         exit(CLI_FAILURE);
     }
     experiment_config *config = &spec->configs[spec->config_count++];
-    *config = (experiment_config){ .params = *shared, .frames = spec->frames };
+    *config = (experiment_config){ .params = *shared, .frames = spec->frames, .entry = (int)entry, .choice = choice };
     return config;
 }
 
-static int read_config(S *spec, const char *place, json_t *object, const noc_render_params *shared) {
+static int read_config(S *spec, const char *place, json_t *object, const noc_render_params *shared, size_t entry) {
     int status = CLI_OK;
     const char *name = NULL;
     const noc_option *star = json_is_object(object) ? starred(spec, place, object, &status) : NULL;
     if (status || !star) {
-        experiment_config *config = status ? NULL : add_config(spec, shared);
+        experiment_config *config = status ? NULL : add_config(spec, shared, entry, -1);
         status = status ? status : set_all(spec, place, object, config_sets, named, config);
         return status ? status : read_name(spec, place, object, &config->name);
     }
     status = read_name(spec, place, object, &name);
-    for (const char *c = star->choices; !status && *c;) {
-        int length = (int)strcspn(c, "|");
-        experiment_config *config = add_config(spec, shared);
-        config->name = experiment_keep(spec, star_name(name, c, length));
-        json_object_set_new(object, star->name, json_stringn(c, (size_t)length));
+    json_t *choices = choices_of(star, json_object_get(object, star->name)), *choice;
+    size_t i;
+    json_array_foreach(choices, i, choice) {
+        if (status)
+            break;
+        experiment_config *config = add_config(spec, shared, entry, (int)i);
+        const char *text = json_string_value(choice);
+        config->name = experiment_keep(spec, star_name(name, text ? text : ""));
+        json_object_set(object, star->name, choice);
         status = set_all(spec, place, object, config_sets, named, config);
-        c += length + (c[length] == '|');
     }
+    json_decref(choices);
     return status;
 }
 
@@ -234,7 +256,7 @@ static int read_lists(S *spec, json_t *root, const noc_render_params *shared) {
     }
     for (size_t i = 0; !status && i < json_array_size(configs); i++) {
         snprintf(place, sizeof(place), "configurations[%zu]", i);
-        status = read_config(spec, place, json_array_get(configs, i), shared);
+        status = read_config(spec, place, json_array_get(configs, i), shared, i);
     }
     status = status ? status : check_twice(spec, "scenes", &spec->scenes->name, sizeof(*spec->scenes), spec->scene_count);
     status = status ? status : check_twice(spec, "cameras", &spec->cameras->name, sizeof(*spec->cameras), spec->camera_count);

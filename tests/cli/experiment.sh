@@ -91,6 +91,24 @@ panels=$((2 + choices)) columns=$((2 + choices > 4 ? 4 : 2 + choices))
 test "$sheet" = "$((columns * 320 + (columns - 1) * 4)) $(((panels + columns - 1) / columns * (220 + 4) - 4))"
 result $? "crops: the reference and each configuration, a third of the picture enlarged" "$sheet"
 
+grep -Eq "^The reference's own noise is a relMSE of about 0\.[0-9]+, clamped 0\.[0-9]+:" a/report.md; result $? "the reference's own noise is told"
+
+# Its estimate holds: ris of many candidates against a reference that is as good as true.
+sed 's/"rays": 8, "frames": 2/"rays": 256, "frames": 40/; s/"repetitions": 2/"repetitions": 1/; s/"frames": 3/"frames": 8/
+    s/{ "name": "is|".*/{ "name": "rays", "method": "reference", "rays": 64 } ]/' spec.json >noise.json
+sed 's/"rays": 256, "frames": 40/"rays": 64, "frames": 8/' noise.json >noisy.json
+run experiment noise.json -o n --cache cache
+run experiment noisy.json -o m --cache cache
+python3 - <<'CHECK'
+import csv, re
+rows = [r for r in csv.DictReader(open("n/results.csv")) if r["mode"] == "accumulated" and r["frame"] == "8"]
+told = [float(x) for x in re.findall(r"about (\S+), clamped", open("m/report.md").read())]
+assert len(rows) == len(told) == 2
+for row, estimate in zip(rows, told):
+    assert 0.3 < estimate / float(row["relmse"]) < 3, (estimate, row["relmse"])
+CHECK
+result $? "and it is what the same rays are off from a far better reference"
+
 # Again: nothing is measured, the reference is not made.
 before=$(ls -i --full-time cache) table=$(cksum <a/results.csv)
 run experiment spec.json -o a --cache cache
@@ -151,6 +169,8 @@ wrong "an unknown option, with the nearest" ': configurations\[1\]: no option "c
 wrong "an unknown member" ': no option "framse"; is it "frames"\?' 's/"frames": 3/"framse": 3/'
 wrong "an unknown choice" ': configurations\[0\]: method: "iss" is none of reference' 's/"is" }/"iss" }/'
 wrong "a number out of range" ': reference: rays: "0" is outside 1 to 1024' 's/"rays": 8/"rays": 0/'
+wrong "an array that is none of the choices" ': configurations\[1\]: candidates: "of" is none of uniform' 's/"candidates": "\*"/"candidates": ["lists", "of"]/'
+wrong "two options of several choices" ': configurations\[1\]: one option may have several' 's/"candidates": "\*"/"candidates": "*", "bias": "*"/'
 wrong "what is no value" ': configurations\[0\]: method: this cannot be its value' 's/"is" }/{} }/'
 wrong "a size that is none" ': size: "48" is not' 's/48x32/48/'
 wrong "two configurations of one name" ': configurations: the name "is\|" is given twice' 's/"ris, \*", "method": "ris", "candidates": "\*"/"is|", "method": "ris"/'
