@@ -43,7 +43,7 @@ need libembree-dev "ray tracing on the processor" embree
 need libgdal-dev "street lamps from OpenStreetMap, GeoJSON and CSV" module gdal
 need libproj-dev "coordinate reference systems" module proj
 need libexpat1-dev "CityGML (XML)" module expat
-need libjansson-dev "Overpass JSON" module jansson
+need libjansson-dev "Overpass JSON, specs of experiments" module jansson
 need libglu1-mesa-dev "cuts polygons into triangles" module glu
 need libassimp-dev "OBJ meshes" module assimp
 need libopenexr-dev "EXR pictures" module OpenEXR

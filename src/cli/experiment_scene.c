@@ -2,6 +2,7 @@
  * depends on; the files there may be deleted at any time. */
 #include "experiment.h"
 
+#include <dlfcn.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -233,6 +234,20 @@ const char *experiment_machine(void) {
     return machine;
 }
 
+/* The library by its content: between two releases the version stays while estimators change. */
+static const char *build_key(void) {
+    static char key[EXPERIMENT_KEY];
+    if (*key)
+        return key;
+    hash_state hash = hash_start();
+    Dl_info info;
+    hash_text(&hash, noc_version());
+    if (dladdr((void *)(uintptr_t)noc_version, &info) && info.dli_fname && !access(info.dli_fname, R_OK))
+        hash_file(&hash, info.dli_fname);
+    hash_finish(&hash, key);
+    return key;
+}
+
 void experiment_run_key(const experiment_lab *lab, experiment_run *run) {
     const experiment_spec *spec = &lab->spec;
     noc_render_params params = experiment_params(lab, run);
@@ -242,6 +257,7 @@ void experiment_run_key(const experiment_lab *lab, experiment_run *run) {
     hash_text(&hash, spec->cameras[run->camera].name);
     hash_text(&hash, spec->configs[run->config].name);
     hash_text(&hash, experiment_machine()); /* times of two machines do not mix */
+    hash_text(&hash, build_key());
     hash_options(&hash, noc_render_options(), &params);
     hash_bytes(&hash, &run->repetition, sizeof(run->repetition));
     hash_bytes(&hash, &lab->args->threads, sizeof(lab->args->threads));

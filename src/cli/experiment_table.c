@@ -170,8 +170,16 @@ int experiment_append(experiment_lab *lab, const experiment_run *run, int mode, 
 
 int experiment_tidy_table(experiment_lab *lab) {
     size_t others = 0;
-    for (size_t i = 0; i < lab->stored_count; i++)
-        others += !lab->stored[i].claimed;
+    for (size_t i = 0; i < lab->stored_count; i++) {
+        if (lab->stored[i].claimed)
+            continue;
+        others++;
+        if (lab->stored[i].frame != 1)
+            continue;
+        char *picture = cli_format("%s/pictures/%s.exr", lab->folder, lab->stored[i].key);
+        unlink(picture); /* of a first frame that no row shows any more */
+        free(picture);
+    }
     if (!others)
         return CLI_OK;
     cli_error("%zu rows of results.csv came from other settings; they are kept in results.old.csv", others);

@@ -153,6 +153,7 @@ sed 's/"method": "is"/"method": "is", "emitters": false/' short.json >other.json
 run experiment other.json -o d --cache cache
 test $status = 0 && grep -q '12 rows of results.csv came from other settings' err && test "$(wc -l <d/results.csv)" = $((expected / 2 + 1)) && test "$(wc -l <d/results.old.csv)" = $((expected / 2 + 13))
 result $? "rows of other settings are put aside"
+test "$(ls d/pictures | wc -l)" = $((expected / 12)); result $? "and their pictures deleted" "$(ls d/pictures | wc -l)"
 for f in cache/*.exr; do head -c 300 "$f" >cut && cp cut "$f"; done
 run experiment short.json -o e --cache cache
 rows e >e.rows
