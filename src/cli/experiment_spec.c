@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #define S experiment_spec
 #define TEXT(n, f) { n, "Spec", NOC_OPTION_TEXT, offsetof(S, f), 0, 0, NULL, "", "" }
@@ -326,6 +327,11 @@ int experiment_read_spec(S *spec, const char *path) {
     *spec = (S){ .path = path, .size = "480x270", .frames = 20, .repetitions = 1, .accumulate = EXPERIMENT_MODES, .seed = 1,
                  .ceiling = 10, .reference = { .frames = 16 } };
     json_error_t error;
+    struct stat st;
+    if (!stat(path, &st) && S_ISDIR(st.st_mode)) {
+        cli_error("%.200s: this is a folder; a spec is a JSON file", path);
+        return CLI_FAILURE;
+    }
     json_t *root = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
     if (!root && error.line > 0) {
         return cli_usage(&cli_experiment, "%.200s:%d:%d: %.*s", path, error.line, error.column, 120, error.text);
