@@ -35,7 +35,7 @@ static const noc_option render_options[] = {
     BOOL(P, final_ray, "final-ray", "Estimator", "shadow ray to the chosen light; off: light passes through walls"),
     CHOICE(P, path, "path", "Estimator", "auto|scalar|wide", "code that runs: scalar C, or wide for this processor"),
 
-    BOOL(P, temporal, "temporal", "Reuse (restir)", "reuse samples of the previous frame: cleaner in motion, while a still is cleaner without"),
+    BOOL(P, temporal, "temporal", "Reuse (restir)", "reuse samples of the previous frame (a still is cleaner without)"),
     BOOL(P, spatial, "spatial", "Reuse (restir)", "reuse samples of neighbouring pixels"),
     INT(P, neighbours, "neighbours", "Reuse (restir)", 0, 16, "", "neighbours a pixel and pass (k)"),
     REAL(P, radius, "radius", "Reuse (restir)", 1, 64, "px", "radius that neighbours are drawn from"),
