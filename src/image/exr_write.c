@@ -44,6 +44,15 @@ static bool ok(exr_writer *w, exr_result_t result) {
     return w->status == NOC_OK;
 }
 
+/* Names that readers give a meaning to even where this file does not set them. */
+static bool is_reserved(const char *key) {
+    static const char *const names[] = { "chunkCount", "maxSamplesPerPixel", "name", "preview", "tiles", "type", "version" };
+    for (size_t i = 0; i < NOC_COUNT(names); i++)
+        if (!strcmp(key, names[i]))
+            return true;
+    return false;
+}
+
 static bool write_header(exr_writer *w, const meta_list *meta) {
     static const exr_attr_chromaticities_t rec709 = { 0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f };
     exr_context_t c = w->context;
@@ -60,7 +69,8 @@ static bool write_header(exr_writer *w, const meta_list *meta) {
         const meta_entry *e = &meta->entries.data[i];
         const exr_attribute_t *old = NULL;
         /* "Channels" may be a key, "channels" is what the format itself needs. */
-        if (exr_get_attribute_by_name(c, w->part, e->key, &old) == EXR_ERR_SUCCESS && old && old->type != EXR_ATTR_STRING)
+        bool set = exr_get_attribute_by_name(c, w->part, e->key, &old) == EXR_ERR_SUCCESS && old;
+        if (is_reserved(e->key) || (set && old->type != EXR_ATTR_STRING))
             w->status = noc_error(w->log, NOC_ERR_ARGUMENT, "%s: EXR: metadata key '%s' is taken by the format", w->out->path,
                                   e->key);
         good = w->status == NOC_OK && ok(w, exr_attr_set_string(c, w->part, e->key, e->value));
