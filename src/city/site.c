@@ -13,28 +13,29 @@ static void direction(int i, double d[2]) {
     d[1] = cos(2 * M_PI * i / DIRECTIONS);
 }
 
-bool site_ground(const noc_scene *scene, double x, double y, double *z) {
-    if (noc_scene_ground(scene, x, y, z))
-        return true;
-    for (double r = .5; r <= 4; r += .5)
-        for (int i = 0; i < DIRECTIONS; i++) {
-            double d[2];
-            direction(i, d);
-            if (noc_scene_ground(scene, x + r * d[0], y + r * d[1], z))
-                return true;
-        }
+/* Ground at one of the directions at distance r; false where there is none. */
+static bool ground_on_ring(const noc_scene *scene, double x, double y, double r, double *z) {
+    for (int i = 0; i < DIRECTIONS; i++) {
+        double d[2];
+        direction(i, d);
+        if (noc_scene_ground(scene, x + r * d[0], y + r * d[1], z))
+            return true;
+    }
     return false;
 }
 
+bool site_ground(const noc_scene *scene, double x, double y, double *z) {
+    bool found = noc_scene_ground(scene, x, y, z);
+    for (double r = .5; r <= 4 && !found; r += .5)
+        found = ground_on_ring(scene, x, y, r, z);
+    return found;
+}
+
 bool site_ground_far(const noc_scene *scene, double x, double y, double *z) {
-    for (double r = 4; r < 600; r *= 1.2)
-        for (int i = 0; i < DIRECTIONS; i++) {
-            double d[2];
-            direction(i, d);
-            if (noc_scene_ground(scene, x + r * d[0], y + r * d[1], z))
-                return true;
-        }
-    return false;
+    bool found = false;
+    for (double r = 4; r < 600 && !found; r *= 1.2)
+        found = ground_on_ring(scene, x, y, r, z);
+    return found;
 }
 
 bool site_covered(const noc_scene *scene, double x, double y, double z) {

@@ -85,32 +85,41 @@ static int light_material(noc_scene *scene, const noc_light *l) {
     return noc_scene_add_material(scene, &m);
 }
 
+static bool is_round(const noc_light *l) { return l->kind == NOC_LIGHT_SPHERE || l->kind == NOC_LIGHT_DISC; }
+static bool is_flat(const noc_light *l) { return l->kind == NOC_LIGHT_TRIANGLE || l->kind == NOC_LIGHT_PARALLELOGRAM; }
+
+/* Of the parallelogram or triangle that the edges span. */
+static double flat_area(const noc_light *l) {
+    double n[3];
+    cross(l->edge_u, l->edge_v, n);
+    return length(n) * (l->kind == NOC_LIGHT_TRIANGLE ? 0.5 : 1);
+}
+
+/* What is wrong with a light, NULL if nothing. */
+static const char *light_fault(const noc_scene *scene, const noc_light *l) {
+    if (scene->committed)
+        return "the scene is committed";
+    if ((unsigned)l->kind > NOC_LIGHT_POINT)
+        return "unknown kind";
+    if (!all_finite(l->position, 3))
+        return "its position is not finite, or further than 10 000 km from the origin";
+    for (int i = 0; i < 3; i++)
+        if (!(l->emission[i] >= 0 && l->emission[i] <= 1e12f))
+            return "its emission is negative or not finite";
+    if (is_round(l) && !(l->radius >= 1e-4 && l->radius < 1e5))
+        return "its radius must be in 0.0001..100000 m";
+    if (l->kind == NOC_LIGHT_DISC && !(all_finite(l->direction, 3) && length(l->direction) > 0))
+        return "a disc needs a direction";
+    if (is_flat(l) && (!all_finite(l->edge_u, 3) || !all_finite(l->edge_v, 3) || !(flat_area(l) > 1e-10)))
+        return "its edges span no area";
+    return NULL;
+}
+
 int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
     const char *name = l->name ? l->name : "unnamed";
     noc_light_record r = { .kind = (uint32_t)l->kind, .flags = l->inferred ? 2u : 0u };
-    double u[3] = { 0 }, v[3] = { 0 }, n[3], area = 0;
-    const char *wrong = NULL;
-    if (scene->committed)
-        wrong = "the scene is committed";
-    else if (!all_finite(l->position, 3))
-        wrong = "its position is not finite, or further than 10 000 km from the origin";
-    for (int i = 0; i < 3 && !wrong; i++)
-        if (!(l->emission[i] >= 0 && l->emission[i] <= 1e12f))
-            wrong = "its emission is negative or not finite";
-    bool round = l->kind == NOC_LIGHT_SPHERE || l->kind == NOC_LIGHT_DISC;
-    if (!wrong && round && !(l->radius >= 1e-4 && l->radius < 1e5))
-        wrong = "its radius must be in 0.0001..100000 m";
-    if (!wrong && l->kind == NOC_LIGHT_DISC && !(all_finite(l->direction, 3) && length(l->direction) > 0))
-        wrong = "a disc needs a direction";
-    bool flat = l->kind == NOC_LIGHT_TRIANGLE || l->kind == NOC_LIGHT_PARALLELOGRAM;
-    if (!wrong && flat) {
-        cross(l->edge_u, l->edge_v, n);
-        area = length(n) * (l->kind == NOC_LIGHT_TRIANGLE ? 0.5 : 1);
-        if (!all_finite(l->edge_u, 3) || !all_finite(l->edge_v, 3) || !(area > 1e-10))
-            wrong = "its edges span no area";
-    }
-    if (!wrong && (unsigned)l->kind > NOC_LIGHT_POINT)
-        wrong = "unknown kind";
+    double u[3] = { 0 }, v[3] = { 0 }, area = 0;
+    const char *wrong = light_fault(scene, l);
     if (wrong) {
         noc_error(scene->log, NOC_ERR_ARGUMENT, "light %s: %s", name, wrong);
         return -1;
@@ -133,6 +142,7 @@ int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
         break;
     case NOC_LIGHT_TRIANGLE:
     case NOC_LIGHT_PARALLELOGRAM:
+        area = flat_area(l);
         for (int k = 0; k < 3; k++) {
             xyz[k] = l->position[k];
             xyz[3 + k] = l->position[k] + l->edge_u[k];
@@ -151,8 +161,8 @@ int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
     }
     for (int k = 0; k < 3; k++) {
         r.p[k] = (float)l->position[k];
-        r.a[k] = (float)(flat ? l->edge_u[k] : l->radius * u[k]);
-        r.b[k] = (float)(flat ? l->edge_v[k] : l->radius * v[k]);
+        r.a[k] = (float)(is_flat(l) ? l->edge_u[k] : l->radius * u[k]);
+        r.b[k] = (float)(is_flat(l) ? l->edge_v[k] : l->radius * v[k]);
         r.e[k] = l->emission[k];
     }
     r.area = (float)area;
