@@ -109,6 +109,24 @@ typedef struct noc_frame_stats {
 
 NOC_API void noc_renderer_get_stats(const noc_renderer *renderer, noc_frame_stats *stats);
 
+/* The structure that the last frame's light candidates were drawn from. What does not apply to it is 0. */
+typedef struct noc_light_stats {
+    noc_candidates candidates;              /* of the last frame */
+    size_t lights;                          /* of the scene */
+    double build_seconds;                   /* wall seconds that the structure took to build */
+    size_t bytes;                           /* that it holds */
+    size_t scene_bytes;                     /* what that is to be compared with: the scene's geometry, materials and lights, and
+                                             * the ray tracing structure */
+    double influence;                       /* bvh: S_r, m */
+    size_t volumes;                         /* bvh: influence volumes; fewer than lights where lights share them */
+    uint64_t surfaces;                      /* bvh: pixels of the last frame that saw a surface, and so asked for lights */
+    double found_none, found_wider;         /* bvh: share of them that no volume held; that wider volumes were asked for */
+    uint32_t found_median, found_99;        /* bvh: lights that they found: median and 99th percentile */
+} noc_light_stats;
+
+/* All 0 but lights and scene_bytes before the first frame, and for methods that draw no candidates. */
+NOC_API void noc_renderer_light_stats(const noc_renderer *renderer, noc_light_stats *stats);
+
 /* The trace floor: renders the next frame as noc_renderer_frame does, keeps its rays (primary, visibility, bias, final, and
  * sky where it is on), then traces those rays again through the same structure and nothing else. Wall seconds of the second
  * time into *seconds. Takes about 400 bytes for 16 rays while it lasts. */

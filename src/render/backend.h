@@ -63,6 +63,8 @@ typedef struct noc_backend {
     void (*read)(void *state, noc_image *image);
     /* Adds up into stats: pass_seconds, rays, dropped, all since the last call; sets build_seconds, memory and path. */
     void (*stats)(void *state, noc_frame_stats *stats);
+    /* Of the structure that these parameters (of the last frame; NULL: there was none) draw candidates from. */
+    void (*light_stats)(void *state, const noc_render_params *params, noc_light_stats *stats);
     /* Rays of the stages run between record(true) and record(false) are kept; replay traces them and nothing else. */
     void (*record)(void *state, bool on);
     noc_status (*replay)(void *state, double *seconds);

@@ -179,6 +179,11 @@ const char *noc_pass_name(noc_pass pass) {
 
 void noc_renderer_get_stats(const noc_renderer *r, noc_frame_stats *stats) { *stats = r->stats; }
 
+void noc_renderer_light_stats(const noc_renderer *r, noc_light_stats *stats) {
+    *stats = (noc_light_stats){ 0 };
+    r->backend->light_stats(r->state, r->history.started ? &r->history.params : NULL, stats);
+}
+
 noc_status noc_renderer_trace_floor(noc_renderer *r, const noc_camera *camera, const noc_render_params *params,
                                     double *seconds) {
     const noc_render_params defaults = noc_render_default_params();

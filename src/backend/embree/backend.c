@@ -143,6 +143,8 @@ static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st
     noc_status status = noc_embree_prepare_lights(s, frame->params);
     if (status != NOC_OK)
         return status;
+    for (int i = 0; st->passes >> NOC_PASS_CANDIDATES & 1 && i < s->worker_count; i++)
+        memset(s->workers[i].found_counts, 0, sizeof(s->workers[i].found_counts));
     const noc_scene *scene = s->scene;
     stage_run run = { .s = s,
                       .ctx = { scene->lights.data, (uint32_t)scene->lights.len,
@@ -252,6 +254,7 @@ const noc_backend noc_backend_embree = {
     .accumulate = accumulate,
     .read = read_picture,
     .stats = stats,
+    .light_stats = noc_embree_light_stats,
     .record = record,
     .replay = replay,
 };

@@ -8,6 +8,7 @@
 #include <stdatomic.h>
 #include <sys/types.h>
 
+enum { FOUND_COUNTS = 1024 };
 enum { TILE_BLOCKS = 4 }; /* a tile is 4x4 blocks: 16x16 pixels */
 
 /* A packet kept for the trace floor. */
@@ -26,6 +27,7 @@ typedef struct worker {
     list_scratch lists;
     pick_block picks;
     noc_found found;
+    uint64_t found_counts[FOUND_COUNTS]; /* surfaces of the frame by the number of lights found; the last: as many or more */
     packet *packets; /* kept while recording */
     size_t packet_count, packet_room;
     bool packets_lost; /* there was no memory for all of them */
@@ -58,6 +60,7 @@ typedef struct embree_state {
     noc_alias *alias;
     noc_influence *influence;
     noc_tree *tree;
+    double light_seconds[NOC_CANDIDATES_TREE + 1]; /* what each took to build */
     worker *workers;
     int worker_count;
     bool recording;
@@ -97,6 +100,7 @@ size_t noc_embree_build_bytes(const embree_state *s);
 noc_status noc_embree_prepare_lights(embree_state *s, const noc_render_params *p);
 void noc_embree_release_lights(embree_state *s);
 size_t noc_embree_light_bytes(const embree_state *s);
+void noc_embree_light_stats(void *state, const noc_render_params *params, noc_light_stats *stats);
 
 /* passes.c: one pass over one tile */
 void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t);

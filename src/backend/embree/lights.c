@@ -34,9 +34,11 @@ static noc_status prepare_picks(embree_state *s) {
     return NOC_OK;
 }
 
-noc_status noc_embree_prepare_lights(embree_state *s, const noc_render_params *p) {
-    if (p->method != NOC_METHOD_RIS && p->method != NOC_METHOD_RESTIR)
-        return NOC_OK;
+static bool draws_candidates(const noc_render_params *p) {
+    return p->method == NOC_METHOD_RIS || p->method == NOC_METHOD_RESTIR;
+}
+
+static noc_status prepare(embree_state *s, const noc_render_params *p) {
     switch (p->candidates) {
     case NOC_CANDIDATES_UNIFORM: return NOC_OK;
     case NOC_CANDIDATES_LISTS: return s->clusters ? NOC_OK : prepare_lists(s);
@@ -56,6 +58,29 @@ noc_status noc_embree_prepare_lights(embree_state *s, const noc_render_params *p
     return prepare_picks(s);
 }
 
+/* Bytes of the structure for these candidates, 0 where it is not there. */
+static size_t bytes_of(const embree_state *s, noc_candidates candidates) {
+    switch (candidates) {
+    case NOC_CANDIDATES_UNIFORM: return 0;
+    case NOC_CANDIDATES_LISTS: return s->clusters ? s->clusters->bytes : 0;
+    case NOC_CANDIDATES_POWER: return s->alias ? s->alias->bytes : 0;
+    case NOC_CANDIDATES_BVH: return s->influence ? s->influence->bytes : 0;
+    case NOC_CANDIDATES_TREE: return s->tree ? s->tree->bytes : 0;
+    }
+    return 0;
+}
+
+noc_status noc_embree_prepare_lights(embree_state *s, const noc_render_params *p) {
+    if (!draws_candidates(p))
+        return NOC_OK;
+    double start = noc_wall_seconds();
+    size_t before = bytes_of(s, p->candidates);
+    noc_status status = prepare(s, p);
+    if (bytes_of(s, p->candidates) != before)
+        s->light_seconds[p->candidates] = noc_wall_seconds() - start;
+    return status;
+}
+
 void noc_embree_release_lights(embree_state *s) {
     noc_clusters_destroy(s->clusters);
     noc_alias_destroy(s->alias);
@@ -71,9 +96,48 @@ void noc_embree_release_lights(embree_state *s) {
 }
 
 size_t noc_embree_light_bytes(const embree_state *s) {
-    size_t bytes = s->clusters ? s->clusters->bytes : 0;
-    bytes += s->alias ? s->alias->bytes : 0;
-    bytes += s->influence ? s->influence->bytes : 0;
-    bytes += s->tree ? s->tree->bytes : 0;
+    size_t bytes = 0;
+    for (int c = 0; c <= NOC_CANDIDATES_TREE; c++)
+        bytes += bytes_of(s, (noc_candidates)c);
     return bytes;
+}
+
+static size_t scene_bytes(const noc_scene *s) {
+    return s->positions.len * sizeof(float) + (s->indices.len + s->triangle_material.len + s->triangle_light.len) * sizeof(uint32_t) +
+           s->material_records.len * sizeof(noc_material_record) + s->lights.len * sizeof(noc_light_record);
+}
+
+/* The number of lights that a share of the surfaces does not exceed. */
+static uint32_t percentile(const uint64_t counts[FOUND_COUNTS], uint64_t surfaces, double share) {
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < FOUND_COUNTS; i++)
+        if ((sum += counts[i]) > share * (double)surfaces)
+            return i;
+    return 0;
+}
+
+void noc_embree_light_stats(void *state, const noc_render_params *p, noc_light_stats *out) {
+    const embree_state *s = state;
+    uint64_t counts[FOUND_COUNTS] = { 0 };
+    out->lights = s->scene->lights.len;
+    out->scene_bytes = scene_bytes(s->scene) + noc_embree_build_bytes(s);
+    if (!p || !draws_candidates(p))
+        return;
+    out->candidates = p->candidates;
+    out->build_seconds = s->light_seconds[p->candidates];
+    out->bytes = bytes_of(s, p->candidates);
+    if (p->candidates != NOC_CANDIDATES_BVH || !s->influence)
+        return;
+    out->influence = p->influence > 0 ? p->influence : s->influence->scale;
+    out->volumes = s->influence->count;
+    for (int i = 0; i < s->worker_count; i++)
+        for (int k = 0; k < FOUND_COUNTS; k++)
+            counts[k] += s->workers[i].found_counts[k];
+    for (int k = 0; k < FOUND_COUNTS; k++)
+        out->surfaces += counts[k];
+    if (!out->surfaces)
+        return;
+    out->found_none = (double)counts[0] / (double)out->surfaces;
+    out->found_median = percentile(counts, out->surfaces, 0.5);
+    out->found_99 = percentile(counts, out->surfaces, 0.99);
 }

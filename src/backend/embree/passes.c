@@ -46,6 +46,8 @@ static void pick_influence(stage_run *run, worker *w, const gblock *g, uint32_t 
     }
     noc_influence_query(v, &q, &w->found);
     noc_influence_draw(v, &q, &w->found, keys, m, f->params->uniform_every, w->picks.light, w->picks.inverse);
+    for (uint32_t bits = lanes; bits; bits &= bits - 1)
+        w->found_counts[NOC_MIN(w->found.count[__builtin_ctz(bits)], FOUND_COUNTS - 1)]++;
 }
 
 /* Draws a block's candidates from whatever these parameters name but the uniform draws and the lists. */
