@@ -1,10 +1,10 @@
 /* Error against the reference by method and frame.
  *
- *   bench_error [SCENE [VIEW [WIDTH HEIGHT [REFERENCE_FRAMES [CACHE]]]]]     default: city street 480 270 64 build
+ *   bench_error [SCENE [VIEW [WIDTH HEIGHT [REFERENCE_FRAMES [CACHE [NAME]]]]]]     default: city street 480 270 64 build
  *
- * RMSE-8 and relMSE clamped to 10 cd/m2, and unclamped bias (docs/estimator.md, "Error figures") on pixels that see no
- * emitter, after 1, 2, 4, 8, 16 and 32 frames: accumulated, and of that frame alone. Candidates are uniform where the name
- * does not say lists. The reference is kept as EXR in the CACHE folder under a name made of everything that it depends on:
+ * NAME: only the variants whose names hold it. Figures: RMSE-8 and relMSE clamped to 10 cd/m2, and unclamped bias
+ * (docs/estimator.md, "Error figures") on pixels that see no emitter, after 1, 2, 4, 8, 16 and 32 frames: accumulated, and of that frame alone. Candidates are uniform where the name
+ * does not say what else. The reference is kept as EXR in the CACHE folder under a name made of everything that it depends on:
  * scene content, camera, size and frames. */
 #include "bench_scene.h"
 
@@ -32,6 +32,9 @@ static const variant variants[] = {
     { "restir pairwise", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE },
     { "restir pairwise + rays", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true },
     { "spatial pairwise + rays", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true },
+    { "ris, power", NOC_METHOD_RIS, .candidates = NOC_CANDIDATES_POWER },
+    { "ris, bvh", NOC_METHOD_RIS, .candidates = NOC_CANDIDATES_BVH },
+    { "ris, tree", NOC_METHOD_RIS, .candidates = NOC_CANDIDATES_TREE },
     { "ris, lists", NOC_METHOD_RIS, .candidates = NOC_CANDIDATES_LISTS },
     { "pairwise + rays, lists", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, .candidates = NOC_CANDIDATES_LISTS },
     { "spatial p. + rays, lists", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, NOC_CANDIDATES_LISTS },
@@ -147,7 +150,7 @@ int main(int argc, char **argv) {
     int frames = argc > 5 ? atoi(argv[5]) : 64;
     const char *cache = argc > 6 ? argv[6] : "build";
     if (width < 1 || height < 1 || frames < 1) {
-        fprintf(stderr, "usage: bench_error [SCENE [VIEW [WIDTH HEIGHT [REFERENCE_FRAMES [CACHE]]]]]\n");
+        fprintf(stderr, "usage: bench_error [SCENE [VIEW [WIDTH HEIGHT [REFERENCE_FRAMES [CACHE [NAME]]]]]]\n");
         return 2;
     }
     noc_log *log = noc_log_create(NULL);
@@ -160,7 +163,7 @@ int main(int argc, char **argv) {
     if (ok)
         printf("%s, %s, %d x %d: RMSE-8, relMSE, bias after 1, 2, 4, 8, 16, 32 frames\n", spec, view, width, height);
     for (size_t i = 0; ok && i < sizeof(variants) / sizeof(variants[0]); i++)
-        ok = measure(scene, &camera, &variants[i], want, log);
+        ok = !strstr(variants[i].name, argc > 7 ? argv[7] : "") || measure(scene, &camera, &variants[i], want, log);
     noc_image_destroy(want);
     noc_scene_destroy(scene);
     noc_log_destroy(log);
