@@ -16,6 +16,19 @@ typedef enum noc_candidates { NOC_CANDIDATES_UNIFORM, NOC_CANDIDATES_LISTS, NOC_
                              NOC_CANDIDATES_TREE } noc_candidates;
 typedef enum noc_path { NOC_PATH_AUTO, NOC_PATH_SCALAR, NOC_PATH_WIDE } noc_path;
 
+/* Views of how lights were sampled, one number a pixel: docs/views.md. The reservoir is the one that the frame shaded. */
+typedef enum noc_aov {
+    NOC_AOV_LIGHTS,     /* lights that the query found: bvh: volumes that hold the point; lists: entries of the tile's list */
+    NOC_AOV_DENSITY,    /* of the light that this frame's candidates chose: how often it is expected among a pixel's candidates */
+    NOC_AOV_LIGHT,      /* the reservoir's light: its index in the scene, exact below 2^24 */
+    NOC_AOV_WEIGHT,     /* the reservoir's W: 1 / (density of its sample), 0 where it holds none */
+    NOC_AOV_CONFIDENCE, /* the reservoir's M, candidates */
+    NOC_AOV_RAYS,       /* shadow rays traced for the pixel in the last frame, for the sky too */
+    NOC_AOV_VARIANCE,   /* of the luminance of one frame, (cd/m2)^2, from the frames accumulated since it was asked for */
+    NOC_AOV_ERROR,      /* relative standard error of their mean: sqrt(variance / frames) / mean */
+    NOC_AOV_COUNT
+} noc_aov;
+
 typedef struct noc_render_params {
     int width, height;          /* 1..NOC_IMAGE_MAX_SIDE */
     noc_method method;
@@ -45,6 +58,8 @@ typedef struct noc_render_params {
     double sky;                 /* luminance of the sky at the zenith, cd/m2; 0 = off */
     bool emitters;              /* emitters seen directly are shown */
     noc_path path;              /* scalar C, or the wide code for this machine */
+    uint32_t aovs;              /* views to keep, bits 1 << noc_aov. They never change the picture, and may be asked for and
+                                 * dropped from frame to frame: history and accumulation go on */
 } noc_render_params;
 
 #define NOC_RENDER_DEFAULTS(set) \
@@ -87,6 +102,11 @@ NOC_API void noc_renderer_reset(noc_renderer *renderer); /* forgets history and 
 
 /* Copy of the picture so far (accumulated or last frame), with its emitter mask. NULL before the first frame. */
 NOC_API noc_image *noc_renderer_image(noc_renderer *renderer);
+
+NOC_API const char *noc_aov_name(noc_aov aov); /* "lights" */
+/* Copy of a view that the last complete frame kept. -1 where a pixel has none: no surface, an emitter seen directly, no light
+ * chosen, fewer than two frames. NULL after reporting an error, and before the first frame. */
+NOC_API noc_channel *noc_renderer_aov(noc_renderer *renderer, noc_aov aov);
 
 typedef enum noc_pass {
     NOC_PASS_PRIMARY, NOC_PASS_CANDIDATES, NOC_PASS_VISIBILITY, NOC_PASS_TEMPORAL, NOC_PASS_SPATIAL, NOC_PASS_SHADE,

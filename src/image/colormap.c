@@ -68,6 +68,13 @@ void colormap_init(colormap *map, colormap_kind kind) {
     }
 }
 
+void colormap_polar(double lightness, double chroma, double hue, uint8_t out[3]) {
+    double rgb[3];
+    lab_to_linear(polar(lightness, chroma, hue * 180 / M_PI), rgb);
+    for (int k = 0; k < 3; k++)
+        out[k] = (uint8_t)(255 * srgb_encode(NOC_CLAMP(rgb[k], 0.0, 1.0)) + 0.5);
+}
+
 const uint8_t *colormap_at(const colormap *map, double t) {
     if (!(t > 0))
         return map->rgb[0];

@@ -16,6 +16,9 @@ typedef struct colormap { uint8_t rgb[COLORMAP_SIZE][3]; } colormap;
 void colormap_init(colormap *map, colormap_kind kind);
 const uint8_t *colormap_at(const colormap *map, double t); /* t is clamped to 0..1; NaN gives the entry of 0 */
 
+/* One colour of Oklab by lightness 0..1, chroma, and hue in radians, as near as sRGB has it. */
+void colormap_polar(double lightness, double chroma, double hue, uint8_t rgb[3]);
+
 /* A picture to draw into; rgb belongs to the caller. What falls outside is not drawn. */
 typedef struct canvas {
     uint8_t *rgb;

@@ -1,4 +1,4 @@
-/* OpenEXR, writing, by its C core: linear float cd/m2, ZIP, with units and mask. */
+/* OpenEXR, writing, by its C core: pictures as linear float cd/m2 with their mask, channels as floats; ZIP, with units. */
 #include "image/internal.h"
 
 #include <errno.h>
@@ -8,10 +8,12 @@ typedef struct exr_writer {
     exr_context_t context;
     int part;
     output *out;
-    const noc_image *image;
+    const noc_image *image; /* NULL: a channel is written */
+    const noc_channel *channel;
+    int width, height;
     noc_log *log;
     noc_status status;
-    float *rgb;         /* one chunk, finite */
+    float *rgb;         /* one chunk, finite; a channel's has one number a pixel */
     uint16_t *emitter;  /* one chunk, half */
 } exr_writer;
 
@@ -57,14 +59,18 @@ static bool write_header(exr_writer *w, const meta_list *meta) {
     static const exr_attr_chromaticities_t rec709 = { 0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f };
     exr_context_t c = w->context;
     bool good = ok(w, exr_add_part(c, NULL, EXR_STORAGE_SCANLINE, &w->part)) &&
-                ok(w, exr_initialize_required_attr_simple(c, w->part, w->image->width, w->image->height, EXR_COMPRESSION_ZIP));
+                ok(w, exr_initialize_required_attr_simple(c, w->part, w->width, w->height, EXR_COMPRESSION_ZIP));
     static const char *const colours[] = { "B", "G", "R" };
-    for (int k = 0; k < 3 && good; k++)
+    for (int k = 0; w->image && k < 3 && good; k++)
         good = ok(w, exr_add_channel(c, w->part, colours[k], EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
-    if (w->image->emitter && good)
+    if (w->channel && good)
+        good = ok(w, exr_add_channel(c, w->part, "Y", EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LINEAR, 1, 1));
+    if (w->image && w->image->emitter && good)
         good = ok(w, exr_add_channel(c, w->part, "emitter", EXR_PIXEL_HALF, EXR_PERCEPTUALLY_LINEAR, 1, 1));
-    good = good && ok(w, exr_attr_set_chromaticities(c, w->part, "chromaticities", &rec709)) &&
-           ok(w, exr_attr_set_float(c, w->part, "whiteLuminance", 1)) && ok(w, exr_set_longname_support(c, 1));
+    if (w->image && good)
+        good = ok(w, exr_attr_set_chromaticities(c, w->part, "chromaticities", &rec709)) &&
+               ok(w, exr_attr_set_float(c, w->part, "whiteLuminance", 1));
+    good = good && ok(w, exr_set_longname_support(c, 1));
     for (size_t i = 0; good && i < meta->entries.len; i++) {
         const meta_entry *e = &meta->entries.data[i];
         const exr_attribute_t *old = NULL;
@@ -81,7 +87,11 @@ static bool write_header(exr_writer *w, const meta_list *meta) {
 /* Copies the rows of a chunk, without what is not finite. */
 static void fill_chunk(exr_writer *w, int y0, int rows) {
     const noc_image *image = w->image;
-    size_t n = (size_t)rows * (size_t)image->width, first = (size_t)y0 * (size_t)image->width;
+    size_t n = (size_t)rows * (size_t)w->width, first = (size_t)y0 * (size_t)w->width;
+    for (size_t i = 0; w->channel && i < n; i++)
+        w->rgb[i] = __builtin_isfinite(w->channel->value[first + i]) ? w->channel->value[first + i] : -1;
+    if (!image)
+        return;
     for (size_t i = 0; i < n; i++) {
         const float *rgb = image->rgb + 3 * (first + i);
         bool finite = image_finite(rgb);
@@ -97,9 +107,9 @@ static bool set_channels(exr_writer *w, exr_encode_pipeline_t *encode) {
         exr_coding_channel_info_t *ch = &encode->channels[i];
         bool mask = strcmp(ch->channel_name, "emitter") == 0;
         int k = ch->channel_name[0] == 'R' ? 0 : ch->channel_name[0] == 'G' ? 1 : 2;
-        ch->user_pixel_stride = mask ? 2 : 12;
-        ch->user_line_stride = ch->user_pixel_stride * w->image->width;
-        ch->encode_from_ptr = mask ? (const uint8_t *)w->emitter : (const uint8_t *)(w->rgb + k);
+        ch->user_pixel_stride = mask ? 2 : w->channel ? 4 : 12;
+        ch->user_line_stride = ch->user_pixel_stride * w->width;
+        ch->encode_from_ptr = mask ? (const uint8_t *)w->emitter : (const uint8_t *)(w->rgb + (w->channel ? 0 : k));
     }
     return true;
 }
@@ -108,16 +118,17 @@ static void write_chunks(exr_writer *w) {
     int32_t lines = 0;
     if (!ok(w, exr_get_scanlines_per_chunk(w->context, w->part, &lines)))
         return;
-    size_t n = (size_t)lines * (size_t)w->image->width;
-    w->rgb = noc_alloc_large(n, 3 * sizeof(float));
-    w->emitter = w->image->emitter ? noc_alloc_large(n, sizeof(uint16_t)) : NULL;
-    if (!w->rgb || (w->image->emitter && !w->emitter)) {
+    size_t n = (size_t)lines * (size_t)w->width;
+    bool mask = w->image && w->image->emitter;
+    w->rgb = noc_alloc_large(n, (w->channel ? 1 : 3) * sizeof(float));
+    w->emitter = mask ? noc_alloc_large(n, sizeof(uint16_t)) : NULL;
+    if (!w->rgb || (mask && !w->emitter)) {
         w->status = noc_error(w->log, NOC_ERR_MEMORY, "%s: EXR: no memory", w->out->path);
         return;
     }
     exr_encode_pipeline_t encode = EXR_ENCODE_PIPELINE_INITIALIZER;
     bool good = true;
-    for (int y = 0; good && y < w->image->height; y += lines) {
+    for (int y = 0; good && y < w->height; y += lines) {
         exr_chunk_info_t chunk;
         good = ok(w, exr_write_scanline_chunk_info(w->context, w->part, y, &chunk));
         if (good && y == 0)
@@ -134,20 +145,29 @@ static void write_chunks(exr_writer *w) {
         exr_encoding_destroy(w->context, &encode);
 }
 
-noc_status image_write_exr(output *o, const noc_image *image, const meta_list *meta, noc_log *log) {
-    exr_writer w = { .out = o, .image = image, .log = log };
+static noc_status write_file(exr_writer *w, const meta_list *meta) {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    init.user_data = &w;
+    init.user_data = w;
     init.write_fn = write_data;
     init.error_handler_fn = on_error;
-    if (ok(&w, exr_start_write(&w.context, o->path, EXR_WRITE_FILE_DIRECTLY, &init)) && write_header(&w, meta))
-        write_chunks(&w);
+    if (ok(w, exr_start_write(&w->context, w->out->path, EXR_WRITE_FILE_DIRECTLY, &init)) && write_header(w, meta))
+        write_chunks(w);
     /* Writes the table of chunks, also after an error: the temporary file goes away then. */
-    if (w.context) {
-        exr_result_t result = exr_finish(&w.context);
-        ok(&w, result);
+    if (w->context) {
+        exr_result_t result = exr_finish(&w->context);
+        ok(w, result);
     }
-    free(w.rgb);
-    free(w.emitter);
-    return w.status;
+    free(w->rgb);
+    free(w->emitter);
+    return w->status;
+}
+
+noc_status image_write_exr(output *o, const noc_image *image, const meta_list *meta, noc_log *log) {
+    exr_writer w = { .out = o, .image = image, .width = image->width, .height = image->height, .log = log };
+    return write_file(&w, meta);
+}
+
+noc_status image_write_exr_channel(output *o, const noc_channel *channel, const meta_list *meta, noc_log *log) {
+    exr_writer w = { .out = o, .channel = channel, .width = channel->width, .height = channel->height, .log = log };
+    return write_file(&w, meta);
 }

@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static bool ends_in(const char *path, const char *ending) {
+bool image_path_ends_in(const char *path, const char *ending) {
     size_t n = strlen(path), m = strlen(ending);
     return n > m && noc_ieq(path + n - m, ending);
 }
@@ -15,7 +15,7 @@ static noc_status bad_ending(const char *path, const char *endings, noc_log *log
     return noc_error(log, NOC_ERR_UNSUPPORTED, "%s: the name's ending does not tell a format: use %s", path, endings);
 }
 
-static bool good_size(int width, int height) {
+bool image_size_allowed(int width, int height) {
     return width >= 1 && height >= 1 && width <= NOC_IMAGE_MAX_SIDE && height <= NOC_IMAGE_MAX_SIDE;
 }
 
@@ -57,11 +57,11 @@ static noc_status write_displayed(const noc_image *image, const char *path, cons
 
 noc_status noc_image_write(const noc_image *image, const char *path, const noc_display_params *display,
                            const noc_image_meta *meta, noc_log *log) {
-    if (!good_size(image->width, image->height))
+    if (!image_size_allowed(image->width, image->height))
         return noc_error(log, NOC_ERR_ARGUMENT, "%s: a picture of %d x %d pixels cannot be written", path, image->width,
                          image->height);
-    bool png = ends_in(path, ".png");
-    if (!png && !ends_in(path, ".exr"))
+    bool png = image_path_ends_in(path, ".png");
+    if (!png && !image_path_ends_in(path, ".exr"))
         return bad_ending(path, ".png or .exr", log);
     meta_list list = { 0 };
     meta_add(&list, "Software", "Nocturne %s", NOC_VERSION);
@@ -87,9 +87,9 @@ noc_status noc_image_write(const noc_image *image, const char *path, const noc_d
 
 noc_status noc_image_write_srgb8(const uint8_t *rgb, int width, int height, const char *path, const noc_image_meta *meta,
                                  noc_log *log) {
-    if (!good_size(width, height))
+    if (!image_size_allowed(width, height))
         return noc_error(log, NOC_ERR_ARGUMENT, "%s: a picture of %d x %d pixels cannot be written", path, width, height);
-    if (!ends_in(path, ".png"))
+    if (!image_path_ends_in(path, ".png"))
         return bad_ending(path, ".png", log);
     meta_list list = { 0 };
     meta_add(&list, "Software", "Nocturne %s", NOC_VERSION);

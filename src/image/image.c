@@ -10,7 +10,7 @@ static double machine_bytes(void) {
     return pages > 0 && page > 0 ? (double)pages * (double)page : 1e30;
 }
 
-static void *alloc_pixels(int width, int height, size_t size, noc_log *log) {
+void *image_alloc_pixels(int width, int height, size_t size, noc_log *log) {
     double bytes = (double)width * height * (double)size;
     void *p = bytes < machine_bytes() ? noc_alloc_large((size_t)width * (size_t)height, size) : NULL;
     if (!p)
@@ -23,7 +23,7 @@ noc_image *noc_image_create(int width, int height, noc_log *log) {
         noc_error(log, NOC_ERR_ARGUMENT, "image: %d x %d pixels is outside 1..%d a side", width, height, NOC_IMAGE_MAX_SIDE);
         return NULL;
     }
-    float *rgb = alloc_pixels(width, height, 3 * sizeof(float), log);
+    float *rgb = image_alloc_pixels(width, height, 3 * sizeof(float), log);
     if (!rgb)
         return NULL;
     noc_image *image = noc_calloc(1, sizeof(*image));
@@ -35,7 +35,7 @@ noc_image *noc_image_create(int width, int height, noc_log *log) {
 
 bool image_add_mask(noc_image *image, noc_log *log) {
     if (!image->emitter)
-        image->emitter = alloc_pixels(image->width, image->height, 1, log);
+        image->emitter = image_alloc_pixels(image->width, image->height, 1, log);
     return image->emitter != NULL;
 }
 

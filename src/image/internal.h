@@ -15,7 +15,12 @@ static inline bool image_finite(const float rgb[3]) {
 }
 static inline size_t image_pixels(const noc_image *image) { return (size_t)image->width * (size_t)image->height; }
 
-/* image.c. The mask all zero; false after reporting when refused. */
+/* image.c. Zeroed; NULL after reporting when refused. */
+void *image_alloc_pixels(int width, int height, size_t size, noc_log *log);
+/* file.c */
+bool image_path_ends_in(const char *path, const char *ending);
+bool image_size_allowed(int width, int height);
+/* The mask all zero; false after reporting when refused. */
 bool image_add_mask(noc_image *image, noc_log *log);
 /* Luminance of 1.2 cd/m2 * 2^EV100 is where a camera of that exposure saturates. */
 #define IMAGE_SATURATION 1.2
@@ -63,6 +68,7 @@ void meta_free(meta_list *list);
 /* png.c and exr.c. Readers take the whole file; name is for messages. */
 noc_status image_write_png(output *o, const uint8_t *rgb, int width, int height, const meta_list *meta, noc_log *log);
 noc_status image_write_exr(output *o, const noc_image *image, const meta_list *meta, noc_log *log);
+noc_status image_write_exr_channel(output *o, const noc_channel *channel, const meta_list *meta, noc_log *log);
 noc_image *image_read_png(const uint8_t *data, size_t size, const char *name, noc_log *log);
 noc_image *image_read_exr(const uint8_t *data, size_t size, const char *name, noc_log *log);
 /* Either, told apart by their first bytes. is_linear may be NULL. */

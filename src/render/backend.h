@@ -51,7 +51,7 @@ typedef struct noc_backend {
     noc_status (*create)(const noc_scene *scene, const noc_renderer_params *params, noc_log *log, void **state);
     void (*destroy)(void *state);
     /* What a picture takes, to be held against the machine before anything is allocated. */
-    size_t (*bytes_a_pixel)(int reservoir_sets);
+    size_t (*bytes_a_pixel)(int reservoir_sets, uint32_t aovs);
     /* Buffers for pictures of this size, with so many reservoir sets; what was held is lost, also when this fails. */
     noc_status (*resize)(void *state, int width, int height, int reservoir_sets);
     /* progress may be NULL; from..to is the stage's share of the frame. NOC_ERR_CANCELLED leaves the picture as it was. */
@@ -61,6 +61,8 @@ typedef struct noc_backend {
     void (*accumulate)(void *state, const noc_frame *frame);
     /* Picture and emitter mask (1 where the pixel itself sees an emitter in a frame of the mean). */
     void (*read)(void *state, noc_image *image);
+    /* A view that the last accumulated frame kept into value, a number a pixel (-1: none). False where it kept none. */
+    bool (*aov)(void *state, noc_aov aov, float *value);
     /* Adds up into stats: pass_seconds, rays, dropped, all since the last call; sets build_seconds, memory and path. */
     void (*stats)(void *state, noc_frame_stats *stats);
     /* Of the structure that these parameters (of the last frame; NULL: there was none) draw candidates from. */
@@ -90,6 +92,12 @@ static inline bool noc_uses_bias_rays(const noc_render_params *p) {
 static inline bool noc_feeds_spatial(const noc_render_params *p) {
     return p->bias == NOC_BIAS_PAIRWISE && (noc_uses_bias_rays(p) || !(p->visibility_reuse && p->final_ray));
 }
+
+/* views.c */
+/* Can these views be had of these parameters? What cannot is reported. */
+noc_status noc_check_aovs(const noc_render_params *params, noc_log *log);
+/* Name, unit, title and scale. */
+void noc_describe_aov(const noc_render_params *params, noc_aov aov, noc_channel *channel);
 
 /* history.c: what may be carried from frame to frame. */
 typedef struct noc_history {

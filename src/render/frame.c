@@ -43,7 +43,7 @@ noc_status noc_check_render_params(const noc_render_params *p, noc_log *log) {
         return wrong(log, "bias", (int)p->bias, "a noc_bias");
     if ((unsigned)p->path > NOC_PATH_WIDE)
         return wrong(log, "path", (int)p->path, "a noc_path");
-    return NOC_OK;
+    return noc_check_aovs(p, log);
 }
 
 typedef struct { double x, y, z; } vec;

@@ -83,7 +83,7 @@ static noc_status fit(noc_renderer *r, const noc_render_params *p, int sets) {
     if (r->width == p->width && r->height == p->height && r->sets >= sets)
         return NOC_OK;
     uint64_t pixels = ((uint64_t)p->width + 3) * ((uint64_t)p->height + 3);
-    uint64_t need = pixels * r->backend->bytes_a_pixel(sets), have = machine_memory();
+    uint64_t need = pixels * r->backend->bytes_a_pixel(sets, p->aovs), have = machine_memory();
     if (need > have - have / 8)
         return noc_error(r->log, NOC_ERR_MEMORY, "render: a picture of %d x %d needs %.1f GB of memory, this machine has %.1f",
                          p->width, p->height, (double)need * 1e-9, (double)have * 1e-9);
@@ -166,6 +166,24 @@ noc_image *noc_renderer_image(noc_renderer *r) {
         image->emitter[i] = wide[i] | (i >= row && wide[i - row]) | (i + row < n && wide[i + row]);
     free(wide);
     return image;
+}
+
+noc_channel *noc_renderer_aov(noc_renderer *r, noc_aov aov) {
+    if ((unsigned)aov >= NOC_AOV_COUNT) {
+        noc_error(r->log, NOC_ERR_ARGUMENT, "render: aov is %d, must be a noc_aov", (int)aov);
+        return NULL;
+    }
+    if (!r->width || !r->history.accumulated)
+        return NULL;
+    noc_channel *channel = noc_channel_create(r->width, r->height, r->log);
+    if (!channel)
+        return NULL;
+    noc_describe_aov(&r->history.params, aov, channel);
+    if (r->backend->aov(r->state, aov, channel->value))
+        return channel;
+    noc_channel_destroy(channel);
+    noc_error(r->log, NOC_ERR_ARGUMENT, "render: the last frame did not keep the view \"%s\": name it in aovs", noc_aov_name(aov));
+    return NULL;
 }
 
 const char *noc_pass_name(noc_pass pass) {

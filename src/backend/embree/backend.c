@@ -13,6 +13,7 @@ static void free_buffers(frame_buffers *b) {
     free(b->colour);
     free(b->picture);
     free(b->emitter);
+    noc_embree_free_views(&b->views);
     *b = (frame_buffers){ 0 };
 }
 
@@ -108,8 +109,9 @@ static noc_status resize(void *state, int width, int height, int sets) {
     return NOC_OK;
 }
 
-static size_t bytes_a_pixel(int sets) {
-    return (2 * sizeof(gblock) + (size_t)sets * (sizeof(rblock) + 2) + 2 * sizeof(cblock) + 2) / BLOCK;
+static size_t bytes_a_pixel(int sets, uint32_t aovs) {
+    return (2 * sizeof(gblock) + (size_t)sets * (sizeof(rblock) + 2) + 2 * sizeof(cblock) + 2) / BLOCK +
+           noc_embree_view_bytes(aovs);
 }
 
 static void run_tile(void *arg, size_t item, int index) {
@@ -141,6 +143,8 @@ static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st
     embree_state *s = state;
     s->kernels = noc_pick_kernels(frame->params->path);
     noc_status status = noc_embree_prepare_lights(s, frame->params);
+    if (status == NOC_OK)
+        status = noc_embree_begin_views(s, frame->params->aovs, st->passes >> NOC_PASS_PRIMARY & 1);
     if (status != NOC_OK)
         return status;
     for (int i = 0; st->passes >> NOC_PASS_CANDIDATES & 1 && i < s->worker_count; i++)
@@ -152,6 +156,8 @@ static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st
                                s->clusters, NULL, s->alias, s->tree, NULL, 0 },
                       .stage = st, .k = s->kernels, .progress = progress, .what = "rendering", .from = from, .to = to,
                       .tiles = (size_t)s->b.tiles_x * s->b.tiles_y };
+    if (st->passes >> NOC_PASS_SHADE & 1)
+        s->shaded_set = st->target;
     noc_pool_run(s->pool, run.tiles, run_tile, &run);
     return atomic_load(&run.cancelled) ? NOC_ERR_CANCELLED : NOC_OK;
 }
@@ -175,6 +181,7 @@ static void mean_row(void *arg, size_t row, int index) {
 
 static void accumulate(void *state, const noc_frame *frame) {
     embree_state *s = state;
+    noc_embree_keep_views(s, frame);
     if (!frame->accumulated) {
         memcpy(s->b.picture, s->b.colour, (size_t)s->b.blocks_x * s->b.blocks_y * sizeof(cblock));
         return;
@@ -210,7 +217,8 @@ static void stats(void *state, noc_frame_stats *out) {
         w->rays_primary = w->rays_shadow = w->dropped = 0;
     }
     out->build_seconds = s->build_seconds;
-    out->memory_bytes = s->b.bytes + noc_embree_build_bytes(s) + noc_embree_light_bytes(s);
+    out->memory_bytes = s->b.bytes + noc_embree_build_bytes(s) + noc_embree_light_bytes(s) +
+                        (size_t)s->b.blocks_x * s->b.blocks_y * BLOCK * noc_embree_view_bytes(s->b.views.asked);
     out->path = s->kernels->name;
 }
 
@@ -253,6 +261,7 @@ const noc_backend noc_backend_embree = {
     .stage = stage,
     .accumulate = accumulate,
     .read = read_picture,
+    .aov = noc_embree_read_view,
     .stats = stats,
     .light_stats = noc_embree_light_stats,
     .record = record,

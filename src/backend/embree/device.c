@@ -117,6 +117,8 @@ uint32_t noc_embree_free(embree_state *s, worker *w, const rayblock *rays, uint3
     if (!valid)
         return 0;
     w->rays_shadow += (uint64_t)__builtin_popcount(valid);
+    for (int l = 0; w->rays && l < BLOCK; l++)
+        w->rays[l] += (float)(valid >> l & 1);
     keep(s, w, rays, valid, false);
     return trace_free(s, rays, valid);
 }

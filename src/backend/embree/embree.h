@@ -28,10 +28,18 @@ typedef struct worker {
     pick_block picks;
     noc_found found;
     uint64_t found_counts[FOUND_COUNTS]; /* surfaces of the frame by the number of lights found; the last: as many or more */
+    float *rays; /* of the pixels of the block at hand, for the view that counts them; NULL: nobody asks */
     packet *packets; /* kept while recording */
     size_t packet_count, packet_room;
     bool packets_lost; /* there was no memory for all of them */
 } worker;
+
+/* Views (noc_aov): those of the frame being made, and of the last complete one. Entries that are not asked for are NULL. */
+typedef struct view_buffers {
+    float (*made[NOC_AOV_COUNT])[BLOCK], (*kept[NOC_AOV_COUNT])[BLOCK];
+    uint32_t asked, held; /* bits: buffers that the frame being made works on, that a complete frame has left */
+    uint64_t frames;      /* in the moments of the luminance */
+} view_buffers;
 
 /* Buffers of one picture; every array has an entry a block. */
 typedef struct frame_buffers {
@@ -43,6 +51,7 @@ typedef struct frame_buffers {
     cblock *colour;    /* of the frame being made */
     cblock *picture;   /* mean, or last frame */
     uint16_t *emitter; /* lanes that saw an emitter in a frame of the mean */
+    view_buffers views;
     size_t bytes;
 } frame_buffers;
 
@@ -65,6 +74,7 @@ typedef struct embree_state {
     int worker_count;
     bool recording;
     const kernels *kernels; /* of the last stage */
+    int shaded_set;         /* reservoirs that the last frame shaded */
 } embree_state;
 
 /* A stage at work: what every tile needs. */
@@ -108,6 +118,15 @@ void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t);
 /* reuse.c: temporal and spatial combination of one block */
 void noc_embree_temporal(stage_run *run, worker *w, int bx, int by);
 void noc_embree_spatial(stage_run *run, worker *w, int bx, int by);
+
+/* views.c */
+noc_status noc_embree_begin_views(embree_state *s, uint32_t aovs, bool first_stage);
+/* What the candidates of a block were, as far as the frame asks; r: the reservoirs they ended in. */
+void noc_embree_view_candidates(const stage_run *run, const worker *w, size_t block, uint32_t lanes, const rblock *r);
+void noc_embree_keep_views(embree_state *s, const noc_frame *frame); /* the frame is complete */
+bool noc_embree_read_view(void *state, noc_aov aov, float *value);
+void noc_embree_free_views(view_buffers *views);
+size_t noc_embree_view_bytes(uint32_t aovs); /* a pixel */
 
 static inline uint32_t lanes_inside(const frame_buffers *b, int bx, int by) {
     uint32_t lanes = 0;

@@ -76,6 +76,8 @@ static void candidates(stage_run *run, worker *w, int bx, int by) {
         run->k->given(&run->ctx, g, lanes, x, y, m, &w->picks, r);
     else
         run->k->candidates(&run->ctx, g, lanes, x, y, m, r);
+    if (p->aovs)
+        noc_embree_view_candidates(run, w, at, lanes, r);
     b->visible[run->stage->target][at] = 0;
 }
 
@@ -106,6 +108,8 @@ static void tile_candidates(stage_run *run, worker *w, tile t) {
         for (int bx = t.x0; bx < t.x1; bx++, n++) {
             size_t at = block_at(b, bx, by);
             run->k->list_candidates(&ctx, g[n], lanes[n], bx * BLOCK_SIDE, by * BLOCK_SIDE, &b->r[run->stage->target][at]);
+            if (f->params->aovs)
+                noc_embree_view_candidates(run, w, at, lanes[n], &b->r[run->stage->target][at]);
             b->visible[run->stage->target][at] = 0;
         }
 }
@@ -226,7 +230,11 @@ void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
         tile_candidates(run, w, t);
         return;
     }
+    float (*rays)[BLOCK] = run->s->b.views.made[NOC_AOV_RAYS];
     for (int by = t.y0; by < t.y1; by++)
-        for (int bx = t.x0; bx < t.x1; bx++)
+        for (int bx = t.x0; bx < t.x1; bx++) {
+            w->rays = rays ? rays[block_at(&run->s->b, bx, by)] : NULL;
             passes[pass](run, w, bx, by);
+        }
+    w->rays = NULL;
 }

@@ -1,0 +1,178 @@
+/* Views of the light sampling (noc_aov): gathered while a frame is made, kept once it is complete. Nothing here is reached
+ * unless a frame asks for it, and nothing here is read by the passes, so a view cannot change the picture. */
+#include "backend/embree/embree.h"
+
+#include <math.h>
+
+#define BIT(aov) (1u << NOC_AOV_##aov)
+enum {
+    GATHERED = BIT(LIGHTS) | BIT(DENSITY) | BIT(RAYS), /* by the passes, so a dropped frame must not touch what is kept */
+    RESERVOIRS = BIT(LIGHT) | BIT(WEIGHT) | BIT(CONFIDENCE),
+    MOMENTS = BIT(VARIANCE) | BIT(ERROR), /* kept[VARIANCE]: sum of squared deviations; kept[ERROR]: mean luminance */
+};
+
+/* Buffers that these views take. */
+static uint32_t buffers_of(uint32_t aovs) { return aovs & MOMENTS ? aovs | MOMENTS : aovs; }
+
+size_t noc_embree_view_bytes(uint32_t aovs) {
+    uint32_t kept = buffers_of(aovs);
+    return sizeof(float) * (size_t)(__builtin_popcount(kept) + __builtin_popcount(kept & GATHERED));
+}
+
+static void drop(view_buffers *v, int aov) {
+    free(v->made[aov]);
+    free(v->kept[aov]);
+    v->made[aov] = v->kept[aov] = NULL;
+    v->held &= ~(1u << aov);
+}
+
+void noc_embree_free_views(view_buffers *v) {
+    for (int aov = 0; aov < NOC_AOV_COUNT; aov++)
+        drop(v, aov);
+    *v = (view_buffers){ 0 };
+}
+
+static bool allocate(float (**buffer)[BLOCK], size_t blocks) {
+    return *buffer || (*buffer = noc_alloc_large(blocks, sizeof(**buffer))) != NULL;
+}
+
+noc_status noc_embree_begin_views(embree_state *s, uint32_t aovs, bool first_stage) {
+    view_buffers *v = &s->b.views;
+    uint32_t need = buffers_of(aovs);
+    size_t blocks = (size_t)s->b.blocks_x * s->b.blocks_y;
+    if (!first_stage || !(need | v->asked))
+        return NOC_OK;
+    v->asked = need;
+    for (int aov = 0; aov < NOC_AOV_COUNT; aov++) {
+        bool gathered = GATHERED >> aov & 1;
+        if (!(need >> aov & 1)) {
+            drop(v, aov);
+        } else if (!allocate(&v->kept[aov], blocks) || (gathered && !allocate(&v->made[aov], blocks))) {
+            noc_embree_free_views(v);
+            return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for views of %d x %d", s->b.width, s->b.height);
+        } else if (gathered) {
+            for (size_t i = 0; i < blocks; i++)
+                for (int l = 0; l < BLOCK; l++)
+                    v->made[aov][i][l] = aov == NOC_AOV_RAYS ? 0 : -1;
+        }
+    }
+    return NOC_OK;
+}
+
+/* How often a light that lane l chose is expected among its candidates. */
+static float expected(const stage_run *run, const worker *w, uint32_t light, int l) {
+    const noc_render_params *p = run->ctx.frame->params;
+    if (p->method == NOC_METHOD_IS || p->candidates == NOC_CANDIDATES_UNIFORM)
+        return (float)(p->method == NOC_METHOD_IS ? 1 : p->draws) / (float)run->ctx.light_count;
+    if (p->candidates == NOC_CANDIDATES_LISTS) {
+        const light_list *list = &w->lists.list;
+        for (uint32_t i = 0; i < list->count; i++)
+            if (list->light[i] == light)
+                return 1 / list->weight[i];
+    } else {
+        for (int i = 0; i < p->draws; i++)
+            if (w->picks.light[i][l] == light && w->picks.inverse[i][l] > 0)
+                return (float)p->draws / w->picks.inverse[i][l];
+    }
+    return -1;
+}
+
+void noc_embree_view_candidates(const stage_run *run, const worker *w, size_t block, uint32_t lanes, const rblock *r) {
+    const view_buffers *v = &run->s->b.views;
+    bool lists = run->ctx.frame->params->candidates == NOC_CANDIDATES_LISTS;
+    for (int l = 0; l < BLOCK; l++) {
+        if (!(lanes >> l & 1))
+            continue;
+        if (v->made[NOC_AOV_LIGHTS])
+            v->made[NOC_AOV_LIGHTS][block][l] = (float)(lists ? w->lists.list.count : w->found.count[l]);
+        if (v->made[NOC_AOV_DENSITY] && r->w[l] > 0)
+            v->made[NOC_AOV_DENSITY][block][l] = expected(run, w, r->light[l], l);
+    }
+}
+
+static void keep_reservoirs(view_buffers *v, size_t block, const rblock *r) {
+    for (int l = 0; l < BLOCK; l++) {
+        if (v->kept[NOC_AOV_LIGHT])
+            v->kept[NOC_AOV_LIGHT][block][l] = r->w[l] > 0 ? (float)r->light[l] : -1;
+        if (v->kept[NOC_AOV_WEIGHT])
+            v->kept[NOC_AOV_WEIGHT][block][l] = r->w[l];
+        if (v->kept[NOC_AOV_CONFIDENCE])
+            v->kept[NOC_AOV_CONFIDENCE][block][l] = r->m[l];
+    }
+}
+
+/* Mean and squared deviations, a frame at a time (Welford 1962). */
+static void add_moments(view_buffers *v, size_t block, const cblock *c) {
+    float *mean = v->kept[NOC_AOV_ERROR][block], *squares = v->kept[NOC_AOV_VARIANCE][block];
+    for (int l = 0; l < BLOCK; l++) {
+        float y = 0.2126f * c->rgb[0][l] + 0.7152f * c->rgb[1][l] + 0.0722f * c->rgb[2][l];
+        float before = v->frames ? y - mean[l] : y;
+        mean[l] = (v->frames ? mean[l] : 0) + before / (float)(v->frames + 1);
+        squares[l] = (v->frames ? squares[l] : 0) + before * (y - mean[l]);
+    }
+}
+
+struct keep_run {
+    embree_state *s;
+    const noc_frame *frame;
+};
+
+static void keep_row(void *arg, size_t row, int index) {
+    const struct keep_run *run = arg;
+    frame_buffers *b = &run->s->b;
+    view_buffers *v = &b->views;
+    (void)index;
+    size_t first = row * (size_t)b->blocks_x;
+    for (size_t i = first; i < first + (size_t)b->blocks_x; i++) {
+        const gblock *g = &b->g[run->frame->gbuffer][i];
+        if (v->asked & RESERVOIRS)
+            keep_reservoirs(v, i, &b->r[run->s->shaded_set][i]);
+        if (v->asked & MOMENTS)
+            add_moments(v, i, &b->colour[i]);
+        for (int aov = 0; aov < NOC_AOV_COUNT; aov++) {
+            if (!(v->asked >> aov & 1 & ~((BIT(RAYS) | MOMENTS) >> aov)))
+                continue;
+            for (int l = 0; l < BLOCK; l++)
+                if (g->material[l] == NO_SURFACE || g->light[l] != NOC_NO_LIGHT)
+                    v->kept[aov][i][l] = -1;
+        }
+    }
+}
+
+void noc_embree_keep_views(embree_state *s, const noc_frame *frame) {
+    view_buffers *v = &s->b.views;
+    if (!v->asked)
+        return;
+    for (int aov = 0; aov < NOC_AOV_COUNT; aov++)
+        if (v->asked & GATHERED & 1u << aov) {
+            float (*kept)[BLOCK] = v->kept[aov];
+            v->kept[aov] = v->made[aov];
+            v->made[aov] = kept;
+        }
+    if (!frame->accumulated || !(v->held & MOMENTS))
+        v->frames = 0;
+    noc_pool_run(s->pool, (size_t)s->b.blocks_y, keep_row, &(struct keep_run){ s, frame });
+    v->held = v->asked;
+    v->frames += (v->asked & MOMENTS) != 0;
+}
+
+bool noc_embree_read_view(void *state, noc_aov aov, float *value) {
+    const frame_buffers *b = &((embree_state *)state)->b;
+    const view_buffers *v = &b->views;
+    if (!(v->held >> aov & 1))
+        return false;
+    double n = (double)v->frames;
+    for (int y = 0; y < b->height; y++)
+        for (int x = 0; x < b->width; x++) {
+            size_t at = (size_t)(y / BLOCK_SIDE) * (size_t)b->blocks_x + (size_t)(x / BLOCK_SIDE);
+            int l = (y & 3) * 4 + (x & 3);
+            double out = v->kept[aov][at][l];
+            if (MOMENTS >> aov & 1) {
+                double variance = v->kept[NOC_AOV_VARIANCE][at][l] / (n - 1), mean = v->kept[NOC_AOV_ERROR][at][l];
+                bool none = n < 2 || b->emitter[at] >> l & 1 || (aov == NOC_AOV_ERROR && !(mean > 0));
+                out = none ? -1 : aov == NOC_AOV_ERROR ? sqrt(variance / n) / mean : variance;
+            }
+            value[(size_t)y * (size_t)b->width + (size_t)x] = isfinite((float)out) ? (float)out : -1;
+        }
+    return true;
+}

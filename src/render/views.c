@@ -1,0 +1,55 @@
+/* Views of the light sampling: which there are, what they need, and how they are to be shown. */
+#include "render/backend.h"
+
+#include <stdio.h>
+
+static const char *const names[NOC_AOV_COUNT] = {
+    [NOC_AOV_LIGHTS] = "lights",   [NOC_AOV_DENSITY] = "density",       [NOC_AOV_LIGHT] = "light",
+    [NOC_AOV_WEIGHT] = "weight",   [NOC_AOV_CONFIDENCE] = "confidence", [NOC_AOV_RAYS] = "rays",
+    [NOC_AOV_VARIANCE] = "variance", [NOC_AOV_ERROR] = "error",
+};
+
+const char *noc_aov_name(noc_aov aov) { return (unsigned)aov < NOC_AOV_COUNT ? names[aov] : "unknown"; }
+
+static bool asks(const noc_render_params *p, noc_aov aov) { return p->aovs >> aov & 1; }
+
+static bool has_query(const noc_render_params *p) {
+    return (p->method == NOC_METHOD_RIS || p->method == NOC_METHOD_RESTIR) &&
+           (p->candidates == NOC_CANDIDATES_BVH || p->candidates == NOC_CANDIDATES_LISTS);
+}
+
+noc_status noc_check_aovs(const noc_render_params *p, noc_log *log) {
+    static const noc_aov of_reservoirs[] = { NOC_AOV_DENSITY, NOC_AOV_LIGHT, NOC_AOV_WEIGHT, NOC_AOV_CONFIDENCE };
+    if (p->aovs >> NOC_AOV_COUNT)
+        return noc_error(log, NOC_ERR_ARGUMENT, "render: aovs is 0x%x, must be bits 1 << noc_aov", p->aovs);
+    if (asks(p, NOC_AOV_LIGHTS) && !has_query(p))
+        return noc_error(log, NOC_ERR_ARGUMENT, "render: view \"lights\": only ris and restir with candidates bvh or lists ask for "
+                                                "the lights around a point");
+    for (size_t i = 0; i < NOC_COUNT(of_reservoirs); i++)
+        if (asks(p, of_reservoirs[i]) && p->method == NOC_METHOD_REFERENCE)
+            return noc_error(log, NOC_ERR_ARGUMENT, "render: view \"%s\": the reference method chooses no light",
+                             names[of_reservoirs[i]]);
+    for (noc_aov aov = NOC_AOV_VARIANCE; aov <= NOC_AOV_ERROR; aov++)
+        if (asks(p, aov) && !p->accumulate)
+            return noc_error(log, NOC_ERR_ARGUMENT, "render: view \"%s\": frames must be accumulated", names[aov]);
+    return NOC_OK;
+}
+
+void noc_describe_aov(const noc_render_params *p, noc_aov aov, noc_channel *channel) {
+    static const struct { const char *title, *unit; noc_channel_scale scale; } kinds[NOC_AOV_COUNT] = {
+        [NOC_AOV_LIGHTS] = { "influence volumes that hold the point", "lights", NOC_CHANNEL_LINEAR },
+        [NOC_AOV_DENSITY] = { "candidates expected of the chosen light", "candidates", NOC_CHANNEL_LOG },
+        [NOC_AOV_LIGHT] = { "chosen light: each its own colour", "", NOC_CHANNEL_LABELS },
+        [NOC_AOV_WEIGHT] = { "W of the reservoir", "", NOC_CHANNEL_LOG },
+        [NOC_AOV_CONFIDENCE] = { "M of the reservoir [candidates]", "candidates", NOC_CHANNEL_LINEAR },
+        [NOC_AOV_RAYS] = { "shadow rays a pixel", "rays", NOC_CHANNEL_LINEAR },
+        [NOC_AOV_VARIANCE] = { "variance of a frame [(cd/m\xb2)\xb2]", "(cd/m2)^2", NOC_CHANNEL_LOG },
+        [NOC_AOV_ERROR] = { "standard error of the mean, relative", "", NOC_CHANNEL_LOG },
+    };
+    channel->name = names[aov];
+    channel->unit = kinds[aov].unit;
+    channel->scale = kinds[aov].scale;
+    channel->title = kinds[aov].title;
+    if (aov == NOC_AOV_LIGHTS && p->candidates == NOC_CANDIDATES_LISTS)
+        channel->title = "entries of the tile list";
+}
