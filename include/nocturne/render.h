@@ -93,6 +93,9 @@ NOC_DEFAULT_PARAMS(noc_renderer_params, noc_renderer_default_params, NOC_RENDERE
 NOC_API noc_renderer *noc_renderer_create(const noc_scene *scene, const noc_renderer_params *params, noc_log *log);
 NOC_API void noc_renderer_destroy(noc_renderer *renderer);
 
+/* Everything about params that noc_renderer_frame would refuse, as one reported error: to be asked before long work. */
+NOC_API noc_status noc_render_check(const noc_render_params *params, noc_log *log);
+
 /* Renders one frame; NULL params are the defaults. History and accumulation start anew when size, method or any other
  * parameter changes; accumulation also when the camera moves (history then reprojects). progress may be NULL; when it
  * cancels, the frame is dropped, what was accumulated stays, and NOC_ERR_CANCELLED is returned. */

@@ -8,12 +8,15 @@
 #define TEXT(n, g, f, u, h) { n, g, NOC_OPTION_TEXT, offsetof(A, f), 0, 0, NULL, u, h }
 static const noc_option own_options[] = {
     TEXT("output", "Output", output, "FILE", "picture to write: .png as displayed, .exr linear in cd/m2"),
+    { "show", "Output", NOC_OPTION_CHOICE, offsetof(A, show), 0, 0,
+      "picture|lights|density|light|weight|confidence|rays|variance|error", "", "what is written: the picture, or how lights were sampled" },
+    TEXT("show-range", "Output", show_range, "LOW,HIGH", "ends of that view's colour bar; else found from its numbers"),
     { "frames", "Output", NOC_OPTION_INT, offsetof(A, frames), 1, 1e9, NULL, "", "frames that are rendered and averaged" },
     { "time", "Output", NOC_OPTION_REAL, offsetof(A, time), 0, 1e9, NULL, "s",
       "render for about this long instead; 0 = no limit" },
     { "stats", "Output", NOC_OPTION_BOOL, offsetof(A, stats), 0, 1, NULL, "", "print times by pass, rays and the trace floor" },
     { "threads", "Output", NOC_OPTION_INT, offsetof(A, threads), 0, 1024, NULL, "", "threads; 0 = one a core" },
-    { "view", "Camera", NOC_OPTION_CHOICE, offsetof(A, view), 0, 0, "street|aerial|overview", "", "camera derived from the city" },
+    { "view", "Camera", NOC_OPTION_CHOICE, offsetof(A, view), 0, 0, "street|aerial|overview|own", "", "camera derived from the city; own: the scene's, else street" },
     TEXT("eye", "Camera", eye, "X,Y,Z", "place of the camera, metres in the scene's local frame, z up"),
     TEXT("target", "Camera", target, "X,Y,Z", "what it looks at"),
     TEXT("camera-crs", "Camera", camera_crs, "CRS", "eye and target are easting,northing,height in this CRS; \"scene\": the scene's"),
@@ -27,24 +30,28 @@ static const noc_option *options(void) { return own_options; }
 static int run(void *arguments);
 
 static const render_args defaults = {
-    .frames = 32, .view = NOC_VIEW_STREET, .exposure = "auto",
+    .frames = 32, .view = NOC_VIEW_OWN, .exposure = "auto",
     .render = noc_render_default_params(), .display = noc_display_default_params(),
-    .import = noc_import_default_params(), .city = noc_city_default_params(),
+    .import = noc_import_default_params(), .builtin = noc_builtin_default_params(),
 };
 static const char *const by_exposure[] = { "auto-exposure", "ev100", NULL }; /* --exposure says both */
 
 const cli_command cli_render = {
-    "render", "INPUT... -o FILE", "Draws a city at night. Inputs (cities, meshes, lamps; builtin:city) make one scene.",
+    "render", "INPUT... -o FILE", "Draws a city at night. Inputs (cities, meshes, lamps, builtin:NAME) make one scene.",
     "Examples\n"
     "  nocturne render builtin:city -o night.png\n"
+    "  nocturne render builtin:mess --lights 100000 -o mess.png\n"
     "  nocturne render city.gml lamps.geojson --view aerial --size 1920x1080 -o city.png\n"
+    "  nocturne render builtin:city --candidates bvh --show lights -o lights.png\n"
     "  nocturne render city.gml --method reference --frames 64 --sky 0 -o reference.exr\n"
+    "Built-in scenes are builtin:city, cityscape, mess, single and atrium.\n"
     "Ctrl-C saves the picture so far and ends with status 130; a second one ends at once.\n",
     { { options, 0, NULL },
       { noc_render_options, offsetof(A, render), NULL },
       { noc_display_options, offsetof(A, display), by_exposure },
       { noc_import_options, offsetof(A, import), NULL },
-      { noc_city_options, offsetof(A, city), NULL },
+      { noc_city_options, offsetof(A, builtin.city), NULL },
+      { noc_builtin_options, offsetof(A, builtin), NULL },
       { cli_common_options, 0, NULL } },
     sizeof(render_args), &defaults, run,
 };
@@ -73,13 +80,13 @@ int cli_parse_exposure(const cli_command *command, const char *text, noc_display
     return CLI_OK;
 }
 
-static int check_city(const render_args *args) {
-    for (size_t i = 0; i < args->common.input_count; i++)
-        if (!strcmp(args->common.inputs[i], "builtin:city"))
-            return CLI_OK;
-    for (const noc_option *o = noc_city_options(); o->name; o++)
-        if (cli_given(&args->common, o->name))
-            return cli_usage(&cli_render, "--%s is for the input builtin:city", o->name);
+static int check_builtin(const render_args *args) {
+    for (size_t i = 0; i < args->common.given_count; i++) {
+        const noc_option *o = args->common.given[i];
+        const char *needed = cli_builtin_needed(o, args->common.inputs, args->common.input_count);
+        if (needed)
+            return cli_usage(&cli_render, "--%s is for the input %s", o->name, needed);
+    }
     return CLI_OK;
 }
 
@@ -90,34 +97,18 @@ static int check(render_job *job) {
         return cli_usage(&cli_render, "nothing to draw: name a city model, or builtin:city");
     if (!args->output)
         return cli_usage(&cli_render, "where to? -o night.png");
-    int status = check_city(args);
+    int status = check_builtin(args);
     status = status ? status : parse_size(args);
     status = status ? status : cli_parse_exposure(&cli_render, args->exposure, &args->display);
     status = status ? status : cli_parse_camera(job);
+    status = status ? status : cli_parse_show(args);
     return status ? status : cli_check_output(&cli_render, args->output, CLI_PNG | CLI_EXR, &args->common);
 }
 
-/* The built-in city takes its own options, so it is added here; the rest is loaded onto it. */
 static noc_status load(render_job *job) {
     render_args *args = job->args;
-    const char **files = cli_alloc(sizeof(char *) * args->common.input_count);
-    size_t count = 0;
-    noc_status status = NOC_OK;
-    bool city = false;
-    for (size_t i = 0; i < args->common.input_count && !status; i++) {
-        if (strcmp(args->common.inputs[i], "builtin:city")) {
-            files[count++] = args->common.inputs[i];
-        } else if (!city) {
-            city = true;
-            cli_progress_show(0, -1, "building the city");
-            status = noc_scene_add_city(job->scene, &args->city);
-        }
-    }
     args->import.progress = (noc_progress){ cli_load_progress, NULL };
-    if (!status)
-        status = count ? noc_scene_load(job->scene, files, count, &args->import, &job->report) : noc_scene_commit(job->scene);
-    free(files);
-    cli_progress_clear();
+    noc_status status = cli_load_scene(job->scene, args->common.inputs, args->common.input_count, &args->builtin, &args->import, &job->report);
     noc_scene_get_info(job->scene, &job->scene_info);
     job->loaded = cli_now();
     if (!status && args->common.verbose)
@@ -177,7 +168,7 @@ static bool is_failure(noc_status status) { return status && !(status == NOC_ERR
  * touched, so it costs addresses only. */
 static noc_status reserve(render_job *job) {
     const noc_render_params *p = &job->args->render;
-    size_t bytes = (size_t)p->width * (size_t)p->height * 20 + ((size_t)8 << 20);
+    size_t bytes = (size_t)p->width * (size_t)p->height * (job->args->show ? 32 : 20) + ((size_t)8 << 20);
     job->room = malloc(bytes);
     if (job->room)
         return NOC_OK;
@@ -240,6 +231,7 @@ static int run(void *arguments) {
     cli_progress_clear();
     free(job.room);
     noc_image_destroy(job.image);
+    noc_channel_destroy(job.view);
     noc_renderer_destroy(job.renderer);
     noc_report_destroy(job.report);
     noc_scene_destroy(job.scene);

@@ -11,6 +11,9 @@ typedef struct render_args {
     double time;             /* s; 0: no limit */
     int threads;
     bool stats;
+    int show;                /* 0: the picture, else 1 + noc_aov */
+    const char *show_range;
+    noc_channel_params range;
     int view;                /* noc_view */
     const char *eye, *target, *camera_crs;
     double fov;              /* 0: not given */
@@ -18,7 +21,7 @@ typedef struct render_args {
     noc_render_params render;
     noc_display_params display;
     noc_import_params import;
-    noc_city_params city;
+    noc_builtin_params builtin;
 } render_args;
 
 /* One run of the command: inputs to picture. */
@@ -29,6 +32,7 @@ typedef struct render_job {
     noc_scene *scene;
     noc_renderer *renderer;
     noc_image *image;
+    noc_channel *view;        /* --show */
     void *room;               /* memory that the picture and its file will take, held while frames are rendered */
     noc_camera camera;
     bool far_away;            /* the camera is, and it was said */
@@ -44,6 +48,11 @@ typedef struct render_job {
 /* camera.c */
 int cli_parse_camera(render_job *job);      /* --eye, --target: checked before the long work */
 noc_status cli_place_camera(render_job *job); /* once the scene is there */
+
+/* show.c */
+int cli_parse_show(render_args *args);
+noc_status cli_write_view(render_job *job, const noc_image_meta *meta);
+void cli_print_view(const render_job *job);
 
 /* report.c */
 void cli_print_summary(const render_job *job);

@@ -19,7 +19,8 @@ static void add_options(meta_text *meta, const render_args *args) {
     for (const cli_set *set = cli_render.sets; set->table; set++) {
         for (const noc_option *o = set->table(); o->name; o++) {
             static const char *const told_otherwise[] = { "output", "view", "eye", "target", "camera-crs", "fov", "stats", "frames",
-                                                          "size", "exposure", "time", "threads", "quiet", "verbose", "help", NULL };
+                                                          "size", "exposure", "time", "threads", "show", "show-range", "quiet",
+                                                          "verbose", "help", NULL };
             if (cli_hidden(set, o) || cli_hidden(&(cli_set){ .hidden = told_otherwise }, o))
                 continue;
             const void *params = (const char *)args + set->offset;
@@ -75,8 +76,11 @@ noc_status cli_write_picture(render_job *job) {
     add(&meta, "scene-origin", cli_format("%.12g %.12g %.12g", job->scene_info.origin[0], job->scene_info.origin[1],
                                           job->scene_info.origin[2]));
     add_options(&meta, args);
-    noc_status status = noc_image_write(job->image, args->output, &args->display,
-        &(noc_image_meta){ meta.count, (const char *const *)meta.keys, (const char *const *)meta.values }, job->log);
+    if (args->show)
+        add(&meta, "show", cli_format("%s", noc_aov_name((noc_aov)(args->show - 1))));
+    noc_image_meta texts = { meta.count, (const char *const *)meta.keys, (const char *const *)meta.values };
+    noc_status status = args->show ? cli_write_view(job, &texts)
+                                   : noc_image_write(job->image, args->output, &args->display, &texts, job->log);
     for (size_t i = 0; i < meta.count; i++) {
         free(meta.keys[i]);
         free(meta.values[i]);
@@ -177,6 +181,8 @@ void cli_print_summary(const render_job *job) {
            job->frames == 1 ? "" : "s", choice_name("method", &args->render, name, sizeof(name)),
            is_exr(args->output) ? "linear cd/m2, automatic exposure would be " : "exposure ",
            is_exr(args->output) ? auto_ev100(job) : ev100(job));
+    if (job->view)
+        cli_print_view(job);
     printf("  scene     %s triangles, %s lights", cli_count(a, scene->triangles), cli_count(b, scene->lights));
     if (scene->lights_inferred)
         printf(" (%s placed by a rule, not found in data)", cli_count(c, scene->lights_inferred));

@@ -75,8 +75,7 @@ typedef struct noc_backend {
 extern const noc_backend noc_backend_embree;
 
 /* frame.c */
-/* Everything of a params struct and a camera that can be wrong, as one reported error. */
-noc_status noc_check_render_params(const noc_render_params *params, noc_log *log);
+/* Everything of a camera that can be wrong, as one reported error. */
 noc_status noc_check_camera(const noc_camera *camera, noc_log *log);
 void noc_make_frame_camera(const noc_camera *camera, const noc_render_params *params, uint32_t frame,
                            noc_frame_camera *out);

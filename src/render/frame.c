@@ -8,7 +8,7 @@ static noc_status wrong(noc_log *log, const char *name, double value, const char
     return noc_error(log, NOC_ERR_ARGUMENT, "render: %s is %g, must be %s", name, value, right);
 }
 
-noc_status noc_check_render_params(const noc_render_params *p, noc_log *log) {
+noc_status noc_render_check(const noc_render_params *p, noc_log *log) {
     const struct {
         const char *name;
         double value, min, max;

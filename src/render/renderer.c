@@ -128,7 +128,7 @@ static noc_status run_frame(noc_renderer *r, const noc_camera *camera, const noc
 }
 
 static noc_status check(noc_renderer *r, const noc_camera *camera, const noc_render_params *params) {
-    noc_status status = noc_check_render_params(params, r->log);
+    noc_status status = noc_render_check(params, r->log);
     return status == NOC_OK ? noc_check_camera(camera, r->log) : status;
 }
 
