@@ -123,6 +123,15 @@ uint32_t noc_embree_free(embree_state *s, worker *w, const rayblock *rays, uint3
     return trace_free(s, rays, valid);
 }
 
+void noc_embree_free_many(embree_state *s, worker *w, segment_block *blocks, int count) {
+    float *counts = w->rays;
+    for (int i = 0; i < count; i++) {
+        w->rays = blocks[i].counts;
+        blocks[i].clear = noc_embree_free(s, w, &blocks[i].rays, blocks[i].valid);
+    }
+    w->rays = counts;
+}
+
 /* The hit point from its triangle in doubles: in its plane to half a unit in the last place, however large the triangle.
  * o + t d would be off by the precision of t. */
 static void fill_hit(const noc_scene *scene, const struct RTCRayHit16 *h, int l, gblock *g) {

@@ -18,6 +18,14 @@ typedef struct packet {
     bool primary;
 } packet;
 
+/* Segments of 16 pixels to be traced together with those of other blocks. */
+typedef struct segment_block {
+    rayblock rays;
+    uint32_t light[BLOCK]; /* what each leads to: any number will do, equal ones are traced together */
+    uint32_t valid, clear; /* lanes to be traced; those of them that nothing blocks */
+    float *counts;         /* like worker.rays, or NULL */
+} segment_block;
+
 /* One a thread; a multiple of a cache line apart. */
 typedef struct worker {
     ALIGNED double seconds[NOC_PASS_COUNT];
@@ -39,6 +47,7 @@ typedef struct view_buffers {
     float (*made[NOC_AOV_COUNT])[BLOCK], (*kept[NOC_AOV_COUNT])[BLOCK];
     uint32_t asked, held; /* bits: buffers that the frame being made works on, that a complete frame has left */
     uint64_t frames;      /* in the moments of the luminance */
+    int gbuffer;          /* of the last complete frame */
 } view_buffers;
 
 /* Buffers of one picture; every array has an entry a block. */
@@ -101,6 +110,9 @@ noc_status noc_embree_build(embree_state *s);
 void noc_embree_release(embree_state *s);
 /* Traces the segments of `valid`; returns the lanes that nothing blocks. Counts, and keeps them when recording. */
 uint32_t noc_embree_free(embree_state *s, worker *w, const rayblock *rays, uint32_t valid);
+/* The segments of many blocks, of a tile for instance, traced side by side where their lights are the same. Each answer is
+ * that of noc_embree_free, so neither order nor company matters. Their pixels' ray counts go where each block says. */
+void noc_embree_free_many(embree_state *s, worker *w, segment_block *blocks, int count);
 /* Nearest hits of camera rays into a block; lanes outside `valid` see nothing. */
 void noc_embree_primary(embree_state *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g);
 double noc_embree_replay(embree_state *s);
