@@ -83,8 +83,8 @@ NOC_API size_t noc_report_file_count(const noc_report *report);
 NOC_API const noc_report_file *noc_report_get_file(const noc_report *report, size_t index);
 NOC_API void noc_report_destroy(noc_report *report);
 
-/* Loads all paths into the scene as one, stands the lamps on the ground, and commits. "builtin:city" is the procedural
- * city. On failure the scene must be destroyed. *report may be NULL; where given it is set even on failure (possibly NULL). */
+/* Loads all paths into the scene as one, stands the lamps on the ground, and commits. "builtin:NAME" is the built-in
+ * scene of that name. On failure the scene must be destroyed. *report may be NULL; where given it is set even on failure (possibly NULL). */
 NOC_API noc_status noc_scene_load(noc_scene *scene, const char *const *paths, size_t path_count,
                                   const noc_import_params *params, noc_report **report);
 

@@ -35,6 +35,7 @@ NOC_API const noc_option *noc_render_options(void);  /* fields of noc_render_par
 NOC_API const noc_option *noc_display_options(void); /* fields of noc_display_params */
 NOC_API const noc_option *noc_import_options(void);  /* fields of noc_import_params */
 NOC_API const noc_option *noc_city_options(void);    /* fields of noc_city_params */
+NOC_API const noc_option *noc_builtin_options(void); /* fields of noc_builtin_params, but for the city's */
 
 /* Sets one field from text. value is NULL for a bare bool; NOC_ERR_ARGUMENT, reported with the option's name, the text
  * and what would be right. For BOOL, "true/false/on/off/yes/no/1/0". */

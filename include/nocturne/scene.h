@@ -123,10 +123,15 @@ typedef struct noc_camera {
 
 #define noc_camera_default() ((noc_camera){ .up = { 0, 0, 1 }, .fov_deg = 50 })
 
-typedef enum noc_view { NOC_VIEW_STREET, NOC_VIEW_AERIAL, NOC_VIEW_OVERVIEW } noc_view;
+typedef enum noc_view { NOC_VIEW_STREET, NOC_VIEW_AERIAL, NOC_VIEW_OVERVIEW, NOC_VIEW_OWN } noc_view;
+
+/* The camera that a scene comes with: built-in scenes and glTF files may set one, and the first one stays. The eye must not
+ * be the target, fov_deg is within 1..170. */
+NOC_API noc_status noc_scene_set_camera(noc_scene *scene, const noc_camera *camera);
 
 /* A camera derived from the city: street stands at eye height in open ground near lamps and looks along it, aerial flies
- * over the roofs, overview sees the whole extent. aspect = width / height of the picture. */
+ * over the roofs, overview sees the whole extent; own is the one that the scene comes with, street where it has none.
+ * aspect = width / height of the picture. */
 NOC_API noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect, noc_camera *camera);
 
 /* The built-in procedural night city. The same seed and size give the same city on every machine. NULL params are the
@@ -145,6 +150,30 @@ NOC_DEFAULT_PARAMS(noc_city_params, noc_city_default_params, NOC_CITY_DEFAULTS)
 #endif
 
 NOC_API noc_status noc_scene_add_city(noc_scene *scene, const noc_city_params *params);
+
+/* Built-in scenes, each with a camera of its own but the city. The last four are of the character of those that Gardishyan
+ * (2025, section 5.2) compares light sampling on: cityscape is some streets under strings of coloured lights, mess is small
+ * coloured lights on and among many objects, single is one detailed object by one light, atrium a courtyard of many
+ * triangles by one light. Equal params give equal scenes on every machine. */
+typedef struct noc_builtin_params {
+    noc_city_params city; /* of city */
+    uint32_t seed;        /* of cityscape and mess */
+    int lights;           /* of mess: how many, 1..1000000 */
+} noc_builtin_params;
+
+#define NOC_BUILTIN_DEFAULTS(set) set(seed, 1) set(lights, 3000)
+#ifdef __cplusplus
+#define NOC_BUILTIN_ALL_DEFAULTS(set) set(city, noc_city_default_params()) NOC_BUILTIN_DEFAULTS(set)
+NOC_DEFAULT_PARAMS(noc_builtin_params, noc_builtin_default_params, NOC_BUILTIN_ALL_DEFAULTS)
+#else
+#define noc_builtin_default_params() \
+    ((noc_builtin_params){ .city = { NOC_CITY_DEFAULTS(NOC_DEFAULT_IN_C) }, NOC_BUILTIN_DEFAULTS(NOC_DEFAULT_IN_C) })
+#endif
+
+/* Their names, NULL-ended: "city", "cityscape", "mess", "single", "atrium". */
+NOC_API const char *const *noc_builtin_names(void);
+/* Adds the scene of that name; params may be NULL for the defaults. An unknown name is NOC_ERR_ARGUMENT. */
+NOC_API noc_status noc_scene_add_builtin(noc_scene *scene, const char *name, const noc_builtin_params *params);
 
 #ifdef __cplusplus
 }

@@ -1,4 +1,4 @@
-/* The built-in night city: noc_scene_add_city. See town.h for how it is made. */
+/* The built-in night city: noc_scene_add_city, and the streets of the cityscape. See town.h for how it is made. */
 #include "city/city.h"
 #include "city/town.h"
 
@@ -262,9 +262,7 @@ static void belt(town *t) {
     town_flush(t, "belt");
 }
 
-noc_status noc_scene_add_city(noc_scene *scene, const noc_city_params *params) {
-    noc_city_params defaults = noc_city_default_params();
-    params = params ? params : &defaults;
+noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dress)(town *t)) {
     if (!(params->size >= 150 && params->size <= 5000))
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "city: size %g m is not in 150..5000 m", params->size);
     if (!(params->lit_windows >= 0 && params->lit_windows <= 1))
@@ -286,6 +284,8 @@ noc_status noc_scene_add_city(noc_scene *scene, const noc_city_params *params) {
             cell_build(t, i, j, &id);
     diagonal_markings(t);
     belt(t);
+    if (dress)
+        dress(t);
     double edge = 0.5 * params->size;
     const double rim[12] = { -edge, -edge, 0.05, edge, -edge, 0.05, edge, edge, 0.05, -edge, edge, 0.05 };
     city_add_surroundings(scene, rim, 4, t->material[TM_LAWN]);
@@ -298,4 +298,9 @@ noc_status noc_scene_add_city(noc_scene *scene, const noc_city_params *params) {
         array_free(&t->axis[k].gaps);
     free(t);
     return failed ? NOC_ERR_ARGUMENT : NOC_OK; /* what failed was reported where it did */
+}
+
+noc_status noc_scene_add_city(noc_scene *scene, const noc_city_params *params) {
+    noc_city_params defaults = noc_city_default_params();
+    return town_build(scene, params ? params : &defaults, NULL);
 }

@@ -1,4 +1,4 @@
-/* town: the built-in city's own parts. Nothing outside procedural*.c uses this.
+/* town: the built-in city's own parts. Nothing outside procedural*.c uses this, but its random numbers and sines.
  *
  * The city is planned on a flat sheet: straight streets between convex blocks. Every point of the plan then goes through a
  * gentle warp, so that streets bend and no two blocks are alike. Walls stand on warped corners, so they stay plane.
@@ -80,6 +80,9 @@ typedef struct town {
 } town;
 
 enum { LIGHT_SODIUM, LIGHT_CANDLE, LIGHT_WARM, LIGHT_WHITE, LIGHT_NEUTRAL, LIGHT_COOL, LIGHT_SCREEN };
+
+/* Builds the city into the scene; dress, where not NULL, adds to it when all else is there. */
+noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dress)(town *t));
 
 vec2 town_warp(const town *t, vec2 plan); /* plan to world */
 

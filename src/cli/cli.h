@@ -76,6 +76,14 @@ void cli_catch_signals(void);  /* the first signal is remembered, the second end
 int cli_interrupted(void);     /* its number, 0 if there was none */
 double cli_now(void);          /* wall clock, seconds */
 
+/* builtin.c */
+const char *cli_builtin(const char *input); /* name of the built-in scene that an input is, NULL for a file */
+/* The input that an option is for and that is not there, for the message; NULL if nothing is wrong. */
+const char *cli_builtin_needed(const noc_option *option, const char *const *inputs, size_t count);
+/* All inputs as one committed scene. report may be NULL. */
+noc_status cli_load_scene(noc_scene *scene, const char *const *inputs, size_t count, const noc_builtin_params *builtin,
+                          const noc_import_params *import, noc_report **report);
+
 /* render.c: --exposure, which compare takes too */
 int cli_parse_exposure(const cli_command *command, const char *text, noc_display_params *display);
 

@@ -17,7 +17,7 @@ typedef struct experiment_scene {
     const char **inputs; /* files: as seen from the working folder */
     size_t input_count;
     noc_import_params import;
-    noc_city_params city;
+    noc_builtin_params builtin;
 } experiment_scene;
 
 typedef struct experiment_camera {

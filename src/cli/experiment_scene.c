@@ -59,25 +59,9 @@ static int hash_file(hash_state *hash, const char *path) {
 
 int experiment_load_scene(experiment_lab *lab, size_t index) {
     experiment_scene *scene = &lab->spec.scenes[index];
-    const char **files = cli_alloc(sizeof(char *) * scene->input_count);
-    size_t count = 0;
-    bool city = false;
-    noc_status status = NOC_OK;
     lab->scene = noc_scene_create(lab->log);
-    for (size_t i = 0; i < scene->input_count && lab->scene && !status; i++) {
-        if (strcmp(scene->inputs[i], "builtin:city")) {
-            files[count++] = scene->inputs[i];
-        } else if (!city) {
-            city = true;
-            cli_progress_show(0, -1, "building the city");
-            status = noc_scene_add_city(lab->scene, &scene->city);
-        }
-    }
     scene->import.progress = (noc_progress){ cli_load_progress, NULL };
-    if (lab->scene && !status)
-        status = count ? noc_scene_load(lab->scene, files, count, &scene->import, NULL) : noc_scene_commit(lab->scene);
-    free(files);
-    cli_progress_clear();
+    noc_status status = lab->scene ? cli_load_scene(lab->scene, scene->inputs, scene->input_count, &scene->builtin, &scene->import, NULL) : NOC_ERR_MEMORY;
     if (!lab->scene || status)
         return cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_FAILURE;
     noc_scene_get_info(lab->scene, &lab->scene_infos[index]);
@@ -95,9 +79,8 @@ static int hash_view(const experiment_lab *lab, size_t index, hash_state *hash) 
     const noc_scene_info *info = &lab->scene_infos[index];
     hash_text(hash, noc_version());
     for (size_t i = 0; i < scene->input_count; i++) {
-        bool builtin = !strncmp(scene->inputs[i], "builtin:", 8);
         int status = CLI_OK;
-        if (builtin)
+        if (cli_builtin(scene->inputs[i]))
             hash_text(hash, scene->inputs[i]);
         else
             status = hash_file(hash, scene->inputs[i]);
@@ -105,7 +88,8 @@ static int hash_view(const experiment_lab *lab, size_t index, hash_state *hash) 
             return status;
     }
     hash_options(hash, noc_import_options(), &scene->import);
-    hash_options(hash, noc_city_options(), &scene->city);
+    hash_options(hash, noc_city_options(), &scene->builtin.city);
+    hash_options(hash, noc_builtin_options(), &scene->builtin);
     uint64_t counts[] = { info->triangles, info->vertices, info->meshes, info->materials, info->lights };
     hash_bytes(hash, counts, sizeof(counts));
     hash_bytes(hash, info->bounds_min, sizeof(info->bounds_min));

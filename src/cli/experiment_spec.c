@@ -55,7 +55,8 @@ static const cli_set reference_sets[] = {
 };
 static const cli_set scene_sets[] = {
     { noc_import_options, offsetof(experiment_scene, import), NULL },
-    { noc_city_options, offsetof(experiment_scene, city), NULL },
+    { noc_city_options, offsetof(experiment_scene, builtin.city), NULL },
+    { noc_builtin_options, offsetof(experiment_scene, builtin), NULL },
     { NULL }
 };
 static const cli_set camera_sets[] = { { camera_table, offsetof(experiment_camera, args), NULL }, { NULL } };
@@ -103,7 +104,7 @@ static const char *resolve(S *spec, const char *input) {
 }
 
 static int read_scene(S *spec, const char *place, json_t *object, experiment_scene *scene) {
-    *scene = (experiment_scene){ .import = noc_import_default_params(), .city = noc_city_default_params() };
+    *scene = (experiment_scene){ .import = noc_import_default_params(), .builtin = noc_builtin_default_params() };
     int status = set_all(spec, place, object, scene_sets, scene_others, scene);
     status = status ? status : read_name(spec, place, object, &scene->name);
     if (status)
@@ -111,20 +112,22 @@ static int read_scene(S *spec, const char *place, json_t *object, experiment_sce
     json_t *inputs = json_object_get(object, "inputs"), *input;
     size_t count = json_array_size(inputs), i;
     if (!count)
-        return experiment_wrong(spec, place, "inputs must be an array of files or builtin:city");
+        return experiment_wrong(spec, place, "inputs must be an array of files or builtin:NAME");
     scene->inputs = cli_alloc(sizeof(char *) * count);
     experiment_keep(spec, (char *)scene->inputs);
-    bool city = false;
     json_array_foreach(inputs, i, input) {
         const char *text = json_string_value(input);
         if (!text || !*text)
-            return experiment_wrong(spec, place, "inputs must be an array of files or builtin:city");
-        city |= !strcmp(text, "builtin:city");
+            return experiment_wrong(spec, place, "inputs must be an array of files or builtin:NAME");
         scene->inputs[scene->input_count++] = resolve(spec, text);
     }
-    for (const noc_option *o = noc_city_options(); o->name && !city; o++)
-        if (json_object_get(object, o->name))
-            return experiment_wrong(spec, place, "%s is for the input builtin:city", o->name);
+    const noc_option *const tables[] = { noc_city_options(), noc_builtin_options() };
+    for (size_t k = 0; k < 2; k++)
+        for (const noc_option *o = tables[k]; o->name; o++) {
+            const char *needed = json_object_get(object, o->name) ? cli_builtin_needed(o, scene->inputs, scene->input_count) : NULL;
+            if (needed)
+                return experiment_wrong(spec, place, "%s is for the input %s", o->name, needed);
+        }
     return CLI_OK;
 }
 

@@ -12,7 +12,7 @@ static const noc_option own_options[] = {
 static const noc_option *options(void) { return own_options; }
 static int run(void *arguments);
 
-static const info_args defaults = { .import = noc_import_default_params(), .city = noc_city_default_params() };
+static const info_args defaults = { .import = noc_import_default_params(), .builtin = noc_builtin_default_params() };
 /* Nothing is placed, so the rules for placing do not matter here. */
 static const char *const placing[] = { "scene-crs", "infer-lamps", "lamp-height", "lamp-lumens", "lamp-kelvin", NULL };
 
@@ -21,7 +21,7 @@ const cli_command cli_info = {
     "Examples\n"
     "  nocturne info city.gml lamps.geojson\n"
     "  nocturne info --json city.gml.gz\n",
-    { { options, 0, NULL }, { noc_import_options, offsetof(A, import), placing }, { noc_city_options, offsetof(A, city), NULL },
+    { { options, 0, NULL }, { noc_import_options, offsetof(A, import), placing }, { noc_city_options, offsetof(A, builtin.city), NULL }, { noc_builtin_options, offsetof(A, builtin), NULL },
       { cli_common_options, 0, NULL } },
     sizeof(info_args), &defaults, run,
 };
@@ -141,7 +141,7 @@ static void print_file(const noc_report_file *file) {
 
 static void print_scene(const char *name, const noc_scene_info *info) {
     char a[32], b[32];
-    printf("%s\n  %-11s built-in procedural city\n", name, "format");
+    printf("%s\n  %-11s built-in scene\n", name, "format");
     printf("  %-11s x %.2f to %.2f, y %.2f to %.2f, z %.2f to %.2f\n", "extent", info->bounds_min[0], info->bounds_max[0],
            info->bounds_min[1], info->bounds_max[1], info->bounds_min[2], info->bounds_max[2]);
     printf("  %-11s %s in %s meshes\n", "triangles", cli_count(a, info->triangles), cli_count(b, info->meshes));
@@ -153,9 +153,9 @@ static void print_scene(const char *name, const noc_scene_info *info) {
             printf("    %-13s %10s\n", kinds[i], cli_count(a, info->lights_by_kind[i]));
 }
 
-static noc_status inspect_city(const info_args *args, noc_log *log, noc_scene **scene) {
+static noc_status inspect_builtin(const info_args *args, const char *name, noc_log *log, noc_scene **scene) {
     *scene = noc_scene_create(log);
-    noc_status status = *scene ? noc_scene_add_city(*scene, &args->city) : NOC_ERR_MEMORY;
+    noc_status status = *scene ? noc_scene_add_builtin(*scene, name, &args->builtin) : NOC_ERR_MEMORY;
     return status ? status : noc_scene_commit(*scene);
 }
 
@@ -163,8 +163,8 @@ static noc_status inspect(const info_args *args, const char *path, noc_log *log,
     noc_report *report = NULL;
     noc_scene *scene = NULL;
     noc_status status;
-    if (!strcmp(path, "builtin:city"))
-        status = inspect_city(args, log, &scene);
+    if (cli_builtin(path))
+        status = inspect_builtin(args, cli_builtin(path), log, &scene);
     else
         status = noc_inspect(log, path, &args->import, &report);
     cli_progress_clear();

@@ -8,10 +8,10 @@ typedef struct info_args {
     cli_args common;
     bool json;
     noc_import_params import;
-    noc_city_params city;
+    noc_builtin_params builtin;
 } info_args;
 
-/* One input as a JSON object: an error, a report, or the scene of the built-in city; the others are NULL. */
+/* One input as a JSON object: an error, a report, or the built-in scene; the others are NULL. */
 void cli_info_json(const char *path, const char *error, const noc_report *report, const noc_scene_info *scene);
 
 #endif

@@ -123,7 +123,7 @@ void cli_info_json(const char *path, const char *error, const noc_report *report
     for (size_t i = 0; report && i < noc_report_file_count(report); i++)
         report_file(noc_report_get_file(report, i));
     if (scene) {
-        text("format", "built-in city");
+        text("format", "built-in scene");
         triple("extent_min", scene->bounds_min);
         triple("extent_max", scene->bounds_max);
         number("triangles", (double)scene->triangles);

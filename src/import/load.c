@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #define HEAD_SIZE 65536
-#define BUILTIN "builtin:city"
+#define BUILTIN "builtin:" /* and the name of a scene */
 
 static noc_status check_params(const noc_import_params *p, noc_log *log) {
     if (p->lod < 0 || p->lod > 4)
@@ -76,7 +76,7 @@ static noc_status open_status(const char *path) {
 }
 
 static noc_status recognise(importer *im, input *in, const noc_reader *const *readers) {
-    if (!strcmp(in->path, BUILTIN))
+    if (!strncmp(in->path, BUILTIN, strlen(BUILTIN)))
         return NOC_OK;
     noc_stream *stream = noc_stream_open(in->path, im->log);
     if (!stream)
@@ -160,9 +160,8 @@ static noc_status read_mesh(importer *im, input *in, noc_stream *stream) {
 
 static noc_status read_builtin(importer *im, input *in) {
     size_t triangles = im->scene->indices.len / 3, lights = im->scene->lights.len;
-    noc_city_params params = noc_city_default_params();
-    noc_status status = noc_scene_add_city(im->scene, &params);
-    in->file.format = "built-in city";
+    noc_status status = noc_scene_add_builtin(im->scene, in->path + strlen(BUILTIN), NULL);
+    in->file.format = "built-in scene";
     in->file.triangles = im->scene->indices.len / 3 - triangles;
     in->file.lights = im->scene->lights.len - lights;
     return status;

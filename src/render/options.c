@@ -84,10 +84,19 @@ static const noc_option city_options[] = {
 };
 #undef P
 
+#define P noc_builtin_params
+static const noc_option builtin_options[] = {
+    UINT(P, seed, "scene-seed", "Built-in scenes", "cityscape, mess: another number, another scene"),
+    INT(P, lights, "lights", "Built-in scenes", 1, 1000000, "", "mess: how many lights it has"),
+    END,
+};
+#undef P
+
 const noc_option *noc_render_options(void) { return render_options; }
 const noc_option *noc_display_options(void) { return display_options; }
 const noc_option *noc_import_options(void) { return import_options; }
 const noc_option *noc_city_options(void) { return city_options; }
+const noc_option *noc_builtin_options(void) { return builtin_options; }
 
 /* Messages quote what was given; a quote of pages helps nobody. */
 #define QUOTE "\"%.60s%s\""

@@ -389,14 +389,33 @@ static bool street(view_city *city, double aspect, noc_camera *camera) {
     return best > 0;
 }
 
+noc_status noc_scene_set_camera(noc_scene *scene, const noc_camera *camera) {
+    double along = 0, up = 0;
+    for (int k = 0; k < 3; k++) {
+        along += fabs(camera->target[k] - camera->eye[k]);
+        up += fabs(camera->up[k]);
+    }
+    if (!(along > 0 && along < 1e8 && up > 0 && isfinite(up) && camera->fov_deg >= 1 && camera->fov_deg <= 170))
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: it looks nowhere, or its field of view is not within 1 to 170 degrees");
+    if (scene->committed)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the scene is committed");
+    if (!(scene->own_camera.fov_deg > 0))
+        scene->own_camera = *camera;
+    return NOC_OK;
+}
+
 noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect, noc_camera *camera) {
     if (!(aspect > 0 && isfinite(aspect)))
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the aspect is %g, must be finite and more than 0", aspect);
     aspect = NOC_CLAMP(aspect, 0.01, 100); /* what slits of pictures see decides nothing */
-    if ((unsigned)view > NOC_VIEW_OVERVIEW)
+    if ((unsigned)view > NOC_VIEW_OWN)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: no view %d", (int)view);
     if (!noc_scene_city_triangles(scene))
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the scene is empty, so no view can be derived from it");
+    if (view == NOC_VIEW_OWN && scene->own_camera.fov_deg > 0) {
+        *camera = scene->own_camera;
+        return NOC_OK;
+    }
     view_city city = { .scene = scene };
     noc_camera c = noc_camera_default();
     city_bounds(&city);
@@ -404,7 +423,7 @@ noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect
     if (view == NOC_VIEW_AERIAL)
         aerial(&city, aspect, &c);
     /* a model with nowhere to stand is looked at from outside */
-    if (view == NOC_VIEW_OVERVIEW || (view == NOC_VIEW_STREET && !street(&city, aspect, &c)))
+    if (view == NOC_VIEW_OVERVIEW || (view != NOC_VIEW_AERIAL && !street(&city, aspect, &c)))
         overview(&city, aspect, &c);
     array_free(&city.lights);
     *camera = c;

@@ -56,6 +56,7 @@ struct noc_scene {
     size_t triangles_dropped, lights_inferred;
     double bounds_min[3], bounds_max[3];
     uint32_t backdrop_first, backdrop_count; /* triangles around the city: drawn, but no part of it */
+    noc_camera own_camera; /* fov_deg 0: none */
     bool committed;
     struct noc_ground *ground;             /* built on first use of noc_scene_ground; freed with the scene */
 };
