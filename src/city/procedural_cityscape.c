@@ -10,7 +10,8 @@
 #define SAG 0.8
 #define BULB_APART 0.5
 #define BULB_RADIUS 0.045
-#define BULB_LUMENS 38.0
+#define BULB_LUMENS 70.0
+#define SPOT_LUMENS 2600.0
 
 static const float colours[][3] = { { 1, .06f, .03f }, { 1, .42f, .04f }, { 1, .80f, .18f }, { .10f, 1, .12f }, { .06f, .35f, 1 }, { .75f, .08f, .9f } };
 
@@ -61,6 +62,19 @@ static void string_of_lights(town *t, vec2 a, vec2 b, town_rng *rng) {
     }
 }
 
+/* A coloured floodlight at a post, turned to the fronts behind it: `out` leads away from the street. */
+static void spot(town *t, vec2 post, vec2 out, int colour) {
+    const double r = 0.09, z = TOWN_KERB + 3.1;
+    vec2 body[4], c = { post.x + 0.16 * out.x, post.y + 0.16 * out.y };
+    town_rect(c, out, 0.11, 0.1, body);
+    town_box(t, TM_METAL, body, z - 0.1, z + 0.1);
+    noc_light l = { .kind = NOC_LIGHT_DISC, .position = { c.x + 0.125 * out.x, c.y + 0.125 * out.y, z }, .direction = { out.x, out.y, 0.35 },
+                    .radius = r, .name = "coloured floodlight" };
+    for (int k = 0; k < 3; k++)
+        l.emission[k] = (float)(SPOT_LUMENS / (3.14159265358979 * 3.14159265358979 * r * r)) * colours[colour][k];
+    t->failed = t->failed || noc_scene_add_light(t->scene, &l) < 0;
+}
+
 static vec2 in_plan(int axis, double across, double along) {
     return axis == 0 ? (vec2){ across, along } : (vec2){ along, across };
 }
@@ -77,6 +91,8 @@ static void garland(town *t, int axis, const town_gap *street, double from, doub
             continue;
         }
         town_pole(t, TM_POLE, p, 6, 0.06, 0.045, TOWN_KERB, TOWN_KERB + POST_HEIGHT);
+        vec2 beyond = town_warp(t, in_plan(axis, side ? street->hi + 1.35 : street->lo - 1.35, s));
+        spot(t, p, (vec2){ beyond.x - p.x, beyond.y - p.y }, town_below(rng, (int)NOC_COUNT(colours)));
         if (linked)
             string_of_lights(t, last, p, rng);
         last = p;
@@ -97,8 +113,8 @@ static void dress(town *t) {
     town_flush(t, "party lights");
     const town_gap *avenue = &t->axis[0].gaps.data[1];
     double along = t->axis[1].gaps.data[1].lo + 3;
-    vec2 eye = town_warp(t, (vec2){ avenue->lo + 4.5, along - 52 }), target = town_warp(t, (vec2){ avenue->hi - 5, along });
-    noc_camera c = { .eye = { eye.x, eye.y, 2.3 }, .target = { target.x, target.y, 6.2 }, .up = { 0, 0, 1 }, .fov_deg = 58 };
+    vec2 eye = town_warp(t, (vec2){ avenue->lo + 2.2, along - 50 }), target = town_warp(t, (vec2){ avenue->hi - 1, along - 8 });
+    noc_camera c = { .eye = { eye.x, eye.y, 2.3 }, .target = { target.x, target.y, 5.4 }, .up = { 0, 0, 1 }, .fov_deg = 58 };
     t->failed = t->failed || noc_scene_set_camera(t->scene, &c) != NOC_OK;
 }
 

@@ -134,7 +134,7 @@ static vec3 cloth(const void *shape, double u, double v) {
 static void add_side(kit *k, const materials *m, int bays, vec3 from, double turns, int first_bay) {
     for (int s = 0; s < 2; s++)
         for (int i = 0; i < bays; i++) {
-            kit_place(k, from, turns, 1);
+            kit_place(k, from, turns, 1); /* for its axes */
             vec3 foot = add(add(from, scale(k->axis[0], i * BAY)), v3(0, 0, storeys[s].z));
             kit_place(k, foot, turns, 1);
             column(k, &storeys[s]);
@@ -151,6 +151,11 @@ static void add_side(kit *k, const materials *m, int bays, vec3 from, double tur
                 drape d = { .width = 1.7, .length = 3.4, .phase = 0.37 * (i + first_bay) };
                 kit_patch(k, 48, 30, cloth, &d);
                 kit_flush(k, m->cloth[(i + first_bay) / 3 % 3], "cloth");
+                const double rod = -PIER - 0.3, z = GROUND + 0.93; /* before the balustrade's rail, on two brackets */
+                kit_box(k, v3(0.4, rod - 0.015, z), v3(BAY - 0.4, rod + 0.015, z + 0.03));
+                for (int end = 0; end < 2; end++)
+                    kit_box(k, v3(end ? BAY - 0.52 : 0.5, rod, z - 0.02), v3(end ? BAY - 0.5 : 0.52, -0.1, z));
+                kit_flush(k, m->iron, "rod");
             }
         }
 }

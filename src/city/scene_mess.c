@@ -146,16 +146,21 @@ static vec3 pick_place(const noc_scene *s, const area_table *t, const object *o,
     return at;
 }
 
-/* A light that stands on a surface at p with normal n. Flat ones stand upright on an edge and shine along the surface. */
+/* A light that stands on a surface at p with normal n. Flat ones lean back on their lower edge and shine over the surface. */
 static noc_light stand(noc_light_kind kind, vec3 p, vec3 n, double r, town_rng *rng) {
     noc_light l = { .kind = kind, .radius = r, .name = "light" };
     vec3 any = unit(v3(town_range(rng, -1, 1), town_range(rng, -1, 1), town_range(rng, -1, 1)));
     vec3 side = cross(n, any);
     side = dot(side, side) > 1e-6 ? unit(side) : unit(cross(n, v3(n.y, n.z, n.x + 1)));
-    vec3 face = cross(side, n), at = add(p, scale(n, kind == NOC_LIGHT_SPHERE || kind == NOC_LIGHT_DISC ? 1.02 * r : 0.02 * r));
-    if (kind == NOC_LIGHT_TRIANGLE || kind == NOC_LIGHT_PARALLELOGRAM)
+    vec3 rise = add(scale(n, 0.6), scale(cross(n, side), 0.8)), face = cross(side, rise); /* 53 degrees off upright */
+    vec3 at = add(p, scale(n, 0.05 * r));
+    if (kind == NOC_LIGHT_SPHERE)
+        at = add(p, scale(n, 1.02 * r));
+    else if (kind == NOC_LIGHT_DISC)
+        at = add(at, scale(rise, r));
+    else
         at = sub(at, scale(side, r));
-    vec3 u = scale(side, 2 * r), v = kind == NOC_LIGHT_TRIANGLE ? add(scale(side, r), scale(n, 2 * r)) : scale(n, 2 * r);
+    vec3 u = scale(side, 2 * r), v = kind == NOC_LIGHT_TRIANGLE ? add(scale(side, r), scale(rise, 2 * r)) : scale(rise, 2 * r);
     memcpy(l.position, &at, sizeof(l.position));
     memcpy(l.direction, &face, sizeof(l.direction));
     memcpy(l.edge_u, &u, sizeof(l.edge_u));

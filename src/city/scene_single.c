@@ -35,7 +35,7 @@ noc_status scene_single(noc_scene *scene, const noc_builtin_params *params) {
     static const double plinth[][2] = { { 0, 0 }, { 1.25, 0 }, { 1.25, 0.12 }, { 1.08, 0.2 }, { 0.98, 0.26 }, { 0.98, 0.62 }, { 1.06, 0.68 },
                                         { 1.16, 0.74 }, { 1.16, 0.84 }, { 0, 0.84 } };
     kit k = kit_start(scene);
-    kit_patch(&k, 2, 48, backdrop, NULL);
+    kit_patch(&k, 2, 200, backdrop, NULL);
     kit_flush(&k, kit_material(&k, .55f, .54f, .52f, 0, 1), "backdrop");
     kit_turned(&k, 96, (int)NOC_COUNT(plinth) - 1, &(kit_lathe){ .profile = plinth, .count = (int)NOC_COUNT(plinth) });
     kit_flush(&k, kit_material(&k, .26f, .27f, .30f, .04f, .45f), "plinth");
@@ -43,7 +43,7 @@ noc_status scene_single(noc_scene *scene, const noc_builtin_params *params) {
     k.axis[0] = v3(0.94, 0.3, 0);
     k.axis[1] = v3(0, 0, 0.987);
     k.axis[2] = v3(0.3, -0.94, 0);
-    kit_knotted(&k, 480, 48, &(kit_knot){ .p = 2, .q = 3, .lobes = 5, .twist = 7, .ribs = 96, .ring = 0.42, .tube = 0.2 });
+    kit_knotted(&k, 720, 64, &(kit_knot){ .p = 2, .q = 3, .lobes = 5, .twist = 7, .ribs = 96, .ring = 0.42, .tube = 0.2 });
     kit_flush(&k, kit_material(&k, .52f, .30f, .14f, .04f, .35f), "knot");
     kit_place(&k, v3(0, 0, 0), 0, 1);
     lamp(&k, v3(-3.6, -3.0, 5.6), v3(0, 0, 1.9), 0.55, 2600);
