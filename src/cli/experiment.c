@@ -96,50 +96,50 @@ static int open_folders(experiment_lab *lab) {
     return experiment_open_table(lab);
 }
 
+/* What pictures take is asked for before the work: the reference, one frame, their mean, and the file of one. It is not
+ * touched yet, so it costs addresses only. */
+static int reserve(experiment_lab *lab) {
+    size_t pixels = (size_t)lab->spec.width * (size_t)lab->spec.height, others = pixels * 4 * 20;
+    lab->sum = malloc(sizeof(double) * 3 * pixels);
+    void *room = lab->sum ? malloc(others) : NULL;
+    free(room);
+    if (room)
+        return CLI_OK;
+    char text[32];
+    cli_error("no memory for pictures of %d x %d (%s)", lab->spec.width, lab->spec.height, cli_bytes(text, sizeof(double) * 3 * pixels + others));
+    return CLI_FAILURE;
+}
+
 static void plan(experiment_lab *lab) {
     const experiment_spec *spec = &lab->spec;
-    lab->run_count = spec->scene_count * spec->camera_count * (size_t)spec->repetitions * spec->config_count;
+    lab->run_count = spec->camera_count * (size_t)spec->repetitions * spec->config_count;
     lab->runs = cli_alloc(sizeof(*lab->runs) * lab->run_count);
     lab->scene_infos = cli_alloc(sizeof(*lab->scene_infos) * spec->scene_count);
-    lab->crops = cli_alloc(sizeof(*lab->crops) * spec->scene_count * spec->camera_count);
-    lab->noises = cli_alloc(sizeof(*lab->noises) * spec->scene_count * spec->camera_count);
+    lab->crops = cli_alloc(sizeof(*lab->crops) * spec->camera_count);
+    lab->noises = cli_alloc(sizeof(*lab->noises) * spec->camera_count);
     for (size_t i = 0; i < lab->run_count; i++) {
         experiment_run *run = &lab->runs[i];
         size_t rest = i / spec->config_count;
         run->config = i % spec->config_count;
         run->repetition = (int)(rest % (size_t)spec->repetitions);
-        rest /= (size_t)spec->repetitions;
-        run->camera = rest % spec->camera_count;
-        run->scene = rest / spec->camera_count;
-        size_t frames = (size_t)spec->configs[run->config].frames;
-        for (int mode = 0; mode < EXPERIMENT_MODES; mode++) {
-            if (spec->accumulate != mode && spec->accumulate != EXPERIMENT_MODES)
-                continue;
-            run->rows[mode] = cli_alloc(sizeof(experiment_row) * frames);
-            lab->rows_total += frames;
-        }
+        run->camera = rest / (size_t)spec->repetitions;
     }
 }
 
 /* All runs under one camera of the present scene. */
-static int work_camera(experiment_lab *lab, size_t scene, size_t camera) {
+static int work_camera(experiment_lab *lab, size_t camera) {
     const experiment_spec *spec = &lab->spec;
-    int status = experiment_make_reference(lab, scene, camera);
-    experiment_run *runs = experiment_find_run(lab, scene, camera, 0, 0);
+    int status = experiment_make_reference(lab, camera);
+    experiment_run *runs = experiment_find_run(lab, camera, 0, 0);
     size_t count = (size_t)spec->repetitions * spec->config_count;
     for (size_t i = 0; !status && i < count; i++) {
         experiment_run_key(lab, &runs[i]);
         experiment_claim(lab, &runs[i]);
     }
-    for (size_t i = 0; !status && i < count; i++)
+    for (size_t i = 0; !status && i < count; i++, lab->runs_done++)
         status = experiment_measure(lab, &runs[i]);
     cli_progress_clear();
-    if (!status) {
-        char *slug = experiment_slug(lab, scene, camera), *name = cli_format("%s-first.png", slug);
-        status = experiment_make_crops(lab, scene, camera, name);
-        free(name);
-        free(slug);
-    }
+    status = status ? status : experiment_make_crops(lab, camera);
     noc_image_destroy(lab->reference);
     lab->reference = NULL;
     return status;
@@ -149,20 +149,23 @@ static int work(experiment_lab *lab) {
     const experiment_spec *spec = &lab->spec;
     int status = CLI_OK;
     lab->started = cli_now();
-    for (size_t scene = 0; !status && scene < spec->scene_count; scene++) {
-        status = experiment_load_scene(lab, scene);
-        for (size_t camera = 0; !status && camera < spec->camera_count; camera++)
-            status = cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : work_camera(lab, scene, camera);
-        noc_scene_destroy(lab->scene);
-        lab->scene = NULL;
+    for (size_t camera = 0; !status && camera < spec->camera_count; camera++) {
+        size_t scene = spec->cameras[camera].scene;
+        if (!lab->scene)
+            status = experiment_load_scene(lab, scene);
+        if (!status)
+            status = cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : work_camera(lab, camera);
+        if (status || camera + 1 == spec->camera_count || spec->cameras[camera + 1].scene != scene) {
+            noc_scene_destroy(lab->scene);
+            lab->scene = NULL;
+        }
     }
     if (status > CLI_INTERRUPTED)
-        cli_error("interrupted: %zu of %zu rows are in %s/results.csv; the same command goes on there", lab->rows_done,
-                  lab->rows_total, lab->folder);
+        cli_error("interrupted: %zu rows are in %s/results.csv; the same command goes on there", lab->rows_done, lab->folder);
     status = status ? status : experiment_tidy_table(lab);
     status = status ? status : experiment_write_report(lab);
     if (!status && !lab->args->common.quiet)
-        printf("%s/report.md: %zu rows, %zu of them made now\n", lab->folder, lab->rows_total, lab->rows_total - lab->rows_old);
+        printf("%s/report.md: %zu rows, %zu of them made now\n", lab->folder, lab->rows_done, lab->rows_done - lab->rows_old);
     return status;
 }
 
@@ -180,6 +183,7 @@ static int finish(experiment_lab *lab, int status) {
     free(lab->crops);
     free(lab->noises);
     free(lab->stored);
+    free(lab->sum);
     free(lab->folder);
     free(lab->cache);
     if (lab->lock >= 0)
@@ -197,7 +201,8 @@ static int run(void *arguments) {
         cli_progress_start(lab.args->common.quiet);
         lab.log = cli_log_create(&lab.args->common);
         plan(&lab);
-        status = open_folders(&lab);
+        status = reserve(&lab);
+        status = status ? status : open_folders(&lab);
         status = finish(&lab, status ? status : work(&lab));
         noc_log_destroy(lab.log);
     }

@@ -4,7 +4,7 @@
 
 #include "render.h"
 
-enum { EXPERIMENT_KEY = 33, EXPERIMENT_TIMES = 8, EXPERIMENT_ROWS = 1000000 };
+enum { EXPERIMENT_KEY = 33, EXPERIMENT_TIMES = 8, EXPERIMENT_POINTS = 6, EXPERIMENT_VALUES = 32, EXPERIMENT_FRAMES = 100000, EXPERIMENT_ROWS = 1000000 };
 
 typedef struct experiment_args {
     cli_args common;
@@ -20,17 +20,35 @@ typedef struct experiment_scene {
     noc_builtin_params builtin;
 } experiment_scene;
 
-typedef struct experiment_camera {
-    const char *name;
+/* Where a camera stands: a view derived from the scene, or eye and target. */
+typedef struct experiment_pose {
     render_args args; /* view, eye, target, camera-crs, fov */
     double eye[3], target[3];
+} experiment_pose;
+
+/* A camera of one scene. One that moves arrives at its pose in its last frame, which is the one that is measured: so one
+ * reference serves the camera at rest and all motions that end there. */
+typedef struct experiment_camera {
+    const char *name;
+    size_t scene;
+    experiment_pose pose;
+    int frames;             /* of the motion; 0: at rest */
+    const char *dolly_text;
+    double dolly[3];        /* travelled in the motion: right, forward, up, m */
+    double orbit;           /* turned about the target in the motion, degrees, counter-clockwise from above */
+    int cut;                /* so many of the first frames show what `before` sees */
+    experiment_pose before;
 } experiment_camera;
 
 typedef struct experiment_config {
     const char *name;
     noc_render_params params;
-    int frames;
-    int entry, choice; /* of the spec's list; where it stands for several choices, which of them, else -1 */
+    int frames;              /* at most, where seconds says when to stop */
+    double seconds;          /* process CPU time after which it stops; 0: frames decide */
+    size_t entry;            /* of the spec's list */
+    int choice;              /* where the entry stands for several values of an option, which of them, else -1 */
+    const noc_option *option; /* that option; NULL where there is none */
+    const char *value;
 } experiment_config;
 
 /* Noise of a reference itself: estimated relMSE. NaN: not known. */
@@ -45,6 +63,11 @@ typedef struct experiment_spec {
     int width, height;
     int crop_box[4];          /* x, y, width, height; width 0: chosen by the pictures */
     int frames, repetitions;
+    double seconds;
+    int *measured;            /* frames that are measured, rising; none: all, or those of a rising distance under seconds */
+    size_t measured_count;
+    int *shown;               /* frames whose pictures are shown beside the reference, rising */
+    size_t shown_count;
     int accumulate;
     uint32_t seed;            /* of the first repetition */
     int figure;
@@ -54,11 +77,11 @@ typedef struct experiment_spec {
     size_t time_count;
     struct { int frames; noc_render_params params; } reference;
     experiment_scene *scenes;
-    experiment_camera *cameras;
+    experiment_camera *cameras; /* scene by scene */
     experiment_config *configs;
     size_t scene_count, camera_count, config_count;
-    char **texts;             /* owned: all that the others point at */
-    size_t text_count;
+    void **kept;              /* owned: all that the others point at */
+    size_t kept_count;
 } experiment_spec;
 
 /* Columns of results.csv that are numbers, after those that tell which row it is. */
@@ -66,7 +89,10 @@ enum {
     COL_WALL, COL_CPU, COL_WALL_TOTAL, COL_CPU_TOTAL,
     COL_RMSE8, COL_RELMSE, COL_CLAMPED, COL_BIAS,                 /* pixels that see no emitter */
     COL_RMSE8_ALL, COL_RELMSE_ALL, COL_CLAMPED_ALL, COL_BIAS_ALL, /* all pixels, in the same order */
-    COL_BUILD, COL_MEMORY, COL_RAYS, COL_DROPPED, COL_COUNT
+    COL_BUILD, COL_MEMORY, COL_RAYS, COL_DROPPED,
+    /* of the structure that candidates are drawn from: seconds to build, bytes, bytes of the scene and its ray tracing structure, and
+     * for bvh S_r, the share of surfaces that no light was found for, median and 99th percentile of those found */
+    COL_LIGHT_BUILD, COL_LIGHT_BYTES, COL_SCENE_BYTES, COL_INFLUENCE, COL_FOUND_NONE, COL_FOUND_MEDIAN, COL_FOUND_99, COL_COUNT
 };
 
 typedef struct experiment_row {
@@ -76,10 +102,11 @@ typedef struct experiment_row {
 
 /* One configuration under one camera, one repetition of it. */
 typedef struct experiment_run {
-    size_t scene, camera, config;
+    size_t camera, config;
     int repetition; /* from 0 */
     char key[EXPERIMENT_KEY];                /* content hash of all that the figures depend on */
-    experiment_row *rows[EXPERIMENT_MODES];  /* frames of them; NULL where the mode is not asked for */
+    experiment_row *rows[EXPERIMENT_MODES];  /* count of them, frame by frame; those that were not measured are not done */
+    int count, room;
 } experiment_run;
 
 /* A row of an earlier session. */
@@ -90,7 +117,7 @@ typedef struct experiment_stored {
     double values[COL_COUNT];
 } experiment_stored;
 
-typedef struct experiment_crop { int x, y, width, height, scale, columns; bool made; } experiment_crop;
+typedef struct experiment_crop { int x, y, width, height, scale, columns; } experiment_crop;
 
 typedef struct experiment_lab {
     experiment_args *args;
@@ -101,20 +128,21 @@ typedef struct experiment_lab {
     FILE *csv;
     experiment_stored *stored;
     size_t stored_count;
-    experiment_run *runs;     /* scene by scene, camera, repetition, configuration */
-    size_t run_count;
-    size_t rows_total, rows_done, rows_old; /* old: of earlier sessions */
+    experiment_run *runs;     /* camera by camera, repetition, configuration */
+    size_t run_count, runs_done;
+    size_t rows_done, rows_old; /* old: of earlier sessions */
     double started;
     char path[32];            /* code that ran: "avx2 x8" */
+    double *sum;              /* room for the mean of a picture */
     /* of the present scene and camera */
     noc_scene *scene;
     noc_image *reference;
-    noc_camera camera;
+    noc_camera camera, before; /* at its pose, and before the cut */
     char reference_key[EXPERIMENT_KEY];
     /* kept for the report */
     noc_scene_info *scene_infos; /* a scene */
-    experiment_crop *crops;      /* a scene and camera */
-    experiment_noise *noises;    /* a scene and camera */
+    experiment_crop *crops;      /* a camera */
+    experiment_noise *noises;    /* a camera */
 } experiment_lab;
 
 /* experiment_spec.c */
@@ -125,13 +153,24 @@ void experiment_free_spec(experiment_spec *spec);
 struct json_t;
 int experiment_wrong(const experiment_spec *spec, const char *place, const char *fmt, ...) NOC_PRINTF(3, 4);
 const noc_option *experiment_option(const cli_set *sets, const char *name, size_t *offset);
-int experiment_set(experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others, void *params,
-                   const char *name, struct json_t *value); /* others: names that are right here but no options */
-char *experiment_keep(experiment_spec *spec, char *text); /* now owned by the spec */
+int experiment_set_all(experiment_spec *spec, const char *place, struct json_t *object, const cli_set *sets,
+                       const char *const *others, void *params); /* others: names that are right here but no options */
+int experiment_read_name(experiment_spec *spec, const char *place, struct json_t *object, const char **name);
+void *experiment_keep(experiment_spec *spec, void *memory); /* now owned by the spec */
+void *experiment_longer(void *array, size_t size);          /* realloc that ends the program when memory is gone */
+
+/* experiment_camera.c */
+const noc_option *experiment_camera_options(void); /* of render's options, those that place a camera */
+int experiment_read_cameras(experiment_spec *spec, const char *place, struct json_t *cameras, size_t scene); /* added to the spec's */
+int experiment_place_cameras(experiment_lab *lab, size_t camera); /* once its scene is there */
+noc_camera experiment_camera_at(const experiment_lab *lab, size_t camera, int frame);
+
+/* experiment_config.c */
+int experiment_read_config(experiment_spec *spec, const char *place, struct json_t *object, const noc_render_params *shared, size_t entry);
 
 /* experiment_scene.c */
 int experiment_load_scene(experiment_lab *lab, size_t scene);
-int experiment_make_reference(experiment_lab *lab, size_t scene, size_t camera); /* camera placed, reference read or rendered */
+int experiment_make_reference(experiment_lab *lab, size_t camera); /* camera placed, reference read or rendered */
 void experiment_run_key(const experiment_lab *lab, experiment_run *run);
 noc_render_params experiment_params(const experiment_lab *lab, const experiment_run *run);
 const char *experiment_machine(void);
@@ -143,33 +182,59 @@ experiment_noise experiment_read_noise(const char *reference);
 
 /* experiment_run.c */
 int experiment_measure(experiment_lab *lab, experiment_run *run);
-char *experiment_picture(const experiment_lab *lab, const experiment_run *run); /* path of its first frame; free() it */
+int experiment_shown_mode(const experiment_spec *spec, size_t camera); /* of pictures that are shown */
+char *experiment_picture(const experiment_lab *lab, const char *key, int mode, int frame); /* path; free() it */
 
 /* experiment_table.c */
 int experiment_open_table(experiment_lab *lab);
 void experiment_claim(experiment_lab *lab, experiment_run *run); /* rows of earlier sessions */
+experiment_row *experiment_row_of(experiment_run *run, int mode, int frame); /* frame from 1; made where it is not there */
 int experiment_append(experiment_lab *lab, const experiment_run *run, int mode, int frame); /* frame from 1 */
 int experiment_tidy_table(experiment_lab *lab); /* at the end: leaves out rows of other settings */
 
 /* experiment_series.c: means over repetitions; NaN where there is nothing. frame from 1. */
-typedef struct experiment_series { const experiment_lab *lab; size_t scene, camera, config; int mode; } experiment_series;
+typedef struct experiment_series { const experiment_lab *lab; size_t camera, config; int mode; } experiment_series;
+bool experiment_has_mode(const experiment_spec *spec, size_t camera, int mode);
+int experiment_frames(const experiment_spec *spec, size_t camera, size_t config); /* at most */
+bool experiment_measures(const experiment_spec *spec, size_t camera, size_t config, int frame);
+int experiment_last(const experiment_series *s); /* last frame that is there; 0: none */
 double experiment_at(const experiment_series *s, int column, int frame);
 int experiment_column(const experiment_spec *spec); /* of the spec's figure */
 const char *experiment_figure(const experiment_spec *spec); /* in words, with its unit */
 double experiment_median(const experiment_series *s, int column); /* over frames and repetitions, the first frame left out */
 double experiment_time_to(const experiment_series *s, int column, double error); /* CPU seconds; 0: at the first frame already */
 double experiment_error_after(const experiment_series *s, int column, double seconds);
-experiment_run *experiment_find_run(const experiment_lab *lab, size_t scene, size_t camera, size_t config, int repetition);
+experiment_run *experiment_find_run(const experiment_lab *lab, size_t camera, size_t config, int repetition);
 
 /* experiment_plot.c: error over "frames" or "cpu" as SVG; name is the file's, in the folder. */
-int experiment_plot(const experiment_lab *lab, size_t scene, size_t camera, int mode, bool over_time, const char *name);
+int experiment_plot(const experiment_lab *lab, size_t camera, int mode, bool over_time, const char *name);
 
-/* experiment_crops.c */
-int experiment_make_crops(experiment_lab *lab, size_t scene, size_t camera, const char *name);
+/* experiment_summary.c: the figures that stand for a run in a table. */
+typedef struct experiment_point { int mode, frame; /* 0: the last */ } experiment_point;
+int experiment_points(const experiment_spec *spec, size_t camera, experiment_point out[EXPERIMENT_POINTS]);
+double experiment_at_point(const experiment_lab *lab, size_t camera, size_t config, experiment_point point, int column);
+const char *experiment_point_name(const experiment_spec *spec, size_t camera, experiment_point point);
+double experiment_frame_time(const experiment_lab *lab, size_t camera, size_t config);
+char *experiment_row_name(const experiment_lab *lab, size_t config); /* of its entry; free() it */
+int experiment_write_summary(experiment_lab *lab);
+
+/* experiment_charts.c: one SVG over all cameras, where the configurations are not too many. */
+bool experiment_has_bars(const experiment_spec *spec); /* frame times */
+int experiment_bars(const experiment_lab *lab, const char *name);
+bool experiment_has_dots(const experiment_spec *spec); /* errors */
+int experiment_dots(const experiment_lab *lab, const char *name);
+
+/* experiment_crops.c: name is that of one shown frame's sheet; free() it. */
+char *experiment_sheet_name(const experiment_lab *lab, size_t camera, int frame);
+int experiment_make_crops(experiment_lab *lab, size_t camera);
+bool experiment_shows(const experiment_spec *spec, size_t camera, int frame);
 
 /* experiment_report.c */
 int experiment_write_report(experiment_lab *lab);
-char *experiment_slug(const experiment_lab *lab, size_t scene, size_t camera); /* "city-street"; free() it */
+char *experiment_slug(const experiment_lab *lab, size_t camera); /* "1-city-street"; free() it */
+void experiment_cell(FILE *out, const char *text); /* text, and a number, in a cell of a Markdown table */
+void experiment_number(FILE *out, double v, const char *fmt);
+void experiment_table_rule(FILE *out, size_t columns); /* ends the line of the head: one column to the left, others to the right */
 FILE *experiment_create(const experiment_lab *lab, const char *name, char **temporary);
 int experiment_finish(const experiment_lab *lab, FILE *file, const char *name, char *temporary); /* renames; frees temporary */
 

@@ -1,4 +1,4 @@
-/* First frames beside the reference: the same part of each picture, displayed alike, in one PNG. */
+/* Shown frames beside the reference: the same part of each picture, displayed alike, in one PNG. */
 #include "experiment.h"
 
 #include <stdlib.h>
@@ -7,12 +7,32 @@
 
 enum { GAP = 4, PANEL = 320, MOST_COLUMNS = 4 };
 
+/* A picture at a time is read and held: a spec may have a hundred configurations. */
 typedef struct panels {
     const experiment_lab *lab;
+    size_t camera;
+    int frame;
     int width, height;   /* of a picture */
-    size_t count;        /* the reference and one a configuration */
-    uint8_t **pictures;  /* 8-bit sRGB */
+    double ev100;        /* of all: the reference's automatic exposure */
+    uint8_t *reference;  /* 8-bit sRGB */
 } panels;
+
+bool experiment_shows(const experiment_spec *spec, size_t camera, int frame) {
+    if (spec->cameras[camera].frames)
+        return frame == spec->cameras[camera].frames;
+    for (size_t i = 0; i < spec->shown_count; i++)
+        if (spec->shown[i] == frame)
+            return true;
+    return false;
+}
+
+char *experiment_sheet_name(const experiment_lab *lab, size_t camera, int frame) {
+    int mode = experiment_shown_mode(&lab->spec, camera);
+    char *slug = experiment_slug(lab, camera);
+    char *name = cli_format("%s-%s%d.png", slug, mode == EXPERIMENT_ACCUMULATED ? "mean" : "frame", frame);
+    free(slug);
+    return name;
+}
 
 static uint8_t *display(const noc_image *image, double ev100) {
     noc_display_params params = noc_display_default_params();
@@ -23,37 +43,41 @@ static uint8_t *display(const noc_image *image, double ev100) {
     return rgb;
 }
 
-static int read_pictures(panels *p, size_t scene, size_t camera) {
-    double ev100 = noc_image_auto_ev100(p->lab->reference);
-    p->pictures[0] = display(p->lab->reference, ev100);
-    for (size_t i = 1; i < p->count; i++) {
-        char *path = experiment_picture(p->lab, experiment_find_run(p->lab, scene, camera, i - 1, 0));
-        bool linear;
-        noc_image *image = noc_image_read(path, p->lab->log, &linear);
-        bool same = image && image->width == p->width && image->height == p->height;
-        if (image && !same)
-            cli_error("%s: it is of another size; delete it", path);
-        free(path);
-        p->pictures[i] = same ? display(image, ev100) : NULL;
-        noc_image_destroy(image);
-        if (!same)
-            return CLI_FAILURE;
-    }
-    return CLI_OK;
+/* *picture is NULL where this configuration has no such frame. */
+static int read_picture(const panels *p, size_t config, uint8_t **picture) {
+    const experiment_run *run = experiment_find_run(p->lab, p->camera, config, 0);
+    *picture = NULL;
+    char *path = experiment_picture(p->lab, run->key, experiment_shown_mode(&p->lab->spec, p->camera), p->frame);
+    bool linear;
+    noc_image *image = access(path, F_OK) ? NULL : noc_image_read(path, p->lab->log, &linear);
+    bool there = image || !access(path, F_OK), same = image && image->width == p->width && image->height == p->height;
+    if (image && !same)
+        cli_error("%s: it is of another size; delete it", path);
+    if (same)
+        *picture = display(image, p->ev100);
+    noc_image_destroy(image);
+    free(path);
+    return there && !same ? CLI_FAILURE : CLI_OK;
 }
 
 /* The part where the pictures differ most from the reference, as seen: a sum over each rectangle by running sums. */
-static void choose(const panels *p, experiment_crop *crop) {
-    size_t w = (size_t)p->width + 1;
-    double *sums = cli_alloc(sizeof(double) * w * ((size_t)p->height + 1)), most = -1;
-    for (int y = 0; y < p->height; y++) {
+static int choose(const panels *p, experiment_crop *crop) {
+    size_t w = (size_t)p->width, count = w * (size_t)p->height;
+    double *sums = cli_alloc(sizeof(double) * (w + 1) * ((size_t)p->height + 1)), most = -1;
+    uint32_t *differences = cli_alloc(sizeof(uint32_t) * count);
+    int status = CLI_OK;
+    for (size_t i = 0; !status && i < p->lab->spec.config_count; i++) {
+        uint8_t *picture;
+        status = read_picture(p, i, &picture);
+        for (size_t k = 0; picture && k < 3 * count; k++)
+            differences[k / 3] += (uint32_t)abs(picture[k] - p->reference[k]);
+        free(picture);
+    }
+    for (size_t y = 0; y < (size_t)p->height; y++) {
         double row = 0;
-        for (int x = 0; x < p->width; x++) {
-            size_t at = ((size_t)y * (size_t)p->width + (size_t)x) * 3;
-            for (size_t i = 1; i < p->count; i++)
-                for (size_t c = 0; c < 3; c++)
-                    row += abs(p->pictures[i][at + c] - p->pictures[0][at + c]);
-            sums[((size_t)y + 1) * w + (size_t)x + 1] = row + sums[(size_t)y * w + (size_t)x + 1];
+        for (size_t x = 0; x < w; x++) {
+            row += differences[y * w + x];
+            sums[(y + 1) * (w + 1) + x + 1] = row + sums[y * (w + 1) + x + 1];
         }
     }
     crop->width = (p->width + 2) / 3;
@@ -61,7 +85,7 @@ static void choose(const panels *p, experiment_crop *crop) {
     int step = p->width / 60 + 1;
     for (int y = 0; y + crop->height <= p->height; y += step) {
         for (int x = 0; x + crop->width <= p->width; x += step) {
-            const double *a = sums + (size_t)y * w + (size_t)x, *b = a + (size_t)crop->height * w;
+            const double *a = sums + (size_t)y * (w + 1) + (size_t)x, *b = a + (size_t)crop->height * (w + 1);
             double sum = b[crop->width] - b[0] - a[crop->width] + a[0];
             if (sum > most) {
                 most = sum;
@@ -70,7 +94,9 @@ static void choose(const panels *p, experiment_crop *crop) {
             }
         }
     }
+    free(differences);
     free(sums);
+    return status;
 }
 
 static void copy_panel(const panels *p, const experiment_crop *crop, const uint8_t *from, uint8_t *to, size_t stride) {
@@ -81,45 +107,51 @@ static void copy_panel(const panels *p, const experiment_crop *crop, const uint8
     }
 }
 
-static int write_sheet(const panels *p, const experiment_crop *crop, const char *path) {
-    int columns = crop->columns, rows = ((int)p->count + columns - 1) / columns;
+static int write_sheet(const panels *p, const experiment_crop *crop, const char *name) {
+    size_t count = p->lab->spec.config_count + 1;
+    int columns = crop->columns, rows = ((int)count + columns - 1) / columns, status = CLI_OK;
     int w = crop->width * crop->scale, h = crop->height * crop->scale;
     int width = columns * w + (columns - 1) * GAP, height = rows * h + (rows - 1) * GAP;
     if (width > NOC_IMAGE_MAX_SIDE || height > NOC_IMAGE_MAX_SIDE) {
-        cli_error("%s: it would be larger than %d px", path, NOC_IMAGE_MAX_SIDE);
+        cli_error("%s/%s: it would be larger than %d px", p->lab->folder, name, NOC_IMAGE_MAX_SIDE);
         return CLI_FAILURE;
     }
     uint8_t *sheet = cli_alloc((size_t)width * (size_t)height * 3);
     memset(sheet, 128, (size_t)width * (size_t)height * 3);
-    for (size_t i = 0; i < p->count; i++) {
+    for (size_t i = 0; i < count && !status; i++) {
         size_t x = i % (size_t)columns * (size_t)(w + GAP), y = i / (size_t)columns * (size_t)(h + GAP);
-        copy_panel(p, crop, p->pictures[i], sheet + (y * (size_t)width + x) * 3, (size_t)width * 3);
+        uint8_t *picture = NULL;
+        status = i ? read_picture(p, i - 1, &picture) : CLI_OK;
+        if (!i || picture)
+            copy_panel(p, crop, i ? picture : p->reference, sheet + (y * (size_t)width + x) * 3, (size_t)width * 3);
+        free(picture);
     }
-    const char *keys[] = { "picture" }, *values[] = { "the reference and first frames, row by row" };
-    noc_status status = noc_image_write_srgb8(sheet, width, height, path, &(noc_image_meta){ 1, keys, values }, p->lab->log);
+    char *path = cli_format("%s/%s", p->lab->folder, name);
+    const char *keys[] = { "picture" }, *values[] = { "the reference, and one frame of each configuration, row by row" };
+    if (!status && noc_image_write_srgb8(sheet, width, height, path, &(noc_image_meta){ 1, keys, values }, p->lab->log))
+        status = CLI_FAILURE;
+    free(path);
     free(sheet);
-    return status ? CLI_FAILURE : CLI_OK;
+    return status;
 }
 
-int experiment_make_crops(experiment_lab *lab, size_t scene, size_t camera, const char *name) {
+int experiment_make_crops(experiment_lab *lab, size_t camera) {
     const experiment_spec *spec = &lab->spec;
-    experiment_crop *crop = &lab->crops[scene * spec->camera_count + camera];
-    panels p = { lab, spec->width, spec->height, spec->config_count + 1, NULL };
-    p.pictures = cli_alloc(sizeof(uint8_t *) * p.count);
-    int status = read_pictures(&p, scene, camera);
-    if (!status) {
-        *crop = (experiment_crop){ .x = spec->crop_box[0], .y = spec->crop_box[1], .width = spec->crop_box[2], .height = spec->crop_box[3] };
+    experiment_crop *crop = &lab->crops[camera];
+    double ev100 = noc_image_auto_ev100(lab->reference);
+    panels p = { lab, camera, 0, spec->width, spec->height, ev100, display(lab->reference, ev100) };
+    *crop = (experiment_crop){ .x = spec->crop_box[0], .y = spec->crop_box[1], .width = spec->crop_box[2], .height = spec->crop_box[3] };
+    int motion = spec->cameras[camera].frames, status = CLI_OK;
+    for (size_t i = 0; !status && i < (motion ? 1 : spec->shown_count); i++) {
+        p.frame = motion ? motion : spec->shown[i];
         if (!crop->width)
-            choose(&p, crop);
+            status = choose(&p, crop); /* by the first of them, for all */
         crop->scale = crop->width < PANEL ? PANEL / crop->width : 1;
-        crop->columns = p.count < MOST_COLUMNS ? (int)p.count : MOST_COLUMNS;
-        char *path = cli_format("%s/%s", lab->folder, name);
-        status = write_sheet(&p, crop, path);
-        crop->made = !status;
-        free(path);
+        crop->columns = spec->config_count + 1 < MOST_COLUMNS ? (int)spec->config_count + 1 : MOST_COLUMNS;
+        char *name = experiment_sheet_name(lab, camera, p.frame);
+        status = status ? status : write_sheet(&p, crop, name);
+        free(name);
     }
-    for (size_t i = 0; i < p.count; i++)
-        free(p.pictures[i]);
-    free(p.pictures);
+    free(p.reference);
     return status;
 }

@@ -14,14 +14,18 @@ int experiment_wrong(const experiment_spec *spec, const char *place, const char 
     return cli_usage(&cli_experiment, "%.200s: %s%s%s", spec->path, place, *place ? ": " : "", text);
 }
 
-char *experiment_keep(experiment_spec *spec, char *text) {
-    char **longer = realloc(spec->texts, sizeof(char *) * (spec->text_count + 1));
-    if (!longer) {
+void *experiment_longer(void *array, size_t size) {
+    array = realloc(array, size);
+    if (!array) {
         cli_error("out of memory");
         exit(CLI_FAILURE);
     }
-    spec->texts = longer;
-    return spec->texts[spec->text_count++] = text;
+    return array;
+}
+
+void *experiment_keep(experiment_spec *spec, void *memory) {
+    spec->kept = experiment_longer(spec->kept, sizeof(void *) * (spec->kept_count + 1));
+    return spec->kept[spec->kept_count++] = memory;
 }
 
 const noc_option *experiment_option(const cli_set *sets, const char *name, size_t *offset) {
@@ -78,8 +82,9 @@ static char *spell(const json_t *value) {
 
 static void keep_message(void *user, noc_log_level level, const char *text) { snprintf(user, 256, "%s", text); }
 
-int experiment_set(experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others, void *params,
-                   const char *name, json_t *value) {
+/* others: names that are right here but no options. */
+static int set(experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others, void *params,
+               const char *name, json_t *value) {
     size_t offset = 0;
     for (const char *const *other = others; other && *other; other++)
         if (!strcmp(*other, name))
@@ -96,4 +101,33 @@ int experiment_set(experiment_spec *spec, const char *place, const cli_set *sets
     noc_status status = noc_option_set(o, (char *)params + offset, text, log);
     noc_log_destroy(log);
     return status ? experiment_wrong(spec, place, "%s", message) : CLI_OK;
+}
+
+int experiment_set_all(experiment_spec *spec, const char *place, json_t *object, const cli_set *sets, const char *const *others,
+                       void *params) {
+    if (!object)
+        return CLI_OK;
+    if (!json_is_object(object))
+        return experiment_wrong(spec, place, "this must be an object, {...}");
+    const char *name;
+    json_t *value;
+    json_object_foreach(object, name, value) {
+        int status = set(spec, place, sets, others, params, name, value);
+        if (status)
+            return status;
+    }
+    return CLI_OK;
+}
+
+int experiment_read_name(experiment_spec *spec, const char *place, json_t *object, const char **name) {
+    const char *text = json_string_value(json_object_get(object, "name"));
+    if (!text || !*text)
+        return experiment_wrong(spec, place, "it needs a name");
+    if (strlen(text) > 80)
+        return experiment_wrong(spec, place, "its name is longer than 80 bytes");
+    for (const char *c = text; *c; c++)
+        if ((unsigned char)*c < 32 || *c == 127)
+            return experiment_wrong(spec, place, "its name holds a control character");
+    *name = experiment_keep(spec, cli_format("%s", text));
+    return CLI_OK;
 }

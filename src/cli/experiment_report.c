@@ -22,11 +22,11 @@ static void add_slug(char *out, const char *text) {
 }
 
 /* Numbers keep apart names that differ in other characters alone. */
-char *experiment_slug(const experiment_lab *lab, size_t scene, size_t camera) {
+char *experiment_slug(const experiment_lab *lab, size_t camera) {
     char a[84], b[84];
-    add_slug(a, lab->spec.scenes[scene].name);
+    add_slug(a, lab->spec.scenes[lab->spec.cameras[camera].scene].name);
     add_slug(b, lab->spec.cameras[camera].name);
-    return cli_format("%zu-%s-%s", scene * lab->spec.camera_count + camera + 1, a, b);
+    return cli_format("%zu-%s-%s", camera + 1, a, b);
 }
 
 FILE *experiment_create(const experiment_lab *lab, const char *name, char **temporary) {
@@ -54,7 +54,7 @@ int experiment_finish(const experiment_lab *lab, FILE *file, const char *name, c
 }
 
 /* Text in a cell of a table. */
-static void cell(FILE *out, const char *text) {
+void experiment_cell(FILE *out, const char *text) {
     fputc(' ', out);
     for (const char *c = text; *c; c++) {
         if (strchr("|\\`*_<>[]", *c))
@@ -64,18 +64,23 @@ static void cell(FILE *out, const char *text) {
     fputs(" |", out);
 }
 
-static void number(FILE *out, double v, const char *fmt) {
+void experiment_number(FILE *out, double v, const char *fmt) {
     char text[40] = "-";
     if (isfinite(v))
         snprintf(text, sizeof(text), fmt, v);
     fprintf(out, " %s |", text);
 }
 
-static void table_head(FILE *out, const char *first, size_t columns) {
-    fprintf(out, "\n%s\n|---|", first);
+void experiment_table_rule(FILE *out, size_t columns) {
+    fputs("\n|---|", out);
     for (size_t i = 0; i < columns; i++)
         fputs("--:|", out);
     fputc('\n', out);
+}
+
+static void table_head(FILE *out, const char *first, size_t columns) {
+    fprintf(out, "\n%s", first);
+    experiment_table_rule(out, columns);
 }
 
 /* The command line as a shell would read it. */
@@ -128,37 +133,50 @@ static void print_setting(FILE *out, const experiment_lab *lab) {
     fprintf(out, "Made by nocturne %s (%s) on %s, on %s; the code that ran: %s.\n\n    ", noc_version(), noc_features(), date,
             experiment_machine(), *lab->path ? lab->path : "none, all rows were there");
     print_command(out);
-    fprintf(out, "\n\nPictures of %d x %d px, %d frames, %d repetition%s.\n"
-                 "Reference: %d frames of %d shadow rays a pixel, %s.\n", spec->width, spec->height, spec->frames, spec->repetitions,
+    char extent[64];
+    snprintf(extent, sizeof(extent), spec->seconds > 0 ? "%.3g s of CPU time" : "%.0f frames", spec->seconds > 0 ? spec->seconds : spec->frames);
+    fprintf(out, "\n\nPictures of %d x %d px, %s, %d repetition%s.\n"
+                 "Reference: %d frames of %d shadow rays a pixel, %s.\n", spec->width, spec->height, extent, spec->repetitions,
             spec->repetitions == 1 ? "" : "s with different seeds, of which figures are means", spec->reference.frames, spec->reference.params.rays,
             spec->reference.params.jitter ? "jittered" : "through the centres of pixels");
     fprintf(out, "All rows: [results.csv](results.csv). Definitions of the figures: docs/estimator.md, \"Error figures\".\n");
     table_head(out, "| Scene | Triangles | Lights | Memory |", 3);
     for (size_t i = 0; i < spec->scene_count; i++) {
         fputc('|', out);
-        cell(out, spec->scenes[i].name);
+        experiment_cell(out, spec->scenes[i].name);
         fprintf(out, " %s |", cli_count(text, lab->scene_infos[i].triangles));
         fprintf(out, " %s | %s |\n", cli_count(text, lab->scene_infos[i].lights), cli_bytes(memory, lab->scene_infos[i].memory_bytes));
     }
     fprintf(out, "\n| Configuration | Options that are not the defaults, and the method |\n|---|---|\n");
     for (size_t i = 0; i < spec->config_count; i++) {
         fputc('|', out);
-        cell(out, spec->configs[i].name);
+        experiment_cell(out, spec->configs[i].name);
         print_options(out, &spec->configs[i].params);
         fputc('\n', out);
     }
 }
 
-static void print_crops(FILE *out, const experiment_lab *lab, size_t index, const char *slug) {
-    const experiment_crop *crop = &lab->crops[index];
-    if (!crop->made)
+static void print_crops(FILE *out, const experiment_lab *lab, size_t camera) {
+    const experiment_spec *spec = &lab->spec;
+    const experiment_crop *crop = &lab->crops[camera];
+    int motion = spec->cameras[camera].frames, mode = experiment_shown_mode(spec, camera);
+    size_t frames = motion ? 1 : spec->shown_count;
+    if (!frames)
         return;
-    fprintf(out, "\n![First frames](%s-first.png)\n\nFirst frames, row by row as in this table; the part of %d x %d px at (%d, %d), "
-                 "enlarged %d times, all with the reference's exposure.\n\n|",
-            slug, crop->width, crop->height, crop->x, crop->y, crop->scale);
-    size_t columns = (size_t)crop->columns, count = lab->spec.config_count + 1;
+    for (size_t i = 0; i < frames; i++) {
+        int frame = motion ? motion : spec->shown[i];
+        char *name = experiment_sheet_name(lab, camera, frame);
+        fprintf(out, mode == EXPERIMENT_ACCUMULATED ? "\n![Mean of %d frames](%s)\n" : "\n![Frame %d](%s)\n", frame, name);
+        free(name);
+    }
+    fprintf(out, "\n%s ", mode == EXPERIMENT_ACCUMULATED ? "The mean of frames" : motion ? "The last frame:" : frames > 1 ? "Frames" : "Frame");
+    for (size_t i = 0; i < frames && !motion; i++)
+        fprintf(out, mode == EXPERIMENT_ACCUMULATED ? "%s1 to %d" : "%s%d", i ? ", " : "", spec->shown[i]);
+    fprintf(out, "%s row by row as in this table; the part of %d x %d px at (%d, %d), enlarged %d times, all with the reference's "
+                 "exposure.\n\n|", motion ? "" : ",", crop->width, crop->height, crop->x, crop->y, crop->scale);
+    size_t columns = (size_t)crop->columns, count = spec->config_count + 1;
     for (size_t i = 0; i < (count + columns - 1) / columns * columns; i++) {
-        cell(out, !i ? "reference" : i < count ? lab->spec.configs[i - 1].name : "");
+        experiment_cell(out, !i ? "reference" : i < count ? spec->configs[i - 1].name : "");
         if (i + 1 == columns) {
             fputs("\n|", out);
             for (size_t j = 0; j < columns; j++)
@@ -169,20 +187,27 @@ static void print_crops(FILE *out, const experiment_lab *lab, size_t index, cons
     }
 }
 
-/* Frames that a table shows: those of the list that are there, and the last. */
-static int frames_of(const experiment_spec *spec, int out[SHOWN + 1]) {
-    int most = 1, count = 0;
-    for (size_t i = 0; i < spec->config_count; i++)
-        most = spec->configs[i].frames > most ? spec->configs[i].frames : most;
-    for (int i = 0; i < SHOWN && shown_frames[i] <= most; i++)
-        out[count++] = shown_frames[i];
-    if (out[count - 1] != most)
+/* Frames that a table shows: some of those measured, and the last. */
+static int frames_of(experiment_series s, int out[SHOWN + 1]) {
+    const experiment_spec *spec = &s.lab->spec;
+    int most = 0, count = 0;
+    for (s.config = 0; s.config < spec->config_count; s.config++) {
+        int last = experiment_last(&s);
+        most = last > most ? last : most;
+    }
+    bool listed = spec->measured_count && spec->measured_count <= SHOWN && !spec->cameras[s.camera].frames;
+    for (size_t i = 0; i < (listed ? spec->measured_count : SHOWN) && !spec->cameras[s.camera].frames; i++) {
+        int frame = listed ? spec->measured[i] : shown_frames[i];
+        if (frame <= most)
+            out[count++] = frame;
+    }
+    if (most && (!count || out[count - 1] != most))
         out[count++] = most;
     return count;
 }
 
 static void print_errors(FILE *out, experiment_series s, const char *what, int column, const char *fmt, bool bias) {
-    int frames[SHOWN + 1], count = frames_of(&s.lab->spec, frames);
+    int frames[SHOWN + 1], count = frames_of(s, frames);
     char head[400];
     int at = snprintf(head, sizeof(head), "| %s, frame |", what);
     for (int i = 0; i < count; i++)
@@ -190,11 +215,37 @@ static void print_errors(FILE *out, experiment_series s, const char *what, int c
     table_head(out, head, (size_t)count);
     for (s.config = 0; s.config < s.lab->spec.config_count; s.config++) {
         fputc('|', out);
-        cell(out, s.lab->spec.configs[s.config].name);
+        experiment_cell(out, s.lab->spec.configs[s.config].name);
         for (int i = 0; i < count; i++) {
             double v = experiment_at(&s, column, frames[i]);
-            number(out, bias ? 100 * (v - 1) : v, fmt);
+            experiment_number(out, bias ? 100 * (v - 1) : v, fmt);
         }
+        fputc('\n', out);
+    }
+}
+
+static void print_all_frames(FILE *out, experiment_series s, const char *clamped, int first) {
+    print_errors(out, s, clamped, first + 2, "%.3g", false);
+    print_errors(out, s, "relMSE", first + 1, "%.3g", false);
+    print_errors(out, s, "RMSE-8", first, "%.2f", false);
+    print_errors(out, s, "Bias, %", first + 3, "%+.2f", true);
+}
+
+/* Of a camera that moves. */
+static void print_one_frame(FILE *out, experiment_series s, const char *clamped, int first) {
+    char *head = cli_format("| | %s | relMSE | RMSE-8 | Bias, %% | CPU seconds of this frame | of all |", clamped);
+    table_head(out, head, 6);
+    free(head);
+    for (s.config = 0; s.config < s.lab->spec.config_count; s.config++) {
+        int frame = experiment_last(&s);
+        fputc('|', out);
+        experiment_cell(out, s.lab->spec.configs[s.config].name);
+        experiment_number(out, experiment_at(&s, first + 2, frame), "%.3g");
+        experiment_number(out, experiment_at(&s, first + 1, frame), "%.3g");
+        experiment_number(out, experiment_at(&s, first, frame), "%.2f");
+        experiment_number(out, 100 * (experiment_at(&s, first + 3, frame) - 1), "%+.2f");
+        experiment_number(out, experiment_at(&s, COL_CPU, frame), "%.3g");
+        experiment_number(out, experiment_at(&s, COL_CPU_TOTAL, frame), "%.3g");
         fputc('\n', out);
     }
 }
@@ -206,12 +257,12 @@ static void print_times(FILE *out, experiment_series s) {
     for (s.config = 0; s.config < spec->config_count; s.config++) {
         char memory[32];
         fputc('|', out);
-        cell(out, spec->configs[s.config].name);
-        number(out, 1e3 * experiment_at(&s, COL_CPU, 1), "%.1f");
-        number(out, 1e3 * experiment_median(&s, COL_CPU), "%.1f");
-        number(out, 1e3 * experiment_median(&s, COL_WALL), "%.1f");
-        number(out, 1e-6 * experiment_median(&s, COL_RAYS), "%.2f");
-        number(out, 1e3 * experiment_median(&s, COL_BUILD), "%.1f");
+        experiment_cell(out, spec->configs[s.config].name);
+        experiment_number(out, 1e3 * experiment_at(&s, COL_CPU, 1), "%.1f");
+        experiment_number(out, 1e3 * experiment_median(&s, COL_CPU), "%.1f");
+        experiment_number(out, 1e3 * experiment_median(&s, COL_WALL), "%.1f");
+        experiment_number(out, 1e-6 * experiment_median(&s, COL_RAYS), "%.2f");
+        experiment_number(out, 1e3 * experiment_median(&s, COL_BUILD), "%.1f");
         double bytes = experiment_median(&s, COL_MEMORY);
         fprintf(out, " %s |\n", bytes >= 0 ? cli_bytes(memory, (uint64_t)bytes) : "-");
     }
@@ -230,16 +281,16 @@ static void print_equal_time(FILE *out, experiment_series s) {
     table_head(out, head, 3 + spec->time_count);
     for (s.config = 0; s.config < spec->config_count; s.config++) {
         fputc('|', out);
-        cell(out, spec->configs[s.config].name);
+        experiment_cell(out, spec->configs[s.config].name);
         for (size_t i = 0; i < 3; i++) {
             double seconds = experiment_time_to(&s, column, targets[i]);
             if (seconds > 0 || isnan(seconds))
-                number(out, seconds, "%.3g");
+                experiment_number(out, seconds, "%.3g");
             else
-                number(out, experiment_at(&s, COL_CPU_TOTAL, 1), "under %.3g");
+                experiment_number(out, experiment_at(&s, COL_CPU_TOTAL, 1), "under %.3g");
         }
         for (size_t i = 0; i < spec->time_count; i++)
-            number(out, experiment_error_after(&s, column, spec->times[i]), "%.3g");
+            experiment_number(out, experiment_error_after(&s, column, spec->times[i]), "%.3g");
         fputc('\n', out);
     }
     fprintf(out, "\nBetween frames by interpolation in logarithms; \"under\": the first frame is better already; -: not reached in the "
@@ -254,38 +305,60 @@ static void print_noise(FILE *out, const experiment_lab *lab, size_t index) {
                 all ? n->relmse_all : n->relmse, all ? n->clamped_all : n->clamped);
 }
 
-static int print_view(FILE *out, experiment_lab *lab, size_t scene, size_t camera) {
+/* Plots and tables of one mode. */
+static int print_mode(FILE *out, experiment_lab *lab, size_t camera, int mode) {
     const experiment_spec *spec = &lab->spec;
-    char *slug = experiment_slug(lab, scene, camera), clamped[48];
-    int status = CLI_OK;
-    experiment_series s = { lab, scene, camera, 0, 0 };
-    fprintf(out, "\n## %s, %s\n", spec->scenes[scene].name, spec->cameras[camera].name);
-    print_noise(out, lab, scene * spec->camera_count + camera);
-    print_crops(out, lab, scene * spec->camera_count + camera, slug);
-    snprintf(clamped, sizeof(clamped), "relMSE clamped to %g cd/m2", spec->ceiling);
-    for (int mode = EXPERIMENT_MODES - 1; mode >= 0; mode--) {
-        if (spec->accumulate != mode && spec->accumulate != EXPERIMENT_MODES)
-            continue;
-        s.mode = mode;
+    int status = CLI_OK, first = spec->all_pixels ? COL_RMSE8_ALL : COL_RMSE8, motion = spec->cameras[camera].frames;
+    experiment_series s = { lab, camera, 0, mode };
+    char *slug = experiment_slug(lab, camera), clamped[48];
+    if (motion)
+        fprintf(out, "\n### Frame %d, after %d %s\n", motion, motion - 1, spec->cameras[camera].cut ? "frames and a cut" : "frames of motion");
+    else
         fprintf(out, "\n### %s\n", mode_names[mode]);
-        for (int over_time = 0; !status && over_time <= (mode == EXPERIMENT_ACCUMULATED); over_time++) {
-            char *name = cli_format("%s-%s-%s.svg", slug, mode ? "mean" : "alone", over_time ? "cpu" : "frames");
-            status = experiment_plot(lab, scene, camera, mode, over_time, name);
-            fprintf(out, "\n![Error over %s](%s)\n", over_time ? "CPU time" : "frames", name);
-            free(name);
-        }
-        int first = spec->all_pixels ? COL_RMSE8_ALL : COL_RMSE8;
-        fprintf(out, "\nOn %s:\n", spec->all_pixels ? "all pixels" : "pixels that see no emitter");
-        print_errors(out, s, clamped, first + 2, "%.3g", false);
-        print_errors(out, s, "relMSE", first + 1, "%.3g", false);
-        print_errors(out, s, "RMSE-8", first, "%.2f", false);
-        print_errors(out, s, "Bias, %", first + 3, "%+.2f", true);
-        if (mode == EXPERIMENT_ACCUMULATED || spec->accumulate == EXPERIMENT_ALONE) {
-            print_equal_time(out, s);
-            print_times(out, s);
-        }
+    for (int over_time = 0; !status && !motion && over_time <= (mode == EXPERIMENT_ACCUMULATED); over_time++) {
+        char *name = cli_format("%s-%s-%s.svg", slug, mode ? "mean" : "alone", over_time ? "cpu" : "frames");
+        status = experiment_plot(lab, camera, mode, over_time, name);
+        fprintf(out, "\n![Error over %s](%s)\n", over_time ? "CPU time" : "frames", name);
+        free(name);
     }
+    fprintf(out, "\nOn %s:\n", spec->all_pixels ? "all pixels" : "pixels that see no emitter");
+    snprintf(clamped, sizeof(clamped), "relMSE clamped to %g cd/m2", spec->ceiling);
+    if (motion)
+        print_one_frame(out, s, clamped, first);
+    else
+        print_all_frames(out, s, clamped, first);
+    if (mode == EXPERIMENT_ACCUMULATED || (spec->accumulate == EXPERIMENT_ALONE && !motion))
+        print_equal_time(out, s);
+    if (mode == EXPERIMENT_ACCUMULATED || spec->accumulate == EXPERIMENT_ALONE || motion)
+        print_times(out, s);
     free(slug);
+    return status;
+}
+
+static int print_view(FILE *out, experiment_lab *lab, size_t camera) {
+    const experiment_spec *spec = &lab->spec;
+    int status = CLI_OK;
+    fprintf(out, "\n## %s, %s\n", spec->scenes[spec->cameras[camera].scene].name, spec->cameras[camera].name);
+    print_noise(out, lab, camera);
+    print_crops(out, lab, camera);
+    for (int mode = EXPERIMENT_MODES - 1; !status && mode >= 0; mode--)
+        if (experiment_has_mode(spec, camera, mode))
+            status = print_mode(out, lab, camera, mode);
+    return status;
+}
+
+/* Over all cameras. */
+static int print_charts(FILE *out, experiment_lab *lab) {
+    int status = experiment_write_summary(lab);
+    fprintf(out, "\nIn short: [summary.md](summary.md).\n");
+    if (!status && experiment_has_dots(&lab->spec)) {
+        status = experiment_dots(lab, "errors.svg");
+        fprintf(out, "\n![Errors](errors.svg)\n");
+    }
+    if (!status && experiment_has_bars(&lab->spec)) {
+        status = experiment_bars(lab, "frame-times.svg");
+        fprintf(out, "\n![Frame times](frame-times.svg)\n");
+    }
     return status;
 }
 
@@ -295,10 +368,9 @@ int experiment_write_report(experiment_lab *lab) {
     if (!out)
         return CLI_FAILURE;
     print_setting(out, lab);
-    int status = CLI_OK;
-    for (size_t scene = 0; !status && scene < lab->spec.scene_count; scene++)
-        for (size_t camera = 0; !status && camera < lab->spec.camera_count; camera++)
-            status = print_view(out, lab, scene, camera);
+    int status = print_charts(out, lab);
+    for (size_t camera = 0; !status && camera < lab->spec.camera_count; camera++)
+        status = print_view(out, lab, camera);
     int finished = experiment_finish(lab, out, "report.md", temporary);
     return status ? status : finished;
 }

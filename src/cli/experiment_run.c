@@ -8,21 +8,27 @@
 typedef struct measuring {
     experiment_lab *lab;
     experiment_run *run;
-    int frame, frames;
-    double *sum; /* of all frames so far */
+    int frame, frames; /* frames: at most */
+    double cpu, wall;  /* seconds of all frames so far; where a row of an earlier session tells them, as told there */
 } measuring;
 
-char *experiment_picture(const experiment_lab *lab, const experiment_run *run) {
-    return cli_format("%s/pictures/%s.exr", lab->folder, run->key);
+int experiment_shown_mode(const experiment_spec *spec, size_t camera) {
+    return !spec->cameras[camera].frames && spec->accumulate == EXPERIMENT_ACCUMULATED ? EXPERIMENT_ACCUMULATED : EXPERIMENT_ALONE;
+}
+
+char *experiment_picture(const experiment_lab *lab, const char *key, int mode, int frame) {
+    return cli_format("%s/pictures/%s-%s%d.exr", lab->folder, key, mode == EXPERIMENT_ACCUMULATED ? "mean" : "frame", frame);
 }
 
 static bool frame_progress(void *user, const char *what, double done) {
     const measuring *m = user;
     const experiment_lab *lab = m->lab;
-    double made = (double)(lab->rows_done - lab->rows_old), left = (double)(lab->rows_total - lab->rows_done);
+    const experiment_config *config = &lab->spec.configs[m->run->config];
+    double share = config->seconds > 0 ? m->cpu / config->seconds : (m->frame - 1 + done) / m->frames;
+    share = ((double)lab->runs_done + share) / (double)lab->run_count;
     double spent = cli_now() - lab->started;
-    cli_progress_show((double)lab->rows_done / (double)lab->rows_total, made > 0 && spent > 2 ? spent / made * left : -1,
-                      "%s, frame %d of %d", lab->spec.configs[m->run->config].name, m->frame, m->frames);
+    /* What earlier sessions made passes in no time, so time left is told where there was nothing. */
+    cli_progress_show(share, !lab->rows_old && spent > 2 ? spent / share - spent : -1, "%s, frame %d", config->name, m->frame);
     return !cli_interrupted();
 }
 
@@ -33,10 +39,12 @@ static void keep_figures(double *values, const noc_metrics *raw, const noc_metri
     values[3] = raw->bias;
 }
 
-/* Figures of one picture, and the row they make. Times of a frame whose other row is there already are that row's. */
-static int add_row(measuring *m, int mode, const noc_image *image, const noc_frame_stats *stats) {
+/* Figures of one picture, and the row they make. */
+static int add_row(const measuring *m, int mode, const noc_image *image, const noc_frame_stats *stats, const noc_light_stats *lights) {
     experiment_lab *lab = m->lab;
-    experiment_row *rows = m->run->rows[mode], *row = &rows[m->frame - 1];
+    if (!experiment_has_mode(&lab->spec, m->run->camera, mode))
+        return CLI_OK;
+    experiment_row *row = experiment_row_of(m->run, mode, m->frame);
     if (row->done)
         return CLI_OK;
     noc_compare_params params = noc_compare_default_params();
@@ -47,87 +55,149 @@ static int add_row(measuring *m, int mode, const noc_image *image, const noc_fra
     double *v = row->values;
     v[COL_WALL] = stats->wall_seconds;
     v[COL_CPU] = stats->cpu_seconds;
-    v[COL_WALL_TOTAL] = v[COL_WALL] + (m->frame > 1 ? row[-1].values[COL_WALL_TOTAL] : 0);
-    v[COL_CPU_TOTAL] = v[COL_CPU] + (m->frame > 1 ? row[-1].values[COL_CPU_TOTAL] : 0);
+    v[COL_WALL_TOTAL] = m->wall;
+    v[COL_CPU_TOTAL] = m->cpu;
     keep_figures(v + COL_RMSE8, &figures.dark, &figures.dark_clamped);
     keep_figures(v + COL_RMSE8_ALL, &figures.all, &figures.all_clamped);
     v[COL_BUILD] = stats->build_seconds;
     v[COL_MEMORY] = (double)stats->memory_bytes;
     v[COL_RAYS] = (double)stats->rays_shadow;
     v[COL_DROPPED] = (double)stats->dropped;
+    v[COL_LIGHT_BUILD] = lights->build_seconds;
+    v[COL_LIGHT_BYTES] = (double)lights->bytes;
+    v[COL_SCENE_BYTES] = (double)lights->scene_bytes;
+    v[COL_INFLUENCE] = lights->influence;
+    v[COL_FOUND_NONE] = lights->found_none;
+    v[COL_FOUND_MEDIAN] = lights->found_median;
+    v[COL_FOUND_99] = lights->found_99;
     row->done = true;
     lab->rows_done++;
     return experiment_append(lab, m->run, mode, m->frame);
 }
 
 /* The image becomes the mean of the frames so far. */
-static void average(measuring *m, noc_image *image) {
+static void average(const measuring *m, noc_image *image) {
     size_t n = (size_t)image->width * (size_t)image->height * 3;
+    double *sum = m->lab->sum;
     for (size_t i = 0; i < n; i++) {
-        m->sum[i] += image->rgb[i];
-        image->rgb[i] = (float)(m->sum[i] / m->frame);
+        sum[i] = m->frame > 1 ? sum[i] + image->rgb[i] : image->rgb[i];
+        image->rgb[i] = (float)(sum[i] / m->frame);
     }
 }
 
-static int keep_first(const measuring *m, const noc_image *image) {
-    char *path = experiment_picture(m->lab, m->run);
+static int keep_picture(const measuring *m, int mode, const noc_image *image) {
+    const experiment_spec *spec = &m->lab->spec;
+    if (m->run->repetition || mode != experiment_shown_mode(spec, m->run->camera) || !experiment_shows(spec, m->run->camera, m->frame))
+        return CLI_OK;
+    char *path = experiment_picture(m->lab, m->run->key, mode, m->frame);
     noc_display_params display = noc_display_default_params();
-    const char *keys[] = { "configuration" }, *values[] = { m->lab->spec.configs[m->run->config].name };
+    const char *keys[] = { "configuration" }, *values[] = { spec->configs[m->run->config].name };
     noc_status status = noc_image_write(image, path, &display, &(noc_image_meta){ 1, keys, values }, m->lab->log);
     free(path);
     return status ? CLI_FAILURE : CLI_OK;
 }
 
-static int take_frame(measuring *m, noc_renderer *renderer) {
+/* Time so far. A row that is there already tells it better: those after it were measured on from there. */
+static void add_times(measuring *m, const noc_frame_stats *stats) {
+    m->cpu += stats->cpu_seconds;
+    m->wall += stats->wall_seconds;
+    for (int mode = 0; mode < EXPERIMENT_MODES && m->frame <= m->run->count; mode++) {
+        const experiment_row *row = &m->run->rows[mode][m->frame - 1];
+        if (!row->done)
+            continue;
+        m->cpu = row->values[COL_CPU_TOTAL];
+        m->wall = row->values[COL_WALL_TOTAL];
+    }
+}
+
+static bool is_measured(const experiment_lab *lab, const experiment_run *run, int frame) {
+    return experiment_measures(&lab->spec, run->camera, run->config, frame);
+}
+
+/* Is any row there of this frame? */
+static bool has_row(const experiment_run *run, int frame) {
+    return frame <= run->count && (run->rows[EXPERIMENT_ALONE][frame - 1].done || run->rows[EXPERIMENT_ACCUMULATED][frame - 1].done);
+}
+
+/* One frame is there: its rows and picture, if it is one of those that are measured, or the last. */
+static int take_frame(measuring *m, noc_renderer *renderer, bool *last) {
+    experiment_lab *lab = m->lab;
     noc_frame_stats stats;
+    noc_light_stats lights;
     noc_renderer_get_stats(renderer, &stats);
-    snprintf(m->lab->path, sizeof(m->lab->path), "%s", stats.path ? stats.path : "");
+    noc_renderer_light_stats(renderer, &lights);
+    add_times(m, &stats);
+    double seconds = lab->spec.configs[m->run->config].seconds;
+    bool spent = seconds > 0 && m->cpu >= seconds && m->frame >= m->run->count && !lab->spec.cameras[m->run->camera].frames;
+    *last = spent || m->frame == m->frames;
+    snprintf(lab->path, sizeof(lab->path), "%s", stats.path ? stats.path : "");
+    bool rows = is_measured(lab, m->run, m->frame) || spent || has_row(m->run, m->frame);
+    bool mean = experiment_has_mode(&lab->spec, m->run->camera, EXPERIMENT_ACCUMULATED);
+    if (!rows && !mean && !experiment_shows(&lab->spec, m->run->camera, m->frame))
+        return CLI_OK;
     noc_image *image = noc_renderer_image(renderer);
-    if (!image)
-        return CLI_FAILURE;
-    int status = m->frame == 1 && !m->run->repetition ? keep_first(m, image) : CLI_OK;
-    if (!status && m->run->rows[EXPERIMENT_ALONE])
-        status = add_row(m, EXPERIMENT_ALONE, image, &stats);
-    if (!status && m->run->rows[EXPERIMENT_ACCUMULATED]) {
+    int status = image ? keep_picture(m, EXPERIMENT_ALONE, image) : CLI_FAILURE;
+    if (!status && rows)
+        status = add_row(m, EXPERIMENT_ALONE, image, &stats, &lights);
+    if (!status && mean) {
         average(m, image);
-        status = add_row(m, EXPERIMENT_ACCUMULATED, image, &stats);
+        status = rows ? add_row(m, EXPERIMENT_ACCUMULATED, image, &stats, &lights) : CLI_OK;
+        status = status ? status : keep_picture(m, EXPERIMENT_ACCUMULATED, image);
     }
     noc_image_destroy(image);
     return status;
 }
 
-/* Frames that must be rendered: up to the last row that misses. Earlier ones are made again without new rows, because a
- * frame needs those before it. */
+/* The last frame whose row misses; 0: none. */
+static int row_missing(const experiment_lab *lab, const experiment_run *run) {
+    double seconds = lab->spec.configs[run->config].seconds;
+    int frames = experiment_frames(&lab->spec, run->camera, run->config), last = 0;
+    for (int frame = 1; frame <= frames; frame++) {
+        bool there = has_row(run, frame);
+        for (int mode = 0; mode < EXPERIMENT_MODES && (there || is_measured(lab, run, frame)); mode++)
+            if (experiment_has_mode(&lab->spec, run->camera, mode) && !(there && run->rows[mode][frame - 1].done))
+                last = frame;
+        if (!(seconds > 0) || lab->spec.cameras[run->camera].frames)
+            continue;
+        if (!last && there && run->rows[experiment_shown_mode(&lab->spec, run->camera)][frame - 1].values[COL_CPU_TOTAL] >= seconds)
+            return 0;
+        if (last)
+            return frames; /* time decides which is the last */
+    }
+    return last;
+}
+
+/* Frames that must be rendered: up to the last whose row or picture misses. Earlier ones are made again without new rows,
+ * because a frame needs those before it. */
 static int frames_missing(const experiment_lab *lab, const experiment_run *run) {
-    int last = 0;
-    for (int mode = 0; mode < EXPERIMENT_MODES; mode++)
-        for (int i = 0; run->rows[mode] && i < lab->spec.configs[run->config].frames; i++)
-            if (!run->rows[mode][i].done && i + 1 > last)
-                last = i + 1;
-    char *picture = experiment_picture(lab, run);
-    if (!last && !run->repetition && access(picture, R_OK))
-        last = 1;
-    free(picture);
+    const experiment_spec *spec = &lab->spec;
+    int last = row_missing(lab, run), mode = experiment_shown_mode(spec, run->camera);
+    int frames = spec->configs[run->config].seconds > 0 ? run->count : experiment_frames(spec, run->camera, run->config);
+    for (int frame = last + 1; !run->repetition && frame <= frames; frame++) {
+        char *picture = experiment_shows(spec, run->camera, frame) ? experiment_picture(lab, run->key, mode, frame) : NULL;
+        if (picture && access(picture, R_OK))
+            last = frame;
+        free(picture);
+    }
     return last;
 }
 
 int experiment_measure(experiment_lab *lab, experiment_run *run) {
-    measuring m = { lab, run, 1, frames_missing(lab, run), NULL };
+    measuring m = { .lab = lab, .run = run, .frame = 1, .frames = frames_missing(lab, run) };
     if (!m.frames)
         return CLI_OK;
     noc_renderer *renderer = noc_renderer_create(lab->scene, &(noc_renderer_params){ .threads = lab->args->threads }, lab->log);
     int status = renderer ? CLI_OK : CLI_FAILURE;
-    m.sum = cli_alloc(sizeof(double) * 3 * (size_t)lab->spec.width * (size_t)lab->spec.height);
     noc_render_params params = experiment_params(lab, run);
-    for (; !status && m.frame <= m.frames; m.frame++) {
+    for (bool last = false; !status && !last; m.frame++) {
+        noc_camera camera = experiment_camera_at(lab, run->camera, m.frame);
         noc_status rendered = cli_interrupted() ? NOC_ERR_CANCELLED
-            : noc_renderer_frame(renderer, &lab->camera, &params, &(noc_progress){ frame_progress, &m });
+            : noc_renderer_frame(renderer, &camera, &params, &(noc_progress){ frame_progress, &m });
         if (rendered)
             status = cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_FAILURE;
         else
-            status = take_frame(&m, renderer);
+            status = take_frame(&m, renderer, &last);
     }
-    free(m.sum);
     noc_renderer_destroy(renderer);
     return status;
 }

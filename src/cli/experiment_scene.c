@@ -72,6 +72,13 @@ int experiment_load_scene(experiment_lab *lab, size_t index) {
     return CLI_OK;
 }
 
+static void hash_camera(hash_state *hash, const noc_camera *c) {
+    hash_bytes(hash, c->eye, sizeof(c->eye));
+    hash_bytes(hash, c->target, sizeof(c->target));
+    hash_bytes(hash, c->up, sizeof(c->up));
+    hash_bytes(hash, &c->fov_deg, sizeof(c->fov_deg));
+}
+
 /* What the picture shows: inputs, options, camera, and a few figures of the scene, for the code that makes it may change
  * without its version. */
 static int hash_view(const experiment_lab *lab, size_t index, hash_state *hash) {
@@ -94,11 +101,7 @@ static int hash_view(const experiment_lab *lab, size_t index, hash_state *hash) 
     hash_bytes(hash, counts, sizeof(counts));
     hash_bytes(hash, info->bounds_min, sizeof(info->bounds_min));
     hash_bytes(hash, info->bounds_max, sizeof(info->bounds_max));
-    const noc_camera *c = &lab->camera;
-    hash_bytes(hash, c->eye, sizeof(c->eye));
-    hash_bytes(hash, c->target, sizeof(c->target));
-    hash_bytes(hash, c->up, sizeof(c->up));
-    hash_bytes(hash, &c->fov_deg, sizeof(c->fov_deg));
+    hash_camera(hash, &lab->camera);
     return CLI_OK;
 }
 
@@ -151,17 +154,11 @@ static int render_reference(experiment_lab *lab, const char *path, experiment_no
     return CLI_OK;
 }
 
-int experiment_make_reference(experiment_lab *lab, size_t scene, size_t camera) {
+int experiment_make_reference(experiment_lab *lab, size_t camera) {
     experiment_spec *spec = &lab->spec;
-    experiment_camera *c = &spec->cameras[camera];
-    c->args.render.width = spec->width;
-    c->args.render.height = spec->height;
-    render_job job = { .args = &c->args, .scene = lab->scene, .log = lab->log, .scene_info = lab->scene_infos[scene] };
-    memcpy(job.eye, c->eye, sizeof(job.eye));
-    memcpy(job.target, c->target, sizeof(job.target));
-    if (cli_place_camera(&job))
+    size_t scene = spec->cameras[camera].scene;
+    if (experiment_place_cameras(lab, camera))
         return CLI_FAILURE;
-    lab->camera = job.camera;
     hash_state hash = hash_start();
     int status = hash_view(lab, scene, &hash);
     if (status)
@@ -173,16 +170,17 @@ int experiment_make_reference(experiment_lab *lab, size_t scene, size_t camera) 
     char *path = cli_format("%s/reference-%s.exr", lab->cache, lab->reference_key), took[32];
     lab->reference = read_cached(lab, path);
     bool quiet = lab->args->common.quiet;
-    experiment_noise *noise = &lab->noises[scene * spec->camera_count + camera];
+    experiment_noise *noise = &lab->noises[camera];
     if (lab->reference) {
         *noise = experiment_read_noise(path);
         if (!quiet)
-            printf("%s, %s: reference from %s\n", spec->scenes[scene].name, c->name, path);
+            printf("%s, %s: reference from %s\n", spec->scenes[scene].name, spec->cameras[camera].name, path);
     } else {
         double start = cli_now();
         status = render_reference(lab, path, noise);
         if (!status && !quiet)
-            printf("%s, %s: reference made in %s: %s\n", spec->scenes[scene].name, c->name, cli_seconds(took, cli_now() - start), path);
+            printf("%s, %s: reference made in %s: %s\n", spec->scenes[scene].name, spec->cameras[camera].name,
+                   cli_seconds(took, cli_now() - start), path);
     }
     fflush(stdout);
     free(path);
@@ -237,12 +235,16 @@ void experiment_run_key(const experiment_lab *lab, experiment_run *run) {
     noc_render_params params = experiment_params(lab, run);
     hash_state hash = hash_start();
     hash_text(&hash, lab->reference_key);
-    hash_text(&hash, spec->scenes[run->scene].name);
+    hash_text(&hash, spec->scenes[spec->cameras[run->camera].scene].name);
     hash_text(&hash, spec->cameras[run->camera].name);
     hash_text(&hash, spec->configs[run->config].name);
     hash_text(&hash, experiment_machine()); /* times of two machines do not mix */
     hash_text(&hash, build_key());
     hash_options(&hash, noc_render_options(), &params);
+    for (int frame = 1; frame <= spec->cameras[run->camera].frames; frame++) {
+        noc_camera camera = experiment_camera_at(lab, run->camera, frame);
+        hash_camera(&hash, &camera);
+    }
     hash_bytes(&hash, &run->repetition, sizeof(run->repetition));
     hash_bytes(&hash, &lab->args->threads, sizeof(lab->args->threads));
     hash_bytes(&hash, &spec->ceiling, sizeof(spec->ceiling));

@@ -1,26 +1,63 @@
 /* Curves of an experiment: means over its repetitions, and times between frames by interpolation. */
 #include "experiment.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
-experiment_run *experiment_find_run(const experiment_lab *lab, size_t scene, size_t camera, size_t config, int repetition) {
+experiment_run *experiment_find_run(const experiment_lab *lab, size_t camera, size_t config, int repetition) {
     const experiment_spec *spec = &lab->spec;
-    return &lab->runs[((scene * spec->camera_count + camera) * (size_t)spec->repetitions + (size_t)repetition) * spec->config_count + config];
+    return &lab->runs[(camera * (size_t)spec->repetitions + (size_t)repetition) * spec->config_count + config];
+}
+
+/* Of a camera that moves the last frame alone is measured. */
+bool experiment_has_mode(const experiment_spec *spec, size_t camera, int mode) {
+    if (spec->cameras[camera].frames)
+        return mode == EXPERIMENT_ALONE;
+    return spec->accumulate == mode || spec->accumulate == EXPERIMENT_MODES;
+}
+
+int experiment_frames(const experiment_spec *spec, size_t camera, size_t config) {
+    return spec->cameras[camera].frames ? spec->cameras[camera].frames : spec->configs[config].frames;
+}
+
+bool experiment_measures(const experiment_spec *spec, size_t camera, size_t config, int frame) {
+    int last = experiment_frames(spec, camera, config);
+    if (spec->cameras[camera].frames || frame == last)
+        return frame == last;
+    for (size_t i = 0; i < spec->measured_count; i++)
+        if (spec->measured[i] == frame)
+            return true;
+    if (spec->measured_count || !(spec->configs[config].seconds > 0))
+        return !spec->measured_count;
+    /* Thousands of frames fit into some seconds: their distance rises by an eighth. */
+    int next = 1;
+    while (next < frame)
+        next += next < 16 ? 1 : next / 8;
+    return next == frame;
+}
+
+int experiment_last(const experiment_series *s) {
+    int last = INT_MAX;
+    for (int i = 0; i < s->lab->spec.repetitions; i++) {
+        int count = experiment_find_run(s->lab, s->camera, s->config, i)->count;
+        last = count < last ? count : last;
+    }
+    while (last > 0 && isnan(experiment_at(s, 0, last)))
+        last--;
+    return last;
 }
 
 double experiment_at(const experiment_series *s, int column, int frame) {
     double sum = 0;
-    const experiment_spec *spec = &s->lab->spec;
-    if (frame < 1 || frame > spec->configs[s->config].frames)
-        return NAN;
-    for (int i = 0; i < spec->repetitions; i++) {
-        const experiment_row *rows = experiment_find_run(s->lab, s->scene, s->camera, s->config, i)->rows[s->mode];
-        if (!rows || !rows[frame - 1].done)
+    int repetitions = s->lab->spec.repetitions;
+    for (int i = 0; i < repetitions; i++) {
+        const experiment_run *run = experiment_find_run(s->lab, s->camera, s->config, i);
+        if (frame < 1 || frame > run->count || !run->rows[s->mode] || !run->rows[s->mode][frame - 1].done)
             return NAN;
-        sum += rows[frame - 1].values[column];
+        sum += run->rows[s->mode][frame - 1].values[column];
     }
-    return sum / spec->repetitions;
+    return sum / repetitions;
 }
 
 int experiment_column(const experiment_spec *spec) {
@@ -45,14 +82,17 @@ static int by_size(const void *a, const void *b) {
 
 double experiment_median(const experiment_series *s, int column) {
     const experiment_spec *spec = &s->lab->spec;
-    int frames = spec->configs[s->config].frames, first = frames > 1;
-    size_t count = 0;
-    double *values = cli_alloc(sizeof(double) * (size_t)frames * (size_t)spec->repetitions), median = NAN;
-    for (int i = 0; i < spec->repetitions; i++) {
-        const experiment_row *rows = experiment_find_run(s->lab, s->scene, s->camera, s->config, i)->rows[s->mode];
-        for (int f = first; rows && f < frames; f++)
-            if (rows[f].done)
-                values[count++] = rows[f].values[column];
+    size_t count = 0, room = 0;
+    for (int i = 0; i < spec->repetitions; i++)
+        room += (size_t)experiment_find_run(s->lab, s->camera, s->config, i)->count;
+    double *values = cli_alloc(sizeof(double) * (room + 1)), median = NAN;
+    for (int first = 1; first >= 0 && !count; first--) { /* the first frame only where there is no other */
+        for (int i = 0; i < spec->repetitions; i++) {
+            const experiment_run *run = experiment_find_run(s->lab, s->camera, s->config, i);
+            for (int f = first; run->rows[s->mode] && f < run->count; f++)
+                if (run->rows[s->mode][f].done)
+                    values[count++] = run->rows[s->mode][f].values[column];
+        }
     }
     qsort(values, count, sizeof(double), by_size);
     if (count)
@@ -70,12 +110,12 @@ static double between(double x0, double y0, double x1, double y1, double y) {
 
 double experiment_time_to(const experiment_series *s, int column, double error) {
     double time = 0, before = 0;
-    for (int frame = 1; frame <= s->lab->spec.configs[s->config].frames; frame++) {
+    for (int frame = 1, last = experiment_last(s); frame <= last; frame++) {
         double now = experiment_at(s, COL_CPU_TOTAL, frame), y = experiment_at(s, column, frame);
         if (isnan(y))
-            return NAN;
+            continue;
         if (y <= error)
-            return frame == 1 ? 0 : between(time, before, now, y, error);
+            return time > 0 ? between(time, before, now, y, error) : 0;
         time = now;
         before = y;
     }
@@ -84,12 +124,12 @@ double experiment_time_to(const experiment_series *s, int column, double error) 
 
 double experiment_error_after(const experiment_series *s, int column, double seconds) {
     double time = 0, before = 0;
-    for (int frame = 1; frame <= s->lab->spec.configs[s->config].frames; frame++) {
+    for (int frame = 1, last = experiment_last(s); frame <= last; frame++) {
         double now = experiment_at(s, COL_CPU_TOTAL, frame), y = experiment_at(s, column, frame);
         if (isnan(y))
-            return NAN;
+            continue;
         if (now >= seconds)
-            return frame == 1 ? NAN : between(before, time, y, now, seconds);
+            return time > 0 ? between(before, time, y, now, seconds) : NAN;
         time = now;
         before = y;
     }

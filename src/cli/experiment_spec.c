@@ -11,7 +11,8 @@
 #define TEXT(n, f) { n, "Spec", NOC_OPTION_TEXT, offsetof(S, f), 0, 0, NULL, "", "" }
 static const noc_option spec_options[] = {
     TEXT("title", title), TEXT("note", note), TEXT("size", size), TEXT("crop", crop),
-    { "frames", "Spec", NOC_OPTION_INT, offsetof(S, frames), 1, 100000, NULL, "", "" },
+    { "frames", "Spec", NOC_OPTION_INT, offsetof(S, frames), 1, EXPERIMENT_FRAMES, NULL, "", "" },
+    { "seconds", "Spec", NOC_OPTION_REAL, offsetof(S, seconds), 0, 1e6, NULL, "s", "" },
     { "repetitions", "Spec", NOC_OPTION_INT, offsetof(S, repetitions), 1, 1000, NULL, "", "" },
     { "accumulate", "Spec", NOC_OPTION_CHOICE, offsetof(S, accumulate), 0, 0, "false|true|both", "", "" },
     { "seed", "Spec", NOC_OPTION_UINT, offsetof(S, seed), 0, 4294960000.0, NULL, "", "" },
@@ -23,26 +24,10 @@ static const noc_option spec_options[] = {
 static const noc_option *spec_table(void) { return spec_options; }
 
 static const noc_option reference_options[] = {
-    { "frames", "Reference", NOC_OPTION_INT, offsetof(S, reference.frames), 1, 100000, NULL, "", "" },
+    { "frames", "Reference", NOC_OPTION_INT, offsetof(S, reference.frames), 1, EXPERIMENT_FRAMES, NULL, "", "" },
     { NULL },
 };
 static const noc_option *reference_table(void) { return reference_options; }
-
-static const noc_option config_options[] = {
-    { "frames", "Configuration", NOC_OPTION_INT, offsetof(experiment_config, frames), 1, 100000, NULL, "", "" },
-    { NULL },
-};
-static const noc_option *config_table(void) { return config_options; }
-
-/* Of render's own options, those that place a camera. */
-static const noc_option *camera_table(void) {
-    static noc_option rows[6];
-    static const char *const names[] = { "view", "eye", "target", "camera-crs", "fov" };
-    size_t offset;
-    for (size_t i = 0; i < 5; i++)
-        rows[i] = *experiment_option(cli_render.sets, names[i], &offset);
-    return rows;
-}
 
 /* What the spec says once for all configurations. */
 static const char *const said_above[] = { "width", "height", "seed", "accumulate", NULL };
@@ -59,41 +44,9 @@ static const cli_set scene_sets[] = {
     { noc_builtin_options, offsetof(experiment_scene, builtin), NULL },
     { NULL }
 };
-static const cli_set camera_sets[] = { { camera_table, offsetof(experiment_camera, args), NULL }, { NULL } };
-static const cli_set config_sets[] = {
-    { config_table, 0, NULL }, { noc_render_options, offsetof(experiment_config, params), said_above }, { NULL }
-};
-static const char *const objects[] = { "scene", "scenes", "cameras", "options", "reference", "configurations", "equal-time", NULL };
-static const char *const scene_others[] = { "name", "inputs", NULL }, *const named[] = { "name", NULL };
-
-/* All members of an object. */
-static int set_all(S *spec, const char *place, json_t *object, const cli_set *sets, const char *const *others, void *params) {
-    if (!object)
-        return CLI_OK;
-    if (!json_is_object(object))
-        return experiment_wrong(spec, place, "this must be an object, {...}");
-    const char *name;
-    json_t *value;
-    json_object_foreach(object, name, value) {
-        int status = experiment_set(spec, place, sets, others, params, name, value);
-        if (status)
-            return status;
-    }
-    return CLI_OK;
-}
-
-static int read_name(S *spec, const char *place, json_t *object, const char **name) {
-    const char *text = json_string_value(json_object_get(object, "name"));
-    if (!text || !*text)
-        return experiment_wrong(spec, place, "it needs a name");
-    if (strlen(text) > 80)
-        return experiment_wrong(spec, place, "its name is longer than 80 bytes");
-    for (const char *c = text; *c; c++)
-        if ((unsigned char)*c < 32 || *c == 127)
-            return experiment_wrong(spec, place, "its name holds a control character");
-    *name = experiment_keep(spec, cli_format("%s", text));
-    return CLI_OK;
-}
+static const char *const objects[] = { "scene", "scenes", "cameras", "options", "reference", "configurations", "equal-time", "measured", "shown",
+                                       NULL };
+static const char *const scene_others[] = { "name", "inputs", "cameras", NULL };
 
 /* Files are named as seen from the spec's folder. */
 static const char *resolve(S *spec, const char *input) {
@@ -105,8 +58,8 @@ static const char *resolve(S *spec, const char *input) {
 
 static int read_scene(S *spec, const char *place, json_t *object, experiment_scene *scene) {
     *scene = (experiment_scene){ .import = noc_import_default_params(), .builtin = noc_builtin_default_params() };
-    int status = set_all(spec, place, object, scene_sets, scene_others, scene);
-    status = status ? status : read_name(spec, place, object, &scene->name);
+    int status = experiment_set_all(spec, place, object, scene_sets, scene_others, scene);
+    status = status ? status : experiment_read_name(spec, place, object, &scene->name);
     if (status)
         return status;
     json_t *inputs = json_object_get(object, "inputs"), *input;
@@ -114,7 +67,7 @@ static int read_scene(S *spec, const char *place, json_t *object, experiment_sce
     if (!count)
         return experiment_wrong(spec, place, "inputs must be an array of files or builtin:NAME");
     scene->inputs = cli_alloc(sizeof(char *) * count);
-    experiment_keep(spec, (char *)scene->inputs);
+    experiment_keep(spec, scene->inputs);
     json_array_foreach(inputs, i, input) {
         const char *text = json_string_value(input);
         if (!text || !*text)
@@ -129,103 +82,6 @@ static int read_scene(S *spec, const char *place, json_t *object, experiment_sce
                 return experiment_wrong(spec, place, "%s is for the input %s", o->name, needed);
         }
     return CLI_OK;
-}
-
-static int read_camera(S *spec, const char *place, json_t *object, experiment_camera *camera) {
-    render_args *args = &camera->args;
-    *args = *(const render_args *)cli_render.defaults;
-    int status = set_all(spec, place, object, camera_sets, named, camera);
-    status = status ? status : read_name(spec, place, object, &camera->name);
-    if (status)
-        return status;
-    if (!args->eye != !args->target)
-        return experiment_wrong(spec, place, "eye and target come together");
-    if (args->eye && json_object_get(object, "view"))
-        return experiment_wrong(spec, place, "view and eye exclude each other");
-    if (args->camera_crs && !args->eye)
-        return experiment_wrong(spec, place, "camera-crs is for eye and target");
-    if (args->eye && (!cli_parse_numbers(args->eye, ',', 3, camera->eye) || !cli_parse_numbers(args->target, ',', 3, camera->target)))
-        return experiment_wrong(spec, place, "eye and target are three numbers each, [x, y, z]");
-    if (args->eye && !memcmp(camera->eye, camera->target, sizeof(camera->eye)))
-        return experiment_wrong(spec, place, "eye and target are the same place");
-    size_t offset;
-    if (json_object_get(object, "fov"))
-        args->common.given[args->common.given_count++] = experiment_option(cli_render.sets, "fov", &offset);
-    return CLI_OK;
-}
-
-/* The option of a configuration that stands for several of its choices: "*" for all, or an array of them. *status where more
- * than one does. */
-static const noc_option *starred(S *spec, const char *place, json_t *object, int *status) {
-    const noc_option *found = NULL;
-    const char *name;
-    json_t *value;
-    json_object_foreach(object, name, value) {
-        size_t offset;
-        const noc_option *o = experiment_option(config_sets, name, &offset);
-        bool star = json_is_string(value) && !strcmp(json_string_value(value), "*");
-        if (!o || o->kind != NOC_OPTION_CHOICE || !(star || json_array_size(value)))
-            continue;
-        if (found)
-            *status = experiment_wrong(spec, place, "one option may have several choices, not two");
-        found = o;
-    }
-    return found;
-}
-
-/* The choices meant by a value of starred: a new array. */
-static json_t *choices_of(const noc_option *option, json_t *value) {
-    if (json_is_array(value))
-        return json_incref(value);
-    json_t *all = json_array();
-    for (const char *c = option->choices; *c;) {
-        size_t length = strcspn(c, "|");
-        json_array_append_new(all, json_stringn(c, length));
-        c += length + (c[length] == '|');
-    }
-    return all;
-}
-
-/* "ris, *" and lists -> "ris, lists" */
-static char *star_name(const char *name, const char *choice) {
-    const char *star = strchr(name, '*');
-    return star ? cli_format("%.*s%s%s", (int)(star - name), name, choice, star + 1) : cli_format("%s, %s", name, choice);
-}
-
-static experiment_config *add_config(S *spec, const noc_render_params *shared, size_t entry, int choice) {
-    spec->configs = realloc(spec->configs, sizeof(experiment_config) * (spec->config_count + 1));
-    if (!spec->configs) {
-        cli_error("out of memory");
-        exit(CLI_FAILURE);
-    }
-    experiment_config *config = &spec->configs[spec->config_count++];
-    *config = (experiment_config){ .params = *shared, .frames = spec->frames, .entry = (int)entry, .choice = choice };
-    return config;
-}
-
-static int read_config(S *spec, const char *place, json_t *object, const noc_render_params *shared, size_t entry) {
-    int status = CLI_OK;
-    const char *name = NULL;
-    const noc_option *star = json_is_object(object) ? starred(spec, place, object, &status) : NULL;
-    if (status || !star) {
-        experiment_config *config = status ? NULL : add_config(spec, shared, entry, -1);
-        status = status ? status : set_all(spec, place, object, config_sets, named, config);
-        return status ? status : read_name(spec, place, object, &config->name);
-    }
-    status = read_name(spec, place, object, &name);
-    json_t *choices = choices_of(star, json_object_get(object, star->name)), *choice;
-    size_t i;
-    json_array_foreach(choices, i, choice) {
-        if (status)
-            break;
-        experiment_config *config = add_config(spec, shared, entry, (int)i);
-        const char *text = json_string_value(choice);
-        config->name = experiment_keep(spec, star_name(name, text ? text : ""));
-        json_object_set(object, star->name, choice);
-        status = set_all(spec, place, object, config_sets, named, config);
-    }
-    json_decref(choices);
-    return status;
 }
 
 static int check_twice(S *spec, const char *what, const char *const *name, size_t stride, size_t count) {
@@ -243,27 +99,24 @@ static int read_lists(S *spec, json_t *root, const noc_render_params *shared) {
     json_t *cameras = json_object_get(root, "cameras"), *configs = json_object_get(root, "configurations");
     if (!scene == !scenes)
         return experiment_wrong(spec, "", "it needs one of scene, {...}, and scenes, [{...}, ...]");
-    if ((scenes && !json_array_size(scenes)) || !json_array_size(cameras) || !json_array_size(configs))
-        return experiment_wrong(spec, "", "it needs scenes, cameras and configurations, arrays that are not empty");
-    size_t scene_count = scenes ? json_array_size(scenes) : 1, camera_count = json_array_size(cameras);
+    if ((scenes && !json_array_size(scenes)) || !json_array_size(configs))
+        return experiment_wrong(spec, "", "it needs scenes and configurations, arrays that are not empty");
+    size_t scene_count = scenes ? json_array_size(scenes) : 1;
     spec->scenes = cli_alloc(sizeof(*spec->scenes) * scene_count);
-    spec->cameras = cli_alloc(sizeof(*spec->cameras) * camera_count);
     int status = CLI_OK;
     char place[64];
     for (; !status && spec->scene_count < scene_count; spec->scene_count++) {
         snprintf(place, sizeof(place), scenes ? "scenes[%zu]" : "scene", spec->scene_count);
-        status = read_scene(spec, place, scenes ? json_array_get(scenes, spec->scene_count) : scene, &spec->scenes[spec->scene_count]);
-    }
-    for (; !status && spec->camera_count < camera_count; spec->camera_count++) {
-        snprintf(place, sizeof(place), "cameras[%zu]", spec->camera_count);
-        status = read_camera(spec, place, json_array_get(cameras, spec->camera_count), &spec->cameras[spec->camera_count]);
+        json_t *object = scenes ? json_array_get(scenes, spec->scene_count) : scene;
+        status = read_scene(spec, place, object, &spec->scenes[spec->scene_count]);
+        json_t *own = status ? NULL : json_object_get(object, "cameras");
+        status = status ? status : experiment_read_cameras(spec, own ? place : "", own ? own : cameras, spec->scene_count);
     }
     for (size_t i = 0; !status && i < json_array_size(configs); i++) {
         snprintf(place, sizeof(place), "configurations[%zu]", i);
-        status = read_config(spec, place, json_array_get(configs, i), shared, i);
+        status = experiment_read_config(spec, place, json_array_get(configs, i), shared, i);
     }
     status = status ? status : check_twice(spec, "scenes", &spec->scenes->name, sizeof(*spec->scenes), spec->scene_count);
-    status = status ? status : check_twice(spec, "cameras", &spec->cameras->name, sizeof(*spec->cameras), spec->camera_count);
     return status ? status : check_twice(spec, "configurations", &spec->configs->name, sizeof(*spec->configs), spec->config_count);
 }
 
@@ -286,6 +139,22 @@ static int read_size(S *spec) {
     return CLI_OK;
 }
 
+/* Numbers of frames, rising; an array of the spec, or none. */
+static int read_frames(S *spec, const char *name, json_t *array, int **frames, size_t *count) {
+    size_t i;
+    json_t *item;
+    if (array && !json_is_array(array))
+        return experiment_wrong(spec, name, "this must be an array of frames, such as [1, 8, 32]");
+    *frames = experiment_keep(spec, cli_alloc(sizeof(int) * (json_array_size(array) + 1)));
+    json_array_foreach(array, i, item) {
+        json_int_t frame = json_integer_value(item);
+        if (frame < 1 || frame > EXPERIMENT_FRAMES || (*count && frame <= (*frames)[*count - 1]))
+            return experiment_wrong(spec, name, "frames are whole numbers from 1 on, each above the one before it");
+        (*frames)[(*count)++] = (int)frame;
+    }
+    return CLI_OK;
+}
+
 static int read_times(S *spec, json_t *times) {
     size_t i;
     json_t *time;
@@ -299,6 +168,15 @@ static int read_times(S *spec, json_t *times) {
     return CLI_OK;
 }
 
+static int check_rows(const S *spec) {
+    double rows = 0;
+    for (size_t c = 0; c < spec->camera_count; c++)
+        for (size_t i = 0; i < spec->config_count; i++)
+            rows += spec->configs[i].seconds > 0 ? 100 : experiment_frames(spec, c, i); /* seconds: about so many are measured */
+    rows *= 2.0 * spec->repetitions;
+    return rows > EXPERIMENT_ROWS ? experiment_wrong(spec, "", "it asks for more than %d rows", EXPERIMENT_ROWS) : CLI_OK;
+}
+
 static int read_root(S *spec, json_t *root) {
     if (!json_is_object(root))
         return experiment_wrong(spec, "", "a spec is one object, {...}");
@@ -306,24 +184,24 @@ static int read_root(S *spec, json_t *root) {
     noc_render_params shared = noc_render_default_params();
     shared.sky = 0;
     shared.jitter = false;
-    int status = set_all(spec, "", root, spec_sets, objects, spec);
+    int status = experiment_set_all(spec, "", root, spec_sets, objects, spec);
+    if (!status && spec->seconds > 0 && !json_object_get(root, "frames"))
+        spec->frames = EXPERIMENT_FRAMES;
     status = status ? status : read_size(spec);
     status = status ? status : read_times(spec, json_object_get(root, "equal-time"));
+    status = status ? status : read_frames(spec, "measured", json_object_get(root, "measured"), &spec->measured, &spec->measured_count);
+    status = status ? status : read_frames(spec, "shown", json_object_get(root, "shown"), &spec->shown, &spec->shown_count);
+    if (!status && !json_object_get(root, "shown"))
+        spec->shown[spec->shown_count++] = 1;
     shared.width = spec->width;
     shared.height = spec->height;
-    status = status ? status : set_all(spec, "options", json_object_get(root, "options"), shared_sets, NULL, &shared);
+    status = status ? status : experiment_set_all(spec, "options", json_object_get(root, "options"), shared_sets, NULL, &shared);
     spec->reference.params = shared;
     spec->reference.params.method = NOC_METHOD_REFERENCE;
     spec->reference.params.seed = 4711;
-    status = status ? status : set_all(spec, "reference", json_object_get(root, "reference"), reference_sets, NULL, spec);
+    status = status ? status : experiment_set_all(spec, "reference", json_object_get(root, "reference"), reference_sets, NULL, spec);
     status = status ? status : read_lists(spec, root, &shared);
-    if (status)
-        return status;
-    double rows = 0;
-    for (size_t i = 0; i < spec->config_count; i++)
-        rows += spec->configs[i].frames;
-    rows *= (double)spec->scene_count * (double)spec->camera_count * spec->repetitions * 2;
-    return rows > EXPERIMENT_ROWS ? experiment_wrong(spec, "", "it asks for more than %d rows", EXPERIMENT_ROWS) : CLI_OK;
+    return status ? status : check_rows(spec);
 }
 
 int experiment_read_spec(S *spec, const char *path) {
@@ -348,9 +226,9 @@ int experiment_read_spec(S *spec, const char *path) {
 }
 
 void experiment_free_spec(S *spec) {
-    for (size_t i = 0; i < spec->text_count; i++)
-        free(spec->texts[i]);
-    free(spec->texts);
+    for (size_t i = 0; i < spec->kept_count; i++)
+        free(spec->kept[i]);
+    free(spec->kept);
     free(spec->scenes);
     free(spec->cameras);
     free(spec->configs);

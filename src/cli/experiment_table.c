@@ -9,7 +9,8 @@
 
 static const char header[] =
     "scene,camera,configuration,repetition,mode,frame,seed,wall_s,cpu_s,wall_total_s,cpu_total_s,rmse8,relmse,relmse_clamped,"
-    "bias,rmse8_all,relmse_all,relmse_clamped_all,bias_all,build_s,memory_bytes,rays_shadow,dropped,key";
+    "bias,rmse8_all,relmse_all,relmse_clamped_all,bias_all,build_s,memory_bytes,rays_shadow,dropped,"
+    "light_build_s,light_bytes,scene_bytes,influence,found_none,found_median,found_99,key";
 static const char *const modes[] = { "alone", "accumulated" };
 enum { TELLING = 7, FIELDS = TELLING + COL_COUNT + 1, MODE = 4, FRAME = 5 };
 
@@ -47,7 +48,7 @@ static bool parse_row(char *line, experiment_stored *row) {
         if (*end || end == fields[TELLING + i])
             return false;
     }
-    return row->frame > 0;
+    return row->frame > 0 && row->frame <= EXPERIMENT_FRAMES;
 }
 
 static void quote(FILE *out, const char *text) {
@@ -64,7 +65,7 @@ static void quote(FILE *out, const char *text) {
 
 static void print_row(const experiment_lab *lab, FILE *out, const experiment_run *run, int mode, int frame) {
     const experiment_spec *spec = &lab->spec;
-    quote(out, spec->scenes[run->scene].name);
+    quote(out, spec->scenes[spec->cameras[run->camera].scene].name);
     quote(out, spec->cameras[run->camera].name);
     quote(out, spec->configs[run->config].name);
     fprintf(out, "%d,%s,%d,%u,", run->repetition + 1, modes[mode], frame, experiment_params(lab, run).seed);
@@ -94,11 +95,7 @@ static int read_table(experiment_lab *lab, const char *path, long *whole) {
         }
         if (lab->stored_count == room) {
             room = room ? 2 * room : 256;
-            lab->stored = realloc(lab->stored, room * sizeof(*lab->stored));
-            if (!lab->stored) {
-                cli_error("out of memory");
-                exit(CLI_FAILURE);
-            }
+            lab->stored = experiment_longer(lab->stored, room * sizeof(*lab->stored));
         }
         if (!first && parse_row(line, &lab->stored[lab->stored_count]))
             lab->stored_count++;
@@ -144,15 +141,29 @@ int experiment_open_table(experiment_lab *lab) {
     return status;
 }
 
+experiment_row *experiment_row_of(experiment_run *run, int mode, int frame) {
+    if (frame > run->room) {
+        int room = frame > 2 * run->room ? frame : 2 * run->room;
+        for (int m = 0; m < EXPERIMENT_MODES; m++) {
+            run->rows[m] = experiment_longer(run->rows[m], sizeof(experiment_row) * (size_t)room);
+            memset(run->rows[m] + run->room, 0, sizeof(experiment_row) * (size_t)(room - run->room));
+        }
+        run->room = room;
+    }
+    run->count = frame > run->count ? frame : run->count;
+    return &run->rows[mode][frame - 1];
+}
+
 void experiment_claim(experiment_lab *lab, experiment_run *run) {
     for (size_t i = 0; i < lab->stored_count; i++) {
         experiment_stored *row = &lab->stored[i];
         if (row->claimed || strcmp(row->key, run->key))
             continue;
         row->claimed = true;
-        if (!run->rows[row->mode] || row->frame > lab->spec.configs[run->config].frames)
+        if (!experiment_has_mode(&lab->spec, run->camera, row->mode) ||
+            row->frame > experiment_frames(&lab->spec, run->camera, run->config))
             continue; /* asked for before, not now: it stays in the table */
-        experiment_row *mine = &run->rows[row->mode][row->frame - 1];
+        experiment_row *mine = experiment_row_of(run, row->mode, row->frame);
         lab->rows_done += !mine->done;
         lab->rows_old += !mine->done;
         mine->done = true;
@@ -174,10 +185,8 @@ int experiment_tidy_table(experiment_lab *lab) {
         if (lab->stored[i].claimed)
             continue;
         others++;
-        if (lab->stored[i].frame != 1)
-            continue;
-        char *picture = cli_format("%s/pictures/%s.exr", lab->folder, lab->stored[i].key);
-        unlink(picture); /* of a first frame that no row shows any more */
+        char *picture = experiment_picture(lab, lab->stored[i].key, lab->stored[i].mode, lab->stored[i].frame);
+        unlink(picture); /* where there is one; no row shows it any more */
         free(picture);
     }
     if (!others)
@@ -191,9 +200,9 @@ int experiment_tidy_table(experiment_lab *lab) {
         return CLI_FAILURE;
     fprintf(file, "%s\n", header);
     for (size_t r = 0; r < lab->run_count; r++)
-        for (int frame = 1; frame <= lab->spec.configs[lab->runs[r].config].frames; frame++)
+        for (int frame = 1; frame <= lab->runs[r].count; frame++)
             for (int mode = 0; mode < EXPERIMENT_MODES; mode++)
-                if (lab->runs[r].rows[mode] && lab->runs[r].rows[mode][frame - 1].done)
+                if (lab->runs[r].rows[mode][frame - 1].done)
                     print_row(lab, file, &lab->runs[r], mode, frame);
     return experiment_finish(lab, file, "results.csv", temporary);
 }

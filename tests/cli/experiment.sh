@@ -17,7 +17,7 @@ rows() {
 import csv, sys
 table = list(csv.reader(open(sys.argv[1] + "/results.csv")))
 assert all(len(row) == len(table[0]) for row in table)
-drop = [i for i, name in enumerate(table[0]) if name in ("wall_s", "cpu_s", "wall_total_s", "cpu_total_s", "build_s")]
+drop = [i for i, name in enumerate(table[0]) if name in ("wall_s", "cpu_s", "wall_total_s", "cpu_total_s", "build_s", "light_build_s")]
 frame = table[0].index("frame")
 last = int(sys.argv[2]) if len(sys.argv) > 2 else 1 << 30
 for row in [table[0]] + sorted(r for r in table[1:] if int(r[frame]) <= last):
@@ -54,7 +54,7 @@ result $? "times add up, repetitions have their own seeds, and the figures tell 
 
 # A figure of the table is what compare says of the pictures that are kept.
 key=$(python3 -c 'import csv; print([r["key"] for r in csv.DictReader(open("a/results.csv")) if r["camera"] == "street"][0])')
-for reference in cache/*.exr; do "$program" compare --json "a/pictures/$key.exr" "$reference"; done >compared
+for reference in cache/*.exr; do "$program" compare --json "a/pictures/$key-frame1.exr" "$reference"; done >compared
 python3 -c '
 import csv, re
 row = [r for r in csv.DictReader(open("a/results.csv")) if r["key"] == "'"$key"'" and r["frame"] == "1"][0]
@@ -66,11 +66,11 @@ result $? "its figures are those of nocturne compare"
 links=$(grep -o '](\([^)]*\))' a/report.md | sed 's/^](//; s/)$//' | sort -u)
 missing=
 for link in $links; do [ -s "a/$link" ] || missing="$missing $link"; done
-test -z "$missing" && test "$(echo "$links" | grep -c '\.svg$')" = 6 && test "$(echo "$links" | grep -c '\.png$')" = 2
-result $? "report.md links to six plots and two sheets of crops, which are there" "$missing $links"
+test -z "$missing" && test "$(echo "$links" | grep -c '\.svg$')" = 8 && test "$(echo "$links" | grep -c '\.png$')" = 2
+result $? "report.md links to eight plots and two sheets of crops, which are there" "$missing $links"
 grep -q '^| is\\| | ' a/report.md && grep -q -- 'experiment spec.json -o a --cache cache' a/report.md
 result $? "names are escaped in it, and the command is told"
-python3 - "$((1 + choices))" a/*.svg <<'CHECK'
+python3 - "$((1 + choices))" a/[0-9]*.svg <<'CHECK'
 import sys, xml.etree.ElementTree as tree
 svg = "{http://www.w3.org/2000/svg}"
 for path in sys.argv[2:]:
@@ -85,6 +85,25 @@ for path in sys.argv[2:]:
     assert "is|" in text and "ris, lists" in text and ("frame" in text or "seconds" in text), text
 CHECK
 result $? "plots are well-formed, with a curve and a name for each configuration"
+python3 - "$choices" <<'CHECK'
+import csv, re, sys, xml.etree.ElementTree as tree
+svg, choices = "{http://www.w3.org/2000/svg}", int(sys.argv[1])
+bars = tree.parse("a/frame-times.svg").getroot()
+widths = [float(r.get("width")) for r in bars.iter(svg + "rect") if (r.get("class") or "")[0] == "m"]
+assert len(widths) == 2 * (1 + choices) and all(w > 0 for w in widths), widths
+dots = [p for p in tree.parse("a/errors.svg").getroot().iter(svg + "path") if re.match("[lm][0-9]", p.get("class") or "")]
+assert len(dots) == 2 * 3 * (1 + choices) + choices, len(dots) # cameras, frames; and the legend
+# The table of one option's values: a cell is the errors of the first frame, the last, the mean of all, by the mean of seeds.
+rows = list(csv.DictReader(open("a/results.csv")))
+def error(mode, frame):
+    found = [float(r["relmse_clamped"]) for r in rows if r["camera"] == "street" and r["configuration"] == "ris, uniform" and
+             r["mode"] == mode and r["frame"] == frame]
+    assert len(found) == 2
+    return "%.2g" % (sum(found) / 2)
+line = [l for l in open("a/summary.md") if l.startswith("| ris |")][0]
+assert line.split("|")[2].split("\u00b7")[0].strip() == " / ".join((error("alone", "1"), error("alone", "3"), error("accumulated", "3"))), line
+CHECK
+result $? "charts have a bar and dots for each configuration and camera; summary.md tells the same figures"
 if command -v xmllint >/dev/null; then xmllint --noout a/*.svg 2>err; result $? "xmllint agrees"; else skip "xmllint agrees" "no xmllint here"; fi
 sheet=$(for f in a/*.png; do meta "$f" size; done | sort -u)
 panels=$((2 + choices)) columns=$((2 + choices > 4 ? 4 : 2 + choices))
@@ -118,11 +137,11 @@ test "$(grep -c 'reference from cache/' out)" = 2 && test "$before" = "$(ls -i -
 # Killed while a line was being written, in the middle of a run; a picture deleted.
 cp -r a b
 head -c $(($(head -n 12 a/results.csv | wc -c) + 70)) a/results.csv >b/results.csv
-rm "b/pictures/$key.exr"
+rm "b/pictures/$key-frame1.exr"
 run experiment spec.json -o b --cache cache
 rows b >b.rows
-test $status = 0 && cmp -s a.rows b.rows && grep -q " $((expected - 11)) of them made now" out && test -s "b/pictures/$key.exr"
-result $? "after a kill the rest is made, and the rows are the same" "$(diff a.rows b.rows | head -n 5)"
+test $status = 0 && cmp -s a.rows b.rows && grep -q " $((expected - 11)) of them made now" out && test -s "b/pictures/$key-frame1.exr"
+result $? "after a kill the rest is made, and the rows are the same" "$(diff a.rows b.rows | head -n 5 | tr '\n' ' ')"
 test "$(head -n 12 a/results.csv)" = "$(head -n 12 b/results.csv)"; result $? "those that were there are kept as they were"
 
 # Ctrl-C in the middle of 20000 frames.
@@ -139,14 +158,14 @@ done
 kill -INT $pid
 wait $pid
 status=$?
-told=$(sed -n 's/.*interrupted: \([0-9]*\) of [0-9]* rows are in c.results.csv; the same command goes on there/\1/p' err)
+told=$(sed -n 's/.*interrupted: \([0-9]*\) rows are in c.results.csv; the same command goes on there/\1/p' err)
 test $status = 130 && test "$told" = $(($(wc -l <c/results.csv) - 1)) && test ! -e c/report.md; result $? "Ctrl-C keeps the rows, and says how to go on"
 sed 's/"repetitions": 2/"repetitions": 1/' spec.json >short.json
 run experiment short.json -o c --cache cache
 rows c 3 >c.rows
 run experiment short.json -o d --cache cache
 rows d 3 >d.rows
-cmp -s c.rows d.rows; result $? "and it does, to the same rows" "$(diff c.rows d.rows | head -n 5)"
+cmp -s c.rows d.rows; result $? "and it does, to the same rows" "$(diff c.rows d.rows | head -n 5 | tr '\n' ' ')"
 
 # Other settings under the same names: their rows are not mixed.
 sed 's/"method": "is"/"method": "is", "emitters": false/' short.json >other.json
@@ -171,7 +190,7 @@ wrong "an unknown member" ': no option "framse"; is it "frames"\?' 's/"frames": 
 wrong "an unknown choice" ': configurations\[0\]: method: "iss" is none of reference' 's/"is" }/"iss" }/'
 wrong "a number out of range" ': reference: rays: "0" is outside 1 to 1024' 's/"rays": 8/"rays": 0/'
 wrong "an array that is none of the choices" ': configurations\[1\]: candidates: "of" is none of uniform' 's/"candidates": "\*"/"candidates": ["lists", "of"]/'
-wrong "two options of several choices" ': configurations\[1\]: one option may have several' 's/"candidates": "\*"/"candidates": "*", "bias": "*"/'
+wrong "two options of several values" ': configurations\[1\]: one option may have several values' 's/"candidates": "\*"/"candidates": "*", "bias": "*"/'
 wrong "what is no value" ': configurations\[0\]: method: this cannot be its value' 's/"is" }/{} }/'
 wrong "a size that is none" ': size: "48" is not' 's/48x32/48/'
 wrong "two configurations of one name" ': configurations: the name "is\|" is given twice' 's/"ris, \*", "method": "ris", "candidates": "\*"/"is|", "method": "ris"/'
@@ -179,7 +198,7 @@ wrong "a configuration without a name" ': configurations\[0\]: it needs a name' 
 wrong "a camera with eye alone" ': cameras\[1\]: eye and target' 's/, "target": \[0, 0, 0\]//'
 wrong "no scene" ': it needs one of scene' '/"scene"/d'
 wrong "options of a city that is not drawn" ': scene: city-size is for' 's/builtin:city/city.gml/'
-wrong "configurations that are no list" ': it needs scenes, cameras and configurations' 's/"configurations".*/"configurations": 3/'
+wrong "configurations that are no list" ': it needs scenes and configurations' 's/"configurations".*/"configurations": 3/'
 wrong "too many rows" ': it asks for more than' 's/"frames": 3/"frames": 100000/'
 echo '[1]' >wrong.json
 expect "a spec that is no object" 2 'one object' experiment wrong.json -o w

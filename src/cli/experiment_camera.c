@@ -1,0 +1,159 @@
+/* Cameras of an experiment: where they stand, and how they come there. */
+#include "experiment.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define C experiment_camera
+static const noc_option path_options[] = {
+    { "frames", "Path", NOC_OPTION_INT, offsetof(C, frames), 2, EXPERIMENT_FRAMES, NULL, "", "" },
+    { "dolly", "Path", NOC_OPTION_TEXT, offsetof(C, dolly_text), 0, 0, NULL, "", "" },
+    { "orbit", "Path", NOC_OPTION_REAL, offsetof(C, orbit), -360, 360, NULL, "degrees", "" },
+    { "cut", "Path", NOC_OPTION_INT, offsetof(C, cut), 1, EXPERIMENT_FRAMES, NULL, "", "" },
+    { NULL },
+};
+static const noc_option *path_table(void) { return path_options; }
+
+const noc_option *experiment_camera_options(void) {
+    static noc_option rows[6];
+    static const char *const names[] = { "view", "eye", "target", "camera-crs", "fov" };
+    size_t offset;
+    for (size_t i = 0; i < 5; i++)
+        rows[i] = *experiment_option(cli_render.sets, names[i], &offset);
+    return rows;
+}
+
+static const cli_set pose_sets[] = { { experiment_camera_options, 0, NULL }, { NULL } };
+static const cli_set path_sets[] = { { path_table, 0, NULL }, { NULL } };
+static const char *const camera_others[] = { "name", "path", NULL }, *const path_others[] = { "before", NULL };
+
+static int read_pose(experiment_spec *spec, const char *place, json_t *object, experiment_pose *pose) {
+    render_args *args = &pose->args;
+    *args = *(const render_args *)cli_render.defaults;
+    int status = experiment_set_all(spec, place, object, pose_sets, camera_others, args);
+    if (status)
+        return status;
+    if (!args->eye != !args->target)
+        return experiment_wrong(spec, place, "eye and target come together");
+    if (args->eye && json_object_get(object, "view"))
+        return experiment_wrong(spec, place, "view and eye exclude each other");
+    if (args->camera_crs && !args->eye)
+        return experiment_wrong(spec, place, "camera-crs is for eye and target");
+    if (args->eye && (!cli_parse_numbers(args->eye, ',', 3, pose->eye) || !cli_parse_numbers(args->target, ',', 3, pose->target)))
+        return experiment_wrong(spec, place, "eye and target are three numbers each, [x, y, z]");
+    if (args->eye && !memcmp(pose->eye, pose->target, sizeof(pose->eye)))
+        return experiment_wrong(spec, place, "eye and target are the same place");
+    size_t offset;
+    if (json_object_get(object, "fov"))
+        args->common.given[args->common.given_count++] = experiment_option(cli_render.sets, "fov", &offset);
+    return CLI_OK;
+}
+
+static int read_path(experiment_spec *spec, const char *place, json_t *path, C *camera) {
+    int status = experiment_set_all(spec, place, path, path_sets, path_others, camera);
+    if (status)
+        return status;
+    if (!camera->frames)
+        return experiment_wrong(spec, place, "it needs frames, how many the motion takes");
+    if (camera->dolly_text && (!cli_parse_numbers(camera->dolly_text, ',', 3, camera->dolly) ||
+                               !(fabs(camera->dolly[0]) + fabs(camera->dolly[1]) + fabs(camera->dolly[2]) < 1e6)))
+        return experiment_wrong(spec, place, "dolly is [right, forward, up], metres from the first frame to the last");
+    json_t *before = json_object_get(path, "before");
+    if (!camera->cut != !before)
+        return experiment_wrong(spec, place, "cut and before come together: how many frames another camera sees first, and that camera");
+    if (camera->cut >= camera->frames)
+        return experiment_wrong(spec, place, "cut: frames must be left after it");
+    char inner[96];
+    snprintf(inner, sizeof(inner), "%s: before", place);
+    return before ? read_pose(spec, inner, before, &camera->before) : CLI_OK;
+}
+
+static int read_camera(experiment_spec *spec, const char *place, json_t *object, C *camera) {
+    int status = read_pose(spec, place, object, &camera->pose);
+    status = status ? status : experiment_read_name(spec, place, object, &camera->name);
+    char inner[80];
+    snprintf(inner, sizeof(inner), "%s: path", place);
+    json_t *path = json_object_get(object, "path");
+    return status || !path ? status : read_path(spec, inner, path, camera);
+}
+
+int experiment_read_cameras(experiment_spec *spec, const char *place, json_t *cameras, size_t scene) {
+    size_t count = json_array_size(cameras), first = spec->camera_count;
+    if (!count)
+        return experiment_wrong(spec, place, "it needs cameras, an array that is not empty; here, or once for all scenes");
+    spec->cameras = experiment_longer(spec->cameras, sizeof(*spec->cameras) * (first + count));
+    char where[64];
+    for (size_t i = 0; i < count; i++) {
+        C *camera = &spec->cameras[spec->camera_count++];
+        *camera = (C){ .scene = scene };
+        snprintf(where, sizeof(where), *place ? "%s: cameras[%zu]" : "%scameras[%zu]", place, i);
+        int status = read_camera(spec, where, json_array_get(cameras, i), camera);
+        if (status)
+            return status;
+        for (size_t j = first; j + 1 < spec->camera_count; j++)
+            if (!strcmp(spec->cameras[j].name, camera->name))
+                return experiment_wrong(spec, *place ? place : "cameras", "the name \"%s\" is given twice", camera->name);
+    }
+    return CLI_OK;
+}
+
+static int place(experiment_lab *lab, size_t scene, experiment_pose *pose, noc_camera *camera) {
+    pose->args.render.width = lab->spec.width;
+    pose->args.render.height = lab->spec.height;
+    render_job job = { .args = &pose->args, .scene = lab->scene, .log = lab->log, .scene_info = lab->scene_infos[scene] };
+    memcpy(job.eye, pose->eye, sizeof(job.eye));
+    memcpy(job.target, pose->target, sizeof(job.target));
+    if (cli_place_camera(&job))
+        return CLI_FAILURE;
+    *camera = job.camera;
+    return CLI_OK;
+}
+
+int experiment_place_cameras(experiment_lab *lab, size_t index) {
+    C *camera = &lab->spec.cameras[index];
+    int status = place(lab, camera->scene, &camera->pose, &lab->camera);
+    lab->before = lab->camera;
+    return status || !camera->cut ? status : place(lab, camera->scene, &camera->before, &lab->before);
+}
+
+/* v turned about the vertical, counter-clockwise from above. */
+static void turn(double v[3], double angle) {
+    double c = cos(angle), s = sin(angle), x = v[0];
+    v[0] = c * x - s * v[1];
+    v[1] = s * x + c * v[1];
+}
+
+/* The way from the first frame to the last is gone backwards from the pose: moved along the axes that it has there, then
+ * turned about the target. A camera that looks straight down has its up vector for forward's horizontal. */
+noc_camera experiment_camera_at(const experiment_lab *lab, size_t index, int frame) {
+    const C *path = &lab->spec.cameras[index];
+    if (!path->frames || frame >= path->frames)
+        return lab->camera;
+    if (frame <= path->cut)
+        return lab->before;
+    noc_camera camera = lab->camera;
+    double share = (double)(path->frames - frame) / (path->frames - 1), forward[3], right[3], length = 0, across;
+    for (int k = 0; k < 3; k++)
+        forward[k] = camera.target[k] - camera.eye[k];
+    length = sqrt(forward[0] * forward[0] + forward[1] * forward[1] + forward[2] * forward[2]);
+    for (int k = 0; k < 3; k++)
+        forward[k] /= length;
+    for (int k = 0; k < 3; k++)
+        right[k] = forward[(k + 1) % 3] * camera.up[(k + 2) % 3] - forward[(k + 2) % 3] * camera.up[(k + 1) % 3];
+    across = sqrt(right[0] * right[0] + right[1] * right[1] + right[2] * right[2]);
+    double arm[3];
+    for (int k = 0; k < 3; k++) {
+        double way = path->dolly[0] * right[k] / across + path->dolly[1] * forward[k] + (k == 2 ? path->dolly[2] : 0);
+        camera.eye[k] -= share * way;
+        camera.target[k] -= share * way;
+        arm[k] = camera.eye[k] - camera.target[k];
+    }
+    double angle = -share * path->orbit * 3.14159265358979323846 / 180;
+    turn(arm, angle);
+    turn(camera.up, angle);
+    for (int k = 0; k < 3; k++)
+        camera.eye[k] = camera.target[k] + arm[k];
+    return camera;
+}

@@ -1,0 +1,196 @@
+/* Charts over all cameras of an experiment: frame times as bars, and errors as dots, a panel for each camera and frame. */
+#include "experiment_svg.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    BAR_MOST = 24, NAME_MAX_CHARS = 40, CHAR = 7, LINE = 20, TOP = 44, GAP = 26, BARS_WIDTH = 480, PANEL_WIDTH = 230, BOTTOM = 34,
+    DOT_MOST = 60
+};
+
+static int name_width(const experiment_lab *lab, bool rows) {
+    size_t most = 4;
+    for (size_t i = 0; i < lab->spec.config_count; i++) {
+        char *name = rows ? experiment_row_name(lab, i) : cli_format("%s", lab->spec.configs[i].name);
+        most = strlen(name) > most ? strlen(name) : most;
+        free(name);
+    }
+    return (int)(most > NAME_MAX_CHARS ? NAME_MAX_CHARS : most) * CHAR + 18;
+}
+
+static void words(FILE *out, double x, double y, const char *anchor, const char *style, const char *text) {
+    fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\"%s>", x, y, anchor, style);
+    svg_text(out, text, 100);
+    fprintf(out, "</text>\n");
+}
+
+static void view_name(FILE *out, const experiment_lab *lab, size_t camera, double x, double y) {
+    const experiment_camera *c = &lab->spec.cameras[camera];
+    char *name = cli_format("%s, %s", lab->spec.scenes[c->scene].name, c->name);
+    words(out, x, y, "start", " font-weight=\"bold\"", name);
+    free(name);
+}
+
+/* The next of 1, 2, 5, 10, ... from v on. */
+static double round_up(double v) {
+    double decade = pow(10, floor(log10(v)));
+    return v <= decade * 1.0001 ? decade : v <= 2 * decade ? 2 * decade : v <= 5 * decade ? 5 * decade : 10 * decade;
+}
+
+bool experiment_has_bars(const experiment_spec *spec) { return spec->config_count <= BAR_MOST; }
+
+int experiment_bars(const experiment_lab *lab, const char *name) {
+    const experiment_spec *spec = &lab->spec;
+    int left = name_width(lab, false), rows = (int)spec->config_count;
+    int width = left + BARS_WIDTH + 90, height = TOP + (int)spec->camera_count * (rows * LINE + GAP) + BOTTOM;
+    double most = 0;
+    for (size_t camera = 0; camera < spec->camera_count; camera++)
+        for (size_t i = 0; i < spec->config_count; i++)
+            most = fmax(most, experiment_frame_time(lab, camera, i) * 1e3);
+    double step = most > 0 ? round_up(most / 8) : 1, end = most > 0 ? ceil(most / step) * step : 1;
+    char *temporary;
+    FILE *out = experiment_create(lab, name, &temporary);
+    if (!out)
+        return CLI_FAILURE;
+    svg_head(out, width, height);
+    words(out, left, 26, "start", " font-size=\"15\" font-weight=\"bold\"", "CPU time of a frame, ms");
+    for (double v = 0; v <= end * 1.0001; v += step) {
+        double x = left + BARS_WIDTH * v / end;
+        char text[32];
+        snprintf(text, sizeof(text), "%.6g", v);
+        fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%.1f %dV%d\"/>\n", x, TOP, height - BOTTOM);
+        words(out, x, height - BOTTOM + 18, "middle", "", text);
+    }
+    for (size_t camera = 0; camera < spec->camera_count; camera++) {
+        int top = TOP + (int)camera * (rows * LINE + GAP) + GAP;
+        view_name(out, lab, camera, left, top - 8);
+        for (int i = 0; i < rows; i++) {
+            double ms = experiment_frame_time(lab, camera, (size_t)i) * 1e3, y = top + i * LINE;
+            svg_style style = svg_style_of(spec, (size_t)i);
+            words(out, left - 8, y + 13, "end", "", spec->configs[i].name);
+            if (!isfinite(ms))
+                continue;
+            char text[32];
+            snprintf(text, sizeof(text), "%.3g", ms);
+            fprintf(out, "<rect class=\"m%d\" fill=\"%s\" x=\"%d\" y=\"%.1f\" width=\"%.1f\" height=\"%d\"/>\n", style.colour,
+                    svg_colours[style.colour], left, y + 2, BARS_WIDTH * ms / end, LINE - 5);
+            words(out, left + BARS_WIDTH * ms / end + 5, y + 13, "start", "", text);
+        }
+    }
+    fprintf(out, "</svg>\n");
+    return experiment_finish(lab, out, name, temporary);
+}
+
+/* Where all entries stand for values of the same option, an entry is one row of dots; else each configuration. */
+static bool shares_rows(const experiment_spec *spec) {
+    const noc_option *option = spec->configs[0].option;
+    for (size_t i = 0; i < spec->config_count; i++)
+        if (spec->configs[i].option && option && spec->configs[i].option != option)
+            return false;
+        else
+            option = spec->configs[i].option ? spec->configs[i].option : option;
+    return option != NULL;
+}
+
+static int row_of(const experiment_spec *spec, size_t config) {
+    return shares_rows(spec) ? (int)spec->configs[config].entry : (int)config;
+}
+
+static int row_count(const experiment_spec *spec) { return row_of(spec, spec->config_count - 1) + 1; }
+
+/* One camera's errors are all on one scale, so that its frames compare. */
+static svg_axis errors_of(const experiment_lab *lab, size_t camera) {
+    svg_axis axis = { INFINITY, 0, 0, PANEL_WIDTH };
+    experiment_point points[EXPERIMENT_POINTS];
+    int count = experiment_points(&lab->spec, camera, points);
+    for (int p = 0; p < count; p++) {
+        for (size_t i = 0; i < lab->spec.config_count; i++) {
+            double v = experiment_at_point(lab, camera, i, points[p], experiment_column(&lab->spec));
+            if (v > 0 && isfinite(v)) {
+                axis.lo = fmin(axis.lo, v);
+                axis.hi = fmax(axis.hi, v);
+            }
+        }
+    }
+    if (!(axis.hi > 0)) {
+        axis.lo = 0.1;
+        axis.hi = 1;
+    }
+    svg_widen(&axis);
+    return axis;
+}
+
+static void panel(FILE *out, const experiment_lab *lab, size_t camera, experiment_point point, int left, int top) {
+    const experiment_spec *spec = &lab->spec;
+    int rows = row_count(spec);
+    svg_axis x = errors_of(lab, camera), y = { 1, 10, top + rows * LINE, top };
+    x.from = left;
+    x.to = left + PANEL_WIDTH;
+    svg_grid(out, &x, true, &y);
+    for (int r = 0; r < rows; r++)
+        fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%d %dh%d\"/>\n", left, top + r * LINE + LINE / 2, PANEL_WIDTH);
+    fprintf(out, "<rect class=\"frame\" fill=\"none\" stroke=\"#555555\" x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\"/>\n", left, top, PANEL_WIDTH,
+            rows * LINE);
+    words(out, left + PANEL_WIDTH / 2, top - 7, "middle", "", experiment_point_name(spec, camera, point));
+    for (size_t i = 0; i < spec->config_count; i++) {
+        double v = experiment_at_point(lab, camera, i, point, experiment_column(spec));
+        svg_style style = svg_style_of(spec, i);
+        if (shares_rows(spec))
+            style.marker = style.colour; /* rows are entries already: the value alone tells dots apart */
+        if (v > 0 && isfinite(v))
+            svg_marker(out, &style, svg_place(&x, v), top + row_of(spec, i) * LINE + LINE / 2);
+    }
+}
+
+/* Values that colours stand for, of the longest entry. */
+static void values_legend(FILE *out, const experiment_spec *spec, int left, int y) {
+    const experiment_config *longest = &spec->configs[0];
+    for (size_t i = 0; i < spec->config_count; i++)
+        longest = spec->configs[i].choice > longest->choice ? &spec->configs[i] : longest;
+    for (size_t i = 0; i < spec->config_count; i++) {
+        if (spec->configs[i].entry != longest->entry)
+            continue;
+        svg_style style = svg_style_of(spec, i);
+        style.marker = style.colour;
+        svg_marker(out, &style, left + 6, y - 4);
+        words(out, left + 16, y, "start", "", spec->configs[i].value);
+        left += 40 + (int)strlen(spec->configs[i].value) * CHAR;
+    }
+}
+
+bool experiment_has_dots(const experiment_spec *spec) { return row_count(spec) <= DOT_MOST && spec->config_count > 1; }
+
+int experiment_dots(const experiment_lab *lab, const char *name) {
+    const experiment_spec *spec = &lab->spec;
+    experiment_point points[EXPERIMENT_POINTS];
+    int left = name_width(lab, shares_rows(spec)), rows = row_count(spec), columns = 1, high = rows * LINE + BOTTOM + GAP + 24;
+    for (size_t camera = 0; camera < spec->camera_count; camera++) {
+        int count = experiment_points(spec, camera, points);
+        columns = count > columns ? count : columns;
+    }
+    int width = left + columns * (PANEL_WIDTH + 16) + 10, height = TOP + LINE + (int)spec->camera_count * high;
+    char *temporary;
+    FILE *out = experiment_create(lab, name, &temporary);
+    if (!out)
+        return CLI_FAILURE;
+    svg_head(out, width, height);
+    words(out, left, 26, "start", " font-size=\"15\" font-weight=\"bold\"", experiment_figure(spec));
+    if (shares_rows(spec))
+        values_legend(out, spec, left, TOP + 8);
+    for (size_t camera = 0; camera < spec->camera_count; camera++) {
+        int top = TOP + LINE + (int)camera * high + GAP + 20, count = experiment_points(spec, camera, points);
+        view_name(out, lab, camera, left, top - 28);
+        for (size_t i = 0; i < spec->config_count; i++) {
+            char *row = shares_rows(spec) ? experiment_row_name(lab, i) : cli_format("%s", spec->configs[i].name);
+            if (!shares_rows(spec) || spec->configs[i].choice <= 0)
+                words(out, left - 8, top + row_of(spec, i) * LINE + 14, "end", "", row);
+            free(row);
+        }
+        for (int p = 0; p < count; p++)
+            panel(out, lab, camera, points[p], left + p * (PANEL_WIDTH + 16), top);
+    }
+    fprintf(out, "</svg>\n");
+    return experiment_finish(lab, out, name, temporary);
+}

@@ -1,0 +1,105 @@
+/* Configurations of an experiment. One entry of the spec may stand for several: an option with an array of values, or a choice
+ * with "*", makes one of each. */
+#include "experiment.h"
+
+#include <jansson.h>
+#include <string.h>
+
+static const noc_option config_options[] = {
+    { "frames", "Configuration", NOC_OPTION_INT, offsetof(experiment_config, frames), 1, EXPERIMENT_FRAMES, NULL, "", "" },
+    { "seconds", "Configuration", NOC_OPTION_REAL, offsetof(experiment_config, seconds), 0, 1e6, NULL, "s", "" },
+    { NULL },
+};
+static const noc_option *config_table(void) { return config_options; }
+static const char *const said_above[] = { "width", "height", "seed", "accumulate", NULL };
+static const cli_set config_sets[] = {
+    { config_table, 0, NULL }, { noc_render_options, offsetof(experiment_config, params), said_above }, { NULL }
+};
+static const char *const named[] = { "name", NULL };
+
+/* The option of an entry that stands for several of its values. *status where more than one does. */
+static const noc_option *several(experiment_spec *spec, const char *place, json_t *object, int *status) {
+    const noc_option *found = NULL;
+    const char *name;
+    json_t *value;
+    json_object_foreach(object, name, value) {
+        size_t offset;
+        const noc_option *o = experiment_option(config_sets, name, &offset);
+        bool star = json_is_string(value) && !strcmp(json_string_value(value), "*");
+        if (!o || o->kind == NOC_OPTION_TEXT || !(star ? o->kind == NOC_OPTION_CHOICE : json_array_size(value) > 0))
+            continue;
+        if (found)
+            *status = experiment_wrong(spec, place, "one option may have several values, not two");
+        found = o;
+    }
+    return found;
+}
+
+/* The values meant: a new array. */
+static json_t *values_of(const noc_option *option, json_t *value) {
+    if (json_is_array(value))
+        return json_incref(value);
+    json_t *all = json_array();
+    for (const char *c = option->choices; *c;) {
+        size_t length = strcspn(c, "|");
+        json_array_append_new(all, json_stringn(c, length));
+        c += length + (c[length] == '|');
+    }
+    return all;
+}
+
+/* "ris, *" and lists -> "ris, lists" */
+static char *star_name(const char *name, const char *value) {
+    const char *star = strchr(name, '*');
+    return star ? cli_format("%.*s%s%s", (int)(star - name), name, value, star + 1) : cli_format("%s, %s", name, value);
+}
+
+/* As the library writes it: 0.50 and 5e-1 are both 0.5. */
+static char *value_text(const noc_option *option, const experiment_config *config) {
+    size_t offset = 0;
+    experiment_option(config_sets, option->name, &offset);
+    char text[80];
+    noc_option_get(option, (const char *)config + offset, text, sizeof(text));
+    return cli_format("%s", text);
+}
+
+static experiment_config *add(experiment_spec *spec, const noc_render_params *shared, size_t entry, int choice) {
+    spec->configs = experiment_longer(spec->configs, sizeof(experiment_config) * (spec->config_count + 1));
+    experiment_config *config = &spec->configs[spec->config_count++];
+    *config = (experiment_config){ .params = *shared, .frames = spec->frames, .seconds = spec->seconds, .entry = entry, .choice = choice };
+    return config;
+}
+
+/* Seconds alone decide where frames are not given beside them. */
+static int read_members(experiment_spec *spec, const char *place, json_t *object, experiment_config *config) {
+    int status = experiment_set_all(spec, place, object, config_sets, named, config);
+    if (!status && json_object_get(object, "seconds") && !json_object_get(object, "frames"))
+        config->frames = config->seconds > 0 ? EXPERIMENT_FRAMES : config->frames;
+    return status;
+}
+
+int experiment_read_config(experiment_spec *spec, const char *place, json_t *object, const noc_render_params *shared, size_t entry) {
+    int status = CLI_OK;
+    const char *name = NULL;
+    const noc_option *option = json_is_object(object) ? several(spec, place, object, &status) : NULL;
+    if (status || !option) {
+        experiment_config *config = status ? NULL : add(spec, shared, entry, -1);
+        status = status ? status : read_members(spec, place, object, config);
+        return status ? status : experiment_read_name(spec, place, object, &config->name);
+    }
+    status = experiment_read_name(spec, place, object, &name);
+    json_t *values = values_of(option, json_object_get(object, option->name)), *value;
+    size_t i;
+    json_array_foreach(values, i, value) {
+        if (status)
+            break;
+        experiment_config *config = add(spec, shared, entry, (int)i);
+        json_object_set(object, option->name, value);
+        status = read_members(spec, place, object, config);
+        config->option = option;
+        config->value = experiment_keep(spec, value_text(option, config));
+        config->name = experiment_keep(spec, star_name(name, config->value));
+    }
+    json_decref(values);
+    return status;
+}

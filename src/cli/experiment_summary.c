@@ -1,0 +1,252 @@
+/* summary.md: an experiment in a few tables. Where entries of the spec stand for several values of an option, they are the rows
+ * and the values the columns; other configurations are rows with a column a camera. */
+#include "experiment.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Frames told in a table of cameras that stand still: those that the spec measures, if they are few, else the first and the last. */
+int experiment_points(const experiment_spec *spec, size_t camera, experiment_point out[EXPERIMENT_POINTS]) {
+    if (spec->cameras[camera].frames) {
+        out[0] = (experiment_point){ EXPERIMENT_ALONE, 0 };
+        return 1;
+    }
+    bool alone = experiment_has_mode(spec, camera, EXPERIMENT_ALONE), listed = spec->measured_count && spec->measured_count < EXPERIMENT_POINTS;
+    int count = 0, mode = alone ? EXPERIMENT_ALONE : EXPERIMENT_ACCUMULATED;
+    for (size_t i = 0; listed && i < spec->measured_count; i++)
+        out[count++] = (experiment_point){ mode, spec->measured[i] };
+    if (!listed) {
+        out[count++] = (experiment_point){ mode, 1 };
+        out[count++] = (experiment_point){ mode, 0 };
+    }
+    if (alone && experiment_has_mode(spec, camera, EXPERIMENT_ACCUMULATED))
+        out[count++] = (experiment_point){ EXPERIMENT_ACCUMULATED, 0 };
+    return count;
+}
+
+double experiment_at_point(const experiment_lab *lab, size_t camera, size_t config, experiment_point point, int column) {
+    experiment_series s = { lab, camera, config, point.mode };
+    return experiment_at(&s, column, point.frame ? point.frame : experiment_last(&s));
+}
+
+const char *experiment_point_name(const experiment_spec *spec, size_t camera, experiment_point point) {
+    static char text[48];
+    int motion = spec->cameras[camera].frames;
+    if (motion)
+        snprintf(text, sizeof(text), "frame %d", motion);
+    else if (point.frame)
+        snprintf(text, sizeof(text), point.mode == EXPERIMENT_ALONE ? "frame %d" : "mean of %d", point.frame);
+    else
+        snprintf(text, sizeof(text), "%s", point.mode == EXPERIMENT_ALONE ? "last frame" : "mean of all");
+    return text;
+}
+
+/* CPU seconds of one frame: of the last where the camera moves, else the mean of all but the first, which builds structures. */
+double experiment_frame_time(const experiment_lab *lab, size_t camera, size_t config) {
+    int mode = experiment_has_mode(&lab->spec, camera, EXPERIMENT_ALONE) ? EXPERIMENT_ALONE : EXPERIMENT_ACCUMULATED;
+    experiment_series s = { lab, camera, config, mode };
+    int last = experiment_last(&s);
+    double first = experiment_at(&s, COL_CPU_TOTAL, 1), total = experiment_at(&s, COL_CPU_TOTAL, last);
+    if (lab->spec.cameras[camera].frames)
+        return experiment_at(&s, COL_CPU, last);
+    if (last == 1)
+        return total;
+    return isnan(first) ? total / last : (total - first) / (last - 1);
+}
+
+static void print_errors(FILE *out, const experiment_lab *lab, size_t camera, size_t config) {
+    experiment_point points[EXPERIMENT_POINTS];
+    int count = experiment_points(&lab->spec, camera, points);
+    for (int i = 0; i < count; i++) {
+        double v = experiment_at_point(lab, camera, config, points[i], experiment_column(&lab->spec));
+        char text[32] = "-";
+        if (isfinite(v))
+            snprintf(text, sizeof(text), "%.2g", v);
+        fprintf(out, "%s %s", i ? " /" : "", text);
+    }
+    double ms = 1e3 * experiment_frame_time(lab, camera, config);
+    if (isfinite(ms))
+        fprintf(out, " \302\267 %.3g ms", ms);
+    fputs(" |", out);
+}
+
+static void print_what(FILE *out, const experiment_lab *lab, size_t camera) {
+    experiment_point points[EXPERIMENT_POINTS];
+    int count = experiment_points(&lab->spec, camera, points);
+    for (int i = 0; i < count; i++)
+        fprintf(out, "%s%s", i ? " / " : "", experiment_point_name(&lab->spec, camera, points[i]));
+    fputs(" \302\267 CPU time of a frame", out);
+}
+
+char *experiment_row_name(const experiment_lab *lab, size_t config) {
+    const experiment_config *c = &lab->spec.configs[config];
+    if (c->choice < 0)
+        return cli_format("%s", c->name);
+    /* The entry's name is that of the configuration without the value, and what joined it. */
+    const char *at = strstr(c->name, c->value);
+    size_t before = at ? (size_t)(at - c->name) : strlen(c->name);
+    const char *after = at ? at + strlen(c->value) : "";
+    while (before && strchr(", =", c->name[before - 1]))
+        before--;
+    while (!before && *after && strchr(", =", *after))
+        after++;
+    return cli_format("%.*s%s", (int)before, c->name, after);
+}
+
+/* Entries of one option, under one camera. */
+static void print_matrix(FILE *out, const experiment_lab *lab, size_t camera, const noc_option *option) {
+    const experiment_spec *spec = &lab->spec;
+    const experiment_camera *c = &spec->cameras[camera];
+    const char *values[EXPERIMENT_VALUES];
+    size_t count = 0;
+    for (size_t i = 0; i < spec->config_count; i++) {
+        size_t k = 0;
+        while (k < count && (spec->configs[i].option != option || strcmp(values[k], spec->configs[i].value)))
+            k++;
+        if (k == count && count < EXPERIMENT_VALUES && spec->configs[i].option == option)
+            values[count++] = spec->configs[i].value;
+    }
+    fprintf(out, "\n**%s, %s**: ", spec->scenes[c->scene].name, c->name);
+    print_what(out, lab, camera);
+    fprintf(out, ".\n\n| `%s` |", option->name);
+    for (size_t k = 0; k < count; k++)
+        experiment_cell(out, values[k]);
+    experiment_table_rule(out, count);
+    for (size_t i = 0; i < spec->config_count; i++) {
+        if (spec->configs[i].option != option || spec->configs[i].choice > 0)
+            continue;
+        char *name = experiment_row_name(lab, i);
+        fputc('|', out);
+        experiment_cell(out, name);
+        free(name);
+        for (size_t k = 0; k < count; k++) {
+            size_t j = i;
+            while (j < spec->config_count && (spec->configs[j].entry != spec->configs[i].entry || strcmp(spec->configs[j].value, values[k])))
+                j++;
+            if (j < spec->config_count)
+                print_errors(out, lab, camera, j);
+            else
+                fputs(" |", out);
+        }
+        fputc('\n', out);
+    }
+}
+
+static void print_plain(FILE *out, const experiment_lab *lab) {
+    const experiment_spec *spec = &lab->spec;
+    fputs("\n", out);
+    for (size_t camera = 0; camera < spec->camera_count; camera++) {
+        const experiment_camera *c = &spec->cameras[camera];
+        fprintf(out, "- **%s, %s**: ", spec->scenes[c->scene].name, c->name);
+        print_what(out, lab, camera);
+        fputs("\n", out);
+    }
+    fputs("\n| |", out);
+    for (size_t camera = 0; camera < spec->camera_count; camera++) {
+        char *name = cli_format("%s, %s", spec->scenes[spec->cameras[camera].scene].name, spec->cameras[camera].name);
+        experiment_cell(out, name);
+        free(name);
+    }
+    experiment_table_rule(out, spec->camera_count);
+    for (size_t i = 0; i < spec->config_count; i++) {
+        if (spec->configs[i].option)
+            continue;
+        fputc('|', out);
+        experiment_cell(out, spec->configs[i].name);
+        for (size_t camera = 0; camera < spec->camera_count; camera++)
+            print_errors(out, lab, camera, i);
+        fputc('\n', out);
+    }
+}
+
+/* Any row of a run will do: its structure is built once. */
+static experiment_series any_mode(const experiment_lab *lab, size_t camera, size_t config) {
+    int mode = experiment_has_mode(&lab->spec, camera, EXPERIMENT_ALONE) ? EXPERIMENT_ALONE : EXPERIMENT_ACCUMULATED;
+    return (experiment_series){ lab, camera, config, mode };
+}
+
+static double structure(const experiment_lab *lab, size_t camera, size_t config, int column) {
+    experiment_series s = any_mode(lab, camera, config);
+    return experiment_median(&s, column);
+}
+
+/* Does an earlier configuration draw from the same structure? Its kind, bytes and S_r tell. */
+static bool is_repeated(const experiment_lab *lab, size_t config) {
+    const experiment_spec *spec = &lab->spec;
+    for (size_t i = 0; i < config; i++) {
+        bool same = spec->configs[i].params.candidates == spec->configs[config].params.candidates;
+        for (size_t camera = 0; same && camera < spec->camera_count; camera++)
+            same = structure(lab, camera, i, COL_LIGHT_BYTES) == structure(lab, camera, config, COL_LIGHT_BYTES) &&
+                   structure(lab, camera, i, COL_INFLUENCE) == structure(lab, camera, config, COL_INFLUENCE);
+        if (same)
+            return true;
+    }
+    return false;
+}
+
+/* What candidates are drawn from: time to build it, memory, and what influence volumes find. */
+static void print_structures(FILE *out, const experiment_lab *lab) {
+    const experiment_spec *spec = &lab->spec;
+    bool any = false;
+    for (size_t i = 0; i < spec->config_count; i++) {
+        bool built = false;
+        for (size_t camera = 0; camera < spec->camera_count; camera++)
+            built |= structure(lab, camera, i, COL_LIGHT_BYTES) > 0;
+        if (!built || is_repeated(lab, i))
+            continue;
+        if (!any) {
+            fputs("\n| Light structure | Scene, camera | build, ms | memory, kB | of the scene's, % | S_r, m | pixels that find none, % | "
+                  "lights found, median | 99th percentile |", out);
+            experiment_table_rule(out, 8);
+        }
+        any = true;
+        for (size_t camera = 0; camera < spec->camera_count; camera++) {
+            if (spec->cameras[camera].frames && !spec->cameras[0].frames)
+                continue; /* as of the camera at rest */
+            char *view = cli_format("%s, %s", spec->scenes[spec->cameras[camera].scene].name, spec->cameras[camera].name);
+            bool volumes = structure(lab, camera, i, COL_INFLUENCE) > 0;
+            fputc('|', out);
+            experiment_cell(out, spec->configs[i].name);
+            experiment_cell(out, view);
+            free(view);
+            experiment_number(out, 1e3 * structure(lab, camera, i, COL_LIGHT_BUILD), "%.3g");
+            experiment_number(out, 1e-3 * structure(lab, camera, i, COL_LIGHT_BYTES), "%.1f");
+            experiment_number(out, 100 * structure(lab, camera, i, COL_LIGHT_BYTES) / structure(lab, camera, i, COL_SCENE_BYTES), "%.2f");
+            experiment_number(out, volumes ? structure(lab, camera, i, COL_INFLUENCE) : NAN, "%.3g");
+            experiment_number(out, volumes ? 100 * structure(lab, camera, i, COL_FOUND_NONE) : NAN, "%.1f");
+            experiment_number(out, volumes ? structure(lab, camera, i, COL_FOUND_MEDIAN) : NAN, "%.0f");
+            experiment_number(out, volumes ? structure(lab, camera, i, COL_FOUND_99) : NAN, "%.0f");
+            fputc('\n', out);
+        }
+    }
+}
+
+int experiment_write_summary(experiment_lab *lab) {
+    const experiment_spec *spec = &lab->spec;
+    char *temporary;
+    FILE *out = experiment_create(lab, "summary.md", &temporary);
+    if (!out)
+        return CLI_FAILURE;
+    fprintf(out, "# %s\n\n", spec->title ? spec->title : spec->path);
+    if (spec->note)
+        fprintf(out, "%s\n\n", spec->note);
+    fprintf(out, "%s; %d x %d px, %d repetition%s.\n", experiment_figure(spec), spec->width, spec->height, spec->repetitions,
+            spec->repetitions == 1 ? "" : "s");
+    bool plain = false;
+    const noc_option *done = NULL;
+    for (size_t i = 0; i < spec->config_count; i++) {
+        const noc_option *option = spec->configs[i].option;
+        plain |= !option;
+        bool first = option && option != done;
+        for (size_t j = 0; j < i && first; j++)
+            first = spec->configs[j].option != option;
+        for (size_t camera = 0; first && camera < spec->camera_count; camera++)
+            print_matrix(out, lab, camera, option);
+        done = option ? option : done;
+    }
+    if (plain)
+        print_plain(out, lab);
+    print_structures(out, lab);
+    return experiment_finish(lab, out, "summary.md", temporary);
+}

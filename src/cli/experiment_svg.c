@@ -1,0 +1,104 @@
+/* What the laboratory's plots are drawn with. Colours keep apart for the colour-blind (after Okabe and Ito), and each curve has its
+ * own marker too; a style sheet in the file swaps them where the reader's system is dark. */
+#include "experiment_svg.h"
+
+#include <math.h>
+#include <string.h>
+
+const char *const svg_colours[SVG_COLOURS] = { "#0072b2", "#d55e00", "#009e73", "#b8568f", "#c98600", "#3a9bd6", "#666666" };
+static const char *const dark[SVG_COLOURS] = { "#4aa8e8", "#f2833a", "#2fc79a", "#e49ac4", "#f0b93a", "#9bd8fa", "#bbbbbb" };
+static const char *const dashes[] = { "", " stroke-dasharray=\"7 4\"", " stroke-dasharray=\"2 3\"" };
+
+svg_style svg_style_of(const experiment_spec *spec, size_t config) {
+    int choices = 0, alone = 0;
+    for (size_t i = 0; i < spec->config_count; i++) {
+        choices = spec->configs[i].choice >= choices ? spec->configs[i].choice + 1 : choices;
+        alone += i < config && spec->configs[i].choice < 0;
+    }
+    const experiment_config *c = &spec->configs[config];
+    int colour = c->choice < 0 ? choices + alone : c->choice;
+    int line = choices ? (int)c->entry : alone / SVG_COLOURS;
+    return (svg_style){ colour % SVG_COLOURS, (choices ? (int)c->entry : alone) % 8, dashes[line % 3] };
+}
+
+double svg_place(const svg_axis *a, double v) { return a->from + (a->to - a->from) * log(v / a->lo) / log(a->hi / a->lo); }
+
+/* The i-th of ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ...; 0 is 1. */
+static double round_number(int i) {
+    static const double steps[] = { 1, 2, 5 };
+    int decade = (int)floor(i / 3.0);
+    return steps[i - 3 * decade] * pow(10, decade);
+}
+
+void svg_widen(svg_axis *a) {
+    int i = -45, j;
+    while (i < 45 && round_number(i + 1) <= a->lo * 1.000001)
+        i++;
+    for (j = i + 1; j < 45 && round_number(j) < a->hi * 0.999999;)
+        j++;
+    a->lo = round_number(i);
+    a->hi = round_number(j);
+}
+
+void svg_text(FILE *out, const char *text, int limit) {
+    int n = 0;
+    for (const char *c = text; *c; c++) {
+        bool starts = ((unsigned char)*c & 0xc0) != 0x80;
+        if (starts && n++ == limit) {
+            fputs("\342\200\246", out);
+            return;
+        }
+        switch (*c) {
+        case '&': fputs("&amp;", out); break;
+        case '<': fputs("&lt;", out); break;
+        case '>': fputs("&gt;", out); break;
+        case '"': fputs("&quot;", out); break;
+        default: fputc(*c, out);
+        }
+    }
+}
+
+void svg_head(FILE *out, int width, int height) {
+    fprintf(out, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
+                 "font-family=\"sans-serif\" font-size=\"13\">\n<style>\n"
+                 "@media (prefers-color-scheme: dark) {\n.paper { fill: #14171c } .ink { fill: #e6e6e6 } .grid { stroke: #343a44 } "
+                 ".frame { stroke: #8a93a0 }\n", width, height, width, height);
+    for (int i = 0; i < SVG_COLOURS; i++)
+        fprintf(out, ".l%d { stroke: %s } .m%d { fill: %s }\n", i, dark[i], i, dark[i]);
+    fprintf(out, "}\n</style>\n<rect class=\"paper\" width=\"%d\" height=\"%d\" fill=\"#ffffff\"/>\n", width, height);
+}
+
+/* Four shapes, filled, then hollow. */
+void svg_marker(FILE *out, const svg_style *style, double x, double y) {
+    int c = style->colour;
+    if (style->marker < 4)
+        fprintf(out, "<path class=\"m%d\" fill=\"%s\" d=\"", c, svg_colours[c]);
+    else
+        fprintf(out, "<path class=\"l%d paper\" fill=\"#ffffff\" stroke=\"%s\" stroke-width=\"1.5\" d=\"", c, svg_colours[c]);
+    switch (style->marker % 4) {
+    case 0: fprintf(out, "M%.1f %.1fa3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0 -7 0z", x - 3.5, y); break;
+    case 1: fprintf(out, "M%.1f %.1fh6v6h-6z", x - 3, y - 3); break;
+    case 2: fprintf(out, "M%.1f %.1fl4 7h-8z", x, y - 4.5); break;
+    default: fprintf(out, "M%.1f %.1fl4.5 4.5l-4.5 4.5l-4.5 -4.5z", x, y - 4.5);
+    }
+    fprintf(out, "\"/>\n");
+}
+
+void svg_grid(FILE *out, const svg_axis *a, bool vertical, const svg_axis *other) {
+    double decades = log10(a->hi / a->lo), last = -1e9, from = other->from, to = other->to;
+    for (int i = -45; i <= 45; i++) {
+        double v = round_number(i), at;
+        if (v < a->lo * 0.999999 || v > a->hi * 1.000001)
+            continue;
+        at = svg_place(a, v);
+        if (vertical)
+            fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%.1f %gV%g\"/>\n", at, to, from);
+        else
+            fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%g %.1fH%g\"/>\n", from, at, to);
+        if (fabs(at - last) < (vertical ? 34 : 15) || (decades > 4 && i % 3))
+            continue;
+        last = at;
+        fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">%.10g</text>\n",
+                vertical ? at : from - 8, vertical ? from + 18 : at + 4.5, vertical ? "middle" : "end", v);
+    }
+}
