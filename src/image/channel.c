@@ -35,17 +35,22 @@ static int compare_float(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* The nearest of 1, 2 and 5 times a power of ten that is not above, or not below, v > 0. */
-static double round_number(double v, bool up) {
-    static const double steps[] = { 1, 2, 5, 10 };
+/* Round numbers that are not below, and not above, v > 0. */
+static double round_up(double v) {
+    static const double steps[] = { 1, 1.5, 2, 3, 4, 5, 6, 8, 10 };
     double power = pow(10, floor(log10(v)));
-    for (size_t i = 0; i < NOC_COUNT(steps); i++) {
-        if (up && v <= steps[i] * power * (1 + 1e-6))
-            return steps[i] * power;
-        if (!up && i + 1 < NOC_COUNT(steps) && v < steps[i + 1] * power * (1 - 1e-6))
-            return steps[i] * power;
-    }
-    return 10 * power;
+    size_t i = 0;
+    while (i + 1 < NOC_COUNT(steps) && v > steps[i] * power * (1 + 1e-6))
+        i++;
+    return steps[i] * power;
+}
+static double round_down(double v) {
+    static const double steps[] = { 1, 2, 5 };
+    double power = pow(10, floor(log10(v)));
+    size_t i = NOC_COUNT(steps) - 1;
+    while (i > 0 && v < steps[i] * power * (1 - 1e-6))
+        i--;
+    return steps[i] * power;
 }
 
 /* Ends of the colour bar: what was asked for, or round numbers around all but the lowest and highest half percent of the
@@ -70,8 +75,8 @@ static noc_status range_of(const noc_channel *c, const noc_channel_params *p, co
     qsort(sorted, n, sizeof(*sorted), compare_float);
     double least = n ? sorted[n / 200] : 1, most = n ? sorted[n - 1 - n / 200] : 1;
     free(sorted);
-    bar->low = bar->logarithmic ? round_number(least, false) : 0;
-    bar->high = most > 0 ? round_number(most, true) : 1;
+    bar->low = bar->logarithmic ? round_down(least) : 0;
+    bar->high = most > 0 ? round_up(most) : 1;
     if (!(bar->high > bar->low))
         bar->high = 10 * bar->low;
     return NOC_OK;

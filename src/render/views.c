@@ -38,9 +38,9 @@ noc_status noc_check_aovs(const noc_render_params *p, noc_log *log) {
 void noc_describe_aov(const noc_render_params *p, noc_aov aov, noc_channel *channel) {
     static const struct { const char *title, *unit; noc_channel_scale scale; } kinds[NOC_AOV_COUNT] = {
         [NOC_AOV_LIGHTS] = { "influence volumes that hold the point", "lights", NOC_CHANNEL_LINEAR },
-        [NOC_AOV_DENSITY] = { "candidates expected of the chosen light", "candidates", NOC_CHANNEL_LOG },
+        [NOC_AOV_DENSITY] = { "expected candidates of the chosen light", "candidates", NOC_CHANNEL_LOG },
         [NOC_AOV_LIGHT] = { "chosen light: each its own colour", "", NOC_CHANNEL_LABELS },
-        [NOC_AOV_WEIGHT] = { "W of the reservoir", "", NOC_CHANNEL_LOG },
+        [NOC_AOV_WEIGHT] = { "W of the reservoir (black: 0)", "", NOC_CHANNEL_LOG },
         [NOC_AOV_CONFIDENCE] = { "M of the reservoir [candidates]", "candidates", NOC_CHANNEL_LINEAR },
         [NOC_AOV_RAYS] = { "shadow rays a pixel", "rays", NOC_CHANNEL_LINEAR },
         [NOC_AOV_VARIANCE] = { "variance of a frame [(cd/m\xb2)\xb2]", "(cd/m2)^2", NOC_CHANNEL_LOG },

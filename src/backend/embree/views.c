@@ -153,6 +153,7 @@ void noc_embree_keep_views(embree_state *s, const noc_frame *frame) {
         v->frames = 0;
     noc_pool_run(s->pool, (size_t)s->b.blocks_y, keep_row, &(struct keep_run){ s, frame });
     v->held = v->asked;
+    v->gbuffer = frame->gbuffer;
     v->frames += (v->asked & MOMENTS) != 0;
 }
 
@@ -169,7 +170,8 @@ bool noc_embree_read_view(void *state, noc_aov aov, float *value) {
             double out = v->kept[aov][at][l];
             if (MOMENTS >> aov & 1) {
                 double variance = v->kept[NOC_AOV_VARIANCE][at][l] / (n - 1), mean = v->kept[NOC_AOV_ERROR][at][l];
-                bool none = n < 2 || b->emitter[at] >> l & 1 || (aov == NOC_AOV_ERROR && !(mean > 0));
+                bool none = n < 2 || b->emitter[at] >> l & 1 || b->g[v->gbuffer][at].material[l] == NO_SURFACE ||
+                            (aov == NOC_AOV_ERROR && !(mean > 0));
                 out = none ? -1 : aov == NOC_AOV_ERROR ? sqrt(variance / n) / mean : variance;
             }
             value[(size_t)y * (size_t)b->width + (size_t)x] = isfinite((float)out) ? (float)out : -1;
