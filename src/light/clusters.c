@@ -4,6 +4,42 @@
 
 #include <math.h>
 
+enum { CHUNK = 4096, CURVE_BITS = 12 };
+
+/* Work on all items in chunks, by the pool where there is one. */
+typedef struct build {
+    const noc_scene *scene;
+    noc_clusters *c;
+    noc_light_bound *bounds;     /* a light of the scene */
+    noc_light_key *keys, *spare; /* emitting lights in the order of the curve */
+    uint32_t *first;             /* a cluster: its first key; one more at the end */
+    size_t items, emitting;
+    float lo[3], scale;
+    int level;                   /* being made from the one below */
+    void (*work)(struct build *b, size_t item);
+} build;
+
+static void run_chunk(void *arg, size_t chunk, int worker) {
+    build *b = arg;
+    (void)worker;
+    size_t end = NOC_MIN((chunk + 1) * CHUNK, b->items);
+    for (size_t i = chunk * CHUNK; i < end; i++)
+        b->work(b, i);
+}
+
+static void run(build *b, noc_pool *pool, size_t items, void (*work)(build *, size_t)) {
+    size_t chunks = (items + CHUNK - 1) / CHUNK;
+    b->items = items;
+    b->work = work;
+    if (pool && chunks > 1)
+        noc_pool_run(pool, chunks, run_chunk, b);
+    else
+        for (size_t i = 0; i < chunks; i++)
+            run_chunk(b, i, 0);
+}
+
+/* ---- order ---- */
+
 /* Face of the cube that a direction points through; 6 for none. */
 static unsigned face(const float n[3]) {
     int axis = 0;
@@ -13,32 +49,58 @@ static unsigned face(const float n[3]) {
     return n[axis] == 0 ? 6 : 2u * (unsigned)axis + (n[axis] < 0);
 }
 
-/* Key: place in coarse cells, direction, place inside the cell; a cell holds some 16 lights a direction on average. */
-static void sort_lights(const noc_light_bound *bounds, noc_light_key *leaves, noc_light_key *scratch, size_t n) {
-    float lo[3] = { INFINITY, INFINITY, INFINITY }, size = 0;
-    float hi[3] = { -INFINITY, -INFINITY, -INFINITY };
-    for (size_t i = 0; i < n; i++)
+/* Place along Hilbert's curve through a cube of 2^CURVE_BITS cells a side: what follows each other on it lies together, with
+ * no leaps, so that 16 in a row make a small sphere. J. Skilling 2004, "Programming the Hilbert curve", AIP Conf. Proc. 707. */
+static uint64_t hilbert(uint32_t x[3]) {
+    const uint32_t top = 1u << (CURVE_BITS - 1);
+    for (uint32_t q = top; q > 1; q >>= 1)
         for (int k = 0; k < 3; k++) {
-            lo[k] = fminf(lo[k], bounds[leaves[i].id].p[k]);
-            hi[k] = fmaxf(hi[k], bounds[leaves[i].id].p[k]);
+            uint32_t low = q - 1, t = (x[0] ^ x[k]) & low;
+            if (x[k] & q)
+                x[0] ^= low;
+            else {
+                x[0] ^= t;
+                x[k] ^= t;
+            }
+        }
+    x[1] ^= x[0];
+    x[2] ^= x[1];
+    uint32_t t = 0;
+    for (uint32_t q = top; q > 1; q >>= 1)
+        if (x[2] & q)
+            t ^= q - 1;
+    return noc_spread_bits(x[0] ^ t) << 2 | noc_spread_bits(x[1] ^ t) << 1 | noc_spread_bits(x[2] ^ t);
+}
+
+static void bound_light(build *b, size_t i) { b->bounds[i] = noc_bound_light(&b->scene->lights.data[i]); }
+
+/* By the way they face, then along the curve: groups of any level face alike. */
+static void make_key(build *b, size_t i) {
+    const noc_light_bound *l = &b->bounds[b->keys[i].id];
+    uint32_t x[3];
+    for (int k = 0; k < 3; k++)
+        x[k] = (uint32_t)NOC_CLAMP((l->p[k] - b->lo[k]) * b->scale, 0, (float)((1 << CURVE_BITS) - 1));
+    b->keys[i].key = (uint64_t)face(l->n) << (3 * CURVE_BITS) | hilbert(x);
+}
+
+static void sort_lights(build *b, noc_pool *pool) {
+    float hi[3] = { -INFINITY, -INFINITY, -INFINITY }, size = 0;
+    for (int k = 0; k < 3; k++)
+        b->lo[k] = INFINITY;
+    for (size_t i = 0; i < b->emitting; i++)
+        for (int k = 0; k < 3; k++) {
+            float p = b->bounds[b->keys[i].id].p[k];
+            b->lo[k] = NOC_MIN(b->lo[k], p);
+            hi[k] = NOC_MAX(hi[k], p);
         }
     for (int k = 0; k < 3; k++)
-        size = fmaxf(size, hi[k] - lo[k]);
-    float scale = size > 0 ? 1048575.f / size : 0;
-    /* Lights of a city lie near a surface: cells of edge size / 2^b hold n / 4^b of them. */
-    int coarse = 0;
-    while (coarse < 16 && n >> (2 * coarse) > 4 * NOC_CLUSTER_LIGHTS)
-        coarse++;
-    int below = 3 * (20 - coarse);
-    for (size_t i = 0; i < n; i++) {
-        const noc_light_bound *b = &bounds[leaves[i].id];
-        uint64_t m = 0;
-        for (int k = 0; k < 3; k++)
-            m |= noc_spread_bits((uint64_t)((b->p[k] - lo[k]) * scale)) << k;
-        leaves[i].key = (m >> below) << (below + 3) | (uint64_t)face(b->n) << below | (m & (((uint64_t)1 << below) - 1));
-    }
-    noc_sort_keys(leaves, scratch, n);
+        size = fmaxf(size, hi[k] - b->lo[k]);
+    b->scale = size > 0 ? (float)(1 << CURVE_BITS) / size : 0;
+    run(b, pool, b->emitting, make_key);
+    noc_sort_keys(b->keys, b->spare, b->emitting);
 }
+
+/* ---- groups ---- */
 
 /* Do both face alike enough to share a cone? */
 static bool alike(const noc_light_bound *a, const noc_light_bound *b) {
@@ -48,98 +110,181 @@ static bool alike(const noc_light_bound *a, const noc_light_bound *b) {
     return a->n[0] * b->n[0] + a->n[1] * b->n[1] + a->n[2] * b->n[2] > 0.7f;
 }
 
-static void close_cluster(noc_clusters *c, const noc_light_bound *bounds, uint32_t first, uint32_t end) {
-    size_t i = c->count++;
-    c->first[i] = first;
-    c->first[i + 1] = end;
-    float lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY }, n[3] = { 0 }, power = 0;
-    for (uint32_t j = first; j < end; j++) {
-        const noc_light_bound *b = &bounds[c->ids[j]];
-        c->intensity[j] = b->intensity;
-        power += b->intensity;
-        for (int k = 0; k < 3; k++) {
-            lo[k] = fminf(lo[k], b->p[k]);
-            hi[k] = fmaxf(hi[k], b->p[k]);
-            n[k] += b->n[k];
+/* Where clusters begin, into first (or only how many there are, where that is NULL). */
+static size_t cut(const build *b, uint32_t *first) {
+    size_t count = 0, begin = 0;
+    for (size_t i = 0; i < b->emitting; i++)
+        if (!i || i - begin == NOC_CLUSTER_LIGHTS || !alike(&b->bounds[b->keys[begin].id], &b->bounds[b->keys[i].id])) {
+            begin = i;
+            if (first)
+                first[count] = (uint32_t)i;
+            count++;
         }
-    }
-    float centre[3], r = 0, len = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), cone = 1;
-    for (int k = 0; k < 3; k++) {
-        centre[k] = 0.5f * (lo[k] + hi[k]);
-        n[k] = len > 0 ? n[k] / len : 0;
-    }
-    for (uint32_t j = first; j < end; j++) {
-        const noc_light_bound *b = &bounds[c->ids[j]];
-        float d[3] = { b->p[0] - centre[0], b->p[1] - centre[1], b->p[2] - centre[2] };
-        r = fmaxf(r, sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) + b->radius);
-        cone = fminf(cone, b->n[0] * n[0] + b->n[1] * n[1] + b->n[2] * n[2]);
-    }
-    bool any = !(len > 0);
-    cone = any ? -1 : fmaxf(-1, cone - 1e-5f); /* outwards of rounding */
-    c->x[i] = centre[0];
-    c->y[i] = centre[1];
-    c->z[i] = centre[2];
-    c->radius[i] = r * 1.0001f;
-    c->ax[i] = any ? 0 : n[0];
-    c->ay[i] = any ? 0 : n[1];
-    c->az[i] = any ? 1 : n[2];
-    c->cos_cone[i] = cone;
-    c->sin_cone[i] = sqrtf(fmaxf(0, 1 - cone * cone));
-    c->power[i] = power;
+    if (first)
+        first[count] = (uint32_t)b->emitting;
+    return count;
 }
 
-static bool allocate(noc_clusters *c, size_t lights) {
-    size_t most = lights + NOC_CLUSTER_PAD; /* never more clusters than lights */
-    float **fields[] = { &c->x, &c->y, &c->z, &c->radius, &c->ax, &c->ay, &c->az, &c->cos_cone, &c->sin_cone, &c->power };
-    bool ok = true;
-    for (size_t i = 0; i < NOC_COUNT(fields); i++)
-        ok = (*fields[i] = noc_alloc_large(most, sizeof(float))) && ok;
-    ok = (c->first = noc_alloc_large(most + 1, sizeof(uint32_t))) && ok;
-    ok = (c->ids = noc_alloc_large(lights, sizeof(uint32_t))) && ok;
-    ok = (c->intensity = noc_alloc_large(lights, sizeof(float))) && ok;
-    c->bytes = (most * (NOC_COUNT(fields) + 1) + 2 * lights) * 4;
+/* What a node is made from: lights, or nodes. */
+typedef struct part {
+    float p[3], radius, n[3], cos_cone, power;
+} part;
+
+/* Sphere and cone around the parts, into lane `lane`. */
+static void close_node(noc_cluster_block *block, int lane, const part *parts, int count) {
+    float lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY }, n[3] = { 0 }, power = 0;
+    bool any = false;
+    for (int i = 0; i < count; i++) {
+        power += parts[i].power;
+        any = any || parts[i].cos_cone <= -1;
+        for (int k = 0; k < 3; k++) {
+            lo[k] = fminf(lo[k], parts[i].p[k] - parts[i].radius);
+            hi[k] = fmaxf(hi[k], parts[i].p[k] + parts[i].radius);
+            n[k] += parts[i].n[k];
+        }
+    }
+    float c[3], radius = 0, len = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), angle = 0;
+    any = any || !(len > 1e-3f);
+    for (int k = 0; k < 3; k++) {
+        c[k] = 0.5f * (lo[k] + hi[k]);
+        n[k] = any ? (float)(k == 2) : n[k] / len;
+    }
+    for (int i = 0; i < count; i++) {
+        const part *q = &parts[i];
+        float d[3] = { q->p[0] - c[0], q->p[1] - c[1], q->p[2] - c[2] };
+        radius = fmaxf(radius, sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) + q->radius);
+        if (!any)
+            angle = fmaxf(angle, acosf(NOC_CLAMP(q->n[0] * n[0] + q->n[1] * n[1] + q->n[2] * n[2], -1.f, 1.f)) +
+                                     acosf(q->cos_cone));
+    }
+    /* outwards of rounding */
+    float cone = any || angle > 3.1f ? -1 : cosf(angle) - 1e-5f;
+    block->x[lane] = c[0];
+    block->y[lane] = c[1];
+    block->z[lane] = c[2];
+    block->radius[lane] = radius * 1.0001f;
+    block->ax[lane] = n[0];
+    block->ay[lane] = n[1];
+    block->az[lane] = n[2];
+    block->cos_cone[lane] = cone;
+    block->sin_cone[lane] = sqrtf(fmaxf(0, 1 - cone * cone));
+    block->power[lane] = power;
+}
+
+/* The upper half of an intensity's float, rounded up: never 0, never infinite. */
+static uint32_t half_intensity(float x) {
+    uint32_t bits;
+    x = NOC_CLAMP(x, 1e-30f, 1e30f);
+    memcpy(&bits, &x, sizeof(bits));
+    return (bits + 0xffff) & 0xffff0000u;
+}
+
+static float full_intensity(uint32_t shine) {
+    float x;
+    shine &= 0xffff0000u;
+    memcpy(&x, &shine, sizeof(x));
+    return x;
+}
+
+static uint32_t octahedron(const float n[3]) {
+    float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]), x = n[0] / sum, y = n[1] / sum;
+    if (n[2] < 0) {
+        float folded = (1 - fabsf(y)) * (x < 0 ? -1.f : 1.f);
+        y = (1 - fabsf(x)) * (y < 0 ? -1.f : 1.f);
+        x = folded;
+    }
+    return (uint32_t)(127.5f + 127 * x) << 8 | (uint32_t)(127.5f + 127 * y);
+}
+
+static void make_cluster(build *b, size_t i) {
+    noc_cluster_block *block = &b->c->level[0][i / 16];
+    noc_light_block *out = &b->c->lights[i];
+    part parts[NOC_CLUSTER_LIGHTS] = { 0 };
+    int count = (int)(b->first[i + 1] - b->first[i]), lane = (int)(i % 16);
+    for (int j = 0; j < count; j++) {
+        out->id[j] = b->keys[b->first[i] + (uint32_t)j].id;
+        const noc_light_bound *l = &b->bounds[out->id[j]];
+        bool any = face(l->n) == 6;
+        out->shine[j] = half_intensity(l->intensity) | (any ? 0 : octahedron(l->n));
+        parts[j] = (part){ { l->p[0], l->p[1], l->p[2] }, l->radius, { l->n[0], l->n[1], l->n[2] }, any ? -1 : 1,
+                           full_intensity(out->shine[j]) };
+    }
+    close_node(block, lane, parts, count);
+    float centre[3] = { block->x[lane], block->y[lane], block->z[lane] }, r = block->radius[lane];
+    for (int j = 0; j < count; j++) {
+        out->place[j] = parts[j].cos_cone <= -1 ? 1u << 31 : 0;
+        for (int k = 0; k < 3; k++) {
+            float t = r > 0 ? (parts[j].p[k] - centre[k]) / r : 0;
+            out->place[j] |= (uint32_t)NOC_CLAMP(512 + 511 * t, 0.f, 1023.f) << (10 * k);
+        }
+    }
+    for (int j = count; j < NOC_CLUSTER_LIGHTS; j++)
+        out->id[j] = out->id[0];
+}
+
+static void make_node(build *b, size_t i) {
+    const noc_cluster_block *below = &b->c->level[b->level - 1][i];
+    part parts[16] = { 0 };
+    int count = (int)NOC_MIN((size_t)16, b->c->nodes[b->level - 1] - 16 * i);
+    for (int j = 0; j < count; j++)
+        parts[j] = (part){ { below->x[j], below->y[j], below->z[j] }, below->radius[j],
+                           { below->ax[j], below->ay[j], below->az[j] }, below->cos_cone[j], below->power[j] };
+    close_node(&b->c->level[b->level][i / 16], (int)(i % 16), parts, count);
+}
+
+static bool allocate(noc_clusters *c, size_t count) {
+    c->count = count;
+    bool ok = (c->lights = noc_alloc_large(count, sizeof(*c->lights))) != NULL;
+    c->bytes = count * sizeof(*c->lights);
+    for (size_t n = count; ok && n; n = n > NOC_CLUSTER_ROOTS ? (n + 15) / 16 : 0) {
+        size_t blocks = (n + 15) / 16;
+        c->nodes[c->levels] = n;
+        ok = (c->level[c->levels++] = noc_alloc_large(blocks, sizeof(**c->level))) != NULL;
+        c->bytes += blocks * sizeof(**c->level);
+    }
     return ok;
 }
 
-noc_clusters *noc_clusters_create(const noc_scene *scene, noc_log *log) {
-    size_t n = 0, all = scene->lights.len;
-    noc_clusters *c = noc_calloc(1, sizeof(*c));
-    noc_light_bound *bounds = noc_alloc_large(all, sizeof(*bounds));
-    noc_light_key *leaves = noc_alloc_large(2 * all, sizeof(*leaves));
-    if (!bounds || !leaves || !allocate(c, all)) {
+static bool make_all(build *b, noc_pool *pool) {
+    size_t all = b->scene->lights.len;
+    run(b, pool, all, bound_light);
+    for (size_t i = 0; i < all; i++)
+        if (b->bounds[i].intensity > 0)
+            b->keys[b->emitting++].id = (uint32_t)i;
+    if (!b->emitting)
+        return true;
+    sort_lights(b, pool);
+    size_t count = cut(b, NULL);
+    if (!allocate(b->c, count) || !(b->first = noc_alloc_large(count + 1, sizeof(*b->first))))
+        return false;
+    cut(b, b->first);
+    run(b, pool, count, make_cluster);
+    for (b->level = 1; b->level < b->c->levels; b->level++)
+        run(b, pool, b->c->nodes[b->level], make_node);
+    return true;
+}
+
+noc_clusters *noc_clusters_create(const noc_scene *scene, noc_pool *pool, noc_log *log) {
+    size_t all = scene->lights.len;
+    build b = { .scene = scene, .c = noc_calloc(1, sizeof(*b.c)), .bounds = noc_alloc_large(all, sizeof(*b.bounds)),
+                .keys = noc_alloc_large(all, sizeof(*b.keys)), .spare = noc_alloc_large(all, sizeof(*b.spare)) };
+    if (!b.bounds || !b.keys || !b.spare || !make_all(&b, pool)) {
         noc_error(log, NOC_ERR_MEMORY, "light clusters: no memory for %zu lights", all);
-        noc_clusters_destroy(c);
-        c = NULL;
-        goto done;
+        noc_clusters_destroy(b.c);
+        b.c = NULL;
     }
-    for (size_t i = 0; i < all; i++) {
-        bounds[i] = noc_bound_light(&scene->lights.data[i]);
-        if (bounds[i].intensity > 0)
-            leaves[n++].id = (uint32_t)i;
-    }
-    if (n)
-        sort_lights(bounds, leaves, leaves + all, n);
-    for (size_t i = 0; i < n; i++)
-        c->ids[i] = leaves[i].id;
-    for (uint32_t first = 0, i = 1; first < n; i++)
-        if (i == n || i - first == NOC_CLUSTER_LIGHTS || !alike(&bounds[c->ids[first]], &bounds[c->ids[i]])) {
-            close_cluster(c, bounds, first, i);
-            first = i;
-        }
-    c->padded = (c->count + NOC_CLUSTER_PAD - 1) / NOC_CLUSTER_PAD * NOC_CLUSTER_PAD;
-done:
-    free(bounds);
-    free(leaves);
-    return c;
+    free(b.bounds);
+    free(b.keys);
+    free(b.spare);
+    free(b.first);
+    return b.c;
 }
 
 void noc_clusters_destroy(noc_clusters *c) {
     if (!c)
         return;
-    float *fields[] = { c->x, c->y, c->z, c->radius, c->ax, c->ay, c->az, c->cos_cone, c->sin_cone, c->power, c->intensity };
-    for (size_t i = 0; i < NOC_COUNT(fields); i++)
-        free(fields[i]);
-    free(c->first);
-    free(c->ids);
+    for (int i = 0; i < NOC_CLUSTER_LEVELS; i++)
+        free(c->level[i]);
+    free(c->lights);
     free(c);
 }

@@ -11,8 +11,13 @@
 #include "light/tree.h"
 #include "render/backend.h"
 
-enum { MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32, LIST_ENTRIES = 128, LIST_EXAMPLES = 8, OPENED_CLUSTERS = 96, SCORE_BINS = 1024,
-       PICK_AHEAD = 8 };
+enum { MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32, LIST_ENTRIES = 128, PICK_AHEAD = 8 };
+/* List building: surfaces of a tile that lights are scored at, and those for lights of the tail; nodes that are opened, of
+ * each level and of the lowest; steps that scores are told apart by. */
+enum { LIST_EXAMPLES = 8, TAIL_EXAMPLES = 2, OPENED_NODES = 96, OPENED_CLUSTERS = 96, SCORE_STEPS = 1020 };
+
+/* Most groups of 16 that a list is chosen from. */
+enum { LIST_GROUPS = NOC_CLUSTER_ROOTS / 16 + NOC_CLUSTER_LEVELS * OPENED_NODES + OPENED_CLUSTERS };
 
 /* What the pixels of a tile evaluate: core/lists.h. */
 typedef struct light_list {
@@ -67,10 +72,10 @@ typedef struct reference_scratch {
 /* Scratch of list building, one a worker. */
 typedef struct list_scratch {
     light_list list;
-    float *scores; /* a cluster, padded */
-    ALIGNED uint32_t light[OPENED_CLUSTERS * NOC_CLUSTER_LIGHTS];
-    ALIGNED float light_scores[OPENED_CLUSTERS * NOC_CLUSTER_LIGHTS];
-    uint16_t bins[SCORE_BINS];
+    ALIGNED float scores[LIST_GROUPS][16];
+    float sums[LIST_GROUPS];
+    uint32_t block[LIST_GROUPS];
+    int8_t level[LIST_GROUPS];
 } list_scratch;
 
 typedef struct kernels {

@@ -3,24 +3,6 @@
 
 enum { MAX_DRAWS = 1024 + PICK_AHEAD };
 
-static noc_status prepare_lists(embree_state *s) {
-    noc_clusters *c = noc_clusters_create(s->scene, s->log);
-    bool ok = c != NULL;
-    for (int i = 0; i < s->worker_count && ok; i++)
-        ok = (s->workers[i].lists.scores = noc_alloc_large(c->padded, sizeof(float))) != NULL ||
-             noc_error(s->log, NOC_ERR_MEMORY, "light lists: no memory for %zu clusters", c->padded) == NOC_OK;
-    if (ok) {
-        s->clusters = c;
-        return NOC_OK;
-    }
-    for (int i = 0; i < s->worker_count; i++) {
-        free(s->workers[i].lists.scores);
-        s->workers[i].lists.scores = NULL;
-    }
-    noc_clusters_destroy(c);
-    return NOC_ERR_MEMORY;
-}
-
 static noc_status prepare_picks(embree_state *s) {
     for (int i = 0; i < s->worker_count; i++) {
         pick_block *p = &s->workers[i].picks;
@@ -41,7 +23,8 @@ static bool draws_candidates(const noc_render_params *p) {
 static noc_status prepare(embree_state *s, const noc_render_params *p) {
     switch (p->candidates) {
     case NOC_CANDIDATES_UNIFORM: return NOC_OK;
-    case NOC_CANDIDATES_LISTS: return s->clusters ? NOC_OK : prepare_lists(s);
+    case NOC_CANDIDATES_LISTS:
+        return s->clusters || (s->clusters = noc_clusters_create(s->scene, s->pool, s->log)) ? NOC_OK : NOC_ERR_MEMORY;
     case NOC_CANDIDATES_POWER:
         if (!s->alias && !(s->alias = noc_alias_create(s->scene, s->log)))
             return NOC_ERR_MEMORY;
@@ -88,7 +71,6 @@ void noc_embree_release_lights(embree_state *s) {
     noc_tree_destroy(s->tree);
     for (int i = 0; i < s->worker_count; i++) {
         worker *w = &s->workers[i];
-        free(w->lists.scores);
         free(w->picks.light);
         free(w->picks.inverse);
         noc_found_free(&w->found);

@@ -1,9 +1,13 @@
-/* Building a tile's light list (core/lists.h), included by lists.h: the tile's bounds, scores of the clusters, the choice of
- * the strongest lights, and the tail. */
+/* Building a tile's light list (core/lists.h), included by lists.h. From the top level of the clusters down, the nodes with
+ * the highest scores are opened: their 16 children, and in the end the lights of clusters, take their place. The strongest
+ * lights are listed; what is left, closed nodes and lights, is what the tail is drawn from. So the work does not grow with
+ * the number of lights, only with the number of levels. */
 #ifndef NOC_EMBREE_LIST_BUILD_H
 #define NOC_EMBREE_LIST_BUILD_H
 
 #include "core/lists.h"
+
+#include <float.h>
 
 /* ---- bounds ---- */
 
@@ -61,42 +65,79 @@ static tile_bound bound_tile(const struct core_context *ctx, const gblock *const
 
 /* ---- choosing the largest ---- */
 
-/* Bins by the float's exponent and top two bits of its fraction: 8 to 19 per cent wide. Values are not negative. */
-static uint32_t score_bin(float x) {
-    uint32_t bits;
-    memcpy(&bits, &x, sizeof(bits));
-    return bits >> 21;
+/* How many of the groups' scores are t or more. t > 0. */
+static uint32_t count_over(float (*scores)[16], uint32_t begin, uint32_t end, float t) {
+    u32 sum = KU(0u);
+    uint32_t lanes[LANES], n = 0;
+    for (uint32_t g = begin; g < end; g++)
+        for (int l = 0; l < 16; l += LANES)
+            sum = sum + selu(rload(scores[g] + l) >= K(t), KU(1u), KU(0u));
+    ustore(lanes, sum);
+    for (int l = 0; l < LANES; l++)
+        n += lanes[l];
+    return n;
 }
 
-/* Indices of the (about) `most` largest of n values that are above 0; never more than `most`. Returns how many. Those that
- * share the last bin are taken in order. */
-static uint32_t pick_largest(const float *x, uint32_t n, uint32_t most, uint16_t bins[SCORE_BINS], uint32_t *out) {
-    memset(bins, 0, SCORE_BINS * sizeof(*bins));
-    for (uint32_t i = 0; i < n; i++)
-        bins[score_bin(x[i])] += bins[score_bin(x[i])] < UINT16_MAX;
-    uint32_t above = 0, bin = SCORE_BINS - 1;
-    while (bin > 0 && above + bins[bin] <= most)
-        above += bins[bin--];
-    uint32_t room = most - above, count = 0;
-    for (uint32_t i = 0; i < n && count < most; i++) {
-        uint32_t b = score_bin(x[i]);
-        if (!(x[i] > 0) || b < bin || (b == bin && !room))
-            continue;
-        room -= b == bin;
-        out[count++] = i;
+static uint32_t lanes_over(const float *scores, float t) {
+    uint32_t bits = 0;
+    for (int l = 0; l < 16; l += LANES)
+        bits |= mbits(rload(scores + l) >= K(t)) << l;
+    return bits;
+}
+
+/* Scores are told apart by their exponents and the top two bits of their fractions: 8 to 19 per cent. */
+static float score_step(uint32_t step) {
+    float x;
+    step <<= 21;
+    memcpy(&x, &step, sizeof(x));
+    return x;
+}
+
+/* The `most` largest of the scores above 0, as 16 * group + lane in that order; those that share the last step are taken in
+ * order. Returns how many. */
+static uint32_t choose(float (*scores)[16], uint32_t begin, uint32_t end, uint32_t most, uint32_t *out) {
+    uint32_t low = 1, high = SCORE_STEPS; /* high: the lowest step known to have no more than `most` at or above it */
+    while (low < high) {
+        uint32_t mid = (low + high) / 2;
+        if (count_over(scores, begin, end, score_step(mid)) <= most)
+            high = mid;
+        else
+            low = mid + 1;
     }
-    return count;
+    float sure = score_step(high), tie = high > 1 ? score_step(high - 1) : sure;
+    uint32_t room = most - count_over(scores, begin, end, sure), n = 0;
+    for (uint32_t g = begin; g < end && n < most; g++)
+        for (uint32_t over = lanes_over(scores[g], sure), bits = lanes_over(scores[g], tie); bits; bits &= bits - 1) {
+            uint32_t lane = (uint32_t)__builtin_ctz(bits);
+            if (!(over >> lane & 1)) {
+                if (!room)
+                    continue;
+                room--;
+            }
+            out[n++] = 16 * g + lane;
+        }
+    return n;
 }
 
-/* ---- the list ---- */
+/* In this order whatever the number of lanes. */
+static float sum16(const float *x) {
+    float a[8];
+    for (int i = 0; i < 8; i++)
+        a[i] = x[i] + x[i + 8];
+    for (int i = 0; i < 4; i++)
+        a[i] += a[i + 4];
+    return (a[0] + a[2]) + (a[1] + a[3]);
+}
 
-static void score_clusters(const noc_clusters *c, const tile_bound *t, float *scores) {
+/* ---- scores ---- */
+
+static void score_nodes(const noc_cluster_block *c, const tile_bound *t, float *out) {
     cone_bound tile = { splat3(t->c), K(t->radius), splat3(t->axis), K(t->cos_cone), K(t->sin_cone) };
-    for (size_t i = 0; i < c->padded; i += LANES) {
+    for (int i = 0; i < 16; i += LANES) {
         cone_bound lights = { V3(rload(c->x + i), rload(c->y + i), rload(c->z + i)), rload(c->radius + i),
                               V3(rload(c->ax + i), rload(c->ay + i), rload(c->az + i)), rload(c->cos_cone + i),
                               rload(c->sin_cone + i) };
-        rstore(scores + i, cluster_score(tile, lights, rload(c->power + i)) * K(t->reflectance));
+        rstore(out + i, cluster_score(tile, lights, rload(c->power + i)) * K(t->reflectance));
     }
 }
 
@@ -104,6 +145,7 @@ static void score_clusters(const noc_clusters *c, const tile_bound *t, float *sc
 typedef struct examples {
     int count;
     surf s[LIST_EXAMPLES];
+    real albedo[LIST_EXAMPLES]; /* its luminance */
 } examples;
 
 static void take_examples(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks,
@@ -129,75 +171,156 @@ static void take_examples(const struct core_context *ctx, const gblock *const *g
                    .alpha = K(m->alpha) };
         v3 d = sub3(splat3(ctx->frame->camera.eye), s.p);
         s.wo = mul3(d, K(1.0f) / sqrt_(max_(dot3(d, d), K(1e-20f))));
+        out->albedo[out->count] = luminance(s.albedo);
         out->s[out->count++] = s;
     }
 }
 
-/* Lights of the opened clusters with their scores: their mean target at the examples, and a share of the cluster's bound,
- * so that none that could matter elsewhere in the tile is forgotten. The opened clusters' own scores become 0. */
-static uint32_t score_lights(const struct core_context *ctx, const examples *e, list_scratch *s, const uint32_t *opened,
-                             uint32_t count) {
-    const noc_clusters *c = ctx->clusters;
-    uint32_t n = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t cluster = opened[i];
-        float bound = 0.08f * s->scores[cluster] / c->power[cluster];
-        for (uint32_t j = c->first[cluster]; j < c->first[cluster + 1]; j++, n++) {
-            s->light[n] = c->ids[j];
-            s->light_scores[n] = bound * c->intensity[j];
-        }
-        s->scores[cluster] = 0;
-    }
-    for (uint32_t i = n; i % LANES; i++)
-        s->light[i] = s->light[n - 1]; /* whole vectors of lights */
-    for (uint32_t i = 0; i < n; i += LANES) {
-        light l = light_load(ctx, uload(s->light + i));
+FN real real_of_bits(u32 bits) {
+    real x;
+    memcpy(&x, &bits, sizeof(x));
+    return x;
+}
+
+/* A light as its cluster's block has it: a point that faces one way, or every way. */
+typedef struct brief_light {
+    v3 p, n;
+    real intensity;
+    mask any; /* faces every way */
+} brief_light;
+
+FN real tenth(u32 place, int k) { return to_real(shr(place, 10 * k) & KU(1023u)) - K(512.0f); }
+
+FN brief_light brief_light_load(const noc_light_block *b, int i, v3 centre, real radius) {
+    brief_light l;
+    u32 place = uload(b->place + i);
+    u32 shine = uload(b->shine + i);
+    real scale = radius * K(1.0f / 511.0f);
+    l.p = add3(centre, mul3(V3(tenth(place, 0), tenth(place, 1), tenth(place, 2)), scale));
+    real x = (to_real(shr(shine, 8) & KU(255u)) - K(127.0f)) * K(1.0f / 127.0f);
+    real y = (to_real(shine & KU(255u)) - K(127.0f)) * K(1.0f / 127.0f);
+    real z = K(1.0f) - abs_(x) - abs_(y);
+    real fold = max_(K(0.0f) - z, K(0.0f));
+    x = x + sel(x < K(0.0f), fold, K(0.0f) - fold);
+    y = y + sel(y < K(0.0f), fold, K(0.0f) - fold);
+    l.n = mul3(V3(x, y, z), K(1.0f) / sqrt_(x * x + y * y + z * z));
+    l.intensity = real_of_bits(shine & KU(0xffff0000u));
+    l.any = shr(place, 31) == KU(1u);
+    return l;
+}
+
+/* What the lights of a cluster give the first examples on average, as if each were a point, and a share of the cluster's own
+ * score, so that none that could matter elsewhere in the tile is forgotten. */
+static void score_lights(const noc_clusters *c, uint32_t cluster, const examples *e, int count, float score, float *out) {
+    const noc_cluster_block *block = &c->level[0][cluster / 16];
+    uint32_t lane = cluster % 16;
+    v3 centre = V3(K(block->x[lane]), K(block->y[lane]), K(block->z[lane]));
+    float least = 0.08f * score / block->power[lane];
+    for (int i = 0; i < 16; i += LANES) {
+        brief_light l = brief_light_load(&c->lights[cluster], i, centre, K(block->radius[lane]));
         real sum = K(0.0f);
-        for (int k = 0; k < e->count; k++)
-            sum = sum + target(e->s[k], l, K(0.5f), K(0.25f));
-        rstore(s->light_scores + i, rload(s->light_scores + i) + sum * K(1.0f / (float)e->count));
+        for (int k = 0; k < count; k++) {
+            v3 d = sub3(l.p, e->s[k].p);
+            real inv = K(1.0f) / sqrt_(max_(dot3(d, d), K(0.01f)));
+            d = mul3(d, inv);
+            real facing = sel(l.any, K(1.0f), max_(K(0.0f) - dot3(l.n, d), K(0.0f)));
+            lobes f = reflect_lobes(e->s[k], d);
+            sum = sum + facing * inv * inv * (e->albedo[k] * f.diffuse + f.gloss);
+        }
+        rstore(out + i, min_(l.intensity * (K(least) + sum * K(1.0f / (float)count)), K(1e30f)));
     }
-    return n;
 }
 
-/* Light of a cluster at the share t (0..1) of its power, and its own share of it. */
-static uint32_t light_at(const noc_clusters *c, uint32_t cluster, float t, float *share) {
-    float sum = 0, goal = t * c->power[cluster];
-    uint32_t last = c->first[cluster + 1] - 1, j = c->first[cluster];
-    for (; j < last; j++) {
-        sum += c->intensity[j];
-        if (sum > goal)
+/* ---- the list ---- */
+
+/* Groups from the top level down to lights. Returns the first group of lights; *count: all groups. */
+static uint32_t open_nodes(const noc_clusters *c, const tile_bound *t, const examples *e, list_scratch *s, uint32_t *count) {
+    uint32_t n = 0, begin = 0, picked[NOC_MAX(OPENED_NODES, OPENED_CLUSTERS)];
+    int level = c->levels - 1;
+    for (size_t b = 0; b < (c->nodes[level] + 15) / 16; b++, n++) {
+        s->block[n] = (uint32_t)b;
+        s->level[n] = (int8_t)level;
+        score_nodes(&c->level[level][b], t, s->scores[n]);
+    }
+    for (; level >= 0; level--) {
+        uint32_t open = choose(s->scores, begin, n, level ? OPENED_NODES : OPENED_CLUSTERS, picked);
+        begin = n;
+        for (uint32_t i = 0; i < open; i++, n++) {
+            uint32_t group = picked[i] / 16, lane = picked[i] % 16, node = 16 * s->block[group] + lane;
+            if (level)
+                score_nodes(&c->level[level - 1][node], t, s->scores[n]);
+            else
+                score_lights(c, node, e, e->count, s->scores[group][lane], s->scores[n]);
+            s->block[n] = node;
+            s->level[n] = (int8_t)(level - 1);
+            s->scores[group][lane] = 0;
+        }
+    }
+    *count = n;
+    return begin;
+}
+
+/* Lane that holds the share *t (0..1) of the scores; *t: what is left of it there, as a share of the lane's own. -1 where all
+ * are 0. */
+static int lane_at(const float *scores, float total, float *t) {
+    float sum = 0, goal = *t * total;
+    int last = -1;
+    for (int l = 0; l < 16; l++) {
+        if (!(scores[l] > 0))
+            continue;
+        last = l;
+        if (sum + scores[l] > goal)
             break;
+        sum += scores[l];
     }
-    *share = c->intensity[j] / c->power[cluster];
-    return c->ids[j];
+    if (last >= 0)
+        *t = NOC_CLAMP((goal - sum) / scores[last], 0.f, 1.f);
+    return last;
 }
 
-/* `draws` systematic draws over the clusters that stayed closed and the lights that were not listed. */
-static void draw_tail(const noc_clusters *c, const list_scratch *s, uint32_t lights, int draws, float rotation,
-                      light_list *out) {
+/* A light below a lane of a group, by the scores on the way down from it; *share: the probability of that. False where
+ * nothing there reaches the tile. */
+static bool descend(const noc_clusters *c, const tile_bound *t, const examples *e, int level, uint32_t block, int lane,
+                    float score, float at, uint32_t *id, float *share) {
+    ALIGNED float scores[16];
+    *share = 1;
+    for (; level >= 0; level--) {
+        block = 16 * block + (uint32_t)lane;
+        if (level)
+            score_nodes(&c->level[level - 1][block], t, scores);
+        else
+            score_lights(c, block, e, NOC_MIN(e->count, TAIL_EXAMPLES), score, scores);
+        float total = sum16(scores);
+        lane = lane_at(scores, total, &at);
+        if (lane < 0)
+            return false;
+        score = scores[lane];
+        *share *= score / total;
+    }
+    *id = c->lights[block].id[lane];
+    return *share > 0;
+}
+
+/* `draws` systematic draws over the nodes that stayed closed and the lights that were not listed. */
+static void draw_tail(const noc_clusters *c, const tile_bound *t, const examples *e, list_scratch *s, uint32_t groups,
+                      int draws, float rotation, light_list *out) {
     double total = 0;
-    for (size_t i = 0; i < c->count; i++)
-        total += s->scores[i];
-    for (uint32_t i = 0; i < lights; i++)
-        total += s->light_scores[i];
+    for (uint32_t g = 0; g < groups; g++)
+        total += s->sums[g] = sum16(s->scores[g]);
     if (!(total > 0) || draws <= 0)
         return;
     double step = total / draws, next = step * rotation, sum = 0;
     int drawn = 0;
-    for (size_t i = 0; i < c->count + lights && drawn < draws; i++) {
-        bool cluster = i < c->count;
-        float score = cluster ? s->scores[i] : s->light_scores[i - c->count];
-        if (!(score > 0))
-            continue;
-        for (; next < sum + score && drawn < draws; next += step, drawn++) {
-            float share = 1;
-            uint32_t id = cluster ? light_at(c, (uint32_t)i, (float)((next - sum) / score), &share) : s->light[i - c->count];
+    for (uint32_t g = 0; g < groups && drawn < draws; sum += s->sums[g++])
+        for (; next < sum + s->sums[g] && drawn < draws; next += step, drawn++) {
+            float at = (float)((next - sum) / s->sums[g]), share;
+            int lane = lane_at(s->scores[g], s->sums[g], &at);
+            uint32_t id;
+            if (lane < 0 || !descend(c, t, e, s->level[g], s->block[g], lane, s->scores[g][lane], at, &id, &share))
+                continue;
             out->light[out->count] = id;
-            out->weight[out->count++] = (float)(step / ((double)score * share));
+            out->weight[out->count++] = (float)(step / ((double)s->scores[g][lane] * share));
         }
-        sum += score;
-    }
 }
 
 static void list_build(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks,
@@ -210,17 +333,19 @@ static void list_build(const struct core_context *ctx, const gblock *const *g, c
         return;
     examples e;
     take_examples(ctx, g, lanes, blocks, choice, &e);
-    score_clusters(c, &t, s->scores);
-    uint32_t opened[OPENED_CLUSTERS], picked[LIST_ENTRIES];
-    uint32_t open = pick_largest(s->scores, (uint32_t)c->count, OPENED_CLUSTERS, s->bins, opened);
-    uint32_t lights = score_lights(ctx, &e, s, opened, open);
-    uint32_t listed = pick_largest(s->light_scores, lights, (uint32_t)NOC_MIN(p->list, LIST_ENTRIES), s->bins, picked);
+    uint32_t picked[2 * LIST_ENTRIES], groups, first = open_nodes(c, &t, &e, s, &groups);
+    uint32_t list = (uint32_t)NOC_MIN(p->list, LIST_ENTRIES), tail = (uint32_t)NOC_MIN(p->tail, LIST_ENTRIES);
+    /* A list without a tail where that holds all lights. */
+    if (!count_over(s->scores, 0, first, FLT_MIN) && count_over(s->scores, first, groups, FLT_MIN) <= list + tail)
+        list += tail;
+    uint32_t listed = choose(s->scores, first, groups, list, picked);
     for (uint32_t i = 0; i < listed; i++) {
-        out->light[out->count] = s->light[picked[i]];
+        float *score = &s->scores[picked[i] / 16][picked[i] % 16];
+        out->light[out->count] = c->lights[s->block[picked[i] / 16]].id[picked[i] % 16];
         out->weight[out->count++] = 1;
-        s->light_scores[picked[i]] = 0;
+        *score = 0;
     }
-    draw_tail(c, s, lights, NOC_MIN(p->tail, LIST_ENTRIES), rotation, out);
+    draw_tail(c, &t, &e, s, groups, (int)tail, rotation, out);
 }
 
 #endif

@@ -1,0 +1,196 @@
+/* Building a tile's light list: over all places that the tail can start from, every light that can reach a surface of the tile
+ * has a weight of 1 on average, whatever the scores were; few lights are all listed; and all kernel tables build the same. */
+#include "../render/rooms.h"
+
+#include "backend/embree/kernels.h"
+#include "light/bound.h"
+
+enum { BLOCKS = 16, ROUNDS = 3000 };
+
+static uint32_t state_ = 1;
+static uint32_t bits(void) { return state_ = state_ * 1664525u + 1013904223u, state_ >> 4 ^ state_ << 7; }
+static double real_in(double lo, double hi) { return lo + (hi - lo) * (double)(bits() >> 8 & 0xffff) / 65536; }
+
+/* Lights of every kind, strong and weak, facing every way, over a square of `side` metres; one in seven dark. */
+static noc_scene *scene_of(int lights, double side) {
+    noc_scene *s = noc_scene_create(NULL);
+    add_floor(s, matte(s, 0.5f), 0, 0, 0, 10);
+    for (int i = 0; i < lights; i++) {
+        noc_light l = { .kind = (noc_light_kind)(i % 5), .position = { real_in(-side, side), real_in(-side, side), real_in(0, 20) },
+                        .radius = real_in(0.05, 0.5) };
+        double power = i % 7 == 3 ? 0 : pow(10, real_in(-1, 3));
+        for (int k = 0; k < 3; k++) {
+            l.edge_u[k] = real_in(-1, 1);
+            l.edge_v[k] = real_in(-1, 1);
+            l.direction[k] = real_in(-1, 1);
+            l.emission[k] = power * real_in(0.1, 1);
+        }
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+    }
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    return s;
+}
+
+typedef struct world {
+    noc_scene *scene;
+    noc_clusters *clusters;
+    noc_render_params params;
+    noc_frame frame;
+    struct core_context ctx;
+    gblock g[BLOCKS];
+    const gblock *blocks[BLOCKS];
+    uint32_t lanes[BLOCKS];
+} world;
+
+/* A tile that sees a patch of ground and a wall in it. */
+static void make_world(world *w, int lights, double side, int list, int tail) {
+    memset(w, 0, sizeof(*w));
+    w->scene = scene_of(lights, side);
+    w->clusters = noc_clusters_create(w->scene, NULL, NULL);
+    assert_non_null(w->clusters);
+    w->params = measure(64, 48, NOC_METHOD_RIS);
+    w->params.list = list;
+    w->params.tail = tail;
+    w->frame = (noc_frame){ .params = &w->params };
+    noc_camera c = look(20, 3, 4, 0, 0, 0, 50);
+    noc_make_frame_camera(&c, &w->params, 0, &w->frame.camera);
+    w->ctx = (struct core_context){ .lights = w->scene->lights.data, .light_count = (uint32_t)w->scene->lights.len,
+                                    .materials = w->scene->material_records.data, .frame = &w->frame,
+                                    .clusters = w->clusters };
+    for (int b = 0; b < BLOCKS; b++) {
+        gblock *g = &w->g[b];
+        w->blocks[b] = g;
+        for (int l = 0; l < BLOCK; l++) {
+            bool wall = b >= 10;
+            g->px[l] = (float)(wall ? 3 : real_in(-3, 3));
+            g->py[l] = (float)real_in(-3, 3);
+            g->pz[l] = (float)(wall ? real_in(0, 4) : 0);
+            g->nx[l] = wall ? -1 : 0;
+            g->nz[l] = wall ? 0 : 1;
+            w->lanes[b] |= (uint32_t)(b % 3 != 2 || l % 4 != 1) << l;
+        }
+    }
+}
+
+static void free_world(world *w) {
+    noc_clusters_destroy(w->clusters);
+    noc_scene_destroy(w->scene);
+}
+
+/* Can the light reach a surface of the tile? Looked at without bounds: a few places on it, all surfaces. */
+static bool reaches(const world *w, const noc_light_record *r) {
+    bool round = r->kind == NOC_LIGHT_SPHERE || r->kind == NOC_LIGHT_POINT;
+    double n[3] = { (double)r->a[1] * r->b[2] - (double)r->a[2] * r->b[1], (double)r->a[2] * r->b[0] - (double)r->a[0] * r->b[2],
+                    (double)r->a[0] * r->b[1] - (double)r->a[1] * r->b[0] };
+    if (!(luma(r->e) > 0))
+        return false;
+    for (int b = 0; b < BLOCKS; b++)
+        for (int l = 0; l < BLOCK; l++) {
+            double d[3] = { r->p[0] - w->g[b].px[l], r->p[1] - w->g[b].py[l], r->p[2] - w->g[b].pz[l] };
+            double facing = -(n[0] * d[0] + n[1] * d[1] + n[2] * d[2]);
+            if (w->lanes[b] >> l & 1 && w->g[b].nx[l] * d[0] + w->g[b].nz[l] * d[2] > 0 && (round || r->flags & 1 || facing > 0))
+                return true;
+        }
+    return false;
+}
+
+/* The tail's draws are evenly spaced, so with the starts evenly spaced too, a light of weight w is met every 1/w-th time to
+ * within one: its mean weight is 1 to within w / rounds a way into it. */
+static void weights_are_one(int lights, double side, int list, int tail) {
+    static world w;
+    make_world(&w, lights, side, list, tail);
+    const kernels *k = noc_pick_kernels(NOC_PATH_AUTO);
+    list_scratch *s = noc_alloc_large(1, sizeof(*s));
+    double *mean = noc_calloc((size_t)lights, sizeof(*mean)), *largest = noc_calloc((size_t)lights, sizeof(*largest));
+    for (int i = 0; i < ROUNDS; i++) {
+        k->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, 0.37f, (float)((i + 0.5) / ROUNDS), s, &s->list);
+        assert_true(s->list.count <= (uint32_t)(list + tail));
+        for (uint32_t j = 0; j < s->list.count; j++) {
+            mean[s->list.light[j]] += s->list.weight[j] / ROUNDS;
+            largest[s->list.light[j]] = fmax(largest[s->list.light[j]], s->list.weight[j]);
+        }
+    }
+    int tested = 0, wrong = 0, missed = 0, can = 0;
+    double sum = 0, all = 0;
+    for (int i = 0; i < lights; i++) {
+        const noc_light_record *r = &w.scene->lights.data[i];
+        if (!reaches(&w, r))
+            continue;
+        double lux = noc_light_intensity(r) / (100 + r->p[0] * r->p[0] + r->p[1] * r->p[1]); /* about */
+        can++;
+        all += lux;
+        sum += lux * mean[i];
+        missed += largest[i] == 0;
+        if (largest[i] > 0.1 * ROUNDS || largest[i] == 0)
+            continue; /* met too seldom to say anything of it alone */
+        tested++;
+        wrong += fabs(mean[i] - 1) > 2 * largest[i] / ROUNDS + 1e-3;
+    }
+    print_message("# %d lights: %d can reach the tile, %d tested one by one, %d wrong, %d never met, mean weight by light %.4f\n",
+                  lights, can, tested, wrong, missed, sum / all);
+    assert_true(tested > 20);
+    assert_int_equal(wrong, 0);
+    assert_true(fabs(sum / all - 1) < 0.01);
+    free(mean);
+    free(largest);
+    free(s);
+    free_world(&w);
+}
+
+static void small_scene(void **state) { (void)state; weights_are_one(300, 15, 16, 16); }
+static void large_scene(void **state) { (void)state; weights_are_one(6000, 60, 16, 64); }
+static void deep_scene(void **state) { (void)state; weights_are_one(90000, 400, 0, 128); }
+
+static void few_lights_are_listed(void **state) {
+    (void)state;
+    static world w;
+    make_world(&w, 40, 15, 32, 16);
+    list_scratch *s = noc_alloc_large(1, sizeof(*s));
+    noc_pick_kernels(NOC_PATH_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, 0.1f, 0.9f, s, &s->list);
+    int can = 0, listed = 0;
+    for (size_t i = 0; i < w.scene->lights.len; i++)
+        can += reaches(&w, &w.scene->lights.data[i]);
+    for (uint32_t j = 0; j < s->list.count; j++) {
+        assert_true(s->list.weight[j] == 1);
+        listed += reaches(&w, &w.scene->lights.data[s->list.light[j]]);
+    }
+    assert_true(can > 10);
+    assert_int_equal(listed, can);
+    free(s);
+    free_world(&w);
+}
+
+static void tables_agree(void **state) {
+    (void)state;
+    static world w;
+    make_world(&w, 20000, 200, 24, 40);
+    const kernels *all[NOC_MAX_KERNELS];
+    int tables = noc_runnable_kernels(all);
+    assert_true(tables >= 2);
+    list_scratch *want = noc_alloc_large(1, sizeof(*want)), *have = noc_alloc_large(1, sizeof(*have));
+    for (int round = 0; round < 50; round++) {
+        float choice = (float)real_in(0, 1), rotation = (float)real_in(0, 1);
+        all[0]->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, choice, rotation, want, &want->list);
+        assert_int_equal(want->list.count > 24, 1);
+        for (int k = 1; k < tables; k++) {
+            all[k]->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, choice, rotation, have, &have->list);
+            assert_int_equal(have->list.count, want->list.count);
+            assert_memory_equal(have->list.light, want->list.light, want->list.count * sizeof(*want->list.light));
+            assert_memory_equal(have->list.weight, want->list.weight, want->list.count * sizeof(*want->list.weight));
+        }
+    }
+    free(want);
+    free(have);
+    free_world(&w);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(small_scene),
+        cmocka_unit_test(large_scene),
+        cmocka_unit_test(deep_scene),
+        cmocka_unit_test(few_lights_are_listed),
+        cmocka_unit_test(tables_agree),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
