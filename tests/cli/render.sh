@@ -70,4 +70,20 @@ if command -v script >/dev/null 2>&1; then
 else
     skip "a terminal gets a progress line" "no script(1) here"
 fi
+
+# Views of the light sampling in the picture's place.
+for v in lights density light weight confidence rays variance error; do
+    run render $small --candidates bvh --show $v -o $v.png
+    test $status = 0 && test "$(meta $v.png show)" = $v && grep -Eq "^  view      $v: (median|[0-9,]+ different)" out &&
+        ! cmp -s a.png $v.png
+    result $? "--show $v"
+done
+test "$(meta lights.png size)" = "260 81"; result $? "a view has a legend below"
+run render $small --candidates bvh --show lights -o lights.exr
+test $status = 0 && grep -aq units lights.exr && grep -aq 'candidates' lights.exr && ! grep -aq cd/m2 lights.exr
+result $? "EXR takes a view's numbers and their unit"
+run render $small --candidates bvh --show lights --show-range 0,7 -o b.png
+test $status = 0 && ! cmp -s lights.png b.png; result $? "--show-range sets the colour bar"
+run render $small --show picture -o b.png
+test $status = 0 && cmp -s a.png b.png && test -z "$(meta a.png show)"; result $? "--show picture is the picture"
 finish

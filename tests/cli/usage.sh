@@ -60,6 +60,16 @@ expect "eye at target" 2 'the same place' render $c -o a.png --eye 1,2,3 --targe
 expect "eye and view" 2 'exclude each other' render $c -o a.png --eye 1,2,3 --target 0,0,0 --view aerial
 expect "camera CRS without eye" 2 '--camera-crs is for' render $c -o a.png --camera-crs EPSG:25832
 expect "options of a city that is not drawn" 2 '--city-size is for the input builtin:city' render city.gml -o a.png --city-size 200
+expect "an unknown view" 2 'show: "lamps" is none of picture\|lights' render $c -o a.png --show lamps
+expect "a view without a query" 2 'view "lights": only ris and restir with candidates bvh or lists' render $c -o a.png --show lights --candidates tree
+expect "a view of no reservoir" 2 'view "weight": the reference method' render $c -o a.png --show weight --method reference
+expect "variance of nothing" 2 'frames must be accumulated' render $c -o a.png --show variance --no-accumulate
+expect "variance of one frame" 2 '--show error needs two frames' render $c -o a.png --show error --frames 1
+expect "a bar without a view" 2 '--show-range is for views' render $c -o a.png --show-range 0,1
+expect "a bar of names" 2 '--show-range is for views' render $c -o a.png --show light --show-range 0,1
+for v in 1 1,1 2,1 -1,1 a,b 1,2,3 nan,1 0,inf; do
+    expect "a bar of $v" 2 '--show-range: ".*" is not LOW,HIGH' render $c -o a.png --show lights --show-range=$v
+done
 expect "field of view of 0" 2 'fov: "0" is outside 1 to 170 degrees' render $c -o a.png --fov 0
 for e in bright 31 -31 1,2 ''; do
     expect "exposure '$e'" 2 'exposure: ' render $c -o a.png "--exposure=$e"
@@ -100,7 +110,7 @@ for cmd in render info compare; do
     test $status = 0 && cmp -s out first; result $? "$cmd --help is the same"
     run $cmd -h
     test $status = 0 && cmp -s out first; result $? "$cmd -h is the same"
-    test "$(wc -l <first)" -le 90 && ! grep -Eq '^.{101}' first && ! grep -q ' $' first
+    test "$(wc -l <first)" -le 110 && ! grep -Eq '^.{101}' first && ! grep -q ' $' first
     result $? "help $cmd fits two screens of 100 columns"
 done
 if [ -e /dev/full ]; then
