@@ -1,7 +1,7 @@
 /* What may be carried from frame to frame: reservoirs, G-buffer, the running mean. */
 #include "render/backend.h"
 
-#include <math.h>
+#include <nocturne/option.h>
 
 void noc_history_reset(noc_history *history) { *history = (noc_history){ .set = -1 }; }
 
@@ -11,16 +11,14 @@ static bool same_camera(const noc_camera *a, const noc_camera *b) {
     return same_vec(a->eye, b->eye) && same_vec(a->target, b->target) && same_vec(a->up, b->up) && a->fov_deg == b->fov_deg;
 }
 
-/* Field by field: the padding of two equal structs may differ. */
+/* Row by row of the option table, which names every field that can change a picture; views are not among them. */
 static bool same_params(const noc_render_params *a, const noc_render_params *b) {
-    return a->width == b->width && a->height == b->height && a->method == b->method && a->candidates == b->candidates &&
-           a->draws == b->draws && a->list == b->list && a->tail == b->tail && a->rays == b->rays && a->temporal == b->temporal && a->spatial == b->spatial &&
-           a->neighbours == b->neighbours && a->radius == b->radius && a->passes == b->passes &&
-           a->history == b->history && a->bias == b->bias && a->bias_rays == b->bias_rays &&
-           a->visibility_reuse == b->visibility_reuse && a->final_ray == b->final_ray &&
-           a->reject_depth == b->reject_depth && a->reject_normal == b->reject_normal && a->seed == b->seed &&
-           a->jitter == b->jitter && a->accumulate == b->accumulate && a->sky == b->sky &&
-           a->emitters == b->emitters && a->path == b->path;
+    for (const noc_option *o = noc_render_options(); o->name; o++) {
+        size_t size = o->kind == NOC_OPTION_BOOL ? sizeof(bool) : o->kind == NOC_OPTION_REAL ? sizeof(double) : sizeof(int);
+        if (memcmp((const char *)a + o->offset, (const char *)b + o->offset, size))
+            return false;
+    }
+    return true;
 }
 
 void noc_history_begin(noc_history *h, const noc_camera *camera, const noc_render_params *params, noc_frame *frame) {

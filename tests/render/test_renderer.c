@@ -2,6 +2,8 @@
  * path and number of threads. */
 #include "rooms.h"
 
+#include <nocturne/option.h>
+
 static noc_scene *small_street(int lights, bool floor) {
     noc_scene *s = noc_scene_create(NULL);
     int wall = matte(s, 0.5f);
@@ -307,6 +309,36 @@ static uint64_t frames_of(noc_renderer *r) {
     return stats.frames;
 }
 
+/* Whatever parameter changes, the mean starts anew; views are none. */
+static void any_other_parameter(void **state) {
+    (void)state;
+    noc_scene *s = small_street(10, true);
+    noc_camera c = view(0);
+    noc_renderer *r = noc_renderer_create(s, NULL, NULL);
+    for (const noc_option *o = noc_render_options(); o->name; o++) {
+        noc_render_params p = measure(16, 16, NOC_METHOD_RESTIR), other = p;
+        for (int i = 0; i < 2; i++)
+            assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+        assert_int_equal(frames_of(r), 2);
+        char *field = (char *)&other + o->offset;
+        switch (o->kind) {
+        case NOC_OPTION_BOOL: *(bool *)field = !*(bool *)field; break;
+        case NOC_OPTION_REAL: *(double *)field = *(double *)field == o->max ? o->min : o->max; break;
+        case NOC_OPTION_CHOICE: *(int *)field = !*(int *)field; break;
+        default: *(int *)field += *(int *)field == (int)o->max ? -1 : 1; break;
+        }
+        assert_int_equal(noc_renderer_frame(r, &c, &other, NULL), NOC_OK);
+        assert_int_equal(frames_of(r), 1);
+        other.aovs = 1u << NOC_AOV_RAYS;
+        if (other.accumulate) {
+            assert_int_equal(noc_renderer_frame(r, &c, &other, NULL), NOC_OK);
+            assert_int_equal(frames_of(r), 2);
+        }
+    }
+    noc_renderer_destroy(r);
+    noc_scene_destroy(s);
+}
+
 static void frames_and_resets(void **state) {
     (void)state;
     noc_scene *s = small_street(40, true);
@@ -384,7 +416,7 @@ int main(void) {
         cmocka_unit_test(scalar_and_wide_agree), cmocka_unit_test(threads_and_seeds), cmocka_unit_test(empty_scenes),
         cmocka_unit_test(wrong_arguments),       cmocka_unit_test(cancelled_frames),  cmocka_unit_test(frames_and_resets),
         cmocka_unit_test(emitter_mask),          cmocka_unit_test(hostile_scenes),
-        cmocka_unit_test(negative_choices_and_no_params),
+        cmocka_unit_test(negative_choices_and_no_params), cmocka_unit_test(any_other_parameter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
