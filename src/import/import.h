@@ -12,6 +12,8 @@ noc_stream *noc_stream_open(const char *path, noc_log *log); /* NULL after repor
 void noc_stream_close(noc_stream *s);
 /* Up to size bytes; *got = 0 at the end. A truncated or damaged archive is NOC_ERR_FORMAT, reported. */
 noc_status noc_stream_read(noc_stream *s, void *data, size_t size, size_t *got);
+/* The whole content, with a 0 behind it; *data is NULL after an error, free() it otherwise. */
+noc_status noc_stream_read_all(noc_stream *s, noc_log *log, char **data, size_t *size);
 noc_status noc_stream_rewind(noc_stream *s);
 const char *noc_stream_name(const noc_stream *s);     /* path, or path!member */
 uint64_t noc_stream_size(const noc_stream *s);        /* bytes as stored */
@@ -39,7 +41,7 @@ typedef struct noc_reader {
 } noc_reader;
 
 /* The table, ended by a NULL name. */
-extern const noc_reader noc_reader_citygml, noc_reader_mesh, noc_reader_overpass, noc_reader_vector;
+extern const noc_reader noc_reader_citygml, noc_reader_mesh, noc_reader_gltf, noc_reader_overpass, noc_reader_vector;
 
 
 #endif

@@ -141,6 +141,7 @@ static noc_status read_mesh(importer *im, input *in, noc_stream *stream) {
     if (status)
         return status;
     size_t triangles = im->scene->indices.len / 3, floats = im->scene->positions.len, meshes = im->scene->meshes.len;
+    size_t lights = im->scene->lights.len;
     const mesh_place place = { im, place_mesh_points };
     double lo[2], hi[2];
     bounds_so_far(im, lo, hi);
@@ -149,9 +150,13 @@ static noc_status read_mesh(importer *im, input *in, noc_stream *stream) {
         warn_if_far(im, lo, hi, floats);
     in->file.triangles = im->scene->indices.len / 3 - triangles;
     in->file.objects = im->scene->meshes.len - meshes;
+    in->file.lights = im->scene->lights.len - lights;
     for (size_t i = meshes; i < im->scene->meshes.len; i++) {
         const noc_scene_mesh *m = &im->scene->meshes.data[i];
         const float *e = im->scene->materials.data[m->material].emission;
+        bool shape = m->triangle_count && im->scene->triangle_light.data[m->first_triangle] != NOC_NO_LIGHT; /* of a light that is counted */
+        if (shape)
+            continue;
         if (e[0] > 0 || e[1] > 0 || e[2] > 0)
             in->file.lights += m->triangle_count;
     }

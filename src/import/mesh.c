@@ -59,37 +59,6 @@ static bool probe(const char *head, size_t size) {
 
 #define MAX_MTL ((size_t)256 << 20)
 
-/* The whole content, with a 0 behind it. */
-static noc_status read_all(noc_stream *stream, noc_log *log, char **data, size_t *size) {
-    *data = NULL;
-    *size = 0;
-    size_t cap = 0;
-    for (;;) {
-        if (cap - *size < (1 << 16)) {
-            cap = cap ? cap * 2 : NOC_MIN((size_t)noc_stream_size(stream) + (1 << 17), (size_t)1 << 30);
-            char *grown = realloc(*data, cap); /* the file's author decides how much: no abort */
-            if (!grown) {
-                free(*data);
-                *data = NULL;
-                return noc_error(log, NOC_ERR_MEMORY, "%s: no memory to hold it", noc_stream_name(stream));
-            }
-            *data = grown;
-        }
-        size_t got;
-        noc_status status = noc_stream_read(stream, *data + *size, cap - *size - 1, &got);
-        if (status) {
-            free(*data);
-            *data = NULL;
-            return status;
-        }
-        if (!got)
-            break;
-        *size += got;
-    }
-    (*data)[*size] = 0;
-    return NOC_OK;
-}
-
 /* ---- files as Assimp sees them: the OBJ from our stream, MTLs from beside it ---- */
 
 #define ROOT "@/" /* names that begin so lie in the OBJ's folder */
@@ -330,7 +299,7 @@ static noc_status read_mesh(const char *path, noc_stream *stream, const noc_impo
     *format = "OBJ";
     library lib = { 0 };
     double offset[3];
-    noc_status status = read_all(stream, scene->log, &lib.data, &lib.size);
+    noc_status status = noc_stream_read_all(stream, scene->log, &lib.data, &lib.size);
     if (!status)
         status = obj_take_offset(&lib.data, &lib.size, offset, noc_stream_name(stream), scene->log);
     if (status) {

@@ -292,6 +292,36 @@ noc_status noc_stream_read(noc_stream *s, void *data, size_t size, size_t *got) 
     return status;
 }
 
+noc_status noc_stream_read_all(noc_stream *stream, noc_log *log, char **data, size_t *size) {
+    *data = NULL;
+    *size = 0;
+    size_t cap = 0;
+    for (;;) {
+        if (cap - *size < (1 << 16)) {
+            cap = cap ? cap * 2 : NOC_MIN((size_t)noc_stream_size(stream) + (1 << 17), (size_t)1 << 30);
+            char *grown = realloc(*data, cap); /* the file's author decides how much: no abort */
+            if (!grown) {
+                free(*data);
+                *data = NULL;
+                return noc_error(log, NOC_ERR_MEMORY, "%s: no memory to hold it", noc_stream_name(stream));
+            }
+            *data = grown;
+        }
+        size_t got;
+        noc_status status = noc_stream_read(stream, *data + *size, cap - *size - 1, &got);
+        if (status) {
+            free(*data);
+            *data = NULL;
+            return status;
+        }
+        if (!got)
+            break;
+        *size += got;
+    }
+    (*data)[*size] = 0;
+    return NOC_OK;
+}
+
 noc_status noc_stream_rewind(noc_stream *s) {
     s->delivered = s->consumed = 0;
     s->ended = false;

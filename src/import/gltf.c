@@ -1,0 +1,288 @@
+/* glTF 2.0, as JSON or GLB, read here rather than through Assimp: version 5.2 of that knows no KHR_materials_emissive_strength,
+ * gives a light that several nodes share to the last of them, and keeps floats; a street of lamps that are copies of
+ * one would have one lamp.
+ *
+ * glTF is in metres, y up, and says so: turned to z up. Nodes' transforms are applied, each use of a mesh is a mesh of its own. */
+#include "import/gltf.h"
+
+#include <math.h>
+#include <stdio.h>
+
+
+static const char *skip_blanks(const char *p) {
+    if (!strncmp(p, "\xef\xbb\xbf", 3))
+        p += 3;
+    while (*p == ' ' || *p == '\n' || *p == '\r' || *p == '\t')
+        p++;
+    return p;
+}
+
+static bool probe(const char *head, size_t size) {
+    if (size >= 12 && !memcmp(head, "glTF", 4))
+        return true;
+    const char *p = skip_blanks(head);
+    if (*p != '{' || strstr(p, "\"CityJSON\"") || strstr(p, "\"FeatureCollection\""))
+        return false;
+    return strstr(p, "\"asset\"") || (strstr(p, "\"accessors\"") && strstr(p, "\"bufferViews\"")) ||
+           (strstr(p, "\"nodes\"") && strstr(p, "\"scenes\""));
+}
+
+/* ---- the container ---- */
+
+static uint32_t le32(const unsigned char *p) { return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24; }
+
+/* Finds the JSON of a GLB, and its binary chunk. */
+static noc_status open_glb(gltf *g, const unsigned char *data, size_t size, const char **json, size_t *json_size) {
+    if (size < 20 || le32(data + 4) != 2)
+        return gltf_error(g, size < 20 ? "the file is cut short" : "version %u of GLB, not 2", size < 20 ? 0 : le32(data + 4));
+    *json = NULL;
+    for (size_t at = 12; size - at >= 8;) {
+        size_t length = le32(data + at), type = le32(data + at + 4);
+        at += 8;
+        if (length > size - at)
+            return gltf_error(g, "the file is cut short");
+        if (type == 0x4e4f534a && !*json) {
+            *json = (const char *)data + at;
+            *json_size = length;
+        } else if (type == 0x004e4942 && !g->chunk) {
+            g->chunk = data + at;
+            g->chunk_size = length;
+        }
+        at += NOC_MIN((length + 3) & ~(size_t)3, size - at);
+    }
+    return *json ? NOC_OK : gltf_error(g, "a GLB without JSON");
+}
+
+static bool is_read(const char *extension) {
+    static const char *const known[] = { "KHR_lights_punctual", "KHR_mesh_quantization", "KHR_texture_", "KHR_materials_", "EXT_texture_", "KHR_xmp" };
+    for (size_t i = 0; i < NOC_COUNT(known); i++)
+        if (!strncmp(extension, known[i], strlen(known[i])))
+            return true;
+    return false;
+}
+
+static noc_status parse(gltf *g, const char *json, size_t size) {
+    json_error_t error;
+    const char *begin = size >= 3 && !strncmp(json, "\xef\xbb\xbf", 3) ? json + 3 : json;
+    g->root = json_loadb(begin, size - (size_t)(begin - json), JSON_DISABLE_EOF_CHECK, &error);
+    if (!g->root)
+        return noc_error(g->log, NOC_ERR_FORMAT, "%s:%d: glTF: %s", g->name, error.line, error.text);
+    const char *version = json_string_value(json_object_get(json_object_get(g->root, "asset"), "version"));
+    if (!version || strncmp(version, "2.", 2))
+        return gltf_error(g, "version %.20s, not 2", version ? version : "none");
+    const json_t *required = json_object_get(g->root, "extensionsRequired"), *item;
+    size_t i;
+    json_array_foreach(required, i, item) {
+        const char *extension = json_string_value(item);
+        if (extension && !is_read(extension))
+            return noc_error(g->log, NOC_ERR_UNSUPPORTED, "%s: glTF: it needs %.80s, which is not read", g->name, extension);
+    }
+    return NOC_OK;
+}
+
+/* ---- meshes ---- */
+
+typedef struct corners { uint32_t *v; size_t count; } corners; /* of triangles */
+
+/* Triangles of a list, a strip or a fan, less those whose corners are not there. index: NULL counts up. */
+static corners triangulate(const gltf *g, const double *index, size_t count, size_t vertices, size_t mode, bool mirrored, const char *name) {
+    size_t most = mode == 4 ? count / 3 : count >= 3 ? count - 2 : 0;
+    corners out = { noc_alloc_large(most * 3 + 1, sizeof(*out.v)), 0 };
+    for (size_t t = 0; t < most && out.v; t++) {
+        size_t at[3] = { mode == 4 ? 3 * t : mode == 6 ? 0 : t, mode == 4 ? 3 * t + 1 : t + 1, mode == 4 ? 3 * t + 2 : t + 2 };
+        if ((mode == 5 && t % 2) != mirrored) {
+            size_t swap = at[1];
+            at[1] = at[2];
+            at[2] = swap;
+        }
+        bool there = true;
+        for (int k = 0; k < 3; k++) {
+            double v = index ? index[at[k]] : (double)at[k];
+            there = there && v >= 0 && v < (double)vertices;
+            out.v[out.count + (size_t)k] = there ? (uint32_t)v : 0;
+        }
+        if (there)
+            out.count += 3;
+        else
+            geo_issue(g->issues, false, "triangle with a vertex that is not there", name);
+    }
+    return out;
+}
+
+static noc_status add_primitive(gltf *g, const json_t *primitive, const gltf_frame *frame, const char *name) {
+    size_t position, index_accessor, count, index_count = 0, mode = 4;
+    gltf_index(primitive, "mode", &mode);
+    if (mode < 4 || !gltf_index(json_object_get(primitive, "attributes"), "POSITION", &position))
+        return NOC_OK; /* points, lines, nothing */
+    if (mode > 6)
+        return gltf_error(g, "mesh %.80s: a primitive of mode %zu", name, mode);
+    double *xyz, *index = NULL;
+    noc_status status = gltf_read(g, position, "VEC3", 3, &xyz, &count);
+    if (status)
+        return status;
+    if (json_object_get(primitive, "indices")) {
+        status = gltf_index(primitive, "indices", &index_accessor) ? gltf_read(g, index_accessor, "SCALAR", 1, &index, &index_count)
+                                                                   : gltf_error(g, "mesh %.80s: its indices are not there", name);
+    } else {
+        index_count = count;
+    }
+    const double *m = frame->m;
+    double turn = m[0] * (m[4] * m[8] - m[5] * m[7]) - m[3] * (m[1] * m[8] - m[2] * m[7]) + m[6] * (m[1] * m[5] - m[2] * m[4]);
+    for (size_t i = 0; i < count; i++) {
+        double p[3] = { xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2] }, q[3];
+        for (int k = 0; k < 3; k++)
+            q[k] = m[k] * p[0] + m[3 + k] * p[1] + m[6 + k] * p[2] + m[9 + k];
+        xyz[3 * i] = q[0];
+        xyz[3 * i + 1] = 0 - q[2];
+        xyz[3 * i + 2] = q[1];
+    }
+    int material = status ? -1 : gltf_material(g, primitive);
+    corners c = { NULL, 0 };
+    if (!status)
+        status = g->place->points(g->place->ctx, xyz, count);
+    if (!status) {
+        c = triangulate(g, index, index_count, count, mode, turn < 0, name);
+        if (!c.v)
+            status = noc_error(g->log, NOC_ERR_MEMORY, "%s: no memory for mesh %.80s", g->name, name);
+    }
+    noc_mesh mesh = { .vertex_count = count, .positions = xyz, .triangle_count = c.count / 3, .indices = c.v, .material = material, .name = name };
+    if (!status && (material < 0 || (c.count && noc_scene_add_mesh(g->scene, &mesh) < 0)))
+        status = NOC_ERR_UNSUPPORTED;
+    free(c.v);
+    free(index);
+    free(xyz);
+    return status;
+}
+
+/* ---- nodes ---- */
+
+static gltf_frame times(const gltf_frame *a, const gltf_frame *b) {
+    gltf_frame out;
+    for (int c = 0; c < 4; c++)
+        for (int r = 0; r < 3; r++)
+            out.m[3 * c + r] = a->m[r] * b->m[3 * c] + a->m[3 + r] * b->m[3 * c + 1] + a->m[6 + r] * b->m[3 * c + 2] + (c == 3 ? a->m[9 + r] : 0);
+    return out;
+}
+
+/* A node's own transform: a matrix by columns, or translation, rotation (a quaternion x y z w) and scale. */
+static gltf_frame own_frame(const json_t *node) {
+    double matrix[16], t[3] = { 0, 0, 0 }, q[4] = { 0, 0, 0, 1 }, s[3] = { 1, 1, 1 };
+    gltf_frame out;
+    if (gltf_numbers(node, "matrix", 16, matrix)) {
+        for (int c = 0; c < 4; c++)
+            memcpy(&out.m[3 * c], &matrix[4 * c], 3 * sizeof(double));
+        return out;
+    }
+    gltf_numbers(node, "translation", 3, t);
+    gltf_numbers(node, "rotation", 4, q);
+    gltf_numbers(node, "scale", 3, s);
+    double n = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    double x = q[0] / n, y = q[1] / n, z = q[2] / n, w = q[3] / n;
+    if (!(n > 0))
+        x = y = z = 0, w = 1;
+    const double rotation[9] = { 1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w), 2 * (x * y - z * w), 1 - 2 * (x * x + z * z),
+                                 2 * (y * z + x * w), 2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y) };
+    for (int i = 0; i < 9; i++)
+        out.m[i] = rotation[i] * s[i / 3];
+    memcpy(&out.m[9], t, sizeof(t));
+    return out;
+}
+
+typedef struct pending_node { size_t index; gltf_frame frame; } pending_node;
+typedef struct walk {
+    NOC_ARRAY(pending_node) stack;
+    bool *seen;
+    size_t count;
+} walk;
+
+static void push_nodes(gltf *g, walk *w, const json_t *list, const gltf_frame *frame) {
+    for (size_t i = json_array_size(list); i-- > 0;) {
+        double index = json_number_value(json_array_get(list, i));
+        char id[32];
+        snprintf(id, sizeof(id), "node %.0f", index);
+        if (!(index >= 0 && index < (double)w->count)) {
+            geo_issue(g->issues, false, "node that is not there", id);
+        } else if (w->seen[(size_t)index]) {
+            geo_issue(g->issues, false, "node that is in two places", id); /* a tree is asked for; a loop would not end */
+        } else {
+            w->seen[(size_t)index] = true;
+            array_push(&w->stack, (pending_node){ (size_t)index, *frame });
+        }
+    }
+}
+
+static noc_status add_node(gltf *g, const json_t *node, size_t index, const gltf_frame *frame) {
+    const char *name = json_string_value(json_object_get(node, "name"));
+    char number[32];
+    snprintf(number, sizeof(number), "node %zu", index);
+    name = name ? name : number;
+    noc_status status = gltf_light(g, node, frame, name);
+    if (!status)
+        status = gltf_camera(g, node, frame);
+    size_t mesh;
+    if (status || !gltf_index(node, "mesh", &mesh))
+        return status;
+    if (json_object_get(node, "skin"))
+        geo_issue(g->issues, true, "skinned mesh, as it is at rest", name);
+    if (gltf_extension(node, "EXT_mesh_gpu_instancing"))
+        geo_issue(g->issues, false, "copies of a mesh by EXT_mesh_gpu_instancing, all but one", name);
+    const json_t *primitives = json_object_get(gltf_item(g, "meshes", mesh), "primitives"), *primitive;
+    size_t i;
+    json_array_foreach(primitives, i, primitive) {
+        status = status ? status : add_primitive(g, primitive, frame, name);
+    }
+    return status;
+}
+
+static noc_status add_scene(gltf *g) {
+    const json_t *nodes = json_object_get(g->root, "nodes"), *scene;
+    size_t shown = 0;
+    gltf_index(g->root, "scene", &shown);
+    scene = gltf_item(g, "scenes", shown);
+    walk w = { .count = json_array_size(nodes) };
+    w.seen = noc_calloc(w.count + 1, sizeof(*w.seen));
+    const gltf_frame whole = { { 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0 } };
+    push_nodes(g, &w, json_object_get(scene, "nodes"), &whole);
+    noc_status status = NOC_OK;
+    while (w.stack.len && !status) {
+        pending_node at = w.stack.data[--w.stack.len];
+        const json_t *node = json_array_get(nodes, at.index);
+        gltf_frame own = own_frame(node), frame = times(&at.frame, &own);
+        push_nodes(g, &w, json_object_get(node, "children"), &frame);
+        status = add_node(g, node, at.index, &frame);
+    }
+    array_free(&w.stack);
+    free(w.seen);
+    return status;
+}
+
+static noc_status read_gltf(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,
+                            const mesh_place *place, geo_issues *issues, const char **format) {
+    gltf g = { .name = noc_stream_name(stream), .log = scene->log, .scene = scene, .place = place, .issues = issues };
+    char *data;
+    size_t size, json_size = 0;
+    noc_status status = noc_stream_read_all(stream, scene->log, &data, &size);
+    if (status)
+        return status;
+    bool binary = size >= 4 && !memcmp(data, "glTF", 4);
+    const char *json = data, *slash = strrchr(path, '/');
+    *format = binary ? "GLB" : "glTF";
+    g.folder = slash ? noc_format("%.*s", (int)(slash + 1 - path), path) : noc_strdup("");
+    json_size = size;
+    if (binary)
+        status = open_glb(&g, (const unsigned char *)data, size, &json, &json_size);
+    status = status ? status : parse(&g, json, json_size);
+    status = status ? status : gltf_open_buffers(&g);
+    if (!status) {
+        g.materials = noc_calloc(json_array_size(json_object_get(g.root, "materials")) + 1, sizeof(*g.materials));
+        status = add_scene(&g);
+    }
+    gltf_close_buffers(&g);
+    json_decref(g.root);
+    free(g.materials);
+    free(g.folder);
+    free(data);
+    return status;
+}
+
+const noc_reader noc_reader_gltf = { .name = "glTF", .reads = NOC_READS_MESH, .probe = probe, .read_mesh = read_gltf };

@@ -1,0 +1,56 @@
+/* gltf: glTF 2.0 and GLB. gltf_data.c finds the numbers, gltf_look.c makes materials, lights and cameras of them, gltf.c
+ * walks the nodes. The specification meant is Khronos's glTF 2.0 (ISO/IEC 12113:2022) and its extensions by name. */
+#ifndef NOC_IMPORT_GLTF_H
+#define NOC_IMPORT_GLTF_H
+
+#include "import/import.h"
+#include "scene/scene.h"
+
+#include <jansson.h>
+
+typedef struct gltf_buffer {
+    const unsigned char *data;
+    size_t size;
+    void *owned; /* to free */
+} gltf_buffer;
+
+typedef struct gltf {
+    const char *name;   /* of the file, for messages */
+    char *folder;       /* it lies in, with a slash at its end, or "" */
+    noc_log *log;
+    noc_scene *scene;
+    const mesh_place *place;
+    geo_issues *issues;
+    json_t *root;
+    const unsigned char *chunk; /* GLB: the binary one */
+    size_t chunk_size;
+    gltf_buffer *buffers;
+    size_t buffer_count;
+    int *materials;     /* index in the scene + 1, 0 if not made yet; the last is the default material */
+    int shade_material; /* the same, of the shades of spot lights */
+} gltf;
+
+/* Affine map of a node: columns x, y, z, then the translation. */
+typedef struct gltf_frame { double m[12]; } gltf_frame;
+
+/* gltf_data.c. Reported errors say "FILE: glTF: WHAT". */
+noc_status gltf_error(const gltf *g, const char *fmt, ...) NOC_PRINTF(2, 3);
+json_t *gltf_item(const gltf *g, const char *list, size_t index); /* root.list[index], NULL if there is none */
+bool gltf_index(const json_t *object, const char *key, size_t *index); /* a whole number >= 0 */
+double gltf_number(const json_t *object, const char *key, double otherwise);
+/* count numbers of an array; false (and out as it was) where it is not that. */
+bool gltf_numbers(const json_t *object, const char *key, size_t count, double *out);
+json_t *gltf_extension(const json_t *object, const char *name);
+noc_status gltf_open_buffers(gltf *g);
+void gltf_close_buffers(gltf *g);
+/* An accessor's elements of `width` numbers each, as doubles (integers normalised where it says so). free() *out. */
+noc_status gltf_read(const gltf *g, size_t accessor, const char *type, size_t width, double **out, size_t *count);
+
+/* gltf_look.c */
+int gltf_material(gltf *g, const json_t *primitive); /* index in the scene, -1 after reporting */
+noc_status gltf_light(gltf *g, const json_t *node, const gltf_frame *frame, const char *name);
+noc_status gltf_camera(gltf *g, const json_t *node, const gltf_frame *frame);
+/* A point of glTF's (y up) in the scene's frame. */
+noc_status gltf_place(const gltf *g, const double yup[3], double out[3]);
+
+#endif
