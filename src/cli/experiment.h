@@ -35,7 +35,7 @@ typedef struct experiment_camera {
     int frames;             /* of the motion; 0: at rest */
     const char *dolly_text;
     double dolly[3];        /* travelled in the motion: right, forward, up, m */
-    double orbit;           /* turned about the target in the motion, degrees, counter-clockwise from above */
+    double orbit, pan;      /* turned about the target and about the eye in the motion, degrees, counter-clockwise from above */
     int cut;                /* so many of the first frames show what `before` sees */
     experiment_pose before;
 } experiment_camera;

@@ -11,6 +11,7 @@ static const noc_option path_options[] = {
     { "frames", "Path", NOC_OPTION_INT, offsetof(C, frames), 2, EXPERIMENT_FRAMES, NULL, "", "" },
     { "dolly", "Path", NOC_OPTION_TEXT, offsetof(C, dolly_text), 0, 0, NULL, "", "" },
     { "orbit", "Path", NOC_OPTION_REAL, offsetof(C, orbit), -360, 360, NULL, "degrees", "" },
+    { "pan", "Path", NOC_OPTION_REAL, offsetof(C, pan), -360, 360, NULL, "degrees", "" },
     { "cut", "Path", NOC_OPTION_INT, offsetof(C, cut), 1, EXPERIMENT_FRAMES, NULL, "", "" },
     { NULL },
 };
@@ -125,8 +126,17 @@ static void turn(double v[3], double angle) {
     v[1] = s * x + c * v[1];
 }
 
-/* The way from the first frame to the last is gone backwards from the pose: moved along the axes that it has there, then
- * turned about the target. A camera that looks straight down has its up vector for forward's horizontal. */
+/* Sight to the right of a camera, as a unit vector. One that looks straight down has an up vector that is level. */
+static void right_of(const noc_camera *camera, const double forward[3], double right[3]) {
+    for (int k = 0; k < 3; k++)
+        right[k] = forward[(k + 1) % 3] * camera->up[(k + 2) % 3] - forward[(k + 2) % 3] * camera->up[(k + 1) % 3];
+    double length = sqrt(right[0] * right[0] + right[1] * right[1] + right[2] * right[2]);
+    for (int k = 0; k < 3; k++)
+        right[k] /= length;
+}
+
+/* The way from the first frame to the last is gone backwards from the pose: turned about the eye, moved along the axes that it
+ * has at the pose, turned about the target. */
 noc_camera experiment_camera_at(const experiment_lab *lab, size_t index, int frame) {
     const C *path = &lab->spec.cameras[index];
     if (!path->frames || frame >= path->frames)
@@ -134,26 +144,23 @@ noc_camera experiment_camera_at(const experiment_lab *lab, size_t index, int fra
     if (frame <= path->cut)
         return lab->before;
     noc_camera camera = lab->camera;
-    double share = (double)(path->frames - frame) / (path->frames - 1), forward[3], right[3], length = 0, across;
-    for (int k = 0; k < 3; k++)
-        forward[k] = camera.target[k] - camera.eye[k];
-    length = sqrt(forward[0] * forward[0] + forward[1] * forward[1] + forward[2] * forward[2]);
-    for (int k = 0; k < 3; k++)
-        forward[k] /= length;
-    for (int k = 0; k < 3; k++)
-        right[k] = forward[(k + 1) % 3] * camera.up[(k + 2) % 3] - forward[(k + 2) % 3] * camera.up[(k + 1) % 3];
-    across = sqrt(right[0] * right[0] + right[1] * right[1] + right[2] * right[2]);
-    double arm[3];
+    double back = -(double)(path->frames - frame) / (path->frames - 1), degrees = 3.14159265358979323846 / 180;
+    double forward[3], right[3], sight[3], length = 0;
     for (int k = 0; k < 3; k++) {
-        double way = path->dolly[0] * right[k] / across + path->dolly[1] * forward[k] + (k == 2 ? path->dolly[2] : 0);
-        camera.eye[k] -= share * way;
-        camera.target[k] -= share * way;
-        arm[k] = camera.eye[k] - camera.target[k];
+        sight[k] = camera.target[k] - camera.eye[k];
+        length += sight[k] * sight[k];
     }
-    double angle = -share * path->orbit * 3.14159265358979323846 / 180;
-    turn(arm, angle);
-    turn(camera.up, angle);
     for (int k = 0; k < 3; k++)
-        camera.eye[k] = camera.target[k] + arm[k];
+        forward[k] = sight[k] / sqrt(length);
+    right_of(&camera, forward, right);
+    turn(sight, back * path->pan * degrees);
+    for (int k = 0; k < 3; k++) {
+        camera.eye[k] += back * (path->dolly[0] * right[k] + path->dolly[1] * forward[k] + (k == 2 ? path->dolly[2] : 0));
+        camera.target[k] = camera.eye[k] + sight[k];
+    }
+    turn(sight, back * path->orbit * degrees);
+    turn(camera.up, back * (path->pan + path->orbit) * degrees);
+    for (int k = 0; k < 3; k++)
+        camera.eye[k] = camera.target[k] - sight[k];
     return camera;
 }

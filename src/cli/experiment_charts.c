@@ -6,7 +6,7 @@
 #include <string.h>
 
 enum {
-    BAR_MOST = 24, NAME_MAX_CHARS = 40, CHAR = 7, LINE = 20, TOP = 44, GAP = 26, BARS_WIDTH = 480, PANEL_WIDTH = 230, BOTTOM = 34,
+    BAR_MOST = 24, NAME_MAX_CHARS = 40, CHAR = 7, LINE = 20, TOP = 44, GAP = 26, BARS_WIDTH = 480, PANEL_WIDTH = 220, PANEL_GAP = 36, BOTTOM = 34,
     DOT_MOST = 60
 };
 
@@ -162,34 +162,55 @@ static void values_legend(FILE *out, const experiment_spec *spec, int left, int 
 
 bool experiment_has_dots(const experiment_spec *spec) { return row_count(spec) <= DOT_MOST && spec->config_count > 1; }
 
+/* Cameras with one frame to show stand side by side, up to four; true where this one starts a line of panels. */
+static bool starts_line(const experiment_spec *spec, size_t camera, int *column) {
+    experiment_point points[EXPERIMENT_POINTS];
+    bool beside = camera && *column < 4 && experiment_points(spec, camera, points) == 1 && experiment_points(spec, camera - 1, points) == 1;
+    *column = beside ? *column + 1 : 1;
+    return !beside;
+}
+
+static void row_names(FILE *out, const experiment_lab *lab, int left, int top) {
+    bool shared = shares_rows(&lab->spec);
+    for (size_t i = 0; i < lab->spec.config_count; i++) {
+        char *row = shared ? experiment_row_name(lab, i) : cli_format("%s", lab->spec.configs[i].name);
+        if (!shared || lab->spec.configs[i].choice <= 0)
+            words(out, left - 8, top + row_of(&lab->spec, i) * LINE + 14, "end", "", row);
+        free(row);
+    }
+}
+
 int experiment_dots(const experiment_lab *lab, const char *name) {
     const experiment_spec *spec = &lab->spec;
     experiment_point points[EXPERIMENT_POINTS];
-    int left = name_width(lab, shares_rows(spec)), rows = row_count(spec), columns = 1, high = rows * LINE + BOTTOM + GAP + 24;
+    int left = name_width(lab, shares_rows(spec)), high = row_count(spec) * LINE + BOTTOM + GAP + 24;
+    int columns = 1, lines = 0, column = 0;
     for (size_t camera = 0; camera < spec->camera_count; camera++) {
         int count = experiment_points(spec, camera, points);
+        lines += starts_line(spec, camera, &column);
         columns = count > columns ? count : columns;
+        columns = column > columns ? column : columns;
     }
-    int width = left + columns * (PANEL_WIDTH + 16) + 10, height = TOP + LINE + (int)spec->camera_count * high;
     char *temporary;
     FILE *out = experiment_create(lab, name, &temporary);
     if (!out)
         return CLI_FAILURE;
-    svg_head(out, width, height);
+    svg_head(out, left + columns * (PANEL_WIDTH + PANEL_GAP), TOP + LINE + lines * high);
     words(out, left, 26, "start", " font-size=\"15\" font-weight=\"bold\"", experiment_figure(spec));
     if (shares_rows(spec))
         values_legend(out, spec, left, TOP + 8);
+    int line = -1;
+    column = 0;
     for (size_t camera = 0; camera < spec->camera_count; camera++) {
-        int top = TOP + LINE + (int)camera * high + GAP + 20, count = experiment_points(spec, camera, points);
-        view_name(out, lab, camera, left, top - 28);
-        for (size_t i = 0; i < spec->config_count; i++) {
-            char *row = shares_rows(spec) ? experiment_row_name(lab, i) : cli_format("%s", spec->configs[i].name);
-            if (!shares_rows(spec) || spec->configs[i].choice <= 0)
-                words(out, left - 8, top + row_of(spec, i) * LINE + 14, "end", "", row);
-            free(row);
-        }
+        bool starts = starts_line(spec, camera, &column);
+        line += starts;
+        int top = TOP + LINE + line * high + GAP + 20, from = left + (column - 1) * (PANEL_WIDTH + PANEL_GAP);
+        int count = experiment_points(spec, camera, points);
+        view_name(out, lab, camera, from, top - 28);
+        if (starts)
+            row_names(out, lab, left, top);
         for (int p = 0; p < count; p++)
-            panel(out, lab, camera, points[p], left + p * (PANEL_WIDTH + 16), top);
+            panel(out, lab, camera, points[p], from + p * (PANEL_WIDTH + PANEL_GAP), top);
     }
     fprintf(out, "</svg>\n");
     return experiment_finish(lab, out, name, temporary);
