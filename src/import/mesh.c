@@ -5,6 +5,7 @@
  * illum 2 and above the reflectance of the glossy lobe at normal incidence, Ns its Blinn-Phong exponent n, turned into the
  * GGX lobe of the same width, alpha^2 = 2 / (n + 2) (Walter et al. 2007, eq. 37 ff.). Textures are not read. */
 #include "import/import.h"
+#include "import/obj_faces.h"
 #include "import/obj_offset.h"
 #include "noc_config.h"
 #include "scene/scene.h"
@@ -29,10 +30,15 @@ static bool is_keyword(const char *line, size_t len) {
 /* Statements of OBJ in every line that is seen whole, one of them a vertex, a group or a material. */
 static bool probe(const char *head, size_t size) {
     size_t statements = 0;
+    bool goes_on = false; /* a backslash at the end of the last line */
     for (const char *p = head, *end = head + size; p < end;) {
         const char *line = p, *stop = memchr(p, '\n', (size_t)(end - p));
         p = stop ? stop + 1 : end;
         size_t len = (size_t)((stop ? stop : end) - line);
+        bool continued = goes_on;
+        goes_on = (len && line[len - 1] == '\\') || (len > 1 && line[len - 1] == '\r' && line[len - 2] == '\\');
+        if (continued)
+            continue;
         while (len && (*line == ' ' || *line == '\t')) {
             line++;
             len--;
@@ -306,6 +312,7 @@ static noc_status read_mesh(const char *path, noc_stream *stream, const noc_impo
         free(lib.data);
         return status;
     }
+    obj_drop_bad_faces(lib.data, lib.size, issues);
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strchr(base, '.');
     char *folder = slash ? noc_format("%.*s", (int)(base - path), path) : noc_strdup("");
     lib.folder = folder;

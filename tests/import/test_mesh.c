@@ -159,6 +159,47 @@ static void test_map_coordinates(void **state) {
     }
 }
 
+static bool has_issue(const loaded *l, const char *reason, size_t count, const char *example) {
+    for (size_t i = 0; i < geo_issues_count(l->issues); i++) {
+        const char *r, *examples;
+        bool repaired;
+        size_t n;
+        geo_issues_get(l->issues, i, &r, &repaired, &n, &examples);
+        if (!strcmp(r, reason))
+            return n == count && strstr(examples, example);
+    }
+    return false;
+}
+
+/* A bad face costs itself, not the file; those around it, and indices of every spelling, stay. */
+static void test_bad_faces(void **state) {
+    static const char text[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n"
+                               "f 1 2 3\n"
+                               "f 1 2 4\n"                           /* line 7: the vertex comes later, which is right */
+                               "f -1 -2 -3\n"
+                               "f -1 -2 -4\n"                        /* line 9: bad, before the fourth vertex */
+                               "v 1 1 0\n"
+                               "f -1 -2 -4\n"
+                               "f 1/1/1 2/1/1 3/1/1\n"
+                               "f 1//1 2//1 3//1\n"
+                               "f 1/1 2/1 3/1 # a remark\n"
+                               "f 1/2 2/1 3/1\n"                     /* line 15: no second texture place */
+                               "f 1//1 2//1 3//9\n"                  /* line 16: no ninth normal */
+                               "f 0 1 2\n"                           /* line 17 */
+                               "f 1 2 99999999999999999999999\n"     /* line 18 */
+                               "f 1 2 \\\n 77\n"                    /* lines 19 and 20 */
+                               "f 1 2 \\\r\n 3\r\n"
+                               "f one two three\n";                  /* line 23 */
+    loaded l;
+    write_file("faces.obj", text, strlen(text));
+    load(&l, "faces.obj", NOC_OBJ_UP_Y);
+    assert_int_equal(l.status, NOC_OK);
+    assert_int_equal(l.errors + l.warnings, 0);
+    assert_int_equal(l.scene->indices.len / 3, 8);
+    assert_true(has_issue(&l, "face with an index that is not there", 7, "line 9, line 15, line 16, line 17, line 18"));
+    unload(&l);
+}
+
 static void test_missing_library(void **state) {
     loaded l;
     const char text[] = "mtllib sub/none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
@@ -172,7 +213,7 @@ static void test_missing_library(void **state) {
 }
 
 static void test_probe(void **state) {
-    static const char *const yes[] = { "v 1 2 3\n", "# x\n\nmtllib a.mtl\no b\nv 1", "\r\ng roof\r\nusemtl x\r\n" };
+    static const char *const yes[] = { "v 1 2 3\n", "# x\n\nmtllib a.mtl\no b\nv 1", "\r\ng roof\r\nusemtl x\r\n", "v 1 2 \\\n 3\nf 1 2 \\\r\n 3\n" };
     static const char *const no[] = { "", "<?xml version='1.0'?>", "{\"a\": 1}", "vertex 1 2 3\n", "lon,lat,lamp\n1,2,3\n",
                                       "ply\nformat ascii 1.0\n", "# only a comment\n" };
     for (size_t i = 0; i < NOC_COUNT(yes); i++)
@@ -223,7 +264,7 @@ static int set_up(void **state) {
 }
 
 static int tear_down(void **state) {
-    static const char *const files[] = { "test.mtl", "named.anything", "missing.obj", "bad.obj", "map.obj" };
+    static const char *const files[] = { "test.mtl", "named.anything", "missing.obj", "bad.obj", "map.obj", "faces.obj" };
     for (size_t i = 0; i < NOC_COUNT(files); i++) {
         char path[300];
         snprintf(path, sizeof(path), "%s/%s", folder, files[i]);
@@ -241,6 +282,7 @@ int main(void) {
         cmocka_unit_test(test_reads),
         cmocka_unit_test(test_map_coordinates),
         cmocka_unit_test(test_missing_library),
+        cmocka_unit_test(test_bad_faces),
         cmocka_unit_test(test_probe),
         cmocka_unit_test(test_broken),
     };
