@@ -1,11 +1,11 @@
-/* Light pickers: build times over random cities of lights, and what the point queries of a view find.
- *
- *   bench_pickers                                          build seconds and bytes a light, 1k to 1M lights
- *   bench_pickers SCENE VIEW [WIDTH HEIGHT [INFLUENCE]]    lights found a pixel: share that finds none, median, 99th percentile */
+/* Light pickers: CPU seconds and bytes a light of their structures, over random cities of 1k to 1M lights. */
 #include "bench_scene.h"
 
-#include "backend/embree/embree.h"
-#include "light/bound.h"
+#include "base/base.h"
+#include "light/alias.h"
+#include "light/clusters.h"
+#include "light/influence.h"
+#include "light/tree.h"
 
 #include <math.h>
 
@@ -46,7 +46,7 @@ static void builds(void) {
         double t1 = noc_cpu_seconds();
         noc_alias *a = noc_alias_create(s, NULL);
         double t2 = noc_cpu_seconds();
-        noc_influence *v = noc_influence_create(s, NULL);
+        noc_influence *v = noc_influence_create(s, NULL, NULL);
         double t3 = noc_cpu_seconds();
         noc_tree *t = noc_tree_create(s, NULL);
         double t4 = noc_cpu_seconds();
@@ -62,62 +62,7 @@ static void builds(void) {
     }
 }
 
-static int by_value(const void *a, const void *b) {
-    uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-    return (x > y) - (x < y);
-}
-
-static int found(const char *spec, noc_view view, int width, int height, double scale) {
-    noc_scene *s = bench_scene(spec, NULL);
-    void *state = NULL;
-    if (!s || noc_backend_embree.create(s, &(noc_renderer_params){ 0 }, NULL, &state) != NOC_OK)
-        return 1;
-    noc_render_params p = noc_render_default_params();
-    p.width = width;
-    p.height = height;
-    noc_camera c;
-    if (noc_scene_camera(s, view, (double)width / height, &c) != NOC_OK)
-        return 1;
-    noc_frame f = { .params = &p };
-    noc_make_frame_camera(&c, &p, 0, &f.camera);
-    noc_backend_embree.resize(state, width, height, 1);
-    noc_stage primary = { .passes = 1u << NOC_PASS_PRIMARY };
-    noc_backend_embree.stage(state, &f, &primary, NULL, 0, 1);
-    noc_influence *v = noc_influence_create(s, NULL);
-    const frame_buffers *b = &((embree_state *)state)->b;
-    size_t blocks = (size_t)b->blocks_x * b->blocks_y, n = 0, none = 0;
-    uint32_t *counts = noc_alloc(blocks * BLOCK * sizeof(*counts));
-    noc_found found = { 0 };
-    double start = noc_cpu_seconds(), near = 0;
-    for (size_t i = 0; i < blocks; i++) {
-        const gblock *g = &b->g[0][i];
-        noc_query q = { { g->px, g->py, g->pz }, { g->nx, g->ny, g->nz }, lanes_with_surface(g), scale > 0 ? (float)scale : v->scale };
-        noc_influence_query(v, &q, &found);
-        near += (double)found.near.len;
-        for (int l = 0; l < BLOCK; l++)
-            if (q.lanes >> l & 1) {
-                none += !found.count[l];
-                counts[n++] = found.count[l];
-            }
-    }
-    double spent = noc_cpu_seconds() - start;
-    qsort(counts, n, sizeof(*counts), by_value);
-    if (n)
-        printf("S_r %.3f (found: %.3f), %zu pixels with a surface: %.3f%% find no light, median %u, 90%% %u, 99%% %u, most %u; queries %.2f s, "
-               "%.1f lights near a block\n", scale > 0 ? scale : v->scale, v->scale, n, 100.0 * (double)none / (double)n, counts[n / 2],
-               counts[n * 9 / 10], counts[n * 99 / 100], counts[n - 1], spent, near / (double)blocks);
-    free(counts);
-    noc_found_free(&found);
-    noc_influence_destroy(v);
-    noc_backend_embree.destroy(state);
-    noc_scene_destroy(s);
-    return 0;
-}
-
-int main(int argc, char **argv) {
-    if (argc > 2)
-        return found(argv[1], bench_view(argv[2]), argc > 4 ? atoi(argv[3]) : 960, argc > 4 ? atoi(argv[4]) : 540,
-                     argc > 5 ? atof(argv[5]) : 0);
+int main(void) {
     builds();
     return 0;
 }

@@ -1,37 +1,62 @@
-/* core/influence.h: influence volumes (Gardishyan 2025, Algorithm 3). A light's volume is the ball of radius S_r sqrt(I)
- * around its centre, I its greatest luminous intensity (radiance times area for flat lights, times the disc's area for
- * spheres, the intensity itself for points): further away it gives less than 1 / S_r^2 lux. One-sided lights have the half
- * of the ball that they face, and a volume does not hold a surface that the whole light is behind.
+/* core/influence.h: influence volumes (Gardishyan 2025, Algorithm 3). A light's volume holds the points nearer to its shape
+ * than S_r sqrt(I), I its greatest luminous intensity (radiance times area for flat lights, times the disc's area for spheres,
+ * the intensity itself for points): further away it gives less than 1 / S_r^2 lux. One-sided lights have the half of it that
+ * they face, and a volume does not hold a surface that the whole light is behind. Lights that share a volume have a sphere
+ * around all of them, and the largest of their I.
  *
  * Of m candidates of a surface point every `every`th, the first one too, is drawn from all lights alike (u of them), the
- * others from the lights whose volumes hold the point (b of them). Whichever way a candidate came, its density is
+ * others from the N_f lights whose volumes hold the point (b of them). Whichever way a candidate came, its density is
  * (b g / N_f + u / N_L) / (b + u), g = 1 exactly if its own volume holds the point. Where no volume does, all are drawn
- * from all lights. */
+ * from all lights. S_r may differ from point to point: it is known before anything is drawn. */
 #ifndef CORE_INFLUENCE_H
 #define CORE_INFLUENCE_H
 
 #include "core/pick.h"
 
+/* A record of 8 floats. Lights without emission have size = -infinity: no S_r is enough. */
 struct influence {
     v3 c;
-    real size;   /* radius of the light itself */
-    v3 n;        /* way it faces; 0: every way */
-    real root;   /* square root of its intensity; 0: no volume */
+    real size;   /* radius of the sphere around the light or lights */
+    v3 m;        /* they all shine into the half space dot(m, p - c) >= -1; 0: every way */
+    real root;   /* square root of I */
 };
 
 #ifndef CORE_GLSL
 typedef struct influence influence;
 #endif
 
-/* n: the surface's normal on the side that is seen. */
-FN mask influence_holds(influence v, v3 p, v3 n, real scale) {
+#define INFLUENCE_NEVER K(3e38f)
+
+/* The smallest S_r at which the volume holds point p of a surface with normal n on the side that is seen; at most 0 within the
+ * sphere. */
+FN real influence_needs(influence v, v3 p, v3 n) {
     v3 d = sub3(p, v.c);
-    real r = v.root * scale;
-    mask near = and_(dot3(d, d) <= r * r, v.root > K(0.0f));
-    return and_(near, and_(dot3(v.n, d) >= K(0.0f), dot3(n, d) < v.size));
+    EXACT real s = (sqrt_(dot3(d, d)) - v.size) / v.root;
+    mask faces = and_(dot3(v.m, d) >= K(-1.0f), dot3(n, d) < v.size);
+    return sel(faces, s, INFLUENCE_NEVER);
 }
 
-/* Draws from all lights among m, of a point that n_f volumes hold. */
+/* The S_r that draws best at a point. A light of E lux there adds E^2 / p to the second moment of a candidate's weight; let q
+ * be the sum of E^2 over the lights that volumes give the point. One more light in the list costs q / b, for all others are
+ * drawn less often, and saves E^2 (N_L / u - N_f / b): so a light belongs there if E^2 > q u / (b N_L), about. E is taken as
+ * I over the squared distance, that is 1 / S_r^2 at the edge of a volume. */
+FN real influence_best(real q, real n_l, int every) {
+    return sqrt_(sqrt_(n_l * K(F32(every - 1)) / max_(q, K(1e-30f))));
+}
+
+/* E^2 of a light whose volume needs that S_r, not above that of a small distance from it. */
+FN real influence_square(real needs) {
+    EXACT real s = max_(needs, K(1e-3f));
+    EXACT real e = K(1.0f) / (s * s);
+    return e * e;
+}
+
+/* What visibility-aware volumes (Algorithm 4) ask as well. */
+FN mask influence_inside(v3 lo, v3 hi, v3 p) {
+    return and_(and_(and_(p.x >= lo.x, p.x <= hi.x), and_(p.y >= lo.y, p.y <= hi.y)), and_(p.z >= lo.z, p.z <= hi.z));
+}
+
+/* Draws from all lights among m, of a point that volumes of n_f lights hold. */
 FN u32 influence_uniform(u32 n_f, int m, int every) {
     return selu(n_f > KU(0u), KU(U32((m + every - 1) / every)), KU(U32(m)));
 }

@@ -1,6 +1,6 @@
 /* light/influence: a hierarchy over the lights' influence volumes (core/influence.h), for point queries.
  *
- * Volumes scale with S_r, so the hierarchy does not know it: a node holds the box of its lights' centres and the largest
+ * Volumes scale with S_r, so the hierarchy does not know it: a node holds the box around its lights' shapes and the largest
  * sqrt(intensity), and is entered if the box comes nearer than S_r times that. Lights are sorted by size first and Morton
  * code then, so that few large volumes do not blow up the nodes of many small ones. */
 #ifndef NOC_LIGHT_INFLUENCE_H
@@ -16,45 +16,96 @@ typedef struct noc_influence_node {
 } noc_influence_node;
 
 typedef struct noc_influence_volume { /* struct influence of core/influence.h */
-    float c[3], size, n[3], root;
+    float c[3], size, m[3], root;
 } noc_influence_volume;
+
+typedef struct noc_influence_box {
+    float lo[3], hi[3];
+} noc_influence_box;
 
 typedef struct noc_influence {
     uint32_t count;                                 /* lights of the scene, those without emission too */
-    noc_influence_volume *volumes;                  /* one a light */
-    uint32_t *ids;                                  /* lights in the hierarchy's order */
-    noc_influence_node *nodes[NOC_INFLUENCE_LEVELS]; /* level 0: children are single lights; the last level has one node */
+    uint32_t shining;                               /* lights that emit something */
+    uint32_t volume_count;
+    noc_influence_volume *volumes;                  /* in the hierarchy's order; behind the last, one that holds nothing */
+    noc_influence_box *boxes;                       /* parallel: what a volume's lights see; NULL: nothing stands in their way */
+    uint32_t *first;                                /* volume i has the lights ids[first[i]..first[i + 1]); NULL: one each */
+    uint32_t *ids;
+    uint32_t *volume_of;                            /* a light of the scene */
+    noc_influence_node *nodes[NOC_INFLUENCE_LEVELS]; /* level 0: a child is 8 volumes in order; the last level has one node */
     int levels;                                     /* 0: no light emits anything */
-    float scale;                                    /* S_r that was found for the scene, sqrt(m2 / cd) */
+    float scale;                                    /* S_r for this scene, sqrt(m2 / cd) */
+    float reach;                                    /* S_r that the boxes were probed with, 0: none were */
     size_t bytes;
 } noc_influence;
 
-/* Lights that a query found for each of its points. */
-typedef struct noc_found {
-    uint32_t count[NOC_QUERY_POINTS];
-    NOC_ARRAY(uint32_t) near; /* of all points' box */
-    NOC_ARRAY(uint32_t) ids;  /* NOC_QUERY_POINTS a row: entry j of point l is ids[j * NOC_QUERY_POINTS + l] */
-} noc_found;
+/* Distances along segments o + t d, t in [0, 1], to what they hit first; 1 where nothing is in their way. Called from
+ * several threads. */
+enum { NOC_PROBES = 16 };
+typedef struct noc_probes {
+    _Alignas(64) float o[3][NOC_PROBES], d[3][NOC_PROBES];
+    float t[NOC_PROBES];
+} noc_probes;
+typedef void noc_probe_fn(void *user, noc_probes *probes);
 
-typedef struct noc_query {
-    const float *p[3], *n[3]; /* NOC_QUERY_POINTS values each */
-    uint32_t lanes;           /* points that are asked for */
-    float scale;              /* S_r */
-} noc_query;
+typedef struct noc_influence_params {
+    int cluster;         /* at most so many lights share a volume (Algorithm 5); 0, 1: each has its own */
+    double scale;        /* S_r that the boxes are for; 0: found for the scene */
+    noc_probe_fn *probe; /* traces for visibility-aware boxes (Algorithm 4); NULL: none */
+    void *user;
+    noc_pool *pool;      /* NULL: the caller's thread alone */
+} noc_influence_params;
 
-/* Returns NULL after reporting that memory was refused. */
-noc_influence *noc_influence_create(const noc_scene *scene, noc_log *log);
+/* NULL params are those of one volume a light, without boxes. Equal for any number of threads. Returns NULL after reporting
+ * that memory was refused. */
+noc_influence *noc_influence_create(const noc_scene *scene, const noc_influence_params *params, noc_log *log);
 void noc_influence_destroy(noc_influence *influence); /* NULL is allowed */
 
-/* Exactly the lights whose volumes hold each point. found starts zeroed, and is used again and again. */
-void noc_influence_query(const noc_influence *influence, const noc_query *query, noc_found *found);
+/* ---- queries ---- */
+
+/* Volumes near a box, 16 to a group. Groups are padded with volumes of negative reach. */
+typedef struct noc_near_group {
+    float x[16], y[16], z[16], reach[16]; /* spheres that the volumes lie in */
+    uint32_t volume[16];
+} noc_near_group;
+
+typedef struct noc_near {
+    NOC_ARRAY(noc_near_group) groups;
+    size_t count;
+    bool over;      /* there were more than were asked for */
+} noc_near;
+
+typedef struct noc_near_query {
+    float lo[3], hi[3]; /* box of the points */
+    float n[3];         /* normal that they all have, 0: not the same */
+    float back;         /* least dot(n, point) */
+    float scale;        /* S_r */
+    size_t most;        /* stops at more volumes than that */
+} noc_near_query;
+
+/* The query for points p (3 arrays) with normals n of the lanes in bits, added to what is in the query; start with
+ * noc_near_none. */
+noc_near_query noc_near_none(float scale, size_t most);
+void noc_near_add(noc_near_query *query, const float *const p[3], const float *const n[3], uint32_t lanes);
+/* All volumes that could hold a point of the box, and some more; always in the same order. near starts zeroed, and is used
+ * again and again. */
+void noc_influence_near(const noc_influence *influence, const noc_near_query *query, noc_near *near);
+
+/* What a block of points found. Starts zeroed, and is used again and again. */
+typedef struct noc_found {
+    uint32_t count[NOC_QUERY_POINTS];  /* lights */
+    float scale[NOC_QUERY_POINTS];     /* S_r that the point settled for */
+    uint32_t shared[NOC_QUERY_POINTS]; /* of the lights, the first so many are ids[0], ids[1], ... */
+    uint32_t rows;                     /* the others of point l: ids[rows + j * NOC_QUERY_POINTS + l] */
+    uint32_t wider;                    /* points that asked beyond S_r */
+    NOC_ARRAY(uint32_t) ids;
+    noc_near near;                     /* scratch */
+    NOC_ARRAY(float) needs;
+    NOC_ARRAY(uint32_t) volumes;
+} noc_found;
 void noc_found_free(noc_found *found);
 
-/* m candidates a point into rows light[i], inverse[i] (1 / pmf); keys: rng_key of each point. The scene has lights. */
-void noc_influence_draw(const noc_influence *influence, const noc_query *query, const noc_found *found,
-                        const uint32_t keys[NOC_QUERY_POINTS], int m, int every, uint32_t (*light)[NOC_QUERY_POINTS],
-                        float (*inverse)[NOC_QUERY_POINTS]);
-float noc_influence_pmf(const noc_influence *influence, const noc_query *query, const noc_found *found, int point, int m,
-                        int every, uint32_t light);
+/* Does the volume of a light hold the point? */
+bool noc_influence_holds(const noc_influence *influence, uint32_t light, const float p[3], const float n[3], float scale);
 
 #endif

@@ -234,12 +234,13 @@ FN void pickers(CTX u32 item, u32 key, surf s) {
     put_real(PASS item, 131, tree_pmf(PASS s.p, s.n, bits, 7));
     influence v;
     v.c = add3(s.p, any_v3(key, KU(3070u)));
-    v.n = unit3(any_v3(key, KU(3076u)));
+    v.m = mul3(unit3(any_v3(key, KU(3076u))), K(3.0f));
     v.size = rng(key, KU(3082u));
     v.root = rng(key, KU(3083u)) * K(100.0f);
-    mask held = influence_holds(v, s.p, s.n, K(3.0f));
+    real needs = influence_needs(v, s.p, s.n);
+    mask held = and_(needs <= K(3.0f), influence_inside(v.c, add3(v.c, fill3(K(40.0f))), s.p));
     u32 n_f = shr(bits, 27);
-    put_real(PASS item, 132, sel(held, K(1.0f), K(0.0f)));
+    put_real(PASS item, 132, sel(held, needs, K(0.0f)));
     put_real(PASS item, 133, influence_pmf(held, n_f, KU(KERNEL_LIGHTS), 32, 4));
     put_u32(PASS item, 134, influence_uniform(n_f, 30, 4));
     put_resv(PASS item, 135, ris_given(PASS s, key, 8));

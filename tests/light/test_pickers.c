@@ -5,11 +5,9 @@
 
 #include "light/alias.h"
 #include "light/bound.h"
-#include "light/influence.h"
 #include "light/tree.h"
 
 #include "core/alias.h"
-#include "core/influence.h"
 #include "core/surface.h"
 #include "core/tree.h"
 
@@ -84,43 +82,15 @@ typedef struct picker {
     const noc_scene *scene;
     const noc_alias *alias;
     const noc_tree *tree;
-    const noc_influence *influence;
-    noc_found found;
-    noc_query q;
-    float at[2][3][NOC_QUERY_POINTS];
     surf y;
     double wrong; /* share that is added to the pmf of odd lights: a test of the test */
 } picker;
 
-enum { DRAWS = 32, EVERY = 4 };
+enum { DRAWS = 32 };
 
-static void look_from(picker *p, surf y) {
-    p->y = y;
-    if (!p->influence)
-        return;
-    for (int l = 0; l < NOC_QUERY_POINTS; l++) { /* the point that is asked about is number 5 of a small patch */
-        v3 q = l == 5 ? y.p : V3(y.p.x + real_in(-0.3f, 0.3f), y.p.y + real_in(-0.3f, 0.3f), y.p.z);
-        float have[2][3] = { { q.x, q.y, q.z }, { y.n.x, y.n.y, y.n.z } };
-        for (int i = 0; i < 6; i++)
-            p->at[i / 3][i % 3][l] = have[i / 3][i % 3];
-    }
-    p->q = (noc_query){ { p->at[0][0], p->at[0][1], p->at[0][2] }, { p->at[1][0], p->at[1][1], p->at[1][2] }, 0xfff7,
-                        p->influence->scale };
-    noc_influence_query(p->influence, &p->q, &p->found);
-}
+static void look_from(picker *p, surf y) { p->y = y; }
 
 static void draw(picker *p, pick out[DRAWS]) {
-    if (p->influence) {
-        static uint32_t ids[DRAWS][NOC_QUERY_POINTS];
-        static float inverse[DRAWS][NOC_QUERY_POINTS];
-        uint32_t keys[NOC_QUERY_POINTS];
-        for (int l = 0; l < NOC_QUERY_POINTS; l++)
-            keys[l] = bits();
-        noc_influence_draw(p->influence, &p->q, &p->found, keys, DRAWS, EVERY, ids, inverse);
-        for (int i = 0; i < DRAWS; i++)
-            out[i] = (pick){ ids[i][5], inverse[i][5] };
-        return;
-    }
     struct core_context ctx = { p->alias, p->tree };
     for (int i = 0; i < DRAWS; i++) {
         out[i] = (pick){ 0, 0 };
@@ -134,9 +104,7 @@ static void draw(picker *p, pick out[DRAWS]) {
 static double pmf(picker *p, uint32_t id) {
     struct core_context ctx = { p->alias, p->tree };
     double x = 0;
-    if (p->influence)
-        x = noc_influence_pmf(p->influence, &p->q, &p->found, 5, DRAWS, EVERY, id);
-    else if (p->tree && p->tree->count && noc_light_intensity(&p->scene->lights.data[id]) > 0)
+    if (p->tree && p->tree->count && noc_light_intensity(&p->scene->lights.data[id]) > 0)
         x = tree_pmf(&ctx, p->y.p, p->y.n, p->tree->paths[id], p->tree->depth);
     else if (p->alias && p->alias->count)
         x = alias_pmf(&ctx, id);
@@ -251,73 +219,6 @@ static void power_follows_flux(void **state) {
     noc_scene_destroy(s);
 }
 
-static void influence_volumes(void **state) {
-    (void)state;
-    for (size_t i = 0; i < NOC_COUNT(worlds); i++) {
-        noc_scene *s = world(worlds[i].lights, worlds[i].what);
-        picker p = { .influence = noc_influence_create(s, NULL) };
-        check(s, &p, true);
-        noc_found_free(&p.found);
-        noc_influence_destroy((noc_influence *)p.influence);
-        noc_scene_destroy(s);
-    }
-}
-
-/* The hierarchy finds what a walk over all lights finds, at scales from nothing to everything. */
-static void influence_query_is_exact(void **state) {
-    (void)state;
-    noc_scene *s = world(3000, MIXED);
-    picker p = { .scene = s, .influence = noc_influence_create(s, NULL) };
-    static const float scales[] = { 0.01f, 0.3f, 1, 3, 10, 1000 };
-    size_t found = 0;
-    for (int round = 0; round < 60; round++) {
-        look_from(&p, random_surf(100));
-        p.q.scale = scales[round % 6];
-        noc_influence_query(p.influence, &p.q, &p.found);
-        for (int l = 0; l < NOC_QUERY_POINTS; l++) {
-            uint32_t count = 0;
-            for (uint32_t i = 0; i < 3000; i++) {
-                const noc_influence_volume *a = &p.influence->volumes[i];
-                influence v;
-                memcpy(&v, a, sizeof(v));
-                count += (p.q.lanes >> l & 1) && influence_holds(v, V3(p.q.p[0][l], p.q.p[1][l], p.q.p[2][l]), p.y.n, p.q.scale);
-            }
-            assert_int_equal(p.found.count[l], count);
-            found += count;
-            for (uint32_t j = 0; j < count; j++) /* each once */
-                for (uint32_t k = 0; k < j && k < 50; k++)
-                    assert_true(p.found.ids.data[j * NOC_QUERY_POINTS + (uint32_t)l] !=
-                                p.found.ids.data[k * NOC_QUERY_POINTS + (uint32_t)l]);
-        }
-    }
-    assert_true(found > 10000);
-    noc_found_free(&p.found);
-    noc_influence_destroy((noc_influence *)p.influence);
-    noc_scene_destroy(s);
-}
-
-/* S_r that was found gives the floor of a large world a handful of lights. */
-static void influence_scale(void **state) {
-    (void)state;
-    noc_scene *s = world(5000, MIXED);
-    picker p = { .scene = s, .influence = noc_influence_create(s, NULL) };
-    uint32_t counts[400], none = 0, over = 0;
-    for (int i = 0; i < 400; i++) {
-        surf y = random_surf(140);
-        y.p.z = 0;
-        y.n = V3(0, 0, 1);
-        look_from(&p, y);
-        counts[i] = p.found.count[5];
-        none += counts[i] == 0;
-        over += counts[i] >= 8;
-    }
-    print_message("# S_r %.2f: %u of 400 points find no light, %u at least 8\n", p.influence->scale, none, over);
-    assert_true(none < 40 && over > 150 && over < 250);
-    noc_found_free(&p.found);
-    noc_influence_destroy((noc_influence *)p.influence);
-    noc_scene_destroy(s);
-}
-
 static void tree(void **state) {
     (void)state;
     for (size_t i = 0; i < NOC_COUNT(worlds); i++) {
@@ -387,8 +288,7 @@ static void tree_bounds_hold(void **state) {
 static void wrong_pmf_is_seen(void **state) {
     (void)state;
     noc_scene *s = world(50, MIXED);
-    picker all[] = { { .alias = noc_alias_create(s, NULL) }, { .influence = noc_influence_create(s, NULL) },
-                     { .tree = noc_tree_create(s, NULL) } };
+    picker all[] = { { .alias = noc_alias_create(s, NULL) }, { .tree = noc_tree_create(s, NULL) } };
     for (size_t i = 0; i < NOC_COUNT(all); i++) {
         picker *p = &all[i];
         p->scene = s;
@@ -397,11 +297,9 @@ static void wrong_pmf_is_seen(void **state) {
         p->wrong = 0.2;
         assert_true(distance(p, 20000) > 6);
         assert_true(fabs(total_pmf(p) - 1) > 1e-3);
-        noc_found_free(&p->found);
     }
     noc_alias_destroy((noc_alias *)all[0].alias);
-    noc_influence_destroy((noc_influence *)all[1].influence);
-    noc_tree_destroy((noc_tree *)all[2].tree);
+    noc_tree_destroy((noc_tree *)all[1].tree);
     noc_scene_destroy(s);
 }
 
@@ -409,9 +307,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(power),
         cmocka_unit_test(power_follows_flux),
-        cmocka_unit_test(influence_volumes),
-        cmocka_unit_test(influence_query_is_exact),
-        cmocka_unit_test(influence_scale),
         cmocka_unit_test(tree),
         cmocka_unit_test(tree_of_uneven_lights),
         cmocka_unit_test(tree_bounds_hold),

@@ -147,8 +147,10 @@ static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st
         status = noc_embree_begin_views(s, frame->params->aovs, st->passes >> NOC_PASS_PRIMARY & 1);
     if (status != NOC_OK)
         return status;
-    for (int i = 0; st->passes >> NOC_PASS_CANDIDATES & 1 && i < s->worker_count; i++)
+    for (int i = 0; st->passes >> NOC_PASS_CANDIDATES & 1 && i < s->worker_count; i++) {
         memset(s->workers[i].found_counts, 0, sizeof(s->workers[i].found_counts));
+        s->workers[i].found_wider = 0;
+    }
     const noc_scene *scene = s->scene;
     stage_run run = { .s = s,
                       .ctx = { scene->lights.data, (uint32_t)scene->lights.len,
@@ -158,6 +160,7 @@ static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st
                       .tiles = (size_t)s->b.tiles_x * s->b.tiles_y };
     if (st->passes >> NOC_PASS_SHADE & 1)
         s->shaded_set = st->target;
+    run.ctx.influence = s->influence;
     noc_pool_run(s->pool, run.tiles, run_tile, &run);
     return atomic_load(&run.cancelled) ? NOC_ERR_CANCELLED : NOC_OK;
 }

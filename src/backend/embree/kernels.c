@@ -218,6 +218,7 @@ static void sky_background(const struct core_context *ctx, uint32_t lanes, int x
 
 #include "backend/embree/lists.h"
 #include "backend/embree/picks.h"
+#include "backend/embree/influence.h"
 #include "backend/embree/reference.h"
 
 const kernels KERNELS = {
@@ -227,6 +228,7 @@ const kernels KERNELS = {
     .list_candidates = list_candidates,
     .pick_power = pick_power,
     .pick_tree = pick_tree,
+    .pick_influence = pick_influence,
     .given = given,
     .project = project,
     .segments = segments,

@@ -44,6 +44,7 @@ struct core_context {
     const noc_tree *tree;         /* tree only */
     const pick_block *picks;      /* of the block; read from lane `lane` on */
     int lane;
+    const noc_influence *influence; /* bvh only */
 };
 
 /* A reservoir of another pixel with that pixel's surface; lanes outside `lanes` were rejected and have m = w = 0. */
@@ -69,7 +70,7 @@ typedef struct reference_scratch {
     uint32_t count[BLOCK];     /* entries a lane */
 } reference_scratch;
 
-/* Scratch of list building, one a worker. */
+/* Scratch of list building, one a worker: groups of 16 nodes of one level (-1: lights), the children of `block`. */
 typedef struct list_scratch {
     light_list list;
     ALIGNED float scores[LIST_GROUPS][16];
@@ -90,6 +91,9 @@ typedef struct kernels {
     /* Light pickers: m candidates for every lane of a block; then a reservoir of such candidates. */
     void (*pick_power)(const struct core_context *ctx, int x, int y, int m, pick_block *out);
     void (*pick_tree)(const struct core_context *ctx, const gblock *g, int x, int y, int m, pick_block *out);
+    /* near: volumes near a box that holds the block's surfaces, or NULL; found: what its lanes found. */
+    void (*pick_influence)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
+                           const noc_near *near, noc_found *found, pick_block *out);
     void (*given)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                   const pick_block *picks, rblock *out);
     /* Where this frame's surfaces were in the previous picture, in pixels; returns the lanes that were in front of it. */

@@ -30,7 +30,7 @@ static noc_status prepare(embree_state *s, const noc_render_params *p) {
             return NOC_ERR_MEMORY;
         break;
     case NOC_CANDIDATES_BVH:
-        if (!s->influence && !(s->influence = noc_influence_create(s->scene, s->log)))
+        if (!s->influence && !(s->influence = noc_influence_create(s->scene, &(noc_influence_params){ .pool = s->pool }, s->log)))
             return NOC_ERR_MEMORY;
         break;
     case NOC_CANDIDATES_TREE:
@@ -74,6 +74,7 @@ void noc_embree_release_lights(embree_state *s) {
         free(w->picks.light);
         free(w->picks.inverse);
         noc_found_free(&w->found);
+        array_free(&w->near.groups);
     }
 }
 
@@ -111,15 +112,19 @@ void noc_embree_light_stats(void *state, const noc_render_params *p, noc_light_s
     if (p->candidates != NOC_CANDIDATES_BVH || !s->influence)
         return;
     out->influence = p->influence > 0 ? p->influence : s->influence->scale;
-    out->volumes = s->influence->count;
-    for (int i = 0; i < s->worker_count; i++)
+    out->volumes = s->influence->volume_count;
+    uint64_t wider = 0;
+    for (int i = 0; i < s->worker_count; i++) {
         for (int k = 0; k < FOUND_COUNTS; k++)
             counts[k] += s->workers[i].found_counts[k];
+        wider += s->workers[i].found_wider;
+    }
     for (int k = 0; k < FOUND_COUNTS; k++)
         out->surfaces += counts[k];
     if (!out->surfaces)
         return;
     out->found_none = (double)counts[0] / (double)out->surfaces;
+    out->found_wider = (double)wider / (double)out->surfaces;
     out->found_median = percentile(counts, out->surfaces, 0.5);
     out->found_99 = percentile(counts, out->surfaces, 0.99);
 }

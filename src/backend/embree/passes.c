@@ -34,34 +34,44 @@ static void primary(stage_run *run, worker *w, int bx, int by) {
     noc_embree_primary(run->s, w, &rays, lanes_inside(b, bx, by), &b->g[f->gbuffer][block_at(b, bx, by)]);
 }
 
-static void pick_influence(stage_run *run, worker *w, const gblock *g, uint32_t lanes, int x, int y, int m) {
-    const noc_frame *f = run->ctx.frame;
+enum { TILE_VOLUMES = 4096 };
+
+/* Influence volumes near a tile, for all of its blocks; NULL where they are so many that each block looks for itself. */
+static const noc_near *look_around(stage_run *run, worker *w, tile t) {
+    const frame_buffers *b = &run->s->b;
     const noc_influence *v = run->s->influence;
-    noc_query q = { { g->px, g->py, g->pz }, { g->nx, g->ny, g->nz }, lanes,
-                    f->params->influence > 0 ? (float)f->params->influence : v->scale };
-    uint32_t keys[BLOCK];
-    for (int l = 0; l < BLOCK; l++) {
-        uint32_t pixel = (uint32_t)(y + (l >> 2)) * (uint32_t)f->params->width + (uint32_t)(x + (l & 3));
-        keys[l] = rng_key(f->params->seed, pixel, f->index);
-    }
-    noc_influence_query(v, &q, &w->found);
-    noc_influence_draw(v, &q, &w->found, keys, m, f->params->uniform_every, w->picks.light, w->picks.inverse);
+    const noc_render_params *p = run->ctx.frame->params;
+    noc_near_query q = noc_near_none(p->influence > 0 ? (float)p->influence : v->scale, TILE_VOLUMES);
+    for (int by = t.y0; by < t.y1; by++)
+        for (int bx = t.x0; bx < t.x1; bx++) {
+            const gblock *g = &b->g[run->ctx.frame->gbuffer][block_at(b, bx, by)];
+            noc_near_add(&q, (const float *const[3]){ g->px, g->py, g->pz }, (const float *const[3]){ g->nx, g->ny, g->nz },
+                         lanes_with_surface(g));
+        }
+    noc_influence_near(v, &q, &w->near);
+    return w->near.over ? NULL : &w->near;
+}
+
+static void pick_influence(stage_run *run, worker *w, const gblock *g, uint32_t lanes, int x, int y, int m, const noc_near *near) {
+    run->k->pick_influence(&run->ctx, g, lanes, x, y, m, near, &w->found, &w->picks);
     for (uint32_t bits = lanes; bits; bits &= bits - 1)
         w->found_counts[NOC_MIN(w->found.count[__builtin_ctz(bits)], FOUND_COUNTS - 1)]++;
+    w->found_wider += (uint64_t)__builtin_popcount(w->found.wider);
 }
 
 /* Draws a block's candidates from whatever these parameters name but the uniform draws and the lists. */
-static void pick_lights(stage_run *run, worker *w, const gblock *g, uint32_t lanes, int x, int y, int m) {
+static void pick_lights(stage_run *run, worker *w, const gblock *g, uint32_t lanes, int x, int y, int m, const noc_near *near) {
     switch (run->ctx.frame->params->candidates) {
     case NOC_CANDIDATES_POWER: run->k->pick_power(&run->ctx, x, y, m, &w->picks); break;
-    case NOC_CANDIDATES_BVH: pick_influence(run, w, g, lanes, x, y, m); break;
+    case NOC_CANDIDATES_BVH: pick_influence(run, w, g, lanes, x, y, m, near); break;
     case NOC_CANDIDATES_TREE: run->k->pick_tree(&run->ctx, g, x, y, m, &w->picks); break;
     case NOC_CANDIDATES_UNIFORM:
     case NOC_CANDIDATES_LISTS: break;
     }
 }
 
-static void candidates(stage_run *run, worker *w, int bx, int by) {
+/* near: bvh only. */
+static void candidates(stage_run *run, worker *w, int bx, int by, const noc_near *near) {
     frame_buffers *b = &run->s->b;
     const noc_render_params *p = run->ctx.frame->params;
     size_t at = block_at(b, bx, by);
@@ -71,7 +81,7 @@ static void candidates(stage_run *run, worker *w, int bx, int by) {
     int m = p->method == NOC_METHOD_IS ? 1 : p->draws, x = bx * BLOCK_SIDE, y = by * BLOCK_SIDE;
     bool given = p->method != NOC_METHOD_IS && p->candidates != NOC_CANDIDATES_UNIFORM;
     if (given && lanes)
-        pick_lights(run, w, g, lanes, x, y, m);
+        pick_lights(run, w, g, lanes, x, y, m, near);
     if (given)
         run->k->given(&run->ctx, g, lanes, x, y, m, &w->picks, r);
     else
@@ -86,9 +96,11 @@ static void tile_candidates(stage_run *run, worker *w, tile t) {
     const noc_frame *f = run->ctx.frame;
     frame_buffers *b = &run->s->b;
     if (f->params->candidates != NOC_CANDIDATES_LISTS || f->params->method == NOC_METHOD_IS) {
+        bool volumes = f->params->candidates == NOC_CANDIDATES_BVH && f->params->method != NOC_METHOD_IS;
+        const noc_near *near = volumes ? look_around(run, w, t) : NULL;
         for (int by = t.y0; by < t.y1; by++)
             for (int bx = t.x0; bx < t.x1; bx++)
-                candidates(run, w, bx, by);
+                candidates(run, w, bx, by, near);
         return;
     }
     const gblock *g[TILE_BLOCKS * TILE_BLOCKS];

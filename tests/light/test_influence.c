@@ -1,0 +1,369 @@
+/* Influence volumes: what a block's points find is what a walk over all lights finds; draws' densities are the pmf, which
+ * sums to 1, and f / pmf of many draws lies within 4.5 standard errors of the sum over all lights. Through every kernel that
+ * this machine runs, with lights of their own volumes, lights that share them, and visibility-aware boxes. */
+#include "../render/rooms.h"
+
+#include "backend/embree/kernels.h"
+#include "light/bound.h"
+#include "light/influence.h"
+
+#include "core/influence.h"
+#include "core/surface.h"
+
+enum { DRAWS = 32, EVERY = 4, POINT = 5, LANES_ASKED = 0xfff7 };
+
+static uint32_t state_ = 1;
+static uint32_t bits(void) { return state_ = hash_u32(state_ + 0x9e3779b9u); }
+static float real_in(float lo, float hi) { return lo + (hi - lo) * unit_real(bits()); }
+
+typedef enum { MIXED, DARK_ONES, ONE_PLACE, ALL_DARK, WINDOWS } sort;
+
+static noc_light light_of(uint32_t i, sort what, float half) {
+    noc_light l = { .kind = (noc_light_kind)(i % 5), .radius = real_in(0.05f, 0.4f) };
+    bool dark = what == ALL_DARK || (what == DARK_ONES && i % 3 != 1);
+    float strong = i % 50 == 17 ? 3000 : 3;
+    for (int k = 0; k < 3; k++) {
+        l.position[k] = what == ONE_PLACE ? 3 : k == 2 ? real_in(0.5f, 15) : real_in(-half, half);
+        l.edge_u[k] = real_in(-1, 1);
+        l.edge_v[k] = real_in(-1, 1);
+        l.direction[k] = real_in(-1, 1) - (k == 2 ? 1.2f : 0);
+        l.emission[k] = dark ? 0 : real_in(0.1f, 1) * strong;
+    }
+    return l;
+}
+
+/* Windows of one facade after the other, 24 each: what shares volumes in a city. */
+static noc_light window_of(uint32_t i, float half) {
+    static float x, y;
+    uint32_t w = i % 24;
+    if (!w) {
+        x = real_in(-half, half);
+        y = real_in(-half, half);
+    }
+    noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { x + 1.5f * (float)(w % 6), y, 1 + 3 * (float)(w / 6) },
+                    .edge_u = { 1, 0, 0 }, .edge_v = { 0, 0, 1.2 } };
+    for (int k = 0; k < 3; k++)
+        l.emission[k] = real_in(4, 6);
+    return l;
+}
+
+static noc_scene *world(uint32_t lights, sort what) {
+    noc_scene *s = noc_scene_create(NULL);
+    float half = 10 + 2 * sqrtf((float)lights);
+    add_floor(s, matte(s, 0.5f), 0, 0, 0, half);
+    for (uint32_t i = 0; i < lights; i++) {
+        noc_light l = what == WINDOWS ? window_of(i, half) : light_of(i, what, half);
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+    }
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    for (uint32_t i = 0; i < lights && what != WINDOWS; i += 7)
+        s->lights.data[i].flags |= 1; /* two-sided */
+    return s;
+}
+
+/* Everything is free, but for what is below the floor, and beyond a wall at x = 4. */
+static void probe(void *user, noc_probes *r) {
+    (void)user;
+    for (int i = 0; i < NOC_PROBES; i++) {
+        r->t[i] = 1;
+        if (r->o[2][i] > 0 && r->o[2][i] + r->d[2][i] < 0)
+            r->t[i] = r->o[2][i] / -r->d[2][i];
+        if ((r->o[0][i] < 4) != (r->o[0][i] + r->d[0][i] < 4))
+            r->t[i] = fminf(r->t[i], (4 - r->o[0][i]) / r->d[0][i]);
+    }
+}
+
+/* ---- a block of surfaces, and what it draws ---- */
+
+typedef struct asked {
+    const noc_scene *scene;
+    const noc_influence *v;
+    const kernels *k;
+    noc_render_params params;
+    noc_frame frame;
+    struct core_context ctx;
+    gblock g;
+    surf y; /* of POINT */
+    noc_found found;
+    uint32_t light[DRAWS + PICK_AHEAD][BLOCK];
+    float inverse[DRAWS + PICK_AHEAD][BLOCK];
+    double wrong; /* share added to the pmf of odd lights: a test of the test */
+} asked;
+
+static asked *begin(const noc_scene *s, const noc_influence *v, const kernels *k, double scale) {
+    asked *a = noc_alloc_large(1, sizeof(*a));
+    a->scene = s;
+    a->v = v;
+    a->k = k;
+    a->params = measure(64, 64, NOC_METHOD_RIS);
+    a->params.influence = scale;
+    a->params.uniform_every = EVERY;
+    a->frame = (noc_frame){ .params = &a->params };
+    a->ctx = (struct core_context){ .lights = s->lights.data, .light_count = (uint32_t)s->lights.len, .frame = &a->frame, .influence = v };
+    return a;
+}
+
+static void end(asked *a) {
+    noc_found_free(&a->found);
+    free(a);
+}
+
+static surf random_surf(float half) {
+    float w = real_in(0, 6.28f), up = real_in(-0.3f, 1), r = sqrtf(fmaxf(1 - up * up, 0));
+    surf s = { .p = { real_in(-half, half), real_in(-half, half), real_in(0, 12) }, .albedo = { 0.4f, 0.5f, 0.3f } };
+    s.n = V3(r * cosf(w), r * sinf(w), up);
+    s.wo = s.n;
+    return s;
+}
+
+/* Surfaces around y, lane POINT being y itself; `bent`: with normals of their own. */
+static void look_from(asked *a, surf y, float apart, bool bent) {
+    a->y = y;
+    for (int l = 0; l < BLOCK; l++) {
+        surf s = bent ? random_surf(1) : y;
+        float d = l == POINT ? 0 : apart;
+        v3 n = l == POINT ? y.n : s.n;
+        float have[6] = { y.p.x + real_in(-d, d), y.p.y + real_in(-d, d), y.p.z, n.x, n.y, n.z };
+        float *to[6] = { a->g.px, a->g.py, a->g.pz, a->g.nx, a->g.ny, a->g.nz };
+        for (int k = 0; k < 6; k++)
+            to[k][l] = have[k];
+    }
+}
+
+static void draw(asked *a) {
+    a->frame.index++;
+    a->k->pick_influence(&a->ctx, &a->g, LANES_ASKED, 8, 12, DRAWS, NULL, &a->found, &(pick_block){ a->light, a->inverse });
+}
+
+static bool held(const asked *a, uint32_t id, int l) {
+    float p[3] = { a->g.px[l], a->g.py[l], a->g.pz[l] }, n[3] = { a->g.nx[l], a->g.ny[l], a->g.nz[l] };
+    return noc_influence_holds(a->v, id, p, n, a->found.scale[l]);
+}
+
+static double pmf(const asked *a, uint32_t id, int l) {
+    bool in = a->found.count[l] && held(a, id, l);
+    return influence_pmf(in, a->found.count[l], a->v->count, DRAWS, EVERY) * (1 + (id & 1 ? a->wrong : 0));
+}
+
+static double shine(const asked *a, uint32_t i) {
+    light l;
+    memcpy(&l, &a->scene->lights.data[i], sizeof(l));
+    return target(a->y, l, 0.3f, 0.6f);
+}
+
+/* ---- checks ---- */
+
+static void finds_what_there_is(asked *a) {
+    draw(a);
+    uint32_t n = (uint32_t)a->scene->lights.len;
+    for (int l = 0; l < BLOCK; l++) {
+        uint32_t count = 0;
+        for (uint32_t i = 0; i < n && (LANES_ASKED >> l & 1); i++)
+            count += held(a, i, l);
+        assert_int_equal(a->found.count[l], count);
+        for (uint32_t j = 0; j < count && n <= 1000; j++) {
+            uint32_t id[2];
+            for (uint32_t k = j; k < NOC_MIN(count, j + 20); k++) { /* each once */
+                const noc_found *f = &a->found;
+                id[k > j] = f->ids.data[k < f->shared[l] ? k : f->rows + (k - f->shared[l]) * BLOCK + (uint32_t)l];
+                assert_true(held(a, id[k > j], l));
+                assert_true(k == j || id[0] != id[1]);
+            }
+        }
+    }
+}
+
+static void draws_are_pmf(asked *a) {
+    for (int round = 0; round < 5; round++) {
+        draw(a);
+        for (int l = 0; l < BLOCK; l++)
+            for (int i = 0; i < DRAWS && (LANES_ASKED >> l & 1); i++) {
+                assert_true(a->light[i][l] < a->scene->lights.len);
+                double x = pmf(a, a->light[i][l], l) * a->inverse[i][l];
+                if (!(fabs(x - 1) < 1e-5))
+                    fail_msg("light %u of %zu, lane %d: draw's p is 1/%g, pmf %g", a->light[i][l], a->scene->lights.len, l,
+                             a->inverse[i][l], pmf(a, a->light[i][l], l));
+            }
+    }
+    double sum = 0;
+    for (uint32_t i = 0; i < a->scene->lights.len; i++)
+        sum += pmf(a, i, POINT);
+    assert_true(fabs(sum - 1) < 1e-4 || a->wrong > 0);
+}
+
+/* Of `rounds` sets of draws, the distance of their mean estimate from the sum over all lights, in standard errors. */
+static double distance(asked *a, int rounds) {
+    double want = 0, sum = 0, square = 0;
+    for (uint32_t i = 0; i < a->scene->lights.len; i++)
+        want += shine(a, i);
+    for (int r = 0; r < rounds; r++) {
+        double x = 0;
+        draw(a);
+        for (int i = 0; i < DRAWS; i++)
+            x += shine(a, a->light[i][POINT]) / pmf(a, a->light[i][POINT], POINT) / DRAWS;
+        sum += x;
+        square += x * x;
+    }
+    double mean = sum / rounds, error = sqrt(fmax(square / rounds - mean * mean, 0) / rounds);
+    return fabs(mean - want) / fmax(error, 1e-5 * want + 1e-30);
+}
+
+static const struct { uint32_t lights; sort what; } worlds[] = {
+    { 1, MIXED }, { 2, MIXED }, { 3, DARK_ONES }, { 9, ONE_PLACE }, { 50, MIXED }, { 300, DARK_ONES }, { 500, ONE_PLACE },
+    { 1000, MIXED }, { 960, WINDOWS }, { 20, ALL_DARK }, { 30000, MIXED },
+};
+
+static void check_worlds(int cluster, noc_probe_fn *boxes) {
+    const kernels *all[NOC_MAX_KERNELS];
+    int kernels_here = noc_runnable_kernels(all);
+    for (size_t i = 0; i < NOC_COUNT(worlds); i++) {
+        noc_scene *s = world(worlds[i].lights, worlds[i].what);
+        noc_influence *v = noc_influence_create(s, &(noc_influence_params){ .cluster = cluster, .probe = boxes }, NULL);
+        float half = 10 + 2 * sqrtf((float)worlds[i].lights);
+        assert_non_null(v);
+        for (int surface = 0; surface < 8; surface++) {
+            const double scales[] = { 0, 0, 0, 0.01, 0.3, 3, 30, 1000 };
+            asked *a = begin(s, v, all[surface % kernels_here], scales[surface]);
+            look_from(a, random_surf(surface < 4 ? NOC_MIN(half, 15) : half), surface & 1 ? 10 : 0.3f, surface & 2);
+            finds_what_there_is(a);
+            draws_are_pmf(a);
+            if (surface < 2) {
+                double z = distance(a, worlds[i].lights > 10000 ? 15000 : 5000);
+                if (!(z < 4.5))
+                    fail_msg("%u lights, surface %d: %.1f standard errors from the sum over all lights", worlds[i].lights, surface, z);
+            }
+            end(a);
+        }
+        noc_influence_destroy(v);
+        noc_scene_destroy(s);
+    }
+}
+
+static void volumes_of_one(void **state) { (void)state; check_worlds(1, NULL); }
+static void shared_volumes(void **state) { (void)state; check_worlds(8, NULL); }
+static void boxes(void **state) { (void)state; check_worlds(1, probe); }
+static void shared_boxes(void **state) { (void)state; check_worlds(8, probe); }
+
+/* Lights of a facade share volumes, and a shared volume holds what its lights' own volumes hold. */
+static void shared_volumes_hold_their_lights(void **state) {
+    (void)state;
+    noc_scene *s = world(2400, WINDOWS);
+    noc_influence *own = noc_influence_create(s, NULL, NULL);
+    noc_influence *v = noc_influence_create(s, &(noc_influence_params){ .cluster = 8, .scale = own->scale }, NULL);
+    assert_true(v->volume_count < 2400 / 3 && v->volume_count >= 2400 / 8);
+    assert_true(v->bytes < own->bytes);
+    size_t inside = 0;
+    for (int round = 0; round < 300; round++) {
+        surf y = random_surf(100);
+        float p[3] = { y.p.x, y.p.y, y.p.z }, n[3] = { y.n.x, y.n.y, y.n.z };
+        for (uint32_t i = 0; i < 2400; i++)
+            if (noc_influence_holds(own, i, p, n, own->scale)) {
+                assert_true(noc_influence_holds(v, i, p, n, own->scale));
+                inside++;
+            }
+    }
+    assert_true(inside > 1000);
+    noc_influence_destroy(own);
+    noc_influence_destroy(v);
+    noc_scene_destroy(s);
+}
+
+/* Boxes end at what is in the way: little beyond the wall at x = 4 is left to lights before it, and all that they see. */
+static void boxes_end_at_walls(void **state) {
+    (void)state;
+    noc_scene *s = world(2000, MIXED);
+    noc_influence *own = noc_influence_create(s, NULL, NULL);
+    noc_influence *v = noc_influence_create(s, &(noc_influence_params){ .probe = probe }, NULL);
+    size_t behind[2] = { 0 }, before[2] = { 0 };
+    for (int round = 0; round < 2000; round++) {
+        surf y = random_surf(20);
+        float p[3] = { y.p.x, y.p.y, y.p.z }, n[3] = { y.n.x, y.n.y, y.n.z };
+        for (uint32_t i = 0; i < 2000; i++) {
+            size_t *count = (s->lights.data[i].p[0] < 4) == (p[0] < 4) ? before : behind;
+            count[0] += noc_influence_holds(own, i, p, n, own->scale);
+            count[1] += noc_influence_holds(v, i, p, n, own->scale);
+        }
+    }
+    print_message("# pairs before the wall: %zu of %zu kept, beyond it: %zu of %zu\n", before[1], before[0], behind[1], behind[0]);
+    assert_true(before[0] > 1000 && behind[0] > 1000);
+    assert_true((double)before[1] > 0.95 * (double)before[0] && (double)behind[1] < 0.6 * (double)behind[0]);
+    noc_influence_destroy(own);
+    noc_influence_destroy(v);
+    noc_scene_destroy(s);
+}
+
+/* Nearly every point of a lit floor finds lights, and not all of them. */
+static void scale_is_found(void **state) {
+    (void)state;
+    noc_scene *s = world(5000, MIXED);
+    noc_influence *v = noc_influence_create(s, NULL, NULL);
+    const kernels *all[NOC_MAX_KERNELS];
+    noc_runnable_kernels(all);
+    asked *a = begin(s, v, all[0], 0);
+    uint32_t none = 0, few = 0, many = 0;
+    for (int i = 0; i < 400; i++) {
+        surf y = random_surf(140);
+        y.p.z = 0;
+        y.n = V3(0, 0, 1);
+        look_from(a, y, 0.3f, false);
+        draw(a);
+        none += a->found.count[POINT] == 0;
+        few += a->found.count[POINT] < 4;
+        many += a->found.count[POINT] > 500;
+    }
+    print_message("# S_r %.2f: %u of 400 points find no light, %u fewer than 4, %u more than a tenth of all\n", v->scale, none, few, many);
+    assert_true(none <= 4 && few < 40 && many < 40);
+    end(a);
+    noc_influence_destroy(v);
+    noc_scene_destroy(s);
+}
+
+/* The same structure, byte by byte, with threads. */
+static void threads_build_the_same(void **state) {
+    (void)state;
+    noc_scene *s = world(30000, MIXED);
+    noc_pool *pool = noc_pool_create(3);
+    noc_influence_params one = { .cluster = 4, .probe = probe }, three = { .cluster = 4, .probe = probe, .pool = pool };
+    noc_influence *a = noc_influence_create(s, &one, NULL), *b = noc_influence_create(s, &three, NULL);
+    assert_int_equal(a->volume_count, b->volume_count);
+    assert_memory_equal(a->volumes, b->volumes, a->volume_count * sizeof(*a->volumes));
+    assert_memory_equal(a->boxes, b->boxes, a->volume_count * sizeof(*a->boxes));
+    assert_memory_equal(a->ids, b->ids, a->shining * sizeof(*a->ids));
+    assert_memory_equal(&a->scale, &b->scale, sizeof(a->scale));
+    noc_influence_destroy(a);
+    noc_influence_destroy(b);
+    noc_pool_destroy(pool);
+    noc_scene_destroy(s);
+}
+
+/* A pmf that is wrong by a fifth for every other light must not pass. */
+static void wrong_pmf_is_seen(void **state) {
+    (void)state;
+    const kernels *all[NOC_MAX_KERNELS];
+    noc_runnable_kernels(all);
+    noc_scene *s = world(50, MIXED);
+    noc_influence *v = noc_influence_create(s, NULL, NULL);
+    asked *a = begin(s, v, all[0], 0);
+    look_from(a, random_surf(5), 0.3f, false);
+    assert_true(distance(a, 20000) < 4.5);
+    a->wrong = 0.2;
+    assert_true(distance(a, 20000) > 6);
+    end(a);
+    noc_influence_destroy(v);
+    noc_scene_destroy(s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(volumes_of_one),
+        cmocka_unit_test(shared_volumes),
+        cmocka_unit_test(boxes),
+        cmocka_unit_test(shared_boxes),
+        cmocka_unit_test(shared_volumes_hold_their_lights),
+        cmocka_unit_test(boxes_end_at_walls),
+        cmocka_unit_test(scale_is_found),
+        cmocka_unit_test(threads_build_the_same),
+        cmocka_unit_test(wrong_pmf_is_seen),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
