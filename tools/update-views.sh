@@ -1,0 +1,28 @@
+#!/bin/sh
+# Draws the figures of docs/views.md: every view of the built-in city from the street and from the air. Takes the program's
+# path; needs ImageMagick.
+set -eu
+root=$(cd "$(dirname "$0")/.." && pwd)
+program=${1:-$root/build/nocturne}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# figure VIEW OPTION...
+figure() {
+    name=$1
+    shift
+    for camera in street aerial; do
+        "$program" render builtin:city --size 320x180 --view $camera --show "$name" "$@" -q -o "$work/$camera.png"
+    done
+    montage "$work/street.png" "$work/aerial.png" -tile 2x1 -geometry +2+0 -background '#18181c' "$work/both.png"
+    convert "$work/both.png" -strip -dither None -colors 128 "$root/docs/views/$name.png"
+}
+
+figure lights --candidates bvh --frames 1 --show-range 0,60
+figure density --frames 1 --show-range 0.001,1
+figure light --method ris --frames 1
+figure weight --frames 1 --show-range 0.1,10000
+figure confidence --frames 8 --show-range 0,4032
+figure rays --frames 8 --show-range 0,10
+figure variance --no-temporal --frames 32 --show-range 0.0001,1000
+figure error --no-temporal --frames 32 --show-range 0.01,1
