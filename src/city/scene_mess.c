@@ -9,6 +9,7 @@
 #include <math.h>
 
 #define OBJECTS 56
+#define TRIES 3000        /* to find room for them */
 #define HALF 4.4          /* m, of the square that they lie on */
 #define BALLS_MOST 20000
 #define FLUX 5200.0       /* lm, of all lights */
@@ -30,8 +31,8 @@ static const double footprint[KINDS] = { 0.3, 0.62, 0.5, 0.83, 0.75, 0.5, 0.36, 
 static int scatter(object *o, uint32_t seed) {
     town_rng rng = { town_hash(seed, 301) };
     int n = 0;
-    for (int tries = 0; tries < 6000 && n < OBJECTS; tries++) {
-        double size = 0.82 - 0.55 * n / OBJECTS;
+    for (int tries = 0; tries < TRIES && n < OBJECTS; tries++) {
+        double size = 0.82 - 0.62 * tries / TRIES;
         object c = { .size = size * town_range(&rng, 0.9, 1.1), .turns = town_next(&rng), .kind = n % KINDS };
         c.at = v3(town_range(&rng, -1, 1) * (HALF - size), town_range(&rng, -1, 1) * (HALF - size), 0);
         bool room = true;

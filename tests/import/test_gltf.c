@@ -1,0 +1,493 @@
+/* glTF and GLB: containers, accessors, nodes, materials, lights, cameras, broken files. Expected values are from the
+ * specifications: glTF 2.0, KHR_lights_punctual, KHR_materials_emissive_strength. */
+#include "lamp_sink.h"
+
+#include "scene/scene.h"
+#include <math.h>
+#include <sys/stat.h>
+
+typedef struct loaded {
+    noc_log *log;
+    noc_scene *scene;
+    geo_issues *issues;
+    noc_status status;
+    char error[1024];
+    int errors, warnings;
+    const char *format;
+} loaded;
+
+static char folder[200];
+
+static void on_message(void *user, noc_log_level level, const char *text) {
+    loaded *l = user;
+    if (level == NOC_LOG_ERROR)
+        snprintf(l->error, sizeof(l->error), "%s", text);
+    *(level == NOC_LOG_ERROR ? &l->errors : &l->warnings) += 1;
+}
+
+static noc_status as_it_is(void *ctx, double *xyz, size_t count) { return NOC_OK; }
+
+static void write_file(const char *name, const void *data, size_t size) {
+    char path[300];
+    snprintf(path, sizeof(path), "%s/%s", folder, name);
+    FILE *f = fopen(path, "wb");
+    assert_non_null(f);
+    assert_int_equal(fwrite(data, 1, size, f), size);
+    fclose(f);
+}
+
+static void load(loaded *l, const char *name) {
+    *l = (loaded){ 0 };
+    char path[300];
+    snprintf(path, sizeof(path), "%s/%s", folder, name);
+    l->log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = on_message, .user = l });
+    l->scene = noc_scene_create(l->log);
+    l->issues = geo_issues_create();
+    noc_import_params params = noc_import_default_params();
+    noc_stream *stream = noc_stream_open(path, l->log);
+    l->status = stream ? noc_reader_gltf.read_mesh(path, stream, &params, l->scene, &(mesh_place){ NULL, as_it_is }, l->issues, &l->format) : NOC_ERR_IO;
+    noc_stream_close(stream);
+}
+
+static void unload(loaded *l) {
+    noc_scene_destroy(l->scene);
+    geo_issues_destroy(l->issues);
+    noc_log_destroy(l->log);
+}
+
+static void load_text(loaded *l, const char *text) {
+    write_file("a.gltf", text, strlen(text));
+    load(l, "a.gltf");
+}
+
+static size_t skipped_count(const loaded *l, const char *reason) {
+    for (size_t i = 0; i < geo_issues_count(l->issues); i++) {
+        const char *r, *examples;
+        bool repaired;
+        size_t n;
+        geo_issues_get(l->issues, i, &r, &repaired, &n, &examples);
+        if (strstr(r, reason))
+            return n;
+    }
+    return 0;
+}
+
+/* ---- a small file ---- */
+
+/* A unit square in x and y that looks along z: four places, then six indices. */
+static const float square[12] = { 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0 };
+static const uint16_t corners[6] = { 0, 1, 2, 0, 2, 3 };
+enum { BUFFER = sizeof(square) + sizeof(corners) };
+static unsigned char bytes[BUFFER];
+
+static const char *base64(const unsigned char *data, size_t n) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    static char text[4000];
+    char *to = text;
+    for (size_t i = 0; i < n; i += 3) {
+        uint32_t u = (uint32_t)data[i] << 16 | (i + 1 < n ? (uint32_t)data[i + 1] << 8 : 0) | (i + 2 < n ? data[i + 2] : 0);
+        for (int k = 0; k < 4; k++)
+            *to++ = i + (size_t)k > n ? '=' : digits[u >> (18 - 6 * k) & 63];
+    }
+    *to = 0;
+    return text;
+}
+
+#define VIEWS "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 48}, {\"buffer\": 0, \"byteOffset\": 48, \"byteLength\": 12}],"
+#define ACCESSORS                                                                                                      \
+    "\"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 4, \"type\": \"VEC3\"},"                     \
+    " {\"bufferView\": 1, \"componentType\": 5123, \"count\": 6, \"type\": \"SCALAR\"}],"
+#define MESHES "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 0}]}],"
+#define ASSET "{\"asset\": {\"version\": \"2.0\"}, "
+
+/* rest: nodes and what else there is, ended by a comma. */
+static char *file_text(const char *before, const char *rest) {
+    static char text[8000];
+    memcpy(bytes, square, sizeof(square));
+    memcpy(bytes + sizeof(square), corners, sizeof(corners));
+    int n = snprintf(text, sizeof(text), ASSET "%s %s \"buffers\": [{\"byteLength\": %d, \"uri\": \"data:application/octet-stream;base64,%s\"}]}",
+                     before, rest, BUFFER, base64(bytes, BUFFER));
+    assert_in_range(n, 1, sizeof(text) - 1);
+    return text;
+}
+
+#define PLAIN VIEWS ACCESSORS MESHES
+
+static void assert_place(const loaded *l, size_t vertex, double x, double y, double z) {
+    assert_true(3 * vertex + 2 < l->scene->positions.len);
+    const float *p = &l->scene->positions.data[3 * vertex];
+    assert_float_equal(p[0], x, 1e-5);
+    assert_float_equal(p[1], y, 1e-5);
+    assert_float_equal(p[2], z, 1e-5);
+}
+
+/* ---- nodes and meshes ---- */
+
+/* y up becomes z up: (x, y, z) is at (x, -z, y). A parent's rotation by 90 degrees about y takes x to -z and z to x. */
+static void test_nodes(void **state) {
+    loaded l;
+    load_text(&l, file_text(PLAIN, "\"scene\": 1, \"scenes\": [{\"nodes\": [2]}, {\"nodes\": [0, 3]}],"
+                                   "\"nodes\": [{\"children\": [1], \"translation\": [10, 20, 30], \"rotation\": [0, 0.70710678118, 0, 0.70710678118]},"
+                                   " {\"mesh\": 0, \"scale\": [2, 3, 1], \"name\": \"window\"}, {\"mesh\": 0},"
+                                   " {\"mesh\": 0, \"matrix\": [1,0,0,0, 0,1,0,0, 0,0,-1,0, 5,6,7,1]}],"));
+    assert_string_equal(l.error, "");
+    assert_int_equal(l.status, NOC_OK);
+    assert_string_equal(l.format, "glTF");
+    assert_int_equal(l.scene->meshes.len, 2); /* node 2 is in a scene that is not shown */
+    assert_int_equal(l.scene->indices.len, 12);
+    assert_string_equal(l.scene->meshes.data[0].name, "window");
+    assert_place(&l, 0, 10, -30, 20);
+    assert_place(&l, 1, 10, -28, 20);  /* (2, 0, 0) turned to (0, 0, -2) */
+    assert_place(&l, 2, 10, -28, 23);
+    assert_place(&l, 4, 5, -7, 6);
+    assert_place(&l, 5, 6, -7, 6);
+    /* the second is mirrored: its winding is turned, so that it looks along -z still as its matrix says */
+    const uint32_t *t = &l.scene->indices.data[6];
+    const float *a = &l.scene->positions.data[3 * t[0]], *b = &l.scene->positions.data[3 * t[1]], *c = &l.scene->positions.data[3 * t[2]];
+    double ny = (double)((b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2]));
+    assert_true(ny > 0); /* glTF's -z is our +y */
+    unload(&l);
+}
+
+static void test_containers(void **state) {
+    loaded l;
+    char json[3000];
+    unsigned char glb[4000] = "glTF\2\0\0\0";
+    file_text("", "");
+    int n = snprintf(json, sizeof(json), ASSET PLAIN "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}], \"buffers\": [{\"byteLength\": 60}]}");
+    while (n % 4)
+        json[n++] = ' ';
+    uint32_t total = 12 + 8 + (uint32_t)n + 8 + BUFFER, length = (uint32_t)n, binary = BUFFER;
+    memcpy(glb + 8, &total, 4); /* little-endian, as the machines that tests run on */
+    memcpy(glb + 12, &length, 4);
+    memcpy(glb + 16, "JSON", 4);
+    memcpy(glb + 20, json, length);
+    memcpy(glb + 20 + length, &binary, 4);
+    memcpy(glb + 24 + length, "BIN", 4);
+    memcpy(glb + 28 + length, bytes, BUFFER);
+    write_file("a.glb", glb, total);
+    load(&l, "a.glb");
+    assert_string_equal(l.error, "");
+    assert_string_equal(l.format, "GLB");
+    assert_int_equal(l.scene->indices.len, 6);
+    unload(&l);
+    for (uint32_t cut = 4; cut < total; cut += 3) {
+        write_file("a.glb", glb, cut);
+        load(&l, "a.glb");
+        assert_int_equal(l.status, NOC_ERR_FORMAT);
+        assert_int_equal(l.errors, 1);
+        assert_non_null(strstr(l.error, "a.glb"));
+        unload(&l);
+    }
+    /* beside it, under a name with a blank */
+    const char *text = ASSET PLAIN "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}], \"buffers\": [{\"byteLength\": 60, \"uri\": \"b%20c.bin\"}]}";
+    write_file("b c.bin", bytes, BUFFER);
+    load_text(&l, text);
+    assert_int_equal(l.scene->indices.len, 6);
+    unload(&l);
+    write_file("b c.bin", bytes, BUFFER - 1);
+    load_text(&l, text);
+    assert_int_equal(l.status, NOC_ERR_FORMAT);
+    unload(&l);
+    char path[300];
+    snprintf(path, sizeof(path), "%s/b c.bin", folder);
+    unlink(path);
+    load_text(&l, text);
+    assert_int_equal(l.status, NOC_ERR_IO);
+    assert_int_equal(l.errors, 1);
+    assert_non_null(strstr(l.error, "b c.bin"));
+    unload(&l);
+}
+
+/* Normalised short integers 8 bytes apart, with one place put right by a sparse part; strips and fans turn the same way. */
+static void test_accessors(void **state) {
+    static const int16_t places[4][4] = { { 0, 0, 0, 77 }, { 32767, 0, 0, 77 }, { 0, 32767, 0, 77 }, { 5, 5, 5, 77 } };
+    static const int16_t right[3] = { 32767, 32767, 0 };
+    unsigned char data[48] = { 0 };
+    memcpy(data, places, 32);
+    data[32] = 3; /* the sparse index, a byte */
+    memcpy(data + 36, right, 6);
+    memcpy(data + 44, (uint8_t[]){ 0, 1, 3, 2 }, 4);
+    char text[2000];
+    for (int mode = 5; mode <= 6; mode++) {
+        loaded l;
+        snprintf(text, sizeof(text), ASSET
+                 "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 32, \"byteStride\": 8}, {\"buffer\": 0, \"byteOffset\": 32, \"byteLength\": 1},"
+                 " {\"buffer\": 0, \"byteOffset\": 36, \"byteLength\": 6}, {\"buffer\": 0, \"byteOffset\": 44, \"byteLength\": 4}],"
+                 "\"accessors\": [{\"bufferView\": 0, \"componentType\": 5122, \"normalized\": true, \"count\": 4, \"type\": \"VEC3\","
+                 " \"sparse\": {\"count\": 1, \"indices\": {\"bufferView\": 1, \"componentType\": 5121}, \"values\": {\"bufferView\": 2}}},"
+                 " {\"bufferView\": 3, \"componentType\": 5121, \"count\": 4, \"type\": \"SCALAR\"}],"
+                 "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}%s, \"mode\": %d}]}],"
+                 "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}],"
+                 "\"buffers\": [{\"byteLength\": 48, \"uri\": \"data:;base64,%s\"}]}", mode == 6 ? ", \"indices\": 1" : "", mode, base64(data, 48));
+        load_text(&l, text);
+        assert_string_equal(l.error, "");
+        assert_place(&l, 3, 1, 0, 1);
+        assert_int_equal(l.scene->indices.len, 6);
+        for (int t = 0; t < 2; t++) { /* all look along z, our -y */
+            const uint32_t *v = &l.scene->indices.data[3 * t];
+            const float *a = &l.scene->positions.data[3 * v[0]], *b = &l.scene->positions.data[3 * v[1]], *c = &l.scene->positions.data[3 * v[2]];
+            assert_float_equal((b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2]), -1, 1e-4);
+        }
+        unload(&l);
+    }
+}
+
+static void test_materials(void **state) {
+    loaded l;
+    load_text(&l, file_text(VIEWS ACCESSORS,
+        "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 0},"
+        " {\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 1}, {\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 2},"
+        " {\"attributes\": {\"POSITION\": 0}, \"mode\": 1}]}],"
+        "\"materials\": [{\"emissiveFactor\": [1, 0.5, 0.25], \"extensions\": {\"KHR_materials_emissive_strength\": {\"emissiveStrength\": 800}},"
+        " \"doubleSided\": true, \"pbrMetallicRoughness\": {\"baseColorFactor\": [0.2, 0.4, 0.6, 1], \"metallicFactor\": 0, \"roughnessFactor\": 0.3}},"
+        " {\"pbrMetallicRoughness\": {\"baseColorFactor\": [0.5, 0.5, 0.5, 1]}},"
+        " {\"emissiveFactor\": [1, 1, 1], \"emissiveTexture\": {\"index\": 0}, \"alphaMode\": \"BLEND\"}],"
+        "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}],"));
+    assert_string_equal(l.error, "");
+    assert_int_equal(l.scene->meshes.len, 3); /* lines are left out */
+    const noc_material *m = l.scene->materials.data;
+    assert_float_equal(m[0].emission[0], 800, 1e-3);
+    assert_float_equal(m[0].emission[2], 200, 1e-3);
+    assert_true(m[0].two_sided);
+    assert_float_equal(m[0].albedo[1], .4, 1e-6);
+    assert_float_equal(m[0].roughness, .3, 1e-6);
+    assert_float_equal(m[0].f0, .04, 1e-6);
+    /* a metal by default: no diffuse part, and its colour in the lobe */
+    assert_float_equal(m[1].albedo[0], 0, 1e-6);
+    assert_float_equal(m[1].f0, .5, 1e-6);
+    assert_false(m[1].two_sided);
+    assert_float_equal(m[2].emission[0], 0, 0);
+    assert_int_equal(skipped_count(&l, "emission by a texture"), 1);
+    assert_int_equal(skipped_count(&l, "transparent"), 1);
+    assert_int_equal(noc_scene_commit(l.scene), NOC_OK);
+    assert_int_equal(l.scene->lights.len, 2);
+    unload(&l);
+}
+
+/* ---- lights ---- */
+
+/* Does the segment from p along d meet a triangle of the mesh? Moeller and Trumbore's test. */
+static bool blocked(const noc_scene *s, const noc_scene_mesh *m, const double p[3], const double d[3]) {
+    for (uint32_t t = m->first_triangle; t < m->first_triangle + m->triangle_count; t++) {
+        double v[3][3], e[2][3], h[3], q[3], r[3], a = 0, u = 0, w = 0, x = 0;
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 3; k++)
+                v[i][k] = (double)s->positions.data[3 * (size_t)s->indices.data[3 * t + (uint32_t)i] + (size_t)k];
+        for (int k = 0; k < 3; k++)
+            e[0][k] = v[1][k] - v[0][k], e[1][k] = v[2][k] - v[0][k], r[k] = p[k] - v[0][k];
+        for (int k = 0; k < 3; k++) {
+            h[k] = d[(k + 1) % 3] * e[1][(k + 2) % 3] - d[(k + 2) % 3] * e[1][(k + 1) % 3];
+            q[k] = r[(k + 1) % 3] * e[0][(k + 2) % 3] - r[(k + 2) % 3] * e[0][(k + 1) % 3];
+        }
+        for (int k = 0; k < 3; k++)
+            a += e[0][k] * h[k], u += r[k] * h[k], w += d[k] * q[k], x += e[1][k] * q[k];
+        if (fabs(a) > 1e-18 && u / a >= 0 && w / a >= 0 && (u + w) / a <= 1 && x / a > 1e-7)
+            return true;
+    }
+    return false;
+}
+
+/* Share of a disc that is not hidden by the shade, seen from an angle off its axis. */
+static double seen_share(const noc_scene *s, const noc_light_record *disc, const noc_scene_mesh *shade, const double axis[3], double angle) {
+    int free_ones = 0, all = 0;
+    for (int turn = 0; turn < 7; turn++)
+        for (int i = 0; i < 400; i++) {
+            double rho = sqrt((i + .5) / 400), phi = 2.39996322973 * i, p[3], d[3];
+            for (int k = 0; k < 3; k++) {
+                double side = (disc->a[k] * cos(turn * .9) + disc->b[k] * sin(turn * .9)) / disc->radius;
+                p[k] = disc->p[k] + rho * (cos(phi) * disc->a[k] + sin(phi) * disc->b[k]);
+                d[k] = cos(angle) * axis[k] + sin(angle) * side;
+            }
+            free_ones += !blocked(s, shade, p, d);
+            all++;
+        }
+    return (double)free_ones / all;
+}
+
+static void test_lights(void **state) {
+    loaded l;
+    load_text(&l, file_text(PLAIN,
+        "\"extensions\": {\"KHR_lights_punctual\": {\"lights\": ["
+        "{\"type\": \"spot\", \"intensity\": 300, \"color\": [1, 0.5, 0.25], \"spot\": {\"innerConeAngle\": 0.3, \"outerConeAngle\": 0.6}},"
+        "{\"type\": \"point\", \"intensity\": 40}, {\"type\": \"directional\", \"intensity\": 9}, {\"type\": \"blob\"}]}},"
+        "\"scenes\": [{\"nodes\": [0, 1, 2, 3, 4, 5]}], \"nodes\": ["
+        "{\"translation\": [1, 5, 2], \"rotation\": [-0.70710678118, 0, 0, 0.70710678118], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}},"
+        "{\"translation\": [9, 5, 2], \"scale\": [3, 3, 3], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}},"
+        "{\"translation\": [0, 7, -1], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 1}}},"
+        "{\"name\": \"sun\", \"extensions\": {\"KHR_lights_punctual\": {\"light\": 2}}},"
+        "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 3}}}, {\"extensions\": {\"KHR_lights_punctual\": {\"light\": 77}}}],"));
+    assert_string_equal(l.error, "");
+    assert_int_equal(l.scene->lights.len, 3); /* two nodes share the first: it shines twice */
+    assert_int_equal(skipped_count(&l, "directional light"), 1);
+    assert_int_equal(skipped_count(&l, "unknown type"), 1);
+    assert_int_equal(skipped_count(&l, "not there"), 1);
+    const noc_light_record *r = l.scene->lights.data, *point = &r[0], *down = NULL, *level = NULL;
+    for (int i = 0; i < 3; i++) {
+        point = r[i].kind == NOC_LIGHT_POINT ? &r[i] : point;
+        down = r[i].kind == NOC_LIGHT_DISC && r[i].p[0] < 5 ? &r[i] : down;
+        level = r[i].kind == NOC_LIGHT_DISC && r[i].p[0] > 5 ? &r[i] : level;
+    }
+    assert_int_equal(point->kind, NOC_LIGHT_POINT);
+    assert_float_equal(point->e[1], 40, 1e-4); /* cd */
+    assert_float_equal(point->p[1], 1, 1e-5);
+    assert_float_equal(point->p[2], 7, 1e-5);
+    assert_non_null(down);
+    assert_non_null(level);
+    const double axes[2][3] = { { 0, 0, -1 }, { 0, 1, 0 } }; /* -z of glTF is our +y; the first is turned to look down */
+    for (int i = 0; i < 2; i++) {
+        const noc_light_record *disc = i ? level : down;
+        assert_float_equal((double)disc->e[0] * M_PI * pow(disc->radius, 2), 300, .05); /* cd along the axis */
+        assert_float_equal((double)disc->e[2] * M_PI * pow(disc->radius, 2), 75, .02);
+        const noc_scene_mesh *shade = NULL;
+        for (size_t m = 0; m < l.scene->meshes.len; m++) {
+            const noc_scene_mesh *mesh = &l.scene->meshes.data[m];
+            const float *v = &l.scene->positions.data[3 * (size_t)l.scene->indices.data[3 * (size_t)mesh->first_triangle]];
+            bool emits = l.scene->materials.data[mesh->material].emission[0] > 0;
+            shade = !emits && (v[0] > 5) == (i == 1) ? mesh : shade;
+        }
+        assert_non_null(shade);
+        assert_float_equal(seen_share(l.scene, disc, shade, axes[i], 0), 1, 0);
+        assert_float_equal(seen_share(l.scene, disc, shade, axes[i], .29), 1, .005); /* inner cone: nothing is hidden */
+        double middle = seen_share(l.scene, disc, shade, axes[i], atan((tan(.3) + tan(.6)) / 2));
+        assert_in_range((int)(100 * middle), 25, 60); /* two equal circles overlap by 39 %, near ones by about as much */
+        assert_float_equal(seen_share(l.scene, disc, shade, axes[i], .62), 0, .005); /* outer cone: all is */
+        assert_float_equal(seen_share(l.scene, disc, shade, axes[i], 1.3), 0, 0);
+    }
+    unload(&l);
+}
+
+static void test_camera(void **state) {
+    loaded l;
+    load_text(&l, file_text(PLAIN, "\"cameras\": [{\"type\": \"perspective\", \"perspective\": {\"yfov\": 0.7853981634}}],"
+                                   "\"scenes\": [{\"nodes\": [0, 1]}], \"nodes\": [{\"mesh\": 0}, {\"camera\": 0, \"translation\": [1, 2, 3]}],"));
+    noc_camera c;
+    assert_int_equal(noc_scene_camera(l.scene, NOC_VIEW_OWN, 1.5, &c), NOC_OK);
+    assert_float_equal(c.fov_deg, 45, 1e-6);
+    assert_float_equal(c.eye[0], 1, 1e-9);
+    assert_float_equal(c.eye[1], -3, 1e-9);
+    assert_float_equal(c.eye[2], 2, 1e-9);
+    assert_true(c.target[1] > c.eye[1]); /* along glTF's -z */
+    assert_float_equal(c.up[2], 1, 1e-9);
+    unload(&l);
+}
+
+/* ---- what is wrong ---- */
+
+static void test_bad(void **state) {
+    static const struct { const char *text; const char *says; } bad[] = {
+        { "{\"asset\": {\"version\": \"1.0\"}}", "version 1.0" },
+        { "{\"asset\": 3}", "version none" },
+        { "{\"asset\": {\"version\": \"2.0\"}, \"extensionsRequired\": [\"KHR_draco_mesh_compression\"]}", "KHR_draco_mesh_compression" },
+        { "{\"asset\": {\"version\": \"2.0\"},\n \"meshes\": [}", "a.gltf:2" },
+        { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"data:;base64,AA==\"}]}", "fewer than it says" },
+        { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"data:;base64,*!AAAA\"}]}", "not base64" },
+        { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"data:text/plain,AAAA\"}]}", "not base64" },
+        { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"https://example.org/a.bin\"}]}", "network" },
+        { ASSET "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 9}}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}", "accessor 9" },
+        { ASSET "\"accessors\": [{\"componentType\": 5126, \"count\": 4000000000, \"type\": \"VEC3\"}],"
+          "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}", "accessor 0" },
+    };
+    for (size_t i = 0; i < NOC_COUNT(bad); i++) {
+        loaded l;
+        load_text(&l, bad[i].text);
+        assert_int_not_equal(l.status, NOC_OK);
+        assert_int_equal(l.errors, 1);
+        assert_non_null(strstr(l.error, bad[i].says));
+        assert_non_null(strstr(l.error, "a.gltf"));
+        unload(&l);
+    }
+    loaded l; /* one element too many for the view */
+    char *text = file_text(PLAIN, "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}],");
+    *strstr(text, "6, \"type\": \"SCALAR\"") = '7';
+    load_text(&l, text);
+    assert_int_equal(l.status, NOC_ERR_FORMAT);
+    assert_non_null(strstr(l.error, "beyond"));
+    unload(&l);
+}
+
+/* Bad faces, and nodes in a ring, cost themselves alone. */
+static void test_skipped(void **state) {
+    loaded l;
+    file_text(PLAIN, "");
+    char *text = file_text(PLAIN, "\"scenes\": [{\"nodes\": [0, 0, 99]}], \"nodes\": [{\"mesh\": 0, \"children\": [1]}, {\"mesh\": 0, \"children\": [0, 1]}],");
+    uint16_t wrong = 4;
+    memcpy(bytes + sizeof(square) + 2 * 5, &wrong, 2); /* the last corner of the second triangle */
+    char *payload = strstr(text, "base64,") + 7;
+    memcpy(payload, base64(bytes, BUFFER), strlen(base64(bytes, BUFFER)));
+    load_text(&l, text);
+    assert_string_equal(l.error, "");
+    assert_int_equal(l.status, NOC_OK);
+    assert_int_equal(l.scene->indices.len, 6);
+    assert_int_equal(skipped_count(&l, "vertex that is not there"), 2);
+    assert_int_equal(skipped_count(&l, "two places"), 3);
+    assert_int_equal(skipped_count(&l, "node that is not there"), 1);
+    unload(&l);
+}
+
+static void test_probe(void **state) {
+    static const char *const yes[] = { "glTF\2\0\0\0........", " {\"asset\": {\"version\": \"2.0\"}}", "{\"scenes\": [], \"nodes\": [" };
+    static const char *const no[] = { "", "glTF", "{\"type\": \"FeatureCollection\", \"asset\": 1}", "{\"type\": \"CityJSON\", \"asset\": 1}", "{\"elements\": []}" };
+    for (size_t i = 0; i < NOC_COUNT(yes); i++)
+        assert_true(noc_reader_gltf.probe(yes[i], i ? strlen(yes[i]) : 16));
+    for (size_t i = 0; i < NOC_COUNT(no); i++)
+        assert_false(noc_reader_gltf.probe(no[i], strlen(no[i])));
+}
+
+/* Cut, and with bytes changed: an error, once, or a scene; never a crash. */
+static void test_broken(void **state) {
+    char whole[8000];
+    snprintf(whole, sizeof(whole), "%s", file_text(PLAIN,
+        "\"extensions\": {\"KHR_lights_punctual\": {\"lights\": [{\"type\": \"spot\", \"spot\": {\"innerConeAngle\": 0.3}}, {\"type\": \"point\"}]}},"
+        "\"cameras\": [{\"perspective\": {\"yfov\": 0.8}}], \"materials\": [{\"emissiveFactor\": [9, 8, 7]}], \"scenes\": [{\"nodes\": [0, 2]}],"
+        "\"nodes\": [{\"mesh\": 0, \"children\": [1], \"scale\": [2, 3, 4]}, {\"mesh\": 0, \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}},"
+        " {\"camera\": 0, \"rotation\": [0, 1, 0, 0], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 1}}}],"));
+    uint32_t seed = 7;
+    int read = 0, refused = 0;
+    for (int i = 0; i < 1500; i++) {
+        static const char digits[] = "0123456789-.e\",[]{}";
+        char text[8000];
+        loaded l;
+        memcpy(text, whole, sizeof(whole));
+        size_t size = strlen(text);
+        for (int k = 0; k < 1 + i % 4; k++) {
+            seed = seed * 1664525u + 1013904223u;
+            text[(seed >> 8) % size] = i % 3 ? digits[(seed >> 4) % (sizeof(digits) - 1)] : (char)(seed >> 3);
+        }
+        write_file("a.gltf", text, i % 10 ? size : size * (size_t)(i % 97) / 97 + 1);
+        load(&l, "a.gltf");
+        assert_int_equal(l.errors, l.status != NOC_OK);
+        if (!l.status && l.scene->indices.len)
+            assert_int_equal(noc_scene_commit(l.scene), NOC_OK);
+        read += !l.status;
+        refused += l.status != NOC_OK;
+        unload(&l);
+    }
+    assert_true(read > 100 && refused > 100); /* both ways were gone */
+}
+
+static int set_up(void **state) {
+    const char *tmp = getenv("TMPDIR");
+    snprintf(folder, sizeof(folder), "%s/nocturne-gltf-%d", tmp && *tmp ? tmp : "/tmp", (int)getpid());
+    return mkdir(folder, 0700);
+}
+
+static int tear_down(void **state) {
+    static const char *const files[] = { "a.gltf", "a.glb", "b c.bin" };
+    for (size_t i = 0; i < NOC_COUNT(files); i++) {
+        char path[300];
+        snprintf(path, sizeof(path), "%s/%s", folder, files[i]);
+        unlink(path);
+    }
+    return rmdir(folder);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_nodes),     cmocka_unit_test(test_containers), cmocka_unit_test(test_accessors),
+        cmocka_unit_test(test_materials), cmocka_unit_test(test_lights),     cmocka_unit_test(test_camera),
+        cmocka_unit_test(test_bad),       cmocka_unit_test(test_skipped),    cmocka_unit_test(test_probe),
+        cmocka_unit_test(test_broken),
+    };
+    return cmocka_run_group_tests_name("import/gltf", tests, set_up, tear_down);
+}
