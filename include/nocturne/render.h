@@ -14,6 +14,8 @@ typedef enum noc_bias { NOC_BIAS_BIASED, NOC_BIAS_MIS, NOC_BIAS_PAIRWISE } noc_b
 /* Where light candidates come from: docs/estimator.md, "Candidates". */
 typedef enum noc_candidates { NOC_CANDIDATES_UNIFORM, NOC_CANDIDATES_LISTS, NOC_CANDIDATES_POWER, NOC_CANDIDATES_BVH,
                              NOC_CANDIDATES_TREE } noc_candidates;
+/* bvh: what bounds a light's influence volume: distance, or what its light reaches as well. */
+typedef enum noc_influence_boxes { NOC_INFLUENCE_SPHERE, NOC_INFLUENCE_VISIBLE } noc_influence_boxes;
 typedef enum noc_path { NOC_PATH_AUTO, NOC_PATH_SCALAR, NOC_PATH_WIDE } noc_path;
 
 /* Views of how lights were sampled, one number a pixel: docs/views.md. The reservoir is the one that the frame shaded. */
@@ -35,7 +37,10 @@ typedef struct noc_render_params {
     noc_candidates candidates;  /* ris, restir: source of the light candidates */
     int draws;                  /* M: candidates a pixel and frame, 1..1024 */
     int list, tail;             /* lists: strongest lights of a tile, 0..128; draws from all others, 1..128 */
-    double influence;           /* bvh: S_r, the distance at which a light of 1 cd is last found, m; 0 = found for the scene */
+    double influence;           /* bvh: S_r, the distance at which a light of 1 cd is last found, m; 0 = found for the scene,
+                                 * and then for every point */
+    noc_influence_boxes influence_boxes;
+    int influence_cluster;      /* bvh: at most so many lights that lie close together share a volume, 1..64 */
     int uniform_every;          /* bvh: of so many draws one is from all lights, 1..1024 */
     int rays;                   /* reference: shadow rays a pixel and frame, 1..1024 */
     /* reuse (restir only) */
@@ -64,7 +69,7 @@ typedef struct noc_render_params {
 
 #define NOC_RENDER_DEFAULTS(set) \
     set(width, 1280) set(height, 720) set(method, NOC_METHOD_RESTIR) set(candidates, NOC_CANDIDATES_LISTS) \
-    set(draws, 32) set(list, 32) set(tail, 32) set(uniform_every, 4) set(rays, 64) set(temporal, true) set(spatial, true) \
+    set(draws, 32) set(list, 32) set(tail, 32) set(influence_cluster, 1) set(uniform_every, 4) set(rays, 64) set(temporal, true) set(spatial, true) \
     set(neighbours, 5) set(radius, 10) set(passes, 1) set(history, 20) set(bias, NOC_BIAS_PAIRWISE) \
     set(bias_rays, true) set(visibility_reuse, true) set(final_ray, true) set(reject_depth, 0.1) \
     set(reject_normal, 0.9) set(seed, 1) set(jitter, true) set(accumulate, true) set(sky, 0.02) \

@@ -19,6 +19,7 @@ noc_status noc_render_check(const noc_render_params *p, noc_log *log) {
         { "list", p->list, 0, 128 },
         { "tail", p->tail, 1, 128 },
         { "influence", p->influence, 0, 1e6 },
+        { "influence_cluster", p->influence_cluster, 1, 64 },
         { "uniform_every", p->uniform_every, 1, 1024 },
         { "rays", p->rays, 1, 1024 },
         { "neighbours", p->neighbours, 0, 16 },
@@ -39,6 +40,8 @@ noc_status noc_render_check(const noc_render_params *p, noc_log *log) {
         return wrong(log, "method", (int)p->method, "a noc_method");
     if ((unsigned)p->candidates > NOC_CANDIDATES_TREE)
         return wrong(log, "candidates", (int)p->candidates, "a noc_candidates");
+    if ((unsigned)p->influence_boxes > NOC_INFLUENCE_VISIBLE)
+        return wrong(log, "influence_boxes", (int)p->influence_boxes, "a noc_influence_boxes");
     if ((unsigned)p->bias > NOC_BIAS_PAIRWISE)
         return wrong(log, "bias", (int)p->bias, "a noc_bias");
     if ((unsigned)p->path > NOC_PATH_WIDE)

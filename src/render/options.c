@@ -30,6 +30,8 @@ static const noc_option render_options[] = {
     INT(P, list, "list", "Estimator", 0, 128, "", "lists: strongest lights of a tile, seen by each of its pixels"),
     INT(P, tail, "tail", "Estimator", 1, 128, "", "lists: draws a tile from all other lights"),
     REAL(P, influence, "influence", "Estimator", 0, 1e6, "m", "bvh: reach of a light of 1 cd; 0 = found for the scene"),
+    CHOICE(P, influence_boxes, "influence-boxes", "Estimator", "sphere|visible", "bvh: lights reach as far as they shine, or see"),
+    INT(P, influence_cluster, "influence-cluster", "Estimator", 1, 64, "", "bvh: so many close lights may share a volume"),
     INT(P, uniform_every, "uniform-every", "Estimator", 1, 1024, "", "bvh: of so many draws one is from all lights"),
     INT(P, rays, "rays", "Estimator", 1, 1024, "", "reference: shadow rays a pixel and frame"),
     BOOL(P, final_ray, "final-ray", "Estimator", "shadow ray to the chosen light; off: light passes through walls"),

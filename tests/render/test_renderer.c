@@ -198,6 +198,7 @@ static void wrong_arguments(void **state) {
         { "sky", offsetof(noc_render_params, sky), true },
         { "influence", offsetof(noc_render_params, influence), true },
         { "uniform_every", offsetof(noc_render_params, uniform_every) },
+        { "influence_cluster", offsetof(noc_render_params, influence_cluster) },
     };
     for (size_t i = 0; i < NOC_COUNT(fields); i++) {
         noc_render_params p = noc_render_default_params();

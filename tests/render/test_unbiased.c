@@ -100,6 +100,8 @@ typedef struct config {
     int passes, neighbours;
     int list; /* > 0: lists of so many lights and as many draws from the rest */
     noc_candidates picker; /* list = 0 */
+    noc_influence_boxes boxes;
+    int share; /* bvh: lights a volume; 0: 1 */
 } config;
 
 static noc_render_params params_of(const config *c, uint32_t seed) {
@@ -108,6 +110,8 @@ static noc_render_params params_of(const config *c, uint32_t seed) {
     p.draws = 8;
     p.candidates = c->list ? NOC_CANDIDATES_LISTS : c->picker;
     p.list = c->list;
+    p.influence_boxes = c->boxes;
+    p.influence_cluster = c->share ? c->share : 1;
     p.tail = c->list ? c->list : 1;
     p.accumulate = false;
     p.emitters = false; /* the same in all methods, and much brighter than what they differ in */
@@ -196,6 +200,8 @@ static const config unbiased[] = {
     { "ris", NOC_METHOD_RIS, .reuse = true },
     { "ris, power", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_POWER },
     { "ris, bvh", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH },
+    { "ris, bvh, shared volumes", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH, .share = 8 },
+    { "ris, bvh, boxes", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH, .boxes = NOC_INFLUENCE_VISIBLE },
     { "ris, tree", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_TREE },
     { "ris, lists of 12", NOC_METHOD_RIS, .list = 12 },
     { "pairwise + rays, lists of 12", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .spatial = true,

@@ -184,6 +184,22 @@ void noc_embree_primary(embree_state *s, worker *w, const rayblock *rays, uint32
             fill_hit(s->scene, &h, l, g);
 }
 
+void noc_embree_probe(void *user, noc_probes *p) {
+    const embree_state *s = user;
+    ALIGNED int lanes[BLOCK];
+    ALIGNED struct RTCRayHit16 h;
+    rayblock rays;
+    memcpy(rays.o, p->o, sizeof(rays.o));
+    memcpy(rays.d, p->d, sizeof(rays.d));
+    lane_mask(0xffff, lanes);
+    fill_rays(&rays, 1, &h.ray);
+    memset(h.hit.geomID, 0xff, sizeof(h.hit.geomID));
+    memset(h.hit.instID, 0xff, sizeof(h.hit.instID));
+    rt_intersect16(lanes, s->rtc, &h);
+    for (int l = 0; l < BLOCK; l++)
+        p->t[l] = h.hit.geomID[l] != RTC_INVALID_GEOMETRY_ID ? h.ray.tfar[l] : 1;
+}
+
 /* Packets of one worker are traced in runs of so many by whoever is free. */
 enum { REPLAY_RUN = 64 };
 

@@ -80,6 +80,7 @@ typedef struct embree_state {
     noc_clusters *clusters; /* these are made when first needed */
     noc_alias *alias;
     noc_influence *influence;
+    noc_influence_params influence_params; /* that it was made with */
     noc_tree *tree;
     double light_seconds[NOC_CANDIDATES_TREE + 1]; /* what each took to build */
     worker *workers;
@@ -121,6 +122,8 @@ void noc_embree_free_many(embree_state *s, worker *w, segment_block *blocks, int
 void noc_embree_primary(embree_state *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g);
 /* many.c: what noc_embree_free_many does with up to MANY_BLOCKS blocks, without the book-keeping. */
 void noc_embree_trace_many(RTCScene scene, segment_block *blocks, int count);
+/* A noc_probe_fn; user is the embree_state. */
+void noc_embree_probe(void *user, noc_probes *probes);
 double noc_embree_replay(embree_state *s);
 size_t noc_embree_build_bytes(const embree_state *s);
 

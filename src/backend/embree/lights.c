@@ -20,7 +20,24 @@ static bool draws_candidates(const noc_render_params *p) {
     return p->method == NOC_METHOD_RIS || p->method == NOC_METHOD_RESTIR;
 }
 
+/* Boxes and shared volumes are made for one S_r; volumes of one light each serve them all. */
+static noc_status prepare_influence(embree_state *s, const noc_render_params *p) {
+    bool boxes = p->influence_boxes == NOC_INFLUENCE_VISIBLE, shared = p->influence_cluster > 1;
+    noc_influence_params want = { .cluster = p->influence_cluster, .scale = boxes || shared ? p->influence : 0,
+                                  .probe = boxes ? noc_embree_probe : NULL, .user = s, .pool = s->pool };
+    const noc_influence_params *have = &s->influence_params;
+    if (s->influence && have->cluster == want.cluster && have->scale == want.scale && have->probe == want.probe)
+        return NOC_OK;
+    double start = noc_wall_seconds();
+    noc_influence_destroy(s->influence);
+    s->influence = noc_influence_create(s->scene, &want, s->log);
+    s->influence_params = want;
+    s->light_seconds[NOC_CANDIDATES_BVH] = noc_wall_seconds() - start;
+    return s->influence ? NOC_OK : NOC_ERR_MEMORY;
+}
+
 static noc_status prepare(embree_state *s, const noc_render_params *p) {
+    noc_status status;
     switch (p->candidates) {
     case NOC_CANDIDATES_UNIFORM: return NOC_OK;
     case NOC_CANDIDATES_LISTS:
@@ -30,9 +47,9 @@ static noc_status prepare(embree_state *s, const noc_render_params *p) {
             return NOC_ERR_MEMORY;
         break;
     case NOC_CANDIDATES_BVH:
-        if (!s->influence && !(s->influence = noc_influence_create(s->scene, &(noc_influence_params){ .pool = s->pool }, s->log)))
-            return NOC_ERR_MEMORY;
-        break;
+        if (!(status = prepare_influence(s, p)))
+            break;
+        return status;
     case NOC_CANDIDATES_TREE:
         if (!s->tree && !(s->tree = noc_tree_create(s->scene, s->log)))
             return NOC_ERR_MEMORY;
@@ -59,7 +76,7 @@ noc_status noc_embree_prepare_lights(embree_state *s, const noc_render_params *p
     double start = noc_wall_seconds();
     size_t before = bytes_of(s, p->candidates);
     noc_status status = prepare(s, p);
-    if (bytes_of(s, p->candidates) != before)
+    if (p->candidates != NOC_CANDIDATES_BVH && bytes_of(s, p->candidates) != before)
         s->light_seconds[p->candidates] = noc_wall_seconds() - start;
     return status;
 }
