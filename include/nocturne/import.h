@@ -1,5 +1,5 @@
 /* nocturne/import.h: from files to a scene. Inputs are told apart by content, never by name: CityGML (plain, .gz, .zip),
- * OBJ, OpenStreetMap XML and PBF, Overpass JSON, GeoJSON, CSV. Several inputs make one scene. */
+ * OBJ, glTF and GLB, OpenStreetMap XML and PBF, Overpass JSON, GeoJSON, CSV. Several inputs make one scene. */
 #ifndef NOCTURNE_IMPORT_H
 #define NOCTURNE_IMPORT_H
 
