@@ -82,7 +82,8 @@ static void fill_rays(const rayblock *rays, float far, struct RTCRay16 *r) {
     }
 }
 
-static void keep(embree_state *s, worker *w, const rayblock *rays, uint32_t valid, bool primary) {
+static void keep(embree_state *s, worker *w, const rayblock *rays, const uint32_t *light, uint32_t valid, int together,
+                 bool primary) {
     if (!s->recording || w->packets_lost)
         return;
     if (w->packet_count == w->packet_room) {
@@ -98,7 +99,16 @@ static void keep(embree_state *s, worker *w, const rayblock *rays, uint32_t vali
         w->packets = more;
         w->packet_room = room;
     }
-    w->packets[w->packet_count++] = (packet){ .rays = *rays, .valid = valid, .primary = primary };
+    packet *p = &w->packets[w->packet_count++];
+    *p = (packet){ .block = { .rays = *rays, .valid = valid }, .together = together, .primary = primary };
+    if (light)
+        memcpy(p->block.light, light, sizeof(p->block.light));
+}
+
+static void count_rays(worker *w, float *counts, uint32_t valid) {
+    w->rays_shadow += (uint64_t)__builtin_popcount(valid);
+    for (int l = 0; counts && l < BLOCK; l++)
+        counts[l] += (float)(valid >> l & 1);
 }
 
 static uint32_t trace_free(embree_state *s, const rayblock *rays, uint32_t valid) {
@@ -106,7 +116,7 @@ static uint32_t trace_free(embree_state *s, const rayblock *rays, uint32_t valid
     ALIGNED struct RTCRay16 r;
     lane_mask(valid, lanes);
     fill_rays(rays, 1, &r);
-    rt_occluded16(lanes, s->rtc, &r);
+    rt_occluded16(lanes, s->rtc, &r, false);
     uint32_t clear = 0;
     for (int l = 0; l < BLOCK; l++)
         clear |= (uint32_t)(r.tfar[l] >= 0) << l;
@@ -116,20 +126,21 @@ static uint32_t trace_free(embree_state *s, const rayblock *rays, uint32_t valid
 uint32_t noc_embree_free(embree_state *s, worker *w, const rayblock *rays, uint32_t valid) {
     if (!valid)
         return 0;
-    w->rays_shadow += (uint64_t)__builtin_popcount(valid);
-    for (int l = 0; w->rays && l < BLOCK; l++)
-        w->rays[l] += (float)(valid >> l & 1);
-    keep(s, w, rays, valid, false);
+    count_rays(w, w->rays, valid);
+    keep(s, w, rays, NULL, valid, 1, false);
     return trace_free(s, rays, valid);
 }
 
 void noc_embree_free_many(embree_state *s, worker *w, segment_block *blocks, int count) {
-    float *counts = w->rays;
-    for (int i = 0; i < count; i++) {
-        w->rays = blocks[i].counts;
-        blocks[i].clear = noc_embree_free(s, w, &blocks[i].rays, blocks[i].valid);
+    for (int first = 0; first < count; first += MANY_BLOCKS) {
+        int n = NOC_MIN(MANY_BLOCKS, count - first);
+        for (int i = 0; i < n; i++) {
+            segment_block *b = &blocks[first + i];
+            count_rays(w, b->counts, b->valid);
+            keep(s, w, &b->rays, b->light, b->valid, n - i, false);
+        }
+        noc_embree_trace_many(s->rtc, blocks + first, n);
     }
-    w->rays = counts;
 }
 
 /* The hit point from its triangle in doubles: in its plane to half a unit in the last place, however large the triangle.
@@ -173,7 +184,7 @@ void noc_embree_primary(embree_state *s, worker *w, const rayblock *rays, uint32
     memset(g->material, 0xff, sizeof(g->material));
     memset(g->light, 0xff, sizeof(g->light));
     w->rays_primary += (uint64_t)__builtin_popcount(valid);
-    keep(s, w, rays, valid, true);
+    keep(s, w, rays, NULL, valid, 1, true);
     lane_mask(valid, lanes);
     fill_rays(rays, INFINITY, &h.ray);
     memset(h.hit.geomID, 0xff, sizeof(h.hit.geomID));
@@ -208,21 +219,32 @@ struct replay {
     struct replay_item { const packet *first; size_t count; } *items;
 };
 
+static void replay_primary(embree_state *s, const segment_block *b) {
+    ALIGNED int lanes[BLOCK];
+    ALIGNED struct RTCRayHit16 h;
+    lane_mask(b->valid, lanes);
+    fill_rays(&b->rays, INFINITY, &h.ray);
+    memset(h.hit.geomID, 0xff, sizeof(h.hit.geomID));
+    rt_intersect16(lanes, s->rtc, &h);
+}
+
 static void replay_run(void *ctx, size_t item, int index) {
     struct replay *r = ctx;
+    const packet *p = r->items[item].first, *end = p + r->items[item].count;
+    segment_block many[MANY_BLOCKS];
     (void)index;
-    for (size_t i = 0; i < r->items[item].count; i++) {
-        const packet *p = r->items[item].first + i;
-        if (!p->primary) {
-            trace_free(r->s, &p->rays, p->valid);
-            continue;
+    while (p < end) {
+        int n = (int)NOC_MIN((ptrdiff_t)p->together, end - p);
+        if (p->primary)
+            replay_primary(r->s, &p->block);
+        else if (n == 1)
+            trace_free(r->s, &p->block.rays, p->block.valid);
+        else {
+            for (int i = 0; i < n; i++)
+                many[i] = p[i].block;
+            noc_embree_trace_many(r->s->rtc, many, n);
         }
-        ALIGNED int lanes[BLOCK];
-        ALIGNED struct RTCRayHit16 h;
-        lane_mask(p->valid, lanes);
-        fill_rays(&p->rays, INFINITY, &h.ray);
-        memset(h.hit.geomID, 0xff, sizeof(h.hit.geomID));
-        rt_intersect16(lanes, r->s->rtc, &h);
+        p += n;
     }
 }
 
