@@ -13,14 +13,18 @@ int experiment_points(const experiment_spec *spec, size_t camera, experiment_poi
         return 1;
     }
     bool alone = experiment_has_mode(spec, camera, EXPERIMENT_ALONE), listed = spec->measured_count && spec->measured_count < EXPERIMENT_POINTS;
+    bool one = true; /* frame is all there is */
+    for (size_t i = 0; i < spec->config_count; i++)
+        one &= experiment_frames(spec, camera, i) == 1;
     int count = 0, mode = alone ? EXPERIMENT_ALONE : EXPERIMENT_ACCUMULATED;
     for (size_t i = 0; listed && i < spec->measured_count; i++)
         out[count++] = (experiment_point){ mode, spec->measured[i] };
     if (!listed) {
         out[count++] = (experiment_point){ mode, 1 };
-        out[count++] = (experiment_point){ mode, 0 };
+        if (!one)
+            out[count++] = (experiment_point){ mode, 0 };
     }
-    if (alone && experiment_has_mode(spec, camera, EXPERIMENT_ACCUMULATED))
+    if (alone && !one && experiment_has_mode(spec, camera, EXPERIMENT_ACCUMULATED))
         out[count++] = (experiment_point){ EXPERIMENT_ACCUMULATED, 0 };
     return count;
 }
@@ -91,7 +95,7 @@ char *experiment_row_name(const experiment_lab *lab, size_t config) {
         before--;
     while (!before && *after && strchr(", =", *after))
         after++;
-    return cli_format("%.*s%s", (int)before, c->name, after);
+    return before || *after ? cli_format("%.*s%s", (int)before, c->name, after) : cli_format("%s", c->option->name);
 }
 
 /* Entries of one option, under one camera. */

@@ -178,6 +178,82 @@ run experiment short.json -o e --cache cache
 rows e >e.rows
 test $status = 0 && test "$(grep -c 'reference made' out)" = 2 && cmp -s d.rows e.rows && test ! -s err; result $? "a damaged reference is made again"
 
+# Killed outright: in the reference, then among the rows of a run that CPU seconds end. It goes on to the same end.
+cat >kill.json <<'SPEC'
+{
+  "scenes": [ { "name": "single", "inputs": ["builtin:single"], "cameras": [ { "name": "own", "view": "own" } ] },
+              { "name": "city", "inputs": ["builtin:city"], "city-size": 150 } ],
+  "cameras": [ { "name": "at rest", "view": "street", "path": { "frames": 4 } },
+               { "name": "walk", "view": "street", "path": { "frames": 4, "dolly": [0, 1, 0], "pan": 10 } },
+               { "name": "cut", "view": "street", "path": { "frames": 4, "cut": 3, "before": { "view": "aerial", "fov": 30 } } } ],
+  "size": "48x32", "seconds": 0.3, "shown": [1, 3],
+  "reference": { "rays": 64, "frames": 4 },
+  "configurations": [ { "name": "ris", "method": "ris" }, { "name": "restir, M *", "draws": [1, 8] },
+                      { "name": "two frames", "frames": 2, "seconds": 0 } ]
+}
+SPEC
+# kill_when COMMAND: starts the experiment, kills it once the command succeeds
+kill_when() {
+    "$program" experiment kill.json -o k --cache kcache >/dev/null 2>&1 </dev/null &
+    pid=$!
+    tries=0
+    until eval "$1" || ! kill -0 $pid 2>/dev/null; do
+        tries=$((tries + 1))
+        [ $tries -gt 600 ] && break
+        sleep 0.02
+    done
+    kill -KILL $pid 2>/dev/null
+    wait $pid 2>/dev/null
+}
+kill_when '[ -d kcache ]'
+kill_when '[ "$(cat k/results.csv 2>/dev/null | wc -l)" -gt 5 ]'
+before=$(($(wc -l <k/results.csv) - 1))
+head -n $before k/results.csv >k.before
+kill_when '[ "$(wc -l <k/results.csv)" -gt 90 ]'
+run experiment kill.json -o k --cache kcache
+test $status = 0 && test "$before" -ge 5 && test "$(head -n $before k/results.csv | cksum)" = "$(cksum <k.before)"; result $? "killed outright, three times: rows stay, and the rest is made"
+run experiment kill.json -o k --cache kcache
+test $status = 0 && grep -q ' 0 of them made now' out; result $? "and then there is no more to make" "$(cat out)"
+run experiment kill.json -o l --cache kcache
+python3 - <<'CHECK'
+import csv
+read = lambda folder: list(csv.DictReader(open(folder + "/results.csv")))
+k, l = read("k"), read("l")
+of = lambda rows, **want: [r for r in rows if all(r[n] == v for n, v in want.items())]
+telling = ("scene", "camera", "configuration", "mode", "frame")
+assert len({tuple(r[n] for n in telling) for r in k}) == len(k), "a row twice"
+for name in ("ris", "restir, M 1", "restir, M 8"):
+    for mode in ("alone", "accumulated"):
+        mine = of(k, scene="single", configuration=name, mode=mode)
+        spent = [float(r["cpu_total_s"]) for r in mine]
+        assert spent == sorted(spent) and spent[-1] >= 0.3 and all(t < 0.3 for t in spent[:-1]), (name, mode, spent)
+        frames = [int(r["frame"]) for r in mine]
+        assert frames[:16] == list(range(1, 17)), frames
+assert {r["frame"] for r in of(k, scene="single", configuration="two frames")} == {"1", "2"}
+# Moving cameras: the last frame alone, the same to the last digit in both folders; ris takes nothing from before, restir does.
+moving = of(k, scene="city")
+assert len(moving) == 3 * 4 and all(r["frame"] == "4" and r["mode"] == "alone" for r in moving), len(moving)
+for r in moving:
+    other = of(l, **{n: r[n] for n in telling})
+    assert len(other) == 1 and other[0]["relmse"] == r["relmse"] and other[0]["key"] == r["key"], r
+error = lambda camera, name: [r["relmse"] for r in moving if r["camera"] == camera and r["configuration"] == name]
+assert error("at rest", "ris") == error("walk", "ris") == error("cut", "ris")
+assert len({error(camera, "restir, M 8")[0] for camera in ("at rest", "walk", "cut")}) == 3
+assert float(error("at rest", "restir, M 1")[0]) < float(error("cut", "restir, M 1")[0])
+CHECK
+result $? "runs end with their CPU seconds, sweeps have their values, and motion ends at the camera's place"
+test "$(ls kcache/*.exr | wc -l)" = 2; result $? "all motions share one reference" "$(ls kcache)"
+grep -q '^| restir, M |' k/summary.md && grep -q '(2-city-at-rest-frame4.png)' k/report.md && grep -q '(1-single-own-frame3.png)' k/report.md
+result $? "summary.md has a column a value, report.md the frames shown"
+sed 's/48x32/32768x32768/' kill.json >huge.json
+if (ulimit -v 20000000 && "$program" --version) >out 2>err; then
+    (ulimit -v 20000000; "$program" experiment huge.json -o w --cache kcache) >out 2>err
+    test $? = 1 && grep -q '^nocturne: no memory for pictures of 32768 x 32768' err && test "$(wc -l <err)" = 1
+    result $? "an absurd size is one error at once"
+else
+    skip "an absurd size is one error at once" "address space cannot be limited for this build"
+fi
+
 # wrong NAME PATTERN SED: the spec with one thing wrong
 wrong() {
     sed "$3" spec.json >wrong.json
@@ -199,6 +275,13 @@ wrong "a camera with eye alone" ': cameras\[1\]: eye and target' 's/, "target": 
 wrong "no scene" ': it needs one of scene' '/"scene"/d'
 wrong "options of a city that is not drawn" ': scene: city-size is for' 's/builtin:city/city.gml/'
 wrong "configurations that are no list" ': it needs scenes and configurations' 's/"configurations".*/"configurations": 3/'
+wrong "measured frames that fall" ': measured: frames are whole' 's/"frames": 3,/"frames": 3, "measured": [4, 2],/'
+wrong "shown frames that are no list" ': shown: this must be an array' 's/"frames": 3,/"frames": 3, "shown": 4,/'
+wrong "a path without frames" ': cameras\[0\]: path: it needs frames' 's/"view": "street"/"view": "street", "path": { "orbit": 3 }/'
+wrong "a cut from nowhere" ': cameras\[0\]: path: cut and before' 's/"view": "street"/"view": "street", "path": { "frames": 3, "cut": 2 }/'
+wrong "a cut after the last frame" ': cameras\[0\]: path: cut: frames' 's/"view": "street"/"view": "street", "path": { "frames": 3, "cut": 3, "before": {} }/'
+wrong "a dolly that is none" ': cameras\[0\]: path: dolly is' 's/"view": "street"/"view": "street", "path": { "frames": 3, "dolly": [1, 2] }/'
+wrong "no cameras" ': it needs cameras' '/"cameras"/d'
 wrong "too many rows" ': it asks for more than' 's/"frames": 3/"frames": 100000/'
 echo '[1]' >wrong.json
 expect "a spec that is no object" 2 'one object' experiment wrong.json -o w
