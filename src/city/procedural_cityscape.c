@@ -10,7 +10,7 @@
 #define SAG 0.8
 #define BULB_APART 0.5
 #define BULB_RADIUS 0.045
-#define BULB_LUMENS 70.0
+#define BULB_LUMENS 110.0
 #define SPOT_LUMENS 2600.0
 
 static const float colours[][3] = { { 1, .06f, .03f }, { 1, .42f, .04f }, { 1, .80f, .18f }, { .10f, 1, .12f }, { .06f, .35f, 1 }, { .75f, .08f, .9f } };
@@ -111,10 +111,10 @@ static void dress(town *t) {
             }
     }
     town_flush(t, "party lights");
-    const town_gap *avenue = &t->axis[0].gaps.data[1];
-    double along = t->axis[1].gaps.data[1].lo + 3;
-    vec2 eye = town_warp(t, (vec2){ avenue->lo + 2.2, along - 50 }), target = town_warp(t, (vec2){ avenue->hi - 1, along - 8 });
-    noc_camera c = { .eye = { eye.x, eye.y, 2.3 }, .target = { target.x, target.y, 5.4 }, .up = { 0, 0, 1 }, .fov_deg = 58 };
+    const town_gap *street = &t->axis[0].gaps.data[2]; /* a narrow one, where the strings hang low and close */
+    double along = t->axis[1].gaps.data[1].hi;
+    vec2 eye = town_warp(t, (vec2){ street->lo + 1.8, along - 3 }), target = town_warp(t, (vec2){ street->hi - 2, along + 35 });
+    noc_camera c = { .eye = { eye.x, eye.y, 1.9 }, .target = { target.x, target.y, 5.0 }, .up = { 0, 0, 1 }, .fov_deg = 58 };
     t->failed = t->failed || noc_scene_set_camera(t->scene, &c) != NOC_OK;
 }
 
