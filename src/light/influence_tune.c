@@ -4,8 +4,8 @@
 #include "core/influence.h"
 
 /* Surface points that S_r is found for. Fewer where there are many lights: all points look at all lights. */
-enum { EXAMPLES = 512, FEWEST_EXAMPLES = 64, EVERY = 4, MANY = 128 };
-static const size_t most_looks = (size_t)1 << 25;
+enum { EXAMPLES = 512, FEWEST_EXAMPLES = 32, EVERY = 4, MANY = 128 };
+static const size_t most_looks = (size_t)1 << 24;
 
 typedef struct example {
     float p[3], n[3];

@@ -85,6 +85,27 @@ static noc_scene *one_light(void) {
     return finish(s);
 }
 
+/* A hall full of lights, seen from outside, with a low gap below its wall: visibility-aware boxes end at the wall, light does
+ * not. */
+static noc_scene *gap(void) {
+    noc_scene *s = noc_scene_create(NULL);
+    int m = matte(s, 0.6f);
+    add_floor(s, m, 0, 0, 0, 12);
+    QUAD(s, m, -12, 0, 0, 11.2, 0, 0, 0, 0, 6);
+    QUAD(s, m, -0.8, 0, 0.4, 1.6, 0, 0, 0, 0, 5.6);
+    QUAD(s, m, 0.8, 0, 0, 11.2, 0, 0, 0, 0, 6);
+    QUAD(s, m, -12, 0, 6, 24, 0, 0, 0, 12, 0);
+    QUAD(s, m, -12, 12, 0, 24, 0, 0, 0, 0, 6);
+    QUAD(s, m, -12, 0, 0, 0, 12, 0, 0, 0, 6);
+    QUAD(s, m, 12, 0, 0, 0, 12, 0, 0, 0, 6);
+    for (int i = 0; i < 120; i++) {
+        noc_light l = { .kind = NOC_LIGHT_SPHERE, .position = { -10 + 1.05 * (i % 20), 1 + 1.2 * (i / 20), 0.6 + 0.5 * (i % 3) },
+                        .radius = 0.05, .emission = { 300, 250, 200 } };
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+    }
+    return finish(s);
+}
+
 static noc_camera camera_at(int frame, bool moving) {
     double t = moving ? 0.35 * frame : 0;
     return look(2 + t, -11 + 0.3 * t, 4.5, 0.5 + 0.5 * t, 0, 1, 62);
@@ -248,6 +269,32 @@ static void check_scene(noc_scene *s, int runs, bool moving, int reference_frame
     assert_int_equal(wrong, 0);
 }
 
+/* Boxes leave most points before the wall without a light, and the light that comes through the gap is still all there. */
+static void boxes_with_a_gap(void **state) {
+    (void)state;
+    noc_scene *s = gap();
+    const config by[] = { { "ris, bvh, boxes", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH, .boxes = NOC_INFLUENCE_VISIBLE },
+                          { "ris, bvh", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH } };
+    result reference = measure_reference(s, false, 600);
+    noc_light_stats found[2];
+    for (int i = 0; i < 2; i++) {
+        double bias, error;
+        result x = measure_runs(s, &by[i], false, 500);
+        double z = worst(&x, &reference, &bias, &error);
+        print_message("# %-32s %5.2f standard errors, %+.2f%% +- %.2f%%\n", by[i].name, z, 100 * bias, 100 * error);
+        assert_true(z < 4);
+        noc_renderer *r = noc_renderer_create(s, NULL, NULL);
+        noc_render_params p = params_of(&by[i], 1);
+        noc_camera cam = camera_at(0, false);
+        assert_int_equal(noc_renderer_frame(r, &cam, &p, NULL), NOC_OK);
+        noc_renderer_light_stats(r, &found[i]);
+        noc_renderer_destroy(r);
+    }
+    print_message("# points without a light: %.2f with boxes, %.2f with balls\n", found[0].found_none, found[1].found_none);
+    assert_true(found[0].found_none > found[1].found_none + 0.2);
+    noc_scene_destroy(s);
+}
+
 static void many_lights_resting(void **state) { (void)state; check_scene(yard(), 500, false, 600); }
 static void many_lights_moving(void **state) { (void)state; check_scene(yard(), 500, true, 400); }
 static void one_light_resting(void **state) { (void)state; check_scene(one_light(), 300, false, 1500); }
@@ -255,6 +302,7 @@ static void one_light_moving(void **state) { (void)state; check_scene(one_light(
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(boxes_with_a_gap),
         cmocka_unit_test(many_lights_resting),
         cmocka_unit_test(many_lights_moving),
         cmocka_unit_test(one_light_resting),
