@@ -38,7 +38,9 @@ static noc_scene *random_city(int lights) {
 }
 
 static void builds(void) {
-    printf("%9s %12s %12s %12s %12s %12s   bytes a light\n", "lights", "clusters, s", "power, s", "bvh, s", "S_r", "tree, s");
+    noc_pool *pool = noc_pool_create(0);
+    printf("%9s %12s %12s %12s %12s %12s %12s   bytes a light\n", "lights", "clusters, s", "power, s", "bvh, s", "S_r",
+           "tree, s", "wall");
     for (int n = 1000; n <= 1000000; n *= 10) {
         noc_scene *s = random_city(n);
         double t0 = noc_cpu_seconds();
@@ -48,11 +50,13 @@ static void builds(void) {
         double t2 = noc_cpu_seconds();
         noc_influence *v = noc_influence_create(s, NULL, NULL);
         double t3 = noc_cpu_seconds();
-        noc_tree *t = noc_tree_create(s, NULL);
+        double wall = noc_wall_seconds();
+        noc_tree *t = noc_tree_create(s, pool, NULL);
         double t4 = noc_cpu_seconds();
+        wall = noc_wall_seconds() - wall;
         if (c && a && v && t)
-            printf("%9d %12.4f %12.4f %12.4f %12.3f %12.4f   %zu %zu %zu %zu (depth %d)\n", n, t1 - t0, t2 - t1, t3 - t2,
-                   v->scale, t4 - t3, c->bytes / (size_t)n, a->bytes / (size_t)n, v->bytes / (size_t)n, t->bytes / (size_t)n,
+            printf("%9d %12.4f %12.4f %12.4f %12.3f %12.4f %12.4f   %zu %zu %zu %zu (depth %d)\n", n, t1 - t0, t2 - t1, t3 - t2,
+                   v->scale, t4 - t3, wall, c->bytes / (size_t)n, a->bytes / (size_t)n, v->bytes / (size_t)n, t->bytes / (size_t)n,
                    t->depth);
         noc_tree_destroy(t);
         noc_clusters_destroy(c);
@@ -60,6 +64,7 @@ static void builds(void) {
         noc_influence_destroy(v);
         noc_scene_destroy(s);
     }
+    noc_pool_destroy(pool);
 }
 
 int main(void) {

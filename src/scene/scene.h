@@ -14,10 +14,11 @@ typedef struct noc_light_record {
     float a[3];      /* edge u; disc: first radius vector */
     float radius;
     float b[3];      /* edge v; disc: second radius vector; the light faces a x b */
-    uint32_t flags;  /* bit 0: two-sided; bit 1: inferred */
+    uint32_t flags;  /* bit 0: two-sided; bit 1: inferred; bit 2: NOC_LIGHT_MOVES */
     float e[3];      /* cd/m2; point: cd */
     float area;      /* m2; 0 for points */
 } noc_light_record;
+#define NOC_LIGHT_MOVES 4u
 _Static_assert(sizeof(noc_light_record) == 64, "light records are one cache line");
 
 /* 32 bytes. */

@@ -74,19 +74,23 @@ FN alias_slot alias_load(CTX u32 i) {
     return s;
 }
 
-/* A whole tree of 255 nodes. */
-FN tree_node tree_load(CTX u32 i) {
-    tree_node n;
+/* A whole tree of 127 pairs. */
+FN tree_child any_child(u32 i) {
+    tree_child c;
     u32 key = hash_u32(i + KU(6u));
-    n.bound.c = any_v3(key, KU(0u));
-    n.bound.radius = rng(key, KU(6u)) * K(100.0f);
-    n.bound.axis = unit3(any_v3(key, KU(7u)));
-    n.bound.cos_cone = rng(key, KU(13u)) * K(2.0f) - K(1.0f);
-    n.bound.sin_cone = sin_of(n.bound.cos_cone);
-    n.power = rng(key, KU(14u)) * K(100.0f);
-    n.child = selu(i < KU(127u), i * KU(2u) + KU(1u), KU(0u));
-    n.light = i;
-    return n;
+    c.c = any_v3(key, KU(0u));
+    c.radius = rng(key, KU(6u)) * K(100.0f);
+    c.axis_xy = rng_bits(key, KU(7u));
+    c.axis_cone = rng_bits(key, KU(8u));
+    c.power = rng(key, KU(14u)) * K(100.0f);
+    c.link = selu(i < KU(127u), i, i | KU(TREE_LEAF));
+    return c;
+}
+FN tree_pair tree_load(CTX u32 i) {
+    tree_pair p;
+    p.a = any_child(i * KU(2u) + KU(1u));
+    p.b = any_child(i * KU(2u) + KU(2u));
+    return p;
 }
 
 FN pick pick_load(CTX int i) {
@@ -228,10 +232,10 @@ FN void pickers(CTX u32 item, u32 key, surf s) {
     put_u32(PASS item, 126, a.light);
     put_real(PASS item, 127, a.inverse);
     put_real(PASS item, 128, alias_pmf(PASS a.light));
-    pick t = tree_draw(PASS s.p, s.n, bits, 7);
-    put_u32(PASS item, 129, t.light);
-    put_real(PASS item, 130, t.inverse);
-    put_real(PASS item, 131, tree_pmf(PASS s.p, s.n, bits, 7));
+    tree_shares t = tree_choose(s.p, s.n, tree_load(PASS shr(bits, 26)));
+    put_u32(PASS item, 129, tree_split(t, shr(bits, 22), tree_number(key, shr(bits, 26))));
+    put_real(PASS item, 130, tree_share_of(t, (bits & KU(1u)) != KU(0u)));
+    put_real(PASS item, 131, tree_pmf(PASS s.p, s.n, KU(0u), bits, 7));
     influence v;
     v.c = add3(s.p, any_v3(key, KU(3070u)));
     v.m = mul3(unit3(any_v3(key, KU(3076u))), K(3.0f));

@@ -31,7 +31,7 @@ static const struct { int first; const char *name; } groups[] = {
     { 98, "pair_share" },  { 99, "pair_weight" },  { 100, "pair_canonical" }, { 101, "min_, max_" }, { 103, "selu" },
     { 104, "shadow_segment, begin" }, { 107, "shadow_segment, way" }, { 110, "sky_radiance" }, { 113, "stand_off" },
     { 114, "sky_numbers" }, { 116, "sky_direction" }, { 119, "visible_normal_direction" }, { 122, "sky_density" },
-    { 123, "sky_backdrop" }, { 126, "alias_draw" }, { 128, "alias_pmf" }, { 129, "tree_draw" }, { 131, "tree_pmf" },
+    { 123, "sky_backdrop" }, { 126, "alias_draw" }, { 128, "alias_pmf" }, { 129, "tree_split" }, { 130, "tree_share_of" }, { 131, "tree_pmf" },
     { 132, "influence_needs" }, { 133, "influence_pmf" }, { 134, "influence_uniform" }, { 135, "ris_given" },
 };
 

@@ -35,6 +35,7 @@ typedef struct worker {
     reference_scratch reference;
     list_scratch lists;
     pick_block picks;
+    tree_items tree_items[2];
     noc_found found;
     uint64_t found_counts[FOUND_COUNTS]; /* surfaces of the frame by the number of lights found; the last: as many or more */
     float *rays; /* of the pixels of the block at hand, for the view that counts them; NULL: nobody asks */

@@ -32,6 +32,14 @@ typedef struct pick_block {
     float (*inverse)[BLOCK]; /* 1 / pmf; 0: nothing was picked */
 } pick_block;
 
+/* Pixels on their way down a light tree: backend/embree/tree_draws.h. One array a field, TREE_ITEMS each. */
+typedef struct tree_items {
+    uint32_t count;
+    uint32_t *pair, *what; /* what: lane, first draw << 4, draws << 16 */
+    float *pmf;
+} tree_items;
+enum { TREE_ITEMS = 16 * 1024 + 64 }; /* every draw of every pixel alone, and places that are read or written past them */
+
 /* Uniform for a frame: what core's bridge functions read. */
 struct core_context {
     const noc_light_record *lights;
@@ -88,9 +96,10 @@ typedef struct kernels {
     void (*list_build)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks,
                        float choice, float rotation, list_scratch *scratch, light_list *out);
     void (*list_candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, rblock *out);
-    /* Light pickers: m candidates for every lane of a block; then a reservoir of such candidates. */
+    /* Light pickers: m candidates for the lanes of a block; then a reservoir of such candidates. */
     void (*pick_power)(const struct core_context *ctx, int x, int y, int m, pick_block *out);
-    void (*pick_tree)(const struct core_context *ctx, const gblock *g, int x, int y, int m, pick_block *out);
+    void (*pick_tree)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
+                      tree_items items[2], pick_block *out);
     /* near: volumes near a box that holds the block's surfaces, or NULL; found: what its lanes found. */
     void (*pick_influence)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                            const noc_near *near, noc_found *found, pick_block *out);

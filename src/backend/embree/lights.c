@@ -16,6 +16,18 @@ static noc_status prepare_picks(embree_state *s) {
     return NOC_OK;
 }
 
+static noc_status prepare_tree_items(embree_state *s) {
+    for (int i = 0; i < 2 * s->worker_count; i++) {
+        tree_items *t = &s->workers[i / 2].tree_items[i % 2];
+        t->pair = t->pair ? t->pair : noc_alloc_large(TREE_ITEMS, sizeof(*t->pair));
+        t->what = t->what ? t->what : noc_alloc_large(TREE_ITEMS, sizeof(*t->what));
+        t->pmf = t->pmf ? t->pmf : noc_alloc_large(TREE_ITEMS, sizeof(*t->pmf));
+        if (!t->pair || !t->what || !t->pmf)
+            return noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory for light candidates");
+    }
+    return NOC_OK;
+}
+
 static bool draws_candidates(const noc_render_params *p) {
     return p->method == NOC_METHOD_RIS || p->method == NOC_METHOD_RESTIR;
 }
@@ -51,7 +63,9 @@ static noc_status prepare(embree_state *s, const noc_render_params *p) {
             break;
         return status;
     case NOC_CANDIDATES_TREE:
-        if (!s->tree && !(s->tree = noc_tree_create(s->scene, s->log)))
+        if (!s->tree && !(s->tree = noc_tree_create(s->scene, s->pool, s->log)))
+            return NOC_ERR_MEMORY;
+        if (prepare_tree_items(s) != NOC_OK)
             return NOC_ERR_MEMORY;
         break;
     }
@@ -91,6 +105,11 @@ void noc_embree_release_lights(embree_state *s) {
         free(w->picks.light);
         free(w->picks.inverse);
         noc_found_free(&w->found);
+        for (int k = 0; k < 2; k++) {
+            free(w->tree_items[k].pair);
+            free(w->tree_items[k].what);
+            free(w->tree_items[k].pmf);
+        }
         array_free(&w->near.groups);
     }
 }

@@ -64,7 +64,7 @@ static void pick_lights(stage_run *run, worker *w, const gblock *g, uint32_t lan
     switch (run->ctx.frame->params->candidates) {
     case NOC_CANDIDATES_POWER: run->k->pick_power(&run->ctx, x, y, m, &w->picks); break;
     case NOC_CANDIDATES_BVH: pick_influence(run, w, g, lanes, x, y, m, near); break;
-    case NOC_CANDIDATES_TREE: run->k->pick_tree(&run->ctx, g, x, y, m, &w->picks); break;
+    case NOC_CANDIDATES_TREE: run->k->pick_tree(&run->ctx, g, lanes, x, y, m, w->tree_items, &w->picks); break;
     case NOC_CANDIDATES_UNIFORM:
     case NOC_CANDIDATES_LISTS: break;
     }

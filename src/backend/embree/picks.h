@@ -5,7 +5,6 @@
 
 #include "core/alias.h"
 #include "core/given.h"
-#include "core/tree.h"
 
 /* Words of memory, one a lane. */
 FN u32 word_gather(const void *base, u32 index) {
@@ -61,38 +60,7 @@ static void pick_power(const struct core_context *ctx, int x, int y, int m, pick
     }
 }
 
-/* Nodes are records of 12 floats. */
-FN tree_node tree_load(CTX u32 i) {
-#if defined(CORE_LANES)
-    const float *records = (const float *)ctx->tree->nodes;
-    uint32_t at[CORE_LANES];
-    memcpy(at, &i, sizeof(at));
-    __asm__("" : "+m"(at)); /* as in core/wide_load.h */
-    wide_quad c = wide_quad_load(records, 12, at), a = wide_quad_load(records + 4, 12, at);
-    wide_quad e = wide_quad_load(records + 8, 12, at);
-    return (tree_node){ { V3(c.f[0], c.f[1], c.f[2]), c.f[3], V3(a.f[0], a.f[1], a.f[2]), a.f[3], e.f[0] },
-                        e.f[1], (u32)e.f[2], (u32)e.f[3] };
-#else
-    tree_node n;
-    memcpy(&n, ctx->tree->nodes + i, sizeof(n));
-    return n;
-#endif
-}
-
-static void pick_tree(const struct core_context *ctx, const gblock *g, int x, int y, int m, pick_block *out) {
-    for (int l = 0; l < BLOCK; l += LANES) {
-        u32 key = key_of(ctx, x, y, l);
-        v3 p = V3(rload(g->px + l), rload(g->py + l), rload(g->pz + l));
-        v3 n = V3(rload(g->nx + l), rload(g->ny + l), rload(g->nz + l));
-        for (int i = 0; i < m; i++) {
-            pick c = { KU(0u), K(0.0f) };
-            if (ctx->tree->count)
-                c = tree_draw(ctx, p, n, rng_bits(key, KU(DIM_CANDIDATE + 3u * U32(i))), ctx->tree->depth);
-            ustore(out->light[i] + l, c.light);
-            rstore(out->inverse[i] + l, c.inverse);
-        }
-    }
-}
+#include "backend/embree/tree_draws.h"
 
 static void given(const struct core_context *frame, const gblock *g, uint32_t lanes, int x, int y, int m,
                   const pick_block *picks, rblock *out) {
