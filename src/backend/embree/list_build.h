@@ -209,17 +209,18 @@ FN brief_light brief_light_load(const noc_light_block *b, int i, v3 centre, real
     return l;
 }
 
-/* What the lights of a cluster give the first examples on average, as if each were a point, and a share of the cluster's own
- * score, so that none that could matter elsewhere in the tile is forgotten. */
-static void score_lights(const noc_clusters *c, uint32_t cluster, const examples *e, int count, float score, float *out) {
+/* What the lights of a cluster give the examples on average, as if each were a point, and a share of the cluster's own
+ * score, so that none that could matter elsewhere in the tile is forgotten: the smaller that share, the fewer lights are
+ * listed in vain, but the brighter the fireflies of those that should have been (bench/bench_lists). */
+static void score_lights(const noc_clusters *c, uint32_t cluster, const examples *e, float score, float *out) {
     const noc_cluster_block *block = &c->level[0][cluster / 16];
     uint32_t lane = cluster % 16;
     v3 centre = V3(K(block->x[lane]), K(block->y[lane]), K(block->z[lane]));
-    float least = 0.08f * score / block->power[lane];
+    float least = 0.2f * score / block->power[lane];
     for (int i = 0; i < 16; i += LANES) {
         brief_light l = brief_light_load(&c->lights[cluster], i, centre, K(block->radius[lane]));
         real sum = K(0.0f);
-        for (int k = 0; k < count; k++) {
+        for (int k = 0; k < e->count; k++) {
             v3 d = sub3(l.p, e->s[k].p);
             real inv = K(1.0f) / sqrt_(max_(dot3(d, d), K(0.01f)));
             d = mul3(d, inv);
@@ -227,7 +228,7 @@ static void score_lights(const noc_clusters *c, uint32_t cluster, const examples
             lobes f = reflect_lobes(e->s[k], d);
             sum = sum + facing * inv * inv * (e->albedo[k] * f.diffuse + f.gloss);
         }
-        rstore(out + i, min_(l.intensity * (K(least) + sum * K(1.0f / (float)count)), K(1e30f)));
+        rstore(out + i, min_(l.intensity * (K(least) + sum * K(1.0f / (float)e->count)), K(1e30f)));
     }
 }
 
@@ -250,7 +251,7 @@ static uint32_t open_nodes(const noc_clusters *c, const tile_bound *t, const exa
             if (level)
                 score_nodes(&c->level[level - 1][node], t, s->scores[n]);
             else
-                score_lights(c, node, e, e->count, s->scores[group][lane], s->scores[n]);
+                score_lights(c, node, e, s->scores[group][lane], s->scores[n]);
             s->block[n] = node;
             s->level[n] = (int8_t)(level - 1);
             s->scores[group][lane] = 0;
@@ -289,7 +290,7 @@ static bool descend(const noc_clusters *c, const tile_bound *t, const examples *
         if (level)
             score_nodes(&c->level[level - 1][block], t, scores);
         else
-            score_lights(c, block, e, NOC_MIN(e->count, TAIL_EXAMPLES), score, scores);
+            score_lights(c, block, e, score, scores);
         float total = sum16(scores);
         lane = lane_at(scores, total, &at);
         if (lane < 0)
