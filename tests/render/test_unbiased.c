@@ -85,6 +85,26 @@ static noc_scene *one_light(void) {
     return finish(s);
 }
 
+/* The yard's floor and a wall under 6,000 small lights, far and near: a tile leaves most of their
+ * clusters closed, and its tail goes down into them. */
+static noc_scene *swarm(void) {
+    noc_scene *s = noc_scene_create(NULL);
+    int wall = matte(s, 0.5f);
+    add_floor(s, wall, 0, 0, 0, 60);
+    for (int i = 0; i < 8; i++)
+        QUAD(s, wall, -9 + 2.5 * i, 1 + i % 3, 0, 1.5, 0, 0, 0, 0, 3);
+    for (int i = 0; i < 6000; i++) {
+        double x = -55 + 110 * (i * 0.7548776662467 - floor(i * 0.7548776662467));
+        double y = -55 + 110 * (i * 0.5698402909980 - floor(i * 0.5698402909980));
+        bool window = i % 3;
+        noc_light l = { .kind = window ? NOC_LIGHT_PARALLELOGRAM : NOC_LIGHT_SPHERE, .position = { x, y, 4.5 + i % 7 },
+                        .edge_u = { i & 1 ? 0.5 : 0, i & 1 ? 0 : 0.5, 0 }, .edge_v = { 0, 0.1, i & 2 ? 0.6 : -0.6 },
+                        .radius = 0.05, .emission = { 20.f + (float)(i * 13 % 200), 50, 30 } };
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+    }
+    return finish(s);
+}
+
 /* A hall full of lights, seen from outside, with a low gap below its wall: visibility-aware boxes end at the wall, light does
  * not. */
 static noc_scene *gap(void) {
@@ -300,6 +320,26 @@ static void many_lights_moving(void **state) { (void)state; check_scene(yard(), 
 static void one_light_resting(void **state) { (void)state; check_scene(one_light(), 300, false, 1500); }
 static void one_light_moving(void **state) { (void)state; check_scene(one_light(), 300, true, 1500); }
 
+/* Lists alone: more lights than a tile ever looks at. */
+static void thousands_of_lights(void **state) {
+    (void)state;
+    noc_scene *s = swarm();
+    result reference = measure_reference(s, false, 150);
+    int wrong = 0;
+    for (size_t i = 0; i < NOC_COUNT(unbiased); i++) {
+        if (!unbiased[i].list)
+            continue;
+        double bias, error;
+        result x = measure_runs(s, &unbiased[i], false, 300);
+        double z = worst(&x, &reference, &bias, &error);
+        print_message("# %-32s %5.2f standard errors, %+.2f%% +- %.2f%%%s\n", unbiased[i].name, z, 100 * bias, 100 * error,
+                      z < 4 ? "" : "  WRONG");
+        wrong += z >= 4;
+    }
+    noc_scene_destroy(s);
+    assert_int_equal(wrong, 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_with_a_gap),
@@ -307,6 +347,7 @@ int main(void) {
         cmocka_unit_test(many_lights_moving),
         cmocka_unit_test(one_light_resting),
         cmocka_unit_test(one_light_moving),
+        cmocka_unit_test(thousands_of_lights),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,9 +12,9 @@
 #include "render/backend.h"
 
 enum { MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32, LIST_ENTRIES = 128, PICK_AHEAD = 8 };
-/* List building: surfaces of a tile that lights are scored at, and those for lights of the tail; nodes that are opened, of
- * each level and of the lowest; steps that scores are told apart by. */
-enum { LIST_EXAMPLES = 8, TAIL_EXAMPLES = 2, OPENED_NODES = 96, OPENED_CLUSTERS = 96, SCORE_STEPS = 1020 };
+/* List building: surfaces of a tile that lights are scored at; nodes that are opened, of each level and of the lowest; steps
+ * that scores are told apart by. */
+enum { LIST_EXAMPLES = 8, OPENED_NODES = 96, OPENED_CLUSTERS = 96, SCORE_STEPS = 1020 };
 
 /* Most groups of 16 that a list is chosen from. */
 enum { LIST_GROUPS = NOC_CLUSTER_ROOTS / 16 + NOC_CLUSTER_LEVELS * OPENED_NODES + OPENED_CLUSTERS };
