@@ -4,7 +4,7 @@
  *
  * Shadow rays: from the pixels to what they chose of 32 uniform candidates, or of their tile's list; and the same samples seen
  * from 12 pixels to the right, as bias rays are. Every form traces all rays of a tile, tile by tile, and the fastest of the
- * rounds counts (CPU seconds; sorting is not counted but in "as built"). "differ" is the number of rays whose answer is not
+ * rounds counts (CPU seconds; sorting is counted in "as built" only). "differ" is the number of rays whose answer is not
  * that of the first form. "medium", "high": other structures over the same triangles, not robust unless they say so. */
 #include "bench_scene.h"
 
@@ -21,7 +21,7 @@ typedef struct ray_set {
 } ray_set;
 
 typedef enum arrangement { BLOCKS, PIXELS, BY_OCTANT, BY_LIGHT } arrangement;
-typedef enum call { ONE, SIXTEEN, COHERENT, STREAM, BUILT } call;
+typedef enum call { ONE, SIXTEEN, STREAM, BUILT } call;
 
 typedef struct form {
     const char *name;
@@ -30,9 +30,8 @@ typedef struct form {
 } form;
 
 static const form forms[] = {
-    { "16, blocks of pixels", BLOCKS, SIXTEEN }, { "16 coherent, blocks", BLOCKS, COHERENT },
-    { "1", PIXELS, ONE },                        { "16, by octant", BY_OCTANT, SIXTEEN },
-    { "16, by light", BY_LIGHT, SIXTEEN },       { "16 coherent, by light", BY_LIGHT, COHERENT },
+    { "16, blocks of pixels", BLOCKS, SIXTEEN }, { "1", PIXELS, ONE },
+    { "16, by octant", BY_OCTANT, SIXTEEN },     { "16, by light", BY_LIGHT, SIXTEEN },
 #ifdef RT_STREAMS
     { "stream", PIXELS, STREAM },                { "stream, by light", BY_LIGHT, STREAM },
 #endif
@@ -77,7 +76,7 @@ static void answer(segment_block *own, uint16_t at, bool clear) {
     own[at / BLOCK].clear |= (uint32_t)clear << at % BLOCK;
 }
 
-static void trace_packets(RTCScene scene, segment_block *own, const uint16_t *at, int n, bool coherent) {
+static void trace_packets(RTCScene scene, segment_block *own, const uint16_t *at, int n) {
     for (int first = 0; first < n; first += BLOCK) {
         ALIGNED int valid[BLOCK];
         ALIGNED struct RTCRay16 p = { 0 };
@@ -92,7 +91,7 @@ static void trace_packets(RTCScene scene, segment_block *own, const uint16_t *at
             p.tfar[l] = r.tfar, p.mask[l] = r.mask;
         }
         if (any)
-            rt_occluded16(valid, scene, &p, coherent);
+            rt_occluded16(valid, scene, &p);
         for (int l = 0; l < BLOCK; l++)
             if (valid[l])
                 answer(own, at[first + l], p.tfar[l] >= 0);
@@ -135,7 +134,7 @@ static double trace(RTCScene scene, const ray_set *set, const form *f, int round
             else if (f->call == ONE || f->call == STREAM)
                 trace_rays(scene, own, at + t * TILE_RAYS, n[t], f->call == STREAM);
             else
-                trace_packets(scene, own, at + t * TILE_RAYS, n[t], f->call == COHERENT);
+                trace_packets(scene, own, at + t * TILE_RAYS, n[t]);
         }
         best = fmin(best, noc_cpu_seconds() - start);
     }
@@ -248,10 +247,6 @@ int main(int argc, char **argv) {
         collect(s, &ctx, i % 2 ? 3 : 0, &set);
         measure_all(s, &set, (const char *const[]){ "uniform", "uniform, bias rays", "lists", "lists, bias rays" }[i], rounds);
     }
-    noc_frame_stats stats = { 0 };
-    noc_backend_embree.stats(state, &stats);
-    printf("primary rays, with their hit points: %.1f M/s\n",
-           1e-6 * (double)stats.rays_primary / stats.pass_seconds[NOC_PASS_PRIMARY]);
     free(set.blocks);
     free(set.first);
     noc_backend_embree.destroy(state);

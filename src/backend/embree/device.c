@@ -116,7 +116,7 @@ static uint32_t trace_free(embree_state *s, const rayblock *rays, uint32_t valid
     ALIGNED struct RTCRay16 r;
     lane_mask(valid, lanes);
     fill_rays(rays, 1, &r);
-    rt_occluded16(lanes, s->rtc, &r, false);
+    rt_occluded16(lanes, s->rtc, &r);
     uint32_t clear = 0;
     for (int l = 0; l < BLOCK; l++)
         clear |= (uint32_t)(r.tfar[l] >= 0) << l;

@@ -52,7 +52,7 @@ static void group_rays(const segment_block *blocks, int count, grouping *g) {
 static void mark_clear(segment_block *blocks, uint16_t ray) { blocks[ray / BLOCK].clear |= 1u << ray % BLOCK; }
 
 /* Up to 16 rays. */
-static void trace_packet(RTCScene scene, segment_block *blocks, const uint16_t *at, int n, bool coherent) {
+static void trace_packet(RTCScene scene, segment_block *blocks, const uint16_t *at, int n) {
     ALIGNED int lanes[BLOCK];
     ALIGNED struct RTCRay16 r;
     for (int l = 0; l < BLOCK; l++) {
@@ -70,7 +70,7 @@ static void trace_packet(RTCScene scene, segment_block *blocks, const uint16_t *
         r.mask[l] = UINT32_MAX;
         r.id[l] = r.flags[l] = 0;
     }
-    rt_occluded16(lanes, scene, &r, coherent);
+    rt_occluded16(lanes, scene, &r);
     for (int l = 0; l < n; l++)
         if (r.tfar[l] >= 0)
             mark_clear(blocks, at[l]);
@@ -93,7 +93,7 @@ static void trace_rest(RTCScene scene, segment_block *blocks, const uint16_t *at
             mark_clear(blocks, at[i]);
 #else
     for (int i = 0; i < n; i += BLOCK)
-        trace_packet(scene, blocks, at + i, NOC_MIN(BLOCK, n - i), false);
+        trace_packet(scene, blocks, at + i, NOC_MIN(BLOCK, n - i));
 #endif
 }
 
@@ -107,7 +107,7 @@ void noc_embree_trace_many(RTCScene scene, segment_block *blocks, int count) {
     for (int i = 0; i < g.groups; i++) {
         int from = g.start[i], to = g.start[i + 1];
         for (; to - from >= BLOCK; from += BLOCK)
-            trace_packet(scene, blocks, g.at + from, BLOCK, false);
+            trace_packet(scene, blocks, g.at + from, BLOCK);
         while (from < to)
             rest[left++] = g.at[from++];
     }
