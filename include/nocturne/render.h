@@ -157,7 +157,7 @@ NOC_API void noc_renderer_light_stats(const noc_renderer *renderer, noc_light_st
 
 /* The trace floor: renders the next frame as noc_renderer_frame does, keeps its rays (primary, visibility, bias, final, and
  * sky where it is on), then traces those rays again through the same structure and nothing else. Wall seconds of the second
- * time into *seconds. Takes about 400 bytes for 16 rays while it lasts. */
+ * time into *seconds. Takes about 600 bytes for 16 rays while it lasts. */
 NOC_API noc_status noc_renderer_trace_floor(noc_renderer *renderer, const noc_camera *camera,
                                             const noc_render_params *params, double *seconds);
 
