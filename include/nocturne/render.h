@@ -37,6 +37,8 @@ typedef struct noc_render_params {
     noc_candidates candidates;  /* ris, restir: source of the light candidates */
     int draws;                  /* M: candidates a pixel and frame, 1..1024 */
     int list, tail;             /* lists: strongest lights of a tile, 0..128; draws from all others, 1..128 */
+    int shadow_rays;            /* ris with lists: shadow rays a pixel and frame, about, 1..8 */
+    bool learn;                 /* ris with lists: visibility found in earlier frames says where rays are sent */
     double influence;           /* bvh: S_r, the distance at which a light of 1 cd is last found, m; 0 = found for the scene,
                                  * and then for every point */
     noc_influence_boxes influence_boxes;
@@ -69,7 +71,7 @@ typedef struct noc_render_params {
 
 #define NOC_RENDER_DEFAULTS(set) \
     set(width, 1280) set(height, 720) set(method, NOC_METHOD_RESTIR) set(candidates, NOC_CANDIDATES_LISTS) \
-    set(draws, 32) set(list, 32) set(tail, 32) set(influence_cluster, 1) set(uniform_every, 4) set(rays, 64) set(temporal, true) set(spatial, true) \
+    set(draws, 32) set(list, 32) set(tail, 32) set(shadow_rays, 6) set(learn, true) set(influence_cluster, 1) set(uniform_every, 4) set(rays, 64) set(temporal, true) set(spatial, true) \
     set(neighbours, 5) set(radius, 10) set(passes, 1) set(history, 20) set(bias, NOC_BIAS_PAIRWISE) \
     set(bias_rays, true) set(visibility_reuse, true) set(final_ray, true) set(reject_depth, 0.1) \
     set(reject_normal, 0.9) set(seed, 1) set(jitter, true) set(accumulate, true) set(sky, 0.02) \

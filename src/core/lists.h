@@ -21,8 +21,10 @@ FN list_entry list_entry_load(CTX int i);
 
 /* Place on the light that entry i is evaluated at: the R2 sequence over the entries, shifted for each pixel (M. Roberts
  * 2018, "The Unreasonable Effectiveness of Quasirandom Sequences"). Each place alone is uniform. */
-FN real list_u(u32 shift, int i) { return unit_real(shift + KU(3242174889u * U32(i))); }
-FN real list_v(u32 shift, int i) { return unit_real(shift + KU(2447445414u * U32(i))); }
+FN real list_u_at(u32 shift, u32 i) { return unit_real(shift + KU(3242174889u) * i); }
+FN real list_v_at(u32 shift, u32 i) { return unit_real(shift + KU(2447445414u) * i); }
+FN real list_u(u32 shift, int i) { return list_u_at(shift, KU(U32(i))); }
+FN real list_v(u32 shift, int i) { return list_v_at(shift, KU(U32(i))); }
 
 /* One sample of all the entries: chosen in proportion to weight * p_hat, so W = sum(weight * p_hat) / p_hat(chosen). */
 FN resv ris_list(CTX surf s, u32 key, int count) {

@@ -18,6 +18,7 @@ noc_status noc_render_check(const noc_render_params *p, noc_log *log) {
         { "draws", p->draws, 1, 1024 },
         { "list", p->list, 0, 128 },
         { "tail", p->tail, 1, 128 },
+        { "shadow_rays", p->shadow_rays, 1, 8 },
         { "influence", p->influence, 0, 1e6 },
         { "influence_cluster", p->influence_cluster, 1, 64 },
         { "uniform_every", p->uniform_every, 1, 1024 },

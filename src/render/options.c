@@ -29,6 +29,8 @@ static const noc_option render_options[] = {
     INT(P, draws, "draws", "Estimator", 1, 1024, "", "light candidates a pixel and frame (M)"),
     INT(P, list, "list", "Estimator", 0, 128, "", "lists: strongest lights of a tile, seen by each of its pixels"),
     INT(P, tail, "tail", "Estimator", 1, 128, "", "lists: draws a tile from all other lights"),
+    INT(P, shadow_rays, "shadow-rays", "Estimator", 1, 8, "", "ris with lists: shadow rays a pixel and frame"),
+    BOOL(P, learn, "learn", "Estimator", "ris with lists: earlier frames' rays say where to send new ones"),
     REAL(P, influence, "influence", "Estimator", 0, 1e6, "m", "bvh: reach of a light of 1 cd; 0 = found for the scene"),
     CHOICE(P, influence_boxes, "influence-boxes", "Estimator", "sphere|visible", "bvh: lights reach as far as they shine, or see"),
     INT(P, influence_cluster, "influence-cluster", "Estimator", 1, 64, "", "bvh: so many close lights may share a volume"),

@@ -195,7 +195,7 @@ static void test_odd_scenes(void **state) {
     static const double bad[] = { 0, -1, NAN, INFINITY };
     for (size_t i = 0; i < NOC_COUNT(bad); i++)
         assert_int_equal(noc_scene_camera(scene, NOC_VIEW_AERIAL, bad[i], &c), NOC_ERR_ARGUMENT);
-    assert_int_equal(noc_scene_camera(scene, (noc_view)3, 1, &c), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_scene_camera(scene, (noc_view)(NOC_VIEW_OWN + 1), 1, &c), NOC_ERR_ARGUMENT);
     assert_true(c.fov_deg == 50); /* untouched by errors */
     noc_scene_destroy(scene);
 }

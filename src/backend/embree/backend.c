@@ -35,6 +35,7 @@ static void destroy(void *state) {
         return;
     noc_embree_release(s);
     noc_embree_release_lights(s);
+    noc_embree_release_learning(s);
     free_buffers(&s->b);
     free_workers(s);
     noc_pool_destroy(s->pool);
@@ -80,6 +81,7 @@ static noc_status resize(void *state, int width, int height, int sets) {
     embree_state *s = state;
     frame_buffers *b = &s->b;
     free_buffers(b);
+    noc_embree_release_learning(s);
     b->blocks_x = (width + BLOCK_SIDE - 1) / BLOCK_SIDE;
     b->blocks_y = (height + BLOCK_SIDE - 1) / BLOCK_SIDE;
     size_t blocks = (size_t)b->blocks_x * b->blocks_y;
@@ -161,8 +163,13 @@ static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st
     if (st->passes >> NOC_PASS_SHADE & 1)
         s->shaded_set = st->target;
     run.ctx.influence = s->influence;
+    if ((status = noc_embree_begin_learning(s, frame)) != NOC_OK)
+        return status;
     noc_pool_run(s->pool, run.tiles, run_tile, &run);
-    return atomic_load(&run.cancelled) ? NOC_ERR_CANCELLED : NOC_OK;
+    if (atomic_load(&run.cancelled))
+        return NOC_ERR_CANCELLED;
+    noc_embree_end_learning(s, frame);
+    return NOC_OK;
 }
 
 struct mean_run {

@@ -4,6 +4,7 @@
 
 #include "backend/embree/kernels.h"
 #include "backend/embree/rt.h"
+#include "light/learned.h"
 
 #include <stdatomic.h>
 #include <sys/types.h>
@@ -27,6 +28,39 @@ typedef struct packet {
     bool primary;
 } packet;
 
+/* ris over lists: rays of one block, a lane each. */
+typedef struct ray_draw {
+    rblock r;             /* w: W, 0 where the ray was blocked; m and p are not used */
+    uint8_t entry[BLOCK]; /* of the list */
+    int block;            /* of the tile */
+} ray_draw;
+
+/* What is believed in a cell of the scene, and what its rays find. */
+typedef struct tile_cell {
+    uint64_t key;
+    beliefs beliefs;
+    uint16_t asked[2 * LIST_ENTRIES], seen[2 * LIST_ENTRIES];
+} tile_cell;
+
+/* What the passes of one tile hand on to each other. */
+typedef struct tile_rays {
+    weighed weighed;                           /* of the block at hand */
+    size_t at[TILE_BLOCKS * TILE_BLOCKS];      /* the tile's blocks in the picture */
+    int cell_of[TILE_BLOCKS * TILE_BLOCKS];
+    int cells, count;
+    double bright;
+    tile_cell cell[TILE_BLOCKS * TILE_BLOCKS];
+    ray_draw draws[TILE_BLOCKS * TILE_BLOCKS * MOST_SHADOW_RAYS];
+    segment_block segments[TILE_BLOCKS * TILE_BLOCKS * MOST_SHADOW_RAYS];
+} tile_rays;
+
+/* Where a tile's sightings are. */
+typedef struct learned_tile {
+    int worker;
+    size_t first, count;
+    double bright; /* sum of what its pixels are expected to see, cd/m2 */
+} learned_tile;
+
 /* One a thread; a multiple of a cache line apart. */
 typedef struct worker {
     ALIGNED double seconds[NOC_PASS_COUNT];
@@ -34,6 +68,8 @@ typedef struct worker {
     neighbour *neighbours; /* MAX_NEIGHBOURS */
     reference_scratch reference;
     list_scratch lists;
+    tile_rays shared;
+    NOC_ARRAY(noc_sighting) sightings; /* of the frame being made */
     pick_block picks;
     tree_items tree_items[2];
     noc_found found;
@@ -83,6 +119,10 @@ typedef struct embree_state {
     noc_influence *influence;
     noc_influence_params influence_params; /* that it was made with */
     noc_tree *tree;
+    noc_learned *learned; /* for pictures of this size */
+    learned_tile *learned_tiles;
+    NOC_ARRAY(noc_sighting) sightings; /* of the frame, in the order of tiles */
+    float list_brightness; /* mean luminance that the last frame expected, cd/m2; 0: not known */
     double light_seconds[NOC_CANDIDATES_TREE + 1]; /* what each took to build */
     worker *workers;
     int worker_count;
@@ -136,6 +176,17 @@ void noc_embree_light_stats(void *state, const noc_render_params *params, noc_li
 
 /* passes.c: one pass over one tile */
 void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t);
+
+/* list_rays.c: the passes of a tile where every pixel shares out several rays over its list, after the list was built into
+ * w->lists.list */
+bool noc_embree_shares_rays(const noc_render_params *p);
+void noc_embree_share_candidates(stage_run *run, worker *w, tile t, const gblock *const *g, const uint32_t *lanes);
+void noc_embree_share_visibility(stage_run *run, worker *w, tile t);
+void noc_embree_share_shade(stage_run *run, worker *w, tile t);
+/* Before and after a frame's only stage; a frame that is dropped is not learned from. */
+noc_status noc_embree_begin_learning(embree_state *s, const noc_frame *frame);
+void noc_embree_end_learning(embree_state *s, const noc_frame *frame);
+void noc_embree_release_learning(embree_state *s);
 
 /* reuse.c: temporal and spatial combination of one block */
 void noc_embree_temporal(stage_run *run, worker *w, int bx, int by);

@@ -11,7 +11,7 @@
 #include "light/tree.h"
 #include "render/backend.h"
 
-enum { MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32, LIST_ENTRIES = 128, PICK_AHEAD = 8 };
+enum { MOST_SHADOW_RAYS = 16, MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32, LIST_ENTRIES = 128, PICK_AHEAD = 8 };
 /* List building: surfaces of a tile that lights are scored at; nodes that are opened, of each level and of the lowest; steps
  * that scores are told apart by. */
 enum { LIST_EXAMPLES = 8, OPENED_NODES = 96, OPENED_CLUSTERS = 96, SCORE_STEPS = 1020 };
@@ -87,6 +87,19 @@ typedef struct list_scratch {
     int8_t level[LIST_GROUPS];
 } list_scratch;
 
+/* What is believed of a list's entries, and so how they are weighed. */
+typedef struct beliefs {
+    float share[2 * LIST_ENTRIES];   /* weight * pull */
+    float expect[2 * LIST_ENTRIES];  /* weight * visibility */
+} beliefs;
+
+/* A list's entries, weighed for the pixels of a block. */
+typedef struct weighed {
+    ALIGNED float weight[2 * LIST_ENTRIES][BLOCK]; /* target * share */
+    float all[BLOCK];                              /* their sum */
+    float bright[BLOCK];                           /* sum of target * expect, cd/m2 */
+} weighed;
+
 typedef struct kernels {
     const char *name;
     /* M candidates a lane of `lanes`; w = m = 0 elsewhere. x, y: pixel of lane 0. */
@@ -96,6 +109,11 @@ typedef struct kernels {
     void (*list_build)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks,
                        float choice, float rotation, list_scratch *scratch, light_list *out);
     void (*list_candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, rblock *out);
+    /* Several draws from a list: weigh its entries, draw n[l] of them a lane, find their (u, v). n[l] is a whole number. */
+    void (*list_weigh)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, const beliefs *e,
+                       weighed *out);
+    void (*list_draw)(int count, const weighed *w, const float n[BLOCK], const float start[BLOCK], uint8_t entry[][BLOCK]);
+    void (*list_places)(const struct core_context *ctx, int x, int y, const uint8_t entry[BLOCK], rblock *out);
     /* Light pickers: m candidates for the lanes of a block; then a reservoir of such candidates. */
     void (*pick_power)(const struct core_context *ctx, int x, int y, int m, pick_block *out);
     void (*pick_tree)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,

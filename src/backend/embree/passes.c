@@ -113,6 +113,10 @@ static void tile_candidates(stage_run *run, worker *w, tile t) {
         }
     u32 key = rng_key(f->params->seed, (uint32_t)(t.y0 * b->blocks_x + t.x0), f->index);
     run->k->list_build(&run->ctx, g, lanes, n, rng(key, DIM_LIST), rng(key, DIM_LIST + 1), &w->lists, &w->lists.list);
+    if (noc_embree_shares_rays(f->params)) {
+        noc_embree_share_candidates(run, w, t, g, lanes);
+        return;
+    }
     struct core_context ctx = run->ctx;
     ctx.list = &w->lists.list;
     n = 0;
@@ -194,7 +198,7 @@ static void shade(stage_run *run, worker *w, int bx, int by) {
     const gblock *g = &b->g[f->gbuffer][at];
     cblock *c = &b->colour[at];
     show_emitters(run, g, &b->emitter[at], c);
-    if (!run->ctx.light_count)
+    if (!run->ctx.light_count || noc_embree_shares_rays(f->params))
         return;
     if (f->params->method == NOC_METHOD_REFERENCE) {
         w->dropped += (uint64_t)__builtin_popcount(shade_reference(run, w, g, bx, by, c));
@@ -242,6 +246,11 @@ void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
         tile_candidates(run, w, t);
         return;
     }
+    bool shares = noc_embree_shares_rays(run->ctx.frame->params);
+    if (shares && pass == NOC_PASS_VISIBILITY) {
+        noc_embree_share_visibility(run, w, t);
+        return;
+    }
     float (*rays)[BLOCK] = run->s->b.views.made[NOC_AOV_RAYS];
     for (int by = t.y0; by < t.y1; by++)
         for (int bx = t.x0; bx < t.x1; bx++) {
@@ -249,4 +258,6 @@ void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
             passes[pass](run, w, bx, by);
         }
     w->rays = NULL;
+    if (shares && pass == NOC_PASS_SHADE && run->ctx.light_count)
+        noc_embree_share_shade(run, w, t);
 }

@@ -1,0 +1,249 @@
+/* ris over light lists with several shadow rays a pixel (core/lists.h, docs/estimator.md): every pixel weighs the entries of
+ * its tile's list, shares its rays out over them systematically, and adds up what they see. How many rays, and which
+ * entries, is steered by what earlier frames have learned of the lights' visibility. */
+#include "backend/embree/embree.h"
+
+#include "core/random.h"
+
+#include <math.h>
+
+enum { CELL_PIXELS = 32, MOST_ASKED_A_TILE = 16 * BLOCK * TILE_BLOCKS * TILE_BLOCKS };
+_Static_assert(MOST_ASKED_A_TILE <= UINT16_MAX, "counts of a tile fit");
+
+bool noc_embree_shares_rays(const noc_render_params *p) {
+    return p->method == NOC_METHOD_RIS && p->candidates == NOC_CANDIDATES_LISTS;
+}
+
+static bool learns(const noc_render_params *p) { return noc_embree_shares_rays(p) && p->learn && p->final_ray; }
+
+/* ---- what is believed ---- */
+
+static uint64_t key_of_block(const noc_frame *f, const gblock *g, uint32_t lanes) {
+    const noc_frame_camera *c = &f->camera;
+    int l = lanes >> 5 & 1 ? 5 : __builtin_ctz(lanes); /* one in the middle */
+    float right = sqrtf(c->right[0] * c->right[0] + c->right[1] * c->right[1] + c->right[2] * c->right[2]);
+    float side = CELL_PIXELS * g->depth[l] * 2 * right / c->width;
+    const float p[3] = { g->px[l], g->py[l], g->pz[l] }, n[3] = { g->nx[l], g->ny[l], g->nz[l] };
+    return noc_cell_key(p, n, (int)lrintf(log2f(NOC_CLAMP(side, 1e-6f, 1e9f))));
+}
+
+/* How strongly rays are drawn to a light: the root of its expected square, and something for those thought to be hidden. */
+static float pull(float visibility) { return sqrtf(visibility) + 0.1f; }
+
+/* Number of the block's cell among those of the tile. */
+static int believe(const stage_run *run, const gblock *g, uint32_t lanes, const light_list *list, tile_rays *t) {
+    bool learn = learns(run->ctx.frame->params);
+    uint64_t key = learn ? key_of_block(run->ctx.frame, g, lanes) : 1;
+    for (int i = t->cells - 1; i >= 0; i--)
+        if (t->cell[i].key == key)
+            return i;
+    tile_cell *c = &t->cell[t->cells];
+    const noc_cell *known = learn ? noc_learned_find(run->s->learned, key) : NULL;
+    c->key = key;
+    for (uint32_t i = 0; i < list->count; i++) {
+        float visibility = noc_cell_visibility(known, list->light[i]);
+        c->beliefs.share[i] = list->weight[i] * pull(visibility);
+        c->beliefs.expect[i] = list->weight[i] * visibility;
+        c->asked[i] = c->seen[i] = 0;
+    }
+    return t->cells++;
+}
+
+/* ---- rays ---- */
+
+/* Rays of a lane: as many as asked for where nothing is known, more where little light is expected to get through, up to
+ * twice as many. A hundredth of the picture's brightness is dark enough not to look for more. */
+static float ray_count(const stage_run *run, const tile_rays *t, int l, float rounding) {
+    const float unknown = NOC_UNKNOWN_LIGHT / pull(NOC_UNKNOWN_LIGHT);
+    float rays = (float)run->ctx.frame->params->shadow_rays, all = t->weighed.all[l];
+    if (!(all > 0))
+        return 0;
+    float mean = rays * unknown * all / (t->weighed.bright[l] + 0.01f * run->s->list_brightness);
+    return floorf(NOC_CLAMP(mean, 1.f, 2 * rays) + rounding);
+}
+
+/* One ray for each lane of `on`, to entry[l]. */
+static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ctx, const gblock *g, int block, uint32_t on,
+                     const uint8_t entry[BLOCK], const float n[BLOCK], int x, int y) {
+    ray_draw *d = &t->draws[t->count];
+    segment_block *s = &t->segments[t->count++];
+    const light_list *list = ctx->list;
+    float (*counts)[BLOCK] = run->s->b.views.made[NOC_AOV_RAYS];
+    d->block = block;
+    s->valid = on;
+    s->counts = counts ? counts[t->at[block]] : NULL;
+    for (int l = 0; l < BLOCK; l++) {
+        int i = d->entry[l] = on >> l & 1 ? entry[l] : 0;
+        s->light[l] = d->r.light[l] = list->light[i];
+        d->r.w[l] = on >> l & 1 ? t->weighed.all[l] / (n[l] * t->weighed.weight[i][l]) * list->weight[i] : 0;
+    }
+    run->k->list_places(ctx, x, y, d->entry, &d->r);
+    run->k->segments(&run->ctx, g, d->r.light, d->r.u, d->r.v, &s->rays);
+}
+
+/* The reservoir that stands for the block in views: one of the draws, at random. */
+static void keep_one(const stage_run *run, const tile_rays *t, const float n[BLOCK], const float pick[BLOCK], int first,
+                     rblock *out) {
+    memset(out, 0, sizeof(*out));
+    for (int l = 0; l < BLOCK; l++) {
+        out->u[l] = out->v[l] = 0.5f;
+        if (!(n[l] > 0))
+            continue;
+        const ray_draw *d = &t->draws[first + (int)NOC_MIN(pick[l] * n[l], n[l] - 1)];
+        const tile_cell *c = &t->cell[t->cell_of[d->block]];
+        out->light[l] = d->r.light[l];
+        out->u[l] = d->r.u[l];
+        out->v[l] = d->r.v[l];
+        out->w[l] = d->r.w[l] * n[l];
+        out->p[l] = t->weighed.weight[d->entry[l]][l] / c->beliefs.share[d->entry[l]];
+        out->m[l] = (float)run->ctx.frame->params->draws;
+    }
+}
+
+static void draw_block(stage_run *run, tile_rays *t, const struct core_context *ctx, const gblock *g, int block, int x, int y,
+                       rblock *out) {
+    float n[BLOCK], start[BLOCK], pick[BLOCK];
+    uint8_t entry[MOST_SHADOW_RAYS][BLOCK];
+    int most = 0, first = t->count;
+    for (int l = 0; l < BLOCK; l++) {
+        const noc_render_params *p = ctx->frame->params;
+        uint32_t pixel = (uint32_t)(y + (l >> 2)) * (uint32_t)p->width + (uint32_t)(x + (l & 3));
+        uint32_t key = rng_key(p->seed, pixel, ctx->frame->index);
+        n[l] = ray_count(run, t, l, rng(key, DIM_CANDIDATE + 2));
+        start[l] = rng(key, DIM_CANDIDATE + 3);
+        pick[l] = rng(key, DIM_CANDIDATE + 4);
+        most = NOC_MAX(most, (int)n[l]);
+    }
+    run->k->list_draw((int)ctx->list->count, &t->weighed, n, start, entry);
+    for (int k = 0; k < most; k++) {
+        uint32_t on = 0;
+        for (int l = 0; l < BLOCK; l++)
+            on |= (uint32_t)(k < (int)n[l]) << l;
+        add_rays(run, t, ctx, g, block, on, entry[k], n, x, y);
+    }
+    keep_one(run, t, n, pick, first, out);
+}
+
+void noc_embree_share_candidates(stage_run *run, worker *w, tile at, const gblock *const *g, const uint32_t *lanes) {
+    struct core_context ctx = run->ctx;
+    frame_buffers *b = &run->s->b;
+    tile_rays *t = &w->shared;
+    ctx.list = &w->lists.list;
+    t->count = t->cells = 0;
+    t->bright = 0;
+    int n = 0;
+    for (int by = at.y0; by < at.y1; by++)
+        for (int bx = at.x0; bx < at.x1; bx++, n++) {
+            int x = bx * BLOCK_SIDE, y = by * BLOCK_SIDE;
+            rblock *r = &b->r[run->stage->target][t->at[n] = (size_t)by * b->blocks_x + bx];
+            b->visible[run->stage->target][t->at[n]] = 0;
+            memset(r, 0, sizeof(*r));
+            if (!lanes[n] || !ctx.list->count)
+                continue;
+            t->cell_of[n] = believe(run, g[n], lanes[n], ctx.list, t);
+            run->k->list_weigh(&ctx, g[n], lanes[n], x, y, &t->cell[t->cell_of[n]].beliefs, &t->weighed);
+            for (int l = 0; l < BLOCK; l++)
+                t->bright += t->weighed.bright[l];
+            draw_block(run, t, &ctx, g[n], n, x, y, r);
+            if (ctx.frame->params->aovs)
+                noc_embree_view_candidates(run, w, t->at[n], lanes[n], r);
+        }
+}
+
+/* What the rays found goes into the tile's cells, and is handed on to be learned. */
+static void note_sightings(stage_run *run, worker *w, tile at) {
+    tile_rays *t = &w->shared;
+    const light_list *list = &w->lists.list;
+    size_t item = (size_t)(at.y0 / TILE_BLOCKS) * (size_t)run->s->b.tiles_x + (size_t)(at.x0 / TILE_BLOCKS);
+    for (int i = 0; i < t->count; i++) {
+        tile_cell *c = &t->cell[t->cell_of[t->draws[i].block]];
+        for (uint32_t bits = t->segments[i].valid; bits; bits &= bits - 1) {
+            int l = __builtin_ctz(bits);
+            c->asked[t->draws[i].entry[l]]++;
+            c->seen[t->draws[i].entry[l]] += t->segments[i].clear >> l & 1;
+        }
+    }
+    learned_tile *out = &run->s->learned_tiles[item];
+    *out = (learned_tile){ (int)(w - run->s->workers), w->sightings.len, 0, t->bright };
+    for (int k = 0; k < t->cells; k++)
+        for (uint32_t i = 0; i < list->count; i++)
+            if (t->cell[k].asked[i])
+                array_push(&w->sightings, (noc_sighting){ t->cell[k].key, list->light[i], t->cell[k].asked[i], t->cell[k].seen[i] });
+    out->count = w->sightings.len - out->first;
+}
+
+void noc_embree_share_visibility(stage_run *run, worker *w, tile at) {
+    tile_rays *t = &w->shared;
+    if (run->ctx.frame->params->final_ray)
+        noc_embree_free_many(run->s, w, t->segments, t->count);
+    else
+        for (int i = 0; i < t->count; i++)
+            t->segments[i].clear = t->segments[i].valid;
+    for (int i = 0; i < t->count; i++)
+        for (int l = 0; l < BLOCK; l++)
+            if (!(t->segments[i].clear >> l & 1))
+                t->draws[i].r.w[l] = 0;
+    if (learns(run->ctx.frame->params))
+        note_sightings(run, w, at);
+}
+
+void noc_embree_share_shade(stage_run *run, worker *w, tile at) {
+    const tile_rays *t = &w->shared;
+    if (!(run->stage->passes >> NOC_PASS_VISIBILITY & 1))
+        noc_embree_share_visibility(run, w, at);
+    const gblock *g = run->s->b.g[run->ctx.frame->gbuffer];
+    for (int i = 0; i < t->count; i++) {
+        size_t block = t->at[t->draws[i].block];
+        if (t->segments[i].clear)
+            w->dropped += (uint64_t)__builtin_popcount(
+                run->k->shade(&run->ctx, &g[block], &t->draws[i].r, t->segments[i].clear, &run->s->b.colour[block]));
+    }
+}
+
+/* ---- learning ---- */
+
+noc_status noc_embree_begin_learning(embree_state *s, const noc_frame *frame) {
+    size_t tiles = (size_t)s->b.tiles_x * s->b.tiles_y;
+    if (!learns(frame->params))
+        return NOC_OK;
+    if (!s->learned) {
+        s->learned = noc_learned_create(tiles, s->log);
+        s->learned_tiles = noc_alloc_large(tiles, sizeof(*s->learned_tiles));
+        if (!s->learned || !s->learned_tiles) {
+            noc_embree_release_learning(s);
+            return NOC_ERR_MEMORY;
+        }
+    }
+    if (frame->index == 0) {
+        noc_learned_forget(s->learned);
+        s->list_brightness = 0;
+    }
+    for (int i = 0; i < s->worker_count; i++)
+        s->workers[i].sightings.len = 0;
+    return NOC_OK;
+}
+
+void noc_embree_end_learning(embree_state *s, const noc_frame *frame) {
+    size_t tiles = (size_t)s->b.tiles_x * s->b.tiles_y;
+    double bright = 0;
+    if (!learns(frame->params))
+        return;
+    s->sightings.len = 0;
+    for (size_t i = 0; i < tiles; i++) {
+        const learned_tile *t = &s->learned_tiles[i];
+        array_append(&s->sightings, s->workers[t->worker].sightings.data + t->first, t->count);
+        bright += t->bright;
+    }
+    noc_learned_add(s->learned, s->pool, s->sightings.data, s->sightings.len);
+    s->list_brightness = (float)(bright / ((double)s->b.width * s->b.height));
+}
+
+void noc_embree_release_learning(embree_state *s) {
+    noc_learned_destroy(s->learned);
+    free(s->learned_tiles);
+    array_free(&s->sightings);
+    for (int i = 0; i < s->worker_count; i++)
+        array_free(&s->workers[i].sightings);
+    s->learned = NULL;
+    s->learned_tiles = NULL;
+}
