@@ -85,10 +85,11 @@ static noc_render_params variant(int i) {
     case 13: p.candidates = NOC_CANDIDATES_POWER; break;
     case 14: p.candidates = NOC_CANDIDATES_BVH; break;
     case 15: p.candidates = NOC_CANDIDATES_TREE; break;
+    case 16: p.method = NOC_METHOD_RIS; p.shadow_rays = 8; p.learn = false; break;
     }
     return p;
 }
-enum { VARIANTS = 16 };
+enum { VARIANTS = 17 };
 
 static void scalar_and_wide_agree(void **state) {
     (void)state;

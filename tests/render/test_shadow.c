@@ -71,6 +71,7 @@ static void no_acne(void **state) {
             noc_camera c = look(far, far - 14, 12, far, far, 0, 40);
             noc_render_params p = measure(64, 48, NOC_METHOD_RIS);
             p.emitters = false;
+            p.learn = false; /* what is not traced is not learned from */
             noc_image *traced = render(s, &c, &p, 3);
             p.final_ray = false;
             noc_image *open = render(s, &c, &p, 3);

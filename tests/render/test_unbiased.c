@@ -143,6 +143,8 @@ typedef struct config {
     noc_candidates picker; /* list = 0 */
     noc_influence_boxes boxes;
     int share; /* bvh: lights a volume; 0: 1 */
+    int shadow_rays; /* ris with lists; 0: the default */
+    bool unlearned;
 } config;
 
 static noc_render_params params_of(const config *c, uint32_t seed) {
@@ -153,6 +155,8 @@ static noc_render_params params_of(const config *c, uint32_t seed) {
     p.list = c->list;
     p.influence_boxes = c->boxes;
     p.influence_cluster = c->share ? c->share : 1;
+    p.shadow_rays = c->shadow_rays ? c->shadow_rays : p.shadow_rays;
+    p.learn = !c->unlearned;
     p.tail = c->list ? c->list : 1;
     p.accumulate = false;
     p.emitters = false; /* the same in all methods, and much brighter than what they differ in */
@@ -244,7 +248,9 @@ static const config unbiased[] = {
     { "ris, bvh, shared volumes", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH, .share = 8 },
     { "ris, bvh, boxes", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH, .boxes = NOC_INFLUENCE_VISIBLE },
     { "ris, tree", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_TREE },
-    { "ris, lists of 12", NOC_METHOD_RIS, .list = 12 },
+    { "ris, lists of 12", NOC_METHOD_RIS, .list = 12, .reuse = true },
+    { "ris, lists of 12, 1 ray", NOC_METHOD_RIS, .list = 12, .reuse = true, .shadow_rays = 1 },
+    { "ris, lists of 12, nothing learned", NOC_METHOD_RIS, .list = 12, .shadow_rays = 3, .unlearned = true },
     { "pairwise + rays, lists of 12", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .spatial = true,
       .rays = true, .reuse = true, .list = 12 },
     { "mis + rays", NOC_METHOD_RESTIR, NOC_BIAS_MIS, .temporal = true, .spatial = true, .rays = true, .reuse = true },
