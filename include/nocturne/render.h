@@ -70,8 +70,8 @@ typedef struct noc_render_params {
 } noc_render_params;
 
 #define NOC_RENDER_DEFAULTS(set) \
-    set(width, 1280) set(height, 720) set(method, NOC_METHOD_RESTIR) set(candidates, NOC_CANDIDATES_LISTS) \
-    set(draws, 32) set(list, 32) set(tail, 32) set(shadow_rays, 6) set(learn, true) set(influence_cluster, 1) set(uniform_every, 4) set(rays, 64) set(temporal, true) set(spatial, true) \
+    set(width, 1280) set(height, 720) set(method, NOC_METHOD_RIS) set(candidates, NOC_CANDIDATES_LISTS) \
+    set(draws, 32) set(list, 64) set(tail, 128) set(shadow_rays, 8) set(learn, true) set(influence_cluster, 1) set(uniform_every, 4) set(rays, 64) set(temporal, true) set(spatial, true) \
     set(neighbours, 5) set(radius, 10) set(passes, 1) set(history, 20) set(bias, NOC_BIAS_PAIRWISE) \
     set(bias_rays, true) set(visibility_reuse, true) set(final_ray, true) set(reject_depth, 0.1) \
     set(reject_normal, 0.9) set(seed, 1) set(jitter, true) set(accumulate, true) set(sky, 0.02) \
@@ -81,6 +81,15 @@ NOC_DEFAULT_PARAMS(noc_render_params, noc_render_default_params, NOC_RENDER_DEFA
 #else
 #define noc_render_default_params() ((noc_render_params){ NOC_RENDER_DEFAULTS(NOC_DEFAULT_IN_C) })
 #endif
+
+/* Settings for a purpose, chosen by measurement (docs/estimator.md, "Presets"). */
+typedef enum noc_preset {
+    NOC_PRESET_STILL,       /* least error after a minute: the defaults */
+    NOC_PRESET_INTERACTIVE  /* least error of the first frames, a frame in half the time */
+} noc_preset;
+
+/* Sets method, candidates, list, tail, shadow_rays and learn; the rest stays as it is. */
+NOC_API void noc_render_use_preset(noc_render_params *params, noc_preset preset);
 
 typedef struct noc_renderer noc_renderer;
 

@@ -11,6 +11,8 @@ static const noc_option own_options[] = {
     { "show", "Output", NOC_OPTION_CHOICE, offsetof(A, show), 0, 0,
       "picture|lights|density|light|weight|confidence|rays|variance|error", "", "what is written: the picture, or how lights were sampled" },
     TEXT("show-range", "Output", show_range, "LOW,HIGH", "ends of that view's colour bar; else found from its numbers"),
+    { "preset", "Estimator", NOC_OPTION_CHOICE, offsetof(A, preset), 0, 0, "still|interactive", "",
+      "settings for a purpose; options beside it win" },
     { "frames", "Output", NOC_OPTION_INT, offsetof(A, frames), 1, 1e9, NULL, "", "frames that are rendered and averaged" },
     { "time", "Output", NOC_OPTION_REAL, offsetof(A, time), 0, 1e9, NULL, "s",
       "render for about this long instead; 0 = no limit" },
@@ -90,6 +92,21 @@ static int check_builtin(const render_args *args) {
     return CLI_OK;
 }
 
+/* What the preset sets, but for options that were given themselves. */
+static void use_preset(render_args *args) {
+    noc_render_params given = args->render, *p = &args->render;
+    noc_render_use_preset(p, (noc_preset)args->preset);
+    for (size_t i = 0; i < args->common.given_count; i++) {
+        const char *name = args->common.given[i]->name;
+        p->method = strcmp(name, "method") ? p->method : given.method;
+        p->candidates = strcmp(name, "candidates") ? p->candidates : given.candidates;
+        p->list = strcmp(name, "list") ? p->list : given.list;
+        p->tail = strcmp(name, "tail") ? p->tail : given.tail;
+        p->shadow_rays = strcmp(name, "shadow-rays") ? p->shadow_rays : given.shadow_rays;
+        p->learn = strcmp(name, "learn") ? p->learn : given.learn;
+    }
+}
+
 /* All that can be wrong with the arguments is found before any file is read. */
 static int check(render_job *job) {
     render_args *args = job->args;
@@ -98,6 +115,7 @@ static int check(render_job *job) {
     if (!args->output)
         return cli_usage(&cli_render, "where to? -o night.png");
     int status = check_builtin(args);
+    use_preset(args);
     status = status ? status : parse_size(args);
     status = status ? status : cli_parse_exposure(&cli_render, args->exposure, &args->display);
     status = status ? status : cli_parse_camera(job);

@@ -11,6 +11,7 @@ typedef struct render_args {
     double time;             /* s; 0: no limit */
     int threads;
     bool stats;
+    int preset;              /* noc_preset */
     int show;                /* 0: the picture, else 1 + noc_aov */
     const char *show_range;
     noc_channel_params range;

@@ -188,7 +188,7 @@ cat >kill.json <<'SPEC'
                { "name": "cut", "view": "street", "path": { "frames": 4, "cut": 3, "before": { "view": "aerial", "fov": 30 } } } ],
   "size": "48x32", "seconds": 0.3, "shown": [1, 3],
   "reference": { "rays": 64, "frames": 4 },
-  "configurations": [ { "name": "ris", "method": "ris", "learn": false }, { "name": "restir, M *", "draws": [1, 8] },
+  "configurations": [ { "name": "ris", "method": "ris", "learn": false }, { "name": "restir, M *", "method": "restir", "draws": [1, 8] },
                       { "name": "two frames", "frames": 2, "seconds": 0 } ]
 }
 SPEC

@@ -6,7 +6,7 @@ small='builtin:city --city-size 150 --size 64x36 --frames 2'
 run render $small -o a.png
 test $status = 0 && test ! -s err; result $? "renders the built-in city"
 test "$(meta a.png size)" = "64 36"; result $? "the picture has the size asked for"
-grep -q '^a.png$' out && grep -Eq '[0-9] triangles, [0-9,]+ lights' out && grep -q '2 frames of restir' out && grep -q 'a frame' out &&
+grep -q '^a.png$' out && grep -Eq '[0-9] triangles, [0-9,]+ lights' out && grep -q '2 frames of ris' out && grep -q 'a frame' out &&
     grep -q 'memory .*B at most' out
 result $? "the summary tells path, size, frames, triangles, lights, times, memory"
 test "$(ls)" = "a.png
@@ -25,7 +25,7 @@ test $status = 0 && ! cmp -s a.png b.png; result $? "another city, another pictu
 eye=$(meta a.png camera-eye | tr ' ' ,) target=$(meta a.png camera-target | tr ' ' ,) fov=$(meta a.png camera-fov)
 run render $small --eye "$eye" --target "$target" --fov "$fov" -o b.png
 test -n "$eye" && cmp -s a.png b.png; result $? "the camera in the metadata gives the same file" "$eye $target $fov"
-test "$(meta a.png method)" = restir && test "$(meta a.png seed)" = 1 && test "$(meta a.png frames)" = 2 && test "$(meta a.png city-size)" = 150 &&
+test "$(meta a.png method)" = ris && test "$(meta a.png seed)" = 1 && test "$(meta a.png frames)" = 2 && test "$(meta a.png city-size)" = 150 &&
     meta a.png Software | grep -q '^Nocturne ' && test -n "$(meta a.png ev100)"
 result $? "the options are in the metadata"
 
@@ -35,17 +35,27 @@ result $? "EXR with units, camera and options"
 run render $small -q -o b.PNG
 test $status = 0 && test ! -s out && test ! -s err && cmp -s a.png b.PNG; result $? "quiet says nothing; endings in capitals count"
 
+run render $small --preset interactive -o b.png
+test "$(meta b.png shadow-rays) $(meta b.png list) $(meta b.png tail)" = "4 32 32"; result $? "a preset is its settings"
+run render $small --tail 99 --preset interactive --shadow-rays 7 -o b.png
+test "$(meta b.png shadow-rays) $(meta b.png list) $(meta b.png tail)" = "7 32 99"; result $? "options beside a preset win"
+
 for view in street aerial overview; do
     run render $small --view $view -o $view.png
     test $status = 0; result $? "view $view"
 done
 ! cmp -s street.png aerial.png && ! cmp -s aerial.png overview.png; result $? "the views differ"
-for method in reference is ris; do
+for method in reference is restir; do
     run render $small --method $method -o b.png
     test $status = 0 && ! cmp -s a.png b.png; result $? "method $method"
 done
-for switch in --no-temporal --no-spatial --no-bias-rays --no-visibility-reuse --no-final-ray --no-jitter --no-accumulate --no-emitters \
-    --sky=0 --exposure=3 --compensation=1 --tonemap=linear --candidates=uniform --list=3 --tail=3 --neighbours=2 --bias=mis --city-lit=1 --fov=80; do
+run render $small --method restir -o r.png
+for switch in --no-temporal --no-spatial --no-bias-rays --no-visibility-reuse --neighbours=2 --bias=mis; do
+    run render $small --method restir $switch -o b.png
+    test $status = 0 && ! cmp -s r.png b.png; result $? "restir: $switch changes the picture"
+done
+for switch in --no-learn --shadow-rays=2 --no-final-ray --no-jitter --no-accumulate --no-emitters \
+    --sky=0 --exposure=3 --compensation=1 --tonemap=linear --candidates=uniform --list=3 --tail=3 --city-lit=1 --fov=80; do
     run render $small $switch -o b.png
     test $status = 0 && ! cmp -s a.png b.png; result $? "$switch changes the picture"
 done

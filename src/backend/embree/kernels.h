@@ -22,6 +22,7 @@ enum { LIST_GROUPS = NOC_CLUSTER_ROOTS / 16 + NOC_CLUSTER_LEVELS * OPENED_NODES 
 /* What the pixels of a tile evaluate: core/lists.h. */
 typedef struct light_list {
     uint32_t count;
+    uint32_t copies; /* of every light: count / copies are told apart */
     uint32_t light[2 * LIST_ENTRIES];
     float weight[2 * LIST_ENTRIES];
 } light_list;

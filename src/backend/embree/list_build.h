@@ -330,6 +330,7 @@ static void list_build(const struct core_context *ctx, const gblock *const *g, c
     const noc_render_params *p = ctx->frame->params;
     tile_bound t = bound_tile(ctx, g, lanes, blocks);
     out->count = 0;
+    out->copies = 1;
     if (t.empty || !c->count)
         return;
     examples e;

@@ -62,39 +62,66 @@ static float ray_count(const stage_run *run, const tile_rays *t, int l, float ro
     return floorf(NOC_CLAMP(mean, 1.f, 2 * rays) + rounding);
 }
 
-/* One ray for each lane of `on`, to entry[l]. */
-static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ctx, const gblock *g, int block, uint32_t on,
-                     const uint8_t entry[BLOCK], const float n[BLOCK], int x, int y) {
+/* A block's draws. An entry that was drawn several times, which come one after the other, needs one ray. */
+typedef struct block_draws {
+    float n[BLOCK];                             /* draws a lane */
+    uint8_t entry[MOST_SHADOW_RAYS][BLOCK];     /* ray, lane */
+    uint8_t times[MOST_SHADOW_RAYS][BLOCK];     /* drawn so often; 0: no such ray */
+} block_draws;
+
+static int join_equals(block_draws *d) {
+    int most = 0;
+    memset(d->times, 0, sizeof(d->times));
+    for (int l = 0; l < BLOCK; l++) {
+        int rays = 0;
+        for (int k = 0; k < (int)d->n[l]; k++) {
+            if (!k || d->entry[k][l] != d->entry[rays - 1][l])
+                d->entry[rays++][l] = d->entry[k][l];
+            d->times[rays - 1][l]++;
+        }
+        most = NOC_MAX(most, rays);
+    }
+    return most;
+}
+
+/* Ray k of each lane that has one. */
+static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ctx, const gblock *g, int block,
+                     const block_draws *from, int k, int x, int y) {
     ray_draw *d = &t->draws[t->count];
     segment_block *s = &t->segments[t->count++];
     const light_list *list = ctx->list;
     float (*counts)[BLOCK] = run->s->b.views.made[NOC_AOV_RAYS];
     d->block = block;
-    s->valid = on;
+    s->valid = 0;
     s->counts = counts ? counts[t->at[block]] : NULL;
     for (int l = 0; l < BLOCK; l++) {
-        int i = d->entry[l] = on >> l & 1 ? entry[l] : 0;
+        float times = from->times[k][l];
+        int i = d->entry[l] = times > 0 ? from->entry[k][l] : 0;
+        s->valid |= (uint32_t)(times > 0) << l;
         s->light[l] = d->r.light[l] = list->light[i];
-        d->r.w[l] = on >> l & 1 ? t->weighed.all[l] / (n[l] * t->weighed.weight[i][l]) * list->weight[i] : 0;
+        d->r.w[l] = times > 0 ? times * t->weighed.all[l] / (from->n[l] * t->weighed.weight[i][l]) * list->weight[i] : 0;
     }
     run->k->list_places(ctx, x, y, d->entry, &d->r);
     run->k->segments(&run->ctx, g, d->r.light, d->r.u, d->r.v, &s->rays);
 }
 
 /* The reservoir that stands for the block in views: one of the draws, at random. */
-static void keep_one(const stage_run *run, const tile_rays *t, const float n[BLOCK], const float pick[BLOCK], int first,
+static void keep_one(const stage_run *run, const tile_rays *t, const block_draws *from, const float pick[BLOCK], int first,
                      rblock *out) {
     memset(out, 0, sizeof(*out));
     for (int l = 0; l < BLOCK; l++) {
         out->u[l] = out->v[l] = 0.5f;
-        if (!(n[l] > 0))
+        if (!(from->n[l] > 0))
             continue;
-        const ray_draw *d = &t->draws[first + (int)NOC_MIN(pick[l] * n[l], n[l] - 1)];
+        int k = 0;
+        for (float at = NOC_MIN(pick[l] * from->n[l], from->n[l] - 1); at >= from->times[k][l]; k++)
+            at -= from->times[k][l];
+        const ray_draw *d = &t->draws[first + k];
         const tile_cell *c = &t->cell[t->cell_of[d->block]];
         out->light[l] = d->r.light[l];
         out->u[l] = d->r.u[l];
         out->v[l] = d->r.v[l];
-        out->w[l] = d->r.w[l] * n[l];
+        out->w[l] = d->r.w[l] * from->n[l] / from->times[k][l];
         out->p[l] = t->weighed.weight[d->entry[l]][l] / c->beliefs.share[d->entry[l]];
         out->m[l] = (float)run->ctx.frame->params->draws;
     }
@@ -102,26 +129,33 @@ static void keep_one(const stage_run *run, const tile_rays *t, const float n[BLO
 
 static void draw_block(stage_run *run, tile_rays *t, const struct core_context *ctx, const gblock *g, int block, int x, int y,
                        rblock *out) {
-    float n[BLOCK], start[BLOCK], pick[BLOCK];
-    uint8_t entry[MOST_SHADOW_RAYS][BLOCK];
-    int most = 0, first = t->count;
+    float start[BLOCK], pick[BLOCK];
+    block_draws d;
+    int first = t->count;
     for (int l = 0; l < BLOCK; l++) {
         const noc_render_params *p = ctx->frame->params;
         uint32_t pixel = (uint32_t)(y + (l >> 2)) * (uint32_t)p->width + (uint32_t)(x + (l & 3));
         uint32_t key = rng_key(p->seed, pixel, ctx->frame->index);
-        n[l] = ray_count(run, t, l, rng(key, DIM_CANDIDATE + 2));
+        d.n[l] = ray_count(run, t, l, rng(key, DIM_CANDIDATE + 2));
         start[l] = rng(key, DIM_CANDIDATE + 3);
         pick[l] = rng(key, DIM_CANDIDATE + 4);
-        most = NOC_MAX(most, (int)n[l]);
     }
-    run->k->list_draw((int)ctx->list->count, &t->weighed, n, start, entry);
-    for (int k = 0; k < most; k++) {
-        uint32_t on = 0;
-        for (int l = 0; l < BLOCK; l++)
-            on |= (uint32_t)(k < (int)n[l]) << l;
-        add_rays(run, t, ctx, g, block, on, entry[k], n, x, y);
+    run->k->list_draw((int)ctx->list->count, &t->weighed, d.n, start, d.entry);
+    for (int k = 0, rays = join_equals(&d); k < rays; k++)
+        add_rays(run, t, ctx, g, block, &d, k, x, y);
+    keep_one(run, t, &d, pick, first, out);
+}
+
+/* A list with room to spare holds its lights several times, each time to be looked at in another point. */
+static void fill_list(const noc_render_params *p, light_list *list) {
+    uint32_t once = list->count, room = (uint32_t)NOC_MIN(p->list + p->tail, 2 * LIST_ENTRIES);
+    uint32_t copies = once ? NOC_MIN(room / once, (uint32_t)p->shadow_rays) : 0;
+    for (uint32_t i = 0; copies > 1 && i < once * copies; i++) {
+        list->light[i] = list->light[i % once];
+        list->weight[i] = i < once ? list->weight[i] / (float)copies : list->weight[i % once];
     }
-    keep_one(run, t, n, pick, first, out);
+    list->copies = NOC_MAX(copies, 1u);
+    list->count = once * list->copies;
 }
 
 void noc_embree_share_candidates(stage_run *run, worker *w, tile at, const gblock *const *g, const uint32_t *lanes) {
@@ -131,6 +165,7 @@ void noc_embree_share_candidates(stage_run *run, worker *w, tile at, const gbloc
     ctx.list = &w->lists.list;
     t->count = t->cells = 0;
     t->bright = 0;
+    fill_list(run->ctx.frame->params, &w->lists.list);
     int n = 0;
     for (int by = at.y0; by < at.y1; by++)
         for (int bx = at.x0; bx < at.x1; bx++, n++) {

@@ -68,7 +68,7 @@ static float expected(const stage_run *run, const worker *w, uint32_t light, int
         const light_list *list = &w->lists.list;
         for (uint32_t i = 0; i < list->count; i++)
             if (list->light[i] == light)
-                return 1 / list->weight[i];
+                return 1 / (list->weight[i] * (float)list->copies);
     } else {
         for (int i = 0; i < p->draws; i++)
             if (w->picks.light[i][l] == light && w->picks.inverse[i][l] > 0)
@@ -84,7 +84,7 @@ void noc_embree_view_candidates(const stage_run *run, const worker *w, size_t bl
         if (!(lanes >> l & 1))
             continue;
         if (v->made[NOC_AOV_LIGHTS])
-            v->made[NOC_AOV_LIGHTS][block][l] = (float)(lists ? w->lists.list.count : w->found.count[l]);
+            v->made[NOC_AOV_LIGHTS][block][l] = (float)(lists ? w->lists.list.count / w->lists.list.copies : w->found.count[l]);
         if (v->made[NOC_AOV_DENSITY] && r->w[l] > 0)
             v->made[NOC_AOV_DENSITY][block][l] = expected(run, w, r->light[l], l);
     }

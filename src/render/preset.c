@@ -1,0 +1,14 @@
+#include "base/base.h"
+
+#include <nocturne/render.h>
+
+void noc_render_use_preset(noc_render_params *p, noc_preset preset) {
+    noc_render_params d = noc_render_default_params();
+    bool interactive = preset == NOC_PRESET_INTERACTIVE;
+    p->method = d.method;
+    p->candidates = d.candidates;
+    p->list = interactive ? 32 : d.list;
+    p->tail = interactive ? 32 : d.tail;
+    p->shadow_rays = interactive ? 4 : d.shadow_rays;
+    p->learn = d.learn;
+}
