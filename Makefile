@@ -28,7 +28,7 @@ build: deps build/build.ninja
 	@$(NINJA) -C build nocturne
 
 demo: build
-	@build/nocturne render builtin:city --frames 32 --time 45 --no-temporal -o night.png
+	@build/nocturne render builtin:city --frames 32 --time 45 -o night.png
 	@echo
 	@echo "Try next"
 	@echo "  build/nocturne render builtin:city --view aerial --size 1920x1080 -o aerial.png"
