@@ -71,7 +71,8 @@ typedef struct noc_render_params {
 
 #define NOC_RENDER_DEFAULTS(set) \
     set(width, 1280) set(height, 720) set(method, NOC_METHOD_RIS) set(candidates, NOC_CANDIDATES_LISTS) \
-    set(draws, 32) set(list, 64) set(tail, 128) set(shadow_rays, 8) set(learn, true) set(influence_cluster, 1) set(uniform_every, 4) set(rays, 64) set(temporal, true) set(spatial, true) \
+    set(draws, 32) set(list, 64) set(tail, 128) set(shadow_rays, 8) set(learn, true) \
+    set(influence_cluster, 1) set(uniform_every, 4) set(rays, 64) set(temporal, true) set(spatial, true) \
     set(neighbours, 5) set(radius, 10) set(passes, 1) set(history, 20) set(bias, NOC_BIAS_PAIRWISE) \
     set(bias_rays, true) set(visibility_reuse, true) set(final_ray, true) set(reject_depth, 0.1) \
     set(reject_normal, 0.9) set(seed, 1) set(jitter, true) set(accumulate, true) set(sky, 0.02) \
