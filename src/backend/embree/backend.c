@@ -20,7 +20,7 @@ static void free_buffers(frame_buffers *b) {
 static void free_workers(embree_state *s) {
     for (int i = 0; i < s->worker_count; i++) {
         worker *w = &s->workers[i];
-        free(w->neighbours);
+        free(w->combining);
         free(w->reference.sums);
         free(w->reference.light);
         free(w->reference.w);
@@ -51,11 +51,11 @@ static noc_status create_workers(embree_state *s) {
     size_t chunks = s->scene->lights.len / REFERENCE_CHUNK + 1;
     for (int i = 0; i < s->worker_count; i++) {
         worker *w = &s->workers[i];
-        w->neighbours = noc_alloc_large(MAX_NEIGHBOURS, sizeof(neighbour));
+        w->combining = noc_alloc_large(TILE_BLOCKS * TILE_BLOCKS, sizeof(*w->combining));
         w->reference.sums = noc_alloc_large(chunks, sizeof(*w->reference.sums));
         w->reference.light = noc_alloc_large(1024, sizeof(*w->reference.light));
         w->reference.w = noc_alloc_large(1024, sizeof(*w->reference.w));
-        ok = ok && w->neighbours && w->reference.sums && w->reference.light && w->reference.w;
+        ok = ok && w->combining && w->reference.sums && w->reference.light && w->reference.w;
     }
     return ok ? NOC_OK : noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory for %zu lights", s->scene->lights.len);
 }

@@ -126,7 +126,7 @@ static uint32_t trace_free(embree_state *s, const rayblock *rays, uint32_t valid
 uint32_t noc_embree_free(embree_state *s, worker *w, const rayblock *rays, uint32_t valid) {
     if (!valid)
         return 0;
-    count_rays(w, w->rays, valid);
+    count_rays(w, NULL, valid);
     keep(s, w, rays, NULL, valid, 1, false);
     return trace_free(s, rays, valid);
 }

@@ -18,7 +18,7 @@ typedef struct segment_block {
     rayblock rays;
     uint32_t light[BLOCK]; /* what each leads to: any number will do, equal ones are traced together */
     uint32_t valid, clear; /* lanes to be traced; those of them that nothing blocks */
-    float *counts;         /* like worker.rays, or NULL */
+    float *counts;         /* of the block's pixels, for the view that counts rays, or NULL */
 } segment_block;
 
 /* A packet kept for the trace floor. Shadow rays that were traced in one call lie one after the other. */
@@ -41,6 +41,25 @@ typedef struct tile_cell {
     beliefs beliefs;
     uint16_t asked[2 * LIST_ENTRIES], seen[2 * LIST_ENTRIES];
 } tile_cell;
+
+/* Segments of a tile's blocks, gathered to be traced in company. */
+typedef struct segment_batch {
+    int count;
+    segment_block blocks[TILE_BLOCKS * TILE_BLOCKS * MAX_NEIGHBOURS];
+} segment_batch;
+
+/* A block whose reservoirs are being combined with others': reuse.c. */
+typedef struct combining {
+    size_t at; /* in the picture */
+    int x, y;  /* pixel of lane 0 */
+    const rblock *own;
+    uint32_t visible; /* lanes whose sample is known to be seen from its pixel */
+    int k;            /* neighbours */
+    uint32_t asked[MAX_NEIGHBOURS]; /* lanes that a ray from the neighbour was asked for */
+    uint32_t seen[MAX_NEIGHBOURS];  /* lanes whose sample counts as seen from the neighbour */
+    combination c;
+    neighbour n[MAX_NEIGHBOURS];
+} combining;
 
 /* What the passes of one tile hand on to each other. */
 typedef struct tile_rays {
@@ -65,7 +84,8 @@ typedef struct learned_tile {
 typedef struct worker {
     ALIGNED double seconds[NOC_PASS_COUNT];
     uint64_t rays_primary, rays_shadow, dropped;
-    neighbour *neighbours; /* MAX_NEIGHBOURS */
+    combining *combining; /* of a tile's blocks */
+    segment_batch batch;
     reference_scratch reference;
     list_scratch lists;
     tile_rays shared;
@@ -74,7 +94,6 @@ typedef struct worker {
     tree_items tree_items[2];
     noc_found found;
     uint64_t found_counts[FOUND_COUNTS]; /* surfaces of the frame by the number of lights found; the last: as many or more */
-    float *rays; /* of the pixels of the block at hand, for the view that counts them; NULL: nobody asks */
     uint64_t found_wider;                /* surfaces that asked beyond S_r */
     noc_near near;                       /* influence volumes near a tile */
     packet *packets; /* kept while recording */
@@ -150,6 +169,11 @@ typedef struct tile {
     int x0, y0, x1, y1; /* blocks */
 } tile;
 
+typedef struct tile_block {
+    size_t at; /* in the picture */
+    int x, y;  /* pixel of lane 0 */
+} tile_block;
+
 /* device.c */
 noc_status noc_embree_build(embree_state *s);
 void noc_embree_release(embree_state *s);
@@ -176,6 +200,13 @@ void noc_embree_light_stats(void *state, const noc_render_params *params, noc_li
 
 /* passes.c: one pass over one tile */
 void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t);
+/* The blocks of a tile in their order; returns how many. */
+int noc_embree_tile_blocks(const stage_run *run, tile t, tile_block out[TILE_BLOCKS * TILE_BLOCKS]);
+/* The next block of w->batch, for noc_embree_free_many: `valid` lanes are to be traced, counted for block `at` of the picture.
+ * The rays are left to the caller; or they are segments from the surfaces of g to samples. */
+segment_block *noc_embree_gather(const stage_run *run, worker *w, size_t at, uint32_t valid);
+void noc_embree_gather_segments(const stage_run *run, worker *w, size_t at, uint32_t valid, const gblock *g,
+                                const uint32_t *light, const float *u, const float *v);
 
 /* list_rays.c: the passes of a tile where every pixel shares out several rays over its list, after the list was built into
  * w->lists.list */
@@ -188,9 +219,9 @@ noc_status noc_embree_begin_learning(embree_state *s, const noc_frame *frame);
 void noc_embree_end_learning(embree_state *s, const noc_frame *frame);
 void noc_embree_release_learning(embree_state *s);
 
-/* reuse.c: temporal and spatial combination of one block */
-void noc_embree_temporal(stage_run *run, worker *w, int bx, int by);
-void noc_embree_spatial(stage_run *run, worker *w, int bx, int by);
+/* reuse.c: temporal and spatial combination of a tile's blocks */
+void noc_embree_temporal(stage_run *run, worker *w, tile t);
+void noc_embree_spatial(stage_run *run, worker *w, tile t);
 
 /* views.c */
 noc_status noc_embree_begin_views(embree_state *s, uint32_t aovs, bool first_stage);
@@ -212,6 +243,13 @@ static inline uint32_t lanes_with_surface(const gblock *g) {
     uint32_t lanes = 0;
     for (int l = 0; l < BLOCK; l++)
         lanes |= (uint32_t)(g->material[l] != NO_SURFACE) << l;
+    return lanes;
+}
+
+static inline uint32_t lanes_with_sample(const rblock *r) {
+    uint32_t lanes = 0;
+    for (int l = 0; l < BLOCK; l++)
+        lanes |= (uint32_t)(r->w[l] > 0) << l;
     return lanes;
 }
 

@@ -6,16 +6,32 @@
 
 static size_t block_at(const frame_buffers *b, int bx, int by) { return (size_t)by * b->blocks_x + bx; }
 
-static uint32_t lanes_with_sample(const rblock *r) {
-    uint32_t lanes = 0;
-    for (int l = 0; l < BLOCK; l++)
-        lanes |= (uint32_t)(r->w[l] > 0) << l;
-    return lanes;
+int noc_embree_tile_blocks(const stage_run *run, tile t, tile_block out[TILE_BLOCKS * TILE_BLOCKS]) {
+    int n = 0;
+    for (int by = t.y0; by < t.y1; by++)
+        for (int bx = t.x0; bx < t.x1; bx++)
+            out[n++] = (tile_block){ block_at(&run->s->b, bx, by), bx * BLOCK_SIDE, by * BLOCK_SIDE };
+    return n;
+}
+
+segment_block *noc_embree_gather(const stage_run *run, worker *w, size_t at, uint32_t valid) {
+    float (*counts)[BLOCK] = run->s->b.views.made[NOC_AOV_RAYS];
+    segment_block *s = &w->batch.blocks[w->batch.count++];
+    s->valid = valid;
+    s->counts = counts ? counts[at] : NULL;
+    return s;
+}
+
+void noc_embree_gather_segments(const stage_run *run, worker *w, size_t at, uint32_t valid, const gblock *g,
+                                const uint32_t *light, const float *u, const float *v) {
+    segment_block *s = noc_embree_gather(run, w, at, valid);
+    memcpy(s->light, light, sizeof(s->light));
+    run->k->segments(&run->ctx, g, light, u, v, &s->rays);
 }
 
 static v3 vec(const float a[3]) { return V3(a[0], a[1], a[2]); }
 
-static void primary(stage_run *run, worker *w, int bx, int by) {
+static void primary_block(stage_run *run, worker *w, int bx, int by) {
     const noc_frame *f = run->ctx.frame;
     const noc_frame_camera *c = &f->camera;
     frame_buffers *b = &run->s->b;
@@ -32,6 +48,12 @@ static void primary(stage_run *run, worker *w, int bx, int by) {
         rays.d[2][l] = d.z;
     }
     noc_embree_primary(run->s, w, &rays, lanes_inside(b, bx, by), &b->g[f->gbuffer][block_at(b, bx, by)]);
+}
+
+static void primary(stage_run *run, worker *w, tile t) {
+    for (int by = t.y0; by < t.y1; by++)
+        for (int bx = t.x0; bx < t.x1; bx++)
+            primary_block(run, w, bx, by);
 }
 
 enum { TILE_VOLUMES = 4096 };
@@ -130,20 +152,30 @@ static void tile_candidates(stage_run *run, worker *w, tile t) {
         }
 }
 
-static void visibility(stage_run *run, worker *w, int bx, int by) {
+static void visibility(stage_run *run, worker *w, tile t) {
     frame_buffers *b = &run->s->b;
-    size_t at = block_at(b, bx, by);
-    rblock *r = &b->r[run->stage->target][at];
-    uint32_t lanes = lanes_with_sample(r);
-    if (!lanes)
-        return;
-    rayblock rays;
-    run->k->segments(&run->ctx, &b->g[run->ctx.frame->gbuffer][at], r->light, r->u, r->v, &rays);
-    uint32_t seen = noc_embree_free(run->s, w, &rays, lanes);
-    for (int l = 0; l < BLOCK; l++)
-        if (!(seen >> l & 1))
-            r->w[l] = 0;
-    b->visible[run->stage->target][at] = (uint16_t)seen;
+    const gblock *g = b->g[run->ctx.frame->gbuffer];
+    rblock *r = b->r[run->stage->target];
+    tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
+    size_t asked[TILE_BLOCKS * TILE_BLOCKS];
+    int n = noc_embree_tile_blocks(run, t, blocks);
+    w->batch.count = 0;
+    for (int i = 0; i < n; i++) {
+        size_t at = blocks[i].at;
+        uint32_t lanes = lanes_with_sample(&r[at]);
+        if (!lanes)
+            continue;
+        asked[w->batch.count] = at;
+        noc_embree_gather_segments(run, w, at, lanes, &g[at], r[at].light, r[at].u, r[at].v);
+    }
+    noc_embree_free_many(run->s, w, w->batch.blocks, w->batch.count);
+    for (int i = 0; i < w->batch.count; i++) {
+        uint32_t seen = w->batch.blocks[i].clear;
+        for (int l = 0; l < BLOCK; l++)
+            if (!(seen >> l & 1))
+                r[asked[i]].w[l] = 0;
+        b->visible[run->stage->target][asked[i]] = (uint16_t)seen;
+    }
 }
 
 /* Emitters seen directly begin the block's colour. */
@@ -161,80 +193,124 @@ static void show_emitters(stage_run *run, const gblock *g, uint16_t *seen, cbloc
     *seen = (uint16_t)((run->ctx.frame->accumulated ? *seen : 0) | lanes);
 }
 
-static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, int bx, int by, cblock *c) {
-    const noc_render_params *p = run->ctx.frame->params;
+/* Entry i of the lanes that have so many; returns those lanes. */
+static uint32_t reference_entry(const reference_scratch *e, uint32_t i, rblock *r) {
+    uint32_t lanes = 0;
+    for (int l = 0; l < BLOCK; l++) {
+        bool on = i < e->count[l];
+        lanes |= (uint32_t)on << l;
+        r->light[l] = on ? e->light[i][l] : 0;
+        r->w[l] = on ? e->w[i][l] : 0;
+    }
+    return lanes;
+}
+
+static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, const tile_block *block, cblock *c) {
     uint32_t surfaces = lanes_with_surface(g), dropped = 0, most = 0;
+    bool rays = run->ctx.frame->params->final_ray;
     if (!surfaces)
         return 0;
-    int x = bx * BLOCK_SIDE, y = by * BLOCK_SIDE;
     reference_scratch *e = &w->reference;
-    run->k->reference(&run->ctx, g, surfaces, x, y, e);
+    run->k->reference(&run->ctx, g, surfaces, block->x, block->y, e);
     for (int l = 0; l < BLOCK; l++)
         most = NOC_MAX(most, e->count[l]);
-    for (uint32_t i = 0; i < most; i++) {
-        rblock r;
-        uint32_t lanes = 0;
-        for (int l = 0; l < BLOCK; l++) {
-            bool on = i < e->count[l];
-            lanes |= (uint32_t)on << l;
-            r.light[l] = on ? e->light[i][l] : 0;
-            r.w[l] = on ? e->w[i][l] : 0;
+    for (uint32_t first = 0; first < most; first += MANY_BLOCKS) {
+        uint32_t n = NOC_MIN(MANY_BLOCKS, most - first), lanes[MANY_BLOCKS];
+        rblock r[MANY_BLOCKS];
+        w->batch.count = 0;
+        for (uint32_t i = 0; i < n; i++) {
+            lanes[i] = reference_entry(e, first + i, &r[i]);
+            run->k->reference_place(&run->ctx, block->x, block->y, &r[i]);
+            if (rays)
+                noc_embree_gather_segments(run, w, block->at, lanes[i], g, r[i].light, r[i].u, r[i].v);
         }
-        run->k->reference_place(&run->ctx, x, y, &r);
-        if (p->final_ray) {
-            rayblock rays;
-            run->k->segments(&run->ctx, g, r.light, r.u, r.v, &rays);
-            lanes = noc_embree_free(run->s, w, &rays, lanes);
-        }
-        dropped |= run->k->shade(&run->ctx, g, &r, lanes, c);
+        noc_embree_free_many(run->s, w, w->batch.blocks, w->batch.count);
+        for (uint32_t i = 0; i < n; i++)
+            dropped |= run->k->shade(&run->ctx, g, &r[i], rays ? w->batch.blocks[i].clear : lanes[i], c);
     }
     return dropped;
 }
 
-static void shade(stage_run *run, worker *w, int bx, int by) {
-    const noc_frame *f = run->ctx.frame;
+/* The samples of a tile's reservoirs: rays to those that are not known to be seen, all at once. */
+static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, int n) {
     frame_buffers *b = &run->s->b;
-    size_t at = block_at(b, bx, by);
-    const gblock *g = &b->g[f->gbuffer][at];
-    cblock *c = &b->colour[at];
-    show_emitters(run, g, &b->emitter[at], c);
-    if (!run->ctx.light_count || noc_embree_shares_rays(f->params))
-        return;
-    if (f->params->method == NOC_METHOD_REFERENCE) {
-        w->dropped += (uint64_t)__builtin_popcount(shade_reference(run, w, g, bx, by, c));
-        return;
+    const gblock *g = b->g[run->ctx.frame->gbuffer];
+    const rblock *r = b->r[run->stage->target];
+    uint32_t lanes[TILE_BLOCKS * TILE_BLOCKS], asked[TILE_BLOCKS * TILE_BLOCKS];
+    w->batch.count = 0;
+    for (int i = 0; i < n; i++) {
+        size_t at = blocks[i].at;
+        lanes[i] = lanes_with_sample(&r[at]);
+        asked[i] = run->ctx.frame->params->final_ray ? lanes[i] & ~(uint32_t)b->visible[run->stage->target][at] : 0;
+        if (asked[i])
+            noc_embree_gather_segments(run, w, at, asked[i], &g[at], r[at].light, r[at].u, r[at].v);
     }
-    const rblock *r = &b->r[run->stage->target][at];
-    uint32_t lanes = lanes_with_sample(r), known = b->visible[run->stage->target][at], ask = lanes & ~known;
-    if (f->params->final_ray && ask) {
-        rayblock rays;
-        run->k->segments(&run->ctx, g, r->light, r->u, r->v, &rays);
-        lanes = (lanes & known) | noc_embree_free(run->s, w, &rays, ask);
+    noc_embree_free_many(run->s, w, w->batch.blocks, w->batch.count);
+    const segment_block *answer = w->batch.blocks;
+    for (int i = 0; i < n; i++) {
+        size_t at = blocks[i].at;
+        if (asked[i])
+            lanes[i] = (lanes[i] & ~asked[i]) | answer++->clear;
+        if (lanes[i])
+            w->dropped += (uint64_t)__builtin_popcount(run->k->shade(&run->ctx, &g[at], &r[at], lanes[i], &b->colour[at]));
     }
-    if (lanes)
-        w->dropped += (uint64_t)__builtin_popcount(run->k->shade(&run->ctx, g, r, lanes, c));
 }
 
-static void sky(stage_run *run, worker *w, int bx, int by) {
+static void shade(stage_run *run, worker *w, tile t) {
+    const noc_frame *f = run->ctx.frame;
     frame_buffers *b = &run->s->b;
-    size_t at = block_at(b, bx, by);
-    const gblock *g = &b->g[run->ctx.frame->gbuffer][at];
-    uint32_t surfaces = lanes_with_surface(g), background = lanes_inside(b, bx, by) & ~surfaces;
-    int x = bx * BLOCK_SIDE, y = by * BLOCK_SIDE;
-    if (background)
-        run->k->sky_background(&run->ctx, background, x, y, &b->colour[at]);
-    if (!surfaces)
+    const gblock *g = b->g[f->gbuffer];
+    tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
+    int n = noc_embree_tile_blocks(run, t, blocks);
+    for (int i = 0; i < n; i++)
+        show_emitters(run, &g[blocks[i].at], &b->emitter[blocks[i].at], &b->colour[blocks[i].at]);
+    if (!run->ctx.light_count)
         return;
-    rayblock rays;
-    run->k->sky_rays(&run->ctx, g, x, y, &rays);
-    uint32_t lanes = noc_embree_free(run->s, w, &rays, surfaces);
-    if (lanes)
-        w->dropped += (uint64_t)__builtin_popcount(run->k->sky_shade(&run->ctx, g, &rays, lanes, &b->colour[at]));
+    if (noc_embree_shares_rays(f->params)) {
+        noc_embree_share_shade(run, w, t);
+    } else if (f->params->method != NOC_METHOD_REFERENCE) {
+        shade_samples(run, w, blocks, n);
+    } else {
+        for (int i = 0; i < n; i++) {
+            size_t at = blocks[i].at;
+            w->dropped += (uint64_t)__builtin_popcount(shade_reference(run, w, &g[at], &blocks[i], &b->colour[at]));
+        }
+    }
+}
+
+static void sky(stage_run *run, worker *w, tile t) {
+    frame_buffers *b = &run->s->b;
+    const gblock *g = b->g[run->ctx.frame->gbuffer];
+    tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
+    size_t asked[TILE_BLOCKS * TILE_BLOCKS];
+    int n = noc_embree_tile_blocks(run, t, blocks);
+    w->batch.count = 0;
+    for (int i = 0; i < n; i++) {
+        int x = blocks[i].x, y = blocks[i].y;
+        size_t at = blocks[i].at;
+        uint32_t surfaces = lanes_with_surface(&g[at]);
+        uint32_t background = lanes_inside(b, x / BLOCK_SIDE, y / BLOCK_SIDE) & ~surfaces;
+        if (background)
+            run->k->sky_background(&run->ctx, background, x, y, &b->colour[at]);
+        if (!surfaces)
+            continue;
+        asked[w->batch.count] = at;
+        segment_block *s = noc_embree_gather(run, w, at, surfaces);
+        run->k->sky_rays(&run->ctx, &g[at], x, y, &s->rays);
+        memset(s->light, 0, sizeof(s->light));
+    }
+    noc_embree_free_many(run->s, w, w->batch.blocks, w->batch.count);
+    for (int i = 0; i < w->batch.count; i++) {
+        const segment_block *s = &w->batch.blocks[i];
+        size_t at = asked[i];
+        if (s->clear)
+            w->dropped += (uint64_t)__builtin_popcount(run->k->sky_shade(&run->ctx, &g[at], &s->rays, s->clear, &b->colour[at]));
+    }
 }
 
 void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
-    static void (*const passes[NOC_PASS_COUNT])(stage_run *, worker *, int, int) = {
-        [NOC_PASS_PRIMARY] = primary, [NOC_PASS_VISIBILITY] = visibility,
+    static void (*const passes[NOC_PASS_COUNT])(stage_run *, worker *, tile) = {
+        [NOC_PASS_PRIMARY] = primary, [NOC_PASS_CANDIDATES] = tile_candidates, [NOC_PASS_VISIBILITY] = visibility,
         [NOC_PASS_TEMPORAL] = noc_embree_temporal, [NOC_PASS_SPATIAL] = noc_embree_spatial, [NOC_PASS_SHADE] = shade,
         [NOC_PASS_SKY] = sky,
     };
@@ -242,22 +318,8 @@ void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
                        pass == NOC_PASS_SPATIAL;
     if (needs_light && !run->ctx.light_count)
         return;
-    if (pass == NOC_PASS_CANDIDATES) {
-        tile_candidates(run, w, t);
-        return;
-    }
-    bool shares = noc_embree_shares_rays(run->ctx.frame->params);
-    if (shares && pass == NOC_PASS_VISIBILITY) {
+    if (pass == NOC_PASS_VISIBILITY && noc_embree_shares_rays(run->ctx.frame->params))
         noc_embree_share_visibility(run, w, t);
-        return;
-    }
-    float (*rays)[BLOCK] = run->s->b.views.made[NOC_AOV_RAYS];
-    for (int by = t.y0; by < t.y1; by++)
-        for (int bx = t.x0; bx < t.x1; bx++) {
-            w->rays = rays ? rays[block_at(&run->s->b, bx, by)] : NULL;
-            passes[pass](run, w, bx, by);
-        }
-    w->rays = NULL;
-    if (shares && pass == NOC_PASS_SHADE && run->ctx.light_count)
-        noc_embree_share_shade(run, w, t);
+    else
+        passes[pass](run, w, t);
 }

@@ -1,4 +1,4 @@
-/* Temporal and spatial reuse of one block: neighbours' reservoirs are fetched, combined by core/reuse.h, and visibility is
+/* Temporal and spatial reuse of a tile's blocks: neighbours' reservoirs are fetched, combined by core/reuse.h, and visibility is
  * traced where the combination needs it.
  *
  * With bias rays a reservoir's target function includes visibility at its own pixel: every reservoir that is reused has
@@ -39,93 +39,123 @@ static void clear(neighbour *n) {
     memset(&n->r, 0, sizeof(n->r));
 }
 
-/* Visibility of a sample at the neighbours: bit l of seen[i]. */
-static void trace_at(stage_run *run, worker *w, const neighbour *n, int k, const uint32_t *light, const float *u,
-                     const float *v, const combination *c, const uint32_t *wanted, uint32_t *seen) {
-    for (int i = 0; i < k; i++) {
+/* Up to where visibility is needed: offers (not pairwise), and targets at the neighbours. */
+static void begin(const stage_run *run, combining *b, const float eye[3], uint32_t dim) {
+    const gblock *g = &run->s->b.g[run->ctx.frame->gbuffer][b->at];
+    noc_bias bias = run->ctx.frame->params->bias;
+    combination *c = &b->c;
+    memset(b->asked, 0, sizeof(b->asked));
+    memset(b->seen, 0xff, sizeof(b->seen));
+    if (bias == NOC_BIAS_PAIRWISE) {
+        run->k->targets(&run->ctx, eye, b->n, b->k, b->own->light, b->own->u, b->own->v, c);
+        return;
+    }
+    run->k->offer(&run->ctx, g, b->own, b->n, b->k, b->x, b->y, dim, c);
+    if (bias == NOC_BIAS_MIS)
+        run->k->targets(&run->ctx, eye, b->n, b->k, c->light, c->u, c->v, c);
+}
+
+/* Asks for rays from the neighbours to the canonical samples (pairwise) or to those held (mis). */
+static void ask_neighbours(const stage_run *run, worker *w, combining *b) {
+    bool pairwise = run->ctx.frame->params->bias == NOC_BIAS_PAIRWISE;
+    const combination *c = &b->c;
+    for (int i = 0; i < b->k; i++) {
         uint32_t lanes = 0;
-        for (int l = 0; l < BLOCK; l++)
-            lanes |= (uint32_t)(c->p_at[i][l] > 0) << l;
-        lanes &= wanted[i] & n[i].lanes;
+        for (int l = 0; l < BLOCK; l++) {
+            /* the neighbour that a sample came from sees it */
+            bool wanted = pairwise ? b->own->w[l] > 0 : c->w_sum[l] > 0 && c->tag[l] != (float)(i + 1);
+            lanes |= (uint32_t)(wanted && c->p_at[i][l] > 0) << l;
+        }
+        lanes &= b->n[i].lanes;
         if (!lanes)
             continue;
-        rayblock rays;
-        run->k->segments(&run->ctx, &n[i].g, light, u, v, &rays);
-        seen[i] = noc_embree_free(run->s, w, &rays, lanes) | (seen[i] & ~lanes);
+        b->asked[i] = lanes;
+        if (pairwise)
+            noc_embree_gather_segments(run, w, b->at, lanes, &b->n[i].g, b->own->light, b->own->u, b->own->v);
+        else
+            noc_embree_gather_segments(run, w, b->at, lanes, &b->n[i].g, c->light, c->u, c->v);
     }
 }
 
-/* Combines own with k neighbours into *out; *visible: lanes whose sample is known to be seen from this pixel. */
-static void combine(stage_run *run, worker *w, const gblock *g, const rblock *own, uint32_t *visible, const neighbour *n,
-                    int k, const float eye[3], int x, int y, uint32_t dim, rblock *out) {
-    const noc_render_params *p = run->ctx.frame->params;
-    const kernels *K = run->k;
-    bool rays = noc_uses_bias_rays(p);
-    combination c;
-    uint32_t seen[MAX_NEIGHBOURS], wanted[MAX_NEIGHBOURS], own_sample = 0;
-    for (int l = 0; l < BLOCK; l++)
-        own_sample |= (uint32_t)(own->w[l] > 0) << l;
-    if (p->bias == NOC_BIAS_PAIRWISE) {
-        K->targets(&run->ctx, eye, n, k, own->light, own->u, own->v, &c);
-        for (int i = 0; i < k; i++) {
-            seen[i] = 0xffff;
-            wanted[i] = own_sample;
-        }
-        if (rays)
-            trace_at(run, w, n, k, own->light, own->u, own->v, &c, wanted, seen);
-        K->end_pairwise(&run->ctx, g, own, n, k, seen, x, y, dim, &c, out);
-    } else {
-        K->offer(&run->ctx, g, own, n, k, x, y, dim, &c);
-        if (p->bias == NOC_BIAS_MIS) {
-            K->targets(&run->ctx, eye, n, k, c.light, c.u, c.v, &c);
-            for (int i = 0; i < k; i++) {
-                seen[i] = 0xffff;
-                wanted[i] = 0; /* the neighbour that the sample came from sees it */
-                for (int l = 0; l < BLOCK; l++)
-                    wanted[i] |= (uint32_t)(c.w_sum[l] > 0 && c.tag[l] != (float)(i + 1)) << l;
-            }
-            if (rays)
-                trace_at(run, w, n, k, c.light, c.u, c.v, &c, wanted, seen);
-            K->end_mis(&c, own, n, k, seen, out);
-        } else {
-            K->end_biased(&c, out);
-        }
+/* From the answers to the new reservoir, in the place of the old one or elsewhere. */
+static void end(const stage_run *run, combining *b, uint32_t dim, rblock *to) {
+    const gblock *g = &run->s->b.g[run->ctx.frame->gbuffer][b->at];
+    rblock out;
+    switch (run->ctx.frame->params->bias) {
+    case NOC_BIAS_PAIRWISE:
+        run->k->end_pairwise(&run->ctx, g, b->own, b->n, b->k, b->seen, b->x, b->y, dim, &b->c, &out);
+        break;
+    case NOC_BIAS_MIS: run->k->end_mis(&b->c, b->own, b->n, b->k, b->seen, &out); break;
+    case NOC_BIAS_BIASED: run->k->end_biased(&b->c, &out); break;
     }
     for (int l = 0; l < BLOCK; l++)
-        if (c.tag[l] != 0)
-            *visible &= ~(1u << l);
+        if (b->c.tag[l] != 0)
+            b->visible &= ~(1u << l);
+    *to = out;
 }
 
 /* Zeroes samples that are occluded at their own pixel, so that all that are left are known to be visible. */
-static void resolve(stage_run *run, worker *w, const gblock *g, rblock *r, uint32_t *visible) {
-    uint32_t lanes = 0;
-    for (int l = 0; l < BLOCK; l++)
-        lanes |= (uint32_t)(r->w[l] > 0) << l;
-    lanes &= ~*visible;
-    if (!lanes)
-        return;
-    rayblock rays;
-    run->k->segments(&run->ctx, g, r->light, r->u, r->v, &rays);
-    uint32_t seen = noc_embree_free(run->s, w, &rays, lanes);
-    *visible |= seen;
-    for (int l = 0; l < BLOCK; l++)
-        if (lanes >> l & ~(seen >> l) & 1)
-            r->w[l] = 0;
+static void resolve(const stage_run *run, worker *w, int count) {
+    const gblock *g = run->s->b.g[run->ctx.frame->gbuffer];
+    rblock *r = run->s->b.r[run->stage->target];
+    combining *asked[TILE_BLOCKS * TILE_BLOCKS];
+    w->batch.count = 0;
+    for (int i = 0; i < count; i++) {
+        size_t at = w->combining[i].at;
+        uint32_t lanes = lanes_with_sample(&r[at]) & ~w->combining[i].visible;
+        if (!lanes)
+            continue;
+        asked[w->batch.count] = &w->combining[i];
+        noc_embree_gather_segments(run, w, at, lanes, &g[at], r[at].light, r[at].u, r[at].v);
+    }
+    noc_embree_free_many(run->s, w, w->batch.blocks, w->batch.count);
+    for (int i = 0; i < w->batch.count; i++) {
+        const segment_block *s = &w->batch.blocks[i];
+        asked[i]->visible |= s->clear;
+        for (int l = 0; l < BLOCK; l++)
+            if (s->valid >> l & ~(s->clear >> l) & 1)
+                r[asked[i]->at].w[l] = 0;
+    }
 }
 
-void noc_embree_temporal(stage_run *run, worker *w, int bx, int by) {
+/* Combines the first `count` of w->combining into the stage's target. All rays of a step are traced in company. */
+static void combine(stage_run *run, worker *w, int count, const float eye[3], uint32_t dim) {
+    frame_buffers *b = &run->s->b;
+    bool rays = noc_uses_bias_rays(run->ctx.frame->params);
+    w->batch.count = 0;
+    for (int i = 0; i < count; i++) {
+        begin(run, &w->combining[i], eye, dim);
+        if (rays)
+            ask_neighbours(run, w, &w->combining[i]);
+    }
+    noc_embree_free_many(run->s, w, w->batch.blocks, w->batch.count);
+    const segment_block *answer = w->batch.blocks;
+    for (int i = 0; i < count; i++) {
+        combining *c = &w->combining[i];
+        for (int k = 0; k < c->k; k++)
+            if (c->asked[k])
+                c->seen[k] = answer++->clear | ~c->asked[k];
+        end(run, c, dim, &b->r[run->stage->target][c->at]);
+    }
+    if (run->stage->resolve_visibility)
+        resolve(run, w, count);
+    for (int i = 0; i < count; i++)
+        b->visible[run->stage->target][w->combining[i].at] = (uint16_t)w->combining[i].visible;
+}
+
+/* What the last frame left where the block's surfaces were; false: nothing. */
+static bool fetch_history(const stage_run *run, const tile_block *block, combining *c) {
     const noc_frame *f = run->ctx.frame;
     const noc_render_params *p = f->params;
-    frame_buffers *b = &run->s->b;
-    size_t at = block_at(b, bx, by);
-    const gblock *g = &b->g[f->gbuffer][at];
+    const frame_buffers *b = &run->s->b;
+    const gblock *g = &b->g[f->gbuffer][block->at];
     uint32_t surfaces = lanes_with_surface(g);
-    if (!f->history || !surfaces)
-        return;
+    if (!surfaces)
+        return false;
     ALIGNED float px[BLOCK], py[BLOCK];
     /* Static geometry: a surface was where it is. A moved one would be taken back by its own motion here. */
     uint32_t front = run->k->project(&run->ctx, g, px, py) & surfaces;
-    neighbour *n = w->neighbours;
+    neighbour *n = c->n;
     clear(n);
     float m_max = (float)(p->history * p->draws);
     for (int l = 0; l < BLOCK; l++) {
@@ -139,15 +169,28 @@ void noc_embree_temporal(stage_run *run, worker *w, int bx, int by) {
         fetch(h, &b->r[run->stage->source][from], j, l, n);
         n->r.m[l] = NOC_MIN(n->r.m[l], m_max);
     }
-    if (!n->lanes)
+    c->k = 1;
+    return n->lanes != 0;
+}
+
+void noc_embree_temporal(stage_run *run, worker *w, tile t) {
+    const noc_frame *f = run->ctx.frame;
+    tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
+    int n = noc_embree_tile_blocks(run, t, blocks), count = 0;
+    if (!f->history)
         return;
-    rblock *r = &b->r[run->stage->target][at], out;
-    uint32_t visible = b->visible[run->stage->target][at];
-    combine(run, w, g, r, &visible, n, 1, f->previous.eye, bx * BLOCK_SIDE, by * BLOCK_SIDE, DIM_TEMPORAL, &out);
-    if (run->stage->resolve_visibility)
-        resolve(run, w, g, &out, &visible);
-    *r = out;
-    b->visible[run->stage->target][at] = (uint16_t)visible;
+    for (int i = 0; i < n; i++) {
+        combining *c = &w->combining[count];
+        if (!fetch_history(run, &blocks[i], c))
+            continue;
+        c->at = blocks[i].at;
+        c->x = blocks[i].x;
+        c->y = blocks[i].y;
+        c->own = &run->s->b.r[run->stage->target][c->at];
+        c->visible = run->s->b.visible[run->stage->target][c->at];
+        count++;
+    }
+    combine(run, w, count, f->previous.eye, DIM_TEMPORAL);
 }
 
 /* Neighbour places are drawn once a block: pixels next to each other read reservoirs next to each other, and their bias rays
@@ -161,25 +204,20 @@ static void neighbour_place(const noc_frame *f, uint32_t key, uint32_t dim, int 
         *dx = 1;
 }
 
-void noc_embree_spatial(stage_run *run, worker *w, int bx, int by) {
+static void fetch_neighbours(const stage_run *run, const tile_block *block, uint32_t dim, combining *c) {
     const noc_frame *f = run->ctx.frame;
     const noc_render_params *p = f->params;
-    frame_buffers *b = &run->s->b;
-    size_t at = block_at(b, bx, by);
-    const gblock *g = &b->g[f->gbuffer][at];
-    const rblock *own = &b->r[run->stage->source][at];
-    rblock *out = &b->r[run->stage->target][at];
-    uint32_t surfaces = lanes_with_surface(g), visible = b->visible[run->stage->source][at];
-    int x0 = bx * BLOCK_SIDE, y0 = by * BLOCK_SIDE, k = 0;
-    uint32_t dim = DIM_SPATIAL + 64u * (uint32_t)run->stage->round;
-    uint32_t key = rng_key(p->seed ^ 0x5bd1e995u, (uint32_t)at, f->index);
+    const frame_buffers *b = &run->s->b;
+    const gblock *g = &b->g[f->gbuffer][block->at];
+    uint32_t surfaces = lanes_with_surface(g), key = rng_key(p->seed ^ 0x5bd1e995u, (uint32_t)block->at, f->index);
+    c->k = 0;
     for (int i = 0; surfaces && i < p->neighbours; i++) {
-        neighbour *n = &w->neighbours[k];
+        neighbour *n = &c->n[c->k];
         int dx, dy;
         neighbour_place(f, key, dim + 3u * (uint32_t)i, &dx, &dy);
         clear(n);
         for (int l = 0; l < BLOCK; l++) {
-            int x = x0 + (l & 3) + dx, y = y0 + (l >> 2) + dy;
+            int x = block->x + (l & 3) + dx, y = block->y + (l >> 2) + dy;
             if (!(surfaces >> l & 1) || x < 0 || y < 0 || x >= b->width || y >= b->height)
                 continue;
             size_t from = block_at(b, x / BLOCK_SIDE, y / BLOCK_SIDE);
@@ -188,14 +226,31 @@ void noc_embree_spatial(stage_run *run, worker *w, int bx, int by) {
             if (alike(p, g, l, h, j))
                 fetch(h, &b->r[run->stage->source][from], j, l, n);
         }
-        k += n->lanes != 0;
+        c->k += n->lanes != 0;
     }
-    if (k) {
-        combine(run, w, g, own, &visible, w->neighbours, k, f->camera.eye, x0, y0, dim, out);
-        if (run->stage->resolve_visibility)
-            resolve(run, w, g, out, &visible);
-    } else {
-        *out = *own;
+}
+
+void noc_embree_spatial(stage_run *run, worker *w, tile t) {
+    frame_buffers *b = &run->s->b;
+    uint32_t dim = DIM_SPATIAL + 64u * (uint32_t)run->stage->round;
+    int source = run->stage->source, target = run->stage->target;
+    tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
+    int n = noc_embree_tile_blocks(run, t, blocks), count = 0;
+    for (int i = 0; i < n; i++) {
+        combining *c = &w->combining[count];
+        size_t at = blocks[i].at;
+        fetch_neighbours(run, &blocks[i], dim, c);
+        if (!c->k) {
+            b->r[target][at] = b->r[source][at];
+            b->visible[target][at] = b->visible[source][at];
+            continue;
+        }
+        c->at = at;
+        c->x = blocks[i].x;
+        c->y = blocks[i].y;
+        c->own = &b->r[source][at];
+        c->visible = b->visible[source][at];
+        count++;
     }
-    b->visible[run->stage->target][at] = (uint16_t)visible;
+    combine(run, w, count, run->ctx.frame->camera.eye, dim);
 }
