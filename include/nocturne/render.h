@@ -114,7 +114,7 @@ NOC_API void noc_renderer_destroy(noc_renderer *renderer);
 NOC_API noc_status noc_render_check(const noc_render_params *params, noc_log *log);
 
 /* Renders one frame; NULL params are the defaults. History and accumulation start anew when size, method or any other
- * parameter changes; accumulation also when the camera moves (history then reprojects). progress may be NULL; when it
+ * parameter changes; accumulation also when the camera or a light moves (history then goes on). progress may be NULL; when it
  * cancels, the frame is dropped, what was accumulated stays, and NOC_ERR_CANCELLED is returned. */
 NOC_API noc_status noc_renderer_frame(noc_renderer *renderer, const noc_camera *camera, const noc_render_params *params,
                                       const noc_progress *progress);

@@ -3,7 +3,7 @@
  * Coordinates are metres in the scene's local frame, z up. Where the scene has a CRS, crs = local + origin (doubles).
  * Colours are linear Rec.709; emission is photometric: 0.2126 R + 0.7152 G + 0.0722 B is luminance in cd/m2 (for point
  * luminaires: luminous intensity in cd). A scene is not thread-safe while it is being changed; once committed it may be
- * read by any number of renderers. */
+ * read by any number of renderers, and all that can still change is where lights are that were made to move. */
 #ifndef NOCTURNE_SCENE_H
 #define NOCTURNE_SCENE_H
 
@@ -69,7 +69,8 @@ typedef enum noc_light_kind {
     NOC_LIGHT_POINT,         /* position; isotropic, emission is intensity in cd */
 } noc_light_kind;
 
-/* One light. Its visible shape is made with it, except for points. */
+/* One light. Its visible shape is made with it, except for points and for lights that move: those are not seen themselves and
+ * cast no shadow, they light. */
 typedef struct noc_light {
     noc_light_kind kind;
     double position[3];
@@ -79,6 +80,7 @@ typedef struct noc_light {
     float emission[3]; /* cd/m2, or cd for NOC_LIGHT_POINT; one-sided */
     const char *name;  /* may be NULL; copied */
     bool inferred;     /* placed by a rule, not found in data */
+    bool moving;       /* noc_scene_move_light may change it between frames */
 } noc_light;
 
 NOC_API noc_scene *noc_scene_create(noc_log *log); /* log may be NULL; it must outlive the scene */
@@ -93,6 +95,12 @@ NOC_API int noc_scene_add_light(noc_scene *scene, const noc_light *light);
 
 /* Freezes the scene for rendering: makes triangle lights of emissive meshes. noc_scene_load commits by itself. */
 NOC_API noc_status noc_scene_commit(noc_scene *scene);
+
+/* Places a moving light of a committed scene anew: position, shape, direction and emission as `to` has them, emission 0 puts it
+ * out. index is what noc_scene_add_light returned; the kind stays, and so do name and inferred, which are not read. Renderers
+ * take notice with their next frame; no frame may be rendered meanwhile. NOC_ERR_ARGUMENT after reporting it, and the light as
+ * it was: no such light, it was not made to move, another kind, or what noc_scene_add_light would refuse. */
+NOC_API noc_status noc_scene_move_light(noc_scene *scene, int index, const noc_light *to);
 
 /* Place of the scene in the world: crs is any definition PROJ reads, NULL for none. */
 NOC_API noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double origin[3]);

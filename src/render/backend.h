@@ -107,12 +107,15 @@ typedef struct noc_history {
     noc_frame_camera view;
     uint32_t index;           /* of the next frame */
     uint64_t accumulated;
+    uint64_t moves;           /* of the scene's lights, that the frame knew */
     int set, gbuffer;
 } noc_history;
 
 void noc_history_reset(noc_history *history);
-/* Describes the next frame; forgets what this camera and these parameters make useless. */
-void noc_history_begin(noc_history *history, const noc_camera *camera, const noc_render_params *params, noc_frame *frame);
+/* Describes the next frame; forgets what this camera, these parameters and lights that moved (moves: noc_scene.moves) make
+ * useless. */
+void noc_history_begin(noc_history *history, const noc_camera *camera, const noc_render_params *params, uint64_t moves,
+                       noc_frame *frame);
 /* The frame was completed, or dropped. */
 void noc_history_end(noc_history *history, const noc_frame *frame, int next_set);
 void noc_history_drop(noc_history *history);

@@ -107,7 +107,7 @@ static noc_status run_frame(noc_renderer *r, const noc_camera *camera, const noc
     noc_status status = fit(r, p, schedule.sets);
     if (status != NOC_OK)
         return status;
-    noc_history_begin(&r->history, camera, p, &frame);
+    noc_history_begin(&r->history, camera, p, r->scene->moves, &frame);
     noc_make_schedule(p, frame.history_set, &schedule);
     for (int i = 0; i < schedule.count && status == NOC_OK; i++)
         status = r->backend->stage(r->state, &frame, &schedule.stages[i], progress, (double)i / schedule.count,

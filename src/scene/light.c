@@ -96,9 +96,7 @@ static double flat_area(const noc_light *l) {
 }
 
 /* What is wrong with a light, NULL if nothing. */
-static const char *light_fault(const noc_scene *scene, const noc_light *l) {
-    if (scene->committed)
-        return "the scene is committed";
+static const char *light_fault(const noc_light *l) {
     if ((unsigned)l->kind > NOC_LIGHT_POINT)
         return "unknown kind";
     if (!all_finite(l->position, 3))
@@ -115,70 +113,102 @@ static const char *light_fault(const noc_scene *scene, const noc_light *l) {
     return NULL;
 }
 
-int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
-    const char *name = l->name ? l->name : "unnamed";
-    noc_light_record r = { .kind = (uint32_t)l->kind, .flags = l->inferred ? 2u : 0u };
-    double u[3] = { 0 }, v[3] = { 0 }, area = 0;
-    const char *wrong = light_fault(scene, l);
-    if (wrong) {
-        noc_error(scene->log, NOC_ERR_ARGUMENT, "light %s: %s", name, wrong);
-        return -1;
-    }
-
-    double xyz[3 * (SPHERE_RINGS + 1) * SPHERE_SIDES];
-    uint32_t indices[3 * 2 * SPHERE_RINGS * SPHERE_SIDES];
-    size_t vertices = 0, triangles = 0;
-    r.radius = (float)l->radius;
-    switch (l->kind) {
-    case NOC_LIGHT_SPHERE:
-        area = 4 * M_PI * l->radius * l->radius;
-        vertices = sphere_shape(l, xyz, indices, &triangles);
-        break;
-    case NOC_LIGHT_DISC:
+static noc_light_record record_of(const noc_light *l) {
+    noc_light_record r = { .kind = (uint32_t)l->kind,
+                           .flags = (l->inferred ? 2u : 0u) | (l->moving ? NOC_LIGHT_MOVES : 0u),
+                           .radius = l->kind == NOC_LIGHT_POINT ? 0 : (float)l->radius };
+    double u[3] = { 0 }, v[3] = { 0 };
+    if (l->kind == NOC_LIGHT_DISC)
         frame(l->direction, u, v);
-        area = M_PI * l->radius * l->radius;
-        vertices = disc_shape(l, u, v, xyz, indices);
-        triangles = DISC_SIDES - 2;
-        break;
-    case NOC_LIGHT_TRIANGLE:
-    case NOC_LIGHT_PARALLELOGRAM:
-        area = flat_area(l);
-        for (int k = 0; k < 3; k++) {
-            xyz[k] = l->position[k];
-            xyz[3 + k] = l->position[k] + l->edge_u[k];
-            xyz[6 + k] = l->position[k] + l->edge_u[k] + (l->kind == NOC_LIGHT_PARALLELOGRAM) * l->edge_v[k];
-            xyz[9 + k] = l->position[k] + l->edge_v[k];
-            if (l->kind == NOC_LIGHT_TRIANGLE)
-                xyz[6 + k] = xyz[9 + k];
-        }
-        memcpy(indices, (uint32_t[]){ 0, 1, 2, 0, 2, 3 }, 6 * sizeof(uint32_t));
-        vertices = l->kind == NOC_LIGHT_TRIANGLE ? 3 : 4;
-        triangles = l->kind == NOC_LIGHT_TRIANGLE ? 1 : 2;
-        break;
-    case NOC_LIGHT_POINT:
-        r.radius = 0;
-        break;
-    }
+    if (l->kind == NOC_LIGHT_SPHERE)
+        r.area = (float)(4 * M_PI * l->radius * l->radius);
+    else if (l->kind == NOC_LIGHT_DISC)
+        r.area = (float)(M_PI * l->radius * l->radius);
+    else if (is_flat(l))
+        r.area = (float)flat_area(l);
     for (int k = 0; k < 3; k++) {
         r.p[k] = (float)l->position[k];
         r.a[k] = (float)(is_flat(l) ? l->edge_u[k] : l->radius * u[k]);
         r.b[k] = (float)(is_flat(l) ? l->edge_v[k] : l->radius * v[k]);
         r.e[k] = l->emission[k];
     }
-    r.area = (float)area;
-    uint32_t index = (uint32_t)scene->lights.len;
-    if (triangles) {
-        int material = light_material(scene, l);
-        size_t first = scene->triangle_light.len;
-        noc_mesh mesh = { .vertex_count = vertices, .positions = xyz, .triangle_count = triangles, .indices = indices,
-                          .material = material, .name = l->name };
-        if (material < 0 || noc_scene_add_mesh(scene, &mesh) < 0)
-            return -1;
-        for (size_t t = first; t < scene->triangle_light.len; t++)
-            scene->triangle_light.data[t] = index;
+    return r;
+}
+
+static size_t flat_shape(const noc_light *l, double *xyz, uint32_t *indices) {
+    bool whole = l->kind == NOC_LIGHT_PARALLELOGRAM;
+    for (int k = 0; k < 3; k++) {
+        xyz[k] = l->position[k];
+        xyz[3 + k] = l->position[k] + l->edge_u[k];
+        xyz[6 + k] = l->position[k] + whole * l->edge_u[k] + l->edge_v[k];
+        xyz[9 + k] = l->position[k] + l->edge_v[k];
     }
-    array_push(&scene->lights, r);
+    memcpy(indices, (uint32_t[]){ 0, 1, 2, 0, 2, 3 }, 6 * sizeof(uint32_t));
+    return whole ? 4 : 3;
+}
+
+/* The mesh that shows the light of this index. */
+static bool add_shape(noc_scene *scene, const noc_light *l, uint32_t index) {
+    double xyz[3 * (SPHERE_RINGS + 1) * SPHERE_SIDES], u[3], v[3];
+    uint32_t indices[3 * 2 * SPHERE_RINGS * SPHERE_SIDES];
+    size_t vertices, triangles;
+    if (l->kind == NOC_LIGHT_SPHERE) {
+        vertices = sphere_shape(l, xyz, indices, &triangles);
+    } else if (l->kind == NOC_LIGHT_DISC) {
+        frame(l->direction, u, v);
+        vertices = disc_shape(l, u, v, xyz, indices);
+        triangles = DISC_SIDES - 2;
+    } else {
+        vertices = flat_shape(l, xyz, indices);
+        triangles = vertices - 2;
+    }
+    int material = light_material(scene, l);
+    size_t first = scene->triangle_light.len;
+    noc_mesh mesh = { .vertex_count = vertices, .positions = xyz, .triangle_count = triangles, .indices = indices,
+                      .material = material, .name = l->name };
+    if (material < 0 || noc_scene_add_mesh(scene, &mesh) < 0)
+        return false;
+    for (size_t t = first; t < scene->triangle_light.len; t++)
+        scene->triangle_light.data[t] = index;
+    return true;
+}
+
+int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
+    const char *wrong = scene->committed ? "the scene is committed" : light_fault(l);
+    if (wrong) {
+        noc_error(scene->log, NOC_ERR_ARGUMENT, "light %s: %s", l->name ? l->name : "unnamed", wrong);
+        return -1;
+    }
+    uint32_t index = (uint32_t)scene->lights.len;
+    if (l->kind != NOC_LIGHT_POINT && !l->moving && !add_shape(scene, l, index))
+        return -1;
+    array_push(&scene->lights, record_of(l));
     array_push(&scene->light_names, arena_strdup(&scene->names, l->name));
+    if (l->moving)
+        array_push(&scene->moving, index);
     scene->lights_inferred += l->inferred;
     return (int)index;
+}
+
+noc_status noc_scene_move_light(noc_scene *scene, int index, const noc_light *to) {
+    if (!scene->committed)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "light %d: only lights of a committed scene are moved", index);
+    if (index < 0 || (size_t)index >= scene->lights.len)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "light %d: the scene has %zu lights", index, scene->lights.len);
+    noc_light_record *have = &scene->lights.data[index];
+    const char *name = scene->light_names.data[index], *wrong = light_fault(to);
+    if (!(have->flags & NOC_LIGHT_MOVES))
+        wrong = "it was not made to move";
+    else if (have->kind != (uint32_t)to->kind)
+        wrong = "a light's kind cannot change";
+    if (wrong)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "light %d (%s): %s", index, name ? name : "unnamed", wrong);
+    noc_light_record r = record_of(to);
+    r.flags = have->flags;
+    if (!memcmp(have, &r, sizeof(r)))
+        return NOC_OK;
+    scene->power_changes += memcmp(have->e, r.e, sizeof(r.e)) || have->area != r.area;
+    scene->moves++;
+    *have = r;
+    return NOC_OK;
 }

@@ -62,6 +62,7 @@ void noc_scene_destroy(noc_scene *scene) {
     array_free(&scene->material_records);
     array_free(&scene->lights);
     array_free(&scene->light_names);
+    array_free(&scene->moving);
     arena_free(&scene->names);
     free(scene);
 }
@@ -248,5 +249,6 @@ void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info) {
     info->memory_bytes = scene->positions.cap * sizeof(float) +
                          (scene->indices.cap + scene->triangle_material.cap + scene->triangle_light.cap) * sizeof(uint32_t) +
                          scene->lights.cap * sizeof(noc_light_record) + scene->light_names.cap * sizeof(char *) +
+                         scene->moving.cap * sizeof(uint32_t) +
                          scene->meshes.cap * sizeof(noc_scene_mesh) + scene->names.bytes;
 }

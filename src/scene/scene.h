@@ -53,6 +53,8 @@ struct noc_scene {
     NOC_ARRAY(noc_material_record) material_records; /* parallel to materials */
     NOC_ARRAY(noc_light_record) lights;    /* data is 64-byte aligned after commit */
     NOC_ARRAY(const char *) light_names;   /* parallel to lights, entries may be NULL */
+    NOC_ARRAY(uint32_t) moving;            /* lights with NOC_LIGHT_MOVES */
+    uint64_t moves, power_changes;         /* calls that moved a light; those of them that changed what it emits in all */
     noc_arena names;
     size_t triangles_dropped, lights_inferred;
     double bounds_min[3], bounds_max[3];

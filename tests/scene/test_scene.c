@@ -297,10 +297,63 @@ static void test_committed(void **state) {
     assert_int_equal(f->scene->materials.len, materials);
 }
 
+/* Lights that move have no shape, of any kind; moving one writes the record that adding it there would have made. */
+static void test_moving_lights(void **state) {
+    fixture *f = *state;
+    const noc_light stands = { .kind = NOC_LIGHT_POINT, .position = { 1, 2, 3 }, .emission = { 5, 5, 5 } };
+    assert_int_equal(noc_scene_add_light(f->scene, &stands), 0);
+    for (int kind = 0; kind <= NOC_LIGHT_POINT; kind++) {
+        noc_light l = { .kind = (noc_light_kind)kind, .position = { 1, 2, 3 }, .edge_u = { 1, 0, 0 }, .edge_v = { 0, 2, 0 },
+                        .direction = { 0, 1, -1 }, .radius = 0.5, .emission = { 5, 6, 7 }, .inferred = true, .moving = true };
+        noc_light there = l, again;
+        there.position[0] = 9, there.edge_u[1] = 3, there.direction[0] = 2, there.radius = 0.25, there.emission[2] = 0;
+        noc_scene *other = noc_scene_create(NULL);
+        assert_int_equal(noc_scene_add_light(other, &there), 0);
+        int i = noc_scene_add_light(f->scene, &l);
+        assert_int_equal(i, 1);
+        assert_int_equal(noc_scene_move_light(f->scene, i, &there), NOC_ERR_ARGUMENT); /* not committed */
+        assert_int_equal(noc_scene_commit(f->scene), NOC_OK);
+        assert_int_equal(f->scene->triangle_light.len, 0);
+        assert_int_equal(f->scene->moving.len, 1);
+        there.moving = there.inferred = false; /* not read */
+        uint64_t moves = f->scene->moves;
+        assert_int_equal(noc_scene_move_light(f->scene, i, &there), NOC_OK);
+        assert_memory_equal(&f->scene->lights.data[i], &other->lights.data[0], sizeof(noc_light_record));
+        assert_int_equal(f->scene->moves, moves + 1);
+        assert_int_equal(f->scene->power_changes, 1);
+        there.position[1] = -4; /* a move alone does not change what it emits; to where it is, is no move */
+        assert_int_equal(noc_scene_move_light(f->scene, i, &there), NOC_OK);
+        assert_int_equal(noc_scene_move_light(f->scene, i, &there), NOC_OK);
+        assert_int_equal(f->scene->moves, moves + 2);
+        assert_int_equal(f->scene->power_changes, 1);
+
+        noc_light_record before = f->scene->lights.data[i], still = f->scene->lights.data[0];
+        f->messages = 0;
+        assert_int_equal(noc_scene_move_light(f->scene, 2, &there), NOC_ERR_ARGUMENT);
+        assert_int_equal(noc_scene_move_light(f->scene, -1, &there), NOC_ERR_ARGUMENT);
+        assert_int_equal(noc_scene_move_light(f->scene, 0, &stands), NOC_ERR_ARGUMENT); /* it stands */
+        again = there, again.kind = (noc_light_kind)((kind + 1) % 5);
+        assert_int_equal(noc_scene_move_light(f->scene, i, &again), NOC_ERR_ARGUMENT);
+        again = there, again.position[2] = NAN;
+        assert_int_equal(noc_scene_move_light(f->scene, i, &again), NOC_ERR_ARGUMENT);
+        again = there, again.emission[1] = -1;
+        assert_int_equal(noc_scene_move_light(f->scene, i, &again), NOC_ERR_ARGUMENT);
+        assert_int_equal(f->messages, 6); /* each reported once */
+        assert_int_equal(f->scene->moves, moves + 2);
+        assert_memory_equal(&f->scene->lights.data[i], &before, sizeof(before));
+        assert_memory_equal(&f->scene->lights.data[0], &still, sizeof(still));
+
+        noc_scene_destroy(other);
+        noc_scene_destroy(f->scene);
+        f->scene = noc_scene_create(f->log);
+        assert_int_equal(noc_scene_add_light(f->scene, &stands), 0);
+    }
+}
+
 int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
     const struct CMUnitTest tests[] = { TEST(test_materials),       TEST(test_meshes),          TEST(test_shapes), TEST(test_bad_lights),
                                         TEST(test_light_materials), TEST(test_emissive_meshes), TEST(test_empty),
-                                        TEST(test_committed) };
+                                        TEST(test_committed),       TEST(test_moving_lights) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

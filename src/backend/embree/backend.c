@@ -144,7 +144,9 @@ static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st
                         double from, double to) {
     embree_state *s = state;
     s->kernels = noc_pick_kernels(frame->params->path);
-    noc_status status = noc_embree_prepare_lights(s, frame->params);
+    noc_status status = noc_embree_follow_lights(s, frame->params);
+    if (status == NOC_OK)
+        status = noc_embree_prepare_lights(s, frame->params);
     if (status == NOC_OK)
         status = noc_embree_begin_views(s, frame->params->aovs, st->passes >> NOC_PASS_PRIMARY & 1);
     if (status != NOC_OK)
@@ -192,6 +194,7 @@ static void mean_row(void *arg, size_t row, int index) {
 static void accumulate(void *state, const noc_frame *frame) {
     embree_state *s = state;
     noc_embree_keep_views(s, frame);
+    noc_embree_keep_lights(s);
     if (!frame->accumulated) {
         memcpy(s->b.picture, s->b.colour, (size_t)s->b.blocks_x * s->b.blocks_y * sizeof(cblock));
         return;
@@ -227,7 +230,7 @@ static void stats(void *state, noc_frame_stats *out) {
         w->rays_primary = w->rays_shadow = w->dropped = 0;
     }
     out->build_seconds = s->build_seconds;
-    out->memory_bytes = s->b.bytes + noc_embree_build_bytes(s) + noc_embree_light_bytes(s) +
+    out->memory_bytes = s->b.bytes + noc_embree_build_bytes(s) + noc_embree_light_bytes(s) + noc_embree_past_bytes(s) +
                         (size_t)s->b.blocks_x * s->b.blocks_y * BLOCK * noc_embree_view_bytes(s->b.views.asked);
     out->path = s->kernels->name;
 }

@@ -142,6 +142,10 @@ typedef struct embree_state {
     learned_tile *learned_tiles;
     NOC_ARRAY(noc_sighting) sightings; /* of the frame, in the order of tiles */
     float list_brightness; /* mean luminance that the last frame expected, cd/m2; 0: not known */
+    uint64_t moves, power_changes; /* of the scene's lights, that these know of */
+    noc_light_record *past_lights; /* all lights as they were in the last frame that left reservoirs; NULL: never needed */
+    uint64_t past_moves;           /* of the scene at that frame */
+    bool past_filled;              /* past_lights has been written */
     double light_seconds[NOC_CANDIDATES_TREE + 1]; /* what each took to build */
     worker *workers;
     int worker_count;
@@ -195,6 +199,14 @@ size_t noc_embree_build_bytes(const embree_state *s);
 /* lights.c: what the candidates of these parameters are drawn from */
 noc_status noc_embree_prepare_lights(embree_state *s, const noc_render_params *p);
 void noc_embree_release_lights(embree_state *s);
+/* moved.c: lights that move */
+/* Before a frame: what was made for lights that have moved since is refitted, or destroyed to be made again. */
+noc_status noc_embree_follow_lights(embree_state *s, const noc_render_params *p);
+/* After a frame: its reservoirs were made with the lights as they are now. */
+void noc_embree_keep_lights(embree_state *s);
+/* The context that the previous frame's targets and visibility are asked of: *now with its lights. */
+struct core_context noc_embree_past(const embree_state *s, const struct core_context *now);
+size_t noc_embree_past_bytes(const embree_state *s);
 size_t noc_embree_light_bytes(const embree_state *s);
 void noc_embree_light_stats(void *state, const noc_render_params *params, noc_light_stats *stats);
 

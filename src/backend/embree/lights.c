@@ -100,6 +100,7 @@ void noc_embree_release_lights(embree_state *s) {
     noc_alias_destroy(s->alias);
     noc_influence_destroy(s->influence);
     noc_tree_destroy(s->tree);
+    free(s->past_lights);
     for (int i = 0; i < s->worker_count; i++) {
         worker *w = &s->workers[i];
         free(w->picks.light);

@@ -39,24 +39,25 @@ static void clear(neighbour *n) {
     memset(&n->r, 0, sizeof(n->r));
 }
 
-/* Up to where visibility is needed: offers (not pairwise), and targets at the neighbours. */
-static void begin(const stage_run *run, combining *b, const float eye[3], uint32_t dim) {
+/* Up to where visibility is needed: offers (not pairwise), and targets at the neighbours. there: the lights that the neighbours'
+ * reservoirs were made with. */
+static void begin(const stage_run *run, const struct core_context *there, combining *b, const float eye[3], uint32_t dim) {
     const gblock *g = &run->s->b.g[run->ctx.frame->gbuffer][b->at];
     noc_bias bias = run->ctx.frame->params->bias;
     combination *c = &b->c;
     memset(b->asked, 0, sizeof(b->asked));
     memset(b->seen, 0xff, sizeof(b->seen));
     if (bias == NOC_BIAS_PAIRWISE) {
-        run->k->targets(&run->ctx, eye, b->n, b->k, b->own->light, b->own->u, b->own->v, c);
+        run->k->targets(there, eye, b->n, b->k, b->own->light, b->own->u, b->own->v, c);
         return;
     }
     run->k->offer(&run->ctx, g, b->own, b->n, b->k, b->x, b->y, dim, c);
     if (bias == NOC_BIAS_MIS)
-        run->k->targets(&run->ctx, eye, b->n, b->k, c->light, c->u, c->v, c);
+        run->k->targets(there, eye, b->n, b->k, c->light, c->u, c->v, c);
 }
 
 /* Asks for rays from the neighbours to the canonical samples (pairwise) or to those held (mis). */
-static void ask_neighbours(const stage_run *run, worker *w, combining *b) {
+static void ask_neighbours(const stage_run *run, const struct core_context *there, worker *w, combining *b) {
     bool pairwise = run->ctx.frame->params->bias == NOC_BIAS_PAIRWISE;
     const combination *c = &b->c;
     for (int i = 0; i < b->k; i++) {
@@ -70,10 +71,12 @@ static void ask_neighbours(const stage_run *run, worker *w, combining *b) {
         if (!lanes)
             continue;
         b->asked[i] = lanes;
+        segment_block *s = noc_embree_gather(run, w, b->at, lanes);
+        memcpy(s->light, pairwise ? b->own->light : c->light, sizeof(s->light));
         if (pairwise)
-            noc_embree_gather_segments(run, w, b->at, lanes, &b->n[i].g, b->own->light, b->own->u, b->own->v);
+            run->k->segments(there, &b->n[i].g, b->own->light, b->own->u, b->own->v, &s->rays);
         else
-            noc_embree_gather_segments(run, w, b->at, lanes, &b->n[i].g, c->light, c->u, c->v);
+            run->k->segments(there, &b->n[i].g, c->light, c->u, c->v, &s->rays);
     }
 }
 
@@ -119,14 +122,14 @@ static void resolve(const stage_run *run, worker *w, int count) {
 }
 
 /* Combines the first `count` of w->combining into the stage's target. All rays of a step are traced in company. */
-static void combine(stage_run *run, worker *w, int count, const float eye[3], uint32_t dim) {
+static void combine(stage_run *run, const struct core_context *there, worker *w, int count, const float eye[3], uint32_t dim) {
     frame_buffers *b = &run->s->b;
     bool rays = noc_uses_bias_rays(run->ctx.frame->params);
     w->batch.count = 0;
     for (int i = 0; i < count; i++) {
-        begin(run, &w->combining[i], eye, dim);
+        begin(run, there, &w->combining[i], eye, dim);
         if (rays)
-            ask_neighbours(run, w, &w->combining[i]);
+            ask_neighbours(run, there, w, &w->combining[i]);
     }
     noc_embree_free_many(run->s, w, w->batch.blocks, w->batch.count);
     const segment_block *answer = w->batch.blocks;
@@ -190,7 +193,8 @@ void noc_embree_temporal(stage_run *run, worker *w, tile t) {
         c->visible = run->s->b.visible[run->stage->target][c->at];
         count++;
     }
-    combine(run, w, count, f->previous.eye, DIM_TEMPORAL);
+    struct core_context past = noc_embree_past(run->s, &run->ctx);
+    combine(run, &past, w, count, f->previous.eye, DIM_TEMPORAL);
 }
 
 /* Neighbour places are drawn once a block: pixels next to each other read reservoirs next to each other, and their bias rays
@@ -252,5 +256,5 @@ void noc_embree_spatial(stage_run *run, worker *w, tile t) {
         c->visible = b->visible[source][at];
         count++;
     }
-    combine(run, w, count, run->ctx.frame->camera.eye, dim);
+    combine(run, &run->ctx, w, count, run->ctx.frame->camera.eye, dim);
 }

@@ -1,0 +1,155 @@
+/* Means of independent short runs against the reference, in every tile and over the whole picture, at some frames of a run. */
+#ifndef NOC_TEST_UNBIASED_H
+#define NOC_TEST_UNBIASED_H
+
+#include "rooms.h"
+
+enum { W = 24, H = 16, TILE = 8, TILES = (W / TILE) * (H / TILE), FRAMES = 6, CHECKS = 3 };
+static const int check_at[CHECKS] = { 1, 3, 6 };
+
+typedef struct { double sum[TILES + 1], square[TILES + 1]; size_t n; } moments;
+
+static inline void add_picture(moments *m, const noc_image *image) {
+    double tile[TILES + 1] = { 0 };
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            double v = luma(image->rgb + 3 * (y * W + x));
+            tile[y / TILE * (W / TILE) + x / TILE] += v / (TILE * TILE);
+            tile[TILES] += v / (W * H);
+        }
+    for (int t = 0; t <= TILES; t++) {
+        m->sum[t] += tile[t];
+        m->square[t] += tile[t] * tile[t];
+    }
+    m->n++;
+}
+
+static inline double mean_of(const moments *m, int t) { return m->sum[t] / (double)m->n; }
+static inline double error_of(const moments *m, int t) {
+    double mean = mean_of(m, t);
+    return sqrt(fmax(m->square[t] / (double)m->n - mean * mean, 0) / (double)m->n);
+}
+
+/* ---- comparison ---- */
+
+static inline noc_camera camera_at(int frame, bool moving) {
+    double t = moving ? 0.35 * frame : 0;
+    return look(2 + t, -11 + 0.3 * t, 4.5, 0.5 + 0.5 * t, 0, 1, 62);
+}
+
+typedef struct config {
+    const char *name;
+    noc_method method;
+    noc_bias bias;
+    bool temporal, spatial, rays, reuse;
+    int passes, neighbours;
+    int list; /* > 0: lists of so many lights and as many draws from the rest */
+    noc_candidates picker; /* list = 0 */
+    noc_influence_boxes boxes;
+    int share; /* bvh: lights a volume; 0: 1 */
+    int shadow_rays; /* ris with lists; 0: the default */
+    bool unlearned;
+} config;
+
+static inline noc_render_params params_of(const config *c, uint32_t seed) {
+    noc_render_params p = measure(W, H, c->method);
+    p.seed = seed;
+    p.draws = 8;
+    p.candidates = c->list ? NOC_CANDIDATES_LISTS : c->picker;
+    p.list = c->list;
+    p.influence_boxes = c->boxes;
+    p.influence_cluster = c->share ? c->share : 1;
+    p.shadow_rays = c->shadow_rays ? c->shadow_rays : p.shadow_rays;
+    p.learn = !c->unlearned;
+    p.tail = c->list ? c->list : 1;
+    p.accumulate = false;
+    p.emitters = false; /* the same in all methods, and much brighter than what they differ in */
+    p.bias = c->bias;
+    p.temporal = c->temporal;
+    p.spatial = c->spatial;
+    p.bias_rays = c->rays;
+    p.visibility_reuse = c->reuse;
+    p.passes = c->passes ? c->passes : 1;
+    p.neighbours = c->neighbours ? c->neighbours : 3;
+    p.radius = 5;
+    p.history = 8;
+    /* neighbours that differ much: what is hardest on the combination's weights */
+    p.reject_normal = 0.2;
+    p.reject_depth = 0.5;
+    return p;
+}
+
+typedef struct result { moments at[CHECKS]; } result;
+
+/* Moves a scene's lights to where they are in a frame. */
+typedef void (*pose_fn)(noc_scene *s, int frame);
+
+/* moving: the camera; pose: NULL if no light moves. */
+static inline result measure_runs(noc_scene *s, const config *c, bool moving, pose_fn pose, int runs) {
+    result out = { 0 };
+    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 2 }, NULL);
+    assert_non_null(r);
+    for (int run = 0; run < runs; run++) {
+        noc_render_params p = params_of(c, (uint32_t)run * 7919 + 17);
+        noc_renderer_reset(r);
+        for (int f = 1, at = 0; f <= FRAMES; f++) {
+            noc_camera cam = camera_at(f, moving);
+            if (pose)
+                pose(s, f);
+            assert_int_equal(noc_renderer_frame(r, &cam, &p, NULL), NOC_OK);
+            if (f != check_at[at])
+                continue;
+            noc_image *image = noc_renderer_image(r);
+            add_picture(&out.at[at++], image);
+            noc_image_destroy(image);
+        }
+    }
+    noc_frame_stats stats;
+    noc_renderer_get_stats(r, &stats);
+    assert_int_equal(stats.dropped, 0);
+    noc_renderer_destroy(r);
+    return out;
+}
+
+static inline result measure_reference(noc_scene *s, bool moving, pose_fn pose, int frames) {
+    result out = { 0 };
+    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 2 }, NULL);
+    config c = { .method = NOC_METHOD_REFERENCE };
+    noc_render_params p = params_of(&c, 99);
+    p.rays = 32;
+    for (int at = 0; at < CHECKS; at++) {
+        if (!moving && !pose && at) {
+            out.at[at] = out.at[0];
+            continue;
+        }
+        noc_camera cam = camera_at(check_at[at], moving);
+        if (pose)
+            pose(s, check_at[at]);
+        for (int f = 0; f < frames; f++) {
+            assert_int_equal(noc_renderer_frame(r, &cam, &p, NULL), NOC_OK);
+            noc_image *image = noc_renderer_image(r);
+            add_picture(&out.at[at], image);
+            noc_image_destroy(image);
+        }
+    }
+    noc_renderer_destroy(r);
+    return out;
+}
+
+/* Largest distance in standard errors over tiles, picture and checked frames; *bias: of the whole picture at the last. */
+static inline double worst(const result *x, const result *reference, double *bias, double *error) {
+    double z = 0;
+    for (int at = 0; at < CHECKS; at++)
+        for (int t = 0; t <= TILES; t++) {
+            double d = mean_of(&x->at[at], t) - mean_of(&reference->at[at], t);
+            double e = hypot(error_of(&x->at[at], t), error_of(&reference->at[at], t));
+            if (mean_of(&reference->at[at], t) > 0)
+                z = fmax(z, fabs(d) / fmax(e, 1e-7 * mean_of(&reference->at[at], t)));
+        }
+    double r = mean_of(&reference->at[CHECKS - 1], TILES);
+    *bias = mean_of(&x->at[CHECKS - 1], TILES) / r - 1;
+    *error = error_of(&x->at[CHECKS - 1], TILES) / r;
+    return z;
+}
+
+#endif
