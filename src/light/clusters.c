@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-enum { CHUNK = 4096, CURVE_BITS = 12 };
+enum { CHUNK = 4096, CURVE_BITS = 12, SAMPLE = 1024 };
 
 /* Work on all items in chunks, by the pool where there is one. */
 typedef struct build {
@@ -14,7 +14,7 @@ typedef struct build {
     noc_light_key *keys, *spare; /* emitting lights in the order of the curve */
     uint32_t *first;             /* a cluster: its first key; one more at the end */
     size_t items, emitting;
-    float lo[3], scale;
+    float lo[3], scale, reach;
     int level;                   /* being made from the one below */
     void (*work)(struct build *b, size_t item);
 } build;
@@ -83,19 +83,32 @@ static void make_key(build *b, size_t i) {
     b->keys[i].key = (uint64_t)face(l->n) << (3 * CURVE_BITS) | hilbert(x);
 }
 
-static void sort_lights(build *b, noc_pool *pool) {
-    float hi[3] = { -INFINITY, -INFINITY, -INFINITY }, size = 0;
+static int by_size(const void *a, const void *b) {
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* The cube that the curve runs through: three times what nine of ten lights span, by a sample of them, so that a moon or a
+ * stray lamp does not squeeze the city into one cell of it. */
+static void span_lights(build *b) {
+    float sample[SAMPLE], size = 0;
+    size_t n = NOC_MIN(b->emitting, (size_t)SAMPLE);
+    for (int k = 0; k < 3; k++) {
+        for (size_t i = 0; i < n; i++)
+            sample[i] = b->bounds[b->keys[i * b->emitting / n].id].p[k];
+        qsort(sample, n, sizeof(*sample), by_size);
+        float low = n ? sample[n / 20] : 0, high = n ? sample[n - 1 - n / 20] : 0;
+        b->lo[k] = 0.5f * (low + high);
+        size = fmaxf(size, 3 * (high - low));
+    }
     for (int k = 0; k < 3; k++)
-        b->lo[k] = INFINITY;
-    for (size_t i = 0; i < b->emitting; i++)
-        for (int k = 0; k < 3; k++) {
-            float p = b->bounds[b->keys[i].id].p[k];
-            b->lo[k] = NOC_MIN(b->lo[k], p);
-            hi[k] = NOC_MAX(hi[k], p);
-        }
-    for (int k = 0; k < 3; k++)
-        size = fmaxf(size, hi[k] - b->lo[k]);
+        b->lo[k] -= 0.5f * size;
+    b->reach = size;
     b->scale = size > 0 ? (float)(1 << CURVE_BITS) / size : 0;
+}
+
+static void sort_lights(build *b, noc_pool *pool) {
+    span_lights(b);
     run(b, pool, b->emitting, make_key);
     noc_sort_keys(b->keys, b->spare, b->emitting);
 }
@@ -110,11 +123,20 @@ static bool alike(const noc_light_bound *a, const noc_light_bound *b) {
     return a->n[0] * b->n[0] + a->n[1] * b->n[1] + a->n[2] * b->n[2] > 0.7f;
 }
 
+/* Lights further apart than that are not one cluster: places are told to 1/511 of its radius. */
+static bool near(const build *b, const noc_light_bound *x, const noc_light_bound *y) {
+    float d2 = 0;
+    for (int k = 0; k < 3; k++)
+        d2 += (x->p[k] - y->p[k]) * (x->p[k] - y->p[k]);
+    return d2 <= b->reach * b->reach;
+}
+
 /* Where clusters begin, into first (or only how many there are, where that is NULL). */
 static size_t cut(const build *b, uint32_t *first) {
     size_t count = 0, begin = 0;
     for (size_t i = 0; i < b->emitting; i++)
-        if (!i || i - begin == NOC_CLUSTER_LIGHTS || !alike(&b->bounds[b->keys[begin].id], &b->bounds[b->keys[i].id])) {
+        if (!i || i - begin == NOC_CLUSTER_LIGHTS || !alike(&b->bounds[b->keys[begin].id], &b->bounds[b->keys[i].id]) ||
+            !near(b, &b->bounds[b->keys[begin].id], &b->bounds[b->keys[i].id])) {
             begin = i;
             if (first)
                 first[count] = (uint32_t)i;

@@ -184,11 +184,31 @@ static void tables_agree(void **state) {
     free_world(&w);
 }
 
+/* A moon does not share a cluster with the lamps below, whose places would be told to no more than kilometres. */
+static void far_lights_stand_alone(void **state) {
+    (void)state;
+    noc_scene *s = noc_scene_create(NULL);
+    for (int i = 0; i < 301; i++) {
+        noc_light l = { .kind = NOC_LIGHT_POINT, .position = { real_in(-20, 20), real_in(-20, 20), 3 }, .emission = { 30, 30, 30 } };
+        if (i == 150)
+            l = (noc_light){ .kind = NOC_LIGHT_POINT, .position = { 1e5, 0, 1e5 }, .emission = { 5e9, 5e9, 5e9 } };
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+    }
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    noc_clusters *c = noc_clusters_create(s, NULL, NULL);
+    assert_non_null(c);
+    for (size_t i = 0; i < c->count; i++)
+        assert_true(c->level[0][i / 16].radius[i % 16] < 200);
+    noc_clusters_destroy(c);
+    noc_scene_destroy(s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(small_scene),
         cmocka_unit_test(large_scene),
         cmocka_unit_test(deep_scene),
+        cmocka_unit_test(far_lights_stand_alone),
         cmocka_unit_test(few_lights_are_listed),
         cmocka_unit_test(tables_agree),
     };

@@ -312,6 +312,7 @@ static void draw_tail(const noc_clusters *c, const tile_bound *t, const examples
         return;
     double step = total / draws, next = step * rotation, sum = 0;
     int drawn = 0;
+    draws = NOC_MIN(draws, 2 * LIST_ENTRIES - (int)out->count);
     for (uint32_t g = 0; g < groups && drawn < draws; sum += s->sums[g++])
         for (; next < sum + s->sums[g] && drawn < draws; next += step, drawn++) {
             float at = (float)((next - sum) / s->sums[g]), share;
