@@ -111,26 +111,6 @@ static void count_rays(worker *w, float *counts, uint32_t valid) {
         counts[l] += (float)(valid >> l & 1);
 }
 
-static uint32_t trace_free(embree_state *s, const rayblock *rays, uint32_t valid) {
-    ALIGNED int lanes[BLOCK];
-    ALIGNED struct RTCRay16 r;
-    lane_mask(valid, lanes);
-    fill_rays(rays, 1, &r);
-    rt_occluded16(lanes, s->rtc, &r);
-    uint32_t clear = 0;
-    for (int l = 0; l < BLOCK; l++)
-        clear |= (uint32_t)(r.tfar[l] >= 0) << l;
-    return clear & valid;
-}
-
-uint32_t noc_embree_free(embree_state *s, worker *w, const rayblock *rays, uint32_t valid) {
-    if (!valid)
-        return 0;
-    count_rays(w, NULL, valid);
-    keep(s, w, rays, NULL, valid, 1, false);
-    return trace_free(s, rays, valid);
-}
-
 void noc_embree_free_many(embree_state *s, worker *w, segment_block *blocks, int count) {
     for (int first = 0; first < count; first += MANY_BLOCKS) {
         int n = NOC_MIN(MANY_BLOCKS, count - first);
@@ -235,11 +215,9 @@ static void replay_run(void *ctx, size_t item, int index) {
     (void)index;
     while (p < end) {
         int n = (int)NOC_MIN((ptrdiff_t)p->together, end - p);
-        if (p->primary)
+        if (p->primary) {
             replay_primary(r->s, &p->block);
-        else if (n == 1)
-            trace_free(r->s, &p->block.rays, p->block.valid);
-        else {
+        } else {
             for (int i = 0; i < n; i++)
                 many[i] = p[i].block;
             noc_embree_trace_many(r->s->rtc, many, n);

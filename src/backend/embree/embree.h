@@ -181,11 +181,9 @@ typedef struct tile_block {
 /* device.c */
 noc_status noc_embree_build(embree_state *s);
 void noc_embree_release(embree_state *s);
-/* Traces the segments of `valid`; returns the lanes that nothing blocks. Counts, and keeps them when recording. */
-uint32_t noc_embree_free(embree_state *s, worker *w, const rayblock *rays, uint32_t valid);
-/* The segments of many blocks, the more the better up to MANY_BLOCKS: those that lead to one light are traced side by side, the
- * others as a stream. Sets `clear`, which is 0 outside `valid`. Same answers as noc_embree_free's, in less time
- * (bench/bench_rays). Counts rays where each block says, and keeps them when recording. */
+/* Traces the segments of many blocks, the more the better up to MANY_BLOCKS: those that lead to one light side by side, the
+ * others as a stream (bench/bench_rays has the gain). Sets `clear`, which is 0 outside `valid`. Counts rays where each block
+ * says, and keeps them when recording. */
 void noc_embree_free_many(embree_state *s, worker *w, segment_block *blocks, int count);
 /* Nearest hits of camera rays into a block; lanes outside `valid` see nothing. */
 void noc_embree_primary(embree_state *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g);
