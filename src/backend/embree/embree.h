@@ -33,6 +33,7 @@ typedef struct ray_draw {
     rblock r;             /* w: W, 0 where the ray was blocked; m and p are not used */
     uint8_t entry[BLOCK]; /* of the list */
     int block;            /* of the tile */
+    int rays;             /* the block has so many of them, one after the other */
 } ray_draw;
 
 /* What is believed in a cell of the scene, and what its rays find. */
@@ -66,6 +67,7 @@ typedef struct tile_rays {
     weighed weighed;                           /* of the block at hand */
     size_t at[TILE_BLOCKS * TILE_BLOCKS];      /* the tile's blocks in the picture */
     int cell_of[TILE_BLOCKS * TILE_BLOCKS];
+    int kept[TILE_BLOCKS * TILE_BLOCKS][BLOCK]; /* the draw that stands for a pixel in views */
     int cells, count;
     double bright;
     tile_cell cell[TILE_BLOCKS * TILE_BLOCKS];

@@ -106,8 +106,8 @@ static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ct
 }
 
 /* The reservoir that stands for the block in views: one of the draws, at random. */
-static void keep_one(const stage_run *run, const tile_rays *t, const block_draws *from, const float pick[BLOCK], int first,
-                     rblock *out) {
+static void keep_one(const stage_run *run, tile_rays *t, const block_draws *from, const float pick[BLOCK], int block,
+                     int first, rblock *out) {
     memset(out, 0, sizeof(*out));
     for (int l = 0; l < BLOCK; l++) {
         out->u[l] = out->v[l] = 0.5f;
@@ -116,7 +116,7 @@ static void keep_one(const stage_run *run, const tile_rays *t, const block_draws
         int k = 0;
         for (float at = NOC_MIN(pick[l] * from->n[l], from->n[l] - 1); at >= from->times[k][l]; k++)
             at -= from->times[k][l];
-        const ray_draw *d = &t->draws[first + k];
+        const ray_draw *d = &t->draws[t->kept[block][l] = first + k];
         const tile_cell *c = &t->cell[t->cell_of[d->block]];
         out->light[l] = d->r.light[l];
         out->u[l] = d->r.u[l];
@@ -141,9 +141,11 @@ static void draw_block(stage_run *run, tile_rays *t, const struct core_context *
         pick[l] = rng(key, DIM_CANDIDATE + 4);
     }
     run->k->list_draw((int)ctx->list->count, &t->weighed, d.n, start, d.entry);
-    for (int k = 0, rays = join_equals(&d); k < rays; k++)
+    for (int k = 0, rays = join_equals(&d); k < rays; k++) {
+        t->draws[t->count].rays = rays;
         add_rays(run, t, ctx, g, block, &d, k, x, y);
-    keep_one(run, t, &d, pick, first, out);
+    }
+    keep_one(run, t, &d, pick, block, first, out);
 }
 
 /* A list with room to spare holds its lights several times, each time to be looked at in another point. */
@@ -218,6 +220,11 @@ void noc_embree_share_visibility(stage_run *run, worker *w, tile at) {
         for (int l = 0; l < BLOCK; l++)
             if (!(t->segments[i].clear >> l & 1))
                 t->draws[i].r.w[l] = 0;
+    rblock *r = run->s->b.r[run->stage->target];
+    for (int i = 0; i < t->count; i += t->draws[i].rays)
+        for (int l = 0; l < BLOCK; l++)
+            if (r[t->at[t->draws[i].block]].w[l] > 0 && !(t->segments[t->kept[t->draws[i].block][l]].clear >> l & 1))
+                r[t->at[t->draws[i].block]].w[l] = 0;
     if (learns(run->ctx.frame->params))
         note_sightings(run, w, at);
 }
