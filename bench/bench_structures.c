@@ -1,9 +1,11 @@
 /* Light structures: build time and memory.
  *
- *   bench_structures [THREADS]     over random cities of 1k, 10k, 100k and 1M lights
+ *   bench_structures [THREADS [MOST [NAME]]]     over random cities of 1k, 10k, ... up to MOST (1000000) lights
  *
- * Wall seconds and bytes a light of the alias table (power), influence volumes (bvh: simple, shared by up to 8 lights,
- * visibility-aware), the tree and the clusters of the lists. Visibility-aware boxes are probed against a city of blocks.
+ * NAME: only the structures whose names hold it. Wall and CPU seconds and bytes a light of the alias table (power), influence
+ * volumes (bvh: simple, shared by up to 8 lights, visibility-aware), the tree and the clusters of the lists. CPU seconds are
+ * those of a small frame that builds the structure less those of one that finds it there. Visibility-aware boxes are probed
+ * against a city of blocks.
  * "share" is bytes over what the scene and its ray tracing structure hold, which is little here: twelve triangles a block and
  * a light for each ten metres of it. */
 #include "bench_scene.h"
@@ -56,20 +58,44 @@ static noc_scene *random_city(int lights) {
     return s;
 }
 
-static bool row(const noc_scene *s, int threads, const char *name, noc_candidates candidates, int share, noc_influence_boxes boxes) {
+typedef struct structure {
+    const char *name;
+    noc_candidates candidates;
+    int share;
+    noc_influence_boxes boxes;
+} structure;
+
+static const structure structures[] = {
+    { "power", NOC_CANDIDATES_POWER, 1, NOC_INFLUENCE_SPHERE },
+    { "bvh", NOC_CANDIDATES_BVH, 1, NOC_INFLUENCE_SPHERE },
+    { "bvh, shared", NOC_CANDIDATES_BVH, 8, NOC_INFLUENCE_SPHERE },
+    { "bvh, visible", NOC_CANDIDATES_BVH, 1, NOC_INFLUENCE_VISIBLE },
+    { "bvh, both", NOC_CANDIDATES_BVH, 8, NOC_INFLUENCE_VISIBLE },
+    { "tree", NOC_CANDIDATES_TREE, 1, NOC_INFLUENCE_SPHERE },
+    { "lists", NOC_CANDIDATES_LISTS, 1, NOC_INFLUENCE_SPHERE },
+};
+
+static bool row(const noc_scene *s, int threads, const structure *what) {
     noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = threads }, NULL);
     noc_render_params p = noc_render_default_params();
     noc_camera c = { .eye = { 26, -10, 3 }, .target = { 26, 50, 3 }, .up = { 0, 0, 1 }, .fov_deg = 50 };
     p.width = p.height = 16;
     p.method = NOC_METHOD_RIS;
-    p.candidates = candidates;
-    p.influence_cluster = share;
-    p.influence_boxes = boxes;
+    p.candidates = what->candidates;
+    p.influence_cluster = what->share;
+    p.influence_boxes = what->boxes;
     noc_light_stats l = { 0 };
-    bool ok = r && noc_renderer_frame(r, &c, &p, NULL) == NOC_OK;
+    noc_frame_stats frame[2] = { { 0 } };
+    bool ok = r != NULL;
+    for (int i = 0; ok && i < 2; i++) {
+        ok = noc_renderer_frame(r, &c, &p, NULL) == NOC_OK;
+        if (ok)
+            noc_renderer_get_stats(r, &frame[i]);
+    }
     if (ok) {
         noc_renderer_light_stats(r, &l);
-        printf("%9zu  %-14s %9.4f s %7.1f bytes a light, share %5.2f%%", l.lights, name, l.build_seconds, (double)l.bytes / (double)l.lights,
+        printf("%9zu  %-14s %8.4f s wall %8.4f s CPU %7.1f bytes a light, share %5.2f%%", l.lights, what->name, l.build_seconds,
+               frame[0].cpu_seconds - frame[1].cpu_seconds, (double)l.bytes / (double)l.lights,
                100.0 * (double)l.bytes / (double)l.scene_bytes);
         if (l.volumes)
             printf(", S_r %.2f, %zu volumes", l.influence, l.volumes);
@@ -81,17 +107,13 @@ static bool row(const noc_scene *s, int threads, const char *name, noc_candidate
 }
 
 int main(int argc, char **argv) {
-    int threads = argc > 1 ? atoi(argv[1]) : 0;
+    int threads = argc > 1 ? atoi(argv[1]) : 0, most = argc > 2 ? atoi(argv[2]) : 1000000;
+    const char *name = argc > 3 ? argv[3] : "";
     bool ok = threads >= 0;
-    for (int n = 1000; ok && n <= 1000000; n *= 10) {
+    for (int n = 1000; ok && n <= most; n *= 10) {
         noc_scene *s = random_city(n);
-        ok = row(s, threads, "power", NOC_CANDIDATES_POWER, 1, NOC_INFLUENCE_SPHERE) &&
-             row(s, threads, "bvh", NOC_CANDIDATES_BVH, 1, NOC_INFLUENCE_SPHERE) &&
-             row(s, threads, "bvh, shared", NOC_CANDIDATES_BVH, 8, NOC_INFLUENCE_SPHERE) &&
-             row(s, threads, "bvh, visible", NOC_CANDIDATES_BVH, 1, NOC_INFLUENCE_VISIBLE) &&
-             row(s, threads, "bvh, both", NOC_CANDIDATES_BVH, 8, NOC_INFLUENCE_VISIBLE) &&
-             row(s, threads, "tree", NOC_CANDIDATES_TREE, 1, NOC_INFLUENCE_SPHERE) &&
-             row(s, threads, "lists", NOC_CANDIDATES_LISTS, 1, NOC_INFLUENCE_SPHERE);
+        for (size_t i = 0; ok && i < sizeof(structures) / sizeof(*structures); i++)
+            ok = !strstr(structures[i].name, name) || row(s, threads, &structures[i]);
         noc_scene_destroy(s);
     }
     return ok ? 0 : 1;
