@@ -84,8 +84,9 @@ const char *cli_builtin_needed(const noc_option *option, const char *const *inpu
 noc_status cli_load_scene(noc_scene *scene, const char *const *inputs, size_t count, const noc_builtin_params *builtin,
                           const noc_import_params *import, noc_report **report);
 
-/* render.c: --exposure, which compare takes too */
-int cli_parse_exposure(const cli_command *command, const char *text, noc_display_params *display);
+/* render.c */
+#define CLI_PRESETS "still|interactive" /* choices of --preset: noc_preset */
+int cli_parse_exposure(const cli_command *command, const char *text, noc_display_params *display); /* compare takes it too */
 
 /* output.c */
 typedef enum cli_ending { CLI_PNG = 1, CLI_EXR = 2 } cli_ending;

@@ -43,6 +43,7 @@ typedef struct experiment_camera {
 typedef struct experiment_config {
     const char *name;
     noc_render_params params;
+    int preset;              /* noc_preset that params were set by; of no meaning where the spec gives none */
     int frames;              /* at most, where seconds says when to stop */
     double seconds;          /* process CPU time after which it stops; 0: frames decide */
     size_t entry;            /* of the spec's list */
@@ -153,6 +154,8 @@ void experiment_free_spec(experiment_spec *spec);
 struct json_t;
 int experiment_wrong(const experiment_spec *spec, const char *place, const char *fmt, ...) NOC_PRINTF(3, 4);
 const noc_option *experiment_option(const cli_set *sets, const char *name, size_t *offset);
+int experiment_set(experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others, void *params,
+                   const char *name, struct json_t *value);
 int experiment_set_all(experiment_spec *spec, const char *place, struct json_t *object, const cli_set *sets,
                        const char *const *others, void *params); /* others: names that are right here but no options */
 int experiment_read_name(experiment_spec *spec, const char *place, struct json_t *object, const char **name);
@@ -165,8 +168,9 @@ int experiment_read_cameras(experiment_spec *spec, const char *place, struct jso
 int experiment_place_cameras(experiment_lab *lab, size_t camera); /* once its scene is there */
 noc_camera experiment_camera_at(const experiment_lab *lab, size_t camera, int frame);
 
-/* experiment_config.c */
-int experiment_read_config(experiment_spec *spec, const char *place, struct json_t *object, const noc_render_params *shared, size_t entry);
+/* experiment_config.c: shared holds what all configurations have in common, and is what they begin as. */
+int experiment_read_shared(experiment_spec *spec, struct json_t *object, experiment_config *shared);
+int experiment_read_config(experiment_spec *spec, const char *place, struct json_t *object, const experiment_config *shared, size_t entry);
 
 /* experiment_scene.c */
 int experiment_load_scene(experiment_lab *lab, size_t scene);

@@ -10,11 +10,15 @@ static const noc_option config_options[] = {
     { "seconds", "Configuration", NOC_OPTION_REAL, offsetof(experiment_config, seconds), 0, 1e6, NULL, "s", "" },
     { NULL },
 };
-static const noc_option *config_table(void) { return config_options; }
-static const char *const said_above[] = { "width", "height", "seed", "accumulate", NULL };
-static const cli_set config_sets[] = {
-    { config_table, 0, NULL }, { noc_render_options, offsetof(experiment_config, params), said_above }, { NULL }
+static const noc_option preset_options[] = {
+    { "preset", "Configuration", NOC_OPTION_CHOICE, offsetof(experiment_config, preset), 0, 0, CLI_PRESETS, "", "" },
+    { NULL },
 };
+static const noc_option *config_table(void) { return config_options; }
+static const noc_option *preset_table(void) { return preset_options; }
+static const char *const said_above[] = { "width", "height", "seed", "accumulate", NULL };
+#define RENDER_SETS { preset_table, 0, NULL }, { noc_render_options, offsetof(experiment_config, params), said_above }
+static const cli_set shared_sets[] = { RENDER_SETS, { NULL } }, config_sets[] = { { config_table, 0, NULL }, RENDER_SETS, { NULL } };
 static const char *const named[] = { "name", NULL };
 
 /* The option of an entry that stands for several of its values. *status where more than one does. */
@@ -63,22 +67,40 @@ static char *value_text(const noc_option *option, const experiment_config *confi
     return cli_format("%s", text);
 }
 
-static experiment_config *add(experiment_spec *spec, const noc_render_params *shared, size_t entry, int choice) {
+static experiment_config *add(experiment_spec *spec, const experiment_config *shared, size_t entry, int choice) {
     spec->configs = experiment_longer(spec->configs, sizeof(experiment_config) * (spec->config_count + 1));
     experiment_config *config = &spec->configs[spec->config_count++];
-    *config = (experiment_config){ .params = *shared, .frames = spec->frames, .seconds = spec->seconds, .entry = entry, .choice = choice };
+    *config = *shared;
+    config->frames = spec->frames;
+    config->seconds = spec->seconds;
+    config->entry = entry;
+    config->choice = choice;
     return config;
+}
+
+/* Options of one object. Its preset comes before all others, wherever it stands: they win over it, as on the command line. */
+static int read_options(experiment_spec *spec, const char *place, json_t *object, const cli_set *sets, const char *const *others,
+                        experiment_config *config) {
+    json_t *preset = json_object_get(object, "preset");
+    int status = preset ? experiment_set(spec, place, sets, NULL, config, "preset", preset) : CLI_OK;
+    if (!status && preset)
+        noc_render_use_preset(&config->params, (noc_preset)config->preset);
+    return status ? status : experiment_set_all(spec, place, object, sets, others, config);
+}
+
+int experiment_read_shared(experiment_spec *spec, json_t *object, experiment_config *shared) {
+    return read_options(spec, "options", object, shared_sets, NULL, shared);
 }
 
 /* Seconds alone decide where frames are not given beside them. */
 static int read_members(experiment_spec *spec, const char *place, json_t *object, experiment_config *config) {
-    int status = experiment_set_all(spec, place, object, config_sets, named, config);
+    int status = read_options(spec, place, object, config_sets, named, config);
     if (!status && json_object_get(object, "seconds") && !json_object_get(object, "frames"))
         config->frames = config->seconds > 0 ? EXPERIMENT_FRAMES : config->frames;
     return status;
 }
 
-int experiment_read_config(experiment_spec *spec, const char *place, json_t *object, const noc_render_params *shared, size_t entry) {
+int experiment_read_config(experiment_spec *spec, const char *place, json_t *object, const experiment_config *shared, size_t entry) {
     int status = CLI_OK;
     const char *name = NULL;
     const noc_option *option = json_is_object(object) ? several(spec, place, object, &status) : NULL;

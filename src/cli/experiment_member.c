@@ -82,9 +82,8 @@ static char *spell(const json_t *value) {
 
 static void keep_message(void *user, noc_log_level level, const char *text) { snprintf(user, 256, "%s", text); }
 
-/* others: names that are right here but no options. */
-static int set(experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others, void *params,
-               const char *name, json_t *value) {
+int experiment_set(experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others, void *params,
+                   const char *name, json_t *value) {
     size_t offset = 0;
     for (const char *const *other = others; other && *other; other++)
         if (!strcmp(*other, name))
@@ -112,7 +111,7 @@ int experiment_set_all(experiment_spec *spec, const char *place, json_t *object,
     const char *name;
     json_t *value;
     json_object_foreach(object, name, value) {
-        int status = set(spec, place, sets, others, params, name, value);
+        int status = experiment_set(spec, place, sets, others, params, name, value);
         if (status)
             return status;
     }

@@ -312,7 +312,8 @@ static int print_mode(FILE *out, experiment_lab *lab, size_t camera, int mode) {
     experiment_series s = { lab, camera, 0, mode };
     char *slug = experiment_slug(lab, camera), clamped[48];
     if (motion)
-        fprintf(out, "\n### Frame %d, after %d %s\n", motion, motion - 1, spec->cameras[camera].cut ? "frames and a cut" : "frames of motion");
+        fprintf(out, "\n### Frame %d, after %d frame%s %s\n", motion, motion - 1, motion == 2 ? "" : "s",
+                spec->cameras[camera].cut ? "and a cut" : "of motion");
     else
         fprintf(out, "\n### %s\n", mode_names[mode]);
     for (int over_time = 0; !status && !motion && over_time <= (mode == EXPERIMENT_ACCUMULATED); over_time++) {

@@ -29,12 +29,10 @@ static const noc_option reference_options[] = {
 };
 static const noc_option *reference_table(void) { return reference_options; }
 
-/* What the spec says once for all configurations. */
-static const char *const said_above[] = { "width", "height", "seed", "accumulate", NULL };
+/* What the spec says once for all pictures. */
 static const char *const by_spec[] = { "width", "height", "accumulate", NULL };
 
 static const cli_set spec_sets[] = { { spec_table, 0, NULL }, { NULL } };
-static const cli_set shared_sets[] = { { noc_render_options, 0, said_above }, { NULL } };
 static const cli_set reference_sets[] = {
     { reference_table, 0, NULL }, { noc_render_options, offsetof(S, reference.params), by_spec }, { NULL }
 };
@@ -94,7 +92,7 @@ static int check_twice(S *spec, const char *what, const char *const *name, size_
     return CLI_OK;
 }
 
-static int read_lists(S *spec, json_t *root, const noc_render_params *shared) {
+static int read_lists(S *spec, json_t *root, const experiment_config *shared) {
     json_t *scenes = json_object_get(root, "scenes"), *scene = json_object_get(root, "scene");
     json_t *cameras = json_object_get(root, "cameras"), *configs = json_object_get(root, "configurations");
     if (!scene == !scenes)
@@ -159,13 +157,21 @@ static int read_times(S *spec, json_t *times) {
     size_t i;
     json_t *time;
     if (times && !json_is_array(times))
-        return experiment_wrong(spec, "equal-time", "this must be an array of CPU seconds");
+        return experiment_wrong(spec, "equal-time", "this must be an array of CPU seconds, such as [1, 3, 10]");
     json_array_foreach(times, i, time) {
         if (i == EXPERIMENT_TIMES || !json_is_number(time) || !(json_number_value(time) > 0))
-            return experiment_wrong(spec, "equal-time", "up to %d CPU seconds, each above 0", EXPERIMENT_TIMES);
+            return experiment_wrong(spec, "equal-time", "this must be up to %d CPU seconds, each above 0, such as [1, 3, 10]", EXPERIMENT_TIMES);
         spec->times[spec->time_count++] = json_number_value(time);
     }
     return CLI_OK;
+}
+
+static int check_times(const S *spec) {
+    size_t resting = 0;
+    for (size_t c = 0; c < spec->camera_count; c++)
+        resting += !spec->cameras[c].frames;
+    return !spec->time_count || resting ? CLI_OK
+        : experiment_wrong(spec, "equal-time", "this needs a camera at rest: of one with a path the last frame alone is measured");
 }
 
 static int check_rows(const S *spec) {
@@ -181,9 +187,9 @@ static int read_root(S *spec, json_t *root) {
     if (!json_is_object(root))
         return experiment_wrong(spec, "", "a spec is one object, {...}");
     /* What is judged is light sampling, not the edges of surfaces nor the sky: a spec says otherwise where it means it. */
-    noc_render_params shared = noc_render_default_params();
-    shared.sky = 0;
-    shared.jitter = false;
+    experiment_config shared = { .params = noc_render_default_params() };
+    shared.params.sky = 0;
+    shared.params.jitter = false;
     int status = experiment_set_all(spec, "", root, spec_sets, objects, spec);
     if (!status && spec->seconds > 0 && !json_object_get(root, "frames"))
         spec->frames = EXPERIMENT_FRAMES;
@@ -193,14 +199,15 @@ static int read_root(S *spec, json_t *root) {
     status = status ? status : read_frames(spec, "shown", json_object_get(root, "shown"), &spec->shown, &spec->shown_count);
     if (!status && !json_object_get(root, "shown"))
         spec->shown[spec->shown_count++] = 1;
-    shared.width = spec->width;
-    shared.height = spec->height;
-    status = status ? status : experiment_set_all(spec, "options", json_object_get(root, "options"), shared_sets, NULL, &shared);
-    spec->reference.params = shared;
+    shared.params.width = spec->width;
+    shared.params.height = spec->height;
+    status = status ? status : experiment_read_shared(spec, json_object_get(root, "options"), &shared);
+    spec->reference.params = shared.params;
     spec->reference.params.method = NOC_METHOD_REFERENCE;
     spec->reference.params.seed = 4711;
     status = status ? status : experiment_set_all(spec, "reference", json_object_get(root, "reference"), reference_sets, NULL, spec);
     status = status ? status : read_lists(spec, root, &shared);
+    status = status ? status : check_times(spec);
     return status ? status : check_rows(spec);
 }
 

@@ -11,7 +11,7 @@ static const noc_option own_options[] = {
     { "show", "Output", NOC_OPTION_CHOICE, offsetof(A, show), 0, 0,
       "picture|lights|density|light|weight|confidence|rays|variance|error", "", "what is written: the picture, or how lights were sampled" },
     TEXT("show-range", "Output", show_range, "LOW,HIGH", "ends of that view's colour bar; else found from its numbers"),
-    { "preset", "Estimator", NOC_OPTION_CHOICE, offsetof(A, preset), 0, 0, "still|interactive", "",
+    { "preset", "Estimator", NOC_OPTION_CHOICE, offsetof(A, preset), 0, 0, CLI_PRESETS, "",
       "settings for a purpose; options beside it win" },
     { "frames", "Output", NOC_OPTION_INT, offsetof(A, frames), 1, 1e9, NULL, "", "frames that are rendered and averaged" },
     { "time", "Output", NOC_OPTION_REAL, offsetof(A, time), 0, 1e9, NULL, "s",
