@@ -12,6 +12,7 @@ void noc_influence_destroy(noc_influence *v) {
         free(v->nodes[i]);
     free(v->volumes);
     free(v->boxes);
+    free(v->box_of);
     free(v->first);
     free(v->ids);
     free(v->volume_of);
@@ -139,6 +140,6 @@ bool noc_influence_holds(const noc_influence *v, uint32_t light, const float p[3
         return false;
     if (!v->boxes)
         return true;
-    const noc_influence_box *b = &v->boxes[volume];
+    const noc_influence_box *b = &v->boxes[v->box_of[volume]];
     return influence_inside(V3(b->lo[0], b->lo[1], b->lo[2]), V3(b->hi[0], b->hi[1], b->hi[2]), at);
 }

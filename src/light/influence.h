@@ -26,9 +26,10 @@ typedef struct noc_influence_box {
 typedef struct noc_influence {
     uint32_t count;                                 /* lights of the scene, those without emission too */
     uint32_t shining;                               /* lights that emit something */
-    uint32_t volume_count;
+    uint32_t volume_count, box_count;
     noc_influence_volume *volumes;                  /* in the hierarchy's order; behind the last, one that holds nothing */
-    noc_influence_box *boxes;                       /* parallel: what a volume's lights see; NULL: nothing stands in their way */
+    uint32_t *box_of;                               /* parallel: the box that a volume shares with volumes near it */
+    noc_influence_box *boxes;                       /* what their lights see; NULL: nothing stands in their way */
     uint32_t *first;                                /* volume i has the lights ids[first[i]..first[i + 1]); NULL: one each */
     uint32_t *ids;
     uint32_t *volume_of;                            /* a light of the scene */

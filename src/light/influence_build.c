@@ -51,12 +51,12 @@ static uint64_t side_of(const float n[3]) {
     return n[axis] == 0 ? 6 : (uint64_t)(2 * axis + (n[axis] < 0));
 }
 
-/* Size class (a factor of 2 in intensity), side where lights are to share volumes, Morton code. */
+/* Size class (a factor of 2 in intensity), side where lights are to share volumes or boxes, Morton code. */
 static void key_chunk(void *ctx, size_t item, int worker) {
     build *b = ctx;
     (void)worker;
     float scale = b->size > 0 ? 1048575.f / b->size : 0;
-    bool sides = b->params->cluster > 1;
+    bool sides = b->params->cluster > 1 || b->params->probe;
     size_t end = NOC_MIN((item + 1) * CHUNK, (size_t)b->v->shining);
     for (size_t i = item * CHUNK; i < end; i++) {
         const noc_light_bound *a = &b->bounds[b->keys[i].id];

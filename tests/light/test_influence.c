@@ -327,7 +327,9 @@ static void threads_build_the_same(void **state) {
     noc_influence *a = noc_influence_create(s, &one, NULL), *b = noc_influence_create(s, &three, NULL);
     assert_int_equal(a->volume_count, b->volume_count);
     assert_memory_equal(a->volumes, b->volumes, a->volume_count * sizeof(*a->volumes));
-    assert_memory_equal(a->boxes, b->boxes, a->volume_count * sizeof(*a->boxes));
+    assert_int_equal(a->box_count, b->box_count);
+    assert_memory_equal(a->boxes, b->boxes, a->box_count * sizeof(*a->boxes));
+    assert_memory_equal(a->box_of, b->box_of, a->volume_count * sizeof(*a->box_of));
     assert_memory_equal(a->ids, b->ids, a->shining * sizeof(*a->ids));
     assert_memory_equal(&a->scale, &b->scale, sizeof(a->scale));
     noc_influence_destroy(a);

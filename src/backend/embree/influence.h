@@ -89,11 +89,12 @@ static uint32_t look_closer(const noc_influence *v, const gblock *g, const noc_n
             uint32_t volume = group->volume[__builtin_ctz(bits)], any = 0;
             real lights = K((float)lights_of(v, volume));
             influence a = influence_splat(&v->volumes[volume]);
+            const noc_influence_box *box = v->boxes ? &v->boxes[v->box_of[volume]] : NULL;
             for (int l = 0; l < BLOCK; l += LANES) {
                 v3 p = point_load(g, l);
                 real needs = influence_needs(a, p, normal_load(g, l));
-                if (v->boxes)
-                    needs = sel(influence_inside(splat3(v->boxes[volume].lo), splat3(v->boxes[volume].hi), p), needs, INFLUENCE_NEVER);
+                if (box)
+                    needs = sel(influence_inside(splat3(box->lo), splat3(box->hi), p), needs, INFLUENCE_NEVER);
                 mask within = needs <= K(q->scale);
                 EXACT real e2 = sel(within, lights * influence_square(needs), K(0.0f));
                 rstore(f->needs.data + (size_t)rows * BLOCK + l, needs);
@@ -215,7 +216,7 @@ static void weigh_uniform(const noc_influence *v, const gblock *g, const noc_fou
         for (int i = first; i < end; i += every, k++) {
             mask held = and_(influence_needs(influence_gather(v->volumes, volume[k]), p, n) <= scale, any);
             if (v->boxes && ANY(held))
-                held = and_(held, box_gather_holds(v->boxes, volume[k], p));
+                held = and_(held, box_gather_holds(v->boxes, word_gather(v->box_of, volume[k]), p));
             rstore(picks->inverse[i] + l, sel(held, in, out));
         }
     }
