@@ -13,15 +13,18 @@ The land is taken as flat at the foot of the lowest building. Polygons with hole
 import argparse
 import collections
 import gzip
+import itertools
 import json
 import math
 import os
 import random
 import sys
+import zlib
 
 STOREY = 2.9        # m
 CELL = 8.0          # m, of the grid that roofs are found by
 LAND = 1500.0       # m, of ground around the model
+NESTING = {"MultiSurface": 0, "CompositeSurface": 0, "Solid": 1, "MultiSolid": 2, "CompositeSolid": 2}
 BUILDINGS = ("Building", "BuildingPart", "BuildingInstallation")
 
 # Linear Rec.709, luminance left open.
@@ -68,26 +71,32 @@ def holds(ring, x, y):
 
 # ---- the model ----
 
-def read_json(path):
-    with open(path, "rb") as f:
-        data = f.read()
-    return json.loads(gzip.decompress(data) if data[:2] == b"\x1f\x8b" else data)
+def read_model(path):
+    try:
+        with open(path, "rb") as f:
+            data = f.read()
+        model = json.loads(gzip.decompress(data) if data[:2] == b"\x1f\x8b" else data)
+    except (OSError, EOFError, ValueError, zlib.error) as error:
+        sys.exit("obj_city: %s: %s" % (path, error))
+    if not isinstance(model, dict) or model.get("type") != "CityJSON":
+        sys.exit("obj_city: %s: not CityJSON" % path)
+    return model
+
+
+def flatten(faces, values, depth):
+    """(face, value or None) of nested lists; any list of values may be null."""
+    for part, value in zip(faces, values or itertools.repeat(None)):
+        if depth:
+            yield from flatten(part, value, depth - 1)
+        else:
+            yield part, value
 
 
 def surfaces(geometry):
     """(rings, semantic type or None) of every surface of a geometry."""
-    depth = {"MultiSurface": 0, "CompositeSurface": 0, "Solid": 1, "MultiSolid": 2, "CompositeSolid": 2}.get(geometry["type"])
-    if depth is None:
-        return
     semantics = geometry.get("semantics") or {}
-    types = [s["type"] for s in semantics.get("surfaces", [])]
-    faces, values = geometry["boundaries"], semantics.get("values")
-    for _ in range(depth):
-        faces = [f for part in faces for f in part]
-        values = values and [v for n, part in enumerate(values) for v in part or [None] * len(faces)]
-    for k, rings in enumerate(faces):
-        value = values[k] if values and k < len(values) else None
-        yield rings, types[value] if value is not None else None
+    for rings, value in flatten(geometry["boundaries"], semantics.get("values"), NESTING[geometry["type"]]):
+        yield rings, semantics["surfaces"][value]["type"] if value is not None else None
 
 
 class Wall:
@@ -144,8 +153,8 @@ class Model:
 
     def __init__(self, paths):
         self.counts = collections.Counter()
-        found = [self.read(read_json(path)) for path in paths]
-        buildings = [b for model in found for b in model if b]
+        found = [self.read(read_model(path)) for path in paths]
+        buildings = [b for faces in found for b in faces if b]
         points = [p for b in buildings for _, ring in b for p in ring]
         if not points:
             sys.exit("obj_city: no buildings with surfaces in " + ", ".join(paths))
@@ -161,7 +170,7 @@ class Model:
         vertices = [tuple(v[k] * scale[k] + shift[k] for k in range(3)) for v in model["vertices"]]
         for name in sorted(model["CityObjects"]):
             thing = model["CityObjects"][name]
-            shapes = [g for g in thing.get("geometry", []) if g["type"] != "MultiLineString"]
+            shapes = [g for g in thing.get("geometry", []) if g["type"] in NESTING]
             if thing["type"] in BUILDINGS and shapes:
                 finest = max(shapes, key=lambda g: str(g.get("lod", "")))
                 yield [face for rings, kind in surfaces(finest) for face in self.face(vertices, rings, kind)]
@@ -192,6 +201,7 @@ class Model:
                 wall = Wall(ring[::-1], [-c for c in normal])
                 self.counts["walls turned round"] += 1
             walls.append(wall)
+        self.counts["buildings whose foot is above the ground"] += bool(walls) and min(w.z0 for w in walls) > 1
         return walls, roofs
 
 
@@ -270,10 +280,11 @@ class Night:
         if kind.lantern:
             low, high, lit, area = (-.14, -.14, h - .4), (.14, .14, h), ("front", "back", "left", "right"), 4 * .28 * .4
         else:
-            low, high, lit, area = (-.1, -.15, h), (.6, .15, h + .1), ("bottom", "left", "right"), .7 * .3 + 2 * .7 * .1
+            low, high, lit, area = (.3, -.15, h), (1, .15, h + .1), ("bottom", "left", "right"), .7 * .3 + 2 * .7 * .1
+            self.box((.06, -.04, h), (.3, .04, h + .08), place, direction)
         self.box(low, high, place, direction, lit, what="faces of lamps", name=kind.name, rgb=kind.colour,
                  cd_m2=kind.lumens / (math.pi * area))
-        self.box((-.06, -.06, 0), (.06, .06, low[2]), place, direction)
+        self.box((-.06, -.06, 0), (.06, .06, h - .4 if kind.lantern else h + .08), place, direction)
 
     def lamps(self, count, spacing):
         district = {}  # lamps of one district are of one kind
@@ -422,7 +433,7 @@ def main():
     with open(args.output, "w", encoding="ascii") as f:
         polygons = write_city(f, os.path.basename(stem) + ".mtl", model, night)
     print("%d buildings, %d polygons, %d emissive quads" % (len(model.buildings), polygons, night.emissive()))
-    for what, count in sorted((night.counts + model.counts).items()):
+    for what, count in sorted((night.counts + model.counts).items()): # those above 0
         print("%8d %s" % (count, what))
 
 
