@@ -29,6 +29,7 @@ typedef struct noc_option {
     const char *choices;   /* CHOICE: "a|b|c" */
     const char *unit;      /* "m", "px", "cd/m2", "" */
     const char *help;      /* one line */
+    const char *needs;     /* "option=a|b,option=c": where others of its table say otherwise it changes no picture; may be NULL */
 } noc_option;
 
 NOC_API const noc_option *noc_render_options(void);  /* fields of noc_render_params */
@@ -42,6 +43,9 @@ NOC_API const noc_option *noc_builtin_options(void); /* fields of noc_builtin_pa
 NOC_API noc_status noc_option_set(const noc_option *option, void *params, const char *value, noc_log *log);
 /* The field's present value as text, for help and metadata. Returns the length, like snprintf. */
 NOC_API int noc_option_get(const noc_option *option, const void *params, char *text, size_t size);
+/* True where params lack what the option needs, so that its value changes no picture; why then tells, for a message: "it
+ * needs method ris, not is". table: of params, where the options that it needs are. */
+NOC_API bool noc_option_idle(const noc_option *option, const noc_option *table, const void *params, char *why, size_t size);
 
 #ifdef __cplusplus
 }

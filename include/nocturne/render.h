@@ -37,7 +37,7 @@ typedef struct noc_render_params {
     noc_candidates candidates;  /* ris, restir: source of the light candidates */
     int draws;                  /* M: candidates a pixel and frame, 1..1024 */
     int list, tail;             /* lists: strongest lights of a tile, 0..128; draws from all others, 1..128 */
-    int shadow_rays;            /* ris with lists: shadow rays a pixel and frame, about, 1..8 */
+    int shadow_rays;            /* ris with lists: shadow rays a pixel and frame: a target, 1 to twice as many; 1..8 */
     bool learn;                 /* ris with lists: visibility found in earlier frames says where rays are sent */
     double influence;           /* bvh: S_r, the distance at which a light of 1 cd is last found, m; 0 = found for the scene,
                                  * and then for every point */

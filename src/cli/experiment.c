@@ -195,7 +195,7 @@ static int run(void *arguments) {
     experiment_lab lab = { .args = arguments, .lock = -1 };
     if (lab.args->common.input_count != 1)
         return cli_usage(&cli_experiment, "one spec, a JSON file: docs/experiments.md tells what it holds");
-    int status = experiment_read_spec(&lab.spec, lab.args->common.inputs[0]);
+    int status = experiment_read_spec(&lab.spec, lab.args->common.inputs[0], lab.args->common.quiet);
     if (!status) {
         cli_catch_signals();
         cli_progress_start(lab.args->common.quiet);

@@ -60,6 +60,7 @@ enum { EXPERIMENT_CLAMPED, EXPERIMENT_RELMSE, EXPERIMENT_RMSE8 };    /* of "figu
 
 typedef struct experiment_spec {
     const char *path;
+    bool quiet;               /* no warnings */
     const char *title, *note, *size, *crop;
     int width, height;
     int crop_box[4];          /* x, y, width, height; width 0: chosen by the pictures */
@@ -147,7 +148,7 @@ typedef struct experiment_lab {
 } experiment_lab;
 
 /* experiment_spec.c */
-int experiment_read_spec(experiment_spec *spec, const char *path); /* CLI_OK, or an exit status after reporting */
+int experiment_read_spec(experiment_spec *spec, const char *path, bool quiet); /* CLI_OK, or an exit status after reporting */
 void experiment_free_spec(experiment_spec *spec);
 
 /* experiment_member.c: one member of a JSON object to one field, by the option tables. Reported with its place. */
@@ -161,6 +162,8 @@ int experiment_set_all(experiment_spec *spec, const char *place, struct json_t *
 int experiment_read_name(experiment_spec *spec, const char *place, struct json_t *object, const char **name);
 void *experiment_keep(experiment_spec *spec, void *memory); /* now owned by the spec */
 void *experiment_longer(void *array, size_t size);          /* realloc that ends the program when memory is gone */
+
+void experiment_warn_of_idle(const experiment_spec *spec, struct json_t *root); /* of options that change nothing */
 
 /* experiment_camera.c */
 const noc_option *experiment_camera_options(void); /* of render's options, those that place a camera */

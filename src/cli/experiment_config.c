@@ -11,7 +11,7 @@ static const noc_option config_options[] = {
     { NULL },
 };
 static const noc_option preset_options[] = {
-    { "preset", "Configuration", NOC_OPTION_CHOICE, offsetof(experiment_config, preset), 0, 0, CLI_PRESETS, "", "" },
+    CLI_PRESET(experiment_config, "Configuration"),
     { NULL },
 };
 static const noc_option *config_table(void) { return config_options; }
@@ -86,6 +86,42 @@ static int read_options(experiment_spec *spec, const char *place, json_t *object
     if (!status && preset)
         noc_render_use_preset(&config->params, (noc_preset)config->preset);
     return status ? status : experiment_set_all(spec, place, object, sets, others, config);
+}
+
+/* Of members of an object that change nothing: in none of the configurations from first to before end, nor with the other
+ * params, which may be NULL. */
+static void warn_of_idle(const experiment_spec *spec, const char *place, json_t *object, size_t first, size_t end,
+                         const noc_render_params *other) {
+    const noc_option *table = noc_render_options();
+    const char *name;
+    json_t *value;
+    json_object_foreach(object, name, value) {
+        char why[160] = "";
+        size_t offset, i = first;
+        const noc_option *o = experiment_option(config_sets, name, &offset);
+        if (!o || !o->needs || (other && !noc_option_idle(o, table, other, why, sizeof(why))))
+            continue;
+        while (i < end && noc_option_idle(o, table, &spec->configs[i].params, why, sizeof(why)))
+            i++;
+        if (i == end)
+            cli_error("warning: %s: %s: %s has no effect: %s", spec->path, place, name, why);
+    }
+}
+
+void experiment_warn_of_idle(const experiment_spec *spec, json_t *root) {
+    const noc_render_params *reference = &spec->reference.params;
+    char place[64];
+    if (spec->quiet)
+        return;
+    warn_of_idle(spec, "options", json_object_get(root, "options"), 0, spec->config_count, reference);
+    warn_of_idle(spec, "reference", json_object_get(root, "reference"), 0, 0, reference);
+    for (size_t first = 0, end; first < spec->config_count; first = end) {
+        size_t entry = spec->configs[first].entry;
+        for (end = first; end < spec->config_count && spec->configs[end].entry == entry;)
+            end++;
+        snprintf(place, sizeof(place), "configurations[%zu]", entry);
+        warn_of_idle(spec, place, json_array_get(json_object_get(root, "configurations"), entry), first, end, NULL);
+    }
 }
 
 int experiment_read_shared(experiment_spec *spec, json_t *object, experiment_config *shared) {

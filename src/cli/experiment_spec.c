@@ -208,11 +208,14 @@ static int read_root(S *spec, json_t *root) {
     status = status ? status : experiment_set_all(spec, "reference", json_object_get(root, "reference"), reference_sets, NULL, spec);
     status = status ? status : read_lists(spec, root, &shared);
     status = status ? status : check_times(spec);
-    return status ? status : check_rows(spec);
+    status = status ? status : check_rows(spec);
+    if (!status)
+        experiment_warn_of_idle(spec, root);
+    return status;
 }
 
-int experiment_read_spec(S *spec, const char *path) {
-    *spec = (S){ .path = path, .size = "480x270", .frames = 20, .repetitions = 1, .accumulate = EXPERIMENT_MODES, .seed = 1,
+int experiment_read_spec(S *spec, const char *path, bool quiet) {
+    *spec = (S){ .path = path, .quiet = quiet, .size = "480x270", .frames = 20, .repetitions = 1, .accumulate = EXPERIMENT_MODES, .seed = 1,
                  .ceiling = 10, .reference = { .frames = 16 } };
     json_error_t error;
     struct stat st;

@@ -11,8 +11,7 @@ static const noc_option own_options[] = {
     { "show", "Output", NOC_OPTION_CHOICE, offsetof(A, show), 0, 0,
       "picture|lights|density|light|weight|confidence|rays|variance|error", "", "what is written: the picture, or how lights were sampled" },
     TEXT("show-range", "Output", show_range, "LOW,HIGH", "ends of that view's colour bar; else found from its numbers"),
-    { "preset", "Estimator", NOC_OPTION_CHOICE, offsetof(A, preset), 0, 0, CLI_PRESETS, "",
-      "settings for a purpose; options beside it win" },
+    CLI_PRESET(A, "Estimator"),
     { "frames", "Output", NOC_OPTION_INT, offsetof(A, frames), 1, 1e9, NULL, "", "frames that are rendered and averaged" },
     { "time", "Output", NOC_OPTION_REAL, offsetof(A, time), 0, 1e9, NULL, "s",
       "render for about this long instead; 0 = no limit" },
@@ -107,6 +106,18 @@ static void use_preset(render_args *args) {
     }
 }
 
+/* What was given and changes nothing is no error, but hardly what was meant. */
+static void warn_of_idle(const render_args *args) {
+    char why[160], value[8];
+    for (size_t i = 0; i < args->common.given_count && !args->common.quiet; i++) {
+        const noc_option *o = args->common.given[i];
+        if (!noc_option_idle(o, noc_render_options(), &args->render, why, sizeof(why)))
+            continue;
+        bool off = o->kind == NOC_OPTION_BOOL && (noc_option_get(o, &args->render, value, sizeof(value)), *value == 'f');
+        cli_error("warning: --%s%s has no effect: %s", off ? "no-" : "", o->name, why);
+    }
+}
+
 /* All that can be wrong with the arguments is found before any file is read. */
 static int check(render_job *job) {
     render_args *args = job->args;
@@ -120,7 +131,10 @@ static int check(render_job *job) {
     status = status ? status : cli_parse_exposure(&cli_render, args->exposure, &args->display);
     status = status ? status : cli_parse_camera(job);
     status = status ? status : cli_parse_show(args);
-    return status ? status : cli_check_output(&cli_render, args->output, CLI_PNG | CLI_EXR, &args->common);
+    status = status ? status : cli_check_output(&cli_render, args->output, CLI_PNG | CLI_EXR, &args->common);
+    if (!status)
+        warn_of_idle(args);
+    return status;
 }
 
 static noc_status load(render_job *job) {

@@ -6,13 +6,22 @@
 #include <nocturne/option.h>
 #include <stdio.h>
 
-#define BOOL(st, f, n, g, h) { n, g, NOC_OPTION_BOOL, offsetof(st, f), 0, 1, NULL, "", h }
-#define INT(st, f, n, g, lo, hi, u, h) { n, g, NOC_OPTION_INT, offsetof(st, f), lo, hi, NULL, u, h }
+#define BOOL(st, f, n, g, ...) { n, g, NOC_OPTION_BOOL, offsetof(st, f), 0, 1, NULL, "", __VA_ARGS__ }
+#define INT(st, f, n, g, lo, hi, u, ...) { n, g, NOC_OPTION_INT, offsetof(st, f), lo, hi, NULL, u, __VA_ARGS__ }
 #define UINT(st, f, n, g, h) { n, g, NOC_OPTION_UINT, offsetof(st, f), 0, UINT32_MAX, NULL, "", h }
-#define REAL(st, f, n, g, lo, hi, u, h) { n, g, NOC_OPTION_REAL, offsetof(st, f), lo, hi, NULL, u, h }
-#define CHOICE(st, f, n, g, c, h) { n, g, NOC_OPTION_CHOICE, offsetof(st, f), 0, 0, c, "", h }
+#define REAL(st, f, n, g, lo, hi, u, ...) { n, g, NOC_OPTION_REAL, offsetof(st, f), lo, hi, NULL, u, __VA_ARGS__ }
+#define CHOICE(st, f, n, g, c, ...) { n, g, NOC_OPTION_CHOICE, offsetof(st, f), 0, 0, c, "", __VA_ARGS__ }
 #define TEXT(st, f, n, g, u, h) { n, g, NOC_OPTION_TEXT, offsetof(st, f), 0, 0, NULL, u, h }
 #define END { NULL, NULL, NOC_OPTION_BOOL, 0, 0, 0, NULL, NULL, NULL }
+
+/* Ends of rows: what the option needs (noc_option.needs). tests/render/test_needs.c holds them to pictures. */
+#define CANDIDATES "method=ris|restir"
+#define DRAWN CANDIDATES ",candidates=uniform|power|bvh|tree"
+#define LISTS CANDIDATES ",candidates=lists"
+#define SEVERAL_RAYS "method=ris,candidates=lists"
+#define BVH CANDIDATES ",candidates=bvh"
+#define RESTIR "method=restir"
+#define SPATIAL RESTIR ",spatial=true"
 
 #define P noc_render_params
 static const noc_option render_options[] = {
@@ -25,32 +34,40 @@ static const noc_option render_options[] = {
     BOOL(P, emitters, "emitters", "Picture", "show light sources that are seen directly"),
 
     CHOICE(P, method, "method", "Estimator", "reference|is|ris|restir", "how direct light is estimated"),
-    CHOICE(P, candidates, "candidates", "Estimator", "uniform|lists|power|bvh|tree", "ris, restir: where light candidates come from"),
-    INT(P, draws, "draws", "Estimator", 1, 1024, "", "light candidates a pixel and frame (M)"),
-    INT(P, list, "list", "Estimator", 0, 128, "", "lists: strongest lights of a tile, seen by each of its pixels"),
-    INT(P, tail, "tail", "Estimator", 1, 128, "", "lists: draws a tile from all other lights"),
-    INT(P, shadow_rays, "shadow-rays", "Estimator", 1, 8, "", "ris with lists: shadow rays a pixel and frame"),
-    BOOL(P, learn, "learn", "Estimator", "ris with lists: earlier frames' rays say where to send new ones"),
-    REAL(P, influence, "influence", "Estimator", 0, 1e6, "m", "bvh: reach of a light of 1 cd; 0 = found for the scene"),
-    CHOICE(P, influence_boxes, "influence-boxes", "Estimator", "sphere|visible", "bvh: lights reach as far as they shine, or see"),
-    INT(P, influence_cluster, "influence-cluster", "Estimator", 1, 64, "", "bvh: so many close lights may share a volume"),
-    INT(P, uniform_every, "uniform-every", "Estimator", 1, 1024, "", "bvh: of so many draws one is from all lights"),
-    INT(P, rays, "rays", "Estimator", 1, 1024, "", "reference: shadow rays a pixel and frame"),
+    CHOICE(P, candidates, "candidates", "Estimator", "uniform|lists|power|bvh|tree",
+         "ris, restir: where light candidates come from", CANDIDATES),
+    INT(P, draws, "draws", "Estimator", 1, 1024, "", "light candidates a pixel and frame (M)", DRAWN),
+    INT(P, list, "list", "Estimator", 0, 128, "", "lists: strongest lights of a tile, seen by each of its pixels", LISTS),
+    INT(P, tail, "tail", "Estimator", 1, 128, "", "lists: draws a tile from all other lights", LISTS),
+    INT(P, shadow_rays, "shadow-rays", "Estimator", 1, 8, "", "ris with lists: shadow rays a pixel, a target: 1 to twice as many are sent",
+        SEVERAL_RAYS),
+    BOOL(P, learn, "learn", "Estimator",
+         "ris with lists: earlier frames' rays say where to send new ones", SEVERAL_RAYS ",final-ray=true"),
+    REAL(P, influence, "influence", "Estimator", 0, 1e6, "m", "bvh: reach of a light of 1 cd; 0 = found for the scene", BVH),
+    CHOICE(P, influence_boxes, "influence-boxes", "Estimator", "sphere|visible",
+         "bvh: lights reach as far as they shine, or see", BVH),
+    INT(P, influence_cluster, "influence-cluster", "Estimator", 1, 64, "", "bvh: so many close lights may share a volume", BVH),
+    INT(P, uniform_every, "uniform-every", "Estimator", 1, 1024, "", "bvh: of so many draws one is from all lights", BVH),
+    INT(P, rays, "rays", "Estimator", 1, 1024, "", "reference: shadow rays a pixel and frame", "method=reference"),
     BOOL(P, final_ray, "final-ray", "Estimator", "shadow ray to the chosen light; off: light passes through walls"),
     CHOICE(P, path, "path", "Estimator", "auto|scalar|wide", "code that runs: scalar C, or wide for this processor"),
 
-    BOOL(P, temporal, "temporal", "Reuse (restir)", "reuse samples of the previous frame (a still is cleaner without)"),
-    BOOL(P, spatial, "spatial", "Reuse (restir)", "reuse samples of neighbouring pixels"),
-    INT(P, neighbours, "neighbours", "Reuse (restir)", 0, 16, "", "neighbours a pixel and pass (k)"),
-    REAL(P, radius, "radius", "Reuse (restir)", 1, 64, "px", "radius that neighbours are drawn from"),
-    INT(P, passes, "passes", "Reuse (restir)", 1, 4, "", "spatial passes"),
-    REAL(P, history, "history", "Reuse (restir)", 0, 1000, "", "cap of the history, in frames' worth of candidates"),
-    CHOICE(P, bias, "bias", "Reuse (restir)", "biased|mis|pairwise", "weights of the combination"),
-    BOOL(P, bias_rays, "bias-rays", "Reuse (restir)", "visibility in those weights: no bias, more rays"),
-    BOOL(P, visibility_reuse, "visibility-reuse", "Reuse (restir)", "one shadow ray after the candidates"),
+    BOOL(P, temporal, "temporal", "Reuse (restir)", "reuse samples of the previous frame (a still is cleaner without)", RESTIR),
+    BOOL(P, spatial, "spatial", "Reuse (restir)", "reuse samples of neighbouring pixels", RESTIR),
+    INT(P, neighbours, "neighbours", "Reuse (restir)", 0, 16, "", "neighbours a pixel and pass (k)", SPATIAL),
+    REAL(P, radius, "radius", "Reuse (restir)", 1, 64, "px", "radius that neighbours are drawn from", SPATIAL),
+    INT(P, passes, "passes", "Reuse (restir)", 1, 4, "", "spatial passes", SPATIAL),
+    REAL(P, history, "history", "Reuse (restir)", 0, 1000, "",
+         "cap of the history, in frames' worth of candidates", RESTIR ",temporal=true"),
+    CHOICE(P, bias, "bias", "Reuse (restir)", "biased|mis|pairwise", "weights of the combination", RESTIR),
+    BOOL(P, bias_rays, "bias-rays", "Reuse (restir)",
+         "visibility in those weights: no bias, more rays", RESTIR ",bias=mis|pairwise,visibility-reuse=true,final-ray=true"),
+    BOOL(P, visibility_reuse, "visibility-reuse", "Reuse (restir)",
+         "one shadow ray after the candidates", RESTIR ",final-ray=true"),
     REAL(P, reject_depth, "reject-depth", "Reuse (restir)", 0, 10, "",
-         "distance to a neighbour's plane that rejects it, share of depth"),
-    REAL(P, reject_normal, "reject-normal", "Reuse (restir)", -1, 1, "", "cosine between normals under which one is rejected"),
+         "distance to a neighbour's plane that rejects it, share of depth", RESTIR),
+    REAL(P, reject_normal, "reject-normal", "Reuse (restir)", -1, 1, "",
+         "cosine between normals under which one is rejected", RESTIR),
     END,
 };
 #undef P
@@ -218,4 +235,31 @@ int noc_option_get(const noc_option *option, const void *params, char *text, siz
     case NOC_OPTION_TEXT: memcpy(&v.s, field, sizeof(v.s)); return snprintf(text, size, "%s", v.s ? v.s : "");
     }
     return snprintf(text, size, "%s", "");
+}
+
+static bool among(const char *values, size_t length, const char *value) {
+    size_t n = strlen(value);
+    for (const char *v = values; v < values + length; v += strcspn(v, "|,") + 1)
+        if (strcspn(v, "|,") == n && !strncmp(v, value, n))
+            return true;
+    return false;
+}
+
+bool noc_option_idle(const noc_option *option, const noc_option *table, const void *params, char *why, size_t size) {
+    for (const char *need = option->needs; need && *need;) {
+        size_t name = strcspn(need, "="), length = strcspn(need + name + 1, ",");
+        const char *values = need + name + 1;
+        const noc_option *other = table;
+        while (other->name && (strlen(other->name) != name || strncmp(other->name, need, name)))
+            other++;
+        char value[40] = "";
+        if (other->name)
+            noc_option_get(other, params, value, sizeof(value));
+        if (!among(values, length, value)) {
+            snprintf(why, size, "it needs %.*s %.*s, not %s", (int)name, need, (int)length, values, value);
+            return true;
+        }
+        need = values + length + (values[length] == ',');
+    }
+    return false;
 }

@@ -40,6 +40,17 @@ test "$(meta b.png shadow-rays) $(meta b.png list) $(meta b.png tail)" = "4 32 3
 run render $small --tail 99 --preset interactive --shadow-rays 7 -o b.png
 test "$(meta b.png shadow-rays) $(meta b.png list) $(meta b.png tail)" = "7 32 99"; result $? "options beside a preset win"
 
+# What is given and changes nothing: one line each; nothing where it counts, and nothing of what a preset sets.
+run render $small --method is --shadow-rays 4 --no-temporal --frames 1 -o b.png
+test $status = 0 && test "$(cat err)" = "nocturne: warning: --shadow-rays has no effect: it needs method ris, not is
+nocturne: warning: --no-temporal has no effect: it needs method restir, not is"
+result $? "options without effect are warned of"
+run render $small --method restir --candidates bvh --preset interactive --uniform-every 2 --draws 3 --no-bias-rays --frames 1 -o b.png
+test $status = 0 && test "$(cat err)" = "nocturne: warning: --preset has no effect: it needs candidates lists, not bvh"
+result $? "and those that have one are not"
+run render $small --method is --shadow-rays 4 -q --frames 1 -o b.png
+test $status = 0 && test ! -s err; result $? "nor in silence"
+
 for view in street aerial overview; do
     run render $small --view $view -o $view.png
     test $status = 0; result $? "view $view"

@@ -26,6 +26,21 @@ spec spelled.json '{ "name": "a" }, { "name": "b", "shadow-rays": 2 }, { "name":
     '"options": { "list": 32, "tail": 48, "shadow-rays": 4 },'
 run experiment spelled.json -o q --cache cache
 test $status = 0 && grep -q ': 6 rows, 0 of them made now' out; result $? "one for all configurations is overruled by their own"
+
+# What changes nothing is told once, by where it stands; what counts in one configuration of an entry is not.
+spec idle.json '{ "name": "is", "method": "is", "draws": 8 }, { "name": "*", "method": "ris", "candidates": ["power", "lists"], "draws": 8 },
+    { "name": "p", "preset": "interactive", "candidates": "bvh", "uniform-every": 2 }' '"options": { "rays": 4, "list": 8, "passes": 2 },'
+sed -i 's/"reference": { /"reference": { "tail": 3, /' idle.json
+run experiment idle.json -o i --cache cache
+cat >told <<'TOLD'
+nocturne: warning: idle.json: options: passes has no effect: it needs method restir, not ris
+nocturne: warning: idle.json: reference: tail has no effect: it needs method ris|restir, not reference
+nocturne: warning: idle.json: configurations[0]: draws has no effect: it needs method ris|restir, not is
+nocturne: warning: idle.json: configurations[2]: preset has no effect: it needs candidates lists, not bvh
+TOLD
+test $status = 0 && cmp -s told err; result $? "options that change nothing are warned of"
+run experiment idle.json -o i --cache cache -q
+test $status = 0 && test ! -s err; result $? "quiet says nothing of them"
 spec wrong.json '{ "name": "fast", "preset": "fast" }'
 expect "an unknown preset" 2 'wrong.json: configurations\[0\]: preset: "fast" is none of still\|interactive' experiment wrong.json -o w
 spec wrong.json '{ "name": "a" }' '"equal-time": 3,'
