@@ -35,12 +35,15 @@ static uint32_t le32(const unsigned char *p) { return (uint32_t)p[0] | (uint32_t
 static noc_status open_glb(gltf *g, const unsigned char *data, size_t size, const char **json, size_t *json_size) {
     if (size < 20 || le32(data + 4) != 2)
         return gltf_error(g, size < 20 ? "the file is cut short" : "version %u of GLB, not 2", size < 20 ? 0 : le32(data + 4));
+    if (le32(data + 8) > size)
+        return gltf_error(g, "the file is cut short: %zu bytes of %u", size, le32(data + 8));
+    size = NOC_MAX(le32(data + 8), 20u); /* what follows is not the model's */
     *json = NULL;
     for (size_t at = 12; size - at >= 8;) {
         size_t length = le32(data + at), type = le32(data + at + 4);
         at += 8;
         if (length > size - at)
-            return gltf_error(g, "the file is cut short");
+            return gltf_error(g, "a chunk of %zu bytes where %zu are left", length, size - at);
         if (type == 0x4e4f534a && !*json) {
             *json = (const char *)data + at;
             *json_size = length;
@@ -111,7 +114,8 @@ static corners triangulate(const gltf *g, const double *index, size_t count, siz
 
 static noc_status add_primitive(gltf *g, const json_t *primitive, const gltf_frame *frame, const char *name) {
     size_t position, index_accessor, count, index_count = 0, mode = 4;
-    gltf_index(primitive, "mode", &mode);
+    if (json_object_get(primitive, "mode") && !gltf_index(primitive, "mode", &mode))
+        return gltf_error(g, "mesh %.80s: the mode of a primitive is no whole number", name);
     if (mode < 4 || !gltf_index(json_object_get(primitive, "attributes"), "POSITION", &position))
         return NOC_OK; /* points, lines, nothing */
     if (mode > 6)
@@ -165,7 +169,7 @@ static gltf_frame times(const gltf_frame *a, const gltf_frame *b) {
 }
 
 /* A node's own transform: a matrix by columns, or translation, rotation (a quaternion x y z w) and scale. */
-static gltf_frame own_frame(const json_t *node) {
+static gltf_frame own_frame(const gltf *g, const json_t *node, const char *name) {
     double matrix[16], t[3] = { 0, 0, 0 }, q[4] = { 0, 0, 0, 1 }, s[3] = { 1, 1, 1 };
     gltf_frame out;
     if (gltf_numbers(node, "matrix", 16, matrix)) {
@@ -173,9 +177,12 @@ static gltf_frame own_frame(const json_t *node) {
             memcpy(&out.m[3 * c], &matrix[4 * c], 3 * sizeof(double));
         return out;
     }
-    gltf_numbers(node, "translation", 3, t);
-    gltf_numbers(node, "rotation", 4, q);
-    gltf_numbers(node, "scale", 3, s);
+    bool bad = json_object_get(node, "matrix") != NULL;
+    bad |= !gltf_numbers(node, "translation", 3, t) && json_object_get(node, "translation");
+    bad |= !gltf_numbers(node, "rotation", 4, q) && json_object_get(node, "rotation");
+    bad |= !gltf_numbers(node, "scale", 3, s) && json_object_get(node, "scale");
+    if (bad)
+        geo_issue(g->issues, true, "part of a transform that is no list of as many numbers as it takes, left out", name);
     double n = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     double x = q[0] / n, y = q[1] / n, z = q[2] / n, w = q[3] / n;
     if (!(n > 0))
@@ -197,31 +204,75 @@ typedef struct walk {
 
 static void push_nodes(gltf *g, walk *w, const json_t *list, const gltf_frame *frame) {
     for (size_t i = json_array_size(list); i-- > 0;) {
-        double index = json_number_value(json_array_get(list, i));
-        char id[32];
-        snprintf(id, sizeof(id), "node %.0f", index);
-        if (!(index >= 0 && index < (double)w->count)) {
+        const json_t *item = json_array_get(list, i);
+        json_int_t index = json_is_integer(item) ? json_integer_value(item) : -1;
+        char id[40];
+        snprintf(id, sizeof(id), "node %lld", (long long)index);
+        if (index < 0 || (uint64_t)index >= w->count) {
             geo_issue(g->issues, false, "node that is not there", id);
-        } else if (w->seen[(size_t)index]) {
+        } else if (w->seen[index]) {
             geo_issue(g->issues, false, "node that is in two places", id); /* a tree is asked for; a loop would not end */
         } else {
-            w->seen[(size_t)index] = true;
+            w->seen[index] = true;
             array_push(&w->stack, (pending_node){ (size_t)index, *frame });
         }
     }
 }
 
-static noc_status add_node(gltf *g, const json_t *node, size_t index, const gltf_frame *frame) {
+/* A file without scenes is a library, but one may still ask to see it: all nodes that are no other's child. */
+static json_t *root_nodes(const json_t *nodes) {
+    size_t count = json_array_size(nodes), i, k;
+    bool *child = noc_calloc(count + 1, sizeof(*child));
+    const json_t *node, *item;
+    json_array_foreach(nodes, i, node) {
+        json_array_foreach(json_object_get(node, "children"), k, item) {
+            json_int_t index = json_is_integer(item) ? json_integer_value(item) : -1;
+            if (index >= 0 && (uint64_t)index < count)
+                child[index] = true;
+        }
+    }
+    json_t *roots = json_array();
+    for (i = 0; i < count; i++)
+        if (!child[i])
+            json_array_append_new(roots, json_integer((json_int_t)i));
+    free(child);
+    return roots;
+}
+
+/* The nodes of the scene that is to be shown; json_decref() them. */
+static json_t *shown_nodes(const gltf *g) {
+    size_t shown = 0;
+    const json_t *scenes = json_object_get(g->root, "scenes");
+    if (!json_array_size(scenes))
+        return root_nodes(json_object_get(g->root, "nodes"));
+    bool told = !json_object_get(g->root, "scene") || gltf_index(g->root, "scene", &shown);
+    const json_t *scene = told ? gltf_item(g, "scenes", shown) : NULL;
+    if (!scene) {
+        geo_issue(g->issues, true, "scene that is not there, the first one instead", "scene");
+        scene = gltf_item(g, "scenes", 0);
+    }
+    return json_incref(json_object_get(scene, "nodes"));
+}
+
+/* parent becomes the node's own frame. */
+static noc_status add_node(gltf *g, const json_t *node, size_t index, gltf_frame *parent) {
     const char *name = json_string_value(json_object_get(node, "name"));
     char number[32];
     snprintf(number, sizeof(number), "node %zu", index);
     name = name ? name : number;
+    gltf_frame own = own_frame(g, node, name);
+    *parent = times(parent, &own);
+    const gltf_frame *frame = parent;
     noc_status status = gltf_light(g, node, frame, name);
     if (!status)
-        status = gltf_camera(g, node, frame);
+        status = gltf_camera(g, node, frame, name);
     size_t mesh;
-    if (status || !gltf_index(node, "mesh", &mesh))
+    if (status || !json_object_get(node, "mesh"))
         return status;
+    if (!gltf_index(node, "mesh", &mesh) || !gltf_item(g, "meshes", mesh)) {
+        geo_issue(g->issues, false, "mesh that is not there", name);
+        return NOC_OK;
+    }
     if (json_object_get(node, "skin"))
         geo_issue(g->issues, true, "skinned mesh, as it is at rest", name);
     if (gltf_extension(node, "EXT_mesh_gpu_instancing"))
@@ -235,21 +286,19 @@ static noc_status add_node(gltf *g, const json_t *node, size_t index, const gltf
 }
 
 static noc_status add_scene(gltf *g) {
-    const json_t *nodes = json_object_get(g->root, "nodes"), *scene;
-    size_t shown = 0;
-    gltf_index(g->root, "scene", &shown);
-    scene = gltf_item(g, "scenes", shown);
+    const json_t *nodes = json_object_get(g->root, "nodes");
+    json_t *shown = shown_nodes(g);
     walk w = { .count = json_array_size(nodes) };
     w.seen = noc_calloc(w.count + 1, sizeof(*w.seen));
     const gltf_frame whole = { { 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0 } };
-    push_nodes(g, &w, json_object_get(scene, "nodes"), &whole);
+    push_nodes(g, &w, shown, &whole);
+    json_decref(shown);
     noc_status status = NOC_OK;
     while (w.stack.len && !status) {
         pending_node at = w.stack.data[--w.stack.len];
         const json_t *node = json_array_get(nodes, at.index);
-        gltf_frame own = own_frame(node), frame = times(&at.frame, &own);
-        push_nodes(g, &w, json_object_get(node, "children"), &frame);
-        status = add_node(g, node, at.index, &frame);
+        status = add_node(g, node, at.index, &at.frame);
+        push_nodes(g, &w, json_object_get(node, "children"), &at.frame);
     }
     array_free(&w.stack);
     free(w.seen);

@@ -49,7 +49,7 @@ noc_status gltf_read(const gltf *g, size_t accessor, const char *type, size_t wi
 /* gltf_look.c */
 int gltf_material(gltf *g, const json_t *primitive); /* index in the scene, -1 after reporting */
 noc_status gltf_light(gltf *g, const json_t *node, const gltf_frame *frame, const char *name);
-noc_status gltf_camera(gltf *g, const json_t *node, const gltf_frame *frame);
+noc_status gltf_camera(gltf *g, const json_t *node, const gltf_frame *frame, const char *name);
 /* A point of glTF's (y up) in the scene's frame. */
 noc_status gltf_place(const gltf *g, const double yup[3], double out[3]);
 

@@ -1,11 +1,13 @@
 #include "import/gltf.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <sys/stat.h>
 
 #define MOST_ELEMENTS ((size_t)1 << 31)
+#define MOST_ZEROS ((size_t)1 << 22) /* elements of an accessor without data but its sparse part: some bytes may not ask for gigabytes */
 
 noc_status gltf_error(const gltf *g, const char *fmt, ...) {
     char text[400];
@@ -97,10 +99,12 @@ static noc_status open_file(const gltf *g, const char *uri, gltf_buffer *b) {
     char *path = noc_format("%s%s", *uri == '/' ? "" : g->folder, uri);
     decode_percent(path);
     struct stat st;
+    errno = 0;
     FILE *f = !stat(path, &st) && S_ISREG(st.st_mode) ? fopen(path, "rb") : NULL;
     noc_status status = NOC_OK;
     if (!f) {
-        status = noc_error(g->log, NOC_ERR_IO, "%s: glTF: its buffer %.200s cannot be opened", g->name, path);
+        status = noc_error(g->log, NOC_ERR_IO, "%s: glTF: its buffer \"%.200s\" cannot be opened: %s", g->name, path,
+                           errno ? strerror(errno) : "not a file");
     } else if (!(b->owned = noc_alloc_large((size_t)st.st_size + 1, 1))) {
         status = noc_error(g->log, NOC_ERR_MEMORY, "%s: no memory to hold it", path);
     } else {
@@ -144,8 +148,10 @@ noc_status gltf_open_buffers(gltf *g) {
             status = open_file(g, uri, b);
         if (status)
             return status;
-        if (!gltf_index(item, "byteLength", &length) || length > b->size)
-            return gltf_error(g, "buffer %zu holds %zu bytes, fewer than it says", i, b->size);
+        if (!gltf_index(item, "byteLength", &length))
+            return gltf_error(g, "buffer %zu does not say its byteLength", i);
+        if (length > b->size)
+            return gltf_error(g, "buffer %zu holds %zu bytes, fewer than it says (%zu)", i, b->size, length);
         b->size = length;
     }
     return NOC_OK;
@@ -237,13 +243,17 @@ noc_status gltf_read(const gltf *g, size_t accessor, const char *type, size_t wi
     const char *is = json_string_value(json_object_get(a, "type"));
     component c;
     size_t stride;
-    if (!a || !is || strcmp(is, type) || !component_of(a, &c) || !gltf_index(a, "count", count) || !*count || *count > MOST_ELEMENTS)
+    if (!a || !is || strcmp(is, type) || !component_of(a, &c))
         return gltf_error(g, "accessor %zu is not there, or no list of %s", accessor, type);
+    if (!gltf_index(a, "count", count) || !*count || *count > MOST_ELEMENTS)
+        return gltf_error(g, "accessor %zu: its count is not within 1 to %zu", accessor, MOST_ELEMENTS);
     const unsigned char *from = NULL;
     if (json_object_get(a, "bufferView") && !(from = view_data(g, a, *count, c.size * width, &stride)))
         return gltf_error(g, "accessor %zu reaches beyond its buffer", accessor);
     if (!from && !sparse)
         return gltf_error(g, "accessor %zu has no data (compressed meshes are not read)", accessor);
+    if (!from && *count > MOST_ZEROS)
+        return gltf_error(g, "accessor %zu: %zu elements without data but its sparse part", accessor, *count);
     *out = noc_alloc_large(*count * width, sizeof(**out));
     if (!*out)
         return noc_error(g->log, NOC_ERR_MEMORY, "%s: no memory for accessor %zu", g->name, accessor);

@@ -57,6 +57,8 @@ static noc_material convert_material(const gltf *g, const json_t *m, const char 
 int gltf_material(gltf *g, const json_t *primitive) {
     size_t count = json_array_size(json_object_get(g->root, "materials")), index = count;
     const json_t *m = gltf_index(primitive, "material", &index) ? gltf_item(g, "materials", index) : NULL;
+    if (!m && json_object_get(primitive, "material"))
+        geo_issue(g->issues, true, "material that is not there, the default one instead", "primitive");
     int *have = &g->materials[m ? index : count];
     if (!*have) {
         const char *name = json_string_value(json_object_get(m, "name"));
@@ -147,8 +149,10 @@ static noc_status add_shade(gltf *g, const double at[3], const double look[3], d
 }
 
 static noc_status add_spot(gltf *g, const json_t *spot, noc_light *l, const double look[3], const char *name) {
-    double outer = limited(gltf_number(spot, "outerConeAngle", M_PI / 4), 0.02, M_PI / 2);
-    double inner = limited(gltf_number(spot, "innerConeAngle", 0), 0, outer), ti = tan(inner), to = tan(NOC_MIN(outer, WIDEST));
+    double far = gltf_number(spot, "outerConeAngle", M_PI / 4), near = gltf_number(spot, "innerConeAngle", 0);
+    if (!(near >= 0 && near < far && far <= M_PI / 2 + 1e-6)) /* the extension's own limits */
+        geo_issue(g->issues, true, "cones of a spot light that no light can have, limited", name);
+    double outer = limited(far, 0.02, M_PI / 2), inner = limited(near, 0, outer), ti = tan(inner), to = tan(NOC_MIN(outer, WIDEST));
     bool shaded = outer < WIDEST;
     double r = shaded ? NOC_MAX(0.5 * SHADE_LENGTH * (to - ti), 1e-3) : 0.03, rim = 0.5 * SHADE_LENGTH * (to + ti);
     l->kind = NOC_LIGHT_DISC;
@@ -182,6 +186,10 @@ noc_status gltf_light(gltf *g, const json_t *node, const gltf_frame *frame, cons
     }
     for (int k = 0; k < 3; k++)
         l.emission[k] = (float)limited(colour[k] * intensity, 0, 1e12);
+    if (intensity < 0 || colour[0] < 0 || colour[1] < 0 || colour[2] < 0)
+        geo_issue(g->issues, true, "light of negative intensity or colour, taken as 0", name);
+    if (!(l.emission[0] > 0 || l.emission[1] > 0 || l.emission[2] > 0))
+        return NOC_OK; /* switched off */
     noc_status status = place_frame(g, frame, l.position, look, up);
     if (status)
         return status;
@@ -195,18 +203,27 @@ noc_status gltf_light(gltf *g, const json_t *node, const gltf_frame *frame, cons
     return noc_scene_add_light(g->scene, &l) < 0 ? NOC_ERR_ARGUMENT : NOC_OK;
 }
 
-noc_status gltf_camera(gltf *g, const json_t *node, const gltf_frame *frame) {
+noc_status gltf_camera(gltf *g, const json_t *node, const gltf_frame *frame, const char *name) {
     size_t index;
-    const json_t *camera = gltf_index(node, "camera", &index) ? gltf_item(g, "cameras", index) : NULL;
-    double fov = gltf_number(json_object_get(camera, "perspective"), "yfov", 0) * 180 / M_PI, look[3];
-    noc_camera c = { .fov_deg = fov };
-    if (!camera || !(fov >= 1 && fov <= 170))
+    if (!json_object_get(node, "camera"))
         return NOC_OK;
+    const json_t *camera = gltf_index(node, "camera", &index) ? gltf_item(g, "cameras", index) : NULL;
+    const json_t *perspective = json_object_get(camera, "perspective");
+    if (!perspective) {
+        geo_issue(g->issues, false, camera ? "camera without perspective" : "camera that is not there", name);
+        return NOC_OK;
+    }
+    noc_camera c = { .fov_deg = gltf_number(perspective, "yfov", 0) * 180 / M_PI };
+    double look[3];
     noc_status status = place_frame(g, frame, c.eye, look, c.up);
+    if (status)
+        return status;
     for (int k = 0; k < 3; k++)
         c.target[k] = c.eye[k] + 10 * look[k];
     bool aimed = look[0] != 0 || look[1] != 0 || look[2] != 0, upright = c.up[0] != 0 || c.up[1] != 0 || c.up[2] != 0;
-    if (status || !usable(c.eye, 3, 1e7) || !aimed || !upright)
-        return status;
+    if (!(c.fov_deg >= 1 && c.fov_deg <= 170) || !usable(c.eye, 3, 1e7) || !aimed || !upright) {
+        geo_issue(g->issues, false, "camera that looks nowhere, or whose angle is not within 1 to 170 degrees", name);
+        return NOC_OK;
+    }
     return noc_scene_set_camera(g->scene, &c);
 }

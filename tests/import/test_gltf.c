@@ -179,6 +179,24 @@ static void test_containers(void **state) {
         assert_non_null(strstr(l.error, "a.glb"));
         unload(&l);
     }
+    /* lengths that lie: of the file (more, then less than there is), and of its chunks */
+    const struct { size_t at; uint32_t value; } lies[] = { { 8, total + 1 }, { 8, UINT32_MAX }, { 8, 0 }, { 8, total - 8 }, { 12, 0 }, { 12, length + 4 },
+                                                           { 12, UINT32_MAX }, { 20 + length, BUFFER + 1 }, { 20 + length, UINT32_MAX - 2 } };
+    for (size_t i = 0; i < NOC_COUNT(lies); i++) {
+        unsigned char lying[sizeof(glb)];
+        memcpy(lying, glb, sizeof(glb));
+        memcpy(lying + lies[i].at, &lies[i].value, 4);
+        write_file("a.glb", lying, total);
+        load(&l, "a.glb");
+        assert_int_equal(l.status, NOC_ERR_FORMAT);
+        assert_int_equal(l.errors, 1);
+        unload(&l);
+    }
+    glb[total] = 77; /* a byte behind the model is not the model's */
+    write_file("a.glb", glb, total + 1);
+    load(&l, "a.glb");
+    assert_int_equal(l.scene->indices.len, 6);
+    unload(&l);
     /* beside it, under a name with a blank */
     const char *text = ASSET PLAIN "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}], \"buffers\": [{\"byteLength\": 60, \"uri\": \"b%20c.bin\"}]}";
     write_file("b c.bin", bytes, BUFFER);
@@ -387,6 +405,15 @@ static void test_bad(void **state) {
         { ASSET "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 9}}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}", "accessor 9" },
         { ASSET "\"accessors\": [{\"componentType\": 5126, \"count\": 4000000000, \"type\": \"VEC3\"}],"
           "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}", "accessor 0" },
+        /* some bytes that ask for 24 GB of zeros */
+        { ASSET "\"accessors\": [{\"componentType\": 5126, \"count\": 1000000000, \"type\": \"VEC3\", \"sparse\": {\"count\": 1,"
+          " \"indices\": {\"bufferView\": 0, \"componentType\": 5121}, \"values\": {\"bufferView\": 0}}}],"
+          "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}", "without data" },
+        { ASSET "\"buffers\": [{\"uri\": \"data:;base64,AAAA\"}]}", "does not say its byteLength" },
+        { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"none.bin\"}]}", "none.bin\" cannot be opened: No such file" },
+        { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \".\"}]}", "not a file" },
+        { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"\"}]}", "\" cannot be opened" },
+        { ASSET "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"mode\": -1}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}", "mode" },
     };
     for (size_t i = 0; i < NOC_COUNT(bad); i++) {
         loaded l;
@@ -423,6 +450,57 @@ static void test_skipped(void **state) {
     assert_int_equal(skipped_count(&l, "two places"), 3);
     assert_int_equal(skipped_count(&l, "node that is not there"), 1);
     unload(&l);
+}
+
+/* What is not as it should be is told, and the rest is there. */
+static void test_told(void **state) {
+    loaded l;
+    load_text(&l, file_text(PLAIN,
+        "\"extensions\": {\"KHR_lights_punctual\": {\"lights\": ["
+        "{\"type\": \"point\", \"intensity\": -40}, {\"type\": \"spot\", \"spot\": {\"innerConeAngle\": 0.6, \"outerConeAngle\": 0.3}},"
+        "{\"type\": \"spot\", \"spot\": {\"outerConeAngle\": 3}}, {\"type\": \"point\", \"intensity\": 0}]}},"
+        "\"cameras\": [{\"type\": \"orthographic\"}, {\"perspective\": {\"yfov\": 3.1}}, {\"perspective\": {\"yfov\": 0.5}}], \"scene\": 3,"
+        "\"scenes\": [{\"nodes\": [0, \"a\", 0.5, 1, 2, 3, 4, 5, 6, 7, 8, 9]}], \"nodes\": [{\"mesh\": 0, \"scale\": [2, 2]}, {\"mesh\": 5},"
+        "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}}, {\"extensions\": {\"KHR_lights_punctual\": {\"light\": 1}}},"
+        "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 2}}}, {\"extensions\": {\"KHR_lights_punctual\": {\"light\": 3}}},"
+        "{\"camera\": 0}, {\"camera\": 1}, {\"camera\": 2, \"scale\": [0, 0, 0]}, {\"camera\": 7}],"));
+    assert_string_equal(l.error, "");
+    assert_int_equal(l.scene->lights.len, 2); /* the spot lights; one that is off is none */
+    assert_place(&l, 1, 1, 0, 0);
+    assert_int_equal(skipped_count(&l, "scene that is not there"), 1);
+    assert_int_equal(skipped_count(&l, "node that is not there"), 2);
+    assert_int_equal(skipped_count(&l, "part of a transform"), 1);
+    assert_int_equal(skipped_count(&l, "mesh that is not there"), 1);
+    assert_int_equal(skipped_count(&l, "material that is not there"), 1);
+    assert_int_equal(skipped_count(&l, "negative intensity"), 1);
+    assert_int_equal(skipped_count(&l, "cones of a spot light"), 2);
+    assert_int_equal(skipped_count(&l, "camera without perspective"), 1);
+    assert_int_equal(skipped_count(&l, "camera that looks nowhere"), 2);
+    assert_int_equal(skipped_count(&l, "camera that is not there"), 1);
+    assert_true(l.scene->own_camera.fov_deg == 0);
+    unload(&l);
+}
+
+/* Without scenes all is shown, each node once; a chain of 10,000 nodes is as good as one. */
+static void test_roots(void **state) {
+    enum { DEPTH = 10000 };
+    loaded l;
+    load_text(&l, file_text(PLAIN, "\"nodes\": [{\"mesh\": 0}, {\"children\": [0], \"translation\": [1, 0, 0]}, {\"mesh\": 0}],"));
+    assert_int_equal(l.scene->meshes.len, 2);
+    assert_int_equal(geo_issues_count(l.issues), 1); /* the material that PLAIN names without having one; nothing else */
+    unload(&l);
+    char *nodes = malloc(64 * DEPTH), *text = malloc(64 * DEPTH + 8000), *to = nodes;
+    assert_true(nodes && text);
+    for (int i = 0; i < DEPTH; i++)
+        to += sprintf(to, "{\"children\": [%d], \"translation\": [0.5, 0, 0]}, ", i + 1);
+    const char *plain = file_text(PLAIN, ""), *rest = strstr(plain, VIEWS);
+    sprintf(text, ASSET "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [%s{\"mesh\": 0}], %s", nodes, rest);
+    load_text(&l, text);
+    assert_string_equal(l.error, "");
+    assert_place(&l, 0, DEPTH / 2, 0, 0);
+    unload(&l);
+    free(nodes);
+    free(text);
 }
 
 static void test_probe(void **state) {
@@ -487,7 +565,7 @@ int main(void) {
         cmocka_unit_test(test_nodes),     cmocka_unit_test(test_containers), cmocka_unit_test(test_accessors),
         cmocka_unit_test(test_materials), cmocka_unit_test(test_lights),     cmocka_unit_test(test_camera),
         cmocka_unit_test(test_bad),       cmocka_unit_test(test_skipped),    cmocka_unit_test(test_probe),
-        cmocka_unit_test(test_broken),
+        cmocka_unit_test(test_told),      cmocka_unit_test(test_roots),      cmocka_unit_test(test_broken),
     };
     return cmocka_run_group_tests_name("import/gltf", tests, set_up, tear_down);
 }
