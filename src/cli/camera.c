@@ -43,7 +43,7 @@ static void warn_if_far(render_job *job) {
     const char *hint = job->args->camera_crs ? "are eye and --camera-crs right?"
                        : scene->crs && *scene->crs ? "are these coordinates of the scene's CRS? then add --camera-crs scene"
                                                    : "eye is in metres from the scene's origin";
-    cli_error("warning: the camera is %.0f km away from a scene of %.1f km: %s", distance / 1000, extent / 1000, hint);
+    cli_error("warning: the camera is %.6g km away from a scene of %.1f km: %s", distance / 1000, extent / 1000, hint);
 }
 
 noc_status cli_place_camera(render_job *job) {

@@ -60,6 +60,7 @@ noc_log *cli_log_create(const cli_args *args);
 void *cli_alloc(size_t size);                                     /* zeroed; ends the program when memory is gone */
 char *cli_format(const char *fmt, ...) NOC_PRINTF(1, 2) __attribute__((nonnull(1))); /* free() it */
 const char *cli_count(char text[32], uint64_t n);                 /* 1234567 -> "1,234,567" */
+const char *cli_many(char text[64], uint64_t n, const char *noun); /* "1 light", "1,234 lights" */
 const char *cli_bytes(char text[32], uint64_t n);                 /* "4.1 MB" */
 const char *cli_seconds(char text[32], double s);                 /* "0.42 s", "2 min 05 s" */
 const char *cli_clean(char *text, size_t size, const char *from); /* control characters blanked, long text cut short */

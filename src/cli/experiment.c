@@ -148,6 +148,7 @@ static int work_camera(experiment_lab *lab, size_t camera) {
 static int work(experiment_lab *lab) {
     const experiment_spec *spec = &lab->spec;
     int status = CLI_OK;
+    char rows[64];
     lab->started = cli_now();
     for (size_t camera = 0; !status && camera < spec->camera_count; camera++) {
         size_t scene = spec->cameras[camera].scene;
@@ -161,11 +162,11 @@ static int work(experiment_lab *lab) {
         }
     }
     if (status > CLI_INTERRUPTED)
-        cli_error("interrupted: %zu rows are in %s/results.csv; the same command goes on there", lab->rows_done, lab->folder);
+        cli_error("interrupted: %s in %s/results.csv; the same command goes on there", cli_many(rows, lab->rows_done, "row"), lab->folder);
     status = status ? status : experiment_tidy_table(lab);
     status = status ? status : experiment_write_report(lab);
     if (!status && !lab->args->common.quiet)
-        printf("%s/report.md: %zu rows, %zu of them made now\n", lab->folder, lab->rows_done, lab->rows_done - lab->rows_old);
+        printf("%s/report.md: %s, %zu of them made now\n", lab->folder, cli_many(rows, lab->rows_done, "row"), lab->rows_done - lab->rows_old);
     return status;
 }
 

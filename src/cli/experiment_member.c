@@ -47,6 +47,8 @@ static int unknown(const experiment_spec *spec, const char *place, const cli_set
         for (const noc_option *o = set->table(); o->name && count < CLI_GIVEN; o++)
             if (!cli_hidden(set, o))
                 words[count++] = o->name;
+            else if (!strcmp(o->name, name))
+                return experiment_wrong(spec, place, "%s: the spec says it for all pictures (size, seed, accumulate)", name);
     for (; others && *others && count < 2 * CLI_GIVEN; others++)
         words[count++] = *others;
     const char *nearest = cli_nearest(name, words, count);
@@ -91,7 +93,7 @@ int experiment_set(experiment_spec *spec, const char *place, const cli_set *sets
     const noc_option *o = experiment_option(sets, name, &offset);
     if (!o)
         return unknown(spec, place, sets, others, name);
-    char *text = spell(value);
+    char *text = json_is_array(value) && o->kind != NOC_OPTION_TEXT ? NULL : spell(value);
     if (!text)
         return experiment_wrong(spec, place, "%s: this cannot be its value", name);
     experiment_keep(spec, text);

@@ -134,11 +134,18 @@ static void print_setting(FILE *out, const experiment_lab *lab) {
             experiment_machine(), *lab->path ? lab->path : "none, all rows were there");
     print_command(out);
     char extent[64];
-    snprintf(extent, sizeof(extent), spec->seconds > 0 ? "%.3g s of CPU time" : "%.0f frames", spec->seconds > 0 ? spec->seconds : spec->frames);
-    fprintf(out, "\n\nPictures of %d x %d px, %s, %d repetition%s.\n"
-                 "Reference: %d frames of %d shadow rays a pixel, %s.\n", spec->width, spec->height, extent, spec->repetitions,
-            spec->repetitions == 1 ? "" : "s with different seeds, of which figures are means", spec->reference.frames, spec->reference.params.rays,
-            spec->reference.params.jitter ? "jittered" : "through the centres of pixels");
+    if (spec->seconds > 0)
+        snprintf(extent, sizeof(extent), "%.3g s of CPU time", spec->seconds);
+    else
+        cli_many(extent, (uint64_t)spec->frames, "frame");
+    fprintf(out, "\n\nPictures of %d x %d px, %s, %d repetition%s.\n", spec->width, spec->height, extent, spec->repetitions,
+            spec->repetitions == 1 ? "" : "s with different seeds, of which figures are means");
+    fprintf(out, "Reference: %s of ", cli_many(extent, (uint64_t)spec->reference.frames, "frame"));
+    if (spec->reference.params.method == NOC_METHOD_REFERENCE)
+        fprintf(out, "%s a pixel", cli_many(extent, (uint64_t)spec->reference.params.rays, "shadow ray"));
+    else
+        print_options(out, &spec->reference.params);
+    fprintf(out, ", %s.\n", spec->reference.params.jitter ? "jittered" : "through the centres of pixels");
     fprintf(out, "All rows: [results.csv](results.csv). Definitions of the figures: docs/estimator.md, \"Error figures\".\n");
     table_head(out, "| Scene | Triangles | Lights | Memory |", 3);
     for (size_t i = 0; i < spec->scene_count; i++) {
@@ -310,9 +317,9 @@ static int print_mode(FILE *out, experiment_lab *lab, size_t camera, int mode) {
     const experiment_spec *spec = &lab->spec;
     int status = CLI_OK, first = spec->all_pixels ? COL_RMSE8_ALL : COL_RMSE8, motion = spec->cameras[camera].frames;
     experiment_series s = { lab, camera, 0, mode };
-    char *slug = experiment_slug(lab, camera), clamped[48];
+    char *slug = experiment_slug(lab, camera), clamped[48], before[64];
     if (motion)
-        fprintf(out, "\n### Frame %d, after %d frame%s %s\n", motion, motion - 1, motion == 2 ? "" : "s",
+        fprintf(out, "\n### Frame %d, after %s %s\n", motion, cli_many(before, (uint64_t)motion - 1, "frame"),
                 spec->cameras[camera].cut ? "and a cut" : "of motion");
     else
         fprintf(out, "\n### %s\n", mode_names[mode]);

@@ -148,9 +148,13 @@ static int render_reference(experiment_lab *lab, const char *path, experiment_no
         return CLI_INTERRUPTED + cli_interrupted();
     noc_display_params display = noc_display_default_params();
     const char *keys[] = { "content", "made-by" }, *values[] = { lab->reference_key, noc_version() };
-    if (!lab->reference || noc_image_write(lab->reference, path, &display, &(noc_image_meta){ 2, keys, values }, lab->log))
+    if (!lab->reference)
         return CLI_FAILURE;
-    experiment_keep_noise(path, noise);
+    /* A cache that takes nothing must not cost the work that went into the picture. */
+    if (noc_image_write(lab->reference, path, &display, &(noc_image_meta){ 2, keys, values }, lab->log))
+        cli_error("warning: the reference is not kept; another run makes it again");
+    else
+        experiment_keep_noise(path, noise);
     return CLI_OK;
 }
 

@@ -1,11 +1,13 @@
 /* The spec of an experiment: JSON to structs. All that can be wrong with it is found here, before the long work. */
 #include "experiment.h"
 
+#include <errno.h>
 #include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #define S experiment_spec
 #define TEXT(n, f) { n, "Spec", NOC_OPTION_TEXT, offsetof(S, f), 0, 0, NULL, "", "" }
@@ -54,6 +56,36 @@ static const char *resolve(S *spec, const char *input) {
     return experiment_keep(spec, cli_format("%.*s/%s", (int)(slash - spec->path), spec->path, input));
 }
 
+static bool is_builtin(const char *name) {
+    for (const char *const *n = noc_builtin_names(); *n; n++)
+        if (!strcmp(*n, name))
+            return true;
+    return false;
+}
+
+/* A file that is not there is told before the scenes before it have been measured for an hour. */
+static int check_inputs(const S *spec, const char *place, json_t *object, const experiment_scene *scene) {
+    const noc_option *const tables[] = { noc_city_options(), noc_builtin_options() };
+    for (size_t k = 0; k < 2; k++)
+        for (const noc_option *o = tables[k]; o->name; o++) {
+            const char *needed = json_object_get(object, o->name) ? cli_builtin_needed(o, scene->inputs, scene->input_count) : NULL;
+            if (needed)
+                return experiment_wrong(spec, place, "%s is for the input %s", o->name, needed);
+        }
+    for (size_t i = 0; i < scene->input_count; i++) {
+        const char *input = scene->inputs[i], *name = cli_builtin(input);
+        struct stat st;
+        if (name && !is_builtin(name))
+            return experiment_wrong(spec, place, "%.80s: no such built-in scene", input);
+        bool folder = !name && !stat(input, &st) && S_ISDIR(st.st_mode);
+        if (name || (!folder && !access(input, R_OK)))
+            continue;
+        cli_error("%s: %s", input, strerror(folder ? EISDIR : errno));
+        return CLI_FAILURE;
+    }
+    return CLI_OK;
+}
+
 static int read_scene(S *spec, const char *place, json_t *object, experiment_scene *scene) {
     *scene = (experiment_scene){ .import = noc_import_default_params(), .builtin = noc_builtin_default_params() };
     int status = experiment_set_all(spec, place, object, scene_sets, scene_others, scene);
@@ -72,14 +104,7 @@ static int read_scene(S *spec, const char *place, json_t *object, experiment_sce
             return experiment_wrong(spec, place, "inputs must be an array of files or builtin:NAME");
         scene->inputs[scene->input_count++] = resolve(spec, text);
     }
-    const noc_option *const tables[] = { noc_city_options(), noc_builtin_options() };
-    for (size_t k = 0; k < 2; k++)
-        for (const noc_option *o = tables[k]; o->name; o++) {
-            const char *needed = json_object_get(object, o->name) ? cli_builtin_needed(o, scene->inputs, scene->input_count) : NULL;
-            if (needed)
-                return experiment_wrong(spec, place, "%s is for the input %s", o->name, needed);
-        }
-    return CLI_OK;
+    return check_inputs(spec, place, object, scene);
 }
 
 static int check_twice(S *spec, const char *what, const char *const *name, size_t stride, size_t count) {
@@ -219,17 +244,17 @@ int experiment_read_spec(S *spec, const char *path, bool quiet) {
                  .ceiling = 10, .reference = { .frames = 16 } };
     json_error_t error;
     struct stat st;
-    if (!stat(path, &st) && S_ISDIR(st.st_mode)) {
-        cli_error("%.200s: this is a folder; a spec is a JSON file", path);
+    FILE *file = fopen(path, "r");
+    if (!file || fstat(fileno(file), &st) || S_ISDIR(st.st_mode)) {
+        cli_error("%.200s: %s", path, file ? "this is a folder; a spec is a JSON file" : strerror(errno));
+        if (file)
+            fclose(file);
         return CLI_FAILURE;
     }
-    json_t *root = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
-    if (!root && error.line > 0) {
+    json_t *root = json_loadf(file, JSON_REJECT_DUPLICATES, &error);
+    fclose(file);
+    if (!root)
         return cli_usage(&cli_experiment, "%.200s:%d:%d: %.*s", path, error.line, error.column, 120, error.text);
-    } else if (!root) {
-        cli_error("%.200s: %.*s", path, 160, error.text);
-        return CLI_FAILURE;
-    }
     int status = read_root(spec, root);
     json_decref(root);
     return status;

@@ -191,7 +191,8 @@ int experiment_tidy_table(experiment_lab *lab) {
     }
     if (!others)
         return CLI_OK;
-    cli_error("%zu rows of results.csv came from other settings; they are kept in results.old.csv", others);
+    char rows[64];
+    cli_error("%s of results.csv came from other settings: kept in results.old.csv", cli_many(rows, others, "row"));
     char *path = cli_format("%s/results.csv", lab->folder), *temporary;
     int status = put_aside(lab, path);
     FILE *file = status ? NULL : experiment_create(lab, "results.csv", &temporary);

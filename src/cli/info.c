@@ -94,10 +94,10 @@ static void print_objects(const noc_report_file *file) {
 }
 
 static void print_lamps(const noc_report_file *file) {
-    char a[32], b[32];
+    char a[32], b[64];
     printf("  %-11s %s", "lamps", cli_count(a, file->lamps));
     if (file->lamp_heads != file->lamps)
-        printf(" with %s heads, each a light", cli_count(b, file->lamp_heads));
+        printf(" with %s, each a light", cli_many(b, file->lamp_heads, "head"));
     putchar('\n');
     const struct { const char *name; size_t count; } known[] = {
         { "height", file->lamps_with_height }, { "lumens", file->lamps_with_lumens }, { "watts", file->lamps_with_watts },
@@ -119,14 +119,14 @@ static void print_lamps(const noc_report_file *file) {
 }
 
 static void print_file(const noc_report_file *file) {
-    char a[32], b[32], path[400];
+    char a[32], b[64], path[400];
     printf("%s\n", cli_clean(path, sizeof(path), file->path));
     print_source(file);
     print_extent(file);
     if (file->objects || !file->lamps)
         print_objects(file);
     if (file->polygons) {
-        printf("  %-11s %s, %s triangles\n", "surfaces", cli_count(a, file->polygons), cli_count(b, file->triangles));
+        printf("  %-11s %s, %s\n", "surfaces", cli_count(a, file->polygons), cli_many(b, file->triangles, "triangle"));
         print_counts("", file->polygons_by_class);
     } else if (file->triangles) {
         printf("  %-11s %s\n", "triangles", cli_count(a, file->triangles));
@@ -144,7 +144,7 @@ static void print_scene(const char *name, const noc_scene_info *info) {
     printf("%s\n  %-11s built-in scene\n", name, "format");
     printf("  %-11s x %.2f to %.2f, y %.2f to %.2f, z %.2f to %.2f\n", "extent", info->bounds_min[0], info->bounds_max[0],
            info->bounds_min[1], info->bounds_max[1], info->bounds_min[2], info->bounds_max[2]);
-    printf("  %-11s %s in %s meshes\n", "triangles", cli_count(a, info->triangles), cli_count(b, info->meshes));
+    printf("  %-11s %s in %s mesh%s\n", "triangles", cli_count(a, info->triangles), cli_count(b, info->meshes), info->meshes == 1 ? "" : "es");
     print_counts("", info->triangles_by_class);
     printf("  %-11s %s\n", "lights", cli_count(a, info->lights));
     static const char *const kinds[] = { "sphere", "disc", "triangle", "parallelogram", "point" };

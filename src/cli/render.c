@@ -139,13 +139,14 @@ static int check(render_job *job) {
 
 static noc_status load(render_job *job) {
     render_args *args = job->args;
+    char triangles[64], lights[64];
     args->import.progress = (noc_progress){ cli_load_progress, NULL };
     noc_status status = cli_load_scene(job->scene, args->common.inputs, args->common.input_count, &args->builtin, &args->import, &job->report);
     noc_scene_get_info(job->scene, &job->scene_info);
     job->loaded = cli_now();
     if (!status && args->common.verbose)
-        cli_error("%zu triangles, %zu lights, loaded in %.2f s", job->scene_info.triangles, job->scene_info.lights,
-                  job->loaded - job->started);
+        cli_error("%s, %s, loaded in %.2f s", cli_many(triangles, job->scene_info.triangles, "triangle"),
+                  cli_many(lights, job->scene_info.lights, "light"), job->loaded - job->started);
     return status;
 }
 
@@ -226,6 +227,7 @@ static int work(render_job *job) {
     }
     if (is_failure(status))
         return CLI_FAILURE;
+    char text[64];
     int ending = cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;
     if (!job->frames) {
         cli_error("interrupted: no frame was complete, nothing was saved");
@@ -239,7 +241,7 @@ static int work(render_job *job) {
         noc_renderer_trace_floor(job->renderer, &job->camera, &args->render, &job->floor_seconds))
         return CLI_FAILURE;
     if (ending && args->time > 0)
-        cli_error("interrupted: saved %d frames to %s", job->frames, args->output);
+        cli_error("interrupted: saved %s to %s", cli_many(text, (uint64_t)job->frames, "frame"), args->output);
     else if (ending)
         cli_error("interrupted: saved %d of %d frames to %s", job->frames, args->frames, args->output);
     if (!args->common.quiet)

@@ -158,7 +158,7 @@ static void print_issues(const noc_report *report) {
         }
     }
     qsort(issues, n, sizeof(*issues), compare_issues);
-    char a[32], b[32], reason[160], examples[72];
+    char a[64], b[32], reason[160], examples[72];
     printf("  inputs    features skipped: %s, repaired: %s\n", cli_count(a, skipped), cli_count(b, repaired));
     for (size_t i = 0; i < n && i < SHOWN; i++) {
         const noc_report_line *line = issues[i].line;
@@ -168,34 +168,34 @@ static void print_issues(const noc_report *report) {
         putchar('\n');
     }
     if (n > SHOWN)
-        printf("            and for %s other reasons\n", cli_count(a, n - SHOWN));
+        printf("            and for %s\n", cli_many(a, n - SHOWN, "other reason"));
     free(issues);
 }
 
 void cli_print_summary(const render_job *job) {
     const render_args *args = job->args;
     const noc_scene_info *scene = &job->scene_info;
-    char a[32], b[32], c[32], name[24] = "", path[240];
+    char a[64], b[64], c[32], name[24] = "", path[240];
     printf("%s\n", cli_clean(path, sizeof(path), args->output));
-    printf("  picture   %d x %d, %d frame%s of %s, %s%.2f EV100\n", args->render.width, args->render.height, job->frames,
-           job->frames == 1 ? "" : "s", choice_name("method", &args->render, name, sizeof(name)),
+    printf("  picture   %d x %d, %s of %s, %s%.2f EV100\n", args->render.width, args->render.height,
+           cli_many(a, (uint64_t)job->frames, "frame"), choice_name("method", &args->render, name, sizeof(name)),
            is_exr(args->output) ? "linear cd/m2, automatic exposure would be " : "exposure ",
            is_exr(args->output) ? auto_ev100(job) : ev100(job));
     if (job->view)
         cli_print_view(job);
-    printf("  scene     %s triangles, %s lights", cli_count(a, scene->triangles), cli_count(b, scene->lights));
+    printf("  scene     %s, %s", cli_many(a, scene->triangles, "triangle"), cli_many(b, scene->lights, "light"));
     if (scene->lights_inferred)
         printf(" (%s placed by a rule, not found in data)", cli_count(c, scene->lights_inferred));
     printf("%s%s\n", scene->crs && *scene->crs ? ", " : "", scene->crs ? scene->crs : "");
     print_issues(job->report);
-    printf("  camera    eye %.2f,%.2f,%.2f  target %.2f,%.2f,%.2f  fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
+    printf("  camera    eye %.2f,%.2f,%.2f, target %.2f,%.2f,%.2f, fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
            job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2], job->camera.fov_deg);
     printf("  time      %s: loading %s, ", cli_seconds(a, cli_now() - job->started), cli_seconds(b, job->loaded - job->started));
     printf("ray tracing structure %s, ", cli_seconds(a, job->last.build_seconds));
     printf("%s a frame (%s)\n", cli_seconds(a, job->frame_seconds / job->frames), job->last.path ? job->last.path : "");
     printf("  memory    %s at most\n", cli_bytes(a, peak_memory()));
     if (job->last.dropped)
-        printf("  dropped   %s samples that were not finite\n", cli_count(a, job->last.dropped));
+        printf("  dropped   %s, not finite\n", cli_many(a, job->last.dropped, "sample"));
 }
 
 void cli_print_stats(const render_job *job) {

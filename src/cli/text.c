@@ -92,6 +92,12 @@ const char *cli_count(char text[32], uint64_t n) {
     return text;
 }
 
+const char *cli_many(char text[64], uint64_t n, const char *noun) {
+    char count[32];
+    snprintf(text, 64, "%s %.28s%s", cli_count(count, n), noun, n == 1 ? "" : "s");
+    return text;
+}
+
 const char *cli_bytes(char text[32], uint64_t n) {
     static const char *const units[] = { "bytes", "kB", "MB", "GB", "TB" };
     double v = (double)n;

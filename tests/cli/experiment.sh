@@ -158,7 +158,7 @@ done
 kill -INT $pid
 wait $pid
 status=$?
-told=$(sed -n 's/.*interrupted: \([0-9]*\) rows are in c.results.csv; the same command goes on there/\1/p' err)
+told=$(sed -n 's/.*interrupted: \([0-9,]*\) rows in c.results.csv; the same command goes on there/\1/p' err | tr -d ,)
 test $status = 130 && test "$told" = $(($(wc -l <c/results.csv) - 1)) && test ! -e c/report.md; result $? "Ctrl-C keeps the rows, and says how to go on"
 sed 's/"repetitions": 2/"repetitions": 1/' spec.json >short.json
 run experiment short.json -o c --cache cache
@@ -188,7 +188,7 @@ cat >kill.json <<'SPEC'
                { "name": "cut", "view": "street", "path": { "frames": 4, "cut": 3, "before": { "view": "aerial", "fov": 30 } } } ],
   "size": "48x32", "seconds": 0.3, "shown": [1, 3],
   "reference": { "rays": 64, "frames": 4 },
-  "configurations": [ { "name": "ris", "method": "ris", "learn": false }, { "name": "restir, M *", "method": "restir", "draws": [1, 8] },
+  "configurations": [ { "name": "ris", "method": "ris", "learn": false }, { "name": "restir, M *", "method": "restir", "candidates": "power", "draws": [1, 8] },
                       { "name": "two frames", "frames": 2, "seconds": 0 } ]
 }
 SPEC

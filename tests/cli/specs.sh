@@ -1,6 +1,7 @@
 #!/bin/sh
 # Specs of experiments: presets, options without effect, and what goes wrong around a folder or a cache.
 . "$(dirname "$0")/lib.sh"
+export XDG_CACHE_HOME="$work/home"
 
 # spec FILE CONFIGURATIONS [MEMBERS]: one camera before one lamp, one frame
 spec() {
@@ -48,4 +49,57 @@ expect "one time that is no array" 2 'wrong.json: equal-time: this must be an ar
 spec moving.json '{ "name": "a" }' '"equal-time": [1],'
 sed 's/"view": "own"/"view": "own", "path": { "frames": 2, "pan": 1 }/' moving.json >wrong.json
 expect "equal time of cameras that all move" 2 'wrong.json: equal-time: this needs a camera at rest' experiment wrong.json -o w
+
+# What is wrong is one line, before any work and before any folder is made.
+spec wrong.json '{ "name": "a", "draws": [[1]] }'
+expect "an array in an array" 2 'wrong.json: configurations\[0\]: draws: this cannot be its value' experiment wrong.json -o w
+spec wrong.json '{ "name": "a" }' '"repetitions": [1],'
+expect "an array where one value is meant" 2 'wrong.json: repetitions: this cannot be its value' experiment wrong.json -o w
+spec wrong.json '{ "name": "a", "width": 3 }'
+expect "what the spec says for all" 2 'wrong.json: configurations\[0\]: width: the spec says it for all pictures' experiment wrong.json -o w
+spec one.json '{ "name": "a" }'
+sed 's/"scene": \(.*\) }, "cameras"/"scenes": [ \1 }, { "name": "two", "inputs": ["INPUT"] } ], "cameras"/' one.json >late.json
+sed 's/INPUT/gone.gml/' late.json >wrong.json
+expect "an input of the second scene that is not there" 1 '^nocturne: gone.gml: No such file' experiment wrong.json -o w
+sed 's/INPUT/./' late.json >wrong.json
+expect "a folder as input" 1 '^nocturne: \.: Is a directory' experiment wrong.json -o w
+sed 's/INPUT/builtin:nowhere/' late.json >wrong.json
+expect "a built-in scene that there is not" 2 'wrong.json: scenes\[1\]: builtin:nowhere: no such' experiment wrong.json -o w
+expect "a spec that is not there" 1 '^nocturne: gone.json: No such file or directory$' experiment gone.json
+test ! -e w && test ! -e gone; result $? "nothing was written"
+
+# Inputs are named as seen from the spec, wherever it is started.
+mkdir -p there
+cp "$source_dir/tests/cli/city.gml" there/
+sed 's/builtin:single/city.gml/' one.json >there/one.json
+run experiment there/one.json -o r --cache cache
+test $status = 0 && (cd there && "$program" experiment one.json -o ../r --cache ../cache -v) >out 2>err && grep -q ': 2 rows, 0 of them made now' out
+result $? "a spec in another folder, and from within"
+
+# The reference's cache: what is not a whole picture of this size is made again; what cannot be written costs nothing.
+run experiment one.json -o s --cache cold
+file=$(ls cold/*.exr)
+sed 's/32x18/16x9/' one.json >small.json
+run experiment small.json -o t --cache other
+for damage in 'head -c 200 "$file" >cut; mv cut "$file"' ': >"$file"' 'cp other/*.exr "$file"'; do
+    eval "$damage"
+    run experiment one.json -o s --cache cold
+    test $status = 0 && grep -q 'reference made' out && grep -q ' 0 of them made now' out && test ! -s err; result $? "damaged by $damage"
+done
+rm "$file" && mkdir "$file"
+run experiment one.json -o u --cache cold
+test $status = 0 && grep -q ': 2 rows, 2 of them' out && grep -q 'warning: the reference is not kept' err; result $? "a reference that cannot be kept"
+
+# Two at once in one cache; the second in one folder gives way.
+for i in 1 2 3; do "$program" experiment one.json -o "at-once-$i" --cache shared >/dev/null 2>"err$i" </dev/null & done
+wait
+test "$(ls shared/*.exr | wc -l)" = 1 && test "$(ls shared | wc -l)" = 2 && ! cat err? | grep -q . && ls at-once-[123]/report.md >/dev/null
+result $? "three at once in one cache" "$(cat err?)"
+if command -v flock >/dev/null; then
+    mkdir busy
+    flock busy "$program" experiment one.json -o busy --cache shared >out 2>err
+    test $? = 1 && test "$(cat err)" = "nocturne: busy: another experiment is writing there"; result $? "and not in one folder"
+else
+    skip "and not in one folder" "no flock here"
+fi
 finish
