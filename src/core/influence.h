@@ -7,7 +7,9 @@
  * Of m candidates of a surface point every `every`th, the first one too, is drawn from all lights alike (u of them), the
  * others from the N_f lights whose volumes hold the point (b of them). Whichever way a candidate came, its density is
  * (b g / N_f + u / N_L) / (b + u), g = 1 exactly if its own volume holds the point. Where no volume does, all are drawn
- * from all lights. S_r may differ from point to point: it is known before anything is drawn. */
+ * from all lights. S_r may differ from point to point: it is known before anything is drawn. Points that lie close together
+ * ask as one: their volumes are those that reach the box around them. "Holds the point" then means that, for the draws from
+ * all lights too, and densities stay exact. */
 #ifndef CORE_INFLUENCE_H
 #define CORE_INFLUENCE_H
 
@@ -27,13 +29,48 @@ typedef struct influence influence;
 
 #define INFLUENCE_NEVER K(3e38f)
 
-/* The smallest S_r at which the volume holds point p of a surface with normal n on the side that is seen; at most 0 within the
- * sphere. */
-FN real influence_needs(influence v, v3 p, v3 n) {
-    v3 d = sub3(p, v.c);
+/* Points of surfaces that ask together: the box around them, the normal that they have in common on the side that is seen
+ * (0: none), and their least dot(n, point) (where n = 0: -infinity). A volume holds them if it would hold a point of the box. */
+struct influence_region {
+    v3 lo;
+    v3 hi;
+    v3 n;
+    real back;
+};
+
+#ifndef CORE_GLSL
+typedef struct influence_region influence_region;
+#endif
+
+FN influence_region influence_point(v3 p, v3 n) {
+    influence_region r;
+    r.lo = p;
+    r.hi = p;
+    r.n = n;
+    r.back = dot3(n, p);
+    return r;
+}
+
+/* The smallest S_r at which the volume holds the region; at most 0 where the sphere touches it. */
+FN real influence_needs(influence v, influence_region r) {
+    v3 a = sub3(r.lo, v.c);
+    v3 b = sub3(r.hi, v.c);
+    v3 d = V3(max_(max_(a.x, K(0.0f) - b.x), K(0.0f)), max_(max_(a.y, K(0.0f) - b.y), K(0.0f)),
+              max_(max_(a.z, K(0.0f) - b.z), K(0.0f)));
     EXACT real s = (sqrt_(dot3(d, d)) - v.size) / v.root;
-    mask faces = and_(dot3(v.m, d) >= K(-1.0f), dot3(n, d) < v.size);
+    EXACT real front = max_(v.m.x * a.x, v.m.x * b.x) + max_(v.m.y * a.y, v.m.y * b.y) + max_(v.m.z * a.z, v.m.z * b.z);
+    mask faces = and_(front >= K(-1.0f), dot3(r.n, v.c) + v.size > r.back);
     return sel(faces, s, INFLUENCE_NEVER);
+}
+
+/* What it needs for the region's points on average: their distance squared is that of the centre and a third of the squared
+ * half diagonal, if they lie evenly in the box. */
+FN real influence_needs_amid(influence v, influence_region r) {
+    v3 h = mul3(sub3(r.hi, r.lo), K(0.5f));
+    v3 d = add3(sub3(r.lo, v.c), h);
+    EXACT real d2 = dot3(d, d) + dot3(h, h) * K(0.333f);
+    EXACT real s = (sqrt_(d2) - v.size) / v.root;
+    return s;
 }
 
 /* The S_r that draws best at a point. A light of E lux there adds E^2 / p to the second moment of a candidate's weight; let q
@@ -52,8 +89,9 @@ FN real influence_square(real needs) {
 }
 
 /* What visibility-aware volumes (Algorithm 4) ask as well. */
-FN mask influence_inside(v3 lo, v3 hi, v3 p) {
-    return and_(and_(and_(p.x >= lo.x, p.x <= hi.x), and_(p.y >= lo.y, p.y <= hi.y)), and_(p.z >= lo.z, p.z <= hi.z));
+FN mask influence_meets(v3 lo, v3 hi, influence_region r) {
+    return and_(and_(and_(r.hi.x >= lo.x, r.lo.x <= hi.x), and_(r.hi.y >= lo.y, r.lo.y <= hi.y)),
+                and_(r.hi.z >= lo.z, r.lo.z <= hi.z));
 }
 
 /* Draws from all lights among m, of a point that volumes of n_f lights hold. */

@@ -37,8 +37,10 @@ void noc_near_add(noc_near_query *q, const float *const p[3], const float *const
             q->lo[k] = NOC_MIN(q->lo[k], p[k][l]);
             q->hi[k] = NOC_MAX(q->hi[k], p[k][l]);
         }
-        if (!same)
+        if (!same) {
             memset(q->n, 0, sizeof(q->n));
+            q->back = -INFINITY;
+        }
         q->back = NOC_MIN(q->back, q->n[0] * p[0][l] + q->n[1] * p[1][l] + q->n[2] * p[2][l]);
     }
 }
@@ -63,20 +65,24 @@ static inline uint32_t children_near(const noc_influence_node *n, const noc_near
     return bits;
 }
 
-static void keep_near(noc_near *out, const noc_influence_volume *a, uint32_t volume, float reach) {
+static void keep_near(const noc_influence *v, uint32_t volume, noc_near *out) {
+    const noc_influence_volume *a = &v->volumes[volume];
     uint32_t lane = (uint32_t)(out->count++ & 15);
     if (!lane) {
         array_reserve(&out->groups, out->groups.len + 1);
         noc_near_group *g = &out->groups.data[out->groups.len++];
         memset(g, 0, sizeof(*g));
         for (int i = 0; i < 16; i++)
-            g->reach[i] = -INFINITY;
+            g->size[i] = -INFINITY;
     }
     noc_near_group *g = &out->groups.data[out->groups.len - 1];
-    g->x[lane] = a->c[0];
-    g->y[lane] = a->c[1];
-    g->z[lane] = a->c[2];
-    g->reach[lane] = reach;
+    for (int k = 0; k < 3; k++) {
+        g->c[k][lane] = a->c[k];
+        g->m[k][lane] = a->m[k];
+    }
+    g->size[lane] = a->size;
+    g->root[lane] = a->root;
+    g->lights[lane] = v->first ? (float)(v->first[volume + 1] - v->first[volume]) : 1;
     g->volume[lane] = volume;
 }
 
@@ -91,7 +97,7 @@ static void near_leaf(const noc_influence *v, const noc_near_query *q, size_t le
             d2 += d * d;
         }
         if (d2 <= reach * reach)
-            keep_near(out, a, (uint32_t)i, reach);
+            keep_near(v, (uint32_t)i, out);
     }
 }
 
@@ -124,22 +130,37 @@ void noc_influence_near(const noc_influence *v, const noc_near_query *asked, noc
     }
 }
 
+const noc_near *noc_around_near(const noc_influence *v, noc_around *a, int rung) {
+    if (!(a->asked >> rung & 1)) {
+        noc_near_query q = a->query;
+        q.scale *= (float)(1 << 2 * rung);
+        q.most = rung ? NOC_INFLUENCE_WIDER : q.most;
+        noc_influence_near(v, &q, &a->near[rung]);
+        a->asked |= 1u << rung;
+    }
+    return &a->near[rung];
+}
+
+void noc_around_free(noc_around *a) {
+    for (int i = 0; i < NOC_INFLUENCE_RUNGS; i++)
+        array_free(&a->near[i].groups);
+}
+
 void noc_found_free(noc_found *f) {
     array_free(&f->ids);
     array_free(&f->near.groups);
     array_free(&f->needs);
-    array_free(&f->volumes);
 }
 
-bool noc_influence_holds(const noc_influence *v, uint32_t light, const float p[3], const float n[3], float scale) {
+bool noc_influence_holds(const noc_influence *v, uint32_t light, const noc_near_query *q) {
     influence a;
     uint32_t volume = v->volume_of[light];
-    v3 at = V3(p[0], p[1], p[2]);
+    influence_region r = { V3(q->lo[0], q->lo[1], q->lo[2]), V3(q->hi[0], q->hi[1], q->hi[2]), V3(q->n[0], q->n[1], q->n[2]), q->back };
     memcpy(&a, &v->volumes[volume], sizeof(a));
-    if (!(influence_needs(a, at, V3(n[0], n[1], n[2])) <= scale))
+    if (!(influence_needs(a, r) <= q->scale))
         return false;
     if (!v->boxes)
         return true;
     const noc_influence_box *b = &v->boxes[v->box_of[volume]];
-    return influence_inside(V3(b->lo[0], b->lo[1], b->lo[2]), V3(b->hi[0], b->hi[1], b->hi[2]), at);
+    return influence_meets(V3(b->lo[0], b->lo[1], b->lo[2]), V3(b->hi[0], b->hi[1], b->hi[2]), r);
 }

@@ -64,9 +64,9 @@ void noc_influence_destroy(noc_influence *influence); /* NULL is allowed */
 
 /* ---- queries ---- */
 
-/* Volumes near a box, 16 to a group. Groups are padded with volumes of negative reach. */
+/* Volumes near a box, 16 to a group. Groups are padded with volumes that hold nothing. */
 typedef struct noc_near_group {
-    float x[16], y[16], z[16], reach[16]; /* spheres that the volumes lie in */
+    float c[3][16], size[16], m[3][16], root[16], lights[16];
     uint32_t volume[16];
 } noc_near_group;
 
@@ -79,7 +79,7 @@ typedef struct noc_near {
 typedef struct noc_near_query {
     float lo[3], hi[3]; /* box of the points */
     float n[3];         /* normal that they all have, 0: not the same */
-    float back;         /* least dot(n, point) */
+    float back;         /* least dot(n, point); -INFINITY where n = 0 */
     float scale;        /* S_r */
     size_t most;        /* stops at more volumes than that */
 } noc_near_query;
@@ -92,21 +92,32 @@ void noc_near_add(noc_near_query *query, const float *const p[3], const float *c
  * again and again. */
 void noc_influence_near(const noc_influence *influence, const noc_near_query *query, noc_near *near);
 
+/* What all blocks of a tile look through: volumes near a box that holds theirs, for S_r, and for 4, 16 and 64 times S_r; those
+ * are asked for when a block first needs them. */
+enum { NOC_INFLUENCE_RUNGS = 4, NOC_INFLUENCE_WIDER = 512 };
+typedef struct noc_around {
+    noc_near_query query; /* most: for S_r alone */
+    noc_near near[NOC_INFLUENCE_RUNGS];
+    uint32_t asked;       /* bits: rungs whose volumes are there */
+} noc_around;
+/* `over` where there are more than the query allows; for wider ones than S_r that is NOC_INFLUENCE_WIDER. */
+const noc_near *noc_around_near(const noc_influence *influence, noc_around *around, int rung);
+void noc_around_free(noc_around *around);
+
 /* What a block of points found. Starts zeroed, and is used again and again. */
 typedef struct noc_found {
     uint32_t count[NOC_QUERY_POINTS];  /* lights */
+    uint32_t from[NOC_QUERY_POINTS];   /* they are ids[from], ids[from + 1], ... */
     float scale[NOC_QUERY_POINTS];     /* S_r that the point settled for */
-    uint32_t shared[NOC_QUERY_POINTS]; /* of the lights, the first so many are ids[0], ids[1], ... */
-    uint32_t rows;                     /* the others of point l: ids[rows + j * NOC_QUERY_POINTS + l] */
+    float lo[3][NOC_QUERY_POINTS], hi[3][NOC_QUERY_POINTS], n[3][NOC_QUERY_POINTS], back[NOC_QUERY_POINTS]; /* of those it asked with */
     uint32_t wider;                    /* points that asked beyond S_r */
     NOC_ARRAY(uint32_t) ids;
     noc_near near;                     /* scratch */
     NOC_ARRAY(float) needs;
-    NOC_ARRAY(uint32_t) volumes;
 } noc_found;
 void noc_found_free(noc_found *found);
 
-/* Does the volume of a light hold the point? */
-bool noc_influence_holds(const noc_influence *influence, uint32_t light, const float p[3], const float n[3], float scale);
+/* Does the volume of a light hold the points of a query? */
+bool noc_influence_holds(const noc_influence *influence, uint32_t light, const noc_near_query *query);
 
 #endif

@@ -120,7 +120,7 @@ static void look_around(void *ctx, size_t item, int worker) {
     for (uint32_t i = 0; i < t->v->volume_count; i++) {
         influence a;
         memcpy(&a, &t->v->volumes[i], sizeof(a));
-        float needs = influence_needs(a, p, n);
+        float needs = influence_needs(a, influence_point(p, n));
         sum += needs < INFLUENCE_NEVER ? influence_square(needs) : 0;
     }
     e->needs = sum > 0 ? influence_best((float)sum, (float)t->v->count, EVERY) : INFLUENCE_NEVER;

@@ -241,8 +241,11 @@ FN void pickers(CTX u32 item, u32 key, surf s) {
     v.m = mul3(unit3(any_v3(key, KU(3076u))), K(3.0f));
     v.size = rng(key, KU(3082u));
     v.root = rng(key, KU(3083u)) * K(100.0f);
-    real needs = influence_needs(v, s.p, s.n);
-    mask held = and_(needs <= K(3.0f), influence_inside(v.c, add3(v.c, fill3(K(40.0f))), s.p));
+    influence_region y = influence_point(s.p, s.n);
+    v3 corner = any_v3(key, KU(3084u));
+    y.hi = V3(max_(y.hi.x, corner.x), max_(y.hi.y, corner.y), max_(y.hi.z, corner.z));
+    real needs = sel((bits & KU(2u)) != KU(0u), influence_needs(v, y), influence_needs_amid(v, y));
+    mask held = and_(needs <= K(3.0f), influence_meets(v.c, add3(v.c, fill3(K(40.0f))), y));
     u32 n_f = shr(bits, 27);
     put_real(PASS item, 132, sel(held, needs, K(0.0f)));
     put_real(PASS item, 133, influence_pmf(held, n_f, KU(KERNEL_LIGHTS), 32, 4));

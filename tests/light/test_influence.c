@@ -75,6 +75,12 @@ static void probe(void *user, noc_probes *r) {
 
 /* ---- a block of surfaces, and what it draws ---- */
 
+static bool holds(const noc_influence *v, uint32_t id, const float p[3], const float n[3]) {
+    noc_near_query q = noc_near_none(v->scale, SIZE_MAX);
+    noc_near_add(&q, (const float *const[3]){ p, p + 1, p + 2 }, (const float *const[3]){ n, n + 1, n + 2 }, 1);
+    return noc_influence_holds(v, id, &q);
+}
+
 typedef struct asked {
     const noc_scene *scene;
     const noc_influence *v;
@@ -136,8 +142,14 @@ static void draw(asked *a) {
 }
 
 static bool held(const asked *a, uint32_t id, int l) {
-    float p[3] = { a->g.px[l], a->g.py[l], a->g.pz[l] }, n[3] = { a->g.nx[l], a->g.ny[l], a->g.nz[l] };
-    return noc_influence_holds(a->v, id, p, n, a->found.scale[l]);
+    const noc_found *f = &a->found;
+    noc_near_query q = { .back = f->back[l], .scale = f->scale[l] };
+    for (int k = 0; k < 3; k++) {
+        q.lo[k] = f->lo[k][l];
+        q.hi[k] = f->hi[k][l];
+        q.n[k] = f->n[k][l];
+    }
+    return noc_influence_holds(a->v, id, &q);
 }
 
 static double pmf(const asked *a, uint32_t id, int l) {
@@ -158,6 +170,11 @@ static void finds_what_there_is(asked *a) {
     uint32_t n = (uint32_t)a->scene->lights.len;
     for (int l = 0; l < BLOCK; l++) {
         uint32_t count = 0;
+        for (int k = 0; k < 3 && (LANES_ASKED >> l & 1); k++) { /* each point is among those it asked with */
+            float p = (k == 0 ? a->g.px : k == 1 ? a->g.py : a->g.pz)[l], m = (k == 0 ? a->g.nx : k == 1 ? a->g.ny : a->g.nz)[l];
+            assert_true(p >= a->found.lo[k][l] && p <= a->found.hi[k][l]);
+            assert_true(fabsf(a->found.n[k][l] - m) <= 1e-5f || a->found.back[l] == -INFINITY);
+        }
         for (uint32_t i = 0; i < n && (LANES_ASKED >> l & 1); i++)
             count += held(a, i, l);
         assert_int_equal(a->found.count[l], count);
@@ -165,7 +182,7 @@ static void finds_what_there_is(asked *a) {
             uint32_t id[2];
             for (uint32_t k = j; k < NOC_MIN(count, j + 20); k++) { /* each once */
                 const noc_found *f = &a->found;
-                id[k > j] = f->ids.data[k < f->shared[l] ? k : f->rows + (k - f->shared[l]) * BLOCK + (uint32_t)l];
+                id[k > j] = f->ids.data[f->from[l] + k];
                 assert_true(held(a, id[k > j], l));
                 assert_true(k == j || id[0] != id[1]);
             }
@@ -257,8 +274,8 @@ static void shared_volumes_hold_their_lights(void **state) {
         surf y = random_surf(100);
         float p[3] = { y.p.x, y.p.y, y.p.z }, n[3] = { y.n.x, y.n.y, y.n.z };
         for (uint32_t i = 0; i < 2400; i++)
-            if (noc_influence_holds(own, i, p, n, own->scale)) {
-                assert_true(noc_influence_holds(v, i, p, n, own->scale));
+            if (holds(own, i, p, n)) {
+                assert_true(holds(v, i, p, n));
                 inside++;
             }
     }
@@ -280,8 +297,8 @@ static void boxes_end_at_walls(void **state) {
         float p[3] = { y.p.x, y.p.y, y.p.z }, n[3] = { y.n.x, y.n.y, y.n.z };
         for (uint32_t i = 0; i < 2000; i++) {
             size_t *count = (s->lights.data[i].p[0] < 4) == (p[0] < 4) ? before : behind;
-            count[0] += noc_influence_holds(own, i, p, n, own->scale);
-            count[1] += noc_influence_holds(v, i, p, n, own->scale);
+            count[0] += holds(own, i, p, n);
+            count[1] += holds(v, i, p, n);
         }
     }
     print_message("# pairs before the wall: %zu of %zu kept, beyond it: %zu of %zu\n", before[1], before[0], behind[1], behind[0]);

@@ -97,7 +97,7 @@ typedef struct worker {
     noc_found found;
     uint64_t found_counts[FOUND_COUNTS]; /* surfaces of the frame by the number of lights found; the last: as many or more */
     uint64_t found_wider;                /* surfaces that asked beyond S_r */
-    noc_near near;                       /* influence volumes near a tile */
+    noc_around around;                   /* influence volumes near a tile */
     packet *packets; /* kept while recording */
     size_t packet_count, packet_room;
     bool packets_lost; /* there was no memory for all of them */

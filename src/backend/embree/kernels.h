@@ -119,9 +119,9 @@ typedef struct kernels {
     void (*pick_power)(const struct core_context *ctx, int x, int y, int m, pick_block *out);
     void (*pick_tree)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                       tree_items items[2], pick_block *out);
-    /* near: volumes near a box that holds the block's surfaces, or NULL; found: what its lanes found. */
+    /* around: volumes near a tile that holds the block, or NULL; found: what its lanes found. */
     void (*pick_influence)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
-                           const noc_near *near, noc_found *found, pick_block *out);
+                           noc_around *around, noc_found *found, pick_block *out);
     void (*given)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                   const pick_block *picks, rblock *out);
     /* Where this frame's surfaces were in the previous picture, in pixels; returns the lanes that were in front of it. */

@@ -111,7 +111,7 @@ void noc_embree_release_lights(embree_state *s) {
             free(w->tree_items[k].what);
             free(w->tree_items[k].pmf);
         }
-        array_free(&w->near.groups);
+        noc_around_free(&w->around);
     }
 }
 

@@ -58,8 +58,8 @@ static void primary(stage_run *run, worker *w, tile t) {
 
 enum { TILE_VOLUMES = 4096 };
 
-/* Influence volumes near a tile, for all of its blocks; NULL where they are so many that each block looks for itself. */
-static const noc_near *look_around(stage_run *run, worker *w, tile t) {
+/* What is asked for all blocks of a tile. */
+static noc_around *look_around(stage_run *run, worker *w, tile t) {
     const frame_buffers *b = &run->s->b;
     const noc_influence *v = run->s->influence;
     const noc_render_params *p = run->ctx.frame->params;
@@ -70,30 +70,31 @@ static const noc_near *look_around(stage_run *run, worker *w, tile t) {
             noc_near_add(&q, (const float *const[3]){ g->px, g->py, g->pz }, (const float *const[3]){ g->nx, g->ny, g->nz },
                          lanes_with_surface(g));
         }
-    noc_influence_near(v, &q, &w->near);
-    return w->near.over ? NULL : &w->near;
+    w->around.query = q;
+    w->around.asked = 0;
+    return &w->around;
 }
 
-static void pick_influence(stage_run *run, worker *w, const gblock *g, uint32_t lanes, int x, int y, int m, const noc_near *near) {
-    run->k->pick_influence(&run->ctx, g, lanes, x, y, m, near, &w->found, &w->picks);
+static void pick_influence(stage_run *run, worker *w, const gblock *g, uint32_t lanes, int x, int y, int m, noc_around *around) {
+    run->k->pick_influence(&run->ctx, g, lanes, x, y, m, around, &w->found, &w->picks);
     for (uint32_t bits = lanes; bits; bits &= bits - 1)
         w->found_counts[NOC_MIN(w->found.count[__builtin_ctz(bits)], FOUND_COUNTS - 1)]++;
     w->found_wider += (uint64_t)__builtin_popcount(w->found.wider);
 }
 
 /* Draws a block's candidates from whatever these parameters name but the uniform draws and the lists. */
-static void pick_lights(stage_run *run, worker *w, const gblock *g, uint32_t lanes, int x, int y, int m, const noc_near *near) {
+static void pick_lights(stage_run *run, worker *w, const gblock *g, uint32_t lanes, int x, int y, int m, noc_around *around) {
     switch (run->ctx.frame->params->candidates) {
     case NOC_CANDIDATES_POWER: run->k->pick_power(&run->ctx, x, y, m, &w->picks); break;
-    case NOC_CANDIDATES_BVH: pick_influence(run, w, g, lanes, x, y, m, near); break;
+    case NOC_CANDIDATES_BVH: pick_influence(run, w, g, lanes, x, y, m, around); break;
     case NOC_CANDIDATES_TREE: run->k->pick_tree(&run->ctx, g, lanes, x, y, m, w->tree_items, &w->picks); break;
     case NOC_CANDIDATES_UNIFORM:
     case NOC_CANDIDATES_LISTS: break;
     }
 }
 
-/* near: bvh only. */
-static void candidates(stage_run *run, worker *w, int bx, int by, const noc_near *near) {
+/* around: bvh only. */
+static void candidates(stage_run *run, worker *w, int bx, int by, noc_around *around) {
     frame_buffers *b = &run->s->b;
     const noc_render_params *p = run->ctx.frame->params;
     size_t at = block_at(b, bx, by);
@@ -103,7 +104,7 @@ static void candidates(stage_run *run, worker *w, int bx, int by, const noc_near
     int m = p->method == NOC_METHOD_IS ? 1 : p->draws, x = bx * BLOCK_SIDE, y = by * BLOCK_SIDE;
     bool given = p->method != NOC_METHOD_IS && p->candidates != NOC_CANDIDATES_UNIFORM;
     if (given && lanes)
-        pick_lights(run, w, g, lanes, x, y, m, near);
+        pick_lights(run, w, g, lanes, x, y, m, around);
     if (given)
         run->k->given(&run->ctx, g, lanes, x, y, m, &w->picks, r);
     else
@@ -119,10 +120,10 @@ static void tile_candidates(stage_run *run, worker *w, tile t) {
     frame_buffers *b = &run->s->b;
     if (f->params->candidates != NOC_CANDIDATES_LISTS || f->params->method == NOC_METHOD_IS) {
         bool volumes = f->params->candidates == NOC_CANDIDATES_BVH && f->params->method != NOC_METHOD_IS;
-        const noc_near *near = volumes ? look_around(run, w, t) : NULL;
+        noc_around *around = volumes ? look_around(run, w, t) : NULL;
         for (int by = t.y0; by < t.y1; by++)
             for (int bx = t.x0; bx < t.x1; bx++)
-                candidates(run, w, bx, by, near);
+                candidates(run, w, bx, by, around);
         return;
     }
     const gblock *g[TILE_BLOCKS * TILE_BLOCKS];
