@@ -49,7 +49,7 @@ FN real tree_unit(u32 bits) {
 }
 
 /* What the lights of a child could give the surface at p with normal n: 0 only if none of them can reach it. As
- * core/cones.h's cluster_score, with lower floors: there a floor guards a whole cluster against a loose bound; here it would
+ * core/cones.h's cone_score, with lower floors: there a floor guards a whole cluster against a loose bound; here it would
  * give the windows beside a window in a wall, which shine past that wall, more draws than those across the street. Inside a
  * node the distance is taken as half its size. Cosines and sines stay multiplied by the distance or its square, which saves
  * most of the divisions and roots. */

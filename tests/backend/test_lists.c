@@ -103,7 +103,7 @@ static void weights_are_one(int lights, double side, int list, int tail) {
     list_scratch *s = noc_alloc_large(1, sizeof(*s));
     double *mean = noc_calloc((size_t)lights, sizeof(*mean)), *largest = noc_calloc((size_t)lights, sizeof(*largest));
     for (int i = 0; i < ROUNDS; i++) {
-        k->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, 0.37f, (float)((i + 0.5) / ROUNDS), s, &s->list);
+        k->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, (float)((i + 0.5) / ROUNDS), s, &s->list);
         assert_true(s->list.count <= (uint32_t)(list + tail));
         for (uint32_t j = 0; j < s->list.count; j++) {
             mean[s->list.light[j]] += s->list.weight[j] / ROUNDS;
@@ -146,7 +146,7 @@ static void few_lights_are_listed(void **state) {
     static world w;
     make_world(&w, 40, 15, 32, 16);
     list_scratch *s = noc_alloc_large(1, sizeof(*s));
-    noc_pick_kernels(NOC_PATH_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, 0.1f, 0.9f, s, &s->list);
+    noc_pick_kernels(NOC_PATH_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, 0.9f, s, &s->list);
     int can = 0, listed = 0;
     for (size_t i = 0; i < w.scene->lights.len; i++)
         can += reaches(&w, &w.scene->lights.data[i]);
@@ -169,11 +169,11 @@ static void tables_agree(void **state) {
     assert_true(tables >= 2);
     list_scratch *want = noc_alloc_large(1, sizeof(*want)), *have = noc_alloc_large(1, sizeof(*have));
     for (int round = 0; round < 50; round++) {
-        float choice = (float)real_in(0, 1), rotation = (float)real_in(0, 1);
-        all[0]->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, choice, rotation, want, &want->list);
+        float rotation = (float)real_in(0, 1);
+        all[0]->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, rotation, want, &want->list);
         assert_int_equal(want->list.count > 24, 1);
         for (int k = 1; k < tables; k++) {
-            all[k]->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, choice, rotation, have, &have->list);
+            all[k]->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, rotation, have, &have->list);
             assert_int_equal(have->list.count, want->list.count);
             assert_memory_equal(have->list.light, want->list.light, want->list.count * sizeof(*want->list.light));
             assert_memory_equal(have->list.weight, want->list.weight, want->list.count * sizeof(*want->list.weight));

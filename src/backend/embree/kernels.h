@@ -12,9 +12,9 @@
 #include "render/backend.h"
 
 enum { MOST_SHADOW_RAYS = 16, MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32, LIST_ENTRIES = 128, PICK_AHEAD = 8 };
-/* List building: surfaces of a tile that lights are scored at; nodes that are opened, of each level and of the lowest; steps
- * that scores are told apart by. */
-enum { LIST_EXAMPLES = 8, OPENED_NODES = 96, OPENED_CLUSTERS = 96, SCORE_STEPS = 1020 };
+/* List building: most pieces of a tile's surfaces that lights are scored at, two a block; most nodes that are opened, of each
+ * level and of the lowest; so few that all are; steps that scores are told apart by. */
+enum { LIST_PATCHES = 32, OPENED_NODES = 96, OPENED_CLUSTERS = 192, FEW_NODES = 64, SCORE_STEPS = 1020 };
 
 /* Most groups of 16 that a list is chosen from. */
 enum { LIST_GROUPS = NOC_CLUSTER_ROOTS / 16 + NOC_CLUSTER_LEVELS * OPENED_NODES + OPENED_CLUSTERS };
@@ -105,10 +105,10 @@ typedef struct kernels {
     const char *name;
     /* M candidates a lane of `lanes`; w = m = 0 elsewhere. x, y: pixel of lane 0. */
     void (*candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m, rblock *out);
-    /* The list of a tile of `blocks` blocks. choice and rotation are independent numbers in [0, 1): the scores depend on
-     * the first, and the tail's start must not depend on the scores. Then candidates from it. */
+    /* The list of a tile of `blocks` blocks. rotation, the tail's start, is a number in [0, 1) that does not depend on what the
+     * tile sees. Then candidates from it. */
     void (*list_build)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks,
-                       float choice, float rotation, list_scratch *scratch, light_list *out);
+                       float rotation, list_scratch *scratch, light_list *out);
     void (*list_candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, rblock *out);
     /* Several draws from a list: weigh its entries, draw n[l] of them a lane, find their (u, v). n[l] is a whole number. */
     void (*list_weigh)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, const beliefs *e,

@@ -135,7 +135,7 @@ static void tile_candidates(stage_run *run, worker *w, tile t) {
             lanes[n] = lanes_with_surface(g[n]);
         }
     u32 key = rng_key(f->params->seed, (uint32_t)(t.y0 * b->blocks_x + t.x0), f->index);
-    run->k->list_build(&run->ctx, g, lanes, n, rng(key, DIM_LIST), rng(key, DIM_LIST + 1), &w->lists, &w->lists.list);
+    run->k->list_build(&run->ctx, g, lanes, n, rng(key, DIM_LIST), &w->lists, &w->lists.list);
     if (noc_embree_shares_rays(f->params)) {
         noc_embree_share_candidates(run, w, t, g, lanes);
         return;
