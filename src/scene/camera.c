@@ -1,14 +1,14 @@
 /* Views derived from any city: what its triangles cover and where its lights are decides, never a name or a place.
  *
  * All choices are maxima over a fixed list of candidates in a fixed order, so the same scene gives the same camera. */
-#include "scene/scene.h"
+#include "scene/camera.h"
 
 #include <float.h>
 #include <math.h>
 
 typedef struct view_light {
     double p[3];
-    double weight; /* about the square root of its flux, so that one floodlight does not outweigh a street */
+    double weight;
     bool lamp;     /* as opposed to a window */
 } view_light;
 
@@ -18,6 +18,7 @@ typedef struct view_city {
     double min[3], max[3];
     double middle[2];            /* half of the triangles lie to each side */
     double hot[2];               /* middle of the densest lit part */
+    bool classes;                /* something says that it is a wall, a roof, a road, ...: a city, not just any mesh */
     NOC_ARRAY(view_light) lights; /* around it */
 } view_city;
 
@@ -50,13 +51,13 @@ static void city_bounds(view_city *city) {
     free(v);
 }
 
-static void light_centre(const noc_light_record *r, double p[3]) {
+void noc_light_centre(const noc_light_record *r, double p[3]) {
     double share = r->kind == NOC_LIGHT_TRIANGLE ? 1.0 / 3 : r->kind == NOC_LIGHT_PARALLELOGRAM ? 0.5 : 0;
     for (int k = 0; k < 3; k++)
         p[k] = r->p[k] + share * ((double)r->a[k] + r->b[k]);
 }
 
-static double light_weight(const noc_light_record *r) {
+double noc_light_weight(const noc_light_record *r) {
     double y = 0.2126 * r->e[0] + 0.7152 * r->e[1] + 0.0722 * r->e[2];
     return sqrt(y * (r->kind == NOC_LIGHT_POINT ? 4 * M_PI : M_PI * r->area));
 }
@@ -72,8 +73,8 @@ static bool source_get(const view_city *city, size_t i, view_light *out) {
     *out = (view_light){ .weight = 1 };
     if (s->lights.len) {
         const noc_light_record *r = &s->lights.data[i];
-        light_centre(r, out->p);
-        out->weight = light_weight(r);
+        noc_light_centre(r, out->p);
+        out->weight = noc_light_weight(r);
         out->lamp = r->kind == NOC_LIGHT_SPHERE || r->kind == NOC_LIGHT_DISC || r->kind == NOC_LIGHT_POINT;
         return out->weight > 0;
     }
@@ -82,6 +83,14 @@ static bool source_get(const view_city *city, size_t i, view_light *out) {
     for (int k = 0; k < 3; k++)
         out->p[k] = s->positions.data[3 * (size_t)s->indices.data[3 * t] + (size_t)k];
     return cls == NOC_CLASS_WALL || cls == NOC_CLASS_ROOF || cls == NOC_CLASS_OTHER;
+}
+
+static void find_classes(view_city *city) {
+    const noc_scene *s = city->scene;
+    for (size_t i = 0; i < s->meshes.len && !city->classes; i++) {
+        noc_class cls = s->materials.data[s->meshes.data[i].material].cls;
+        city->classes = cls != NOC_CLASS_OTHER && cls != NOC_CLASS_LAMP && s->meshes.data[i].first_triangle != s->backdrop_first;
+    }
 }
 
 static int hot_cell(const view_city *city, int k, double x) {
@@ -169,22 +178,23 @@ static void overview(const view_city *city, double aspect, noc_camera *camera) {
     double tv = tan(camera->fov_deg * M_PI / 360) / 1.04, th = tv * aspect;
     double shift[2] = { 0, 0 }, distance = 0.1;
     const noc_scene *s = city->scene;
-    size_t triangles = noc_scene_city_triangles(s), n = NOC_MIN(triangles, (size_t)SAMPLES);
+    size_t corners = 3 * noc_scene_city_triangles(s), n = NOC_MIN(corners, (size_t)SAMPLES);
+    size_t first = n < corners ? 0 : 8; /* where all corners of triangles are asked, the ground's are not */
     for (int round = 0; round < 4; round++) {
         double lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
         for (int pass = 0; pass < 2; pass++) {
-            for (size_t i = 0; i < n + 8; i++) {
+            for (size_t i = first; i < n + 8; i++) {
                 double along = 0, x = -shift[0], y = -shift[1];
-                for (int k = 0; k < 3; k++) { /* the corners of the ground, then samples of all there is */
-                    size_t t = i < 8 ? 0 : noc_scene_city_triangle(s, (i - 8) * triangles / n);
-                    double c = i < 8 ? (k == 2 || !(i >> k & 1) ? city->min[k] : city->max[k])
-                                     : s->positions.data[3 * (size_t)s->indices.data[3 * t + i % 3] + (size_t)k];
+                size_t corner = i < 8 ? 0 : (i - 8) * corners / n; /* the corners of the ground, then of triangles */
+                size_t v = s->indices.data[3 * noc_scene_city_triangle(s, corner / 3) + corner % 3];
+                for (int k = 0; k < 3; k++) {
+                    double c = i < 8 ? (k == 2 || !(i >> k & 1) ? city->min[k] : city->max[k]) : (double)s->positions.data[3 * v + (size_t)k];
                     double q = NOC_CLAMP(c, city->min[k], city->max[k]) - centre[k];
                     along += q * d[k], x += q * right[k], y += q * up[k];
                 }
                 if (!pass) {
                     double need = along + NOC_MAX(fabs(x) / th, fabs(y) / tv);
-                    distance = i ? NOC_MAX(distance, need) : need;
+                    distance = i > first ? NOC_MAX(distance, need) : need;
                     continue;
                 }
                 lo[0] = NOC_MIN(lo[0], x / (distance - along)), hi[0] = NOC_MAX(hi[0], x / (distance - along));
@@ -319,13 +329,31 @@ static bool pole_in_view(const view_city *city, const double eye[3], double dx, 
     return false;
 }
 
+enum { DIRECTIONS = 32 };
+
+/* Nothing says what the triangles of a mesh are. A street is where walls stand around, and lights not far above; a small
+ * model must enclose the place, or it is an object on a plate, seen better from outside. */
+static bool is_street(const view_city *city, const double eye[3], const bool wall[DIRECTIONS], const double free_way[DIRECTIONS]) {
+    double extent = NOC_MAX(city->max[0] - city->min[0], city->max[1] - city->min[1]);
+    int around = 0;
+    for (int i = 0; i < DIRECTIONS; i++)
+        around += wall[i] && free_way[i] < 70;
+    bool light = false;
+    for (size_t i = 0; i < city->lights.len && !light; i++) {
+        const view_light *l = &city->lights.data[i];
+        light = distance2(l->p, eye) < 100 && l->p[2] - eye[2] < 40;
+    }
+    return light && around >= (extent < 50 ? DIRECTIONS * 3 / 4 : DIRECTIONS / 6);
+}
+
 /* Best direction from one place; returns its score. */
 static double street_look(const view_city *city, const double eye[3], double aspect, double fov, double *yaw) {
-    enum { DIRECTIONS = 32 };
     double best = 0, free_way[DIRECTIONS];
     bool wall[DIRECTIONS];
     for (int i = 0; i < DIRECTIONS; i++)
         free_way[i] = free_distance(city->scene, eye, cos(2 * M_PI * i / DIRECTIONS), sin(2 * M_PI * i / DIRECTIONS), &wall[i]);
+    if (!city->classes && !is_street(city, eye, wall, free_way))
+        return 0;
     for (int i = 0; i < DIRECTIONS; i++) {
         double a = 2 * M_PI * i / DIRECTIONS, dx = cos(a), dy = sin(a);
         double beside = NOC_MIN(free_way[(i + 1) % DIRECTIONS], free_way[(i + DIRECTIONS - 1) % DIRECTIONS]);
@@ -419,11 +447,13 @@ noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect
     view_city city = { .scene = scene };
     noc_camera c = noc_camera_default();
     city_bounds(&city);
+    find_classes(&city);
     find_hot(&city);
+    bool stand = view == NOC_VIEW_STREET || view == NOC_VIEW_OWN;
     if (view == NOC_VIEW_AERIAL)
         aerial(&city, aspect, &c);
-    /* a model with nowhere to stand is looked at from outside */
-    if (view == NOC_VIEW_OVERVIEW || (view != NOC_VIEW_AERIAL && !street(&city, aspect, &c)))
+    /* a room is looked at from inside, another model with nowhere to stand from outside */
+    else if (!stand || !((!city.classes && noc_room_camera(scene, city.min, city.max, aspect, &c)) || street(&city, aspect, &c)))
         overview(&city, aspect, &c);
     array_free(&city.lights);
     *camera = c;

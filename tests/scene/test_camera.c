@@ -166,6 +166,71 @@ static void test_one_lamp(void **state) {
     noc_scene_destroy(scene);
 }
 
+static void assert_in_picture(const noc_camera *c, double aspect, const double lo[3], const double hi[3]) {
+    for (int i = 0; i < 8; i++) {
+        double p[3] = { i & 1 ? hi[0] : lo[0], i & 2 ? hi[1] : lo[1], i & 4 ? hi[2] : lo[2] }, x, y;
+        assert_true(project(c, aspect, p, &x, &y));
+        assert_true(fabs(x) <= 1 && fabs(y) <= 1);
+    }
+}
+
+/* An object, a plate and a lamp over them, of any size: nobody stands on the object's top, all is in the picture. */
+static void test_object(void **state) {
+    static const double sizes[] = { 0.1, 1, 10, 1000 };
+    for (size_t i = 0; i < NOC_COUNT(sizes); i++) {
+        double s = sizes[i];
+        noc_scene *scene = noc_scene_create(NULL);
+        add_box(scene, NOC_CLASS_OTHER, -2 * s, -2 * s, 2 * s, 2 * s, -.05 * s, 0);
+        add_box(scene, NOC_CLASS_OTHER, -.5 * s, -.5 * s, .5 * s, .5 * s, 0, s);
+        noc_light lamp = { .kind = NOC_LIGHT_POINT, .position = { 0, 0, 1.5 * s }, .emission = { 9, 9, 9 } };
+        assert_int_equal(noc_scene_add_light(scene, &lamp), 0);
+        all_views(scene);
+        noc_camera c;
+        assert_int_equal(noc_scene_camera(scene, NOC_VIEW_OWN, 1.5, &c), NOC_OK);
+        assert_in_picture(&c, 1.5, (double[]){ -2 * s, -2 * s, -.05 * s }, (double[]){ 2 * s, 2 * s, 0 });
+        assert_in_picture(&c, 1.5, (double[]){ -.5 * s, -.5 * s, 0 }, (double[]){ .5 * s, .5 * s, s });
+        assert_true(c.eye[2] > 0.2 * s);
+        noc_scene_destroy(scene);
+    }
+}
+
+/* A closed room is seen from inside, not from within its furniture; with the lamp on its roof, from outside. */
+static void test_room(void **state) {
+    for (int outside = 0; outside < 2; outside++)
+        for (int k = 0; k < 2; k++) {
+            double s = k ? 20 : 1, x = 6 * s, y = 8 * s, z = 3 * s;
+            noc_scene *scene = noc_scene_create(NULL);
+            add_box(scene, NOC_CLASS_OTHER, 0, 0, x, y, 0, z);
+            add_box(scene, NOC_CLASS_OTHER, .1 * x, .1 * y, .3 * x, .3 * y, 0, .9 * z); /* a cupboard in a corner */
+            noc_light lamp = { .kind = NOC_LIGHT_POINT, .position = { 3 * s, 4 * s, outside ? 3.5 * s : 2.5 * s }, .emission = { 9, 9, 9 } };
+            assert_int_equal(noc_scene_add_light(scene, &lamp), 0);
+            all_views(scene);
+            noc_camera c;
+            assert_int_equal(noc_scene_camera(scene, NOC_VIEW_OWN, 1.5, &c), NOC_OK);
+            bool inside = c.eye[0] > 0 && c.eye[0] < x && c.eye[1] > 0 && c.eye[1] < y && c.eye[2] > 0 && c.eye[2] < z;
+            bool in_cupboard = c.eye[0] < .3 * x && c.eye[1] < .3 * y;
+            assert_true(inside == !outside);
+            assert_true(!inside || !in_cupboard);
+            noc_scene_destroy(scene);
+        }
+}
+
+/* Houses of no class along a street with lamps are a city nevertheless. */
+static void test_plain_street(void **state) {
+    noc_scene *scene = noc_scene_create(NULL);
+    add_box(scene, NOC_CLASS_OTHER, -100, -100, 100, 100, -1, 0);
+    for (int i = 0; i < 8; i++) {
+        add_box(scene, NOC_CLASS_OTHER, -96 + i * 24, -30, -76 + i * 24, -7, 0, 12);
+        add_box(scene, NOC_CLASS_OTHER, -96 + i * 24, 7, -76 + i * 24, 30, 0, 12);
+        noc_light lamp = { .kind = NOC_LIGHT_POINT, .position = { -90 + i * 24, 0, 6 }, .emission = { 900, 900, 900 } };
+        assert_true(noc_scene_add_light(scene, &lamp) >= 0);
+    }
+    noc_camera c;
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEW_OWN, 1.5, &c), NOC_OK);
+    assert_true(fabs(c.eye[1]) < 7 && fabs(c.eye[2] - 1.7) < 1e-6);
+    noc_scene_destroy(scene);
+}
+
 static void test_odd_scenes(void **state) {
     noc_scene *scene = noc_scene_create(NULL);
     noc_camera c = noc_camera_default();
@@ -235,6 +300,7 @@ static void test_slits(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_builtin_city), cmocka_unit_test(test_without_lights), cmocka_unit_test(test_one_lamp),
+                                        cmocka_unit_test(test_object), cmocka_unit_test(test_room), cmocka_unit_test(test_plain_street),
                                         cmocka_unit_test(test_odd_scenes), cmocka_unit_test(test_stray), cmocka_unit_test(test_slits) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
