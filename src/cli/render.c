@@ -23,7 +23,7 @@ static const noc_option own_options[] = {
     TEXT("camera-crs", "Camera", camera_crs, "CRS", "eye and target are easting,northing,height in this CRS; \"scene\": the scene's"),
     { "fov", "Camera", NOC_OPTION_REAL, offsetof(A, fov), 1, 170, NULL, "degrees", "vertical field of view; else that of the view, with --eye 50" },
     TEXT("size", "Picture", size, "WxH", "width and height at once, such as 1920x1080"),
-    TEXT("exposure", "Display", exposure, "EV", "\"auto\", or EV100: one more halves the brightness"),
+    TEXT("exposure", "Display", exposure, "EV", "\"auto\" (noise moves it), or EV100, to compare pictures: one more is half as bright"),
     { NULL },
 };
 static const noc_option *options(void) { return own_options; }
