@@ -244,5 +244,6 @@ void experiment_number(FILE *out, double v, const char *fmt);
 void experiment_table_rule(FILE *out, size_t columns); /* ends the line of the head: one column to the left, others to the right */
 FILE *experiment_create(const experiment_lab *lab, const char *name, char **temporary);
 int experiment_finish(const experiment_lab *lab, FILE *file, const char *name, char *temporary); /* renames; frees temporary */
+void experiment_discard(FILE *file, char *temporary); /* instead of finishing: nothing is left */
 
 #endif

@@ -53,6 +53,12 @@ int experiment_finish(const experiment_lab *lab, FILE *file, const char *name, c
     return failed ? CLI_FAILURE : CLI_OK;
 }
 
+void experiment_discard(FILE *file, char *temporary) {
+    fclose(file);
+    unlink(temporary);
+    free(temporary);
+}
+
 /* Text in a cell of a table. */
 void experiment_cell(FILE *out, const char *text) {
     fputc(' ', out);
@@ -379,6 +385,8 @@ int experiment_write_report(experiment_lab *lab) {
     int status = print_charts(out, lab);
     for (size_t camera = 0; !status && camera < lab->spec.camera_count; camera++)
         status = print_view(out, lab, camera);
-    int finished = experiment_finish(lab, out, "report.md", temporary);
-    return status ? status : finished;
+    if (!status)
+        return experiment_finish(lab, out, "report.md", temporary);
+    experiment_discard(out, temporary);
+    return status;
 }

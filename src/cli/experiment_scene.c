@@ -186,6 +186,8 @@ int experiment_make_reference(experiment_lab *lab, size_t camera) {
             printf("%s, %s: reference made in %s: %s\n", spec->scenes[scene].name, spec->cameras[camera].name,
                    cli_seconds(took, cli_now() - start), path);
     }
+    if (!status && !quiet && cli_is_black(lab->reference))
+        cli_error("warning: %s, %s: the reference is black, so errors say nothing", spec->scenes[scene].name, spec->cameras[camera].name);
     fflush(stdout);
     free(path);
     return status;

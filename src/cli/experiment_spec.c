@@ -218,6 +218,10 @@ static int read_root(S *spec, json_t *root) {
     int status = experiment_set_all(spec, "", root, spec_sets, objects, spec);
     if (!status && spec->seconds > 0 && !json_object_get(root, "frames"))
         spec->frames = EXPERIMENT_FRAMES;
+    if (!status && spec->title) {
+        char *title = experiment_keep(spec, cli_format("%s", spec->title));
+        spec->title = cli_clean(title, strlen(title) + 1, title);
+    }
     status = status ? status : read_size(spec);
     status = status ? status : read_times(spec, json_object_get(root, "equal-time"));
     status = status ? status : read_frames(spec, "measured", json_object_get(root, "measured"), &spec->measured, &spec->measured_count);

@@ -118,9 +118,13 @@ static int open_for_rows(experiment_lab *lab, const char *path, long whole) {
     return ok ? CLI_OK : CLI_FAILURE;
 }
 
-static int put_aside(const experiment_lab *lab, const char *path) {
+/* replaced: another file is about to take its name, which it keeps until then, so that a kill in between loses nothing. */
+static int put_aside(const experiment_lab *lab, const char *path, bool replaced) {
     char *old = cli_format("%s/results.old.csv", lab->folder);
-    int status = rename(path, old) ? CLI_FAILURE : CLI_OK;
+    if (replaced)
+        unlink(old);
+    bool linked = replaced && !link(path, old); /* not every file system can */
+    int status = linked || !rename(path, old) ? CLI_OK : CLI_FAILURE;
     if (status)
         cli_error("%s: %s", path, strerror(errno));
     free(old);
@@ -133,7 +137,7 @@ int experiment_open_table(experiment_lab *lab) {
     int status = read_table(lab, path, &whole);
     if (!status && whole < 0) {
         cli_error("warning: %s is a table of another kind; it is kept as results.old.csv", path);
-        status = put_aside(lab, path);
+        status = put_aside(lab, path, false);
         whole = 0;
     }
     status = status ? status : open_for_rows(lab, path, whole);
@@ -193,10 +197,8 @@ int experiment_tidy_table(experiment_lab *lab) {
         return CLI_OK;
     char rows[64];
     cli_error("%s of results.csv came from other settings: kept in results.old.csv", cli_many(rows, others, "row"));
-    char *path = cli_format("%s/results.csv", lab->folder), *temporary;
-    int status = put_aside(lab, path);
-    FILE *file = status ? NULL : experiment_create(lab, "results.csv", &temporary);
-    free(path);
+    char *temporary;
+    FILE *file = experiment_create(lab, "results.csv", &temporary);
     if (!file)
         return CLI_FAILURE;
     fprintf(file, "%s\n", header);
@@ -205,5 +207,12 @@ int experiment_tidy_table(experiment_lab *lab) {
             for (int mode = 0; mode < EXPERIMENT_MODES; mode++)
                 if (lab->runs[r].rows[mode][frame - 1].done)
                     print_row(lab, file, &lab->runs[r], mode, frame);
+    char *path = cli_format("%s/results.csv", lab->folder);
+    int status = fflush(file) ? CLI_OK : put_aside(lab, path, true); /* what could not be written, finishing tells */
+    free(path);
+    if (status) {
+        experiment_discard(file, temporary);
+        return status;
+    }
     return experiment_finish(lab, file, "results.csv", temporary);
 }

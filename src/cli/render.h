@@ -58,6 +58,7 @@ void cli_print_view(const render_job *job);
 /* report.c */
 void cli_print_summary(const render_job *job);
 void cli_print_stats(const render_job *job);
+bool cli_is_black(const noc_image *image);
 void cli_warn_of_picture(const render_job *job); /* once it is written */
 noc_status cli_write_picture(render_job *job); /* with all of its metadata */
 

@@ -88,7 +88,7 @@ noc_status cli_write_picture(render_job *job) {
     return status;
 }
 
-static bool is_black(const noc_image *image) {
+bool cli_is_black(const noc_image *image) {
     size_t n = (size_t)image->width * (size_t)image->height * 3;
     for (size_t i = 0; i < n; i++)
         if (image->rgb[i] > 0)
@@ -101,7 +101,7 @@ void cli_warn_of_picture(const render_job *job) {
     const noc_render_params *p = &job->args->render;
     if (job->args->common.quiet || job->far_away || !job->scene_info.lights)
         return;
-    bool black = is_black(job->image);
+    bool black = cli_is_black(job->image);
     if (p->final_ray && !job->last.rays_shadow && black)
         cli_error("warning: the picture is black: the camera sees nothing that a lamp could light");
     else if (p->final_ray && !job->last.rays_shadow)

@@ -90,6 +90,14 @@ rm "$file" && mkdir "$file"
 run experiment one.json -o u --cache cold
 test $status = 0 && grep -q ': 2 rows, 2 of them' out && grep -q 'warning: the reference is not kept' err; result $? "a reference that cannot be kept"
 
+# A picture of nothing, a report that cannot be: told, and no half of it is left.
+sed 's/"view": "own"/"eye": [0, 0, 50], "target": [0, 0, 90]/' one.json >black.json
+run experiment black.json -o v --cache cache
+test $status = 0 && grep -q '^nocturne: warning: one, own: the reference is black' err; result $? "a reference that is black is told"
+mkdir -p x/1-one-own-alone-frames.svg
+expect "a plot that cannot be written" 1 '^nocturne: x/1-one-own-alone-frames.svg: Is a directory' experiment one.json -o x --cache cache
+test ! -e x/report.md && test -z "$(ls -A x | grep '^\.')"; result $? "leaves no half of a report"
+
 # Two at once in one cache; the second in one folder gives way.
 for i in 1 2 3; do "$program" experiment one.json -o "at-once-$i" --cache shared >/dev/null 2>"err$i" </dev/null & done
 wait
