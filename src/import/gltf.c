@@ -150,7 +150,7 @@ static noc_status add_primitive(gltf *g, const json_t *primitive, const gltf_fra
             status = noc_error(g->log, NOC_ERR_MEMORY, "%s: no memory for mesh %.80s", g->name, name);
     }
     noc_mesh mesh = { .vertex_count = count, .positions = xyz, .triangle_count = c.count / 3, .indices = c.v, .material = material, .name = name };
-    if (!status && (material < 0 || (c.count && noc_scene_add_mesh(g->scene, &mesh) < 0)))
+    if (!status && (material < 0 || (c.count && !import_triangles(g->scene, &mesh, g->issues))))
         status = NOC_ERR_UNSUPPORTED;
     free(c.v);
     free(index);

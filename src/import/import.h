@@ -28,6 +28,9 @@ typedef struct mesh_place {
     noc_status (*points)(void *ctx, double *xyz, size_t count);
 } mesh_place;
 
+/* noc_scene_add_mesh, with the triangles that it drops counted. false after reporting. */
+bool import_triangles(noc_scene *scene, const noc_mesh *mesh, geo_issues *issues);
+
 typedef struct noc_reader {
     const char *name;  /* "CityGML" */
     enum { NOC_READS_CITY, NOC_READS_MESH, NOC_READS_LAMPS } reads;

@@ -3,10 +3,14 @@
  * Units: metres; import/place.c says where the coordinates belong. OBJ does not say which axis is up; y is what most programs write, and
  * noc_import_params.obj_up says otherwise. MTL: Kd is the diffuse reflectance (linear), Ke the radiance in cd/m2, Ks with
  * illum 2 and above the reflectance of the glossy lobe at normal incidence, Ns its Blinn-Phong exponent n, turned into the
- * GGX lobe of the same width, alpha^2 = 2 / (n + 2) (Walter et al. 2007, eq. 37 ff.). Textures are not read. */
+ * GGX lobe of the same width, alpha^2 = 2 / (n + 2) (Walter et al. 2007, eq. 37 ff.). Textures are not read.
+ *
+ * One odd number makes Assimp refuse a file whole, so it sees a text that obj_offset.c, obj_faces.c and obj_library.c made plain. */
 #include "import/import.h"
 #include "import/obj_faces.h"
+#include "import/obj_library.h"
 #include "import/obj_offset.h"
+#include "import/polygons.h"
 #include "noc_config.h"
 #include "scene/scene.h"
 
@@ -15,9 +19,13 @@
 
 /* ---- probe ---- */
 
+#define BOM "\xef\xbb\xbf" /* some editors' mark of UTF-8 */
+
 static bool is_keyword(const char *line, size_t len) {
     static const char *const keywords[] = { "v", "vt", "vn", "vp", "f", "o", "g", "s", "l", "p", "usemtl", "mtllib", "usemap",
-                                            "maplib", "deg", "cstype", "bevel", "lod", "fo" };
+                                            "maplib", "deg", "cstype", "bevel", "lod", "fo", "curv", "curv2", "surf", "parm",
+                                            "trim", "hole", "scrv", "sp", "end", "con", "mg", "bmat", "step", "c_interp", "d_interp",
+                                            "ctech", "stech", "shadow_obj", "trace_obj" };
     size_t n = 0;
     while (n < len && line[n] != ' ' && line[n] != '\t' && line[n] != '\r')
         n++;
@@ -31,7 +39,7 @@ static bool is_keyword(const char *line, size_t len) {
 static bool probe(const char *head, size_t size) {
     size_t statements = 0;
     bool goes_on = false; /* a backslash at the end of the last line */
-    for (const char *p = head, *end = head + size; p < end;) {
+    for (const char *p = head + (size >= 3 && !memcmp(head, BOM, 3) ? 3 : 0), *end = head + size; p < end;) {
         const char *line = p, *stop = memchr(p, '\n', (size_t)(end - p));
         p = stop ? stop + 1 : end;
         size_t len = (size_t)((stop ? stop : end) - line);
@@ -61,9 +69,6 @@ static bool probe(const char *head, size_t size) {
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
-#include <sys/stat.h>
-
-#define MAX_MTL ((size_t)256 << 20)
 
 /* ---- files as Assimp sees them: the OBJ from our stream, MTLs from beside it ---- */
 
@@ -73,8 +78,9 @@ typedef struct library {
     const char *folder;   /* of the OBJ, with a slash at its end, or "" */
     char *main_name;      /* what the OBJ is called to Assimp: its content decides, so always .obj */
     char *data;
-    size_t size;
+    size_t size, faces;
     char *missing;        /* first library that could not be opened */
+    geo_issues *issues;
 } library;
 
 typedef struct open_file {
@@ -106,18 +112,6 @@ static enum aiReturn file_seek(struct aiFile *f, size_t offset, enum aiOrigin or
     return aiReturn_SUCCESS;
 }
 
-static char *load_plain(const char *path, size_t *size) {
-    struct stat st;
-    FILE *f = !stat(path, &st) && S_ISREG(st.st_mode) && (size_t)st.st_size <= MAX_MTL ? fopen(path, "rb") : NULL;
-    if (!f)
-        return NULL;
-    char *data = noc_alloc((size_t)st.st_size + 1);
-    *size = fread(data, 1, (size_t)st.st_size, f);
-    fclose(f);
-    data[*size] = 0;
-    return data;
-}
-
 static struct aiFile *library_open(struct aiFileIO *io, const char *name, const char *mode) {
     library *lib = (library *)io->UserData;
     open_file o = { 0 };
@@ -125,14 +119,10 @@ static struct aiFile *library_open(struct aiFileIO *io, const char *name, const 
         o = (open_file){ .data = lib->data, .size = lib->size };
     } else {
         const char *relative = !strncmp(name, ROOT, strlen(ROOT)) ? name + strlen(ROOT) : name;
-        while (*relative == '.' && relative[1] == '/')
-            relative += 2;
-        char *path = noc_format("%s%s", *relative == '/' ? "" : lib->folder, relative);
-        o.data = load_plain(path, &o.size);
+        o.data = obj_open_library(lib->folder, relative, &o.size, lib->issues);
         o.owned = true;
         if (!o.data && !lib->missing)
-            lib->missing = noc_strdup(path);
-        free(path);
+            lib->missing = noc_format("%s%s", *relative == '/' ? "" : lib->folder, relative);
         if (!o.data)
             return NULL;
     }
@@ -222,34 +212,48 @@ typedef struct mesh_target {
     bool z_up;
 } mesh_target;
 
+/* Puts the polygons' triangles behind the others; false where there is no memory. */
+static bool join_polygons(cut_mesh *cut, double **xyz, uint32_t **indices, size_t *vertices) {
+    size_t more = cut->extra.xyz.len / 3, corners = cut->extra.indices.len;
+    double *x = more ? realloc(*xyz, (*vertices + more) * 3 * sizeof(*x)) : NULL;
+    *xyz = x ? x : *xyz;
+    uint32_t *v = x ? realloc(*indices, (cut->triangle_count * 3 + corners) * sizeof(*v)) : NULL;
+    *indices = v ? v : *indices;
+    if (!more || !v)
+        return !more;
+    memcpy(x + 3 * *vertices, cut->extra.xyz.data, 3 * more * sizeof(*x));
+    for (size_t i = 0; i < corners; i++)
+        v[3 * cut->triangle_count + i] = (uint32_t)*vertices + cut->extra.indices.data[i];
+    *vertices += more;
+    cut->triangle_count += corners / 3;
+    return true;
+}
+
 static noc_status add_mesh(const mesh_target *to, const struct aiMesh *m, int material) {
     noc_scene *scene = to->scene;
-    double *xyz = noc_alloc_large((size_t)m->mNumVertices * 3, sizeof(*xyz));
-    uint32_t *indices = noc_alloc_large((size_t)m->mNumFaces * 3, sizeof(*indices));
-    noc_status status = NOC_OK;
-    if (!xyz || !indices) {
-        status = noc_error(scene->log, NOC_ERR_MEMORY, "mesh %s: no memory for %u vertices", m->mName.data, m->mNumVertices);
-    } else {
-        size_t n = 0;
-        for (size_t i = 0; i < m->mNumVertices; i++) {
-            const struct aiVector3D *v = &m->mVertices[i];
-            double x = v->x + to->offset[0], y = v->y + to->offset[1], z = v->z + to->offset[2];
-            xyz[3 * i] = x;
-            xyz[3 * i + 1] = to->z_up ? y : 0 - z; /* no -0 */
-            xyz[3 * i + 2] = to->z_up ? z : y;
-        }
-        status = to->place->points(to->place->ctx, xyz, m->mNumVertices);
-        for (size_t i = 0; i < m->mNumFaces; i++)
-            if (m->mFaces[i].mNumIndices == 3) {
-                for (int k = 0; k < 3; k++)
-                    indices[3 * n + (size_t)k] = m->mFaces[i].mIndices[k];
-                n++;
-            }
-        noc_mesh mesh = { .vertex_count = m->mNumVertices, .positions = xyz, .triangle_count = n, .indices = indices,
-                          .material = material, .name = m->mName.length ? m->mName.data : NULL };
-        if (!status && n && noc_scene_add_mesh(scene, &mesh) < 0)
-            status = NOC_ERR_UNSUPPORTED;
+    size_t vertices = m->mNumVertices;
+    double *xyz = noc_alloc_large(vertices * 3, sizeof(*xyz));
+    uint32_t *indices = noc_alloc_large((size_t)m->mNumFaces * 6, sizeof(*indices));
+    const char *name = m->mName.length ? m->mName.data : NULL;
+    cut_mesh cut = { .xyz = xyz, .indices = indices, .issues = to->issues, .name = name ? name : "unnamed" };
+    bool memory = xyz && indices;
+    for (size_t i = 0; i < vertices && memory; i++) {
+        const struct aiVector3D *v = &m->mVertices[i];
+        double x = v->x + to->offset[0], y = v->y + to->offset[1], z = v->z + to->offset[2];
+        xyz[3 * i] = x;
+        xyz[3 * i + 1] = to->z_up ? y : 0 - z; /* no -0 */
+        xyz[3 * i + 2] = to->z_up ? z : y;
     }
+    for (size_t i = 0; i < m->mNumFaces && memory; i++)
+        cut_face(&cut, m->mFaces[i].mIndices, m->mFaces[i].mNumIndices);
+    memory = memory && join_polygons(&cut, &xyz, &indices, &vertices);
+    noc_status status = memory ? to->place->points(to->place->ctx, xyz, vertices)
+                               : noc_error(scene->log, NOC_ERR_MEMORY, "mesh %s: no memory for %zu vertices", cut.name, vertices);
+    noc_mesh mesh = { .vertex_count = vertices, .positions = xyz, .triangle_count = cut.triangle_count, .indices = indices,
+                      .material = material, .name = name };
+    if (!status && mesh.triangle_count && !import_triangles(scene, &mesh, to->issues))
+        status = NOC_ERR_UNSUPPORTED;
+    geo_triangles_free(&cut.extra);
     free(xyz);
     free(indices);
     return status;
@@ -284,7 +288,7 @@ static noc_status read_obj(const char *path, library *lib, const mesh_target *to
                                aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
                                    aiComponent_TEXCOORDS | aiComponent_TEXTURES);
     const struct aiScene *from = aiImportFileExWithProperties(
-        lib->main_name, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices,
+        lib->main_name, aiProcess_SortByPType | aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices,
         &io, settings);
     noc_status status;
     if (!from) {
@@ -300,19 +304,31 @@ static noc_status read_obj(const char *path, library *lib, const mesh_target *to
     return status;
 }
 
+static noc_status plain_text(library *lib, double offset[3], const char *name, noc_log *log) {
+    obj_numbers bad = { 0 };
+    if (lib->size >= 3 && !memcmp(lib->data, BOM, 3))
+        memset(lib->data, ' ', 3);
+    if (!memchr(lib->data, '\n', lib->size)) /* lines that end as they did on old Macs */
+        for (size_t i = 0; i < lib->size; i++)
+            lib->data[i] = lib->data[i] == '\r' ? '\n' : lib->data[i];
+    noc_status status = obj_plain_vertices(&lib->data, &lib->size, offset, &bad, lib->issues, name, log);
+    lib->faces = status ? 0 : obj_plain_faces(lib->data, lib->size, &bad, lib->issues);
+    array_free(&bad);
+    return status;
+}
+
 static noc_status read_mesh(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,
                             const mesh_place *place, geo_issues *issues, const char **format) {
     *format = "OBJ";
-    library lib = { 0 };
+    library lib = { .issues = issues };
     double offset[3];
     noc_status status = noc_stream_read_all(stream, scene->log, &lib.data, &lib.size);
     if (!status)
-        status = obj_take_offset(&lib.data, &lib.size, offset, noc_stream_name(stream), scene->log);
-    if (status) {
+        status = plain_text(&lib, offset, noc_stream_name(stream), scene->log);
+    if (status || !lib.faces) { /* Assimp refuses a file without faces */
         free(lib.data);
         return status;
     }
-    obj_drop_bad_faces(lib.data, lib.size, issues);
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strchr(base, '.');
     char *folder = slash ? noc_format("%.*s", (int)(base - path), path) : noc_strdup("");
     lib.folder = folder;

@@ -183,8 +183,8 @@ static void test_bad_faces(void **state) {
                                "f 1/1/1 2/1/1 3/1/1\n"
                                "f 1//1 2//1 3//1\n"
                                "f 1/1 2/1 3/1 # a remark\n"
-                               "f 1/2 2/1 3/1\n"                     /* line 15: no second texture place */
-                               "f 1//1 2//1 3//9\n"                  /* line 16: no ninth normal */
+                               "f 1/2 2/1 3/1\n"                     /* no second texture place, but it is not used */
+                               "f 1//1 2//1 3//9\n"                  /* nor is a ninth normal */
                                "f 0 1 2\n"                           /* line 17 */
                                "f 1 2 99999999999999999999999\n"     /* line 18 */
                                "f 1 2 \\\n 77\n"                    /* lines 19 and 20 */
@@ -195,9 +195,129 @@ static void test_bad_faces(void **state) {
     load(&l, "faces.obj", NOC_OBJ_UP_Y);
     assert_int_equal(l.status, NOC_OK);
     assert_int_equal(l.errors + l.warnings, 0);
-    assert_int_equal(l.scene->indices.len / 3, 8);
-    assert_true(has_issue(&l, "face with an index that is not there", 7, "line 9, line 15, line 16, line 17, line 18"));
+    assert_int_equal(l.scene->indices.len / 3, 10);
+    assert_true(has_issue(&l, "face with an index that is not there", 5, "line 9, line 17, line 18, line 19, line 23"));
     unload(&l);
+}
+
+static void load_text(loaded *l, const char *text) {
+    write_file("bad.obj", text, strlen(text));
+    load(l, "bad.obj", NOC_OBJ_UP_Z);
+}
+
+static double total_area(const loaded *l) {
+    double sum = 0;
+    for (size_t i = 0; i < l->scene->indices.len; i += 3) {
+        double v[3][3], n[3];
+        for (size_t c = 0; c < 3; c++)
+            for (size_t k = 0; k < 3; k++)
+                v[c][k] = (double)l->scene->positions.data[3 * (size_t)l->scene->indices.data[i + c] + k] - (c ? v[0][k] : 0);
+        for (int k = 0; k < 3; k++)
+            n[k] = v[1][(k + 1) % 3] * v[2][(k + 2) % 3] - v[1][(k + 2) % 3] * v[2][(k + 1) % 3];
+        sum += sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / 2;
+    }
+    return sum;
+}
+
+/* Vertices in every spelling; one that is none costs its faces, and moves no other's number. */
+static void test_vertices(void **state) {
+    static const struct { const char *text; double area; const char *bad; } texts[] = {
+        { "\xef\xbb\xbfv 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n", 2, NULL },
+        { "  v 0 0 0\n\tv +2 +0 0\n v .0 2. 0\n  f 1 2 3\n", 2, NULL },
+        { "v 0 0 0 1\nv 4 0 0 2\nv 0 2 0 1.0\nf 1 2 3\n", 2, NULL },
+        { "v 0 0 0 .5 .5 .5\nv 2 0 0 1 0\nv 0 2 0 # here\nf 1 2 3\n", 2, NULL },
+        { "v 0 \\\n 0 0\nv 2 0 \\\r\n 0\r\nv 0 2 0\r\nf 1 2 \\\r\n 3\r\n", 2, NULL },
+        { "v 0 0 0\nv 9 9\nv 2 0 0\nv 0 2 0\nf 1 2 3\nf 1 3 4\n", 2, "line 2" },
+        { "v 0 0 0\nv a b c\nv 2 0 0\nv 0 2 0\nf 1 2 3\nf 1 3 4\n", 2, "line 2" },
+        { "v 0 0 0\nv 1 1 1 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\nf 1 3 4\n", 2, "line 2" },
+        { "v 0 0 0\nv 1e400 \\\n 0 0\nv 2 0 0\nv nan 0 0\nv 0 2 0\nf 1 2 3\nf 1 3 5\n", 2, "line 2, line 5" },
+        { "v nan 0 0\nv 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\nf 2 3 4\nf -3 -4 -2\n", 2, "line 1" },
+        { "v 1e300 -inf 0\rv 0 0 0\rv 2 0 0\rv 0 2 0\rf 1 2 3\rf 2 3 4\r", 2, "line 1" },
+        { "v 0 0 0\nv 2 0 0\nv 0 2 0\nvt\nvt a\nvn 1\nvn nan nan nan\nf 1/1/1 2/2/2 3/3/3\n", 2, NULL },
+        { "v 0 0 0\nv 2e-5 0 0\nv 0 2e-5 0\nv 2e-5 +2e-5 0\nf 1 2 4 3\n", 4e-10, NULL },
+    };
+    for (size_t i = 0; i < NOC_COUNT(texts); i++) {
+        loaded l;
+        load_text(&l, texts[i].text);
+        assert_string_equal(l.error, "");
+        assert_int_equal(l.status, NOC_OK);
+        assert_float_equal(total_area(&l), texts[i].area, 1e-5 * texts[i].area);
+        if (texts[i].bad) /* told, and so are the faces that would need it */
+            assert_true(has_issue(&l, "vertex that is not three numbers", strchr(texts[i].bad, ',') ? 2 : 1, texts[i].bad));
+        else
+            assert_int_equal(geo_issues_count(l.issues), 0);
+        unload(&l);
+    }
+}
+
+/* The area is what is inside, whatever the shape, the size and the number of corners. */
+static void test_polygons(void **state) {
+    static const char *const shapes[] = {
+        "v 0 0 0\nv %g 0 0\nv %g %g 0\nv 0 %g 0\nf 1 2 3 4\n",
+        "v 0 0 0\nv %g 0 0\nv %g %g 0\nv 0 %g 0\nf 2 3 4 1\n",
+    };
+    loaded l;
+    for (size_t i = 0; i < NOC_COUNT(shapes); i++)
+        for (double s = 1e-2; s < 2e4; s *= 1e3) {
+            char text[400];
+            snprintf(text, sizeof(text), shapes[i], s, .25 * s, .25 * s, s); /* an arrow: the third corner is pushed in */
+            load_text(&l, text);
+            assert_int_equal(l.scene->indices.len, 6);
+            assert_float_equal(total_area(&l) / (s * s), .25, 1e-5); /* two triangles of 1 by 1/4 */
+            unload(&l);
+        }
+    load_text(&l, "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 1 2 3 4 5\n");
+    assert_float_equal(total_area(&l), 16 - 6, 1e-4); /* a square less a wedge 4 wide and 3 deep */
+    unload(&l);
+    load_text(&l, "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 2 0\nf 1 2 3 4\n");
+    assert_float_equal(total_area(&l), 2, 1e-4); /* a bow tie: two triangles that meet where its edges cross */
+    unload(&l);
+    enum { CORNERS = 100000 };
+    char *text = malloc(64 * (size_t)CORNERS), *to = text;
+    assert_non_null(text);
+    for (int i = 0; i < CORNERS; i++)
+        to += sprintf(to, "v %.6f %.6f 7\n", 1000 * cos(2 * M_PI * i / CORNERS), 1000 * sin(2 * M_PI * i / CORNERS));
+    to += sprintf(to, "f");
+    for (int i = 0; i < CORNERS; i++)
+        to += sprintf(to, " %d", i + 1);
+    load_text(&l, text);
+    assert_float_equal(total_area(&l) / (M_PI * 1e6), 1, 1e-4);
+    unload(&l);
+    free(text);
+    load_text(&l, "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1\nf 1 2\nf\nf 1 1 1\nf 1 2 2\nf 1 2 3\n");
+    assert_int_equal(l.scene->indices.len, 3);
+    assert_true(has_issue(&l, "face of fewer than three vertices", 2, "line 4, line 5"));
+    unload(&l);
+    load_text(&l, "v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\nf 1 2 9\n"); /* nothing that can be drawn is no error of the file's */
+    assert_int_equal(l.status, NOC_OK);
+    assert_int_equal(l.errors + (int)l.scene->indices.len, 0);
+    unload(&l);
+}
+
+/* Libraries under names as they are found in the wild, and with lines that are none. */
+static void test_libraries(void **state) {
+    static const char *const names[] = { "my test.mtl", "my test.mtl  \r", "C:\\work\\my test.mtl", "sub\\my test.mtl", "/nowhere/my test.mtl", "test.mtl other.mtl" };
+    static const char good[] = "newmtl a\nKd 0.1 0.2 0.3\nKe 5 6 7\nnewmtl b\nKd 1 1 1\n";
+    static const char odd[] = "newmtl a\nKd nan inf -3\n Kd 0.1 0.2 0.3\nKe 1e400 nan 1\nKe spectral x.rfl\nNs\nd -halo\nKe 5 6 7\nmap_Kd wall.png\n\xff\xfe\n";
+    loaded l;
+    write_file("my test.mtl", good, strlen(good));
+    write_file("other.mtl", "newmtl c\nKd 1 0 0\n", 18);
+    for (size_t i = 0; i <= NOC_COUNT(names); i++) {
+        char text[300];
+        write_file("test.mtl", i < NOC_COUNT(names) ? good : odd, strlen(i < NOC_COUNT(names) ? good : odd));
+        snprintf(text, sizeof(text), "mtllib %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\no it\nusemtl a\nf 1 2 3\n", i < NOC_COUNT(names) ? names[i] : "test.mtl");
+        load_text(&l, text);
+        assert_string_equal(l.error, "");
+        assert_string_equal(l.warning, "");
+        const noc_material *m = material_of(&l, "it");
+        assert_float_equal(m->albedo[1], .2, 1e-6);
+        assert_float_equal(m->emission[2], 7, 1e-6);
+        if (i == NOC_COUNT(names)) {
+            assert_true(has_issue(&l, "material statement with a number that is none", 5, "test.mtl line 2, test.mtl line 4"));
+            assert_true(has_issue(&l, "textures are not read, plain material", 1, "test.mtl line 9"));
+        }
+        unload(&l);
+    }
 }
 
 static void test_missing_library(void **state) {
@@ -213,9 +333,10 @@ static void test_missing_library(void **state) {
 }
 
 static void test_probe(void **state) {
-    static const char *const yes[] = { "v 1 2 3\n", "# x\n\nmtllib a.mtl\no b\nv 1", "\r\ng roof\r\nusemtl x\r\n", "v 1 2 \\\n 3\nf 1 2 \\\r\n 3\n" };
+    static const char *const yes[] = { "v 1 2 3\n", "# x\n\nmtllib a.mtl\no b\nv 1", "\r\ng roof\r\nusemtl x\r\n", "v 1 2 \\\n 3\nf 1 2 \\\r\n 3\n",
+                                       "\xef\xbb\xbfv 1 2 3\n", "v 1 2 3\ncstype bezier\ncurv 0 1 1 2\nend\n" };
     static const char *const no[] = { "", "<?xml version='1.0'?>", "{\"a\": 1}", "vertex 1 2 3\n", "lon,lat,lamp\n1,2,3\n",
-                                      "ply\nformat ascii 1.0\n", "# only a comment\n" };
+                                      "ply\nformat ascii 1.0\n", "# only a comment\n", "\xef\xbb\xbf{}" };
     for (size_t i = 0; i < NOC_COUNT(yes); i++)
         assert_true(noc_reader_mesh.probe(yes[i], strlen(yes[i])));
     for (size_t i = 0; i < NOC_COUNT(no); i++)
@@ -264,7 +385,7 @@ static int set_up(void **state) {
 }
 
 static int tear_down(void **state) {
-    static const char *const files[] = { "test.mtl", "named.anything", "missing.obj", "bad.obj", "map.obj", "faces.obj" };
+    static const char *const files[] = { "test.mtl", "named.anything", "missing.obj", "bad.obj", "map.obj", "faces.obj", "my test.mtl", "other.mtl" };
     for (size_t i = 0; i < NOC_COUNT(files); i++) {
         char path[300];
         snprintf(path, sizeof(path), "%s/%s", folder, files[i]);
@@ -283,6 +404,9 @@ int main(void) {
         cmocka_unit_test(test_map_coordinates),
         cmocka_unit_test(test_missing_library),
         cmocka_unit_test(test_bad_faces),
+        cmocka_unit_test(test_vertices),
+        cmocka_unit_test(test_polygons),
+        cmocka_unit_test(test_libraries),
         cmocka_unit_test(test_probe),
         cmocka_unit_test(test_broken),
     };

@@ -1,0 +1,120 @@
+#include "import/obj_library.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <sys/stat.h>
+
+#define MOST_BYTES ((size_t)256 << 20)
+
+static char *load(const char *folder, const char *name, size_t *size) {
+    char *path = noc_format("%s%s", *name == '/' ? "" : folder, name);
+    struct stat st;
+    bool fits = !stat(path, &st) && S_ISREG(st.st_mode) && (size_t)st.st_size <= MOST_BYTES;
+    FILE *f = fits ? fopen(path, "rb") : NULL;
+    free(path);
+    char *data = f ? noc_alloc_large((size_t)st.st_size + 1, 1) : NULL;
+    if (data) {
+        *size = fread(data, 1, (size_t)st.st_size, f);
+        data[*size] = 0;
+    }
+    if (f)
+        fclose(f);
+    return data;
+}
+
+/* Under the name itself, with its slashes turned, and as the file that its last part names. */
+static char *find(const char *folder, const char *name, size_t *size) {
+    char *data = load(folder, name, size);
+    if (data)
+        return data;
+    char *turned = noc_strdup(name);
+    for (char *p = turned; *p; p++)
+        *p = *p == '\\' ? '/' : *p;
+    const char *last = strrchr(turned, '/');
+    data = load(folder, turned, size);
+    if (!data && last)
+        data = load(folder, last + 1, size);
+    free(turned);
+    return data;
+}
+
+/* Each blank-separated name that can be opened, one text after the other; NULL if one cannot. */
+static char *find_all(const char *folder, char *names, size_t *size) {
+    char *all = NULL, *rest = names, *name;
+    *size = 0;
+    while ((name = strtok_r(rest, " \t", &rest))) {
+        size_t more;
+        char *data = find(folder, name, &more), *longer = data ? realloc(all, *size + more + 2) : NULL;
+        if (!longer) {
+            free(data);
+            free(all);
+            return NULL;
+        }
+        all = longer;
+        memcpy(all + *size, data, more);
+        free(data);
+        *size += more;
+        all[(*size)++] = '\n';
+        all[*size] = 0;
+    }
+    return all;
+}
+
+/* How many numbers stand behind a keyword that Assimp reads; 0: it reads something else, -1: it reads none such. */
+static int numbers_of(const char *word, size_t n) {
+    static const struct { const char *word; int numbers; } known[] = {
+        { "newmtl", 0 }, { "Ka", 3 }, { "Kd", 3 }, { "Ks", 3 }, { "Ke", 3 }, { "Tf", 3 }, { "Ns", 1 }, { "Ni", 1 }, { "d", 1 }, { "Tr", 1 }, { "illum", 1 },
+    };
+    for (size_t i = 0; i < NOC_COUNT(known); i++)
+        if (strlen(known[i].word) == n && !memcmp(known[i].word, word, n))
+            return known[i].numbers;
+    return -1;
+}
+
+static bool has_numbers(const char *p, const char *end, int count) {
+    double x;
+    for (int i = 0; i < count; i++)
+        if (!(p = noc_scan_double(p, end, &x)) || !isfinite(x) || fabs(x) > 1e30)
+            return false;
+    return true;
+}
+
+static void plain_statements(char *data, size_t size, const char *name, geo_issues *issues) {
+    size_t line = 1;
+    for (char *p = data, *stop = data + size, *end; p < stop; p = end + (end < stop), line++) {
+        char *newline = memchr(p, '\n', (size_t)(stop - p)), *word = p, *behind, id[200];
+        end = newline ? newline : stop;
+        while (word < end && (*word == ' ' || *word == '\t'))
+            word++;
+        for (behind = word; behind < end && *behind != ' ' && *behind != '\t' && *behind != '\r';)
+            behind++;
+        size_t n = (size_t)(behind - word);
+        int numbers = numbers_of(word, n);
+        bool texture = (n > 4 && !memcmp(word, "map_", 4)) || (n == 4 && !memcmp(word, "bump", 4));
+        if (!n || *word == '#' || (numbers >= 0 && has_numbers(behind, end, numbers)))
+            continue;
+        snprintf(id, sizeof(id), "%.150s line %zu", name, line);
+        if (texture)
+            geo_issue(issues, true, "textures are not read, plain material", id);
+        else if (numbers > 0)
+            geo_issue(issues, false, "material statement with a number that is none", id);
+        memset(p, ' ', (size_t)(end - p));
+    }
+}
+
+char *obj_open_library(const char *folder, const char *name, size_t *size, geo_issues *issues) {
+    char *trimmed = noc_strdup(name);
+    for (size_t n = strlen(trimmed); n && strchr(" \t\r", trimmed[n - 1]); n--)
+        trimmed[n - 1] = 0;
+    const char *begin = trimmed + strspn(trimmed, " \t\"");
+    char *data = find(folder, begin, size);
+    if (!data && strpbrk(begin, " \t")) {
+        char *names = noc_strdup(begin);
+        data = find_all(folder, names, size);
+        free(names);
+    }
+    if (data)
+        plain_statements(data, *size, begin, issues);
+    free(trimmed);
+    return data;
+}
