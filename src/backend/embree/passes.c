@@ -114,6 +114,14 @@ static void candidates(stage_run *run, worker *w, int bx, int by, noc_around *ar
     b->visible[run->stage->target][at] = 0;
 }
 
+/* Where the tail of a tile's list starts: anywhere, and from frame to frame on along the golden ratio's sequence, so that the
+ * mean of some frames has met the lights as evenly as one frame with so many draws. */
+static float tail_start(const stage_run *run, tile t) {
+    const noc_frame *f = run->ctx.frame;
+    u32 key = rng_key(f->params->seed, (uint32_t)(t.y0 * run->s->b.blocks_x + t.x0), 0);
+    return unit_real(rng_bits(key, DIM_LIST) + f->index * 2654435769u);
+}
+
 /* All candidates of a tile: from its list, where that is asked for, else each block's own. */
 static void tile_candidates(stage_run *run, worker *w, tile t) {
     const noc_frame *f = run->ctx.frame;
@@ -134,8 +142,7 @@ static void tile_candidates(stage_run *run, worker *w, tile t) {
             g[n] = &b->g[f->gbuffer][block_at(b, bx, by)];
             lanes[n] = lanes_with_surface(g[n]);
         }
-    u32 key = rng_key(f->params->seed, (uint32_t)(t.y0 * b->blocks_x + t.x0), f->index);
-    run->k->list_build(&run->ctx, g, lanes, n, rng(key, DIM_LIST), &w->lists, &w->lists.list);
+    run->k->list_build(&run->ctx, g, lanes, n, tail_start(run, t), &w->lists, &w->lists.list);
     if (noc_embree_shares_rays(f->params)) {
         noc_embree_share_candidates(run, w, t, g, lanes);
         return;
