@@ -188,7 +188,7 @@ void cli_print_summary(const render_job *job) {
         printf(" (%s placed by a rule, not found in data)", cli_count(c, scene->lights_inferred));
     printf("%s%s\n", scene->crs && *scene->crs ? ", " : "", scene->crs ? scene->crs : "");
     print_issues(job->report);
-    printf("  camera    eye %.2f,%.2f,%.2f, target %.2f,%.2f,%.2f, fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
+    printf("  camera    eye %.2f,%.2f,%.2f target %.2f,%.2f,%.2f fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
            job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2], job->camera.fov_deg);
     printf("  time      %s: loading %s, ", cli_seconds(a, cli_now() - job->started), cli_seconds(b, job->loaded - job->started));
     printf("ray tracing structure %s, ", cli_seconds(a, job->last.build_seconds));

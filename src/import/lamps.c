@@ -151,10 +151,10 @@ noc_status finish_city(importer *im) {
     if (im->cancelled)
         return NOC_ERR_CANCELLED;
     if (outside && outside == im->lamps.len)
-        noc_warn(im->log, "all %zu lamps lie outside the city, the nearest %.1f km away: is one of the CRSs wrong?", outside,
-                 nearest / 1000);
+        noc_warn(im->log, "all %zu lamp%s outside the city, the nearest %.1f km away: is one of the CRSs wrong?", outside,
+                 outside == 1 ? " lies" : "s lie", nearest / 1000);
     else if (outside)
-        noc_info(im->log, "%zu of %zu lamps lie outside the city and are left out", outside, im->lamps.len);
+        noc_info(im->log, "outside the city, and left out: %zu of %zu lamps", outside, im->lamps.len);
     bool has_streets = im->buildings > 0 || im->has_roads;
     if (shines(scene))
         return NOC_OK;
