@@ -65,7 +65,7 @@ static void test_lamps(void **state) {
     assert_int_equal(r.status, NOC_OK);
     assert_int_equal(r.info.lights, 0);
     assert_int_equal(r.warnings, 1);
-    assert_non_null(strstr(r.last_warning, "all 1 lamps lie outside"));
+    assert_non_null(strstr(r.last_warning, "all 1 lamp lies outside"));
     finish(&r);
     /* a piece of street and lamps around it: there is a ground under them, and it does not cover the street */
     LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:25832\nobject 2 r -1\npolygon 9 678000 5404000 370 678030 5404000 370 "
