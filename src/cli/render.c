@@ -111,7 +111,9 @@ static void warn_of_idle(const render_args *args) {
     char why[160], value[8];
     for (size_t i = 0; i < args->common.given_count && !args->common.quiet; i++) {
         const noc_option *o = args->common.given[i];
-        if (!noc_option_idle(o, noc_render_options(), &args->render, why, sizeof(why)))
+        bool display = !strcmp(o->group, "Display");
+        if (!noc_option_idle(o, display ? noc_display_options() : noc_render_options(),
+                             display ? (const void *)&args->display : &args->render, why, sizeof(why)))
             continue;
         bool off = o->kind == NOC_OPTION_BOOL && (noc_option_get(o, &args->render, value, sizeof(value)), *value == 'f');
         cli_error("warning: --%s%s has no effect: %s", off ? "no-" : "", o->name, why);
