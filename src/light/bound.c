@@ -53,6 +53,13 @@ noc_light_bound noc_bound_light(const noc_light_record *l) {
     return b;
 }
 
+uint64_t noc_side(const float n[3]) {
+    int axis = 0;
+    for (int k = 1; k < 3; k++)
+        axis = fabsf(n[k]) > fabsf(n[axis]) ? k : axis;
+    return n[axis] == 0 ? 6 : (uint64_t)(2 * axis + (n[axis] < 0));
+}
+
 uint64_t noc_spread_bits(uint64_t x) {
     x &= 0xfffff;
     x = (x | x << 32) & 0x1f00000000ffffull;

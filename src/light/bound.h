@@ -24,6 +24,9 @@ float noc_light_intensity(const noc_light_record *light);
 /* Luminous flux of a light over all directions that it emits to, lm. */
 double noc_light_flux(const noc_light_record *light);
 
+/* Which of the six sides of a cube a direction goes through; 6: none. */
+uint64_t noc_side(const float n[3]);
+
 /* 20 bits to every third: three of them make a Morton code. */
 uint64_t noc_spread_bits(uint64_t x);
 

@@ -43,20 +43,12 @@ static void measure(build *b, size_t n) {
     }
 }
 
-/* Which of the six sides of a cube a direction goes through; 6: none. */
-static uint64_t side_of(const float n[3]) {
-    int axis = 0;
-    for (int k = 1; k < 3; k++)
-        axis = fabsf(n[k]) > fabsf(n[axis]) ? k : axis;
-    return n[axis] == 0 ? 6 : (uint64_t)(2 * axis + (n[axis] < 0));
-}
-
-/* Size class (a factor of 2 in intensity), side where lights are to share volumes or boxes, Morton code. */
+/* Size class (a factor of 2 in intensity), side where lights are to share volumes, Morton code. */
 static void key_chunk(void *ctx, size_t item, int worker) {
     build *b = ctx;
     (void)worker;
     float scale = b->size > 0 ? 1048575.f / b->size : 0;
-    bool sides = b->params->cluster > 1 || b->params->probe;
+    bool sides = b->params->cluster > 1;
     size_t end = NOC_MIN((item + 1) * CHUNK, (size_t)b->v->shining);
     for (size_t i = item * CHUNK; i < end; i++) {
         const noc_light_bound *a = &b->bounds[b->keys[i].id];
@@ -64,7 +56,7 @@ static void key_chunk(void *ctx, size_t item, int worker) {
         for (int k = 0; k < 3; k++)
             m |= noc_spread_bits((uint64_t)((a->p[k] - b->lo[k]) * scale)) << k;
         if (sides)
-            m = m >> 3 | side_of(a->n) << 57;
+            m = m >> 3 | noc_side(a->n) << 57;
         b->keys[i].key = (m | smaller << 60) & ~(sides ? 0xffffull : 0xffffffull); /* enough, and faster to sort */
     }
 }

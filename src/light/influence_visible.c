@@ -6,14 +6,16 @@
 #include "light/influence_parts.h"
 
 #include "core/random.h"
+#include "light/bound.h"
 
 #include <math.h>
 
-/* Lights that share a box, at most, where they do not share a volume; rays a box; volumes that a thread takes at once. */
-enum { GROUP = 16, RAYS = 64, CHUNK = 1024 };
+/* Volumes that share a box, at most; rays a box; volumes that a thread takes at once. */
+enum { GROUP = 16, RAYS = 32, CHUNK = 1024 };
 
-/* Boxes are probed for wider volumes too: points that find no handful ask for them (NOC_INFLUENCE_STEPS). */
-static const float wider = 4;
+/* Boxes are probed for wider volumes too, as points ask for that find too few. Volumes are not cut nearer to their lights than
+ * that share of S_r: what is missed there is the strongest light (bench/bench_boxes). */
+static const float wider = 4, uncut = 0.25f;
 
 /* A direction of a unit sphere around z: its height, 0 to 1, and its azimuth. */
 typedef struct lattice_point {
@@ -24,7 +26,9 @@ typedef struct probing {
     const noc_scene *scene;
     const noc_influence_params *params;
     noc_influence *v;
-    uint32_t *boxes_before; /* a chunk of volumes: boxes of the chunks before it */
+    float lo[3], cells;     /* of Morton codes: corner, cells a metre */
+    noc_light_key *order;   /* volumes that lie close together follow each other; then room for as many */
+    uint32_t *boxes_before; /* a chunk of the order: boxes of the chunks before it */
     lattice_point lattice[RAYS];
 } probing;
 
@@ -89,28 +93,65 @@ static void facing(const noc_influence_volume *a, float n[3]) {
         n[k] = length > 0 ? a->m[k] / length : 0;
 }
 
-static uint32_t lights_before(const noc_influence *v, uint32_t volume) { return v->first ? v->first[volume] : volume; }
+/* Side of a cube that they face, Morton code of 15 bits an axis. The volumes' own order has their sizes first, and neighbours
+ * of one facade do not follow each other in it. */
+static void key_chunk(void *ctx, size_t chunk, int worker) {
+    probing *b = ctx;
+    size_t end = NOC_MIN((chunk + 1) * CHUNK, (size_t)b->v->volume_count);
+    (void)worker;
+    for (size_t i = chunk * CHUNK; i < end; i++) {
+        const noc_influence_volume *a = &b->v->volumes[i];
+        uint64_t m = noc_side(a->m) << 45;
+        for (int k = 0; k < 3; k++)
+            m |= noc_spread_bits((uint64_t)NOC_CLAMP((a->c[k] - b->lo[k]) * b->cells, 0, 32767)) << k;
+        b->order[i] = (noc_light_key){ m, (uint32_t)i };
+    }
+}
 
-/* The end of the group that starts with a volume: those that follow it, are about as large, shine the same way, and lie within
- * half of what they reach; so it is for lights that share a volume. */
-static uint32_t group_end(const noc_influence *v, uint32_t begin, uint32_t end) {
-    const noc_influence_volume *first = &v->volumes[begin];
-    float n[3], lo[3], hi[3], most = 0.5f * v->scale * first->root;
+static bool sort_volumes(probing *b) {
+    size_t n = b->v->volume_count;
+    const noc_influence_node *root = &b->v->nodes[b->v->levels - 1][0];
+    float size = 0;
+    for (int k = 0; k < 3; k++) {
+        float hi = -INFINITY;
+        b->lo[k] = INFINITY;
+        for (int s = 0; s < NOC_INFLUENCE_WIDTH && root->root[s] > 0; s++) {
+            b->lo[k] = NOC_MIN(b->lo[k], root->lo[k][s]);
+            hi = NOC_MAX(hi, root->hi[k][s]);
+        }
+        size = NOC_MAX(size, hi - b->lo[k]);
+    }
+    b->cells = size > 0 ? 32767 / size : 0;
+    b->order = noc_alloc_large(2 * n, sizeof(*b->order));
+    if (!b->order)
+        return false;
+    noc_influence_run(b->params->pool, (n + CHUNK - 1) / CHUNK, key_chunk, b);
+    noc_sort_keys(b->order, b->order + n, n);
+    return true;
+}
+
+/* The end of the group that starts with the volume at `begin` of the order: those that follow it, face alike, and lie within
+ * half of what the largest reaches; so it is for lights that share a volume. */
+static size_t group_end(const probing *b, size_t begin, size_t end) {
+    const noc_influence_volume *volumes = b->v->volumes, *first = &volumes[b->order[begin].id];
+    float n[3], lo[3], hi[3], root = first->root;
     facing(first, n);
     memcpy(lo, first->c, sizeof(lo));
     memcpy(hi, first->c, sizeof(hi));
-    uint32_t i = begin + 1;
-    for (; i < end && lights_before(v, i + 1) - lights_before(v, begin) <= GROUP; i++) {
-        const noc_influence_volume *a = &v->volumes[i];
+    size_t i = begin + 1;
+    for (end = NOC_MIN(end, begin + GROUP); i < end; i++) {
+        const noc_influence_volume *a = &volumes[b->order[i].id];
         float own[3], d2 = 0, apart2 = 0;
         facing(a, own);
+        root = NOC_MAX(root, a->root);
         for (int k = 0; k < 3; k++) {
             lo[k] = NOC_MIN(lo[k], a->c[k]);
             hi[k] = NOC_MAX(hi[k], a->c[k]);
             d2 += (hi[k] - lo[k]) * (hi[k] - lo[k]);
             apart2 += (own[k] - n[k]) * (own[k] - n[k]);
         }
-        if (!(d2 <= most * most && apart2 <= 0.25f && a->root <= 1.5f * first->root && first->root <= 1.5f * a->root))
+        float most = 0.5f * b->v->scale * root;
+        if (!(d2 <= most * most && apart2 <= 0.25f))
             break;
     }
     return i;
@@ -118,31 +159,37 @@ static uint32_t group_end(const noc_influence *v, uint32_t begin, uint32_t end) 
 
 static void group_chunk(void *ctx, size_t chunk, int worker) {
     probing *b = ctx;
-    noc_influence *v = b->v;
-    uint32_t end = (uint32_t)NOC_MIN((chunk + 1) * CHUNK, (size_t)v->volume_count), boxes = 0;
+    size_t end = NOC_MIN((chunk + 1) * CHUNK, (size_t)b->v->volume_count);
+    uint32_t boxes = 0;
     (void)worker;
-    for (uint32_t i = (uint32_t)(chunk * CHUNK), next; i < end; i = next, boxes++)
-        for (next = group_end(v, i, end); i < next; i++)
-            v->box_of[i] = boxes;
+    for (size_t i = chunk * CHUNK, next; i < end; i = next, boxes++)
+        for (next = group_end(b, i, end); i < next; i++)
+            b->v->box_of[b->order[i].id] = boxes; /* of the chunk's */
     b->boxes_before[chunk + 1] = boxes;
 }
 
 /* ---- boxes ---- */
 
-static void trace(const probing *b, uint32_t begin, uint32_t end, uint32_t key, noc_influence_box *box) {
+/* A light of the group that ray i starts from: those of all volumes in turn. */
+static const noc_light_record *light_of(const probing *b, const noc_light_key *group, uint32_t count, uint32_t i) {
     const noc_influence *v = b->v;
-    uint32_t from = lights_before(v, begin), count = lights_before(v, end) - from;
-    float n[3], d[RAYS][3], reach = 0;
-    for (uint32_t i = begin; i < end; i++)
-        reach = NOC_MAX(reach, v->volumes[i].root * v->reach + v->volumes[i].size);
-    facing(&v->volumes[begin], n);
+    uint32_t volume = group[i % count].id, light = volume;
+    if (v->first)
+        light = v->first[volume] + i / count % (v->first[volume + 1] - v->first[volume]);
+    return &b->scene->lights.data[v->ids[light]];
+}
+
+static void trace(const probing *b, const noc_light_key *group, uint32_t count, float reach, noc_influence_box *box) {
+    float n[3], d[RAYS][3];
+    uint32_t key = rng_key(11u, group->id, 0u);
+    facing(&b->v->volumes[group->id], n);
     directions(b->lattice, n, 6.2831853f * rng(key, 0u), d);
     for (uint32_t first = 0; first < RAYS; first += NOC_PROBES) {
         noc_probes probes;
         for (uint32_t i = 0; i < NOC_PROBES; i++) {
             uint32_t ray = first + i;
             float o[3];
-            origin(&b->scene->lights.data[v->ids[from + ray % count]], d[ray], rng(key, 1u + 2u * ray), rng(key, 2u + 2u * ray), o);
+            origin(light_of(b, group, count, ray), d[ray], rng(key, 1u + 2u * ray), rng(key, 2u + 2u * ray), o);
             for (int k = 0; k < 3; k++) {
                 probes.o[k][i] = o[k];
                 probes.d[k][i] = d[ray][k] * reach;
@@ -158,28 +205,38 @@ static void trace(const probing *b, uint32_t begin, uint32_t end, uint32_t key, 
     }
 }
 
+static void make_box(const probing *b, const noc_light_key *group, uint32_t count, noc_influence_box *box) {
+    float reach = 0;
+    *box = (noc_influence_box){ { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+    for (uint32_t i = 0; i < count; i++) {
+        const noc_influence_volume *a = &b->v->volumes[group[i].id];
+        float near = a->root * b->v->scale * uncut + a->size;
+        reach = NOC_MAX(reach, a->root * b->v->reach + a->size);
+        for (int k = 0; k < 3; k++) {
+            box->lo[k] = NOC_MIN(box->lo[k], a->c[k] - near);
+            box->hi[k] = NOC_MAX(box->hi[k], a->c[k] + near);
+        }
+    }
+    trace(b, group, count, reach, box);
+    for (int k = 0; k < 3; k++) {
+        float between = 0.02f * (box->hi[k] - box->lo[k]) + 0.05f;
+        box->lo[k] -= between;
+        box->hi[k] += between;
+    }
+}
+
 static void probe_chunk(void *ctx, size_t chunk, int worker) {
     const probing *b = ctx;
-    noc_influence *v = b->v;
-    uint32_t end = (uint32_t)NOC_MIN((chunk + 1) * CHUNK, (size_t)v->volume_count);
+    uint32_t *box_of = b->v->box_of;
+    size_t end = NOC_MIN((chunk + 1) * CHUNK, (size_t)b->v->volume_count);
     (void)worker;
-    for (uint32_t i = (uint32_t)(chunk * CHUNK), next; i < end; i = next) {
-        uint32_t local = v->box_of[i], at = b->boxes_before[chunk] + local;
-        noc_influence_box box = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
-        for (next = i; next < end && v->box_of[next] == local; next++)
-            for (int k = 0; k < 3; k++) {
-                box.lo[k] = NOC_MIN(box.lo[k], v->volumes[next].c[k] - v->volumes[next].size);
-                box.hi[k] = NOC_MAX(box.hi[k], v->volumes[next].c[k] + v->volumes[next].size);
-            }
-        trace(b, i, next, rng_key(11u, i, 0u), &box);
-        for (int k = 0; k < 3; k++) {
-            float between = 0.02f * (box.hi[k] - box.lo[k]) + 0.05f;
-            box.lo[k] -= between;
-            box.hi[k] += between;
-        }
-        v->boxes[at] = box;
-        for (uint32_t k = i; k < next; k++)
-            v->box_of[k] = at;
+    for (size_t i = chunk * CHUNK, next; i < end; i = next) {
+        uint32_t own = box_of[b->order[i].id], at = b->boxes_before[chunk] + own;
+        for (next = i; next < end && box_of[b->order[next].id] == own; next++)
+            ;
+        make_box(b, &b->order[i], (uint32_t)(next - i), &b->v->boxes[at]);
+        for (size_t k = i; k < next; k++)
+            box_of[b->order[k].id] = at;
     }
 }
 
@@ -188,7 +245,7 @@ bool noc_influence_probe(noc_influence *v, const noc_scene *scene, const noc_inf
     probing b = { .scene = scene, .params = params, .v = v };
     b.boxes_before = noc_alloc_large(chunks + 1, sizeof(*b.boxes_before));
     v->box_of = noc_alloc_large((size_t)v->volume_count + 1, sizeof(*v->box_of));
-    bool ok = b.boxes_before && v->box_of;
+    bool ok = b.boxes_before && v->box_of && sort_volumes(&b);
     if (ok) {
         v->reach = v->scale * (params->scale > 0 ? 1 : wider);
         noc_influence_run(params->pool, chunks, group_chunk, &b);
@@ -204,5 +261,6 @@ bool noc_influence_probe(noc_influence *v, const noc_scene *scene, const noc_inf
         noc_influence_run(params->pool, chunks, probe_chunk, &b);
     }
     free(b.boxes_before);
+    free(b.order);
     return ok;
 }

@@ -169,7 +169,7 @@ void noc_embree_primary(embree_state *s, worker *w, const rayblock *rays, uint32
     fill_rays(rays, INFINITY, &h.ray);
     memset(h.hit.geomID, 0xff, sizeof(h.hit.geomID));
     memset(h.hit.instID, 0xff, sizeof(h.hit.instID));
-    rt_intersect16(lanes, s->rtc, &h);
+    rt_intersect16(lanes, s->rtc, &h, true);
     for (int l = 0; l < BLOCK; l++)
         if (valid >> l & 1 && h.hit.geomID[l] != RTC_INVALID_GEOMETRY_ID)
             fill_hit(s->scene, &h, l, g);
@@ -186,7 +186,7 @@ void noc_embree_probe(void *user, noc_probes *p) {
     fill_rays(&rays, 1, &h.ray);
     memset(h.hit.geomID, 0xff, sizeof(h.hit.geomID));
     memset(h.hit.instID, 0xff, sizeof(h.hit.instID));
-    rt_intersect16(lanes, s->rtc, &h);
+    rt_intersect16(lanes, s->rtc, &h, false);
     for (int l = 0; l < BLOCK; l++)
         p->t[l] = h.hit.geomID[l] != RTC_INVALID_GEOMETRY_ID ? h.ray.tfar[l] : 1;
 }
@@ -205,7 +205,7 @@ static void replay_primary(embree_state *s, const segment_block *b) {
     lane_mask(b->valid, lanes);
     fill_rays(&b->rays, INFINITY, &h.ray);
     memset(h.hit.geomID, 0xff, sizeof(h.hit.geomID));
-    rt_intersect16(lanes, s->rtc, &h);
+    rt_intersect16(lanes, s->rtc, &h, true);
 }
 
 static void replay_run(void *ctx, size_t item, int index) {

@@ -10,10 +10,11 @@
 #if NOC_EMBREE >= 4
 #include <embree4/rtcore.h>
 
-static inline void rt_intersect16(const int *valid, RTCScene scene, struct RTCRayHit16 *rays) {
+/* coherent: all rays go about the same way. */
+static inline void rt_intersect16(const int *valid, RTCScene scene, struct RTCRayHit16 *rays, bool coherent) {
     struct RTCIntersectArguments args;
     rtcInitIntersectArguments(&args);
-    args.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    args.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
     rtcIntersect16(valid, scene, rays, &args);
 }
 
@@ -26,10 +27,11 @@ static inline void rt_occluded16(const int *valid, RTCScene scene, struct RTCRay
 #else
 #include <embree3/rtcore.h>
 
-static inline void rt_intersect16(const int *valid, RTCScene scene, struct RTCRayHit16 *rays) {
+/* coherent: all rays go about the same way. */
+static inline void rt_intersect16(const int *valid, RTCScene scene, struct RTCRayHit16 *rays, bool coherent) {
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcIntersect16(valid, scene, &context, rays);
 }
 
