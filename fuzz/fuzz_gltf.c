@@ -1,8 +1,8 @@
 /* Fuzzer of the glTF reader: containers, JSON, buffers, accessors, nodes, lights, cameras.
  *
  *   clang -g -O1 -fsanitize=fuzzer,address,undefined -D_GNU_SOURCE -Iinclude -Isrc fuzz/fuzz_gltf.c \
- *       src/import/gltf*.c src/import/stream.c src/scene/{camera,ground,light,scene}.c src/geo/issues.c src/base/{log,memory,text}.c \
- *       -ljansson -lzip -lz -lm -lpthread -o fuzz_gltf
+ *       src/import/gltf*.c src/import/{stream,triangles}.c src/scene/{camera,camera_room,ground,light,scene}.c \
+ *       src/geo/issues.c src/base/{log,memory,text}.c -ljansson -lzip -lz -lm -lpthread -o fuzz_gltf
  *   ./fuzz_gltf -max_len=8000 -rss_limit_mb=4000 CORPUS
  *
  * Whatever the bytes are: no crash, exactly one error or none and a scene that can be committed and looked at. */

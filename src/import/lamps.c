@@ -91,6 +91,8 @@ static void warn_if_coarse(const importer *im) {
     double farthest = 0;
     for (size_t i = 0; i < vertices; i++) {
         double d = hypot((double)scene->positions.data[3 * i], (double)scene->positions.data[3 * i + 1]);
+        if (!isfinite(d))
+            continue; /* no triangle has it */
         far += d > COARSE_DISTANCE;
         farthest = NOC_MAX(farthest, d);
     }

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #define MOST_BYTES ((size_t)256 << 20)
+#define LEAST_BYTES 16 /* of a shorter one, Assimp forgets the stream */
 
 static char *load(const char *folder, const char *name, size_t *size) {
     char *path = noc_format("%s%s", *name == '/' ? "" : folder, name);
@@ -12,9 +13,11 @@ static char *load(const char *folder, const char *name, size_t *size) {
     bool fits = !stat(path, &st) && S_ISREG(st.st_mode) && (size_t)st.st_size <= MOST_BYTES;
     FILE *f = fits ? fopen(path, "rb") : NULL;
     free(path);
-    char *data = f ? noc_alloc_large((size_t)st.st_size + 1, 1) : NULL;
+    char *data = f ? noc_alloc_large((size_t)st.st_size + LEAST_BYTES + 1, 1) : NULL;
     if (data) {
         *size = fread(data, 1, (size_t)st.st_size, f);
+        while (*size < LEAST_BYTES)
+            data[(*size)++] = '\n';
         data[*size] = 0;
     }
     if (f)
