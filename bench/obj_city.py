@@ -24,6 +24,7 @@ import zlib
 STOREY = 2.9        # m
 CELL = 8.0          # m, of the grid that roofs are found by
 LAND = 1500.0       # m, of ground around the model
+PANE = .01          # m, of windows before their wall: no wall behind them that a pixel could look at, past their edge
 NESTING = {"MultiSurface": 0, "CompositeSurface": 0, "Solid": 1, "MultiSolid": 2, "CompositeSolid": 2}
 BUILDINGS = ("Building", "BuildingPart", "BuildingInstallation")
 
@@ -317,7 +318,8 @@ class Night:
     def sign(self, wall, s, z, wide, high):
         if wall.holds_quad(s - wide / 2, s + wide / 2, z, z + high) and self.is_open(wall, s, z):
             name = self.pick(sorted(NEON))
-            self.emit(wall.quad(s - wide / 2, s + wide / 2, z, z + high, .15), "signs", "neon_" + name, NEON[name], 350)
+            self.box((0, -wide / 2, 0), (.15, wide / 2, high), wall.point(s, z), wall.normal, ("front",), what="signs",
+                     name="neon_" + name, rgb=NEON[name], cd_m2=350)
 
     def windows(self, quads):
         """Shop fronts and signs shine; of all other windows so many as are missing."""
@@ -335,10 +337,10 @@ class Night:
                 for s0, s1, z0, z1, front in self.openings(wall, shop, wall.z1 - 2.8 if tower else math.inf):
                     if front:
                         white, cd_m2 = self.pick(("warm", "neutral")), self.pick((200, 500))
-                        self.emit(wall.quad(s0, s1, z0, z1, .05), "shop windows", "shop_%s_%d" % (white, cd_m2), WHITES[white], cd_m2)
+                        self.emit(wall.quad(s0, s1, z0, z1, PANE), "shop windows", "shop_%s_%d" % (white, cd_m2), WHITES[white], cd_m2)
                     else: # two casements
                         half = (s1 - s0) / 2 - .04
-                        panes = [wall.quad(s, s + half, z0, z1, .05) for s in (s0, s1 - half)]
+                        panes = [wall.quad(s, s + half, z0, z1, PANE) for s in (s0, s1 - half)]
                         dark.append((self.random.random(), panes))
         dark.sort()
         missing = min(len(dark), max(0, quads - self.emissive()) // 2)
