@@ -141,6 +141,56 @@ static void small_scene(void **state) { (void)state; weights_are_one(300, 15, 16
 static void large_scene(void **state) { (void)state; weights_are_one(6000, 60, 16, 64); }
 static void deep_scene(void **state) { (void)state; weights_are_one(90000, 400, 0, 128); }
 
+/* Lux of a light at a surface, as if it were a point, no nearer than its size. */
+static double lux_at(const noc_light_record *r, const gblock *g, int l) {
+    noc_light_bound b = noc_bound_light(r);
+    double d[3] = { b.p[0] - g->px[l], b.p[1] - g->py[l], b.p[2] - g->pz[l] };
+    double d2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], slope = g->nx[l] * d[0] + g->nz[l] * d[2];
+    bool any = b.n[0] == 0 && b.n[1] == 0 && b.n[2] == 0;
+    double facing = any ? sqrt(d2) : -(b.n[0] * d[0] + b.n[1] * d[1] + b.n[2] * d[2]);
+    return b.intensity * fmax(slope, 0) * fmax(facing, 0) / (d2 * fmax(d2, b.radius * b.radius));
+}
+
+/* Thousands of lights all around and between the surfaces of the tile, each of which matters most to those beside it: what
+ * the lists add up to at a surface is close to the sum of all, at all surfaces. Lists that score lights for the tile as a whole
+ * have twenty times this error. */
+static void tail_is_quiet(void **state) {
+    (void)state;
+    enum { STARTS = 24 };
+    static world w;
+    make_world(&w, 6000, 8, 32, 64);
+    for (int b = 0; b < BLOCKS; b++)
+        for (int l = 0; l < BLOCK; l++) { /* as a picture's blocks: what is close in it is close */
+            w.g[b].py[l] = (float)(b % 4 * 1.5 + l % 4 * 0.375 - 3);
+            *(b < 10 ? &w.g[b].px[l] : &w.g[b].pz[l]) = (float)(b / 4 * 1.5 + l / 4 * 0.375 - 3);
+        }
+    list_scratch *s = noc_alloc_large(1, sizeof(*s));
+    static double all[BLOCKS][BLOCK];
+    double error = 0;
+    int surfaces = 0;
+    for (int b = 0; b < BLOCKS; b++)
+        for (int l = 0; l < BLOCK; l++)
+            for (size_t i = 0; i < w.scene->lights.len; i++)
+                all[b][l] += lux_at(&w.scene->lights.data[i], &w.g[b], l);
+    for (int k = 0; k < STARTS; k++) {
+        noc_pick_kernels(NOC_PATH_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, (float)((k + 0.5) / STARTS), s, &s->list);
+        for (int b = 0; b < BLOCKS; b++)
+            for (int l = 0; l < BLOCK; l++) {
+                double sum = 0;
+                if (!(w.lanes[b] >> l & 1) || !(all[b][l] > 0))
+                    continue;
+                for (uint32_t j = 0; j < s->list.count; j++)
+                    sum += s->list.weight[j] * lux_at(&w.scene->lights.data[s->list.light[j]], &w.g[b], l);
+                error += (sum / all[b][l] - 1) * (sum / all[b][l] - 1);
+                surfaces++;
+            }
+    }
+    print_message("# mean squared relative error %.4f over %d surfaces\n", error / surfaces, surfaces / STARTS);
+    assert_true(error / surfaces < 0.01);
+    free(s);
+    free_world(&w);
+}
+
 static void few_lights_are_listed(void **state) {
     (void)state;
     static world w;
@@ -209,6 +259,7 @@ int main(void) {
         cmocka_unit_test(large_scene),
         cmocka_unit_test(deep_scene),
         cmocka_unit_test(far_lights_stand_alone),
+        cmocka_unit_test(tail_is_quiet),
         cmocka_unit_test(few_lights_are_listed),
         cmocka_unit_test(tables_agree),
     };

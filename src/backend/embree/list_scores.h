@@ -15,7 +15,7 @@ typedef struct patch {
     float share;                           /* root of its share of the tile's pixels */
     float reflectance;                     /* from lux to cd/m2, about, times share */
     float wo[3];                           /* from its centre to the eye */
-    const noc_material_record *material;   /* of one of its surfaces */
+    float gloss, alpha2;                   /* what multiplies the lobe of its shiniest surface, and that lobe's alpha^2 */
 } patch;
 
 typedef struct patches {
@@ -23,11 +23,22 @@ typedef struct patches {
     patch p[LIST_PATCHES];
 } patches;
 
-/* Sphere, cone of normals and reflectance of some lanes of a block; share is left to the caller. */
+/* The lobe about the mirrored eye: Fresnel's term and the slope of the view are those of the patch's own normal. */
+static void bound_gloss(const noc_material_record *m, patch *t) {
+    float nv = t->axis[0] * t->wo[0] + t->axis[1] * t->wo[1] + t->axis[2] * t->wo[2];
+    nv = NOC_CLAMP(nv, 0.05f, 1.f);
+    float away = 1 - nv, away2 = away * away;
+    if (!(m->f0 > 0))
+        return;
+    t->gloss = (m->f0 + (1 - m->f0) * away2 * away2 * away) * CORE_INV_PI / (4 * nv);
+    t->alpha2 = m->alpha * m->alpha;
+}
+
+/* Sphere, cone of normals and reflectance of some lanes of a block; not yet times its share. */
 static patch bound_patch(const struct core_context *ctx, const gblock *g, uint32_t lanes) {
     float lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY }, n[3] = { 0 };
     float reflected = 0, far = 0, cone = 1, d2 = 0;
-    patch t = { .material = ctx->materials + g->material[__builtin_ctz(lanes)] };
+    patch t = { .alpha2 = 1 };
     for (uint32_t bits = lanes; bits; bits &= bits - 1) {
         int l = __builtin_ctz(bits);
         const float p[3] = { g->px[l], g->py[l], g->pz[l] };
@@ -61,6 +72,7 @@ static patch bound_patch(const struct core_context *ctx, const gblock *g, uint32
     cone -= 1e-4f;
     t.radius = sqrtf(far) * 1.0001f + 1e-4f;
     t.spread = cone > 0 ? sqrtf(1 - cone * cone) : 2;
+    bound_gloss(ctx->materials + g->material[__builtin_ctz(lanes)], &t);
     return t;
 }
 
@@ -93,6 +105,7 @@ static void make_patches(const struct core_context *ctx, const gblock *const *g,
             *t = bound_patch(ctx, g[b], parts[i]);
             t->share = sqrtf((float)__builtin_popcount(parts[i]) / (float)all);
             t->reflectance *= t->share;
+            t->gloss *= t->share;
         }
     }
 }
@@ -153,10 +166,15 @@ FN cone_bound brief_lights(const noc_light_block *b, int i, v3 centre, real radi
     return l;
 }
 
-FN real patch_gloss(const patch *t, v3 wi) {
-    surf s = { .p = splat3(t->c), .n = splat3(t->axis), .wo = splat3(t->wo), .albedo = splat3(t->material->albedo),
-               .f0 = K(t->material->f0), .alpha = K(t->material->alpha) };
-    return min_(reflect_lobes(s, wi).gloss, K(1e9f));
+/* GGX's distribution (Walter 2007, eq. 33, without 1 / pi) at the half vector, as wide as the patch makes it. */
+FN real patch_gloss(const patch *t, cone_view w) {
+    real reach2 = min_(w.inv2 * K(t->radius * t->radius), K(1.0f));
+    real a2 = min_(K(t->alpha2 + 0.25f * t->spread * t->spread) + K(0.25f) * reach2, K(1.0f));
+    v3 h = add3(w.d, splat3(t->wo));
+    real h2 = dot3(h, h);
+    real nh = dot3(splat3(t->axis), h);
+    real q = h2 / max_(h2 + nh * nh * (a2 - K(1.0f)), K(1e-10f));
+    return K(t->gloss) * (a2 * q * q);
 }
 
 /* The lights of a cluster as points, no nearer to a patch than its radius, and a small share of the cluster's own score, for
@@ -174,9 +192,10 @@ static void score_lights(const noc_clusters *c, uint32_t cluster, const patches 
             const patch *q = &t->p[k];
             cone_view w = cone_between(patch_bound(q), l);
             real one = cone_cosine(w.slope) * K(q->reflectance);
-            if (q->material->f0 > 0)
-                one = one + patch_gloss(q, w.d) * K(q->share);
+            if (q->gloss > 0)
+                one = one + patch_gloss(q, w);
             one = one * cone_cosine(w.facing) * w.inv2;
+            one = sel(or_(w.slope < K(0.0f), w.facing < K(0.0f)), K(0.0f), one);
             squares = squares + one * one;
         }
         rstore(out + i, min_(intensity * (K(least) + sqrt_(squares)), K(1e30f)));
