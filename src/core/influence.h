@@ -51,6 +51,14 @@ FN influence_region influence_point(v3 p, v3 n) {
     return r;
 }
 
+/* Does what the volume's lights shine into reach the region? */
+FN mask influence_shines(influence v, influence_region r) {
+    v3 a = sub3(r.lo, v.c);
+    v3 b = sub3(r.hi, v.c);
+    EXACT real front = max_(v.m.x * a.x, v.m.x * b.x) + max_(v.m.y * a.y, v.m.y * b.y) + max_(v.m.z * a.z, v.m.z * b.z);
+    return front >= K(-1.0f);
+}
+
 /* The smallest S_r at which the volume holds the region; at most 0 where the sphere touches it. */
 FN real influence_needs(influence v, influence_region r) {
     v3 a = sub3(r.lo, v.c);
@@ -58,8 +66,7 @@ FN real influence_needs(influence v, influence_region r) {
     v3 d = V3(max_(max_(a.x, K(0.0f) - b.x), K(0.0f)), max_(max_(a.y, K(0.0f) - b.y), K(0.0f)),
               max_(max_(a.z, K(0.0f) - b.z), K(0.0f)));
     EXACT real s = (sqrt_(dot3(d, d)) - v.size) / v.root;
-    EXACT real front = max_(v.m.x * a.x, v.m.x * b.x) + max_(v.m.y * a.y, v.m.y * b.y) + max_(v.m.z * a.z, v.m.z * b.z);
-    mask faces = and_(front >= K(-1.0f), dot3(r.n, v.c) + v.size > r.back);
+    mask faces = and_(influence_shines(v, r), dot3(r.n, v.c) + v.size > r.back);
     return sel(faces, s, INFLUENCE_NEVER);
 }
 

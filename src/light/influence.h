@@ -8,7 +8,7 @@
 
 #include "scene/scene.h"
 
-enum { NOC_INFLUENCE_WIDTH = 8, NOC_INFLUENCE_LEVELS = 12, NOC_QUERY_POINTS = 16 };
+enum { NOC_INFLUENCE_WIDTH = 16, NOC_INFLUENCE_LEVELS = 8, NOC_QUERY_POINTS = 16 };
 
 /* Children side by side; those that are not there have root = 0. */
 typedef struct noc_influence_node {
@@ -33,7 +33,7 @@ typedef struct noc_influence {
     uint32_t *first;                                /* volume i has the lights ids[first[i]..first[i + 1]); NULL: one each */
     uint32_t *ids;
     uint32_t *volume_of;                            /* a light of the scene */
-    noc_influence_node *nodes[NOC_INFLUENCE_LEVELS]; /* level 0: a child is 8 volumes in order; the last level has one node */
+    noc_influence_node *nodes[NOC_INFLUENCE_LEVELS]; /* level 0: a child is 16 volumes in order; the last level has one node */
     int levels;                                     /* 0: no light emits anything */
     float scale;                                    /* S_r for this scene, sqrt(m2 / cd) */
     float reach;                                    /* S_r that the boxes were probed with, 0: none were */
@@ -70,11 +70,15 @@ typedef struct noc_near_group {
     uint32_t volume[16];
 } noc_near_group;
 
+/* Starts zeroed, and is used again and again. */
 typedef struct noc_near {
     NOC_ARRAY(noc_near_group) groups;
     size_t count;
     bool over;      /* there were more than were asked for */
 } noc_near;
+
+/* Normals that differ by so much in each coordinate count as one. */
+#define NOC_SAME_NORMAL 1e-5f
 
 typedef struct noc_near_query {
     float lo[3], hi[3]; /* box of the points */
@@ -88,20 +92,17 @@ typedef struct noc_near_query {
  * noc_near_none. */
 noc_near_query noc_near_none(float scale, size_t most);
 void noc_near_add(noc_near_query *query, const float *const p[3], const float *const n[3], uint32_t lanes);
-/* All volumes that could hold a point of the box, and some more; always in the same order. near starts zeroed, and is used
- * again and again. */
-void noc_influence_near(const noc_influence *influence, const noc_near_query *query, noc_near *near);
 
-/* What all blocks of a tile look through: volumes near a box that holds theirs, for S_r, and for 4, 16 and 64 times S_r; those
- * are asked for when a block first needs them. */
-enum { NOC_INFLUENCE_RUNGS = 4, NOC_INFLUENCE_WIDER = 512 };
+/* What all blocks of a tile look through: volumes near the box of all of its points, and near those that lie in one plane,
+ * which lights behind it are left out of; for S_r, and for 4, 16 and 64 times S_r. Each is looked for when a block first needs
+ * it. Starts zeroed, and is used again and again. */
+enum { NOC_INFLUENCE_RUNGS = 4, NOC_AROUND_SIDES = 8 };
 typedef struct noc_around {
-    noc_near_query query; /* most: for S_r alone */
-    noc_near near[NOC_INFLUENCE_RUNGS];
-    uint32_t asked;       /* bits: rungs whose volumes are there */
+    int sides;                              /* 0: all points; the others: points of a plane each */
+    noc_near_query query[NOC_AROUND_SIDES];
+    noc_near near[NOC_AROUND_SIDES][NOC_INFLUENCE_RUNGS];
+    uint32_t asked[NOC_AROUND_SIDES];       /* bits: rungs whose volumes are there */
 } noc_around;
-/* `over` where there are more than the query allows; for wider ones than S_r that is NOC_INFLUENCE_WIDER. */
-const noc_near *noc_around_near(const noc_influence *influence, noc_around *around, int rung);
 void noc_around_free(noc_around *around);
 
 /* What a block of points found. Starts zeroed, and is used again and again. */

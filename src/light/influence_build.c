@@ -204,7 +204,7 @@ static bool build_levels(noc_influence *v) {
             return true;
         children = nodes;
     }
-    return false; /* 8^13 lights do not fit in memory */
+    return false; /* 16^9 lights do not fit in memory */
 }
 
 /* ---- all of it ---- */

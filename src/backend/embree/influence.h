@@ -7,27 +7,13 @@
 #ifndef NOC_EMBREE_INFLUENCE_H
 #define NOC_EMBREE_INFLUENCE_H
 
-#include "core/influence.h"
+#include "backend/embree/influence_near.h"
 
 /* Points are close that are within so much of the reach of the scene's median light. */
 static const float influence_close = 0.25f;
 
-FN influence influence_gather(const noc_influence_volume *volumes, u32 index) {
-    influence v;
-#if defined(CORE_LANES)
-    uint32_t at[CORE_LANES];
-    memcpy(at, &index, sizeof(at));
-    __asm__("" : "+m"(at)); /* as in core/wide_load.h */
-    wide_quad c = wide_quad_load(volumes->c, 8, at), m = wide_quad_load(volumes->m, 8, at);
-    v.c = V3(c.f[0], c.f[1], c.f[2]);
-    v.size = c.f[3];
-    v.m = V3(m.f[0], m.f[1], m.f[2]);
-    v.root = m.f[3];
-#else
-    memcpy(&v, volumes + index, sizeof(v));
-#endif
-    return v;
-}
+/* Each wider query asks so many times as far. */
+static const float wider_step = 4;
 
 FN mask box_gather_meets(const noc_influence *v, u32 volume, influence_region r) {
     const noc_influence_box *boxes = v->boxes;
@@ -50,20 +36,10 @@ FN void word_prefetch(const uint32_t *base, u32 index) { record_prefetch((const 
 
 FN influence_region region_load(const noc_found *f, int l) {
     influence_region r;
-    r.lo = V3(rload(f->lo[0] + l), rload(f->lo[1] + l), rload(f->lo[2] + l));
-    r.hi = V3(rload(f->hi[0] + l), rload(f->hi[1] + l), rload(f->hi[2] + l));
-    r.n = V3(rload(f->n[0] + l), rload(f->n[1] + l), rload(f->n[2] + l));
+    r.lo = load3(f->lo, l);
+    r.hi = load3(f->hi, l);
+    r.n = load3(f->n, l);
     r.back = rload(f->back + l);
-    return r;
-}
-
-/* The same region in every lane. */
-FN influence_region region_splat(const noc_near_query *q) {
-    influence_region r;
-    r.lo = splat3(q->lo);
-    r.hi = splat3(q->hi);
-    r.n = splat3(q->n);
-    r.back = K(q->back);
     return r;
 }
 
@@ -77,11 +53,7 @@ static float look_closer(const noc_influence *v, const noc_near *near, const noc
     for (size_t i = 0; i < near->groups.len; i++) {
         const noc_near_group *group = &near->groups.data[i];
         for (int l = 0; l < 16; l += LANES) {
-            influence a;
-            a.c = V3(rload(group->c[0] + l), rload(group->c[1] + l), rload(group->c[2] + l));
-            a.size = rload(group->size + l);
-            a.m = V3(rload(group->m[0] + l), rload(group->m[1] + l), rload(group->m[2] + l));
-            a.root = rload(group->root + l);
+            influence a = group_load(group, l);
             real needs = influence_needs(a, r);
             if (v->boxes)
                 needs = sel(box_gather_meets(v, uload(group->volume + l), r), needs, INFLUENCE_NEVER);
@@ -133,12 +105,13 @@ static void part_finds(const noc_influence *v, noc_near_query *q, uint32_t part,
                        noc_around *around, noc_found *f) {
     size_t from = f->ids.len;
     float settled = q->scale;
-    for (int rung = 0; rung < NOC_INFLUENCE_RUNGS; rung++, q->scale *= 4) {
+    int side = around ? around_side(around, q) : 0;
+    for (int rung = 0; rung < NOC_INFLUENCE_RUNGS; rung++, q->scale *= wider_step) {
         float best[LANES];
-        const noc_near *near = around ? noc_around_near(v, around, rung) : NULL;
-        if (!near || (!rung && near->over)) {
-            q->most = rung ? NOC_INFLUENCE_WIDER : SIZE_MAX;
-            noc_influence_near(v, q, &f->near);
+        const noc_near *near = around ? around_near(v, around, side, rung, q->scale) : NULL;
+        if (!near) {
+            q->most = rung ? WIDER_VOLUMES : SIZE_MAX;
+            influence_near(v, q, &f->near);
             near = &f->near;
         }
         if (near->over)

@@ -231,6 +231,7 @@ const kernels KERNELS = {
     .list_places = list_places,
     .pick_power = pick_power,
     .pick_tree = pick_tree,
+    .influence_around = influence_around,
     .pick_influence = pick_influence,
     .given = given,
     .project = project,

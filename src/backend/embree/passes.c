@@ -56,22 +56,18 @@ static void primary(stage_run *run, worker *w, tile t) {
             primary_block(run, w, bx, by);
 }
 
-enum { TILE_VOLUMES = 4096 };
-
 /* What is asked for all blocks of a tile. */
 static noc_around *look_around(stage_run *run, worker *w, tile t) {
     const frame_buffers *b = &run->s->b;
-    const noc_influence *v = run->s->influence;
-    const noc_render_params *p = run->ctx.frame->params;
-    noc_near_query q = noc_near_none(p->influence > 0 ? (float)p->influence : v->scale, TILE_VOLUMES);
-    for (int by = t.y0; by < t.y1; by++)
-        for (int bx = t.x0; bx < t.x1; bx++) {
-            const gblock *g = &b->g[run->ctx.frame->gbuffer][block_at(b, bx, by)];
-            noc_near_add(&q, (const float *const[3]){ g->px, g->py, g->pz }, (const float *const[3]){ g->nx, g->ny, g->nz },
-                         lanes_with_surface(g));
-        }
-    w->around.query = q;
-    w->around.asked = 0;
+    tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
+    const gblock *g[TILE_BLOCKS * TILE_BLOCKS];
+    uint32_t lanes[TILE_BLOCKS * TILE_BLOCKS];
+    int n = noc_embree_tile_blocks(run, t, blocks);
+    for (int i = 0; i < n; i++) {
+        g[i] = &b->g[run->ctx.frame->gbuffer][blocks[i].at];
+        lanes[i] = lanes_with_surface(g[i]);
+    }
+    run->k->influence_around(&run->ctx, g, lanes, n, &w->around);
     return &w->around;
 }
 

@@ -1,0 +1,145 @@
+/* Candidates from influence volumes against uniform ones: frame times side by side, and error.
+ *
+ *   bench_influence [SCENE [VIEW [WIDTH HEIGHT [FRAMES [REFERENCE [S_R...]]]]]]     default: city street 640 360 9
+ *
+ * Two renderers, restir at M = 32 and restir at M = 32 from volumes, make frames in turn in one process and so meet the same
+ * disturbances; times are medians of CPU seconds. The first frame of each, without a history, is not counted. REFERENCE is a
+ * picture of the same view without pixel jitter and sky ("nocturne render --method reference --no-jitter --sky 0"), or "-": with
+ * one, the error of a first frame from volumes is told for each S_r that is given (0: the scene's own), mean of four seeds:
+ * relMSE clamped to 10 cd/m2 on pixels that see no emitter, of restir and of ris. */
+#include "bench_scene.h"
+
+enum { MOST_FRAMES = 256, SEEDS = 4 };
+
+typedef struct measured {
+    noc_renderer *r;
+    noc_render_params params;
+    double cpu[MOST_FRAMES], pass[NOC_PASS_COUNT][MOST_FRAMES];
+} measured;
+
+static int by_size(const void *a, const void *b) {
+    double d = *(const double *)a - *(const double *)b;
+    return (d > 0) - (d < 0);
+}
+
+static double median(double *x, int n) {
+    qsort(x, (size_t)n, sizeof(*x), by_size);
+    return x[n / 2];
+}
+
+static noc_render_params params_of(int width, int height, noc_method method, noc_candidates candidates) {
+    noc_render_params p = noc_render_default_params();
+    p.width = width;
+    p.height = height;
+    p.method = method;
+    p.candidates = candidates;
+    p.sky = 0;
+    p.jitter = false;
+    return p;
+}
+
+static bool times(const noc_scene *scene, const noc_camera *camera, int width, int height, int frames, noc_log *log) {
+    static measured side[2];
+    double pass[2][NOC_PASS_COUNT], cpu[2];
+    noc_light_stats found;
+    bool ok = true;
+    for (int i = 0; i < 2; i++) {
+        side[i].params = params_of(width, height, NOC_METHOD_RESTIR, i ? NOC_CANDIDATES_BVH : NOC_CANDIDATES_UNIFORM);
+        side[i].r = noc_renderer_create(scene, NULL, log);
+        ok = ok && side[i].r && noc_renderer_frame(side[i].r, camera, &side[i].params, NULL) == NOC_OK;
+    }
+    for (int f = 0; ok && f < frames; f++)
+        for (int i = 0; ok && i < 2; i++) {
+            noc_frame_stats stats;
+            ok = noc_renderer_frame(side[i].r, camera, &side[i].params, NULL) == NOC_OK;
+            noc_renderer_get_stats(side[i].r, &stats);
+            side[i].cpu[f] = stats.cpu_seconds;
+            for (int k = 0; k < NOC_PASS_COUNT; k++)
+                side[i].pass[k][f] = stats.pass_seconds[k];
+        }
+    if (ok) {
+        for (int i = 0; i < 2; i++) {
+            cpu[i] = median(side[i].cpu, frames);
+            for (int k = 0; k < NOC_PASS_COUNT; k++)
+                pass[i][k] = median(side[i].pass[k], frames);
+            printf("%-8s %8.1f CPU ms a frame |", i ? "bvh" : "uniform", 1e3 * cpu[i]);
+            for (int k = 0; k < NOC_PASS_COUNT; k++)
+                if (pass[i][k] > 0)
+                    printf(" %s %.1f", noc_pass_name((noc_pass)k), 1e3 * pass[i][k]);
+            printf("\n");
+        }
+        noc_renderer_light_stats(side[1].r, &found);
+        printf("frames %.3f, candidates %.3f of uniform's; S_r %.3f, found: median %u, 99%% %u, none %.2f%%, wider %.2f%%\n",
+               cpu[1] / cpu[0], pass[1][NOC_PASS_CANDIDATES] / pass[0][NOC_PASS_CANDIDATES], found.influence, found.found_median,
+               found.found_99, 100 * found.found_none, 100 * found.found_wider);
+    }
+    for (int i = 0; i < 2; i++)
+        noc_renderer_destroy(side[i].r);
+    return ok;
+}
+
+/* Error of a first frame; `found` is of the last seed. */
+static bool error(const noc_scene *scene, const noc_camera *camera, noc_render_params p, const noc_image *want, double *relmse,
+                  noc_light_stats *found, noc_log *log) {
+    noc_renderer *r = noc_renderer_create(scene, NULL, log);
+    bool ok = r != NULL;
+    *relmse = 0;
+    for (uint32_t seed = 1; ok && seed <= SEEDS; seed++) {
+        noc_compare_params c = noc_compare_default_params();
+        noc_comparison figures = { 0 };
+        p.seed = seed;
+        noc_renderer_reset(r);
+        ok = noc_renderer_frame(r, camera, &p, NULL) == NOC_OK;
+        noc_image *have = ok ? noc_renderer_image(r) : NULL;
+        ok = have && noc_image_compare(have, want, &c, &figures, log) == NOC_OK;
+        noc_image_destroy(have);
+        *relmse += figures.dark_clamped.relmse / SEEDS;
+    }
+    if (ok)
+        noc_renderer_light_stats(r, found);
+    noc_renderer_destroy(r);
+    return ok;
+}
+
+static bool errors(const noc_scene *scene, const noc_camera *camera, int width, int height, const char *path, char **scales,
+                   noc_log *log) {
+    bool linear, ok = true;
+    noc_image *want = noc_image_read(path, log, &linear);
+    if (!want)
+        return false;
+    for (int i = 0; ok && scales[i]; i++) {
+        double relmse[2];
+        noc_light_stats found;
+        for (int k = 0; ok && k < 2; k++) {
+            noc_render_params p = params_of(width, height, k ? NOC_METHOD_RIS : NOC_METHOD_RESTIR, NOC_CANDIDATES_BVH);
+            p.influence = atof(scales[i]);
+            ok = error(scene, camera, p, want, &relmse[k], &found, log);
+        }
+        if (ok)
+            printf("S_r %8.3f  restir %8.4f  ris %8.4f  found: median %u, 99%% %u, none %.2f%%\n", found.influence, relmse[0], relmse[1],
+                   found.found_median, found.found_99, 100 * found.found_none);
+    }
+    noc_image_destroy(want);
+    return ok;
+}
+
+int main(int argc, char **argv) {
+    const char *spec = argc > 1 ? argv[1] : "city", *view = argc > 2 ? argv[2] : "street";
+    int width = argc > 4 ? atoi(argv[3]) : 640, height = argc > 4 ? atoi(argv[4]) : 360;
+    int frames = argc > 5 ? atoi(argv[5]) : 9;
+    if (width < 1 || height < 1 || frames < 0 || frames > MOST_FRAMES) {
+        fprintf(stderr, "usage: bench_influence [SCENE [VIEW [WIDTH HEIGHT [FRAMES [REFERENCE [S_R...]]]]]]\n");
+        return 2;
+    }
+    noc_log *log = noc_log_create(NULL);
+    noc_scene *scene = bench_scene(spec, log);
+    noc_camera camera;
+    bool ok = scene && noc_scene_camera(scene, bench_view(view), (double)width / height, &camera) == NOC_OK;
+    if (ok && frames)
+        ok = times(scene, &camera, width, height, frames, log);
+    if (ok && argc > 7)
+        ok = errors(scene, &camera, width, height, argv[6], argv + 7, log);
+    noc_scene_destroy(scene);
+    noc_log_destroy(log);
+    return ok ? 0 : 1;
+}
