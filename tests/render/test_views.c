@@ -181,7 +181,7 @@ static void densities(void **state) {
             doubtful += right[0] != right[1];
             checked++;
         }
-        assert_true(checked > N / 2 && doubtful < checked / 4);
+        assert_true(checked > N / 2 && doubtful < checked / 2);
         noc_channel_destroy(density);
         noc_channel_destroy(light);
         noc_channel_destroy(held);
