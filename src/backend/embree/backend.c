@@ -165,12 +165,11 @@ static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st
     if (st->passes >> NOC_PASS_SHADE & 1)
         s->shaded_set = st->target;
     run.ctx.influence = s->influence;
-    if ((status = noc_embree_begin_learning(s, frame)) != NOC_OK)
+    if (st->passes >> NOC_PASS_CANDIDATES & 1 && (status = noc_embree_begin_learning(s, frame)) != NOC_OK)
         return status;
     noc_pool_run(s->pool, run.tiles, run_tile, &run);
     if (atomic_load(&run.cancelled))
         return NOC_ERR_CANCELLED;
-    noc_embree_end_learning(s, frame);
     return NOC_OK;
 }
 
@@ -195,6 +194,7 @@ static void accumulate(void *state, const noc_frame *frame) {
     embree_state *s = state;
     noc_embree_keep_views(s, frame);
     noc_embree_keep_lights(s);
+    noc_embree_end_learning(s, frame);
     if (!frame->accumulated) {
         memcpy(s->b.picture, s->b.colour, (size_t)s->b.blocks_x * s->b.blocks_y * sizeof(cblock));
         return;

@@ -1,6 +1,7 @@
-/* ris over light lists with several shadow rays a pixel (core/lists.h, docs/estimator.md): every pixel weighs the entries of
- * its tile's list, shares its rays out over them systematically, and adds up what they see. How many rays, and which
- * entries, is steered by what earlier frames have learned of the lights' visibility. */
+/* Light lists with several shadow rays a pixel (core/lists.h, docs/estimator.md): every pixel weighs the entries of its tile's
+ * list and shares its rays out over them systematically. ris adds up what they see; restir keeps one of those that are
+ * seen, as the pixel's own reservoir. How many rays, and which entries, is steered by what earlier frames have learned of the
+ * lights' visibility. */
 #include "backend/embree/embree.h"
 
 #include "core/random.h"
@@ -11,7 +12,9 @@ enum { CELL_PIXELS = 32, MOST_ASKED_A_TILE = 16 * BLOCK * TILE_BLOCKS * TILE_BLO
 _Static_assert(MOST_ASKED_A_TILE <= UINT16_MAX, "counts of a tile fit");
 
 bool noc_embree_shares_rays(const noc_render_params *p) {
-    return p->method == NOC_METHOD_RIS && p->candidates == NOC_CANDIDATES_LISTS;
+    if (p->candidates != NOC_CANDIDATES_LISTS)
+        return false;
+    return p->method == NOC_METHOD_RIS || (p->method == NOC_METHOD_RESTIR && p->visibility_reuse && p->final_ray);
 }
 
 static bool learns(const noc_render_params *p) { return noc_embree_shares_rays(p) && p->learn && p->final_ray; }
@@ -99,6 +102,7 @@ static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ct
         int i = d->entry[l] = times > 0 ? from->entry[k][l] : 0;
         s->valid |= (uint32_t)(times > 0) << l;
         s->light[l] = d->r.light[l] = list->light[i];
+        d->r.p[l] = t->weighed.weight[i][l] / t->cell[t->cell_of[block]].beliefs.share[i];
         d->r.w[l] = times > 0 ? times * t->weighed.all[l] / (from->n[l] * t->weighed.weight[i][l]) * list->weight[i] : 0;
     }
     run->k->list_places(ctx, x, y, d->entry, &d->r);
@@ -108,7 +112,6 @@ static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ct
 /* The reservoir that stands for the block in views: one of the draws, at random. */
 static void keep_one(const stage_run *run, tile_rays *t, const block_draws *from, const float pick[BLOCK], int block,
                      int first, rblock *out) {
-    memset(out, 0, sizeof(*out));
     for (int l = 0; l < BLOCK; l++) {
         out->u[l] = out->v[l] = 0.5f;
         if (!(from->n[l] > 0))
@@ -117,14 +120,17 @@ static void keep_one(const stage_run *run, tile_rays *t, const block_draws *from
         for (float at = NOC_MIN(pick[l] * from->n[l], from->n[l] - 1); at >= from->times[k][l]; k++)
             at -= from->times[k][l];
         const ray_draw *d = &t->draws[t->kept[block][l] = first + k];
-        const tile_cell *c = &t->cell[t->cell_of[d->block]];
         out->light[l] = d->r.light[l];
         out->u[l] = d->r.u[l];
         out->v[l] = d->r.v[l];
         out->w[l] = d->r.w[l] * from->n[l] / from->times[k][l];
-        out->p[l] = t->weighed.weight[d->entry[l]][l] / c->beliefs.share[d->entry[l]];
-        out->m[l] = (float)run->ctx.frame->params->draws;
+        out->p[l] = d->r.p[l];
     }
+}
+
+static uint32_t pixel_key(const noc_frame *f, int x, int y, int l) {
+    uint32_t pixel = (uint32_t)(y + (l >> 2)) * (uint32_t)f->params->width + (uint32_t)(x + (l & 3));
+    return rng_key(f->params->seed, pixel, f->index);
 }
 
 static void draw_block(stage_run *run, tile_rays *t, const struct core_context *ctx, const gblock *g, int block, int x, int y,
@@ -133,9 +139,7 @@ static void draw_block(stage_run *run, tile_rays *t, const struct core_context *
     block_draws d;
     int first = t->count;
     for (int l = 0; l < BLOCK; l++) {
-        const noc_render_params *p = ctx->frame->params;
-        uint32_t pixel = (uint32_t)(y + (l >> 2)) * (uint32_t)p->width + (uint32_t)(x + (l & 3));
-        uint32_t key = rng_key(p->seed, pixel, ctx->frame->index);
+        uint32_t key = pixel_key(ctx->frame, x, y, l);
         d.n[l] = ray_count(run, t, l, rng(key, DIM_CANDIDATE + 2));
         start[l] = rng(key, DIM_CANDIDATE + 3);
         pick[l] = rng(key, DIM_CANDIDATE + 4);
@@ -175,6 +179,8 @@ void noc_embree_share_candidates(stage_run *run, worker *w, tile at, const gbloc
             rblock *r = &b->r[run->stage->target][t->at[n] = (size_t)by * b->blocks_x + bx];
             b->visible[run->stage->target][t->at[n]] = 0;
             memset(r, 0, sizeof(*r));
+            for (int l = 0; l < BLOCK; l++) /* whatever was found: M must not depend on the samples */
+                r->m[l] = lanes[n] >> l & 1 ? (float)ctx.frame->params->draws : 0;
             if (!lanes[n] || !ctx.list->count)
                 continue;
             t->cell_of[n] = believe(run, g[n], lanes[n], ctx.list, t);
@@ -209,6 +215,45 @@ static void note_sightings(stage_run *run, worker *w, tile at) {
     out->count = w->sightings.len - out->first;
 }
 
+/* One of a block's samples that are seen, by what each adds; its W stands for all of them. first: of the block's draws. */
+static void resample(const stage_run *run, const tile_rays *t, int first, const float pick[BLOCK], rblock *out) {
+    int rays = t->draws[first].rays;
+    for (int l = 0; l < BLOCK; l++) {
+        float all = 0, sum = 0;
+        int kept = -1;
+        for (int k = first; k < first + rays; k++)
+            all += t->draws[k].r.p[l] * t->draws[k].r.w[l];
+        for (int k = first; k < first + rays && !(kept >= 0 && sum > pick[l] * all); k++) {
+            float w = t->draws[k].r.p[l] * t->draws[k].r.w[l];
+            sum += w;
+            kept = w > 0 ? k : kept;
+        }
+        out->w[l] = 0;
+        if (kept < 0)
+            continue;
+        const rblock *r = &t->draws[kept].r;
+        out->light[l] = r->light[l];
+        out->u[l] = r->u[l];
+        out->v[l] = r->v[l];
+        out->p[l] = r->p[l];
+        out->w[l] = all / r->p[l];
+    }
+}
+
+static void make_reservoirs(const stage_run *run, const tile_rays *t) {
+    const noc_frame *f = run->ctx.frame;
+    for (int i = 0; i < t->count; i += t->draws[i].rays) {
+        size_t block = t->at[t->draws[i].block];
+        int x = (int)(block % (size_t)run->s->b.blocks_x) * BLOCK_SIDE, y = (int)(block / (size_t)run->s->b.blocks_x) * BLOCK_SIDE;
+        float pick[BLOCK];
+        for (int l = 0; l < BLOCK; l++)
+            pick[l] = rng(pixel_key(f, x, y, l), DIM_CANDIDATE + 5);
+        rblock *r = &run->s->b.r[run->stage->target][block];
+        resample(run, t, i, pick, r);
+        run->s->b.visible[run->stage->target][block] = (uint16_t)lanes_with_sample(r);
+    }
+}
+
 void noc_embree_share_visibility(stage_run *run, worker *w, tile at) {
     tile_rays *t = &w->shared;
     if (run->ctx.frame->params->final_ray)
@@ -221,7 +266,9 @@ void noc_embree_share_visibility(stage_run *run, worker *w, tile at) {
             if (!(t->segments[i].clear >> l & 1))
                 t->draws[i].r.w[l] = 0;
     rblock *r = run->s->b.r[run->stage->target];
-    for (int i = 0; i < t->count; i += t->draws[i].rays)
+    if (run->ctx.frame->params->method == NOC_METHOD_RESTIR)
+        make_reservoirs(run, t);
+    else for (int i = 0; i < t->count; i += t->draws[i].rays)
         for (int l = 0; l < BLOCK; l++)
             if (r[t->at[t->draws[i].block]].w[l] > 0 && !(t->segments[t->kept[t->draws[i].block][l]].clear >> l & 1))
                 r[t->at[t->draws[i].block]].w[l] = 0;

@@ -270,7 +270,7 @@ static void shade(stage_run *run, worker *w, tile t) {
         show_emitters(run, &g[blocks[i].at], &b->emitter[blocks[i].at], &b->colour[blocks[i].at]);
     if (!run->ctx.light_count)
         return;
-    if (noc_embree_shares_rays(f->params)) {
+    if (noc_embree_shares_rays(f->params) && f->params->method == NOC_METHOD_RIS) {
         noc_embree_share_shade(run, w, t);
     } else if (f->params->method != NOC_METHOD_REFERENCE) {
         shade_samples(run, w, blocks, n);
