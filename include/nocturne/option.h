@@ -43,6 +43,8 @@ NOC_API const noc_option *noc_builtin_options(void); /* fields of noc_builtin_pa
 NOC_API noc_status noc_option_set(const noc_option *option, void *params, const char *value, noc_log *log);
 /* The field's present value as text, for help and metadata. Returns the length, like snprintf. */
 NOC_API int noc_option_get(const noc_option *option, const void *params, char *text, size_t size);
+/* Bytes of the field; of a text, those of its pointer. */
+NOC_API size_t noc_option_size(const noc_option *option);
 /* True where params lack what the option needs, so that its value changes no picture; why then tells, for a message: "it
  * needs method ris, not is". table: of params, where the options that it needs are. */
 NOC_API bool noc_option_idle(const noc_option *option, const noc_option *table, const void *params, char *why, size_t size);

@@ -37,8 +37,8 @@ typedef struct noc_render_params {
     noc_candidates candidates;  /* ris, restir: source of the light candidates */
     int draws;                  /* M: candidates a pixel and frame, 1..1024 */
     int list, tail;             /* lists: strongest lights of a tile, 0..128; draws from all others, 1..128 */
-    int shadow_rays;            /* ris with lists: shadow rays a pixel and frame: a target, 1 to twice as many; 1..8 */
-    bool learn;                 /* ris with lists: visibility found in earlier frames says where rays are sent */
+    int shadow_rays;            /* lists: shadow rays a pixel and frame: a target, 1 to twice as many; 1..8 */
+    bool learn;                 /* lists: visibility found in earlier frames says where rays are sent */
     double influence;           /* bvh: S_r, the distance at which a light of 1 cd is last found, m; 0 = found for the scene,
                                  * and then for every point */
     noc_influence_boxes influence_boxes;
@@ -86,10 +86,10 @@ NOC_DEFAULT_PARAMS(noc_render_params, noc_render_default_params, NOC_RENDER_DEFA
 /* Settings for a purpose, chosen by measurement (docs/estimator.md, "Presets"). */
 typedef enum noc_preset {
     NOC_PRESET_STILL,       /* least error after a minute: the defaults */
-    NOC_PRESET_INTERACTIVE  /* least error of the first frames, a frame in half the time */
+    NOC_PRESET_INTERACTIVE  /* least error of the first frames and of single ones under a moving camera, in half the time */
 } noc_preset;
 
-/* Sets method, candidates, list, tail, shadow_rays and learn; the rest stays as it is. */
+/* Sets all that says how light is estimated and reused; the picture's size, seed, sky and the like stay as they are. */
 NOC_API void noc_render_use_preset(noc_render_params *params, noc_preset preset);
 
 typedef struct noc_renderer noc_renderer;

@@ -95,15 +95,10 @@ static int check_builtin(const render_args *args) {
 static void use_preset(render_args *args) {
     noc_render_params given = args->render, *p = &args->render;
     noc_render_use_preset(p, (noc_preset)args->preset);
-    for (size_t i = 0; i < args->common.given_count; i++) {
-        const char *name = args->common.given[i]->name;
-        p->method = strcmp(name, "method") ? p->method : given.method;
-        p->candidates = strcmp(name, "candidates") ? p->candidates : given.candidates;
-        p->list = strcmp(name, "list") ? p->list : given.list;
-        p->tail = strcmp(name, "tail") ? p->tail : given.tail;
-        p->shadow_rays = strcmp(name, "shadow-rays") ? p->shadow_rays : given.shadow_rays;
-        p->learn = strcmp(name, "learn") ? p->learn : given.learn;
-    }
+    for (const noc_option *o = noc_render_options(); o->name; o++)
+        for (size_t i = 0; i < args->common.given_count; i++)
+            if (args->common.given[i] == o)
+                memcpy((char *)p + o->offset, (const char *)&given + o->offset, noc_option_size(o));
 }
 
 /* What was given and changes nothing is no error, but hardly what was meant. */

@@ -14,8 +14,7 @@ static bool same_camera(const noc_camera *a, const noc_camera *b) {
 /* Row by row of the option table, which names every field that can change a picture; views are not among them. */
 static bool same_params(const noc_render_params *a, const noc_render_params *b) {
     for (const noc_option *o = noc_render_options(); o->name; o++) {
-        size_t size = o->kind == NOC_OPTION_BOOL ? sizeof(bool) : o->kind == NOC_OPTION_REAL ? sizeof(double) : sizeof(int);
-        if (memcmp((const char *)a + o->offset, (const char *)b + o->offset, size))
+        if (memcmp((const char *)a + o->offset, (const char *)b + o->offset, noc_option_size(o)))
             return false;
     }
     return true;

@@ -18,7 +18,6 @@
 #define CANDIDATES "method=ris|restir"
 #define DRAWN CANDIDATES ",candidates=uniform|power|bvh|tree"
 #define LISTS CANDIDATES ",candidates=lists"
-#define SEVERAL_RAYS "method=ris,candidates=lists"
 #define BVH CANDIDATES ",candidates=bvh"
 #define RESTIR "method=restir"
 #define SPATIAL RESTIR ",spatial=true"
@@ -39,10 +38,9 @@ static const noc_option render_options[] = {
     INT(P, draws, "draws", "Estimator", 1, 1024, "", "light candidates a pixel and frame (M)", DRAWN),
     INT(P, list, "list", "Estimator", 0, 128, "", "lists: strongest lights of a tile, seen by each of its pixels", LISTS),
     INT(P, tail, "tail", "Estimator", 1, 128, "", "lists: draws a tile from all other lights", LISTS),
-    INT(P, shadow_rays, "shadow-rays", "Estimator", 1, 8, "", "ris with lists: shadow rays a pixel, a target: 1 to twice as many are sent",
-        SEVERAL_RAYS),
+    INT(P, shadow_rays, "shadow-rays", "Estimator", 1, 8, "", "lists: shadow rays a pixel, a target: 1 to twice as many are sent", LISTS),
     BOOL(P, learn, "learn", "Estimator",
-         "ris with lists: earlier frames' rays say where to send new ones", SEVERAL_RAYS ",final-ray=true"),
+         "lists: earlier frames' rays say where to send new ones", LISTS ",final-ray=true"),
     REAL(P, influence, "influence", "Estimator", 0, 1e6, "m", "bvh: reach of a light of 1 cd; 0 = found for the scene", BVH),
     CHOICE(P, influence_boxes, "influence-boxes", "Estimator", "sphere|visible",
          "bvh: lights reach as far as they shine, or see", BVH),
@@ -222,6 +220,15 @@ static int get_choice(const noc_option *o, int index, char *text, size_t size) {
         c += *c == '|';
     }
     return snprintf(text, size, "%.*s", index ? 0 : (int)strcspn(c, "|"), c);
+}
+
+size_t noc_option_size(const noc_option *option) {
+    switch (option->kind) {
+    case NOC_OPTION_BOOL: return sizeof(bool);
+    case NOC_OPTION_REAL: return sizeof(double);
+    case NOC_OPTION_TEXT: return sizeof(char *);
+    default: return sizeof(int);
+    }
 }
 
 int noc_option_get(const noc_option *option, const void *params, char *text, size_t size) {

@@ -5,10 +5,16 @@
 void noc_render_use_preset(noc_render_params *p, noc_preset preset) {
     noc_render_params d = noc_render_default_params();
     bool interactive = preset == NOC_PRESET_INTERACTIVE;
-    p->method = d.method;
+    p->method = interactive ? NOC_METHOD_RESTIR : d.method;
     p->candidates = d.candidates;
     p->list = interactive ? 32 : d.list;
     p->tail = interactive ? 32 : d.tail;
     p->shadow_rays = interactive ? 4 : d.shadow_rays;
     p->learn = d.learn;
+    p->temporal = d.temporal;
+    p->spatial = interactive ? false : d.spatial;
+    p->history = interactive ? 8 : d.history;
+    p->bias = d.bias;
+    p->bias_rays = d.bias_rays;
+    p->visibility_reuse = d.visibility_reuse;
 }

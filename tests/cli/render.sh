@@ -36,13 +36,13 @@ run render $small -q -o b.PNG
 test $status = 0 && test ! -s out && test ! -s err && cmp -s a.png b.PNG; result $? "quiet says nothing; endings in capitals count"
 
 run render $small --preset interactive -o b.png
-test "$(meta b.png shadow-rays) $(meta b.png list) $(meta b.png tail)" = "4 32 32"; result $? "a preset is its settings"
+test "$(meta b.png shadow-rays) $(meta b.png list) $(meta b.png tail)" = "4 32 32" && test "$(meta b.png method) $(meta b.png spatial)" = "restir false"; result $? "a preset is its settings"
 run render $small --tail 99 --preset interactive --shadow-rays 7 -o b.png
 test "$(meta b.png shadow-rays) $(meta b.png list) $(meta b.png tail)" = "7 32 99"; result $? "options beside a preset win"
 
 # What is given and changes nothing: one line each; nothing where it counts, and nothing of what a preset sets.
 run render $small --method is --shadow-rays 4 --no-temporal --frames 1 -o b.png
-test $status = 0 && test "$(cat err)" = "nocturne: warning: --shadow-rays has no effect: it needs method ris, not is
+test $status = 0 && test "$(cat err)" = "nocturne: warning: --shadow-rays has no effect: it needs method ris|restir, not is
 nocturne: warning: --no-temporal has no effect: it needs method restir, not is"
 result $? "options without effect are warned of"
 run render $small --method restir --candidates bvh --preset interactive --uniform-every 2 --draws 3 --no-bias-rays --frames 1 -o b.png

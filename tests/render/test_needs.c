@@ -126,7 +126,7 @@ static void without_it_does_not(void **state) {
 
 static void it_is_told_what_is_missing(void **state) {
     static const struct { const char *option, *other, *value, *why; } cases[] = {
-        { "shadow-rays", "method", "is", "it needs method ris, not is" },
+        { "shadow-rays", "method", "is", "it needs method ris|restir, not is" },
         { "draws", "candidates", "lists", "it needs candidates uniform|power|bvh|tree, not lists" },
         { "learn", "final-ray", "false", "it needs final-ray true, not false" },
         { "temporal", "method", "ris", "it needs method restir, not ris" },

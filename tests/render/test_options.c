@@ -31,15 +31,6 @@ static const noc_option *find(const noc_option *table, const char *name) {
     return NULL;
 }
 
-static size_t field_size(noc_option_kind kind) {
-    switch (kind) {
-    case NOC_OPTION_BOOL: return sizeof(bool);
-    case NOC_OPTION_REAL: return sizeof(double);
-    case NOC_OPTION_TEXT: return sizeof(char *);
-    default: return sizeof(int);
-    }
-}
-
 /* Fields lie in their struct without overlapping, and names are unique over all tables, since one command line takes all. */
 static void rows_are_sound(void **state) {
     noc_map names = { 0 };
@@ -50,7 +41,7 @@ static void rows_are_sound(void **state) {
             assert_true(o->group && o->unit && o->help && *o->help && strlen(o->help) < 80);
             assert_int_equal(o->kind == NOC_OPTION_CHOICE, o->choices != NULL);
             assert_true(strncmp(o->name, "no-", 3) != 0);
-            size_t size = field_size(o->kind);
+            size_t size = noc_option_size(o);
             assert_true(o->offset + size <= tables[t].size && o->offset % size == 0);
             for (size_t i = 0; i < size; i++)
                 assert_int_equal(used[o->offset + i]++, 0);

@@ -109,7 +109,7 @@ static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ct
     run->k->segments(&run->ctx, g, d->r.light, d->r.u, d->r.v, &s->rays);
 }
 
-/* The reservoir that stands for the block in views: one of the draws, at random. */
+/* The reservoir that stands for the block in views of the candidates: one of the draws, at random. */
 static void keep_one(const stage_run *run, tile_rays *t, const block_draws *from, const float pick[BLOCK], int block,
                      int first, rblock *out) {
     for (int l = 0; l < BLOCK; l++) {
@@ -240,6 +240,7 @@ static void resample(const stage_run *run, const tile_rays *t, int first, const 
     }
 }
 
+/* The rays of restir's pixels become their own reservoirs, of samples known to be seen. */
 static void make_reservoirs(const stage_run *run, const tile_rays *t) {
     const noc_frame *f = run->ctx.frame;
     for (int i = 0; i < t->count; i += t->draws[i].rays) {
@@ -254,6 +255,15 @@ static void make_reservoirs(const stage_run *run, const tile_rays *t) {
     }
 }
 
+/* Views: a reservoir that stands for its pixel is empty where its ray was blocked. */
+static void blank_hidden(const stage_run *run, const tile_rays *t) {
+    rblock *r = run->s->b.r[run->stage->target];
+    for (int i = 0; i < t->count; i += t->draws[i].rays)
+        for (int l = 0; l < BLOCK; l++)
+            if (r[t->at[t->draws[i].block]].w[l] > 0 && !(t->segments[t->kept[t->draws[i].block][l]].clear >> l & 1))
+                r[t->at[t->draws[i].block]].w[l] = 0;
+}
+
 void noc_embree_share_visibility(stage_run *run, worker *w, tile at) {
     tile_rays *t = &w->shared;
     if (run->ctx.frame->params->final_ray)
@@ -265,13 +275,10 @@ void noc_embree_share_visibility(stage_run *run, worker *w, tile at) {
         for (int l = 0; l < BLOCK; l++)
             if (!(t->segments[i].clear >> l & 1))
                 t->draws[i].r.w[l] = 0;
-    rblock *r = run->s->b.r[run->stage->target];
     if (run->ctx.frame->params->method == NOC_METHOD_RESTIR)
         make_reservoirs(run, t);
-    else for (int i = 0; i < t->count; i += t->draws[i].rays)
-        for (int l = 0; l < BLOCK; l++)
-            if (r[t->at[t->draws[i].block]].w[l] > 0 && !(t->segments[t->kept[t->draws[i].block][l]].clear >> l & 1))
-                r[t->at[t->draws[i].block]].w[l] = 0;
+    else
+        blank_hidden(run, t);
     if (learns(run->ctx.frame->params))
         note_sightings(run, w, at);
 }
