@@ -255,7 +255,7 @@ static void the_chosen_light(void **state) {
 /* W is an estimate of 1 / density: E[W; light k is chosen] = 1 for every light k that lights the pixel. */
 static void weights(void **state) {
     (void)state;
-    enum { LIGHTS = 4, FRAMES = 40 };
+    enum { LIGHTS = 4, FRAMES = 80 };
     noc_scene *s = lit_floor(LIGHTS);
     noc_camera c = above();
     static const noc_candidates from[] = { NOC_CANDIDATES_UNIFORM, NOC_CANDIDATES_POWER, NOC_CANDIDATES_LISTS };
