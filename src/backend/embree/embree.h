@@ -69,6 +69,7 @@ typedef struct tile_rays {
     int cell_of[TILE_BLOCKS * TILE_BLOCKS];
     int kept[TILE_BLOCKS * TILE_BLOCKS][BLOCK]; /* the draw that stands for a pixel in views */
     int cells, count;
+    float reused[TILE_BLOCKS * TILE_BLOCKS][BLOCK]; /* restir: what of a pixel's light is its reservoir's; its rays have the rest */
     double bright;
     tile_cell cell[TILE_BLOCKS * TILE_BLOCKS];
     ray_draw draws[TILE_BLOCKS * TILE_BLOCKS * MOST_SHADOW_RAYS];
@@ -226,7 +227,7 @@ bool noc_embree_shares_rays(const noc_render_params *p);
 void noc_embree_share_candidates(stage_run *run, worker *w, tile t, const gblock *const *g, const uint32_t *lanes);
 void noc_embree_share_visibility(stage_run *run, worker *w, tile t);
 void noc_embree_share_shade(stage_run *run, worker *w, tile t);
-/* Before and after a frame's only stage; a frame that is dropped is not learned from. */
+/* Before a frame's first stage, and when the frame is complete; one that is dropped is not learned from. */
 noc_status noc_embree_begin_learning(embree_state *s, const noc_frame *frame);
 void noc_embree_end_learning(embree_state *s, const noc_frame *frame);
 void noc_embree_release_learning(embree_state *s);

@@ -1,6 +1,6 @@
 /* Light lists with several shadow rays a pixel (core/lists.h, docs/estimator.md): every pixel weighs the entries of its tile's
  * list and shares its rays out over them systematically. ris adds up what they see; restir keeps one of those that are
- * seen, as the pixel's own reservoir. How many rays, and which entries, is steered by what earlier frames have learned of the
+ * seen as the pixel's own reservoir, and where only frames are reused mixes both. How many rays, and which entries, is steered by what earlier frames have learned of the
  * lights' visibility. */
 #include "backend/embree/embree.h"
 
@@ -283,10 +283,29 @@ void noc_embree_share_visibility(stage_run *run, worker *w, tile at) {
         note_sightings(run, w, at);
 }
 
+/* restir: the rays and the reservoir of a pixel are both unbiased, so any mixture of them is whose shares are fixed before
+ * either is drawn. M tells how many frames stand behind the reservoir, whatever they found; its sample has the luminance of all
+ * of them, but one light's colour. */
+static void share_with_reservoirs(const stage_run *run, tile_rays *t, tile at) {
+    const float frame = (float)run->ctx.frame->params->draws;
+    for (int n = (at.y1 - at.y0) * (at.x1 - at.x0); n-- > 0;) {
+        const rblock *r = &run->s->b.r[run->stage->target][t->at[n]];
+        for (int l = 0; l < BLOCK; l++) {
+            float past = NOC_MAX(r->m[l] - frame, 0.f);
+            t->reused[n][l] = past / (past + 2 * frame);
+        }
+    }
+    for (int i = 0; i < t->count; i++)
+        for (int l = 0; l < BLOCK; l++)
+            t->draws[i].r.w[l] *= 1 - t->reused[t->draws[i].block][l];
+}
+
 void noc_embree_share_shade(stage_run *run, worker *w, tile at) {
-    const tile_rays *t = &w->shared;
+    tile_rays *t = &w->shared;
     if (!(run->stage->passes >> NOC_PASS_VISIBILITY & 1))
         noc_embree_share_visibility(run, w, at);
+    if (run->ctx.frame->params->method == NOC_METHOD_RESTIR)
+        share_with_reservoirs(run, t, at);
     const gblock *g = run->s->b.g[run->ctx.frame->gbuffer];
     for (int i = 0; i < t->count; i++) {
         size_t block = t->at[t->draws[i].block];

@@ -235,8 +235,9 @@ static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, cons
     return dropped;
 }
 
-/* The samples of a tile's reservoirs: rays to those that are not known to be seen, all at once. */
-static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, int n) {
+/* The samples of a tile's reservoirs: rays to those that are not known to be seen, all at once. share: what of each pixel's light
+ * is its sample's; NULL: all. */
+static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, int n, const float (*share)[BLOCK]) {
     frame_buffers *b = &run->s->b;
     const gblock *g = b->g[run->ctx.frame->gbuffer];
     const rblock *r = b->r[run->stage->target];
@@ -255,8 +256,11 @@ static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, i
         size_t at = blocks[i].at;
         if (asked[i])
             lanes[i] = (lanes[i] & ~asked[i]) | answer++->clear;
+        rblock shown = r[at];
+        for (int l = 0; share && l < BLOCK; l++)
+            shown.w[l] *= share[i][l];
         if (lanes[i])
-            w->dropped += (uint64_t)__builtin_popcount(run->k->shade(&run->ctx, &g[at], &r[at], lanes[i], &b->colour[at]));
+            w->dropped += (uint64_t)__builtin_popcount(run->k->shade(&run->ctx, &g[at], &shown, lanes[i], &b->colour[at]));
     }
 }
 
@@ -270,10 +274,12 @@ static void shade(stage_run *run, worker *w, tile t) {
         show_emitters(run, &g[blocks[i].at], &b->emitter[blocks[i].at], &b->colour[blocks[i].at]);
     if (!run->ctx.light_count)
         return;
-    if (noc_embree_shares_rays(f->params) && f->params->method == NOC_METHOD_RIS) {
+    if (noc_embree_shares_rays(f->params) && run->stage->passes >> NOC_PASS_CANDIDATES & 1) {
         noc_embree_share_shade(run, w, t);
+        if (f->params->method == NOC_METHOD_RESTIR)
+            shade_samples(run, w, blocks, n, (const float (*)[BLOCK])w->shared.reused);
     } else if (f->params->method != NOC_METHOD_REFERENCE) {
-        shade_samples(run, w, blocks, n);
+        shade_samples(run, w, blocks, n, NULL);
     } else {
         for (int i = 0; i < n; i++) {
             size_t at = blocks[i].at;
