@@ -297,7 +297,8 @@ expect "an input that is not there" 1 'gone.gml' experiment gone.json -o w --cac
 expect "a folder that cannot be" 1 'file/w: this folder cannot be used: Not a directory' experiment spec.json -o file/w --cache cache
 expect "a cache that cannot be" 1 'file: this folder cannot be used' experiment spec.json -o w --cache file
 for spec in "$source_dir"/experiments/*.json; do
-    # The ready specs are right up to their folder, which cannot be made.
+    # The ready specs are right up to their folder, which cannot be made; one wants an input to be made first.
+    test "$(basename "$spec")" != obj-city.json || test -e "$source_dir/build/city.obj" || continue
     expect "$(basename "$spec") is right" 1 'file/w: this folder' experiment "$spec" -o file/w
 done
 finish

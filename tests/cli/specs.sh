@@ -15,16 +15,16 @@ SPEC
 # A run's rows are known by a hash of its name and all of its options: equal options, no new rows.
 spec preset.json '{ "name": "*", "preset": "*" }, { "name": "own", "shadow-rays": 2, "preset": "interactive" }'
 spec spelled.json '{ "name": "still", "method": "ris", "candidates": "lists", "list": 64, "tail": 128, "shadow-rays": 8 },
-    { "name": "interactive", "method": "ris", "candidates": "lists", "list": 32, "tail": 32, "shadow-rays": 4 },
-    { "name": "own", "method": "ris", "candidates": "lists", "list": 32, "tail": 32, "shadow-rays": 2 }' 
+    { "name": "interactive", "method": "restir", "spatial": false, "history": 8, "candidates": "lists", "list": 32, "tail": 32, "shadow-rays": 4 },
+    { "name": "own", "method": "restir", "spatial": false, "history": 8, "candidates": "lists", "list": 32, "tail": 32, "shadow-rays": 2 }' 
 run experiment preset.json -o p --cache cache
 test $status = 0 && grep -q ': 6 rows, 6 of them made now' out; result $? "\"preset\": \"*\" is a configuration of each preset"
 run experiment spelled.json -o p --cache cache
 test $status = 0 && grep -q ': 6 rows, 0 of them made now' out; result $? "a preset is the options that it stands for; those beside it win, wherever it stands"
 spec shared.json '{ "name": "a" }, { "name": "b", "shadow-rays": 2 }, { "name": "c", "preset": "still" }' '"options": { "tail": 48, "preset": "interactive" },'
 run experiment shared.json -o q --cache cache
-spec spelled.json '{ "name": "a" }, { "name": "b", "shadow-rays": 2 }, { "name": "c", "list": 64, "tail": 128, "shadow-rays": 8 }' \
-    '"options": { "list": 32, "tail": 48, "shadow-rays": 4 },'
+spec spelled.json '{ "name": "a" }, { "name": "b", "shadow-rays": 2 }, { "name": "c", "method": "ris", "spatial": true, "history": 20, "list": 64, "tail": 128, "shadow-rays": 8 }' \
+    '"options": { "method": "restir", "spatial": false, "history": 8, "list": 32, "tail": 48, "shadow-rays": 4 },'
 run experiment spelled.json -o q --cache cache
 test $status = 0 && grep -q ': 6 rows, 0 of them made now' out; result $? "one for all configurations is overruled by their own"
 
@@ -34,10 +34,9 @@ spec idle.json '{ "name": "is", "method": "is", "draws": 8 }, { "name": "*", "me
 sed -i 's/"reference": { /"reference": { "tail": 3, /' idle.json
 run experiment idle.json -o i --cache cache
 cat >told <<'TOLD'
-nocturne: warning: idle.json: options: passes has no effect: it needs method restir, not ris
+nocturne: warning: idle.json: options: passes has no effect: it needs spatial true, not false
 nocturne: warning: idle.json: reference: tail has no effect: it needs method ris|restir, not reference
 nocturne: warning: idle.json: configurations[0]: draws has no effect: it needs method ris|restir, not is
-nocturne: warning: idle.json: configurations[2]: preset has no effect: it needs candidates lists, not bvh
 TOLD
 test $status = 0 && cmp -s told err; result $? "options that change nothing are warned of"
 run experiment idle.json -o i --cache cache -q
