@@ -64,9 +64,13 @@ static int make_folder(const char *path) {
 static char *output_folder(const experiment_args *args) {
     if (args->output)
         return cli_format("%s", args->output);
-    const char *spec = args->common.inputs[0], *slash = strrchr(spec, '/'), *name = slash ? slash + 1 : spec;
-    const char *dot = strrchr(name, '.');
-    return dot && dot > name ? cli_format("%.*s", (int)(dot - name), name) : cli_format("%s.results", name);
+    const char *spec = args->common.inputs[0], *slash = strrchr(spec, '/');
+    char *name = experiment_spec_name(spec);
+    if (strcmp(name, slash ? slash + 1 : spec))
+        return name;
+    char *folder = cli_format("%s.results", name); /* the spec has that name itself */
+    free(name);
+    return folder;
 }
 
 static char *cache_folder(const experiment_lab *lab) {

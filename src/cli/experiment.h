@@ -50,6 +50,7 @@ typedef struct experiment_config {
     int choice;              /* where the entry stands for several values of an option, which of them, else -1 */
     const noc_option *option; /* that option; NULL where there is none */
     const char *value;
+    const char *pattern;     /* the entry's name as the spec has it: "ris, *" */
 } experiment_config;
 
 /* Noise of a reference itself: estimated relMSE. NaN: not known. */
@@ -150,6 +151,7 @@ typedef struct experiment_lab {
 /* experiment_spec.c */
 int experiment_read_spec(experiment_spec *spec, const char *path, bool quiet); /* CLI_OK, or an exit status after reporting */
 void experiment_free_spec(experiment_spec *spec);
+char *experiment_spec_name(const char *path); /* "a/methods.json" is "methods"; free() it */
 
 /* experiment_member.c: one member of a JSON object to one field, by the option tables. Reported with its place. */
 struct json_t;

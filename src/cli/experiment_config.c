@@ -156,6 +156,7 @@ int experiment_read_config(experiment_spec *spec, const char *place, json_t *obj
         status = read_members(spec, place, object, config);
         config->option = option;
         config->value = experiment_keep(spec, value_text(option, config));
+        config->pattern = name;
         config->name = experiment_keep(spec, star_name(name, config->value));
     }
     json_decref(values);

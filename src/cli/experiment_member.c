@@ -40,8 +40,10 @@ const noc_option *experiment_option(const cli_set *sets, const char *name, size_
     return NULL;
 }
 
+enum { FEW = 24 }; /* names that an error lists */
+
 static int unknown(const experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others, const char *name) {
-    const char *words[2 * CLI_GIVEN];
+    const char *words[2 * CLI_GIVEN] = { NULL };
     size_t count = 0;
     for (const cli_set *set = sets; set->table; set++)
         for (const noc_option *o = set->table(); o->name && count < CLI_GIVEN; o++)
@@ -52,8 +54,14 @@ static int unknown(const experiment_spec *spec, const char *place, const cli_set
     for (; others && *others && count < 2 * CLI_GIVEN; others++)
         words[count++] = *others;
     const char *nearest = cli_nearest(name, words, count);
-    return nearest ? experiment_wrong(spec, place, "no option \"%.60s\"; is it \"%s\"?", name, nearest)
-                   : experiment_wrong(spec, place, "no option \"%.60s\"", name);
+    if (nearest)
+        return experiment_wrong(spec, place, "no option \"%.60s\"; is it \"%s\"?", name, nearest);
+    if (count > FEW)
+        return experiment_wrong(spec, place, "no option \"%.60s\"; 'nocturne help render' and docs/experiments.md tell which there are", name);
+    char all[400];
+    for (size_t i = 0, at = 0; i < count && at < sizeof(all); i++)
+        at += (size_t)snprintf(all + at, sizeof(all) - at, "%s%s", i ? ", " : "", words[i]);
+    return experiment_wrong(spec, place, "no option \"%.60s\"; there are %s", name, all);
 }
 
 /* A value as it would be written on the command line; NULL where JSON has no such thing there. An array of numbers is a list. */

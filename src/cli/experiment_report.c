@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -133,7 +134,7 @@ static void print_setting(FILE *out, const experiment_lab *lab) {
     char date[40] = "", text[32], memory[32];
     time_t now = time(NULL);
     strftime(date, sizeof(date), "%Y-%m-%d %H:%M UTC", gmtime(&now));
-    fprintf(out, "# %s\n\n", spec->title ? spec->title : spec->path);
+    fprintf(out, "# %s\n\n", spec->title);
     if (spec->note)
         fprintf(out, "%s\n\n", spec->note);
     fprintf(out, "Made by nocturne %s (%s) on %s, on %s; the code that ran: %s.\n\n    ", noc_version(), noc_features(), date,
@@ -182,11 +183,16 @@ static void print_crops(FILE *out, const experiment_lab *lab, size_t camera) {
         fprintf(out, mode == EXPERIMENT_ACCUMULATED ? "\n![Mean of %d frames](%s)\n" : "\n![Frame %d](%s)\n", frame, name);
         free(name);
     }
-    fprintf(out, "\n%s ", mode == EXPERIMENT_ACCUMULATED ? "The mean of frames" : motion ? "The last frame:" : frames > 1 ? "Frames" : "Frame");
+    bool mean = mode == EXPERIMENT_ACCUMULATED;
+    fprintf(out, "\nShown %s ", frames > 1 ? "are" : "is");
+    if (motion)
+        fprintf(out, "the last frame");
+    else
+        fprintf(out, "%s%s", !mean ? "frame" : frames > 1 ? "the means of frame" : "the mean of frame", mean || frames > 1 ? "s " : " ");
     for (size_t i = 0; i < frames && !motion; i++)
-        fprintf(out, mode == EXPERIMENT_ACCUMULATED ? "%s1 to %d" : "%s%d", i ? ", " : "", spec->shown[i]);
-    fprintf(out, "%s row by row as in this table; the part of %d x %d px at (%d, %d), enlarged %d times, all with the reference's "
-                 "exposure.\n\n|", motion ? "" : ",", crop->width, crop->height, crop->x, crop->y, crop->scale);
+        fprintf(out, mean ? "%s1 to %d" : "%s%d", i ? ", " : "", spec->shown[i]);
+    fprintf(out, " of each configuration, row by row as in this table: the part of %d x %d px at (%d, %d), enlarged %d times, all "
+                 "with the reference's exposure.\n\n|", crop->width, crop->height, crop->x, crop->y, crop->scale);
     size_t columns = (size_t)crop->columns, count = spec->config_count + 1;
     for (size_t i = 0; i < (count + columns - 1) / columns * columns; i++) {
         experiment_cell(out, !i ? "reference" : i < count ? spec->configs[i - 1].name : "");
@@ -200,38 +206,74 @@ static void print_crops(FILE *out, const experiment_lab *lab, size_t camera) {
     }
 }
 
-/* Frames that a table shows: some of those measured, and the last. */
-static int frames_of(experiment_series s, int out[SHOWN + 1]) {
+/* Frames that a table of errors shows: some of those that were measured, and each configuration's last, which differ where CPU
+ * seconds end the runs. */
+typedef struct table_frames { int frames[SHOWN + 1], count; bool own_last; } table_frames;
+
+static bool is_there(experiment_series s, int frame) {
+    bool any = false;
+    for (s.config = 0; s.config < s.lab->spec.config_count && !any; s.config++)
+        any = !isnan(experiment_at(&s, 0, frame));
+    return any;
+}
+
+static table_frames frames_of(experiment_series s) {
     const experiment_spec *spec = &s.lab->spec;
-    int most = 0, count = 0;
+    table_frames t = { .count = 0 };
+    int most = 0, least = INT_MAX;
     for (s.config = 0; s.config < spec->config_count; s.config++) {
         int last = experiment_last(&s);
         most = last > most ? last : most;
+        least = last < least ? last : least;
     }
-    bool listed = spec->measured_count && spec->measured_count <= SHOWN && !spec->cameras[s.camera].frames;
-    for (size_t i = 0; i < (listed ? spec->measured_count : SHOWN) && !spec->cameras[s.camera].frames; i++) {
+    t.own_last = least != most;
+    bool listed = spec->measured_count && spec->measured_count <= SHOWN;
+    for (size_t i = 0; i < (listed ? spec->measured_count : SHOWN); i++) {
         int frame = listed ? spec->measured[i] : shown_frames[i];
-        if (frame <= most)
-            out[count++] = frame;
+        if (frame <= most && is_there(s, frame))
+            t.frames[t.count++] = frame;
     }
-    if (most && (!count || out[count - 1] != most))
-        out[count++] = most;
-    return count;
+    if (most && !t.own_last && (!t.count || t.frames[t.count - 1] != most))
+        t.frames[t.count++] = most;
+    return t;
+}
+
+/* What `-` in the columns means, and whose frame the last is. */
+static void print_legend(FILE *out, experiment_series s) {
+    table_frames t = frames_of(s);
+    bool missing = false;
+    for (s.config = 0; s.config < s.lab->spec.config_count; s.config++)
+        for (int i = 0; i < t.count; i++)
+            missing |= isnan(experiment_at(&s, 0, t.frames[i]));
+    if (t.own_last)
+        fprintf(out, "\nlast: each configuration's own last frame%s, its number in brackets.",
+                s.lab->spec.repetitions > 1 ? " of those that all repetitions measured" : "");
+    if (missing)
+        fprintf(out, "%s-: the run had ended before that frame, or did not measure it.", t.own_last ? " " : "\n");
+    fputs(t.own_last || missing ? "\n" : "", out);
 }
 
 static void print_errors(FILE *out, experiment_series s, const char *what, int column, const char *fmt, bool bias) {
-    int frames[SHOWN + 1], count = frames_of(s, frames);
+    table_frames t = frames_of(s);
     char head[400];
     int at = snprintf(head, sizeof(head), "| %s, frame |", what);
-    for (int i = 0; i < count; i++)
-        at += snprintf(head + at, sizeof(head) - (size_t)at, " %d |", frames[i]);
-    table_head(out, head, (size_t)count);
+    for (int i = 0; i < t.count; i++)
+        at += snprintf(head + at, sizeof(head) - (size_t)at, " %d |", t.frames[i]);
+    snprintf(head + at, sizeof(head) - (size_t)at, "%s", t.own_last ? " last |" : "");
+    table_head(out, head, (size_t)(t.count + t.own_last));
     for (s.config = 0; s.config < s.lab->spec.config_count; s.config++) {
         fputc('|', out);
         experiment_cell(out, s.lab->spec.configs[s.config].name);
-        for (int i = 0; i < count; i++) {
-            double v = experiment_at(&s, column, frames[i]);
+        for (int i = 0; i < t.count; i++) {
+            double v = experiment_at(&s, column, t.frames[i]);
             experiment_number(out, bias ? 100 * (v - 1) : v, fmt);
+        }
+        if (t.own_last) {
+            int last = experiment_last(&s);
+            double v = experiment_at(&s, column, last);
+            char text[48];
+            snprintf(text, sizeof(text), "%s (%d)", fmt, last);
+            experiment_number(out, bias ? 100 * (v - 1) : v, text);
         }
         fputc('\n', out);
     }
@@ -242,6 +284,7 @@ static void print_all_frames(FILE *out, experiment_series s, const char *clamped
     print_errors(out, s, "relMSE", first + 1, "%.3g", false);
     print_errors(out, s, "RMSE-8", first, "%.2f", false);
     print_errors(out, s, "Bias, %", first + 3, "%+.2f", true);
+    print_legend(out, s);
 }
 
 /* Of a camera that moves. */

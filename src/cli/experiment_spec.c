@@ -191,6 +191,16 @@ static int read_times(S *spec, json_t *times) {
     return CLI_OK;
 }
 
+/* Frames that no configuration comes to would be columns of nothing. Of cameras with a path they say nothing anyway. */
+static int check_frames(const S *spec, const char *name, const int *frames, size_t count) {
+    int most = 0;
+    for (size_t c = 0; c < spec->camera_count; c++)
+        for (size_t i = 0; i < spec->config_count && !spec->cameras[c].frames; i++)
+            most = spec->configs[i].frames > most ? spec->configs[i].frames : most;
+    return !most || !count || frames[count - 1] <= most ? CLI_OK
+        : experiment_wrong(spec, name, "frame %d is after the last, %d", frames[count - 1], most);
+}
+
 static int check_times(const S *spec) {
     size_t resting = 0;
     for (size_t c = 0; c < spec->camera_count; c++)
@@ -218,8 +228,8 @@ static int read_root(S *spec, json_t *root) {
     int status = experiment_set_all(spec, "", root, spec_sets, objects, spec);
     if (!status && spec->seconds > 0 && !json_object_get(root, "frames"))
         spec->frames = EXPERIMENT_FRAMES;
-    if (!status && spec->title) {
-        char *title = experiment_keep(spec, cli_format("%s", spec->title));
+    if (!status) {
+        char *title = experiment_keep(spec, spec->title ? cli_format("%s", spec->title) : experiment_spec_name(spec->path));
         spec->title = cli_clean(title, strlen(title) + 1, title);
     }
     status = status ? status : read_size(spec);
@@ -236,11 +246,18 @@ static int read_root(S *spec, json_t *root) {
     spec->reference.params.seed = 4711;
     status = status ? status : experiment_set_all(spec, "reference", json_object_get(root, "reference"), reference_sets, NULL, spec);
     status = status ? status : read_lists(spec, root, &shared);
+    status = status ? status : check_frames(spec, "measured", spec->measured, spec->measured_count);
+    status = status ? status : check_frames(spec, "shown", spec->shown, spec->shown_count);
     status = status ? status : check_times(spec);
     status = status ? status : check_rows(spec);
     if (!status)
         experiment_warn_of_idle(spec, root);
     return status;
+}
+
+char *experiment_spec_name(const char *path) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+    return cli_format("%.*s", dot && dot > name ? (int)(dot - name) : (int)strlen(name), name);
 }
 
 int experiment_read_spec(S *spec, const char *path, bool quiet) {

@@ -87,15 +87,15 @@ char *experiment_row_name(const experiment_lab *lab, size_t config) {
     const experiment_config *c = &lab->spec.configs[config];
     if (c->choice < 0)
         return cli_format("%s", c->name);
-    /* The entry's name is that of the configuration without the value, and what joined it. */
-    const char *at = strstr(c->name, c->value);
-    size_t before = at ? (size_t)(at - c->name) : strlen(c->name);
-    const char *after = at ? at + strlen(c->value) : "";
-    while (before && strchr(", =", c->name[before - 1]))
+    /* The entry's name without the value's place and what joins it; with it in the middle, where the rest would not read. */
+    const char *name = c->pattern, *star = strchr(name, '*'), *after = star ? star + 1 : "";
+    size_t before = star ? (size_t)(star - name) : strlen(name);
+    while (before && strchr(", =", name[before - 1]))
         before--;
-    while (!before && *after && strchr(", =", *after))
-        after++;
-    return before || *after ? cli_format("%.*s%s", (int)before, c->name, after) : cli_format("%s", c->option->name);
+    if (before)
+        return *after ? cli_format("%s", name) : cli_format("%.*s", (int)before, name);
+    after += strspn(after, ", =");
+    return cli_format("%s", *after ? after : c->option->name);
 }
 
 /* Entries of one option, under one camera. */
@@ -232,7 +232,7 @@ int experiment_write_summary(experiment_lab *lab) {
     FILE *out = experiment_create(lab, "summary.md", &temporary);
     if (!out)
         return CLI_FAILURE;
-    fprintf(out, "# %s\n\n", spec->title ? spec->title : spec->path);
+    fprintf(out, "# %s\n\n", spec->title);
     if (spec->note)
         fprintf(out, "%s\n\n", spec->note);
     fprintf(out, "%s; %d x %d px, %d repetition%s.\n", experiment_figure(spec), spec->width, spec->height, spec->repetitions,

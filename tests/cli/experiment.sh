@@ -245,6 +245,26 @@ result $? "runs end with their CPU seconds, sweeps have their values, and motion
 test "$(ls kcache/*.exr | wc -l)" = 2; result $? "all motions share one reference" "$(ls kcache)"
 grep -q '^| restir, M |' k/summary.md && grep -q '(2-city-at-rest-frame4.png)' k/report.md && grep -q '(1-single-own-frame3.png)' k/report.md
 result $? "summary.md has a column a value, report.md the frames shown"
+python3 - <<'CHECK'
+import csv, re
+rows = [r for r in csv.DictReader(open("k/results.csv")) if r["scene"] == "single"]
+report = open("k/report.md").read().split("\n## ")[1]
+tables = re.findall(r"^\| relMSE, frame \|(.*)\n\|[-:|]*\n((?:\|.*\n)*)", report, re.M)
+assert len(tables) == 2
+for mode, (head, body) in zip(("accumulated", "alone"), tables):
+    columns = [c.strip() for c in head.split("|")[:-1]]
+    cells = {line[0].strip(): [c.strip() for c in line[1:]] for line in (row.split("|")[1:-1] for row in body.splitlines())}
+    assert columns[:2] == ["1", "2"] and columns[-1] == "last" and len(cells) == 4, (columns, cells)
+    told = lambda name, frame: ["%.3g" % float(r["relmse"]) for r in rows if (r["configuration"], r["mode"], r["frame"]) == (name, mode, frame)]
+    for name, values in cells.items():
+        last = max(int(r["frame"]) for r in rows if (r["configuration"], r["mode"]) == (name, mode))
+        assert values[-1] == "%s (%d)" % (told(name, str(last))[0], last), (name, values)
+        for frame, value in zip(columns[:-1], values):
+            assert [value] == (told(name, frame) or ["-"]), (name, frame, value)
+    assert all(any(v[i] != "-" for v in cells.values()) for i in range(len(columns))), cells
+assert report.count("\nlast: each configuration's own last frame, its number in brackets. -: the run had ended") == 2
+CHECK
+result $? "report.md tells each run's own last frame, and has no column of nothing"
 sed 's/48x32/32768x32768/' kill.json >huge.json
 if (ulimit -v 20000000 && "$program" --version) >out 2>err; then
     (ulimit -v 20000000; "$program" experiment huge.json -o w --cache kcache) >out 2>err

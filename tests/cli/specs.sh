@@ -49,6 +49,30 @@ spec moving.json '{ "name": "a" }' '"equal-time": [1],'
 sed 's/"view": "own"/"view": "own", "path": { "frames": 2, "pan": 1 }/' moving.json >wrong.json
 expect "equal time of cameras that all move" 2 'wrong.json: equal-time: this needs a camera at rest' experiment wrong.json -o w
 
+spec far.json '{ "name": "a", "frames": 5 }, { "name": "b" }' '"measured": [1, 5],'
+run experiment far.json -o f --cache cache
+test $status = 0 && test "$(grep -c '^one,own,a,' f/results.csv)" = 4 && test "$(grep -c '^one,own,b,' f/results.csv)" = 2
+result $? "measured frames are those of the configurations that come to them"
+sed 's/"measured": \[1, 5\]/"measured": [1, 6]/' far.json >wrong.json
+expect "a measured frame after the last of all" 2 'wrong.json: measured: frame 6 is after the last, 5' experiment wrong.json -o w
+sed 's/"shown": \[\]/"shown": [6]/' far.json >wrong.json
+expect "and one to be shown" 2 'wrong.json: shown: frame 6 is after the last, 5' experiment wrong.json -o w
+sed 's/"view": "own"/"view": "own", "path": { "frames": 2, "speed": 1 }/' far.json >wrong.json
+expect "an unknown option like no other" 2 'wrong.json: cameras\[0\]: path: no option "speed"; there are frames, dolly, orbit, pan, cut, before$' \
+    experiment wrong.json -o w
+
+# What is not named is named after the spec, and an entry of several values as the spec has it.
+spec named.json '{ "name": "ris, * rays", "shadow-rays": [1, 2] }, { "name": "draws *", "candidates": "power", "draws": [1, 2] }, { "name": "*", "preset": "*" }'
+run experiment named.json -o e --cache cache
+test $status = 0 && test "$(head -n 1 e/report.md)" = "# named" && test "$(head -n 1 e/summary.md)" = "# named"; result $? "no title: the spec's name"
+grep -q '^| ris, \\\* rays | ' e/summary.md && grep -q '^| draws | ' e/summary.md && grep -q '^| preset | ' e/summary.md
+result $? "summary.md names entries of several values by what they share"
+spec titled.json '{ "name": "a" }' '"title": "A <title>",'
+sed -i 's/"shown": \[\]/"shown": [1]/; s/"view": "own"/"view": "own", "path": { "frames": 2, "pan": 1 }/' titled.json
+run experiment titled.json -o g --cache cache
+test "$(head -n 1 g/report.md)" = "# A <title>" && grep -q '^Shown is the last frame of each configuration, row by row as in this table: the part of [0-9]* x ' g/report.md
+result $? "a title is the heading; what is shown of a camera that moves is said"
+
 # What is wrong is one line, before any work and before any folder is made.
 spec wrong.json '{ "name": "a", "draws": [[1]] }'
 expect "an array in an array" 2 'wrong.json: configurations\[0\]: draws: this cannot be its value' experiment wrong.json -o w
