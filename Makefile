@@ -1,6 +1,8 @@
 # Thin: the real rules are Meson's. Each target installs what it misses (Debian, Ubuntu), configures and builds.
 PREFIX ?= /usr/local
 # On a terminal ninja keeps to one line; elsewhere it would fill a log.
+# `make NINJA='ninja -j1'` is for this file: in the environment Meson takes it for the path of a program.
+unexport NINJA
 NINJA = ninja $$([ -t 1 ] || echo --quiet)
 SANITIZE = -Db_sanitize=address,undefined -Dbuildtype=debugoptimized -Dbench=false
 
