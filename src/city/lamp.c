@@ -129,7 +129,8 @@ static void stand(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
     foot[2] = lamp->xyz[2];
     if (isfinite(foot[2]))
         return;
-    if (noc_scene_top(scene, foot[0], foot[1], &foot[2])) /* a scene without classes: whatever is there */
+    /* a scene without classes: whatever is there, but the lamps that stand already */
+    if (noc_scene_highest(scene, ~(1u << NOC_CLASS_LAMP), foot[0], foot[1], &foot[2]))
         return;
     if (site_ground_far(scene, foot[0], foot[1], &foot[2])) {
         geo_issue(issues, true, "lamp outside of the ground: put at the height of the nearest", lamp->id);

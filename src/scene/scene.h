@@ -77,7 +77,7 @@ static inline size_t noc_scene_city_triangle(const noc_scene *s, size_t i) {
 /* ground.c: grid over the triangles for vertical rays. Made at the first query, and kept up to date by the next ones: asking
  * and adding meshes in turn is cheap. Thread-safe while the scene is not being changed. */
 void noc_ground_free(struct noc_ground *ground);
-/* Highest surface of any class but closures and the shapes of lamps at (x, y), for placing cameras and lamps. */
+/* Highest surface of any class but closures and what shines of lamps at (x, y), for placing cameras. */
 bool noc_scene_top(const noc_scene *scene, double x, double y, double *z);
 /* The same among some classes: classes has bit 1u << noc_class set for each. */
 bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, double y, double *z);

@@ -275,6 +275,26 @@ static void test_odd_grounds(void **state) {
     noc_scene_destroy(scene);
 }
 
+/* Inventories have a row a luminaire: lamps at one point, or under the arm of another, stand on what carries the first one. */
+static void test_lamps_do_not_stand_on_lamps(void **state) {
+    enum { LAMPS = 40 };
+    static const noc_class grounds[] = { NOC_CLASS_OTHER, NOC_CLASS_TERRAIN, NOC_CLASS_COUNT }; /* the last: beside all ground */
+    (void)state;
+    for (size_t g = 0; g < NOC_COUNT(grounds); g++) {
+        noc_scene *scene = noc_scene_create(NULL);
+        bool beside = grounds[g] == NOC_CLASS_COUNT;
+        add_plane(scene, beside ? NOC_CLASS_TERRAIN : grounds[g], beside ? 50 : -50, -50, 150, 50, 3, 0);
+        for (int i = 0; i < LAMPS; i++) {
+            geo_lamp l = lamp_at(i % 4 ? 0 : .3 * (i / 4), 0); /* some along the first one's arm */
+            l.direction = 90;
+            assert_int_equal(city_add_lamp(scene, &l, &defaults, false, NULL), 1);
+        }
+        for (int i = 0; i < LAMPS; i++)
+            assert_float_equal(scene->lights.data[i].p[2], 3 + defaults.height, 1e-4);
+        noc_scene_destroy(scene);
+    }
+}
+
 static double nearest_pair(const noc_scene *scene) {
     double best = INFINITY;
     for (size_t i = 0; i < scene->lights.len; i++)
@@ -461,7 +481,7 @@ int main(void) {
         cmocka_unit_test(test_direction_and_sources),
         cmocka_unit_test(test_own_shape_does_not_shadow),
         cmocka_unit_test(test_inside_building),
-        cmocka_unit_test(test_odd_grounds),
+        cmocka_unit_test(test_odd_grounds), cmocka_unit_test(test_lamps_do_not_stand_on_lamps),
         cmocka_unit_test(test_infer_roads), cmocka_unit_test(test_infer_cancelled),
         cmocka_unit_test(test_infer_buildings),
         cmocka_unit_test(test_no_ground),
