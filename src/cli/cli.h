@@ -88,7 +88,7 @@ noc_status cli_load_scene(noc_scene *scene, const char *const *inputs, size_t co
 /* render.c */
 /* Row of the option --preset, field preset of struct S. */
 #define CLI_PRESET(S, group) { "preset", group, NOC_OPTION_CHOICE, offsetof(S, preset), 0, 0, "still|interactive", "", \
-                               "settings for a purpose; options beside it win" }
+                               "settings for a still, or a moving camera; options beside it win" }
 int cli_parse_exposure(const cli_command *command, const char *text, noc_display_params *display); /* compare takes it too */
 
 /* output.c */

@@ -119,7 +119,7 @@ static void count_sighting(noc_cell *c, const noc_sighting *s) {
 
 struct add_run {
     noc_learned *t;
-    const noc_sighting *s;
+    const noc_sightings *tiles;
     size_t count;
 };
 
@@ -128,18 +128,19 @@ static void add_part(void *arg, size_t part, int worker) {
     const struct add_run *run = arg;
     noc_learned *t = run->t;
     (void)worker;
-    for (size_t i = 0; i < run->count; i++) {
-        const noc_sighting *s = run->s + i;
-        if ((size_t)(run_of(t, s->cell) - t->cells) / (t->count / PARTS) != part)
-            continue;
-        noc_cell *c = claim(t, s->cell);
-        c->used = t->time;
-        count_sighting(c, s);
-    }
+    for (size_t tile = 0; tile < run->count; tile++)
+        for (size_t i = 0; i < run->tiles[tile].count; i++) {
+            const noc_sighting *s = run->tiles[tile].data + i;
+            if ((size_t)(run_of(t, s->cell) - t->cells) / (t->count / PARTS) != part)
+                continue;
+            noc_cell *c = claim(t, s->cell);
+            c->used = t->time;
+            count_sighting(c, s);
+        }
 }
 
-void noc_learned_add(noc_learned *t, noc_pool *pool, const noc_sighting *sightings, size_t count) {
-    struct add_run run = { t, sightings, count };
+void noc_learned_add(noc_learned *t, noc_pool *pool, const noc_sightings *tiles, size_t count) {
+    struct add_run run = { t, tiles, count };
     t->time++;
     noc_pool_run(pool, PARTS, add_part, &run);
 }

@@ -34,6 +34,12 @@ typedef struct noc_sighting {
     uint16_t asked, seen; /* 1 <= asked, seen <= asked */
 } noc_sighting;
 
+/* Those of one tile, in their order. */
+typedef struct noc_sightings {
+    const noc_sighting *data;
+    size_t count;
+} noc_sightings;
+
 /* Room for the cells of a picture of so many tiles of 16 x 16 pixels. NULL after reporting that memory was refused. */
 noc_learned *noc_learned_create(size_t tiles, noc_log *log);
 void noc_learned_destroy(noc_learned *learned); /* NULL is allowed */
@@ -47,6 +53,6 @@ const noc_cell *noc_learned_find(const noc_learned *learned, uint64_t key);
 float noc_cell_visibility(const noc_cell *cell, uint32_t light);
 
 /* Takes in a frame's sightings, in their order: the outcome is the same for any number of threads. */
-void noc_learned_add(noc_learned *learned, noc_pool *pool, const noc_sighting *sightings, size_t count);
+void noc_learned_add(noc_learned *learned, noc_pool *pool, const noc_sightings *tiles, size_t count);
 
 #endif

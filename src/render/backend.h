@@ -116,8 +116,8 @@ void noc_history_reset(noc_history *history);
  * useless. */
 void noc_history_begin(noc_history *history, const noc_camera *camera, const noc_render_params *params, uint64_t moves,
                        noc_frame *frame);
-/* The frame was completed, or dropped. */
+/* The frame was completed, or dropped, in its first stage or later. */
 void noc_history_end(noc_history *history, const noc_frame *frame, int next_set);
-void noc_history_drop(noc_history *history);
+void noc_history_drop(noc_history *history, const noc_frame *frame, bool first_stage);
 
 #endif

@@ -50,5 +50,9 @@ void noc_history_end(noc_history *h, const noc_frame *frame, int next_set) {
     h->index++;
 }
 
-/* The dropped frame's random numbers are not used again, so that what replaces it is independent of where it stopped. */
-void noc_history_drop(noc_history *h) { h->index++; }
+/* The dropped frame's random numbers are not used again, so that what replaces it is independent of where it stopped. The first
+ * stage only reads what the frame before left. */
+void noc_history_drop(noc_history *h, const noc_frame *frame, bool first_stage) {
+    h->index++;
+    h->reusable = frame->history && first_stage;
+}

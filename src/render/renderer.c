@@ -109,15 +109,16 @@ static noc_status run_frame(noc_renderer *r, const noc_camera *camera, const noc
         return status;
     noc_history_begin(&r->history, camera, p, r->scene->moves, &frame);
     noc_make_schedule(p, frame.history_set, &schedule);
-    for (int i = 0; i < schedule.count && status == NOC_OK; i++)
-        status = r->backend->stage(r->state, &frame, &schedule.stages[i], progress, (double)i / schedule.count,
-                                   (double)(i + 1) / schedule.count);
+    int stage = 0;
+    for (; stage < schedule.count && status == NOC_OK; stage++)
+        status = r->backend->stage(r->state, &frame, &schedule.stages[stage], progress, (double)stage / schedule.count,
+                                   (double)(stage + 1) / schedule.count);
     noc_frame_stats stats = { .dropped = frame.index ? r->stats.dropped : 0 };
     if (status == NOC_OK) {
         r->backend->accumulate(r->state, &frame);
         noc_history_end(&r->history, &frame, schedule.next_history);
     } else {
-        noc_history_drop(&r->history);
+        noc_history_drop(&r->history, &frame, stage == 1);
     }
     r->backend->stats(r->state, &stats);
     stats.frames = r->history.accumulated;

@@ -34,7 +34,7 @@ static void counts(void **state) {
     assert_null(noc_learned_find(t, key));
     assert_true(noc_cell_visibility(NULL, 7) == NOC_UNKNOWN_LIGHT);
     noc_sighting s[] = { { key, 7, 10, 10 }, { key, 8, 10, 0 } };
-    noc_learned_add(t, pool, s, 2);
+    noc_learned_add(t, pool, &(noc_sightings){ s, 2 }, 1);
     const noc_cell *c = noc_learned_find(t, key);
     assert_non_null(c);
     /* (seen + 2 * 0.5) / (asked + 2), where 0.5 is what all lights of the cell came to */
@@ -42,7 +42,7 @@ static void counts(void **state) {
     assert_float_equal(noc_cell_visibility(c, 8), 1.0 / 12, 1e-6);
     assert_float_equal(noc_cell_visibility(c, 9), 0.5, 1e-6);
     for (int i = 0; i < 5000; i++) /* counts stay in range, and old ones fade */
-        noc_learned_add(t, pool, &(noc_sighting){ key, 8, 1000, 1000 }, 1);
+        noc_learned_add(t, pool, &(noc_sightings){ &(noc_sighting){ key, 8, 1000, 1000 }, 1 }, 1);
     c = noc_learned_find(t, key);
     assert_true(noc_cell_visibility(c, 8) > 0.98f && noc_cell_visibility(c, 8) <= 1);
     noc_learned_forget(t);
@@ -66,7 +66,7 @@ static void crowds(void **state) {
             s[i] = (noc_sighting){ noc_cell_key(p, up, 4), x >> 8 & 1023, 8, (uint16_t)(x & 7) };
         }
         for (int k = 0; k < 2; k++)
-            noc_learned_add(t[k], pools[k], s, MANY);
+            noc_learned_add(t[k], pools[k], &(noc_sightings){ s, MANY }, 1);
         assert_memory_equal(t[0]->cells, t[1]->cells, t[0]->bytes);
     }
     for (size_t i = 0; i < t[0]->count; i++)

@@ -305,6 +305,33 @@ static void cancelled_frames(void **state) {
     noc_scene_destroy(s);
 }
 
+/* A small picture may leave the calling thread no tile, yet it can be cancelled; what was reused is reused by the next frame. */
+static void history_outlives_a_cancelled_frame(void **state) {
+    (void)state;
+    noc_scene *s = small_street(40, true);
+    noc_render_params p = measure(16, 16, NOC_METHOD_RESTIR);
+    noc_render_use_preset(&p, NOC_PRESET_INTERACTIVE);
+    p.aovs = 1u << NOC_AOV_CONFIDENCE;
+    noc_camera c = view(0);
+    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 4 }, NULL);
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+    for (int i = 0; i < 20; i++) {
+        int left = 1;
+        noc_progress stop = { count_down, &left };
+        assert_int_equal(noc_renderer_frame(r, &c, &p, &stop), NOC_ERR_CANCELLED);
+    }
+    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+    noc_channel *m = noc_renderer_aov(r, NOC_AOV_CONFIDENCE);
+    float most = 0;
+    for (int i = 0; i < 16 * 16; i++)
+        most = NOC_MAX(most, m->value[i]);
+    assert_true(most == 4.f * (float)p.draws);
+    noc_channel_destroy(m);
+    noc_renderer_destroy(r);
+    noc_scene_destroy(s);
+}
+
 static uint64_t frames_of(noc_renderer *r) {
     noc_frame_stats stats;
     noc_renderer_get_stats(r, &stats);
@@ -416,7 +443,8 @@ static void emitter_mask(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scalar_and_wide_agree), cmocka_unit_test(threads_and_seeds), cmocka_unit_test(empty_scenes),
-        cmocka_unit_test(wrong_arguments),       cmocka_unit_test(cancelled_frames),  cmocka_unit_test(frames_and_resets),
+        cmocka_unit_test(wrong_arguments),       cmocka_unit_test(cancelled_frames),
+        cmocka_unit_test(history_outlives_a_cancelled_frame), cmocka_unit_test(frames_and_resets),
         cmocka_unit_test(emitter_mask),          cmocka_unit_test(hostile_scenes),
         cmocka_unit_test(negative_choices_and_no_params), cmocka_unit_test(any_other_parameter),
     };

@@ -167,10 +167,13 @@ static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st
     run.ctx.influence = s->influence;
     if (st->passes >> NOC_PASS_CANDIDATES & 1 && (status = noc_embree_begin_learning(s, frame)) != NOC_OK)
         return status;
+    /* Asked before too: the calling thread may get no tile of a small picture. */
+    if (progress && progress->update && !progress->update(progress->user, run.what, from))
+        return NOC_ERR_CANCELLED;
     noc_pool_run(s->pool, run.tiles, run_tile, &run);
     if (atomic_load(&run.cancelled))
         return NOC_ERR_CANCELLED;
-    return NOC_OK;
+    return noc_embree_check_learning(s);
 }
 
 struct mean_run {

@@ -93,6 +93,7 @@ typedef struct worker {
     list_scratch lists;
     tile_rays shared;
     NOC_ARRAY(noc_sighting) sightings; /* of the frame being made */
+    bool sightings_lost;               /* there was no memory for all of them */
     pick_block picks;
     tree_items tree_items[2];
     noc_found found;
@@ -143,7 +144,7 @@ typedef struct embree_state {
     noc_tree *tree;
     noc_learned *learned; /* for pictures of this size */
     learned_tile *learned_tiles;
-    NOC_ARRAY(noc_sighting) sightings; /* of the frame, in the order of tiles */
+    noc_sightings *sightings; /* of the frame's tiles */
     float list_brightness; /* mean luminance that the last frame expected, cd/m2; 0: not known */
     uint64_t moves, power_changes; /* of the scene's lights, that these know of */
     noc_light_record *past_lights; /* all lights as they were in the last frame that left reservoirs; NULL: never needed */
@@ -229,6 +230,7 @@ void noc_embree_share_visibility(stage_run *run, worker *w, tile t);
 void noc_embree_share_shade(stage_run *run, worker *w, tile t);
 /* Before a frame's first stage, and when the frame is complete; one that is dropped is not learned from. */
 noc_status noc_embree_begin_learning(embree_state *s, const noc_frame *frame);
+noc_status noc_embree_check_learning(embree_state *s); /* after the first stage; refused memory is reported */
 void noc_embree_end_learning(embree_state *s, const noc_frame *frame);
 void noc_embree_release_learning(embree_state *s);
 

@@ -7,6 +7,7 @@
 #include "core/random.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { CELL_PIXELS = 32, MOST_ASKED_A_TILE = 16 * BLOCK * TILE_BLOCKS * TILE_BLOCKS };
 _Static_assert(MOST_ASKED_A_TILE <= UINT16_MAX, "counts of a tile fit");
@@ -193,6 +194,21 @@ void noc_embree_share_candidates(stage_run *run, worker *w, tile at, const gbloc
         }
 }
 
+/* Sightings grow with the picture, so memory for them may be refused. */
+static bool room_for_sightings(worker *w, size_t more) {
+    size_t need = w->sightings.len + more, cap = NOC_MAX(need, 2 * w->sightings.cap);
+    if (need <= w->sightings.cap)
+        return true;
+    noc_sighting *data = realloc(w->sightings.data, cap * sizeof(*data));
+    if (!data) {
+        w->sightings_lost = true;
+        return false;
+    }
+    w->sightings.data = data;
+    w->sightings.cap = cap;
+    return true;
+}
+
 /* What the rays found goes into the tile's cells, and is handed on to be learned. */
 static void note_sightings(stage_run *run, worker *w, tile at) {
     tile_rays *t = &w->shared;
@@ -208,6 +224,8 @@ static void note_sightings(stage_run *run, worker *w, tile at) {
     }
     learned_tile *out = &run->s->learned_tiles[item];
     *out = (learned_tile){ (int)(w - run->s->workers), w->sightings.len, 0, t->bright };
+    if (!room_for_sightings(w, (size_t)t->cells * list->count))
+        return;
     for (int k = 0; k < t->cells; k++)
         for (uint32_t i = 0; i < list->count; i++)
             if (t->cell[k].asked[i])
@@ -323,8 +341,11 @@ noc_status noc_embree_begin_learning(embree_state *s, const noc_frame *frame) {
         return NOC_OK;
     if (!s->learned) {
         s->learned = noc_learned_create(tiles, s->log);
-        s->learned_tiles = noc_alloc_large(tiles, sizeof(*s->learned_tiles));
-        if (!s->learned || !s->learned_tiles) {
+        s->learned_tiles = s->learned ? noc_alloc_large(tiles, sizeof(*s->learned_tiles)) : NULL;
+        s->sightings = s->learned_tiles ? noc_alloc_large(tiles, sizeof(*s->sightings)) : NULL;
+        if (s->learned && !s->sightings)
+            noc_error(s->log, NOC_ERR_MEMORY, "lights: no memory to learn their visibility in %zu tiles", tiles);
+        if (!s->sightings) {
             noc_embree_release_learning(s);
             return NOC_ERR_MEMORY;
         }
@@ -333,8 +354,20 @@ noc_status noc_embree_begin_learning(embree_state *s, const noc_frame *frame) {
         noc_learned_forget(s->learned);
         s->list_brightness = 0;
     }
-    for (int i = 0; i < s->worker_count; i++)
+    for (int i = 0; i < s->worker_count; i++) {
         s->workers[i].sightings.len = 0;
+        s->workers[i].sightings_lost = false;
+    }
+    return NOC_OK;
+}
+
+noc_status noc_embree_check_learning(embree_state *s) {
+    for (int i = 0; i < s->worker_count; i++)
+        if (s->workers[i].sightings_lost) {
+            noc_embree_release_learning(s);
+            return noc_error(s->log, NOC_ERR_MEMORY, "lights: no memory for what the rays of a picture of %d x %d found",
+                             s->b.width, s->b.height);
+        }
     return NOC_OK;
 }
 
@@ -343,22 +376,24 @@ void noc_embree_end_learning(embree_state *s, const noc_frame *frame) {
     double bright = 0;
     if (!learns(frame->params))
         return;
-    s->sightings.len = 0;
     for (size_t i = 0; i < tiles; i++) {
         const learned_tile *t = &s->learned_tiles[i];
-        array_append(&s->sightings, s->workers[t->worker].sightings.data + t->first, t->count);
+        s->sightings[i] = (noc_sightings){ s->workers[t->worker].sightings.data + t->first, t->count };
         bright += t->bright;
     }
-    noc_learned_add(s->learned, s->pool, s->sightings.data, s->sightings.len);
+    noc_learned_add(s->learned, s->pool, s->sightings, tiles);
     s->list_brightness = (float)(bright / ((double)s->b.width * s->b.height));
 }
 
 void noc_embree_release_learning(embree_state *s) {
     noc_learned_destroy(s->learned);
     free(s->learned_tiles);
-    array_free(&s->sightings);
-    for (int i = 0; i < s->worker_count; i++)
+    free(s->sightings);
+    for (int i = 0; i < s->worker_count; i++) {
         array_free(&s->workers[i].sightings);
+        s->workers[i].sightings_lost = false;
+    }
+    s->sightings = NULL;
     s->learned = NULL;
     s->learned_tiles = NULL;
 }
