@@ -102,12 +102,15 @@ void cli_warn_of_picture(const render_job *job) {
     if (job->args->common.quiet || job->far_away || !job->scene_info.lights)
         return;
     bool black = cli_is_black(job->image);
+    bool surfaces = job->scene_info.lights_by_kind[NOC_LIGHT_TRIANGLE]; /* of a model, which may be wound the other way */
     if (p->final_ray && !job->last.rays_shadow && black)
-        cli_error("warning: the picture is black: the camera sees nothing that a lamp could light");
+        cli_error("warning: the picture is black: the camera sees nothing that a lamp could light%s",
+                  surfaces ? "; surfaces shine from one side" : "");
     else if (p->final_ray && !job->last.rays_shadow)
         cli_error("warning: the camera sees nothing that a lamp could light: only the sky, or lamps themselves");
     else if (black)
-        cli_error("warning: the picture is black, no light reaches what the camera sees: is it inside a building?");
+        cli_error("warning: the picture is black, no light reaches what the camera sees: is it inside a building%s?",
+                  surfaces ? ", or do the surfaces that shine look away" : "");
 }
 
 static uint64_t peak_memory(void) {

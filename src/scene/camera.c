@@ -450,11 +450,15 @@ noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect
     find_classes(&city);
     find_hot(&city);
     bool stand = view == NOC_VIEW_STREET || view == NOC_VIEW_OWN;
+    /* a room is looked at from inside, another model with nowhere to stand from outside */
+    bool room = stand && !city.classes && noc_room_camera(scene, city.min, city.max, aspect, &c);
+    bool found = room || (stand && street(&city, aspect, &c));
     if (view == NOC_VIEW_AERIAL)
         aerial(&city, aspect, &c);
-    /* a room is looked at from inside, another model with nowhere to stand from outside */
-    else if (!stand || !((!city.classes && noc_room_camera(scene, city.min, city.max, aspect, &c)) || street(&city, aspect, &c)))
+    else if (!found)
         overview(&city, aspect, &c);
+    if (view == NOC_VIEW_STREET && (room || !found))
+        noc_warn(scene->log, "view street: the scene has none, so it is seen from %s", room ? "inside, as a room" : "outside");
     array_free(&city.lights);
     *camera = c;
     return NOC_OK;

@@ -110,4 +110,19 @@ run info ground.obj
 grep -q 'CRS  *none (to put it in place' out && grep -q 'x 0.00 to 1.00, y 0.00 to 1.00' out; result $? "info of an OBJ"
 run info --crs EPSG:32618 ground.obj
 grep -q 'CRS  *EPSG:32618' out && grep -q 'x 0.00 to 1.00,' out; result $? "info of an OBJ with --crs"
+
+# A lamp whose face is wound to shine up lights no floor below it; the other way round it does. A floor has no street.
+printf 'newmtl glow\nKe 100 100 100\nnewmtl grey\nKd 0.5 0.5 0.5\n' >lamp.mtl
+printf 'mtllib lamp.mtl\nv -3 0 -3\nv 3 0 -3\nv 3 0 3\nv -3 0 3\nv -1 3 -1\nv 1 3 -1\nv 1 3 1\nv -1 3 1\nusemtl grey\nf 1 2 3 4\nusemtl glow\nf 8 7 6 5\n' >up.obj
+sed 's/^f 8 7 6 5/f 5 6 7 8/' up.obj >down.obj
+below="--eye 0,-4,1 --target 0,0,0 --sky 0 --size 32x18 --frames 1 -o room.png"
+run render up.obj $below
+test $status = 0 && grep -q '^nocturne: warning: the picture is black: the camera sees nothing that a lamp could light; surfaces shine from one side$' err
+result $? "a black picture below a lamp that shines up is told"
+run render down.obj $below
+test $status = 0 && test ! -s err; result $? "one that shines down lights it"
+run render down.obj --size 32x18 --frames 1 -o out.png
+test $status = 0 && test ! -s err; result $? "a mesh is seen from outside"
+run render down.obj --view street --size 32x18 --frames 1 -o out.png
+test $status = 0 && grep -q '^nocturne: warning: view street: the scene has none, so it is seen from outside$' err; result $? "and where its street was asked for, that is said"
 finish

@@ -103,6 +103,12 @@ static void one_sided(void **state) {
             noc_image_destroy(a);
             noc_image_destroy(b);
         }
+        noc_camera close = look(0, 5, 2, 0, 0, 2, 5); /* the back alone, as it shines itself */
+        noc_render_params p = measure(8, 8, NOC_METHOD_RIS);
+        noc_image *seen = render(s, &close, &p, 1);
+        for (size_t i = 0; i < 3 * 8 * 8; i++)
+            assert_true(seen->rgb[i] == (two ? 30 : 0));
+        noc_image_destroy(seen);
         noc_scene_destroy(s);
     }
 }

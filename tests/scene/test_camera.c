@@ -31,6 +31,11 @@ static void check_sane(const noc_camera *c) {
     assert_true(hypot(c->target[0] - c->eye[0], c->target[1] - c->eye[1]) > 1e-3 * sqrt(d));
 }
 
+static void keep_warning(void *user, noc_log_level level, const char *text) {
+    assert_int_equal(level, NOC_LOG_WARN);
+    snprintf(user, 128, "%s", text);
+}
+
 static void all_views(const noc_scene *scene) {
     static const double aspects[] = { 0.5, 1, 16.0 / 9, 4 };
     for (int v = 0; v < 3; v++)
@@ -166,6 +171,41 @@ static void test_one_lamp(void **state) {
     noc_scene_destroy(scene);
 }
 
+/* A panel let into the ceiling: it lights the room where it looks down, or both ways, and then the room is seen from inside. */
+static void test_panel(void **state) {
+    for (int i = 0; i < 4; i++) {
+        bool down = i & 1, both = i & 2;
+        noc_scene *scene = noc_scene_create(NULL);
+        add_box(scene, NOC_CLASS_OTHER, 0, 0, 6, 8, 0, 3);
+        noc_material glow = { .roughness = 1, .emission = { 9, 9, 9 }, .two_sided = both };
+        static const double p[12] = { 2, 3, 3, 4, 3, 3, 4, 5, 3, 2, 5, 3 };
+        static const uint32_t faces[2][6] = { { 0, 1, 2, 0, 2, 3 }, { 2, 1, 0, 3, 2, 0 } };
+        noc_mesh panel = { .vertex_count = 4, .positions = p, .triangle_count = 2, .indices = faces[down], .material = noc_scene_add_material(scene, &glow) };
+        assert_true(noc_scene_add_mesh(scene, &panel) >= 0);
+        assert_int_equal(noc_scene_commit(scene), NOC_OK);
+        noc_camera c;
+        assert_int_equal(noc_scene_camera(scene, NOC_VIEW_OWN, 1.5, &c), NOC_OK);
+        assert_true((c.eye[0] > 0 && c.eye[0] < 6 && c.eye[1] > 0 && c.eye[1] < 8 && c.eye[2] > 0 && c.eye[2] < 3) == (down || both));
+        noc_scene_destroy(scene);
+    }
+}
+
+/* A city has streets, and nothing is said of them. */
+static void test_no_warning(void **state) {
+    char warning[128] = "";
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = keep_warning, .user = warning });
+    noc_scene *scene = noc_scene_create(log);
+    noc_city_params params = noc_city_default_params();
+    params.size = 150;
+    noc_camera c;
+    assert_int_equal(noc_scene_add_city(scene, &params), NOC_OK);
+    assert_int_equal(noc_scene_commit(scene), NOC_OK);
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEW_STREET, 1.5, &c), NOC_OK);
+    assert_string_equal(warning, "");
+    noc_scene_destroy(scene);
+    noc_log_destroy(log);
+}
+
 static void assert_in_picture(const noc_camera *c, double aspect, const double lo[3], const double hi[3]) {
     for (int i = 0; i < 8; i++) {
         double p[3] = { i & 1 ? hi[0] : lo[0], i & 2 ? hi[1] : lo[1], i & 4 ? hi[2] : lo[2] }, x, y;
@@ -199,19 +239,26 @@ static void test_room(void **state) {
     for (int outside = 0; outside < 2; outside++)
         for (int k = 0; k < 2; k++) {
             double s = k ? 20 : 1, x = 6 * s, y = 8 * s, z = 3 * s;
-            noc_scene *scene = noc_scene_create(NULL);
+            char warning[128] = "";
+            noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = keep_warning, .user = warning });
+            noc_scene *scene = noc_scene_create(log);
             add_box(scene, NOC_CLASS_OTHER, 0, 0, x, y, 0, z);
             add_box(scene, NOC_CLASS_OTHER, .1 * x, .1 * y, .3 * x, .3 * y, 0, .9 * z); /* a cupboard in a corner */
             noc_light lamp = { .kind = NOC_LIGHT_POINT, .position = { 3 * s, 4 * s, outside ? 3.5 * s : 2.5 * s }, .emission = { 9, 9, 9 } };
             assert_int_equal(noc_scene_add_light(scene, &lamp), 0);
             all_views(scene);
             noc_camera c;
+            assert_int_equal(noc_scene_camera(scene, NOC_VIEW_STREET, 1.5, &c), NOC_OK);
+            assert_non_null(strstr(warning, outside ? "so it is seen from outside" : "so it is seen from inside")); /* not the street asked for */
+            *warning = 0;
             assert_int_equal(noc_scene_camera(scene, NOC_VIEW_OWN, 1.5, &c), NOC_OK);
+            assert_string_equal(warning, "");
             bool inside = c.eye[0] > 0 && c.eye[0] < x && c.eye[1] > 0 && c.eye[1] < y && c.eye[2] > 0 && c.eye[2] < z;
             bool in_cupboard = c.eye[0] < .3 * x && c.eye[1] < .3 * y;
             assert_true(inside == !outside);
             assert_true(!inside || !in_cupboard);
             noc_scene_destroy(scene);
+            noc_log_destroy(log);
         }
 }
 
@@ -301,6 +348,7 @@ static void test_slits(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_builtin_city), cmocka_unit_test(test_without_lights), cmocka_unit_test(test_one_lamp),
                                         cmocka_unit_test(test_object), cmocka_unit_test(test_room), cmocka_unit_test(test_plain_street),
+                                        cmocka_unit_test(test_panel), cmocka_unit_test(test_no_warning),
                                         cmocka_unit_test(test_odd_scenes), cmocka_unit_test(test_stray), cmocka_unit_test(test_slits) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
