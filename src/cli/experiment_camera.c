@@ -30,10 +30,11 @@ static const cli_set pose_sets[] = { { experiment_camera_options, 0, NULL }, { N
 static const cli_set path_sets[] = { { path_table, 0, NULL }, { NULL } };
 static const char *const camera_others[] = { "name", "path", NULL }, *const path_others[] = { "before", NULL };
 
-static int read_pose(experiment_spec *spec, const char *place, json_t *object, experiment_pose *pose) {
+/* others: members of the object that are no options of a pose. */
+static int read_pose(experiment_spec *spec, const char *place, json_t *object, const char *const *others, experiment_pose *pose) {
     render_args *args = &pose->args;
     *args = *(const render_args *)cli_render.defaults;
-    int status = experiment_set_all(spec, place, object, pose_sets, camera_others, args);
+    int status = experiment_set_all(spec, place, object, pose_sets, others, args);
     if (status)
         return status;
     if (!args->eye != !args->target)
@@ -68,11 +69,11 @@ static int read_path(experiment_spec *spec, const char *place, json_t *path, C *
         return experiment_wrong(spec, place, "cut: frames must be left after it");
     char inner[96];
     snprintf(inner, sizeof(inner), "%s: before", place);
-    return before ? read_pose(spec, inner, before, &camera->before) : CLI_OK;
+    return before ? read_pose(spec, inner, before, NULL, &camera->before) : CLI_OK;
 }
 
 static int read_camera(experiment_spec *spec, const char *place, json_t *object, C *camera) {
-    int status = read_pose(spec, place, object, &camera->pose);
+    int status = read_pose(spec, place, object, camera_others, &camera->pose);
     status = status ? status : experiment_read_name(spec, place, object, &camera->name);
     char inner[80];
     snprintf(inner, sizeof(inner), "%s: path", place);

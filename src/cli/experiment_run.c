@@ -1,6 +1,7 @@
 /* One configuration over its frames against the reference. */
 #include "experiment.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -67,9 +68,10 @@ static int add_row(const measuring *m, int mode, const noc_image *image, const n
     v[COL_LIGHT_BYTES] = (double)lights->bytes;
     v[COL_SCENE_BYTES] = (double)lights->scene_bytes;
     v[COL_INFLUENCE] = lights->influence;
-    v[COL_FOUND_NONE] = lights->found_none;
-    v[COL_FOUND_MEDIAN] = lights->found_median;
-    v[COL_FOUND_99] = lights->found_99;
+    bool nobody = lights->influence > 0 && !lights->surfaces; /* no pixel saw a surface, and asked for lights */
+    v[COL_FOUND_NONE] = nobody ? NAN : lights->found_none;
+    v[COL_FOUND_MEDIAN] = nobody ? NAN : lights->found_median;
+    v[COL_FOUND_99] = nobody ? NAN : lights->found_99;
     row->done = true;
     lab->rows_done++;
     return experiment_append(lab, m->run, mode, m->frame);

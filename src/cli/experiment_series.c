@@ -90,7 +90,7 @@ double experiment_median(const experiment_series *s, int column) {
         for (int i = 0; i < spec->repetitions; i++) {
             const experiment_run *run = experiment_find_run(s->lab, s->camera, s->config, i);
             for (int f = first; run->rows[s->mode] && f < run->count; f++)
-                if (run->rows[s->mode][f].done)
+                if (run->rows[s->mode][f].done && !isnan(run->rows[s->mode][f].values[column]))
                     values[count++] = run->rows[s->mode][f].values[column];
         }
     }

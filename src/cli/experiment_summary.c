@@ -189,6 +189,14 @@ static bool is_repeated(const experiment_lab *lab, size_t config) {
     return false;
 }
 
+/* A camera that moves finds what one at rest in its scene does, about: it has a row only where there is none. */
+static bool has_structure_row(const experiment_spec *spec, size_t camera) {
+    bool rests = false;
+    for (size_t i = 0; i < spec->camera_count; i++)
+        rests |= spec->cameras[i].scene == spec->cameras[camera].scene && !spec->cameras[i].frames;
+    return !spec->cameras[camera].frames || !rests;
+}
+
 /* What candidates are drawn from: time to build it, memory, and what influence volumes find. */
 static void print_structures(FILE *out, const experiment_lab *lab) {
     const experiment_spec *spec = &lab->spec;
@@ -206,8 +214,8 @@ static void print_structures(FILE *out, const experiment_lab *lab) {
         }
         any = true;
         for (size_t camera = 0; camera < spec->camera_count; camera++) {
-            if (spec->cameras[camera].frames && !spec->cameras[0].frames)
-                continue; /* as of the camera at rest */
+            if (!has_structure_row(spec, camera))
+                continue;
             char *view = cli_format("%s, %s", spec->scenes[spec->cameras[camera].scene].name, spec->cameras[camera].name);
             bool volumes = structure(lab, camera, i, COL_INFLUENCE) > 0;
             fputc('|', out);

@@ -60,6 +60,20 @@ expect "and one to be shown" 2 'wrong.json: shown: frame 6 is after the last, 5'
 sed 's/"view": "own"/"view": "own", "path": { "frames": 2, "speed": 1 }/' far.json >wrong.json
 expect "an unknown option like no other" 2 'wrong.json: cameras\[0\]: path: no option "speed"; there are frames, dolly, orbit, pan, cut, before$' \
     experiment wrong.json -o w
+sed 's/"view": "own"/"view": "own", "path": { "frames": 3, "cut": 2, "before": { "view": "own", "path": { "frames": 2, "pan": 1 } } }/' moving.json >wrong.json
+expect "a path of the camera before the cut" 2 'wrong.json: cameras\[0\]: path: before: no option "path"' experiment wrong.json -o w
+
+# What structures are is told of the camera at rest in a scene, else of those that move; not what nobody saw.
+spec volumes.json '{ "name": "v", "candidates": "bvh", "influence": 100 }'
+sed -i 's/"scene": \(.*\) }, "cameras": .*\], "size"/"scenes": [ \1, "cameras": [ REST, MOVES, SKY ] }, { "name": "two", "inputs": ["builtin:single"], "cameras": [ MOVES ] } ], "size"/
+    s/REST/{ "name": "own", "view": "own" }/; s/MOVES/{ "name": "turn", "view": "own", "path": { "frames": 2, "pan": 1 } }/g
+    s/SKY/{ "name": "sky", "eye": [0, 0, 50], "target": [0, 0, 90] }/' volumes.json
+run experiment volumes.json -o z --cache cache
+sed -n '/^| Light structure /,$s/^| v | \([a-z, ]*\) | .* | \([0-9-]*\) | \([0-9-]*\) |$/\1: \2 \3/p' z/summary.md >told
+printf '%s\n' 'one, own: 1 1' 'one, sky: - -' 'two, turn: 1 1' >want
+test $status = 0 && cmp -s want told; result $? "structures: a row for each scene, and nothing of what no pixel saw" "$(cat told)"
+run experiment volumes.json -o z --cache cache
+test $status = 0 && grep -q ' 0 of them made now' out && grep -q '^| v | one, sky |.*| - | - | - |$' z/summary.md; result $? "and when its rows are read again"
 
 # What is not named is named after the spec, and an entry of several values as the spec has it.
 spec named.json '{ "name": "ris, * rays", "shadow-rays": [1, 2] }, { "name": "draws *", "candidates": "power", "draws": [1, 2] }, { "name": "*", "preset": "*" }'
