@@ -162,7 +162,7 @@ typedef struct noc_light_stats {
     size_t volumes;                         /* bvh: influence volumes; fewer than lights where lights share them */
     uint64_t surfaces;                      /* bvh: pixels of the last frame that saw a surface, and so asked for lights */
     double found_none, found_wider;         /* bvh: share of them that no volume held; that wider volumes were asked for */
-    uint32_t found_median, found_99;        /* bvh: lights that they found: median and 99th percentile */
+    uint32_t found_median, found_99;        /* bvh: lights that they found: median and 99th percentile; 65,536 stands for more too */
 } noc_light_stats;
 
 /* All 0 but lights and scene_bytes before the first frame, and for methods that draw no candidates. */

@@ -8,6 +8,9 @@
 
 #include "scene/scene.h"
 
+#include <float.h>
+#include <math.h>
+
 enum { NOC_INFLUENCE_WIDTH = 16, NOC_INFLUENCE_LEVELS = 8, NOC_QUERY_POINTS = 16 };
 
 /* Children side by side; those that are not there have root = 0. */
@@ -39,6 +42,9 @@ typedef struct noc_influence {
     float reach;                                    /* S_r that the boxes were probed with, 0: none were */
     size_t bytes;
 } noc_influence;
+
+/* A S_r that was set, as volumes take it: 0 stays "found for the scene", and what is too small for a float does not become 0. */
+static inline float noc_influence_scale(double set) { return set > 0 ? fmaxf((float)set, FLT_MIN) : 0; }
 
 /* Distances along segments o + t d, t in [0, 1], to what they hit first; 1 where nothing is in their way. Called from
  * several threads. */

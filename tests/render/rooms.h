@@ -39,6 +39,11 @@ static inline noc_camera look(double ex, double ey, double ez, double tx, double
     return (noc_camera){ .eye = { ex, ey, ez }, .target = { tx, ty, tz }, .up = { 0, 0, 1 }, .fov_deg = fov };
 }
 
+static inline void point_light(noc_scene *s, double x, double y, double z, float candela) {
+    noc_light l = { .kind = NOC_LIGHT_POINT, .position = { x, y, z }, .emission = { candela, candela, candela } };
+    assert_true(noc_scene_add_light(s, &l) >= 0);
+}
+
 /* Params for measurements: no sky, no jitter. */
 static inline noc_render_params measure(int width, int height, noc_method method) {
     noc_render_params p = noc_render_default_params();

@@ -440,11 +440,59 @@ static void emitter_mask(void **state) {
     noc_scene_destroy(s);
 }
 
+/* Point lights a few millimetres apart, and a floor before them. */
+static noc_scene *bundle(int lights) {
+    noc_scene *s = noc_scene_create(NULL);
+    add_floor(s, matte(s, 0.5f), 0, 0, 0, 20);
+    for (int i = 0; i < lights; i++)
+        point_light(s, 1e-3 * (i % 100), 1e-3 * (i / 100), 2, 1);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    return s;
+}
+
+static noc_light_stats stats_of(const noc_scene *s, const noc_camera *c, const noc_render_params *p) {
+    noc_light_stats found;
+    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 2 }, NULL);
+    assert_int_equal(noc_renderer_frame(r, c, p, NULL), NOC_OK);
+    noc_renderer_light_stats(r, &found);
+    noc_renderer_destroy(r);
+    return found;
+}
+
+/* With volumes that hold everything every pixel finds all lights, however many; with the least of them it finds none. */
+static void number_of_lights_found(void **state) {
+    (void)state;
+    static const struct { int lights; uint32_t told; } cases[] = { { 3, 3 }, { 1500, 1500 }, { 4321, 4321 }, { 70000, 65536 } };
+    noc_camera c = view(0), sky = look(0, 0, 50, 0, 0, 90, 60);
+    noc_render_params p = measure(16, 8, NOC_METHOD_RIS);
+    p.candidates = NOC_CANDIDATES_BVH;
+    for (size_t i = 0; i < NOC_COUNT(cases); i++) {
+        noc_scene *s = bundle(cases[i].lights);
+        p.influence = 1e6;
+        noc_light_stats found = stats_of(s, &c, &p);
+        assert_true(found.surfaces > 0 && found.found_none == 0);
+        assert_int_equal(found.found_median, cases[i].told);
+        assert_int_equal(found.found_99, cases[i].told);
+        assert_int_equal(stats_of(s, &sky, &p).surfaces, 0);
+        p.influence = 1e-300; /* less than a float can tell from 0, which is "found for the scene" */
+        for (int way = 0; way < 4 && cases[i].lights < 2000; way++) {
+            p.influence_boxes = way & 1 ? NOC_INFLUENCE_VISIBLE : NOC_INFLUENCE_SPHERE;
+            p.influence_cluster = way & 2 ? 8 : 1;
+            found = stats_of(s, &c, &p);
+            assert_true(found.surfaces > 0 && found.found_none == 1 && found.found_wider == 0 && found.influence == 1e-300);
+        }
+        p.influence_boxes = NOC_INFLUENCE_SPHERE;
+        p.influence_cluster = 1;
+        noc_scene_destroy(s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scalar_and_wide_agree), cmocka_unit_test(threads_and_seeds), cmocka_unit_test(empty_scenes),
         cmocka_unit_test(wrong_arguments),       cmocka_unit_test(cancelled_frames),
         cmocka_unit_test(history_outlives_a_cancelled_frame), cmocka_unit_test(frames_and_resets),
+        cmocka_unit_test(number_of_lights_found),
         cmocka_unit_test(emitter_mask),          cmocka_unit_test(hostile_scenes),
         cmocka_unit_test(negative_choices_and_no_params), cmocka_unit_test(any_other_parameter),
     };

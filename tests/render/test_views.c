@@ -3,11 +3,6 @@
 
 enum { W = 40, H = 24, N = W * H, ALL = (1u << NOC_AOV_COUNT) - 1, MOMENTS = 1u << NOC_AOV_VARIANCE | 1u << NOC_AOV_ERROR };
 
-static void point_light(noc_scene *s, double x, double y, double z, float candela) {
-    noc_light l = { .kind = NOC_LIGHT_POINT, .position = { x, y, z }, .emission = { candela, candela, candela } };
-    assert_true(noc_scene_add_light(s, &l) >= 0);
-}
-
 static double place(int i, int k) { return fmod(0.5 + (i + 1) * (k ? 0.569840290998 : 0.754877666247), 1.0); }
 
 /* A floor under point lights of 1, 2, ... cd. */

@@ -151,10 +151,8 @@ static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st
         status = noc_embree_begin_views(s, frame->params->aovs, st->passes >> NOC_PASS_PRIMARY & 1);
     if (status != NOC_OK)
         return status;
-    for (int i = 0; st->passes >> NOC_PASS_CANDIDATES & 1 && i < s->worker_count; i++) {
-        memset(s->workers[i].found_counts, 0, sizeof(s->workers[i].found_counts));
-        s->workers[i].found_wider = 0;
-    }
+    if (st->passes >> NOC_PASS_CANDIDATES & 1)
+        noc_embree_forget_found(s);
     const noc_scene *scene = s->scene;
     stage_run run = { .s = s,
                       .ctx = { scene->lights.data, (uint32_t)scene->lights.len,

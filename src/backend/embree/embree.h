@@ -9,7 +9,8 @@
 #include <stdatomic.h>
 #include <sys/types.h>
 
-enum { FOUND_COUNTS = 1024 };
+/* Numbers of lights found are told apart up to that; 64 k bins take half a megabyte a thread. */
+enum { FOUND_MOST = 1 << 16 };
 enum { TILE_BLOCKS = 4 }; /* a tile is 4x4 blocks: 16x16 pixels */
 enum { MANY_BLOCKS = 32 }; /* whose segments are traced together */
 
@@ -97,7 +98,7 @@ typedef struct worker {
     pick_block picks;
     tree_items tree_items[2];
     noc_found found;
-    uint64_t found_counts[FOUND_COUNTS]; /* surfaces of the frame by the number of lights found; the last: as many or more */
+    uint64_t *found_counts;              /* [found_bins] surfaces of the frame by the number of lights found; NULL: never asked */
     uint64_t found_wider;                /* surfaces that asked beyond S_r */
     noc_around around;                   /* influence volumes near a tile */
     packet *packets; /* kept while recording */
@@ -142,6 +143,7 @@ typedef struct embree_state {
     noc_influence *influence;
     noc_influence_params influence_params; /* that it was made with */
     noc_tree *tree;
+    uint32_t found_bins; /* of a worker: from 0 to the number of lights; the last of FOUND_MOST + 1 counts what finds more too */
     noc_learned *learned; /* for pictures of this size */
     learned_tile *learned_tiles;
     noc_sightings *sightings; /* of the frame's tiles */
@@ -201,6 +203,7 @@ size_t noc_embree_build_bytes(const embree_state *s);
 /* lights.c: what the candidates of these parameters are drawn from */
 noc_status noc_embree_prepare_lights(embree_state *s, const noc_render_params *p);
 void noc_embree_release_lights(embree_state *s);
+void noc_embree_forget_found(embree_state *s); /* of the last frame, before candidates are drawn */
 /* moved.c: lights that move */
 /* Before a frame: what was made for lights that have moved since is refitted, or destroyed to be made again. */
 noc_status noc_embree_follow_lights(embree_state *s, const noc_render_params *p);

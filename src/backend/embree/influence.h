@@ -213,7 +213,7 @@ static void influence_draw(const struct core_context *ctx, const noc_found *f, i
 
 static void pick_influence(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                            noc_around *around, noc_found *found, pick_block *out) {
-    influence_find(ctx->influence, g, lanes, (float)ctx->frame->params->influence,
+    influence_find(ctx->influence, g, lanes, noc_influence_scale(ctx->frame->params->influence),
                    ctx->frame->params->uniform_every, around, found);
     influence_draw(ctx, found, x, y, m, out);
 }

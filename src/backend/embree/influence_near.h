@@ -223,7 +223,7 @@ static noc_near_query side_query(const side_lanes *s, float scale, bool plane) {
 /* The sides of a tile of n blocks. */
 static void influence_around(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int n, noc_around *out) {
     const noc_render_params *params = ctx->frame->params;
-    float scale = params->influence > 0 ? (float)params->influence : ctx->influence->scale;
+    float scale = params->influence > 0 ? noc_influence_scale(params->influence) : ctx->influence->scale;
     side_lanes sides[NOC_AROUND_SIDES];
     side_begin(&sides[0], (const float[3]){ 0 }, 0);
     out->sides = 1;

@@ -28,6 +28,16 @@ static noc_status prepare_tree_items(embree_state *s) {
     return NOC_OK;
 }
 
+static noc_status prepare_found(embree_state *s) {
+    s->found_bins = (uint32_t)NOC_MIN(s->scene->lights.len, (size_t)FOUND_MOST) + 1;
+    for (int i = 0; i < s->worker_count; i++) {
+        uint64_t **counts = &s->workers[i].found_counts;
+        if (!*counts && !(*counts = noc_alloc_large(s->found_bins, sizeof(**counts))))
+            return noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory to count the lights that are found");
+    }
+    return NOC_OK;
+}
+
 static bool draws_candidates(const noc_render_params *p) {
     return p->method == NOC_METHOD_RIS || p->method == NOC_METHOD_RESTIR;
 }
@@ -59,9 +69,12 @@ static noc_status prepare(embree_state *s, const noc_render_params *p) {
             return NOC_ERR_MEMORY;
         break;
     case NOC_CANDIDATES_BVH:
-        if (!(status = prepare_influence(s, p)))
-            break;
-        return status;
+        status = prepare_influence(s, p);
+        if (status == NOC_OK)
+            status = prepare_found(s);
+        if (status != NOC_OK)
+            return status;
+        break;
     case NOC_CANDIDATES_TREE:
         if (!s->tree && !(s->tree = noc_tree_create(s->scene, s->pool, s->log)))
             return NOC_ERR_MEMORY;
@@ -106,12 +119,22 @@ void noc_embree_release_lights(embree_state *s) {
         free(w->picks.light);
         free(w->picks.inverse);
         noc_found_free(&w->found);
+        free(w->found_counts);
         for (int k = 0; k < 2; k++) {
             free(w->tree_items[k].pair);
             free(w->tree_items[k].what);
             free(w->tree_items[k].pmf);
         }
         noc_around_free(&w->around);
+    }
+}
+
+void noc_embree_forget_found(embree_state *s) {
+    for (int i = 0; i < s->worker_count; i++) {
+        worker *w = &s->workers[i];
+        if (w->found_counts)
+            memset(w->found_counts, 0, s->found_bins * sizeof(*w->found_counts));
+        w->found_wider = 0;
     }
 }
 
@@ -127,18 +150,25 @@ static size_t scene_bytes(const noc_scene *s) {
            s->material_records.len * sizeof(noc_material_record) + s->lights.len * sizeof(noc_light_record);
 }
 
-/* The number of lights that a share of the surfaces does not exceed. */
-static uint32_t percentile(const uint64_t counts[FOUND_COUNTS], uint64_t surfaces, double share) {
+/* Surfaces of the frame that found so many lights. */
+static uint64_t surfaces_finding(const embree_state *s, uint32_t lights) {
     uint64_t sum = 0;
-    for (uint32_t i = 0; i < FOUND_COUNTS; i++)
-        if ((sum += counts[i]) > share * (double)surfaces)
+    for (int i = 0; i < s->worker_count; i++)
+        sum += s->workers[i].found_counts ? s->workers[i].found_counts[lights] : 0;
+    return sum;
+}
+
+/* The number of lights that a share of the surfaces does not exceed. */
+static uint32_t percentile(const embree_state *s, uint64_t surfaces, double share) {
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < s->found_bins; i++)
+        if ((sum += surfaces_finding(s, i)) > share * (double)surfaces)
             return i;
     return 0;
 }
 
 void noc_embree_light_stats(void *state, const noc_render_params *p, noc_light_stats *out) {
     const embree_state *s = state;
-    uint64_t counts[FOUND_COUNTS] = { 0 };
     out->lights = s->scene->lights.len;
     out->scene_bytes = scene_bytes(s->scene) + noc_embree_build_bytes(s);
     if (!p || !draws_candidates(p))
@@ -151,17 +181,14 @@ void noc_embree_light_stats(void *state, const noc_render_params *p, noc_light_s
     out->influence = p->influence > 0 ? p->influence : s->influence->scale;
     out->volumes = s->influence->volume_count;
     uint64_t wider = 0;
-    for (int i = 0; i < s->worker_count; i++) {
-        for (int k = 0; k < FOUND_COUNTS; k++)
-            counts[k] += s->workers[i].found_counts[k];
+    for (int i = 0; i < s->worker_count; i++)
         wider += s->workers[i].found_wider;
-    }
-    for (int k = 0; k < FOUND_COUNTS; k++)
-        out->surfaces += counts[k];
+    for (uint32_t k = 0; k < s->found_bins; k++)
+        out->surfaces += surfaces_finding(s, k);
     if (!out->surfaces)
         return;
-    out->found_none = (double)counts[0] / (double)out->surfaces;
+    out->found_none = (double)surfaces_finding(s, 0) / (double)out->surfaces;
     out->found_wider = (double)wider / (double)out->surfaces;
-    out->found_median = percentile(counts, out->surfaces, 0.5);
-    out->found_99 = percentile(counts, out->surfaces, 0.99);
+    out->found_median = percentile(s, out->surfaces, 0.5);
+    out->found_99 = percentile(s, out->surfaces, 0.99);
 }
