@@ -15,7 +15,7 @@ typedef struct patch {
     float share;                           /* root of its share of the tile's pixels */
     float reflectance;                     /* from lux to cd/m2, about, times share */
     float wo[3];                           /* from its centre to the eye */
-    float gloss, alpha2;                   /* what multiplies the lobe of its shiniest surface, and that lobe's alpha^2 */
+    float gloss, alpha2;                   /* what multiplies the lobe of its first surface, taken for all, and that lobe's alpha^2 */
 } patch;
 
 typedef struct patches {
