@@ -30,6 +30,10 @@ void *noc_alloc_large(size_t count, size_t size);
      (void)((a)->len += (n)))
 #define array_free(a) (free((a)->data), (a)->data = NULL, (a)->len = (a)->cap = 0, (void)0)
 void *noc_array_grow(void *data, size_t *cap, size_t need, size_t item);
+/* The same where the user decides how long it gets: false, and the array is as it was, when memory is refused. */
+#define array_try_reserve(a, n) \
+    ((n) <= (a)->cap || noc_array_try_grow(&(a)->data, &(a)->cap, (n), sizeof(*(a)->data)))
+bool noc_array_try_grow(void *data, size_t *cap, size_t need, size_t item); /* data: address of the array's pointer */
 
 /* Arena: everything in it is freed at once. Zero-initialise; not thread-safe. */
 typedef struct noc_arena { struct noc_arena_block *head; size_t bytes; } noc_arena;

@@ -68,10 +68,22 @@ void *noc_alloc_large(size_t count, size_t size) {
     return p;
 }
 
+/* Items that an array has room for after growing. */
+static size_t grown(size_t cap, size_t need) { return NOC_MAX(cap ? cap + cap / 2 : 16, need); }
+
+bool noc_array_try_grow(void *data, size_t *cap, size_t need, size_t item) {
+    size_t n = grown(*cap, need), bytes;
+    void *old, *now;
+    memcpy(&old, data, sizeof(old)); /* a pointer of any type */
+    if (__builtin_mul_overflow(n, item, &bytes) || !(now = realloc(old, bytes)))
+        return false;
+    memcpy(data, &now, sizeof(now));
+    *cap = n;
+    return true;
+}
+
 void *noc_array_grow(void *data, size_t *cap, size_t need, size_t item) {
-    size_t n = *cap ? *cap + *cap / 2 : 16;
-    n = NOC_MAX(n, need);
-    size_t bytes;
+    size_t n = grown(*cap, need), bytes;
     if (__builtin_mul_overflow(n, item, &bytes))
         out_of_memory(SIZE_MAX);
     *cap = n;

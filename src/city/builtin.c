@@ -22,8 +22,10 @@ noc_status noc_scene_add_builtin(noc_scene *scene, const char *name, const noc_b
     if (scene->committed)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "builtin:%.40s: the scene is committed", name);
     for (size_t i = 0; i < NOC_COUNT(scenes); i++)
-        if (!strcmp(name, scenes[i].name))
-            return scenes[i].add(scene, params);
+        if (!strcmp(name, scenes[i].name)) {
+            noc_status status = scenes[i].add(scene, params);
+            return scene->no_memory ? NOC_ERR_MEMORY : status;
+        }
     char *names = noc_strdup("");
     for (size_t i = 0; i < NOC_COUNT(scenes); i++) {
         char *longer = noc_format("%s%sbuiltin:%s", names, i ? ", " : "", scenes[i].name);

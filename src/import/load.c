@@ -266,6 +266,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         im.inputs[i].issues = geo_issues_create();
     }
     status = run(&im, readers);
+    if (scene->no_memory)
+        status = NOC_ERR_MEMORY; /* some go on without what the scene refused */
     if (!status && !inspect)
         status = noc_scene_commit(scene);
     if (status == NOC_ERR_CANCELLED)

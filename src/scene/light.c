@@ -180,6 +180,12 @@ int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
         return -1;
     }
     uint32_t index = (uint32_t)scene->lights.len;
+    if (scene->no_memory)
+        return -1;
+    if (!array_try_reserve(&scene->lights, scene->lights.len + 1) || !array_try_reserve(&scene->light_names, scene->lights.len + 1)) {
+        noc_scene_out_of_memory(scene);
+        return -1;
+    }
     if (l->kind != NOC_LIGHT_POINT && !l->moving && !add_shape(scene, l, index))
         return -1;
     array_push(&scene->lights, record_of(l));

@@ -106,6 +106,25 @@ static bool finite_position(const double *p) {
     return fabs(p[0]) < 1e7 && fabs(p[1]) < 1e7 && fabs(p[2]) < 1e7;
 }
 
+bool noc_scene_out_of_memory(noc_scene *scene) {
+    if (!scene->no_memory)
+        noc_error(scene->log, NOC_ERR_MEMORY, "scene: no memory for more than %zu triangles and %zu lights",
+                  scene->triangle_light.len, scene->lights.len);
+    scene->no_memory = true;
+    return false;
+}
+
+/* Room for all of a mesh, and for Embree, which reads 16 bytes a vertex. */
+static bool reserve_mesh(noc_scene *s, const noc_mesh *mesh) {
+    size_t triangles = s->triangle_light.len + mesh->triangle_count;
+    if (s->no_memory)
+        return false;
+    return (array_try_reserve(&s->positions, s->positions.len + mesh->vertex_count * 3 + 1) &&
+            array_try_reserve(&s->indices, 3 * triangles) && array_try_reserve(&s->triangle_material, triangles) &&
+            array_try_reserve(&s->triangle_light, triangles) && array_try_reserve(&s->meshes, s->meshes.len + 1)) ||
+           noc_scene_out_of_memory(s);
+}
+
 int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
     const char *name = mesh->name ? mesh->name : "unnamed";
     if (scene->committed) {
@@ -125,7 +144,8 @@ int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
         noc_error(scene->log, NOC_ERR_UNSUPPORTED, "mesh %s: more than 4294967295 vertices or triangles in a scene", name);
         return -1;
     }
-    array_reserve(&scene->positions, scene->positions.len + mesh->vertex_count * 3 + 1);
+    if (!reserve_mesh(scene, mesh))
+        return -1;
     for (size_t i = 0; i < mesh->vertex_count * 3; i++)
         scene->positions.data[scene->positions.len++] = (float)mesh->positions[i];
     for (size_t t = 0; t < mesh->triangle_count; t++) {
@@ -173,13 +193,30 @@ bool noc_scene_add_backdrop(noc_scene *scene, const noc_mesh *mesh) {
     return true;
 }
 
+/* Closures are not rendered, so they do not shine either. */
+static bool mesh_shines(const noc_scene *scene, const noc_scene_mesh *m) {
+    const noc_material *mat = &scene->materials.data[m->material];
+    return (mat->emission[0] > 0 || mat->emission[1] > 0 || mat->emission[2] > 0) && mat->cls != NOC_CLASS_CLOSURE;
+}
+
+static bool reserve_triangle_lights(noc_scene *scene) {
+    size_t lights = scene->lights.len;
+    for (size_t i = 0; i < scene->meshes.len; i++) {
+        const noc_scene_mesh *m = &scene->meshes.data[i];
+        for (size_t t = m->first_triangle; mesh_shines(scene, m) && t < (size_t)m->first_triangle + m->triangle_count; t++)
+            lights += scene->triangle_light.data[t] == NOC_NO_LIGHT;
+    }
+    return (array_try_reserve(&scene->lights, lights) && array_try_reserve(&scene->light_names, lights)) ||
+           noc_scene_out_of_memory(scene);
+}
+
 /* A light a triangle, for every mesh whose material emits and whose triangles do not show a light yet. */
 static void make_triangle_lights(noc_scene *scene) {
     for (size_t i = 0; i < scene->meshes.len; i++) {
         const noc_scene_mesh *m = &scene->meshes.data[i];
         const noc_material *mat = &scene->materials.data[m->material];
-        if (!(mat->emission[0] > 0 || mat->emission[1] > 0 || mat->emission[2] > 0) || mat->cls == NOC_CLASS_CLOSURE)
-            continue; /* closures are not rendered, so they do not shine either */
+        if (!mesh_shines(scene, m))
+            continue;
         for (size_t t = m->first_triangle; t < (size_t)m->first_triangle + m->triangle_count; t++) {
             if (scene->triangle_light.data[t] != NOC_NO_LIGHT)
                 continue;
@@ -204,6 +241,8 @@ static void make_triangle_lights(noc_scene *scene) {
 noc_status noc_scene_commit(noc_scene *scene) {
     if (scene->committed)
         return NOC_OK;
+    if (scene->no_memory || !reserve_triangle_lights(scene)) /* reported already */
+        return NOC_ERR_MEMORY;
     make_triangle_lights(scene);
     noc_light_record *aligned = noc_alloc_large(scene->lights.len, sizeof(*aligned));
     if (!aligned)

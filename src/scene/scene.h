@@ -61,6 +61,7 @@ struct noc_scene {
     uint32_t backdrop_first, backdrop_count; /* triangles around the city: drawn, but no part of it */
     noc_camera own_camera; /* fov_deg 0: none */
     bool committed;
+    bool no_memory; /* was refused and reported: nothing more is added, and it cannot be committed */
     struct noc_ground *ground;             /* built on first use of noc_scene_ground; freed with the scene */
 };
 
@@ -73,6 +74,9 @@ static inline size_t noc_scene_city_triangles(const noc_scene *s) { return s->tr
 static inline size_t noc_scene_city_triangle(const noc_scene *s, size_t i) {
     return i < s->backdrop_first ? i : i + s->backdrop_count;
 }
+
+/* Reports once that there is no memory for more of a scene; false. */
+bool noc_scene_out_of_memory(noc_scene *scene);
 
 /* ground.c: grid over the triangles for vertical rays. Made at the first query, and kept up to date by the next ones: asking
  * and adding meshes in turn is cheap. Thread-safe while the scene is not being changed. */

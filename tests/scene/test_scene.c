@@ -4,6 +4,9 @@
 #include "scene/scene.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 static void ignore(void *user, noc_log_level level, const char *text) { ++*(int *)user; }
 
@@ -350,10 +353,72 @@ static void test_moving_lights(void **state) {
     }
 }
 
+/* From now on the process may grow by so many bytes; false where that cannot be set. */
+static bool leave_memory(size_t bytes, struct rlimit *was) {
+    unsigned long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    bool ok = file && fscanf(file, "%lu", &pages) == 1 && !getrlimit(RLIMIT_AS, was);
+    if (file)
+        fclose(file);
+    struct rlimit now = { (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + bytes, was->rlim_max };
+    return ok && !setrlimit(RLIMIT_AS, &now);
+}
+
+/* A scene that memory is refused to: one message, what was there stays as it is, nothing more comes, and no commit. */
+static void test_no_memory(void **state) {
+    fixture *f = *state;
+    enum { MANY = 2000000, LEFT = 16 << 20 };
+    struct rlimit was;
+#ifdef __SANITIZE_ADDRESS__
+    skip(); /* its shadow memory knows no limit */
+#endif
+    noc_material lit = noc_class_material(NOC_CLASS_OTHER);
+    lit.emission[0] = 1;
+    double xyz[9] = { 0, 0, 0, 1, 0, 0, 0, 1, 0 }, *far = noc_calloc(MANY, 3 * sizeof(double));
+    uint32_t *indices = noc_calloc(MANY, 3 * sizeof(uint32_t));
+    for (size_t i = 0; i < 3 * MANY; i++)
+        indices[i] = (uint32_t)(i % 3);
+    for (int way = 0; way < 4; way++) { /* many vertices, many triangles, many lights, many that commit makes */
+        noc_scene *scene = noc_scene_create(f->log);
+        noc_mesh small = { .vertex_count = 3, .positions = xyz, .triangle_count = 1, .indices = indices,
+                           .material = noc_scene_add_material(scene, &lit) };
+        noc_mesh large = small;
+        noc_light light = { .kind = NOC_LIGHT_POINT, .emission = { 1, 1, 1 } };
+        f->messages = 0;
+        assert_int_equal(noc_scene_add_mesh(scene, &small), 0);
+        if (way == 0)
+            large.vertex_count = MANY, large.positions = far;
+        if (way == 1 || way == 3)
+            large.triangle_count = MANY;
+        if (way == 3)
+            assert_int_equal(noc_scene_add_mesh(scene, &large), 1);
+        if (!leave_memory(LEFT, &was))
+            skip();
+        int added = 0;
+        if (way < 2)
+            assert_int_equal(noc_scene_add_mesh(scene, &large), -1);
+        while (way == 2 && added < MANY && noc_scene_add_light(scene, &light) >= 0)
+            added++;
+        assert_true(added < MANY && (added > 1000) == (way == 2));
+        assert_int_equal(noc_scene_commit(scene), NOC_ERR_MEMORY);
+        assert_int_equal(setrlimit(RLIMIT_AS, &was), 0);
+        assert_int_equal(noc_scene_add_mesh(scene, &small), -1);
+        assert_int_equal(noc_scene_add_light(scene, &light), -1);
+        assert_int_equal(noc_scene_commit(scene), NOC_ERR_MEMORY);
+        assert_int_equal(f->messages, 1);
+        assert_int_equal(scene->lights.len, added);
+        assert_int_equal(scene->meshes.len, way == 3 ? 2 : 1);
+        assert_int_equal(scene->triangle_light.len, way == 3 ? MANY + 1 : 1);
+        noc_scene_destroy(scene);
+    }
+    free(far);
+    free(indices);
+}
+
 int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
     const struct CMUnitTest tests[] = { TEST(test_materials),       TEST(test_meshes),          TEST(test_shapes), TEST(test_bad_lights),
                                         TEST(test_light_materials), TEST(test_emissive_meshes), TEST(test_empty),
-                                        TEST(test_committed),       TEST(test_moving_lights) };
+                                        TEST(test_committed),       TEST(test_moving_lights), TEST(test_no_memory) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
