@@ -228,6 +228,8 @@ static bool build_volumes(build *b) {
     noc_influence_run(pool, (v->shining + CHUNK - 1) / CHUNK, volume_chunk, b);
     v->volume_count = v->shining;
     v->scale = b->params->scale > 0 ? noc_influence_scale(b->params->scale) : noc_influence_tune(v, b->scene, pool);
+    if (!(v->scale > 0))
+        return false;
     if (b->params->cluster > 1) {
         v->first = noc_alloc_large((size_t)v->shining + 1, sizeof(*v->first));
         if (!v->first)

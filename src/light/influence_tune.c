@@ -202,20 +202,25 @@ static int by_needs(const void *a, const void *b) {
 }
 
 /* The median of what is best at the examples that face a light at all. */
+static float tune(tuning *t, const noc_scene *scene, noc_pool *pool) {
+    noc_influence_run(pool, t->run_count, bound_run, t);
+    box in = box_of_lights(t);
+    int wanted = (int)NOC_CLAMP(most_looks / t->v->volume_count, (size_t)FEWEST_EXAMPLES, (size_t)EXAMPLES);
+    int n = take_examples(scene, &in, wanted, t->examples), lit = 0;
+    noc_influence_run(pool, (size_t)n, look_around, t);
+    qsort(t->examples, (size_t)n, sizeof(*t->examples), by_needs);
+    while (lit < n && t->examples[lit].needs < INFLUENCE_NEVER)
+        lit++;
+    float scale = lit ? t->examples[lit / 2].needs : 1;
+    return NOC_CLAMP(scale, 1e-6f, 1e6f);
+}
+
 float noc_influence_tune(const noc_influence *v, const noc_scene *scene, noc_pool *pool) {
     tuning t = { .v = v, .run_count = ((size_t)v->volume_count + RUN - 1) / RUN };
-    t.runs = noc_alloc(t.run_count * sizeof(*t.runs));
-    t.examples = noc_alloc(EXAMPLES * sizeof(*t.examples));
-    noc_influence_run(pool, t.run_count, bound_run, &t);
-    box in = box_of_lights(&t);
-    int wanted = (int)NOC_CLAMP(most_looks / v->volume_count, (size_t)FEWEST_EXAMPLES, (size_t)EXAMPLES);
-    int n = take_examples(scene, &in, wanted, t.examples), lit = 0;
-    noc_influence_run(pool, (size_t)n, look_around, &t);
-    qsort(t.examples, (size_t)n, sizeof(*t.examples), by_needs);
-    while (lit < n && t.examples[lit].needs < INFLUENCE_NEVER)
-        lit++;
-    float scale = lit ? t.examples[lit / 2].needs : 1;
+    t.runs = noc_alloc_large(t.run_count, sizeof(*t.runs));
+    t.examples = noc_alloc_large(EXAMPLES, sizeof(*t.examples));
+    float scale = t.runs && t.examples ? tune(&t, scene, pool) : 0;
     free(t.runs);
     free(t.examples);
-    return NOC_CLAMP(scale, 1e-6f, 1e6f);
+    return scale;
 }
