@@ -174,14 +174,14 @@ static bool add_shape(noc_scene *scene, const noc_light *l, uint32_t index) {
 }
 
 int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
+    if (scene->no_memory)
+        return -1;
     const char *wrong = scene->committed ? "the scene is committed" : light_fault(l);
     if (wrong) {
         noc_error(scene->log, NOC_ERR_ARGUMENT, "light %s: %s", l->name ? l->name : "unnamed", wrong);
         return -1;
     }
     uint32_t index = (uint32_t)scene->lights.len;
-    if (scene->no_memory)
-        return -1;
     if (!array_try_reserve(&scene->lights, scene->lights.len + 1) || !array_try_reserve(&scene->light_names, scene->lights.len + 1)) {
         noc_scene_out_of_memory(scene);
         return -1;

@@ -70,6 +70,8 @@ void noc_scene_destroy(noc_scene *scene) {
 static bool in_range(float x, float lo, float hi) { return x >= lo && x <= hi; } /* false for NaN */
 
 int noc_scene_add_material(noc_scene *scene, const noc_material *m) {
+    if (scene->no_memory)
+        return -1;
     if (scene->committed) {
         noc_error(scene->log, NOC_ERR_ARGUMENT, "material: the scene is committed");
         return -1;
@@ -85,6 +87,11 @@ int noc_scene_add_material(noc_scene *scene, const noc_material *m) {
     noc_material_record r = { .f0 = m->f0, .alpha = m->roughness * m->roughness };
     memcpy(r.albedo, m->albedo, sizeof(r.albedo));
     memcpy(r.emission, m->emission, sizeof(r.emission));
+    if (!array_try_reserve(&scene->materials, scene->materials.len + 1) ||
+        !array_try_reserve(&scene->material_records, scene->materials.len + 1)) {
+        noc_scene_out_of_memory(scene);
+        return -1;
+    }
     array_push(&scene->materials, *m);
     array_push(&scene->material_records, r);
     return (int)scene->materials.len - 1;
@@ -117,8 +124,6 @@ bool noc_scene_out_of_memory(noc_scene *scene) {
 /* Room for all of a mesh, and for Embree, which reads 16 bytes a vertex. */
 static bool reserve_mesh(noc_scene *s, const noc_mesh *mesh) {
     size_t triangles = s->triangle_light.len + mesh->triangle_count;
-    if (s->no_memory)
-        return false;
     return (array_try_reserve(&s->positions, s->positions.len + mesh->vertex_count * 3 + 1) &&
             array_try_reserve(&s->indices, 3 * triangles) && array_try_reserve(&s->triangle_material, triangles) &&
             array_try_reserve(&s->triangle_light, triangles) && array_try_reserve(&s->meshes, s->meshes.len + 1)) ||
@@ -127,6 +132,8 @@ static bool reserve_mesh(noc_scene *s, const noc_mesh *mesh) {
 
 int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
     const char *name = mesh->name ? mesh->name : "unnamed";
+    if (scene->no_memory)
+        return -1;
     if (scene->committed) {
         noc_error(scene->log, NOC_ERR_ARGUMENT, "mesh %s: the scene is committed", name);
         return -1;

@@ -378,7 +378,7 @@ static void test_no_memory(void **state) {
     uint32_t *indices = noc_calloc(MANY, 3 * sizeof(uint32_t));
     for (size_t i = 0; i < 3 * MANY; i++)
         indices[i] = (uint32_t)(i % 3);
-    for (int way = 0; way < 4; way++) { /* many vertices, many triangles, many lights, many that commit makes */
+    for (int way = 0; way < 5; way++) { /* many vertices, triangles, lights, lights that commit makes, materials */
         noc_scene *scene = noc_scene_create(f->log);
         noc_mesh small = { .vertex_count = 3, .positions = xyz, .triangle_count = 1, .indices = indices,
                            .material = noc_scene_add_material(scene, &lit) };
@@ -399,13 +399,18 @@ static void test_no_memory(void **state) {
             assert_int_equal(noc_scene_add_mesh(scene, &large), -1);
         while (way == 2 && added < MANY && noc_scene_add_light(scene, &light) >= 0)
             added++;
-        assert_true(added < MANY && (added > 1000) == (way == 2));
+        int materials = 1;
+        while (way == 4 && materials < MANY && noc_scene_add_material(scene, &lit) >= 0)
+            materials++;
+        assert_true(added < MANY && (added > 1000) == (way == 2) && materials < MANY && (materials > 1000) == (way == 4));
         assert_int_equal(noc_scene_commit(scene), NOC_ERR_MEMORY);
         assert_int_equal(setrlimit(RLIMIT_AS, &was), 0);
         assert_int_equal(noc_scene_add_mesh(scene, &small), -1);
         assert_int_equal(noc_scene_add_light(scene, &light), -1);
+        assert_int_equal(noc_scene_add_material(scene, &lit), -1);
         assert_int_equal(noc_scene_commit(scene), NOC_ERR_MEMORY);
         assert_int_equal(f->messages, 1);
+        assert_int_equal(scene->materials.len, materials);
         assert_int_equal(scene->lights.len, added);
         assert_int_equal(scene->meshes.len, way == 3 ? 2 : 1);
         assert_int_equal(scene->triangle_light.len, way == 3 ? MANY + 1 : 1);
