@@ -88,7 +88,7 @@ NOC_API void noc_scene_destroy(noc_scene *scene);
 
 /* These return an index >= 0, or -1 after reporting an error. Non-finite or degenerate geometry is an error here; bad
  * triangles inside a mesh (zero area, index out of range, non-finite) are dropped and counted. A committed scene takes
- * nothing more. */
+ * nothing more, nor does one that memory was refused to: that is reported once, and NOC_ERR_MEMORY is what its commit returns. */
 NOC_API int noc_scene_add_material(noc_scene *scene, const noc_material *material);
 NOC_API int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh);
 NOC_API int noc_scene_add_light(noc_scene *scene, const noc_light *light);
