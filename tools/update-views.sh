@@ -23,6 +23,6 @@ figure density --frames 1 --show-range 0.001,1
 figure light --shadow-rays 1 --frames 1
 figure weight --method restir --frames 1 --show-range 0.1,10000
 figure confidence --method restir --frames 8 --show-range 0,4032
-figure rays --method restir --frames 8 --show-range 0,10
+figure rays --method restir --frames 8 --show-range 0,24
 figure variance --frames 32 --show-range 0.0001,1000
 figure error --frames 32 --show-range 0.01,1
