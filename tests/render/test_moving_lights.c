@@ -61,6 +61,8 @@ static const config configs[] = {
     { "pairwise + rays, tree", RESTIR(PAIRWISE), .rays = true, .reuse = true, .picker = NOC_CANDIDATES_TREE },
     { "pairwise + rays, bvh", RESTIR(PAIRWISE), .rays = true, .reuse = true, .picker = NOC_CANDIDATES_BVH },
     { "pairwise + rays, lists of 12", RESTIR(PAIRWISE), .rays = true, .reuse = true, .list = 12 },
+    { "pairwise + rays in time, lists of 12", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .rays = true, .reuse = true,
+      .list = 12, .shadow_rays = 4 },
     { "pairwise unshadowed, uniform", RESTIR(PAIRWISE) },
     { "mis + rays, uniform", RESTIR(MIS), .rays = true, .reuse = true },
     { "mis + rays, lists of 12", RESTIR(MIS), .rays = true, .reuse = true, .list = 12 },
