@@ -27,16 +27,6 @@ static const variant variants[] = {
     { "restir pairwise, scalar", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, false, true, true, NOC_PATH_SCALAR },
 };
 
-static int by_size(const void *a, const void *b) {
-    double d = *(const double *)a - *(const double *)b;
-    return (d > 0) - (d < 0);
-}
-
-static double median(double *x, int n) {
-    qsort(x, (size_t)n, sizeof(*x), by_size);
-    return x[n / 2];
-}
-
 static bool measure(const noc_scene *scene, const noc_camera *camera, const variant *v, int width, int height, int frames) {
     noc_render_params p = noc_render_default_params();
     p.width = width;
@@ -62,7 +52,7 @@ static bool measure(const noc_scene *scene, const noc_camera *camera, const vari
         ok = ok && noc_renderer_trace_floor(r, camera, &p, &floor[i]) == NOC_OK;
     }
     if (ok) {
-        double w = median(wall, frames), f = median(floor, frames), total = 0;
+        double w = bench_median(wall, frames), f = bench_median(floor, frames), total = 0;
         for (int k = 0; k < NOC_PASS_COUNT; k++)
             total += pass[k];
         printf("%-24s %7.1f ms  floor %7.1f ms  ratio %4.2f  %5.1f M rays  %s |", v->name, 1e3 * w, 1e3 * f, w / f,

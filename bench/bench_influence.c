@@ -17,16 +17,6 @@ typedef struct measured {
     double cpu[MOST_FRAMES], pass[NOC_PASS_COUNT][MOST_FRAMES];
 } measured;
 
-static int by_size(const void *a, const void *b) {
-    double d = *(const double *)a - *(const double *)b;
-    return (d > 0) - (d < 0);
-}
-
-static double median(double *x, int n) {
-    qsort(x, (size_t)n, sizeof(*x), by_size);
-    return x[n / 2];
-}
-
 static noc_render_params params_of(int width, int height, noc_method method, noc_candidates candidates) {
     noc_render_params p = noc_render_default_params();
     p.width = width;
@@ -59,9 +49,9 @@ static bool times(const noc_scene *scene, const noc_camera *camera, int width, i
         }
     if (ok) {
         for (int i = 0; i < 2; i++) {
-            cpu[i] = median(side[i].cpu, frames);
+            cpu[i] = bench_median(side[i].cpu, frames);
             for (int k = 0; k < NOC_PASS_COUNT; k++)
-                pass[i][k] = median(side[i].pass[k], frames);
+                pass[i][k] = bench_median(side[i].pass[k], frames);
             printf("%-8s %8.1f CPU ms a frame |", i ? "bvh" : "uniform", 1e3 * cpu[i]);
             for (int k = 0; k < NOC_PASS_COUNT; k++)
                 if (pass[i][k] > 0)

@@ -83,11 +83,6 @@ static noc_render_params params_of(int width, int height, noc_method method, int
     return p;
 }
 
-static int by_size(const void *a, const void *b) {
-    double d = *(const double *)a - *(const double *)b;
-    return (d > 0) - (d < 0);
-}
-
 /* Time of the lists alone: primary hits once, then every tile's list in one thread. */
 static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, int height, int rounds) {
     void *state = NULL;
@@ -137,7 +132,7 @@ static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, 
         }
         us[round] = 1e6 * (noc_cpu_seconds() - start) / (double)NOC_MAX(tiles, 1);
     }
-    qsort(us, (size_t)rounds, sizeof(*us), by_size);
+    qsort(us, (size_t)rounds, sizeof(*us), bench_by_size);
     printf("%zu tiles, %.1f entries each: %.2f us a tile (%s)\n", tiles, entries / (double)NOC_MAX(tiles, 1), us[rounds / 2],
            e->kernels->name);
     free(us);

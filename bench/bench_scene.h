@@ -1,4 +1,4 @@
-/* Scenes that the frame benches take from their command lines. */
+/* What the frame benches share: scenes and views from their command lines, medians. */
 #ifndef NOC_BENCH_SCENE_H
 #define NOC_BENCH_SCENE_H
 
@@ -36,6 +36,17 @@ static inline noc_scene *bench_scene(const char *spec, noc_log *log) {
 
 static inline noc_view bench_view(const char *name) {
     return !strcmp(name, "aerial") ? NOC_VIEW_AERIAL : !strcmp(name, "overview") ? NOC_VIEW_OVERVIEW : NOC_VIEW_STREET;
+}
+
+static inline int bench_by_size(const void *a, const void *b) {
+    double d = *(const double *)a - *(const double *)b;
+    return (d > 0) - (d < 0);
+}
+
+/* Sorts x. */
+static inline double bench_median(double *x, int n) {
+    qsort(x, (size_t)n, sizeof(*x), bench_by_size);
+    return x[n / 2];
 }
 
 #endif

@@ -6,25 +6,9 @@
  *   ./fuzz_gltf -max_len=8000 -rss_limit_mb=4000 CORPUS
  *
  * Whatever the bytes are: no crash, exactly one error or none and a scene that can be committed and looked at. */
-#include "import/import.h"
-#include "scene/scene.h"
+#include "fuzz_mesh.h"
 
 #include <math.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void on_message(void *user, noc_log_level level, const char *text) {
-    *(int *)user += level == NOC_LOG_ERROR && *text;
-}
-
-static noc_status as_it_is(void *ctx, double *xyz, size_t count) {
-    double *sum = ctx;
-    for (size_t i = 0; i < 3 * count; i++)
-        *sum += xyz[i];
-    return NOC_OK;
-}
 
 /* What a renderer would rely on. */
 static void check_scene(noc_scene *scene) {
@@ -47,9 +31,7 @@ static void check_scene(noc_scene *scene) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    int fd = memfd_create("fuzz", 0), errors = 0;
-    if (fd < 0 || write(fd, data, size) != (ssize_t)size)
-        abort();
+    int fd = file_of("", data, size), errors = 0;
     char *path = noc_format("/proc/self/fd/%d", fd);
     noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_ERROR, .message = on_message, .user = &errors });
     noc_scene *scene = noc_scene_create(log);

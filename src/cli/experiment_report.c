@@ -123,10 +123,9 @@ static void print_options(FILE *out, const noc_render_params *params) {
         noc_option_get(o, &usual, theirs, sizeof(theirs));
         if (cli_hidden(&(cli_set){ .hidden = above }, o) || (!strcmp(mine, theirs) && strcmp(o->name, "method")))
             continue;
-        fprintf(out, "%s`%s %s`", any ? ", " : " ", o->name, mine);
+        fprintf(out, "%s`%s %s`", any ? ", " : "", o->name, mine);
         any = true;
     }
-    fputs(any ? " |" : " - |", out);
 }
 
 static void print_setting(FILE *out, const experiment_lab *lab) {
@@ -165,8 +164,9 @@ static void print_setting(FILE *out, const experiment_lab *lab) {
     for (size_t i = 0; i < spec->config_count; i++) {
         fputc('|', out);
         experiment_cell(out, spec->configs[i].name);
+        fputc(' ', out);
         print_options(out, &spec->configs[i].params);
-        fputc('\n', out);
+        fputs(" |\n", out);
     }
 }
 
@@ -179,8 +179,11 @@ static void print_crops(FILE *out, const experiment_lab *lab, size_t camera) {
         return;
     for (size_t i = 0; i < frames; i++) {
         int frame = motion ? motion : spec->shown[i];
-        char *name = experiment_sheet_name(lab, camera, frame);
-        fprintf(out, mode == EXPERIMENT_ACCUMULATED ? "\n![Mean of %d frames](%s)\n" : "\n![Frame %d](%s)\n", frame, name);
+        char many[64], *name = experiment_sheet_name(lab, camera, frame);
+        if (mode == EXPERIMENT_ACCUMULATED)
+            fprintf(out, "\n![Mean of %s](%s)\n", cli_many(many, (uint64_t)frame, "frame"), name);
+        else
+            fprintf(out, "\n![Frame %d](%s)\n", frame, name);
         free(name);
     }
     bool mean = mode == EXPERIMENT_ACCUMULATED;

@@ -28,6 +28,13 @@ spec spelled.json '{ "name": "a" }, { "name": "b", "shadow-rays": 2 }, { "name":
 run experiment spelled.json -o q --cache cache
 test $status = 0 && grep -q ': 6 rows, 0 of them made now' out; result $? "one for all configurations is overruled by their own"
 
+# A reference by another method is told by its options, in a sentence; configurations in a table.
+spec other.json '{ "name": "a", "method": "is" }'
+sed -i 's/"reference": { "rays": 1,/"reference": { "method": "ris", "list": 8,/' other.json
+run experiment other.json -o o --cache cache
+test $status = 0 && grep -q '^Reference: 1 frame of `[^|]*`method ris`, `list 8`, through the centres of pixels.$' o/report.md &&
+    grep -q '^| a | `[^|]*`method is` |$' o/report.md; result $? "a reference by ris, in the report"
+
 # What changes nothing is told once, by where it stands; what counts in one configuration of an entry is not.
 spec idle.json '{ "name": "is", "method": "is", "draws": 8 }, { "name": "*", "method": "ris", "candidates": ["power", "lists"], "draws": 8 },
     { "name": "p", "preset": "interactive", "candidates": "bvh", "uniform-every": 2 }' '"options": { "rays": 4, "list": 8, "passes": 2 },'

@@ -194,21 +194,6 @@ void noc_embree_share_candidates(stage_run *run, worker *w, tile at, const gbloc
         }
 }
 
-/* Sightings grow with the picture, so memory for them may be refused. */
-static bool room_for_sightings(worker *w, size_t more) {
-    size_t need = w->sightings.len + more, cap = NOC_MAX(need, 2 * w->sightings.cap);
-    if (need <= w->sightings.cap)
-        return true;
-    noc_sighting *data = realloc(w->sightings.data, cap * sizeof(*data));
-    if (!data) {
-        w->sightings_lost = true;
-        return false;
-    }
-    w->sightings.data = data;
-    w->sightings.cap = cap;
-    return true;
-}
-
 /* What the rays found goes into the tile's cells, and is handed on to be learned. */
 static void note_sightings(stage_run *run, worker *w, tile at) {
     tile_rays *t = &w->shared;
@@ -224,8 +209,10 @@ static void note_sightings(stage_run *run, worker *w, tile at) {
     }
     learned_tile *out = &run->s->learned_tiles[item];
     *out = (learned_tile){ (int)(w - run->s->workers), w->sightings.len, 0, t->bright };
-    if (!room_for_sightings(w, (size_t)t->cells * list->count))
+    if (!array_try_reserve(&w->sightings, w->sightings.len + (size_t)t->cells * list->count)) { /* they grow with the picture */
+        w->sightings_lost = true;
         return;
+    }
     for (int k = 0; k < t->cells; k++)
         for (uint32_t i = 0; i < list->count; i++)
             if (t->cell[k].asked[i])

@@ -256,11 +256,16 @@ static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, i
         size_t at = blocks[i].at;
         if (asked[i])
             lanes[i] = (lanes[i] & ~asked[i]) | answer++->clear;
-        rblock shown = r[at];
-        for (int l = 0; share && l < BLOCK; l++)
-            shown.w[l] *= share[i][l];
-        if (lanes[i])
-            w->dropped += (uint64_t)__builtin_popcount(run->k->shade(&run->ctx, &g[at], &shown, lanes[i], &b->colour[at]));
+        if (!lanes[i])
+            continue;
+        rblock part;
+        if (share) {
+            part = r[at];
+            for (int l = 0; l < BLOCK; l++)
+                part.w[l] *= share[i][l];
+        }
+        w->dropped += (uint64_t)__builtin_popcount(
+            run->k->shade(&run->ctx, &g[at], share ? &part : &r[at], lanes[i], &b->colour[at]));
     }
 }
 
