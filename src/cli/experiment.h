@@ -93,9 +93,10 @@ enum {
     COL_RMSE8, COL_RELMSE, COL_CLAMPED, COL_BIAS,                 /* pixels that see no emitter */
     COL_RMSE8_ALL, COL_RELMSE_ALL, COL_CLAMPED_ALL, COL_BIAS_ALL, /* all pixels, in the same order */
     COL_BUILD, COL_MEMORY, COL_RAYS, COL_DROPPED,
-    /* of the structure that candidates are drawn from: seconds to build, bytes, bytes of the scene and its ray tracing structure, and
+    /* of the structure that candidates are drawn from: seconds to build, and of them in volumes, tuning,
+     * hierarchy and boxes, bytes, bytes of the scene and its ray tracing structure, and
      * for bvh S_r, the share of surfaces that no light was found for, median and 99th percentile of those found */
-    COL_LIGHT_BUILD, COL_LIGHT_BYTES, COL_SCENE_BYTES, COL_INFLUENCE, COL_FOUND_NONE, COL_FOUND_MEDIAN, COL_FOUND_99, COL_COUNT
+    COL_LIGHT_BUILD, COL_VOLUMES, COL_TUNING, COL_HIERARCHY, COL_BOXES, COL_LIGHT_BYTES, COL_SCENE_BYTES, COL_INFLUENCE, COL_FOUND_NONE, COL_FOUND_MEDIAN, COL_FOUND_99, COL_COUNT
 };
 
 typedef struct experiment_row {

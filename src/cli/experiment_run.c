@@ -65,6 +65,10 @@ static int add_row(const measuring *m, int mode, const noc_image *image, const n
     v[COL_RAYS] = (double)stats->rays_shadow;
     v[COL_DROPPED] = (double)stats->dropped;
     v[COL_LIGHT_BUILD] = lights->build_seconds;
+    v[COL_VOLUMES] = lights->volumes_seconds;
+    v[COL_TUNING] = lights->tuning_seconds;
+    v[COL_HIERARCHY] = lights->hierarchy_seconds;
+    v[COL_BOXES] = lights->boxes_seconds;
     v[COL_LIGHT_BYTES] = (double)lights->bytes;
     v[COL_SCENE_BYTES] = (double)lights->scene_bytes;
     v[COL_INFLUENCE] = lights->influence;

@@ -208,9 +208,9 @@ static void print_structures(FILE *out, const experiment_lab *lab) {
         if (!built || is_repeated(lab, i))
             continue;
         if (!any) {
-            fputs("\n| Light structure | Scene, camera | build, ms | memory, kB | of the scene's, % | S_r, m | pixels that find none, % | "
+            fputs("\n| Light structure | Scene, camera | build, ms | volumes | tuning of S_r | hierarchy | boxes | memory, kB | of the scene's, % | S_r, m | pixels that find none, % | "
                   "lights found, median | 99th percentile |", out);
-            experiment_table_rule(out, 8);
+            experiment_table_rule(out, 12);
         }
         any = true;
         for (size_t camera = 0; camera < spec->camera_count; camera++) {
@@ -223,6 +223,8 @@ static void print_structures(FILE *out, const experiment_lab *lab) {
             experiment_cell(out, view);
             free(view);
             experiment_number(out, 1e3 * structure(lab, camera, i, COL_LIGHT_BUILD), "%.3g");
+            for (int step = COL_VOLUMES; step <= COL_BOXES; step++)
+                experiment_number(out, volumes ? 1e3 * structure(lab, camera, i, step) : NAN, "%.3g");
             experiment_number(out, 1e-3 * structure(lab, camera, i, COL_LIGHT_BYTES), "%.1f");
             experiment_number(out, 100 * structure(lab, camera, i, COL_LIGHT_BYTES) / structure(lab, camera, i, COL_SCENE_BYTES), "%.2f");
             experiment_number(out, volumes ? structure(lab, camera, i, COL_INFLUENCE) : NAN, "%.3g");

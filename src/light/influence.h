@@ -26,6 +26,9 @@ typedef struct noc_influence_box {
     float lo[3], hi[3];
 } noc_influence_box;
 
+/* What building takes time for. Tuning is left out where S_r is given, boxes where none are asked for. */
+enum { NOC_STEP_VOLUMES, NOC_STEP_TUNING, NOC_STEP_HIERARCHY, NOC_STEP_BOXES, NOC_INFLUENCE_STEPS };
+
 typedef struct noc_influence {
     uint32_t count;                                 /* lights of the scene, those without emission too */
     uint32_t shining;                               /* lights that emit something */
@@ -41,6 +44,7 @@ typedef struct noc_influence {
     float scale;                                    /* S_r for this scene, sqrt(m2 / cd) */
     float reach;                                    /* S_r that the boxes were probed with, 0: none were */
     size_t bytes;
+    double seconds[NOC_INFLUENCE_STEPS];            /* wall seconds that each step of building took */
 } noc_influence;
 
 /* A S_r that was set, as volumes take it: 0 stays "found for the scene", and what is too small for a float does not become 0. */
@@ -57,7 +61,7 @@ typedef void noc_probe_fn(void *user, noc_probes *probes);
 
 typedef struct noc_influence_params {
     int cluster;         /* at most so many lights share a volume (Algorithm 5); 0, 1: each has its own */
-    double scale;        /* S_r that the boxes are for; 0: found for the scene */
+    double scale;        /* S_r that was set, which boxes and shared volumes are for; 0: found for the scene */
     noc_probe_fn *probe; /* traces for visibility-aware boxes (Algorithm 4); NULL: none */
     void *user;
     noc_pool *pool;      /* NULL: the caller's thread alone */

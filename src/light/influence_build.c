@@ -14,6 +14,7 @@ typedef struct build {
     noc_influence *v;
     noc_light_bound *bounds; /* a light of the scene */
     noc_light_key *keys;     /* the lights that shine, then room for as many */
+    double since;            /* clock, at the end of the last step */
     float lo[3], size, most; /* of their centres: corner and largest edge; largest intensity */
 } build;
 
@@ -219,6 +220,13 @@ static void *trim(void *data, size_t count, size_t size) {
     return less;
 }
 
+/* A step of building ends: what it took since the one before it. */
+static void end_step(build *b, int step) {
+    double now = noc_wall_seconds();
+    b->v->seconds[step] += now - b->since;
+    b->since = now;
+}
+
 static bool build_volumes(build *b) {
     noc_influence *v = b->v;
     noc_pool *pool = b->params->pool;
@@ -227,7 +235,12 @@ static bool build_volumes(build *b) {
     noc_sort_keys(b->keys, b->keys + v->count, v->shining);
     noc_influence_run(pool, (v->shining + CHUNK - 1) / CHUNK, volume_chunk, b);
     v->volume_count = v->shining;
-    v->scale = b->params->scale > 0 ? noc_influence_scale(b->params->scale) : noc_influence_tune(v, b->scene, pool);
+    end_step(b, NOC_STEP_VOLUMES);
+    v->scale = noc_influence_scale(b->params->scale);
+    if (!(v->scale > 0)) {
+        v->scale = noc_influence_tune(v, b->scene, pool);
+        end_step(b, NOC_STEP_TUNING);
+    }
     if (!(v->scale > 0))
         return false;
     if (b->params->cluster > 1) {
@@ -238,14 +251,22 @@ static bool build_volumes(build *b) {
         v->first = trim(v->first, (size_t)v->volume_count + 1, sizeof(*v->first));
         v->volumes = trim(v->volumes, (size_t)v->volume_count + 1, sizeof(*v->volumes));
         v->bytes += ((size_t)v->volume_count + 1) * sizeof(*v->first);
+        end_step(b, NOC_STEP_VOLUMES);
     }
-    return build_levels(v) && (!b->params->probe || noc_influence_probe(v, b->scene, b->params));
+    bool ok = build_levels(v);
+    end_step(b, NOC_STEP_HIERARCHY);
+    if (!ok || !b->params->probe)
+        return ok;
+    ok = noc_influence_probe(v, b->scene, b->params);
+    end_step(b, NOC_STEP_BOXES);
+    return ok;
 }
 
 noc_influence *noc_influence_create(const noc_scene *scene, const noc_influence_params *params, noc_log *log) {
     size_t all = scene->lights.len;
     noc_influence *v = noc_calloc(1, sizeof(*v));
-    build b = { .scene = scene, .params = params ? params : &(noc_influence_params){ 0 }, .v = v };
+    build b = { .scene = scene, .params = params ? params : &(noc_influence_params){ 0 }, .v = v,
+                .since = noc_wall_seconds() };
     b.bounds = noc_alloc_large(all + 1, sizeof(*b.bounds));
     b.keys = noc_alloc_large(2 * all + 1, sizeof(*b.keys));
     v->count = (uint32_t)all;

@@ -17,7 +17,8 @@ rows() {
 import csv, sys
 table = list(csv.reader(open(sys.argv[1] + "/results.csv")))
 assert all(len(row) == len(table[0]) for row in table)
-drop = [i for i, name in enumerate(table[0]) if name in ("wall_s", "cpu_s", "wall_total_s", "cpu_total_s", "build_s", "light_build_s")]
+drop = [i for i, name in enumerate(table[0]) if name in ("wall_s", "cpu_s", "wall_total_s", "cpu_total_s", "build_s", "light_build_s",
+        "light_volumes_s", "light_tuning_s", "light_hierarchy_s", "light_boxes_s")]
 frame = table[0].index("frame")
 last = int(sys.argv[2]) if len(sys.argv) > 2 else 1 << 30
 for row in [table[0]] + sorted(r for r in table[1:] if int(r[frame]) <= last):

@@ -79,6 +79,12 @@ run experiment volumes.json -o z --cache cache
 sed -n '/^| Light structure /,$s/^| v | \([a-z, ]*\) | .* | \([0-9-]*\) | \([0-9-]*\) |$/\1: \2 \3/p' z/summary.md >told
 printf '%s\n' 'one, own: 1 1' 'one, sky: - -' 'two, turn: 1 1' >want
 test $status = 0 && cmp -s want told; result $? "structures: a row for each scene, and nothing of what no pixel saw" "$(cat told)"
+python3 - <<'CHECK'
+import csv
+for r in csv.DictReader(open("z/results.csv")): # S_r is set: no time goes into finding it
+    assert float(r["light_tuning_s"]) == 0 and float(r["light_volumes_s"]) > 0 and float(r["light_boxes_s"]) == 0, r
+CHECK
+test $? = 0 && grep -q '^| v | one, own | [0-9.e-]* | [0-9.e-]* | 0 | [0-9.e-]* | 0 |' z/summary.md; result $? "the steps of building them, without the search for what is given"
 run experiment volumes.json -o z --cache cache
 test $status = 0 && grep -q ' 0 of them made now' out && grep -q '^| v | one, sky |.*| - | - | - |$' z/summary.md; result $? "and when its rows are read again"
 

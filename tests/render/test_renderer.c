@@ -487,12 +487,48 @@ static void number_of_lights_found(void **state) {
     }
 }
 
+/* S_r that was set is not looked for; the steps of building are all of it; and what S_r was set before changes nothing. */
+static void set_reach_is_not_looked_for(void **state) {
+    (void)state;
+    noc_scene *s = bundle(1500);
+    noc_camera c = view(0);
+    noc_render_params p = measure(16, 8, NOC_METHOD_RIS);
+    p.candidates = NOC_CANDIDATES_BVH;
+    noc_light_stats automatic = stats_of(s, &c, &p);
+    assert_true(automatic.tuning_seconds > 0 && automatic.volumes_seconds > 0 && automatic.hierarchy_seconds > 0);
+    assert_true(automatic.boxes_seconds == 0);
+    for (int way = 0; way < 4; way++) {
+        p.influence = 2;
+        p.influence_boxes = way & 1 ? NOC_INFLUENCE_VISIBLE : NOC_INFLUENCE_SPHERE;
+        p.influence_cluster = way & 2 ? 8 : 1;
+        noc_light_stats set = stats_of(s, &c, &p);
+        assert_true(set.tuning_seconds == 0 && set.volumes_seconds > 0 && set.hierarchy_seconds > 0 && set.influence == 2);
+        assert_true((set.boxes_seconds > 0) == (way & 1));
+        double steps = set.volumes_seconds + set.hierarchy_seconds + set.boxes_seconds;
+        assert_true(steps > 0 && steps <= set.build_seconds);
+    }
+    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 2 }, NULL);
+    p.influence_boxes = NOC_INFLUENCE_SPHERE;
+    p.influence_cluster = 1;
+    const double asked[] = { 2, 0, 3, 0 };
+    for (size_t i = 0; i < NOC_COUNT(asked); i++) {
+        noc_light_stats found;
+        p.influence = asked[i];
+        assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+        noc_renderer_light_stats(r, &found);
+        assert_true(found.influence == (asked[i] > 0 ? asked[i] : automatic.influence));
+        assert_true((found.tuning_seconds > 0) == (i > 0)); /* found once, and kept */
+    }
+    noc_renderer_destroy(r);
+    noc_scene_destroy(s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scalar_and_wide_agree), cmocka_unit_test(threads_and_seeds), cmocka_unit_test(empty_scenes),
         cmocka_unit_test(wrong_arguments),       cmocka_unit_test(cancelled_frames),
         cmocka_unit_test(history_outlives_a_cancelled_frame), cmocka_unit_test(frames_and_resets),
-        cmocka_unit_test(number_of_lights_found),
+        cmocka_unit_test(number_of_lights_found), cmocka_unit_test(set_reach_is_not_looked_for),
         cmocka_unit_test(emitter_mask),          cmocka_unit_test(hostile_scenes),
         cmocka_unit_test(negative_choices_and_no_params), cmocka_unit_test(any_other_parameter),
     };

@@ -42,13 +42,19 @@ static bool draws_candidates(const noc_render_params *p) {
     return p->method == NOC_METHOD_RIS || p->method == NOC_METHOD_RESTIR;
 }
 
-/* Boxes and shared volumes are made for one S_r; volumes of one light each serve them all. */
+/* Boxes and shared volumes are made for one S_r. Volumes of one light each serve them all, but one that is to be found must have
+ * been: it takes far longer to find than volumes to make, so it is not where S_r was set. */
+static bool serves(const noc_influence_params *have, const noc_influence_params *want) {
+    if (have->cluster != want->cluster || have->probe != want->probe)
+        return false;
+    return have->scale == want->scale || (want->scale > 0 && want->cluster <= 1 && !want->probe);
+}
+
 static noc_status prepare_influence(embree_state *s, const noc_render_params *p) {
-    bool boxes = p->influence_boxes == NOC_INFLUENCE_VISIBLE, shared = p->influence_cluster > 1;
-    noc_influence_params want = { .cluster = p->influence_cluster, .scale = boxes || shared ? p->influence : 0,
-                                  .probe = boxes ? noc_embree_probe : NULL, .user = s, .pool = s->pool };
-    const noc_influence_params *have = &s->influence_params;
-    if (s->influence && have->cluster == want.cluster && have->scale == want.scale && have->probe == want.probe)
+    bool boxes = p->influence_boxes == NOC_INFLUENCE_VISIBLE;
+    noc_influence_params want = { .cluster = p->influence_cluster, .scale = p->influence, .probe = boxes ? noc_embree_probe : NULL,
+                                  .user = s, .pool = s->pool };
+    if (s->influence && serves(&s->influence_params, &want))
         return NOC_OK;
     double start = noc_wall_seconds();
     noc_influence_destroy(s->influence);
@@ -180,6 +186,10 @@ void noc_embree_light_stats(void *state, const noc_render_params *p, noc_light_s
         return;
     out->influence = p->influence > 0 ? p->influence : s->influence->scale;
     out->volumes = s->influence->volume_count;
+    out->volumes_seconds = s->influence->seconds[NOC_STEP_VOLUMES];
+    out->tuning_seconds = s->influence->seconds[NOC_STEP_TUNING];
+    out->hierarchy_seconds = s->influence->seconds[NOC_STEP_HIERARCHY];
+    out->boxes_seconds = s->influence->seconds[NOC_STEP_BOXES];
     uint64_t wider = 0;
     for (int i = 0; i < s->worker_count; i++)
         wider += s->workers[i].found_wider;
