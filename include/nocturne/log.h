@@ -69,7 +69,8 @@ NOC_DEFAULT_PARAMS(noc_log_params, noc_log_default_params, NOC_LOG_DEFAULTS)
 /* NULL params means the defaults. Returns NULL only when out of memory. */
 NOC_API noc_log *noc_log_create(const noc_log_params *params);
 NOC_API void noc_log_destroy(noc_log *log); /* NULL is allowed */
-/* Text of the last error reported to this log, "" if none; valid until the next error. Not for use while other threads log. */
+/* Text of the last error reported to this log, "" if none; valid until the next error. A call that its progress callback
+ * cancelled leaves one too, though its message is of level NOC_LOG_INFO. Not for use while other threads log. */
 NOC_API const char *noc_log_last_error(const noc_log *log);
 NOC_API const char *noc_status_text(noc_status status);
 

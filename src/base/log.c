@@ -40,8 +40,9 @@ const char *noc_status_text(noc_status status) {
     return "unknown status";
 }
 
-static void emit(noc_log *log, noc_log_level level, const char *fmt, va_list ap) {
-    if (!log || (level > log->params.level && level != NOC_LOG_ERROR))
+/* keep: it is the reason why a call fails, whatever its level. */
+static void emit(noc_log *log, noc_log_level level, bool keep, const char *fmt, va_list ap) {
+    if (!log || (level > log->params.level && !keep))
         return;
     char text[1024];
     vsnprintf(text, sizeof(text), fmt, ap);
@@ -50,7 +51,7 @@ static void emit(noc_log *log, noc_log_level level, const char *fmt, va_list ap)
         if ((unsigned char)*c < 32 || *c == 127)
             *c = ' ';
     pthread_mutex_lock(&log->lock);
-    if (level == NOC_LOG_ERROR)
+    if (keep)
         memcpy(log->last_error, text, sizeof(text));
     if (level <= log->params.level) {
         if (log->params.message)
@@ -64,16 +65,24 @@ static void emit(noc_log *log, noc_log_level level, const char *fmt, va_list ap)
 noc_status noc_error(noc_log *log, noc_status status, const char *fmt, ...) {
     va_list ap;
     va_start(ap, fmt);
-    emit(log, NOC_LOG_ERROR, fmt, ap);
+    emit(log, NOC_LOG_ERROR, true, fmt, ap);
     va_end(ap);
     return status;
+}
+
+noc_status noc_cancelled(noc_log *log, const char *fmt, ...) {
+    va_list ap;
+    va_start(ap, fmt);
+    emit(log, NOC_LOG_INFO, true, fmt, ap);
+    va_end(ap);
+    return NOC_ERR_CANCELLED;
 }
 
 #define NOC_LOG_FUNCTION(name, level)                                                                                  \
     void name(noc_log *log, const char *fmt, ...) {                                                                    \
         va_list ap;                                                                                                    \
         va_start(ap, fmt);                                                                                             \
-        emit(log, level, fmt, ap);                                                                                     \
+        emit(log, level, false, fmt, ap);                                                                                    \
         va_end(ap);                                                                                                    \
     }
 NOC_LOG_FUNCTION(noc_warn, NOC_LOG_WARN)

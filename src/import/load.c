@@ -271,7 +271,7 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     if (!status && !inspect)
         status = noc_scene_commit(scene);
     if (status == NOC_ERR_CANCELLED)
-        noc_info(scene->log, "import: cancelled");
+        noc_cancelled(scene->log, "import: cancelled");
     for (size_t i = 0; i < path_count; i++) {
         if (im.inputs[i].started)
             report_add(im.report, &im.inputs[i].file, im.inputs[i].issues);

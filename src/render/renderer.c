@@ -138,7 +138,9 @@ noc_status noc_renderer_frame(noc_renderer *r, const noc_camera *camera, const n
     const noc_render_params defaults = noc_render_default_params();
     params = params ? params : &defaults;
     noc_status status = check(r, camera, params);
-    return status == NOC_OK ? run_frame(r, camera, params, progress) : status;
+    if (status == NOC_OK)
+        status = run_frame(r, camera, params, progress);
+    return status == NOC_ERR_CANCELLED ? noc_cancelled(r->log, "render: cancelled") : status;
 }
 
 noc_image *noc_renderer_image(noc_renderer *r) {

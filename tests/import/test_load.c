@@ -274,6 +274,7 @@ static void test_progress(void **state) {
         watch = (struct watch){ .stop_at = stop };
         LOAD(&r, p, file("a", CITY "slow\nslow\n"), file("b", CITY "slow\n"), file("l", NEAR_LAMP "slow\n"));
         assert_int_equal(r.status, NOC_ERR_CANCELLED);
+        assert_string_equal(noc_log_last_error(r.scene->log), "import: cancelled");
         assert_int_equal(watch.calls, stop);
         assert_false(r.scene->committed);
         finish(&r);

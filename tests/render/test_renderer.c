@@ -273,15 +273,20 @@ static bool count_down(void *user, const char *what, double done) {
     return --*(int *)user > 0;
 }
 
+static void count_message(void *user, noc_log_level level, const char *text) { ++*(int *)user; }
+
 static void cancelled_frames(void **state) {
     (void)state;
     noc_scene *s = small_street(40, true);
     noc_render_params p = measure(160, 96, NOC_METHOD_RESTIR);
     noc_camera c = view(0);
-    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 2 }, NULL);
-    int left = 3;
+    int left = 3, messages = 0;
+    noc_log *log = noc_log_create(&(noc_log_params){ .message = count_message, .user = &messages });
+    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 2 }, log);
     noc_progress stop = { count_down, &left };
     assert_int_equal(noc_renderer_frame(r, &c, &p, &stop), NOC_ERR_CANCELLED);
+    assert_string_equal(noc_log_last_error(log), "render: cancelled"); /* the reason, though nobody is alarmed */
+    assert_int_equal(messages, 0);
     assert_null(noc_renderer_image(r)); /* not one frame yet */
     for (int i = 0; i < 3; i++)
         assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
@@ -302,6 +307,7 @@ static void cancelled_frames(void **state) {
     assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
     noc_image_destroy(before);
     noc_renderer_destroy(r);
+    noc_log_destroy(log);
     noc_scene_destroy(s);
 }
 
