@@ -77,12 +77,15 @@ typedef struct noc_comparison {
     noc_metrics dark;         /* pixels that see no emitter within one pixel (needs a mask in r, else equal to all) */
     noc_metrics dark_clamped;
     double ceiling;           /* cd/m2 */
+    double ev100;             /* exposure of both pictures in RMSE-8; without meaning where they are relative */
     bool has_mask;
 } noc_comparison;
 
 typedef struct noc_compare_params {
     double ceiling;             /* cd/m2; default 10 */
     noc_display_params display; /* for RMSE-8 */
+    bool relative;              /* both pictures have no unit but white = 1, as noc_image_read gives PNG: RMSE-8 takes them
+                                 * as they were displayed, without exposure or tone map, and luminances are shares of white */
 } noc_compare_params;
 
 #define NOC_COMPARE_DEFAULTS(set) set(ceiling, 10) set(display.auto_exposure, true) set(display.tonemap, NOC_TONEMAP_FILMIC)
@@ -94,10 +97,10 @@ NOC_DEFAULT_PARAMS(noc_compare_params, noc_compare_default_params, NOC_COMPARE_D
 
 NOC_API noc_status noc_image_compare(const noc_image *x, const noc_image *r, const noc_compare_params *params,
                                      noc_comparison *out, noc_log *log);
-/* Signed difference in a diverging colour map with a legend (blue: x darker, red: x brighter), as 8-bit sRGB.
- * *out is malloc'ed (free it), its size in *width, *height. */
-NOC_API noc_status noc_image_difference(const noc_image *x, const noc_image *r, uint8_t **out, int *width, int *height,
-                                        noc_log *log);
+/* Signed difference of luminance in a diverging colour map with a legend (blue: x darker, red: x brighter), as 8-bit sRGB.
+ * unit stands in the legend (Latin-1); NULL is cd/m2. *out is malloc'ed (free it), its size in *width, *height. */
+NOC_API noc_status noc_image_difference(const noc_image *x, const noc_image *r, const char *unit, uint8_t **out, int *width,
+                                        int *height, noc_log *log);
 
 /* One number a pixel that is no colour, such as a view of the light sampling (noc_renderer_aov). Rows from the top. */
 typedef enum noc_channel_scale {

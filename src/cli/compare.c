@@ -17,7 +17,7 @@ static const noc_option own_options[] = {
     { "output", "Output", NOC_OPTION_TEXT, offsetof(A, output), 0, 0, NULL, "FILE", "difference picture to write, .png" },
     { "json", "Output", NOC_OPTION_BOOL, offsetof(A, json), 0, 1, NULL, "", "print JSON instead of a table" },
     { "ceiling", "Figures", NOC_OPTION_REAL, offsetof(A, compare.ceiling), 1e-6, 1e9, NULL, "cd/m2",
-      "both pictures are cut off here in the clamped rows" },
+      "both pictures are cut off here in the clamped rows (not for PNG)" },
     { "exposure", "Display", NOC_OPTION_TEXT, offsetof(A, exposure), 0, 0, NULL, "EV",
       "\"auto\" (of the reference), or EV100: for RMSE-8" },
     { NULL },
@@ -30,8 +30,10 @@ static const char *const by_exposure[] = { "auto-exposure", "ev100", NULL };
 
 const cli_command cli_compare = {
     "compare", "PICTURE REFERENCE", "Prints how far a picture is from a reference of the same size.",
-    "RMSE-8 is on 8-bit sRGB, 0 to 255, after the same exposure and tone map; RMSE and relMSE are on\n"
-    "linear luminance; bias is mean(picture) / mean(reference). Definitions: docs/estimator.md.\n"
+    "RMSE-8 is on 8-bit sRGB, 0 to 255, both with the reference's exposure and one\n"
+    "tone map; RMSE and relMSE are on linear luminance; bias is mean(picture) /\n"
+    "mean(reference). Definitions: docs/estimator.md. PNG against PNG is compared as\n"
+    "displayed: RMSE-8 is of their 8-bit values, luminances are shares of white.\n"
     "Examples\n"
     "  nocturne compare restir.exr reference.exr -o difference.png\n",
     { { options, 0, NULL }, { noc_display_options, offsetof(A, compare.display), by_exposure }, { cli_common_options, 0, NULL } },
@@ -48,8 +50,13 @@ static void print_table(const compare_args *args, const noc_comparison *c, const
     char a[160], b[160], clamped[48];
     printf("%s against %s, %d x %d\n\n", cli_clean(a, sizeof(a), args->common.inputs[0]),
            cli_clean(b, sizeof(b), args->common.inputs[1]), image->width, image->height);
-    printf("  %-28s %10s  %8s  %10s  %10s  %8s\n", "", "pixels", "RMSE-8", "RMSE cd/m2", "relMSE", "bias");
+    bool relative = args->compare.relative;
+    printf("  %-28s %10s  %8s  %10s  %10s  %8s\n", "", "pixels", "RMSE-8", relative ? "RMSE" : "RMSE cd/m2", "relMSE", "bias");
     print_row("all pixels", &c->all);
+    if (relative) {
+        printf("\n  mean luminance %.6g against %.6g of white\n", c->all.mean_x, c->all.mean_r);
+        return;
+    }
     snprintf(clamped, sizeof(clamped), "  clamped to %.6g cd/m2", c->ceiling);
     print_row(clamped, &c->all_clamped);
     if (c->has_mask) {
@@ -58,7 +65,7 @@ static void print_table(const compare_args *args, const noc_comparison *c, const
     } else {
         printf("  the reference has no emitter mask: no figures without emitters\n");
     }
-    printf("\n  mean luminance %.6g against %.6g cd/m2\n", c->all.mean_x, c->all.mean_r);
+    printf("\n  mean luminance %.6g against %.6g cd/m2; RMSE-8 at EV100 %.2f\n", c->all.mean_x, c->all.mean_r, c->ev100);
 }
 
 static void json_row(const char *name, const noc_metrics *m, bool last) {
@@ -79,12 +86,19 @@ static void print_json(const compare_args *args, const noc_comparison *c, const 
     cli_json_text(stdout, args->common.inputs[0]);
     printf(",\n  \"reference\": ");
     cli_json_text(stdout, args->common.inputs[1]);
-    printf(",\n  \"width\": %d, \"height\": %d, \"ceiling\": ", image->width, image->height);
-    cli_json_number(stdout, c->ceiling);
+    bool relative = args->compare.relative, mask = c->has_mask && !relative;
+    printf(",\n  \"width\": %d, \"height\": %d, \"unit\": \"%s\"", image->width, image->height, relative ? "white" : "cd/m2");
+    if (!relative) {
+        printf(", \"ceiling\": ");
+        cli_json_number(stdout, c->ceiling);
+        printf(", \"ev100\": ");
+        cli_json_number(stdout, c->ev100);
+    }
     printf(",\n");
-    json_row("all", &c->all, false);
-    json_row("all_clamped", &c->all_clamped, !c->has_mask);
-    if (c->has_mask) {
+    json_row("all", &c->all, relative);
+    if (!relative)
+        json_row("all_clamped", &c->all_clamped, !mask);
+    if (mask) {
         json_row("no_emitter", &c->dark, false);
         json_row("no_emitter_clamped", &c->dark_clamped, true);
     }
@@ -94,16 +108,18 @@ static void print_json(const compare_args *args, const noc_comparison *c, const 
 static noc_status write_difference(const compare_args *args, const noc_image *x, const noc_image *r, noc_log *log) {
     uint8_t *rgb = NULL;
     int width, height;
-    noc_status status = noc_image_difference(x, r, &rgb, &width, &height, log);
+    bool relative = args->compare.relative;
+    noc_status status = noc_image_difference(x, r, relative ? "of white" : NULL, &rgb, &width, &height, log);
     if (status)
         return status;
-    const char *keys[] = { "picture" }, *values[] = { "signed difference of luminance, cd/m2" };
+    const char *keys[] = { "picture" }, *values[] = { relative ? "signed difference of luminance, white = 1"
+                                                                      : "signed difference of luminance, cd/m2" };
     status = noc_image_write_srgb8(rgb, width, height, args->output, &(noc_image_meta){ 1, keys, values }, log);
     free(rgb);
     return status;
 }
 
-static int compare(const compare_args *args, noc_log *log) {
+static int compare(compare_args *args, noc_log *log) {
     noc_image *pictures[2] = { NULL };
     bool linear[2] = { false };
     noc_status status = NOC_OK;
@@ -114,8 +130,7 @@ static int compare(const compare_args *args, noc_log *log) {
     }
     if (!status && linear[0] != linear[1] && !args->common.quiet)
         cli_error("warning: one picture is linear, the other displayed: only .exr against .exr compares luminances");
-    else if (!status && !linear[0] && !args->common.quiet)
-        cli_error("warning: .png has no units: RMSE is relative to white, not cd/m2");
+    args->compare.relative = !linear[0] && !linear[1];
     status = status ? status : noc_image_compare(pictures[0], pictures[1], &args->compare, &figures, log);
     if (!status && args->output)
         status = write_difference(args, pictures[0], pictures[1], log);

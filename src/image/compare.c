@@ -113,11 +113,17 @@ noc_status noc_image_compare(const noc_image *x, const noc_image *r, const noc_c
     if (status != NOC_OK)
         return status;
     display_map d;
-    display_init(&d, p.display.tonemap, display_ev100(r, &p.display)); /* both as the reference is shown */
+    double ev100 = display_ev100(r, &p.display); /* both as the reference is shown */
+    if (p.relative) { /* they have been displayed already */
+        ev100 = -log2(IMAGE_SATURATION);
+        p.display.tonemap = NOC_TONEMAP_LINEAR;
+    }
+    display_init(&d, p.display.tonemap, ev100);
     set sets[4] = { { .dark = false }, { .clamped = true }, { .dark = true }, { .dark = true, .clamped = true } };
     pass_over(x, r, p.ceiling, &d, sets, false);
     pass_over(x, r, p.ceiling, &d, sets, true);
     *out = (noc_comparison){ .all = metrics_of(&sets[0]), .all_clamped = metrics_of(&sets[1]), .dark = metrics_of(&sets[2]),
-                             .dark_clamped = metrics_of(&sets[3]), .ceiling = p.ceiling, .has_mask = r->emitter != NULL };
+                             .dark_clamped = metrics_of(&sets[3]), 
+                             .ceiling = p.ceiling, .ev100 = ev100, .has_mask = r->emitter != NULL };
     return NOC_OK;
 }

@@ -27,7 +27,8 @@ static double scale_of(const noc_image *x, const noc_image *r, double *d, size_t
     return scale > 1e-30 && isfinite(scale) ? scale : 1;
 }
 
-noc_status noc_image_difference(const noc_image *x, const noc_image *r, uint8_t **out, int *width, int *height, noc_log *log) {
+noc_status noc_image_difference(const noc_image *x, const noc_image *r, const char *unit, uint8_t **out, int *width, int *height,
+                                noc_log *log) {
     noc_status status = image_check_pair(x, r, log);
     if (status != NOC_OK)
         return status;
@@ -52,7 +53,9 @@ noc_status noc_image_difference(const noc_image *x, const noc_image *r, uint8_t 
         size_t column = i % (size_t)x->width, row = i / (size_t)x->width;
         memcpy(c.rgb + 3 * (row * (size_t)c.width + margin + column), colormap_at(&map, 0.5 + 0.5 * v / limit), 3);
     }
-    colorbar bar = { .map = &map, .low = -limit, .high = limit, .title = "picture - reference [cd/m\xb2]" };
+    char title[80];
+    snprintf(title, sizeof(title), "picture - reference [%s]", unit ? unit : "cd/m\xb2");
+    colorbar bar = { .map = &map, .low = -limit, .high = limit, .title = title };
     colorbar_draw(&c, 0, x->height, c.width, scale, &bar);
     *out = c.rgb;
     *width = c.width;

@@ -17,7 +17,9 @@ awk '/^  all pixels/ { found = $4 > 1 && $5 > 0 && $6 > 0 } END { exit !found }'
 run compare is.exr reference.exr --json
 grep -q '"no_emitter_clamped": {"pixels": [0-9]' out; result $? "figures as JSON"
 run compare is.png is.png
-test $status = 0 && grep -q 'no units' err; result $? "PNG against PNG says that units are lost"
+test $status = 0 && grep -q 'of white$' out && ! grep -q 'cd/m2' out && test ! -s err; result $? "PNG against PNG speaks of white, not cd/m2"
+run compare is.png is.png --json
+grep -q '"unit": "white"' out && ! grep -q ceiling out && python3 -m json.tool out >/dev/null; result $? "and so does its JSON"
 run compare is.png reference.exr
 test $status = 0 && grep -q 'linear' err; result $? "PNG against EXR says what it is worth"
 expect "pictures of different sizes" 1 '(64.*36|32.*36)' compare narrow.exr reference.exr -o d.png

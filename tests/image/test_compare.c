@@ -61,6 +61,13 @@ static void figures_by_hand(void **state) {
     double codes[3] = { 173, 126, 0 };
     NEAR(c.all.rmse8, sqrt((pow(codes[0] - codes[1], 2) + pow(codes[0] - codes[2], 2)) / 4));
 
+    NEAR(c.ev100, 2.0);
+    p.relative = true; /* as PNG are read: white is 1, whatever the exposure. Only the last pixel differs: black, white */
+    assert_int_equal(noc_image_compare(x, r, &p, &c, log_), NOC_OK);
+    NEAR(c.all.rmse8, sqrt(255 * 255 / 4.0));
+    p.relative = false;
+    assert_int_equal(noc_image_compare(x, r, &p, &c, log_), NOC_OK);
+
     NEAR(c.all_clamped.mean_x, 13 / 4.0);
     NEAR(c.all_clamped.mean_r, 14 / 4.0);
     NEAR(c.all_clamped.rmse, sqrt(5 / 4.0));
@@ -137,7 +144,7 @@ static void what_cannot_be_compared(void **state) {
     int width, height;
     assert_int_equal(noc_image_compare(x, r, NULL, &c, log), NOC_ERR_ARGUMENT);
     assert_non_null(strstr(noc_log_last_error(log), "4 x 2 and 2 x 4"));
-    assert_int_equal(noc_image_difference(x, r, &out, &width, &height, log), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_image_difference(x, r, NULL, &out, &width, &height, log), NOC_ERR_ARGUMENT);
     assert_null(out);
     noc_compare_params p = noc_compare_default_params();
     p.ceiling = 0;
@@ -275,7 +282,7 @@ static void difference_picture(void **state) {
         x->rgb[3 * 350 + k] = 1e6f; /* one firefly does not fade the rest */
     uint8_t *out;
     int width, height;
-    assert_int_equal(noc_image_difference(x, r, &out, &width, &height, log_), NOC_OK);
+    assert_int_equal(noc_image_difference(x, r, NULL, &out, &width, &height, log_), NOC_OK);
     assert_int_equal(width, W);
     assert_true(height > H);
     colormap map;
@@ -302,7 +309,7 @@ static void difference_of_tiny_and_equal_pictures(void **state) {
     noc_image *a = noc_image_create(1, 1, log_);
     uint8_t *out;
     int width, height;
-    assert_int_equal(noc_image_difference(a, a, &out, &width, &height, log_), NOC_OK);
+    assert_int_equal(noc_image_difference(a, a, NULL, &out, &width, &height, log_), NOC_OK);
     assert_true(width >= colorbar_min_width(1));
     colormap map;
     colormap_init(&map, COLORMAP_DIVERGING);
