@@ -5,6 +5,10 @@
 
 int cli_parse_camera(render_job *job) {
     const render_args *args = job->args;
+    if (args->eye && !cli_parse_numbers(args->eye, ',', 3, job->eye))
+        return cli_usage(&cli_render, "--eye: \"%.60s\" is not X,Y,Z", args->eye);
+    if (args->target && !cli_parse_numbers(args->target, ',', 3, job->target))
+        return cli_usage(&cli_render, "--target: \"%.60s\" is not X,Y,Z", args->target);
     if (!args->eye != !args->target)
         return cli_usage(&cli_render, "--%s needs --%s too", args->eye ? "eye" : "target", args->eye ? "target" : "eye");
     if (args->eye && cli_given(&args->common, "view"))
@@ -13,10 +17,6 @@ int cli_parse_camera(render_job *job) {
         return cli_usage(&cli_render, "--camera-crs is for --eye and --target");
     if (!args->eye)
         return CLI_OK;
-    if (!cli_parse_numbers(args->eye, ',', 3, job->eye))
-        return cli_usage(&cli_render, "--eye: \"%.60s\" is not X,Y,Z", args->eye);
-    if (!cli_parse_numbers(args->target, ',', 3, job->target))
-        return cli_usage(&cli_render, "--target: \"%.60s\" is not X,Y,Z", args->target);
     /* Local coordinates go as far as the library's cameras; those of a CRS may have a zone before them. */
     double limit = args->camera_crs ? 1e9 : 1e7;
     for (int k = 0; k < 3; k++)

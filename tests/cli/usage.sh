@@ -54,6 +54,7 @@ for v in 1,2 1,2,3,4 a,b,c '1,2,' ',,,' 'nan,0,0' '1, 2, 3' 1e999,0,0; do
     expect "eye '$v'" 2 '--eye: .* is not X,Y,Z' render $c -o a.png --eye "$v" --target 0,0,0
     expect "target '$v'" 2 '--target: .* is not X,Y,Z' render $c -o a.png --target "$v" --eye 0,0,0
 done
+expect "half an eye is told of before a missing target" 2 '--eye: "1,2" is not X,Y,Z' render $c -o a.png --eye 1,2
 expect "eye without target" 2 '--eye needs --target' render $c -o a.png --eye 0,0,0
 expect "target without eye" 2 '--target needs --eye' render $c -o a.png --target 0,0,0
 expect "eye at target" 2 'the same place' render $c -o a.png --eye 1,2,3 --target 1,2,3.0
@@ -110,8 +111,8 @@ for cmd in render info compare; do
     test $status = 0 && cmp -s out first; result $? "$cmd --help is the same"
     run $cmd -h
     test $status = 0 && cmp -s out first; result $? "$cmd -h is the same"
-    test "$(wc -l <first)" -le 110 && ! grep -Eq '^.{101}' first && ! grep -q ' $' first
-    result $? "help $cmd fits two screens of 100 columns"
+    test "$(wc -l <first)" -le 180 && ! grep -Eq '^.{81}' first && ! grep -q ' $' first
+    result $? "help $cmd fits three screens of 80 columns"
 done
 if [ -e /dev/full ]; then
     "$program" help render >/dev/full 2>err
