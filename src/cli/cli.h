@@ -52,6 +52,16 @@ bool cli_parse_numbers(const char *text, char separator, size_t count, double *o
 /* help.c */
 void cli_help(const cli_command *command, FILE *out); /* NULL: of the program */
 void cli_help_markdown(FILE *out);                     /* docs/options.md */
+void cli_spell(char *out, size_t size, const noc_option *o, const void *defaults); /* "--width N", "--[no-]jitter", "-o, --output FILE" */
+void cli_spell_default(char *out, size_t size, const noc_option *o, const void *defaults); /* "[10 px]", "[on]", "" */
+typedef void cli_visit(FILE *out, const noc_option *o, const void *defaults, int columns);
+/* Options of all the command's tables by group, groups in the order in which they first appear. heading is a format for the
+ * group's name; NULL: no heading. */
+void cli_each_option(const cli_command *command, FILE *out, const char *heading, cli_visit *visit, int columns);
+
+/* pages.c: made from the option tables too */
+void cli_man(FILE *out);                                 /* nocturne.1 */
+bool cli_completion(FILE *out, const char *shell);       /* for bash, zsh or fish; false: for none of them */
 
 /* text.c: messages and numbers for people and for machines. */
 void cli_error(const char *fmt, ...) NOC_PRINTF(1, 2);            /* one line on stderr, after "nocturne: " */
@@ -68,7 +78,8 @@ void cli_json_text(FILE *out, const char *text);                  /* quoted and 
 void cli_json_number(FILE *out, double v);                        /* null where it is not finite */
 bool cli_flush(FILE *out);                                        /* false after saying that stdout could not be written */
 
-/* progress.c: one line on stderr, only where that is a terminal; and the signals that end the work early. */
+/* progress.c: a bar on stderr where that is a terminal, else a line after ten seconds and then ever more rarely; and the
+ * signals that end the work early. */
 void cli_progress_start(bool quiet);
 void cli_progress_show(double done, double left, const char *fmt, ...) NOC_PRINTF(3, 4); /* left: seconds, < 0 unknown */
 void cli_progress_clear(void);

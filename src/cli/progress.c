@@ -7,9 +7,12 @@
 #include <time.h>
 #include <unistd.h>
 
-static bool shown_at_all, on_screen;
-static double last_shown;
+static bool shown_at_all, on_screen, told_at_all;
+static double last_shown, next_told, started;
 static volatile sig_atomic_t caught;
+
+#define FIRST_TOLD 10       /* s */
+#define LONGEST_SILENCE 300 /* s */
 
 double cli_now(void) {
     struct timespec t;
@@ -20,7 +23,22 @@ double cli_now(void) {
 void cli_progress_start(bool quiet) {
     const char *term = getenv("TERM");
     shown_at_all = !quiet && isatty(STDERR_FILENO) && !(term && !strcmp(term, "dumb"));
+    told_at_all = !quiet && !shown_at_all;
     last_shown = 0;
+    started = cli_now();
+    next_told = FIRST_TOLD;
+}
+
+/* A sign of life in a pipe or a log, where a bar has no place: a line after FIRST_TOLD seconds, and then ever more rarely. */
+static void tell(double done, double left, const char *what) {
+    double spent = cli_now() - started;
+    if (!told_at_all || spent < next_told)
+        return;
+    char remaining[48] = "", time[32];
+    if (left >= 0 && left < 360000)
+        snprintf(remaining, sizeof(remaining), ", about %s left", cli_seconds(time, left));
+    cli_error("%d %%, %s%s", (int)(100 * (done > 0 ? done < 1 ? done : 1 : 0)), what, remaining);
+    next_told = spent + (spent < LONGEST_SILENCE ? spent : LONGEST_SILENCE);
 }
 
 static int columns(void) {
@@ -30,7 +48,7 @@ static int columns(void) {
 
 void cli_progress_show(double done, double left, const char *fmt, ...) {
     double now = cli_now();
-    if (!shown_at_all || now - last_shown < 0.1)
+    if (!(shown_at_all || told_at_all) || now - last_shown < 0.1)
         return;
     last_shown = now;
     char what[160], line[256];
@@ -38,6 +56,10 @@ void cli_progress_show(double done, double left, const char *fmt, ...) {
     va_start(ap, fmt);
     vsnprintf(what, sizeof(what), fmt, ap);
     va_end(ap);
+    if (!shown_at_all) {
+        tell(done, left, what);
+        return;
+    }
     done = done > 0 ? done < 1 ? done : 1 : 0;
     enum { BAR = 24 };
     char bar[BAR + 1];
