@@ -190,6 +190,9 @@ void cli_print_summary(const render_job *job) {
     if (scene->lights_inferred)
         printf(" (%s placed by a rule, not found in data)", cli_count(c, scene->lights_inferred));
     printf("%s%s\n", scene->crs && *scene->crs ? ", " : "", scene->crs ? scene->crs : "");
+    if (scene->crs && *scene->crs)
+        printf("  origin    %.3f,%.3f,%.3f in that CRS is 0,0,0 of eye and target\n", scene->origin[0], scene->origin[1],
+               scene->origin[2]);
     print_issues(job->report);
     printf("  camera    eye %.2f,%.2f,%.2f target %.2f,%.2f,%.2f fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
            job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2], job->camera.fov_deg);
