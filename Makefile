@@ -53,7 +53,7 @@ asan: deps-check
 install: build
 	@meson configure build --prefix $(abspath $(PREFIX))
 	@$(NINJA) -C build build.ninja >build/setup.log || { cat build/setup.log; exit 1; }
-	@$(NINJA) -C build nocturne
+	@$(NINJA) -C build nocturne pages
 	@meson install -C build --no-rebuild --quiet
 
 clean:

@@ -25,8 +25,9 @@ static const experiment_args defaults = { .threads = 0 };
 
 const cli_command cli_experiment = {
     "experiment", "SPEC [-o FOLDER]", "Measures error and time of methods and settings against a reference, as a JSON file says.",
-    "FOLDER gets results.csv, plots (SVG), first frames side by side (PNG) and report.md. What a spec may hold\n"
-    "is told in docs/experiments.md; some are ready in experiments/.\n"
+    "FOLDER gets results.csv, plots (SVG), first frames side by side (PNG) and\n"
+    "report.md. What a spec may hold is told in docs/experiments.md; some are ready\n"
+    "in experiments/.\n"
     "Examples\n"
     "  nocturne experiment experiments/methods-and-bias.json -o methods\n"
     "Ctrl-C ends with status 130; the same command goes on where it stopped.\n",

@@ -6,8 +6,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-/* "--width N", "--[no-]jitter", "-o, --output FILE" */
-static void spell(char *out, size_t size, const noc_option *o, const void *defaults) {
+void cli_spell(char *out, size_t size, const noc_option *o, const void *defaults) {
     char dash[8] = "", placeholder[24] = "";
     if (cli_short_name(o))
         snprintf(dash, sizeof(dash), "-%c, ", cli_short_name(o));
@@ -31,8 +30,8 @@ static bool is_absent(const noc_option *o, const void *defaults) {
     return !(value >= o->min && value <= o->max);
 }
 
-/* "[10 px]", "[on]"; empty where the option is simply absent by default. */
-static void spell_default(char *out, size_t size, const noc_option *o, const void *defaults) {
+/* Empty where the option is simply absent by default. */
+void cli_spell_default(char *out, size_t size, const noc_option *o, const void *defaults) {
     char value[64];
     noc_option_get(o, defaults, value, sizeof(value));
     if (o->kind == NOC_OPTION_BOOL)
@@ -47,15 +46,21 @@ static void spell_default(char *out, size_t size, const noc_option *o, const voi
 static int width(FILE *out) {
     struct winsize size;
     if (!isatty(fileno(out)) || ioctl(fileno(out), TIOCGWINSZ, &size) || size.ws_col < 60)
-        return 100;
+        return 80;
     return size.ws_col < 120 ? size.ws_col : 120;
+}
+
+/* Length of what must stay on one line: a word, or one of the choices "a|b|c" with the bar behind it. */
+static int unbroken(const char *text) {
+    int n = (int)strcspn(text, " |");
+    return n + (text[n] == '|');
 }
 
 /* Words of text, wrapped, the first line at the present column. */
 static void wrap(FILE *out, const char *text, int column, int columns) {
     int at = column;
     while (*text) {
-        int n = (int)strcspn(text, " ");
+        int n = unbroken(text);
         if (at + n > columns && at > column) {
             fprintf(out, "\n%*s", column, "");
             at = column;
@@ -65,7 +70,7 @@ static void wrap(FILE *out, const char *text, int column, int columns) {
         text += n;
         if (*text == ' ') {
             text++;
-            if (at + 1 + (int)strcspn(text, " ") <= columns) {
+            if (at + 1 + unbroken(text) <= columns) {
                 fputc(' ', out);
                 at++;
             } else {
@@ -80,8 +85,8 @@ static void wrap(FILE *out, const char *text, int column, int columns) {
 static void print_option(FILE *out, const noc_option *o, const void *defaults, int columns) {
     enum { COLUMN = 28 };
     char left[64], value[80], right[320];
-    spell(left, sizeof(left), o, defaults);
-    spell_default(value, sizeof(value), o, defaults);
+    cli_spell(left, sizeof(left), o, defaults);
+    cli_spell_default(value, sizeof(value), o, defaults);
     snprintf(right, sizeof(right), "%s%s%s%s%s", o->help, o->kind == NOC_OPTION_CHOICE ? ": " : "",
              o->kind == NOC_OPTION_CHOICE ? o->choices : "", *value ? " " : "", value);
     fprintf(out, "  %-*s", COLUMN - 2, left);
@@ -90,10 +95,7 @@ static void print_option(FILE *out, const noc_option *o, const void *defaults, i
     wrap(out, right, COLUMN, columns);
 }
 
-typedef void visit_fn(FILE *out, const noc_option *o, const void *defaults, int columns);
-
-/* Options of all the command's tables by group, groups in the order in which they first appear. */
-static void each_group(const cli_command *command, FILE *out, const char *heading, visit_fn *visit, int columns) {
+void cli_each_option(const cli_command *command, FILE *out, const char *heading, cli_visit *visit, int columns) {
     const char *done[32];
     size_t done_count = 0;
     for (const cli_set *first = command->sets; first->table; first++) {
@@ -104,7 +106,8 @@ static void each_group(const cli_command *command, FILE *out, const char *headin
             if (seen)
                 continue;
             done[done_count++] = f->group;
-            fprintf(out, heading, f->group);
+            if (heading)
+                fprintf(out, heading, f->group);
             for (const cli_set *set = command->sets; set->table; set++)
                 for (const noc_option *o = set->table(); o->name; o++)
                     if (!strcmp(o->group, f->group) && !cli_hidden(set, o))
@@ -115,21 +118,24 @@ static void each_group(const cli_command *command, FILE *out, const char *headin
 
 void cli_help(const cli_command *command, FILE *out) {
     if (command) {
-        fprintf(out, "nocturne %s %s\n\n%s\n", command->name, command->arguments, command->summary);
-        each_group(command, out, "\n%s\n", print_option, width(out));
+        fprintf(out, "nocturne %s %s\n\n", command->name, command->arguments);
+        wrap(out, command->summary, 0, width(out));
+        cli_each_option(command, out, "\n%s\n", print_option, width(out));
         fprintf(out, "\n%s", command->notes);
         return;
     }
     fprintf(out, "nocturne %s: pictures and figures of cities at night\n\n", noc_version());
-    for (const cli_command *const *c = cli_commands; *c; c++)
-        fprintf(out, "  nocturne %-10s %s\n  %19s %s\n", (*c)->name, (*c)->arguments, "", (*c)->summary);
+    for (const cli_command *const *c = cli_commands; *c; c++) {
+        fprintf(out, "  nocturne %-10s %s\n%22s", (*c)->name, (*c)->arguments, "");
+        wrap(out, (*c)->summary, 22, width(out));
+    }
     fprintf(out, "  nocturne help [COMMAND]\n  nocturne --version\n\n"
                  "Try: nocturne render builtin:city -o night.png\n");
 }
 
 static void markdown_row(FILE *out, const noc_option *o, const void *defaults, int columns) {
     char left[64], value[64], range[96] = "";
-    spell(left, sizeof(left), o, defaults);
+    cli_spell(left, sizeof(left), o, defaults);
     noc_option_get(o, defaults, value, sizeof(value));
     if (is_absent(o, defaults))
         *value = 0;
@@ -150,7 +156,7 @@ void cli_help_markdown(FILE *out) {
                  "the two equal. Write `--option value` or `--option=value`.\n");
     for (const cli_command *const *c = cli_commands; *c; c++) {
         fprintf(out, "\n## nocturne %s %s\n\n%s\n", (*c)->name, (*c)->arguments, (*c)->summary);
-        each_group(*c, out, "\n### %s\n\n| Option | What it does | Default | Values |\n|---|---|---|---|\n", markdown_row, 0);
+        cli_each_option(*c, out, "\n### %s\n\n| Option | What it does | Default | Values |\n|---|---|---|---|\n", markdown_row, 0);
         fprintf(out, "\n```\n%s```\n", (*c)->notes);
     }
 }

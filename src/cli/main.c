@@ -35,10 +35,15 @@ static int unknown_command(const char *name) {
 
 static int help(int argc, char **argv) {
     const cli_command *command = NULL;
+    if (argc == 2 && !strcmp(argv[0], "--completion")) {
+        if (!cli_completion(stdout, argv[1]))
+            return cli_usage(NULL, "completion is there for bash, zsh and fish");
+        return cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
+    }
     if (argc > 1)
         return cli_usage(NULL, "help takes one command");
-    if (argc && !strcmp(argv[0], "--markdown")) { /* how docs/options.md is made */
-        cli_help_markdown(stdout);
+    if (argc && (!strcmp(argv[0], "--markdown") || !strcmp(argv[0], "--man"))) { /* how docs/options.md and nocturne.1 are made */
+        (strcmp(argv[0], "--man") ? cli_help_markdown : cli_man)(stdout);
         return cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
     }
     if (argc && strcmp(argv[0], "help") && !(command = cli_find_command(argv[0])))

@@ -42,11 +42,12 @@ const cli_command cli_render = {
     "Examples\n"
     "  nocturne render builtin:city -o night.png\n"
     "  nocturne render builtin:mess --lights 100000 -o mess.png\n"
-    "  nocturne render city.gml lamps.geojson --view aerial --size 1920x1080 -o city.png\n"
+    "  nocturne render city.gml lamps.geojson --view aerial -o city.png\n"
     "  nocturne render builtin:city --candidates bvh --show lights -o lights.png\n"
-    "  nocturne render city.gml --method reference --frames 64 --sky 0 -o reference.exr\n"
+    "  nocturne render city.gml --method reference --frames 64 -o reference.exr\n"
     "Built-in scenes are builtin:city, cityscape, mess, single and atrium.\n"
-    "Ctrl-C saves the picture so far and ends with status 130; a second one ends at once.\n",
+    "Ctrl-C saves the picture so far and ends with status 130; a second one ends at\n"
+    "once.\n",
     { { options, 0, NULL },
       { noc_render_options, offsetof(A, render), NULL },
       { noc_display_options, offsetof(A, display), by_exposure },
