@@ -42,12 +42,13 @@ typedef struct noc_report_line {
 typedef enum noc_lamp_source {
     NOC_SOURCE_UNKNOWN,
     NOC_SOURCE_LED,
-    NOC_SOURCE_SODIUM,
+    NOC_SOURCE_SODIUM,     /* high pressure, or not told which */
     NOC_SOURCE_MERCURY,
     NOC_SOURCE_METAL_HALIDE,
     NOC_SOURCE_FLUORESCENT,
     NOC_SOURCE_INCANDESCENT,
     NOC_SOURCE_GAS,
+    NOC_SOURCE_LOW_SODIUM, /* low pressure: one orange line */
     NOC_SOURCE_COUNT
 } noc_lamp_source;
 

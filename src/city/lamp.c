@@ -11,22 +11,25 @@
 /* What a source means where its lumens and its colour are not tagged.
  *
  * lumens_per_watt: of the luminaire. For discharge and thermal lamps, the middle of the lamp's range in the IES Lighting
- * Handbook (10th ed., ch. 7: high pressure sodium 70..140, metal halide 65..115, mercury 35..60, fluorescent 50..100,
- * incandescent and halogen 10..20 lm/W) times 0.75, the usual light output ratio of a street luminaire. LEDs are rated as
+ * Handbook (10th ed., ch. 7: high pressure sodium 70..140, low pressure sodium 100..180, metal halide 65..115, mercury
+ * 35..60, fluorescent 50..100, incandescent and halogen 10..20 lm/W) times 0.75, the usual light output ratio of a street luminaire. LEDs are rated as
  * luminaires: 110 lm/W is typical of those installed in the 2010s and 2020s. Gas mantles give 1 to 2 lumens a watt of gas.
  * kelvin: correlated colour temperatures of the same handbook. Sodium is no black body; a Planckian of 2050 K has nearly its
- * chromaticity (high pressure; low pressure lamps carry a colour of their own from the reader). */
+ * chromaticity at high pressure; at low pressure it is the line at 589 nm, whose xy (0.5693, 0.4300) lies outside
+ * Rec.709 and whose negative blue is cut. */
 static const struct {
     double lumens_per_watt, kelvin, lumens; /* 0: the parameter's */
+    float rgb[3]; /* of one line, whatever the temperature; 0: by temperature */
 } sources[] = {
-    [GEO_SOURCE_UNKNOWN] = { 80, 0, 0 },
-    [GEO_SOURCE_LED] = { 110, 0, 0 },
-    [GEO_SOURCE_SODIUM] = { 78, 2050, 0 },
-    [GEO_SOURCE_MERCURY] = { 36, 4100, 0 },
-    [GEO_SOURCE_METAL_HALIDE] = { 68, 4000, 0 },
-    [GEO_SOURCE_FLUORESCENT] = { 56, 4000, 0 },
-    [GEO_SOURCE_INCANDESCENT] = { 11, 2700, 0 },
-    [GEO_SOURCE_GAS] = { 1.5, 2700, 600 }, /* a lantern of four mantles, not a 5000 lm luminaire */
+    [GEO_SOURCE_UNKNOWN] = { 80, 0, 0, { 0 } },
+    [GEO_SOURCE_LED] = { 110, 0, 0, { 0 } },
+    [GEO_SOURCE_SODIUM] = { 78, 2050, 0, { 0 } },
+    [GEO_SOURCE_LOW_SODIUM] = { 105, 0, 0, { 2.73f, .588f, 0 } },
+    [GEO_SOURCE_MERCURY] = { 36, 4100, 0, { 0 } },
+    [GEO_SOURCE_METAL_HALIDE] = { 68, 4000, 0, { 0 } },
+    [GEO_SOURCE_FLUORESCENT] = { 56, 4000, 0, { 0 } },
+    [GEO_SOURCE_INCANDESCENT] = { 11, 2700, 0, { 0 } },
+    [GEO_SOURCE_GAS] = { 1.5, 2700, 600, { 0 } }, /* a lantern of four mantles, not a 5000 lm luminaire */
 };
 
 /* Krystek's approximation of the Planckian locus in CIE 1960 (u, v), 1000..15000 K: M. Krystek, "An algorithm to calculate
@@ -58,14 +61,19 @@ typedef struct fitting {
 
 static double known(double tagged, double otherwise) { return isfinite(tagged) && tagged > 0 ? tagged : otherwise; }
 
+/* A colour made of luminance 1; false if it is none. */
+static bool unit_luminance(const float colour[3], float rgb[3]) {
+    double luminance = 0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2];
+    if (!(colour[0] >= 0 && colour[1] >= 0 && colour[2] >= 0 && luminance > 0 && isfinite(luminance)))
+        return false;
+    for (int i = 0; i < 3; i++)
+        rgb[i] = (float)(colour[i] / luminance);
+    return true;
+}
+
 static void lamp_colour(const geo_lamp *lamp, const city_lamp_params *params, float rgb[3]) {
-    double luminance = 0.2126 * lamp->rgb[0] + 0.7152 * lamp->rgb[1] + 0.0722 * lamp->rgb[2];
-    bool tagged = lamp->rgb[0] >= 0 && lamp->rgb[1] >= 0 && lamp->rgb[2] >= 0 && luminance > 0 && isfinite(luminance);
-    if (tagged) {
-        for (int i = 0; i < 3; i++)
-            rgb[i] = (float)(lamp->rgb[i] / luminance);
+    if (unit_luminance(lamp->rgb, rgb) || unit_luminance(sources[lamp->source].rgb, rgb))
         return;
-    }
     double source = sources[lamp->source].kelvin;
     city_kelvin_rgb(known(lamp->kelvin, source > 0 ? source : params->kelvin), rgb);
 }

@@ -195,14 +195,9 @@ static bool read_colour(reading *r, const char *text, bool of_the_light) {
 static bool read_type(reading *r, const char *text) {
     char folded[256];
     lamp_fold(text, true, folded, sizeof(folded));
-    bool low_pressure;
-    int source = lamp_source_word(folded, &low_pressure), type = lamp_type_word(folded);
-    if (source >= 0 && r->lamp->source == GEO_SOURCE_UNKNOWN) {
+    int source = lamp_source_word(folded), type = lamp_type_word(folded);
+    if (source >= 0 && r->lamp->source == GEO_SOURCE_UNKNOWN)
         r->lamp->source = source;
-        /* 589 nm: xy (0.5693, 0.4300) lies outside Rec.709; negative blue is cut */
-        if (low_pressure && r->lamp->rgb[0] < 0)
-            memcpy(r->lamp->rgb, (float[3]){ 2.73f, .588f, 0 }, sizeof(r->lamp->rgb));
-    }
     if (type >= 0 && !r->type_known) {
         r->lamp->type = type;
         r->type_known = true;

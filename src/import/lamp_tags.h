@@ -83,7 +83,7 @@ const lamp_column *lamp_column_find(const char *key);
 size_t lamp_fold(const char *text, bool blanks, char *out, size_t size);
 
 /* Words in folded text (with blanks). Return -1 where none is found. */
-int lamp_source_word(const char *folded, bool *low_pressure); /* geo_lamp.source */
+int lamp_source_word(const char *folded);                     /* geo_lamp.source */
 int lamp_type_word(const char *folded);                       /* geo_lamp.type */
 int lamp_mount_word(const char *folded);                      /* geo_lamp.mount */
 bool lamp_inactive_word(const char *folded);

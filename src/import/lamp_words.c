@@ -249,7 +249,7 @@ static int find_word(const char *folded, const word *words, size_t count) {
     return -1;
 }
 
-int lamp_source_word(const char *folded, bool *low_pressure) {
+int lamp_source_word(const char *folded) {
     static const word words[] = {
         { "led*", GEO_SOURCE_LED }, { "light emitting diode", GEO_SOURCE_LED }, { "diode*", GEO_SOURCE_LED },
         { "metal halide", GEO_SOURCE_METAL_HALIDE }, { "metal hal*", GEO_SOURCE_METAL_HALIDE }, { "mh", GEO_SOURCE_METAL_HALIDE },
@@ -258,9 +258,9 @@ int lamp_source_word(const char *folded, bool *low_pressure) {
         { "metallhalogen*", GEO_SOURCE_METAL_HALIDE }, { "metaalhalogen*", GEO_SOURCE_METAL_HALIDE },
         { "halogenur*", GEO_SOURCE_METAL_HALIDE }, { "iodure*", GEO_SOURCE_METAL_HALIDE }, { "alogenuri", GEO_SOURCE_METAL_HALIDE },
         { "halogenuros", GEO_SOURCE_METAL_HALIDE }, { "halogenid*", GEO_SOURCE_METAL_HALIDE }, { "hpi*", GEO_SOURCE_METAL_HALIDE },
-        { "hps*", GEO_SOURCE_SODIUM }, { "lps", GEO_SOURCE_SODIUM }, { "sodium", GEO_SOURCE_SODIUM }, { "sodio", GEO_SOURCE_SODIUM },
-        { "natrium*", GEO_SOURCE_SODIUM }, { "son", GEO_SOURCE_SODIUM }, { "sont", GEO_SOURCE_SODIUM }, { "sox", GEO_SOURCE_SODIUM },
-        { "nav", GEO_SOURCE_SODIUM }, { "shp", GEO_SOURCE_SODIUM }, { "sbp", GEO_SOURCE_SODIUM }, { "sap", GEO_SOURCE_SODIUM },
+        { "hps*", GEO_SOURCE_SODIUM }, { "lps*", GEO_SOURCE_SODIUM }, { "sodium", GEO_SOURCE_SODIUM }, { "sodio", GEO_SOURCE_SODIUM },
+        { "natrium*", GEO_SOURCE_SODIUM }, { "son", GEO_SOURCE_SODIUM }, { "sont", GEO_SOURCE_SODIUM }, { "sox*", GEO_SOURCE_SODIUM },
+        { "nav", GEO_SOURCE_SODIUM }, { "shp", GEO_SOURCE_SODIUM }, { "sbp", GEO_SOURCE_SODIUM }, { "vsbp", GEO_SOURCE_SODIUM }, { "sap", GEO_SOURCE_SODIUM },
         { "vsap", GEO_SOURCE_SODIUM }, { "sodik*", GEO_SOURCE_SODIUM }, { "sodov*", GEO_SOURCE_SODIUM }, { "hogedruknatrium*", GEO_SOURCE_SODIUM },
         { "lagedruknatrium*", GEO_SOURCE_SODIUM },
         { "mercury", GEO_SOURCE_MERCURY }, { "mv", GEO_SOURCE_MERCURY }, { "hpl*", GEO_SOURCE_MERCURY }, { "hql*", GEO_SOURCE_MERCURY },
@@ -274,11 +274,10 @@ int lamp_source_word(const char *folded, bool *low_pressure) {
         { "gas", GEO_SOURCE_GAS }, { "gaslight*", GEO_SOURCE_GAS }, { "gaslamp*", GEO_SOURCE_GAS }, { "gasleucht*", GEO_SOURCE_GAS },
         { "gaslatern*", GEO_SOURCE_GAS }, { "gaslantern*", GEO_SOURCE_GAS }, { "gaz", GEO_SOURCE_GAS },
     };
-    static const word low[] = { { "low pressure", 1 }, { "lps", 1 }, { "sox", 1 }, { "sbp", 1 }, { "niederdruck*", 1 },
+    static const word low[] = { { "low pressure", 1 }, { "lps*", 1 }, { "sox*", 1 }, { "sbp", 1 }, { "vsbp", 1 }, { "niederdruck*", 1 },
                                 { "lagedruk*", 1 }, { "lage druk", 1 }, { "basse pression", 1 }, { "baja presion", 1 } };
     int source = find_word(folded, words, NOC_COUNT(words));
-    *low_pressure = source == GEO_SOURCE_SODIUM && find_word(folded, low, NOC_COUNT(low)) > 0;
-    return source;
+    return source == GEO_SOURCE_SODIUM && find_word(folded, low, NOC_COUNT(low)) > 0 ? GEO_SOURCE_LOW_SODIUM : source;
 }
 
 int lamp_type_word(const char *folded) {

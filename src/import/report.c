@@ -7,6 +7,7 @@ const char *noc_lamp_source_name(noc_lamp_source source) {
         [NOC_SOURCE_UNKNOWN] = "unknown", [NOC_SOURCE_LED] = "LED", [NOC_SOURCE_SODIUM] = "sodium",
         [NOC_SOURCE_MERCURY] = "mercury", [NOC_SOURCE_METAL_HALIDE] = "metal halide",
         [NOC_SOURCE_FLUORESCENT] = "fluorescent", [NOC_SOURCE_INCANDESCENT] = "incandescent", [NOC_SOURCE_GAS] = "gas",
+        [NOC_SOURCE_LOW_SODIUM] = "low-pressure sodium",
     };
     return (unsigned)source < NOC_SOURCE_COUNT ? names[source] : "unknown";
 }

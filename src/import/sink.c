@@ -150,7 +150,7 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
     return im->surfaces[cls].indices.len >= 3 * FLUSH_TRIANGLES ? flush_class(im, cls) : NOC_OK;
 }
 
-_Static_assert((int)GEO_SOURCE_LED == NOC_SOURCE_LED && (int)GEO_SOURCE_GAS == NOC_SOURCE_GAS, "sources are those of the report");
+_Static_assert((int)GEO_SOURCE_LED == NOC_SOURCE_LED && (int)GEO_SOURCE_LOW_SODIUM == NOC_SOURCE_LOW_SODIUM, "sources are those of the report");
 
 /* What a lamp tells of itself, for the report. */
 static void count_lamp(noc_report_file *file, const geo_lamp *lamp) {

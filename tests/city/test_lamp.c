@@ -157,6 +157,32 @@ static void test_direction_and_sources(void **state) {
     noc_scene_destroy(scene);
 }
 
+/* Lumens that `watts` of a source become: the middle of the lamp's range times 0.75, told in docs/formats.md. Low pressure
+ * sodium (100..180 lm/W) is not high pressure sodium (70..140). */
+static void test_efficacies(void **state) {
+    static const struct { int source; double lumens_per_watt; } table[] = {
+        { GEO_SOURCE_UNKNOWN, 80 }, { GEO_SOURCE_LED, 110 }, { GEO_SOURCE_SODIUM, .75 * (70 + 140) / 2 },
+        { GEO_SOURCE_LOW_SODIUM, .75 * (100 + 180) / 2 }, { GEO_SOURCE_MERCURY, .75 * (35 + 60) / 2 },
+        { GEO_SOURCE_METAL_HALIDE, .75 * (65 + 115) / 2 }, { GEO_SOURCE_FLUORESCENT, .75 * (50 + 100) / 2 },
+        { GEO_SOURCE_INCANDESCENT, .75 * (10 + 20) / 2 }, { GEO_SOURCE_GAS, 1.5 } };
+    noc_scene *scene = noc_scene_create(NULL);
+    add_plane(scene, NOC_CLASS_TERRAIN, -100, -100, 400, 100, 0, 0);
+    for (size_t i = 0; i < NOC_COUNT(table); i++) {
+        geo_lamp l = lamp_at(20 * (double)i, 0);
+        l.source = table[i].source;
+        l.watts = 55;
+        l.kelvin = 1800; /* a line has no temperature */
+        assert_int_equal(city_add_lamp(scene, &l, &defaults, false, NULL), 1);
+        const noc_light_record *r = &scene->lights.data[i];
+        assert_float_equal(flux(r) / 55, table[i].lumens_per_watt, .025 * table[i].lumens_per_watt);
+        if (l.source == GEO_SOURCE_LOW_SODIUM) {
+            assert_true(r->e[2] == 0);
+            assert_float_equal(r->e[0] / r->e[1], 2.73 / .588, 1e-3); /* 589 nm in Rec.709 */
+        }
+    }
+    noc_scene_destroy(scene);
+}
+
 static bool ray_hits(const noc_scene *scene, const double o[3], const double d[3], double reach) {
     for (size_t t = 0; t < scene->triangle_light.len; t++) {
         const float *v[3];
@@ -479,6 +505,7 @@ int main(void) {
         cmocka_unit_test(test_kelvin),
         cmocka_unit_test(test_flux),
         cmocka_unit_test(test_direction_and_sources),
+        cmocka_unit_test(test_efficacies),
         cmocka_unit_test(test_own_shape_does_not_shadow),
         cmocka_unit_test(test_inside_building),
         cmocka_unit_test(test_odd_grounds), cmocka_unit_test(test_lamps_do_not_stand_on_lamps),

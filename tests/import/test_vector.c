@@ -185,8 +185,9 @@ static void test_words(void **state) {
     assert_int_equal(read_one("lightPower", "2x36 W").count, 2);
     assert_true(isnan(read_one("power", "pole").watts));
     assert_true(isnan(read_one("height", "4000").height));
-    geo_lamp low = read_one("lamp_type", "low pressure sodium");
-    assert_true(low.source == GEO_SOURCE_SODIUM && low.rgb[0] > low.rgb[1] && low.rgb[2] == 0);
+    static const char *const low[] = { "low pressure sodium", "SOX 55", "LPS (low-pressure sodium)", "Natriumdampf-Niederdruck" };
+    for (size_t i = 0; i < NOC_COUNT(low); i++)
+        assert_int_equal(read_one("lamp_type", low[i]).source, GEO_SOURCE_LOW_SODIUM);
 }
 
 static void test_verdicts(void **state) {
