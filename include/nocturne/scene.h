@@ -118,6 +118,13 @@ typedef struct noc_scene_info {
 
 NOC_API void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info);
 
+/* A name for all that pictures of a scene depend on but camera and parameters: surfaces, materials and lights, where moving ones
+ * are now. It is a hash of the numbers themselves, whichever files they came from, as 32 hexadecimal digits and a 0: equal scenes
+ * have equal names, others differ. Names of machines of another byte order, or of another version, do not compare. Takes about a second
+ * for 15 million triangles. Any number of threads may ask while the scene is not being changed. */
+#define NOC_CONTENT_KEY 33
+NOC_API void noc_scene_content(const noc_scene *scene, char key[NOC_CONTENT_KEY]);
+
 /* Height of the highest ground (terrain, road, sidewalk, green, building ground) under or over (x, y), local metres.
  * Returns false where there is none. */
 NOC_API bool noc_scene_ground(const noc_scene *scene, double x, double y, double *z);

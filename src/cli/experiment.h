@@ -108,7 +108,7 @@ typedef struct experiment_row {
 typedef struct experiment_run {
     size_t camera, config;
     int repetition; /* from 0 */
-    char key[EXPERIMENT_KEY];                /* content hash of all that the figures depend on */
+    char key[EXPERIMENT_KEY];                /* hash of all that the figures depend on */
     experiment_row *rows[EXPERIMENT_MODES];  /* count of them, frame by frame; those that were not measured are not done */
     int count, room;
 } experiment_run;
@@ -140,6 +140,7 @@ typedef struct experiment_lab {
     double *sum;              /* room for the mean of a picture */
     /* of the present scene and camera */
     noc_scene *scene;
+    char content[NOC_CONTENT_KEY];
     noc_image *reference;
     noc_camera camera, before; /* at its pose, and before the cut */
     char reference_key[EXPERIMENT_KEY];

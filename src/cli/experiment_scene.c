@@ -65,6 +65,7 @@ int experiment_load_scene(experiment_lab *lab, size_t index) {
     if (!lab->scene || status)
         return cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_FAILURE;
     noc_scene_get_info(lab->scene, &lab->scene_infos[index]);
+    noc_scene_content(lab->scene, lab->content);
     if (!lab->scene_infos[index].triangles) {
         cli_error("%s: its inputs hold no surface that can be drawn", scene->name);
         return CLI_FAILURE;
@@ -79,30 +80,19 @@ static void hash_camera(hash_state *hash, const noc_camera *c) {
     hash_bytes(hash, &c->fov_deg, sizeof(c->fov_deg));
 }
 
-/* What the picture shows: inputs, options, camera, and a few figures of the scene, for the code that makes it may change
- * without its version. */
-static int hash_view(const experiment_lab *lab, size_t index, hash_state *hash) {
-    const experiment_scene *scene = &lab->spec.scenes[index];
-    const noc_scene_info *info = &lab->scene_infos[index];
-    hash_text(hash, noc_version());
-    for (size_t i = 0; i < scene->input_count; i++) {
-        int status = CLI_OK;
-        if (cli_builtin(scene->inputs[i]))
-            hash_text(hash, scene->inputs[i]);
-        else
-            status = hash_file(hash, scene->inputs[i]);
-        if (status)
-            return status;
-    }
-    hash_options(hash, noc_import_options(), &scene->import);
-    hash_options(hash, noc_city_options(), &scene->builtin.city);
-    hash_options(hash, noc_builtin_options(), &scene->builtin);
-    uint64_t counts[] = { info->triangles, info->vertices, info->meshes, info->materials, info->lights };
-    hash_bytes(hash, counts, sizeof(counts));
-    hash_bytes(hash, info->bounds_min, sizeof(info->bounds_min));
-    hash_bytes(hash, info->bounds_max, sizeof(info->bounds_max));
-    hash_camera(hash, &lab->camera);
-    return CLI_OK;
+
+/* A reference is named by what the scene holds, not by the files it was read from: an OBJ's materials lie in another file than it,
+ * and what code makes of a file may change. So specs that show the same share it, whatever they call their inputs. */
+static void name_reference(experiment_lab *lab) {
+    const experiment_spec *spec = &lab->spec;
+    hash_state hash = hash_start();
+    hash_text(&hash, noc_version());
+    hash_text(&hash, lab->content);
+    hash_camera(&hash, &lab->camera);
+    hash_options(&hash, noc_render_options(), &spec->reference.params);
+    hash_bytes(&hash, &spec->reference.frames, sizeof(spec->reference.frames));
+    hash_bytes(&hash, &spec->ceiling, sizeof(spec->ceiling)); /* of the noise that is kept beside it */
+    hash_finish(&hash, lab->reference_key);
 }
 
 static bool frame_progress(void *user, const char *what, double done) {
@@ -163,14 +153,8 @@ int experiment_make_reference(experiment_lab *lab, size_t camera) {
     size_t scene = spec->cameras[camera].scene;
     if (experiment_place_cameras(lab, camera))
         return CLI_FAILURE;
-    hash_state hash = hash_start();
-    int status = hash_view(lab, scene, &hash);
-    if (status)
-        return status;
-    hash_options(&hash, noc_render_options(), &spec->reference.params);
-    hash_bytes(&hash, &spec->reference.frames, sizeof(spec->reference.frames));
-    hash_bytes(&hash, &spec->ceiling, sizeof(spec->ceiling)); /* of the noise that is kept beside it */
-    hash_finish(&hash, lab->reference_key);
+    int status = CLI_OK;
+    name_reference(lab);
     char *path = cli_format("%s/reference-%s.exr", lab->cache, lab->reference_key), took[32];
     lab->reference = read_cached(lab, path);
     bool quiet = lab->args->common.quiet;

@@ -126,6 +126,63 @@ run experiment there/one.json -o r --cache cache
 test $status = 0 && (cd there && "$program" experiment one.json -o ../r --cache ../cache -v) >out 2>err && grep -q ': 2 rows, 0 of them made now' out
 result $? "a spec in another folder, and from within"
 
+# A reference belongs to what was read, not to the files that were named: a change of an MTL or of a glTF's buffer makes it anew, one of a
+# comment does not, and two specs share it. Against a stale one the bias of half the light would be 0.5.
+cat >lamp.obj <<'OBJ'
+mtllib lamp.mtl
+v -5 0 -5
+v 5 0 -5
+v 5 0 5
+v -5 0 5
+v -.5 2 -.5
+v .5 2 -.5
+v .5 2 .5
+v -.5 2 .5
+usemtl floor
+f 4 3 2 1
+usemtl lamp
+f 5 6 7 8
+OBJ
+printf 'newmtl floor\nKd .5 .5 .5\nnewmtl lamp\nKd 0 0 0\nKe 40 40 40\n' >lamp.mtl
+python3 - <<'MAKE'
+import json, struct
+def quad(h, y, up):
+    c = [(-h, y, -h), (h, y, -h), (h, y, h), (-h, y, h)]
+    c = c[::-1] if up else c
+    return b"".join(struct.pack("<3f", *c[i]) for i in (0, 1, 2, 0, 2, 3))
+def make(name, height):
+    data = quad(5, 0, True) + quad(.5, height, False)
+    open(name, "wb").write(data)
+    return data
+make("high.bin", 4)
+data = make("lamp.bin", 2)
+view = lambda at: {"buffer": 0, "byteOffset": at, "byteLength": 72}
+part = lambda i: {"bufferView": i, "componentType": 5126, "type": "VEC3", "count": 6, "min": [-5, 0, -5], "max": [5, 4, 5]}
+json.dump({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+           "buffers": [{"uri": "lamp.bin", "byteLength": len(data)}], "bufferViews": [view(0), view(72)], "accessors": [part(0), part(1)],
+           "materials": [{}, {"emissiveFactor": [1, 1, 1], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 40}}}],
+           "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}, {"attributes": {"POSITION": 1}, "material": 1}]}]},
+          open("lamp.gltf", "w"))
+MAKE
+for kind in obj gltf; do
+    spec side-$kind.json '{ "name": "rays", "method": "reference", "rays": 64 }'
+    sed -i "s/builtin:single/lamp.$kind/; s/\"view\": \"own\"/\"eye\": [4, -4, 1], \"target\": [0, 0, 0]/; s/\"rays\": 1, \"frames\": 1/\"rays\": 256, \"frames\": 4/" side-$kind.json
+    run experiment side-$kind.json -o side-$kind --cache sides
+    test $status = 0 && grep -q 'reference made' out && ! grep -q warning err; result $? "$kind: a reference is made"
+    case $kind in obj) echo '# a comment' >>lamp.mtl && echo '# a comment' >>lamp.obj ;; gltf) touch lamp.bin ;; esac
+    sed "s/\"one\"/\"another\"/" side-$kind.json >shared-$kind.json
+    run experiment shared-$kind.json -o shared-$kind --cache sides
+    test $status = 0 && grep -q 'reference from' out; result $? "$kind: another spec of the same takes it"
+    case $kind in obj) sed -i 's/Ke.*/Ke 20 20 20/' lamp.mtl ;; gltf) cp high.bin lamp.bin ;; esac
+    run experiment side-$kind.json -o side-$kind --cache sides
+    test $status = 0 && grep -q 'reference made' out && python3 - side-$kind <<'CHECK'
+import csv, sys
+rows = list(csv.DictReader(open(sys.argv[1] + "/results.csv")))
+assert rows and all(abs(float(r["bias_all"]) - 1) < 0.1 for r in rows), [r["bias_all"] for r in rows]
+CHECK
+    result $? "$kind: what it names beside itself changed: the reference is made anew" "$(cat out)"
+done
+
 # The reference's cache: what is not a whole picture of this size is made again; what cannot be written costs nothing.
 run experiment one.json -o s --cache cold
 file=$(ls cold/*.exr)

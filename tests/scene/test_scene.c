@@ -420,10 +420,53 @@ static void test_no_memory(void **state) {
     free(indices);
 }
 
+/* A scene of a quad and a lamp, one thing of it other than usual. */
+static void key_of(int other, char key[NOC_CONTENT_KEY]) {
+    noc_scene *s = noc_scene_create(NULL);
+    noc_material m = noc_class_material(NOC_CLASS_WALL);
+    m.albedo[1] = other == 1 ? 0.2f : 0.1f;
+    m.emission[0] = other == 2 ? 5 : 10;
+    m.cls = other == 3 ? NOC_CLASS_CLOSURE : NOC_CLASS_WALL;
+    m.two_sided = other == 4;
+    m.roughness = other == 5 ? 0.5f : 1;
+    double p[] = { 0, 0, 0, 1, 0, 0, 0, other == 6 ? 1.001 : 1, 0, 1, 1, 0 };
+    uint32_t v[] = { 0, 1, 2, other == 7 ? 3 : 1, other == 7 ? 1 : 3, 2 };
+    noc_light l = { .kind = NOC_LIGHT_POINT, .position = { 0, 0, other == 8 ? 3 : 2 }, .emission = { 1, 1, other == 9 ? 2 : 1 }, .moving = true };
+    int material = noc_scene_add_material(s, &m);
+    noc_mesh mesh = { .vertex_count = 4, .positions = p, .triangle_count = other == 10 ? 1 : 2, .indices = v, .material = material,
+                      .name = other == 12 ? "another name" : "name" };
+    assert_int_equal(noc_scene_add_mesh(s, &mesh), 0);
+    int light = noc_scene_add_light(s, &l);
+    assert_true(light >= 0);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    if (other == 11) {
+        l.position[0] = 1;
+        assert_int_equal(noc_scene_move_light(s, light, &l), NOC_OK);
+    }
+    noc_scene_content(s, key);
+    noc_scene_destroy(s);
+}
+
+/* Whatever a picture shows changes the key; a name does not, nor does making the scene again. */
+static void test_content(void **state) {
+    char keys[13][NOC_CONTENT_KEY], again[NOC_CONTENT_KEY];
+    (void)state;
+    for (int i = 0; i < 13; i++) {
+        key_of(i, keys[i]);
+        assert_int_equal(strlen(keys[i]), 32);
+        for (int k = 0; k < i && i < 12; k++)
+            assert_string_not_equal(keys[i], keys[k]);
+    }
+    assert_string_equal(keys[12], keys[0]);
+    key_of(0, again);
+    assert_string_equal(again, keys[0]);
+}
+
 int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
     const struct CMUnitTest tests[] = { TEST(test_materials),       TEST(test_meshes),          TEST(test_shapes), TEST(test_bad_lights),
                                         TEST(test_light_materials), TEST(test_emissive_meshes), TEST(test_empty),
-                                        TEST(test_committed),       TEST(test_moving_lights), TEST(test_no_memory) };
+                                        TEST(test_committed),       TEST(test_moving_lights), TEST(test_no_memory),
+                                        cmocka_unit_test(test_content) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
