@@ -11,7 +11,7 @@ typedef struct variant {
     noc_method method;
     noc_bias bias;
     bool rays, spatial, temporal;
-    noc_path path;
+    noc_isa isa;
     noc_candidates candidates;
 } variant;
 
@@ -24,7 +24,7 @@ static const variant variants[] = {
     { "restir pairwise + rays", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, true },
     { "ris, lists", NOC_METHOD_RIS, .candidates = NOC_CANDIDATES_LISTS },
     { "pairwise + rays, lists", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, true, .candidates = NOC_CANDIDATES_LISTS },
-    { "restir pairwise, scalar", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, false, true, true, NOC_PATH_SCALAR },
+    { "restir pairwise, scalar", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, false, true, true, NOC_ISA_SCALAR },
 };
 
 static bool measure(const noc_scene *scene, const noc_camera *camera, const variant *v, int width, int height, int frames) {
@@ -36,7 +36,7 @@ static bool measure(const noc_scene *scene, const noc_camera *camera, const vari
     p.bias_rays = v->rays;
     p.spatial = v->spatial;
     p.temporal = v->temporal;
-    p.path = v->path;
+    p.isa = v->isa;
     p.candidates = v->candidates;
     p.sky = 0;
     noc_renderer *r = noc_renderer_create(scene, NULL, NULL);

@@ -16,7 +16,17 @@ typedef enum noc_candidates { NOC_CANDIDATES_UNIFORM, NOC_CANDIDATES_LISTS, NOC_
                              NOC_CANDIDATES_TREE } noc_candidates;
 /* bvh: what bounds a light's influence volume: distance, or what its light reaches as well. */
 typedef enum noc_influence_boxes { NOC_INFLUENCE_SPHERE, NOC_INFLUENCE_VISIBLE } noc_influence_boxes;
-typedef enum noc_path { NOC_PATH_AUTO, NOC_PATH_SCALAR, NOC_PATH_WIDE } noc_path;
+/* Code that computes what is between rays. All of them give the same bits. */
+typedef enum noc_isa {
+    NOC_ISA_AUTO,     /* what the environment variable NOCTURNE_ISA names, else the widest that this processor has */
+    NOC_ISA_SCALAR,   /* a pixel at a time */
+    NOC_ISA_BASELINE, /* 4 at a time, in what every processor of the architecture has (SSE2, NEON) */
+    NOC_ISA_AVX2,     /* 8 */
+    NOC_ISA_AVX512,   /* 16 */
+    NOC_ISA_COUNT
+} noc_isa;
+NOC_API const char *noc_isa_name(noc_isa isa); /* "avx2" */
+NOC_API bool noc_isa_runs(noc_isa isa);        /* on this processor */
 
 /* Views of how lights were sampled, one number a pixel: docs/views.md. The reservoir is the one that the frame shaded. */
 typedef enum noc_aov {
@@ -64,7 +74,8 @@ typedef struct noc_render_params {
     bool accumulate;            /* running mean over frames, else the last frame alone */
     double sky;                 /* luminance of the sky at the zenith, cd/m2; 0 = off */
     bool emitters;              /* emitters seen directly are shown */
-    noc_path path;              /* scalar C, or the wide code for this machine */
+    noc_isa isa;                /* instruction set; one that the processor lacks is NOC_ERR_UNSUPPORTED. Embree's own code for
+                                 * rays is chosen by Embree */
     uint32_t aovs;              /* views to keep, bits 1 << noc_aov. They never change the picture, and may be asked for and
                                  * dropped from frame to frame: history and accumulation go on */
 } noc_render_params;
@@ -76,7 +87,7 @@ typedef struct noc_render_params {
     set(neighbours, 5) set(radius, 10) set(passes, 1) set(history, 20) set(bias, NOC_BIAS_PAIRWISE) \
     set(bias_rays, true) set(visibility_reuse, true) set(final_ray, true) set(reject_depth, 0.1) \
     set(reject_normal, 0.9) set(seed, 1) set(jitter, true) set(accumulate, true) set(sky, 0.02) \
-    set(emitters, true) set(path, NOC_PATH_AUTO)
+    set(emitters, true) set(isa, NOC_ISA_AUTO)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_render_params, noc_render_default_params, NOC_RENDER_DEFAULTS)
 #else
@@ -145,7 +156,7 @@ typedef struct noc_frame_stats {
     uint64_t dropped;                       /* samples dropped for being NaN or infinite, since the last reset */
     double build_seconds;                   /* of the ray tracing structure */
     size_t memory_bytes;                    /* of the renderer, without the scene */
-    const char *path;                       /* "scalar", "avx2 x8", "avx512 x16", ... */
+    const char *path;                       /* instruction set and lanes: "scalar", "avx2 x8", "avx512 x16", ... */
 } noc_frame_stats;
 
 NOC_API void noc_renderer_get_stats(const noc_renderer *renderer, noc_frame_stats *stats);

@@ -139,7 +139,10 @@ static noc_status load(render_job *job) {
     render_args *args = job->args;
     char triangles[64], lights[64];
     args->import.progress = (noc_progress){ cli_load_progress, NULL };
-    noc_status status = cli_load_scene(job->scene, args->common.inputs, args->common.input_count, &args->builtin, &args->import, &job->report);
+    noc_status status = noc_render_check(&args->render, job->log); /* what a frame would refuse, before a city is read */
+    if (status)
+        return status;
+    status = cli_load_scene(job->scene, args->common.inputs, args->common.input_count, &args->builtin, &args->import, &job->report);
     noc_scene_get_info(job->scene, &job->scene_info);
     job->loaded = cli_now();
     if (!status && args->common.verbose)

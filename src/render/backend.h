@@ -92,6 +92,12 @@ static inline bool noc_feeds_spatial(const noc_render_params *p) {
     return p->bias == NOC_BIAS_PAIRWISE && (noc_uses_bias_rays(p) || !(p->visibility_reuse && p->final_ray));
 }
 
+/* isa.c */
+#define NOC_ISA_VARIABLE "NOCTURNE_ISA"
+/* What auto stands for here, or the level asked for; reports one that is unknown or not of this processor, from the
+ * environment too, and leaves *chosen as it is. */
+noc_status noc_choose_isa(noc_isa asked, noc_isa *chosen, noc_log *log);
+
 /* views.c */
 /* Can these views be had of these parameters? What cannot is reported. */
 noc_status noc_check_aovs(const noc_render_params *params, noc_log *log);

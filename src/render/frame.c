@@ -45,9 +45,9 @@ noc_status noc_render_check(const noc_render_params *p, noc_log *log) {
         return wrong(log, "influence_boxes", (int)p->influence_boxes, "a noc_influence_boxes");
     if ((unsigned)p->bias > NOC_BIAS_PAIRWISE)
         return wrong(log, "bias", (int)p->bias, "a noc_bias");
-    if ((unsigned)p->path > NOC_PATH_WIDE)
-        return wrong(log, "path", (int)p->path, "a noc_path");
-    return noc_check_aovs(p, log);
+    noc_isa isa;
+    noc_status status = noc_choose_isa(p->isa, &isa, log);
+    return status == NOC_OK ? noc_check_aovs(p, log) : status;
 }
 
 typedef struct { double x, y, z; } vec;

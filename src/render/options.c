@@ -48,7 +48,8 @@ static const noc_option render_options[] = {
     INT(P, uniform_every, "uniform-every", "Estimator", 1, 1024, "", "bvh: of so many draws one is from all lights", BVH),
     INT(P, rays, "rays", "Estimator", 1, 1024, "", "reference: shadow rays a pixel and frame", "method=reference"),
     BOOL(P, final_ray, "final-ray", "Estimator", "shadow ray to the chosen light; off: light passes through walls"),
-    CHOICE(P, path, "path", "Estimator", "auto|scalar|wide", "code that runs: scalar C, or wide for this processor"),
+    CHOICE(P, isa, "isa", "Estimator", "auto|scalar|baseline|avx2|avx512",
+         "instruction set; auto: NOCTURNE_ISA's, else the widest; the picture is the same"),
 
     BOOL(P, temporal, "temporal", "Reuse (restir)", "reuse samples of the previous frame (a still is cleaner without)", RESTIR),
     BOOL(P, spatial, "spatial", "Reuse (restir)", "reuse samples of neighbouring pixels", RESTIR),

@@ -99,7 +99,7 @@ static bool reaches(const world *w, const noc_light_record *r) {
 static void weights_are_one(int lights, double side, int list, int tail) {
     static world w;
     make_world(&w, lights, side, list, tail);
-    const kernels *k = noc_pick_kernels(NOC_PATH_AUTO);
+    const kernels *k = noc_pick_kernels(NOC_ISA_AUTO);
     list_scratch *s = noc_alloc_large(1, sizeof(*s));
     double *mean = noc_calloc((size_t)lights, sizeof(*mean)), *largest = noc_calloc((size_t)lights, sizeof(*largest));
     for (int i = 0; i < ROUNDS; i++) {
@@ -173,7 +173,7 @@ static void tail_is_quiet(void **state) {
             for (size_t i = 0; i < w.scene->lights.len; i++)
                 all[b][l] += lux_at(&w.scene->lights.data[i], &w.g[b], l);
     for (int k = 0; k < STARTS; k++) {
-        noc_pick_kernels(NOC_PATH_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, (float)((k + 0.5) / STARTS), s, &s->list);
+        noc_pick_kernels(NOC_ISA_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, (float)((k + 0.5) / STARTS), s, &s->list);
         for (int b = 0; b < BLOCKS; b++)
             for (int l = 0; l < BLOCK; l++) {
                 double sum = 0;
@@ -196,7 +196,7 @@ static void few_lights_are_listed(void **state) {
     static world w;
     make_world(&w, 40, 15, 32, 16);
     list_scratch *s = noc_alloc_large(1, sizeof(*s));
-    noc_pick_kernels(NOC_PATH_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, 0.9f, s, &s->list);
+    noc_pick_kernels(NOC_ISA_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, 0.9f, s, &s->list);
     int can = 0, listed = 0;
     for (size_t i = 0; i < w.scene->lights.len; i++)
         can += reaches(&w, &w.scene->lights.data[i]);

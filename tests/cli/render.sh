@@ -6,6 +6,9 @@ small='builtin:city --city-size 150 --size 64x36 --frames 2'
 run render $small -o a.png
 test $status = 0 && test ! -s err; result $? "renders the built-in city"
 test "$(meta a.png size)" = "64 36"; result $? "the picture has the size asked for"
+run render $small --isa baseline -o a.png
+grep -q "a frame (baseline x4)" out; result $? "a forced instruction set runs, and is told of"
+run render $small -o a.png
 grep -q '^a.png$' out && grep -Eq '[0-9] triangles, [0-9,]+ lights' out && grep -q '2 frames of ris' out && grep -q 'a frame' out &&
     grep -q 'memory .*B at most' out
 result $? "the summary tells path, size, frames, triangles, lights, times, memory"

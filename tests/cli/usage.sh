@@ -91,6 +91,11 @@ expect "compare with three pictures" 2 'two pictures' compare a.exr b.exr c.exr
 expect "compare with a bad ceiling" 2 'ceiling: "0" is outside' compare a.exr b.exr --ceiling 0
 expect "compare to something else than PNG" 2 'must end in .png' compare a.exr b.exr -o d.exr
 
+expect "an instruction set that is none" 2 'isa: "mmx" is none of auto' render $c --isa mmx
+export NOCTURNE_ISA=mmx
+expect "one in the environment" 1 'NOCTURNE_ISA: "mmx" is no instruction set' render $c -o x.png
+unset NOCTURNE_ISA
+
 test "$(ls)" = "city.gml
 err
 out"

@@ -31,7 +31,7 @@ typedef struct drawer {
 } drawer;
 
 static void open_drawer(drawer *d, const noc_scene *s, noc_pool *pool) {
-    *d = (drawer){ .scene = s, .tree = noc_tree_create(s, pool, NULL), .kernels = noc_pick_kernels(NOC_PATH_AUTO),
+    *d = (drawer){ .scene = s, .tree = noc_tree_create(s, pool, NULL), .kernels = noc_pick_kernels(NOC_ISA_AUTO),
                    .params = { .width = 16 } };
     assert_non_null(d->tree);
     assert_true(d->tree->depth <= NOC_TREE_DEPTH);

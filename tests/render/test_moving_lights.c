@@ -131,7 +131,7 @@ static void same_bits_on_the_move(void **state) {
         noc_scene *s = crossing(0), *t = crossing(0);
         noc_renderer *a = noc_renderer_create(s, &(noc_renderer_params){ .threads = 1 }, NULL);
         noc_renderer *b = noc_renderer_create(t, &(noc_renderer_params){ .threads = 3 }, NULL);
-        q.path = NOC_PATH_SCALAR;
+        q.isa = NOC_ISA_SCALAR;
         for (int f = 1; f <= 4; f++) {
             pose(s, f);
             pose(t, f);

@@ -24,6 +24,8 @@ static noc_scene *small_street(int lights, bool floor) {
     return s;
 }
 
+static void drop(void *user, noc_log_level level, const char *text) { (void)user, (void)level, (void)text; }
+
 static noc_camera view(double t) { return look(1 + t, -10, 4, 0.5 * t, 0, 2, 60); }
 
 static bool same(const noc_image *a, const noc_image *b) {
@@ -91,20 +93,74 @@ static noc_render_params variant(int i) {
 }
 enum { VARIANTS = 17 };
 
-static void scalar_and_wide_agree(void **state) {
+/* Whole frames on every instruction set of this machine, each asked for by its name. */
+static void instruction_sets_agree(void **state) {
     (void)state;
     noc_scene *s = small_street(40, true);
     for (int i = 0; i < VARIANTS; i++) {
         noc_render_params p = variant(i);
-        p.path = NOC_PATH_SCALAR;
+        p.isa = NOC_ISA_SCALAR;
         noc_image *a = moving(s, &p, 2);
-        p.path = NOC_PATH_WIDE;
-        noc_image *b = moving(s, &p, 2);
-        assert_true(same(a, b));
         assert_true(brightness(a) > 0.01);
+        for (p.isa = NOC_ISA_BASELINE; p.isa < NOC_ISA_COUNT; p.isa++) {
+            if (!noc_isa_runs(p.isa))
+                continue;
+            noc_image *b = moving(s, &p, 2);
+            if (!same(a, b))
+                fail_msg("%s differs from scalar in variant %d", noc_isa_name(p.isa), i);
+            noc_image_destroy(b);
+        }
         noc_image_destroy(a);
-        noc_image_destroy(b);
     }
+    for (noc_isa isa = NOC_ISA_BASELINE; isa < NOC_ISA_COUNT; isa++)
+        print_message("# %s %s\n", noc_isa_name(isa), noc_isa_runs(isa) ? "compared with scalar" : "not compared: this processor has none");
+    noc_scene_destroy(s);
+}
+
+/* The code that a frame ran, "" where it was refused; *error: of the log. */
+static const char *code_of(const noc_scene *s, noc_isa isa, noc_status *status, char error[200]) {
+    static char ran[40];
+    noc_render_params p = measure(8, 8, NOC_METHOD_IS);
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_ERROR, .message = drop });
+    noc_renderer *r = noc_renderer_create(s, NULL, log);
+    noc_camera c = view(0);
+    noc_frame_stats stats;
+    p.isa = isa;
+    *status = noc_renderer_frame(r, &c, &p, NULL);
+    noc_renderer_get_stats(r, &stats);
+    snprintf(ran, sizeof(ran), "%s", *status ? "" : stats.path);
+    snprintf(error, 200, "%s", noc_log_last_error(log));
+    noc_renderer_destroy(r);
+    noc_log_destroy(log);
+    return ran;
+}
+
+static void an_instruction_set_is_forced(void **state) {
+    (void)state;
+    static const char *const code[] = { NULL, "scalar", "baseline x4", "avx2 x8", "avx512 x16" };
+    noc_scene *s = small_street(5, true);
+    noc_status status;
+    noc_isa widest = NOC_ISA_SCALAR;
+    char error[200], *outer = noc_strdup(getenv("NOCTURNE_ISA"));
+    for (noc_isa isa = NOC_ISA_SCALAR; isa < NOC_ISA_COUNT; isa++) {
+        bool here = noc_isa_runs(isa);
+        widest = here ? isa : widest;
+        for (int by_name = 0; by_name < 2; by_name++) {
+            setenv("NOCTURNE_ISA", by_name ? noc_isa_name(isa) : "scalar", 1); /* what a frame says goes first */
+            assert_string_equal(code_of(s, by_name ? NOC_ISA_AUTO : isa, &status, error), here ? code[isa] : "");
+            assert_int_equal(status, here ? NOC_OK : NOC_ERR_UNSUPPORTED);
+            assert_true(here || (strstr(error, noc_isa_name(isa)) && strstr(error, "it runs scalar")));
+        }
+    }
+    setenv("NOCTURNE_ISA", "mmx", 1);
+    assert_string_equal(code_of(s, NOC_ISA_AUTO, &status, error), "");
+    assert_int_equal(status, NOC_ERR_ARGUMENT);
+    assert_string_equal(error, "NOCTURNE_ISA: \"mmx\" is no instruction set, must be auto, scalar, baseline, avx2 or avx512");
+    unsetenv("NOCTURNE_ISA");
+    assert_string_equal(code_of(s, NOC_ISA_AUTO, &status, error), code[widest]);
+    if (outer)
+        setenv("NOCTURNE_ISA", outer, 1);
+    free(outer);
     noc_scene_destroy(s);
 }
 
@@ -175,8 +231,6 @@ static void hostile_scenes(void **state) {
 }
 
 /* ---- errors ---- */
-
-static void drop(void *user, noc_log_level level, const char *text) { (void)user, (void)level, (void)text; }
 
 static void wrong_arguments(void **state) {
     (void)state;
@@ -249,7 +303,7 @@ static void negative_choices_and_no_params(void **state) {
     noc_camera c = view(0);
     static const struct { const char *says; size_t at; } fields[] = {
         { "method is -1,", offsetof(noc_render_params, method) }, { "candidates is -1,", offsetof(noc_render_params, candidates) },
-        { "bias is -1,", offsetof(noc_render_params, bias) },     { "path is -1,", offsetof(noc_render_params, path) },
+        { "bias is -1,", offsetof(noc_render_params, bias) },     { "isa is -1,", offsetof(noc_render_params, isa) },
     };
     for (size_t i = 0; i < NOC_COUNT(fields); i++) {
         noc_render_params p = noc_render_default_params();
@@ -531,7 +585,8 @@ static void set_reach_is_not_looked_for(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scalar_and_wide_agree), cmocka_unit_test(threads_and_seeds), cmocka_unit_test(empty_scenes),
+        cmocka_unit_test(instruction_sets_agree),
+        cmocka_unit_test(an_instruction_set_is_forced), cmocka_unit_test(threads_and_seeds), cmocka_unit_test(empty_scenes),
         cmocka_unit_test(wrong_arguments),       cmocka_unit_test(cancelled_frames),
         cmocka_unit_test(history_outlives_a_cancelled_frame), cmocka_unit_test(frames_and_resets),
         cmocka_unit_test(number_of_lights_found), cmocka_unit_test(set_reach_is_not_looked_for),

@@ -65,7 +65,7 @@ static noc_status create(const noc_scene *scene, const noc_renderer_params *para
     s->scene = scene;
     s->log = log;
     s->pool = noc_pool_create(params->threads);
-    s->kernels = noc_pick_kernels(NOC_PATH_AUTO);
+    s->kernels = noc_pick_kernels(NOC_ISA_AUTO);
     noc_status status = create_workers(s);
     if (status == NOC_OK)
         status = noc_embree_build(s);
@@ -143,7 +143,7 @@ static void run_tile(void *arg, size_t item, int index) {
 static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st, const noc_progress *progress,
                         double from, double to) {
     embree_state *s = state;
-    s->kernels = noc_pick_kernels(frame->params->path);
+    s->kernels = noc_pick_kernels(frame->params->isa);
     noc_status status = noc_embree_follow_lights(s, frame->params);
     if (status == NOC_OK)
         status = noc_embree_prepare_lights(s, frame->params);

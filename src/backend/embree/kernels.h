@@ -160,8 +160,9 @@ typedef struct kernels {
 
 extern const kernels noc_kernels_scalar, noc_kernels_baseline, noc_kernels_avx2, noc_kernels_avx512;
 /* All that this machine can run: scalar first, the widest last. Returns how many. */
-enum { NOC_MAX_KERNELS = 4 };
+enum { NOC_MAX_KERNELS = NOC_ISA_COUNT - 1 };
 int noc_runnable_kernels(const kernels *out[NOC_MAX_KERNELS]);
-const kernels *noc_pick_kernels(noc_path path);
+/* Of a level that noc_choose_isa takes. */
+const kernels *noc_pick_kernels(noc_isa isa);
 
 #endif
