@@ -157,9 +157,10 @@ static void draw_block(stage_run *run, tile_rays *t, const struct core_context *
 static void fill_list(const noc_render_params *p, light_list *list) {
     uint32_t once = list->count, room = (uint32_t)NOC_MIN(p->list + p->tail, 2 * LIST_ENTRIES);
     uint32_t copies = once ? NOC_MIN(room / once, (uint32_t)p->shadow_rays) : 0;
-    for (uint32_t i = 0; copies > 1 && i < once * copies; i++) {
-        list->light[i] = list->light[i % once];
-        list->weight[i] = i < once ? list->weight[i] / (float)copies : list->weight[i % once];
+    /* Side by side: rays that are an equal distance apart would find the same light again in each round of all of them. */
+    for (uint32_t i = once * copies; copies > 1 && i-- > 0;) {
+        list->light[i] = list->light[i / copies];
+        list->weight[i] = list->weight[i / copies] / (float)copies;
     }
     list->copies = NOC_MAX(copies, 1u);
     list->count = once * list->copies;
