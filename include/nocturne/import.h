@@ -13,7 +13,8 @@ typedef enum noc_obj_up { NOC_OBJ_UP_Y, NOC_OBJ_UP_Z } noc_obj_up;
 
 typedef struct noc_import_params {
     const char *crs;        /* CRS of inputs that name none (any PROJ definition), NULL: such inputs fail if they need one */
-    const char *scene_crs;  /* CRS of the scene; NULL: the first input's if projected in metres, else UTM of its centre */
+    const char *scene_crs;  /* CRS of the scene; NULL: the first input's if projected in metres, else UTM of its centre. Where its
+                             * lengths are not those of the ground, the scene is computed in UTM: noc_scene_info.given_crs */
     int lod;                /* highest CityGML level of detail taken, 0..4; default 3. The best one at or under it wins */
     bool infer_lamps;       /* place lamps by a rule where the inputs hold none; default true */
     double lamp_height;     /* m, where not tagged; default 6 */
@@ -92,7 +93,7 @@ NOC_API noc_status noc_scene_load(noc_scene *scene, const char *const *paths, si
 /* Reads one file into a throwaway scene and reports what it holds; used by `nocturne info`. A file without a CRS is fine. */
 NOC_API noc_status noc_inspect(noc_log *log, const char *path, const noc_import_params *params, noc_report **report);
 
-/* Converts between the scene's local frame and any CRS (NULL: the scene's own). xyz in place, easting northing height
+/* Converts between the scene's local frame and any CRS (NULL: the scene's own, noc_scene_info.given_crs). xyz in place, easting northing height
  * (or longitude latitude height in degrees) order. */
 NOC_API noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xyz[3]);
 

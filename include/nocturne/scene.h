@@ -112,7 +112,12 @@ typedef struct noc_scene_info {
     size_t triangles_dropped;
     double bounds_min[3], bounds_max[3]; /* local; of all that is rendered but the empty country around a city */
     double origin[3];
-    const char *crs;      /* name for people, "" if none; owned by the scene */
+    const char *crs;      /* name for people, "" if none; owned by the scene: crs = local + origin */
+    /* The CRS that the user speaks (the first input's, or noc_import_params.scene_crs), and where the local frame's origin lies
+     * in it. That is crs and origin but where lengths in it are not those of the ground, as in Web Mercator: the scene is then
+     * computed in a local CRS, and given_crs is reached by noc_scene_to_local, not by adding an origin. */
+    const char *given_crs;
+    double given_origin[3];
     size_t memory_bytes;
 } noc_scene_info;
 

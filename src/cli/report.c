@@ -72,7 +72,10 @@ noc_status cli_write_picture(render_job *job) {
     add(&meta, "camera-target", cli_format("%.17g %.17g %.17g", c->target[0], c->target[1], c->target[2]));
     add(&meta, "camera-up", cli_format("%.17g %.17g %.17g", c->up[0], c->up[1], c->up[2]));
     add(&meta, "camera-fov", cli_format("%.17g", c->fov_deg));
-    add(&meta, "scene-crs-name", cli_format("%s", job->scene_info.crs ? job->scene_info.crs : ""));
+    add(&meta, "given-crs-name", cli_format("%s", job->scene_info.given_crs));
+    add(&meta, "given-origin", cli_format("%.12g %.12g %.12g", job->scene_info.given_origin[0], job->scene_info.given_origin[1],
+                                          job->scene_info.given_origin[2]));
+    add(&meta, "scene-crs-name", cli_format("%s", job->scene_info.crs));
     add(&meta, "scene-origin", cli_format("%.12g %.12g %.12g", job->scene_info.origin[0], job->scene_info.origin[1],
                                           job->scene_info.origin[2]));
     add_options(&meta, args);
@@ -189,10 +192,13 @@ void cli_print_summary(const render_job *job) {
     printf("  scene     %s, %s", cli_many(a, scene->triangles, "triangle"), cli_many(b, scene->lights, "light"));
     if (scene->lights_inferred)
         printf(" (%s placed by a rule, not found in data)", cli_count(c, scene->lights_inferred));
-    printf("%s%s\n", scene->crs && *scene->crs ? ", " : "", scene->crs ? scene->crs : "");
-    if (scene->crs && *scene->crs)
-        printf("  origin    %.3f,%.3f,%.3f in that CRS is 0,0,0 of eye and target\n", scene->origin[0], scene->origin[1],
-               scene->origin[2]);
+    printf("%s%s", *scene->given_crs ? ", " : "", scene->given_crs);
+    if (strcmp(scene->given_crs, scene->crs))
+        printf(", computed in %s", scene->crs);
+    putchar('\n');
+    if (*scene->given_crs)
+        printf("  origin    %.3f,%.3f,%.3f in %s is 0,0,0 of eye and target\n", scene->given_origin[0], scene->given_origin[1],
+               scene->given_origin[2], strcmp(scene->given_crs, scene->crs) ? "the first" : "that CRS");
     print_issues(job->report);
     printf("  camera    eye %.2f,%.2f,%.2f target %.2f,%.2f,%.2f fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
            job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2], job->camera.fov_deg);

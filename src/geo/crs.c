@@ -11,6 +11,7 @@ struct geo_crs {
     PJ_CONTEXT *context; /* one each: PROJ contexts are not thread-safe */
     PJ *pj;              /* horizontal; a three-dimensional one is used as if at height 0 */
     PJ *to_wgs84;        /* made on first use of geo_crs_lonlat */
+    PJ *easting_first;   /* made on first use of geo_crs_scale */
     char *name;
     bool geographic, metric, lat_first;
     double height_unit;  /* metres */
@@ -195,7 +196,7 @@ geo_crs *geo_crs_clone(const geo_crs *crs) {
     *copy = *crs;
     copy->context = context_create();
     copy->pj = proj_clone(copy->context, crs->pj);
-    copy->to_wgs84 = NULL;
+    copy->to_wgs84 = copy->easting_first = NULL;
     copy->name = noc_strdup(crs->name);
     return copy;
 }
@@ -204,6 +205,7 @@ void geo_crs_destroy(geo_crs *crs) {
     if (!crs)
         return;
     proj_destroy(crs->to_wgs84);
+    proj_destroy(crs->easting_first);
     proj_destroy(crs->pj);
     proj_context_destroy(crs->context);
     free(crs->name);
@@ -255,6 +257,22 @@ double geo_crs_outside(geo_crs *crs, double x, double y) {
         dx = NOC_MIN(dx, NOC_MAX(crs->west - (lon + 360), lon + 360 - east));
     double dy = NOC_MAX(crs->south - p[1], p[1] - crs->north);
     return NOC_MAX(NOC_MAX(dx, dy), 0);
+}
+
+double geo_crs_scale(geo_crs *crs, double x, double y) {
+    double p[2];
+    if (crs->geographic || !geo_crs_lonlat(crs, x, y, p))
+        return NAN;
+    if (!crs->easting_first) /* PROJ 9.1 gives no factors of a CRS that is northing first */
+        crs->easting_first = proj_normalize_for_visualization(crs->context, crs->pj);
+    if (!crs->easting_first)
+        return NAN;
+    PJ_FACTORS f = proj_factors(crs->easting_first, proj_coord(proj_torad(p[0]), proj_torad(p[1]), 0, 0));
+    bool failed = proj_errno(crs->easting_first) != 0;
+    proj_errno_reset(crs->easting_first);
+    if (failed || !(f.meridional_scale > 0 && f.parallel_scale > 0))
+        return NAN;
+    return fabs(f.meridional_scale - 1) > fabs(f.parallel_scale - 1) ? f.meridional_scale : f.parallel_scale;
 }
 
 /* ---- transforms ---- */

@@ -25,6 +25,9 @@ bool geo_crs_lonlat(geo_crs *crs, double x, double y, double lonlat[2]);
 /* How far a point (easting northing) lies outside the area the CRS is meant for: degrees, 0 inside, INFINITY where it has
  * no place on Earth. What tells exchanged axes and wrong CRSs. Not thread-safe. */
 double geo_crs_outside(geo_crs *crs, double x, double y);
+/* How long a metre of the ground at a point (easting northing) is in a projected CRS: its point scale, of the meridian's and
+ * the parallel's the one that is farther from 1. NaN where it is not known. Not thread-safe. */
+double geo_crs_scale(geo_crs *crs, double x, double y);
 
 /* Transform between two CRSs; not thread-safe, one a thread. Points are easting northing height (lon lat height, degrees):
  * axis order is normalised. Height passes through unchanged, but for its unit (feet to metres). */

@@ -14,6 +14,7 @@
 #define STRAY_METRES 20e3  /* a first object this far from the middle of the first ones does not settle the place */
 #define STRAY_DEGREES 0.2
 #define NOWHERE 1e8        /* m from the origin: farther than anything on Earth in any projection in use */
+#define TRUE_SCALE 1e-3    /* lengths in the scene's CRS are those of the ground to within this share */
 #define LOCAL_ORIGIN 100e3 /* m; local coordinates nearer to zero than this keep it as the origin */
 
 static bool is_blank(const char *text) {
@@ -73,11 +74,19 @@ noc_status place_crs(importer *im, const char *srs_name, const char *place, bool
 
 /* ---- axes ---- */
 
+/* Is `zone` million metres of the easting the number of the UTM zone that the point lies in without them? Zones reach over their
+ * edges a little. */
+static bool is_zone_number(source_crs *s, double zone, double x, double y) {
+    double p[2];
+    return !geo_crs_is_geographic(s->crs) && zone >= 1 && zone <= 60 && geo_crs_outside(s->crs, x - 1e6 * zone, y) == 0 &&
+           geo_crs_lonlat(s->crs, x - 1e6 * zone, y, p) && fabs(floor((p[0] + 180) / 6) + 1 - zone) <= 1;
+}
+
 /* Swaps the axes, or takes the zone number off the easting (32 512 345 m instead of 512 345 m), if that is what brings the
  * point into the CRS's area of use. */
 static void decide_axes(importer *im, source_crs *s, double x, double y, const char *id) {
     geo_issues *issues = im->inputs[im->current].issues;
-    double zone = floor(x / 1e6) * 1e6;
+    double zone = floor(x / 1e6);
     double given = geo_crs_outside(s->crs, x, y);
     if (given == 0) {
         s->axes_decided = true;
@@ -86,10 +95,9 @@ static void decide_axes(importer *im, source_crs *s, double x, double y, const c
         noc_warn(im->log, "%s: the coordinates fit %s only with their axes exchanged: done", im->inputs[im->current].path,
                  geo_crs_name(s->crs));
         geo_issue(issues, true, "axes exchanged to fit the CRS", id);
-    } else if (!geo_crs_is_geographic(s->crs) && zone >= 1e6 && zone <= 60e6 &&
-               geo_crs_outside(s->crs, x - zone, y) == 0) {
+    } else if (is_zone_number(s, zone, x, y)) {
         s->axes_decided = true;
-        s->shift_x = -zone;
+        s->shift_x = -1e6 * zone;
         geo_issue(issues, true, "zone number taken off the easting", id);
     } else {
         s->outside = given;
@@ -149,6 +157,51 @@ static void set_place(importer *im, geo_crs *crs, const double origin[3]) {
     im->scene->crs_free = geo_crs_destroy;
 }
 
+/* Lengths must be those of the ground: light falls with their square. Where *crs has others at a point (Web Mercator, a zone far
+ * away), the scene gets the UTM zone of that place instead, and *given what it would have had. */
+static noc_status make_metres_true(importer *im, geo_crs **crs, double p[3], geo_crs **given) {
+    const char *path = im->inputs[im->current].path;
+    double scale = geo_crs_scale(*crs, p[0], p[1]), lonlat[2];
+    *given = NULL;
+    if (!(fabs(scale - 1) > TRUE_SCALE) || !geo_crs_lonlat(*crs, p[0], p[1], lonlat))
+        return NOC_OK;
+    geo_crs *local = geo_crs_utm(lonlat[0], lonlat[1]);
+    geo_transform *t = local ? geo_transform_create(*crs, local, im->log) : NULL;
+    bool ok = t && !geo_transform_points(t, p, 1);
+    geo_transform_destroy(t);
+    if (!ok) {
+        geo_crs_destroy(local);
+        return noc_error(im->log, NOC_ERR_FORMAT, "%s: 100 m of %s are %.1f m on the ground there, and no local CRS was found", path,
+                         geo_crs_name(*crs), 100 / scale);
+    }
+    if (!im->inspect)
+        noc_warn(im->log, "%s: 100 m of %s are %.1f m on the ground there: the scene is computed in %s", path, geo_crs_name(*crs),
+                 100 / scale, geo_crs_name(local));
+    *given = *crs;
+    *crs = local;
+    return NOC_OK;
+}
+
+/* Keeps the CRS that the user speaks, and where the scene's origin lies in it. */
+static noc_status set_given(importer *im, geo_crs *given) {
+    noc_scene *scene = im->scene;
+    geo_transform *t = geo_transform_create(scene->crs, given, im->log);
+    double origin[3] = { im->origin[0], im->origin[1], 0 };
+    bool ok = t && !geo_transform_points(t, origin, 1);
+    geo_transform_destroy(t);
+    if (!ok) {
+        geo_crs_destroy(given);
+        return NOC_ERR_UNSUPPORTED;
+    }
+    if (scene->given_crs)
+        scene->crs_free(scene->given_crs);
+    free(scene->given_crs_name);
+    scene->given_crs = given;
+    scene->given_crs_name = noc_strdup(geo_crs_name(given));
+    memcpy(scene->given_origin, origin, sizeof(origin));
+    return NOC_OK;
+}
+
 /* Settles CRS and origin by a point, given in their own CRS. Heights stay what they are: z has no origin. */
 static noc_status settle(importer *im, const source_crs *source, const double point[3]) {
     geo_crs *crs;
@@ -183,8 +236,15 @@ static noc_status settle(importer *im, const source_crs *source, const double po
     if (outside > FAR_OUTSIDE)
         noc_warn(im->log, "%s: the coordinates lie far outside the area that --scene-crs %s is for",
                  im->inputs[im->current].path, geo_crs_name(crs));
+    geo_crs *given = NULL;
+    if (!preset) /* else meshes may be there already, in metres of the CRS that was set */
+        status = make_metres_true(im, &crs, p, &given);
+    if (status) {
+        geo_crs_destroy(crs);
+        return status;
+    }
     set_place(im, crs, preset ? im->scene->origin : (double[3]){ round(p[0]), round(p[1]), 0 });
-    return NOC_OK;
+    return given ? set_given(im, given) : NOC_OK;
 }
 
 /* Makes the way from the source to the scene, once. */

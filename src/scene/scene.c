@@ -51,6 +51,9 @@ void noc_scene_destroy(noc_scene *scene) {
         return;
     if (scene->crs && scene->crs_free)
         scene->crs_free(scene->crs);
+    if (scene->given_crs && scene->crs_free)
+        scene->crs_free(scene->given_crs);
+    free(scene->given_crs_name);
     noc_ground_free(scene->ground);
     free(scene->crs_name);
     array_free(&scene->positions);
@@ -283,6 +286,8 @@ void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info) {
                               .lights_inferred = scene->lights_inferred,
                               .triangles_dropped = scene->triangles_dropped,
                               .crs = scene->crs_name ? scene->crs_name : "" };
+    info->given_crs = scene->given_crs_name ? scene->given_crs_name : info->crs;
+    memcpy(info->given_origin, scene->given_crs_name ? scene->given_origin : scene->origin, sizeof(info->given_origin));
     for (size_t i = 0; i < scene->lights.len; i++)
         info->lights_by_kind[scene->lights.data[i].kind]++;
     for (size_t t = 0; t < scene->triangle_material.len; t++)

@@ -41,6 +41,10 @@ struct noc_scene {
     double origin[3];
     char *crs_name;       /* for people */
     struct geo_crs *crs;  /* set by the importer; owned; NULL if none */
+    /* The CRS that the user speaks, where the scene is computed in another one: crs is then a local CRS. */
+    struct geo_crs *given_crs; /* set by the importer; owned; NULL where crs is it */
+    char *given_crs_name;
+    double given_origin[3];    /* where the local frame's origin lies in it */
     void (*crs_free)(struct geo_crs *);
 
     /* Triangle soup: vertices are 3 floats (Embree needs 4 bytes of padding after the last: reserve one more). */

@@ -74,6 +74,9 @@ result $? "and so as JSON"
 view='--size 48x27 --frames 1'
 run render "$gml" $view --camera-crs EPSG:25832 --eye 678030,5402980,412 --target 678005,5403004,403 -o a.png
 test $status = 0; result $? "a camera in CRS coordinates"
+case "$(meta a.png given-crs-name)" in "EPSG:25832 "*) true ;; *) false ;; esac && test "$(meta a.png given-origin)" = "$(meta a.png scene-origin)" &&
+    grep -q ', EPSG:25832 ' out && grep -q 'origin  *678[0-9.]*,5403' out
+result $? "the metadata and the summary tell CRS and origin"
 grep -q 'features skipped: 1, repaired: 0' out; result $? "the summary tells that something was skipped"
 grep -Eq '^ +1 x .*(two-points|stump)' out; result $? "and why"
 printf '{"type": "FeatureCollection", "features": [{"type": "Feature", "id": "far", "properties": {"highway": "street_lamp"},

@@ -340,9 +340,31 @@ static void test_area_of_use(void **state) {
     }
 }
 
+/* Point scales against the formulas of Snyder 1987 (Map Projections, USGS PP 1395): Mercator's eq. 7-8, and for Web Mercator
+ * the sphere's easting and northing over the ellipsoid's radii of curvature. */
+static void test_scale(void **state) {
+    (void)state;
+    const double a = 6378137, e2 = 0.00669437999014, lat = 48.8 * M_PI / 180, s = sin(lat), w = 1 - e2 * s * s;
+    const double along = a / (a * (1 - e2) / (w * sqrt(w))) / cos(lat), across = sqrt(w) / cos(lat);
+    static const struct { const char *crs; double lon, lat; } places[] = {
+        { "EPSG:3857", 11.4, 48.8 }, { "EPSG:3395", 11.4, 48.8 }, { "EPSG:32632", 9, 48.8 }, { "EPSG:31468", 12, 48.8 } };
+    const double expected[] = { fabs(along - 1) > fabs(across - 1) ? along : across, across, .9996, 1 };
+    for (size_t i = 0; i < NOC_COUNT(places); i++) {
+        geo_crs *crs = geo_crs_create(places[i].crs, NULL, NULL), *degrees = geo_crs_create("OGC:CRS84", NULL, NULL);
+        geo_transform *t = geo_transform_create(degrees, crs, NULL);
+        double p[3] = { places[i].lon, places[i].lat, 0 };
+        assert_int_equal(geo_transform_points(t, p, 1), 0);
+        assert_close(geo_crs_scale(crs, p[0], p[1]), expected[i], 2e-6);
+        assert_true(isnan(geo_crs_scale(degrees, 11.4, 48.8)));
+        geo_transform_destroy(t);
+        geo_crs_destroy(crs);
+        geo_crs_destroy(degrees);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_spellings),       cmocka_unit_test(test_not_understood),
+        cmocka_unit_test(test_scale), cmocka_unit_test(test_spellings),       cmocka_unit_test(test_not_understood),
         cmocka_unit_test(test_netherlands_28992), cmocka_unit_test(test_czechia_5514),
         cmocka_unit_test(test_austria_31256),   cmocka_unit_test(test_montreal_2950),
         cmocka_unit_test(test_utm_25832),       cmocka_unit_test(test_japan_6697),

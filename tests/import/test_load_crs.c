@@ -1,6 +1,8 @@
 /* CRS of the inputs and of the scene, axes, and where a mesh that names none lies: through the importer, from a fake reader. */
 #include "fake_reader.h"
 
+#include <nocturne/render.h>
+
 static noc_import_params with_crs(const char *crs, const char *scene_crs) {
     noc_import_params p = DEFAULTS;
     p.crs = crs;
@@ -69,7 +71,7 @@ static void test_axes(void **state) {
     /* no order of axes helps: said once, and taken as it is */
     LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:31466\npolygon 2 1 1 0 3 1 0 3 4 0\npolygon 2 1 1 9 3 1 9 3 4 9\nlamp 2 2\n"));
     assert_int_equal(r.status, NOC_OK);
-    assert_int_equal(r.warnings, 1);
+    assert_int_equal(r.warnings, 2); /* and that its metres are none there */
     assert_non_null(strstr(r.last_warning, "is it the right CRS?"));
     finish(&r);
     /* the decision is one of a file: a second file in the same CRS decides for itself */
@@ -213,10 +215,112 @@ static void test_mesh_place(void **state) {
     assert_int_equal(r.status, NOC_ERR_ARGUMENT);
     finish(&r);
 }
+
+/* ---- lengths that are not those of the ground ---- */
+
+/* A street of 120 m by 20 m with lamps 60 m apart, in Ingolstadt at 48.8 N, written in a CRS. */
+static const char *street_in(const char *crs, char *text, size_t size) {
+    static const double corners[6][2] = { { 677940, 5404080 }, { 678060, 5404080 }, { 678060, 5404100 }, { 677940, 5404100 },
+                                          { 677970, 5404101.5 }, { 678030, 5404101.5 } }; /* beside it: they face it */
+    geo_crs *utm = geo_crs_create("EPSG:32632", NULL, NULL), *to = geo_crs_create(crs, NULL, NULL);
+    geo_transform *t = geo_transform_create(utm, to, NULL);
+    size_t n = (size_t)snprintf(text, size, "FAKE city\ncrs %s\nobject 2 street -1\npolygon 9", crs);
+    for (int i = 0; i < 6; i++) {
+        double p[3] = { corners[i][0], corners[i][1], 370 };
+        assert_int_equal(geo_transform_points(t, p, 1), 0);
+        n += (size_t)snprintf(text + n, size - n, i < 4 ? " %.5f %.5f 370" : "lamp %.5f %.5f\n", p[0], p[1]);
+        if (i == 3)
+            n += (size_t)snprintf(text + n, size - n, "\nend\n");
+    }
+    geo_transform_destroy(t);
+    geo_crs_destroy(utm);
+    geo_crs_destroy(to);
+    return file(crs, text);
+}
+
+/* Mean luminance of the street between the lamps, seen from above. */
+static double luminance_between(const struct run *r) {
+    const noc_light_record *l = r->scene->lights.data;
+    noc_camera camera = noc_camera_default();
+    noc_render_params params = noc_render_default_params();
+    for (int k = 0; k < 3; k++)
+        camera.eye[k] = camera.target[k] = (l[0].p[k] + l[1].p[k]) / 2;
+    camera.eye[2] = 400;
+    camera.target[2] = 370;
+    camera.up[1] = 1;
+    camera.up[2] = 0;
+    camera.target[1] -= 5;
+    camera.eye[1] -= 5;
+    camera.fov_deg = 20;
+    params.width = 32;
+    params.height = 32;
+    params.sky = 0;
+    params.method = NOC_METHOD_REFERENCE;
+    params.rays = 64;
+    noc_renderer *renderer = noc_renderer_create(r->scene, &(noc_renderer_params){ .threads = 1 }, r->log);
+    assert_int_equal(noc_renderer_frame(renderer, &camera, &params, NULL), NOC_OK);
+    noc_image *image = noc_renderer_image(renderer);
+    double sum = 0;
+    for (size_t i = 0; i < 32 * 32; i++)
+        sum += 0.2126 * image->rgb[3 * i] + 0.7152 * image->rgb[3 * i + 1] + 0.0722 * image->rgb[3 * i + 2];
+    noc_image_destroy(image);
+    noc_renderer_destroy(renderer);
+    return sum / (32 * 32);
+}
+
+static void test_true_lengths(void **state) {
+    (void)state;
+    struct run r;
+    char text[1000];
+    LOAD(&r, DEFAULTS, street_in("EPSG:32632", text, sizeof(text)));
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.warnings, 0);
+    assert_string_equal(r.info.given_crs, r.info.crs);
+    assert_true(r.info.given_origin[0] == r.info.origin[0] && r.info.given_origin[1] == r.info.origin[1]);
+    double expected = luminance_between(&r);
+    assert_true(expected > 0);
+    finish(&r);
+    /* Web Mercator under its names, on the ellipsoid, and a zone far away; the last one is true enough (0.45 per mille) */
+    static const char *const crs[] = { "EPSG:3857", "EPSG:900913", "EPSG:3395", "EPSG:32630", "EPSG:25833" };
+    for (size_t i = 0; i < NOC_COUNT(crs); i++) {
+        bool moves = i < 4;
+        LOAD(&r, DEFAULTS, street_in(crs[i], text, sizeof(text)));
+        assert_int_equal(r.status, NOC_OK);
+        assert_int_equal(r.warnings, moves ? i == 3 ? 2 : 1 : 0); /* 32630: it is also far outside its area */
+        assert_int_equal(r.info.lights, 2);
+        const noc_light_record *l = r.scene->lights.data;
+        assert_close(hypot((double)l[0].p[0] - l[1].p[0], (double)l[0].p[1] - l[1].p[1]), 60, .06);
+        assert_close(luminance_between(&r) / expected, 1, .01);
+        if (moves) {
+            geo_crs *given = geo_crs_create(crs[i], NULL, NULL);
+            assert_string_equal(r.info.given_crs, geo_crs_name(given));
+            assert_string_equal(r.info.crs, "EPSG:32632 (WGS 84 / UTM zone 32N)");
+            geo_crs_destroy(given);
+        }
+        /* the scene's own coordinates are those of the files, and their origin lies at 0 */
+        double origin[3] = { r.info.given_origin[0], r.info.given_origin[1], 0 }, corner[3];
+        assert_int_equal(noc_scene_to_local(r.scene, NULL, origin), NOC_OK);
+        assert_close(hypot(origin[0], origin[1]), 0, 1e-3);
+        assert_int_equal(sscanf(strstr(text, "polygon 9"), "polygon 9 %lf %lf %lf", &corner[0], &corner[1], &corner[2]), 3);
+        assert_int_equal(noc_scene_to_local(r.scene, NULL, corner), NOC_OK);
+        double utm[3] = { 677940, 5404080, 370 };
+        assert_int_equal(noc_scene_to_local(r.scene, "EPSG:32632", utm), NOC_OK);
+        for (int k = 0; k < 3; k++)
+            assert_close(corner[k], utm[k], 1e-3);
+        finish(&r);
+    }
+    /* asked for by --scene-crs: the same */
+    LOAD(&r, with_crs(NULL, "EPSG:3857"), street_in("EPSG:32632", text, sizeof(text)));
+    assert_int_equal(r.status, NOC_OK);
+    assert_string_equal(r.info.given_crs, "EPSG:3857 (WGS 84 / Pseudo-Mercator)");
+    assert_close(luminance_between(&r) / expected, 1, .01);
+    finish(&r);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_geographic), cmocka_unit_test(test_axes), cmocka_unit_test(test_scene_crs),
-        cmocka_unit_test(test_missing_crs), cmocka_unit_test(test_mesh_place),
+        cmocka_unit_test(test_missing_crs), cmocka_unit_test(test_mesh_place), cmocka_unit_test(test_true_lengths),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
