@@ -4,7 +4,8 @@
 
 #include "render.h"
 
-enum { EXPERIMENT_KEY = 33, EXPERIMENT_TIMES = 8, EXPERIMENT_POINTS = 6, EXPERIMENT_VALUES = 32, EXPERIMENT_FRAMES = 100000, EXPERIMENT_ROWS = 1000000 };
+enum { EXPERIMENT_KEY = 33, EXPERIMENT_TIMES = 8, EXPERIMENT_POINTS = 6, EXPERIMENT_VALUES = 32, EXPERIMENT_FRAMES = 100000, EXPERIMENT_ROWS = 1000000,
+       EXPERIMENT_REPETITIONS = 4 /* where a spec says nothing: what a figure is worth shows in its spread */ };
 
 typedef struct experiment_args {
     cli_args common;
@@ -53,8 +54,12 @@ typedef struct experiment_config {
     const char *pattern;     /* the entry's name as the spec has it: "ris, *" */
 } experiment_config;
 
-/* Noise of a reference itself: estimated relMSE. NaN: not known. */
-typedef struct experiment_noise { double relmse, clamped, relmse_all, clamped_all; } experiment_noise;
+/* Noise of a reference itself: estimated relMSE, and standard error of its mean as a share of it. NaN: not known. */
+typedef struct experiment_noise { double relmse, clamped, relmse_all, clamped_all, mean, mean_all; } experiment_noise;
+
+/* A reference's running mean of luminance after each of a few equal parts of its frames; [1]: all pixels. */
+enum { EXPERIMENT_BATCHES = 8 };
+typedef struct experiment_batches { double mean[2][EXPERIMENT_BATCHES + 1]; int frames[EXPERIMENT_BATCHES + 1], count; } experiment_batches;
 
 enum { EXPERIMENT_ALONE, EXPERIMENT_ACCUMULATED, EXPERIMENT_MODES }; /* values of "accumulate": false, true, both */
 enum { EXPERIMENT_CLAMPED, EXPERIMENT_RELMSE, EXPERIMENT_RMSE8 };    /* of "figure" */
@@ -187,7 +192,8 @@ noc_render_params experiment_params(const experiment_lab *lab, const experiment_
 const char *experiment_machine(void);
 
 /* experiment_noise.c: kept beside the reference. half: the mean of its first frames, NULL where it has one frame alone. */
-experiment_noise experiment_measure_noise(const experiment_lab *lab, const noc_image *half, int half_frames);
+experiment_noise experiment_measure_noise(const experiment_lab *lab, const noc_image *half, int half_frames, const experiment_batches *batches);
+void experiment_add_batch(experiment_batches *batches, const noc_image *so_far, int frames);
 void experiment_keep_noise(const char *reference, const experiment_noise *noise);
 experiment_noise experiment_read_noise(const char *reference);
 
@@ -203,18 +209,29 @@ experiment_row *experiment_row_of(experiment_run *run, int mode, int frame); /* 
 int experiment_append(experiment_lab *lab, const experiment_run *run, int mode, int frame); /* frame from 1 */
 int experiment_tidy_table(experiment_lab *lab); /* at the end: leaves out rows of other settings */
 
-/* experiment_series.c: means over repetitions; NaN where there is nothing. frame from 1. */
-typedef struct experiment_series { const experiment_lab *lab; size_t camera, config; int mode; } experiment_series;
+/* experiment_series.c: means over repetitions, or one of them; NaN where there is nothing. frame from 1. */
+typedef struct experiment_series {
+    const experiment_lab *lab;
+    size_t camera, config;
+    int mode;
+    int only; /* of one repetition, from 1; 0: means of all */
+} experiment_series;
 bool experiment_has_mode(const experiment_spec *spec, size_t camera, int mode);
 int experiment_frames(const experiment_spec *spec, size_t camera, size_t config); /* at most */
 bool experiment_measures(const experiment_spec *spec, size_t camera, size_t config, int frame);
 int experiment_last(const experiment_series *s); /* last frame that is there; 0: none */
 double experiment_at(const experiment_series *s, int column, int frame);
+/* A figure of a series (given what it is asked for), and the standard error of its mean over the repetitions: NaN where they are fewer than
+ * two, or one of them lacks it. */
+typedef double experiment_asked(const experiment_series *s, int column, double what);
+double experiment_error_of(const experiment_series *s, experiment_asked *asked, int column, double what);
+double experiment_error_at(const experiment_series *s, int column, int frame); /* of experiment_at */
 int experiment_column(const experiment_spec *spec); /* of the spec's figure */
 const char *experiment_figure(const experiment_spec *spec); /* in words, with its unit */
 double experiment_median(const experiment_series *s, int column); /* over frames and repetitions, the first frame left out */
-double experiment_time_to(const experiment_series *s, int column, double error); /* CPU seconds; 0: at the first frame already */
-double experiment_error_after(const experiment_series *s, int column, double seconds);
+experiment_asked experiment_time_to;     /* CPU seconds to an error; 0: at the first frame already */
+experiment_asked experiment_error_after; /* CPU seconds */
+experiment_asked experiment_frame_time;  /* CPU seconds of one frame: of the last where the camera moves, else the mean of all but the first */
 experiment_run *experiment_find_run(const experiment_lab *lab, size_t camera, size_t config, int repetition);
 
 /* experiment_plot.c: error over "frames" or "cpu" as SVG; name is the file's, in the folder. */
@@ -223,9 +240,10 @@ int experiment_plot(const experiment_lab *lab, size_t camera, int mode, bool ove
 /* experiment_summary.c: the figures that stand for a run in a table. */
 typedef struct experiment_point { int mode, frame; /* 0: the last */ } experiment_point;
 int experiment_points(const experiment_spec *spec, size_t camera, experiment_point out[EXPERIMENT_POINTS]);
-double experiment_at_point(const experiment_lab *lab, size_t camera, size_t config, experiment_point point, int column);
+double experiment_at_point(const experiment_lab *lab, size_t camera, size_t config, experiment_point point, int column, double *error);
 const char *experiment_point_name(const experiment_spec *spec, size_t camera, experiment_point point);
-double experiment_frame_time(const experiment_lab *lab, size_t camera, size_t config);
+experiment_series experiment_timed(const experiment_lab *lab, size_t camera, size_t config); /* that frame times are taken of */
+void experiment_view_name(FILE *out, const experiment_spec *spec, size_t camera); /* scene and camera, in Markdown */
 char *experiment_row_name(const experiment_lab *lab, size_t config); /* of its entry; free() it */
 int experiment_write_summary(experiment_lab *lab);
 
@@ -243,8 +261,12 @@ bool experiment_shows(const experiment_spec *spec, size_t camera, int frame);
 /* experiment_report.c */
 int experiment_write_report(experiment_lab *lab);
 char *experiment_slug(const experiment_lab *lab, size_t camera); /* "1-city-street"; free() it */
+void experiment_text(FILE *out, const char *text); /* as it reads, in Markdown: what would be markup of it or of HTML is escaped */
 void experiment_cell(FILE *out, const char *text); /* text, and a number, in a cell of a Markdown table */
 void experiment_number(FILE *out, double v, const char *fmt);
+/* With its standard error behind it, "1.23 \302\261 0.04": two digits of it, and none where there is none. after may be "". */
+void experiment_print_spread(FILE *out, double v, double error, const char *fmt);
+void experiment_spread(FILE *out, double v, double error, const char *fmt, const char *after); /* in a cell */
 void experiment_table_rule(FILE *out, size_t columns); /* ends the line of the head: one column to the left, others to the right */
 FILE *experiment_create(const experiment_lab *lab, const char *name, char **temporary);
 int experiment_finish(const experiment_lab *lab, FILE *file, const char *name, char *temporary); /* renames; frees temporary */

@@ -41,14 +41,20 @@ static double round_up(double v) {
 
 bool experiment_has_bars(const experiment_spec *spec) { return spec->config_count <= BAR_MOST; }
 
+static double bar_of(const experiment_lab *lab, size_t camera, size_t config, double *error) {
+    experiment_series s = experiment_timed(lab, camera, config);
+    *error = experiment_error_of(&s, experiment_frame_time, 0, 0);
+    return experiment_frame_time(&s, 0, 0);
+}
+
 int experiment_bars(const experiment_lab *lab, const char *name) {
     const experiment_spec *spec = &lab->spec;
     int left = name_width(lab, false), rows = (int)spec->config_count;
-    int width = left + BARS_WIDTH + 90, height = TOP + (int)spec->camera_count * (rows * LINE + GAP) + BOTTOM;
-    double most = 0;
+    int width = left + BARS_WIDTH + 130, height = TOP + (int)spec->camera_count * (rows * LINE + GAP) + BOTTOM;
+    double most = 0, error;
     for (size_t camera = 0; camera < spec->camera_count; camera++)
         for (size_t i = 0; i < spec->config_count; i++)
-            most = fmax(most, experiment_frame_time(lab, camera, i) * 1e3);
+            most = fmax(most, bar_of(lab, camera, i, &error) * 1e3 + (isfinite(error) ? 1e3 * error : 0));
     double step = most > 0 ? round_up(most / 8) : 1, end = most > 0 ? ceil(most / step) * step : 1;
     char *temporary;
     FILE *out = experiment_create(lab, name, &temporary);
@@ -67,16 +73,22 @@ int experiment_bars(const experiment_lab *lab, const char *name) {
         int top = TOP + (int)camera * (rows * LINE + GAP) + GAP;
         view_name(out, lab, camera, left, top - 8);
         for (int i = 0; i < rows; i++) {
-            double ms = experiment_frame_time(lab, camera, (size_t)i) * 1e3, y = top + i * LINE;
+            double ms = bar_of(lab, camera, (size_t)i, &error) * 1e3, y = top + i * LINE;
             svg_style style = svg_style_of(spec, (size_t)i);
             words(out, left - 8, y + 13, "end", "", spec->configs[i].name);
             if (!isfinite(ms))
                 continue;
-            char text[32];
-            snprintf(text, sizeof(text), "%.3g", ms);
+            char text[64], spread[32] = "";
+            double off = isfinite(error) ? 1e3 * error : 0;
+            if (off > 0)
+                snprintf(spread, sizeof(spread), " \302\261 %.2g", off);
+            snprintf(text, sizeof(text), "%.3g%s", ms, spread);
             fprintf(out, "<rect class=\"m%d\" fill=\"%s\" x=\"%d\" y=\"%.1f\" width=\"%.1f\" height=\"%d\"/>\n", style.colour,
                     svg_colours[style.colour], left, y + 2, BARS_WIDTH * ms / end, LINE - 5);
-            words(out, left + BARS_WIDTH * ms / end + 5, y + 13, "start", "", text);
+            if (off > 0)
+                fprintf(out, "<path class=\"frame\" fill=\"none\" stroke=\"#555555\" d=\"M%.1f %.1fH%.1f\"/>\n", left + BARS_WIDTH * fmax(ms - off, 0) / end,
+                        y + 0.5 * LINE - 0.5, left + BARS_WIDTH * (ms + off) / end);
+            words(out, left + BARS_WIDTH * (ms + off) / end + 5, y + 13, "start", "", text);
         }
     }
     fprintf(out, "</svg>\n");
@@ -107,7 +119,7 @@ static svg_axis errors_of(const experiment_lab *lab, size_t camera) {
     int count = experiment_points(&lab->spec, camera, points);
     for (int p = 0; p < count; p++) {
         for (size_t i = 0; i < lab->spec.config_count; i++) {
-            double v = experiment_at_point(lab, camera, i, points[p], experiment_column(&lab->spec));
+            double error, v = experiment_at_point(lab, camera, i, points[p], experiment_column(&lab->spec), &error);
             if (v > 0 && isfinite(v)) {
                 axis.lo = fmin(axis.lo, v);
                 axis.hi = fmax(axis.hi, v);
@@ -135,25 +147,25 @@ static void panel(FILE *out, const experiment_lab *lab, size_t camera, experimen
             rows * LINE);
     words(out, left + PANEL_WIDTH / 2, top - 7, "middle", "", experiment_point_name(spec, camera, point));
     for (size_t i = 0; i < spec->config_count; i++) {
-        double v = experiment_at_point(lab, camera, i, point, experiment_column(spec));
+        double error, v = experiment_at_point(lab, camera, i, point, experiment_column(spec), &error), at = top + row_of(spec, i) * LINE + LINE / 2;
         svg_style style = svg_style_of(spec, i);
         if (shares_rows(spec))
-            style.marker = style.colour; /* rows are entries already: the value alone tells dots apart */
-        if (v > 0 && isfinite(v))
-            svg_marker(out, &style, svg_place(&x, v), top + row_of(spec, i) * LINE + LINE / 2);
+            style.marker = style.dot;
+        if (!(v > 0 && isfinite(v)))
+            continue;
+        if (isfinite(error))
+            svg_whisker(out, style.colour, svg_inside(&x, v - error), svg_inside(&x, v + error), at);
+        svg_marker(out, &style, svg_place(&x, v), at);
     }
 }
 
-/* Values that colours stand for, of the longest entry. */
+/* Values that colours stand for, whichever entry has them first. */
 static void values_legend(FILE *out, const experiment_spec *spec, int left, int y) {
-    const experiment_config *longest = &spec->configs[0];
-    for (size_t i = 0; i < spec->config_count; i++)
-        longest = spec->configs[i].choice > longest->choice ? &spec->configs[i] : longest;
     for (size_t i = 0; i < spec->config_count; i++) {
-        if (spec->configs[i].entry != longest->entry)
+        if (!svg_is_new_value(spec, i))
             continue;
         svg_style style = svg_style_of(spec, i);
-        style.marker = style.colour;
+        style.marker = style.dot;
         svg_marker(out, &style, left + 6, y - 4);
         words(out, left + 16, y, "start", "", spec->configs[i].value);
         left += 40 + (int)strlen(spec->configs[i].value) * CHAR;

@@ -1,5 +1,6 @@
 /* Noise of the reference itself: errors near it say nothing. Its first n of N frames are kept on the way; their mean is off from
- * the whole mean by a variance of s^2 (1/n - 1/N), and the whole mean from the truth by s^2 / N. */
+ * the whole mean by a variance of s^2 (1/n - 1/N), and the whole mean from the truth by s^2 / N. The standard error of its mean luminance, which bias is judged by, is
+ * that of the means of equal parts of its frames. */
 #include "experiment.h"
 
 #include <math.h>
@@ -7,15 +8,47 @@
 #include <string.h>
 #include <unistd.h>
 
-experiment_noise experiment_measure_noise(const experiment_lab *lab, const noc_image *half, int half_frames) {
-    experiment_noise noise = { NAN, NAN, NAN, NAN };
+/* Of pixels that see no emitter, and of all. */
+void experiment_add_batch(experiment_batches *b, const noc_image *image, int frames) {
+    double sum[2] = { 0, 0 }, pixels[2] = { 0, 0 };
+    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++) {
+        const float *p = image->rgb + 3 * i;
+        double y = 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2];
+        for (int all = image->emitter && image->emitter[i]; all < 2; all++) {
+            sum[all] += y;
+            pixels[all]++;
+        }
+    }
+    b->count++;
+    b->frames[b->count] = frames;
+    for (int all = 0; all < 2; all++)
+        b->mean[all][b->count] = pixels[all] > 0 ? sum[all] / pixels[all] : NAN;
+}
+
+/* Standard error of the last mean, as a share of it: the parts' own means follow from the running ones. */
+static double mean_error(const experiment_batches *b, int all) {
+    double whole = b->mean[all][b->count], squares = 0;
+    if (b->count < 2 || !(whole > 0))
+        return NAN;
+    int frames = b->frames[b->count];
+    for (int i = 1; i <= b->count; i++) {
+        int n = b->frames[i] - b->frames[i - 1];
+        double before = i > 1 ? b->frames[i - 1] * b->mean[all][i - 1] : 0, own = (b->frames[i] * b->mean[all][i] - before) / n;
+        squares += n * (own - whole) * (own - whole);
+    }
+    return sqrt(squares / (b->count - 1) / frames) / whole;
+}
+
+experiment_noise experiment_measure_noise(const experiment_lab *lab, const noc_image *half, int half_frames, const experiment_batches *batches) {
+    experiment_noise noise = { NAN, NAN, NAN, NAN, mean_error(batches, 0), mean_error(batches, 1) };
     noc_compare_params params = noc_compare_default_params();
     params.ceiling = lab->spec.ceiling;
     noc_comparison c;
     if (!half || noc_image_compare(half, lab->reference, &params, &c, lab->log))
         return noise;
     double share = (double)half_frames / (lab->spec.reference.frames - half_frames);
-    return (experiment_noise){ share * c.dark.relmse, share * c.dark_clamped.relmse, share * c.all.relmse, share * c.all_clamped.relmse };
+    return (experiment_noise){ share * c.dark.relmse, share * c.dark_clamped.relmse, share * c.all.relmse, share * c.all_clamped.relmse,
+                               noise.mean, noise.mean_all };
 }
 
 static char *beside(const char *reference) { return cli_format("%.*s.noise", (int)strlen(reference) - 4, reference); }
@@ -24,7 +57,8 @@ static char *beside(const char *reference) { return cli_format("%.*s.noise", (in
 void experiment_keep_noise(const char *reference, const experiment_noise *noise) {
     char *path = beside(reference), *temporary = cli_format("%s.%ld", path, (long)getpid());
     FILE *file = fopen(temporary, "w");
-    bool kept = file && fprintf(file, "%.9g %.9g %.9g %.9g\n", noise->relmse, noise->clamped, noise->relmse_all, noise->clamped_all) > 0;
+    bool kept = file && fprintf(file, "%.9g %.9g %.9g %.9g %.9g %.9g\n", noise->relmse, noise->clamped, noise->relmse_all, noise->clamped_all,
+                                 noise->mean, noise->mean_all) > 0;
     if (file)
         kept = !fclose(file) && kept;
     if (!kept || rename(temporary, path))
@@ -37,9 +71,9 @@ experiment_noise experiment_read_noise(const char *reference) {
     experiment_noise n;
     char *path = beside(reference);
     FILE *file = fopen(path, "r");
-    bool whole = file && fscanf(file, "%lf %lf %lf %lf", &n.relmse, &n.clamped, &n.relmse_all, &n.clamped_all) == 4;
+    bool whole = file && fscanf(file, "%lf %lf %lf %lf %lf %lf", &n.relmse, &n.clamped, &n.relmse_all, &n.clamped_all, &n.mean, &n.mean_all) == 6;
     if (file)
         fclose(file);
     free(path);
-    return whole ? n : (experiment_noise){ NAN, NAN, NAN, NAN };
+    return whole ? n : (experiment_noise){ NAN, NAN, NAN, NAN, NAN, NAN };
 }

@@ -8,6 +8,24 @@
 enum {
     LEFT = 74, TOP = 44, BOTTOM = 56, PLOT_WIDTH = 560, LEAST_HEIGHT = 340, MOST_HEIGHT = 600, LEGEND_ROW = 20, NAME_MAX_CHARS = 44
 };
+
+/* What lies within a standard error of the mean over the repetitions. */
+static void band(FILE *out, const experiment_series *s, bool over_time, const svg_axis *x, const svg_axis *y) {
+    int column = experiment_column(&s->lab->spec), frames = experiment_last(s), colour = svg_style_of(&s->lab->spec, s->config).colour;
+    if (s->lab->spec.repetitions < 2)
+        return;
+    fprintf(out, "<polygon class=\"m%d\" fill=\"%s\" fill-opacity=\"0.2\" points=\"", colour, svg_colours[colour]);
+    for (int side = 0; side < 2; side++) /* there above the curve, back below it */
+        for (int i = 1; i <= frames; i++) {
+            int f = side ? frames + 1 - i : i;
+            double e = experiment_at(s, column, f), t = over_time ? experiment_at(s, COL_CPU_TOTAL, f) : f;
+            double off = experiment_error_at(s, column, f);
+            if (e > 0 && t > 0 && isfinite(e) && isfinite(off))
+                fprintf(out, "%.1f,%.1f ", svg_place(x, t), svg_inside(y, side ? e - off : e + off));
+        }
+    fprintf(out, "\"/>\n");
+}
+
 static void curve(FILE *out, const experiment_series *s, bool over_time, const svg_axis *x, const svg_axis *y) {
     int column = experiment_column(&s->lab->spec);
     svg_style style = svg_style_of(&s->lab->spec, s->config);
@@ -86,7 +104,7 @@ static int name_length(const experiment_lab *lab) {
 
 int experiment_plot(const experiment_lab *lab, size_t camera, int mode, bool over_time, const char *name) {
     const experiment_spec *spec = &lab->spec;
-    experiment_series s = { lab, camera, 0, mode };
+    experiment_series s = { lab, camera, 0, mode, 0 };
     svg_axis x, y;
     int rows = LEGEND_ROW * (int)spec->config_count;
     int plot = rows < LEAST_HEIGHT ? LEAST_HEIGHT : rows > MOST_HEIGHT ? MOST_HEIGHT : rows;
@@ -108,6 +126,8 @@ int experiment_plot(const experiment_lab *lab, size_t camera, int mode, bool ove
     fprintf(out, "<rect class=\"frame\" fill=\"none\" stroke=\"#555555\" x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\"/>\n", LEFT, TOP,
             PLOT_WIDTH, plot);
     for (s.config = 0; s.config < spec->config_count; s.config++)
+        band(out, &s, over_time, &x, &y);
+    for (s.config = 0; s.config < spec->config_count; s.config++)
         curve(out, &s, over_time, &x, &y);
     legend(out, lab);
     fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%d\" y=\"%d\" text-anchor=\"middle\">%s</text>\n", LEFT + PLOT_WIDTH / 2,
@@ -115,6 +135,10 @@ int experiment_plot(const experiment_lab *lab, size_t camera, int mode, bool ove
     fprintf(out, "<text class=\"ink\" fill=\"#222222\" transform=\"translate(20 %d) rotate(-90)\" text-anchor=\"middle\">",
             TOP + plot / 2);
     svg_text(out, experiment_figure(spec), 100);
-    fprintf(out, "</text>\n</svg>\n");
+    fputs("</text>\n", out);
+    if (spec->repetitions > 1)
+        fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%d\" y=\"%d\" text-anchor=\"end\" font-size=\"11\">bands: \302\261 standard error of %d "
+                     "repetitions</text>\n", LEFT + PLOT_WIDTH, bottom + 42, spec->repetitions);
+    fputs("</svg>\n", out);
     return experiment_finish(lab, out, name, temporary);
 }

@@ -60,14 +60,22 @@ void experiment_discard(FILE *file, char *temporary) {
     free(temporary);
 }
 
-/* Text in a cell of a table. */
+void experiment_text(FILE *out, const char *text) {
+    for (const char *c = text; *c; c++)
+        switch (*c) {
+        case '&': fputs("&amp;", out); break;
+        case '<': fputs("&lt;", out); break;
+        case '>': fputs("&gt;", out); break;
+        default:
+            if (strchr("|\\`*_[]~", *c))
+                fputc('\\', out);
+            fputc(*c, out);
+        }
+}
+
 void experiment_cell(FILE *out, const char *text) {
     fputc(' ', out);
-    for (const char *c = text; *c; c++) {
-        if (strchr("|\\`*_<>[]", *c))
-            fputc('\\', out);
-        fputc(*c, out);
-    }
+    experiment_text(out, text);
     fputs(" |", out);
 }
 
@@ -76,6 +84,26 @@ void experiment_number(FILE *out, double v, const char *fmt) {
     if (isfinite(v))
         snprintf(text, sizeof(text), fmt, v);
     fprintf(out, " %s |", text);
+}
+
+/* A few digits, but no power of ten where whole numbers read better. */
+static const char *readable(double v, const char *fmt) { return fabs(v) >= 100 && fabs(v) < 1e6 && strchr(fmt, 'g') ? "%.0f" : fmt; }
+
+void experiment_print_spread(FILE *out, double v, double error, const char *fmt) {
+    char text[40] = "-";
+    if (isfinite(v))
+        snprintf(text, sizeof(text), readable(v, fmt), v);
+    fputs(text, out);
+    if (isfinite(v) && isfinite(error)) {
+        snprintf(text, sizeof(text), readable(error, "%.2g"), error);
+        fprintf(out, " \302\261 %s", text);
+    }
+}
+
+void experiment_spread(FILE *out, double v, double error, const char *fmt, const char *after) {
+    fputc(' ', out);
+    experiment_print_spread(out, v, error, fmt);
+    fprintf(out, "%s |", after);
 }
 
 void experiment_table_rule(FILE *out, size_t columns) {
@@ -133,7 +161,9 @@ static void print_setting(FILE *out, const experiment_lab *lab) {
     char date[40] = "", text[32], memory[32];
     time_t now = time(NULL);
     strftime(date, sizeof(date), "%Y-%m-%d %H:%M UTC", gmtime(&now));
-    fprintf(out, "# %s\n\n", spec->title);
+    fputs("# ", out);
+    experiment_text(out, spec->title);
+    fputs("\n\n", out);
     if (spec->note)
         fprintf(out, "%s\n\n", spec->note);
     fprintf(out, "Made by nocturne %s (%s) on %s, on %s; the code that ran: %s.\n\n    ", noc_version(), noc_features(), date,
@@ -144,8 +174,11 @@ static void print_setting(FILE *out, const experiment_lab *lab) {
         snprintf(extent, sizeof(extent), "%.3g s of CPU time", spec->seconds);
     else
         cli_many(extent, (uint64_t)spec->frames, "frame");
-    fprintf(out, "\n\nPictures of %d x %d px, %s, %d repetition%s.\n", spec->width, spec->height, extent, spec->repetitions,
-            spec->repetitions == 1 ? "" : "s with different seeds, of which figures are means");
+    fprintf(out, "\n\nPictures of %d x %d px, %s, ", spec->width, spec->height, extent);
+    if (spec->repetitions > 1)
+        fprintf(out, "%d repetitions with different seeds. Figures are their means, \302\261 the standard error of the mean.\n", spec->repetitions);
+    else
+        fprintf(out, "1 repetition: how far another seed's figures would be off is not known.\n");
     fprintf(out, "Reference: %s of ", cli_many(extent, (uint64_t)spec->reference.frames, "frame"));
     if (spec->reference.params.method == NOC_METHOD_REFERENCE)
         fprintf(out, "%s a pixel", cli_many(extent, (uint64_t)spec->reference.params.rays, "shadow ray"));
@@ -256,7 +289,14 @@ static void print_legend(FILE *out, experiment_series s) {
     fputs(t.own_last || missing ? "\n" : "", out);
 }
 
-static void print_errors(FILE *out, experiment_series s, const char *what, int column, const char *fmt, bool bias) {
+/* A cell: an error, or a bias in %, with its standard error. */
+static void print_figure(FILE *out, const experiment_series *s, int column, int frame, const char *fmt, const char *after) {
+    bool bias = column == COL_BIAS || column == COL_BIAS_ALL;
+    double v = experiment_at(s, column, frame), error = experiment_error_at(s, column, frame);
+    experiment_spread(out, bias ? 100 * (v - 1) : v, bias ? 100 * error : error, fmt, after);
+}
+
+static void print_errors(FILE *out, experiment_series s, const char *what, int column, const char *fmt) {
     table_frames t = frames_of(s);
     char head[400];
     int at = snprintf(head, sizeof(head), "| %s, frame |", what);
@@ -267,26 +307,23 @@ static void print_errors(FILE *out, experiment_series s, const char *what, int c
     for (s.config = 0; s.config < s.lab->spec.config_count; s.config++) {
         fputc('|', out);
         experiment_cell(out, s.lab->spec.configs[s.config].name);
-        for (int i = 0; i < t.count; i++) {
-            double v = experiment_at(&s, column, t.frames[i]);
-            experiment_number(out, bias ? 100 * (v - 1) : v, fmt);
-        }
+        for (int i = 0; i < t.count; i++)
+            print_figure(out, &s, column, t.frames[i], fmt, "");
         if (t.own_last) {
             int last = experiment_last(&s);
-            double v = experiment_at(&s, column, last);
-            char text[48];
-            snprintf(text, sizeof(text), "%s (%d)", fmt, last);
-            experiment_number(out, bias ? 100 * (v - 1) : v, text);
+            char text[24];
+            snprintf(text, sizeof(text), " (%d)", last);
+            print_figure(out, &s, column, last, fmt, text);
         }
         fputc('\n', out);
     }
 }
 
 static void print_all_frames(FILE *out, experiment_series s, const char *clamped, int first) {
-    print_errors(out, s, clamped, first + 2, "%.3g", false);
-    print_errors(out, s, "relMSE", first + 1, "%.3g", false);
-    print_errors(out, s, "RMSE-8", first, "%.2f", false);
-    print_errors(out, s, "Bias, %", first + 3, "%+.2f", true);
+    print_errors(out, s, clamped, first + 2, "%.3g");
+    print_errors(out, s, "relMSE", first + 1, "%.3g");
+    print_errors(out, s, "RMSE-8", first, "%.2f");
+    print_errors(out, s, "Bias, %", first + 3, "%+.2f");
     print_legend(out, s);
 }
 
@@ -299,12 +336,12 @@ static void print_one_frame(FILE *out, experiment_series s, const char *clamped,
         int frame = experiment_last(&s);
         fputc('|', out);
         experiment_cell(out, s.lab->spec.configs[s.config].name);
-        experiment_number(out, experiment_at(&s, first + 2, frame), "%.3g");
-        experiment_number(out, experiment_at(&s, first + 1, frame), "%.3g");
-        experiment_number(out, experiment_at(&s, first, frame), "%.2f");
-        experiment_number(out, 100 * (experiment_at(&s, first + 3, frame) - 1), "%+.2f");
-        experiment_number(out, experiment_at(&s, COL_CPU, frame), "%.3g");
-        experiment_number(out, experiment_at(&s, COL_CPU_TOTAL, frame), "%.3g");
+        print_figure(out, &s, first + 2, frame, "%.3g", "");
+        print_figure(out, &s, first + 1, frame, "%.3g", "");
+        print_figure(out, &s, first, frame, "%.2f", "");
+        print_figure(out, &s, first + 3, frame, "%+.2f", "");
+        print_figure(out, &s, COL_CPU, frame, "%.3g", "");
+        print_figure(out, &s, COL_CPU_TOTAL, frame, "%.3g", "");
         fputc('\n', out);
     }
 }
@@ -327,6 +364,12 @@ static void print_times(FILE *out, experiment_series s) {
     }
 }
 
+/* Of a repetition that is there with its first frame, the time of that. */
+static double first_time_to(const experiment_series *s, int column, double error) {
+    double seconds = experiment_time_to(s, column, error);
+    return seconds == 0 ? experiment_at(s, COL_CPU_TOTAL, 1) : seconds;
+}
+
 /* CPU seconds to an error, and errors after CPU seconds. */
 static void print_equal_time(FILE *out, experiment_series s) {
     const experiment_spec *spec = &s.lab->spec;
@@ -344,12 +387,13 @@ static void print_equal_time(FILE *out, experiment_series s) {
         for (size_t i = 0; i < 3; i++) {
             double seconds = experiment_time_to(&s, column, targets[i]);
             if (seconds > 0 || isnan(seconds))
-                experiment_number(out, seconds, "%.3g");
+                experiment_spread(out, seconds, experiment_error_of(&s, first_time_to, column, targets[i]), "%.3g", "");
             else
                 experiment_number(out, experiment_at(&s, COL_CPU_TOTAL, 1), "under %.3g");
         }
         for (size_t i = 0; i < spec->time_count; i++)
-            experiment_number(out, experiment_error_after(&s, column, spec->times[i]), "%.3g");
+            experiment_spread(out, experiment_error_after(&s, column, spec->times[i]),
+                              experiment_error_of(&s, experiment_error_after, column, spec->times[i]), "%.3g", "");
         fputc('\n', out);
     }
     fprintf(out, "\nBetween frames by interpolation in logarithms; \"under\": the first frame is better already; -: not reached in the "
@@ -362,13 +406,15 @@ static void print_noise(FILE *out, const experiment_lab *lab, size_t index) {
     if (isfinite(n->relmse))
         fprintf(out, "\nThe reference's own noise is a relMSE of about %.2g, clamped %.2g: errors near it say nothing.\n",
                 all ? n->relmse_all : n->relmse, all ? n->clamped_all : n->clamped);
+    if (isfinite(all ? n->mean_all : n->mean))
+        fprintf(out, "\nIts mean has a standard error of %.2g %%, which any bias is off by too.\n", 100 * (all ? n->mean_all : n->mean));
 }
 
 /* Plots and tables of one mode. */
 static int print_mode(FILE *out, experiment_lab *lab, size_t camera, int mode) {
     const experiment_spec *spec = &lab->spec;
     int status = CLI_OK, first = spec->all_pixels ? COL_RMSE8_ALL : COL_RMSE8, motion = spec->cameras[camera].frames;
-    experiment_series s = { lab, camera, 0, mode };
+    experiment_series s = { lab, camera, 0, mode, 0 };
     char *slug = experiment_slug(lab, camera), clamped[48], before[64];
     if (motion)
         fprintf(out, "\n### Frame %d, after %s %s\n", motion, cli_many(before, (uint64_t)motion - 1, "frame"),
@@ -398,7 +444,9 @@ static int print_mode(FILE *out, experiment_lab *lab, size_t camera, int mode) {
 static int print_view(FILE *out, experiment_lab *lab, size_t camera) {
     const experiment_spec *spec = &lab->spec;
     int status = CLI_OK;
-    fprintf(out, "\n## %s, %s\n", spec->scenes[spec->cameras[camera].scene].name, spec->cameras[camera].name);
+    fputs("\n## ", out);
+    experiment_view_name(out, spec, camera);
+    fputc('\n', out);
     print_noise(out, lab, camera);
     print_crops(out, lab, camera);
     for (int mode = EXPERIMENT_MODES - 1; !status && mode >= 0; mode--)

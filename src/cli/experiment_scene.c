@@ -122,17 +122,25 @@ static int render_reference(experiment_lab *lab, const char *path, experiment_no
     noc_renderer *renderer = noc_renderer_create(lab->scene, &(noc_renderer_params){ .threads = lab->args->threads }, lab->log);
     noc_status status = renderer ? NOC_OK : NOC_ERR_MEMORY;
     int at[2] = { 1, spec->reference.frames }, halfway = spec->reference.frames / 2;
+    int parts = at[1] < EXPERIMENT_BATCHES ? at[1] : EXPERIMENT_BATCHES;
+    experiment_batches batches = { .count = 0 };
     noc_image *half = NULL;
     for (; !status && at[0] <= at[1]; at[0]++) {
         status = noc_renderer_frame(renderer, &lab->camera, &spec->reference.params, &(noc_progress){ frame_progress, at });
-        if (!status && at[0] == halfway)
-            half = noc_renderer_image(renderer);
+        bool part_ends = at[0] * parts / at[1] > batches.count;
+        noc_image *image = !status && (part_ends || at[0] == halfway) ? noc_renderer_image(renderer) : NULL;
+        if (image && part_ends)
+            experiment_add_batch(&batches, image, at[0]);
+        if (at[0] == halfway)
+            half = image;
+        else
+            noc_image_destroy(image);
     }
     cli_progress_clear();
     lab->reference = status ? NULL : noc_renderer_image(renderer);
     noc_renderer_destroy(renderer);
     if (lab->reference)
-        *noise = experiment_measure_noise(lab, half, halfway);
+        *noise = experiment_measure_noise(lab, half, halfway, &batches);
     noc_image_destroy(half);
     if (cli_interrupted())
         return CLI_INTERRUPTED + cli_interrupted();

@@ -37,9 +37,13 @@ bool experiment_measures(const experiment_spec *spec, size_t camera, size_t conf
     return next == frame;
 }
 
+/* Repetitions that a series is about: from the first to before the end. */
+static int first_of(const experiment_series *s) { return s->only ? s->only - 1 : 0; }
+static int end_of(const experiment_series *s) { return s->only ? s->only : s->lab->spec.repetitions; }
+
 int experiment_last(const experiment_series *s) {
     int last = INT_MAX;
-    for (int i = 0; i < s->lab->spec.repetitions; i++) {
+    for (int i = first_of(s); i < end_of(s); i++) {
         int count = experiment_find_run(s->lab, s->camera, s->config, i)->count;
         last = count < last ? count : last;
     }
@@ -50,15 +54,36 @@ int experiment_last(const experiment_series *s) {
 
 double experiment_at(const experiment_series *s, int column, int frame) {
     double sum = 0;
-    int repetitions = s->lab->spec.repetitions;
-    for (int i = 0; i < repetitions; i++) {
+    for (int i = first_of(s); i < end_of(s); i++) {
         const experiment_run *run = experiment_find_run(s->lab, s->camera, s->config, i);
         if (frame < 1 || frame > run->count || !run->rows[s->mode] || !run->rows[s->mode][frame - 1].done)
             return NAN;
         sum += run->rows[s->mode][frame - 1].values[column];
     }
-    return sum / repetitions;
+    return sum / (end_of(s) - first_of(s));
 }
+
+double experiment_error_of(const experiment_series *s, experiment_asked *asked, int column, double what) {
+    double sum = 0, squares = 0;
+    int n = s->lab->spec.repetitions;
+    if (n < 2)
+        return NAN;
+    for (int pass = 0; pass < 2; pass++)
+        for (int i = 0; i < n; i++) {
+            experiment_series one = *s;
+            one.only = i + 1;
+            double v = asked(&one, column, what);
+            if (pass)
+                squares += (v - sum / n) * (v - sum / n);
+            else
+                sum += v;
+        }
+    return sqrt(squares / (n - 1) / n);
+}
+
+static double at(const experiment_series *s, int column, double frame) { return experiment_at(s, column, (int)frame); }
+
+double experiment_error_at(const experiment_series *s, int column, int frame) { return experiment_error_of(s, at, column, frame); }
 
 int experiment_column(const experiment_spec *spec) {
     int first = spec->all_pixels ? COL_RMSE8_ALL : COL_RMSE8;
@@ -106,6 +131,16 @@ static double between(double x0, double y0, double x1, double y1, double y) {
     if (!(x0 > 0 && x1 > 0 && y0 > 0 && y1 > 0 && y > 0) || y0 == y1)
         return x1;
     return exp(log(x0) + (log(x1) - log(x0)) * (log(y) - log(y0)) / (log(y1) - log(y0)));
+}
+
+double experiment_frame_time(const experiment_series *s, int column, double what) {
+    int last = experiment_last(s);
+    double first = experiment_at(s, COL_CPU_TOTAL, 1), total = experiment_at(s, COL_CPU_TOTAL, last);
+    if (s->lab->spec.cameras[s->camera].frames)
+        return experiment_at(s, COL_CPU, last);
+    if (last == 1)
+        return total;
+    return isnan(first) ? total / last : (total - first) / (last - 1);
 }
 
 double experiment_time_to(const experiment_series *s, int column, double error) {

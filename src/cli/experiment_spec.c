@@ -261,7 +261,7 @@ char *experiment_spec_name(const char *path) {
 }
 
 int experiment_read_spec(S *spec, const char *path, bool quiet) {
-    *spec = (S){ .path = path, .quiet = quiet, .size = "480x270", .frames = 20, .repetitions = 1, .accumulate = EXPERIMENT_MODES, .seed = 1,
+    *spec = (S){ .path = path, .quiet = quiet, .size = "480x270", .frames = 20, .repetitions = EXPERIMENT_REPETITIONS, .accumulate = EXPERIMENT_MODES, .seed = 1,
                  .ceiling = 10, .reference = { .frames = 16 } };
     json_error_t error;
     struct stat st;

@@ -29,9 +29,11 @@ int experiment_points(const experiment_spec *spec, size_t camera, experiment_poi
     return count;
 }
 
-double experiment_at_point(const experiment_lab *lab, size_t camera, size_t config, experiment_point point, int column) {
-    experiment_series s = { lab, camera, config, point.mode };
-    return experiment_at(&s, column, point.frame ? point.frame : experiment_last(&s));
+double experiment_at_point(const experiment_lab *lab, size_t camera, size_t config, experiment_point point, int column, double *error) {
+    experiment_series s = { lab, camera, config, point.mode, 0 };
+    int frame = point.frame ? point.frame : experiment_last(&s);
+    *error = experiment_error_at(&s, column, frame);
+    return experiment_at(&s, column, frame);
 }
 
 const char *experiment_point_name(const experiment_spec *spec, size_t camera, experiment_point point) {
@@ -46,33 +48,33 @@ const char *experiment_point_name(const experiment_spec *spec, size_t camera, ex
     return text;
 }
 
-/* CPU seconds of one frame: of the last where the camera moves, else the mean of all but the first, which builds structures. */
-double experiment_frame_time(const experiment_lab *lab, size_t camera, size_t config) {
+experiment_series experiment_timed(const experiment_lab *lab, size_t camera, size_t config) {
     int mode = experiment_has_mode(&lab->spec, camera, EXPERIMENT_ALONE) ? EXPERIMENT_ALONE : EXPERIMENT_ACCUMULATED;
-    experiment_series s = { lab, camera, config, mode };
-    int last = experiment_last(&s);
-    double first = experiment_at(&s, COL_CPU_TOTAL, 1), total = experiment_at(&s, COL_CPU_TOTAL, last);
-    if (lab->spec.cameras[camera].frames)
-        return experiment_at(&s, COL_CPU, last);
-    if (last == 1)
-        return total;
-    return isnan(first) ? total / last : (total - first) / (last - 1);
+    return (experiment_series){ lab, camera, config, mode, 0 };
 }
 
 static void print_errors(FILE *out, const experiment_lab *lab, size_t camera, size_t config) {
     experiment_point points[EXPERIMENT_POINTS];
     int count = experiment_points(&lab->spec, camera, points);
     for (int i = 0; i < count; i++) {
-        double v = experiment_at_point(lab, camera, config, points[i], experiment_column(&lab->spec));
-        char text[32] = "-";
-        if (isfinite(v))
-            snprintf(text, sizeof(text), "%.2g", v);
-        fprintf(out, "%s %s", i ? " /" : "", text);
+        double error, v = experiment_at_point(lab, camera, config, points[i], experiment_column(&lab->spec), &error);
+        fputs(i ? " / " : " ", out);
+        experiment_print_spread(out, v, error, "%.2g");
     }
-    double ms = 1e3 * experiment_frame_time(lab, camera, config);
-    if (isfinite(ms))
-        fprintf(out, " \302\267 %.3g ms", ms);
+    experiment_series s = experiment_timed(lab, camera, config);
+    double ms = 1e3 * experiment_frame_time(&s, 0, 0);
+    if (isfinite(ms)) {
+        fputs(" \302\267 ", out);
+        experiment_print_spread(out, ms, 1e3 * experiment_error_of(&s, experiment_frame_time, 0, 0), "%.3g");
+        fputs(" ms", out);
+    }
     fputs(" |", out);
+}
+
+void experiment_view_name(FILE *out, const experiment_spec *spec, size_t camera) {
+    experiment_text(out, spec->scenes[spec->cameras[camera].scene].name);
+    fputs(", ", out);
+    experiment_text(out, spec->cameras[camera].name);
 }
 
 static void print_what(FILE *out, const experiment_lab *lab, size_t camera) {
@@ -101,7 +103,6 @@ char *experiment_row_name(const experiment_lab *lab, size_t config) {
 /* Entries of one option, under one camera. */
 static void print_matrix(FILE *out, const experiment_lab *lab, size_t camera, const noc_option *option) {
     const experiment_spec *spec = &lab->spec;
-    const experiment_camera *c = &spec->cameras[camera];
     const char *values[EXPERIMENT_VALUES];
     size_t count = 0;
     for (size_t i = 0; i < spec->config_count; i++) {
@@ -111,7 +112,9 @@ static void print_matrix(FILE *out, const experiment_lab *lab, size_t camera, co
         if (k == count && count < EXPERIMENT_VALUES && spec->configs[i].option == option)
             values[count++] = spec->configs[i].value;
     }
-    fprintf(out, "\n**%s, %s**: ", spec->scenes[c->scene].name, c->name);
+    fputs("\n**", out);
+    experiment_view_name(out, spec, camera);
+    fputs("**: ", out);
     print_what(out, lab, camera);
     fprintf(out, ".\n\n| `%s` |", option->name);
     for (size_t k = 0; k < count; k++)
@@ -141,8 +144,9 @@ static void print_plain(FILE *out, const experiment_lab *lab) {
     const experiment_spec *spec = &lab->spec;
     fputs("\n", out);
     for (size_t camera = 0; camera < spec->camera_count; camera++) {
-        const experiment_camera *c = &spec->cameras[camera];
-        fprintf(out, "- **%s, %s**: ", spec->scenes[c->scene].name, c->name);
+        fputs("- **", out);
+        experiment_view_name(out, spec, camera);
+        fputs("**: ", out);
         print_what(out, lab, camera);
         fputs("\n", out);
     }
@@ -165,13 +169,8 @@ static void print_plain(FILE *out, const experiment_lab *lab) {
 }
 
 /* Any row of a run will do: its structure is built once. */
-static experiment_series any_mode(const experiment_lab *lab, size_t camera, size_t config) {
-    int mode = experiment_has_mode(&lab->spec, camera, EXPERIMENT_ALONE) ? EXPERIMENT_ALONE : EXPERIMENT_ACCUMULATED;
-    return (experiment_series){ lab, camera, config, mode };
-}
-
 static double structure(const experiment_lab *lab, size_t camera, size_t config, int column) {
-    experiment_series s = any_mode(lab, camera, config);
+    experiment_series s = experiment_timed(lab, camera, config);
     return experiment_median(&s, column);
 }
 
@@ -242,11 +241,16 @@ int experiment_write_summary(experiment_lab *lab) {
     FILE *out = experiment_create(lab, "summary.md", &temporary);
     if (!out)
         return CLI_FAILURE;
-    fprintf(out, "# %s\n\n", spec->title);
+    fputs("# ", out);
+    experiment_text(out, spec->title);
+    fputs("\n\n", out);
     if (spec->note)
         fprintf(out, "%s\n\n", spec->note);
-    fprintf(out, "%s; %d x %d px, %d repetition%s.\n", experiment_figure(spec), spec->width, spec->height, spec->repetitions,
-            spec->repetitions == 1 ? "" : "s");
+    fprintf(out, "%s; %d x %d px, ", experiment_figure(spec), spec->width, spec->height);
+    if (spec->repetitions > 1)
+        fprintf(out, "means of %d repetitions with different seeds, \302\261 their standard error.\n", spec->repetitions);
+    else
+        fputs("one run: its spread is not known.\n", out);
     bool plain = false;
     const noc_option *done = NULL;
     for (size_t i = 0; i < spec->config_count; i++) {

@@ -9,19 +9,44 @@ const char *const svg_colours[SVG_COLOURS] = { "#0072b2", "#d55e00", "#009e73", 
 static const char *const dark[SVG_COLOURS] = { "#4aa8e8", "#f2833a", "#2fc79a", "#e49ac4", "#f0b93a", "#9bd8fa", "#bbbbbb" };
 static const char *const dashes[] = { "", " stroke-dasharray=\"7 4\"", " stroke-dasharray=\"2 3\"" };
 
-svg_style svg_style_of(const experiment_spec *spec, size_t config) {
-    int choices = 0, alone = 0;
-    for (size_t i = 0; i < spec->config_count; i++) {
-        choices = spec->configs[i].choice >= choices ? spec->configs[i].choice + 1 : choices;
-        alone += i < config && spec->configs[i].choice < 0;
-    }
+/* The first configuration that has this one's value of the same option. Where in its array a value stands says nothing: entries of
+ * one spec may list different ones. */
+static size_t first_like(const experiment_spec *spec, size_t config) {
     const experiment_config *c = &spec->configs[config];
-    int colour = c->choice < 0 ? choices + alone : c->choice;
-    int line = choices ? (int)c->entry : alone / SVG_COLOURS;
-    return (svg_style){ colour % SVG_COLOURS, (choices ? (int)c->entry : alone) % 8, dashes[line % 3] };
+    size_t i = 0;
+    while (i < config && (!c->option || spec->configs[i].option != c->option || strcmp(spec->configs[i].value, c->value)))
+        i++;
+    return i;
+}
+
+bool svg_is_new_value(const experiment_spec *spec, size_t config) {
+    return spec->configs[config].option && first_like(spec, config) == config;
+}
+
+svg_style svg_style_of(const experiment_spec *spec, size_t config) {
+    int values = 0, alone = 0, value = 0;
+    const experiment_config *c = &spec->configs[config];
+    size_t first = first_like(spec, config);
+    for (size_t i = 0; i < spec->config_count; i++) {
+        bool is_new = svg_is_new_value(spec, i);
+        values += is_new;
+        value += is_new && i < first;
+        alone += i < config && !spec->configs[i].option;
+    }
+    int colour = c->option ? value : values + alone, around = colour / SVG_COLOURS; /* colours come again: other markers tell them apart */
+    int line = values ? (int)c->entry : around;
+    return (svg_style){ colour % SVG_COLOURS, ((values ? (int)c->entry + around : alone)) % SVG_MARKERS, colour % SVG_MARKERS,
+                        dashes[line % 3] };
 }
 
 double svg_place(const svg_axis *a, double v) { return a->from + (a->to - a->from) * log(v / a->lo) / log(a->hi / a->lo); }
+
+double svg_inside(const svg_axis *a, double v) { return svg_place(a, v > a->lo ? v < a->hi ? v : a->hi : a->lo); }
+
+void svg_whisker(FILE *out, int colour, double from, double to, double y) {
+    fprintf(out, "<path class=\"l%d whisker\" fill=\"none\" stroke=\"%s\" d=\"M%.1f %.1fH%.1fM%.1f %.1fv6M%.1f %.1fv6\"/>\n", colour,
+            svg_colours[colour], from, y, to, from, y - 3, to, y - 3);
+}
 
 /* The i-th of ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ...; 0 is 1. */
 static double round_number(int i) {
@@ -30,6 +55,7 @@ static double round_number(int i) {
     return steps[i - 3 * decade] * pow(10, decade);
 }
 
+/* Both ends of an axis are ticks, and have their numbers. */
 void svg_widen(svg_axis *a) {
     int i = -45, j;
     while (i < 45 && round_number(i + 1) <= a->lo * 1.000001)
@@ -84,21 +110,37 @@ void svg_marker(FILE *out, const svg_style *style, double x, double y) {
     fprintf(out, "\"/>\n");
 }
 
-void svg_grid(FILE *out, const svg_axis *a, bool vertical, const svg_axis *other) {
-    double decades = log10(a->hi / a->lo), last = -1e9, from = other->from, to = other->to;
-    for (int i = -45; i <= 45; i++) {
-        double v = round_number(i), at;
-        if (v < a->lo * 0.999999 || v > a->hi * 1.000001)
-            continue;
-        at = svg_place(a, v);
-        if (vertical)
-            fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%.1f %gV%g\"/>\n", at, to, from);
-        else
-            fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%g %.1fH%g\"/>\n", from, at, to);
-        if (fabs(at - last) < (vertical ? 34 : 15) || (decades > 4 && i % 3))
-            continue;
-        last = at;
+/* Room that a number takes along its axis. */
+static double room_of(double v, bool vertical) {
+    char text[32];
+    return vertical ? 7.5 * snprintf(text, sizeof(text), "%.10g", v) + 6 : 15;
+}
+
+/* A line across the plot and, where it does not touch one that has its own, its number. */
+static void tick(FILE *out, const svg_axis *a, bool vertical, const svg_axis *other, double v, bool numbered) {
+    double at = svg_place(a, v);
+    if (vertical)
+        fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%.1f %gV%g\"/>\n", at, other->to, other->from);
+    else
+        fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%g %.1fH%g\"/>\n", other->from, at, other->to);
+    if (numbered)
         fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">%.10g</text>\n",
-                vertical ? at : from - 8, vertical ? from + 18 : at + 4.5, vertical ? "middle" : "end", v);
+                vertical ? at : other->from - 8, vertical ? other->from + 18 : at + 4.5, vertical ? "middle" : "end", v);
+}
+
+void svg_grid(FILE *out, const svg_axis *a, bool vertical, const svg_axis *other) {
+    double decades = log10(a->hi / a->lo), end = svg_place(a, a->hi), last = svg_place(a, a->lo), last_value = a->lo;
+    tick(out, a, vertical, other, a->lo, true);
+    for (int i = -45; i <= 45; i++) {
+        double v = round_number(i);
+        if (v < a->lo * 1.000001 || v > a->hi * 0.999999)
+            continue;
+        double at = svg_place(a, v), room = room_of(v, vertical);
+        bool free_before = fabs(at - last) >= 0.5 * (room + room_of(last_value, vertical));
+        bool numbered = free_before && fabs(end - at) >= 0.5 * (room + room_of(a->hi, vertical)) && !(decades > 4 && i % 3);
+        tick(out, a, vertical, other, v, numbered);
+        last = numbered ? at : last;
+        last_value = numbered ? v : last_value;
     }
+    tick(out, a, vertical, other, a->hi, true);
 }

@@ -51,10 +51,13 @@ static bool parse_row(char *line, experiment_stored *row) {
     return row->frame > 0 && row->frame <= EXPERIMENT_FRAMES;
 }
 
+/* Spreadsheets run what begins like a formula: an apostrophe before it makes it text to them. */
 static void quote(FILE *out, const char *text) {
     bool plain = !strpbrk(text, ",\"");
     if (!plain)
         fputc('"', out);
+    if (strchr("=+-@", *text))
+        fputc('\'', out);
     for (const char *c = text; *c; c++) {
         if (*c == '"')
             fputc('"', out);

@@ -92,7 +92,7 @@ svg, choices = "{http://www.w3.org/2000/svg}", int(sys.argv[1])
 bars = tree.parse("a/frame-times.svg").getroot()
 widths = [float(r.get("width")) for r in bars.iter(svg + "rect") if (r.get("class") or "")[0] == "m"]
 assert len(widths) == 2 * (1 + choices) and all(w > 0 for w in widths), widths
-dots = [p for p in tree.parse("a/errors.svg").getroot().iter(svg + "path") if re.match("[lm][0-9]", p.get("class") or "")]
+dots = [p for p in tree.parse("a/errors.svg").getroot().iter(svg + "path") if re.match("[lm][0-9]( paper)?$", p.get("class") or "")]
 assert len(dots) == 2 * 3 * (1 + choices) + choices, len(dots) # cameras, frames; and the legend
 # The table of one option's values: a cell is the errors of the first frame, the last, the mean of all, by the mean of seeds.
 rows = list(csv.DictReader(open("a/results.csv")))
@@ -100,7 +100,7 @@ def error(mode, frame):
     found = [float(r["relmse_clamped"]) for r in rows if r["camera"] == "street" and r["configuration"] == "ris, uniform" and
              r["mode"] == mode and r["frame"] == frame]
     assert len(found) == 2
-    return "%.2g" % (sum(found) / 2)
+    return "%.2g \u00b1 %.2g" % (sum(found) / 2, abs(found[0] - found[1]) / 2)
 line = [l for l in open("a/summary.md") if l.startswith("| ris |")][0]
 assert line.split("|")[2].split("\u00b7")[0].strip() == " / ".join((error("alone", "1"), error("alone", "3"), error("accumulated", "3"))), line
 CHECK
@@ -187,7 +187,7 @@ cat >kill.json <<'SPEC'
   "cameras": [ { "name": "at rest", "view": "street", "path": { "frames": 4 } },
                { "name": "walk", "view": "street", "path": { "frames": 4, "dolly": [0, 1, 0], "pan": 10 } },
                { "name": "cut", "view": "street", "path": { "frames": 4, "cut": 3, "before": { "view": "aerial", "fov": 30 } } } ],
-  "size": "48x32", "seconds": 0.3, "shown": [1, 3],
+  "size": "48x32", "seconds": 0.3, "repetitions": 1, "shown": [1, 3],
   "reference": { "rays": 64, "frames": 4 },
   "configurations": [ { "name": "ris", "method": "ris", "learn": false }, { "name": "restir, M *", "method": "restir", "candidates": "power", "draws": [1, 8] },
                       { "name": "two frames", "frames": 2, "seconds": 0 } ]

@@ -3,11 +3,11 @@
 . "$(dirname "$0")/lib.sh"
 export XDG_CACHE_HOME="$work/home"
 
-# spec FILE CONFIGURATIONS [MEMBERS]: one camera before one lamp, one frame
+# spec FILE CONFIGURATIONS [MEMBERS]: one camera before one lamp, one frame, once
 spec() {
     cat >"$1" <<SPEC
 { "scene": { "name": "one", "inputs": ["builtin:single"] }, "cameras": [ { "name": "own", "view": "own" } ], "size": "32x18",
-  "reference": { "rays": 1, "frames": 1 }, "frames": 1, "shown": [], ${3:-}
+  "reference": { "rays": 1, "frames": 1 }, "frames": 1, "repetitions": 1, "shown": [], ${3:-}
   "configurations": [ $2 ] }
 SPEC
 }
@@ -94,17 +94,106 @@ run experiment named.json -o e --cache cache
 test $status = 0 && test "$(head -n 1 e/report.md)" = "# named" && test "$(head -n 1 e/summary.md)" = "# named"; result $? "no title: the spec's name"
 grep -q '^| ris, \\\* rays | ' e/summary.md && grep -q '^| draws | ' e/summary.md && grep -q '^| preset | ' e/summary.md
 result $? "summary.md names entries of several values by what they share"
-spec titled.json '{ "name": "a" }' '"title": "A <title>",'
+spec titled.json '{ "name": "=1+1" }' '"title": "A <b>title</b> & *more*",'
 sed -i 's/"shown": \[\]/"shown": [1]/; s/"view": "own"/"view": "own", "path": { "frames": 2, "pan": 1 }/' titled.json
 run experiment titled.json -o g --cache cache
-test "$(head -n 1 g/report.md)" = "# A <title>" && grep -q '^Shown is the last frame of each configuration, row by row as in this table: the part of [0-9]* x ' g/report.md
-result $? "a title is the heading; what is shown of a camera that moves is said"
+test "$(head -n 1 g/report.md)" = "# A &lt;b&gt;title&lt;/b&gt; &amp; \\*more\\*" && grep -q '^Shown is the last frame of each configuration, row by row as in this table: the part of [0-9]* x ' g/report.md
+result $? "a title is the heading, as it reads; what is shown of a camera that moves is said"
+python3 -c 'import csv; assert [r["configuration"] for r in csv.DictReader(open("g/results.csv"))] == ["\x27=1+1"]' && grep -q '^| =1+1 |' g/report.md
+result $? "a name that a spreadsheet would run is text in the table"
+run experiment titled.json -o g --cache cache
+test $status = 0 && grep -q ' 0 of them made now' out; result $? "and its rows are found again"
+
+# Colours and markers follow the values, wherever in an entry's array they stand; where values are more than colours, all differ.
+spec arrays.json '{ "name": "alone", "method": "is" }, { "name": "ris, *", "method": "ris", "candidates": ["uniform", "power", "bvh", "tree"] },
+    { "name": "restir, *", "method": "restir", "candidates": ["lists", "bvh", "uniform"] }'
+spec many.json '{ "name": "S_r *", "candidates": "bvh", "influence": [0, 0.25, 0.5, 1, 2, 4, 8, 16, 32] }, { "name": "M *", "candidates": "bvh", "influence": [32, 0] }'
+for f in arrays many; do
+    sed -i 's/"frames": 1, "repetitions": 1/"frames": 2, "repetitions": 2/' $f.json
+    run experiment $f.json -o $f --cache cache
+done
+python3 - <<'CHECK'
+import csv, re, xml.etree.ElementTree as tree
+svg = "{http://www.w3.org/2000/svg}"
+def look(path):
+    """The style of each name of a legend, and the markers elsewhere, with their places."""
+    root, names, marks, last = tree.parse(path).getroot(), {}, [], None
+    for e in root.iter():
+        shape = re.match(r"M([-\d.]+) ([-\d.]+)(.*z)$", e.get("d") or "")
+        if shape:
+            last = (e.get("class"), shape.group(3))
+            marks.append((last, float(shape.group(1)), float(shape.group(2))))
+        elif e.tag == svg + "text" and last:
+            names["".join(e.itertext())] = last
+            last = None
+    return names, marks, root
+mean = lambda rows, name: sum(float(r["relmse_clamped"]) for r in rows if r["configuration"] == name and r["frame"] == "1" and r["mode"] == "accumulated")
+for folder, groups, values in (("arrays", ("ris", "restir"), ("uniform", "power", "bvh", "tree", "lists")),
+                               ("many", ("S_r", "M"), ("0", "0.25", "0.5", "1", "2", "4", "8", "16", "32"))):
+    names, marks, root = look(folder + "/errors.svg")
+    styles = [names[v] for v in values]
+    assert len(set(styles)) == len(values), names
+    texts = {"".join(t.itertext()): float(t.get("y")) for t in root.iter(svg + "text")}
+    configs = {r["configuration"] for r in csv.DictReader(open(folder + "/results.csv"))}
+    for group in groups:
+        here = {style for style, x, y in marks if abs(y - texts[group]) < 12}
+        want = {names[v] for v in values if any(c.startswith(group) and c.split()[-1] == v for c in configs)}
+        assert here == want, (folder, group, here, want)
+    # Of the plots over frames, each configuration's own: no two are drawn alike.
+    names, marks, root = look(folder + "/1-one-own-mean-frames.svg")
+    lines = [(l.get("class"), l.get("stroke-dasharray")) for l in root.iter(svg + "polyline")]
+    assert len({(names[c], line) for c, line in zip(names, lines)}) == len(configs), names
+# Both ends of every axis have a tick and its number.
+for path in ("arrays/errors.svg", "arrays/1-one-own-mean-frames.svg", "arrays/1-one-own-mean-cpu.svg", "many/1-one-own-mean-frames.svg"):
+    root = tree.parse(path).getroot()
+    numbers = [(float(t.get("x")), float(t.get("y"))) for t in root.iter(svg + "text") if re.fullmatch(r"[\d.e-]+", "".join(t.itertext()))]
+    boxes = [[float(r.get(k)) for k in ("x", "y", "width", "height")] for r in root.iter(svg + "rect") if r.get("class") == "frame"]
+    assert boxes
+    for x, y, w, h in boxes:
+        for end in (x, x + w):
+            assert any(abs(at - end) < 0.2 and abs(down - (y + h + 18)) < 0.2 for at, down in numbers), (path, end)
+        for end in (y, y + h) if "errors" not in path else ():
+            assert any(abs(at - (x - 8)) < 0.2 and abs(down - end - 4.5) < 0.2 for at, down in numbers), (path, end)
+CHECK
+result $? "plots tell values apart by what they are, and axes end in ticks"
+
+# What a spec says nothing of is repeated, and its spread told: the standard error of the mean, in tables and as bands.
+spec spread.json '{ "name": "a", "candidates": "power" }, { "name": "b", "method": "is" }'
+sed -i 's/ "repetitions": 1,//; s/"frames": 1,/"frames": 3, "accumulate": true, "equal-time": [0.001],/; s/32x18/64x36/' spread.json
+run experiment spread.json -o spread --cache cache
+python3 - <<'CHECK'
+import csv, re, statistics, xml.etree.ElementTree as tree
+rows = list(csv.DictReader(open("spread/results.csv")))
+seeds = {r["seed"] for r in rows}
+number = lambda digits, v: "%.0f" % v if abs(v) >= 100 else "%.*g" % (digits, v)
+assert len(seeds) == 4 and len(rows) == 2 * 4 * 3, (seeds, len(rows))
+report = open("spread/report.md").read()
+def cells(what, name):
+    table = re.search(r"^\| %s, frame \|.*\n\|[-:|]*\n((?:\|.*\n)*)" % re.escape(what), report, re.M).group(1)
+    return [c.strip() for c in next(l for l in table.splitlines() if l.startswith("| %s |" % name)).split("|")[2:-1]]
+for name in "ab":
+    for frame in (1, 2, 3):
+        of = lambda column: [float(r[column]) for r in rows if r["configuration"] == name and r["frame"] == str(frame)]
+        error = lambda v: statistics.stdev(v) / len(v) ** 0.5
+        v, b = of("relmse"), [100 * (x - 1) for x in of("bias")]
+        assert cells("relMSE", name)[frame - 1] == "%s ± %s" % (number(3, statistics.mean(v)), number(2, error(v))), (cells("relMSE", name), v)
+        assert cells("Bias, %", name)[frame - 1] == "%+.2f ± %s" % (statistics.mean(b), number(2, error(b))), (cells("Bias, %", name), b)
+assert "4 repetitions with different seeds" in report
+assert re.search(r"^Its mean has a standard error of [\d.]+ %", report, re.M) is None # one frame tells nothing of it
+assert re.search(r"^\| a \| [\d.e-]+ ± [\d.e-]+ / [\d.e-]+ ± [\d.e-]+ · [\d.e-]+ ± [\d.e-]+ ms \|$", open("spread/summary.md").read(), re.M)
+svg = "{http://www.w3.org/2000/svg}"
+bands = tree.parse("spread/1-one-own-mean-frames.svg").getroot().findall(".//" + svg + "polygon")
+assert len(bands) == 2 and all(len(b.get("points").split()) == 6 for b in bands)
+whiskers = [p for p in tree.parse("spread/errors.svg").getroot().iter(svg + "path") if "whisker" in (p.get("class") or "")]
+assert len(whiskers) == 4, len(whiskers) # configurations, the first frame and the last
+CHECK
+result $? "four repetitions where a spec says nothing, and standard errors in tables and plots" "$(cat err)"
 
 # What is wrong is one line, before any work and before any folder is made.
 spec wrong.json '{ "name": "a", "draws": [[1]] }'
 expect "an array in an array" 2 'wrong.json: configurations\[0\]: draws: this cannot be its value' experiment wrong.json -o w
-spec wrong.json '{ "name": "a" }' '"repetitions": [1],'
-expect "an array where one value is meant" 2 'wrong.json: repetitions: this cannot be its value' experiment wrong.json -o w
+spec wrong.json '{ "name": "a" }' '"seed": [1],'
+expect "an array where one value is meant" 2 'wrong.json: seed: this cannot be its value' experiment wrong.json -o w
 spec wrong.json '{ "name": "a", "width": 3 }'
 expect "what the spec says for all" 2 'wrong.json: configurations\[0\]: width: the spec says it for all pictures' experiment wrong.json -o w
 spec one.json '{ "name": "a" }'
