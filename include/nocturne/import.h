@@ -11,12 +11,17 @@ extern "C" {
 
 typedef enum noc_obj_up { NOC_OBJ_UP_Y, NOC_OBJ_UP_Z } noc_obj_up;
 
+typedef enum noc_switch { NOC_SWITCH_OFF, NOC_SWITCH_ON, NOC_SWITCH_AUTO } noc_switch; /* false and true are OFF and ON */
+
 typedef struct noc_import_params {
     const char *crs;        /* CRS of inputs that name none (any PROJ definition), NULL: such inputs fail if they need one */
     const char *scene_crs;  /* CRS of the scene; NULL: the first input's if projected in metres, else UTM of its centre. Where its
                              * lengths are not those of the ground, the scene is computed in UTM: noc_scene_info.given_crs */
     int lod;                /* highest CityGML level of detail taken, 0..4; default 3. The best one at or under it wins */
-    bool infer_lamps;       /* place lamps by a rule where the inputs hold none; default true */
+    /* Place lamps by a rule? AUTO, the default: where the inputs hold none; inputs whose lamps are all of no use are an error.
+     * ON: where no lamp of the inputs is of use. OFF: nowhere. */
+    noc_switch infer_lamps;
+    bool strict;            /* an input of which anything is skipped or repaired is an error; default false */
     double lamp_height;     /* m, where not tagged; default 6 */
     double lamp_lumens;     /* lm, where neither flux nor wattage is known; default 5000 */
     double lamp_kelvin;     /* K, where not known; default 3000 */
@@ -24,7 +29,7 @@ typedef struct noc_import_params {
     noc_progress progress;
 } noc_import_params;
 
-#define NOC_IMPORT_DEFAULTS(set) set(lod, 3) set(infer_lamps, true) set(lamp_height, 6) set(lamp_lumens, 5000) set(lamp_kelvin, 3000)
+#define NOC_IMPORT_DEFAULTS(set) set(lod, 3) set(infer_lamps, NOC_SWITCH_AUTO) set(lamp_height, 6) set(lamp_lumens, 5000) set(lamp_kelvin, 3000)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_import_params, noc_import_default_params, NOC_IMPORT_DEFAULTS)
 #else
@@ -75,14 +80,26 @@ typedef struct noc_report_file {
     size_t lamps_with_height, lamps_with_lumens, lamps_with_watts, lamps_with_colour, lamps_with_direction; /* tagged */
     double lamp_height_min, lamp_height_max; /* of those tagged, m */
     size_t lamps_by_source[NOC_SOURCE_COUNT];
+    /* Where a scene was loaded, lamps by what became of them; those in use are mapped. */
+    size_t lamps_mapped;       /* stand in the scene */
+    size_t lamps_moved;        /* of them: out of a building, or away from another lamp */
+    size_t lamps_dropped;      /* of no use: outside the city, in a building, without a place */
     size_t line_count;
     const noc_report_line *lines;
 } noc_report_file;
+
+/* Sums over the files of a report. */
+typedef struct noc_report_totals {
+    size_t lamps_mapped, lamps_moved, lamps_dropped; /* as in noc_report_file */
+    size_t lamps_inferred;     /* placed by a rule */
+    size_t skipped, repaired;  /* features: counts of the files' lines */
+} noc_report_totals;
 
 typedef struct noc_report noc_report; /* owned by the caller */
 
 NOC_API size_t noc_report_file_count(const noc_report *report);
 NOC_API const noc_report_file *noc_report_get_file(const noc_report *report, size_t index);
+NOC_API void noc_report_get_totals(const noc_report *report, noc_report_totals *totals); /* all 0 where report is NULL */
 NOC_API void noc_report_destroy(noc_report *report);
 
 /* Loads all paths into the scene as one, stands the lamps on the ground, and commits. "builtin:NAME" is the built-in

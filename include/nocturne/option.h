@@ -13,6 +13,7 @@ extern "C" {
 
 typedef enum noc_option_kind {
     NOC_OPTION_BOOL,   /* --name / --no-name; bool */
+    NOC_OPTION_SWITCH, /* the same, and "auto": what is done where neither was said; noc_switch */
     NOC_OPTION_INT,    /* int */
     NOC_OPTION_UINT,   /* uint32_t */
     NOC_OPTION_REAL,   /* double */
@@ -39,7 +40,7 @@ NOC_API const noc_option *noc_city_options(void);    /* fields of noc_city_param
 NOC_API const noc_option *noc_builtin_options(void); /* fields of noc_builtin_params, but for the city's */
 
 /* Sets one field from text. value is NULL for a bare bool; NOC_ERR_ARGUMENT, reported with the option's name, the text
- * and what would be right. For BOOL, "true/false/on/off/yes/no/1/0". */
+ * and what would be right. For BOOL and SWITCH, "true/false/on/off/yes/no/1/0". */
 NOC_API noc_status noc_option_set(const noc_option *option, void *params, const char *value, noc_log *log);
 /* The field's present value as text, for help and metadata. Returns the length, like snprintf. */
 NOC_API int noc_option_get(const noc_option *option, const void *params, char *text, size_t size);

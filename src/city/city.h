@@ -10,7 +10,14 @@ typedef struct city_lamp_params {
     double height, lumens, kelvin;
     bool has_floor;
     double floor; /* where a lamp stands that has no ground near: taken before any lamp is stood */
+    struct city_lamp_tally *tally; /* counted up; may be NULL */
 } city_lamp_params;
+
+typedef struct city_lamp_tally {
+    size_t moved;     /* lamps put elsewhere than they were given: out of a building, away from another lamp */
+    size_t classless; /* lamps that stand on what names no class, for want of a ground */
+    size_t raised;    /* of those, the ones that stand 2 m or more above what is around them: on a roof, perhaps */
+} city_lamp_tally;
 
 /* Lowest height of the scene, lamps aside; 0 if it is empty. */
 double city_floor(const noc_scene *scene);

@@ -138,8 +138,14 @@ static void stand(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
     if (isfinite(foot[2]))
         return;
     /* a scene without classes: whatever is there, but the lamps that stand already */
-    if (noc_scene_highest(scene, ~(1u << NOC_CLASS_LAMP), foot[0], foot[1], &foot[2]))
+    if (noc_scene_highest(scene, ~(1u << NOC_CLASS_LAMP), foot[0], foot[1], &foot[2])) {
+        double other;
+        if (params->tally && noc_scene_highest(scene, 1u << NOC_CLASS_OTHER, foot[0], foot[1], &other) && other == foot[2]) {
+            params->tally->classless++;
+            params->tally->raised += site_raised(scene, foot[0], foot[1], foot[2]);
+        }
         return;
+    }
     if (site_ground_far(scene, foot[0], foot[1], &foot[2])) {
         geo_issue(issues, true, "lamp outside of the ground: put at the height of the nearest", lamp->id);
         return;
@@ -181,6 +187,8 @@ static bool place(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
                 p->foot[k] += .7 * side[k];
         geo_issue(issues, true, "two lamps at one place: moved apart", lamp->id);
     }
+    if (params->tally)
+        params->tally->moved += p->foot[0] != lamp->xyz[0] || p->foot[1] != lamp->xyz[1];
     if (!faces && !site_facing(scene, p->foot[0], p->foot[1], p->foot[2], p->facing))
         arbitrary_facing(p->foot, p->facing);
     if (lamp->mount == GEO_MOUNT_WALL && !p->on_wall) { /* beside its wall: the bracket reaches back to it */

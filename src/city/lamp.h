@@ -11,6 +11,8 @@
 bool site_ground(const noc_scene *scene, double x, double y, double *z);
 /* Height of the nearest ground within a few hundred metres. */
 bool site_ground_far(const noc_scene *scene, double x, double y, double *z);
+/* Does something within some 12 m of (x, y) lie 2 m or more lower than z? */
+bool site_raised(const noc_scene *scene, double x, double y, double z);
 /* Is (x, y), with ground at z, under a roof or in a wall? */
 bool site_covered(const noc_scene *scene, double x, double y, double z);
 /* Nearest spot within `reach` that no building covers; away[2] is the unit vector that leads there. */

@@ -38,6 +38,17 @@ bool site_ground_far(const noc_scene *scene, double x, double y, double *z) {
     return found;
 }
 
+bool site_raised(const noc_scene *scene, double x, double y, double z) {
+    for (double r = 2; r <= 12; r += 2)
+        for (int i = 0; i < DIRECTIONS; i++) {
+            double d[2], top;
+            direction(i, d);
+            if (noc_scene_highest(scene, ~BIT(LAMP), x + r * d[0], y + r * d[1], &top) && top <= z - 2)
+                return true;
+        }
+    return false;
+}
+
 bool site_covered(const noc_scene *scene, double x, double y, double z) {
     double top;
     return noc_scene_highest(scene, BUILDING, x, y, &top) && top > z + .5;

@@ -16,6 +16,8 @@ static const noc_option common_options[] = {
 };
 const noc_option *cli_common_options(void) { return common_options; }
 
+bool cli_is_switch(const noc_option *option) { return option->kind == NOC_OPTION_BOOL || option->kind == NOC_OPTION_SWITCH; }
+
 bool cli_hidden(const cli_set *set, const noc_option *option) {
     for (const char *const *name = set->hidden; name && *name; name++)
         if (!strcmp(*name, option->name))
@@ -119,7 +121,7 @@ static int unknown(const cli_command *command, const char *given) {
             if (cli_hidden(set, o))
                 continue;
             words[count++] = o->name;
-            if (o->kind == NOC_OPTION_BOOL && negations < CLI_GIVEN) {
+            if (cli_is_switch(o) && negations < CLI_GIVEN) {
                 snprintf(negated[negations], sizeof(*negated), "no-%s", o->name);
                 words[count++] = negated[negations++];
             }
@@ -163,11 +165,11 @@ static int parse_option(const cli_command *command, int argc, char **argv, int *
     size_t length = strcspn(name, "=");
     const noc_option *o = find(command, name, length, is_short ? *name : 0, &offset);
     size_t ignored;
-    if (is_short && o && name[1] && (o->kind == NOC_OPTION_BOOL || find(command, name, length, 0, &ignored)))
+    if (is_short && o && name[1] && (cli_is_switch(o) || find(command, name, length, 0, &ignored)))
         o = NULL; /* neither -qv nor -output is a thing here */
     if (!o && !is_short && length > 3 && !strncmp(name, "no-", 3)) {
         o = find(command, name + 3, length - 3, 0, &offset);
-        off = o && o->kind == NOC_OPTION_BOOL;
+        off = o && cli_is_switch(o);
         o = off ? o : NULL;
     }
     if (!o)
@@ -181,7 +183,7 @@ static int parse_option(const cli_command *command, int argc, char **argv, int *
             return cli_usage(command, "--no-%s takes no value", o->name);
         value = "false";
     }
-    if (o->kind != NOC_OPTION_BOOL && !value) {
+    if (!cli_is_switch(o) && !value) {
         if (*index + 1 >= argc || !is_value(argv[*index + 1]))
             return cli_usage(command, "%.*s needs a value", 60, word);
         value = argv[++*index];

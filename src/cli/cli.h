@@ -42,6 +42,7 @@ const cli_command *cli_find_command(const char *name);
 
 /* args.c */
 const noc_option *cli_common_options(void); /* quiet, verbose, help: fields of cli_args */
+bool cli_is_switch(const noc_option *option); /* --name and --no-name, without a value */
 bool cli_hidden(const cli_set *set, const noc_option *option);
 int cli_parse(const cli_command *command, int argc, char **argv, void *args); /* CLI_OK or CLI_USAGE, reported */
 bool cli_given(const cli_args *args, const char *name);

@@ -11,13 +11,14 @@ void cli_spell(char *out, size_t size, const noc_option *o, const void *defaults
     if (cli_short_name(o))
         snprintf(dash, sizeof(dash), "-%c, ", cli_short_name(o));
     switch (o->kind) {
-    case NOC_OPTION_BOOL: break;
+    case NOC_OPTION_BOOL:
+    case NOC_OPTION_SWITCH: break;
     case NOC_OPTION_TEXT: snprintf(placeholder, sizeof(placeholder), " %s", o->unit); break;
     case NOC_OPTION_CHOICE: snprintf(placeholder, sizeof(placeholder), " NAME"); break;
     case NOC_OPTION_REAL: snprintf(placeholder, sizeof(placeholder), " X"); break;
     default: snprintf(placeholder, sizeof(placeholder), " N");
     }
-    bool on = o->kind == NOC_OPTION_BOOL && *((const char *)defaults + o->offset);
+    bool on = cli_is_switch(o) && *((const char *)defaults + o->offset); /* or automatic */
     snprintf(out, size, "%s--%s%s%s", dash, on ? "[no-]" : "", o->name, placeholder);
 }
 

@@ -173,12 +173,12 @@ static noc_status inspect(const info_args *args, const char *path, noc_log *log,
         noc_scene_info info = { 0 };
         if (scene && !status)
             noc_scene_get_info(scene, &info);
-        cli_info_json(path, status ? noc_log_last_error(log) : NULL, status || scene ? NULL : report, scene && !status ? &info : NULL);
+        cli_info_json(path, status ? noc_log_last_error(log) : NULL, (status && !args->import.strict) || scene ? NULL : report, scene && !status ? &info : NULL);
     } else if (!status && scene) {
         noc_scene_info info;
         noc_scene_get_info(scene, &info);
         print_scene(path, &info);
-    } else if (!status) {
+    } else if (!status || args->import.strict) { /* strictness does not hide what it found */
         for (size_t i = 0; i < noc_report_file_count(report); i++)
             print_file(noc_report_get_file(report, i));
     }

@@ -79,7 +79,7 @@ static void commands(FILE *out) {
 }
 
 static bool negatable(const noc_option *o, const void *defaults) {
-    return o->kind == NOC_OPTION_BOOL && *((const char *)defaults + o->offset);
+    return cli_is_switch(o) && *((const char *)defaults + o->offset);
 }
 
 static void bash_word(FILE *out, const noc_option *o, const void *defaults, int columns) {
@@ -129,7 +129,7 @@ static void zsh_option(FILE *out, const noc_option *o, const void *defaults, int
         fputs(":name:(", out);
         choices(out, o, ' ');
         fputc(')', out);
-    } else if (o->kind != NOC_OPTION_BOOL) {
+    } else if (!cli_is_switch(o)) {
         fprintf(out, ":value:%s", o->kind == NOC_OPTION_TEXT ? "_files" : "");
     }
     fputs("' \\\n", out);
@@ -158,7 +158,7 @@ static void fish_option(FILE *out, const noc_option *o, const void *defaults, in
         fputs(" -x -a '", out);
         choices(out, o, ' ');
         fputc('\'', out);
-    } else if (o->kind != NOC_OPTION_BOOL) {
+    } else if (!cli_is_switch(o)) {
         fputs(o->kind == NOC_OPTION_TEXT ? " -r" : " -x", out);
     }
     fputs(" -d '", out);

@@ -32,6 +32,17 @@ static void add_options(meta_text *meta, const render_args *args) {
     }
 }
 
+/* What became of the inputs' lamps and features. */
+static void add_totals(meta_text *meta, const noc_report *report) {
+    noc_report_totals t;
+    noc_report_get_totals(report, &t);
+    const struct { const char *key; size_t count; } rows[] = {
+        { "lamps-mapped", t.lamps_mapped }, { "lamps-inferred", t.lamps_inferred }, { "lamps-dropped", t.lamps_dropped },
+        { "lamps-moved", t.lamps_moved }, { "features-skipped", t.skipped }, { "features-repaired", t.repaired } };
+    for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
+        add(meta, rows[i].key, cli_format("%zu", rows[i].count));
+}
+
 static char *join_inputs(const render_args *args) {
     char *text = cli_format("%s", "");
     for (size_t i = 0; i < args->common.input_count; i++) {
@@ -72,6 +83,7 @@ noc_status cli_write_picture(render_job *job) {
     add(&meta, "camera-target", cli_format("%.17g %.17g %.17g", c->target[0], c->target[1], c->target[2]));
     add(&meta, "camera-up", cli_format("%.17g %.17g %.17g", c->up[0], c->up[1], c->up[2]));
     add(&meta, "camera-fov", cli_format("%.17g", c->fov_deg));
+    add_totals(&meta, job->report);
     add(&meta, "given-crs-name", cli_format("%s", job->scene_info.given_crs));
     add(&meta, "given-origin", cli_format("%.12g %.12g %.12g", job->scene_info.given_origin[0], job->scene_info.given_origin[1],
                                           job->scene_info.given_origin[2]));
@@ -178,6 +190,22 @@ static void print_issues(const noc_report *report) {
     free(issues);
 }
 
+static void print_lamps(const noc_report *report) {
+    noc_report_totals t;
+    char a[32];
+    noc_report_get_totals(report, &t);
+    const struct { const char *what; size_t count; } rows[] = { { "mapped", t.lamps_mapped }, { "moved", t.lamps_moved },
+        { "inferred", t.lamps_inferred }, { "dropped", t.lamps_dropped } };
+    const char *before = "  lamps     ";
+    for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
+        if (rows[i].count) {
+            printf("%s%s %s", before, cli_count(a, rows[i].count), rows[i].what);
+            before = i == 0 && rows[1].count ? ", of them " : ", ";
+        }
+    if (*before == ',')
+        putchar('\n');
+}
+
 void cli_print_summary(const render_job *job) {
     const render_args *args = job->args;
     const noc_scene_info *scene = &job->scene_info;
@@ -199,6 +227,7 @@ void cli_print_summary(const render_job *job) {
     if (*scene->given_crs)
         printf("  origin    %.3f,%.3f,%.3f in %s is 0,0,0 of eye and target\n", scene->given_origin[0], scene->given_origin[1],
                scene->given_origin[2], strcmp(scene->given_crs, scene->crs) ? "the first" : "that CRS");
+    print_lamps(job->report);
     print_issues(job->report);
     printf("  camera    eye %.2f,%.2f,%.2f target %.2f,%.2f,%.2f fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
            job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2], job->camera.fov_deg);

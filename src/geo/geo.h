@@ -85,6 +85,7 @@ typedef struct geo_sink {
     void *ctx;
     noc_log *log;
     geo_issues *issues;
+    size_t *lamps_lost; /* where readers count lamps in use whose place is none: they are not emitted; may be NULL */
     /* srsName as spelled; called before the first coordinate it applies to, again when it changes. Returns in *lat_first
      * whether the file's tuples are in latitude/northing first order; the reader swaps them before emitting. */
     noc_status (*crs)(void *ctx, const char *srs_name, const char *place, bool *lat_first);

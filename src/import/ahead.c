@@ -150,7 +150,7 @@ struct look_ahead *ahead_create(importer *im, geo_sink *sink) {
     struct look_ahead *a = noc_calloc(1, sizeof(*a));
     a->im = im;
     a->sink = *sink;
-    *sink = (geo_sink){ .ctx = a, .log = sink->log, .issues = sink->issues, .crs = on_crs, .begin_object = on_begin_object,
+    *sink = (geo_sink){ .ctx = a, .log = sink->log, .issues = sink->issues, .lamps_lost = sink->lamps_lost, .crs = on_crs, .begin_object = on_begin_object,
                         .polygon = on_polygon, .end_object = on_end_object, .lamp = on_lamp, .progress = on_progress };
     return a;
 }

@@ -45,7 +45,9 @@ typedef struct lamp_writer {
     const char *place;      /* file, for messages */
     bool geographic;        /* x and y are degrees: checked to be on Earth */
     size_t features, lamps; /* looked at; emitted */
-    size_t off_earth;       /* lamps whose degrees are no longitude and latitude */
+    size_t lost;            /* lamps in use without a place */
+    size_t off_earth;       /* of them those whose degrees are no longitude and latitude */
+    size_t exchangeable;    /* of those the ones that are with the two exchanged */
 } lamp_writer;
 
 /* Tells the sink the CRS. NULL: the file names none; the sink knows whether --crs says it. */

@@ -3,6 +3,7 @@
 #include "import/load.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #define COARSE_DISTANCE 100e3 /* m */
 #define OUTSIDE 2000.0       /* m; lamps farther than this from the city do not light it */
@@ -114,26 +115,129 @@ static bool infer_update(void *user, const char *what, double done) {
     return go_on(user, 0.9 + 0.1 * done);
 }
 
-/* Stands the lamps that were read; *nearest is the distance to the nearest of those outside. */
-static size_t stand_lamps(importer *im, const extent *e, const city_lamp_params *params, double *nearest) {
-    size_t outside = 0;
-    *nearest = INFINITY;
+/* What became of the lamps of the inputs. */
+typedef struct lamp_fate {
+    size_t given, mapped, outside, lost; /* lost: without a place */
+    double nearest;                      /* of those outside, m */
+    size_t exchanged;                    /* lie within the city if their axes are exchanged; counted where none is of use */
+} lamp_fate;
+
+/* Stands the lamps that were read. */
+static void stand_lamps(importer *im, const extent *e, const city_lamp_params *params, lamp_fate *fate) {
+    *fate = (lamp_fate){ .given = im->lamps.len, .nearest = INFINITY };
+    for (size_t i = 0; i < im->input_count; i++) {
+        fate->lost += im->inputs[i].lamps_lost;
+        im->inputs[i].file.lamps_dropped = im->inputs[i].lamps_lost;
+    }
+    fate->given += fate->lost;
     for (size_t i = 0; i < im->lamps.len; i++) {
         const pending_lamp *p = &im->lamps.data[i];
         input *in = &im->inputs[p->input];
         double d = e->any ? distance_outside(e, p->lamp.xyz) : 0;
         if (d > OUTSIDE) {
             geo_issue(in->issues, false, "lamp more than 2 km outside the city", p->lamp.id);
-            *nearest = NOC_MIN(*nearest, d);
-            outside++;
+            fate->nearest = NOC_MIN(fate->nearest, d);
+            fate->outside++;
+            in->file.lamps_dropped++;
             continue;
         }
+        size_t moved = params->tally->moved;
         int lights = city_add_lamp(im->scene, &p->lamp, params, false, in->issues);
         in->file.lights += lights > 0 ? (size_t)lights : 0;
+        in->file.lamps_moved += lights > 0 ? params->tally->moved - moved : 0;
+        *(lights > 0 ? &in->file.lamps_mapped : &in->file.lamps_dropped) += 1;
+        fate->mapped += lights > 0;
         if (i % 256 == 0 && !go_on(im, 0.9 + 0.1 * (double)i / (double)im->lamps.len))
             break;
     }
-    return outside;
+}
+
+static void count_exchanged(importer *im, const extent *e, lamp_fate *fate) {
+    double xy[2];
+    for (size_t i = 0; i < im->lamps.len; i++)
+        fate->exchanged += place_exchanged(im, &im->lamps.data[i].given, xy) && e->any && distance_outside(e, xy) <= OUTSIDE;
+    for (size_t i = 0; i < im->lost.len; i++)
+        fate->exchanged += place_exchanged(im, &im->lost.data[i], xy) && e->any && distance_outside(e, xy) <= OUTSIDE;
+}
+
+/* "a.csv: none of its 40 lamps is of use: 40 outside the city, ...", with the likely cause; free() it. */
+static char *tell_useless(const importer *im, const lamp_fate *fate) {
+    const input *first = NULL;
+    size_t files = 0;
+    bool degrees = true;
+    for (size_t i = 0; i < im->input_count; i++)
+        if (im->inputs[i].file.lamps_dropped) {
+            first = first ? first : &im->inputs[i];
+            degrees = degrees && im->inputs[i].file.degrees;
+            files++;
+        }
+    char more[40] = "", outside[80] = "", lost[60] = "", rest[60] = "", cause[160] = "";
+    size_t others = fate->given - fate->outside - fate->lost;
+    if (files > 1)
+        snprintf(more, sizeof(more), " and %zu more", files - 1);
+    if (fate->outside)
+        snprintf(outside, sizeof(outside), ", %zu outside the city, the nearest %.1f km away", fate->outside, fate->nearest / 1000);
+    if (fate->lost)
+        snprintf(lost, sizeof(lost), ", %zu without a place in it", fate->lost);
+    if (others)
+        snprintf(rest, sizeof(rest), ", %zu inside buildings or refused", others);
+    if (2 * fate->exchanged > fate->given)
+        snprintf(cause, sizeof(cause), "with %s exchanged %s%zu of them fall within the city, so exchange them in the file",
+                 degrees ? "longitude and latitude" : "the two coordinates", fate->exchanged == fate->given ? "all " : "",
+                 fate->exchanged);
+    else
+        snprintf(cause, sizeof(cause), "%s", fate->outside ? "is one of the CRSs wrong, or are they another town's?"
+                                                           : "nocturne info tells more");
+    return noc_format("%s%s: none of %zu lamp%s is of use%s%s%s: %s", first ? first->path : "", more, fate->given,
+                      fate->given == 1 ? "" : "s", outside, lost, rest, cause);
+}
+
+/* A picture by lamps of our own must not pass for one by the lamps that were given. */
+static noc_status refuse_useless(importer *im, const extent *e, lamp_fate *fate) {
+    if (!fate->given || fate->mapped)
+        return NOC_OK;
+    count_exchanged(im, e, fate);
+    char *text = tell_useless(im, fate);
+    noc_status status = NOC_OK;
+    if (im->params->infer_lamps == NOC_SWITCH_ON)
+        noc_warn(im->log, "%s", text);
+    else
+        status = noc_error(im->log, NOC_ERR_FORMAT, "%s (--infer-lamps places some by a rule instead)", text);
+    free(text);
+    return status;
+}
+
+static void warn_of_roofs(const importer *im, const city_lamp_tally *tally) {
+    if (tally->raised)
+        noc_warn(im->log, "%zu of %zu lamps that stand on surfaces without a class stand 2 m or more above what is around them, on roofs "
+                          "perhaps: an elevation (ele, z) says where a lamp's foot is, a model with classes (CityGML) where the ground is",
+                 tally->raised, tally->classless);
+}
+
+/* Lamps by a rule, or a word on why the scene stays dark. */
+static noc_status infer(importer *im, const extent *e, city_lamp_params *params, const lamp_fate *fate) {
+    bool wanted = im->params->infer_lamps != NOC_SWITCH_OFF;
+    if (!wanted || !(im->buildings > 0 || im->has_roads)) {
+        if (e->any || fate->given)
+            noc_warn(im->log, "nothing in the scene shines: %s", wanted ?
+                     "the inputs hold no lamps that could be used, and no streets or buildings to place some along" :
+                     "the inputs hold no lamps that could be used, and none are to be placed");
+        return NOC_OK;
+    }
+    geo_issues *issues = geo_issues_create();
+    int lights;
+    params->tally = NULL; /* of surveyed lamps alone */
+    noc_status status = city_infer_lamps(im->scene, params, &(noc_progress){ infer_update, im }, issues, &lights);
+    geo_issues_destroy(issues);
+    if (status)
+        return status;
+    im->report->lamps_inferred = lights > 0 ? (size_t)lights : 0; /* each has one head */
+    const char *usable = fate->given ? " that could be used" : "";
+    if (lights > 0)
+        noc_warn(im->log, "no lamps in the inputs%s: %d placed by a rule (inferred, not surveyed)", usable, lights);
+    else
+        noc_warn(im->log, "no lamps in the inputs%s, and no place for any was found: nothing in the scene shines", usable);
+    return NOC_OK;
 }
 
 noc_status finish_city(importer *im) {
@@ -146,38 +250,18 @@ noc_status finish_city(importer *im) {
     warn_if_coarse(im);
     if (needs_ground(im, &e))
         lay_ground(im, &e);
+    city_lamp_tally tally = { 0 };
     city_lamp_params params = { im->params->lamp_height, im->params->lamp_lumens, im->params->lamp_kelvin, true,
-                                city_floor(scene) };
-    double nearest;
-    size_t outside = stand_lamps(im, &e, &params, &nearest);
+                                city_floor(scene), &tally };
+    lamp_fate fate;
+    stand_lamps(im, &e, &params, &fate);
     if (im->cancelled)
         return NOC_ERR_CANCELLED;
-    if (outside && outside == im->lamps.len)
-        noc_warn(im->log, "all %zu lamp%s outside the city, the nearest %.1f km away: is one of the CRSs wrong?", outside,
-                 outside == 1 ? " lies" : "s lie", nearest / 1000);
-    else if (outside)
-        noc_info(im->log, "outside the city, and left out: %zu of %zu lamps", outside, im->lamps.len);
-    bool has_streets = im->buildings > 0 || im->has_roads;
-    if (shines(scene))
-        return NOC_OK;
-    if (!im->params->infer_lamps || !has_streets) {
-        bool warned = outside && outside == im->lamps.len;
-        if ((e.any || im->lamps.len) && !warned)
-            noc_warn(im->log, "nothing in the scene shines: %s", im->params->infer_lamps ?
-                     "the inputs hold no lamps that could be used, and no streets or buildings to place some along" :
-                     "the inputs hold no lamps that could be used, and none are to be placed");
-        return NOC_OK;
-    }
-    geo_issues *issues = geo_issues_create();
-    int lights;
-    noc_status status = city_infer_lamps(scene, &params, &(noc_progress){ infer_update, im }, issues, &lights);
-    geo_issues_destroy(issues);
+    noc_status status = refuse_useless(im, &e, &fate);
     if (status)
         return status;
-    const char *usable = im->lamps.len ? " that could be used" : "";
-    if (lights > 0)
-        noc_warn(im->log, "no lamps in the inputs%s: %d placed by a rule (inferred, not surveyed)", usable, lights);
-    else
-        noc_warn(im->log, "no lamps in the inputs%s, and no place for any was found: nothing in the scene shines", usable);
-    return NOC_OK;
+    if (fate.outside && fate.mapped)
+        noc_info(im->log, "outside the city, and left out: %zu of %zu lamps", fate.outside, fate.given);
+    warn_of_roofs(im, &tally);
+    return shines(scene) ? NOC_OK : infer(im, &e, &params, &fate);
 }

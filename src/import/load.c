@@ -19,6 +19,8 @@ static noc_status check_params(const noc_import_params *p, noc_log *log) {
         return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp flux is %g lm, not within 0..1e9", p->lamp_lumens);
     if (!(p->lamp_kelvin >= 1000 && p->lamp_kelvin <= 40000))
         return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp colour is %g K, not within 1000..40000", p->lamp_kelvin);
+    if ((unsigned)p->infer_lamps > NOC_SWITCH_AUTO)
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: infer_lamps is %d, not a noc_switch", (int)p->infer_lamps);
     if ((unsigned)p->obj_up > NOC_OBJ_UP_Z)
         return noc_error(log, NOC_ERR_ARGUMENT, "import: obj_up is %d, not a noc_obj_up", (int)p->obj_up);
     return NOC_OK;
@@ -186,6 +188,8 @@ static noc_status read_input(importer *im, size_t index) {
     if (!stream)
         return open_status(in->path);
     size_t unread = noc_stream_unread(stream);
+    for (size_t i = 0; i < unread; i++)
+        geo_issue(in->issues, false, "file of the archive, like the one that is read", "");
     if (unread)
         noc_warn(im->log, "%s: the archive holds %zu more file%s like it, which %s not read: unpack it to read all", noc_stream_name(stream),
                  unread, unread == 1 ? "" : "s", unread == 1 ? "is" : "are");
@@ -208,8 +212,10 @@ static noc_status read_input(importer *im, size_t index) {
     if (im->cancelled)
         status = NOC_ERR_CANCELLED;
     place_finish_file(im, status == NOC_OK);
-    if (!status && noc_stream_trailing(stream))
+    if (!status && noc_stream_trailing(stream)) {
         noc_warn(im->log, "%s: bytes after the gzip data are ignored", in->path);
+        geo_issue(in->issues, false, "bytes after the gzip data", "");
+    }
     in->file.bytes = in->bytes;
     in->file.bytes_read = noc_stream_read_bytes(stream);
     in->file.seconds = noc_wall_seconds() - start;
@@ -277,6 +283,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
             report_add(im.report, &im.inputs[i].file, im.inputs[i].issues);
         geo_issues_destroy(im.inputs[i].issues);
     }
+    if (!status && params->strict)
+        status = report_strict(im.report, scene->log);
     free(im.inputs);
     place_destroy(&im);
     sink_destroy(&im);

@@ -28,10 +28,18 @@ typedef struct input {
     geo_issues *issues;
     noc_report_file file;     /* texts in the report's arena */
     bool started;
+    size_t lamps_lost;        /* that the reader or the sink found to have no place */
 } input;
+
+/* Where a lamp was given: what would be if its axes were exchanged is asked of lamps that are of no use. */
+typedef struct given_place {
+    double xy[2];
+    source_crs *source;
+} given_place;
 
 typedef struct pending_lamp {
     geo_lamp lamp;            /* local metres; id in importer.names */
+    given_place given;
     size_t input;
 } pending_lamp;
 
@@ -62,6 +70,7 @@ typedef struct importer {
     bool has_roads;
     double open_area;         /* m2 of terrain, roads, pavements, lawns and water, seen from above */
     NOC_ARRAY(pending_lamp) lamps;
+    NOC_ARRAY(given_place) lost; /* lamps that have no place in the scene's CRS */
     noc_arena names;
     /* progress */
     double bytes_total, bytes_before;
@@ -71,12 +80,15 @@ typedef struct importer {
 struct noc_report {
     noc_arena arena;
     NOC_ARRAY(noc_report_file) files;
+    size_t lamps_inferred;
 };
 
 /* report.c */
 noc_report *report_create(void);
 /* Adds the file with the issues' lines. */
 void report_add(noc_report *report, const noc_report_file *file, const geo_issues *issues);
+/* The error that --strict makes of what was skipped or repaired; NOC_OK where nothing was. */
+noc_status report_strict(const noc_report *report, noc_log *log);
 
 /* readers.c: first reader in a NULL-ended list whose probe takes the head; NULL if none. */
 extern const noc_reader *const noc_readers[];
@@ -101,6 +113,8 @@ noc_status place_points(importer *im, double *xyz, size_t count, const char *id,
  * else in the same local metres as all the rest. */
 noc_status place_mesh(importer *im);
 noc_status place_mesh_points(void *importer, double *xyz, size_t count);
+/* The point with its axes exchanged, in the scene; false where it then has no place. */
+bool place_exchanged(importer *im, const given_place *given, double xy[2]);
 void place_finish_file(importer *im, bool read);
 void place_destroy(importer *im);
 

@@ -413,6 +413,16 @@ noc_status place_points(importer *im, double *xyz, size_t count, const char *id,
     return NOC_OK;
 }
 
+bool place_exchanged(importer *im, const given_place *given, double xy[2]) {
+    double p[3] = { given->xy[1], given->xy[0], 0 };
+    const source_crs *s = given->source;
+    if (s->crs && (!s->to_scene || geo_transform_points(s->to_scene, p, 1)))
+        return false;
+    for (int k = 0; k < 2; k++)
+        xy[k] = p[k] - im->origin[k];
+    return isfinite(xy[0]) && isfinite(xy[1]);
+}
+
 /* A mesh whose coordinates count from the scene's origin may be the first input, or the only one. */
 static noc_status settle_by_scene(importer *im) {
     geo_crs *crs;

@@ -26,6 +26,43 @@ void noc_report_destroy(noc_report *report) {
     free(report);
 }
 
+void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) {
+    *totals = (noc_report_totals){ .lamps_inferred = report ? report->lamps_inferred : 0 };
+    for (size_t i = 0; i < noc_report_file_count(report); i++) {
+        const noc_report_file *f = &report->files.data[i];
+        totals->lamps_mapped += f->lamps_mapped;
+        totals->lamps_moved += f->lamps_moved;
+        totals->lamps_dropped += f->lamps_dropped;
+        for (size_t k = 0; k < f->line_count; k++)
+            *(f->lines[k].repaired ? &totals->repaired : &totals->skipped) += f->lines[k].count;
+    }
+}
+
+noc_status report_strict(const noc_report *report, noc_log *log) {
+    enum { SHOWN = 8 };
+    noc_report_totals totals;
+    noc_report_get_totals(report, &totals);
+    if (!totals.skipped && !totals.repaired)
+        return NOC_OK;
+    char *text = noc_format("--strict: features skipped: %zu, repaired: %zu", totals.skipped, totals.repaired);
+    size_t lines = 0;
+    for (size_t i = 0; i < report->files.len; i++)
+        for (size_t k = 0; k < report->files.data[i].line_count; k++) {
+            const noc_report_file *f = &report->files.data[i];
+            const noc_report_line *l = &f->lines[k];
+            if (++lines > SHOWN)
+                continue;
+            char *longer = noc_format("%s; %s: %zu x %s%s%s%s", text, f->path, l->count, l->reason, *l->examples ? " (" : "", l->examples,
+                                      *l->examples ? ")" : "");
+            free(text);
+            text = longer;
+        }
+    noc_status status = lines > SHOWN ? noc_error(log, NOC_ERR_FORMAT, "%s; and %zu more", text, lines - SHOWN)
+                                      : noc_error(log, NOC_ERR_FORMAT, "%s", text);
+    free(text);
+    return status;
+}
+
 static const char *keep(noc_report *report, const char *text) { return arena_strdup(&report->arena, text ? text : ""); }
 
 void report_add(noc_report *report, const noc_report_file *file, const geo_issues *issues) {

@@ -173,6 +173,13 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     pending_lamp p = { .lamp = *lamp, .input = im->current };
     bool usable;
     noc_status status = place_points(im, p.lamp.xyz, 1, lamp->id ? lamp->id : "", &usable);
+    p.given = (given_place){ { NAN, NAN }, im->source };
+    if (!status && im->given.len >= 2)
+        memcpy(p.given.xy, im->given.data, sizeof(p.given.xy));
+    if (!status && !usable) {
+        im->inputs[im->current].lamps_lost++;
+        array_push(&im->lost, p.given);
+    }
     if (status || !usable)
         return status;
     count_lamp(&im->inputs[im->current].file, lamp);
@@ -194,7 +201,8 @@ static bool on_progress(void *ctx, double done) {
 }
 
 geo_sink sink_create(importer *im) {
-    return (geo_sink){ .ctx = im, .log = im->log, .issues = im->inputs[im->current].issues, .crs = on_crs,
+    return (geo_sink){ .ctx = im, .log = im->log, .issues = im->inputs[im->current].issues,
+                       .lamps_lost = &im->inputs[im->current].lamps_lost, .crs = on_crs,
                        .begin_object = on_begin_object, .polygon = on_polygon, .end_object = on_end_object,
                        .lamp = on_lamp, .progress = on_progress };
 }
@@ -205,5 +213,6 @@ void sink_destroy(importer *im) {
     array_free(&im->scratch);
     free(im->object_id);
     array_free(&im->lamps);
+    array_free(&im->lost);
     arena_free(&im->names);
 }

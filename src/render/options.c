@@ -7,6 +7,7 @@
 #include <stdio.h>
 
 #define BOOL(st, f, n, g, ...) { n, g, NOC_OPTION_BOOL, offsetof(st, f), 0, 1, NULL, "", __VA_ARGS__ }
+#define SWITCH(st, f, n, g, h) { n, g, NOC_OPTION_SWITCH, offsetof(st, f), 0, 2, NULL, "", h }
 #define INT(st, f, n, g, lo, hi, u, ...) { n, g, NOC_OPTION_INT, offsetof(st, f), lo, hi, NULL, u, __VA_ARGS__ }
 #define UINT(st, f, n, g, h) { n, g, NOC_OPTION_UINT, offsetof(st, f), 0, UINT32_MAX, NULL, "", h }
 #define REAL(st, f, n, g, lo, hi, u, ...) { n, g, NOC_OPTION_REAL, offsetof(st, f), lo, hi, NULL, u, __VA_ARGS__ }
@@ -87,7 +88,8 @@ static const noc_option import_options[] = {
     TEXT(P, crs, "crs", "City", "CRS", "CRS of inputs that name none, such as OBJ (EPSG:n, WKT, PROJ)"),
     TEXT(P, scene_crs, "scene-crs", "City", "CRS", "CRS of the scene; else the first input's, or UTM"),
     INT(P, lod, "lod", "City", 0, 4, "", "highest CityGML level of detail that is taken"),
-    BOOL(P, infer_lamps, "infer-lamps", "City", "place lamps by a rule where no input holds any"),
+    SWITCH(P, infer_lamps, "infer-lamps", "City", "place lamps by a rule: where no input holds any; on: or none of use"),
+    BOOL(P, strict, "strict", "City", "what is skipped or repaired in an input is an error"),
     REAL(P, lamp_height, "lamp-height", "City", 0.5, 60, "m", "height of lamps that are not tagged"),
     REAL(P, lamp_lumens, "lamp-lumens", "City", 0, 1e7, "lm", "flux of lamps with neither flux nor wattage"),
     REAL(P, lamp_kelvin, "lamp-kelvin", "City", 1000, 25000, "K", "colour temperature of lamps that tell none"),
@@ -157,6 +159,17 @@ static noc_status set_bool(const noc_option *o, bool *field, const char *value, 
     return noc_error(log, NOC_ERR_ARGUMENT, "%s: " QUOTE " is neither true nor false", o->name, QUOTED(value));
 }
 
+static noc_status set_switch(const noc_option *o, void *field, const char *value, noc_log *log) {
+    bool on = false;
+    int state = NOC_SWITCH_AUTO;
+    noc_status status = value && noc_ieq(value, "auto") ? NOC_OK : set_bool(o, &on, value, log);
+    if (!value || !noc_ieq(value, "auto"))
+        state = on ? NOC_SWITCH_ON : NOC_SWITCH_OFF;
+    if (!status)
+        memcpy(field, &state, sizeof(state));
+    return status;
+}
+
 static noc_status set_choice(const noc_option *o, void *field, const char *value, noc_log *log) {
     size_t length = strlen(value);
     int index = 0;
@@ -205,6 +218,8 @@ noc_status noc_option_set(const noc_option *option, void *params, const char *va
     void *field = (char *)params + option->offset;
     if (option->kind == NOC_OPTION_BOOL)
         return set_bool(option, field, value, log);
+    if (option->kind == NOC_OPTION_SWITCH)
+        return set_switch(option, field, value, log);
     if (!value || !*value)
         return noc_error(log, NOC_ERR_ARGUMENT, "%s: needs a value", option->name);
     switch (option->kind) {
@@ -237,6 +252,9 @@ int noc_option_get(const noc_option *option, const void *params, char *text, siz
     const char *field = (const char *)params + option->offset;
     switch (option->kind) {
     case NOC_OPTION_BOOL: memcpy(&v.b, field, sizeof(v.b)); return snprintf(text, size, "%s", v.b ? "true" : "false");
+    case NOC_OPTION_SWITCH:
+        memcpy(&v.i, field, sizeof(v.i));
+        return snprintf(text, size, "%s", v.i == NOC_SWITCH_AUTO ? "auto" : v.i ? "true" : "false");
     case NOC_OPTION_INT: memcpy(&v.i, field, sizeof(v.i)); return snprintf(text, size, "%d", v.i);
     case NOC_OPTION_UINT: memcpy(&v.u, field, sizeof(v.u)); return snprintf(text, size, "%u", v.u);
     case NOC_OPTION_REAL: memcpy(&v.d, field, sizeof(v.d)); return format_real(text, size, v.d);

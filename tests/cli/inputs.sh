@@ -81,8 +81,26 @@ grep -q 'features skipped: 1, repaired: 0' out; result $? "the summary tells tha
 grep -Eq '^ +1 x .*(two-points|stump)' out; result $? "and why"
 printf '{"type": "FeatureCollection", "features": [{"type": "Feature", "id": "far", "properties": {"highway": "street_lamp"},
     "geometry": {"type": "Point", "coordinates": [11.6, 48.76]}}]}' >far.geojson
-run render "$gml" far.geojson $view -o far.png
+expect "lamps that are all of no use are an error" 1 'far.geojson: none of 1 lamp is of use, 1 outside the city' \
+    render "$gml" far.geojson $view -o far.png
+test ! -e far.png; result $? "and no picture is written"
+run render "$gml" far.geojson --infer-lamps $view -o far.png
 grep -q '1 x lamp more than 2 km outside the city: far' out; result $? "the summary tells why a lamp is not there"
+grep -q 'lamps  *1 inferred, 1 dropped' out && test "$(meta far.png lamps-mapped) $(meta far.png lamps-dropped) $(meta far.png lamps-inferred)" = "0 1 1" &&
+    test "$(meta far.png infer-lamps) $(meta far.png features-skipped)" = "true 2"
+result $? "and the metadata how many there are"
+printf 'lamp_id,lon,lat,lamp_type\na,48.7591,11.4226,LED\nb,48.7592,11.4227,LED\n' >swapped.csv
+expect "exchanged axes are told" 1 'swapped.csv: .*with longitude and latitude exchanged all 2 of them fall within the city' \
+    render "$gml" swapped.csv $view -o s.png
+sed 's/^\([ab]\),\([0-9.]*\),\([0-9.]*\)/\1,\3,\2/' swapped.csv >right.csv
+run render "$gml" right.csv $view -o s.exr
+test $status = 0 && grep -q 'lamps  *2 mapped' out && grep -aq 'lamps-mapped' s.exr && grep -aq 'features-repaired' s.exr
+result $? "the right way round they light the city, and an EXR tells how many"
+expect "--strict refuses what is skipped" 1 'strict: features skipped: 1, .*city.gml: 1 x .*(two-points|stump)' \
+    render "$gml" right.csv --strict $view -o strict.png
+test ! -e strict.png; result $? "without a picture"
+run info --strict "$gml"
+test $status = 1 && grep -q 'skipped  *1 x' out && grep -q 'strict: features skipped: 1' err; result $? "and info, which tells it all the same"
 set -- $(meta a.png scene-origin)
 test $# = 3 && run render "$gml" $view -o b.png \
     --eye "$(echo "678030 5402980 412 $*" | awk '{printf "%.3f,%.3f,%.3f", $1-$4, $2-$5, $3-$6}')" \

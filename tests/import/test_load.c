@@ -58,15 +58,9 @@ static void test_lamps(void **state) {
     assert_int_equal(r.info.lights_inferred, 0);
     assert_int_equal(r.warnings, 0);
     finish(&r);
-    /* all of them elsewhere: that is said, with the distance */
-    noc_import_params p = DEFAULTS;
-    p.infer_lamps = false;
-    LOAD(&r, p, file("a", CITY), file("berlin", "FAKE lamps\ncrs EPSG:4326\nlamp 52.5 13.4\n"));
-    assert_int_equal(r.status, NOC_OK);
-    assert_int_equal(r.info.lights, 0);
-    assert_int_equal(r.warnings, 1);
-    assert_non_null(strstr(r.last_warning, "all 1 lamp lies outside"));
-    finish(&r);
+    noc_report_totals totals;
+    noc_report_get_totals(NULL, &totals);
+    assert_int_equal(totals.lamps_mapped + totals.lamps_dropped + totals.skipped, 0);
     /* a piece of street and lamps around it: there is a ground under them, and it does not cover the street */
     LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:25832\nobject 2 r -1\npolygon 9 678000 5404000 370 678030 5404000 370 "
                                  "678030 5404020 370 678000 5404020 370\nend\n"),
@@ -93,6 +87,86 @@ static void test_lamps(void **state) {
         assert_close(z, ground, 1e-3);
         assert_close(at[2] - z, 6, 1e-3);
     }
+    finish(&r);
+}
+
+/* Lamps that are all of no use: an error that tries the other order of axes, unless lamps by a rule were asked for. */
+static void test_useless_lamps(void **state) {
+    (void)state;
+    struct run r;
+    static const struct {
+        const char *text, *says;
+    } cases[] = {
+        { "crs EPSG:4326\nlamp 52.5 13.4\n", "none of 1 lamp is of use, 1 outside the city, the nearest 4" }, /* Berlin, 440 km */
+        { "crs OGC:CRS84\nlamp 48.76231 11.42278\nlamp 48.76240 11.42278\n",
+          "2 outside the city, the nearest 5" }, /* in Ethiopia, some 5000 km away */
+        { "crs OGC:CRS84\nlamp 48.76231 11.42278\nlamp 48.76240 11.42278\n",
+          "with longitude and latitude exchanged all 2 of them fall within the city" },
+        { "crs EPSG:25832\nlamp 5404010 nan\nlamp nan nan\n", "2 without a place in it" },
+    };
+    for (size_t i = 0; i < NOC_COUNT(cases); i++) {
+        char text[300];
+        snprintf(text, sizeof(text), "FAKE lamps\n%s", cases[i].text);
+        for (int infer = NOC_SWITCH_OFF; infer <= NOC_SWITCH_AUTO; infer++) {
+            noc_import_params p = DEFAULTS;
+            p.infer_lamps = (noc_switch)infer;
+            LOAD(&r, p, file("a", CITY), file("useless.lamps", text));
+            assert_int_equal(r.status, infer == NOC_SWITCH_ON ? NOC_OK : NOC_ERR_FORMAT);
+            noc_report_totals t;
+            noc_report_get_totals(r.report, &t);
+            assert_int_equal(t.lamps_mapped, 0);
+            assert_int_equal(t.lamps_dropped, i == 0 ? 1 : 2);
+            if (infer == NOC_SWITCH_ON) {
+                assert_int_equal(r.warnings, 2); /* why, and how many were inferred */
+                assert_int_equal(t.lamps_inferred, r.info.lights);
+                assert_true(r.info.lights > 0);
+            } else {
+                const char *said = noc_log_last_error(r.log);
+                assert_non_null(strstr(said, "useless.lamps: none of"));
+                assert_non_null(strstr(said, cases[i].says));
+                assert_int_equal(!strstr(said, "exchanged"), i == 0 || i == 3);
+            }
+            finish(&r);
+        }
+    }
+    /* one of use is enough */
+    LOAD(&r, DEFAULTS, file("a", CITY), file("b", NEAR_LAMP "lamp 52.5 13.4\n"));
+    assert_int_equal(r.status, NOC_OK);
+    noc_report_totals t;
+    noc_report_get_totals(r.report, &t);
+    assert_int_equal(t.lamps_mapped, 1);
+    assert_int_equal(t.lamps_dropped, 1);
+    assert_int_equal(t.skipped, 1);
+    finish(&r);
+}
+
+/* --strict: what else is skipped or repaired ends it, with the causes; what is clean goes through. */
+static void test_strict(void **state) {
+    (void)state;
+    struct run r;
+    noc_import_params p = DEFAULTS;
+    p.strict = true;
+    LOAD(&r, p, file("a", CITY), file("l", NEAR_LAMP));
+    assert_int_equal(r.status, NOC_OK);
+    finish(&r);
+    const char *bad = "object 0 bad 1\npolygon 1 678000 5404000 0 678001 5404000 0\npolygon 1 nan nan nan nan nan nan nan nan nan\nend\n";
+    char text[2000];
+    snprintf(text, sizeof(text), "%s%s", CITY, bad);
+    LOAD(&r, p, file("rough.city", text));
+    assert_int_equal(r.status, NOC_ERR_FORMAT);
+    const char *said = noc_log_last_error(r.log);
+    assert_non_null(strstr(said, "skipped: 2, repaired: 0"));
+    assert_non_null(strstr(said, "rough.city: 1 x ring with too few points (poly)"));
+    assert_non_null(strstr(said, "1 x coordinates that are not finite"));
+    finish(&r);
+    LOAD(&r, p, file("a", CITY), file("l", NEAR_LAMP "lamp 52.5 13.4\n"));
+    assert_int_equal(r.status, NOC_ERR_FORMAT);
+    assert_non_null(strstr(noc_log_last_error(r.log), "1 x lamp more than 2 km outside the city"));
+    finish(&r);
+    start(&r);
+    load_with(&r, p, true, PATHS(file("rough.city", text))); /* to be looked at, too, and the report is there */
+    assert_int_equal(r.status, NOC_ERR_FORMAT);
+    assert_int_equal(noc_report_get_file(r.report, 0)->line_count, 2);
     finish(&r);
 }
 
@@ -347,7 +421,7 @@ static void test_other_cities(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_city), cmocka_unit_test(test_lamps), cmocka_unit_test(test_inferred_lamps),
+        cmocka_unit_test(test_city), cmocka_unit_test(test_lamps), cmocka_unit_test(test_inferred_lamps), cmocka_unit_test(test_useless_lamps), cmocka_unit_test(test_strict),
         cmocka_unit_test(test_ground), cmocka_unit_test(test_materials_vary), cmocka_unit_test(test_errors),
         cmocka_unit_test(test_bad_features), cmocka_unit_test(test_progress), cmocka_unit_test(test_inspect),
         cmocka_unit_test(test_ingolstadt), cmocka_unit_test(test_other_cities),

@@ -86,6 +86,16 @@ static void ranges_and_choices(void **state) {
                     assert_string_equal(back, text);
                     c += n + (c[n] == '|');
                 }
+            } else if (o->kind == NOC_OPTION_SWITCH) {
+                static const char *const said[] = { "false", "true", "auto" };
+                for (int i = 0, stored; i < 3; i++) {
+                    assert_int_equal(noc_option_set(o, tables[t].params, said[i], NULL), NOC_OK);
+                    memcpy(&stored, (char *)tables[t].params + o->offset, sizeof(stored));
+                    assert_int_equal(stored, i); /* OFF, ON, AUTO */
+                    noc_option_get(o, tables[t].params, back, sizeof(back));
+                    assert_string_equal(back, said[i]);
+                }
+                assert_int_equal(noc_option_set(o, tables[t].params, "perhaps", NULL), NOC_ERR_ARGUMENT);
             } else if (o->kind != NOC_OPTION_BOOL && o->kind != NOC_OPTION_TEXT) {
                 double ends[] = { o->min, o->max }, beyond[] = { o->min - 1, o->max + 1 };
                 for (int i = 0; i < 2; i++) {
