@@ -16,6 +16,8 @@ typedef struct noc_image {
     int width, height;
     float *rgb;              /* width * height * 3; owned */
     uint8_t *emitter;        /* NULL, or width * height: 1 where the pixel, or one next to it, sees an emitter; owned */
+    float *coverage;         /* NULL, or width * height * 4: what emitters seen directly add to rgb, and the share of the frames
+                              * that saw one; owned. Displays alone look at it: noc_image_to_srgb8. Not kept in files */
 } noc_image;
 
 NOC_API noc_image *noc_image_create(int width, int height, noc_log *log); /* black; NULL after reporting an error */
@@ -39,7 +41,10 @@ NOC_DEFAULT_PARAMS(noc_display_params, noc_display_default_params, NOC_DISPLAY_D
 
 /* The automatic exposure of a picture, as EV100. */
 NOC_API double noc_image_auto_ev100(const noc_image *image);
-/* 8-bit sRGB, 3 bytes a pixel into out (width * height * 3). */
+/* 8-bit sRGB, 3 bytes a pixel into out (width * height * 3). Where the image has coverage, the emitter's part of a pixel and the
+ * rest go through the tone curve apart and are mixed by the share that each covers, so that edges of windows are as smooth as
+ * those of other things; the mean of both would be white wherever a window covers a tenth. What fills no pixel, such as a
+ * lamp far away, is shown by that mean all the same: as the bright point that it is. */
 NOC_API void noc_image_to_srgb8(const noc_image *image, const noc_display_params *params, uint8_t *out);
 
 /* Text recorded in the file: PNG tEXt / EXR string attributes. */

@@ -124,30 +124,69 @@ void display_init(display_map *d, noc_tonemap tonemap, double ev100) {
  * sodium lamps lemon). Film and eyes see a strong coloured light as white: the colour is mixed with white of the same peak by
  * (p / (p + DESATURATION))^2, nothing at mid-grey, a quarter at p = DESATURATION, and nearly all of it far above. Both
  * factors rise with exposure, so every channel does. The linear tone map shows what is there, clipped. */
-void display_pixel(const display_map *d, const float rgb[3], uint8_t out[3]) {
-    double v[3], peak = 0;
+static void display_linear(const display_map *d, const float rgb[3], double v[3]) {
+    double peak = 0;
     bool finite = image_finite(rgb);
     for (int k = 0; k < 3; k++) {
         v[k] = finite ? NOC_MAX(rgb[k] * d->scale, 0) : 0;
         peak = NOC_MAX(peak, v[k]);
     }
-    if (d->tonemap != NOC_TONEMAP_LINEAR && peak > 0) {
-        double level = tonemap_curve(d->tonemap, peak);
-        double white = peak / (peak + DESATURATION);
-        white = peak > 1e9 ? 1 : white * white;
-        for (int k = 0; k < 3; k++) {
-            double ratio = v[k] / peak;
-            v[k] = level * (ratio + (1 - ratio) * white);
-        }
+    if (d->tonemap == NOC_TONEMAP_LINEAR || !(peak > 0))
+        return;
+    double level = tonemap_curve(d->tonemap, peak);
+    double white = peak / (peak + DESATURATION);
+    white = peak > 1e9 ? 1 : white * white;
+    for (int k = 0; k < 3; k++) {
+        double ratio = v[k] / peak;
+        v[k] = level * (ratio + (1 - ratio) * white);
     }
+}
+
+void display_pixel(const display_map *d, const float rgb[3], uint8_t out[3]) {
+    double v[3];
+    display_linear(d, rgb, v);
     for (int k = 0; k < 3; k++)
         out[k] = srgb8_encode(&d->srgb, (float)v[k]);
+}
+
+/* How far the emitter in pixel i is an area, not a point: the square of the largest share that one covers within a pixel. A lamp
+ * that fills no pixel is a point whose glare is its brightness: a mean after the curve would put it out. */
+static double area_of_emitter(const noc_image *image, size_t i) {
+    int x = (int)(i % (size_t)image->width), y = (int)(i / (size_t)image->width);
+    float most = 0;
+    for (int v = NOC_MAX(y - 1, 0); v <= NOC_MIN(y + 1, image->height - 1); v++)
+        for (int u = NOC_MAX(x - 1, 0); u <= NOC_MIN(x + 1, image->width - 1); u++)
+            most = fmaxf(most, image->coverage[4 * ((size_t)v * (size_t)image->width + (size_t)u) + 3]);
+    return (double)most * most;
+}
+
+/* A pixel that an emitter covers in part: both parts go through the curve, and are then mixed. */
+static void display_covered(const display_map *d, const noc_image *image, size_t i, uint8_t out[3]) {
+    const float *rgb = image->rgb + 3 * i, *emitted = image->coverage + 4 * i;
+    float share = emitted[3], on[3], off[3];
+    double area = area_of_emitter(image, i), mean[3], v[3], w[3];
+    for (int k = 0; k < 3; k++) {
+        on[k] = emitted[k] / share;
+        off[k] = (rgb[k] - emitted[k]) / (1 - share);
+    }
+    display_linear(d, rgb, mean);
+    display_linear(d, on, v);
+    display_linear(d, off, w);
+    for (int k = 0; k < 3; k++) {
+        double mixed = share * NOC_MIN(v[k], 1) + (1 - share) * NOC_MIN(w[k], 1);
+        out[k] = srgb8_encode(&d->srgb, (float)(area * mixed + (1 - area) * NOC_MIN(mean[k], 1)));
+    }
 }
 
 void noc_image_to_srgb8(const noc_image *image, const noc_display_params *params, uint8_t *out) {
     display_map d;
     display_init(&d, params ? params->tonemap : NOC_TONEMAP_FILMIC, display_ev100(image, params));
     size_t n = image_pixels(image);
-    for (size_t i = 0; i < n; i++)
-        display_pixel(&d, image->rgb + 3 * i, out + 3 * i);
+    for (size_t i = 0; i < n; i++) {
+        float share = image->coverage ? image->coverage[4 * i + 3] : 0;
+        if (share > 0 && share < 1)
+            display_covered(&d, image, i, out + 3 * i);
+        else
+            display_pixel(&d, image->rgb + 3 * i, out + 3 * i);
+    }
 }

@@ -44,5 +44,6 @@ void noc_image_destroy(noc_image *image) {
         return;
     free(image->rgb);
     free(image->emitter);
+    free(image->coverage);
     free(image);
 }

@@ -59,7 +59,7 @@ typedef struct noc_backend {
                         double from, double to);
     /* Adds the frame to the picture: into the mean, or in its place when frame->accumulated is 0. */
     void (*accumulate)(void *state, const noc_frame *frame);
-    /* Picture and emitter mask (1 where the pixel itself sees an emitter in a frame of the mean). */
+    /* Picture, emitter mask (1 where the pixel itself sees an emitter in a frame of the mean) and coverage. */
     void (*read)(void *state, noc_image *image);
     /* A view that the last accumulated frame kept into value, a number a pixel (-1: none). False where it kept none. */
     bool (*aov)(void *state, noc_aov aov, float *value);

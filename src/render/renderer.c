@@ -151,8 +151,9 @@ noc_image *noc_renderer_image(noc_renderer *r) {
         return NULL;
     size_t n = (size_t)image->width * image->height;
     image->emitter = malloc(n);
+    image->coverage = noc_alloc_large(n, 4 * sizeof(float));
     uint8_t *wide = malloc(n);
-    if (!image->emitter || !wide) {
+    if (!image->emitter || !image->coverage || !wide) {
         free(wide);
         noc_image_destroy(image);
         noc_error(r->log, NOC_ERR_MEMORY, "render: no memory for the picture's emitter mask");

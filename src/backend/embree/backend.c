@@ -13,6 +13,7 @@ static void free_buffers(frame_buffers *b) {
     free(b->colour);
     free(b->picture);
     free(b->emitter);
+    noc_embree_free_coverage(&b->coverage);
     noc_embree_free_views(&b->views);
     *b = (frame_buffers){ 0 };
 }
@@ -194,6 +195,7 @@ static void mean_row(void *arg, size_t row, int index) {
 static void accumulate(void *state, const noc_frame *frame) {
     embree_state *s = state;
     noc_embree_keep_views(s, frame);
+    noc_embree_keep_coverage(s, frame);
     noc_embree_keep_lights(s);
     noc_embree_end_learning(s, frame);
     if (!frame->accumulated) {
@@ -214,6 +216,8 @@ static void read_picture(void *state, noc_image *image) {
                 image->rgb[3 * to + k] = b->picture[at].rgb[k][l];
             if (image->emitter)
                 image->emitter[to] = b->emitter[at] >> l & 1;
+            if (image->coverage)
+                noc_embree_read_coverage(b, at, l, image->coverage + 4 * to);
         }
 }
 

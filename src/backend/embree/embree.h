@@ -114,6 +114,19 @@ typedef struct view_buffers {
     int gbuffer;          /* of the last complete frame */
 } view_buffers;
 
+/* Sums over the frames of the mean, of those in which a lane saw an emitter: coverage.c. */
+typedef struct coverage_sum {
+    float rgb[3][BLOCK];
+    uint32_t frames[BLOCK];
+} coverage_sum;
+
+typedef struct coverage {
+    uint32_t *place;               /* [blocks] index + 1 in sums, 0: saw none; NULL: no frame yet */
+    NOC_ARRAY(coverage_sum) sums;
+    uint64_t frames;               /* of the mean */
+    bool lost;                     /* there was no memory */
+} coverage;
+
 /* Buffers of one picture; every array has an entry a block. */
 typedef struct frame_buffers {
     int width, height, sets;
@@ -124,6 +137,7 @@ typedef struct frame_buffers {
     cblock *colour;    /* of the frame being made */
     cblock *picture;   /* mean, or last frame */
     uint16_t *emitter; /* lanes that saw an emitter in a frame of the mean */
+    coverage coverage;
     view_buffers views;
     size_t bytes;
 } frame_buffers;
@@ -246,6 +260,11 @@ noc_status noc_embree_begin_views(embree_state *s, uint32_t aovs, bool first_sta
 /* What the candidates of a block were, as far as the frame asks; r: the reservoirs they ended in. */
 void noc_embree_view_candidates(const stage_run *run, const worker *w, size_t block, uint32_t lanes, const rblock *r);
 void noc_embree_keep_views(embree_state *s, const noc_frame *frame); /* the frame is complete */
+
+/* coverage.c: what emitters that are seen directly add to the mean */
+void noc_embree_keep_coverage(embree_state *s, const noc_frame *frame); /* the frame is complete */
+void noc_embree_read_coverage(const frame_buffers *b, size_t block, int lane, float out[4]); /* as noc_image.coverage */
+void noc_embree_free_coverage(coverage *c);
 bool noc_embree_read_view(void *state, noc_aov aov, float *value);
 void noc_embree_free_views(view_buffers *views);
 size_t noc_embree_view_bytes(uint32_t aovs); /* a pixel */

@@ -1,0 +1,67 @@
+/* What emitters that are seen directly add to a pixel's mean, apart from the rest. A display needs the two apart: the mean of a
+ * lamp and of the wall beside it lies far above white wherever the lamp covers a tenth of the pixel, so edges come out jagged.
+ * Few blocks see emitters, so only these have a place. */
+#include "backend/embree/embree.h"
+
+void noc_embree_free_coverage(coverage *c) {
+    free(c->place);
+    array_free(&c->sums);
+    *c = (coverage){ 0 };
+}
+
+/* Gives places to the blocks that have seen an emitter. false: no memory. */
+static bool give_places(coverage *c, const uint16_t *emitter, size_t blocks) {
+    if (!c->place && !(c->place = noc_alloc_large(blocks, sizeof(*c->place))))
+        return false;
+    for (size_t i = 0; i < blocks; i++) {
+        if (!emitter[i] || c->place[i])
+            continue;
+        if (!array_try_reserve(&c->sums, c->sums.len + 1))
+            return false;
+        c->sums.data[c->sums.len++] = (coverage_sum){ 0 };
+        c->place[i] = (uint32_t)c->sums.len;
+    }
+    return true;
+}
+
+void noc_embree_keep_coverage(embree_state *s, const noc_frame *frame) {
+    frame_buffers *b = &s->b;
+    coverage *c = &b->coverage;
+    const gblock *g = b->g[frame->gbuffer];
+    size_t blocks = (size_t)b->blocks_x * b->blocks_y;
+    if (!frame->accumulated) {
+        if (c->place)
+            memset(c->place, 0, blocks * sizeof(*c->place));
+        c->sums.len = 0;
+        c->lost = false;
+    }
+    /* Without memory for it the picture is the same, and its display has jagged edges. */
+    if (c->lost || !give_places(c, b->emitter, blocks)) {
+        c->lost = true;
+        return;
+    }
+    c->frames = frame->accumulated + 1;
+    for (size_t i = 0; i < blocks; i++) {
+        if (!c->place[i])
+            continue;
+        coverage_sum *sum = &c->sums.data[c->place[i] - 1];
+        for (int l = 0; l < BLOCK; l++) {
+            if (g[i].light[l] == NOC_NO_LIGHT)
+                continue;
+            sum->frames[l]++;
+            for (int k = 0; k < 3; k++)
+                sum->rgb[k][l] += b->colour[i].rgb[k][l];
+        }
+    }
+}
+
+void noc_embree_read_coverage(const frame_buffers *b, size_t block, int lane, float out[4]) {
+    const coverage *c = &b->coverage;
+    memset(out, 0, 4 * sizeof(*out));
+    if (c->lost || !c->place || !c->place[block])
+        return;
+    const coverage_sum *sum = &c->sums.data[c->place[block] - 1];
+    for (int k = 0; k < 3; k++)
+        out[k] = sum->rgb[k][lane] / (float)c->frames;
+    out[3] = (float)sum->frames[lane] / (float)c->frames;
+}
