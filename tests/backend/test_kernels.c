@@ -114,8 +114,14 @@ static void run_all(const kernels *k, const world *w, const gblock *g, const rbl
     k->targets(&w->ctx, w->frame.previous.eye, n, count, own->light, own->u, own->v, &t->paired);
     k->end_pairwise(&w->ctx, g, own, n, count, seen, 4, 8, 64, &t->paired, &t->pairwise);
     t->dropped |= k->shade(&w->ctx, g, own, 0x7ffe, &t->shaded);
-    k->sky_rays(&w->ctx, g, 4, 8, &t->sky);
-    t->dropped |= k->sky_shade(&w->ctx, g, &t->sky, 0xffff, &t->shaded);
+    uint32_t number[BLOCK];
+    float share[BLOCK];
+    for (int l = 0; l < BLOCK; l++) {
+        number[l] = (uint32_t)l % 3;
+        share[l] = l % 2 ? 1 : 0.25f;
+    }
+    k->sky_rays(&w->ctx, g, 4, 8, number, &t->sky);
+    t->dropped |= k->sky_shade(&w->ctx, g, &t->sky, share, 0xffff, &t->shaded);
     k->sky_background(&w->ctx, 0x00f0, 4, 8, &t->shaded);
     shade_reference(k, w, g, t);
 }

@@ -177,10 +177,10 @@ static uint32_t shade(const struct core_context *ctx, const gblock *g, const rbl
 
 /* ---- sky ---- */
 
-static void sky_rays(const struct core_context *ctx, const gblock *g, int x, int y, rayblock *out) {
+static void sky_rays(const struct core_context *ctx, const gblock *g, int x, int y, const uint32_t *number, rayblock *out) {
     const float reach = 1e7f; /* further than any scene */
     for (int l = 0; l < BLOCK; l += LANES) {
-        v3 at = sky_numbers(key_in(ctx, x, y, l, 0), KU(ctx->frame->index));
+        v3 at = sky_numbers(key_in(ctx, x, y, l, 0), uload(number + l));
         surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
         mask on = dot3(s.n, s.n) > K(0.5f);
         s.n = sel3(on, s.n, V3(K(0.0f), K(0.0f), K(1.0f)));
@@ -189,8 +189,8 @@ static void sky_rays(const struct core_context *ctx, const gblock *g, int x, int
     }
 }
 
-static uint32_t sky_shade(const struct core_context *ctx, const gblock *g, const rayblock *rays, uint32_t lanes,
-                          cblock *out) {
+static uint32_t sky_shade(const struct core_context *ctx, const gblock *g, const rayblock *rays, const float *share,
+                          uint32_t lanes, cblock *out) {
     uint32_t dropped = 0;
     real zenith = K((float)ctx->frame->params->sky);
     for (int l = 0; l < BLOCK; l += LANES) {
@@ -199,7 +199,7 @@ static uint32_t sky_shade(const struct core_context *ctx, const gblock *g, const
         d = mul3(d, K(1e-7f));
         real p = sky_density(s, d);
         mask some = p > K(0.0f);
-        v3 f = mul3(tint3(reflect(s, d), sky_radiance(d, zenith)), sel(some, K(1.0f) / sel(some, p, K(1.0f)), K(0.0f)));
+        v3 f = mul3(tint3(reflect(s, d), sky_radiance(d, zenith)), sel(some, rload(share + l) / sel(some, p, K(1.0f)), K(0.0f)));
         dropped |= add_colour(out, l, f, lanes);
     }
     return dropped;

@@ -151,10 +151,11 @@ typedef struct kernels {
                       reference_scratch *scratch);
     /* (u, v) that `reference` used for a lane's light. */
     void (*reference_place)(const struct core_context *ctx, int x, int y, rblock *r);
-    /* One cosine-distributed direction a lane, as a ray of length `reach`; then its light, where it is free. */
-    void (*sky_rays)(const struct core_context *ctx, const gblock *g, int x, int y, rayblock *out);
-    uint32_t (*sky_shade)(const struct core_context *ctx, const gblock *g, const rayblock *rays, uint32_t lanes,
-                          cblock *out);
+    /* A direction a lane, as a ray that leaves the scene, from place number[lane] of the pixel's sequence; then, where it is free,
+     * its light times share[lane]. */
+    void (*sky_rays)(const struct core_context *ctx, const gblock *g, int x, int y, const uint32_t *number, rayblock *out);
+    uint32_t (*sky_shade)(const struct core_context *ctx, const gblock *g, const rayblock *rays, const float *share,
+                          uint32_t lanes, cblock *out);
     void (*sky_background)(const struct core_context *ctx, uint32_t lanes, int x, int y, cblock *out);
 } kernels;
 

@@ -293,33 +293,58 @@ static void shade(stage_run *run, worker *w, tile t) {
     }
 }
 
+#define SKY_RAYS 4 /* of a pixel that nothing but the sky lights */
+
+/* A ray to the sky for each lane, SKY_RAYS where this frame's lights brought less than the sky may: there its noise is all the
+ * noise there is, and no time went into shadow rays. It is settled before any of them is traced, so it adds no bias. */
+static void sky_turns(const stage_run *run, const cblock *c, uint8_t turns[BLOCK]) {
+    float zenith = (float)run->ctx.frame->params->sky;
+    for (int l = 0; l < BLOCK; l++)
+        turns[l] = 0.2126f * c->rgb[0][l] + 0.7152f * c->rgb[1][l] + 0.0722f * c->rgb[2][l] < zenith ? SKY_RAYS : 1;
+}
+
 static void sky(stage_run *run, worker *w, tile t) {
     frame_buffers *b = &run->s->b;
-    const gblock *g = b->g[run->ctx.frame->gbuffer];
+    const noc_frame *f = run->ctx.frame;
+    const gblock *g = b->g[f->gbuffer];
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
+    uint8_t turns[TILE_BLOCKS * TILE_BLOCKS][BLOCK];
     size_t asked[TILE_BLOCKS * TILE_BLOCKS];
     int n = noc_embree_tile_blocks(run, t, blocks);
-    w->batch.count = 0;
     for (int i = 0; i < n; i++) {
-        int x = blocks[i].x, y = blocks[i].y;
         size_t at = blocks[i].at;
-        uint32_t surfaces = lanes_with_surface(&g[at]);
-        uint32_t background = lanes_inside(b, x / BLOCK_SIDE, y / BLOCK_SIDE) & ~surfaces;
+        uint32_t background = lanes_inside(b, blocks[i].x / BLOCK_SIDE, blocks[i].y / BLOCK_SIDE) & ~lanes_with_surface(&g[at]);
+        sky_turns(run, &b->colour[at], turns[i]);
         if (background)
-            run->k->sky_background(&run->ctx, background, x, y, &b->colour[at]);
-        if (!surfaces)
-            continue;
-        asked[w->batch.count] = at;
-        segment_block *s = noc_embree_gather(run, w, at, surfaces);
-        run->k->sky_rays(&run->ctx, &g[at], x, y, &s->rays);
-        memset(s->light, 0, sizeof(s->light));
+            run->k->sky_background(&run->ctx, background, blocks[i].x, blocks[i].y, &b->colour[at]);
     }
-    noc_embree_free_many(run->s, w, w->batch.blocks, w->batch.count);
-    for (int i = 0; i < w->batch.count; i++) {
-        const segment_block *s = &w->batch.blocks[i];
-        size_t at = asked[i];
-        if (s->clear)
-            w->dropped += (uint64_t)__builtin_popcount(run->k->sky_shade(&run->ctx, &g[at], &s->rays, s->clear, &b->colour[at]));
+    for (int turn = 0; turn < SKY_RAYS; turn++) {
+        float share[TILE_BLOCKS * TILE_BLOCKS][BLOCK];
+        w->batch.count = 0;
+        for (int i = 0; i < n; i++) {
+            size_t at = blocks[i].at;
+            uint32_t lanes = lanes_with_surface(&g[at]), number[BLOCK];
+            for (int l = 0; l < BLOCK; l++) {
+                number[l] = f->index * turns[i][l] + (uint32_t)turn;
+                share[w->batch.count][l] = 1.0f / turns[i][l];
+                if (turn >= turns[i][l])
+                    lanes &= ~(1u << l);
+            }
+            if (!lanes)
+                continue;
+            asked[w->batch.count] = at;
+            segment_block *s = noc_embree_gather(run, w, at, lanes);
+            run->k->sky_rays(&run->ctx, &g[at], blocks[i].x, blocks[i].y, number, &s->rays);
+            memset(s->light, 0, sizeof(s->light));
+        }
+        noc_embree_free_many(run->s, w, w->batch.blocks, w->batch.count);
+        for (int i = 0; i < w->batch.count; i++) {
+            const segment_block *s = &w->batch.blocks[i];
+            size_t at = asked[i];
+            if (s->clear)
+                w->dropped += (uint64_t)__builtin_popcount(
+                    run->k->sky_shade(&run->ctx, &g[at], &s->rays, share[i], s->clear, &b->colour[at]));
+        }
     }
 }
 
