@@ -278,6 +278,37 @@ static void compensation_brightens(void **state) {
     noc_image_destroy(a);
 }
 
+/* A row: a window that covers pixel 0 whole and pixel 1 by a quarter, at 100 times white, beside a wall of a tenth of white; and
+ * far away, a lamp that covers a quarter of pixel 4 alone. */
+static void edges_of_windows_are_mixed_after_the_curve(void **state) {
+    (void)state;
+    noc_image *a = noc_image_create(6, 1, NULL);
+    noc_display_params p = { .ev100 = -log2(IMAGE_SATURATION), .tonemap = NOC_TONEMAP_LINEAR }; /* 1 cd/m2 is white */
+    static const float share[6] = { 1, 0.25f, 0, 0, 0.25f, 0 };
+    a->coverage = calloc(6 * 4, sizeof(float));
+    for (int i = 0; i < 6; i++) {
+        for (int k = 0; k < 3; k++) {
+            a->coverage[4 * i + k] = 100 * share[i];
+            a->rgb[3 * i + k] = 100 * share[i] + 0.1f * (1 - share[i]);
+        }
+        a->coverage[4 * i + 3] = share[i];
+    }
+    uint8_t with[18], without[18];
+    noc_image_to_srgb8(a, &p, with);
+    free(a->coverage);
+    a->coverage = NULL;
+    noc_image_to_srgb8(a, &p, without);
+    for (int i = 0; i < 6; i++) { /* 0.25 * 1 + 0.75 * 0.1 by the standard's formula is code 154.4 */
+        int want = i == 1 ? 154 : without[3 * i];
+        if (i != 4)
+            assert_int_equal(with[3 * i], want);
+    }
+    assert_int_equal(without[3], 255);
+    /* The lamp fills a quarter at most: a sixteenth is mixed, the rest is its glare. */
+    assert_in_range(with[12], 248, 254);
+    noc_image_destroy(a);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(srgb_known_values),
@@ -293,6 +324,7 @@ int main(void) {
         cmocka_unit_test(exposure_stands_emitters_without_mask),
         cmocka_unit_test(exposure_of_odd_pictures_is_sane),
         cmocka_unit_test(compensation_brightens),
+        cmocka_unit_test(edges_of_windows_are_mixed_after_the_curve),
     };
     return cmocka_run_group_tests_name("image display", tests, NULL, NULL);
 }

@@ -327,6 +327,37 @@ static bool count_down(void *user, const char *what, double done) {
     return --*(int *)user > 0;
 }
 
+/* What emitters add to the mean, and the share of the frames that saw one, apart from the rest. */
+static void coverage_of_emitters(void **state) {
+    noc_scene *s = noc_scene_create(NULL);
+    int lamp = noc_scene_add_material(s, &(noc_material){ .roughness = 1, .emission = { 30, 20, 10 } });
+    QUAD(s, lamp, 0, 0, 0, 20, 0, 0, 0, 20, 0); /* its edges run through pixels */
+    add_floor(s, matte(s, 0.5f), 0, 0, -0.01, 20);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    noc_render_params p = measure(24, 16, NOC_METHOD_RIS);
+    p.jitter = true;
+    noc_camera c = look(0, 0, 30, 0, 0.001, 0, 60);
+    noc_image *image = render(s, &c, &p, 32);
+    int edges = 0, inside = 0;
+    double covered = 0;
+    for (int i = 0; i < 24 * 16; i++) {
+        const float *v = image->coverage + 4 * i;
+        assert_true(v[3] >= 0 && v[3] <= 1);
+        for (int k = 0; k < 3; k++) {
+            assert_true(fabs(v[k] - v[3] * (30 - 10 * k)) < 1e-3);
+            assert_true(v[3] == 0 || v[3] == 1 || image->rgb[3 * i + k] >= v[k] - 1e-3);
+        }
+        edges += v[3] > 0 && v[3] < 1;
+        inside += v[3] == 1;
+        covered += v[3];
+    }
+    assert_true(edges >= 8 && inside >= 40);
+    /* From 30 m under 60 degrees the picture is 34.64 m high, so a pixel 2.165 m wide; the part of the quad in it is 17.32 x 20 m. */
+    assert_true(fabs(covered - 17.32 * 20 / (2.165 * 2.165)) < 1);
+    noc_image_destroy(image);
+    noc_scene_destroy(s);
+}
+
 static void count_message(void *user, noc_log_level level, const char *text) { ++*(int *)user; }
 
 static void cancelled_frames(void **state) {
@@ -587,6 +618,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(instruction_sets_agree),
         cmocka_unit_test(an_instruction_set_is_forced), cmocka_unit_test(threads_and_seeds), cmocka_unit_test(empty_scenes),
+        cmocka_unit_test(coverage_of_emitters),
         cmocka_unit_test(wrong_arguments),       cmocka_unit_test(cancelled_frames),
         cmocka_unit_test(history_outlives_a_cancelled_frame), cmocka_unit_test(frames_and_resets),
         cmocka_unit_test(number_of_lights_found), cmocka_unit_test(set_reach_is_not_looked_for),

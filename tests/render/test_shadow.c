@@ -127,6 +127,13 @@ static void sky_light(void **state) {
     double want = 0.2 * 2 * (0.5 + 3.0 / 30);
     assert_true(fabs(sum(image) / 256 - want) < 0.01 * want);
     noc_image_destroy(image);
+    /* Nothing else lights it: four rays a pixel. */
+    noc_frame_stats stats;
+    noc_renderer *r = noc_renderer_create(s, NULL, NULL);
+    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+    noc_renderer_get_stats(r, &stats);
+    assert_int_equal(stats.rays_shadow, 4 * 256);
+    noc_renderer_destroy(r);
     noc_camera up = look(0, 0, 1, 0, 0.001, 9, 2);
     image = render(s, &up, &p, 1);
     assert_true(fabs(sum(image) / 256 - 0.2) < 1e-3); /* the zenith itself */
