@@ -84,6 +84,8 @@ typedef struct noc_report_file {
     size_t lamps_mapped;       /* stand in the scene */
     size_t lamps_moved;        /* of them: out of a building, or away from another lamp */
     size_t lamps_dropped;      /* of no use: outside the city, in a building, without a place */
+    size_t lamps_repeated;     /* that another file holds, too: taken once, and counted there */
+    size_t objects_repeated;   /* the same of objects; of a file's own, too */
     size_t line_count;
     const noc_report_line *lines;
 } noc_report_file;
@@ -91,6 +93,7 @@ typedef struct noc_report_file {
 /* Sums over the files of a report. */
 typedef struct noc_report_totals {
     size_t lamps_mapped, lamps_moved, lamps_dropped; /* as in noc_report_file */
+    size_t lamps_repeated, objects_repeated;
     size_t lamps_inferred;     /* placed by a rule */
     size_t skipped, repaired;  /* features: counts of the files' lines */
 } noc_report_totals;

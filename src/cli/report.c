@@ -38,7 +38,8 @@ static void add_totals(meta_text *meta, const noc_report *report) {
     noc_report_get_totals(report, &t);
     const struct { const char *key; size_t count; } rows[] = {
         { "lamps-mapped", t.lamps_mapped }, { "lamps-inferred", t.lamps_inferred }, { "lamps-dropped", t.lamps_dropped },
-        { "lamps-moved", t.lamps_moved }, { "features-skipped", t.skipped }, { "features-repaired", t.repaired } };
+        { "lamps-moved", t.lamps_moved }, { "lamps-repeated", t.lamps_repeated }, { "objects-repeated", t.objects_repeated },
+        { "features-skipped", t.skipped }, { "features-repaired", t.repaired } };
     for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
         add(meta, rows[i].key, cli_format("%zu", rows[i].count));
 }
@@ -195,7 +196,7 @@ static void print_lamps(const noc_report *report) {
     char a[32];
     noc_report_get_totals(report, &t);
     const struct { const char *what; size_t count; } rows[] = { { "mapped", t.lamps_mapped }, { "moved", t.lamps_moved },
-        { "inferred", t.lamps_inferred }, { "dropped", t.lamps_dropped } };
+        { "inferred", t.lamps_inferred }, { "dropped", t.lamps_dropped }, { "repeated", t.lamps_repeated } };
     const char *before = "  lamps     ";
     for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
         if (rows[i].count) {

@@ -248,6 +248,7 @@ noc_status finish_city(importer *im) {
     if (!go_on(im, 0.9))
         return NOC_ERR_CANCELLED;
     warn_if_coarse(im);
+    repeat_lamps(im);
     if (needs_ground(im, &e))
         lay_ground(im, &e);
     city_lamp_tally tally = { 0 };

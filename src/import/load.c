@@ -237,11 +237,12 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
         noc_status status = recognise(im, &im->inputs[i], readers);
         if (status)
             return status;
-        im->bytes_total += (double)im->inputs[i].bytes;
+        im->inputs[i].repeated = repeat_file(im, i);
+        im->bytes_total += im->inputs[i].repeated ? 0 : (double)im->inputs[i].bytes;
     }
     for (int s = 0; s < 4; s++)
         for (size_t i = 0; i < im->input_count; i++) {
-            noc_status status = stage(im, &im->inputs[i]) == s ? read_input(im, i) : NOC_OK;
+            noc_status status = !im->inputs[i].repeated && stage(im, &im->inputs[i]) == s ? read_input(im, i) : NOC_OK;
             if (status)
                 return status;
         }

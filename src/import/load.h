@@ -27,7 +27,7 @@ typedef struct input {
     uint64_t bytes;
     geo_issues *issues;
     noc_report_file file;     /* texts in the report's arena */
-    bool started;
+    bool started, repeated;
     size_t lamps_lost;        /* that the reader or the sink found to have no place */
 } input;
 
@@ -42,6 +42,27 @@ typedef struct pending_lamp {
     given_place given;
     size_t input;
 } pending_lamp;
+
+/* The object that is being read, as far as it tells it from others (repeat.c). */
+typedef struct object_now {
+    geo_kind kind;
+    bool any, decided, repeated;
+    uint64_t shape;           /* of its corners and their classes, in any order */
+    double lo[3], hi[3];
+    size_t polygons, by_class[NOC_CLASS_COUNT]; /* that wait to be counted */
+} object_now;
+
+typedef struct object_record {
+    uint64_t place, shape;    /* hashes: of id, kind and the cell of its middle; of its corners */
+    float lo[3], hi[3];
+    uint32_t input, kind, next[2];
+} object_record;
+
+typedef struct object_records {
+    NOC_ARRAY(object_record) list;
+    uint32_t *first[2];       /* chains by place and by shape: index + 1 */
+    size_t size;              /* of both: a power of two */
+} object_records;
 
 typedef struct importer {
     noc_log *log;
@@ -63,6 +84,8 @@ typedef struct importer {
     bool mesh_from_origin;    /* the mesh that is read is in metres from the scene's origin */
     /* the object that is being read (sink.c) */
     char *object_id;
+    object_now now;
+    object_records records;   /* of those that were read */
     NOC_ARRAY(double) scratch;
     geo_triangles surfaces[NOC_CLASS_COUNT];
     int material[NOC_CLASS_COUNT][PALETTE]; /* index + 1 in the scene, 0 if not made yet */
@@ -128,6 +151,13 @@ geo_sink sink_create(importer *im);
 noc_status sink_flush(importer *im);
 void sink_destroy(importer *im);
 int sink_material(importer *im, noc_class cls, const char *id);
+
+/* repeat.c: what is given twice is taken once. */
+bool repeat_file(importer *im, size_t index); /* is it one of those before it? Said and reported */
+void repeat_polygon(object_now *now, noc_class cls, const double *xyz, size_t count); /* local metres */
+bool repeat_object(importer *im, const char *id); /* is im->now one that was read? Decided once an object, and reported */
+void repeat_lamps(importer *im); /* drops lamps that an earlier file holds */
+void repeat_free(object_records *records);
 
 /* lamps.c: ground where there is none, then lamps. */
 noc_status finish_city(importer *im);

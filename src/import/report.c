@@ -33,6 +33,8 @@ void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) 
         totals->lamps_mapped += f->lamps_mapped;
         totals->lamps_moved += f->lamps_moved;
         totals->lamps_dropped += f->lamps_dropped;
+        totals->lamps_repeated += f->lamps_repeated;
+        totals->objects_repeated += f->objects_repeated;
         for (size_t k = 0; k < f->line_count; k++)
             *(f->lines[k].repaired ? &totals->repaired : &totals->skipped) += f->lines[k].count;
     }

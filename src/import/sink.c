@@ -76,6 +76,10 @@ static noc_status flush_class(importer *im, noc_class cls) {
     if (!t->indices.len)
         return NOC_OK;
     const char *id = im->object_id ? im->object_id : "";
+    if (im->object_id && repeat_object(im, id)) {
+        t->xyz.len = t->indices.len = 0;
+        return NOC_OK;
+    }
     noc_mesh mesh = { .vertex_count = t->xyz.len / 3, .positions = t->xyz.data, .triangle_count = t->indices.len / 3,
                       .indices = t->indices.data, .material = sink_material(im, cls, id), .name = *id ? id : NULL };
     if (mesh.material < 0 || noc_scene_add_mesh(im->scene, &mesh) < 0)
@@ -94,6 +98,11 @@ noc_status sink_flush(importer *im) {
         if (status)
             return status;
     }
+    noc_report_file *file = &im->inputs[im->current].file;
+    for (int c = 0; c < NOC_CLASS_COUNT && !im->now.repeated; c++)
+        file->polygons_by_class[c] += im->now.by_class[c];
+    file->polygons += im->now.repeated ? 0 : im->now.polygons;
+    im->now = (object_now){ 0 };
     return NOC_OK;
 }
 
@@ -106,7 +115,8 @@ static noc_status on_begin_object(void *ctx, const geo_object *object) {
     noc_report_file *file = &im->inputs[im->current].file;
     noc_status status = sink_flush(im);
     free(im->object_id);
-    im->object_id = noc_strdup(object->id);
+    im->object_id = noc_strdup(object->id ? object->id : "");
+    im->now.kind = object->kind;
     file->objects++;
     if (object->kind == GEO_BUILDING) {
         im->buildings++;
@@ -139,14 +149,18 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
     noc_status status = place_points(im, im->scratch.data, count, polygon->id, &usable);
     if (status || !usable)
         return status;
+    if (im->now.repeated)
+        return NOC_OK;
+    if (im->object_id && !im->now.decided)
+        repeat_polygon(&im->now, cls, im->scratch.data, count);
     if (cls != NOC_CLASS_CLOSURE) {
         geo_polygon local = *polygon;
         local.xyz = im->scratch.data;
         if (!geo_triangulate(&local, &im->surfaces[cls], in->issues))
             return NOC_OK;
     }
-    in->file.polygons++;
-    in->file.polygons_by_class[cls]++;
+    im->now.polygons++;
+    im->now.by_class[cls]++;
     return im->surfaces[cls].indices.len >= 3 * FLUSH_TRIANGLES ? flush_class(im, cls) : NOC_OK;
 }
 
@@ -211,6 +225,7 @@ void sink_destroy(importer *im) {
     for (int c = 0; c < NOC_CLASS_COUNT; c++)
         geo_triangles_free(&im->surfaces[c]);
     array_free(&im->scratch);
+    repeat_free(&im->records);
     free(im->object_id);
     array_free(&im->lamps);
     array_free(&im->lost);

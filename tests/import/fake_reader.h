@@ -4,7 +4,8 @@
  *     crs [name]
  *     object kind id lod      end
  *     polygon class x y z x y z ...
- *     lamp x y [z]
+ *     many class x y count      a strip of so many triangles, eastwards
+ *     lamp x y [z] [#id]
  *     fail | slow
  */
 #ifndef NOC_TEST_FAKE_READER_H
@@ -68,10 +69,20 @@ static noc_status fake_line(geo_sink *sink, char *line, bool *swap, const char *
         return sink->polygon(sink->ctx, &(geo_polygon){ .cls = (noc_class)cls, .id = "poly", .ring_count = 1,
                                                         .ring_size = &n, .xyz = v });
     }
+    if (sscanf(line, "many %d %lf %lf %d", &cls, &v[0], &v[1], &lod) == 4) {
+        noc_status status = NOC_OK;
+        for (int i = 0; i < lod && !status; i++) {
+            size_t n = 3;
+            double x = v[0] + i * .5, xyz[9] = { x, v[1], 370, x + .5, v[1], 370, x, v[1] + 1, 370 };
+            status = sink->polygon(sink->ctx, &(geo_polygon){ .cls = (noc_class)cls, .id = "many", .ring_count = 1,
+                                                              .ring_size = &n, .xyz = xyz });
+        }
+        return status;
+    }
     if (!strncmp(line, "lamp ", 5)) {
         size_t n = numbers(line + 5, v, 3);
         geo_lamp lamp = { .xyz = { v[*swap], v[!*swap], n > 2 ? v[2] : NAN }, .height = NAN, .direction = NAN, .lumens = NAN,
-                          .watts = NAN, .kelvin = NAN, .rgb = { -1, -1, -1 }, .id = "lamp" };
+                          .watts = NAN, .kelvin = NAN, .rgb = { -1, -1, -1 }, .id = strchr(line, '#') ? strchr(line, '#') : "" };
         return sink->lamp(sink->ctx, &lamp);
     }
     if (!strcmp(line, "fail"))

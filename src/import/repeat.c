@@ -1,0 +1,264 @@
+/* The same thing named twice gives its light once: files, objects of overlapping tiles, lamps. docs/formats.md states the rules.
+ *
+ * Of an object only a record stays: hashes of its id and of its corners, and its extent. It is made when the object ends, or,
+ * of those too large to be held, when its first part is handed on; equal objects are cut at the same corner. */
+#include "import/load.h"
+
+#include <fcntl.h>
+#include <math.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define GRID 1e-3        /* m; corners are equal where they round to the same of it */
+#define CELL 2.0         /* m; of the places of objects: their tolerance is half of it at most */
+#define LAMP_CELL 1.0    /* m */
+#define SAME_PLACE 0.1   /* m between lamps of two files: degrees with six decimals are that coarse */
+#define SAME_LAMP 1.0    /* m between lamps of two files that have one id */
+
+/* ---- files ---- */
+
+static bool same_content(const char *a, const char *b) {
+    enum { BLOCK = 1 << 16 };
+    int fa = open(a, O_RDONLY | O_CLOEXEC), fb = open(b, O_RDONLY | O_CLOEXEC);
+    char *x = noc_alloc(2 * BLOCK), *y = x + BLOCK;
+    ssize_t n = -1, m;
+    while (fa >= 0 && fb >= 0 && (n = read(fa, x, BLOCK)) > 0) {
+        for (m = 0; m < n;) {
+            ssize_t got = read(fb, y + m, (size_t)(n - m));
+            if (got <= 0)
+                break;
+            m += got;
+        }
+        if (m < n || memcmp(x, y, (size_t)n))
+            break;
+    }
+    if (fa >= 0)
+        close(fa);
+    if (fb >= 0)
+        close(fb);
+    free(x);
+    return n == 0;
+}
+
+static bool same_folder(const char *a, const char *b) {
+    const char *x = strrchr(a, '/'), *y = strrchr(b, '/');
+    size_t n = x ? (size_t)(x - a) : 0, m = y ? (size_t)(y - b) : 0;
+    return n == m && !memcmp(a, b, n);
+}
+
+/* Why b is a again; NULL where it is not. */
+static const char *file_again(const input *a, const input *b) {
+    if (a->reader != b->reader)
+        return NULL;
+    struct stat s, t;
+    if (!a->reader)
+        return strcmp(a->path, b->path) ? NULL : "built-in scene that is named twice";
+    if (stat(a->path, &s) || stat(b->path, &t) || !S_ISREG(s.st_mode) || !S_ISREG(t.st_mode))
+        return NULL;
+    if (s.st_dev == t.st_dev && s.st_ino == t.st_ino)
+        return "file that is named twice";
+    /* a glTF's buffers lie beside it: other ones in another folder */
+    bool alone = a->reader != &noc_reader_gltf || same_folder(a->path, b->path);
+    return s.st_size == t.st_size && alone && same_content(a->path, b->path) ? "copy of another file" : NULL;
+}
+
+bool repeat_file(importer *im, size_t index) {
+    input *in = &im->inputs[index];
+    for (size_t i = 0; i < index; i++) {
+        const char *why = file_again(&im->inputs[i], in);
+        if (!why)
+            continue;
+        in->started = true;
+        in->file.bytes = in->bytes;
+        in->file.format = in->reader ? in->reader->name : "built-in scene";
+        geo_issue(in->issues, false, why, im->inputs[i].path);
+        noc_warn(im->log, "%s: %s (%s): taken once", in->path, why, im->inputs[i].path);
+        return true;
+    }
+    return false;
+}
+
+/* ---- objects ---- */
+
+static uint64_t mix(uint64_t h) {
+    h = (h ^ h >> 32) * 0xd6e8feb86659fd93u;
+    h = (h ^ h >> 32) * 0xd6e8feb86659fd93u;
+    return h ^ h >> 32;
+}
+
+static uint64_t hash_text(const char *text) {
+    uint64_t h = 0xcbf29ce484222325u;
+    for (; *text; text++)
+        h = (h ^ (unsigned char)*text) * 0x100000001b3u;
+    return mix(h);
+}
+
+void repeat_polygon(object_now *now, noc_class cls, const double *xyz, size_t count) {
+    uint64_t sum = mix((uint64_t)cls + 1);
+    for (size_t i = 0; i < count; i++) {
+        uint64_t h = (uint64_t)cls;
+        for (size_t k = 0; k < 3; k++) {
+            double v = xyz[3 * i + k];
+            if (!isfinite(v))
+                continue;
+            h = mix(h + k + (uint64_t)llround(v / GRID));
+            now->lo[k] = now->any ? NOC_MIN(now->lo[k], v) : v;
+            now->hi[k] = now->any ? NOC_MAX(now->hi[k], v) : v;
+        }
+        now->any = true;
+        sum += h;
+    }
+    now->shape += sum; /* a sum: whatever the order of corners and polygons */
+}
+
+/* Do the extents agree, but for rounding and what another level of detail adds? */
+static bool near_equal(const object_record *r, const object_now *now) {
+    double diagonal = 0;
+    for (int k = 0; k < 3; k++)
+        diagonal = hypot(diagonal, now->hi[k] - now->lo[k]);
+    double tolerance = .01 + NOC_MIN(.05 * diagonal, .5 * CELL - .01);
+    for (int k = 0; k < 3; k++)
+        if (!(fabs(r->lo[k] - now->lo[k]) <= tolerance && fabs(r->hi[k] - now->hi[k]) <= tolerance))
+            return false;
+    return true;
+}
+
+static uint64_t place_key(uint64_t id, geo_kind kind, double cx, double cy) {
+    return mix(id + (uint64_t)kind + mix((uint64_t)(int64_t)cx * 0x9e3779b97f4a7c15u + (uint64_t)(int64_t)cy));
+}
+
+/* Chains of records over two tables that grow with them. */
+static void link_record(object_records *all, uint32_t index) {
+    object_record *r = &all->list.data[index];
+    const uint64_t keys[2] = { r->place, r->shape };
+    for (int t = 0; t < 2; t++) {
+        uint32_t *first = &all->first[t][keys[t] & (all->size - 1)];
+        r->next[t] = *first;
+        *first = index + 1;
+    }
+}
+
+static void add_record(object_records *all, object_record record) {
+    array_push(&all->list, record);
+    if (all->list.len <= all->size) {
+        link_record(all, (uint32_t)all->list.len - 1);
+        return;
+    }
+    all->size = all->size ? 2 * all->size : 1024;
+    for (int t = 0; t < 2; t++) {
+        free(all->first[t]);
+        all->first[t] = noc_calloc(all->size, sizeof(uint32_t));
+    }
+    for (size_t i = 0; i < all->list.len; i++)
+        link_record(all, (uint32_t)i);
+}
+
+static const object_record *find_equal(const object_records *all, const object_now *now, geo_kind kind) {
+    uint32_t i = all->size ? all->first[1][now->shape & (all->size - 1)] : 0;
+    for (; i; i = all->list.data[i - 1].next[1]) {
+        const object_record *r = &all->list.data[i - 1];
+        if (r->shape == now->shape && r->kind == (uint32_t)kind && near_equal(r, now))
+            return r;
+    }
+    return NULL;
+}
+
+/* The same id in another file, at the same place: ids such as "1" are often given anew in each. */
+static const object_record *find_named(const object_records *all, const object_now *now, geo_kind kind, uint64_t id,
+                                       size_t current) {
+    double at[2];
+    for (int k = 0; k < 2; k++)
+        at[k] = (now->lo[k] + now->hi[k]) / 2 / CELL - .5;
+    for (int corner = 0; corner < 4 && all->size; corner++) {
+        uint64_t key = place_key(id, kind, floor(at[0]) + (corner & 1), floor(at[1]) + (corner >> 1));
+        for (uint32_t i = all->first[0][key & (all->size - 1)]; i; i = all->list.data[i - 1].next[0]) {
+            const object_record *r = &all->list.data[i - 1];
+            if (r->place == key && r->input != current && near_equal(r, now))
+                return r;
+        }
+    }
+    return NULL;
+}
+
+bool repeat_object(importer *im, const char *id) {
+    object_now *now = &im->now;
+    if (now->decided || !now->any)
+        return now->repeated;
+    now->decided = true;
+    uint64_t name = hash_text(id);
+    const object_record *r = find_equal(&im->records, now, now->kind);
+    if (!r && *id)
+        r = find_named(&im->records, now, now->kind, name, im->current);
+    if (r) {
+        input *in = &im->inputs[im->current];
+        geo_issue(in->issues, false, r->input == im->current ? "object that the file holds twice: taken once"
+                                                             : "object that another file holds, too: taken once", id);
+        in->file.objects_repeated++;
+        now->repeated = true;
+        return true;
+    }
+    object_record record = { .shape = now->shape, .input = (uint32_t)im->current, .kind = (uint32_t)now->kind };
+    for (int k = 0; k < 3; k++) {
+        record.lo[k] = (float)now->lo[k];
+        record.hi[k] = (float)now->hi[k];
+    }
+    record.place = place_key(name, now->kind, floor((now->lo[0] + now->hi[0]) / 2 / CELL), floor((now->lo[1] + now->hi[1]) / 2 / CELL));
+    add_record(&im->records, record);
+    return false;
+}
+
+void repeat_free(object_records *records) {
+    array_free(&records->list);
+    free(records->first[0]);
+    free(records->first[1]);
+}
+
+/* ---- lamps ---- */
+
+static size_t lamp_bucket(double cx, double cy, size_t size) {
+    return (size_t)mix((uint64_t)(int64_t)cx * 0x9e3779b97f4a7c15u + (uint64_t)(int64_t)cy) & (size - 1);
+}
+
+static bool same_lamp(const pending_lamp *a, const pending_lamp *b) {
+    double d = hypot(a->lamp.xyz[0] - b->lamp.xyz[0], a->lamp.xyz[1] - b->lamp.xyz[1]);
+    return a->input != b->input && (d <= SAME_PLACE || (d <= SAME_LAMP && *a->lamp.id && !strcmp(a->lamp.id, b->lamp.id)));
+}
+
+void repeat_lamps(importer *im) {
+    pending_lamp *lamps = im->lamps.data;
+    size_t size = 1024, kept = 0;
+    bool several = false;
+    for (size_t i = 1; i < im->lamps.len; i++)
+        several = several || lamps[i].input != lamps[0].input;
+    if (!several)
+        return;
+    while (size < im->lamps.len)
+        size *= 2;
+    uint32_t *first = noc_calloc(size, sizeof(*first)), *next = noc_calloc(im->lamps.len, sizeof(*next));
+    for (size_t i = 0; i < im->lamps.len; i++) {
+        const pending_lamp p = lamps[i];
+        double cx = floor(p.lamp.xyz[0] / LAMP_CELL), cy = floor(p.lamp.xyz[1] / LAMP_CELL);
+        bool again = false;
+        for (int c = 0; c < 9 && !again; c++)
+            for (uint32_t k = first[lamp_bucket(cx + c % 3 - 1, cy + c / 3 - 1, size)]; k && !again; k = next[k - 1])
+                again = same_lamp(&lamps[k - 1], &p);
+        if (again) {
+            input *in = &im->inputs[p.input];
+            geo_issue(in->issues, false, "lamp that another file holds, too: taken once", p.lamp.id);
+            in->file.lamps_repeated++;
+            continue;
+        }
+        lamps[kept] = p;
+        uint32_t *head = &first[lamp_bucket(cx, cy, size)];
+        const pending_lamp *last = *head ? &lamps[*head - 1] : NULL;
+        /* a thousand lamps of one file at one place are one, to those of another */
+        if (!last || last->input != p.input || last->lamp.xyz[0] != p.lamp.xyz[0] || last->lamp.xyz[1] != p.lamp.xyz[1]) {
+            next[kept] = *head;
+            *head = (uint32_t)kept + 1;
+        }
+        kept++;
+    }
+    im->lamps.len = kept;
+    free(first);
+    free(next);
+}
