@@ -6,13 +6,15 @@ unexport NINJA
 NINJA = ninja $$([ -t 1 ] || echo --quiet)
 SANITIZE = -Db_sanitize=address,undefined -Dbuildtype=debugoptimized -Dbench=false
 
-.PHONY: help demo build check asan install clean deps deps-check
+.PHONY: help demo build check asan fuzz coverage install clean deps deps-check
 
 help:
 	@echo "make demo     build, and draw the built-in city by night: night.png"
 	@echo "make build    build build/nocturne"
 	@echo "make check    build, and run all tests"
 	@echo "make asan     the tests again under AddressSanitizer and UBSan"
+	@echo "make fuzz     fuzzers of all that reads bytes, TIME=60 seconds each, with a table (CORPUS=\"pbf csv\" for some of them)"
+	@echo "make coverage what share of each room's lines the tests run, and the fuzzers' inputs"
 	@echo "make install  install to PREFIX ($(PREFIX)), DESTDIR respected"
 	@echo "make clean    remove what was built"
 
@@ -49,6 +51,19 @@ asan: deps-check
 	@$(NINJA) -C build-asan
 	@tools/run-tests.sh build-asan --timeout-multiplier 4
 
+TIME = 60
+fuzz:
+	@tools/install-deps.sh fuzz
+	@[ -e build-fuzz/build.ninja ] || CC=clang meson setup build-fuzz -Dfuzz=true $(SANITIZE) -Dexamples=false -Dtests=disabled >/dev/null
+	@$(NINJA) -C build-fuzz fuzzers
+	@tools/fuzz.sh build-fuzz $(TIME) $(CORPUS)
+
+coverage:
+	@tools/install-deps.sh coverage
+	@[ -e build-coverage/build.ninja ] || meson setup build-coverage -Db_coverage=true -Dbuildtype=debug -Dbench=false -Dtests=enabled >/dev/null
+	@$(NINJA) -C build-coverage
+	@tools/coverage.py build-coverage build-fuzz/corpus
+
 # PREFIX may differ from that of an earlier `make build`; nothing is built but what is installed.
 install: build
 	@meson configure build --prefix $(abspath $(PREFIX))
@@ -57,4 +72,4 @@ install: build
 	@meson install -C build --no-rebuild --quiet
 
 clean:
-	rm -rf build build-asan night.png
+	rm -rf build build-asan build-coverage build-fuzz night.png

@@ -1,6 +1,6 @@
 #!/bin/sh
-# install-deps.sh [build|check]: sees what is missing to build (default), or to build and test, says what and why, and
-# installs it where apt-get is. Says and does nothing when all is there.
+# install-deps.sh [build|check|fuzz|coverage]: sees what is missing to build (default), to build and test, to fuzz, or to measure what
+# tests cover, says what and why, and installs it where apt-get is. Says and does nothing when all is there.
 set -u
 purpose=${1:-build}
 
@@ -50,7 +50,20 @@ need libopenexr-dev "EXR pictures" module OpenEXR
 need libpng-dev "PNG pictures" module libpng
 need libzip-dev "zipped city models" module libzip
 need zlib1g-dev "gzipped city models" module zlib
-if [ "$purpose" = check ]; then
+fuzzer() {
+    have clang || return 1
+    for file in "$(clang -print-resource-dir)"/lib/linux/libclang_rt.fuzzer-*.a; do
+        [ -e "$file" ] && return 0
+    done
+    return 1
+}
+if [ "$purpose" = fuzz ]; then
+    need "clang libclang-rt-14-dev llvm-14" "libFuzzer and the sanitizers" fuzzer
+fi
+if [ "$purpose" = coverage ]; then
+    need gcovr "counts the lines that were run" have gcovr
+fi
+if [ "$purpose" = check ] || [ "$purpose" = coverage ]; then
     need g++ "tests that the headers serve C++ too" cplusplus
     need libcmocka-dev "unit tests" module cmocka
     need glslang-tools "tests that the estimator compiles as GLSL" have glslangValidator

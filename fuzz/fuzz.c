@@ -1,0 +1,141 @@
+#include "fuzz.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <unistd.h>
+
+void fuzz_broken(const char *file, int line, const char *what) {
+    fprintf(stderr, "%s:%d: broken promise: %s\n", file, line, what);
+    abort();
+}
+
+static void count_error(void *user, noc_log_level level, const char *text) {
+    FUZZ_REQUIRE(text && *text);
+    *(int *)user += level == NOC_LOG_ERROR;
+}
+
+noc_log *fuzz_log(int *errors) {
+    return noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = count_error, .user = errors });
+}
+
+int fuzz_parts(const uint8_t *data, size_t size, fuzz_part parts[FUZZ_PARTS]) {
+    parts[0] = (fuzz_part){ data, size };
+    if (size < FUZZ_MAGIC || memcmp(data, FUZZ_WORD, FUZZ_MAGIC))
+        return 1;
+    const uint8_t *end = data + size;
+    int n = 0;
+    for (data += FUZZ_MAGIC; n < FUZZ_PARTS && end - data >= 4; n++) {
+        uint32_t length;
+        memcpy(&length, data, 4);
+        data += 4;
+        length = (uint32_t)NOC_MIN((size_t)length, (size_t)(end - data));
+        parts[n] = (fuzz_part){ data, length };
+        data += length;
+    }
+    if (!n)
+        parts[n++] = (fuzz_part){ end, 0 };
+    return n;
+}
+
+/* ---- files ---- */
+
+static char folder[64];
+
+static void remove_folder(void) {
+    char *command = noc_format("rm -rf '%s'", folder);
+    if (system(command))
+        fprintf(stderr, "fuzz: cannot remove %s\n", folder);
+    free(command);
+}
+
+char *fuzz_file(const char *name, fuzz_part content) {
+    if (!*folder) {
+        snprintf(folder, sizeof(folder), "%s/nocturne-fuzz-XXXXXX", access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm");
+        FUZZ_REQUIRE(mkdtemp(folder));
+        atexit(remove_folder);
+    }
+    char *path = noc_format("%s/%s", folder, name);
+    FILE *f = fopen(path, "wb");
+    FUZZ_REQUIRE(f && fwrite(content.data, 1, content.size, f) == content.size && !fclose(f));
+    return path;
+}
+
+/* ---- a sink ---- */
+
+static noc_status crs(void *ctx, const char *name, const char *place, bool *lat_first) {
+    fuzz_sink *s = ctx;
+    s->told = true;
+    s->sum += (double)((name ? strlen(name) : 0) + strlen(place));
+    *lat_first = s->lat_first;
+    return NOC_OK;
+}
+
+static noc_status begin_object(void *ctx, const geo_object *object) {
+    fuzz_sink *s = ctx;
+    FUZZ_REQUIRE(!s->in_object && object->kind < GEO_KIND_COUNT && object->lod >= -1 && object->lod <= 4);
+    s->in_object = true;
+    s->sum += (double)strlen(object->id);
+    return NOC_OK;
+}
+
+static noc_status polygon(void *ctx, const geo_polygon *p) {
+    fuzz_sink *s = ctx;
+    FUZZ_REQUIRE(s->in_object && s->told && p->ring_count && p->cls < NOC_CLASS_COUNT);
+    const double *xyz = p->xyz;
+    for (size_t r = 0; r < p->ring_count; r++) {
+        FUZZ_REQUIRE(p->ring_size[r] >= 3);
+        for (size_t i = 0; i < 3 * p->ring_size[r]; i++)
+            s->sum += *xyz++;
+    }
+    s->sum += (double)strlen(p->id);
+    return NOC_OK;
+}
+
+static noc_status end_object(void *ctx) {
+    fuzz_sink *s = ctx;
+    FUZZ_REQUIRE(s->in_object);
+    s->in_object = false;
+    return NOC_OK;
+}
+
+static noc_status lamp(void *ctx, const geo_lamp *l) {
+    fuzz_sink *s = ctx;
+    FUZZ_REQUIRE(isfinite(l->xyz[0]) && isfinite(l->xyz[1]) && l->count >= 0);
+    s->sum += l->xyz[0] + l->xyz[1] + l->xyz[2] + (double)strlen(l->id);
+    return NOC_OK;
+}
+
+static bool progress(void *ctx, double done) {
+    (void)ctx;
+    FUZZ_REQUIRE(done >= 0 && done <= 1);
+    return true;
+}
+
+void fuzz_sink_start(fuzz_sink *s, noc_log *log) {
+    *s = (fuzz_sink){ 0 };
+    s->sink = (geo_sink){ .ctx = s, .log = log, .issues = geo_issues_create(), .crs = crs, .begin_object = begin_object,
+                          .polygon = polygon, .end_object = end_object, .lamp = lamp, .progress = progress };
+}
+
+void fuzz_sink_end(fuzz_sink *s) {
+    volatile double keep = s->sum;
+    (void)keep;
+    geo_issues_destroy(s->sink.issues);
+}
+
+void fuzz_check_scene(const noc_scene *scene) {
+    for (size_t i = 0; i < scene->indices.len; i++) {
+        size_t at = 3 * (size_t)scene->indices.data[i];
+        FUZZ_REQUIRE(at + 2 < scene->positions.len);
+        const float *p = &scene->positions.data[at];
+        FUZZ_REQUIRE(isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]));
+    }
+    for (size_t i = 0; i < scene->lights.len; i++) {
+        const noc_light_record *r = &scene->lights.data[i];
+        for (int k = 0; k < 3; k++)
+            FUZZ_REQUIRE(isfinite(r->p[k]) && isfinite(r->e[k]) && r->e[k] >= 0);
+    }
+    noc_camera camera;
+    if (noc_scene_city_triangles(scene))
+        FUZZ_REQUIRE(noc_scene_camera(scene, NOC_VIEW_OWN, 1.5, &camera) == NOC_OK);
+}

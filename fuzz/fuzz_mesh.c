@@ -1,0 +1,44 @@
+/* Meshes to a committed scene: glTF and GLB (FUZZ_GLTF 1), or OBJ. A second part is the buffer or material library
+ * beside it. */
+#include "fuzz.h"
+
+#include "import/import.h"
+
+static noc_status as_it_is(void *ctx, double *xyz, size_t count) {
+    double *sum = ctx;
+    for (size_t i = 0; i < 3 * count; i++)
+        *sum += xyz[i];
+    return NOC_OK;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    fuzz_part part[FUZZ_PARTS];
+    int n = fuzz_parts(data, size, part), errors = 0;
+    const noc_reader *reader = FUZZ_GLTF ? &noc_reader_gltf : &noc_reader_mesh;
+    noc_log *log = fuzz_log(&errors);
+    noc_scene *scene = noc_scene_create(log);
+    geo_issues *issues = geo_issues_create();
+    noc_import_params params = noc_import_default_params();
+    double sum = 0;
+    char *beside = fuzz_file(FUZZ_GLTF ? "side.bin" : "side.mtl", n > 1 ? part[1] : (fuzz_part){ data, 0 });
+    char *path = fuzz_file(FUZZ_GLTF ? "mesh.gltf" : "mesh.obj", part[0]);
+    const char *format;
+    noc_stream *stream = noc_stream_open(path, log);
+    noc_status status = NOC_ERR_IO;
+    if (stream)
+        status = reader->read_mesh(path, stream, &params, scene, &(mesh_place){ &sum, as_it_is }, issues, &format);
+    FUZZ_REQUIRE(errors == (status != NOC_OK));
+    if (!status) {
+        FUZZ_REQUIRE(noc_scene_commit(scene) == NOC_OK);
+        fuzz_check_scene(scene);
+    }
+    noc_stream_close(stream);
+    geo_issues_destroy(issues);
+    noc_scene_destroy(scene);
+    noc_log_destroy(log);
+    free(beside);
+    free(path);
+    volatile double keep = sum;
+    (void)keep;
+    return 0;
+}

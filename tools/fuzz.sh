@@ -1,0 +1,88 @@
+#!/bin/sh
+# fuzz.sh BUILD SECONDS [CORPUS...]: runs the fuzzer of each corpus for so long, on what it found before and on the seeds, and prints
+# a table. Inputs that break something lie in BUILD/findings/CORPUS, new ones in BUILD/corpus/CORPUS. Fails where something was found.
+# fuzz.sh BUILD table: the table of all runs so far.
+set -u
+build=$1 seconds=${2:-60}
+shift 2
+root=$(cd "$(dirname "$0")/.." && pwd)
+mkdir -p "$build" && build=$(cd "$build" && pwd) || exit 1
+
+# corpus, program, longest input, dictionary, endings of real data in shared/ that it starts from, too
+corpora='
+citygml citygml 32768 citygml gml
+gltf gltf 16384 gltf gltf,glb
+obj obj 8192 obj obj
+csv lamps 4096 lamps csv
+overpass lamps 8192 lamps json
+geojson lamps 8192 lamps geojson
+osm lamps 8192 lamps osm
+pbf lamps 8192 lamps pbf
+gpkg lamps 65536 lamps gpkg
+shp lamps 8192 lamps shp
+fgb lamps 8192 lamps fgb
+stream stream 4096 - gz,zip
+png image 4096 - png
+exr image 8192 - exr
+compare image 8192 - -
+crs crs 2048 crs -
+spec spec 8192 spec -
+pipeline pipeline 32768 citygml -
+'
+
+# All of a corpus' runs: executions, coverage (edges that an input reaches, of the last run), findings.
+table() {
+    printf '%-10s %12s %8s %8s %9s %9s\n' corpus executions 'a second' edges inputs findings
+    echo "$corpora" | while read -r corpus program rest; do
+        [ -n "$corpus" ] && [ -s "$build/fuzz-logs/$corpus" ] || continue
+        awk -v corpus="$corpus" -v inputs="$(ls "$build/corpus/$corpus" | wc -l)" -v found="$(ls "$build/findings/$corpus" | wc -l)" '
+            { runs += $1; time += $2; if ($3) edges = $3 }
+            END { printf "%-10s %12d %8.0f %8d %9d %9d\n", corpus, runs, time ? runs / time : 0, edges, inputs, found }' "$build/fuzz-logs/$corpus"
+    done
+}
+
+# fuzz CORPUS PROGRAM LENGTH DICTIONARY ENDINGS: a run that breaks something is followed by another, until the time is over.
+fuzz() {
+    now=$build/corpus/$1 found=$build/findings/$1 log=$build/fuzz-logs/$1.log
+    mkdir -p "$now" "$found" "$build/fuzz-logs" "$build/fuzz/seeds/$1"
+    seeds="$build/fuzz/seeds/$1"
+    [ -d "$root/fuzz/found/$1" ] && seeds="$seeds $root/fuzz/found/$1"
+    if [ "$5" != - ] && [ -d "$root/../shared/data" ]; then
+        rm -rf "$build/real/$1" && mkdir -p "$build/real/$1"
+        for ending in $(echo "$5" | tr , ' '); do
+            find "$root/../shared/data" -type f -name "*.$ending" -size "-$(($3 / 1024))k" -exec ln -sf -t "$build/real/$1" {} +
+        done
+        seeds="$seeds $build/real/$1"
+    fi
+    # Assimp leaks where it throws, which lsan.supp knows by its name: that takes the slow way up the stack.
+    case $2 in obj|pipeline) export ASAN_OPTIONS="fast_unwind_on_malloc=0:$ASAN_OPTIONS";; esac
+    dictionary=
+    [ "$4" = - ] || dictionary=-dict=$build/fuzz/dictionaries/$4.dict
+    end=$(($(date +%s) + seconds))
+    while left=$((end - $(date +%s))) && [ $left -gt 0 ]; do
+        start=$(date +%s)
+        # shellcheck disable=SC2086 # lists of words
+        "$build/fuzz/fuzz_$2" $dictionary -max_len="$3" -max_total_time=$left -timeout=60 -rss_limit_mb=4096 -print_final_stats=1 \
+            -artifact_prefix="$found/" -reload=0 -close_fd_mask=1 "$now" $seeds >"$log" 2>&1 </dev/null
+        status=$?
+        awk -v time=$(($(date +%s) - start)) '
+            /stat::number_of_executed_units/ { runs = $2 }
+            / cov: / { for (i = 1; i < NF; i++) if ($i == "cov:") edges = $(i + 1); n = $1; sub(/#/, "", n); last = n }
+            END { print (runs ? runs : last + 0), time, edges }' "$log" >>"$build/fuzz-logs/$1"
+        [ $status = 0 ] && break
+        cp "$log" "$build/fuzz-logs/$1.broken.$(date +%s).log"
+    done
+}
+
+if [ "$seconds" = table ]; then
+    table
+    exit
+fi
+export ASAN_OPTIONS="detect_leaks=1:allocator_may_return_null=1:${ASAN_OPTIONS:-}" UBSAN_OPTIONS="print_stacktrace=1"
+export LSAN_OPTIONS="suppressions=$root/tests/lsan.supp:print_suppressions=0"
+echo "$corpora" | while read -r corpus program length dictionary endings; do
+    [ -n "$corpus" ] || continue
+    case " $* " in "  "|*" $corpus "*) fuzz "$corpus" "$program" "$length" "$dictionary" "$endings";; esac
+done
+table
+[ -z "$(find "$build/findings" -type f 2>/dev/null | head -n 1)" ] || { echo "findings: $build/findings" >&2; exit 1; }
