@@ -12,6 +12,7 @@
 #define BULB_RADIUS 0.045
 #define BULB_LUMENS 110.0
 #define SPOT_LUMENS 2600.0
+#define BENCH_LUMENS 12.0
 
 static const float colours[][3] = { { 1, .06f, .03f }, { 1, .42f, .04f }, { 1, .80f, .18f }, { .10f, 1, .12f }, { .06f, .35f, 1 }, { .75f, .08f, .9f } };
 
@@ -75,6 +76,23 @@ static void spot(town *t, vec2 post, vec2 out, int colour) {
     t->failed = t->failed || noc_scene_add_light(t->scene, &l) < 0;
 }
 
+/* A bench with a dim lamp under its seat, which no other light reaches: what a picker of lights overlooks first. */
+static void bench(town *t, vec2 p, vec2 along) {
+    const double r = 0.06, z = TOWN_KERB + 0.40, luminance = BENCH_LUMENS / (3.14159265358979 * 3.14159265358979 * r * r);
+    vec2 c[4], across = { -along.y, along.x };
+    town_rect(p, along, 1.1, 0.3, c);
+    town_box(t, TM_METAL, c, z, z + 0.08);
+    for (int side = -1; side < 2; side++) { /* two feet, and a panel behind */
+        vec2 at = side ? (vec2){ p.x + side * 1.0 * along.x, p.y + side * 1.0 * along.y } : (vec2){ p.x - 0.27 * across.x, p.y - 0.27 * across.y };
+        town_rect(at, along, side ? 0.05 : 1.1, side ? 0.25 : 0.03, c);
+        town_box(t, TM_METAL, c, TOWN_KERB, z);
+    }
+    noc_light l = { .kind = NOC_LIGHT_DISC, .position = { p.x, p.y, z - 0.02 }, .direction = { 0, 0, -1 }, .radius = r, .name = "bench light" };
+    for (int k = 0; k < 3; k++)
+        l.emission[k] = (float)luminance * colours[3][k];
+    t->failed = t->failed || noc_scene_add_light(t->scene, &l) < 0;
+}
+
 static vec2 in_plan(int axis, double across, double along) {
     return axis == 0 ? (vec2){ across, along } : (vec2){ along, across };
 }
@@ -113,6 +131,10 @@ static void dress(town *t) {
     town_flush(t, "party lights");
     const town_gap *street = &t->axis[0].gaps.data[2]; /* a narrow one, where the strings hang low and close */
     double along = t->axis[1].gaps.data[1].hi;
+    vec2 seat = town_warp(t, (vec2){ street->hi + 1.3, along + 8.5 }), end = town_warp(t, (vec2){ street->hi + 1.3, along + 9.5 });
+    double length = sqrt((end.x - seat.x) * (end.x - seat.x) + (end.y - seat.y) * (end.y - seat.y));
+    bench(t, seat, (vec2){ (end.x - seat.x) / length, (end.y - seat.y) / length });
+    town_flush(t, "bench");
     vec2 eye = town_warp(t, (vec2){ street->lo + 1.8, along - 3 }), target = town_warp(t, (vec2){ street->hi - 2, along + 35 });
     noc_camera c = { .eye = { eye.x, eye.y, 1.9 }, .target = { target.x, target.y, 5.0 }, .up = { 0, 0, 1 }, .fov_deg = 58 };
     t->failed = t->failed || noc_scene_set_camera(t->scene, &c) != NOC_OK;

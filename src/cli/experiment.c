@@ -144,6 +144,7 @@ static int work_camera(experiment_lab *lab, size_t camera) {
     for (size_t i = 0; !status && i < count; i++, lab->runs_done++)
         status = experiment_measure(lab, &runs[i]);
     cli_progress_clear();
+    lab->cameras_done++;
     status = status ? status : experiment_make_crops(lab, camera);
     noc_image_destroy(lab->reference);
     lab->reference = NULL;

@@ -27,6 +27,13 @@ typedef struct experiment_pose {
     double eye[3], target[3];
 } experiment_pose;
 
+/* Parts of a camera's picture that are shown enlarged below it, in frames of a colour each. */
+enum { EXPERIMENT_INSETS = 4 };
+typedef struct experiment_inset {
+    const char *name, *text;
+    int box[4]; /* x, y, width, height */
+} experiment_inset;
+
 /* A camera of one scene. One that moves arrives at its pose in its last frame, which is the one that is measured: so one
  * reference serves the camera at rest and all motions that end there. */
 typedef struct experiment_camera {
@@ -39,6 +46,8 @@ typedef struct experiment_camera {
     double orbit, pan;      /* turned about the target and about the eye in the motion, degrees, counter-clockwise from above */
     int cut;                /* so many of the first frames show what `before` sees */
     experiment_pose before;
+    experiment_inset insets[EXPERIMENT_INSETS];
+    int inset_count;
 } experiment_camera;
 
 typedef struct experiment_config {
@@ -140,7 +149,8 @@ typedef struct experiment_lab {
     experiment_run *runs;     /* camera by camera, repetition, configuration */
     size_t run_count, runs_done;
     size_t rows_done, rows_old; /* old: of earlier sessions */
-    double started;
+    double started, reference_seconds;
+    size_t references_made, cameras_done;
     char path[32];            /* code that ran: "avx2 x8" */
     double *sum;              /* room for the mean of a picture */
     /* of the present scene and camera */
@@ -252,6 +262,20 @@ bool experiment_has_bars(const experiment_spec *spec); /* frame times */
 int experiment_bars(const experiment_lab *lab, const char *name);
 bool experiment_has_dots(const experiment_spec *spec); /* errors */
 int experiment_dots(const experiment_lab *lab, const char *name);
+
+/* experiment_sheet.c: a contact sheet, a labelled panel a picture: its crop, or all of it above its insets. */
+typedef struct experiment_sheet {
+    const experiment_crop *crop;
+    const experiment_camera *camera;
+    uint8_t *rgb;               /* owned */
+    int width, height;          /* px */
+    int panel_width, panel_height, picture_height; /* without and with the label and the insets */
+} experiment_sheet;
+int experiment_start_sheet(experiment_sheet *sheet, const experiment_crop *crop, const experiment_camera *camera, size_t panels);
+/* rgb: 8-bit, of a whole picture so wide; NULL: the label alone. */
+void experiment_add_panel(experiment_sheet *sheet, size_t panel, const uint8_t *rgb, int width, const char *label);
+const char *experiment_inset_colour(int inset); /* "red" */
+bool experiment_read_box(const char *text, int width, int height, int box[4]); /* "x,y,width,height" inside a picture */
 
 /* experiment_crops.c: name is that of one shown frame's sheet; free() it. */
 char *experiment_sheet_name(const experiment_lab *lab, size_t camera, int frame);

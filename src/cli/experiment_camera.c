@@ -28,7 +28,14 @@ const noc_option *experiment_camera_options(void) {
 
 static const cli_set pose_sets[] = { { experiment_camera_options, 0, NULL }, { NULL } };
 static const cli_set path_sets[] = { { path_table, 0, NULL }, { NULL } };
-static const char *const camera_others[] = { "name", "path", NULL }, *const path_others[] = { "before", NULL };
+static const noc_option inset_options[] = {
+    { "box", "Inset", NOC_OPTION_TEXT, offsetof(experiment_inset, text), 0, 0, NULL, "", "" },
+    { NULL },
+};
+static const noc_option *inset_table(void) { return inset_options; }
+static const cli_set inset_sets[] = { { inset_table, 0, NULL }, { NULL } };
+static const char *const inset_others[] = { "name", NULL };
+static const char *const camera_others[] = { "name", "path", "insets", NULL }, *const path_others[] = { "before", NULL };
 
 /* others: members of the object that are no options of a pose. */
 static int read_pose(experiment_spec *spec, const char *place, json_t *object, const char *const *others, experiment_pose *pose) {
@@ -72,9 +79,30 @@ static int read_path(experiment_spec *spec, const char *place, json_t *path, C *
     return before ? read_pose(spec, inner, before, NULL, &camera->before) : CLI_OK;
 }
 
+static int read_insets(experiment_spec *spec, const char *place, json_t *insets, C *camera) {
+    size_t i;
+    json_t *object;
+    if (insets && (!json_is_array(insets) || json_array_size(insets) > EXPERIMENT_INSETS))
+        return experiment_wrong(spec, place, "insets must be an array of up to %d, {\"name\": ..., \"box\": [x, y, width, height]}", EXPERIMENT_INSETS);
+    json_array_foreach(insets, i, object) {
+        experiment_inset *inset = &camera->insets[i];
+        char inner[96];
+        snprintf(inner, sizeof(inner), "%s: insets[%zu]", place, i);
+        int status = experiment_set_all(spec, inner, object, inset_sets, inset_others, inset);
+        status = status ? status : experiment_read_name(spec, inner, object, &inset->name);
+        if (status)
+            return status;
+        if (!inset->text || !experiment_read_box(inset->text, spec->width, spec->height, inset->box))
+            return experiment_wrong(spec, inner, "box must be [x, y, width, height] inside the picture of %d x %d px", spec->width, spec->height);
+        camera->inset_count++;
+    }
+    return CLI_OK;
+}
+
 static int read_camera(experiment_spec *spec, const char *place, json_t *object, C *camera) {
     int status = read_pose(spec, place, object, camera_others, &camera->pose);
     status = status ? status : experiment_read_name(spec, place, object, &camera->name);
+    status = status ? status : read_insets(spec, place, json_object_get(object, "insets"), camera);
     char inner[80];
     snprintf(inner, sizeof(inner), "%s: path", place);
     json_t *path = json_object_get(object, "path");

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { GAP = 4, PANEL = 320, MOST_COLUMNS = 4 };
+enum { PANEL = 320, MOST_COLUMNS = 4 };
 
 /* A picture at a time is read and held: a spec may have a hundred configurations. */
 typedef struct panels {
@@ -99,39 +99,28 @@ static int choose(const panels *p, experiment_crop *crop) {
     return status;
 }
 
-static void copy_panel(const panels *p, const experiment_crop *crop, const uint8_t *from, uint8_t *to, size_t stride) {
-    for (int y = 0; y < crop->height * crop->scale; y++) {
-        const uint8_t *row = from + ((size_t)(crop->y + y / crop->scale) * (size_t)p->width + (size_t)crop->x) * 3;
-        for (int x = 0; x < crop->width * crop->scale; x++)
-            memcpy(to + (size_t)y * stride + (size_t)x * 3, row + (size_t)(x / crop->scale) * 3, 3);
-    }
-}
-
 static int write_sheet(const panels *p, const experiment_crop *crop, const char *name) {
-    size_t count = p->lab->spec.config_count + 1;
-    int columns = crop->columns, rows = ((int)count + columns - 1) / columns, status = CLI_OK;
-    int w = crop->width * crop->scale, h = crop->height * crop->scale;
-    int width = columns * w + (columns - 1) * GAP, height = rows * h + (rows - 1) * GAP;
-    if (width > NOC_IMAGE_MAX_SIDE || height > NOC_IMAGE_MAX_SIDE) {
+    const experiment_spec *spec = &p->lab->spec;
+    experiment_sheet sheet;
+    int status = experiment_start_sheet(&sheet, crop, &spec->cameras[p->camera], spec->config_count + 1);
+    if (status) {
         cli_error("%s/%s: it would be larger than %d px", p->lab->folder, name, NOC_IMAGE_MAX_SIDE);
-        return CLI_FAILURE;
+        return status;
     }
-    uint8_t *sheet = cli_alloc((size_t)width * (size_t)height * 3);
-    memset(sheet, 128, (size_t)width * (size_t)height * 3);
-    for (size_t i = 0; i < count && !status; i++) {
-        size_t x = i % (size_t)columns * (size_t)(w + GAP), y = i / (size_t)columns * (size_t)(h + GAP);
+    experiment_add_panel(&sheet, 0, p->reference, p->width, "reference");
+    for (size_t i = 0; i < spec->config_count && !status; i++) {
         uint8_t *picture = NULL;
-        status = i ? read_picture(p, i - 1, &picture) : CLI_OK;
-        if (!i || picture)
-            copy_panel(p, crop, i ? picture : p->reference, sheet + (y * (size_t)width + x) * 3, (size_t)width * 3);
+        status = read_picture(p, i, &picture);
+        if (!status)
+            experiment_add_panel(&sheet, i + 1, picture, p->width, spec->configs[i].name);
         free(picture);
     }
     char *path = cli_format("%s/%s", p->lab->folder, name);
     const char *keys[] = { "picture" }, *values[] = { "the reference, and one frame of each configuration, row by row" };
-    if (!status && noc_image_write_srgb8(sheet, width, height, path, &(noc_image_meta){ 1, keys, values }, p->lab->log))
+    if (!status && noc_image_write_srgb8(sheet.rgb, sheet.width, sheet.height, path, &(noc_image_meta){ 1, keys, values }, p->lab->log))
         status = CLI_FAILURE;
     free(path);
-    free(sheet);
+    free(sheet.rgb);
     return status;
 }
 
@@ -142,6 +131,8 @@ int experiment_make_crops(experiment_lab *lab, size_t camera) {
     panels p = { lab, camera, 0, spec->width, spec->height, ev100, display(lab->reference, ev100) };
     *crop = (experiment_crop){ .x = spec->crop_box[0], .y = spec->crop_box[1], .width = spec->crop_box[2], .height = spec->crop_box[3] };
     int motion = spec->cameras[camera].frames, status = CLI_OK;
+    if (spec->cameras[camera].inset_count)
+        *crop = (experiment_crop){ .width = spec->width, .height = spec->height };
     for (size_t i = 0; !status && i < (motion ? 1 : spec->shown_count); i++) {
         p.frame = motion ? motion : spec->shown[i];
         if (!crop->width)

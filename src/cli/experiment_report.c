@@ -227,8 +227,17 @@ static void print_crops(FILE *out, const experiment_lab *lab, size_t camera) {
         fprintf(out, "%s%s", !mean ? "frame" : frames > 1 ? "the means of frame" : "the mean of frame", mean || frames > 1 ? "s " : " ");
     for (size_t i = 0; i < frames && !motion; i++)
         fprintf(out, mean ? "%s1 to %d" : "%s%d", i ? ", " : "", spec->shown[i]);
-    fprintf(out, " of each configuration, row by row as in this table: the part of %d x %d px at (%d, %d), enlarged %d times, all "
-                 "with the reference's exposure.\n\n|", crop->width, crop->height, crop->x, crop->y, crop->scale);
+    fputs(" of each configuration, row by row as in this table: ", out);
+    const experiment_camera *c = &spec->cameras[camera];
+    if (!c->inset_count)
+        fprintf(out, "the part of %d x %d px at (%d, %d), enlarged %d times", crop->width, crop->height, crop->x, crop->y, crop->scale);
+    for (int i = 0; i < c->inset_count; i++) {
+        const int *box = c->insets[i].box;
+        fprintf(out, "%s%s is ", i ? "; " : "", experiment_inset_colour(i));
+        experiment_text(out, c->insets[i].name);
+        fprintf(out, ", %d x %d px at (%d, %d)", box[2], box[3], box[0], box[1]);
+    }
+    fputs(". All have the reference's exposure.\n\n|", out);
     size_t columns = (size_t)crop->columns, count = spec->config_count + 1;
     for (size_t i = 0; i < (count + columns - 1) / columns * columns; i++) {
         experiment_cell(out, !i ? "reference" : i < count ? spec->configs[i - 1].name : "");

@@ -27,9 +27,11 @@ static bool frame_progress(void *user, const char *what, double done) {
     const experiment_config *config = &lab->spec.configs[m->run->config];
     double share = config->seconds > 0 ? m->cpu / config->seconds : (m->frame - 1 + done) / m->frames;
     share = ((double)lab->runs_done + share) / (double)lab->run_count;
-    double spent = cli_now() - lab->started;
+    double spent = cli_now() - lab->started - lab->reference_seconds, left = spent / share - spent;
+    if (lab->references_made) /* those to come, as if none were there */
+        left += lab->reference_seconds / (double)lab->references_made * (double)(lab->spec.camera_count - lab->cameras_done - 1);
     /* What earlier sessions made passes in no time, so time left is told where there was nothing. */
-    cli_progress_show(share, !lab->rows_old && spent > 2 ? spent / share - spent : -1, "%s, frame %d", config->name, m->frame);
+    cli_progress_show(share, !lab->rows_old && spent > 2 ? left : -1, "%s, frame %d", config->name, m->frame);
     return !cli_interrupted();
 }
 

@@ -9,6 +9,8 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#define LONG_WAIT 10 /* s */
+
 /* FNV-1a of 128 bits: no guard against malice, but no two experiments meet by chance. */
 typedef struct hash_state { unsigned __int128 h; } hash_state;
 
@@ -27,9 +29,13 @@ static void hash_finish(const hash_state *hash, char key[EXPERIMENT_KEY]) {
     snprintf(key, EXPERIMENT_KEY, "%016llx%016llx", (unsigned long long)(hash->h >> 64), (unsigned long long)hash->h);
 }
 
-/* Each option by name and value: an option that is new to the tables is part of the hash without a word here. */
-static void hash_options(hash_state *hash, const noc_option *table, const void *params) {
-    for (const noc_option *o = table; o->name; o++) {
+/* Each option by name and value: an option that is new to the tables is part of the hash without a word here. effective: those that
+ * change nothing beside the others are left out. */
+static void hash_options(hash_state *hash, const noc_render_params *params, bool effective) {
+    char why[160];
+    for (const noc_option *o = noc_render_options(); o->name; o++) {
+        if (effective && noc_option_idle(o, noc_render_options(), params, why, sizeof(why)))
+            continue;
         int n = noc_option_get(o, params, NULL, 0);
         char *value = cli_alloc((size_t)n + 1);
         noc_option_get(o, params, value, (size_t)n + 1);
@@ -89,16 +95,34 @@ static void name_reference(experiment_lab *lab) {
     hash_text(&hash, noc_version());
     hash_text(&hash, lab->content);
     hash_camera(&hash, &lab->camera);
-    hash_options(&hash, noc_render_options(), &spec->reference.params);
+    hash_options(&hash, &spec->reference.params, true);
     hash_bytes(&hash, &spec->reference.frames, sizeof(spec->reference.frames));
     hash_bytes(&hash, &spec->ceiling, sizeof(spec->ceiling)); /* of the noise that is kept beside it */
     hash_finish(&hash, lab->reference_key);
 }
 
+typedef struct making {
+    const char *view;
+    int frame, frames;
+    double started;
+} making;
+
 static bool frame_progress(void *user, const char *what, double done) {
-    const int *at = user; /* frame, of how many */
-    cli_progress_show((at[0] - 1 + done) / at[1], -1, "reference, frame %d of %d", at[0], at[1]);
+    const making *m = user;
+    double share = (m->frame - 1 + done) / m->frames, spent = cli_now() - m->started;
+    cli_progress_show(share, spent > 2 && share > 0 ? spent / share - spent : -1, "%s: reference, frame %d of %d", m->view, m->frame, m->frames);
     return !cli_interrupted();
+}
+
+/* What is waited for is said ahead, and how long as soon as that shows. */
+static void tell_estimate(const experiment_lab *lab, const making *m) {
+    char took[32];
+    double left = (cli_now() - m->started) / m->frame * (m->frames - m->frame);
+    if (lab->args->common.quiet || left < LONG_WAIT)
+        return;
+    cli_progress_clear();
+    printf("%s: reference, about %s to go\n", m->view, cli_seconds(took, left));
+    fflush(stdout);
 }
 
 static void ignore(void *user, noc_log_level level, const char *text) {}
@@ -117,21 +141,23 @@ static noc_image *read_cached(const experiment_lab *lab, const char *path) {
     return NULL;
 }
 
-static int render_reference(experiment_lab *lab, const char *path, experiment_noise *noise) {
+static int render_reference(experiment_lab *lab, const char *view, const char *path, experiment_noise *noise) {
     const experiment_spec *spec = &lab->spec;
     noc_renderer *renderer = noc_renderer_create(lab->scene, &(noc_renderer_params){ .threads = lab->args->threads }, lab->log);
     noc_status status = renderer ? NOC_OK : NOC_ERR_MEMORY;
-    int at[2] = { 1, spec->reference.frames }, halfway = spec->reference.frames / 2;
-    int parts = at[1] < EXPERIMENT_BATCHES ? at[1] : EXPERIMENT_BATCHES;
+    making m = { view, 1, spec->reference.frames, cli_now() };
+    int halfway = m.frames / 2, parts = m.frames < EXPERIMENT_BATCHES ? m.frames : EXPERIMENT_BATCHES;
     experiment_batches batches = { .count = 0 };
     noc_image *half = NULL;
-    for (; !status && at[0] <= at[1]; at[0]++) {
-        status = noc_renderer_frame(renderer, &lab->camera, &spec->reference.params, &(noc_progress){ frame_progress, at });
-        bool part_ends = at[0] * parts / at[1] > batches.count;
-        noc_image *image = !status && (part_ends || at[0] == halfway) ? noc_renderer_image(renderer) : NULL;
+    for (; !status && m.frame <= m.frames; m.frame++) {
+        status = noc_renderer_frame(renderer, &lab->camera, &spec->reference.params, &(noc_progress){ frame_progress, &m });
+        if (!status && m.frame == (m.frames > 16 ? 3 : 1)) /* the first frames build what they need and learn */
+            tell_estimate(lab, &m);
+        bool part_ends = m.frame * parts / m.frames > batches.count;
+        noc_image *image = !status && (part_ends || m.frame == halfway) ? noc_renderer_image(renderer) : NULL;
         if (image && part_ends)
-            experiment_add_batch(&batches, image, at[0]);
-        if (at[0] == halfway)
+            experiment_add_batch(&batches, image, m.frame);
+        if (m.frame == halfway)
             half = image;
         else
             noc_image_destroy(image);
@@ -163,24 +189,31 @@ int experiment_make_reference(experiment_lab *lab, size_t camera) {
         return CLI_FAILURE;
     int status = CLI_OK;
     name_reference(lab);
-    char *path = cli_format("%s/reference-%s.exr", lab->cache, lab->reference_key), took[32];
+    char *path = cli_format("%s/reference-%s.exr", lab->cache, lab->reference_key), took[32], frames[64];
     lab->reference = read_cached(lab, path);
+    char *view = cli_format("%s, %s", spec->scenes[scene].name, spec->cameras[camera].name);
     bool quiet = lab->args->common.quiet;
     experiment_noise *noise = &lab->noises[camera];
     if (lab->reference) {
         *noise = experiment_read_noise(path);
         if (!quiet)
-            printf("%s, %s: reference from %s\n", spec->scenes[scene].name, spec->cameras[camera].name, path);
+            printf("%s: reference from %s\n", view, path);
     } else {
         double start = cli_now();
-        status = render_reference(lab, path, noise);
+        if (!quiet)
+            printf("%s: making the reference, %s of %d x %d px\n", view, cli_many(frames, (uint64_t)spec->reference.frames, "frame"), spec->width,
+                   spec->height);
+        fflush(stdout);
+        status = render_reference(lab, view, path, noise);
+        lab->reference_seconds += cli_now() - start;
+        lab->references_made++;
         if (!status && !quiet)
-            printf("%s, %s: reference made in %s: %s\n", spec->scenes[scene].name, spec->cameras[camera].name,
-                   cli_seconds(took, cli_now() - start), path);
+            printf("%s: reference made in %s: %s\n", view, cli_seconds(took, cli_now() - start), path);
     }
     if (!status && !quiet && cli_is_black(lab->reference))
-        cli_error("warning: %s, %s: the reference is black, so errors say nothing", spec->scenes[scene].name, spec->cameras[camera].name);
+        cli_error("warning: %s: the reference is black, so errors say nothing", view);
     fflush(stdout);
+    free(view);
     free(path);
     return status;
 }
@@ -238,7 +271,7 @@ void experiment_run_key(const experiment_lab *lab, experiment_run *run) {
     hash_text(&hash, spec->configs[run->config].name);
     hash_text(&hash, experiment_machine()); /* times of two machines do not mix */
     hash_text(&hash, build_key());
-    hash_options(&hash, noc_render_options(), &params);
+    hash_options(&hash, &params, false);
     for (int frame = 1; frame <= spec->cameras[run->camera].frames; frame++) {
         noc_camera camera = experiment_camera_at(lab, run->camera, frame);
         hash_camera(&hash, &camera);

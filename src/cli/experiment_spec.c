@@ -144,7 +144,7 @@ static int read_lists(S *spec, json_t *root, const experiment_config *shared) {
 }
 
 static int read_size(S *spec) {
-    double size[2], crop[4];
+    double size[2];
     if (!cli_parse_numbers(spec->size, 'x', 2, size) || size[0] != floor(size[0]) || size[1] != floor(size[1]) ||
         !(size[0] >= 1 && size[0] <= NOC_IMAGE_MAX_SIDE && size[1] >= 1 && size[1] <= NOC_IMAGE_MAX_SIDE))
         return experiment_wrong(spec, "size", "\"%.60s\" is not WIDTHxHEIGHT, 1 to %d px a side", spec->size, NOC_IMAGE_MAX_SIDE);
@@ -152,13 +152,8 @@ static int read_size(S *spec) {
     spec->height = (int)size[1];
     if (!spec->crop)
         return CLI_OK;
-    bool right = cli_parse_numbers(spec->crop, ',', 4, crop);
-    for (int i = 0; right && i < 4; i++)
-        right = crop[i] == floor(crop[i]) && crop[i] >= (i > 1) && crop[i] <= NOC_IMAGE_MAX_SIDE;
-    if (!right || crop[0] + crop[2] > size[0] || crop[1] + crop[3] > size[1])
+    if (!experiment_read_box(spec->crop, spec->width, spec->height, spec->crop_box))
         return experiment_wrong(spec, "crop", "\"%.60s\" is no [x, y, width, height] inside the picture", spec->crop);
-    for (int i = 0; i < 4; i++)
-        spec->crop_box[i] = (int)crop[i];
     return CLI_OK;
 }
 

@@ -3,6 +3,7 @@
 #define NOC_COLORMAP_H
 
 #include "base/base.h"
+#include <nocturne/image.h>
 
 /* Equal steps of t are equal steps of colour in Oklab.
  * DIVERGING: two straight lines of equal length from near-white in the middle (t = 0.5) to blue (0) and red (1) of the same
@@ -28,7 +29,7 @@ void canvas_fill(canvas *c, int x, int y, int width, int height, const uint8_t r
 
 /* text.c: 5 x 7 pixel letters in cells of 6, times scale. ASCII; Latin-1 superscript two (0xb2) and multiplication sign (0xd7).
  * Unknown characters are drawn as a box. g, p, q and y reach two pixels below TEXT_HEIGHT. */
-#define TEXT_HEIGHT 7
+#define TEXT_HEIGHT NOC_TEXT_HEIGHT
 int text_width(const char *s, int scale);
 void text_draw(canvas *c, int x, int y, const char *s, int scale, const uint8_t rgb[3]);
 

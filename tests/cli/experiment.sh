@@ -108,8 +108,8 @@ result $? "charts have a bar and dots for each configuration and camera; summary
 if command -v xmllint >/dev/null; then xmllint --noout a/*.svg 2>err; result $? "xmllint agrees"; else skip "xmllint agrees" "no xmllint here"; fi
 sheet=$(for f in a/*.png; do meta "$f" size; done | sort -u)
 panels=$((2 + choices)) columns=$((2 + choices > 4 ? 4 : 2 + choices))
-test "$sheet" = "$((columns * 320 + (columns - 1) * 4)) $(((panels + columns - 1) / columns * (220 + 4) - 4))"
-result $? "crops: the reference and each configuration, a third of the picture enlarged" "$sheet"
+test "$sheet" = "$((columns * 320 + (columns - 1) * 4)) $(((panels + columns - 1) / columns * (22 + 220 + 4) - 4))"
+result $? "crops: the reference and each configuration, a third of the picture enlarged, each under its name" "$sheet"
 
 grep -Eq "^The reference's own noise is a relMSE of about 0\.[0-9]+, clamped 0\.[0-9]+:" a/report.md; result $? "the reference's own noise is told"
 

@@ -157,6 +157,71 @@ for path in ("arrays/errors.svg", "arrays/1-one-own-mean-frames.svg", "arrays/1-
 CHECK
 result $? "plots tell values apart by what they are, and axes end in ticks"
 
+# Insets: parts of the picture below it, enlarged and framed, each in a colour of its own, under their names; and names above pictures.
+spec insets.json '{ "name": "a" }'
+sed -i 's/"shown": \[\]/"shown": [1]/; s/32x18/320x180/
+    s/"view": "own"/"view": "own", "insets": [ { "name": "top", "box": [0, 0, 40, 30] }, { "name": "<knot>", "box": [140, 60, 40, 30] } ]/' insets.json
+run experiment insets.json -o insets --cache cache
+grep -q 'red is top, 40 x 30 px at (0, 0); green is &lt;knot&gt;, 40 x 30 px at (140, 60). All have' insets/report.md && python3 - <<'CHECK'
+import struct, sys, zlib
+def read(path):
+    data = open(path, "rb").read()
+    at, w, h, body = 8, 0, 0, b""
+    while at < len(data):
+        n, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IHDR":
+            w, h, depth, colours = struct.unpack(">IIBB", data[at + 8:at + 18])
+            assert (depth, colours) == (8, 2)
+        elif kind == b"IDAT":
+            body += data[at + 8:at + 8 + n]
+        at += 12 + n
+    raw, rows, last = zlib.decompress(body), [], bytearray(3 * w)
+    for y in range(h):
+        f, line = raw[y * (3 * w + 1)], bytearray(raw[y * (3 * w + 1) + 1:(y + 1) * (3 * w + 1)])
+        for i in range(3 * w):
+            a, b, c = line[i - 3] if i > 2 else 0, last[i], last[i - 3] if i > 2 else 0
+            p = a + b - c
+            paeth = min((a, b, c), key=lambda v: abs(p - v))
+            line[i] = (line[i] + (0, a, b, (a + b) // 2, paeth)[f]) & 255
+        rows.append([tuple(line[3 * x:3 * x + 3]) for x in range(w)])
+        last = line
+    return rows
+sheet = read("insets/1-one-own-frame1.png")
+inset = 158 * 30 // 40 + 1 # two of 158 px, 4 apart
+assert len(sheet[0]) == 2 * 320 + 4 and len(sheet) == 22 + 180 + 4 + inset + 14, (len(sheet[0]), len(sheet))
+red, green, top = (235, 70, 60), (70, 200, 90), 22 + 180 + 4
+for left in (0, 324):
+    assert sheet[22 + 60 - 1][left + 140] == green and sheet[22 + 95 - 4][left + 140] == green # the frame in the picture, outside its box
+    assert sheet[top][left] == red and sheet[top][left + 162] == green and sheet[top + inset - 1][left + 319] == green
+    x, y = left + 162 + 80, top + 60 # in the middle of the second: what the picture shows in the middle of its box
+    assert sheet[y][x] == sheet[22 + 60 + 60 * 30 // inset][left + 140 + 80 * 40 // 158], "enlarged"
+    assert any(c == red for row in sheet[top + inset + 3:top + inset + 10] for c in row[left:left + 60]), "its name"
+# Names: the letter a, of 5 x 7 pixels enlarged twice, above the second panel.
+glyph = [".....", ".....", ".###.", "....#", ".####", "#...#", ".####"]
+for y in range(7):
+    for x in range(5):
+        assert (sheet[2 + 2 * y][324 + 2 + 2 * x] == (235, 235, 235)) == (glyph[y][x] == "#"), (x, y)
+CHECK
+result $? "insets are enlarged, framed and named, and pictures carry their names" "$(cat err)"
+sed 's/\[0, 0, 40, 30\]/[300, 0, 40, 30]/' insets.json >wrong.json
+expect "an inset outside the picture" 2 'wrong.json: cameras\[0\]: insets\[0\]: box must be .* inside the picture of 320 x 180 px' experiment wrong.json -o w
+sed 's/{ "name": "top", "box"/{ "box"/' insets.json >wrong.json
+expect "an inset without a name" 2 'wrong.json: cameras\[0\]: insets\[0\]: it needs a name' experiment wrong.json -o w
+sed 's/"insets": \[/&{}, {}, {}, /' insets.json >wrong.json
+expect "five insets" 2 'wrong.json: cameras\[0\]: insets must be an array of up to 4' experiment wrong.json -o w
+
+# A reference says ahead that it is made; options that change nothing in it make no other of it.
+spec said.json '{ "name": "a" }'
+sed -i 's/"reference": { "rays": 1/"reference": { "method": "ris", "candidates": "lists"/' said.json
+run experiment said.json -o said --cache said-cache
+test $status = 0 && grep -q '^one, own: making the reference, 1 frame of 32 x 18 px$' out; result $? "a reference is announced"
+sed 's/"frames": 1, "repet/"options": { "neighbours": 3, "radius": 4, "influence": 2, "rays": 7 }, &/' said.json >again.json
+run experiment again.json -o said --cache said-cache
+test $status = 0 && grep -q 'reference from' out; result $? "and shared with a spec whose other options do not concern it" "$(cat out)"
+sed 's/"candidates": "lists"/&, "list": 7/' said.json >again.json
+run experiment again.json -o said --cache said-cache
+test $status = 0 && grep -q 'reference made' out; result $? "but not where one does"
+
 # What a spec says nothing of is repeated, and its spread told: the standard error of the mean, in tables and as bands.
 spec spread.json '{ "name": "a", "candidates": "power" }, { "name": "b", "method": "is" }'
 sed -i 's/ "repetitions": 1,//; s/"frames": 1,/"frames": 3, "accumulate": true, "equal-time": [0.001],/; s/32x18/64x36/' spread.json

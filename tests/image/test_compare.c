@@ -262,6 +262,13 @@ static void text_is_drawn(void **state) {
     for (size_t i = 0; i < 20 * 9; i++)
         lit += rgb[3 * i] == 255;
     assert_int_equal(lit, 10); /* 1 + 2 + 4 + 3 */
+    static const uint8_t white[3] = { 255, 255, 255 };
+    uint8_t one[3 * 10 * 8] = { 0 }, two[3 * 10 * 8] = { 0 }; /* a letter is drawn by either, and as many bytes as UTF-8 has are one */
+    text_draw(&(canvas){ one, 10, 8 }, 1, 1, "\xd7", 1, white);
+    assert_int_equal(noc_text_srgb8(two, 10, 8, 1, 1, "\xc3\x97", 1, white), 5);
+    assert_memory_equal(one, two, sizeof(one));
+    assert_int_equal(noc_text_srgb8(NULL, 0, 0, 0, 0, "a\xe2\x82\xac\xc2", 2, white), 2 * 17); /* the last is cut short */
+    assert_int_equal(noc_text_srgb8(NULL, 0, 0, 0, 0, "", 2, white), 0);
     text_draw(&c, -3, -3, "clipped at every side \x01", 4, ink); /* no crash: ASan watches */
 }
 
