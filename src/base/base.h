@@ -52,7 +52,10 @@ void noc_warn(noc_log *log, const char *fmt, ...) NOC_PRINTF(2, 3);
 void noc_info(noc_log *log, const char *fmt, ...) NOC_PRINTF(2, 3);
 void noc_debug(noc_log *log, const char *fmt, ...) NOC_PRINTF(2, 3);
 
-/* Numbers and text, independent of the locale. */
+/* Numbers and text, independent of the locale, which belongs to the host: its decimal point may be a comma. All text that
+ * leaves the library is formatted by these, or by what stands on them (noc_format, arena_format, messages). */
+int noc_snprintf(char *text, size_t size, const char *fmt, ...) NOC_PRINTF(3, 4);
+int noc_vsnprintf(char *text, size_t size, const char *fmt, va_list ap) NOC_PRINTF(3, 0);
 bool noc_parse_double(const char *s, double *out);           /* the whole string must be one finite number (blanks around it allowed) */
 const char *noc_scan_double(const char *s, const char *end, double *out); /* next number in [s, end): position after it, NULL if none */
 bool noc_parse_int(const char *s, long long *out);
@@ -69,10 +72,13 @@ void noc_pool_destroy(noc_pool *pool);
 int noc_pool_threads(const noc_pool *pool);
 void noc_pool_run(noc_pool *pool, size_t items, void (*fn)(void *ctx, size_t item, int worker), void *ctx);
 
-/* String interning / id -> index map: open addressing, keys are copied into the map's arena. */
+/* String interning / id -> index map: open addressing, keys are copied into the map's arena. The hash differs from process
+ * to process, so a map has no order that a result could depend on. */
 typedef struct noc_map { struct noc_map_slot *slots; size_t len, cap; noc_arena keys; } noc_map;
 bool map_get(const noc_map *map, const char *key, uint64_t *value);
 bool map_put(noc_map *map, const char *key, uint64_t value); /* true if new; else the old value is replaced */
 void map_free(noc_map *map);
+size_t map_longest_probe(const noc_map *map); /* slots that the worst key is away from its own; for tests */
+uint64_t base_siphash(const void *data, size_t size, const uint64_t key[2]);
 
 #endif

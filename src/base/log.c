@@ -45,7 +45,7 @@ static void emit(noc_log *log, noc_log_level level, bool keep, const char *fmt, 
     if (!log || (level > log->params.level && !keep))
         return;
     char text[1024];
-    vsnprintf(text, sizeof(text), fmt, ap);
+    noc_vsnprintf(text, sizeof(text), fmt, ap);
     /* Text from files may hold control characters: none may reach a terminal. */
     for (char *c = text; *c; c++)
         if ((unsigned char)*c < 32 || *c == 127)

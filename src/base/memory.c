@@ -1,7 +1,11 @@
 #include "base/base.h"
 
+#include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <sys/random.h>
+#include <time.h>
+#include <unistd.h>
 
 static void out_of_memory(size_t size) {
     fprintf(stderr, "nocturne: out of memory (%zu bytes)\n", size);
@@ -39,13 +43,13 @@ char *noc_strdup(const char *s) {
 static char *format_v(const char *fmt, va_list ap) {
     va_list copy;
     va_copy(copy, ap);
-    int n = vsnprintf(NULL, 0, fmt, copy);
+    int n = noc_vsnprintf(NULL, 0, fmt, copy);
     va_end(copy);
     char *s = noc_alloc((size_t)(n < 0 ? 0 : n) + 1);
     if (n < 0)
         s[0] = 0;
     else
-        vsnprintf(s, (size_t)n + 1, fmt, ap);
+        noc_vsnprintf(s, (size_t)n + 1, fmt, ap);
     return s;
 }
 
@@ -147,11 +151,55 @@ struct noc_map_slot {
     uint32_t hash;
 };
 
+/* Ids come from files, whose author may choose ones that collide: the hash is keyed with what he cannot know. SipHash-1-3
+ * (Aumasson and Bernstein 2012; one round a word and three at the end, as hash tables commonly take it). No result depends
+ * on the key, as no one walks through a map. */
+static uint64_t hash_key[2];
+static pthread_once_t hash_key_once = PTHREAD_ONCE_INIT;
+
+static void make_hash_key(void) {
+    if (getrandom(hash_key, sizeof(hash_key), GRND_NONBLOCK) == sizeof(hash_key))
+        return;
+    struct timespec now; /* early at boot: better than nothing */
+    clock_gettime(CLOCK_REALTIME, &now);
+    hash_key[0] = (uint64_t)now.tv_nsec << 32 ^ (uint64_t)now.tv_sec;
+    hash_key[1] = (uint64_t)(uintptr_t)&now ^ (uint64_t)getpid() << 32;
+}
+
+static uint64_t rotate(uint64_t x, int bits) { return x << bits | x >> (64 - bits); }
+
+static void sip_round(uint64_t v[4]) {
+    v[0] += v[1], v[2] += v[3];
+    v[1] = rotate(v[1], 13) ^ v[0], v[3] = rotate(v[3], 16) ^ v[2];
+    v[0] = rotate(v[0], 32);
+    v[2] += v[1], v[0] += v[3];
+    v[1] = rotate(v[1], 17) ^ v[2], v[3] = rotate(v[3], 21) ^ v[0];
+    v[2] = rotate(v[2], 32);
+}
+
+uint64_t base_siphash(const void *data, size_t size, const uint64_t key[2]) {
+    uint64_t v[4] = { key[0] ^ 0x736f6d6570736575u, key[1] ^ 0x646f72616e646f6du, key[0] ^ 0x6c7967656e657261u,
+                      key[1] ^ 0x7465646279746573u };
+    const unsigned char *p = data;
+    for (size_t left = size;; left -= 8, p += 8) {
+        uint64_t word = left < 8 ? (uint64_t)size << 56 : 0;
+        for (size_t i = 0; i < NOC_MIN(left, 8u); i++)
+            word |= (uint64_t)p[i] << 8 * i;
+        v[3] ^= word;
+        sip_round(v);
+        v[0] ^= word;
+        if (left < 8)
+            break;
+    }
+    v[2] ^= 0xff;
+    for (int i = 0; i < 3; i++)
+        sip_round(v);
+    return v[0] ^ v[1] ^ v[2] ^ v[3];
+}
+
 static uint32_t hash_text(const char *s) {
-    uint32_t h = 2166136261u;
-    for (; *s; s++)
-        h = (h ^ (unsigned char)*s) * 16777619u;
-    return h ^ h >> 15;
+    pthread_once(&hash_key_once, make_hash_key);
+    return (uint32_t)base_siphash(s, strlen(s), hash_key);
 }
 
 /* The slot of key, or the empty one where it would go. cap is a power of two and never full. */
@@ -192,6 +240,14 @@ bool map_put(noc_map *map, const char *key, uint64_t value) {
     }
     s->value = value;
     return fresh;
+}
+
+size_t map_longest_probe(const noc_map *map) {
+    size_t longest = 0;
+    for (size_t i = 0; i < map->cap; i++)
+        if (map->slots[i].key)
+            longest = NOC_MAX(longest, (i - map->slots[i].hash) & (map->cap - 1));
+    return longest;
 }
 
 void map_free(noc_map *map) {

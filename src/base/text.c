@@ -4,12 +4,29 @@
 #include <locale.h>
 #include <math.h>
 #include <pthread.h>
+#include <stdio.h>
 #include <time.h>
 
 static locale_t c_locale;
 static pthread_once_t c_locale_once = PTHREAD_ONCE_INIT;
 
 static void make_c_locale(void) { c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0); }
+
+int noc_vsnprintf(char *text, size_t size, const char *fmt, va_list ap) {
+    pthread_once(&c_locale_once, make_c_locale);
+    locale_t hosts = uselocale(c_locale); /* of this thread alone */
+    int n = vsnprintf(text, size, fmt, ap);
+    uselocale(hosts);
+    return n;
+}
+
+int noc_snprintf(char *text, size_t size, const char *fmt, ...) {
+    va_list ap;
+    va_start(ap, fmt);
+    int n = noc_vsnprintf(text, size, fmt, ap);
+    va_end(ap);
+    return n;
+}
 
 static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 

@@ -111,7 +111,7 @@ void town_flush(town *t, const char *fmt, ...) {
     char name[96];
     va_list ap;
     va_start(ap, fmt);
-    vsnprintf(name, sizeof(name), fmt, ap);
+    noc_vsnprintf(name, sizeof(name), fmt, ap);
     va_end(ap);
     for (int m = 0; m < TM_COUNT; m++) {
         town_batch *b = &t->batch[m];

@@ -42,7 +42,7 @@ FILE *experiment_create(const experiment_lab *lab, const char *name, char **temp
 
 int experiment_finish(const experiment_lab *lab, FILE *file, const char *name, char *temporary) {
     char *path = cli_format("%s/%s", lab->folder, name);
-    bool failed = ferror(file);
+    bool failed = ferror(file) || fflush(file) || (fsync(fileno(file)) && errno != EINVAL); /* EINVAL: nothing to write through */
     failed = fclose(file) || failed;
     failed = failed || rename(temporary, path);
     if (failed) {

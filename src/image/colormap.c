@@ -150,7 +150,7 @@ void colorbar_draw(canvas *c, int x, int y, int width, int scale, const colorbar
     size_t n = colorbar_ticks(bar, ticks, (size_t)NOC_CLAMP(length / (40 * scale), 2, TICKS));
     for (size_t i = 0; i < n; i++) {
         char text[32];
-        snprintf(text, sizeof(text), "%.6g", ticks[i]);
+        noc_snprintf(text, sizeof(text), "%.6g", ticks[i]);
         int at = left + (int)(position(bar, ticks[i]) * (length - 1) + 0.5);
         canvas_fill(c, at - scale / 2, y, scale, TICK * scale, ink);
         text_draw(c, at + scale / 2 - text_width(text, scale) / 2, y + (TICK + GAP) * scale, text, scale, ink);

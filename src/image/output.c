@@ -1,9 +1,11 @@
 /* Files that appear under their name only when they are complete, and what is written into them as text. */
 #include "image/internal.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -29,12 +31,59 @@ static char *resolve(const char *path) {
     return at;
 }
 
+#define NAME_KEPT 200 /* A name may be 255 bytes at most: of a long one only the beginning is kept. */
+
+/* Bytes of the target's folder, with its slash. */
+static int folder_length(const char *target) {
+    const char *slash = strrchr(target, '/');
+    return slash ? (int)(slash + 1 - target) : 0;
+}
+
 /* ".name.pid-n.part" in the target's folder: renaming works only within a file system. */
 static char *temporary_name(const char *target, int attempt) {
-    const char *slash = strrchr(target, '/');
-    int folder = slash ? (int)(slash + 1 - target) : 0;
-    /* A name may be 255 bytes at most: of a long one only the beginning is kept. */
-    return noc_format("%.*s.%.200s.%ld-%d.part", folder, target, target + folder, (long)getpid(), attempt);
+    int folder = folder_length(target);
+    return noc_format("%.*s.%.*s.%ld-%d.part", folder, target, NAME_KEPT, target + folder, (long)getpid(), attempt);
+}
+
+/* Is it what temporary_name() makes of the target, for any process and attempt? */
+static bool is_temporary(const char *name, const char *target) {
+    const char *base = target + folder_length(target);
+    size_t kept = strnlen(base, NAME_KEPT);
+    if (name[0] != '.' || strncmp(name + 1, base, kept) || name[1 + kept] != '.')
+        return false;
+    const char *p = name + 2 + kept;
+    size_t pid = strspn(p, "0123456789");
+    if (!pid || p[pid] != '-')
+        return false;
+    p += pid + 1;
+    size_t attempt = strspn(p, "0123456789");
+    return attempt && !strcmp(p + attempt, ".part");
+}
+
+/* Removes what killed runs left of this target. A writer that lives holds a lock on its file. */
+static void sweep(const char *target) {
+    int length = folder_length(target);
+    char *folder = length ? noc_format("%.*s", length, target) : noc_strdup(".");
+    DIR *dir = folder ? opendir(folder) : NULL;
+    free(folder);
+    for (struct dirent *e; dir && (e = readdir(dir));) {
+        if (!is_temporary(e->d_name, target))
+            continue;
+        int fd = openat(dirfd(dir), e->d_name, O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+        struct stat st;
+        if (fd >= 0 && !fstat(fd, &st) && S_ISREG(st.st_mode) && !flock(fd, LOCK_EX | LOCK_NB))
+            unlinkat(dirfd(dir), e->d_name, 0);
+        if (fd >= 0)
+            close(fd);
+    }
+    if (dir)
+        closedir(dir);
+}
+
+/* Locks a new file; false where a sweep of another process took it in between. File systems without locks do without. */
+static bool claim(int fd) {
+    struct stat st;
+    return (!flock(fd, LOCK_EX | LOCK_NB) || errno != EWOULDBLOCK) && !fstat(fd, &st) && st.st_nlink;
 }
 
 static void output_free(output *o) {
@@ -60,12 +109,17 @@ noc_status output_open(output *o, const char *path, noc_log *log) {
                            S_ISDIR(st.st_mode) ? "it is a directory" : "it is not a regular file");
         goto fail;
     }
+    sweep(o->target);
     for (int attempt = 0; fd < 0 && attempt < 1000; attempt++) {
         free(o->temporary);
         o->temporary = temporary_name(o->target, attempt);
         fd = open(o->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (fd < 0 && errno != EEXIST)
             break;
+        if (fd >= 0 && !claim(fd)) {
+            close(fd);
+            fd = -1;
+        }
     }
     o->file = fd >= 0 ? fdopen(fd, "w+b") : NULL;
     if (o->file)
@@ -83,7 +137,10 @@ fail:
 noc_status output_failed(output *o, noc_log *log) { return fail(o->path, "writing failed", log); }
 
 noc_status output_close(output *o, noc_status status, noc_log *log) {
-    /* What is still buffered may be what no longer fits on the disk. */
+    /* What is still buffered may be what no longer fits on the disk. A name that is on the disk before the content is would
+     * be an empty file after a power cut. EINVAL: the file system has nothing to write through. */
+    if (status == NOC_OK && (fflush(o->file) != 0 || (fsync(fileno(o->file)) != 0 && errno != EINVAL)))
+        status = output_failed(o, log);
     if (fclose(o->file) != 0 && status == NOC_OK)
         status = output_failed(o, log);
     if (status == NOC_OK && rename(o->temporary, o->target) != 0)
@@ -109,7 +166,7 @@ void meta_add(meta_list *list, const char *key, const char *fmt, ...) {
     char text[256];
     va_list ap;
     va_start(ap, fmt);
-    vsnprintf(text, sizeof(text), fmt, ap);
+    noc_vsnprintf(text, sizeof(text), fmt, ap);
     va_end(ap);
     meta_entry entry = { arena_strdup(&list->text, key), arena_strdup(&list->text, text) };
     array_push(&list->entries, entry);

@@ -10,7 +10,7 @@ noc_status cg_fail(cg_parser *p, noc_status status, const char *fmt, ...) {
     char cause[512];
     va_list ap;
     va_start(ap, fmt);
-    vsnprintf(cause, sizeof(cause), fmt, ap);
+    noc_vsnprintf(cause, sizeof(cause), fmt, ap);
     va_end(ap);
     p->status = noc_error(p->sink->log, status, "%s:%lu: %s", noc_stream_name(p->stream),
                           XML_GetCurrentLineNumber(p->xml), cause);

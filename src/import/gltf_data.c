@@ -13,7 +13,7 @@ noc_status gltf_error(const gltf *g, const char *fmt, ...) {
     char text[400];
     va_list ap;
     va_start(ap, fmt);
-    vsnprintf(text, sizeof(text), fmt, ap);
+    noc_vsnprintf(text, sizeof(text), fmt, ap);
     va_end(ap);
     return noc_error(g->log, NOC_ERR_FORMAT, "%s: glTF: %s", g->name, text);
 }

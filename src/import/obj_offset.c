@@ -141,7 +141,7 @@ static char *write_place(char *to, const double xyz[3], const double offset[3]) 
         if (offset[k] != 0 && fabs(x) <= MOST)
             to = write_fixed(to, x);
         else
-            to += sprintf(to, " %.9g", x); /* what a float holds */
+            to += noc_snprintf(to, NUMBER_SIZE, " %.9g", x); /* what a float holds */
     }
     return to;
 }

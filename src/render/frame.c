@@ -34,7 +34,7 @@ noc_status noc_render_check(const noc_render_params *p, noc_log *log) {
     for (size_t i = 0; i < NOC_COUNT(ranges); i++)
         if (!(ranges[i].value >= ranges[i].min && ranges[i].value <= ranges[i].max)) { /* also for NaN */
             char right[64];
-            snprintf(right, sizeof(right), "in %g..%g", ranges[i].min, ranges[i].max);
+            noc_snprintf(right, sizeof(right), "in %g..%g", ranges[i].min, ranges[i].max);
             return wrong(log, ranges[i].name, ranges[i].value, right);
         }
     if ((unsigned)p->method > NOC_METHOD_RESTIR)

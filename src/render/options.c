@@ -2,7 +2,6 @@
  * what a row does not say (the default) is in that struct's default macro, so it cannot be stated twice. */
 #include "base/base.h"
 
-#include <locale.h>
 #include <nocturne/option.h>
 #include <stdio.h>
 
@@ -130,16 +129,10 @@ static int format_real(char *text, size_t size, double v) {
     if (v == (double)(long long)NOC_CLAMP(v, -1e15, 1e15))
         return snprintf(text, size, "%lld", (long long)v);
     for (int digits = 6; digits <= 17; digits++) {
-        snprintf(shortest, sizeof(shortest), "%.*g", digits, v);
-        if (strtod(shortest, NULL) == v)
+        double back;
+        noc_snprintf(shortest, sizeof(shortest), "%.*g", digits, v);
+        if (noc_parse_double(shortest, &back) && back == v)
             break;
-    }
-    /* The embedding program may have set a locale whose decimal point is a comma. */
-    const char *point = localeconv()->decimal_point;
-    char *at = point && *point && strcmp(point, ".") ? strstr(shortest, point) : NULL;
-    if (at) {
-        *at = '.';
-        memmove(at + 1, at + strlen(point), strlen(at + strlen(point)) + 1);
     }
     return snprintf(text, size, "%s", shortest);
 }

@@ -50,6 +50,61 @@ static void arrays_and_maps(void **state) {
     assert_null(noc_alloc_large(SIZE_MAX / 2, 4));
 }
 
+/* CPython 3.11 and later hash bytes with SipHash-1-3; PYTHONHASHSEED=0 makes the key zero:
+ * PYTHONHASHSEED=0 python3 -c 'print(hex(hash(b"abcdefg") & (2**64 - 1)))' */
+static void siphash_is_as_published(void **state) {
+    static const struct { const char *text; uint64_t hash; } known[] = {
+        { "a", 0x407448d2b89b1813u }, { "abcdefg", 0x6db12aae9070f506u }, { "abcdefgh", 0x3f7b849c0b8e35eau }, { "gml_id_0123456789abcdef", 0xf95c63219c1929d2u }
+    };
+    for (size_t i = 0; i < NOC_COUNT(known); i++)
+        assert_true(base_siphash(known[i].text, strlen(known[i].text), (uint64_t[2]){ 0, 0 }) == known[i].hash);
+    assert_true(base_siphash("a", 1, (uint64_t[2]){ 1, 0 }) != known[0].hash);
+    assert_true(base_siphash("a", 1, (uint64_t[2]){ 0, 1 }) != known[0].hash);
+}
+
+static uint32_t fnv(uint32_t h, uint32_t block) {
+    for (int i = 0; i < 8; i++)
+        h = (h ^ ('a' + (block >> 4 * i & 15))) * 16777619u;
+    return h;
+}
+
+static int by_number(const void *a, const void *b) {
+    uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* 2^16 ids with one FNV-1a hash, which the map had once: 16 blocks, each of which may be either of two that collide (Joux
+ * 2004). They must lie as far apart as any others. */
+static void colliding_ids_do_not_flood(void **state) {
+    enum { BLOCKS = 16, TRIES = 1 << 18 };
+    static uint64_t tried[TRIES];
+    uint32_t pair[BLOCKS][2], h = 2166136261u;
+    for (int b = 0; b < BLOCKS; b++) {
+        for (uint32_t i = 0; i < TRIES; i++)
+            tried[i] = (uint64_t)fnv(h, i * 2654435761u) << 32 | i * 2654435761u;
+        qsort(tried, TRIES, sizeof(*tried), by_number);
+        size_t at = 1;
+        while (at < TRIES && tried[at] >> 32 != tried[at - 1] >> 32)
+            at++;
+        assert_true(at < TRIES);
+        pair[b][0] = (uint32_t)tried[at - 1];
+        pair[b][1] = (uint32_t)tried[at];
+        h = (uint32_t)(tried[at] >> 32);
+    }
+    noc_map map = { 0 };
+    for (uint32_t id = 0; id < 1u << BLOCKS; id++) {
+        char key[8 * BLOCKS + 1] = { 0 };
+        for (int b = 0; b < BLOCKS; b++)
+            for (int i = 0; i < 8; i++)
+                key[8 * b + i] = (char)('a' + (pair[b][id >> b & 1] >> 4 * i & 15));
+        assert_true(map_put(&map, key, id));
+        assert_true(id % 4096 || map_longest_probe(&map) < 1000);
+    }
+    assert_int_equal(map.len, 1 << BLOCKS);
+    assert_true(map_longest_probe(&map) < 1000); /* of 65,535 where all collide */
+    map_free(&map);
+}
+
 static void count_item(void *ctx, size_t item, int worker) {
     atomic_int *hits = ctx;
     atomic_fetch_add(&hits[item], 1);
@@ -88,6 +143,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(numbers),
         cmocka_unit_test(arrays_and_maps),
+        cmocka_unit_test(siphash_is_as_published),
+        cmocka_unit_test(colliding_ids_do_not_flood),
         cmocka_unit_test(pool_runs_each_item_once),
         cmocka_unit_test(log_reports_once),
     };

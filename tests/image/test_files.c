@@ -5,7 +5,9 @@
 
 #include <math.h>
 #include <openexr.h>
+#include <fcntl.h>
 #include <png.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <dirent.h>
 
@@ -309,6 +311,42 @@ static void an_old_picture_survives_a_failure(void **state) {
     noc_image_destroy(b);
 }
 
+static void make_file(const char *name) {
+    FILE *f = fopen(in_folder(name), "w");
+    fputs("half of a picture", f);
+    fclose(f);
+}
+
+/* What a killed run left goes with the next picture of that name; what others write stays. */
+static void leftovers_are_swept(void **state) {
+    (void)state;
+    static const char *const left[] = { ".swept.exr.1-0.part", ".swept.exr.999999-12.part" };
+    static const char *const kept[] = { ".other.exr.1-0.part", ".swept.exr.part", ".swept.exr.1-.part", ".swept.exr.1-0.parts",
+                                        ".swept.exr.x-0.part", "swept.exr.1-0.part", ".swept.exr.77-0.part" };
+    noc_image *a = random_image(2, 2, false);
+    for (size_t i = 0; i < NOC_COUNT(left); i++)
+        make_file(left[i]);
+    for (size_t i = 0; i < NOC_COUNT(kept); i++)
+        make_file(kept[i]);
+    int living = open(in_folder(kept[6]), O_RDWR); /* as a writer that lives holds it */
+    assert_int_equal(flock(living, LOCK_EX), 0);
+    assert_int_equal(noc_image_check_path(in_folder("swept.exr"), log_), NOC_OK); /* before the work, as the program does */
+    for (size_t i = 0; i < NOC_COUNT(left); i++)
+        assert_int_equal(access(in_folder(left[i]), F_OK), -1);
+    for (size_t i = 0; i < NOC_COUNT(kept); i++)
+        assert_int_equal(access(in_folder(kept[i]), F_OK), 0);
+    output first, second; /* two writers of one name do not take each other's files */
+    assert_int_equal(output_open(&first, in_folder("swept.exr"), log_), NOC_OK);
+    assert_int_equal(output_open(&second, in_folder("swept.exr"), log_), NOC_OK);
+    assert_int_equal(access(first.temporary, F_OK), 0);
+    assert_int_equal(output_close(&second, NOC_OK, log_), NOC_OK);
+    assert_int_equal(output_close(&first, NOC_OK, log_), NOC_OK);
+    close(living);
+    assert_int_equal(noc_image_write(a, in_folder("swept.exr"), NULL, NULL, log_), NOC_OK);
+    assert_int_equal(access(in_folder(kept[6]), F_OK), -1);
+    noc_image_destroy(a);
+}
+
 static void a_link_is_followed(void **state) {
     (void)state;
     noc_image *a = random_image(2, 2, false);
@@ -412,6 +450,7 @@ int main(void) {
         cmocka_unit_test(writing_fails_once_and_leaves_nothing),
         cmocka_unit_test(a_full_disk_is_reported),
         cmocka_unit_test(an_old_picture_survives_a_failure),
+        cmocka_unit_test(leftovers_are_swept),
         cmocka_unit_test(a_link_is_followed),
         cmocka_unit_test(a_dangling_link_is_followed),
         cmocka_unit_test(paths_are_checked_before),
