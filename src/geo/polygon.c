@@ -8,6 +8,8 @@
 #define PLANE_TOLERANCE 0.01 /* m; points further off the best plane make a polygon non-planar */
 #define LARGEST 1e6        /* m; no surface of a city is wider, and floats could not hold it */
 #define MOST_HOLES 1000    /* that are compared with each other */
+#define MOST_POINTS 20000000 /* of a polygon; ten times the largest that is known of a map */
+#define MOST_LOOKS 200000000 /* at edges of the exterior, to tell of holes outside of it */
 #define SMALLEST_AREA 1e-8 /* m2 */
 
 /* A polygon at work: cleaned points of all rings, relative to `centre`, and the same in the coordinates of its plane. */
@@ -17,6 +19,7 @@ struct work {
     NOC_ARRAY(double) xyz;
     NOC_ARRAY(double) uv;
     NOC_ARRAY(size_t) ring_size;
+    NOC_ARRAY(double) ring_sum; /* of the ring's points, 3 a ring */
     double centre[3], normal[3];
 };
 
@@ -70,8 +73,9 @@ static size_t clean_end(double *p, size_t n, struct defects *found) {
     }
 }
 
-/* The same where the ring closes. */
-static size_t clean_seam(double *p, size_t n, struct defects *found) {
+/* The same where the ring closes. What goes at its beginning is moved away once, at the end. */
+static size_t clean_seam(double *ring, size_t n, struct defects *found) {
+    double *p = ring;
     while (n >= 3) {
         if (near(p, p + 3 * (n - 1))) {
             found->repeated = true;
@@ -81,11 +85,14 @@ static size_t clean_seam(double *p, size_t n, struct defects *found) {
             n--;
         } else if (is_spike(p + 3 * (n - 1), p, p + 3)) {
             found->spike = true;
-            memmove(p, p + 3, 3 * --n * sizeof(double));
+            p += 3;
+            n--;
         } else {
             break;
         }
     }
+    if (p != ring)
+        memmove(ring, p, 3 * n * sizeof(double));
     return n;
 }
 
@@ -226,27 +233,27 @@ static void reverse_ring(struct work *w, size_t first, size_t n) {
 }
 
 /* Does any of the ring's edges (of a sample of them, if there are many) have its middle in the exterior ring? Corners say
- * less: they may touch it. */
-static bool lies_in_exterior(const struct work *w, const double *uv, size_t n) {
-    size_t step = n / 64 + 1;
+ * less: they may touch it. Where many looks were taken already, it is believed. */
+static bool lies_in_exterior(const struct work *w, const double *uv, size_t n, size_t *looks) {
+    size_t step = n / 64 + 1, edges = w->ring_size.data[0];
     for (size_t i = 0; i < n; i += step) {
         const double *a = uv + 2 * i, *b = uv + 2 * ((i + 1) % n);
-        if (inside(w->uv.data, w->ring_size.data[0], (a[0] + b[0]) / 2, (a[1] + b[1]) / 2))
+        if (*looks + edges > MOST_LOOKS)
+            return true;
+        *looks += edges;
+        if (inside(w->uv.data, edges, (a[0] + b[0]) / 2, (a[1] + b[1]) / 2))
             return true;
     }
     return false;
 }
 
 /* Is the ring the same as an earlier interior ring, begun at whatever point? Their corner sums tell. */
-static bool is_repeated(const struct work *w, size_t ring, size_t first) {
-    size_t n = w->ring_size.data[ring], at = w->ring_size.data[0];
-    for (size_t r = 1; r < ring; at += w->ring_size.data[r++]) {
-        if (w->ring_size.data[r] != n)
-            continue;
-        double d[3] = { 0 };
-        for (size_t i = 0; i < 3 * n; i++)
-            d[i % 3] += w->xyz.data[3 * at + i] - w->xyz.data[3 * first + i];
-        if (dot(d, d) < SAME_POINT * SAME_POINT * (double)n)
+static bool is_repeated(const struct work *w, size_t ring) {
+    size_t n = w->ring_size.data[ring];
+    for (size_t r = 1; r < ring; r++) {
+        double d[3];
+        subtract(w->ring_sum.data + 3 * r, w->ring_sum.data + 3 * ring, d);
+        if (w->ring_size.data[r] == n && dot(d, d) < SAME_POINT * SAME_POINT * (double)n)
             return true;
     }
     return false;
@@ -255,13 +262,13 @@ static bool is_repeated(const struct work *w, size_t ring, size_t first) {
 /* Holes must run against the exterior and lie in it. The rest is the tessellator's: the winding rule ignores what is
  * outside, and what is cut out twice. */
 static void check_holes(struct work *w) {
-    size_t first = w->ring_size.data[0];
+    size_t first = w->ring_size.data[0], looks = 0;
     for (size_t r = 1; r < w->ring_size.len; first += w->ring_size.data[r++]) {
         size_t n = w->ring_size.data[r];
         double *uv = w->uv.data + 2 * first;
-        if (r <= MOST_HOLES && is_repeated(w, r, first))
+        if (r <= MOST_HOLES && is_repeated(w, r))
             geo_issue(w->issues, true, "interior ring given twice", w->id);
-        if (!lies_in_exterior(w, uv, n))
+        if (!lies_in_exterior(w, uv, n, &looks))
             geo_issue(w->issues, true, "interior ring outside the exterior", w->id);
         if (signed_area(uv, n) > 0) {
             geo_issue(w->issues, true, "interior ring turned like the exterior", w->id);
@@ -270,11 +277,25 @@ static void check_holes(struct work *w) {
     }
 }
 
+static void push_ring(struct work *w, size_t n) {
+    double sum[3] = { 0 };
+    for (size_t i = w->xyz.len - 3 * n; i < w->xyz.len; i++)
+        sum[i % 3] += w->xyz.data[i];
+    array_push(&w->ring_size, n);
+    array_append(&w->ring_sum, sum, 3);
+}
+
 /* Rings cleaned into w, plane found, holes turned. False if the polygon was skipped. */
 static bool prepare(struct work *w, const geo_polygon *polygon) {
     struct defects found = { 0 };
     const double *p = polygon->xyz;
-    size_t count = polygon->ring_count ? polygon->ring_size[0] : 0, i = 0;
+    size_t count = polygon->ring_count ? polygon->ring_size[0] : 0, i = 0, points = 0;
+    for (size_t r = 0; r < polygon->ring_count; r++)
+        points += polygon->ring_size[r];
+    if (points > MOST_POINTS) {
+        geo_issue(w->issues, false, "polygon of more than 20 million points", w->id);
+        return false;
+    }
     while (i < count && !(isfinite(p[3 * i]) && isfinite(p[3 * i + 1]) && isfinite(p[3 * i + 2])))
         i++;
     if (i < count)
@@ -290,7 +311,7 @@ static bool prepare(struct work *w, const geo_polygon *polygon) {
             w->xyz.len -= 3 * n;
             continue;
         }
-        array_push(&w->ring_size, n);
+        push_ring(w, n);
     }
     if (!w->ring_size.len) {
         geo_issue(w->issues, false, "ring with too few points", w->id);
@@ -373,7 +394,8 @@ static bool triangulate(struct work *w, geo_triangles *out) {
             geo_issue(w->issues, true, "self-touching ring", w->id);
         drop_flat_triangles(out, first_index);
         if (!t.ok || out->indices.len == first_index) {
-            geo_issue(w->issues, false, t.ok ? "polygon without area" : "polygon that cannot be triangulated", w->id);
+            geo_issue(w->issues, false, t.tangled ? "polygon that crosses itself more than 1000 times"
+                                        : t.ok    ? "polygon without area" : "polygon that cannot be triangulated", w->id);
             out->indices.len = first_index;
             out->xyz.len = first_vertex;
             return false;
@@ -391,6 +413,7 @@ bool geo_triangulate(const geo_polygon *polygon, geo_triangles *out, geo_issues 
     array_free(&w.xyz);
     array_free(&w.uv);
     array_free(&w.ring_size);
+    array_free(&w.ring_sum);
     return ok;
 }
 

@@ -1,3 +1,5 @@
+/* Polygons are cut into triangles by GLU's tessellator, whose time grows with points times edges that its sweep meets at
+ * once. Where that would be long, the plane is halved until each piece is small. */
 #include "geo/tessellate.h"
 
 #include <GL/glu.h>
@@ -6,6 +8,7 @@
 struct job {
     geo_triangles *out;
     size_t first_index;
+    size_t first_made; /* vertices from here on lie on the edges of pieces: what meets there says nothing of the ring */
     tessellation result;
 };
 
@@ -33,8 +36,9 @@ static void on_combine(GLdouble place[3], void *data[4], GLfloat weight[4], void
     size_t count = 0;
     for (int i = 0; i < 4 && data[i]; i++, count++)
         sum += weight[i];
-    bool touch = true;
+    bool touch = true, given = true;
     for (size_t i = 0; i < count; i++) {
+        given = given && (uintptr_t)data[i] - 1 < job->first_made;
         const double *q = job->out->xyz.data + 3 * ((uintptr_t)data[i] - 1);
         const double *q0 = job->out->xyz.data + 3 * ((uintptr_t)data[0] - 1);
         for (int k = 0; k < 3; k++) {
@@ -43,15 +47,15 @@ static void on_combine(GLdouble place[3], void *data[4], GLfloat weight[4], void
         }
     }
     if (touch) {
-        job->result.touches++;
+        job->result.touches += given;
         *out = data[0];
         return;
     }
     /* two points: they coincide in the plane alone; four: a crossing */
     if (count > 2)
-        job->result.crossings++;
+        job->result.crossings += given;
     else
-        job->result.touches++;
+        job->result.touches += given;
     *out = as_pointer(job->out->xyz.len / 3);
     array_append(&job->out->xyz, p, 3);
 }
@@ -103,52 +107,277 @@ static bool crosses_too_often(const double *uv, const size_t *ring_size, size_t 
     return too_often;
 }
 
-/* The tessellator sweeps along x, in time that grows with the edges it meets at once: how many, on average, along u and
- * along v. */
-static bool sweep_along_v(const double *uv, const size_t *ring_size, size_t ring_count) {
-    double length[2] = { 0 }, lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
-    for (size_t r = 0; r < ring_count; uv += 2 * ring_size[r++])
-        for (size_t i = 0; i < ring_size[r]; i++)
-            for (size_t k = 0; k < 2; k++) {
-                double x = uv[2 * i + k];
-                length[k] += fabs(uv[2 * ((i + 1) % ring_size[r]) + k] - x);
-                lo[k] = NOC_MIN(lo[k], x);
-                hi[k] = NOC_MAX(hi[k], x);
-            }
-    return length[1] * (hi[0] - lo[0]) < length[0] * (hi[1] - lo[1]);
+/* ---- pieces ---- */
+
+/* Part of a polygon: rings of points in the plane, and the vertices they are in the output. */
+typedef struct piece {
+    NOC_ARRAY(double) uv;
+    NOC_ARRAY(uint32_t) vertex;
+    NOC_ARRAY(size_t) ring_size;
+} piece;
+
+static void piece_free(piece *p) {
+    array_free(&p->uv);
+    array_free(&p->vertex);
+    array_free(&p->ring_size);
 }
 
-tessellation tessellate(const double *uv, const size_t *ring_size, size_t ring_count, geo_triangles *out,
-                        size_t first_vertex) {
-    struct job job = { .out = out, .first_index = out->indices.len, .result = { .ok = true } };
-    size_t points = 0;
-    for (size_t r = 0; r < ring_count; r++)
-        points += ring_size[r];
-    GLUtesselator *tess = crosses_too_often(uv, ring_size, ring_count, points) ? NULL : gluNewTess();
-    if (!tess)
-        return (tessellation){ 0 };
+/* Directions that a polygon may be swept along: u, v, and across most of its edges' length (the minor axis of their second
+ * moments): teeth of a comb are swept one after the other however they are turned. */
+enum { ALONG_U, ALONG_V, ACROSS_EDGES, DIRECTIONS };
+
+static void directions(const piece *p, double axis[DIRECTIONS][2]) {
+    double uu = 0, uv = 0, vv = 0;
+    const double *at = p->uv.data;
+    for (size_t r = 0; r < p->ring_size.len; at += 2 * p->ring_size.data[r++])
+        for (size_t i = 0, n = p->ring_size.data[r]; i < n; i++) {
+            const double *a = at + 2 * i, *b = at + 2 * (i + 1 < n ? i + 1 : 0);
+            double u = b[0] - a[0], v = b[1] - a[1], length = sqrt(u * u + v * v);
+            if (length > 0)
+                uu += u * u / length, uv += u * v / length, vv += v * v / length;
+        }
+    double angle = 0.5 * atan2(2 * uv, uu - vv); /* of the major axis */
+    const double all[DIRECTIONS][2] = { { 1, 0 }, { 0, 1 }, { -sin(angle), cos(angle) } };
+    memcpy(axis, all, sizeof(all));
+}
+
+/* Lengths of all edges along each direction, over the polygon's extent: the edges that a line across it meets on average. */
+static void edges_at_once(const piece *p, const double axis[DIRECTIONS][2], double met[DIRECTIONS]) {
+    double length[DIRECTIONS] = { 0 }, lo[DIRECTIONS], hi[DIRECTIONS];
+    for (int d = 0; d < DIRECTIONS; d++)
+        lo[d] = INFINITY, hi[d] = -INFINITY;
+    const double *uv = p->uv.data;
+    for (size_t r = 0; r < p->ring_size.len; uv += 2 * p->ring_size.data[r++])
+        for (size_t i = 0, n = p->ring_size.data[r]; i < n; i++) {
+            const double *a = uv + 2 * i, *b = uv + 2 * (i + 1 < n ? i + 1 : 0);
+            for (int d = 0; d < DIRECTIONS; d++) {
+                double x = a[0] * axis[d][0] + a[1] * axis[d][1];
+                length[d] += fabs((b[0] - a[0]) * axis[d][0] + (b[1] - a[1]) * axis[d][1]);
+                lo[d] = NOC_MIN(lo[d], x);
+                hi[d] = NOC_MAX(hi[d], x);
+            }
+        }
+    for (int d = 0; d < DIRECTIONS; d++)
+        met[d] = hi[d] > lo[d] ? length[d] / (hi[d] - lo[d]) : INFINITY;
+}
+
+/* The direction that meets the fewest; another than u and v only where those meet more than enough, and it is worth the
+ * rounding. */
+static int best_direction(const double met[DIRECTIONS], double enough) {
+    int best = met[ALONG_V] < met[ALONG_U] ? ALONG_V : ALONG_U;
+    return met[best] > enough && met[ACROSS_EDGES] < 0.5 * met[best] ? ACROSS_EDGES : best;
+}
+
+/* Turns the plane so that a direction becomes u. */
+static void turn(piece *p, const double axis[2]) {
+    for (size_t i = 0; i < p->vertex.len && axis[0] != 1; i++) {
+        double *uv = p->uv.data + 2 * i, u = uv[0] * axis[0] + uv[1] * axis[1];
+        uv[1] = uv[1] * axis[0] - uv[0] * axis[1];
+        uv[0] = u;
+    }
+}
+
+/* By GLU, which sweeps along u. */
+static void sweep(struct job *job, const piece *p, bool odd) {
+    GLUtesselator *tess = gluNewTess();
+    if (!tess) {
+        job->result.ok = false;
+        return;
+    }
     gluTessCallback(tess, GLU_TESS_VERTEX_DATA, (_GLUfuncptr)on_vertex);
     gluTessCallback(tess, GLU_TESS_EDGE_FLAG_DATA, (_GLUfuncptr)on_edge_flag);
     gluTessCallback(tess, GLU_TESS_ERROR_DATA, (_GLUfuncptr)on_error);
     gluTessCallback(tess, GLU_TESS_COMBINE_DATA, (_GLUfuncptr)on_combine);
-    gluTessProperty(tess, GLU_TESS_WINDING_RULE, ring_count > 1 ? GLU_TESS_WINDING_POSITIVE : GLU_TESS_WINDING_ODD);
+    gluTessProperty(tess, GLU_TESS_WINDING_RULE, odd ? GLU_TESS_WINDING_ODD : GLU_TESS_WINDING_POSITIVE);
     gluTessNormal(tess, 0, 0, 1);
-    gluTessBeginPolygon(tess, &job);
-    size_t i = 0;
-    bool turned = sweep_along_v(uv, ring_size, ring_count);
-    for (size_t r = 0; r < ring_count; r++) {
+    gluTessBeginPolygon(tess, job);
+    for (size_t r = 0, i = 0; r < p->ring_size.len; r++) {
         gluTessBeginContour(tess);
-        for (size_t end = i + ring_size[r]; i < end; i++) {
-            GLdouble place[3] = { turned ? uv[2 * i + 1] : uv[2 * i], turned ? -uv[2 * i] : uv[2 * i + 1], 0 };
-            gluTessVertex(tess, place, as_pointer(first_vertex + i));
+        for (size_t end = i + p->ring_size.data[r]; i < end; i++) {
+            GLdouble place[3] = { p->uv.data[2 * i], p->uv.data[2 * i + 1], 0 };
+            gluTessVertex(tess, place, as_pointer(p->vertex.data[i]));
         }
         gluTessEndContour(tess);
     }
     gluTessEndPolygon(tess);
     gluDeleteTess(tess);
-    if ((out->indices.len - job.first_index) % 3) { /* GLU gave up in a triangle */
-        out->indices.len = job.first_index;
-        job.result.ok = false;
+    if ((job->out->indices.len - job->first_index) % 3) { /* GLU gave up in a triangle */
+        job->out->indices.len = job->first_index;
+        job->result.ok = false;
     }
+}
+
+/* Where an edge crosses the cut. */
+typedef struct crossing {
+    double v;
+    uint32_t vertex;  /* made there */
+    size_t to;        /* the point that the edge leads to */
+    size_t edge;      /* the point that it comes from */
+    size_t partner;   /* crossing that a ring goes on from, along the cut */
+    bool up;          /* from the lower half to the upper one */
+} crossing;
+
+typedef struct cut_line {
+    double at;
+    size_t *next;     /* of each point: the one behind it in its ring */
+    size_t *crossed;  /* of each point: crossing + 1 of its edge, 0 if none; SIZE_MAX once it is in a half */
+    NOC_ARRAY(crossing) crossings;
+} cut_line;
+
+static int by_v(const void *x, const void *y) {
+    const crossing *a = x, *b = y;
+    return a->v != b->v ? (a->v > b->v) - (a->v < b->v) : (a->edge > b->edge) - (a->edge < b->edge);
+}
+
+static void find_crossings(struct job *job, const piece *p, cut_line *line) {
+    const double *uv = p->uv.data;
+    for (size_t r = 0, base = 0; r < p->ring_size.len; base += p->ring_size.data[r++])
+        for (size_t i = 0, n = p->ring_size.data[r]; i < n; i++) {
+            size_t a = base + i, b = base + (i + 1 < n ? i + 1 : 0);
+            line->next[a] = b;
+            if ((uv[2 * a] > line->at) == (uv[2 * b] > line->at))
+                continue;
+            double t = (line->at - uv[2 * a]) / (uv[2 * b] - uv[2 * a]), xyz[3];
+            const double *x = job->out->xyz.data + 3 * (size_t)p->vertex.data[a];
+            const double *y = job->out->xyz.data + 3 * (size_t)p->vertex.data[b];
+            for (int k = 0; k < 3; k++)
+                xyz[k] = x[k] + t * (y[k] - x[k]);
+            crossing c = { .v = uv[2 * a + 1] + t * (uv[2 * b + 1] - uv[2 * a + 1]), .vertex = (uint32_t)(job->out->xyz.len / 3),
+                           .to = b, .edge = a, .up = uv[2 * b] > line->at };
+            array_append(&job->out->xyz, xyz, 3);
+            array_push(&line->crossings, c);
+        }
+}
+
+/* Joins ends along the cut: each with the next one of the other direction that has no partner, like brackets. Where no rings
+ * cross these are neighbours, so that no two joints overlap. */
+static void join_ends(cut_line *line) {
+    crossing *c = line->crossings.data;
+    size_t n = line->crossings.len, depth = 0, *open = noc_alloc((n + 1) * sizeof(*open));
+    if (n)
+        qsort(c, n, sizeof(*c), by_v);
+    for (size_t i = 0; i < n; i++) {
+        line->crossed[c[i].edge] = i + 1;
+        if (depth && c[open[depth - 1]].up != c[i].up) {
+            c[i].partner = open[--depth];
+            c[c[i].partner].partner = i;
+        } else {
+            open[depth++] = i;
+        }
+    }
+    free(open);
+}
+
+static void push_point(piece *p, double u, double v, uint32_t vertex) {
+    array_append(&p->uv, ((double[]){ u, v }), 2);
+    array_push(&p->vertex, vertex);
+}
+
+/* Cuts a piece in two where u is `at`. */
+static void cut(struct job *job, const piece *p, double at, piece half[2]) {
+    size_t n = p->vertex.len;
+    cut_line line = { .at = at, .next = noc_alloc(n * sizeof(*line.next)), .crossed = noc_calloc(n, sizeof(*line.crossed)) };
+    find_crossings(job, p, &line);
+    join_ends(&line);
+    for (size_t start = 0; start < n; start++) {
+        piece *to = &half[p->uv.data[2 * start] > at];
+        size_t first = to->vertex.len;
+        for (size_t i = start; line.crossed[i] != SIZE_MAX;) {
+            size_t c = line.crossed[i];
+            line.crossed[i] = SIZE_MAX;
+            push_point(to, p->uv.data[2 * i], p->uv.data[2 * i + 1], p->vertex.data[i]);
+            i = line.next[i];
+            if (!c)
+                continue;
+            const crossing *out = &line.crossings.data[c - 1], *in = &line.crossings.data[out->partner];
+            push_point(to, at, out->v, out->vertex);
+            push_point(to, at, in->v, in->vertex);
+            i = in->to;
+        }
+        if (to->vertex.len - first >= 3) {
+            array_push(&to->ring_size, to->vertex.len - first);
+        } else {
+            to->vertex.len = first;
+            to->uv.len = 2 * first;
+        }
+    }
+    free(line.next);
+    free(line.crossed);
+    array_free(&line.crossings);
+}
+
+static int by_value(const void *x, const void *y) {
+    double a = *(const double *)x, b = *(const double *)y;
+    return (a > b) - (a < b);
+}
+
+/* Median of a sample of the points' u, or the middle between the first and last where it is one of these: points of earlier
+ * cuts lie there in numbers. */
+static double middle(const piece *p) {
+    enum { SAMPLE = 1023 };
+    double sample[SAMPLE];
+    size_t n = NOC_MIN(p->vertex.len, (size_t)SAMPLE);
+    for (size_t i = 0; i < n; i++)
+        sample[i] = p->uv.data[2 * (size_t)((double)i / (double)n * (double)p->vertex.len)];
+    qsort(sample, n, sizeof(*sample), by_value);
+    double median = sample[n / 2], lo = sample[0], hi = sample[n - 1];
+    return median > lo && median < hi ? median : (lo + hi) / 2;
+}
+
+#define WORK_AT_ONCE 2e7      /* points times edges met at once, that GLU does in a second */
+#define WORK_OF_PIECE 2e5     /* the same, of pieces: small ones cost less in all, but their cuts show in the triangles */
+#define POINTS_AT_ONCE 500000 /* GLU takes half a kilobyte a point */
+#define MOST_MADE 8           /* points made by cutting, a point given */
+
+struct division {
+    bool odd;
+    double most_work;
+    size_t most_vertices;
+};
+
+/* Takes p's memory. */
+static void tessellate_piece(struct job *job, piece *p, const struct division *d) {
+    double axis[DIRECTIONS][2], met[DIRECTIONS];
+    directions(p, axis);
+    edges_at_once(p, axis, met);
+    size_t n = p->vertex.len;
+    int direction = best_direction(met, d->most_work / (double)n);
+    turn(p, axis[direction]);
+    double work = (double)n * met[direction];
+    piece half[2] = { 0 };
+    if (n > POINTS_AT_ONCE || work > d->most_work)
+        cut(job, p, middle(p), half);
+    bool whole = !half[0].vertex.len && !half[1].vertex.len, smaller = half[0].vertex.len < n && half[1].vertex.len < n;
+    if (whole || (!smaller && n <= POINTS_AT_ONCE && work <= WORK_AT_ONCE))
+        sweep(job, p, d->odd);
+    else
+        job->result.ok = job->result.ok && smaller && job->out->xyz.len / 3 <= d->most_vertices;
+    piece_free(p);
+    const struct division further = { d->odd, WORK_OF_PIECE, d->most_vertices };
+    for (int i = 0; i < 2; i++) {
+        if (smaller && !whole && job->result.ok)
+            tessellate_piece(job, &half[i], &further);
+        else
+            piece_free(&half[i]);
+    }
+}
+
+tessellation tessellate(const double *uv, const size_t *ring_size, size_t ring_count, geo_triangles *out,
+                        size_t first_vertex) {
+    size_t points = 0;
+    for (size_t r = 0; r < ring_count; r++)
+        points += ring_size[r];
+    if (crosses_too_often(uv, ring_size, ring_count, points))
+        return (tessellation){ .tangled = true };
+    struct job job = { .out = out, .first_index = out->indices.len, .first_made = first_vertex + points, .result = { .ok = true } };
+    piece whole = { 0 };
+    size_t numbers = 2 * points;
+    array_append(&whole.uv, uv, numbers);
+    array_append(&whole.ring_size, ring_size, ring_count);
+    array_reserve(&whole.vertex, points);
+    for (size_t i = 0; i < points; i++)
+        array_push(&whole.vertex, (uint32_t)(first_vertex + i));
+    const struct division division = { ring_count == 1, WORK_AT_ONCE, first_vertex + (MOST_MADE + 1) * points };
+    tessellate_piece(&job, &whole, &division);
     return job.result;
 }

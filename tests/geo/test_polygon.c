@@ -278,7 +278,7 @@ static void test_tangle(void **state) {
     double *p = noc_alloc(sizeof(double[3 * N]));
     for (size_t i = 0; i < 3 * N; i++)
         p[i] = i % 3 == 2 ? 0 : 100 * uniform();
-    expect_skipped(run(p, (size_t[]){ N }, 1), "polygon that cannot be triangulated");
+    expect_skipped(run(p, (size_t[]){ N }, 1), "polygon that crosses itself more than 1000 times");
     /* as many points of an honest ring are no trouble: a comb of teeth a metre apart */
     for (size_t i = 0; i < N; i++) {
         double tooth = (double)(i / 4);
@@ -316,11 +316,63 @@ static void test_issue_examples(void **state) {
     geo_issues_destroy(issues);
 }
 
+static double shoelace(const double *p, size_t n) {
+    double area = 0;
+    for (size_t i = 0; i < n; i++) {
+        const double *a = p + 3 * i, *b = p + 3 * ((i + 1) % n);
+        area += (a[0] * b[1] - a[1] * b[0]) / 2;
+    }
+    return area;
+}
+
+/* A star whose rays cross any line by the thousand, with a star-shaped hole and small ones between: too much for one sweep,
+ * so it is divided. Its area is that of the rings, no triangle is flipped, and nothing is said of the cuts. */
+static void test_large(void **state) {
+    (void)state;
+    enum { N = 60000, HOLE = 20000, SMALL = 100 };
+    size_t sizes[2 + SMALL] = { N, HOLE }, total = N + HOLE;
+    double *p = noc_alloc(sizeof(double[3 * (N + HOLE + 3 * SMALL)])), area = 0;
+    for (size_t i = 0; i < N; i++) {
+        double angle = 2 * M_PI * (double)i / N, r = 200 + 300 * uniform();
+        p[3 * i] = r * cos(angle), p[3 * i + 1] = r * sin(angle), p[3 * i + 2] = 5;
+    }
+    for (size_t i = 0; i < HOLE; i++) {
+        double angle = -2 * M_PI * (double)i / HOLE, r = 100 * (1 - .9 * uniform()), *q = p + 3 * (N + i);
+        q[0] = r * cos(angle), q[1] = r * sin(angle), q[2] = 5;
+    }
+    for (size_t h = 0; h < SMALL; h++, total += 3) {
+        double angle = 2 * M_PI * (double)h / SMALL, x = 150 * cos(angle), y = 150 * sin(angle);
+        memcpy(p + 3 * total, (double[]){ x, y, 5, x, y + 1, 5, x + 1, y, 5 }, sizeof(double[9]));
+        sizes[2 + h] = 3;
+    }
+    for (size_t r = 0, at = 0; r < 2 + SMALL; at += sizes[r++])
+        area += shoelace(p + 3 * at, sizes[r]);
+    struct result r = run(p, sizes, 2 + SMALL);
+    assert_true(r.vertices > total); /* of the cuts: it was divided */
+    assert_true(r.vertices < total + total / 4);
+    expect(r, area, 1);
+    expect(run(p, sizes, 1), shoelace(p, N), 1);
+    free(p);
+}
+
+/* There and back again, begun in the middle: each point is a spike once those behind it are gone. */
+static void test_long_spike(void **state) {
+    (void)state;
+    enum { N = 300000 };
+    double *p = noc_alloc(sizeof(double[3 * N]));
+    for (size_t i = 0; i < N; i++) {
+        size_t at = (i + N / 4) % N;
+        p[3 * i] = (double)(at < N / 2 ? at : N - at), p[3 * i + 1] = p[3 * i + 2] = 0;
+    }
+    expect_skipped(run(p, (size_t[]){ N }, 1), "collapsed ring");
+    free(p);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_simple_shapes),  cmocka_unit_test(test_star),    cmocka_unit_test(test_holes),
         cmocka_unit_test(test_repairs),        cmocka_unit_test(test_non_planar), cmocka_unit_test(test_skipped),
-        cmocka_unit_test(test_random_polygons), cmocka_unit_test(test_garbage), cmocka_unit_test(test_tangle), cmocka_unit_test(test_issue_examples),
+        cmocka_unit_test(test_random_polygons), cmocka_unit_test(test_garbage), cmocka_unit_test(test_tangle), cmocka_unit_test(test_large), cmocka_unit_test(test_long_spike), cmocka_unit_test(test_issue_examples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
