@@ -13,6 +13,14 @@ typedef enum noc_obj_up { NOC_OBJ_UP_Y, NOC_OBJ_UP_Z } noc_obj_up;
 
 typedef enum noc_switch { NOC_SWITCH_OFF, NOC_SWITCH_ON, NOC_SWITCH_AUTO } noc_switch; /* false and true are OFF and ON */
 
+#define NOC_TEXTS 32
+
+/* An option that may be given several times. The texts are the caller's, and stay as long as the params are used. */
+typedef struct noc_texts {
+    const char *text[NOC_TEXTS];
+    size_t count;
+} noc_texts;
+
 typedef struct noc_import_params {
     const char *crs;        /* CRS of inputs that name none (any PROJ definition), NULL: such inputs fail if they need one */
     const char *scene_crs;  /* CRS of the scene; NULL: the first input's if projected in metres, else UTM of its centre. Where its
@@ -25,6 +33,11 @@ typedef struct noc_import_params {
     double lamp_height;     /* m, where not tagged; default 6 */
     double lamp_lumens;     /* lm, where neither flux nor wattage is known; default 5000 */
     double lamp_kelvin;     /* K, where not known; default 3000 */
+    noc_texts lamps;        /* files that hold lamps whatever their words say: each of their points is one, unless its status
+                               says that it is gone. Read with the others; one that is among them is read once */
+    noc_texts lamp_columns; /* "field=column", several separated by commas: what a table's column, an attribute or a tag is
+                               read as. height_ft=H says a unit. Fields: height, lumens, watts, kelvin, colour, source,
+                               direction, count, mount, status, id, ele, lon, lat, x, y, wkt, latlon */
     noc_obj_up obj_up;      /* axis of OBJ files that points up (they do not say it); default y, as most programs write */
     noc_progress progress;
 } noc_import_params;
@@ -60,6 +73,17 @@ typedef enum noc_lamp_source {
 
 NOC_API const char *noc_lamp_source_name(noc_lamp_source source); /* "unknown", "LED", "sodium", ... */
 
+/* A column of a table, an attribute or a tag, and what it was read as. */
+typedef struct noc_report_column {
+    const char *name;       /* as in the file */
+    const char *field;      /* "height", "watts", ...: a name of noc_import_params.lamp_columns, or "kind" where its
+                               values say what is a lamp; "" where it is not used */
+    const char *unit;       /* of values that name none: "m", "ft", "W", ...; "" where there is none */
+    const char *example;    /* the first value, cut short; "" where all are blank */
+    size_t values;          /* that are not blank */
+    bool mapped;            /* by noc_import_params.lamp_columns */
+} noc_report_column;
+
 typedef struct noc_report_file {
     const char *path, *format; /* "CityGML 2.0", "GeoJSON", ... */
     const char *crs;           /* as understood: "EPSG:25832 (ETRS89 / UTM zone 32N)", "" if none */
@@ -76,6 +100,9 @@ typedef struct noc_report_file {
     size_t polygons_by_class[NOC_CLASS_COUNT];
     size_t lod_used[5];        /* buildings by the level of detail that was taken */
     size_t triangles, lamps, lights;
+    size_t points;             /* of a table or map: lamps or not */
+    size_t column_count;       /* of a table or map, in its order; of maps with tags, those of its lamps */
+    const noc_report_column *columns;
     size_t lamp_heads;         /* of all lamps: each makes a light; a lamp that does not tell has one */
     size_t lamps_with_height, lamps_with_lumens, lamps_with_watts, lamps_with_colour, lamps_with_direction; /* tagged */
     double lamp_height_min, lamp_height_max; /* of those tagged, m */
@@ -105,12 +132,14 @@ NOC_API const noc_report_file *noc_report_get_file(const noc_report *report, siz
 NOC_API void noc_report_get_totals(const noc_report *report, noc_report_totals *totals); /* all 0 where report is NULL */
 NOC_API void noc_report_destroy(noc_report *report);
 
-/* Loads all paths into the scene as one, stands the lamps on the ground, and commits. "builtin:NAME" is the built-in
+/* Loads all paths, and the files of lamps in params, into the scene as one, stands the lamps on the ground, and commits. "builtin:NAME" is the built-in
  * scene of that name. On failure the scene must be destroyed. *report may be NULL; where given it is set even on failure (possibly NULL). */
 NOC_API noc_status noc_scene_load(noc_scene *scene, const char *const *paths, size_t path_count,
                                   const noc_import_params *params, noc_report **report);
 
-/* Reads one file into a throwaway scene and reports what it holds; used by `nocturne info`. A file without a CRS is fine. */
+/* Reads one file into a throwaway scene and reports what it holds; used by `nocturne info`. A file without a CRS is fine, and
+ * so is a table of which nothing tells that its points are lamps. Files of lamps in params are not read: only whether the path
+ * is one of them counts. */
 NOC_API noc_status noc_inspect(noc_log *log, const char *path, const noc_import_params *params, noc_report **report);
 
 /* Converts between the scene's local frame and any CRS (NULL: the scene's own, noc_scene_info.given_crs). xyz in place, easting northing height

@@ -19,6 +19,7 @@ typedef enum noc_option_kind {
     NOC_OPTION_REAL,   /* double */
     NOC_OPTION_CHOICE, /* an enum (int), one of choices, in order from 0 */
     NOC_OPTION_TEXT,   /* const char *; points at the caller's text */
+    NOC_OPTION_TEXTS,  /* noc_texts; may be given several times; points at the caller's texts */
 } noc_option_kind;
 
 typedef struct noc_option {
@@ -39,7 +40,7 @@ NOC_API const noc_option *noc_import_options(void);  /* fields of noc_import_par
 NOC_API const noc_option *noc_city_options(void);    /* fields of noc_city_params */
 NOC_API const noc_option *noc_builtin_options(void); /* fields of noc_builtin_params, but for the city's */
 
-/* Sets one field from text. value is NULL for a bare bool; NOC_ERR_ARGUMENT, reported with the option's name, the text
+/* Sets one field from text (TEXTS: adds to it). value is NULL for a bare bool; NOC_ERR_ARGUMENT, reported with the option's name, the text
  * and what would be right. For BOOL and SWITCH, "true/false/on/off/yes/no/1/0". */
 NOC_API noc_status noc_option_set(const noc_option *option, void *params, const char *value, noc_log *log);
 /* The field's present value as text, for help and metadata. Returns the length, like snprintf. */

@@ -25,13 +25,30 @@ const char *cli_builtin_needed(const noc_option *option, const char *const *inpu
     return NULL;
 }
 
+static bool among_lamps(const noc_import_params *import, const char *input) {
+    for (size_t i = 0; i < import->lamps.count; i++)
+        if (!strcmp(import->lamps.text[i], input))
+            return true;
+    return false;
+}
+
+void cli_add_lamps(cli_args *args, const noc_import_params *import) {
+    for (size_t i = 0; i < import->lamps.count; i++) {
+        bool there = false;
+        for (size_t k = 0; k < args->input_count && !there; k++)
+            there = !strcmp(args->inputs[k], import->lamps.text[i]);
+        if (!there)
+            args->inputs[args->input_count++] = import->lamps.text[i]; /* there is room for every word of the command line */
+    }
+}
+
 noc_status cli_load_scene(noc_scene *scene, const char *const *inputs, size_t count, const noc_builtin_params *builtin,
                           const noc_import_params *import, noc_report **report) {
     const char **files = cli_alloc(sizeof(char *) * count);
     size_t file_count = 0;
     noc_status status = NOC_OK;
     for (size_t i = 0; i < count && !status; i++) {
-        const char *name = cli_builtin(inputs[i]);
+        const char *name = among_lamps(import, inputs[i]) ? NULL : cli_builtin(inputs[i]); /* no file of lamps: an error */
         if (!name) {
             files[file_count++] = inputs[i];
         } else if (!among(inputs, i, name)) { /* once is enough */

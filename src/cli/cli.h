@@ -93,6 +93,8 @@ double cli_now(void);          /* wall clock, seconds */
 const char *cli_builtin(const char *input); /* name of the built-in scene that an input is, NULL for a file */
 /* The input that an option is for and that is not there, for the message; NULL if nothing is wrong. */
 const char *cli_builtin_needed(const noc_option *option, const char *const *inputs, size_t count);
+/* Files named with --lamps are inputs like the others: appended to those of the command line. */
+void cli_add_lamps(cli_args *args, const noc_import_params *import);
 /* All inputs as one committed scene. report may be NULL. */
 noc_status cli_load_scene(noc_scene *scene, const char *const *inputs, size_t count, const noc_builtin_params *builtin,
                           const noc_import_params *import, noc_report **report);

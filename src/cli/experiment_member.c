@@ -101,6 +101,15 @@ int experiment_set(experiment_spec *spec, const char *place, const cli_set *sets
     const noc_option *o = experiment_option(sets, name, &offset);
     if (!o)
         return unknown(spec, place, sets, others, name);
+    if (o->kind == NOC_OPTION_TEXTS && json_is_array(value)) { /* one after the other, as on a command line */
+        int status = CLI_OK;
+        for (size_t i = 0; i < json_array_size(value) && !status; i++) {
+            json_t *item = json_array_get(value, i);
+            status = json_is_string(item) ? experiment_set(spec, place, sets, others, params, name, item)
+                                          : experiment_wrong(spec, place, "%s: an array of texts", name);
+        }
+        return status;
+    }
     char *text = json_is_array(value) && o->kind != NOC_OPTION_TEXT ? NULL : spell(value);
     if (!text)
         return experiment_wrong(spec, place, "%s: this cannot be its value", name);

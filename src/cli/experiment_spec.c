@@ -94,9 +94,10 @@ static int read_scene(S *spec, const char *place, json_t *object, experiment_sce
         return status;
     json_t *inputs = json_object_get(object, "inputs"), *input;
     size_t count = json_array_size(inputs), i;
-    if (!count)
+    noc_texts *lamps = &scene->import.lamps;
+    if (!count && !lamps->count)
         return experiment_wrong(spec, place, "inputs must be an array of files or builtin:NAME");
-    scene->inputs = cli_alloc(sizeof(char *) * count);
+    scene->inputs = cli_alloc(sizeof(char *) * (count + lamps->count));
     experiment_keep(spec, scene->inputs);
     json_array_foreach(inputs, i, input) {
         const char *text = json_string_value(input);
@@ -104,6 +105,11 @@ static int read_scene(S *spec, const char *place, json_t *object, experiment_sce
             return experiment_wrong(spec, place, "inputs must be an array of files or builtin:NAME");
         scene->inputs[scene->input_count++] = resolve(spec, text);
     }
+    for (i = 0; i < lamps->count; i++)
+        lamps->text[i] = resolve(spec, lamps->text[i]);
+    cli_args all = { .inputs = scene->inputs, .input_count = scene->input_count };
+    cli_add_lamps(&all, &scene->import);
+    scene->input_count = all.input_count;
     return check_inputs(spec, place, object, scene);
 }
 

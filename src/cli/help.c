@@ -13,7 +13,8 @@ void cli_spell(char *out, size_t size, const noc_option *o, const void *defaults
     switch (o->kind) {
     case NOC_OPTION_BOOL:
     case NOC_OPTION_SWITCH: break;
-    case NOC_OPTION_TEXT: snprintf(placeholder, sizeof(placeholder), " %s", o->unit); break;
+    case NOC_OPTION_TEXT:
+    case NOC_OPTION_TEXTS: snprintf(placeholder, sizeof(placeholder), " %s", o->unit); break;
     case NOC_OPTION_CHOICE: snprintf(placeholder, sizeof(placeholder), " NAME"); break;
     case NOC_OPTION_REAL: snprintf(placeholder, sizeof(placeholder), " X"); break;
     default: snprintf(placeholder, sizeof(placeholder), " N");

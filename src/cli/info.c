@@ -118,6 +118,35 @@ static void print_lamps(const noc_report_file *file) {
                    cli_count(a, file->lamps_by_source[s]), 100.0 * (double)file->lamps_by_source[s] / (double)file->lamps);
 }
 
+/* Columns that are used come first. */
+static void print_columns(const noc_report_file *file) {
+    enum { MOST = 100 }; /* lines of what is not used; JSON has all */
+    char name[64], example[64], field[64];
+    size_t unused = 0;
+    if (file->column_count)
+        printf("  %-11s %-24s %-14s %s\n", "columns", "name", "read as", "example");
+    for (int used = 1; used >= 0; used--)
+        for (size_t i = 0; i < file->column_count; i++) {
+            const noc_report_column *c = &file->columns[i];
+            if ((*c->field != 0) != used || (!used && unused++ >= MOST))
+                continue;
+            snprintf(field, sizeof(field), "%s%s%s%s", used ? c->field : "not used", *c->unit ? ", " : "", c->unit,
+                     c->mapped ? " *" : "");
+            printf("    %-9s %-24s %-14s %s\n", "", cli_clean(name, sizeof(name), c->name), field,
+                   c->values ? cli_clean(example, sizeof(example), c->example) : "(blank)");
+        }
+    if (unused > MOST)
+        printf("    %-9s and %zu more that are not used; --json lists them\n", "", unused - MOST);
+}
+
+static void print_points(const noc_report_file *file) {
+    char a[32];
+    if (file->points && !file->lamps)
+        printf("  %-11s %s, and nothing tells that they are lamps in use: --lamps FILE says so\n", "points",
+               cli_count(a, file->points));
+    print_columns(file);
+}
+
 static void print_file(const noc_report_file *file) {
     char a[32], b[64], path[400];
     printf("%s\n", cli_clean(path, sizeof(path), file->path));
@@ -133,6 +162,7 @@ static void print_file(const noc_report_file *file) {
     }
     if (file->lamps)
         print_lamps(file);
+    print_points(file);
     if (file->lights)
         printf("  %-11s %s\n", "lights", cli_count(a, file->lights));
     print_lines(file, false);
@@ -189,6 +219,7 @@ static noc_status inspect(const info_args *args, const char *path, noc_log *log,
 
 static int run(void *arguments) {
     info_args *args = arguments;
+    cli_add_lamps(&args->common, &args->import);
     if (!args->common.input_count)
         return cli_usage(&cli_info, "which file?");
     cli_catch_signals();

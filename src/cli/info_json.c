@@ -88,6 +88,21 @@ static void lamp_details(const noc_report_file *file) {
     putchar('}');
 }
 
+static void columns(const noc_report_file *file) {
+    key("columns");
+    putchar('[');
+    for (size_t i = 0; i < file->column_count; i++) {
+        const noc_report_column *c = &file->columns[i];
+        const char *const texts[][2] = { { "name", c->name }, { "field", c->field }, { "unit", c->unit }, { "example", c->example } };
+        for (size_t k = 0; k < sizeof(texts) / sizeof(*texts); k++) {
+            printf("%s\"%s\": ", k ? ", " : i ? ",\n      {" : "\n      {", texts[k][0]);
+            cli_json_text(stdout, texts[k][1]);
+        }
+        printf(", \"values\": %zu, \"mapped\": %s}", c->values, c->mapped ? "true" : "false");
+    }
+    putchar(']');
+}
+
 static void report_file(const noc_report_file *file) {
     text("format", file->format);
     text("crs", file->crs);
@@ -111,6 +126,10 @@ static void report_file(const noc_report_file *file) {
     number("lamps", (double)file->lamps);
     if (file->lamps)
         lamp_details(file);
+    if (file->column_count) {
+        number("points", (double)file->points);
+        columns(file);
+    }
     number("lights", (double)file->lights);
     lines(file);
 }

@@ -130,7 +130,7 @@ static void zsh_option(FILE *out, const noc_option *o, const void *defaults, int
         choices(out, o, ' ');
         fputc(')', out);
     } else if (!cli_is_switch(o)) {
-        fprintf(out, ":value:%s", o->kind == NOC_OPTION_TEXT ? "_files" : "");
+        fprintf(out, ":value:%s", o->kind == NOC_OPTION_TEXT || o->kind == NOC_OPTION_TEXTS ? "_files" : "");
     }
     fputs("' \\\n", out);
 }
@@ -159,7 +159,7 @@ static void fish_option(FILE *out, const noc_option *o, const void *defaults, in
         choices(out, o, ' ');
         fputc('\'', out);
     } else if (!cli_is_switch(o)) {
-        fputs(o->kind == NOC_OPTION_TEXT ? " -r" : " -x", out);
+        fputs(o->kind == NOC_OPTION_TEXT || o->kind == NOC_OPTION_TEXTS ? " -r" : " -x", out);
     }
     fputs(" -d '", out);
     for (const char *c = o->help; *c; c++) {

@@ -119,6 +119,7 @@ static void warn_of_idle(const render_args *args) {
 /* All that can be wrong with the arguments is found before any file is read. */
 static int check(render_job *job) {
     render_args *args = job->args;
+    cli_add_lamps(&args->common, &args->import);
     if (!args->common.input_count)
         return cli_usage(&cli_render, "nothing to draw: name a city model, or builtin:city");
     if (!args->output)

@@ -20,7 +20,7 @@ static void add_options(meta_text *meta, const render_args *args) {
         for (const noc_option *o = set->table(); o->name; o++) {
             static const char *const told_otherwise[] = { "output", "view", "eye", "target", "camera-crs", "fov", "stats", "frames",
                                                           "size", "exposure", "time", "threads", "show", "show-range", "quiet",
-                                                          "verbose", "help", NULL };
+                                                          "verbose", "help", "lamps", NULL };
             if (cli_hidden(set, o) || cli_hidden(&(cli_set){ .hidden = told_otherwise }, o))
                 continue;
             const void *params = (const char *)args + set->offset;
@@ -44,11 +44,11 @@ static void add_totals(meta_text *meta, const noc_report *report) {
         add(meta, rows[i].key, cli_format("%zu", rows[i].count));
 }
 
-static char *join_inputs(const render_args *args) {
+static char *join_names(const char *const *paths, size_t count) {
     char *text = cli_format("%s", "");
-    for (size_t i = 0; i < args->common.input_count; i++) {
-        const char *slash = strrchr(args->common.inputs[i], '/'); /* a file's folder is nobody else's business */
-        char *longer = cli_format("%s%s%s", text, i ? ", " : "", slash ? slash + 1 : args->common.inputs[i]);
+    for (size_t i = 0; i < count; i++) {
+        const char *slash = strrchr(paths[i], '/'); /* a file's folder is nobody else's business */
+        char *longer = cli_format("%s%s%s", text, i ? ", " : "", slash ? slash + 1 : paths[i]);
         free(text);
         text = longer;
     }
@@ -78,7 +78,8 @@ noc_status cli_write_picture(render_job *job) {
     if (!job->image)
         return NOC_ERR_MEMORY;
     meta_text meta = { .count = 0 };
-    add(&meta, "inputs", join_inputs(args));
+    add(&meta, "inputs", join_names(args->common.inputs, args->common.input_count));
+    add(&meta, "lamps", join_names(args->import.lamps.text, args->import.lamps.count));
     add(&meta, "frames", cli_format("%d", job->frames));
     add(&meta, "camera-eye", cli_format("%.17g %.17g %.17g", c->eye[0], c->eye[1], c->eye[2]));
     add(&meta, "camera-target", cli_format("%.17g %.17g %.17g", c->target[0], c->target[1], c->target[2]));

@@ -76,6 +76,13 @@ typedef struct geo_lamp {
     const char *id;
 } geo_lamp;
 
+/* A column of a table, an attribute or a tag, and what a reader of lamps took it for. Texts are valid during the call. */
+typedef struct geo_column {
+    const char *name, *field, *unit, *example; /* field: "" where it is not used */
+    size_t values;                             /* that are not blank */
+    bool mapped;                               /* by the user */
+} geo_column;
+
 /* Counted reasons: kept by the importer, a line a reason in the report. */
 typedef struct geo_issues geo_issues;
 void geo_issue(geo_issues *issues, bool repaired, const char *reason, const char *id); /* reason: a literal */
@@ -93,8 +100,12 @@ typedef struct geo_sink {
     noc_status (*polygon)(void *ctx, const geo_polygon *polygon);
     noc_status (*end_object)(void *ctx);
     noc_status (*lamp)(void *ctx, const geo_lamp *lamp);
+    /* Of a file of points, at its end: how many there are, lamps or not, and its columns. May be NULL. */
+    void (*columns)(void *ctx, size_t points, const geo_column *columns, size_t count);
     /* fraction of the file read; false: cancelled */
     bool (*progress)(void *ctx, double done);
+    bool named_lamps; /* the user says that the file's points are lamps */
+    bool inspect;     /* a file of no use is told about, and no error */
 } geo_sink;
 
 /* ---- polygons (polygon.c) ---- */

@@ -141,6 +141,11 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     return keep_points(a, lamp->xyz, 1, kept.id ? kept.id : "");
 }
 
+static void on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
+    struct look_ahead *a = ctx;
+    a->sink.columns(a->sink.ctx, points, columns, count);
+}
+
 static bool on_progress(void *ctx, double done) {
     struct look_ahead *a = ctx;
     return a->sink.progress(a->sink.ctx, done);
@@ -150,8 +155,14 @@ struct look_ahead *ahead_create(importer *im, geo_sink *sink) {
     struct look_ahead *a = noc_calloc(1, sizeof(*a));
     a->im = im;
     a->sink = *sink;
-    *sink = (geo_sink){ .ctx = a, .log = sink->log, .issues = sink->issues, .lamps_lost = sink->lamps_lost, .crs = on_crs, .begin_object = on_begin_object,
-                        .polygon = on_polygon, .end_object = on_end_object, .lamp = on_lamp, .progress = on_progress };
+    sink->ctx = a;
+    sink->crs = on_crs;
+    sink->begin_object = on_begin_object;
+    sink->polygon = on_polygon;
+    sink->end_object = on_end_object;
+    sink->lamp = on_lamp;
+    sink->columns = on_columns;
+    sink->progress = on_progress;
     return a;
 }
 

@@ -108,19 +108,21 @@ static char find_separator(const char *head, size_t size) {
 }
 
 typedef struct columns {
-    char **names; /* owned */
+    lamp_keys *keys; /* NULL: by the words alone */
+    char **names;    /* owned */
     size_t count;
     int lon, lat, x, y, wkt, lat_lon, z; /* -1: none */
+    double z_scale;
     bool tags, inventory;
 } columns;
 
 static int find_column(const columns *cols, lamp_field wanted) {
     int best = -1, best_rank = 0;
     for (size_t i = 0; i < cols->count; i++) {
-        const lamp_column *c = lamp_column_find(cols->names[i]);
-        if (c && c->field == wanted && (best < 0 || c->rank < best_rank)) {
+        lamp_meaning m = lamp_keys_meaning(cols->keys, cols->names[i]);
+        if (m.field == wanted && (best < 0 || m.rank < best_rank)) {
             best = (int)i;
-            best_rank = c->rank;
+            best_rank = m.rank;
         }
     }
     return best;
@@ -138,9 +140,10 @@ static void understand(columns *cols) {
     cols->wkt = find_column(cols, LAMP_FIELD_WKT);
     cols->lat_lon = find_column(cols, LAMP_FIELD_LAT_LON);
     cols->z = find_column(cols, LAMP_FIELD_ELEVATION);
+    cols->z_scale = cols->z >= 0 ? lamp_keys_meaning(cols->keys, cols->names[cols->z]).scale : 1;
     for (size_t i = 0; i < cols->count; i++)
         cols->tags |= lamp_key_tells(cols->names[i]);
-    cols->inventory = !cols->tags && lamp_columns_tell((const char *const *)cols->names, cols->count);
+    cols->inventory = !cols->tags && lamp_columns_tell(cols->keys, (const char *const *)cols->names, cols->count);
 }
 
 static void free_columns(columns *cols) {
@@ -149,7 +152,8 @@ static void free_columns(columns *cols) {
     free(cols->names);
 }
 
-bool lamp_csv_probe(const char *head, size_t size) {
+/* The columns of a table's first line; false if it is none. */
+static bool probe_columns(const char *head, size_t size, columns *cols) {
     if (size >= 3 && !memcmp(head, "\xef\xbb\xbf", 3)) {
         head += 3;
         size -= 3;
@@ -160,17 +164,35 @@ bool lamp_csv_probe(const char *head, size_t size) {
     char separator = find_separator(head, size);
     if (!separator || (line < size && !head[line]) || *head == '{' || *head == '<')
         return false;
-    columns cols = { 0 };
     char *copy = noc_format("%.*s", (int)line, head), *rest = copy, *name;
     char ends[3] = { separator, '\r', 0 };
-    cols.names = noc_calloc(line + 2, sizeof(*cols.names));
+    cols->names = noc_calloc(line + 2, sizeof(*cols->names));
     while ((name = strsep(&rest, ends)))
         if (*name)
-            cols.names[cols.count++] = noc_strdup(name); /* folding drops the quotes */
-    understand(&cols);
-    bool yes = has_place(&cols);
-    free_columns(&cols);
+            cols->names[cols->count++] = noc_strdup(name); /* folding drops the quotes */
     free(copy);
+    return true;
+}
+
+bool lamp_csv_probe(const char *head, size_t size) {
+    columns cols = { 0 };
+    bool yes = probe_columns(head, size, &cols);
+    if (yes) {
+        understand(&cols);
+        yes = has_place(&cols);
+    }
+    free_columns(&cols);
+    return yes;
+}
+
+/* Text in lines, of which the first is cut by a separator. */
+bool lamp_csv_probe_table(const char *head, size_t size) {
+    for (size_t i = 0; i < size; i++)
+        if ((unsigned char)head[i] < ' ' && !strchr("\t\r\n", head[i]))
+            return false;
+    columns cols = { 0 };
+    bool yes = memchr(head, '\n', size) && probe_columns(head, size, &cols) && cols.count > 1;
+    free_columns(&cols);
     return yes;
 }
 
@@ -210,6 +232,29 @@ static bool read_place(const csv *c, const columns *cols, double *x, double *y) 
     return lamp_coordinate(field(c, (size_t)cols->x), x) && lamp_coordinate(field(c, (size_t)cols->y), y);
 }
 
+/* The columns' names for a message, as many as fit on a line; free() it. */
+static char *name_columns(const columns *cols) {
+    char *text = noc_strdup("");
+    size_t i = 0;
+    for (; i < cols->count && strlen(text) < 200; i++) {
+        char *longer = noc_format("%s%s%.40s", text, i ? ", " : "", cols->names[i]);
+        free(text);
+        text = longer;
+    }
+    char *all = noc_format("%s%s", text, i < cols->count ? ", ..." : "");
+    free(text);
+    return all;
+}
+
+static noc_status no_place(csv *c, const columns *cols) {
+    char *names = name_columns(cols);
+    noc_status status = noc_error(c->log, NOC_ERR_FORMAT, "%s:%zu: no columns with coordinates (longitude and latitude, or x and y) "
+                                  "in the header: it has %s. Say which they are: --lamp-columns lon=A,lat=B or x=A,y=B",
+                                  noc_stream_name(c->stream), c->line, names);
+    free(names);
+    return status;
+}
+
 /* Opens the table: header read, the next record is the first row. */
 static noc_status read_header(csv *c, columns *cols) {
     noc_status status = noc_stream_rewind(c->stream);
@@ -230,9 +275,7 @@ static noc_status read_header(csv *c, columns *cols) {
     for (; cols->count < c->start.len; cols->count++)
         cols->names[cols->count] = noc_strdup(field(c, cols->count));
     understand(cols);
-    if (!has_place(cols))
-        return bad(c, "no columns with coordinates (longitude and latitude, or x and y) in the header");
-    return NOC_OK;
+    return has_place(cols) ? NOC_OK : no_place(c, cols);
 }
 
 /* Columns called x and y without a CRS: degrees if every one of them could be, and none of them lies where `given` (NULL
@@ -269,27 +312,49 @@ static noc_status settle_crs(csv *c, columns *cols, lamp_writer *w, const noc_im
     return lamp_writer_crs(w, degrees ? LAMP_WGS84 : NULL);
 }
 
+/* The present record as tags, if it fits the header; false after counting why not. */
+static bool row_tags(csv *c, const columns *cols, lamp_writer *w, const char *row, lamp_tag *tags) {
+    if (c->start.len == 1 && !*field(c, 0))
+        return false; /* an empty line */
+    if (c->start.len != cols->count) {
+        geo_issue(w->sink->issues, false, "row with too few or too many columns", row);
+        return false;
+    }
+    for (size_t i = 0; i < cols->count; i++)
+        tags[i] = (lamp_tag){ cols->names[i], field(c, i) };
+    return true;
+}
+
+/* Do the values say what the rows are? Leaves the table at its first row. */
+static noc_status read_kinds(csv *c, columns *cols, lamp_kinds *kinds) {
+    lamp_tag *tags = noc_calloc(cols->count + 1, sizeof(*tags));
+    noc_status status;
+    while (!(status = read_record(c)) && c->start.len) {
+        for (size_t i = 0; i < cols->count && c->start.len == cols->count; i++)
+            tags[i] = (lamp_tag){ cols->names[i], field(c, i) };
+        if (c->start.len == cols->count)
+            lamp_kinds_count(kinds, tags, cols->count);
+    }
+    free(tags);
+    lamp_kinds_decide(kinds);
+    return status ? status : read_header(c, cols);
+}
+
 static noc_status read_rows(csv *c, const columns *cols, lamp_writer *w) {
     lamp_tag *tags = noc_calloc(cols->count + 1, sizeof(*tags));
     noc_status status;
     while (!(status = read_record(c)) && c->start.len) {
         char row[32];
         snprintf(row, sizeof(row), "line %zu", c->line);
-        if (c->start.len == 1 && !*field(c, 0))
-            continue; /* an empty line */
-        if (c->start.len != cols->count) {
-            geo_issue(w->sink->issues, false, "row with too few or too many columns", row);
+        if (!row_tags(c, cols, w, row, tags))
             continue;
-        }
-        for (size_t i = 0; i < cols->count; i++)
-            tags[i] = (lamp_tag){ cols->names[i], field(c, i) };
-        tags[cols->count] = (lamp_tag){ "fid", row }; /* an id for want of a better one */
-        double x, y, z;
-        if (!read_place(c, cols, &x, &y))
-            x = y = NAN;
-        if (cols->z < 0 || !lamp_coordinate(field(c, (size_t)cols->z), &z))
-            z = NAN;
-        status = lamp_writer_point(w, tags, cols->count + 1, cols->inventory, x, y, z);
+        double xyz[3];
+        if (!read_place(c, cols, &xyz[0], &xyz[1]))
+            xyz[0] = xyz[1] = NAN;
+        if (cols->z < 0 || !lamp_coordinate(field(c, (size_t)cols->z), &xyz[2]))
+            xyz[2] = NAN;
+        xyz[2] *= cols->z_scale;
+        status = lamp_writer_point(w, tags, cols->count, row, xyz);
         if (!status && w->features % 1024 == 0 && w->sink->progress &&
             !w->sink->progress(w->sink->ctx, noc_stream_progress(c->stream)))
             status = NOC_ERR_CANCELLED;
@@ -300,24 +365,35 @@ static noc_status read_rows(csv *c, const columns *cols, lamp_writer *w) {
     return status;
 }
 
+/* What tells that the rows are lamps: the user, tags, columns, values, or nothing. */
+static noc_status judge(csv *c, columns *cols, lamp_writer *w) {
+    noc_status status = NOC_OK;
+    w->inventory = w->sink->named_lamps || cols->inventory;
+    if (!w->inventory && !cols->tags) {
+        status = read_kinds(c, cols, &w->kinds);
+        w->inventory = w->kinds.any;
+        w->strange = !w->kinds.any;
+    }
+    return status;
+}
+
 noc_status lamp_csv_read(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
     *format = "CSV";
     csv *c = noc_calloc(1, sizeof(*c));
     c->stream = stream;
     c->log = sink->log;
-    columns cols = { 0 };
-    lamp_writer w = { .sink = sink, .place = noc_stream_name(stream) };
+    lamp_writer w = lamp_writer_start(sink, noc_stream_name(stream), params);
+    columns cols = { .keys = w.keys };
     noc_status status = read_header(c, &cols);
-    if (!status && !cols.tags && !cols.inventory)
-        noc_warn(sink->log, "%s: no column tells that its points are lamps (such as lamp_type, wattage, mast_height); none is read",
-                 w.place);
-    else if (!status) {
+    if (!status)
+        status = judge(c, &cols, &w);
+    if (!status && !w.strange)
         status = settle_crs(c, &cols, &w, params);
-        if (!status)
-            status = read_rows(c, &cols, &w);
-        if (!status)
-            status = lamp_writer_end(&w);
-    }
+    if (!status)
+        status = read_rows(c, &cols, &w);
+    if (!status)
+        status = lamp_writer_end(&w);
+    lamp_writer_free(&w);
     free_columns(&cols);
     array_free(&c->text);
     array_free(&c->start);

@@ -36,6 +36,8 @@ typedef struct noc_reader {
     enum { NOC_READS_CITY, NOC_READS_MESH, NOC_READS_LAMPS } reads;
     /* Does the beginning of the (decompressed) content look like this format? head is size bytes and then a 0. */
     bool (*probe)(const char *head, size_t size);
+    /* The same of a file that the user names as lamps, asked where no probe knows it; may be NULL. */
+    bool (*probe_named)(const char *head, size_t size);
     /* Reads everything. *format gets a static or interned description ("CityGML 2.0"). Exactly one of these is set. */
     noc_status (*read)(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format);
     noc_status (*read_mesh)(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,

@@ -3,6 +3,16 @@
 
 #include <math.h>
 
+lamp_writer lamp_writer_start(geo_sink *sink, const char *place, const noc_import_params *params) {
+    return (lamp_writer){ .sink = sink, .place = place, .keys = lamp_keys_create(params) };
+}
+
+void lamp_writer_free(lamp_writer *w) {
+    lamp_keys_destroy(w->keys);
+    lamp_kinds_free(&w->kinds);
+    w->keys = NULL;
+}
+
 noc_status lamp_writer_crs(lamp_writer *w, const char *crs) {
     /* tuples come to us in easting northing order already: traditional GIS order, whatever the authority says */
     bool lat_first = false;
@@ -20,15 +30,32 @@ static noc_status lose(lamp_writer *w, const char *reason, const char *id) {
     return NOC_OK;
 }
 
-noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count, bool inventory, double x, double y, double z) {
+/* Of a table every row is noted, of tagged maps the lamps. Names with an @ are ours. */
+static void note(lamp_writer *w, const lamp_tag *tags, size_t count, bool lamp) {
+    if (!lamp && !w->inventory && !w->strange)
+        return;
+    for (size_t i = 0; i < count; i++)
+        if (tags[i].key[0] != '@')
+            lamp_keys_note(w->keys, tags[i].key, tags[i].value);
+}
+
+noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count, const char *id, const double xyz[3]) {
     w->features++;
-    lamp_verdict verdict = lamp_verdict_of(tags, count, inventory);
+    double x = xyz[0], y = xyz[1], z = xyz[2];
+    lamp_verdict verdict = w->strange ? LAMP_NONE : lamp_verdict_of(w->keys, tags, count, w->inventory);
+    w->points += verdict != LAMP_NONE || w->strange;
+    w->strange_points += w->strange;
+    note(w, tags, count, verdict != LAMP_NONE);
     if (verdict == LAMP_NONE)
         return NOC_OK;
-    geo_lamp lamp = { .xyz = { x, y, isfinite(z) && z != 0 ? z : NAN } }; /* 0: written for want of a height */
-    lamp_read(tags, count, &lamp, verdict == LAMP_ACTIVE ? w->sink->issues : NULL);
+    geo_lamp lamp = { .xyz = { x, y, isfinite(z) && z != 0 ? z : NAN }, .id = id }; /* 0: written for want of a height */
+    lamp_read(w->keys, tags, count, &lamp, verdict == LAMP_ACTIVE ? w->sink->issues : NULL);
     if (!lamp_accept(verdict, lamp.id, w->sink->issues))
         return NOC_OK;
+    if (w->kinds.any && !lamp_kinds_tell(&w->kinds, tags, count)) {
+        geo_issue(w->sink->issues, false, "point that is called something other than a lamp", lamp.id);
+        return NOC_OK;
+    }
     if (!isfinite(x) || !isfinite(y))
         return lose(w, "lamp without a place", lamp.id);
     if (w->geographic && !on_earth(x, y)) {
@@ -43,19 +70,30 @@ noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count,
 }
 
 noc_status lamp_writer_end(lamp_writer *w) {
+    noc_log *log = w->sink->log;
+    lamp_kinds_note(&w->kinds, w->keys);
+    lamp_keys_report(w->keys, w->sink, w->points);
     if (w->off_earth > w->lamps && w->exchangeable == w->off_earth)
-        return noc_error(w->sink->log, NOC_ERR_FORMAT,
+        return noc_error(log, NOC_ERR_FORMAT,
                          "%s: its coordinates are no longitudes and latitudes; with the two exchanged all %zu are: exchange them in the "
                          "file", w->place, w->off_earth);
     if (w->off_earth > w->lamps)
-        return noc_error(w->sink->log, NOC_ERR_FORMAT,
+        return noc_error(log, NOC_ERR_FORMAT,
                          "%s: its coordinates are no longitudes and latitudes, and it names no other CRS; give one with --crs",
                          w->place);
     if (w->lost && !w->lamps)
         return NOC_OK; /* the importer says that none of its lamps is of use */
-    if (!w->lamps && w->features)
-        noc_warn(w->sink->log, "%s: none of its %zu features is a street lamp in use", w->place, w->features);
-    else if (!w->lamps)
-        noc_warn(w->sink->log, "%s: no tag and no column of it tells of street lamps", w->place);
+    if (w->lamps)
+        return NOC_OK;
+    if (w->strange_points && !w->sink->inspect)
+        return noc_error(log, NOC_ERR_FORMAT,
+                         "%s: nothing tells that its %zu points are lamps: if they are, say --lamps %s (nocturne info shows its "
+                         "columns, --lamp-columns says what they mean)", w->place, w->strange_points, w->place);
+    if (w->sink->named_lamps && !w->features)
+        return noc_error(log, NOC_ERR_FORMAT, "%s: named with --lamps, but it holds no points", w->place);
+    if (w->features && !w->strange_points)
+        noc_warn(log, "%s: none of its %zu features is a street lamp in use", w->place, w->features);
+    else if (!w->features)
+        noc_warn(log, "%s: no tag and no column of it tells of street lamps", w->place);
     return NOC_OK;
 }

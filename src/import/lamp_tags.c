@@ -48,14 +48,13 @@ bool lamp_key_tells(const char *key) {
     return false;
 }
 
-bool lamp_columns_tell(const char *const *names, size_t count) {
+bool lamp_columns_tell(lamp_keys *keys, const char *const *names, size_t count) {
     int strength[LAMP_FIELD_TOTAL] = { 0 }, sum = 0;
     for (size_t i = 0; i < count; i++) {
-        const lamp_column *c = lamp_column_find(names[i]);
-        if (c)
-            strength[c->field] = NOC_MAX(strength[c->field], c->strength);
+        lamp_meaning m = lamp_keys_meaning(keys, names[i]);
+        strength[m.field] = NOC_MAX(strength[m.field], m.strength);
     }
-    for (int f = 0; f < LAMP_FIELD_TOTAL; f++)
+    for (int f = LAMP_FIELD_NONE + 1; f < LAMP_FIELD_TOTAL; f++)
         sum += strength[f];
     return sum >= 2;
 }
@@ -73,7 +72,7 @@ static const char *after_lifecycle(const char *key) {
 static bool is_no(const char *value) { return noc_ieq(value, "no") || noc_ieq(value, "false") || !strcmp(value, "0"); }
 
 /* What a tag of a lamp says about whether it shines on a street. */
-static lamp_verdict tag_verdict(const lamp_tag *tag) {
+static lamp_verdict tag_verdict(lamp_keys *keys, const lamp_tag *tag) {
     const char *k = tag->key, *v = tag->value;
     if (!strcmp(k, "disused") || !strcmp(k, "abandoned") || !strcmp(k, "removed") || !strcmp(k, "demolished"))
         return is_no(v) ? LAMP_ACTIVE : LAMP_INACTIVE;
@@ -81,9 +80,8 @@ static lamp_verdict tag_verdict(const lamp_tag *tag) {
         return is_no(v) ? LAMP_ACTIVE : LAMP_INDOORS;
     if (!strcmp(k, "location") && (!strcmp(v, "underground") || !strcmp(v, "indoor")))
         return LAMP_INDOORS;
-    const lamp_column *c = lamp_column_find(k);
     char folded[128];
-    if (c && c->field == LAMP_FIELD_STATUS) {
+    if (lamp_keys_meaning(keys, k).field == LAMP_FIELD_STATUS) {
         lamp_fold(v, true, folded, sizeof(folded));
         return lamp_inactive_word(folded) ? LAMP_INACTIVE : LAMP_ACTIVE;
     }
@@ -95,7 +93,7 @@ static lamp_verdict tag_verdict(const lamp_tag *tag) {
     return LAMP_ACTIVE;
 }
 
-lamp_verdict lamp_verdict_of(const lamp_tag *tags, size_t count, bool inventory) {
+lamp_verdict lamp_verdict_of(lamp_keys *keys, const lamp_tag *tags, size_t count, bool inventory) {
     lamp_verdict verdict = inventory ? LAMP_ACTIVE : LAMP_NONE;
     for (size_t i = 0; i < count && verdict != LAMP_ACTIVE; i++) {
         if (!tags[i].value || !*tags[i].value)
@@ -108,7 +106,7 @@ lamp_verdict lamp_verdict_of(const lamp_tag *tags, size_t count, bool inventory)
     }
     for (size_t i = 0; i < count && verdict == LAMP_ACTIVE; i++)
         if (tags[i].value && *tags[i].value)
-            verdict = tag_verdict(&tags[i]);
+            verdict = tag_verdict(keys, &tags[i]);
     return verdict;
 }
 
@@ -124,7 +122,8 @@ typedef struct reading {
     geo_lamp *lamp;
     geo_issues *issues;
     bool type_known;
-    int times; /* the factor of "2x70 W" */
+    int times;    /* the factor of "2x70 W" */
+    double scale; /* of the value that is read, where it names no unit */
 } reading;
 
 static bool misread(const reading *r, const char *reason) {
@@ -137,7 +136,7 @@ static bool misread(const reading *r, const char *reason) {
 static bool read_quantity(reading *r, const char *text, lamp_unit unit, double lo, double hi, const char *reason, double *out) {
     double value;
     int times;
-    if (!lamp_quantity(text, unit, &value, &times))
+    if (!lamp_quantity(text, unit, r->scale, &value, &times))
         return misread(r, reason);
     if (value == 0)
         return false;
@@ -152,7 +151,7 @@ static bool read_quantity(reading *r, const char *text, lamp_unit unit, double l
 static bool read_count(reading *r, const char *text) {
     double value;
     int times;
-    if (!lamp_quantity(text, LAMP_PLAIN, &value, &times) || value != floor(value) || value > 24)
+    if (!lamp_quantity(text, LAMP_PLAIN, 1, &value, &times) || value != floor(value) || value > 24)
         return misread(r, "number of lamps on a pole not understood");
     if (value < 1)
         return false;
@@ -164,7 +163,7 @@ static bool read_count(reading *r, const char *text) {
 static bool read_kelvin(reading *r, const char *text) {
     double value;
     int times;
-    if (!lamp_quantity(text, LAMP_KELVIN, &value, &times))
+    if (!lamp_quantity(text, LAMP_KELVIN, r->scale, &value, &times))
         return false;
     double code = fmod(value, 100);
     if (value >= 600 && value < 1000 && code >= 18 && code <= 65)
@@ -215,9 +214,10 @@ static bool read_mount(reading *r, const char *text) {
 }
 
 /* True: the field is known now, and columns of higher rank are not asked. */
-static bool read_field(reading *r, const lamp_column *c, const char *text) {
+static bool read_field(reading *r, const lamp_meaning *c, const char *text) {
     geo_lamp *lamp = r->lamp;
     double x;
+    r->scale = c->scale;
     switch (c->field) {
     case LAMP_FIELD_HEIGHT:
         return read_quantity(r, text, LAMP_METRES, .2, 60, "height of a lamp not understood or implausible", &lamp->height);
@@ -234,7 +234,7 @@ static bool read_field(reading *r, const lamp_column *c, const char *text) {
     case LAMP_FIELD_KELVIN:
         return read_kelvin(r, text) || misread(r, "colour temperature not understood or implausible");
     case LAMP_FIELD_COLOUR:
-        return read_colour(r, text, c->rank == 0);
+        return read_colour(r, text, c->rank <= 0);
     case LAMP_FIELD_TYPE:
         return read_type(r, text);
     case LAMP_FIELD_MOUNT:
@@ -243,33 +243,33 @@ static bool read_field(reading *r, const lamp_column *c, const char *text) {
         lamp->id = text;
         return true;
     case LAMP_FIELD_ELEVATION:
-        if (!isfinite(lamp->xyz[2]) && lamp_coordinate(text, &x) && fabs(x) < 9000)
-            lamp->xyz[2] = x;
+        if ((!isfinite(lamp->xyz[2]) || c->rank < 0) && lamp_coordinate(text, &x) && fabs(x * c->scale) < 9000)
+            lamp->xyz[2] = x * c->scale;
         return true;
     default:
         return false;
     }
 }
 
-void lamp_read(const lamp_tag *tags, size_t count, geo_lamp *lamp, geo_issues *issues) {
+void lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *lamp, geo_issues *issues) {
     *lamp = (geo_lamp){ .xyz = { lamp->xyz[0], lamp->xyz[1], lamp->xyz[2] }, .height = NAN, .direction = NAN, .lumens = NAN,
-                        .watts = NAN, .kelvin = NAN, .rgb = { -1, -1, -1 }, .id = "" };
-    reading r = { .lamp = lamp, .issues = issues, .times = 1 };
-    const lamp_column **columns = noc_calloc(count + 1, sizeof(*columns));
+                        .watts = NAN, .kelvin = NAN, .rgb = { -1, -1, -1 }, .id = lamp->id ? lamp->id : "" };
+    reading r = { .lamp = lamp, .issues = issues, .times = 1, .scale = 1 };
+    lamp_meaning *meanings = noc_calloc(count + 1, sizeof(*meanings));
     for (size_t i = 0; i < count; i++)
         if (!lamp_blank(tags[i].value))
-            columns[i] = lamp_column_find(tags[i].key);
-    bool known[LAMP_FIELD_TOTAL] = { false };
+            meanings[i] = lamp_keys_meaning(keys, tags[i].key);
+    bool known[LAMP_FIELD_TOTAL] = { [LAMP_FIELD_NONE] = true };
     /* the id first, for the issues that the other fields raise */
     for (int pass = 0; pass < 2; pass++)
-        for (int rank = 0; rank < 10; rank++)
+        for (int rank = -1; rank < 10; rank++)
             for (size_t i = 0; i < count; i++) {
-                const lamp_column *c = columns[i];
-                if (!c || c->rank != rank || known[c->field] || (c->field == LAMP_FIELD_ID) != (pass == 0))
+                const lamp_meaning *m = &meanings[i];
+                if (m->rank != rank || known[m->field] || (m->field == LAMP_FIELD_ID) != (pass == 0))
                     continue;
-                known[c->field] = read_field(&r, c, tags[i].value);
+                known[m->field] = read_field(&r, m, tags[i].value);
             }
-    free(columns);
+    free(meanings);
     if (!lamp->count && r.times > 1)
         lamp->count = r.times;
     if (lamp->source == GEO_SOURCE_GAS && !r.type_known)

@@ -12,6 +12,46 @@ typedef struct lamp_tag {
     const char *key, *value; /* value NULL or "": not given */
 } lamp_tag;
 
+/* ---- what keys mean (lamp_keys.c) ---- */
+
+typedef enum lamp_field {
+    LAMP_FIELD_NONE, LAMP_FIELD_HEIGHT, LAMP_FIELD_DIRECTION, LAMP_FIELD_COUNT, LAMP_FIELD_LUMENS, LAMP_FIELD_WATTS,
+    LAMP_FIELD_KELVIN, LAMP_FIELD_COLOUR, LAMP_FIELD_TYPE, LAMP_FIELD_MOUNT, LAMP_FIELD_STATUS, LAMP_FIELD_ID,
+    LAMP_FIELD_ELEVATION, LAMP_FIELD_LON, LAMP_FIELD_LAT, LAMP_FIELD_X, LAMP_FIELD_Y, LAMP_FIELD_WKT,
+    LAMP_FIELD_LAT_LON, LAMP_FIELD_TOTAL
+} lamp_field;
+
+/* What a key means. */
+typedef struct lamp_meaning {
+    lamp_field field;
+    int rank;          /* 0 is believed first where several columns speak of the same; -1: mapped by the user */
+    int strength;      /* towards lamp_columns_tell, which asks for 2 */
+    double scale;      /* of values without a unit: .3048 where the key says feet */
+    const char *unit;  /* "ft", "W", ...; "" where the field has none */
+} lamp_meaning;
+
+/* By the words alone. Field NONE where they do not know it. */
+lamp_meaning lamp_meaning_of(const char *key);
+
+/* The keys of one file: what they mean, by words and by --lamp-columns, and which values they had. */
+typedef struct lamp_keys lamp_keys;
+lamp_keys *lamp_keys_create(const noc_import_params *params); /* params may be NULL */
+void lamp_keys_destroy(lamp_keys *keys);
+lamp_meaning lamp_keys_meaning(lamp_keys *keys, const char *name); /* keys may be NULL: by the words alone */
+/* Notes a value for the table of columns; blank ones count as none. */
+void lamp_keys_note(lamp_keys *keys, const char *name, const char *value);
+/* The values of this key say what is a lamp: its field is "kind". */
+void lamp_keys_tell(lamp_keys *keys, const char *name);
+/* Hands the columns noted so far, in the order met, to the sink. */
+void lamp_keys_report(lamp_keys *keys, geo_sink *sink, size_t points);
+
+/* --lamp-columns must be understood even where no input needs it: reported, NOC_ERR_ARGUMENT. */
+noc_status lamp_mapping_check(const noc_import_params *params, noc_log *log);
+/* The first column of --lamp-columns of which found says no; NULL if there is none. free() it. */
+char *lamp_mapping_missing(const noc_import_params *params, bool (*found)(void *ctx, const char *name), void *ctx);
+/* Are these two names of one column? Case, accents, blanks and signs do not count. */
+bool lamp_same_key(const char *a, const char *b);
+
 typedef enum lamp_verdict {
     LAMP_NONE,     /* not a lamp */
     LAMP_ACTIVE,
@@ -21,20 +61,37 @@ typedef enum lamp_verdict {
 
 /* By OSM tags: highway=street_lamp and its kin, with lifecycle prefixes. In an inventory every row is a lamp, and only
  * its status columns decide. */
-lamp_verdict lamp_verdict_of(const lamp_tag *tags, size_t count, bool inventory);
+lamp_verdict lamp_verdict_of(lamp_keys *keys, const lamp_tag *tags, size_t count, bool inventory);
 
 /* Is one of these the key of a tag that makes a lamp (highway, man_made, ...)? */
 bool lamp_key_tells(const char *key);
 /* Do these columns, together, belong to an inventory of lamps? One column that only lamps have is enough (LampType,
  * lumens), or two that lamps usually have (mast number, mast length, wattage). */
-bool lamp_columns_tell(const char *const *names, size_t count);
+bool lamp_columns_tell(lamp_keys *keys, const char *const *names, size_t count);
 
 /* Fills everything but xyz, which is left as it is except for a missing height taken from an elevation column. Values
- * that cannot be understood are counted in issues (which may be NULL) and left unknown. lamp->id points into tags or is "". */
-void lamp_read(const lamp_tag *tags, size_t count, geo_lamp *lamp, geo_issues *issues);
+ * that cannot be understood are counted in issues (which may be NULL) and left unknown. lamp->id points into tags; where they
+ * hold none it stays what it was, or "". */
+void lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *lamp, geo_issues *issues);
 
 /* Counts what the verdict says about a skipped feature; true if it is a lamp to be read. */
 bool lamp_accept(lamp_verdict verdict, const char *id, geo_issues *issues);
+
+/* ---- tables whose values tell what their rows are (lamp_kinds.c) ---- */
+
+/* 2: text names a street lamp beyond doubt ("Lichtmast mit Auslegerleuchte"); 1: a lamp of some kind ("Leuchte"); 0: no. */
+int lamp_object_word(const char *text);
+
+/* Counts over all rows of a table which of its columns hold such words. */
+typedef struct lamp_kinds {
+    NOC_ARRAY(struct lamp_kind) columns;
+    bool any; /* after lamp_kinds_decide: some column tells what the rows are */
+} lamp_kinds;
+void lamp_kinds_count(lamp_kinds *kinds, const lamp_tag *tags, size_t count);
+void lamp_kinds_decide(lamp_kinds *kinds);
+bool lamp_kinds_tell(const lamp_kinds *kinds, const lamp_tag *tags, size_t count); /* is this row a lamp? */
+void lamp_kinds_note(const lamp_kinds *kinds, lamp_keys *keys); /* for the table of columns */
+void lamp_kinds_free(lamp_kinds *kinds);
 
 /* ---- on their way to the sink (lamp_emit.c) ---- */
 
@@ -48,37 +105,43 @@ typedef struct lamp_writer {
     size_t lost;            /* lamps in use without a place */
     size_t off_earth;       /* of them those whose degrees are no longitude and latitude */
     size_t exchangeable;    /* of those the ones that are with the two exchanged */
+    lamp_keys *keys;
+    lamp_kinds kinds;       /* where any of them tells: only rows that are lamps by it */
+    bool inventory;         /* every point is a lamp, unless its status says otherwise */
+    bool strange;           /* nothing tells what the points are: they are noted and counted */
+    size_t points, strange_points;
 } lamp_writer;
+
+lamp_writer lamp_writer_start(geo_sink *sink, const char *place, const noc_import_params *params);
+void lamp_writer_free(lamp_writer *w);
 
 /* Tells the sink the CRS. NULL: the file names none; the sink knows whether --crs says it. */
 noc_status lamp_writer_crs(lamp_writer *w, const char *crs);
-/* One point feature: judged, read and handed on, or skipped and counted. z may be NaN. */
-noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count, bool inventory, double x, double y, double z);
-/* At the end: an error where degrees were expected and nearly all lamps lie outside the Earth, a warning without lamps. */
+/* One point feature: judged, read and handed on, or skipped and counted. id: for want of a better one. z may be NaN. */
+noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count, const char *id, const double xyz[3]);
+/* At the end: an error where nothing tells that the points are lamps, or where degrees were expected and nearly all lamps lie
+ * outside the Earth; a warning without lamps. */
 noc_status lamp_writer_end(lamp_writer *w);
 
 /* CSV with a header, without GDAL (csv.c). */
 bool lamp_csv_probe(const char *head, size_t size);
+bool lamp_csv_probe_table(const char *head, size_t size); /* any table, whatever its columns are called */
 noc_status lamp_csv_read(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format);
 
 /* ---- words (lamp_words.c) ---- */
 
-typedef enum lamp_field {
-    LAMP_FIELD_NONE, LAMP_FIELD_HEIGHT, LAMP_FIELD_DIRECTION, LAMP_FIELD_COUNT, LAMP_FIELD_LUMENS, LAMP_FIELD_WATTS,
-    LAMP_FIELD_KELVIN, LAMP_FIELD_COLOUR, LAMP_FIELD_TYPE, LAMP_FIELD_MOUNT, LAMP_FIELD_STATUS, LAMP_FIELD_ID,
-    LAMP_FIELD_ELEVATION, LAMP_FIELD_LON, LAMP_FIELD_LAT, LAMP_FIELD_X, LAMP_FIELD_Y, LAMP_FIELD_WKT,
-    LAMP_FIELD_LAT_LON, LAMP_FIELD_TOTAL
-} lamp_field;
-
 typedef struct lamp_column {
     const char *key;    /* folded */
     lamp_field field;
-    int rank;           /* 0 is believed first where several columns speak of the same */
-    int strength;       /* towards lamp_columns_tell, which asks for 2 */
+    int rank, strength; /* those of lamp_meaning */
 } lamp_column;
 
-/* NULL if the key means nothing to us. "WATTAGE1", "POLEHEIGHT_DESC" are found as "wattage", "poleheight". */
-const lamp_column *lamp_column_find(const char *key);
+/* NULL if the folded key means nothing to us. "wattage1", "poleheightdesc", "mountht" are found as "wattage",
+ * "poleheight", "mountheight". */
+const lamp_column *lamp_column_find(const char *folded);
+
+/* Is `text` in `folded` as whole words? A '*' at its end or beginning stands for the rest of a word. */
+bool lamp_has_word(const char *folded, const char *text);
 
 /* Folds text into out (always terminated): ASCII lower case letters and digits; UTF-8 or Latin-1 accents dropped. With
  * blanks, every run of anything else becomes one blank. Returns the length. */
@@ -96,8 +159,11 @@ bool lamp_colour_word(const char *folded, double *kelvin, float rgb[3]);
 
 typedef enum lamp_unit { LAMP_METRES, LAMP_WATTS, LAMP_LUMENS, LAMP_KELVIN, LAMP_PLAIN } lamp_unit;
 
-/* "16 ft", "5,5 m", "16'6\"", "2x70 W", "3,000 K", "8.5;6". *times gets the factor of "2x", else 1. */
-bool lamp_quantity(const char *text, lamp_unit unit, double *value, int *times);
+/* "16 ft", "5,5 m", "16'6\"", "2x70 W", "3,000 K", "8.5;6". scale is for values that name no unit. *times gets the factor of
+ * "2x", else 1. */
+bool lamp_quantity(const char *text, lamp_unit unit, double scale, double *value, int *times);
+/* A unit at the end of a folded key ("heightft"): its length, 0 if there is none. LAMP_PLAIN: of any kind. */
+size_t lamp_unit_tail(const char *folded, lamp_unit unit, double *scale, const char **name);
 /* Degrees clockwise from north: "135", "135 deg", "NNE", "south-west". */
 bool lamp_direction(const char *text, double *degrees);
 /* A coordinate: degrees or metres, decimal comma allowed; "52.5 N", "13.4 W". */

@@ -34,7 +34,7 @@ static const char *scan_number(const char *s, bool thousands, double *out) {
     for (; n + 1 < sizeof(text); p++) {
         if (isdigit((unsigned char)*p)) {
             text[n++] = *p;
-        } else if (*p == ',' && thousands && n && isdigit((unsigned char)p[1]) && isdigit((unsigned char)p[2]) &&
+        } else if (*p == ',' && thousands && n && text[0] != '0' && isdigit((unsigned char)p[1]) && isdigit((unsigned char)p[2]) &&
                    isdigit((unsigned char)p[3]) && !isdigit((unsigned char)p[4])) {
             continue;
         } else if ((*p == '.' || *p == ',') && !dot && isdigit((unsigned char)p[1])) {
@@ -48,24 +48,42 @@ static const char *scan_number(const char *s, bool thousands, double *out) {
     return n && noc_parse_double(text, out) ? p : NULL;
 }
 
-/* Factor of the unit written at s to the unit wanted; 0: not one of its units. */
-static double unit_factor(const char *s, lamp_unit unit) {
-    static const struct {
-        lamp_unit unit;
-        const char *name;
-        double factor;
-    } units[] = {
-        { LAMP_METRES, "", 1 }, { LAMP_METRES, "m", 1 }, { LAMP_METRES, "mtr", 1 }, { LAMP_METRES, "meter", 1 },
-        { LAMP_METRES, "meters", 1 }, { LAMP_METRES, "metre", 1 }, { LAMP_METRES, "metres", 1 }, { LAMP_METRES, "cm", .01 },
-        { LAMP_METRES, "mm", .001 }, { LAMP_METRES, "ft", .3048 }, { LAMP_METRES, "feet", .3048 },
-        { LAMP_METRES, "foot", .3048 }, { LAMP_METRES, "in", .0254 },
-        { LAMP_WATTS, "", 1 }, { LAMP_WATTS, "w", 1 }, { LAMP_WATTS, "watt", 1 }, { LAMP_WATTS, "watts", 1 },
-        { LAMP_WATTS, "kw", 1000 },
-        { LAMP_LUMENS, "", 1 }, { LAMP_LUMENS, "lm", 1 }, { LAMP_LUMENS, "lumen", 1 }, { LAMP_LUMENS, "lumens", 1 },
-        { LAMP_LUMENS, "klm", 1000 },
-        { LAMP_KELVIN, "", 1 }, { LAMP_KELVIN, "k", 1 }, { LAMP_KELVIN, "kelvin", 1 }, { LAMP_KELVIN, "kk", 1000 },
-        { LAMP_PLAIN, "", 1 },
-    };
+static const struct unit {
+    lamp_unit unit;
+    const char *name;
+    double factor;
+    const char *shown;
+} units[] = {
+    { LAMP_METRES, "m", 1, "m" }, { LAMP_METRES, "mtr", 1, "m" }, { LAMP_METRES, "meter", 1, "m" },
+    { LAMP_METRES, "meters", 1, "m" }, { LAMP_METRES, "metre", 1, "m" }, { LAMP_METRES, "metres", 1, "m" },
+    { LAMP_METRES, "cm", .01, "cm" }, { LAMP_METRES, "mm", .001, "mm" }, { LAMP_METRES, "ft", .3048, "ft" },
+    { LAMP_METRES, "feet", .3048, "ft" }, { LAMP_METRES, "foot", .3048, "ft" }, { LAMP_METRES, "fuss", .3048, "ft" },
+    { LAMP_METRES, "in", .0254, "in" }, { LAMP_METRES, "inches", .0254, "in" },
+    { LAMP_WATTS, "w", 1, "W" }, { LAMP_WATTS, "watt", 1, "W" }, { LAMP_WATTS, "watts", 1, "W" }, { LAMP_WATTS, "kw", 1000, "kW" },
+    { LAMP_WATTS, "kilowatt", 1000, "kW" }, { LAMP_WATTS, "kilowatts", 1000, "kW" },
+    { LAMP_LUMENS, "lm", 1, "lm" }, { LAMP_LUMENS, "lumen", 1, "lm" }, { LAMP_LUMENS, "lumens", 1, "lm" },
+    { LAMP_LUMENS, "klm", 1000, "klm" }, { LAMP_LUMENS, "kilolumen", 1000, "klm" }, { LAMP_LUMENS, "kilolumens", 1000, "klm" },
+    { LAMP_KELVIN, "k", 1, "K" }, { LAMP_KELVIN, "kelvin", 1, "K" }, { LAMP_KELVIN, "kk", 1000, "kK" },
+};
+
+/* The longest unit that fits: "klm" before "lm". */
+size_t lamp_unit_tail(const char *folded, lamp_unit unit, double *scale, const char **name) {
+    size_t n = strlen(folded), best = 0;
+    for (size_t i = 0; i < NOC_COUNT(units); i++) {
+        size_t m = strlen(units[i].name);
+        if (units[i].unit != unit || m <= best || m >= n || strcmp(folded + n - m, units[i].name))
+            continue;
+        best = m;
+        *scale = units[i].factor;
+        *name = units[i].shown;
+    }
+    if (best && best + 2 < n && !strncmp(folded + n - best - 2, "in", 2))
+        best += 2; /* "pole height in feet" */
+    return best;
+}
+
+/* Factor of the unit written at s to the unit wanted; `scale` where none is written; 0: not one of its units. */
+static double unit_factor(const char *s, lamp_unit unit, double scale) {
     char word[16];
     size_t n = 0;
     while (n + 1 < sizeof(word) && isalpha((unsigned char)s[n])) {
@@ -73,13 +91,15 @@ static double unit_factor(const char *s, lamp_unit unit) {
         n++;
     }
     word[n] = 0;
+    if (!n)
+        return scale;
     for (size_t i = 0; i < NOC_COUNT(units); i++)
         if (units[i].unit == unit && !strcmp(units[i].name, word))
             return units[i].factor;
     return 0;
 }
 
-bool lamp_quantity(const char *text, lamp_unit unit, double *value, int *times) {
+bool lamp_quantity(const char *text, lamp_unit unit, double scale, double *value, int *times) {
     *times = 1;
     if (lamp_blank(text))
         return false;
@@ -104,7 +124,7 @@ bool lamp_quantity(const char *text, lamp_unit unit, double *value, int *times) 
         *value = x * .3048 + inches * .0254;
         return isfinite(*value);
     }
-    double factor = unit_factor(q, unit);
+    double factor = unit_factor(q, unit, scale);
     *value = x * factor;
     return factor > 0 && isfinite(*value);
 }

@@ -117,6 +117,7 @@ static const lamp_column columns[] = {
     { "lightwatts", F(WATTS), 0, 2 }, { "lampwatts", F(WATTS), 0, 2 }, { "bulbwattage", F(WATTS), 0, 2 },
     { "wattlamp", F(WATTS), 0, 2 }, { "lampvermogen", F(WATTS), 0, 2 }, { "vermogenlamp", F(WATTS), 0, 2 },
     { "lampenleistung", F(WATTS), 0, 2 }, { "leuchtenleistung", F(WATTS), 0, 2 }, { "puissancelampe", F(WATTS), 0, 2 },
+    { "pwr", F(WATTS), 1, 0 }, { "lamppwr", F(WATTS), 0, 2 }, { "ledwattage", F(WATTS), 0, 2 }, { "ledwatts", F(WATTS), 0, 2 },
     { "power", F(WATTS), 2, 0 }, { "powerw", F(WATTS), 1, 0 }, { "vermogen", F(WATTS), 1, 1 }, { "leistung", F(WATTS), 1, 1 },
     { "systemleistung", F(WATTS), 1, 1 }, { "anschlussleistung", F(WATTS), 1, 1 }, { "puissance", F(WATTS), 1, 1 },
     { "potencia", F(WATTS), 1, 1 }, { "potenza", F(WATTS), 1, 1 }, { "prikon", F(WATTS), 1, 1 }, { "teho", F(WATTS), 1, 1 },
@@ -205,12 +206,27 @@ static const lamp_column *find_folded(const char *key) {
     return bsearch(&(lamp_column){ .key = key }, sorted, NOC_COUNT(sorted), sizeof(sorted[0]), compare);
 }
 
+/* "mountht", "polehgt": the word written out. NULL if it is none of these. */
+static const lamp_column *find_height(const char *folded, size_t n) {
+    char whole[80];
+    size_t tail = n >= 3 && !strcmp(folded + n - 3, "hgt") ? 3 : n >= 2 && !strcmp(folded + n - 2, "ht") ? 2 : 0;
+    if (!tail || n >= sizeof(whole) - sizeof("height"))
+        return NULL;
+    memcpy(whole, folded, n - tail);
+    memcpy(whole + n - tail, "height", sizeof("height"));
+    return find_folded(whole);
+}
+
 const lamp_column *lamp_column_find(const char *key) {
     static const char *const tails[] = { "description", "desc", "omschrijving", "bezeichnung", "naam", "name", "code", "txt" };
     pthread_once(&sorted_once, sort_columns);
     char folded[64];
-    size_t n = lamp_fold(key, false, folded, sizeof(folded));
+    size_t n = strnlen(key, sizeof(folded) - 1);
+    memcpy(folded, key, n);
+    folded[n] = 0;
     const lamp_column *c = find_folded(folded);
+    if (!c)
+        c = find_height(folded, n);
     for (size_t i = 0; !c && i < NOC_COUNT(tails); i++) {
         size_t m = strlen(tails[i]);
         if (n > m && !strcmp(folded + n - m, tails[i])) {
@@ -231,20 +247,21 @@ typedef struct word {
     int value;
 } word;
 
-/* Is `text` in `folded` as whole words, or, with a trailing '*', as the beginning of one? */
-static bool has_word(const char *folded, const char *text) {
+bool lamp_has_word(const char *folded, const char *text) {
+    bool suffix = *text == '*';
+    text += suffix;
     size_t n = strlen(text);
     bool prefix = text[n - 1] == '*';
     n -= prefix;
     for (const char *p = folded; *p; p++)
-        if (!strncmp(p, text, n) && (p == folded || p[-1] == ' ') && (prefix || !p[n] || p[n] == ' '))
+        if (!strncmp(p, text, n) && (suffix || p == folded || p[-1] == ' ') && (prefix || !p[n] || p[n] == ' '))
             return true;
     return false;
 }
 
 static int find_word(const char *folded, const word *words, size_t count) {
     for (size_t i = 0; i < count; i++)
-        if (has_word(folded, words[i].text))
+        if (lamp_has_word(folded, words[i].text))
             return words[i].value;
     return -1;
 }
@@ -347,7 +364,7 @@ bool lamp_colour_word(const char *folded, double *kelvin, float rgb[3]) {
         return true;
     }
     for (size_t i = 0; i < NOC_COUNT(colours); i++)
-        if (has_word(folded, colours[i].text))
+        if (lamp_has_word(folded, colours[i].text))
             return lamp_hex_colour(colours[i].hex, rgb);
     return false;
 }

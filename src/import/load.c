@@ -2,6 +2,7 @@
  * the city settle the place. Lamps are stood on the ground at the end. */
 #include "import/load.h"
 #include "city/city.h"
+#include "import/lamp_tags.h"
 
 #include <math.h>
 #include <sys/stat.h>
@@ -23,7 +24,9 @@ static noc_status check_params(const noc_import_params *p, noc_log *log) {
         return noc_error(log, NOC_ERR_ARGUMENT, "import: infer_lamps is %d, not a noc_switch", (int)p->infer_lamps);
     if ((unsigned)p->obj_up > NOC_OBJ_UP_Z)
         return noc_error(log, NOC_ERR_ARGUMENT, "import: obj_up is %d, not a noc_obj_up", (int)p->obj_up);
-    return NOC_OK;
+    if (p->lamps.count > NOC_TEXTS || p->lamp_columns.count > NOC_TEXTS)
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: more than %d files of lamps or maps of columns", NOC_TEXTS);
+    return lamp_mapping_check(p, log);
 }
 
 /* --crs and --scene-crs must be understood even where no input needs them. */
@@ -77,9 +80,27 @@ static noc_status open_status(const char *path) {
     return !stat(path, &st) && S_ISREG(st.st_mode) && !access(path, R_OK) ? NOC_ERR_FORMAT : NOC_ERR_IO;
 }
 
+/* A file that no probe knows: a table whose columns the user must explain? */
+static const noc_reader *find_named(const noc_reader *const *readers, const char *head, size_t size) {
+    for (; *readers; readers++)
+        if ((*readers)->probe_named && (*readers)->probe_named(head, size))
+            return *readers;
+    return NULL;
+}
+
+static noc_status refuse(importer *im, const char *name, const noc_reader *const *readers, const char *head, size_t size) {
+    char *names = format_names(readers);
+    const char *offer = find_named(readers, head, size)
+                            ? ". If it is a table of lamps, say so with --lamps, and with --lamp-columns lon=A,lat=B where they are"
+                            : "";
+    noc_status status = noc_error(im->log, NOC_ERR_FORMAT, "%s: in none of the formats that are read (%s)%s", name, names, offer);
+    free(names);
+    return status;
+}
+
 static noc_status recognise(importer *im, input *in, const noc_reader *const *readers) {
     if (!strncmp(in->path, BUILTIN, strlen(BUILTIN)))
-        return NOC_OK;
+        return in->named_lamps ? noc_error(im->log, NOC_ERR_ARGUMENT, "lamps: %s is no file of lamps", in->path) : NOC_OK;
     noc_stream *stream = noc_stream_open(in->path, im->log);
     if (!stream)
         return open_status(in->path);
@@ -89,13 +110,15 @@ static noc_status recognise(importer *im, input *in, const noc_reader *const *re
     if (!status) {
         in->bytes = noc_stream_size(stream);
         in->reader = find_reader(readers, head, size);
+        if (!in->reader && in->named_lamps)
+            in->reader = find_named(readers, head, size);
         if (!size) {
             status = noc_error(im->log, NOC_ERR_FORMAT, "%s: the file is empty", noc_stream_name(stream));
         } else if (!in->reader) {
-            char *names = format_names(readers);
-            status = noc_error(im->log, NOC_ERR_FORMAT, "%s: in none of the formats that are read (%s)",
-                               noc_stream_name(stream), names);
-            free(names);
+            status = refuse(im, noc_stream_name(stream), readers, head, size);
+        } else if (in->named_lamps && in->reader->reads != NOC_READS_LAMPS) {
+            status = noc_error(im->log, NOC_ERR_FORMAT, "%s: this is %s, and --lamps is for tables and maps of points",
+                               noc_stream_name(stream), in->reader->name);
         } else if (in->reader->missing) {
             status = noc_error(im->log, NOC_ERR_UNSUPPORTED, "%s: this is %s, but %s", noc_stream_name(stream),
                                in->reader->name, in->reader->missing);
@@ -232,6 +255,35 @@ static int stage(const importer *im, const input *in) {
     return in->reader->reads == NOC_READS_LAMPS ? 2 : in_crs ? 1 : 3;
 }
 
+static bool column_there(void *ctx, const char *name) {
+    const importer *im = ctx;
+    for (size_t i = 0; i < im->input_count; i++)
+        for (size_t k = 0; k < im->inputs[i].file.column_count; k++)
+            if (lamp_same_key(im->inputs[i].file.columns[k].name, name))
+                return true;
+    return false;
+}
+
+/* A column that is mapped and nowhere there is a mistake of the user's: with what there is, for a line of text. */
+static noc_status check_columns(importer *im) {
+    char *missing = lamp_mapping_missing(im->params, column_there, im), *there = noc_strdup("");
+    for (size_t i = 0; missing && i < im->input_count; i++)
+        for (size_t k = 0; k < im->inputs[i].file.column_count && strlen(there) < 300; k++) {
+            char *longer = noc_format("%s%s%.40s", there, *there ? ", " : "", im->inputs[i].file.columns[k].name);
+            free(there);
+            there = longer;
+        }
+    noc_status status = NOC_OK;
+    if (missing && im->inspect)
+        noc_warn(im->log, "%s: lamp-columns: there is no column or tag \"%.60s\"", im->inputs[0].path, missing);
+    else if (missing)
+        status = noc_error(im->log, NOC_ERR_ARGUMENT, "lamp-columns: no input has a column or tag \"%.60s\"%s%s", missing,
+                           *there ? "; there are " : "", there);
+    free(missing);
+    free(there);
+    return status;
+}
+
 static noc_status run(importer *im, const noc_reader *const *readers) {
     for (size_t i = 0; i < im->input_count; i++) {
         noc_status status = recognise(im, &im->inputs[i], readers);
@@ -246,7 +298,30 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
             if (status)
                 return status;
         }
-    return im->inspect ? NOC_OK : finish_city(im);
+    noc_status status = check_columns(im);
+    return status || im->inspect ? status : finish_city(im);
+}
+
+static bool among(const char *path, const char *const *paths, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (!strcmp(paths[i], path))
+            return true;
+    return false;
+}
+
+/* The inputs are the paths, and the files of lamps that are not among them. */
+static void list_inputs(importer *im, const char *const *paths, size_t path_count) {
+    const noc_texts *lamps = &im->params->lamps;
+    im->inputs = noc_calloc(path_count + lamps->count + 1, sizeof(*im->inputs));
+    for (size_t i = 0; i < path_count + lamps->count; i++) {
+        bool named = i >= path_count;
+        const char *path = named ? lamps->text[i - path_count] : paths[i];
+        if (named && (im->inspect || among(path, paths, path_count) || among(path, lamps->text, i - path_count)))
+            continue;
+        input *in = &im->inputs[im->input_count++];
+        *in = (input){ .path = path, .file = { .path = path }, .issues = geo_issues_create() };
+        in->named_lamps = named || among(path, lamps->text, lamps->count);
+    }
 }
 
 noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const char *const *paths, size_t path_count,
@@ -261,17 +336,13 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         status = check_crs(params, scene->log);
     if (status)
         return status;
-    if (!path_count)
+    if (!path_count && !params->lamps.count)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "import: no input");
     if (scene->committed)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "import: the scene is committed");
-    importer im = { .log = scene->log, .scene = scene, .params = params, .inspect = inspect, .input_count = path_count };
+    importer im = { .log = scene->log, .scene = scene, .params = params, .inspect = inspect };
     im.report = report_create();
-    im.inputs = noc_calloc(path_count, sizeof(*im.inputs));
-    for (size_t i = 0; i < path_count; i++) {
-        im.inputs[i] = (input){ .path = paths[i], .file = { .path = paths[i] } };
-        im.inputs[i].issues = geo_issues_create();
-    }
+    list_inputs(&im, paths, path_count);
     status = run(&im, readers);
     if (scene->no_memory)
         status = NOC_ERR_MEMORY; /* some go on without what the scene refused */
@@ -279,7 +350,7 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         status = noc_scene_commit(scene);
     if (status == NOC_ERR_CANCELLED)
         noc_cancelled(scene->log, "import: cancelled");
-    for (size_t i = 0; i < path_count; i++) {
+    for (size_t i = 0; i < im.input_count; i++) {
         if (im.inputs[i].started)
             report_add(im.report, &im.inputs[i].file, im.inputs[i].issues);
         geo_issues_destroy(im.inputs[i].issues);

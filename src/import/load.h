@@ -29,6 +29,7 @@ typedef struct input {
     noc_report_file file;     /* texts in the report's arena */
     bool started, repeated;
     size_t lamps_lost;        /* that the reader or the sink found to have no place */
+    bool named_lamps;         /* by noc_import_params.lamps */
 } input;
 
 /* Where a lamp was given: what would be if its axes were exchanged is asked of lamps that are of no use. */

@@ -40,6 +40,25 @@ static bool place_of(const json_t *element, double *lon, double *lat) {
     return false;
 }
 
+/* Does any element say that it is a lamp? Where none does, in a file that is named as lamps, every node is one. */
+static bool any_lamp(json_t *elements) {
+    size_t count = json_array_size(elements);
+    for (size_t i = 0; i < count; i++) {
+        const char *key;
+        json_t *value;
+        json_object_foreach(json_object_get(json_array_get(elements, i), "tags"), key, value)
+            if (json_is_string(value) &&
+                lamp_verdict_of(NULL, &(lamp_tag){ key, json_string_value(value) }, 1, false) != LAMP_NONE)
+                return true;
+    }
+    return false;
+}
+
+static bool is_node(const json_t *element) {
+    const char *type = json_string_value(json_object_get(element, "type"));
+    return type && !strcmp(type, "node");
+}
+
 typedef struct tag_list {
     NOC_ARRAY(lamp_tag) tags;
     char id[64];
@@ -62,13 +81,13 @@ static noc_status emit(json_t *elements, lamp_writer *w) {
     size_t count = json_array_size(elements);
     for (size_t i = 0; i < count && !status; i++) {
         json_t *element = json_array_get(elements, i);
-        if (!json_object_size(json_object_get(element, "tags")))
+        if (w->inventory ? !is_node(element) : !json_object_size(json_object_get(element, "tags")))
             continue;
-        double lon = NAN, lat = NAN;
-        if (!place_of(element, &lon, &lat))
-            lon = lat = NAN;
+        double xyz[3] = { NAN, NAN, NAN };
+        if (!place_of(element, &xyz[0], &xyz[1]))
+            xyz[0] = xyz[1] = NAN;
         collect_tags(element, &list);
-        status = lamp_writer_point(w, list.tags.data, list.tags.len, false, lon, lat, NAN);
+        status = lamp_writer_point(w, list.tags.data, list.tags.len, list.id, xyz);
         if (!status && i % 1024 == 0 && w->sink->progress && !w->sink->progress(w->sink->ctx, (double)i / (double)count))
             status = NOC_ERR_CANCELLED;
     }
@@ -90,13 +109,16 @@ static size_t pull(void *buffer, size_t size, void *user) {
 
 static noc_status read_overpass(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
     *format = "Overpass JSON";
-    lamp_writer w = { .sink = sink, .place = noc_stream_name(stream), .geographic = true };
+    lamp_writer w = lamp_writer_start(sink, noc_stream_name(stream), params);
+    w.geographic = true;
     source from = { stream, NOC_OK };
     json_error_t error;
     json_t *root = json_load_callback(pull, &from, 0, &error);
-    if (!root)
+    if (!root) {
+        lamp_writer_free(&w);
         return from.status ? from.status
-                           : noc_error(sink->log, NOC_ERR_FORMAT, "%s:%d: %s", w.place, error.line, error.text);
+                           : noc_error(sink->log, NOC_ERR_FORMAT, "%s:%d: %s", noc_stream_name(stream), error.line, error.text);
+    }
     noc_status status;
     json_t *elements = json_object_get(root, "elements"), *remark = json_object_get(root, "remark");
     if (!json_is_array(elements)) {
@@ -106,12 +128,14 @@ static noc_status read_overpass(noc_stream *stream, const noc_import_params *par
         if (json_is_string(remark))
             noc_warn(sink->log, "%s: incomplete answer: %s", w.place, json_string_value(remark));
         status = lamp_writer_crs(&w, LAMP_WGS84);
+        w.inventory = sink->named_lamps && !any_lamp(elements);
         if (!status)
             status = emit(elements, &w);
         if (!status)
             status = lamp_writer_end(&w);
     }
     json_decref(root);
+    lamp_writer_free(&w);
     return status;
 }
 

@@ -204,6 +204,21 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     return NOC_OK;
 }
 
+/* Of a file that has been read. */
+static void on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
+    importer *im = ctx;
+    noc_report_file *file = &im->inputs[im->current].file;
+    noc_arena *arena = &im->report->arena;
+    noc_report_column *kept = arena_alloc(arena, (count + 1) * sizeof(*kept));
+    for (size_t i = 0; i < count; i++)
+        kept[i] = (noc_report_column){ .name = arena_strdup(arena, columns[i].name), .field = arena_strdup(arena, columns[i].field),
+                                       .unit = arena_strdup(arena, columns[i].unit), .values = columns[i].values,
+                                       .example = arena_strdup(arena, columns[i].example), .mapped = columns[i].mapped };
+    file->points = points;
+    file->columns = kept;
+    file->column_count = count;
+}
+
 static bool on_progress(void *ctx, double done) {
     importer *im = ctx;
     const noc_progress *progress = &im->params->progress;
@@ -218,7 +233,8 @@ geo_sink sink_create(importer *im) {
     return (geo_sink){ .ctx = im, .log = im->log, .issues = im->inputs[im->current].issues,
                        .lamps_lost = &im->inputs[im->current].lamps_lost, .crs = on_crs,
                        .begin_object = on_begin_object, .polygon = on_polygon, .end_object = on_end_object,
-                       .lamp = on_lamp, .progress = on_progress };
+                       .lamp = on_lamp, .columns = on_columns, .progress = on_progress,
+                       .named_lamps = im->inputs[im->current].named_lamps, .inspect = im->inspect };
 }
 
 void sink_destroy(importer *im) {

@@ -275,7 +275,6 @@ static void collect_fields(OGRFeatureH feature, OGRFeatureDefnH defn, bool osm, 
         array_push(&b->tags, (lamp_tag){ key, value });
     }
     snprintf(b->id, sizeof(b->id), "feature %lld", (long long)OGR_F_GetFID(feature));
-    array_push(&b->tags, (lamp_tag){ "fid", b->id });
 }
 
 /* The place of a feature: of its point, or, for a lamp drawn as something else, the middle of its box. */
@@ -372,7 +371,7 @@ static noc_status start_layer(map_reading *m, OGRLayerH layer) {
 }
 
 /* Lamps by their tags; else, if the columns are those of an inventory of lamps, every feature. */
-static void layer_kind(OGRLayerH layer, bool *tags, bool *inventory) {
+static void layer_kind(OGRLayerH layer, lamp_keys *keys, bool *tags, bool *inventory) {
     OGRFeatureDefnH defn = OGR_L_GetLayerDefn(layer);
     int count = OGR_FD_GetFieldCount(defn);
     const char **names = noc_calloc((size_t)count + 1, sizeof(*names));
@@ -381,38 +380,35 @@ static void layer_kind(OGRLayerH layer, bool *tags, bool *inventory) {
         names[i] = OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(defn, i));
         *tags |= lamp_key_tells(names[i]) || !strcmp(names[i], "other_tags") || !strcmp(names[i], "all_tags");
     }
-    *inventory = !*tags && lamp_columns_tell(names, (size_t)count);
+    *inventory = !*tags && lamp_columns_tell(keys, names, (size_t)count);
     free(names);
 }
 
-static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn, bool inventory) {
+static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn) {
     double xyz[3] = { NAN, NAN, NAN };
     bool is_point, placed = place_of(feature, xyz, &is_point);
-    if (inventory && placed && !is_point) {
-        geo_issue(m->writer.sink->issues, false, "line or area in a table of lamps", "");
+    bool table = m->writer.inventory || m->writer.strange;
+    if (table && !is_point && (placed || m->writer.strange)) {
+        if (m->writer.inventory)
+            geo_issue(m->writer.sink->issues, false, "line or area in a table of lamps", "");
         return NOC_OK;
     }
     collect_fields(feature, defn, m->format->osm, &m->tags);
     size_t before = m->writer.lamps;
-    noc_status status =
-        lamp_writer_point(&m->writer, m->tags.tags.data, m->tags.tags.len, inventory, xyz[0], xyz[1], xyz[2]);
+    noc_status status = lamp_writer_point(&m->writer, m->tags.tags.data, m->tags.tags.len, m->tags.id, xyz);
     if (!status && m->writer.lamps > before && !is_point)
         geo_issue(m->writer.sink->issues, true, "lamp drawn as a line or an area: put in its middle", m->tags.id);
     return status;
 }
 
-static noc_status read_layer(map_reading *m, OGRLayerH layer) {
-    bool tags, inventory;
-    layer_kind(layer, &tags, &inventory);
-    if (!tags && !inventory)
-        return NOC_OK;
-    noc_status status = start_layer(m, layer);
+static noc_status read_features(map_reading *m, OGRLayerH layer) {
     OGRFeatureDefnH defn = OGR_L_GetLayerDefn(layer);
     GIntBig total = m->format->osm ? 0 : OGR_L_GetFeatureCount(layer, FALSE);
     OGRFeatureH feature;
     size_t n = 0;
+    noc_status status = NOC_OK;
     while (!status && (feature = OGR_L_GetNextFeature(layer))) {
-        status = read_feature(m, feature, defn, inventory);
+        status = read_feature(m, feature, defn);
         OGR_F_Destroy(feature);
         if (++n % 1024 == 0 && !status && m->writer.sink->progress &&
             !m->writer.sink->progress(m->writer.sink->ctx, total > 0 ? NOC_MIN((double)n / (double)total, 1) : 0))
@@ -420,6 +416,57 @@ static noc_status read_layer(map_reading *m, OGRLayerH layer) {
     }
     if (!status && m->errors.text[0])
         status = report(m);
+    return status;
+}
+
+/* Do the values of the layer's points say what they are? */
+static void read_kinds(map_reading *m, OGRLayerH layer) {
+    OGRFeatureDefnH defn = OGR_L_GetLayerDefn(layer);
+    OGRFeatureH feature;
+    lamp_kinds_free(&m->writer.kinds);
+    m->writer.kinds = (lamp_kinds){ 0 };
+    OGR_L_ResetReading(layer);
+    while ((feature = OGR_L_GetNextFeature(layer))) {
+        double xyz[3];
+        bool is_point;
+        if (place_of(feature, xyz, &is_point) && is_point) {
+            collect_fields(feature, defn, false, &m->tags);
+            lamp_kinds_count(&m->writer.kinds, m->tags.tags.data, m->tags.tags.len);
+        }
+        OGR_F_Destroy(feature);
+    }
+    OGR_L_ResetReading(layer);
+    lamp_kinds_decide(&m->writer.kinds);
+}
+
+/* What tells that a layer's points are lamps: the user, tags, columns, values, or nothing. */
+static void judge(map_reading *m, OGRLayerH layer) {
+    bool tags;
+    lamp_writer *w = &m->writer;
+    layer_kind(layer, w->keys, &tags, &w->inventory);
+    w->kinds.any = w->strange = false;
+    if (w->sink->named_lamps)
+        w->inventory = !m->format->osm;
+    else if (!w->inventory && !tags) {
+        read_kinds(m, layer);
+        w->inventory = w->kinds.any;
+        w->strange = !w->kinds.any;
+    }
+}
+
+static noc_status read_layer(map_reading *m, OGRLayerH layer) {
+    lamp_writer *w = &m->writer;
+    judge(m, layer);
+    noc_status status = w->strange ? NOC_OK : start_layer(m, layer);
+    if (!status)
+        status = read_features(m, layer);
+    /* an extract of OpenStreetMap holds all kinds of points: only where no tag tells of lamps all of them are meant */
+    if (!status && m->format->osm && w->sink->named_lamps && !w->lamps) {
+        w->inventory = true;
+        w->features = 0;
+        OGR_L_ResetReading(layer);
+        status = read_features(m, layer);
+    }
     return status;
 }
 
@@ -440,7 +487,7 @@ static noc_status read_layers(map_reading *m) {
 
 static noc_status read_map(noc_stream *stream, const map_format *format, const noc_import_params *params, geo_sink *sink) {
     map_reading m = { .format = format, .stream = stream, .params = params,
-                      .writer = { .sink = sink, .place = noc_stream_name(stream) } };
+                      .writer = lamp_writer_start(sink, noc_stream_name(stream), params) };
     char *path;
     noc_status status = gdal_path(stream, &path);
     if (!status) {
@@ -455,7 +502,10 @@ static noc_status read_map(noc_stream *stream, const map_format *format, const n
         tag_buffer_free(&m.tags);
     }
     free(path);
-    return status ? status : lamp_writer_end(&m.writer);
+    if (!status)
+        status = lamp_writer_end(&m.writer);
+    lamp_writer_free(&m.writer);
+    return status;
 }
 
 #else
@@ -479,4 +529,5 @@ static noc_status read_vector(noc_stream *stream, const noc_import_params *param
 }
 
 /* Never `missing`: CSV needs no GDAL, and the others say so one by one. */
-const noc_reader noc_reader_vector = { .name = "OpenStreetMap, GeoJSON, CSV", .reads = NOC_READS_LAMPS, .probe = probe, .read = read_vector };
+const noc_reader noc_reader_vector = { .name = "OpenStreetMap, GeoJSON, CSV", .reads = NOC_READS_LAMPS, .probe = probe,
+                                       .probe_named = lamp_csv_probe_table, .read = read_vector };

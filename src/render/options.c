@@ -12,6 +12,7 @@
 #define REAL(st, f, n, g, lo, hi, u, ...) { n, g, NOC_OPTION_REAL, offsetof(st, f), lo, hi, NULL, u, __VA_ARGS__ }
 #define CHOICE(st, f, n, g, c, ...) { n, g, NOC_OPTION_CHOICE, offsetof(st, f), 0, 0, c, "", __VA_ARGS__ }
 #define TEXT(st, f, n, g, u, h) { n, g, NOC_OPTION_TEXT, offsetof(st, f), 0, 0, NULL, u, h }
+#define TEXTS(st, f, n, g, u, h) { n, g, NOC_OPTION_TEXTS, offsetof(st, f), 0, 0, NULL, u, h }
 #define END { NULL, NULL, NOC_OPTION_BOOL, 0, 0, 0, NULL, NULL, NULL }
 
 /* Ends of rows: what the option needs (noc_option.needs). tests/render/test_needs.c holds them to pictures. */
@@ -89,6 +90,8 @@ static const noc_option import_options[] = {
     INT(P, lod, "lod", "City", 0, 4, "", "highest CityGML level of detail that is taken"),
     SWITCH(P, infer_lamps, "infer-lamps", "City", "place lamps by a rule: where no input holds any; on: or none of use"),
     BOOL(P, strict, "strict", "City", "what is skipped or repaired in an input is an error"),
+    TEXTS(P, lamps, "lamps", "City", "FILE", "a file whose points are lamps whatever it says; repeatable"),
+    TEXTS(P, lamp_columns, "lamp-columns", "City", "MAP", "columns, tags: height=A,watts=B (height_ft=A); repeatable"),
     REAL(P, lamp_height, "lamp-height", "City", 0.5, 60, "m", "height of lamps that are not tagged"),
     REAL(P, lamp_lumens, "lamp-lumens", "City", 0, 1e7, "lm", "flux of lamps with neither flux nor wattage"),
     REAL(P, lamp_kelvin, "lamp-kelvin", "City", 1000, 25000, "K", "colour temperature of lamps that tell none"),
@@ -207,6 +210,25 @@ static noc_status set_number(const noc_option *o, void *field, const char *value
     return NOC_OK;
 }
 
+static noc_status add_text(const noc_option *o, noc_texts *texts, const char *value, noc_log *log) {
+    if (texts->count == NOC_TEXTS)
+        return noc_error(log, NOC_ERR_ARGUMENT, "%s: given more than %d times", o->name, NOC_TEXTS);
+    texts->text[texts->count++] = value;
+    return NOC_OK;
+}
+
+/* Like snprintf: the length that all of them would take, separated by commas. */
+static int join_texts(const noc_texts *texts, char *text, size_t size) {
+    size_t length = 0;
+    if (size)
+        *text = 0;
+    for (size_t i = 0; i < texts->count; i++) {
+        size_t at = NOC_MIN(length, size);
+        length += (size_t)snprintf(size ? text + at : NULL, size - at, "%s%s", i ? "," : "", texts->text[i]);
+    }
+    return (int)length;
+}
+
 noc_status noc_option_set(const noc_option *option, void *params, const char *value, noc_log *log) {
     void *field = (char *)params + option->offset;
     if (option->kind == NOC_OPTION_BOOL)
@@ -218,6 +240,7 @@ noc_status noc_option_set(const noc_option *option, void *params, const char *va
     switch (option->kind) {
     case NOC_OPTION_CHOICE: return set_choice(option, field, value, log);
     case NOC_OPTION_TEXT: memcpy(field, &value, sizeof(value)); return NOC_OK;
+    case NOC_OPTION_TEXTS: return add_text(option, field, value, log);
     default: return set_number(option, field, value, log);
     }
 }
@@ -236,6 +259,7 @@ size_t noc_option_size(const noc_option *option) {
     case NOC_OPTION_BOOL: return sizeof(bool);
     case NOC_OPTION_REAL: return sizeof(double);
     case NOC_OPTION_TEXT: return sizeof(char *);
+    case NOC_OPTION_TEXTS: return sizeof(noc_texts);
     default: return sizeof(int);
     }
 }
@@ -253,6 +277,7 @@ int noc_option_get(const noc_option *option, const void *params, char *text, siz
     case NOC_OPTION_REAL: memcpy(&v.d, field, sizeof(v.d)); return format_real(text, size, v.d);
     case NOC_OPTION_CHOICE: memcpy(&v.i, field, sizeof(v.i)); return get_choice(option, v.i, text, size);
     case NOC_OPTION_TEXT: memcpy(&v.s, field, sizeof(v.s)); return snprintf(text, size, "%s", v.s ? v.s : "");
+    case NOC_OPTION_TEXTS: return join_texts((const noc_texts *)(const void *)field, text, size);
     }
     return snprintf(text, size, "%s", "");
 }

@@ -53,6 +53,36 @@ assert city["triangles"] > 1000 and city["lights"] > 10, city
 END
 result $? "info as JSON"
 
+# Tables of which nothing tells that they are lamps: the user says so, and what their columns mean.
+printf 'lat,lon,power\n48.76,11.42,70\n48.7601,11.4201,100\n' >plain.csv
+printf 'ASSET,HT,XX,YY\nA,30,11.4202,48.7602\nB,,11.4203,48.7603\n' >strange.csv
+expect "a table of points is offered --lamps" 1 'plain.csv.* --lamps plain.csv' render plain.csv -o x.png
+expect "beside a city, too" 1 'plain.csv.* --lamps plain.csv' render "$gml" plain.csv -o x.png
+expect "a table without coordinates is offered columns" 1 'strange.csv.*--lamps.*--lamp-columns' render strange.csv -o x.png
+expect "a column that is not there" 1 'no input has.*"HEIGHT".* lat, lon, power' render --lamps plain.csv --lamp-columns height=HEIGHT -o x.png
+expect "a field that is none" 1 'no field "heigth".*height, lumens' render --lamps plain.csv --lamp-columns heigth=power -o x.png
+expect "a city is no table of lamps" 1 'this is CityGML, and --lamps is for' render --lamps "$gml" -o x.png
+expect "a built-in scene is no file of lamps" 1 'builtin:city is no file of lamps' render --lamps builtin:city -o x.png
+test ! -e x.png; result $? "none of them leaves a picture"
+run render "$gml" --lamps plain.csv --lamps strange.csv --lamp-columns lon=XX,lat=YY --lamp-columns height_ft=ht --crs EPSG:25832 \
+    --frames 1 --size 16x16 -o x.png
+test $status = 0 && grep -q ', 4 lights' out && test "$(meta x.png lamps)" = "plain.csv, strange.csv" &&
+    test "$(meta x.png lamp-columns)" = "lon=XX,lat=YY,height_ft=ht"
+result $? "named as lamps, with columns mapped"
+run info plain.csv
+test $status = 0 && grep -Eq 'points +2, and nothing tells' out && grep -Eq 'power +watts, W +70$' out; result $? "info shows columns and offers --lamps"
+run info --json --lamps strange.csv --lamp-columns lon=XX,lat=YY,height_ft=HT
+python3 - out >err <<'END'
+import json, sys
+f = json.load(open(sys.argv[1]))["files"][0]
+c = {x["name"]: x for x in f["columns"]}
+assert (f["lamps"], f["points"], list(c)) == (2, 2, ["ASSET", "HT", "XX", "YY"]), f
+assert (c["HT"]["field"], c["HT"]["unit"], c["HT"]["example"], c["HT"]["values"], c["HT"]["mapped"]) == ("height", "ft", "30", 1, True), c
+assert (c["ASSET"]["field"], c["ASSET"]["mapped"]) == ("", False), c
+assert abs(f["lamp_height_max"] - 9.144) < 1e-6, f
+END
+result $? "info as JSON tells of columns"
+
 # What lamps tell of themselves: two heads, 8 m and sodium on one; nothing on the other.
 printf '{"type": "FeatureCollection", "features": [{"type": "Feature", "id": "a", "properties": {"highway": "street_lamp",
     "height": "8", "lamp_count": "2", "light:method": "high_pressure_sodium", "light:count": "2"},

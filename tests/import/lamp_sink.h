@@ -18,6 +18,8 @@ typedef struct lamp_sink {
     char crs[256];
     char error[1024];
     const char *format;
+    size_t points;
+    NOC_ARRAY(geo_column) columns; /* texts in names */
     int errors;
     size_t cancel_after; /* lamps; 0: never */
 } lamp_sink;
@@ -51,14 +53,28 @@ static noc_status sink_lamp(void *ctx, const geo_lamp *lamp) {
     return NOC_OK;
 }
 
+static void sink_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
+    lamp_sink *s = ctx;
+    s->points = points;
+    for (size_t i = 0; i < count; i++) {
+        geo_column c = columns[i];
+        const char **texts[] = { &c.name, &c.field, &c.unit, &c.example };
+        for (size_t k = 0; k < NOC_COUNT(texts); k++)
+            *texts[k] = arena_strdup(&s->names, *texts[k]);
+        array_push(&s->columns, c);
+    }
+}
+
 static inline void lamp_sink_start(lamp_sink *s) {
     *s = (lamp_sink){ 0 };
     s->log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = sink_message, .user = s });
-    s->sink = (geo_sink){ .ctx = s, .log = s->log, .issues = geo_issues_create(), .crs = sink_crs, .lamp = sink_lamp };
+    s->sink = (geo_sink){ .ctx = s, .log = s->log, .issues = geo_issues_create(), .crs = sink_crs, .lamp = sink_lamp,
+                         .columns = sink_columns };
 }
 
 static inline void lamp_sink_end(lamp_sink *s) {
     array_free(&s->lamps);
+    array_free(&s->columns);
     arena_free(&s->names);
     geo_issues_destroy(s->sink.issues);
     noc_log_destroy(s->log);
@@ -102,7 +118,7 @@ static inline noc_status read_lamps(lamp_sink *s, const char *path, const noc_im
     head[len] = 0;
     const noc_reader *reader = NULL;
     for (size_t i = 0; !status && !reader && i < NOC_COUNT(readers); i++)
-        if (readers[i]->probe(head, len))
+        if (readers[i]->probe(head, len) || (s->sink.named_lamps && readers[i]->probe_named && readers[i]->probe_named(head, len)))
             reader = readers[i];
     if (!status)
         status = noc_stream_rewind(stream);

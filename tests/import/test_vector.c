@@ -114,7 +114,7 @@ static void test_quantities(void **state) {
         { "5", LAMP_METRES, 5, 1 },          { "5.5 m", LAMP_METRES, 5.5, 1 },    { "5,5m", LAMP_METRES, 5.5, 1 },
         { "16 ft", LAMP_METRES, 4.8768, 1 }, { "16'", LAMP_METRES, 4.8768, 1 },   { "16'6\"", LAMP_METRES, 5.0292, 1 },
         { "450 cm", LAMP_METRES, 4.5, 1 },   { "~8", LAMP_METRES, 8, 1 },         { "8;6", LAMP_METRES, 8, 1 },
-        { "70 W", LAMP_WATTS, 70, 1 },       { "2x70 W", LAMP_WATTS, 70, 2 },     { "0,25 kW", LAMP_WATTS, 250, 1 },
+        { "70 W", LAMP_WATTS, 70, 1 },       { "2x70 W", LAMP_WATTS, 70, 2 },     { "0,25 kW", LAMP_WATTS, 250, 1 }, { "0,150 kW", LAMP_WATTS, 150, 1 },
         { "3,000 K", LAMP_KELVIN, 3000, 1 }, { "2700K", LAMP_KELVIN, 2700, 1 },   { "12,000 lm", LAMP_LUMENS, 12000, 1 },
         { "4.2 klm", LAMP_LUMENS, 4200, 1 }, { "2 x 1000 lm", LAMP_LUMENS, 1000, 2 },
     };
@@ -122,12 +122,12 @@ static void test_quantities(void **state) {
     double v;
     int times;
     for (size_t i = 0; i < NOC_COUNT(good); i++) {
-        assert_true(lamp_quantity(good[i].text, good[i].unit, &v, &times));
+        assert_true(lamp_quantity(good[i].text, good[i].unit, 1, &v, &times));
         assert_float_equal(v, good[i].value, 1e-9);
         assert_int_equal(times, good[i].times);
     }
     for (size_t i = 0; i < NOC_COUNT(bad); i++)
-        assert_false(lamp_quantity(bad[i], LAMP_METRES, &v, &times));
+        assert_false(lamp_quantity(bad[i], LAMP_METRES, 1, &v, &times));
 }
 
 static void test_directions(void **state) {
@@ -148,7 +148,7 @@ static void test_directions(void **state) {
 static geo_lamp read_one(const char *key, const char *value) {
     geo_lamp lamp = { .xyz = { 1, 2, NAN } };
     lamp_tag tag = { key, value };
-    lamp_read(&tag, 1, &lamp, NULL);
+    lamp_read(NULL, &tag, 1, &lamp, NULL);
     return lamp;
 }
 
@@ -200,7 +200,7 @@ static void test_verdicts(void **state) {
         { "abandoned:highway", "street_lamp", LAMP_INACTIVE }, { "highway", "residential", LAMP_NONE }, { "light_source", "aviation", LAMP_NONE },
     };
     for (size_t i = 0; i < NOC_COUNT(one); i++)
-        assert_int_equal(lamp_verdict_of(&(lamp_tag){ one[i].key, one[i].value }, 1, false), one[i].verdict);
+        assert_int_equal(lamp_verdict_of(NULL, &(lamp_tag){ one[i].key, one[i].value }, 1, false), one[i].verdict);
     static const struct {
         const char *key, *value;
         lamp_verdict verdict;
@@ -210,12 +210,12 @@ static void test_verdicts(void **state) {
         { "INOPERATION", "6/3/2013 0:00:00", LAMP_ACTIVE }, { "INOPERATION", "NO", LAMP_INACTIVE }, { "disused", "yes", LAMP_INACTIVE },
     };
     for (size_t i = 0; i < NOC_COUNT(row); i++)
-        assert_int_equal(lamp_verdict_of(&(lamp_tag){ row[i].key, row[i].value }, 1, true), row[i].verdict);
+        assert_int_equal(lamp_verdict_of(NULL, &(lamp_tag){ row[i].key, row[i].value }, 1, true), row[i].verdict);
     static const char *const inventory[] = { "OBJECTID", "LampType" }, *const masts[] = { "STRAAT", "MASTNUMMER", "MASTLENGTE" },
                              *const trees[] = { "id", "height", "species", "status", "support" };
-    assert_true(lamp_columns_tell(inventory, 2));
-    assert_true(lamp_columns_tell(masts, 3));
-    assert_false(lamp_columns_tell(trees, 5));
+    assert_true(lamp_columns_tell(NULL, inventory, 2));
+    assert_true(lamp_columns_tell(NULL, masts, 3));
+    assert_false(lamp_columns_tell(NULL, trees, 5));
 }
 
 /* ---- CSV ---- */
@@ -238,7 +238,7 @@ static void test_csv(void **state) {
     expect_csv("X,Y,wattage,cct\n8.5,50.5,70,3000\n", NOC_OK, 1, "OGC:CRS84");              /* degrees in all rows */
     expect_csv("geo_point_2d;lampe\n\"50.5, 8.5\";LED\n", NOC_OK, 1, "OGC:CRS84");
     expect_csv("wkt,lumens,a\n\"POINT Z (8.5 50.5 3)\",900,\"say \"\"hi\"\"\nthere\"\n", NOC_OK, 1, "OGC:CRS84");
-    expect_csv("lon,lat,species\n8.5,50.5,oak\n", NOC_OK, 0, NULL);                          /* trees */
+    expect_csv("lon,lat,species\n8.5,50.5,oak\n", NOC_ERR_FORMAT, 0, NULL);                  /* trees */
     expect_csv("lon,lat,highway\n8.5,50.5,street_lamp\n8.5,50.5,bus_stop\n", NOC_OK, 1, "OGC:CRS84");
     expect_csv("lon,lat,lamp_type\n8.5,50.5\n8.5,50.5,LED,more\n,,LED\n1e3,0,LED\n8.5,50.5,LED\n9,51,LED", NOC_OK, 2, NULL);
     expect_csv("lon,lat,lamp_type\n8.5,50.5,\"LED\n", NOC_ERR_FORMAT, 0, NULL);

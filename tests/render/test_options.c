@@ -35,14 +35,14 @@ static const noc_option *find(const noc_option *table, const char *name) {
 static void rows_are_sound(void **state) {
     noc_map names = { 0 };
     for (size_t t = 0; t < NOC_COUNT(tables); t++) {
-        unsigned char used[sizeof(noc_render_params)] = { 0 };
+        unsigned char used[sizeof(noc_render_params) + sizeof(noc_import_params)] = { 0 };
         for (const noc_option *o = tables[t].table(); o->name; o++) {
             assert_true(map_put(&names, o->name, 1));
             assert_true(o->group && o->unit && o->help && *o->help && strlen(o->help) < 80);
             assert_int_equal(o->kind == NOC_OPTION_CHOICE, o->choices != NULL);
             assert_true(strncmp(o->name, "no-", 3) != 0);
             size_t size = noc_option_size(o);
-            assert_true(o->offset + size <= tables[t].size && o->offset % size == 0);
+            assert_true(o->offset + size <= tables[t].size && o->offset % NOC_MIN(size, sizeof(void *)) == 0);
             for (size_t i = 0; i < size; i++)
                 assert_int_equal(used[o->offset + i]++, 0);
         }
@@ -56,7 +56,7 @@ static void defaults_round_trip(void **state) {
         for (const noc_option *o = tables[t].table(); o->name; o++) {
             char before[64], after[64];
             assert_true(noc_option_get(o, tables[t].params, before, sizeof(before)) < (int)sizeof(before));
-            if (o->kind == NOC_OPTION_TEXT && !*before)
+            if ((o->kind == NOC_OPTION_TEXT || o->kind == NOC_OPTION_TEXTS) && !*before)
                 continue;
             unsigned char *copy = malloc(tables[t].size);
             memcpy(copy, tables[t].params, tables[t].size);
@@ -96,7 +96,7 @@ static void ranges_and_choices(void **state) {
                     assert_string_equal(back, said[i]);
                 }
                 assert_int_equal(noc_option_set(o, tables[t].params, "perhaps", NULL), NOC_ERR_ARGUMENT);
-            } else if (o->kind != NOC_OPTION_BOOL && o->kind != NOC_OPTION_TEXT) {
+            } else if (o->kind != NOC_OPTION_BOOL && o->kind != NOC_OPTION_TEXT && o->kind != NOC_OPTION_TEXTS) {
                 double ends[] = { o->min, o->max }, beyond[] = { o->min - 1, o->max + 1 };
                 for (int i = 0; i < 2; i++) {
                     snprintf(text, sizeof(text), "%.17g", ends[i]);
@@ -170,6 +170,24 @@ static void text_points_at_the_callers(void **state) {
     assert_int_equal(noc_option_get(o, &import, NULL, 0), (int)strlen(text));
 }
 
+static void texts_add_up(void **state) {
+    const noc_option *o = find(noc_import_options(), "lamps");
+    char back[16];
+    assert_int_equal(noc_option_set(o, &import, "a.csv", NULL), NOC_OK);
+    assert_int_equal(noc_option_set(o, &import, "b, c.csv", NULL), NOC_OK);
+    assert_int_equal(import.lamps.count, 2);
+    assert_string_equal(import.lamps.text[1], "b, c.csv");
+    assert_int_equal(noc_option_get(o, &import, back, sizeof(back)), 14);
+    assert_string_equal(back, "a.csv,b, c.csv");
+    assert_int_equal(noc_option_get(o, &import, back, 8), 14); /* like snprintf */
+    assert_string_equal(back, "a.csv,b");
+    assert_int_equal(noc_option_get(o, &import, NULL, 0), 14);
+    while (import.lamps.count < NOC_TEXTS)
+        assert_int_equal(noc_option_set(o, &import, "d.csv", NULL), NOC_OK);
+    assert_int_equal(noc_option_set(o, &import, "e.csv", NULL), NOC_ERR_ARGUMENT);
+    assert_int_equal(import.lamps.count, NOC_TEXTS);
+}
+
 static void reals_survive_locales(void **state) {
     const noc_option *o = find(noc_render_options(), "sky");
     static const char *const locales[] = { "de_DE.UTF-8", "de_DE", "fr_FR.UTF-8", "cs_CZ.UTF-8", "C" };
@@ -195,6 +213,7 @@ int main(void) {
         cmocka_unit_test_setup(bools, setup),
         cmocka_unit_test_setup(bad_values_are_told, setup),
         cmocka_unit_test_setup(text_points_at_the_callers, setup),
+        cmocka_unit_test_setup(texts_add_up, setup),
         cmocka_unit_test_setup(reals_survive_locales, setup),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,244 @@
+/* Tables and maps whose columns say little: named as lamps, with columns mapped, units in headers, and kinds in values. */
+#include "lamp_sink.h"
+
+#include "import/lamp_tags.h"
+#include "noc_config.h"
+
+static noc_status read_with(lamp_sink *s, const char *text, bool named, const char *map) {
+    noc_import_params params = noc_import_default_params();
+    if (map)
+        params.lamp_columns = (noc_texts){ .text = { map }, .count = 1 };
+    lamp_sink_start(s);
+    s->sink.named_lamps = named;
+    return read_lamps_text(s, text, &params);
+}
+
+static const geo_column *column(const lamp_sink *s, const char *name) {
+    for (size_t i = 0; i < s->columns.len; i++)
+        if (!strcmp(s->columns.data[i].name, name))
+            return &s->columns.data[i];
+    fail_msg("no column %s", name);
+    return NULL;
+}
+
+static void expect_column(const lamp_sink *s, const char *name, const char *field, const char *unit, const char *example) {
+    const geo_column *c = column(s, name);
+    assert_string_equal(c->field, field);
+    assert_string_equal(c->unit, unit);
+    assert_string_equal(c->example, example);
+}
+
+/* ---- keys ---- */
+
+static void test_units_of_keys(void **state) {
+    static const struct {
+        const char *key;
+        lamp_field field;
+        double scale;
+        const char *unit;
+    } keys[] = {
+        { "Height (ft)", LAMP_FIELD_HEIGHT, .3048, "ft" }, { "MOUNT_HT_FT", LAMP_FIELD_HEIGHT, .3048, "ft" },
+        { "mounting height [feet]", LAMP_FIELD_HEIGHT, .3048, "ft" }, { "Pole Height in Feet", LAMP_FIELD_HEIGHT, .3048, "ft" },
+        { "MOUNT_HT", LAMP_FIELD_HEIGHT, 1, "m" }, { "Masth\xc3\xb6he [m]", LAMP_FIELD_HEIGHT, 1, "m" },
+        { "pole_hgt_cm", LAMP_FIELD_HEIGHT, .01, "cm" }, { "Power (kW)", LAMP_FIELD_WATTS, 1000, "kW" },
+        { "Lichtstrom [klm]", LAMP_FIELD_LUMENS, 1000, "klm" }, { "lamp_power_w", LAMP_FIELD_WATTS, 1, "W" },
+        { "elevation_ft", LAMP_FIELD_ELEVATION, .3048, "ft" }, { "CCT (K)", LAMP_FIELD_KELVIN, 1, "K" },
+        { "lamp_type", LAMP_FIELD_TYPE, 1, "" }, { "light", LAMP_FIELD_NONE, 1, "" }, { "weight", LAMP_FIELD_NONE, 1, "" },
+        { "Height (lm)", LAMP_FIELD_NONE, 1, "" }, { "ft", LAMP_FIELD_NONE, 1, "" }, { "\xe9\xab\x98\xe3\x81\x95", LAMP_FIELD_NONE, 1, "" },
+    };
+    for (size_t i = 0; i < NOC_COUNT(keys); i++) {
+        lamp_meaning m = lamp_meaning_of(keys[i].key);
+        if (m.field != keys[i].field || fabs(m.scale - keys[i].scale) > 1e-12 || strcmp(m.unit, keys[i].unit))
+            fail_msg("%s: field %d, %g %s", keys[i].key, m.field, m.scale, m.unit);
+    }
+}
+
+static void test_units_in_tables(void **state) {
+    lamp_sink s;
+    assert_int_equal(read_with(&s, "id,lon,lat,lamp_type,MOUNT_HT_FT,Power (kW),flux lumineux klm,elevation_ft\n"
+                                   "a,8,50,LED,30,0.1,12,1000\nb,8,50.1,LED,9 m,70 W,4000 lm,\nc,8,50.2,LED,\"25'\",,,\n", false, NULL), NOC_OK);
+    const geo_lamp *a = lamp_by_id(&s, "a"), *b = lamp_by_id(&s, "b"), *c = lamp_by_id(&s, "c");
+    assert_float_equal(a->height, 9.144, 1e-9);
+    assert_float_equal(a->watts, 100, 1e-9);
+    assert_float_equal(a->lumens, 12000, 1e-9);
+    assert_float_equal(a->xyz[2], 304.8, 1e-9);
+    assert_float_equal(b->height, 9, 1e-9); /* a value's own unit goes before the header's */
+    assert_float_equal(b->watts, 70, 1e-9);
+    assert_float_equal(b->lumens, 4000, 1e-9);
+    assert_float_equal(c->height, 7.62, 1e-9);
+    expect_column(&s, "MOUNT_HT_FT", "height", "ft", "30");
+    lamp_sink_end(&s);
+}
+
+/* ---- named by the user ---- */
+
+static char *many_points(size_t count) {
+    char *text = noc_alloc(64 * (count + 1)), *at = text + sprintf(text, "fid,longitude,latitude,ward\n");
+    for (size_t i = 0; i < count; i++)
+        at += sprintf(at, "%zu,%.6f,%.6f,%zu\n", i, -79.4 + 1e-5 * (double)i, 43.65 + 1e-6 * (double)(i % 700), i % 44);
+    return text;
+}
+
+static void test_named_csv(void **state) {
+    char *text = many_points(5000);
+    lamp_sink s;
+    assert_int_equal(read_with(&s, text, false, NULL), NOC_ERR_FORMAT);
+    assert_non_null(strstr(s.error, "5000 points"));
+    assert_non_null(strstr(s.error, "--lamps"));
+    assert_int_equal(s.lamps.len, 0);
+    lamp_sink_end(&s);
+    assert_int_equal(read_with(&s, text, true, NULL), NOC_OK);
+    assert_int_equal(s.lamps.len, 5000);
+    assert_int_equal(s.points, 5000);
+    assert_string_equal(s.crs, "OGC:CRS84");
+    expect_column(&s, "longitude", "lon", "", "-79.400000");
+    expect_column(&s, "ward", "", "", "0");
+    assert_int_equal(column(&s, "ward")->values, 5000);
+    lamp_sink_end(&s);
+    free(text);
+    static const char power[] = "lat,lon,power,status\n50,8,70,ok\n50,9,100,removed\n50,10,40,\n";
+    assert_int_equal(read_with(&s, power, false, NULL), NOC_ERR_FORMAT);
+    lamp_sink_end(&s);
+    assert_int_equal(read_with(&s, power, true, NULL), NOC_OK);
+    assert_int_equal(s.lamps.len, 2); /* one is gone */
+    assert_float_equal(s.lamps.data[0].watts, 70, 0);
+    assert_int_equal(issue_count(&s, "not in use"), 1);
+    lamp_sink_end(&s);
+}
+
+static void test_looked_at(void **state) { /* by info: no error, and the columns are told */
+    lamp_sink s;
+    lamp_sink_start(&s);
+    s.sink.inspect = true;
+    assert_int_equal(read_lamps_text(&s, "lat,lon,power\n50,8,70\n50,9,100\n", NULL), NOC_OK);
+    assert_int_equal(s.lamps.len, 0);
+    assert_int_equal(s.points, 2);
+    assert_int_equal(s.columns.len, 3);
+    expect_column(&s, "power", "watts", "W", "70");
+    lamp_sink_end(&s);
+}
+
+static void test_mapped(void **state) {
+    static const char text[] = "A Nr,B,C,D,E,Gr\xc3\xb6\xc3\x9f" "e,height\n1,8,50,30,70,LED,5\n2,8,51,,2 kW,SON,6\n";
+    lamp_sink s;
+    assert_int_equal(read_with(&s, text, true, NULL), NOC_ERR_FORMAT); /* where are they? it has ... */
+    assert_non_null(strstr(s.error, "A Nr, B, C"));
+    assert_non_null(strstr(s.error, "--lamp-columns"));
+    lamp_sink_end(&s);
+    assert_int_equal(read_with(&s, text, true, "lon=B,lat=C,height_ft=D,watt=e,source=grosse,ID=a_nr"), NOC_OK);
+    const geo_lamp *one = lamp_by_id(&s, "1"), *two = lamp_by_id(&s, "2");
+    assert_float_equal(one->height, 9.144, 1e-9); /* before the column that the words know */
+    assert_float_equal(two->height, 6, 0);        /* which stands in where the mapped one is blank */
+    assert_float_equal(one->watts, 70, 0);
+    assert_float_equal(two->watts, 2000, 0);
+    assert_int_equal(two->source, GEO_SOURCE_SODIUM);
+    assert_true(column(&s, "D")->mapped && !column(&s, "height")->mapped);
+    expect_column(&s, "D", "height", "ft", "30");
+    lamp_sink_end(&s);
+    /* what is mapped away from its own meaning loses it */
+    assert_int_equal(read_with(&s, "lon,lat,lamp_type\n8,50,150\n", false, "watts=LampType"), NOC_OK);
+    assert_float_equal(s.lamps.data[0].watts, 150, 0);
+    lamp_sink_end(&s);
+}
+
+static void say(void *user, noc_log_level level, const char *text) { snprintf(user, 400, "%s", text); }
+
+static void test_bad_maps(void **state) {
+    static const struct { const char *map, *part; } bad[] = {
+        { "heigth=A", "no field \"heigth\"; the fields are height, lumens, watts" }, { "height", "not FIELD=COLUMN" }, { "=A", "not FIELD=COLUMN" },
+        { "height=", "not FIELD=COLUMN" }, { "height=A,", "not FIELD=COLUMN" }, { "height=A,watts=a", "named twice" }, { "height_kg=A", "no field" },
+        { "height_lm=A", "no field" },
+    };
+    for (size_t i = 0; i < NOC_COUNT(bad); i++) {
+        char text[400] = "";
+        noc_log *log = noc_log_create(&(noc_log_params){ .message = say, .user = text });
+        noc_import_params params = noc_import_default_params();
+        params.lamp_columns = (noc_texts){ .text = { bad[i].map }, .count = 1 };
+        assert_int_equal(lamp_mapping_check(&params, log), NOC_ERR_ARGUMENT);
+        if (!strstr(text, bad[i].part))
+            fail_msg("%s: \"%s\"", bad[i].map, text);
+        noc_log_destroy(log);
+    }
+}
+
+/* ---- maps ---- */
+
+#define POINT(props, x, y) \
+    "{\"type\":\"Feature\",\"properties\":{" props "},\"geometry\":{\"type\":\"Point\",\"coordinates\":[" x "," y "]}}"
+#define COLLECTION(features) "{\"type\":\"FeatureCollection\",\"features\":[" features "]}"
+
+static void expect_lamps(const char *text, bool named, noc_status status, size_t lamps) {
+    lamp_sink s;
+    noc_status got = read_with(&s, text, named, NULL);
+    if (got != status || s.lamps.len != lamps)
+        fail_msg("status %d, %zu lamps of %.200s", got, s.lamps.len, text);
+    lamp_sink_end(&s);
+}
+
+static void test_kinds_in_values(void **state) {
+    static const struct { const char *text; int word; } words[] = {
+        { "Lichtmast mit Auslegerleuchte", 2 }, { "Stra\xc3\x9f" "enlaterne", 2 }, { "Street Light - LED", 2 }, { "lampadaire", 2 },
+        { "\xe8\xa1\x97\xe7\x81\xaf", 2 }, { "Wandleuchte", 1 }, { "Zur Laterne", 1 }, { "Lantern", 1 }, { "Laternengasse", 1 },
+        { "Leuchtreklame", 0 }, { "Schaltschrank", 0 }, { "Traffic light", 0 }, { "", 0 }, { NULL, 0 },
+    };
+    for (size_t i = 0; i < NOC_COUNT(words); i++)
+        if (lamp_object_word(words[i].text) != words[i].word)
+            fail_msg("%s: %d", words[i].text, lamp_object_word(words[i].text));
+    /* most values of a column name street lamps: the rest of its rows are none */
+    expect_lamps("lon,lat,bezeichnung\n8,50,Lichtmast mit Auslegerleuchte\n8,51,Lichtmast\n8,52,Schaltschrank\n8,53,Wandleuchte\n", false, NOC_OK, 3);
+    /* kinds of furniture: the one that is a lamp beyond doubt */
+    expect_lamps("lon,lat,Objektart\n8,50,Bank\n8,51,Papierkorb\n8,52,Lichtmast\n8,53,Poller\n", false, NOC_OK, 1);
+    /* inns and streets with lanterns in their names, and one lamp shop */
+    expect_lamps("lon,lat,name\n8,50,Zur Laterne\n8,51,Laternengasse\n8,52,Leuchten Meier\n", false, NOC_ERR_FORMAT, 0);
+    expect_lamps("lon,lat,type,name\n8,50,inn,Zur Laterne\n8,51,shop,Leuchten Meier\n", false, NOC_ERR_FORMAT, 0);
+    if (!NOC_HAVE_GDAL)
+        return;
+    expect_lamps(COLLECTION(POINT("\"a\":1,\"art\":\"Lichtmast mit Auslegerleuchte\"", "8", "50") "," POINT("\"art\":\"Lichtmast\"", "8", "51")), false,
+                 NOC_OK, 2);
+    lamp_sink s;
+    assert_int_equal(read_with(&s, COLLECTION(POINT("\"text\":\"Lichtmast mit Auslegerleuchte\"", "8", "50")), false, NULL), NOC_OK);
+    assert_int_equal(s.lamps.len, 1);
+    expect_column(&s, "text", "kind", "", "Lichtmast mit Auslegerleuchte");
+    lamp_sink_end(&s);
+}
+
+static void test_named_maps(void **state) {
+    if (!NOC_HAVE_GDAL)
+        skip();
+    static const char two[] = COLLECTION(POINT("\"ht\":\"8\",\"n\":1", "8", "50") "," POINT("\"ht\":\"9\"", "8", "51"));
+    expect_lamps(two, false, NOC_ERR_FORMAT, 0);
+    expect_lamps(two, true, NOC_OK, 2);
+    expect_lamps(COLLECTION(POINT("\"highway\":\"stop\"", "8", "50")), true, NOC_OK, 1);
+    static const char area[] = COLLECTION("{\"type\":\"Feature\",\"properties\":{\"a\":1},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":"
+                                          "[[[8,50],[8.1,50],[8.1,50.1],[8,50]]]}}");
+    expect_lamps(area, false, NOC_OK, 0);
+    expect_lamps(area, true, NOC_ERR_FORMAT, 0); /* it holds no points */
+    lamp_sink s;
+    assert_int_equal(read_with(&s, two, true, "height_ft=HT"), NOC_OK);
+    assert_float_equal(s.lamps.data[0].height, 8 * .3048, 1e-9);
+    lamp_sink_end(&s);
+    /* an extract of OpenStreetMap holds everything: its tags decide, where they tell of lamps at all */
+#define OSM(nodes) "<?xml version='1.0'?>\n<osm version=\"0.6\">\n" nodes "</osm>\n"
+#define NODE(id, k, v) "<node id=\"" id "\" lat=\"50.5\" lon=\"8." id "\" version=\"1\"><tag k=\"" k "\" v=\"" v "\"/></node>\n"
+    expect_lamps(OSM(NODE("1", "highway", "street_lamp") NODE("2", "shop", "bakery")), true, NOC_OK, 1);
+    expect_lamps(OSM(NODE("1", "lamp_ht", "5") NODE("2", "lamp_ht", "6")), true, NOC_OK, 2);
+    expect_lamps(OSM(NODE("1", "lamp_ht", "5")), false, NOC_OK, 0);
+}
+
+static void test_named_overpass(void **state) {
+#define ELEMENT(id, tags) "{\"type\":\"node\",\"id\":" id ",\"lat\":50." id ",\"lon\":8" tags "}"
+#define ANSWER(elements) "{\"version\":0.6,\"elements\":[" elements "]}"
+    static const char bare[] = ANSWER(ELEMENT("1", "") "," ELEMENT("2", ""));
+    expect_lamps(bare, false, NOC_OK, 0);
+    expect_lamps(bare, true, NOC_OK, 2); /* "out skel": places alone */
+    expect_lamps(ANSWER(ELEMENT("1", ",\"tags\":{\"highway\":\"street_lamp\"}") "," ELEMENT("2", "")), true, NOC_OK, 1);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_units_of_keys), cmocka_unit_test(test_units_in_tables), cmocka_unit_test(test_named_csv),
+        cmocka_unit_test(test_looked_at),     cmocka_unit_test(test_mapped),          cmocka_unit_test(test_bad_maps),
+        cmocka_unit_test(test_kinds_in_values), cmocka_unit_test(test_named_maps),    cmocka_unit_test(test_named_overpass),
+    };
+    return cmocka_run_group_tests_name("import/lamp_tables", tests, NULL, NULL);
+}
