@@ -93,6 +93,11 @@ static fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *para
         f.kind = FITTING_DISC;
     /* bollards and ground lights have small heads */
     f.radius = f.kind == FITTING_SPHERE ? NOC_CLAMP(.06 * f.height, .05, .18) : .15;
+    if (lamp->body_heads) { /* all heads' flux, from as many as the body shows */
+        f.kind = lamp->head_globe ? FITTING_SPHERE : FITTING_DISC;
+        f.radius = lamp->head_radius;
+        f.lumens *= lamp->count > 0 ? (double)f.heads / lamp->body_heads : 1;
+    }
     double luminance = f.lumens / (M_PI * M_PI * f.radius * f.radius * (f.kind == FITTING_SPHERE ? 4 : 1));
     float rgb[3];
     lamp_colour(lamp, params, rgb);
@@ -305,6 +310,14 @@ static void add_pole(builder *b) {
         shape_pole(&b->shape, foot, top, foot_radius, top_radius);
 }
 
+/* A lamp whose body is modelled: its lights alone, where the body has them. */
+static int add_to_body(const builder *b) {
+    int lights = 0;
+    for (int i = 0; i < NOC_MIN(b->lamp->body_heads, GEO_BODY_HEADS); i++)
+        lights += add_light(b, b->lamp->head[i], down);
+    return lights;
+}
+
 int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, bool inferred, geo_issues *issues) {
     if (!isfinite(lamp->xyz[0]) || !isfinite(lamp->xyz[1])) {
         geo_issue(issues, false, "lamp without a place", lamp->id);
@@ -315,14 +328,14 @@ int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params
         return 0;
     }
     placing p = { 0 };
-    if (!place(scene, lamp, params, &p, issues))
+    if (!lamp->body_heads && !place(scene, lamp, params, &p, issues))
         return 0;
     fitting f = choose_fitting(lamp, params);
     builder b = { .scene = scene, .lamp = lamp, .fitting = &f, .placing = &p, .inferred = inferred,
                   .pole = !p.on_wall && lamp->mount != GEO_MOUNT_SUSPENDED };
-    if (b.pole)
+    if (b.pole && !lamp->body_heads)
         add_pole(&b);
-    int lights = add_heads(&b);
+    int lights = lamp->body_heads ? add_to_body(&b) : add_heads(&b);
     if (!shape_add(&b.shape, scene, lamp->id) || !lights) /* the scene said why */
         geo_issue(issues, false, "lamp that the scene refused", lamp->id);
     shape_free(&b.shape);

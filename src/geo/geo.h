@@ -60,6 +60,7 @@ typedef struct geo_polygon {
 } geo_polygon;
 
 #define GEO_MAX_HEADS 24 /* on one pole */
+#define GEO_BODY_HEADS 4 /* of a lamp that is modelled */
 
 /* A lamp as tagged. NaN / 0 / NULL where unknown. */
 typedef struct geo_lamp {
@@ -74,6 +75,11 @@ typedef struct geo_lamp {
            GEO_SOURCE_FLUORESCENT, GEO_SOURCE_INCANDESCENT, GEO_SOURCE_GAS, GEO_SOURCE_LOW_SODIUM } source;
     enum { GEO_MOUNT_UNKNOWN, GEO_MOUNT_POLE, GEO_MOUNT_WALL, GEO_MOUNT_SUSPENDED } mount;
     const char *id;
+    /* A lamp whose body is among the surfaces shines from here, and gets neither a pole nor another place. body_heads 0: none. */
+    int body_heads;
+    double head[GEO_BODY_HEADS][3]; /* centres of the lights, file CRS */
+    double head_radius;             /* m */
+    bool head_globe;                /* spheres around the body's head; else discs under it, facing down */
 } geo_lamp;
 
 /* A column of a table, an attribute or a tag, and what a reader of lamps took it for. Texts are valid during the call. */
@@ -85,7 +91,7 @@ typedef struct geo_column {
 
 /* Counted reasons: kept by the importer, a line a reason in the report. */
 typedef struct geo_issues geo_issues;
-void geo_issue(geo_issues *issues, bool repaired, const char *reason, const char *id); /* reason: a literal */
+void geo_issue(geo_issues *issues, bool repaired, const char *reason, const char *id); /* texts are copied */
 
 /* The importer's side. Readers call these; any status but NOC_OK makes the reader stop and return it. */
 typedef struct geo_sink {

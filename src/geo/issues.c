@@ -4,7 +4,7 @@
 #define EXAMPLES 5
 
 struct line {
-    const char *reason; /* a literal */
+    const char *reason;
     bool repaired;
     size_t count;
     int example_count;
@@ -33,10 +33,10 @@ void geo_issues_destroy(geo_issues *issues) {
 static struct line *find_line(geo_issues *issues, bool repaired, const char *reason) {
     for (size_t i = 0; i < issues->lines.len; i++) {
         struct line *l = &issues->lines.data[i];
-        if (l->repaired == repaired && (l->reason == reason || !strcmp(l->reason, reason)))
+        if (l->repaired == repaired && !strcmp(l->reason, reason))
             return l;
     }
-    array_push(&issues->lines, (struct line){ .reason = reason, .repaired = repaired });
+    array_push(&issues->lines, (struct line){ .reason = arena_strdup(&issues->names, reason), .repaired = repaired });
     return &issues->lines.data[issues->lines.len - 1];
 }
 

@@ -1,5 +1,6 @@
 /* citygml.c: the CityGML reader. CityGML 1.0 and 2.0, and of 3.0 what shares their structure, by expat, in bounded memory. */
 #include "import/citygml.h"
+#include "import/lamp_tags.h"
 
 #define CHUNK (128 * 1024)
 
@@ -120,6 +121,7 @@ static noc_status run_pass(cg_parser *p, int pass) {
 }
 
 static void free_parser(cg_parser *p) {
+    lamp_keys_destroy(p->keys);
     cg_names_free(&p->names);
     cg_object_free(&p->object);
     cg_store_free(&p->store);
@@ -145,6 +147,7 @@ static noc_status read_citygml(noc_stream *stream, const noc_import_params *para
     p->max_lod = NOC_CLAMP(params->lod, 0, 4);
     p->format = format;
     p->sink_srs = CG_UNTOLD;
+    p->keys = lamp_keys_create(params);
     *format = "CityGML";
     noc_status status = run_pass(p, 1);
     for (int pass = 2; pass <= 3 && !status && p->deferred.len; pass++) {
@@ -155,6 +158,7 @@ static noc_status read_citygml(noc_stream *stream, const noc_import_params *para
         p->deferred.len = p->deferred_kept;
     }
     noc_debug(sink->log, "%s: %zu polygons used, %zu given twice", noc_stream_name(stream), p->emitted, p->dropped);
+    lamp_keys_report(p->keys, sink, 0);
     free_parser(p);
     return status;
 }

@@ -27,11 +27,14 @@ typedef enum cg_code {
     CG_FEATURE,           /* value: index into cg_feature_types */
     CG_GEOMETRY_PROPERTY, /* value: lod * 16 + role */
     CG_FUNCTION,          /* function, usage, class: tells roads from pavements */
+    CG_LABEL,             /* name of an object */
+    CG_ATTRIBUTE,         /* generic attribute: with its name in XML (1.0, 2.0), or as an element (3.0) */
+    CG_ATTRIBUTE_NAME, CG_ATTRIBUTE_VALUE,
     CG_IMPLICIT, CG_MATRIX, CG_REFERENCE_POINT, CG_RELATIVE_GEOMETRY,
     CG_BOUNDED_BY, CG_ENVELOPE,
     CG_AGGREGATE,         /* MultiSurface, Solid, Surface, TriangulatedSurface, ... */
     CG_SURFACE_PROPERTY,  /* surfaceMember, baseSurface, ...: may be an xlink */
-    CG_ORIENTABLE, CG_POLYGON,
+    CG_ORIENTABLE, CG_POLYGON, CG_POINT,
     CG_EXTERIOR, CG_INTERIOR, CG_RING, CG_ARC,
     CG_POS_LIST, CG_POS, CG_COORDINATES,
 } cg_code;
@@ -135,8 +138,19 @@ typedef struct cg_target {
     bool flip; /* orientation in force outside the element with this id */
 } cg_target;
 
+/* What an object says of itself, in its order: "class", "function", "usage", "name", and generic attributes. */
+typedef struct cg_attribute {
+    const char *key, *value;
+    bool generic;
+} cg_attribute;
+
 typedef struct cg_object {
     noc_arena arena;
+    NOC_ARRAY(cg_attribute) attributes;
+    bool has_point;       /* a geometry that is a point: the first */
+    double point[3];      /* in the file's tuple order; height NaN in two dimensions */
+    uint32_t point_srs;
+    bool other_function;  /* a code of the standard's list says that it is something other than a lamp */
     NOC_ARRAY(cg_feature) features; /* the first is the object itself */
     NOC_ARRAY(cg_geometry) geometries;
     NOC_ARRAY(cg_surface) surfaces;
@@ -194,7 +208,7 @@ typedef struct cg_store {
 typedef struct cg_frame {
     cg_name name;
     bool flip;
-    bool in_reference_point;
+    bool in_reference_point, in_point, in_attribute;
     uint32_t feature, geometry, srs;
     uint32_t dimension;    /* srsDimension, 0 where not given */
     uint32_t first_surface; /* of an element with an id */
@@ -239,6 +253,10 @@ typedef struct cg_parser {
     char word[128];
     uint32_t word_len;
     bool plateau_code;      /* the code list named beside the word is one of Project PLATEAU */
+    bool foreign_code;      /* it is neither that nor the standard's */
+    char attribute[128];    /* name of the generic attribute being read */
+    char uom[32];           /* unit of its value, "" if none is said */
+    struct lamp_keys *keys; /* what attributes of lamps mean */
 
     /* CRSs in the order met; names live in the arena */
     noc_arena persistent;
@@ -252,6 +270,7 @@ typedef struct cg_parser {
     NOC_ARRAY(size_t) out_rings;
     bool object_open;       /* begin_object was called and end_object not yet */
     size_t emitted, dropped;
+    uint32_t kinds_told;    /* of objects that were left out */
 } cg_parser;
 
 #define CG_UNTOLD (UINT32_MAX - 1)
@@ -269,6 +288,17 @@ bool cg_object_room(cg_parser *p);
 void cg_object_clear(cg_object *object);
 void cg_object_free(cg_object *object);
 
+/* citygml_attribute.c: what objects say of themselves. */
+bool cg_attribute_start(cg_parser *p, cg_frame *frame, const char *name); /* false: of no use */
+void cg_attribute_add(cg_parser *p, const char *key, const char *value, bool generic);
+void cg_attribute_end(cg_parser *p, const cg_frame *frame); /* of a name or a value */
+const char *cg_attribute_get(const cg_object *object, const char *key); /* not a generic one; NULL if there is none */
+/* May an object of this type be a lamp? */
+bool cg_may_be_lamp(const cg_feature_type *type);
+
+/* citygml_lamp.c: objects that are lamps. True where the object is one, and has been dealt with. */
+bool cg_emit_lamp(cg_parser *p);
+
 /* citygml_ring.c: rings and polygons from coordinates. */
 void cg_polygon_begin(cg_parser *p, const char *id);
 void cg_polygon_end(cg_parser *p, const cg_frame *frame);
@@ -285,10 +315,19 @@ void cg_resolve(cg_parser *p);  /* surfaces and stored ones -> selection.items, 
 void cg_follow(cg_parser *p, const char *id, uint32_t geometry, bool flip);
 void cg_select(cg_parser *p);   /* level of detail, what is shown */
 int cg_function_class(const cg_feature_type *type, const char *word, bool plateau); /* noc_class or -1 */
+bool cg_standard_function(const char *word); /* a code of the standard's list for city furniture */
 
 /* citygml_emit.c */
 void cg_object_end(cg_parser *p);                       /* a top-level object is complete */
 void cg_emit_polygon(cg_parser *p, const cg_polygon *polygon, uint32_t geometry, bool flip);
+void cg_tell_crs(cg_parser *p, uint32_t srs);           /* to the sink, of what comes next */
+/* A polygon's points into p->out, p->out_rings: easting northing height, placed and turned over where asked. */
+void cg_transform(cg_parser *p, const cg_polygon *polygon, const cg_implicit *implicit, bool flip);
+void cg_place_point(const cg_parser *p, const cg_implicit *implicit, double *point); /* of a prototype */
+/* Metres a unit of x and y about a point: 1, but for degrees. */
+void cg_metres(const cg_parser *p, const double *point, double *east, double *north);
+void cg_emit_shown(cg_parser *p);                       /* the selected surfaces, as an object */
+void cg_stop(cg_parser *p, noc_status status);          /* of the sink, which has reported it */
 void cg_emit_end(cg_parser *p);                         /* closes the sink's object if one is open */
 void cg_store_free(cg_store *store);
 

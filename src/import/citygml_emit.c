@@ -2,8 +2,9 @@
 #include "import/citygml.h"
 
 #include <math.h>
+#include <stdio.h>
 
-static void stop(cg_parser *p, noc_status status) {
+void cg_stop(cg_parser *p, noc_status status) {
     if (!status || p->status)
         return;
     p->status = status; /* the sink has reported it */
@@ -13,7 +14,7 @@ static void stop(cg_parser *p, noc_status status) {
 /* ---- coordinates ---- */
 
 /* Tells the sink the CRS of what comes next. Polygons without one take the first that the file names. */
-static void tell_crs(cg_parser *p, uint32_t srs) {
+void cg_tell_crs(cg_parser *p, uint32_t srs) {
     if (srs == CG_NONE && p->srs_count)
         srs = 0;
     if (srs == p->sink_srs)
@@ -22,7 +23,7 @@ static void tell_crs(cg_parser *p, uint32_t srs) {
     p->lat_first = false;
     const char *name = noc_stream_name(p->stream);
     char *place = srs == CG_NONE ? noc_strdup(name) : noc_format("%s:%lu", name, p->srs[srs].line);
-    stop(p, p->sink->crs(p->sink->ctx, srs == CG_NONE ? NULL : p->srs[srs].name, place, &p->lat_first));
+    cg_stop(p, p->sink->crs(p->sink->ctx, srs == CG_NONE ? NULL : p->srs[srs].name, place, &p->lat_first));
     free(place);
 }
 
@@ -39,8 +40,14 @@ static void metres_a_degree(double latitude, double *east, double *north) {
     *north = a * (1 - e2) / (w * sqrt(w)) * degree;
 }
 
+void cg_metres(const cg_parser *p, const double *point, double *east, double *north) {
+    *east = *north = 1;
+    if (in_degrees(p, point))
+        metres_a_degree(point[1], east, north);
+}
+
 /* A prototype's point: turned and scaled, in metres about the reference point. */
-static void place_point(const cg_parser *p, const cg_implicit *implicit, double *point) {
+void cg_place_point(const cg_parser *p, const cg_implicit *implicit, double *point) {
     const double *m = implicit->matrix;
     double local[3], anchor[3];
     for (int i = 0; i < 3; i++)
@@ -48,16 +55,15 @@ static void place_point(const cg_parser *p, const cg_implicit *implicit, double 
     anchor[0] = implicit->point[p->lat_first ? 1 : 0];
     anchor[1] = implicit->point[p->lat_first ? 0 : 1];
     anchor[2] = implicit->point[2];
-    double east = 1, north = 1;
-    if (in_degrees(p, anchor))
-        metres_a_degree(anchor[1], &east, &north);
+    double east, north;
+    cg_metres(p, anchor, &east, &north);
     point[0] = anchor[0] + (fabs(east) > 1e-6 ? local[0] / east : 0);
     point[1] = anchor[1] + local[1] / north;
     point[2] = anchor[2] + local[2];
 }
 
 /* Into p->out, p->out_rings: easting northing height, turned over where asked. */
-static void transform(cg_parser *p, const cg_polygon *polygon, const cg_implicit *implicit, bool flip) {
+void cg_transform(cg_parser *p, const cg_polygon *polygon, const cg_implicit *implicit, bool flip) {
     p->out.len = p->out_rings.len = 0;
     const double *in = polygon->xyz;
     for (uint32_t r = 0; r < polygon->ring_count; r++) {
@@ -71,7 +77,7 @@ static void transform(cg_parser *p, const cg_polygon *polygon, const cg_implicit
     for (size_t i = 0; i < p->out.len; i += 3) {
         double *point = p->out.data + i;
         if (implicit) {
-            place_point(p, implicit, point);
+            cg_place_point(p, implicit, point);
         } else if (p->lat_first) {
             double latitude = point[0];
             point[0] = point[1];
@@ -85,9 +91,8 @@ static void transform(cg_parser *p, const cg_polygon *polygon, const cg_implicit
 /* Of a polygon that says nothing of itself: up is roof, down is ground, the rest wall. */
 static noc_class class_by_normal(const cg_parser *p) {
     const double *xyz = p->out.data;
-    double east = 1, north = 1, n[3] = { 0 };
-    if (in_degrees(p, xyz))
-        metres_a_degree(xyz[1], &east, &north);
+    double east, north, n[3] = { 0 };
+    cg_metres(p, xyz, &east, &north);
     size_t points = p->out_rings.data[0];
     for (size_t i = 0; i < points; i++) {
         double a[3], b[3];
@@ -125,7 +130,7 @@ static void begin_object(cg_parser *p, int lod) {
     const cg_feature *feature = &p->object.features.data[0];
     geo_object object = { .kind = feature->type->kind, .id = feature->id, .lod = lod };
     p->object_open = true;
-    stop(p, p->sink->begin_object(p->sink->ctx, &object));
+    cg_stop(p, p->sink->begin_object(p->sink->ctx, &object));
 }
 
 void cg_emit_end(cg_parser *p) {
@@ -133,93 +138,26 @@ void cg_emit_end(cg_parser *p) {
         return;
     p->object_open = false;
     if (!p->status)
-        stop(p, p->sink->end_object(p->sink->ctx));
+        cg_stop(p, p->sink->end_object(p->sink->ctx));
 }
 
 void cg_emit_polygon(cg_parser *p, const cg_polygon *polygon, uint32_t geometry, bool flip) {
     const cg_geometry *g = &p->object.geometries.data[geometry];
-    tell_crs(p, g->implicit ? g->implicit->srs : polygon->srs);
+    cg_tell_crs(p, g->implicit ? g->implicit->srs : polygon->srs);
     bool terrain = p->object.features.data[0].type->kind == GEO_TERRAIN;
     if (!p->status && !p->object_open)
         begin_object(p, terrain ? -1 : p->selection.lod);
     if (p->status)
         return;
-    transform(p, polygon, g->implicit, flip);
+    cg_transform(p, polygon, g->implicit, flip);
     geo_polygon out = { .cls = class_of(p, g), .id = cg_report_id(p, polygon->id, g->feature),
                         .ring_count = p->out_rings.len, .ring_size = p->out_rings.data, .xyz = p->out.data };
-    stop(p, p->sink->polygon(p->sink->ctx, &out));
+    cg_stop(p, p->sink->polygon(p->sink->ctx, &out));
     p->emitted++;
 }
 
-/* Where the post of a lamp stands, as far as its surfaces or its reference point tell. */
-static bool find_lamp(cg_parser *p, geo_lamp *lamp) {
-    double low = INFINITY, high = -INFINITY, sum[2] = { 0 };
-    size_t count = 0;
-    for (int pass = 0; pass < 2; pass++) {
-        for (size_t i = 0; i < p->selection.items.len && p->selection.lod >= 0; i++) {
-            const cg_item *item = &p->selection.items.data[i];
-            if (!item->shown || p->status)
-                continue;
-            const cg_implicit *implicit = p->object.geometries.data[item->geometry].implicit;
-            tell_crs(p, implicit ? implicit->srs : item->polygon->srs);
-            transform(p, item->polygon, implicit, false);
-            for (size_t k = 0; k < p->out.len; k += 3) {
-                const double *point = p->out.data + k;
-                low = fmin(low, point[2]);
-                high = fmax(high, point[2]);
-                if (pass == 0 || point[2] > low + 0.3)
-                    continue;
-                sum[0] += point[0]; /* the foot, not the arm */
-                sum[1] += point[1];
-                count++;
-            }
-        }
-    }
-    if (count) {
-        lamp->xyz[0] = sum[0] / (double)count;
-        lamp->xyz[1] = sum[1] / (double)count;
-        lamp->xyz[2] = low;
-        lamp->height = high - low >= 2 && high - low <= 25 ? high - low : NAN;
-        return true;
-    }
-    for (size_t i = 0; i < p->object.geometries.len; i++) {
-        const cg_implicit *implicit = p->object.geometries.data[i].implicit;
-        if (!implicit || !implicit->has_point)
-            continue;
-        tell_crs(p, implicit->srs);
-        memset(lamp->xyz, 0, sizeof(lamp->xyz));
-        place_point(p, implicit, lamp->xyz);
-        return true;
-    }
-    return false;
-}
-
-/* A street lamp's model gives way to a lamp that shines: its own housing would stand in its light. */
-static bool emit_lamp(cg_parser *p) {
-    const cg_feature *feature = &p->object.features.data[0];
-    if (feature->type->kind != GEO_FURNITURE || feature->function != NOC_CLASS_LAMP)
-        return false;
-    geo_lamp lamp = { .height = NAN, .direction = NAN, .lumens = NAN, .watts = NAN, .kelvin = NAN,
-                      .rgb = { -1, -1, -1 }, .id = feature->id };
-    if (!find_lamp(p, &lamp) || p->status)
-        return p->status != NOC_OK;
-    stop(p, p->sink->lamp(p->sink->ctx, &lamp));
-    return true;
-}
-
-static void emit_object(cg_parser *p) {
+void cg_emit_shown(cg_parser *p) {
     cg_selection *s = &p->selection;
-    for (size_t i = 0; i < s->missing.len; i++)
-        geo_issue(p->sink->issues, false, "unresolved xlink", s->missing.data[i]);
-    if (s->tangled)
-        geo_issue(p->sink->issues, false, "xlinks that lead in circles", cg_report_id(p, NULL, 0));
-    p->dropped += s->duplicates;
-    if (emit_lamp(p))
-        return;
-    if (!s->shown && !s->duplicates)
-        geo_issue(p->sink->issues, false,
-                  s->above ? "no geometry at or under the level of detail asked for" : "object without geometry",
-                  cg_report_id(p, NULL, 0));
     for (size_t i = 0; s->shown && i < s->items.len && !p->status; i++) {
         const cg_item *item = &s->items.data[i];
         if (item->twin)
@@ -232,6 +170,38 @@ static void emit_object(cg_parser *p) {
             item->polygon->shown = CG_EMITTED;
     }
     cg_emit_end(p);
+}
+
+/* An object of which nothing is drawn is named by what it says it is, so that nothing hides behind the others. */
+static void left_out(cg_parser *p, const char *why) {
+    enum { MOST = 64 }; /* kinds of objects that are told apart */
+    const cg_object *object = &p->object;
+    if (p->pass > 1 && object->features.data[0].type->kind == GEO_TERRAIN)
+        return; /* which every pass sees */
+    const char *cls = cg_attribute_get(object, "class"), *function = cg_attribute_get(object, "function");
+    char reason[200];
+    if (p->kinds_told >= MOST)
+        cls = function = NULL;
+    snprintf(reason, sizeof(reason), "%s left out, %s%s%.40s%s%s%.40s%s", object->features.data[0].type->name, why, cls ? " (class '" : "",
+             cls ? cls : "", cls ? "'" : "", function ? cls ? ", function '" : " (function '" : "", function ? function : "",
+             function ? "')" : cls ? ")" : "");
+    size_t before = geo_issues_count(p->sink->issues);
+    geo_issue(p->sink->issues, false, reason, cg_report_id(p, NULL, 0));
+    p->kinds_told += (uint32_t)(geo_issues_count(p->sink->issues) - before);
+}
+
+static void emit_object(cg_parser *p) {
+    cg_selection *s = &p->selection;
+    for (size_t i = 0; i < s->missing.len; i++)
+        geo_issue(p->sink->issues, false, "unresolved xlink", s->missing.data[i]);
+    if (s->tangled)
+        geo_issue(p->sink->issues, false, "xlinks that lead in circles", cg_report_id(p, NULL, 0));
+    p->dropped += s->duplicates;
+    if (cg_emit_lamp(p))
+        return;
+    if (!s->shown && !s->duplicates)
+        left_out(p, s->above ? "no geometry at or under the level of detail asked for" : "no geometry");
+    cg_emit_shown(p);
 }
 
 /* ---- the store ---- */
@@ -342,7 +312,7 @@ void cg_object_end(cg_parser *p) {
         for (size_t i = 0; i < p->object.surfaces.len; i++)
             cg_issue(p, false, "unresolved xlink", p->object.surfaces.data[i].href);
         if (!p->object_open)
-            cg_issue(p, false, "object without geometry", cg_report_id(p, NULL, 0));
+            left_out(p, "no geometry");
         cg_emit_end(p);
     } else {
         finish_object(p);

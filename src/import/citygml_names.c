@@ -95,12 +95,14 @@ static const cg_word gml_words[] = {
     { "geometryMembers", CG_SURFACE_PROPERTY }, { "element", CG_SURFACE_PROPERTY },
     { "patches", CG_SURFACE_PROPERTY }, { "polygonPatches", CG_SURFACE_PROPERTY },
     { "trianglePatches", CG_SURFACE_PROPERTY }, { "OrientableSurface", CG_ORIENTABLE },
+    { "Point", CG_POINT }, { "MultiPoint", CG_PLAIN }, { "pointMember", CG_PLAIN }, { "pointMembers", CG_PLAIN },
+    { "name", CG_LABEL },
     { "Polygon", CG_POLYGON }, { "PolygonPatch", CG_POLYGON }, { "Triangle", CG_POLYGON }, { "Rectangle", CG_POLYGON },
     { "exterior", CG_EXTERIOR }, { "outerBoundaryIs", CG_EXTERIOR }, { "interior", CG_INTERIOR },
     { "innerBoundaryIs", CG_INTERIOR }, { "LinearRing", CG_RING }, { "Ring", CG_RING },
     { "Arc", CG_ARC }, { "ArcString", CG_ARC }, { "Circle", CG_ARC }, { "CubicSpline", CG_ARC }, { "Bezier", CG_ARC },
     { "posList", CG_POS_LIST }, { "pos", CG_POS }, { "coordinates", CG_COORDINATES },
-    { "pointProperty", CG_PLAIN }, { "pointRep", CG_PLAIN }, { "Point", CG_PLAIN }, { "curveMember", CG_PLAIN },
+    { "pointProperty", CG_PLAIN }, { "pointRep", CG_PLAIN }, { "curveMember", CG_PLAIN },
     { "LineString", CG_PLAIN }, { "Curve", CG_PLAIN }, { "segments", CG_PLAIN }, { "LineStringSegment", CG_PLAIN },
 };
 
@@ -110,6 +112,11 @@ static const cg_word city_words[] = {
     { "ImplicitGeometry", CG_IMPLICIT }, { "transformationMatrix", CG_MATRIX },
     { "referencePoint", CG_REFERENCE_POINT }, { "relativeGMLGeometry", CG_RELATIVE_GEOMETRY },
     { "relativeGeometry", CG_RELATIVE_GEOMETRY }, { "TexturedSurface", CG_ORIENTABLE },
+    { "stringAttribute", CG_ATTRIBUTE }, { "intAttribute", CG_ATTRIBUTE }, { "doubleAttribute", CG_ATTRIBUTE },
+    { "measureAttribute", CG_ATTRIBUTE }, { "uriAttribute", CG_ATTRIBUTE }, { "dateAttribute", CG_ATTRIBUTE },
+    { "StringAttribute", CG_ATTRIBUTE }, { "IntAttribute", CG_ATTRIBUTE }, { "DoubleAttribute", CG_ATTRIBUTE },
+    { "MeasureAttribute", CG_ATTRIBUTE }, { "CodeAttribute", CG_ATTRIBUTE }, { "UriAttribute", CG_ATTRIBUTE },
+    { "DateAttribute", CG_ATTRIBUTE }, { "name", CG_ATTRIBUTE_NAME }, { "value", CG_ATTRIBUTE_VALUE },
     { "appearance", CG_FOREIGN }, { "appearanceMember", CG_FOREIGN }, { "Appearance", CG_FOREIGN },
     { "address", CG_FOREIGN }, { "Address", CG_FOREIGN },
 };
@@ -128,13 +135,13 @@ static uint8_t find_word(const cg_word *words, size_t count, const char *local, 
     return otherwise;
 }
 
-/* lod2MultiSurface and the like; curves, points and terrain intersections hold nothing to render. */
+/* lod2MultiSurface and the like; curves and terrain intersections hold nothing to render, points only where a lamp stands. */
 static bool geometry_property(const char *local, cg_name *out) {
     static const struct { const char *name; uint8_t role; } roles[] = {
         { "MultiSurface", CG_ROLE_SURFACES }, { "Surface", CG_ROLE_SURFACES }, { "Geometry", CG_ROLE_SURFACES },
         { "GenericGeometry", CG_ROLE_SURFACES }, { "ImplicitRepresentation", CG_ROLE_SURFACES },
         { "Solid", CG_ROLE_SOLID }, { "MultiSolid", CG_ROLE_SOLID },
-        { "FootPrint", CG_ROLE_FOOTPRINT }, { "RoofEdge", CG_ROLE_ROOF_EDGE },
+        { "Point", CG_ROLE_SURFACES }, { "MultiPoint", CG_ROLE_SURFACES }, { "FootPrint", CG_ROLE_FOOTPRINT }, { "RoofEdge", CG_ROLE_ROOF_EDGE },
     };
     if (!strcmp(local, "tin")) {
         *out = (cg_name){ .code = CG_GEOMETRY_PROPERTY, .value = 1 * 16 + CG_ROLE_SURFACES };

@@ -1,6 +1,7 @@
 /* citygml_parse.c: from XML events to one top-level object at a time. */
 #include "import/citygml.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -37,7 +38,8 @@ void cg_object_clear(cg_object *object) {
     arena_free(&object->arena);
     map_free(&object->ids);
     object->steps = 0;
-    object->features.len = object->geometries.len = object->surfaces.len = object->targets.len = 0;
+    object->features.len = object->geometries.len = object->surfaces.len = object->targets.len = object->attributes.len = 0;
+    object->has_point = object->other_function = false;
 }
 
 void cg_object_free(cg_object *object) {
@@ -46,12 +48,13 @@ void cg_object_free(cg_object *object) {
     array_free(&object->geometries);
     array_free(&object->surfaces);
     array_free(&object->targets);
+    array_free(&object->attributes);
 }
 
 /* ---- attributes ---- */
 
 typedef struct attributes {
-    const char *id, *href, *srs_name, *srs_dimension, *orientation, *code_space, *decimal, *cs, *ts;
+    const char *id, *href, *srs_name, *srs_dimension, *orientation, *code_space, *decimal, *cs, *ts, *uom, *name;
 } attributes;
 
 static attributes read_attributes(const XML_Char **list) {
@@ -88,6 +91,14 @@ static attributes read_attributes(const XML_Char **list) {
         case 't':
             if (!strcmp(name, "ts"))
                 a.ts = value;
+            break;
+        case 'u':
+            if (!strcmp(name, "uom"))
+                a.uom = value;
+            break;
+        case 'n':
+            if (!strcmp(name, "name"))
+                a.name = value;
             break;
         default: break;
         }
@@ -185,7 +196,7 @@ static bool start_feature(cg_parser *p, cg_frame *frame, const attributes *a) {
                            .parent = frame->feature, .function = -1 };
     frame->feature = (uint32_t)p->object.features.len;
     frame->geometry = CG_NONE;
-    frame->flip = frame->in_reference_point = false;
+    frame->flip = frame->in_reference_point = frame->in_point = false;
     array_push(&p->object.features, feature);
     return true;
 }
@@ -233,7 +244,7 @@ static bool start_polygon(cg_parser *p, cg_frame *frame, const attributes *a) {
 }
 
 static bool start_coordinates(cg_parser *p, const cg_frame *frame, const attributes *a) {
-    if (!p->in_ring && !frame->in_reference_point)
+    if (!p->in_ring && !frame->in_reference_point && !frame->in_point)
         return false;
     if (a->srs_name) /* given this late, it holds for the whole polygon */
         for (uint32_t i = p->depth; i-- > 0 && p->frames[i].geometry != CG_NONE;)
@@ -255,10 +266,13 @@ static bool start_envelope(cg_parser *p, const attributes *a) {
 }
 
 static void start_word(cg_parser *p, const attributes *a) {
+    const char *space = a->code_space ? a->code_space : "";
     p->text = CG_TEXT_WORD;
     p->word_len = 0;
-    p->plateau_code = a->code_space && (strstr(a->code_space, "geospatial.jp") ||
-                                        (*a->code_space == '.' && strstr(a->code_space, "codelists/")));
+    p->plateau_code = strstr(space, "geospatial.jp") || (*space == '.' && strstr(space, "codelists/"));
+    p->foreign_code = *space && !p->plateau_code && !strstr(space, "sig3d") && !strstr(space, "citygml") &&
+                      !strstr(space, "opengis") && !strstr(space, "CityFurniture_");
+    snprintf(p->uom, sizeof(p->uom), "%s", a->uom ? a->uom : "");
 }
 
 /* Foreign objects are fine in a model, but a person should hear of them. */
@@ -292,6 +306,22 @@ static bool enter(cg_parser *p, cg_frame *frame, const cg_frame *parent, const c
         if (frame->feature == CG_NONE || in_geometry)
             return false;
         start_word(p, &a);
+        return true;
+    case CG_LABEL:
+        if (frame->feature != 0 || in_geometry)
+            return false;
+        start_word(p, &a);
+        return true;
+    case CG_ATTRIBUTE: return cg_attribute_start(p, frame, a.name);
+    case CG_ATTRIBUTE_NAME:
+    case CG_ATTRIBUTE_VALUE:
+        if (frame->in_attribute)
+            start_word(p, &a);
+        return true;
+    case CG_POINT:
+        frame->in_point = in_geometry && frame->feature == 0 && !p->in_polygon && !frame->in_reference_point &&
+                          !implicit_of(p, frame) && cg_may_be_lamp(p->object.features.data[0].type);
+        inherit_geometry(p, frame, &a);
         return true;
     case CG_IMPLICIT: return in_geometry && !implicit_of(p, frame) && start_implicit(p, frame);
     case CG_MATRIX:
@@ -369,7 +399,23 @@ void cg_start_element(void *user, const XML_Char *name, const XML_Char **list) {
 
 /* ---- ends of elements ---- */
 
+static void end_point(cg_parser *p, const cg_frame *frame) {
+    cg_object *object = &p->object;
+    cg_numbers_end(&p->numbers);
+    size_t count = p->numbers.values.len;
+    if (p->numbers.bad || (count != 2 && count != 3) || object->has_point)
+        return;
+    object->has_point = true;
+    object->point_srs = frame->srs;
+    object->point[2] = NAN;
+    memcpy(object->point, p->numbers.values.data, count * sizeof(double));
+}
+
 static void end_position(cg_parser *p, const cg_frame *frame) {
+    if (frame->in_point) {
+        end_point(p, frame);
+        return;
+    }
     if (!frame->in_reference_point) {
         cg_ring_add(p, frame->name.code, frame->dimension);
         return;
@@ -405,16 +451,23 @@ static void end_implicit(cg_parser *p, const cg_frame *frame) {
     }
 }
 
-static void end_word(cg_parser *p, const cg_frame *frame) {
+static void end_word(cg_parser *p, const cg_frame *frame, const char *key) {
     cg_feature *feature = &p->object.features.data[frame->feature];
     p->word[p->word_len] = 0;
-    if (feature->function < 0)
-        feature->function = cg_function_class(feature->type, p->word, p->plateau_code);
+    if (frame->feature == 0)
+        cg_attribute_add(p, key, p->word, false);
+    bool furniture = feature->type->kind == GEO_FURNITURE;
+    long long code;
+    if (frame->name.code == CG_FUNCTION && !(furniture && p->foreign_code && noc_parse_int(p->word, &code))) {
+        if (feature->function < 0)
+            feature->function = cg_function_class(feature->type, p->word, p->plateau_code);
+        p->object.other_function |= furniture && frame->feature == 0 && !p->plateau_code && feature->function < 0 &&
+                                    cg_standard_function(p->word);
+    }
 }
 
 void cg_end_element(void *user, const XML_Char *name) {
     cg_parser *p = user;
-    (void)name;
     if (p->status)
         return;
     if (p->skip) {
@@ -428,7 +481,10 @@ void cg_end_element(void *user, const XML_Char *name) {
     case CG_POS:
     case CG_COORDINATES: end_position(p, frame); break;
     case CG_MATRIX: end_matrix(p, frame); break;
-    case CG_FUNCTION: end_word(p, frame); break;
+    case CG_FUNCTION:
+    case CG_LABEL: end_word(p, frame, cg_local_name(name)); break;
+    case CG_ATTRIBUTE_NAME:
+    case CG_ATTRIBUTE_VALUE: cg_attribute_end(p, frame); break;
     case CG_RING: cg_ring_end(p, frame); break;
     case CG_POLYGON: cg_polygon_end(p, frame); break;
     case CG_IMPLICIT: end_implicit(p, frame); break;

@@ -5,6 +5,7 @@
  * the solid that they bound: a solid is shown only where there are none. Every polygon is shown once, by identity, and
  * shapes that were written twice are shown once, by their points. */
 #include "import/citygml.h"
+#include "import/lamp_tags.h"
 
 #include <ctype.h>
 
@@ -292,15 +293,26 @@ static int land_class(long long code, bool plateau) {
     return code / 1000 == 3 ? NOC_CLASS_GREEN : code / 1000 == 4 ? NOC_CLASS_WATER : -1;
 }
 
+/* Of city furniture. The standard's list (OGC 12-019, C.4): 1150 street lamp, latern or candelabra, 1170 lamp post, 1220
+ * directional spot light, 1230 floodlight mast. Project PLATEAU's: 4200 lighting facilities. */
+static bool lamp_code(long long code, bool plateau) {
+    return plateau ? code == 4200 : code == 1150 || code == 1170 || code == 1220 || code == 1230;
+}
+
+/* 1000 communication fixture to 1540 others */
+bool cg_standard_function(const char *word) {
+    long long code;
+    return noc_parse_int(word, &code) && code > 1030 && code <= 1540 && code % 10 == 0;
+}
+
 int cg_function_class(const cg_feature_type *type, const char *word, bool plateau) {
     static const char *const feet[] = { "foot", "sidewalk", "pedestrian", "pavement", NULL };
-    static const char *const lamps[] = { "street lamp", "streetlamp", "street light", "streetlight", "lantern",
-                                         "lamp post", "lamppost", NULL };
     static const char *const water[] = { "water", "lake", "river", NULL };
     long long code;
     bool number = noc_parse_int(word, &code);
-    if (type->kind == GEO_FURNITURE) {
-        bool lamp = number ? !plateau && (code == 1150 || code == 1170) : has_word(word, lamps);
+    if (cg_may_be_lamp(type)) {
+        bool furniture = type->kind == GEO_FURNITURE;
+        bool lamp = number ? furniture && lamp_code(code, plateau) : lamp_object_word(word) > 0;
         return lamp ? NOC_CLASS_LAMP : -1;
     }
     if (type->kind == GEO_LANDUSE)

@@ -170,6 +170,7 @@ typedef struct key {
     size_t values;
     char *example;
     bool tells; /* what is a lamp */
+    bool noted; /* belongs into the table of columns; the others were only asked for */
 } key;
 
 struct lamp_keys {
@@ -232,7 +233,10 @@ static size_t cut(const char *text) {
 
 void lamp_keys_note(lamp_keys *keys, const char *name, const char *value) {
     key *k = get(keys, name);
-    if (!k || lamp_blank(value))
+    if (!k)
+        return;
+    k->noted = true;
+    if (lamp_blank(value))
         return;
     size_t n = k->values++ ? 0 : cut(value);
     if (n)
@@ -252,6 +256,8 @@ void lamp_keys_report(lamp_keys *keys, geo_sink *sink, size_t points) {
     size_t n = 0;
     for (size_t i = 0; i < keys->keys.len; i++) {
         const key *k = &keys->keys.data[i];
+        if (!k->noted)
+            continue;
         bool kind = k->tells || (!k->meaning.field && lamp_key_tells(k->name));
         columns[n++] = (geo_column){ .name = k->name, .field = kind ? "kind" : field_name(k->meaning.field), .unit = k->meaning.unit,
                                      .example = k->example ? k->example : "", .values = k->values,

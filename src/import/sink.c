@@ -186,7 +186,11 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     importer *im = ctx;
     pending_lamp p = { .lamp = *lamp, .input = im->current };
     bool usable;
-    noc_status status = place_points(im, p.lamp.xyz, 1, lamp->id ? lamp->id : "", &usable);
+    double points[1 + GEO_BODY_HEADS][3]; /* with its heads, so that they stay where the body has them */
+    size_t heads = (size_t)NOC_CLAMP(lamp->body_heads, 0, GEO_BODY_HEADS);
+    memcpy(points[0], lamp->xyz, sizeof(points[0]));
+    memcpy(points[1], lamp->head, heads * sizeof(points[0]));
+    noc_status status = place_points(im, points[0], 1 + heads, lamp->id ? lamp->id : "", &usable);
     p.given = (given_place){ { NAN, NAN }, im->source };
     if (!status && im->given.len >= 2)
         memcpy(p.given.xy, im->given.data, sizeof(p.given.xy));
@@ -196,6 +200,8 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     }
     if (status || !usable)
         return status;
+    memcpy(p.lamp.xyz, points[0], sizeof(points[0]));
+    memcpy(p.lamp.head, points[1], heads * sizeof(points[0]));
     count_lamp(&im->inputs[im->current].file, lamp);
     if (im->inspect)
         return NOC_OK;

@@ -110,8 +110,8 @@ static void test_nothing_to_show(void **state) {
     (void)state;
     expect(MODEL(MEMBER(BUILDING("B", "")) MEMBER(BUILDING("C", LOD_SURFACES("4", SQUARE("s", "1", "1"))))), 3, "");
     assert_int_equal(sink.objects.len, 0);
-    assert_int_equal(city_issue(&sink, "object without geometry"), 1);
-    assert_int_equal(city_issue(&sink, "no geometry at or under the level of detail asked for"), 1);
+    assert_int_equal(city_issue(&sink, "Building left out, no geometry"), 1);
+    assert_int_equal(city_issue(&sink, "Building left out, no geometry at or under the level of detail asked for"), 1);
     expect(MODEL(""), 3, "");
 }
 
@@ -214,7 +214,7 @@ static void test_street_lamps(void **state) {
                  MEMBER("<f:CityFurniture g:id='M'><f:function codeSpace='../../codelists/CityFurniture_function.xml'>"
                         "1150</f:function><f:lod2Geometry>" SURFACES(UPRIGHT("marking", "1"))
                         "</f:lod2Geometry></f:CityFurniture>")),
-           3, "marking"); /* other code lists mean other things */
+           3, "post arm marking"); /* other code lists mean other things; the body stays */
     assert_int_equal(sink.lamps.len, 1);
     const geo_lamp *lamp = &sink.lamps.data[0];
     assert_float_equal(lamp->xyz[0], 5.05, 1e-9); /* the post's foot, not the arm */

@@ -1,0 +1,62 @@
+/* citygml_attribute.c: what an object says of itself: its class, function, usage and name, and generic attributes, which
+ * carry their names in XML in CityGML 1.0 and 2.0, and as elements in 3.0. */
+#include "import/citygml.h"
+
+#include <stdio.h>
+
+#define MOST 256 /* attributes of an object that are kept */
+
+bool cg_may_be_lamp(const cg_feature_type *type) {
+    return type->kind == GEO_FURNITURE || (type->kind == GEO_OTHER && type->part == CG_PART_BODY && !strncmp(type->name, "Generic", 7));
+}
+
+void cg_attribute_add(cg_parser *p, const char *key, const char *value, bool generic) {
+    cg_object *object = &p->object;
+    value += strspn(value, " \t\r\n");
+    if (object->attributes.len == MOST || !*value || !cg_object_room(p))
+        return;
+    char *kept = arena_strdup(&object->arena, value);
+    for (size_t n = strlen(kept); n && strchr(" \t\r\n", kept[n - 1]); n--)
+        kept[n - 1] = 0;
+    array_push(&object->attributes, (cg_attribute){ arena_strdup(&object->arena, key), kept, generic });
+}
+
+const char *cg_attribute_get(const cg_object *object, const char *key) {
+    for (size_t i = 0; i < object->attributes.len; i++)
+        if (!object->attributes.data[i].generic && !strcmp(object->attributes.data[i].key, key))
+            return object->attributes.data[i].value;
+    return NULL;
+}
+
+bool cg_attribute_start(cg_parser *p, cg_frame *frame, const char *name) {
+    if (frame->feature != 0 || frame->geometry != CG_NONE || frame->in_attribute ||
+        !cg_may_be_lamp(p->object.features.data[0].type))
+        return false;
+    snprintf(p->attribute, sizeof(p->attribute), "%s", name ? name : "");
+    frame->in_attribute = true;
+    return true;
+}
+
+/* The unit of "urn:ogc:def:uom:UCUM::m", "#ft" and the like. */
+static const char *unit_of(const char *uom) {
+    const char *unit = uom;
+    for (const char *c = uom; *c; c++)
+        if (strchr(":#/", *c))
+            unit = c + 1;
+    return unit;
+}
+
+void cg_attribute_end(cg_parser *p, const cg_frame *frame) {
+    if (!frame->in_attribute || p->text != CG_TEXT_WORD)
+        return;
+    p->word[p->word_len] = 0;
+    if (frame->name.code == CG_ATTRIBUTE_NAME) {
+        snprintf(p->attribute, sizeof(p->attribute), "%s", p->word);
+        return;
+    }
+    char value[sizeof(p->word) + sizeof(p->uom)];
+    const char *unit = unit_of(p->uom);
+    snprintf(value, sizeof(value), "%s%s%s", p->word, *unit ? " " : "", unit);
+    if (*p->attribute)
+        cg_attribute_add(p, p->attribute, value, true);
+}

@@ -1,0 +1,332 @@
+/* citygml_lamp.c: city furniture and generic objects that are lamps.
+ *
+ * Function, class and usage say so, by the standard's code list or in words, or the name, or attributes that only lamps have.
+ * A lamp that is modelled keeps its body, and its light goes where the body leaves it free: under the ends of arms, or in a
+ * globe around the head of a post. Whether it is free is asked of rays against the body itself. A body that is but a block
+ * around the lamp would swallow any light in it: such a lamp gets a pole of ours in its stead. */
+#include "import/citygml.h"
+#include "import/lamp_tags.h"
+
+#include <math.h>
+
+#define FREE 0.75     /* share of a light that must leave the body */
+#define ARM 0.45      /* m off the foot from which on a head hangs on an arm */
+#define END 0.8       /* m: what belongs to the end of an arm */
+#define GAP 0.03      /* m under it */
+#define DISC 0.15     /* m; the radius of a lamp's disc */
+#define GLOBE 0.6     /* m; the largest globe */
+#define NO_POLE 1.2   /* m; a body lower than this is a luminaire without a pole */
+#define RAYS 64
+
+/* ---- is it one? ---- */
+
+static bool tags_of(cg_parser *p, lamp_tag *tags, size_t *count) {
+    const cg_object *object = &p->object;
+    bool sure = false;
+    *count = 0;
+    for (size_t i = 0; i < object->attributes.len; i++) {
+        const cg_attribute *a = &object->attributes.data[i];
+        sure = sure || lamp_object_word(a->value) > 1;
+        if (a->generic)
+            tags[(*count)++] = (lamp_tag){ a->key, a->value };
+    }
+    return sure;
+}
+
+static bool is_lamp(cg_parser *p, const lamp_tag *tags, size_t count, bool sure) {
+    const cg_object *object = &p->object;
+    if (object->features.data[0].function == NOC_CLASS_LAMP || sure)
+        return true;
+    if (object->other_function)
+        return false;
+    const char **names = noc_calloc(count + 1, sizeof(*names));
+    for (size_t i = 0; i < count; i++)
+        names[i] = tags[i].key;
+    bool tell = lamp_columns_tell(p->keys, names, count);
+    free(names);
+    return tell;
+}
+
+/* ---- its body ---- */
+
+typedef struct body {
+    geo_triangles mesh;  /* metres about `origin` */
+    double origin[3];    /* easting northing height, as the file has them */
+    double scale[2];     /* metres a unit of x and y */
+    double low, high, foot[2];
+} body;
+
+/* The shown surfaces as triangles; false if there are none. */
+static bool read_body(cg_parser *p, body *b) {
+    bool first = true;
+    for (size_t i = 0; i < p->selection.items.len && p->selection.lod >= 0 && !p->status; i++) {
+        const cg_item *item = &p->selection.items.data[i];
+        if (!item->shown)
+            continue;
+        const cg_implicit *implicit = p->object.geometries.data[item->geometry].implicit;
+        cg_tell_crs(p, implicit ? implicit->srs : item->polygon->srs);
+        cg_transform(p, item->polygon, implicit, false);
+        if (first) {
+            memcpy(b->origin, p->out.data, sizeof(b->origin));
+            cg_metres(p, b->origin, &b->scale[0], &b->scale[1]);
+            first = false;
+        }
+        for (size_t k = 0; k < p->out.len; k++)
+            p->out.data[k] = (p->out.data[k] - b->origin[k % 3]) * (k % 3 < 2 ? b->scale[k % 3] : 1);
+        geo_polygon polygon = { .cls = NOC_CLASS_LAMP, .id = "", .ring_count = p->out_rings.len, .ring_size = p->out_rings.data,
+                                .xyz = p->out.data };
+        geo_triangulate(&polygon, &b->mesh, NULL);
+    }
+    return b->mesh.indices.len > 0 && !p->status;
+}
+
+/* Lowest and highest point, and the middle of what is near the lowest: the foot, not the arm. */
+static void measure(body *b) {
+    const double *xyz = b->mesh.xyz.data;
+    size_t n = b->mesh.xyz.len, count = 0;
+    b->low = INFINITY;
+    b->high = -INFINITY;
+    for (size_t i = 0; i < n; i += 3) {
+        b->low = fmin(b->low, xyz[i + 2]);
+        b->high = fmax(b->high, xyz[i + 2]);
+    }
+    b->foot[0] = b->foot[1] = 0;
+    for (size_t i = 0; i < n; i += 3)
+        if (xyz[i + 2] <= b->low + 0.3) {
+            b->foot[0] += xyz[i];
+            b->foot[1] += xyz[i + 1];
+            count++;
+        }
+    b->foot[0] /= (double)count;
+    b->foot[1] /= (double)count;
+}
+
+static bool hits(const body *b, const double o[3], const double d[3]) {
+    for (size_t t = 0; t < b->mesh.indices.len; t += 3) {
+        const double *v[3];
+        double e1[3], e2[3], s[3], c[3], q[3];
+        for (int i = 0; i < 3; i++)
+            v[i] = b->mesh.xyz.data + 3 * (size_t)b->mesh.indices.data[t + (size_t)i];
+        for (int k = 0; k < 3; k++) {
+            e1[k] = v[1][k] - v[0][k];
+            e2[k] = v[2][k] - v[0][k];
+            s[k] = o[k] - v[0][k];
+        }
+        for (int k = 0; k < 3; k++) {
+            c[k] = d[(k + 1) % 3] * e2[(k + 2) % 3] - d[(k + 2) % 3] * e2[(k + 1) % 3];
+            q[k] = s[(k + 1) % 3] * e1[(k + 2) % 3] - s[(k + 2) % 3] * e1[(k + 1) % 3];
+        }
+        double det = e1[0] * c[0] + e1[1] * c[1] + e1[2] * c[2];
+        if (fabs(det) < 1e-14)
+            continue;
+        double u = (s[0] * c[0] + s[1] * c[1] + s[2] * c[2]) / det, w = (d[0] * q[0] + d[1] * q[1] + d[2] * q[2]) / det;
+        double x = (e2[0] * q[0] + e2[1] * q[1] + e2[2] * q[2]) / det;
+        if (u >= 0 && w >= 0 && u + w <= 1 && x > 1e-4)
+            return true;
+    }
+    return false;
+}
+
+/* The share of a light's flux that leaves the body: rays by its cosine, from all of its surface. */
+static double share_free(const body *b, const double centre[3], double radius, bool globe) {
+    const double golden = 2.399963229728653; /* the golden angle spreads points evenly over discs and spheres */
+    int away = 0;
+    for (int i = 0; i < RAYS; i++) {
+        double s = (i + 0.5) / RAYS, a = golden * i, n[3] = { 0, 0, -1 }, o[3], d[3];
+        if (globe) {
+            double z = 1 - 2 * s, r = sqrt(1 - z * z);
+            n[0] = r * cos(a);
+            n[1] = r * sin(a);
+            n[2] = z;
+        }
+        for (int k = 0; k < 3; k++)
+            o[k] = centre[k] + (globe ? (radius + 1e-3) * n[k] : 0);
+        if (!globe) {
+            o[0] += radius * sqrt(s) * cos(a);
+            o[1] += radius * sqrt(s) * sin(a);
+        }
+        /* normal + a point of the unit sphere is distributed by the cosine */
+        double z = 1 - 2 * fmod(s + 0.381966 * (i % 8), 1), r = sqrt(fmax(1 - z * z, 0)), f = golden * 7 * i;
+        d[0] = n[0] + 0.999 * r * cos(f);
+        d[1] = n[1] + 0.999 * r * sin(f);
+        d[2] = n[2] + 0.999 * z;
+        away += !hits(b, o, d);
+    }
+    return (double)away / RAYS;
+}
+
+/* ---- where its light goes ---- */
+
+static double offset(const body *b, const double *point) { return hypot(point[0] - b->foot[0], point[1] - b->foot[1]); }
+
+/* Centre under what is within END of a point; false if the light would not be free there. */
+static bool head_under(const body *b, const double *end, double above, double head[3]) {
+    double lo[3] = { INFINITY, INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
+    for (size_t i = 0; i < b->mesh.xyz.len; i += 3) {
+        const double *q = b->mesh.xyz.data + i;
+        if (q[2] < above || hypot(q[0] - end[0], q[1] - end[1]) > END)
+            continue;
+        for (int k = 0; k < 3; k++)
+            lo[k] = fmin(lo[k], q[k]);
+        for (int k = 0; k < 2; k++)
+            hi[k] = fmax(hi[k], q[k]);
+    }
+    head[0] = (lo[0] + hi[0]) / 2;
+    head[1] = (lo[1] + hi[1]) / 2;
+    head[2] = lo[2] - GAP;
+    return share_free(b, head, DISC, false) >= FREE;
+}
+
+/* Discs under the ends of arms, the farthest first. Returns how many are free; 0 where the lamp has no arms. */
+static int find_arms(const body *b, double above, double heads[GEO_BODY_HEADS][3]) {
+    double ends[GEO_BODY_HEADS][2], longest = 0;
+    int count = 0, tried = 0;
+    while (tried < GEO_BODY_HEADS) {
+        const double *end = NULL;
+        double farthest = fmax(ARM, 0.6 * longest);
+        for (size_t i = 0; i < b->mesh.xyz.len; i += 3) {
+            const double *q = b->mesh.xyz.data + i;
+            bool taken = q[2] < above;
+            for (int e = 0; e < tried && !taken; e++)
+                taken = hypot(q[0] - ends[e][0], q[1] - ends[e][1]) < 1.5 * END;
+            if (taken || offset(b, q) <= farthest)
+                continue;
+            farthest = offset(b, q);
+            end = q;
+        }
+        if (!end)
+            break;
+        longest = fmax(longest, farthest);
+        memcpy(ends[tried++], end, sizeof(ends[0]));
+        count += head_under(b, end, above, heads[count]);
+    }
+    return count;
+}
+
+/* A globe around the head of a post, as large as it needs to be. */
+static bool find_globe(const body *b, double above, double head[3], double *radius) {
+    double wide = 0, bottom = b->high, lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
+    for (size_t i = 0; i < b->mesh.xyz.len; i += 3)
+        if (b->mesh.xyz.data[i + 2] >= above)
+            wide = fmax(wide, offset(b, b->mesh.xyz.data + i));
+    for (size_t i = 0; i < b->mesh.xyz.len; i += 3) { /* the head is the wide part of the top */
+        const double *q = b->mesh.xyz.data + i;
+        if (q[2] < above || offset(b, q) < 0.5 * wide)
+            continue;
+        bottom = fmin(bottom, q[2]);
+        for (int k = 0; k < 2; k++) {
+            lo[k] = fmin(lo[k], q[k]);
+            hi[k] = fmax(hi[k], q[k]);
+        }
+    }
+    for (int k = 0; k < 2; k++)
+        head[k] = (lo[k] + hi[k]) / 2;
+    head[2] = (b->high + bottom) / 2;
+    double least = hypot(hypot(hi[0] - lo[0], hi[1] - lo[1]) / 2, (b->high - bottom) / 2) + 0.02;
+    for (*radius = fmax(least, 0.08); *radius <= GLOBE; *radius *= 1.25)
+        if (share_free(b, head, *radius, true) >= FREE)
+            return true;
+    return false;
+}
+
+/* Sets the lamp's heads, if its body leaves a light free. */
+static void find_heads(const body *b, geo_lamp *lamp) {
+    double height = b->high - b->low, above = b->high - fmax(0.5, 0.25 * height), heads[GEO_BODY_HEADS][3];
+    int count = height >= NO_POLE ? find_arms(b, above, heads) : head_under(b, b->foot, b->low, heads[0]);
+    lamp->head_radius = DISC;
+    if (!count) {
+        count = find_globe(b, above, heads[0], &lamp->head_radius);
+        lamp->head_globe = count > 0;
+    }
+    lamp->body_heads = count;
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            lamp->head[i][k] = b->origin[k] + heads[i][k] / (k < 2 ? b->scale[k] : 1);
+}
+
+/* Where the lamp stands by its body; false if it has none. */
+static bool place_by_body(cg_parser *p, geo_lamp *lamp) {
+    body b = { .scale = { 1, 1 } };
+    bool any = read_body(p, &b);
+    if (any) {
+        measure(&b);
+        find_heads(&b, lamp);
+        double height = b.high - b.low;
+        lamp->xyz[0] = b.origin[0] + b.foot[0] / b.scale[0];
+        lamp->xyz[1] = b.origin[1] + b.foot[1] / b.scale[1];
+        lamp->xyz[2] = b.origin[2] + b.low;
+        if (!isfinite(lamp->height) && height >= 2 && height <= 25)
+            lamp->height = height;
+    }
+    geo_triangles_free(&b.mesh);
+    return any;
+}
+
+/* By the reference point of a prototype in another file, or by a point. */
+static bool place_by_point(cg_parser *p, geo_lamp *lamp) {
+    for (size_t i = 0; i < p->object.geometries.len; i++) {
+        const cg_implicit *implicit = p->object.geometries.data[i].implicit;
+        if (!implicit || !implicit->has_point)
+            continue;
+        cg_tell_crs(p, implicit->srs);
+        memset(lamp->xyz, 0, sizeof(lamp->xyz));
+        cg_place_point(p, implicit, lamp->xyz);
+        return true;
+    }
+    if (!p->object.has_point)
+        return false;
+    cg_tell_crs(p, p->object.point_srs);
+    memcpy(lamp->xyz, p->object.point, sizeof(lamp->xyz));
+    if (p->lat_first) {
+        lamp->xyz[0] = p->object.point[1];
+        lamp->xyz[1] = p->object.point[0];
+    }
+    return true;
+}
+
+/* ---- on its way to the sink ---- */
+
+/* What the words of class, function, usage and name say of source and fixture counts like a column of them. */
+static void read_lamp(cg_parser *p, lamp_tag *tags, size_t count, geo_lamp *lamp) {
+    const cg_object *object = &p->object;
+    lamp->id = object->features.data[0].id;
+    for (size_t i = 0; i < count; i++)
+        lamp_keys_note(p->keys, tags[i].key, tags[i].value);
+    for (size_t i = 0; i < object->attributes.len; i++)
+        if (!object->attributes.data[i].generic)
+            tags[count++] = (lamp_tag){ "fixture", object->attributes.data[i].value };
+    lamp->xyz[2] = 0; /* no elevation: the geometry says where it is */
+    lamp_read(p->keys, tags, count, lamp, p->sink->issues);
+    const char *function = cg_attribute_get(object, "function");
+    if (function && (!strcmp(function, "1220") || !strcmp(function, "1230")) && !object->other_function)
+        lamp->type = GEO_LAMP_FLOOD;
+}
+
+bool cg_emit_lamp(cg_parser *p) {
+    cg_object *object = &p->object;
+    if (!cg_may_be_lamp(object->features.data[0].type))
+        return false;
+    lamp_tag *tags = noc_calloc(object->attributes.len + 1, sizeof(*tags));
+    size_t count;
+    bool sure = tags_of(p, tags, &count), mine = is_lamp(p, tags, count, sure);
+    geo_lamp lamp = { .id = "" };
+    lamp_verdict verdict = mine ? lamp_verdict_of(p->keys, tags, count, true) : LAMP_NONE;
+    if (mine) {
+        read_lamp(p, tags, count, &lamp);
+        mine = place_by_body(p, &lamp) || (!p->status && place_by_point(p, &lamp));
+    }
+    free(tags);
+    if (p->status)
+        return true;
+    if (!mine || !lamp_accept(verdict, object->features.data[0].id, p->sink->issues))
+        return false; /* what there is of it is drawn */
+    object->features.data[0].function = NOC_CLASS_LAMP;
+    if (lamp.body_heads)
+        cg_emit_shown(p);
+    else if (p->selection.shown)
+        geo_issue(p->sink->issues, true, "lamp whose body is a block around its light: a pole stands in its place",
+                  cg_report_id(p, NULL, 0));
+    if (!p->status)
+        cg_stop(p, p->sink->lamp(p->sink->ctx, &lamp));
+    return true;
+}
