@@ -38,6 +38,14 @@ void city_kelvin_rgb(double kelvin, float rgb[3]);
  * that stand over it; its surroundings. points (3 doubles each, local; heights may be NaN) are places it must reach too. */
 void city_add_ground(noc_scene *scene, const double *points, size_t point_count);
 
+/* The same in two steps, so that it can be asked whether the points' heights are to be believed. NULL: there is nothing to
+ * stand under. Until it is laid, which frees it, the scene does not change. */
+typedef struct city_ground city_ground;
+city_ground *city_ground_start(noc_scene *scene, const double *points, size_t count);
+/* Height by what the city tells, and how far away the nearest of that is, m (INFINITY: it tells nothing). */
+double city_ground_height(const city_ground *g, double x, double y, double *distance);
+void city_ground_lay(city_ground *g, const double *points, size_t count); /* through those that have a height */
+
 /* Is the edge from a to b the level lower edge of a piece of wall whose third corner is c? */
 bool city_wall_foot(const float *a, const float *b, const float *c);
 

@@ -2,28 +2,23 @@
  *
  * Cells of a coarse grid that hold feet of buildings or pieces of street know their height: the mean of the feet, but no
  * higher than a street there. The others are filled in from coarser grids and all are smoothed, so that the ground runs
- * evenly between the buildings. It fills gaps and does not cover streets; walls that then stand over it get skirts, and those
- * that reach into it do not show it. A level city gets one plane. Around it the land runs on to the horizon. */
-#include "city/city.h"
+ * evenly between the buildings; surveyed points draw it to them (ground_survey.c). It fills gaps and does not cover
+ * streets; walls that then stand over it get skirts, and those that reach into it do not show it. A level city gets one
+ * plane. Around it the land runs on to the horizon. */
+#include "city/ground_field.h"
 #include "scene/scene.h"
 
 #include <float.h>
 #include <math.h>
 
-#define CELL 12.0   /* m */
+#define CELL 6.0    /* m */
 #define MAX_SIDE 256
 #define UNDER 0.02  /* m below what stands on it */
 #define LEVEL 0.05  /* m: less than this is flat */
 #define FOOT 1.5    /* m: what begins higher over the lowest in its cell is no foot */
 #define STEEPEST 0.6 /* what rises faster from its surroundings is a dormer or a tower, not a foot */
 
-typedef struct field {
-    int nx, ny;
-    double min[2], step[2];
-    float *height; /* nx * ny; unknown: NaN */
-    float *street; /* lowest street in the cell, or beside it where it has none; INFINITY */
-    bool *fixed;
-} field;
+typedef ground_field field;
 
 static bool is_base(noc_class cls) {
     return cls == NOC_CLASS_WALL || cls == NOC_CLASS_GROUND || cls == NOC_CLASS_ROAD || cls == NOC_CLASS_SIDEWALK ||
@@ -226,7 +221,7 @@ static void raise_to_feet(field *f, const noc_scene *scene) {
     }
     for (size_t i = 0; i < n; i++)
         if (weight[i] > 0)
-            f->height[i] = (float)(sum[i] / weight[i]);
+            f->height[i] = f->foot[i] = (float)(sum[i] / weight[i]);
     free(sum);
 }
 
@@ -330,42 +325,85 @@ static void make_field(field *f, const noc_scene *scene, const double *points, s
     size_t n = (size_t)f->nx * (size_t)f->ny;
     f->height = noc_alloc(n * sizeof(*f->height));
     f->street = noc_alloc(n * sizeof(*f->street));
+    f->foot = noc_alloc(n * sizeof(*f->foot));
     f->fixed = noc_calloc(n, sizeof(*f->fixed));
     for (size_t i = 0; i < n; i++) {
-        f->height[i] = NAN;
+        f->height[i] = f->foot[i] = NAN;
         f->street[i] = INFINITY;
     }
 }
 
-void city_add_ground(noc_scene *scene, const double *points, size_t point_count) {
-    if ((!scene->indices.len && !point_count) || scene->committed)
+struct city_ground {
+    noc_scene *scene;
+    field f;
+    bool known;        /* something in the scene tells a height */
+    bool level;
+    double z;          /* of a level one */
+};
+
+/* Heights from what is known in the cells. */
+static void settle(city_ground *g) {
+    field *f = &g->f;
+    double lo, hi;
+    g->known = drop_outliers(f, &lo, &hi) > 0;
+    g->level = !g->known || hi - lo < LEVEL;
+    g->z = g->known ? lo : g->scene->indices.len ? g->scene->bounds_min[2] : 0;
+    if (g->level) {
+        for (size_t i = 0; i < (size_t)f->nx * (size_t)f->ny; i++) {
+            f->height[i] = (float)g->z;
+            f->foot[i] = f->fixed[i] ? (float)g->z : NAN;
+        }
         return;
-    field f = { 0 };
-    make_field(&f, scene, points, point_count);
-    bool bases = has_bases(scene);
+    }
+    raise_to_feet(f, g->scene);
+    spread_streets(f);
+    fill(f);
+    smooth(f, 6);
+}
+
+city_ground *city_ground_start(noc_scene *scene, const double *points, size_t count) {
+    if ((!scene->indices.len && !count) || scene->committed)
+        return NULL;
+    city_ground *g = noc_calloc(1, sizeof(*g));
+    g->scene = scene;
+    make_field(&g->f, scene, points, count);
+    bool bases = has_bases(scene), any = false;
     for (size_t t = 0; t < scene->triangle_light.len; t++) {
         noc_class cls = class_of(scene, t);
-        if (bases ? is_base(cls) : is_thing(cls))
-            add_triangle(&f, corner(scene, t, 0), corner(scene, t, 1), corner(scene, t, 2), is_street(cls));
+        if (bases ? !is_base(cls) : !is_thing(cls))
+            continue;
+        add_triangle(&g->f, corner(scene, t, 0), corner(scene, t, 1), corner(scene, t, 2), is_street(cls));
+        any = true;
     }
-    for (size_t i = 0; i < point_count; i++)
+    for (size_t i = 0; i < count && !any; i++) /* nothing else tells a height */
         if (isfinite(points[3 * i + 2]))
-            lower(&f, points[3 * i], points[3 * i + 1], points[3 * i + 2], false);
-    double lo, hi;
-    size_t known = drop_outliers(&f, &lo, &hi);
-    if (!known)
-        add_mesh(scene, &f, scene->indices.len ? scene->bounds_min[2] : 0, true);
-    else if (hi - lo < LEVEL)
-        add_mesh(scene, &f, lo, true);
-    else {
-        raise_to_feet(&f, scene);
-        spread_streets(&f);
-        fill(&f);
-        smooth(&f, 6);
-        add_mesh(scene, &f, 0, false);
-    }
-    city_add_skirts(scene);
-    free(f.height);
-    free(f.street);
-    free(f.fixed);
+            lower(&g->f, points[3 * i], points[3 * i + 1], points[3 * i + 2], false);
+    settle(g);
+    return g;
+}
+
+double city_ground_height(const city_ground *g, double x, double y, double *distance) {
+    *distance = field_distance(&g->f, x, y);
+    return field_height(&g->f, x, y);
+}
+
+void city_ground_lay(city_ground *g, const double *points, size_t count) {
+    bool off = false;
+    for (size_t i = 0; i < count && !off; i++)
+        off = isfinite(points[3 * i + 2]) && fabs(points[3 * i + 2] - field_height(&g->f, points[3 * i], points[3 * i + 1])) > LEVEL / 2;
+    if (off || !g->level)
+        field_follow(&g->f, points, count);
+    add_mesh(g->scene, &g->f, g->z, g->level && !off);
+    city_add_skirts(g->scene);
+    free(g->f.height);
+    free(g->f.street);
+    free(g->f.foot);
+    free(g->f.fixed);
+    free(g);
+}
+
+void city_add_ground(noc_scene *scene, const double *points, size_t point_count) {
+    city_ground *g = city_ground_start(scene, points, point_count);
+    if (g)
+        city_ground_lay(g, points, point_count);
 }

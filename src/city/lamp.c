@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#define OFF_GROUND 3.0 /* m between a lamp's elevation and the ground that are told of */
 #define FARTHEST 9e6 /* m; a scene ends at 1e7 */
 
 /* What a source means where its lumens and its colour are not tagged.
@@ -137,8 +138,18 @@ double city_floor(const noc_scene *scene) {
 /* Height of the foot. */
 static void stand(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, double foot[3],
                   geo_issues *issues) {
-    if (site_ground(scene, foot[0], foot[1], &foot[2]))
+    double deck;
+    bool on_deck = isfinite(lamp->xyz[2]) && noc_scene_highest(scene, 1u << NOC_CLASS_BRIDGE, foot[0], foot[1], &deck) &&
+                   fabs(deck - lamp->xyz[2]) < 1;
+    if (on_deck) { /* which is no ground where it is not given as a road */
+        foot[2] = deck;
         return;
+    }
+    if (site_ground(scene, foot[0], foot[1], &foot[2])) {
+        if (fabs(foot[2] - lamp->xyz[2]) > OFF_GROUND)
+            geo_issue(issues, true, "lamp whose elevation is more than 3 m off the ground: stood on the ground", lamp->id);
+        return;
+    }
     foot[2] = lamp->xyz[2];
     if (isfinite(foot[2]))
         return;

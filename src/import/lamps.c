@@ -54,21 +54,30 @@ static bool needs_ground(const importer *im, const extent *e) {
     return im->open_area < GROUND_SHARE * (all.hi[0] - all.lo[0]) * (all.hi[1] - all.lo[1]);
 }
 
-/* Under the city and the lamps that belong to it. Heights of lamps count only where nothing else has any: they often come
- * from another height system. */
-static void lay_ground(importer *im, const extent *e) {
+/* The lamps that belong to the city; free() them. */
+static double *places_of_lamps(const importer *im, const extent *e, size_t *count) {
     double *points = noc_alloc((im->lamps.len + 1) * 3 * sizeof(*points));
-    size_t n = 0;
+    *count = 0;
     for (size_t i = 0; i < im->lamps.len; i++) {
         const double *p = im->lamps.data[i].lamp.xyz;
-        if (!isfinite(p[0]) || !isfinite(p[1]) || (e->any && distance_outside(e, p) > OUTSIDE))
-            continue;
-        memcpy(points + 3 * n, p, 3 * sizeof(*points));
-        if (e->any)
-            points[3 * n + 2] = NAN;
-        n++;
+        if (isfinite(p[0]) && isfinite(p[1]) && !(e->any && distance_outside(e, p) > OUTSIDE))
+            memcpy(points + 3 * (*count)++, p, 3 * sizeof(*points));
     }
-    city_add_ground(im->scene, points, n);
+    return points;
+}
+
+/* Under the city and the lamps that belong to it, through the heights of those that tell them. */
+static void lay_ground(importer *im, const extent *e) {
+    size_t n;
+    double *points = places_of_lamps(im, e, &n);
+    city_ground *ground = city_ground_start(im->scene, points, n);
+    free(points);
+    if (!ground)
+        return;
+    if (e->any)
+        heights_check(im, ground);
+    points = places_of_lamps(im, e, &n); /* heights that are not of this city are gone */
+    heights_lay(im, ground, points, n);
     free(points);
     noc_info(im->log, e->any ? "no terrain in the inputs: a ground is laid under the city"
                              : "no surfaces in the inputs: a ground is laid under the lamps");
@@ -251,6 +260,8 @@ noc_status finish_city(importer *im) {
     repeat_lamps(im);
     if (needs_ground(im, &e))
         lay_ground(im, &e);
+    else
+        heights_check(im, NULL);
     city_lamp_tally tally = { 0 };
     city_lamp_params params = { im->params->lamp_height, im->params->lamp_lumens, im->params->lamp_kelvin, true,
                                 city_floor(scene), &tally };

@@ -160,6 +160,14 @@ bool repeat_object(importer *im, const char *id); /* is im->now one that was rea
 void repeat_lamps(importer *im); /* drops lamps that an earlier file holds */
 void repeat_free(object_records *records);
 
+/* heights.c */
+struct city_ground;
+/* Forgets the lamps' heights of an input that are not of this city's system, with a warning. ground: NULL where the scene's own is
+ * there. */
+void heights_check(importer *im, const struct city_ground *ground);
+/* Lays the ground through those of the points (3 doubles each, changed) whose heights can be believed. */
+void heights_lay(importer *im, struct city_ground *ground, double *points, size_t count);
+
 /* lamps.c: ground where there is none, then lamps. */
 noc_status finish_city(importer *im);
 

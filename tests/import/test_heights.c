@@ -1,0 +1,139 @@
+/* Ground that is made up runs through what is surveyed: lamps with an elevation, feet of buildings. And elevations that cannot be
+ * believed are told of. */
+#include "fake_reader.h"
+
+static double ground_at(const noc_scene *scene, double x, double y) {
+    double z = NAN;
+    assert_true(noc_scene_ground(scene, x - scene->origin[0], y - scene->origin[1], &z));
+    return z;
+}
+
+/* Houses in a row along a street that falls by 3 %, their feet at 370 and below; lamps before them. */
+static double slope(double x) { return 370 - .03 * (x - 678000); }
+
+static const char *row_of_houses(char *text, size_t size) {
+    size_t n = (size_t)snprintf(text, size, "FAKE city\ncrs EPSG:25832\n");
+    for (int i = 0; i < 10; i++) {
+        double x = 678000 + 30 * i, z = slope(x + 5);
+        n += (size_t)snprintf(text + n, size - n, "object 0 h%d 2\npolygon 3 %g 5404000 %g %g 5404010 %g %g 5404010 %g %g 5404000 %g\n"
+                              "polygon 1 %g 5404000 %g %g 5404000 %g %g 5404000 %g %g 5404000 %g\nend\n", i, x, z, x, z, x + 10, z, x + 10, z,
+                              x, z, x + 10, z, x + 10, z + 8, x, z + 8);
+    }
+    return file("row", text);
+}
+
+/* Twelve lamps 12 m before the houses, `above` the slope; the last one `slip` more. */
+static const char *row_of_lamps(char *text, size_t size, double above, double slip) {
+    size_t n = (size_t)snprintf(text, size, "FAKE lamps\ncrs EPSG:25832\n");
+    for (int i = 0; i < 12; i++) {
+        double x = 678000 + 23 * i;
+        n += (size_t)snprintf(text + n, size - n, "lamp %g 5403988 %.3f #l%d\n", x, slope(x) + above + (i == 11 ? slip : 0), i);
+    }
+    return file("row.lamps", text);
+}
+
+static void test_followed(void **state) {
+    (void)state;
+    struct run r;
+    char houses[4000], lamps[2000];
+    static const double above[] = { 0, .8, -1.2 };
+    for (size_t k = 0; k < NOC_COUNT(above); k++) {
+        LOAD(&r, DEFAULTS, row_of_houses(houses, sizeof(houses)), row_of_lamps(lamps, sizeof(lamps), above[k], 0));
+        assert_int_equal(r.status, NOC_OK);
+        assert_int_equal(r.warnings, 0);
+        for (int i = 0; i < 12; i++) {
+            double x = 678000 + 23 * i, z = ground_at(r.scene, x, 5403988);
+            assert_close(z, slope(x) + above[k] - .02, .02); /* it lies 2 cm below what stands on it */
+        }
+        /* between two lamps it runs between them, and far away it is the city's */
+        for (int i = 0; i < 11; i++) {
+            double x = 678000 + 23 * (i + .5), z = ground_at(r.scene, x, 5403988);
+            assert_close(z, slope(x) + above[k], .1 + .35 * fabs(above[k]));
+        }
+        assert_close(ground_at(r.scene, 678150, 5404064), slope(678150), .35);
+        assert_int_equal(noc_report_get_file(r.report, 1)->line_count, 0);
+        finish(&r);
+    }
+    /* one slip of the pen is told of, and does not dent the ground */
+    LOAD(&r, DEFAULTS, row_of_houses(houses, sizeof(houses)), row_of_lamps(lamps, sizeof(lamps), 0, 100));
+    assert_int_equal(r.status, NOC_OK);
+    assert_true(has_line(noc_report_get_file(r.report, 1), "lamp whose elevation is more than 3 m off the ground: stood on the ground", 1));
+    assert_string_equal(noc_report_get_file(r.report, 1)->lines[0].examples, "#l11");
+    assert_close(ground_at(r.scene, 678253, 5403988), slope(678253), .3);
+    finish(&r);
+}
+
+/* Heights that are all off alike are of another system: a warning, and the ground stays the city's, terrain or not. */
+static void test_other_system(void **state) {
+    (void)state;
+    struct run r;
+    char houses[4000], lamps[2000], terrain[5000];
+    for (int with_terrain = 0; with_terrain < 2; with_terrain++)
+        for (int below = 0; below < 2; below++) {
+            const char *city = row_of_houses(houses, sizeof(houses));
+            if (with_terrain) {
+                snprintf(terrain, sizeof(terrain), "%sobject 1 dem -1\npolygon 8 677900 5403900 373 678400 5403900 358 678400 5404100 358 "
+                         "677900 5404100 373\nend\n", houses);
+                city = file("row", terrain);
+            }
+            LOAD(&r, DEFAULTS, city, row_of_lamps(lamps, sizeof(lamps), below ? -47.3 : 47.3, 0));
+            assert_int_equal(r.status, NOC_OK);
+            assert_int_equal(r.warnings, 1);
+            assert_non_null(strstr(r.last_warning, "row.lamps: its 12 lamps with a height lie some 47."));
+            assert_non_null(strstr(r.last_warning, below ? "below" : "above"));
+            assert_int_equal(noc_report_get_file(r.report, 1)->line_count, 0);
+            for (int i = 0; i < 12; i++)
+                assert_close(ground_at(r.scene, 678000 + 23 * i, 5403988), slope(678000 + 23 * i), .5);
+            assert_int_equal(r.info.lights, 12);
+            finish(&r);
+        }
+}
+
+/* On a bridge over the ground: on its deck, where the elevation says so; under it where it does not. */
+static void test_bridge(void **state) {
+    (void)state;
+    struct run r;
+    const char *text = "FAKE city\ncrs EPSG:25832\nobject 1 dem -1\npolygon 8 677900 5403900 370 678100 5403900 370 678100 5404100 370 "
+                       "677900 5404100 370\nend\nobject 6 b -1\npolygon 14 677990 5403990 378 678010 5403990 378 678010 5404010 378 "
+                       "677990 5404010 378\nend\n";
+    LOAD(&r, DEFAULTS, file("bridge", text), file("l", "FAKE lamps\ncrs EPSG:25832\nlamp 678002 5404002 378.1\nlamp 677996 5404000 370\n"));
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(noc_report_get_file(r.report, 1)->line_count, 0);
+    assert_close(r.scene->lights.data[0].p[2], 384, .02);
+    assert_close(r.scene->lights.data[1].p[2], 376, .02);
+    finish(&r);
+}
+
+/* The 40 lamps of Ingolstadt were surveyed with their elevation; the model has no terrain. */
+static void test_ingolstadt(void **state) {
+    (void)state;
+    REQUIRE_SHARED(found, "data/cities/ingolstadt/ingolstadt_lod3_combined.gml.gz");
+    char city[4096], line[500];
+    snprintf(city, sizeof(city), "%s", found);
+    REQUIRE_SHARED(lamps, "data/lights/ingolstadt/ingolstadt_street_lamps.geojson");
+    noc_scene *scene = noc_scene_create(NULL);
+    assert_int_equal(noc_scene_load(scene, (const char *[]){ city, lamps }, 2, NULL, NULL), NOC_OK);
+    FILE *f = fopen(lamps, "r");
+    double ele = 0, x = 0, y = 0, worst = 0;
+    size_t n = 0;
+    while (fgets(line, sizeof(line), f)) {
+        sscanf(line, " \"ele\": %lf", &ele);
+        sscanf(line, " \"utm32_x\": %lf", &x);
+        if (sscanf(line, " \"utm32_y\": %lf", &y) == 1) {
+            worst = NOC_MAX(worst, fabs(ground_at(scene, x, y) - ele));
+            if (getenv("NOC_SHOW"))
+                printf("# %zu %.3f\n", n, ground_at(scene, x, y) - ele);
+            n++;
+        }
+    }
+    fclose(f);
+    assert_int_equal(n, 40);
+    assert_true(worst < .1);
+    noc_scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_followed), cmocka_unit_test(test_other_system), cmocka_unit_test(test_bridge),
+                                        cmocka_unit_test(test_ingolstadt) };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
