@@ -11,12 +11,13 @@ typedef struct ground_field {
     float *height; /* nx * ny; unknown: NaN. At the middles of cells; the mesh runs through them */
     float *street; /* lowest street in the cell, or beside it where it has none; INFINITY */
     float *foot;   /* mean of the feet in the cell; NaN where it has none */
+    float *away;   /* m to the nearest cell that the city tells the height of; INFINITY where it tells none */
     bool *fixed;
 } ground_field;
 
 /* Height of the mesh at (x, y). */
 double field_height(const ground_field *f, double x, double y);
-/* m to the nearest cell that knows its height from the city; INFINITY where none does. */
+void field_measure(ground_field *f); /* fills away */
 double field_distance(const ground_field *f, double x, double y);
 /* Moves the field so that it runs through the points (3 doubles each; those without a height are passed over) and, more softly,
  * along the feet of the buildings. Streets stay uncovered. */

@@ -326,6 +326,7 @@ static void make_field(field *f, const noc_scene *scene, const double *points, s
     f->height = noc_alloc(n * sizeof(*f->height));
     f->street = noc_alloc(n * sizeof(*f->street));
     f->foot = noc_alloc(n * sizeof(*f->foot));
+    f->away = noc_alloc(n * sizeof(*f->away));
     f->fixed = noc_calloc(n, sizeof(*f->fixed));
     for (size_t i = 0; i < n; i++) {
         f->height[i] = f->foot[i] = NAN;
@@ -346,6 +347,7 @@ static void settle(city_ground *g) {
     field *f = &g->f;
     double lo, hi;
     g->known = drop_outliers(f, &lo, &hi) > 0;
+    field_measure(f);
     g->level = !g->known || hi - lo < LEVEL;
     g->z = g->known ? lo : g->scene->indices.len ? g->scene->bounds_min[2] : 0;
     if (g->level) {
@@ -398,6 +400,7 @@ void city_ground_lay(city_ground *g, const double *points, size_t count) {
     free(g->f.height);
     free(g->f.street);
     free(g->f.foot);
+    free(g->f.away);
     free(g->f.fixed);
     free(g);
 }

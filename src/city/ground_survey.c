@@ -3,7 +3,7 @@
  * Successive corrections (P. Bergthorsson and B. R. Doos, "Numerical weather map analysis", Tellus 7, 1955; G. P. Cressman, Monthly
  * Weather Review 87, 1959): what the field lacks at the points is spread around them, first widely, then ever more narrowly, so that
  * it runs smoothly between them. Our weights end in 0 at the radius, and a lone point spreads no more than its share. At last the
- * corners around each lamp are moved by the least that brings the mesh through it (Kaczmarz' projections). */
+ * corners around each lamp are moved by the least that brings the mesh through it. */
 #include "city/ground_field.h"
 
 #include <math.h>
@@ -38,17 +38,28 @@ double field_height(const ground_field *f, double x, double y) {
     return height_at(f, &at);
 }
 
-double field_distance(const ground_field *f, double x, double y) {
-    int cx = (int)NOC_CLAMP((x - f->min[0]) / f->step[0], 0, f->nx - 1), cy = (int)NOC_CLAMP((y - f->min[1]) / f->step[1], 0, f->ny - 1);
-    double best = INFINITY, step = NOC_MIN(f->step[0], f->step[1]);
-    for (int r = 0; r < NOC_MAX(f->nx, f->ny) && (r - 1) * step < best; r++) /* rings of cells */
-        for (int j = -r; j <= r; j++)
-            for (int i = -r; i <= r; i += abs(j) == r ? 1 : NOC_MAX(2 * r, 1)) {
-                int a = cx + i, b = cy + j;
-                if (a >= 0 && b >= 0 && a < f->nx && b < f->ny && f->fixed[(size_t)b * (size_t)f->nx + (size_t)a])
-                    best = NOC_MIN(best, hypot(i * f->step[0], j * f->step[1]));
+/* Chamfer distances: two sweeps, there and back, over the neighbours that came before. */
+void field_measure(ground_field *f) {
+    size_t n = (size_t)f->nx * (size_t)f->ny;
+    double dx = f->step[0], dy = f->step[1];
+    const struct { int i, j; double d; } before[] = { { -1, 0, dx }, { -1, -1, hypot(dx, dy) }, { 0, -1, dy }, { 1, -1, hypot(dx, dy) } };
+    for (size_t i = 0; i < n; i++)
+        f->away[i] = f->fixed[i] ? 0 : INFINITY;
+    for (int back = 0; back < 2; back++)
+        for (size_t c = 0; c < n; c++) {
+            size_t cell = back ? n - 1 - c : c;
+            int x = (int)(cell % (size_t)f->nx), y = (int)(cell / (size_t)f->nx);
+            for (size_t k = 0; k < NOC_COUNT(before); k++) {
+                int u = x + (back ? -before[k].i : before[k].i), v = y + (back ? -before[k].j : before[k].j);
+                if (u >= 0 && v >= 0 && u < f->nx && v < f->ny)
+                    f->away[cell] = (float)NOC_MIN(f->away[cell], f->away[(size_t)v * (size_t)f->nx + (size_t)u] + before[k].d);
             }
-    return best;
+        }
+}
+
+double field_distance(const ground_field *f, double x, double y) {
+    int i = (int)NOC_CLAMP((x - f->min[0]) / f->step[0], 0, f->nx - 1), j = (int)NOC_CLAMP((y - f->min[1]) / f->step[1], 0, f->ny - 1);
+    return f->away[(size_t)j * (size_t)f->nx + (size_t)i];
 }
 
 /* What one point lacks, spread over the cells within a radius. */
@@ -92,13 +103,14 @@ static void keep_under_streets(ground_field *f) {
         f->height[i] = NOC_MIN(f->height[i], f->street[i]);
 }
 
-void field_follow(ground_field *f, const double *points, size_t count) {
-    double *sum = noc_alloc(2 * (size_t)f->nx * (size_t)f->ny * sizeof(*sum)), step = NOC_MAX(f->step[0], f->step[1]);
-    for (double radius = NOC_MAX(WIDEST, 4 * step); radius >= 2 * step; radius /= 2)
-        correct(f, points, count, radius, sum);
-    free(sum);
-    keep_under_streets(f);
-    for (int sweep = 0; sweep < SWEEPS; sweep++)
+/* Kaczmarz' projections. No corner moves farther than twice what its lamps lack: two lamps side by side on different levels, or one
+ * with a wrong place, make no spike. */
+static void run_through(ground_field *f, const double *points, size_t count) {
+    size_t n = (size_t)f->nx * (size_t)f->ny;
+    float *was = noc_alloc(2 * n * sizeof(*was)), *most = was + n;
+    memcpy(was, f->height, n * sizeof(*was));
+    memset(most, 0, n * sizeof(*most));
+    for (int sweep = 0; sweep <= SWEEPS; sweep++) /* the first one measures */
         for (size_t i = 0; i < count; i++) {
             if (!isfinite(points[3 * i + 2]))
                 continue;
@@ -106,8 +118,23 @@ void field_follow(ground_field *f, const double *points, size_t count) {
             double lack = points[3 * i + 2] - height_at(f, &at), length = 0;
             for (int k = 0; k < 3; k++)
                 length += at.weight[k] * at.weight[k];
-            for (int k = 0; k < 3; k++)
-                f->height[at.corner[k]] += (float)(at.weight[k] * lack / length);
+            for (int k = 0; k < 3; k++) {
+                size_t c = at.corner[k];
+                if (sweep == 0)
+                    most[c] = NOC_MAX(most[c], 2 * (float)fabs(lack));
+                else
+                    f->height[c] = NOC_CLAMP(f->height[c] + (float)(at.weight[k] * lack / length), was[c] - most[c], was[c] + most[c]);
+            }
         }
+    free(was);
+}
+
+void field_follow(ground_field *f, const double *points, size_t count) {
+    double *sum = noc_alloc(2 * (size_t)f->nx * (size_t)f->ny * sizeof(*sum)), step = NOC_MAX(f->step[0], f->step[1]);
+    for (double radius = NOC_MAX(WIDEST, 4 * step); radius >= 2 * step; radius /= 2)
+        correct(f, points, count, radius, sum);
+    free(sum);
+    keep_under_streets(f);
+    run_through(f, points, count);
     keep_under_streets(f);
 }

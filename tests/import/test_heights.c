@@ -54,6 +54,14 @@ static void test_followed(void **state) {
         assert_int_equal(noc_report_get_file(r.report, 1)->line_count, 0);
         finish(&r);
     }
+    /* two lamps a metre apart on two levels, as on a wall: between them, and no spike */
+    LOAD(&r, DEFAULTS, row_of_houses(houses, sizeof(houses)),
+         file("wall.lamps", "FAKE lamps\ncrs EPSG:25832\nlamp 678100 5403985 366.4\nlamp 678101 5403985 367.6\nlamp 678103.5 5403985.5 366.5\n"));
+    assert_int_equal(r.status, NOC_OK);
+    for (double x = 678080; x < 678120; x += .5)
+        for (double y = 5403965; y < 5404000; y += .5)
+            assert_close(ground_at(r.scene, x, y), 367, 2);
+    finish(&r);
     /* one slip of the pen is told of, and does not dent the ground */
     LOAD(&r, DEFAULTS, row_of_houses(houses, sizeof(houses)), row_of_lamps(lamps, sizeof(lamps), 0, 100));
     assert_int_equal(r.status, NOC_OK);
