@@ -88,8 +88,8 @@ static void correct(ground_field *f, const double *points, size_t count, double 
     memset(sum, 0, 2 * n * sizeof(*sum));
     for (size_t i = 0; i < count; i++)
         if (isfinite(points[3 * i + 2]))
-            spread(f, sum, weight, points[3 * i], points[3 * i + 1], points[3 * i + 2] - field_height(f, points[3 * i], points[3 * i + 1]), 1,
-                   radius);
+            spread(f, sum, weight, points[3 * i], points[3 * i + 1],
+                   points[3 * i + 2] - field_height(f, points[3 * i], points[3 * i + 1]), 1, radius);
     for (size_t i = 0; i < n; i++)
         if (!isnan(f->foot[i]))
             spread(f, sum, weight, f->min[0] + ((double)(i % (size_t)f->nx) + .5) * f->step[0],

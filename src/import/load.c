@@ -382,8 +382,10 @@ noc_status noc_inspect(noc_log *log, const char *path, const noc_import_params *
 noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xyz[3]) {
     if (crs || scene->given_crs) {
         if (!scene->crs && !scene->crs_name)
-            return noc_error(scene->log, NOC_ERR_ARGUMENT, "the scene has no CRS, so coordinates in %s have no place in it",
-                             crs);
+            return scene->without_crs
+                       ? noc_error(scene->log, NOC_ERR_ARGUMENT, "%s names no CRS, so coordinates in %s have no place in the scene: say with "
+                                   "--crs which one it is in", scene->without_crs, crs)
+                       : noc_error(scene->log, NOC_ERR_ARGUMENT, "the scene has no CRS, so coordinates in %s have no place in it", crs);
         geo_crs *from = crs ? geo_crs_create(crs, NULL, scene->log) : geo_crs_clone(scene->given_crs);
         geo_crs *to = scene->crs ? geo_crs_clone(scene->crs) : geo_crs_create(scene->crs_name, "scene", scene->log);
         geo_transform *t = from && to ? geo_transform_create(from, to, scene->log) : NULL;

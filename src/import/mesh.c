@@ -10,6 +10,7 @@
 #include "import/obj_faces.h"
 #include "import/obj_library.h"
 #include "import/obj_offset.h"
+#include "import/obj_up.h"
 #include "import/polygons.h"
 #include "noc_config.h"
 #include "scene/scene.h"
@@ -210,6 +211,7 @@ typedef struct mesh_target {
     const double *offset; /* of the coordinates as Assimp has them, in the file's axes */
     geo_issues *issues;
     bool z_up;
+    obj_spread *spread;
 } mesh_target;
 
 /* Puts the polygons' triangles behind the others; false where there is no memory. */
@@ -247,6 +249,8 @@ static noc_status add_mesh(const mesh_target *to, const struct aiMesh *m, int ma
     for (size_t i = 0; i < m->mNumFaces && memory; i++)
         cut_face(&cut, m->mFaces[i].mIndices, m->mFaces[i].mNumIndices);
     memory = memory && join_polygons(&cut, &xyz, &indices, &vertices);
+    if (memory)
+        obj_spread_add(to->spread, xyz, vertices, indices, cut.triangle_count);
     noc_status status = memory ? to->place->points(to->place->ctx, xyz, vertices)
                                : noc_error(scene->log, NOC_ERR_MEMORY, "mesh %s: no memory for %zu vertices", cut.name, vertices);
     noc_mesh mesh = { .vertex_count = vertices, .positions = xyz, .triangle_count = cut.triangle_count, .indices = indices,
@@ -333,9 +337,12 @@ static noc_status read_mesh(const char *path, noc_stream *stream, const noc_impo
     char *folder = slash ? noc_format("%.*s", (int)(base - path), path) : noc_strdup("");
     lib.folder = folder;
     lib.main_name = noc_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
+    obj_spread spread = { 0 };
     const mesh_target to = { .scene = scene, .place = place, .offset = offset, .issues = issues,
-                             .z_up = params && params->obj_up == NOC_OBJ_UP_Z };
+                             .z_up = params && params->obj_up == NOC_OBJ_UP_Z, .spread = &spread };
     status = read_obj(path, &lib, &to);
+    if (!status)
+        obj_check_up(&spread, to.z_up, path, scene->log);
     free(folder);
     free(lib.main_name);
     free(lib.missing);

@@ -151,6 +151,8 @@ static void set_place(importer *im, geo_crs *crs, const double origin[3]) {
     im->scene_crs = crs;
     memcpy(im->origin, origin, sizeof(im->origin));
     noc_scene_set_crs(im->scene, crs ? geo_crs_name(crs) : NULL, im->origin);
+    free(im->scene->without_crs);
+    im->scene->without_crs = crs ? NULL : noc_strdup(im->placed_by);
     if (im->scene->crs && im->scene->crs_free)
         im->scene->crs_free(im->scene->crs);
     im->scene->crs = crs;

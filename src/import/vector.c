@@ -106,10 +106,14 @@ static void shorten_numbers(char *text) {
     *out = 0;
 }
 
+/* What GDAL's GeoJSON reader says of a geometry that it leaves out ("Invalid 'x' coordinate. Type is not double ...", "Invalid Point
+ * object. ..."): its feature then has no place, and is counted so. */
+static bool is_of_one_geometry(const char *text) { return !strncmp(text, "Invalid ", 8) && !strstr(text, "Feature"); }
+
 static void CPL_STDCALL on_gdal_error(CPLErr level, CPLErrorNum code, const char *text) {
     gdal_errors *errors = CPLGetErrorHandlerUserData();
-    if (level < CE_Failure) {
-        errors->warnings += level == CE_Warning;
+    if (level < CE_Failure || (level == CE_Failure && is_of_one_geometry(text))) {
+        errors->warnings += level >= CE_Warning;
         return;
     }
     if (!errors->text[0])

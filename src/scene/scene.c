@@ -54,6 +54,7 @@ void noc_scene_destroy(noc_scene *scene) {
     if (scene->given_crs && scene->crs_free)
         scene->crs_free(scene->given_crs);
     free(scene->given_crs_name);
+    free(scene->without_crs);
     noc_ground_free(scene->ground);
     free(scene->crs_name);
     array_free(&scene->positions);

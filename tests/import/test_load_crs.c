@@ -134,6 +134,7 @@ static void test_missing_crs(void **state) {
     assert_string_equal(r.info.crs, "");
     double p[3] = { 11.4, 48.7, 0 };
     assert_int_equal(noc_scene_to_local(r.scene, "EPSG:4326", p), NOC_ERR_ARGUMENT);
+    assert_non_null(strstr(noc_log_last_error(r.log), "local.city names no CRS"));
     finish(&r);
     /* with one that names a CRS, in either order, it is an error that names the file and the option */
     LOAD(&r, DEFAULTS, local, lamps);

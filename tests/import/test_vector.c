@@ -303,6 +303,14 @@ static void test_geojson(void **state) {
     expect_map(COLLECTION("", POINT(LAMP, "8.5", "50.5")), "EPSG:25832", NOC_OK, 1, "EPSG:4326");
     /* one stray is skipped; nothing to see is no error */
     expect_map(COLLECTION("", POINT(LAMP, "8.5", "50.5") "," POINT(LAMP, "8.6", "50.5") "," POINT(LAMP, "999", "50")), NULL, NOC_OK, 2, NULL);
+    /* nor does one with text or nothing for coordinates cost the others */
+    static const char *const odd[] = { "\"8.6\"", "\"here\"", "true", "null", "[]", "{}" };
+    for (size_t i = 0; i < NOC_COUNT(odd); i++) {
+        char text[1000];
+        snprintf(text, sizeof(text), COLLECTION("", POINT(LAMP, "8.5", "50.5") "," POINT(LAMP, "%s", "50.6") "," POINT(LAMP, "8.7", "%s")), odd[i],
+                 odd[i]);
+        expect_map(text, NULL, NOC_OK, 1, NULL);
+    }
     expect_map(COLLECTION("", POINT("\"amenity\":\"bench\"", "8.5", "50.5")), NULL, NOC_OK, 0, NULL);
     expect_map(COLLECTION("", ""), NULL, NOC_OK, 0, NULL);
     /* an inventory: all its points; a tagged file: only the tagged ones */
