@@ -1,15 +1,17 @@
-/* Candidates from influence volumes against uniform ones: frame times side by side, and error.
+/* Candidates from influence volumes: frame times against uniform ones, and error by S_r.
  *
- *   bench_influence [SCENE [VIEW [WIDTH HEIGHT [FRAMES [REFERENCE [S_R...]]]]]]     default: city street 640 360 9
+ *   bench_influence [SCENE [VIEW [WIDTH HEIGHT [FRAMES [METHOD REFERENCE SEEDS S_R...]]]]]     default: city street 640 360 9
  *
- * Two renderers, restir at M = 32 and restir at M = 32 from volumes, make frames in turn in one process and so meet the same
- * disturbances; times are medians of CPU seconds. The first frame of each, without a history, is not counted. REFERENCE is a
- * picture of the same view without pixel jitter and sky ("nocturne render --method reference --no-jitter --sky 0"), or "-": with
- * one, the error of a first frame from volumes is told for each S_r that is given (0: the scene's own), mean of four seeds:
- * relMSE clamped to 10 cd/m2 on pixels that see no emitter, of restir and of ris. */
+ * Without a REFERENCE two renderers, restir at M = 32 and restir at M = 32 from volumes, make frames in turn in one process and
+ * so meet the same disturbances; times are medians of CPU seconds. The first frame of each, without a history, is not counted.
+ * REFERENCE is a picture of the same view without pixel jitter and sky ("nocturne render --no-jitter --sky 0"). With one, the
+ * error of the mean of FRAMES frames from volumes is told for each S_r that is given (0: found by the program), with METHOD
+ * ris or restir: RMSE-8, and relMSE clamped to 10 cd/m2 on pixels that see no emitter; means and standard errors over SEEDS seeds. */
 #include "bench_scene.h"
 
-enum { MOST_FRAMES = 256, SEEDS = 4 };
+#include <math.h>
+
+enum { MOST_FRAMES = 256, MOST_SEEDS = 64 };
 
 typedef struct measured {
     noc_renderer *r;
@@ -59,55 +61,80 @@ static bool times(const noc_scene *scene, const noc_camera *camera, int width, i
             printf("\n");
         }
         noc_renderer_light_stats(side[1].r, &found);
-        printf("frames %.3f, candidates %.3f of uniform's; S_r %.3f, found: median %u, 99%% %u, none %.2f%%, wider %.2f%%\n",
+        printf("frames %.3f, candidates %.3f of uniform's; S_r %.3f, found: median %u, 99%% %u, none %.2f%%\n",
                cpu[1] / cpu[0], pass[1][NOC_PASS_CANDIDATES] / pass[0][NOC_PASS_CANDIDATES], found.influence, found.found_median,
-               found.found_99, 100 * found.found_none, 100 * found.found_wider);
+               found.found_99, 100 * found.found_none);
     }
     for (int i = 0; i < 2; i++)
         noc_renderer_destroy(side[i].r);
     return ok;
 }
 
-/* Error of a first frame; `found` is of the last seed. */
-static bool error(const noc_scene *scene, const noc_camera *camera, noc_render_params p, const noc_image *want, double *relmse,
-                  noc_light_stats *found, noc_log *log) {
+/* Mean and standard error of n values. */
+typedef struct spread {
+    double mean, error;
+} spread;
+
+static spread spread_of(const double *x, int n) {
+    spread s = { 0, 0 };
+    for (int i = 0; i < n; i++)
+        s.mean += x[i] / n;
+    for (int i = 0; i < n; i++)
+        s.error += (x[i] - s.mean) * (x[i] - s.mean);
+    s.error = n > 1 ? sqrt(s.error / (n - 1) / n) : 0;
+    return s;
+}
+
+/* Errors of the mean of `frames` frames, a seed each, and CPU seconds a frame; `found` is of the last seed. */
+typedef struct erring {
+    double rmse8[MOST_SEEDS], relmse[MOST_SEEDS], cpu[MOST_FRAMES];
+    noc_light_stats found;
+} erring;
+
+static bool error(const noc_scene *scene, const noc_camera *camera, noc_render_params p, const noc_image *want, int frames, int seeds,
+                  erring *e, noc_log *log) {
     noc_renderer *r = noc_renderer_create(scene, NULL, log);
-    bool ok = r != NULL;
-    *relmse = 0;
-    for (uint32_t seed = 1; ok && seed <= SEEDS; seed++) {
+    bool ok = r && noc_renderer_frame(r, camera, &p, NULL) == NOC_OK; /* builds the structures */
+    for (int seed = 0; ok && seed < seeds; seed++) {
         noc_compare_params c = noc_compare_default_params();
         noc_comparison figures = { 0 };
-        p.seed = seed;
+        p.seed = (uint32_t)seed + 1;
         noc_renderer_reset(r);
-        ok = noc_renderer_frame(r, camera, &p, NULL) == NOC_OK;
+        for (int f = 0; ok && f < frames; f++) {
+            noc_frame_stats stats;
+            ok = noc_renderer_frame(r, camera, &p, NULL) == NOC_OK;
+            noc_renderer_get_stats(r, &stats);
+            e->cpu[f] = stats.cpu_seconds;
+        }
         noc_image *have = ok ? noc_renderer_image(r) : NULL;
         ok = have && noc_image_compare(have, want, &c, &figures, log) == NOC_OK;
         noc_image_destroy(have);
-        *relmse += figures.dark_clamped.relmse / SEEDS;
+        e->rmse8[seed] = figures.all.rmse8;
+        e->relmse[seed] = figures.dark_clamped.relmse;
     }
     if (ok)
-        noc_renderer_light_stats(r, found);
+        noc_renderer_light_stats(r, &e->found);
     noc_renderer_destroy(r);
     return ok;
 }
 
-static bool errors(const noc_scene *scene, const noc_camera *camera, int width, int height, const char *path, char **scales,
-                   noc_log *log) {
+static bool errors(const noc_scene *scene, const noc_camera *camera, noc_render_params p, const char *path, int frames, int seeds,
+                   char **scales, noc_log *log) {
     bool linear, ok = true;
     noc_image *want = noc_image_read(path, log, &linear);
     if (!want)
         return false;
-    for (int i = 0; ok && scales[i]; i++) {
-        double relmse[2];
-        noc_light_stats found;
-        for (int k = 0; ok && k < 2; k++) {
-            noc_render_params p = params_of(width, height, k ? NOC_METHOD_RIS : NOC_METHOD_RESTIR, NOC_CANDIDATES_BVH);
-            p.influence = atof(scales[i]);
-            ok = error(scene, camera, p, want, &relmse[k], &found, log);
-        }
+    for (; ok && *scales; scales++) {
+        static erring e;
+        p.influence = atof(*scales);
+        ok = error(scene, camera, p, want, frames, seeds, &e, log);
+        spread rmse8 = spread_of(e.rmse8, seeds), relmse = spread_of(e.relmse, seeds);
         if (ok)
-            printf("S_r %8.3f  restir %8.4f  ris %8.4f  found: median %u, 99%% %u, none %.2f%%\n", found.influence, relmse[0], relmse[1],
-                   found.found_median, found.found_99, 100 * found.found_none);
+            printf("S_r %8.3f%s  RMSE-8 %6.2f +- %.2f  relMSE %.4f +- %.4f  %.1f CPU ms a frame  found: median %u, 99%% %u, none "
+                   "%.2f%%\n", e.found.influence, p.influence > 0 ? "  " : " *", rmse8.mean, rmse8.error, relmse.mean,
+                   relmse.error, 1e3 * bench_median(e.cpu, frames), e.found.found_median, e.found.found_99,
+                   100 * e.found.found_none);
+        fflush(stdout);
     }
     noc_image_destroy(want);
     return ok;
@@ -117,18 +144,20 @@ int main(int argc, char **argv) {
     const char *spec = argc > 1 ? argv[1] : "city", *view = argc > 2 ? argv[2] : "street";
     int width = argc > 4 ? atoi(argv[3]) : 640, height = argc > 4 ? atoi(argv[4]) : 360;
     int frames = argc > 5 ? atoi(argv[5]) : 9;
-    if (width < 1 || height < 1 || frames < 0 || frames > MOST_FRAMES) {
-        fprintf(stderr, "usage: bench_influence [SCENE [VIEW [WIDTH HEIGHT [FRAMES [REFERENCE [S_R...]]]]]]\n");
+    noc_method method = argc > 6 && !strcmp(argv[6], "restir") ? NOC_METHOD_RESTIR : NOC_METHOD_RIS;
+    int seeds = argc > 8 ? atoi(argv[8]) : 1;
+    if (width < 1 || height < 1 || frames < 1 || frames > MOST_FRAMES || argc == 7 || argc == 8 || seeds < 1 || seeds > MOST_SEEDS) {
+        fprintf(stderr, "usage: bench_influence [SCENE [VIEW [WIDTH HEIGHT [FRAMES [METHOD REFERENCE SEEDS S_R...]]]]]\n");
         return 2;
     }
     noc_log *log = noc_log_create(NULL);
     noc_scene *scene = bench_scene(spec, log);
     noc_camera camera;
     bool ok = scene && noc_scene_camera(scene, bench_view(view), (double)width / height, &camera) == NOC_OK;
-    if (ok && frames)
+    if (ok && argc > 8)
+        ok = errors(scene, &camera, params_of(width, height, method, NOC_CANDIDATES_BVH), argv[7], frames, seeds, argv + 9, log);
+    else if (ok)
         ok = times(scene, &camera, width, height, frames, log);
-    if (ok && argc > 7)
-        ok = errors(scene, &camera, width, height, argv[6], argv + 7, log);
     noc_scene_destroy(scene);
     noc_log_destroy(log);
     return ok ? 0 : 1;

@@ -35,7 +35,8 @@ static inline noc_scene *bench_scene(const char *spec, noc_log *log) {
 }
 
 static inline noc_view bench_view(const char *name) {
-    return !strcmp(name, "aerial") ? NOC_VIEW_AERIAL : !strcmp(name, "overview") ? NOC_VIEW_OVERVIEW : NOC_VIEW_STREET;
+    return !strcmp(name, "aerial") ? NOC_VIEW_AERIAL : !strcmp(name, "overview") ? NOC_VIEW_OVERVIEW :
+           !strcmp(name, "own") ? NOC_VIEW_OWN : NOC_VIEW_STREET;
 }
 
 static inline int bench_by_size(const void *a, const void *b) {

@@ -174,7 +174,7 @@ typedef struct noc_light_stats {
     /* bvh: what build_seconds went into: volumes and their order; S_r, where none was set; the hierarchy; visibility-aware boxes */
     double volumes_seconds, tuning_seconds, hierarchy_seconds, boxes_seconds;
     uint64_t surfaces;                      /* bvh: pixels of the last frame that saw a surface, and so asked for lights */
-    double found_none, found_wider;         /* bvh: share of them that no volume held; that wider volumes were asked for */
+    double found_none;                      /* bvh: share of them that no volume held */
     uint32_t found_median, found_99;        /* bvh: lights that they found: median and 99th percentile; 65,536 stands for more too */
 } noc_light_stats;
 

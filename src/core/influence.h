@@ -70,29 +70,25 @@ FN real influence_needs(influence v, influence_region r) {
     return sel(faces, s, INFLUENCE_NEVER);
 }
 
-/* What it needs for the region's points on average: their distance squared is that of the centre and a third of the squared
- * half diagonal, if they lie evenly in the box. */
-FN real influence_needs_amid(influence v, influence_region r) {
+/* What one light of the volume gives the region's points on average where it is seen, about, lux: I over the squared distance
+ * (that of the box's centre and a third of its squared half diagonal, if the points lie evenly in it), by the cosines at both
+ * ends, where there are normals, to half the sizes of box and light. */
+FN real influence_gives(influence v, influence_region r) {
     v3 h = mul3(sub3(r.hi, r.lo), K(0.5f));
-    v3 d = add3(sub3(r.lo, v.c), h);
-    EXACT real d2 = dot3(d, d) + dot3(h, h) * K(0.333f);
-    EXACT real s = (sqrt_(d2) - v.size) / v.root;
-    return s;
-}
-
-/* The S_r that draws best at a point. A light of E lux there adds E^2 / p to the second moment of a candidate's weight; let q
- * be the sum of E^2 over the lights that volumes give the point. One more light in the list costs q / b, for all others are
- * drawn less often, and saves E^2 (N_L / u - N_f / b): so a light belongs there if E^2 > q u / (b N_L), about. E is taken as
- * I over the squared distance, that is 1 / S_r^2 at the edge of a volume. */
-FN real influence_best(real q, real n_l, int every) {
-    return sqrt_(sqrt_(n_l * K(F32(every - 1)) / max_(q, K(1e-30f))));
-}
-
-/* E^2 of a light whose volume needs that S_r, not above that of a small distance from it. */
-FN real influence_square(real needs) {
-    EXACT real s = max_(needs, K(1e-3f));
+    v3 d = sub3(v.c, add3(r.lo, h));
+    EXACT real h2 = dot3(h, h) * K(0.333f);
+    EXACT real far = sqrt_(max_(dot3(d, d) + h2, K(1e-30f)));
+    EXACT real s = max_((far - v.size) / v.root, K(1e-3f));
+    EXACT real slack = (sqrt_(h2) + v.size) * K(0.5f);
+    real m2 = dot3(v.m, v.m);
+    real n2 = dot3(r.n, r.n);
+    EXACT real cos_m = (slack - dot3(v.m, d) / sqrt_(max_(m2, K(1e-30f)))) / far;
+    EXACT real cos_n = (slack + dot3(r.n, d)) / far;
     EXACT real e = K(1.0f) / (s * s);
-    return e * e;
+    cos_m = sel(m2 > K(0.0f), min_(max_(cos_m, K(0.0f)), K(1.0f)), K(1.0f));
+    cos_n = sel(n2 > K(0.0f), min_(max_(cos_n, K(0.0f)), K(1.0f)), K(1.0f));
+    EXACT real lux = e * cos_m * cos_n;
+    return lux;
 }
 
 /* What visibility-aware volumes (Algorithm 4) ask as well. */

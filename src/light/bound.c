@@ -53,6 +53,18 @@ noc_light_bound noc_bound_light(const noc_light_record *l) {
     return b;
 }
 
+void noc_light_leave(const noc_light_record *l, const float d[3], float u, float v, float out[3]) {
+    float clear = 0.01f;
+    for (int k = 0; k < 3; k++) {
+        switch (l->kind) {
+        case NOC_LIGHT_SPHERE:
+        case NOC_LIGHT_POINT: out[k] = l->p[k] + d[k] * (l->radius + clear); break;
+        case NOC_LIGHT_DISC: out[k] = l->p[k] + (u - 0.5f) * l->a[k] + (v - 0.5f) * l->b[k] + d[k] * clear; break;
+        default: out[k] = l->p[k] + 0.5f * (u * l->a[k] + v * l->b[k]) + 0.25f * (l->a[k] + l->b[k]) + d[k] * clear; break;
+        }
+    }
+}
+
 uint64_t noc_side(const float n[3]) {
     int axis = 0;
     for (int k = 1; k < 3; k++)

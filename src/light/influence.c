@@ -46,8 +46,7 @@ void noc_near_add(noc_near_query *q, const float *const p[3], const float *const
 
 void noc_around_free(noc_around *a) {
     for (int side = 0; side < NOC_AROUND_SIDES; side++)
-        for (int i = 0; i < NOC_INFLUENCE_RUNGS; i++)
-            array_free(&a->near[side][i].groups);
+        array_free(&a->near[side].groups);
 }
 
 void noc_found_free(noc_found *f) {

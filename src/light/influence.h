@@ -6,6 +6,7 @@
 #ifndef NOC_LIGHT_INFLUENCE_H
 #define NOC_LIGHT_INFLUENCE_H
 
+#include "light/influence_rule.h"
 #include "scene/scene.h"
 
 #include <float.h>
@@ -42,7 +43,7 @@ typedef struct noc_influence {
     noc_influence_node *nodes[NOC_INFLUENCE_LEVELS]; /* level 0: a child is 16 volumes in order; the last level has one node */
     int levels;                                     /* 0: no light emits anything */
     float scale;                                    /* S_r for this scene, sqrt(m2 / cd) */
-    float reach;                                    /* S_r that the boxes were probed with, 0: none were */
+    noc_influence_rule rule;                        /* for it, and for points that find one of their own */
     size_t bytes;
     double seconds[NOC_INFLUENCE_STEPS];            /* wall seconds that each step of building took */
 } noc_influence;
@@ -62,7 +63,8 @@ typedef void noc_probe_fn(void *user, noc_probes *probes);
 typedef struct noc_influence_params {
     int cluster;         /* at most so many lights share a volume (Algorithm 5); 0, 1: each has its own */
     double scale;        /* S_r that was set, which boxes and shared volumes are for; 0: found for the scene */
-    noc_probe_fn *probe; /* traces for visibility-aware boxes (Algorithm 4); NULL: none */
+    bool boxes;          /* visibility-aware boxes (Algorithm 4): wants a probe */
+    noc_probe_fn *probe; /* traces; NULL: S_r is found as if some lights were hidden anywhere */
     void *user;
     noc_pool *pool;      /* NULL: the caller's thread alone */
 } noc_influence_params;
@@ -104,14 +106,13 @@ noc_near_query noc_near_none(float scale, size_t most);
 void noc_near_add(noc_near_query *query, const float *const p[3], const float *const n[3], uint32_t lanes);
 
 /* What all blocks of a tile look through: volumes near the box of all of its points, and near those that lie in one plane,
- * which lights behind it are left out of; for S_r, and for 4, 16 and 64 times S_r. Each is looked for when a block first needs
- * it. Starts zeroed, and is used again and again. */
-enum { NOC_INFLUENCE_RUNGS = 4, NOC_AROUND_SIDES = 8 };
+ * which lights behind it are left out of. Each is looked for when a block first needs it. Starts zeroed, and is used again and again. */
+enum { NOC_AROUND_SIDES = 8 };
 typedef struct noc_around {
     int sides;                              /* 0: all points; the others: points of a plane each */
     noc_near_query query[NOC_AROUND_SIDES];
-    noc_near near[NOC_AROUND_SIDES][NOC_INFLUENCE_RUNGS];
-    uint32_t asked[NOC_AROUND_SIDES];       /* bits: rungs whose volumes are there */
+    noc_near near[NOC_AROUND_SIDES];
+    bool asked[NOC_AROUND_SIDES];           /* those volumes are there */
 } noc_around;
 void noc_around_free(noc_around *around);
 
@@ -121,10 +122,10 @@ typedef struct noc_found {
     uint32_t from[NOC_QUERY_POINTS];   /* they are ids[from], ids[from + 1], ... */
     float scale[NOC_QUERY_POINTS];     /* S_r that the point settled for */
     float lo[3][NOC_QUERY_POINTS], hi[3][NOC_QUERY_POINTS], n[3][NOC_QUERY_POINTS], back[NOC_QUERY_POINTS]; /* of those it asked with */
-    uint32_t wider;                    /* points that asked beyond S_r */
     NOC_ARRAY(uint32_t) ids;
     noc_near near;                     /* scratch */
     NOC_ARRAY(float) needs;
+    noc_influence_bins bins;           /* scratch */
 } noc_found;
 void noc_found_free(noc_found *found);
 

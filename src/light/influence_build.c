@@ -238,7 +238,7 @@ static bool build_volumes(build *b) {
     end_step(b, NOC_STEP_VOLUMES);
     v->scale = noc_influence_scale(b->params->scale);
     if (!(v->scale > 0)) {
-        v->scale = noc_influence_tune(v, b->scene, pool);
+        v->scale = noc_influence_tune(v, b->scene, b->params);
         end_step(b, NOC_STEP_TUNING);
     }
     if (!(v->scale > 0))
@@ -255,7 +255,7 @@ static bool build_volumes(build *b) {
     }
     bool ok = build_levels(v);
     end_step(b, NOC_STEP_HIERARCHY);
-    if (!ok || !b->params->probe)
+    if (!ok || !b->params->boxes)
         return ok;
     ok = noc_influence_probe(v, b->scene, b->params);
     end_step(b, NOC_STEP_BOXES);

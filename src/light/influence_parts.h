@@ -14,8 +14,8 @@ static inline void noc_influence_run(noc_pool *pool, size_t items, void (*fn)(vo
         fn(ctx, i, 0);
 }
 
-/* influence_tune.c: S_r for this scene; the volumes are one a light. 0: memory was refused. */
-float noc_influence_tune(const noc_influence *influence, const noc_scene *scene, noc_pool *pool);
+/* influence_tune.c: S_r for this scene, and the influence's rule; the volumes are one a light. 0: memory was refused. */
+float noc_influence_tune(noc_influence *influence, const noc_scene *scene, const noc_influence_params *params);
 
 /* influence_visible.c: makes the boxes. false: memory was refused. */
 bool noc_influence_probe(noc_influence *influence, const noc_scene *scene, const noc_influence_params *params);

@@ -1,19 +1,22 @@
 /* S_r for a scene, after the aim of Algorithm 6: a surface that light reaches finds lights, and not too many. */
 #include "light/influence_parts.h"
 
+#include "light/bound.h"
+
 #include "core/influence.h"
 
-/* Surface points that S_r is found for, fewer where there are many lights, for each might look at all of them; volumes in a row
- * that are passed over together. */
-enum { EXAMPLES = 512, FEWEST_EXAMPLES = 64, EVERY = 4, MANY = 128, RUN = 128 };
+/* Surface points that S_r is found for, fewer where there are many lights; volumes in a row that are one where they are far
+ * away. */
+enum { EXAMPLES = 512, FEWEST_EXAMPLES = 64, EVERY = 4, RUN = 64 };
 static const size_t most_looks = (size_t)1 << 24;
 
-/* Runs that could not add that share to what a point has got are passed over. */
-static const double negligible = 1e-4;
+/* Where no rays can tell; and the share of what bright places get that is too little to be seen. */
+static const float usual_seen = 0.4f, dim = 0.05f;
 
 typedef struct example {
     float p[3], n[3];
-    float needs;
+    float gets, seen; /* from all lights, lux; share of it that arrives */
+    noc_influence_bins bins;
 } example;
 
 typedef struct box {
@@ -23,11 +26,13 @@ typedef struct box {
 /* What a run of volumes lies in. */
 typedef struct volume_run {
     box centres;
-    float size, root; /* largest */
+    float root; /* of the mean of their intensities */
 } volume_run;
 
 typedef struct tuning {
-    const noc_influence *v;
+    noc_influence *v;
+    const noc_scene *scene;
+    const noc_influence_params *params;
     volume_run *runs;
     size_t run_count;
     example *examples;
@@ -37,7 +42,7 @@ static size_t run_end(const tuning *t, size_t run) { return NOC_MIN((run + 1) * 
 
 static void bound_run(void *ctx, size_t item, int worker) {
     const tuning *t = ctx;
-    volume_run r = { { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } }, 0, 0 };
+    volume_run r = { { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } }, 0 };
     (void)worker;
     for (size_t i = item * RUN; i < run_end(t, item); i++) {
         const noc_influence_volume *a = &t->v->volumes[i];
@@ -45,9 +50,9 @@ static void bound_run(void *ctx, size_t item, int worker) {
             r.centres.lo[k] = NOC_MIN(r.centres.lo[k], a->c[k]);
             r.centres.hi[k] = NOC_MAX(r.centres.hi[k], a->c[k]);
         }
-        r.size = NOC_MAX(r.size, a->size);
-        r.root = NOC_MAX(r.root, a->root);
+        r.root += a->root * a->root;
     }
+    r.root = sqrtf(r.root / (float)(run_end(t, item) - item * RUN));
     t->runs[item] = r;
 }
 
@@ -127,99 +132,169 @@ static int take_examples(const noc_scene *s, const box *in, int wanted, example 
     return count;
 }
 
-/* None of a run's volumes holds a point at less S_r than that. */
-static float run_needs(const volume_run *r, const float p[3]) {
-    float d2 = 0;
+/* Distance of a run's centre from a point, and the half diagonal of its box. */
+static float run_distance(const volume_run *r, const float p[3], float *half) {
+    float d2 = 0, h2 = 0;
     for (int k = 0; k < 3; k++) {
-        float below = r->centres.lo[k] - p[k], above = p[k] - r->centres.hi[k], d = below > above ? below : above;
-        d = d > 0 ? d : 0;
+        float d = 0.5f * (r->centres.lo[k] + r->centres.hi[k]) - p[k], h = 0.5f * (r->centres.hi[k] - r->centres.lo[k]);
         d2 += d * d;
+        h2 += h * h;
     }
-    return (sqrtf(d2) - r->size) / r->root;
+    *half = sqrtf(h2);
+    return sqrtf(d2);
 }
 
-/* Sum of E^2 of a run's lights at an example. */
-static double run_squares(const tuning *t, size_t run, influence_region at) {
-    double sum = 0;
-    for (size_t i = run * RUN; i < run_end(t, run); i++) {
-        influence a;
-        memcpy(&a, &t->v->volumes[i], sizeof(a));
-        float needs = influence_needs(a, at);
-        sum += needs < INFLUENCE_NEVER ? influence_square(needs) : 0;
-    }
-    return sum;
-}
+/* What volume k, or all of a run that is far away, gives an example: lights that need an S_r and give e lux each. Those of a
+ * run count as if they were in its middle; of them a quarter of what they give, for which way they face is not looked at. */
+typedef struct giving {
+    size_t first, end; /* volumes */
+    float needs, e;
+} giving;
 
-/* Sum of E^2 of all lights at an example, to a hundredth or so: of the run that could give most, and of those that could still
- * add something. What is left out falls with the fourth power of the distance. */
-static double squares_at(const tuning *t, const float p[3], influence_region at) {
-    size_t nearest = 0;
-    float nearest_needs = INFINITY;
+typedef void giving_fn(void *ctx, const giving *g);
+
+static void each_giving(const tuning *t, const example *e, giving_fn *fn, void *ctx) {
+    influence_region at = influence_point(V3(e->p[0], e->p[1], e->p[2]), V3(e->n[0], e->n[1], e->n[2]));
     for (size_t i = 0; i < t->run_count; i++) {
-        float needs = run_needs(&t->runs[i], p);
-        if (needs < nearest_needs) {
-            nearest_needs = needs;
-            nearest = i;
+        float half, d = run_distance(&t->runs[i], e->p, &half), s = d / t->runs[i].root;
+        giving g = { i * RUN, run_end(t, i), s, 0.25f / (s * s) };
+        if (d > 3 * half && half > 0) {
+            fn(ctx, &g);
+            continue;
+        }
+        for (size_t k = g.first, end = g.end; k < end; k++) {
+            influence a;
+            memcpy(&a, &t->v->volumes[k], sizeof(a));
+            g = (giving){ k, k + 1, influence_needs(a, at), influence_gives(a, at) };
+            if (g.needs < INFLUENCE_NEVER)
+                fn(ctx, &g);
         }
     }
-    double sum = run_squares(t, nearest, at);
-    for (size_t i = 0; i < t->run_count; i++)
-        if (i != nearest && RUN * (double)influence_square(run_needs(&t->runs[i], p)) > negligible * sum)
-            sum += run_squares(t, i, at);
-    return sum;
 }
 
-/* How many volumes hold an example. */
-static uint32_t held_by(const tuning *t, const float p[3], influence_region at, float scale) {
-    uint32_t count = 0;
-    for (size_t run = 0; run < t->run_count; run++)
-        for (size_t i = run * RUN; i < run_end(t, run) && run_needs(&t->runs[run], p) <= scale * 1.00001f; i++) {
-            influence a;
-            memcpy(&a, &t->v->volumes[i], sizeof(a));
-            count += influence_needs(a, at) <= scale;
-        }
-    return count;
+static void add_giving(void *ctx, const giving *g) {
+    example *e = ctx;
+    float lights = (float)(g->end - g->first);
+    noc_rule_add(&e->bins, g->needs, lights, g->e);
+    e->gets += lights * g->e;
 }
 
-/* The S_r that draws best at an example, less where it would find too many. */
+/* Rays to lights, in proportion to what they give. */
+typedef struct looking {
+    const tuning *t;
+    const example *e;
+    uint32_t key;
+    int rays;
+    float passed; /* light of those before */
+    noc_probes probes;
+} looking;
+
+static void aim(looking *look, uint32_t volume) {
+    const example *e = look->e;
+    const noc_light_record *l = &look->t->scene->lights.data[look->t->v->ids[volume]];
+    float d[3], to[3], length = 0, o[3];
+    uint32_t i = (uint32_t)look->rays++;
+    for (int k = 0; k < 3; k++) {
+        d[k] = e->p[k] - look->t->v->volumes[volume].c[k];
+        length += d[k] * d[k];
+    }
+    length = sqrtf(fmaxf(length, 1e-12f));
+    for (int k = 0; k < 3; k++) {
+        to[k] = e->p[k] + 1e-3f * length * e->n[k];
+        d[k] /= length;
+    }
+    noc_light_leave(l, d, rng(look->key, 1u + 2u * i), rng(look->key, 2u + 2u * i), o);
+    for (int k = 0; k < 3; k++) {
+        look->probes.o[k][i] = o[k];
+        look->probes.d[k][i] = to[k] - o[k];
+    }
+}
+
+static void aim_at(void *ctx, const giving *g) {
+    looking *look = ctx;
+    look->passed += (float)(g->end - g->first) * g->e;
+    while (look->rays < NOC_PROBES && look->passed >= look->e->gets * ((float)look->rays + rng(look->key, 0u)) / NOC_PROBES)
+        aim(look, (uint32_t)(g->first + hash_u32(look->key + (uint32_t)look->rays) % (g->end - g->first)));
+}
+
+/* What all lights give an example, and how much of it arrives. */
 static void look_around(void *ctx, size_t item, int worker) {
     const tuning *t = ctx;
     example *e = &t->examples[item];
+    float most = 0;
     (void)worker;
-    influence_region at = influence_point(V3(e->p[0], e->p[1], e->p[2]), V3(e->n[0], e->n[1], e->n[2]));
-    double sum = squares_at(t, e->p, at);
-    e->needs = sum > 0 ? influence_best((float)sum, (float)t->v->count, EVERY) : INFLUENCE_NEVER;
-    if (!(sum > 0))
+    for (size_t i = 0; i < t->run_count; i++) {
+        float half, d = run_distance(&t->runs[i], e->p, &half);
+        most = NOC_MAX(most, (d + half) / t->runs[i].root);
+    }
+    noc_rule_begin(&e->bins, most);
+    e->gets = 0;
+    e->seen = usual_seen;
+    each_giving(t, e, add_giving, e);
+    if (!t->params->probe || !(e->gets > 0))
         return;
-    uint32_t held = held_by(t, e->p, at, e->needs);
-    if (held > MANY) /* lights lie about in a plane */
-        e->needs *= sqrtf((float)MANY / (float)held);
+    looking look = { .t = t, .e = e, .key = rng_key(13u, (uint32_t)item, 0u) };
+    each_giving(t, e, aim_at, &look);
+    t->params->probe(t->params->user, &look.probes);
+    e->seen = 0;
+    for (int i = 0; i < look.rays; i++)
+        e->seen += (look.probes.t[i] == 1) / (float)look.rays;
 }
 
-static int by_needs(const void *a, const void *b) {
-    float x = ((const example *)a)->needs, y = ((const example *)b)->needs;
+static int by_size(const void *a, const void *b) {
+    float x = *(const float *)a, y = *(const float *)b;
     return (x > y) - (x < y);
 }
 
-/* The median of what is best at the examples that face a light at all. */
-static float tune(tuning *t, const noc_scene *scene, noc_pool *pool) {
+/* What the scene's surfaces have in common: what too little light is, and how much of it they see of what they face, where that
+ * is more than too little. v is the mean square of that share: the chance that of two lights both are seen. What hides one hides
+ * its neighbours too. */
+static noc_influence_rule rule_of(const tuning *t, int n) {
+    noc_influence_rule rule = { usual_seen, 0 };
+    float gets[EXAMPLES], square = 0;
+    int lit = 0, bright = 0;
+    for (int i = 0; i < n; i++)
+        if (t->examples[i].gets * t->examples[i].seen > 0)
+            gets[lit++] = t->examples[i].gets * t->examples[i].seen;
+    if (!lit)
+        return rule;
+    qsort(gets, (size_t)lit, sizeof(*gets), by_size);
+    rule.floor = dim * gets[lit * 9 / 10];
+    for (int i = 0; i < n; i++) {
+        const example *e = &t->examples[i];
+        square += e->gets > rule.floor ? e->seen * e->seen : 0;
+        bright += e->gets > rule.floor;
+    }
+    rule.seen = NOC_CLAMP(square / (float)bright, 0.05f, 0.95f);
+    return rule;
+}
+
+/* What most of the examples need that face more than too little light. */
+static float tune(tuning *t, const noc_scene *scene) {
+    noc_pool *pool = t->params->pool;
+    float needs[EXAMPLES];
+    int count = 0;
     noc_influence_run(pool, t->run_count, bound_run, t);
     box in = box_of_lights(t);
     int wanted = (int)NOC_CLAMP(most_looks / t->v->volume_count, (size_t)FEWEST_EXAMPLES, (size_t)EXAMPLES);
-    int n = take_examples(scene, &in, wanted, t->examples), lit = 0;
+    int n = take_examples(scene, &in, wanted, t->examples);
     noc_influence_run(pool, (size_t)n, look_around, t);
-    qsort(t->examples, (size_t)n, sizeof(*t->examples), by_needs);
-    while (lit < n && t->examples[lit].needs < INFLUENCE_NEVER)
-        lit++;
-    float scale = lit ? t->examples[lit / 2].needs : 1;
-    return NOC_CLAMP(scale, 1e-6f, 1e6f);
+    t->v->rule = rule_of(t, n);
+    for (int i = 0; i < n; i++) {
+        const example *e = &t->examples[i];
+        float best = noc_rule_best(&e->bins, (float)t->v->count, EVERY, t->v->rule);
+        if (e->gets > t->v->rule.floor && best < INFINITY)
+            needs[count++] = best;
+    }
+    qsort(needs, (size_t)count, sizeof(*needs), by_size);
+    return count ? NOC_CLAMP(needs[count * 9 / 10], 1e-6f, 1e6f) : 1;
 }
 
-float noc_influence_tune(const noc_influence *v, const noc_scene *scene, noc_pool *pool) {
-    tuning t = { .v = v, .run_count = ((size_t)v->volume_count + RUN - 1) / RUN };
+float noc_influence_tune(noc_influence *v, const noc_scene *scene, const noc_influence_params *params) {
+    tuning t = { .v = v, .scene = scene, .params = params, .run_count = ((size_t)v->volume_count + RUN - 1) / RUN };
     t.runs = noc_alloc_large(t.run_count, sizeof(*t.runs));
     t.examples = noc_alloc_large(EXAMPLES, sizeof(*t.examples));
-    float scale = t.runs && t.examples ? tune(&t, scene, pool) : 0;
+    float scale = t.runs && t.examples ? tune(&t, scene) : 0;
     free(t.runs);
     free(t.examples);
     return scale;

@@ -13,9 +13,11 @@
 /* Volumes that share a box, at most; rays a box; volumes that a thread takes at once. */
 enum { GROUP = 16, RAYS = 32, CHUNK = 1024 };
 
-/* Boxes are probed for wider volumes too, as points ask for that find too few. Volumes are not cut nearer to their lights than
- * that share of S_r: what is missed there is the strongest light (bench/bench_boxes). */
-static const float wider = 4, uncut = 0.25f;
+/* Volumes are not cut nearer to their lights than that share of S_r: what is missed there is the strongest light (bench/bench_boxes). */
+static const float uncut = 0.25f;
+
+/* Rays go beyond the volume by that: the box around the ends of a few ends short of a sphere of their length. */
+static const float beyond = 1.25f;
 
 /* A direction of a unit sphere around z: its height, 0 to 1, and its azimuth. */
 typedef struct lattice_point {
@@ -69,19 +71,6 @@ static void directions(const lattice_point p[RAYS], const float n[3], float turn
         float x = r * (p[i].cos * c - p[i].sin * d), y = r * (p[i].cos * d + p[i].sin * c);
         for (int k = 0; k < 3; k++)
             out[i][k] = x * s[k] + y * t[k] + z * up[k];
-    }
-}
-
-/* A point of a light that light leaves in direction d from, clear of the light's own surface. */
-static void origin(const noc_light_record *l, const float d[3], float u, float v, float out[3]) {
-    float clear = 0.01f;
-    for (int k = 0; k < 3; k++) {
-        switch (l->kind) {
-        case NOC_LIGHT_SPHERE:
-        case NOC_LIGHT_POINT: out[k] = l->p[k] + d[k] * (l->radius + clear); break;
-        case NOC_LIGHT_DISC: out[k] = l->p[k] + (u - 0.5f) * l->a[k] + (v - 0.5f) * l->b[k] + d[k] * clear; break;
-        default: out[k] = l->p[k] + 0.5f * (u * l->a[k] + v * l->b[k]) + 0.25f * (l->a[k] + l->b[k]) + d[k] * clear; break;
-        }
     }
 }
 
@@ -189,7 +178,7 @@ static void trace(const probing *b, const noc_light_key *group, uint32_t count, 
         for (uint32_t i = 0; i < NOC_PROBES; i++) {
             uint32_t ray = first + i;
             float o[3];
-            origin(light_of(b, group, count, ray), d[ray], rng(key, 1u + 2u * ray), rng(key, 2u + 2u * ray), o);
+            noc_light_leave(light_of(b, group, count, ray), d[ray], rng(key, 1u + 2u * ray), rng(key, 2u + 2u * ray), o);
             for (int k = 0; k < 3; k++) {
                 probes.o[k][i] = o[k];
                 probes.d[k][i] = d[ray][k] * reach;
@@ -211,7 +200,7 @@ static void make_box(const probing *b, const noc_light_key *group, uint32_t coun
     for (uint32_t i = 0; i < count; i++) {
         const noc_influence_volume *a = &b->v->volumes[group[i].id];
         float near = a->root * b->v->scale * uncut + a->size;
-        reach = NOC_MAX(reach, a->root * b->v->reach + a->size);
+        reach = NOC_MAX(reach, a->root * b->v->scale * beyond + a->size);
         for (int k = 0; k < 3; k++) {
             box->lo[k] = NOC_MIN(box->lo[k], a->c[k] - near);
             box->hi[k] = NOC_MAX(box->hi[k], a->c[k] + near);
@@ -247,7 +236,6 @@ bool noc_influence_probe(noc_influence *v, const noc_scene *scene, const noc_inf
     v->box_of = noc_alloc_large((size_t)v->volume_count + 1, sizeof(*v->box_of));
     bool ok = b.boxes_before && v->box_of && sort_volumes(&b);
     if (ok) {
-        v->reach = v->scale * (params->scale > 0 ? 1 : wider);
         noc_influence_run(params->pool, chunks, group_chunk, &b);
         for (size_t i = 0; i < chunks; i++)
             b.boxes_before[i + 1] += b.boxes_before[i];

@@ -244,7 +244,7 @@ FN void pickers(CTX u32 item, u32 key, surf s) {
     influence_region y = influence_point(s.p, s.n);
     v3 corner = any_v3(key, KU(3084u));
     y.hi = V3(max_(y.hi.x, corner.x), max_(y.hi.y, corner.y), max_(y.hi.z, corner.z));
-    real needs = sel((bits & KU(2u)) != KU(0u), influence_needs(v, y), influence_needs_amid(v, y));
+    real needs = sel((bits & KU(2u)) != KU(0u), influence_needs(v, y), influence_gives(v, y));
     mask held = and_(needs <= K(3.0f), influence_meets(v.c, add3(v.c, fill3(K(40.0f))), y));
     u32 n_f = shr(bits, 27);
     put_real(PASS item, 132, sel(held, needs, K(0.0f)));

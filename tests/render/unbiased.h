@@ -47,6 +47,7 @@ typedef struct config {
     noc_candidates picker; /* list = 0 */
     noc_influence_boxes boxes;
     int share; /* bvh: lights a volume; 0: 1 */
+    int times; /* so many times the runs, where rare draws from all lights are worth much; 0: 1 */
     int shadow_rays; /* ris with lists; 0: the default */
     bool unlearned;
 } config;

@@ -99,7 +99,6 @@ typedef struct worker {
     tree_items tree_items[2];
     noc_found found;
     uint64_t *found_counts;              /* [found_bins] surfaces of the frame by the number of lights found; NULL: never asked */
-    uint64_t found_wider;                /* surfaces that asked beyond S_r */
     noc_around around;                   /* influence volumes near a tile */
     packet *packets; /* kept while recording */
     size_t packet_count, packet_room;

@@ -1,9 +1,8 @@
 /* Candidates from influence volumes (core/influence.h, light/influence.h), included by kernels.c.
  *
  * Points of a block that lie close together ask as one, 16 volumes against the box around them, and share a list of lights:
- * a sixteenth of the tests, and lights that stay in the cache. They settle for the S_r that draws best in their middle
- * (influence_best): less than the scene's beside a lamp, and what a wider query gives in the dark, where the next lamp is far
- * away. With an S_r that the user gave, every point has that one. */
+ * a sixteenth of the tests, and lights that stay in the cache. They settle for the S_r that draws best there
+ * (light/influence_rule.h), the scene's or less. With an S_r that the user gave, every point has that one. */
 #ifndef NOC_EMBREE_INFLUENCE_H
 #define NOC_EMBREE_INFLUENCE_H
 
@@ -11,9 +10,6 @@
 
 /* Points are close that are within so much of the reach of the scene's median light. */
 static const float influence_close = 0.25f;
-
-/* Each wider query asks so many times as far. */
-static const float wider_step = 4;
 
 FN mask box_gather_meets(const noc_influence *v, u32 volume, influence_region r) {
     const noc_influence_box *boxes = v->boxes;
@@ -43,31 +39,41 @@ FN influence_region region_load(const noc_found *f, int l) {
     return r;
 }
 
-/* The S_r that the query's points need for each volume near it; returns the sum of squares of what the lights within its S_r
- * give them. Summed in the same order whatever the number of lanes. */
-static float look_closer(const noc_influence *v, const noc_near *near, const noc_near_query *q, noc_found *f) {
+/* The S_r that the query's points need for each volume near it. */
+static void look_closer(const noc_influence *v, const noc_near *near, const noc_near_query *q, noc_found *f) {
     influence_region r = region_splat(q);
-    ALIGNED float sums[16] = { 0 };
-    float sum = 0;
     array_reserve(&f->needs, near->groups.len * 16);
     for (size_t i = 0; i < near->groups.len; i++) {
         const noc_near_group *group = &near->groups.data[i];
         for (int l = 0; l < 16; l += LANES) {
-            influence a = group_load(group, l);
-            real needs = influence_needs(a, r);
+            real needs = influence_needs(group_load(group, l), r);
             if (v->boxes)
                 needs = sel(box_gather_meets(v, uload(group->volume + l), r), needs, INFLUENCE_NEVER);
-            mask within = needs <= K(q->scale);
-            if (ANY(within)) {
-                EXACT real e2 = rload(group->lights + l) * influence_square(influence_needs_amid(a, r));
-                rstore(sums + l, rload(sums + l) + sel(within, e2, K(0.0f)));
-            }
             rstore(f->needs.data + i * 16 + (size_t)l, needs);
         }
     }
-    for (int l = 0; l < 16; l++)
-        sum += sums[l];
-    return sum;
+}
+
+/* The S_r that draws best there, the query's or less. */
+static float best_scale(const noc_influence *v, const noc_near *near, const noc_near_query *q, int every, noc_found *f) {
+    influence_region r = region_splat(q);
+    noc_rule_begin(&f->bins, q->scale);
+    for (size_t i = 0; i < near->groups.len; i++) {
+        const noc_near_group *group = &near->groups.data[i];
+        const float *needs = f->needs.data + i * 16;
+        for (int l = 0; l < 16; l += LANES) {
+            ALIGNED float gives[LANES];
+            uint32_t bits = mbits(rload(needs + l) <= K(q->scale));
+            if (!bits)
+                continue;
+            rstore(gives, influence_gives(group_load(group, l), r));
+            for (; bits; bits &= bits - 1) {
+                int k = __builtin_ctz(bits);
+                noc_rule_add(&f->bins, needs[l + k], group->lights[l + k], gives[k]);
+            }
+        }
+    }
+    return fminf(noc_rule_best(&f->bins, (float)v->count, every, v->rule), q->scale);
 }
 
 /* Appends the lights whose volumes need no more than `scale`. */
@@ -101,30 +107,17 @@ static uint32_t points_close(const gblock *g, uint32_t pending, float close) {
 }
 
 /* What the points of a query find; `part` are their lanes. */
-static void part_finds(const noc_influence *v, noc_near_query *q, uint32_t part, bool fixed, int every,
+static void part_finds(const noc_influence *v, const noc_near_query *q, uint32_t part, bool fixed, int every,
                        noc_around *around, noc_found *f) {
     size_t from = f->ids.len;
-    float settled = q->scale;
-    int side = around ? around_side(around, q) : 0;
-    for (int rung = 0; rung < NOC_INFLUENCE_RUNGS; rung++, q->scale *= wider_step) {
-        float best[LANES];
-        const noc_near *near = around ? around_near(v, around, side, rung, q->scale) : NULL;
-        if (!near) {
-            q->most = rung ? WIDER_VOLUMES : SIZE_MAX;
-            influence_near(v, q, &f->near);
-            near = &f->near;
-        }
-        if (near->over)
-            break; /* so many are no help: the points keep what they have */
-        float sum = look_closer(v, near, q, f);
-        rstore(best, influence_best(K(sum), K((float)v->count), every));
-        settled = fixed ? q->scale : NOC_MIN(best[0], q->scale);
-        f->ids.len = from;
-        take_lights(v, near, settled, f);
-        f->wider |= rung ? part : 0;
-        if (fixed || best[0] <= q->scale)
-            break;
+    const noc_near *near = around ? around_near(v, around, around_side(around, q)) : NULL;
+    if (!near) {
+        influence_near(v, q, &f->near);
+        near = &f->near;
     }
+    look_closer(v, near, q, f);
+    float settled = fixed ? q->scale : best_scale(v, near, q, every, f);
+    take_lights(v, near, settled, f);
     for (uint32_t bits = part; bits; bits &= bits - 1) {
         int l = __builtin_ctz(bits);
         f->count[l] = (uint32_t)(f->ids.len - from);
@@ -146,7 +139,6 @@ static void influence_find(const noc_influence *v, const gblock *g, uint32_t lan
     float scale = fixed > 0 ? fixed : v->scale, close = influence_close * scale * v->volumes[v->volume_count / 2].root;
     memset(f->count, 0, sizeof(f->count));
     memset(f->from, 0, sizeof(f->from));
-    f->wider = 0;
     array_reserve(&f->ids, 1);
     f->ids.data[0] = 0; /* where lanes look that found nothing */
     f->ids.len = 1;

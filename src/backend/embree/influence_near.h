@@ -155,7 +155,7 @@ static void influence_near(const noc_influence *v, const noc_near_query *q, noc_
 
 /* ---- for all blocks of a tile ---- */
 
-enum { TILE_VOLUMES = 4096, WIDER_VOLUMES = 512 };
+enum { TILE_VOLUMES = 4096 };
 
 /* A side in the making: least and greatest of what each lane has seen. */
 typedef struct side_lanes {
@@ -245,7 +245,7 @@ static void influence_around(const struct core_context *ctx, const gblock *const
     }
     for (int side = 0; side < out->sides; side++) {
         out->query[side] = side_query(&sides[side], scale, side > 0);
-        out->asked[side] = 0;
+        out->asked[side] = false;
     }
 }
 
@@ -262,22 +262,18 @@ static int around_side(const noc_around *a, const noc_near_query *q) {
     return 0;
 }
 
-/* What a tile has near one of its sides at a rung's S_r; NULL where that is so much that each block looks for itself.
- * At wider rungs it is `over` then. */
-static const noc_near *around_near(const noc_influence *v, noc_around *a, int side, int rung, float scale) {
-    noc_near *near = &a->near[side][rung];
-    if (!(a->asked[side] >> rung & 1)) {
-        noc_near_query q = a->query[side];
-        const noc_near *all = side && !rung ? around_near(v, a, 0, 0, scale) : NULL;
-        q.scale = scale;
-        q.most = rung ? WIDER_VOLUMES : TILE_VOLUMES;
+/* What a tile has near one of its sides; NULL where that is so much that each block looks for itself. */
+static const noc_near *around_near(const noc_influence *v, noc_around *a, int side) {
+    noc_near *near = &a->near[side];
+    if (!a->asked[side]) {
+        const noc_near *all = side ? around_near(v, a, 0) : NULL;
         if (all)
-            near_of_near(v, &q, all, near);
+            near_of_near(v, &a->query[side], all, near);
         else
-            influence_near(v, &q, near);
-        a->asked[side] |= 1u << rung;
+            influence_near(v, &a->query[side], near);
+        a->asked[side] = true;
     }
-    return near->over && !rung ? NULL : near;
+    return near->over ? NULL : near;
 }
 
 #endif

@@ -45,15 +45,14 @@ static bool draws_candidates(const noc_render_params *p) {
 /* Boxes and shared volumes are made for one S_r. Volumes of one light each serve them all, but one that is to be found must have
  * been: it takes far longer to find than volumes to make, so it is not where S_r was set. */
 static bool serves(const noc_influence_params *have, const noc_influence_params *want) {
-    if (have->cluster != want->cluster || have->probe != want->probe)
+    if (have->cluster != want->cluster || have->boxes != want->boxes)
         return false;
-    return have->scale == want->scale || (want->scale > 0 && want->cluster <= 1 && !want->probe);
+    return have->scale == want->scale || (want->scale > 0 && want->cluster <= 1 && !want->boxes);
 }
 
 static noc_status prepare_influence(embree_state *s, const noc_render_params *p) {
-    bool boxes = p->influence_boxes == NOC_INFLUENCE_VISIBLE;
-    noc_influence_params want = { .cluster = p->influence_cluster, .scale = p->influence, .probe = boxes ? noc_embree_probe : NULL,
-                                  .user = s, .pool = s->pool };
+    noc_influence_params want = { .cluster = p->influence_cluster, .scale = p->influence, .probe = noc_embree_probe, .user = s,
+                                  .boxes = p->influence_boxes == NOC_INFLUENCE_VISIBLE, .pool = s->pool };
     if (s->influence && serves(&s->influence_params, &want))
         return NOC_OK;
     double start = noc_wall_seconds();
@@ -140,7 +139,6 @@ void noc_embree_forget_found(embree_state *s) {
         worker *w = &s->workers[i];
         if (w->found_counts)
             memset(w->found_counts, 0, s->found_bins * sizeof(*w->found_counts));
-        w->found_wider = 0;
     }
 }
 
@@ -190,15 +188,11 @@ void noc_embree_light_stats(void *state, const noc_render_params *p, noc_light_s
     out->tuning_seconds = s->influence->seconds[NOC_STEP_TUNING];
     out->hierarchy_seconds = s->influence->seconds[NOC_STEP_HIERARCHY];
     out->boxes_seconds = s->influence->seconds[NOC_STEP_BOXES];
-    uint64_t wider = 0;
-    for (int i = 0; i < s->worker_count; i++)
-        wider += s->workers[i].found_wider;
     for (uint32_t k = 0; k < s->found_bins; k++)
         out->surfaces += surfaces_finding(s, k);
     if (!out->surfaces)
         return;
     out->found_none = (double)surfaces_finding(s, 0) / (double)out->surfaces;
-    out->found_wider = (double)wider / (double)out->surfaces;
     out->found_median = percentile(s, out->surfaces, 0.5);
     out->found_99 = percentile(s, out->surfaces, 0.99);
 }

@@ -75,7 +75,6 @@ static void pick_influence(stage_run *run, worker *w, const gblock *g, uint32_t 
     run->k->pick_influence(&run->ctx, g, lanes, x, y, m, around, &w->found, &w->picks);
     for (uint32_t bits = lanes; bits; bits &= bits - 1)
         w->found_counts[NOC_MIN(w->found.count[__builtin_ctz(bits)], run->s->found_bins - 1)]++;
-    w->found_wider += (uint64_t)__builtin_popcount(w->found.wider);
 }
 
 /* Draws a block's candidates from whatever these parameters name but the uniform draws and the lists. */
