@@ -39,6 +39,8 @@ typedef struct noc_import_params {
                                read as. height_ft=H says a unit. Fields: height, lumens, watts, kelvin, colour, source,
                                direction, count, mount, status, id, ele, lon, lat, x, y, wkt, latlon */
     noc_obj_up obj_up;      /* axis of OBJ files that points up (they do not say it); default y, as most programs write */
+    bool allow_outside;     /* files that an input names (mtllib, glTF buffers, parts of a Shapefile) may lie anywhere; default:
+                               below the input's folder alone, links followed. Nothing is ever fetched from a network */
     noc_progress progress;
 } noc_import_params;
 

@@ -77,6 +77,7 @@ const char *cli_seconds(char text[32], double s);                 /* "0.42 s", "
 const char *cli_clean(char *text, size_t size, const char *from); /* control characters blanked, long text cut short */
 void cli_json_text(FILE *out, const char *text);                  /* quoted and escaped; valid UTF-8 whatever came in */
 void cli_json_number(FILE *out, double v);                        /* null where it is not finite */
+FILE *cli_open(const char *path);                                 /* a regular file, for reading (a pipe would hang); NULL after saying why */
 bool cli_flush(FILE *out);                                        /* false after saying that stdout could not be written */
 
 /* progress.c: a bar on stderr where that is a terminal, else a line after ten seconds and then ever more rarely; and the

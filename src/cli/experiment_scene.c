@@ -3,7 +3,6 @@
 #include "experiment.h"
 
 #include <dlfcn.h>
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/utsname.h>
@@ -46,11 +45,9 @@ static void hash_options(hash_state *hash, const noc_render_params *params, bool
 }
 
 static int hash_file(hash_state *hash, const char *path) {
-    FILE *file = fopen(path, "rb");
-    if (!file) {
-        cli_error("%s: %s", path, strerror(errno));
+    FILE *file = cli_open(path);
+    if (!file)
         return CLI_FAILURE;
-    }
     enum { SIZE = 1 << 16 };
     unsigned char *buffer = cli_alloc(SIZE);
     for (size_t n; (n = fread(buffer, 1, SIZE, file)) > 0;)

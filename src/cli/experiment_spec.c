@@ -265,14 +265,9 @@ int experiment_read_spec(S *spec, const char *path, bool quiet) {
     *spec = (S){ .path = path, .quiet = quiet, .size = "480x270", .frames = 20, .repetitions = EXPERIMENT_REPETITIONS, .accumulate = EXPERIMENT_MODES, .seed = 1,
                  .ceiling = 10, .reference = { .frames = 16 } };
     json_error_t error;
-    struct stat st;
-    FILE *file = fopen(path, "r");
-    if (!file || fstat(fileno(file), &st) || S_ISDIR(st.st_mode)) {
-        cli_error("%.200s: %s", path, file ? "this is a folder; a spec is a JSON file" : strerror(errno));
-        if (file)
-            fclose(file);
+    FILE *file = cli_open(path);
+    if (!file)
         return CLI_FAILURE;
-    }
     json_t *root = json_loadf(file, JSON_REJECT_DUPLICATES, &error);
     fclose(file);
     if (!root)

@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 const cli_command *const cli_commands[] = { &cli_render, &cli_info, &cli_compare, &cli_experiment, NULL };
 
@@ -25,10 +26,7 @@ static int unknown_command(const char *name) {
     cli_clean(shown, sizeof(shown), name);
     if (nearest)
         return cli_usage(NULL, "no command \"%s\"; is it %s?", shown, nearest);
-    FILE *file = fopen(name, "rb");
-    if (file)
-        fclose(file);
-    return file || !strncmp(name, "builtin:", 8)
+    return !access(name, R_OK) || !strncmp(name, "builtin:", 8)
         ? cli_usage(NULL, "\"%s\" is no command; to draw it: nocturne render %s -o night.png", shown, shown)
         : cli_usage(NULL, "no command \"%s\"", shown);
 }

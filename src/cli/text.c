@@ -1,9 +1,12 @@
 #include "cli.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 /* Names come from files and from the command line: none of their control characters may reach a terminal. */
 const char *cli_clean(char *text, size_t size, const char *from) {
@@ -157,6 +160,17 @@ void cli_json_number(FILE *out, double v) {
         fprintf(out, "%.15g", v);
     else
         fputs("null", out);
+}
+
+FILE *cli_open(const char *path) {
+    struct stat st;
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    FILE *file = fd >= 0 && !fstat(fd, &st) && S_ISREG(st.st_mode) ? fdopen(fd, "rb") : NULL;
+    if (!file)
+        cli_error("%.200s: %s", path, fd >= 0 ? "is not a regular file" : strerror(errno));
+    if (!file && fd >= 0)
+        close(fd);
+    return file;
 }
 
 bool cli_flush(FILE *out) {

@@ -1,10 +1,10 @@
-/* Coordinate reference systems and transforms: the only PROJ calls of the library. */
+/* Coordinate reference systems and transforms: with crs_files.c the only PROJ calls of the library. */
+#include "geo/crs_files.h"
 #include "geo/crs_spelling.h"
 #include "geo/geo.h"
 
 #include <ctype.h>
 #include <math.h>
-#include <proj.h>
 #include <stdio.h>
 
 struct geo_crs {
@@ -18,17 +18,6 @@ struct geo_crs {
     bool has_area;
     double west, south, east, north; /* area of use, degrees on WGS 84; west > east across the antimeridian */
 };
-
-static void ignore_message(void *user, int level, const char *text) {
-    (void)user, (void)level, (void)text; /* what matters becomes our own errors */
-}
-
-static PJ_CONTEXT *context_create(void) {
-    PJ_CONTEXT *context = proj_context_create();
-    proj_log_func(context, NULL, ignore_message);
-    proj_context_set_enable_network(context, 0); /* grids that are not installed are not fetched */
-    return context;
-}
 
 /* ---- reading a definition ---- */
 
@@ -148,12 +137,25 @@ static bool inspect(geo_crs *crs) {
     return ok;
 }
 
-geo_crs *geo_crs_create(const char *definition, const char *place, noc_log *log) {
+static void move_to(geo_crs *crs, PJ_CONTEXT *context) {
+    PJ *moved = crs->pj ? proj_clone(context, crs->pj) : NULL;
+    proj_destroy(crs->pj);
+    proj_context_destroy(crs->context);
+    crs->pj = moved;
+    crs->context = context;
+}
+
+static void refuse(const char *definition, const char *what, const char *place, noc_log *log) {
+    noc_error(log, NOC_ERR_FORMAT, "%s%sthe CRS \"%.200s\" may open files (%s), which a file's CRS must not", place, *place ? ": " : "",
+              definition, what);
+}
+
+static geo_crs *create(const char *definition, bool strict, const char *place, noc_log *log) {
     if (!place)
         place = "";
     const char *between = *place ? ": " : "";
     geo_crs *crs = noc_calloc(1, sizeof(*crs));
-    crs->context = context_create();
+    crs->context = crs_context_create(strict);
     crs_spelling spelling;
     bool registered = crs_spelling_parse(definition, &spelling);
     crs->pj = registered ? create_registered(crs->context, spelling.horizontal) : create_free_form(crs->context, definition);
@@ -173,6 +175,14 @@ geo_crs *geo_crs_create(const char *definition, const char *place, noc_log *log)
             crs->height_unit = axis_unit(crs->context, vertical, 0);
         proj_destroy(vertical);
     }
+    char what[40];
+    if (strict && crs->pj && crs_names_file(crs->context, crs->pj, what)) {
+        refuse(definition, what, place, log);
+        geo_crs_destroy(crs);
+        return NULL;
+    }
+    if (strict)
+        move_to(crs, crs_context_create(false)); /* it names no file: those that come now are of PROJ's own database */
     if (!crs->pj || !inspect(crs)) {
         noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sthe CRS \"%.200s\" is neither geographic nor projected", place, between,
                   definition);
@@ -180,6 +190,18 @@ geo_crs *geo_crs_create(const char *definition, const char *place, noc_log *log)
         return NULL;
     }
     return crs;
+}
+
+geo_crs *geo_crs_create(const char *definition, const char *place, noc_log *log) { return create(definition, false, place, log); }
+
+geo_crs *geo_crs_create_plain(const char *definition, const char *place, noc_log *log) {
+    char what[40];
+    crs_spelling spelling;
+    if (!crs_spelling_parse(definition, &spelling) && crs_text_names_file(definition, what)) {
+        refuse(definition, what, place ? place : "", log);
+        return NULL;
+    }
+    return create(definition, true, place, log);
 }
 
 geo_crs *geo_crs_utm(double lon, double lat) {
@@ -194,7 +216,7 @@ geo_crs *geo_crs_clone(const geo_crs *crs) {
         return NULL;
     geo_crs *copy = noc_alloc(sizeof(*copy));
     *copy = *crs;
-    copy->context = context_create();
+    copy->context = crs_context_create(false);
     copy->pj = proj_clone(copy->context, crs->pj);
     copy->to_wgs84 = copy->easting_first = NULL;
     copy->name = noc_strdup(crs->name);
@@ -294,7 +316,7 @@ geo_transform *geo_transform_create(const geo_crs *from, const geo_crs *to, noc_
     if (geo_crs_equal(from, to))
         return t;
     t->log = log;
-    t->context = context_create();
+    t->context = crs_context_create(false);
     t->pj = proj_create_crs_to_crs_from_pj(t->context, from->pj, to->pj, NULL, NULL);
     if (!t->pj) {
         noc_error(log, NOC_ERR_UNSUPPORTED, "no transformation is known from %s to %s", from->name, to->name);

@@ -5,13 +5,15 @@
 #include "base/base.h"
 #include <nocturne/scene.h> /* noc_class */
 
-/* ---- coordinate reference systems (crs.c: the only PROJ calls of the library) ---- */
+/* ---- coordinate reference systems (crs.c, crs_files.c: the only PROJ calls of the library) ---- */
 
 typedef struct geo_crs geo_crs;
 
 /* From any spelling: EPSG:n, URNs and URLs of OGC (compound ones too), urn:adv, "CH1903", WKT, PROJ strings. NULL after
  * reporting what was not understood (and where: `place` is put before the message, e.g. "city.gml:12"). */
 geo_crs *geo_crs_create(const char *definition, const char *place, noc_log *log);
+/* The same of a definition that a file holds: one that makes PROJ open any file (grids, +init, pipelines) is refused. */
+geo_crs *geo_crs_create_plain(const char *definition, const char *place, noc_log *log);
 geo_crs *geo_crs_utm(double lon, double lat); /* WGS 84 UTM zone of a place */
 geo_crs *geo_crs_clone(const geo_crs *crs);
 void geo_crs_destroy(geo_crs *crs);

@@ -307,7 +307,8 @@ static noc_status add_scene(gltf *g) {
 
 static noc_status read_gltf(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,
                             const mesh_place *place, geo_issues *issues, const char **format) {
-    gltf g = { .name = noc_stream_name(stream), .log = scene->log, .scene = scene, .place = place, .issues = issues };
+    gltf g = { .name = noc_stream_name(stream), .log = scene->log, .scene = scene, .place = place, .issues = issues,
+               .anywhere = params && params->allow_outside };
     char *data;
     size_t size, json_size = 0;
     noc_status status = noc_stream_read_all(stream, scene->log, &data, &size);

@@ -17,6 +17,7 @@ typedef struct gltf_buffer {
 typedef struct gltf {
     const char *name;   /* of the file, for messages */
     char *folder;       /* it lies in, with a slash at its end, or "" */
+    bool anywhere;      /* its buffers may lie outside that folder */
     noc_log *log;
     noc_scene *scene;
     const mesh_place *place;

@@ -1,10 +1,8 @@
 #include "import/gltf.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <sys/stat.h>
 
 #define MOST_ELEMENTS ((size_t)1 << 31)
 #define MOST_ZEROS ((size_t)1 << 22) /* elements of an accessor without data but its sparse part: some bytes may not ask for gigabytes */
@@ -96,24 +94,23 @@ static void decode_percent(char *text) {
 }
 
 static noc_status open_file(const gltf *g, const char *uri, gltf_buffer *b) {
-    char *path = noc_format("%s%s", *uri == '/' ? "" : g->folder, uri);
-    decode_percent(path);
-    struct stat st;
-    errno = 0;
-    FILE *f = !stat(path, &st) && S_ISREG(st.st_mode) ? fopen(path, "rb") : NULL;
+    char *name = noc_strdup(uri);
+    const char *why;
+    size_t size;
+    decode_percent(name);
+    FILE *f = import_open_named(g->folder, name, g->anywhere, &size, &why);
     noc_status status = NOC_OK;
     if (!f) {
-        status = noc_error(g->log, NOC_ERR_IO, "%s: glTF: its buffer \"%.200s\" cannot be opened: %s", g->name, path,
-                           errno ? strerror(errno) : "not a file");
-    } else if (!(b->owned = noc_alloc_large((size_t)st.st_size + 1, 1))) {
-        status = noc_error(g->log, NOC_ERR_MEMORY, "%s: no memory to hold it", path);
+        status = noc_error(g->log, NOC_ERR_IO, "%s: glTF: its buffer \"%.200s\" cannot be opened: %s", g->name, name, why);
+    } else if (!(b->owned = noc_alloc_large(size + 1, 1))) {
+        status = noc_error(g->log, NOC_ERR_MEMORY, "%s: no memory to hold its buffer \"%.200s\"", g->name, name);
     } else {
-        b->size = fread(b->owned, 1, (size_t)st.st_size, f);
+        b->size = fread(b->owned, 1, size, f);
         b->data = b->owned;
     }
     if (f)
         fclose(f);
-    free(path);
+    free(name);
     return status;
 }
 

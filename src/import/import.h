@@ -5,6 +5,7 @@
 
 #include "geo/geo.h"
 #include <nocturne/import.h>
+#include <stdio.h>
 
 /* Sequential bytes of a plain, gzip or zip file (one member of a zip: the first whose name tells a model or map best). */
 typedef struct noc_stream noc_stream;
@@ -21,6 +22,13 @@ uint64_t noc_stream_read_bytes(const noc_stream *s);  /* bytes delivered since o
 size_t noc_stream_unread(const noc_stream *s);        /* other members of a zip that look like models, too */
 bool noc_stream_trailing(const noc_stream *s);        /* bytes followed the gzip data, and were ignored; known at the end */
 double noc_stream_progress(const noc_stream *s);      /* share of the stored bytes consumed, 0..1 */
+
+/* Files that another file names (beside.c). `folder` is that file's, with a slash at its end, or "" for the working one. */
+/* What keeps the file at path (as it is to be opened) from being read: it is not there, no regular file, or, unless
+ * `anywhere`, lies outside the folder once links are followed. NULL if nothing does; else valid until the next call. */
+const char *import_named_trouble(const char *folder, const char *path, bool anywhere);
+/* Opens one for reading and tells its size. NULL with *why where there is trouble. Never waits for a pipe. */
+FILE *import_open_named(const char *folder, const char *name, bool anywhere, size_t *size, const char **why);
 
 /* Takes a mesh's coordinates (x east, y north, z up, as the file has them) to the scene's frame, in place. */
 typedef struct mesh_place {

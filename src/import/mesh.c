@@ -76,11 +76,11 @@ static bool probe(const char *head, size_t size) {
 #define ROOT "@/" /* names that begin so lie in the OBJ's folder */
 
 typedef struct library {
-    const char *folder;   /* of the OBJ, with a slash at its end, or "" */
+    obj_folder folder;
     char *main_name;      /* what the OBJ is called to Assimp: its content decides, so always .obj */
     char *data;
     size_t size, faces;
-    char *missing;        /* first library that could not be opened */
+    char *missing;        /* first library that could not be opened, and why */
     geo_issues *issues;
 } library;
 
@@ -120,10 +120,11 @@ static struct aiFile *library_open(struct aiFileIO *io, const char *name, const 
         o = (open_file){ .data = lib->data, .size = lib->size };
     } else {
         const char *relative = !strncmp(name, ROOT, strlen(ROOT)) ? name + strlen(ROOT) : name;
-        o.data = obj_open_library(lib->folder, relative, &o.size, lib->issues);
+        o.data = obj_open_library(&lib->folder, relative, &o.size, lib->issues);
         o.owned = true;
         if (!o.data && !lib->missing)
-            lib->missing = noc_format("%s%s", *relative == '/' ? "" : lib->folder, relative);
+            lib->missing = noc_format("%s%s cannot be opened: %s", *relative == '/' ? "" : lib->folder.path, relative,
+                                      lib->folder.why);
         if (!o.data)
             return NULL;
     }
@@ -300,7 +301,7 @@ static noc_status read_obj(const char *path, library *lib, const mesh_target *to
         status = noc_error(to->scene->log, NOC_ERR_FORMAT, "%s: OBJ: %s", path, why && *why ? why : "not readable");
     } else {
         if (lib->missing)
-            noc_warn(to->scene->log, "%s: its materials in %s cannot be opened: default material", path, lib->missing);
+            noc_warn(to->scene->log, "%s: default material, because %s", path, lib->missing);
         status = add_scene(from, to);
     }
     aiReleaseImport(from);
@@ -335,7 +336,7 @@ static noc_status read_mesh(const char *path, noc_stream *stream, const noc_impo
     }
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strchr(base, '.');
     char *folder = slash ? noc_format("%.*s", (int)(base - path), path) : noc_strdup("");
-    lib.folder = folder;
+    lib.folder = (obj_folder){ .path = folder, .anywhere = params && params->allow_outside };
     lib.main_name = noc_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
     obj_spread spread = { 0 };
     const mesh_target to = { .scene = scene, .place = place, .offset = offset, .issues = issues,

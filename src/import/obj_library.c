@@ -1,35 +1,36 @@
 #include "import/obj_library.h"
+#include "import/import.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <sys/stat.h>
 
 #define MOST_BYTES ((size_t)256 << 20)
 #define LEAST_BYTES 16 /* of a shorter one, Assimp forgets the stream */
 
-static char *load(const char *folder, const char *name, size_t *size) {
-    char *path = noc_format("%s%s", *name == '/' ? "" : folder, name);
-    struct stat st;
-    bool fits = !stat(path, &st) && S_ISREG(st.st_mode) && (size_t)st.st_size <= MOST_BYTES;
-    FILE *f = fits ? fopen(path, "rb") : NULL;
-    free(path);
-    char *data = f ? noc_alloc_large((size_t)st.st_size + LEAST_BYTES + 1, 1) : NULL;
+static char *load(obj_folder *folder, const char *name, size_t *size) {
+    size_t stored;
+    FILE *f = import_open_named(folder->path, name, folder->anywhere, &stored, &folder->why);
+    if (f && stored > MOST_BYTES)
+        folder->why = "is larger than 256 MB";
+    char *data = f && stored <= MOST_BYTES ? noc_alloc_large(stored + LEAST_BYTES + 1, 1) : NULL;
     if (data) {
-        *size = fread(data, 1, (size_t)st.st_size, f);
+        *size = fread(data, 1, stored, f);
         while (*size < LEAST_BYTES)
             data[(*size)++] = '\n';
         data[*size] = 0;
     }
+    else if (!folder->why)
+        folder->why = "there is no memory to hold it";
     if (f)
         fclose(f);
     return data;
 }
 
 /* Under the name itself, with its slashes turned, and as the file that its last part names. */
-static char *find(const char *folder, const char *name, size_t *size) {
+static char *find(obj_folder *folder, const char *name, size_t *size) {
     char *data = load(folder, name, size);
     if (data)
         return data;
+    const char *why = folder->why; /* of the name as it is given */
     char *turned = noc_strdup(name);
     for (char *p = turned; *p; p++)
         *p = *p == '\\' ? '/' : *p;
@@ -37,12 +38,13 @@ static char *find(const char *folder, const char *name, size_t *size) {
     data = load(folder, turned, size);
     if (!data && last)
         data = load(folder, last + 1, size);
+    folder->why = why;
     free(turned);
     return data;
 }
 
 /* Each blank-separated name that can be opened, one text after the other; NULL if one cannot. */
-static char *find_all(const char *folder, char *names, size_t *size) {
+static char *find_all(obj_folder *folder, char *names, size_t *size) {
     char *all = NULL, *rest = names, *name;
     *size = 0;
     while ((name = strtok_r(rest, " \t", &rest))) {
@@ -105,7 +107,7 @@ static void plain_statements(char *data, size_t size, const char *name, geo_issu
     }
 }
 
-char *obj_open_library(const char *folder, const char *name, size_t *size, geo_issues *issues) {
+char *obj_open_library(obj_folder *folder, const char *name, size_t *size, geo_issues *issues) {
     char *trimmed = noc_strdup(name);
     for (size_t n = strlen(trimmed); n && strchr(" \t\r", trimmed[n - 1]); n--)
         trimmed[n - 1] = 0;

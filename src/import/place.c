@@ -35,12 +35,12 @@ static noc_status resolve(importer *im, const char *spelling, const char *place,
     *crs = NULL;
     const char *fallback = is_blank(im->params->crs) ? NULL : im->params->crs;
     if (*spelling) {
-        *crs = geo_crs_create(spelling, place, NULL);
+        *crs = geo_crs_create_plain(spelling, place, NULL);
         if (*crs)
             return NOC_OK;
         if (!fallback && !im->inspect)
             return noc_error(im->log, NOC_ERR_FORMAT,
-                             "%s: the CRS \"%.60s\" is not understood, or is neither geographic nor projected: say with "
+                             "%s: the CRS \"%.60s\" is not understood, opens files, or is neither geographic nor projected: say with "
                              "--crs which one it is", place, spelling);
         noc_warn(im->log, "%s: the CRS \"%.60s\" is not understood: %s%s", place, spelling,
                  fallback ? "taken as " : "taken as local metres", fallback ? fallback : "");

@@ -3,7 +3,7 @@
  * The format is known from the content, and only its driver may open the file, so no name and no content can make GDAL
  * fetch something or run another driver. GDAL's messages never reach stderr: the first failure becomes our error. */
 #include "import/lamp_tags.h"
-#include "noc_config.h"
+#include "import/map_source.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,13 +11,6 @@
 static bool has(const char *head, size_t size, const char *text) {
     return head && memmem(head, size, text, strlen(text)) != NULL;
 }
-
-typedef struct map_format {
-    const char *name;
-    const char *drivers[3]; /* GDAL's, ended by NULL */
-    bool (*probe)(const char *head, size_t size);
-    bool osm;
-} map_format;
 
 static bool probe_osm_xml(const char *head, size_t size) { return has(head, size, "<osm ") || has(head, size, "<osm>"); }
 
@@ -46,12 +39,12 @@ static bool probe_shp(const char *head, size_t size) {
 static bool probe_fgb(const char *head, size_t size) { return size >= 8 && !memcmp(head, "fgb\3fgb", 7); }
 
 static const map_format formats[] = {
-    { "OpenStreetMap XML", { "OSM" }, probe_osm_xml, true },
-    { "OpenStreetMap PBF", { "OSM" }, probe_pbf, true },
-    { "GeoJSON", { "GeoJSON", "GeoJSONSeq" }, probe_geojson, false },
-    { "GeoPackage", { "GPKG" }, probe_gpkg, false },
-    { "Shapefile", { "ESRI Shapefile" }, probe_shp, false },
-    { "FlatGeobuf", { "FlatGeobuf" }, probe_fgb, false },
+    { "OpenStreetMap XML", { "OSM" }, probe_osm_xml, MAP_OSM },
+    { "OpenStreetMap PBF", { "OSM" }, probe_pbf, MAP_OSM },
+    { "GeoJSON", { "GeoJSON", "GeoJSONSeq" }, probe_geojson, MAP_PLAIN },
+    { "GeoPackage", { "GPKG" }, probe_gpkg, MAP_GEOPACKAGE },
+    { "Shapefile", { "ESRI Shapefile" }, probe_shp, MAP_SHAPEFILE },
+    { "FlatGeobuf", { "FlatGeobuf" }, probe_fgb, MAP_PLAIN },
 };
 
 static const map_format *find_format(const char *head, size_t size) {
@@ -75,148 +68,8 @@ static noc_status read_head(noc_stream *stream, char *head, size_t size, size_t 
 #if NOC_HAVE_GDAL
 
 #include <cpl_conv.h>
-#include <cpl_error.h>
-#include <cpl_string.h>
-#include <cpl_vsi.h>
-#include <gdal.h>
 #include <ogr_api.h>
 #include <ogr_srs_api.h>
-#include <pthread.h>
-#include <unistd.h>
-
-/* ---- GDAL, kept quiet ---- */
-
-typedef struct gdal_errors {
-    char text[512]; /* of the first failure, "" if none */
-    size_t warnings;
-} gdal_errors;
-
-/* Cuts long numbers in a message: files may hold some of hundreds of digits. */
-static void shorten_numbers(char *text) {
-    enum { LONGEST = 40 };
-    char *out = text;
-    size_t digits = 0;
-    for (const char *p = text; *p; p++) {
-        digits = *p >= '0' && *p <= '9' ? digits + 1 : 0;
-        if (digits <= LONGEST)
-            *out++ = *p;
-        else if (digits <= LONGEST + 3)
-            *out++ = '.';
-    }
-    *out = 0;
-}
-
-/* What GDAL's GeoJSON reader says of a geometry that it leaves out ("Invalid 'x' coordinate. Type is not double ...", "Invalid Point
- * object. ..."): its feature then has no place, and is counted so. */
-static bool is_of_one_geometry(const char *text) { return !strncmp(text, "Invalid ", 8) && !strstr(text, "Feature"); }
-
-static void CPL_STDCALL on_gdal_error(CPLErr level, CPLErrorNum code, const char *text) {
-    gdal_errors *errors = CPLGetErrorHandlerUserData();
-    if (level < CE_Failure || (level == CE_Failure && is_of_one_geometry(text))) {
-        errors->warnings += level >= CE_Warning;
-        return;
-    }
-    if (!errors->text[0])
-        snprintf(errors->text, sizeof(errors->text), "%s", *text ? text : "unknown failure");
-    for (char *p = errors->text; *p; p++) /* one line */
-        if ((unsigned char)*p < ' ')
-            *p = ' ';
-    shorten_numbers(errors->text);
-    (void)code;
-}
-
-static const char osm_config[] = "closed_ways_are_polygons=\n"
-                                 "attribute_name_laundering=no\n"
-                                 "report_all_nodes=no\nreport_all_ways=no\n"
-                                 "[points]\nosm_id=yes\nall_tags=yes\n"
-                                 "[lines]\nosm_id=yes\nall_tags=yes\n"
-                                 "[multipolygons]\nosm_id=yes\nall_tags=yes\n"
-                                 "[multilinestrings]\nosm_id=yes\nall_tags=yes\n"
-                                 "[other_relations]\nosm_id=yes\nall_tags=yes\n";
-#define OSM_CONFIG_PATH "/vsimem/nocturne/osmconf.ini"
-
-static pthread_once_t gdal_once = PTHREAD_ONCE_INIT;
-
-static void gdal_start(void) {
-    OGRRegisterAll();
-    VSILFILE *f = VSIFileFromMemBuffer(OSM_CONFIG_PATH, (GByte *)osm_config, sizeof(osm_config) - 1, FALSE);
-    if (f)
-        VSIFCloseL(f);
-}
-
-static const struct {
-    const char *key, *value;
-} gdal_settings[] = {
-    { "CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO" }, /* nothing is written beside the input */
-    { "GDAL_DISABLE_READDIR_ON_OPEN", "NO" },   /* a Shapefile's other parts are found */
-    { "OGR_SQLITE_LOAD_EXTENSIONS", NULL },
-    { "SHAPE_RESTORE_SHX", "NO" },
-    { "SQLITE_USE_OGR_VFS", "NO" },
-};
-
-static void gdal_enter(gdal_errors *errors) {
-    pthread_once(&gdal_once, gdal_start);
-    for (size_t i = 0; i < NOC_COUNT(gdal_settings); i++)
-        CPLSetThreadLocalConfigOption(gdal_settings[i].key, gdal_settings[i].value);
-    const char *tmp = getenv("TMPDIR");
-    CPLSetThreadLocalConfigOption("CPL_TMPDIR", tmp && *tmp ? tmp : "/tmp");
-    *errors = (gdal_errors){ 0 };
-    CPLPushErrorHandlerEx(on_gdal_error, errors);
-}
-
-static void gdal_leave(void) {
-    CPLPopErrorHandler();
-    CPLErrorReset();
-    for (size_t i = 0; i < NOC_COUNT(gdal_settings); i++)
-        CPLSetThreadLocalConfigOption(gdal_settings[i].key, NULL);
-    CPLSetThreadLocalConfigOption("CPL_TMPDIR", NULL);
-}
-
-/* ---- where GDAL finds the bytes of a stream ---- */
-
-/* Archives are read once to their end, because GDAL takes a truncated one for a short file. */
-static noc_status check_archive(noc_stream *stream) {
-    char *buffer = noc_alloc(1 << 16);
-    size_t got = 1;
-    noc_status status = noc_stream_rewind(stream);
-    while (!status && got)
-        status = noc_stream_read(stream, buffer, 1 << 16, &got);
-    free(buffer);
-    return status;
-}
-
-/* The path itself, /vsigzip/path or /vsizip/{path}/member. */
-static noc_status gdal_path(noc_stream *stream, char **path) {
-    const char *name = noc_stream_name(stream);
-    const char *slash = *name == '/' ? "" : "./"; /* "http://x" as a file's name stays a file's name */
-    noc_status status = NOC_OK;
-    if (access(name, F_OK)) { /* path!member */
-        const char *bang = name + strlen(name);
-        char *archive = NULL;
-        while (bang > name) {
-            if (*bang == '!') {
-                free(archive);
-                archive = noc_format("%.*s", (int)(bang - name), name);
-                if (!access(archive, F_OK))
-                    break;
-            }
-            bang--;
-        }
-        *path = noc_format("/vsizip/{%s%s}/%s", slash, archive ? archive : name, *bang == '!' ? bang + 1 : "");
-        free(archive);
-        status = check_archive(stream);
-    } else {
-        unsigned char magic[2] = { 0 };
-        FILE *f = fopen(name, "rb");
-        bool gzip = f && fread(magic, 1, 2, f) == 2 && magic[0] == 0x1f && magic[1] == 0x8b;
-        if (f)
-            fclose(f);
-        *path = noc_format("%s%s%s", gzip ? "/vsigzip/" : "", slash, name);
-        if (gzip)
-            status = check_archive(stream);
-    }
-    return status;
-}
 
 /* ---- features ---- */
 
@@ -312,15 +165,9 @@ typedef struct map_reading {
     noc_stream *stream;
     const noc_import_params *params;
     lamp_writer writer;
-    gdal_errors errors;
     tag_buffer tags;
-    GDALDatasetH dataset;
+    map_source source;
 } map_reading;
-
-static noc_status report(const map_reading *m) {
-    return noc_error(m->writer.sink->log, NOC_ERR_FORMAT, "%s: %s: %s", m->writer.place, m->format->name,
-                     m->errors.text[0] ? m->errors.text : "not readable");
-}
 
 /* The layer's CRS as AUTHORITY:CODE or WKT, NULL if it names none; free() it. */
 static char *layer_crs(OGRLayerH layer, bool *geographic) {
@@ -360,7 +207,7 @@ static bool looks_projected(OGRLayerH layer) {
 }
 
 static noc_status start_layer(map_reading *m, OGRLayerH layer) {
-    if (m->format->osm) {
+    if (m->format->kind == MAP_OSM) {
         m->writer.geographic = true;
         return lamp_writer_crs(&m->writer, LAMP_WGS84);
     }
@@ -397,7 +244,7 @@ static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDe
             geo_issue(m->writer.sink->issues, false, "line or area in a table of lamps", "");
         return NOC_OK;
     }
-    collect_fields(feature, defn, m->format->osm, &m->tags);
+    collect_fields(feature, defn, m->format->kind == MAP_OSM, &m->tags);
     size_t before = m->writer.lamps;
     noc_status status = lamp_writer_point(&m->writer, m->tags.tags.data, m->tags.tags.len, m->tags.id, xyz);
     if (!status && m->writer.lamps > before && !is_point)
@@ -407,7 +254,7 @@ static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDe
 
 static noc_status read_features(map_reading *m, OGRLayerH layer) {
     OGRFeatureDefnH defn = OGR_L_GetLayerDefn(layer);
-    GIntBig total = m->format->osm ? 0 : OGR_L_GetFeatureCount(layer, FALSE);
+    GIntBig total = m->format->kind == MAP_OSM ? 0 : OGR_L_GetFeatureCount(layer, FALSE);
     OGRFeatureH feature;
     size_t n = 0;
     noc_status status = NOC_OK;
@@ -418,8 +265,8 @@ static noc_status read_features(map_reading *m, OGRLayerH layer) {
             !m->writer.sink->progress(m->writer.sink->ctx, total > 0 ? NOC_MIN((double)n / (double)total, 1) : 0))
             status = NOC_ERR_CANCELLED;
     }
-    if (!status && m->errors.text[0])
-        status = report(m);
+    if (!status && m->source.error[0])
+        status = map_source_error(&m->source);
     return status;
 }
 
@@ -450,7 +297,7 @@ static void judge(map_reading *m, OGRLayerH layer) {
     layer_kind(layer, w->keys, &tags, &w->inventory);
     w->kinds.any = w->strange = false;
     if (w->sink->named_lamps)
-        w->inventory = !m->format->osm;
+        w->inventory = m->format->kind != MAP_OSM;
     else if (!w->inventory && !tags) {
         read_kinds(m, layer);
         w->inventory = w->kinds.any;
@@ -465,7 +312,7 @@ static noc_status read_layer(map_reading *m, OGRLayerH layer) {
     if (!status)
         status = read_features(m, layer);
     /* an extract of OpenStreetMap holds all kinds of points: only where no tag tells of lamps all of them are meant */
-    if (!status && m->format->osm && w->sink->named_lamps && !w->lamps) {
+    if (!status && m->format->kind == MAP_OSM && w->sink->named_lamps && !w->lamps) {
         w->inventory = true;
         w->features = 0;
         OGR_L_ResetReading(layer);
@@ -475,37 +322,28 @@ static noc_status read_layer(map_reading *m, OGRLayerH layer) {
 }
 
 static noc_status read_layers(map_reading *m) {
-    if (m->format->osm) { /* points alone: the geometries of ways and relations are not assembled */
-        OGRLayerH none = GDALDatasetExecuteSQL(m->dataset, "SET interest_layers = points", NULL, NULL);
+    if (m->format->kind == MAP_OSM) { /* points alone: the geometries of ways and relations are not assembled */
+        OGRLayerH none = GDALDatasetExecuteSQL(m->source.dataset, "SET interest_layers = points", NULL, NULL);
         if (none)
-            GDALDatasetReleaseResultSet(m->dataset, none);
-        OGRLayerH points = GDALDatasetGetLayerByName(m->dataset, "points");
-        return points ? read_layer(m, points) : report(m);
+            GDALDatasetReleaseResultSet(m->source.dataset, none);
+        OGRLayerH points = GDALDatasetGetLayerByName(m->source.dataset, "points");
+        return points ? read_layer(m, points) : map_source_error(&m->source);
     }
     noc_status status = NOC_OK;
-    int count = GDALDatasetGetLayerCount(m->dataset);
+    int count = GDALDatasetGetLayerCount(m->source.dataset);
     for (int i = 0; i < count && !status; i++)
-        status = read_layer(m, GDALDatasetGetLayer(m->dataset, i));
+        status = read_layer(m, GDALDatasetGetLayer(m->source.dataset, i));
     return status;
 }
 
 static noc_status read_map(noc_stream *stream, const map_format *format, const noc_import_params *params, geo_sink *sink) {
     map_reading m = { .format = format, .stream = stream, .params = params,
                       .writer = lamp_writer_start(sink, noc_stream_name(stream), params) };
-    char *path;
-    noc_status status = gdal_path(stream, &path);
-    if (!status) {
-        gdal_enter(&m.errors);
-        const char *const osm_options[] = { "CONFIG_FILE=" OSM_CONFIG_PATH, "COMPRESS_NODES=YES", NULL };
-        m.dataset = GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, format->drivers,
-                               format->osm ? osm_options : NULL, NULL);
-        status = m.dataset && !m.errors.text[0] ? read_layers(&m) : report(&m);
-        if (m.dataset)
-            GDALClose(m.dataset);
-        gdal_leave();
-        tag_buffer_free(&m.tags);
-    }
-    free(path);
+    noc_status status = map_source_open(&m.source, stream, format, params && params->allow_outside, sink->log);
+    if (!status)
+        status = read_layers(&m);
+    map_source_close(&m.source);
+    tag_buffer_free(&m.tags);
     if (!status)
         status = lamp_writer_end(&m.writer);
     lamp_writer_free(&m.writer);

@@ -96,6 +96,7 @@ static const noc_option import_options[] = {
     REAL(P, lamp_lumens, "lamp-lumens", "City", 0, 1e7, "lm", "flux of lamps with neither flux nor wattage"),
     REAL(P, lamp_kelvin, "lamp-kelvin", "City", 1000, 25000, "K", "colour temperature of lamps that tell none"),
     CHOICE(P, obj_up, "obj-up", "City", "y|z", "axis of OBJ files that points up"),
+    BOOL(P, allow_outside, "allow-outside", "Reading", "files that inputs name may lie outside the inputs' folders"),
     END,
 };
 #undef P

@@ -309,7 +309,7 @@ expect "a spec that is no object" 2 'one object' experiment wrong.json -o w
 : >wrong.json
 expect "an empty spec" 2 'wrong.json:1:' experiment wrong.json -o w
 expect "a spec that is not there" 1 '^nocturne: .*missing.json.*No such file' experiment missing.json -o w
-expect "a folder as spec" 1 'this is a folder' experiment . -o w
+expect "a folder as spec" 1 'not a regular file' experiment . -o w
 expect "no spec" 2 'one spec' experiment -o w
 test ! -e w; result $? "nothing is written after an error"
 sed 's/"builtin:city"\], "city-size": 150/"gone.gml"]/' spec.json >gone.json

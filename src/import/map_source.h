@@ -1,0 +1,37 @@
+/* map_source: a map file as GDAL opens it, and nothing but that file. */
+#ifndef NOC_IMPORT_MAP_SOURCE_H
+#define NOC_IMPORT_MAP_SOURCE_H
+
+#include "import/import.h"
+#include "noc_config.h"
+
+typedef struct map_format {
+    const char *name;
+    const char *drivers[3]; /* GDAL's, ended by NULL */
+    bool (*probe)(const char *head, size_t size);
+    enum { MAP_PLAIN, MAP_OSM, MAP_GEOPACKAGE, MAP_SHAPEFILE } kind;
+} map_format;
+
+#if NOC_HAVE_GDAL
+
+#include <gdal.h>
+
+typedef struct map_source {
+    GDALDatasetH dataset;
+    char error[512];      /* GDAL's first failure since it was opened, "" if none */
+    char link[200];       /* the first address that a content asked for, "" if none: it is not fetched */
+    const char *name, *format;
+    noc_log *log;
+    char *copy;           /* folder with our own copy of the file, NULL if it is read in place */
+} map_source;
+
+/* Opens the stream's file by the format's drivers alone, for reading alone: nothing is written beside it, nothing fetched. Until
+ * it is closed GDAL's messages in this thread go to m->error. Parts of a Shapefile and of a GeoPackage that are no regular
+ * files, or lie outside the file's folder (unless `anywhere`), are an error. To be closed after an error, too. */
+noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *format, bool anywhere, noc_log *log);
+noc_status map_source_error(const map_source *m); /* reports m->error */
+void map_source_close(map_source *m);
+
+#endif
+
+#endif

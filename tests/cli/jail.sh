@@ -1,0 +1,149 @@
+#!/bin/sh
+# What a file's author may not do: reach a network, open files elsewhere, make the program wait, have it write.
+. "$(dirname "$0")/lib.sh"
+here=$source_dir/tests/cli
+
+# Whatever waits for a pipe is ended, and its status is 124.
+real=$program
+program=$work/patient
+printf '#!/bin/sh\nexec timeout -s KILL 20 "%s" "$@"\n' "$real" >"$program"
+chmod +x "$program"
+
+mkdir -p in/sub out_there
+cp "$here/city.gml" in/city.gml
+printf 'newmtl glow\nKd 0.5 0.5 0.5\nKe 1000 1000 1000\n' >out_there/secret.mtl
+cp out_there/secret.mtl in/sub/fine.mtl
+printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\0\0' >out_there/triangle.bin
+cp out_there/triangle.bin in/sub/triangle.bin
+mkfifo in/pipe
+
+# obj NAME: in/model.obj with materials of that name
+obj() { printf 'mtllib %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl glow\nf 1 2 3\n' "$1" >in/model.obj; }
+# gltf URI: in/model.gltf with its buffer there
+gltf() {
+    cat >in/model.gltf <<END
+{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "buffers": [{"byteLength": 36, "uri": "$1"}],
+ "bufferViews": [{"buffer": 0, "byteLength": 36}],
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}]}
+END
+}
+# lamps CRS: in/lamps.geojson with that "crs" member
+lamps() {
+    printf '{"type": "FeatureCollection", "crs": %s, "features": [{"type": "Feature", "properties": {"highway": "street_lamp"},
+"geometry": {"type": "Point", "coordinates": [11.42, 48.76]}}]}' "$1" >in/lamps.geojson
+}
+# fine NAME ARGUMENT...: goes well
+fine() {
+    name=$1
+    shift
+    run "$@"
+    test $status = 0; result $? "$name" "status $status"
+}
+lights() { sed -n 's/^ *lights *\([0-9]*\).*/\1/p' out; }
+
+# ---- no network ----
+python3 "$here/listen.py" >heard &
+listener=$!
+trap 'kill $listener; rm -rf "$work"' EXIT
+until [ -s heard ]; do sleep 0.05; done
+url=http://127.0.0.1:$(head -n 1 heard)/x
+lamps "{\"type\": \"link\", \"properties\": {\"href\": \"$url\", \"type\": \"proj4\"}}"
+expect "a CRS that is a link is not followed, and that is said" 0 'link .*not followed' info in/lamps.geojson
+grep -q 'lamps *1$' out; result $? "and the lamp is read"
+for crs in "$url" "/vsicurl/$url" "@$work/in/pipe" "$work/in/pipe"; do
+    lamps "{\"type\": \"name\", \"properties\": {\"name\": \"$crs\"}}"
+    run info in/lamps.geojson
+    [ $status -lt 2 ] || echo "$crs: $status" >>slow
+done
+test ! -e slow; result $? "nor is one that names an address or a file" "$(cat slow 2>&1)"
+obj "$url"
+expect "materials on a network are not fetched" 0 'No such file' info in/model.obj
+gltf "$url"
+expect "nor are buffers" 1 'network' info in/model.gltf
+for entity in "$url" "file://$work/in/pipe"; do
+    { printf '<?xml version="1.0"?><!DOCTYPE x [<!ENTITY e SYSTEM "%s">]>' "$entity"; tail -n +2 in/city.gml; } >in/entity.gml
+    expect "nor entities of XML ($(echo "$entity" | cut -c 1-4))" 1 'entit' info in/entity.gml
+    { printf '<?xml version="1.0"?><!DOCTYPE osm [<!ENTITY e SYSTEM "%s">]>' "$entity"
+      echo '<osm version="0.6"><node id="1" lat="48.7" lon="11.4" version="1"><tag k="highway" v="street_lamp"/><tag k="name" v="&e;"/></node></osm>'; } >in/entity.osm
+    run info in/entity.osm
+    test $status -lt 2; result $? "nor those of OpenStreetMap ($(echo "$entity" | cut -c 1-4))" "status $status"
+done
+sleep 0.2
+test "$(wc -l <heard)" = 1; result $? "nothing was heard on the network" "$(cat heard)"
+
+# ---- other files ----
+obj sub/fine.mtl
+run info in/model.obj
+test $status = 0 && ! grep -q default err && test "$(lights)" = 1; result $? "materials below the folder are read"
+for name in ../out_there/secret.mtl sub/../../out_there/secret.mtl "$work/out_there/secret.mtl" link.mtl linked/secret.mtl; do
+    ln -sfn ../out_there/secret.mtl in/link.mtl
+    ln -sfn ../out_there in/linked
+    obj "$name"
+    expect "materials elsewhere are not: $(basename "$(dirname "$name")")/$(basename "$name")" 0 'lies outside.*--allow-outside' info in/model.obj
+    run info --allow-outside in/model.obj
+    test $status = 0 && test "$(lights)" = 1; result $? "unless that is allowed"
+done
+gltf sub/triangle.bin
+fine "buffers below the folder are read" info in/model.gltf
+gltf ../out_there/triangle.bin
+expect "buffers elsewhere are not" 1 'lies outside.*--allow-outside' info in/model.gltf
+fine "unless that is allowed" info --allow-outside in/model.gltf
+gltf '%2e%2e/out_there/triangle.bin'
+expect "nor those whose way is written in percents" 1 'lies outside' info in/model.gltf
+(cd in && "$program" info model.gltf 2>&1 | grep -q 'lies outside'); result $? "also where the input is in the working folder"
+
+# ---- pipes ----
+expect "a pipe as input is refused" 1 'not a regular file' info in/pipe
+expect "a pipe as command, too" 2 'is no command' in/pipe
+expect "a pipe as spec of experiments" 1 'not a regular file' experiment in/pipe -o results
+obj pipe
+expect "a pipe as materials" 0 'not a regular file' info in/model.obj
+gltf pipe
+expect "a pipe as buffer" 1 'not a regular file' info in/model.gltf
+fine "a pipe as a grid that the user types is left" info --crs "+proj=longlat +ellps=GRS80 +nadgrids=$work/in/pipe +type=crs" in/city.gml
+python3 - <<'END'
+import struct
+points = [(11.42, 48.76), (11.4201, 48.76)]
+box = struct.pack("<4d", 11.42, 48.76, 11.4201, 48.76) + bytes(32)
+def head(words): return struct.pack(">7i", 9994, 0, 0, 0, 0, 0, words) + struct.pack("<2i", 1000, 1) + box
+record = lambda i, p: struct.pack(">2i", i, 10) + struct.pack("<i2d", 1, *p)
+open("in/poles.shp", "wb").write(head(50 + 14 * len(points)) + b"".join(record(i + 1, p) for i, p in enumerate(points)))
+open("in/poles.shx", "wb").write(head(50 + 4 * len(points)) + b"".join(struct.pack(">2i", 50 + 14 * i, 10) for i in range(len(points))))
+field = b"highway\0\0\0\0C" + bytes(4) + bytes([20, 0]) + bytes(14)
+open("in/poles.dbf", "wb").write(struct.pack("<B3BIHH20x", 3, 126, 1, 1, 2, 32 + 32 + 1, 21) + field + b"\r" + b" street_lamp         " * 2 + b"\x1a")
+open("in/poles.prj", "w").write('GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["Degree",0.0174532925199433]]')
+END
+if "$real" --version | grep -q gdal; then
+    fine "a Shapefile is read" info in/poles.shp
+    grep -q 'lamps *2$' out; result $? "with its lamps"
+    for part in dbf shx prj cpg qix; do
+        mkdir -p pipes && rm -f pipes/* && cp in/poles.* pipes && rm -f pipes/poles.$part && mkfifo pipes/poles.$part
+        expect "a pipe as .$part of a Shapefile" 1 "poles.$part .*not a regular file" info pipes/poles.shp
+    done
+    rm -f pipes/* && cp in/poles.shp in/poles.shx in/poles.prj pipes && ln -s ../in/poles.dbf pipes/poles.DBF
+    expect "a table of a Shapefile that lies elsewhere" 1 'poles.DBF .*lies outside.*--allow-outside' info pipes/poles.shp
+    fine "unless that is allowed" info --allow-outside pipes/poles.shp
+
+    # ---- nothing is written ----
+    mkdir packages
+    for kind in plain log; do python3 "$here/geopackage.py" packages/$kind.gpkg $kind; done
+    state() { ls -l --time-style=full-iso packages; cksum packages/*; }
+    state >before
+    mkdir temporary
+    export TMPDIR=$work/temporary
+    run info packages/plain.gpkg
+    test $status = 0 && grep -q 'lamps *2$' out; result $? "a GeoPackage is read"
+    run info packages/log.gpkg
+    test $status = 0 && grep -q 'lamps *3$' out; result $? "with what is in its write-ahead log"
+    state >after
+    cmp -s before after; result $? "and is as it was: bytes, times and folder" "$(diff before after)"
+    test -z "$(ls temporary)"; result $? "no copy of it is left behind" "$(ls temporary)"
+    rm packages/log.gpkg-wal && mkfifo packages/log.gpkg-wal
+    expect "a pipe as log of a GeoPackage" 1 'log.gpkg-wal .*not a regular file' info packages/log.gpkg
+    python3 "$here/geopackage.py" in/text.gpkg text
+    expect "a virtual table over another file is not read" 1 'VirtualText' info in/text.gpkg
+else
+    for what in "a Shapefile is read" "a GeoPackage is read"; do skip "$what" "built without GDAL"; done
+fi
+finish
