@@ -47,6 +47,7 @@ noc_status cli_load_scene(noc_scene *scene, const char *const *inputs, size_t co
     const char **files = cli_alloc(sizeof(char *) * count);
     size_t file_count = 0;
     noc_status status = NOC_OK;
+    cli_nothing_to_keep(true);
     for (size_t i = 0; i < count && !status; i++) {
         const char *name = among_lamps(import, inputs[i]) ? NULL : cli_builtin(inputs[i]); /* no file of lamps: an error */
         if (!name) {
@@ -59,6 +60,7 @@ noc_status cli_load_scene(noc_scene *scene, const char *const *inputs, size_t co
     if (!status)
         status = file_count ? noc_scene_load(scene, files, file_count, import, report) : noc_scene_commit(scene);
     free(files);
+    cli_nothing_to_keep(false);
     cli_progress_clear();
     return status;
 }

@@ -87,6 +87,8 @@ void cli_progress_show(double done, double left, const char *fmt, ...) NOC_PRINT
 void cli_progress_clear(void);
 bool cli_load_progress(void *user, const char *what, double done); /* for noc_progress; cancels when interrupted */
 void cli_catch_signals(void);  /* the first signal is remembered, the second ends the program */
+/* While there is nothing, an interruption is not waited on: half a second later the program ends. False when it starts. */
+void cli_nothing_to_keep(bool nothing);
 int cli_interrupted(void);     /* its number, 0 if there was none */
 double cli_now(void);          /* wall clock, seconds */
 

@@ -223,6 +223,7 @@ static int run(void *arguments) {
     if (!args->common.input_count)
         return cli_usage(&cli_info, "which file?");
     cli_catch_signals();
+    cli_nothing_to_keep(true);
     cli_progress_start(args->common.quiet);
     args->import.progress = (noc_progress){ cli_load_progress, NULL };
     noc_log *log = cli_log_create(&args->common);

@@ -93,8 +93,34 @@ bool cli_load_progress(void *user, const char *what, double done) {
 static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
 enum { SIGNALS = sizeof(signals) / sizeof(*signals) };
 
+/* Libraries that cannot be asked to stop (a triangulation, a hierarchy) are not waited for where nothing is to be kept. */
+#define GRACE_NS 500000000
+static volatile sig_atomic_t nothing_to_keep;
+static timer_t grace;
+static bool has_grace;
+
+static void on_grace(int number) {
+    static const char text[] = "\nnocturne: interrupted: nothing was saved\n";
+    ssize_t written = write(STDERR_FILENO, text + !on_screen, sizeof(text) - 1 - !on_screen);
+    (void)written, (void)number;
+    _exit(CLI_INTERRUPTED + caught);
+}
+
+static void set_grace(long ns) {
+    struct itimerspec when = { .it_value = { .tv_nsec = ns } };
+    if (has_grace)
+        timer_settime(grace, 0, &when, NULL);
+}
+
+void cli_nothing_to_keep(bool nothing) {
+    nothing_to_keep = nothing;
+    set_grace(nothing && caught ? GRACE_NS : 0);
+}
+
 static void on_signal(int number) {
     caught = number;
+    if (nothing_to_keep)
+        set_grace(GRACE_NS);
     /* Whoever asks twice means it. What was ignored from the start stays so. */
     for (int i = 0; i < SIGNALS; i++) {
         struct sigaction now;
@@ -105,6 +131,9 @@ static void on_signal(int number) {
 
 /* Those that are ignored are so for a reason: nohup, or a shell's job in the background. */
 void cli_catch_signals(void) {
+    struct sigevent event = { .sigev_notify = SIGEV_SIGNAL, .sigev_signo = SIGALRM };
+    signal(SIGALRM, on_grace);
+    has_grace = !timer_create(CLOCK_MONOTONIC, &event, &grace);
     struct sigaction action = { .sa_handler = on_signal, .sa_flags = SA_RESTART }, now;
     sigemptyset(&action.sa_mask);
     for (int i = 0; i < SIGNALS; i++)

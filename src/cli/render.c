@@ -172,6 +172,7 @@ static void add_stats(render_job *job) {
     for (int i = 0; i < NOC_PASS_COUNT; i++)
         job->pass_seconds[i] += job->last.pass_seconds[i];
     job->frames++;
+    cli_nothing_to_keep(false);
     if (job->args->common.verbose)
         cli_error("frame %d: %.3f s", job->frames, job->last.wall_seconds);
 }
@@ -224,8 +225,10 @@ static int work(render_job *job) {
     if (!status)
         status = reserve(job);
     if (!status && !cli_interrupted()) {
+        cli_nothing_to_keep(true); /* until a frame is complete */
         job->renderer = noc_renderer_create(job->scene, &(noc_renderer_params){ .threads = args->threads }, job->log);
         status = job->renderer ? render_frames(job) : NOC_ERR_MEMORY;
+        cli_nothing_to_keep(false);
     }
     if (is_failure(status))
         return CLI_FAILURE;
