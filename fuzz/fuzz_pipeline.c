@@ -23,6 +23,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     char *paths[FUZZ_PARTS];
     noc_log *log = fuzz_log(&errors);
     noc_import_params params = noc_import_default_params();
+    params.isolate = false; /* it is the readers that are tried */
     params.crs = size & 1 ? "EPSG:25832" : NULL;
     for (int i = 0; i < n; i++) {
         char name[16];

@@ -16,6 +16,7 @@ import: geo city scene
 render: light scene image core
 backend: render light scene core
 cli:
+reader:
 '
 # Libraries that one room alone may touch (jansson: two; neither hands its values on).
 owners='

@@ -46,6 +46,7 @@ need libexpat1-dev "CityGML (XML)" module expat
 need libjansson-dev "Overpass JSON, specs of experiments" module jansson
 need libglu1-mesa-dev "cuts polygons into triangles" module glu
 need libassimp-dev "OBJ meshes" module assimp
+need libseccomp-dev "a fence around the program that reads OBJ and map files" module libseccomp
 need libopenexr-dev "EXR pictures" module OpenEXR
 need libpng-dev "PNG pictures" module libpng
 need libzip-dev "zipped city models" module libzip

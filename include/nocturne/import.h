@@ -41,10 +41,17 @@ typedef struct noc_import_params {
     noc_obj_up obj_up;      /* axis of OBJ files that points up (they do not say it); default y, as most programs write */
     bool allow_outside;     /* files that an input names (mtllib, glTF buffers, parts of a Shapefile) may lie anywhere; default:
                                below the input's folder alone, links followed. Nothing is ever fetched from a network */
+    bool isolate;           /* OBJ and map files are read by the program nocturne-reader, which is started for each of them, may
+                               read that file and its parts alone, and is ended when the call is cancelled; default true. It is
+                               looked for beside the library, in a folder nocturne there, and where the environment's
+                               NOCTURNE_READER says. false: in this process, where nothing stops the libraries that read */
+    double reader_time;     /* s that such a file may take; default 600 */
+    int reader_memory;      /* MB (1e6 bytes) of memory that its reader may have, and that it may hold; default 8000 */
     noc_progress progress;
 } noc_import_params;
 
-#define NOC_IMPORT_DEFAULTS(set) set(lod, 3) set(infer_lamps, NOC_SWITCH_AUTO) set(lamp_height, 6) set(lamp_lumens, 5000) set(lamp_kelvin, 3000)
+#define NOC_IMPORT_DEFAULTS(set) set(lod, 3) set(infer_lamps, NOC_SWITCH_AUTO) set(lamp_height, 6) set(lamp_lumens, 5000) set(lamp_kelvin, 3000) \
+    set(isolate, true) set(reader_time, 600) set(reader_memory, 8000)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_import_params, noc_import_default_params, NOC_IMPORT_DEFAULTS)
 #else
@@ -143,6 +150,9 @@ NOC_API noc_status noc_scene_load(noc_scene *scene, const char *const *paths, si
  * so is a table of which nothing tells that its points are lamps. Files of lamps in params are not read: only whether the path
  * is one of them counts. */
 NOC_API noc_status noc_inspect(noc_log *log, const char *path, const noc_import_params *params, noc_report **report);
+
+/* All that the program nocturne-reader does: its main. Not for others to call. Returns its exit status, or does not return. */
+NOC_API int noc_reader_main(void);
 
 /* Converts between the scene's local frame and any CRS (NULL: the scene's own, noc_scene_info.given_crs). xyz in place, easting northing height
  * (or longitude latitude height in degrees) order. */

@@ -130,6 +130,9 @@ typedef struct geo_triangles {
 bool geo_triangulate(const geo_polygon *polygon, geo_triangles *out, geo_issues *issues);
 void geo_triangles_free(geo_triangles *t);
 
+/* The same as often as another list counted it: reason is copied, examples are ids as that list joined them. */
+void geo_issues_add(geo_issues *issues, bool repaired, const char *reason, size_t count, const char *examples);
+
 /* Issues storage, used by the importer. */
 geo_issues *geo_issues_create(void);
 void geo_issues_destroy(geo_issues *issues);

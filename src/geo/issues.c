@@ -55,6 +55,17 @@ void geo_issue(geo_issues *issues, bool repaired, const char *reason, const char
     l->joined = NULL;
 }
 
+void geo_issues_add(geo_issues *issues, bool repaired, const char *reason, size_t count, const char *examples) {
+    if (!issues || !count)
+        return;
+    size_t lines = issues->lines.len;
+    geo_issue(issues, repaired, reason, examples);
+    struct line *l = find_line(issues, repaired, reason);
+    l->count += count - 1;
+    if (issues->lines.len > lines)
+        l->reason = arena_strdup(&issues->names, reason);
+}
+
 size_t geo_issues_count(const geo_issues *issues) { return issues ? issues->lines.len : 0; }
 
 void geo_issues_get(const geo_issues *issues, size_t i, const char **reason, bool *repaired, size_t *count,

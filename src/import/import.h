@@ -39,6 +39,23 @@ typedef struct mesh_place {
 /* noc_scene_add_mesh, with the triangles that it drops counted. false after reporting. */
 bool import_triangles(noc_scene *scene, const noc_mesh *mesh, geo_issues *issues);
 
+/* Where a reader of meshes puts materials and meshes, one by one. */
+typedef struct mesh_parts {
+    void *ctx;
+    noc_log *log;
+    geo_issues *issues;
+    int (*material)(void *ctx, const noc_material *material);                /* its index; negative after reporting */
+    noc_status (*mesh)(void *ctx, noc_mesh *mesh, double *positions);        /* the mesh's, as the file has them: may be moved */
+} mesh_parts;
+
+/* Parts that go into a scene. */
+typedef struct mesh_scene {
+    noc_scene *scene;
+    const mesh_place *place;
+    geo_issues *issues;
+} mesh_scene;
+mesh_parts mesh_scene_parts(mesh_scene *to);
+
 typedef struct noc_reader {
     const char *name;  /* "CityGML" */
     enum { NOC_READS_CITY, NOC_READS_MESH, NOC_READS_LAMPS } reads;
@@ -50,6 +67,11 @@ typedef struct noc_reader {
     noc_status (*read)(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format);
     noc_status (*read_mesh)(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,
                             const mesh_place *place, geo_issues *issues, const char **format);
+    /* Meshes that come as parts alone: read_mesh is then the same into a scene. */
+    noc_status (*read_parts)(const char *path, noc_stream *stream, const noc_import_params *params, const mesh_parts *parts,
+                             const char **format);
+    /* Is this content read by a library that nothing stops (GDAL, Assimp)? Then remote.c reads it. NULL: never. */
+    bool (*foreign)(const char *head, size_t size);
     const char *missing; /* not NULL: this build lacks the part; the text says which */
 } noc_reader;
 

@@ -1,6 +1,7 @@
 /* Runs the inputs: all are opened and recognised before any is read; then cities, meshes and lamps, in an order that lets
  * the city settle the place. Lamps are stood on the ground at the end. */
 #include "import/load.h"
+#include "import/remote.h"
 #include "city/city.h"
 #include "import/lamp_tags.h"
 
@@ -22,6 +23,10 @@ static noc_status check_params(const noc_import_params *p, noc_log *log) {
         return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp colour is %g K, not within 1000..40000", p->lamp_kelvin);
     if ((unsigned)p->infer_lamps > NOC_SWITCH_AUTO)
         return noc_error(log, NOC_ERR_ARGUMENT, "import: infer_lamps is %d, not a noc_switch", (int)p->infer_lamps);
+    if (!(p->reader_time > 0))
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: reader_time is %g s", p->reader_time);
+    if (p->reader_memory <= 0)
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: reader_memory is %d MB", p->reader_memory);
     if ((unsigned)p->obj_up > NOC_OBJ_UP_Z)
         return noc_error(log, NOC_ERR_ARGUMENT, "import: obj_up is %d, not a noc_obj_up", (int)p->obj_up);
     if (p->lamps.count > NOC_TEXTS || p->lamp_columns.count > NOC_TEXTS)
@@ -112,6 +117,7 @@ static noc_status recognise(importer *im, input *in, const noc_reader *const *re
         in->reader = find_reader(readers, head, size);
         if (!in->reader && in->named_lamps)
             in->reader = find_named(readers, head, size);
+        in->remote = in->reader && in->reader->foreign && im->params->isolate && in->reader->foreign(head, size);
         if (!size) {
             status = noc_error(im->log, NOC_ERR_FORMAT, "%s: the file is empty", noc_stream_name(stream));
         } else if (!in->reader) {
@@ -161,7 +167,17 @@ static void warn_if_far(importer *im, const double lo[2], const double hi[2], si
                                       : "are its coordinates in the CRS that --crs says?");
 }
 
-static noc_status read_mesh(importer *im, input *in, noc_stream *stream) {
+/* In the helper, or here. The sink is where progress is asked, and of maps where all goes. */
+static noc_status read_remote(importer *im, input *in, geo_sink *sink, const mesh_place *place, remote_result *result) {
+    mesh_scene to = { .scene = im->scene, .place = place, .issues = in->issues };
+    const mesh_parts parts = mesh_scene_parts(&to);
+    noc_status status = remote_read(in->reader, in->path, im->params, sink, place ? &parts : NULL, result);
+    if (*result->format)
+        in->file.format = arena_strdup(&im->report->arena, result->format);
+    return status;
+}
+
+static noc_status read_mesh(importer *im, input *in, noc_stream *stream, remote_result *result) {
     noc_status status = place_mesh(im);
     if (status)
         return status;
@@ -170,7 +186,9 @@ static noc_status read_mesh(importer *im, input *in, noc_stream *stream) {
     const mesh_place place = { im, place_mesh_points };
     double lo[2], hi[2];
     bounds_so_far(im, lo, hi);
-    status = in->reader->read_mesh(in->path, stream, im->params, im->scene, &place, in->issues, &in->file.format);
+    geo_sink sink = sink_create(im);
+    status = in->remote ? read_remote(im, in, &sink, &place, result)
+                        : in->reader->read_mesh(in->path, stream, im->params, im->scene, &place, in->issues, &in->file.format);
     if (!status)
         warn_if_far(im, lo, hi, floats);
     in->file.triangles = im->scene->indices.len / 3 - triangles;
@@ -217,13 +235,14 @@ static noc_status read_input(importer *im, size_t index) {
         noc_warn(im->log, "%s: the archive holds %zu more file%s like it, which %s not read: unpack it to read all", noc_stream_name(stream),
                  unread, unread == 1 ? "" : "s", unread == 1 ? "is" : "are");
     noc_status status;
+    remote_result result = { 0 };
     in->file.format = in->reader->name;
     if (in->reader->read_mesh) {
-        status = read_mesh(im, in, stream);
+        status = read_mesh(im, in, stream, &result);
     } else {
         geo_sink sink = sink_create(im);
         struct look_ahead *ahead = im->placed ? NULL : ahead_create(im, &sink);
-        status = in->reader->read(stream, im->params, &sink, &in->file.format);
+        status = in->remote ? read_remote(im, in, &sink, NULL, &result) : in->reader->read(stream, im->params, &sink, &in->file.format);
         if (ahead) { /* after an error too: the report holds what came before it */
             noc_status released = ahead_release(ahead);
             status = status ? status : released;
@@ -235,12 +254,12 @@ static noc_status read_input(importer *im, size_t index) {
     if (im->cancelled)
         status = NOC_ERR_CANCELLED;
     place_finish_file(im, status == NOC_OK);
-    if (!status && noc_stream_trailing(stream)) {
+    if (!status && (in->remote ? result.trailing : noc_stream_trailing(stream))) {
         noc_warn(im->log, "%s: bytes after the gzip data are ignored", in->path);
         geo_issue(in->issues, false, "bytes after the gzip data", "");
     }
     in->file.bytes = in->bytes;
-    in->file.bytes_read = noc_stream_read_bytes(stream);
+    in->file.bytes_read = in->remote ? result.bytes_read : noc_stream_read_bytes(stream);
     in->file.seconds = noc_wall_seconds() - start;
     im->bytes_before += (double)in->bytes;
     noc_stream_close(stream);

@@ -27,6 +27,7 @@ typedef struct input {
     uint64_t bytes;
     geo_issues *issues;
     noc_report_file file;     /* texts in the report's arena */
+    bool remote;              /* read by the helper */
     bool started, repeated;
     size_t lamps_lost;        /* that the reader or the sink found to have no place */
     bool named_lamps;         /* by noc_import_params.lamps */

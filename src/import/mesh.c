@@ -207,10 +207,8 @@ static noc_material convert_material(const struct aiMaterial *m, const char *nam
 /* ---- meshes ---- */
 
 typedef struct mesh_target {
-    noc_scene *scene;
-    const mesh_place *place;
+    const mesh_parts *parts;
     const double *offset; /* of the coordinates as Assimp has them, in the file's axes */
-    geo_issues *issues;
     bool z_up;
     obj_spread *spread;
 } mesh_target;
@@ -233,12 +231,11 @@ static bool join_polygons(cut_mesh *cut, double **xyz, uint32_t **indices, size_
 }
 
 static noc_status add_mesh(const mesh_target *to, const struct aiMesh *m, int material) {
-    noc_scene *scene = to->scene;
     size_t vertices = m->mNumVertices;
     double *xyz = noc_alloc_large(vertices * 3, sizeof(*xyz));
     uint32_t *indices = noc_alloc_large((size_t)m->mNumFaces * 6, sizeof(*indices));
     const char *name = m->mName.length ? m->mName.data : NULL;
-    cut_mesh cut = { .xyz = xyz, .indices = indices, .issues = to->issues, .name = name ? name : "unnamed" };
+    cut_mesh cut = { .xyz = xyz, .indices = indices, .issues = to->parts->issues, .name = name ? name : "unnamed" };
     bool memory = xyz && indices;
     for (size_t i = 0; i < vertices && memory; i++) {
         const struct aiVector3D *v = &m->mVertices[i];
@@ -252,12 +249,10 @@ static noc_status add_mesh(const mesh_target *to, const struct aiMesh *m, int ma
     memory = memory && join_polygons(&cut, &xyz, &indices, &vertices);
     if (memory)
         obj_spread_add(to->spread, xyz, vertices, indices, cut.triangle_count);
-    noc_status status = memory ? to->place->points(to->place->ctx, xyz, vertices)
-                               : noc_error(scene->log, NOC_ERR_MEMORY, "mesh %s: no memory for %zu vertices", cut.name, vertices);
     noc_mesh mesh = { .vertex_count = vertices, .positions = xyz, .triangle_count = cut.triangle_count, .indices = indices,
                       .material = material, .name = name };
-    if (!status && mesh.triangle_count && !import_triangles(scene, &mesh, to->issues))
-        status = NOC_ERR_UNSUPPORTED;
+    noc_status status = memory ? to->parts->mesh(to->parts->ctx, &mesh, xyz)
+                               : noc_error(to->parts->log, NOC_ERR_MEMORY, "mesh %s: no memory for %zu vertices", cut.name, vertices);
     geo_triangles_free(&cut.extra);
     free(xyz);
     free(indices);
@@ -276,8 +271,8 @@ static noc_status add_scene(const struct aiScene *from, const mesh_target *to) {
         if (*material < 0) {
             struct aiString name = { 0 };
             aiGetMaterialString(from->mMaterials[m->mMaterialIndex], "?mat.name", 0, 0, &name);
-            noc_material converted = convert_material(from->mMaterials[m->mMaterialIndex], name.data, to->issues);
-            *material = noc_scene_add_material(to->scene, &converted);
+            noc_material converted = convert_material(from->mMaterials[m->mMaterialIndex], name.data, to->parts->issues);
+            *material = to->parts->material(to->parts->ctx, &converted);
         }
         status = *material < 0 ? NOC_ERR_ARGUMENT : add_mesh(to, m, *material);
     }
@@ -298,10 +293,10 @@ static noc_status read_obj(const char *path, library *lib, const mesh_target *to
     noc_status status;
     if (!from) {
         const char *why = aiGetErrorString();
-        status = noc_error(to->scene->log, NOC_ERR_FORMAT, "%s: OBJ: %s", path, why && *why ? why : "not readable");
+        status = noc_error(to->parts->log, NOC_ERR_FORMAT, "%s: OBJ: %s", path, why && *why ? why : "not readable");
     } else {
         if (lib->missing)
-            noc_warn(to->scene->log, "%s: default material, because %s", path, lib->missing);
+            noc_warn(to->parts->log, "%s: default material, because %s", path, lib->missing);
         status = add_scene(from, to);
     }
     aiReleaseImport(from);
@@ -322,14 +317,14 @@ static noc_status plain_text(library *lib, double offset[3], const char *name, n
     return status;
 }
 
-static noc_status read_mesh(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,
-                            const mesh_place *place, geo_issues *issues, const char **format) {
+static noc_status read_parts(const char *path, noc_stream *stream, const noc_import_params *params, const mesh_parts *parts,
+                             const char **format) {
     *format = "OBJ";
-    library lib = { .issues = issues };
+    library lib = { .issues = parts->issues };
     double offset[3];
-    noc_status status = noc_stream_read_all(stream, scene->log, &lib.data, &lib.size);
+    noc_status status = noc_stream_read_all(stream, parts->log, &lib.data, &lib.size);
     if (!status)
-        status = plain_text(&lib, offset, noc_stream_name(stream), scene->log);
+        status = plain_text(&lib, offset, noc_stream_name(stream), parts->log);
     if (status || !lib.faces) { /* Assimp refuses a file without faces */
         free(lib.data);
         return status;
@@ -339,11 +334,10 @@ static noc_status read_mesh(const char *path, noc_stream *stream, const noc_impo
     lib.folder = (obj_folder){ .path = folder, .anywhere = params && params->allow_outside };
     lib.main_name = noc_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
     obj_spread spread = { 0 };
-    const mesh_target to = { .scene = scene, .place = place, .offset = offset, .issues = issues,
-                             .z_up = params && params->obj_up == NOC_OBJ_UP_Z, .spread = &spread };
+    const mesh_target to = { .parts = parts, .offset = offset, .z_up = params && params->obj_up == NOC_OBJ_UP_Z, .spread = &spread };
     status = read_obj(path, &lib, &to);
     if (!status)
-        obj_check_up(&spread, to.z_up, path, scene->log);
+        obj_check_up(&spread, to.z_up, path, parts->log);
     free(folder);
     free(lib.main_name);
     free(lib.missing);
@@ -351,7 +345,17 @@ static noc_status read_mesh(const char *path, noc_stream *stream, const noc_impo
     return status;
 }
 
-const noc_reader noc_reader_mesh = { .name = "OBJ", .reads = NOC_READS_MESH, .probe = probe, .read_mesh = read_mesh };
+static noc_status read_mesh(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,
+                            const mesh_place *place, geo_issues *issues, const char **format) {
+    mesh_scene to = { .scene = scene, .place = place, .issues = issues };
+    const mesh_parts parts = mesh_scene_parts(&to);
+    return read_parts(path, stream, params, &parts, format);
+}
+
+static bool foreign(const char *head, size_t size) { return true; }
+
+const noc_reader noc_reader_mesh = { .name = "OBJ", .reads = NOC_READS_MESH, .probe = probe, .read_mesh = read_mesh,
+                                     .read_parts = read_parts, .foreign = foreign };
 
 #else
 

@@ -9,3 +9,20 @@ bool import_triangles(noc_scene *scene, const noc_mesh *mesh, geo_issues *issues
         geo_issue(issues, false, "triangle without area, or with a coordinate that is no number or beyond all maps", mesh->name ? mesh->name : "unnamed");
     return true;
 }
+
+static int add_material(void *ctx, const noc_material *material) {
+    const mesh_scene *to = ctx;
+    return noc_scene_add_material(to->scene, material);
+}
+
+static noc_status add_mesh(void *ctx, noc_mesh *mesh, double *positions) {
+    const mesh_scene *to = ctx;
+    noc_status status = to->place->points(to->place->ctx, positions, mesh->vertex_count);
+    if (!status && mesh->triangle_count && !import_triangles(to->scene, mesh, to->issues))
+        status = NOC_ERR_UNSUPPORTED;
+    return status;
+}
+
+mesh_parts mesh_scene_parts(mesh_scene *to) {
+    return (mesh_parts){ .ctx = to, .log = to->scene->log, .issues = to->issues, .material = add_material, .mesh = add_mesh };
+}

@@ -96,6 +96,9 @@ static const noc_option import_options[] = {
     REAL(P, lamp_lumens, "lamp-lumens", "City", 0, 1e7, "lm", "flux of lamps with neither flux nor wattage"),
     REAL(P, lamp_kelvin, "lamp-kelvin", "City", 1000, 25000, "K", "colour temperature of lamps that tell none"),
     CHOICE(P, obj_up, "obj-up", "City", "y|z", "axis of OBJ files that points up"),
+    BOOL(P, isolate, "isolate", "Reading", "OBJ and map files are read in a process of its own, which can be stopped"),
+    REAL(P, reader_time, "reader-time", "Reading", 0.1, 1e6, "s", "time such a file may take"),
+    INT(P, reader_memory, "reader-memory", "Reading", 100, 1000000, "MB", "memory such a file may take, and what it may hold"),
     BOOL(P, allow_outside, "allow-outside", "Reading", "files that inputs name may lie outside the inputs' folders"),
     END,
 };

@@ -125,13 +125,55 @@ if "$real" --version | grep -q gdal; then
     expect "a table of a Shapefile that lies elsewhere" 1 'poles.DBF .*lies outside.*--allow-outside' info pipes/poles.shp
     fine "unless that is allowed" info --allow-outside pipes/poles.shp
 
+    # ---- it can be stopped ----
+    # interrupt SIGNAL ARGUMENT...: a signal after a second of work
+    interrupt() {
+        signal=$1
+        shift
+        env --default-signal=INT "$real" "$@" >out 2>err </dev/null &
+        pid=$!
+        sleep 1
+        kill -0 $pid && kill -"$signal" $pid
+        (sleep 20; kill -KILL $pid) 2>/dev/null &
+        killer=$!
+        wait $pid
+        status=$?
+        kill $killer 2>/dev/null
+    }
+    mkdir temporary
+    export TMPDIR=$work/temporary
+    python3 "$here/geopackage.py" in/endless.gpkg view
+    interrupt INT info in/endless.gpkg
+    test $status = 130; result $? "one Ctrl-C ends a query that never does" "status $status"
+    interrupt TERM render in/endless.gpkg -o endless.png
+    test $status = 143 && test ! -e endless.png; result $? "and SIGTERM" "status $status"
+    interrupt INT info --no-isolate in/endless.gpkg
+    test $status = 130; result $? "and Ctrl-C where it is read in the same process" "status $status"
+    expect "it is ended after the time that it may take" 1 'limit --reader-time' info --reader-time 0.5 in/endless.gpkg
+    test -z "$(ls temporary)"; result $? "nothing is left behind" "$(ls temporary)"
+    python3 - <<'END'
+with open("in/large.obj", "w") as f:
+    f.writelines("v %d %d 0\n" % (i % 1000, i // 1000) for i in range(1000000))
+    f.writelines("f %d %d %d\n" % (i + 1, i + 2, i + 1001) for i in range(990000))
+END
+    expect "it is ended where it takes more memory than it may" 1 'limit --reader-memory, 400 MB|no memory|OBJ:' info --reader-memory 400 in/large.obj
+    rm in/large.obj
+    for what in NOCTURNE_READER=/nonexistent NOCTURNE_READER=/bin/false; do
+        (export "$what"; run info in/poles.shp; echo $status >ended)
+        test "$(cat ended)" = 1 && test -s err; result $? "the wrong helper is an error ($what)" "$(cat err)"
+    done
+    fine "in the same process none is needed" info --no-isolate in/poles.shp
+    for crs in "+init=$work/in/pipe:x" "+proj=longlat +nadgrids=$work/in/pipe"; do
+        lamps "{\"type\": \"name\", \"properties\": {\"name\": \"$crs\"}}"
+        run info --reader-time 10 in/lamps.geojson
+        test $status -lt 2; result $? "a pipe that GDAL would open: ${crs%=*}" "status $status"
+    done
+
     # ---- nothing is written ----
     mkdir packages
     for kind in plain log; do python3 "$here/geopackage.py" packages/$kind.gpkg $kind; done
     state() { ls -l --time-style=full-iso packages; cksum packages/*; }
     state >before
-    mkdir temporary
-    export TMPDIR=$work/temporary
     run info packages/plain.gpkg
     test $status = 0 && grep -q 'lamps *2$' out; result $? "a GeoPackage is read"
     run info packages/log.gpkg

@@ -1,0 +1,203 @@
+/* The helper's side: reads one file as it is asked to, and sends what its reader emits. */
+#include "import/load.h"
+#include "import/remote.h"
+
+#include <nocturne/option.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+typedef struct serving {
+    remote_record out, batch; /* small records wait for others */
+    noc_arena texts;
+    const noc_reader *reader;
+    const char *path;
+    noc_import_params params;
+    size_t lamps_lost;
+    bool named_lamps, inspect;
+    int materials;
+} serving;
+
+#define BATCH (1 << 16)
+
+static void emit(serving *s, uint32_t kind) {
+    remote_add(&s->batch, kind, &s->out);
+    bool waits = kind == REMOTE_LAMP || kind == REMOTE_MATERIAL || kind == REMOTE_ISSUE || kind == REMOTE_CRS;
+    if ((!waits || s->batch.bytes.len > BATCH) && !remote_send(REMOTE_FD, &s->batch))
+        _exit(1); /* whoever asked is gone: so are we */
+}
+
+static void on_message(void *user, noc_log_level level, const char *text) {
+    serving *s = user;
+    int32_t n = (int32_t)level;
+    remote_put(&s->out, &n, sizeof(n));
+    remote_put_text(&s->out, text);
+    emit(s, REMOTE_LOG);
+}
+
+/* Axes: foreign readers give easting first, whatever the CRS says, so no answer is waited for. */
+static noc_status on_crs(void *ctx, const char *srs_name, const char *place, bool *lat_first) {
+    serving *s = ctx;
+    remote_put_text(&s->out, srs_name);
+    remote_put_text(&s->out, place);
+    emit(s, REMOTE_CRS);
+    *lat_first = false;
+    return NOC_OK;
+}
+
+static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
+    serving *s = ctx;
+    remote_put(&s->out, lamp, sizeof(*lamp));
+    remote_put_text(&s->out, lamp->id);
+    emit(s, REMOTE_LAMP);
+    return NOC_OK;
+}
+
+static bool on_progress(void *ctx, double done) {
+    serving *s = ctx;
+    remote_put(&s->out, &done, sizeof(done));
+    emit(s, REMOTE_PROGRESS);
+    return true;
+}
+
+static void on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
+    serving *s = ctx;
+    uint64_t numbers[] = { points, count };
+    remote_put(&s->out, numbers, sizeof(numbers));
+    for (size_t i = 0; i < count; i++) {
+        uint64_t values = columns[i].values;
+        unsigned char mapped = columns[i].mapped;
+        remote_put(&s->out, &values, sizeof(values));
+        remote_put(&s->out, &mapped, sizeof(mapped));
+        remote_put_text(&s->out, columns[i].name);
+        remote_put_text(&s->out, columns[i].field);
+        remote_put_text(&s->out, columns[i].unit);
+        remote_put_text(&s->out, columns[i].example);
+    }
+    emit(s, REMOTE_COLUMNS);
+}
+
+static int on_material(void *ctx, const noc_material *material) {
+    serving *s = ctx;
+    remote_put(&s->out, material, sizeof(*material));
+    emit(s, REMOTE_MATERIAL);
+    return s->materials++;
+}
+
+static noc_status on_mesh(void *ctx, noc_mesh *mesh, double *positions) {
+    serving *s = ctx;
+    remote_mesh m = { mesh->vertex_count, mesh->triangle_count, mesh->material };
+    remote_put(&s->out, &m, sizeof(m));
+    remote_put_text(&s->out, mesh->name);
+    remote_put(&s->out, mesh->positions, mesh->vertex_count * 3 * sizeof(double));
+    remote_put(&s->out, mesh->indices, mesh->triangle_count * 3 * sizeof(uint32_t));
+    emit(s, REMOTE_MESH);
+    return NOC_OK;
+}
+
+/* ---- the request ---- */
+
+static bool receive_all(void *data, size_t size) {
+    for (char *p = data; size;) {
+        ssize_t n = recv(REMOTE_FD, p, size, 0);
+        if (n <= 0)
+            return false;
+        p += n;
+        size -= (size_t)n;
+    }
+    return true;
+}
+
+static void set_option(serving *s, const char *name, const char *value) {
+    for (const noc_option *o = noc_import_options(); o->name; o++)
+        if (!strcmp(o->name, name))
+            noc_option_set(o, &s->params, arena_strdup(&s->texts, value), NULL);
+}
+
+static bool take(serving *s, uint32_t kind, remote_record *r) {
+    remote_asked asked;
+    if (kind == REMOTE_READER) {
+        const char *name = remote_get_text(r);
+        for (const noc_reader *const *reader = noc_readers; *reader; reader++)
+            if (!strcmp((*reader)->name, name))
+                s->reader = *reader;
+    } else if (kind == REMOTE_PATH) {
+        s->path = arena_strdup(&s->texts, remote_get_text(r));
+    } else if (kind == REMOTE_OPTION) {
+        const char *name = remote_get_text(r), *value = remote_get_text(r);
+        if (!r->bad)
+            set_option(s, name, value);
+    } else if (kind == REMOTE_SINK && remote_get(r, &asked, sizeof(asked)) && getppid() != asked.parent) {
+        return false; /* it ended before we asked to end with it */
+    } else if (kind == REMOTE_SINK) {
+        s->named_lamps = asked.named_lamps;
+        s->inspect = asked.inspect;
+    }
+    return !r->bad;
+}
+
+static bool receive(serving *s) {
+    for (;;) {
+        remote_head head;
+        remote_record r = { 0 };
+        if (!receive_all(&head, sizeof(head)) || head.size_high || head.size_low > 1 << 30)
+            return false;
+        array_reserve(&r.bytes, (size_t)head.size_low);
+        r.bytes.len = head.size_low;
+        bool good = receive_all(r.bytes.data, r.bytes.len) && take(s, head.kind, &r);
+        array_free(&r.bytes);
+        if (!good || head.kind == REMOTE_GO)
+            return good && s->reader && s->path;
+    }
+}
+
+/* ---- the answer ---- */
+
+static void send_issues(serving *s, const geo_issues *issues) {
+    for (size_t i = 0; i < geo_issues_count(issues); i++) {
+        const char *reason, *examples;
+        bool repaired;
+        size_t count;
+        geo_issues_get(issues, i, &reason, &repaired, &count, &examples);
+        remote_put(&s->out, &repaired, sizeof(repaired));
+        remote_put(&s->out, &count, sizeof(count));
+        remote_put_text(&s->out, reason);
+        remote_put_text(&s->out, examples);
+        emit(s, REMOTE_ISSUE);
+    }
+}
+
+static void serve(serving *s) {
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_DEBUG, .message = on_message, .user = s });
+    geo_issues *issues = geo_issues_create();
+    geo_sink sink = { .ctx = s, .log = log, .issues = issues, .lamps_lost = &s->lamps_lost, .crs = on_crs, .lamp = on_lamp,
+                      .progress = on_progress, .columns = on_columns, .named_lamps = s->named_lamps, .inspect = s->inspect };
+    const mesh_parts parts = { .ctx = s, .log = log, .issues = issues, .material = on_material, .mesh = on_mesh };
+    const char *format = s->reader->name;
+    remote_end end = { .status = NOC_ERR_IO };
+    noc_stream *stream = noc_stream_open(s->path, log);
+    if (stream) {
+        end.status = s->reader->read_parts ? (int32_t)s->reader->read_parts(s->path, stream, &s->params, &parts, &format)
+                                           : (int32_t)s->reader->read(stream, &s->params, &sink, &format);
+        end.bytes_read = noc_stream_read_bytes(stream);
+        end.trailing = noc_stream_trailing(stream);
+    }
+    send_issues(s, issues);
+    end.lamps_lost = s->lamps_lost;
+    remote_put(&s->out, &end, sizeof(end));
+    remote_put_text(&s->out, format);
+    emit(s, REMOTE_END);
+}
+
+int noc_reader_main(void) {
+    int type;
+    socklen_t size = sizeof(type);
+    serving s = { .params = noc_import_default_params() };
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getsockopt(REMOTE_FD, SOL_SOCKET, SO_TYPE, &type, &size) || !receive(&s))
+        return 1;
+    remote_confine(s.path, s.reader->read_parts != NULL, &s.params);
+    serve(&s);
+    _exit(0); /* what is left to tidy up goes with the process */
+}
