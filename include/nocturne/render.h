@@ -181,6 +181,13 @@ typedef struct noc_light_stats {
 /* All 0 but lights and scene_bytes before the first frame, and for methods that draw no candidates. */
 NOC_API void noc_renderer_light_stats(const noc_renderer *renderer, noc_light_stats *stats);
 
+/* Writes the influence volumes that these parameters ask for (influence, influence_boxes, influence_cluster; NULL: the defaults), whatever the
+ * candidates are, as OBJ to look at: metres in the scene's local frame, y up as most programs take it (x, y, z of the scene are written as x z -y).
+ * Each volume is an object, a sphere or the part of one that one-sided lights face, its corners on the surface, its name that of its
+ * first light; visibility-aware boxes follow, and names tell which volume lies in which. The target
+ * is replaced when the file is whole. About 6 kB a volume. Not during a frame. */
+NOC_API noc_status noc_renderer_write_influence(noc_renderer *renderer, const noc_render_params *params, const char *path);
+
 /* The trace floor: renders the next frame as noc_renderer_frame does, keeps its rays (primary, visibility, bias, final, and
  * sky where it is on), then traces those rays again through the same structure and nothing else. Wall seconds of the second
  * time into *seconds. Takes about 600 bytes for 16 rays while it lasts. */

@@ -40,7 +40,9 @@ int cli_check_output(const cli_command *command, const char *path, int endings, 
         return CLI_FAILURE;
     }
     bool png = has_ending(path, ".png"), exr = has_ending(path, ".exr");
-    if (!((endings & CLI_PNG) && png) && !((endings & CLI_EXR) && exr))
+    if ((endings & CLI_OBJ) && !has_ending(path, ".obj"))
+        return cli_usage(command, "%s must end in .obj", shown);
+    if (!((endings & CLI_PNG) && png) && !((endings & CLI_EXR) && exr) && !(endings & CLI_OBJ))
         return cli_usage(command, "%s must end in .png%s: the ending decides the format", shown, endings & CLI_EXR ? " or .exr" : "");
     if (exists && !S_ISREG(st.st_mode)) {
         cli_error("%s is no ordinary file and is left alone", shown);

@@ -11,6 +11,7 @@ static const noc_option own_options[] = {
     { "show", "Output", NOC_OPTION_CHOICE, offsetof(A, show), 0, 0,
       "picture|lights|density|light|weight|confidence|rays|variance|error", "", "what is written: the picture, or how lights were sampled" },
     TEXT("show-range", "Output", show_range, "LOW,HIGH", "ends of that view's colour bar; else found from its numbers"),
+    TEXT("influence-obj", "Output", influence_obj, "FILE", "write the influence volumes of --candidates bvh, and boxes, as OBJ too"),
     CLI_PRESET(A, "Estimator"),
     { "frames", "Output", NOC_OPTION_INT, offsetof(A, frames), 1, 1e9, NULL, "", "frames that are rendered and averaged" },
     { "time", "Output", NOC_OPTION_REAL, offsetof(A, time), 0, 1e9, NULL, "s",
@@ -116,6 +117,15 @@ static void warn_of_idle(const render_args *args) {
     }
 }
 
+static int check_influence(const render_args *args) {
+    if (!args->influence_obj)
+        return CLI_OK;
+    bool draws = args->render.method == NOC_METHOD_RIS || args->render.method == NOC_METHOD_RESTIR;
+    if (args->render.candidates != NOC_CANDIDATES_BVH || !draws)
+        return cli_usage(&cli_render, "--influence-obj needs --candidates bvh, with the method ris or restir: others have no influence volumes");
+    return cli_check_output(&cli_render, args->influence_obj, CLI_OBJ, &args->common);
+}
+
 /* All that can be wrong with the arguments is found before any file is read. */
 static int check(render_job *job) {
     render_args *args = job->args;
@@ -131,6 +141,7 @@ static int check(render_job *job) {
     status = status ? status : cli_parse_camera(job);
     status = status ? status : cli_parse_show(args);
     status = status ? status : cli_check_output(&cli_render, args->output, CLI_PNG | CLI_EXR, &args->common);
+    status = status ? status : check_influence(args);
     if (!status)
         warn_of_idle(args);
     return status;
@@ -238,7 +249,7 @@ static int work(render_job *job) {
         cli_error("interrupted: no frame was complete, nothing was saved");
         return ending;
     }
-    if (cli_write_picture(job))
+    if (cli_write_picture(job) || (args->influence_obj && noc_renderer_write_influence(job->renderer, &args->render, args->influence_obj)))
         return CLI_FAILURE;
     cli_warn_of_picture(job);
     /* After the picture: the floor is measured on one more frame. */

@@ -13,7 +13,7 @@ typedef struct render_args {
     bool stats;
     int preset;              /* noc_preset */
     int show;                /* 0: the picture, else 1 + noc_aov */
-    const char *show_range;
+    const char *show_range, *influence_obj;
     noc_channel_params range;
     int view;                /* noc_view */
     const char *eye, *target, *camera_crs;

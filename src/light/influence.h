@@ -11,6 +11,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 
 enum { NOC_INFLUENCE_WIDTH = 16, NOC_INFLUENCE_LEVELS = 8, NOC_QUERY_POINTS = 16 };
 
@@ -131,5 +132,9 @@ void noc_found_free(noc_found *found);
 
 /* Does the volume of a light hold the points of a query? */
 bool noc_influence_holds(const noc_influence *influence, uint32_t light, const noc_near_query *query);
+
+/* influence_obj.c: each volume as a closed body, each box as a box, in OBJ with y up. set: S_r that was set, 0: the one that was found. What cannot be
+ * written shows in the file's error flag. */
+void noc_influence_write(const noc_influence *influence, const noc_scene *scene, double set, FILE *file);
 
 #endif

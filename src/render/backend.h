@@ -45,6 +45,7 @@ typedef struct noc_schedule {
     int next_history;          /* set that feeds the next frame, -1: none */
 } noc_schedule;
 
+struct noc_influence;
 typedef struct noc_backend {
     const char *name;
     /* Builds the ray tracing structure. *state is only set on success. */
@@ -67,6 +68,8 @@ typedef struct noc_backend {
     void (*stats)(void *state, noc_frame_stats *stats);
     /* Of the structure that these parameters (of the last frame; NULL: there was none) draw candidates from. */
     void (*light_stats)(void *state, const noc_render_params *params, noc_light_stats *stats);
+    /* Influence volumes for these parameters, whatever they draw from; the backend's own, until the next call of any. */
+    noc_status (*influence)(void *state, const noc_render_params *params, const struct noc_influence **volumes);
     /* Rays of the stages run between record(true) and record(false) are kept; replay traces them and nothing else. */
     void (*record)(void *state, bool on);
     noc_status (*replay)(void *state, double *seconds);

@@ -1,4 +1,6 @@
 /* The public renderer: checks, drives a backend through the schedule of a frame, keeps history. */
+#include "image/internal.h"
+#include "light/influence.h"
 #include "render/backend.h"
 
 #include <stdio.h>
@@ -204,6 +206,20 @@ void noc_renderer_get_stats(const noc_renderer *r, noc_frame_stats *stats) { *st
 void noc_renderer_light_stats(const noc_renderer *r, noc_light_stats *stats) {
     *stats = (noc_light_stats){ 0 };
     r->backend->light_stats(r->state, r->history.started ? &r->history.params : NULL, stats);
+}
+
+noc_status noc_renderer_write_influence(noc_renderer *r, const noc_render_params *params, const char *path) {
+    const noc_render_params defaults = noc_render_default_params();
+    const noc_influence *volumes;
+    output o;
+    params = params ? params : &defaults;
+    noc_status status = noc_render_check(params, r->log);
+    status = status ? status : r->backend->influence(r->state, params, &volumes);
+    status = status ? status : output_open(&o, path, r->log);
+    if (status)
+        return status;
+    noc_influence_write(volumes, r->scene, params->influence, o.file);
+    return output_close(&o, ferror(o.file) ? output_failed(&o, r->log) : NOC_OK, r->log);
 }
 
 noc_status noc_renderer_trace_floor(noc_renderer *r, const noc_camera *camera, const noc_render_params *params,

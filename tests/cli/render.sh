@@ -113,4 +113,82 @@ run render $small --candidates bvh --show lights --show-range 0,7 -o b.png
 test $status = 0 && ! cmp -s lights.png b.png; result $? "--show-range sets the colour bar"
 run render $small --show picture -o b.png
 test $status = 0 && cmp -s a.png b.png && test -z "$(meta a.png show)"; result $? "--show picture is the picture"
+
+# Influence volumes as OBJ: closed bodies that face outwards; of one-sided lights the half that they face, S_r sqrt(I) around their shape.
+cat >lamp.obj <<'OBJ'
+mtllib lamp.mtl
+v -5 0 -5
+v 5 0 -5
+v 5 0 5
+v -5 0 5
+v -.5 2 -.5
+v .5 2 -.5
+v .5 2 .5
+v -.5 2 .5
+usemtl floor
+f 4 3 2 1
+usemtl lamp
+f 5 6 7 8
+OBJ
+printf 'newmtl floor\nKd .5 .5 .5\nnewmtl lamp\nKd 0 0 0\nKe 40 40 40\n' >lamp.mtl
+see="--eye 4,-4,1 --target 0,0,0 --size 32x18 --frames 1 --candidates bvh"
+cat >look.py <<'LOOK'
+import math, sys
+vertices, objects, faces = [], {}, None
+for line in open(sys.argv[1]):
+    word = line.split()
+    if word[0] == "o":
+        faces = objects.setdefault(word[1], [])
+    elif word[0] == "v":
+        vertices.append(tuple(map(float, word[1:])))
+    elif word[0] == "f":
+        faces.append([int(i) - 1 for i in word[1:]])
+assert all(math.isfinite(x) for v in vertices for x in v)
+def volume(faces):
+    edges, total = {}, 0
+    for f in faces:
+        for a, b in zip(f, f[1:] + f[:1]):
+            assert (a, b) not in edges, "an edge twice"
+            edges[a, b] = True
+        for b, c in zip(f[1:], f[2:]):
+            p, q, r = (vertices[i] for i in (f[0], b, c))
+            total += (p[0] * (q[1] * r[2] - q[2] * r[1]) - p[1] * (q[0] * r[2] - q[2] * r[0]) + p[2] * (q[0] * r[1] - q[1] * r[0])) / 6
+    assert all((b, a) in edges for a, b in edges), "not closed"
+    return total
+sizes = {name: volume(faces) for name, faces in objects.items()}
+points = lambda name: [vertices[i] for i in sorted({i for f in objects[name] for i in f})]
+LOOK
+run render lamp.obj $see --influence 3 -o b.png --influence-obj volumes.obj
+test $status = 0 && python3 - volumes.obj <<'CHECK'
+exec(open("look.py").read())
+assert len(objects) == 2, objects.keys() # two triangles, which shine down
+corners = [(-.5, -.5), (.5, -.5), (.5, .5), (-.5, .5)]
+for name, at in zip(sorted(objects), ((0, 1, 2), (0, 2, 3))):
+    there = []
+    for at in ((0, 1, 2), (0, 2, 3)):
+        c = (sum(corners[i][0] for i in at) / 3, 2, sum(corners[i][1] for i in at) / 3)
+        shape = max(math.dist(c, (corners[i][0], 2, corners[i][1])) for i in at)
+        radius = 3 * math.sqrt(40 * 0.5) + shape
+        there.append(all(abs(math.dist(p, c) / radius - 1) < 1e-3 for p in points(name)))
+        if there[-1]:
+            assert max(p[1] for p in points(name)) < 2.0011 and sum(abs(p[1] - 2.001) < 1e-4 for p in points(name)) == 16, name
+            assert 0.9 < sizes[name] / (2 / 3 * math.pi * radius ** 3) < 1, sizes # of half a sphere, its corners on the surface
+    assert sum(there) == 1, (name, there)
+CHECK
+result $? "influence volumes as OBJ: half spheres under lights that shine down"
+run info volumes.obj
+test $status = 0 && ! grep -qi 'skipped' out; result $? "which can be read again"
+run render builtin:city --city-size 150 --size 32x18 --frames 1 --candidates bvh --influence-boxes visible -o b.png --influence-obj volumes.obj
+test $status = 0 && python3 - volumes.obj <<'CHECK'
+exec(open("look.py").read())
+volumes, boxes = [n for n in objects if n.startswith("volume_")], [n for n in objects if n.startswith("box_")]
+assert len(volumes) > 300 and len(boxes) > 20 and all(s > 0 for s in sizes.values()), (len(volumes), len(boxes))
+assert {n.split("_in_")[1] for n in volumes} == set(boxes)
+assert any(abs(len(points(n)) - (1 + 6 * 16)) == 0 for n in volumes) and any(len(points(n)) == 2 + 11 * 16 for n in volumes) # one-sided, and all around
+assert all(len(points(n)) == 8 for n in boxes)
+CHECK
+result $? "and boxes, with the volumes that lie in them"
+expect "only where there are volumes" 2 'influence-obj needs --candidates bvh' render $small -o b.png --influence-obj volumes.obj
+expect "under a name that tells" 2 'volumes.ply must end in .obj' render $small --candidates bvh -o b.png --influence-obj volumes.ply
+expect "in a folder that is there" 1 'its folder cannot be used' render $small --candidates bvh -o b.png --influence-obj gone/volumes.obj
 finish

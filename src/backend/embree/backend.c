@@ -282,6 +282,7 @@ const noc_backend noc_backend_embree = {
     .aov = noc_embree_read_view,
     .stats = stats,
     .light_stats = noc_embree_light_stats,
+    .influence = noc_embree_influence,
     .record = record,
     .replay = replay,
 };

@@ -227,6 +227,7 @@ struct core_context noc_embree_past(const embree_state *s, const struct core_con
 size_t noc_embree_past_bytes(const embree_state *s);
 size_t noc_embree_light_bytes(const embree_state *s);
 void noc_embree_light_stats(void *state, const noc_render_params *params, noc_light_stats *stats);
+noc_status noc_embree_influence(void *state, const noc_render_params *params, const struct noc_influence **volumes);
 
 /* passes.c: one pass over one tile */
 void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t);

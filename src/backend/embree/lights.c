@@ -63,6 +63,13 @@ static noc_status prepare_influence(embree_state *s, const noc_render_params *p)
     return s->influence ? NOC_OK : NOC_ERR_MEMORY;
 }
 
+noc_status noc_embree_influence(void *state, const noc_render_params *params, const struct noc_influence **volumes) {
+    embree_state *s = state;
+    noc_status status = prepare_influence(s, params);
+    *volumes = s->influence;
+    return status;
+}
+
 static noc_status prepare(embree_state *s, const noc_render_params *p) {
     noc_status status;
     switch (p->candidates) {
