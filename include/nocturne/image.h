@@ -112,7 +112,7 @@ NOC_API noc_status noc_image_compare(const noc_image *x, const noc_image *r, con
 NOC_API noc_status noc_image_difference(const noc_image *x, const noc_image *r, const char *unit, uint8_t **out, int *width,
                                         int *height, noc_log *log);
 
-/* One number a pixel that is no colour, such as a view of the light sampling (noc_renderer_aov). Rows from the top. */
+/* A number or a vector a pixel that is no colour, such as a view of the light sampling (noc_renderer_aov). Rows from the top. */
 typedef enum noc_channel_scale {
     NOC_CHANNEL_LINEAR, NOC_CHANNEL_LOG, /* best shown by a colour bar with even steps, or even ratios */
     NOC_CHANNEL_LABELS                   /* numbers are names: each is shown in a colour of its own */
@@ -120,24 +120,27 @@ typedef enum noc_channel_scale {
 
 typedef struct noc_channel {
     int width, height;
-    float *value;            /* width * height; 0 or more, or -1 where there is none; owned */
+    int components;          /* 1, or 3: a unit vector a pixel */
+    float *value;            /* width * height * components; 0 or more, or -1 where there is none (vectors: 0 0 0); owned */
     noc_channel_scale scale;
     const char *name, *unit; /* "rays", "rays a pixel"; unit "" for plain ratios and labels. These and title are not owned */
     const char *title;       /* what the numbers are, for the legend: ASCII */
 } noc_channel;
 
-NOC_API noc_channel *noc_channel_create(int width, int height, noc_log *log); /* -1 all over; NULL after reporting an error */
+/* None all over; NULL after reporting an error. */
+NOC_API noc_channel *noc_channel_create(int width, int height, int components, noc_log *log);
 NOC_API void noc_channel_destroy(noc_channel *channel);
 
 typedef struct noc_channel_params {
     double low, high; /* values at the ends of the colour bar; equal: taken from the channel */
 } noc_channel_params;
 
-/* In colours, with a legend below; pixels without a value are grey. 8-bit sRGB, *out is malloc'ed (free it), its size in
+/* In colours, with a legend below; pixels without a value are grey, vectors are (v + 1) / 2 as red, green, blue. 8-bit sRGB, *out is malloc'ed (free it), its size in
  * *width, *height. NULL params: the bar's ends are round numbers around all but the lowest and highest half percent. */
 NOC_API noc_status noc_channel_to_srgb8(const noc_channel *channel, const noc_channel_params *params, uint8_t **out, int *width,
                                         int *height, noc_log *log);
-/* By the name's ending: .png in colours, as above; .exr with the numbers, floats in one channel "Y", the unit as "units". */
+/* By the name's ending: .png in colours, as above; .exr with the numbers, floats in one channel "Y" (vectors: "X", "Y", "Z"), the
+ * unit as "units". */
 NOC_API noc_status noc_channel_write(const noc_channel *channel, const char *path, const noc_channel_params *params,
                                      const noc_image_meta *meta, noc_log *log);
 

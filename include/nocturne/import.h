@@ -157,6 +157,7 @@ NOC_API int noc_reader_main(void);
 /* Converts between the scene's local frame and any CRS (NULL: the scene's own, noc_scene_info.given_crs). xyz in place, easting northing height
  * (or longitude latitude height in degrees) order. */
 NOC_API noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xyz[3]);
+NOC_API noc_status noc_scene_from_local(const noc_scene *scene, const char *crs, double xyz[3]);
 
 #ifdef __cplusplus
 }

@@ -28,7 +28,7 @@ typedef enum noc_isa {
 NOC_API const char *noc_isa_name(noc_isa isa); /* "avx2" */
 NOC_API bool noc_isa_runs(noc_isa isa);        /* on this processor */
 
-/* Views of how lights were sampled, one number a pixel: docs/views.md. The reservoir is the one that the frame shaded. */
+/* Views of how lights were sampled, and of the surfaces that are seen: docs/views.md. The reservoir is the one that the frame shaded. */
 typedef enum noc_aov {
     NOC_AOV_LIGHTS,     /* lights that the query found: bvh: volumes that hold the point; lists: entries of the tile's list */
     NOC_AOV_DENSITY,    /* of the light that this frame's candidates chose: how often it is expected among a pixel's candidates */
@@ -38,6 +38,10 @@ typedef enum noc_aov {
     NOC_AOV_RAYS,       /* shadow rays traced for the pixel in the last frame, for the sky too */
     NOC_AOV_VARIANCE,   /* of the luminance of one frame, (cd/m2)^2, from the frames accumulated since it was asked for */
     NOC_AOV_ERROR,      /* relative standard error of their mean: sqrt(variance / frames) / mean */
+    NOC_AOV_DEPTH,      /* distance from the eye of what the last frame saw, m */
+    NOC_AOV_NORMAL,     /* its unit normal on the viewer's side, in the scene's local frame: three components */
+    NOC_AOV_CLASS,      /* its noc_class */
+    NOC_AOV_OBJECT,     /* its object, for noc_scene_object_name; exact below 2^24 */
     NOC_AOV_COUNT
 } noc_aov;
 

@@ -102,7 +102,35 @@ NOC_API noc_status noc_scene_commit(noc_scene *scene);
  * it was: no such light, it was not made to move, another kind, or what noc_scene_add_light would refuse. */
 NOC_API noc_status noc_scene_move_light(noc_scene *scene, int index, const noc_light *to);
 
-/* Place of the scene in the world: crs is any definition PROJ reads, NULL for none. */
+/* A light as the scene has it now, to list and to map: those of noc_scene_add_light, of inputs, and the triangles of meshes that
+ * shine, which noc_scene_commit adds. */
+typedef struct noc_light_info {
+    noc_light light;     /* to the precision of floats, in the local frame; direction is set for flat kinds too; name belongs to
+                          * the scene: a lamp's id, or the name of the mesh */
+    double centre[3];    /* local metres */
+    double lumens;       /* luminous flux that leaves it, from both sides where it is two-sided */
+    double area;         /* m2; of a disc, triangle or parallelogram one side, 0 for points */
+    bool two_sided;
+} noc_light_info;
+
+/* index is below noc_scene_info.lights, and what NOC_AOV_LIGHT shows; else NOC_ERR_ARGUMENT after reporting. */
+NOC_API noc_status noc_scene_get_light(const noc_scene *scene, size_t index, noc_light_info *info);
+
+/* Name of an object that NOC_AOV_OBJECT shows: the id in its file (gml:id), or of a lamp. NULL where it has none, and where there
+ * is no such object. Belongs to the scene. */
+NOC_API const char *noc_scene_object_name(const noc_scene *scene, size_t object);
+
+/* Place of the scene in the world: crs is any definition PROJ reads, NULL for none. To be said before a load, which keeps to
+ * it, where things of one's own are added first: noc_scene_load commits the scene, so planned lamps go in before. Their local
+ * coordinates are those in crs less origin, which should lie within some kilometres of the city:
+ *
+ *     noc_scene_set_crs(scene, "EPSG:25832", (double[3]){ 678000, 5403000, 370 });
+ *     double at[3] = { 678120.5, 5403410.2, 378 };
+ *     noc_scene_to_local(scene, NULL, at);
+ *     noc_scene_add_light(scene, &(noc_light){ .kind = NOC_LIGHT_DISC, .position = { at[0], at[1], at[2] }, ... });
+ *     noc_scene_load(scene, paths, count, &params, &report);
+ *
+ * Such a lamp stays where it was put, with whatever name it has; lamps are inferred beside it unless params say otherwise. */
 NOC_API noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double origin[3]);
 
 typedef struct noc_scene_info {
@@ -142,6 +170,15 @@ typedef struct noc_camera {
 } noc_camera;
 
 #define noc_camera_default() ((noc_camera){ .up = { 0, 0, 1 }, .fov_deg = 50 })
+
+/* Where a picture of width x height pixels shows the place xyz (local metres): x to the right, y down, the first pixel's centre
+ * at 0.5, 0.5; and its distance from the eye (may be NULL). It may lie outside of the picture, and behind something. false:
+ * behind the camera, or the camera looks nowhere. */
+NOC_API bool noc_camera_project(const noc_camera *camera, int width, int height, const double xyz[3], double pixel[2],
+                                double *distance);
+/* The place that is seen at pixel, so far from the eye (NOC_AOV_DEPTH), local metres. NOC_ERR_ARGUMENT: the camera looks nowhere. */
+NOC_API noc_status noc_camera_unproject(const noc_camera *camera, int width, int height, const double pixel[2],
+                                        double distance, double xyz[3]);
 
 typedef enum noc_view { NOC_VIEW_STREET, NOC_VIEW_AERIAL, NOC_VIEW_OVERVIEW, NOC_VIEW_OWN } noc_view;
 

@@ -9,7 +9,8 @@
 static const noc_option own_options[] = {
     TEXT("output", "Output", output, "FILE", "picture to write: .png as displayed, .exr linear in cd/m2"),
     { "show", "Output", NOC_OPTION_CHOICE, offsetof(A, show), 0, 0,
-      "picture|lights|density|light|weight|confidence|rays|variance|error", "", "what is written: the picture, or how lights were sampled" },
+      "picture|lights|density|light|weight|confidence|rays|variance|error|depth|normal|class|object", "",
+      "what is written: the picture, how lights were sampled, or what is seen" },
     TEXT("show-range", "Output", show_range, "LOW,HIGH", "ends of that view's colour bar; else found from its numbers"),
     TEXT("influence-obj", "Output", influence_obj, "FILE", "write the influence volumes of --candidates bvh, and boxes, as OBJ too"),
     CLI_PRESET(A, "Estimator"),

@@ -1,4 +1,4 @@
-/* nocturne render --show: a view of how lights were sampled in the picture's place. */
+/* nocturne render --show: a view of how lights were sampled, or of what is seen, in the picture's place. */
 #include "render.h"
 
 #include <stdlib.h>
@@ -8,7 +8,8 @@
 static noc_aov shown(const render_args *args) { return (noc_aov)(args->show - 1); }
 
 int cli_parse_show(render_args *args) {
-    if (args->show_range && (!args->show || shown(args) == NOC_AOV_LIGHT))
+    bool names = args->show && (shown(args) == NOC_AOV_LIGHT || shown(args) >= NOC_AOV_NORMAL); /* and directions */
+    if (args->show_range && (!args->show || names))
         return cli_usage(&cli_render, "--show-range is for views that have a colour bar: --show lights, for one");
     if (!args->show)
         return CLI_OK;
@@ -39,6 +40,10 @@ static int compare_values(const void *a, const void *b) {
 void cli_print_view(const render_job *job) {
     const noc_channel *view = job->view;
     size_t pixels = (size_t)view->width * (size_t)view->height, n = 0, different = 0;
+    if (view->components > 1) {
+        printf("  view      %s\n", view->title);
+        return;
+    }
     float *v = cli_alloc(pixels * sizeof(*v));
     for (size_t i = 0; i < pixels; i++)
         if (view->value[i] >= 0)

@@ -6,18 +6,19 @@
 
 static const uint8_t ground[3] = { 24, 24, 28 }, ink[3] = { 224, 224, 224 }, none[3] = { 92, 92, 96 };
 
-noc_channel *noc_channel_create(int width, int height, noc_log *log) {
-    if (!image_size_allowed(width, height)) {
-        noc_error(log, NOC_ERR_ARGUMENT, "channel: %d x %d pixels is outside 1..%d a side", width, height, NOC_IMAGE_MAX_SIDE);
+noc_channel *noc_channel_create(int width, int height, int components, noc_log *log) {
+    if (!image_size_allowed(width, height) || (components != 1 && components != 3)) {
+        noc_error(log, NOC_ERR_ARGUMENT, "channel: %d x %d pixels of %d components: sides are 1..%d, components 1 or 3", width, height,
+                  components, NOC_IMAGE_MAX_SIDE);
         return NULL;
     }
-    float *value = image_alloc_pixels(width, height, sizeof(float), log);
+    float *value = image_alloc_pixels(width, height, (size_t)components * sizeof(float), log);
     if (!value)
         return NULL;
-    for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
+    for (size_t i = 0; components == 1 && i < (size_t)width * (size_t)height; i++)
         value[i] = -1;
     noc_channel *channel = noc_calloc(1, sizeof(*channel));
-    *channel = (noc_channel){ .width = width, .height = height, .value = value, .name = "", .unit = "", .title = "" };
+    *channel = (noc_channel){ .width = width, .height = height, .components = components, .value = value, .name = "", .unit = "", .title = "" };
     return channel;
 }
 
@@ -28,6 +29,7 @@ void noc_channel_destroy(noc_channel *channel) {
     free(channel);
 }
 
+static bool has_bar(const noc_channel *c) { return c->scale != NOC_CHANNEL_LABELS && c->components == 1; }
 static size_t pixels_of(const noc_channel *c) { return (size_t)c->width * (size_t)c->height; }
 
 static int compare_float(const void *a, const void *b) {
@@ -103,10 +105,17 @@ static void colour_of(const noc_channel *c, const colorbar *bar, float value, ui
         memcpy(rgb, colormap_at(bar->map, (value - bar->low) / (bar->high - bar->low)), 3);
 }
 
-/* Labels have no bar: what stands for a number that is none is said instead. */
+static void vector_colour(const float *v, uint8_t rgb[3]) {
+    bool some = v[0] != 0 || v[1] != 0 || v[2] != 0;
+    memcpy(rgb, none, 3);
+    for (int k = 0; some && k < 3; k++)
+        rgb[k] = (uint8_t)(NOC_CLAMP(0.5f + 0.5f * v[k], 0.0f, 1.0f) * 255 + 0.5f); /* false for NaN: 0 */
+}
+
+/* Labels and vectors have no bar: what stands for a number that is none is said instead. */
 static void draw_legend(canvas *c, int y, int scale, const noc_channel *channel, const colorbar *bar) {
     static const char *const grey = "grey: none";
-    if (channel->scale != NOC_CHANNEL_LABELS) {
+    if (has_bar(channel)) {
         colorbar_draw(c, 0, y, c->width, scale, bar);
         return;
     }
@@ -119,7 +128,7 @@ noc_status noc_channel_to_srgb8(const noc_channel *channel, const noc_channel_pa
                                 int *height, noc_log *log) {
     colormap map;
     colorbar bar = { .map = &map, .title = channel->title };
-    noc_status status = channel->scale == NOC_CHANNEL_LABELS ? NOC_OK : range_of(channel, params, &bar, log);
+    noc_status status = !has_bar(channel) ? NOC_OK : range_of(channel, params, &bar, log);
     if (status != NOC_OK)
         return status;
     int scale = NOC_MAX(channel->width / 640, 1);
@@ -132,7 +141,11 @@ noc_status noc_channel_to_srgb8(const noc_channel *channel, const noc_channel_pa
     size_t margin = (size_t)(c.width - channel->width) / 2; /* a picture narrower than its legend stands in the middle */
     for (size_t i = 0; i < pixels_of(channel); i++) {
         size_t column = i % (size_t)channel->width, row = i / (size_t)channel->width;
-        colour_of(channel, &bar, channel->value[i], c.rgb + 3 * (row * (size_t)c.width + margin + column));
+        uint8_t *rgb = c.rgb + 3 * (row * (size_t)c.width + margin + column);
+        if (channel->components == 3)
+            vector_colour(channel->value + 3 * i, rgb);
+        else
+            colour_of(channel, &bar, channel->value[i], rgb);
     }
     draw_legend(&c, channel->height, scale, channel, &bar);
     *out = c.rgb;

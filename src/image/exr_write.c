@@ -13,7 +13,7 @@ typedef struct exr_writer {
     int width, height;
     noc_log *log;
     noc_status status;
-    float *rgb;         /* one chunk, finite; a channel's has one number a pixel */
+    float *rgb;         /* one chunk, finite */
     uint16_t *emitter;  /* one chunk, half */
 } exr_writer;
 
@@ -39,6 +39,9 @@ static int64_t write_data(exr_const_context_t context, void *user, const void *b
     return -1;
 }
 
+/* Numbers a pixel, without the mask. */
+static int components(const exr_writer *w) { return w->channel ? w->channel->components : 3; }
+
 /* Returns false when a step failed; the handler has reported it, or it is reported here. */
 static bool ok(exr_writer *w, exr_result_t result) {
     if (result != EXR_ERR_SUCCESS && w->status == NOC_OK)
@@ -63,8 +66,9 @@ static bool write_header(exr_writer *w, const meta_list *meta) {
     static const char *const colours[] = { "B", "G", "R" };
     for (int k = 0; w->image && k < 3 && good; k++)
         good = ok(w, exr_add_channel(c, w->part, colours[k], EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
-    if (w->channel && good)
-        good = ok(w, exr_add_channel(c, w->part, "Y", EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LINEAR, 1, 1));
+    for (int k = 0; w->channel && k < components(w) && good; k++) /* a vector's are X, Y, Z, a number is Y */
+        good = ok(w, exr_add_channel(c, w->part, components(w) == 1 ? "Y" : k == 0 ? "X" : k == 1 ? "Y" : "Z", EXR_PIXEL_FLOAT,
+                                     EXR_PERCEPTUALLY_LINEAR, 1, 1));
     if (w->image && w->image->emitter && good)
         good = ok(w, exr_add_channel(c, w->part, "emitter", EXR_PIXEL_HALF, EXR_PERCEPTUALLY_LINEAR, 1, 1));
     if (w->image && good)
@@ -88,8 +92,11 @@ static bool write_header(exr_writer *w, const meta_list *meta) {
 static void fill_chunk(exr_writer *w, int y0, int rows) {
     const noc_image *image = w->image;
     size_t n = (size_t)rows * (size_t)w->width, first = (size_t)y0 * (size_t)w->width;
-    for (size_t i = 0; w->channel && i < n; i++)
-        w->rgb[i] = __builtin_isfinite(w->channel->value[first + i]) ? w->channel->value[first + i] : -1;
+    size_t per = (size_t)components(w);
+    for (size_t i = 0; w->channel && i < per * n; i++) {
+        float v = w->channel->value[per * first + i];
+        w->rgb[i] = __builtin_isfinite(v) ? v : per == 1 ? -1 : 0;
+    }
     if (!image)
         return;
     for (size_t i = 0; i < n; i++) {
@@ -106,10 +113,11 @@ static bool set_channels(exr_writer *w, exr_encode_pipeline_t *encode) {
     for (int i = 0; i < encode->channel_count; i++) {
         exr_coding_channel_info_t *ch = &encode->channels[i];
         bool mask = strcmp(ch->channel_name, "emitter") == 0;
-        int k = ch->channel_name[0] == 'R' ? 0 : ch->channel_name[0] == 'G' ? 1 : 2;
-        ch->user_pixel_stride = mask ? 2 : w->channel ? 4 : 12;
+        char name = ch->channel_name[0];
+        int k = name == 'R' || name == 'X' ? 0 : name == 'G' || name == 'Y' ? 1 : 2;
+        ch->user_pixel_stride = mask ? 2 : 4 * components(w);
         ch->user_line_stride = ch->user_pixel_stride * w->width;
-        ch->encode_from_ptr = mask ? (const uint8_t *)w->emitter : (const uint8_t *)(w->rgb + (w->channel ? 0 : k));
+        ch->encode_from_ptr = mask ? (const uint8_t *)w->emitter : (const uint8_t *)(w->rgb + (components(w) == 1 ? 0 : k));
     }
     return true;
 }
@@ -120,7 +128,7 @@ static void write_chunks(exr_writer *w) {
         return;
     size_t n = (size_t)lines * (size_t)w->width;
     bool mask = w->image && w->image->emitter;
-    w->rgb = noc_alloc_large(n, (w->channel ? 1 : 3) * sizeof(float));
+    w->rgb = noc_alloc_large(n, (size_t)components(w) * sizeof(float));
     w->emitter = mask ? noc_alloc_large(n, sizeof(uint16_t)) : NULL;
     if (!w->rgb || (mask && !w->emitter)) {
         w->status = noc_error(w->log, NOC_ERR_MEMORY, "%s: EXR: no memory", w->out->path);

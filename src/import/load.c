@@ -398,29 +398,46 @@ noc_status noc_inspect(noc_log *log, const char *path, const noc_import_params *
     return status;
 }
 
-noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xyz[3]) {
-    if (crs || scene->given_crs) {
-        if (!scene->crs && !scene->crs_name)
-            return scene->without_crs
-                       ? noc_error(scene->log, NOC_ERR_ARGUMENT, "%s names no CRS, so coordinates in %s have no place in the scene: say with "
-                                   "--crs which one it is in", scene->without_crs, crs)
-                       : noc_error(scene->log, NOC_ERR_ARGUMENT, "the scene has no CRS, so coordinates in %s have no place in it", crs);
-        geo_crs *from = crs ? geo_crs_create(crs, NULL, scene->log) : geo_crs_clone(scene->given_crs);
-        geo_crs *to = scene->crs ? geo_crs_clone(scene->crs) : geo_crs_create(scene->crs_name, "scene", scene->log);
-        geo_transform *t = from && to ? geo_transform_create(from, to, scene->log) : NULL;
-        double p[3] = { xyz[0], xyz[1], xyz[2] };
-        noc_status status = !from || !to ? NOC_ERR_ARGUMENT : !t ? NOC_ERR_UNSUPPORTED : NOC_OK;
-        if (t && geo_transform_points(t, p, 1))
-            status = noc_error(scene->log, NOC_ERR_ARGUMENT, "%.10g %.10g in %s has no place in the scene's CRS", xyz[0],
-                               xyz[1], geo_crs_name(from));
-        geo_transform_destroy(t);
-        geo_crs_destroy(from);
-        geo_crs_destroy(to);
-        if (status)
-            return status;
+/* Between the frame of the scene's CRS (crs NULL: the one that the user speaks) and the scene's, in place. */
+static noc_status convert(const noc_scene *scene, const char *crs, bool to_local, double xyz[3]) {
+    if (!scene->crs && !scene->crs_name)
+        return scene->without_crs
+                   ? noc_error(scene->log, NOC_ERR_ARGUMENT, "%s names no CRS, so coordinates in %s have no place in the scene: say with "
+                               "--crs which one it is in", scene->without_crs, crs)
+                   : noc_error(scene->log, NOC_ERR_ARGUMENT, "the scene has no CRS, so coordinates in %s have no place in it", crs);
+    geo_crs *user = crs ? geo_crs_create(crs, NULL, scene->log) : geo_crs_clone(scene->given_crs);
+    geo_crs *own = scene->crs ? geo_crs_clone(scene->crs) : geo_crs_create(scene->crs_name, "scene", scene->log);
+    geo_transform *t = user && own ? geo_transform_create(to_local ? user : own, to_local ? own : user, scene->log) : NULL;
+    double p[3] = { xyz[0], xyz[1], xyz[2] };
+    noc_status status = !user || !own ? NOC_ERR_ARGUMENT : !t ? NOC_ERR_UNSUPPORTED : NOC_OK;
+    if (t && geo_transform_points(t, p, 1))
+        status = noc_error(scene->log, NOC_ERR_ARGUMENT, "%.10g %.10g in %s has no place in %s", xyz[0], xyz[1],
+                           geo_crs_name(to_local ? user : own), to_local ? "the scene's CRS" : geo_crs_name(user));
+    geo_transform_destroy(t);
+    geo_crs_destroy(user);
+    geo_crs_destroy(own);
+    if (!status)
         memcpy(xyz, p, sizeof(p));
-    }
-    for (int k = 0; k < 3; k++)
+    return status;
+}
+
+noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xyz[3]) {
+    if (!scene || !xyz)
+        return NOC_ERR_ARGUMENT;
+    noc_status status = crs || scene->given_crs ? convert(scene, crs, true, xyz) : NOC_OK;
+    for (int k = 0; !status && k < 3; k++)
         xyz[k] -= scene->origin[k];
-    return NOC_OK;
+    return status;
+}
+
+noc_status noc_scene_from_local(const noc_scene *scene, const char *crs, double xyz[3]) {
+    if (!scene || !xyz)
+        return NOC_ERR_ARGUMENT;
+    double p[3];
+    for (int k = 0; k < 3; k++)
+        p[k] = xyz[k] + scene->origin[k];
+    noc_status status = crs || scene->given_crs ? convert(scene, crs, false, p) : NOC_OK;
+    if (!status)
+        memcpy(xyz, p, sizeof(p));
+    return status;
 }

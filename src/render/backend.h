@@ -62,7 +62,7 @@ typedef struct noc_backend {
     void (*accumulate)(void *state, const noc_frame *frame);
     /* Picture, emitter mask (1 where the pixel itself sees an emitter in a frame of the mean) and coverage. */
     void (*read)(void *state, noc_image *image);
-    /* A view that the last accumulated frame kept into value, a number a pixel (-1: none). False where it kept none. */
+    /* A view that the last accumulated frame kept into value, a number a pixel (-1: none), normals three (0: none). False where it kept none. */
     bool (*aov)(void *state, noc_aov aov, float *value);
     /* Adds up into stats: pass_seconds, rays, dropped, all since the last call; sets build_seconds, memory and path. */
     void (*stats)(void *state, noc_frame_stats *stats);

@@ -181,7 +181,7 @@ noc_channel *noc_renderer_aov(noc_renderer *r, noc_aov aov) {
     }
     if (!r->width || !r->history.accumulated)
         return NULL;
-    noc_channel *channel = noc_channel_create(r->width, r->height, r->log);
+    noc_channel *channel = noc_channel_create(r->width, r->height, aov == NOC_AOV_NORMAL ? 3 : 1, r->log);
     if (!channel)
         return NULL;
     noc_describe_aov(&r->history.params, aov, channel);

@@ -6,7 +6,8 @@
 static const char *const names[NOC_AOV_COUNT] = {
     [NOC_AOV_LIGHTS] = "lights",   [NOC_AOV_DENSITY] = "density",       [NOC_AOV_LIGHT] = "light",
     [NOC_AOV_WEIGHT] = "weight",   [NOC_AOV_CONFIDENCE] = "confidence", [NOC_AOV_RAYS] = "rays",
-    [NOC_AOV_VARIANCE] = "variance", [NOC_AOV_ERROR] = "error",
+    [NOC_AOV_VARIANCE] = "variance", [NOC_AOV_ERROR] = "error",         [NOC_AOV_DEPTH] = "depth",
+    [NOC_AOV_NORMAL] = "normal",   [NOC_AOV_CLASS] = "class",           [NOC_AOV_OBJECT] = "object",
 };
 
 const char *noc_aov_name(noc_aov aov) { return (unsigned)aov < NOC_AOV_COUNT ? names[aov] : "unknown"; }
@@ -45,6 +46,10 @@ void noc_describe_aov(const noc_render_params *p, noc_aov aov, noc_channel *chan
         [NOC_AOV_RAYS] = { "shadow rays a pixel", "rays", NOC_CHANNEL_LINEAR },
         [NOC_AOV_VARIANCE] = { "variance of a frame [(cd/m\xb2)\xb2]", "(cd/m2)^2", NOC_CHANNEL_LOG },
         [NOC_AOV_ERROR] = { "standard error of the mean, relative", "", NOC_CHANNEL_LOG },
+        [NOC_AOV_DEPTH] = { "distance from the eye [m]", "m", NOC_CHANNEL_LOG },
+        [NOC_AOV_NORMAL] = { "normal: red east, green north, blue up", "", NOC_CHANNEL_LINEAR },
+        [NOC_AOV_CLASS] = { "semantic class: each its own colour", "", NOC_CHANNEL_LABELS },
+        [NOC_AOV_OBJECT] = { "object: each its own colour", "", NOC_CHANNEL_LABELS },
     };
     channel->name = names[aov];
     channel->unit = kinds[aov].unit;

@@ -80,6 +80,9 @@ static inline size_t noc_scene_city_triangle(const noc_scene *s, size_t i) {
     return i < s->backdrop_first ? i : i + s->backdrop_count;
 }
 
+/* query.c: index of the object that a triangle is of, for noc_scene_object_name. */
+size_t noc_scene_object_of(const noc_scene *scene, uint32_t triangle);
+
 /* Reports once that there is no memory for more of a scene; false. */
 bool noc_scene_out_of_memory(noc_scene *scene);
 

@@ -12,7 +12,7 @@ static noc_log *quiet(void) { return noc_log_create(&(noc_log_params){ .level = 
 /* 300 wide, so that no legend is wider. */
 enum { W = 300, H = 4 };
 static noc_channel *ramp(noc_channel_scale scale, float from, float step) {
-    noc_channel *c = noc_channel_create(W, H, NULL);
+    noc_channel *c = noc_channel_create(W, H, 1, NULL);
     assert_non_null(c);
     for (int i = 0; i < W * H; i++)
         assert_true(c->value[i] == -1);
@@ -158,8 +158,9 @@ static void what_cannot_be(void **state) {
     assert_int_equal(noc_channel_write(c, "/tmp/a.tiff", NULL, NULL, log), NOC_ERR_UNSUPPORTED);
     assert_int_equal(noc_channel_write(c, "/nowhere/a.exr", NULL, NULL, log), NOC_ERR_IO);
     assert_int_equal(noc_channel_write(c, "/nowhere/a.png", NULL, NULL, log), NOC_ERR_IO);
-    assert_null(noc_channel_create(0, 3, log));
-    assert_null(noc_channel_create(3, NOC_IMAGE_MAX_SIDE + 1, log));
+    assert_null(noc_channel_create(0, 3, 1, log));
+    assert_null(noc_channel_create(3, NOC_IMAGE_MAX_SIDE + 1, 1, log));
+    assert_null(noc_channel_create(3, 3, 2, log));
     noc_channel_destroy(NULL);
     noc_channel_destroy(c);
     noc_log_destroy(log);

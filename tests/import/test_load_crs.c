@@ -304,6 +304,11 @@ static void test_true_lengths(void **state) {
         assert_close(hypot(origin[0], origin[1]), 0, 1e-3);
         assert_int_equal(sscanf(strstr(text, "polygon 9"), "polygon 9 %lf %lf %lf", &corner[0], &corner[1], &corner[2]), 3);
         assert_int_equal(noc_scene_to_local(r.scene, NULL, corner), NOC_OK);
+        double again[3] = { corner[0], corner[1], corner[2] }; /* and back */
+        assert_int_equal(noc_scene_from_local(r.scene, NULL, again), NOC_OK);
+        assert_int_equal(noc_scene_to_local(r.scene, NULL, again), NOC_OK);
+        for (int k = 0; k < 3; k++)
+            assert_close(again[k], corner[k], 1e-3);
         double utm[3] = { 677940, 5404080, 370 };
         assert_int_equal(noc_scene_to_local(r.scene, "EPSG:32632", utm), NOC_OK);
         for (int k = 0; k < 3; k++)
@@ -318,10 +323,40 @@ static void test_true_lengths(void **state) {
     finish(&r);
 }
 
+/* Lamps of one's own, added before the load as scene.h tells: they stay where they were put, beside the lamps of the files. */
+static void test_planned_lamps(void **state) {
+    (void)state;
+    struct run r;
+    start(&r);
+    assert_int_equal(noc_scene_set_crs(r.scene, "EPSG:25832", (double[]){ 678000, 5404000, 370 }), NOC_OK);
+    double at[3] = { 678020.5, 5404003.25, 378 };
+    assert_int_equal(noc_scene_to_local(r.scene, NULL, at), NOC_OK);
+    noc_light lamp = { .kind = NOC_LIGHT_DISC, .position = { at[0], at[1], at[2] }, .direction = { 0, 0, -1 }, .radius = 0.15,
+                       .emission = { 1000, 1000, 1000 }, .name = "planned 1" };
+    assert_int_equal(noc_scene_add_light(r.scene, &lamp), 0);
+    load_with(&r, DEFAULTS, false, PATHS(file("a", CITY), file("l", NEAR_LAMP)));
+    assert_int_equal(r.status, NOC_OK);
+    assert_int_equal(r.info.lights, 2);
+    assert_int_equal(r.info.lights_inferred, 0);
+    noc_light_info info;
+    assert_int_equal(noc_scene_get_light(r.scene, 0, &info), NOC_OK);
+    assert_string_equal(info.light.name, "planned 1");
+    double wgs84[3] = { info.centre[0], info.centre[1], info.centre[2] };
+    assert_int_equal(noc_scene_from_local(r.scene, NULL, info.centre), NOC_OK);
+    assert_close(info.centre[0], 678020.5, 1e-3);
+    assert_close(info.centre[1], 5404003.25, 1e-3);
+    assert_close(info.centre[2], 378, 1e-3);
+    assert_int_equal(noc_scene_from_local(r.scene, "OGC:CRS84", wgs84), NOC_OK); /* as cs2cs has it */
+    assert_close(wgs84[0], 11.4225333, 1e-6);
+    assert_close(wgs84[1], 48.7635595, 1e-6);
+    finish(&r);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_geographic), cmocka_unit_test(test_axes), cmocka_unit_test(test_scene_crs),
         cmocka_unit_test(test_missing_crs), cmocka_unit_test(test_mesh_place), cmocka_unit_test(test_true_lengths),
+        cmocka_unit_test(test_planned_lamps),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

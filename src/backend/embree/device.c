@@ -157,7 +157,7 @@ static void fill_hit(const noc_scene *scene, const struct RTCRayHit16 *h, int l,
     g->light[l] = light;
 }
 
-void noc_embree_primary(embree_state *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g) {
+void noc_embree_primary(embree_state *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g, float *object) {
     ALIGNED int lanes[BLOCK];
     ALIGNED struct RTCRayHit16 h;
     *g = (gblock){ 0 };
@@ -171,8 +171,11 @@ void noc_embree_primary(embree_state *s, worker *w, const rayblock *rays, uint32
     memset(h.hit.instID, 0xff, sizeof(h.hit.instID));
     rt_intersect16(lanes, s->rtc, &h, true);
     for (int l = 0; l < BLOCK; l++)
-        if (valid >> l & 1 && h.hit.geomID[l] != RTC_INVALID_GEOMETRY_ID)
+        if (valid >> l & 1 && h.hit.geomID[l] != RTC_INVALID_GEOMETRY_ID) {
             fill_hit(s->scene, &h, l, g);
+            if (object)
+                object[l] = (float)noc_scene_object_of(s->scene, h.hit.primID[l]);
+        }
 }
 
 void noc_embree_probe(void *user, noc_probes *p) {

@@ -205,7 +205,8 @@ void noc_embree_release(embree_state *s);
  * says, and keeps them when recording. */
 void noc_embree_free_many(embree_state *s, worker *w, segment_block *blocks, int count);
 /* Nearest hits of camera rays into a block; lanes outside `valid` see nothing. */
-void noc_embree_primary(embree_state *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g);
+/* object: of each lane, -1 where there is none; may be NULL. */
+void noc_embree_primary(embree_state *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g, float *object);
 /* many.c: what noc_embree_free_many does with up to MANY_BLOCKS blocks, without the book-keeping. */
 void noc_embree_trace_many(RTCScene scene, segment_block *blocks, int count);
 /* A noc_probe_fn; user is the embree_state. */

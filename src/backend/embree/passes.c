@@ -47,7 +47,9 @@ static void primary_block(stage_run *run, worker *w, int bx, int by) {
         rays.d[1][l] = d.y;
         rays.d[2][l] = d.z;
     }
-    noc_embree_primary(run->s, w, &rays, lanes_inside(b, bx, by), &b->g[f->gbuffer][block_at(b, bx, by)]);
+    float (*objects)[BLOCK] = b->views.made[NOC_AOV_OBJECT];
+    noc_embree_primary(run->s, w, &rays, lanes_inside(b, bx, by), &b->g[f->gbuffer][block_at(b, bx, by)],
+                       objects ? objects[block_at(b, bx, by)] : NULL);
 }
 
 static void primary(stage_run *run, worker *w, tile t) {

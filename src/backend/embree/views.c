@@ -6,8 +6,9 @@
 
 #define BIT(aov) (1u << NOC_AOV_##aov)
 enum {
-    GATHERED = BIT(LIGHTS) | BIT(DENSITY) | BIT(RAYS), /* by the passes, so a dropped frame must not touch what is kept */
+    GATHERED = BIT(LIGHTS) | BIT(DENSITY) | BIT(RAYS) | BIT(OBJECT), /* by the passes, so a dropped frame must not touch what is kept */
     RESERVOIRS = BIT(LIGHT) | BIT(WEIGHT) | BIT(CONFIDENCE),
+    SURFACES = BIT(DEPTH) | BIT(NORMAL) | BIT(CLASS) | BIT(OBJECT), /* what is seen: emitters too */
     MOMENTS = BIT(VARIANCE) | BIT(ERROR), /* kept[VARIANCE]: sum of squared deviations; kept[ERROR]: mean luminance */
 };
 
@@ -16,7 +17,8 @@ static uint32_t buffers_of(uint32_t aovs) { return aovs & MOMENTS ? aovs | MOMEN
 
 size_t noc_embree_view_bytes(uint32_t aovs) {
     uint32_t kept = buffers_of(aovs);
-    return sizeof(float) * (size_t)(__builtin_popcount(kept) + __builtin_popcount(kept & GATHERED));
+    int normal = kept & BIT(NORMAL) ? 2 : 0; /* two more than the one that is counted */
+    return sizeof(float) * (size_t)(__builtin_popcount(kept) + __builtin_popcount(kept & GATHERED) + normal);
 }
 
 static void drop(view_buffers *v, int aov) {
@@ -31,6 +33,9 @@ void noc_embree_free_views(view_buffers *v) {
         drop(v, aov);
     *v = (view_buffers){ 0 };
 }
+
+/* Entries of a block: a vector's components one after the other. */
+static size_t components(int aov) { return aov == NOC_AOV_NORMAL ? 3 : 1; }
 
 static bool allocate(float (**buffer)[BLOCK], size_t blocks) {
     return *buffer || (*buffer = noc_alloc_large(blocks, sizeof(**buffer))) != NULL;
@@ -47,7 +52,7 @@ noc_status noc_embree_begin_views(embree_state *s, uint32_t aovs, bool first_sta
         bool gathered = GATHERED >> aov & 1;
         if (!(need >> aov & 1)) {
             drop(v, aov);
-        } else if (!allocate(&v->kept[aov], blocks) || (gathered && !allocate(&v->made[aov], blocks))) {
+        } else if (!allocate(&v->kept[aov], components(aov) * blocks) || (gathered && !allocate(&v->made[aov], blocks))) {
             noc_embree_free_views(v);
             return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for views of %d x %d", s->b.width, s->b.height);
         } else if (gathered) {
@@ -101,6 +106,18 @@ static void keep_reservoirs(view_buffers *v, size_t block, const rblock *r) {
     }
 }
 
+static void keep_surfaces(const noc_scene *scene, view_buffers *v, size_t block, const gblock *g) {
+    for (int l = 0; l < BLOCK; l++) {
+        bool some = g->material[l] != NO_SURFACE;
+        if (v->kept[NOC_AOV_DEPTH])
+            v->kept[NOC_AOV_DEPTH][block][l] = some ? g->depth[l] : -1;
+        if (v->kept[NOC_AOV_CLASS])
+            v->kept[NOC_AOV_CLASS][block][l] = some ? (float)scene->materials.data[g->material[l]].cls : -1;
+        for (int k = 0; v->kept[NOC_AOV_NORMAL] && k < 3; k++)
+            v->kept[NOC_AOV_NORMAL][3 * block + (size_t)k][l] = some ? (k == 0 ? g->nx : k == 1 ? g->ny : g->nz)[l] : 0;
+    }
+}
+
 /* Mean and squared deviations, a frame at a time (Welford 1962). */
 static void add_moments(view_buffers *v, size_t block, const cblock *c) {
     float *mean = v->kept[NOC_AOV_ERROR][block], *squares = v->kept[NOC_AOV_VARIANCE][block];
@@ -127,10 +144,12 @@ static void keep_row(void *arg, size_t row, int index) {
         const gblock *g = &b->g[run->frame->gbuffer][i];
         if (v->asked & RESERVOIRS)
             keep_reservoirs(v, i, &b->r[run->s->shaded_set][i]);
+        if (v->asked & SURFACES)
+            keep_surfaces(run->s->scene, v, i, g);
         if (v->asked & MOMENTS)
             add_moments(v, i, &b->colour[i]);
         for (int aov = 0; aov < NOC_AOV_COUNT; aov++) {
-            if (!(v->asked >> aov & 1 & ~((BIT(RAYS) | MOMENTS) >> aov)))
+            if (!(v->asked >> aov & 1 & ~((BIT(RAYS) | MOMENTS | SURFACES) >> aov)))
                 continue;
             for (int l = 0; l < BLOCK; l++)
                 if (g->material[l] == NO_SURFACE || g->light[l] != NOC_NO_LIGHT)
@@ -167,6 +186,12 @@ bool noc_embree_read_view(void *state, noc_aov aov, float *value) {
         for (int x = 0; x < b->width; x++) {
             size_t at = (size_t)(y / BLOCK_SIDE) * (size_t)b->blocks_x + (size_t)(x / BLOCK_SIDE);
             int l = (y & 3) * 4 + (x & 3);
+            size_t to = (size_t)y * (size_t)b->width + (size_t)x;
+            if (aov == NOC_AOV_NORMAL) {
+                for (size_t k = 0; k < 3; k++)
+                    value[3 * to + k] = v->kept[aov][3 * at + k][l];
+                continue;
+            }
             double out = v->kept[aov][at][l];
             if (MOMENTS >> aov & 1) {
                 double variance = v->kept[NOC_AOV_VARIANCE][at][l] / (n - 1), mean = v->kept[NOC_AOV_ERROR][at][l];
@@ -174,7 +199,7 @@ bool noc_embree_read_view(void *state, noc_aov aov, float *value) {
                             (aov == NOC_AOV_ERROR && !(mean > 0));
                 out = none ? -1 : aov == NOC_AOV_ERROR ? sqrt(variance / n) / mean : variance;
             }
-            value[(size_t)y * (size_t)b->width + (size_t)x] = isfinite((float)out) ? (float)out : -1;
+            value[to] = isfinite((float)out) ? (float)out : -1;
         }
     return true;
 }

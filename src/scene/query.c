@@ -1,0 +1,132 @@
+/* What a scene holds, for programs that list, label or pick: lights, objects, and pixels to places and back. */
+#include "scene/scene.h"
+
+#include <math.h>
+
+static double luminance_of(const float e[3]) { return 0.2126 * e[0] + 0.7152 * e[1] + 0.0722 * e[2]; }
+
+/* Lambertian emitters of luminance L send pi L for each m2 and side (4 pi^2 r^2 L = pi L area for a sphere); a point of I
+ * candela 4 pi I. */
+static double flux_of(const noc_light_record *r) {
+    double e = luminance_of(r->e);
+    return r->kind == NOC_LIGHT_POINT ? 4 * M_PI * e : M_PI * e * r->area * (r->flags & 1 ? 2 : 1);
+}
+
+noc_status noc_scene_get_light(const noc_scene *scene, size_t index, noc_light_info *info) {
+    if (!scene || !info)
+        return NOC_ERR_ARGUMENT;
+    if (index >= scene->lights.len)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "light %zu: the scene has %zu lights", index, scene->lights.len);
+    const noc_light_record *r = &scene->lights.data[index];
+    *info = (noc_light_info){ .lumens = flux_of(r), .area = r->area, .two_sided = r->flags & 1,
+                              .light = { .kind = (noc_light_kind)r->kind, .radius = r->radius, .name = scene->light_names.data[index],
+                                         .inferred = r->flags >> 1 & 1, .moving = (r->flags & NOC_LIGHT_MOVES) != 0 } };
+    bool triangle = r->kind == NOC_LIGHT_TRIANGLE, flat = triangle || r->kind == NOC_LIGHT_PARALLELOGRAM;
+    for (int k = 0; k < 3; k++) {
+        info->light.position[k] = r->p[k];
+        info->light.emission[k] = r->e[k];
+        info->centre[k] = r->p[k] + (flat ? ((double)r->a[k] + r->b[k]) / (triangle ? 3 : 2) : 0);
+        info->light.edge_u[k] = flat ? r->a[k] : 0;
+        info->light.edge_v[k] = flat ? r->b[k] : 0;
+    }
+    if (flat || r->kind == NOC_LIGHT_DISC) {
+        double n[3] = { (double)r->a[1] * r->b[2] - (double)r->a[2] * r->b[1], (double)r->a[2] * r->b[0] - (double)r->a[0] * r->b[2],
+                        (double)r->a[0] * r->b[1] - (double)r->a[1] * r->b[0] };
+        double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        for (int k = 0; k < 3; k++)
+            info->light.direction[k] = length > 0 ? n[k] / length : 0;
+    }
+    return NOC_OK;
+}
+
+/* The mesh that a triangle is of. */
+static size_t mesh_of(const noc_scene *scene, uint32_t triangle) {
+    size_t low = 0, high = scene->meshes.len;
+    while (high - low > 1) {
+        size_t middle = (low + high) / 2;
+        *(scene->meshes.data[middle].first_triangle <= triangle ? &low : &high) = middle;
+    }
+    return low;
+}
+
+static bool same_name(const noc_scene_mesh *a, const noc_scene_mesh *b) { return a->name && b->name && !strcmp(a->name, b->name); }
+
+/* An object comes as several meshes, one a class and material, one after the other: the first stands for them. */
+size_t noc_scene_object_of(const noc_scene *scene, uint32_t triangle) {
+    size_t mesh = mesh_of(scene, triangle);
+    while (mesh && same_name(&scene->meshes.data[mesh], &scene->meshes.data[mesh - 1]))
+        mesh--;
+    return mesh;
+}
+
+const char *noc_scene_object_name(const noc_scene *scene, size_t object) {
+    return scene && object < scene->meshes.len ? scene->meshes.data[object].name : NULL;
+}
+
+/* A camera's axes in doubles: forward of length 1, right and up as long as half of the picture at distance 1. false: it looks
+ * nowhere. */
+static bool camera_axes(const noc_camera *c, int width, int height, double axes[3][3]) {
+    double *forward = axes[0], *right = axes[1], *up = axes[2], length = 0, side = 0;
+    for (int k = 0; k < 3; k++) {
+        forward[k] = c->target[k] - c->eye[k];
+        length += forward[k] * forward[k];
+    }
+    if (!(length > 0) || !isfinite(length) || width < 1 || height < 1 || !(c->fov_deg > 0 && c->fov_deg < 180))
+        return false;
+    for (int k = 0; k < 3; k++)
+        forward[k] /= sqrt(length);
+    double given = sqrt(c->up[0] * c->up[0] + c->up[1] * c->up[1] + c->up[2] * c->up[2]), helper[3];
+    for (int turn = 0; turn < 2 && !(side > 1e-6 * 1e-6); turn++) { /* as noc_renderer_frame: looking along up, another stands in */
+        bool other = turn == 1;
+        for (int k = 0; k < 3; k++)
+            helper[k] = other ? k == (fabs(forward[1]) < 0.9 ? 1 : 0) : c->up[k] / given;
+        side = 0;
+        for (int k = 0; k < 3; k++) {
+            right[k] = forward[(k + 1) % 3] * helper[(k + 2) % 3] - forward[(k + 2) % 3] * helper[(k + 1) % 3];
+            side += right[k] * right[k];
+        }
+    }
+    if (!(side > 0))
+        return false;
+    double t = tan(c->fov_deg * M_PI / 360);
+    for (int k = 0; k < 3; k++)
+        right[k] /= sqrt(side);
+    for (int k = 0; k < 3; k++)
+        up[k] = t * (right[(k + 1) % 3] * forward[(k + 2) % 3] - right[(k + 2) % 3] * forward[(k + 1) % 3]);
+    for (int k = 0; k < 3; k++)
+        right[k] *= t * width / height;
+    return true;
+}
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+bool noc_camera_project(const noc_camera *camera, int width, int height, const double xyz[3], double pixel[2], double *distance) {
+    double axes[3][3], to[3];
+    if (!camera || !xyz || !pixel || !camera_axes(camera, width, height, axes))
+        return false;
+    for (int k = 0; k < 3; k++)
+        to[k] = xyz[k] - camera->eye[k];
+    double along = dot(to, axes[0]);
+    if (distance)
+        *distance = sqrt(dot(to, to));
+    if (!(along > 0))
+        return false;
+    double x = dot(to, axes[1]) / (along * dot(axes[1], axes[1])), y = dot(to, axes[2]) / (along * dot(axes[2], axes[2]));
+    pixel[0] = 0.5 * (1 + x) * width;
+    pixel[1] = 0.5 * (1 - y) * height;
+    return isfinite(pixel[0]) && isfinite(pixel[1]);
+}
+
+noc_status noc_camera_unproject(const noc_camera *camera, int width, int height, const double pixel[2], double distance,
+                                double xyz[3]) {
+    double axes[3][3], d[3];
+    if (!camera || !pixel || !xyz || !isfinite(distance) || !camera_axes(camera, width, height, axes))
+        return NOC_ERR_ARGUMENT;
+    double x = 2 * pixel[0] / width - 1, y = 1 - 2 * pixel[1] / height;
+    for (int k = 0; k < 3; k++)
+        d[k] = axes[0][k] + x * axes[1][k] + y * axes[2][k];
+    double scale = distance / sqrt(dot(d, d));
+    for (int k = 0; k < 3; k++)
+        xyz[k] = camera->eye[k] + scale * d[k];
+    return NOC_OK;
+}
