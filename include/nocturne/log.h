@@ -2,7 +2,8 @@
  *
  * Every function that can fail returns a noc_status (or NULL / a negative index) and reports the reason exactly once
  * through the noc_log it was given, at level NOC_LOG_ERROR, with the file and the place in it where there is one.
- * NULL for a noc_log drops the messages; NULL for a struct of params stands for its defaults.
+ * NULL for a noc_log drops the messages; NULL for a struct of params stands for its defaults; NULL for anything else that a call
+ * needs is NOC_ERR_ARGUMENT, or whatever the function returns for an error.
  * A noc_log may be used from several threads at once; its callback is called with a lock held, one message at a time. */
 #ifndef NOCTURNE_LOG_H
 #define NOCTURNE_LOG_H

@@ -121,7 +121,14 @@ NOC_DEFAULT_PARAMS(noc_renderer_params, noc_renderer_default_params, NOC_RENDERE
 #define noc_renderer_default_params() ((noc_renderer_params){ NOC_RENDERER_DEFAULTS(NOC_DEFAULT_IN_C) })
 #endif
 
-/* The scene must be committed and outlive the renderer. NULL after reporting an error. */
+/* Threads. A renderer belongs to one thread at a time: while noc_renderer_frame or noc_renderer_trace_floor runs, no other call may
+ * be made on it, neither from another thread nor from the progress callback, which comes from the thread that made the call.
+ * Other renderers, of the same committed scene too, may work meanwhile. What only reads the scene (noc_scene_get_info,
+ * get_light, object_name, ground, camera, to_local, from_local) may be called at any time from any thread, also during a
+ * frame and in callbacks; noc_scene_move_light only while no frame of the scene is rendered. noc_image and noc_channel are
+ * the caller's: any thread may use them once the call that made them has returned. The log's callback may come from any thread.
+ *
+ * The scene must be committed and outlive the renderer. NULL after reporting an error. */
 NOC_API noc_renderer *noc_renderer_create(const noc_scene *scene, const noc_renderer_params *params, noc_log *log);
 NOC_API void noc_renderer_destroy(noc_renderer *renderer);
 

@@ -70,6 +70,10 @@ noc_status noc_error(noc_log *log, noc_status status, const char *fmt, ...) {
     return status;
 }
 
+noc_status noc_null(noc_log *log, const char *function) {
+    return noc_error(log, NOC_ERR_ARGUMENT, "%s: a pointer that is needed is NULL", function);
+}
+
 noc_status noc_cancelled(noc_log *log, const char *fmt, ...) {
     va_list ap;
     va_start(ap, fmt);

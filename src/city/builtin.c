@@ -17,6 +17,8 @@ const char *const *noc_builtin_names(void) {
 }
 
 noc_status noc_scene_add_builtin(noc_scene *scene, const char *name, const noc_builtin_params *params) {
+    if (!scene || !name)
+        return noc_null(scene ? scene->log : NULL, __func__);
     noc_builtin_params defaults = noc_builtin_default_params();
     params = params ? params : &defaults;
     if (scene->committed)

@@ -301,6 +301,8 @@ noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dr
 }
 
 noc_status noc_scene_add_city(noc_scene *scene, const noc_city_params *params) {
+    if (!scene)
+        return NOC_ERR_ARGUMENT;
     noc_city_params defaults = noc_city_default_params();
     return town_build(scene, params ? params : &defaults, NULL);
 }

@@ -126,6 +126,8 @@ static void draw_legend(canvas *c, int y, int scale, const noc_channel *channel,
 
 noc_status noc_channel_to_srgb8(const noc_channel *channel, const noc_channel_params *params, uint8_t **out, int *width,
                                 int *height, noc_log *log) {
+    if (!channel || !out || !width || !height)
+        return noc_null(log, __func__);
     colormap map;
     colorbar bar = { .map = &map, .title = channel->title };
     noc_status status = !has_bar(channel) ? NOC_OK : range_of(channel, params, &bar, log);
@@ -183,6 +185,8 @@ static noc_status write_numbers(const noc_channel *channel, const char *path, co
 
 noc_status noc_channel_write(const noc_channel *channel, const char *path, const noc_channel_params *params,
                              const noc_image_meta *meta, noc_log *log) {
+    if (!channel || !path)
+        return noc_null(log, __func__);
     if (!image_size_allowed(channel->width, channel->height))
         return noc_error(log, NOC_ERR_ARGUMENT, "%s: a channel of %d x %d pixels cannot be written", path, channel->width,
                          channel->height);

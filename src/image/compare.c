@@ -106,6 +106,8 @@ static void pass_over(const noc_image *x, const noc_image *r, double ceiling, co
 
 noc_status noc_image_compare(const noc_image *x, const noc_image *r, const noc_compare_params *params, noc_comparison *out,
                              noc_log *log) {
+    if (!x || !r || !out)
+        return noc_null(log, __func__);
     noc_compare_params p = params ? *params : noc_compare_default_params();
     if (!(p.ceiling > 0))
         return noc_error(log, NOC_ERR_ARGUMENT, "compare: the ceiling must be above 0 cd/m2, not %g", p.ceiling);

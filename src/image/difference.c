@@ -29,6 +29,8 @@ static double scale_of(const noc_image *x, const noc_image *r, double *d, size_t
 
 noc_status noc_image_difference(const noc_image *x, const noc_image *r, const char *unit, uint8_t **out, int *width, int *height,
                                 noc_log *log) {
+    if (!x || !r || !out || !width || !height)
+        return noc_null(log, __func__);
     noc_status status = image_check_pair(x, r, log);
     if (status != NOC_OK)
         return status;

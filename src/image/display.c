@@ -59,6 +59,8 @@ static double cell_at(const float *cells, size_t n, double rank) {
 }
 
 double noc_image_auto_ev100(const noc_image *image) {
+    if (!image)
+        return METER_BLACK;
     float *cells = noc_alloc(METER_CELLS * METER_CELLS * sizeof(float));
     size_t lit = meter_cells(image, image->emitter != NULL, cells);
     bool masked = image->emitter && lit;
@@ -179,6 +181,8 @@ static void display_covered(const display_map *d, const noc_image *image, size_t
 }
 
 void noc_image_to_srgb8(const noc_image *image, const noc_display_params *params, uint8_t *out) {
+    if (!image || !out)
+        return;
     display_map d;
     display_init(&d, params ? params->tonemap : NOC_TONEMAP_FILMIC, display_ev100(image, params));
     size_t n = image_pixels(image);

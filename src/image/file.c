@@ -57,6 +57,8 @@ static noc_status write_displayed(const noc_image *image, const char *path, cons
 
 noc_status noc_image_write(const noc_image *image, const char *path, const noc_display_params *display,
                            const noc_image_meta *meta, noc_log *log) {
+    if (!image || !path)
+        return noc_null(log, __func__);
     if (!image_size_allowed(image->width, image->height))
         return noc_error(log, NOC_ERR_ARGUMENT, "%s: a picture of %d x %d pixels cannot be written", path, image->width,
                          image->height);
@@ -87,6 +89,8 @@ noc_status noc_image_write(const noc_image *image, const char *path, const noc_d
 
 noc_status noc_image_write_srgb8(const uint8_t *rgb, int width, int height, const char *path, const noc_image_meta *meta,
                                  noc_log *log) {
+    if (!rgb || !path)
+        return noc_null(log, __func__);
     if (!image_size_allowed(width, height))
         return noc_error(log, NOC_ERR_ARGUMENT, "%s: a picture of %d x %d pixels cannot be written", path, width, height);
     if (!image_path_ends_in(path, ".png"))
@@ -156,6 +160,10 @@ static uint8_t *read_file(FILE *file, const char *path, size_t *size, noc_log *l
 }
 
 noc_image *noc_image_read(const char *path, noc_log *log, bool *is_linear) {
+    if (!path) {
+        noc_null(log, __func__);
+        return NULL;
+    }
     int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a pipe without a writer must not block */
     FILE *file = fd >= 0 ? fdopen(fd, "rb") : NULL;
     if (!file) {

@@ -152,6 +152,8 @@ noc_status output_close(output *o, noc_status status, noc_log *log) {
 }
 
 noc_status noc_image_check_path(const char *path, noc_log *log) {
+    if (!path)
+        return noc_null(log, __func__);
     output o;
     noc_status status = output_open(&o, path, log);
     if (status != NOC_OK)

@@ -348,6 +348,11 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     const noc_import_params defaults = noc_import_default_params();
     if (report)
         *report = NULL;
+    if (!scene)
+        return NOC_ERR_ARGUMENT;
+    for (size_t i = 0; i < path_count; i++)
+        if (!paths || !paths[i])
+            return noc_null(scene->log, "noc_scene_load");
     if (!params)
         params = &defaults;
     noc_status status = check_params(params, scene->log);

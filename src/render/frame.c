@@ -9,6 +9,8 @@ static noc_status wrong(noc_log *log, const char *name, double value, const char
 }
 
 noc_status noc_render_check(const noc_render_params *p, noc_log *log) {
+    if (!p)
+        return noc_null(log, __func__);
     const struct {
         const char *name;
         double value, min, max;

@@ -234,6 +234,8 @@ static int join_texts(const noc_texts *texts, char *text, size_t size) {
 }
 
 noc_status noc_option_set(const noc_option *option, void *params, const char *value, noc_log *log) {
+    if (!option || !params)
+        return noc_null(log, __func__);
     void *field = (char *)params + option->offset;
     if (option->kind == NOC_OPTION_BOOL)
         return set_bool(option, field, value, log);
@@ -259,6 +261,8 @@ static int get_choice(const noc_option *o, int index, char *text, size_t size) {
 }
 
 size_t noc_option_size(const noc_option *option) {
+    if (!option)
+        return 0;
     switch (option->kind) {
     case NOC_OPTION_BOOL: return sizeof(bool);
     case NOC_OPTION_REAL: return sizeof(double);
@@ -269,6 +273,8 @@ size_t noc_option_size(const noc_option *option) {
 }
 
 int noc_option_get(const noc_option *option, const void *params, char *text, size_t size) {
+    if (!option || !params)
+        return 0;
     union { bool b; int i; uint32_t u; double d; const char *s; } v;
     const char *field = (const char *)params + option->offset;
     switch (option->kind) {
@@ -295,6 +301,8 @@ static bool among(const char *values, size_t length, const char *value) {
 }
 
 bool noc_option_idle(const noc_option *option, const noc_option *table, const void *params, char *why, size_t size) {
+    if (!option || !table || !params)
+        return false;
     for (const char *need = option->needs; need && *need;) {
         size_t name = strcspn(need, "="), length = strcspn(need + name + 1, ",");
         const char *values = need + name + 1;

@@ -3,6 +3,8 @@
 #include <nocturne/render.h>
 
 void noc_render_use_preset(noc_render_params *p, noc_preset preset) {
+    if (!p)
+        return;
     noc_render_params d = noc_render_default_params();
     bool interactive = preset == NOC_PRESET_INTERACTIVE;
     p->method = interactive ? NOC_METHOD_RESTIR : d.method;

@@ -57,6 +57,8 @@ void noc_renderer_destroy(noc_renderer *r) {
 }
 
 void noc_renderer_reset(noc_renderer *r) {
+    if (!r)
+        return;
     noc_history_reset(&r->history);
     r->stats.dropped = 0;
     r->stats.frames = 0;
@@ -137,6 +139,8 @@ static noc_status check(noc_renderer *r, const noc_camera *camera, const noc_ren
 
 noc_status noc_renderer_frame(noc_renderer *r, const noc_camera *camera, const noc_render_params *params,
                               const noc_progress *progress) {
+    if (!r || !camera)
+        return noc_null(r ? r->log : NULL, __func__);
     const noc_render_params defaults = noc_render_default_params();
     params = params ? params : &defaults;
     noc_status status = check(r, camera, params);
@@ -146,6 +150,8 @@ noc_status noc_renderer_frame(noc_renderer *r, const noc_camera *camera, const n
 }
 
 noc_image *noc_renderer_image(noc_renderer *r) {
+    if (!r)
+        return NULL;
     if (!r->width || !r->history.accumulated)
         return NULL;
     noc_image *image = noc_image_create(r->width, r->height, r->log);
@@ -175,6 +181,8 @@ noc_image *noc_renderer_image(noc_renderer *r) {
 }
 
 noc_channel *noc_renderer_aov(noc_renderer *r, noc_aov aov) {
+    if (!r)
+        return NULL;
     if ((unsigned)aov >= NOC_AOV_COUNT) {
         noc_error(r->log, NOC_ERR_ARGUMENT, "render: aov is %d, must be a noc_aov", (int)aov);
         return NULL;
@@ -201,11 +209,17 @@ const char *noc_pass_name(noc_pass pass) {
     return (unsigned)pass < NOC_PASS_COUNT ? names[pass] : "unknown";
 }
 
-void noc_renderer_get_stats(const noc_renderer *r, noc_frame_stats *stats) { *stats = r->stats; }
+void noc_renderer_get_stats(const noc_renderer *r, noc_frame_stats *stats) {
+    if (stats)
+        *stats = r ? r->stats : (noc_frame_stats){ 0 };
+}
 
 void noc_renderer_light_stats(const noc_renderer *r, noc_light_stats *stats) {
+    if (!stats)
+        return;
     *stats = (noc_light_stats){ 0 };
-    r->backend->light_stats(r->state, r->history.started ? &r->history.params : NULL, stats);
+    if (r)
+        r->backend->light_stats(r->state, r->history.started ? &r->history.params : NULL, stats);
 }
 
 noc_status noc_renderer_write_influence(noc_renderer *r, const noc_render_params *params, const char *path) {
@@ -224,6 +238,8 @@ noc_status noc_renderer_write_influence(noc_renderer *r, const noc_render_params
 
 noc_status noc_renderer_trace_floor(noc_renderer *r, const noc_camera *camera, const noc_render_params *params,
                                     double *seconds) {
+    if (!r || !camera || !seconds)
+        return noc_null(r ? r->log : NULL, __func__);
     const noc_render_params defaults = noc_render_default_params();
     params = params ? params : &defaults;
     noc_status status = check(r, camera, params);

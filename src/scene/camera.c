@@ -418,6 +418,8 @@ static bool street(view_city *city, double aspect, noc_camera *camera) {
 }
 
 noc_status noc_scene_set_camera(noc_scene *scene, const noc_camera *camera) {
+    if (!scene || !camera)
+        return noc_null(scene ? scene->log : NULL, __func__);
     double along = 0, up = 0;
     for (int k = 0; k < 3; k++) {
         along += fabs(camera->target[k] - camera->eye[k]);
@@ -433,6 +435,8 @@ noc_status noc_scene_set_camera(noc_scene *scene, const noc_camera *camera) {
 }
 
 noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect, noc_camera *camera) {
+    if (!scene || !camera)
+        return noc_null(scene ? scene->log : NULL, __func__);
     if (!(aspect > 0 && isfinite(aspect)))
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the aspect is %g, must be finite and more than 0", aspect);
     aspect = NOC_CLAMP(aspect, 0.01, 100); /* what slits of pictures see decides nothing */

@@ -22,6 +22,8 @@ static content_hash add_array(content_hash h, const void *data, size_t count, si
 }
 
 void noc_scene_content(const noc_scene *s, char key[NOC_CONTENT_KEY]) {
+    if (!s || !key)
+        return;
     content_hash h = ((content_hash)0x6c62272e07bb0142u << 64) | 0x62b821756295c58du;
     h = add_array(h, s->positions.data, s->positions.len, sizeof(float));
     h = add_array(h, s->indices.data, s->indices.len, sizeof(uint32_t));

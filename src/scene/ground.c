@@ -272,6 +272,8 @@ size_t noc_ground_load(const noc_scene *scene, double x, double y) {
 }
 
 bool noc_scene_ground(const noc_scene *scene, double x, double y, double *z) {
+    if (!scene || !z)
+        return false;
     return noc_scene_highest(scene, GROUND_CLASSES, x, y, z);
 }
 

@@ -174,6 +174,10 @@ static bool add_shape(noc_scene *scene, const noc_light *l, uint32_t index) {
 }
 
 int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
+    if (!scene || !l) {
+        noc_null(scene ? scene->log : NULL, __func__);
+        return -1;
+    }
     if (scene->no_memory)
         return -1;
     const char *wrong = scene->committed ? "the scene is committed" : light_fault(l);
@@ -197,6 +201,8 @@ int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
 }
 
 noc_status noc_scene_move_light(noc_scene *scene, int index, const noc_light *to) {
+    if (!scene || !to)
+        return noc_null(scene ? scene->log : NULL, __func__);
     if (!scene->committed)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "light %d: only lights of a committed scene are moved", index);
     if (index < 0 || (size_t)index >= scene->lights.len)

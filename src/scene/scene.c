@@ -74,6 +74,10 @@ void noc_scene_destroy(noc_scene *scene) {
 static bool in_range(float x, float lo, float hi) { return x >= lo && x <= hi; } /* false for NaN */
 
 int noc_scene_add_material(noc_scene *scene, const noc_material *m) {
+    if (!scene || !m) {
+        noc_null(scene ? scene->log : NULL, __func__);
+        return -1;
+    }
     if (scene->no_memory)
         return -1;
     if (scene->committed) {
@@ -135,6 +139,10 @@ static bool reserve_mesh(noc_scene *s, const noc_mesh *mesh) {
 }
 
 int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
+    if (!scene || !mesh || (mesh->vertex_count && !mesh->positions) || (mesh->triangle_count && !mesh->indices)) {
+        noc_null(scene ? scene->log : NULL, __func__);
+        return -1;
+    }
     const char *name = mesh->name ? mesh->name : "unnamed";
     if (scene->no_memory)
         return -1;
@@ -250,6 +258,8 @@ static void make_triangle_lights(noc_scene *scene) {
 }
 
 noc_status noc_scene_commit(noc_scene *scene) {
+    if (!scene)
+        return NOC_ERR_ARGUMENT;
     if (scene->committed)
         return NOC_OK;
     if (scene->no_memory || !reserve_triangle_lights(scene)) /* reported already */
@@ -269,6 +279,8 @@ noc_status noc_scene_commit(noc_scene *scene) {
 }
 
 noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double origin[3]) {
+    if (!scene)
+        return NOC_ERR_ARGUMENT;
     for (int k = 0; k < 3; k++)
         if (!origin || !isfinite(origin[k]))
             return noc_error(scene->log, NOC_ERR_ARGUMENT, "scene: the origin must be three finite numbers");
@@ -279,6 +291,11 @@ noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double ori
 }
 
 void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info) {
+    if (!info)
+        return;
+    *info = (noc_scene_info){ 0 };
+    if (!scene)
+        return;
     *info = (noc_scene_info){ .triangles = scene->indices.len / 3,
                               .vertices = scene->positions.len / 3,
                               .meshes = scene->meshes.len,
