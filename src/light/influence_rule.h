@@ -57,6 +57,22 @@ static inline void noc_rule_add(noc_influence_bins *b, float needs, float lights
     b->e2[at] += lights * e * e;
 }
 
+/* The S_r of bin i's far end. */
+static inline float noc_rule_edge(const noc_influence_bins *b, int i) {
+    uint32_t bits = (b->top - (uint32_t)i + 1) << NOC_RULE_SHIFT;
+    float scale;
+    memcpy(&scale, &bits, sizeof(scale));
+    return scale;
+}
+
+/* The largest S_r that lists no more lights than `most`, or those of one bin. */
+static inline float noc_rule_limit(const noc_influence_bins *b, float most) {
+    int i = NOC_RULE_BINS - 1;
+    for (float lights = b->lights[i]; i > 0 && (lights += b->lights[i - 1]) <= most;)
+        i--;
+    return noc_rule_edge(b, i);
+}
+
 /* Chance that so many lights are hidden, each for itself. */
 static inline float noc_rule_hidden(float seen, float lights) {
     float all = 1;
@@ -92,10 +108,7 @@ static inline float noc_rule_best(const noc_influence_bins *b, float n_l, int ev
     }
     if (best <= 0 || best == last)
         return INFINITY;
-    uint32_t bits = (b->top - (uint32_t)best + 1) << NOC_RULE_SHIFT;
-    float scale;
-    memcpy(&scale, &bits, sizeof(scale));
-    return scale;
+    return noc_rule_edge(b, best);
 }
 
 #endif

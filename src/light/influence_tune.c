@@ -10,6 +10,10 @@
 enum { EXAMPLES = 512, FEWEST_EXAMPLES = 64, EVERY = 4, RUN = 64 };
 static const size_t most_looks = (size_t)1 << 24;
 
+/* Where lights lie about evenly in a plane, lists of sqrt(b N / u) are best. Ones that are longer by more than that cost more than
+ * they are worth: each point looks at all lights that the scene's S_r finds. */
+static const float enough = 1.5f;
+
 /* Where no rays can tell; and the share of what bright places get that is too little to be seen. */
 static const float usual_seen = 0.4f, dim = 0.05f;
 
@@ -269,7 +273,7 @@ static noc_influence_rule rule_of(const tuning *t, int n) {
     return rule;
 }
 
-/* What most of the examples need that face more than too little light. */
+/* The median of what the examples need that face more than too little light. */
 static float tune(tuning *t, const noc_scene *scene) {
     noc_pool *pool = t->params->pool;
     float needs[EXAMPLES];
@@ -280,14 +284,15 @@ static float tune(tuning *t, const noc_scene *scene) {
     int n = take_examples(scene, &in, wanted, t->examples);
     noc_influence_run(pool, (size_t)n, look_around, t);
     t->v->rule = rule_of(t, n);
+    float many = enough * sqrtf((float)t->v->count * (EVERY - 1));
     for (int i = 0; i < n; i++) {
         const example *e = &t->examples[i];
         float best = noc_rule_best(&e->bins, (float)t->v->count, EVERY, t->v->rule);
         if (e->gets > t->v->rule.floor && best < INFINITY)
-            needs[count++] = best;
+            needs[count++] = fminf(best, noc_rule_limit(&e->bins, many));
     }
     qsort(needs, (size_t)count, sizeof(*needs), by_size);
-    return count ? NOC_CLAMP(needs[count * 9 / 10], 1e-6f, 1e6f) : 1;
+    return count ? NOC_CLAMP(needs[count / 2], 1e-6f, 1e6f) : 1;
 }
 
 float noc_influence_tune(noc_influence *v, const noc_scene *scene, const noc_influence_params *params) {
