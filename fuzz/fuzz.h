@@ -39,7 +39,7 @@ typedef struct fuzz_sink {
 void fuzz_sink_start(fuzz_sink *s, noc_log *log);
 void fuzz_sink_end(fuzz_sink *s);
 
-/* What a renderer would rely on, of a scene that was committed. */
-void fuzz_check_scene(const noc_scene *scene);
+/* What a renderer would rely on, of a scene that was committed; and the camera that is found for it, which takes longer. */
+void fuzz_check_scene(const noc_scene *scene, bool camera);
 
 #endif

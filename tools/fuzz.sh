@@ -62,7 +62,7 @@ fuzz() {
     while left=$((end - $(date +%s))) && [ $left -gt 0 ]; do
         start=$(date +%s)
         # shellcheck disable=SC2086 # lists of words
-        "$build/fuzz/fuzz_$2" $dictionary -max_len="$3" -max_total_time=$left -timeout=60 -rss_limit_mb=4096 -print_final_stats=1 \
+        "$build/fuzz/fuzz_$2" $dictionary -max_len="$3" -max_total_time=$left -timeout=60 -report_slow_units=60 -rss_limit_mb=4096 -print_final_stats=1 \
             -artifact_prefix="$found/" -reload=0 -close_fd_mask=1 "$now" $seeds >"$log" 2>&1 </dev/null
         status=$?
         awk -v time=$(($(date +%s) - start)) '
