@@ -60,7 +60,8 @@ fuzz:
 
 coverage:
 	@tools/install-deps.sh coverage
-	@[ -e build-coverage/build.ninja ] || meson setup build-coverage -Db_coverage=true -Dbuildtype=debug -Dbench=false -Dtests=enabled >/dev/null
+	@[ -e build-coverage/build.ninja ] || meson setup build-coverage -Db_coverage=true -Dc_args=-fprofile-update=atomic -Dbuildtype=debugoptimized \
+		-Dbench=false -Dtests=enabled >/dev/null
 	@$(NINJA) -C build-coverage
 	@tools/coverage.py build-coverage build-fuzz/corpus
 

@@ -15,7 +15,7 @@ def forget():
 def rooms():
     """Room: [lines that were run, lines]."""
     out = subprocess.run(["gcovr", "--root", root, "--filter", os.path.abspath(root) + "/src/", "--object-directory", build, build, "--json-summary",
-                          "--gcov-ignore-parse-errors"], stdout=subprocess.PIPE, check=True).stdout
+                          "--gcov-ignore-parse-errors"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True).stdout
     sums = {}
     for f in json.loads(out)["files"]:
         room = sums.setdefault("/".join(f["filename"].split("/")[:2]), [0, 0])
