@@ -3,13 +3,14 @@
  * A sample is (light, u, v), u and v in the unit square. light_sample returns the direction and distance to the point that
  * (u, v) stands for as seen from y, and `le`: radiance times the Jacobian of that map, so that the light's contribution to
  * reflected radiance is the integral over the unit square of f_r * cos(theta_y) * le * V. For flat lights the map is uniform
- * in area (le = L cos(theta_l) A / d^2); for spheres it is uniform in the solid angle of the visible cone (le = L * angle:
- * no 1 / d^2 spikes; Shirley, Wang and Zimmerman 1996, section 3.2); for points it is constant (le = I / d^2). Emission is
- * one-sided unless flagged. */
+ * in area from afar (le = L cos(theta_l) A / d^2) and in solid angle from close by (le = L * angle, core/fan.h); which one is
+ * a matter of the receiver and the light alone, never of (u, v). For spheres it is uniform in the solid angle of the visible cone
+ * (le = L * angle; Shirley, Wang and Zimmerman 1996, section 3.2): so nothing makes 1 / d^2 spikes but points, for which it is
+ * constant (le = I / d^2). Emission is one-sided unless flagged. */
 #ifndef CORE_LIGHT_H
 #define CORE_LIGHT_H
 
-#include "core/warp.h"
+#include "core/fan.h"
 
 #define LIGHT_SPHERE 0u
 #define LIGHT_DISC 1u
@@ -17,12 +18,16 @@
 #define LIGHT_PARALLELOGRAM 3u
 #define LIGHT_POINT 4u
 #define LIGHT_TWO_SIDED 1u /* flag */
+/* Flat lights are sampled by solid angle where p is nearer than so many times `radius`; discs, which lose a fifth of their samples
+ * by it, nearer than so many. */
+#define LIGHT_CLOSE 2.0f
+#define LIGHT_CLOSE_DISC 1.5f
 
 struct light {
     v3 p;       /* centre or corner */
     u32 kind;
     v3 a;       /* edge u; disc: first radius vector */
-    real radius;
+    real radius; /* triangle, parallelogram: the longest way between two corners */
     v3 b;       /* edge v; disc: second radius vector; faces a x b */
     u32 flags;
     v3 e;       /* radiance, cd/m2; point: intensity, cd */
@@ -64,6 +69,33 @@ FN light_sample sample_round(light l, v3 y, real u, real v) {
     return s;
 }
 
+/* A flat light from close by. A disc is what lies in it of the square around it: a fifth of the places give nothing. */
+FN light_sample sample_close(light l, v3 y, real u, real v) {
+    light_sample s;
+    mask disc = l.kind == KU(LIGHT_DISC);
+    v3 q = sub3(l.p, y);
+    v3 a = sel3(disc, mul3(l.a, K(2.0f)), l.a);
+    v3 b = sel3(disc, mul3(l.b, K(2.0f)), l.b);
+    real volume = K(0.0f) - dot3(cross3(a, b), q);
+    EXACT real qx = q.x - (l.a.x + l.b.x);
+    EXACT real qy = q.y - (l.a.y + l.b.y);
+    EXACT real qz = q.z - (l.a.z + l.b.z);
+    q = sel3(disc, V3(qx, qy, qz), q);
+    mask lit = or_(volume > K(0.0f), (l.flags & KU(LIGHT_TWO_SIDED)) != KU(0u));
+    fan f = sample_fan(q, a, b, l.kind != KU(LIGHT_TRIANGLE), abs_(volume), u, v);
+    EXACT real x = f.s * K(2.0f) - K(1.0f);
+    EXACT real z = f.t * K(2.0f) - K(1.0f);
+    EXACT real r2 = x * x + z * z;
+    lit = and_(lit, or_(not_(disc), r2 < K(1.0f)));
+    EXACT real d2 = max_(dot3(f.d, f.d), K(1e-12f));
+    real dist = sqrt_(d2);
+    EXACT real inv = K(1.0f) / dist;
+    s.wi = mul3(f.d, inv);
+    s.dist = dist;
+    s.le = mul3(l.e, sel(lit, f.angle, K(0.0f)));
+    return s;
+}
+
 FN light_sample sample_flat(light l, v3 y, real u, real v) {
     light_sample s;
     real su = u;
@@ -89,8 +121,11 @@ FN light_sample sample_flat(light l, v3 y, real u, real v) {
         share = sel(disc, K(CORE_PI), sel(tri, K(0.5f), sel(point, K(0.0f), share)));
         bare = sel(point, K(1.0f), bare);
     }
-    v3 x = add3(l.p, add3(mul3(l.a, su), mul3(l.b, sv)));
-    v3 d = sub3(x, y);
+    v3 w = sub3(l.p, y);
+    EXACT real dx = w.x + (l.a.x * su + l.b.x * sv);
+    EXACT real dy = w.y + (l.a.y * su + l.b.y * sv);
+    EXACT real dz = w.z + (l.a.z * su + l.b.z * sv);
+    v3 d = V3(dx, dy, dz);
     EXACT real d2 = max_(dot3(d, d), K(1e-12f));
     real dist = sqrt_(d2);
     EXACT real inv = K(1.0f) / dist;
@@ -101,6 +136,17 @@ FN light_sample sample_flat(light l, v3 y, real u, real v) {
     s.wi = mul3(d, inv);
     s.dist = dist;
     s.le = mul3(l.e, g);
+    EXACT real reach = l.radius * K(LIGHT_CLOSE);
+    real w2 = dot3(w, w);
+    mask close = w2 < reach * reach;
+    if (ANY(close)) {
+        EXACT real disc_reach = l.radius * K(LIGHT_CLOSE_DISC);
+        close = and_(close, or_(l.kind != KU(LIGHT_DISC), w2 < disc_reach * disc_reach));
+        light_sample c = sample_close(l, y, u, v);
+        s.wi = sel3(close, c.wi, s.wi);
+        s.dist = sel(close, c.dist, s.dist);
+        s.le = sel3(close, c.le, s.le);
+    }
     return s;
 }
 

@@ -2,7 +2,10 @@
  *
  * Both ends stand off their surfaces, along the normals, by a distance that follows the coordinates' precision: 4 * 2^-23 of
  * the largest coordinate (4 to 8 units in the last place: rounding of the point itself, of the vertices and of the traversal
- * each take about one), never under 0.1 mm. A window 1 cm off its wall is told apart from it up to 20 km from the origin. */
+ * each take about one), never under `least`, which is 0.1 mm in a city and less in scenes of a few metres and below. A window 1 cm off its
+ * wall is told apart from it up to 20 km from the origin. A point has no normal, and may lie in a surface: its end stands off
+ * towards the receiver, eight times as far, for the surface may be seen at a slant. A sphere's end lies before its shape
+ * (scene/light.c), which reaches out a little further than the sphere. */
 #ifndef CORE_SHADOW_H
 #define CORE_SHADOW_H
 
@@ -19,24 +22,51 @@ typedef struct segment segment;
 
 FN real max_abs3(v3 a) { return max_(abs_(a.x), max_(abs_(a.y), abs_(a.z))); }
 
+/* A sphere's shape lies within so many radii. */
+#define LIGHT_SPHERE_SHAPE 1.04f
+#define LIGHT_SPHERE_BEYOND 0.0816f /* its square less 1; readers need not fold constants alike */
+
 /* How far to stand off a surface where coordinates are as large as that, m. */
-FN real stand_off(real largest) { return max_(K(1e-4f), largest * K(4.76837158203125e-7f)); }
+FN real stand_off(real largest, real least) { return max_(least, largest * K(4.76837158203125e-7f)); }
 
 /* n: unit normal of the receiving surface at p, on the side that is lit. */
-FN segment shadow_segment(v3 p, v3 n, light l, real u, real v) {
+FN segment shadow_segment(v3 p, v3 n, light l, real u, real v, real least) {
     light_sample s = sample_light(l, p, u, v);
     v3 x = add3(p, mul3(s.wi, s.dist));
     mask point = l.kind == KU(LIGHT_POINT);
     mask round = l.kind == KU(LIGHT_SPHERE);
-    v3 m = sel3(round, sub3(x, l.p), cross3(l.a, l.b));
+    v3 m = cross3(l.a, l.b);
     real m2 = dot3(m, m);
     real side = sel(dot3(m, s.wi) > K(0.0f), K(-1.0f), K(1.0f));
     real inv = side / sqrt_(max_(m2, K(1e-30f)));
-    real eps = stand_off(max_(max_abs3(p), max_abs3(x)));
-    v3 end = add3(x, mul3(m, sel(point, K(0.0f), inv * eps)));
+    real eps = stand_off(max_(max_abs3(p), max_abs3(x)), least);
+    v3 end = add3(x, mul3(m, inv * eps));
+    mask bodiless = or_(point, round);
+    if (ANY(bodiless)) { /* back along the ray: to the ball around the shape */
+        EXACT real rx = p.x + s.wi.x * s.dist - l.p.x;
+        EXACT real ry = p.y + s.wi.y * s.dist - l.p.y;
+        EXACT real rz = p.z + s.wi.z * s.dist - l.p.z;
+        real toward = K(0.0f) - dot3(V3(rx, ry, rz), s.wi);
+        toward = max_(toward, K(0.0f));
+        EXACT real to_ball2 = toward * toward + l.radius * l.radius * K(LIGHT_SPHERE_BEYOND);
+        EXACT real back = sqrt_(max_(to_ball2, K(0.0f))) - toward + eps;
+        back = sel(point, K(8.0f) * eps, back);
+        EXACT real way = s.dist - back;
+        way = max_(way, K(0.0f));
+        EXACT real ex = p.x + s.wi.x * way;
+        EXACT real ey = p.y + s.wi.y * way;
+        EXACT real ez = p.z + s.wi.z * way;
+        end = sel3(bodiless, V3(ex, ey, ez), end);
+    }
     segment r;
-    r.o = add3(p, mul3(n, eps));
-    r.d = sub3(end, r.o);
+    EXACT real ox = p.x + n.x * eps;
+    EXACT real oy = p.y + n.y * eps;
+    EXACT real oz = p.z + n.z * eps;
+    EXACT real dx = end.x - ox;
+    EXACT real dy = end.y - oy;
+    EXACT real dz = end.z - oz;
+    r.o = V3(ox, oy, oz);
+    r.d = V3(dx, dy, dz);
     return r;
 }
 

@@ -22,6 +22,21 @@ FN v3 circle(real t) {
     return V3(cs, sn, K(0.0f));
 }
 
+/* atan2(y, x) / 2 pi for y >= 0, so 0 to 1/2; circle's inverse. A polynomial that interpolates the arc tangent at Chebyshev's
+ * points; relative error < 3e-7, also next to 0. */
+FN real turn_of(real x, real y) {
+    real ax = abs_(x);
+    mask steep = y > ax;
+    EXACT real r = min_(ax, y) / max_(max_(ax, y), K(1e-30f));
+    EXACT real r2 = r * r;
+    EXACT real low = K(1.68996617e-2f) + r2 * (K(-1.18679531e-2f) + r2 * (K(6.70641109e-3f) + r2 * (K(-2.50370606e-3f) +
+                     r2 * K(4.40267693e-4f))));
+    EXACT real a = r * (K(0.15915494f) + r2 * (K(-5.30511756e-2f) + r2 * (K(3.18180526e-2f) + r2 * (K(-2.2596497e-2f) +
+                   r2 * low))));
+    a = sel(steep, K(0.25f) - a, a);
+    return sel(x < K(0.0f), K(0.5f) - a, a);
+}
+
 /* x u + y v + z n for an orthonormal frame (u, v, n) around the unit vector n (Duff et al. 2017, "Building an Orthonormal
  * Basis, Revisited"). */
 FN v3 around(v3 n, real x, real y, real z) {

@@ -31,11 +31,13 @@ static bool all_finite(const double *v, int n) {
 
 enum { DISC_SIDES = 24 };
 
+/* Of the true disc's area. */
 static size_t disc_shape(const noc_light *l, const double u[3], const double v[3], double *xyz, uint32_t *indices) {
+    double radius = l->radius * sqrt(2 * M_PI / DISC_SIDES / sin(2 * M_PI / DISC_SIDES));
     for (int i = 0; i < DISC_SIDES; i++) {
         double t = 2 * M_PI * i / DISC_SIDES;
         for (int k = 0; k < 3; k++)
-            xyz[3 * i + k] = l->position[k] + l->radius * (cos(t) * u[k] + sin(t) * v[k]);
+            xyz[3 * i + k] = l->position[k] + radius * (cos(t) * u[k] + sin(t) * v[k]);
     }
     for (uint32_t i = 0; i + 2 < DISC_SIDES; i++) {
         indices[3 * i] = 0;
@@ -45,31 +47,62 @@ static size_t disc_shape(const noc_light *l, const double u[3], const double v[3
     return DISC_SIDES;
 }
 
-enum { SPHERE_RINGS = 8, SPHERE_SIDES = 12 };
+/* An icosahedron whose faces are cut in four. */
+enum { SPHERE_VERTICES = 12 + 30, SPHERE_TRIANGLES = 80 };
 
-/* Inscribed, so that no point of the true sphere lies behind its own shape. */
+static void point_on_sphere(const double p[3], double out[3]) {
+    double len = length(p);
+    for (int k = 0; k < 3; k++)
+        out[k] = p[k] / len;
+}
+
+/* The vertex in the middle of an edge: made where it is asked for first. */
+static uint32_t middle(double unit[][3], uint32_t edges[][2], uint32_t *count, uint32_t a, uint32_t b) {
+    uint32_t low = NOC_MIN(a, b), high = NOC_MAX(a, b), i = 12;
+    while (i < *count && (edges[i][0] != low || edges[i][1] != high))
+        i++;
+    if (i == *count) {
+        double sum[3] = { unit[a][0] + unit[b][0], unit[a][1] + unit[b][1], unit[a][2] + unit[b][2] };
+        point_on_sphere(sum, unit[i]);
+        edges[i][0] = low;
+        edges[i][1] = high;
+        ++*count;
+    }
+    return i;
+}
+
+/* As large as the true sphere seems, averaged over all directions: a convex body's mean projected area is a quarter of its surface
+ * (Cauchy), so the surface is made 4 pi r^2; from any one side it is within 1.2 % of that. Its vertices lie outside of the true
+ * sphere, within LIGHT_SPHERE_SHAPE radii, where shadow rays to the light end (core/shadow.h). */
 static size_t sphere_shape(const noc_light *l, double *xyz, uint32_t *indices, size_t *triangles) {
-    size_t n = 0, t = 0;
-    for (int j = 0; j <= SPHERE_RINGS; j++)
-        for (int i = 0; i < SPHERE_SIDES; i++, n++) {
-            double theta = M_PI * j / SPHERE_RINGS, phi = 2 * M_PI * i / SPHERE_SIDES;
-            xyz[3 * n] = l->position[0] + l->radius * sin(theta) * cos(phi);
-            xyz[3 * n + 1] = l->position[1] + l->radius * sin(theta) * sin(phi);
-            xyz[3 * n + 2] = l->position[2] + l->radius * cos(theta);
-        }
-    for (uint32_t j = 0; j < SPHERE_RINGS; j++)
-        for (uint32_t i = 0; i < SPHERE_SIDES; i++) {
-            uint32_t a = j * SPHERE_SIDES + i, b = j * SPHERE_SIDES + (i + 1) % SPHERE_SIDES;
-            uint32_t c = a + SPHERE_SIDES, d = b + SPHERE_SIDES;
-            uint32_t quad[6] = { a, c, d, a, d, b };
-            for (int k = 0; k < 6; k += 3) {
-                if ((k == 3 && j == 0) || (k == 0 && j == SPHERE_RINGS - 1))
-                    continue; /* the poles' degenerate halves */
-                memcpy(indices + 3 * t++, quad + k, 3 * sizeof(uint32_t));
-            }
-        }
-    *triangles = t;
-    return n;
+    static const uint8_t faces[20][3] = { { 0, 11, 5 }, { 0, 5, 1 },  { 0, 1, 7 },   { 0, 7, 10 }, { 0, 10, 11 },
+                                          { 1, 5, 9 },  { 5, 11, 4 }, { 11, 10, 2 }, { 10, 7, 6 }, { 7, 1, 8 },
+                                          { 3, 9, 4 },  { 3, 4, 2 },  { 3, 2, 6 },   { 3, 6, 8 },  { 3, 8, 9 },
+                                          { 4, 9, 5 },  { 2, 4, 11 }, { 6, 2, 10 },  { 8, 6, 7 },  { 9, 8, 1 } };
+    const double gold = (1 + sqrt(5)) / 2, base[12][3] = { { -1, gold, 0 }, { 1, gold, 0 }, { -1, -gold, 0 }, { 1, -gold, 0 },
+                                                           { 0, -1, gold }, { 0, 1, gold }, { 0, -1, -gold }, { 0, 1, -gold },
+                                                           { gold, 0, -1 }, { gold, 0, 1 }, { -gold, 0, -1 }, { -gold, 0, 1 } };
+    double unit[SPHERE_VERTICES][3], area = 0;
+    uint32_t edges[SPHERE_VERTICES][2], count = 12;
+    for (int i = 0; i < 12; i++)
+        point_on_sphere(base[i], unit[i]);
+    for (int i = 0; i < 20; i++) {
+        uint32_t a = faces[i][0], b = faces[i][1], c = faces[i][2];
+        uint32_t x = middle(unit, edges, &count, a, b), y = middle(unit, edges, &count, b, c), z = middle(unit, edges, &count, c, a);
+        memcpy(indices + 12 * i, (uint32_t[]){ a, x, z, x, b, y, z, y, c, x, y, z }, 12 * sizeof(uint32_t));
+    }
+    for (int t = 0; t < SPHERE_TRIANGLES; t++) {
+        const double *p = unit[indices[3 * t]], *q = unit[indices[3 * t + 1]], *r = unit[indices[3 * t + 2]];
+        double u[3] = { q[0] - p[0], q[1] - p[1], q[2] - p[2] }, v[3] = { r[0] - p[0], r[1] - p[1], r[2] - p[2] }, n[3];
+        cross(u, v, n);
+        area += length(n) / 2;
+    }
+    double radius = l->radius * sqrt(4 * M_PI / area);
+    for (int i = 0; i < SPHERE_VERTICES; i++)
+        for (int k = 0; k < 3; k++)
+            xyz[3 * i + k] = l->position[k] + radius * unit[i][k];
+    *triangles = SPHERE_TRIANGLES;
+    return SPHERE_VERTICES;
 }
 
 /* The material that shows a light: emits, reflects nothing. Lights of one colour share it. */
@@ -113,10 +146,20 @@ static const char *light_fault(const noc_light *l) {
     return NULL;
 }
 
+float noc_flat_size(const noc_light_record *r) {
+    double sum[3], difference[3], a[3] = { r->a[0], r->a[1], r->a[2] }, b[3] = { r->b[0], r->b[1], r->b[2] };
+    for (int k = 0; k < 3; k++) {
+        sum[k] = a[k] + b[k];
+        difference[k] = a[k] - b[k];
+    }
+    double other = r->kind == NOC_LIGHT_PARALLELOGRAM ? length(sum) : fmax(length(a), length(b));
+    return (float)fmax(length(difference), other);
+}
+
 static noc_light_record record_of(const noc_light *l) {
     noc_light_record r = { .kind = (uint32_t)l->kind,
                            .flags = (l->inferred ? 2u : 0u) | (l->moving ? NOC_LIGHT_MOVES : 0u),
-                           .radius = l->kind == NOC_LIGHT_POINT ? 0 : (float)l->radius };
+                           .radius = is_round(l) ? (float)l->radius : 0 };
     double u[3] = { 0 }, v[3] = { 0 };
     if (l->kind == NOC_LIGHT_DISC)
         frame(l->direction, u, v);
@@ -132,6 +175,8 @@ static noc_light_record record_of(const noc_light *l) {
         r.b[k] = (float)(is_flat(l) ? l->edge_v[k] : l->radius * v[k]);
         r.e[k] = l->emission[k];
     }
+    if (is_flat(l))
+        r.radius = noc_flat_size(&r);
     return r;
 }
 
@@ -149,8 +194,8 @@ static size_t flat_shape(const noc_light *l, double *xyz, uint32_t *indices) {
 
 /* The mesh that shows the light of this index. */
 static bool add_shape(noc_scene *scene, const noc_light *l, uint32_t index) {
-    double xyz[3 * (SPHERE_RINGS + 1) * SPHERE_SIDES], u[3], v[3];
-    uint32_t indices[3 * 2 * SPHERE_RINGS * SPHERE_SIDES];
+    double xyz[3 * SPHERE_VERTICES], u[3], v[3];
+    uint32_t indices[3 * SPHERE_TRIANGLES];
     size_t vertices, triangles;
     if (l->kind == NOC_LIGHT_SPHERE) {
         vertices = sphere_shape(l, xyz, indices, &triangles);

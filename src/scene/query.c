@@ -19,9 +19,10 @@ noc_status noc_scene_get_light(const noc_scene *scene, size_t index, noc_light_i
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "light %zu: the scene has %zu lights", index, scene->lights.len);
     const noc_light_record *r = &scene->lights.data[index];
     *info = (noc_light_info){ .lumens = flux_of(r), .area = r->area, .two_sided = r->flags & 1,
-                              .light = { .kind = (noc_light_kind)r->kind, .radius = r->radius, .name = scene->light_names.data[index],
+                              .light = { .kind = (noc_light_kind)r->kind, .name = scene->light_names.data[index],
                                          .inferred = r->flags >> 1 & 1, .moving = (r->flags & NOC_LIGHT_MOVES) != 0 } };
     bool triangle = r->kind == NOC_LIGHT_TRIANGLE, flat = triangle || r->kind == NOC_LIGHT_PARALLELOGRAM;
+    info->light.radius = flat ? 0 : r->radius;
     for (int k = 0; k < 3; k++) {
         info->light.position[k] = r->p[k];
         info->light.emission[k] = r->e[k];

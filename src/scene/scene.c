@@ -250,6 +250,7 @@ static void make_triangle_lights(noc_scene *scene) {
                 r.e[k] = mat->emission[k];
             }
             r.area = (float)(0.5 * double_area(a, b, c));
+            r.radius = noc_flat_size(&r);
             scene->triangle_light.data[t] = (uint32_t)scene->lights.len;
             array_push(&scene->lights, r);
             array_push(&scene->light_names, m->name);

@@ -12,7 +12,7 @@ typedef struct noc_light_record {
     float p[3];      /* centre or corner */
     uint32_t kind;   /* noc_light_kind */
     float a[3];      /* edge u; disc: first radius vector */
-    float radius;
+    float radius;    /* triangle, parallelogram: noc_flat_size; 0 for points */
     float b[3];      /* edge v; disc: second radius vector; the light faces a x b */
     uint32_t flags;  /* bit 0: two-sided; bit 1: inferred; bit 2: NOC_LIGHT_MOVES */
     float e[3];      /* cd/m2; point: cd */
@@ -82,6 +82,9 @@ static inline size_t noc_scene_city_triangle(const noc_scene *s, size_t i) {
 
 /* query.c: index of the object that a triangle is of, for noc_scene_object_name. */
 size_t noc_scene_object_of(const noc_scene *scene, uint32_t triangle);
+
+/* The longest way between two corners of a triangle or parallelogram, m. */
+float noc_flat_size(const noc_light_record *light);
 
 /* Reports once that there is no memory for more of a scene; false. */
 bool noc_scene_out_of_memory(noc_scene *scene);

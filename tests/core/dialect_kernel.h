@@ -8,7 +8,7 @@
 #include "core/light.h"
 #include "core/random.h"
 
-#define ITEM_SLOTS 141
+#define ITEM_SLOTS 163
 #define KERNEL_LIGHTS 1000u
 
 /* Signed, of a magnitude that differs from item to item: 1/16 to 4096. */
@@ -152,6 +152,17 @@ FN void lights(CTX u32 item, u32 key, v3 y, light any) {
     put_real(PASS item, 55, sample_light(any, y, u, v).dist);
 }
 
+/* Slots 141 to 161: flat lights sampled by solid angle, 7 a kind; 162: turn_of. */
+FN void close_lights(CTX u32 item, u32 key, v3 y, light any) {
+    light l = any;
+    l.radius = K(1e6f);
+    for (int kind = 0; kind < 3; kind++) {
+        l.kind = KU(U32(kind) + LIGHT_DISC);
+        put_sample(PASS item, 141 + 7 * kind, sample_light(l, y, rng(key, KU(2002u)), rng(key, KU(2003u))));
+    }
+    put_real(PASS item, 162, turn_of(any_real(key, KU(2004u)), abs_(any_real(key, KU(2006u)))));
+}
+
 /* Slots 56 to 70. */
 FN void surfaces(CTX u32 item, u32 key, surf s, light any) {
     v3 wi = unit3(any_v3(key, KU(2010u)));
@@ -210,11 +221,11 @@ FN void reuse(CTX u32 item, u32 key) {
 
 /* Slots 104 to 125. */
 FN void rays(CTX u32 item, u32 key, surf s, light any) {
-    segment g = shadow_segment(s.p, s.n, any, rng(key, KU(3020u)), rng(key, KU(3021u)));
+    segment g = shadow_segment(s.p, s.n, any, rng(key, KU(3020u)), rng(key, KU(3021u)), K(1e-4f));
     put_v3(PASS item, 104, g.o);
     put_v3(PASS item, 107, g.d);
     put_v3(PASS item, 110, sky_radiance(s.n, rng(key, KU(3022u))));
-    put_real(PASS item, 113, stand_off(max_abs3(mul3(s.p, K(100.0f)))));
+    put_real(PASS item, 113, stand_off(max_abs3(mul3(s.p, K(100.0f))), K(1e-4f)));
     v3 at = sky_numbers(key, item);
     put_real(PASS item, 114, at.x);
     put_real(PASS item, 115, at.y);
@@ -259,6 +270,7 @@ FN void dialect_item(CTX u32 item) {
     light any = any_light(hash_u32(key + KU(2u)));
     numbers(PASS item, key);
     lights(PASS item, key, s.p, any);
+    close_lights(PASS item, key, s.p, any);
     surfaces(PASS item, key, s, any);
     reservoirs(PASS item, key, s);
     reuse(PASS item, key);

@@ -7,8 +7,17 @@ static const float L = 100; /* cd/m2, or cd */
 static light make_sphere(v3 centre, float r) {
     return (light){ .p = centre, .kind = LIGHT_SPHERE, .radius = r, .e = { L, L, L } };
 }
+/* radius: as the scene's records have it. */
 static light make_flat(uint32_t kind, v3 p, v3 a, v3 b) {
-    return (light){ .p = p, .kind = kind, .a = a, .b = b, .e = { L, L, L } };
+    v3 sum = add3(a, b), difference = sub3(a, b);
+    float far = kind == LIGHT_POINT ? 0 : sqrtf(dot3(difference, difference));
+    if (kind == LIGHT_PARALLELOGRAM)
+        far = fmaxf(far, sqrtf(dot3(sum, sum)));
+    if (kind == LIGHT_TRIANGLE)
+        far = fmaxf(far, sqrtf(fmaxf(dot3(a, a), dot3(b, b))));
+    if (kind == LIGHT_DISC)
+        far = sqrtf(dot3(a, a));
+    return (light){ .p = p, .kind = kind, .a = a, .b = b, .radius = far, .e = { L, L, L } };
 }
 static light make_disc(v3 centre, v3 n, float r) {
     v3 a = normalised(cross3(fabsf(n.z) < 0.9f ? V3(0, 0, 1) : V3(1, 0, 0), n));
@@ -101,8 +110,8 @@ static void check_polygon(uint32_t kind, uint64_t seed) {
         v3 y = random_in_box(&d, 5), n = random_direction(&d);
         v3 f = cross3(a, b), w = sub3(y, p);
         double height = dot3(f, w) / sqrtf(dot3(f, f));
-        if (fabs(height) < 0.5)
-            continue; /* the midpoint rule would need a finer grid */
+        if (fabs(height) < 2e-3)
+            continue; /* by solid angle the midpoint rule is good for all heights that floats tell apart */
         light l = make_flat(kind, p, a, b);
         double have = irradiance(l, y, n, 256);
         v3 corners[4] = { p, add3(p, a), add3(p, add3(a, b)), add3(p, b) };
@@ -123,6 +132,118 @@ static void check_polygon(uint32_t kind, uint64_t seed) {
 }
 static void test_parallelogram(void **state) { check_polygon(LIGHT_PARALLELOGRAM, 3); }
 static void test_triangle(void **state) { check_polygon(LIGHT_TRIANGLE, 4); }
+
+/* Solid angle of a triangle of directions in doubles (Van Oosterom and Strackee 1983). */
+static double solid_angle(const v3 *corners, int i, int j, int k, v3 y) {
+    int at[3] = { i, j, k };
+    double p[3][3];
+    for (int m = 0; m < 3; m++) {
+        double w[3] = { (double)corners[at[m]].x - y.x, (double)corners[at[m]].y - y.y, (double)corners[at[m]].z - y.z };
+        double len = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+        for (int c = 0; c < 3; c++)
+            p[m][c] = w[c] / len;
+    }
+    double det = 0, dots = 1;
+    for (int c = 0; c < 3; c++) {
+        int d = (c + 1) % 3, e = (c + 2) % 3;
+        det += p[0][c] * (p[1][d] * p[2][e] - p[1][e] * p[2][d]);
+        for (int m = 0; m < 3; m++)
+            dots += p[m][c] * p[(m + 1) % 3][c];
+    }
+    return 2 * atan2(fabs(det), dots);
+}
+
+/* From close by every place stands for the same solid angle, so a sample's light only differs by the receiver's cosine; places
+ * cover the light evenly in solid angle: all receivers' irradiances are Lambert's. */
+static void check_close(uint32_t kind, uint64_t seed) {
+    dice d = { seed };
+    int checked = 0;
+    for (int i = 0; i < 200; i++) {
+        v3 p = random_in_box(&d, 3), a = random_in_box(&d, 2), b = random_in_box(&d, 2), f = cross3(a, b);
+        double area = sqrt(dot3(f, f)), gap = pow(10, uniform(&d, -2, 0.5));
+        if (area < 0.3)
+            continue;
+        v3 foot = add3(p, add3(mul3(a, (float)uniform(&d, -0.3, 1.3)), mul3(b, (float)uniform(&d, -0.3, 1.3))));
+        v3 y = add3(foot, mul3(f, (float)(gap / area))), n = random_direction(&d);
+        light l = make_flat(kind, p, a, b);
+        v3 w = sub3(p, y), corners[4] = { p, add3(p, a), add3(p, add3(a, b)), add3(p, b) };
+        if (dot3(w, w) > 3.9f * l.radius * l.radius)
+            continue;
+        bool whole = kind == LIGHT_PARALLELOGRAM;
+        double angle = whole ? solid_angle(corners, 0, 1, 2, y) + solid_angle(corners, 0, 2, 3, y) : solid_angle(corners, 0, 1, 3, y);
+        for (int k = 0; k < 16; k++) {
+            light_sample s = sample_light(l, y, (float)uniform(&d, 0, 1), (float)uniform(&d, 0, 1));
+            assert_close(s.le.x, L * angle, 1e-4);
+        }
+        if (!whole)
+            corners[2] = corners[3];
+        double have = irradiance(l, y, n, 160), want = polygon_irradiance(corners, whole ? 4 : 3, y, n);
+        if (fabs(have - want) > 5e-3 * L)
+            fail_msg("receiver %d, %g m away: %g lx by sampling, %g lx by Lambert's formula", i, gap, have, want);
+        checked++;
+    }
+    assert_true(checked > 60);
+}
+static void test_close_parallelogram(void **state) { check_close(LIGHT_PARALLELOGRAM, 10); }
+static void test_close_triangle(void **state) { check_close(LIGHT_TRIANGLE, 11); }
+
+/* A window of 1 x 1.5 m, 1 cm over a table: its middle, under an edge, beside a corner. One sample is never far off: where the
+ * window is all that is seen, no place gives more than twice the mean (the cosine's range); by area it is 15,000 / pi times. */
+static void test_close_window(void **state) {
+    const v3 up = V3(0, 0, 1), places[] = { { 0.5f, 0.75f, 0 }, { 0.3f, 0.2f, 0 }, { 0, 0.6f, 0 }, { 1.005f, 1.502f, 0 } };
+    light l = make_flat(LIGHT_PARALLELOGRAM, V3(0, 0, 0.01f), V3(0, 1.5f, 0), V3(1, 0, 0));
+    for (size_t i = 0; i < sizeof(places) / sizeof(*places); i++) {
+        v3 y = places[i], corners[4] = { l.p, add3(l.p, l.a), add3(l.p, add3(l.a, l.b)), add3(l.p, l.b) };
+        double want = polygon_irradiance(corners, 4, y, up), squares = 0, most = 0;
+        assert_close(irradiance(l, y, up, 256), want, 2e-3);
+        dice d = { 12 + i };
+        for (int k = 0; k < 20000; k++) {
+            light_sample s = sample_light(l, y, (float)uniform(&d, 0, 1), (float)uniform(&d, 0, 1));
+            double e = s.wi.z > 0 ? (double)s.wi.z * s.le.x / want : 0;
+            squares += (e - 1) * (e - 1) / 20000;
+            most = fmax(most, e);
+        }
+        assert_true(squares < 0.6 && most < (i < 2 ? 2.05 : 3)); /* of the whole half space: 1/3 and 2 */
+        l.radius = 0; /* by area, to see that this test sees the difference */
+        most = 0;
+        for (int k = 0; k < 20000; k++) {
+            light_sample s = sample_light(l, y, (float)uniform(&d, 0, 1), (float)uniform(&d, 0, 1));
+            most = fmax(most, (double)s.wi.z * s.le.x / want);
+        }
+        assert_true(most > 50);
+        l = make_flat(LIGHT_PARALLELOGRAM, l.p, l.a, l.b);
+    }
+}
+
+/* Where the map changes, the light does not. */
+static void test_close_and_far_agree(void **state) {
+    dice d = { 13 };
+    for (int i = 0; i < 60; i++) {
+        uint32_t kind = LIGHT_DISC + (uint32_t)(roll(&d) % 3);
+        v3 p = random_in_box(&d, 3), away = random_direction(&d), n = random_direction(&d);
+        light l = make_flat(kind, p, random_in_box(&d, 2), random_in_box(&d, 2));
+        if (kind == LIGHT_DISC)
+            l = make_disc(p, random_direction(&d), 1);
+        l.flags = LIGHT_TWO_SIDED;
+        float edge = kind == LIGHT_DISC ? LIGHT_CLOSE_DISC : LIGHT_CLOSE;
+        double near = irradiance(l, add3(p, mul3(away, 0.9999f * edge * l.radius)), n, 128);
+        double far = irradiance(l, add3(p, mul3(away, 1.0001f * edge * l.radius)), n, 128);
+        if (fabs(near - far) > 0.02 * far + 1e-3 * L)
+            fail_msg("light %d of kind %u: %g lx from within, %g lx from beyond", i, kind, near, far);
+    }
+}
+
+static void test_turn_of(void **state) {
+    dice d = { 14 };
+    for (int i = 0; i < 100000; i++) {
+        double size = pow(10, uniform(&d, -12, 6));
+        float x = (float)uniform(&d, -size, size), y = (float)fabs(uniform(&d, -1, 1) * pow(10, uniform(&d, -12, 6)));
+        double want = atan2((double)y, (double)x) / (2 * M_PI);
+        if (x > 1e-20 || y > 1e-20)
+            assert_close(turn_of(x, y), want, 4e-7);
+    }
+    assert_true(turn_of(1, 0) == 0 && turn_of(0, 0) == 0 && turn_of(-1, 0) == 0.5f && turn_of(0, 1) == 0.25f);
+}
 
 static void test_point(void **state) {
     dice d = { 5 };
@@ -152,8 +273,8 @@ static void test_samples_lie_on_the_light(void **state) {
             l = make_sphere(p, (float)uniform(&d, 0.1, 2));
         float u = (float)uniform(&d, 0, 1), v = (float)uniform(&d, 0, 1);
         light_sample s = sample_light(l, y, u, v);
-        if (kind == LIGHT_SPHERE && s.le.x == 0)
-            continue; /* inside */
+        if ((kind == LIGHT_SPHERE || kind == LIGHT_DISC) && s.le.x == 0)
+            continue; /* inside; beside the disc, in the square around it */
         v3 x = add3(y, mul3(s.wi, s.dist)), w = sub3(x, l.p);
         assert_true(fabsf(dot3(s.wi, s.wi) - 1) < 1e-5f);
         if (kind == LIGHT_POINT) {
@@ -195,7 +316,7 @@ static void test_receiver_where_no_light_comes(void **state) {
         f.flags = LIGHT_TWO_SIDED;
         light_sample two = sample_light(f, behind, u, v);
         f.flags = 0;
-        assert_true(two.le.x > 0);
+        assert_true(two.le.x > 0 || kind == LIGHT_DISC); /* there may be no disc at (u, v) */
         assert_close(two.le.x, sample_light(f, V3(behind.x, behind.y, 6 - behind.z), u, v).le.x, 1e-4);
     }
 }
@@ -258,6 +379,11 @@ int main(void) {
         cmocka_unit_test(test_disc),
         cmocka_unit_test(test_parallelogram),
         cmocka_unit_test(test_triangle),
+        cmocka_unit_test(test_close_parallelogram),
+        cmocka_unit_test(test_close_triangle),
+        cmocka_unit_test(test_close_window),
+        cmocka_unit_test(test_close_and_far_agree),
+        cmocka_unit_test(test_turn_of),
         cmocka_unit_test(test_point),
         cmocka_unit_test(test_samples_lie_on_the_light),
         cmocka_unit_test(test_receiver_where_no_light_comes),

@@ -84,6 +84,86 @@ static void no_acne(void **state) {
         }
 }
 
+static void expect_unshadowed(noc_scene *s, const noc_camera *c, bool dark) {
+    noc_render_params p = measure(48, 32, NOC_METHOD_REFERENCE);
+    p.emitters = false;
+    noc_image *traced = render(s, c, &p, 2);
+    p.final_ray = false;
+    noc_image *open = render(s, c, &p, 2);
+    assert_true(sum(open) > 1);
+    int wrong = 0;
+    for (int k = 0; k < 48 * 32 * 3; k++)
+        wrong += open->rgb[k] > 1e-3f && traced->rgb[k] != (dark ? 0 : open->rgb[k]); /* less: surfaces in the light's plane */
+    assert_int_equal(wrong, 0);
+    noc_image_destroy(traced);
+    noc_image_destroy(open);
+}
+
+/* A point light in a ceiling lights the room below it; its place is a float in the ceiling's plane, level or turned. */
+static void point_in_a_surface(void **state) {
+    (void)state;
+    for (int i = 0; i < 6; i++) {
+        double far = i % 3 * 3000, rise = i < 3 ? 0 : 0.25;
+        noc_scene *s = noc_scene_create(NULL);
+        int m = matte(s, 0.5f);
+        add_floor(s, m, far, far, 0, 6);
+        QUAD(s, m, far - 8, far - 8, 3 - 8 * rise, 0, 16, 0, 16, 0, 16 * rise);
+        point_light(s, far + 0.5, far + 1, 3 + 0.5 * rise, 100);
+        assert_int_equal(noc_scene_commit(s), NOC_OK);
+        noc_camera c = look(far, far - 4, 1.5, far + 0.5, far, 0, 60);
+        expect_unshadowed(s, &c, false);
+        noc_scene_destroy(s);
+    }
+}
+
+/* A model of 24 mm: its floor does not shadow itself, and a sheet 0.02 mm over the floor does. */
+static void small_model(void **state) {
+    (void)state;
+    for (int sheet = 0; sheet < 2; sheet++) {
+        noc_scene *s = noc_scene_create(NULL);
+        int m = matte(s, 0.5f);
+        add_floor(s, m, 0.001, 0.002, 0.003, 0.012);
+        if (sheet)
+            QUAD(s, m, -0.011, -0.01, 0.00302, 0.024, 0, 0, 0, 0.024, 0);
+        noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { 0, 0, 0.009 }, .edge_u = { 0, 0.002, 0 },
+                        .edge_v = { 0.002, 0, 0 }, .emission = { 50, 50, 50 } };
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+        assert_int_equal(noc_scene_commit(s), NOC_OK);
+        /* under the sheet: from between the two the floor is seen at a slant */
+        noc_camera c = sheet ? look(0.001, -0.0095, 0.003015, 0.001, 0, 0.003, 20) : look(0.001, -0.03, 0.03, 0.001, 0, 0.003, 20);
+        expect_unshadowed(s, &c, sheet);
+        noc_scene_destroy(s);
+    }
+}
+
+/* What leaves a lamp as it is seen: the solid angle of its pixels times its luminance is that of the true sphere or disc. */
+static void lamps_as_seen(void **state) {
+    (void)state;
+    enum { SIDE = 200, VIEWS = 24 };
+    for (int kind = NOC_LIGHT_SPHERE; kind <= NOC_LIGHT_DISC; kind++) {
+        noc_scene *s = noc_scene_create(NULL);
+        noc_light l = { .kind = (noc_light_kind)kind, .radius = 0.15, .direction = { 0, 0, 1 }, .emission = { 70, 70, 70 } };
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+        assert_int_equal(noc_scene_commit(s), NOC_OK);
+        noc_render_params p = measure(SIDE, SIDE, NOC_METHOD_RIS);
+        double mean = 0, half = 0.25, distance = 100;
+        for (int i = 0; i < VIEWS; i++) {
+            double z = 0.2 + 0.8 * (i + 0.5) / VIEWS, r = sqrt(1 - z * z), t = 2.399963 * i;
+            noc_camera c = look(distance * r * cos(t), distance * r * sin(t), distance * z, 0, 0, 0, 2 * atan(half / distance) * 180 / M_PI);
+            noc_image *image = render(s, &c, &p, 1);
+            double area = sum(image) / 70 * (2 * half / SIDE) * (2 * half / SIDE) / (M_PI * 0.15 * 0.15);
+            if (kind == NOC_LIGHT_DISC)
+                area /= z;
+            assert_true(fabs(area - 1) < (kind == NOC_LIGHT_DISC ? 0.02 : 0.015));
+            mean += area / VIEWS;
+            noc_image_destroy(image);
+        }
+        print_message("# kind %d: %.4f of its flux is seen\n", kind, mean);
+        assert_true(fabs(mean - 1) < 0.005);
+        noc_scene_destroy(s);
+    }
+}
+
 /* Light leaves the front only, unless the material says otherwise; what stands behind stays dark. */
 static void one_sided(void **state) {
     (void)state;
@@ -234,6 +314,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(windows_near_walls),
         cmocka_unit_test(no_acne),
+        cmocka_unit_test(point_in_a_surface),
+        cmocka_unit_test(small_model),
+        cmocka_unit_test(lamps_as_seen),
         cmocka_unit_test(one_sided),
         cmocka_unit_test(sky_light),
         cmocka_unit_test(sky_on_gloss),

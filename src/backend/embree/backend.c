@@ -164,6 +164,7 @@ static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st
     if (st->passes >> NOC_PASS_SHADE & 1)
         s->shaded_set = st->target;
     run.ctx.influence = s->influence;
+    run.ctx.stand_off = s->stand_off;
     if (st->passes >> NOC_PASS_CANDIDATES & 1 && (status = noc_embree_begin_learning(s, frame)) != NOC_OK)
         return status;
     /* Asked before too: the calling thread may get no tile of a small picture. */

@@ -18,6 +18,15 @@ static bool keep_size(void *user, ssize_t bytes, bool post) {
     return true;
 }
 
+/* 2^-19 of the largest coordinate, at most 0.1 mm: where a scene is small, so are the gaps in it. Vertices are rounded to 2^-24
+ * of theirs. */
+static float least_stand_off(const noc_scene *scene) {
+    float largest = 0;
+    for (size_t i = 0; i < scene->positions.len; i++)
+        largest = NOC_MAX(largest, fabsf(scene->positions.data[i]));
+    return NOC_MIN(largest * 0x1p-19f, 1e-4f);
+}
+
 noc_status noc_embree_build(embree_state *s) {
     const noc_scene *scene = s->scene;
     double start = noc_wall_seconds();
@@ -44,6 +53,7 @@ noc_status noc_embree_build(embree_state *s) {
         rtcAttachGeometry(s->rtc, geometry);
         rtcReleaseGeometry(geometry);
     }
+    s->stand_off = least_stand_off(scene);
     rtcCommitScene(s->rtc);
     s->build_seconds = noc_wall_seconds() - start;
     switch (rtcGetDeviceError(s->device)) {

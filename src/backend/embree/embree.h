@@ -148,6 +148,7 @@ typedef struct embree_state {
     RTCDevice device;
     RTCScene rtc;
     double build_seconds;
+    float stand_off;       /* of shadow rays at least, m */
     _Atomic ssize_t build_bytes; /* held by Embree */
     noc_material_record no_material; /* stands in where the scene has none */
     frame_buffers b;

@@ -30,7 +30,7 @@ static void segments(const struct core_context *ctx, const gblock *g, const uint
     for (int l = 0; l < BLOCK; l += LANES) {
         v3 p = V3(rload(g->px + l), rload(g->py + l), rload(g->pz + l));
         v3 n = V3(rload(g->nx + l), rload(g->ny + l), rload(g->nz + l));
-        segment s = shadow_segment(p, n, light_load(ctx, uload(id + l)), rload(u + l), rload(v + l));
+        segment s = shadow_segment(p, n, light_load(ctx, uload(id + l)), rload(u + l), rload(v + l), K(ctx->stand_off));
         ray_store(out, l, s.o, s.d);
     }
 }
@@ -185,7 +185,7 @@ static void sky_rays(const struct core_context *ctx, const gblock *g, int x, int
         mask on = dot3(s.n, s.n) > K(0.5f);
         s.n = sel3(on, s.n, V3(K(0.0f), K(0.0f), K(1.0f)));
         v3 d = sky_direction(s, at.x, at.y);
-        ray_store(out, l, add3(s.p, mul3(s.n, stand_off(max_abs3(s.p)))), mul3(d, K(reach)));
+        ray_store(out, l, add3(s.p, mul3(s.n, stand_off(max_abs3(s.p), K(ctx->stand_off)))), mul3(d, K(reach)));
     }
 }
 

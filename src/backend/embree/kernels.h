@@ -54,6 +54,7 @@ struct core_context {
     const pick_block *picks;      /* of the block; read from lane `lane` on */
     int lane;
     const noc_influence *influence; /* bvh only */
+    float stand_off;                /* of shadow rays at least, m: core/shadow.h */
 };
 
 /* A reservoir of another pixel with that pixel's surface; lanes outside `lanes` were rejected and have m = w = 0. */

@@ -153,10 +153,13 @@ static void draw_block(stage_run *run, tile_rays *t, const struct core_context *
     keep_one(run, t, &d, pick, block, first, out);
 }
 
-/* A list with room to spare holds its lights several times, each time to be looked at in another point. */
+/* A list with room to spare holds its lights several times, each time to be looked at in another point: up to a ray's worth, and
+ * in all not in fewer points than the pixel's draws would be (a large light close by differs more from place to place than from
+ * light to light). */
 static void fill_list(const noc_render_params *p, light_list *list) {
     uint32_t once = list->count, room = (uint32_t)NOC_MIN(p->list + p->tail, 2 * LIST_ENTRIES);
-    uint32_t copies = once ? NOC_MIN(room / once, (uint32_t)p->shadow_rays) : 0;
+    uint32_t wanted = once ? NOC_MAX((uint32_t)p->shadow_rays, (uint32_t)p->draws / once) : 0;
+    uint32_t copies = once ? NOC_MIN(room / once, wanted) : 0;
     /* Side by side: rays that are an equal distance apart would find the same light again in each round of all of them. */
     for (uint32_t i = once * copies; copies > 1 && i-- > 0;) {
         list->light[i] = list->light[i / copies];
