@@ -1,4 +1,4 @@
-/* core/sky.h: a faint clear night sky over a lit city, and how it is sampled.
+/* core/sky.h: the bright night sky over a lit city, and how it is sampled.
  *
  * Luminance at the zenith is given; it grows towards the horizon by a factor of 4, as light pollution does (Garstang 1989
  * finds 3 to 6 over towns), and turns from bluish to the warm grey of lamps seen through haze. Under the horizon lies dark

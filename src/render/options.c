@@ -30,7 +30,7 @@ static const noc_option render_options[] = {
     UINT(P, seed, "seed", "Picture", "start of the random numbers; equal seeds give equal pictures"),
     BOOL(P, jitter, "jitter", "Picture", "move sub-pixel positions from frame to frame (antialiasing)"),
     BOOL(P, accumulate, "accumulate", "Picture", "mean of all frames; off: the last frame alone"),
-    REAL(P, sky, "sky", "Picture", 0, 1e6, "cd/m2", "luminance of the sky at the zenith; 0 = no sky"),
+    REAL(P, sky, "sky", "Picture", 0, 1e6, "cd/m2", "luminance of the zenith: 0.02 large city, 0.0002 natural; 0 = off"),
     BOOL(P, emitters, "emitters", "Picture", "show light sources that are seen directly"),
 
     CHOICE(P, method, "method", "Estimator", "reference|is|ris|restir", "how direct light is estimated"),
