@@ -55,7 +55,7 @@ typedef enum cg_part {
     CG_PART_BOUNDARY,     /* a surface with a meaning: wall, traffic area, water surface */
     CG_PART_OPENING,
     CG_PART_GROUP,        /* CityObjectGroup: members written inside it are objects of their own */
-    CG_PART_INTERIOR,     /* skipped silently: a night view from outside needs no rooms */
+    CG_PART_INTERIOR,     /* counted, and skipped: a night view from outside needs no rooms */
     CG_PART_UNREAD,       /* skipped and counted */
 } cg_part;
 

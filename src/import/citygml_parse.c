@@ -177,8 +177,14 @@ static bool see_version(cg_parser *p, int version) {
 static bool start_feature(cg_parser *p, cg_frame *frame, const attributes *a) {
     const cg_feature_type *type = &cg_feature_types[frame->name.value];
     bool top = frame->feature == CG_NONE;
-    if (type->part == CG_PART_INTERIOR || p->in_polygon)
+    if (p->in_polygon)
         return false;
+    if (type->part == CG_PART_INTERIOR) {
+        char reason[80];
+        snprintf(reason, sizeof(reason), "%s left out, it is inside", type->name);
+        cg_issue(p, false, reason, a->id ? a->id : "");
+        return false;
+    }
     if (type->part == CG_PART_GROUP)
         return top;
     if (type->part == CG_PART_UNREAD) {

@@ -137,6 +137,9 @@ static void test_classes_of_buildings(void **state) {
         { "closure", NOC_CLASS_CLOSURE }, { "window", NOC_CLASS_WINDOW }, { "D", NOC_CLASS_DOOR } };
     for (size_t i = 0; i < NOC_COUNT(want); i++)
         assert_int_equal(city_find(&sink, want[i].id)->cls, want[i].cls);
+    /* what is inside is not drawn, and that is told */
+    assert_int_equal(city_issue(&sink, "FloorSurface left out, it is inside"), 1);
+    assert_int_equal(city_issue(&sink, "Room left out, it is inside"), 1);
 }
 
 static void test_classes_by_normal(void **state) {
