@@ -45,13 +45,17 @@ typedef struct noc_import_params {
                                read that file and its parts alone, and is ended when the call is cancelled; default true. It is
                                looked for beside the library, in a folder nocturne there, and where the environment's
                                NOCTURNE_READER says. false: in this process, where nothing stops the libraries that read */
-    double reader_time;     /* s that such a file may take; default 600 */
-    int reader_memory;      /* MB (1e6 bytes) of memory that its reader may have, and that it may hold; default 8000 */
+    /* Limits on what one input may cost. Messages name them; what would be larger is NOC_ERR_MEMORY. */
+    double reader_time;     /* s that a file may take which nocturne-reader reads; default 600 */
+    double max_memory;      /* GB (1e9 bytes) that reading an input may take, in nocturne-reader, too; 0, the default:
+                               three quarters of the machine's */
+    double max_expansion;   /* times its stored size that it may grow to, where that is over 1 GiB; 0: any; default
+                               200 */
     noc_progress progress;
 } noc_import_params;
 
-#define NOC_IMPORT_DEFAULTS(set) set(lod, 3) set(infer_lamps, NOC_SWITCH_AUTO) set(lamp_height, 6) set(lamp_lumens, 5000) set(lamp_kelvin, 3000) \
-    set(isolate, true) set(reader_time, 600) set(reader_memory, 8000)
+#define NOC_IMPORT_DEFAULTS(set) set(lod, 3) set(infer_lamps, NOC_SWITCH_AUTO) set(lamp_height, 6) \
+    set(lamp_lumens, 5000) set(lamp_kelvin, 3000) set(isolate, true) set(reader_time, 600) set(max_expansion, 200)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_import_params, noc_import_default_params, NOC_IMPORT_DEFAULTS)
 #else

@@ -11,7 +11,8 @@
 #define NOC_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define NOC_CLAMP(x, lo, hi) NOC_MIN(NOC_MAX(x, lo), hi)
 
-/* Small allocations: these print and abort when memory is gone. */
+/* Small allocations, and those of bounded size: where memory is refused they are served from a reserve of 16 MiB, so
+ * that the work goes on to a large one, which reports it. They abort only when that is used up too. */
 void *noc_alloc(size_t size);                 /* uninitialised */
 void *noc_calloc(size_t count, size_t size);  /* zeroed */
 void *noc_realloc(void *p, size_t size);

@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <sys/mman.h>
 #include <sys/random.h>
 #include <time.h>
 #include <unistd.h>
@@ -12,23 +13,47 @@ static void out_of_memory(size_t size) {
     abort();
 }
 
+/* A reserve that is given back where memory is refused, so that what is small or of bounded size still succeeds,
+ * and the work comes to the next allocation that may fail with a status. Address space only: nothing touches it. */
+#define RESERVE ((size_t)16 << 20)
+static void *reserve;
+static pthread_mutex_t reserve_lock = PTHREAD_MUTEX_INITIALIZER;
+
+static void keep_reserve(void) {
+    pthread_mutex_lock(&reserve_lock);
+    if (!reserve) {
+        reserve = mmap(NULL, RESERVE, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        reserve = reserve == MAP_FAILED ? NULL : reserve;
+    }
+    pthread_mutex_unlock(&reserve_lock);
+}
+
+/* Whether there was a reserve to give back. */
+static bool spend_reserve(void) {
+    pthread_mutex_lock(&reserve_lock);
+    bool spent = reserve && !munmap(reserve, RESERVE);
+    reserve = NULL;
+    pthread_mutex_unlock(&reserve_lock);
+    return spent;
+}
+
 void *noc_alloc(size_t size) {
     void *p = malloc(size ? size : 1);
-    if (!p)
+    if (!p && !(spend_reserve() && (p = malloc(size ? size : 1))))
         out_of_memory(size);
     return p;
 }
 
 void *noc_calloc(size_t count, size_t size) {
     void *p = calloc(count ? count : 1, size ? size : 1);
-    if (!p)
+    if (!p && !(spend_reserve() && (p = calloc(count ? count : 1, size ? size : 1))))
         out_of_memory(count * size);
     return p;
 }
 
 void *noc_realloc(void *p, size_t size) {
     void *q = realloc(p, size ? size : 1);
-    if (!q)
+    if (!q && !(spend_reserve() && (q = realloc(p, size ? size : 1))))
         out_of_memory(size);
     return q;
 }
@@ -67,8 +92,10 @@ void *noc_alloc_large(size_t count, size_t size) {
         return NULL;
     bytes = (bytes + 63) & ~(size_t)63;
     void *p = aligned_alloc(64, bytes ? bytes : 64);
-    if (p)
+    if (p) {
         memset(p, 0, bytes);
+        keep_reserve();
+    }
     return p;
 }
 

@@ -124,6 +124,7 @@ typedef struct geo_sink {
 typedef struct geo_triangles {
     NOC_ARRAY(double) xyz;       /* 3 a vertex */
     NOC_ARRAY(uint32_t) indices; /* 3 a triangle */
+    bool no_memory;              /* a polygon was left out as memory was refused; stays set */
 } geo_triangles;
 
 /* Points in metres. Appends to out; returns false if the polygon was skipped. */

@@ -21,6 +21,7 @@ struct work {
     NOC_ARRAY(size_t) ring_size;
     NOC_ARRAY(double) ring_sum; /* of the ring's points, 3 a ring */
     double centre[3], normal[3];
+    bool no_memory;
 };
 
 static void subtract(const double *a, const double *b, double out[3]) {
@@ -99,7 +100,6 @@ static size_t clean_seam(double *ring, size_t n, struct defects *found) {
 /* Appends one ring, cleaned; returns its number of points. */
 static size_t add_ring(struct work *w, const double *xyz, size_t count, struct defects *found) {
     size_t first = w->xyz.len;
-    array_reserve(&w->xyz, first + 3 * count);
     double *p = w->xyz.data + first;
     size_t n = 0;
     for (size_t i = 0; i < count; i++) {
@@ -185,7 +185,6 @@ static void project(struct work *w) {
         v[k] /= length;
     cross(v, n, u);
     size_t count = w->xyz.len / 3;
-    array_reserve(&w->uv, 2 * count);
     w->uv.len = 2 * count;
     double lowest = INFINITY, highest = -INFINITY;
     for (size_t i = 0; i < count; i++) {
@@ -296,6 +295,11 @@ static bool prepare(struct work *w, const geo_polygon *polygon) {
         geo_issue(w->issues, false, "polygon of more than 20 million points", w->id);
         return false;
     }
+    w->no_memory = !array_try_reserve(&w->xyz, 3 * points) || !array_try_reserve(&w->uv, 2 * points) ||
+                   !array_try_reserve(&w->ring_size, polygon->ring_count) ||
+                   !array_try_reserve(&w->ring_sum, 3 * polygon->ring_count);
+    if (w->no_memory)
+        return false;
     while (i < count && !(isfinite(p[3 * i]) && isfinite(p[3 * i + 1]) && isfinite(p[3 * i + 2])))
         i++;
     if (i < count)
@@ -384,6 +388,13 @@ static bool triangulate(struct work *w, geo_triangles *out) {
     size_t first_index = out->indices.len, first_vertex = out->xyz.len;
     if (out->xyz.len / 3 + w->xyz.len / 3 > UINT32_MAX / 2)
         return false;
+    /* With two triangles fewer than points, and two more a hole. */
+    size_t triangles = w->xyz.len / 3 + 2 * w->ring_size.len;
+    if (!array_try_reserve(&out->xyz, out->xyz.len + w->xyz.len) ||
+        !array_try_reserve(&out->indices, out->indices.len + 3 * triangles)) {
+        w->no_memory = true;
+        return false;
+    }
     bool simple = cut_simple(w, out);
     array_append(&out->xyz, w->xyz.data, w->xyz.len);
     if (!simple) {
@@ -392,9 +403,11 @@ static bool triangulate(struct work *w, geo_triangles *out) {
             geo_issue(w->issues, true, "self-intersecting ring", w->id);
         else if (t.touches && w->ring_size.len == 1) /* a hole may touch the exterior */
             geo_issue(w->issues, true, "self-touching ring", w->id);
+        w->no_memory = t.no_memory;
         drop_flat_triangles(out, first_index);
         if (!t.ok || out->indices.len == first_index) {
-            geo_issue(w->issues, false, t.tangled ? "polygon that crosses itself more than 1000 times"
+            if (!t.no_memory)
+                geo_issue(w->issues, false, t.tangled ? "polygon that crosses itself more than 1000 times"
                                         : t.ok    ? "polygon without area" : "polygon that cannot be triangulated", w->id);
             out->indices.len = first_index;
             out->xyz.len = first_vertex;
@@ -410,6 +423,7 @@ static bool triangulate(struct work *w, geo_triangles *out) {
 bool geo_triangulate(const geo_polygon *polygon, geo_triangles *out, geo_issues *issues) {
     struct work w = { .id = polygon->id, .issues = issues };
     bool ok = prepare(&w, polygon) && triangulate(&w, out);
+    out->no_memory = out->no_memory || w.no_memory;
     array_free(&w.xyz);
     array_free(&w.uv);
     array_free(&w.ring_size);

@@ -12,19 +12,27 @@ struct job {
     tessellation result;
 };
 
+static bool refuse(struct job *job) {
+    job->result.no_memory = true;
+    job->result.ok = false;
+    return false;
+}
+
 static void *as_pointer(size_t vertex) { return (void *)(uintptr_t)(vertex + 1); } /* never NULL: GLU gives NULL for none */
 
 static void on_vertex(void *data, void *user) {
     struct job *job = user;
-    array_push(&job->out->indices, (uint32_t)((uintptr_t)data - 1));
+    if (array_try_reserve(&job->out->indices, job->out->indices.len + 1) || refuse(job))
+        array_push(&job->out->indices, (uint32_t)((uintptr_t)data - 1));
 }
 
 /* Its presence makes GLU give plain triangles, neither strips nor fans. */
 static void on_edge_flag(GLboolean flag, void *user) { (void)flag, (void)user; }
 
 static void on_error(GLenum error, void *user) {
-    (void)error;
-    ((struct job *)user)->result.ok = false;
+    struct job *job = user;
+    job->result.ok = false;
+    job->result.no_memory |= error == GLU_OUT_OF_MEMORY;
 }
 
 /* Edges cross, or points coincide. The new vertex lies between its (up to) four neighbours in space, so that a ring that is
@@ -56,6 +64,9 @@ static void on_combine(GLdouble place[3], void *data[4], GLfloat weight[4], void
         job->result.crossings += given;
     else
         job->result.touches += given;
+    *out = data[0];
+    if (!array_try_reserve(&job->out->xyz, job->out->xyz.len + 3) && !refuse(job))
+        return;
     *out = as_pointer(job->out->xyz.len / 3);
     array_append(&job->out->xyz, p, 3);
 }
@@ -89,7 +100,9 @@ static bool cross_properly(const edge *e, const edge *f) {
 static bool crosses_too_often(const double *uv, const size_t *ring_size, size_t ring_count, size_t points) {
     if (points < FEW_POINTS)
         return false;
-    edge *edges = noc_alloc(points * sizeof(*edges));
+    edge *edges = malloc(points * sizeof(*edges)); /* where it is refused, the tessellator comes to it */
+    if (!edges)
+        return false;
     size_t n = 0, limit = MANY_CROSSINGS, crossings = 0, pairs = 0, i = 0;
     for (size_t r = 0; r < ring_count; uv += 2 * ring_size[r++])
         for (size_t k = 0; k < ring_size[r]; k++) {
@@ -180,10 +193,8 @@ static void turn(piece *p, const double axis[2]) {
 /* By GLU, which sweeps along u. */
 static void sweep(struct job *job, const piece *p, bool odd) {
     GLUtesselator *tess = gluNewTess();
-    if (!tess) {
-        job->result.ok = false;
+    if (!tess && !refuse(job))
         return;
-    }
     gluTessCallback(tess, GLU_TESS_VERTEX_DATA, (_GLUfuncptr)on_vertex);
     gluTessCallback(tess, GLU_TESS_EDGE_FLAG_DATA, (_GLUfuncptr)on_edge_flag);
     gluTessCallback(tess, GLU_TESS_ERROR_DATA, (_GLUfuncptr)on_error);
@@ -244,6 +255,9 @@ static void find_crossings(struct job *job, const piece *p, cut_line *line) {
                 xyz[k] = x[k] + t * (y[k] - x[k]);
             crossing c = { .v = uv[2 * a + 1] + t * (uv[2 * b + 1] - uv[2 * a + 1]), .vertex = (uint32_t)(job->out->xyz.len / 3),
                            .to = b, .edge = a, .up = uv[2 * b] > line->at };
+            if ((!array_try_reserve(&job->out->xyz, job->out->xyz.len + 3) ||
+                 !array_try_reserve(&line->crossings, line->crossings.len + 1)) && !refuse(job))
+                return;
             array_append(&job->out->xyz, xyz, 3);
             array_push(&line->crossings, c);
         }
@@ -251,9 +265,11 @@ static void find_crossings(struct job *job, const piece *p, cut_line *line) {
 
 /* Joins ends along the cut: each with the next one of the other direction that has no partner, like brackets. Where no rings
  * cross these are neighbours, so that no two joints overlap. */
-static void join_ends(cut_line *line) {
+static void join_ends(struct job *job, cut_line *line) {
     crossing *c = line->crossings.data;
-    size_t n = line->crossings.len, depth = 0, *open = noc_alloc((n + 1) * sizeof(*open));
+    size_t n = line->crossings.len, depth = 0, *open = malloc((n + 1) * sizeof(*open));
+    if (!open && !refuse(job))
+        return;
     if (n)
         qsort(c, n, sizeof(*c), by_v);
     for (size_t i = 0; i < n; i++) {
@@ -276,10 +292,19 @@ static void push_point(piece *p, double u, double v, uint32_t vertex) {
 /* Cuts a piece in two where u is `at`. */
 static void cut(struct job *job, const piece *p, double at, piece half[2]) {
     size_t n = p->vertex.len;
-    cut_line line = { .at = at, .next = noc_alloc(n * sizeof(*line.next)), .crossed = noc_calloc(n, sizeof(*line.crossed)) };
-    find_crossings(job, p, &line);
-    join_ends(&line);
-    for (size_t start = 0; start < n; start++) {
+    cut_line line = { .at = at, .next = malloc(n * sizeof(*line.next)), .crossed = calloc(n, sizeof(*line.crossed)) };
+    if (!line.next || !line.crossed)
+        refuse(job);
+    if (job->result.ok)
+        find_crossings(job, p, &line);
+    if (job->result.ok)
+        join_ends(job, &line);
+    size_t most = n + 2 * line.crossings.len; /* in either half */
+    for (int i = 0; i < 2 && job->result.ok; i++)
+        if (!array_try_reserve(&half[i].uv, 2 * most) || !array_try_reserve(&half[i].vertex, most) ||
+            !array_try_reserve(&half[i].ring_size, most / 3 + 1))
+            refuse(job);
+    for (size_t start = 0; start < n && job->result.ok; start++) {
         piece *to = &half[p->uv.data[2 * start] > at];
         size_t first = to->vertex.len;
         for (size_t i = start; line.crossed[i] != SIZE_MAX;) {
@@ -347,6 +372,12 @@ static void tessellate_piece(struct job *job, piece *p, const struct division *d
     piece half[2] = { 0 };
     if (n > POINTS_AT_ONCE || work > d->most_work)
         cut(job, p, middle(p), half);
+    if (!job->result.ok) {
+        piece_free(p);
+        piece_free(&half[0]);
+        piece_free(&half[1]);
+        return;
+    }
     bool whole = !half[0].vertex.len && !half[1].vertex.len, smaller = half[0].vertex.len < n && half[1].vertex.len < n;
     if (whole || (!smaller && n <= POINTS_AT_ONCE && work <= WORK_AT_ONCE))
         sweep(job, p, d->odd);
@@ -372,9 +403,14 @@ tessellation tessellate(const double *uv, const size_t *ring_size, size_t ring_c
     struct job job = { .out = out, .first_index = out->indices.len, .first_made = first_vertex + points, .result = { .ok = true } };
     piece whole = { 0 };
     size_t numbers = 2 * points;
+    if (!array_try_reserve(&whole.uv, numbers) || !array_try_reserve(&whole.ring_size, ring_count) ||
+        !array_try_reserve(&whole.vertex, points)) {
+        refuse(&job);
+        piece_free(&whole);
+        return job.result;
+    }
     array_append(&whole.uv, uv, numbers);
     array_append(&whole.ring_size, ring_size, ring_count);
-    array_reserve(&whole.vertex, points);
     for (size_t i = 0; i < points; i++)
         array_push(&whole.vertex, (uint32_t)(first_vertex + i));
     const struct division division = { ring_count == 1, WORK_AT_ONCE, first_vertex + (MOST_MADE + 1) * points };

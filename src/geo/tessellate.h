@@ -7,6 +7,7 @@
 typedef struct tessellation {
     bool ok;
     bool tangled;     /* not ok, as its rings cross more often than those of any surveyed polygon */
+    bool no_memory;   /* not ok, as memory was refused */
     size_t crossings; /* places where rings cross; a vertex was made there */
     size_t touches;   /* places where two points of the rings meet */
 } tessellation;

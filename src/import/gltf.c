@@ -67,6 +67,9 @@ static bool is_read(const char *extension) {
 static noc_status parse(gltf *g, const char *json, size_t size) {
     json_error_t error;
     const char *begin = size >= 3 && !strncmp(json, "\xef\xbb\xbf", 3) ? json + 3 : json;
+    noc_status status = import_affords(g->budget, import_json_cost(json, size), g->name, "its JSON", g->log);
+    if (status)
+        return status;
     g->root = json_loadb(begin, size - (size_t)(begin - json), JSON_DISABLE_EOF_CHECK, &error);
     if (!g->root)
         return noc_error(g->log, NOC_ERR_FORMAT, "%s:%d: glTF: %s", g->name, error.line, error.text);
@@ -307,8 +310,9 @@ static noc_status add_scene(gltf *g) {
 
 static noc_status read_gltf(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,
                             const mesh_place *place, geo_issues *issues, const char **format) {
-    gltf g = { .name = noc_stream_name(stream), .log = scene->log, .scene = scene, .place = place, .issues = issues,
-               .anywhere = params && params->allow_outside };
+    double made = 0;
+    gltf g = { .name = noc_stream_name(stream), .budget = noc_stream_budget(stream), .made = &made, .log = scene->log,
+               .scene = scene, .place = place, .issues = issues, .anywhere = params && params->allow_outside };
     char *data;
     size_t size, json_size = 0;
     noc_status status = noc_stream_read_all(stream, scene->log, &data, &size);

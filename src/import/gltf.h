@@ -22,6 +22,8 @@ typedef struct gltf {
     noc_scene *scene;
     const mesh_place *place;
     geo_issues *issues;
+    import_budget *budget; /* of the stream */
+    double *made;          /* bytes that accessors gave so far, each time they were used */
     json_t *root;
     const unsigned char *chunk; /* GLB: the binary one */
     size_t chunk_size;

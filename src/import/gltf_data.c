@@ -106,6 +106,7 @@ static noc_status open_file(const gltf *g, const char *uri, gltf_buffer *b) {
         status = noc_error(g->log, NOC_ERR_MEMORY, "%s: no memory to hold its buffer \"%.200s\"", g->name, name);
     } else {
         b->size = fread(b->owned, 1, size, f);
+        g->budget->stored += (double)b->size;
         b->data = b->owned;
     }
     if (f)
@@ -251,6 +252,11 @@ noc_status gltf_read(const gltf *g, size_t accessor, const char *type, size_t wi
         return gltf_error(g, "accessor %zu has no data (compressed meshes are not read)", accessor);
     if (!from && *count > MOST_ZEROS)
         return gltf_error(g, "accessor %zu: %zu elements without data but its sparse part", accessor, *count);
+    noc_status status = import_affords(g->budget, *g->made + (double)*count * (double)(width * sizeof(**out)), g->name,
+                                       "what its nodes and meshes ask for", g->log);
+    if (status)
+        return status;
+    *g->made += (double)*count * (double)(width * sizeof(**out));
     *out = noc_alloc_large(*count * width, sizeof(**out));
     if (!*out)
         return noc_error(g->log, NOC_ERR_MEMORY, "%s: no memory for accessor %zu", g->name, accessor);
@@ -258,7 +264,7 @@ noc_status gltf_read(const gltf *g, size_t accessor, const char *type, size_t wi
     for (size_t i = 0; i < *count; i++)
         for (size_t k = 0; k < width; k++)
             (*out)[i * width + k] = from ? decode(from + i * stride + k * c.size, c, normalised) : 0;
-    noc_status status = sparse ? read_sparse(g, sparse, accessor, c, normalised, width, *out, *count) : NOC_OK;
+    status = sparse ? read_sparse(g, sparse, accessor, c, normalised, width, *out, *count) : NOC_OK;
     if (status) {
         free(*out);
         *out = NULL;

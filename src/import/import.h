@@ -7,6 +7,18 @@
 #include <nocturne/import.h>
 #include <stdio.h>
 
+/* budget.c: what reading one input may cost. */
+typedef struct import_budget {
+    double memory;    /* bytes */
+    double expansion; /* times `stored`; 0: any */
+    double stored;    /* bytes of the input and the files it names */
+} import_budget;
+import_budget import_budget_of(const noc_import_params *params);
+/* NOC_ERR_MEMORY after reporting where `what` of the input would take more bytes than it may. */
+noc_status import_affords(const import_budget *b, double bytes, const char *name, const char *what, noc_log *log);
+/* Bytes that parsing it takes, at most and roughly; adds up over pieces. */
+double import_json_cost(const char *text, size_t size);
+
 /* Sequential bytes of a plain, gzip or zip file (one member of a zip: the first whose name tells a model or map best). */
 typedef struct noc_stream noc_stream;
 noc_stream *noc_stream_open(const char *path, noc_log *log); /* NULL after reporting an error; directories are an error */
@@ -21,6 +33,8 @@ uint64_t noc_stream_size(const noc_stream *s);        /* bytes as stored */
 uint64_t noc_stream_read_bytes(const noc_stream *s);  /* bytes delivered since open or rewind */
 size_t noc_stream_unread(const noc_stream *s);        /* other members of a zip that look like models, too */
 bool noc_stream_trailing(const noc_stream *s);        /* bytes followed the gzip data, and were ignored; known at the end */
+void noc_stream_limit(noc_stream *s, const noc_import_params *params); /* the defaults' hold until it is called */
+import_budget *noc_stream_budget(noc_stream *s);      /* what compressed data grows to is held to it */
 double noc_stream_progress(const noc_stream *s);      /* share of the stored bytes consumed, 0..1 */
 
 /* Files that another file names (beside.c). `folder` is that file's, with a slash at its end, or "" for the working one. */

@@ -25,8 +25,9 @@ static noc_status check_params(const noc_import_params *p, noc_log *log) {
         return noc_error(log, NOC_ERR_ARGUMENT, "import: infer_lamps is %d, not a noc_switch", (int)p->infer_lamps);
     if (!(p->reader_time > 0))
         return noc_error(log, NOC_ERR_ARGUMENT, "import: reader_time is %g s", p->reader_time);
-    if (p->reader_memory <= 0)
-        return noc_error(log, NOC_ERR_ARGUMENT, "import: reader_memory is %d MB", p->reader_memory);
+    if (!(p->max_memory >= 0 && p->max_expansion >= 0))
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: max_memory is %g GB and max_expansion %g: neither may be "
+                         "negative", p->max_memory, p->max_expansion);
     if ((unsigned)p->obj_up > NOC_OBJ_UP_Z)
         return noc_error(log, NOC_ERR_ARGUMENT, "import: obj_up is %d, not a noc_obj_up", (int)p->obj_up);
     if (p->lamps.count > NOC_TEXTS || p->lamp_columns.count > NOC_TEXTS)
@@ -228,6 +229,7 @@ static noc_status read_input(importer *im, size_t index) {
     noc_stream *stream = noc_stream_open(in->path, im->log);
     if (!stream)
         return open_status(in->path);
+    noc_stream_limit(stream, im->params);
     size_t unread = noc_stream_unread(stream);
     for (size_t i = 0; i < unread; i++)
         geo_issue(in->issues, false, "file of the archive, like the one that is read", "");

@@ -9,6 +9,7 @@
 #include "import/import.h"
 #include "import/obj_faces.h"
 #include "import/obj_library.h"
+#include "import/obj_materials.h"
 #include "import/obj_offset.h"
 #include "import/obj_up.h"
 #include "import/polygons.h"
@@ -334,8 +335,12 @@ static noc_status read_parts(const char *path, noc_stream *stream, const noc_imp
     lib.folder = (obj_folder){ .path = folder, .anywhere = params && params->allow_outside };
     lib.main_name = noc_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
     obj_spread spread = { 0 };
-    const mesh_target to = { .parts = parts, .offset = offset, .z_up = params && params->obj_up == NOC_OBJ_UP_Z, .spread = &spread };
-    status = read_obj(path, &lib, &to);
+    const mesh_target to = { .parts = parts, .offset = offset, .z_up = params && params->obj_up == NOC_OBJ_UP_Z,
+                             .spread = &spread };
+    status = obj_plain_materials(lib.data, lib.size, &lib.folder, noc_stream_budget(stream), noc_stream_name(stream),
+                                 parts->log);
+    if (!status)
+        status = read_obj(path, &lib, &to);
     if (!status)
         obj_check_up(&spread, to.z_up, path, parts->log);
     free(folder);

@@ -98,12 +98,18 @@ static noc_status emit(json_t *elements, lamp_writer *w) {
 typedef struct source {
     noc_stream *stream;
     noc_status status; /* of the stream: already reported */
+    double cost;       /* of what was parsed so far, in bytes */
+    noc_log *log;
 } source;
 
 static size_t pull(void *buffer, size_t size, void *user) {
     source *s = user;
     size_t got = 0;
     s->status = noc_stream_read(s->stream, buffer, size, &got);
+    s->cost += import_json_cost(buffer, got);
+    if (!s->status)
+        s->status = import_affords(noc_stream_budget(s->stream), s->cost, noc_stream_name(s->stream), "its JSON",
+                                   s->log);
     return s->status ? (size_t)-1 : got;
 }
 
@@ -111,7 +117,7 @@ static noc_status read_overpass(noc_stream *stream, const noc_import_params *par
     *format = "Overpass JSON";
     lamp_writer w = lamp_writer_start(sink, noc_stream_name(stream), params);
     w.geographic = true;
-    source from = { stream, NOC_OK };
+    source from = { .stream = stream, .log = sink->log };
     json_error_t error;
     json_t *root = json_load_callback(pull, &from, 0, &error);
     if (!root) {

@@ -344,8 +344,6 @@ static noc_status take_all(remote *r) {
 
 /* ---- until the end ---- */
 
-static double budget(const remote *r) { return 1e6 * r->params->reader_memory; }
-
 static noc_status out_of_time(const remote *r) {
     return noc_error(r->sink->log, NOC_ERR_UNSUPPORTED, "%s: it is still being read after %g s, which is the limit --reader-time", r->path,
                      r->params->reader_time);
@@ -359,7 +357,8 @@ static noc_status ended_early(remote *r) {
     if (got > 0 && WIFSIGNALED(how) && WTERMSIG(how) != SIGKILL)
         return noc_error(r->sink->log, NOC_ERR_FORMAT,
                          "%s: the process that reads it as %s ended by signal %d (%s): the file is broken, or needs more than the limit "
-                         "--reader-memory, %d MB", r->path, r->reader->name, WTERMSIG(how), strsignal(WTERMSIG(how)), r->params->reader_memory);
+                         "--max-memory, %.3g GB", r->path, r->reader->name, WTERMSIG(how), strsignal(WTERMSIG(how)),
+                         import_budget_of(r->params).memory / 1e9);
     return noc_error(r->sink->log, NOC_ERR_IO, "%s: the process that reads it was ended from outside, or could not run (%s)", r->path, r->program);
 }
 
@@ -375,9 +374,10 @@ static noc_status receive(remote *r) {
         return ended_early(r);
     r->bytes.len += (size_t)n;
     r->received += (uint64_t)n;
-    if ((double)r->received > budget(r))
-        return noc_error(r->sink->log, NOC_ERR_UNSUPPORTED, "%s: it holds more than the limit --reader-memory, %d MB", r->path,
-                         r->params->reader_memory);
+    const import_budget budget = import_budget_of(r->params);
+    if ((double)r->received > budget.memory)
+        return noc_error(r->sink->log, NOC_ERR_MEMORY, "%s: it holds more than the limit --max-memory, %.3g GB", r->path,
+                         budget.memory / 1e9);
     return take_all(r);
 }
 

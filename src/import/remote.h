@@ -79,5 +79,8 @@ noc_status remote_read(const noc_reader *reader, const char *path, const noc_imp
 /* Limits this process: memory, no core file, and where the system can: no network, no other program, and of files those to
  * be read by name, the folder's where `whole` (or all of them: anywhere), the system's own, and the temporary folder. */
 void remote_confine(const char *path, bool whole, const noc_import_params *params);
+/* Did this process take more than half of the memory that it may? Then a library may have failed because it wanted more:
+ * lists that grow are doubled, and libraries seldom say that memory was refused. */
+bool remote_short_of_memory(void);
 
 #endif

@@ -8,6 +8,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <stdio.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -29,6 +30,20 @@ static void limit(int what, rlim_t most) {
     now.rlim_max = now.rlim_cur;
     setrlimit((__rlimit_resource_t)what, &now);
 }
+
+#ifndef REMOTE_SANITIZED
+/* Bytes of addresses that this program takes whatever it reads: its libraries, which are there, and what they set up. */
+static double own_addresses(void) {
+    enum { SET_UP = 256 << 20 };
+    double pages = 0;
+    FILE *f = fopen("/proc/self/statm", "r");
+    if (f && fscanf(f, "%lf", &pages) != 1)
+        pages = 0;
+    if (f)
+        fclose(f);
+    return SET_UP + pages * (double)sysconf(_SC_PAGESIZE);
+}
+#endif
 
 #if NOC_HAVE_LANDLOCK
 
@@ -137,11 +152,24 @@ static void confine_calls(void) {
 static void confine_calls(void) {}
 #endif
 
+bool remote_short_of_memory(void) {
+    struct rlimit most;
+    double peak = 0;
+    char line[256];
+    FILE *f = fopen("/proc/self/status", "r");
+    while (f && fgets(line, sizeof(line), f))
+        if (sscanf(line, "VmPeak: %lf kB", &peak) == 1)
+            break;
+    if (f)
+        fclose(f);
+    return !getrlimit(RLIMIT_AS, &most) && most.rlim_cur != RLIM_INFINITY && 2 * 1024 * peak > (double)most.rlim_cur;
+}
+
 void remote_confine(const char *path, bool whole, const noc_import_params *params) {
     unsetenv("SPATIALITE_SECURITY"); /* "relaxed" lets SQL touch files */
     limit(RLIMIT_CORE, 0);
 #ifndef REMOTE_SANITIZED /* whose shadow takes terabytes of addresses */
-    limit(RLIMIT_AS, (rlim_t)params->reader_memory * 1000000);
+    limit(RLIMIT_AS, (rlim_t)(own_addresses() + import_budget_of(params).memory));
 #endif
     prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
     confine_files(path, whole, params->allow_outside);

@@ -178,8 +178,12 @@ static void serve(serving *s) {
     remote_end end = { .status = NOC_ERR_IO };
     noc_stream *stream = noc_stream_open(s->path, log);
     if (stream) {
+        noc_stream_limit(stream, &s->params);
         end.status = s->reader->read_parts ? (int32_t)s->reader->read_parts(s->path, stream, &s->params, &parts, &format)
                                            : (int32_t)s->reader->read(stream, &s->params, &sink, &format);
+        if (end.status == NOC_ERR_FORMAT && remote_short_of_memory())
+            noc_warn(log, "%s: the process that reads it took more than half of what it may: it may need more than the "
+                     "limit --max-memory, %.3g GB", s->path, import_budget_of(&s->params).memory / 1e9);
         end.bytes_read = noc_stream_read_bytes(stream);
         end.trailing = noc_stream_trailing(stream);
     }

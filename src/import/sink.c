@@ -144,6 +144,8 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
         count += polygon->ring_size[r];
     size_t numbers = 3 * count;
     im->scratch.len = 0;
+    if (!array_try_reserve(&im->scratch, numbers))
+        return noc_error(im->log, NOC_ERR_MEMORY, "%s: no memory for a polygon of %zu points", in->path, count);
     array_append(&im->scratch, polygon->xyz, numbers);
     bool usable;
     noc_status status = place_points(im, im->scratch.data, count, polygon->id, &usable);
@@ -157,7 +159,10 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
         geo_polygon local = *polygon;
         local.xyz = im->scratch.data;
         if (!geo_triangulate(&local, &im->surfaces[cls], in->issues))
-            return NOC_OK;
+            return im->surfaces[cls].no_memory
+                       ? noc_error(im->log, NOC_ERR_MEMORY, "%s: no memory to triangulate a polygon of %zu points", in->path,
+                                   count)
+                       : NOC_OK;
     }
     im->now.polygons++;
     im->now.by_class[cls]++;
@@ -205,6 +210,9 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     count_lamp(&im->inputs[im->current].file, lamp);
     if (im->inspect)
         return NOC_OK;
+    if (!array_try_reserve(&im->lamps, im->lamps.len + 1))
+        return noc_error(im->log, NOC_ERR_MEMORY, "%s: no memory for more than %zu lamps",
+                         im->inputs[im->current].path, im->lamps.len);
     p.lamp.id = arena_strdup(&im->names, lamp->id ? lamp->id : "");
     array_push(&im->lamps, p);
     return NOC_OK;

@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdio.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -19,6 +20,7 @@ struct noc_stream {
     uint64_t delivered;  /* bytes handed out since open or rewind */
     noc_status failed;   /* a stream that failed once stays failed, and reports it once */
     bool ended;
+    import_budget budget;
     /* plain and gzip */
     int fd;
     uint64_t consumed;   /* bytes taken from fd */
@@ -227,6 +229,7 @@ static noc_status open_file(noc_stream *s) {
     if (stat.st_size == 0)
         return fail(s, NOC_ERR_FORMAT, "empty file");
     s->stored = (uint64_t)stat.st_size;
+    s->budget.stored = (double)s->stored;
     return NOC_OK;
 }
 
@@ -249,6 +252,7 @@ noc_stream *noc_stream_open(const char *path, noc_log *log) {
     s->path = noc_strdup(path);
     s->name = noc_strdup(path);
     s->fd = -1;
+    s->budget = import_budget_of(&noc_import_default_params());
     if (open_file(s) || start(s)) {
         noc_stream_close(s);
         return NULL;
@@ -289,6 +293,10 @@ noc_status noc_stream_read(noc_stream *s, void *data, size_t size, size_t *got) 
         s->ended = !*got;
     }
     s->delivered += *got;
+    import_budget growth = s->budget; /* what is read piece by piece need not fit in memory */
+    growth.memory = INFINITY;
+    if (!status && s->kind != STREAM_PLAIN)
+        status = s->failed = import_affords(&growth, (double)s->delivered, s->name, "its content", s->log);
     return status;
 }
 
@@ -299,11 +307,14 @@ noc_status noc_stream_read_all(noc_stream *stream, noc_log *log, char **data, si
     for (;;) {
         if (cap - *size < (1 << 16)) {
             cap = cap ? cap * 2 : NOC_MIN((size_t)noc_stream_size(stream) + (1 << 17), (size_t)1 << 30);
-            char *grown = realloc(*data, cap); /* the file's author decides how much: no abort */
+            noc_status status = import_affords(&stream->budget, (double)cap, noc_stream_name(stream), "its content",
+                                               log);
+            char *grown = status ? NULL : realloc(*data, cap); /* the file's author decides how much: no abort */
             if (!grown) {
                 free(*data);
                 *data = NULL;
-                return noc_error(log, NOC_ERR_MEMORY, "%s: no memory to hold it", noc_stream_name(stream));
+                return status ? status
+                              : noc_error(log, NOC_ERR_MEMORY, "%s: no memory to hold it", noc_stream_name(stream));
             }
             *data = grown;
         }
@@ -346,6 +357,13 @@ uint64_t noc_stream_size(const noc_stream *s) { return s->stored; }
 uint64_t noc_stream_read_bytes(const noc_stream *s) { return s->delivered; }
 
 bool noc_stream_trailing(const noc_stream *s) { return s->trailing; }
+import_budget *noc_stream_budget(noc_stream *s) { return &s->budget; }
+
+void noc_stream_limit(noc_stream *s, const noc_import_params *params) {
+    s->budget = import_budget_of(params);
+    s->budget.stored = (double)s->stored;
+}
+
 size_t noc_stream_unread(const noc_stream *s) { return s->unread; }
 
 double noc_stream_progress(const noc_stream *s) {

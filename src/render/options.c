@@ -98,7 +98,8 @@ static const noc_option import_options[] = {
     CHOICE(P, obj_up, "obj-up", "City", "y|z", "axis of OBJ files that points up"),
     BOOL(P, isolate, "isolate", "Reading", "OBJ and map files are read in a process of its own, which can be stopped"),
     REAL(P, reader_time, "reader-time", "Reading", 0.1, 1e6, "s", "time such a file may take"),
-    INT(P, reader_memory, "reader-memory", "Reading", 100, 1000000, "MB", "memory such a file may take, and what it may hold"),
+    REAL(P, max_memory, "max-memory", "Reading", 0, 1e6, "GB", "memory that reading an input may take; 0 = 3/4 of all"),
+    REAL(P, max_expansion, "max-expansion", "Reading", 0, 1e9, "", "times its size that an input may grow; 0 = any"),
     BOOL(P, allow_outside, "allow-outside", "Reading", "files that inputs name may lie outside the inputs' folders"),
     END,
 };

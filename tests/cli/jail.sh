@@ -156,8 +156,15 @@ with open("in/large.obj", "w") as f:
     f.writelines("v %d %d 0\n" % (i % 1000, i // 1000) for i in range(1000000))
     f.writelines("f %d %d %d\n" % (i + 1, i + 2, i + 1001) for i in range(990000))
 END
-    expect "it is ended where it takes more memory than it may" 1 'limit --reader-memory, 400 MB|no memory|OBJ:' info --reader-memory 400 in/large.obj
-    rm in/large.obj
+    expect "faces that take more memory than they may are an error" 1 'limit --max-memory' info --max-memory 0.4 in/large.obj
+    python3 - <<'END'
+with open("in/large.geojson", "w") as f:
+    f.write('{"type": "Feature", "properties": {}, "geometry": {"type": "MultiPoint", "coordinates": [[0,0]')
+    f.write(",[0,0]" * 3000000)
+    f.write("]}}")
+END
+    expect "it is ended where it takes more memory than it may" 1 'limit --max-memory' info --max-memory 0.1 in/large.geojson
+    rm in/large.obj in/large.geojson
     for what in NOCTURNE_READER=/nonexistent NOCTURNE_READER=/bin/false; do
         (export "$what"; run info in/poles.shp; echo $status >ended)
         test "$(cat ended)" = 1 && test -s err; result $? "the wrong helper is an error ($what)" "$(cat err)"

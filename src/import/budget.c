@@ -1,0 +1,42 @@
+/* What reading one input may cost: files are written by strangers, and a few kilobytes can ask for gigabytes. */
+#include "import/import.h"
+
+#include <unistd.h>
+
+#define FREE_EXPANSION 1073741824.0 /* bytes that any file may grow to: one lamp may be placed ten thousand times */
+
+noc_status import_affords(const import_budget *b, double bytes, const char *name, const char *what, noc_log *log) {
+    if (bytes > b->memory)
+        return noc_error(log, NOC_ERR_MEMORY, "%s: %s would take %.3g GB; the limit --max-memory is %.3g GB", name, what,
+                         bytes / 1e9, b->memory / 1e9);
+    double most = NOC_MAX(b->expansion * b->stored, FREE_EXPANSION);
+    if (b->expansion > 0 && bytes > most)
+        return noc_error(log, NOC_ERR_MEMORY, "%s: %s would take %.3g GB, of a file of %.3g MB; the limit --max-expansion is "
+                         "%g times", name, what, bytes / 1e9, b->stored / 1e6, b->expansion);
+    return NOC_OK;
+}
+
+import_budget import_budget_of(const noc_import_params *params) {
+    double memory = 1e9 * params->max_memory;
+    if (!(memory > 0)) {
+        long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
+        memory = pages > 0 && size > 0 ? 0.75 * (double)pages * (double)size : 8e9;
+    }
+    return (import_budget){ .memory = memory, .expansion = params->max_expansion };
+}
+
+/* Bytes that jansson 2.14 takes for each, by the sizes of its structures. Signs within texts are counted too. */
+double import_json_cost(const char *text, size_t size) {
+    enum { ARRAY = 144, OBJECT = 256, MEMBER = 96, ITEM = 48, STRING_END = 32 };
+    size_t cost = size;
+    for (const char *p = text, *end = text + size; p < end; p++)
+        switch (*p) {
+        case '[': cost += ARRAY + ITEM; break;
+        case '{': cost += OBJECT + ITEM; break;
+        case ':': cost += MEMBER; break;
+        case ',': cost += ITEM; break;
+        case '"': cost += STRING_END; break;
+        default: break;
+        }
+    return (double)cost;
+}

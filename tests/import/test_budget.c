@@ -1,0 +1,180 @@
+/* Small files that ask for much: each is refused under the limit's name, and read where the limit allows it. */
+#include "../test.h"
+#include "import/load.h"
+#include "nocturne/nocturne.h"
+
+#include <zlib.h>
+
+static char folder[] = "/tmp/noc-budget-XXXXXX";
+static char errors[2000];
+static int error_count;
+
+static void on_message(void *user, noc_log_level level, const char *text) {
+    if (level == NOC_LOG_ERROR) {
+        snprintf(errors, sizeof(errors), "%s", text);
+        error_count++;
+    }
+}
+
+static int set_up(void **state) { return mkdtemp(folder) ? 0 : -1; }
+
+static int tear_down(void **state) {
+    char command[300];
+    snprintf(command, sizeof(command), "rm -r '%s'", folder);
+    return system(command);
+}
+
+static const char *path_of(const char *name) {
+    static char path[300];
+    snprintf(path, sizeof(path), "%s/%s", folder, name);
+    return path;
+}
+
+static FILE *create(const char *name) {
+    FILE *f = fopen(path_of(name), "wb");
+    assert_non_null(f);
+    return f;
+}
+
+/* Inspects the file with so many GB; the report goes to *file where it is read. */
+static noc_status inspect(const char *name, double gigabytes, noc_report_file *file) {
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = on_message });
+    noc_import_params params = noc_import_default_params();
+    params.max_memory = gigabytes;
+    noc_report *report;
+    error_count = 0;
+    *errors = 0;
+    noc_status status = noc_inspect(log, path_of(name), &params, &report);
+    *file = status ? (noc_report_file){ 0 } : *noc_report_get_file(report, 0);
+    noc_report_destroy(report);
+    noc_log_destroy(log);
+    return status;
+}
+
+static void refused(const char *name, double gigabytes, const char *limit) {
+    noc_report_file file;
+    noc_status status = inspect(name, gigabytes, &file);
+    if (status != NOC_ERR_MEMORY)
+        fail_msg("%s: %s", name, errors);
+    assert_int_equal(error_count, 1);
+    assert_non_null(strstr(errors, limit));
+    assert_non_null(strstr(errors, name));
+}
+
+static void allowed(const char *name, double gigabytes, size_t triangles) {
+    noc_report_file file;
+    assert_int_equal(inspect(name, gigabytes, &file), NOC_OK);
+    assert_int_equal(file.triangles, triangles);
+}
+
+/* A megabyte of gzip members that are a gigabyte and more. */
+static void compressed_data_is_bounded(void **state) {
+    enum { PIECE = 16 << 20, TIMES = 70 };
+    unsigned char *zeros = noc_alloc_large(PIECE, 1), *packed = noc_alloc_large(1 << 18, 1);
+    z_stream z = { 0 };
+    assert_int_equal(deflateInit2(&z, 1, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
+    z.next_in = zeros, z.avail_in = PIECE, z.next_out = packed, z.avail_out = 1 << 18;
+    assert_int_equal(deflate(&z, Z_FINISH), Z_STREAM_END);
+    FILE *f = create("bomb.gz");
+    for (int i = 0; i < TIMES; i++)
+        assert_int_equal(fwrite(packed, 1, z.total_out, f), z.total_out);
+    fclose(f);
+    deflateEnd(&z);
+    noc_log *log = noc_log_create(&(noc_log_params){ .message = on_message });
+    noc_stream *s = noc_stream_open(path_of("bomb.gz"), log);
+    noc_status status = NOC_OK;
+    size_t got = 1;
+    error_count = 0;
+    while (!status && got)
+        status = noc_stream_read(s, zeros, PIECE, &got);
+    assert_int_equal(status, NOC_ERR_MEMORY);
+    assert_int_equal(noc_stream_read(s, zeros, PIECE, &got), NOC_ERR_MEMORY); /* and stays so, said once */
+    assert_int_equal(error_count, 1);
+    assert_non_null(strstr(errors, "--max-expansion is 200 times"));
+    assert_int_equal(noc_stream_rewind(s), NOC_OK);
+    noc_stream_budget(s)->expansion = 0; /* any */
+    uint64_t total = 0;
+    for (got = 1; !status || got; total += got)
+        if ((status = noc_stream_read(s, zeros, PIECE, &got)) || !got)
+            break;
+    assert_int_equal(status, NOC_OK);
+    assert_int_equal(total, (uint64_t)PIECE * TIMES);
+    noc_stream_close(s);
+    noc_log_destroy(log);
+    free(zeros);
+    free(packed);
+}
+
+/* Three bytes of JSON are a list of 144. */
+static void json_is_bounded(void **state) {
+    FILE *f = create("lists.gltf");
+    fputs("{\"asset\":{\"version\":\"2.0\"},\"extras\":[[]", f);
+    for (int i = 0; i < 200000; i++)
+        fputs(",[]", f);
+    fputs("]}", f);
+    fclose(f);
+    refused("lists.gltf", 0.03, "its JSON would take");
+    refused("lists.gltf", 0.03, "the limit --max-memory is 0.03 GB");
+    allowed("lists.gltf", 0.1, 0);
+    f = create("lists.json");
+    fputs("{\"version\":0.6,\"generator\":\"x\",\"elements\":[{}", f);
+    for (int i = 0; i < 100000; i++)
+        fputs(",{}", f);
+    fputs("]}", f);
+    fclose(f);
+    refused("lists.json", 0.02, "max-memory");
+    allowed("lists.json", 0.1, 0);
+}
+
+/* 400 nodes show one mesh of 999 vertices that lie in no buffer but for one of them. */
+static void gltf_copies_are_bounded(void **state) {
+    FILE *f = create("copies.gltf");
+    fputs("{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":48,\"uri\":\"data:application/octet-stream;base64,"
+          "AAAAAAEAAAACAAAAAAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":12},"
+          "{\"buffer\":0,\"byteOffset\":12,\"byteLength\":36}],\"accessors\":[{\"componentType\":5126,\"type\":\"VEC3\",\"count\":999,"
+          "\"sparse\":{\"count\":3,\"indices\":{\"bufferView\":0,\"componentType\":5125},\"values\":{\"bufferView\":1}}}],"
+          "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0}", f);
+    for (int i = 1; i < 400; i++)
+        fputs(",{\"mesh\":0}", f);
+    fputs("]}", f);
+    fclose(f);
+    refused("copies.gltf", 0.005, "what its nodes and meshes ask for would take");
+    allowed("copies.gltf", 0.05, 400);
+}
+
+static void write_obj(const char *name, const char *library, int materials) {
+    FILE *f = create(name);
+    fprintf(f, "%sv 0 0 0\nv 1 0 0\nv 0 1 0\n", library);
+    for (int i = 0; i < materials; i++)
+        fprintf(f, "usemtl paint %d\nf 1 2 3\n", i);
+    fclose(f);
+}
+
+/* A line of a material takes Assimp 36 kB: where a library defines it, as the others can be one. */
+static void obj_materials_are_bounded(void **state) {
+    enum { MATERIALS = 3000 };
+    FILE *f = create("many.mtl");
+    for (int i = 0; i < MATERIALS; i++)
+        fprintf(f, "newmtl paint %d\n", i);
+    fclose(f);
+    write_obj("defined.obj", "mtllib many.mtl\n", MATERIALS);
+    refused("defined.obj", 0.05, "its faces and materials would take");
+    allowed("defined.obj", 0.5, MATERIALS);
+    write_obj("undefined.obj", "", MATERIALS);
+    allowed("undefined.obj", 0.05, MATERIALS);
+}
+
+/* An OBJ whose text itself is too large, and parameters that are none. */
+static void limits_are_checked(void **state) {
+    refused("undefined.obj", 0.00001, "its content would take");
+    noc_report_file file;
+    assert_int_equal(inspect("undefined.obj", -1, &file), NOC_ERR_ARGUMENT);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(compressed_data_is_bounded), cmocka_unit_test(json_is_bounded), cmocka_unit_test(gltf_copies_are_bounded),
+        cmocka_unit_test(obj_materials_are_bounded),  cmocka_unit_test(limits_are_checked),
+    };
+    return cmocka_run_group_tests_name("budgets", tests, set_up, tear_down);
+}
