@@ -156,14 +156,22 @@ with open("in/large.obj", "w") as f:
     f.writelines("v %d %d 0\n" % (i % 1000, i // 1000) for i in range(1000000))
     f.writelines("f %d %d %d\n" % (i + 1, i + 2, i + 1001) for i in range(990000))
 END
-    expect "faces that take more memory than they may are an error" 1 'limit --max-memory' info --max-memory 0.4 in/large.obj
     python3 - <<'END'
 with open("in/large.geojson", "w") as f:
     f.write('{"type": "Feature", "properties": {}, "geometry": {"type": "MultiPoint", "coordinates": [[0,0]')
     f.write(",[0,0]" * 3000000)
     f.write("]}}")
 END
-    expect "it is ended where it takes more memory than it may" 1 'limit --max-memory' info --max-memory 0.1 in/large.geojson
+    # Sanitizers take more addresses than any limit by themselves, and the helper has none there.
+    limited() {
+        if (ulimit -v 4000000 && "$program" --version) >/dev/null 2>&1; then
+            expect "$1" 1 'limit --max-memory' info --max-memory "$2" "$3"
+        else
+            skip "$1" "more addresses are taken from the start, as by sanitizers"
+        fi
+    }
+    limited "faces that take more memory than they may are an error" 0.4 in/large.obj
+    limited "it is ended where it takes more memory than it may" 0.1 in/large.geojson
     rm in/large.obj in/large.geojson
     for what in NOCTURNE_READER=/nonexistent NOCTURNE_READER=/bin/false; do
         (export "$what"; run info in/poles.shp; echo $status >ended)
