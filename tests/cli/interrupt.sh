@@ -7,8 +7,8 @@ interrupt() {
     signal=$1 when=$2
     shift 2
     : >err
-    # A shell makes its background jobs ignore SIGINT, and what is ignored stays so.
-    env --default-signal=INT "$program" "$@" >out 2>err </dev/null &
+    # A shell makes its background jobs ignore SIGINT, and nohup SIGHUP; what is ignored stays so.
+    env --default-signal=HUP,INT,TERM "$program" "$@" >out 2>err </dev/null &
     pid=$!
     tries=0
     until grep -q "$when" err; do
