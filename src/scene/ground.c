@@ -65,17 +65,25 @@ static bool is_obstacle(const noc_scene *scene, size_t t) {
 #define GROUND_CLASSES                                                                                                 \
     (1u << NOC_CLASS_TERRAIN | 1u << NOC_CLASS_ROAD | 1u << NOC_CLASS_SIDEWALK | 1u << NOC_CLASS_GREEN | 1u << NOC_CLASS_GROUND)
 
-static int cell_of(const struct noc_ground *g, int axis, double x) {
-    double c = (x - g->min[axis]) * g->inv_cell[axis];
-    int last = (axis ? g->ny : g->nx) - 1;
-    return !(c > 0) ? 0 : c >= last ? last : (int)c; /* what lies outside belongs to the border cells */
+/* The plane is covered with copies of the grid: what lies outside belongs to the cell that it would have in its copy. Lamps that
+ * reach beyond their city so fill all cells evenly; in border cells each would be asked about all the others. */
+static int64_t cell_of(const struct noc_ground *g, int axis, double x) {
+    double c = floor((x - g->min[axis]) * g->inv_cell[axis]);
+    return c > -1e15 && c < 1e15 ? (int64_t)c : 0;
 }
 
-static void cells_of(const struct noc_ground *g, const noc_scene *scene, size_t t, int lo[2], int hi[2]) {
+static size_t wrapped(int64_t cell, int n) { return (size_t)(cell % n + (cell % n < 0 ? n : 0)); }
+
+static size_t index_of(const struct noc_ground *g, int64_t x, int64_t y) {
+    return wrapped(y, g->ny) * (size_t)g->nx + wrapped(x, g->nx);
+}
+
+static void cells_of(const struct noc_ground *g, const noc_scene *scene, size_t t, int64_t lo[2], int64_t hi[2]) {
     const float *a = corner(scene, t, 0), *b = corner(scene, t, 1), *c = corner(scene, t, 2);
     for (int k = 0; k < 2; k++) {
+        int n = k ? g->ny : g->nx;
         lo[k] = cell_of(g, k, NOC_MIN(a[k], NOC_MIN(b[k], c[k])));
-        hi[k] = cell_of(g, k, NOC_MAX(a[k], NOC_MAX(b[k], c[k])));
+        hi[k] = NOC_MIN(cell_of(g, k, NOC_MAX(a[k], NOC_MAX(b[k], c[k]))), lo[k] + n - 1); /* each cell once */
     }
 }
 
@@ -125,7 +133,7 @@ static size_t set_resolution(struct noc_ground *g, const noc_scene *scene, const
     g->inv_cell[1] = g->ny / size[1];
     size_t entries = 0;
     for (size_t t = 0; t < g->listed; t++) {
-        int lo[2], hi[2];
+        int64_t lo[2], hi[2];
         if (!is_obstacle(scene, t))
             continue;
         cells_of(g, scene, t, lo, hi);
@@ -149,13 +157,13 @@ static struct noc_ground *ground_build(const noc_scene *scene, size_t triangles)
     g->ids = noc_alloc(entries * sizeof(*g->ids));
     for (int fill = 0; fill < 2; fill++) {
         for (size_t t = 0; t < triangles; t++) {
-            int lo[2], hi[2];
+            int64_t lo[2], hi[2];
             if (!is_obstacle(scene, t))
                 continue;
             cells_of(g, scene, t, lo, hi);
-            for (int y = lo[1]; y <= hi[1]; y++)
-                for (int x = lo[0]; x <= hi[0]; x++) {
-                    size_t c = (size_t)y * (size_t)g->nx + (size_t)x;
+            for (int64_t y = lo[1]; y <= hi[1]; y++)
+                for (int64_t x = lo[0]; x <= hi[0]; x++) {
+                    size_t c = index_of(g, x, y);
                     if (fill)
                         g->ids[--g->offsets[c]] = (uint32_t)t;
                     else
@@ -179,15 +187,15 @@ static bool chain_new(struct noc_ground *g, const noc_scene *scene, size_t trian
         memset(g->chains, 0xff, n * sizeof(*g->chains));
     }
     for (size_t t = g->covered; t < triangles; t++) {
-        int lo[2], hi[2];
+        int64_t lo[2], hi[2];
         if (!is_obstacle(scene, t))
             continue;
         cells_of(g, scene, t, lo, hi);
         if (g->links.len > 4 * (g->listed + 4096)) /* large triangles on a fine grid */
             return false;
-        for (int y = lo[1]; y <= hi[1]; y++)
-            for (int x = lo[0]; x <= hi[0]; x++) {
-                uint32_t *first = &g->chains[(size_t)y * (size_t)g->nx + (size_t)x];
+        for (int64_t y = lo[1]; y <= hi[1]; y++)
+            for (int64_t x = lo[0]; x <= hi[0]; x++) {
+                uint32_t *first = &g->chains[index_of(g, x, y)];
                 ground_link link = { (uint32_t)t, *first };
                 *first = (uint32_t)g->links.len;
                 array_push(&g->links, link);
@@ -251,7 +259,7 @@ bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, doubl
     if (!(fabs(x) < 1e8 && fabs(y) < 1e8) || !scene->triangle_light.len)
         return false;
     const struct noc_ground *g = ground_of(scene);
-    size_t c = (size_t)cell_of(g, 1, y) * (size_t)g->nx + (size_t)cell_of(g, 0, x);
+    size_t c = index_of(g, cell_of(g, 0, x), cell_of(g, 1, y));
     double best = -DBL_MAX;
     for (uint32_t i = g->offsets[c]; i < g->offsets[c + 1]; i++)
         consider(scene, g->ids[i], classes, x, y, &best);
@@ -265,7 +273,7 @@ bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, doubl
 
 size_t noc_ground_load(const noc_scene *scene, double x, double y) {
     const struct noc_ground *g = ground_of(scene);
-    size_t c = (size_t)cell_of(g, 1, y) * (size_t)g->nx + (size_t)cell_of(g, 0, x), n = g->offsets[c + 1] - g->offsets[c];
+    size_t c = index_of(g, cell_of(g, 0, x), cell_of(g, 1, y)), n = g->offsets[c + 1] - g->offsets[c];
     for (uint32_t l = g->chains ? g->chains[c] : NO_LINK; l != NO_LINK; l = g->links.data[l].next)
         n++;
     return n;

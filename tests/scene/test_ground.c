@@ -239,11 +239,30 @@ static void test_threads(void **ctx) {
     noc_scene_destroy(scene);
 }
 
+/* Lamps that reach far beyond their city: none is asked about all the others. */
+static void test_beyond(void **ctx) {
+    enum { LAMPS = 5000 };
+    noc_scene *scene = noc_scene_create(NULL);
+    int ground = material(scene, NOC_CLASS_GROUND), lamp = material(scene, NOC_CLASS_LAMP);
+    for (int i = 0; i < 2000; i++)
+        add_plane(scene, ground, i % 50 * 10, i / 50 * 10, i % 50 * 10 + 10, i / 50 * 10 + 10, 0);
+    double looked = 0, z;
+    for (int i = 0; i < LAMPS; i++) {
+        double x = -3000 - uniform(0, 6000), y = uniform(-4000, 4000);
+        looked += (double)noc_ground_load(scene, x, y);
+        assert_false(noc_scene_ground(scene, x, y, &z));
+        add_plane(scene, lamp, x, y, x + 0.1, y + 0.1, 5);
+        assert_true(noc_scene_top(scene, x + 0.05, y + 0.05, &z) && z == 5);
+    }
+    assert_true(looked / LAMPS < 20);
+    noc_scene_destroy(scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_classes),    cmocka_unit_test(test_highest_wins), cmocka_unit_test(test_random),
         cmocka_unit_test(test_watertight), cmocka_unit_test(test_ask_and_add),  cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_wide),
+        cmocka_unit_test(test_wide),       cmocka_unit_test(test_beyond),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
