@@ -46,6 +46,26 @@ expect() {
 # meta FILE KEY: a text chunk of a PNG, or its "size"; fails where the file is not a whole PNG
 meta() { python3 "$source_dir/tests/cli/png_text.py" "$@"; }
 
+# lamp_model: lamp.obj and lamp.mtl, a floor of 10 x 10 m and a lamp of 1 x 1 m that faces it, 2 m above; y is up
+lamp_model() {
+    cat >lamp.obj <<'OBJ'
+mtllib lamp.mtl
+v -5 0 -5
+v 5 0 -5
+v 5 0 5
+v -5 0 5
+v -.5 2 -.5
+v .5 2 -.5
+v .5 2 .5
+v -.5 2 .5
+usemtl floor
+f 4 3 2 1
+usemtl lamp
+f 5 6 7 8
+OBJ
+    printf 'newmtl floor\nKd .5 .5 .5\nnewmtl lamp\nKd 0 0 0\nKe 40 40 40\n' >lamp.mtl
+}
+
 finish() {
     echo "1..$count"
     [ "$failed" = 0 ]

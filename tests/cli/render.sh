@@ -115,22 +115,7 @@ run render $small --show picture -o b.png
 test $status = 0 && cmp -s a.png b.png && test -z "$(meta a.png show)"; result $? "--show picture is the picture"
 
 # Influence volumes as OBJ: closed bodies that face outwards; of one-sided lights the half that they face, S_r sqrt(I) around their shape.
-cat >lamp.obj <<'OBJ'
-mtllib lamp.mtl
-v -5 0 -5
-v 5 0 -5
-v 5 0 5
-v -5 0 5
-v -.5 2 -.5
-v .5 2 -.5
-v .5 2 .5
-v -.5 2 .5
-usemtl floor
-f 4 3 2 1
-usemtl lamp
-f 5 6 7 8
-OBJ
-printf 'newmtl floor\nKd .5 .5 .5\nnewmtl lamp\nKd 0 0 0\nKe 40 40 40\n' >lamp.mtl
+lamp_model
 see="--eye 4,-4,1 --target 0,0,0 --size 32x18 --frames 1 --candidates bvh"
 cat >look.py <<'LOOK'
 import math, sys

@@ -282,22 +282,7 @@ result $? "a spec in another folder, and from within"
 
 # A reference belongs to what was read, not to the files that were named: a change of an MTL or of a glTF's buffer makes it anew, one of a
 # comment does not, and two specs share it. Against a stale one the bias of half the light would be 0.5.
-cat >lamp.obj <<'OBJ'
-mtllib lamp.mtl
-v -5 0 -5
-v 5 0 -5
-v 5 0 5
-v -5 0 5
-v -.5 2 -.5
-v .5 2 -.5
-v .5 2 .5
-v -.5 2 .5
-usemtl floor
-f 4 3 2 1
-usemtl lamp
-f 5 6 7 8
-OBJ
-printf 'newmtl floor\nKd .5 .5 .5\nnewmtl lamp\nKd 0 0 0\nKe 40 40 40\n' >lamp.mtl
+lamp_model
 python3 - <<'MAKE'
 import json, struct
 def quad(h, y, up):
