@@ -2,11 +2,70 @@
 
 #include <pthread.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <sys/mman.h>
 #include <sys/random.h>
 #include <time.h>
 #include <unistd.h>
+
+/* The numbers of allocations to refuse, [first, last]; both 0 where none is, which is all that is looked at then. */
+static _Atomic uint64_t refuse_first, refuse_last, allocations;
+
+void noc_refuse_allocation(uint64_t number, bool and_later) {
+    atomic_store(&refuse_first, 0);
+    atomic_store(&allocations, 0);
+    atomic_store(&refuse_last, and_later ? UINT64_MAX : number);
+    atomic_store(&refuse_first, number);
+}
+
+uint64_t noc_allocations(void) { return atomic_load(&allocations); }
+
+bool noc_allocation_refused(void) {
+    uint64_t first = atomic_load_explicit(&refuse_first, memory_order_relaxed);
+    if (__builtin_expect(!first, 1))
+        return false;
+    uint64_t number = atomic_fetch_add(&allocations, 1) + 1;
+    return number >= first && number <= atomic_load(&refuse_last);
+}
+
+void *noc_try_alloc(size_t size) { return noc_allocation_refused() ? NULL : malloc(size ? size : 1); }
+
+void *noc_try_calloc(size_t count, size_t size) {
+    return noc_allocation_refused() ? NULL : calloc(count ? count : 1, size ? size : 1);
+}
+
+void *noc_try_realloc(void *p, size_t size) { return noc_allocation_refused() ? NULL : realloc(p, size ? size : 1); }
+
+char *noc_try_strndup(const char *s, size_t n) {
+    char *copy = noc_try_alloc(n + 1);
+    if (copy) {
+        memcpy(copy, s, n);
+        copy[n] = 0;
+    }
+    return copy;
+}
+
+char *noc_try_strdup(const char *s) { return s ? noc_try_strndup(s, strlen(s)) : NULL; }
+
+static char *format_v(const char *fmt, va_list ap) {
+    va_list copy;
+    va_copy(copy, ap);
+    int n = noc_vsnprintf(NULL, 0, fmt, copy);
+    va_end(copy);
+    char *s = n < 0 ? NULL : noc_try_alloc((size_t)n + 1);
+    if (s)
+        noc_vsnprintf(s, (size_t)n + 1, fmt, ap);
+    return s;
+}
+
+char *noc_try_format(const char *fmt, ...) {
+    va_list ap;
+    va_start(ap, fmt);
+    char *s = format_v(fmt, ap);
+    va_end(ap);
+    return s;
+}
 
 static void out_of_memory(size_t size) {
     fprintf(stderr, "nocturne: out of memory (%zu bytes)\n", size);
@@ -37,45 +96,36 @@ static bool spend_reserve(void) {
     return spent;
 }
 
+/* p, or what a second try gives once the reserve is spent. */
+#define OR_FROM_RESERVE(p, again, bytes)                    \
+    do {                                                    \
+        if (!(p) && !(spend_reserve() && ((p) = (again))))  \
+            out_of_memory(bytes);                           \
+    } while (0)
+
 void *noc_alloc(size_t size) {
-    void *p = malloc(size ? size : 1);
-    if (!p && !(spend_reserve() && (p = malloc(size ? size : 1))))
-        out_of_memory(size);
+    void *p = noc_try_alloc(size);
+    OR_FROM_RESERVE(p, noc_try_alloc(size), size);
     return p;
 }
 
 void *noc_calloc(size_t count, size_t size) {
-    void *p = calloc(count ? count : 1, size ? size : 1);
-    if (!p && !(spend_reserve() && (p = calloc(count ? count : 1, size ? size : 1))))
-        out_of_memory(count * size);
+    void *p = noc_try_calloc(count, size);
+    OR_FROM_RESERVE(p, noc_try_calloc(count, size), count * size);
     return p;
 }
 
 void *noc_realloc(void *p, size_t size) {
-    void *q = realloc(p, size ? size : 1);
-    if (!q && !(spend_reserve() && (q = realloc(p, size ? size : 1))))
-        out_of_memory(size);
+    void *q = noc_try_realloc(p, size);
+    OR_FROM_RESERVE(q, noc_try_realloc(p, size), size);
     return q;
 }
 
 char *noc_strdup(const char *s) {
-    if (!s)
-        return NULL;
-    size_t n = strlen(s) + 1;
-    return memcpy(noc_alloc(n), s, n);
-}
-
-static char *format_v(const char *fmt, va_list ap) {
-    va_list copy;
-    va_copy(copy, ap);
-    int n = noc_vsnprintf(NULL, 0, fmt, copy);
-    va_end(copy);
-    char *s = noc_alloc((size_t)(n < 0 ? 0 : n) + 1);
-    if (n < 0)
-        s[0] = 0;
-    else
-        noc_vsnprintf(s, (size_t)n + 1, fmt, ap);
-    return s;
+    char *p = noc_try_strdup(s);
+    if (s)
+        OR_FROM_RESERVE(p, noc_try_strdup(s), strlen(s));
+    return p;
 }
 
 char *noc_format(const char *fmt, ...) {
@@ -83,12 +133,14 @@ char *noc_format(const char *fmt, ...) {
     va_start(ap, fmt);
     char *s = format_v(fmt, ap);
     va_end(ap);
+    if (!s)
+        out_of_memory(strlen(fmt));
     return s;
 }
 
 void *noc_alloc_large(size_t count, size_t size) {
     size_t bytes;
-    if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX - 63)
+    if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX - 63 || noc_allocation_refused())
         return NULL;
     bytes = (bytes + 63) & ~(size_t)63;
     void *p = aligned_alloc(64, bytes ? bytes : 64);
@@ -106,7 +158,7 @@ bool noc_array_try_grow(void *data, size_t *cap, size_t need, size_t item) {
     size_t n = grown(*cap, need), bytes;
     void *old, *now;
     memcpy(&old, data, sizeof(old)); /* a pointer of any type */
-    if (__builtin_mul_overflow(n, item, &bytes) || !(now = realloc(old, bytes)))
+    if (__builtin_mul_overflow(n, item, &bytes) || !(now = noc_try_realloc(old, bytes)))
         return false;
     memcpy(data, &now, sizeof(now));
     *cap = n;
@@ -114,11 +166,9 @@ bool noc_array_try_grow(void *data, size_t *cap, size_t need, size_t item) {
 }
 
 void *noc_array_grow(void *data, size_t *cap, size_t need, size_t item) {
-    size_t n = grown(*cap, need), bytes;
-    if (__builtin_mul_overflow(n, item, &bytes))
-        out_of_memory(SIZE_MAX);
-    *cap = n;
-    return noc_realloc(data, bytes);
+    if (!noc_array_try_grow(&data, cap, need, item) && !(spend_reserve() && noc_array_try_grow(&data, cap, need, item)))
+        out_of_memory(need);
+    return data;
 }
 
 struct noc_arena_block {
@@ -127,40 +177,75 @@ struct noc_arena_block {
     _Alignas(16) unsigned char data[];
 };
 
-void *arena_alloc(noc_arena *arena, size_t size) {
-    if (size > SIZE_MAX / 2)
-        out_of_memory(size);
-    size = (size + 15) & ~(size_t)15;
+void *arena_try_alloc(noc_arena *arena, size_t size) {
     struct noc_arena_block *b = arena->head;
-    if (!b || b->size - b->used < size) {
-        size_t room = NOC_MAX(size, (size_t)64 * 1024 - sizeof(*b));
-        b = noc_alloc(sizeof(*b) + room);
-        b->used = 0;
-        b->size = room;
-        b->next = arena->head;
-        arena->head = b;
-        arena->bytes += sizeof(*b) + room;
+    if (size <= SIZE_MAX / 2) {
+        size = (size + 15) & ~(size_t)15;
+        if (!b || b->size - b->used < size) {
+            size_t room = NOC_MAX(size, (size_t)64 * 1024 - sizeof(*b));
+            if ((b = noc_try_alloc(sizeof(*b) + room))) {
+                b->used = 0;
+                b->size = room;
+                b->next = arena->head;
+                arena->head = b;
+                arena->bytes += sizeof(*b) + room;
+            }
+        }
+    } else {
+        b = NULL;
+    }
+    if (!b) {
+        arena->refused = true;
+        return NULL;
     }
     void *p = b->data + b->used;
     b->used += size;
     return memset(p, 0, size);
 }
 
-char *arena_strndup(noc_arena *arena, const char *s, size_t n) {
-    char *p = arena_alloc(arena, n + 1);
-    memcpy(p, s, n);
+char *arena_try_strndup(noc_arena *arena, const char *s, size_t n) {
+    char *p = arena_try_alloc(arena, n + 1);
+    return p ? memcpy(p, s, n) : NULL;
+}
+
+char *arena_try_strdup(noc_arena *arena, const char *s) { return s ? arena_try_strndup(arena, s, strlen(s)) : NULL; }
+
+static char *arena_format_v(noc_arena *arena, const char *fmt, va_list ap) {
+    va_list copy;
+    va_copy(copy, ap);
+    int n = noc_vsnprintf(NULL, 0, fmt, copy);
+    va_end(copy);
+    char *p = arena_try_alloc(arena, (size_t)NOC_MAX(n, 0) + 1);
+    if (p)
+        noc_vsnprintf(p, (size_t)NOC_MAX(n, 0) + 1, fmt, ap);
     return p;
 }
+
+char *arena_try_format(noc_arena *arena, const char *fmt, ...) {
+    va_list ap;
+    va_start(ap, fmt);
+    char *p = arena_format_v(arena, fmt, ap);
+    va_end(ap);
+    return p;
+}
+
+void *arena_alloc(noc_arena *arena, size_t size) {
+    void *p = arena_try_alloc(arena, size);
+    OR_FROM_RESERVE(p, arena_try_alloc(arena, size), size);
+    return p;
+}
+
+char *arena_strndup(noc_arena *arena, const char *s, size_t n) { return memcpy(arena_alloc(arena, n + 1), s, n); }
 
 char *arena_strdup(noc_arena *arena, const char *s) { return s ? arena_strndup(arena, s, strlen(s)) : NULL; }
 
 char *arena_format(noc_arena *arena, const char *fmt, ...) {
     va_list ap;
     va_start(ap, fmt);
-    char *s = format_v(fmt, ap);
+    char *p = arena_format_v(arena, fmt, ap);
     va_end(ap);
-    char *p = arena_strdup(arena, s);
-    free(s);
+    if (!p)
+        out_of_memory(strlen(fmt));
     return p;
 }
 
@@ -247,10 +332,12 @@ bool map_get(const noc_map *map, const char *key, uint64_t *value) {
     return s->key != NULL;
 }
 
-bool map_put(noc_map *map, const char *key, uint64_t value) {
+bool map_try_put(noc_map *map, const char *key, uint64_t value, bool *fresh) {
     if (map->len * 4 >= map->cap * 3) {
-        noc_map bigger = { .cap = map->cap ? map->cap * 2 : 64, .keys = map->keys, .len = map->len };
-        bigger.slots = noc_calloc(bigger.cap, sizeof(*bigger.slots));
+        size_t cap = map->cap ? map->cap * 2 : 64;
+        noc_map bigger = { .slots = noc_try_calloc(cap, sizeof(*bigger.slots)), .cap = cap, .keys = map->keys, .len = map->len };
+        if (!bigger.slots)
+            return false;
         for (size_t i = 0; i < map->cap; i++)
             if (map->slots[i].key)
                 *find_slot(&bigger, map->slots[i].key, map->slots[i].hash) = map->slots[i];
@@ -259,13 +346,22 @@ bool map_put(noc_map *map, const char *key, uint64_t value) {
     }
     uint32_t hash = hash_text(key);
     struct noc_map_slot *s = find_slot(map, key, hash);
-    bool fresh = !s->key;
-    if (fresh) {
-        s->key = arena_strdup(&map->keys, key);
+    if (fresh)
+        *fresh = !s->key;
+    if (!s->key) {
+        if (!(s->key = arena_try_strdup(&map->keys, key)))
+            return false;
         s->hash = hash;
         map->len++;
     }
     s->value = value;
+    return true;
+}
+
+bool map_put(noc_map *map, const char *key, uint64_t value) {
+    bool fresh;
+    if (!map_try_put(map, key, value, &fresh) && !(spend_reserve() && map_try_put(map, key, value, &fresh)))
+        out_of_memory(strlen(key));
     return fresh;
 }
 

@@ -54,16 +54,21 @@ noc_pool *noc_pool_create(int threads) {
     if (threads <= 0)
         threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
     threads = NOC_CLAMP(threads, 1, 1024);
-    noc_pool *pool = noc_calloc(1, sizeof(*pool));
+    noc_pool *pool = noc_try_calloc(1, sizeof(*pool));
+    struct worker *workers = pool ? noc_try_calloc((size_t)threads, sizeof(*workers)) : NULL;
+    if (!workers) {
+        free(pool);
+        return NULL;
+    }
     pthread_mutex_init(&pool->lock, NULL);
     pthread_cond_init(&pool->start, NULL);
     pthread_cond_init(&pool->done, NULL);
-    pool->workers = noc_calloc((size_t)threads, sizeof(*pool->workers));
+    pool->workers = workers;
     pool->threads = 1;
     for (int i = 1; i < threads; i++) {
         struct worker *w = &pool->workers[i - 1];
         *w = (struct worker){ .pool = pool, .index = i };
-        if (pthread_create(&w->thread, NULL, worker_main, w))
+        if (noc_allocation_refused() || pthread_create(&w->thread, NULL, worker_main, w))
             break;
         pool->threads++;
     }

@@ -100,7 +100,7 @@ static bool cross_properly(const edge *e, const edge *f) {
 static bool crosses_too_often(const double *uv, const size_t *ring_size, size_t ring_count, size_t points) {
     if (points < FEW_POINTS)
         return false;
-    edge *edges = malloc(points * sizeof(*edges)); /* where it is refused, the tessellator comes to it */
+    edge *edges = noc_try_alloc(points * sizeof(*edges)); /* where it is refused, the tessellator comes to it */
     if (!edges)
         return false;
     size_t n = 0, limit = MANY_CROSSINGS, crossings = 0, pairs = 0, i = 0;
@@ -267,7 +267,7 @@ static void find_crossings(struct job *job, const piece *p, cut_line *line) {
  * cross these are neighbours, so that no two joints overlap. */
 static void join_ends(struct job *job, cut_line *line) {
     crossing *c = line->crossings.data;
-    size_t n = line->crossings.len, depth = 0, *open = malloc((n + 1) * sizeof(*open));
+    size_t n = line->crossings.len, depth = 0, *open = noc_try_alloc((n + 1) * sizeof(*open));
     if (!open && !refuse(job))
         return;
     if (n)
@@ -292,7 +292,7 @@ static void push_point(piece *p, double u, double v, uint32_t vertex) {
 /* Cuts a piece in two where u is `at`. */
 static void cut(struct job *job, const piece *p, double at, piece half[2]) {
     size_t n = p->vertex.len;
-    cut_line line = { .at = at, .next = malloc(n * sizeof(*line.next)), .crossed = calloc(n, sizeof(*line.crossed)) };
+    cut_line line = { .at = at, .next = noc_try_alloc(n * sizeof(*line.next)), .crossed = noc_try_calloc(n, sizeof(*line.crossed)) };
     if (!line.next || !line.crossed)
         refuse(job);
     if (job->result.ok)

@@ -105,7 +105,7 @@ static noc_status run_pass(cg_parser *p, int pass) {
     p->in_polygon = p->in_ring = false;
     p->text = CG_TEXT_NONE;
     p->ordinal = p->deferred_next = p->deferred_kept = 0;
-    p->xml = XML_ParserCreateNS(NULL, '\n');
+    p->xml = XML_ParserCreate_MM(NULL, &(XML_Memory_Handling_Suite){ noc_try_alloc, noc_try_realloc, free }, "\n");
     if (!p->xml)
         return p->status = noc_error(p->sink->log, NOC_ERR_MEMORY, "%s: out of memory", noc_stream_name(p->stream));
     XML_SetUserData(p->xml, p);

@@ -217,9 +217,9 @@ typedef struct mesh_target {
 /* Puts the polygons' triangles behind the others; false where there is no memory. */
 static bool join_polygons(cut_mesh *cut, double **xyz, uint32_t **indices, size_t *vertices) {
     size_t more = cut->extra.xyz.len / 3, corners = cut->extra.indices.len;
-    double *x = more ? realloc(*xyz, (*vertices + more) * 3 * sizeof(*x)) : NULL;
+    double *x = more ? noc_try_realloc(*xyz, (*vertices + more) * 3 * sizeof(*x)) : NULL;
     *xyz = x ? x : *xyz;
-    uint32_t *v = x ? realloc(*indices, (cut->triangle_count * 3 + corners) * sizeof(*v)) : NULL;
+    uint32_t *v = x ? noc_try_realloc(*indices, (cut->triangle_count * 3 + corners) * sizeof(*v)) : NULL;
     *indices = v ? v : *indices;
     if (!more || !v)
         return !more;

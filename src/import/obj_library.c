@@ -49,7 +49,7 @@ static char *find_all(obj_folder *folder, char *names, size_t *size) {
     *size = 0;
     while ((name = strtok_r(rest, " \t", &rest))) {
         size_t more;
-        char *data = find(folder, name, &more), *longer = data ? realloc(all, *size + more + 2) : NULL;
+        char *data = find(folder, name, &more), *longer = data ? noc_try_realloc(all, *size + more + 2) : NULL;
         if (!longer) {
             free(data);
             free(all);

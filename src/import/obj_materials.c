@@ -31,7 +31,7 @@ static char *line_end(char *p, char *stop) {
 }
 
 /* The statement's text as a string of its own; NULL where there is no memory. */
-static char *text_of(const statement *s) { return strndup(s->begin, (size_t)(s->end - s->begin)); }
+static char *text_of(const statement *s) { return noc_try_strndup(s->begin, (size_t)(s->end - s->begin)); }
 
 /* Adds the materials that a library defines. false where there is no memory. */
 static bool add_library(obj_folder *folder, const char *name, import_budget *budget, noc_map *defined) {

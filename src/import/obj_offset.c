@@ -126,7 +126,7 @@ static bool reserve(text_buffer *b, size_t more) {
     if (b->cap - b->size >= more)
         return true;
     size_t cap = b->cap + b->cap / 4 + more;
-    char *grown = realloc(b->data, cap); /* the file's author decides how much: no abort */
+    char *grown = noc_try_realloc(b->data, cap); /* the file's author decides how much: no abort */
     if (!grown)
         return false;
     b->data = grown;

@@ -55,10 +55,13 @@ static noc_status read_fd(noc_stream *s, void *data, size_t size, size_t *got) {
 
 /* ---- gzip ---- */
 
+static void *zlib_alloc(void *unused, unsigned items, unsigned size) { return noc_try_calloc(items, size); }
+static void zlib_free(void *unused, void *p) { free(p); }
+
 static noc_status gzip_start(noc_stream *s) {
     if (!s->input)
         s->input = noc_alloc(INPUT_SIZE);
-    s->z = (z_stream){ 0 };
+    s->z = (z_stream){ .zalloc = zlib_alloc, .zfree = zlib_free };
     s->z_member_done = false;
     if (inflateInit2(&s->z, 15 + 16) != Z_OK)
         return fail(s, NOC_ERR_MEMORY, "out of memory for decompression");
@@ -309,7 +312,7 @@ noc_status noc_stream_read_all(noc_stream *stream, noc_log *log, char **data, si
             cap = cap ? cap * 2 : NOC_MIN((size_t)noc_stream_size(stream) + (1 << 17), (size_t)1 << 30);
             noc_status status = import_affords(&stream->budget, (double)cap, noc_stream_name(stream), "its content",
                                                log);
-            char *grown = status ? NULL : realloc(*data, cap); /* the file's author decides how much: no abort */
+            char *grown = status ? NULL : noc_try_realloc(*data, cap); /* the file's author decides how much: no abort */
             if (!grown) {
                 free(*data);
                 *data = NULL;

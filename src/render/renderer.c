@@ -158,9 +158,9 @@ noc_image *noc_renderer_image(noc_renderer *r) {
     if (!image)
         return NULL;
     size_t n = (size_t)image->width * image->height;
-    image->emitter = malloc(n);
+    image->emitter = noc_try_alloc(n);
     image->coverage = noc_alloc_large(n, 4 * sizeof(float));
-    uint8_t *wide = malloc(n);
+    uint8_t *wide = noc_try_alloc(n);
     if (!image->emitter || !image->coverage || !wide) {
         free(wide);
         noc_image_destroy(image);

@@ -110,6 +110,72 @@ static void count_item(void *ctx, size_t item, int worker) {
     atomic_fetch_add(&hits[item], 1);
 }
 
+/* One use of each way to allocate; returns whether all went well. What was there before a refusal must be there still. */
+static bool allocate_in_all_ways(void) {
+    NOC_ARRAY(int) a = { 0 };
+    noc_arena arena = { 0 };
+    noc_map map = { 0 };
+    bool fresh = false, ok = array_try_push(&a, 7) && array_try_reserve(&a, 20) && array_try_append(&a, a.data, 1);
+    assert_true(!ok || (a.len == 2 && a.data[1] == 7));
+    void *p[] = { noc_try_alloc(3), noc_try_calloc(2, 3), noc_try_strdup("text"), noc_try_strndup("text", 2), noc_try_format("%d", 5),
+                  noc_alloc_large(2, 3), noc_pool_create(1), noc_log_create(NULL) };
+    for (size_t i = 0; i < NOC_COUNT(p); i++)
+        ok = ok && p[i];
+    assert_true(!ok || !strcmp(p[3], "te"));
+    char *grown = p[2] ? noc_try_realloc(p[2], 100) : NULL;
+    ok = ok && grown;
+    p[2] = grown ? grown : p[2];
+    assert_true(!p[2] || !strcmp(p[2], "text"));
+    char *texts[] = { arena_try_strdup(&arena, "a"), arena_try_strndup(&arena, "ab", 1), arena_try_format(&arena, "%s", "a"),
+                      arena_try_alloc(&arena, 1 << 17) };
+    for (size_t i = 0; i < NOC_COUNT(texts); i++) {
+        assert_true(texts[i] || arena.refused);
+        assert_true(!texts[i] || i == 3 || !strcmp(texts[i], "a"));
+    }
+    ok = ok && !arena.refused && map_try_put(&map, "key", 1, &fresh) && fresh && map_try_put(&map, "key", 2, &fresh) && !fresh;
+    uint64_t value = 0;
+    assert_true(!map_get(&map, "key", &value) == !map.len && (!ok || value == 2));
+    noc_pool_destroy(p[6]);
+    noc_log_destroy(p[7]);
+    for (size_t i = 0; i < 6; i++)
+        free(p[i]);
+    array_free(&a);
+    arena_free(&arena);
+    map_free(&map);
+    return ok;
+}
+
+/* Each allocation refused alone, and with all that follow, is told of; nothing leaks (make asan). */
+static void refused_memory_is_told(void **state) {
+    noc_refuse_allocation(UINT64_MAX, false);
+    assert_true(allocate_in_all_ways());
+    uint64_t all = noc_allocations();
+    assert_true(all > 15);
+    for (int and_later = 0; and_later < 2; and_later++)
+        for (uint64_t n = 1; n <= all; n++) {
+            noc_refuse_allocation(n, and_later);
+            assert_false(allocate_in_all_ways());
+            assert_true(noc_allocations() >= n);
+        }
+    noc_refuse_allocation(0, false);
+    assert_true(allocate_in_all_ways());
+    assert_int_equal(noc_allocations(), 0);
+}
+
+/* A pool does with the threads that it gets. */
+static void refused_threads_are_done_without(void **state) {
+    noc_refuse_allocation(4, true); /* after its two allocations and one thread */
+    noc_pool *pool = noc_pool_create(8);
+    noc_refuse_allocation(0, false);
+    assert_non_null(pool);
+    assert_int_equal(noc_pool_threads(pool), 2);
+    static atomic_int hits[100];
+    noc_pool_run(pool, NOC_COUNT(hits), count_item, hits);
+    for (size_t i = 0; i < NOC_COUNT(hits); i++)
+        assert_int_equal(hits[i], 1);
+    noc_pool_destroy(pool);
+}
+
 static void pool_runs_each_item_once(void **state) {
     noc_pool *pool = noc_pool_create(3);
     static atomic_int hits[1000];
@@ -146,6 +212,8 @@ int main(void) {
         cmocka_unit_test(siphash_is_as_published),
         cmocka_unit_test(colliding_ids_do_not_flood),
         cmocka_unit_test(pool_runs_each_item_once),
+        cmocka_unit_test(refused_memory_is_told),
+        cmocka_unit_test(refused_threads_are_done_without),
         cmocka_unit_test(log_reports_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
