@@ -4,16 +4,29 @@
 #include <math.h>
 #include <stdio.h>
 
-static void report(void *user, enum RTCError code, const char *text) {
-    embree_state *s = user;
-    if (code != RTC_ERROR_NONE)
-        noc_error(s->log, code == RTC_ERROR_OUT_OF_MEMORY ? NOC_ERR_MEMORY : NOC_ERR_UNSUPPORTED, "embree: %s",
-                  text && *text ? text : "unknown error");
+/* One message, whatever follows from the first error. */
+static noc_status fail(embree_state *s, enum RTCError code, const char *text) {
+    if (s->failed)
+        return s->failed;
+    if (code == RTC_ERROR_OUT_OF_MEMORY || atomic_load(&s->refused))
+        return s->failed = noc_error(s->log, NOC_ERR_MEMORY,
+                                     "embree: no memory for the ray tracing structure of %zu triangles",
+                                     s->scene->indices.len / 3);
+    return s->failed = noc_error(s->log, NOC_ERR_UNSUPPORTED, "embree: %s", text && *text ? text : "unknown error");
 }
 
-static bool keep_size(void *user, ssize_t bytes, bool post) {
+static void report(void *user, enum RTCError code, const char *text) {
+    if (code != RTC_ERROR_NONE)
+        fail(user, code, text);
+}
+
+/* Of a block that Embree takes or has given back. False: Embree gives up, in order, before it takes it. */
+static bool allow(void *user, ssize_t bytes, bool post) {
     embree_state *s = user;
-    (void)post;
+    if (bytes > 0 && !post && !noc_embree_room(s, (size_t)bytes)) {
+        atomic_store(&s->refused, true);
+        return false;
+    }
     atomic_fetch_add(&s->build_bytes, bytes);
     return true;
 }
@@ -27,40 +40,45 @@ static float least_stand_off(const noc_scene *scene) {
     return NOC_MIN(largest * 0x1p-19f, 1e-4f);
 }
 
-noc_status noc_embree_build(embree_state *s) {
+static void attach_triangles(embree_state *s) {
     const noc_scene *scene = s->scene;
+    size_t triangles = scene->indices.len / 3;
+    RTCGeometry geometry = triangles ? rtcNewGeometry(s->device, RTC_GEOMETRY_TYPE_TRIANGLE) : NULL;
+    if (!geometry)
+        return;
+    rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, scene->positions.data, 0, 12,
+                               scene->positions.len / 3);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->indices.data, 0, 12, triangles);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(s->rtc, geometry);
+    rtcReleaseGeometry(geometry);
+}
+
+noc_status noc_embree_build(embree_state *s) {
     double start = noc_wall_seconds();
     char config[64];
-    snprintf(config, sizeof(config), "threads=%d", noc_pool_threads(s->pool));
+    if (!noc_embree_room_for_threads(s) || !noc_embree_room(s, 0))
+        return fail(s, RTC_ERROR_OUT_OF_MEMORY, NULL);
+    /* The cache is for surfaces that are subdivided; it would take 128 MB. */
+    snprintf(config, sizeof(config), "threads=%d,tessellation_cache_size=0", noc_pool_threads(s->pool));
     s->device = rtcNewDevice(config);
     if (!s->device)
-        return noc_error(s->log, NOC_ERR_UNSUPPORTED, "embree: no device (error %d)", (int)rtcGetDeviceError(NULL));
+        return fail(s, rtcGetDeviceError(NULL), "no device");
     rtcSetDeviceErrorFunction(s->device, report, s);
-    rtcSetDeviceMemoryMonitorFunction(s->device, keep_size, s);
+    rtcSetDeviceMemoryMonitorFunction(s->device, allow, s);
     s->rtc = rtcNewScene(s->device);
+    if (!s->rtc)
+        return fail(s, rtcGetDeviceError(s->device), "no scene");
     /* Robust: without it rays slip through the edges between walls, and every slip is a bright pixel in a dark room. */
     rtcSetSceneFlags(s->rtc, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(s->rtc, RTC_BUILD_QUALITY_MEDIUM);
-    size_t triangles = scene->indices.len / 3;
-    if (triangles) {
-        RTCGeometry geometry = rtcNewGeometry(s->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_MEDIUM);
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, scene->positions.data, 0, 12,
-                                   scene->positions.len / 3);
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->indices.data, 0, 12,
-                                   triangles);
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(s->rtc, geometry);
-        rtcReleaseGeometry(geometry);
-    }
-    s->stand_off = least_stand_off(scene);
-    rtcCommitScene(s->rtc);
+    attach_triangles(s);
+    s->stand_off = least_stand_off(s->scene);
+    if (!s->failed)
+        rtcCommitScene(s->rtc);
     s->build_seconds = noc_wall_seconds() - start;
-    switch (rtcGetDeviceError(s->device)) {
-    case RTC_ERROR_NONE: return NOC_OK;
-    case RTC_ERROR_OUT_OF_MEMORY: return NOC_ERR_MEMORY;
-    default: return NOC_ERR_UNSUPPORTED; /* reported above */
-    }
+    return s->failed;
 }
 
 void noc_embree_release(embree_state *s) {

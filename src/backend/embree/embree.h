@@ -150,6 +150,8 @@ typedef struct embree_state {
     double build_seconds;
     float stand_off;       /* of shadow rays at least, m */
     _Atomic ssize_t build_bytes; /* held by Embree */
+    atomic_bool refused;   /* memory that it asked for */
+    noc_status failed;     /* its first error, which has been told */
     noc_material_record no_material; /* stands in where the scene has none */
     frame_buffers b;
     noc_clusters *clusters; /* these are made when first needed */
@@ -198,6 +200,11 @@ typedef struct tile_block {
     int x, y;  /* pixel of lane 0 */
 } tile_block;
 
+/* room.c */
+/* Is there memory for a block of so many bytes, and all that TBB may take beside it? */
+bool noc_embree_room(const embree_state *s, size_t bytes);
+/* Can TBB's threads be started? */
+bool noc_embree_room_for_threads(const embree_state *s);
 /* device.c */
 noc_status noc_embree_build(embree_state *s);
 void noc_embree_release(embree_state *s);
