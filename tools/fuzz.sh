@@ -1,6 +1,7 @@
 #!/bin/sh
 # fuzz.sh BUILD SECONDS [CORPUS...]: runs the fuzzer of each corpus for so long, on what it found before and on the seeds, and prints
 # a table. Inputs that break something lie in BUILD/findings/CORPUS, new ones in BUILD/corpus/CORPUS. Fails where something was found.
+# As many corpora at a time as there are cores, or JOBS of them; fuzz.sh BUILD SECONDS alone CORPUS is what each of them runs.
 # fuzz.sh BUILD table: the table of all runs so far.
 set -u
 build=$1 seconds=${2:-60}
@@ -30,14 +31,15 @@ spec spec 8192 spec -
 pipeline pipeline 32768 citygml -
 '
 
-# All of a corpus' runs: executions, coverage (edges that an input reaches, of the last run), findings.
+# All of a corpus' runs: executions, processor time, coverage (edges that an input reaches, of the last run), findings.
 table() {
-    printf '%-10s %12s %8s %8s %9s %9s\n' corpus executions 'a second' edges inputs findings
+    printf '%-10s %12s %8s %8s %8s %9s %9s\n' corpus executions minutes 'a second' edges inputs findings
     echo "$corpora" | while read -r corpus program rest; do
         [ -n "$corpus" ] && [ -s "$build/fuzz-logs/$corpus" ] || continue
         awk -v corpus="$corpus" -v inputs="$(ls "$build/corpus/$corpus" | wc -l)" -v found="$(ls "$build/findings/$corpus" | wc -l)" '
             { runs += $1; time += $2; if ($3) edges = $3 }
-            END { printf "%-10s %12d %8.0f %8d %9d %9d\n", corpus, runs, time ? runs / time : 0, edges, inputs, found }' "$build/fuzz-logs/$corpus"
+            END { printf "%-10s %12d %8.1f %8.1f %8d %9d %9d\n", corpus, runs, time / 60, time ? runs / time : 0, edges, inputs, found }' \
+            "$build/fuzz-logs/$corpus"
     done
 }
 
@@ -60,15 +62,21 @@ fuzz() {
     [ "$4" = - ] || dictionary=-dict=$build/fuzz/dictionaries/$4.dict
     end=$(($(date +%s) + seconds))
     while left=$((end - $(date +%s))) && [ $left -gt 0 ]; do
-        start=$(date +%s)
+        times >"$log.before" # of this process and its children: not in a pipe, whose ends are processes of their own
         # shellcheck disable=SC2086 # lists of words
         "$build/fuzz/fuzz_$2" $dictionary -max_len="$3" -max_total_time=$left -timeout=60 -report_slow_units=60 -rss_limit_mb=4096 -print_final_stats=1 \
             -artifact_prefix="$found/" -reload=0 -close_fd_mask=1 "$now" $seeds >"$log" 2>&1 </dev/null
         status=$?
-        awk -v time=$(($(date +%s) - start)) '
+        times >"$log.after"
+        awk '
+            FILENAME ~ /(before|after)$/ {
+                if (FNR == 2) { gsub("[ms]", " "); time = $1 * 60 + $2 + $3 * 60 + $4 - time }
+                next
+            }
             /stat::number_of_executed_units/ { runs = $2 }
             / cov: / { for (i = 1; i < NF; i++) if ($i == "cov:") edges = $(i + 1); n = $1; sub(/#/, "", n); last = n }
-            END { print (runs ? runs : last + 0), time, edges }' "$log" >>"$build/fuzz-logs/$1"
+            END { print (runs ? runs : last + 0), time, edges }' "$log.before" "$log.after" "$log" >>"$build/fuzz-logs/$1"
+        rm "$log.before" "$log.after"
         [ $status = 0 ] && break
         cp "$log" "$build/fuzz-logs/$1.broken.$(date +%s).log"
     done
@@ -80,9 +88,14 @@ if [ "$seconds" = table ]; then
 fi
 export ASAN_OPTIONS="detect_leaks=1:allocator_may_return_null=1:${ASAN_OPTIONS:-}" UBSAN_OPTIONS="print_stacktrace=1"
 export LSAN_OPTIONS="suppressions=$root/tests/lsan.supp:print_suppressions=0"
-echo "$corpora" | while read -r corpus program length dictionary endings; do
+if [ "${1:-}" = alone ]; then
+    # shellcheck disable=SC2046 # a row's words
+    fuzz $(echo "$corpora" | awk -v corpus="$2" '$1 == corpus')
+    exit
+fi
+echo "$corpora" | while read -r corpus rest; do
     [ -n "$corpus" ] || continue
-    case " $* " in "  "|*" $corpus "*) fuzz "$corpus" "$program" "$length" "$dictionary" "$endings";; esac
-done
+    case " $* " in "  "|*" $corpus "*) echo "$corpus";; esac
+done | xargs -P "${JOBS:-$(nproc)}" -n 1 sh "$0" "$build" "$seconds" alone
 table
 [ -z "$(find "$build/findings" -type f 2>/dev/null | head -n 1)" ] || { echo "findings: $build/findings" >&2; exit 1; }
