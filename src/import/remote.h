@@ -61,7 +61,25 @@ void remote_add(remote_record *batch, uint32_t kind, remote_record *r);
 /* Sends all that was added, and empties it. false where nobody listens. */
 bool remote_send(int fd, remote_record *batch);
 
-/* ---- the library's side (remote.c) ---- */
+/* ---- the request (remote_request.c) ---- */
+
+#define REMOTE_REQUEST_MOST (1 << 24) /* bytes of one of its records */
+
+/* Its records, by the library. */
+void remote_ask(remote_record *batch, const noc_reader *reader, const char *path, const noc_import_params *params, const geo_sink *sink);
+
+typedef struct remote_request {
+    const noc_reader *reader;
+    const char *path;
+    noc_import_params params;
+    remote_asked sink;
+    noc_arena texts;
+} remote_request;
+
+/* Takes it from the socket; false where it is none. Its texts are the arena's, in any case. */
+bool remote_receive(int fd, remote_request *request);
+
+/* ---- the library's side (remote.c, remote_take.c) ---- */
 
 typedef struct remote_result {
     char format[200];
@@ -73,6 +91,26 @@ typedef struct remote_result {
  * reader reads meshes. sink->progress is asked ten times a second. */
 noc_status remote_read(const noc_reader *reader, const char *path, const noc_import_params *params, geo_sink *sink,
                        const mesh_parts *parts, remote_result *result);
+
+/* What comes back, and where it goes: all zero but for the first four. */
+typedef struct remote_taker {
+    const char *path;
+    geo_sink *sink;
+    const mesh_parts *parts; /* NULL: of a map */
+    remote_result *result;
+    NOC_ARRAY(char) bytes;   /* that came and are not taken apart yet, from pos on */
+    size_t pos;
+    double done;
+    bool ended;
+    char *error;              /* that the helper told, until it ends: one is reported, with the status */
+    NOC_ARRAY(int) materials; /* as the scene numbers them */
+} remote_taker;
+
+/* Where `size` bytes more may be put, before bytes.len grows by what came. NULL after reporting. */
+char *remote_room(remote_taker *t, size_t size);
+/* Takes apart one record; false where none is there whole. *status: one error is reported where it is not NOC_OK. */
+bool remote_take(remote_taker *t, noc_status *status);
+void remote_taker_free(remote_taker *t);
 
 /* ---- the helper's side (remote_serve.c, remote_confine.c) ---- */
 

@@ -2,20 +2,15 @@
 #include "import/load.h"
 #include "import/remote.h"
 
-#include <nocturne/option.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 typedef struct serving {
+    remote_request asked;
     remote_record out, batch; /* small records wait for others */
-    noc_arena texts;
-    const noc_reader *reader;
-    const char *path;
-    noc_import_params params;
     size_t lamps_lost;
-    bool named_lamps, inspect;
     int materials;
 } serving;
 
@@ -96,62 +91,6 @@ static noc_status on_mesh(void *ctx, noc_mesh *mesh, double *positions) {
     return NOC_OK;
 }
 
-/* ---- the request ---- */
-
-static bool receive_all(void *data, size_t size) {
-    for (char *p = data; size;) {
-        ssize_t n = recv(REMOTE_FD, p, size, 0);
-        if (n <= 0)
-            return false;
-        p += n;
-        size -= (size_t)n;
-    }
-    return true;
-}
-
-static void set_option(serving *s, const char *name, const char *value) {
-    for (const noc_option *o = noc_import_options(); o->name; o++)
-        if (!strcmp(o->name, name))
-            noc_option_set(o, &s->params, arena_strdup(&s->texts, value), NULL);
-}
-
-static bool take(serving *s, uint32_t kind, remote_record *r) {
-    remote_asked asked;
-    if (kind == REMOTE_READER) {
-        const char *name = remote_get_text(r);
-        for (const noc_reader *const *reader = noc_readers; *reader; reader++)
-            if (!strcmp((*reader)->name, name))
-                s->reader = *reader;
-    } else if (kind == REMOTE_PATH) {
-        s->path = arena_strdup(&s->texts, remote_get_text(r));
-    } else if (kind == REMOTE_OPTION) {
-        const char *name = remote_get_text(r), *value = remote_get_text(r);
-        if (!r->bad)
-            set_option(s, name, value);
-    } else if (kind == REMOTE_SINK && remote_get(r, &asked, sizeof(asked)) && getppid() != asked.parent) {
-        return false; /* it ended before we asked to end with it */
-    } else if (kind == REMOTE_SINK) {
-        s->named_lamps = asked.named_lamps;
-        s->inspect = asked.inspect;
-    }
-    return !r->bad;
-}
-
-static bool receive(serving *s) {
-    for (;;) {
-        remote_head head;
-        remote_record r = { 0 };
-        if (!receive_all(&head, sizeof(head)) || head.size_high || head.size_low > 1 << 30)
-            return false;
-        array_reserve(&r.bytes, (size_t)head.size_low);
-        r.bytes.len = head.size_low;
-        bool good = receive_all(r.bytes.data, r.bytes.len) && take(s, head.kind, &r);
-        array_free(&r.bytes);
-        if (!good || head.kind == REMOTE_GO)
-            return good && s->reader && s->path;
-    }
-}
-
 /* ---- the answer ---- */
 
 static void send_issues(serving *s, const geo_issues *issues) {
@@ -172,18 +111,18 @@ static void serve(serving *s) {
     noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_DEBUG, .message = on_message, .user = s });
     geo_issues *issues = geo_issues_create();
     geo_sink sink = { .ctx = s, .log = log, .issues = issues, .lamps_lost = &s->lamps_lost, .crs = on_crs, .lamp = on_lamp,
-                      .progress = on_progress, .columns = on_columns, .named_lamps = s->named_lamps, .inspect = s->inspect };
+                      .progress = on_progress, .columns = on_columns, .named_lamps = s->asked.sink.named_lamps, .inspect = s->asked.sink.inspect };
     const mesh_parts parts = { .ctx = s, .log = log, .issues = issues, .material = on_material, .mesh = on_mesh };
-    const char *format = s->reader->name;
+    const char *format = s->asked.reader->name;
     remote_end end = { .status = NOC_ERR_IO };
-    noc_stream *stream = noc_stream_open(s->path, log);
+    noc_stream *stream = noc_stream_open(s->asked.path, log);
     if (stream) {
-        noc_stream_limit(stream, &s->params);
-        end.status = s->reader->read_parts ? (int32_t)s->reader->read_parts(s->path, stream, &s->params, &parts, &format)
-                                           : (int32_t)s->reader->read(stream, &s->params, &sink, &format);
+        noc_stream_limit(stream, &s->asked.params);
+        end.status = s->asked.reader->read_parts ? (int32_t)s->asked.reader->read_parts(s->asked.path, stream, &s->asked.params, &parts, &format)
+                                           : (int32_t)s->asked.reader->read(stream, &s->asked.params, &sink, &format);
         if (end.status == NOC_ERR_FORMAT && remote_short_of_memory())
             noc_warn(log, "%s: the process that reads it took more than half of what it may: it may need more than the "
-                     "limit --max-memory, %.3g GB", s->path, import_budget_of(&s->params).memory / 1e9);
+                     "limit --max-memory, %.3g GB", s->asked.path, import_budget_of(&s->asked.params).memory / 1e9);
         end.bytes_read = noc_stream_read_bytes(stream);
         end.trailing = noc_stream_trailing(stream);
     }
@@ -197,11 +136,11 @@ static void serve(serving *s) {
 int noc_reader_main(void) {
     int type;
     socklen_t size = sizeof(type);
-    serving s = { .params = noc_import_default_params() };
+    serving s = { 0 };
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getsockopt(REMOTE_FD, SOL_SOCKET, SO_TYPE, &type, &size) || !receive(&s))
-        return 1;
-    remote_confine(s.path, s.reader->read_parts != NULL, &s.params);
+    if (getsockopt(REMOTE_FD, SOL_SOCKET, SO_TYPE, &type, &size) || !remote_receive(REMOTE_FD, &s.asked) || getppid() != s.asked.sink.parent)
+        return 1; /* not started by the library, or whoever started it ended before it asked to end with it */
+    remote_confine(s.asked.path, s.asked.reader->read_parts != NULL, &s.asked.params);
     serve(&s);
     _exit(0); /* what is left to tidy up goes with the process */
 }

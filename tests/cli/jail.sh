@@ -177,6 +177,20 @@ END
         (export "$what"; run info in/poles.shp; echo $status >ended)
         test "$(cat ended)" = 1 && test -s err; result $? "the wrong helper is an error ($what)" "$(cat err)"
     done
+    # says NAME STATUS RECORDS PATTERN ARGUMENT...: a helper that was taken over sends RECORDS; one error comes of it, or none
+    says() {
+        name=$1 expected=$2 pattern=$4
+        export SAYS="$3"
+        shift 4
+        (export NOCTURNE_READER="$here/helper.py"; run info "$@" in/poles.shp; echo $status >ended)
+        test "$(cat ended)" = "$expected" && grep -Eq -- "$pattern" err && test "$(grep -vc 'warning:' err)" = $expected
+        result $? "$name" "status $(cat ended)"
+    }
+    says "a helper that ends well and stays is ended" 0 'log(1, "its last word") + end(0)' 'last word'
+    says "an error that it gives no reason for" 1 'end(3)' 'makes no sense'
+    says "a reason, and no error" 1 'log(0, "reason") + end(0)' 'makes no sense'
+    says "reasons beyond number" 1 'log(0, "reason") * 9 + end(3)' 'makes no sense'
+    says "a lamp that is none" 1 'record(LAMP, bytes(8))' "makes no sense"
     fine "in the same process none is needed" info --no-isolate in/poles.shp
     for crs in "+init=$work/in/pipe:x" "+proj=longlat +nadgrids=$work/in/pipe"; do
         lamps "{\"type\": \"name\", \"properties\": {\"name\": \"$crs\"}}"

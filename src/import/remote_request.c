@@ -1,0 +1,102 @@
+/* What the helper is asked: written by the library, read by the helper. */
+#include "import/load.h"
+#include "import/remote.h"
+
+#include <errno.h>
+#include <nocturne/option.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+/* ---- the library's side ---- */
+
+static void ask_options(const noc_import_params *params, remote_record *batch, remote_record *one) {
+    for (const noc_option *o = noc_import_options(); o->name; o++) {
+        if (o->kind == NOC_OPTION_TEXTS) {
+            const noc_texts *texts = (const noc_texts *)((const char *)params + o->offset);
+            for (size_t i = 0; i < texts->count; i++) {
+                remote_put_text(one, o->name);
+                remote_put_text(one, texts->text[i]);
+                remote_add(batch, REMOTE_OPTION, one);
+            }
+            continue;
+        }
+        size_t n = (size_t)noc_option_get(o, params, NULL, 0);
+        char *value = noc_alloc(n + 1);
+        noc_option_get(o, params, value, n + 1);
+        if (n) {
+            remote_put_text(one, o->name);
+            remote_put_text(one, value);
+            remote_add(batch, REMOTE_OPTION, one);
+        }
+        free(value);
+    }
+}
+
+void remote_ask(remote_record *batch, const noc_reader *reader, const char *path, const noc_import_params *params, const geo_sink *sink) {
+    remote_record one = { 0 };
+    remote_put_text(&one, reader->name);
+    remote_add(batch, REMOTE_READER, &one);
+    remote_put_text(&one, path);
+    remote_add(batch, REMOTE_PATH, &one);
+    ask_options(params, batch, &one);
+    remote_asked asked = { (int32_t)getpid(), sink->named_lamps, sink->inspect };
+    remote_put(&one, &asked, sizeof(asked));
+    remote_add(batch, REMOTE_SINK, &one);
+    remote_add(batch, REMOTE_GO, &one);
+    array_free(&one.bytes);
+}
+
+/* ---- the helper's side ---- */
+
+static bool receive_all(int fd, void *data, size_t size) {
+    for (char *p = data; size;) {
+        ssize_t n = recv(fd, p, size, 0);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0)
+            return false;
+        p += n;
+        size -= (size_t)n;
+    }
+    return true;
+}
+
+static void set_option(remote_request *q, const char *name, const char *value) {
+    for (const noc_option *o = noc_import_options(); o->name; o++)
+        if (!strcmp(o->name, name))
+            noc_option_set(o, &q->params, arena_strdup(&q->texts, value), NULL);
+}
+
+static bool take(remote_request *q, uint32_t kind, remote_record *r) {
+    if (kind == REMOTE_READER) {
+        const char *name = remote_get_text(r);
+        for (const noc_reader *const *reader = noc_readers; *reader; reader++)
+            if (!strcmp((*reader)->name, name))
+                q->reader = *reader;
+    } else if (kind == REMOTE_PATH) {
+        q->path = arena_strdup(&q->texts, remote_get_text(r));
+    } else if (kind == REMOTE_OPTION) {
+        const char *name = remote_get_text(r), *value = remote_get_text(r);
+        if (!r->bad)
+            set_option(q, name, value);
+    } else if (kind == REMOTE_SINK) {
+        remote_get(r, &q->sink, sizeof(q->sink));
+    }
+    return !r->bad;
+}
+
+bool remote_receive(int fd, remote_request *q) {
+    *q = (remote_request){ .params = noc_import_default_params() };
+    for (;;) {
+        remote_head head;
+        remote_record r = { 0 };
+        if (!receive_all(fd, &head, sizeof(head)) || head.size_high || head.size_low > REMOTE_REQUEST_MOST)
+            return false;
+        array_reserve(&r.bytes, (size_t)head.size_low);
+        r.bytes.len = head.size_low;
+        bool good = receive_all(fd, r.bytes.data, r.bytes.len) && take(q, head.kind, &r);
+        array_free(&r.bytes);
+        if (!good || head.kind == REMOTE_GO)
+            return good && q->reader && q->path;
+    }
+}
