@@ -67,17 +67,21 @@ typedef enum noc_light_kind {
     NOC_LIGHT_TRIANGLE,      /* position = corner, edges; faces edge_u x edge_v */
     NOC_LIGHT_PARALLELOGRAM, /* position = corner, edges; faces edge_u x edge_v */
     NOC_LIGHT_POINT,         /* position; isotropic, emission is intensity in cd */
+    NOC_LIGHT_SPOT,          /* position, direction, inner_deg, outer_deg; emission is the inner cone's intensity in cd */
+    NOC_LIGHT_KIND_COUNT
 } noc_light_kind;
 
-/* One light. Its visible shape is made with it, except for points and for lights that move: those are not seen themselves and
- * cast no shadow, they light. */
+/* One light. Its visible shape is made with it, except for points, spots and lights that move: those are not seen
+ * themselves and cast no shadow, they light. A spot's intensity at an angle t off its direction is that of the inner cone times
+ * clamp((cos t - cos outer) / (cos inner - cos outer), 0, 1)^2, as glTF's KHR_lights_punctual has it. */
 typedef struct noc_light {
     noc_light_kind kind;
     double position[3];
     double edge_u[3], edge_v[3];
     double direction[3];
     double radius;
-    float emission[3]; /* cd/m2, or cd for NOC_LIGHT_POINT; one-sided */
+    double inner_deg, outer_deg; /* spot: degrees off its direction, 0 <= inner <= outer, outer within 1 to 90 */
+    float emission[3]; /* cd/m2, or cd for NOC_LIGHT_POINT and NOC_LIGHT_SPOT; one-sided */
     const char *name;  /* may be NULL; copied */
     bool inferred;     /* placed by a rule, not found in data */
     bool moving;       /* noc_scene_move_light may change it between frames */
@@ -109,7 +113,7 @@ typedef struct noc_light_info {
                           * the scene: a lamp's id, or the name of the mesh */
     double centre[3];    /* local metres */
     double lumens;       /* luminous flux that leaves it, from both sides where it is two-sided */
-    double area;         /* m2; of a disc, triangle or parallelogram one side, 0 for points */
+    double area;         /* m2; of a disc, triangle or parallelogram one side, 0 for points and spots */
     bool two_sided;
 } noc_light_info;
 
@@ -135,7 +139,7 @@ NOC_API noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const do
 
 typedef struct noc_scene_info {
     size_t triangles, vertices, meshes, materials;
-    size_t lights, lights_by_kind[5], lights_inferred;
+    size_t lights, lights_by_kind[NOC_LIGHT_KIND_COUNT], lights_inferred;
     size_t triangles_by_class[NOC_CLASS_COUNT];
     size_t triangles_dropped;
     double bounds_min[3], bounds_max[3]; /* local; of all that is rendered but the empty country around a city */

@@ -177,8 +177,8 @@ static void print_scene(const char *name, const noc_scene_info *info) {
     printf("  %-11s %s in %s mesh%s\n", "triangles", cli_count(a, info->triangles), cli_count(b, info->meshes), info->meshes == 1 ? "" : "es");
     print_counts("", info->triangles_by_class);
     printf("  %-11s %s\n", "lights", cli_count(a, info->lights));
-    static const char *const kinds[] = { "sphere", "disc", "triangle", "parallelogram", "point" };
-    for (int i = 0; i < 5; i++)
+    static const char *const kinds[] = { "sphere", "disc", "triangle", "parallelogram", "point", "spot" };
+    for (int i = 0; i < NOC_LIGHT_KIND_COUNT; i++)
         if (info->lights_by_kind[i])
             printf("    %-13s %10s\n", kinds[i], cli_count(a, info->lights_by_kind[i]));
 }

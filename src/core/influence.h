@@ -1,8 +1,8 @@
 /* core/influence.h: influence volumes (Gardishyan 2025, Algorithm 3). A light's volume holds the points nearer to its shape
  * than S_r sqrt(I), I its greatest luminous intensity (radiance times area for flat lights, times the disc's area for spheres,
- * the intensity itself for points): further away it gives less than 1 / S_r^2 lux. One-sided lights have the half of it that
- * they face, and a volume does not hold a surface that the whole light is behind. Lights that share a volume have a sphere
- * around all of them, and the largest of their I.
+ * the intensity itself for points and spots): further away it gives less than 1 / S_r^2 lux. One-sided lights and spots
+ * have the half of it that they face, and a volume does not hold a surface that the whole light is behind. Lights that share
+ * a volume have a sphere around all of them, and the largest of their I.
  *
  * Of m candidates of a surface point every `every`th, the first one too, is drawn from all lights alike (u of them), the
  * others from the N_f lights whose volumes hold the point (b of them). Whichever way a candidate came, its density is

@@ -5,8 +5,11 @@
  * reflected radiance is the integral over the unit square of f_r * cos(theta_y) * le * V. For flat lights the map is uniform
  * in area from afar (le = L cos(theta_l) A / d^2) and in solid angle from close by (le = L * angle, core/fan.h); which one is
  * a matter of the receiver and the light alone, never of (u, v). For spheres it is uniform in the solid angle of the visible cone
- * (le = L * angle; Shirley, Wang and Zimmerman 1996, section 3.2): so nothing makes 1 / d^2 spikes but points, for which it is
- * constant (le = I / d^2). Emission is one-sided unless flagged. */
+ * (le = L * angle; Shirley, Wang and Zimmerman 1996, section 3.2): so nothing makes 1 / d^2 spikes but points and spots, for
+ * which it is constant (le = I / d^2). Emission is one-sided unless flagged.
+ *
+ * A spot is a point whose intensity is I f^2, f = clamp(s cos(t) + o, 0, 1), at an angle t from its axis: I within the inner
+ * cone, 0 beyond the outer one (KHR_lights_punctual, "Inner and Outer Cone Angles"). */
 #ifndef CORE_LIGHT_H
 #define CORE_LIGHT_H
 
@@ -17,6 +20,7 @@
 #define LIGHT_TRIANGLE 2u
 #define LIGHT_PARALLELOGRAM 3u
 #define LIGHT_POINT 4u
+#define LIGHT_SPOT 5u
 #define LIGHT_TWO_SIDED 1u /* flag */
 /* Flat lights are sampled by solid angle where p is nearer than so many times `radius`; discs, which lose a fifth of their samples
  * by it, nearer than so many. */
@@ -26,11 +30,11 @@
 struct light {
     v3 p;       /* centre or corner */
     u32 kind;
-    v3 a;       /* edge u; disc: first radius vector */
+    v3 a;       /* edge u; disc: first radius vector; spot: its axis, s long */
     real radius; /* triangle, parallelogram: the longest way between two corners */
-    v3 b;       /* edge v; disc: second radius vector; faces a x b */
+    v3 b;       /* edge v; disc: second radius vector; faces a x b; spot: o, then both angles, which only C reads */
     u32 flags;
-    v3 e;       /* radiance, cd/m2; point: intensity, cd */
+    v3 e;       /* radiance, cd/m2; point: intensity, cd; spot: its greatest */
     real area;
 };
 
@@ -44,6 +48,9 @@ struct light_sample {
 typedef struct light light;
 typedef struct light_sample light_sample;
 #endif
+
+/* A place without extent, that no shape shows. */
+FN mask is_point(light l) { return l.kind >= KU(LIGHT_POINT); }
 
 FN light_sample sample_round(light l, v3 y, real u, real v) {
     light_sample s;
@@ -100,13 +107,13 @@ FN light_sample sample_flat(light l, v3 y, real u, real v) {
     light_sample s;
     real su = u;
     real sv = v;
-    real share = K(1.0f); /* area / |a x b|; 0 for points */
-    real bare = K(0.0f);  /* 1 for points */
+    real share = K(1.0f); /* area / |a x b|; 0 for points and spots */
+    real bare = K(0.0f);  /* 1 for points and spots */
     mask plain = or_(l.kind == KU(LIGHT_PARALLELOGRAM), l.kind == KU(LIGHT_SPHERE)); /* spheres: see sample_light */
     if (ANY(not_(plain))) {
         mask disc = l.kind == KU(LIGHT_DISC);
         mask tri = l.kind == KU(LIGHT_TRIANGLE);
-        mask point = l.kind == KU(LIGHT_POINT);
+        mask point = is_point(l);
         mask fold = and_(tri, (u + v) > K(1.0f));
         su = sel(fold, K(1.0f) - u, u);
         sv = sel(fold, K(1.0f) - v, v);
@@ -132,6 +139,12 @@ FN light_sample sample_flat(light l, v3 y, real u, real v) {
     EXACT real facing = K(0.0f) - dot3(cross3(l.a, l.b), d);
     mask both = (l.flags & KU(LIGHT_TWO_SIDED)) != KU(0u);
     facing = sel(both, abs_(facing), max_(facing, K(0.0f)));
+    mask spot = l.kind == KU(LIGHT_SPOT);
+    if (ANY(spot)) {
+        EXACT real f = l.b.x - dot3(l.a, d) * inv;
+        f = min_(max_(f, K(0.0f)), K(1.0f));
+        bare = sel(spot, f * f, bare);
+    }
     EXACT real g = (share * facing * inv + bare) * (inv * inv);
     s.wi = mul3(d, inv);
     s.dist = dist;

@@ -33,7 +33,7 @@ FN real stand_off(real largest, real least) { return max_(least, largest * K(4.7
 FN segment shadow_segment(v3 p, v3 n, light l, real u, real v, real least) {
     light_sample s = sample_light(l, p, u, v);
     v3 x = add3(p, mul3(s.wi, s.dist));
-    mask point = l.kind == KU(LIGHT_POINT);
+    mask point = is_point(l);
     mask round = l.kind == KU(LIGHT_SPHERE);
     v3 m = cross3(l.a, l.b);
     real m2 = dot3(m, m);

@@ -29,8 +29,7 @@ typedef struct gltf {
     size_t chunk_size;
     gltf_buffer *buffers;
     size_t buffer_count;
-    int *materials;     /* index in the scene + 1, 0 if not made yet; the last is the default material */
-    int shade_material; /* the same, of the shades of spot lights */
+    int *materials; /* index in the scene + 1, 0 if not made yet; the last is the default material */
 } gltf;
 
 /* Affine map of a node: columns x, y, z, then the translation. */

@@ -107,62 +107,14 @@ static bool usable(const double *v, size_t n, double most) {
     return true;
 }
 
-/* ---- spot lights: a small disc behind a shade ----
- *
- * Seen from an angle t off its axis, the far rim of a conical shade of radius R, a distance h before a disc of radius r,
- * hides none of the disc where h tan t <= R - r, and all of it where h tan t >= R + r. So with r = h (tan o - tan i) / 2 and R = h (tan o +
- * tan i) / 2 the light falls from the inner cone's edge i to 0 at the outer cone's, o, as the file asks; within, by the cosine of t. */
-
-enum { SHADE_SIDES = 24 };
-#define SHADE_LENGTH 0.06 /* m */
-#define WIDEST 1.45       /* radians; wider ones need no shade */
-
-static noc_status add_shade(gltf *g, const double at[3], const double look[3], double r, double rim, const char *name) {
-    double u[3], v[3], xyz[6 * SHADE_SIDES], length = 0;
-    uint32_t indices[6 * SHADE_SIDES];
-    int axis = fabs(look[0]) < 0.5 ? 0 : 1;
-    for (int k = 0; k < 3; k++) { /* u: a coordinate axis less its part along the light's */
-        u[k] = (k == axis) - look[k] * look[axis];
-        length += u[k] * u[k];
-    }
-    for (int k = 0; k < 3; k++)
-        u[k] /= sqrt(length);
-    for (int k = 0; k < 3; k++)
-        v[k] = look[(k + 1) % 3] * u[(k + 2) % 3] - look[(k + 2) % 3] * u[(k + 1) % 3];
-    /* from just behind the disc; its corners lie outside of the circles that the formula means */
-    double radius[2] = { (r + 2e-4) / cos(M_PI / SHADE_SIDES), rim / cos(M_PI / SHADE_SIDES) }, before[2] = { -1e-3, SHADE_LENGTH };
-    for (uint32_t i = 0; i < SHADE_SIDES; i++) {
-        double c = cos(2 * M_PI * i / SHADE_SIDES), s = sin(2 * M_PI * i / SHADE_SIDES);
-        for (int end = 0; end < 2; end++)
-            for (int k = 0; k < 3; k++)
-                xyz[6 * i + 3 * (uint32_t)end + (uint32_t)k] = at[k] + before[end] * look[k] + radius[end] * (c * u[k] + s * v[k]);
-        uint32_t a = 2 * i, b = 2 * ((i + 1) % SHADE_SIDES), corner[6] = { a, b, b + 1, a, b + 1, a + 1 };
-        memcpy(&indices[6 * i], corner, sizeof(corner));
-    }
-    if (!g->shade_material) {
-        noc_material black = { .albedo = { .02f, .02f, .02f }, .roughness = 1, .cls = NOC_CLASS_LAMP };
-        g->shade_material = noc_scene_add_material(g->scene, &black) + 1;
-    }
-    noc_mesh mesh = { .vertex_count = 2 * SHADE_SIDES, .positions = xyz, .triangle_count = 2 * SHADE_SIDES, .indices = indices,
-                      .material = g->shade_material - 1, .name = name };
-    return g->shade_material && noc_scene_add_mesh(g->scene, &mesh) >= 0 ? NOC_OK : NOC_ERR_ARGUMENT;
-}
-
-static noc_status add_spot(gltf *g, const json_t *spot, noc_light *l, const double look[3], const char *name) {
-    double far = gltf_number(spot, "outerConeAngle", M_PI / 4), near = gltf_number(spot, "innerConeAngle", 0);
-    if (!(near >= 0 && near < far && far <= M_PI / 2 + 1e-6)) /* the extension's own limits */
+/* The falloff between the cones is the scene's own (NOC_LIGHT_SPOT). */
+static void set_cones(const gltf *g, const json_t *spot, noc_light *l, const char *name) {
+    double outer = gltf_number(spot, "outerConeAngle", M_PI / 4), inner = gltf_number(spot, "innerConeAngle", 0);
+    if (!(inner >= 0 && inner < outer && outer <= M_PI / 2 + 1e-6)) /* the extension's own limits */
         geo_issue(g->issues, true, "cones of a spot light that no light can have, limited", name);
-    double outer = limited(far, 0.02, M_PI / 2), inner = limited(near, 0, outer), ti = tan(inner), to = tan(NOC_MIN(outer, WIDEST));
-    bool shaded = outer < WIDEST;
-    double r = shaded ? NOC_MAX(0.5 * SHADE_LENGTH * (to - ti), 1e-3) : 0.03, rim = 0.5 * SHADE_LENGTH * (to + ti);
-    l->kind = NOC_LIGHT_DISC;
-    l->radius = r;
-    memcpy(l->direction, look, sizeof(l->direction));
-    for (int k = 0; k < 3; k++) /* I = L pi r^2 along the axis */
-        l->emission[k] = (float)limited((double)l->emission[k] / (M_PI * r * r), 0, 1e12);
-    if (noc_scene_add_light(g->scene, l) < 0)
-        return NOC_ERR_ARGUMENT;
-    return shaded ? add_shade(g, l->position, look, r, NOC_MAX(rim, r), name) : NOC_OK;
+    l->kind = NOC_LIGHT_SPOT;
+    l->outer_deg = limited(outer * 180 / M_PI, 1, 90);
+    l->inner_deg = limited(inner * 180 / M_PI, 0, l->outer_deg);
 }
 
 noc_status gltf_light(gltf *g, const json_t *node, const gltf_frame *frame, const char *name) {
@@ -198,8 +150,10 @@ noc_status gltf_light(gltf *g, const json_t *node, const gltf_frame *frame, cons
         geo_issue(g->issues, false, "light whose place is not finite, or that looks nowhere", name);
         return NOC_OK;
     }
-    if (*type == 's')
-        return add_spot(g, json_object_get(light, "spot"), &l, look, name);
+    if (*type == 's') {
+        set_cones(g, json_object_get(light, "spot"), &l, name);
+        memcpy(l.direction, look, sizeof(l.direction));
+    }
     return noc_scene_add_light(g->scene, &l) < 0 ? NOC_ERR_ARGUMENT : NOC_OK;
 }
 

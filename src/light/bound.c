@@ -8,12 +8,15 @@ float noc_light_intensity(const noc_light_record *l) {
     float y = luminance(l->e);
     switch (l->kind) {
     case NOC_LIGHT_SPHERE: return y * (float)M_PI * l->radius * l->radius;
-    case NOC_LIGHT_POINT: return y;
+    case NOC_LIGHT_POINT:
+    case NOC_LIGHT_SPOT: return y;
     default: return y * l->area;
     }
 }
 
 double noc_light_flux(const noc_light_record *l) {
+    if (l->kind == NOC_LIGHT_SPOT)
+        return noc_light_intensity(l) * noc_flux_angle(l);
     bool round = l->kind == NOC_LIGHT_SPHERE || l->kind == NOC_LIGHT_POINT; /* as strong in every direction */
     return noc_light_intensity(l) * M_PI * (round ? 4 : l->flags & 1 ? 2 : 1);
 }
@@ -23,6 +26,12 @@ noc_light_bound noc_bound_light(const noc_light_record *l) {
     memcpy(b.p, l->p, sizeof(b.p));
     if (l->kind == NOC_LIGHT_SPHERE || l->kind == NOC_LIGHT_POINT) {
         b.radius = l->radius;
+        return b;
+    }
+    if (l->kind == NOC_LIGHT_SPOT) { /* its cone is no wider than a flat light's half space */
+        double len = sqrt((double)l->a[0] * l->a[0] + (double)l->a[1] * l->a[1] + (double)l->a[2] * l->a[2]);
+        for (int k = 0; k < 3; k++)
+            b.n[k] = (float)(l->a[k] / len);
         return b;
     }
     if (!(l->flags & 1)) {
@@ -58,7 +67,8 @@ void noc_light_leave(const noc_light_record *l, const float d[3], float u, float
     for (int k = 0; k < 3; k++) {
         switch (l->kind) {
         case NOC_LIGHT_SPHERE:
-        case NOC_LIGHT_POINT: out[k] = l->p[k] + d[k] * (l->radius + clear); break;
+        case NOC_LIGHT_POINT:
+        case NOC_LIGHT_SPOT: out[k] = l->p[k] + d[k] * (l->radius + clear); break;
         case NOC_LIGHT_DISC: out[k] = l->p[k] + (u - 0.5f) * l->a[k] + (v - 0.5f) * l->b[k] + d[k] * clear; break;
         default: out[k] = l->p[k] + 0.5f * (u * l->a[k] + v * l->b[k]) + 0.25f * (l->a[k] + l->b[k]) + d[k] * clear; break;
         }

@@ -59,7 +59,8 @@ void noc_light_centre(const noc_light_record *r, double p[3]) {
 
 double noc_light_weight(const noc_light_record *r) {
     double y = 0.2126 * r->e[0] + 0.7152 * r->e[1] + 0.0722 * r->e[2];
-    return sqrt(y * (r->kind == NOC_LIGHT_POINT ? 4 * M_PI : M_PI * r->area));
+    bool point = r->kind == NOC_LIGHT_POINT || r->kind == NOC_LIGHT_SPOT;
+    return sqrt(y * (point ? noc_flux_angle(r) : M_PI * r->area));
 }
 
 /* Without lights, buildings stand in for them: a corner of every so many of their triangles. */
@@ -75,7 +76,7 @@ static bool source_get(const view_city *city, size_t i, view_light *out) {
         const noc_light_record *r = &s->lights.data[i];
         noc_light_centre(r, out->p);
         out->weight = noc_light_weight(r);
-        out->lamp = r->kind == NOC_LIGHT_SPHERE || r->kind == NOC_LIGHT_DISC || r->kind == NOC_LIGHT_POINT;
+        out->lamp = r->kind != NOC_LIGHT_TRIANGLE && r->kind != NOC_LIGHT_PARALLELOGRAM;
         return out->weight > 0;
     }
     size_t t = noc_scene_city_triangle(s, i * noc_scene_city_triangles(s) / source_count(city));

@@ -119,6 +119,7 @@ static int light_material(noc_scene *scene, const noc_light *l) {
 }
 
 static bool is_round(const noc_light *l) { return l->kind == NOC_LIGHT_SPHERE || l->kind == NOC_LIGHT_DISC; }
+static bool is_point(const noc_light *l) { return l->kind == NOC_LIGHT_POINT || l->kind == NOC_LIGHT_SPOT; }
 static bool is_flat(const noc_light *l) { return l->kind == NOC_LIGHT_TRIANGLE || l->kind == NOC_LIGHT_PARALLELOGRAM; }
 
 /* Of the parallelogram or triangle that the edges span. */
@@ -130,7 +131,7 @@ static double flat_area(const noc_light *l) {
 
 /* What is wrong with a light, NULL if nothing. */
 static const char *light_fault(const noc_light *l) {
-    if ((unsigned)l->kind > NOC_LIGHT_POINT)
+    if ((unsigned)l->kind >= NOC_LIGHT_KIND_COUNT)
         return "unknown kind";
     if (!all_finite(l->position, 3))
         return "its position is not finite, or further than 10 000 km from the origin";
@@ -139,8 +140,11 @@ static const char *light_fault(const noc_light *l) {
             return "its emission is negative or not finite";
     if (is_round(l) && !(l->radius >= 1e-4 && l->radius < 1e5))
         return "its radius must be in 0.0001..100000 m";
-    if (l->kind == NOC_LIGHT_DISC && !(all_finite(l->direction, 3) && length(l->direction) > 0))
-        return "a disc needs a direction";
+    bool spot = l->kind == NOC_LIGHT_SPOT;
+    if ((spot || l->kind == NOC_LIGHT_DISC) && !(all_finite(l->direction, 3) && length(l->direction) > 0))
+        return "a disc or spot needs a direction";
+    if (spot && !(l->outer_deg >= 1 && l->outer_deg <= 90 && l->inner_deg >= 0 && l->inner_deg <= l->outer_deg))
+        return "a spot's outer angle must be in 1..90 degrees, its inner one in 0 to that";
     if (is_flat(l) && (!all_finite(l->edge_u, 3) || !all_finite(l->edge_v, 3) || !(flat_area(l) > 1e-10)))
         return "its edges span no area";
     return NULL;
@@ -154,6 +158,27 @@ float noc_flat_size(const noc_light_record *r) {
     }
     double other = r->kind == NOC_LIGHT_PARALLELOGRAM ? length(sum) : fmax(length(a), length(b));
     return (float)fmax(length(difference), other);
+}
+
+/* What the falloff of a spot divides by. The specification's code keeps it from 0 by 0.001, which would dim cones of less
+ * than 2.6 degrees; floats do with less. */
+static double falloff_width(double inner, double outer) { return fmax(cos(inner) - cos(outer), 1e-5); }
+
+static void set_cones(noc_light_record *r, const noc_light *l) {
+    double inner = l->inner_deg * M_PI / 180, outer = l->outer_deg * M_PI / 180, width = falloff_width(inner, outer);
+    for (int k = 0; k < 3; k++)
+        r->a[k] = (float)(l->direction[k] / (length(l->direction) * width));
+    r->b[0] = (float)(-cos(outer) / width);
+    r->b[1] = (float)inner;
+    r->b[2] = (float)outer;
+}
+
+/* The integral of ((c - cos outer) / width)^2 over the cosines c between the cones, and of 1 from there to the axis. */
+double noc_flux_angle(const noc_light_record *r) {
+    if (r->kind == NOC_LIGHT_POINT)
+        return 4 * M_PI;
+    double inner = r->b[1], outer = r->b[2], width = falloff_width(inner, outer);
+    return 2 * M_PI * (1 - cos(outer) - width * 2 / 3);
 }
 
 static noc_light_record record_of(const noc_light *l) {
@@ -177,6 +202,8 @@ static noc_light_record record_of(const noc_light *l) {
     }
     if (is_flat(l))
         r.radius = noc_flat_size(&r);
+    if (l->kind == NOC_LIGHT_SPOT)
+        set_cones(&r, l);
     return r;
 }
 
@@ -235,7 +262,7 @@ int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
         noc_scene_out_of_memory(scene);
         return -1;
     }
-    if (l->kind != NOC_LIGHT_POINT && !l->moving && !add_shape(scene, l, index))
+    if (!is_point(l) && !l->moving && !add_shape(scene, l, index))
         return -1;
     array_push(&scene->lights, record_of(l));
     array_push(&scene->light_names, arena_strdup(&scene->names, l->name));
@@ -264,7 +291,8 @@ noc_status noc_scene_move_light(noc_scene *scene, int index, const noc_light *to
     r.flags = have->flags;
     if (!memcmp(have, &r, sizeof(r)))
         return NOC_OK;
-    scene->power_changes += memcmp(have->e, r.e, sizeof(r.e)) || have->area != r.area;
+    bool narrowed = to->kind == NOC_LIGHT_SPOT && memcmp(have->b, r.b, sizeof(r.b));
+    scene->power_changes += memcmp(have->e, r.e, sizeof(r.e)) || have->area != r.area || narrowed;
     scene->moves++;
     *have = r;
     return NOC_OK;

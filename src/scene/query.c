@@ -6,10 +6,11 @@
 static double luminance_of(const float e[3]) { return 0.2126 * e[0] + 0.7152 * e[1] + 0.0722 * e[2]; }
 
 /* Lambertian emitters of luminance L send pi L for each m2 and side (4 pi^2 r^2 L = pi L area for a sphere); a point of I
- * candela 4 pi I. */
+ * candela 4 pi I, a spot less. */
 static double flux_of(const noc_light_record *r) {
     double e = luminance_of(r->e);
-    return r->kind == NOC_LIGHT_POINT ? 4 * M_PI * e : M_PI * e * r->area * (r->flags & 1 ? 2 : 1);
+    bool point = r->kind == NOC_LIGHT_POINT || r->kind == NOC_LIGHT_SPOT;
+    return point ? noc_flux_angle(r) * e : M_PI * e * r->area * (r->flags & 1 ? 2 : 1);
 }
 
 noc_status noc_scene_get_light(const noc_scene *scene, size_t index, noc_light_info *info) {
@@ -29,6 +30,13 @@ noc_status noc_scene_get_light(const noc_scene *scene, size_t index, noc_light_i
         info->centre[k] = r->p[k] + (flat ? ((double)r->a[k] + r->b[k]) / (triangle ? 3 : 2) : 0);
         info->light.edge_u[k] = flat ? r->a[k] : 0;
         info->light.edge_v[k] = flat ? r->b[k] : 0;
+    }
+    if (r->kind == NOC_LIGHT_SPOT) {
+        double length = sqrt((double)r->a[0] * r->a[0] + (double)r->a[1] * r->a[1] + (double)r->a[2] * r->a[2]);
+        for (int k = 0; k < 3; k++)
+            info->light.direction[k] = r->a[k] / length;
+        info->light.inner_deg = r->b[1] * 180 / M_PI;
+        info->light.outer_deg = r->b[2] * 180 / M_PI;
     }
     if (flat || r->kind == NOC_LIGHT_DISC) {
         double n[3] = { (double)r->a[1] * r->b[2] - (double)r->a[2] * r->b[1], (double)r->a[2] * r->b[0] - (double)r->a[0] * r->b[2],

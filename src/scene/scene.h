@@ -11,12 +11,13 @@
 typedef struct noc_light_record {
     float p[3];      /* centre or corner */
     uint32_t kind;   /* noc_light_kind */
-    float a[3];      /* edge u; disc: first radius vector */
-    float radius;    /* triangle, parallelogram: noc_flat_size; 0 for points */
-    float b[3];      /* edge v; disc: second radius vector; the light faces a x b */
+    float a[3];      /* edge u; disc: first radius vector; spot: its axis, times the scale of its falloff */
+    float radius;    /* triangle, parallelogram: noc_flat_size; 0 for points and spots */
+    float b[3];      /* edge v; disc: second radius vector; the light faces a x b. Spot: offset of its falloff, inner and
+                      * outer angle in radians */
     uint32_t flags;  /* bit 0: two-sided; bit 1: inferred; bit 2: NOC_LIGHT_MOVES */
-    float e[3];      /* cd/m2; point: cd */
-    float area;      /* m2; 0 for points */
+    float e[3];      /* cd/m2; point, spot: cd */
+    float area;      /* m2; 0 for points and spots */
 } noc_light_record;
 #define NOC_LIGHT_MOVES 4u
 _Static_assert(sizeof(noc_light_record) == 64, "light records are one cache line");
@@ -82,6 +83,9 @@ static inline size_t noc_scene_city_triangle(const noc_scene *s, size_t i) {
 
 /* query.c: index of the object that a triangle is of, for noc_scene_object_name. */
 size_t noc_scene_object_of(const noc_scene *scene, uint32_t triangle);
+
+/* Solid angle, sr, that a point's or a spot's greatest intensity would fill with its flux: lm / cd. */
+double noc_flux_angle(const noc_light_record *light);
 
 /* The longest way between two corners of a triangle or parallelogram, m. */
 float noc_flat_size(const noc_light_record *light);

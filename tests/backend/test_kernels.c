@@ -21,7 +21,8 @@ typedef struct world {
 static void make_world(world *w) {
     for (int i = 0; i < LIGHTS; i++) {
         noc_light_record *r = &w->lights[i];
-        *r = (noc_light_record){ .kind = (uint32_t)i % 5, .flags = (uint32_t)(i % 3 == 0), .radius = real_in(0.05f, 1) };
+        *r = (noc_light_record){ .kind = (uint32_t)i % NOC_LIGHT_KIND_COUNT,
+                                 .flags = (uint32_t)(i % 3 == 0), .radius = real_in(0.05f, 1) };
         for (int k = 0; k < 3; k++) {
             r->p[k] = real_in(-10, 10);
             r->a[k] = real_in(-1, 1);

@@ -16,8 +16,9 @@ static noc_scene *scene_of(int lights, double side) {
     noc_scene *s = noc_scene_create(NULL);
     add_floor(s, matte(s, 0.5f), 0, 0, 0, 10);
     for (int i = 0; i < lights; i++) {
-        noc_light l = { .kind = (noc_light_kind)(i % 5), .position = { real_in(-side, side), real_in(-side, side), real_in(0, 20) },
-                        .radius = real_in(0.05, 0.5) };
+        noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT),
+                        .position = { real_in(-side, side), real_in(-side, side), real_in(0, 20) },
+                        .radius = real_in(0.05, 0.5), .inner_deg = 20, .outer_deg = 90 };
         double power = i % 7 == 3 ? 0 : pow(10, real_in(-1, 3));
         for (int k = 0; k < 3; k++) {
             l.edge_u[k] = real_in(-1, 1);
@@ -84,6 +85,8 @@ static bool reaches(const world *w, const noc_light_record *r) {
                     (double)r->a[0] * r->b[1] - (double)r->a[1] * r->b[0] };
     if (!(luma(r->e) > 0))
         return false;
+    for (int k = 0; k < 3 && r->kind == NOC_LIGHT_SPOT; k++)
+        n[k] = r->a[k];
     for (int b = 0; b < BLOCKS; b++)
         for (int l = 0; l < BLOCK; l++) {
             double d[3] = { r->p[0] - w->g[b].px[l], r->p[1] - w->g[b].py[l], r->p[2] - w->g[b].pz[l] };

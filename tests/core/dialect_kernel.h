@@ -8,7 +8,7 @@
 #include "core/light.h"
 #include "core/random.h"
 
-#define ITEM_SLOTS 163
+#define ITEM_SLOTS 170
 #define KERNEL_LIGHTS 1000u
 
 /* Signed, of a magnitude that differs from item to item: 1/16 to 4096. */
@@ -30,7 +30,7 @@ FN v3 unit3(v3 a) {
 FN light any_light(u32 key) {
     light l;
     l.p = any_v3(key, KU(0u));
-    l.kind = scale_u32(rng_bits(key, KU(6u)), KU(5u));
+    l.kind = scale_u32(rng_bits(key, KU(6u)), KU(6u));
     l.a = mul3(any_v3(key, KU(7u)), K(0.01f));
     l.b = mul3(any_v3(key, KU(13u)), K(0.01f));
     l.radius = rng(key, KU(19u)) * K(2.0f);
@@ -152,6 +152,15 @@ FN void lights(CTX u32 item, u32 key, v3 y, light any) {
     put_real(PASS item, 55, sample_light(any, y, u, v).dist);
 }
 
+/* Slots 163 to 169: a spot that is somewhere between its cones. */
+FN void spots(CTX u32 item, u32 key, v3 y, light any) {
+    light l = any;
+    l.kind = KU(LIGHT_SPOT);
+    l.a = mul3(unit3(l.a), K(1.7f));
+    l.b = V3(rng(key, KU(2008u)) * K(3.0f) - K(1.0f), K(0.0f), K(0.0f));
+    put_sample(PASS item, 163, sample_light(l, y, rng(key, KU(2002u)), rng(key, KU(2003u))));
+}
+
 /* Slots 141 to 161: flat lights sampled by solid angle, 7 a kind; 162: turn_of. */
 FN void close_lights(CTX u32 item, u32 key, v3 y, light any) {
     light l = any;
@@ -271,6 +280,7 @@ FN void dialect_item(CTX u32 item) {
     numbers(PASS item, key);
     lights(PASS item, key, s.p, any);
     close_lights(PASS item, key, s.p, any);
+    spots(PASS item, key, s.p, any);
     surfaces(PASS item, key, s, any);
     reservoirs(PASS item, key, s);
     reuse(PASS item, key);

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#define ITEM_SLOTS 163
+#define ITEM_SLOTS 170
 #define ITEMS 16384u
 
 void dialect_run_1(uint32_t *out, uint32_t items);
@@ -34,6 +34,7 @@ static const struct { int first; const char *name; } groups[] = {
     { 123, "sky_backdrop" }, { 126, "alias_draw" }, { 128, "alias_pmf" }, { 129, "tree_split" }, { 130, "tree_share_of" }, { 131, "tree_pmf" },
     { 132, "influence_needs" }, { 133, "influence_pmf" }, { 134, "influence_uniform" }, { 135, "ris_given" },
     { 141, "disc, close" }, { 148, "triangle, close" }, { 155, "parallelogram, close" }, { 162, "turn_of" },
+    { 163, "spot" },
 };
 
 static bool holds_integers(int slot) {

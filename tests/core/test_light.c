@@ -10,7 +10,7 @@ static light make_sphere(v3 centre, float r) {
 /* radius: as the scene's records have it. */
 static light make_flat(uint32_t kind, v3 p, v3 a, v3 b) {
     v3 sum = add3(a, b), difference = sub3(a, b);
-    float far = kind == LIGHT_POINT ? 0 : sqrtf(dot3(difference, difference));
+    float far = kind >= LIGHT_POINT ? 0 : sqrtf(dot3(difference, difference));
     if (kind == LIGHT_PARALLELOGRAM)
         far = fmaxf(far, sqrtf(dot3(sum, sum)));
     if (kind == LIGHT_TRIANGLE)
@@ -258,11 +258,45 @@ static void test_point(void **state) {
     }
 }
 
+/* A spot with the cones' cosines ci and co, by the extension's own words: scale 1 / (ci - co), offset -co times that. */
+static light make_spot(v3 p, v3 axis, double ci, double co) {
+    float s = (float)(1 / (ci - co));
+    v3 b = V3((float)(-co / (ci - co)), 0, 0);
+    return (light){ .p = p, .kind = LIGHT_SPOT, .a = mul3(axis, s), .b = b, .e = { L, L, L } };
+}
+
+/* E = I f^2 cos / d^2: f is 1 within the inner cone, 0 beyond the outer one, linear in the angle's cosine between them. */
+static void test_spot(void **state) {
+    dice d = { 15 };
+    int inside = 0, between = 0, outside = 0;
+    for (int i = 0; i < 3000; i++) {
+        double outer = uniform(&d, 0.05, M_PI / 2), inner = uniform(&d, 0, 0.95) * outer, co = cos(outer), ci = cos(inner);
+        v3 axis = random_direction(&d), n = random_direction(&d), y = random_in_box(&d, 30);
+        light l = make_spot(random_in_box(&d, 30), axis, ci, co);
+        if (i % 2) /* near the axis */
+            y = add3(l.p, add3(mul3(axis, (float)uniform(&d, 2, 30)), random_in_box(&d, 2)));
+        double w[3] = { (double)l.p.x - y.x, (double)l.p.y - y.y, (double)l.p.z - y.z };
+        double d2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
+        double c = (w[0] * n.x + w[1] * n.y + w[2] * n.z) / sqrt(d2);
+        double t = -(w[0] * axis.x + w[1] * axis.y + w[2] * axis.z) / sqrt(d2);
+        double f = t >= ci ? 1 : t <= co ? 0 : (t - co) / (ci - co);
+        if (!(fabs(c) > 0.01) || (f > 0 && f < 0.01))
+            continue; /* floats hold less there */
+        inside += f == 1;
+        outside += f == 0;
+        between += f > 0 && f < 1;
+        assert_close(irradiance(l, y, n, 2), c > 0 ? L * f * f * c / d2 : 0, 2e-3);
+        double axial = irradiance(l, add3(l.p, mul3(axis, 2)), mul3(axis, -1), 2);
+        assert_close(axial, L / 4, 1e-4); /* on the axis, from two metres */
+    }
+    assert_true(inside > 300 && between > 300 && outside > 300);
+}
+
 /* The place a sample stands for lies on the light, on the side that y sees, in the direction that is told. */
 static void test_samples_lie_on_the_light(void **state) {
     dice d = { 6 };
     for (int i = 0; i < 20000; i++) {
-        uint32_t kind = (uint32_t)(roll(&d) % 5);
+        uint32_t kind = (uint32_t)(roll(&d) % 6);
         v3 p = random_in_box(&d, 10), y = random_in_box(&d, 20);
         v3 a = random_in_box(&d, 2), b = random_in_box(&d, 2);
         light l = make_flat(kind, p, a, b);
@@ -277,7 +311,7 @@ static void test_samples_lie_on_the_light(void **state) {
             continue; /* inside; beside the disc, in the square around it */
         v3 x = add3(y, mul3(s.wi, s.dist)), w = sub3(x, l.p);
         assert_true(fabsf(dot3(s.wi, s.wi) - 1) < 1e-5f);
-        if (kind == LIGHT_POINT) {
+        if (kind >= LIGHT_POINT) {
             assert_true(dot3(w, w) < 1e-8f);
         } else if (kind == LIGHT_SPHERE) {
             assert_true(fabsf(sqrtf(dot3(w, w)) - l.radius) < 2e-3f * l.radius + 2e-4f);
@@ -339,7 +373,7 @@ static void test_extreme_input(void **state) {
     dice d = { 8 };
     size_t lit = 0;
     for (int i = 0; i < 400000; i++) {
-        light l = { .p = odd_v3(&d, 1e7), .kind = (uint32_t)(roll(&d) % 5), .a = odd_v3(&d, 1e4), .b = odd_v3(&d, 1e4),
+        light l = { .p = odd_v3(&d, 1e7), .kind = (uint32_t)(roll(&d) % 6), .a = odd_v3(&d, 1e4), .b = odd_v3(&d, 1e4),
                     .radius = fabsf(odd_number(&d, 1e4)), .flags = (uint32_t)(roll(&d) & 1), .e = { 1e9f, 1e9f, 1e9f } };
         surf s = { .p = roll(&d) % 4 ? odd_v3(&d, 1e7) : add3(l.p, odd_v3(&d, 1)), .n = random_direction(&d),
                    .albedo = { .5f, .5f, .5f }, .f0 = roll(&d) & 1 ? 0 : 0.5f, .alpha = roll(&d) & 1 ? 0.0025f : 1 };
@@ -364,7 +398,7 @@ static void test_target_of_nonsense(void **state) {
         float f[32];
         for (int j = 0; j < 32; j++)
             f[j] = roll(&d) % 3 ? (float)uniform(&d, -2, 2) : bad[roll(&d) % 8];
-        light l = { .p = { f[0], f[1], f[2] }, .kind = (uint32_t)(roll(&d) % 5), .a = { f[3], f[4], f[5] },
+        light l = { .p = { f[0], f[1], f[2] }, .kind = (uint32_t)(roll(&d) % 6), .a = { f[3], f[4], f[5] },
                     .b = { f[6], f[7], f[8] }, .radius = f[9], .e = { f[10], f[11], f[12] } };
         surf s = { .p = { f[13], f[14], f[15] }, .n = { f[16], f[17], f[18] }, .wo = { f[19], f[20], f[21] },
                    .albedo = { f[22], f[23], f[24] }, .f0 = f[25], .alpha = f[26] };
@@ -385,6 +419,7 @@ int main(void) {
         cmocka_unit_test(test_close_and_far_agree),
         cmocka_unit_test(test_turn_of),
         cmocka_unit_test(test_point),
+        cmocka_unit_test(test_spot),
         cmocka_unit_test(test_samples_lie_on_the_light),
         cmocka_unit_test(test_receiver_where_no_light_comes),
         cmocka_unit_test(test_extreme_input),

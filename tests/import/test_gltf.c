@@ -287,44 +287,6 @@ static void test_materials(void **state) {
 
 /* ---- lights ---- */
 
-/* Does the segment from p along d meet a triangle of the mesh? Moeller and Trumbore's test. */
-static bool blocked(const noc_scene *s, const noc_scene_mesh *m, const double p[3], const double d[3]) {
-    for (uint32_t t = m->first_triangle; t < m->first_triangle + m->triangle_count; t++) {
-        double v[3][3], e[2][3], h[3], q[3], r[3], a = 0, u = 0, w = 0, x = 0;
-        for (int i = 0; i < 3; i++)
-            for (int k = 0; k < 3; k++)
-                v[i][k] = (double)s->positions.data[3 * (size_t)s->indices.data[3 * t + (uint32_t)i] + (size_t)k];
-        for (int k = 0; k < 3; k++)
-            e[0][k] = v[1][k] - v[0][k], e[1][k] = v[2][k] - v[0][k], r[k] = p[k] - v[0][k];
-        for (int k = 0; k < 3; k++) {
-            h[k] = d[(k + 1) % 3] * e[1][(k + 2) % 3] - d[(k + 2) % 3] * e[1][(k + 1) % 3];
-            q[k] = r[(k + 1) % 3] * e[0][(k + 2) % 3] - r[(k + 2) % 3] * e[0][(k + 1) % 3];
-        }
-        for (int k = 0; k < 3; k++)
-            a += e[0][k] * h[k], u += r[k] * h[k], w += d[k] * q[k], x += e[1][k] * q[k];
-        if (fabs(a) > 1e-18 && u / a >= 0 && w / a >= 0 && (u + w) / a <= 1 && x / a > 1e-7)
-            return true;
-    }
-    return false;
-}
-
-/* Share of a disc that is not hidden by the shade, seen from an angle off its axis. */
-static double seen_share(const noc_scene *s, const noc_light_record *disc, const noc_scene_mesh *shade, const double axis[3], double angle) {
-    int free_ones = 0, all = 0;
-    for (int turn = 0; turn < 7; turn++)
-        for (int i = 0; i < 400; i++) {
-            double rho = sqrt((i + .5) / 400), phi = 2.39996322973 * i, p[3], d[3];
-            for (int k = 0; k < 3; k++) {
-                double side = (disc->a[k] * cos(turn * .9) + disc->b[k] * sin(turn * .9)) / disc->radius;
-                p[k] = disc->p[k] + rho * (cos(phi) * disc->a[k] + sin(phi) * disc->b[k]);
-                d[k] = cos(angle) * axis[k] + sin(angle) * side;
-            }
-            free_ones += !blocked(s, shade, p, d);
-            all++;
-        }
-    return (double)free_ones / all;
-}
-
 static void test_lights(void **state) {
     loaded l;
     load_text(&l, file_text(PLAIN,
@@ -342,39 +304,57 @@ static void test_lights(void **state) {
     assert_int_equal(skipped_count(&l, "directional light"), 1);
     assert_int_equal(skipped_count(&l, "unknown type"), 1);
     assert_int_equal(skipped_count(&l, "not there"), 1);
-    const noc_light_record *r = l.scene->lights.data, *point = &r[0], *down = NULL, *level = NULL;
-    for (int i = 0; i < 3; i++) {
-        point = r[i].kind == NOC_LIGHT_POINT ? &r[i] : point;
-        down = r[i].kind == NOC_LIGHT_DISC && r[i].p[0] < 5 ? &r[i] : down;
-        level = r[i].kind == NOC_LIGHT_DISC && r[i].p[0] > 5 ? &r[i] : level;
-    }
-    assert_int_equal(point->kind, NOC_LIGHT_POINT);
-    assert_float_equal(point->e[1], 40, 1e-4); /* cd */
-    assert_float_equal(point->p[1], 1, 1e-5);
-    assert_float_equal(point->p[2], 7, 1e-5);
-    assert_non_null(down);
-    assert_non_null(level);
+    assert_int_equal(l.scene->indices.len, 0); /* punctual: nothing of them is seen */
     const double axes[2][3] = { { 0, 0, -1 }, { 0, 1, 0 } }; /* -z of glTF is our +y; the first is turned to look down */
-    for (int i = 0; i < 2; i++) {
-        const noc_light_record *disc = i ? level : down;
-        assert_float_equal((double)disc->e[0] * M_PI * pow(disc->radius, 2), 300, .05); /* cd along the axis */
-        assert_float_equal((double)disc->e[2] * M_PI * pow(disc->radius, 2), 75, .02);
-        const noc_scene_mesh *shade = NULL;
-        for (size_t m = 0; m < l.scene->meshes.len; m++) {
-            const noc_scene_mesh *mesh = &l.scene->meshes.data[m];
-            const float *v = &l.scene->positions.data[3 * (size_t)l.scene->indices.data[3 * (size_t)mesh->first_triangle]];
-            bool emits = l.scene->materials.data[mesh->material].emission[0] > 0;
-            shade = !emits && (v[0] > 5) == (i == 1) ? mesh : shade;
+    int spots = 0, points = 0;
+    for (size_t i = 0; i < 3; i++) {
+        noc_light_info info;
+        assert_int_equal(noc_scene_get_light(l.scene, i, &info), NOC_OK);
+        if (info.light.kind == NOC_LIGHT_POINT) {
+            points++;
+            assert_float_equal(info.light.emission[1], 40, 1e-4); /* cd */
+            assert_float_equal(info.centre[1], 1, 1e-5);
+            assert_float_equal(info.centre[2], 7, 1e-5);
+            continue;
         }
-        assert_non_null(shade);
-        assert_float_equal(seen_share(l.scene, disc, shade, axes[i], 0), 1, 0);
-        assert_float_equal(seen_share(l.scene, disc, shade, axes[i], .29), 1, .005); /* inner cone: nothing is hidden */
-        double middle = seen_share(l.scene, disc, shade, axes[i], atan((tan(.3) + tan(.6)) / 2));
-        assert_in_range((int)(100 * middle), 25, 60); /* two equal circles overlap by 39 %, near ones by about as much */
-        assert_float_equal(seen_share(l.scene, disc, shade, axes[i], .62), 0, .005); /* outer cone: all is */
-        assert_float_equal(seen_share(l.scene, disc, shade, axes[i], 1.3), 0, 0);
+        spots++;
+        assert_int_equal(info.light.kind, NOC_LIGHT_SPOT);
+        assert_float_equal(info.light.emission[0], 300, 1e-3); /* cd, whatever the node's scale */
+        assert_float_equal(info.light.emission[2], 75, 1e-3);
+        assert_float_equal(info.light.inner_deg, .3 * 180 / M_PI, 1e-4);
+        assert_float_equal(info.light.outer_deg, .6 * 180 / M_PI, 1e-4);
+        for (int k = 0; k < 3; k++)
+            assert_float_equal(info.light.direction[k], axes[info.centre[0] > 5][k], 1e-6);
     }
+    assert_int_equal(points, 1);
+    assert_int_equal(spots, 2);
     unload(&l);
+}
+
+/* What the extension's numbers do not allow is limited and counted; what it leaves out has its defaults, 0 and 45 degrees. */
+static void test_cones(void **state) {
+    static const struct { const char *spot; double inner, outer; size_t limited; } cases[] = {
+        { "", 0, 45, 0 },
+        { ", \"spot\": {\"outerConeAngle\": 1.5707963267948966}", 0, 90, 0 },
+        { ", \"spot\": {\"innerConeAngle\": 0.5, \"outerConeAngle\": 0.4}", .4 * 180 / M_PI, .4 * 180 / M_PI, 1 },
+        { ", \"spot\": {\"innerConeAngle\": -1, \"outerConeAngle\": 3}", 0, 90, 1 },
+        { ", \"spot\": {\"outerConeAngle\": 0.001}", 0, 1, 0 },
+    };
+    for (size_t i = 0; i < NOC_COUNT(cases); i++) {
+        loaded l;
+        char *text = noc_format("\"extensions\": {\"KHR_lights_punctual\": {\"lights\": [{\"type\": \"spot\"%s}]}},"
+                                "\"scenes\": [{\"nodes\": [0]}],"
+                                "\"nodes\": [{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}}],", cases[i].spot);
+        load_text(&l, file_text(PLAIN, text));
+        assert_string_equal(l.error, "");
+        noc_light_info info;
+        assert_int_equal(noc_scene_get_light(l.scene, 0, &info), NOC_OK);
+        assert_float_equal(info.light.inner_deg, cases[i].inner, 1e-4);
+        assert_float_equal(info.light.outer_deg, cases[i].outer, 1e-4);
+        assert_int_equal(skipped_count(&l, "cones of a spot light"), cases[i].limited);
+        unload(&l);
+        free(text);
+    }
 }
 
 static void test_camera(void **state) {
@@ -568,7 +548,8 @@ static int tear_down(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_nodes),     cmocka_unit_test(test_containers), cmocka_unit_test(test_accessors),
-        cmocka_unit_test(test_materials), cmocka_unit_test(test_lights),     cmocka_unit_test(test_camera),
+        cmocka_unit_test(test_materials), cmocka_unit_test(test_lights),     cmocka_unit_test(test_cones),
+        cmocka_unit_test(test_camera),
         cmocka_unit_test(test_bad),       cmocka_unit_test(test_skipped),    cmocka_unit_test(test_probe),
         cmocka_unit_test(test_told),      cmocka_unit_test(test_roots),      cmocka_unit_test(test_broken),
     };

@@ -19,7 +19,8 @@ static float real_in(float lo, float hi) { return lo + (hi - lo) * unit_real(bit
 typedef enum { MIXED, DARK_ONES, ONE_PLACE, ALL_DARK, WINDOWS } sort;
 
 static noc_light light_of(uint32_t i, sort what, float half) {
-    noc_light l = { .kind = (noc_light_kind)(i % 5), .radius = real_in(0.05f, 0.4f) };
+    noc_light l = { .kind = (noc_light_kind)((i + i / 6) % NOC_LIGHT_KIND_COUNT), .radius = real_in(0.05f, 0.4f),
+                    .inner_deg = 20, .outer_deg = 50 }; /* kinds of even and of odd lights alike */
     bool dark = what == ALL_DARK || (what == DARK_ONES && i % 3 != 1);
     float strong = i % 50 == 17 ? 3000 : 3;
     for (int k = 0; k < 3; k++) {

@@ -123,7 +123,8 @@ static void power(void **state) {
     }
 }
 
-/* As often as its flux says: 2 : 1 : 4 : 0 for lights of pi, pi / 2 (one-sided 1 m2 at 1 and 1/2 cd/m2), 2 pi (two-sided). */
+/* As often as its flux says: 2 : 1 : 4 : 0 : 6 for lights of pi, pi / 2 (one-sided 1 m2 at 1 and 1/2 cd/m2), 2 pi
+ * (two-sided), and a spot of 9/4 cd whose cones are 60 and 90 degrees wide: 2 pi 9/4 (1/2 + 1/6) = 3 pi. */
 static void power_follows_flux(void **state) {
     (void)state;
     noc_scene *s = noc_scene_create(NULL);
@@ -133,18 +134,21 @@ static void power_follows_flux(void **state) {
                         .emission = { y[i], y[i], y[i] } };
         assert_true(noc_scene_add_light(s, &l) >= 0);
     }
+    noc_light spot = { .kind = NOC_LIGHT_SPOT, .direction = { 0, 0, -1 }, .inner_deg = 60, .outer_deg = 90,
+                       .emission = { 2.25f, 2.25f, 2.25f } };
+    assert_true(noc_scene_add_light(s, &spot) >= 0);
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     s->lights.data[2].flags |= 1; /* two-sided */
     picker p = { .scene = s, .alias = noc_alias_create(s, NULL) };
-    const double want[] = { 2 / 7., 1 / 7., 4 / 7., 0 };
-    size_t count[4] = { 0 }, n = 0;
+    const double want[] = { 2 / 13., 1 / 13., 4 / 13., 0, 6 / 13. };
+    size_t count[5] = { 0 }, n = 0;
     for (int round = 0; round < 10000; round++) {
         pick got[DRAWS];
         draw(&p, got);
         for (int i = 0; i < DRAWS; i++, n++)
             count[got[i].light]++;
     }
-    for (uint32_t i = 0; i < 4; i++) {
+    for (uint32_t i = 0; i < 5; i++) {
         assert_true(fabs(pmf(&p, i) - want[i]) < 1e-5);
         assert_true(fabs((double)count[i] / (double)n - want[i]) < 4.5 * sqrt(want[i] / (double)n) + 1e-9);
     }

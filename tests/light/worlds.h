@@ -19,7 +19,8 @@ static inline noc_scene *world(uint32_t lights, sort what) {
     float half = 10 + 2 * sqrtf((float)lights);
     add_floor(s, matte(s, 0.5f), 0, 0, 0, half);
     for (uint32_t i = 0; i < lights; i++) {
-        noc_light l = { .kind = (noc_light_kind)(i % 5), .radius = real_in(0.05f, 0.4f) };
+        noc_light l = { .kind = (noc_light_kind)((i + i / 6) % NOC_LIGHT_KIND_COUNT), .radius = real_in(0.05f, 0.4f),
+                        .inner_deg = 20, .outer_deg = 50 }; /* kinds of even and of odd lights alike */
         bool dark = what == ALL_DARK || (what == DARK_ONES && i % 3 != 1);
         float strong = i % 50 == 17 ? 3000 : 3;
         for (int k = 0; k < 3; k++) {

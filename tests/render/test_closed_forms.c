@@ -35,6 +35,48 @@ static void point_over_plane(void **state) {
     }
 }
 
+/* A spot h over a plane, upright and tilted: E = I f^2 cos / d^2 by glTF's KHR_lights_punctual, f = (cos t - cos o) /
+ * (cos i - cos o) between the cones, 1 within and 0 beyond. Straight down, the plane's illuminance sums up to the flux,
+ * 2 pi I (1 - cos o - 2/3 (cos i - cos o)). */
+static void spot_over_plane(void **state) {
+    (void)state;
+    for (int tilted = 0; tilted < 2; tilted++) {
+        noc_scene *s = noc_scene_create(NULL);
+        add_floor(s, matte(s, 0.5f), 0, 0, 0, 40);
+        double h = 5, intensity = 700, inner = 25, outer = 50;
+        double ci = cos(inner * M_PI / 180), co = cos(outer * M_PI / 180);
+        noc_light l = { .kind = NOC_LIGHT_SPOT, .position = { 0, 0, h }, .direction = { 0.4 * tilted, 0.2 * tilted, -1 },
+                        .inner_deg = inner, .outer_deg = outer, .emission = { 700, 700, 700 } };
+        assert_true(noc_scene_add_light(s, &l) >= 0);
+        scene_done(s);
+        double side = 16, length = sqrt(1 + 0.2 * tilted), area = side * side / (64 * 64);
+        noc_camera c = look(0, 0, 100, 0, 0, 0, 2 * 180 / M_PI * atan(side / 2 / 100));
+        c.up[1] = 1, c.up[2] = 0;
+        for (int m = NOC_METHOD_REFERENCE; m <= NOC_METHOD_RESTIR; m++) {
+            noc_render_params p = measure(64, 64, (noc_method)m);
+            noc_image *image = render(s, &c, &p, 1);
+            double flux = 0;
+            int inside = 0, between = 0, outside = 0;
+            for (int y = 0; y < 64; y++)
+                for (int x = 0; x < 64; x++) {
+                    double q[3];
+                    floor_point(&c, &p, x, y, 0, q);
+                    double d2 = q[0] * q[0] + q[1] * q[1] + h * h, cosine = h / sqrt(d2);
+                    double t = (l.direction[0] * q[0] + l.direction[1] * q[1] + h) / (length * sqrt(d2));
+                    double f = t >= ci ? 1 : t <= co ? 0 : (t - co) / (ci - co), e = intensity * f * f * cosine / d2;
+                    double got = luma(image->rgb + 3 * (y * 64 + x)) * M_PI / 0.5;
+                    assert_true(fabs(got - e) < 5e-5 * intensity / (h * h));
+                    flux += got * area;
+                    inside += f == 1, between += f > 0 && f < 1, outside += f == 0;
+                }
+            assert_true(inside > 200 && between > 500 && outside > 500);
+            assert_true(tilted || fabs(flux / (2 * M_PI * intensity * (1 - co - (ci - co) * 2 / 3)) - 1) < 2e-3);
+            noc_image_destroy(image);
+        }
+        noc_scene_destroy(s);
+    }
+}
+
 /* Illuminance factor of a rectangle [x0, x1] x [y0, y1] at height h, parallel to the plane, facing down: E = L F' with
  * F' = pi * form factor, summed from its corners (Howell, configuration factor B-4). */
 static double corner(double x, double y, double h) {
@@ -118,6 +160,7 @@ static void hundred_lux(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(point_over_plane),
+        cmocka_unit_test(spot_over_plane),
         cmocka_unit_test(rectangle_over_plane),
         cmocka_unit_test(hundred_lux),
     };

@@ -10,9 +10,10 @@ static double turn(double x) { return x - floor(x); }
 static noc_light light_at(int i, int frame) {
     double a = turn(0.618 * i + 0.23 * frame), b = turn(0.387 * i + 0.41 * frame), c = 2 * M_PI * turn(0.71 * i + 0.3 * frame);
     float power = 1 + (float)((i + frame) % 3);
-    noc_light l = { .kind = (noc_light_kind)(i % 5), .position = { -9 + 17 * a, -7 + 12 * b, 3.4 + 2.5 * turn(0.17 * i) }, .moving = true,
+    noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT), .moving = true,
+                    .position = { -9 + 17 * a, -7 + 12 * b, 3.4 + 2.5 * turn(0.17 * i) },
                     .edge_u = { 0.8 * cos(c), 0.8 * sin(c), 0 }, .edge_v = { 0.2 * sin(c), -0.2 * cos(c), 0.7 },
-                    .direction = { cos(c), sin(c), -0.6 }, .radius = 0.25,
+                    .direction = { cos(c), sin(c), -0.6 }, .radius = 0.25, .inner_deg = 25, .outer_deg = 60,
                     .emission = { 30 * power, 25 * power, 15 * power } };
     if (i % 7 == 3 && frame % 2)
         memset(l.emission, 0, sizeof(l.emission)); /* out, every other frame */

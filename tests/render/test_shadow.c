@@ -57,7 +57,7 @@ static void windows_near_walls(void **state) {
 /* Lamps of every kind over bumpy ground far away: what is lit from above is lit everywhere, without acne. */
 static void no_acne(void **state) {
     (void)state;
-    for (int kind = 0; kind <= NOC_LIGHT_POINT; kind++)
+    for (int kind = 0; kind < NOC_LIGHT_KIND_COUNT; kind++)
         for (double far = 0; far <= 10000; far += 10000) {
             noc_scene *s = noc_scene_create(NULL);
             int m = matte(s, 0.5f);
@@ -65,7 +65,7 @@ static void no_acne(void **state) {
                 QUAD(s, m, far - 8 + 2 * i, far - 20, 0.05 * (i - 4) * (i - 4), 2, 0, 0.05 * (2 * (i - 4) + 1), 0, 40, 0);
             noc_light l = { .kind = (noc_light_kind)kind, .position = { far + 0.3, far, 9 }, .radius = 0.2,
                             .edge_u = { 0, 0.5, 0 }, .edge_v = { 0.5, 0, 0 }, .direction = { 0, 0, -1 },
-                            .emission = { 500, 500, 500 } };
+                            .outer_deg = 90, .emission = { 500, 500, 500 } };
             assert_true(noc_scene_add_light(s, &l) >= 0);
             assert_int_equal(noc_scene_commit(s), NOC_OK);
             noc_camera c = look(far, far - 14, 12, far, far, 0, 40);
@@ -99,7 +99,8 @@ static void expect_unshadowed(noc_scene *s, const noc_camera *c, bool dark) {
     noc_image_destroy(open);
 }
 
-/* A point light in a ceiling lights the room below it; its place is a float in the ceiling's plane, level or turned. */
+/* A point light or spot in a ceiling lights the room below it; its place is a float in the ceiling's plane, level or
+ * turned. */
 static void point_in_a_surface(void **state) {
     (void)state;
     for (int i = 0; i < 6; i++) {
@@ -108,7 +109,9 @@ static void point_in_a_surface(void **state) {
         int m = matte(s, 0.5f);
         add_floor(s, m, far, far, 0, 6);
         QUAD(s, m, far - 8, far - 8, 3 - 8 * rise, 0, 16, 0, 16, 0, 16 * rise);
-        point_light(s, far + 0.5, far + 1, 3 + 0.5 * rise, 100);
+        noc_light l = { .kind = i % 2 ? NOC_LIGHT_SPOT : NOC_LIGHT_POINT, .position = { far + 0.5, far + 1, 3 + 0.5 * rise },
+                        .direction = { 0, 0, -1 }, .outer_deg = 90, .emission = { 100, 100, 100 } };
+        assert_true(noc_scene_add_light(s, &l) >= 0);
         assert_int_equal(noc_scene_commit(s), NOC_OK);
         noc_camera c = look(far, far - 4, 1.5, far + 0.5, far, 0, 60);
         expect_unshadowed(s, &c, false);

@@ -43,6 +43,11 @@ static noc_scene *yard(void) {
     assert_true(noc_scene_add_light(s, &disc) >= 0);
     assert_true(noc_scene_add_light(s, &triangle) >= 0);
     assert_true(noc_scene_add_light(s, &point) >= 0);
+    for (int i = 0; i < 2; i++) {
+        noc_light spot = { .kind = NOC_LIGHT_SPOT, .position = { -6 + 9 * i, -8, 5 }, .direction = { 0.3 - i, 0.6, -1 },
+                           .inner_deg = 10 + 20 * i, .outer_deg = 30 + 60 * i, .emission = { 300, 250, 350 } };
+        assert_true(noc_scene_add_light(s, &spot) >= 0);
+    }
     return finish(s);
 }
 

@@ -17,8 +17,10 @@ static void lights_are_listed(void **state) {
         { .kind = NOC_LIGHT_SPHERE, .position = { 4, 5, 6 }, .radius = 0.5, .emission = { 100, 100, 100 }, .inferred = true },
         { .kind = NOC_LIGHT_DISC, .position = { 0, 0, 8 }, .radius = 0.2, .direction = { 0, 0, -3 }, .emission = { 0, 100, 0 } },
         { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { 1, 1, 1 }, .edge_u = { 2, 0, 0 }, .edge_v = { 0, 3, 0 }, .emission = { 5, 5, 5 } },
+        { .kind = NOC_LIGHT_SPOT, .position = { 1, 2, 3 }, .direction = { 0, -4, 0 }, .inner_deg = 60, .outer_deg = 90,
+          .emission = { 10, 10, 10 } },
     };
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 5; i++)
         assert_int_equal(noc_scene_add_light(s, &lights[i]), i);
     int shop = noc_scene_add_material(s, &(noc_material){ .roughness = 1, .emission = { 7, 7, 7 }, .two_sided = true });
     noc_mesh mesh = { .vertex_count = 3, .positions = (double[]){ 0, 0, 0, 3, 0, 0, 0, 3, 0 }, .triangle_count = 1,
@@ -27,7 +29,7 @@ static void lights_are_listed(void **state) {
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     noc_scene_info info;
     noc_scene_get_info(s, &info);
-    assert_int_equal(info.lights, 5);
+    assert_int_equal(info.lights, 6);
     /* By hand: 4 pi I, 4 pi^2 r^2 L, pi L A, twice that from two sides. */
     assert_close(light_of(s, 0).lumens, 40 * M_PI, 1e-4);
     assert_string_equal(light_of(s, 0).light.name, "p");
@@ -38,12 +40,17 @@ static void lights_are_listed(void **state) {
     assert_close(light_of(s, 3).lumens, M_PI * 5 * 6, 1e-3);
     assert_close(light_of(s, 3).centre[1], 2.5, 1e-6);
     assert_close(light_of(s, 3).light.direction[2], 1, 1e-6);
-    assert_true(light_of(s, 4).two_sided);
-    assert_close(light_of(s, 4).lumens, 2 * M_PI * 7 * 4.5, 1e-3);
-    assert_close(light_of(s, 4).centre[0], 1, 1e-6);
-    assert_string_equal(light_of(s, 4).light.name, "shop");
+    /* 2 pi I over the cosines: 1 from 1/2 to 1, the square of twice the cosine from 0 to 1/2 */
+    assert_close(light_of(s, 4).lumens, 2 * M_PI * 10 * (0.5 + 0.5 / 3), 1e-3);
+    assert_close(light_of(s, 4).light.direction[1], -1, 1e-6);
+    assert_close(light_of(s, 4).light.inner_deg, 60, 1e-4);
+    assert_close(light_of(s, 4).light.outer_deg, 90, 1e-4);
+    assert_true(light_of(s, 5).two_sided);
+    assert_close(light_of(s, 5).lumens, 2 * M_PI * 7 * 4.5, 1e-3);
+    assert_close(light_of(s, 5).centre[0], 1, 1e-6);
+    assert_string_equal(light_of(s, 5).light.name, "shop");
     noc_light_info none;
-    assert_int_equal(noc_scene_get_light(s, 5, &none), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_scene_get_light(s, 6, &none), NOC_ERR_ARGUMENT);
     noc_scene_destroy(s);
 }
 

@@ -137,8 +137,10 @@ static void test_shapes(void **state) {
         { .kind = NOC_LIGHT_TRIANGLE, .position = { 1, 1, 1 }, .edge_u = { 2, 0, 0 }, .edge_v = { 0, 3, 0 }, .emission = { 5, 5, 5 } },
         { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { 0, 0, 3 }, .edge_u = { 1, 1, 0 }, .edge_v = { 0, 0, 2 }, .emission = { 5, 5, 5 }, .inferred = true },
         { .kind = NOC_LIGHT_POINT, .position = { 4, 5, 6 }, .emission = { 100, 0, 0 } },
+        { .kind = NOC_LIGHT_SPOT, .position = { 4, 5, 6 }, .direction = { 0, 2, 0 }, .inner_deg = 5, .outer_deg = 20,
+          .emission = { 100, 0, 0 } },
     };
-    static const double area[] = { 4 * M_PI * 0.09, M_PI * 0.04, M_PI * 4, 3, 2 * M_SQRT2, 0 };
+    static const double area[] = { 4 * M_PI * 0.09, M_PI * 0.04, M_PI * 4, 3, 2 * M_SQRT2, 0, 0 };
     for (size_t i = 0; i < NOC_COUNT(lights); i++) {
         const noc_light *l = &lights[i];
         size_t first = f->scene->indices.len / 3;
@@ -172,19 +174,20 @@ static void test_shapes(void **state) {
         assert_true(fabs(sum - area[i]) <= 2e-5 * area[i]); /* a closed shape shows a quarter of it on average (Cauchy) */
         if (l->kind == NOC_LIGHT_SPHERE)
             assert_true(dot(closed, closed) < 1e-10);
-        assert_int_equal(end > first, l->kind != NOC_LIGHT_POINT);
+        assert_int_equal(end > first, l->kind < NOC_LIGHT_POINT);
     }
     noc_scene_info info;
     noc_scene_get_info(f->scene, &info);
-    assert_int_equal(info.lights, 6);
+    assert_int_equal(info.lights, 7);
     assert_int_equal(info.lights_inferred, 1);
     assert_int_equal(info.lights_by_kind[NOC_LIGHT_DISC], 2);
+    assert_int_equal(info.lights_by_kind[NOC_LIGHT_SPOT], 1);
     assert_int_equal(info.triangles_dropped, 0);
     assert_string_equal(f->scene->light_names.data[0], "globe");
     assert_null(f->scene->light_names.data[1]);
     assert_int_equal(noc_scene_commit(f->scene), NOC_OK);
     noc_scene_get_info(f->scene, &info);
-    assert_int_equal(info.lights, 6); /* shapes do not become lights of their own */
+    assert_int_equal(info.lights, 7); /* shapes do not become lights of their own */
     assert_int_equal((uintptr_t)f->scene->lights.data % 64, 0);
     assert_true(f->scene->positions.cap > f->scene->positions.len);
     assert_int_equal(f->messages, 0);
@@ -192,17 +195,20 @@ static void test_shapes(void **state) {
 
 static void test_bad_lights(void **state) {
     fixture *f = *state;
-    noc_light sphere = { .kind = NOC_LIGHT_SPHERE, .radius = 1, .emission = { 1, 1, 1 } }, disc = sphere, quad, bad[14];
+    noc_light sphere = { .kind = NOC_LIGHT_SPHERE, .radius = 1, .emission = { 1, 1, 1 } }, disc = sphere, quad, spot, bad[19];
     disc.kind = NOC_LIGHT_DISC;
     disc.direction[0] = 1;
     quad = (noc_light){ .kind = NOC_LIGHT_PARALLELOGRAM, .edge_u = { 1, 0, 0 }, .edge_v = { 0, 1, 0 }, .emission = { 1, 1, 1 } };
-    for (int i = 0; i < 14; i++)
-        bad[i] = i < 6 ? sphere : i < 9 ? disc : quad;
+    spot = (noc_light){ .kind = NOC_LIGHT_SPOT, .direction = { 0, 0, -1 }, .inner_deg = 10, .outer_deg = 30,
+                        .emission = { 1, 1, 1 } };
+    for (int i = 0; i < 19; i++)
+        bad[i] = i < 6 ? sphere : i < 9 ? disc : i < 14 ? quad : spot;
     bad[0].position[2] = NAN, bad[1].position[0] = 1e9, bad[2].radius = 0, bad[3].radius = NAN, bad[4].emission[1] = -1;
     bad[5].emission[2] = INFINITY, bad[6].direction[0] = 0, bad[7].direction[1] = NAN, bad[8].radius = -1;
     bad[9].edge_u[0] = 0, bad[10].edge_v[0] = INFINITY, bad[11].edge_v[0] = 1, bad[11].edge_v[1] = 0, bad[12].kind = (noc_light_kind)7;
     bad[13].kind = NOC_LIGHT_TRIANGLE, bad[13].edge_v[1] = 0;
-    for (int i = 0; i < 14; i++) {
+    bad[14].direction[2] = 0, bad[15].outer_deg = 91, bad[16].inner_deg = 31, bad[17].inner_deg = -1, bad[18].outer_deg = NAN;
+    for (int i = 0; i < 19; i++) {
         assert_int_equal(noc_scene_add_light(f->scene, &bad[i]), -1);
         assert_int_equal(f->messages, i + 1);
     }
@@ -304,9 +310,10 @@ static void test_moving_lights(void **state) {
     fixture *f = *state;
     const noc_light stands = { .kind = NOC_LIGHT_POINT, .position = { 1, 2, 3 }, .emission = { 5, 5, 5 } };
     assert_int_equal(noc_scene_add_light(f->scene, &stands), 0);
-    for (int kind = 0; kind <= NOC_LIGHT_POINT; kind++) {
+    for (int kind = 0; kind < NOC_LIGHT_KIND_COUNT; kind++) {
         noc_light l = { .kind = (noc_light_kind)kind, .position = { 1, 2, 3 }, .edge_u = { 1, 0, 0 }, .edge_v = { 0, 2, 0 },
-                        .direction = { 0, 1, -1 }, .radius = 0.5, .emission = { 5, 6, 7 }, .inferred = true, .moving = true };
+                        .direction = { 0, 1, -1 }, .radius = 0.5, .inner_deg = 5, .outer_deg = 30,
+                        .emission = { 5, 6, 7 }, .inferred = true, .moving = true };
         noc_light there = l, again;
         there.position[0] = 9, there.edge_u[1] = 3, there.direction[0] = 2, there.radius = 0.25, there.emission[2] = 0;
         noc_scene *other = noc_scene_create(NULL);
@@ -334,7 +341,7 @@ static void test_moving_lights(void **state) {
         assert_int_equal(noc_scene_move_light(f->scene, 2, &there), NOC_ERR_ARGUMENT);
         assert_int_equal(noc_scene_move_light(f->scene, -1, &there), NOC_ERR_ARGUMENT);
         assert_int_equal(noc_scene_move_light(f->scene, 0, &stands), NOC_ERR_ARGUMENT); /* it stands */
-        again = there, again.kind = (noc_light_kind)((kind + 1) % 5);
+        again = there, again.kind = (noc_light_kind)((kind + 1) % NOC_LIGHT_KIND_COUNT);
         assert_int_equal(noc_scene_move_light(f->scene, i, &again), NOC_ERR_ARGUMENT);
         again = there, again.position[2] = NAN;
         assert_int_equal(noc_scene_move_light(f->scene, i, &again), NOC_ERR_ARGUMENT);
