@@ -87,7 +87,7 @@ typedef struct noc_light {
     bool moving;       /* noc_scene_move_light may change it between frames */
 } noc_light;
 
-NOC_API noc_scene *noc_scene_create(noc_log *log); /* log may be NULL; it must outlive the scene */
+NOC_API noc_scene *noc_scene_create(noc_log *log); /* log may be NULL; it must outlive the scene. NULL: no memory, reported */
 NOC_API void noc_scene_destroy(noc_scene *scene);
 
 /* These return an index >= 0, or -1 after reporting an error. Non-finite or degenerate geometry is an error here; bad
@@ -163,7 +163,7 @@ NOC_API void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info);
 NOC_API void noc_scene_content(const noc_scene *scene, char key[NOC_CONTENT_KEY]);
 
 /* Height of the highest ground (terrain, road, sidewalk, green, building ground) under or over (x, y), local metres.
- * Returns false where there is none. */
+ * Returns false where there is none, and where there was no memory to look for it, which is reported. */
 NOC_API bool noc_scene_ground(const noc_scene *scene, double x, double y, double *z);
 
 /* Pinhole camera. */

@@ -24,17 +24,10 @@ noc_status noc_scene_add_builtin(noc_scene *scene, const char *name, const noc_b
     if (scene->committed)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "builtin:%.40s: the scene is committed", name);
     for (size_t i = 0; i < NOC_COUNT(scenes); i++)
-        if (!strcmp(name, scenes[i].name)) {
-            noc_status status = scenes[i].add(scene, params);
-            return scene->no_memory ? NOC_ERR_MEMORY : status;
-        }
-    char *names = noc_strdup("");
-    for (size_t i = 0; i < NOC_COUNT(scenes); i++) {
-        char *longer = noc_format("%s%sbuiltin:%s", names, i ? ", " : "", scenes[i].name);
-        free(names);
-        names = longer;
-    }
-    noc_status status = noc_error(scene->log, NOC_ERR_ARGUMENT, "builtin:%.40s: no such scene; there are %s", name, names);
-    free(names);
-    return status;
+        if (!strcmp(name, scenes[i].name))
+            return scenes[i].add(scene, params);
+    char names[256] = "";
+    for (size_t i = 0, n = 0; i < NOC_COUNT(scenes); i++)
+        n += (size_t)noc_snprintf(names + n, sizeof(names) - n, "%sbuiltin:%s", i ? ", " : "", scenes[i].name);
+    return noc_error(scene->log, NOC_ERR_ARGUMENT, "builtin:%.40s: no such scene; there are %s", name, names);
 }

@@ -39,7 +39,7 @@ void city_kelvin_rgb(double kelvin, float rgb[3]);
 void city_add_ground(noc_scene *scene, const double *points, size_t point_count);
 
 /* The same in two steps, so that it can be asked whether the points' heights are to be believed. NULL: there is nothing to
- * stand under. Until it is laid, which frees it, the scene does not change. */
+ * stand under, or the scene is out of memory. Until it is laid, which frees it, the scene does not change. */
 typedef struct city_ground city_ground;
 city_ground *city_ground_start(noc_scene *scene, const double *points, size_t count);
 /* Height by what the city tells, and how far away the nearest of that is, m (INFINITY: it tells nothing). */

@@ -13,6 +13,7 @@ typedef struct ground_field {
     float *foot;   /* mean of the feet in the cell; NaN where it has none */
     float *away;   /* m to the nearest cell that the city tells the height of; INFINITY where it tells none */
     bool *fixed;
+    double *scratch; /* 2 * nx * ny, of whoever is at work */
 } ground_field;
 
 /* Height of the mesh at (x, y). */

@@ -85,7 +85,7 @@ static int compare_floats(const void *a, const void *b) {
 /* Forgets cells that stand higher over any other than the steepest ground would: walls that begin on a roof. */
 static void drop_towers(field *f) {
     size_t n = (size_t)f->nx * (size_t)f->ny;
-    float *limit = noc_alloc(n * sizeof(*limit));
+    float *limit = (float *)f->scratch;
     for (size_t i = 0; i < n; i++)
         limit[i] = isnan(f->height[i]) ? INFINITY : f->height[i];
     float rise = (float)(STEEPEST * NOC_MIN(f->step[0], f->step[1]));
@@ -104,14 +104,13 @@ static void drop_towers(field *f) {
     for (size_t i = 0; i < n; i++)
         if (f->height[i] > limit[i] + .01f)
             f->height[i] = NAN;
-    free(limit);
 }
 
 /* Forgets cells that lie absurdly below or above the rest (a building at height 0 in a town at 400 m). Returns how many
  * cells know their height, with the lowest and highest. */
 static size_t drop_outliers(field *f, double *lo, double *hi) {
     size_t n = (size_t)f->nx * (size_t)f->ny, known = 0;
-    float *sorted = noc_alloc((n + 1) * sizeof(*sorted));
+    float *sorted = (float *)f->scratch;
     for (size_t i = 0; i < n; i++)
         if (!isnan(f->height[i]))
             sorted[known++] = f->height[i];
@@ -136,7 +135,6 @@ static size_t drop_outliers(field *f, double *lo, double *hi) {
             }
         }
     }
-    free(sorted);
     return kept;
 }
 
@@ -163,15 +161,17 @@ static void relax(field *f, int rounds) {
             }
 }
 
-/* Fills the unknown cells: from a grid of half the size, then relaxed. At least one cell is known. */
-static void fill(field *f) {
+/* Fills the unknown cells: from a grid of half the size, then relaxed. At least one cell is known. False: no memory. */
+static bool fill(field *f) {
     if (f->nx == 1 && f->ny == 1)
-        return;
+        return true;
     field half = { .nx = (f->nx + 1) / 2, .ny = (f->ny + 1) / 2 };
     size_t n = (size_t)half.nx * (size_t)half.ny;
-    half.height = noc_calloc(n, sizeof(*half.height));
-    half.fixed = noc_calloc(n, sizeof(*half.fixed));
-    int *count = noc_calloc(n, sizeof(*count));
+    half.height = noc_try_calloc(n, sizeof(*half.height) + sizeof(int) + sizeof(*half.fixed)); /* and count, and fixed */
+    if (!half.height)
+        return false;
+    int *count = (int *)(half.height + n);
+    half.fixed = (bool *)(count + n);
     for (int y = 0; y < f->ny; y++)
         for (int x = 0; x < f->nx; x++) {
             size_t i = (size_t)y * (size_t)f->nx + (size_t)x, k = (size_t)(y / 2) * (size_t)half.nx + (size_t)(x / 2);
@@ -184,23 +184,24 @@ static void fill(field *f) {
         half.fixed[k] = count[k] > 0;
         half.height[k] = count[k] ? half.height[k] / (float)count[k] : NAN;
     }
-    free(count);
-    fill(&half);
-    for (int y = 0; y < f->ny; y++)
+    bool filled = fill(&half);
+    for (int y = 0; y < f->ny && filled; y++)
         for (int x = 0; x < f->nx; x++) {
             size_t i = (size_t)y * (size_t)f->nx + (size_t)x;
             if (!f->fixed[i])
                 f->height[i] = half.height[(size_t)(y / 2) * (size_t)half.nx + (size_t)(x / 2)];
         }
     free(half.height);
-    free(half.fixed);
-    relax(f, 40);
+    if (filled)
+        relax(f, 40);
+    return filled;
 }
 
 /* Raises known cells from the lowest point in them to the mean of the feet there. */
 static void raise_to_feet(field *f, const noc_scene *scene) {
     size_t n = (size_t)f->nx * (size_t)f->ny;
-    double *sum = noc_calloc(n, 2 * sizeof(*sum)), *weight = sum + n;
+    double *sum = f->scratch, *weight = sum + n;
+    memset(sum, 0, 2 * n * sizeof(*sum));
     for (size_t t = 0; t < scene->triangle_light.len; t++) {
         noc_class cls = class_of(scene, t);
         for (int i = 0; i < 3 && (cls == NOC_CLASS_WALL || cls == NOC_CLASS_GROUND); i++) {
@@ -222,13 +223,12 @@ static void raise_to_feet(field *f, const noc_scene *scene) {
     for (size_t i = 0; i < n; i++)
         if (weight[i] > 0)
             f->height[i] = f->foot[i] = (float)(sum[i] / weight[i]);
-    free(sum);
 }
 
 /* Cells beside streets must not rise over them where the two meet. */
 static void spread_streets(field *f) {
     size_t n = (size_t)f->nx * (size_t)f->ny;
-    float *own = noc_alloc(n * sizeof(*own));
+    float *own = (float *)f->scratch;
     memcpy(own, f->street, n * sizeof(*own));
     for (int y = 0; y < f->ny; y++)
         for (int x = 0; x < f->nx; x++) {
@@ -238,13 +238,12 @@ static void spread_streets(field *f) {
                 f->street[i] = NOC_MIN(f->street[i], own[(size_t)v * (size_t)f->nx + (size_t)u]);
             }
         }
-    free(own);
 }
 
 /* Evens out what differs from cell to cell. */
 static void smooth(field *f, int rounds) {
     size_t n = (size_t)f->nx * (size_t)f->ny;
-    float *old = noc_alloc(n * sizeof(*old));
+    float *old = (float *)f->scratch;
     for (int r = 0; r <= rounds; r++) {
         for (size_t i = 0; i < n; i++)
             old[i] = f->height[i] = NOC_MIN(f->height[i], f->street[i]);
@@ -259,13 +258,16 @@ static void smooth(field *f, int rounds) {
                 f->height[(size_t)y * (size_t)f->nx + (size_t)x] = sum;
             }
     }
-    free(old);
 }
 
 /* The rim of an nx by ny grid of vertices, counter-clockwise. */
 static void surround(noc_scene *scene, const double *xyz, int nx, int ny, int material) {
     size_t count = 2 * (size_t)(nx - 1) + 2 * (size_t)(ny - 1), n = 0;
-    double *rim = noc_alloc(count * 3 * sizeof(*rim));
+    double *rim = noc_try_alloc(count * 3 * sizeof(*rim));
+    if (!rim) {
+        noc_scene_out_of_memory(scene);
+        return;
+    }
     for (int side = 0; side < 4; side++)
         for (int i = 0; i < (side % 2 ? ny : nx) - 1; i++) {
             int x = side == 0 ? i : side == 1 ? nx - 1 : side == 2 ? nx - 1 - i : 0;
@@ -279,9 +281,13 @@ static void surround(noc_scene *scene, const double *xyz, int nx, int ny, int ma
 static void add_mesh(noc_scene *scene, const field *f, double z, bool level) {
     noc_material m = noc_class_material(NOC_CLASS_TERRAIN);
     int nx = level ? 2 : f->nx, ny = level ? 2 : f->ny;
-    double *xyz = noc_alloc((size_t)nx * (size_t)ny * 3 * sizeof(*xyz));
-    uint32_t *indices = noc_alloc((size_t)(nx - 1) * (size_t)(ny - 1) * 6 * sizeof(*indices));
+    double *xyz = noc_try_alloc((size_t)nx * (size_t)ny * 3 * sizeof(*xyz));
+    uint32_t *indices = noc_try_alloc((size_t)(nx - 1) * (size_t)(ny - 1) * 6 * sizeof(*indices));
     size_t v = 0, t = 0;
+    if (!xyz || !indices) {
+        noc_scene_out_of_memory(scene);
+        nx = ny = 0;
+    }
     for (int y = 0; y < ny; y++)
         for (int x = 0; x < nx; x++) {
             /* cell centres; the outermost run to the rim */
@@ -305,8 +311,8 @@ static void add_mesh(noc_scene *scene, const field *f, double z, bool level) {
     free(indices);
 }
 
-/* Cells of what is there; the ground is to reach under all of it, and the points. */
-static void make_field(field *f, const noc_scene *scene, const double *points, size_t point_count) {
+/* Cells of what is there; the ground is to reach under all of it, and the points. False: no memory. */
+static bool make_field(field *f, const noc_scene *scene, const double *points, size_t point_count) {
     double size[2];
     for (int k = 0; k < 2; k++) {
         double lo = scene->bounds_min[k], hi = scene->bounds_max[k];
@@ -323,15 +329,18 @@ static void make_field(field *f, const noc_scene *scene, const double *points, s
     f->step[0] = size[0] / f->nx;
     f->step[1] = size[1] / f->ny;
     size_t n = (size_t)f->nx * (size_t)f->ny;
-    f->height = noc_alloc(n * sizeof(*f->height));
-    f->street = noc_alloc(n * sizeof(*f->street));
-    f->foot = noc_alloc(n * sizeof(*f->foot));
-    f->away = noc_alloc(n * sizeof(*f->away));
-    f->fixed = noc_calloc(n, sizeof(*f->fixed));
-    for (size_t i = 0; i < n; i++) {
+    f->height = noc_try_alloc(n * sizeof(*f->height));
+    f->street = noc_try_alloc(n * sizeof(*f->street));
+    f->foot = noc_try_alloc(n * sizeof(*f->foot));
+    f->away = noc_try_alloc(n * sizeof(*f->away));
+    f->fixed = noc_try_calloc(n, sizeof(*f->fixed));
+    f->scratch = noc_try_alloc(2 * n * sizeof(*f->scratch));
+    bool made = f->height && f->street && f->foot && f->away && f->fixed && f->scratch;
+    for (size_t i = 0; made && i < n; i++) {
         f->height[i] = f->foot[i] = NAN;
         f->street[i] = INFINITY;
     }
+    return made;
 }
 
 struct city_ground {
@@ -342,8 +351,8 @@ struct city_ground {
     double z;          /* of a level one */
 };
 
-/* Heights from what is known in the cells. */
-static void settle(city_ground *g) {
+/* Heights from what is known in the cells. False: no memory. */
+static bool settle(city_ground *g) {
     field *f = &g->f;
     double lo, hi;
     g->known = drop_outliers(f, &lo, &hi) > 0;
@@ -355,20 +364,37 @@ static void settle(city_ground *g) {
             f->height[i] = (float)g->z;
             f->foot[i] = f->fixed[i] ? (float)g->z : NAN;
         }
-        return;
+        return true;
     }
     raise_to_feet(f, g->scene);
     spread_streets(f);
-    fill(f);
+    if (!fill(f))
+        return false;
     smooth(f, 6);
+    return true;
+}
+
+static void free_ground(city_ground *g) {
+    free(g->f.height);
+    free(g->f.street);
+    free(g->f.foot);
+    free(g->f.away);
+    free(g->f.fixed);
+    free(g->f.scratch);
+    free(g);
 }
 
 city_ground *city_ground_start(noc_scene *scene, const double *points, size_t count) {
     if ((!scene->indices.len && !count) || scene->committed)
         return NULL;
-    city_ground *g = noc_calloc(1, sizeof(*g));
+    city_ground *g = noc_try_calloc(1, sizeof(*g));
+    if (!g || !make_field(&g->f, scene, points, count)) {
+        noc_scene_out_of_memory(scene);
+        if (g)
+            free_ground(g);
+        return NULL;
+    }
     g->scene = scene;
-    make_field(&g->f, scene, points, count);
     bool bases = has_bases(scene), any = false;
     for (size_t t = 0; t < scene->triangle_light.len; t++) {
         noc_class cls = class_of(scene, t);
@@ -380,8 +406,11 @@ city_ground *city_ground_start(noc_scene *scene, const double *points, size_t co
     for (size_t i = 0; i < count && !any; i++) /* nothing else tells a height */
         if (isfinite(points[3 * i + 2]))
             lower(&g->f, points[3 * i], points[3 * i + 1], points[3 * i + 2], false);
-    settle(g);
-    return g;
+    if (settle(g))
+        return g;
+    noc_scene_out_of_memory(scene);
+    free_ground(g);
+    return NULL;
 }
 
 double city_ground_height(const city_ground *g, double x, double y, double *distance) {
@@ -397,12 +426,7 @@ void city_ground_lay(city_ground *g, const double *points, size_t count) {
         field_follow(&g->f, points, count);
     add_mesh(g->scene, &g->f, g->z, g->level && !off);
     city_add_skirts(g->scene);
-    free(g->f.height);
-    free(g->f.street);
-    free(g->f.foot);
-    free(g->f.away);
-    free(g->f.fixed);
-    free(g);
+    free_ground(g);
 }
 
 void city_add_ground(noc_scene *scene, const double *points, size_t point_count) {

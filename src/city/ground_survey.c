@@ -82,9 +82,9 @@ static void spread(const ground_field *f, double *sum, double *weight, double x,
         }
 }
 
-static void correct(ground_field *f, const double *points, size_t count, double radius, double *sum) {
+static void correct(ground_field *f, const double *points, size_t count, double radius) {
     size_t n = (size_t)f->nx * (size_t)f->ny;
-    double *weight = sum + n;
+    double *sum = f->scratch, *weight = sum + n;
     memset(sum, 0, 2 * n * sizeof(*sum));
     for (size_t i = 0; i < count; i++)
         if (isfinite(points[3 * i + 2]))
@@ -107,7 +107,7 @@ static void keep_under_streets(ground_field *f) {
  * with a wrong place, make no spike. */
 static void run_through(ground_field *f, const double *points, size_t count) {
     size_t n = (size_t)f->nx * (size_t)f->ny;
-    float *was = noc_alloc(2 * n * sizeof(*was)), *most = was + n;
+    float *was = (float *)f->scratch, *most = was + n;
     memcpy(was, f->height, n * sizeof(*was));
     memset(most, 0, n * sizeof(*most));
     for (int sweep = 0; sweep <= SWEEPS; sweep++) /* the first one measures */
@@ -126,14 +126,12 @@ static void run_through(ground_field *f, const double *points, size_t count) {
                     f->height[c] = NOC_CLAMP(f->height[c] + (float)(at.weight[k] * lack / length), was[c] - most[c], was[c] + most[c]);
             }
         }
-    free(was);
 }
 
 void field_follow(ground_field *f, const double *points, size_t count) {
-    double *sum = noc_alloc(2 * (size_t)f->nx * (size_t)f->ny * sizeof(*sum)), step = NOC_MAX(f->step[0], f->step[1]);
+    double step = NOC_MAX(f->step[0], f->step[1]);
     for (double radius = NOC_MAX(WIDEST, 4 * step); radius >= 2 * step; radius /= 2)
-        correct(f, points, count, radius, sum);
-    free(sum);
+        correct(f, points, count, radius);
     keep_under_streets(f);
     run_through(f, points, count);
     keep_under_streets(f);

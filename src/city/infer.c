@@ -52,10 +52,13 @@ static bool keeps_distance(const spots *s, double x, double y, const double faci
     return true;
 }
 
-static void take(spots *s, double x, double y, const double facing[2]) {
+/* False: no memory. */
+static bool take(spots *s, double x, double y, const double facing[2]) {
     uint32_t *first = &s->bucket[bucket_of((int64_t)floor(x / s->cell), (int64_t)floor(y / s->cell))];
-    array_push(&s->list, (spot){ x, y, { facing[0], facing[1] }, *first });
+    if (!array_try_push(&s->list, (spot){ x, y, { facing[0], facing[1] }, *first }))
+        return false;
     *first = (uint32_t)s->list.len;
+    return true;
 }
 
 /* ---- the placing of one ---- */
@@ -77,7 +80,7 @@ static bool go_on(inference *in) {
     if (in->asked++ % 256 == 0 && in->progress && in->progress->update &&
         !in->progress->update(in->progress->user, "lamps", in->done))
         in->cancelled = true;
-    return !in->cancelled;
+    return !in->cancelled && !in->scene->no_memory;
 }
 
 /* A lamp at (x, y), facing (dx, dy), unless the place will not do. */
@@ -97,7 +100,8 @@ static void propose(inference *in, double x, double y, double dx, double dy, dou
     int lights = city_add_lamp(in->scene, &lamp, in->params, true, in->issues);
     if (!lights)
         return;
-    take(in->spots, x, y, facing);
+    if (!take(in->spots, x, y, facing))
+        noc_scene_out_of_memory(in->scene);
     in->lights += lights;
     in->lamps++;
 }
@@ -119,7 +123,7 @@ static void along_edge(inference *in, const float *a, const float *b, double off
         return;
     double right[2] = { d[1] / length, -d[0] / length };
     int steps = (int)NOC_CLAMP(length / 4, 1, 1e5);
-    for (int i = 0; i < steps && !in->cancelled; i++) {
+    for (int i = 0; i < steps && !in->cancelled && !in->scene->no_memory; i++) {
         double t = (i + .5) / steps, sign = outward ? 1 : -1;
         propose(in, p[0] + t * d[0] + off * right[0], p[1] + t * d[1] + off * right[1], sign * right[0], sign * right[1],
                 p[2] + t * d[2]);
@@ -181,8 +185,11 @@ static void around_buildings(inference *in) {
 noc_status city_infer_lamps(noc_scene *scene, const city_lamp_params *params, const noc_progress *progress,
                             geo_issues *issues, int *lights) {
     inference in = { .scene = scene, .params = params, .issues = issues, .progress = progress,
-                     .spots = noc_calloc(1, sizeof(spots)) };
+                     .spots = noc_try_calloc(1, sizeof(spots)) };
     noc_scene_info info;
+    *lights = 0;
+    if (!in.spots)
+        return noc_scene_out_of_memory(scene);
     noc_scene_get_info(scene, &info);
     bool roads = info.triangles_by_class[NOC_CLASS_ROAD] > 0;
     in.spots->spacing = roads ? ROAD_SPACING : WALL_SPACING;
@@ -196,5 +203,5 @@ noc_status city_infer_lamps(noc_scene *scene, const city_lamp_params *params, co
     array_free(&in.spots->list);
     free(in.spots);
     *lights = in.lights;
-    return in.cancelled ? NOC_ERR_CANCELLED : NOC_OK;
+    return scene->no_memory ? NOC_ERR_MEMORY : in.cancelled ? NOC_ERR_CANCELLED : NOC_OK;
 }

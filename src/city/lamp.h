@@ -27,6 +27,7 @@ bool site_taken(const noc_scene *scene, double x, double y, double z);
 typedef struct lamp_shape {
     NOC_ARRAY(double) xyz;
     NOC_ARRAY(uint32_t) indices;
+    bool no_memory; /* shape_add says so */
 } lamp_shape;
 
 /* Tapered hexagonal pole with a cap: 16 triangles. */

@@ -5,13 +5,13 @@
 
 static uint32_t vertex(lamp_shape *s, double x, double y, double z) {
     double p[3] = { x, y, z };
-    array_append(&s->xyz, p, 3);
+    s->no_memory = !array_try_append(&s->xyz, p, 3) || s->no_memory;
     return (uint32_t)(s->xyz.len / 3 - 1);
 }
 
 static void triangle(lamp_shape *s, uint32_t a, uint32_t b, uint32_t c) {
     uint32_t t[3] = { a, b, c };
-    array_append(&s->indices, t, 3);
+    s->no_memory = !array_try_append(&s->indices, t, 3) || s->no_memory;
 }
 
 static void quad(lamp_shape *s, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
@@ -106,6 +106,8 @@ static int lamp_material(noc_scene *scene) {
 }
 
 bool shape_add(lamp_shape *s, noc_scene *scene, const char *name) {
+    if (s->no_memory)
+        noc_scene_out_of_memory(scene);
     if (!s->indices.len)
         return true;
     noc_mesh mesh = { .vertex_count = s->xyz.len / 3, .positions = s->xyz.data, .triangle_count = s->indices.len / 3,

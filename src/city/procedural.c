@@ -54,10 +54,10 @@ static void add_materials(town *t) {
 
 /* Divides one axis into blocks of uneven width and the streets between them. */
 static void axis_make(town *t, int axis, bool river) {
-    double total = 2 * t->half, width[256], sum = 0, streets = 18, river_width = 2 * (TOWN_QUAY_STREET + TOWN_PROMENADE) + 34;
-    int n = NOC_CLAMP((int)((total - (river ? river_width : 0)) / 74), 1, 120);
+    double total = 2 * t->half, width[TOWN_BLOCKS_MOST], sum = 0, streets = 18, river_width = 2 * (TOWN_QUAY_STREET + TOWN_PROMENADE) + 34;
+    int n = NOC_CLAMP((int)((total - (river ? river_width : 0)) / 74), 1, TOWN_BLOCKS_MOST);
     town_rng rng = { town_hash(t->params.seed, 40u + (uint32_t)axis) };
-    town_gap gap[256] = { 0 };
+    town_gap gap[TOWN_BLOCKS_MOST + 1] = { 0 };
     for (int i = 0; i < n; i++) {
         width[i] = town_range(&rng, 0.76, 1.24);
         sum += width[i];
@@ -72,8 +72,8 @@ static void axis_make(town *t, int axis, bool river) {
     for (int i = 0; i <= n; i++) {
         bool rim = i == 0 || i == n;
         double w = rim ? 9 : gap[i].hi; /* a ring road */
-        town_gap g = { .lo = x, .hi = x + w, .kind = rim ? WAY_QUAY : gap[i].kind, .river = gap[i].river };
-        array_push(&t->axis[axis].gaps, g);
+        t->axis[axis].gaps.data[t->axis[axis].gaps.len++] =
+            (town_gap){ .lo = x, .hi = x + w, .kind = rim ? WAY_QUAY : gap[i].kind, .river = gap[i].river };
         x += w + (i < n ? width[i] / sum * (total - streets) : 0);
     }
 }
@@ -269,7 +269,9 @@ noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dr
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "city: lit_windows %g is not in 0..1", params->lit_windows);
     if (scene->committed)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "city: the scene is committed");
-    town *t = noc_calloc(1, sizeof(*t));
+    town *t = noc_try_calloc(1, sizeof(*t));
+    if (!t)
+        return noc_scene_out_of_memory(scene);
     t->scene = scene;
     t->params = *params;
     t->half = 0.5 * params->size - BELT;
@@ -294,10 +296,8 @@ noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dr
         array_free(&t->batch[m].xyz);
         array_free(&t->batch[m].indices);
     }
-    for (int k = 0; k < 2; k++)
-        array_free(&t->axis[k].gaps);
     free(t);
-    return failed ? NOC_ERR_ARGUMENT : NOC_OK; /* what failed was reported where it did */
+    return scene->no_memory ? NOC_ERR_MEMORY : failed ? NOC_ERR_ARGUMENT : NOC_OK; /* what failed was reported where it did */
 }
 
 noc_status noc_scene_add_city(noc_scene *scene, const noc_city_params *params) {

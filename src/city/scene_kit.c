@@ -16,7 +16,7 @@ kit kit_start(noc_scene *scene) {
 noc_status kit_finish(kit *k) {
     array_free(&k->xyz);
     array_free(&k->indices);
-    return k->failed ? NOC_ERR_ARGUMENT : NOC_OK; /* what failed was reported where it did */
+    return k->scene->no_memory ? NOC_ERR_MEMORY : k->failed ? NOC_ERR_ARGUMENT : NOC_OK; /* what failed was reported where it did */
 }
 
 int kit_material(kit *k, float r, float g, float b, float f0, float roughness) {
@@ -46,22 +46,23 @@ void kit_flush(kit *k, int material, const char *name) {
 
 static uint32_t vertex(kit *k, vec3 p) {
     vec3 q = add(k->origin, add(scale(k->axis[0], p.x), add(scale(k->axis[1], p.y), scale(k->axis[2], p.z))));
-    array_append(&k->xyz, &q.x, 3);
+    if (!array_try_append(&k->xyz, &q.x, 3))
+        k->failed = noc_scene_out_of_memory(k->scene);
     return (uint32_t)(k->xyz.len / 3 - 1);
 }
 
 /* Two triangles, less those that have no area because corners meet (poles of spheres). */
 static void quad(kit *k, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
     const uint32_t corner[2][3] = { { a, b, c }, { a, c, d } };
-    for (int t = 0; t < 2; t++) {
+    for (int t = 0; t < 2 && !k->failed; t++) {
         vec3 p[3];
         for (int i = 0; i < 3; i++) {
             const double *v = &k->xyz.data[3 * (size_t)corner[t][i]];
             p[i] = v3(v[0], v[1], v[2]);
         }
         vec3 n = cross(sub(p[1], p[0]), sub(p[2], p[0]));
-        if (dot(n, n) > 1e-20)
-            array_append(&k->indices, corner[t], 3);
+        if (dot(n, n) > 1e-20 && !array_try_append(&k->indices, corner[t], 3))
+            k->failed = noc_scene_out_of_memory(k->scene);
     }
 }
 

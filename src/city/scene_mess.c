@@ -106,10 +106,13 @@ static void corners(const noc_scene *s, size_t triangle, vec3 p[3]) {
     }
 }
 
+/* sum is NULL where memory is refused. */
 static area_table tabulate(const noc_scene *s, size_t first) {
     area_table t = { .first = first, .count = s->indices.len / 3 - first };
-    t.sum = noc_alloc(t.count * sizeof(*t.sum));
+    t.sum = noc_try_alloc(t.count * sizeof(*t.sum));
     double sum = 0;
+    if (!t.sum)
+        return t;
     for (size_t i = 0; i < t.count; i++) {
         vec3 p[3];
         corners(s, first + i, p);
@@ -186,6 +189,10 @@ static void add_lights(kit *k, size_t first, const object *o, int objects, const
                                                 { NOC_LIGHT_PARALLELOGRAM, NOC_LIGHT_TRIANGLE, NOC_LIGHT_PARALLELOGRAM, NOC_LIGHT_TRIANGLE } };
     const double pi = 3.14159265358979;
     area_table t = tabulate(k->scene, first);
+    if (!t.sum) {
+        k->failed = noc_scene_out_of_memory(k->scene);
+        return;
+    }
     town_rng rng = { town_hash(params->seed, 302) };
     double apart = sqrt(t.sum[t.count - 1] / params->lights), r = NOC_MIN(0.11 * apart, 0.022);
     for (int i = 0; i < params->lights && !k->failed; i++) {

@@ -28,10 +28,12 @@ void city_add_surroundings(noc_scene *scene, const double *rim, size_t count, in
     }
     /* rings are the rim, larger; heights go over into their mean */
     double growth = pow(NOC_CLAMP(HORIZON / NOC_MAX(least, 1), 10, 1e4), 1.0 / RINGS);
-    double *xyz = noc_alloc((RINGS + 1) * count * 3 * sizeof(*xyz));
-    uint32_t *indices = noc_alloc(RINGS * count * 6 * sizeof(*indices));
+    double *xyz = noc_try_alloc((RINGS + 1) * count * 3 * sizeof(*xyz));
+    uint32_t *indices = noc_try_alloc(RINGS * count * 6 * sizeof(*indices));
     size_t t = 0;
-    for (size_t r = 0; r <= RINGS; r++)
+    if (!xyz || !indices)
+        noc_scene_out_of_memory(scene);
+    for (size_t r = 0; xyz && indices && r <= RINGS; r++)
         for (size_t i = 0; i < count; i++) {
             double scale = pow(growth, (double)r), level = NOC_MIN((double)r / 4, 1), *p = xyz + 3 * (r * count + i);
             for (int k = 0; k < 2; k++)
@@ -46,7 +48,8 @@ void city_add_surroundings(noc_scene *scene, const double *rim, size_t count, in
         }
     noc_mesh mesh = { .vertex_count = (RINGS + 1) * count, .positions = xyz, .triangle_count = t / 3, .indices = indices,
                       .material = material, .name = "surroundings" };
-    noc_scene_add_backdrop(scene, &mesh);
+    if (xyz && indices)
+        noc_scene_add_backdrop(scene, &mesh);
     free(xyz);
     free(indices);
 }
@@ -64,7 +67,7 @@ bool city_wall_foot(const float *a, const float *b, const float *c) {
 }
 
 /* Down from the edge a, b to the terrain, where that lies lower, but not much lower. */
-static void add_skirt(const noc_scene *scene, skirt *s, const float *a, const float *b, double deepest) {
+static void add_skirt(noc_scene *scene, skirt *s, const float *a, const float *b, double deepest) {
     double length = hypot((double)b[0] - a[0], (double)b[1] - a[1]), gap = 0;
     int steps = (int)NOC_CLAMP(ceil(length / STEP), 1, 1000);
     size_t first = s->xyz.len;
@@ -78,8 +81,10 @@ static void add_skirt(const noc_scene *scene, skirt *s, const float *a, const fl
         }
         gap = NOC_MAX(gap, p[2] - z);
         double foot[3] = { p[0], p[1], NOC_MIN(z, p[2]) - INTO };
-        array_append(&s->xyz, p, 3);
-        array_append(&s->xyz, foot, 3);
+        if (!array_try_append(&s->xyz, p, 3) || !array_try_append(&s->xyz, foot, 3)) {
+            noc_scene_out_of_memory(scene);
+            return;
+        }
     }
     if (gap < .005) {
         s->xyz.len = first;
@@ -87,14 +92,19 @@ static void add_skirt(const noc_scene *scene, skirt *s, const float *a, const fl
     }
     for (uint32_t i = 0, v = (uint32_t)(first / 3); i < (uint32_t)steps; i++, v += 2) {
         const uint32_t quad[6] = { v, v + 1, v + 3, v, v + 3, v + 2 };
-        array_append(&s->indices, quad, 6);
+        if (!array_try_append(&s->indices, quad, 6))
+            noc_scene_out_of_memory(scene);
     }
 }
 
 void city_add_skirts(noc_scene *scene) {
     size_t materials = scene->materials.len, meshes = scene->meshes.len;
-    skirt *skirts = noc_calloc(materials, sizeof(*skirts));
-    for (size_t m = 0; m < meshes; m++) {
+    skirt *skirts = noc_try_calloc(materials, sizeof(*skirts));
+    if (!skirts) {
+        noc_scene_out_of_memory(scene);
+        return;
+    }
+    for (size_t m = 0; m < meshes && !scene->no_memory; m++) {
         const noc_scene_mesh *mesh = &scene->meshes.data[m];
         if (scene->materials.data[mesh->material].cls != NOC_CLASS_WALL)
             continue;

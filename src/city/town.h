@@ -42,8 +42,12 @@ void town_poly_clip(town_poly *poly, vec2 a, vec2 d, town_way way);
 town_poly town_poly_inset(const town_poly *poly, const double distance[4]);
 
 typedef struct town_gap { double lo, hi; town_way kind; bool river; } town_gap; /* between two rows of blocks */
+enum { TOWN_BLOCKS_MOST = 120 }; /* between two rims */
 typedef struct town_axis {
-    NOC_ARRAY(town_gap) gaps; /* first and last are the rims of the city, of no width */
+    struct {
+        size_t len;
+        town_gap data[TOWN_BLOCKS_MOST + 1];
+    } gaps; /* first and last are the rims of the city, of no width */
 } town_axis;
 
 #define TOWN_WATER -4.2      /* m, below the streets */

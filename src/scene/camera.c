@@ -20,6 +20,7 @@ typedef struct view_city {
     double hot[2];               /* middle of the densest lit part */
     bool classes;                /* something says that it is a wall, a roof, a road, ...: a city, not just any mesh */
     NOC_ARRAY(view_light) lights; /* around it */
+    bool no_memory;
 } view_city;
 
 enum { SAMPLES = 8192, HOT_CELLS = 64, NEAR_LIGHTS = 4000 };
@@ -33,8 +34,9 @@ static int compare_doubles(const void *a, const void *b) {
 static void city_bounds(view_city *city) {
     const noc_scene *s = city->scene;
     size_t triangles = noc_scene_city_triangles(s), n = NOC_MIN(triangles, (size_t)SAMPLES);
-    double *v = noc_alloc(n * sizeof(*v));
-    for (int k = 0; k < 3; k++) {
+    double *v = noc_try_alloc(n * sizeof(*v));
+    city->no_memory = city->no_memory || !v;
+    for (int k = 0; v && k < 3; k++) {
         for (size_t i = 0; i < n; i++)
             v[i] = s->positions.data[3 * (size_t)s->indices.data[3 * noc_scene_city_triangle(s, i * triangles / n) + i % 3] + (size_t)k];
         qsort(v, n, sizeof(*v), compare_doubles);
@@ -103,9 +105,12 @@ static double distance2(const double a[2], const double b[2]) { return hypot(a[0
 
 /* The densest lit part: the best window of a histogram of weights, the middle of the city where nothing shines. */
 static void find_hot(view_city *city) {
-    double *h = noc_calloc(HOT_CELLS * HOT_CELLS, sizeof(*h)), best = 0, cell[2];
+    double *h = noc_try_calloc(HOT_CELLS * HOT_CELLS, sizeof(*h)), best = 0, cell[2];
     size_t n = source_count(city);
     view_light l;
+    city->no_memory = city->no_memory || !h;
+    if (!h)
+        return;
     for (int k = 0; k < 2; k++) {
         city->hot[k] = 0.5 * (city->min[k] + city->max[k]);
         cell[k] = (city->max[k] - city->min[k]) / HOT_CELLS;
@@ -141,8 +146,8 @@ static void gather_lights(view_city *city, double radius) {
         for (size_t i = 0; i < n; i++) {
             if (!source_get(city, i, &l) || distance2(l.p, city->hot) > radius)
                 continue;
-            if (pass && seen % stride == 0)
-                array_push(&city->lights, l);
+            if (pass && seen % stride == 0 && !array_try_push(&city->lights, l))
+                city->no_memory = true;
             seen++;
         }
         inside = seen;
@@ -449,11 +454,15 @@ noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect
         *camera = scene->own_camera;
         return NOC_OK;
     }
+    if (view != NOC_VIEW_OVERVIEW && noc_ground_ready(scene) != NOC_OK)
+        return NOC_ERR_MEMORY;
     view_city city = { .scene = scene };
     noc_camera c = noc_camera_default();
     city_bounds(&city);
     find_classes(&city);
     find_hot(&city);
+    if (city.no_memory)
+        return noc_error(scene->log, NOC_ERR_MEMORY, "camera: no memory to look at the scene");
     bool stand = view == NOC_VIEW_STREET || view == NOC_VIEW_OWN;
     /* a room is looked at from inside, another model with nowhere to stand from outside */
     bool room = stand && !city.classes && noc_room_camera(scene, city.min, city.max, aspect, &c);
@@ -462,9 +471,11 @@ noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect
         aerial(&city, aspect, &c);
     else if (!found)
         overview(&city, aspect, &c);
+    array_free(&city.lights);
+    if (city.no_memory)
+        return noc_error(scene->log, NOC_ERR_MEMORY, "camera: no memory to look at the scene");
     if (view == NOC_VIEW_STREET && (room || !found))
         noc_warn(scene->log, "view street: the scene has none, so it is seen from %s", room ? "inside, as a room" : "outside");
-    array_free(&city.lights);
     *camera = c;
     return NOC_OK;
 }

@@ -99,13 +99,12 @@ static bool is_city(const noc_scene *scene, size_t t) {
 
 /* Bounds of nearly all triangles of the city, from a sample: one stray triangle far away must not make the cells too
  * large. Of all triangles where there are none but lamps'. */
-static void grid_bounds(struct noc_ground *g, const noc_scene *scene, size_t triangles, double size[2]) {
-    enum { SAMPLES = 4096 };
+enum { SAMPLES = 4096 };
+static void grid_bounds(struct noc_ground *g, const noc_scene *scene, size_t triangles, float xs[2][SAMPLES], double size[2]) {
     size_t city = 0, n = 0, seen = 0;
     for (size_t t = 0; t < triangles; t++)
         city += is_city(scene, t);
     size_t all = city ? city : triangles, samples = NOC_MIN(all, (size_t)SAMPLES);
-    float *xs[2] = { noc_alloc(SAMPLES * sizeof(float)), noc_alloc(SAMPLES * sizeof(float)) };
     for (size_t t = 0; t < triangles && n < samples; t++) {
         if (city && !is_city(scene, t))
             continue;
@@ -120,7 +119,6 @@ static void grid_bounds(struct noc_ground *g, const noc_scene *scene, size_t tri
         double lo = n ? xs[k][n / 50] : 0, hi = n ? xs[k][n - 1 - n / 50] : 0, margin = (hi - lo) * 0.08 + 1;
         g->min[k] = lo - margin;
         size[k] = hi - lo + 2 * margin;
-        free(xs[k]);
     }
 }
 
@@ -142,19 +140,35 @@ static size_t set_resolution(struct noc_ground *g, const noc_scene *scene, const
     return entries;
 }
 
-static struct noc_ground *ground_build(const noc_scene *scene, size_t triangles) {
-    struct noc_ground *g = noc_calloc(1, sizeof(*g));
+/* Lays an empty grid; returns the list entries it needs. */
+static size_t lay_grid(struct noc_ground *g, const noc_scene *scene, size_t triangles, float xs[2][SAMPLES]) {
     double size[2], cells = NOC_CLAMP((double)triangles / 2, 1, 4e6);
     g->listed = g->covered = triangles;
-    grid_bounds(g, scene, triangles, size);
+    grid_bounds(g, scene, triangles, xs, size);
     size_t entries = set_resolution(g, scene, size, cells);
     while (entries > 8 * (triangles + 1024) && cells > 16) { /* large triangles: coarser */
         cells /= 4;
         entries = set_resolution(g, scene, size, cells);
     }
-    size_t n = (size_t)g->nx * (size_t)g->ny;
-    g->offsets = noc_calloc(n + 1, sizeof(*g->offsets));
-    g->ids = noc_alloc(entries * sizeof(*g->ids));
+    return entries;
+}
+
+/* NULL: memory was refused. */
+static struct noc_ground *ground_build(const noc_scene *scene, size_t triangles) {
+    struct noc_ground *g = noc_try_calloc(1, sizeof(*g));
+    float (*samples)[SAMPLES] = noc_try_alloc(2 * sizeof(*samples));
+    size_t n = 0;
+    if (g && samples) {
+        size_t entries = lay_grid(g, scene, triangles, samples);
+        n = (size_t)g->nx * (size_t)g->ny;
+        g->offsets = noc_try_calloc(n + 1, sizeof(*g->offsets));
+        g->ids = noc_try_alloc(entries * sizeof(*g->ids));
+    }
+    free(samples);
+    if (!g || !g->offsets || !g->ids) {
+        noc_ground_free(g);
+        return NULL;
+    }
     for (int fill = 0; fill < 2; fill++) {
         for (size_t t = 0; t < triangles; t++) {
             int64_t lo[2], hi[2];
@@ -177,13 +191,14 @@ static struct noc_ground *ground_build(const noc_scene *scene, size_t triangles)
     return g;
 }
 
-/* Hangs the triangles added since onto the grid; false if the grid should rather be made anew. */
+/* Hangs the triangles added since onto the grid; false if the grid should rather be made anew, or memory was refused. */
 static bool chain_new(struct noc_ground *g, const noc_scene *scene, size_t triangles) {
     if (triangles - g->covered + g->links.len > g->listed + 4096)
         return false;
     if (!g->chains) {
         size_t n = (size_t)g->nx * (size_t)g->ny;
-        g->chains = noc_alloc(n * sizeof(*g->chains));
+        if (!(g->chains = noc_try_alloc(n * sizeof(*g->chains))))
+            return false;
         memset(g->chains, 0xff, n * sizeof(*g->chains));
     }
     for (size_t t = g->covered; t < triangles; t++) {
@@ -197,21 +212,32 @@ static bool chain_new(struct noc_ground *g, const noc_scene *scene, size_t trian
             for (int64_t x = lo[0]; x <= hi[0]; x++) {
                 uint32_t *first = &g->chains[index_of(g, x, y)];
                 ground_link link = { (uint32_t)t, *first };
-                *first = (uint32_t)g->links.len;
-                array_push(&g->links, link);
+                if (!array_try_push(&g->links, link))
+                    return false;
+                *first = (uint32_t)g->links.len - 1;
             }
     }
     __atomic_store_n(&g->covered, triangles, __ATOMIC_RELEASE);
     return true;
 }
 
-/* The grid, up to date with the scene. It is a cache, so a const scene may get one. */
+static void tell_refusal(const noc_scene *scene) {
+    if (scene->committed)
+        noc_error(scene->log, NOC_ERR_MEMORY, "scene: no memory to find the ground of %zu triangles", scene->triangle_light.len);
+    else
+        noc_scene_out_of_memory((noc_scene *)scene);
+}
+
+/* The grid, up to date with the scene; NULL where memory is refused, which is reported. It is a cache, so a const scene may get
+ * one. */
 static const struct noc_ground *ground_of(const noc_scene *scene) {
     struct noc_ground **slot = &((noc_scene *)scene)->ground;
     struct noc_ground *g = __atomic_load_n(slot, __ATOMIC_ACQUIRE);
     size_t triangles = scene->triangle_light.len;
     if (g && __atomic_load_n(&g->covered, __ATOMIC_ACQUIRE) == triangles)
         return g;
+    if (scene->no_memory && !scene->committed)
+        return NULL;
     pthread_mutex_lock(&ground_lock);
     g = *slot;
     if (g && g->covered != triangles && !chain_new(g, scene, triangles)) {
@@ -225,8 +251,12 @@ static const struct noc_ground *ground_of(const noc_scene *scene) {
         __atomic_store_n(slot, g, __ATOMIC_RELEASE);
     }
     pthread_mutex_unlock(&ground_lock);
+    if (!g)
+        tell_refusal(scene);
     return g;
 }
+
+noc_status noc_ground_ready(const noc_scene *scene) { return ground_of(scene) ? NOC_OK : NOC_ERR_MEMORY; }
 
 /* Twice the signed area of (a, b, p). Exactly antisymmetric in a and b, so that a point on, or very near, an edge that two
  * triangles share lies in at least one of them. */
@@ -259,6 +289,8 @@ bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, doubl
     if (!(fabs(x) < 1e8 && fabs(y) < 1e8) || !scene->triangle_light.len)
         return false;
     const struct noc_ground *g = ground_of(scene);
+    if (!g)
+        return false;
     size_t c = index_of(g, cell_of(g, 0, x), cell_of(g, 1, y));
     double best = -DBL_MAX;
     for (uint32_t i = g->offsets[c]; i < g->offsets[c + 1]; i++)
@@ -273,6 +305,8 @@ bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, doubl
 
 size_t noc_ground_load(const noc_scene *scene, double x, double y) {
     const struct noc_ground *g = ground_of(scene);
+    if (!g)
+        return 0;
     size_t c = index_of(g, cell_of(g, 0, x), cell_of(g, 1, y)), n = g->offsets[c + 1] - g->offsets[c];
     for (uint32_t l = g->chains ? g->chains[c] : NO_LINK; l != NO_LINK; l = g->links.data[l].next)
         n++;

@@ -258,16 +258,19 @@ int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
         return -1;
     }
     uint32_t index = (uint32_t)scene->lights.len;
-    if (!array_try_reserve(&scene->lights, scene->lights.len + 1) || !array_try_reserve(&scene->light_names, scene->lights.len + 1)) {
+    char *name = arena_try_strdup(&scene->names, l->name);
+    if ((l->name && !name) || !array_try_reserve(&scene->lights, scene->lights.len + 1) ||
+        !array_try_reserve(&scene->light_names, scene->lights.len + 1) ||
+        (l->moving && !array_try_reserve(&scene->moving, scene->moving.len + 1))) {
         noc_scene_out_of_memory(scene);
         return -1;
     }
     if (!is_point(l) && !l->moving && !add_shape(scene, l, index))
         return -1;
-    array_push(&scene->lights, record_of(l));
-    array_push(&scene->light_names, arena_strdup(&scene->names, l->name));
+    scene->lights.data[scene->lights.len++] = record_of(l);
+    scene->light_names.data[scene->light_names.len++] = name;
     if (l->moving)
-        array_push(&scene->moving, index);
+        scene->moving.data[scene->moving.len++] = index;
     scene->lights_inferred += l->inferred;
     return (int)index;
 }

@@ -37,7 +37,11 @@ noc_material noc_class_material(noc_class cls) {
 }
 
 noc_scene *noc_scene_create(noc_log *log) {
-    noc_scene *scene = noc_calloc(1, sizeof(*scene));
+    noc_scene *scene = noc_try_calloc(1, sizeof(*scene));
+    if (!scene) {
+        noc_error(log, NOC_ERR_MEMORY, "scene: no memory");
+        return NULL;
+    }
     scene->log = log;
     for (int i = 0; i < 3; i++) {
         scene->bounds_min[i] = INFINITY;
@@ -100,8 +104,8 @@ int noc_scene_add_material(noc_scene *scene, const noc_material *m) {
         noc_scene_out_of_memory(scene);
         return -1;
     }
-    array_push(&scene->materials, *m);
-    array_push(&scene->material_records, r);
+    scene->materials.data[scene->materials.len++] = *m;
+    scene->material_records.data[scene->material_records.len++] = r;
     return (int)scene->materials.len - 1;
 }
 
@@ -121,12 +125,12 @@ static bool finite_position(const double *p) {
     return fabs(p[0]) < 1e7 && fabs(p[1]) < 1e7 && fabs(p[2]) < 1e7;
 }
 
-bool noc_scene_out_of_memory(noc_scene *scene) {
+noc_status noc_scene_out_of_memory(noc_scene *scene) {
     if (!scene->no_memory)
         noc_error(scene->log, NOC_ERR_MEMORY, "scene: no memory for more than %zu triangles and %zu lights",
                   scene->triangle_light.len, scene->lights.len);
     scene->no_memory = true;
-    return false;
+    return NOC_ERR_MEMORY;
 }
 
 /* Room for all of a mesh, and for Embree, which reads 16 bytes a vertex. */
@@ -135,7 +139,7 @@ static bool reserve_mesh(noc_scene *s, const noc_mesh *mesh) {
     return (array_try_reserve(&s->positions, s->positions.len + mesh->vertex_count * 3 + 1) &&
             array_try_reserve(&s->indices, 3 * triangles) && array_try_reserve(&s->triangle_material, triangles) &&
             array_try_reserve(&s->triangle_light, triangles) && array_try_reserve(&s->meshes, s->meshes.len + 1)) ||
-           noc_scene_out_of_memory(s);
+           noc_scene_out_of_memory(s) == NOC_OK;
 }
 
 int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
@@ -163,7 +167,10 @@ int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
         noc_error(scene->log, NOC_ERR_UNSUPPORTED, "mesh %s: more than 4294967295 vertices or triangles in a scene", name);
         return -1;
     }
-    if (!reserve_mesh(scene, mesh))
+    char *kept_name = arena_try_strdup(&scene->names, mesh->name);
+    if (mesh->name && !kept_name)
+        noc_scene_out_of_memory(scene);
+    if (scene->no_memory || !reserve_mesh(scene, mesh))
         return -1;
     for (size_t i = 0; i < mesh->vertex_count * 3; i++)
         scene->positions.data[scene->positions.len++] = (float)mesh->positions[i];
@@ -178,21 +185,21 @@ int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
             continue;
         }
         for (int i = 0; i < 3; i++) {
-            array_push(&scene->indices, (uint32_t)first_vertex + v[i]);
+            scene->indices.data[scene->indices.len++] = (uint32_t)first_vertex + v[i];
             for (int k = 0; k < 3; k++) {
                 double x = mesh->positions[3 * (size_t)v[i] + k];
                 scene->bounds_min[k] = NOC_MIN(scene->bounds_min[k], x);
                 scene->bounds_max[k] = NOC_MAX(scene->bounds_max[k], x);
             }
         }
-        array_push(&scene->triangle_material, (uint32_t)mesh->material);
-        array_push(&scene->triangle_light, NOC_NO_LIGHT);
+        scene->triangle_material.data[scene->triangle_material.len++] = (uint32_t)mesh->material;
+        scene->triangle_light.data[scene->triangle_light.len++] = NOC_NO_LIGHT;
     }
-    noc_scene_mesh m = { .first_triangle = (uint32_t)first_triangle,
-                         .triangle_count = (uint32_t)(scene->indices.len / 3 - first_triangle),
-                         .material = mesh->material,
-                         .name = arena_strdup(&scene->names, mesh->name) };
-    array_push(&scene->meshes, m);
+    scene->meshes.data[scene->meshes.len++] =
+        (noc_scene_mesh){ .first_triangle = (uint32_t)first_triangle,
+                          .triangle_count = (uint32_t)(scene->indices.len / 3 - first_triangle),
+                          .material = mesh->material,
+                          .name = kept_name };
     return (int)scene->meshes.len - 1;
 }
 
@@ -226,7 +233,7 @@ static bool reserve_triangle_lights(noc_scene *scene) {
             lights += scene->triangle_light.data[t] == NOC_NO_LIGHT;
     }
     return (array_try_reserve(&scene->lights, lights) && array_try_reserve(&scene->light_names, lights)) ||
-           noc_scene_out_of_memory(scene);
+           noc_scene_out_of_memory(scene) == NOC_OK;
 }
 
 /* A light a triangle, for every mesh whose material emits and whose triangles do not show a light yet. */
@@ -252,8 +259,8 @@ static void make_triangle_lights(noc_scene *scene) {
             r.area = (float)(0.5 * double_area(a, b, c));
             r.radius = noc_flat_size(&r);
             scene->triangle_light.data[t] = (uint32_t)scene->lights.len;
-            array_push(&scene->lights, r);
-            array_push(&scene->light_names, m->name);
+            scene->lights.data[scene->lights.len++] = r;
+            scene->light_names.data[scene->light_names.len++] = m->name;
         }
     }
 }
@@ -268,13 +275,12 @@ noc_status noc_scene_commit(noc_scene *scene) {
     make_triangle_lights(scene);
     noc_light_record *aligned = noc_alloc_large(scene->lights.len, sizeof(*aligned));
     if (!aligned)
-        return noc_error(scene->log, NOC_ERR_MEMORY, "scene: no memory for %zu lights", scene->lights.len);
+        return noc_scene_out_of_memory(scene);
     if (scene->lights.len)
         memcpy(aligned, scene->lights.data, scene->lights.len * sizeof(*aligned));
     free(scene->lights.data);
     scene->lights.data = aligned;
     scene->lights.cap = scene->lights.len;
-    array_reserve(&scene->positions, scene->positions.len + 1); /* Embree reads 16 bytes a vertex */
     scene->committed = true;
     return NOC_OK;
 }
@@ -285,8 +291,11 @@ noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double ori
     for (int k = 0; k < 3; k++)
         if (!origin || !isfinite(origin[k]))
             return noc_error(scene->log, NOC_ERR_ARGUMENT, "scene: the origin must be three finite numbers");
+    char *name = noc_try_strdup(crs);
+    if (crs && !name)
+        return noc_scene_out_of_memory(scene);
     free(scene->crs_name);
-    scene->crs_name = noc_strdup(crs);
+    scene->crs_name = name;
     memcpy(scene->origin, origin, sizeof(scene->origin));
     return NOC_OK;
 }

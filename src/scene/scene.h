@@ -90,12 +90,15 @@ double noc_flux_angle(const noc_light_record *light);
 /* The longest way between two corners of a triangle or parallelogram, m. */
 float noc_flat_size(const noc_light_record *light);
 
-/* Reports once that there is no memory for more of a scene; false. */
-bool noc_scene_out_of_memory(noc_scene *scene);
+/* Reports once that there is no memory for more of a scene, which takes nothing more then and is not committed. NOC_ERR_MEMORY. */
+noc_status noc_scene_out_of_memory(noc_scene *scene);
 
 /* ground.c: grid over the triangles for vertical rays. Made at the first query, and kept up to date by the next ones: asking
- * and adding meshes in turn is cheap. Thread-safe while the scene is not being changed. */
+ * and adding meshes in turn is cheap. Thread-safe while the scene is not being changed. Where memory is refused, rays hit nothing;
+ * that is reported, and a scene in the making is out of memory then. */
 void noc_ground_free(struct noc_ground *ground);
+/* Makes it now: NOC_ERR_MEMORY, or rays of a scene that is not changed any more will not ask for memory. */
+noc_status noc_ground_ready(const noc_scene *scene);
 /* Highest surface of any class but closures and what shines of lamps at (x, y), for placing cameras. */
 bool noc_scene_top(const noc_scene *scene, double x, double y, double *z);
 /* The same among some classes: classes has bit 1u << noc_class set for each. */
