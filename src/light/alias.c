@@ -59,11 +59,10 @@ static void fill(noc_alias *a, const double *weight, double *left, uint32_t *sta
 
 noc_alias *noc_alias_create(const noc_scene *scene, noc_log *log) {
     size_t n = scene->lights.len;
-    noc_alias *a = noc_calloc(1, sizeof(*a));
+    noc_alias *a = noc_try_calloc(1, sizeof(*a));
     double *weight = noc_alloc_large(2 * n + 1, sizeof(*weight));
     uint32_t *stack = noc_alloc_large(n + 1, sizeof(*stack));
-    a->slots = noc_alloc_large(n + 1, sizeof(*a->slots));
-    if (!weight || !stack || !a->slots) {
+    if (!a || !weight || !stack || !(a->slots = noc_alloc_large(n + 1, sizeof(*a->slots)))) {
         noc_error(log, NOC_ERR_MEMORY, "alias table: no memory for %zu lights", n);
         noc_alias_destroy(a);
         a = NULL;

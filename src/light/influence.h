@@ -88,6 +88,7 @@ typedef struct noc_near {
     NOC_ARRAY(noc_near_group) groups;
     size_t count;
     bool over;      /* there were more than were asked for */
+    bool no_memory; /* for all of them */
 } noc_near;
 
 /* Normals that differ by so much in each coordinate count as one. */
@@ -127,6 +128,7 @@ typedef struct noc_found {
     noc_near near;                     /* scratch */
     NOC_ARRAY(float) needs;
     noc_influence_bins bins;           /* scratch */
+    bool no_memory;                    /* for all that the block found: it is less */
 } noc_found;
 void noc_found_free(noc_found *found);
 

@@ -264,18 +264,17 @@ static bool build_volumes(build *b) {
 
 noc_influence *noc_influence_create(const noc_scene *scene, const noc_influence_params *params, noc_log *log) {
     size_t all = scene->lights.len;
-    noc_influence *v = noc_calloc(1, sizeof(*v));
+    noc_influence *v = noc_try_calloc(1, sizeof(*v));
     build b = { .scene = scene, .params = params ? params : &(noc_influence_params){ 0 }, .v = v,
                 .since = noc_wall_seconds() };
     b.bounds = noc_alloc_large(all + 1, sizeof(*b.bounds));
     b.keys = noc_alloc_large(2 * all + 1, sizeof(*b.keys));
-    v->count = (uint32_t)all;
-    v->scale = 1;
-    v->volumes = noc_alloc_large(all + 1, sizeof(*v->volumes));
-    v->ids = noc_alloc_large(all + 1, sizeof(*v->ids));
-    v->volume_of = noc_alloc_large(all + 1, sizeof(*v->volume_of));
-    bool ok = b.bounds && b.keys && v->volumes && v->ids && v->volume_of;
+    bool ok = v && b.bounds && b.keys && (v->volumes = noc_alloc_large(all + 1, sizeof(*v->volumes))) &&
+              (v->ids = noc_alloc_large(all + 1, sizeof(*v->ids))) &&
+              (v->volume_of = noc_alloc_large(all + 1, sizeof(*v->volume_of)));
     if (ok) {
+        v->count = (uint32_t)all;
+        v->scale = 1;
         noc_influence_run(b.params->pool, (all + CHUNK - 1) / CHUNK, bound_chunk, &b);
         for (size_t i = 0; i < all; i++)
             if (b.bounds[i].intensity > 0)

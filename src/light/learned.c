@@ -23,14 +23,16 @@ uint64_t noc_cell_key(const float p[3], const float n[3], int level) {
 }
 
 noc_learned *noc_learned_create(size_t tiles, noc_log *log) {
-    noc_learned *t = noc_calloc(1, sizeof(*t));
-    for (t->count = 1024; t->count < 4 * tiles && t->count < MOST_CELLS;)
-        t->count *= 2;
-    t->bytes = t->count * sizeof(*t->cells);
-    t->cells = noc_alloc_large(t->count, sizeof(*t->cells));
-    if (t->cells)
+    noc_learned *t = noc_try_calloc(1, sizeof(*t));
+    size_t count = 1024;
+    while (count < 4 * tiles && count < MOST_CELLS)
+        count *= 2;
+    if (t && (t->cells = noc_alloc_large(count, sizeof(*t->cells)))) {
+        t->count = count;
+        t->bytes = count * sizeof(*t->cells);
         return t;
-    noc_error(log, NOC_ERR_MEMORY, "lights: no memory to learn their visibility (%zu MB)", t->bytes >> 20);
+    }
+    noc_error(log, NOC_ERR_MEMORY, "lights: no memory to learn their visibility (%zu MB)", count * sizeof(*t->cells) >> 20);
     free(t);
     return NULL;
 }

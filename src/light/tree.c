@@ -27,6 +27,7 @@ static void free_build(tree_build *b) {
     free(b->ids);
     free(b->spare);
     free(b->spare_ids);
+    noc_tree_free_scratch(b);
 }
 
 static bool make_build(tree_build *b, size_t lights) {
@@ -34,7 +35,7 @@ static bool make_build(tree_build *b, size_t lights) {
     b->ids = noc_alloc_large(lights + 1, sizeof(*b->ids));
     b->spare = noc_alloc_large(lights + 1, sizeof(*b->spare));
     b->spare_ids = noc_alloc_large(lights + 1, sizeof(*b->spare_ids));
-    return b->lights && b->ids && b->spare && b->spare_ids;
+    return b->lights && b->ids && b->spare && b->spare_ids && noc_tree_make_scratch(b, lights);
 }
 
 /* Those that stand and emit anything, then all that move. Returns how many stand. */
@@ -55,7 +56,7 @@ static uint32_t take_lights(tree_build *b) {
 }
 
 static void keep_cost(tree_build *b) {
-    if (b->tree->moving.count)
+    if (b->tree->moving.count && !b->no_memory)
         noc_tree_bound(b, &b->tree->moving, &b->tree->built_cost);
 }
 
@@ -81,26 +82,25 @@ static void grow(tree_build *b, uint32_t standing) {
 
 noc_tree *noc_tree_create(const noc_scene *scene, noc_pool *pool, noc_log *log) {
     size_t all = scene->lights.len, moving = 0;
-    noc_tree *t = noc_calloc(1, sizeof(*t));
+    noc_tree *t = noc_try_calloc(1, sizeof(*t));
     tree_build b = { .tree = t, .scene = scene, .pool = pool };
-    bool ok = make_build(&b, all);
+    bool ok = t && make_build(&b, all);
     uint32_t standing = ok ? take_lights(&b) : 0;
-    moving = t->lights - standing;
-    t->pairs = noc_alloc_large(t->lights, sizeof(*t->pairs));
-    t->paths = noc_alloc_large(all + 1, sizeof(*t->paths));
-    t->order = noc_alloc_large(moving, sizeof(*t->order));
-    if (!ok || !t->pairs || !t->paths || !t->order) {
-        noc_error(log, NOC_ERR_MEMORY, "light tree: no memory for %zu lights", all);
-        noc_tree_destroy(t);
-        t = NULL;
-    } else {
+    moving = ok ? t->lights - standing : 0;
+    ok = ok && (t->pairs = noc_alloc_large(t->lights, sizeof(*t->pairs))) &&
+         (t->paths = noc_alloc_large(all + 1, sizeof(*t->paths))) && (t->order = noc_alloc_large(moving, sizeof(*t->order)));
+    if (ok) {
         t->bytes = t->lights * sizeof(*t->pairs) + (all + 1) * sizeof(*t->paths) + moving * sizeof(*t->order);
         memset(t->paths, 0xff, (all + 1) * sizeof(*t->paths));
         if (t->lights)
             grow(&b, standing);
     }
     free_build(&b);
-    return t;
+    if (ok && !b.no_memory)
+        return t;
+    noc_error(log, NOC_ERR_MEMORY, "light tree: no memory for %zu lights", all);
+    noc_tree_destroy(t);
+    return NULL;
 }
 
 noc_status noc_tree_refit(noc_tree *t, const noc_scene *scene, noc_log *log) {
@@ -121,12 +121,13 @@ noc_status noc_tree_refit(noc_tree *t, const noc_scene *scene, noc_log *log) {
     if (cost > grown * t->built_cost) {
         root = noc_tree_grow(&b, &part);
         memcpy(t->order, b.ids, part.count * sizeof(*t->order));
-        noc_tree_bound(&b, &part, &t->built_cost);
+        if (!b.no_memory)
+            noc_tree_bound(&b, &part, &t->built_cost);
     }
     if (part.depth)
         t->pairs[0].child[1] = root;
     free_build(&b);
-    return NOC_OK;
+    return b.no_memory ? noc_error(log, NOC_ERR_MEMORY, "light tree: no memory for %u moving lights", part.count) : NOC_OK;
 }
 
 void noc_tree_destroy(noc_tree *t) {

@@ -48,8 +48,8 @@ noc_tree *noc_tree_create(const noc_scene *scene, noc_pool *pool, noc_log *log);
 void noc_tree_destroy(noc_tree *tree); /* NULL is allowed */
 
 /* After lights of the scene have moved: bounds their tree anew where it stands, or builds it anew where its heuristic cost
- * has grown by half since it was built; what stands stays as it is. NOC_ERR_MEMORY after reporting it: nothing has
- * changed then. */
+ * has grown by half since it was built; what stands stays as it is. NOC_ERR_MEMORY after reporting it: then there is nothing
+ * left to do with the tree but to destroy it. */
 noc_status noc_tree_refit(noc_tree *tree, const noc_scene *scene, noc_log *log);
 
 #endif

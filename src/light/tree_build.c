@@ -115,6 +115,14 @@ static void widen(bound *b, const tree_light *l, uint32_t first, uint32_t end) {
     }
 }
 
+/* Of each chunk of a node. */
+struct tree_scratch {
+    bound *bounds;
+    struct split *parts;
+    struct bins *filled;
+    uint32_t *left; /* twice as many */
+};
+
 struct widen_run {
     const tree_light *lights;
     const bound *start;
@@ -142,14 +150,13 @@ static noc_tree_child bound_lights(const tree_build *build, uint32_t first, uint
         b.axis[k] = tree_unit(axis[k]);
     }
     if (end - first > LARGE) {
-        bound start = b, *parts = noc_alloc(chunk_count(end - first) * sizeof(*parts));
+        bound start = b, *parts = build->scratch->bounds;
         struct widen_run run = { build->lights, &start, parts };
         noc_tree_chunks(build->pool, first, end, widen_chunk, &run);
         for (uint32_t i = 0; i < chunk_count(end - first); i++) {
             b.radius = NOC_MAX(b.radius, parts[i].radius);
             b.chord2 = NOC_MAX(b.chord2, parts[i].chord2);
         }
-        free(parts);
     } else {
         widen(&b, build->lights, first, end);
     }
@@ -320,9 +327,9 @@ static void return_chunk(void *ctx, size_t chunk, uint32_t first, uint32_t end) 
 static uint32_t split_large(tree_build *b, uint32_t first, uint32_t end, const heap *all, heap side[2]) {
     uint32_t chunks = chunk_count(end - first), left = 0;
     struct split_run r = { .build = b };
-    r.parts = noc_alloc(chunks * sizeof(*r.parts));
-    r.filled = noc_alloc(chunks * sizeof(*r.filled));
-    r.left = noc_alloc(2 * chunks * sizeof(*r.left));
+    r.parts = b->scratch->parts;
+    r.filled = b->scratch->filled;
+    r.left = b->scratch->left;
     r.right = r.left + chunks;
     noc_tree_chunks(b->pool, first, end, centres_chunk, &r);
     split s = r.parts[0];
@@ -353,10 +360,29 @@ static uint32_t split_large(tree_build *b, uint32_t first, uint32_t end, const h
         noc_tree_chunks(b->pool, first, end, spread_chunk, &r);
         noc_tree_chunks(b->pool, first, end, return_chunk, &r);
     }
-    free(r.parts);
-    free(r.filled);
-    free(r.left);
     return left;
+}
+
+bool noc_tree_make_scratch(tree_build *b, size_t lights) {
+    size_t chunks = chunk_count((uint32_t)lights);
+    if (lights <= LARGE)
+        return true;
+    struct tree_scratch *s = b->scratch = noc_try_calloc(1, sizeof(*s));
+    return s && (s->bounds = noc_alloc_large(chunks, sizeof(*s->bounds))) &&
+           (s->parts = noc_alloc_large(chunks, sizeof(*s->parts))) &&
+           (s->filled = noc_alloc_large(chunks, sizeof(*s->filled))) &&
+           (s->left = noc_alloc_large(2 * chunks, sizeof(*s->left)));
+}
+
+void noc_tree_free_scratch(tree_build *b) {
+    if (!b->scratch)
+        return;
+    free(b->scratch->bounds);
+    free(b->scratch->parts);
+    free(b->scratch->filled);
+    free(b->scratch->left);
+    free(b->scratch);
+    b->scratch = NULL;
 }
 
 /* ---- the tree ---- */
@@ -437,17 +463,20 @@ noc_tree_child noc_tree_grow(tree_build *b, const noc_tree_part *part) {
     root.link = part->base;
     struct grow_run r = { .build = b };
     NOC_ARRAY(task) large = { 0 };
-    array_push(&large, (task){ *part, all });
-    while (large.len) {
+    bool ok = array_try_push(&large, (task){ *part, all });
+    while (ok && large.len) {
         task now = large.data[--large.len], next[2];
         if (now.part.count <= LARGE) {
-            array_push(&r.tasks, now);
+            ok = array_try_push(&r.tasks, now);
             continue;
         }
-        for (int more = split_task(b, &now, next, &b->tree->depth); more--;)
-            array_push(&large, next[more]);
+        for (int more = split_task(b, &now, next, &b->tree->depth); ok && more--;)
+            ok = array_try_push(&large, next[more]);
     }
-    r.deepest = noc_calloc(r.tasks.len, sizeof(*r.deepest));
+    r.deepest = ok ? noc_try_calloc(r.tasks.len, sizeof(*r.deepest)) : NULL;
+    b->no_memory = b->no_memory || !r.deepest;
+    if (b->no_memory)
+        r.tasks.len = 0;
     if (b->pool && r.tasks.len > 1)
         noc_pool_run(b->pool, r.tasks.len, grow_task, &r);
     else

@@ -18,7 +18,13 @@ typedef struct tree_build {
     uint32_t *ids;         /* of them */
     tree_light *spare;     /* as many again */
     uint32_t *spare_ids;
+    struct tree_scratch *scratch; /* of nodes that all threads work on; NULL where none has so many lights */
+    bool no_memory;        /* was refused in noc_tree_grow: the tree is no good */
 } tree_build;
+
+/* For parts of so many lights at most; false: no memory. */
+bool noc_tree_make_scratch(tree_build *b, size_t lights);
+void noc_tree_free_scratch(tree_build *b);
 
 /* fn for every chunk of [first, end): the same chunks whatever the threads. */
 typedef void tree_chunk_fn(void *ctx, size_t chunk, uint32_t first, uint32_t end);

@@ -55,11 +55,11 @@ typedef struct noc_backend {
     size_t (*bytes_a_pixel)(int reservoir_sets, uint32_t aovs);
     /* Buffers for pictures of this size, with so many reservoir sets; what was held is lost, also when this fails. */
     noc_status (*resize)(void *state, int width, int height, int reservoir_sets);
-    /* progress may be NULL; from..to is the stage's share of the frame. NOC_ERR_CANCELLED leaves the picture as it was. */
+    /* progress may be NULL; from..to is the stage's share of the frame. Any error leaves the picture as it was. */
     noc_status (*stage)(void *state, const noc_frame *frame, const noc_stage *stage, const noc_progress *progress,
                         double from, double to);
-    /* Adds the frame to the picture: into the mean, or in its place when frame->accumulated is 0. */
-    void (*accumulate)(void *state, const noc_frame *frame);
+    /* Adds the frame to the picture: into the mean, or in its place when frame->accumulated is 0. NOC_ERR_MEMORY leaves it as it was. */
+    noc_status (*accumulate)(void *state, const noc_frame *frame);
     /* Picture, emitter mask (1 where the pixel itself sees an emitter in a frame of the mean) and coverage. */
     void (*read)(void *state, noc_image *image);
     /* A view that the last accumulated frame kept into value, a number a pixel (-1: none), normals three (0: none). False where it kept none. */

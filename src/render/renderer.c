@@ -38,7 +38,11 @@ noc_renderer *noc_renderer_create(const noc_scene *scene, const noc_renderer_par
         noc_error(log, NOC_ERR_UNSUPPORTED, "renderer: no backend \"%s\" in this build (there is: embree)", name);
         return NULL;
     }
-    noc_renderer *r = noc_calloc(1, sizeof(*r));
+    noc_renderer *r = noc_try_alloc(sizeof(*r));
+    if (!r) {
+        noc_error(log, NOC_ERR_MEMORY, "renderer: no memory");
+        return NULL;
+    }
     *r = (noc_renderer){ .scene = scene, .log = log, .backend = backend };
     noc_history_reset(&r->history);
     if (backend->create(scene, params, log, &r->state) != NOC_OK) {
@@ -118,12 +122,12 @@ static noc_status run_frame(noc_renderer *r, const noc_camera *camera, const noc
         status = r->backend->stage(r->state, &frame, &schedule.stages[stage], progress, (double)stage / schedule.count,
                                    (double)(stage + 1) / schedule.count);
     noc_frame_stats stats = { .dropped = frame.index ? r->stats.dropped : 0 };
-    if (status == NOC_OK) {
-        r->backend->accumulate(r->state, &frame);
+    if (status == NOC_OK)
+        status = r->backend->accumulate(r->state, &frame);
+    if (status == NOC_OK)
         noc_history_end(&r->history, &frame, schedule.next_history);
-    } else {
+    else
         noc_history_drop(&r->history, &frame, stage == 1);
-    }
     r->backend->stats(r->state, &stats);
     stats.frames = r->history.accumulated;
     stats.wall_seconds = noc_wall_seconds() - wall;

@@ -62,10 +62,13 @@ static noc_status create_workers(embree_state *s) {
 }
 
 static noc_status create(const noc_scene *scene, const noc_renderer_params *params, noc_log *log, void **state) {
-    embree_state *s = noc_calloc(1, sizeof(*s));
+    embree_state *s = noc_try_calloc(1, sizeof(*s));
+    if (!s || !(s->pool = noc_pool_create(params->threads))) {
+        free(s);
+        return noc_error(log, NOC_ERR_MEMORY, "embree: no memory for a renderer");
+    }
     s->scene = scene;
     s->log = log;
-    s->pool = noc_pool_create(params->threads);
     s->kernels = noc_pick_kernels(NOC_ISA_AUTO);
     noc_status status = create_workers(s);
     if (status == NOC_OK)
@@ -170,10 +173,14 @@ static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st
     /* Asked before too: the calling thread may get no tile of a small picture. */
     if (progress && progress->update && !progress->update(progress->user, run.what, from))
         return NOC_ERR_CANCELLED;
+    for (int i = 0; i < s->worker_count; i++)
+        s->workers[i].no_memory = false;
     noc_pool_run(s->pool, run.tiles, run_tile, &run);
-    if (atomic_load(&run.cancelled))
-        return NOC_ERR_CANCELLED;
-    return noc_embree_check_learning(s);
+    for (int i = 0; i < s->worker_count; i++)
+        if (s->workers[i].no_memory)
+            return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for the lights of a picture of %d x %d", s->b.width,
+                             s->b.height);
+    return atomic_load(&run.cancelled) ? NOC_ERR_CANCELLED : NOC_OK;
 }
 
 struct mean_run {
@@ -193,18 +200,22 @@ static void mean_row(void *arg, size_t row, int index) {
     }
 }
 
-static void accumulate(void *state, const noc_frame *frame) {
+static noc_status accumulate(void *state, const noc_frame *frame) {
     embree_state *s = state;
+    noc_status status = noc_embree_make_coverage(s, frame);
+    if (status != NOC_OK)
+        return status;
     noc_embree_keep_views(s, frame);
     noc_embree_keep_coverage(s, frame);
     noc_embree_keep_lights(s);
     noc_embree_end_learning(s, frame);
     if (!frame->accumulated) {
         memcpy(s->b.picture, s->b.colour, (size_t)s->b.blocks_x * s->b.blocks_y * sizeof(cblock));
-        return;
+        return NOC_OK;
     }
     struct mean_run run = { &s->b, (float)(1.0 / (double)(frame->accumulated + 1)) };
     noc_pool_run(s->pool, (size_t)s->b.blocks_y, mean_row, &run);
+    return NOC_OK;
 }
 
 static void read_picture(void *state, noc_image *image) {
@@ -241,18 +252,14 @@ static void stats(void *state, noc_frame_stats *out) {
     out->path = s->kernels->name;
 }
 
-/* Returns whether all of them had been kept. */
-static bool forget_packets(embree_state *s) {
-    bool whole = true;
+static void forget_packets(embree_state *s) {
     for (int i = 0; i < s->worker_count; i++) {
         worker *w = &s->workers[i];
-        whole = whole && !w->packets_lost;
         free(w->packets);
         w->packets = NULL;
         w->packet_count = w->packet_room = 0;
         w->packets_lost = false;
     }
-    return whole;
 }
 
 static void record(void *state, bool on) {
@@ -264,11 +271,9 @@ static void record(void *state, bool on) {
 
 static noc_status replay(void *state, double *seconds) {
     embree_state *s = state;
-    *seconds = noc_embree_replay(s);
-    if (forget_packets(s))
-        return NOC_OK;
-    return noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory to keep the rays of a frame of %d x %d", s->b.width,
-                     s->b.height);
+    noc_status status = noc_embree_replay(s, seconds);
+    forget_packets(s);
+    return status;
 }
 
 const noc_backend noc_backend_embree = {

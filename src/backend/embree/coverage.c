@@ -9,37 +9,38 @@ void noc_embree_free_coverage(coverage *c) {
     *c = (coverage){ 0 };
 }
 
-/* Gives places to the blocks that have seen an emitter. false: no memory. */
-static bool give_places(coverage *c, const uint16_t *emitter, size_t blocks) {
-    if (!c->place && !(c->place = noc_alloc_large(blocks, sizeof(*c->place))))
-        return false;
-    for (size_t i = 0; i < blocks; i++) {
-        if (!emitter[i] || c->place[i])
-            continue;
-        if (!array_try_reserve(&c->sums, c->sums.len + 1))
-            return false;
-        c->sums.data[c->sums.len++] = (coverage_sum){ 0 };
-        c->place[i] = (uint32_t)c->sums.len;
-    }
-    return true;
+static size_t block_count(const frame_buffers *b) { return (size_t)b->blocks_x * b->blocks_y; }
+
+noc_status noc_embree_make_coverage(embree_state *s, const noc_frame *frame) {
+    coverage *c = &s->b.coverage;
+    size_t blocks = block_count(&s->b), places = 0;
+    bool ok = c->place || (c->place = noc_alloc_large(blocks, sizeof(*c->place)));
+    for (size_t i = 0; ok && i < blocks; i++)
+        places += s->b.emitter[i] || (frame->accumulated && c->place[i]);
+    if (ok && array_try_reserve(&c->sums, places))
+        return NOC_OK;
+    return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for the emitters in a picture of %d x %d", s->b.width, s->b.height);
+}
+
+/* Gives places to the blocks that have seen an emitter. */
+static void give_places(coverage *c, const uint16_t *emitter, size_t blocks) {
+    for (size_t i = 0; i < blocks; i++)
+        if (emitter[i] && !c->place[i]) {
+            c->sums.data[c->sums.len++] = (coverage_sum){ 0 };
+            c->place[i] = (uint32_t)c->sums.len;
+        }
 }
 
 void noc_embree_keep_coverage(embree_state *s, const noc_frame *frame) {
     frame_buffers *b = &s->b;
     coverage *c = &b->coverage;
     const gblock *g = b->g[frame->gbuffer];
-    size_t blocks = (size_t)b->blocks_x * b->blocks_y;
+    size_t blocks = block_count(b);
     if (!frame->accumulated) {
-        if (c->place)
-            memset(c->place, 0, blocks * sizeof(*c->place));
+        memset(c->place, 0, blocks * sizeof(*c->place));
         c->sums.len = 0;
-        c->lost = false;
     }
-    /* Without memory for it the picture is the same, and its display has jagged edges. */
-    if (c->lost || !give_places(c, b->emitter, blocks)) {
-        c->lost = true;
-        return;
-    }
+    give_places(c, b->emitter, blocks);
     c->frames = frame->accumulated + 1;
     for (size_t i = 0; i < blocks; i++) {
         if (!c->place[i])
@@ -58,7 +59,7 @@ void noc_embree_keep_coverage(embree_state *s, const noc_frame *frame) {
 void noc_embree_read_coverage(const frame_buffers *b, size_t block, int lane, float out[4]) {
     const coverage *c = &b->coverage;
     memset(out, 0, 4 * sizeof(*out));
-    if (c->lost || !c->place || !c->place[block])
+    if (!c->place || !c->place[block])
         return;
     const coverage_sum *sum = &c->sums.data[c->place[block] - 1];
     for (int k = 0; k < 3; k++)

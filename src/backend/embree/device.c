@@ -257,19 +257,24 @@ static void replay_run(void *ctx, size_t item, int index) {
     }
 }
 
-double noc_embree_replay(embree_state *s) {
+noc_status noc_embree_replay(embree_state *s, double *seconds) {
     NOC_ARRAY(struct replay_item) items = { 0 };
+    bool whole = true;
     for (int i = 0; i < s->worker_count; i++) {
         const worker *w = &s->workers[i];
-        for (size_t k = 0; k < w->packet_count; k += REPLAY_RUN)
-            array_push(&items, (struct replay_item){ w->packets + k, NOC_MIN((size_t)REPLAY_RUN, w->packet_count - k) });
+        whole = whole && !w->packets_lost;
+        for (size_t k = 0; whole && k < w->packet_count; k += REPLAY_RUN)
+            whole = array_try_push(&items, (struct replay_item){ w->packets + k, NOC_MIN((size_t)REPLAY_RUN, w->packet_count - k) });
     }
-    struct replay r = { s, items.data };
-    double start = noc_wall_seconds();
-    noc_pool_run(s->pool, items.len, replay_run, &r);
-    double seconds = noc_wall_seconds() - start;
+    if (whole) {
+        struct replay r = { s, items.data };
+        double start = noc_wall_seconds();
+        noc_pool_run(s->pool, items.len, replay_run, &r);
+        *seconds = noc_wall_seconds() - start;
+    }
     array_free(&items);
-    return seconds;
+    return whole ? NOC_OK : noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory to keep the rays of a frame of %d x %d",
+                                      s->b.width, s->b.height);
 }
 
 size_t noc_embree_build_bytes(const embree_state *s) {

@@ -94,12 +94,12 @@ typedef struct worker {
     list_scratch lists;
     tile_rays shared;
     NOC_ARRAY(noc_sighting) sightings; /* of the frame being made */
-    bool sightings_lost;               /* there was no memory for all of them */
     pick_block picks;
     tree_items tree_items[2];
     noc_found found;
     uint64_t *found_counts;              /* [found_bins] surfaces of the frame by the number of lights found; NULL: never asked */
     noc_around around;                   /* influence volumes near a tile */
+    bool no_memory;                      /* was refused to a tile: the frame is dropped */
     packet *packets; /* kept while recording */
     size_t packet_count, packet_room;
     bool packets_lost; /* there was no memory for all of them */
@@ -123,7 +123,6 @@ typedef struct coverage {
     uint32_t *place;               /* [blocks] index + 1 in sums, 0: saw none; NULL: no frame yet */
     NOC_ARRAY(coverage_sum) sums;
     uint64_t frames;               /* of the mean */
-    bool lost;                     /* there was no memory */
 } coverage;
 
 /* Buffers of one picture; every array has an entry a block. */
@@ -219,7 +218,7 @@ void noc_embree_primary(embree_state *s, worker *w, const rayblock *rays, uint32
 void noc_embree_trace_many(RTCScene scene, segment_block *blocks, int count);
 /* A noc_probe_fn; user is the embree_state. */
 void noc_embree_probe(void *user, noc_probes *probes);
-double noc_embree_replay(embree_state *s);
+noc_status noc_embree_replay(embree_state *s, double *seconds);
 size_t noc_embree_build_bytes(const embree_state *s);
 
 /* lights.c: what the candidates of these parameters are drawn from */
@@ -256,7 +255,6 @@ void noc_embree_share_visibility(stage_run *run, worker *w, tile t);
 void noc_embree_share_shade(stage_run *run, worker *w, tile t);
 /* Before a frame's first stage, and when the frame is complete; one that is dropped is not learned from. */
 noc_status noc_embree_begin_learning(embree_state *s, const noc_frame *frame);
-noc_status noc_embree_check_learning(embree_state *s); /* after the first stage; refused memory is reported */
 void noc_embree_end_learning(embree_state *s, const noc_frame *frame);
 void noc_embree_release_learning(embree_state *s);
 
@@ -271,6 +269,7 @@ void noc_embree_view_candidates(const stage_run *run, const worker *w, size_t bl
 void noc_embree_keep_views(embree_state *s, const noc_frame *frame); /* the frame is complete */
 
 /* coverage.c: what emitters that are seen directly add to the mean */
+noc_status noc_embree_make_coverage(embree_state *s, const noc_frame *frame); /* room for the frame, when its shading is done */
 void noc_embree_keep_coverage(embree_state *s, const noc_frame *frame); /* the frame is complete */
 void noc_embree_read_coverage(const frame_buffers *b, size_t block, int lane, float out[4]); /* as noc_image.coverage */
 void noc_embree_free_coverage(coverage *c);

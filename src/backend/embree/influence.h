@@ -39,10 +39,11 @@ FN influence_region region_load(const noc_found *f, int l) {
     return r;
 }
 
-/* The S_r that the query's points need for each volume near it. */
-static void look_closer(const noc_influence *v, const noc_near *near, const noc_near_query *q, noc_found *f) {
+/* The S_r that the query's points need for each volume near it. False: no memory. */
+static bool look_closer(const noc_influence *v, const noc_near *near, const noc_near_query *q, noc_found *f) {
     influence_region r = region_splat(q);
-    array_reserve(&f->needs, near->groups.len * 16);
+    if (!array_try_reserve(&f->needs, near->groups.len * 16))
+        return false;
     for (size_t i = 0; i < near->groups.len; i++) {
         const noc_near_group *group = &near->groups.data[i];
         for (int l = 0; l < 16; l += LANES) {
@@ -52,6 +53,7 @@ static void look_closer(const noc_influence *v, const noc_near *near, const noc_
             rstore(f->needs.data + i * 16 + (size_t)l, needs);
         }
     }
+    return true;
 }
 
 /* The S_r that draws best there, the query's or less. */
@@ -86,7 +88,10 @@ static void take_lights(const noc_influence *v, const noc_near *near, float scal
         for (; bits; bits &= bits - 1) {
             uint32_t volume = group->volume[__builtin_ctz(bits)], first = v->first ? v->first[volume] : volume;
             uint32_t end = v->first ? v->first[volume + 1] : first + 1;
-            array_reserve(&f->ids, f->ids.len + end - first);
+            if (!array_try_reserve(&f->ids, f->ids.len + end - first)) {
+                f->no_memory = true;
+                return;
+            }
             for (uint32_t k = first; k < end; k++)
                 f->ids.data[f->ids.len++] = v->ids[k];
         }
@@ -115,7 +120,9 @@ static void part_finds(const noc_influence *v, const noc_near_query *q, uint32_t
         influence_near(v, q, &f->near);
         near = &f->near;
     }
-    look_closer(v, near, q, f);
+    f->no_memory = f->no_memory || near->no_memory || !look_closer(v, near, q, f);
+    if (f->no_memory)
+        return;
     float settled = fixed ? q->scale : best_scale(v, near, q, every, f);
     take_lights(v, near, settled, f);
     for (uint32_t bits = part; bits; bits &= bits - 1) {
@@ -139,10 +146,12 @@ static void influence_find(const noc_influence *v, const gblock *g, uint32_t lan
     float scale = fixed > 0 ? fixed : v->scale, close = influence_close * scale * v->volumes[v->volume_count / 2].root;
     memset(f->count, 0, sizeof(f->count));
     memset(f->from, 0, sizeof(f->from));
-    array_reserve(&f->ids, 1);
+    f->no_memory = !array_try_reserve(&f->ids, 1);
+    if (f->no_memory)
+        return;
     f->ids.data[0] = 0; /* where lanes look that found nothing */
     f->ids.len = 1;
-    for (uint32_t pending = lanes, part; pending; pending &= ~part) {
+    for (uint32_t pending = lanes, part; pending && !f->no_memory; pending &= ~part) {
         part = points_close(g, pending, close);
         noc_near_query q = noc_near_none(scale, SIZE_MAX);
         noc_near_add(&q, p, n, part);

@@ -54,9 +54,13 @@ static uint32_t children_near(const noc_influence_node *node, influence_region r
     return bits;
 }
 
+/* NULL: no memory. */
 static noc_near_group *group_with_room(noc_near *out) {
     if (out->count % BLOCK == 0) {
-        array_reserve(&out->groups, out->groups.len + 1);
+        if (!array_try_reserve(&out->groups, out->groups.len + 1)) {
+            out->no_memory = true;
+            return NULL;
+        }
         noc_near_group *g = &out->groups.data[out->groups.len++];
         memset(g, 0, sizeof(*g));
         for (int i = 0; i < BLOCK; i++)
@@ -68,6 +72,8 @@ static noc_near_group *group_with_room(noc_near *out) {
 static void keep_near(const noc_influence *v, uint32_t volume, noc_near *out) {
     const noc_influence_volume *a = &v->volumes[volume];
     noc_near_group *g = group_with_room(out);
+    if (!g)
+        return;
     size_t lane = out->count++ % BLOCK;
     for (int k = 0; k < 3; k++) {
         g->c[k][lane] = a->c[k];
@@ -114,6 +120,7 @@ static void near_of_near(const noc_influence *v, const noc_near_query *q, const 
     real scale = with_margin(q->scale);
     out->count = out->groups.len = 0;
     out->over = false;
+    out->no_memory = all->no_memory;
     for (size_t i = 0; i < all->groups.len; i++) {
         const noc_near_group *g = &all->groups.data[i];
         uint32_t bits = 0;
@@ -130,7 +137,7 @@ static void influence_near(const noc_influence *v, const noc_near_query *q, noc_
     influence_region r = region_splat(q);
     real scale = with_margin(q->scale);
     out->count = out->groups.len = 0;
-    out->over = false;
+    out->over = out->no_memory = false;
     if (!v->levels || q->lo[0] > q->hi[0])
         return;
     stack[depth++].level = v->levels - 1, stack[0].node = 0;

@@ -214,13 +214,14 @@ static void note_sightings(stage_run *run, worker *w, tile at) {
     learned_tile *out = &run->s->learned_tiles[item];
     *out = (learned_tile){ (int)(w - run->s->workers), w->sightings.len, 0, t->bright };
     if (!array_try_reserve(&w->sightings, w->sightings.len + (size_t)t->cells * list->count)) { /* they grow with the picture */
-        w->sightings_lost = true;
+        w->no_memory = true;
         return;
     }
     for (int k = 0; k < t->cells; k++)
         for (uint32_t i = 0; i < list->count; i++)
             if (t->cell[k].asked[i])
-                array_push(&w->sightings, (noc_sighting){ t->cell[k].key, list->light[i], t->cell[k].asked[i], t->cell[k].seen[i] });
+                w->sightings.data[w->sightings.len++] =
+                    (noc_sighting){ t->cell[k].key, list->light[i], t->cell[k].asked[i], t->cell[k].seen[i] };
     out->count = w->sightings.len - out->first;
 }
 
@@ -345,20 +346,8 @@ noc_status noc_embree_begin_learning(embree_state *s, const noc_frame *frame) {
         noc_learned_forget(s->learned);
         s->list_brightness = 0;
     }
-    for (int i = 0; i < s->worker_count; i++) {
-        s->workers[i].sightings.len = 0;
-        s->workers[i].sightings_lost = false;
-    }
-    return NOC_OK;
-}
-
-noc_status noc_embree_check_learning(embree_state *s) {
     for (int i = 0; i < s->worker_count; i++)
-        if (s->workers[i].sightings_lost) {
-            noc_embree_release_learning(s);
-            return noc_error(s->log, NOC_ERR_MEMORY, "lights: no memory for what the rays of a picture of %d x %d found",
-                             s->b.width, s->b.height);
-        }
+        s->workers[i].sightings.len = 0;
     return NOC_OK;
 }
 
@@ -380,10 +369,8 @@ void noc_embree_release_learning(embree_state *s) {
     noc_learned_destroy(s->learned);
     free(s->learned_tiles);
     free(s->sightings);
-    for (int i = 0; i < s->worker_count; i++) {
+    for (int i = 0; i < s->worker_count; i++)
         array_free(&s->workers[i].sightings);
-        s->workers[i].sightings_lost = false;
-    }
     s->sightings = NULL;
     s->learned = NULL;
     s->learned_tiles = NULL;

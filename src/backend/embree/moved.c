@@ -17,8 +17,11 @@ noc_status noc_embree_follow_lights(embree_state *s, const noc_render_params *p)
         return noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory for the previous frame's %zu lights", scene->lights.len);
     if (s->moves == scene->moves)
         return NOC_OK;
-    if (s->tree && noc_tree_refit(s->tree, scene, s->log) != NOC_OK)
+    if (s->tree && noc_tree_refit(s->tree, scene, s->log) != NOC_OK) {
+        noc_tree_destroy(s->tree);
+        s->tree = NULL;
         return NOC_ERR_MEMORY;
+    }
     noc_clusters_destroy(s->clusters);
     s->clusters = NULL;
     noc_influence_destroy(s->influence);

@@ -75,6 +75,7 @@ static noc_around *look_around(stage_run *run, worker *w, tile t) {
 
 static void pick_influence(stage_run *run, worker *w, const gblock *g, uint32_t lanes, int x, int y, int m, noc_around *around) {
     run->k->pick_influence(&run->ctx, g, lanes, x, y, m, around, &w->found, &w->picks);
+    w->no_memory = w->no_memory || w->found.no_memory;
     for (uint32_t bits = lanes; bits; bits &= bits - 1)
         w->found_counts[NOC_MIN(w->found.count[__builtin_ctz(bits)], run->s->found_bins - 1)]++;
 }
