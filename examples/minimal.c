@@ -3,6 +3,8 @@
 #include <nocturne/nocturne.h>
 #include <stdio.h>
 
+static void tell(void *user, noc_log_level level, const char *text) { fprintf(stderr, "%s\n", text); }
+
 static noc_status draw(noc_scene *scene, noc_log *log, const char *path) {
     noc_render_params params = noc_render_default_params();
     params.width = 320;
@@ -27,7 +29,7 @@ static noc_status draw(noc_scene *scene, noc_log *log, const char *path) {
 }
 
 int main(int argc, char **argv) {
-    noc_log *log = noc_log_create(NULL); /* NULL: warnings and errors to stderr */
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = tell });
     noc_scene *scene = noc_scene_create(log);
     noc_city_params city = noc_city_default_params();
     city.size = 150;

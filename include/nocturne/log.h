@@ -2,6 +2,7 @@
  *
  * Every function that can fail returns a noc_status (or NULL / a negative index) and reports the reason exactly once
  * through the noc_log it was given, at level NOC_LOG_ERROR, with the file and the place in it where there is one.
+ * The library prints nothing: what it has to say goes to the log's callback, and nowhere without one.
  * NULL for a noc_log drops the messages; NULL for a struct of params stands for its defaults; NULL for anything else that a call
  * needs is NOC_ERR_ARGUMENT, or whatever the function returns for an error.
  * A noc_log may be used from several threads at once; its callback is called with a lock held, one message at a time. */
@@ -45,7 +46,7 @@ typedef enum noc_status {
     NOC_ERR_ARGUMENT,    /* a parameter is out of its documented range */
     NOC_ERR_IO,          /* a file cannot be opened, read or written */
     NOC_ERR_FORMAT,      /* a file is not what it says, or is damaged */
-    NOC_ERR_MEMORY,      /* a large allocation (image, frame, scene) was refused */
+    NOC_ERR_MEMORY,      /* memory was refused, or a limit of it reached; what was half made is freed, what was there before stays */
     NOC_ERR_UNSUPPORTED, /* this build lacks the part, or the format has a feature that is not read */
     NOC_ERR_CANCELLED,   /* the progress callback asked to stop */
 } noc_status;
@@ -56,7 +57,7 @@ typedef struct noc_log noc_log;
 
 typedef struct noc_log_params {
     noc_log_level level;                                            /* messages above this level are dropped */
-    void (*message)(void *user, noc_log_level level, const char *text); /* NULL: to stderr, one line a message */
+    void (*message)(void *user, noc_log_level level, const char *text); /* one line a message; NULL: none are told */
     void *user;
 } noc_log_params;
 
@@ -67,7 +68,7 @@ NOC_DEFAULT_PARAMS(noc_log_params, noc_log_default_params, NOC_LOG_DEFAULTS)
 #define noc_log_default_params() ((noc_log_params){ NOC_LOG_DEFAULTS(NOC_DEFAULT_IN_C) })
 #endif
 
-/* NULL params means the defaults. Returns NULL only when out of memory. */
+/* NULL params means the defaults: no callback, so that noc_log_last_error alone tells. Returns NULL only when memory is refused. */
 NOC_API noc_log *noc_log_create(const noc_log_params *params);
 NOC_API void noc_log_destroy(noc_log *log); /* NULL is allowed */
 /* Text of the last error reported to this log, "" if none; valid until the next error. A call that its progress callback

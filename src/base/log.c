@@ -1,7 +1,6 @@
 #include "base/base.h"
 
 #include <pthread.h>
-#include <stdio.h>
 
 struct noc_log {
     noc_log_params params;
@@ -53,12 +52,8 @@ static void emit(noc_log *log, noc_log_level level, bool keep, const char *fmt, 
     pthread_mutex_lock(&log->lock);
     if (keep)
         memcpy(log->last_error, text, sizeof(text));
-    if (level <= log->params.level) {
-        if (log->params.message)
-            log->params.message(log->params.user, level, text);
-        else
-            fprintf(stderr, "%s%s\n", level == NOC_LOG_ERROR ? "error: " : level == NOC_LOG_WARN ? "warning: " : "", text);
-    }
+    if (level <= log->params.level && log->params.message)
+        log->params.message(log->params.user, level, text);
     pthread_mutex_unlock(&log->lock);
 }
 
@@ -73,6 +68,8 @@ noc_status noc_error(noc_log *log, noc_status status, const char *fmt, ...) {
 noc_status noc_null(noc_log *log, const char *function) {
     return noc_error(log, NOC_ERR_ARGUMENT, "%s: a pointer that is needed is NULL", function);
 }
+
+noc_status noc_no_memory(noc_log *log, const char *where) { return noc_error(log, NOC_ERR_MEMORY, "%s: out of memory", where); }
 
 noc_status noc_cancelled(noc_log *log, const char *fmt, ...) {
     va_list ap;

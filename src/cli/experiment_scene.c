@@ -122,16 +122,12 @@ static void tell_estimate(const experiment_lab *lab, const making *m) {
     fflush(stdout);
 }
 
-static void ignore(void *user, noc_log_level level, const char *text) {}
-
 /* NULL where there is none, or none that is whole. */
 static noc_image *read_cached(const experiment_lab *lab, const char *path) {
     if (access(path, R_OK))
         return NULL;
-    noc_log *log = noc_log_create(&(noc_log_params){ .message = ignore });
     bool linear = false;
-    noc_image *image = noc_image_read(path, log, &linear);
-    noc_log_destroy(log);
+    noc_image *image = noc_image_read(path, NULL, &linear);
     if (image && linear && image->width == lab->spec.width && image->height == lab->spec.height)
         return image;
     noc_image_destroy(image);

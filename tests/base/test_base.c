@@ -205,6 +205,30 @@ static void log_reports_once(void **state) {
     noc_error(NULL, NOC_OK, "nowhere");
 }
 
+/* The host decides what becomes of messages: without its callback nothing is printed. */
+static void log_without_a_callback_prints_nothing(void **state) {
+    FILE *to = tmpfile();
+    int out = dup(1), err = dup(2);
+    assert_non_null(to);
+    fflush(stdout);
+    dup2(fileno(to), 1);
+    dup2(fileno(to), 2);
+    noc_log *log = noc_log_create(NULL);
+    noc_error(log, NOC_ERR_FORMAT, "an error");
+    noc_warn(log, "a warning");
+    fflush(stdout);
+    fflush(stderr);
+    dup2(out, 1);
+    dup2(err, 2);
+    close(out);
+    close(err);
+    fseek(to, 0, SEEK_END);
+    assert_int_equal(ftell(to), 0);
+    fclose(to);
+    assert_string_equal(noc_log_last_error(log), "an error");
+    noc_log_destroy(log);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(numbers),
@@ -215,6 +239,7 @@ int main(void) {
         cmocka_unit_test(refused_memory_is_told),
         cmocka_unit_test(refused_threads_are_done_without),
         cmocka_unit_test(log_reports_once),
+        cmocka_unit_test(log_without_a_callback_prints_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
