@@ -39,13 +39,14 @@ NOC_DEFAULT_PARAMS(noc_display_params, noc_display_default_params, NOC_DISPLAY_D
 #define noc_display_default_params() ((noc_display_params){ NOC_DISPLAY_DEFAULTS(NOC_DEFAULT_IN_C) })
 #endif
 
-/* The automatic exposure of a picture, as EV100. */
+/* The automatic exposure of a picture, as EV100. NaN when memory is refused (256 KiB). */
 NOC_API double noc_image_auto_ev100(const noc_image *image);
 /* 8-bit sRGB, 3 bytes a pixel into out (width * height * 3). Where the image has coverage, the emitter's part of a pixel and the
  * rest go through the tone curve apart and are mixed by the share that each covers, so that edges of windows are as smooth as
  * those of other things; the mean of both would be white wherever a window covers a tenth. What fills no pixel, such as a
- * lamp far away, is shown by that mean all the same: as the bright point that it is. */
-NOC_API void noc_image_to_srgb8(const noc_image *image, const noc_display_params *params, uint8_t *out);
+ * lamp far away, is shown by that mean all the same: as the bright point that it is. NOC_ERR_MEMORY, with out as it was, where the
+ * automatic exposure is refused its memory. */
+NOC_API noc_status noc_image_to_srgb8(const noc_image *image, const noc_display_params *params, uint8_t *out);
 
 /* Text recorded in the file: PNG tEXt / EXR string attributes. */
 typedef struct noc_image_meta {

@@ -68,6 +68,8 @@ bool cli_completion(FILE *out, const char *shell);       /* for bash, zsh or fis
 void cli_error(const char *fmt, ...) NOC_PRINTF(1, 2);            /* one line on stderr, after "nocturne: " */
 int cli_usage(const cli_command *command, const char *fmt, ...) NOC_PRINTF(2, 3); /* the same, and where to read on; CLI_USAGE */
 noc_log *cli_log_create(const cli_args *args);
+_Noreturn void cli_no_memory(void);                               /* says so, and ends the program */
+double cli_auto_ev100(const noc_image *image);                    /* noc_image_auto_ev100; ends the program when memory is gone */
 void *cli_alloc(size_t size);                                     /* zeroed; ends the program when memory is gone */
 char *cli_format(const char *fmt, ...) NOC_PRINTF(1, 2) __attribute__((nonnull(1))); /* free() it */
 const char *cli_count(char text[32], uint64_t n);                 /* 1234567 -> "1,234,567" */

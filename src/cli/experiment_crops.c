@@ -127,7 +127,7 @@ static int write_sheet(const panels *p, const experiment_crop *crop, const char 
 int experiment_make_crops(experiment_lab *lab, size_t camera) {
     const experiment_spec *spec = &lab->spec;
     experiment_crop *crop = &lab->crops[camera];
-    double ev100 = noc_image_auto_ev100(lab->reference);
+    double ev100 = cli_auto_ev100(lab->reference);
     panels p = { lab, camera, 0, spec->width, spec->height, ev100, display(lab->reference, ev100) };
     *crop = (experiment_crop){ .x = spec->crop_box[0], .y = spec->crop_box[1], .width = spec->crop_box[2], .height = spec->crop_box[3] };
     int motion = spec->cameras[camera].frames, status = CLI_OK;

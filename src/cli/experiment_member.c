@@ -16,10 +16,8 @@ int experiment_wrong(const experiment_spec *spec, const char *place, const char 
 
 void *experiment_longer(void *array, size_t size) {
     array = realloc(array, size);
-    if (!array) {
-        cli_error("out of memory");
-        exit(CLI_FAILURE);
-    }
+    if (!array)
+        cli_no_memory();
     return array;
 }
 

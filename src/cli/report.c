@@ -61,7 +61,7 @@ static bool is_exr(const char *path) {
 }
 
 static double auto_ev100(const render_job *job) {
-    return noc_image_auto_ev100(job->image) - job->args->display.compensation;
+    return cli_auto_ev100(job->image) - job->args->display.compensation;
 }
 
 static double ev100(const render_job *job) {

@@ -49,25 +49,33 @@ static void log_message(void *user, noc_log_level level, const char *text) {
     fprintf(stderr, "nocturne: %s%s\n", level == NOC_LOG_WARN ? "warning: " : "", text);
 }
 
+void cli_no_memory(void) {
+    cli_error("out of memory");
+    exit(CLI_FAILURE);
+}
+
 noc_log *cli_log_create(const cli_args *args) {
     noc_log *log = noc_log_create(&(noc_log_params){
         .level = args->quiet ? NOC_LOG_ERROR : args->verbose ? NOC_LOG_DEBUG : NOC_LOG_WARN,
         .message = log_message,
     });
-    if (!log) {
-        cli_error("out of memory");
-        exit(CLI_FAILURE);
-    }
+    if (!log)
+        cli_no_memory();
     return log;
 }
 
 void *cli_alloc(size_t size) {
     void *p = calloc(1, size ? size : 1);
-    if (!p) {
-        cli_error("out of memory");
-        exit(CLI_FAILURE);
-    }
+    if (!p)
+        cli_no_memory();
     return p;
+}
+
+double cli_auto_ev100(const noc_image *image) {
+    double ev100 = noc_image_auto_ev100(image);
+    if (ev100 != ev100)
+        cli_no_memory();
+    return ev100;
 }
 
 char *cli_format(const char *fmt, ...) {

@@ -12,12 +12,18 @@ noc_channel *noc_channel_create(int width, int height, int components, noc_log *
                   components, NOC_IMAGE_MAX_SIDE);
         return NULL;
     }
-    float *value = image_alloc_pixels(width, height, (size_t)components * sizeof(float), log);
-    if (!value)
+    noc_channel *channel = noc_try_calloc(1, sizeof(*channel));
+    if (!channel) {
+        noc_no_memory(log, "channel");
         return NULL;
+    }
+    float *value = image_alloc_pixels(width, height, (size_t)components * sizeof(float), log);
+    if (!value) {
+        free(channel);
+        return NULL;
+    }
     for (size_t i = 0; components == 1 && i < (size_t)width * (size_t)height; i++)
         value[i] = -1;
-    noc_channel *channel = noc_calloc(1, sizeof(*channel));
     *channel = (noc_channel){ .width = width, .height = height, .components = components, .value = value, .name = "", .unit = "", .title = "" };
     return channel;
 }

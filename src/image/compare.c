@@ -115,7 +115,9 @@ noc_status noc_image_compare(const noc_image *x, const noc_image *r, const noc_c
     if (status != NOC_OK)
         return status;
     display_map d;
-    double ev100 = display_ev100(r, &p.display); /* both as the reference is shown */
+    double ev100;
+    if (!display_ev100(r, &p.display, &ev100)) /* both as the reference is shown */
+        return noc_no_memory(log, "compare");
     if (p.relative) { /* they have been displayed already */
         ev100 = -log2(IMAGE_SATURATION);
         p.display.tonemap = NOC_TONEMAP_LINEAR;

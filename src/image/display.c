@@ -61,7 +61,9 @@ static double cell_at(const float *cells, size_t n, double rank) {
 double noc_image_auto_ev100(const noc_image *image) {
     if (!image)
         return METER_BLACK;
-    float *cells = noc_alloc(METER_CELLS * METER_CELLS * sizeof(float));
+    float *cells = noc_try_alloc(METER_CELLS * METER_CELLS * sizeof(float));
+    if (!cells)
+        return NAN;
     size_t lit = meter_cells(image, image->emitter != NULL, cells);
     bool masked = image->emitter && lit;
     if (!lit && image->emitter)
@@ -76,10 +78,12 @@ double noc_image_auto_ev100(const noc_image *image) {
     return white > 0 ? log2(white / IMAGE_SATURATION) : METER_BLACK;
 }
 
-double display_ev100(const noc_image *image, const noc_display_params *params) {
+bool display_ev100(const noc_image *image, const noc_display_params *params, double *ev100) {
     noc_display_params p = params ? *params : noc_display_default_params();
-    double ev = p.auto_exposure ? noc_image_auto_ev100(image) - p.compensation : p.ev100;
-    return isfinite(ev) ? NOC_CLAMP(ev, -100.0, 100.0) : METER_BLACK;
+    double metered = p.auto_exposure ? noc_image_auto_ev100(image) : 0;
+    double ev = p.auto_exposure ? metered - p.compensation : p.ev100;
+    *ev100 = isfinite(ev) ? NOC_CLAMP(ev, -100.0, 100.0) : METER_BLACK;
+    return !isnan(metered);
 }
 
 const char *tonemap_name(noc_tonemap tonemap) {
@@ -180,11 +184,14 @@ static void display_covered(const display_map *d, const noc_image *image, size_t
     }
 }
 
-void noc_image_to_srgb8(const noc_image *image, const noc_display_params *params, uint8_t *out) {
+noc_status noc_image_to_srgb8(const noc_image *image, const noc_display_params *params, uint8_t *out) {
     if (!image || !out)
-        return;
+        return NOC_ERR_ARGUMENT;
     display_map d;
-    display_init(&d, params ? params->tonemap : NOC_TONEMAP_FILMIC, display_ev100(image, params));
+    double ev100;
+    if (!display_ev100(image, params, &ev100))
+        return NOC_ERR_MEMORY;
+    display_init(&d, params ? params->tonemap : NOC_TONEMAP_FILMIC, ev100);
     size_t n = image_pixels(image);
     for (size_t i = 0; i < n; i++) {
         float share = image->coverage ? image->coverage[4 * i + 3] : 0;
@@ -193,4 +200,5 @@ void noc_image_to_srgb8(const noc_image *image, const noc_display_params *params
         else
             display_pixel(&d, image->rgb + 3 * i, out + 3 * i);
     }
+    return NOC_OK;
 }

@@ -314,6 +314,8 @@ noc_image *image_read_exr(const uint8_t *data, size_t size, const char *name, no
     init.read_fn = read_data;
     init.size_fn = query_size;
     init.error_handler_fn = on_error;
+    init.alloc_fn = noc_try_alloc;
+    init.free_fn = free;
     init.max_image_width = init.max_image_height = NOC_IMAGE_MAX_SIDE;
     init.max_tile_width = init.max_tile_height = NOC_IMAGE_MAX_SIDE;
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;

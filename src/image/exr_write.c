@@ -17,12 +17,13 @@ typedef struct exr_writer {
     uint16_t *emitter;  /* one chunk, half */
 } exr_writer;
 
+static noc_status status_of(exr_result_t code) { return code == EXR_ERR_OUT_OF_MEMORY ? NOC_ERR_MEMORY : NOC_ERR_IO; }
+
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message) {
     void *user = NULL;
     exr_writer *w = exr_get_user_data(context, &user) == EXR_ERR_SUCCESS ? user : NULL;
     if (w && w->status == NOC_OK)
-        w->status = noc_error(w->log, code == EXR_ERR_OUT_OF_MEMORY ? NOC_ERR_MEMORY : NOC_ERR_IO, "%s: EXR: %s",
-                              w->out->path, message);
+        w->status = noc_error(w->log, status_of(code), "%s: EXR: %s", w->out->path, message);
 }
 
 static int64_t write_data(exr_const_context_t context, void *user, const void *buffer, uint64_t size, uint64_t offset,
@@ -45,7 +46,7 @@ static int components(const exr_writer *w) { return w->channel ? w->channel->com
 /* Returns false when a step failed; the handler has reported it, or it is reported here. */
 static bool ok(exr_writer *w, exr_result_t result) {
     if (result != EXR_ERR_SUCCESS && w->status == NOC_OK)
-        w->status = noc_error(w->log, NOC_ERR_IO, "%s: EXR: %s", w->out->path, exr_get_default_error_message(result));
+        w->status = noc_error(w->log, status_of(result), "%s: EXR: %s", w->out->path, exr_get_default_error_message(result));
     return w->status == NOC_OK;
 }
 
@@ -158,6 +159,8 @@ static noc_status write_file(exr_writer *w, const meta_list *meta) {
     init.user_data = w;
     init.write_fn = write_data;
     init.error_handler_fn = on_error;
+    init.alloc_fn = noc_try_alloc;
+    init.free_fn = free;
     if (ok(w, exr_start_write(&w->context, w->out->path, EXR_WRITE_FILE_DIRECTLY, &init)) && write_header(w, meta))
         write_chunks(w);
     /* Writes the table of chunks, also after an error: the temporary file goes away then. */

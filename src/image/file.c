@@ -49,8 +49,9 @@ static noc_status write_displayed(const noc_image *image, const char *path, cons
     uint8_t *rgb = noc_alloc_large(image_pixels(image), 3);
     if (!rgb)
         return noc_error(log, NOC_ERR_MEMORY, "%s: no memory for %d x %d pixels", path, image->width, image->height);
-    noc_image_to_srgb8(image, display, rgb);
-    noc_status status = write_png(rgb, image->width, image->height, path, meta, log);
+    noc_status status = noc_image_to_srgb8(image, display, rgb); /* with an exposure that was metered before */
+    if (status == NOC_OK)
+        status = write_png(rgb, image->width, image->height, path, meta, log);
     free(rgb);
     return status;
 }
@@ -65,12 +66,14 @@ noc_status noc_image_write(const noc_image *image, const char *path, const noc_d
     bool png = image_path_ends_in(path, ".png");
     if (!png && !image_path_ends_in(path, ".exr"))
         return bad_ending(path, ".png or .exr", log);
+    noc_display_params shown = display ? *display : noc_display_default_params();
+    double ev100 = 0;
+    if (png && !display_ev100(image, &shown, &ev100))
+        return noc_no_memory(log, path);
     meta_list list = { 0 };
     meta_add(&list, "Software", "Nocturne %s", NOC_VERSION);
-    noc_display_params shown = display ? *display : noc_display_default_params();
     if (png) {
         /* The exposure in effect, so that what is shown can be traced back to cd/m2. */
-        double ev100 = display_ev100(image, &shown);
         shown.auto_exposure = false;
         shown.ev100 = ev100;
         meta_add(&list, "ev100", "%.4f", ev100);

@@ -23,14 +23,18 @@ noc_image *noc_image_create(int width, int height, noc_log *log) {
         noc_error(log, NOC_ERR_ARGUMENT, "image: %d x %d pixels is outside 1..%d a side", width, height, NOC_IMAGE_MAX_SIDE);
         return NULL;
     }
-    float *rgb = image_alloc_pixels(width, height, 3 * sizeof(float), log);
-    if (!rgb)
+    noc_image *image = noc_try_calloc(1, sizeof(*image));
+    if (!image) {
+        noc_no_memory(log, "image");
         return NULL;
-    noc_image *image = noc_calloc(1, sizeof(*image));
+    }
     image->width = width;
     image->height = height;
-    image->rgb = rgb;
-    return image;
+    image->rgb = image_alloc_pixels(width, height, 3 * sizeof(float), log);
+    if (image->rgb)
+        return image;
+    noc_image_destroy(image);
+    return NULL;
 }
 
 bool image_add_mask(noc_image *image, noc_log *log) {

@@ -40,7 +40,8 @@ typedef struct display_map {
 } display_map;
 /* ev100 is the exposure in effect (display_ev100). */
 void display_init(display_map *d, noc_tonemap tonemap, double ev100);
-double display_ev100(const noc_image *image, const noc_display_params *params); /* params NULL: defaults */
+/* params NULL: defaults. False: memory was refused. */
+bool display_ev100(const noc_image *image, const noc_display_params *params, double *ev100) NOC_MUST_USE;
 void display_pixel(const display_map *d, const float rgb[3], uint8_t out[3]);
 double tonemap_curve(noc_tonemap tonemap, double x);
 const char *tonemap_name(noc_tonemap tonemap);
@@ -61,7 +62,7 @@ noc_status output_failed(output *o, noc_log *log); /* reports errno as a failure
 typedef struct meta_entry { const char *key, *value; } meta_entry;
 typedef struct meta_list { NOC_ARRAY(meta_entry) entries; noc_arena text; } meta_list;
 void meta_add(meta_list *list, const char *key, const char *fmt, ...) NOC_PRINTF(3, 4); /* ours, first; short text */
-/* The caller's; replaces ours of the same key. An error where a key or value cannot be written. */
+/* The caller's; replaces ours of the same key. An error where a key or value cannot be written, or memory was refused to one of ours. */
 noc_status meta_add_all(meta_list *list, const noc_image_meta *meta, const char *path, noc_log *log);
 void meta_free(meta_list *list);
 

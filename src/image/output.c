@@ -13,18 +13,19 @@ static noc_status fail(const char *path, const char *what, noc_log *log) {
     return noc_error(log, NOC_ERR_IO, "%s: %s: %s", path, what, strerror(errno));
 }
 
-/* The target itself: what a symbolic link points to is replaced (or made, where it is not there yet), not the link. */
+/* The target itself: what a symbolic link points to is replaced (or made, where it is not there yet), not the link. NULL: memory was
+ * refused. */
 static char *resolve(const char *path) {
     char *real = realpath(path, NULL);
     if (real)
         return real;
-    char *at = noc_strdup(path), to[PATH_MAX];
-    for (int links = 0; links < 40; links++) { /* as many as the kernel follows */
+    char *at = noc_try_strdup(path), to[PATH_MAX];
+    for (int links = 0; at && links < 40; links++) { /* as many as the kernel follows */
         ssize_t n = readlink(at, to, sizeof(to));
         if (n < 0 || n == sizeof(to))
             break;
         const char *slash = strrchr(at, '/');
-        char *next = noc_format("%.*s%.*s", slash && to[0] != '/' ? (int)(slash + 1 - at) : 0, at, (int)n, to);
+        char *next = noc_try_format("%.*s%.*s", slash && to[0] != '/' ? (int)(slash + 1 - at) : 0, at, (int)n, to);
         free(at);
         at = next;
     }
@@ -42,7 +43,7 @@ static int folder_length(const char *target) {
 /* ".name.pid-n.part" in the target's folder: renaming works only within a file system. */
 static char *temporary_name(const char *target, int attempt) {
     int folder = folder_length(target);
-    return noc_format("%.*s.%.*s.%ld-%d.part", folder, target, NAME_KEPT, target + folder, (long)getpid(), attempt);
+    return noc_try_format("%.*s.%.*s.%ld-%d.part", folder, target, NAME_KEPT, target + folder, (long)getpid(), attempt);
 }
 
 /* Is it what temporary_name() makes of the target, for any process and attempt? */
@@ -60,10 +61,11 @@ static bool is_temporary(const char *name, const char *target) {
     return attempt && !strcmp(p + attempt, ".part");
 }
 
-/* Removes what killed runs left of this target. A writer that lives holds a lock on its file. */
+/* Removes what killed runs left of this target. A writer that lives holds a lock on its file. What is not removed now, as memory is
+ * refused, is by the next writer. */
 static void sweep(const char *target) {
     int length = folder_length(target);
-    char *folder = length ? noc_format("%.*s", length, target) : noc_strdup(".");
+    char *folder = noc_try_format("%.*s", length ? length : 1, length ? target : ".");
     DIR *dir = folder ? opendir(folder) : NULL;
     free(folder);
     for (struct dirent *e; dir && (e = readdir(dir));) {
@@ -94,10 +96,14 @@ static void output_free(output *o) {
 }
 
 noc_status output_open(output *o, const char *path, noc_log *log) {
-    *o = (output){ .path = noc_strdup(path), .target = resolve(path) };
+    *o = (output){ .path = noc_try_strdup(path), .target = resolve(path) };
     noc_status status;
     struct stat st;
     int fd = -1;
+    if (!o->path || !o->target) {
+        status = noc_no_memory(log, path);
+        goto fail;
+    }
     /* A name that is too long, a ring of links: found now, not when the file is renamed. */
     if (lstat(o->target, &st) != 0 ? errno != ENOENT : S_ISLNK(st.st_mode) && (errno = ELOOP)) {
         status = fail(path, "cannot be written", log);
@@ -113,6 +119,10 @@ noc_status output_open(output *o, const char *path, noc_log *log) {
     for (int attempt = 0; fd < 0 && attempt < 1000; attempt++) {
         free(o->temporary);
         o->temporary = temporary_name(o->target, attempt);
+        if (!o->temporary) {
+            status = noc_no_memory(log, path);
+            goto fail;
+        }
         fd = open(o->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (fd < 0 && errno != EEXIST)
             break;
@@ -170,8 +180,9 @@ void meta_add(meta_list *list, const char *key, const char *fmt, ...) {
     va_start(ap, fmt);
     noc_vsnprintf(text, sizeof(text), fmt, ap);
     va_end(ap);
-    meta_entry entry = { arena_strdup(&list->text, key), arena_strdup(&list->text, text) };
-    array_push(&list->entries, entry);
+    meta_entry entry = { arena_try_strdup(&list->text, key), arena_try_strdup(&list->text, text) };
+    if (!list->text.refused && !array_try_push(&list->entries, entry))
+        list->text.refused = true; /* told by meta_add_all */
 }
 
 static meta_entry *find(meta_list *list, const char *key) {
@@ -201,10 +212,10 @@ noc_status meta_add_all(meta_list *list, const noc_image_meta *meta, const char 
         meta_entry *old = find(list, entry.key);
         if (old)
             *old = entry;
-        else
-            array_push(&list->entries, entry);
+        else if (!array_try_push(&list->entries, entry))
+            list->text.refused = true;
     }
-    return NOC_OK;
+    return list->text.refused ? noc_no_memory(log, path) : NOC_OK;
 }
 
 void meta_free(meta_list *list) {

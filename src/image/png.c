@@ -15,6 +15,7 @@ typedef struct png_job {
     const uint8_t *data; /* reading */
     size_t size, at;
     noc_image *image;
+    bool refused;     /* memory, to libpng, which does without it where it can */
     png_byte *buffer; /* one row, or all of an interlaced picture */
     float *table;     /* code value to linear */
 } png_job;
@@ -22,13 +23,28 @@ typedef struct png_job {
 static void on_error(png_structp png, png_const_charp message) {
     png_job *job = png_get_error_ptr(png);
     if (job->status == NOC_OK)
-        job->status = noc_error(job->log, NOC_ERR_FORMAT, "%s: PNG: %s", job->name, message);
+        job->status = job->refused ? noc_no_memory(job->log, job->name) : noc_error(job->log, NOC_ERR_FORMAT, "%s: PNG: %s", job->name, message);
     longjmp(job->escape, 1);
 }
 
 static void on_warning(png_structp png, png_const_charp message) {
     png_job *job = png_get_error_ptr(png);
     noc_debug(job->log, "%s: PNG: %s", job->name, message);
+}
+
+static png_voidp on_alloc(png_structp png, png_alloc_size_t size) {
+    png_job *job = png_get_mem_ptr(png);
+    void *p = noc_try_alloc(size);
+    job->refused = job->refused || !p;
+    return p;
+}
+
+static void on_free(png_structp png, png_voidp p) { free(p); }
+
+/* What libpng did without may be a part of the picture, or of its metadata. */
+static void check_refused(png_job *job) {
+    if (job->refused && job->status == NOC_OK)
+        job->status = noc_no_memory(job->log, job->name);
 }
 
 static void write_data(png_structp png, png_bytep data, png_size_t size) {
@@ -70,11 +86,11 @@ static void set_text(png_job *job, const meta_list *meta) {
 
 noc_status image_write_png(output *o, const uint8_t *rgb, int width, int height, const meta_list *meta, noc_log *log) {
     png_job job = { .name = o->path, .log = log, .out = o };
-    job.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
+    job.png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning, &job, on_alloc, on_free);
     job.info = job.png ? png_create_info_struct(job.png) : NULL;
     if (!job.info) {
         png_destroy_write_struct(&job.png, NULL);
-        return noc_error(log, NOC_ERR_MEMORY, "%s: PNG: no memory", o->path);
+        return noc_no_memory(log, o->path);
     }
     if (setjmp(job.escape) == 0) {
         png_set_write_fn(job.png, &job, write_data, flush_data);
@@ -88,6 +104,7 @@ noc_status image_write_png(output *o, const uint8_t *rgb, int width, int height,
         png_write_end(job.png, NULL);
     }
     png_destroy_write_struct(&job.png, &job.info);
+    check_refused(&job);
     return job.status;
 }
 
@@ -108,8 +125,8 @@ static int set_transforms(png_job *job) {
 /* Linear values of all codes. */
 static float *decode_table(int depth) {
     int codes = 1 << depth;
-    float *table = noc_alloc((size_t)codes * sizeof(float));
-    for (int i = 0; i < codes; i++)
+    float *table = noc_try_alloc((size_t)codes * sizeof(float));
+    for (int i = 0; table && i < codes; i++)
         table[i] = (float)srgb_decode((double)i / (codes - 1));
     return table;
 }
@@ -166,6 +183,10 @@ static void read_pixels(png_job *job) {
         return;
     }
     job->table = decode_table(depth);
+    if (!job->table) {
+        job->status = noc_no_memory(job->log, job->name);
+        return;
+    }
     /* An interlaced picture is whole only after its last pass: its rows are kept until then. */
     for (int pass = 0; pass < passes - 1; pass++)
         for (size_t y = 0; y < rows; y++)
@@ -180,16 +201,17 @@ static void read_pixels(png_job *job) {
 
 noc_image *image_read_png(const uint8_t *data, size_t size, const char *name, noc_log *log) {
     png_job job = { .name = name, .log = log, .data = data, .size = size };
-    job.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
+    job.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning, &job, on_alloc, on_free);
     job.info = job.png ? png_create_info_struct(job.png) : NULL;
     if (!job.info) {
         png_destroy_read_struct(&job.png, NULL, NULL);
-        noc_error(log, NOC_ERR_MEMORY, "%s: PNG: no memory", name);
+        noc_no_memory(log, name);
         return NULL;
     }
     if (setjmp(job.escape) == 0)
         read_pixels(&job);
     png_destroy_read_struct(&job.png, &job.info, NULL);
+    check_refused(&job);
     free(job.buffer);
     free(job.table);
     if (job.status != NOC_OK) {

@@ -17,8 +17,8 @@ static noc_camera camera;
 #define PROBES(P)                                                                                                              \
     P(noc_image_destroy(NULL), true)                                                                                           \
     P(0, isfinite(noc_image_auto_ev100(NULL)))                                                       \
-    P((noc_image_to_srgb8(NULL, NULL, (uint8_t[3]){ 0 })), true)                                                               \
-    P((noc_image_to_srgb8(image, NULL, NULL)), true)                                                                           \
+    P(0, noc_image_to_srgb8(NULL, NULL, (uint8_t[3]){ 0 }) == NOC_ERR_ARGUMENT)                                                \
+    P(0, noc_image_to_srgb8(image, NULL, NULL) == NOC_ERR_ARGUMENT)                                                            \
     P(0, noc_image_write(NULL, "a.png", NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                 \
     P(0, noc_image_write(image, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                   \
     P(0, noc_image_write_srgb8(NULL, 1, 1, "a.png", NULL, NULL) == NOC_ERR_ARGUMENT)                                           \

@@ -263,18 +263,24 @@ static void exposure_of_odd_pictures_is_sane(void **state) {
     noc_image_destroy(a);
 }
 
+static double shown_ev100(const noc_image *image, const noc_display_params *params) {
+    double ev100;
+    assert_true(display_ev100(image, params, &ev100));
+    return ev100;
+}
+
 static void compensation_brightens(void **state) {
     (void)state;
     noc_image *a = night(64, 64, false);
     noc_display_params p = noc_display_default_params();
-    double ev = display_ev100(a, &p);
+    double ev = shown_ev100(a, &p);
     p.compensation = 1.5;
-    assert_true(fabs(display_ev100(a, &p) - (ev - 1.5)) < 1e-12);
+    assert_true(fabs(shown_ev100(a, &p) - (ev - 1.5)) < 1e-12);
     p.auto_exposure = false;
     p.ev100 = 7;
-    assert_true(display_ev100(a, &p) == 7);
+    assert_true(shown_ev100(a, &p) == 7);
     p.ev100 = NAN;
-    assert_true(isfinite(display_ev100(a, &p)));
+    assert_true(isfinite(shown_ev100(a, &p)));
     noc_image_destroy(a);
 }
 
