@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     noc_import_params params = noc_import_default_params();
     params.lod = (int)(size % 5);
     char *path = fuzz_file("city.gml", (fuzz_part){ data, size });
-    noc_stream *stream = noc_stream_open(path, log);
+    noc_stream *stream = noc_stream_open(path, log, NULL);
     noc_status status = NOC_ERR_IO;
     if (stream) {
         const char *format;

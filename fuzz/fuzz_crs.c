@@ -14,7 +14,7 @@ static void use(geo_crs *crs, noc_log *log, int *errors) {
     geo_crs *utm = geo_crs_utm(11.5, 48.1), *copy = geo_crs_clone(crs);
     FUZZ_REQUIRE(utm && copy && geo_crs_is_metric(utm) && geo_crs_lat_first(copy) == geo_crs_lat_first(crs));
     *errors = 0;
-    geo_transform *t = geo_transform_create(crs, utm, log);
+    geo_transform *t = geo_transform_create(crs, utm, log, NULL);
     FUZZ_REQUIRE(*errors == !t);
     if (t) {
         size_t failed = geo_transform_points(t, xyz, 2);
@@ -29,7 +29,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     int errors = 0;
     noc_log *log = fuzz_log(&errors);
     char *text = noc_format("%.*s", (int)size, (const char *)data);
-    geo_crs *crs = geo_crs_create(text, "fuzz", log);
+    geo_crs *crs = geo_crs_create(text, "fuzz", log, NULL);
     FUZZ_REQUIRE(errors == !crs);
     if (crs)
         use(crs, log, &errors);

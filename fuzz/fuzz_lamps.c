@@ -14,7 +14,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_sink_start(&s, log);
     noc_import_params params = noc_import_default_params();
     char *path = fuzz_file("lamps", (fuzz_part){ data, size });
-    noc_stream *stream = noc_stream_open(path, log);
+    noc_stream *stream = noc_stream_open(path, log, NULL);
     size_t len = 0;
     noc_status status = stream ? NOC_OK : NOC_ERR_IO;
     for (size_t got = 1; !status && got && len < HEAD; len += got)

@@ -23,7 +23,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     char *beside = fuzz_file(FUZZ_GLTF ? "side.bin" : "side.mtl", n > 1 ? part[1] : (fuzz_part){ data, 0 });
     char *path = fuzz_file(FUZZ_GLTF ? "mesh.gltf" : "mesh.obj", part[0]);
     const char *format;
-    noc_stream *stream = noc_stream_open(path, log);
+    noc_stream *stream = noc_stream_open(path, log, NULL);
     noc_status status = NOC_ERR_IO;
     if (stream)
         status = reader->read_mesh(path, stream, &params, scene, &(mesh_place){ &sum, as_it_is }, issues, &format);

@@ -30,7 +30,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     int errors = 0;
     noc_log *log = fuzz_log(&errors);
     char *path = fuzz_file("stream", (fuzz_part){ data, size });
-    noc_stream *stream = noc_stream_open(path, log);
+    noc_stream *stream = noc_stream_open(path, log, NULL);
     FUZZ_REQUIRE(errors == !stream);
     if (stream) {
         content a = read_in_steps(stream, 4096, &errors), b = read_in_steps(stream, 1 + size % 997, &errors);

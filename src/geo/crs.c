@@ -36,12 +36,13 @@ static bool same_name(const char *a, const char *b) {
 
 /* WKT, PROJ strings, PROJJSON, and CRSs by their full name. PROJ also guesses from parts of names ("foo" gives
  * Amersfoort), so a name counts only if it is the name of what came out. */
-static PJ *create_free_form(PJ_CONTEXT *context, const char *definition) {
+static PJ *create_free_form(PJ_CONTEXT *context, const char *definition, bool *refused) {
     while (isspace((unsigned char)*definition))
         definition++;
     if (*definition == '+' && !strstr(definition, "+type=crs")) {
-        char *text = noc_format("%s +type=crs", definition);
-        PJ *pj = proj_create(context, text);
+        char *text = noc_try_format("%s +type=crs", definition);
+        PJ *pj = text ? proj_create(context, text) : NULL;
+        *refused = !text;
         free(text);
         return pj;
     }
@@ -56,12 +57,12 @@ static PJ *create_free_form(PJ_CONTEXT *context, const char *definition) {
 
 static PJ *create_registered(PJ_CONTEXT *context, const char *name) {
     const char *colon = strchr(name, ':');
-    char *authority = noc_format("%.*s", (int)(colon - name), name);
+    char authority[sizeof((crs_spelling){ 0 }.horizontal)];
+    noc_snprintf(authority, sizeof(authority), "%.*s", (int)(colon - name), name);
     PJ *pj = proj_create_from_database(context, authority, colon + 1, PJ_CATEGORY_CRS, false, NULL);
     /* codes of ESRI are often given as if they were EPSG's */
     if (!pj && !strcmp(authority, "EPSG"))
         pj = proj_create_from_database(context, "ESRI", colon + 1, PJ_CATEGORY_CRS, false, NULL);
-    free(authority);
     return pj;
 }
 
@@ -103,7 +104,8 @@ static bool is_direction(const char *direction, const char *a, const char *b) {
     return noc_ieq(direction, a) || noc_ieq(direction, b);
 }
 
-/* Type, axes, units, area of use. False if it is not a CRS of the ground (geocentric, vertical, local). */
+/* Type, axes, units, area of use. False if it is not a CRS of the ground (geocentric, vertical, local). Without a name: memory is
+ * refused. */
 static bool inspect(geo_crs *crs) {
     PJ_CONTEXT *context = crs->context;
     const PJ *pj = crs->pj;
@@ -130,44 +132,47 @@ static bool inspect(geo_crs *crs) {
         crs->has_area = proj_get_area_of_use(context, pj, &crs->west, &crs->south, &crs->east, &crs->north, NULL) &&
                         crs->west > -1000; /* -1000: not known */
         const char *authority = proj_get_id_auth_name(pj, 0), *code = proj_get_id_code(pj, 0), *name = proj_get_name(pj);
-        crs->name = authority && code ? noc_format("%s:%s (%s)", authority, code, name) : noc_strdup(name);
+        crs->name = authority && code ? noc_try_format("%s:%s (%s)", authority, code, name) : noc_try_strdup(name);
     }
     proj_destroy(cs);
     proj_destroy(source);
     return ok;
 }
 
-static void move_to(geo_crs *crs, PJ_CONTEXT *context) {
+static bool move_to(geo_crs *crs, PJ_CONTEXT *context) {
+    if (!context)
+        return false;
     PJ *moved = crs->pj ? proj_clone(context, crs->pj) : NULL;
     proj_destroy(crs->pj);
     proj_context_destroy(crs->context);
     crs->pj = moved;
     crs->context = context;
+    return true;
 }
 
-static void refuse(const char *definition, const char *what, const char *place, noc_log *log) {
-    noc_error(log, NOC_ERR_FORMAT, "%s%sthe CRS \"%.200s\" may open files (%s), which a file's CRS must not", place, *place ? ": " : "",
+static noc_status refuse(const char *definition, const char *what, const char *place, noc_log *log) {
+    return noc_error(log, NOC_ERR_FORMAT, "%s%sthe CRS \"%.200s\" may open files (%s), which a file's CRS must not", place, *place ? ": " : "",
               definition, what);
 }
 
-static geo_crs *create(const char *definition, bool strict, const char *place, noc_log *log) {
-    if (!place)
-        place = "";
+static noc_status no_memory(const char *definition, const char *place, noc_log *log) {
+    return noc_error(log, NOC_ERR_MEMORY, "%s%sout of memory for the CRS \"%.200s\"", place, *place ? ": " : "", definition);
+}
+
+static noc_status create(geo_crs *crs, const char *definition, bool strict, const char *place, noc_log *log) {
     const char *between = *place ? ": " : "";
-    geo_crs *crs = noc_calloc(1, sizeof(*crs));
-    crs->context = crs_context_create(strict);
     crs_spelling spelling;
-    bool registered = crs_spelling_parse(definition, &spelling);
-    crs->pj = registered ? create_registered(crs->context, spelling.horizontal) : create_free_form(crs->context, definition);
-    if (!crs->pj) {
-        if (!proj_context_get_database_metadata(crs->context, "EPSG.VERSION"))
-            noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sPROJ finds no proj.db, so no CRS can be read", place, between);
-        else
-            noc_error(log, NOC_ERR_FORMAT, "%s%sthe CRS \"%.200s\" is not understood%s%s", place, between, definition,
-                      registered ? ": no registered " : "", registered ? spelling.horizontal : "");
-        geo_crs_destroy(crs);
-        return NULL;
-    }
+    bool registered = crs_spelling_parse(definition, &spelling), refused = false;
+    if (!(crs->context = crs_context_create(strict)))
+        return no_memory(definition, place, log);
+    crs->pj = registered ? create_registered(crs->context, spelling.horizontal) : create_free_form(crs->context, definition, &refused);
+    if (refused)
+        return no_memory(definition, place, log);
+    if (!crs->pj && !proj_context_get_database_metadata(crs->context, "EPSG.VERSION"))
+        return noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sPROJ finds no proj.db, so no CRS can be read", place, between);
+    if (!crs->pj)
+        return noc_error(log, NOC_ERR_FORMAT, "%s%sthe CRS \"%.200s\" is not understood%s%s", place, between, definition,
+                         registered ? ": no registered " : "", registered ? spelling.horizontal : "");
     reduce_to_horizontal(crs);
     if (spelling.vertical[0]) {
         PJ *vertical = create_registered(crs->context, spelling.vertical);
@@ -176,51 +181,65 @@ static geo_crs *create(const char *definition, bool strict, const char *place, n
         proj_destroy(vertical);
     }
     char what[40];
-    if (strict && crs->pj && crs_names_file(crs->context, crs->pj, what)) {
-        refuse(definition, what, place, log);
-        geo_crs_destroy(crs);
-        return NULL;
-    }
-    if (strict)
-        move_to(crs, crs_context_create(false)); /* it names no file: those that come now are of PROJ's own database */
-    if (!crs->pj || !inspect(crs)) {
-        noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sthe CRS \"%.200s\" is neither geographic nor projected", place, between,
-                  definition);
-        geo_crs_destroy(crs);
-        return NULL;
-    }
-    return crs;
+    if (strict && crs->pj && crs_names_file(crs->context, crs->pj, what))
+        return refuse(definition, what, place, log);
+    if (strict && !move_to(crs, crs_context_create(false))) /* it names no file: those that come now are of PROJ's own database */
+        return no_memory(definition, place, log);
+    if (!crs->pj || !inspect(crs))
+        return noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sthe CRS \"%.200s\" is neither geographic nor projected", place, between,
+                         definition);
+    return crs->name ? NOC_OK : no_memory(definition, place, log);
 }
 
-geo_crs *geo_crs_create(const char *definition, const char *place, noc_log *log) { return create(definition, false, place, log); }
+static geo_crs *create_crs(const char *definition, bool strict, const char *place, noc_log *log, noc_status *status) {
+    geo_crs *crs = noc_try_calloc(1, sizeof(*crs));
+    noc_status why = crs ? create(crs, definition, strict, place, log) : no_memory(definition, place, log);
+    if (status)
+        *status = why;
+    if (why == NOC_OK)
+        return crs;
+    geo_crs_destroy(crs);
+    return NULL;
+}
 
-geo_crs *geo_crs_create_plain(const char *definition, const char *place, noc_log *log) {
+geo_crs *geo_crs_create(const char *definition, const char *place, noc_log *log, noc_status *status) {
+    return create_crs(definition, false, place ? place : "", log, status);
+}
+
+geo_crs *geo_crs_create_plain(const char *definition, const char *place, noc_log *log, noc_status *status) {
     char what[40];
     crs_spelling spelling;
-    if (!crs_spelling_parse(definition, &spelling) && crs_text_names_file(definition, what)) {
-        refuse(definition, what, place ? place : "", log);
-        return NULL;
-    }
-    return create(definition, true, place, log);
+    place = place ? place : "";
+    if (crs_spelling_parse(definition, &spelling) || !crs_text_names_file(definition, what))
+        return create_crs(definition, true, place, log, status);
+    noc_status why = refuse(definition, what, place, log);
+    if (status)
+        *status = why;
+    return NULL;
 }
 
 geo_crs *geo_crs_utm(double lon, double lat) {
     int zone = (int)NOC_CLAMP(floor((lon + 180) / 6) + 1, 1, 60);
     char text[24];
     snprintf(text, sizeof(text), "EPSG:%d", (lat < 0 ? 32700 : 32600) + zone);
-    return geo_crs_create(text, NULL, NULL);
+    return geo_crs_create(text, NULL, NULL, NULL);
 }
 
 geo_crs *geo_crs_clone(const geo_crs *crs) {
     if (!crs)
         return NULL;
-    geo_crs *copy = noc_alloc(sizeof(*copy));
+    geo_crs *copy = noc_try_alloc(sizeof(*copy));
+    if (!copy)
+        return NULL;
     *copy = *crs;
-    copy->context = crs_context_create(false);
-    copy->pj = proj_clone(copy->context, crs->pj);
     copy->to_wgs84 = copy->easting_first = NULL;
-    copy->name = noc_strdup(crs->name);
-    return copy;
+    copy->context = crs_context_create(false);
+    copy->pj = copy->context ? proj_clone(copy->context, crs->pj) : NULL;
+    copy->name = noc_try_strdup(crs->name);
+    if (copy->pj && copy->name)
+        return copy;
+    geo_crs_destroy(copy);
+    return NULL;
 }
 
 void geo_crs_destroy(geo_crs *crs) {
@@ -229,7 +248,8 @@ void geo_crs_destroy(geo_crs *crs) {
     proj_destroy(crs->to_wgs84);
     proj_destroy(crs->easting_first);
     proj_destroy(crs->pj);
-    proj_context_destroy(crs->context);
+    if (crs->context)
+        proj_context_destroy(crs->context);
     free(crs->name);
     free(crs);
 }
@@ -308,23 +328,30 @@ struct geo_transform {
     char *names;        /* for the message about accuracy; NULL once it was checked */
 };
 
-geo_transform *geo_transform_create(const geo_crs *from, const geo_crs *to, noc_log *log) {
-    geo_transform *t = noc_calloc(1, sizeof(*t));
+static noc_status make_transform(geo_transform *t, const geo_crs *from, const geo_crs *to, noc_log *log) {
     t->swap_from = from->lat_first;
     t->swap_to = to->lat_first;
     t->height_scale = from->height_unit / to->height_unit;
     if (geo_crs_equal(from, to))
-        return t;
+        return NOC_OK;
     t->log = log;
+    t->names = noc_try_format("%s to %s", from->name, to->name);
     t->context = crs_context_create(false);
+    if (!t->names || !t->context)
+        return noc_no_memory(log, "transformation");
     t->pj = proj_create_crs_to_crs_from_pj(t->context, from->pj, to->pj, NULL, NULL);
-    if (!t->pj) {
-        noc_error(log, NOC_ERR_UNSUPPORTED, "no transformation is known from %s to %s", from->name, to->name);
-        geo_transform_destroy(t);
-        return NULL;
-    }
-    t->names = noc_format("%s to %s", from->name, to->name);
-    return t;
+    return t->pj ? NOC_OK : noc_error(log, NOC_ERR_UNSUPPORTED, "no transformation is known from %s to %s", from->name, to->name);
+}
+
+geo_transform *geo_transform_create(const geo_crs *from, const geo_crs *to, noc_log *log, noc_status *status) {
+    geo_transform *t = noc_try_calloc(1, sizeof(*t));
+    noc_status why = t ? make_transform(t, from, to, log) : noc_no_memory(log, "transformation");
+    if (status)
+        *status = why;
+    if (why == NOC_OK)
+        return t;
+    geo_transform_destroy(t);
+    return NULL;
 }
 
 void geo_transform_destroy(geo_transform *t) {

@@ -7,7 +7,7 @@
 #include <proj.h>
 
 /* A context that never asks a network, says nothing, and opens regular files alone (a pipe would hang it): all of them, or,
- * strict, none but PROJ's database. */
+ * strict, none but PROJ's database. NULL: memory was refused. */
 PJ_CONTEXT *crs_context_create(bool strict);
 
 /* The first thing in a definition that may make PROJ open a file (a PROJ parameter that is not known to be a number or a name,

@@ -10,12 +10,13 @@
 typedef struct geo_crs geo_crs;
 
 /* From any spelling: EPSG:n, URNs and URLs of OGC (compound ones too), urn:adv, "CH1903", WKT, PROJ strings. NULL after
- * reporting what was not understood (and where: `place` is put before the message, e.g. "city.gml:12"). */
-geo_crs *geo_crs_create(const char *definition, const char *place, noc_log *log);
+ * reporting what was not understood (and where: `place` is put before the message, e.g. "city.gml:12"); *status, which may be NULL, tells
+ * that from memory that was refused. */
+geo_crs *geo_crs_create(const char *definition, const char *place, noc_log *log, noc_status *status);
 /* The same of a definition that a file holds: one that makes PROJ open any file (grids, +init, pipelines) is refused. */
-geo_crs *geo_crs_create_plain(const char *definition, const char *place, noc_log *log);
-geo_crs *geo_crs_utm(double lon, double lat); /* WGS 84 UTM zone of a place */
-geo_crs *geo_crs_clone(const geo_crs *crs);
+geo_crs *geo_crs_create_plain(const char *definition, const char *place, noc_log *log, noc_status *status);
+geo_crs *geo_crs_utm(double lon, double lat); /* WGS 84 UTM zone of a place; NULL: memory was refused */
+geo_crs *geo_crs_clone(const geo_crs *crs);   /* NULL: memory was refused, or crs is NULL */
 void geo_crs_destroy(geo_crs *crs);
 const char *geo_crs_name(const geo_crs *crs);       /* "EPSG:25832 (ETRS89 / UTM zone 32N)" */
 bool geo_crs_is_geographic(const geo_crs *crs);
@@ -34,7 +35,7 @@ double geo_crs_scale(geo_crs *crs, double x, double y);
 /* Transform between two CRSs; not thread-safe, one a thread. Points are easting northing height (lon lat height, degrees):
  * axis order is normalised. Height passes through unchanged, but for its unit (feet to metres). */
 typedef struct geo_transform geo_transform;
-geo_transform *geo_transform_create(const geo_crs *from, const geo_crs *to, noc_log *log);
+geo_transform *geo_transform_create(const geo_crs *from, const geo_crs *to, noc_log *log, noc_status *status); /* as geo_crs_create */
 void geo_transform_destroy(geo_transform *t);
 /* In place; points that cannot be transformed become NaN. Returns how many failed. */
 size_t geo_transform_points(geo_transform *t, double *xyz, size_t count);
@@ -94,6 +95,7 @@ typedef struct geo_column {
 /* Counted reasons: kept by the importer, a line a reason in the report. */
 typedef struct geo_issues geo_issues;
 void geo_issue(geo_issues *issues, bool repaired, const char *reason, const char *id); /* texts are copied */
+bool geo_issues_refused(const geo_issues *issues); /* whether memory was refused to any, which is not counted then; looked at once, at the end */
 
 /* The importer's side. Readers call these; any status but NOC_OK makes the reader stop and return it. */
 typedef struct geo_sink {
@@ -109,7 +111,7 @@ typedef struct geo_sink {
     noc_status (*end_object)(void *ctx);
     noc_status (*lamp)(void *ctx, const geo_lamp *lamp);
     /* Of a file of points, at its end: how many there are, lamps or not, and its columns. May be NULL. */
-    void (*columns)(void *ctx, size_t points, const geo_column *columns, size_t count);
+    noc_status (*columns)(void *ctx, size_t points, const geo_column *columns, size_t count);
     /* fraction of the file read; false: cancelled */
     bool (*progress)(void *ctx, double done);
     bool named_lamps; /* the user says that the file's points are lamps */
@@ -135,10 +137,10 @@ void geo_triangles_free(geo_triangles *t);
 void geo_issues_add(geo_issues *issues, bool repaired, const char *reason, size_t count, const char *examples);
 
 /* Issues storage, used by the importer. */
-geo_issues *geo_issues_create(void);
+geo_issues *geo_issues_create(void) NOC_MUST_USE; /* NULL: memory was refused */
 void geo_issues_destroy(geo_issues *issues);
 size_t geo_issues_count(const geo_issues *issues);
-void geo_issues_get(const geo_issues *issues, size_t i, const char **reason, bool *repaired, size_t *count,
-                    const char **examples);
+bool geo_issues_get(const geo_issues *issues, size_t i, const char **reason, bool *repaired, size_t *count,
+                    const char **examples) NOC_MUST_USE; /* false: memory was refused */
 
 #endif

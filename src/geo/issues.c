@@ -17,7 +17,9 @@ struct geo_issues {
     noc_arena names;
 };
 
-geo_issues *geo_issues_create(void) { return noc_calloc(1, sizeof(geo_issues)); }
+geo_issues *geo_issues_create(void) { return noc_try_calloc(1, sizeof(geo_issues)); }
+
+bool geo_issues_refused(const geo_issues *issues) { return issues->names.refused; }
 
 void geo_issues_destroy(geo_issues *issues) {
     if (!issues)
@@ -29,14 +31,18 @@ void geo_issues_destroy(geo_issues *issues) {
     free(issues);
 }
 
-/* There are a few dozen reasons at most, and those in use come first: a linear search. */
+/* There are a few dozen reasons at most, and those in use come first: a linear search. NULL where memory is refused. */
 static struct line *find_line(geo_issues *issues, bool repaired, const char *reason) {
     for (size_t i = 0; i < issues->lines.len; i++) {
         struct line *l = &issues->lines.data[i];
         if (l->repaired == repaired && !strcmp(l->reason, reason))
             return l;
     }
-    array_push(&issues->lines, (struct line){ .reason = arena_strdup(&issues->names, reason), .repaired = repaired });
+    struct line line = { .reason = arena_try_strdup(&issues->names, reason), .repaired = repaired };
+    if (!line.reason || !array_try_push(&issues->lines, line)) {
+        issues->names.refused = true;
+        return NULL;
+    }
     return &issues->lines.data[issues->lines.len - 1];
 }
 
@@ -44,13 +50,18 @@ void geo_issue(geo_issues *issues, bool repaired, const char *reason, const char
     if (!issues)
         return;
     struct line *l = find_line(issues, repaired, reason);
+    if (!l)
+        return;
     l->count++;
     if (!id || !*id || l->example_count == EXAMPLES)
         return;
     for (int i = 0; i < l->example_count; i++)
         if (!strcmp(l->examples[i], id))
             return;
-    l->examples[l->example_count++] = arena_strdup(&issues->names, id);
+    const char *example = arena_try_strdup(&issues->names, id);
+    if (!example)
+        return;
+    l->examples[l->example_count++] = example;
     free(l->joined);
     l->joined = NULL;
 }
@@ -58,17 +69,15 @@ void geo_issue(geo_issues *issues, bool repaired, const char *reason, const char
 void geo_issues_add(geo_issues *issues, bool repaired, const char *reason, size_t count, const char *examples) {
     if (!issues || !count)
         return;
-    size_t lines = issues->lines.len;
     geo_issue(issues, repaired, reason, examples);
     struct line *l = find_line(issues, repaired, reason);
-    l->count += count - 1;
-    if (issues->lines.len > lines)
-        l->reason = arena_strdup(&issues->names, reason);
+    if (l)
+        l->count += count - 1;
 }
 
 size_t geo_issues_count(const geo_issues *issues) { return issues ? issues->lines.len : 0; }
 
-void geo_issues_get(const geo_issues *issues, size_t i, const char **reason, bool *repaired, size_t *count,
+bool geo_issues_get(const geo_issues *issues, size_t i, const char **reason, bool *repaired, size_t *count,
                     const char **examples) {
     struct line *l = &issues->lines.data[i];
     *reason = l->reason;
@@ -78,10 +87,13 @@ void geo_issues_get(const geo_issues *issues, size_t i, const char **reason, boo
         size_t size = 1;
         for (int k = 0; k < l->example_count; k++)
             size += strlen(l->examples[k]) + 2;
-        char *p = l->joined = noc_alloc(size);
+        char *p = l->joined = noc_try_alloc(size);
+        if (!p)
+            return false;
         *p = 0;
         for (int k = 0; k < l->example_count; k++)
             p = stpcpy(stpcpy(p, k ? ", " : ""), l->examples[k]);
     }
     *examples = l->joined;
+    return true;
 }

@@ -276,12 +276,14 @@ static void check_holes(struct work *w) {
     }
 }
 
-static void push_ring(struct work *w, size_t n) {
-    double sum[3] = { 0 };
+/* Room was reserved. */
+static void put_ring(struct work *w, size_t n) {
+    double *sum = w->ring_sum.data + w->ring_sum.len;
+    w->ring_sum.len += 3;
+    memset(sum, 0, 3 * sizeof(*sum));
     for (size_t i = w->xyz.len - 3 * n; i < w->xyz.len; i++)
         sum[i % 3] += w->xyz.data[i];
-    array_push(&w->ring_size, n);
-    array_append(&w->ring_sum, sum, 3);
+    w->ring_size.data[w->ring_size.len++] = n;
 }
 
 /* Rings cleaned into w, plane found, holes turned. False if the polygon was skipped. */
@@ -315,7 +317,7 @@ static bool prepare(struct work *w, const geo_polygon *polygon) {
             w->xyz.len -= 3 * n;
             continue;
         }
-        push_ring(w, n);
+        put_ring(w, n);
     }
     if (!w->ring_size.len) {
         geo_issue(w->issues, false, "ring with too few points", w->id);
@@ -340,15 +342,16 @@ static double corner(const double *uv, size_t a, size_t b, size_t c) {
 }
 
 /* Most polygons of a city are triangles and quadrilaterals. A quadrilateral is cut along the shorter diagonal of those
- * that lie inside it; where neither does, it crosses itself and the tessellator must do it. */
-static bool cut_simple(const struct work *w, geo_triangles *out) {
+ * that lie inside it; where neither does, it crosses itself and the tessellator must do it. There is room. */
+static bool cut_simple(const struct work *w, uint32_t v, geo_triangles *out) {
     size_t n = w->ring_size.data[0];
     if (w->ring_size.len > 1 || n > 4)
         return false;
     const double *uv = w->uv.data;
-    uint32_t v = (uint32_t)(out->xyz.len / 3);
+    uint32_t *to = out->indices.data + out->indices.len;
     if (n == 3) {
-        array_append(&out->indices, ((uint32_t[]){ v, v + 1, v + 2 }), 3);
+        memcpy(to, ((uint32_t[]){ v, v + 1, v + 2 }), 3 * sizeof(*to));
+        out->indices.len += 3;
         return true;
     }
     bool ac = corner(uv, 0, 1, 2) > 0 && corner(uv, 0, 2, 3) > 0, bd = corner(uv, 1, 2, 3) > 0 && corner(uv, 1, 3, 0) > 0;
@@ -360,10 +363,8 @@ static bool cut_simple(const struct work *w, geo_triangles *out) {
         subtract(w->xyz.data + 9, w->xyz.data + 3, q);
         ac = dot(p, p) <= dot(q, q);
     }
-    if (ac)
-        array_append(&out->indices, ((uint32_t[]){ v, v + 1, v + 2, v, v + 2, v + 3 }), 6);
-    else
-        array_append(&out->indices, ((uint32_t[]){ v + 1, v + 2, v + 3, v + 1, v + 3, v }), 6);
+    memcpy(to, ac ? (uint32_t[]){ v, v + 1, v + 2, v, v + 2, v + 3 } : (uint32_t[]){ v + 1, v + 2, v + 3, v + 1, v + 3, v }, 6 * sizeof(*to));
+    out->indices.len += 6;
     return true;
 }
 
@@ -390,13 +391,11 @@ static bool triangulate(struct work *w, geo_triangles *out) {
         return false;
     /* With two triangles fewer than points, and two more a hole. */
     size_t triangles = w->xyz.len / 3 + 2 * w->ring_size.len;
-    if (!array_try_reserve(&out->xyz, out->xyz.len + w->xyz.len) ||
-        !array_try_reserve(&out->indices, out->indices.len + 3 * triangles)) {
+    if (!array_try_reserve(&out->indices, out->indices.len + 3 * triangles) || !array_try_append(&out->xyz, w->xyz.data, w->xyz.len)) {
         w->no_memory = true;
         return false;
     }
-    bool simple = cut_simple(w, out);
-    array_append(&out->xyz, w->xyz.data, w->xyz.len);
+    bool simple = cut_simple(w, (uint32_t)(first_vertex / 3), out);
     if (!simple) {
         tessellation t = tessellate(w->uv.data, w->ring_size.data, w->ring_size.len, out, first_vertex / 3);
         if (t.crossings)

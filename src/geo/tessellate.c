@@ -12,18 +12,17 @@ struct job {
     tessellation result;
 };
 
-static bool refuse(struct job *job) {
+static void refuse(struct job *job) {
     job->result.no_memory = true;
     job->result.ok = false;
-    return false;
 }
 
 static void *as_pointer(size_t vertex) { return (void *)(uintptr_t)(vertex + 1); } /* never NULL: GLU gives NULL for none */
 
 static void on_vertex(void *data, void *user) {
     struct job *job = user;
-    if (array_try_reserve(&job->out->indices, job->out->indices.len + 1) || refuse(job))
-        array_push(&job->out->indices, (uint32_t)((uintptr_t)data - 1));
+    if (!array_try_push(&job->out->indices, (uint32_t)((uintptr_t)data - 1)))
+        refuse(job);
 }
 
 /* Its presence makes GLU give plain triangles, neither strips nor fans. */
@@ -64,11 +63,11 @@ static void on_combine(GLdouble place[3], void *data[4], GLfloat weight[4], void
         job->result.crossings += given;
     else
         job->result.touches += given;
-    *out = data[0];
-    if (!array_try_reserve(&job->out->xyz, job->out->xyz.len + 3) && !refuse(job))
-        return;
     *out = as_pointer(job->out->xyz.len / 3);
-    array_append(&job->out->xyz, p, 3);
+    if (!array_try_append(&job->out->xyz, p, 3)) {
+        *out = data[0];
+        refuse(job);
+    }
 }
 
 /* ---- rings that cross themselves too often ---- */
@@ -97,12 +96,14 @@ static bool cross_properly(const edge *e, const edge *f) {
 
 /* Each crossing costs the tessellator time that grows with the number of edges: a ring of a few thousand random points
  * takes minutes. */
-static bool crosses_too_often(const double *uv, const size_t *ring_size, size_t ring_count, size_t points) {
+static bool crosses_too_often(struct job *job, const double *uv, const size_t *ring_size, size_t ring_count, size_t points) {
     if (points < FEW_POINTS)
         return false;
-    edge *edges = noc_try_alloc(points * sizeof(*edges)); /* where it is refused, the tessellator comes to it */
-    if (!edges)
+    edge *edges = noc_try_alloc(points * sizeof(*edges));
+    if (!edges) {
+        refuse(job);
         return false;
+    }
     size_t n = 0, limit = MANY_CROSSINGS, crossings = 0, pairs = 0, i = 0;
     for (size_t r = 0; r < ring_count; uv += 2 * ring_size[r++])
         for (size_t k = 0; k < ring_size[r]; k++) {
@@ -193,8 +194,10 @@ static void turn(piece *p, const double axis[2]) {
 /* By GLU, which sweeps along u. */
 static void sweep(struct job *job, const piece *p, bool odd) {
     GLUtesselator *tess = gluNewTess();
-    if (!tess && !refuse(job))
+    if (!tess) {
+        refuse(job);
         return;
+    }
     gluTessCallback(tess, GLU_TESS_VERTEX_DATA, (_GLUfuncptr)on_vertex);
     gluTessCallback(tess, GLU_TESS_EDGE_FLAG_DATA, (_GLUfuncptr)on_edge_flag);
     gluTessCallback(tess, GLU_TESS_ERROR_DATA, (_GLUfuncptr)on_error);
@@ -255,11 +258,10 @@ static void find_crossings(struct job *job, const piece *p, cut_line *line) {
                 xyz[k] = x[k] + t * (y[k] - x[k]);
             crossing c = { .v = uv[2 * a + 1] + t * (uv[2 * b + 1] - uv[2 * a + 1]), .vertex = (uint32_t)(job->out->xyz.len / 3),
                            .to = b, .edge = a, .up = uv[2 * b] > line->at };
-            if ((!array_try_reserve(&job->out->xyz, job->out->xyz.len + 3) ||
-                 !array_try_reserve(&line->crossings, line->crossings.len + 1)) && !refuse(job))
+            if (!array_try_append(&job->out->xyz, xyz, 3) || !array_try_push(&line->crossings, c)) {
+                refuse(job);
                 return;
-            array_append(&job->out->xyz, xyz, 3);
-            array_push(&line->crossings, c);
+            }
         }
 }
 
@@ -268,8 +270,10 @@ static void find_crossings(struct job *job, const piece *p, cut_line *line) {
 static void join_ends(struct job *job, cut_line *line) {
     crossing *c = line->crossings.data;
     size_t n = line->crossings.len, depth = 0, *open = noc_try_alloc((n + 1) * sizeof(*open));
-    if (!open && !refuse(job))
+    if (!open) {
+        refuse(job);
         return;
+    }
     if (n)
         qsort(c, n, sizeof(*c), by_v);
     for (size_t i = 0; i < n; i++) {
@@ -284,9 +288,11 @@ static void join_ends(struct job *job, cut_line *line) {
     free(open);
 }
 
-static void push_point(piece *p, double u, double v, uint32_t vertex) {
-    array_append(&p->uv, ((double[]){ u, v }), 2);
-    array_push(&p->vertex, vertex);
+/* Into room that was reserved. */
+static void put_point(piece *p, double u, double v, uint32_t vertex) {
+    p->uv.data[p->uv.len++] = u;
+    p->uv.data[p->uv.len++] = v;
+    p->vertex.data[p->vertex.len++] = vertex;
 }
 
 /* Cuts a piece in two where u is `at`. */
@@ -310,17 +316,17 @@ static void cut(struct job *job, const piece *p, double at, piece half[2]) {
         for (size_t i = start; line.crossed[i] != SIZE_MAX;) {
             size_t c = line.crossed[i];
             line.crossed[i] = SIZE_MAX;
-            push_point(to, p->uv.data[2 * i], p->uv.data[2 * i + 1], p->vertex.data[i]);
+            put_point(to, p->uv.data[2 * i], p->uv.data[2 * i + 1], p->vertex.data[i]);
             i = line.next[i];
             if (!c)
                 continue;
             const crossing *out = &line.crossings.data[c - 1], *in = &line.crossings.data[out->partner];
-            push_point(to, at, out->v, out->vertex);
-            push_point(to, at, in->v, in->vertex);
+            put_point(to, at, out->v, out->vertex);
+            put_point(to, at, in->v, in->vertex);
             i = in->to;
         }
         if (to->vertex.len - first >= 3) {
-            array_push(&to->ring_size, to->vertex.len - first);
+            to->ring_size.data[to->ring_size.len++] = to->vertex.len - first;
         } else {
             to->vertex.len = first;
             to->uv.len = 2 * first;
@@ -398,21 +404,21 @@ tessellation tessellate(const double *uv, const size_t *ring_size, size_t ring_c
     size_t points = 0;
     for (size_t r = 0; r < ring_count; r++)
         points += ring_size[r];
-    if (crosses_too_often(uv, ring_size, ring_count, points))
-        return (tessellation){ .tangled = true };
     struct job job = { .out = out, .first_index = out->indices.len, .first_made = first_vertex + points, .result = { .ok = true } };
+    if (crosses_too_often(&job, uv, ring_size, ring_count, points))
+        return (tessellation){ .tangled = true };
     piece whole = { 0 };
     size_t numbers = 2 * points;
-    if (!array_try_reserve(&whole.uv, numbers) || !array_try_reserve(&whole.ring_size, ring_count) ||
+    if (!job.result.ok || !array_try_append(&whole.uv, uv, numbers) || !array_try_append(&whole.ring_size, ring_size, ring_count) ||
         !array_try_reserve(&whole.vertex, points)) {
         refuse(&job);
         piece_free(&whole);
         return job.result;
     }
-    array_append(&whole.uv, uv, numbers);
-    array_append(&whole.ring_size, ring_size, ring_count);
-    for (size_t i = 0; i < points; i++)
-        array_push(&whole.vertex, (uint32_t)(first_vertex + i));
+    while (whole.vertex.len < points) {
+        whole.vertex.data[whole.vertex.len] = (uint32_t)(first_vertex + whole.vertex.len);
+        whole.vertex.len++;
+    }
     const struct division division = { ring_count == 1, WORK_AT_ONCE, first_vertex + (MOST_MADE + 1) * points };
     tessellate_piece(&job, &whole, &division);
     return job.result;

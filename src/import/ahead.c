@@ -56,9 +56,12 @@ noc_status ahead_release(struct look_ahead *a) {
     return status;
 }
 
-static ahead_event *push(struct look_ahead *a, int kind) {
-    array_push(&a->events, (ahead_event){ .kind = kind, .source = a->im->source });
-    return &a->events.data[a->events.len - 1];
+static noc_status no_memory(struct look_ahead *a) { return noc_no_memory(a->im->log, a->im->inputs[a->im->current].path); }
+
+/* An event whose texts and arrays were put into the arena. */
+static noc_status push(struct look_ahead *a, ahead_event e) {
+    e.source = a->im->source;
+    return !a->arena.refused && array_try_push(&a->events, e) ? NOC_OK : no_memory(a);
 }
 
 /* Coordinates need a CRS, even if the file names none. */
@@ -70,7 +73,8 @@ static noc_status ensure_source(struct look_ahead *a) {
 static noc_status keep_points(struct look_ahead *a, const double *xyz, size_t count, const char *id) {
     place_sample s = { .source = a->im->source, .id = id };
     if (!(a->in_object && a->sampled) && place_centre(xyz, count, s.xyz)) {
-        array_push(&a->samples, s);
+        if (!array_try_push(&a->samples, s))
+            return no_memory(a);
         a->sampled = true;
     }
     a->points += count;
@@ -86,21 +90,19 @@ static noc_status on_begin_object(void *ctx, const geo_object *object) {
     struct look_ahead *a = ctx;
     if (a->passing)
         return a->sink.begin_object(a->sink.ctx, object);
-    ahead_event *e = push(a, AHEAD_BEGIN);
-    e->u.object = *object;
-    e->u.object.id = arena_strdup(&a->arena, object->id);
+    ahead_event e = { .kind = AHEAD_BEGIN, .u.object = *object };
+    e.u.object.id = arena_try_strdup(&a->arena, object->id);
     a->in_object = true;
     a->sampled = false;
-    return NOC_OK;
+    return push(a, e);
 }
 
 static noc_status on_end_object(void *ctx) {
     struct look_ahead *a = ctx;
     if (a->passing)
         return a->sink.end_object(a->sink.ctx);
-    push(a, AHEAD_END);
     a->in_object = false;
-    return NOC_OK;
+    return push(a, (ahead_event){ .kind = AHEAD_END });
 }
 
 static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
@@ -113,18 +115,20 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
     size_t count = 0;
     for (size_t r = 0; r < polygon->ring_count; r++)
         count += polygon->ring_size[r];
-    size_t *ring_size = arena_alloc(&a->arena, (polygon->ring_count + 1) * sizeof(*ring_size));
-    double *xyz = arena_alloc(&a->arena, (count + 1) * 3 * sizeof(*xyz));
+    size_t *ring_size = arena_try_alloc(&a->arena, (polygon->ring_count + 1) * sizeof(*ring_size));
+    double *xyz = arena_try_alloc(&a->arena, (count + 1) * 3 * sizeof(*xyz));
+    if (a->arena.refused)
+        return no_memory(a);
     if (polygon->ring_count)
         memcpy(ring_size, polygon->ring_size, polygon->ring_count * sizeof(*ring_size));
     if (count)
         memcpy(xyz, polygon->xyz, count * 3 * sizeof(*xyz));
-    geo_polygon kept = *polygon;
-    kept.ring_size = ring_size;
-    kept.xyz = xyz;
-    kept.id = arena_strdup(&a->arena, polygon->id);
-    push(a, AHEAD_POLYGON)->u.polygon = kept;
-    return keep_points(a, xyz, count, kept.id);
+    ahead_event e = { .kind = AHEAD_POLYGON, .u.polygon = *polygon };
+    e.u.polygon.ring_size = ring_size;
+    e.u.polygon.xyz = xyz;
+    e.u.polygon.id = arena_try_strdup(&a->arena, polygon->id);
+    status = push(a, e);
+    return status ? status : keep_points(a, xyz, count, e.u.polygon.id);
 }
 
 static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
@@ -134,16 +138,16 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     noc_status status = ensure_source(a);
     if (status)
         return status;
-    geo_lamp kept = *lamp;
-    kept.id = lamp->id ? arena_strdup(&a->arena, lamp->id) : NULL;
-    push(a, AHEAD_LAMP)->u.lamp = kept;
+    ahead_event e = { .kind = AHEAD_LAMP, .u.lamp = *lamp };
+    e.u.lamp.id = arena_try_strdup(&a->arena, lamp->id);
+    status = push(a, e);
     a->in_object = false;
-    return keep_points(a, lamp->xyz, 1, kept.id ? kept.id : "");
+    return status ? status : keep_points(a, lamp->xyz, 1, e.u.lamp.id ? e.u.lamp.id : "");
 }
 
-static void on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
+static noc_status on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
     struct look_ahead *a = ctx;
-    a->sink.columns(a->sink.ctx, points, columns, count);
+    return a->sink.columns(a->sink.ctx, points, columns, count);
 }
 
 static bool on_progress(void *ctx, double done) {
@@ -152,7 +156,9 @@ static bool on_progress(void *ctx, double done) {
 }
 
 struct look_ahead *ahead_create(importer *im, geo_sink *sink) {
-    struct look_ahead *a = noc_calloc(1, sizeof(*a));
+    struct look_ahead *a = noc_try_calloc(1, sizeof(*a));
+    if (!a)
+        return NULL;
     a->im = im;
     a->sink = *sink;
     sink->ctx = a;

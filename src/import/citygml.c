@@ -45,16 +45,14 @@ static bool probe(const char *head, size_t size) {
     size_t start = size >= 3 && !memcmp(head, "\xef\xbb\xbf", 3) ? 3 : 0;
     bool wide = size >= 4 && ((bytes[0] == 0xff && bytes[1] == 0xfe) || (bytes[0] == 0xfe && bytes[1] == 0xff) ||
                               !bytes[0] || !bytes[1]);
-    char *text = noc_alloc(size + 1);
+    char text[(1 << 16) + 1]; /* probes take no memory, so that none is refused */
     size_t n = 0;
-    for (size_t i = start; i < size; i++) /* UTF-16: names are ASCII, so every other byte is 0 */
+    for (size_t i = start; i < size && n + 1 < sizeof(text); i++) /* UTF-16: names are ASCII, so every other byte is 0 */
         if (!wide || (bytes[i] && bytes[i] < 0x80))
             text[n++] = head[i] ? head[i] : ' ';
     text[n] = 0;
     bool is_xml = text[strspn(text, " \t\r\n")] == '<';
-    bool result = is_xml && probe_text(text);
-    free(text);
-    return result;
+    return is_xml && probe_text(text);
 }
 
 /* ---- passes ---- */
@@ -71,7 +69,7 @@ static noc_status xml_error(cg_parser *p) {
         return cg_fail(p, NOC_ERR_UNSUPPORTED, "character encoding that is not read; UTF-8, UTF-16, ISO-8859-1 and "
                                                "US-ASCII are");
     if (code == XML_ERROR_NO_MEMORY)
-        return cg_fail(p, NOC_ERR_MEMORY, "out of memory");
+        return cg_no_memory(p);
     if (code == XML_ERROR_NO_ELEMENTS || code == XML_ERROR_UNCLOSED_TOKEN)
         return cg_fail(p, NOC_ERR_FORMAT, "the file ends too early: is it cut? (%s)", XML_ErrorString(code));
     return cg_fail(p, NOC_ERR_FORMAT, "%s", XML_ErrorString(code));
@@ -107,7 +105,7 @@ static noc_status run_pass(cg_parser *p, int pass) {
     p->ordinal = p->deferred_next = p->deferred_kept = 0;
     p->xml = XML_ParserCreate_MM(NULL, &(XML_Memory_Handling_Suite){ noc_try_alloc, noc_try_realloc, free }, "\n");
     if (!p->xml)
-        return p->status = noc_error(p->sink->log, NOC_ERR_MEMORY, "%s: out of memory", noc_stream_name(p->stream));
+        return p->status = noc_no_memory(p->sink->log, noc_stream_name(p->stream));
     XML_SetUserData(p->xml, p);
     XML_SetElementHandler(p->xml, cg_start_element, cg_end_element);
     XML_SetCharacterDataHandler(p->xml, cg_characters);
@@ -141,13 +139,18 @@ static void free_parser(cg_parser *p) {
 }
 
 static noc_status read_citygml(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
-    cg_parser *p = noc_calloc(1, sizeof(*p));
+    cg_parser *p = noc_try_calloc(1, sizeof(*p));
+    if (p)
+        p->keys = lamp_keys_create(params);
+    if (!p || !p->keys) {
+        free(p);
+        return noc_no_memory(sink->log, noc_stream_name(stream));
+    }
     p->stream = stream;
     p->sink = sink;
     p->max_lod = NOC_CLAMP(params->lod, 0, 4);
     p->format = format;
     p->sink_srs = CG_UNTOLD;
-    p->keys = lamp_keys_create(params);
     *format = "CityGML";
     noc_status status = run_pass(p, 1);
     for (int pass = 2; pass <= 3 && !status && p->deferred.len; pass++) {
@@ -158,7 +161,8 @@ static noc_status read_citygml(noc_stream *stream, const noc_import_params *para
         p->deferred.len = p->deferred_kept;
     }
     noc_debug(sink->log, "%s: %zu polygons used, %zu given twice", noc_stream_name(stream), p->emitted, p->dropped);
-    lamp_keys_report(p->keys, sink, 0);
+    if (!status)
+        status = lamp_keys_report(p->keys, sink, noc_stream_name(stream), 0);
     free_parser(p);
     return status;
 }

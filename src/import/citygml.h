@@ -82,6 +82,7 @@ typedef struct cg_numbers {
     char token[64];      /* a number cut by the end of a piece */
     uint32_t token_len;
     bool bad;            /* something that is no number, or too many of them */
+    bool refused;        /* memory, to one of them; stays set */
     char cs, ts, decimal; /* gml:coordinates; 0, 0, '.' for lists separated by blanks */
     uint32_t tuple;      /* gml:coordinates: numbers a tuple, 0 before the first ended */
     uint32_t in_tuple;
@@ -279,8 +280,10 @@ typedef struct cg_parser {
 void cg_start_element(void *user, const XML_Char *name, const XML_Char **attributes);
 void cg_end_element(void *user, const XML_Char *name);
 void cg_characters(void *user, const XML_Char *text, int size);
-/* Reports "file:line: cause", stops the parser, and returns the status. */
+/* Reports "file:line: cause", stops the parser, and returns the status. Handlers do nothing from then on: where memory is refused
+ * (cg_no_memory) what was half built is freed with the parser. */
 noc_status cg_fail(cg_parser *p, noc_status status, const char *fmt, ...) NOC_PRINTF(3, 4);
+noc_status cg_no_memory(cg_parser *p);
 /* Counts a defect of the file; once, though the file may be read several times. */
 void cg_issue(cg_parser *p, bool repaired, const char *reason, const char *id);
 /* Whether the object may still grow; false after an error. */

@@ -15,10 +15,12 @@ void cg_attribute_add(cg_parser *p, const char *key, const char *value, bool gen
     value += strspn(value, " \t\r\n");
     if (object->attributes.len == MOST || !*value || !cg_object_room(p))
         return;
-    char *kept = arena_strdup(&object->arena, value);
-    for (size_t n = strlen(kept); n && strchr(" \t\r\n", kept[n - 1]); n--)
-        kept[n - 1] = 0;
-    array_push(&object->attributes, (cg_attribute){ arena_strdup(&object->arena, key), kept, generic });
+    size_t n = strlen(value);
+    while (n && strchr(" \t\r\n", value[n - 1]))
+        n--;
+    cg_attribute a = { arena_try_strdup(&object->arena, key), arena_try_strndup(&object->arena, value, n), generic };
+    if (!a.key || !a.value || !array_try_push(&object->attributes, a))
+        cg_no_memory(p);
 }
 
 const char *cg_attribute_get(const cg_object *object, const char *key) {

@@ -22,7 +22,11 @@ void cg_tell_crs(cg_parser *p, uint32_t srs) {
     p->sink_srs = srs;
     p->lat_first = false;
     const char *name = noc_stream_name(p->stream);
-    char *place = srs == CG_NONE ? noc_strdup(name) : noc_format("%s:%lu", name, p->srs[srs].line);
+    char *place = srs == CG_NONE ? noc_try_strdup(name) : noc_try_format("%s:%lu", name, p->srs[srs].line);
+    if (!place) {
+        cg_no_memory(p);
+        return;
+    }
     cg_stop(p, p->sink->crs(p->sink->ctx, srs == CG_NONE ? NULL : p->srs[srs].name, place, &p->lat_first));
     free(place);
 }
@@ -62,14 +66,16 @@ void cg_place_point(const cg_parser *p, const cg_implicit *implicit, double *poi
     point[2] = anchor[2] + local[2];
 }
 
-/* Into p->out, p->out_rings: easting northing height, turned over where asked. */
+/* Into p->out, p->out_rings: easting northing height, turned over where asked. p->status tells where memory is refused. */
 void cg_transform(cg_parser *p, const cg_polygon *polygon, const cg_implicit *implicit, bool flip) {
     p->out.len = p->out_rings.len = 0;
     const double *in = polygon->xyz;
     for (uint32_t r = 0; r < polygon->ring_count; r++) {
         size_t points = polygon->ring_size[r], first = p->out.len, numbers = 3 * points;
-        array_push(&p->out_rings, points);
-        array_append(&p->out, in, numbers);
+        if (!array_try_push(&p->out_rings, points) || !array_try_append(&p->out, in, numbers)) {
+            cg_no_memory(p);
+            return;
+        }
         for (size_t i = 0; flip && i < points; i++)
             memcpy(p->out.data + first + 3 * i, in + 3 * (points - 1 - i), 3 * sizeof(double));
         in += numbers;
@@ -150,6 +156,8 @@ void cg_emit_polygon(cg_parser *p, const cg_polygon *polygon, uint32_t geometry,
     if (p->status)
         return;
     cg_transform(p, polygon, g->implicit, flip);
+    if (p->status)
+        return;
     geo_polygon out = { .cls = class_of(p, g), .id = cg_report_id(p, polygon->id, g->feature),
                         .ring_count = p->out_rings.len, .ring_size = p->out_rings.data, .xyz = p->out.data };
     cg_stop(p, p->sink->polygon(p->sink->ctx, &out));
@@ -206,18 +214,23 @@ static void emit_object(cg_parser *p) {
 
 /* ---- the store ---- */
 
+/* NULL: memory was refused. */
 static cg_polygon *copy_polygon(cg_store *store, cg_polygon *polygon) {
     if (polygon->copy)
         return polygon->copy;
-    cg_polygon *copy = arena_alloc(&store->arena, sizeof(*copy));
-    size_t *sizes = arena_alloc(&store->arena, polygon->ring_count * sizeof(size_t));
+    cg_polygon *copy = arena_try_alloc(&store->arena, sizeof(*copy));
+    size_t *sizes = arena_try_alloc(&store->arena, polygon->ring_count * sizeof(size_t));
     size_t points = 0;
     for (uint32_t r = 0; r < polygon->ring_count; r++)
-        points += sizes[r] = polygon->ring_size[r];
-    double *xyz = arena_alloc(&store->arena, 3 * points * sizeof(double));
+        points += polygon->ring_size[r];
+    double *xyz = arena_try_alloc(&store->arena, 3 * points * sizeof(double));
+    const char *id = arena_try_strdup(&store->arena, polygon->id);
+    if (store->arena.refused)
+        return NULL;
+    memcpy(sizes, polygon->ring_size, polygon->ring_count * sizeof(size_t));
     memcpy(xyz, polygon->xyz, 3 * points * sizeof(double));
     *copy = *polygon;
-    copy->id = arena_strdup(&store->arena, polygon->id);
+    copy->id = id;
     copy->ring_size = sizes;
     copy->xyz = xyz;
     copy->shown = 0;
@@ -232,9 +245,12 @@ static void store_items(cg_parser *p, size_t first, cg_stored *stored) {
         if (!item.polygon)
             continue;
         bool shown = item.stored ? item.elsewhere : item.polygon->shown == p->selections;
-        array_push(&stored->items,
-                   (cg_item){ .polygon = item.stored ? item.polygon : copy_polygon(&p->store, item.polygon),
-                              .flip = item.flip, .local = item.local, .elsewhere = shown });
+        cg_item kept = { .polygon = item.stored ? item.polygon : copy_polygon(&p->store, item.polygon), .flip = item.flip,
+                         .local = item.local, .elsewhere = shown };
+        if (!kept.polygon || !array_try_push(&stored->items, kept)) {
+            cg_no_memory(p);
+            return;
+        }
     }
     s->items.len = first;
     stored->found = true;
@@ -247,7 +263,7 @@ static void too_much_shared(cg_parser *p) {
 /* Keeps what other objects want of this one. */
 static void collect(cg_parser *p) {
     bool selected = false;
-    for (size_t i = 0; i < p->object.targets.len; i++) {
+    for (size_t i = 0; i < p->object.targets.len && !p->status; i++) {
         const cg_target *target = &p->object.targets.data[i];
         uint64_t index;
         if (!map_get(&p->store.wanted, target->id, &index) || p->store.entries.data[index].found)
@@ -270,10 +286,14 @@ static void want_missing(cg_parser *p) {
     for (size_t i = 0; i < p->selection.missing.len; i++) {
         if (map_get(&p->store.wanted, p->selection.missing.data[i], &index))
             continue;
-        map_put(&p->store.wanted, p->selection.missing.data[i], p->store.entries.len);
-        array_push(&p->store.entries, (cg_stored){ 0 });
+        if (!array_try_push(&p->store.entries, (cg_stored){ 0 }) ||
+            !map_try_put(&p->store.wanted, p->selection.missing.data[i], p->store.entries.len - 1, NULL)) {
+            cg_no_memory(p);
+            return;
+        }
     }
-    array_push(&p->deferred, p->ordinal);
+    if (!array_try_push(&p->deferred, p->ordinal))
+        cg_no_memory(p);
     if (p->store.wanted.keys.bytes + p->store.entries.len * sizeof(cg_stored) > CG_MAX_OBJECT)
         too_much_shared(p);
 }
@@ -297,13 +317,16 @@ static void finish_object(cg_parser *p) {
     if (p->pass > 1)
         p->deferred_next++;
     cg_resolve(p);
+    if (p->status)
+        return;
     if (p->selection.missing.len && p->pass == 1) {
         want_missing(p);
     } else if (p->selection.missing.len && p->pass == 2) {
         p->deferred.data[p->deferred_kept++] = p->ordinal;
     } else {
         cg_select(p);
-        emit_object(p);
+        if (!p->status)
+            emit_object(p);
     }
 }
 

@@ -39,7 +39,11 @@ static bool is_lamp(cg_parser *p, const lamp_tag *tags, size_t count, bool sure)
         return true;
     if (object->other_function)
         return false;
-    const char **names = noc_calloc(count + 1, sizeof(*names));
+    const char **names = noc_try_calloc(count + 1, sizeof(*names));
+    if (!names) {
+        cg_no_memory(p);
+        return false;
+    }
     for (size_t i = 0; i < count; i++)
         names[i] = tags[i].key;
     bool tell = lamp_columns_tell(p->keys, names, count);
@@ -66,6 +70,8 @@ static bool read_body(cg_parser *p, body *b) {
         const cg_implicit *implicit = p->object.geometries.data[item->geometry].implicit;
         cg_tell_crs(p, implicit ? implicit->srs : item->polygon->srs);
         cg_transform(p, item->polygon, implicit, false);
+        if (p->status)
+            break;
         if (first) {
             memcpy(b->origin, p->out.data, sizeof(b->origin));
             cg_metres(p, b->origin, &b->scale[0], &b->scale[1]);
@@ -76,6 +82,8 @@ static bool read_body(cg_parser *p, body *b) {
         geo_polygon polygon = { .cls = NOC_CLASS_LAMP, .id = "", .ring_count = p->out_rings.len, .ring_size = p->out_rings.data,
                                 .xyz = p->out.data };
         geo_triangulate(&polygon, &b->mesh, NULL);
+        if (b->mesh.no_memory)
+            cg_no_memory(p);
     }
     return b->mesh.indices.len > 0 && !p->status;
 }
@@ -296,7 +304,8 @@ static void read_lamp(cg_parser *p, lamp_tag *tags, size_t count, geo_lamp *lamp
         if (!object->attributes.data[i].generic)
             tags[count++] = (lamp_tag){ "fixture", object->attributes.data[i].value };
     lamp->xyz[2] = 0; /* no elevation: the geometry says where it is */
-    lamp_read(p->keys, tags, count, lamp, p->sink->issues);
+    if (!lamp_read(p->keys, tags, count, lamp, p->sink->issues))
+        cg_no_memory(p);
     const char *function = cg_attribute_get(object, "function");
     if (function && (!strcmp(function, "1220") || !strcmp(function, "1230")) && !object->other_function)
         lamp->type = GEO_LAMP_FLOOD;
@@ -306,7 +315,11 @@ bool cg_emit_lamp(cg_parser *p) {
     cg_object *object = &p->object;
     if (!cg_may_be_lamp(object->features.data[0].type))
         return false;
-    lamp_tag *tags = noc_calloc(object->attributes.len + 1, sizeof(*tags));
+    lamp_tag *tags = noc_try_calloc(object->attributes.len + 1, sizeof(*tags));
+    if (!tags) {
+        cg_no_memory(p);
+        return true;
+    }
     size_t count;
     bool sure = tags_of(p, tags, &count), mine = is_lamp(p, tags, count, sure);
     geo_lamp lamp = { .id = "" };

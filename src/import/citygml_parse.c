@@ -19,6 +19,8 @@ noc_status cg_fail(cg_parser *p, noc_status status, const char *fmt, ...) {
     return p->status;
 }
 
+noc_status cg_no_memory(cg_parser *p) { return cg_fail(p, NOC_ERR_MEMORY, "out of memory"); }
+
 void cg_issue(cg_parser *p, bool repaired, const char *reason, const char *id) {
     if (p->pass == 1)
         geo_issue(p->sink->issues, repaired, reason, id);
@@ -115,7 +117,10 @@ static uint32_t intern_srs(cg_parser *p, const char *name) {
         cg_fail(p, NOC_ERR_FORMAT, "more than %d coordinate reference systems in one file", CG_MAX_CRS);
         return 0;
     }
-    p->srs[p->srs_count].name = arena_strdup(&p->persistent, name);
+    if (!(p->srs[p->srs_count].name = arena_try_strdup(&p->persistent, name))) {
+        cg_no_memory(p);
+        return 0;
+    }
     p->srs[p->srs_count].line = XML_GetCurrentLineNumber(p->xml);
     return p->srs_count++;
 }
@@ -138,8 +143,9 @@ static void add_reference(cg_parser *p, const cg_frame *frame, const char *href)
     }
     if (!cg_object_room(p))
         return;
-    array_push(&object->surfaces, (cg_surface){ .href = arena_strdup(&object->arena, href + 1),
-                                                .geometry = frame->geometry, .flip = frame->flip });
+    cg_surface surface = { .href = arena_try_strdup(&object->arena, href + 1), .geometry = frame->geometry, .flip = frame->flip };
+    if (!surface.href || !array_try_push(&object->surfaces, surface))
+        cg_no_memory(p);
 }
 
 /* The element has an id that references may lead to. */
@@ -147,7 +153,8 @@ static void remember_id(cg_parser *p, cg_frame *frame, const char *id) {
     frame->first_surface = (uint32_t)p->object.surfaces.len;
     if (!id || p->object.features.data[0].type->kind == GEO_TERRAIN)
         return;
-    frame->id = arena_strdup(&p->object.arena, id);
+    if (!(frame->id = arena_try_strdup(&p->object.arena, id)))
+        cg_no_memory(p);
 }
 
 static bool start_root(cg_parser *p, const cg_frame *frame, const char *name) {
@@ -198,12 +205,13 @@ static bool start_feature(cg_parser *p, cg_frame *frame, const attributes *a) {
     } else if (!cg_object_room(p)) {
         return false;
     }
-    cg_feature feature = { .type = type, .id = a->id ? arena_strdup(&p->object.arena, a->id) : "",
+    cg_feature feature = { .type = type, .id = a->id ? arena_try_strdup(&p->object.arena, a->id) : "",
                            .parent = frame->feature, .function = -1 };
     frame->feature = (uint32_t)p->object.features.len;
     frame->geometry = CG_NONE;
     frame->flip = frame->in_reference_point = frame->in_point = false;
-    array_push(&p->object.features, feature);
+    if (!feature.id || !array_try_push(&p->object.features, feature))
+        cg_no_memory(p);
     return true;
 }
 
@@ -215,14 +223,19 @@ static bool start_geometry_property(cg_parser *p, cg_frame *frame, const attribu
     if (geometry.role == CG_ROLE_FOOTPRINT || geometry.role == CG_ROLE_ROOF_EDGE)
         geometry.lod = 0; /* flat outlines, whatever level they claim */
     frame->geometry = (uint32_t)p->object.geometries.len;
-    array_push(&p->object.geometries, geometry);
-    if (a->href)
+    if (!array_try_push(&p->object.geometries, geometry))
+        cg_no_memory(p);
+    else if (a->href)
         add_reference(p, frame, a->href);
     return true;
 }
 
 static bool start_implicit(cg_parser *p, cg_frame *frame) {
-    cg_implicit *implicit = arena_alloc(&p->object.arena, sizeof(*implicit));
+    cg_implicit *implicit = arena_try_alloc(&p->object.arena, sizeof(*implicit));
+    if (!implicit) {
+        cg_no_memory(p);
+        return false;
+    }
     for (int i = 0; i < 4; i++)
         implicit->matrix[i * 5] = 1;
     implicit->srs = frame->srs;
@@ -242,7 +255,8 @@ static bool start_polygon(cg_parser *p, cg_frame *frame, const attributes *a) {
     const char *id = frame->id;
     if (!id && a->id) {
         p->terrain_id.len = 0;
-        array_append(&p->terrain_id, a->id, strlen(a->id) + 1);
+        if (!array_try_append(&p->terrain_id, a->id, strlen(a->id) + 1))
+            cg_no_memory(p);
         id = p->terrain_id.data;
     }
     cg_polygon_begin(p, id);
@@ -500,10 +514,10 @@ void cg_end_element(void *user, const XML_Char *name) {
         break;
     default: break;
     }
-    if (frame->id)
-        array_push(&p->object.targets,
-                   (cg_target){ .id = frame->id, .first = frame->first_surface, .flip = outer_flip,
-                                .count = (uint32_t)p->object.surfaces.len - frame->first_surface });
+    const cg_target target = { .id = frame->id, .first = frame->first_surface, .flip = outer_flip,
+                               .count = (uint32_t)p->object.surfaces.len - frame->first_surface };
+    if (p->numbers.refused || (frame->id && !array_try_push(&p->object.targets, target)))
+        cg_no_memory(p);
     p->text = CG_TEXT_NONE;
     p->depth--;
 }

@@ -36,14 +36,16 @@ void cg_ring_begin(cg_parser *p, bool exterior) {
 static void add_tuples(cg_parser *p, uint32_t dimension) {
     const double *values = p->numbers.values.data;
     size_t count = p->numbers.values.len;
-    if (dimension == 3) {
-        array_append(&p->xyz, values, count);
+    if (!array_try_reserve(&p->xyz, p->xyz.len + count / dimension * 3)) {
+        cg_no_memory(p);
         return;
     }
-    for (size_t i = 0; i < count; i += 2) {
-        array_push(&p->xyz, values[i]);
-        array_push(&p->xyz, values[i + 1]);
-        array_push(&p->xyz, 0.0);
+    for (size_t i = 0; i < count; i += dimension) {
+        double *xyz = p->xyz.data + p->xyz.len;
+        xyz[0] = values[i];
+        xyz[1] = values[i + 1];
+        xyz[2] = dimension == 3 ? values[i + 2] : 0;
+        p->xyz.len += 3;
     }
 }
 
@@ -101,11 +103,13 @@ void cg_ring_end(cg_parser *p, const cg_frame *frame) {
         p->rings.len = 0;
     }
     p->has_exterior |= p->ring_exterior;
-    array_push(&p->rings, points);
+    if (!array_try_push(&p->rings, points))
+        cg_no_memory(p);
 }
 
 static void *arena_copy(noc_arena *arena, const void *data, size_t size) {
-    return memcpy(arena_alloc(arena, size), data, size);
+    void *to = arena_try_alloc(arena, size);
+    return to ? memcpy(to, data, size) : NULL;
 }
 
 void cg_polygon_end(cg_parser *p, const cg_frame *frame) {
@@ -128,6 +132,8 @@ void cg_polygon_end(cg_parser *p, const cg_frame *frame) {
         return;
     polygon.ring_size = arena_copy(&object->arena, p->rings.data, p->rings.len * sizeof(size_t));
     polygon.xyz = arena_copy(&object->arena, p->xyz.data, p->xyz.len * sizeof(double));
-    array_push(&object->surfaces, (cg_surface){ .polygon = arena_copy(&object->arena, &polygon, sizeof(polygon)),
-                                                .geometry = frame->geometry, .flip = frame->flip });
+    cg_surface surface = { .polygon = arena_copy(&object->arena, &polygon, sizeof(polygon)), .geometry = frame->geometry,
+                           .flip = frame->flip };
+    if (!polygon.ring_size || !polygon.xyz || !surface.polygon || !array_try_push(&object->surfaces, surface))
+        cg_no_memory(p);
 }

@@ -17,6 +17,11 @@ static cg_part part_of(const cg_object *object, uint32_t geometry) {
     return (cg_part)object->features.data[object->geometries.data[geometry].feature].type->part;
 }
 
+static void push_item(cg_parser *p, cg_item item) {
+    if (!array_try_push(&p->selection.items, item))
+        cg_no_memory(p);
+}
+
 static void take_stored(cg_parser *p, const cg_stored *stored, uint32_t geometry, bool flip) {
     bool implicit = p->object.geometries.data[geometry].implicit != NULL;
     for (size_t i = 0; i < stored->items.len; i++) {
@@ -25,7 +30,7 @@ static void take_stored(cg_parser *p, const cg_stored *stored, uint32_t geometry
         item.flip ^= flip;
         item.stored = true;
         item.elsewhere &= !implicit; /* a prototype is shown wherever it is placed */
-        array_push(&p->selection.items, item);
+        push_item(p, item);
     }
 }
 
@@ -43,19 +48,20 @@ static void follow(cg_parser *p, const char *id, uint32_t geometry, bool flip, i
             take_stored(p, &p->store.entries.data[index], geometry, flip);
             return;
         }
-        array_push(&selection->missing, id);
-        array_push(&selection->items, (cg_item){ .geometry = geometry });
+        if (!array_try_push(&selection->missing, id))
+            cg_no_memory(p);
+        push_item(p, (cg_item){ .geometry = geometry });
         return;
     }
     const cg_target *target = &object->targets.data[index];
-    for (uint32_t i = target->first; i < target->first + target->count; i++) {
+    for (uint32_t i = target->first; i < target->first + target->count && !p->status; i++) {
         const cg_surface *s = &object->surfaces.data[i];
         bool turned = flip ^ s->flip ^ target->flip;
         if (s->href)
             follow(p, s->href, geometry, turned, links + 1);
         else if (++object->steps <= object->surfaces.len * 4 + 65536)
-            array_push(&selection->items, (cg_item){ .polygon = s->polygon, .geometry = geometry, .flip = turned,
-                                                     .local = object->geometries.data[s->geometry].implicit != NULL });
+            push_item(p, (cg_item){ .polygon = s->polygon, .geometry = geometry, .flip = turned,
+                                    .local = object->geometries.data[s->geometry].implicit != NULL });
     }
 }
 
@@ -63,7 +69,10 @@ void cg_follow(cg_parser *p, const char *id, uint32_t geometry, bool flip) {
     cg_object *object = &p->object;
     if (!object->ids.len)
         for (size_t i = object->targets.len; i-- > 0;) /* backwards: of two equal ids the first holds */
-            map_put(&object->ids, object->targets.data[i].id, i);
+            if (!map_try_put(&object->ids, object->targets.data[i].id, i, NULL)) {
+                cg_no_memory(p);
+                return;
+            }
     follow(p, id, geometry, flip, 0);
 }
 
@@ -72,14 +81,13 @@ void cg_resolve(cg_parser *p) {
     object->steps = 0;
     p->selection.tangled = false;
     p->selection.items.len = p->selection.missing.len = 0;
-    for (size_t i = 0; i < object->surfaces.len; i++) {
+    for (size_t i = 0; i < object->surfaces.len && !p->status; i++) {
         const cg_surface *s = &object->surfaces.data[i];
         if (s->href)
             cg_follow(p, s->href, s->geometry, s->flip);
         else
-            array_push(&p->selection.items,
-                       (cg_item){ .polygon = s->polygon, .geometry = s->geometry, .flip = s->flip,
-                                  .local = object->geometries.data[s->geometry].implicit != NULL });
+            push_item(p, (cg_item){ .polygon = s->polygon, .geometry = s->geometry, .flip = s->flip,
+                                    .local = object->geometries.data[s->geometry].implicit != NULL });
     }
 }
 
@@ -109,7 +117,10 @@ static void find_levels(cg_parser *p) {
     cg_selection *s = &p->selection;
     s->bodies.len = 0;
     for (uint32_t i = 0; i < object->features.len; i++)
-        array_push(&s->bodies, (cg_body){ .owner = body_of(object, i), .lod = -1 });
+        if (!array_try_push(&s->bodies, ((cg_body){ .owner = body_of(object, i), .lod = -1 }))) {
+            cg_no_memory(p);
+            return;
+        }
     for (size_t i = 0; i < s->items.len; i++) {
         const cg_geometry *g = &object->geometries.data[s->items.data[i].geometry];
         cg_body *body = &s->bodies.data[s->bodies.data[g->feature].owner];
@@ -181,11 +192,15 @@ static bool add_shape(cg_selection *s, const cg_polygon *polygon) {
     return true;
 }
 
-static void clear_shapes(cg_selection *s) {
+static void clear_shapes(cg_parser *p) {
+    cg_selection *s = &p->selection;
     size_t size = 64;
     while (size < s->items.len * 2)
         size *= 2;
-    array_reserve(&s->shapes, size);
+    if (!array_try_reserve(&s->shapes, size)) {
+        cg_no_memory(p);
+        return;
+    }
     s->shapes.len = size;
     memset(s->shapes.data, 0, size * sizeof(*s->shapes.data));
 }
@@ -234,12 +249,15 @@ void cg_select(cg_parser *p) {
     if (++p->selections == CG_EMITTED)
         p->selections = 1;
     find_levels(p);
-    choose_levels(p);
-    if (s->lod < 0)
+    if (!p->status)
+        choose_levels(p);
+    if (p->status || s->lod < 0)
         return;
     bool shapes = survey(p);
     if (shapes)
-        clear_shapes(s);
+        clear_shapes(p);
+    if (p->status)
+        return;
     bool transport = object->features.data[0].type->kind == GEO_TRANSPORT;
     for (int meaning = 1; meaning >= 0; meaning--) {
         for (size_t i = 0; i < s->items.len; i++) {

@@ -37,6 +37,8 @@ static noc_status bad(csv *c, const char *cause) {
     return noc_error(c->log, NOC_ERR_FORMAT, "%s:%zu: %s", noc_stream_name(c->stream), c->line, cause);
 }
 
+static noc_status no_memory(csv *c) { return noc_no_memory(c->log, noc_stream_name(c->stream)); }
+
 /* Reads a record; at the end of the table leaves no fields. */
 static noc_status read_record(csv *c) {
     noc_status status = NOC_OK;
@@ -62,8 +64,8 @@ static noc_status read_record(csv *c) {
             continue;
         }
         if (!quoted && ch == '"' && (c->text.len == field || was_quoted)) {
-            if (was_quoted)
-                array_push(&c->text, '"');
+            if (was_quoted && !array_try_push(&c->text, '"'))
+                return no_memory(c);
             quoted = true;
             was_quoted = false;
             continue;
@@ -72,15 +74,16 @@ static noc_status read_record(csv *c) {
         if (!end_record && (quoted || ch != c->separator)) {
             if (c->text.len - field > MAX_FIELD)
                 return bad(c, "a field longer than 1 MB");
-            array_push(&c->text, (char)ch);
+            if (!array_try_push(&c->text, (char)ch))
+                return no_memory(c);
             continue;
         }
         if (end_record && c->text.len > field && c->text.data[c->text.len - 1] == '\r')
             c->text.len--;
         if (c->start.len == MAX_FIELDS)
             return bad(c, "more than 4096 columns");
-        array_push(&c->text, '\0');
-        array_push(&c->start, field);
+        if (!array_try_push(&c->text, '\0') || !array_try_push(&c->start, field))
+            return no_memory(c);
         field = c->text.len;
         if (end_record)
             return NOC_OK;
@@ -132,6 +135,12 @@ static bool has_place(const columns *c) {
     return (c->lon >= 0 && c->lat >= 0) || (c->x >= 0 && c->y >= 0) || c->wkt >= 0 || c->lat_lon >= 0;
 }
 
+/* The same of a line that is only looked at. */
+static bool fields_have_place(const bool has[LAMP_FIELD_TOTAL]) {
+    return (has[LAMP_FIELD_LON] && has[LAMP_FIELD_LAT]) || (has[LAMP_FIELD_X] && has[LAMP_FIELD_Y]) || has[LAMP_FIELD_WKT] ||
+           has[LAMP_FIELD_LAT_LON];
+}
+
 static void understand(columns *cols) {
     cols->lon = find_column(cols, LAMP_FIELD_LON);
     cols->lat = find_column(cols, LAMP_FIELD_LAT);
@@ -152,8 +161,8 @@ static void free_columns(columns *cols) {
     free(cols->names);
 }
 
-/* The columns of a table's first line; false if it is none. */
-static bool probe_columns(const char *head, size_t size, columns *cols) {
+/* What the columns of a table's first line are, and how many; 0 if it is none. Probes take no memory, so that none is refused. */
+static size_t probe_columns(const char *head, size_t size, bool has[LAMP_FIELD_TOTAL]) {
     if (size >= 3 && !memcmp(head, "\xef\xbb\xbf", 3)) {
         head += 3;
         size -= 3;
@@ -163,26 +172,22 @@ static bool probe_columns(const char *head, size_t size, columns *cols) {
         line++;
     char separator = find_separator(head, size);
     if (!separator || (line < size && !head[line]) || *head == '{' || *head == '<')
-        return false;
-    char *copy = noc_format("%.*s", (int)line, head), *rest = copy, *name;
-    char ends[3] = { separator, '\r', 0 };
-    cols->names = noc_calloc(line + 2, sizeof(*cols->names));
-    while ((name = strsep(&rest, ends)))
-        if (*name)
-            cols->names[cols->count++] = noc_strdup(name); /* folding drops the quotes */
-    free(copy);
-    return true;
+        return 0;
+    size_t count = 0;
+    for (size_t from = 0, to; from < line; from = to + 1) {
+        for (to = from; to < line && head[to] != separator && head[to] != '\r';)
+            to++;
+        char name[256]; /* folding drops the quotes, and looks at the beginning */
+        noc_snprintf(name, sizeof(name), "%.*s", (int)NOC_MIN(to - from, sizeof(name) - 1), head + from);
+        count += to > from;
+        has[to > from ? lamp_meaning_of(name).field : LAMP_FIELD_NONE] = true;
+    }
+    return count;
 }
 
 bool lamp_csv_probe(const char *head, size_t size) {
-    columns cols = { 0 };
-    bool yes = probe_columns(head, size, &cols);
-    if (yes) {
-        understand(&cols);
-        yes = has_place(&cols);
-    }
-    free_columns(&cols);
-    return yes;
+    bool has[LAMP_FIELD_TOTAL] = { false };
+    return probe_columns(head, size, has) && fields_have_place(has);
 }
 
 /* Text in lines, of which the first is cut by a separator. */
@@ -190,10 +195,8 @@ bool lamp_csv_probe_table(const char *head, size_t size) {
     for (size_t i = 0; i < size; i++)
         if ((unsigned char)head[i] < ' ' && !strchr("\t\r\n", head[i]))
             return false;
-    columns cols = { 0 };
-    bool yes = memchr(head, '\n', size) && probe_columns(head, size, &cols) && cols.count > 1;
-    free_columns(&cols);
-    return yes;
+    bool has[LAMP_FIELD_TOTAL];
+    return memchr(head, '\n', size) && probe_columns(head, size, has) > 1;
 }
 
 /* Numbers in "POINT (x y)" (any dimension) or "(lat, lon)". */
@@ -232,27 +235,14 @@ static bool read_place(const csv *c, const columns *cols, double *x, double *y) 
     return lamp_coordinate(field(c, (size_t)cols->x), x) && lamp_coordinate(field(c, (size_t)cols->y), y);
 }
 
-/* The columns' names for a message, as many as fit on a line; free() it. */
-static char *name_columns(const columns *cols) {
-    char *text = noc_strdup("");
-    size_t i = 0;
-    for (; i < cols->count && strlen(text) < 200; i++) {
-        char *longer = noc_format("%s%s%.40s", text, i ? ", " : "", cols->names[i]);
-        free(text);
-        text = longer;
-    }
-    char *all = noc_format("%s%s", text, i < cols->count ? ", ..." : "");
-    free(text);
-    return all;
-}
-
 static noc_status no_place(csv *c, const columns *cols) {
-    char *names = name_columns(cols);
-    noc_status status = noc_error(c->log, NOC_ERR_FORMAT, "%s:%zu: no columns with coordinates (longitude and latitude, or x and y) "
-                                  "in the header: it has %s. Say which they are: --lamp-columns lon=A,lat=B or x=A,y=B",
-                                  noc_stream_name(c->stream), c->line, names);
-    free(names);
-    return status;
+    char names[300] = ""; /* as many as fit on a line */
+    size_t n = 0, i = 0;
+    for (; i < cols->count && n < 200; i++)
+        n += (size_t)noc_snprintf(names + n, sizeof(names) - n, "%s%.40s", i ? ", " : "", cols->names[i]);
+    return noc_error(c->log, NOC_ERR_FORMAT, "%s:%zu: no columns with coordinates (longitude and latitude, or x and y) in the header: it "
+                     "has %s%s. Say which they are: --lamp-columns lon=A,lat=B or x=A,y=B", noc_stream_name(c->stream), c->line, names,
+                     i < cols->count ? ", ..." : "");
 }
 
 /* Opens the table: header read, the next record is the first row. */
@@ -271,9 +261,12 @@ static noc_status read_header(csv *c, columns *cols) {
     status = read_record(c);
     if (status || cols->count)
         return status;
-    cols->names = noc_calloc(c->start.len + 1, sizeof(*cols->names));
-    for (; cols->count < c->start.len; cols->count++)
-        cols->names[cols->count] = noc_strdup(field(c, cols->count));
+    cols->names = noc_try_calloc(c->start.len + 1, sizeof(*cols->names));
+    for (; cols->names && cols->count < c->start.len; cols->count++)
+        if (!(cols->names[cols->count] = noc_try_strdup(field(c, cols->count))))
+            break;
+    if (!cols->names || cols->count < c->start.len)
+        return no_memory(c);
     understand(cols);
     return has_place(cols) ? NOC_OK : no_place(c, cols);
 }
@@ -298,8 +291,11 @@ static noc_status looks_like_degrees(csv *c, columns *cols, geo_crs *given, bool
 
 static noc_status settle_crs(csv *c, columns *cols, lamp_writer *w, const noc_import_params *params) {
     bool degrees = (cols->lon >= 0 && cols->lat >= 0) || cols->lat_lon >= 0;
-    geo_crs *given = params && params->crs && *params->crs ? geo_crs_create(params->crs, "--crs", NULL) : NULL;
     noc_status status = NOC_OK;
+    geo_crs *given = params && params->crs && *params->crs ? geo_crs_create(params->crs, "--crs", NULL, &status) : NULL;
+    if (status == NOC_ERR_MEMORY)
+        return no_memory(c);
+    status = NOC_OK; /* who uses it says what is wrong with it */
     if (!degrees && !(given && geo_crs_is_geographic(given))) {
         status = looks_like_degrees(c, cols, given, &degrees);
         if (!status && degrees)
@@ -327,13 +323,15 @@ static bool row_tags(csv *c, const columns *cols, lamp_writer *w, const char *ro
 
 /* Do the values say what the rows are? Leaves the table at its first row. */
 static noc_status read_kinds(csv *c, columns *cols, lamp_kinds *kinds) {
-    lamp_tag *tags = noc_calloc(cols->count + 1, sizeof(*tags));
-    noc_status status;
-    while (!(status = read_record(c)) && c->start.len) {
+    lamp_tag *tags = noc_try_calloc(cols->count + 1, sizeof(*tags));
+    if (!tags)
+        return no_memory(c);
+    noc_status status = NOC_OK;
+    while (!status && !(status = read_record(c)) && c->start.len) {
         for (size_t i = 0; i < cols->count && c->start.len == cols->count; i++)
             tags[i] = (lamp_tag){ cols->names[i], field(c, i) };
-        if (c->start.len == cols->count)
-            lamp_kinds_count(kinds, tags, cols->count);
+        if (c->start.len == cols->count && !lamp_kinds_count(kinds, tags, cols->count))
+            status = no_memory(c);
     }
     free(tags);
     lamp_kinds_decide(kinds);
@@ -341,7 +339,9 @@ static noc_status read_kinds(csv *c, columns *cols, lamp_kinds *kinds) {
 }
 
 static noc_status read_rows(csv *c, const columns *cols, lamp_writer *w) {
-    lamp_tag *tags = noc_calloc(cols->count + 1, sizeof(*tags));
+    lamp_tag *tags = noc_try_calloc(cols->count + 1, sizeof(*tags));
+    if (!tags)
+        return no_memory(c);
     noc_status status;
     while (!(status = read_record(c)) && c->start.len) {
         char row[32];
@@ -379,12 +379,17 @@ static noc_status judge(csv *c, columns *cols, lamp_writer *w) {
 
 noc_status lamp_csv_read(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
     *format = "CSV";
-    csv *c = noc_calloc(1, sizeof(*c));
+    lamp_writer w;
+    csv *c = noc_try_calloc(1, sizeof(*c));
+    noc_status status = c ? lamp_writer_start(&w, sink, noc_stream_name(stream), params) : noc_no_memory(sink->log, noc_stream_name(stream));
+    if (status) {
+        free(c);
+        return status;
+    }
     c->stream = stream;
     c->log = sink->log;
-    lamp_writer w = lamp_writer_start(sink, noc_stream_name(stream), params);
     columns cols = { .keys = w.keys };
-    noc_status status = read_header(c, &cols);
+    status = read_header(c, &cols);
     if (!status)
         status = judge(c, &cols, &w);
     if (!status && !w.strange)

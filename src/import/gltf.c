@@ -64,15 +64,25 @@ static bool is_read(const char *extension) {
     return false;
 }
 
+typedef struct text { const char *at, *end; } text;
+
+static size_t pull(void *buffer, size_t size, void *user) {
+    text *t = user;
+    size = NOC_MIN(size, (size_t)(t->end - t->at));
+    memcpy(buffer, t->at, size);
+    t->at += size;
+    return size;
+}
+
 static noc_status parse(gltf *g, const char *json, size_t size) {
     json_error_t error;
-    const char *begin = size >= 3 && !strncmp(json, "\xef\xbb\xbf", 3) ? json + 3 : json;
+    text from = { size >= 3 && !strncmp(json, "\xef\xbb\xbf", 3) ? json + 3 : json, json + size };
     noc_status status = import_affords(g->budget, import_json_cost(json, size), g->name, "its JSON", g->log);
     if (status)
         return status;
-    g->root = json_loadb(begin, size - (size_t)(begin - json), JSON_DISABLE_EOF_CHECK, &error);
+    g->root = import_json_load(pull, &from, size, JSON_DISABLE_EOF_CHECK, &error);
     if (!g->root)
-        return noc_error(g->log, NOC_ERR_FORMAT, "%s:%d: glTF: %s", g->name, error.line, error.text);
+        return import_json_error(&error, g->name, g->log);
     const char *version = json_string_value(json_object_get(json_object_get(g->root, "asset"), "version"));
     if (!version || strncmp(version, "2.", 2))
         return gltf_error(g, "version %.20s, not 2", version ? version : "none");
@@ -150,7 +160,7 @@ static noc_status add_primitive(gltf *g, const json_t *primitive, const gltf_fra
     if (!status) {
         c = triangulate(g, index, index_count, count, mode, turn < 0, name);
         if (!c.v)
-            status = noc_error(g->log, NOC_ERR_MEMORY, "%s: no memory for mesh %.80s", g->name, name);
+            status = noc_no_memory(g->log, g->name);
     }
     noc_mesh mesh = { .vertex_count = count, .positions = xyz, .triangle_count = c.count / 3, .indices = c.v, .material = material, .name = name };
     if (!status && (material < 0 || (c.count && !import_triangles(g->scene, &mesh, g->issues))))
@@ -205,8 +215,14 @@ typedef struct walk {
     size_t count;
 } walk;
 
-static void push_nodes(gltf *g, walk *w, const json_t *list, const gltf_frame *frame) {
-    for (size_t i = json_array_size(list); i-- > 0;) {
+static noc_status push_node(gltf *g, walk *w, size_t index, const gltf_frame *frame) {
+    w->seen[index] = true;
+    return array_try_push(&w->stack, (pending_node){ index, *frame }) ? NOC_OK : noc_no_memory(g->log, g->name);
+}
+
+static noc_status push_nodes(gltf *g, walk *w, const json_t *list, const gltf_frame *frame) {
+    noc_status status = NOC_OK;
+    for (size_t i = json_array_size(list); i-- > 0 && !status;) {
         const json_t *item = json_array_get(list, i);
         json_int_t index = json_is_integer(item) ? json_integer_value(item) : -1;
         char id[40];
@@ -216,16 +232,18 @@ static void push_nodes(gltf *g, walk *w, const json_t *list, const gltf_frame *f
         } else if (w->seen[index]) {
             geo_issue(g->issues, false, "node that is in two places", id); /* a tree is asked for; a loop would not end */
         } else {
-            w->seen[index] = true;
-            array_push(&w->stack, (pending_node){ (size_t)index, *frame });
+            status = push_node(g, w, (size_t)index, frame);
         }
     }
+    return status;
 }
 
 /* A file without scenes is a library, but one may still ask to see it: all nodes that are no other's child. */
-static json_t *root_nodes(const json_t *nodes) {
-    size_t count = json_array_size(nodes), i, k;
-    bool *child = noc_calloc(count + 1, sizeof(*child));
+static noc_status push_roots(gltf *g, walk *w, const json_t *nodes, const gltf_frame *frame) {
+    size_t count = w->count, i, k;
+    bool *child = noc_try_calloc(count + 1, sizeof(*child));
+    if (!child)
+        return noc_no_memory(g->log, g->name);
     const json_t *node, *item;
     json_array_foreach(nodes, i, node) {
         json_array_foreach(json_object_get(node, "children"), k, item) {
@@ -234,27 +252,27 @@ static json_t *root_nodes(const json_t *nodes) {
                 child[index] = true;
         }
     }
-    json_t *roots = json_array();
-    for (i = 0; i < count; i++)
+    noc_status status = NOC_OK;
+    for (i = count; i-- > 0 && !status;)
         if (!child[i])
-            json_array_append_new(roots, json_integer((json_int_t)i));
+            status = push_node(g, w, i, frame);
     free(child);
-    return roots;
+    return status;
 }
 
-/* The nodes of the scene that is to be shown; json_decref() them. */
-static json_t *shown_nodes(const gltf *g) {
+/* The nodes of the scene that is to be shown. */
+static noc_status push_shown(gltf *g, walk *w, const json_t *nodes, const gltf_frame *frame) {
     size_t shown = 0;
     const json_t *scenes = json_object_get(g->root, "scenes");
     if (!json_array_size(scenes))
-        return root_nodes(json_object_get(g->root, "nodes"));
+        return push_roots(g, w, nodes, frame);
     bool told = !json_object_get(g->root, "scene") || gltf_index(g->root, "scene", &shown);
     const json_t *scene = told ? gltf_item(g, "scenes", shown) : NULL;
     if (!scene) {
         geo_issue(g->issues, true, "scene that is not there, the first one instead", "scene");
         scene = gltf_item(g, "scenes", 0);
     }
-    return json_incref(json_object_get(scene, "nodes"));
+    return push_nodes(g, w, json_object_get(scene, "nodes"), frame);
 }
 
 /* parent becomes the node's own frame. */
@@ -290,18 +308,15 @@ static noc_status add_node(gltf *g, const json_t *node, size_t index, gltf_frame
 
 static noc_status add_scene(gltf *g) {
     const json_t *nodes = json_object_get(g->root, "nodes");
-    json_t *shown = shown_nodes(g);
     walk w = { .count = json_array_size(nodes) };
-    w.seen = noc_calloc(w.count + 1, sizeof(*w.seen));
+    w.seen = noc_try_calloc(w.count + 1, sizeof(*w.seen));
     const gltf_frame whole = { { 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0 } };
-    push_nodes(g, &w, shown, &whole);
-    json_decref(shown);
-    noc_status status = NOC_OK;
+    noc_status status = w.seen ? push_shown(g, &w, nodes, &whole) : noc_no_memory(g->log, g->name);
     while (w.stack.len && !status) {
         pending_node at = w.stack.data[--w.stack.len];
         const json_t *node = json_array_get(nodes, at.index);
         status = add_node(g, node, at.index, &at.frame);
-        push_nodes(g, &w, json_object_get(node, "children"), &at.frame);
+        status = status ? status : push_nodes(g, &w, json_object_get(node, "children"), &at.frame);
     }
     array_free(&w.stack);
     free(w.seen);
@@ -321,15 +336,17 @@ static noc_status read_gltf(const char *path, noc_stream *stream, const noc_impo
     bool binary = size >= 4 && !memcmp(data, "glTF", 4);
     const char *json = data, *slash = strrchr(path, '/');
     *format = binary ? "GLB" : "glTF";
-    g.folder = slash ? noc_format("%.*s", (int)(slash + 1 - path), path) : noc_strdup("");
+    g.folder = noc_try_strndup(path, slash ? (size_t)(slash + 1 - path) : 0);
     json_size = size;
-    if (binary)
+    if (!g.folder)
+        status = noc_no_memory(g.log, g.name);
+    else if (binary)
         status = open_glb(&g, (const unsigned char *)data, size, &json, &json_size);
     status = status ? status : parse(&g, json, json_size);
     status = status ? status : gltf_open_buffers(&g);
     if (!status) {
-        g.materials = noc_calloc(json_array_size(json_object_get(g.root, "materials")) + 1, sizeof(*g.materials));
-        status = add_scene(&g);
+        g.materials = noc_try_calloc(json_array_size(json_object_get(g.root, "materials")) + 1, sizeof(*g.materials));
+        status = g.materials ? add_scene(&g) : noc_no_memory(g.log, g.name);
     }
     gltf_close_buffers(&g);
     json_decref(g.root);

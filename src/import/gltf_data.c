@@ -94,16 +94,20 @@ static void decode_percent(char *text) {
 }
 
 static noc_status open_file(const gltf *g, const char *uri, gltf_buffer *b) {
-    char *name = noc_strdup(uri);
+    char *name = noc_try_strdup(uri);
     const char *why;
     size_t size;
+    if (!name)
+        return noc_no_memory(g->log, g->name);
     decode_percent(name);
     FILE *f = import_open_named(g->folder, name, g->anywhere, &size, &why);
     noc_status status = NOC_OK;
-    if (!f) {
+    if (!f && !why) {
+        status = noc_no_memory(g->log, g->name);
+    } else if (!f) {
         status = noc_error(g->log, NOC_ERR_IO, "%s: glTF: its buffer \"%.200s\" cannot be opened: %s", g->name, name, why);
     } else if (!(b->owned = noc_alloc_large(size + 1, 1))) {
-        status = noc_error(g->log, NOC_ERR_MEMORY, "%s: no memory to hold its buffer \"%.200s\"", g->name, name);
+        status = noc_no_memory(g->log, g->name);
     } else {
         b->size = fread(b->owned, 1, size, f);
         g->budget->stored += (double)b->size;
@@ -121,7 +125,7 @@ static noc_status open_data(const gltf *g, const char *uri, size_t index, gltf_b
         return gltf_error(g, "buffer %zu is a data URI that is not base64", index);
     b->owned = noc_alloc_large(strlen(comma) / 4 * 3 + 4, 1);
     if (!b->owned)
-        return noc_error(g->log, NOC_ERR_MEMORY, "%s: no memory for its buffer %zu", g->name, index);
+        return noc_no_memory(g->log, g->name);
     b->data = b->owned;
     return decode_base64(comma + 1, b->owned, &b->size) ? NOC_OK : gltf_error(g, "buffer %zu is not base64", index);
 }
@@ -129,7 +133,9 @@ static noc_status open_data(const gltf *g, const char *uri, size_t index, gltf_b
 noc_status gltf_open_buffers(gltf *g) {
     json_t *list = json_object_get(g->root, "buffers");
     g->buffer_count = json_array_size(list);
-    g->buffers = noc_calloc(g->buffer_count + 1, sizeof(*g->buffers));
+    g->buffers = noc_try_calloc(g->buffer_count + 1, sizeof(*g->buffers));
+    if (!g->buffers)
+        return noc_no_memory(g->log, g->name);
     for (size_t i = 0; i < g->buffer_count; i++) {
         json_t *item = json_array_get(list, i);
         const char *uri = json_string_value(json_object_get(item, "uri"));
@@ -259,7 +265,7 @@ noc_status gltf_read(const gltf *g, size_t accessor, const char *type, size_t wi
     *g->made += (double)*count * (double)(width * sizeof(**out));
     *out = noc_alloc_large(*count * width, sizeof(**out));
     if (!*out)
-        return noc_error(g->log, NOC_ERR_MEMORY, "%s: no memory for accessor %zu", g->name, accessor);
+        return noc_no_memory(g->log, g->name);
     bool normalised = json_is_true(json_object_get(a, "normalized"));
     for (size_t i = 0; i < *count; i++)
         for (size_t k = 0; k < width; k++)

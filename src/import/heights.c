@@ -52,12 +52,15 @@ static void check_input(importer *im, const city_ground *ground, size_t index, d
              fabs(middle), middle > 0 ? "above" : "below");
 }
 
-void heights_check(importer *im, const city_ground *ground) {
-    double *off = noc_alloc((im->lamps.len + 1) * sizeof(*off));
+noc_status heights_check(importer *im, const city_ground *ground) {
+    double *off = noc_try_alloc((im->lamps.len + 1) * sizeof(*off));
+    if (!off)
+        return noc_no_memory(im->log, "import");
     for (size_t i = 0; i < im->input_count; i++)
         if (im->inputs[i].file.lamps)
             check_input(im, ground, i, off);
     free(off);
+    return NOC_OK;
 }
 
 void heights_lay(importer *im, city_ground *ground, double *points, size_t count) {

@@ -5,6 +5,7 @@
 
 #include "geo/geo.h"
 #include <nocturne/import.h>
+#include <jansson.h>
 #include <stdio.h>
 
 /* budget.c: what reading one input may cost. */
@@ -19,9 +20,15 @@ noc_status import_affords(const import_budget *b, double bytes, const char *name
 /* Bytes that parsing it takes, at most and roughly; adds up over pieces. */
 double import_json_cost(const char *text, size_t size);
 
+/* json.c: json_load_callback, of about so many bytes, whose allocations may be refused. */
+json_t *import_json_load(size_t (*from)(void *buffer, size_t size, void *user), void *user, size_t bytes, size_t flags, json_error_t *error);
+/* Reports why it gave NULL, and returns the status. */
+noc_status import_json_error(const json_error_t *error, const char *name, noc_log *log);
+
 /* Sequential bytes of a plain, gzip or zip file (one member of a zip: the first whose name tells a model or map best). */
 typedef struct noc_stream noc_stream;
-noc_stream *noc_stream_open(const char *path, noc_log *log); /* NULL after reporting an error; directories are an error */
+/* NULL after reporting an error, which *status (may be NULL) gets; directories are an error. */
+noc_stream *noc_stream_open(const char *path, noc_log *log, noc_status *status);
 void noc_stream_close(noc_stream *s);
 /* Up to size bytes; *got = 0 at the end. A truncated or damaged archive is NOC_ERR_FORMAT, reported. */
 noc_status noc_stream_read(noc_stream *s, void *data, size_t size, size_t *got);
@@ -41,7 +48,8 @@ double noc_stream_progress(const noc_stream *s);      /* share of the stored byt
 /* What keeps the file at path (as it is to be opened) from being read: it is not there, no regular file, or, unless
  * `anywhere`, lies outside the folder once links are followed. NULL if nothing does; else valid until the next call. */
 const char *import_named_trouble(const char *folder, const char *path, bool anywhere);
-/* Opens one for reading and tells its size. NULL with *why where there is trouble. Never waits for a pipe. */
+/* Opens one for reading and tells its size. NULL with *why where there is trouble, and with a *why of NULL where memory is refused.
+ * Never waits for a pipe. */
 FILE *import_open_named(const char *folder, const char *name, bool anywhere, size_t *size, const char **why);
 
 /* Takes a mesh's coordinates (x east, y north, z up, as the file has them) to the scene's frame, in place. */

@@ -3,8 +3,9 @@
 
 #include <math.h>
 
-lamp_writer lamp_writer_start(geo_sink *sink, const char *place, const noc_import_params *params) {
-    return (lamp_writer){ .sink = sink, .place = place, .keys = lamp_keys_create(params) };
+noc_status lamp_writer_start(lamp_writer *w, geo_sink *sink, const char *place, const noc_import_params *params) {
+    *w = (lamp_writer){ .sink = sink, .place = place, .keys = lamp_keys_create(params) };
+    return w->keys ? NOC_OK : noc_no_memory(sink->log, place);
 }
 
 void lamp_writer_free(lamp_writer *w) {
@@ -49,7 +50,8 @@ noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count,
     if (verdict == LAMP_NONE)
         return NOC_OK;
     geo_lamp lamp = { .xyz = { x, y, isfinite(z) && z != 0 ? z : NAN }, .id = id }; /* 0: written for want of a height */
-    lamp_read(w->keys, tags, count, &lamp, verdict == LAMP_ACTIVE ? w->sink->issues : NULL);
+    if (!lamp_read(w->keys, tags, count, &lamp, verdict == LAMP_ACTIVE ? w->sink->issues : NULL))
+        return noc_no_memory(w->sink->log, w->place);
     if (!lamp_accept(verdict, lamp.id, w->sink->issues))
         return NOC_OK;
     if (w->kinds.any && !lamp_kinds_tell(&w->kinds, tags, count)) {
@@ -72,7 +74,9 @@ noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count,
 noc_status lamp_writer_end(lamp_writer *w) {
     noc_log *log = w->sink->log;
     lamp_kinds_note(&w->kinds, w->keys);
-    lamp_keys_report(w->keys, w->sink, w->points);
+    noc_status status = lamp_keys_report(w->keys, w->sink, w->place, w->points);
+    if (status)
+        return status;
     if (w->off_earth > w->lamps && w->exchangeable == w->off_earth)
         return noc_error(log, NOC_ERR_FORMAT,
                          "%s: its coordinates are no longitudes and latitudes; with the two exchanged all %zu are: exchange them in the "

@@ -128,15 +128,19 @@ static noc_status add_mapping(mappings *maps, char *item, noc_log *log) {
     for (size_t i = 0; i < maps->len; i++)
         if (lamp_same_key(maps->data[i].column, map.column))
             return noc_error(log, NOC_ERR_ARGUMENT, "lamp-columns: the column \"%.40s\" is named twice", map.column);
-    map.column = noc_strdup(map.column);
-    array_push(maps, map);
-    return NOC_OK;
+    map.column = noc_try_strdup(map.column);
+    if (map.column && array_try_push(maps, map))
+        return NOC_OK;
+    free(map.column);
+    return noc_no_memory(log, "lamp-columns");
 }
 
 static noc_status parse_mappings(const noc_import_params *params, mappings *maps, noc_log *log) {
     noc_status status = NOC_OK;
     for (size_t i = 0; params && i < params->lamp_columns.count && !status; i++) {
-        char *copy = noc_strdup(params->lamp_columns.text[i]), *rest = copy, *item;
+        char *copy = noc_try_strdup(params->lamp_columns.text[i]), *rest = copy, *item;
+        if (!copy)
+            return noc_no_memory(log, "lamp-columns");
         while (!status && (item = strsep(&rest, ",")))
             status = add_mapping(maps, item, log);
         free(copy);
@@ -151,15 +155,16 @@ noc_status lamp_mapping_check(const noc_import_params *params, noc_log *log) {
     return status;
 }
 
-char *lamp_mapping_missing(const noc_import_params *params, bool (*found)(void *ctx, const char *name), void *ctx) {
+noc_status lamp_mapping_missing(const noc_import_params *params, bool (*found)(void *ctx, const char *name), void *ctx, noc_log *log,
+                                char **missing) {
     mappings maps = { 0 };
-    char *missing = NULL;
-    parse_mappings(params, &maps, NULL);
-    for (size_t i = 0; i < maps.len && !missing; i++)
-        if (!found(ctx, maps.data[i].column))
-            missing = noc_strdup(maps.data[i].column);
+    noc_status status = parse_mappings(params, &maps, log);
+    *missing = NULL;
+    for (size_t i = 0; i < maps.len && !status && !*missing; i++)
+        if (!found(ctx, maps.data[i].column) && !(*missing = noc_try_strdup(maps.data[i].column)))
+            status = noc_no_memory(log, "lamp-columns");
     free_mappings(&maps);
-    return missing;
+    return status;
 }
 
 /* ---- keys of a file ---- */
@@ -181,10 +186,14 @@ struct lamp_keys {
 };
 
 lamp_keys *lamp_keys_create(const noc_import_params *params) {
-    lamp_keys *keys = noc_calloc(1, sizeof(*keys));
-    parse_mappings(params, &keys->maps, NULL); /* understood: lamp_mapping_check was asked */
-    return keys;
+    lamp_keys *keys = noc_try_calloc(1, sizeof(*keys));
+    if (!keys || !parse_mappings(params, &keys->maps, NULL)) /* understood, as lamp_mapping_check was asked */
+        return keys;
+    lamp_keys_destroy(keys);
+    return NULL;
 }
+
+bool lamp_keys_refused(const lamp_keys *keys) { return keys->arena.refused; }
 
 void lamp_keys_destroy(lamp_keys *keys) {
     if (!keys)
@@ -203,15 +212,23 @@ static lamp_meaning find_meaning(const lamp_keys *keys, const char *name) {
     return lamp_meaning_of(name);
 }
 
-/* NULL where there are too many to remember. */
+/* NULL where there are too many to remember, or memory is refused. */
 static key *get(lamp_keys *keys, const char *name) {
     uint64_t i;
     if (!map_get(&keys->index, name, &i)) {
         i = keys->keys.len;
         if (i == MAX_KEYS)
             return NULL;
-        map_put(&keys->index, name, i);
-        array_push(&keys->keys, (key){ .name = arena_strdup(&keys->arena, name), .meaning = find_meaning(keys, name) });
+        key k = { .name = arena_try_strdup(&keys->arena, name), .meaning = find_meaning(keys, name) };
+        if (!k.name || !array_try_push(&keys->keys, k)) {
+            keys->arena.refused = true;
+            return NULL;
+        }
+        if (!map_try_put(&keys->index, name, i, NULL)) {
+            keys->keys.len--;
+            keys->arena.refused = true;
+            return NULL;
+        }
     }
     return &keys->keys.data[i];
 }
@@ -240,7 +257,7 @@ void lamp_keys_note(lamp_keys *keys, const char *name, const char *value) {
         return;
     size_t n = k->values++ ? 0 : cut(value);
     if (n)
-        k->example = value[n] ? arena_format(&keys->arena, "%.*s...", (int)n, value) : arena_strdup(&keys->arena, value);
+        k->example = arena_try_format(&keys->arena, "%.*s%s", (int)n, value, value[n] ? "..." : "");
 }
 
 void lamp_keys_tell(lamp_keys *keys, const char *name) {
@@ -249,10 +266,14 @@ void lamp_keys_tell(lamp_keys *keys, const char *name) {
         k->tells = true;
 }
 
-void lamp_keys_report(lamp_keys *keys, geo_sink *sink, size_t points) {
+noc_status lamp_keys_report(lamp_keys *keys, geo_sink *sink, const char *place, size_t points) {
     if (!sink->columns)
-        return;
-    geo_column *columns = noc_calloc(keys->keys.len + 1, sizeof(*columns));
+        return NOC_OK;
+    geo_column *columns = noc_try_calloc(keys->keys.len + 1, sizeof(*columns));
+    if (!columns || keys->arena.refused) {
+        free(columns);
+        return noc_no_memory(sink->log, place);
+    }
     size_t n = 0;
     for (size_t i = 0; i < keys->keys.len; i++) {
         const key *k = &keys->keys.data[i];
@@ -263,6 +284,7 @@ void lamp_keys_report(lamp_keys *keys, geo_sink *sink, size_t points) {
                                      .example = k->example ? k->example : "", .values = k->values,
                                      .mapped = k->meaning.rank < 0 };
     }
-    sink->columns(sink->ctx, points, columns, n);
+    noc_status status = sink->columns(sink->ctx, points, columns, n);
     free(columns);
+    return status;
 }

@@ -69,12 +69,16 @@ static struct lamp_kind *find(const lamp_kinds *kinds, const char *name, size_t 
     return NULL;
 }
 
-void lamp_kinds_count(lamp_kinds *kinds, const lamp_tag *tags, size_t count) {
+bool lamp_kinds_count(lamp_kinds *kinds, const lamp_tag *tags, size_t count) {
     enum { MOST = 4096 }; /* columns of a table */
     for (size_t i = 0; i < count; i++) {
         struct lamp_kind *k = find(kinds, tags[i].key, i);
         if (!k && kinds->columns.len < MOST) {
-            array_push(&kinds->columns, (struct lamp_kind){ .name = noc_strdup(tags[i].key), .of_kinds = is_of_kinds(tags[i].key) });
+            struct lamp_kind fresh = { .name = noc_try_strdup(tags[i].key), .of_kinds = is_of_kinds(tags[i].key) };
+            if (!fresh.name || !array_try_push(&kinds->columns, fresh)) {
+                free(fresh.name);
+                return false;
+            }
             k = &kinds->columns.data[kinds->columns.len - 1];
         }
         if (!k || lamp_blank(tags[i].value))
@@ -84,6 +88,7 @@ void lamp_kinds_count(lamp_kinds *kinds, const lamp_tag *tags, size_t count) {
         k->words += word > 0;
         k->sure += word > 1;
     }
+    return true;
 }
 
 void lamp_kinds_decide(lamp_kinds *kinds) {

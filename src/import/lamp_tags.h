@@ -35,7 +35,8 @@ lamp_meaning lamp_meaning_of(const char *key);
 
 /* The keys of one file: what they mean, by words and by --lamp-columns, and which values they had. */
 typedef struct lamp_keys lamp_keys;
-lamp_keys *lamp_keys_create(const noc_import_params *params); /* params may be NULL */
+lamp_keys *lamp_keys_create(const noc_import_params *params); /* params may be NULL. NULL: memory was refused */
+bool lamp_keys_refused(const lamp_keys *keys); /* whether memory was refused to what was noted; looked at once, at the end */
 void lamp_keys_destroy(lamp_keys *keys);
 lamp_meaning lamp_keys_meaning(lamp_keys *keys, const char *name); /* keys may be NULL: by the words alone */
 /* Notes a value for the table of columns; blank ones count as none. */
@@ -43,12 +44,13 @@ void lamp_keys_note(lamp_keys *keys, const char *name, const char *value);
 /* The values of this key say what is a lamp: its field is "kind". */
 void lamp_keys_tell(lamp_keys *keys, const char *name);
 /* Hands the columns noted so far, in the order met, to the sink. */
-void lamp_keys_report(lamp_keys *keys, geo_sink *sink, size_t points);
+noc_status lamp_keys_report(lamp_keys *keys, geo_sink *sink, const char *place, size_t points) NOC_MUST_USE;
 
 /* --lamp-columns must be understood even where no input needs it: reported, NOC_ERR_ARGUMENT. */
 noc_status lamp_mapping_check(const noc_import_params *params, noc_log *log);
 /* The first column of --lamp-columns of which found says no; NULL if there is none. free() it. */
-char *lamp_mapping_missing(const noc_import_params *params, bool (*found)(void *ctx, const char *name), void *ctx);
+noc_status lamp_mapping_missing(const noc_import_params *params, bool (*found)(void *ctx, const char *name), void *ctx, noc_log *log,
+                                char **missing) NOC_MUST_USE;
 /* Are these two names of one column? Case, accents, blanks and signs do not count. */
 bool lamp_same_key(const char *a, const char *b);
 
@@ -71,8 +73,8 @@ bool lamp_columns_tell(lamp_keys *keys, const char *const *names, size_t count);
 
 /* Fills everything but xyz, which is left as it is except for a missing height taken from an elevation column. Values
  * that cannot be understood are counted in issues (which may be NULL) and left unknown. lamp->id points into tags; where they
- * hold none it stays what it was, or "". */
-void lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *lamp, geo_issues *issues);
+ * hold none it stays what it was, or "". False: memory was refused. */
+bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *lamp, geo_issues *issues) NOC_MUST_USE;
 
 /* Counts what the verdict says about a skipped feature; true if it is a lamp to be read. */
 bool lamp_accept(lamp_verdict verdict, const char *id, geo_issues *issues);
@@ -87,7 +89,7 @@ typedef struct lamp_kinds {
     NOC_ARRAY(struct lamp_kind) columns;
     bool any; /* after lamp_kinds_decide: some column tells what the rows are */
 } lamp_kinds;
-void lamp_kinds_count(lamp_kinds *kinds, const lamp_tag *tags, size_t count);
+bool lamp_kinds_count(lamp_kinds *kinds, const lamp_tag *tags, size_t count) NOC_MUST_USE; /* false: memory was refused */
 void lamp_kinds_decide(lamp_kinds *kinds);
 bool lamp_kinds_tell(const lamp_kinds *kinds, const lamp_tag *tags, size_t count); /* is this row a lamp? */
 void lamp_kinds_note(const lamp_kinds *kinds, lamp_keys *keys); /* for the table of columns */
@@ -112,7 +114,7 @@ typedef struct lamp_writer {
     size_t points, strange_points;
 } lamp_writer;
 
-lamp_writer lamp_writer_start(geo_sink *sink, const char *place, const noc_import_params *params);
+noc_status lamp_writer_start(lamp_writer *w, geo_sink *sink, const char *place, const noc_import_params *params) NOC_MUST_USE;
 void lamp_writer_free(lamp_writer *w);
 
 /* Tells the sink the CRS. NULL: the file names none; the sink knows whether --crs says it. */

@@ -54,33 +54,32 @@ static bool needs_ground(const importer *im, const extent *e) {
     return im->open_area < GROUND_SHARE * (all.hi[0] - all.lo[0]) * (all.hi[1] - all.lo[1]);
 }
 
-/* The lamps that belong to the city; free() them. */
-static double *places_of_lamps(const importer *im, const extent *e, size_t *count) {
-    double *points = noc_alloc((im->lamps.len + 1) * 3 * sizeof(*points));
-    *count = 0;
+/* The lamps that belong to the city. Returns how many. */
+static size_t places_of_lamps(const importer *im, const extent *e, double *points) {
+    size_t count = 0;
     for (size_t i = 0; i < im->lamps.len; i++) {
         const double *p = im->lamps.data[i].lamp.xyz;
         if (isfinite(p[0]) && isfinite(p[1]) && !(e->any && distance_outside(e, p) > OUTSIDE))
-            memcpy(points + 3 * (*count)++, p, 3 * sizeof(*points));
+            memcpy(points + 3 * count++, p, 3 * sizeof(*points));
     }
-    return points;
+    return count;
 }
 
 /* Under the city and the lamps that belong to it, through the heights of those that tell them. */
-static void lay_ground(importer *im, const extent *e) {
-    size_t n;
-    double *points = places_of_lamps(im, e, &n);
-    city_ground *ground = city_ground_start(im->scene, points, n);
+static noc_status lay_ground(importer *im, const extent *e) {
+    double *points = noc_try_alloc((im->lamps.len + 1) * 3 * sizeof(*points));
+    if (!points)
+        return noc_no_memory(im->log, "import");
+    city_ground *ground = city_ground_start(im->scene, points, places_of_lamps(im, e, points));
+    noc_status status = ground && e->any ? heights_check(im, ground) : NOC_OK;
+    if (ground) /* heights that are not of this city are gone now */
+        heights_lay(im, ground, points, places_of_lamps(im, e, points));
     free(points);
-    if (!ground)
-        return;
-    if (e->any)
-        heights_check(im, ground);
-    points = places_of_lamps(im, e, &n); /* heights that are not of this city are gone */
-    heights_lay(im, ground, points, n);
-    free(points);
+    if (!ground || status)
+        return status;
     noc_info(im->log, e->any ? "no terrain in the inputs: a ground is laid under the city"
                              : "no surfaces in the inputs: a ground is laid under the lamps");
+    return NOC_OK;
 }
 
 static bool shines(const noc_scene *scene) {
@@ -169,8 +168,8 @@ static void count_exchanged(importer *im, const extent *e, lamp_fate *fate) {
         fate->exchanged += place_exchanged(im, &im->lost.data[i], xy) && e->any && distance_outside(e, xy) <= OUTSIDE;
 }
 
-/* "a.csv: none of its 40 lamps is of use: 40 outside the city, ...", with the likely cause; free() it. */
-static char *tell_useless(const importer *im, const lamp_fate *fate) {
+/* "a.csv: none of its 40 lamps is of use: 40 outside the city, ...", with the likely cause. */
+static void tell_useless(const importer *im, const lamp_fate *fate, char *text, size_t size) {
     const input *first = NULL;
     size_t files = 0;
     bool degrees = true;
@@ -197,8 +196,8 @@ static char *tell_useless(const importer *im, const lamp_fate *fate) {
     else
         snprintf(cause, sizeof(cause), "%s", fate->outside ? "is one of the CRSs wrong, or are they another town's?"
                                                            : "nocturne info tells more");
-    return noc_format("%s%s: none of %zu lamp%s is of use%s%s%s: %s", first ? first->path : "", more, fate->given,
-                      fate->given == 1 ? "" : "s", outside, lost, rest, cause);
+    noc_snprintf(text, size, "%s%s: none of %zu lamp%s is of use%s%s%s: %s", first ? first->path : "", more, fate->given,
+                 fate->given == 1 ? "" : "s", outside, lost, rest, cause);
 }
 
 /* A picture by lamps of our own must not pass for one by the lamps that were given. */
@@ -206,13 +205,13 @@ static noc_status refuse_useless(importer *im, const extent *e, lamp_fate *fate)
     if (!fate->given || fate->mapped)
         return NOC_OK;
     count_exchanged(im, e, fate);
-    char *text = tell_useless(im, fate);
+    char text[900];
+    tell_useless(im, fate, text, sizeof(text));
     noc_status status = NOC_OK;
     if (im->params->infer_lamps == NOC_SWITCH_ON)
         noc_warn(im->log, "%s", text);
     else
         status = noc_error(im->log, NOC_ERR_FORMAT, "%s (--infer-lamps places some by a rule instead)", text);
-    free(text);
     return status;
 }
 
@@ -233,11 +232,9 @@ static noc_status infer(importer *im, const extent *e, city_lamp_params *params,
                      "the inputs hold no lamps that could be used, and none are to be placed");
         return NOC_OK;
     }
-    geo_issues *issues = geo_issues_create();
     int lights;
-    params->tally = NULL; /* of surveyed lamps alone */
-    noc_status status = city_infer_lamps(im->scene, params, &(noc_progress){ infer_update, im }, issues, &lights);
-    geo_issues_destroy(issues);
+    params->tally = NULL; /* of surveyed lamps alone, as are the report's issues */
+    noc_status status = city_infer_lamps(im->scene, params, &(noc_progress){ infer_update, im }, NULL, &lights);
     if (status)
         return status;
     im->report->lamps_inferred = lights > 0 ? (size_t)lights : 0; /* each has one head */
@@ -257,11 +254,11 @@ noc_status finish_city(importer *im) {
     if (!go_on(im, 0.9))
         return NOC_ERR_CANCELLED;
     warn_if_coarse(im);
-    repeat_lamps(im);
-    if (needs_ground(im, &e))
-        lay_ground(im, &e);
-    else
-        heights_check(im, NULL);
+    noc_status status = repeat_lamps(im);
+    if (!status)
+        status = needs_ground(im, &e) ? lay_ground(im, &e) : heights_check(im, NULL);
+    if (status)
+        return status;
     city_lamp_tally tally = { 0 };
     city_lamp_params params = { im->params->lamp_height, im->params->lamp_lumens, im->params->lamp_kelvin, true,
                                 city_floor(scene), &tally };
@@ -269,7 +266,9 @@ noc_status finish_city(importer *im) {
     stand_lamps(im, &e, &params, &fate);
     if (im->cancelled)
         return NOC_ERR_CANCELLED;
-    noc_status status = refuse_useless(im, &e, &fate);
+    if (scene->no_memory)
+        return NOC_ERR_MEMORY; /* said by the scene; what it means for the lamps is not */
+    status = refuse_useless(im, &e, &fate);
     if (status)
         return status;
     if (fate.outside && fate.mapped)

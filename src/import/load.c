@@ -42,13 +42,13 @@ static noc_status check_crs(const noc_import_params *p, noc_log *log) {
     for (size_t i = 0; i < NOC_COUNT(given); i++) {
         if (!given[i].crs || !given[i].crs[strspn(given[i].crs, " \t\r\n")])
             continue;
-        geo_crs *crs = geo_crs_create(given[i].crs, given[i].option, log);
-        bool usable = crs && (!given[i].metric || geo_crs_is_metric(crs));
-        if (crs && !usable)
-            noc_error(log, NOC_ERR_ARGUMENT, "%s: a scene's CRS must be projected, in metres", geo_crs_name(crs));
+        noc_status status;
+        geo_crs *crs = geo_crs_create(given[i].crs, given[i].option, log, &status);
+        if (crs && given[i].metric && !geo_crs_is_metric(crs))
+            status = noc_error(log, NOC_ERR_ARGUMENT, "%s: a scene's CRS must be projected, in metres", geo_crs_name(crs));
         geo_crs_destroy(crs);
-        if (!usable)
-            return NOC_ERR_ARGUMENT;
+        if (status)
+            return status == NOC_ERR_MEMORY ? status : NOC_ERR_ARGUMENT;
     }
     return NOC_OK;
 }
@@ -69,23 +69,6 @@ static noc_status read_head(noc_stream *stream, char *head, size_t *size) {
     }
 }
 
-/* "CityGML, OBJ, ...", for the message about a file that is none of them. */
-static char *format_names(const noc_reader *const *readers) {
-    char *text = noc_strdup("");
-    for (; *readers; readers++) {
-        char *longer = noc_format("%s%s%s", text, *text ? ", " : "", (*readers)->name);
-        free(text);
-        text = longer;
-    }
-    return text;
-}
-
-/* The status of a stream that did not open: why was said already. */
-static noc_status open_status(const char *path) {
-    struct stat st;
-    return !stat(path, &st) && S_ISREG(st.st_mode) && !access(path, R_OK) ? NOC_ERR_FORMAT : NOC_ERR_IO;
-}
-
 /* A file that no probe knows: a table whose columns the user must explain? */
 static const noc_reader *find_named(const noc_reader *const *readers, const char *head, size_t size) {
     for (; *readers; readers++)
@@ -95,24 +78,25 @@ static const noc_reader *find_named(const noc_reader *const *readers, const char
 }
 
 static noc_status refuse(importer *im, const char *name, const noc_reader *const *readers, const char *head, size_t size) {
-    char *names = format_names(readers);
+    char names[300] = ""; /* "CityGML, OBJ, ..." */
+    for (size_t i = 0, n = 0; readers[i] && n < sizeof(names); i++)
+        n += (size_t)noc_snprintf(names + n, sizeof(names) - n, "%s%s", i ? ", " : "", readers[i]->name);
     const char *offer = find_named(readers, head, size)
                             ? ". If it is a table of lamps, say so with --lamps, and with --lamp-columns lon=A,lat=B where they are"
                             : "";
-    noc_status status = noc_error(im->log, NOC_ERR_FORMAT, "%s: in none of the formats that are read (%s)%s", name, names, offer);
-    free(names);
-    return status;
+    return noc_error(im->log, NOC_ERR_FORMAT, "%s: in none of the formats that are read (%s)%s", name, names, offer);
 }
 
 static noc_status recognise(importer *im, input *in, const noc_reader *const *readers) {
     if (!strncmp(in->path, BUILTIN, strlen(BUILTIN)))
         return in->named_lamps ? noc_error(im->log, NOC_ERR_ARGUMENT, "lamps: %s is no file of lamps", in->path) : NOC_OK;
-    noc_stream *stream = noc_stream_open(in->path, im->log);
+    noc_status status;
+    noc_stream *stream = noc_stream_open(in->path, im->log, &status);
     if (!stream)
-        return open_status(in->path);
-    char *head = noc_alloc(HEAD_SIZE + 1);
-    size_t size;
-    noc_status status = read_head(stream, head, &size);
+        return status;
+    size_t size = 0;
+    char *head = noc_try_alloc(HEAD_SIZE + 1);
+    status = head ? read_head(stream, head, &size) : noc_no_memory(im->log, in->path);
     if (!status) {
         in->bytes = noc_stream_size(stream);
         in->reader = find_reader(readers, head, size);
@@ -174,8 +158,8 @@ static noc_status read_remote(importer *im, input *in, geo_sink *sink, const mes
     const mesh_parts parts = mesh_scene_parts(&to);
     noc_status status = remote_read(in->reader, in->path, im->params, sink, place ? &parts : NULL, result);
     if (*result->format)
-        in->file.format = arena_strdup(&im->report->arena, result->format);
-    return status;
+        in->file.format = arena_try_strdup(&im->report->arena, result->format);
+    return !status && im->report->arena.refused ? noc_no_memory(im->log, in->path) : status;
 }
 
 static noc_status read_mesh(importer *im, input *in, noc_stream *stream, remote_result *result) {
@@ -226,9 +210,10 @@ static noc_status read_input(importer *im, size_t index) {
         in->file.seconds = noc_wall_seconds() - start;
         return status;
     }
-    noc_stream *stream = noc_stream_open(in->path, im->log);
+    noc_status status;
+    noc_stream *stream = noc_stream_open(in->path, im->log, &status);
     if (!stream)
-        return open_status(in->path);
+        return status;
     noc_stream_limit(stream, im->params);
     size_t unread = noc_stream_unread(stream);
     for (size_t i = 0; i < unread; i++)
@@ -236,7 +221,6 @@ static noc_status read_input(importer *im, size_t index) {
     if (unread)
         noc_warn(im->log, "%s: the archive holds %zu more file%s like it, which %s not read: unpack it to read all", noc_stream_name(stream),
                  unread, unread == 1 ? "" : "s", unread == 1 ? "is" : "are");
-    noc_status status;
     remote_result result = { 0 };
     in->file.format = in->reader->name;
     if (in->reader->read_mesh) {
@@ -244,8 +228,11 @@ static noc_status read_input(importer *im, size_t index) {
     } else {
         geo_sink sink = sink_create(im);
         struct look_ahead *ahead = im->placed ? NULL : ahead_create(im, &sink);
-        status = in->remote ? read_remote(im, in, &sink, NULL, &result) : in->reader->read(stream, im->params, &sink, &in->file.format);
-        if (ahead) { /* after an error too: the report holds what came before it */
+        if (!im->placed && !ahead)
+            status = noc_no_memory(im->log, in->path);
+        else
+            status = in->remote ? read_remote(im, in, &sink, NULL, &result) : in->reader->read(stream, im->params, &sink, &in->file.format);
+        if (ahead && status != NOC_ERR_MEMORY) { /* after an error too: the report holds what came before it */
             noc_status released = ahead_release(ahead);
             status = status ? status : released;
         }
@@ -287,21 +274,17 @@ static bool column_there(void *ctx, const char *name) {
 
 /* A column that is mapped and nowhere there is a mistake of the user's: with what there is, for a line of text. */
 static noc_status check_columns(importer *im) {
-    char *missing = lamp_mapping_missing(im->params, column_there, im), *there = noc_strdup("");
-    for (size_t i = 0; missing && i < im->input_count; i++)
-        for (size_t k = 0; k < im->inputs[i].file.column_count && strlen(there) < 300; k++) {
-            char *longer = noc_format("%s%s%.40s", there, *there ? ", " : "", im->inputs[i].file.columns[k].name);
-            free(there);
-            there = longer;
-        }
-    noc_status status = NOC_OK;
+    char *missing, there[400] = "";
+    noc_status status = lamp_mapping_missing(im->params, column_there, im, im->log, &missing);
+    for (size_t i = 0, n = 0; missing && i < im->input_count; i++)
+        for (size_t k = 0; k < im->inputs[i].file.column_count && n < 300; k++)
+            n += (size_t)noc_snprintf(there + n, sizeof(there) - n, "%s%.40s", n ? ", " : "", im->inputs[i].file.columns[k].name);
     if (missing && im->inspect)
         noc_warn(im->log, "%s: lamp-columns: there is no column or tag \"%.60s\"", im->inputs[0].path, missing);
     else if (missing)
         status = noc_error(im->log, NOC_ERR_ARGUMENT, "lamp-columns: no input has a column or tag \"%.60s\"%s%s", missing,
                            *there ? "; there are " : "", there);
     free(missing);
-    free(there);
     return status;
 }
 
@@ -331,9 +314,11 @@ static bool among(const char *path, const char *const *paths, size_t count) {
 }
 
 /* The inputs are the paths, and the files of lamps that are not among them. */
-static void list_inputs(importer *im, const char *const *paths, size_t path_count) {
+static noc_status list_inputs(importer *im, const char *const *paths, size_t path_count) {
     const noc_texts *lamps = &im->params->lamps;
-    im->inputs = noc_calloc(path_count + lamps->count + 1, sizeof(*im->inputs));
+    im->inputs = noc_try_calloc(path_count + lamps->count + 1, sizeof(*im->inputs));
+    if (!im->inputs)
+        return noc_no_memory(im->log, "import");
     for (size_t i = 0; i < path_count + lamps->count; i++) {
         bool named = i >= path_count;
         const char *path = named ? lamps->text[i - path_count] : paths[i];
@@ -342,7 +327,10 @@ static void list_inputs(importer *im, const char *const *paths, size_t path_coun
         input *in = &im->inputs[im->input_count++];
         *in = (input){ .path = path, .file = { .path = path }, .issues = geo_issues_create() };
         in->named_lamps = named || among(path, lamps->text, lamps->count);
+        if (!in->issues)
+            return noc_no_memory(im->log, "import");
     }
+    return NOC_OK;
 }
 
 noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const char *const *paths, size_t path_count,
@@ -368,8 +356,9 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "import: the scene is committed");
     importer im = { .log = scene->log, .scene = scene, .params = params, .inspect = inspect };
     im.report = report_create();
-    list_inputs(&im, paths, path_count);
-    status = run(&im, readers);
+    status = im.report ? list_inputs(&im, paths, path_count) : noc_no_memory(scene->log, "import");
+    if (!status)
+        status = run(&im, readers);
     if (scene->no_memory)
         status = NOC_ERR_MEMORY; /* some go on without what the scene refused */
     if (!status && !inspect)
@@ -377,8 +366,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     if (status == NOC_ERR_CANCELLED)
         noc_cancelled(scene->log, "import: cancelled");
     for (size_t i = 0; i < im.input_count; i++) {
-        if (im.inputs[i].started)
-            report_add(im.report, &im.inputs[i].file, im.inputs[i].issues);
+        if (im.inputs[i].started && !report_add(im.report, &im.inputs[i].file, im.inputs[i].issues) && !status)
+            status = noc_no_memory(scene->log, im.inputs[i].path);
         geo_issues_destroy(im.inputs[i].issues);
     }
     if (!status && params->strict)
@@ -400,9 +389,23 @@ noc_status noc_scene_load(noc_scene *scene, const char *const *paths, size_t pat
 
 noc_status noc_inspect(noc_log *log, const char *path, const noc_import_params *params, noc_report **report) {
     noc_scene *scene = noc_scene_create(log);
+    if (report)
+        *report = NULL;
+    if (!scene)
+        return noc_no_memory(log, "scene");
     noc_status status = load_inputs(scene, noc_readers, &path, 1, params, true, report);
     noc_scene_destroy(scene);
     return status;
+}
+
+/* By its definition, or a copy of one where that is NULL. */
+static geo_crs *crs_of(const noc_scene *scene, const char *definition, const char *place, const geo_crs *known, noc_status *status) {
+    geo_crs *crs = definition ? geo_crs_create(definition, place, scene->log, status) : geo_crs_clone(known);
+    if (!definition)
+        *status = crs ? NOC_OK : noc_no_memory(scene->log, "CRS");
+    else if (*status && *status != NOC_ERR_MEMORY)
+        *status = NOC_ERR_ARGUMENT;
+    return crs;
 }
 
 /* Between the frame of the scene's CRS (crs NULL: the one that the user speaks) and the scene's, in place. */
@@ -412,11 +415,11 @@ static noc_status convert(const noc_scene *scene, const char *crs, bool to_local
                    ? noc_error(scene->log, NOC_ERR_ARGUMENT, "%s names no CRS, so coordinates in %s have no place in the scene: say with "
                                "--crs which one it is in", scene->without_crs, crs)
                    : noc_error(scene->log, NOC_ERR_ARGUMENT, "the scene has no CRS, so coordinates in %s have no place in it", crs);
-    geo_crs *user = crs ? geo_crs_create(crs, NULL, scene->log) : geo_crs_clone(scene->given_crs);
-    geo_crs *own = scene->crs ? geo_crs_clone(scene->crs) : geo_crs_create(scene->crs_name, "scene", scene->log);
-    geo_transform *t = user && own ? geo_transform_create(to_local ? user : own, to_local ? own : user, scene->log) : NULL;
+    noc_status status;
+    geo_crs *user = crs_of(scene, crs, NULL, scene->given_crs, &status);
+    geo_crs *own = user ? crs_of(scene, scene->crs ? NULL : scene->crs_name, "scene", scene->crs, &status) : NULL;
+    geo_transform *t = user && own ? geo_transform_create(to_local ? user : own, to_local ? own : user, scene->log, &status) : NULL;
     double p[3] = { xyz[0], xyz[1], xyz[2] };
-    noc_status status = !user || !own ? NOC_ERR_ARGUMENT : !t ? NOC_ERR_UNSUPPORTED : NOC_OK;
     if (t && geo_transform_points(t, p, 1))
         status = noc_error(scene->log, NOC_ERR_ARGUMENT, "%.10g %.10g in %s has no place in %s", xyz[0], xyz[1],
                            geo_crs_name(to_local ? user : own), to_local ? "the scene's CRS" : geo_crs_name(user));

@@ -109,9 +109,9 @@ struct noc_report {
 };
 
 /* report.c */
-noc_report *report_create(void);
-/* Adds the file with the issues' lines. */
-void report_add(noc_report *report, const noc_report_file *file, const geo_issues *issues);
+noc_report *report_create(void); /* NULL: memory was refused */
+/* Adds the file with the issues' lines; false, and the file is not in it, where memory is refused to it or was to the issues. */
+bool report_add(noc_report *report, const noc_report_file *file, const geo_issues *issues) NOC_MUST_USE;
 /* The error that --strict makes of what was skipped or repaired; NOC_OK where nothing was. */
 noc_status report_strict(const noc_report *report, noc_log *log);
 
@@ -144,7 +144,7 @@ void place_finish_file(importer *im, bool read);
 void place_destroy(importer *im);
 
 /* ahead.c: puts itself before a sink until the place is settled. */
-struct look_ahead *ahead_create(importer *im, geo_sink *sink);
+struct look_ahead *ahead_create(importer *im, geo_sink *sink); /* NULL: memory was refused */
 noc_status ahead_release(struct look_ahead *a); /* settles the place with what there is, and passes everything on */
 void ahead_destroy(struct look_ahead *a);       /* NULL is allowed */
 
@@ -157,15 +157,15 @@ int sink_material(importer *im, noc_class cls, const char *id);
 /* repeat.c: what is given twice is taken once. */
 bool repeat_file(importer *im, size_t index); /* is it one of those before it? Said and reported */
 void repeat_polygon(object_now *now, noc_class cls, const double *xyz, size_t count); /* local metres */
-bool repeat_object(importer *im, const char *id); /* is im->now one that was read? Decided once an object, and reported */
-void repeat_lamps(importer *im); /* drops lamps that an earlier file holds */
+noc_status repeat_object(importer *im, const char *id, bool *repeated); /* is im->now one that was read? Decided once, and reported */
+noc_status repeat_lamps(importer *im); /* drops lamps that an earlier file holds */
 void repeat_free(object_records *records);
 
 /* heights.c */
 struct city_ground;
 /* Forgets the lamps' heights of an input that are not of this city's system, with a warning. ground: NULL where the scene's own is
  * there. */
-void heights_check(importer *im, const struct city_ground *ground);
+noc_status heights_check(importer *im, const struct city_ground *ground);
 /* Lays the ground through those of the points (3 doubles each, changed) whose heights can be believed. */
 void heights_lay(importer *im, struct city_ground *ground, double *points, size_t count);
 

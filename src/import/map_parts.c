@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <limits.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,7 +13,7 @@ const char *map_temporary_folder(void) {
 
 static char *folder_of(const char *path) {
     const char *slash = strrchr(path, '/');
-    return slash ? noc_format("%.*s", (int)(slash + 1 - path), path) : noc_strdup("");
+    return noc_try_strndup(path, slash ? (size_t)(slash + 1 - path) : 0);
 }
 
 static noc_status check_part(const char *path, const char *folder, const char *part, bool anywhere, noc_log *log) {
@@ -33,6 +34,8 @@ static bool is_part(const char *ending) {
 
 noc_status map_check_shapefile(const char *path, bool anywhere, noc_log *log) {
     char *folder = folder_of(path);
+    if (!folder)
+        return noc_no_memory(log, path);
     const char *base = path + strlen(folder), *dot = strrchr(base, '.');
     size_t stem = dot ? (size_t)(dot - base) : strlen(base);
     DIR *dir = opendir(*folder ? folder : ".");
@@ -41,8 +44,8 @@ noc_status map_check_shapefile(const char *path, bool anywhere, noc_log *log) {
     while (!status && dir && (entry = readdir(dir))) {
         if (strncasecmp(entry->d_name, base, stem) || !is_part(entry->d_name + NOC_MIN(stem, strlen(entry->d_name))))
             continue;
-        char *part = noc_format("%s%s", folder, entry->d_name);
-        status = check_part(path, folder, part, anywhere, log);
+        char *part = noc_try_format("%s%s", folder, entry->d_name);
+        status = part ? check_part(path, folder, part, anywhere, log) : noc_no_memory(log, path);
         free(part);
     }
     if (dir)
@@ -57,8 +60,8 @@ static noc_status copy_file(const char *from, const char *to, noc_log *log) {
     const char *why;
     size_t size, got;
     FILE *in = import_open_named("", from, true, &size, &why), *out = in ? fopen(to, "wbx") : NULL;
-    char *buffer = noc_alloc(1 << 18);
-    bool good = in && out;
+    char *buffer = noc_try_alloc(1 << 18);
+    bool good = in && out && buffer, refused = !buffer || (!in && !why);
     while (good && (got = fread(buffer, 1, 1 << 18, in)) > 0)
         good = fwrite(buffer, 1, got, out) == got;
     good = good && !ferror(in);
@@ -70,35 +73,43 @@ static noc_status copy_file(const char *from, const char *to, noc_log *log) {
         good = false;
     }
     free(buffer);
+    if (refused)
+        return noc_no_memory(log, from);
     return good ? NOC_OK : noc_error(log, NOC_ERR_IO, "%s: cannot be copied to %s, which its log needs: %s", from, to, in ? strerror(error) : why);
+}
+
+/* Into a new folder. */
+static noc_status copy_itself(const char *path, noc_log *log, char **folder) {
+    if (!(*folder = noc_try_format("%s/nocturne-XXXXXX", map_temporary_folder())))
+        return noc_no_memory(log, path);
+    if (!mkdtemp(*folder)) {
+        free(*folder);
+        *folder = NULL;
+        return noc_error(log, NOC_ERR_IO, "%s: no folder for a copy in %s: %s", path, map_temporary_folder(), strerror(errno));
+    }
+    char *copy = noc_try_format("%s/" MAP_COPY_NAME, *folder);
+    noc_status status = copy ? copy_file(path, copy, log) : noc_no_memory(log, path);
+    free(copy);
+    return status;
 }
 
 noc_status map_copy_geopackage(const char *path, bool anywhere, noc_log *log, char **folder) {
     static const char *const logs[] = { "-wal", "-journal" };
     char *beside = folder_of(path);
-    noc_status status = NOC_OK;
+    noc_status status = beside ? NOC_OK : noc_no_memory(log, path);
     *folder = NULL;
     for (size_t i = 0; i < NOC_COUNT(logs) && !status; i++) {
         struct stat st;
-        char *part = noc_format("%s%s", path, logs[i]);
-        bool there = !lstat(part, &st);
-        status = there ? check_part(path, beside, part, anywhere, log) : NOC_OK;
+        char *part = noc_try_format("%s%s", path, logs[i]);
+        bool there = part && !lstat(part, &st);
+        status = !part ? noc_no_memory(log, path) : there ? check_part(path, beside, part, anywhere, log) : NOC_OK;
         if (there && !status && !stat(part, &st) && st.st_size > 0) {
-            bool first = !*folder;
-            if (first)
-                *folder = noc_format("%s/nocturne-XXXXXX", map_temporary_folder());
-            if (first && !mkdtemp(*folder)) {
-                status = noc_error(log, NOC_ERR_IO, "%s: no folder for a copy in %s: %s", path, map_temporary_folder(), strerror(errno));
-                free(*folder);
-                *folder = NULL;
-            }
-            char *copy = noc_format("%s/" MAP_COPY_NAME, *folder ? *folder : ""), *copied_log = noc_format("%s%s", copy, logs[i]);
-            if (!status && first)
-                status = copy_file(path, copy, log);
+            if (!*folder)
+                status = copy_itself(path, log, folder);
+            char *copy = status ? NULL : noc_try_format("%s/" MAP_COPY_NAME "%s", *folder, logs[i]);
             if (!status)
-                status = copy_file(part, copied_log, log);
+                status = copy ? copy_file(part, copy, log) : noc_no_memory(log, path);
             free(copy);
-            free(copied_log);
         }
         free(part);
     }
@@ -111,9 +122,9 @@ void map_remove_copy(const char *folder) {
     if (!folder)
         return;
     for (size_t i = 0; i < NOC_COUNT(endings); i++) {
-        char *path = noc_format("%s/" MAP_COPY_NAME "%s", folder, endings[i]);
+        char path[PATH_MAX]; /* none that was too long was made */
+        noc_snprintf(path, sizeof(path), "%s/" MAP_COPY_NAME "%s", folder, endings[i]);
         unlink(path);
-        free(path);
     }
     rmdir(folder);
 }

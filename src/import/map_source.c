@@ -113,8 +113,10 @@ static void gdal_leave(void) {
 /* ---- where GDAL finds the bytes of a stream ---- */
 
 /* Archives are read once to their end, because GDAL takes a truncated one for a short file. */
-static noc_status check_archive(noc_stream *stream) {
-    char *buffer = noc_alloc(1 << 16);
+static noc_status check_archive(noc_stream *stream, noc_log *log) {
+    char *buffer = noc_try_alloc(1 << 16);
+    if (!buffer)
+        return noc_no_memory(log, noc_stream_name(stream));
     size_t got = 1;
     noc_status status = noc_stream_rewind(stream);
     while (!status && got)
@@ -134,30 +136,31 @@ static bool is_gzip(const char *path) {
 
 /* The path itself, /vsigzip/path or /vsizip/{path}/member; *plain in the first case. A name that begins with /vsi is that of a
  * file here: what GDAL would make of it is kept away by the slashes. */
-static noc_status gdal_path(noc_stream *stream, char **path, bool *plain) {
+static noc_status gdal_path(noc_stream *stream, noc_log *log, char **path, bool *plain) {
     const char *name = noc_stream_name(stream);
     const char *slash = *name != '/' ? "./" : !strncmp(name, "/vsi", 4) ? "/./" : ""; /* "http://x" stays a file's name */
     *plain = false;
     if (access(name, F_OK)) { /* path!member */
         const char *bang = name + strlen(name);
-        char *archive = NULL;
+        char *archive = noc_try_strdup(name);
+        if (!archive)
+            return noc_no_memory(log, name);
         while (bang > name) {
             if (*bang == '!') {
-                free(archive);
-                archive = noc_format("%.*s", (int)(bang - name), name);
+                archive[bang - name] = 0;
                 if (!access(archive, F_OK))
                     break;
             }
             bang--;
         }
-        *path = noc_format("/vsizip/{%s%s}/%s", slash, archive ? archive : name, *bang == '!' ? bang + 1 : "");
+        *path = noc_try_format("/vsizip/{%s%s}/%s", slash, archive, *bang == '!' ? bang + 1 : "");
         free(archive);
-        return check_archive(stream);
+        return *path ? check_archive(stream, log) : noc_no_memory(log, name);
     }
     bool gzip = is_gzip(name);
     *plain = !gzip;
-    *path = noc_format("%s%s%s", gzip ? "/vsigzip/" : "", slash, name);
-    return gzip ? check_archive(stream) : NOC_OK;
+    *path = noc_try_format("%s%s%s", gzip ? "/vsigzip/" : "", slash, name);
+    return !*path ? noc_no_memory(log, name) : gzip ? check_archive(stream, log) : NOC_OK;
 }
 
 /* ---- GeoPackage ---- */
@@ -211,16 +214,17 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
     bool plain, copied = false;
     char *path = NULL;
     gdal_enter(m);
-    noc_status status = gdal_path(stream, &path, &plain);
+    noc_status status = gdal_path(stream, log, &path, &plain);
     if (!status && plain && format->kind == MAP_SHAPEFILE)
         status = map_check_shapefile(m->name, anywhere, log);
     if (!status && plain && format->kind == MAP_GEOPACKAGE) {
         status = map_copy_geopackage(m->name, anywhere, log, &m->copy);
         copied = m->copy != NULL;
     }
-    if (copied) {
+    if (copied && !status) {
         free(path);
-        path = noc_format("%s/" MAP_COPY_NAME, m->copy);
+        path = noc_try_format("%s/" MAP_COPY_NAME, m->copy);
+        status = path ? NOC_OK : noc_no_memory(log, m->name);
     }
     if (!status) {
         const char *const *options = format->kind == MAP_OSM ? osm_options : format->kind == MAP_GEOPACKAGE && !copied ? immutable : none;

@@ -82,6 +82,7 @@ typedef struct library {
     char *data;
     size_t size, faces;
     char *missing;        /* first library that could not be opened, and why */
+    bool refused;         /* memory was, to what Assimp would have read */
     geo_issues *issues;
 } library;
 
@@ -123,14 +124,25 @@ static struct aiFile *library_open(struct aiFileIO *io, const char *name, const 
         const char *relative = !strncmp(name, ROOT, strlen(ROOT)) ? name + strlen(ROOT) : name;
         o.data = obj_open_library(&lib->folder, relative, &o.size, lib->issues);
         o.owned = true;
-        if (!o.data && !lib->missing)
-            lib->missing = noc_format("%s%s cannot be opened: %s", *relative == '/' ? "" : lib->folder.path, relative,
-                                      lib->folder.why);
+        lib->refused = lib->refused || lib->folder.refused;
+        if (!o.data && !lib->missing && !lib->refused) {
+            lib->missing = noc_try_format("%s%s cannot be opened: %s", *relative == '/' ? "" : lib->folder.path, relative,
+                                          lib->folder.why);
+            lib->refused = !lib->missing;
+        }
         if (!o.data)
             return NULL;
     }
-    struct aiFile *f = noc_calloc(1, sizeof(*f));
-    open_file *held = noc_alloc(sizeof(*held));
+    struct aiFile *f = noc_try_calloc(1, sizeof(*f));
+    open_file *held = noc_try_alloc(sizeof(*held));
+    if (!f || !held) {
+        lib->refused = true;
+        free(f);
+        free(held);
+        if (o.owned)
+            free(o.data);
+        return NULL;
+    }
     *held = o;
     *f = (struct aiFile){ .ReadProc = file_read, .WriteProc = file_write, .TellProc = file_tell, .FileSizeProc = file_size,
                           .SeekProc = file_seek, .FlushProc = file_flush, .UserData = (char *)held };
@@ -247,13 +259,13 @@ static noc_status add_mesh(const mesh_target *to, const struct aiMesh *m, int ma
     }
     for (size_t i = 0; i < m->mNumFaces && memory; i++)
         cut_face(&cut, m->mFaces[i].mIndices, m->mFaces[i].mNumIndices);
-    memory = memory && join_polygons(&cut, &xyz, &indices, &vertices);
+    memory = memory && !cut.extra.no_memory && join_polygons(&cut, &xyz, &indices, &vertices);
     if (memory)
         obj_spread_add(to->spread, xyz, vertices, indices, cut.triangle_count);
     noc_mesh mesh = { .vertex_count = vertices, .positions = xyz, .triangle_count = cut.triangle_count, .indices = indices,
                       .material = material, .name = name };
     noc_status status = memory ? to->parts->mesh(to->parts->ctx, &mesh, xyz)
-                               : noc_error(to->parts->log, NOC_ERR_MEMORY, "mesh %s: no memory for %zu vertices", cut.name, vertices);
+                               : noc_no_memory(to->parts->log, cut.name);
     geo_triangles_free(&cut.extra);
     free(xyz);
     free(indices);
@@ -261,7 +273,9 @@ static noc_status add_mesh(const mesh_target *to, const struct aiMesh *m, int ma
 }
 
 static noc_status add_scene(const struct aiScene *from, const mesh_target *to) {
-    int *materials = noc_alloc((from->mNumMaterials + 1) * sizeof(*materials));
+    int *materials = noc_try_alloc((from->mNumMaterials + 1) * sizeof(*materials));
+    if (!materials)
+        return noc_no_memory(to->parts->log, "OBJ");
     noc_status status = NOC_OK;
     memset(materials, 0xff, (from->mNumMaterials + 1) * sizeof(*materials));
     for (unsigned i = 0; i < from->mNumMeshes && !status; i++) {
@@ -292,7 +306,9 @@ static noc_status read_obj(const char *path, library *lib, const mesh_target *to
         lib->main_name, aiProcess_SortByPType | aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices,
         &io, settings);
     noc_status status;
-    if (!from) {
+    if (lib->refused) {
+        status = noc_no_memory(to->parts->log, path);
+    } else if (!from) {
         const char *why = aiGetErrorString();
         status = noc_error(to->parts->log, NOC_ERR_FORMAT, "%s: OBJ: %s", path, why && *why ? why : "not readable");
     } else {
@@ -331,14 +347,15 @@ static noc_status read_parts(const char *path, noc_stream *stream, const noc_imp
         return status;
     }
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strchr(base, '.');
-    char *folder = slash ? noc_format("%.*s", (int)(base - path), path) : noc_strdup("");
+    char *folder = noc_try_strndup(path, (size_t)(base - path));
     lib.folder = (obj_folder){ .path = folder, .anywhere = params && params->allow_outside };
-    lib.main_name = noc_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
+    lib.main_name = noc_try_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
     obj_spread spread = { 0 };
     const mesh_target to = { .parts = parts, .offset = offset, .z_up = params && params->obj_up == NOC_OBJ_UP_Z,
                              .spread = &spread };
-    status = obj_plain_materials(lib.data, lib.size, &lib.folder, noc_stream_budget(stream), noc_stream_name(stream),
-                                 parts->log);
+    status = folder && lib.main_name ? obj_plain_materials(lib.data, lib.size, &lib.folder, noc_stream_budget(stream),
+                                                           noc_stream_name(stream), parts->log)
+                                     : noc_no_memory(parts->log, path);
     if (!status)
         status = read_obj(path, &lib, &to);
     if (!status)

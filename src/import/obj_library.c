@@ -12,14 +12,13 @@ static char *load(obj_folder *folder, const char *name, size_t *size) {
     if (f && stored > MOST_BYTES)
         folder->why = "is larger than 256 MB";
     char *data = f && stored <= MOST_BYTES ? noc_alloc_large(stored + LEAST_BYTES + 1, 1) : NULL;
+    folder->refused = folder->refused || (!data && !folder->why);
     if (data) {
         *size = fread(data, 1, stored, f);
         while (*size < LEAST_BYTES)
             data[(*size)++] = '\n';
         data[*size] = 0;
     }
-    else if (!folder->why)
-        folder->why = "there is no memory to hold it";
     if (f)
         fclose(f);
     return data;
@@ -28,10 +27,13 @@ static char *load(obj_folder *folder, const char *name, size_t *size) {
 /* Under the name itself, with its slashes turned, and as the file that its last part names. */
 static char *find(obj_folder *folder, const char *name, size_t *size) {
     char *data = load(folder, name, size);
-    if (data)
+    if (data || folder->refused)
         return data;
     const char *why = folder->why; /* of the name as it is given */
-    char *turned = noc_strdup(name);
+    char *turned = noc_try_strdup(name);
+    folder->refused = !turned;
+    if (!turned)
+        return NULL;
     for (char *p = turned; *p; p++)
         *p = *p == '\\' ? '/' : *p;
     const char *last = strrchr(turned, '/');
@@ -51,6 +53,7 @@ static char *find_all(obj_folder *folder, char *names, size_t *size) {
         size_t more;
         char *data = find(folder, name, &more), *longer = data ? noc_try_realloc(all, *size + more + 2) : NULL;
         if (!longer) {
+            folder->refused = folder->refused || data;
             free(data);
             free(all);
             return NULL;
@@ -108,14 +111,18 @@ static void plain_statements(char *data, size_t size, const char *name, geo_issu
 }
 
 char *obj_open_library(obj_folder *folder, const char *name, size_t *size, geo_issues *issues) {
-    char *trimmed = noc_strdup(name);
+    char *trimmed = noc_try_strdup(name);
+    folder->refused = folder->refused || !trimmed;
+    if (!trimmed)
+        return NULL;
     for (size_t n = strlen(trimmed); n && strchr(" \t\r", trimmed[n - 1]); n--)
         trimmed[n - 1] = 0;
     const char *begin = trimmed + strspn(trimmed, " \t\"");
     char *data = find(folder, begin, size);
     if (!data && strpbrk(begin, " \t")) {
-        char *names = noc_strdup(begin);
-        data = find_all(folder, names, size);
+        char *names = noc_try_strdup(begin);
+        folder->refused = folder->refused || !names;
+        data = names ? find_all(folder, names, size) : NULL;
         free(names);
     }
     if (data)

@@ -9,6 +9,7 @@ typedef struct obj_folder {
     const char *path; /* with a slash at its end, or "" */
     bool anywhere;    /* they may lie outside it */
     const char *why;  /* the last one could not be opened */
+    bool refused;     /* memory was, to one of them, which then is not there; stays set */
 } obj_folder;
 
 /* The text of a library named by mtllib, with a 0 behind it, free() it; NULL where there is none. The name may hold blanks,

@@ -37,7 +37,7 @@ static char *text_of(const statement *s) { return noc_try_strndup(s->begin, (siz
 static bool add_library(obj_folder *folder, const char *name, import_budget *budget, noc_map *defined) {
     size_t size;
     char *data = obj_open_library(folder, name, &size, NULL);
-    bool memory = true;
+    bool memory = !folder->refused;
     if (data)
         budget->stored += (double)size;
     for (char *p = data, *stop = data ? data + size : NULL, *end; p < stop && memory; p = end + (end < stop)) {
@@ -45,9 +45,7 @@ static bool add_library(obj_folder *folder, const char *name, import_budget *bud
         end = line_end(p, stop);
         if (is_a(p, end, "newmtl", &s)) {
             char *material = text_of(&s);
-            memory = material != NULL;
-            if (memory)
-                map_put(defined, material, 1);
+            memory = material && map_try_put(defined, material, 1, NULL);
             free(material);
         }
     }
@@ -69,7 +67,8 @@ noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, impo
         vertices += is_a(p, end, "v", &s);
         if (is_a(p, end, "mtllib", &s)) {
             char *library = text_of(&s);
-            memory = library && (!map_put(&libraries, library, 1) || add_library(folder, library, budget, &defined));
+            bool fresh;
+            memory = library && map_try_put(&libraries, library, 1, &fresh) && (!fresh || add_library(folder, library, budget, &defined));
             free(library);
         }
     }
@@ -93,6 +92,5 @@ noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, impo
                   (double)vertices * VERTEX_COST;
     map_free(&defined);
     map_free(&libraries);
-    return memory ? import_affords(budget, cost, name, "its faces and materials", log)
-                  : noc_error(log, NOC_ERR_MEMORY, "%s: no memory for the names of its materials", name);
+    return memory ? import_affords(budget, cost, name, "its faces and materials", log) : noc_no_memory(log, name);
 }

@@ -64,15 +64,17 @@ typedef struct tag_list {
     char id[64];
 } tag_list;
 
-static void collect_tags(json_t *element, tag_list *list) {
+/* False: memory was refused. */
+static bool collect_tags(json_t *element, tag_list *list) {
     list->tags.len = 0;
     const char *type = json_string_value(json_object_get(element, "type")), *key;
     json_t *id = json_object_get(element, "id"), *value;
     snprintf(list->id, sizeof(list->id), "%.16s/%" JSON_INTEGER_FORMAT, type ? type : "element", json_integer_value(id));
-    array_push(&list->tags, (lamp_tag){ "@id", list->id });
+    bool kept = array_try_push(&list->tags, (lamp_tag){ "@id", list->id });
     json_object_foreach(json_object_get(element, "tags"), key, value)
         if (json_is_string(value))
-            array_push(&list->tags, (lamp_tag){ key, json_string_value(value) });
+            kept = kept && array_try_push(&list->tags, (lamp_tag){ key, json_string_value(value) });
+    return kept;
 }
 
 static noc_status emit(json_t *elements, lamp_writer *w) {
@@ -86,8 +88,7 @@ static noc_status emit(json_t *elements, lamp_writer *w) {
         double xyz[3] = { NAN, NAN, NAN };
         if (!place_of(element, &xyz[0], &xyz[1]))
             xyz[0] = xyz[1] = NAN;
-        collect_tags(element, &list);
-        status = lamp_writer_point(w, list.tags.data, list.tags.len, list.id, xyz);
+        status = !collect_tags(element, &list) ? noc_no_memory(w->sink->log, w->place) : lamp_writer_point(w, list.tags.data, list.tags.len, list.id, xyz);
         if (!status && i % 1024 == 0 && w->sink->progress && !w->sink->progress(w->sink->ctx, (double)i / (double)count))
             status = NOC_ERR_CANCELLED;
     }
@@ -115,17 +116,18 @@ static size_t pull(void *buffer, size_t size, void *user) {
 
 static noc_status read_overpass(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
     *format = "Overpass JSON";
-    lamp_writer w = lamp_writer_start(sink, noc_stream_name(stream), params);
+    lamp_writer w;
+    noc_status status = lamp_writer_start(&w, sink, noc_stream_name(stream), params);
+    if (status)
+        return status;
     w.geographic = true;
     source from = { .stream = stream, .log = sink->log };
     json_error_t error;
-    json_t *root = json_load_callback(pull, &from, 0, &error);
+    json_t *root = import_json_load(pull, &from, (size_t)noc_stream_size(stream), 0, &error);
     if (!root) {
         lamp_writer_free(&w);
-        return from.status ? from.status
-                           : noc_error(sink->log, NOC_ERR_FORMAT, "%s:%d: %s", noc_stream_name(stream), error.line, error.text);
+        return from.status ? from.status : import_json_error(&error, noc_stream_name(stream), sink->log);
     }
-    noc_status status;
     json_t *elements = json_object_get(root, "elements"), *remark = json_object_get(root, "remark");
     if (!json_is_array(elements)) {
         status = noc_error(sink->log, NOC_ERR_FORMAT, "%s: \"elements\" is not a list", w.place);

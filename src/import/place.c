@@ -30,14 +30,20 @@ static source_crs *find_source(importer *im, const char *spelling) {
     return NULL;
 }
 
+/* Of a CRS that the user gave. */
+static noc_status given_status(noc_status status) { return !status || status == NOC_ERR_MEMORY ? status : NOC_ERR_ARGUMENT; }
+
 /* The CRS that `spelling` means for this run; *crs is NULL for local metres. */
 static noc_status resolve(importer *im, const char *spelling, const char *place, geo_crs **crs) {
     *crs = NULL;
     const char *fallback = is_blank(im->params->crs) ? NULL : im->params->crs;
+    noc_status status;
     if (*spelling) {
-        *crs = geo_crs_create_plain(spelling, place, NULL);
+        *crs = geo_crs_create_plain(spelling, place, NULL, &status);
         if (*crs)
             return NOC_OK;
+        if (status == NOC_ERR_MEMORY)
+            return noc_no_memory(im->log, place);
         if (!fallback && !im->inspect)
             return noc_error(im->log, NOC_ERR_FORMAT,
                              "%s: the CRS \"%.60s\" is not understood, opens files, or is neither geographic nor projected: say with "
@@ -47,8 +53,8 @@ static noc_status resolve(importer *im, const char *spelling, const char *place,
     }
     if (!fallback)
         return NOC_OK;
-    *crs = geo_crs_create(fallback, "--crs", im->log);
-    return *crs ? NOC_OK : NOC_ERR_ARGUMENT;
+    *crs = geo_crs_create(fallback, "--crs", im->log, &status);
+    return given_status(status);
 }
 
 noc_status place_crs(importer *im, const char *srs_name, const char *place, bool *lat_first) {
@@ -60,11 +66,15 @@ noc_status place_crs(importer *im, const char *srs_name, const char *place, bool
         noc_status status = resolve(im, spelling, place ? place : in->path, &crs);
         if (status)
             return status;
-        source = noc_calloc(1, sizeof(*source));
-        source->spelling = noc_strdup(spelling);
-        source->input = im->current;
-        source->crs = crs;
-        array_push(&im->sources, source);
+        source = noc_try_calloc(1, sizeof(*source));
+        char *kept = noc_try_strdup(spelling);
+        if (!source || !kept || !array_try_push(&im->sources, source)) {
+            free(source);
+            free(kept);
+            geo_crs_destroy(crs);
+            return noc_no_memory(im->log, in->path);
+        }
+        *source = (source_crs){ .spelling = kept, .input = im->current, .crs = crs };
     }
     im->source = source;
     if (lat_first)
@@ -134,9 +144,10 @@ static noc_status wanted_crs(importer *im, geo_crs **crs) {
     const char *definition = by_parameter ? im->params->scene_crs : im->scene->crs_name;
     if (is_blank(definition) || im->inspect)
         return NOC_OK;
-    *crs = geo_crs_create(definition, by_parameter ? "--scene-crs" : "scene", im->log);
+    noc_status status;
+    *crs = geo_crs_create(definition, by_parameter ? "--scene-crs" : "scene", im->log, &status);
     if (!*crs)
-        return NOC_ERR_ARGUMENT;
+        return given_status(status);
     if (geo_crs_is_metric(*crs))
         return NOC_OK;
     noc_error(im->log, NOC_ERR_ARGUMENT, "%s: a scene's CRS must be projected, in metres", geo_crs_name(*crs));
@@ -145,18 +156,20 @@ static noc_status wanted_crs(importer *im, geo_crs **crs) {
     return NOC_ERR_ARGUMENT;
 }
 
-static void set_place(importer *im, geo_crs *crs, const double origin[3]) {
+/* Takes the crs. */
+static noc_status set_place(importer *im, geo_crs *crs, const double origin[3]) {
     im->placed = true;
     im->placed_by = im->inputs[im->current].path;
     im->scene_crs = crs;
     memcpy(im->origin, origin, sizeof(im->origin));
     noc_scene_set_crs(im->scene, crs ? geo_crs_name(crs) : NULL, im->origin);
     free(im->scene->without_crs);
-    im->scene->without_crs = crs ? NULL : noc_strdup(im->placed_by);
+    im->scene->without_crs = crs ? NULL : noc_try_strdup(im->placed_by);
     if (im->scene->crs && im->scene->crs_free)
         im->scene->crs_free(im->scene->crs);
     im->scene->crs = crs;
     im->scene->crs_free = geo_crs_destroy;
+    return crs || im->scene->without_crs ? NOC_OK : noc_no_memory(im->log, im->placed_by);
 }
 
 /* Lengths must be those of the ground: light falls with their square. Where *crs has others at a point (Web Mercator, a zone far
@@ -167,13 +180,15 @@ static noc_status make_metres_true(importer *im, geo_crs **crs, double p[3], geo
     *given = NULL;
     if (!(fabs(scale - 1) > TRUE_SCALE) || !geo_crs_lonlat(*crs, p[0], p[1], lonlat))
         return NOC_OK;
+    noc_status status = NOC_OK;
     geo_crs *local = geo_crs_utm(lonlat[0], lonlat[1]);
-    geo_transform *t = local ? geo_transform_create(*crs, local, im->log) : NULL;
+    geo_transform *t = local ? geo_transform_create(*crs, local, im->log, &status) : NULL;
     bool ok = t && !geo_transform_points(t, p, 1);
     geo_transform_destroy(t);
     if (!ok) {
+        bool refused = !local || status == NOC_ERR_MEMORY;
         geo_crs_destroy(local);
-        return noc_error(im->log, NOC_ERR_FORMAT, "%s: 100 m of %s are %.1f m on the ground there, and no local CRS was found", path,
+        return refused ? (status ? status : noc_no_memory(im->log, path)) : noc_error(im->log, NOC_ERR_FORMAT, "%s: 100 m of %s are %.1f m on the ground there, and no local CRS was found", path,
                          geo_crs_name(*crs), 100 / scale);
     }
     if (!im->inspect)
@@ -187,19 +202,24 @@ static noc_status make_metres_true(importer *im, geo_crs **crs, double p[3], geo
 /* Keeps the CRS that the user speaks, and where the scene's origin lies in it. */
 static noc_status set_given(importer *im, geo_crs *given) {
     noc_scene *scene = im->scene;
-    geo_transform *t = geo_transform_create(scene->crs, given, im->log);
+    noc_status status;
+    geo_transform *t = geo_transform_create(scene->crs, given, im->log, &status);
     double origin[3] = { im->origin[0], im->origin[1], 0 };
-    bool ok = t && !geo_transform_points(t, origin, 1);
+    if (t && geo_transform_points(t, origin, 1))
+        status = NOC_ERR_UNSUPPORTED;
     geo_transform_destroy(t);
-    if (!ok) {
+    char *name = status ? NULL : noc_try_strdup(geo_crs_name(given));
+    if (!status && !name)
+        status = noc_no_memory(im->log, im->placed_by);
+    if (status) {
         geo_crs_destroy(given);
-        return NOC_ERR_UNSUPPORTED;
+        return status;
     }
     if (scene->given_crs)
         scene->crs_free(scene->given_crs);
     free(scene->given_crs_name);
     scene->given_crs = given;
-    scene->given_crs_name = noc_strdup(geo_crs_name(given));
+    scene->given_crs_name = name;
     memcpy(scene->given_origin, origin, sizeof(origin));
     return NOC_OK;
 }
@@ -218,17 +238,21 @@ static noc_status settle(importer *im, const source_crs *source, const double po
                              im->inputs[im->current].path);
         }
         bool near_zero = fabs(point[0]) < LOCAL_ORIGIN && fabs(point[1]) < LOCAL_ORIGIN;
-        set_place(im, NULL, (double[3]){ near_zero ? 0 : round(point[0]), near_zero ? 0 : round(point[1]), 0 });
-        return NOC_OK;
+        return set_place(im, NULL, (double[3]){ near_zero ? 0 : round(point[0]), near_zero ? 0 : round(point[1]), 0 });
     }
     double lonlat[2], p[3] = { point[0], point[1], 0 };
-    if (!crs && geo_crs_is_metric(source->crs))
-        crs = geo_crs_clone(source->crs);
-    else if (!crs && geo_crs_lonlat(source->crs, point[0], point[1], lonlat))
-        crs = geo_crs_utm(lonlat[0], lonlat[1]);
-    geo_transform *t = crs ? geo_transform_create(source->crs, crs, im->log) : NULL;
+    bool metric = geo_crs_is_metric(source->crs), made = !crs && (metric || geo_crs_lonlat(source->crs, point[0], point[1], lonlat));
+    if (made)
+        crs = metric ? geo_crs_clone(source->crs) : geo_crs_utm(lonlat[0], lonlat[1]);
+    if (made && !crs)
+        return noc_no_memory(im->log, im->inputs[im->current].path);
+    geo_transform *t = crs ? geo_transform_create(source->crs, crs, im->log, &status) : NULL;
     bool ok = t && !geo_transform_points(t, p, 1);
     geo_transform_destroy(t);
+    if (status == NOC_ERR_MEMORY) {
+        geo_crs_destroy(crs);
+        return status;
+    }
     if (!ok) {
         geo_crs_destroy(crs);
         return noc_error(im->log, NOC_ERR_FORMAT, "%s: the first coordinates (%.10g %.10g) have no place in %s",
@@ -245,8 +269,8 @@ static noc_status settle(importer *im, const source_crs *source, const double po
         geo_crs_destroy(crs);
         return status;
     }
-    set_place(im, crs, preset ? im->scene->origin : (double[3]){ round(p[0]), round(p[1]), 0 });
-    return given ? set_given(im, given) : NOC_OK;
+    status = set_place(im, crs, preset ? im->scene->origin : (double[3]){ round(p[0]), round(p[1]), 0 });
+    return given ? set_given(im, given) : status; /* which is none where there is a CRS */
 }
 
 /* Makes the way from the source to the scene, once. */
@@ -264,18 +288,19 @@ static noc_status prepare(importer *im, source_crs *s, const double point[3]) {
         return noc_error(im->log, NOC_ERR_FORMAT, "%s names no CRS, but %s does (%s): say with --crs which one it is in",
                          im->placed_by, path, geo_crs_name(s->crs));
     if (s->crs) {
-        s->to_scene = geo_transform_create(s->crs, im->scene_crs, im->log);
+        noc_status status;
+        s->to_scene = geo_transform_create(s->crs, im->scene_crs, im->log, &status);
         if (!s->to_scene)
-            return NOC_ERR_UNSUPPORTED;
+            return status;
     }
     s->ready = true;
     noc_report_file *file = &im->inputs[im->current].file;
     if (!file->crs) {
-        file->crs = s->crs ? arena_strdup(&im->report->arena, geo_crs_name(s->crs)) : "";
+        file->crs = s->crs ? arena_try_strdup(&im->report->arena, geo_crs_name(s->crs)) : "";
         file->degrees = s->crs && geo_crs_is_geographic(s->crs);
-        file->crs_given = arena_strdup(&im->report->arena, s->spelling);
+        file->crs_given = arena_try_strdup(&im->report->arena, s->spelling);
     }
-    return NOC_OK;
+    return im->report->arena.refused ? noc_no_memory(im->log, path) : NOC_OK;
 }
 
 /* Bounds of the finite coordinates; heights may have none (lo > hi). False if no place at all is finite. */
@@ -342,7 +367,9 @@ noc_status place_settle(importer *im, const place_sample *samples, size_t count)
     if (!count)
         return NOC_OK;
     source_crs *s = commonest_source(samples, count);
-    double *axis[2] = { noc_alloc(count * sizeof(double)), noc_alloc(count * sizeof(double)) };
+    double *both = noc_try_alloc(2 * count * sizeof(double)), *axis[2] = { both, both + count };
+    if (!both)
+        return noc_no_memory(im->log, im->inputs[im->current].path);
     double first[3] = { 0 }, point[3] = { 0 };
     size_t n = 0, in_area = 0;
     for (int pass = 0; pass < 3; pass++) /* decides about the axes; counts; takes */
@@ -364,8 +391,8 @@ noc_status place_settle(importer *im, const place_sample *samples, size_t count)
     for (int k = 0; k < 2; k++) {
         qsort(axis[k], n, sizeof(double), compare_doubles);
         point[k] = axis[k][(n - 1) / 2];
-        free(axis[k]);
     }
+    free(both);
     double stray = s->crs && geo_crs_is_geographic(s->crs) ? STRAY_DEGREES : STRAY_METRES;
     bool by_first = fabs(first[0] - point[0]) <= stray && fabs(first[1] - point[1]) <= stray;
     return prepare(im, s, by_first ? first : point);
@@ -394,7 +421,8 @@ noc_status place_points(importer *im, double *xyz, size_t count, const char *id,
             return status;
     }
     size_t numbers = 3 * count;
-    array_append(&im->given, xyz, numbers);
+    if (!array_try_append(&im->given, xyz, numbers))
+        return noc_no_memory(im->log, in->path);
     size_t astray = 0, failed = 0;
     if (s->to_scene)
         failed = geo_transform_points(s->to_scene, xyz, count);
@@ -430,9 +458,7 @@ static noc_status settle_by_scene(importer *im) {
     geo_crs *crs;
     bool preset = im->scene->crs_name && is_blank(im->params->scene_crs) && !im->inspect;
     noc_status status = wanted_crs(im, &crs);
-    if (!status && crs)
-        set_place(im, crs, preset ? im->scene->origin : (double[3]){ 0, 0, 0 });
-    return status;
+    return !status && crs ? set_place(im, crs, preset ? im->scene->origin : (double[3]){ 0, 0, 0 }) : status;
 }
 
 noc_status place_mesh(importer *im) {
@@ -440,11 +466,12 @@ noc_status place_mesh(importer *im) {
     im->source = NULL;
     im->mesh_from_origin = false;
     if (!is_blank(im->params->crs)) {
-        geo_crs *crs = geo_crs_create(im->params->crs, "--crs", im->log);
+        noc_status status;
+        geo_crs *crs = geo_crs_create(im->params->crs, "--crs", im->log, &status);
         bool metric = crs && geo_crs_is_metric(crs);
         geo_crs_destroy(crs);
-        if (!crs)
-            return NOC_ERR_ARGUMENT;
+        if (status)
+            return given_status(status);
         if (metric)
             return NOC_OK;
         return noc_error(im->log, NOC_ERR_ARGUMENT, "--crs %s: %s is in metres, so its CRS must be projected, in metres",

@@ -9,7 +9,7 @@ typedef struct cut_mesh {
     const double *xyz; /* 3 a vertex */
     uint32_t *indices; /* 3 a triangle; room for two triangles a face */
     size_t triangle_count;
-    geo_triangles extra;
+    geo_triangles extra; /* its no_memory: of a face, which then is not there */
     geo_issues *issues;
     const char *name;
 } cut_mesh;

@@ -38,50 +38,56 @@ typedef struct remote {
 
 /* ---- starting it ---- */
 
-static bool is_program(char *path) {
-    bool yes = !access(path, X_OK);
-    if (!yes)
-        free(path);
-    return yes;
-}
-
-/* Where NOCTURNE_READER says; else beside the library, or in a folder nocturne there. NULL after reporting. */
-static char *find_program(const remote *r) {
+/* Where NOCTURNE_READER says; else beside the library, or in a folder nocturne there. */
+static noc_status find_program(remote *r) {
+    static const char *const below[] = { "/nocturne/" HELPER, "/" HELPER };
     const char *given = secure_getenv(HELPER_VARIABLE);
     Dl_info info;
-    char *folder = NULL, *found = NULL;
     if (given && *given) {
-        found = noc_strdup(given);
-        return is_program(found) ? found
-                                 : (noc_error(r->sink->log, NOC_ERR_UNSUPPORTED, "%s: %s is read by a helper program, and " HELPER_VARIABLE
-                                              " names none (%s)", r->path, r->reader->name, given), NULL);
+        if (access(given, X_OK))
+            return noc_error(r->sink->log, NOC_ERR_UNSUPPORTED, "%s: %s is read by a helper program, and " HELPER_VARIABLE " names none (%s)",
+                             r->path, r->reader->name, given);
+        r->program = noc_try_strdup(given);
+        return r->program ? NOC_OK : noc_no_memory(r->sink->log, r->path);
     }
-    if (dladdr((void *)&remote_read, &info) && info.dli_fname) {
-        char *real = realpath(info.dli_fname, NULL), *slash = real ? strrchr(real, '/') : NULL;
-        folder = slash ? noc_format("%.*s", (int)(slash - real), real) : NULL;
-        free(real);
+    char *real = dladdr((void *)&remote_read, &info) && info.dli_fname ? realpath(info.dli_fname, NULL) : NULL;
+    char *slash = real ? strrchr(real, '/') : NULL;
+    noc_status status = NOC_OK;
+    if (slash)
+        *slash = 0;
+    for (size_t i = 0; i < NOC_COUNT(below) && slash && !status && !r->program; i++) {
+        if (!(r->program = noc_try_format("%s%s", real, below[i]))) {
+            status = noc_no_memory(r->sink->log, r->path);
+        } else if (access(r->program, X_OK)) {
+            free(r->program);
+            r->program = NULL;
+        }
     }
-    if (folder && !is_program(found = noc_format("%s/nocturne/" HELPER, folder)) && !is_program(found = noc_format("%s/" HELPER, folder)))
-        found = NULL;
-    if (!found)
-        noc_error(r->sink->log, NOC_ERR_UNSUPPORTED,
-                  "%s: %s is read by the helper program " HELPER ", which is not in %s or %s/nocturne: install it, name it in "
-                  HELPER_VARIABLE ", or read in this process (--no-isolate)", r->path, r->reader->name, folder ? folder : "?",
-                  folder ? folder : "?");
-    free(folder);
-    return found;
+    const char *folder = slash ? real : "?";
+    if (!status && !r->program)
+        status = noc_error(r->sink->log, NOC_ERR_UNSUPPORTED,
+                           "%s: %s is read by the helper program " HELPER ", which is not in %s or %s/nocturne: install it, name it in "
+                           HELPER_VARIABLE ", or read in this process (--no-isolate)", r->path, r->reader->name, folder, folder);
+    free(real);
+    return status;
 }
 
-/* The environment with TMPDIR in the scratch folder: whatever the helper leaves goes with it. */
+/* The environment with TMPDIR in the scratch folder: whatever the helper leaves goes with it. NULL: memory was refused. */
 static char **make_environment(const char *scratch, char **own) {
     size_t n = 0, kept = 0;
     while (environ[n])
         n++;
-    char **list = noc_calloc(n + 2, sizeof(*list));
+    char **list = noc_try_calloc(n + 2, sizeof(*list));
+    *own = noc_try_format("TMPDIR=%s", scratch);
+    if (!list || !*own) {
+        free(list);
+        free(*own);
+        return NULL;
+    }
     for (size_t i = 0; i < n; i++)
         if (strncmp(environ[i], "TMPDIR=", 7))
             list[kept++] = environ[i];
-    list[kept] = *own = noc_format("TMPDIR=%s", scratch);
+    list[kept] = *own;
     return list;
 }
 
@@ -91,6 +97,8 @@ static int spawn(remote *r, int end) {
     posix_spawnattr_t attributes;
     sigset_t none, all;
     char *own, **environment = make_environment(r->scratch, &own), *arguments[] = { (char *)HELPER, NULL };
+    if (!environment)
+        return ENOMEM;
     sigemptyset(&none);
     sigfillset(&all);
     posix_spawn_file_actions_init(&actions);
@@ -116,13 +124,14 @@ static int spawn(remote *r, int end) {
 
 static noc_status start(remote *r) {
     int ends[2];
-    r->program = find_program(r);
-    if (!r->program)
-        return NOC_ERR_UNSUPPORTED;
-    r->scratch = noc_format("%s/nocturne-XXXXXX", map_temporary_folder());
+    noc_status status = find_program(r);
+    if (status)
+        return status;
+    r->scratch = noc_try_format("%s/nocturne-XXXXXX", map_temporary_folder());
+    if (!r->scratch)
+        return noc_no_memory(r->sink->log, r->path);
     if (!mkdtemp(r->scratch)) {
-        noc_status status = noc_error(r->sink->log, NOC_ERR_IO, "%s: no temporary folder in %s: %s", r->path, map_temporary_folder(),
-                                      strerror(errno));
+        status = noc_error(r->sink->log, NOC_ERR_IO, "%s: no temporary folder in %s: %s", r->path, map_temporary_folder(), strerror(errno));
         free(r->scratch);
         r->scratch = NULL;
         return status;
@@ -132,12 +141,16 @@ static noc_status start(remote *r) {
     r->fd = ends[0];
     int error = spawn(r, ends[1]);
     close(ends[1]);
+    if (error == ENOMEM)
+        return noc_no_memory(r->sink->log, r->path);
     if (error)
         return noc_error(r->sink->log, NOC_ERR_IO, "%s: %s cannot be started: %s", r->path, r->program, strerror(error));
     remote_record request = { 0 };
     remote_ask(&request, r->reader, r->path, r->params, r->sink);
-    bool sent = remote_send(r->fd, &request);
+    bool sent = !request.refused && remote_send(r->fd, &request);
     array_free(&request.bytes);
+    if (request.refused)
+        return noc_no_memory(r->sink->log, r->path);
     return sent ? NOC_OK : noc_error(r->sink->log, NOC_ERR_IO, "%s: %s does not listen", r->path, r->program);
 }
 
@@ -153,6 +166,9 @@ static noc_status ended_early(remote *r) {
     int how = 0;
     pid_t got = waitpid(r->pid, &how, 0);
     r->pid = 0;
+    if (got > 0 && WIFEXITED(how) && WEXITSTATUS(how) == REMOTE_NO_MEMORY)
+        return noc_error(r->sink->log, NOC_ERR_MEMORY, "%s: the process that reads it needs more than the limit --max-memory, %.3g GB",
+                         r->path, import_budget_of(r->params).memory / 1e9);
     if (got > 0 && WIFSIGNALED(how) && WTERMSIG(how) != SIGKILL)
         return noc_error(r->sink->log, NOC_ERR_FORMAT,
                          "%s: the process that reads it as %s ended by signal %d (%s): the file is broken, or needs more than the limit "

@@ -10,6 +10,7 @@
 #include "import/import.h"
 
 #define REMOTE_FD 3 /* the helper's end of the socket */
+#define REMOTE_NO_MEMORY 3 /* the helper's exit status where it has none for its answer */
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
@@ -48,7 +49,8 @@ typedef struct remote_end { int32_t status; bool trailing; uint64_t bytes_read, 
 typedef struct remote_record {
     NOC_ARRAY(char) bytes;
     size_t pos;
-    bool bad; /* taken apart: it is not what it should be */
+    bool bad;     /* taken apart: it is not what it should be */
+    bool refused; /* written: memory was, so that it is not whole; stays set */
 } remote_record;
 
 void remote_put(remote_record *r, const void *data, size_t size);
@@ -76,7 +78,7 @@ typedef struct remote_request {
     noc_arena texts;
 } remote_request;
 
-/* Takes it from the socket; false where it is none. Its texts are the arena's, in any case. */
+/* Takes it from the socket; false where it is none, or (texts.refused) memory was refused. Its texts are the arena's, in any case. */
 bool remote_receive(int fd, remote_request *request);
 
 /* ---- the library's side (remote.c, remote_take.c) ---- */

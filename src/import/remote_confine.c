@@ -71,11 +71,13 @@ static void allow_system(int rules) {
     for (size_t i = 0; i < NOC_COUNT(places); i++)
         allow(rules, places[i], READ_FOLDERS);
     for (size_t i = 0; i < NOC_COUNT(variables); i++) {
-        char *list = noc_strdup(getenv(variables[i])), *rest = list, *place;
-        while ((place = strsep(&rest, ":")))
-            if (*place)
-                allow(rules, place, READ_FOLDERS);
-        free(list);
+        const char *place = getenv(variables[i]);
+        for (size_t n; place && *place; place += n + (place[n] != 0)) {
+            n = strcspn(place, ":");
+            char path[PATH_MAX];
+            if (n && n < sizeof(path) && noc_snprintf(path, sizeof(path), "%.*s", (int)n, place) > 0)
+                allow(rules, path, READ_FOLDERS);
+        }
     }
     allow(rules, map_temporary_folder(), READ_FOLDERS | WRITE);
 }
@@ -86,11 +88,11 @@ static void allow_beside(int rules, const char *function) {
     void *at = dlsym(RTLD_DEFAULT, function);
     char *path = at && dladdr(at, &info) ? realpath(info.dli_fname, NULL) : NULL, *slash = path ? strrchr(path, '/') : NULL;
     if (slash) {
-        char *share = noc_format("%.*s/../share", (int)(slash - path), path);
+        char share[PATH_MAX + 10];
+        noc_snprintf(share, sizeof(share), "%.*s/../share", (int)(slash - path), path);
         *slash = 0;
         allow(rules, path, READ_FOLDERS);
         allow(rules, share, READ_FOLDERS);
-        free(share);
     }
     free(path);
 }
@@ -98,22 +100,21 @@ static void allow_beside(int rules, const char *function) {
 /* The file itself and, of a map, its parts: those beside it whose names begin like its own; of a mesh the folder. */
 static void allow_input(int rules, const char *path, bool whole) {
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strrchr(base, '.');
-    char *folder = slash ? noc_format("%.*s", (int)(base - path), path) : noc_strdup("./");
+    char folder[PATH_MAX], part[PATH_MAX + NAME_MAX]; /* what does not fit cannot be opened */
+    noc_snprintf(folder, sizeof(folder), "%.*s", slash ? (int)(base - path) : 2, slash ? path : "./");
     size_t stem = dot ? (size_t)(dot - base) : strlen(base);
     DIR *dir = opendir(folder);
     struct dirent *entry;
     allow(rules, path, READ_FILES);
     allow(rules, folder, whole ? READ_FOLDERS : LANDLOCK_ACCESS_FS_READ_DIR);
     while (dir && (entry = readdir(dir))) {
-        char *part = noc_format("%s%s", folder, entry->d_name);
+        noc_snprintf(part, sizeof(part), "%s%s", folder, entry->d_name);
         struct stat st;
         if (!strncasecmp(entry->d_name, base, stem) && !stat(part, &st) && S_ISREG(st.st_mode))
             allow(rules, part, READ_FILES);
-        free(part);
     }
     if (dir)
         closedir(dir);
-    free(folder);
 }
 
 static void confine_files(const char *path, bool whole, bool anywhere) {

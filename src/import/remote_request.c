@@ -21,7 +21,10 @@ static void ask_options(const noc_import_params *params, remote_record *batch, r
             continue;
         }
         size_t n = (size_t)noc_option_get(o, params, NULL, 0);
-        char *value = noc_alloc(n + 1);
+        char *value = noc_try_alloc(n + 1);
+        batch->refused = batch->refused || !value;
+        if (!value)
+            return;
         noc_option_get(o, params, value, n + 1);
         if (n) {
             remote_put_text(one, o->name);
@@ -62,9 +65,10 @@ static bool receive_all(int fd, void *data, size_t size) {
 }
 
 static void set_option(remote_request *q, const char *name, const char *value) {
-    for (const noc_option *o = noc_import_options(); o->name; o++)
+    const char *kept = arena_try_strdup(&q->texts, value);
+    for (const noc_option *o = noc_import_options(); o->name && kept; o++)
         if (!strcmp(o->name, name))
-            noc_option_set(o, &q->params, arena_strdup(&q->texts, value), NULL);
+            noc_option_set(o, &q->params, kept, NULL);
 }
 
 static bool take(remote_request *q, uint32_t kind, remote_record *r) {
@@ -74,7 +78,7 @@ static bool take(remote_request *q, uint32_t kind, remote_record *r) {
             if (!strcmp((*reader)->name, name))
                 q->reader = *reader;
     } else if (kind == REMOTE_PATH) {
-        q->path = arena_strdup(&q->texts, remote_get_text(r));
+        q->path = arena_try_strdup(&q->texts, remote_get_text(r));
     } else if (kind == REMOTE_OPTION) {
         const char *name = remote_get_text(r), *value = remote_get_text(r);
         if (!r->bad)
@@ -82,7 +86,7 @@ static bool take(remote_request *q, uint32_t kind, remote_record *r) {
     } else if (kind == REMOTE_SINK) {
         remote_get(r, &q->sink, sizeof(q->sink));
     }
-    return !r->bad;
+    return !r->bad && !q->texts.refused;
 }
 
 bool remote_receive(int fd, remote_request *q) {
@@ -92,7 +96,10 @@ bool remote_receive(int fd, remote_request *q) {
         remote_record r = { 0 };
         if (!receive_all(fd, &head, sizeof(head)) || head.size_high || head.size_low > REMOTE_REQUEST_MOST)
             return false;
-        array_reserve(&r.bytes, (size_t)head.size_low);
+        if (!array_try_reserve(&r.bytes, (size_t)head.size_low)) {
+            q->texts.refused = true;
+            return false;
+        }
         r.bytes.len = head.size_low;
         bool good = receive_all(fd, r.bytes.data, r.bytes.len) && take(q, head.kind, &r);
         array_free(&r.bytes);

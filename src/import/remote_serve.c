@@ -18,6 +18,8 @@ typedef struct serving {
 
 static void emit(serving *s, uint32_t kind) {
     remote_add(&s->batch, kind, &s->out);
+    if (s->batch.refused)
+        _exit(REMOTE_NO_MEMORY);
     bool waits = kind == REMOTE_LAMP || kind == REMOTE_MATERIAL || kind == REMOTE_ISSUE || kind == REMOTE_CRS;
     if ((!waits || s->batch.bytes.len > BATCH) && !remote_send(REMOTE_FD, &s->batch))
         _exit(1); /* whoever asked is gone: so are we */
@@ -56,7 +58,7 @@ static bool on_progress(void *ctx, double done) {
     return true;
 }
 
-static void on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
+static noc_status on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
     serving *s = ctx;
     uint64_t numbers[] = { points, count };
     remote_put(&s->out, numbers, sizeof(numbers));
@@ -71,6 +73,7 @@ static void on_columns(void *ctx, size_t points, const geo_column *columns, size
         remote_put_text(&s->out, columns[i].example);
     }
     emit(s, REMOTE_COLUMNS);
+    return NOC_OK;
 }
 
 static int on_material(void *ctx, const noc_material *material) {
@@ -98,7 +101,8 @@ static void send_issues(serving *s, const geo_issues *issues) {
         const char *reason, *examples;
         bool repaired;
         size_t count;
-        geo_issues_get(issues, i, &reason, &repaired, &count, &examples);
+        if (!geo_issues_get(issues, i, &reason, &repaired, &count, &examples))
+            _exit(REMOTE_NO_MEMORY);
         remote_put(&s->out, &repaired, sizeof(repaired));
         remote_put(&s->out, &count, sizeof(count));
         remote_put_text(&s->out, reason);
@@ -110,12 +114,15 @@ static void send_issues(serving *s, const geo_issues *issues) {
 static void serve(serving *s) {
     noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_DEBUG, .message = on_message, .user = s });
     geo_issues *issues = geo_issues_create();
+    if (!log || !issues)
+        _exit(REMOTE_NO_MEMORY);
     geo_sink sink = { .ctx = s, .log = log, .issues = issues, .lamps_lost = &s->lamps_lost, .crs = on_crs, .lamp = on_lamp,
                       .progress = on_progress, .columns = on_columns, .named_lamps = s->asked.sink.named_lamps, .inspect = s->asked.sink.inspect };
     const mesh_parts parts = { .ctx = s, .log = log, .issues = issues, .material = on_material, .mesh = on_mesh };
     const char *format = s->asked.reader->name;
-    remote_end end = { .status = NOC_ERR_IO };
-    noc_stream *stream = noc_stream_open(s->asked.path, log);
+    noc_status opened;
+    noc_stream *stream = noc_stream_open(s->asked.path, log, &opened);
+    remote_end end = { .status = (int32_t)opened };
     if (stream) {
         noc_stream_limit(stream, &s->asked.params);
         end.status = s->asked.reader->read_parts ? (int32_t)s->asked.reader->read_parts(s->asked.path, stream, &s->asked.params, &parts, &format)
@@ -126,6 +133,8 @@ static void serve(serving *s) {
         end.bytes_read = noc_stream_read_bytes(stream);
         end.trailing = noc_stream_trailing(stream);
     }
+    if (geo_issues_refused(issues))
+        _exit(REMOTE_NO_MEMORY);
     send_issues(s, issues);
     end.lamps_lost = s->lamps_lost;
     remote_put(&s->out, &end, sizeof(end));
@@ -139,7 +148,7 @@ int noc_reader_main(void) {
     serving s = { 0 };
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getsockopt(REMOTE_FD, SOL_SOCKET, SO_TYPE, &type, &size) || !remote_receive(REMOTE_FD, &s.asked) || getppid() != s.asked.sink.parent)
-        return 1; /* not started by the library, or whoever started it ended before it asked to end with it */
+        return s.asked.texts.refused ? REMOTE_NO_MEMORY : 1; /* not started by the library, or whoever started it ended before it asked to end with it */
     remote_confine(s.asked.path, s.asked.reader->read_parts != NULL, &s.asked.params);
     serve(&s);
     _exit(0); /* what is left to tidy up goes with the process */

@@ -20,8 +20,8 @@ static noc_status take_log(remote_taker *t, remote_record *one) {
     if (level == NOC_LOG_ERROR && t->error)
         return garbled(t);
     if (level == NOC_LOG_ERROR)
-        t->error = noc_strdup(text);
-    else if (level == NOC_LOG_WARN)
+        return (t->error = noc_try_strdup(text)) ? NOC_OK : noc_no_memory(t->sink->log, t->path);
+    if (level == NOC_LOG_WARN)
         noc_warn(t->sink->log, "%s", text);
     else if (level == NOC_LOG_INFO)
         noc_info(t->sink->log, "%s", text);
@@ -46,8 +46,9 @@ static noc_status take_material(remote_taker *t, remote_record *one) {
     if (!remote_get(one, &material, sizeof(material)) || !t->parts || !is_bool(&material.two_sided))
         return garbled(t);
     int index = t->parts->material(t->parts->ctx, &material);
-    array_push(&t->materials, index);
-    return index < 0 ? NOC_ERR_ARGUMENT : NOC_OK;
+    if (index < 0)
+        return NOC_ERR_ARGUMENT; /* said */
+    return array_try_push(&t->materials, index) ? NOC_OK : noc_no_memory(t->sink->log, t->path);
 }
 
 static noc_status take_mesh(remote_taker *t, remote_record *one) {
@@ -62,7 +63,7 @@ static noc_status take_mesh(remote_taker *t, remote_record *one) {
     uint32_t *corners = noc_alloc_large((size_t)m.triangles * 3, sizeof(*corners));
     noc_status status = NOC_OK;
     if (!xyz || !corners) {
-        status = noc_error(t->sink->log, NOC_ERR_MEMORY, "%s: no memory for a mesh of %llu vertices", t->path, (unsigned long long)m.vertices);
+        status = noc_no_memory(t->sink->log, t->path);
     } else {
         memcpy(xyz, positions, (size_t)m.vertices * 3 * sizeof(*xyz));
         memcpy(corners, indices, (size_t)m.triangles * 3 * sizeof(*corners));
@@ -89,10 +90,11 @@ static noc_status take_issue(remote_taker *t, remote_record *one) {
 
 static noc_status take_columns(remote_taker *t, remote_record *one) {
     uint64_t points = 0, count = 0;
+    bool kept = true;
     NOC_ARRAY(geo_column) columns = { 0 };
     remote_get(one, &points, sizeof(points));
     remote_get(one, &count, sizeof(count));
-    for (uint64_t i = 0; i < count && !one->bad; i++) {
+    for (uint64_t i = 0; i < count && !one->bad && kept; i++) {
         uint64_t values = 0;
         unsigned char mapped = 0;
         remote_get(one, &values, sizeof(values));
@@ -102,11 +104,11 @@ static noc_status take_columns(remote_taker *t, remote_record *one) {
         c.field = remote_get_text(one);
         c.unit = remote_get_text(one);
         c.example = remote_get_text(one);
-        array_push(&columns, c);
+        kept = array_try_push(&columns, c);
     }
-    noc_status status = one->bad ? garbled(t) : NOC_OK;
+    noc_status status = one->bad ? garbled(t) : kept ? NOC_OK : noc_no_memory(t->sink->log, t->path);
     if (!status && t->sink->columns)
-        t->sink->columns(t->sink->ctx, (size_t)points, columns.data, columns.len);
+        status = t->sink->columns(t->sink->ctx, (size_t)points, columns.data, columns.len);
     array_free(&columns);
     return status;
 }
@@ -168,7 +170,7 @@ char *remote_room(remote_taker *t, size_t size) {
     }
     size_t room = t->bytes.len + size;
     if (room > t->bytes.cap && !array_try_reserve(&t->bytes, NOC_MAX(room, t->bytes.len * 2))) {
-        noc_error(t->sink->log, NOC_ERR_MEMORY, "%s: no memory for what it holds", t->path);
+        noc_no_memory(t->sink->log, t->path);
         return NULL;
     }
     return t->bytes.data + t->bytes.len;

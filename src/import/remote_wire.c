@@ -3,7 +3,7 @@
 #include <errno.h>
 #include <sys/socket.h>
 
-void remote_put(remote_record *r, const void *data, size_t size) { array_append(&r->bytes, data, size); }
+void remote_put(remote_record *r, const void *data, size_t size) { r->refused = !array_try_append(&r->bytes, data, size) || r->refused; }
 
 void remote_put_text(remote_record *r, const char *text) {
     uint32_t size = (uint32_t)NOC_MIN(strlen(text ? text : ""), (size_t)1 << 30);
@@ -55,6 +55,7 @@ void remote_add(remote_record *batch, uint32_t kind, remote_record *r) {
     remote_head head = { kind, (uint32_t)((uint64_t)r->bytes.len >> 32), (uint32_t)r->bytes.len };
     remote_put(batch, &head, sizeof(head));
     remote_put(batch, r->bytes.data, r->bytes.len);
+    batch->refused = batch->refused || r->refused;
     r->bytes.len = 0;
 }
 

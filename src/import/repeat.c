@@ -18,9 +18,9 @@
 /* ---- files ---- */
 
 static bool same_content(const char *a, const char *b) {
-    enum { BLOCK = 1 << 16 };
+    enum { BLOCK = 1 << 14 };
     int fa = open(a, O_RDONLY | O_CLOEXEC), fb = open(b, O_RDONLY | O_CLOEXEC);
-    char *x = noc_alloc(2 * BLOCK), *y = x + BLOCK;
+    char x[BLOCK], y[BLOCK];
     ssize_t n = -1, m;
     while (fa >= 0 && fb >= 0 && (n = read(fa, x, BLOCK)) > 0) {
         for (m = 0; m < n;) {
@@ -36,7 +36,6 @@ static bool same_content(const char *a, const char *b) {
         close(fa);
     if (fb >= 0)
         close(fb);
-    free(x);
     return n == 0;
 }
 
@@ -138,19 +137,30 @@ static void link_record(object_records *all, uint32_t index) {
     }
 }
 
-static void add_record(object_records *all, object_record record) {
-    array_push(&all->list, record);
+/* False: memory was refused. */
+static bool add_record(object_records *all, object_record record) {
+    if (!array_try_push(&all->list, record))
+        return false;
     if (all->list.len <= all->size) {
         link_record(all, (uint32_t)all->list.len - 1);
-        return;
+        return true;
     }
-    all->size = all->size ? 2 * all->size : 1024;
+    size_t size = all->size ? 2 * all->size : 1024;
+    uint32_t *first[2] = { noc_try_calloc(size, sizeof(uint32_t)), noc_try_calloc(size, sizeof(uint32_t)) };
+    if (!first[0] || !first[1]) {
+        free(first[0]);
+        free(first[1]);
+        all->list.len--;
+        return false;
+    }
+    all->size = size;
     for (int t = 0; t < 2; t++) {
         free(all->first[t]);
-        all->first[t] = noc_calloc(all->size, sizeof(uint32_t));
+        all->first[t] = first[t];
     }
     for (size_t i = 0; i < all->list.len; i++)
         link_record(all, (uint32_t)i);
+    return true;
 }
 
 static const object_record *find_equal(const object_records *all, const object_now *now, geo_kind kind) {
@@ -180,10 +190,11 @@ static const object_record *find_named(const object_records *all, const object_n
     return NULL;
 }
 
-bool repeat_object(importer *im, const char *id) {
+noc_status repeat_object(importer *im, const char *id, bool *repeated) {
     object_now *now = &im->now;
+    *repeated = now->repeated;
     if (now->decided || !now->any)
-        return now->repeated;
+        return NOC_OK;
     now->decided = true;
     uint64_t name = hash_text(id);
     const object_record *r = find_equal(&im->records, now, now->kind);
@@ -194,8 +205,8 @@ bool repeat_object(importer *im, const char *id) {
         geo_issue(in->issues, false, r->input == im->current ? "object that the file holds twice: taken once"
                                                              : "object that another file holds, too: taken once", id);
         in->file.objects_repeated++;
-        now->repeated = true;
-        return true;
+        *repeated = now->repeated = true;
+        return NOC_OK;
     }
     object_record record = { .shape = now->shape, .input = (uint32_t)im->current, .kind = (uint32_t)now->kind };
     for (int k = 0; k < 3; k++) {
@@ -203,8 +214,7 @@ bool repeat_object(importer *im, const char *id) {
         record.hi[k] = (float)now->hi[k];
     }
     record.place = place_key(name, now->kind, floor((now->lo[0] + now->hi[0]) / 2 / CELL), floor((now->lo[1] + now->hi[1]) / 2 / CELL));
-    add_record(&im->records, record);
-    return false;
+    return add_record(&im->records, record) ? NOC_OK : noc_no_memory(im->log, im->inputs[im->current].path);
 }
 
 void repeat_free(object_records *records) {
@@ -224,17 +234,22 @@ static bool same_lamp(const pending_lamp *a, const pending_lamp *b) {
     return a->input != b->input && (d <= SAME_PLACE || (d <= SAME_LAMP && *a->lamp.id && !strcmp(a->lamp.id, b->lamp.id)));
 }
 
-void repeat_lamps(importer *im) {
+noc_status repeat_lamps(importer *im) {
     pending_lamp *lamps = im->lamps.data;
     size_t size = 1024, kept = 0;
     bool several = false;
     for (size_t i = 1; i < im->lamps.len; i++)
         several = several || lamps[i].input != lamps[0].input;
     if (!several)
-        return;
+        return NOC_OK;
     while (size < im->lamps.len)
         size *= 2;
-    uint32_t *first = noc_calloc(size, sizeof(*first)), *next = noc_calloc(im->lamps.len, sizeof(*next));
+    uint32_t *first = noc_try_calloc(size, sizeof(*first)), *next = noc_try_calloc(im->lamps.len, sizeof(*next));
+    if (!first || !next) {
+        free(first);
+        free(next);
+        return noc_no_memory(im->log, "import");
+    }
     for (size_t i = 0; i < im->lamps.len; i++) {
         const pending_lamp p = lamps[i];
         double cx = floor(p.lamp.xyz[0] / LAMP_CELL), cy = floor(p.lamp.xyz[1] / LAMP_CELL);
@@ -261,4 +276,5 @@ void repeat_lamps(importer *im) {
     im->lamps.len = kept;
     free(first);
     free(next);
+    return NOC_OK;
 }

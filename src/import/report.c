@@ -1,6 +1,6 @@
 #include "import/load.h"
 
-noc_report *report_create(void) { return noc_calloc(1, sizeof(noc_report)); }
+noc_report *report_create(void) { return noc_try_calloc(1, sizeof(noc_report)); }
 
 const char *noc_lamp_source_name(noc_lamp_source source) {
     static const char *const names[NOC_SOURCE_COUNT] = {
@@ -48,28 +48,24 @@ noc_status report_strict(const noc_report *report, noc_log *log) {
     noc_report_get_totals(report, &totals);
     if (!totals.skipped && !totals.repaired)
         return NOC_OK;
-    char *text = noc_format("--strict: features skipped: %zu, repaired: %zu", totals.skipped, totals.repaired);
+    char text[1000]; /* as long as a message may be */
+    size_t n = (size_t)noc_snprintf(text, sizeof(text), "--strict: features skipped: %zu, repaired: %zu", totals.skipped, totals.repaired);
     size_t lines = 0;
     for (size_t i = 0; i < report->files.len; i++)
         for (size_t k = 0; k < report->files.data[i].line_count; k++) {
             const noc_report_file *f = &report->files.data[i];
             const noc_report_line *l = &f->lines[k];
-            if (++lines > SHOWN)
-                continue;
-            char *longer = noc_format("%s; %s: %zu x %s%s%s%s", text, f->path, l->count, l->reason, *l->examples ? " (" : "", l->examples,
-                                      *l->examples ? ")" : "");
-            free(text);
-            text = longer;
+            if (++lines <= SHOWN && n < sizeof(text))
+                n += (size_t)noc_snprintf(text + n, sizeof(text) - n, "; %s: %zu x %s%s%s%s", f->path, l->count, l->reason,
+                                          *l->examples ? " (" : "", l->examples, *l->examples ? ")" : "");
         }
-    noc_status status = lines > SHOWN ? noc_error(log, NOC_ERR_FORMAT, "%s; and %zu more", text, lines - SHOWN)
-                                      : noc_error(log, NOC_ERR_FORMAT, "%s", text);
-    free(text);
-    return status;
+    return lines > SHOWN ? noc_error(log, NOC_ERR_FORMAT, "%s; and %zu more", text, lines - SHOWN)
+                         : noc_error(log, NOC_ERR_FORMAT, "%s", text);
 }
 
-static const char *keep(noc_report *report, const char *text) { return arena_strdup(&report->arena, text ? text : ""); }
+static const char *keep(noc_report *report, const char *text) { return arena_try_strdup(&report->arena, text ? text : ""); }
 
-void report_add(noc_report *report, const noc_report_file *file, const geo_issues *issues) {
+bool report_add(noc_report *report, const noc_report_file *file, const geo_issues *issues) {
     noc_report_file f = *file;
     f.path = keep(report, f.path);
     f.format = keep(report, f.format);
@@ -77,12 +73,13 @@ void report_add(noc_report *report, const noc_report_file *file, const geo_issue
     f.crs_given = keep(report, f.crs_given);
     /* the columns are in the arena already */
     f.line_count = geo_issues_count(issues);
-    noc_report_line *lines = arena_alloc(&report->arena, f.line_count * sizeof(*lines));
-    for (size_t i = 0; i < f.line_count; i++) {
-        geo_issues_get(issues, i, &lines[i].reason, &lines[i].repaired, &lines[i].count, &lines[i].examples);
+    noc_report_line *lines = arena_try_alloc(&report->arena, f.line_count * sizeof(*lines));
+    for (size_t i = 0; i < f.line_count && lines; i++) {
+        if (!geo_issues_get(issues, i, &lines[i].reason, &lines[i].repaired, &lines[i].count, &lines[i].examples))
+            return false;
         lines[i].reason = keep(report, lines[i].reason);
         lines[i].examples = keep(report, lines[i].examples);
     }
     f.lines = lines;
-    array_push(&report->files, f);
+    return !report->arena.refused && !geo_issues_refused(issues) && array_try_push(&report->files, f);
 }

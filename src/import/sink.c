@@ -76,9 +76,11 @@ static noc_status flush_class(importer *im, noc_class cls) {
     if (!t->indices.len)
         return NOC_OK;
     const char *id = im->object_id ? im->object_id : "";
-    if (im->object_id && repeat_object(im, id)) {
+    bool repeated = false;
+    noc_status status = im->object_id ? repeat_object(im, id, &repeated) : NOC_OK;
+    if (status || repeated) {
         t->xyz.len = t->indices.len = 0;
-        return NOC_OK;
+        return status;
     }
     noc_mesh mesh = { .vertex_count = t->xyz.len / 3, .positions = t->xyz.data, .triangle_count = t->indices.len / 3,
                       .indices = t->indices.data, .material = sink_material(im, cls, id), .name = *id ? id : NULL };
@@ -115,7 +117,9 @@ static noc_status on_begin_object(void *ctx, const geo_object *object) {
     noc_report_file *file = &im->inputs[im->current].file;
     noc_status status = sink_flush(im);
     free(im->object_id);
-    im->object_id = noc_strdup(object->id ? object->id : "");
+    im->object_id = noc_try_strdup(object->id ? object->id : "");
+    if (!status && !im->object_id)
+        status = noc_no_memory(im->log, im->inputs[im->current].path);
     im->now.kind = object->kind;
     file->objects++;
     if (object->kind == GEO_BUILDING) {
@@ -144,9 +148,8 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
         count += polygon->ring_size[r];
     size_t numbers = 3 * count;
     im->scratch.len = 0;
-    if (!array_try_reserve(&im->scratch, numbers))
-        return noc_error(im->log, NOC_ERR_MEMORY, "%s: no memory for a polygon of %zu points", in->path, count);
-    array_append(&im->scratch, polygon->xyz, numbers);
+    if (!array_try_append(&im->scratch, polygon->xyz, numbers))
+        return noc_no_memory(im->log, in->path);
     bool usable;
     noc_status status = place_points(im, im->scratch.data, count, polygon->id, &usable);
     if (status || !usable)
@@ -159,10 +162,7 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
         geo_polygon local = *polygon;
         local.xyz = im->scratch.data;
         if (!geo_triangulate(&local, &im->surfaces[cls], in->issues))
-            return im->surfaces[cls].no_memory
-                       ? noc_error(im->log, NOC_ERR_MEMORY, "%s: no memory to triangulate a polygon of %zu points", in->path,
-                                   count)
-                       : NOC_OK;
+            return im->surfaces[cls].no_memory ? noc_no_memory(im->log, in->path) : NOC_OK;
     }
     im->now.polygons++;
     im->now.by_class[cls]++;
@@ -201,7 +201,8 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
         memcpy(p.given.xy, im->given.data, sizeof(p.given.xy));
     if (!status && !usable) {
         im->inputs[im->current].lamps_lost++;
-        array_push(&im->lost, p.given);
+        if (!array_try_push(&im->lost, p.given))
+            status = noc_no_memory(im->log, im->inputs[im->current].path);
     }
     if (status || !usable)
         return status;
@@ -210,27 +211,26 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     count_lamp(&im->inputs[im->current].file, lamp);
     if (im->inspect)
         return NOC_OK;
-    if (!array_try_reserve(&im->lamps, im->lamps.len + 1))
-        return noc_error(im->log, NOC_ERR_MEMORY, "%s: no memory for more than %zu lamps",
-                         im->inputs[im->current].path, im->lamps.len);
-    p.lamp.id = arena_strdup(&im->names, lamp->id ? lamp->id : "");
-    array_push(&im->lamps, p);
-    return NOC_OK;
+    p.lamp.id = arena_try_strdup(&im->names, lamp->id ? lamp->id : "");
+    return p.lamp.id && array_try_push(&im->lamps, p) ? NOC_OK : noc_no_memory(im->log, im->inputs[im->current].path);
 }
 
 /* Of a file that has been read. */
-static void on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
+static noc_status on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
     importer *im = ctx;
     noc_report_file *file = &im->inputs[im->current].file;
     noc_arena *arena = &im->report->arena;
-    noc_report_column *kept = arena_alloc(arena, (count + 1) * sizeof(*kept));
-    for (size_t i = 0; i < count; i++)
-        kept[i] = (noc_report_column){ .name = arena_strdup(arena, columns[i].name), .field = arena_strdup(arena, columns[i].field),
-                                       .unit = arena_strdup(arena, columns[i].unit), .values = columns[i].values,
-                                       .example = arena_strdup(arena, columns[i].example), .mapped = columns[i].mapped };
+    noc_report_column *kept = arena_try_alloc(arena, (count + 1) * sizeof(*kept));
+    for (size_t i = 0; i < count && kept; i++)
+        kept[i] = (noc_report_column){ .name = arena_try_strdup(arena, columns[i].name), .field = arena_try_strdup(arena, columns[i].field),
+                                       .unit = arena_try_strdup(arena, columns[i].unit), .values = columns[i].values,
+                                       .example = arena_try_strdup(arena, columns[i].example), .mapped = columns[i].mapped };
+    if (arena->refused)
+        return noc_no_memory(im->log, im->inputs[im->current].path);
     file->points = points;
     file->columns = kept;
     file->column_count = count;
+    return NOC_OK;
 }
 
 static bool on_progress(void *ctx, double done) {

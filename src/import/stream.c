@@ -59,12 +59,12 @@ static void *zlib_alloc(void *unused, unsigned items, unsigned size) { return no
 static void zlib_free(void *unused, void *p) { free(p); }
 
 static noc_status gzip_start(noc_stream *s) {
-    if (!s->input)
-        s->input = noc_alloc(INPUT_SIZE);
+    if (!s->input && !(s->input = noc_try_alloc(INPUT_SIZE)))
+        return fail(s, NOC_ERR_MEMORY, "out of memory");
     s->z = (z_stream){ .zalloc = zlib_alloc, .zfree = zlib_free };
     s->z_member_done = false;
     if (inflateInit2(&s->z, 15 + 16) != Z_OK)
-        return fail(s, NOC_ERR_MEMORY, "out of memory for decompression");
+        return fail(s, NOC_ERR_MEMORY, "out of memory");
     s->z_open = true;
     return NOC_OK;
 }
@@ -118,7 +118,7 @@ static noc_status read_gzip(noc_stream *s, void *data, size_t size, size_t *got)
         if (z == Z_STREAM_END)
             s->z_member_done = true;
         else if (z == Z_MEM_ERROR)
-            return fail(s, NOC_ERR_MEMORY, "out of memory for decompression");
+            return fail(s, NOC_ERR_MEMORY, "out of memory");
         else if (z != Z_OK && z != Z_BUF_ERROR)
             return fail(s, NOC_ERR_FORMAT, s->z.msg ? s->z.msg : "damaged gzip data");
     }
@@ -168,16 +168,17 @@ static zip_int64_t zip_choose(zip_t *zip, size_t *alike) {
     return best;
 }
 
-static noc_status zip_fail(noc_stream *s, const char *what, const char *cause) {
-    char *text = noc_format("%s: %s", what, cause);
-    noc_status status = fail(s, NOC_ERR_FORMAT, text);
-    free(text);
-    return status;
+static noc_status zip_fail(noc_stream *s, const char *what, zip_error_t *error) {
+    if (zip_error_code_zip(error) == ZIP_ER_MEMORY)
+        return fail(s, NOC_ERR_MEMORY, "out of memory");
+    char text[256];
+    noc_snprintf(text, sizeof(text), "%s: %s", what, zip_error_strerror(error));
+    return fail(s, NOC_ERR_FORMAT, text);
 }
 
 static noc_status zip_start(noc_stream *s) {
     s->member = zip_fopen_index(s->zip, s->member_index, 0);
-    return s->member ? NOC_OK : zip_fail(s, "damaged or unreadable zip member", zip_strerror(s->zip));
+    return s->member ? NOC_OK : zip_fail(s, "damaged or unreadable zip member", zip_get_error(s->zip));
 }
 
 static noc_status zip_open_archive(noc_stream *s) {
@@ -186,7 +187,7 @@ static noc_status zip_open_archive(noc_stream *s) {
     if (!s->zip) {
         zip_error_t error;
         zip_error_init_with_code(&error, code);
-        noc_status status = zip_fail(s, "damaged or truncated zip archive", zip_error_strerror(&error));
+        noc_status status = zip_fail(s, "damaged or truncated zip archive", &error);
         zip_error_fini(&error);
         return status;
     }
@@ -194,7 +195,9 @@ static noc_status zip_open_archive(noc_stream *s) {
     if (index < 0)
         return fail(s, NOC_ERR_FORMAT, "zip archive without a file in it");
     s->member_index = (zip_uint64_t)index;
-    char *name = noc_format("%s!%s", s->path, zip_get_name(s->zip, s->member_index, ZIP_FL_ENC_GUESS));
+    char *name = noc_try_format("%s!%s", s->path, zip_get_name(s->zip, s->member_index, ZIP_FL_ENC_GUESS));
+    if (!name)
+        return fail(s, NOC_ERR_MEMORY, "out of memory");
     free(s->name);
     s->name = name;
     zip_stat_t stat;
@@ -211,7 +214,7 @@ static noc_status zip_open_archive(noc_stream *s) {
 static noc_status read_zip(noc_stream *s, void *data, size_t size, size_t *got) {
     zip_int64_t n = zip_fread(s->member, data, size);
     if (n < 0)
-        return zip_fail(s, "damaged or truncated zip member", zip_file_strerror(s->member));
+        return zip_fail(s, "damaged or truncated zip member", zip_file_get_error(s->member));
     *got = (size_t)n;
     s->ended = n == 0;
     return NOC_OK;
@@ -249,18 +252,26 @@ static noc_status start(noc_stream *s) {
     return s->kind == STREAM_ZIP ? zip_open_archive(s) : noc_stream_rewind(s);
 }
 
-noc_stream *noc_stream_open(const char *path, noc_log *log) {
-    noc_stream *s = noc_calloc(1, sizeof(*s));
-    s->log = log;
-    s->path = noc_strdup(path);
-    s->name = noc_strdup(path);
-    s->fd = -1;
-    s->budget = import_budget_of(&noc_import_default_params());
-    if (open_file(s) || start(s)) {
-        noc_stream_close(s);
-        return NULL;
+noc_stream *noc_stream_open(const char *path, noc_log *log, noc_status *status) {
+    noc_stream *s = noc_try_calloc(1, sizeof(*s));
+    noc_status why = NOC_OK;
+    if (s) {
+        s->log = log;
+        s->path = noc_try_strdup(path);
+        s->name = noc_try_strdup(path);
+        s->fd = -1;
+        s->budget = import_budget_of(&noc_import_default_params());
     }
-    return s;
+    if (!s || !s->path || !s->name)
+        why = noc_no_memory(log, path);
+    else if (!(why = open_file(s)))
+        why = start(s);
+    if (status)
+        *status = why;
+    if (!why)
+        return s;
+    noc_stream_close(s);
+    return NULL;
 }
 
 void noc_stream_close(noc_stream *s) {
@@ -312,12 +323,11 @@ noc_status noc_stream_read_all(noc_stream *stream, noc_log *log, char **data, si
             cap = cap ? cap * 2 : NOC_MIN((size_t)noc_stream_size(stream) + (1 << 17), (size_t)1 << 30);
             noc_status status = import_affords(&stream->budget, (double)cap, noc_stream_name(stream), "its content",
                                                log);
-            char *grown = status ? NULL : noc_try_realloc(*data, cap); /* the file's author decides how much: no abort */
+            char *grown = status ? NULL : noc_try_realloc(*data, cap);
             if (!grown) {
                 free(*data);
                 *data = NULL;
-                return status ? status
-                              : noc_error(log, NOC_ERR_MEMORY, "%s: no memory to hold it", noc_stream_name(stream));
+                return status ? status : noc_no_memory(log, noc_stream_name(stream));
             }
             *data = grown;
         }

@@ -77,6 +77,7 @@ typedef struct tag_buffer {
     NOC_ARRAY(lamp_tag) tags;
     NOC_ARRAY(char *) owned;
     char id[64];
+    bool refused; /* memory, to one of them; stays set */
 } tag_buffer;
 
 static void tag_buffer_clear(tag_buffer *b) {
@@ -108,14 +109,28 @@ static char *hstore_string(char *p, char **out) {
     return closed ? p + 1 : NULL;
 }
 
-static void add_hstore(tag_buffer *b, const char *text) {
-    char *p = noc_strdup(text), *key, *value;
-    array_push(&b->owned, p);
-    while ((p = hstore_string(p, &key)) && (p = hstore_string(p, &value)))
-        array_push(&b->tags, (lamp_tag){ key, value });
+/* The text, whose memory it takes; NULL where that is refused. */
+static char *own(tag_buffer *b, char *text) {
+    if (text && array_try_push(&b->owned, text))
+        return text;
+    free(text);
+    b->refused = true;
+    return NULL;
 }
 
-static void collect_fields(OGRFeatureH feature, OGRFeatureDefnH defn, bool osm, tag_buffer *b) {
+static void add_tag(tag_buffer *b, const char *key, const char *value) {
+    if (!array_try_push(&b->tags, (lamp_tag){ key, value }))
+        b->refused = true;
+}
+
+static void add_hstore(tag_buffer *b, const char *text) {
+    char *p = own(b, noc_try_strdup(text)), *key, *value;
+    while (p && (p = hstore_string(p, &key)) && (p = hstore_string(p, &value)))
+        add_tag(b, key, value);
+}
+
+/* False: memory was refused. */
+static bool collect_fields(OGRFeatureH feature, OGRFeatureDefnH defn, bool osm, tag_buffer *b) {
     tag_buffer_clear(b);
     int count = OGR_FD_GetFieldCount(defn);
     for (int i = 0; i < count; i++) {
@@ -127,11 +142,12 @@ static void collect_fields(OGRFeatureH feature, OGRFeatureDefnH defn, bool osm, 
             add_hstore(b, text);
             continue;
         }
-        char *value = osm && !strcmp(key, "osm_id") ? noc_format("node/%s", text) : noc_strdup(text);
-        array_push(&b->owned, value);
-        array_push(&b->tags, (lamp_tag){ key, value });
+        char *value = own(b, noc_try_format("%s%s", osm && !strcmp(key, "osm_id") ? "node/" : "", text));
+        if (value)
+            add_tag(b, key, value);
     }
     snprintf(b->id, sizeof(b->id), "feature %lld", (long long)OGR_F_GetFID(feature));
+    return !b->refused;
 }
 
 /* The place of a feature: of its point, or, for a lamp drawn as something else, the middle of its box. */
@@ -169,21 +185,24 @@ typedef struct map_reading {
     map_source source;
 } map_reading;
 
-/* The layer's CRS as AUTHORITY:CODE or WKT, NULL if it names none; free() it. */
-static char *layer_crs(OGRLayerH layer, bool *geographic) {
+static noc_status no_memory(const map_reading *m) { return noc_no_memory(m->writer.sink->log, m->writer.place); }
+
+/* The layer's CRS as AUTHORITY:CODE or WKT, NULL if it names none; free() it. False: memory was refused. */
+static bool layer_crs(OGRLayerH layer, bool *geographic, char **crs) {
     OGRSpatialReferenceH srs = OGR_L_GetSpatialRef(layer);
     *geographic = srs && OSRIsGeographic(srs);
+    *crs = NULL;
     if (!srs)
-        return NULL;
+        return true;
     const char *authority = OSRGetAuthorityName(srs, NULL), *code = OSRGetAuthorityCode(srs, NULL);
     if (authority && code)
-        return noc_format("%s:%s", authority, code);
-    char *wkt = NULL, *copy = NULL;
+        return (*crs = noc_try_format("%s:%s", authority, code)) != NULL;
+    char *wkt = NULL;
     const char *const options[] = { "FORMAT=WKT2_2018", NULL };
-    if (OSRExportToWktEx(srs, &wkt, options) == OGRERR_NONE && wkt && *wkt)
-        copy = noc_strdup(wkt);
+    bool told = OSRExportToWktEx(srs, &wkt, options) == OGRERR_NONE && wkt && *wkt;
+    *crs = told ? noc_try_strdup(wkt) : NULL;
     CPLFree(wkt);
-    return copy;
+    return *crs || !told;
 }
 
 /* GeoJSON that names no CRS is WGS 84 by its standard; municipal exports break that. If most of the first places are not
@@ -211,7 +230,9 @@ static noc_status start_layer(map_reading *m, OGRLayerH layer) {
         m->writer.geographic = true;
         return lamp_writer_crs(&m->writer, LAMP_WGS84);
     }
-    char *crs = layer_crs(layer, &m->writer.geographic);
+    char *crs;
+    if (!layer_crs(layer, &m->writer.geographic, &crs))
+        return no_memory(m);
     const char *given = m->params ? m->params->crs : NULL;
     bool replaced = crs && m->writer.geographic && given && !strcmp(m->format->name, "GeoJSON") && looks_projected(layer);
     if (replaced)
@@ -221,11 +242,13 @@ static noc_status start_layer(map_reading *m, OGRLayerH layer) {
     return status;
 }
 
-/* Lamps by their tags; else, if the columns are those of an inventory of lamps, every feature. */
-static void layer_kind(OGRLayerH layer, lamp_keys *keys, bool *tags, bool *inventory) {
+/* Lamps by their tags; else, if the columns are those of an inventory of lamps, every feature. False: memory was refused. */
+static bool layer_kind(OGRLayerH layer, lamp_keys *keys, bool *tags, bool *inventory) {
     OGRFeatureDefnH defn = OGR_L_GetLayerDefn(layer);
     int count = OGR_FD_GetFieldCount(defn);
-    const char **names = noc_calloc((size_t)count + 1, sizeof(*names));
+    const char **names = noc_try_calloc((size_t)count + 1, sizeof(*names));
+    if (!names)
+        return false;
     *tags = false;
     for (int i = 0; i < count; i++) {
         names[i] = OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(defn, i));
@@ -233,6 +256,7 @@ static void layer_kind(OGRLayerH layer, lamp_keys *keys, bool *tags, bool *inven
     }
     *inventory = !*tags && lamp_columns_tell(keys, names, (size_t)count);
     free(names);
+    return true;
 }
 
 static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn) {
@@ -244,7 +268,8 @@ static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDe
             geo_issue(m->writer.sink->issues, false, "line or area in a table of lamps", "");
         return NOC_OK;
     }
-    collect_fields(feature, defn, m->format->kind == MAP_OSM, &m->tags);
+    if (!collect_fields(feature, defn, m->format->kind == MAP_OSM, &m->tags))
+        return no_memory(m);
     size_t before = m->writer.lamps;
     noc_status status = lamp_writer_point(&m->writer, m->tags.tags.data, m->tags.tags.len, m->tags.id, xyz);
     if (!status && m->writer.lamps > before && !is_point)
@@ -271,44 +296,49 @@ static noc_status read_features(map_reading *m, OGRLayerH layer) {
 }
 
 /* Do the values of the layer's points say what they are? */
-static void read_kinds(map_reading *m, OGRLayerH layer) {
+static noc_status read_kinds(map_reading *m, OGRLayerH layer) {
     OGRFeatureDefnH defn = OGR_L_GetLayerDefn(layer);
     OGRFeatureH feature;
+    bool kept = true;
     lamp_kinds_free(&m->writer.kinds);
     m->writer.kinds = (lamp_kinds){ 0 };
     OGR_L_ResetReading(layer);
-    while ((feature = OGR_L_GetNextFeature(layer))) {
+    while (kept && (feature = OGR_L_GetNextFeature(layer))) {
         double xyz[3];
         bool is_point;
-        if (place_of(feature, xyz, &is_point) && is_point) {
-            collect_fields(feature, defn, false, &m->tags);
-            lamp_kinds_count(&m->writer.kinds, m->tags.tags.data, m->tags.tags.len);
-        }
+        if (place_of(feature, xyz, &is_point) && is_point)
+            kept = collect_fields(feature, defn, false, &m->tags) &&
+                   lamp_kinds_count(&m->writer.kinds, m->tags.tags.data, m->tags.tags.len);
         OGR_F_Destroy(feature);
     }
     OGR_L_ResetReading(layer);
     lamp_kinds_decide(&m->writer.kinds);
+    return kept ? NOC_OK : no_memory(m);
 }
 
 /* What tells that a layer's points are lamps: the user, tags, columns, values, or nothing. */
-static void judge(map_reading *m, OGRLayerH layer) {
+static noc_status judge(map_reading *m, OGRLayerH layer) {
     bool tags;
+    noc_status status = NOC_OK;
     lamp_writer *w = &m->writer;
-    layer_kind(layer, w->keys, &tags, &w->inventory);
+    if (!layer_kind(layer, w->keys, &tags, &w->inventory))
+        return no_memory(m);
     w->kinds.any = w->strange = false;
     if (w->sink->named_lamps)
         w->inventory = m->format->kind != MAP_OSM;
     else if (!w->inventory && !tags) {
-        read_kinds(m, layer);
+        status = read_kinds(m, layer);
         w->inventory = w->kinds.any;
         w->strange = !w->kinds.any;
     }
+    return status;
 }
 
 static noc_status read_layer(map_reading *m, OGRLayerH layer) {
     lamp_writer *w = &m->writer;
-    judge(m, layer);
-    noc_status status = w->strange ? NOC_OK : start_layer(m, layer);
+    noc_status status = judge(m, layer);
+    if (!status && !w->strange)
+        status = start_layer(m, layer);
     if (!status)
         status = read_features(m, layer);
     /* an extract of OpenStreetMap holds all kinds of points: only where no tag tells of lamps all of them are meant */
@@ -337,9 +367,11 @@ static noc_status read_layers(map_reading *m) {
 }
 
 static noc_status read_map(noc_stream *stream, const map_format *format, const noc_import_params *params, geo_sink *sink) {
-    map_reading m = { .format = format, .stream = stream, .params = params,
-                      .writer = lamp_writer_start(sink, noc_stream_name(stream), params) };
-    noc_status status = map_source_open(&m.source, stream, format, params && params->allow_outside, sink->log);
+    map_reading m = { .format = format, .stream = stream, .params = params };
+    noc_status status = lamp_writer_start(&m.writer, sink, noc_stream_name(stream), params);
+    if (status)
+        return status;
+    status = map_source_open(&m.source, stream, format, params && params->allow_outside, sink->log);
     if (!status)
         status = read_layers(&m);
     map_source_close(&m.source);

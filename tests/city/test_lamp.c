@@ -56,7 +56,7 @@ static size_t issues_with(const geo_issues *issues, const char *text) {
         const char *reason, *examples;
         bool repaired;
         size_t count;
-        geo_issues_get(issues, i, &reason, &repaired, &count, &examples);
+        assert_true(geo_issues_get(issues, i, &reason, &repaired, &count, &examples));
         sum += strstr(reason, text) ? count : 0;
     }
     return sum;

@@ -57,7 +57,7 @@ static void test_spellings(void **state) {
     };
     noc_log *log = noc_log_create(NULL);
     for (size_t i = 0; i < NOC_COUNT(cases); i++) {
-        geo_crs *crs = geo_crs_create(cases[i].spelling, "test", log);
+        geo_crs *crs = geo_crs_create(cases[i].spelling, "test", log, NULL);
         if (!crs)
             fail_msg("%s", cases[i].spelling);
         assert_string_equal(geo_crs_name(crs), cases[i].name);
@@ -84,7 +84,7 @@ static void test_not_understood(void **state) {
                             "EPSG:5783" /* heights */, "+proj=", "+proj=nonsense", "PROJCS[", "{}", "[[[[[[", "%s%n%s",
                             "\xff\xfe", longest };
     for (size_t i = 0; i < NOC_COUNT(cases); i++) {
-        geo_crs *crs = geo_crs_create(cases[i], "city.gml:12", log);
+        geo_crs *crs = geo_crs_create(cases[i], "city.gml:12", log, NULL);
         if (crs)
             fail_msg("%.100s gives %s", cases[i], geo_crs_name(crs));
         assert_memory_equal(noc_log_last_error(log), "city.gml:12: ", 13);
@@ -99,7 +99,7 @@ static void test_not_understood(void **state) {
             text[i] = alphabet[(random_state >> 8) % (sizeof(alphabet) - 1)];
         }
         text[n] = 0;
-        geo_crs_destroy(geo_crs_create(text, NULL, NULL));
+        geo_crs_destroy(geo_crs_create(text, NULL, NULL, NULL));
     }
     free(longest);
     noc_log_destroy(log);
@@ -153,10 +153,10 @@ static void helmert(struct ellipsoid from, const double p[7], struct ellipsoid t
 /* Converts, and back again. */
 static void convert(const char *from, const char *to, const double in[3], double out[3]) {
     noc_log *log = noc_log_create(NULL);
-    geo_crs *a = geo_crs_create(from, NULL, log), *b = geo_crs_create(to, NULL, log);
+    geo_crs *a = geo_crs_create(from, NULL, log, NULL), *b = geo_crs_create(to, NULL, log, NULL);
     assert_non_null(a);
     assert_non_null(b);
-    geo_transform *there = geo_transform_create(a, b, log), *back = geo_transform_create(b, a, log);
+    geo_transform *there = geo_transform_create(a, b, log, NULL), *back = geo_transform_create(b, a, log, NULL);
     assert_non_null(there);
     assert_non_null(back);
     memcpy(out, in, 3 * sizeof(double));
@@ -253,8 +253,8 @@ static void test_japan_6697(void **state) {
 static void test_transform_details(void **state) {
     (void)state;
     noc_log *log = quiet_log();
-    geo_crs *utm = geo_crs_create("EPSG:25832", NULL, log), *lonlat = geo_crs_create("EPSG:4326", NULL, log);
-    geo_transform *t = geo_transform_create(lonlat, utm, log);
+    geo_crs *utm = geo_crs_create("EPSG:25832", NULL, log, NULL), *lonlat = geo_crs_create("EPSG:4326", NULL, log, NULL);
+    geo_transform *t = geo_transform_create(lonlat, utm, log, NULL);
     /* a height that is not known stays so; a point that is nowhere becomes NaN, its neighbours do not */
     double p[] = { 9, 48, NAN, NAN, 48, 0, 9, 48, 7, INFINITY, 0, 0 };
     assert_int_equal(geo_transform_points(t, p, 4), 2);
@@ -264,18 +264,18 @@ static void test_transform_details(void **state) {
     assert_close(p[6], 500000, 1e-3);
     assert_close(p[8], 7, 0);
     geo_transform_destroy(t);
-    t = geo_transform_create(utm, utm, log); /* nothing to do, and nothing done */
+    t = geo_transform_create(utm, utm, log, NULL); /* nothing to do, and nothing done */
     double q[] = { 1e6 / 3, -1, 5 };
     assert_int_equal(geo_transform_points(t, q, 1), 0);
     assert_true(q[0] == 1e6 / 3 && q[1] == -1 && q[2] == 5);
     geo_transform_destroy(t);
 
     /* New York, US survey feet: heights are in feet too, unless the compound says otherwise */
-    geo_crs *feet = geo_crs_create("EPSG:2263", NULL, log),
-            *metres = geo_crs_create("urn:ogc:def:crs,crs:EPSG::2263,crs:EPSG::5703", NULL, log);
+    geo_crs *feet = geo_crs_create("EPSG:2263", NULL, log, NULL),
+            *metres = geo_crs_create("urn:ogc:def:crs,crs:EPSG::2263,crs:EPSG::5703", NULL, log, NULL);
     assert_false(geo_crs_is_metric(feet));
     double a[] = { 980000, 200000, 100 }, b[] = { 980000, 200000, 100 };
-    geo_transform *from_feet = geo_transform_create(feet, lonlat, log), *from_metres = geo_transform_create(metres, lonlat, log);
+    geo_transform *from_feet = geo_transform_create(feet, lonlat, log, NULL), *from_metres = geo_transform_create(metres, lonlat, log, NULL);
     geo_transform_points(from_feet, a, 1);
     geo_transform_points(from_metres, b, 1);
     assert_close(a[2], 100 * 1200 / 3937., 1e-9);
@@ -298,7 +298,7 @@ static void test_equal(void **state) {
     } cases[] = { { "urn:ogc:def:crs:EPSG::7415", "EPSG:28992", true }, { "EPSG:25832", "EPSG:25833", false },
                   { "CH1903", "EPSG:21781", true }, { "CH1903", "CH1903+", false }, { "EPSG:4326", "EPSG:4258", false } };
     for (size_t i = 0; i < NOC_COUNT(cases); i++) {
-        geo_crs *a = geo_crs_create(cases[i].a, NULL, NULL), *b = geo_crs_create(cases[i].b, NULL, NULL);
+        geo_crs *a = geo_crs_create(cases[i].a, NULL, NULL, NULL), *b = geo_crs_create(cases[i].b, NULL, NULL, NULL);
         assert_int_equal(geo_crs_equal(a, b), cases[i].equal);
         geo_crs_destroy(a);
         geo_crs_destroy(b);
@@ -313,7 +313,7 @@ static void test_area_of_use(void **state) {
     } inside[] = { { "EPSG:5514", -743100, -1043000 }, { "EPSG:28992", 155000, 463000 }, { "EPSG:2950", 300000, 5040000 },
                    { "EPSG:31256", 3000, 341000 },     { "EPSG:25832", 678000, 5404000 }, { "EPSG:6697", 139.7, 35.6 } };
     for (size_t i = 0; i < NOC_COUNT(inside); i++) {
-        geo_crs *crs = geo_crs_create(inside[i].crs, NULL, NULL);
+        geo_crs *crs = geo_crs_create(inside[i].crs, NULL, NULL, NULL);
         assert_close(geo_crs_outside(crs, inside[i].x, inside[i].y), 0, 0);
         if (!(geo_crs_outside(crs, inside[i].y, inside[i].x) > 0))
             fail_msg("%s: exchanged axes do not show", inside[i].crs);
@@ -322,7 +322,7 @@ static void test_area_of_use(void **state) {
         geo_crs_destroy(crs);
     }
     /* an area across the antimeridian: New Zealand's CRS reaches from 160.6 E to 171.2 W */
-    geo_crs *nz = geo_crs_create("EPSG:4167", NULL, NULL);
+    geo_crs *nz = geo_crs_create("EPSG:4167", NULL, NULL, NULL);
     assert_close(geo_crs_outside(nz, 174.8, -41.3), 0, 0);
     assert_close(geo_crs_outside(nz, -176.5, -44), 0, 0);
     assert_close(geo_crs_outside(nz, 0, -41.3), 160.6, 0.1);
@@ -350,8 +350,8 @@ static void test_scale(void **state) {
         { "EPSG:3857", 11.4, 48.8 }, { "EPSG:3395", 11.4, 48.8 }, { "EPSG:32632", 9, 48.8 }, { "EPSG:31468", 12, 48.8 } };
     const double expected[] = { fabs(along - 1) > fabs(across - 1) ? along : across, across, .9996, 1 };
     for (size_t i = 0; i < NOC_COUNT(places); i++) {
-        geo_crs *crs = geo_crs_create(places[i].crs, NULL, NULL), *degrees = geo_crs_create("OGC:CRS84", NULL, NULL);
-        geo_transform *t = geo_transform_create(degrees, crs, NULL);
+        geo_crs *crs = geo_crs_create(places[i].crs, NULL, NULL, NULL), *degrees = geo_crs_create("OGC:CRS84", NULL, NULL, NULL);
+        geo_transform *t = geo_transform_create(degrees, crs, NULL, NULL);
         double p[3] = { places[i].lon, places[i].lat, 0 };
         assert_int_equal(geo_transform_points(t, p, 1), 0);
         assert_close(geo_crs_scale(crs, p[0], p[1]), expected[i], 2e-6);

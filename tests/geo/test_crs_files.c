@@ -75,7 +75,7 @@ static void test_of_files(void **state) {
     for (size_t i = 0; i < NOC_COUNT(hostile); i++) {
         char text[2000];
         snprintf(text, sizeof(text), hostile[i], pipe_path);
-        if (geo_crs_create_plain(text, "file", NULL))
+        if (geo_crs_create_plain(text, "file", NULL, NULL))
             fail_msg("accepted: %s", text);
     }
     pthread_join(watcher, NULL);
@@ -86,8 +86,8 @@ static void test_typed(void **state) {
     for (size_t i = 0; i < NOC_COUNT(hostile); i++) {
         char text[2000];
         snprintf(text, sizeof(text), hostile[i], pipe_path);
-        geo_crs *crs = geo_crs_create(text, "--crs", NULL), *utm = geo_crs_utm(11, 48);
-        geo_transform *t = crs ? geo_transform_create(crs, utm, NULL) : NULL;
+        geo_crs *crs = geo_crs_create(text, "--crs", NULL, NULL), *utm = geo_crs_utm(11, 48);
+        geo_transform *t = crs ? geo_transform_create(crs, utm, NULL, NULL) : NULL;
         double xyz[3] = { 11, 48, 0 };
         if (t)
             geo_transform_points(t, xyz, 1);
@@ -103,7 +103,7 @@ static void silent(void *user, noc_log_level level, const char *text) {}
 
 static void test_why(void **state) {
     noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_ERROR, .message = silent });
-    assert_null(geo_crs_create_plain("+proj=longlat +ellps=GRS80 +nadgrids=a.gsb", "lamps.gpkg", log));
+    assert_null(geo_crs_create_plain("+proj=longlat +ellps=GRS80 +nadgrids=a.gsb", "lamps.gpkg", log, NULL));
     assert_non_null(strstr(noc_log_last_error(log), "lamps.gpkg: the CRS"));
     assert_non_null(strstr(noc_log_last_error(log), "nadgrids"));
     noc_log_destroy(log);
@@ -123,7 +123,7 @@ static void test_plain(void **state) {
     };
     noc_log *log = noc_log_create(NULL);
     for (size_t i = 0; i < NOC_COUNT(plain); i++) {
-        geo_crs *crs = geo_crs_create_plain(plain[i], "file", log);
+        geo_crs *crs = geo_crs_create_plain(plain[i], "file", log, NULL);
         if (!crs)
             fail_msg("refused: %s", plain[i]);
         geo_crs_destroy(crs);

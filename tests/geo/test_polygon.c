@@ -62,7 +62,7 @@ static bool has_issue(const struct result *r, const char *reason, bool repaired)
         const char *text, *examples;
         bool is_repaired;
         size_t count;
-        geo_issues_get(r->issues, i, &text, &is_repaired, &count, &examples);
+        assert_true(geo_issues_get(r->issues, i, &text, &is_repaired, &count, &examples));
         assert_string_equal(examples, "p");
         if (!strcmp(text, reason) && is_repaired == repaired)
             return true;
@@ -309,7 +309,7 @@ static void test_issue_examples(void **state) {
     const char *reason, *examples;
     bool repaired;
     size_t count;
-    geo_issues_get(issues, 0, &reason, &repaired, &count, &examples);
+    assert_true(geo_issues_get(issues, 0, &reason, &repaired, &count, &examples));
     assert_int_equal(count, 9);
     assert_false(repaired);
     assert_string_equal(examples, "a, b, c, d, e");

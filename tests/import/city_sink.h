@@ -123,7 +123,7 @@ static noc_status city_read(city_sink *s, const char *path, int lod) {
                           .progress = city_progress };
     noc_import_params params = noc_import_default_params();
     params.lod = lod;
-    noc_stream *stream = noc_stream_open(path, s->sink.log);
+    noc_stream *stream = noc_stream_open(path, s->sink.log, NULL);
     s->status = stream ? noc_reader_citygml.read(stream, &params, &s->sink, &s->format) : NOC_ERR_IO;
     noc_stream_close(stream);
     if (s->status == NOC_OK)
@@ -149,7 +149,7 @@ static inline size_t city_issue(const city_sink *s, const char *wanted) {
         const char *reason, *examples;
         bool repaired;
         size_t count;
-        geo_issues_get(s->sink.issues, i, &reason, &repaired, &count, &examples);
+        assert_true(geo_issues_get(s->sink.issues, i, &reason, &repaired, &count, &examples));
         if (!strcmp(reason, wanted))
             return count;
     }

@@ -53,7 +53,7 @@ static noc_status sink_lamp(void *ctx, const geo_lamp *lamp) {
     return NOC_OK;
 }
 
-static void sink_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
+static noc_status sink_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
     lamp_sink *s = ctx;
     s->points = points;
     for (size_t i = 0; i < count; i++) {
@@ -63,6 +63,7 @@ static void sink_columns(void *ctx, size_t points, const geo_column *columns, si
             *texts[k] = arena_strdup(&s->names, *texts[k]);
         array_push(&s->columns, c);
     }
+    return NOC_OK;
 }
 
 static inline void lamp_sink_start(lamp_sink *s) {
@@ -87,7 +88,7 @@ static inline size_t issue_count(const lamp_sink *s, const char *text) {
         const char *reason, *examples;
         bool repaired;
         size_t count;
-        geo_issues_get(s->sink.issues, i, &reason, &repaired, &count, &examples);
+        assert_true(geo_issues_get(s->sink.issues, i, &reason, &repaired, &count, &examples));
         if (strstr(reason, text))
             sum += count;
     }
@@ -105,7 +106,7 @@ static inline const geo_lamp *lamp_by_id(const lamp_sink *s, const char *id) {
 /* Probes with both readers as the importer does, and reads with the first that accepts. */
 static inline noc_status read_lamps(lamp_sink *s, const char *path, const noc_import_params *params) {
     const noc_reader *const readers[] = { &noc_reader_overpass, &noc_reader_vector };
-    noc_stream *stream = noc_stream_open(path, s->log);
+    noc_stream *stream = noc_stream_open(path, s->log, NULL);
     if (!stream)
         return NOC_ERR_IO;
     char head[4097];

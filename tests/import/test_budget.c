@@ -81,7 +81,7 @@ static void compressed_data_is_bounded(void **state) {
     fclose(f);
     deflateEnd(&z);
     noc_log *log = noc_log_create(&(noc_log_params){ .message = on_message });
-    noc_stream *s = noc_stream_open(path_of("bomb.gz"), log);
+    noc_stream *s = noc_stream_open(path_of("bomb.gz"), log, NULL);
     noc_status status = NOC_OK;
     size_t got = 1;
     error_count = 0;

@@ -108,7 +108,7 @@ static void test_bad_rings(void **state) {
     const char *reason, *examples;
     bool repaired;
     size_t count;
-    geo_issues_get(sink.sink.issues, 0, &reason, &repaired, &count, &examples);
+    assert_true(geo_issues_get(sink.sink.issues, 0, &reason, &repaired, &count, &examples));
     assert_true(repaired);
     assert_string_equal(examples, "bad");
 }

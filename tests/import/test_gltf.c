@@ -44,7 +44,7 @@ static void load(loaded *l, const char *name) {
     l->scene = noc_scene_create(l->log);
     l->issues = geo_issues_create();
     noc_import_params params = noc_import_default_params();
-    noc_stream *stream = noc_stream_open(path, l->log);
+    noc_stream *stream = noc_stream_open(path, l->log, NULL);
     l->status = stream ? noc_reader_gltf.read_mesh(path, stream, &params, l->scene, &(mesh_place){ NULL, as_it_is }, l->issues, &l->format) : NOC_ERR_IO;
     noc_stream_close(stream);
 }
@@ -65,7 +65,7 @@ static size_t skipped_count(const loaded *l, const char *reason) {
         const char *r, *examples;
         bool repaired;
         size_t n;
-        geo_issues_get(l->issues, i, &r, &repaired, &n, &examples);
+        assert_true(geo_issues_get(l->issues, i, &r, &repaired, &n, &examples));
         if (strstr(r, reason))
             return n;
     }

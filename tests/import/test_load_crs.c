@@ -223,8 +223,8 @@ static void test_mesh_place(void **state) {
 static const char *street_in(const char *crs, char *text, size_t size) {
     static const double corners[6][2] = { { 677940, 5404080 }, { 678060, 5404080 }, { 678060, 5404100 }, { 677940, 5404100 },
                                           { 677970, 5404101.5 }, { 678030, 5404101.5 } }; /* beside it: they face it */
-    geo_crs *utm = geo_crs_create("EPSG:32632", NULL, NULL), *to = geo_crs_create(crs, NULL, NULL);
-    geo_transform *t = geo_transform_create(utm, to, NULL);
+    geo_crs *utm = geo_crs_create("EPSG:32632", NULL, NULL, NULL), *to = geo_crs_create(crs, NULL, NULL, NULL);
+    geo_transform *t = geo_transform_create(utm, to, NULL, NULL);
     size_t n = (size_t)snprintf(text, size, "FAKE city\ncrs %s\nobject 2 street -1\npolygon 9", crs);
     for (int i = 0; i < 6; i++) {
         double p[3] = { corners[i][0], corners[i][1], 370 };
@@ -293,7 +293,7 @@ static void test_true_lengths(void **state) {
         assert_close(hypot((double)l[0].p[0] - l[1].p[0], (double)l[0].p[1] - l[1].p[1]), 60, .06);
         assert_close(luminance_between(&r) / expected, 1, .01);
         if (moves) {
-            geo_crs *given = geo_crs_create(crs[i], NULL, NULL);
+            geo_crs *given = geo_crs_create(crs[i], NULL, NULL, NULL);
             assert_string_equal(r.info.given_crs, geo_crs_name(given));
             assert_string_equal(r.info.crs, "EPSG:32632 (WGS 84 / UTM zone 32N)");
             geo_crs_destroy(given);

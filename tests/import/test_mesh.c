@@ -52,7 +52,7 @@ static void load(loaded *l, const char *name, noc_obj_up up) {
     l->issues = geo_issues_create();
     noc_import_params params = noc_import_default_params();
     params.obj_up = up;
-    noc_stream *stream = noc_stream_open(path, l->log);
+    noc_stream *stream = noc_stream_open(path, l->log, NULL);
     l->status = stream ? noc_reader_mesh.read_mesh(path, stream, &params, l->scene, &(mesh_place){ NULL, place_by }, l->issues, &l->format) : NOC_ERR_IO;
     noc_stream_close(stream);
 }
@@ -165,7 +165,7 @@ static bool has_issue(const loaded *l, const char *reason, size_t count, const c
         const char *r, *examples;
         bool repaired;
         size_t n;
-        geo_issues_get(l->issues, i, &r, &repaired, &n, &examples);
+        assert_true(geo_issues_get(l->issues, i, &r, &repaired, &n, &examples));
         if (!strcmp(r, reason))
             return n == count && strstr(examples, example);
     }

@@ -85,7 +85,7 @@ static noc_status read_all(noc_stream *s, size_t piece, char *out, size_t room, 
 
 static void expect_content(const char *path, const char *text, size_t size) {
     char *out = noc_alloc(size + 1);
-    noc_stream *s = noc_stream_open(path, log_);
+    noc_stream *s = noc_stream_open(path, log_, NULL);
     assert_non_null(s);
     const size_t pieces[] = { size + 1, 1000, 7 };
     for (size_t i = 0; i < NOC_COUNT(pieces); i++) { /* the second and third time after a rewind */
@@ -104,7 +104,7 @@ static void expect_content(const char *path, const char *text, size_t size) {
 
 static noc_status drain(const char *path) {
     static char out[1 << 18];
-    noc_stream *s = noc_stream_open(path, log_);
+    noc_stream *s = noc_stream_open(path, log_, NULL);
     if (!s)
         return NOC_ERR_FORMAT;
     size_t total;
@@ -124,7 +124,7 @@ static void test_plain(void **state) {
     char *text = sample(&size);
     expect_content(write_file("plain.bin", text, size), text, size);
     expect_content(write_file("one", "P", 1), "P", 1);
-    noc_stream *s = noc_stream_open(path_of("one"), log_);
+    noc_stream *s = noc_stream_open(path_of("one"), log_, NULL);
     assert_int_equal(noc_stream_size(s), 1);
     assert_string_equal(noc_stream_name(s), path_of("one"));
     noc_stream_close(s);
@@ -133,14 +133,14 @@ static void test_plain(void **state) {
 
 static void test_refused(void **state) {
     (void)state;
-    assert_null(noc_stream_open(write_file("empty", "", 0), log_));
+    assert_null(noc_stream_open(write_file("empty", "", 0), log_, NULL));
     assert_non_null(strstr(noc_log_last_error(log_), "empty file"));
-    assert_null(noc_stream_open(dir, log_));
+    assert_null(noc_stream_open(dir, log_, NULL));
     assert_non_null(strstr(noc_log_last_error(log_), "directory"));
-    assert_null(noc_stream_open(path_of("absent"), log_));
+    assert_null(noc_stream_open(path_of("absent"), log_, NULL));
     assert_non_null(strstr(noc_log_last_error(log_), "absent"));
     assert_int_equal(mkfifo(path_of("fifo"), 0600), 0);
-    assert_null(noc_stream_open(path_of("fifo"), log_)); /* and does not wait for a writer */
+    assert_null(noc_stream_open(path_of("fifo"), log_, NULL)); /* and does not wait for a writer */
     noc_stream_close(NULL);
 }
 
@@ -162,7 +162,7 @@ static void test_gzip(void **state) {
     memcpy(packed + n, "garbage", 7);
     expect_content(write_file("trailing.gz", packed, n + 7), text, size);
     assert_int_equal(warnings, 0); /* the caller says it, once, however often the file is read */
-    noc_stream *s = noc_stream_open(path_of("trailing.gz"), log_);
+    noc_stream *s = noc_stream_open(path_of("trailing.gz"), log_, NULL);
     char *out = noc_alloc(size + 1);
     size_t total;
     assert_int_equal(read_all(s, 1000, out, size + 1, &total), NOC_OK);
@@ -209,7 +209,7 @@ static const char *make_zip(const char *name, const member *members, size_t coun
 }
 
 static void expect_member(const char *path, const char *name, const char *text) {
-    noc_stream *s = noc_stream_open(path, log_);
+    noc_stream *s = noc_stream_open(path, log_, NULL);
     assert_non_null(s);
     const char *bang = strchr(noc_stream_name(s), '!');
     assert_non_null(bang);
@@ -228,16 +228,16 @@ static void test_zip(void **state) {
     expect_member(make_zip("metadata.zip", metadata, NOC_COUNT(metadata)), "tile.gml", "<CityModel/>");
     const member tiles[] = { { "m.xml", "<m/>" }, { "1.gml", "<A/>" }, { "2.gml", "<B/>" }, { "3.obj", "v" } };
     expect_member(make_zip("tiles.zip", tiles, NOC_COUNT(tiles)), "1.gml", "<A/>");
-    noc_stream *s = noc_stream_open(path_of("tiles.zip"), log_);
+    noc_stream *s = noc_stream_open(path_of("tiles.zip"), log_, NULL);
     assert_int_equal(noc_stream_unread(s), 2);
     noc_stream_close(s);
-    s = noc_stream_open(path_of("metadata.zip"), log_);
+    s = noc_stream_open(path_of("metadata.zip"), log_, NULL);
     assert_int_equal(noc_stream_unread(s), 0);
     noc_stream_close(s);
     const member unknown[] = { { "d", NULL }, { "first.dat", "one" }, { "second.dat", "two" } };
     expect_member(make_zip("unknown.zip", unknown, NOC_COUNT(unknown)), "first.dat", "one");
     const member none[] = { { "d", NULL } };
-    assert_null(noc_stream_open(make_zip("none.zip", none, 1), log_));
+    assert_null(noc_stream_open(make_zip("none.zip", none, 1), log_, NULL));
     assert_non_null(strstr(noc_log_last_error(log_), "without a file"));
 }
 

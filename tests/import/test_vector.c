@@ -148,7 +148,7 @@ static void test_directions(void **state) {
 static geo_lamp read_one(const char *key, const char *value) {
     geo_lamp lamp = { .xyz = { 1, 2, NAN } };
     lamp_tag tag = { key, value };
-    lamp_read(NULL, &tag, 1, &lamp, NULL);
+    assert_true(lamp_read(NULL, &tag, 1, &lamp, NULL));
     return lamp;
 }
 
