@@ -9,6 +9,13 @@ void fuzz_broken(const char *file, int line, const char *what) {
     abort();
 }
 
+bool fuzz_seldom(const uint8_t *data, size_t size, uint32_t once_in) {
+    uint32_t hash = 2166136261u; /* FNV-1a */
+    for (size_t i = 0; i < size; i++)
+        hash = (hash ^ data[i]) * 16777619u;
+    return (hash ^ hash >> 15) % once_in == 0;
+}
+
 static void count_error(void *user, noc_log_level level, const char *text) {
     FUZZ_REQUIRE(text && *text);
     *(int *)user += level == NOC_LOG_ERROR;

@@ -18,6 +18,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 #define FUZZ_REQUIRE(what) ((what) ? (void)0 : fuzz_broken(__FILE__, __LINE__, #what))
 _Noreturn void fuzz_broken(const char *file, int line, const char *what);
 
+/* Once in so many inputs, by their bytes, so that what is found comes again: for what takes long. */
+bool fuzz_seldom(const uint8_t *data, size_t size, uint32_t once_in);
+
 /* A log that counts its errors in *errors. */
 noc_log *fuzz_log(int *errors);
 

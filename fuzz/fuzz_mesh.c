@@ -30,7 +30,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     FUZZ_REQUIRE(errors == (status != NOC_OK));
     if (!status) {
         FUZZ_REQUIRE(noc_scene_commit(scene) == NOC_OK);
-        fuzz_check_scene(scene, true);
+        fuzz_check_scene(scene, fuzz_seldom(data, size, 16));
     }
     noc_stream_close(stream);
     geo_issues_destroy(issues);
