@@ -1,5 +1,5 @@
 /* Spellings of coordinate systems: understood, or refused with one error. What is understood can be
- * asked and transforms points. */
+ * asked and transforms points, which takes PROJ longer than to understand it: in one run in 8. */
 #include "fuzz.h"
 
 #include <math.h>
@@ -31,7 +31,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     char *text = noc_format("%.*s", (int)size, (const char *)data);
     geo_crs *crs = geo_crs_create(text, "fuzz", log, NULL);
     FUZZ_REQUIRE(errors == !crs);
-    if (crs)
+    if (crs && fuzz_seldom(data, size, 8))
         use(crs, log, &errors);
     geo_crs_destroy(crs);
     free(text);
