@@ -1,5 +1,6 @@
 /* Coordinate reference systems and transforms: with crs_files.c the only PROJ calls of the library. */
 #include "geo/crs_files.h"
+#include "geo/crs_kept.h"
 #include "geo/crs_spelling.h"
 #include "geo/geo.h"
 
@@ -9,6 +10,8 @@
 
 struct geo_crs {
     PJ_CONTEXT *context; /* one each: PROJ contexts are not thread-safe */
+    bool strict;         /* it opens no files */
+    char key[CRS_KEY];   /* what crs_kept knows it by */
     PJ *pj;              /* horizontal; a three-dimensional one is used as if at height 0 */
     PJ *to_wgs84;        /* made on first use of geo_crs_lonlat */
     PJ *easting_first;   /* made on first use of geo_crs_scale */
@@ -139,14 +142,17 @@ static bool inspect(geo_crs *crs) {
     return ok;
 }
 
-static bool move_to(geo_crs *crs, PJ_CONTEXT *context) {
+/* To a context that may open files. */
+static bool make_free(geo_crs *crs) {
+    PJ_CONTEXT *context = crs_context_take(false);
     if (!context)
         return false;
     PJ *moved = crs->pj ? proj_clone(context, crs->pj) : NULL;
     proj_destroy(crs->pj);
-    proj_context_destroy(crs->context);
+    crs_context_give(crs->context, true);
     crs->pj = moved;
     crs->context = context;
+    crs->strict = false;
     return true;
 }
 
@@ -163,13 +169,20 @@ static noc_status create(geo_crs *crs, const char *definition, bool strict, cons
     const char *between = *place ? ": " : "";
     crs_spelling spelling;
     bool registered = crs_spelling_parse(definition, &spelling), refused = false;
-    if (!(crs->context = crs_context_create(strict)))
+    char what[40];
+    if (!(crs->context = crs_context_take(strict)))
         return no_memory(definition, place, log);
+    crs->strict = strict;
+    if (registered || (strlen(definition) < sizeof(crs->key) && !crs_text_names_file(definition, what)))
+        snprintf(crs->key, sizeof(crs->key), "%s", registered ? spelling.horizontal : definition);
     crs->pj = registered ? create_registered(crs->context, spelling.horizontal) : create_free_form(crs->context, definition, &refused);
     if (refused)
         return no_memory(definition, place, log);
-    if (!crs->pj && !proj_context_get_database_metadata(crs->context, "EPSG.VERSION"))
+    if (!crs->pj && !proj_context_get_database_metadata(crs->context, "EPSG.VERSION")) {
+        proj_context_destroy(crs->context); /* others may find it */
+        crs->context = NULL;
         return noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sPROJ finds no proj.db, so no CRS can be read", place, between);
+    }
     if (!crs->pj)
         return noc_error(log, NOC_ERR_FORMAT, "%s%sthe CRS \"%.200s\" is not understood%s%s", place, between, definition,
                          registered ? ": no registered " : "", registered ? spelling.horizontal : "");
@@ -180,10 +193,9 @@ static noc_status create(geo_crs *crs, const char *definition, bool strict, cons
             crs->height_unit = axis_unit(crs->context, vertical, 0);
         proj_destroy(vertical);
     }
-    char what[40];
     if (strict && crs->pj && crs_names_file(crs->context, crs->pj, what))
         return refuse(definition, what, place, log);
-    if (strict && !move_to(crs, crs_context_create(false))) /* it names no file: those that come now are of PROJ's own database */
+    if (strict && !make_free(crs)) /* it names no file: those that come now are of PROJ's own database */
         return no_memory(definition, place, log);
     if (!crs->pj || !inspect(crs))
         return noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sthe CRS \"%.200s\" is neither geographic nor projected", place, between,
@@ -233,7 +245,7 @@ geo_crs *geo_crs_clone(const geo_crs *crs) {
         return NULL;
     *copy = *crs;
     copy->to_wgs84 = copy->easting_first = NULL;
-    copy->context = crs_context_create(false);
+    copy->context = crs_context_take(false);
     copy->pj = copy->context ? proj_clone(copy->context, crs->pj) : NULL;
     copy->name = noc_try_strdup(crs->name);
     if (copy->pj && copy->name)
@@ -248,8 +260,7 @@ void geo_crs_destroy(geo_crs *crs) {
     proj_destroy(crs->to_wgs84);
     proj_destroy(crs->easting_first);
     proj_destroy(crs->pj);
-    if (crs->context)
-        proj_context_destroy(crs->context);
+    crs_context_give(crs->context, crs->strict);
     free(crs->name);
     free(crs);
 }
@@ -266,13 +277,14 @@ bool geo_crs_equal(const geo_crs *a, const geo_crs *b) {
 /* ---- area of use ---- */
 
 bool geo_crs_lonlat(geo_crs *crs, double x, double y, double lonlat[2]) {
-    if (!crs->to_wgs84) {
+    if (!crs->to_wgs84 && !(crs->to_wgs84 = crs_kept(crs->context, crs->key, "OGC:CRS84"))) {
         PJ *wgs84 = proj_create(crs->context, "OGC:CRS84");
         crs->to_wgs84 = wgs84 ? proj_create_crs_to_crs_from_pj(crs->context, crs->pj, wgs84, NULL, NULL) : NULL;
         proj_destroy(wgs84);
-        if (!crs->to_wgs84)
-            return false;
+        crs_keep(crs->to_wgs84, crs->key, "OGC:CRS84");
     }
+    if (!crs->to_wgs84)
+        return false;
     if (!isfinite(x) || !isfinite(y) || (crs->geographic && fabs(y) > 400))
         return false;
     PJ_COORD c = proj_coord(crs->lat_first ? y : x, crs->lat_first ? x : y, 0, HUGE_VAL);
@@ -336,10 +348,13 @@ static noc_status make_transform(geo_transform *t, const geo_crs *from, const ge
         return NOC_OK;
     t->log = log;
     t->names = noc_try_format("%s to %s", from->name, to->name);
-    t->context = crs_context_create(false);
+    t->context = crs_context_take(false);
     if (!t->names || !t->context)
         return noc_no_memory(log, "transformation");
-    t->pj = proj_create_crs_to_crs_from_pj(t->context, from->pj, to->pj, NULL, NULL);
+    if (!(t->pj = crs_kept(t->context, from->key, to->key))) {
+        t->pj = proj_create_crs_to_crs_from_pj(t->context, from->pj, to->pj, NULL, NULL);
+        crs_keep(t->pj, from->key, to->key);
+    }
     return t->pj ? NOC_OK : noc_error(log, NOC_ERR_UNSUPPORTED, "no transformation is known from %s to %s", from->name, to->name);
 }
 
@@ -358,8 +373,7 @@ void geo_transform_destroy(geo_transform *t) {
     if (!t)
         return;
     proj_destroy(t->pj);
-    if (t->context)
-        proj_context_destroy(t->context);
+    crs_context_give(t->context, false);
     free(t->names);
     free(t);
 }

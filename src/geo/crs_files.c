@@ -57,7 +57,7 @@ static void ignore_message(void *user, int level, const char *text) {
 
 PJ_CONTEXT *crs_context_create(bool strict) {
     static const PROJ_FILE_API files = { 1, on_open, on_read, on_write, on_seek, on_tell, on_close, on_exists, on_mkdir, on_unlink, on_rename };
-    PJ_CONTEXT *context = noc_allocation_refused() ? NULL : proj_context_create();
+    PJ_CONTEXT *context = proj_context_create();
     if (!context)
         return NULL;
     proj_log_func(context, NULL, ignore_message);
