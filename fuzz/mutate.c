@@ -33,7 +33,7 @@ size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t most, unsigned
 void mutate_raw(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
     (void)random;
     size_t room = NOC_MAX(in.size, NOC_MIN(most, in.size + in.size / 4 + 64)), at = out->len;
-    array_reserve(out, at + room + 1);
+    FUZZ_REQUIRE(array_reserve(out, at + room + 1));
     if (in.size)
         memcpy(out->data + at, in.data, in.size);
     out->len += LLVMFuzzerMutate(out->data + at, in.size, room);
@@ -71,7 +71,7 @@ void mutate_number(const char *text, size_t size, uint32_t *random, char out[64]
 
 void mutate_put(fuzz_bytes *out, uint64_t value, int bytes, bool big_endian) {
     for (int i = 0; i < bytes; i++)
-        array_push(out, (uint8_t)(value >> 8 * (big_endian ? bytes - 1 - i : i)));
+        FUZZ_REQUIRE(array_push(out, (uint8_t)(value >> 8 * (big_endian ? bytes - 1 - i : i))));
 }
 
 bool mutate_inflate(fuzz_part in, int window_bits, fuzz_bytes *out) {
@@ -81,7 +81,7 @@ bool mutate_inflate(fuzz_part in, int window_bits, fuzz_bytes *out) {
         return false;
     int status = Z_OK;
     for (size_t start = out->len; status == Z_OK && out->len - start < MOST;) {
-        array_reserve(out, out->len + 4096);
+        FUZZ_REQUIRE(array_reserve(out, out->len + 4096));
         z.next_out = out->data + out->len;
         z.avail_out = 4096;
         status = inflate(&z, Z_NO_FLUSH);
@@ -96,7 +96,7 @@ void mutate_deflate(fuzz_part in, int window_bits, fuzz_bytes *out) {
     if (deflateInit2(&z, 1, Z_DEFLATED, window_bits, 8, Z_DEFAULT_STRATEGY) != Z_OK)
         return;
     size_t room = deflateBound(&z, (uLong)in.size) + 64;
-    array_reserve(out, out->len + room);
+    FUZZ_REQUIRE(array_reserve(out, out->len + room));
     z.next_out = out->data + out->len;
     z.avail_out = (uInt)room;
     deflate(&z, Z_FINISH);
@@ -112,7 +112,7 @@ bool mutate_parts(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) 
         return false;
     int n = fuzz_parts(in.data, in.size, part);
     uint32_t chosen = mutate_random(random, (uint32_t)n), what = mutate_random(random, 24);
-    array_append(out, (const uint8_t *)FUZZ_WORD, FUZZ_MAGIC);
+    FUZZ_REQUIRE(array_append(out, (const uint8_t *)FUZZ_WORD, FUZZ_MAGIC));
     for (uint32_t i = 0; i < (uint32_t)n; i++) {
         fuzz_bytes now = { 0 };
         if (i == chosen && what == 0 && n > 1) /* left out */
@@ -120,10 +120,10 @@ bool mutate_parts(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) 
         if (i == chosen && what > 1)
             mutate_any(part[i], most - NOC_MIN(most, in.size - part[i].size), random, &now);
         else
-            array_append(&now, part[i].data, part[i].size);
+            FUZZ_REQUIRE(array_append(&now, part[i].data, part[i].size));
         for (int k = 0; k < (i == chosen && what == 1 && n < FUZZ_PARTS ? 2 : 1); k++) { /* twice */
             mutate_put(out, now.len, 4, false);
-            array_append(out, now.data, now.len);
+            FUZZ_REQUIRE(array_append(out, now.data, now.len));
         }
         array_free(&now);
     }
@@ -152,9 +152,9 @@ static bool change_number(fuzz_part in, uint32_t *random, fuzz_bytes *out) {
         return false;
     char number[64];
     mutate_number((const char *)in.data + from, to - from, random, number);
-    array_append(out, in.data, from);
-    array_append(out, (uint8_t *)number, strlen(number));
-    array_append(out, in.data + to, in.size - to);
+    FUZZ_REQUIRE(array_append(out, in.data, from));
+    FUZZ_REQUIRE(array_append(out, (uint8_t *)number, strlen(number)));
+    FUZZ_REQUIRE(array_append(out, in.data + to, in.size - to));
     return true;
 }
 
@@ -178,12 +178,12 @@ bool mutate_lines(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) 
     size_t before = (size_t)(line.data - in.data), after = before + line.size;
     if (what < 5) /* within a line */
         return false;
-    array_append(out, in.data, before);
+    FUZZ_REQUIRE(array_append(out, in.data, before));
     if (what == 5) /* another line in its place, or before it */
-        array_append(out, other.data, other.size);
+        FUZZ_REQUIRE(array_append(out, other.data, other.size));
     uint32_t times = what == 6 ? 1 + mutate_random(random, 4) : what == 5 ? mutate_random(random, 2) : 0;
     for (; times > 0 && out->len < most; times--)
-        array_append(out, line.data, line.size);
-    array_append(out, in.data + after, in.size - after);
+        FUZZ_REQUIRE(array_append(out, line.data, line.size));
+    FUZZ_REQUIRE(array_append(out, in.data + after, in.size - after));
     return true;
 }

@@ -44,7 +44,7 @@ static int read_members(fuzz_part in, zip_member *m) {
         if (get(h + 8, 2, false) == 8)
             mutate_inflate(stored, -15, &m[n].content);
         else
-            array_append(&m[n].content, stored.data, stored.size);
+            FUZZ_REQUIRE(array_append(&m[n].content, stored.data, stored.size));
         at += 30 + name + extra + size;
     }
     return n;
@@ -52,7 +52,7 @@ static int read_members(fuzz_part in, zip_member *m) {
 
 static void put_header(fuzz_bytes *out, bool central, const zip_member *m, fuzz_part stored, bool packed,
                        size_t offset) {
-    array_append(out, (const uint8_t *)(central ? "PK\1\2" : "PK\3\4"), 4);
+    FUZZ_REQUIRE(array_append(out, (const uint8_t *)(central ? "PK\1\2" : "PK\3\4"), 4));
     if (central)
         mutate_put(out, 20, 2, false);
     mutate_put(out, 20, 2, false);
@@ -68,7 +68,7 @@ static void put_header(fuzz_bytes *out, bool central, const zip_member *m, fuzz_
         mutate_put(out, 0, 10, false);
         mutate_put(out, offset, 4, false);
     }
-    array_append(out, m->name.data, m->name.size);
+    FUZZ_REQUIRE(array_append(out, m->name.data, m->name.size));
 }
 
 static void write_members(const zip_member *m, int n, uint32_t *random, fuzz_bytes *out) {
@@ -82,12 +82,12 @@ static void write_members(const zip_member *m, int n, uint32_t *random, fuzz_byt
         fuzz_part stored = part_of(pack ? &packed : &m[i].content);
         put_header(&directory, true, &m[i], stored, pack, out->len - start);
         put_header(out, false, &m[i], stored, pack, 0);
-        array_append(out, stored.data, stored.size);
+        FUZZ_REQUIRE(array_append(out, stored.data, stored.size));
         array_free(&packed);
     }
     size_t at = out->len - start;
-    array_append(out, directory.data, directory.len);
-    array_append(out, (const uint8_t *)"PK\5\6\0\0\0", 8);
+    FUZZ_REQUIRE(array_append(out, directory.data, directory.len));
+    FUZZ_REQUIRE(array_append(out, (const uint8_t *)"PK\5\6\0\0\0", 8));
     mutate_put(out, (uint64_t)n, 2, false);
     mutate_put(out, (uint64_t)n, 2, false);
     mutate_put(out, directory.len, 4, false);
@@ -125,8 +125,8 @@ enum { PNG_CHUNKS = 64 };
 static void put_chunk(fuzz_bytes *out, const uint8_t type[4], fuzz_part data) {
     mutate_put(out, data.size, 4, true);
     size_t from = out->len;
-    array_append(out, type, 4);
-    array_append(out, data.data, data.size);
+    FUZZ_REQUIRE(array_append(out, type, 4));
+    FUZZ_REQUIRE(array_append(out, data.data, data.size));
     mutate_put(out, crc32(0, out->data + from, (uInt)(out->len - from)), 4, true);
 }
 
@@ -156,7 +156,7 @@ bool mutate_png(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
         return false;
     int chosen = (int)mutate_random(random, (uint32_t)n), other = (int)mutate_random(random, (uint32_t)n);
     uint32_t what = mutate_random(random, 10);
-    array_append(out, in.data, 8);
+    FUZZ_REQUIRE(array_append(out, in.data, 8));
     for (int i = 0; i < n; i++) {
         fuzz_bytes now = { 0 };
         const uint8_t *c = i == chosen && what == 2 ? chunk[other] : chunk[i];
@@ -164,7 +164,7 @@ bool mutate_png(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
         if (i == chosen && what > 2)
             mutate_chunk(c + 4, data, most, random, &now);
         else
-            array_append(&now, data.data, data.size);
+            FUZZ_REQUIRE(array_append(&now, data.data, data.size));
         for (int k = i == chosen ? what == 0 ? 0 : what == 1 ? 2 : 1 : 1; k > 0; k--)
             put_chunk(out, c + 4, part_of(&now));
         array_free(&now);
@@ -177,10 +177,10 @@ bool mutate_png(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
 static void put_glb_chunk(fuzz_bytes *out, const char *type, fuzz_part data) {
     size_t padding = (4 - data.size % 4) % 4;
     mutate_put(out, data.size + padding, 4, false);
-    array_append(out, (const uint8_t *)type, 4);
-    array_append(out, data.data, data.size);
+    FUZZ_REQUIRE(array_append(out, (const uint8_t *)type, 4));
+    FUZZ_REQUIRE(array_append(out, data.data, data.size));
     for (; padding > 0; padding--)
-        array_push(out, *type == 'J' ? ' ' : 0);
+        FUZZ_REQUIRE(array_push(out, *type == 'J' ? ' ' : 0));
 }
 
 bool mutate_glb(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
@@ -195,7 +195,7 @@ bool mutate_glb(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
     bool in_json = !bin.size || mutate_random(random, 4);
     mutate_any(in_json ? json : bin, most, random, &now);
     size_t start = out->len;
-    array_append(out, in.data, 12);
+    FUZZ_REQUIRE(array_append(out, in.data, 12));
     put_glb_chunk(out, "JSON", in_json ? part_of(&now) : json);
     if (bin.size)
         put_glb_chunk(out, "BIN\0", in_json ? bin : part_of(&now));
@@ -219,8 +219,8 @@ static const uint8_t *get_varint(const uint8_t *p, const uint8_t *end, uint64_t 
 
 static void put_varint(fuzz_bytes *out, uint64_t value) {
     for (; value > 127; value >>= 7)
-        array_push(out, (uint8_t)(value | 128));
-    array_push(out, (uint8_t)value);
+        FUZZ_REQUIRE(array_push(out, (uint8_t)(value | 128)));
+    FUZZ_REQUIRE(array_push(out, (uint8_t)value));
 }
 
 typedef struct pb_field {
@@ -267,7 +267,7 @@ static void mutate_packed(fuzz_part in, uint32_t *random, fuzz_bytes *out) {
             value = mutate_random(random, 3) ? mutate_random(random, 300) : ~(uint64_t)0 >> mutate_random(random, 64);
         put_varint(out, value);
     }
-    array_append(out, p, (size_t)(end - p));
+    FUZZ_REQUIRE(array_append(out, p, (size_t)(end - p)));
 }
 
 static void mutate_message(fuzz_part in, int depth, uint32_t *random, fuzz_bytes *out) {
@@ -278,12 +278,12 @@ static void mutate_message(fuzz_part in, int depth, uint32_t *random, fuzz_bytes
     for (int i = 0; i < n; i++) {
         fuzz_bytes now = { 0 };
         if (i != chosen || what == 1) /* as it is; once more below */
-            array_append(out, f[i].start, (size_t)(f[i].end - f[i].start));
+            FUZZ_REQUIRE(array_append(out, f[i].start, (size_t)(f[i].end - f[i].start)));
         if (i != chosen || what == 0)
             continue;
         if (what <= 2) { /* this one twice, or another's in its place */
             int from = what == 1 ? i : other;
-            array_append(out, f[from].start, (size_t)(f[from].end - f[from].start));
+            FUZZ_REQUIRE(array_append(out, f[from].start, (size_t)(f[from].end - f[from].start)));
             continue;
         }
         put_varint(out, f[i].tag);
@@ -293,7 +293,7 @@ static void mutate_message(fuzz_part in, int depth, uint32_t *random, fuzz_bytes
         } else {
             mutate_raw((fuzz_part){ f[i].start + 1, (size_t)(f[i].end - f[i].start) - 1 }, 10, random, &now);
         }
-        array_append(out, now.data, now.len);
+        FUZZ_REQUIRE(array_append(out, now.data, now.len));
         array_free(&now);
     }
     free(f);
@@ -316,15 +316,15 @@ static bool put_blob(fuzz_part type, fuzz_part content, uint32_t *random, fuzz_b
     fuzz_part stored = raw ? content : part_of(&packed);
     put_varint(&blob, (raw ? 1 : 3) << 3 | 2);
     put_varint(&blob, stored.size);
-    array_append(&blob, stored.data, stored.size);
+    FUZZ_REQUIRE(array_append(&blob, stored.data, stored.size));
     put_varint(&header, 1 << 3 | 2);
     put_varint(&header, type.size);
-    array_append(&header, type.data, type.size);
+    FUZZ_REQUIRE(array_append(&header, type.data, type.size));
     put_varint(&header, 3 << 3);
     put_varint(&header, blob.len);
     mutate_put(out, header.len, 4, true);
-    array_append(out, header.data, header.len);
-    array_append(out, blob.data, blob.len);
+    FUZZ_REQUIRE(array_append(out, header.data, header.len));
+    FUZZ_REQUIRE(array_append(out, blob.data, blob.len));
     array_free(&blob);
     array_free(&header);
     array_free(&packed);
@@ -351,7 +351,7 @@ static const uint8_t *read_blob(const uint8_t *p, const uint8_t *end, fuzz_part 
             n = read_fields((fuzz_part){ p, (size_t)size }, f);
             for (int i = 0; i < n; i++) {
                 if (f[i].tag == (1 << 3 | 2))
-                    array_append(content, f[i].bytes.data, f[i].bytes.size);
+                    FUZZ_REQUIRE(array_append(content, f[i].bytes.data, f[i].bytes.size));
                 else if (f[i].tag == (3 << 3 | 2))
                     mutate_inflate(f[i].bytes, 15, content);
             }
@@ -373,7 +373,7 @@ bool mutate_pbf(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
         if (next && (i == chosen || (next == end && i < chosen)))
             mutate_message(part_of(&content), 0, random, &now);
         else if (next)
-            array_append(&now, content.data, content.len);
+            FUZZ_REQUIRE(array_append(&now, content.data, content.len));
         if (next)
             put_blob(type, part_of(&now), random, out);
         array_free(&content);
@@ -382,6 +382,6 @@ bool mutate_pbf(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
             break;
         p = next;
     }
-    array_append(out, p, (size_t)(end - p));
+    FUZZ_REQUIRE(array_append(out, p, (size_t)(end - p)));
     return i > 0;
 }

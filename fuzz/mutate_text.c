@@ -21,11 +21,11 @@ static void collect(json_t *v, places *all) {
     if (all->list.len > 20000)
         return;
     json_array_foreach(v, i, child) {
-        array_push(&all->list, (place){ v, i, NULL });
+        FUZZ_REQUIRE(array_push(&all->list, (place){ v, i, NULL }));
         collect(child, all);
     }
     json_object_foreach(v, key, child) {
-        array_push(&all->list, (place){ v, 0, key });
+        FUZZ_REQUIRE(array_push(&all->list, (place){ v, 0, key }));
         collect(child, all);
     }
 }
@@ -112,7 +112,7 @@ bool mutate_json(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
     json_decref(root);
     if (!text)
         return false;
-    array_append(out, (uint8_t *)text, strlen(text));
+    FUZZ_REQUIRE(array_append(out, (uint8_t *)text, strlen(text)));
     free(text);
     return true;
 }
@@ -146,8 +146,8 @@ static bool read_tokens(fuzz_part in, xml_tokens *t) {
             t->list.data[t->open.data[--t->open.len]].match = t->list.len;
         }
         if (token.kind == XML_OPEN)
-            array_push(&t->open, t->list.len);
-        array_push(&t->list, token);
+            FUZZ_REQUIRE(array_push(&t->open, t->list.len));
+        FUZZ_REQUIRE(array_push(&t->list, token));
         at = token.to;
     }
     return t->list.len > 2 && !t->open.len;
@@ -194,7 +194,7 @@ static void changed_text(fuzz_part old, fuzz_part other, uint32_t *random, fuzz_
     size_t at = out->len;
     uint32_t what = mutate_random(random, 4);
     if (what == 0)
-        array_append(out, other.data, other.size);
+        FUZZ_REQUIRE(array_append(out, other.data, other.size));
     else if (what < 3 && old.size)
         mutate_lines(old, 2 * old.size, random, out);
     if (out->len == at)
@@ -223,16 +223,16 @@ static bool change_xml(fuzz_part in, const xml_tokens *t, uint32_t *random, fuzz
         times = what == 4 ? 0 : what == 6 ? 2 + mutate_random(random, 3) : 1;
         if (what == 7) { /* another one before it */
             fuzz_part s = span(in, t, b);
-            array_append(&text, s.data, s.size);
-            array_append(&text, old.data, old.size);
+            FUZZ_REQUIRE(array_append(&text, s.data, s.size));
+            FUZZ_REQUIRE(array_append(&text, old.data, old.size));
             now = (fuzz_part){ text.data, text.len };
         }
     }
     size_t before = (size_t)(old.data - in.data);
-    array_append(out, in.data, before);
+    FUZZ_REQUIRE(array_append(out, in.data, before));
     for (; times > 0; times--)
-        array_append(out, now.data, now.size);
-    array_append(out, in.data + before + old.size, in.size - before - old.size);
+        FUZZ_REQUIRE(array_append(out, now.data, now.size));
+    FUZZ_REQUIRE(array_append(out, in.data + before + old.size, in.size - before - old.size));
     array_free(&text);
     return true;
 }

@@ -13,7 +13,7 @@ static void run_file(const char *path) {
     NOC_ARRAY(uint8_t) data = { 0 };
     uint8_t part[4096];
     for (size_t n; (n = fread(part, 1, sizeof(part), f)) > 0;)
-        array_append(&data, part, n);
+        FUZZ_REQUIRE(array_append(&data, part, n));
     fclose(f);
     uint8_t *exact = noc_alloc(data.len); /* its own block, so that a read beyond it is seen */
     if (data.len)

@@ -15,13 +15,14 @@
 #define NOC_MUST_USE __attribute__((warn_unused_result))
 static inline bool NOC_MUST_USE noc_must_use(bool done) { return done; }
 
-/* Allocations that say when memory is refused: NULL or false, and whatever they should have changed is as it was. free() them. */
-void *noc_try_alloc(size_t size) NOC_MUST_USE;                /* uninitialised */
-void *noc_try_calloc(size_t count, size_t size) NOC_MUST_USE; /* zeroed; NULL when count * size overflows, too */
-void *noc_try_realloc(void *p, size_t size) NOC_MUST_USE;     /* p lives on where the result is NULL */
-char *noc_try_strdup(const char *s) NOC_MUST_USE;             /* NULL stays NULL */
-char *noc_try_strndup(const char *s, size_t n) NOC_MUST_USE;
-char *noc_try_format(const char *fmt, ...) NOC_PRINTF(1, 2) NOC_MUST_USE;
+/* Memory. Where it is refused these give NULL or false, and what they should have changed is as it was: the caller frees what it has
+ * made and returns NOC_ERR_MEMORY, after reporting it once (noc_no_memory). Nothing here ends the program. free() them. */
+void *noc_alloc(size_t size) NOC_MUST_USE;                /* uninitialised */
+void *noc_calloc(size_t count, size_t size) NOC_MUST_USE; /* zeroed; NULL when count * size overflows, too */
+void *noc_realloc(void *p, size_t size) NOC_MUST_USE;     /* p lives on where the result is NULL */
+char *noc_strdup(const char *s) NOC_MUST_USE;             /* NULL stays NULL */
+char *noc_strndup(const char *s, size_t n) NOC_MUST_USE;
+char *noc_format(const char *fmt, ...) NOC_PRINTF(1, 2) NOC_MUST_USE;
 
 /* For tests: of all allocations of the library from now on, the one numbered `number` (from 1) is refused, and with and_later all that
  * follow. 0: none is. Every allocation of src/ passes here, and so does every start of a thread of a pool. */
@@ -29,48 +30,30 @@ void noc_refuse_allocation(uint64_t number, bool and_later);
 uint64_t noc_allocations(void); /* allocations since noc_refuse_allocation(number > 0, ...) */
 bool noc_allocation_refused(void); /* whether the one that comes now is refused; for what allocates by other means */
 
-/* Small allocations, and those of bounded size: where memory is refused they are served from a reserve of 16 MiB, so
- * that the work goes on to a large one, which reports it. They abort only when that is used up too. */
-void *noc_alloc(size_t size);                 /* uninitialised */
-void *noc_calloc(size_t count, size_t size);  /* zeroed */
-void *noc_realloc(void *p, size_t size);
-char *noc_strdup(const char *s);              /* NULL stays NULL */
-char *noc_format(const char *fmt, ...) NOC_PRINTF(1, 2); /* free() it */
 /* Large allocations whose size a user decides: 64-byte aligned, zeroed; NULL when refused or when count * size overflows. */
 void *noc_alloc_large(size_t count, size_t size) NOC_MUST_USE;
 
-/* Growable array: NOC_ARRAY(float) a = { 0 }; array_push(&a, 1.f); ... array_free(&a). */
+/* Growable array: NOC_ARRAY(float) a = { 0 }; if (!array_push(&a, 1.f)) ...; array_free(&a). False, and the array is as it was, when
+ * memory is refused. */
 #define NOC_ARRAY(T) struct { T *data; size_t len, cap; }
 #define array_reserve(a, n) \
-    ((n) > (a)->cap ? ((a)->data = noc_array_grow((a)->data, &(a)->cap, (n), sizeof(*(a)->data)), (void)0) : (void)0)
-#define array_push(a, ...) (array_reserve((a), (a)->len + 1), (a)->data[(a)->len++] = (__VA_ARGS__), (void)0)
-#define array_append(a, src, n) \
-    (array_reserve((a), (a)->len + (n)), (n) ? (void)memcpy((a)->data + (a)->len, (src), (n) * sizeof(*(a)->data)) : (void)0, \
-     (void)((a)->len += (n)))
-#define array_free(a) (free((a)->data), (a)->data = NULL, (a)->len = (a)->cap = 0, (void)0)
-void *noc_array_grow(void *data, size_t *cap, size_t need, size_t item);
-/* The same: false, and the array is as it was, when memory is refused. */
-#define array_try_reserve(a, n) \
-    noc_must_use((n) <= (a)->cap || noc_array_try_grow(&(a)->data, &(a)->cap, (n), sizeof(*(a)->data)))
-#define array_try_push(a, ...) \
-    noc_must_use(((a)->len < (a)->cap || noc_array_try_grow(&(a)->data, &(a)->cap, (a)->len + 1, sizeof(*(a)->data))) && \
+    noc_must_use((n) <= (a)->cap || noc_array_grow(&(a)->data, &(a)->cap, (n), sizeof(*(a)->data)))
+#define array_push(a, ...) \
+    noc_must_use(((a)->len < (a)->cap || noc_array_grow(&(a)->data, &(a)->cap, (a)->len + 1, sizeof(*(a)->data))) && \
                  ((a)->data[(a)->len++] = (__VA_ARGS__), true))
-#define array_try_append(a, src, n) \
-    noc_must_use(((n) <= (a)->cap - (a)->len || noc_array_try_grow(&(a)->data, &(a)->cap, (a)->len + (n), sizeof(*(a)->data))) && \
+#define array_append(a, src, n) \
+    noc_must_use(((n) <= (a)->cap - (a)->len || noc_array_grow(&(a)->data, &(a)->cap, (a)->len + (n), sizeof(*(a)->data))) && \
                  ((n) ? (void)memcpy((a)->data + (a)->len, (src), (n) * sizeof(*(a)->data)) : (void)0, (a)->len += (n), true))
-bool noc_array_try_grow(void *data, size_t *cap, size_t need, size_t item) NOC_MUST_USE; /* data: address of the array's pointer */
+#define array_free(a) (free((a)->data), (a)->data = NULL, (a)->len = (a)->cap = 0, (void)0)
+bool noc_array_grow(void *data, size_t *cap, size_t need, size_t item) NOC_MUST_USE; /* data: address of the array's pointer */
 
 /* Arena: everything in it is freed at once. Zero-initialise; not thread-safe. What is refused is NULL, and `refused` stays set, so that
  * who fills a record with many texts looks once, at its end. */
 typedef struct noc_arena { struct noc_arena_block *head; size_t bytes; bool refused; } noc_arena;
-void *arena_try_alloc(noc_arena *arena, size_t size) NOC_MUST_USE; /* zeroed, 16-byte aligned */
-char *arena_try_strdup(noc_arena *arena, const char *s) NOC_MUST_USE; /* NULL stays NULL */
-char *arena_try_strndup(noc_arena *arena, const char *s, size_t n) NOC_MUST_USE;
-char *arena_try_format(noc_arena *arena, const char *fmt, ...) NOC_PRINTF(2, 3) NOC_MUST_USE;
-void *arena_alloc(noc_arena *arena, size_t size); /* zeroed, 16-byte aligned */
-char *arena_strdup(noc_arena *arena, const char *s);
-char *arena_strndup(noc_arena *arena, const char *s, size_t n);
-char *arena_format(noc_arena *arena, const char *fmt, ...) NOC_PRINTF(2, 3);
+void *arena_alloc(noc_arena *arena, size_t size) NOC_MUST_USE; /* zeroed, 16-byte aligned */
+char *arena_strdup(noc_arena *arena, const char *s) NOC_MUST_USE; /* NULL stays NULL */
+char *arena_strndup(noc_arena *arena, const char *s, size_t n) NOC_MUST_USE;
+char *arena_format(noc_arena *arena, const char *fmt, ...) NOC_PRINTF(2, 3) NOC_MUST_USE;
 void arena_free(noc_arena *arena);
 
 /* Log. log may be NULL everywhere (then warnings and errors go nowhere). noc_error returns its status, so
@@ -112,8 +95,7 @@ void noc_pool_run(noc_pool *pool, size_t items, void (*fn)(void *ctx, size_t ite
 typedef struct noc_map { struct noc_map_slot *slots; size_t len, cap; noc_arena keys; } noc_map;
 bool map_get(const noc_map *map, const char *key, uint64_t *value);
 /* fresh, which may be NULL: whether key was not there; if it was, its value is replaced. False, and the map is as it was, when memory is refused. */
-bool map_try_put(noc_map *map, const char *key, uint64_t value, bool *fresh) NOC_MUST_USE;
-bool map_put(noc_map *map, const char *key, uint64_t value); /* true if new; else the old value is replaced */
+bool map_put(noc_map *map, const char *key, uint64_t value, bool *fresh) NOC_MUST_USE;
 void map_free(noc_map *map);
 size_t map_longest_probe(const noc_map *map); /* slots that the worst key is away from its own; for tests */
 uint64_t base_siphash(const void *data, size_t size, const uint64_t key[2]);

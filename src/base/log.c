@@ -9,7 +9,7 @@ struct noc_log {
 };
 
 noc_log *noc_log_create(const noc_log_params *params) {
-    noc_log *log = noc_try_calloc(1, sizeof(*log));
+    noc_log *log = noc_calloc(1, sizeof(*log));
     if (!log)
         return NULL;
     log->params = params ? *params : noc_log_default_params();

@@ -3,8 +3,6 @@
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdatomic.h>
-#include <stdio.h>
-#include <sys/mman.h>
 #include <sys/random.h>
 #include <time.h>
 #include <unistd.h>
@@ -29,16 +27,16 @@ bool noc_allocation_refused(void) {
     return number >= first && number <= atomic_load(&refuse_last);
 }
 
-void *noc_try_alloc(size_t size) { return noc_allocation_refused() ? NULL : malloc(size ? size : 1); }
+void *noc_alloc(size_t size) { return noc_allocation_refused() ? NULL : malloc(size ? size : 1); }
 
-void *noc_try_calloc(size_t count, size_t size) {
+void *noc_calloc(size_t count, size_t size) {
     return noc_allocation_refused() ? NULL : calloc(count ? count : 1, size ? size : 1);
 }
 
-void *noc_try_realloc(void *p, size_t size) { return noc_allocation_refused() ? NULL : realloc(p, size ? size : 1); }
+void *noc_realloc(void *p, size_t size) { return noc_allocation_refused() ? NULL : realloc(p, size ? size : 1); }
 
-char *noc_try_strndup(const char *s, size_t n) {
-    char *copy = noc_try_alloc(n + 1);
+char *noc_strndup(const char *s, size_t n) {
+    char *copy = noc_alloc(n + 1);
     if (copy) {
         memcpy(copy, s, n);
         copy[n] = 0;
@@ -46,86 +44,17 @@ char *noc_try_strndup(const char *s, size_t n) {
     return copy;
 }
 
-char *noc_try_strdup(const char *s) { return s ? noc_try_strndup(s, strlen(s)) : NULL; }
+char *noc_strdup(const char *s) { return s ? noc_strndup(s, strlen(s)) : NULL; }
 
 static char *format_v(const char *fmt, va_list ap) {
     va_list copy;
     va_copy(copy, ap);
     int n = noc_vsnprintf(NULL, 0, fmt, copy);
     va_end(copy);
-    char *s = n < 0 ? NULL : noc_try_alloc((size_t)n + 1);
+    char *s = n < 0 ? NULL : noc_alloc((size_t)n + 1);
     if (s)
         noc_vsnprintf(s, (size_t)n + 1, fmt, ap);
     return s;
-}
-
-char *noc_try_format(const char *fmt, ...) {
-    va_list ap;
-    va_start(ap, fmt);
-    char *s = format_v(fmt, ap);
-    va_end(ap);
-    return s;
-}
-
-static void out_of_memory(size_t size) {
-    fprintf(stderr, "nocturne: out of memory (%zu bytes)\n", size);
-    abort();
-}
-
-/* A reserve that is given back where memory is refused, so that what is small or of bounded size still succeeds,
- * and the work comes to the next allocation that may fail with a status. Address space only: nothing touches it. */
-#define RESERVE ((size_t)16 << 20)
-static void *reserve;
-static pthread_mutex_t reserve_lock = PTHREAD_MUTEX_INITIALIZER;
-
-static void keep_reserve(void) {
-    pthread_mutex_lock(&reserve_lock);
-    if (!reserve) {
-        reserve = mmap(NULL, RESERVE, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-        reserve = reserve == MAP_FAILED ? NULL : reserve;
-    }
-    pthread_mutex_unlock(&reserve_lock);
-}
-
-/* Whether there was a reserve to give back. */
-static bool spend_reserve(void) {
-    pthread_mutex_lock(&reserve_lock);
-    bool spent = reserve && !munmap(reserve, RESERVE);
-    reserve = NULL;
-    pthread_mutex_unlock(&reserve_lock);
-    return spent;
-}
-
-/* p, or what a second try gives once the reserve is spent. */
-#define OR_FROM_RESERVE(p, again, bytes)                    \
-    do {                                                    \
-        if (!(p) && !(spend_reserve() && ((p) = (again))))  \
-            out_of_memory(bytes);                           \
-    } while (0)
-
-void *noc_alloc(size_t size) {
-    void *p = noc_try_alloc(size);
-    OR_FROM_RESERVE(p, noc_try_alloc(size), size);
-    return p;
-}
-
-void *noc_calloc(size_t count, size_t size) {
-    void *p = noc_try_calloc(count, size);
-    OR_FROM_RESERVE(p, noc_try_calloc(count, size), count * size);
-    return p;
-}
-
-void *noc_realloc(void *p, size_t size) {
-    void *q = noc_try_realloc(p, size);
-    OR_FROM_RESERVE(q, noc_try_realloc(p, size), size);
-    return q;
-}
-
-char *noc_strdup(const char *s) {
-    char *p = noc_try_strdup(s);
-    if (s)
-        OR_FROM_RESERVE(p, noc_try_strdup(s), strlen(s));
-    return p;
 }
 
 char *noc_format(const char *fmt, ...) {
@@ -133,8 +62,6 @@ char *noc_format(const char *fmt, ...) {
     va_start(ap, fmt);
     char *s = format_v(fmt, ap);
     va_end(ap);
-    if (!s)
-        out_of_memory(strlen(fmt));
     return s;
 }
 
@@ -144,31 +71,21 @@ void *noc_alloc_large(size_t count, size_t size) {
         return NULL;
     bytes = (bytes + 63) & ~(size_t)63;
     void *p = aligned_alloc(64, bytes ? bytes : 64);
-    if (p) {
-        memset(p, 0, bytes);
-        keep_reserve();
-    }
-    return p;
+    return p ? memset(p, 0, bytes) : NULL;
 }
 
 /* Items that an array has room for after growing. */
 static size_t grown(size_t cap, size_t need) { return NOC_MAX(cap ? cap + cap / 2 : 16, need); }
 
-bool noc_array_try_grow(void *data, size_t *cap, size_t need, size_t item) {
+bool noc_array_grow(void *data, size_t *cap, size_t need, size_t item) {
     size_t n = grown(*cap, need), bytes;
     void *old, *now;
     memcpy(&old, data, sizeof(old)); /* a pointer of any type */
-    if (__builtin_mul_overflow(n, item, &bytes) || !(now = noc_try_realloc(old, bytes)))
+    if (__builtin_mul_overflow(n, item, &bytes) || !(now = noc_realloc(old, bytes)))
         return false;
     memcpy(data, &now, sizeof(now));
     *cap = n;
     return true;
-}
-
-void *noc_array_grow(void *data, size_t *cap, size_t need, size_t item) {
-    if (!noc_array_try_grow(&data, cap, need, item) && !(spend_reserve() && noc_array_try_grow(&data, cap, need, item)))
-        out_of_memory(need);
-    return data;
 }
 
 struct noc_arena_block {
@@ -177,13 +94,13 @@ struct noc_arena_block {
     _Alignas(16) unsigned char data[];
 };
 
-void *arena_try_alloc(noc_arena *arena, size_t size) {
+void *arena_alloc(noc_arena *arena, size_t size) {
     struct noc_arena_block *b = arena->head;
     if (size <= SIZE_MAX / 2) {
         size = (size + 15) & ~(size_t)15;
         if (!b || b->size - b->used < size) {
             size_t room = NOC_MAX(size, (size_t)64 * 1024 - sizeof(*b));
-            if ((b = noc_try_alloc(sizeof(*b) + room))) {
+            if ((b = noc_alloc(sizeof(*b) + room))) {
                 b->used = 0;
                 b->size = room;
                 b->next = arena->head;
@@ -203,49 +120,29 @@ void *arena_try_alloc(noc_arena *arena, size_t size) {
     return memset(p, 0, size);
 }
 
-char *arena_try_strndup(noc_arena *arena, const char *s, size_t n) {
-    char *p = arena_try_alloc(arena, n + 1);
+char *arena_strndup(noc_arena *arena, const char *s, size_t n) {
+    char *p = arena_alloc(arena, n + 1);
     return p ? memcpy(p, s, n) : NULL;
 }
 
-char *arena_try_strdup(noc_arena *arena, const char *s) { return s ? arena_try_strndup(arena, s, strlen(s)) : NULL; }
+char *arena_strdup(noc_arena *arena, const char *s) { return s ? arena_strndup(arena, s, strlen(s)) : NULL; }
 
 static char *arena_format_v(noc_arena *arena, const char *fmt, va_list ap) {
     va_list copy;
     va_copy(copy, ap);
     int n = noc_vsnprintf(NULL, 0, fmt, copy);
     va_end(copy);
-    char *p = arena_try_alloc(arena, (size_t)NOC_MAX(n, 0) + 1);
+    char *p = arena_alloc(arena, (size_t)NOC_MAX(n, 0) + 1);
     if (p)
         noc_vsnprintf(p, (size_t)NOC_MAX(n, 0) + 1, fmt, ap);
     return p;
 }
-
-char *arena_try_format(noc_arena *arena, const char *fmt, ...) {
-    va_list ap;
-    va_start(ap, fmt);
-    char *p = arena_format_v(arena, fmt, ap);
-    va_end(ap);
-    return p;
-}
-
-void *arena_alloc(noc_arena *arena, size_t size) {
-    void *p = arena_try_alloc(arena, size);
-    OR_FROM_RESERVE(p, arena_try_alloc(arena, size), size);
-    return p;
-}
-
-char *arena_strndup(noc_arena *arena, const char *s, size_t n) { return memcpy(arena_alloc(arena, n + 1), s, n); }
-
-char *arena_strdup(noc_arena *arena, const char *s) { return s ? arena_strndup(arena, s, strlen(s)) : NULL; }
 
 char *arena_format(noc_arena *arena, const char *fmt, ...) {
     va_list ap;
     va_start(ap, fmt);
     char *p = arena_format_v(arena, fmt, ap);
     va_end(ap);
-    if (!p)
-        out_of_memory(strlen(fmt));
     return p;
 }
 
@@ -332,10 +229,10 @@ bool map_get(const noc_map *map, const char *key, uint64_t *value) {
     return s->key != NULL;
 }
 
-bool map_try_put(noc_map *map, const char *key, uint64_t value, bool *fresh) {
+bool map_put(noc_map *map, const char *key, uint64_t value, bool *fresh) {
     if (map->len * 4 >= map->cap * 3) {
         size_t cap = map->cap ? map->cap * 2 : 64;
-        noc_map bigger = { .slots = noc_try_calloc(cap, sizeof(*bigger.slots)), .cap = cap, .keys = map->keys, .len = map->len };
+        noc_map bigger = { .slots = noc_calloc(cap, sizeof(*bigger.slots)), .cap = cap, .keys = map->keys, .len = map->len };
         if (!bigger.slots)
             return false;
         for (size_t i = 0; i < map->cap; i++)
@@ -349,20 +246,13 @@ bool map_try_put(noc_map *map, const char *key, uint64_t value, bool *fresh) {
     if (fresh)
         *fresh = !s->key;
     if (!s->key) {
-        if (!(s->key = arena_try_strdup(&map->keys, key)))
+        if (!(s->key = arena_strdup(&map->keys, key)))
             return false;
         s->hash = hash;
         map->len++;
     }
     s->value = value;
     return true;
-}
-
-bool map_put(noc_map *map, const char *key, uint64_t value) {
-    bool fresh;
-    if (!map_try_put(map, key, value, &fresh) && !(spend_reserve() && map_try_put(map, key, value, &fresh)))
-        out_of_memory(strlen(key));
-    return fresh;
 }
 
 size_t map_longest_probe(const noc_map *map) {

@@ -54,8 +54,8 @@ noc_pool *noc_pool_create(int threads) {
     if (threads <= 0)
         threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
     threads = NOC_CLAMP(threads, 1, 1024);
-    noc_pool *pool = noc_try_calloc(1, sizeof(*pool));
-    struct worker *workers = pool ? noc_try_calloc((size_t)threads, sizeof(*workers)) : NULL;
+    noc_pool *pool = noc_calloc(1, sizeof(*pool));
+    struct worker *workers = pool ? noc_calloc((size_t)threads, sizeof(*workers)) : NULL;
     if (!workers) {
         free(pool);
         return NULL;

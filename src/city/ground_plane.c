@@ -167,7 +167,7 @@ static bool fill(field *f) {
         return true;
     field half = { .nx = (f->nx + 1) / 2, .ny = (f->ny + 1) / 2 };
     size_t n = (size_t)half.nx * (size_t)half.ny;
-    half.height = noc_try_calloc(n, sizeof(*half.height) + sizeof(int) + sizeof(*half.fixed)); /* and count, and fixed */
+    half.height = noc_calloc(n, sizeof(*half.height) + sizeof(int) + sizeof(*half.fixed)); /* and count, and fixed */
     if (!half.height)
         return false;
     int *count = (int *)(half.height + n);
@@ -263,7 +263,7 @@ static void smooth(field *f, int rounds) {
 /* The rim of an nx by ny grid of vertices, counter-clockwise. */
 static void surround(noc_scene *scene, const double *xyz, int nx, int ny, int material) {
     size_t count = 2 * (size_t)(nx - 1) + 2 * (size_t)(ny - 1), n = 0;
-    double *rim = noc_try_alloc(count * 3 * sizeof(*rim));
+    double *rim = noc_alloc(count * 3 * sizeof(*rim));
     if (!rim) {
         noc_scene_out_of_memory(scene);
         return;
@@ -281,8 +281,8 @@ static void surround(noc_scene *scene, const double *xyz, int nx, int ny, int ma
 static void add_mesh(noc_scene *scene, const field *f, double z, bool level) {
     noc_material m = noc_class_material(NOC_CLASS_TERRAIN);
     int nx = level ? 2 : f->nx, ny = level ? 2 : f->ny;
-    double *xyz = noc_try_alloc((size_t)nx * (size_t)ny * 3 * sizeof(*xyz));
-    uint32_t *indices = noc_try_alloc((size_t)(nx - 1) * (size_t)(ny - 1) * 6 * sizeof(*indices));
+    double *xyz = noc_alloc((size_t)nx * (size_t)ny * 3 * sizeof(*xyz));
+    uint32_t *indices = noc_alloc((size_t)(nx - 1) * (size_t)(ny - 1) * 6 * sizeof(*indices));
     size_t v = 0, t = 0;
     if (!xyz || !indices) {
         noc_scene_out_of_memory(scene);
@@ -329,12 +329,12 @@ static bool make_field(field *f, const noc_scene *scene, const double *points, s
     f->step[0] = size[0] / f->nx;
     f->step[1] = size[1] / f->ny;
     size_t n = (size_t)f->nx * (size_t)f->ny;
-    f->height = noc_try_alloc(n * sizeof(*f->height));
-    f->street = noc_try_alloc(n * sizeof(*f->street));
-    f->foot = noc_try_alloc(n * sizeof(*f->foot));
-    f->away = noc_try_alloc(n * sizeof(*f->away));
-    f->fixed = noc_try_calloc(n, sizeof(*f->fixed));
-    f->scratch = noc_try_alloc(2 * n * sizeof(*f->scratch));
+    f->height = noc_alloc(n * sizeof(*f->height));
+    f->street = noc_alloc(n * sizeof(*f->street));
+    f->foot = noc_alloc(n * sizeof(*f->foot));
+    f->away = noc_alloc(n * sizeof(*f->away));
+    f->fixed = noc_calloc(n, sizeof(*f->fixed));
+    f->scratch = noc_alloc(2 * n * sizeof(*f->scratch));
     bool made = f->height && f->street && f->foot && f->away && f->fixed && f->scratch;
     for (size_t i = 0; made && i < n; i++) {
         f->height[i] = f->foot[i] = NAN;
@@ -387,7 +387,7 @@ static void free_ground(city_ground *g) {
 city_ground *city_ground_start(noc_scene *scene, const double *points, size_t count) {
     if ((!scene->indices.len && !count) || scene->committed)
         return NULL;
-    city_ground *g = noc_try_calloc(1, sizeof(*g));
+    city_ground *g = noc_calloc(1, sizeof(*g));
     if (!g || !make_field(&g->f, scene, points, count)) {
         noc_scene_out_of_memory(scene);
         if (g)

@@ -55,7 +55,7 @@ static bool keeps_distance(const spots *s, double x, double y, const double faci
 /* False: no memory. */
 static bool take(spots *s, double x, double y, const double facing[2]) {
     uint32_t *first = &s->bucket[bucket_of((int64_t)floor(x / s->cell), (int64_t)floor(y / s->cell))];
-    if (!array_try_push(&s->list, (spot){ x, y, { facing[0], facing[1] }, *first }))
+    if (!array_push(&s->list, (spot){ x, y, { facing[0], facing[1] }, *first }))
         return false;
     *first = (uint32_t)s->list.len;
     return true;
@@ -185,7 +185,7 @@ static void around_buildings(inference *in) {
 noc_status city_infer_lamps(noc_scene *scene, const city_lamp_params *params, const noc_progress *progress,
                             geo_issues *issues, int *lights) {
     inference in = { .scene = scene, .params = params, .issues = issues, .progress = progress,
-                     .spots = noc_try_calloc(1, sizeof(spots)) };
+                     .spots = noc_calloc(1, sizeof(spots)) };
     noc_scene_info info;
     *lights = 0;
     if (!in.spots)

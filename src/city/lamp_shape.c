@@ -5,13 +5,13 @@
 
 static uint32_t vertex(lamp_shape *s, double x, double y, double z) {
     double p[3] = { x, y, z };
-    s->no_memory = !array_try_append(&s->xyz, p, 3) || s->no_memory;
+    s->no_memory = !array_append(&s->xyz, p, 3) || s->no_memory;
     return (uint32_t)(s->xyz.len / 3 - 1);
 }
 
 static void triangle(lamp_shape *s, uint32_t a, uint32_t b, uint32_t c) {
     uint32_t t[3] = { a, b, c };
-    s->no_memory = !array_try_append(&s->indices, t, 3) || s->no_memory;
+    s->no_memory = !array_append(&s->indices, t, 3) || s->no_memory;
 }
 
 static void quad(lamp_shape *s, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {

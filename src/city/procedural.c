@@ -269,7 +269,7 @@ noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dr
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "city: lit_windows %g is not in 0..1", params->lit_windows);
     if (scene->committed)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "city: the scene is committed");
-    town *t = noc_try_calloc(1, sizeof(*t));
+    town *t = noc_calloc(1, sizeof(*t));
     if (!t)
         return noc_scene_out_of_memory(scene);
     t->scene = scene;

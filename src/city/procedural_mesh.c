@@ -36,16 +36,16 @@ double town_cos(double turns) { return town_sin(turns + 0.25); }
 void town_tri(town *t, town_mat mat, const double a[3], const double b[3], const double c[3]) {
     town_batch *batch = &t->batch[mat];
     uint32_t first = (uint32_t)(batch->xyz.len / 3), corners[3] = { first, first + 1, first + 2 };
-    if (!array_try_append(&batch->xyz, a, 3) || !array_try_append(&batch->xyz, b, 3) || !array_try_append(&batch->xyz, c, 3) ||
-        !array_try_append(&batch->indices, corners, 3))
+    if (!array_append(&batch->xyz, a, 3) || !array_append(&batch->xyz, b, 3) || !array_append(&batch->xyz, c, 3) ||
+        !array_append(&batch->indices, corners, 3))
         t->failed = noc_scene_out_of_memory(t->scene);
 }
 
 void town_quad(town *t, town_mat mat, const double a[3], const double b[3], const double c[3], const double d[3]) {
     town_batch *batch = &t->batch[mat];
     uint32_t first = (uint32_t)(batch->xyz.len / 3), corners[6] = { first, first + 1, first + 2, first, first + 2, first + 3 };
-    if (!array_try_append(&batch->xyz, a, 3) || !array_try_append(&batch->xyz, b, 3) || !array_try_append(&batch->xyz, c, 3) ||
-        !array_try_append(&batch->xyz, d, 3) || !array_try_append(&batch->indices, corners, 6))
+    if (!array_append(&batch->xyz, a, 3) || !array_append(&batch->xyz, b, 3) || !array_append(&batch->xyz, c, 3) ||
+        !array_append(&batch->xyz, d, 3) || !array_append(&batch->indices, corners, 6))
         t->failed = noc_scene_out_of_memory(t->scene);
 }
 

@@ -46,7 +46,7 @@ void kit_flush(kit *k, int material, const char *name) {
 
 static uint32_t vertex(kit *k, vec3 p) {
     vec3 q = add(k->origin, add(scale(k->axis[0], p.x), add(scale(k->axis[1], p.y), scale(k->axis[2], p.z))));
-    if (!array_try_append(&k->xyz, &q.x, 3))
+    if (!array_append(&k->xyz, &q.x, 3))
         k->failed = noc_scene_out_of_memory(k->scene);
     return (uint32_t)(k->xyz.len / 3 - 1);
 }
@@ -61,7 +61,7 @@ static void quad(kit *k, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
             p[i] = v3(v[0], v[1], v[2]);
         }
         vec3 n = cross(sub(p[1], p[0]), sub(p[2], p[0]));
-        if (dot(n, n) > 1e-20 && !array_try_append(&k->indices, corner[t], 3))
+        if (dot(n, n) > 1e-20 && !array_append(&k->indices, corner[t], 3))
             k->failed = noc_scene_out_of_memory(k->scene);
     }
 }

@@ -109,7 +109,7 @@ static void corners(const noc_scene *s, size_t triangle, vec3 p[3]) {
 /* sum is NULL where memory is refused. */
 static area_table tabulate(const noc_scene *s, size_t first) {
     area_table t = { .first = first, .count = s->indices.len / 3 - first };
-    t.sum = noc_try_alloc(t.count * sizeof(*t.sum));
+    t.sum = noc_alloc(t.count * sizeof(*t.sum));
     double sum = 0;
     if (!t.sum)
         return t;

@@ -28,8 +28,8 @@ void city_add_surroundings(noc_scene *scene, const double *rim, size_t count, in
     }
     /* rings are the rim, larger; heights go over into their mean */
     double growth = pow(NOC_CLAMP(HORIZON / NOC_MAX(least, 1), 10, 1e4), 1.0 / RINGS);
-    double *xyz = noc_try_alloc((RINGS + 1) * count * 3 * sizeof(*xyz));
-    uint32_t *indices = noc_try_alloc(RINGS * count * 6 * sizeof(*indices));
+    double *xyz = noc_alloc((RINGS + 1) * count * 3 * sizeof(*xyz));
+    uint32_t *indices = noc_alloc(RINGS * count * 6 * sizeof(*indices));
     size_t t = 0;
     if (!xyz || !indices)
         noc_scene_out_of_memory(scene);
@@ -81,7 +81,7 @@ static void add_skirt(noc_scene *scene, skirt *s, const float *a, const float *b
         }
         gap = NOC_MAX(gap, p[2] - z);
         double foot[3] = { p[0], p[1], NOC_MIN(z, p[2]) - INTO };
-        if (!array_try_append(&s->xyz, p, 3) || !array_try_append(&s->xyz, foot, 3)) {
+        if (!array_append(&s->xyz, p, 3) || !array_append(&s->xyz, foot, 3)) {
             noc_scene_out_of_memory(scene);
             return;
         }
@@ -92,14 +92,14 @@ static void add_skirt(noc_scene *scene, skirt *s, const float *a, const float *b
     }
     for (uint32_t i = 0, v = (uint32_t)(first / 3); i < (uint32_t)steps; i++, v += 2) {
         const uint32_t quad[6] = { v, v + 1, v + 3, v, v + 3, v + 2 };
-        if (!array_try_append(&s->indices, quad, 6))
+        if (!array_append(&s->indices, quad, 6))
             noc_scene_out_of_memory(scene);
     }
 }
 
 void city_add_skirts(noc_scene *scene) {
     size_t materials = scene->materials.len, meshes = scene->meshes.len;
-    skirt *skirts = noc_try_calloc(materials, sizeof(*skirts));
+    skirt *skirts = noc_calloc(materials, sizeof(*skirts));
     if (!skirts) {
         noc_scene_out_of_memory(scene);
         return;

@@ -43,7 +43,7 @@ static PJ *create_free_form(PJ_CONTEXT *context, const char *definition, bool *r
     while (isspace((unsigned char)*definition))
         definition++;
     if (*definition == '+' && !strstr(definition, "+type=crs")) {
-        char *text = noc_try_format("%s +type=crs", definition);
+        char *text = noc_format("%s +type=crs", definition);
         PJ *pj = text ? proj_create(context, text) : NULL;
         *refused = !text;
         free(text);
@@ -135,7 +135,7 @@ static bool inspect(geo_crs *crs) {
         crs->has_area = proj_get_area_of_use(context, pj, &crs->west, &crs->south, &crs->east, &crs->north, NULL) &&
                         crs->west > -1000; /* -1000: not known */
         const char *authority = proj_get_id_auth_name(pj, 0), *code = proj_get_id_code(pj, 0), *name = proj_get_name(pj);
-        crs->name = authority && code ? noc_try_format("%s:%s (%s)", authority, code, name) : noc_try_strdup(name);
+        crs->name = authority && code ? noc_format("%s:%s (%s)", authority, code, name) : noc_strdup(name);
     }
     proj_destroy(cs);
     proj_destroy(source);
@@ -204,7 +204,7 @@ static noc_status create(geo_crs *crs, const char *definition, bool strict, cons
 }
 
 static geo_crs *create_crs(const char *definition, bool strict, const char *place, noc_log *log, noc_status *status) {
-    geo_crs *crs = noc_try_calloc(1, sizeof(*crs));
+    geo_crs *crs = noc_calloc(1, sizeof(*crs));
     noc_status why = crs ? create(crs, definition, strict, place, log) : no_memory(definition, place, log);
     if (status)
         *status = why;
@@ -240,14 +240,14 @@ geo_crs *geo_crs_utm(double lon, double lat) {
 geo_crs *geo_crs_clone(const geo_crs *crs) {
     if (!crs)
         return NULL;
-    geo_crs *copy = noc_try_alloc(sizeof(*copy));
+    geo_crs *copy = noc_alloc(sizeof(*copy));
     if (!copy)
         return NULL;
     *copy = *crs;
     copy->to_wgs84 = copy->easting_first = NULL;
     copy->context = crs_context_take(false);
     copy->pj = copy->context ? proj_clone(copy->context, crs->pj) : NULL;
-    copy->name = noc_try_strdup(crs->name);
+    copy->name = noc_strdup(crs->name);
     if (copy->pj && copy->name)
         return copy;
     geo_crs_destroy(copy);
@@ -347,7 +347,7 @@ static noc_status make_transform(geo_transform *t, const geo_crs *from, const ge
     if (geo_crs_equal(from, to))
         return NOC_OK;
     t->log = log;
-    t->names = noc_try_format("%s to %s", from->name, to->name);
+    t->names = noc_format("%s to %s", from->name, to->name);
     t->context = crs_context_take(false);
     if (!t->names || !t->context)
         return noc_no_memory(log, "transformation");
@@ -359,7 +359,7 @@ static noc_status make_transform(geo_transform *t, const geo_crs *from, const ge
 }
 
 geo_transform *geo_transform_create(const geo_crs *from, const geo_crs *to, noc_log *log, noc_status *status) {
-    geo_transform *t = noc_try_calloc(1, sizeof(*t));
+    geo_transform *t = noc_calloc(1, sizeof(*t));
     noc_status why = t ? make_transform(t, from, to, log) : noc_no_memory(log, "transformation");
     if (status)
         *status = why;

@@ -17,7 +17,7 @@ struct geo_issues {
     noc_arena names;
 };
 
-geo_issues *geo_issues_create(void) { return noc_try_calloc(1, sizeof(geo_issues)); }
+geo_issues *geo_issues_create(void) { return noc_calloc(1, sizeof(geo_issues)); }
 
 bool geo_issues_refused(const geo_issues *issues) { return issues->names.refused; }
 
@@ -38,8 +38,8 @@ static struct line *find_line(geo_issues *issues, bool repaired, const char *rea
         if (l->repaired == repaired && !strcmp(l->reason, reason))
             return l;
     }
-    struct line line = { .reason = arena_try_strdup(&issues->names, reason), .repaired = repaired };
-    if (!line.reason || !array_try_push(&issues->lines, line)) {
+    struct line line = { .reason = arena_strdup(&issues->names, reason), .repaired = repaired };
+    if (!line.reason || !array_push(&issues->lines, line)) {
         issues->names.refused = true;
         return NULL;
     }
@@ -58,7 +58,7 @@ void geo_issue(geo_issues *issues, bool repaired, const char *reason, const char
     for (int i = 0; i < l->example_count; i++)
         if (!strcmp(l->examples[i], id))
             return;
-    const char *example = arena_try_strdup(&issues->names, id);
+    const char *example = arena_strdup(&issues->names, id);
     if (!example)
         return;
     l->examples[l->example_count++] = example;
@@ -87,7 +87,7 @@ bool geo_issues_get(const geo_issues *issues, size_t i, const char **reason, boo
         size_t size = 1;
         for (int k = 0; k < l->example_count; k++)
             size += strlen(l->examples[k]) + 2;
-        char *p = l->joined = noc_try_alloc(size);
+        char *p = l->joined = noc_alloc(size);
         if (!p)
             return false;
         *p = 0;

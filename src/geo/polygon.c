@@ -297,9 +297,9 @@ static bool prepare(struct work *w, const geo_polygon *polygon) {
         geo_issue(w->issues, false, "polygon of more than 20 million points", w->id);
         return false;
     }
-    w->no_memory = !array_try_reserve(&w->xyz, 3 * points) || !array_try_reserve(&w->uv, 2 * points) ||
-                   !array_try_reserve(&w->ring_size, polygon->ring_count) ||
-                   !array_try_reserve(&w->ring_sum, 3 * polygon->ring_count);
+    w->no_memory = !array_reserve(&w->xyz, 3 * points) || !array_reserve(&w->uv, 2 * points) ||
+                   !array_reserve(&w->ring_size, polygon->ring_count) ||
+                   !array_reserve(&w->ring_sum, 3 * polygon->ring_count);
     if (w->no_memory)
         return false;
     while (i < count && !(isfinite(p[3 * i]) && isfinite(p[3 * i + 1]) && isfinite(p[3 * i + 2])))
@@ -391,7 +391,7 @@ static bool triangulate(struct work *w, geo_triangles *out) {
         return false;
     /* With two triangles fewer than points, and two more a hole. */
     size_t triangles = w->xyz.len / 3 + 2 * w->ring_size.len;
-    if (!array_try_reserve(&out->indices, out->indices.len + 3 * triangles) || !array_try_append(&out->xyz, w->xyz.data, w->xyz.len)) {
+    if (!array_reserve(&out->indices, out->indices.len + 3 * triangles) || !array_append(&out->xyz, w->xyz.data, w->xyz.len)) {
         w->no_memory = true;
         return false;
     }

@@ -21,7 +21,7 @@ static void *as_pointer(size_t vertex) { return (void *)(uintptr_t)(vertex + 1);
 
 static void on_vertex(void *data, void *user) {
     struct job *job = user;
-    if (!array_try_push(&job->out->indices, (uint32_t)((uintptr_t)data - 1)))
+    if (!array_push(&job->out->indices, (uint32_t)((uintptr_t)data - 1)))
         refuse(job);
 }
 
@@ -64,7 +64,7 @@ static void on_combine(GLdouble place[3], void *data[4], GLfloat weight[4], void
     else
         job->result.touches += given;
     *out = as_pointer(job->out->xyz.len / 3);
-    if (!array_try_append(&job->out->xyz, p, 3)) {
+    if (!array_append(&job->out->xyz, p, 3)) {
         *out = data[0];
         refuse(job);
     }
@@ -99,7 +99,7 @@ static bool cross_properly(const edge *e, const edge *f) {
 static bool crosses_too_often(struct job *job, const double *uv, const size_t *ring_size, size_t ring_count, size_t points) {
     if (points < FEW_POINTS)
         return false;
-    edge *edges = noc_try_alloc(points * sizeof(*edges));
+    edge *edges = noc_alloc(points * sizeof(*edges));
     if (!edges) {
         refuse(job);
         return false;
@@ -258,7 +258,7 @@ static void find_crossings(struct job *job, const piece *p, cut_line *line) {
                 xyz[k] = x[k] + t * (y[k] - x[k]);
             crossing c = { .v = uv[2 * a + 1] + t * (uv[2 * b + 1] - uv[2 * a + 1]), .vertex = (uint32_t)(job->out->xyz.len / 3),
                            .to = b, .edge = a, .up = uv[2 * b] > line->at };
-            if (!array_try_append(&job->out->xyz, xyz, 3) || !array_try_push(&line->crossings, c)) {
+            if (!array_append(&job->out->xyz, xyz, 3) || !array_push(&line->crossings, c)) {
                 refuse(job);
                 return;
             }
@@ -269,7 +269,7 @@ static void find_crossings(struct job *job, const piece *p, cut_line *line) {
  * cross these are neighbours, so that no two joints overlap. */
 static void join_ends(struct job *job, cut_line *line) {
     crossing *c = line->crossings.data;
-    size_t n = line->crossings.len, depth = 0, *open = noc_try_alloc((n + 1) * sizeof(*open));
+    size_t n = line->crossings.len, depth = 0, *open = noc_alloc((n + 1) * sizeof(*open));
     if (!open) {
         refuse(job);
         return;
@@ -298,7 +298,7 @@ static void put_point(piece *p, double u, double v, uint32_t vertex) {
 /* Cuts a piece in two where u is `at`. */
 static void cut(struct job *job, const piece *p, double at, piece half[2]) {
     size_t n = p->vertex.len;
-    cut_line line = { .at = at, .next = noc_try_alloc(n * sizeof(*line.next)), .crossed = noc_try_calloc(n, sizeof(*line.crossed)) };
+    cut_line line = { .at = at, .next = noc_alloc(n * sizeof(*line.next)), .crossed = noc_calloc(n, sizeof(*line.crossed)) };
     if (!line.next || !line.crossed)
         refuse(job);
     if (job->result.ok)
@@ -307,8 +307,8 @@ static void cut(struct job *job, const piece *p, double at, piece half[2]) {
         join_ends(job, &line);
     size_t most = n + 2 * line.crossings.len; /* in either half */
     for (int i = 0; i < 2 && job->result.ok; i++)
-        if (!array_try_reserve(&half[i].uv, 2 * most) || !array_try_reserve(&half[i].vertex, most) ||
-            !array_try_reserve(&half[i].ring_size, most / 3 + 1))
+        if (!array_reserve(&half[i].uv, 2 * most) || !array_reserve(&half[i].vertex, most) ||
+            !array_reserve(&half[i].ring_size, most / 3 + 1))
             refuse(job);
     for (size_t start = 0; start < n && job->result.ok; start++) {
         piece *to = &half[p->uv.data[2 * start] > at];
@@ -409,8 +409,8 @@ tessellation tessellate(const double *uv, const size_t *ring_size, size_t ring_c
         return (tessellation){ .tangled = true };
     piece whole = { 0 };
     size_t numbers = 2 * points;
-    if (!job.result.ok || !array_try_append(&whole.uv, uv, numbers) || !array_try_append(&whole.ring_size, ring_size, ring_count) ||
-        !array_try_reserve(&whole.vertex, points)) {
+    if (!job.result.ok || !array_append(&whole.uv, uv, numbers) || !array_append(&whole.ring_size, ring_size, ring_count) ||
+        !array_reserve(&whole.vertex, points)) {
         refuse(&job);
         piece_free(&whole);
         return job.result;

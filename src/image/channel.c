@@ -12,7 +12,7 @@ noc_channel *noc_channel_create(int width, int height, int components, noc_log *
                   components, NOC_IMAGE_MAX_SIDE);
         return NULL;
     }
-    noc_channel *channel = noc_try_calloc(1, sizeof(*channel));
+    noc_channel *channel = noc_calloc(1, sizeof(*channel));
     if (!channel) {
         noc_no_memory(log, "channel");
         return NULL;

@@ -38,7 +38,7 @@ noc_status noc_image_difference(const noc_image *x, const noc_image *r, const ch
     int scale = NOC_MAX(x->width / 640, 1);
     canvas c = { .width = NOC_MAX(x->width, colorbar_min_width(scale)), .height = x->height + colorbar_height(scale) };
     double *d = noc_alloc_large(n, sizeof(*d));
-    c.rgb = noc_try_alloc(3 * (size_t)c.width * (size_t)c.height);
+    c.rgb = noc_alloc(3 * (size_t)c.width * (size_t)c.height);
     if (!d || !c.rgb) {
         free(d);
         free(c.rgb);

@@ -61,7 +61,7 @@ static double cell_at(const float *cells, size_t n, double rank) {
 double noc_image_auto_ev100(const noc_image *image) {
     if (!image)
         return METER_BLACK;
-    float *cells = noc_try_alloc(METER_CELLS * METER_CELLS * sizeof(float));
+    float *cells = noc_alloc(METER_CELLS * METER_CELLS * sizeof(float));
     if (!cells)
         return NAN;
     size_t lit = meter_cells(image, image->emitter != NULL, cells);

@@ -223,7 +223,7 @@ static exr_result_t unpack_chunk(exr_decode_pipeline_t *decode) {
 /* Buffers begin as zeros, so that what a damaged chunk leaves out is black and not what was in memory before; and have some bytes
  * more than asked for, since decoders of bit streams read ahead. */
 static void *alloc_buffer(exr_transcoding_pipeline_buffer_id_t id, size_t size) {
-    return size < SIZE_MAX - 64 ? noc_try_calloc(1, size + 64) : NULL;
+    return size < SIZE_MAX - 64 ? noc_calloc(1, size + 64) : NULL;
 }
 static void free_buffer(exr_transcoding_pipeline_buffer_id_t id, void *buffer) { free(buffer); }
 
@@ -314,7 +314,7 @@ noc_image *image_read_exr(const uint8_t *data, size_t size, const char *name, no
     init.read_fn = read_data;
     init.size_fn = query_size;
     init.error_handler_fn = on_error;
-    init.alloc_fn = noc_try_alloc;
+    init.alloc_fn = noc_alloc;
     init.free_fn = free;
     init.max_image_width = init.max_image_height = NOC_IMAGE_MAX_SIDE;
     init.max_tile_width = init.max_tile_height = NOC_IMAGE_MAX_SIDE;

@@ -159,7 +159,7 @@ static noc_status write_file(exr_writer *w, const meta_list *meta) {
     init.user_data = w;
     init.write_fn = write_data;
     init.error_handler_fn = on_error;
-    init.alloc_fn = noc_try_alloc;
+    init.alloc_fn = noc_alloc;
     init.free_fn = free;
     if (ok(w, exr_start_write(&w->context, w->out->path, EXR_WRITE_FILE_DIRECTLY, &init)) && write_header(w, meta))
         write_chunks(w);

@@ -23,7 +23,7 @@ noc_image *noc_image_create(int width, int height, noc_log *log) {
         noc_error(log, NOC_ERR_ARGUMENT, "image: %d x %d pixels is outside 1..%d a side", width, height, NOC_IMAGE_MAX_SIDE);
         return NULL;
     }
-    noc_image *image = noc_try_calloc(1, sizeof(*image));
+    noc_image *image = noc_calloc(1, sizeof(*image));
     if (!image) {
         noc_no_memory(log, "image");
         return NULL;

@@ -19,13 +19,13 @@ static char *resolve(const char *path) {
     char *real = realpath(path, NULL);
     if (real)
         return real;
-    char *at = noc_try_strdup(path), to[PATH_MAX];
+    char *at = noc_strdup(path), to[PATH_MAX];
     for (int links = 0; at && links < 40; links++) { /* as many as the kernel follows */
         ssize_t n = readlink(at, to, sizeof(to));
         if (n < 0 || n == sizeof(to))
             break;
         const char *slash = strrchr(at, '/');
-        char *next = noc_try_format("%.*s%.*s", slash && to[0] != '/' ? (int)(slash + 1 - at) : 0, at, (int)n, to);
+        char *next = noc_format("%.*s%.*s", slash && to[0] != '/' ? (int)(slash + 1 - at) : 0, at, (int)n, to);
         free(at);
         at = next;
     }
@@ -43,7 +43,7 @@ static int folder_length(const char *target) {
 /* ".name.pid-n.part" in the target's folder: renaming works only within a file system. */
 static char *temporary_name(const char *target, int attempt) {
     int folder = folder_length(target);
-    return noc_try_format("%.*s.%.*s.%ld-%d.part", folder, target, NAME_KEPT, target + folder, (long)getpid(), attempt);
+    return noc_format("%.*s.%.*s.%ld-%d.part", folder, target, NAME_KEPT, target + folder, (long)getpid(), attempt);
 }
 
 /* Is it what temporary_name() makes of the target, for any process and attempt? */
@@ -65,7 +65,7 @@ static bool is_temporary(const char *name, const char *target) {
  * refused, is by the next writer. */
 static void sweep(const char *target) {
     int length = folder_length(target);
-    char *folder = noc_try_format("%.*s", length ? length : 1, length ? target : ".");
+    char *folder = noc_format("%.*s", length ? length : 1, length ? target : ".");
     DIR *dir = folder ? opendir(folder) : NULL;
     free(folder);
     for (struct dirent *e; dir && (e = readdir(dir));) {
@@ -96,7 +96,7 @@ static void output_free(output *o) {
 }
 
 noc_status output_open(output *o, const char *path, noc_log *log) {
-    *o = (output){ .path = noc_try_strdup(path), .target = resolve(path) };
+    *o = (output){ .path = noc_strdup(path), .target = resolve(path) };
     noc_status status;
     struct stat st;
     int fd = -1;
@@ -180,8 +180,8 @@ void meta_add(meta_list *list, const char *key, const char *fmt, ...) {
     va_start(ap, fmt);
     noc_vsnprintf(text, sizeof(text), fmt, ap);
     va_end(ap);
-    meta_entry entry = { arena_try_strdup(&list->text, key), arena_try_strdup(&list->text, text) };
-    if (!list->text.refused && !array_try_push(&list->entries, entry))
+    meta_entry entry = { arena_strdup(&list->text, key), arena_strdup(&list->text, text) };
+    if (!list->text.refused && !array_push(&list->entries, entry))
         list->text.refused = true; /* told by meta_add_all */
 }
 
@@ -212,7 +212,7 @@ noc_status meta_add_all(meta_list *list, const noc_image_meta *meta, const char 
         meta_entry *old = find(list, entry.key);
         if (old)
             *old = entry;
-        else if (!array_try_push(&list->entries, entry))
+        else if (!array_push(&list->entries, entry))
             list->text.refused = true;
     }
     return list->text.refused ? noc_no_memory(log, path) : NOC_OK;

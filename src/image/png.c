@@ -34,7 +34,7 @@ static void on_warning(png_structp png, png_const_charp message) {
 
 static png_voidp on_alloc(png_structp png, png_alloc_size_t size) {
     png_job *job = png_get_mem_ptr(png);
-    void *p = noc_try_alloc(size);
+    void *p = noc_alloc(size);
     job->refused = job->refused || !p;
     return p;
 }
@@ -125,7 +125,7 @@ static int set_transforms(png_job *job) {
 /* Linear values of all codes. */
 static float *decode_table(int depth) {
     int codes = 1 << depth;
-    float *table = noc_try_alloc((size_t)codes * sizeof(float));
+    float *table = noc_alloc((size_t)codes * sizeof(float));
     for (int i = 0; table && i < codes; i++)
         table[i] = (float)srgb_decode((double)i / (codes - 1));
     return table;

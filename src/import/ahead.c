@@ -61,7 +61,7 @@ static noc_status no_memory(struct look_ahead *a) { return noc_no_memory(a->im->
 /* An event whose texts and arrays were put into the arena. */
 static noc_status push(struct look_ahead *a, ahead_event e) {
     e.source = a->im->source;
-    return !a->arena.refused && array_try_push(&a->events, e) ? NOC_OK : no_memory(a);
+    return !a->arena.refused && array_push(&a->events, e) ? NOC_OK : no_memory(a);
 }
 
 /* Coordinates need a CRS, even if the file names none. */
@@ -73,7 +73,7 @@ static noc_status ensure_source(struct look_ahead *a) {
 static noc_status keep_points(struct look_ahead *a, const double *xyz, size_t count, const char *id) {
     place_sample s = { .source = a->im->source, .id = id };
     if (!(a->in_object && a->sampled) && place_centre(xyz, count, s.xyz)) {
-        if (!array_try_push(&a->samples, s))
+        if (!array_push(&a->samples, s))
             return no_memory(a);
         a->sampled = true;
     }
@@ -91,7 +91,7 @@ static noc_status on_begin_object(void *ctx, const geo_object *object) {
     if (a->passing)
         return a->sink.begin_object(a->sink.ctx, object);
     ahead_event e = { .kind = AHEAD_BEGIN, .u.object = *object };
-    e.u.object.id = arena_try_strdup(&a->arena, object->id);
+    e.u.object.id = arena_strdup(&a->arena, object->id);
     a->in_object = true;
     a->sampled = false;
     return push(a, e);
@@ -115,8 +115,8 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
     size_t count = 0;
     for (size_t r = 0; r < polygon->ring_count; r++)
         count += polygon->ring_size[r];
-    size_t *ring_size = arena_try_alloc(&a->arena, (polygon->ring_count + 1) * sizeof(*ring_size));
-    double *xyz = arena_try_alloc(&a->arena, (count + 1) * 3 * sizeof(*xyz));
+    size_t *ring_size = arena_alloc(&a->arena, (polygon->ring_count + 1) * sizeof(*ring_size));
+    double *xyz = arena_alloc(&a->arena, (count + 1) * 3 * sizeof(*xyz));
     if (a->arena.refused)
         return no_memory(a);
     if (polygon->ring_count)
@@ -126,7 +126,7 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
     ahead_event e = { .kind = AHEAD_POLYGON, .u.polygon = *polygon };
     e.u.polygon.ring_size = ring_size;
     e.u.polygon.xyz = xyz;
-    e.u.polygon.id = arena_try_strdup(&a->arena, polygon->id);
+    e.u.polygon.id = arena_strdup(&a->arena, polygon->id);
     status = push(a, e);
     return status ? status : keep_points(a, xyz, count, e.u.polygon.id);
 }
@@ -139,7 +139,7 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     if (status)
         return status;
     ahead_event e = { .kind = AHEAD_LAMP, .u.lamp = *lamp };
-    e.u.lamp.id = arena_try_strdup(&a->arena, lamp->id);
+    e.u.lamp.id = arena_strdup(&a->arena, lamp->id);
     status = push(a, e);
     a->in_object = false;
     return status ? status : keep_points(a, lamp->xyz, 1, e.u.lamp.id ? e.u.lamp.id : "");
@@ -156,7 +156,7 @@ static bool on_progress(void *ctx, double done) {
 }
 
 struct look_ahead *ahead_create(importer *im, geo_sink *sink) {
-    struct look_ahead *a = noc_try_calloc(1, sizeof(*a));
+    struct look_ahead *a = noc_calloc(1, sizeof(*a));
     if (!a)
         return NULL;
     a->im = im;

@@ -29,7 +29,7 @@ const char *import_named_trouble(const char *folder, const char *path, bool anyw
 }
 
 FILE *import_open_named(const char *folder, const char *name, bool anywhere, size_t *size, const char **why) {
-    char *path = noc_try_format("%s%s", *name == '/' ? "" : folder, name);
+    char *path = noc_format("%s%s", *name == '/' ? "" : folder, name);
     struct stat st;
     int fd = -1;
     *why = NULL;

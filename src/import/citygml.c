@@ -103,7 +103,7 @@ static noc_status run_pass(cg_parser *p, int pass) {
     p->in_polygon = p->in_ring = false;
     p->text = CG_TEXT_NONE;
     p->ordinal = p->deferred_next = p->deferred_kept = 0;
-    p->xml = XML_ParserCreate_MM(NULL, &(XML_Memory_Handling_Suite){ noc_try_alloc, noc_try_realloc, free }, "\n");
+    p->xml = XML_ParserCreate_MM(NULL, &(XML_Memory_Handling_Suite){ noc_alloc, noc_realloc, free }, "\n");
     if (!p->xml)
         return p->status = noc_no_memory(p->sink->log, noc_stream_name(p->stream));
     XML_SetUserData(p->xml, p);
@@ -139,7 +139,7 @@ static void free_parser(cg_parser *p) {
 }
 
 static noc_status read_citygml(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
-    cg_parser *p = noc_try_calloc(1, sizeof(*p));
+    cg_parser *p = noc_calloc(1, sizeof(*p));
     if (p)
         p->keys = lamp_keys_create(params);
     if (!p || !p->keys) {

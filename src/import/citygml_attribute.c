@@ -18,8 +18,8 @@ void cg_attribute_add(cg_parser *p, const char *key, const char *value, bool gen
     size_t n = strlen(value);
     while (n && strchr(" \t\r\n", value[n - 1]))
         n--;
-    cg_attribute a = { arena_try_strdup(&object->arena, key), arena_try_strndup(&object->arena, value, n), generic };
-    if (!a.key || !a.value || !array_try_push(&object->attributes, a))
+    cg_attribute a = { arena_strdup(&object->arena, key), arena_strndup(&object->arena, value, n), generic };
+    if (!a.key || !a.value || !array_push(&object->attributes, a))
         cg_no_memory(p);
 }
 

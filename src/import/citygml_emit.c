@@ -22,7 +22,7 @@ void cg_tell_crs(cg_parser *p, uint32_t srs) {
     p->sink_srs = srs;
     p->lat_first = false;
     const char *name = noc_stream_name(p->stream);
-    char *place = srs == CG_NONE ? noc_try_strdup(name) : noc_try_format("%s:%lu", name, p->srs[srs].line);
+    char *place = srs == CG_NONE ? noc_strdup(name) : noc_format("%s:%lu", name, p->srs[srs].line);
     if (!place) {
         cg_no_memory(p);
         return;
@@ -72,7 +72,7 @@ void cg_transform(cg_parser *p, const cg_polygon *polygon, const cg_implicit *im
     const double *in = polygon->xyz;
     for (uint32_t r = 0; r < polygon->ring_count; r++) {
         size_t points = polygon->ring_size[r], first = p->out.len, numbers = 3 * points;
-        if (!array_try_push(&p->out_rings, points) || !array_try_append(&p->out, in, numbers)) {
+        if (!array_push(&p->out_rings, points) || !array_append(&p->out, in, numbers)) {
             cg_no_memory(p);
             return;
         }
@@ -218,13 +218,13 @@ static void emit_object(cg_parser *p) {
 static cg_polygon *copy_polygon(cg_store *store, cg_polygon *polygon) {
     if (polygon->copy)
         return polygon->copy;
-    cg_polygon *copy = arena_try_alloc(&store->arena, sizeof(*copy));
-    size_t *sizes = arena_try_alloc(&store->arena, polygon->ring_count * sizeof(size_t));
+    cg_polygon *copy = arena_alloc(&store->arena, sizeof(*copy));
+    size_t *sizes = arena_alloc(&store->arena, polygon->ring_count * sizeof(size_t));
     size_t points = 0;
     for (uint32_t r = 0; r < polygon->ring_count; r++)
         points += polygon->ring_size[r];
-    double *xyz = arena_try_alloc(&store->arena, 3 * points * sizeof(double));
-    const char *id = arena_try_strdup(&store->arena, polygon->id);
+    double *xyz = arena_alloc(&store->arena, 3 * points * sizeof(double));
+    const char *id = arena_strdup(&store->arena, polygon->id);
     if (store->arena.refused)
         return NULL;
     memcpy(sizes, polygon->ring_size, polygon->ring_count * sizeof(size_t));
@@ -247,7 +247,7 @@ static void store_items(cg_parser *p, size_t first, cg_stored *stored) {
         bool shown = item.stored ? item.elsewhere : item.polygon->shown == p->selections;
         cg_item kept = { .polygon = item.stored ? item.polygon : copy_polygon(&p->store, item.polygon), .flip = item.flip,
                          .local = item.local, .elsewhere = shown };
-        if (!kept.polygon || !array_try_push(&stored->items, kept)) {
+        if (!kept.polygon || !array_push(&stored->items, kept)) {
             cg_no_memory(p);
             return;
         }
@@ -286,13 +286,13 @@ static void want_missing(cg_parser *p) {
     for (size_t i = 0; i < p->selection.missing.len; i++) {
         if (map_get(&p->store.wanted, p->selection.missing.data[i], &index))
             continue;
-        if (!array_try_push(&p->store.entries, (cg_stored){ 0 }) ||
-            !map_try_put(&p->store.wanted, p->selection.missing.data[i], p->store.entries.len - 1, NULL)) {
+        if (!array_push(&p->store.entries, (cg_stored){ 0 }) ||
+            !map_put(&p->store.wanted, p->selection.missing.data[i], p->store.entries.len - 1, NULL)) {
             cg_no_memory(p);
             return;
         }
     }
-    if (!array_try_push(&p->deferred, p->ordinal))
+    if (!array_push(&p->deferred, p->ordinal))
         cg_no_memory(p);
     if (p->store.wanted.keys.bytes + p->store.entries.len * sizeof(cg_stored) > CG_MAX_OBJECT)
         too_much_shared(p);

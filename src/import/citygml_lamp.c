@@ -39,7 +39,7 @@ static bool is_lamp(cg_parser *p, const lamp_tag *tags, size_t count, bool sure)
         return true;
     if (object->other_function)
         return false;
-    const char **names = noc_try_calloc(count + 1, sizeof(*names));
+    const char **names = noc_calloc(count + 1, sizeof(*names));
     if (!names) {
         cg_no_memory(p);
         return false;
@@ -315,7 +315,7 @@ bool cg_emit_lamp(cg_parser *p) {
     cg_object *object = &p->object;
     if (!cg_may_be_lamp(object->features.data[0].type))
         return false;
-    lamp_tag *tags = noc_try_calloc(object->attributes.len + 1, sizeof(*tags));
+    lamp_tag *tags = noc_calloc(object->attributes.len + 1, sizeof(*tags));
     if (!tags) {
         cg_no_memory(p);
         return true;

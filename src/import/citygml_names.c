@@ -196,14 +196,14 @@ static uint32_t hash(const char *name) {
 }
 
 cg_name cg_names_get(cg_names *names, const char *name) {
-    if (!names->slots && !(names->slots = noc_try_calloc(NAME_SLOTS, sizeof(*names->slots))))
+    if (!names->slots && !(names->slots = noc_calloc(NAME_SLOTS, sizeof(*names->slots))))
         return classify(name); /* nothing is lost but time */
     uint32_t i = hash(name) & (NAME_SLOTS - 1);
     for (; names->slots[i].name; i = (i + 1) & (NAME_SLOTS - 1))
         if (!strcmp(names->slots[i].name, name))
             return names->slots[i].value;
     cg_name value = classify(name);
-    const char *kept = names->len < NAME_SLOTS / 2 ? arena_try_strdup(&names->arena, name) : NULL;
+    const char *kept = names->len < NAME_SLOTS / 2 ? arena_strdup(&names->arena, name) : NULL;
     if (kept) {
         names->slots[i] = (struct cg_name_slot){ kept, value };
         names->len++;

@@ -117,7 +117,7 @@ static uint32_t intern_srs(cg_parser *p, const char *name) {
         cg_fail(p, NOC_ERR_FORMAT, "more than %d coordinate reference systems in one file", CG_MAX_CRS);
         return 0;
     }
-    if (!(p->srs[p->srs_count].name = arena_try_strdup(&p->persistent, name))) {
+    if (!(p->srs[p->srs_count].name = arena_strdup(&p->persistent, name))) {
         cg_no_memory(p);
         return 0;
     }
@@ -143,8 +143,8 @@ static void add_reference(cg_parser *p, const cg_frame *frame, const char *href)
     }
     if (!cg_object_room(p))
         return;
-    cg_surface surface = { .href = arena_try_strdup(&object->arena, href + 1), .geometry = frame->geometry, .flip = frame->flip };
-    if (!surface.href || !array_try_push(&object->surfaces, surface))
+    cg_surface surface = { .href = arena_strdup(&object->arena, href + 1), .geometry = frame->geometry, .flip = frame->flip };
+    if (!surface.href || !array_push(&object->surfaces, surface))
         cg_no_memory(p);
 }
 
@@ -153,7 +153,7 @@ static void remember_id(cg_parser *p, cg_frame *frame, const char *id) {
     frame->first_surface = (uint32_t)p->object.surfaces.len;
     if (!id || p->object.features.data[0].type->kind == GEO_TERRAIN)
         return;
-    if (!(frame->id = arena_try_strdup(&p->object.arena, id)))
+    if (!(frame->id = arena_strdup(&p->object.arena, id)))
         cg_no_memory(p);
 }
 
@@ -205,12 +205,12 @@ static bool start_feature(cg_parser *p, cg_frame *frame, const attributes *a) {
     } else if (!cg_object_room(p)) {
         return false;
     }
-    cg_feature feature = { .type = type, .id = a->id ? arena_try_strdup(&p->object.arena, a->id) : "",
+    cg_feature feature = { .type = type, .id = a->id ? arena_strdup(&p->object.arena, a->id) : "",
                            .parent = frame->feature, .function = -1 };
     frame->feature = (uint32_t)p->object.features.len;
     frame->geometry = CG_NONE;
     frame->flip = frame->in_reference_point = frame->in_point = false;
-    if (!feature.id || !array_try_push(&p->object.features, feature))
+    if (!feature.id || !array_push(&p->object.features, feature))
         cg_no_memory(p);
     return true;
 }
@@ -223,7 +223,7 @@ static bool start_geometry_property(cg_parser *p, cg_frame *frame, const attribu
     if (geometry.role == CG_ROLE_FOOTPRINT || geometry.role == CG_ROLE_ROOF_EDGE)
         geometry.lod = 0; /* flat outlines, whatever level they claim */
     frame->geometry = (uint32_t)p->object.geometries.len;
-    if (!array_try_push(&p->object.geometries, geometry))
+    if (!array_push(&p->object.geometries, geometry))
         cg_no_memory(p);
     else if (a->href)
         add_reference(p, frame, a->href);
@@ -231,7 +231,7 @@ static bool start_geometry_property(cg_parser *p, cg_frame *frame, const attribu
 }
 
 static bool start_implicit(cg_parser *p, cg_frame *frame) {
-    cg_implicit *implicit = arena_try_alloc(&p->object.arena, sizeof(*implicit));
+    cg_implicit *implicit = arena_alloc(&p->object.arena, sizeof(*implicit));
     if (!implicit) {
         cg_no_memory(p);
         return false;
@@ -255,7 +255,7 @@ static bool start_polygon(cg_parser *p, cg_frame *frame, const attributes *a) {
     const char *id = frame->id;
     if (!id && a->id) {
         p->terrain_id.len = 0;
-        if (!array_try_append(&p->terrain_id, a->id, strlen(a->id) + 1))
+        if (!array_append(&p->terrain_id, a->id, strlen(a->id) + 1))
             cg_no_memory(p);
         id = p->terrain_id.data;
     }
@@ -516,7 +516,7 @@ void cg_end_element(void *user, const XML_Char *name) {
     }
     const cg_target target = { .id = frame->id, .first = frame->first_surface, .flip = outer_flip,
                                .count = (uint32_t)p->object.surfaces.len - frame->first_surface };
-    if (p->numbers.refused || (frame->id && !array_try_push(&p->object.targets, target)))
+    if (p->numbers.refused || (frame->id && !array_push(&p->object.targets, target)))
         cg_no_memory(p);
     p->text = CG_TEXT_NONE;
     p->depth--;

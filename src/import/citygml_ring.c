@@ -36,7 +36,7 @@ void cg_ring_begin(cg_parser *p, bool exterior) {
 static void add_tuples(cg_parser *p, uint32_t dimension) {
     const double *values = p->numbers.values.data;
     size_t count = p->numbers.values.len;
-    if (!array_try_reserve(&p->xyz, p->xyz.len + count / dimension * 3)) {
+    if (!array_reserve(&p->xyz, p->xyz.len + count / dimension * 3)) {
         cg_no_memory(p);
         return;
     }
@@ -103,12 +103,12 @@ void cg_ring_end(cg_parser *p, const cg_frame *frame) {
         p->rings.len = 0;
     }
     p->has_exterior |= p->ring_exterior;
-    if (!array_try_push(&p->rings, points))
+    if (!array_push(&p->rings, points))
         cg_no_memory(p);
 }
 
 static void *arena_copy(noc_arena *arena, const void *data, size_t size) {
-    void *to = arena_try_alloc(arena, size);
+    void *to = arena_alloc(arena, size);
     return to ? memcpy(to, data, size) : NULL;
 }
 
@@ -134,6 +134,6 @@ void cg_polygon_end(cg_parser *p, const cg_frame *frame) {
     polygon.xyz = arena_copy(&object->arena, p->xyz.data, p->xyz.len * sizeof(double));
     cg_surface surface = { .polygon = arena_copy(&object->arena, &polygon, sizeof(polygon)), .geometry = frame->geometry,
                            .flip = frame->flip };
-    if (!polygon.ring_size || !polygon.xyz || !surface.polygon || !array_try_push(&object->surfaces, surface))
+    if (!polygon.ring_size || !polygon.xyz || !surface.polygon || !array_push(&object->surfaces, surface))
         cg_no_memory(p);
 }

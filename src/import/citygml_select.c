@@ -18,7 +18,7 @@ static cg_part part_of(const cg_object *object, uint32_t geometry) {
 }
 
 static void push_item(cg_parser *p, cg_item item) {
-    if (!array_try_push(&p->selection.items, item))
+    if (!array_push(&p->selection.items, item))
         cg_no_memory(p);
 }
 
@@ -48,7 +48,7 @@ static void follow(cg_parser *p, const char *id, uint32_t geometry, bool flip, i
             take_stored(p, &p->store.entries.data[index], geometry, flip);
             return;
         }
-        if (!array_try_push(&selection->missing, id))
+        if (!array_push(&selection->missing, id))
             cg_no_memory(p);
         push_item(p, (cg_item){ .geometry = geometry });
         return;
@@ -69,7 +69,7 @@ void cg_follow(cg_parser *p, const char *id, uint32_t geometry, bool flip) {
     cg_object *object = &p->object;
     if (!object->ids.len)
         for (size_t i = object->targets.len; i-- > 0;) /* backwards: of two equal ids the first holds */
-            if (!map_try_put(&object->ids, object->targets.data[i].id, i, NULL)) {
+            if (!map_put(&object->ids, object->targets.data[i].id, i, NULL)) {
                 cg_no_memory(p);
                 return;
             }
@@ -117,7 +117,7 @@ static void find_levels(cg_parser *p) {
     cg_selection *s = &p->selection;
     s->bodies.len = 0;
     for (uint32_t i = 0; i < object->features.len; i++)
-        if (!array_try_push(&s->bodies, ((cg_body){ .owner = body_of(object, i), .lod = -1 }))) {
+        if (!array_push(&s->bodies, ((cg_body){ .owner = body_of(object, i), .lod = -1 }))) {
             cg_no_memory(p);
             return;
         }
@@ -197,7 +197,7 @@ static void clear_shapes(cg_parser *p) {
     size_t size = 64;
     while (size < s->items.len * 2)
         size *= 2;
-    if (!array_try_reserve(&s->shapes, size)) {
+    if (!array_reserve(&s->shapes, size)) {
         cg_no_memory(p);
         return;
     }

@@ -43,7 +43,7 @@ void cg_numbers_begin(cg_numbers *n, char decimal, char cs, char ts) {
 static void push(cg_numbers *n, double value) {
     if (n->values.len >= CG_MAX_NUMBERS)
         n->bad = true;
-    else if (!array_try_push(&n->values, value))
+    else if (!array_push(&n->values, value))
         n->refused = true;
     n->in_tuple++;
 }

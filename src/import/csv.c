@@ -64,7 +64,7 @@ static noc_status read_record(csv *c) {
             continue;
         }
         if (!quoted && ch == '"' && (c->text.len == field || was_quoted)) {
-            if (was_quoted && !array_try_push(&c->text, '"'))
+            if (was_quoted && !array_push(&c->text, '"'))
                 return no_memory(c);
             quoted = true;
             was_quoted = false;
@@ -74,7 +74,7 @@ static noc_status read_record(csv *c) {
         if (!end_record && (quoted || ch != c->separator)) {
             if (c->text.len - field > MAX_FIELD)
                 return bad(c, "a field longer than 1 MB");
-            if (!array_try_push(&c->text, (char)ch))
+            if (!array_push(&c->text, (char)ch))
                 return no_memory(c);
             continue;
         }
@@ -82,7 +82,7 @@ static noc_status read_record(csv *c) {
             c->text.len--;
         if (c->start.len == MAX_FIELDS)
             return bad(c, "more than 4096 columns");
-        if (!array_try_push(&c->text, '\0') || !array_try_push(&c->start, field))
+        if (!array_push(&c->text, '\0') || !array_push(&c->start, field))
             return no_memory(c);
         field = c->text.len;
         if (end_record)
@@ -261,9 +261,9 @@ static noc_status read_header(csv *c, columns *cols) {
     status = read_record(c);
     if (status || cols->count)
         return status;
-    cols->names = noc_try_calloc(c->start.len + 1, sizeof(*cols->names));
+    cols->names = noc_calloc(c->start.len + 1, sizeof(*cols->names));
     for (; cols->names && cols->count < c->start.len; cols->count++)
-        if (!(cols->names[cols->count] = noc_try_strdup(field(c, cols->count))))
+        if (!(cols->names[cols->count] = noc_strdup(field(c, cols->count))))
             break;
     if (!cols->names || cols->count < c->start.len)
         return no_memory(c);
@@ -323,7 +323,7 @@ static bool row_tags(csv *c, const columns *cols, lamp_writer *w, const char *ro
 
 /* Do the values say what the rows are? Leaves the table at its first row. */
 static noc_status read_kinds(csv *c, columns *cols, lamp_kinds *kinds) {
-    lamp_tag *tags = noc_try_calloc(cols->count + 1, sizeof(*tags));
+    lamp_tag *tags = noc_calloc(cols->count + 1, sizeof(*tags));
     if (!tags)
         return no_memory(c);
     noc_status status = NOC_OK;
@@ -339,7 +339,7 @@ static noc_status read_kinds(csv *c, columns *cols, lamp_kinds *kinds) {
 }
 
 static noc_status read_rows(csv *c, const columns *cols, lamp_writer *w) {
-    lamp_tag *tags = noc_try_calloc(cols->count + 1, sizeof(*tags));
+    lamp_tag *tags = noc_calloc(cols->count + 1, sizeof(*tags));
     if (!tags)
         return no_memory(c);
     noc_status status;
@@ -380,7 +380,7 @@ static noc_status judge(csv *c, columns *cols, lamp_writer *w) {
 noc_status lamp_csv_read(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
     *format = "CSV";
     lamp_writer w;
-    csv *c = noc_try_calloc(1, sizeof(*c));
+    csv *c = noc_calloc(1, sizeof(*c));
     noc_status status = c ? lamp_writer_start(&w, sink, noc_stream_name(stream), params) : noc_no_memory(sink->log, noc_stream_name(stream));
     if (status) {
         free(c);

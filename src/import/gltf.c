@@ -217,7 +217,7 @@ typedef struct walk {
 
 static noc_status push_node(gltf *g, walk *w, size_t index, const gltf_frame *frame) {
     w->seen[index] = true;
-    return array_try_push(&w->stack, (pending_node){ index, *frame }) ? NOC_OK : noc_no_memory(g->log, g->name);
+    return array_push(&w->stack, (pending_node){ index, *frame }) ? NOC_OK : noc_no_memory(g->log, g->name);
 }
 
 static noc_status push_nodes(gltf *g, walk *w, const json_t *list, const gltf_frame *frame) {
@@ -241,7 +241,7 @@ static noc_status push_nodes(gltf *g, walk *w, const json_t *list, const gltf_fr
 /* A file without scenes is a library, but one may still ask to see it: all nodes that are no other's child. */
 static noc_status push_roots(gltf *g, walk *w, const json_t *nodes, const gltf_frame *frame) {
     size_t count = w->count, i, k;
-    bool *child = noc_try_calloc(count + 1, sizeof(*child));
+    bool *child = noc_calloc(count + 1, sizeof(*child));
     if (!child)
         return noc_no_memory(g->log, g->name);
     const json_t *node, *item;
@@ -309,7 +309,7 @@ static noc_status add_node(gltf *g, const json_t *node, size_t index, gltf_frame
 static noc_status add_scene(gltf *g) {
     const json_t *nodes = json_object_get(g->root, "nodes");
     walk w = { .count = json_array_size(nodes) };
-    w.seen = noc_try_calloc(w.count + 1, sizeof(*w.seen));
+    w.seen = noc_calloc(w.count + 1, sizeof(*w.seen));
     const gltf_frame whole = { { 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0 } };
     noc_status status = w.seen ? push_shown(g, &w, nodes, &whole) : noc_no_memory(g->log, g->name);
     while (w.stack.len && !status) {
@@ -336,7 +336,7 @@ static noc_status read_gltf(const char *path, noc_stream *stream, const noc_impo
     bool binary = size >= 4 && !memcmp(data, "glTF", 4);
     const char *json = data, *slash = strrchr(path, '/');
     *format = binary ? "GLB" : "glTF";
-    g.folder = noc_try_strndup(path, slash ? (size_t)(slash + 1 - path) : 0);
+    g.folder = noc_strndup(path, slash ? (size_t)(slash + 1 - path) : 0);
     json_size = size;
     if (!g.folder)
         status = noc_no_memory(g.log, g.name);
@@ -345,7 +345,7 @@ static noc_status read_gltf(const char *path, noc_stream *stream, const noc_impo
     status = status ? status : parse(&g, json, json_size);
     status = status ? status : gltf_open_buffers(&g);
     if (!status) {
-        g.materials = noc_try_calloc(json_array_size(json_object_get(g.root, "materials")) + 1, sizeof(*g.materials));
+        g.materials = noc_calloc(json_array_size(json_object_get(g.root, "materials")) + 1, sizeof(*g.materials));
         status = g.materials ? add_scene(&g) : noc_no_memory(g.log, g.name);
     }
     gltf_close_buffers(&g);

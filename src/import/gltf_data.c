@@ -94,7 +94,7 @@ static void decode_percent(char *text) {
 }
 
 static noc_status open_file(const gltf *g, const char *uri, gltf_buffer *b) {
-    char *name = noc_try_strdup(uri);
+    char *name = noc_strdup(uri);
     const char *why;
     size_t size;
     if (!name)
@@ -133,7 +133,7 @@ static noc_status open_data(const gltf *g, const char *uri, size_t index, gltf_b
 noc_status gltf_open_buffers(gltf *g) {
     json_t *list = json_object_get(g->root, "buffers");
     g->buffer_count = json_array_size(list);
-    g->buffers = noc_try_calloc(g->buffer_count + 1, sizeof(*g->buffers));
+    g->buffers = noc_calloc(g->buffer_count + 1, sizeof(*g->buffers));
     if (!g->buffers)
         return noc_no_memory(g->log, g->name);
     for (size_t i = 0; i < g->buffer_count; i++) {

@@ -53,7 +53,7 @@ static void check_input(importer *im, const city_ground *ground, size_t index, d
 }
 
 noc_status heights_check(importer *im, const city_ground *ground) {
-    double *off = noc_try_alloc((im->lamps.len + 1) * sizeof(*off));
+    double *off = noc_alloc((im->lamps.len + 1) * sizeof(*off));
     if (!off)
         return noc_no_memory(im->log, "import");
     for (size_t i = 0; i < im->input_count; i++)

@@ -19,7 +19,7 @@ static _Thread_local json_reading *reading; /* of this thread, while one goes on
 static void *json_alloc(size_t size) {
     if (!reading)
         return malloc(size);
-    void *p = reading->refused ? NULL : noc_try_alloc(size);
+    void *p = reading->refused ? NULL : noc_alloc(size);
     if (p)
         return p;
     reading->refused = true;
@@ -45,7 +45,7 @@ static size_t pull(void *buffer, size_t size, void *user) {
 
 json_t *import_json_load(size_t (*from)(void *buffer, size_t size, void *user), void *user, size_t bytes, size_t flags, json_error_t *error) {
     enum { PIECE = 1 << 20 }; /* what the rest of a piece of 1 KiB can take, and more */
-    json_reading r = { .pull = from, .user = user, .aside = noc_try_alloc(2 * bytes + PIECE) };
+    json_reading r = { .pull = from, .user = user, .aside = noc_alloc(2 * bytes + PIECE) };
     *error = (json_error_t){ 0 };
     if (!r.aside)
         return NULL;

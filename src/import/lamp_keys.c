@@ -128,8 +128,8 @@ static noc_status add_mapping(mappings *maps, char *item, noc_log *log) {
     for (size_t i = 0; i < maps->len; i++)
         if (lamp_same_key(maps->data[i].column, map.column))
             return noc_error(log, NOC_ERR_ARGUMENT, "lamp-columns: the column \"%.40s\" is named twice", map.column);
-    map.column = noc_try_strdup(map.column);
-    if (map.column && array_try_push(maps, map))
+    map.column = noc_strdup(map.column);
+    if (map.column && array_push(maps, map))
         return NOC_OK;
     free(map.column);
     return noc_no_memory(log, "lamp-columns");
@@ -138,7 +138,7 @@ static noc_status add_mapping(mappings *maps, char *item, noc_log *log) {
 static noc_status parse_mappings(const noc_import_params *params, mappings *maps, noc_log *log) {
     noc_status status = NOC_OK;
     for (size_t i = 0; params && i < params->lamp_columns.count && !status; i++) {
-        char *copy = noc_try_strdup(params->lamp_columns.text[i]), *rest = copy, *item;
+        char *copy = noc_strdup(params->lamp_columns.text[i]), *rest = copy, *item;
         if (!copy)
             return noc_no_memory(log, "lamp-columns");
         while (!status && (item = strsep(&rest, ",")))
@@ -161,7 +161,7 @@ noc_status lamp_mapping_missing(const noc_import_params *params, bool (*found)(v
     noc_status status = parse_mappings(params, &maps, log);
     *missing = NULL;
     for (size_t i = 0; i < maps.len && !status && !*missing; i++)
-        if (!found(ctx, maps.data[i].column) && !(*missing = noc_try_strdup(maps.data[i].column)))
+        if (!found(ctx, maps.data[i].column) && !(*missing = noc_strdup(maps.data[i].column)))
             status = noc_no_memory(log, "lamp-columns");
     free_mappings(&maps);
     return status;
@@ -186,7 +186,7 @@ struct lamp_keys {
 };
 
 lamp_keys *lamp_keys_create(const noc_import_params *params) {
-    lamp_keys *keys = noc_try_calloc(1, sizeof(*keys));
+    lamp_keys *keys = noc_calloc(1, sizeof(*keys));
     if (!keys || !parse_mappings(params, &keys->maps, NULL)) /* understood, as lamp_mapping_check was asked */
         return keys;
     lamp_keys_destroy(keys);
@@ -219,12 +219,12 @@ static key *get(lamp_keys *keys, const char *name) {
         i = keys->keys.len;
         if (i == MAX_KEYS)
             return NULL;
-        key k = { .name = arena_try_strdup(&keys->arena, name), .meaning = find_meaning(keys, name) };
-        if (!k.name || !array_try_push(&keys->keys, k)) {
+        key k = { .name = arena_strdup(&keys->arena, name), .meaning = find_meaning(keys, name) };
+        if (!k.name || !array_push(&keys->keys, k)) {
             keys->arena.refused = true;
             return NULL;
         }
-        if (!map_try_put(&keys->index, name, i, NULL)) {
+        if (!map_put(&keys->index, name, i, NULL)) {
             keys->keys.len--;
             keys->arena.refused = true;
             return NULL;
@@ -257,7 +257,7 @@ void lamp_keys_note(lamp_keys *keys, const char *name, const char *value) {
         return;
     size_t n = k->values++ ? 0 : cut(value);
     if (n)
-        k->example = arena_try_format(&keys->arena, "%.*s%s", (int)n, value, value[n] ? "..." : "");
+        k->example = arena_format(&keys->arena, "%.*s%s", (int)n, value, value[n] ? "..." : "");
 }
 
 void lamp_keys_tell(lamp_keys *keys, const char *name) {
@@ -269,7 +269,7 @@ void lamp_keys_tell(lamp_keys *keys, const char *name) {
 noc_status lamp_keys_report(lamp_keys *keys, geo_sink *sink, const char *place, size_t points) {
     if (!sink->columns)
         return NOC_OK;
-    geo_column *columns = noc_try_calloc(keys->keys.len + 1, sizeof(*columns));
+    geo_column *columns = noc_calloc(keys->keys.len + 1, sizeof(*columns));
     if (!columns || keys->arena.refused) {
         free(columns);
         return noc_no_memory(sink->log, place);

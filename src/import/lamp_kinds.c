@@ -74,8 +74,8 @@ bool lamp_kinds_count(lamp_kinds *kinds, const lamp_tag *tags, size_t count) {
     for (size_t i = 0; i < count; i++) {
         struct lamp_kind *k = find(kinds, tags[i].key, i);
         if (!k && kinds->columns.len < MOST) {
-            struct lamp_kind fresh = { .name = noc_try_strdup(tags[i].key), .of_kinds = is_of_kinds(tags[i].key) };
-            if (!fresh.name || !array_try_push(&kinds->columns, fresh)) {
+            struct lamp_kind fresh = { .name = noc_strdup(tags[i].key), .of_kinds = is_of_kinds(tags[i].key) };
+            if (!fresh.name || !array_push(&kinds->columns, fresh)) {
                 free(fresh.name);
                 return false;
             }

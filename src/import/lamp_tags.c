@@ -255,7 +255,7 @@ bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *la
     *lamp = (geo_lamp){ .xyz = { lamp->xyz[0], lamp->xyz[1], lamp->xyz[2] }, .height = NAN, .direction = NAN, .lumens = NAN,
                         .watts = NAN, .kelvin = NAN, .rgb = { -1, -1, -1 }, .id = lamp->id ? lamp->id : "" };
     reading r = { .lamp = lamp, .issues = issues, .times = 1, .scale = 1 };
-    lamp_meaning *meanings = noc_try_calloc(count + 1, sizeof(*meanings));
+    lamp_meaning *meanings = noc_calloc(count + 1, sizeof(*meanings));
     if (!meanings)
         return false;
     for (size_t i = 0; i < count; i++)

@@ -67,7 +67,7 @@ static size_t places_of_lamps(const importer *im, const extent *e, double *point
 
 /* Under the city and the lamps that belong to it, through the heights of those that tell them. */
 static noc_status lay_ground(importer *im, const extent *e) {
-    double *points = noc_try_alloc((im->lamps.len + 1) * 3 * sizeof(*points));
+    double *points = noc_alloc((im->lamps.len + 1) * 3 * sizeof(*points));
     if (!points)
         return noc_no_memory(im->log, "import");
     city_ground *ground = city_ground_start(im->scene, points, places_of_lamps(im, e, points));

@@ -95,7 +95,7 @@ static noc_status recognise(importer *im, input *in, const noc_reader *const *re
     if (!stream)
         return status;
     size_t size = 0;
-    char *head = noc_try_alloc(HEAD_SIZE + 1);
+    char *head = noc_alloc(HEAD_SIZE + 1);
     status = head ? read_head(stream, head, &size) : noc_no_memory(im->log, in->path);
     if (!status) {
         in->bytes = noc_stream_size(stream);
@@ -158,7 +158,7 @@ static noc_status read_remote(importer *im, input *in, geo_sink *sink, const mes
     const mesh_parts parts = mesh_scene_parts(&to);
     noc_status status = remote_read(in->reader, in->path, im->params, sink, place ? &parts : NULL, result);
     if (*result->format)
-        in->file.format = arena_try_strdup(&im->report->arena, result->format);
+        in->file.format = arena_strdup(&im->report->arena, result->format);
     return !status && im->report->arena.refused ? noc_no_memory(im->log, in->path) : status;
 }
 
@@ -316,7 +316,7 @@ static bool among(const char *path, const char *const *paths, size_t count) {
 /* The inputs are the paths, and the files of lamps that are not among them. */
 static noc_status list_inputs(importer *im, const char *const *paths, size_t path_count) {
     const noc_texts *lamps = &im->params->lamps;
-    im->inputs = noc_try_calloc(path_count + lamps->count + 1, sizeof(*im->inputs));
+    im->inputs = noc_calloc(path_count + lamps->count + 1, sizeof(*im->inputs));
     if (!im->inputs)
         return noc_no_memory(im->log, "import");
     for (size_t i = 0; i < path_count + lamps->count; i++) {

@@ -13,7 +13,7 @@ const char *map_temporary_folder(void) {
 
 static char *folder_of(const char *path) {
     const char *slash = strrchr(path, '/');
-    return noc_try_strndup(path, slash ? (size_t)(slash + 1 - path) : 0);
+    return noc_strndup(path, slash ? (size_t)(slash + 1 - path) : 0);
 }
 
 static noc_status check_part(const char *path, const char *folder, const char *part, bool anywhere, noc_log *log) {
@@ -44,7 +44,7 @@ noc_status map_check_shapefile(const char *path, bool anywhere, noc_log *log) {
     while (!status && dir && (entry = readdir(dir))) {
         if (strncasecmp(entry->d_name, base, stem) || !is_part(entry->d_name + NOC_MIN(stem, strlen(entry->d_name))))
             continue;
-        char *part = noc_try_format("%s%s", folder, entry->d_name);
+        char *part = noc_format("%s%s", folder, entry->d_name);
         status = part ? check_part(path, folder, part, anywhere, log) : noc_no_memory(log, path);
         free(part);
     }
@@ -60,7 +60,7 @@ static noc_status copy_file(const char *from, const char *to, noc_log *log) {
     const char *why;
     size_t size, got;
     FILE *in = import_open_named("", from, true, &size, &why), *out = in ? fopen(to, "wbx") : NULL;
-    char *buffer = noc_try_alloc(1 << 18);
+    char *buffer = noc_alloc(1 << 18);
     bool good = in && out && buffer, refused = !buffer || (!in && !why);
     while (good && (got = fread(buffer, 1, 1 << 18, in)) > 0)
         good = fwrite(buffer, 1, got, out) == got;
@@ -80,14 +80,14 @@ static noc_status copy_file(const char *from, const char *to, noc_log *log) {
 
 /* Into a new folder. */
 static noc_status copy_itself(const char *path, noc_log *log, char **folder) {
-    if (!(*folder = noc_try_format("%s/nocturne-XXXXXX", map_temporary_folder())))
+    if (!(*folder = noc_format("%s/nocturne-XXXXXX", map_temporary_folder())))
         return noc_no_memory(log, path);
     if (!mkdtemp(*folder)) {
         free(*folder);
         *folder = NULL;
         return noc_error(log, NOC_ERR_IO, "%s: no folder for a copy in %s: %s", path, map_temporary_folder(), strerror(errno));
     }
-    char *copy = noc_try_format("%s/" MAP_COPY_NAME, *folder);
+    char *copy = noc_format("%s/" MAP_COPY_NAME, *folder);
     noc_status status = copy ? copy_file(path, copy, log) : noc_no_memory(log, path);
     free(copy);
     return status;
@@ -100,13 +100,13 @@ noc_status map_copy_geopackage(const char *path, bool anywhere, noc_log *log, ch
     *folder = NULL;
     for (size_t i = 0; i < NOC_COUNT(logs) && !status; i++) {
         struct stat st;
-        char *part = noc_try_format("%s%s", path, logs[i]);
+        char *part = noc_format("%s%s", path, logs[i]);
         bool there = part && !lstat(part, &st);
         status = !part ? noc_no_memory(log, path) : there ? check_part(path, beside, part, anywhere, log) : NOC_OK;
         if (there && !status && !stat(part, &st) && st.st_size > 0) {
             if (!*folder)
                 status = copy_itself(path, log, folder);
-            char *copy = status ? NULL : noc_try_format("%s/" MAP_COPY_NAME "%s", *folder, logs[i]);
+            char *copy = status ? NULL : noc_format("%s/" MAP_COPY_NAME "%s", *folder, logs[i]);
             if (!status)
                 status = copy ? copy_file(part, copy, log) : noc_no_memory(log, path);
             free(copy);

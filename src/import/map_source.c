@@ -114,7 +114,7 @@ static void gdal_leave(void) {
 
 /* Archives are read once to their end, because GDAL takes a truncated one for a short file. */
 static noc_status check_archive(noc_stream *stream, noc_log *log) {
-    char *buffer = noc_try_alloc(1 << 16);
+    char *buffer = noc_alloc(1 << 16);
     if (!buffer)
         return noc_no_memory(log, noc_stream_name(stream));
     size_t got = 1;
@@ -142,7 +142,7 @@ static noc_status gdal_path(noc_stream *stream, noc_log *log, char **path, bool 
     *plain = false;
     if (access(name, F_OK)) { /* path!member */
         const char *bang = name + strlen(name);
-        char *archive = noc_try_strdup(name);
+        char *archive = noc_strdup(name);
         if (!archive)
             return noc_no_memory(log, name);
         while (bang > name) {
@@ -153,13 +153,13 @@ static noc_status gdal_path(noc_stream *stream, noc_log *log, char **path, bool 
             }
             bang--;
         }
-        *path = noc_try_format("/vsizip/{%s%s}/%s", slash, archive, *bang == '!' ? bang + 1 : "");
+        *path = noc_format("/vsizip/{%s%s}/%s", slash, archive, *bang == '!' ? bang + 1 : "");
         free(archive);
         return *path ? check_archive(stream, log) : noc_no_memory(log, name);
     }
     bool gzip = is_gzip(name);
     *plain = !gzip;
-    *path = noc_try_format("%s%s%s", gzip ? "/vsigzip/" : "", slash, name);
+    *path = noc_format("%s%s%s", gzip ? "/vsigzip/" : "", slash, name);
     return !*path ? noc_no_memory(log, name) : gzip ? check_archive(stream, log) : NOC_OK;
 }
 
@@ -223,7 +223,7 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
     }
     if (copied && !status) {
         free(path);
-        path = noc_try_format("%s/" MAP_COPY_NAME, m->copy);
+        path = noc_format("%s/" MAP_COPY_NAME, m->copy);
         status = path ? NOC_OK : noc_no_memory(log, m->name);
     }
     if (!status) {

@@ -126,15 +126,15 @@ static struct aiFile *library_open(struct aiFileIO *io, const char *name, const 
         o.owned = true;
         lib->refused = lib->refused || lib->folder.refused;
         if (!o.data && !lib->missing && !lib->refused) {
-            lib->missing = noc_try_format("%s%s cannot be opened: %s", *relative == '/' ? "" : lib->folder.path, relative,
+            lib->missing = noc_format("%s%s cannot be opened: %s", *relative == '/' ? "" : lib->folder.path, relative,
                                           lib->folder.why);
             lib->refused = !lib->missing;
         }
         if (!o.data)
             return NULL;
     }
-    struct aiFile *f = noc_try_calloc(1, sizeof(*f));
-    open_file *held = noc_try_alloc(sizeof(*held));
+    struct aiFile *f = noc_calloc(1, sizeof(*f));
+    open_file *held = noc_alloc(sizeof(*held));
     if (!f || !held) {
         lib->refused = true;
         free(f);
@@ -229,9 +229,9 @@ typedef struct mesh_target {
 /* Puts the polygons' triangles behind the others; false where there is no memory. */
 static bool join_polygons(cut_mesh *cut, double **xyz, uint32_t **indices, size_t *vertices) {
     size_t more = cut->extra.xyz.len / 3, corners = cut->extra.indices.len;
-    double *x = more ? noc_try_realloc(*xyz, (*vertices + more) * 3 * sizeof(*x)) : NULL;
+    double *x = more ? noc_realloc(*xyz, (*vertices + more) * 3 * sizeof(*x)) : NULL;
     *xyz = x ? x : *xyz;
-    uint32_t *v = x ? noc_try_realloc(*indices, (cut->triangle_count * 3 + corners) * sizeof(*v)) : NULL;
+    uint32_t *v = x ? noc_realloc(*indices, (cut->triangle_count * 3 + corners) * sizeof(*v)) : NULL;
     *indices = v ? v : *indices;
     if (!more || !v)
         return !more;
@@ -273,7 +273,7 @@ static noc_status add_mesh(const mesh_target *to, const struct aiMesh *m, int ma
 }
 
 static noc_status add_scene(const struct aiScene *from, const mesh_target *to) {
-    int *materials = noc_try_alloc((from->mNumMaterials + 1) * sizeof(*materials));
+    int *materials = noc_alloc((from->mNumMaterials + 1) * sizeof(*materials));
     if (!materials)
         return noc_no_memory(to->parts->log, "OBJ");
     noc_status status = NOC_OK;
@@ -347,9 +347,9 @@ static noc_status read_parts(const char *path, noc_stream *stream, const noc_imp
         return status;
     }
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strchr(base, '.');
-    char *folder = noc_try_strndup(path, (size_t)(base - path));
+    char *folder = noc_strndup(path, (size_t)(base - path));
     lib.folder = (obj_folder){ .path = folder, .anywhere = params && params->allow_outside };
-    lib.main_name = noc_try_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
+    lib.main_name = noc_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
     obj_spread spread = { 0 };
     const mesh_target to = { .parts = parts, .offset = offset, .z_up = params && params->obj_up == NOC_OBJ_UP_Z,
                              .spread = &spread };

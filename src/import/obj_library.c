@@ -30,7 +30,7 @@ static char *find(obj_folder *folder, const char *name, size_t *size) {
     if (data || folder->refused)
         return data;
     const char *why = folder->why; /* of the name as it is given */
-    char *turned = noc_try_strdup(name);
+    char *turned = noc_strdup(name);
     folder->refused = !turned;
     if (!turned)
         return NULL;
@@ -51,7 +51,7 @@ static char *find_all(obj_folder *folder, char *names, size_t *size) {
     *size = 0;
     while ((name = strtok_r(rest, " \t", &rest))) {
         size_t more;
-        char *data = find(folder, name, &more), *longer = data ? noc_try_realloc(all, *size + more + 2) : NULL;
+        char *data = find(folder, name, &more), *longer = data ? noc_realloc(all, *size + more + 2) : NULL;
         if (!longer) {
             folder->refused = folder->refused || data;
             free(data);
@@ -111,7 +111,7 @@ static void plain_statements(char *data, size_t size, const char *name, geo_issu
 }
 
 char *obj_open_library(obj_folder *folder, const char *name, size_t *size, geo_issues *issues) {
-    char *trimmed = noc_try_strdup(name);
+    char *trimmed = noc_strdup(name);
     folder->refused = folder->refused || !trimmed;
     if (!trimmed)
         return NULL;
@@ -120,7 +120,7 @@ char *obj_open_library(obj_folder *folder, const char *name, size_t *size, geo_i
     const char *begin = trimmed + strspn(trimmed, " \t\"");
     char *data = find(folder, begin, size);
     if (!data && strpbrk(begin, " \t")) {
-        char *names = noc_try_strdup(begin);
+        char *names = noc_strdup(begin);
         folder->refused = folder->refused || !names;
         data = names ? find_all(folder, names, size) : NULL;
         free(names);

@@ -31,7 +31,7 @@ static char *line_end(char *p, char *stop) {
 }
 
 /* The statement's text as a string of its own; NULL where there is no memory. */
-static char *text_of(const statement *s) { return noc_try_strndup(s->begin, (size_t)(s->end - s->begin)); }
+static char *text_of(const statement *s) { return noc_strndup(s->begin, (size_t)(s->end - s->begin)); }
 
 /* Adds the materials that a library defines. false where there is no memory. */
 static bool add_library(obj_folder *folder, const char *name, import_budget *budget, noc_map *defined) {
@@ -45,7 +45,7 @@ static bool add_library(obj_folder *folder, const char *name, import_budget *bud
         end = line_end(p, stop);
         if (is_a(p, end, "newmtl", &s)) {
             char *material = text_of(&s);
-            memory = material && map_try_put(defined, material, 1, NULL);
+            memory = material && map_put(defined, material, 1, NULL);
             free(material);
         }
     }
@@ -68,7 +68,7 @@ noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, impo
         if (is_a(p, end, "mtllib", &s)) {
             char *library = text_of(&s);
             bool fresh;
-            memory = library && map_try_put(&libraries, library, 1, &fresh) && (!fresh || add_library(folder, library, budget, &defined));
+            memory = library && map_put(&libraries, library, 1, &fresh) && (!fresh || add_library(folder, library, budget, &defined));
             free(library);
         }
     }

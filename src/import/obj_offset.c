@@ -126,7 +126,7 @@ static bool reserve(text_buffer *b, size_t more) {
     if (b->cap - b->size >= more)
         return true;
     size_t cap = b->cap + b->cap / 4 + more;
-    char *grown = noc_try_realloc(b->data, cap);
+    char *grown = noc_realloc(b->data, cap);
     if (!grown)
         return false;
     b->data = grown;
@@ -167,7 +167,7 @@ noc_status obj_plain_vertices(char **data, size_t *size, double offset[3], obj_n
                 char id[32];
                 snprintf(id, sizeof(id), "line %zu", line_number);
                 geo_issue(issues, false, "vertex that is not three numbers", id);
-                memory = array_try_push(bad, number);
+                memory = array_push(bad, number);
             }
             out.data[out.size] = 'v';
             out.size = (size_t)(write_place(out.data + out.size + 1, xyz, offset) - out.data);

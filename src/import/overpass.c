@@ -70,10 +70,10 @@ static bool collect_tags(json_t *element, tag_list *list) {
     const char *type = json_string_value(json_object_get(element, "type")), *key;
     json_t *id = json_object_get(element, "id"), *value;
     snprintf(list->id, sizeof(list->id), "%.16s/%" JSON_INTEGER_FORMAT, type ? type : "element", json_integer_value(id));
-    bool kept = array_try_push(&list->tags, (lamp_tag){ "@id", list->id });
+    bool kept = array_push(&list->tags, (lamp_tag){ "@id", list->id });
     json_object_foreach(json_object_get(element, "tags"), key, value)
         if (json_is_string(value))
-            kept = kept && array_try_push(&list->tags, (lamp_tag){ key, json_string_value(value) });
+            kept = kept && array_push(&list->tags, (lamp_tag){ key, json_string_value(value) });
     return kept;
 }
 

@@ -66,9 +66,9 @@ noc_status place_crs(importer *im, const char *srs_name, const char *place, bool
         noc_status status = resolve(im, spelling, place ? place : in->path, &crs);
         if (status)
             return status;
-        source = noc_try_calloc(1, sizeof(*source));
-        char *kept = noc_try_strdup(spelling);
-        if (!source || !kept || !array_try_push(&im->sources, source)) {
+        source = noc_calloc(1, sizeof(*source));
+        char *kept = noc_strdup(spelling);
+        if (!source || !kept || !array_push(&im->sources, source)) {
             free(source);
             free(kept);
             geo_crs_destroy(crs);
@@ -164,7 +164,7 @@ static noc_status set_place(importer *im, geo_crs *crs, const double origin[3]) 
     memcpy(im->origin, origin, sizeof(im->origin));
     noc_scene_set_crs(im->scene, crs ? geo_crs_name(crs) : NULL, im->origin);
     free(im->scene->without_crs);
-    im->scene->without_crs = crs ? NULL : noc_try_strdup(im->placed_by);
+    im->scene->without_crs = crs ? NULL : noc_strdup(im->placed_by);
     if (im->scene->crs && im->scene->crs_free)
         im->scene->crs_free(im->scene->crs);
     im->scene->crs = crs;
@@ -208,7 +208,7 @@ static noc_status set_given(importer *im, geo_crs *given) {
     if (t && geo_transform_points(t, origin, 1))
         status = NOC_ERR_UNSUPPORTED;
     geo_transform_destroy(t);
-    char *name = status ? NULL : noc_try_strdup(geo_crs_name(given));
+    char *name = status ? NULL : noc_strdup(geo_crs_name(given));
     if (!status && !name)
         status = noc_no_memory(im->log, im->placed_by);
     if (status) {
@@ -296,9 +296,9 @@ static noc_status prepare(importer *im, source_crs *s, const double point[3]) {
     s->ready = true;
     noc_report_file *file = &im->inputs[im->current].file;
     if (!file->crs) {
-        file->crs = s->crs ? arena_try_strdup(&im->report->arena, geo_crs_name(s->crs)) : "";
+        file->crs = s->crs ? arena_strdup(&im->report->arena, geo_crs_name(s->crs)) : "";
         file->degrees = s->crs && geo_crs_is_geographic(s->crs);
-        file->crs_given = arena_try_strdup(&im->report->arena, s->spelling);
+        file->crs_given = arena_strdup(&im->report->arena, s->spelling);
     }
     return im->report->arena.refused ? noc_no_memory(im->log, path) : NOC_OK;
 }
@@ -367,7 +367,7 @@ noc_status place_settle(importer *im, const place_sample *samples, size_t count)
     if (!count)
         return NOC_OK;
     source_crs *s = commonest_source(samples, count);
-    double *both = noc_try_alloc(2 * count * sizeof(double)), *axis[2] = { both, both + count };
+    double *both = noc_alloc(2 * count * sizeof(double)), *axis[2] = { both, both + count };
     if (!both)
         return noc_no_memory(im->log, im->inputs[im->current].path);
     double first[3] = { 0 }, point[3] = { 0 };
@@ -421,7 +421,7 @@ noc_status place_points(importer *im, double *xyz, size_t count, const char *id,
             return status;
     }
     size_t numbers = 3 * count;
-    if (!array_try_append(&im->given, xyz, numbers))
+    if (!array_append(&im->given, xyz, numbers))
         return noc_no_memory(im->log, in->path);
     size_t astray = 0, failed = 0;
     if (s->to_scene)

@@ -38,7 +38,7 @@ static bool cut_quad(cut_mesh *m, const unsigned *v) {
 }
 
 static void cut_polygon(cut_mesh *m, const unsigned *corner, size_t count) {
-    double *ring = noc_try_alloc(3 * count * sizeof(*ring)), lo[3], hi[3], size = 0;
+    double *ring = noc_alloc(3 * count * sizeof(*ring)), lo[3], hi[3], size = 0;
     if (!ring) {
         m->extra.no_memory = true;
         return;

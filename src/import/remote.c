@@ -47,7 +47,7 @@ static noc_status find_program(remote *r) {
         if (access(given, X_OK))
             return noc_error(r->sink->log, NOC_ERR_UNSUPPORTED, "%s: %s is read by a helper program, and " HELPER_VARIABLE " names none (%s)",
                              r->path, r->reader->name, given);
-        r->program = noc_try_strdup(given);
+        r->program = noc_strdup(given);
         return r->program ? NOC_OK : noc_no_memory(r->sink->log, r->path);
     }
     char *real = dladdr((void *)&remote_read, &info) && info.dli_fname ? realpath(info.dli_fname, NULL) : NULL;
@@ -56,7 +56,7 @@ static noc_status find_program(remote *r) {
     if (slash)
         *slash = 0;
     for (size_t i = 0; i < NOC_COUNT(below) && slash && !status && !r->program; i++) {
-        if (!(r->program = noc_try_format("%s%s", real, below[i]))) {
+        if (!(r->program = noc_format("%s%s", real, below[i]))) {
             status = noc_no_memory(r->sink->log, r->path);
         } else if (access(r->program, X_OK)) {
             free(r->program);
@@ -77,8 +77,8 @@ static char **make_environment(const char *scratch, char **own) {
     size_t n = 0, kept = 0;
     while (environ[n])
         n++;
-    char **list = noc_try_calloc(n + 2, sizeof(*list));
-    *own = noc_try_format("TMPDIR=%s", scratch);
+    char **list = noc_calloc(n + 2, sizeof(*list));
+    *own = noc_format("TMPDIR=%s", scratch);
     if (!list || !*own) {
         free(list);
         free(*own);
@@ -127,7 +127,7 @@ static noc_status start(remote *r) {
     noc_status status = find_program(r);
     if (status)
         return status;
-    r->scratch = noc_try_format("%s/nocturne-XXXXXX", map_temporary_folder());
+    r->scratch = noc_format("%s/nocturne-XXXXXX", map_temporary_folder());
     if (!r->scratch)
         return noc_no_memory(r->sink->log, r->path);
     if (!mkdtemp(r->scratch)) {

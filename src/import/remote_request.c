@@ -21,7 +21,7 @@ static void ask_options(const noc_import_params *params, remote_record *batch, r
             continue;
         }
         size_t n = (size_t)noc_option_get(o, params, NULL, 0);
-        char *value = noc_try_alloc(n + 1);
+        char *value = noc_alloc(n + 1);
         batch->refused = batch->refused || !value;
         if (!value)
             return;
@@ -65,7 +65,7 @@ static bool receive_all(int fd, void *data, size_t size) {
 }
 
 static void set_option(remote_request *q, const char *name, const char *value) {
-    const char *kept = arena_try_strdup(&q->texts, value);
+    const char *kept = arena_strdup(&q->texts, value);
     for (const noc_option *o = noc_import_options(); o->name && kept; o++)
         if (!strcmp(o->name, name))
             noc_option_set(o, &q->params, kept, NULL);
@@ -78,7 +78,7 @@ static bool take(remote_request *q, uint32_t kind, remote_record *r) {
             if (!strcmp((*reader)->name, name))
                 q->reader = *reader;
     } else if (kind == REMOTE_PATH) {
-        q->path = arena_try_strdup(&q->texts, remote_get_text(r));
+        q->path = arena_strdup(&q->texts, remote_get_text(r));
     } else if (kind == REMOTE_OPTION) {
         const char *name = remote_get_text(r), *value = remote_get_text(r);
         if (!r->bad)
@@ -96,7 +96,7 @@ bool remote_receive(int fd, remote_request *q) {
         remote_record r = { 0 };
         if (!receive_all(fd, &head, sizeof(head)) || head.size_high || head.size_low > REMOTE_REQUEST_MOST)
             return false;
-        if (!array_try_reserve(&r.bytes, (size_t)head.size_low)) {
+        if (!array_reserve(&r.bytes, (size_t)head.size_low)) {
             q->texts.refused = true;
             return false;
         }

@@ -20,7 +20,7 @@ static noc_status take_log(remote_taker *t, remote_record *one) {
     if (level == NOC_LOG_ERROR && t->error)
         return garbled(t);
     if (level == NOC_LOG_ERROR)
-        return (t->error = noc_try_strdup(text)) ? NOC_OK : noc_no_memory(t->sink->log, t->path);
+        return (t->error = noc_strdup(text)) ? NOC_OK : noc_no_memory(t->sink->log, t->path);
     if (level == NOC_LOG_WARN)
         noc_warn(t->sink->log, "%s", text);
     else if (level == NOC_LOG_INFO)
@@ -48,7 +48,7 @@ static noc_status take_material(remote_taker *t, remote_record *one) {
     int index = t->parts->material(t->parts->ctx, &material);
     if (index < 0)
         return NOC_ERR_ARGUMENT; /* said */
-    return array_try_push(&t->materials, index) ? NOC_OK : noc_no_memory(t->sink->log, t->path);
+    return array_push(&t->materials, index) ? NOC_OK : noc_no_memory(t->sink->log, t->path);
 }
 
 static noc_status take_mesh(remote_taker *t, remote_record *one) {
@@ -104,7 +104,7 @@ static noc_status take_columns(remote_taker *t, remote_record *one) {
         c.field = remote_get_text(one);
         c.unit = remote_get_text(one);
         c.example = remote_get_text(one);
-        kept = array_try_push(&columns, c);
+        kept = array_push(&columns, c);
     }
     noc_status status = one->bad ? garbled(t) : kept ? NOC_OK : noc_no_memory(t->sink->log, t->path);
     if (!status && t->sink->columns)
@@ -169,7 +169,7 @@ char *remote_room(remote_taker *t, size_t size) {
         t->pos = 0;
     }
     size_t room = t->bytes.len + size;
-    if (room > t->bytes.cap && !array_try_reserve(&t->bytes, NOC_MAX(room, t->bytes.len * 2))) {
+    if (room > t->bytes.cap && !array_reserve(&t->bytes, NOC_MAX(room, t->bytes.len * 2))) {
         noc_no_memory(t->sink->log, t->path);
         return NULL;
     }

@@ -139,14 +139,14 @@ static void link_record(object_records *all, uint32_t index) {
 
 /* False: memory was refused. */
 static bool add_record(object_records *all, object_record record) {
-    if (!array_try_push(&all->list, record))
+    if (!array_push(&all->list, record))
         return false;
     if (all->list.len <= all->size) {
         link_record(all, (uint32_t)all->list.len - 1);
         return true;
     }
     size_t size = all->size ? 2 * all->size : 1024;
-    uint32_t *first[2] = { noc_try_calloc(size, sizeof(uint32_t)), noc_try_calloc(size, sizeof(uint32_t)) };
+    uint32_t *first[2] = { noc_calloc(size, sizeof(uint32_t)), noc_calloc(size, sizeof(uint32_t)) };
     if (!first[0] || !first[1]) {
         free(first[0]);
         free(first[1]);
@@ -244,7 +244,7 @@ noc_status repeat_lamps(importer *im) {
         return NOC_OK;
     while (size < im->lamps.len)
         size *= 2;
-    uint32_t *first = noc_try_calloc(size, sizeof(*first)), *next = noc_try_calloc(im->lamps.len, sizeof(*next));
+    uint32_t *first = noc_calloc(size, sizeof(*first)), *next = noc_calloc(im->lamps.len, sizeof(*next));
     if (!first || !next) {
         free(first);
         free(next);

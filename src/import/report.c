@@ -1,6 +1,6 @@
 #include "import/load.h"
 
-noc_report *report_create(void) { return noc_try_calloc(1, sizeof(noc_report)); }
+noc_report *report_create(void) { return noc_calloc(1, sizeof(noc_report)); }
 
 const char *noc_lamp_source_name(noc_lamp_source source) {
     static const char *const names[NOC_SOURCE_COUNT] = {
@@ -63,7 +63,7 @@ noc_status report_strict(const noc_report *report, noc_log *log) {
                          : noc_error(log, NOC_ERR_FORMAT, "%s", text);
 }
 
-static const char *keep(noc_report *report, const char *text) { return arena_try_strdup(&report->arena, text ? text : ""); }
+static const char *keep(noc_report *report, const char *text) { return arena_strdup(&report->arena, text ? text : ""); }
 
 bool report_add(noc_report *report, const noc_report_file *file, const geo_issues *issues) {
     noc_report_file f = *file;
@@ -73,7 +73,7 @@ bool report_add(noc_report *report, const noc_report_file *file, const geo_issue
     f.crs_given = keep(report, f.crs_given);
     /* the columns are in the arena already */
     f.line_count = geo_issues_count(issues);
-    noc_report_line *lines = arena_try_alloc(&report->arena, f.line_count * sizeof(*lines));
+    noc_report_line *lines = arena_alloc(&report->arena, f.line_count * sizeof(*lines));
     for (size_t i = 0; i < f.line_count && lines; i++) {
         if (!geo_issues_get(issues, i, &lines[i].reason, &lines[i].repaired, &lines[i].count, &lines[i].examples))
             return false;
@@ -81,5 +81,5 @@ bool report_add(noc_report *report, const noc_report_file *file, const geo_issue
         lines[i].examples = keep(report, lines[i].examples);
     }
     f.lines = lines;
-    return !report->arena.refused && !geo_issues_refused(issues) && array_try_push(&report->files, f);
+    return !report->arena.refused && !geo_issues_refused(issues) && array_push(&report->files, f);
 }

@@ -117,7 +117,7 @@ static noc_status on_begin_object(void *ctx, const geo_object *object) {
     noc_report_file *file = &im->inputs[im->current].file;
     noc_status status = sink_flush(im);
     free(im->object_id);
-    im->object_id = noc_try_strdup(object->id ? object->id : "");
+    im->object_id = noc_strdup(object->id ? object->id : "");
     if (!status && !im->object_id)
         status = noc_no_memory(im->log, im->inputs[im->current].path);
     im->now.kind = object->kind;
@@ -148,7 +148,7 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
         count += polygon->ring_size[r];
     size_t numbers = 3 * count;
     im->scratch.len = 0;
-    if (!array_try_append(&im->scratch, polygon->xyz, numbers))
+    if (!array_append(&im->scratch, polygon->xyz, numbers))
         return noc_no_memory(im->log, in->path);
     bool usable;
     noc_status status = place_points(im, im->scratch.data, count, polygon->id, &usable);
@@ -201,7 +201,7 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
         memcpy(p.given.xy, im->given.data, sizeof(p.given.xy));
     if (!status && !usable) {
         im->inputs[im->current].lamps_lost++;
-        if (!array_try_push(&im->lost, p.given))
+        if (!array_push(&im->lost, p.given))
             status = noc_no_memory(im->log, im->inputs[im->current].path);
     }
     if (status || !usable)
@@ -211,8 +211,8 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     count_lamp(&im->inputs[im->current].file, lamp);
     if (im->inspect)
         return NOC_OK;
-    p.lamp.id = arena_try_strdup(&im->names, lamp->id ? lamp->id : "");
-    return p.lamp.id && array_try_push(&im->lamps, p) ? NOC_OK : noc_no_memory(im->log, im->inputs[im->current].path);
+    p.lamp.id = arena_strdup(&im->names, lamp->id ? lamp->id : "");
+    return p.lamp.id && array_push(&im->lamps, p) ? NOC_OK : noc_no_memory(im->log, im->inputs[im->current].path);
 }
 
 /* Of a file that has been read. */
@@ -220,11 +220,11 @@ static noc_status on_columns(void *ctx, size_t points, const geo_column *columns
     importer *im = ctx;
     noc_report_file *file = &im->inputs[im->current].file;
     noc_arena *arena = &im->report->arena;
-    noc_report_column *kept = arena_try_alloc(arena, (count + 1) * sizeof(*kept));
+    noc_report_column *kept = arena_alloc(arena, (count + 1) * sizeof(*kept));
     for (size_t i = 0; i < count && kept; i++)
-        kept[i] = (noc_report_column){ .name = arena_try_strdup(arena, columns[i].name), .field = arena_try_strdup(arena, columns[i].field),
-                                       .unit = arena_try_strdup(arena, columns[i].unit), .values = columns[i].values,
-                                       .example = arena_try_strdup(arena, columns[i].example), .mapped = columns[i].mapped };
+        kept[i] = (noc_report_column){ .name = arena_strdup(arena, columns[i].name), .field = arena_strdup(arena, columns[i].field),
+                                       .unit = arena_strdup(arena, columns[i].unit), .values = columns[i].values,
+                                       .example = arena_strdup(arena, columns[i].example), .mapped = columns[i].mapped };
     if (arena->refused)
         return noc_no_memory(im->log, im->inputs[im->current].path);
     file->points = points;

@@ -55,11 +55,11 @@ static noc_status read_fd(noc_stream *s, void *data, size_t size, size_t *got) {
 
 /* ---- gzip ---- */
 
-static void *zlib_alloc(void *unused, unsigned items, unsigned size) { return noc_try_calloc(items, size); }
+static void *zlib_alloc(void *unused, unsigned items, unsigned size) { return noc_calloc(items, size); }
 static void zlib_free(void *unused, void *p) { free(p); }
 
 static noc_status gzip_start(noc_stream *s) {
-    if (!s->input && !(s->input = noc_try_alloc(INPUT_SIZE)))
+    if (!s->input && !(s->input = noc_alloc(INPUT_SIZE)))
         return fail(s, NOC_ERR_MEMORY, "out of memory");
     s->z = (z_stream){ .zalloc = zlib_alloc, .zfree = zlib_free };
     s->z_member_done = false;
@@ -195,7 +195,7 @@ static noc_status zip_open_archive(noc_stream *s) {
     if (index < 0)
         return fail(s, NOC_ERR_FORMAT, "zip archive without a file in it");
     s->member_index = (zip_uint64_t)index;
-    char *name = noc_try_format("%s!%s", s->path, zip_get_name(s->zip, s->member_index, ZIP_FL_ENC_GUESS));
+    char *name = noc_format("%s!%s", s->path, zip_get_name(s->zip, s->member_index, ZIP_FL_ENC_GUESS));
     if (!name)
         return fail(s, NOC_ERR_MEMORY, "out of memory");
     free(s->name);
@@ -253,12 +253,12 @@ static noc_status start(noc_stream *s) {
 }
 
 noc_stream *noc_stream_open(const char *path, noc_log *log, noc_status *status) {
-    noc_stream *s = noc_try_calloc(1, sizeof(*s));
+    noc_stream *s = noc_calloc(1, sizeof(*s));
     noc_status why = NOC_OK;
     if (s) {
         s->log = log;
-        s->path = noc_try_strdup(path);
-        s->name = noc_try_strdup(path);
+        s->path = noc_strdup(path);
+        s->name = noc_strdup(path);
         s->fd = -1;
         s->budget = import_budget_of(&noc_import_default_params());
     }
@@ -323,7 +323,7 @@ noc_status noc_stream_read_all(noc_stream *stream, noc_log *log, char **data, si
             cap = cap ? cap * 2 : NOC_MIN((size_t)noc_stream_size(stream) + (1 << 17), (size_t)1 << 30);
             noc_status status = import_affords(&stream->budget, (double)cap, noc_stream_name(stream), "its content",
                                                log);
-            char *grown = status ? NULL : noc_try_realloc(*data, cap);
+            char *grown = status ? NULL : noc_realloc(*data, cap);
             if (!grown) {
                 free(*data);
                 *data = NULL;

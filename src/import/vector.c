@@ -111,7 +111,7 @@ static char *hstore_string(char *p, char **out) {
 
 /* The text, whose memory it takes; NULL where that is refused. */
 static char *own(tag_buffer *b, char *text) {
-    if (text && array_try_push(&b->owned, text))
+    if (text && array_push(&b->owned, text))
         return text;
     free(text);
     b->refused = true;
@@ -119,12 +119,12 @@ static char *own(tag_buffer *b, char *text) {
 }
 
 static void add_tag(tag_buffer *b, const char *key, const char *value) {
-    if (!array_try_push(&b->tags, (lamp_tag){ key, value }))
+    if (!array_push(&b->tags, (lamp_tag){ key, value }))
         b->refused = true;
 }
 
 static void add_hstore(tag_buffer *b, const char *text) {
-    char *p = own(b, noc_try_strdup(text)), *key, *value;
+    char *p = own(b, noc_strdup(text)), *key, *value;
     while (p && (p = hstore_string(p, &key)) && (p = hstore_string(p, &value)))
         add_tag(b, key, value);
 }
@@ -142,7 +142,7 @@ static bool collect_fields(OGRFeatureH feature, OGRFeatureDefnH defn, bool osm, 
             add_hstore(b, text);
             continue;
         }
-        char *value = own(b, noc_try_format("%s%s", osm && !strcmp(key, "osm_id") ? "node/" : "", text));
+        char *value = own(b, noc_format("%s%s", osm && !strcmp(key, "osm_id") ? "node/" : "", text));
         if (value)
             add_tag(b, key, value);
     }
@@ -196,11 +196,11 @@ static bool layer_crs(OGRLayerH layer, bool *geographic, char **crs) {
         return true;
     const char *authority = OSRGetAuthorityName(srs, NULL), *code = OSRGetAuthorityCode(srs, NULL);
     if (authority && code)
-        return (*crs = noc_try_format("%s:%s", authority, code)) != NULL;
+        return (*crs = noc_format("%s:%s", authority, code)) != NULL;
     char *wkt = NULL;
     const char *const options[] = { "FORMAT=WKT2_2018", NULL };
     bool told = OSRExportToWktEx(srs, &wkt, options) == OGRERR_NONE && wkt && *wkt;
-    *crs = told ? noc_try_strdup(wkt) : NULL;
+    *crs = told ? noc_strdup(wkt) : NULL;
     CPLFree(wkt);
     return *crs || !told;
 }
@@ -246,7 +246,7 @@ static noc_status start_layer(map_reading *m, OGRLayerH layer) {
 static bool layer_kind(OGRLayerH layer, lamp_keys *keys, bool *tags, bool *inventory) {
     OGRFeatureDefnH defn = OGR_L_GetLayerDefn(layer);
     int count = OGR_FD_GetFieldCount(defn);
-    const char **names = noc_try_calloc((size_t)count + 1, sizeof(*names));
+    const char **names = noc_calloc((size_t)count + 1, sizeof(*names));
     if (!names)
         return false;
     *tags = false;

@@ -59,7 +59,7 @@ static void fill(noc_alias *a, const double *weight, double *left, uint32_t *sta
 
 noc_alias *noc_alias_create(const noc_scene *scene, noc_log *log) {
     size_t n = scene->lights.len;
-    noc_alias *a = noc_try_calloc(1, sizeof(*a));
+    noc_alias *a = noc_calloc(1, sizeof(*a));
     double *weight = noc_alloc_large(2 * n + 1, sizeof(*weight));
     uint32_t *stack = noc_alloc_large(n + 1, sizeof(*stack));
     if (!a || !weight || !stack || !(a->slots = noc_alloc_large(n + 1, sizeof(*a->slots)))) {

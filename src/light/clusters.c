@@ -288,7 +288,7 @@ static bool make_all(build *b, noc_pool *pool) {
 
 noc_clusters *noc_clusters_create(const noc_scene *scene, noc_pool *pool, noc_log *log) {
     size_t all = scene->lights.len;
-    build b = { .scene = scene, .c = noc_try_calloc(1, sizeof(*b.c)), .bounds = noc_alloc_large(all, sizeof(*b.bounds)),
+    build b = { .scene = scene, .c = noc_calloc(1, sizeof(*b.c)), .bounds = noc_alloc_large(all, sizeof(*b.bounds)),
                 .keys = noc_alloc_large(all, sizeof(*b.keys)), .spare = noc_alloc_large(all, sizeof(*b.spare)) };
     if (!b.c || !b.bounds || !b.keys || !b.spare || !make_all(&b, pool)) {
         noc_error(log, NOC_ERR_MEMORY, "light clusters: no memory for %zu lights", all);

@@ -264,7 +264,7 @@ static bool build_volumes(build *b) {
 
 noc_influence *noc_influence_create(const noc_scene *scene, const noc_influence_params *params, noc_log *log) {
     size_t all = scene->lights.len;
-    noc_influence *v = noc_try_calloc(1, sizeof(*v));
+    noc_influence *v = noc_calloc(1, sizeof(*v));
     build b = { .scene = scene, .params = params ? params : &(noc_influence_params){ 0 }, .v = v,
                 .since = noc_wall_seconds() };
     b.bounds = noc_alloc_large(all + 1, sizeof(*b.bounds));

@@ -23,7 +23,7 @@ uint64_t noc_cell_key(const float p[3], const float n[3], int level) {
 }
 
 noc_learned *noc_learned_create(size_t tiles, noc_log *log) {
-    noc_learned *t = noc_try_calloc(1, sizeof(*t));
+    noc_learned *t = noc_calloc(1, sizeof(*t));
     size_t count = 1024;
     while (count < 4 * tiles && count < MOST_CELLS)
         count *= 2;

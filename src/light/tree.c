@@ -82,7 +82,7 @@ static void grow(tree_build *b, uint32_t standing) {
 
 noc_tree *noc_tree_create(const noc_scene *scene, noc_pool *pool, noc_log *log) {
     size_t all = scene->lights.len, moving = 0;
-    noc_tree *t = noc_try_calloc(1, sizeof(*t));
+    noc_tree *t = noc_calloc(1, sizeof(*t));
     tree_build b = { .tree = t, .scene = scene, .pool = pool };
     bool ok = t && make_build(&b, all);
     uint32_t standing = ok ? take_lights(&b) : 0;

@@ -367,7 +367,7 @@ bool noc_tree_make_scratch(tree_build *b, size_t lights) {
     size_t chunks = chunk_count((uint32_t)lights);
     if (lights <= LARGE)
         return true;
-    struct tree_scratch *s = b->scratch = noc_try_calloc(1, sizeof(*s));
+    struct tree_scratch *s = b->scratch = noc_calloc(1, sizeof(*s));
     return s && (s->bounds = noc_alloc_large(chunks, sizeof(*s->bounds))) &&
            (s->parts = noc_alloc_large(chunks, sizeof(*s->parts))) &&
            (s->filled = noc_alloc_large(chunks, sizeof(*s->filled))) &&
@@ -463,17 +463,17 @@ noc_tree_child noc_tree_grow(tree_build *b, const noc_tree_part *part) {
     root.link = part->base;
     struct grow_run r = { .build = b };
     NOC_ARRAY(task) large = { 0 };
-    bool ok = array_try_push(&large, (task){ *part, all });
+    bool ok = array_push(&large, (task){ *part, all });
     while (ok && large.len) {
         task now = large.data[--large.len], next[2];
         if (now.part.count <= LARGE) {
-            ok = array_try_push(&r.tasks, now);
+            ok = array_push(&r.tasks, now);
             continue;
         }
         for (int more = split_task(b, &now, next, &b->tree->depth); ok && more--;)
-            ok = array_try_push(&large, next[more]);
+            ok = array_push(&large, next[more]);
     }
-    r.deepest = ok ? noc_try_calloc(r.tasks.len, sizeof(*r.deepest)) : NULL;
+    r.deepest = ok ? noc_calloc(r.tasks.len, sizeof(*r.deepest)) : NULL;
     b->no_memory = b->no_memory || !r.deepest;
     if (b->no_memory)
         r.tasks.len = 0;

@@ -38,7 +38,7 @@ noc_renderer *noc_renderer_create(const noc_scene *scene, const noc_renderer_par
         noc_error(log, NOC_ERR_UNSUPPORTED, "renderer: no backend \"%s\" in this build (there is: embree)", name);
         return NULL;
     }
-    noc_renderer *r = noc_try_alloc(sizeof(*r));
+    noc_renderer *r = noc_alloc(sizeof(*r));
     if (!r) {
         noc_error(log, NOC_ERR_MEMORY, "renderer: no memory");
         return NULL;
@@ -162,9 +162,9 @@ noc_image *noc_renderer_image(noc_renderer *r) {
     if (!image)
         return NULL;
     size_t n = (size_t)image->width * image->height;
-    image->emitter = noc_try_alloc(n);
+    image->emitter = noc_alloc(n);
     image->coverage = noc_alloc_large(n, 4 * sizeof(float));
-    uint8_t *wide = noc_try_alloc(n);
+    uint8_t *wide = noc_alloc(n);
     if (!image->emitter || !image->coverage || !wide) {
         free(wide);
         noc_image_destroy(image);

@@ -34,7 +34,7 @@ static int compare_doubles(const void *a, const void *b) {
 static void city_bounds(view_city *city) {
     const noc_scene *s = city->scene;
     size_t triangles = noc_scene_city_triangles(s), n = NOC_MIN(triangles, (size_t)SAMPLES);
-    double *v = noc_try_alloc(n * sizeof(*v));
+    double *v = noc_alloc(n * sizeof(*v));
     city->no_memory = city->no_memory || !v;
     for (int k = 0; v && k < 3; k++) {
         for (size_t i = 0; i < n; i++)
@@ -105,7 +105,7 @@ static double distance2(const double a[2], const double b[2]) { return hypot(a[0
 
 /* The densest lit part: the best window of a histogram of weights, the middle of the city where nothing shines. */
 static void find_hot(view_city *city) {
-    double *h = noc_try_calloc(HOT_CELLS * HOT_CELLS, sizeof(*h)), best = 0, cell[2];
+    double *h = noc_calloc(HOT_CELLS * HOT_CELLS, sizeof(*h)), best = 0, cell[2];
     size_t n = source_count(city);
     view_light l;
     city->no_memory = city->no_memory || !h;
@@ -146,7 +146,7 @@ static void gather_lights(view_city *city, double radius) {
         for (size_t i = 0; i < n; i++) {
             if (!source_get(city, i, &l) || distance2(l.p, city->hot) > radius)
                 continue;
-            if (pass && seen % stride == 0 && !array_try_push(&city->lights, l))
+            if (pass && seen % stride == 0 && !array_push(&city->lights, l))
                 city->no_memory = true;
             seen++;
         }

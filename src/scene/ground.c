@@ -155,14 +155,14 @@ static size_t lay_grid(struct noc_ground *g, const noc_scene *scene, size_t tria
 
 /* NULL: memory was refused. */
 static struct noc_ground *ground_build(const noc_scene *scene, size_t triangles) {
-    struct noc_ground *g = noc_try_calloc(1, sizeof(*g));
-    float (*samples)[SAMPLES] = noc_try_alloc(2 * sizeof(*samples));
+    struct noc_ground *g = noc_calloc(1, sizeof(*g));
+    float (*samples)[SAMPLES] = noc_alloc(2 * sizeof(*samples));
     size_t n = 0;
     if (g && samples) {
         size_t entries = lay_grid(g, scene, triangles, samples);
         n = (size_t)g->nx * (size_t)g->ny;
-        g->offsets = noc_try_calloc(n + 1, sizeof(*g->offsets));
-        g->ids = noc_try_alloc(entries * sizeof(*g->ids));
+        g->offsets = noc_calloc(n + 1, sizeof(*g->offsets));
+        g->ids = noc_alloc(entries * sizeof(*g->ids));
     }
     free(samples);
     if (!g || !g->offsets || !g->ids) {
@@ -197,7 +197,7 @@ static bool chain_new(struct noc_ground *g, const noc_scene *scene, size_t trian
         return false;
     if (!g->chains) {
         size_t n = (size_t)g->nx * (size_t)g->ny;
-        if (!(g->chains = noc_try_alloc(n * sizeof(*g->chains))))
+        if (!(g->chains = noc_alloc(n * sizeof(*g->chains))))
             return false;
         memset(g->chains, 0xff, n * sizeof(*g->chains));
     }
@@ -212,7 +212,7 @@ static bool chain_new(struct noc_ground *g, const noc_scene *scene, size_t trian
             for (int64_t x = lo[0]; x <= hi[0]; x++) {
                 uint32_t *first = &g->chains[index_of(g, x, y)];
                 ground_link link = { (uint32_t)t, *first };
-                if (!array_try_push(&g->links, link))
+                if (!array_push(&g->links, link))
                     return false;
                 *first = (uint32_t)g->links.len - 1;
             }

@@ -258,10 +258,10 @@ int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
         return -1;
     }
     uint32_t index = (uint32_t)scene->lights.len;
-    char *name = arena_try_strdup(&scene->names, l->name);
-    if ((l->name && !name) || !array_try_reserve(&scene->lights, scene->lights.len + 1) ||
-        !array_try_reserve(&scene->light_names, scene->lights.len + 1) ||
-        (l->moving && !array_try_reserve(&scene->moving, scene->moving.len + 1))) {
+    char *name = arena_strdup(&scene->names, l->name);
+    if ((l->name && !name) || !array_reserve(&scene->lights, scene->lights.len + 1) ||
+        !array_reserve(&scene->light_names, scene->lights.len + 1) ||
+        (l->moving && !array_reserve(&scene->moving, scene->moving.len + 1))) {
         noc_scene_out_of_memory(scene);
         return -1;
     }

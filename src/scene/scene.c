@@ -37,7 +37,7 @@ noc_material noc_class_material(noc_class cls) {
 }
 
 noc_scene *noc_scene_create(noc_log *log) {
-    noc_scene *scene = noc_try_calloc(1, sizeof(*scene));
+    noc_scene *scene = noc_calloc(1, sizeof(*scene));
     if (!scene) {
         noc_error(log, NOC_ERR_MEMORY, "scene: no memory");
         return NULL;
@@ -99,8 +99,8 @@ int noc_scene_add_material(noc_scene *scene, const noc_material *m) {
     noc_material_record r = { .f0 = m->f0, .alpha = m->roughness * m->roughness };
     memcpy(r.albedo, m->albedo, sizeof(r.albedo));
     memcpy(r.emission, m->emission, sizeof(r.emission));
-    if (!array_try_reserve(&scene->materials, scene->materials.len + 1) ||
-        !array_try_reserve(&scene->material_records, scene->materials.len + 1)) {
+    if (!array_reserve(&scene->materials, scene->materials.len + 1) ||
+        !array_reserve(&scene->material_records, scene->materials.len + 1)) {
         noc_scene_out_of_memory(scene);
         return -1;
     }
@@ -136,9 +136,9 @@ noc_status noc_scene_out_of_memory(noc_scene *scene) {
 /* Room for all of a mesh, and for Embree, which reads 16 bytes a vertex. */
 static bool reserve_mesh(noc_scene *s, const noc_mesh *mesh) {
     size_t triangles = s->triangle_light.len + mesh->triangle_count;
-    return (array_try_reserve(&s->positions, s->positions.len + mesh->vertex_count * 3 + 1) &&
-            array_try_reserve(&s->indices, 3 * triangles) && array_try_reserve(&s->triangle_material, triangles) &&
-            array_try_reserve(&s->triangle_light, triangles) && array_try_reserve(&s->meshes, s->meshes.len + 1)) ||
+    return (array_reserve(&s->positions, s->positions.len + mesh->vertex_count * 3 + 1) &&
+            array_reserve(&s->indices, 3 * triangles) && array_reserve(&s->triangle_material, triangles) &&
+            array_reserve(&s->triangle_light, triangles) && array_reserve(&s->meshes, s->meshes.len + 1)) ||
            noc_scene_out_of_memory(s) == NOC_OK;
 }
 
@@ -167,7 +167,7 @@ int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
         noc_error(scene->log, NOC_ERR_UNSUPPORTED, "mesh %s: more than 4294967295 vertices or triangles in a scene", name);
         return -1;
     }
-    char *kept_name = arena_try_strdup(&scene->names, mesh->name);
+    char *kept_name = arena_strdup(&scene->names, mesh->name);
     if (mesh->name && !kept_name)
         noc_scene_out_of_memory(scene);
     if (scene->no_memory || !reserve_mesh(scene, mesh))
@@ -232,7 +232,7 @@ static bool reserve_triangle_lights(noc_scene *scene) {
         for (size_t t = m->first_triangle; mesh_shines(scene, m) && t < (size_t)m->first_triangle + m->triangle_count; t++)
             lights += scene->triangle_light.data[t] == NOC_NO_LIGHT;
     }
-    return (array_try_reserve(&scene->lights, lights) && array_try_reserve(&scene->light_names, lights)) ||
+    return (array_reserve(&scene->lights, lights) && array_reserve(&scene->light_names, lights)) ||
            noc_scene_out_of_memory(scene) == NOC_OK;
 }
 
@@ -291,7 +291,7 @@ noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double ori
     for (int k = 0; k < 3; k++)
         if (!origin || !isfinite(origin[k]))
             return noc_error(scene->log, NOC_ERR_ARGUMENT, "scene: the origin must be three finite numbers");
-    char *name = noc_try_strdup(crs);
+    char *name = noc_strdup(crs);
     if (crs && !name)
         return noc_scene_out_of_memory(scene);
     free(scene->crs_name);

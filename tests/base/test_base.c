@@ -31,17 +31,18 @@ static void numbers(void **state) {
 static void arrays_and_maps(void **state) {
     NOC_ARRAY(int) a = { 0 };
     for (int i = 0; i < 1000; i++)
-        array_push(&a, i);
+        assert_true(array_push(&a, i));
     assert_int_equal(a.len, 1000);
     assert_int_equal(a.data[777], 777);
     array_free(&a);
     noc_map map = { 0 };
+    bool fresh;
     char key[32];
     for (int i = 0; i < 5000; i++) {
         snprintf(key, sizeof(key), "id_%d", i);
-        assert_true(map_put(&map, key, (uint64_t)i));
+        assert_true(map_put(&map, key, (uint64_t)i, &fresh) && fresh);
     }
-    assert_false(map_put(&map, "id_7", 70));
+    assert_true(map_put(&map, "id_7", 70, &fresh) && !fresh);
     uint64_t v = 0;
     assert_true(map_get(&map, "id_4999", &v) && v == 4999);
     assert_true(map_get(&map, "id_7", &v) && v == 70);
@@ -97,7 +98,7 @@ static void colliding_ids_do_not_flood(void **state) {
         for (int b = 0; b < BLOCKS; b++)
             for (int i = 0; i < 8; i++)
                 key[8 * b + i] = (char)('a' + (pair[b][id >> b & 1] >> 4 * i & 15));
-        assert_true(map_put(&map, key, id));
+        assert_true(map_put(&map, key, id, NULL));
         assert_true(id % 4096 || map_longest_probe(&map) < 1000);
     }
     assert_int_equal(map.len, 1 << BLOCKS);
@@ -115,24 +116,24 @@ static bool allocate_in_all_ways(void) {
     NOC_ARRAY(int) a = { 0 };
     noc_arena arena = { 0 };
     noc_map map = { 0 };
-    bool fresh = false, ok = array_try_push(&a, 7) && array_try_reserve(&a, 20) && array_try_append(&a, a.data, 1);
+    bool fresh = false, ok = array_push(&a, 7) && array_reserve(&a, 20) && array_append(&a, a.data, 1);
     assert_true(!ok || (a.len == 2 && a.data[1] == 7));
-    void *p[] = { noc_try_alloc(3), noc_try_calloc(2, 3), noc_try_strdup("text"), noc_try_strndup("text", 2), noc_try_format("%d", 5),
+    void *p[] = { noc_alloc(3), noc_calloc(2, 3), noc_strdup("text"), noc_strndup("text", 2), noc_format("%d", 5),
                   noc_alloc_large(2, 3), noc_pool_create(1), noc_log_create(NULL) };
     for (size_t i = 0; i < NOC_COUNT(p); i++)
         ok = ok && p[i];
     assert_true(!ok || !strcmp(p[3], "te"));
-    char *grown = p[2] ? noc_try_realloc(p[2], 100) : NULL;
+    char *grown = p[2] ? noc_realloc(p[2], 100) : NULL;
     ok = ok && grown;
     p[2] = grown ? grown : p[2];
     assert_true(!p[2] || !strcmp(p[2], "text"));
-    char *texts[] = { arena_try_strdup(&arena, "a"), arena_try_strndup(&arena, "ab", 1), arena_try_format(&arena, "%s", "a"),
-                      arena_try_alloc(&arena, 1 << 17) };
+    char *texts[] = { arena_strdup(&arena, "a"), arena_strndup(&arena, "ab", 1), arena_format(&arena, "%s", "a"),
+                      arena_alloc(&arena, 1 << 17) };
     for (size_t i = 0; i < NOC_COUNT(texts); i++) {
         assert_true(texts[i] || arena.refused);
         assert_true(!texts[i] || i == 3 || !strcmp(texts[i], "a"));
     }
-    ok = ok && !arena.refused && map_try_put(&map, "key", 1, &fresh) && fresh && map_try_put(&map, "key", 2, &fresh) && !fresh;
+    ok = ok && !arena.refused && map_put(&map, "key", 1, &fresh) && fresh && map_put(&map, "key", 2, &fresh) && !fresh;
     uint64_t value = 0;
     assert_true(!map_get(&map, "key", &value) == !map.len && (!ok || value == 2));
     noc_pool_destroy(p[6]);

@@ -32,7 +32,7 @@ static struct result run(const double *xyz, const size_t *sizes, size_t rings) {
     geo_polygon polygon = { .id = "p", .ring_count = rings, .ring_size = sizes, .xyz = xyz };
     geo_triangles t = { 0 };
     /* something before it: results are appended */
-    array_append(&t.xyz, ((double[]){ 7, 7, 7 }), 3);
+    assert_true(array_append(&t.xyz, ((double[]){ 7, 7, 7 }), 3));
     r.ok = geo_triangulate(&polygon, &t, r.issues);
     r.triangles = t.indices.len / 3;
     r.vertices = t.xyz.len / 3 - 1;

@@ -32,7 +32,7 @@ static int tear_down(void **state) {
 /* PNG of any kind. */
 static void append(png_structp png, png_bytep data, png_size_t n) {
     bytes *b = png_get_io_ptr(png);
-    array_append(&b->a, data, n);
+    assert_true(array_append(&b->a, data, n));
 }
 static void no_flush(png_structp png) { (void)png; }
 
@@ -135,7 +135,7 @@ static int64_t put(exr_const_context_t c, void *user, const void *data, uint64_t
     (void)e;
     bytes *b = user;
     if (at + n > b->a.len) {
-        array_reserve(&b->a, at + n);
+        assert_true(array_reserve(&b->a, at + n));
         memset(b->a.data + b->a.len, 0, at + n - b->a.len);
         b->a.len = at + n;
     }

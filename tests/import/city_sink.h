@@ -33,7 +33,7 @@ static noc_status city_count(city_sink *s) { return ++s->calls == s->stop_at ? N
 static noc_status city_crs(void *ctx, const char *name, const char *place, bool *lat_first) {
     city_sink *s = ctx;
     assert_non_null(place);
-    array_push(&s->crs, noc_strdup(name ? name : "(none)"));
+    assert_true(array_push(&s->crs, noc_strdup(name ? name : "(none)")));
     *lat_first = s->lat_first;
     return city_count(s);
 }
@@ -42,7 +42,7 @@ static noc_status city_begin(void *ctx, const geo_object *object) {
     city_sink *s = ctx;
     assert_false(s->in_object);
     s->in_object = true;
-    array_push(&s->objects, (seen_object){ object->kind, noc_strdup(object->id), object->lod, 0 });
+    assert_true(array_push(&s->objects, (seen_object){ object->kind, noc_strdup(object->id), object->lod, 0 }));
     return city_count(s);
 }
 
@@ -62,7 +62,7 @@ static noc_status city_polygon(void *ctx, const geo_polygon *polygon) {
     }
     p.xyz = noc_alloc(p.points * 3 * sizeof(double));
     memcpy(p.xyz, polygon->xyz, p.points * 3 * sizeof(double));
-    array_push(&s->polygons, p);
+    assert_true(array_push(&s->polygons, p));
     return city_count(s);
 }
 
@@ -75,7 +75,7 @@ static noc_status city_end(void *ctx) {
 
 static noc_status city_lamp(void *ctx, const geo_lamp *lamp) {
     city_sink *s = ctx;
-    array_push(&s->lamps, *lamp);
+    assert_true(array_push(&s->lamps, *lamp));
     return city_count(s);
 }
 

@@ -49,7 +49,7 @@ static noc_status sink_lamp(void *ctx, const geo_lamp *lamp) {
         return NOC_ERR_CANCELLED;
     geo_lamp copy = *lamp;
     copy.id = arena_strdup(&s->names, lamp->id);
-    array_push(&s->lamps, copy);
+    assert_true(array_push(&s->lamps, copy));
     return NOC_OK;
 }
 
@@ -61,7 +61,7 @@ static noc_status sink_columns(void *ctx, size_t points, const geo_column *colum
         const char **texts[] = { &c.name, &c.field, &c.unit, &c.example };
         for (size_t k = 0; k < NOC_COUNT(texts); k++)
             *texts[k] = arena_strdup(&s->names, *texts[k]);
-        array_push(&s->columns, c);
+        assert_true(array_push(&s->columns, c));
     }
     return NOC_OK;
 }

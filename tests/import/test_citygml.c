@@ -28,10 +28,10 @@ static void expect(const char *text, int lod, const char *ids) {
     NOC_ARRAY(char) seen = { 0 };
     for (size_t i = 0; i < sink.polygons.len; i++) {
         if (i)
-            array_push(&seen, ' ');
-        array_append(&seen, sink.polygons.data[i].id, strlen(sink.polygons.data[i].id));
+            assert_true(array_push(&seen, ' '));
+        assert_true(array_append(&seen, sink.polygons.data[i].id, strlen(sink.polygons.data[i].id)));
     }
-    array_push(&seen, 0);
+    assert_true(array_push(&seen, 0));
     assert_string_equal(seen.data, ids);
     array_free(&seen);
 }
@@ -440,10 +440,10 @@ static void test_hostile(void **state) {
     free(deep);
     NOC_ARRAY(char) many = { 0 };
     const char *head = "<CityModel" NAMESPACES("2.0", GML31) ">";
-    array_append(&many, head, strlen(head));
+    assert_true(array_append(&many, head, strlen(head)));
     for (int i = 0; i < 100; i++) {
         char *piece = noc_format(MEMBER("<b:Building><g:boundedBy><g:Envelope srsName='EPSG:%d'/></g:boundedBy></b:Building>"), i);
-        array_append(&many, piece, strlen(piece));
+        assert_true(array_append(&many, piece, strlen(piece)));
         free(piece);
     }
     assert_int_equal(city_read_bytes(&sink, many.data, many.len, 3), NOC_ERR_FORMAT);

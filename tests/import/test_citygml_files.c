@@ -223,7 +223,7 @@ static void test_cut_building(void **state) {
     assert_non_null(gz);
     NOC_ARRAY(char) text = { 0 };
     for (int n = 1; n > 0; text.len += (size_t)n) {
-        array_reserve(&text, text.len + 65536);
+        assert_true(array_reserve(&text, text.len + 65536));
         n = gzread(gz, text.data + text.len, 65536);
         assert_true(n >= 0);
     }

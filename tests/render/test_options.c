@@ -33,11 +33,12 @@ static const noc_option *find(const noc_option *table, const char *name) {
 
 /* Fields lie in their struct without overlapping, and names are unique over all tables, since one command line takes all. */
 static void rows_are_sound(void **state) {
+    bool fresh;
     noc_map names = { 0 };
     for (size_t t = 0; t < NOC_COUNT(tables); t++) {
         unsigned char used[sizeof(noc_render_params) + sizeof(noc_import_params)] = { 0 };
         for (const noc_option *o = tables[t].table(); o->name; o++) {
-            assert_true(map_put(&names, o->name, 1));
+            assert_true(map_put(&names, o->name, 1, &fresh) && fresh);
             assert_true(o->group && o->unit && o->help && *o->help && strlen(o->help) < 80);
             assert_int_equal(o->kind == NOC_OPTION_CHOICE, o->choices != NULL);
             assert_true(strncmp(o->name, "no-", 3) != 0);

@@ -62,7 +62,7 @@ static noc_status create_workers(embree_state *s) {
 }
 
 static noc_status create(const noc_scene *scene, const noc_renderer_params *params, noc_log *log, void **state) {
-    embree_state *s = noc_try_calloc(1, sizeof(*s));
+    embree_state *s = noc_calloc(1, sizeof(*s));
     if (!s || !(s->pool = noc_pool_create(params->threads))) {
         free(s);
         return noc_error(log, NOC_ERR_MEMORY, "embree: no memory for a renderer");

@@ -17,7 +17,7 @@ noc_status noc_embree_make_coverage(embree_state *s, const noc_frame *frame) {
     bool ok = c->place || (c->place = noc_alloc_large(blocks, sizeof(*c->place)));
     for (size_t i = 0; ok && i < blocks; i++)
         places += s->b.emitter[i] || (frame->accumulated && c->place[i]);
-    if (ok && array_try_reserve(&c->sums, places))
+    if (ok && array_reserve(&c->sums, places))
         return NOC_OK;
     return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for the emitters in a picture of %d x %d", s->b.width, s->b.height);
 }

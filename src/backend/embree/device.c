@@ -264,7 +264,7 @@ noc_status noc_embree_replay(embree_state *s, double *seconds) {
         const worker *w = &s->workers[i];
         whole = whole && !w->packets_lost;
         for (size_t k = 0; whole && k < w->packet_count; k += REPLAY_RUN)
-            whole = array_try_push(&items, (struct replay_item){ w->packets + k, NOC_MIN((size_t)REPLAY_RUN, w->packet_count - k) });
+            whole = array_push(&items, (struct replay_item){ w->packets + k, NOC_MIN((size_t)REPLAY_RUN, w->packet_count - k) });
     }
     if (whole) {
         struct replay r = { s, items.data };

@@ -42,7 +42,7 @@ FN influence_region region_load(const noc_found *f, int l) {
 /* The S_r that the query's points need for each volume near it. False: no memory. */
 static bool look_closer(const noc_influence *v, const noc_near *near, const noc_near_query *q, noc_found *f) {
     influence_region r = region_splat(q);
-    if (!array_try_reserve(&f->needs, near->groups.len * 16))
+    if (!array_reserve(&f->needs, near->groups.len * 16))
         return false;
     for (size_t i = 0; i < near->groups.len; i++) {
         const noc_near_group *group = &near->groups.data[i];
@@ -88,7 +88,7 @@ static void take_lights(const noc_influence *v, const noc_near *near, float scal
         for (; bits; bits &= bits - 1) {
             uint32_t volume = group->volume[__builtin_ctz(bits)], first = v->first ? v->first[volume] : volume;
             uint32_t end = v->first ? v->first[volume + 1] : first + 1;
-            if (!array_try_reserve(&f->ids, f->ids.len + end - first)) {
+            if (!array_reserve(&f->ids, f->ids.len + end - first)) {
                 f->no_memory = true;
                 return;
             }
@@ -146,7 +146,7 @@ static void influence_find(const noc_influence *v, const gblock *g, uint32_t lan
     float scale = fixed > 0 ? fixed : v->scale, close = influence_close * scale * v->volumes[v->volume_count / 2].root;
     memset(f->count, 0, sizeof(f->count));
     memset(f->from, 0, sizeof(f->from));
-    f->no_memory = !array_try_reserve(&f->ids, 1);
+    f->no_memory = !array_reserve(&f->ids, 1);
     if (f->no_memory)
         return;
     f->ids.data[0] = 0; /* where lanes look that found nothing */

@@ -57,7 +57,7 @@ static uint32_t children_near(const noc_influence_node *node, influence_region r
 /* NULL: no memory. */
 static noc_near_group *group_with_room(noc_near *out) {
     if (out->count % BLOCK == 0) {
-        if (!array_try_reserve(&out->groups, out->groups.len + 1)) {
+        if (!array_reserve(&out->groups, out->groups.len + 1)) {
             out->no_memory = true;
             return NULL;
         }

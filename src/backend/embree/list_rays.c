@@ -213,7 +213,7 @@ static void note_sightings(stage_run *run, worker *w, tile at) {
     }
     learned_tile *out = &run->s->learned_tiles[item];
     *out = (learned_tile){ (int)(w - run->s->workers), w->sightings.len, 0, t->bright };
-    if (!array_try_reserve(&w->sightings, w->sightings.len + (size_t)t->cells * list->count)) { /* they grow with the picture */
+    if (!array_reserve(&w->sightings, w->sightings.len + (size_t)t->cells * list->count)) { /* they grow with the picture */
         w->no_memory = true;
         return;
     }

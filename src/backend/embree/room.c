@@ -41,7 +41,7 @@ static void *wait_for_lock(void *lock) {
 bool noc_embree_room_for_threads(const embree_state *s) {
     pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
     size_t wanted = helpers(s), started = 0;
-    pthread_t *threads = noc_try_alloc((wanted + 1) * sizeof(*threads));
+    pthread_t *threads = noc_alloc((wanted + 1) * sizeof(*threads));
     pthread_attr_t attributes;
     if (!threads || pthread_attr_init(&attributes)) {
         free(threads);
