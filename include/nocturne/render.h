@@ -138,7 +138,8 @@ NOC_API noc_status noc_render_check(const noc_render_params *params, noc_log *lo
 /* Renders one frame; NULL params are the defaults. History and accumulation start anew when size, method or any other
  * parameter changes; accumulation also when the camera or a light moves (history then goes on). progress may be NULL; when it
  * cancels, the frame is dropped, what was accumulated stays (of the camera and parameters that it was made with, so nothing where
- * those have changed), and NOC_ERR_CANCELLED is returned. */
+ * those have changed), and NOC_ERR_CANCELLED is returned. So it is with NOC_ERR_MEMORY; where there was none for the picture's
+ * buffers, all starts anew. Either way the next frame may succeed. */
 NOC_API noc_status noc_renderer_frame(noc_renderer *renderer, const noc_camera *camera, const noc_render_params *params,
                                       const noc_progress *progress);
 NOC_API void noc_renderer_reset(noc_renderer *renderer); /* forgets history and accumulation, frame number too */

@@ -210,7 +210,41 @@ static void test_moved_frame(void **state) {
         moved_frame(&configs[i]);
 }
 
+/* ---- what is read from a renderer, and its trace floor ---- */
+
+static noc_status read_all(noc_renderer *r, const noc_render_params *p) {
+    double seconds;
+    noc_image *image = noc_renderer_image(r);
+    noc_channel *normal = image ? noc_renderer_aov(r, NOC_AOV_NORMAL) : NULL;
+    noc_status status = normal ? noc_renderer_trace_floor(r, camera(), p, &seconds) : NOC_ERR_MEMORY;
+    noc_image_destroy(image);
+    noc_channel_destroy(normal);
+    return status;
+}
+
+static void test_reading(void **state) {
+    noc_scene *s = yard();
+    noc_log *log = counting_log();
+    noc_render_params p = params_of(&configs[4]);
+    noc_renderer *r = two_threads(s, log);
+    bool reached;
+    next_frame(r, &p);
+    FOR_EACH_REFUSAL(reached) {
+        begin_refusal(n, later);
+        noc_status status = read_all(r, &p);
+        reached = end_refusal();
+        if (status != NOC_OK)
+            assert_refused(status, "reading");
+        assert_true(status == NOC_OK || reached);
+        assert_int_equal(read_all(r, &p), NOC_OK);
+    }
+    noc_renderer_destroy(r);
+    noc_log_destroy(log);
+    noc_scene_destroy(s);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_first_frame), cmocka_unit_test(test_moved_frame) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_first_frame), cmocka_unit_test(test_moved_frame),
+                                        cmocka_unit_test(test_reading) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
