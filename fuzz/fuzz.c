@@ -9,12 +9,24 @@ void fuzz_broken(const char *file, int line, const char *what) {
     abort();
 }
 
-bool fuzz_seldom(const uint8_t *data, size_t size, uint32_t once_in) {
+static uint32_t hash_of(const uint8_t *data, size_t size) {
     uint32_t hash = 2166136261u; /* FNV-1a */
     for (size_t i = 0; i < size; i++)
         hash = (hash ^ data[i]) * 16777619u;
-    return (hash ^ hash >> 15) % once_in == 0;
+    return hash ^ hash >> 15;
 }
+
+bool fuzz_seldom(const uint8_t *data, size_t size, uint32_t once_in) { return hash_of(data, size) % once_in == 0; }
+
+void fuzz_memory(const uint8_t *data, size_t size) {
+    uint32_t hash = hash_of(data, size) * 2654435769u; /* not the bits that fuzz_seldom looks at */
+    if (hash >> 30)
+        return;
+    uint32_t bits = (hash >> 24 & 15) % 13; /* the first allocations as often as later ones, which are more */
+    noc_refuse_allocation(1 + (hash >> 4 & ((1u << bits) - 1)), (hash >> 28 & 3) == 0);
+}
+
+void fuzz_memory_back(void) { noc_refuse_allocation(0, false); }
 
 static void count_error(void *user, noc_log_level level, const char *text) {
     FUZZ_REQUIRE(text && *text);

@@ -21,6 +21,10 @@ _Noreturn void fuzz_broken(const char *file, int line, const char *what);
 /* Once in so many inputs, by their bytes, so that what is found comes again: for what takes long. */
 bool fuzz_seldom(const uint8_t *data, size_t size, uint32_t once_in);
 
+/* Refuses memory in one run in 4, as their bytes say: one of the library's allocations, or all from one on. Until fuzz_memory_back. */
+void fuzz_memory(const uint8_t *data, size_t size);
+void fuzz_memory_back(void);
+
 /* A log that counts its errors in *errors. */
 noc_log *fuzz_log(int *errors);
 

@@ -12,6 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     noc_import_params params = noc_import_default_params();
     params.lod = (int)(size % 5);
     char *path = fuzz_file("city.gml", (fuzz_part){ data, size });
+    fuzz_memory(data, size);
     noc_stream *stream = noc_stream_open(path, log, NULL);
     noc_status status = NOC_ERR_IO;
     if (stream) {
@@ -19,6 +20,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         status = noc_reader_citygml.read(stream, &params, &s.sink, &format);
         FUZZ_REQUIRE(status || !s.in_object);
     }
+    fuzz_memory_back();
     FUZZ_REQUIRE(errors == (status != NOC_OK));
     noc_stream_close(stream);
     fuzz_sink_end(&s);

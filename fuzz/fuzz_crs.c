@@ -29,7 +29,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     int errors = 0;
     noc_log *log = fuzz_log(&errors);
     char *text = noc_format("%.*s", (int)size, (const char *)data);
+    fuzz_memory(data, size);
     geo_crs *crs = geo_crs_create(text, "fuzz", log, NULL);
+    fuzz_memory_back();
     FUZZ_REQUIRE(errors == !crs);
     if (crs && fuzz_seldom(data, size, 8))
         use(crs, log, &errors);

@@ -33,9 +33,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_part part[FUZZ_PARTS];
     int n = fuzz_parts(data, size, part), errors;
     noc_log *log = fuzz_log(&errors);
+    fuzz_memory(data, size);
     noc_image *x = read_part(part[0], log, &errors), *r = n > 1 && x ? read_part(part[1], log, &errors) : NULL;
     if (x && r)
         compare(x, r, log, &errors);
+    fuzz_memory_back();
     noc_image_destroy(x);
     noc_image_destroy(r);
     noc_log_destroy(log);

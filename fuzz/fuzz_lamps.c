@@ -14,6 +14,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_sink_start(&s, log);
     noc_import_params params = noc_import_default_params();
     char *path = fuzz_file("lamps", (fuzz_part){ data, size });
+    fuzz_memory(data, size);
     noc_stream *stream = noc_stream_open(path, log, NULL);
     size_t len = 0;
     noc_status status = stream ? NOC_OK : NOC_ERR_IO;
@@ -25,6 +26,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         status = noc_stream_rewind(stream);
         status = status ? status : reader->read(stream, &params, &s.sink, &format);
     }
+    fuzz_memory_back();
     FUZZ_REQUIRE(errors == (status != NOC_OK) && !s.in_object);
     noc_stream_close(stream);
     fuzz_sink_end(&s);

@@ -43,7 +43,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     }
     noc_scene *scene = noc_scene_create(log);
     noc_report *report = NULL;
+    fuzz_memory(data, size);
     noc_status status = noc_scene_load(scene, (const char *const *)paths, (size_t)n, &params, &report);
+    fuzz_memory_back();
     FUZZ_REQUIRE(errors == (status != NOC_OK));
     check_report(report);
     if (!status) {

@@ -6,7 +6,9 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     char *path = fuzz_file("spec.json", (fuzz_part){ data, size });
     experiment_spec spec;
+    fuzz_memory(data, size);
     int status = experiment_read_spec(&spec, path, true);
+    fuzz_memory_back();
     FUZZ_REQUIRE(status == CLI_OK || status == CLI_USAGE || status == CLI_FAILURE);
     if (!status) {
         FUZZ_REQUIRE(spec.scene_count && spec.camera_count && spec.config_count && spec.width > 0 && spec.height > 0);

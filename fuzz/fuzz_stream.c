@@ -30,6 +30,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     int errors = 0;
     noc_log *log = fuzz_log(&errors);
     char *path = fuzz_file("stream", (fuzz_part){ data, size });
+    fuzz_memory(data, size);
     noc_stream *stream = noc_stream_open(path, log, NULL);
     FUZZ_REQUIRE(errors == !stream);
     if (stream) {
@@ -37,6 +38,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         FUZZ_REQUIRE(a.status == b.status && (a.status || (a.sum == b.sum && a.bytes == b.bytes)));
     }
     noc_stream_close(stream);
+    fuzz_memory_back();
     noc_log_destroy(log);
     free(path);
     return 0;

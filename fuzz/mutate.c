@@ -40,7 +40,7 @@ void mutate_raw(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
 }
 
 void mutate_any(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
-    static const mutate_fn formats[] = { mutate_parts, mutate_gzip, mutate_zip, mutate_png, mutate_glb,
+    static const mutate_fn formats[] = { mutate_parts, mutate_wire, mutate_gzip, mutate_zip, mutate_png, mutate_glb,
                                          mutate_pbf, mutate_json, mutate_xml, mutate_lines };
     size_t at = out->len;
     for (size_t i = 0; mutate_random(random, 8) && i < NOC_COUNT(formats); i++) {

@@ -20,6 +20,7 @@ void mutate_number(const char *text, size_t size, uint32_t *random, char out[64]
 /* A format: false, with out as it was, where the bytes are not of it after all. */
 typedef bool (*mutate_fn)(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out);
 bool mutate_parts(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out);
+bool mutate_wire(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out);
 bool mutate_gzip(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out);
 bool mutate_zip(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out);
 bool mutate_png(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out);

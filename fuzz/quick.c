@@ -1,5 +1,6 @@
-/* What makes runs under libFuzzer quick, where other people's libraries are slow under sanitizers. Their code is not instrumented; what
- * they allocate for themselves need not be looked at, and what they prepare and never use need not be made. */
+/* What makes runs under libFuzzer quick, where other people's libraries are slow under sanitizers. Their code is not
+ * instrumented; what they allocate for themselves need not be looked at, and what they prepare and never use need not
+ * be made. */
 #include "fuzz.h"
 
 #include <dlfcn.h>
@@ -9,7 +10,8 @@ int LLVMFuzzerInitialize(int *argc, char ***argv);
 
 /* ---- SQLite, with which GDAL and PROJ read maps and their own databases: thousands of small blocks a run ---- */
 
-/* Blocks of 32 bytes to 64 KiB by powers of two, in lists of free ones; larger ones are the system's, beside AddressSanitizer's. */
+/* Blocks of 32 bytes to 64 KiB by powers of two, in lists of free ones; larger ones are the system's, beside
+ * AddressSanitizer's. */
 void *__libc_malloc(size_t size);
 void __libc_free(void *p);
 
@@ -96,7 +98,8 @@ int sqlite3_prepare_v2(void *db, const char *sql, int size, void **statement, co
     static int (*real)(void *, const char *, int, void **, const char **);
     if (!real)
         real = (int (*)(void *, const char *, int, void **, const char **))dlsym(RTLD_NEXT, "sqlite3_prepare_v2");
-    if (!strncmp(sql, "SELECT id, coords FROM nodes WHERE id IN (", 42) || !strncmp(sql, "SELECT id, data FROM ways WHERE id IN (", 39)) {
+    if (!strncmp(sql, "SELECT id, coords FROM nodes WHERE id IN (", 42) ||
+        !strncmp(sql, "SELECT id, data FROM ways WHERE id IN (", 39)) {
         *statement = NULL;
         return 0;
     }

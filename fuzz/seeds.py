@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""seeds.py FOLDER: small inputs of every format, made here, a folder a corpus. Fuzzers start from them, and tests replay them."""
-import base64, ctypes, ctypes.util, gzip, io, json, os, sqlite3, struct, sys, tempfile, zipfile, zlib
+"""seeds.py FOLDER RECORD HELPER: small inputs of every format, made here, a folder a corpus. Fuzzers start from them, and tests replay them.
+RECORD (record.c) notes what the library and the helper that reads maps and OBJ say of them."""
+import base64, ctypes, ctypes.util, gzip, io, json, os, sqlite3, struct, subprocess, sys, tempfile, zipfile, zlib
 
 here = os.path.dirname(os.path.abspath(__file__))
 root = sys.argv[1]
@@ -389,3 +390,10 @@ put("pipeline", "gltf", parts(embedded))
 put("pipeline", "two-cities", parts(whole, degrees))
 put("pipeline", "osm", parts(osm, whole))
 put("pipeline", "zip", parts(gzip.compress(whole.encode(), mtime=0), zipped(lamps__geojson=lamps)))
+
+# ---- the library and its helper ----
+
+for corpus in "wire", "request":
+    os.makedirs(os.path.join(root, corpus), exist_ok=True)
+foreign = [os.path.join(root, corpus, name) for corpus in ("obj", "osm", "pbf", "geojson", "gpkg", "fgb", "shp") for name in os.listdir(os.path.join(root, corpus))]
+subprocess.run([sys.argv[2], sys.argv[3], root, *sorted(foreign)], check=True)

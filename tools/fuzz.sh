@@ -29,6 +29,8 @@ compare image 8192 - -
 crs crs 2048 crs -
 spec spec 8192 spec -
 pipeline pipeline 32768 citygml -
+wire wire 16384 - -
+request request 4096 - -
 '
 
 # All of a corpus' runs: executions, processor time, coverage (edges that an input reaches, of the last run), findings.

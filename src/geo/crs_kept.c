@@ -4,7 +4,8 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-/* Nothing here is allocated by ourselves, so that a test that refuses the n-th allocation finds the same one whatever is kept. */
+/* Nothing here is allocated by ourselves, so that a test that refuses the n-th allocation finds the same one whatever
+ * is kept. */
 enum { CONTEXTS = 8, COPIES = 32 };
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;

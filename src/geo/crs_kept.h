@@ -1,5 +1,6 @@
-/* crs_kept: what PROJ found once. It opens its database for every context (1 ms) and searches it for every transform (5 to 40 ms), and
- * a scene of many files asks for the same few again and again. What is kept is bounded, and lives as long as the process. */
+/* crs_kept: what PROJ found once. It opens its database for every context (1 ms) and searches it for every transform
+ * (5 to 40 ms), and a scene of many files asks for the same few again and again. What is kept is bounded, and lives as
+ * long as the process. */
 #ifndef NOC_GEO_CRS_KEPT_H
 #define NOC_GEO_CRS_KEPT_H
 
