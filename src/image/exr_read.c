@@ -28,9 +28,11 @@ static noc_status status_of(exr_result_t code) {
     }
 }
 
+/* What this thread reads: the context must not be asked, whose lock may be held where an error is told. */
+static _Thread_local exr_reader *reading;
+
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message) {
-    void *user = NULL;
-    exr_reader *r = exr_get_user_data(context, &user) == EXR_ERR_SUCCESS ? user : NULL;
+    exr_reader *r = reading;
     if (r && r->status == NOC_OK)
         r->status = noc_error(r->log, status_of(code), "%s: EXR: %s", r->name, message);
 }
@@ -311,6 +313,7 @@ noc_image *image_read_exr(const uint8_t *data, size_t size, const char *name, no
     exr_reader r = { .data = data, .size = size, .name = name, .log = log };
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.user_data = &r;
+    reading = &r;
     init.read_fn = read_data;
     init.size_fn = query_size;
     init.error_handler_fn = on_error;
@@ -324,6 +327,7 @@ noc_image *image_read_exr(const uint8_t *data, size_t size, const char *name, no
         finish_image(&r);
     if (r.context)
         exr_finish(&r.context);
+    reading = NULL;
     free(r.mask);
     if (r.status != NOC_OK) {
         noc_image_destroy(r.image);

@@ -19,9 +19,11 @@ typedef struct exr_writer {
 
 static noc_status status_of(exr_result_t code) { return code == EXR_ERR_OUT_OF_MEMORY ? NOC_ERR_MEMORY : NOC_ERR_IO; }
 
+/* What this thread writes: the context must not be asked, whose lock may be held where an error is told. */
+static _Thread_local exr_writer *writing;
+
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message) {
-    void *user = NULL;
-    exr_writer *w = exr_get_user_data(context, &user) == EXR_ERR_SUCCESS ? user : NULL;
+    exr_writer *w = writing;
     if (w && w->status == NOC_OK)
         w->status = noc_error(w->log, status_of(code), "%s: EXR: %s", w->out->path, message);
 }
@@ -157,6 +159,7 @@ static void write_chunks(exr_writer *w) {
 static noc_status write_file(exr_writer *w, const meta_list *meta) {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.user_data = w;
+    writing = w;
     init.write_fn = write_data;
     init.error_handler_fn = on_error;
     init.alloc_fn = noc_alloc;
@@ -168,6 +171,7 @@ static noc_status write_file(exr_writer *w, const meta_list *meta) {
         exr_result_t result = exr_finish(&w->context);
         ok(w, result);
     }
+    writing = NULL;
     free(w->rgb);
     free(w->emitter);
     return w->status;
