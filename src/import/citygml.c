@@ -63,13 +63,28 @@ static void refuse_entities(void *user, const XML_Char *name, int is_parameter, 
     cg_fail(user, NOC_ERR_FORMAT, "the document declares an entity (\"%s\"); such files are refused", name);
 }
 
+/* expat goes on after some allocations that it was refused, and then finds a fault in the file. */
+static _Thread_local bool xml_refused;
+
+static void *xml_alloc(size_t size) {
+    void *p = noc_alloc(size);
+    xml_refused = xml_refused || !p;
+    return p;
+}
+
+static void *xml_realloc(void *old, size_t size) {
+    void *p = noc_realloc(old, size);
+    xml_refused = xml_refused || !p;
+    return p;
+}
+
 static noc_status xml_error(cg_parser *p) {
     enum XML_Error code = XML_GetErrorCode(p->xml);
+    if (xml_refused)
+        return cg_no_memory(p);
     if (code == XML_ERROR_UNKNOWN_ENCODING || code == XML_ERROR_INCORRECT_ENCODING)
         return cg_fail(p, NOC_ERR_UNSUPPORTED, "character encoding that is not read; UTF-8, UTF-16, ISO-8859-1 and "
                                                "US-ASCII are");
-    if (code == XML_ERROR_NO_MEMORY)
-        return cg_no_memory(p);
     if (code == XML_ERROR_NO_ELEMENTS || code == XML_ERROR_UNCLOSED_TOKEN)
         return cg_fail(p, NOC_ERR_FORMAT, "the file ends too early: is it cut? (%s)", XML_ErrorString(code));
     return cg_fail(p, NOC_ERR_FORMAT, "%s", XML_ErrorString(code));
@@ -88,7 +103,7 @@ static noc_status parse(cg_parser *p) {
         enum XML_Status xml = XML_ParseBuffer(p->xml, (int)got, ended);
         if (p->status)
             return p->status;
-        if (xml != XML_STATUS_OK)
+        if (xml != XML_STATUS_OK || xml_refused)
             return xml_error(p);
         double done = p->pass == 1 ? noc_stream_progress(p->stream) : 1;
         if (!p->sink->progress(p->sink->ctx, done))
@@ -103,7 +118,8 @@ static noc_status run_pass(cg_parser *p, int pass) {
     p->in_polygon = p->in_ring = false;
     p->text = CG_TEXT_NONE;
     p->ordinal = p->deferred_next = p->deferred_kept = 0;
-    p->xml = XML_ParserCreate_MM(NULL, &(XML_Memory_Handling_Suite){ noc_alloc, noc_realloc, free }, "\n");
+    xml_refused = false;
+    p->xml = XML_ParserCreate_MM(NULL, &(XML_Memory_Handling_Suite){ xml_alloc, xml_realloc, free }, "\n");
     if (!p->xml)
         return p->status = noc_no_memory(p->sink->log, noc_stream_name(p->stream));
     XML_SetUserData(p->xml, p);

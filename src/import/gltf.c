@@ -154,6 +154,8 @@ static noc_status add_primitive(gltf *g, const json_t *primitive, const gltf_fra
         xyz[3 * i + 2] = q[1];
     }
     int material = status ? -1 : gltf_material(g, primitive);
+    if (!status && material < 0)
+        status = NOC_ERR_UNSUPPORTED; /* said by the scene */
     corners c = { NULL, 0 };
     if (!status)
         status = g->place->points(g->place->ctx, xyz, count);
@@ -163,7 +165,7 @@ static noc_status add_primitive(gltf *g, const json_t *primitive, const gltf_fra
             status = noc_no_memory(g->log, g->name);
     }
     noc_mesh mesh = { .vertex_count = count, .positions = xyz, .triangle_count = c.count / 3, .indices = c.v, .material = material, .name = name };
-    if (!status && (material < 0 || (c.count && !import_triangles(g->scene, &mesh, g->issues))))
+    if (!status && c.count && !import_triangles(g->scene, &mesh, g->issues))
         status = NOC_ERR_UNSUPPORTED;
     free(c.v);
     free(index);

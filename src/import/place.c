@@ -169,6 +169,8 @@ static noc_status set_place(importer *im, geo_crs *crs, const double origin[3]) 
         im->scene->crs_free(im->scene->crs);
     im->scene->crs = crs;
     im->scene->crs_free = geo_crs_destroy;
+    if (im->scene->no_memory)
+        return NOC_ERR_MEMORY; /* said by the scene */
     return crs || im->scene->without_crs ? NOC_OK : noc_no_memory(im->log, im->placed_by);
 }
 
@@ -270,7 +272,9 @@ static noc_status settle(importer *im, const source_crs *source, const double po
         return status;
     }
     status = set_place(im, crs, preset ? im->scene->origin : (double[3]){ round(p[0]), round(p[1]), 0 });
-    return given ? set_given(im, given) : status; /* which is none where there is a CRS */
+    if (status)
+        geo_crs_destroy(given);
+    return status || !given ? status : set_given(im, given);
 }
 
 /* Makes the way from the source to the scene, once. */

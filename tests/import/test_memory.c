@@ -1,0 +1,287 @@
+/* Memory that is refused to an import: every allocation of small ones, alone and with all later ones. Each ends in NOC_ERR_MEMORY and
+ * one message, leaves no file, and, in `make asan`, no leak; or what is imported is the same without it. */
+#include "../memory.h"
+
+#include "geo/geo.h"
+#include "import/import.h"
+#include "import/load.h"
+#include <nocturne/nocturne.h>
+
+#include <dirent.h>
+#include <sys/stat.h>
+
+static char folder[200], scratch[220]; /* of inputs; TMPDIR, which must be empty after every import */
+
+static const char *path_of(const char *name) {
+    static char paths[4][500];
+    static int next;
+    char *path = paths[next++ % 4];
+    snprintf(path, sizeof(paths[0]), "%s/%s", folder, name);
+    return path;
+}
+
+static const char *write_text(const char *name, const char *text) {
+    FILE *f = fopen(path_of(name), "wb");
+    assert_non_null(f);
+    assert_int_equal(fwrite(text, 1, strlen(text), f), strlen(text));
+    fclose(f);
+    return name;
+}
+
+static size_t files_in(const char *of) {
+    DIR *dir = opendir(of);
+    size_t count = 0;
+    assert_non_null(dir);
+    for (struct dirent *e; (e = readdir(dir));)
+        count += strcmp(e->d_name, ".") && strcmp(e->d_name, "..");
+    closedir(dir);
+    return count;
+}
+
+/* ---- what is imported, in one number ---- */
+
+typedef struct digest { uint64_t sum; } digest;
+
+static void add_bytes(digest *d, const void *data, size_t size) {
+    for (const unsigned char *p = data; size--; p++)
+        d->sum = (d->sum ^ *p) * 0x100000001b3u;
+}
+
+static void add_text(digest *d, const char *text) { add_bytes(d, text ? text : "-", text ? strlen(text) + 1 : 1); }
+
+static void add_number(digest *d, double x) { add_bytes(d, &x, sizeof(x)); }
+
+static uint64_t digest_of(const noc_scene *scene, const noc_report *report) {
+    digest d = { 0xcbf29ce484222325u };
+    char key[NOC_CONTENT_KEY] = "";
+    if (scene->committed)
+        noc_scene_content(scene, key);
+    add_text(&d, key);
+    add_text(&d, scene->crs_name);
+    add_text(&d, scene->given_crs_name);
+    add_text(&d, scene->without_crs);
+    for (size_t i = 0; i < scene->meshes.len; i++)
+        add_text(&d, scene->meshes.data[i].name);
+    for (size_t i = 0; i < scene->light_names.len; i++)
+        add_text(&d, scene->light_names.data[i]);
+    for (size_t i = 0; i < noc_report_file_count(report); i++) {
+        const noc_report_file *f = noc_report_get_file(report, i);
+        const char *texts[] = { f->path, f->format, f->crs, f->crs_given };
+        const size_t numbers[] = { f->objects, f->polygons, f->triangles, f->lights, f->lamps, f->lamps_mapped, f->points, f->column_count, f->line_count };
+        for (size_t k = 0; k < NOC_COUNT(texts); k++)
+            add_text(&d, texts[k]);
+        for (size_t k = 0; k < NOC_COUNT(numbers); k++)
+            add_number(&d, (double)numbers[k]);
+        for (size_t k = 0; k < f->column_count; k++) {
+            add_text(&d, f->columns[k].name);
+            add_text(&d, f->columns[k].field);
+            add_text(&d, f->columns[k].example);
+            add_number(&d, (double)f->columns[k].values);
+        }
+        for (size_t k = 0; k < f->line_count; k++) {
+            add_text(&d, f->lines[k].reason);
+            add_text(&d, f->lines[k].examples);
+            add_number(&d, (double)f->lines[k].count);
+        }
+    }
+    return d.sum;
+}
+
+/* ---- imports ---- */
+
+typedef struct import {
+    const char *inputs[3]; /* files; NULL behind the last */
+    const char *crs, *scene_crs, *lamps, *columns;
+    bool isolate, inspect;
+    bool all; /* of the first 300 allocations every one; else of the first 40, and of later ones ever fewer */
+} import;
+
+static noc_log *log_;
+
+static noc_status run(const import *in, uint64_t number, bool and_later, bool *reached, uint64_t *sum) {
+    const char *paths[3];
+    size_t count = 0;
+    for (; count < 3 && in->inputs[count]; count++)
+        paths[count] = path_of(in->inputs[count]);
+    noc_import_params params = noc_import_default_params();
+    params.crs = in->crs;
+    params.scene_crs = in->scene_crs;
+    params.isolate = in->isolate;
+    if (in->lamps)
+        params.lamps = (noc_texts){ .text = { path_of(in->lamps) }, .count = 1 };
+    if (in->columns)
+        params.lamp_columns = (noc_texts){ .text = { in->columns }, .count = 1 };
+    noc_scene *scene = noc_scene_create(log_);
+    noc_report *report = NULL;
+    assert_non_null(scene);
+    begin_refusal(number, and_later);
+    noc_status status = load_inputs(scene, noc_readers, paths, count, &params, in->inspect, &report);
+    *reached = end_refusal();
+    *sum = digest_of(scene, report);
+    noc_report_destroy(report);
+    noc_scene_destroy(scene);
+    assert_int_equal(files_in(scratch), 0);
+    return status;
+}
+
+static void refuse_each(const char *what, const import *in) {
+    uint64_t whole, sum, tried = 0, refused = 0;
+    bool reached;
+    run(in, UINT64_MAX, false, &reached, &whole); /* what is kept between imports is kept now */
+    noc_status status = run(in, UINT64_MAX, false, &reached, &whole);
+    if (status != NOC_OK)
+        fail_msg("%s: status %d: %s", what, status, refusing.first_error);
+    for (int later = 0; later < 2; later++) {
+        reached = true;
+        uint64_t dense = in->isolate || later ? 0 : in->all ? 300 : 40; /* the helper costs a process each time */
+        for (uint64_t n = 1; reached; n += n < dense ? 1 : 1 + n / (in->isolate ? 4 : 10)) {
+            status = run(in, n, later, &reached, &sum);
+            if (status == NOC_OK)
+                assert_unharmed(sum == whole, what);
+            else
+                assert_refused(status, what);
+            tried++;
+            refused += status != NOC_OK;
+        }
+    }
+    assert_true(refused > tried / 2);
+    print_message("# %s: %llu imports\n", what, (unsigned long long)tried);
+}
+
+static const char links[] =
+    "<?xml version='1.0'?><core:CityModel xmlns:core='http://www.opengis.net/citygml/2.0' xmlns:bldg='http://www.opengis.net/citygml/building/2.0' "
+    "xmlns:frn='http://www.opengis.net/citygml/cityfurniture/2.0' xmlns:gen='http://www.opengis.net/citygml/generics/2.0' "
+    "xmlns:gml='http://www.opengis.net/gml' xmlns:xlink='http://www.w3.org/1999/xlink'>"
+#define MEMBER(xml) "<core:cityObjectMember>" xml "</core:cityObjectMember>"
+#define POLYGON(id, list) "<gml:surfaceMember><gml:Polygon gml:id='" id "'><gml:exterior><gml:LinearRing><gml:posList>" list \
+                          "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>"
+#define BUILDING(id, inside) MEMBER("<bldg:Building gml:id='" id "'><bldg:lod2MultiSurface><gml:MultiSurface>" inside \
+                                    "</gml:MultiSurface></bldg:lod2MultiSurface></bldg:Building>")
+    BUILDING("first", "<gml:surfaceMember xlink:href='#wall'/>" POLYGON("five", "0 0 0 9 0 0 9 0 5 5 0 9 0 0 5 0 0 0")) /* forwards */
+    BUILDING("second", POLYGON("wall", "0 9 0 9 9 0 9 9 6 0 9 6 0 9 0"))
+    BUILDING("third", "<gml:surfaceMember xlink:href='#wall'/><gml:surfaceMember xlink:href='#nowhere'/>" POLYGON("flat", "0 0 0 1 0 0 2 0 0 0 0 0"))
+    MEMBER("<frn:CityFurniture gml:id='lamp'><gen:stringAttribute name='Leuchtmittel'><gen:value>LED 30 W</gen:value></gen:stringAttribute>"
+           "<frn:function>1150</frn:function><frn:lod2Geometry><gml:MultiSurface>" POLYGON("pole", "20 0 0 20.1 0 0 20.1 0 5 20 0 5 20 0 0")
+           POLYGON("arm", "20 0 5 20 1.2 5 20 1.2 5.1 20 0 5.1 20 0 5") "</gml:MultiSurface></frn:lod2Geometry></frn:CityFurniture>")
+    "</core:CityModel>";
+
+static void citygml(void **state) {
+    refuse_each("CityGML", &(import){ { "citygml/whole.gml" }, .all = true });
+    refuse_each("CityGML with references between objects", &(import){ { write_text("links.gml", links) } });
+    refuse_each("CityGML, zip, another CRS", &(import){ { "citygml/old.zip" }, .scene_crs = "EPSG:25832" });
+    refuse_each("CityGML, gzip, looked at", &(import){ { "citygml/whole.gml.gz" }, .inspect = true });
+}
+
+static void gltf(void **state) {
+    refuse_each("glTF", &(import){ { "gltf/embedded.gltf" }, .all = true });
+    write_text("library.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"nodes\": [{\"mesh\": 0, \"children\": [1], \"name\": \"a name longer than sixteen letters\"}, {}],"
+                               "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"accessors\": [{\"bufferView\": 0, \"componentType\": 5126,"
+                               "\"count\": 3, \"type\": \"VEC3\"}], \"bufferViews\": [{\"buffer\": 0, \"byteLength\": 36}], \"buffers\": [{\"byteLength\": 36, \"uri\": "
+                               "\"side%20by%20side.bin\"}]}");
+    write_text("side by side.bin", "\x01\x01\x80?" "\x01\x01\x80?" "\x01\x01\x80?" "\x01\x01\x01\x40" "\x01\x01\x80?" "\x01\x01\x80?" "\x01\x01\x80?" "\x01\x01\x01\x40" "\x01\x01\x80?");
+    refuse_each("glTF with its buffer beside it", &(import){ { "library.gltf" }, .crs = "EPSG:25832" });
+}
+
+static void obj(void **state) {
+    write_text("house.obj", "mtllib house.mtl none.mtl\nv 0 0 0\nv 10 0 0\nv 10 0 8\nv 0 0 8\nv 5 0 12\nv 5 x 12\nusemtl wall\nf 1 2 3 5 4\nusemtl lamp\nf 1 3 2\nf 1 2 9\n");
+    write_text("house.mtl", "newmtl wall\nKd 0.5 0.4 0.3\nnewmtl lamp\nKe 20 18 15\nmap_Kd none.png\n");
+    refuse_each("OBJ", &(import){ { "house.obj" } });
+    refuse_each("OBJ by the helper", &(import){ { "house.obj" }, .isolate = true });
+}
+
+static void lamps(void **state) {
+    refuse_each("CSV", &(import){ { "csv/comma.csv" } });
+    refuse_each("CSV with a CRS", &(import){ { "csv/semicolon.csv" }, .crs = "EPSG:31468" });
+    write_text("kinds.csv", "x;y;art\n690110;5330110;Lichtmast mit Auslegerleuchte\n690150;5330110;Lichtmast\n690180;5330110;\"Mast \"\"alt\"\"\"\n");
+    refuse_each("CSV whose values tell", &(import){ { "kinds.csv" }, .crs = "EPSG:25832" });
+    write_text("named.csv", "x,y,pow\n690110,5330110,50\n690150,5330110,70\n");
+    refuse_each("CSV that is named, beside a city", &(import){ { "citygml/whole.gml" }, .lamps = "named.csv", .columns = "watts=pow,x=x,y=y", .crs = "EPSG:25832" });
+    refuse_each("Overpass", &(import){ { "overpass/nodes.json" } });
+}
+
+static void maps(void **state) {
+    if (!strstr(noc_features(), "gdal"))
+        skip();
+    refuse_each("GeoJSON", &(import){ { "geojson/plain.json" } });
+    refuse_each("OpenStreetMap", &(import){ { "osm/lamps.osm" } });
+    refuse_each("PBF", &(import){ { "pbf/lamps.pbf" } });
+    refuse_each("GeoPackage", &(import){ { "gpkg/lamps.gpkg" } });
+    refuse_each("Shapefile, zip", &(import){ { "shp/lamps.zip" } });
+    refuse_each("GeoJSON by the helper", &(import){ { "geojson/plain.json" }, .isolate = true });
+}
+
+/* ---- coordinate systems ---- */
+
+static noc_status use_crs(const char *from, const char *to) {
+    noc_status status;
+    geo_crs *a = geo_crs_create_plain(from, "file", log_, &status), *b = a ? geo_crs_create(to, NULL, log_, &status) : NULL;
+    geo_transform *t = b ? geo_transform_create(a, b, log_, &status) : NULL;
+    double p[3] = { 11, 48, 500 };
+    if (t)
+        assert_int_equal(geo_transform_points(t, p, 1), 0);
+    geo_transform_destroy(t);
+    geo_crs_destroy(b);
+    geo_crs_destroy(a);
+    return status;
+}
+
+static void coordinate_systems(void **state) {
+    static const char *const froms[] = { "OGC:CRS84", "EPSG:4326", "+proj=longlat +ellps=GRS80", "WGS 84" };
+    for (size_t i = 0; i < NOC_COUNT(froms); i++) {
+        bool reached;
+        assert_int_equal(use_crs(froms[i], "EPSG:25832"), NOC_OK);
+        FOR_EACH_REFUSAL(reached) {
+            begin_refusal(n, later);
+            noc_status status = use_crs(froms[i], "EPSG:25832");
+            reached = end_refusal();
+            if (reached)
+                assert_refused(status, froms[i]);
+            else
+                assert_int_equal(status, NOC_OK);
+        }
+    }
+}
+
+static void places_of_a_scene(void **state) {
+    noc_scene *scene = noc_scene_create(log_);
+    noc_import_params params = noc_import_default_params();
+    assert_int_equal(noc_scene_load(scene, (const char *[]){ path_of("citygml/whole.gml") }, 1, &params, NULL), NOC_OK);
+    double xyz[3] = { 0, 0, 0 };
+    assert_int_equal(noc_scene_from_local(scene, "EPSG:4326", xyz), NOC_OK);
+    bool reached;
+    FOR_EACH_REFUSAL(reached) {
+        double p[3] = { 0, 0, 0 };
+        begin_refusal(n, later);
+        noc_status status = noc_scene_from_local(scene, "EPSG:4326", p);
+        reached = end_refusal();
+        if (reached)
+            assert_refused(status, "from local");
+        assert_true(p[0] == (reached ? 0 : xyz[0]));
+    }
+    noc_scene_destroy(scene);
+}
+
+static int make_inputs(void **state) {
+    char command[900];
+    snprintf(folder, sizeof(folder), "/tmp/noc-memory-%ld", (long)getpid());
+    snprintf(scratch, sizeof(scratch), "%s/tmp", folder);
+    snprintf(command, sizeof(command), "mkdir -p %s && python3 %s/fuzz/seeds.py %s", scratch, getenv("NOC_SOURCE"), folder);
+    setenv("TMPDIR", scratch, 1);
+    log_ = counting_log();
+    return system(command);
+}
+
+static int remove_inputs(void **state) {
+    char command[900];
+    snprintf(command, sizeof(command), "rm -rf %s", folder);
+    noc_log_destroy(log_);
+    return system(command);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(coordinate_systems), cmocka_unit_test(citygml), cmocka_unit_test(gltf),  cmocka_unit_test(obj),
+        cmocka_unit_test(lamps),              cmocka_unit_test(maps),    cmocka_unit_test(places_of_a_scene),
+    };
+    return cmocka_run_group_tests(tests, make_inputs, remove_inputs);
+}
