@@ -299,7 +299,7 @@ static void read_lamp(cg_parser *p, lamp_tag *tags, size_t count, geo_lamp *lamp
     const cg_object *object = &p->object;
     lamp->id = object->features.data[0].id;
     for (size_t i = 0; i < count; i++)
-        lamp_keys_note(p->keys, tags[i].key, tags[i].value);
+        lamp_keys_note(p->keys, &tags[i]);
     for (size_t i = 0; i < object->attributes.len; i++)
         if (!object->attributes.data[i].generic)
             tags[count++] = (lamp_tag){ "fixture", object->attributes.data[i].value };

@@ -11,7 +11,8 @@ typedef struct csv {
     noc_stream *stream;
     noc_log *log;
     char separator;
-    char chunk[1 << 14];
+    bool special[2][256];   /* bytes that are not just part of a field's text, outside quotes and within */
+    char chunk[1 << 16];
     size_t len, pos;
     size_t line;            /* where the present record began, from 1 */
     size_t next_line;
@@ -33,6 +34,15 @@ static int next_byte(csv *c, noc_status *status) {
     return (unsigned char)c->chunk[c->pos++];
 }
 
+/* How many of the next bytes are a field's text and nothing else; 0 where the next one must be looked at, or read. */
+static size_t plain_run(const csv *c, bool quoted) {
+    const bool *special = c->special[quoted];
+    size_t end = c->pos;
+    while (end < c->len && !special[(unsigned char)c->chunk[end]])
+        end++;
+    return end - c->pos;
+}
+
 static noc_status bad(csv *c, const char *cause) {
     return noc_error(c->log, NOC_ERR_FORMAT, "%s:%zu: %s", noc_stream_name(c->stream), c->line, cause);
 }
@@ -46,6 +56,16 @@ static noc_status read_record(csv *c) {
     c->line = c->next_line;
     bool quoted = false, was_quoted = false;
     for (size_t field = 0;;) {
+        size_t run = plain_run(c, quoted);
+        if (run) {
+            if (c->text.len - field + run > MAX_FIELD + 1)
+                return bad(c, "a field longer than 1 MB");
+            if (!array_append(&c->text, c->chunk + c->pos, run))
+                return no_memory(c);
+            c->pos += run;
+            was_quoted = false;
+            continue;
+        }
         int ch = next_byte(c, &status);
         if (ch == -2)
             return status;
@@ -258,6 +278,11 @@ static noc_status read_header(csv *c, columns *cols) {
     if (c->len >= 3 && !memcmp(c->chunk, "\xef\xbb\xbf", 3))
         c->pos = 3;
     c->separator = find_separator(c->chunk + c->pos, c->len - c->pos);
+    for (int quoted = 0; quoted < 2; quoted++) {
+        memset(c->special[quoted], 0, sizeof(c->special[quoted]));
+        c->special[quoted][0] = c->special[quoted]['\n'] = c->special[quoted]['"'] = true;
+    }
+    c->special[0][(unsigned char)c->separator] = true;
     status = read_record(c);
     if (status || cols->count)
         return status;
@@ -272,11 +297,11 @@ static noc_status read_header(csv *c, columns *cols) {
 }
 
 /* Columns called x and y without a CRS: degrees if every one of them could be, and none of them lies where `given` (NULL
- * if there is none) is for. --crs is often meant for the city beside the table. */
+ * if there is none) is for. --crs is often meant for the city beside the table. One that cannot be is enough to know. */
 static noc_status looks_like_degrees(csv *c, columns *cols, geo_crs *given, bool *degrees) {
     size_t inside = 0, outside = 0;
-    noc_status status;
-    while (!(status = read_record(c)) && c->start.len) {
+    noc_status status = NOC_OK;
+    while (!outside && !(status = read_record(c)) && c->start.len) {
         double x, y;
         if (c->start.len != cols->count || !read_place(c, cols, &x, &y))
             continue;
@@ -317,19 +342,39 @@ static bool row_tags(csv *c, const columns *cols, lamp_writer *w, const char *ro
         return false;
     }
     for (size_t i = 0; i < cols->count; i++)
-        tags[i] = (lamp_tag){ cols->names[i], field(c, i) };
+        tags[i].value = field(c, i);
     return true;
+}
+
+/* Tags of the columns, their values open; free() them. NULL where memory is refused. */
+static lamp_tag *column_tags(const columns *cols) {
+    lamp_tag *tags = noc_calloc(cols->count + 1, sizeof(*tags));
+    for (size_t i = 0; i < cols->count && tags; i++)
+        tags[i] = (lamp_tag){ .key = cols->names[i], .known = lamp_keys_know(cols->keys, cols->names[i]) };
+    return tags;
+}
+
+/* "line 123". */
+static void name_row(char name[32], size_t line) {
+    char digits[24];
+    size_t n = 0;
+    for (; !n || line; line /= 10)
+        digits[n++] = (char)('0' + line % 10);
+    char *p = stpcpy(name, "line ");
+    while (n)
+        *p++ = digits[--n];
+    *p = 0;
 }
 
 /* Do the values say what the rows are? Leaves the table at its first row. */
 static noc_status read_kinds(csv *c, columns *cols, lamp_kinds *kinds) {
-    lamp_tag *tags = noc_calloc(cols->count + 1, sizeof(*tags));
+    lamp_tag *tags = column_tags(cols);
     if (!tags)
         return no_memory(c);
     noc_status status = NOC_OK;
     while (!status && !(status = read_record(c)) && c->start.len) {
         for (size_t i = 0; i < cols->count && c->start.len == cols->count; i++)
-            tags[i] = (lamp_tag){ cols->names[i], field(c, i) };
+            tags[i].value = field(c, i);
         if (c->start.len == cols->count && !lamp_kinds_count(kinds, tags, cols->count))
             status = no_memory(c);
     }
@@ -339,13 +384,13 @@ static noc_status read_kinds(csv *c, columns *cols, lamp_kinds *kinds) {
 }
 
 static noc_status read_rows(csv *c, const columns *cols, lamp_writer *w) {
-    lamp_tag *tags = noc_calloc(cols->count + 1, sizeof(*tags));
+    lamp_tag *tags = column_tags(cols);
     if (!tags)
         return no_memory(c);
     noc_status status;
     while (!(status = read_record(c)) && c->start.len) {
         char row[32];
-        snprintf(row, sizeof(row), "line %zu", c->line);
+        name_row(row, c->line);
         if (!row_tags(c, cols, w, row, tags))
             continue;
         double xyz[3];

@@ -37,7 +37,7 @@ static void note(lamp_writer *w, const lamp_tag *tags, size_t count, bool lamp) 
         return;
     for (size_t i = 0; i < count; i++)
         if (tags[i].key[0] != '@')
-            lamp_keys_note(w->keys, tags[i].key, tags[i].value);
+            lamp_keys_note(w->keys, &tags[i]);
 }
 
 noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count, const char *id, const double xyz[3]) {

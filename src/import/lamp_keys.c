@@ -91,6 +91,7 @@ lamp_meaning lamp_meaning_of(const char *key) {
     lamp_fold(key, false, folded, sizeof(folded));
     if (!find_with_unit(folded, find_column, &m))
         m = (lamp_meaning){ .scale = 1, .unit = "" };
+    lamp_roles_of(key, &m);
     return m;
 }
 
@@ -207,8 +208,11 @@ void lamp_keys_destroy(lamp_keys *keys) {
 
 static lamp_meaning find_meaning(const lamp_keys *keys, const char *name) {
     for (size_t i = 0; i < keys->maps.len; i++)
-        if (lamp_same_key(keys->maps.data[i].column, name))
-            return keys->maps.data[i].meaning;
+        if (lamp_same_key(keys->maps.data[i].column, name)) {
+            lamp_meaning m = keys->maps.data[i].meaning;
+            lamp_roles_of(name, &m);
+            return m;
+        }
     return lamp_meaning_of(name);
 }
 
@@ -238,6 +242,19 @@ lamp_meaning lamp_keys_meaning(lamp_keys *keys, const char *name) {
     return k ? k->meaning : keys ? find_meaning(keys, name) : lamp_meaning_of(name);
 }
 
+unsigned lamp_keys_know(lamp_keys *keys, const char *name) {
+    const key *k = get(keys, name);
+    return k ? (unsigned)(k - keys->keys.data) + 1 : 0;
+}
+
+static key *get_tag(lamp_keys *keys, const lamp_tag *tag) {
+    return tag->known ? &keys->keys.data[tag->known - 1] : get(keys, tag->key);
+}
+
+lamp_meaning lamp_tag_meaning(lamp_keys *keys, const lamp_tag *tag) {
+    return keys && tag->known ? get_tag(keys, tag)->meaning : lamp_keys_meaning(keys, tag->key);
+}
+
 /* The length of the first bytes of text that may be kept without cutting a character. */
 static size_t cut(const char *text) {
     size_t n = strlen(text);
@@ -248,8 +265,9 @@ static size_t cut(const char *text) {
     return n;
 }
 
-void lamp_keys_note(lamp_keys *keys, const char *name, const char *value) {
-    key *k = get(keys, name);
+void lamp_keys_note(lamp_keys *keys, const lamp_tag *tag) {
+    key *k = get_tag(keys, tag);
+    const char *value = tag->value;
     if (!k)
         return;
     k->noted = true;

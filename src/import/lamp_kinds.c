@@ -4,7 +4,11 @@
  * Laterne" among other places stays an inn. */
 #include "import/lamp_tags.h"
 
+/* Values of such columns come again and again: what was found of some of them. */
+enum { REMEMBERED = 16, REMEMBERED_SIZE = 48 };
 struct lamp_kind {
+    char remembered[REMEMBERED][REMEMBERED_SIZE];
+    signed char word[REMEMBERED];
     char *name;
     bool of_kinds;             /* called like a column of kinds */
     size_t given, words, sure; /* values; those with a word; those beyond doubt */
@@ -32,17 +36,23 @@ int lamp_object_word(const char *text) {
     /* street lamp, road lighting, security light, in Japanese and Chinese; folding drops what is not Latin */
     static const char *const as_written[] = { "街灯", "街路灯", "照明灯", "道路照明", "防犯灯", "路灯", "街路燈", "路燈" };
     char folded[256];
-    if (!text)
-        return 0;
-    for (size_t i = 0; i < NOC_COUNT(as_written); i++)
+    bool letters = false, foreign = false;
+    for (const char *p = text ? text : ""; *p; p++) {
+        foreign |= (unsigned char)*p >= 0x80;
+        letters |= (*p >= 'a' && *p <= 'z') || (*p >= 'A' && *p <= 'Z');
+    }
+    for (size_t i = 0; foreign && i < NOC_COUNT(as_written); i++)
         if (strstr(text, as_written[i]))
             return 2;
+    if (!letters)
+        return 0; /* no word is without one, whatever accents it has */
     lamp_fold(text, true, folded, sizeof(folded));
+    lamp_text t = lamp_text_of(folded);
     for (size_t i = 0; i < NOC_COUNT(sure); i++)
-        if (lamp_has_word(folded, sure[i]))
+        if (lamp_has_word(&t, sure[i]))
             return 2;
     for (size_t i = 0; i < NOC_COUNT(some); i++)
-        if (lamp_has_word(folded, some[i]))
+        if (lamp_has_word(&t, some[i]))
             return 1;
     return 0;
 }
@@ -69,6 +79,18 @@ static struct lamp_kind *find(const lamp_kinds *kinds, const char *name, size_t 
     return NULL;
 }
 
+static int word_of(struct lamp_kind *k, const char *text) {
+    size_t n = strnlen(text, REMEMBERED_SIZE);
+    if (!n || n == REMEMBERED_SIZE)
+        return lamp_object_word(text);
+    unsigned slot = ((unsigned char)text[0] + 3u * (unsigned char)text[n / 2] + 5u * (unsigned char)text[n - 1] + 7u * (unsigned)n) % REMEMBERED;
+    if (strcmp(k->remembered[slot], text)) {
+        memcpy(k->remembered[slot], text, n + 1);
+        k->word[slot] = (signed char)lamp_object_word(text);
+    }
+    return k->word[slot];
+}
+
 bool lamp_kinds_count(lamp_kinds *kinds, const lamp_tag *tags, size_t count) {
     enum { MOST = 4096 }; /* columns of a table */
     for (size_t i = 0; i < count; i++) {
@@ -83,7 +105,7 @@ bool lamp_kinds_count(lamp_kinds *kinds, const lamp_tag *tags, size_t count) {
         }
         if (!k || lamp_blank(tags[i].value))
             continue;
-        int word = lamp_object_word(tags[i].value);
+        int word = word_of(k, tags[i].value);
         k->given++;
         k->words += word > 0;
         k->sure += word > 1;
@@ -102,8 +124,8 @@ void lamp_kinds_decide(lamp_kinds *kinds) {
 
 bool lamp_kinds_tell(const lamp_kinds *kinds, const lamp_tag *tags, size_t count) {
     for (size_t i = 0; i < count; i++) {
-        const struct lamp_kind *k = find(kinds, tags[i].key, i);
-        if (k && k->tells && lamp_object_word(tags[i].value) > 0)
+        struct lamp_kind *k = find(kinds, tags[i].key, i);
+        if (k && k->tells && tags[i].value && word_of(k, tags[i].value) > 0)
             return true;
     }
     return false;

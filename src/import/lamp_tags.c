@@ -71,25 +71,45 @@ static const char *after_lifecycle(const char *key) {
 
 static bool is_no(const char *value) { return noc_ieq(value, "no") || noc_ieq(value, "false") || !strcmp(value, "0"); }
 
-/* What a tag of a lamp says about whether it shines on a street. */
-static lamp_verdict tag_verdict(lamp_keys *keys, const lamp_tag *tag) {
-    const char *k = tag->key, *v = tag->value;
-    if (!strcmp(k, "disused") || !strcmp(k, "abandoned") || !strcmp(k, "removed") || !strcmp(k, "demolished"))
-        return is_no(v) ? LAMP_ACTIVE : LAMP_INACTIVE;
-    if (!strcmp(k, "indoor") || !strcmp(k, "tunnel"))
-        return is_no(v) ? LAMP_ACTIVE : LAMP_INDOORS;
-    if (!strcmp(k, "location") && (!strcmp(v, "underground") || !strcmp(v, "indoor")))
-        return LAMP_INDOORS;
+static void makers_of(const char *key, lamp_meaning *m) {
+    const char *rest = after_lifecycle(key);
+    m->makes = lamp_key_tells(key);
+    m->after = rest && lamp_key_tells(rest) ? (unsigned)(rest - key) : 0;
+}
+
+void lamp_roles_of(const char *key, lamp_meaning *m) {
+    static const struct { const char *folded; lamp_role role; } roles[] = {
+        { "disused", LAMP_ROLE_GONE }, { "abandoned", LAMP_ROLE_GONE }, { "removed", LAMP_ROLE_GONE }, { "demolished", LAMP_ROLE_GONE },
+        { "indoor", LAMP_ROLE_INDOORS }, { "tunnel", LAMP_ROLE_INDOORS }, { "location", LAMP_ROLE_LOCATION },
+        { "whyinactive", LAMP_ROLE_WHY_NOT }, { "inactivereason", LAMP_ROLE_WHY_NOT },
+        { "inoperation", LAMP_ROLE_WORKS }, { "active", LAMP_ROLE_WORKS }, /* elsewhere a date since when it works */
+    };
     char folded[128];
-    if (lamp_keys_meaning(keys, k).field == LAMP_FIELD_STATUS) {
+    makers_of(key, m);
+    lamp_fold(key, false, folded, sizeof(folded));
+    m->role = LAMP_ROLE_NONE;
+    for (size_t i = 0; i < NOC_COUNT(roles); i++) {
+        bool tag = roles[i].role <= LAMP_ROLE_LOCATION; /* of OpenStreetMap: as it is written */
+        if (!strcmp(tag ? key : folded, roles[i].folded))
+            m->role = roles[i].role;
+    }
+}
+
+/* What a tag of a lamp says about whether it shines on a street. */
+static lamp_verdict tag_verdict(const lamp_meaning *m, const char *v) {
+    char folded[128];
+    if (m->field == LAMP_FIELD_STATUS && m->role != LAMP_ROLE_GONE) {
         lamp_fold(v, true, folded, sizeof(folded));
         return lamp_inactive_word(folded) ? LAMP_INACTIVE : LAMP_ACTIVE;
     }
-    lamp_fold(k, false, folded, sizeof(folded));
-    if (!strcmp(folded, "whyinactive") || !strcmp(folded, "inactivereason"))
-        return lamp_blank(v) ? LAMP_ACTIVE : LAMP_INACTIVE;
-    if (!strcmp(folded, "inoperation") || !strcmp(folded, "active")) /* elsewhere a date since when it works */
-        return is_no(v) ? LAMP_INACTIVE : LAMP_ACTIVE;
+    switch (m->role) {
+    case LAMP_ROLE_GONE: return is_no(v) ? LAMP_ACTIVE : LAMP_INACTIVE;
+    case LAMP_ROLE_INDOORS: return is_no(v) ? LAMP_ACTIVE : LAMP_INDOORS;
+    case LAMP_ROLE_LOCATION: return !strcmp(v, "underground") || !strcmp(v, "indoor") ? LAMP_INDOORS : LAMP_ACTIVE;
+    case LAMP_ROLE_WHY_NOT: return lamp_blank(v) ? LAMP_ACTIVE : LAMP_INACTIVE;
+    case LAMP_ROLE_WORKS: return is_no(v) ? LAMP_INACTIVE : LAMP_ACTIVE;
+    case LAMP_ROLE_NONE: break;
+    }
     return LAMP_ACTIVE;
 }
 
@@ -98,15 +118,21 @@ lamp_verdict lamp_verdict_of(lamp_keys *keys, const lamp_tag *tags, size_t count
     for (size_t i = 0; i < count && verdict != LAMP_ACTIVE; i++) {
         if (!tags[i].value || !*tags[i].value)
             continue;
-        if (makes_lamp(tags[i].key, tags[i].value))
+        lamp_meaning m;
+        if (tags[i].known && keys)
+            m = lamp_tag_meaning(keys, &tags[i]);
+        else
+            makers_of(tags[i].key, &m);
+        if (m.makes && makes_lamp(tags[i].key, tags[i].value))
             verdict = LAMP_ACTIVE;
-        const char *rest = after_lifecycle(tags[i].key);
-        if (rest && makes_lamp(rest, tags[i].value))
+        if (m.after && makes_lamp(tags[i].key + m.after, tags[i].value))
             verdict = LAMP_INACTIVE;
     }
     for (size_t i = 0; i < count && verdict == LAMP_ACTIVE; i++)
-        if (tags[i].value && *tags[i].value)
-            verdict = tag_verdict(keys, &tags[i]);
+        if (tags[i].value && *tags[i].value) {
+            lamp_meaning m = lamp_tag_meaning(keys, &tags[i]);
+            verdict = tag_verdict(&m, tags[i].value);
+        }
     return verdict;
 }
 
@@ -255,23 +281,31 @@ bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *la
     *lamp = (geo_lamp){ .xyz = { lamp->xyz[0], lamp->xyz[1], lamp->xyz[2] }, .height = NAN, .direction = NAN, .lumens = NAN,
                         .watts = NAN, .kelvin = NAN, .rgb = { -1, -1, -1 }, .id = lamp->id ? lamp->id : "" };
     reading r = { .lamp = lamp, .issues = issues, .times = 1, .scale = 1 };
-    lamp_meaning *meanings = noc_calloc(count + 1, sizeof(*meanings));
-    if (!meanings)
+    struct said { lamp_meaning meaning; const char *value; } few[32];
+    struct said *said = count > NOC_COUNT(few) ? noc_alloc(count * sizeof(*said)) : few;
+    if (!said)
         return false;
-    for (size_t i = 0; i < count; i++)
-        if (!lamp_blank(tags[i].value))
-            meanings[i] = lamp_keys_meaning(keys, tags[i].key);
-    bool known[LAMP_FIELD_TOTAL] = { [LAMP_FIELD_NONE] = true };
+    size_t n = 0;
+    int ranks = 0;
+    for (size_t i = 0; i < count; i++) {
+        lamp_meaning m = lamp_tag_meaning(keys, &tags[i]);
+        if (m.field == LAMP_FIELD_NONE || lamp_blank(tags[i].value))
+            continue;
+        said[n++] = (struct said){ m, tags[i].value };
+        ranks = NOC_MAX(ranks, m.rank + 1);
+    }
+    bool known[LAMP_FIELD_TOTAL] = { false };
     /* the id first, for the issues that the other fields raise */
     for (int pass = 0; pass < 2; pass++)
-        for (int rank = -1; rank < 10; rank++)
-            for (size_t i = 0; i < count; i++) {
-                const lamp_meaning *m = &meanings[i];
+        for (int rank = -1; rank < ranks; rank++)
+            for (size_t i = 0; i < n; i++) {
+                const lamp_meaning *m = &said[i].meaning;
                 if (m->rank != rank || known[m->field] || (m->field == LAMP_FIELD_ID) != (pass == 0))
                     continue;
-                known[m->field] = read_field(&r, m, tags[i].value);
+                known[m->field] = read_field(&r, m, said[i].value);
             }
-    free(meanings);
+    if (said != few)
+        free(said);
     if (!lamp->count && r.times > 1)
         lamp->count = r.times;
     if (lamp->source == GEO_SOURCE_GAS && !r.type_known)

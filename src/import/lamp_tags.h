@@ -10,6 +10,7 @@
 
 typedef struct lamp_tag {
     const char *key, *value; /* value NULL or "": not given */
+    unsigned known;          /* lamp_keys_know of the key, where a reader asked once for many tags; 0: not asked */
 } lamp_tag;
 
 /* ---- what keys mean (lamp_keys.c) ---- */
@@ -21,6 +22,11 @@ typedef enum lamp_field {
     LAMP_FIELD_LAT_LON, LAMP_FIELD_TOTAL
 } lamp_field;
 
+/* What a key tells of whether a lamp shines on a street. */
+typedef enum lamp_role {
+    LAMP_ROLE_NONE, LAMP_ROLE_GONE, LAMP_ROLE_INDOORS, LAMP_ROLE_LOCATION, LAMP_ROLE_WHY_NOT, LAMP_ROLE_WORKS
+} lamp_role;
+
 /* What a key means. */
 typedef struct lamp_meaning {
     lamp_field field;
@@ -28,7 +34,13 @@ typedef struct lamp_meaning {
     int strength;      /* towards lamp_columns_tell, which asks for 2 */
     double scale;      /* of values without a unit: .3048 where the key says feet */
     const char *unit;  /* "ft", "W", ...; "" where the field has none */
+    lamp_role role;
+    bool makes;        /* a key of tags that make a lamp (highway, man_made, ...) */
+    unsigned after;    /* such a key begins there, after a lifecycle prefix ("disused:"); 0: none */
 } lamp_meaning;
+
+/* role, makes and after of a key. */
+void lamp_roles_of(const char *key, lamp_meaning *meaning);
 
 /* By the words alone. Field NONE where they do not know it. */
 lamp_meaning lamp_meaning_of(const char *key);
@@ -39,8 +51,11 @@ lamp_keys *lamp_keys_create(const noc_import_params *params); /* params may be N
 bool lamp_keys_refused(const lamp_keys *keys); /* whether memory was refused to what was noted; looked at once, at the end */
 void lamp_keys_destroy(lamp_keys *keys);
 lamp_meaning lamp_keys_meaning(lamp_keys *keys, const char *name); /* keys may be NULL: by the words alone */
-/* Notes a value for the table of columns; blank ones count as none. */
-void lamp_keys_note(lamp_keys *keys, const char *name, const char *value);
+/* A number for the key, which makes asking about its tags fast; 0 where there are too many keys. */
+unsigned lamp_keys_know(lamp_keys *keys, const char *name);
+lamp_meaning lamp_tag_meaning(lamp_keys *keys, const lamp_tag *tag); /* keys may be NULL */
+/* Notes a tag's value for the table of columns; blank ones count as none. */
+void lamp_keys_note(lamp_keys *keys, const lamp_tag *tag);
 /* The values of this key say what is a lamp: its field is "kind". */
 void lamp_keys_tell(lamp_keys *keys, const char *name);
 /* Hands the columns noted so far, in the order met, to the sink. */
@@ -142,8 +157,20 @@ typedef struct lamp_column {
  * "poleheight", "mountheight". */
 const lamp_column *lamp_column_find(const char *folded);
 
-/* Is `text` in `folded` as whole words? A '*' at its end or beginning stands for the rest of a word. */
-bool lamp_has_word(const char *folded, const char *text);
+/* Folded text (with blanks), and which characters are in it, anywhere and at the beginning of words: that rules out most words. */
+typedef struct lamp_text {
+    const char *folded;
+    uint64_t any, first;
+} lamp_text;
+lamp_text lamp_text_of(const char *folded);
+static inline uint64_t lamp_bit(char c) { return 1ull << (c & 63); }
+
+/* Is `wanted` in the text as whole words? A '*' at its end or beginning stands for the rest of a word. */
+bool lamp_find_word(const lamp_text *text, const char *wanted);
+static inline bool lamp_has_word(const lamp_text *text, const char *wanted) {
+    bool may = *wanted == '*' ? text->any & lamp_bit(wanted[1]) : text->first & lamp_bit(*wanted);
+    return may && lamp_find_word(text, wanted);
+}
 
 /* Folds text into out (always terminated): ASCII lower case letters and digits; UTF-8 or Latin-1 accents dropped. With
  * blanks, every run of anything else becomes one blank. Returns the length. */

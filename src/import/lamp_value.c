@@ -15,6 +15,9 @@ bool lamp_blank(const char *text) {
                                         "nil", "not applicable", "not known" };
     if (!text)
         return true;
+    char c = *text;
+    if ((c >= '0' && c <= '9') || (((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')) && !strchr("nuoiNUOI", c)))
+        return false; /* begins like none of them */
     char folded[32];
     if (!lamp_fold(text, true, folded, sizeof(folded)))
         return true; /* "", "-", "?" */

@@ -53,6 +53,13 @@ size_t lamp_fold(const char *text, bool blanks, char *out, size_t size) {
     size_t n = 0;
     bool gap = false;
     for (const unsigned char *p = (const unsigned char *)(text ? text : ""); *p && n + 3 < size;) {
+        if ((*p >= 'a' && *p <= 'z') || (*p >= '0' && *p <= '9')) { /* nearly all of them, unless they are capitals */
+            if (gap && blanks)
+                out[n++] = ' ';
+            gap = false;
+            out[n++] = (char)*p++;
+            continue;
+        }
         char one[2];
         const char *s = fold_code(next_code(&p), one);
         if (!*s) {
@@ -247,21 +254,32 @@ typedef struct word {
     int value;
 } word;
 
-bool lamp_has_word(const char *folded, const char *text) {
-    bool suffix = *text == '*';
-    text += suffix;
-    size_t n = strlen(text);
-    bool prefix = text[n - 1] == '*';
+lamp_text lamp_text_of(const char *folded) {
+    lamp_text t = { .folded = folded };
+    for (const char *p = folded; *p; p++) {
+        t.any |= lamp_bit(*p);
+        t.first |= p == folded || p[-1] == ' ' ? lamp_bit(*p) : 0;
+    }
+    return t;
+}
+
+bool lamp_find_word(const lamp_text *text, const char *wanted) {
+    bool suffix = *wanted == '*';
+    wanted += suffix;
+    size_t n = strlen(wanted);
+    bool prefix = wanted[n - 1] == '*';
     n -= prefix;
-    for (const char *p = folded; *p; p++)
-        if (!strncmp(p, text, n) && (suffix || p == folded || p[-1] == ' ') && (prefix || !p[n] || p[n] == ' '))
+    for (const char *p = text->folded; *p; p++)
+        if (*p == *wanted && (suffix || p == text->folded || p[-1] == ' ') && !strncmp(p, wanted, n) &&
+            (prefix || !p[n] || p[n] == ' '))
             return true;
     return false;
 }
 
 static int find_word(const char *folded, const word *words, size_t count) {
+    lamp_text text = lamp_text_of(folded);
     for (size_t i = 0; i < count; i++)
-        if (lamp_has_word(folded, words[i].text))
+        if (lamp_has_word(&text, words[i].text))
             return words[i].value;
     return -1;
 }
@@ -363,8 +381,9 @@ bool lamp_colour_word(const char *folded, double *kelvin, float rgb[3]) {
         *kelvin = white;
         return true;
     }
+    lamp_text text = lamp_text_of(folded);
     for (size_t i = 0; i < NOC_COUNT(colours); i++)
-        if (lamp_has_word(folded, colours[i].text))
+        if (lamp_has_word(&text, colours[i].text))
             return lamp_hex_colour(colours[i].hex, rgb);
     return false;
 }
