@@ -1,16 +1,22 @@
 /* What reading one input may cost: files are written by strangers, and a few kilobytes can ask for gigabytes. */
 #include "import/import.h"
 
+#include <math.h>
 #include <unistd.h>
 
 #define FREE_EXPANSION 1073741824.0 /* bytes that any file may grow to: one lamp may be placed ten thousand times */
+
+static double most_expanded(const import_budget *b) {
+    return b->expansion > 0 ? NOC_MAX(b->expansion * b->stored, FREE_EXPANSION) : INFINITY;
+}
+
+bool import_fits(const import_budget *b, double bytes) { return bytes <= b->memory && bytes <= most_expanded(b); }
 
 noc_status import_affords(const import_budget *b, double bytes, const char *name, const char *what, noc_log *log) {
     if (bytes > b->memory)
         return noc_error(log, NOC_ERR_MEMORY, "%s: %s would take %.3g GB; the limit --max-memory is %.3g GB", name, what,
                          bytes / 1e9, b->memory / 1e9);
-    double most = NOC_MAX(b->expansion * b->stored, FREE_EXPANSION);
-    if (b->expansion > 0 && bytes > most)
+    if (bytes > most_expanded(b))
         return noc_error(log, NOC_ERR_MEMORY, "%s: %s would take %.3g GB, of a file of %.3g MB; the limit --max-expansion is "
                          "%g times", name, what, bytes / 1e9, b->stored / 1e6, b->expansion);
     return NOC_OK;

@@ -14,7 +14,6 @@
 #define CG_MAX_DEPTH 200          /* elements in elements */
 #define CG_MAX_NUMBERS (1u << 25) /* in one polygon; more is taken for an attack */
 #define CG_MAX_CRS 64             /* different srsNames in one file */
-#define CG_MAX_OBJECT ((size_t)1 << 30) /* bytes of one top-level object, and of what is shared between objects */
 #define CG_NONE UINT32_MAX
 #define CG_EMITTED UINT32_MAX
 
@@ -286,6 +285,8 @@ noc_status cg_fail(cg_parser *p, noc_status status, const char *fmt, ...) NOC_PR
 noc_status cg_no_memory(cg_parser *p);
 /* Counts a defect of the file; once, though the file may be read several times. */
 void cg_issue(cg_parser *p, bool repaired, const char *reason, const char *id);
+/* Stops the parser where what an object or the store takes is over the input's limits. */
+void cg_affords(cg_parser *p, size_t bytes, const char *what);
 /* Whether the object may still grow; false after an error. */
 bool cg_object_room(cg_parser *p);
 void cg_object_clear(cg_object *object);

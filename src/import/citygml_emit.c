@@ -256,10 +256,6 @@ static void store_items(cg_parser *p, size_t first, cg_stored *stored) {
     stored->found = true;
 }
 
-static void too_much_shared(cg_parser *p) {
-    cg_fail(p, NOC_ERR_MEMORY, "what objects share with each other needs more than %zu MiB of memory", CG_MAX_OBJECT >> 20);
-}
-
 /* Keeps what other objects want of this one. */
 static void collect(cg_parser *p) {
     bool selected = false;
@@ -276,8 +272,7 @@ static void collect(cg_parser *p) {
         size_t first = p->selection.items.len;
         cg_follow(p, target->id, 0, false);
         store_items(p, first, &p->store.entries.data[index]);
-        if (p->store.arena.bytes > CG_MAX_OBJECT)
-            too_much_shared(p);
+        cg_affords(p, p->store.arena.bytes, "what objects share, to this one");
     }
 }
 
@@ -294,8 +289,8 @@ static void want_missing(cg_parser *p) {
     }
     if (!array_push(&p->deferred, p->ordinal))
         cg_no_memory(p);
-    if (p->store.wanted.keys.bytes + p->store.entries.len * sizeof(cg_stored) > CG_MAX_OBJECT)
-        too_much_shared(p);
+    cg_affords(p, p->store.wanted.keys.bytes + p->store.entries.len * sizeof(cg_stored),
+               "references between objects, to this one");
 }
 
 void cg_store_free(cg_store *store) {

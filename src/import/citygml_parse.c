@@ -26,13 +26,20 @@ void cg_issue(cg_parser *p, bool repaired, const char *reason, const char *id) {
         geo_issue(p->sink->issues, repaired, reason, id);
 }
 
+void cg_affords(cg_parser *p, size_t bytes, const char *what) {
+    const import_budget *budget = noc_stream_budget(p->stream);
+    if (p->status || import_fits(budget, (double)bytes))
+        return;
+    char named[160];
+    noc_snprintf(named, sizeof(named), "%s (\"%.80s\")", what, cg_report_id(p, NULL, 0));
+    cg_stop(p, import_affords(budget, (double)bytes, noc_stream_name(p->stream), named, p->sink->log));
+}
+
 bool cg_object_room(cg_parser *p) {
     const cg_object *o = &p->object;
     size_t bytes = o->arena.bytes + o->features.len * sizeof(cg_feature) + o->geometries.len * sizeof(cg_geometry) +
                    o->surfaces.len * sizeof(cg_surface) + o->targets.len * sizeof(cg_target);
-    if (bytes > CG_MAX_OBJECT)
-        cg_fail(p, NOC_ERR_MEMORY, "one object (\"%s\") needs more than %zu MiB of memory", cg_report_id(p, NULL, 0),
-                CG_MAX_OBJECT >> 20);
+    cg_affords(p, bytes, "an object");
     return !p->status;
 }
 

@@ -210,19 +210,22 @@ static gltf_frame own_frame(const gltf *g, const json_t *node, const char *name)
     return out;
 }
 
-typedef struct pending_node { size_t index; gltf_frame frame; } pending_node;
+#define NO_PARENT SIZE_MAX
+/* parent: its place in the walk's list, before the node's own. */
+typedef struct walked_node { size_t index, parent; gltf_frame frame; } walked_node;
 typedef struct walk {
-    NOC_ARRAY(pending_node) stack;
+    NOC_ARRAY(walked_node) stack, list;
     bool *seen;
     size_t count;
 } walk;
 
-static noc_status push_node(gltf *g, walk *w, size_t index, const gltf_frame *frame) {
+static noc_status push_node(gltf *g, walk *w, size_t index, size_t parent) {
     w->seen[index] = true;
-    return array_push(&w->stack, (pending_node){ index, *frame }) ? NOC_OK : noc_no_memory(g->log, g->name);
+    bool pushed = array_push(&w->stack, (walked_node){ .index = index, .parent = parent });
+    return pushed ? NOC_OK : noc_no_memory(g->log, g->name);
 }
 
-static noc_status push_nodes(gltf *g, walk *w, const json_t *list, const gltf_frame *frame) {
+static noc_status push_nodes(gltf *g, walk *w, const json_t *list, size_t parent) {
     noc_status status = NOC_OK;
     for (size_t i = json_array_size(list); i-- > 0 && !status;) {
         const json_t *item = json_array_get(list, i);
@@ -234,14 +237,14 @@ static noc_status push_nodes(gltf *g, walk *w, const json_t *list, const gltf_fr
         } else if (w->seen[index]) {
             geo_issue(g->issues, false, "node that is in two places", id); /* a tree is asked for; a loop would not end */
         } else {
-            status = push_node(g, w, (size_t)index, frame);
+            status = push_node(g, w, (size_t)index, parent);
         }
     }
     return status;
 }
 
 /* A file without scenes is a library, but one may still ask to see it: all nodes that are no other's child. */
-static noc_status push_roots(gltf *g, walk *w, const json_t *nodes, const gltf_frame *frame) {
+static noc_status push_roots(gltf *g, walk *w, const json_t *nodes) {
     size_t count = w->count, i, k;
     bool *child = noc_calloc(count + 1, sizeof(*child));
     if (!child)
@@ -257,35 +260,34 @@ static noc_status push_roots(gltf *g, walk *w, const json_t *nodes, const gltf_f
     noc_status status = NOC_OK;
     for (i = count; i-- > 0 && !status;)
         if (!child[i])
-            status = push_node(g, w, i, frame);
+            status = push_node(g, w, i, NO_PARENT);
     free(child);
     return status;
 }
 
 /* The nodes of the scene that is to be shown. */
-static noc_status push_shown(gltf *g, walk *w, const json_t *nodes, const gltf_frame *frame) {
+static noc_status push_shown(gltf *g, walk *w, const json_t *nodes) {
     size_t shown = 0;
     const json_t *scenes = json_object_get(g->root, "scenes");
     if (!json_array_size(scenes))
-        return push_roots(g, w, nodes, frame);
+        return push_roots(g, w, nodes);
     bool told = !json_object_get(g->root, "scene") || gltf_index(g->root, "scene", &shown);
     const json_t *scene = told ? gltf_item(g, "scenes", shown) : NULL;
     if (!scene) {
         geo_issue(g->issues, true, "scene that is not there, the first one instead", "scene");
         scene = gltf_item(g, "scenes", 0);
     }
-    return push_nodes(g, w, json_object_get(scene, "nodes"), frame);
+    return push_nodes(g, w, json_object_get(scene, "nodes"), NO_PARENT);
 }
 
-/* parent becomes the node's own frame. */
-static noc_status add_node(gltf *g, const json_t *node, size_t index, gltf_frame *parent) {
+/* frame: the parent's, which becomes the node's own. */
+static noc_status add_node(gltf *g, const json_t *node, size_t index, gltf_frame *frame) {
     const char *name = json_string_value(json_object_get(node, "name"));
     char number[32];
     snprintf(number, sizeof(number), "node %zu", index);
     name = name ? name : number;
     gltf_frame own = own_frame(g, node, name);
-    *parent = times(parent, &own);
-    const gltf_frame *frame = parent;
+    *frame = times(frame, &own);
     noc_status status = gltf_light(g, node, frame, name);
     if (!status)
         status = gltf_camera(g, node, frame, name);
@@ -308,27 +310,59 @@ static noc_status add_node(gltf *g, const json_t *node, size_t index, gltf_frame
     return status;
 }
 
-static noc_status add_scene(gltf *g) {
+/* Bytes that reading the meshes of a node takes. */
+static double node_cost(const gltf *g, const json_t *node) {
+    size_t mesh, accessor, i;
+    double cost = 0;
+    const json_t *primitive, *shown = gltf_index(node, "mesh", &mesh) ? gltf_item(g, "meshes", mesh) : NULL;
+    json_array_foreach(json_object_get(shown, "primitives"), i, primitive) {
+        if (gltf_index(json_object_get(primitive, "attributes"), "POSITION", &accessor))
+            cost += gltf_cost(g, accessor, 3);
+        if (gltf_index(primitive, "indices", &accessor))
+            cost += gltf_cost(g, accessor, 1);
+    }
+    return cost;
+}
+
+/* The nodes that are shown, each after its parent. */
+static noc_status list_nodes(gltf *g, walk *w) {
     const json_t *nodes = json_object_get(g->root, "nodes");
-    walk w = { .count = json_array_size(nodes) };
-    w.seen = noc_calloc(w.count + 1, sizeof(*w.seen));
-    const gltf_frame whole = { { 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0 } };
-    noc_status status = w.seen ? push_shown(g, &w, nodes, &whole) : noc_no_memory(g->log, g->name);
-    while (w.stack.len && !status) {
-        pending_node at = w.stack.data[--w.stack.len];
-        const json_t *node = json_array_get(nodes, at.index);
-        status = add_node(g, node, at.index, &at.frame);
-        status = status ? status : push_nodes(g, &w, json_object_get(node, "children"), &at.frame);
+    w->count = json_array_size(nodes);
+    w->seen = noc_calloc(w->count + 1, sizeof(*w->seen));
+    noc_status status = w->seen ? push_shown(g, w, nodes) : noc_no_memory(g->log, g->name);
+    while (w->stack.len && !status) {
+        walked_node at = w->stack.data[--w->stack.len];
+        if (!array_push(&w->list, at))
+            return noc_no_memory(g->log, g->name);
+        status = push_nodes(g, w, json_object_get(json_array_get(nodes, at.index), "children"), w->list.len - 1);
+    }
+    return status;
+}
+
+/* What all nodes ask for is added up before the first of them is read. */
+static noc_status add_scene(gltf *g) {
+    static const gltf_frame whole = { { 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0 } };
+    const json_t *nodes = json_object_get(g->root, "nodes");
+    walk w = { .count = 0 };
+    double cost = 0;
+    noc_status status = list_nodes(g, &w);
+    for (size_t i = 0; i < w.list.len; i++)
+        cost += node_cost(g, json_array_get(nodes, w.list.data[i].index));
+    status = status ? status : import_affords(g->budget, cost, g->name, "what its nodes and meshes ask for", g->log);
+    for (size_t i = 0; i < w.list.len && !status; i++) {
+        walked_node *at = &w.list.data[i];
+        at->frame = at->parent == NO_PARENT ? whole : w.list.data[at->parent].frame;
+        status = add_node(g, json_array_get(nodes, at->index), at->index, &at->frame);
     }
     array_free(&w.stack);
+    array_free(&w.list);
     free(w.seen);
     return status;
 }
 
 static noc_status read_gltf(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,
                             const mesh_place *place, geo_issues *issues, const char **format) {
-    double made = 0;
-    gltf g = { .name = noc_stream_name(stream), .budget = noc_stream_budget(stream), .made = &made, .log = scene->log,
+    gltf g = { .name = noc_stream_name(stream), .budget = noc_stream_budget(stream), .log = scene->log,
                .scene = scene, .place = place, .issues = issues, .anywhere = params && params->allow_outside };
     char *data;
     size_t size, json_size = 0;

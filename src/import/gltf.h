@@ -23,7 +23,6 @@ typedef struct gltf {
     const mesh_place *place;
     geo_issues *issues;
     import_budget *budget; /* of the stream */
-    double *made;          /* bytes that accessors gave so far, each time they were used */
     json_t *root;
     const unsigned char *chunk; /* GLB: the binary one */
     size_t chunk_size;
@@ -46,6 +45,8 @@ json_t *gltf_extension(const json_t *object, const char *name);
 noc_status gltf_open_buffers(gltf *g);
 void gltf_close_buffers(gltf *g);
 /* An accessor's elements of `width` numbers each, as doubles (integers normalised where it says so). free() *out. */
+/* Bytes that reading it takes; 0 where it is refused. */
+double gltf_cost(const gltf *g, size_t accessor, size_t width);
 noc_status gltf_read(const gltf *g, size_t accessor, const char *type, size_t width, double **out, size_t *count);
 
 /* gltf_look.c */

@@ -241,6 +241,17 @@ static noc_status read_sparse(const gltf *g, const json_t *sparse, size_t access
     return NOC_OK;
 }
 
+double gltf_cost(const gltf *g, size_t accessor, size_t width) {
+    const json_t *a = gltf_item(g, "accessors", accessor);
+    component c;
+    size_t count, stride;
+    if (!gltf_index(a, "count", &count) || !count || count > MOST_ELEMENTS || !component_of(a, &c))
+        return 0;
+    bool viewed = json_object_get(a, "bufferView") != NULL;
+    bool there = viewed ? view_data(g, a, count, c.size * width, &stride) != NULL : count <= MOST_ZEROS;
+    return there ? (double)count * (double)(width * sizeof(double)) : 0;
+}
+
 noc_status gltf_read(const gltf *g, size_t accessor, const char *type, size_t width, double **out, size_t *count) {
     *out = NULL;
     const json_t *a = gltf_item(g, "accessors", accessor), *sparse = json_object_get(a, "sparse");
@@ -258,11 +269,6 @@ noc_status gltf_read(const gltf *g, size_t accessor, const char *type, size_t wi
         return gltf_error(g, "accessor %zu has no data (compressed meshes are not read)", accessor);
     if (!from && *count > MOST_ZEROS)
         return gltf_error(g, "accessor %zu: %zu elements without data but its sparse part", accessor, *count);
-    noc_status status = import_affords(g->budget, *g->made + (double)*count * (double)(width * sizeof(**out)), g->name,
-                                       "what its nodes and meshes ask for", g->log);
-    if (status)
-        return status;
-    *g->made += (double)*count * (double)(width * sizeof(**out));
     *out = noc_alloc_large(*count * width, sizeof(**out));
     if (!*out)
         return noc_no_memory(g->log, g->name);
@@ -270,7 +276,7 @@ noc_status gltf_read(const gltf *g, size_t accessor, const char *type, size_t wi
     for (size_t i = 0; i < *count; i++)
         for (size_t k = 0; k < width; k++)
             (*out)[i * width + k] = from ? decode(from + i * stride + k * c.size, c, normalised) : 0;
-    status = sparse ? read_sparse(g, sparse, accessor, c, normalised, width, *out, *count) : NOC_OK;
+    noc_status status = sparse ? read_sparse(g, sparse, accessor, c, normalised, width, *out, *count) : NOC_OK;
     if (status) {
         free(*out);
         *out = NULL;

@@ -17,6 +17,8 @@ typedef struct import_budget {
 import_budget import_budget_of(const noc_import_params *params);
 /* NOC_ERR_MEMORY after reporting where `what` of the input would take more bytes than it may. */
 noc_status import_affords(const import_budget *b, double bytes, const char *name, const char *what, noc_log *log);
+/* The same question without a word. */
+bool import_fits(const import_budget *b, double bytes);
 /* Bytes that parsing it takes, at most and roughly; adds up over pieces. */
 double import_json_cost(const char *text, size_t size);
 

@@ -83,7 +83,8 @@ static int word_of(struct lamp_kind *k, const char *text) {
     size_t n = strnlen(text, REMEMBERED_SIZE);
     if (!n || n == REMEMBERED_SIZE)
         return lamp_object_word(text);
-    unsigned slot = ((unsigned char)text[0] + 3u * (unsigned char)text[n / 2] + 5u * (unsigned char)text[n - 1] + 7u * (unsigned)n) % REMEMBERED;
+    const unsigned char *u = (const unsigned char *)text;
+    unsigned slot = (u[0] + 3u * u[n / 2] + 5u * u[n - 1] + 7u * (unsigned)n) % REMEMBERED;
     if (strcmp(k->remembered[slot], text)) {
         memcpy(k->remembered[slot], text, n + 1);
         k->word[slot] = (signed char)lamp_object_word(text);

@@ -131,7 +131,8 @@ typedef struct lamp_fate {
 } lamp_fate;
 
 /* Stands the lamps that were read. */
-static void stand_lamps(importer *im, const extent *e, const city_lamp_params *params, lamp_fate *fate) {
+static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_params *params, lamp_fate *fate) {
+    noc_status status = NOC_OK;
     *fate = (lamp_fate){ .given = im->lamps.len, .nearest = INFINITY };
     for (size_t i = 0; i < im->input_count; i++) {
         fate->lost += im->inputs[i].lamps_lost;
@@ -157,7 +158,11 @@ static void stand_lamps(importer *im, const extent *e, const city_lamp_params *p
         fate->mapped += lights > 0;
         if (i % 256 == 0 && !go_on(im, 0.9 + 0.1 * (double)i / (double)im->lamps.len))
             break;
+        im->current = p->input;
+        if (i % 256 == 0 && (status = sink_affords(im, 0)))
+            break;
     }
+    return status;
 }
 
 static void count_exchanged(importer *im, const extent *e, lamp_fate *fate) {
@@ -263,12 +268,12 @@ noc_status finish_city(importer *im) {
     city_lamp_params params = { im->params->lamp_height, im->params->lamp_lumens, im->params->lamp_kelvin, true,
                                 city_floor(scene), &tally };
     lamp_fate fate;
-    stand_lamps(im, &e, &params, &fate);
+    status = stand_lamps(im, &e, &params, &fate);
     if (im->cancelled)
         return NOC_ERR_CANCELLED;
     if (scene->no_memory)
         return NOC_ERR_MEMORY; /* said by the scene; what it means for the lamps is not */
-    status = refuse_useless(im, &e, &fate);
+    status = status ? status : refuse_useless(im, &e, &fate);
     if (status)
         return status;
     if (fate.outside && fate.mapped)

@@ -94,6 +94,7 @@ static noc_status recognise(importer *im, input *in, const noc_reader *const *re
     noc_stream *stream = noc_stream_open(in->path, im->log, &status);
     if (!stream)
         return status;
+    noc_stream_limit(stream, im->params);
     size_t size = 0;
     char *head = noc_alloc(HEAD_SIZE + 1);
     status = head ? read_head(stream, head, &size) : noc_no_memory(im->log, in->path);
@@ -204,6 +205,7 @@ static noc_status read_input(importer *im, size_t index) {
     input *in = &im->inputs[index];
     im->current = index;
     in->started = true;
+    im->scene_before = noc_scene_bytes(im->scene);
     double start = noc_wall_seconds();
     if (!in->reader) {
         noc_status status = read_builtin(im, in);

@@ -99,6 +99,7 @@ typedef struct importer {
     noc_arena names;
     /* progress */
     double bytes_total, bytes_before;
+    size_t scene_before;      /* bytes of the scene before the present input */
     bool cancelled;
 } importer;
 
@@ -151,6 +152,8 @@ void ahead_destroy(struct look_ahead *a);       /* NULL is allowed */
 /* sink.c */
 geo_sink sink_create(importer *im);
 noc_status sink_flush(importer *im);
+/* Is what waits and what the scene holds, and will hold with so many bytes more, within the limits? Else reported. */
+noc_status sink_affords(importer *im, size_t more);
 void sink_destroy(importer *im);
 int sink_material(importer *im, noc_class cls, const char *id);
 

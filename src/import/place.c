@@ -496,13 +496,16 @@ noc_status place_mesh(importer *im) {
 noc_status place_mesh_points(void *ctx, double *xyz, size_t count) {
     importer *im = ctx;
     bool usable;
+    noc_status status = sink_affords(im, 3 * count * sizeof(float));
+    if (status)
+        return status;
     if (im->mesh_from_origin) {
         double lo[3], hi[3];
         if (bounds_of(xyz, count, lo, hi))
             widen_extent(&im->inputs[im->current].file, lo, hi);
         return NOC_OK;
     }
-    noc_status status = place_points(im, xyz, count, "", &usable);
+    status = place_points(im, xyz, count, "", &usable);
     if (status || usable)
         return status;
     /* what has no place is NaN: the scene leaves out its triangles alone */

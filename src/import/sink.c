@@ -71,6 +71,19 @@ static double area_from_above(const geo_triangles *t) {
     return sum;
 }
 
+noc_status sink_affords(importer *im, size_t more) {
+    const input *in = &im->inputs[im->current];
+    size_t scene = noc_scene_bytes(im->scene) + more, made = scene - NOC_MIN(scene, im->scene_before);
+    size_t waiting = im->lamps.cap * sizeof(*im->lamps.data) + im->lost.cap * sizeof(*im->lost.data) + im->names.bytes +
+                     im->records.list.cap * sizeof(*im->records.list.data);
+    import_budget memory = import_budget_of(im->params), growth = { INFINITY, 0, (double)in->bytes };
+    memory.expansion = 0;
+    if (in->reader && in->reader->reads == NOC_READS_CITY) /* other readers see themselves to what files grow to */
+        growth.expansion = im->params->max_expansion;
+    noc_status status = import_affords(&memory, (double)(scene + waiting), in->path, "the scene with it", im->log);
+    return status ? status : import_affords(&growth, (double)made, in->path, "its part of the scene", im->log);
+}
+
 static noc_status flush_class(importer *im, noc_class cls) {
     geo_triangles *t = &im->surfaces[cls];
     if (!t->indices.len)
@@ -87,6 +100,9 @@ static noc_status flush_class(importer *im, noc_class cls) {
     if (mesh.material < 0 || noc_scene_add_mesh(im->scene, &mesh) < 0)
         return NOC_ERR_UNSUPPORTED; /* said by the scene */
     im->inputs[im->current].file.triangles += mesh.triangle_count;
+    status = sink_affords(im, 0);
+    if (status)
+        return status;
     if (is_open_ground(cls))
         im->open_area += area_from_above(t);
     im->has_roads = im->has_roads || cls == NOC_CLASS_ROAD || cls == NOC_CLASS_SIDEWALK;
@@ -211,6 +227,8 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     count_lamp(&im->inputs[im->current].file, lamp);
     if (im->inspect)
         return NOC_OK;
+    if (im->lamps.len == im->lamps.cap && (status = sink_affords(im, im->lamps.cap * sizeof(p)))) /* it doubles */
+        return status;
     p.lamp.id = arena_strdup(&im->names, lamp->id ? lamp->id : "");
     return p.lamp.id && array_push(&im->lamps, p) ? NOC_OK : noc_no_memory(im->log, im->inputs[im->current].path);
 }

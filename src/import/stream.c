@@ -11,6 +11,9 @@
 #include <zlib.h>
 
 #define INPUT_SIZE (64 * 1024)
+/* gzip data that has grown to so much, and to so many times its size, is measured before more of it is read. */
+#define STRANGE_SIZE ((uint64_t)16 << 20)
+#define STRANGE_GROWTH 100
 
 struct noc_stream {
     noc_log *log;
@@ -20,6 +23,7 @@ struct noc_stream {
     uint64_t delivered;  /* bytes handed out since open or rewind */
     noc_status failed;   /* a stream that failed once stays failed, and reports it once */
     bool ended;
+    bool measured;       /* that all of it is not too much is known, as far as it is told ahead */
     import_budget budget;
     /* plain and gzip */
     int fd;
@@ -291,9 +295,45 @@ void noc_stream_close(noc_stream *s) {
     free(s);
 }
 
+/* What is read piece by piece need not fit in memory. */
+static import_budget growth_of(const noc_stream *s) {
+    import_budget growth = s->budget;
+    growth.memory = INFINITY;
+    return growth;
+}
+
+/* How large gzip data is, or, where that is more than it may be, so much of it as tells: inflating alone is faster by far
+ * than reading. 0 where that cannot be told. */
+static uint64_t measure_gzip(const noc_stream *s) {
+    const import_budget growth = growth_of(s);
+    noc_status status;
+    noc_stream *again = noc_stream_open(s->path, NULL, &status);
+    unsigned char *sink = noc_alloc(INPUT_SIZE);
+    uint64_t size = 0;
+    size_t got = again && sink ? 1 : 0;
+    if (again)
+        again->measured = true, again->budget.expansion = 0;
+    while (got && import_fits(&growth, (double)size) && !noc_stream_read(again, sink, INPUT_SIZE, &got))
+        size += got;
+    free(sink);
+    noc_stream_close(again);
+    return size;
+}
+
+/* An archive that grows to too much is refused before what it holds is read, as far as it tells. */
+static noc_status foresee(noc_stream *s) {
+    bool strange = s->delivered > STRANGE_SIZE && s->delivered > STRANGE_GROWTH * s->consumed;
+    if (s->measured || !(s->budget.expansion > 0) || s->kind == STREAM_PLAIN || (s->kind == STREAM_GZIP && !strange))
+        return NOC_OK;
+    s->measured = true;
+    const import_budget growth = growth_of(s);
+    double size = (double)(s->kind == STREAM_ZIP ? s->member_size : measure_gzip(s));
+    return s->failed = import_affords(&growth, size, s->name, "its content", s->log);
+}
+
 noc_status noc_stream_read(noc_stream *s, void *data, size_t size, size_t *got) {
     *got = 0;
-    if (s->failed)
+    if (s->failed || foresee(s))
         return s->failed;
     if (s->ended || !size)
         return NOC_OK;
@@ -307,8 +347,7 @@ noc_status noc_stream_read(noc_stream *s, void *data, size_t size, size_t *got) 
         s->ended = !*got;
     }
     s->delivered += *got;
-    import_budget growth = s->budget; /* what is read piece by piece need not fit in memory */
-    growth.memory = INFINITY;
+    const import_budget growth = growth_of(s);
     if (!status && s->kind != STREAM_PLAIN)
         status = s->failed = import_affords(&growth, (double)s->delivered, s->name, "its content", s->log);
     return status;
@@ -373,6 +412,7 @@ bool noc_stream_trailing(const noc_stream *s) { return s->trailing; }
 import_budget *noc_stream_budget(noc_stream *s) { return &s->budget; }
 
 void noc_stream_limit(noc_stream *s, const noc_import_params *params) {
+    s->measured = false;
     s->budget = import_budget_of(params);
     s->budget.stored = (double)s->stored;
 }

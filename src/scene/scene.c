@@ -300,6 +300,13 @@ noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double ori
     return NOC_OK;
 }
 
+size_t noc_scene_bytes(const noc_scene *s) {
+    return s->positions.cap * sizeof(float) +
+           (s->indices.cap + s->triangle_material.cap + s->triangle_light.cap + s->moving.cap) * sizeof(uint32_t) +
+           s->lights.cap * sizeof(noc_light_record) + s->light_names.cap * sizeof(char *) + s->meshes.cap * sizeof(noc_scene_mesh) +
+           s->names.bytes;
+}
+
 void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info) {
     if (!info)
         return;
@@ -325,9 +332,5 @@ void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info) {
         memcpy(info->bounds_min, scene->bounds_min, sizeof(info->bounds_min));
         memcpy(info->bounds_max, scene->bounds_max, sizeof(info->bounds_max));
     }
-    info->memory_bytes = scene->positions.cap * sizeof(float) +
-                         (scene->indices.cap + scene->triangle_material.cap + scene->triangle_light.cap) * sizeof(uint32_t) +
-                         scene->lights.cap * sizeof(noc_light_record) + scene->light_names.cap * sizeof(char *) +
-                         scene->moving.cap * sizeof(uint32_t) +
-                         scene->meshes.cap * sizeof(noc_scene_mesh) + scene->names.bytes;
+    info->memory_bytes = noc_scene_bytes(scene);
 }

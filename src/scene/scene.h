@@ -81,6 +81,9 @@ static inline size_t noc_scene_city_triangle(const noc_scene *s, size_t i) {
     return i < s->backdrop_first ? i : i + s->backdrop_count;
 }
 
+/* Bytes that it takes, about. */
+size_t noc_scene_bytes(const noc_scene *s);
+
 /* query.c: index of the object that a triangle is of, for noc_scene_object_name. */
 size_t noc_scene_object_of(const noc_scene *scene, uint32_t triangle);
 

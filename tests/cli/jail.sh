@@ -162,6 +162,14 @@ with open("in/large.geojson", "w") as f:
     f.write(",[0,0]" * 3000000)
     f.write("]}}")
 END
+    python3 - <<'END'
+import gzip
+with open("in/rows.csv.gz", "wb") as f:
+    f.write(gzip.compress(b"longitude,latitude,lamp_type\n"))
+    f.write(gzip.compress(b"7.1,51.1,LED\n" * 700000) * 150)
+END
+    expect "an archive that grows to a gigabyte and more is an error" 1 'limit --max-expansion is 200 times' info in/rows.csv.gz
+    rm in/rows.csv.gz
     # Sanitizers take more addresses than any limit by themselves, and the helper has none there.
     limited() {
         if (ulimit -v 4000000 && "$program" --version) >/dev/null 2>&1; then

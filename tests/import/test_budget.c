@@ -51,6 +51,20 @@ static noc_status inspect(const char *name, double gigabytes, noc_report_file *f
     return status;
 }
 
+/* The same, loaded into a scene. */
+static noc_status load(const char *name, double gigabytes) {
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = on_message });
+    noc_import_params params = noc_import_default_params();
+    params.max_memory = gigabytes;
+    noc_scene *scene = noc_scene_create(log);
+    error_count = 0;
+    *errors = 0;
+    noc_status status = noc_scene_load(scene, (const char *[]){ path_of(name) }, 1, &params, NULL);
+    noc_scene_destroy(scene);
+    noc_log_destroy(log);
+    return status;
+}
+
 static void refused(const char *name, double gigabytes, const char *limit) {
     noc_report_file file;
     noc_status status = inspect(name, gigabytes, &file);
@@ -142,6 +156,101 @@ static void gltf_copies_are_bounded(void **state) {
     allowed("copies.gltf", 0.05, 400);
 }
 
+/* What all nodes ask for is known before the first is read: 40 nodes of 4 million zeros are 3.8 GB, and nothing of that is taken. */
+static void gltf_is_added_up_first(void **state) {
+    FILE *f = create("zeros.gltf");
+    fputs("{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":48,\"uri\":\"data:application/octet-stream;base64,"
+          "AAAAAAEAAAACAAAAAAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":12},"
+          "{\"buffer\":0,\"byteOffset\":12,\"byteLength\":36}],\"accessors\":[{\"componentType\":5126,\"type\":\"VEC3\",\"count\":4000000,"
+          "\"sparse\":{\"count\":3,\"indices\":{\"bufferView\":0,\"componentType\":5125},\"values\":{\"bufferView\":1}}}],"
+          "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0}", f);
+    for (int i = 1; i < 40; i++)
+        fputs(",{\"mesh\":0}", f);
+    fputs("]}", f);
+    fclose(f);
+    const char *says = "what its nodes and meshes ask for would take 3.84 GB, of a file of";
+    refused("zeros.gltf", 0, says);
+    assert_non_null(strstr(errors, "--max-expansion is 200 times"));
+}
+
+/* gzip that grows to 1.2 GB is refused once it looks strange, and not after a gigabyte of it. */
+static void archives_are_measured(void **state) {
+    enum { PIECE = 8 << 20, TIMES = 150 };
+    unsigned char *rows = noc_alloc(PIECE), *packed = noc_alloc(PIECE);
+    for (size_t i = 0; i < PIECE; i++)
+        rows[i] = (unsigned char)"1.5,2.5,x\n"[i % 10];
+    z_stream z = { .next_in = rows, .avail_in = PIECE, .next_out = packed, .avail_out = PIECE };
+    assert_int_equal(deflateInit2(&z, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
+    assert_int_equal(deflate(&z, Z_FINISH), Z_STREAM_END);
+    FILE *f = create("rows.csv.gz");
+    for (int i = 0; i < TIMES; i++)
+        assert_int_equal(fwrite(packed, 1, z.total_out, f), z.total_out);
+    fclose(f);
+    deflateEnd(&z);
+    free(rows);
+    free(packed);
+    noc_log *log = noc_log_create(&(noc_log_params){ .message = on_message });
+    noc_status status;
+    noc_stream *s = noc_stream_open(path_of("rows.csv.gz"), log, &status);
+    char *some = noc_alloc(1 << 16);
+    error_count = 0;
+    for (size_t got = 1; !status && got;)
+        status = noc_stream_read(s, some, 1 << 16, &got);
+    assert_int_equal(status, NOC_ERR_MEMORY);
+    assert_int_equal(error_count, 1);
+    assert_non_null(strstr(errors, "its content would take 1.07 GB"));
+    assert_true(noc_stream_read_bytes(s) < 20 << 20); /* not after a gigabyte of them */
+    noc_stream_close(s);
+    s = noc_stream_open(path_of("rows.csv.gz"), log, &status);
+    noc_stream_budget(s)->expansion = 2000; /* measured, found to be within it, and read */
+    uint64_t total = 0;
+    for (size_t got = 1; got; total += got)
+        assert_int_equal(noc_stream_read(s, some, 1 << 16, &got), NOC_OK);
+    assert_int_equal(total, (uint64_t)PIECE * TIMES);
+    noc_stream_close(s);
+    noc_log_destroy(log);
+    free(some);
+}
+
+/* Lamps that wait, and what they and their poles become in the scene. */
+static void lamps_are_bounded(void **state) {
+    FILE *f = create("many.csv");
+    fputs("x,y,lamp_type\n", f);
+    for (int i = 0; i < 20000; i++)
+        fprintf(f, "%d,%d,LED\n", 300000 + i % 150 * 30, 5600000 + i / 150 * 30);
+    fclose(f);
+    assert_int_equal(load("many.csv", 0.004), NOC_ERR_MEMORY);
+    assert_non_null(strstr(errors, "many.csv: the scene with it would take"));
+    assert_non_null(strstr(errors, "the limit --max-memory is 0.004 GB"));
+    assert_int_equal(load("many.csv", 0.03), NOC_ERR_MEMORY); /* they can wait in that, but not stand */
+    assert_int_equal(error_count, 1);
+    assert_int_equal(load("many.csv", 1), NOC_OK);
+}
+
+/* A city's surfaces, and one object that is most of it. */
+static void cities_are_bounded(void **state) {
+    FILE *f = create("city.gml");
+    fputs("<CityModel xmlns=\"http://www.opengis.net/citygml/2.0\" xmlns:gml=\"http://www.opengis.net/gml\""
+          " xmlns:bldg=\"http://www.opengis.net/citygml/building/2.0\">", f);
+    for (int i = 0; i < 2000; i++) {
+        if (i < 1000 || i == 1000)
+            fprintf(f, "<cityObjectMember><bldg:Building gml:id=\"b%d\">", i);
+        for (int k = 0; k < 10; k++) {
+            int x = 10 * i + k;
+            fprintf(f, "<bldg:lod1MultiSurface><gml:MultiSurface><gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing>"
+                       "<gml:posList srsDimension=\"3\">%d 0 0 %d 1 0 %d 1 5 %d 0 5 %d 0 0</gml:posList></gml:LinearRing></gml:exterior>"
+                       "</gml:Polygon></gml:surfaceMember></gml:MultiSurface></bldg:lod1MultiSurface>", x, x, x, x, x);
+        }
+        if (i < 1000 || i == 1999)
+            fputs("</bldg:Building></cityObjectMember>", f);
+    }
+    fputs("</CityModel>", f);
+    fclose(f);
+    refused("city.gml", 0.0005, "city.gml: the scene with it would take");
+    refused("city.gml", 0.0018, "city.gml: an object (\"b1000\") would take");
+    allowed("city.gml", 0.1, 40000);
+}
+
 static void write_obj(const char *name, const char *library, int materials) {
     FILE *f = create(name);
     fprintf(f, "%sv 0 0 0\nv 1 0 0\nv 0 1 0\n", library);
@@ -174,6 +283,8 @@ static void limits_are_checked(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(compressed_data_is_bounded), cmocka_unit_test(json_is_bounded), cmocka_unit_test(gltf_copies_are_bounded),
+        cmocka_unit_test(gltf_is_added_up_first), cmocka_unit_test(archives_are_measured), cmocka_unit_test(lamps_are_bounded),
+        cmocka_unit_test(cities_are_bounded),
         cmocka_unit_test(obj_materials_are_bounded),  cmocka_unit_test(limits_are_checked),
     };
     return cmocka_run_group_tests_name("budgets", tests, set_up, tear_down);
