@@ -17,6 +17,21 @@
 #undef skip
 #define skip() return
 
+/* Sanitizers look for faults that a few samples show as well; what many samples have for a mean, the build without them says. */
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define SANITIZED 1
+#endif
+#elif defined(__SANITIZE_ADDRESS__)
+#define SANITIZED 1
+#endif
+#ifndef SANITIZED
+#define SANITIZED 0
+#endif
+
+/* How many of `n` samples to take; a test that takes fewer does not judge their mean. */
+static inline int samples(int n) { return SANITIZED ? (n + 49) / 50 : n; }
+
 /* Path of a file below shared/ (real data), or NULL where it is absent: then the test skips, saying so. */
 static inline const char *shared_path(const char *relative) {
     static char path[4096];

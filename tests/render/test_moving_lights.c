@@ -75,12 +75,8 @@ static void unbiased_on_the_move(void **state) {
     result reference = measure_reference(s, true, pose, 500);
     int wrong = 0;
     for (size_t i = 0; i < NOC_COUNT(configs); i++) {
-        double bias, error;
         result x = measure_runs(s, &configs[i], true, pose, 700);
-        double z = worst(&x, &reference, &bias, &error);
-        print_message("# %-32s %5.2f standard errors, %+.2f%% +- %.2f%%%s\n", configs[i].name, z, 100 * bias, 100 * error,
-                      z < 4 ? "" : "  WRONG");
-        wrong += z >= 4;
+        wrong += !agrees(configs[i].name, &x, &reference);
     }
     noc_scene_destroy(s);
     assert_int_equal(wrong, 0);

@@ -85,15 +85,20 @@ typedef struct result { moments at[CHECKS]; } result;
 /* Moves a scene's lights to where they are in a frame. */
 typedef void (*pose_fn)(noc_scene *s, int frame);
 
-/* moving: the camera; pose: NULL if no light moves. */
+/* Does a frame depend on those before it? */
+static inline bool remembers(const config *c) { return c->method == NOC_METHOD_RESTIR || c->list; }
+
+/* moving: the camera; pose: NULL if no light moves. Frames that nothing depends on are not made. */
 static inline result measure_runs(noc_scene *s, const config *c, bool moving, pose_fn pose, int runs) {
     result out = { 0 };
     noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 2 }, NULL);
     assert_non_null(r);
-    for (int run = 0; run < runs; run++) {
+    for (int run = 0; run < samples(runs); run++) {
         noc_render_params p = params_of(c, (uint32_t)run * 7919 + 17);
         noc_renderer_reset(r);
         for (int f = 1, at = 0; f <= FRAMES; f++) {
+            if (f != check_at[at] && !remembers(c))
+                continue;
             noc_camera cam = camera_at(f, moving);
             if (pose)
                 pose(s, f);
@@ -126,7 +131,7 @@ static inline result measure_reference(noc_scene *s, bool moving, pose_fn pose, 
         noc_camera cam = camera_at(check_at[at], moving);
         if (pose)
             pose(s, check_at[at]);
-        for (int f = 0; f < frames; f++) {
+        for (int f = 0; f < samples(frames); f++) {
             assert_int_equal(noc_renderer_frame(r, &cam, &p, NULL), NOC_OK);
             noc_image *image = noc_renderer_image(r);
             add_picture(&out.at[at], image);
@@ -137,8 +142,8 @@ static inline result measure_reference(noc_scene *s, bool moving, pose_fn pose, 
     return out;
 }
 
-/* Largest distance in standard errors over tiles, picture and checked frames; *bias: of the whole picture at the last. */
-static inline double worst(const result *x, const result *reference, double *bias, double *error) {
+/* Largest distance in standard errors over tiles, picture and checked frames. Of few samples the errors say nothing. */
+static inline double worst(const char *name, const result *x, const result *reference) {
     double z = 0;
     for (int at = 0; at < CHECKS; at++)
         for (int t = 0; t <= TILES; t++) {
@@ -148,9 +153,15 @@ static inline double worst(const result *x, const result *reference, double *bia
                 z = fmax(z, fabs(d) / fmax(e, 1e-7 * mean_of(&reference->at[at], t)));
         }
     double r = mean_of(&reference->at[CHECKS - 1], TILES);
-    *bias = mean_of(&x->at[CHECKS - 1], TILES) / r - 1;
-    *error = error_of(&x->at[CHECKS - 1], TILES) / r;
+    print_message("# %-46s %6.2f standard errors, %+.2f%% +- %.2f%% of the last picture\n", name, z,
+                  100 * (mean_of(&x->at[CHECKS - 1], TILES) / r - 1), 100 * error_of(&x->at[CHECKS - 1], TILES) / r);
     return z;
+}
+
+/* Is it the reference's mean? */
+static inline bool agrees(const char *name, const result *x, const result *reference) {
+    double z = worst(name, x, reference);
+    return SANITIZED ? isfinite(z) : z < 4;
 }
 
 #endif

@@ -42,9 +42,11 @@ static void all_views(const noc_scene *scene) {
         for (size_t i = 0; i < NOC_COUNT(aspects); i++) {
             noc_camera a, b;
             assert_int_equal(noc_scene_camera(scene, (noc_view)v, aspects[i], &a), NOC_OK);
-            assert_int_equal(noc_scene_camera(scene, (noc_view)v, aspects[i], &b), NOC_OK);
-            assert_memory_equal(&a, &b, sizeof(a));
             check_sane(&a);
+            if (i)
+                continue;
+            assert_int_equal(noc_scene_camera(scene, (noc_view)v, aspects[i], &b), NOC_OK);
+            assert_memory_equal(&a, &b, sizeof(a)); /* found again */
         }
 }
 
