@@ -5,9 +5,12 @@
 #include "geo/geo.h"
 #include "import/import.h"
 #include "import/load.h"
+#include "import/remote.h"
 #include <nocturne/nocturne.h>
 
 #include <dirent.h>
+#include <math.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 
 static char folder[200], scratch[220]; /* of inputs; TMPDIR, which must be empty after every import */
@@ -261,11 +264,91 @@ static void places_of_a_scene(void **state) {
     noc_scene_destroy(scene);
 }
 
+/* ---- polygons ---- */
+
+/* Round, with a round hole: so many points that crossings are looked for, and a tessellator is needed. */
+static void polygons(void **state) {
+    enum { POINTS = 120 };
+    static double xyz[2 * POINTS * 3];
+    const size_t sizes[2] = { POINTS, POINTS };
+    for (int i = 0; i < 2 * POINTS; i++) {
+        double angle = 2 * M_PI * i / POINTS * (i < POINTS ? 1 : -1), r = i < POINTS ? 20 : 10;
+        xyz[3 * i] = r * cos(angle);
+        xyz[3 * i + 1] = r * sin(angle);
+    }
+    const geo_polygon ring = { .cls = NOC_CLASS_ROOF, .id = "ring", .ring_count = 2, .ring_size = sizes, .xyz = xyz };
+    bool reached;
+    FOR_EACH_REFUSAL(reached) {
+        geo_triangles t = { 0 };
+        geo_issues *issues = geo_issues_create();
+        assert_non_null(issues);
+        begin_refusal(n, later);
+        bool made = geo_triangulate(&ring, &t, issues);
+        reached = end_refusal();
+        assert_true(made == !reached && t.no_memory == reached);
+        assert_true(reached ? !t.indices.len : t.indices.len == 3 * 2 * POINTS);
+        assert_int_equal(geo_issues_count(issues), 0); /* it is not the polygon's fault */
+        geo_issues_destroy(issues);
+        geo_triangles_free(&t);
+    }
+}
+
+/* ---- the helper ---- */
+
+/* What it is asked takes memory there. */
+static void a_request(void **state) {
+    noc_import_params params = noc_import_default_params();
+    params.crs = "EPSG:25832";
+    geo_sink sink = { .named_lamps = true };
+    bool reached;
+    FOR_EACH_REFUSAL(reached) {
+        int ends[2];
+        remote_record batch = { 0 };
+        remote_request request;
+        assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+        begin_refusal(n, later);
+        remote_ask(&batch, &noc_reader_mesh, "house.obj", &params, &sink);
+        reached = end_refusal();
+        assert_true(batch.refused == reached);
+        array_free(&batch.bytes);
+        batch = (remote_record){ 0 };
+        remote_ask(&batch, &noc_reader_mesh, "house.obj", &params, &sink);
+        assert_true(remote_send(ends[0], &batch));
+        begin_refusal(n, later);
+        bool received = remote_receive(ends[1], &request);
+        bool short_of = end_refusal();
+        assert_true(received == !short_of && request.texts.refused == short_of);
+        assert_true(!received || (!strcmp(request.path, "house.obj") && !strcmp(request.params.crs, "EPSG:25832")));
+        reached = reached || short_of;
+        arena_free(&request.texts);
+        array_free(&batch.bytes);
+        close(ends[0]);
+        close(ends[1]);
+    }
+}
+
+/* It has none for its answer, and says so as it ends. */
+static void a_helper_without_memory(void **state) {
+    const char *real = getenv("NOCTURNE_READER"), *fake = path_of("helper");
+    char kept[500];
+    snprintf(kept, sizeof(kept), "%s", real ? real : "");
+    write_text("helper", "#!/bin/sh\nexit 3\n");
+    assert_int_equal(chmod(path_of("helper"), 0700), 0);
+    setenv("NOCTURNE_READER", fake, 1);
+    write_text("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    bool reached;
+    uint64_t sum;
+    noc_status status = run(&(import){ { "bare.obj" }, .isolate = true }, UINT64_MAX, false, &reached, &sum);
+    assert_refused(status, "helper");
+    assert_non_null(strstr(refusing.first_error, "--max-memory"));
+    setenv("NOCTURNE_READER", kept, 1);
+}
+
 static int make_inputs(void **state) {
     char command[900];
     snprintf(folder, sizeof(folder), "/tmp/noc-memory-%ld", (long)getpid());
     snprintf(scratch, sizeof(scratch), "%s/tmp", folder);
-    snprintf(command, sizeof(command), "mkdir -p %s && python3 %s/fuzz/seeds.py %s", scratch, getenv("NOC_SOURCE"), folder);
+    snprintf(command, sizeof(command), "mkdir -p %s && python3 %s/fuzz/seeds.py %s true -", scratch, getenv("NOC_SOURCE"), folder);
     setenv("TMPDIR", scratch, 1);
     log_ = counting_log();
     return system(command);
@@ -282,6 +365,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(coordinate_systems), cmocka_unit_test(citygml), cmocka_unit_test(gltf),  cmocka_unit_test(obj),
         cmocka_unit_test(lamps),              cmocka_unit_test(maps),    cmocka_unit_test(places_of_a_scene),
+        cmocka_unit_test(polygons),           cmocka_unit_test(a_request), cmocka_unit_test(a_helper_without_memory),
     };
     return cmocka_run_group_tests(tests, make_inputs, remove_inputs);
 }
