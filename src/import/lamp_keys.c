@@ -106,7 +106,8 @@ bool lamp_same_key(const char *a, const char *b) {
 
 typedef struct mapping {
     lamp_meaning meaning;
-    char *column; /* as the user wrote it */
+    bool unit_named; /* by the field: "height_ft" */
+    char *column;    /* as the user wrote it */
 } mapping;
 
 typedef NOC_ARRAY(mapping) mappings;
@@ -124,6 +125,7 @@ static noc_status add_mapping(mappings *maps, char *item, noc_log *log) {
     *equals = 0;
     mapping map = { .column = equals + 1 };
     lamp_fold(item, false, field, sizeof(field));
+    map.unit_named = !find_field(field, &map.meaning);
     if (!find_with_unit(field, find_field, &map.meaning))
         return noc_error(log, NOC_ERR_ARGUMENT, "lamp-columns: there is no field \"%.40s\"; the fields are " FIELD_NAMES, item);
     for (size_t i = 0; i < maps->len; i++)
@@ -175,6 +177,7 @@ typedef struct key {
     lamp_meaning meaning;
     size_t values;
     char *example;
+    const char *ignored; /* the heading's unit, where a mapped field names another one; else NULL */
     bool tells; /* what is a lamp */
     bool noted; /* belongs into the table of columns; the others were only asked for */
 } key;
@@ -206,14 +209,42 @@ void lamp_keys_destroy(lamp_keys *keys) {
     free(keys);
 }
 
-static lamp_meaning find_meaning(const lamp_keys *keys, const char *name) {
-    for (size_t i = 0; i < keys->maps.len; i++)
-        if (lamp_same_key(keys->maps.data[i].column, name)) {
-            lamp_meaning m = keys->maps.data[i].meaning;
-            lamp_roles_of(name, &m);
-            return m;
-        }
-    return lamp_meaning_of(name);
+/* The unit that a heading names for a field it is mapped to: where the words know it as that field, theirs; else its last word,
+ * for "Shaft" ends in "ft" and is no unit. */
+static bool heading_unit(const char *name, lamp_field field, double *scale, const char **unit) {
+    char folded[128];
+    lamp_meaning m = lamp_meaning_of(name);
+    lamp_fold(name, true, folded, sizeof(folded));
+    const char *word = strrchr(folded, ' ');
+    if (word && lamp_unit_word(word + 1, unit_of(field), scale, unit))
+        return true;
+    *scale = m.scale;
+    *unit = m.unit;
+    return m.field == field && m.scale != 1; /* metres, watts, ... are what it would be without a unit */
+}
+
+/* *ignored: as in key. */
+static lamp_meaning find_meaning(const lamp_keys *keys, const char *name, const char **ignored) {
+    const mapping *map = NULL;
+    *ignored = NULL;
+    for (size_t i = 0; i < keys->maps.len && !map; i++)
+        if (lamp_same_key(keys->maps.data[i].column, name))
+            map = &keys->maps.data[i];
+    if (!map)
+        return lamp_meaning_of(name);
+    lamp_meaning m = map->meaning;
+    lamp_roles_of(name, &m);
+    double scale;
+    const char *unit;
+    if (!heading_unit(name, m.field, &scale, &unit))
+        return m;
+    if (map->unit_named) {
+        *ignored = scale != m.scale ? unit : NULL;
+        return m;
+    }
+    m.scale = scale;
+    m.unit = unit;
+    return m;
 }
 
 /* NULL where there are too many to remember, or memory is refused. */
@@ -223,7 +254,8 @@ static key *get(lamp_keys *keys, const char *name) {
         i = keys->keys.len;
         if (i == MAX_KEYS)
             return NULL;
-        key k = { .name = arena_strdup(&keys->arena, name), .meaning = find_meaning(keys, name) };
+        key k = { .name = arena_strdup(&keys->arena, name) };
+        k.meaning = find_meaning(keys, name, &k.ignored);
         if (!k.name || !array_push(&keys->keys, k)) {
             keys->arena.refused = true;
             return NULL;
@@ -239,7 +271,8 @@ static key *get(lamp_keys *keys, const char *name) {
 
 lamp_meaning lamp_keys_meaning(lamp_keys *keys, const char *name) {
     const key *k = keys ? get(keys, name) : NULL;
-    return k ? k->meaning : keys ? find_meaning(keys, name) : lamp_meaning_of(name);
+    const char *ignored;
+    return k ? k->meaning : keys ? find_meaning(keys, name, &ignored) : lamp_meaning_of(name);
 }
 
 unsigned lamp_keys_know(lamp_keys *keys, const char *name) {
@@ -284,7 +317,17 @@ void lamp_keys_tell(lamp_keys *keys, const char *name) {
         k->tells = true;
 }
 
+static void warn_of_units(const lamp_keys *keys, noc_log *log, const char *place) {
+    for (size_t i = 0; i < keys->keys.len; i++) {
+        const key *k = &keys->keys.data[i];
+        if (k->noted && k->ignored)
+            noc_warn(log, "%s: the column \"%.60s\" says %s, and --lamp-columns says %s: taken as %s", place, k->name, k->ignored,
+                     k->meaning.unit, k->meaning.unit);
+    }
+}
+
 noc_status lamp_keys_report(lamp_keys *keys, geo_sink *sink, const char *place, size_t points) {
+    warn_of_units(keys, sink->log, place);
     if (!sink->columns)
         return NOC_OK;
     geo_column *columns = noc_calloc(keys->keys.len + 1, sizeof(*columns));

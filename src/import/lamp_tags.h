@@ -193,6 +193,8 @@ typedef enum lamp_unit { LAMP_METRES, LAMP_WATTS, LAMP_LUMENS, LAMP_KELVIN, LAMP
 bool lamp_quantity(const char *text, lamp_unit unit, double scale, double *value, int *times);
 /* A unit at the end of a folded key ("heightft"): its length, 0 if there is none. LAMP_PLAIN: of any kind. */
 size_t lamp_unit_tail(const char *folded, lamp_unit unit, double *scale, const char **name);
+/* Is this folded word one of the unit's names ("feet")? */
+bool lamp_unit_word(const char *word, lamp_unit unit, double *scale, const char **name);
 /* Degrees clockwise from north: "135", "135 deg", "NNE", "south-west". */
 bool lamp_direction(const char *text, double *degrees);
 /* A coordinate: degrees or metres, decimal comma allowed; "52.5 N", "13.4 W". */

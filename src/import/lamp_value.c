@@ -69,6 +69,16 @@ static const struct unit {
     { LAMP_KELVIN, "k", 1, "K" }, { LAMP_KELVIN, "kelvin", 1, "K" }, { LAMP_KELVIN, "kk", 1000, "kK" },
 };
 
+bool lamp_unit_word(const char *word, lamp_unit unit, double *scale, const char **name) {
+    for (size_t i = 0; i < NOC_COUNT(units); i++)
+        if (units[i].unit == unit && !strcmp(units[i].name, word)) {
+            *scale = units[i].factor;
+            *name = units[i].shown;
+            return true;
+        }
+    return false;
+}
+
 /* The longest unit that fits: "klm" before "lm". */
 size_t lamp_unit_tail(const char *folded, lamp_unit unit, double *scale, const char **name) {
     size_t n = strlen(folded), best = 0;
@@ -96,10 +106,8 @@ static double unit_factor(const char *s, lamp_unit unit, double scale) {
     word[n] = 0;
     if (!n)
         return scale;
-    for (size_t i = 0; i < NOC_COUNT(units); i++)
-        if (units[i].unit == unit && !strcmp(units[i].name, word))
-            return units[i].factor;
-    return 0;
+    const char *name;
+    return lamp_unit_word(word, unit, &scale, &name) ? scale : 0;
 }
 
 bool lamp_quantity(const char *text, lamp_unit unit, double scale, double *value, int *times) {

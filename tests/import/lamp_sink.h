@@ -16,11 +16,11 @@ typedef struct lamp_sink {
     NOC_ARRAY(geo_lamp) lamps;
     noc_arena names;
     char crs[256];
-    char error[1024];
+    char error[1024], warning[1024]; /* the last ones */
     const char *format;
     size_t points;
     NOC_ARRAY(geo_column) columns; /* texts in names */
-    int errors;
+    int errors, warnings;
     size_t cancel_after; /* lamps; 0: never */
 } lamp_sink;
 
@@ -29,6 +29,9 @@ static void sink_message(void *user, noc_log_level level, const char *text) {
     if (level == NOC_LOG_ERROR) {
         s->errors++;
         snprintf(s->error, sizeof(s->error), "%s", text);
+    } else if (level == NOC_LOG_WARN) {
+        s->warnings++;
+        snprintf(s->warning, sizeof(s->warning), "%s", text);
     }
 }
 

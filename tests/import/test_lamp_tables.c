@@ -141,6 +141,32 @@ static void test_mapped(void **state) {
     lamp_sink_end(&s);
 }
 
+/* A heading's unit holds for a mapped column, too, unless the field names one. */
+static void test_mapped_units(void **state) {
+    static const struct { const char *heading, *map; double height; int warnings; } cases[] = {
+        { "Mount Height (ft)", "height=Mount Height (ft)", 9.144, 0 }, { "POLE (ft)", "height=POLE (ft)", 9.144, 0 },
+        { "heightft", "height=HeightFt", 9.144, 0 }, { "Shaft", "height=Shaft", 30, 0 }, { "Mast [m]", "height=Mast [m]", 30, 0 },
+        { "POLE (ft)", "height_ft=POLE (ft)", 9.144, 0 }, { "POLE (ft)", "height_m=POLE (ft)", 30, 1 },
+        { "Mast [m]", "height_ft=Mast [m]", 9.144, 1 }, { "Shaft", "height_m=Shaft", 30, 0 },
+    };
+    for (size_t i = 0; i < NOC_COUNT(cases); i++) {
+        char text[200];
+        lamp_sink s;
+        snprintf(text, sizeof(text), "Lat,Lon,Lamp Type,%s\n50,8,LED,30\n", cases[i].heading);
+        assert_int_equal(read_with(&s, text, false, cases[i].map), NOC_OK);
+        if (fabs(s.lamps.data[0].height - cases[i].height) > 1e-9 || s.warnings != cases[i].warnings)
+            fail_msg("%s: %g m, %d warnings", cases[i].map, s.lamps.data[0].height, s.warnings);
+        if (cases[i].warnings)
+            assert_non_null(strstr(s.warning, cases[i].heading));
+        lamp_sink_end(&s);
+    }
+    lamp_sink s;
+    assert_int_equal(read_with(&s, "Lat,Lon,Nennwert (kW)\n50,8,0.1\n", true, "watts=Nennwert (kW)"), NOC_OK);
+    assert_float_equal(s.lamps.data[0].watts, 100, 1e-9);
+    expect_column(&s, "Nennwert (kW)", "watts", "kW", "0.1");
+    lamp_sink_end(&s);
+}
+
 static void say(void *user, noc_log_level level, const char *text) { snprintf(user, 400, "%s", text); }
 
 static void test_bad_maps(void **state) {
@@ -238,6 +264,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_units_of_keys), cmocka_unit_test(test_units_in_tables), cmocka_unit_test(test_named_csv),
         cmocka_unit_test(test_looked_at),     cmocka_unit_test(test_mapped),          cmocka_unit_test(test_bad_maps),
+        cmocka_unit_test(test_mapped_units),
         cmocka_unit_test(test_kinds_in_values), cmocka_unit_test(test_named_maps),    cmocka_unit_test(test_named_overpass),
     };
     return cmocka_run_group_tests_name("import/lamp_tables", tests, NULL, NULL);
