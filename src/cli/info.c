@@ -118,6 +118,14 @@ static void print_lamps(const noc_report_file *file) {
                    cli_count(a, file->lamps_by_source[s]), 100.0 * (double)file->lamps_by_source[s] / (double)file->lamps);
 }
 
+/* How wide printf must make the text to fill that many columns of a terminal: it counts bytes, and of a character of UTF-8 one fills
+ * one. */
+static int padded(const char *text, int columns) {
+    for (; *text; text++)
+        columns += ((unsigned char)*text & 0xc0) == 0x80;
+    return columns;
+}
+
 /* Columns that are used come first. */
 static void print_columns(const noc_report_file *file) {
     enum { MOST = 100 }; /* lines of what is not used; JSON has all */
@@ -132,7 +140,8 @@ static void print_columns(const noc_report_file *file) {
                 continue;
             snprintf(field, sizeof(field), "%s%s%s%s", used ? c->field : "not used", *c->unit ? ", " : "", c->unit,
                      c->mapped ? " *" : "");
-            printf("    %-9s %-24s %-14s %s\n", "", cli_clean(name, sizeof(name), c->name), field,
+            cli_clean(name, sizeof(name), c->name);
+            printf("    %-9s %-*s %-14s %s\n", "", padded(name, 24), name, field,
                    c->values ? cli_clean(example, sizeof(example), c->example) : "(blank)");
         }
     if (unused > MOST)

@@ -71,6 +71,14 @@ test $status = 0 && grep -q ', 4 lights' out && test "$(meta x.png lamps)" = "pl
 result $? "named as lamps, with columns mapped"
 run info plain.csv
 test $status = 0 && grep -Eq 'points +2, and nothing tells' out && grep -Eq 'power +watts, W +70$' out; result $? "info shows columns and offers --lamps"
+printf 'lat,lon,H\303\266he,Height,note\n48.76,11.42,8,9,x\n' >umlaut.csv
+run info umlaut.csv
+python3 - out >err <<'END'
+import sys
+rows = [line for line in open(sys.argv[1], encoding="utf-8") if " height, m " in line]
+assert len(rows) == 2 and rows[0].index("height") == rows[1].index("height"), rows
+END
+result $? "info pads columns by characters" "$(cat err)"
 run info --json --lamps strange.csv --lamp-columns lon=XX,lat=YY,height_ft=HT
 python3 - out >err <<'END'
 import json, sys
