@@ -78,6 +78,9 @@ static const noc_reader *find_named(const noc_reader *const *readers, const char
 }
 
 static noc_status refuse(importer *im, const char *name, const noc_reader *const *readers, const char *head, size_t size) {
+    const char *stranger = stranger_told(head);
+    if (stranger)
+        return noc_error(im->log, NOC_ERR_UNSUPPORTED, "%s: %s", name, stranger);
     char names[300] = ""; /* "CityGML, OBJ, ..." */
     for (size_t i = 0, n = 0; readers[i] && n < sizeof(names); i++)
         n += (size_t)noc_snprintf(names + n, sizeof(names) - n, "%s%s", i ? ", " : "", readers[i]->name);

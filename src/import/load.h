@@ -120,6 +120,9 @@ noc_status report_strict(const noc_report *report, noc_log *log);
 extern const noc_reader *const noc_readers[];
 const noc_reader *find_reader(const noc_reader *const *readers, const char *head, size_t size);
 
+/* stranger.c: what to say of a file whose format is known, though it is not read; NULL where it is not known. */
+const char *stranger_told(const char *head);
+
 /* place.c */
 typedef struct place_sample {
     source_crs *source;

@@ -405,5 +405,6 @@ static noc_status read_vector(noc_stream *stream, const noc_import_params *param
 static bool foreign(const char *head, size_t size) { return NOC_HAVE_GDAL && find_format(head, size); }
 
 /* Never `missing`: CSV needs no GDAL, and the others say so one by one. */
-const noc_reader noc_reader_vector = { .name = "OpenStreetMap, GeoJSON, CSV", .reads = NOC_READS_LAMPS, .probe = probe,
-                                       .probe_named = lamp_csv_probe_table, .read = read_vector, .foreign = foreign };
+const noc_reader noc_reader_vector = { .name = "OpenStreetMap, GeoJSON and GeoJSONSeq, GeoPackage, Shapefile, FlatGeobuf, CSV",
+                                       .reads = NOC_READS_LAMPS, .probe = probe, .probe_named = lamp_csv_probe_table,
+                                       .read = read_vector, .foreign = foreign };

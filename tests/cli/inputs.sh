@@ -53,6 +53,28 @@ assert city["triangles"] > 1000 and city["lights"] > 10, city
 END
 result $? "info as JSON"
 
+# Formats that are known, but not read.
+refused() { # name, part of the message; the file is "stranger"
+    run render stranger -o x.png
+    test $status = 1 && test "$(wc -l <err)" = 1 && grep -q "stranger.*$2" err && ! grep -q 'none of the formats' err && test ! -e x.png
+    result $? "refused by name: $1" "$(cat err)"
+}
+printf '{"type":"CityJSON","version":"2.0","CityObjects":{},"vertices":[]}' >stranger; refused CityJSON 'CityJSON.*citygml-tools'
+printf '{"CityObjects":{},"type":"CityJSON"}' >stranger; refused "CityJSON, sorted" 'CityJSON.*citygml-tools'
+printf 'IESNA:LM-63-2002\r\n[TEST] 1\r\nTILT=NONE\r\n1 1000 1 5 1 1 2 0 0 0\r\n' >stranger; refused IES '(IES)'
+printf 'ACME\r\n1\r\n2\r\n36\r\n10\r\n37\r\n2,5\r\nREPORT\r\n' >stranger; refused EULUMDAT '(EULUMDAT)'
+printf '<?xml version="1.0"?><gpx version="1.1"><wpt lat="48" lon="11"/></gpx>' >stranger; refused GPX 'GPX.*GeoJSON'
+printf '<?xml version="1.0"?><kml xmlns="http://www.opengis.net/kml/2.2"><Document/></kml>' >stranger; refused KML 'KML.*GeoJSON'
+python3 - <<'END'
+import zipfile
+with zipfile.ZipFile("stranger", "w") as z:
+    z.writestr("[Content_Types].xml", '<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"/>')
+    z.writestr("xl/workbook.xml", "<workbook/>")
+END
+refused XLSX 'XLSX.*CSV'
+printf 'ACME\n1\n2\n36\nten\n' >stranger
+expect "anything else is told what is read" 1 'none of the formats.*GeoJSONSeq, GeoPackage, Shapefile, FlatGeobuf' render stranger -o x.png
+
 # Tables of which nothing tells that they are lamps: the user says so, and what their columns mean.
 printf 'lat,lon,power\n48.76,11.42,70\n48.7601,11.4201,100\n' >plain.csv
 printf 'ASSET,HT,XX,YY\nA,30,11.4202,48.7602\nB,,11.4203,48.7603\n' >strange.csv
