@@ -312,8 +312,10 @@ static noc_status read_obj(const char *path, library *lib, const mesh_target *to
         const char *why = aiGetErrorString();
         status = noc_error(to->parts->log, NOC_ERR_FORMAT, "%s: OBJ: %s", path, why && *why ? why : "not readable");
     } else {
-        if (lib->missing)
+        if (lib->missing) {
             noc_warn(to->parts->log, "%s: default material, because %s", path, lib->missing);
+            geo_issue(lib->issues, true, "library of materials that cannot be read, default material", "mtllib");
+        }
         status = add_scene(from, to);
     }
     aiReleaseImport(from);

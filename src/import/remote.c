@@ -166,6 +166,8 @@ static noc_status ended_early(remote *r) {
     int how = 0;
     pid_t got = waitpid(r->pid, &how, 0);
     r->pid = 0;
+    if (got > 0 && WIFSIGNALED(how) && WTERMSIG(how) == SIGXCPU)
+        return out_of_time(r);
     if (got > 0 && WIFEXITED(how) && WEXITSTATUS(how) == REMOTE_NO_MEMORY)
         return noc_error(r->sink->log, NOC_ERR_MEMORY, "%s: the process that reads it needs more than the limit --max-memory, %.3g GB",
                          r->path, import_budget_of(r->params).memory / 1e9);

@@ -169,6 +169,7 @@ bool remote_short_of_memory(void) {
 void remote_confine(const char *path, bool whole, const noc_import_params *params) {
     unsetenv("SPATIALITE_SECURITY"); /* "relaxed" lets SQL touch files */
     limit(RLIMIT_CORE, 0);
+    limit(RLIMIT_CPU, (rlim_t)NOC_MIN(params->reader_time, 1e9) + 2); /* where who started it no longer looks at the clock */
 #ifndef REMOTE_SANITIZED /* whose shadow takes terabytes of addresses */
     limit(RLIMIT_AS, (rlim_t)(own_addresses() + import_budget_of(params).memory));
 #endif

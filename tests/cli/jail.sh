@@ -84,6 +84,9 @@ for name in ../out_there/secret.mtl sub/../../out_there/secret.mtl "$work/out_th
     run info --allow-outside in/model.obj
     test $status = 0 && test "$(lights)" = 1; result $? "unless that is allowed"
 done
+obj none.mtl
+expect "materials that are not there are told of" 0 'default material, because .*none.mtl' info in/model.obj
+expect "and an error with --strict" 1 'library of materials that cannot be read' info --strict in/model.obj
 gltf sub/triangle.bin
 fine "buffers below the folder are read" info in/model.gltf
 gltf ../out_there/triangle.bin
@@ -151,6 +154,22 @@ if "$real" --version | grep -q gdal; then
     test $status = 130; result $? "and Ctrl-C where it is read in the same process" "status $status"
     expect "it is ended after the time that it may take" 1 'limit --reader-time' info --reader-time 0.5 in/endless.gpkg
     test -z "$(ls temporary)"; result $? "nothing is left behind" "$(ls temporary)"
+    # Who started it cannot look at the clock: its own limit of processor time ends it, two seconds after the other.
+    "$real" info --reader-time 4 in/endless.gpkg >out 2>err </dev/null &
+    pid=$! child=
+    while test -z "$child" && kill -0 $pid 2>/dev/null; do
+        child=$(cat /proc/$pid/task/$pid/children 2>/dev/null)
+    done
+    kill -STOP $pid
+    for tick in $(seq 240); do
+        ended=$(sed -n 's/^State:\t\(.\).*/\1/p' "/proc/${child% }/status" 2>/dev/null)
+        test "${ended:-Z}" = Z && break
+        sleep 0.5
+    done
+    test -n "$child" && test "${ended:-Z}" = Z; result $? "it ends by itself where nobody ends it" "helper ${child:-never seen}: $ended"
+    kill -CONT $pid
+    wait $pid
+    test $? = 1 && grep -q 'limit --reader-time' err; result $? "and the error says so"
     python3 - <<'END'
 with open("in/large.obj", "w") as f:
     f.writelines("v %d %d 0\n" % (i % 1000, i // 1000) for i in range(1000000))
