@@ -70,8 +70,10 @@ void mutate_number(const char *text, size_t size, uint32_t *random, char out[64]
 }
 
 void mutate_put(fuzz_bytes *out, uint64_t value, int bytes, bool big_endian) {
-    for (int i = 0; i < bytes; i++)
-        FUZZ_REQUIRE(array_push(out, (uint8_t)(value >> 8 * (big_endian ? bytes - 1 - i : i))));
+    for (int i = 0; i < bytes; i++) {
+        int byte = big_endian ? bytes - 1 - i : i;
+        FUZZ_REQUIRE(array_push(out, byte < 8 ? (uint8_t)(value >> 8 * byte) : 0));
+    }
 }
 
 bool mutate_inflate(fuzz_part in, int window_bits, fuzz_bytes *out) {

@@ -363,6 +363,8 @@ static const uint8_t *read_blob(const uint8_t *p, const uint8_t *end, fuzz_part 
 }
 
 bool mutate_pbf(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
+    if (!in.size) /* and no data */
+        return false;
     const uint8_t *p = in.data, *end = in.data + in.size;
     uint32_t chosen = mutate_random(random, 4), i = 0;
     (void)most;

@@ -32,7 +32,7 @@ static void put_record(fuzz_bytes *out, uint32_t kind, uint64_t size, fuzz_part 
     mutate_put(out, kind, 4, false);
     mutate_put(out, size >> 32, 4, false);
     mutate_put(out, size & UINT32_MAX, 4, false);
-    array_append(out, content.data, content.size);
+    FUZZ_REQUIRE(array_append(out, content.data, content.size));
 }
 
 /* One number of a struct or an array, another. */
@@ -40,7 +40,7 @@ static void change_number(fuzz_part in, uint32_t *random, fuzz_bytes *out) {
     static const double odd[] = { 0, -1, 1, 1e308, -1e15, NAN, INFINITY, 1e-320, 180, 90.5 };
     static const uint64_t whole[] = { 0, 1, 2, 255, 1u << 31, UINT32_MAX, (uint64_t)1 << 60, UINT64_MAX };
     size_t item = mutate_random(random, 3) ? 8 : 4, at = out->len;
-    array_append(out, in.data, in.size);
+    FUZZ_REQUIRE(array_append(out, in.data, in.size));
     if (in.size < item)
         return;
     uint8_t *to = out->data + at + item * mutate_random(random, (uint32_t)(in.size / item));
@@ -86,6 +86,6 @@ bool mutate_wire(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
         else
             change_content(r, most - NOC_MIN(most, in.size), random, out);
     }
-    array_append(out, rest.data, rest.size);
+    FUZZ_REQUIRE(array_append(out, rest.data, rest.size));
     return true;
 }

@@ -4,6 +4,7 @@
 #include "fuzz.h"
 
 #include <dlfcn.h>
+#include <sanitizer/lsan_interface.h>
 #include <sys/mman.h>
 
 int LLVMFuzzerInitialize(int *argc, char ***argv);
@@ -11,7 +12,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv);
 /* ---- SQLite, with which GDAL and PROJ read maps and their own databases: thousands of small blocks a run ---- */
 
 /* Blocks of 32 bytes to 64 KiB by powers of two, in lists of free ones; larger ones are the system's, beside
- * AddressSanitizer's. */
+ * AddressSanitizer's. LeakSanitizer looks for pointers in them: what PROJ hands to SQLite is no leak. */
 void *__libc_malloc(size_t size);
 void __libc_free(void *p);
 
@@ -38,6 +39,8 @@ static void *take(int size) {
     char *p;
     if (n > LARGEST) {
         p = __libc_malloc(BEFORE + (size_t)size);
+        if (p)
+            __lsan_register_root_region(p, BEFORE + (size_t)size);
     } else if (free_blocks[n]) {
         p = (char *)free_blocks[n];
         free_blocks[n] = free_blocks[n]->next;
@@ -45,6 +48,7 @@ static void *take(int size) {
         if (pool_end - pool < (ptrdiff_t)1 << n) {
             pool = __libc_malloc(POOL);
             FUZZ_REQUIRE(pool);
+            __lsan_register_root_region(pool, POOL);
             pool_end = pool + POOL;
         }
         p = pool;
@@ -57,6 +61,7 @@ static void give(void *p) {
     int n = class_of((size_t)size_of(p));
     struct free_block *block = (struct free_block *)(void *)((char *)p - BEFORE);
     if (n > LARGEST) {
+        __lsan_unregister_root_region(block, BEFORE + (size_t)size_of(p));
         __libc_free(block);
         return;
     }

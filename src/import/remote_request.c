@@ -84,7 +84,12 @@ static bool take(remote_request *q, uint32_t kind, remote_record *r) {
         if (!r->bad)
             set_option(q, name, value);
     } else if (kind == REMOTE_SINK) {
-        remote_get(r, &q->sink, sizeof(q->sink));
+        unsigned char flags[sizeof(q->sink)];
+        bool whole = remote_get(r, flags, sizeof(flags)) && flags[offsetof(remote_asked, named_lamps)] <= 1 &&
+                     flags[offsetof(remote_asked, inspect)] <= 1;
+        if (whole)
+            memcpy(&q->sink, flags, sizeof(flags));
+        r->bad = !whole;
     }
     return !r->bad && !q->texts.refused;
 }
