@@ -1,7 +1,5 @@
 /* Views of the light sampling, held to what they mean. */
-#include "rooms.h"
-
-enum { W = 40, H = 24, N = W * H, ALL = (1u << NOC_AOV_COUNT) - 1, MOMENTS = 1u << NOC_AOV_VARIANCE | 1u << NOC_AOV_ERROR };
+#include "views.h"
 
 static double place(int i, int k) { return fmod(0.5 + (i + 1) * (k ? 0.569840290998 : 0.754877666247), 1.0); }
 
@@ -37,32 +35,6 @@ static noc_scene *street(int lights) {
 
 static noc_camera above(void) { return look(0.3, -14, 9, 0, 0, 0, 60); }
 static noc_camera along(void) { return look(1, -10, 4, 0, 0, 2.5, 60); }
-
-static noc_render_params with(noc_method method, noc_candidates candidates, uint32_t aovs) {
-    noc_render_params p = measure(W, H, method);
-    p.candidates = candidates;
-    p.draws = 8;
-    p.aovs = aovs;
-    return p;
-}
-
-static noc_renderer *rendered(const noc_scene *s, const noc_camera *c, const noc_render_params *p, int frames, int threads) {
-    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = threads }, NULL);
-    for (int i = 0; i < frames; i++)
-        assert_int_equal(noc_renderer_frame(r, c, p, NULL), NOC_OK);
-    return r;
-}
-
-/* A view of the last frame, checked for what every view promises. */
-static noc_channel *view(noc_renderer *r, noc_aov aov) {
-    noc_channel *v = noc_renderer_aov(r, aov);
-    assert_non_null(v);
-    assert_string_equal(v->name, noc_aov_name(aov));
-    assert_int_equal(v->components, aov == NOC_AOV_NORMAL ? 3 : 1);
-    for (size_t i = 0; v->components == 1 && i < (size_t)v->width * v->height; i++)
-        assert_true(isfinite(v->value[i]) && (v->value[i] >= 0 || v->value[i] == -1));
-    return v;
-}
 
 /* Of two pixels' places on the floor, the largest distance within the pixel's block of 4x4: such points may ask together. */
 static double block_size(const noc_camera *c, const noc_render_params *p, int pixel) {
@@ -567,54 +539,6 @@ static void cancelled_frames(void **state) {
     noc_scene_destroy(s);
 }
 
-/* The last frame's surfaces: each pixel's depth leads to the floor, whose class and object it tells; emitters are surfaces too. */
-static void surfaces_that_are_seen(void **state) {
-    noc_scene *s = noc_scene_create(NULL);
-    int road = noc_scene_add_material(s, &(noc_material){ .albedo = { 0.2f, 0.2f, 0.2f }, .roughness = 1, .cls = NOC_CLASS_ROAD });
-    noc_mesh floor = { .vertex_count = 4, .positions = (double[]){ -9, -9, 0, 9, -9, 0, 9, 9, 0, -9, 9, 0 }, .triangle_count = 2,
-                       .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 }, .material = road, .name = "A7" };
-    assert_true(noc_scene_add_mesh(s, &floor) >= 0);
-    noc_light lamp = { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { -2, 1, 2 }, .edge_u = { 3, 0, 0 }, .edge_v = { 0, 0, 2 },
-                       .emission = { 9, 9, 9 }, .name = "sign" }; /* faces -y, where the camera is */
-    assert_true(noc_scene_add_light(s, &lamp) >= 0);
-    assert_int_equal(noc_scene_commit(s), NOC_OK);
-    noc_render_params p = with(NOC_METHOD_RIS, NOC_CANDIDATES_LISTS,
-                               1u << NOC_AOV_DEPTH | 1u << NOC_AOV_NORMAL | 1u << NOC_AOV_CLASS | 1u << NOC_AOV_OBJECT);
-    noc_camera c = look(1, -10, 4, 0, 0, 1.5, 60);
-    noc_renderer *r = rendered(s, &c, &p, 2, 1);
-    noc_channel *depth = view(r, NOC_AOV_DEPTH), *normal = view(r, NOC_AOV_NORMAL), *cls = view(r, NOC_AOV_CLASS),
-                *object = view(r, NOC_AOV_OBJECT);
-    int none = 0, floors = 0, signs = 0;
-    for (int i = 0; i < N; i++) {
-        const float *n = normal->value + 3 * i;
-        double xyz[3], pixel[2] = { i % W + 0.5, i / W + 0.5 };
-        if (cls->value[i] < 0) {
-            assert_true(depth->value[i] == -1 && object->value[i] == -1 && n[0] == 0 && n[1] == 0 && n[2] == 0);
-            none++;
-            continue;
-        }
-        assert_int_equal(noc_camera_unproject(&c, W, H, pixel, depth->value[i], xyz), NOC_OK);
-        const char *name = noc_scene_object_name(s, (size_t)object->value[i]);
-        if (cls->value[i] == NOC_CLASS_ROAD) {
-            assert_string_equal(name, "A7");
-            assert_true(fabs(xyz[2]) < 1e-3 && n[2] == 1);
-            floors++;
-        } else {
-            assert_int_equal(cls->value[i], NOC_CLASS_LAMP);
-            assert_string_equal(name, "sign");
-            assert_true(fabs(xyz[1] - 1) < 1e-3 && n[1] == -1);
-            signs++;
-        }
-    }
-    assert_true(none > 50 && floors > 200 && signs > 10);
-    noc_channel_destroy(depth);
-    noc_channel_destroy(normal);
-    noc_channel_destroy(cls);
-    noc_channel_destroy(object);
-    noc_renderer_destroy(r);
-    noc_scene_destroy(s);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lights_found_by_the_volumes),
@@ -626,7 +550,6 @@ int main(void) {
         cmocka_unit_test(confidence),
         cmocka_unit_test(rays),
         cmocka_unit_test(variance),
-        cmocka_unit_test(surfaces_that_are_seen),
         cmocka_unit_test(same_on_every_instruction_set_and_number_of_threads),
         cmocka_unit_test(the_picture_is_the_same),
         cmocka_unit_test(scenes_of_nothing),
