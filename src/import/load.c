@@ -311,9 +311,15 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
     return status || im->inspect ? status : finish_city(im);
 }
 
+/* Whatever they are called: "a.csv", "./a.csv", a link. */
+static bool same_file(const char *a, const char *b) {
+    struct stat s, t;
+    return !strcmp(a, b) || (!stat(a, &s) && !stat(b, &t) && s.st_dev == t.st_dev && s.st_ino == t.st_ino);
+}
+
 static bool among(const char *path, const char *const *paths, size_t count) {
     for (size_t i = 0; i < count; i++)
-        if (!strcmp(paths[i], path))
+        if (same_file(paths[i], path))
             return true;
     return false;
 }

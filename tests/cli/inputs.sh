@@ -80,6 +80,14 @@ printf 'lat,lon,power\n48.76,11.42,70\n48.7601,11.4201,100\n' >plain.csv
 printf 'ASSET,HT,XX,YY\nA,30,11.4202,48.7602\nB,,11.4203,48.7603\n' >strange.csv
 expect "a table of points is offered --lamps" 1 'plain.csv.* --lamps plain.csv' render plain.csv -o x.png
 expect "beside a city, too" 1 'plain.csv.* --lamps plain.csv' render "$gml" plain.csv -o x.png
+ln -sf plain.csv linked.csv
+for other in ./plain.csv "$PWD/plain.csv" linked.csv; do
+    run info plain.csv --lamps "$other"
+    test $status = 0 && grep -q 'lamps *2$' out; result $? "a file that is named as lamps by another spelling is lamps" "$other"
+    run render plain.csv --lamps "$other" --lamps plain.csv --size 16x16 --frames 1 -o twice.png
+    test $status = 0 && test "$(meta twice.png lamps-mapped)" = 2 && test "$(meta twice.png lamps-repeated)" = 0; result $? "and counts once" "$other"
+done
+rm linked.csv
 expect "a table without coordinates is offered columns" 1 'strange.csv.*--lamps.*--lamp-columns' render strange.csv -o x.png
 expect "a column that is not there" 1 'no input has.*"HEIGHT".* lat, lon, power' render --lamps plain.csv --lamp-columns height=HEIGHT -o x.png
 expect "a field that is none" 1 'no field "heigth".*height, lumens' render --lamps plain.csv --lamp-columns heigth=power -o x.png
