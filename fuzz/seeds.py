@@ -353,6 +353,8 @@ put("exr", "zips.exr", exr(20, 3, colours, 2))
 put("exr", "grey.exr", exr(5, 4, [(b"Y", 2)], 0))
 put("compare", "exr", parts(exr(5, 4, colours, 0), exr(5, 4, [(b"B", 1), (b"G", 1), (b"R", 1)], 0)))
 put("compare", "png", parts(rgb, png(5, 4, 8, 2, (b"\0" + bytes(15)) * 4)))
+put("compare", "wider", parts(exr(5, 4, colours, 0), exr(6, 4, colours, 0)))
+put("compare", "higher", parts(exr(5, 4, colours, 0), exr(5, 5, colours, 0)))
 put("compare", "mixed", parts(exr(5, 4, colours, 0), rgb))
 
 # ---- coordinate systems ----
