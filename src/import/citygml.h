@@ -201,6 +201,7 @@ typedef struct cg_store {
     noc_arena arena;
     noc_map wanted; /* id -> index into entries */
     NOC_ARRAY(cg_stored) entries;
+    size_t item_bytes; /* of all their lists */
 } cg_store;
 
 /* ---- the parser ---- */

@@ -240,6 +240,15 @@ static cg_polygon *copy_polygon(cg_store *store, cg_polygon *polygon) {
 /* Moves the surfaces that an id led to, from position `first` of the selection, into the store. */
 static void store_items(cg_parser *p, size_t first, cg_stored *stored) {
     cg_selection *s = &p->selection;
+    size_t before = stored->items.cap * sizeof(cg_item), bytes = (s->items.len - first) * sizeof(cg_item);
+    cg_affords(p, p->store.arena.bytes + p->store.item_bytes + s->items.cap * sizeof(cg_item) + bytes, "what xlinks lead to, of this object");
+    if (p->status)
+        return;
+    if (!array_reserve(&stored->items, stored->items.len + s->items.len - first)) {
+        cg_no_memory(p);
+        return;
+    }
+    p->store.item_bytes += stored->items.cap * sizeof(cg_item) - before;
     for (size_t i = first; i < s->items.len; i++) {
         cg_item item = s->items.data[i];
         if (!item.polygon)
@@ -272,7 +281,7 @@ static void collect(cg_parser *p) {
         size_t first = p->selection.items.len;
         cg_follow(p, target->id, 0, false);
         store_items(p, first, &p->store.entries.data[index]);
-        cg_affords(p, p->store.arena.bytes, "what objects share, to this one");
+        cg_affords(p, p->store.arena.bytes + p->store.item_bytes, "what objects share, to this one");
     }
 }
 

@@ -17,13 +17,27 @@ static cg_part part_of(const cg_object *object, uint32_t geometry) {
     return (cg_part)object->features.data[object->geometries.data[geometry].feature].type->part;
 }
 
+/* Room for more items; false after reporting. References that name a list twice double it from object to object. */
+static bool items_room(cg_parser *p, size_t more) {
+    size_t len = p->selection.items.len, cap = p->selection.items.cap;
+    if (p->status || more <= cap - len)
+        return !p->status;
+    cg_affords(p, p->store.arena.bytes + p->store.item_bytes + NOC_MAX(2 * cap, len + more) * sizeof(cg_item),
+               "what xlinks lead to, of this object");
+    if (!p->status && !array_reserve(&p->selection.items, len + more))
+        cg_no_memory(p);
+    return !p->status;
+}
+
 static void push_item(cg_parser *p, cg_item item) {
-    if (!array_push(&p->selection.items, item))
+    if (items_room(p, 1) && !array_push(&p->selection.items, item))
         cg_no_memory(p);
 }
 
 static void take_stored(cg_parser *p, const cg_stored *stored, uint32_t geometry, bool flip) {
     bool implicit = p->object.geometries.data[geometry].implicit != NULL;
+    if (!items_room(p, stored->items.len))
+        return;
     for (size_t i = 0; i < stored->items.len; i++) {
         cg_item item = stored->items.data[i];
         item.geometry = geometry;

@@ -251,6 +251,26 @@ static void cities_are_bounded(void **state) {
     allowed("city.gml", 0.1, 40000);
 }
 
+/* Fifty buildings of a kilobyte in all: each refers twice to all that the one before it shows. */
+static void city_links_are_bounded(void **state) {
+    FILE *f = create("links.gml");
+    fputs("<CityModel xmlns=\"http://www.opengis.net/citygml/2.0\" xmlns:gml=\"http://www.opengis.net/gml\" xmlns:xlink="
+          "\"http://www.w3.org/1999/xlink\" xmlns:bldg=\"http://www.opengis.net/citygml/building/2.0\">", f);
+    for (int i = 0; i <= 50; i++) {
+        fprintf(f, "<cityObjectMember><bldg:Building gml:id=\"b%d\"><bldg:lod1MultiSurface><gml:MultiSurface gml:id=\"m%d\">", i, i);
+        for (int k = 0; k < 2 && i; k++)
+            fprintf(f, "<gml:surfaceMember xlink:href=\"#m%d\"/>", i - 1);
+        if (!i)
+            fputs("<gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>0 0 0 1 0 0 1 1 0 0 0 0</gml:posList>"
+                  "</gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>", f);
+        fputs("</gml:MultiSurface></bldg:lod1MultiSurface></bldg:Building></cityObjectMember>", f);
+    }
+    fputs("</CityModel>", f);
+    fclose(f);
+    refused("links.gml", 0.01, "what xlinks lead to, of this object (\"b1");
+    assert_non_null(strstr(errors, "the limit --max-memory is 0.01 GB"));
+}
+
 static void write_obj(const char *name, const char *library, int materials) {
     FILE *f = create(name);
     fprintf(f, "%sv 0 0 0\nv 1 0 0\nv 0 1 0\n", library);
@@ -284,7 +304,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(compressed_data_is_bounded), cmocka_unit_test(json_is_bounded), cmocka_unit_test(gltf_copies_are_bounded),
         cmocka_unit_test(gltf_is_added_up_first), cmocka_unit_test(archives_are_measured), cmocka_unit_test(lamps_are_bounded),
-        cmocka_unit_test(cities_are_bounded),
+        cmocka_unit_test(cities_are_bounded), cmocka_unit_test(city_links_are_bounded),
         cmocka_unit_test(obj_materials_are_bounded),  cmocka_unit_test(limits_are_checked),
     };
     return cmocka_run_group_tests_name("budgets", tests, set_up, tear_down);
