@@ -6,7 +6,9 @@
  * so meet the same disturbances; times are medians of CPU seconds. The first frame of each, without a history, is not counted.
  * REFERENCE is a picture of the same view without pixel jitter and sky ("nocturne render --no-jitter --sky 0"). With one, the
  * error of the mean of FRAMES frames from volumes is told for each S_r that is given (0: found by the program), with METHOD
- * ris or restir: RMSE-8, and relMSE clamped to 10 cd/m2 on pixels that see no emitter; means and standard errors over SEEDS seeds. */
+ * ris or restir: RMSE-8, and relMSE clamped to 10 cd/m2 on pixels that see no emitter; means and standard errors over SEEDS seeds,
+ * and what they would be if each had the CPU time of the first S_r, by how the error falls from half of the frames to all. Frames of
+ * all of them are made in turn by one thread each; the time is one that a quarter of the frames kept to. */
 #include "bench_scene.h"
 
 #include <math.h>
@@ -85,56 +87,88 @@ static spread spread_of(const double *x, int n) {
     return s;
 }
 
-/* Errors of the mean of `frames` frames, a seed each, and CPU seconds a frame; `found` is of the last seed. */
+/* Volumes with one S_r. Errors of the mean of half of the frames, and of all of them, a seed each. */
+enum { HALF, ALL, MOMENTS, MOST_SCALES = 16 };
 typedef struct erring {
-    double rmse8[MOST_SEEDS], relmse[MOST_SEEDS], cpu[MOST_FRAMES];
-    noc_light_stats found;
+    noc_renderer *r;
+    noc_render_params params;
+    double rmse8[MOMENTS][MOST_SEEDS], relmse[MOMENTS][MOST_SEEDS], *cpu, quarter;
 } erring;
 
-static bool error(const noc_scene *scene, const noc_camera *camera, noc_render_params p, const noc_image *want, int frames, int seeds,
-                  erring *e, noc_log *log) {
-    noc_renderer *r = noc_renderer_create(scene, NULL, log);
-    bool ok = r && noc_renderer_frame(r, camera, &p, NULL) == NOC_OK; /* builds the structures */
-    for (int seed = 0; ok && seed < seeds; seed++) {
-        noc_compare_params c = noc_compare_default_params();
-        noc_comparison figures = { 0 };
-        p.seed = (uint32_t)seed + 1;
-        noc_renderer_reset(r);
-        for (int f = 0; ok && f < frames; f++) {
-            noc_frame_stats stats;
-            ok = noc_renderer_frame(r, camera, &p, NULL) == NOC_OK;
-            noc_renderer_get_stats(r, &stats);
-            e->cpu[f] = stats.cpu_seconds;
-        }
-        noc_image *have = ok ? noc_renderer_image(r) : NULL;
-        ok = have && noc_image_compare(have, want, &c, &figures, log) == NOC_OK;
-        noc_image_destroy(have);
-        e->rmse8[seed] = figures.all.rmse8;
-        e->relmse[seed] = figures.dark_clamped.relmse;
-    }
-    if (ok)
-        noc_renderer_light_stats(r, &e->found);
-    noc_renderer_destroy(r);
+static bool compare(erring *e, const noc_image *want, int moment, int seed, noc_log *log) {
+    noc_compare_params c = noc_compare_default_params();
+    noc_comparison figures = { 0 };
+    noc_image *have = noc_renderer_image(e->r);
+    bool ok = have && noc_image_compare(have, want, &c, &figures, log) == NOC_OK;
+    noc_image_destroy(have);
+    e->rmse8[moment][seed] = figures.all.rmse8;
+    e->relmse[moment][seed] = figures.dark_clamped.relmse;
     return ok;
+}
+
+/* Frames of all of them in turn, so that they meet the same disturbances. */
+static bool run_seed(erring *e, int n, const noc_camera *camera, const noc_image *want, int frames, int seed, noc_log *log) {
+    bool ok = true;
+    for (int i = 0; i < n; i++) {
+        e[i].params.seed = (uint32_t)seed + 1;
+        noc_renderer_reset(e[i].r);
+    }
+    for (int f = 0; ok && f < frames; f++)
+        for (int i = 0; ok && i < n; i++) {
+            noc_frame_stats stats;
+            ok = noc_renderer_frame(e[i].r, camera, &e[i].params, NULL) == NOC_OK;
+            noc_renderer_get_stats(e[i].r, &stats);
+            e[i].cpu[seed * frames + f] = stats.cpu_seconds;
+            for (int moment = HALF; ok && moment <= ALL; moment++)
+                if (f + 1 == (moment == HALF ? frames / 2 : frames))
+                    ok = compare(&e[i], want, moment, seed, log);
+        }
+    return ok;
+}
+
+/* What the error of a mean of frames becomes in `time` times their CPU time, by how it fell from half of them to all. */
+static double in_time(double half, double all, double time) { return all * pow(time, all > 0 && half > all ? log2(all / half) : 0); }
+
+static void print_erring(const erring *e, const erring *first, int seeds) {
+    noc_light_stats found;
+    spread rmse8[MOMENTS], relmse[MOMENTS];
+    double time = first->quarter / e->quarter;
+    noc_renderer_light_stats(e->r, &found);
+    for (int m = 0; m < MOMENTS; m++) {
+        rmse8[m] = spread_of(e->rmse8[m], seeds);
+        relmse[m] = spread_of(e->relmse[m], seeds);
+    }
+    printf("S_r %8.3f%s  RMSE-8 %6.2f +- %.2f  relMSE %.4f +- %.4f  %.1f CPU ms a frame | in the first one's time: %6.2f %.4f | found: "
+           "median %u, 99%% %u, none %.2f%%\n", found.influence, e->params.influence > 0 ? "  " : " *", rmse8[ALL].mean, rmse8[ALL].error,
+           relmse[ALL].mean, relmse[ALL].error, 1e3 * e->quarter, in_time(rmse8[HALF].mean, rmse8[ALL].mean, time),
+           in_time(relmse[HALF].mean, relmse[ALL].mean, time), found.found_median, found.found_99, 100 * found.found_none);
 }
 
 static bool errors(const noc_scene *scene, const noc_camera *camera, noc_render_params p, const char *path, int frames, int seeds,
                    char **scales, noc_log *log) {
+    static erring e[MOST_SCALES];
     bool linear, ok = true;
+    int n = 0;
     noc_image *want = noc_image_read(path, log, &linear);
     if (!want)
         return false;
-    for (; ok && *scales; scales++) {
-        static erring e;
-        p.influence = atof(*scales);
-        ok = error(scene, camera, p, want, frames, seeds, &e, log);
-        spread rmse8 = spread_of(e.rmse8, seeds), relmse = spread_of(e.relmse, seeds);
-        if (ok)
-            printf("S_r %8.3f%s  RMSE-8 %6.2f +- %.2f  relMSE %.4f +- %.4f  %.1f CPU ms a frame  found: median %u, 99%% %u, none "
-                   "%.2f%%\n", e.found.influence, p.influence > 0 ? "  " : " *", rmse8.mean, rmse8.error, relmse.mean,
-                   relmse.error, 1e3 * bench_median(e.cpu, frames), e.found.found_median, e.found.found_99,
-                   100 * e.found.found_none);
-        fflush(stdout);
+    for (; ok && scales[n] && n < MOST_SCALES; n++) {
+        e[n].params = p;
+        e[n].params.influence = atof(scales[n]);
+        e[n].cpu = calloc((size_t)frames * (size_t)seeds, sizeof(double));
+        e[n].r = noc_renderer_create(scene, &(noc_renderer_params){ .threads = 1 }, log);
+        ok = e[n].r && e[n].cpu && noc_renderer_frame(e[n].r, camera, &e[n].params, NULL) == NOC_OK; /* builds the structures */
+    }
+    for (int seed = 0; ok && seed < seeds; seed++)
+        ok = run_seed(e, n, camera, want, frames, seed, log);
+    for (int i = 0; i < n; i++) {
+        if (ok) {
+            qsort(e[i].cpu, (size_t)(frames * seeds), sizeof(double), bench_by_size);
+            e[i].quarter = e[i].cpu[0];
+            print_erring(&e[i], &e[0], seeds);
+        }
+        noc_renderer_destroy(e[i].r);
+        free(e[i].cpu);
     }
     noc_image_destroy(want);
     return ok;
