@@ -90,8 +90,8 @@ static void measure(bench *b, int points, float scale) {
         noc_near_add(&q, p, n, 1u << b->lane);
         b->found = false;
         for (uint32_t id = 0; id < b->spheres->count; id++)
-            if (noc_influence_holds(b->spheres, id, &q))
-                look_at(b, id, noc_influence_holds(b->boxes, id, &q));
+            if (noc_influence_finds(b->spheres, id, &q))
+                look_at(b, id, noc_influence_finds(b->boxes, id, &q));
         tell(b);
         b->t.points++;
         b->t.dark += !b->found;

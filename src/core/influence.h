@@ -5,11 +5,11 @@
  * a volume have a sphere around all of them, and the largest of their I.
  *
  * Of m candidates of a surface point every `every`th, the first one too, is drawn from all lights alike (u of them), the
- * others from the N_f lights whose volumes hold the point (b of them). Whichever way a candidate came, its density is
- * (b g / N_f + u / N_L) / (b + u), g = 1 exactly if its own volume holds the point. Where no volume does, all are drawn
- * from all lights. S_r may differ from point to point: it is known before anything is drawn. Points that lie close together
- * ask as one: their volumes are those that reach the box around them. "Holds the point" then means that, for the draws from
- * all lights too, and densities stay exact. */
+ * others from the N_f lights that the point lists (b of them): those whose volumes hold it, or of those the ones that give it
+ * at least so many lux. Whichever way a candidate came, its density is (b g / N_f + u / N_L) / (b + u), g = 1 exactly if its
+ * own light is listed. Where none is, all are drawn from all lights. What is listed may differ from point to point: it is known
+ * before anything is drawn. Points that lie close together ask as one: their volumes are those that reach the box around them.
+ * "Holds the point" then means that, for the draws from all lights too, and densities stay exact. */
 #ifndef CORE_INFLUENCE_H
 #define CORE_INFLUENCE_H
 
@@ -27,8 +27,6 @@ struct influence {
 typedef struct influence influence;
 #endif
 
-#define INFLUENCE_NEVER K(3e38f)
-
 /* Points of surfaces that ask together: the box around them, the normal that they have in common on the side that is seen
  * (0: none), and their least dot(n, point) (where n = 0: -infinity). A volume holds them if it would hold a point of the box. */
 struct influence_region {
@@ -36,20 +34,31 @@ struct influence_region {
     v3 hi;
     v3 n;
     real back;
+    v3 middle;  /* of the box */
+    real spread2; /* mean square of its points' distance from there, if they lie evenly in it */
+    real spread;  /* its root */
 };
 
 #ifndef CORE_GLSL
 typedef struct influence_region influence_region;
 #endif
 
-FN influence_region influence_point(v3 p, v3 n) {
+FN influence_region influence_box(v3 lo, v3 hi, v3 n, real back) {
     influence_region r;
-    r.lo = p;
-    r.hi = p;
+    v3 h = mul3(sub3(hi, lo), K(0.5f));
+    r.lo = lo;
+    r.hi = hi;
     r.n = n;
-    r.back = dot3(n, p);
+    r.back = back;
+    EXACT v3 middle = add3(lo, h);
+    EXACT real h2 = dot3(h, h) * K(0.333f);
+    r.middle = middle;
+    r.spread2 = h2;
+    r.spread = sqrt_(h2);
     return r;
 }
+
+FN influence_region influence_point(v3 p, v3 n) { return influence_box(p, p, n, dot3(n, p)); }
 
 /* Does what the volume's lights shine into reach the region? */
 FN mask influence_shines(influence v, influence_region r) {
@@ -59,35 +68,39 @@ FN mask influence_shines(influence v, influence_region r) {
     return front >= K(-1.0f);
 }
 
-/* The smallest S_r at which the volume holds the region; at most 0 where the sphere touches it. */
-FN real influence_needs(influence v, influence_region r) {
+/* Does the volume hold the region with that S_r? */
+FN mask influence_holds(influence v, influence_region r, real scale) {
     v3 a = sub3(r.lo, v.c);
     v3 b = sub3(r.hi, v.c);
     v3 d = V3(max_(max_(a.x, K(0.0f) - b.x), K(0.0f)), max_(max_(a.y, K(0.0f) - b.y), K(0.0f)),
               max_(max_(a.z, K(0.0f) - b.z), K(0.0f)));
-    EXACT real s = (sqrt_(dot3(d, d)) - v.size) / v.root;
+    EXACT real reach = v.size + scale * v.root;
     mask faces = and_(influence_shines(v, r), dot3(r.n, v.c) + v.size > r.back);
-    return sel(faces, s, INFLUENCE_NEVER);
+    return and_(and_(reach >= K(0.0f), dot3(d, d) <= reach * reach), faces);
+}
+
+/* 1 / length of m, which influence_gives wants to be told; 0 where the lights shine every way. */
+FN real influence_turn(influence v) {
+    real m2 = dot3(v.m, v.m);
+    EXACT real length = sqrt_(max_(m2, K(1e-30f)));
+    EXACT real turn = K(1.0f) / length;
+    return sel(m2 > K(0.0f), turn, K(0.0f));
 }
 
 /* What one light of the volume gives the region's points on average where it is seen, about, lux: I over the squared distance
  * (that of the box's centre and a third of its squared half diagonal, if the points lie evenly in it), by the cosines at both
  * ends, where there are normals, to half the sizes of box and light. */
-FN real influence_gives(influence v, influence_region r) {
-    v3 h = mul3(sub3(r.hi, r.lo), K(0.5f));
-    v3 d = sub3(v.c, add3(r.lo, h));
-    EXACT real h2 = dot3(h, h) * K(0.333f);
-    EXACT real far = sqrt_(max_(dot3(d, d) + h2, K(1e-30f)));
-    EXACT real s = max_((far - v.size) / v.root, K(1e-3f));
-    EXACT real slack = (sqrt_(h2) + v.size) * K(0.5f);
-    real m2 = dot3(v.m, v.m);
-    real n2 = dot3(r.n, r.n);
-    EXACT real cos_m = (slack - dot3(v.m, d) / sqrt_(max_(m2, K(1e-30f)))) / far;
-    EXACT real cos_n = (slack + dot3(r.n, d)) / far;
-    EXACT real e = K(1.0f) / (s * s);
-    cos_m = sel(m2 > K(0.0f), min_(max_(cos_m, K(0.0f)), K(1.0f)), K(1.0f));
-    cos_n = sel(n2 > K(0.0f), min_(max_(cos_n, K(0.0f)), K(1.0f)), K(1.0f));
-    EXACT real lux = e * cos_m * cos_n;
+FN real influence_gives(influence v, real turn, influence_region r) {
+    v3 d = sub3(v.c, r.middle);
+    EXACT real far = sqrt_(max_(dot3(d, d) + r.spread2, K(1e-30f)));
+    EXACT real slack = (r.spread + v.size) * K(0.5f);
+    EXACT real cos_m = slack - dot3(v.m, d) * turn;
+    EXACT real cos_n = slack + dot3(r.n, d);
+    EXACT real w = K(1.0f) / far;
+    cos_m = sel(turn > K(0.0f), min_(max_(cos_m * w, K(0.0f)), K(1.0f)), K(1.0f));
+    cos_n = sel(dot3(r.n, r.n) > K(0.0f), min_(max_(cos_n * w, K(0.0f)), K(1.0f)), K(1.0f));
+    EXACT real s = v.root / max_(far - v.size, v.root * K(1e-3f));
+    EXACT real lux = (s * s) * (cos_m * cos_n);
     return lux;
 }
 

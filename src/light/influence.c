@@ -44,23 +44,19 @@ void noc_near_add(noc_near_query *q, const float *const p[3], const float *const
     }
 }
 
-void noc_around_free(noc_around *a) {
-    for (int side = 0; side < NOC_AROUND_SIDES; side++)
-        array_free(&a->near[side].groups);
-}
-
 void noc_found_free(noc_found *f) {
     array_free(&f->ids);
+    array_free(&f->all.groups);
     array_free(&f->near.groups);
-    array_free(&f->needs);
+    array_free(&f->gives);
 }
 
-bool noc_influence_holds(const noc_influence *v, uint32_t light, const noc_near_query *q) {
+bool noc_influence_finds(const noc_influence *v, uint32_t light, const noc_near_query *q) {
     influence a;
     uint32_t volume = v->volume_of[light];
-    influence_region r = { V3(q->lo[0], q->lo[1], q->lo[2]), V3(q->hi[0], q->hi[1], q->hi[2]), V3(q->n[0], q->n[1], q->n[2]), q->back };
+    influence_region r = influence_box(V3(q->lo[0], q->lo[1], q->lo[2]), V3(q->hi[0], q->hi[1], q->hi[2]), V3(q->n[0], q->n[1], q->n[2]), q->back);
     memcpy(&a, &v->volumes[volume], sizeof(a));
-    if (!(influence_needs(a, r) <= q->scale))
+    if (!influence_holds(a, r, q->scale) || (q->least > 0 && !(influence_gives(a, influence_turn(a), r) >= q->least)))
         return false;
     if (!v->boxes)
         return true;

@@ -13,7 +13,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { NOC_INFLUENCE_WIDTH = 16, NOC_INFLUENCE_LEVELS = 8, NOC_QUERY_POINTS = 16 };
+enum { NOC_INFLUENCE_WIDTH = 16, NOC_INFLUENCE_LEVELS = 8, NOC_QUERY_POINTS = 16, NOC_QUERY_BLOCKS = 16 };
 
 /* Children side by side; those that are not there have root = 0. */
 typedef struct noc_influence_node {
@@ -79,7 +79,7 @@ void noc_influence_destroy(noc_influence *influence); /* NULL is allowed */
 
 /* Volumes near a box, 16 to a group. Groups are padded with volumes that hold nothing. */
 typedef struct noc_near_group {
-    float c[3][16], size[16], m[3][16], root[16], lights[16];
+    float c[3][16], size[16], m[3][16], root[16], turn[16], lights[16]; /* turn: influence_turn */
     uint32_t volume[16];
 } noc_near_group;
 
@@ -99,6 +99,7 @@ typedef struct noc_near_query {
     float n[3];         /* normal that they all have, 0: not the same */
     float back;         /* least dot(n, point); -INFINITY where n = 0 */
     float scale;        /* S_r */
+    float least;        /* lights that give less lux there are left out; 0: none */
     size_t most;        /* stops at more volumes than that */
 } noc_near_query;
 
@@ -107,33 +108,33 @@ typedef struct noc_near_query {
 noc_near_query noc_near_none(float scale, size_t most);
 void noc_near_add(noc_near_query *query, const float *const p[3], const float *const n[3], uint32_t lanes);
 
-/* What all blocks of a tile look through: volumes near the box of all of its points, and near those that lie in one plane,
- * which lights behind it are left out of. Each is looked for when a block first needs it. Starts zeroed, and is used again and again. */
-enum { NOC_AROUND_SIDES = 8 };
-typedef struct noc_around {
-    int sides;                              /* 0: all points; the others: points of a plane each */
-    noc_near_query query[NOC_AROUND_SIDES];
-    noc_near near[NOC_AROUND_SIDES];
-    bool asked[NOC_AROUND_SIDES];           /* those volumes are there */
-} noc_around;
-void noc_around_free(noc_around *around);
+/* Points that ask as one, and what they found. Where S_r was set, the lights whose volumes hold the query; where it is found, those
+ * of them that give at least as many lux as the points settled for. */
+typedef struct noc_found_group {
+    noc_near_query query;
+    uint32_t count, from; /* ids[from], ids[from + 1], ... */
+} noc_found_group;
 
-/* What a block of points found. Starts zeroed, and is used again and again. */
+/* What the points of a tile found. Starts zeroed, and is used again and again. */
 typedef struct noc_found {
-    uint32_t count[NOC_QUERY_POINTS];  /* lights */
-    uint32_t from[NOC_QUERY_POINTS];   /* they are ids[from], ids[from + 1], ... */
-    float scale[NOC_QUERY_POINTS];     /* S_r that the point settled for */
-    float lo[3][NOC_QUERY_POINTS], hi[3][NOC_QUERY_POINTS], n[3][NOC_QUERY_POINTS], back[NOC_QUERY_POINTS]; /* of those it asked with */
+    int groups;
+    noc_found_group group[1 + NOC_QUERY_BLOCKS * NOC_QUERY_POINTS]; /* the first: points that did not ask */
+    uint16_t of[NOC_QUERY_BLOCKS][NOC_QUERY_POINTS];                /* a point's group */
     NOC_ARRAY(uint32_t) ids;
-    noc_near near;                     /* scratch */
-    NOC_ARRAY(float) needs;
-    noc_influence_bins bins;           /* scratch */
-    bool no_memory;                    /* for all that the block found: it is less */
+    noc_near all, near;      /* scratch: volumes near all points, near a group */
+    NOC_ARRAY(float) gives;  /* scratch: by volume near the group, lux; 0: does not hold it */
+    noc_influence_bins bins; /* scratch */
+    bool no_memory;          /* for all that the tile found: it is less */
 } noc_found;
 void noc_found_free(noc_found *found);
 
-/* Does the volume of a light hold the points of a query? */
-bool noc_influence_holds(const noc_influence *influence, uint32_t light, const noc_near_query *query);
+/* How many lights a point of a block found. */
+static inline uint32_t noc_found_count(const noc_found *found, int block, int point) {
+    return found->group[found->of[block][point]].count;
+}
+
+/* Does a query find the light? */
+bool noc_influence_finds(const noc_influence *influence, uint32_t light, const noc_near_query *query);
 
 /* influence_obj.c: each volume as a closed body, each box as a box, in OBJ with y up. set: S_r that was set, 0: the one that was found. What cannot be
  * written shows in the file's error flag. */

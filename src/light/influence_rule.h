@@ -1,4 +1,4 @@
-/* light/influence_rule: the S_r that draws best at a point, from what its lights would give it.
+/* light/influence_rule: which lights are best listed at a point, from what they would give it.
  *
  * Of m draws b come from a list of n lights and u from all N. A light that is seen and gives e lux adds e^2 n / b to the second
  * moment of the estimate if it is listed, e^2 N / u if it is not; and what shows is that over the square of what arrives in
@@ -13,8 +13,8 @@
  *
  *     n / b sum_{i <= n} a_i - N / u sum_{i <= n} a_i,    a_i = e_i^2 (sum_{j < i} v (1 - v)^(j - 1) / L_j^2 + (1 - v)^(i - 1) / L_i^2).
  *
- * The floor is light that is too little to be seen. Lights come in bins, a quarter of an octave of S_r each. The rule steers the
- * noise only: whatever S_r it says, densities are exact. */
+ * The floor is light that is too little to be seen. Lights come in bins of half an octave. The rule steers the noise only: whatever
+ * it says, densities are exact. */
 #ifndef NOC_LIGHT_INFLUENCE_RULE_H
 #define NOC_LIGHT_INFLUENCE_RULE_H
 
@@ -23,52 +23,59 @@
 #include <math.h>
 #include <string.h>
 
-enum { NOC_RULE_BINS = 48, NOC_RULE_SHIFT = 21 }; /* a float's bits above the shift: four bins an octave */
+enum { NOC_RULE_BINS = 48, NOC_RULE_SHIFT = 22 }; /* a float's bits above the shift: two bins an octave */
 
 typedef struct noc_influence_rule {
     float seen;  /* v: a light that a surface faces is seen from it with that probability */
     float floor; /* lux */
 } noc_influence_rule;
 
-/* Bin 0 is the last to be listed. */
+typedef struct noc_influence_bin { /* sums */
+    float lights, e, e2, unused;
+} noc_influence_bin;
+
+/* Bin 0 is the weakest. */
 typedef struct noc_influence_bins {
-    float lights[NOC_RULE_BINS], e[NOC_RULE_BINS], e2[NOC_RULE_BINS]; /* sums */
-    uint32_t top; /* bits of the S_r in bin 0, shifted */
+    noc_influence_bin bin[NOC_RULE_BINS];
+    uint32_t base; /* bits of the least e in bin 0, shifted */
+    float least;   /* no list goes below that */
 } noc_influence_bins;
 
-static inline uint32_t noc_rule_bits(float scale) {
+static inline uint32_t noc_rule_bits(float e) {
     uint32_t bits;
-    memcpy(&bits, &scale, sizeof(bits));
+    memcpy(&bits, &e, sizeof(bits));
     return bits >> NOC_RULE_SHIFT;
 }
 
-/* No light needs more than `scale`. */
-static inline void noc_rule_begin(noc_influence_bins *b, float scale) {
-    memset(b, 0, sizeof(*b));
-    b->top = noc_rule_bits(scale);
+/* least > 0. */
+static inline void noc_rule_begin(noc_influence_bins *b, float least) {
+    memset(b->bin, 0, sizeof(b->bin));
+    b->base = noc_rule_bits(least);
+    b->least = least;
 }
 
-/* Lights that need the S_r `needs`, and give e lux each. */
-static inline void noc_rule_add(noc_influence_bins *b, float needs, float lights, float e) {
-    uint32_t at = noc_rule_bits(needs > 0 ? needs : 0);
-    at = b->top > at ? NOC_MIN(b->top - at, (uint32_t)NOC_RULE_BINS - 1) : 0;
-    b->lights[at] += lights;
-    b->e[at] += lights * e;
-    b->e2[at] += lights * e * e;
+/* Lights that give e lux each. */
+static inline void noc_rule_add(noc_influence_bins *b, float lights, float e) {
+    uint32_t bits = noc_rule_bits(e);
+    noc_influence_bin *bin = &b->bin[bits > b->base ? NOC_MIN(bits - b->base, (uint32_t)NOC_RULE_BINS - 1) : 0];
+    float all = lights * e;
+    bin->lights += lights;
+    bin->e += all;
+    bin->e2 += all * e;
 }
 
-/* The S_r of bin i's far end. */
+/* The least e of bin i. */
 static inline float noc_rule_edge(const noc_influence_bins *b, int i) {
-    uint32_t bits = (b->top - (uint32_t)i + 1) << NOC_RULE_SHIFT;
-    float scale;
-    memcpy(&scale, &bits, sizeof(scale));
-    return scale;
+    uint32_t bits = (b->base + (uint32_t)i) << NOC_RULE_SHIFT;
+    float e;
+    memcpy(&e, &bits, sizeof(e));
+    return fmaxf(e, b->least);
 }
 
-/* The largest S_r that lists no more lights than `most`, or those of one bin. */
+/* The least e that lists no more lights than `most`, or those of one bin. */
 static inline float noc_rule_limit(const noc_influence_bins *b, float most) {
     int i = NOC_RULE_BINS - 1;
-    for (float lights = b->lights[i]; i > 0 && (lights += b->lights[i - 1]) <= most;)
+    for (float lights = b->bin[i].lights; i > 0 && (lights += b->bin[i - 1].lights) <= most;)
         i--;
     return noc_rule_edge(b, i);
 }
@@ -81,24 +88,25 @@ static inline float noc_rule_hidden(float seen, float lights) {
     return all;
 }
 
-/* The S_r of the list with the least loss; INFINITY: all lights that there are, and there might be use for more. */
+/* The least e on the list with the least loss; 0: it has all lights that there are, and there might be use for more. */
 static inline float noc_rule_best(const noc_influence_bins *b, float n_l, int every, noc_influence_rule rule) {
     float seen = rule.seen, floor = rule.floor;
-    float beyond[NOC_RULE_BINS], sum = 0, gone = 0, chance = 1, a = 0, lights = 0, least = 0;
+    float sum = 0, beyond[NOC_RULE_BINS], gone = 0, chance = 1, a = 0, lights = 0, least = 0;
     int best = -1, last = -1;
     for (int i = 0; i < NOC_RULE_BINS; i++) {
         beyond[i] = sum;
-        sum += b->e[i];
+        sum += b->bin[i].e;
     }
     for (int i = NOC_RULE_BINS - 1; i >= 0; i--) {
-        if (b->lights[i] == 0)
+        const noc_influence_bin *bin = &b->bin[i];
+        if (bin->lights == 0)
             continue;
-        float e = b->e[i] / b->lights[i], hidden = chance > 1e-4f ? noc_rule_hidden(seen, b->lights[i]) : 0;
-        float all = e + seen * (beyond[i] + b->e[i] - e) + floor, inverse = all > 0 ? 1 / (all * all) : 0;
-        a += b->e2[i] * (gone + chance * inverse);
+        float e = bin->e / bin->lights, hidden = chance > 1e-4f ? noc_rule_hidden(seen, bin->lights) : 0;
+        float all = e + seen * (beyond[i] + bin->e - e) + floor, inverse = all > 0 ? 1 / (all * all) : 0;
+        a += bin->e2 * (gone + chance * inverse);
         gone += chance * (1 - hidden) * inverse;
         chance *= hidden;
-        lights += b->lights[i];
+        lights += bin->lights;
         last = i;
         float loss = a * (lights / (float)(every - 1) - n_l);
         if (loss < least) {
@@ -107,7 +115,7 @@ static inline float noc_rule_best(const noc_influence_bins *b, float n_l, int ev
         }
     }
     if (best <= 0 || best == last)
-        return INFINITY;
+        return 0;
     return noc_rule_edge(b, best);
 }
 

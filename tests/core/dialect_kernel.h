@@ -261,13 +261,12 @@ FN void pickers(CTX u32 item, u32 key, surf s) {
     v.m = mul3(unit3(any_v3(key, KU(3076u))), K(3.0f));
     v.size = rng(key, KU(3082u));
     v.root = rng(key, KU(3083u)) * K(100.0f);
-    influence_region y = influence_point(s.p, s.n);
     v3 corner = any_v3(key, KU(3084u));
-    y.hi = V3(max_(y.hi.x, corner.x), max_(y.hi.y, corner.y), max_(y.hi.z, corner.z));
-    real needs = sel((bits & KU(2u)) != KU(0u), influence_needs(v, y), influence_gives(v, y));
-    mask held = and_(needs <= K(3.0f), influence_meets(v.c, add3(v.c, fill3(K(40.0f))), y));
+    corner = V3(max_(s.p.x, corner.x), max_(s.p.y, corner.y), max_(s.p.z, corner.z));
+    influence_region y = influence_box(s.p, corner, s.n, dot3(s.n, s.p));
+    mask held = and_(influence_holds(v, y, rng(key, KU(3090u))), influence_meets(v.c, add3(v.c, fill3(K(40.0f))), y));
     u32 n_f = shr(bits, 27);
-    put_real(PASS item, 132, sel(held, needs, K(0.0f)));
+    put_real(PASS item, 132, sel(held, influence_gives(v, influence_turn(v), y), K(0.0f)));
     put_real(PASS item, 133, influence_pmf(held, n_f, KU(KERNEL_LIGHTS), 32, 4));
     put_u32(PASS item, 134, influence_uniform(n_f, 30, 4));
     put_resv(PASS item, 135, ris_given(PASS s, key, 8));

@@ -32,7 +32,7 @@ static const struct { int first; const char *name; } groups[] = {
     { 104, "shadow_segment, begin" }, { 107, "shadow_segment, way" }, { 110, "sky_radiance" }, { 113, "stand_off" },
     { 114, "sky_numbers" }, { 116, "sky_direction" }, { 119, "visible_normal_direction" }, { 122, "sky_density" },
     { 123, "sky_backdrop" }, { 126, "alias_draw" }, { 128, "alias_pmf" }, { 129, "tree_split" }, { 130, "tree_share_of" }, { 131, "tree_pmf" },
-    { 132, "influence_needs" }, { 133, "influence_pmf" }, { 134, "influence_uniform" }, { 135, "ris_given" },
+    { 132, "influence_gives" }, { 133, "influence_pmf" }, { 134, "influence_uniform" }, { 135, "ris_given" },
     { 141, "disc, close" }, { 148, "triangle, close" }, { 155, "parallelogram, close" }, { 162, "turn_of" },
     { 163, "spot" },
 };

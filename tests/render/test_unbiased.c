@@ -167,8 +167,9 @@ static void check_scene(noc_scene *s, plan p) {
 static void boxes_with_a_gap(void **state) {
     (void)state;
     noc_scene *s = gap();
-    const config by[] = { { "ris, bvh, boxes", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH, .boxes = NOC_INFLUENCE_VISIBLE },
-                          { "ris, bvh", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH } };
+    const config by[] = { { "ris, bvh, boxes", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH, .influence = 8,
+                            .boxes = NOC_INFLUENCE_VISIBLE },
+                          { "ris, bvh", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH, .influence = 8 } };
     result reference = measure_reference(s, false, NULL, 600);
     noc_light_stats found[2];
     for (int i = 0; i < 2; i++) {

@@ -46,6 +46,7 @@ typedef struct config {
     int list; /* > 0: lists of so many lights and as many draws from the rest */
     noc_candidates picker; /* list = 0 */
     noc_influence_boxes boxes;
+    double influence; /* bvh: S_r; 0: found */
     int share; /* bvh: lights a volume; 0: 1 */
     int times; /* so many times the runs, where rare draws from all lights are worth much; 0: 1 */
     int shadow_rays; /* ris with lists; 0: the default */
@@ -59,6 +60,7 @@ static inline noc_render_params params_of(const config *c, uint32_t seed) {
     p.candidates = c->list ? NOC_CANDIDATES_LISTS : c->picker;
     p.list = c->list;
     p.influence_boxes = c->boxes;
+    p.influence = c->influence;
     p.influence_cluster = c->share ? c->share : 1;
     p.shadow_rays = c->shadow_rays ? c->shadow_rays : p.shadow_rays;
     p.learn = !c->unlearned;

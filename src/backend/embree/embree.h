@@ -12,6 +12,7 @@
 /* Numbers of lights found are told apart up to that; 64 k bins take half a megabyte a thread. */
 enum { FOUND_MOST = 1 << 16 };
 enum { TILE_BLOCKS = 4 }; /* a tile is 4x4 blocks: 16x16 pixels */
+_Static_assert((int)NOC_QUERY_BLOCKS == TILE_BLOCKS * TILE_BLOCKS && (int)NOC_QUERY_POINTS == (int)BLOCK, "a tile's points ask together");
 enum { MANY_BLOCKS = 32 }; /* whose segments are traced together */
 
 /* Segments of 16 pixels to be traced together with those of other blocks. */
@@ -96,9 +97,8 @@ typedef struct worker {
     NOC_ARRAY(noc_sighting) sightings; /* of the frame being made */
     pick_block picks;
     tree_items tree_items[2];
-    noc_found found;
+    noc_found found;                     /* bvh: by a tile */
     uint64_t *found_counts;              /* [found_bins] surfaces of the frame by the number of lights found; NULL: never asked */
-    noc_around around;                   /* influence volumes near a tile */
     bool no_memory;                      /* was refused to a tile: the frame is dropped */
     packet *packets; /* kept while recording */
     size_t packet_count, packet_room;
@@ -265,7 +265,7 @@ void noc_embree_spatial(stage_run *run, worker *w, tile t);
 /* views.c */
 noc_status noc_embree_begin_views(embree_state *s, uint32_t aovs, bool first_stage);
 /* What the candidates of a block were, as far as the frame asks; r: the reservoirs they ended in. */
-void noc_embree_view_candidates(const stage_run *run, const worker *w, size_t block, uint32_t lanes, const rblock *r);
+void noc_embree_view_candidates(const stage_run *run, const worker *w, int i, size_t block, uint32_t lanes, const rblock *r);
 void noc_embree_keep_views(embree_state *s, const noc_frame *frame); /* the frame is complete */
 
 /* coverage.c: what emitters that are seen directly add to the mean */

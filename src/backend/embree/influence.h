@@ -1,15 +1,15 @@
 /* Candidates from influence volumes (core/influence.h, light/influence.h), included by kernels.c.
  *
- * Points of a block that lie close together ask as one, 16 volumes against the box around them, and share a list of lights:
- * a sixteenth of the tests, and lights that stay in the cache. They settle for the S_r that draws best there
- * (light/influence_rule.h), the scene's or less. With an S_r that the user gave, every point has that one. */
+ * Points of a tile that lie close together ask as one, 16 volumes against the box around them, and share a list of lights:
+ * a hundredth of the tests, and lights that stay in the cache. Of the lights whose volumes hold them they
+ * list the strongest, as many as draw best there (light/influence_rule.h). With an S_r that the user gave they list all. */
 #ifndef NOC_EMBREE_INFLUENCE_H
 #define NOC_EMBREE_INFLUENCE_H
 
 #include "backend/embree/influence_near.h"
 
 /* Points are close that are within so much of the reach of the scene's median light. */
-static const float influence_close = 0.25f;
+static const float influence_close = 0.125f;
 
 FN mask box_gather_meets(const noc_influence *v, u32 volume, influence_region r) {
     const noc_influence_box *boxes = v->boxes;
@@ -30,61 +30,39 @@ FN void word_prefetch(const uint32_t *base, u32 index) { record_prefetch((const 
 
 /* ---- what the points find ---- */
 
-FN influence_region region_load(const noc_found *f, int l) {
-    influence_region r;
-    r.lo = load3(f->lo, l);
-    r.hi = load3(f->hi, l);
-    r.n = load3(f->n, l);
-    r.back = rload(f->back + l);
-    return r;
-}
-
-/* The S_r that the query's points need for each volume near it. False: no memory. */
+/* What each volume near the query's points gives them, lux, from the query's `least` on, which is added to the bins; where that is
+ * 0, 1 if it holds them. 0: nothing. False: no memory. */
 static bool look_closer(const noc_influence *v, const noc_near *near, const noc_near_query *q, noc_found *f) {
     influence_region r = region_splat(q);
-    if (!array_reserve(&f->needs, near->groups.len * 16))
+    if (!array_reserve(&f->gives, near->groups.len * 16))
         return false;
     for (size_t i = 0; i < near->groups.len; i++) {
         const noc_near_group *group = &near->groups.data[i];
         for (int l = 0; l < 16; l += LANES) {
-            real needs = influence_needs(group_load(group, l), r);
-            if (v->boxes)
-                needs = sel(box_gather_meets(v, uload(group->volume + l), r), needs, INFLUENCE_NEVER);
-            rstore(f->needs.data + i * 16 + (size_t)l, needs);
+            float *to = f->gives.data + i * 16 + (size_t)l;
+            influence a = group_load(group, l);
+            mask held = influence_holds(a, r, K(q->scale));
+            if (v->boxes && ANY(held))
+                held = and_(held, box_gather_meets(v, uload(group->volume + l), r));
+            real gives = sel(held, K(1.0f), K(0.0f));
+            if (q->least > 0 && ANY(held))
+                gives = sel(held, influence_gives(a, rload(group->turn + l), r), K(0.0f));
+            gives = sel(gives >= K(q->least), gives, K(0.0f));
+            rstore(to, gives);
+            for (uint32_t bits = q->least > 0 ? mbits(gives > K(0.0f)) : 0; bits; bits &= bits - 1)
+                noc_rule_add(&f->bins, group->lights[l + __builtin_ctz(bits)], to[__builtin_ctz(bits)]);
         }
     }
     return true;
 }
 
-/* The S_r that draws best there, the query's or less. */
-static float best_scale(const noc_influence *v, const noc_near *near, const noc_near_query *q, int every, noc_found *f) {
-    influence_region r = region_splat(q);
-    noc_rule_begin(&f->bins, q->scale);
-    for (size_t i = 0; i < near->groups.len; i++) {
-        const noc_near_group *group = &near->groups.data[i];
-        const float *needs = f->needs.data + i * 16;
-        for (int l = 0; l < 16; l += LANES) {
-            ALIGNED float gives[LANES];
-            uint32_t bits = mbits(rload(needs + l) <= K(q->scale));
-            if (!bits)
-                continue;
-            rstore(gives, influence_gives(group_load(group, l), r));
-            for (; bits; bits &= bits - 1) {
-                int k = __builtin_ctz(bits);
-                noc_rule_add(&f->bins, needs[l + k], group->lights[l + k], gives[k]);
-            }
-        }
-    }
-    return fminf(noc_rule_best(&f->bins, (float)v->count, every, v->rule), q->scale);
-}
-
-/* Appends the lights whose volumes need no more than `scale`. */
-static void take_lights(const noc_influence *v, const noc_near *near, float scale, noc_found *f) {
+/* Appends the lights of volumes that give at least `least`. */
+static void take_lights(const noc_influence *v, const noc_near *near, float least, noc_found *f) {
     for (size_t i = 0; i < near->groups.len; i++) {
         const noc_near_group *group = &near->groups.data[i];
         uint32_t bits = 0;
         for (int l = 0; l < 16; l += LANES)
-            bits |= mbits(rload(f->needs.data + i * 16 + (size_t)l) <= K(scale)) << l;
+            bits |= mbits(rload(f->gives.data + i * 16 + (size_t)l) >= K(least)) << l;
         for (; bits; bits &= bits - 1) {
             uint32_t volume = group->volume[__builtin_ctz(bits)], first = v->first ? v->first[volume] : volume;
             uint32_t end = v->first ? v->first[volume + 1] : first + 1;
@@ -98,78 +76,132 @@ static void take_lights(const noc_influence *v, const noc_near *near, float scal
     }
 }
 
-/* The points of `pending` that ask together with the first of them: those within `close` of it that face about the same way. */
-static uint32_t points_close(const gblock *g, uint32_t pending, float close) {
-    int first = __builtin_ctz(pending);
-    v3 p = V3(K(g->px[first]), K(g->py[first]), K(g->pz[first])), n = V3(K(g->nx[first]), K(g->ny[first]), K(g->nz[first]));
+/* The points of `pending` within `close` of p that face about the same way as n. */
+static uint32_t points_close(const gblock *g, uint32_t pending, v3 p, v3 n, float close) {
     uint32_t bits = 0;
     for (int l = 0; l < BLOCK; l += LANES) {
         v3 d = sub3(V3(rload(g->px + l), rload(g->py + l), rload(g->pz + l)), p);
         real cos = dot3(n, V3(rload(g->nx + l), rload(g->ny + l), rload(g->nz + l)));
         bits |= mbits(and_(dot3(d, d) <= K(close * close), cos > K(0.9f))) << l;
     }
-    return (bits & pending) | 1u << first;
+    return bits & pending;
 }
 
-/* What the points of a query find; `part` are their lanes. */
-static void part_finds(const noc_influence *v, const noc_near_query *q, uint32_t part, bool fixed, int every,
-                       noc_around *around, noc_found *f) {
-    size_t from = f->ids.len;
-    const noc_near *near = around ? around_near(v, around, around_side(around, q)) : NULL;
-    if (!near) {
-        influence_near(v, q, &f->near);
-        near = &f->near;
+/* The points that ask together with the first of those pending in block `first`, in that one and those after it. */
+static void make_group(const gblock *const *g, uint32_t *pending, int first, int blocks, float close, const noc_near_query *none, noc_found *f) {
+    int lane = __builtin_ctz(pending[first]), number = f->groups++;
+    const gblock *o = g[first];
+    v3 p = V3(K(o->px[lane]), K(o->py[lane]), K(o->pz[lane])), n = V3(K(o->nx[lane]), K(o->ny[lane]), K(o->nz[lane]));
+    noc_found_group *group = &f->group[number];
+    *group = (noc_found_group){ .query = *none };
+    for (int b = first; b < blocks; b++) {
+        uint32_t part = pending[b] ? points_close(g[b], pending[b], p, n, close) : 0;
+        if (b == first)
+            part |= 1u << lane;
+        if (!part)
+            continue;
+        noc_near_add(&group->query, (const float *const[3]){ g[b]->px, g[b]->py, g[b]->pz },
+                     (const float *const[3]){ g[b]->nx, g[b]->ny, g[b]->nz }, part);
+        pending[b] &= ~part;
+        for (; part; part &= part - 1)
+            f->of[b][__builtin_ctz(part)] = (uint16_t)number;
     }
+}
+
+/* What the points of a group find among the volumes near them. */
+static void group_finds(const noc_influence *v, const noc_near *near, int every, noc_found *f, noc_found_group *group) {
+    noc_near_query *q = &group->query;
+    if (q->least > 0)
+        noc_rule_begin(&f->bins, q->least);
     f->no_memory = f->no_memory || near->no_memory || !look_closer(v, near, q, f);
     if (f->no_memory)
         return;
-    float settled = fixed ? q->scale : best_scale(v, near, q, every, f);
-    take_lights(v, near, settled, f);
-    for (uint32_t bits = part; bits; bits &= bits - 1) {
-        int l = __builtin_ctz(bits);
-        f->count[l] = (uint32_t)(f->ids.len - from);
-        f->from[l] = f->count[l] ? (uint32_t)from : 0;
-        f->scale[l] = settled;
-        for (int k = 0; k < 3; k++) {
-            f->lo[k][l] = q->lo[k];
-            f->hi[k][l] = q->hi[k];
-            f->n[k][l] = q->n[k];
-        }
-        f->back[l] = q->back;
-    }
+    group->from = (uint32_t)f->ids.len;
+    if (q->least > 0)
+        q->least = fmaxf(noc_rule_best(&f->bins, (float)v->count, every, v->rule), q->least);
+    take_lights(v, near, q->least > 0 ? q->least : 1, f);
+    group->count = (uint32_t)f->ids.len - group->from;
+    group->from = group->count ? group->from : 0;
 }
 
-/* What each point of `lanes` finds. around: of a tile that holds the block, or NULL. */
-static void influence_find(const noc_influence *v, const gblock *g, uint32_t lanes, float fixed, int every,
-                           noc_around *around, noc_found *f) {
-    const float *const p[3] = { g->px, g->py, g->pz }, *const n[3] = { g->nx, g->ny, g->nz };
-    float scale = fixed > 0 ? fixed : v->scale, close = influence_close * scale * v->volumes[v->volume_count / 2].root;
-    memset(f->count, 0, sizeof(f->count));
-    memset(f->from, 0, sizeof(f->from));
+enum { TILE_VOLUMES = 4096 };
+
+/* What the points of a tile find. Volumes are looked for once, near all of them; where that is too many, for each group. */
+static void influence_find(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int n, noc_found *f) {
+    const noc_influence *v = ctx->influence;
+    float fixed = noc_influence_scale(ctx->frame->params->influence), scale = fixed > 0 ? fixed : v->scale;
+    float close = influence_close * scale * v->volumes[v->volume_count / 2].root;
+    uint32_t pending[NOC_QUERY_BLOCKS];
+    noc_near_query all = noc_near_none(scale, TILE_VOLUMES), none = noc_near_none(scale, SIZE_MAX);
+    none.least = fixed > 0 ? 0 : 1 / (scale * scale);
+    memset(f->of, 0, sizeof(f->of));
+    f->group[0] = (noc_found_group){ .query = none };
+    f->groups = 1;
     f->no_memory = !array_reserve(&f->ids, 1);
     if (f->no_memory)
         return;
     f->ids.data[0] = 0; /* where lanes look that found nothing */
     f->ids.len = 1;
-    for (uint32_t pending = lanes, part; pending && !f->no_memory; pending &= ~part) {
-        part = points_close(g, pending, close);
-        noc_near_query q = noc_near_none(scale, SIZE_MAX);
-        noc_near_add(&q, p, n, part);
-        part_finds(v, &q, part, fixed > 0, every, around, f);
+    memcpy(pending, lanes, (size_t)n * sizeof(*pending));
+    for (int b = 0; b < n; b++)
+        while (pending[b])
+            make_group(g, pending, b, n, close, &none, f);
+    for (int i = 1; i < f->groups; i++)
+        for (int k = 0; k < 3; k++) {
+            all.lo[k] = NOC_MIN(all.lo[k], f->group[i].query.lo[k]);
+            all.hi[k] = NOC_MAX(all.hi[k], f->group[i].query.hi[k]);
+        }
+    all.back = -INFINITY;
+    influence_near(v, &all, &f->all);
+    for (int i = 1; i < f->groups; i++) {
+        const noc_near *near = &f->all;
+        if (near->over)
+            influence_near(v, &f->group[i].query, &f->near), near = &f->near;
+        group_finds(v, near, ctx->frame->params->uniform_every, f, &f->group[i]);
     }
+}
+
+/* What the points of a block asked with, and found. */
+typedef struct asking {
+    ALIGNED float lo[3][BLOCK];
+    ALIGNED float hi[3][BLOCK];
+    ALIGNED float n[3][BLOCK];
+    ALIGNED float back[BLOCK];
+    ALIGNED float least[BLOCK];
+    ALIGNED uint32_t count[BLOCK];
+    ALIGNED uint32_t from[BLOCK];
+} asking;
+
+static void asking_of(const noc_found *f, const uint16_t of[BLOCK], asking *a) {
+    for (int l = 0; l < BLOCK; l++) {
+        const noc_found_group *group = &f->group[of[l]];
+        for (int k = 0; k < 3; k++) {
+            a->lo[k][l] = group->query.lo[k];
+            a->hi[k][l] = group->query.hi[k];
+            a->n[k][l] = group->query.n[k];
+        }
+        a->back[l] = group->query.back;
+        a->least[l] = group->query.least;
+        a->count[l] = group->count;
+        a->from[l] = group->from;
+    }
+}
+
+FN influence_region region_load(const asking *a, int l) {
+    return influence_box(load3(a->lo, l), load3(a->hi, l), load3(a->n, l), rload(a->back + l));
 }
 
 /* ---- draws ---- */
 
 /* Uniform draws of a block's lanes from l on get their densities: the light's own volume is asked. `ahead` draws at a time,
  * so that memory is waited for once. */
-static void weigh_uniform(const noc_influence *v, const noc_found *f, int l, int m, int every, real in, real out,
+static void weigh_uniform(const noc_influence *v, const asking *a, const noc_near_query *q, int l, int m, int every, real in, real out,
                           pick_block *picks) {
     enum { AHEAD = 16 };
     u32 volume[AHEAD];
-    influence_region r = region_load(f, l);
-    real scale = rload(f->scale + l);
-    mask any = uload(f->count + l) > KU(0u);
+    influence_region r = region_load(a, l);
+    real least = rload(a->least + l);
+    mask any = uload(a->count + l) > KU(0u);
     for (int first = 0; first < m; first += AHEAD * every) {
         int end = NOC_MIN(m, first + AHEAD * every), k = 0;
         for (int i = first; i < end; i += every, k++) {
@@ -178,7 +210,10 @@ static void weigh_uniform(const noc_influence *v, const noc_found *f, int l, int
         }
         k = 0;
         for (int i = first; i < end; i += every, k++) {
-            mask held = and_(influence_needs(influence_gather(v->volumes, volume[k]), r) <= scale, any);
+            influence volume_k = influence_gather(v->volumes, volume[k]);
+            mask held = and_(influence_holds(volume_k, r, K(q->scale)), any);
+            if (q->least > 0)
+                held = and_(held, influence_gives(volume_k, influence_turn(volume_k), r) >= least);
             if (v->boxes && ANY(held))
                 held = and_(held, box_gather_meets(v, volume[k], r));
             rstore(picks->inverse[i] + l, sel(held, in, out));
@@ -186,12 +221,14 @@ static void weigh_uniform(const noc_influence *v, const noc_found *f, int l, int
     }
 }
 
-static void influence_draw(const struct core_context *ctx, const noc_found *f, int x, int y, int m,
-                           pick_block *out) {
+/* Draws for a block of the tile that found that. */
+static void pick_influence(const struct core_context *ctx, const noc_found *f, int block, int x, int y, int m, pick_block *out) {
     const noc_influence *v = ctx->influence;
     int every = ctx->frame->params->uniform_every;
+    asking a;
+    asking_of(f, f->of[block], &a);
     for (int l = 0; l < BLOCK; l += LANES) {
-        u32 key = key_of(ctx, x, y, l), count = uload(f->count + l), from = uload(f->from + l), all = KU(v->count);
+        u32 key = key_of(ctx, x, y, l), count = uload(a.count + l), from = uload(a.from + l), all = KU(v->count);
         mask any = count > KU(0u);
         real p_in = K(1.0f) / influence_pmf(any, count, all, m, every);
         real p_out = K(1.0f) / influence_pmf(mload(0, l), count, all, m, every);
@@ -208,15 +245,8 @@ static void influence_draw(const struct core_context *ctx, const noc_found *f, i
             }
             ustore(out->light[i] + l, id);
         }
-        weigh_uniform(v, f, l, m, every, p_in, p_out, out);
+        weigh_uniform(v, &a, &f->group[0].query, l, m, every, p_in, p_out, out);
     }
-}
-
-static void pick_influence(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
-                           noc_around *around, noc_found *found, pick_block *out) {
-    influence_find(ctx->influence, g, lanes, noc_influence_scale(ctx->frame->params->influence),
-                   ctx->frame->params->uniform_every, around, found);
-    influence_draw(ctx, found, x, y, m, out);
 }
 
 #endif

@@ -120,11 +120,9 @@ typedef struct kernels {
     void (*pick_power)(const struct core_context *ctx, int x, int y, int m, pick_block *out);
     void (*pick_tree)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                       tree_items items[2], pick_block *out);
-    /* The surfaces of n blocks, a tile: where their influence volumes are looked for. */
-    void (*influence_around)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int n, noc_around *out);
-    /* around: volumes near a tile that holds the block, or NULL; found: what its lanes found. */
-    void (*pick_influence)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
-                           noc_around *around, noc_found *found, pick_block *out);
+    /* What the surfaces of n blocks, a tile, find among the influence volumes; then m candidates for the lanes of one of them. */
+    void (*influence_find)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int n, noc_found *out);
+    void (*pick_influence)(const struct core_context *ctx, const noc_found *found, int block, int x, int y, int m, pick_block *out);
     void (*given)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                   const pick_block *picks, rblock *out);
     /* Where this frame's surfaces were in the previous picture, in pixels; returns the lanes that were in front of it. */

@@ -137,7 +137,6 @@ void noc_embree_release_lights(embree_state *s) {
             free(w->tree_items[k].what);
             free(w->tree_items[k].pmf);
         }
-        noc_around_free(&w->around);
     }
 }
 

@@ -194,7 +194,7 @@ void noc_embree_share_candidates(stage_run *run, worker *w, tile at, const gbloc
                 t->bright += t->weighed.bright[l];
             draw_block(run, t, &ctx, g[n], n, x, y, r);
             if (ctx.frame->params->aovs)
-                noc_embree_view_candidates(run, w, t->at[n], lanes[n], r);
+                noc_embree_view_candidates(run, w, n, t->at[n], lanes[n], r);
         }
 }
 

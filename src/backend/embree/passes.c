@@ -58,58 +58,49 @@ static void primary(stage_run *run, worker *w, tile t) {
             primary_block(run, w, bx, by);
 }
 
-/* What is asked for all blocks of a tile. */
-static noc_around *look_around(stage_run *run, worker *w, tile t) {
-    const frame_buffers *b = &run->s->b;
-    tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
-    const gblock *g[TILE_BLOCKS * TILE_BLOCKS];
-    uint32_t lanes[TILE_BLOCKS * TILE_BLOCKS];
-    int n = noc_embree_tile_blocks(run, t, blocks);
+/* What the tile's points find among the influence volumes. */
+static void find_volumes(stage_run *run, worker *w, const tile_block *blocks, int n) {
+    const gblock *g[TILE_BLOCKS * TILE_BLOCKS] = { NULL };
+    uint32_t lanes[TILE_BLOCKS * TILE_BLOCKS] = { 0 };
     for (int i = 0; i < n; i++) {
-        g[i] = &b->g[run->ctx.frame->gbuffer][blocks[i].at];
+        g[i] = &run->s->b.g[run->ctx.frame->gbuffer][blocks[i].at];
         lanes[i] = lanes_with_surface(g[i]);
     }
-    run->k->influence_around(&run->ctx, g, lanes, n, &w->around);
-    return &w->around;
-}
-
-static void pick_influence(stage_run *run, worker *w, const gblock *g, uint32_t lanes, int x, int y, int m, noc_around *around) {
-    run->k->pick_influence(&run->ctx, g, lanes, x, y, m, around, &w->found, &w->picks);
+    run->k->influence_find(&run->ctx, g, lanes, n, &w->found);
     w->no_memory = w->no_memory || w->found.no_memory;
-    for (uint32_t bits = lanes; bits; bits &= bits - 1)
-        w->found_counts[NOC_MIN(w->found.count[__builtin_ctz(bits)], run->s->found_bins - 1)]++;
+    for (int i = 0; i < n; i++)
+        for (uint32_t bits = lanes[i]; bits; bits &= bits - 1)
+            w->found_counts[NOC_MIN(noc_found_count(&w->found, i, __builtin_ctz(bits)), run->s->found_bins - 1)]++;
 }
 
-/* Draws a block's candidates from whatever these parameters name but the uniform draws and the lists. */
-static void pick_lights(stage_run *run, worker *w, const gblock *g, uint32_t lanes, int x, int y, int m, noc_around *around) {
+/* Draws the candidates of block i of its tile from whatever these parameters name but the uniform draws and the lists. */
+static void pick_lights(stage_run *run, worker *w, const gblock *g, uint32_t lanes, int i, tile_block at, int m) {
     switch (run->ctx.frame->params->candidates) {
-    case NOC_CANDIDATES_POWER: run->k->pick_power(&run->ctx, x, y, m, &w->picks); break;
-    case NOC_CANDIDATES_BVH: pick_influence(run, w, g, lanes, x, y, m, around); break;
-    case NOC_CANDIDATES_TREE: run->k->pick_tree(&run->ctx, g, lanes, x, y, m, w->tree_items, &w->picks); break;
+    case NOC_CANDIDATES_POWER: run->k->pick_power(&run->ctx, at.x, at.y, m, &w->picks); break;
+    case NOC_CANDIDATES_BVH: run->k->pick_influence(&run->ctx, &w->found, i, at.x, at.y, m, &w->picks); break;
+    case NOC_CANDIDATES_TREE: run->k->pick_tree(&run->ctx, g, lanes, at.x, at.y, m, w->tree_items, &w->picks); break;
     case NOC_CANDIDATES_UNIFORM:
     case NOC_CANDIDATES_LISTS: break;
     }
 }
 
-/* around: bvh only. */
-static void candidates(stage_run *run, worker *w, int bx, int by, noc_around *around) {
+static void candidates(stage_run *run, worker *w, int i, tile_block at) {
     frame_buffers *b = &run->s->b;
     const noc_render_params *p = run->ctx.frame->params;
-    size_t at = block_at(b, bx, by);
-    const gblock *g = &b->g[run->ctx.frame->gbuffer][at];
-    rblock *r = &b->r[run->stage->target][at];
+    const gblock *g = &b->g[run->ctx.frame->gbuffer][at.at];
+    rblock *r = &b->r[run->stage->target][at.at];
     uint32_t lanes = lanes_with_surface(g);
-    int m = p->method == NOC_METHOD_IS ? 1 : p->draws, x = bx * BLOCK_SIDE, y = by * BLOCK_SIDE;
+    int m = p->method == NOC_METHOD_IS ? 1 : p->draws;
     bool given = p->method != NOC_METHOD_IS && p->candidates != NOC_CANDIDATES_UNIFORM;
     if (given && lanes)
-        pick_lights(run, w, g, lanes, x, y, m, around);
+        pick_lights(run, w, g, lanes, i, at, m);
     if (given)
-        run->k->given(&run->ctx, g, lanes, x, y, m, &w->picks, r);
+        run->k->given(&run->ctx, g, lanes, at.x, at.y, m, &w->picks, r);
     else
-        run->k->candidates(&run->ctx, g, lanes, x, y, m, r);
+        run->k->candidates(&run->ctx, g, lanes, at.x, at.y, m, r);
     if (p->aovs)
-        noc_embree_view_candidates(run, w, at, lanes, r);
-    b->visible[run->stage->target][at] = 0;
+        noc_embree_view_candidates(run, w, i, at.at, lanes, r);
+    b->visible[run->stage->target][at.at] = 0;
 }
 
 /* Where the tail of a tile's list starts: anywhere, and from frame to frame on along the golden ratio's sequence, so that the
@@ -125,11 +116,12 @@ static void tile_candidates(stage_run *run, worker *w, tile t) {
     const noc_frame *f = run->ctx.frame;
     frame_buffers *b = &run->s->b;
     if (f->params->candidates != NOC_CANDIDATES_LISTS || f->params->method == NOC_METHOD_IS) {
-        bool volumes = f->params->candidates == NOC_CANDIDATES_BVH && f->params->method != NOC_METHOD_IS;
-        noc_around *around = volumes ? look_around(run, w, t) : NULL;
-        for (int by = t.y0; by < t.y1; by++)
-            for (int bx = t.x0; bx < t.x1; bx++)
-                candidates(run, w, bx, by, around);
+        tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
+        int all = noc_embree_tile_blocks(run, t, blocks);
+        if (f->params->candidates == NOC_CANDIDATES_BVH && f->params->method != NOC_METHOD_IS)
+            find_volumes(run, w, blocks, all);
+        for (int i = 0; i < all; i++)
+            candidates(run, w, i, blocks[i]);
         return;
     }
     const gblock *g[TILE_BLOCKS * TILE_BLOCKS];
@@ -153,7 +145,7 @@ static void tile_candidates(stage_run *run, worker *w, tile t) {
             size_t at = block_at(b, bx, by);
             run->k->list_candidates(&ctx, g[n], lanes[n], bx * BLOCK_SIDE, by * BLOCK_SIDE, &b->r[run->stage->target][at]);
             if (f->params->aovs)
-                noc_embree_view_candidates(run, w, at, lanes[n], &b->r[run->stage->target][at]);
+                noc_embree_view_candidates(run, w, n, at, lanes[n], &b->r[run->stage->target][at]);
             b->visible[run->stage->target][at] = 0;
         }
 }

@@ -82,14 +82,14 @@ static float expected(const stage_run *run, const worker *w, uint32_t light, int
     return -1;
 }
 
-void noc_embree_view_candidates(const stage_run *run, const worker *w, size_t block, uint32_t lanes, const rblock *r) {
+void noc_embree_view_candidates(const stage_run *run, const worker *w, int i, size_t block, uint32_t lanes, const rblock *r) {
     const view_buffers *v = &run->s->b.views;
     bool lists = run->ctx.frame->params->candidates == NOC_CANDIDATES_LISTS;
     for (int l = 0; l < BLOCK; l++) {
         if (!(lanes >> l & 1))
             continue;
         if (v->made[NOC_AOV_LIGHTS])
-            v->made[NOC_AOV_LIGHTS][block][l] = (float)(lists ? w->lists.list.count / w->lists.list.copies : w->found.count[l]);
+            v->made[NOC_AOV_LIGHTS][block][l] = (float)(lists ? w->lists.list.count / w->lists.list.copies : noc_found_count(&w->found, i, l));
         if (v->made[NOC_AOV_DENSITY] && r->w[l] > 0)
             v->made[NOC_AOV_DENSITY][block][l] = expected(run, w, r->light[l], l);
     }
