@@ -122,6 +122,8 @@ static int spawn(remote *r, int end) {
     return error;
 }
 
+static noc_status ended_early(remote *r);
+
 static noc_status start(remote *r) {
     int ends[2];
     noc_status status = find_program(r);
@@ -151,7 +153,10 @@ static noc_status start(remote *r) {
     array_free(&request.bytes);
     if (request.refused)
         return noc_no_memory(r->sink->log, r->path);
-    return sent ? NOC_OK : noc_error(r->sink->log, NOC_ERR_IO, "%s: %s does not listen", r->path, r->program);
+    if (sent)
+        return NOC_OK;
+    kill(r->pid, SIGKILL); /* it does not listen; why it ended, if it did, is told */
+    return ended_early(r);
 }
 
 /* ---- until the end ---- */
