@@ -322,4 +322,18 @@ for spec in "$source_dir"/experiments/*.json; do
     test "$(basename "$spec")" != obj-city.json || test -e "$source_dir/build/city.obj" || continue
     expect "$(basename "$spec") is right" 1 'file/w: this folder' experiment "$spec" -o file/w
 done
+
+# ---- lamps in files of their own ----
+mkdir town
+cp "$source_dir/tests/cli/city.gml" town/city.gml
+printf 'lat,lon,power\n48.76,11.42,70\n48.7601,11.4201,100\n' >town/plain.csv
+cat >town/lamps.json <<'SPEC'
+{ "scene": { "name": "town", "inputs": ["city.gml"], "lamps": ["plain.csv"], "lamp-columns": ["watts=power"] },
+  "cameras": [ { "name": "a", "view": "aerial" } ], "size": "32x16", "frames": 1, "repetitions": 1,
+  "reference": { "rays": 2, "frames": 1 }, "configurations": [ { "name": "is", "method": "is" } ] }
+SPEC
+run experiment town/lamps.json -o town/results --cache cache
+test $status = 0 && grep -Eq '^\| town .*\| 2 \|' town/results/report.md
+result $? "a spec's lamps are read beside its folder's city, with their columns" "$(grep '^| town' town/results/report.md | head -1)"
+
 finish
