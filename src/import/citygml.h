@@ -26,7 +26,7 @@ typedef enum cg_code {
     CG_FEATURE,           /* value: index into cg_feature_types */
     CG_GEOMETRY_PROPERTY, /* value: lod * 16 + role */
     CG_FUNCTION,          /* function, usage, class: tells roads from pavements */
-    CG_LABEL,             /* name of an object */
+    CG_LABEL,             /* name of an object, or the date of its end */
     CG_ATTRIBUTE,         /* generic attribute: with its name in XML (1.0, 2.0), or as an element (3.0) */
     CG_ATTRIBUTE_NAME, CG_ATTRIBUTE_VALUE,
     CG_IMPLICIT, CG_MATRIX, CG_REFERENCE_POINT, CG_RELATIVE_GEOMETRY,
@@ -138,7 +138,8 @@ typedef struct cg_target {
     bool flip; /* orientation in force outside the element with this id */
 } cg_target;
 
-/* What an object says of itself, in its order: "class", "function", "usage", "name", and generic attributes. */
+/* What an object says of itself, in its order: "class", "function", "usage", "name", "terminationDate" (2.0), "validTo" (3.0),
+ * and generic attributes. */
 typedef struct cg_attribute {
     const char *key, *value;
     bool generic;

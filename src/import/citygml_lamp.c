@@ -8,6 +8,7 @@
 #include "import/lamp_tags.h"
 
 #include <math.h>
+#include <time.h>
 
 #define FREE 0.75     /* share of a light that must leave the body */
 #define ARM 0.45      /* m off the foot from which on a head hangs on an arm */
@@ -311,6 +312,22 @@ static void read_lamp(cg_parser *p, lamp_tag *tags, size_t count, geo_lamp *lamp
         lamp->type = GEO_LAMP_FLOOD;
 }
 
+/* Is the object gone by today (UTC)? Dates are "2019-05-31", and "2019-05-31T12:00:00". */
+static bool is_gone(const cg_object *object) {
+    static const char *const ends[] = { "terminationDate", "validTo" };
+    char today[16];
+    time_t now = time(NULL);
+    struct tm utc;
+    if (!gmtime_r(&now, &utc) || strftime(today, sizeof(today), "%Y-%m-%d", &utc) != 10)
+        return false;
+    for (size_t i = 0; i < NOC_COUNT(ends); i++) {
+        const char *date = cg_attribute_get(object, ends[i]);
+        if (date && strlen(date) >= 10 && date[4] == '-' && date[7] == '-' && *date >= '0' && *date <= '9' && strncmp(date, today, 10) < 0)
+            return true;
+    }
+    return false;
+}
+
 bool cg_emit_lamp(cg_parser *p) {
     cg_object *object = &p->object;
     if (!cg_may_be_lamp(object->features.data[0].type))
@@ -324,6 +341,8 @@ bool cg_emit_lamp(cg_parser *p) {
     bool sure = tags_of(p, tags, &count), mine = is_lamp(p, tags, count, sure);
     geo_lamp lamp = { .id = "" };
     lamp_verdict verdict = mine ? lamp_verdict_of(p->keys, tags, count, true) : LAMP_NONE;
+    if (verdict == LAMP_ACTIVE && is_gone(object))
+        verdict = LAMP_INACTIVE;
     if (mine) {
         read_lamp(p, tags, count, &lamp);
         mine = place_by_body(p, &lamp) || (!p->status && place_by_point(p, &lamp));

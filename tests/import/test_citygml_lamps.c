@@ -56,6 +56,11 @@ static void test_words(void **state) {
     expect_lamp("by an attribute", true, ATTRIBUTE("string", "Objektart", "Lichtmast mit Auslegerleuchte"), true);
     expect_lamp("an inn", true, "<g:name>Zur Laterne</g:name>", false);
     expect_lamp("described beside one", false, "<g:description>bench under a street light</g:description>" FUNCTION("f", "bench"), false);
+    expect_lamp("gone in 2019", false, "<terminationDate>2019-05-31</terminationDate>" FUNCTION("f", "street lamp"), false);
+    assert_int_equal(city_issue(&sink, "lamp not in use (removed, disused or planned)"), 1);
+    expect_lamp("gone in 2019, 3.0", false, "<validTo>2019-05-31T12:00:00Z</validTo>" FUNCTION("f", "street lamp"), false);
+    expect_lamp("to be gone", false, "<terminationDate>2919-05-31</terminationDate>" FUNCTION("f", "street lamp"), true);
+    expect_lamp("no date", false, "<terminationDate>unknown</terminationDate>" FUNCTION("f", "street lamp"), true);
     expect_lamp("traffic light", false, FUNCTION("f", "traffic light"), false);
     expect_lamp("gas tank", true, FUNCTION("gen", "gas tank") ATTRIBUTE("double", "Gas volume", "4334.99"), false);
 }
