@@ -352,9 +352,23 @@ static void test_planned_lamps(void **state) {
     finish(&r);
 }
 
+/* What came before a reader's error goes to the report, and what is wrong with that is no second error: here a lamp on the Moon, to
+ * which no transformation leads. LOAD looks that one error is told. */
+static void test_error_after_error(void **state) {
+    (void)state;
+    struct run r;
+    const char *lamps = file("moon", "FAKE lamps\ncrs +proj=longlat +R=1737400 +no_defs\nlamp 11.4 48.7\nfail\n");
+    noc_import_params params = DEFAULTS;
+    params.scene_crs = "EPSG:25832";
+    LOAD(&r, params, lamps);
+    assert_int_equal(r.status, NOC_ERR_FORMAT);
+    finish(&r);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_geographic), cmocka_unit_test(test_axes), cmocka_unit_test(test_scene_crs),
+        cmocka_unit_test(test_error_after_error), cmocka_unit_test(test_geographic), cmocka_unit_test(test_axes),
+        cmocka_unit_test(test_scene_crs),
         cmocka_unit_test(test_missing_crs), cmocka_unit_test(test_mesh_place), cmocka_unit_test(test_true_lengths),
         cmocka_unit_test(test_planned_lamps),
     };
