@@ -56,7 +56,7 @@ static char *beside(const char *reference) { return cli_format("%.*s.noise", (in
 /* A few numbers that may be lost: where they cannot be written, the report does without them. */
 void experiment_keep_noise(const char *reference, const experiment_noise *noise) {
     char *path = beside(reference), *temporary = cli_format("%s.%ld", path, (long)getpid());
-    FILE *file = fopen(temporary, "w");
+    FILE *file = fopen(temporary, "wx");
     bool kept = file && fprintf(file, "%.9g %.9g %.9g %.9g %.9g %.9g\n", noise->relmse, noise->clamped, noise->relmse_all, noise->clamped_all,
                                  noise->mean, noise->mean_all) > 0;
     if (file)
@@ -70,7 +70,7 @@ void experiment_keep_noise(const char *reference, const experiment_noise *noise)
 experiment_noise experiment_read_noise(const char *reference) {
     experiment_noise n;
     char *path = beside(reference);
-    FILE *file = fopen(path, "r");
+    FILE *file = access(path, F_OK) ? NULL : cli_open(path);
     bool whole = file && fscanf(file, "%lf %lf %lf %lf %lf %lf", &n.relmse, &n.clamped, &n.relmse_all, &n.clamped_all, &n.mean, &n.mean_all) == 6;
     if (file)
         fclose(file);

@@ -32,7 +32,8 @@ char *experiment_slug(const experiment_lab *lab, size_t camera) {
 
 FILE *experiment_create(const experiment_lab *lab, const char *name, char **temporary) {
     *temporary = cli_format("%s/.%s.new", lab->folder, name);
-    FILE *file = fopen(*temporary, "w");
+    unlink(*temporary); /* of a killed run: the folder is locked */
+    FILE *file = fopen(*temporary, "wx");
     if (!file) {
         cli_error("%s/%s: %s", lab->folder, name, strerror(errno));
         free(*temporary);

@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const char header[] =
@@ -37,9 +38,12 @@ static bool split(char *line, char *fields[FIELDS]) {
 
 static bool parse_row(char *line, experiment_stored *row) {
     char *fields[FIELDS], *end;
-    if (!split(line, fields) || strlen(fields[FIELDS - 1]) != EXPERIMENT_KEY - 1)
+    if (!split(line, fields))
         return false;
-    memcpy(row->key, fields[FIELDS - 1], EXPERIMENT_KEY);
+    const char *key = fields[FIELDS - 1]; /* becomes a picture's name */
+    if (strlen(key) != EXPERIMENT_KEY - 1 || strspn(key, "0123456789abcdef") != EXPERIMENT_KEY - 1)
+        return false;
+    memcpy(row->key, key, EXPERIMENT_KEY);
     row->mode = strcmp(fields[MODE], modes[EXPERIMENT_ACCUMULATED]) ? EXPERIMENT_ALONE : EXPERIMENT_ACCUMULATED;
     row->frame = atoi(fields[FRAME]);
     row->claimed = false;
@@ -77,25 +81,32 @@ static void print_row(const experiment_lab *lab, FILE *out, const experiment_run
     fprintf(out, "%s\n", run->key);
 }
 
+/* Is the file's first line our header, whole, or cut where the program was killed? */
+static bool is_header(const char *line, size_t n) {
+    size_t whole = sizeof(header) - 1;
+    return n <= whole ? !memcmp(line, header, n) : n == whole + 1 && !memcmp(line, header, whole) && line[whole] == '\n';
+}
+
 /* Reads what earlier sessions left. *whole: bytes up to the end of the last whole line; -1 where the file is no such table. */
 static int read_table(experiment_lab *lab, const char *path, long *whole) {
+    struct stat st;
     *whole = 0;
-    FILE *file = fopen(path, "r");
-    if (!file && errno == ENOENT)
+    if (stat(path, &st) && errno == ENOENT)
         return CLI_OK;
-    if (!file) {
-        cli_error("%s: %s", path, strerror(errno));
+    FILE *file = cli_open(path); /* a pipe is not waited for */
+    if (!file)
         return CLI_FAILURE;
-    }
     char *line = NULL;
     size_t size = 0, room = 0;
     bool first = true;
-    for (ssize_t n; (n = getline(&line, &size, file)) > 0 && line[n - 1] == '\n'; *whole += n) {
-        line[n - 1] = 0;
-        if (first && strcmp(line, header)) {
+    for (ssize_t n; (n = getline(&line, &size, file)) > 0; *whole += n) {
+        if (first && !is_header(line, (size_t)n)) {
             *whole = -1;
             break;
         }
+        if (line[n - 1] != '\n')
+            break;
+        line[n - 1] = 0;
         if (lab->stored_count == room) {
             room = room ? 2 * room : 256;
             lab->stored = experiment_longer(lab->stored, room * sizeof(*lab->stored));
