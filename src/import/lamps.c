@@ -7,6 +7,7 @@
 
 #define COARSE_DISTANCE 100e3 /* m */
 #define OUTSIDE 2000.0       /* m; lamps farther than this from the city do not light it */
+#define BESIDE 150.0         /* m; lamps this near stand along streets of the city whose surfaces are not in it */
 #define GROUND_SHARE 0.2     /* of the extent that streets, lawns and water cover when they are the ground */
 
 typedef struct extent {
@@ -127,13 +128,16 @@ static bool infer_update(void *user, const char *what, double done) {
 typedef struct lamp_fate {
     size_t given, mapped, outside, lost; /* lost: without a place */
     double nearest;                      /* of those outside, m */
+    double closest;                      /* of those mapped, m; 0 within the city */
+    size_t others;                       /* lights of the scene that are no lamps of these */
     size_t exchanged;                    /* lie within the city if their axes are exchanged; counted where none is of use */
 } lamp_fate;
 
 /* Stands the lamps that were read. */
 static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_params *params, lamp_fate *fate) {
     noc_status status = NOC_OK;
-    *fate = (lamp_fate){ .given = im->lamps.len, .nearest = INFINITY };
+    *fate = (lamp_fate){ .given = im->lamps.len, .nearest = INFINITY, .closest = INFINITY,
+                         .others = im->scene->lights.len };
     for (size_t i = 0; i < im->input_count; i++) {
         fate->lost += im->inputs[i].lamps_lost;
         im->inputs[i].file.lamps_dropped = im->inputs[i].lamps_lost;
@@ -156,6 +160,7 @@ static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_par
         in->file.lamps_moved += lights > 0 ? params->tally->moved - moved : 0;
         *(lights > 0 ? &in->file.lamps_mapped : &in->file.lamps_dropped) += 1;
         fate->mapped += lights > 0;
+        fate->closest = lights > 0 ? NOC_MIN(fate->closest, d) : fate->closest;
         if (i % 256 == 0 && !go_on(im, 0.9 + 0.1 * (double)i / (double)im->lamps.len))
             break;
         im->current = p->input;
@@ -220,6 +225,15 @@ static noc_status refuse_useless(importer *im, const extent *e, lamp_fate *fate)
     return status;
 }
 
+/* They are drawn all the same: a lone building whose street is 200 m away is no mistake, and an error would leave no way to draw it. */
+static void warn_of_distance(importer *im, const lamp_fate *fate) {
+    bool apart = fate->mapped && fate->closest > BESIDE;
+    im->scene->lit_elsewhere = apart && !fate->others;
+    if (apart)
+        noc_warn(im->log, "none of the lamps stands in the city: the nearest is %.*f %s from it. Is one of the CRSs wrong, or are they another town's?",
+                 fate->closest < 1000 ? 0 : 1, fate->closest / (fate->closest < 1000 ? 1 : 1000), fate->closest < 1000 ? "m" : "km");
+}
+
 static void warn_of_roofs(const importer *im, const city_lamp_tally *tally) {
     if (tally->raised)
         noc_warn(im->log, "%zu of %zu lamps that stand on surfaces without a class stand 2 m or more above what is around them, on roofs "
@@ -278,6 +292,7 @@ noc_status finish_city(importer *im) {
         return status;
     if (fate.outside && fate.mapped)
         noc_info(im->log, "outside the city, and left out: %zu of %zu lamps", fate.outside, fate.given);
+    warn_of_distance(im, &fate);
     warn_of_roofs(im, &tally);
     return shines(scene) ? NOC_OK : infer(im, &e, &params, &fate);
 }

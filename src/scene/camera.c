@@ -65,16 +65,18 @@ double noc_light_weight(const noc_light_record *r) {
     return sqrt(y * (point ? noc_flux_angle(r) : M_PI * r->area));
 }
 
-/* Without lights, buildings stand in for them: a corner of every so many of their triangles. */
+/* Without lights, or where those are not the city's, buildings stand in for them: a corner of every so many of their triangles. */
+static bool by_lights(const noc_scene *s) { return s->lights.len && !s->lit_elsewhere; }
+
 static size_t source_count(const view_city *city) {
     const noc_scene *s = city->scene;
-    return s->lights.len ? s->lights.len : NOC_MIN(noc_scene_city_triangles(s), (size_t)4 * SAMPLES);
+    return by_lights(s) ? s->lights.len : NOC_MIN(noc_scene_city_triangles(s), (size_t)4 * SAMPLES);
 }
 
 static bool source_get(const view_city *city, size_t i, view_light *out) {
     const noc_scene *s = city->scene;
     *out = (view_light){ .weight = 1 };
-    if (s->lights.len) {
+    if (by_lights(s)) {
         const noc_light_record *r = &s->lights.data[i];
         noc_light_centre(r, out->p);
         out->weight = noc_light_weight(r);

@@ -47,6 +47,7 @@ struct noc_scene {
     char *given_crs_name;
     double given_origin[3];    /* where the local frame's origin lies in it */
     void (*crs_free)(struct geo_crs *);
+    bool lit_elsewhere;        /* no lamp stands in the city: views look at its buildings */
     char *without_crs;         /* the input that settled the place and names no CRS; NULL where there is none */
 
     /* Triangle soup: vertices are 3 floats (Embree needs 4 bytes of padding after the last: reserve one more). */

@@ -74,6 +74,19 @@ static void test_lamps(void **state) {
         assert_close(r.scene->lights.data[i].p[2] - height, 6, .03);
     }
     finish(&r);
+    /* beside the city, and out of it: drawn, and told (the house ends at 678010.5) */
+    for (int far = 0; far < 2; far++) {
+        LOAD(&r, DEFAULTS, file("a", CITY), file("l", far ? "FAKE lamps\ncrs EPSG:25832\nlamp 679410 5404005\nlamp 679440 5404005\n"
+                                                          : "FAKE lamps\ncrs EPSG:25832\nlamp 678155 5404005\nlamp 679440 5404005\n"));
+        assert_int_equal(r.status, NOC_OK);
+        assert_int_equal(r.info.lights, 2);
+        assert_int_equal(r.warnings, far);
+        assert_true(!far || strstr(r.last_warning, "none of the lamps stands in the city: the nearest is 1.4 km from it"));
+        noc_camera camera; /* the views look at the house */
+        assert_int_equal(noc_scene_camera(r.scene, NOC_VIEW_AERIAL, 1.5, &camera), NOC_OK);
+        assert_true(hypot(camera.target[0] + r.info.origin[0] - 678005, camera.target[1] + r.info.origin[1] - 5404005) < 300);
+        finish(&r);
+    }
     /* lamps alone make a scene too: nothing they could be outside of */
     LOAD(&r, DEFAULTS, file("l", "FAKE lamps\ncrs EPSG:4326\nlamp 52.5 13.4\nlamp 52.6 13.4\n"));
     assert_int_equal(r.status, NOC_OK);
