@@ -77,7 +77,7 @@ typedef struct geo_lamp {
     enum { GEO_SOURCE_UNKNOWN, GEO_SOURCE_LED, GEO_SOURCE_SODIUM, GEO_SOURCE_MERCURY, GEO_SOURCE_METAL_HALIDE,
            GEO_SOURCE_FLUORESCENT, GEO_SOURCE_INCANDESCENT, GEO_SOURCE_GAS, GEO_SOURCE_LOW_SODIUM } source;
     enum { GEO_MOUNT_UNKNOWN, GEO_MOUNT_POLE, GEO_MOUNT_WALL, GEO_MOUNT_SUSPENDED } mount;
-    const char *id;
+    const char *id, *ref; /* what else it is called, for other files may call it so; ref may be NULL */
     /* A lamp whose body is among the surfaces shines from here, and gets neither a pole nor another place. body_heads 0: none. */
     int body_heads;
     double head[GEO_BODY_HEADS][3]; /* centres of the lights, file CRS */

@@ -279,7 +279,7 @@ static bool read_field(reading *r, const lamp_meaning *c, const char *text) {
 
 bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *lamp, geo_issues *issues) {
     *lamp = (geo_lamp){ .xyz = { lamp->xyz[0], lamp->xyz[1], lamp->xyz[2] }, .height = NAN, .direction = NAN, .lumens = NAN,
-                        .watts = NAN, .kelvin = NAN, .rgb = { -1, -1, -1 }, .id = lamp->id ? lamp->id : "" };
+                        .watts = NAN, .kelvin = NAN, .rgb = { -1, -1, -1 }, .id = lamp->id ? lamp->id : "", .ref = "" };
     reading r = { .lamp = lamp, .issues = issues, .times = 1, .scale = 1 };
     struct said { lamp_meaning meaning; const char *value; } few[32];
     struct said *said = count > NOC_COUNT(few) ? noc_alloc(count * sizeof(*said)) : few;
@@ -304,6 +304,10 @@ bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *la
                     continue;
                 known[m->field] = read_field(&r, m, said[i].value);
             }
+    for (int rank = -1; rank < ranks && !*lamp->ref; rank++)
+        for (size_t i = 0; i < n && !*lamp->ref; i++)
+            if (said[i].meaning.field == LAMP_FIELD_ID && said[i].meaning.rank == rank && strcmp(said[i].value, lamp->id) != 0)
+                lamp->ref = said[i].value;
     if (said != few)
         free(said);
     if (!lamp->count && r.times > 1)

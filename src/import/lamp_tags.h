@@ -87,8 +87,8 @@ bool lamp_key_tells(const char *key);
 bool lamp_columns_tell(lamp_keys *keys, const char *const *names, size_t count);
 
 /* Fills everything but xyz, which is left as it is except for a missing height taken from an elevation column. Values
- * that cannot be understood are counted in issues (which may be NULL) and left unknown. lamp->id points into tags; where they
- * hold none it stays what it was, or "". False: memory was refused. */
+ * that cannot be understood are counted in issues (which may be NULL) and left unknown. lamp->id and ref point into tags: the
+ * identity that is believed first, and the next one; where they hold none id stays what it was, or "". False: memory was refused. */
 bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *lamp, geo_issues *issues) NOC_MUST_USE;
 
 /* Counts what the verdict says about a skipped feature; true if it is a lamp to be read. */

@@ -275,6 +275,8 @@ noc_status finish_city(importer *im) {
     warn_if_coarse(im);
     noc_status status = repeat_lamps(im);
     if (!status)
+        status = warn_of_doubles(im);
+    if (!status)
         status = needs_ground(im, &e) ? lay_ground(im, &e) : heights_check(im, NULL);
     if (status)
         return status;

@@ -167,6 +167,9 @@ noc_status repeat_object(importer *im, const char *id, bool *repeated); /* is im
 noc_status repeat_lamps(importer *im); /* drops lamps that an earlier file holds */
 void repeat_free(object_records *records);
 
+/* doubles.c: a warning where most lamps of a file seem to be another file's. */
+noc_status warn_of_doubles(const importer *im);
+
 /* heights.c */
 struct city_ground;
 /* Forgets the lamps' heights of an input that are not of this city's system, with a warning. ground: NULL where the scene's own is

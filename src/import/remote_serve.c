@@ -47,6 +47,7 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     serving *s = ctx;
     remote_put(&s->out, lamp, sizeof(*lamp));
     remote_put_text(&s->out, lamp->id);
+    remote_put_text(&s->out, lamp->ref);
     emit(s, REMOTE_LAMP);
     return NOC_OK;
 }

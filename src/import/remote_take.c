@@ -35,6 +35,7 @@ static noc_status take_lamp(remote_taker *t, remote_record *one) {
     if (!remote_get(one, &lamp, sizeof(lamp)))
         return garbled(t);
     lamp.id = remote_get_text(one);
+    lamp.ref = remote_get_text(one);
     bool kinds = (unsigned)lamp.type <= GEO_LAMP_FLOOD && (unsigned)lamp.source < NOC_SOURCE_COUNT &&
                  (unsigned)lamp.mount <= GEO_MOUNT_SUSPENDED && is_bool(&lamp.head_globe);
     if (one->bad || !kinds || lamp.body_heads /* of models, not of maps */ || lamp.count < 0 || !isfinite(lamp.xyz[0]) ||

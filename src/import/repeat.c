@@ -229,9 +229,17 @@ static size_t lamp_bucket(double cx, double cy, size_t size) {
     return (size_t)mix((uint64_t)(int64_t)cx * 0x9e3779b97f4a7c15u + (uint64_t)(int64_t)cy) & (size - 1);
 }
 
+static bool called_alike(const geo_lamp *a, const geo_lamp *b) {
+    const char *const x[2] = { a->id, a->ref }, *const y[2] = { b->id, b->ref };
+    for (int i = 0; i < 4; i++)
+        if (*x[i / 2] && !strcmp(x[i / 2], y[i % 2]))
+            return true;
+    return false;
+}
+
 static bool same_lamp(const pending_lamp *a, const pending_lamp *b) {
     double d = hypot(a->lamp.xyz[0] - b->lamp.xyz[0], a->lamp.xyz[1] - b->lamp.xyz[1]);
-    return a->input != b->input && (d <= SAME_PLACE || (d <= SAME_LAMP && *a->lamp.id && !strcmp(a->lamp.id, b->lamp.id)));
+    return a->input != b->input && (d <= SAME_PLACE || (d <= SAME_LAMP && called_alike(&a->lamp, &b->lamp)));
 }
 
 noc_status repeat_lamps(importer *im) {

@@ -230,7 +230,8 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     if (im->lamps.len == im->lamps.cap && (status = sink_affords(im, im->lamps.cap * sizeof(p)))) /* it doubles */
         return status;
     p.lamp.id = arena_strdup(&im->names, lamp->id ? lamp->id : "");
-    return p.lamp.id && array_push(&im->lamps, p) ? NOC_OK : noc_no_memory(im->log, im->inputs[im->current].path);
+    p.lamp.ref = lamp->ref && *lamp->ref ? arena_strdup(&im->names, lamp->ref) : "";
+    return p.lamp.id && p.lamp.ref && array_push(&im->lamps, p) ? NOC_OK : noc_no_memory(im->log, im->inputs[im->current].path);
 }
 
 /* Of a file that has been read. */

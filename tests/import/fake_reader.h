@@ -5,7 +5,7 @@
  *     object kind id lod      end
  *     polygon class x y z x y z ...
  *     many class x y count      a strip of so many triangles, eastwards
- *     lamp x y [z] [#id]
+ *     lamp x y [z] [#id]     #7#8 is called #8, too
  *     fail | slow
  */
 #ifndef NOC_TEST_FAKE_READER_H
@@ -82,7 +82,8 @@ static noc_status fake_line(geo_sink *sink, char *line, bool *swap, const char *
     if (!strncmp(line, "lamp ", 5)) {
         size_t n = numbers(line + 5, v, 3);
         geo_lamp lamp = { .xyz = { v[*swap], v[!*swap], n > 2 ? v[2] : NAN }, .height = NAN, .direction = NAN, .lumens = NAN,
-                          .watts = NAN, .kelvin = NAN, .rgb = { -1, -1, -1 }, .id = strchr(line, '#') ? strchr(line, '#') : "" };
+                          .watts = NAN, .kelvin = NAN, .rgb = { -1, -1, -1 }, .id = strchr(line, '#') ? strchr(line, '#') : "",
+                          .ref = strrchr(line, '#') };
         return sink->lamp(sink->ctx, &lamp);
     }
     if (!strcmp(line, "fail"))

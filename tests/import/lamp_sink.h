@@ -52,6 +52,7 @@ static noc_status sink_lamp(void *ctx, const geo_lamp *lamp) {
         return NOC_ERR_CANCELLED;
     geo_lamp copy = *lamp;
     copy.id = arena_strdup(&s->names, lamp->id);
+    copy.ref = arena_strdup(&s->names, lamp->ref ? lamp->ref : "");
     assert_true(array_push(&s->lamps, copy));
     return NOC_OK;
 }

@@ -167,6 +167,16 @@ static void test_mapped_units(void **state) {
     lamp_sink_end(&s);
 }
 
+/* The first identity is the id, the next one is kept beside it. */
+static void test_refs(void **state) {
+    lamp_sink s;
+    assert_int_equal(read_with(&s, "ref,id,lat,lon,lamp_type\n17,object/17,50,8,LED\n,b,50,9,LED\nc,c,50,10,LED\n", false, NULL), NOC_OK);
+    assert_string_equal(lamp_by_id(&s, "object/17")->ref, "17");
+    assert_string_equal(lamp_by_id(&s, "b")->ref, "");
+    assert_string_equal(lamp_by_id(&s, "c")->ref, "");
+    lamp_sink_end(&s);
+}
+
 static void say(void *user, noc_log_level level, const char *text) { snprintf(user, 400, "%s", text); }
 
 static void test_bad_maps(void **state) {
@@ -264,7 +274,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_units_of_keys), cmocka_unit_test(test_units_in_tables), cmocka_unit_test(test_named_csv),
         cmocka_unit_test(test_looked_at),     cmocka_unit_test(test_mapped),          cmocka_unit_test(test_bad_maps),
-        cmocka_unit_test(test_mapped_units),
+        cmocka_unit_test(test_mapped_units), cmocka_unit_test(test_refs),
         cmocka_unit_test(test_kinds_in_values), cmocka_unit_test(test_named_maps),    cmocka_unit_test(test_named_overpass),
     };
     return cmocka_run_group_tests_name("import/lamp_tables", tests, NULL, NULL);

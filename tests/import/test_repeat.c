@@ -127,6 +127,10 @@ static void test_lamps(void **state) {
         { "lamp 678000 5404000\n", "lamp 678000.5 5404000\n", 2, 0 },
         { "lamp 678000 5404000 #7\n", "lamp 678000.5 5404000 #7\n", 1, 1 }, /* one id, surveyed twice */
         { "lamp 678000 5404000 #7\n", "lamp 678000.5 5404000 #8\n", 2, 0 },
+        { "lamp 678000 5404000 #7#8\n", "lamp 678000.5 5404000 #8\n", 1, 1 }, /* what is an id here is a ref there */
+        { "lamp 678000 5404000 #8\n", "lamp 678000.5 5404000 #7#8\n", 1, 1 },
+        { "lamp 678000 5404000 #7#8\n", "lamp 678000.5 5404000 #9#8\n", 1, 1 },
+        { "lamp 678000 5404000 #7#8\n", "lamp 678000.5 5404000 #7#9\n", 2, 0 },
         { "lamp 678000 5404000 #7\n", "lamp 678005 5404000 #7\n", 2, 0 },   /* an id that both files use */
         { "lamp 678000 5404000\nlamp 678000 5404000\n", "lamp 678009 5404000\n", 3, 0 }, /* two on one pole */
         { "lamp 678000 5404000\nlamp 678000 5404000\n", "lamp 678000 5404000\nlamp 678000 5404000\nlamp 678003 5404000\n", 3, 2 },
@@ -143,6 +147,51 @@ static void test_lamps(void **state) {
         assert_int_equal(totals_of(&r).lamps_repeated, cases[i].repeated);
         assert_int_equal(totals_of(&r).lamps_mapped, cases[i].lamps);
         assert_int_equal(totals_of(&r).lamps_dropped, 0);
+        finish(&r);
+    }
+}
+
+/* Lamps along a street, every `step` m from x on, half a metre aside where x is not 0; the last `far` of them 10 m to the side. */
+static const char *street(const char *name, size_t count, double step, double x, size_t far) {
+    char text[4000];
+    size_t n = (size_t)sprintf(text, "FAKE lamps\ncrs EPSG:25832\n");
+    for (size_t i = 0; i < count; i++)
+        n += (size_t)sprintf(text + n, "lamp %.2f %.2f\n", 678000 + x + step * (double)i, i >= count - far ? 5404010.0 : x > 0 ? 5404000.5 : 5404000.0);
+    return file(name, text);
+}
+
+/* Two files of the same lamps, some way apart, are told; lamps that stand as near in their own file, and files that share a few, are not. */
+static void test_doubles(void **state) {
+    (void)state;
+    static const struct {
+        size_t count;
+        double step, apart;
+        size_t far;
+        const char *says;
+    } cases[] = {
+        { 40, 25, 1.5, 2, "38 of 40 lamps of " }, { 40, 25, 2.9, 20, "20 of 40 lamps of " }, { 40, 25, 1.5, 21, NULL },
+        { 40, 25, 3.5, 0, NULL }, { 40, 3, 1.5, 0, NULL }, { 40, 5, 1.6, 0, "40 of 40 lamps of " }, { 2, 25, 1.5, 0, NULL },
+    };
+    for (size_t i = 0; i < NOC_COUNT(cases); i++) {
+        struct run r;
+        const char *other = street("other", cases[i].count, cases[i].step, 0, 0);
+        const char *one = street("one", cases[i].count, cases[i].step, cases[i].apart, cases[i].far);
+        LOAD(&r, DEFAULTS, one, other);
+        assert_int_equal(r.status, NOC_OK);
+        if (r.warnings != (cases[i].says != NULL))
+            fail_msg("case %zu: %d warnings, %s", i, r.warnings, r.last_warning);
+        if (cases[i].says)
+            assert_true(strstr(r.last_warning, cases[i].says) && strstr(r.last_warning, one) && strstr(r.last_warning, other));
+        assert_int_equal(r.info.lights, 2 * cases[i].count);
+        finish(&r);
+    }
+    /* a file of few lamps beside a city's: its share counts, whichever comes first */
+    for (int first = 0; first < 2; first++) {
+        struct run r;
+        const char *all = street("all", 80, 25, 0, 0), *few = street("few", 10, 25, 101.5, 0);
+        LOAD(&r, DEFAULTS, first ? all : few, first ? few : all);
+        assert_int_equal(r.warnings, 1);
+        assert_non_null(strstr(r.last_warning, "10 of 10 lamps of "));
         finish(&r);
     }
 }
@@ -176,6 +225,7 @@ static void test_ingolstadt(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_files), cmocka_unit_test(test_objects), cmocka_unit_test(test_large_object),
-                                        cmocka_unit_test(test_lamps), cmocka_unit_test(test_ingolstadt) };
+                                        cmocka_unit_test(test_lamps), cmocka_unit_test(test_doubles),
+                                        cmocka_unit_test(test_ingolstadt) };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
