@@ -66,12 +66,15 @@ coverage:
 	@$(NINJA) -C build-coverage
 	@tools/coverage.py build-coverage build-fuzz/corpus
 
-# PREFIX may differ from that of an earlier `make build`; nothing is built but what is installed.
-install: build
+# PREFIX may differ from that of an earlier `make build`; nothing is built but what is installed, and what was is told.
+INSTALLED = bin/nocturne|nocturne-reader|libnocturne\.so|nocturne\.pc|nocturne\.1|nocturne\.bash|_nocturne|nocturne\.fish
+install: deps build/build.ninja
 	@meson configure build --prefix $(abspath $(PREFIX))
-	@$(NINJA) -C build build.ninja >build/setup.log || { cat build/setup.log; exit 1; }
-	@$(NINJA) -C build nocturne pages
+	@ninja -C build build.ninja >build/setup.log || { cat build/setup.log; exit 1; }
+	@ninja -C build -n nocturne pages | grep -q 'no work to do' || $(NINJA) -C build nocturne pages
 	@meson install -C build --no-rebuild --quiet
+	@echo "Installed, among others:"
+	@grep -E '/($(INSTALLED))$$' build/meson-logs/install-log.txt | sed 's/^/  /'
 
 clean:
 	rm -rf build build-asan build-coverage build-fuzz night.png

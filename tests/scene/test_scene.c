@@ -5,6 +5,8 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -468,11 +470,34 @@ static void test_content(void **state) {
     assert_string_equal(again, keys[0]);
 }
 
+/* docs/views.md tells the luminance of each class, by which lux are worked out, and which have a gloss. */
+static void test_reflectances_in_docs(void **state) {
+    char *path = noc_format("%s/docs/views.md", getenv("NOC_SOURCE")), text[65536];
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof(text) - 1, file)] = 0;
+    fclose(file);
+    free(path);
+    (void)state;
+    for (int c = 0; c < NOC_CLASS_COUNT; c++) {
+        noc_material m = noc_class_material(c);
+        double rho = 0.2126 * (double)m.albedo[0] + 0.7152 * (double)m.albedo[1] + 0.0722 * (double)m.albedo[2];
+        char row[80], gloss[16];
+        snprintf(row, sizeof(row), "| %d %s | %.3f |", c, noc_class_name(c), rho);
+        const char *at = strstr(text, row);
+        if (!at)
+            fail_msg("docs/views.md lacks \"%s\"", row);
+        snprintf(gloss, sizeof(gloss), "%.7s", at + strlen(row));
+        assert_int_equal(m.f0 > 0, !strcmp(gloss, " gloss "));
+    }
+}
+
 int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
     const struct CMUnitTest tests[] = { TEST(test_materials),       TEST(test_meshes),          TEST(test_shapes), TEST(test_bad_lights),
                                         TEST(test_light_materials), TEST(test_emissive_meshes), TEST(test_empty),
                                         TEST(test_committed),       TEST(test_moving_lights), TEST(test_no_memory),
-                                        cmocka_unit_test(test_content) };
+                                        cmocka_unit_test(test_content),
+                                        cmocka_unit_test(test_reflectances_in_docs) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
