@@ -63,7 +63,8 @@ NOC_API noc_status noc_image_write_srgb8(const uint8_t *rgb, int width, int heig
                                          const noc_image_meta *meta, noc_log *log);
 /* Writes text into such a picture: letters of 5 x 7 pixels times scale (1 or more), from the left end of their top row at (x, y) on; g, p, q
  * and y reach two more pixels below. What falls outside is not drawn. text is UTF-8: ASCII, superscript two and the multiplication sign are
- * drawn, other characters as boxes. Returns how many pixels wide it is; rgb may be NULL, to ask for that alone. */
+ * drawn, other characters as boxes. Returns how many pixels wide it is; rgb may be NULL, to ask for that alone. 0 where text is NULL, or
+ * colour beside an rgb. */
 #define NOC_TEXT_HEIGHT 7
 NOC_API int noc_text_srgb8(uint8_t *rgb, int width, int height, int x, int y, const char *text, int scale, const uint8_t colour[3]);
 /* Could a file be written under this name? Makes and removes the writers' file beside it; the target is left alone. To be

@@ -148,6 +148,8 @@ static char next_code(const char **text) {
 int noc_text_srgb8(uint8_t *rgb, int width, int height, int x, int y, const char *text, int scale, const uint8_t colour[3]) {
     canvas c = { rgb, width, height };
     int from = x;
+    if (!text || (rgb && !colour))
+        return 0;
     for (char code[2] = ""; *text; x += scale * CELL) {
         code[0] = next_code(&text);
         if (rgb)

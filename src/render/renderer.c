@@ -227,6 +227,8 @@ void noc_renderer_light_stats(const noc_renderer *r, noc_light_stats *stats) {
 }
 
 noc_status noc_renderer_write_influence(noc_renderer *r, const noc_render_params *params, const char *path) {
+    if (!r || !path)
+        return noc_null(r ? r->log : NULL, __func__);
     const noc_render_params defaults = noc_render_default_params();
     const noc_influence *volumes;
     output o;

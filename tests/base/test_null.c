@@ -3,6 +3,8 @@
 
 #include <nocturne/nocturne.h>
 
+#include <ctype.h>
+#include <glob.h>
 #include <math.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -100,6 +102,13 @@ static noc_camera camera;
     P(noc_renderer_get_stats(renderer, NULL), true)                                                                            \
     P(noc_renderer_light_stats(NULL, &(noc_light_stats){ 0 }), true)                                                           \
     P(noc_renderer_light_stats(renderer, NULL), true)                                                                          \
+    P(0, noc_renderer_write_influence(NULL, NULL, "a.obj") == NOC_ERR_ARGUMENT)                                                \
+    P(0, noc_renderer_write_influence(renderer, NULL, NULL) == NOC_ERR_ARGUMENT)                                               \
+    P(0, noc_text_srgb8(NULL, 1, 1, 0, 0, NULL, 1, NULL) == 0)                                                                 \
+    P(0, noc_text_srgb8((uint8_t[3]){ 0 }, 1, 1, 0, 0, "a", 1, NULL) == 0)                                                     \
+    P(noc_log_destroy(noc_log_create(NULL)), true)                                                                             \
+    P(0, noc_image_create(0, 0, NULL) == NULL)                                                                                 \
+    P(0, noc_channel_create(0, 0, 1, NULL) == NULL)                                                                          \
     P(0, noc_renderer_trace_floor(NULL, &camera, NULL, &(double){ 0 }) == NOC_ERR_ARGUMENT)                                    \
     P(0, noc_renderer_trace_floor(renderer, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)
 
@@ -148,7 +157,55 @@ static void null_is_no_crash(void **state) {
     noc_scene_destroy(scene);
 }
 
+static bool is_listed(const char *name) {
+    for (size_t i = 0; i < sizeof(names) / sizeof(*names); i++)
+        if (strstr(names[i], name))
+            return true;
+    return false;
+}
+
+/* Every function of the header that takes a pointer is listed; returns how many do. */
+static int look_into(const char *header) {
+    static char text[1 << 18];
+    FILE *f = fopen(header, "r");
+    assert_non_null(f);
+    size_t n = fread(text, 1, sizeof(text) - 1, f);
+    assert_true(n < sizeof(text) - 1);
+    text[n] = 0;
+    fclose(f);
+    int found = 0;
+    for (char *p = text; (p = strstr(p, "\nNOC_API "));) {
+        char *open = strchr(p, '('), *end = strchr(p, ';'), *name = open;
+        assert_true(open && end && open < end);
+        while (name[-1] == '_' || isalnum((unsigned char)name[-1]))
+            name--;
+        if (memchr(open, '*', (size_t)(end - open))) {
+            open[1] = 0;
+            if (!is_listed(name))
+                fail_msg("%s: %s) is not among the calls with NULL", header, name);
+            found++;
+        }
+        p = end;
+    }
+    return found;
+}
+
+static void the_list_is_whole(void **state) {
+    const char *source = getenv("NOC_SOURCE");
+    glob_t headers;
+    char pattern[4096];
+    if (!source)
+        skip();
+    snprintf(pattern, sizeof(pattern), "%s/include/nocturne/*.h", source);
+    assert_int_equal(glob(pattern, 0, NULL, &headers), 0);
+    int found = 0;
+    for (size_t i = 0; i < headers.gl_pathc; i++)
+        found += look_into(headers.gl_pathv[i]);
+    globfree(&headers);
+    assert_true(found > 50);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(null_is_no_crash) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(null_is_no_crash), cmocka_unit_test(the_list_is_whole) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
