@@ -9,6 +9,7 @@
 #include <cpl_http.h>
 #include <cpl_string.h>
 #include <cpl_vsi.h>
+#include <ctype.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -85,7 +86,7 @@ static const struct {
     { "CPL_CURL_ENABLE_VSIMEM", "NO" },
     { "GDAL_DISABLE_READDIR_ON_OPEN", "NO" },   /* a Shapefile's other parts are found */
     { "GDAL_PAM_ENABLED", "NO" },               /* no .aux.xml, neither read nor written */
-    { "OGR_SQLITE_LOAD_EXTENSIONS", NULL },
+    { "OGR_SQLITE_LOAD_EXTENSIONS", "" },         /* whatever the environment says */
     { "OGR_SQLITE_PRAGMA", "trusted_schema=OFF" }, /* no views or triggers over functions that touch files */
     { "OGR_SQLITE_LIST_VIRTUAL_OGR", "NO" },
     { "SHAPE_RESTORE_SHX", "NO" },
@@ -165,40 +166,70 @@ static noc_status gdal_path(noc_stream *stream, noc_log *log, char **path, bool 
 
 /* ---- GeoPackage ---- */
 
-/* The module of "CREATE VIRTUAL TABLE name USING module"; NULL where the text is not just that. */
+/* What may be part of a name in SQLite. */
+static size_t name_length(const char *p) {
+    size_t n = 0;
+    while (isalnum((unsigned char)p[n]) || p[n] == '_' || p[n] == '$' || (unsigned char)p[n] >= 0x80)
+        n++;
+    return n;
+}
+
+/* The text behind a word that blanks end, in any case; NULL where another stands there. */
+static const char *behind_word(const char *p, const char *word) {
+    size_t n = strlen(word), blanks = p && !strncasecmp(p, word, n) ? strspn(p + n, " \t\r\n") : 0;
+    return blanks ? p + n + blanks : NULL;
+}
+
+/* The module of "VIRTUAL TABLE name USING module", NULL where the text is not just that: comments hide what SQLite reads. */
 static const char *module_of(const char *sql) {
-    static const char begin[] = "CREATE VIRTUAL TABLE ", using[] = "USING ";
-    if (strncasecmp(sql, begin, strlen(begin)))
+    const char *p = behind_word(behind_word(sql, "VIRTUAL"), "TABLE");
+    if (!p)
         return NULL;
-    const char *p = sql + strlen(begin);
-    p += strspn(p, " \t\r\n");
     char quote = *p == '[' ? ']' : *p && strchr("\"'`", *p) ? *p : 0;
-    const char *end = quote ? strchr(p + 1, quote) : p + strcspn(p, " \t\r\n");
-    p = end ? end + (quote != 0) : sql + strlen(sql);
-    p += strspn(p, " \t\r\n");
-    return strncasecmp(p, using, strlen(using)) ? NULL : p + strlen(using);
+    const char *end = quote ? strchr(p + 1, quote) : p + name_length(p);
+    if (!end)
+        return NULL;
+    end += quote != 0;
+    return behind_word(end + strspn(end, " \t\r\n"), "USING");
+}
+
+/* SQLite reads as SQL whatever the schema's rows hold that begins with "cr", and a row's other columns tell nothing of what comes of it.
+ * So each row must be plainly one of what SQLite itself writes there. */
+static bool is_plain_row(const char *sql) {
+    static const char *const plain[] = { "TABLE", "VIEW", "INDEX", "TRIGGER" };
+    const char *p = behind_word(sql, "CREATE"), *unique = behind_word(p, "UNIQUE");
+    for (size_t i = 0; i < NOC_COUNT(plain); i++)
+        if (behind_word(p, plain[i]))
+            return true;
+    return behind_word(unique, "INDEX") != NULL;
 }
 
 /* Virtual tables let a file's author open other files by name (VirtualText, VirtualOGR, ...). Indexes are all that is in use. */
-static noc_status check_virtual_tables(map_source *m) {
+static noc_status check_schema_row(const map_source *m, const char *sql) {
     static const char *const harmless[] = { "rtree", "rtree_i32", "fts3", "fts4", "fts5" };
-    OGRLayerH tables = GDALDatasetExecuteSQL(m->dataset, "SELECT sql FROM sqlite_master WHERE sql LIKE 'CREATE VIRTUAL%'", NULL, NULL);
-    noc_status status = NOC_OK;
+    if (strncasecmp(sql, "cr", 2) || is_plain_row(sql))
+        return NOC_OK;
+    const char *module = module_of(behind_word(sql, "CREATE"));
+    size_t n = module ? name_length(module) : 0;
+    for (size_t i = 0; i < NOC_COUNT(harmless); i++)
+        if (strlen(harmless[i]) == n && !strncasecmp(harmless[i], module, n))
+            return NOC_OK;
+    return noc_error(m->log, NOC_ERR_UNSUPPORTED, "%s: %s: a virtual table (%.*s) may open other files: not read", m->name, m->format,
+                     module ? (int)NOC_MIN(n, 60) : 7, module ? module : "unclear");
+}
+
+static noc_status check_virtual_tables(map_source *m) {
+    OGRLayerH rows = GDALDatasetExecuteSQL(m->dataset, "SELECT CASE typeof(sql) WHEN 'text' THEN sql ELSE 'CREATE' END FROM sqlite_master "
+                                           "WHERE sql IS NOT NULL", NULL, NULL);
+    noc_status status = rows ? NOC_OK : map_source_error(m);
     OGRFeatureH row;
-    while (tables && !status && (row = OGR_L_GetNextFeature(tables))) {
-        const char *module = module_of(OGR_F_GetFieldAsString(row, 0));
-        size_t n = module ? strspn(module, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") : 0;
-        bool known = false;
-        for (size_t i = 0; i < NOC_COUNT(harmless); i++)
-            known = known || (strlen(harmless[i]) == n && !strncasecmp(harmless[i], module, n));
-        if (!known)
-            status = noc_error(m->log, NOC_ERR_UNSUPPORTED, "%s: %s: a virtual table (%.*s) may open other files: not read", m->name,
-                               m->format, module ? (int)n : 7, module ? module : "unclear");
+    while (!status && (row = OGR_L_GetNextFeature(rows))) {
+        status = check_schema_row(m, OGR_F_GetFieldAsString(row, 0));
         OGR_F_Destroy(row);
     }
-    if (tables)
-        GDALDatasetReleaseResultSet(m->dataset, tables);
-    return status;
+    if (rows)
+        GDALDatasetReleaseResultSet(m->dataset, rows);
+    return !status && m->error[0] ? map_source_error(m) : status;
 }
 
 /* ---- opening ---- */

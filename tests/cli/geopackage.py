@@ -1,6 +1,7 @@
-"""geopackage.py FILE [log|view|text]: a GeoPackage with two street lamps, made by SQLite alone.
+"""geopackage.py FILE [log|view|text|comment|name]: a GeoPackage with two street lamps, made by SQLite alone.
 
-log: a third lamp is in a write-ahead log beside it; view: a layer that never ends; text: a virtual table over the file PIPE.
+log: a third lamp is in a write-ahead log beside it; view: a layer that never ends; text: a virtual table over the file PIPE;
+comment, name: the same with a comment before VIRTUAL, or in the place of its name.
 """
 import os
 import shutil
@@ -24,6 +25,7 @@ LAYER = """
 INSERT INTO gpkg_contents(table_name, data_type, identifier, srs_id) VALUES('{0}', 'features', '{0}', 4326);
 INSERT INTO gpkg_geometry_columns VALUES('{0}', 'geom', 'POINT', 4326, 0, 0);
 """
+VIRTUAL = {"text": "CREATE VIRTUAL TABLE spy", "comment": "CREATE /**/ VIRTUAL TABLE spy", "name": "CREATE VIRTUAL TABLE spy/* USING rtree( */"}
 ENDLESS = """
 CREATE VIEW slow AS WITH RECURSIVE r(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM r WHERE n < 100000000000)
   SELECT count(*) AS fid, (SELECT geom FROM lamps) AS geom, 'street_lamp' AS highway FROM r;
@@ -45,10 +47,9 @@ def main(path, kind=""):
     add(db, 2, 11.4201, 48.76)
     if kind == "view":
         db.executescript(ENDLESS + LAYER.format("slow"))
-    if kind == "text":  # what spatialite would open; SQLite itself knows no such module, so it is written into the schema
+    if kind in VIRTUAL:  # what spatialite would open; SQLite itself knows no such module, so it is written into the schema
         db.execute("PRAGMA writable_schema = ON")
-        db.execute("INSERT INTO sqlite_master VALUES('table', 'spy', 'spy', 0, 'CREATE VIRTUAL TABLE spy USING "
-                   "VirtualText(''PIPE'', ''UTF-8'')')")
+        db.execute("INSERT INTO sqlite_master VALUES('table', 'spy', 'spy', 0, ?)", (VIRTUAL[kind] + " USING VirtualText('PIPE', 'UTF-8')",))
     db.commit()
     if kind == "log":
         db.execute("PRAGMA journal_mode = WAL")

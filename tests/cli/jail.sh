@@ -239,8 +239,12 @@ END
     test -z "$(ls temporary)"; result $? "no copy of it is left behind" "$(ls temporary)"
     rm packages/log.gpkg-wal && mkfifo packages/log.gpkg-wal
     expect "a pipe as log of a GeoPackage" 1 'log.gpkg-wal .*not a regular file' info packages/log.gpkg
-    python3 "$here/geopackage.py" in/text.gpkg text
-    expect "a virtual table over another file is not read" 1 'VirtualText' info in/text.gpkg
+    for kind in text comment name; do
+        python3 "$here/geopackage.py" in/$kind.gpkg $kind
+        expect "a virtual table over another file is not read ($kind)" 1 '(VirtualText|unclear).* may open other files' info in/$kind.gpkg
+    done
+    (export OGR_SQLITE_LOAD_EXTENSIONS=./nothing.so; run info --no-isolate packages/plain.gpkg; echo $status >ended)
+    test "$(cat ended)" = 0 && grep -q 'lamps *2$' out; result $? "libraries for SQLite that the environment names are not loaded" "$(cat err)"
 else
     for what in "a Shapefile is read" "a GeoPackage is read"; do skip "$what" "built without GDAL"; done
 fi
