@@ -366,6 +366,22 @@ static void name_row(char name[32], size_t line) {
     *p = 0;
 }
 
+/* By the first rows: which is the decimal sign? Leaves the table at its first row. */
+static noc_status find_decimal_sign(csv *c, columns *cols) {
+    enum { ROWS = 1000 };
+    lamp_tag *tags = column_tags(cols);
+    if (!tags)
+        return no_memory(c);
+    noc_status status = NOC_OK;
+    for (size_t row = 0; row < ROWS && !(status = read_record(c)) && c->start.len; row++)
+        for (size_t i = 0; i < cols->count && c->start.len == cols->count; i++) {
+            tags[i].value = field(c, i);
+            lamp_keys_weigh(cols->keys, &tags[i]);
+        }
+    free(tags);
+    return status ? status : read_header(c, cols);
+}
+
 /* Do the values say what the rows are? Leaves the table at its first row. */
 static noc_status read_kinds(csv *c, columns *cols, lamp_kinds *kinds) {
     lamp_tag *tags = column_tags(cols);
@@ -435,6 +451,8 @@ noc_status lamp_csv_read(noc_stream *stream, const noc_import_params *params, ge
     c->log = sink->log;
     columns cols = { .keys = w.keys };
     status = read_header(c, &cols);
+    if (!status)
+        status = find_decimal_sign(c, &cols);
     if (!status)
         status = judge(c, &cols, &w);
     if (!status && !w.strange)

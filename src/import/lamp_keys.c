@@ -187,6 +187,7 @@ struct lamp_keys {
     noc_arena arena;
     noc_map index;
     NOC_ARRAY(key) keys;
+    size_t commas, points; /* values with such a decimal sign */
 };
 
 lamp_keys *lamp_keys_create(const noc_import_params *params) {
@@ -278,6 +279,19 @@ lamp_meaning lamp_keys_meaning(lamp_keys *keys, const char *name) {
 unsigned lamp_keys_know(lamp_keys *keys, const char *name) {
     const key *k = get(keys, name);
     return k ? (unsigned)(k - keys->keys.data) + 1 : 0;
+}
+
+void lamp_keys_weigh(lamp_keys *keys, const lamp_tag *tag) {
+    lamp_field field = lamp_tag_meaning(keys, tag).field;
+    bool number = field == LAMP_FIELD_LON || field == LAMP_FIELD_LAT || field == LAMP_FIELD_X || field == LAMP_FIELD_Y ||
+                  (field && unit_of(field) != LAMP_PLAIN);
+    char sign = number && tag->value ? lamp_decimal_sign(tag->value) : 0;
+    keys->commas += sign == ',';
+    keys->points += sign == '.';
+}
+
+char lamp_keys_decimal(const lamp_keys *keys) {
+    return !keys || (keys->commas && keys->points) ? 0 : keys->commas ? ',' : keys->points ? '.' : 0;
 }
 
 static key *get_tag(lamp_keys *keys, const lamp_tag *tag) {

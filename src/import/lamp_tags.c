@@ -150,6 +150,7 @@ typedef struct reading {
     bool type_known;
     int times;    /* the factor of "2x70 W" */
     double scale; /* of the value that is read, where it names no unit */
+    char decimal; /* the file's decimal sign */
 } reading;
 
 static bool misread(const reading *r, const char *reason) {
@@ -162,12 +163,17 @@ static bool misread(const reading *r, const char *reason) {
 static bool read_quantity(reading *r, const char *text, lamp_unit unit, double lo, double hi, const char *reason, double *out) {
     double value;
     int times;
-    if (!lamp_quantity(text, unit, r->scale, &value, &times))
+    if (!lamp_quantity(text, unit, r->scale, r->decimal, &value, &times))
         return misread(r, reason);
+    if (value > hi && r->decimal) /* "8,500" m beside coordinates with points */
+        lamp_quantity(text, unit, r->scale, 0, &value, &times);
     if (value == 0)
         return false;
     if (value < lo || value > hi)
         return misread(r, reason);
+    const char *point = strchr(text, '.');
+    if (unit == LAMP_LUMENS && value < 100 && !r->decimal && point && strspn(point + 1, "0123456789") == 3)
+        misread(r, "luminous flux below 100 lm with three decimals: is the point one of thousands?");
     if (times > 1)
         r->times = times;
     *out = value;
@@ -177,7 +183,7 @@ static bool read_quantity(reading *r, const char *text, lamp_unit unit, double l
 static bool read_count(reading *r, const char *text) {
     double value;
     int times;
-    if (!lamp_quantity(text, LAMP_PLAIN, 1, &value, &times) || value != floor(value) || value > 24)
+    if (!lamp_quantity(text, LAMP_PLAIN, 1, r->decimal, &value, &times) || value != floor(value) || value > 24)
         return misread(r, "number of lamps on a pole not understood");
     if (value < 1)
         return false;
@@ -189,7 +195,7 @@ static bool read_count(reading *r, const char *text) {
 static bool read_kelvin(reading *r, const char *text) {
     double value;
     int times;
-    if (!lamp_quantity(text, LAMP_KELVIN, r->scale, &value, &times))
+    if (!lamp_quantity(text, LAMP_KELVIN, r->scale, r->decimal, &value, &times))
         return false;
     double code = fmod(value, 100);
     if (value >= 600 && value < 1000 && code >= 18 && code <= 65)
@@ -280,7 +286,7 @@ static bool read_field(reading *r, const lamp_meaning *c, const char *text) {
 bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *lamp, geo_issues *issues) {
     *lamp = (geo_lamp){ .xyz = { lamp->xyz[0], lamp->xyz[1], lamp->xyz[2] }, .height = NAN, .direction = NAN, .lumens = NAN,
                         .watts = NAN, .kelvin = NAN, .rgb = { -1, -1, -1 }, .id = lamp->id ? lamp->id : "", .ref = "" };
-    reading r = { .lamp = lamp, .issues = issues, .times = 1, .scale = 1 };
+    reading r = { .lamp = lamp, .issues = issues, .times = 1, .scale = 1, .decimal = lamp_keys_decimal(keys) };
     struct said { lamp_meaning meaning; const char *value; } few[32];
     struct said *said = count > NOC_COUNT(few) ? noc_alloc(count * sizeof(*said)) : few;
     if (!said)

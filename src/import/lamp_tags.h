@@ -54,6 +54,9 @@ lamp_meaning lamp_keys_meaning(lamp_keys *keys, const char *name); /* keys may b
 /* A number for the key, which makes asking about its tags fast; 0 where there are too many keys. */
 unsigned lamp_keys_know(lamp_keys *keys, const char *name);
 lamp_meaning lamp_tag_meaning(lamp_keys *keys, const lamp_tag *tag); /* keys may be NULL */
+/* The file's decimal sign, by the numbers in its columns of places and quantities: '.' or ','; 0 where they disagree or do not tell. */
+void lamp_keys_weigh(lamp_keys *keys, const lamp_tag *tag);
+char lamp_keys_decimal(const lamp_keys *keys); /* keys may be NULL */
 /* Notes a tag's value for the table of columns; blank ones count as none. */
 void lamp_keys_note(lamp_keys *keys, const lamp_tag *tag);
 /* The values of this key say what is a lamp: its field is "kind". */
@@ -189,8 +192,11 @@ bool lamp_colour_word(const char *folded, double *kelvin, float rgb[3]);
 typedef enum lamp_unit { LAMP_METRES, LAMP_WATTS, LAMP_LUMENS, LAMP_KELVIN, LAMP_PLAIN } lamp_unit;
 
 /* "16 ft", "5,5 m", "16'6\"", "2x70 W", "3,000 K", "8.5;6". scale is for values that name no unit. *times gets the factor of
- * "2x", else 1. */
-bool lamp_quantity(const char *text, lamp_unit unit, double scale, double *value, int *times);
+ * "2x", else 1. decimal: the file's decimal sign, '.' or ','; 0: not known. */
+bool lamp_quantity(const char *text, lamp_unit unit, double scale, char decimal, double *value, int *times);
+/* The sign in a number that can be nothing but a decimal sign ("8,5", "11.4231"): not before three digits, which may be thousands. 0: there
+ * is none. */
+char lamp_decimal_sign(const char *text);
 /* A unit at the end of a folded key ("heightft"): its length, 0 if there is none. LAMP_PLAIN: of any kind. */
 size_t lamp_unit_tail(const char *folded, lamp_unit unit, double *scale, const char **name);
 /* Is this folded word one of the unit's names ("feet")? */

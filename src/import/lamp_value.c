@@ -27,18 +27,22 @@ bool lamp_blank(const char *text) {
     return false;
 }
 
-/* An unsigned decimal at s. A comma is a decimal comma, unless three digits and no more follow it in a quantity that
- * runs to thousands. Returns the position after it, NULL if there is none. */
-static const char *scan_number(const char *s, bool thousands, double *out) {
-    char text[48];
+static bool three_digits(const char *s) {
+    return isdigit((unsigned char)s[0]) && isdigit((unsigned char)s[1]) && isdigit((unsigned char)s[2]) && !isdigit((unsigned char)s[3]);
+}
+
+/* An unsigned decimal at s. decimal: the file's sign, '.' or ','; the other one, before three digits and no more, parts thousands. 0: both
+ * are decimal signs, but for a comma before three digits in a quantity that runs to thousands. Returns the position after it, NULL if
+ * there is none. */
+static const char *scan_number(const char *s, bool thousands, char decimal, double *out) {
+    char text[48], parts = decimal ? ".,"[decimal == '.'] : thousands ? ',' : 0;
     size_t n = 0;
     bool dot = false;
     const char *p = s;
     for (; n + 1 < sizeof(text); p++) {
         if (isdigit((unsigned char)*p)) {
             text[n++] = *p;
-        } else if (*p == ',' && thousands && n && text[0] != '0' && isdigit((unsigned char)p[1]) && isdigit((unsigned char)p[2]) &&
-                   isdigit((unsigned char)p[3]) && !isdigit((unsigned char)p[4])) {
+        } else if (parts && *p == parts && !dot && n && text[0] != '0' && three_digits(p + 1)) {
             continue;
         } else if ((*p == '.' || *p == ',') && !dot && isdigit((unsigned char)p[1])) {
             text[n++] = '.';
@@ -110,19 +114,19 @@ static double unit_factor(const char *s, lamp_unit unit, double scale) {
     return lamp_unit_word(word, unit, &scale, &name) ? scale : 0;
 }
 
-bool lamp_quantity(const char *text, lamp_unit unit, double scale, double *value, int *times) {
+bool lamp_quantity(const char *text, lamp_unit unit, double scale, char decimal, double *value, int *times) {
     *times = 1;
     if (lamp_blank(text))
         return false;
     bool thousands = unit == LAMP_WATTS || unit == LAMP_LUMENS || unit == LAMP_KELVIN;
     double x;
-    const char *p = scan_number(skip_blanks(text), thousands, &x);
+    const char *p = scan_number(skip_blanks(text), thousands, decimal, &x);
     if (!p)
         return false;
     const char *q = skip_blanks(p);
     if ((*q == 'x' || *q == 'X' || *q == '*') && x >= 1 && x <= 99 && x == floor(x)) {
         double each;
-        const char *r = scan_number(skip_blanks(q + 1), thousands, &each);
+        const char *r = scan_number(skip_blanks(q + 1), thousands, decimal, &each);
         if (r) {
             *times = (int)x;
             x = each;
@@ -131,13 +135,22 @@ bool lamp_quantity(const char *text, lamp_unit unit, double scale, double *value
     }
     if (unit == LAMP_METRES && *q == '\'') { /* feet and inches */
         double inches = 0;
-        scan_number(skip_blanks(q + 1), false, &inches);
+        scan_number(skip_blanks(q + 1), false, decimal, &inches);
         *value = x * .3048 + inches * .0254;
         return isfinite(*value);
     }
     double factor = unit_factor(q, unit, scale);
     *value = x * factor;
     return factor > 0 && isfinite(*value);
+}
+
+char lamp_decimal_sign(const char *text) {
+    const char *p = skip_blanks(text);
+    p += *p == '-';
+    size_t before = strspn(p, "0123456789"), after = before && p[before] ? strspn(p + before + 1, "0123456789") : 0;
+    const char *end = skip_blanks(p + before + 1 * (after > 0) + after);
+    bool decimal = before && after && (after != 3 || *p == '0') && (p[before] == '.' || p[before] == ',');
+    return decimal && (!*end || isalpha((unsigned char)*end)) ? p[before] : 0;
 }
 
 bool lamp_direction(const char *text, double *degrees) {
@@ -162,7 +175,7 @@ bool lamp_direction(const char *text, double *degrees) {
     const char *p = skip_blanks(text);
     bool negative = *p == '-';
     double x;
-    p = scan_number(p + negative, false, &x);
+    p = scan_number(p + negative, false, 0, &x);
     if (!p || x > 360)
         return false;
     /* a range or a list ("90-180", "90;270") names no one direction */
@@ -178,7 +191,7 @@ bool lamp_coordinate(const char *text, double *value) {
         return false;
     const char *p = skip_blanks(text);
     bool negative = *p == '-';
-    p = scan_number(p + (*p == '-' || *p == '+'), false, value);
+    p = scan_number(p + (*p == '-' || *p == '+'), false, 0, value);
     if (!p) /* exponents and the like */
         return noc_parse_double(text, value);
     p = skip_blanks(p);

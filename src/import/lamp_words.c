@@ -355,7 +355,7 @@ bool lamp_inactive_word(const char *folded) {
         { "demolished", 1 }, { "proposed", 1 }, { "planned", 1 }, { "out of service", 1 }, { "out of order", 1 },
         { "not in service", 1 }, { "not active", 1 }, { "non operational", 1 }, { "closed", 1 }, { "dismantled", 1 },
         { "buiten gebruik", 1 }, { "buiten bedrijf", 1 }, { "verwijderd", 1 }, { "vervallen", 1 }, { "ausser betrieb", 1 },
-        { "stillgelegt", 1 }, { "abgebaut", 1 }, { "geplant", 1 }, { "hors service", 1 }, { "supprime*", 1 }, { "depose", 1 },
+        { "stillgelegt", 1 }, { "demontiert", 1 }, { "ruckgebaut", 1 }, { "rueckgebaut", 1 }, { "abgebaut", 1 }, { "geplant", 1 }, { "hors service", 1 }, { "supprime*", 1 }, { "depose", 1 },
         { "fuera de servicio", 1 }, { "retirado", 1 }, { "baja", 1 }, { "fuori servizio", 1 }, { "dismesso", 1 },
         { "mimo provoz", 1 }, { "zruseno", 1 }, { "under construction", 1 },
     };

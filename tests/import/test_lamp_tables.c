@@ -167,6 +167,34 @@ static void test_mapped_units(void **state) {
     lamp_sink_end(&s);
 }
 
+/* The decimal sign of a file tells what parts thousands in it. */
+static void test_thousands(void **state) {
+    static const struct { const char *text; double lumens, height; size_t told; } cases[] = {
+        { "lat;lon;lumens;height\n50,12;8,34;12.000;8,5\n", 12000, 8.5, 0 },
+        { "lat;lon;lumens;height\n50,12;8,34;1.234,5;8\n", 1234.5, 8, 0 },
+        { "lat;lon;lumens;height\n50,12;8,34;12.5;8,250\n", 12.5, 8.25, 0 },
+        { "lat,lon,lumens,height (mm)\n50.12,8.34,\"12,000\",\"8,500\"\n", 12000, 8.5, 0 },
+        { "lat,lon,lumens,height (mm)\n50.12,8.34,\"12,000.5\",8500\n", 12000.5, 8.5, 0 },
+        { "lat;lon;lumens;height\n50.12;8.34;12.000;8,5\n", 12, 8.5, 1 }, /* both signs are decimal ones: no evidence, but told */
+        { "lat;lon;lumens;height\n50;8;12.000;8\n", 12, 8, 1 },
+        { "lat;lon;lumens;height\n50.12;8.34;120;8,500\n", 120, 8.5, 0 }, /* no lamp is 8500 m high */
+        { "lat;lon;lumens;height\n50;8;120;8\n", 120, 8, 0 },
+    };
+    for (size_t i = 0; i < NOC_COUNT(cases); i++) {
+        lamp_sink s;
+        assert_int_equal(read_with(&s, cases[i].text, false, NULL), NOC_OK);
+        const geo_lamp *l = &s.lamps.data[0];
+        if (fabs(l->lumens - cases[i].lumens) > 1e-9 || fabs(l->height - cases[i].height) > 1e-9 || issue_count(&s, "thousands") != cases[i].told)
+            fail_msg("case %zu: %g lm, %g m, %zu told", i, l->lumens, l->height, issue_count(&s, "thousands"));
+        lamp_sink_end(&s);
+    }
+    lamp_sink s;
+    assert_int_equal(read_with(&s, "lat,lon,lamp_type,status\n50,8,LED,demontiert\n50,9,LED,abgebaut\n50,10,LED,r\xc3\xbc" "ckgebaut\n"
+                                   "50,11,LED,in Betrieb\n", false, NULL), NOC_OK);
+    assert_int_equal(s.lamps.len, 1);
+    lamp_sink_end(&s);
+}
+
 /* The first identity is the id, the next one is kept beside it. */
 static void test_refs(void **state) {
     lamp_sink s;
@@ -274,7 +302,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_units_of_keys), cmocka_unit_test(test_units_in_tables), cmocka_unit_test(test_named_csv),
         cmocka_unit_test(test_looked_at),     cmocka_unit_test(test_mapped),          cmocka_unit_test(test_bad_maps),
-        cmocka_unit_test(test_mapped_units), cmocka_unit_test(test_refs),
+        cmocka_unit_test(test_mapped_units), cmocka_unit_test(test_refs), cmocka_unit_test(test_thousands),
         cmocka_unit_test(test_kinds_in_values), cmocka_unit_test(test_named_maps),    cmocka_unit_test(test_named_overpass),
     };
     return cmocka_run_group_tests_name("import/lamp_tables", tests, NULL, NULL);

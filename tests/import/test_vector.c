@@ -122,12 +122,12 @@ static void test_quantities(void **state) {
     double v;
     int times;
     for (size_t i = 0; i < NOC_COUNT(good); i++) {
-        assert_true(lamp_quantity(good[i].text, good[i].unit, 1, &v, &times));
+        assert_true(lamp_quantity(good[i].text, good[i].unit, 1, 0, &v, &times));
         assert_float_equal(v, good[i].value, 1e-9);
         assert_int_equal(times, good[i].times);
     }
     for (size_t i = 0; i < NOC_COUNT(bad); i++)
-        assert_false(lamp_quantity(bad[i], LAMP_METRES, 1, &v, &times));
+        assert_false(lamp_quantity(bad[i], LAMP_METRES, 1, 0, &v, &times));
 }
 
 static void test_directions(void **state) {
