@@ -223,13 +223,13 @@ static bool read_colour(reading *r, const char *text, bool of_the_light) {
 }
 
 /* A description may name the source, the fixture or both ("Standard LED", "gaslight"): done when both are known. */
-static bool read_type(reading *r, const char *text) {
+static bool read_type(reading *r, const char *text, bool of_the_lamp) {
     char folded[256];
     lamp_fold(text, true, folded, sizeof(folded));
     int source = lamp_source_word(folded), type = lamp_type_word(folded);
     if (source >= 0 && r->lamp->source == GEO_SOURCE_UNKNOWN)
         r->lamp->source = source;
-    if (type >= 0 && !r->type_known) {
+    if (type >= 0 && !r->type_known && of_the_lamp) {
         r->lamp->type = type;
         r->type_known = true;
     }
@@ -268,7 +268,7 @@ static bool read_field(reading *r, const lamp_meaning *c, const char *text) {
     case LAMP_FIELD_COLOUR:
         return read_colour(r, text, c->rank <= 0);
     case LAMP_FIELD_TYPE:
-        return read_type(r, text);
+        return read_type(r, text, c->rank < 4); /* a bare "type" may be the pole's: of it only a source is believed */
     case LAMP_FIELD_MOUNT:
         return read_mount(r, text);
     case LAMP_FIELD_ID:

@@ -156,7 +156,7 @@ static const lamp_column columns[] = {
     { "armatuur", F(TYPE), 2, 2 }, { "armatuurtype", F(TYPE), 2, 2 }, { "typearmatuur", F(TYPE), 2, 2 },
     { "typeluminaire", F(TYPE), 2, 2 }, { "luminaria", F(TYPE), 2, 2 }, { "tipoluminaria", F(TYPE), 2, 2 },
     { "svitidlo", F(TYPE), 2, 2 }, { "typsvitidla", F(TYPE), 2, 2 }, { "oprawa", F(TYPE), 2, 2 }, { "valaisin", F(TYPE), 2, 2 },
-    { "lampmodel", F(TYPE), 3, 2 }, { "lightmodel", F(TYPE), 3, 2 },
+    { "type", F(TYPE), 4, 0 }, { "typ", F(TYPE), 4, 0 }, { "lampmodel", F(TYPE), 3, 2 }, { "lightmodel", F(TYPE), 3, 2 },
     /* what it hangs on */
     { "lampmount", F(MOUNT), 0, 2 }, { "lightmount", F(MOUNT), 1, 2 }, { "lampsupport", F(MOUNT), 0, 2 },
     { "support", F(MOUNT), 1, 0 }, { "mount", F(MOUNT), 1, 0 }, { "mounting", F(MOUNT), 1, 0 }, { "mounttype", F(MOUNT), 1, 0 },

@@ -239,6 +239,25 @@ static void expect_lamps(const char *text, bool named, noc_status status, size_t
     lamp_sink_end(&s);
 }
 
+/* A column that is called Typ and no more names the source; it does not make its rows lamps. */
+static void test_bare_type(void **state) {
+    lamp_sink s;
+    assert_int_equal(read_with(&s, "id,lat,lon,Typ,wattage,masthoehe\na,50,8,LED,50,8\nb,50,9,Quecksilberdampf,80,8\nc,50,10,Kegel,80,8\n", false,
+                               NULL), NOC_OK);
+    assert_int_equal(lamp_by_id(&s, "a")->source, GEO_SOURCE_LED);
+    assert_int_equal(lamp_by_id(&s, "b")->source, GEO_SOURCE_MERCURY);
+    assert_int_equal(lamp_by_id(&s, "c")->source, GEO_SOURCE_UNKNOWN);
+    assert_int_equal(lamp_by_id(&s, "c")->type, GEO_LAMP_STREET);
+    lamp_sink_end(&s);
+    assert_int_equal(read_with(&s, "lat,lon,lamp_type,type\n50,8,HPS,LED\n", false, NULL), NOC_OK); /* what is surely the lamp's first */
+    assert_int_equal(s.lamps.data[0].source, GEO_SOURCE_SODIUM);
+    lamp_sink_end(&s);
+    expect_lamps("lat,lon,type\n50,8,LED\n", false, NOC_ERR_FORMAT, 0);
+    expect_lamps("lat,lon,wattage\n50,8,70\n", false, NOC_ERR_FORMAT, 0);
+    expect_lamps("lat,lon,mast height\n50,8,7\n", false, NOC_ERR_FORMAT, 0);
+    expect_lamps("lat,lon,wattage,mast height\n50,8,70,7\n", false, NOC_OK, 1);
+}
+
 static void test_kinds_in_values(void **state) {
     static const struct { const char *text; int word; } words[] = {
         { "Lichtmast mit Auslegerleuchte", 2 }, { "Stra\xc3\x9f" "enlaterne", 2 }, { "Street Light - LED", 2 }, { "lampadaire", 2 },
@@ -302,7 +321,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_units_of_keys), cmocka_unit_test(test_units_in_tables), cmocka_unit_test(test_named_csv),
         cmocka_unit_test(test_looked_at),     cmocka_unit_test(test_mapped),          cmocka_unit_test(test_bad_maps),
-        cmocka_unit_test(test_mapped_units), cmocka_unit_test(test_refs), cmocka_unit_test(test_thousands),
+        cmocka_unit_test(test_mapped_units), cmocka_unit_test(test_refs), cmocka_unit_test(test_thousands), cmocka_unit_test(test_bare_type),
         cmocka_unit_test(test_kinds_in_values), cmocka_unit_test(test_named_maps),    cmocka_unit_test(test_named_overpass),
     };
     return cmocka_run_group_tests_name("import/lamp_tables", tests, NULL, NULL);
