@@ -6,11 +6,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-const char *map_temporary_folder(void) {
-    const char *folder = getenv("TMPDIR");
-    return folder && *folder ? folder : "/tmp";
-}
-
 static char *folder_of(const char *path) {
     const char *slash = strrchr(path, '/');
     return noc_strndup(path, slash ? (size_t)(slash + 1 - path) : 0);
@@ -79,34 +74,29 @@ static noc_status copy_file(const char *from, const char *to, noc_log *log) {
 }
 
 /* Into a new folder. */
-static noc_status copy_itself(const char *path, noc_log *log, char **folder) {
-    if (!(*folder = noc_format("%s/nocturne-XXXXXX", map_temporary_folder())))
-        return noc_no_memory(log, path);
-    if (!mkdtemp(*folder)) {
-        free(*folder);
-        *folder = NULL;
-        return noc_error(log, NOC_ERR_IO, "%s: no folder for a copy in %s: %s", path, map_temporary_folder(), strerror(errno));
-    }
-    char *copy = noc_format("%s/" MAP_COPY_NAME, *folder);
-    noc_status status = copy ? copy_file(path, copy, log) : noc_no_memory(log, path);
+static noc_status copy_itself(const char *path, noc_log *log, scratch_folder *folder) {
+    noc_status status = scratch_make(folder, path, log);
+    char *copy = status ? NULL : noc_format("%s/" MAP_COPY_NAME, folder->path);
+    if (!status)
+        status = copy ? copy_file(path, copy, log) : noc_no_memory(log, path);
     free(copy);
     return status;
 }
 
-noc_status map_copy_geopackage(const char *path, bool anywhere, noc_log *log, char **folder) {
+noc_status map_copy_geopackage(const char *path, bool anywhere, noc_log *log, scratch_folder *folder) {
     static const char *const logs[] = { "-wal", "-journal" };
     char *beside = folder_of(path);
     noc_status status = beside ? NOC_OK : noc_no_memory(log, path);
-    *folder = NULL;
+    *folder = (scratch_folder){ .lock = -1 };
     for (size_t i = 0; i < NOC_COUNT(logs) && !status; i++) {
         struct stat st;
         char *part = noc_format("%s%s", path, logs[i]);
         bool there = part && !lstat(part, &st);
         status = !part ? noc_no_memory(log, path) : there ? check_part(path, beside, part, anywhere, log) : NOC_OK;
         if (there && !status && !stat(part, &st) && st.st_size > 0) {
-            if (!*folder)
+            if (!folder->path)
                 status = copy_itself(path, log, folder);
-            char *copy = status ? NULL : noc_format("%s/" MAP_COPY_NAME "%s", *folder, logs[i]);
+            char *copy = status ? NULL : noc_format("%s/" MAP_COPY_NAME "%s", folder->path, logs[i]);
             if (!status)
                 status = copy ? copy_file(part, copy, log) : noc_no_memory(log, path);
             free(copy);
@@ -115,16 +105,4 @@ noc_status map_copy_geopackage(const char *path, bool anywhere, noc_log *log, ch
     }
     free(beside);
     return status;
-}
-
-void map_remove_copy(const char *folder) {
-    static const char *const endings[] = { "", "-wal", "-shm", "-journal" };
-    if (!folder)
-        return;
-    for (size_t i = 0; i < NOC_COUNT(endings); i++) {
-        char path[PATH_MAX]; /* none that was too long was made */
-        noc_snprintf(path, sizeof(path), "%s/" MAP_COPY_NAME "%s", folder, endings[i]);
-        unlink(path);
-    }
-    rmdir(folder);
 }

@@ -3,17 +3,15 @@
 #define NOC_IMPORT_MAP_PARTS_H
 
 #include "import/import.h"
+#include "import/scratch.h"
 
 #define MAP_COPY_NAME "copy.gpkg"
-
-const char *map_temporary_folder(void); /* TMPDIR, or /tmp */
 
 /* Are the parts of the Shapefile at path regular files in its folder? An error is reported. */
 noc_status map_check_shapefile(const char *path, bool anywhere, noc_log *log);
 
 /* A GeoPackage with changes that are still in a log beside it is copied with it to a folder of our own, because SQLite would
- * write them into the file. *folder is NULL where there is no such log; else to be removed, and freed, in any case. */
-noc_status map_copy_geopackage(const char *path, bool anywhere, noc_log *log, char **folder);
-void map_remove_copy(const char *folder); /* NULL is allowed */
+ * write them into the file. folder->path is NULL where there is no such log; else to be removed in any case. */
+noc_status map_copy_geopackage(const char *path, bool anywhere, noc_log *log, scratch_folder *folder);
 
 #endif

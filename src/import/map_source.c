@@ -97,7 +97,7 @@ static void gdal_enter(map_source *m) {
     pthread_once(&gdal_once, gdal_start);
     for (size_t i = 0; i < NOC_COUNT(gdal_settings); i++)
         CPLSetThreadLocalConfigOption(gdal_settings[i].key, gdal_settings[i].value);
-    CPLSetThreadLocalConfigOption("CPL_TMPDIR", map_temporary_folder());
+    CPLSetThreadLocalConfigOption("CPL_TMPDIR", scratch_place());
     CPLPushErrorHandlerEx(on_gdal_error, m);
     CPLHTTPPushFetchCallback(refuse_fetch, m);
 }
@@ -250,11 +250,11 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
         status = map_check_shapefile(m->name, anywhere, log);
     if (!status && plain && format->kind == MAP_GEOPACKAGE) {
         status = map_copy_geopackage(m->name, anywhere, log, &m->copy);
-        copied = m->copy != NULL;
+        copied = m->copy.path != NULL;
     }
     if (copied && !status) {
         free(path);
-        path = noc_format("%s/" MAP_COPY_NAME, m->copy);
+        path = noc_format("%s/" MAP_COPY_NAME, m->copy.path);
         status = path ? NOC_OK : noc_no_memory(log, m->name);
     }
     if (!status) {
@@ -277,8 +277,7 @@ void map_source_close(map_source *m) {
     if (m->dataset)
         GDALClose(m->dataset);
     gdal_leave();
-    map_remove_copy(m->copy);
-    free(m->copy);
+    scratch_remove(&m->copy);
 }
 
 #endif

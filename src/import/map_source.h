@@ -3,6 +3,7 @@
 #define NOC_IMPORT_MAP_SOURCE_H
 
 #include "import/import.h"
+#include "import/scratch.h"
 #include "noc_config.h"
 
 typedef struct map_format {
@@ -22,7 +23,7 @@ typedef struct map_source {
     char link[200];       /* the first address that a content asked for, "" if none: it is not fetched */
     const char *name, *format;
     noc_log *log;
-    char *copy;           /* folder with our own copy of the file, NULL if it is read in place */
+    scratch_folder copy;  /* with our own copy of the file, where it is not read in place */
 } map_source;
 
 /* Opens the stream's file by the format's drivers alone, for reading alone: nothing is written beside it, nothing fetched. Until

@@ -1,11 +1,10 @@
 /* The library's side: starts the helper, listens to it, and ends it. */
 #include "import/remote.h"
-#include "import/map_parts.h"
+#include "import/scratch.h"
 
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <ftw.h>
 #include <math.h>
 #include <nocturne/option.h>
 #include <poll.h>
@@ -29,7 +28,8 @@ typedef struct remote {
     const noc_import_params *params;
     geo_sink *sink;
     remote_taker from;
-    char *program, *scratch;
+    char *program;
+    scratch_folder scratch;
     int fd;
     pid_t pid;
     uint64_t received;
@@ -96,7 +96,7 @@ static int spawn(remote *r, int end) {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
     sigset_t none, all;
-    char *own, **environment = make_environment(r->scratch, &own), *arguments[] = { (char *)HELPER, NULL };
+    char *own, **environment = make_environment(r->scratch.path, &own), *arguments[] = { (char *)HELPER, NULL };
     if (!environment)
         return ENOMEM;
     sigemptyset(&none);
@@ -129,15 +129,8 @@ static noc_status start(remote *r) {
     noc_status status = find_program(r);
     if (status)
         return status;
-    r->scratch = noc_format("%s/nocturne-XXXXXX", map_temporary_folder());
-    if (!r->scratch)
-        return noc_no_memory(r->sink->log, r->path);
-    if (!mkdtemp(r->scratch)) {
-        status = noc_error(r->sink->log, NOC_ERR_IO, "%s: no temporary folder in %s: %s", r->path, map_temporary_folder(), strerror(errno));
-        free(r->scratch);
-        r->scratch = NULL;
+    if ((status = scratch_make(&r->scratch, r->path, r->sink->log)))
         return status;
-    }
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends))
         return noc_error(r->sink->log, NOC_ERR_IO, "%s: no socket to read it by: %s", r->path, strerror(errno));
     r->fd = ends[0];
@@ -228,11 +221,6 @@ static noc_status listen_to(remote *r) {
     return status;
 }
 
-static int remove_one(const char *path, const struct stat *st, int kind, struct FTW *at) {
-    remove(path);
-    return 0;
-}
-
 static void finish(remote *r) {
     if (r->pid > 0) {
         kill(r->pid, SIGKILL); /* after its last word, too: it need not go by itself */
@@ -241,9 +229,7 @@ static void finish(remote *r) {
     }
     if (r->fd >= 0)
         close(r->fd);
-    if (r->scratch)
-        nftw(r->scratch, remove_one, 8, FTW_DEPTH | FTW_PHYS);
-    free(r->scratch);
+    scratch_remove(&r->scratch);
     free(r->program);
     remote_taker_free(&r->from);
 }

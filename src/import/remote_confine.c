@@ -1,7 +1,7 @@
 /* What the helper may do. Limits of the process hold everywhere; Landlock (files, Linux 5.13) and seccomp (system calls) where the
  * system and the build have them: they are a second fence behind the rules that the readers keep. */
 #include "import/remote.h"
-#include "import/map_parts.h"
+#include "import/scratch.h"
 #include "noc_config.h"
 
 #include <dirent.h>
@@ -79,7 +79,7 @@ static void allow_system(int rules) {
                 allow(rules, path, READ_FOLDERS);
         }
     }
-    allow(rules, map_temporary_folder(), READ_FOLDERS | WRITE);
+    allow(rules, scratch_place(), READ_FOLDERS | WRITE);
 }
 
 /* GDAL and PROJ of one's own have their data beside themselves. */

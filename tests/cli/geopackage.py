@@ -25,7 +25,8 @@ LAYER = """
 INSERT INTO gpkg_contents(table_name, data_type, identifier, srs_id) VALUES('{0}', 'features', '{0}', 4326);
 INSERT INTO gpkg_geometry_columns VALUES('{0}', 'geom', 'POINT', 4326, 0, 0);
 """
-VIRTUAL = {"text": "CREATE VIRTUAL TABLE spy", "comment": "CREATE /**/ VIRTUAL TABLE spy", "name": "CREATE VIRTUAL TABLE spy/* USING rtree( */"}
+VIRTUAL = {"text": "CREATE VIRTUAL TABLE spy", "comment": "CREATE /**/ VIRTUAL TABLE spy",
+           "name": "CREATE VIRTUAL TABLE spy/* USING rtree( */"}
 ENDLESS = """
 CREATE VIEW slow AS WITH RECURSIVE r(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM r WHERE n < 100000000000)
   SELECT count(*) AS fid, (SELECT geom FROM lamps) AS geom, 'street_lamp' AS highway FROM r;
@@ -49,7 +50,8 @@ def main(path, kind=""):
         db.executescript(ENDLESS + LAYER.format("slow"))
     if kind in VIRTUAL:  # what spatialite would open; SQLite itself knows no such module, so it is written into the schema
         db.execute("PRAGMA writable_schema = ON")
-        db.execute("INSERT INTO sqlite_master VALUES('table', 'spy', 'spy', 0, ?)", (VIRTUAL[kind] + " USING VirtualText('PIPE', 'UTF-8')",))
+        sql = VIRTUAL[kind] + " USING VirtualText('PIPE', 'UTF-8')"
+        db.execute("INSERT INTO sqlite_master VALUES('table', 'spy', 'spy', 0, ?)", (sql,))
     db.commit()
     if kind == "log":
         db.execute("PRAGMA journal_mode = WAL")

@@ -237,6 +237,16 @@ END
     state >after
     cmp -s before after; result $? "and is as it was: bytes, times and folder" "$(diff before after)"
     test -z "$(ls temporary)"; result $? "no copy of it is left behind" "$(ls temporary)"
+    # What a killed run left goes with the next one; what lives, or is not ours, stays.
+    mkdir temporary/nocturne-scratch.kiLLed temporary/nocturne-scratch.living temporary/nocturne-backup && : >temporary/nocturne-scratch.kiLLed/copy
+    if command -v flock >/dev/null; then
+        flock temporary/nocturne-scratch.living "$program" info packages/plain.gpkg >out 2>err
+        test $? = 0 && test "$(ls temporary | tr '\n' ' ')" = "nocturne-backup nocturne-scratch.living "
+        result $? "temporary folders of killed runs are swept" "$(ls temporary)"
+    else
+        skip "temporary folders of killed runs are swept" "no flock here"
+    fi
+    rm -r temporary/*
     rm packages/log.gpkg-wal && mkfifo packages/log.gpkg-wal
     expect "a pipe as log of a GeoPackage" 1 'log.gpkg-wal .*not a regular file' info packages/log.gpkg
     for kind in text comment name; do
