@@ -5,6 +5,8 @@
 #include "render.h"
 
 enum { EXPERIMENT_KEY = 33, EXPERIMENT_TIMES = 8, EXPERIMENT_POINTS = 6, EXPERIMENT_VALUES = 32, EXPERIMENT_FRAMES = 100000, EXPERIMENT_ROWS = 1000000,
+       EXPERIMENT_BYTES = 1 << 20 /* of a spec */, EXPERIMENT_INPUTS = 10000 /* of a scene */,
+       EXPERIMENT_ENTRIES = 1000 /* scenes, cameras and configurations, each */,
        EXPERIMENT_REPETITIONS = 4 /* where a spec says nothing: what a figure is worth shows in its spread */ };
 
 typedef struct experiment_args {
@@ -173,6 +175,8 @@ char *experiment_spec_name(const char *path); /* "a/methods.json" is "methods"; 
 /* experiment_member.c: one member of a JSON object to one field, by the option tables. Reported with its place. */
 struct json_t;
 int experiment_wrong(const experiment_spec *spec, const char *place, const char *fmt, ...) NOC_PRINTF(3, 4);
+/* CLI_OK, or that there are too many, reported. */
+int experiment_too_many(const experiment_spec *spec, const char *place, size_t count, size_t most, const char *what);
 const noc_option *experiment_option(const cli_set *sets, const char *name, size_t *offset);
 int experiment_set(experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others, void *params,
                    const char *name, struct json_t *value);

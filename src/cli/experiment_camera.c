@@ -113,6 +113,9 @@ int experiment_read_cameras(experiment_spec *spec, const char *place, json_t *ca
     size_t count = json_array_size(cameras), first = spec->camera_count;
     if (!count)
         return experiment_wrong(spec, place, "it needs cameras, an array that is not empty; here, or once for all scenes");
+    int few = experiment_too_many(spec, place, first + count, EXPERIMENT_ENTRIES, "cameras");
+    if (few)
+        return few;
     spec->cameras = experiment_longer(spec->cameras, sizeof(*spec->cameras) * (first + count));
     char where[64];
     for (size_t i = 0; i < count; i++) {

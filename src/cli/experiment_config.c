@@ -141,6 +141,7 @@ int experiment_read_config(experiment_spec *spec, const char *place, json_t *obj
     const char *name = NULL;
     const noc_option *option = json_is_object(object) ? several(spec, place, object, &status) : NULL;
     if (status || !option) {
+        status = status ? status : experiment_too_many(spec, "", spec->config_count + 1, EXPERIMENT_ENTRIES, "configurations");
         experiment_config *config = status ? NULL : add(spec, shared, entry, -1);
         status = status ? status : read_members(spec, place, object, config);
         return status ? status : experiment_read_name(spec, place, object, &config->name);
@@ -148,6 +149,8 @@ int experiment_read_config(experiment_spec *spec, const char *place, json_t *obj
     status = experiment_read_name(spec, place, object, &name);
     json_t *values = values_of(option, json_object_get(object, option->name)), *value;
     size_t i;
+    status = status ? status
+        : experiment_too_many(spec, "", spec->config_count + json_array_size(values), EXPERIMENT_ENTRIES, "configurations");
     json_array_foreach(values, i, value) {
         if (status)
             break;

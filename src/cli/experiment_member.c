@@ -14,6 +14,10 @@ int experiment_wrong(const experiment_spec *spec, const char *place, const char 
     return cli_usage(&cli_experiment, "%.200s: %s%s%s", spec->path, place, *place ? ": " : "", text);
 }
 
+int experiment_too_many(const experiment_spec *spec, const char *place, size_t count, size_t most, const char *what) {
+    return count > most ? experiment_wrong(spec, place, "it asks for more than %zu %s", most, what) : CLI_OK;
+}
+
 void *experiment_longer(void *array, size_t size) {
     array = realloc(array, size);
     if (!array)
@@ -62,7 +66,9 @@ static int unknown(const experiment_spec *spec, const char *place, const cli_set
     return experiment_wrong(spec, place, "no option \"%.60s\"; there are %s", name, all);
 }
 
-/* A value as it would be written on the command line; NULL where JSON has no such thing there. An array of numbers is a list. */
+enum { NUMBERS = 64 };
+
+/* A value as it would be written on the command line; NULL where JSON has no such thing there. An array of a few numbers is a list. */
 static char *spell(const json_t *value) {
     switch (json_typeof(value)) {
     case JSON_STRING: return cli_format("%s", json_string_value(value));
@@ -73,6 +79,8 @@ static char *spell(const json_t *value) {
     case JSON_ARRAY: break;
     default: return NULL;
     }
+    if (json_array_size(value) > NUMBERS)
+        return NULL;
     char *text = cli_format("%s", "");
     size_t i;
     json_t *item;

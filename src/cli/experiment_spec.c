@@ -97,6 +97,9 @@ static int read_scene(S *spec, const char *place, json_t *object, experiment_sce
     noc_texts *lamps = &scene->import.lamps;
     if (!count && !lamps->count)
         return experiment_wrong(spec, place, "inputs must be an array of files or builtin:NAME");
+    status = experiment_too_many(spec, place, count + lamps->count, EXPERIMENT_INPUTS, "inputs");
+    if (status)
+        return status;
     scene->inputs = cli_alloc(sizeof(char *) * (count + lamps->count));
     experiment_keep(spec, scene->inputs);
     json_array_foreach(inputs, i, input) {
@@ -131,8 +134,10 @@ static int read_lists(S *spec, json_t *root, const experiment_config *shared) {
     if ((scenes && !json_array_size(scenes)) || !json_array_size(configs))
         return experiment_wrong(spec, "", "it needs scenes and configurations, arrays that are not empty");
     size_t scene_count = scenes ? json_array_size(scenes) : 1;
+    int status = experiment_too_many(spec, "", scene_count, EXPERIMENT_ENTRIES, "scenes");
+    if (status)
+        return status;
     spec->scenes = cli_alloc(sizeof(*spec->scenes) * scene_count);
-    int status = CLI_OK;
     char place[64];
     for (; !status && spec->scene_count < scene_count; spec->scene_count++) {
         snprintf(place, sizeof(place), scenes ? "scenes[%zu]" : "scene", spec->scene_count);
@@ -268,6 +273,11 @@ int experiment_read_spec(S *spec, const char *path, bool quiet) {
     FILE *file = cli_open(path);
     if (!file)
         return CLI_FAILURE;
+    struct stat st;
+    if (fstat(fileno(file), &st) || st.st_size > EXPERIMENT_BYTES) {
+        fclose(file);
+        return experiment_wrong(spec, "", "it is larger than %d bytes", EXPERIMENT_BYTES);
+    }
     json_t *root = json_loadf(file, JSON_REJECT_DUPLICATES, &error);
     fclose(file);
     if (!root)

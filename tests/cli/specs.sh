@@ -70,6 +70,35 @@ expect "an unknown option like no other" 2 'wrong.json: cameras\[0\]: path: no o
 sed 's/"view": "own"/"view": "own", "path": { "frames": 3, "cut": 2, "before": { "view": "own", "path": { "frames": 2, "pan": 1 } } }/' moving.json >wrong.json
 expect "a path of the camera before the cut" 2 'wrong.json: cameras\[0\]: path: before: no option "path"' experiment wrong.json -o w
 
+# What a spec asks for is limited, and told by the limit.
+big() { # FILE TEXT N: base.json with N times what Python makes of TEXT in the place of LIST
+    python3 -c '
+import sys
+items = [eval(sys.argv[1]) for i in range(int(sys.argv[2]))]
+print(open("base.json").read().replace("LIST", ", ".join(items)))' "$2" "$3" >"$1"
+}
+spec base.json 'LIST'
+big wrong.json "'{ \"name\": \"%d\" }' % i" 1001
+expect "too many configurations" 2 'wrong.json: it asks for more than 1000 configurations$' experiment wrong.json -o w
+spec base.json '{ "name": "*", "shadow-rays": [LIST] }'
+big wrong.json "'1'" 1001
+expect "and as an array of values" 2 'wrong.json: it asks for more than 1000 configurations$' experiment wrong.json -o w
+spec base.json '{ "name": "a" }'
+sed -i 's/\[ { "name": "own", "view": "own" } \]/[LIST]/' base.json
+big wrong.json "'{ \"name\": \"%d\", \"view\": \"own\" }' % i" 1001
+expect "too many cameras" 2 'wrong.json: it asks for more than 1000 cameras$' experiment wrong.json -o w
+spec base.json '{ "name": "a" }'
+sed -i 's/"builtin:single"/LIST/' base.json
+big wrong.json "'\"a\"'" 10001
+expect "too many inputs" 2 'wrong.json: scene: it asks for more than 10000 inputs$' experiment wrong.json -o w
+spec base.json '{ "name": "a" }'
+sed -i 's/"view": "own"/"eye": [LIST], "target": [0, 0, 0]/' base.json
+big wrong.json "'1'" 1000
+expect "an eye of a thousand numbers" 2 'wrong.json: cameras\[0\]: eye: this cannot be its value$' experiment wrong.json -o w
+spec wrong.json '{ "name": "a" }'
+head -c 1100000 /dev/zero | tr '\0' ' ' >>wrong.json
+expect "a spec of a megabyte" 2 'wrong.json: it is larger than 1048576 bytes$' experiment wrong.json -o w
+
 # What structures are is told of the camera at rest in a scene, else of those that move; not what nobody saw.
 spec volumes.json '{ "name": "v", "candidates": "bvh", "influence": 100 }'
 sed -i 's/"scene": \(.*\) }, "cameras": .*\], "size"/"scenes": [ \1, "cameras": [ REST, MOVES, SKY ] }, { "name": "two", "inputs": ["builtin:single"], "cameras": [ MOVES ] } ], "size"/
