@@ -154,7 +154,7 @@ static int work_camera(experiment_lab *lab, size_t camera) {
 static int work(experiment_lab *lab) {
     const experiment_spec *spec = &lab->spec;
     int status = CLI_OK;
-    char rows[64];
+    char rows[64], frames[64];
     lab->started = cli_now();
     for (size_t camera = 0; !status && camera < spec->camera_count; camera++) {
         size_t scene = spec->cameras[camera].scene;
@@ -167,7 +167,10 @@ static int work(experiment_lab *lab) {
             lab->scene = NULL;
         }
     }
-    if (status > CLI_INTERRUPTED)
+    if (status > CLI_INTERRUPTED && lab->reference_lost)
+        cli_error("interrupted: %s in %s/results.csv; the same command goes on there, but begins this reference anew: the %s of %d that were there are lost",
+                  cli_many(rows, lab->rows_done, "row"), lab->folder, cli_many(frames, (uint64_t)lab->reference_lost, "frame"), spec->reference.frames);
+    else if (status > CLI_INTERRUPTED)
         cli_error("interrupted: %s in %s/results.csv; the same command goes on there", cli_many(rows, lab->rows_done, "row"), lab->folder);
     status = status ? status : experiment_tidy_table(lab);
     status = status ? status : experiment_write_report(lab);

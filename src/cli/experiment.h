@@ -153,6 +153,7 @@ typedef struct experiment_lab {
     size_t rows_done, rows_old; /* old: of earlier sessions */
     double started, reference_seconds;
     size_t references_made, cameras_done;
+    int reference_lost;       /* frames of a reference that was interrupted: it is not kept */
     char path[32];            /* code that ran: "avx2 x8" */
     double *sum;              /* room for the mean of a picture */
     /* of the present scene and camera */

@@ -141,7 +141,9 @@ static void print_command(FILE *out) {
     }
 }
 
-/* Options of a configuration that are not the renderer's defaults. */
+static bool draws_candidates(const noc_render_params *p) { return p->method == NOC_METHOD_RIS || p->method == NOC_METHOD_RESTIR; }
+
+/* The method, where its candidates come from, and options of a configuration that are not the renderer's defaults. */
 static void print_options(FILE *out, const noc_render_params *params) {
     static const char *const above[] = { "width", "height", "seed", "accumulate", NULL };
     noc_render_params usual = noc_render_default_params();
@@ -150,11 +152,20 @@ static void print_options(FILE *out, const noc_render_params *params) {
         char mine[80], theirs[80];
         noc_option_get(o, params, mine, sizeof(mine));
         noc_option_get(o, &usual, theirs, sizeof(theirs));
-        if (cli_hidden(&(cli_set){ .hidden = above }, o) || (!strcmp(mine, theirs) && strcmp(o->name, "method")))
+        bool always = !strcmp(o->name, "method") || (!strcmp(o->name, "candidates") && draws_candidates(params));
+        if (cli_hidden(&(cli_set){ .hidden = above }, o) || (!strcmp(mine, theirs) && !always))
             continue;
         fprintf(out, "%s`%s %s`", any ? ", " : "", o->name, mine);
         any = true;
     }
+}
+
+/* Few repetitions know their own spread badly: two-sided 95 % quantiles of Student's t with n - 1 degrees of freedom. */
+static void print_confidence(FILE *out, int n) {
+    static const double t[] = { [2] = 12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262 };
+    if (n < (int)(sizeof(t) / sizeof(*t)))
+        fprintf(out, "With n = %d, 95 %% of such means lie within %.1f standard errors (Student's t)%s.\n", n, t[n],
+                n < 4 ? ": differences smaller than that are not shown by so few repetitions" : "");
 }
 
 static void print_setting(FILE *out, const experiment_lab *lab) {
@@ -176,10 +187,12 @@ static void print_setting(FILE *out, const experiment_lab *lab) {
     else
         cli_many(extent, (uint64_t)spec->frames, "frame");
     fprintf(out, "\n\nPictures of %d x %d px, %s, ", spec->width, spec->height, extent);
-    if (spec->repetitions > 1)
+    if (spec->repetitions > 1) {
         fprintf(out, "%d repetitions with different seeds. Figures are their means, \302\261 the standard error of the mean.\n", spec->repetitions);
-    else
+        print_confidence(out, spec->repetitions);
+    } else {
         fprintf(out, "1 repetition: how far another seed's figures would be off is not known.\n");
+    }
     fprintf(out, "Reference: %s of ", cli_many(extent, (uint64_t)spec->reference.frames, "frame"));
     if (spec->reference.params.method == NOC_METHOD_REFERENCE)
         fprintf(out, "%s a pixel", cli_many(extent, (uint64_t)spec->reference.params.rays, "shadow ray"));
@@ -194,7 +207,7 @@ static void print_setting(FILE *out, const experiment_lab *lab) {
         fprintf(out, " %s |", cli_count(text, lab->scene_infos[i].triangles));
         fprintf(out, " %s | %s |\n", cli_count(text, lab->scene_infos[i].lights), cli_bytes(memory, lab->scene_infos[i].memory_bytes));
     }
-    fprintf(out, "\n| Configuration | Options that are not the defaults, and the method |\n|---|---|\n");
+    fprintf(out, "\n| Configuration | Method, candidates, and options that are not the defaults |\n|---|---|\n");
     for (size_t i = 0; i < spec->config_count; i++) {
         fputc('|', out);
         experiment_cell(out, spec->configs[i].name);

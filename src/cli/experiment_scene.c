@@ -161,8 +161,10 @@ static int render_reference(experiment_lab *lab, const char *view, const char *p
     if (lab->reference)
         *noise = experiment_measure_noise(lab, half, halfway, &batches);
     noc_image_destroy(half);
-    if (cli_interrupted())
+    if (status && cli_interrupted()) { /* a whole one is kept, whatever comes then */
+        lab->reference_lost = m.frame > 2 ? m.frame - 2 : 0;
         return CLI_INTERRUPTED + cli_interrupted();
+    }
     noc_display_params display = noc_display_default_params();
     const char *keys[] = { "content", "made-by" }, *values[] = { lab->reference_key, noc_version() };
     if (!lab->reference)

@@ -83,7 +83,10 @@ static bool negatable(const noc_option *o, const void *defaults) {
 }
 
 static void bash_word(FILE *out, const noc_option *o, const void *defaults, int columns) {
-    fprintf(out, " --%s%s", negatable(o, defaults) ? "no-" : "", o->name);
+    if (negatable(o, defaults))
+        fprintf(out, " --no-%s", o->name);
+    if (!negatable(o, defaults) || o->kind == NOC_OPTION_SWITCH) /* of a switch that is automatic, either says something */
+        fprintf(out, " --%s", o->name);
 }
 
 static void bash_choices(FILE *out, const noc_option *o, const void *defaults, int columns) {
@@ -95,14 +98,21 @@ static void bash_choices(FILE *out, const noc_option *o, const void *defaults, i
 }
 
 static void bash(FILE *out) {
-    fputs("_nocturne() {\n    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} words=\n"
-          "    if [ \"$COMP_CWORD\" = 1 ] || [ \"${COMP_WORDS[1]}:$COMP_CWORD\" = help:2 ]; then\n        words='", out);
+    /* Bash divides words at = and colons. */
+    fputs("_nocturne() {\n    local at=$COMP_CWORD\n    local word=${COMP_WORDS[at]} before=${COMP_WORDS[at-1]} words=\n"
+          "    case $word in =|:) before=$word word= at=$((at + 1)) ;; esac\n"
+          "    [ \"$before\" = = ] && before=${COMP_WORDS[at-2]}\n"
+          "    if [ \"$before\" = : ] && [ \"${COMP_WORDS[at-2]}\" = builtin ]; then\n        words='", out);
+    const char *const *names = noc_builtin_names();
+    for (size_t i = 0; names[i]; i++)
+        fprintf(out, "%s%s", i ? " " : "", names[i]);
+    fputs("'\n    elif [ \"$COMP_CWORD\" = 1 ] || [ \"${COMP_WORDS[1]}:$COMP_CWORD\" = help:2 ]; then\n        words='", out);
     commands(out);
     fputs("'\n    else\n        case ${COMP_WORDS[1]} in\n", out);
     for (const cli_command *const *c = cli_commands; *c; c++) {
         fprintf(out, "        %s)\n            case $before in\n", (*c)->name);
         cli_each_option(*c, out, NULL, bash_choices, 0);
-        fputs("            *) case $word in -*) words='", out);
+        fputs("            *) case $word in builtin*) words=builtin:; compopt -o nospace 2>/dev/null ;; -*) words='", out);
         cli_each_option(*c, out, NULL, bash_word, 0);
         fputs("' ;; esac ;;\n            esac ;;\n", out);
     }

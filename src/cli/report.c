@@ -44,11 +44,28 @@ static void add_totals(meta_text *meta, const noc_report *report) {
         add(meta, rows[i].key, cli_format("%zu", rows[i].count));
 }
 
+static const char *base_name(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* A file's folder is nobody else's business, but where two files have one name, the folders that they lie in tell them apart. */
+static const char *told_name(const char *const *paths, size_t count, size_t i) {
+    const char *base = base_name(paths[i]), *start = base;
+    bool twin = false;
+    for (size_t k = 0; k < count && !twin; k++)
+        twin = k != i && !strcmp(base_name(paths[k]), base);
+    if (!twin || base == paths[i])
+        return base;
+    for (start--; start > paths[i] && start[-1] != '/';)
+        start--;
+    return start;
+}
+
 static char *join_names(const char *const *paths, size_t count) {
     char *text = cli_format("%s", "");
     for (size_t i = 0; i < count; i++) {
-        const char *slash = strrchr(paths[i], '/'); /* a file's folder is nobody else's business */
-        char *longer = cli_format("%s%s%s", text, i ? ", " : "", slash ? slash + 1 : paths[i]);
+        char *longer = cli_format("%s%s%s", text, i ? ", " : "", told_name(paths, count, i));
         free(text);
         text = longer;
     }

@@ -133,16 +133,24 @@ void text_draw(canvas *c, int x, int y, const char *s, int scale, const uint8_t 
     }
 }
 
-/* The next character as the table has it, 127 where it has none. */
-static char next_code(const char **text) {
+/* Letters of Latin-1 from U+00C0 on as plain ones: two of them where the sound wants it. */
+static const char *const latin[64] = {
+    "A", "A", "A", "A", "Ae", "A", "AE", "C", "E", "E", "E", "E", "I", "I", "I", "I", "D", "N", "O", "O", "O", "O", "Oe", NULL, "O", "U", "U", "U", "Ue", "Y", "Th", "ss",
+    "a", "a", "a", "a", "ae", "a", "ae", "c", "e", "e", "e", "e", "i", "i", "i", "i", "d", "n", "o", "o", "o", "o", "oe", NULL, "o", "u", "u", "u", "ue", "y", "th", "y",
+};
+
+/* The next character as the table has it, or the letters in its stead; 127 where there are none. */
+static void next_codes(const char **text, char codes[3]) {
     const unsigned char *p = (const unsigned char *)*text;
     int more = *p < 0xc0 ? 0 : *p < 0xe0 ? 1 : *p < 0xf0 ? 2 : 3, got = 0;
     while (got < more && (p[1 + got] & 0xc0) == 0x80)
         got++;
     *text += 1 + got;
-    if (*p < 0x80)
-        return (char)*p;
-    return *p == 0xc3 && p[1] == 0x97 ? '\xd7' : *p == 0xc2 && p[1] == 0xb2 ? '\xb2' : 127;
+    char code = *p < 0x80 ? (char)*p : *p == 0xc3 && p[1] == 0x97 ? '\xd7' : *p == 0xc2 && p[1] == 0xb2 ? '\xb2' : 127;
+    const char *letters = *p == 0xc3 && got ? latin[p[1] & 63] : NULL;
+    codes[0] = letters ? letters[0] : code;
+    codes[1] = letters ? letters[1] : 0;
+    codes[2] = 0;
 }
 
 int noc_text_srgb8(uint8_t *rgb, int width, int height, int x, int y, const char *text, int scale, const uint8_t colour[3]) {
@@ -150,10 +158,10 @@ int noc_text_srgb8(uint8_t *rgb, int width, int height, int x, int y, const char
     int from = x;
     if (!text || (rgb && !colour))
         return 0;
-    for (char code[2] = ""; *text; x += scale * CELL) {
-        code[0] = next_code(&text);
+    for (char codes[3] = ""; *text; x += scale * CELL * (int)strlen(codes)) {
+        next_codes(&text, codes);
         if (rgb)
-            text_draw(&c, x, y, code, scale, colour);
+            text_draw(&c, x, y, codes, scale, colour);
     }
     return x > from ? x - from - scale : 0;
 }

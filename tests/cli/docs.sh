@@ -17,7 +17,10 @@ offered() { # WORD...: what bash offers for the last of these words
 if command -v bash >/dev/null; then
     test "$(offered nocturne comp)" = compare && test "$(offered nocturne render a.gml --method re)" = "reference restir" &&
         test "$(offered nocturne render --jit)" = "" && test "$(offered nocturne render --no-jit)" = "--no-jitter" &&
-        test "$(offered nocturne info --met)" = ""
+        test "$(offered nocturne info --met)" = "" && test "$(offered nocturne render --infer)" = --infer-lamps &&
+        test "$(offered nocturne render --no-infer)" = --no-infer-lamps && test "$(offered nocturne render --method = re)" = "reference restir" &&
+        test "$(offered nocturne render --method = | wc -w)" = 4 && test "$(offered nocturne render builtin : city)" = "city cityscape" &&
+        test "$(offered nocturne render builtin : | wc -w)" = 5 && test "$(offered nocturne info builtin)" = builtin:
     result $? "bash completes commands, options and choices"
 else
     skip "completion in bash" "bash is not here"

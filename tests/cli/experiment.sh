@@ -111,6 +111,9 @@ panels=$((2 + choices)) columns=$((2 + choices > 4 ? 4 : 2 + choices))
 test "$sheet" = "$((columns * 320 + (columns - 1) * 4)) $(((panels + columns - 1) / columns * (22 + 220 + 4) - 4))"
 result $? "crops: the reference and each configuration, a third of the picture enlarged, each under its name" "$sheet"
 
+grep -q "^With n = 2, 95 % of such means lie within 12.7 standard errors (Student's t): " a/report.md; result $? "two repetitions are told to be few"
+grep -q '^| ris, lists | .*`method ris`, `candidates lists` |' a/report.md && grep -q '^| is.*`method is` |' a/report.md
+result $? "method and candidates are named, defaults or not" "$(grep '`method' a/report.md | head -n 3)"
 grep -Eq "^The reference's own noise is a relMSE of about 0\.[0-9]+, clamped 0\.[0-9]+:" a/report.md; result $? "the reference's own noise is told"
 
 # Its estimate holds: ris of many candidates against a reference that is as good as true.
@@ -167,6 +170,21 @@ rows c 3 >c.rows
 run experiment short.json -o d --cache cache
 rows d 3 >d.rows
 cmp -s c.rows d.rows; result $? "and it does, to the same rows" "$(diff c.rows d.rows | head -n 5 | tr '\n' ' ')"
+
+# Ctrl-C while a reference is made: what is lost is told.
+sed 's/"rays": 8, "frames": 2/"rays": 64, "frames": 100000/' short.json >endless.json
+env --default-signal=INT "$program" experiment endless.json -o lost --cache cache >out 2>err </dev/null &
+pid=$!
+tries=0
+until grep -q 'reference, about' out; do
+    tries=$((tries + 1))
+    [ $tries -gt 600 ] && break
+    sleep 0.1
+done
+kill -INT $pid
+wait $pid
+test $? = 130 && grep -Eq 'goes on there, but begins this reference anew: the [0-9,]+ frames? of 100000 that' err
+result $? "Ctrl-C in a reference says that its frames are lost" "$(cat err)"
 
 # Other settings under the same names: their rows are not mixed.
 sed 's/"method": "is"/"method": "is", "emitters": false/' short.json >other.json

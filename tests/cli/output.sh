@@ -66,4 +66,9 @@ fi
 run render builtin:single --size 16x9 --threads 1 --time 10.6 -o long.png
 grep -Eq '^nocturne: 9[0-9] %, frame [0-9]+, about [0-9.]+ s left$' err && ! grep -q "$(printf '\r')" err
 result $? "a long render shows a sign of life in a pipe"
+lamp_model
+mkdir -p east west
+cp lamp.obj lamp.mtl east && cp lamp.obj lamp.mtl west
+run render "$PWD/east/lamp.obj" west/lamp.obj --size 16x9 --frames 1 -o twins.png
+test $status = 0 && test "$(meta twins.png inputs)" = "east/lamp.obj, west/lamp.obj"; result $? "inputs of one name are told apart by their folders" "$(meta twins.png inputs)"
 finish

@@ -32,7 +32,7 @@ test $status = 0 && grep -q ': 6 rows, 0 of them made now' out; result $? "one f
 spec other.json '{ "name": "a", "method": "is" }'
 sed -i 's/"reference": { "rays": 1,/"reference": { "method": "ris", "list": 8,/' other.json
 run experiment other.json -o o --cache cache
-test $status = 0 && grep -q '^Reference: 1 frame of `[^|]*`method ris`, `list 8`, through the centres of pixels.$' o/report.md &&
+test $status = 0 && grep -q '^Reference: 1 frame of `[^|]*`method ris`, `candidates lists`, `list 8`, through the centres of pixels.$' o/report.md &&
     grep -q '^| a | `[^|]*`method is` |$' o/report.md; result $? "a reference by ris, in the report"
 
 # What changes nothing is told once, by where it stands; what counts in one configuration of an entry is not.

@@ -269,6 +269,10 @@ static void text_is_drawn(void **state) {
     assert_memory_equal(one, two, sizeof(one));
     assert_int_equal(noc_text_srgb8(NULL, 0, 0, 0, 0, "a\xe2\x82\xac\xc2", 2, white), 2 * 17); /* the last is cut short */
     assert_int_equal(noc_text_srgb8(NULL, 0, 0, 0, 0, "", 2, white), 0);
+    uint8_t street[3 * 40 * 8] = { 0 }, plain[3 * 40 * 8] = { 0 }; /* Straße, élan: the font has plain letters alone */
+    assert_int_equal(noc_text_srgb8(street, 40, 8, 0, 0, "a\xc3\x9f" "e \xc3\xa9", 1, white), 6 * 6 - 1);
+    text_draw(&(canvas){ plain, 40, 8 }, 0, 0, "asse e", 1, white);
+    assert_memory_equal(street, plain, sizeof(plain));
     text_draw(&c, -3, -3, "clipped at every side \x01", 4, ink); /* no crash: ASan watches */
 }
 
