@@ -8,7 +8,7 @@ const char *noc_features(void) {
 #if NOC_HAVE_GDAL
            "gdal " NOC_GDAL_VERSION
 #else
-           "no gdal (lamps from OSM, GeoJSON and CSV are not read)"
+           "no gdal (lamps from OSM and GeoJSON are not read)"
 #endif
            ", "
 #if NOC_HAVE_ASSIMP

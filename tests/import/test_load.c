@@ -1,6 +1,8 @@
 /* What the importer makes of inputs: surfaces, lamps, ground, colours, reports, errors. From a fake reader, and on real files. */
 #include "fake_reader.h"
 
+#include "noc_config.h"
+
 static void test_city(void **state) {
     (void)state;
     struct run r;
@@ -392,6 +394,10 @@ static void test_inspect(void **state) {
 /* Real files through the real table of readers. */
 static void test_ingolstadt(void **state) {
     (void)state;
+    if (!NOC_HAVE_GDAL) {
+        print_message("# skipped: built without GDAL\n");
+        skip();
+    }
     REQUIRE_SHARED(found, "data/cities/ingolstadt/ingolstadt_lod3_combined.gml.gz");
     char city[4096];
     snprintf(city, sizeof(city), "%s", found);
