@@ -276,6 +276,8 @@ bool geo_crs_equal(const geo_crs *a, const geo_crs *b) {
 
 /* ---- area of use ---- */
 
+#define FARTHEST_TURN 3600.0 /* degrees of longitude: ten times round, which no file means */
+
 bool geo_crs_lonlat(geo_crs *crs, double x, double y, double lonlat[2]) {
     if (!crs->to_wgs84 && !(crs->to_wgs84 = crs_kept(crs->context, crs->key, "OGC:CRS84"))) {
         PJ *wgs84 = proj_create(crs->context, "OGC:CRS84");
@@ -290,7 +292,7 @@ bool geo_crs_lonlat(geo_crs *crs, double x, double y, double lonlat[2]) {
     PJ_COORD c = proj_coord(crs->lat_first ? y : x, crs->lat_first ? x : y, 0, HUGE_VAL);
     c = proj_trans(crs->to_wgs84, PJ_FWD, c);
     proj_errno_reset(crs->to_wgs84);
-    if (!isfinite(c.xy.x) || !isfinite(c.xy.y) || fabs(c.xy.y) > 90)
+    if (!isfinite(c.xy.x) || fabs(c.xy.x) > FARTHEST_TURN || !isfinite(c.xy.y) || fabs(c.xy.y) > 90)
         return false;
     lonlat[0] = c.xy.x;
     lonlat[1] = c.xy.y;

@@ -362,6 +362,17 @@ static void test_scale(void **state) {
     }
 }
 
+/* Degrees that are none, of a broken file: going round the Earth until they fit would never end. */
+static void test_far_longitude(void **state) {
+    (void)state;
+    double lonlat[2];
+    geo_crs *crs = geo_crs_create("EPSG:4326", NULL, NULL, NULL);
+    for (double lon = -1e4; lon > -1e300; lon *= 1e20)
+        assert_true(isinf(geo_crs_outside(crs, lon, 48)) && !geo_crs_lonlat(crs, lon, 48, lonlat));
+    assert_true(geo_crs_outside(crs, -350, 48) == 0);
+    geo_crs_destroy(crs);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_scale), cmocka_unit_test(test_spellings),       cmocka_unit_test(test_not_understood),
@@ -369,7 +380,7 @@ int main(void) {
         cmocka_unit_test(test_austria_31256),   cmocka_unit_test(test_montreal_2950),
         cmocka_unit_test(test_utm_25832),       cmocka_unit_test(test_japan_6697),
         cmocka_unit_test(test_transform_details), cmocka_unit_test(test_equal),
-        cmocka_unit_test(test_area_of_use),
+        cmocka_unit_test(test_area_of_use),     cmocka_unit_test(test_far_longitude),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
