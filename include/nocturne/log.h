@@ -5,7 +5,8 @@
  * The library prints nothing: what it has to say goes to the log's callback, and nowhere without one.
  * NULL for a noc_log drops the messages; NULL for a struct of params stands for its defaults; NULL for anything else that a call
  * needs is NOC_ERR_ARGUMENT, or whatever the function returns for an error.
- * A noc_log may be used from several threads at once; its callback is called with a lock held, one message at a time. */
+ * A noc_log may be used from several threads at once; its callback is called with a lock held, one message at a time.
+ * So the callback must not call anything that logs to the same noc_log: that would wait for the lock for ever. */
 #ifndef NOCTURNE_LOG_H
 #define NOCTURNE_LOG_H
 
