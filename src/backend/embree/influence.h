@@ -124,7 +124,7 @@ static void group_finds(const noc_influence *v, const noc_near *near, int every,
     group->from = group->count ? group->from : 0;
 }
 
-enum { TILE_VOLUMES = 4096 };
+enum { TILE_VOLUMES = 16384 };
 
 /* What the points of a tile find. Volumes are looked for once, near all of them; where that is too many, for each group. */
 static void influence_find(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int n, noc_found *f) {

@@ -55,39 +55,49 @@ FN mask volume_near(influence a, influence_region r, real scale) {
     return and_(box_near(sub3(a.c, size), add3(a.c, size), r, a.root * scale), influence_shines(a, r));
 }
 
-/* A leaf is one group: those of its volumes that could hold a point, and nothing in the other places. */
+/* A group for the next volume, begun where the last one is full. NULL: no memory. */
+static noc_near_group *group_with_room(noc_near *out) {
+    if (out->count % BLOCK == 0) {
+        if (!array_reserve(&out->groups, out->groups.len + 1)) {
+            out->no_memory = true;
+            return NULL;
+        }
+        noc_near_group *g = &out->groups.data[out->groups.len++];
+        memset(g, 0, sizeof(*g));
+        for (int i = 0; i < BLOCK; i++)
+            g->size[i] = -INFINITY;
+    }
+    return &out->groups.data[out->groups.len - 1];
+}
+
+/* The volumes of a leaf that could hold a point, close together: every group of points looks at them. */
 static void leaf_near(const noc_influence *v, size_t leaf, influence_region r, real scale, noc_near *out) {
     uint32_t first = (uint32_t)leaf * BLOCK, found = 0;
-    if (!array_reserve(&out->groups, out->groups.len + 1)) {
-        out->no_memory = true;
-        return;
-    }
-    noc_near_group *g = &out->groups.data[out->groups.len];
+    ALIGNED float turn[BLOCK];
     for (int l = 0; l < BLOCK; l += LANES) {
         u32 i = KU(first) + lane_numbers(l);
         influence a = influence_gather(v->volumes, selu(i < KU(v->volume_count), i, KU(v->volume_count)));
-        mask near = volume_near(a, r, scale);
-        const v3 vectors[2] = { a.c, a.m };
-        float (*to[2])[16] = { g->c, g->m };
-        for (int k = 0; k < 2; k++) {
-            rstore(to[k][0] + l, vectors[k].x);
-            rstore(to[k][1] + l, vectors[k].y);
-            rstore(to[k][2] + l, vectors[k].z);
-        }
-        rstore(g->size + l, sel(near, a.size, K(-INFINITY)));
-        rstore(g->root + l, a.root);
-        rstore(g->turn + l, influence_turn(a));
-        rstore(g->lights + l, K(1.0f));
-        ustore(g->volume + l, i);
-        found |= mbits(near) << l;
+        found |= mbits(volume_near(a, r, scale)) << l;
+        rstore(turn + l, influence_turn(a));
     }
-    if (v->first)
-        for (uint32_t bits = found; bits; bits &= bits - 1) {
-            uint32_t volume = first + (uint32_t)__builtin_ctz(bits);
-            g->lights[__builtin_ctz(bits)] = (float)(v->first[volume + 1] - v->first[volume]);
+    for (; found; found &= found - 1) {
+        int lane = __builtin_ctz(found);
+        uint32_t volume = first + (uint32_t)lane;
+        const noc_influence_volume *a = &v->volumes[volume];
+        noc_near_group *g = group_with_room(out);
+        if (!g)
+            return;
+        size_t at = out->count++ % BLOCK;
+        for (int k = 0; k < 3; k++) {
+            g->c[k][at] = a->c[k];
+            g->m[k][at] = a->m[k];
         }
-    out->groups.len += found != 0;
-    out->count += (size_t)__builtin_popcount(found);
+        g->size[at] = a->size;
+        g->root[at] = a->root;
+        g->turn[at] = turn[lane];
+        g->lights[at] = v->first ? (float)(v->first[volume + 1] - v->first[volume]) : 1;
+        g->volume[at] = volume;
+    }
 }
 
 FN influence group_load(const noc_near_group *g, int l) {
