@@ -296,7 +296,7 @@ static void test_spot(void **state) {
 static void test_samples_lie_on_the_light(void **state) {
     dice d = { 6 };
     for (int i = 0; i < 20000; i++) {
-        uint32_t kind = (uint32_t)(roll(&d) % 6);
+        uint32_t kind = (uint32_t)(roll(&d) % (LIGHT_SPOT + 1));
         v3 p = random_in_box(&d, 10), y = random_in_box(&d, 20);
         v3 a = random_in_box(&d, 2), b = random_in_box(&d, 2);
         light l = make_flat(kind, p, a, b);
@@ -373,8 +373,9 @@ static void test_extreme_input(void **state) {
     dice d = { 8 };
     size_t lit = 0;
     for (int i = 0; i < 400000; i++) {
-        light l = { .p = odd_v3(&d, 1e7), .kind = (uint32_t)(roll(&d) % 6), .a = odd_v3(&d, 1e4), .b = odd_v3(&d, 1e4),
-                    .radius = fabsf(odd_number(&d, 1e4)), .flags = (uint32_t)(roll(&d) & 1), .e = { 1e9f, 1e9f, 1e9f } };
+        light l = { .p = odd_v3(&d, 1e7), .kind = (uint32_t)(roll(&d) % (LIGHT_SPOT + 1)), .a = odd_v3(&d, 1e4),
+                    .b = odd_v3(&d, 1e4), .radius = fabsf(odd_number(&d, 1e4)), .flags = (uint32_t)(roll(&d) & 1),
+                    .e = { 1e9f, 1e9f, 1e9f } };
         surf s = { .p = roll(&d) % 4 ? odd_v3(&d, 1e7) : add3(l.p, odd_v3(&d, 1)), .n = random_direction(&d),
                    .albedo = { .5f, .5f, .5f }, .f0 = roll(&d) & 1 ? 0 : 0.5f, .alpha = roll(&d) & 1 ? 0.0025f : 1 };
         s.wo = roll(&d) % 4 ? random_direction(&d) : s.n;
@@ -398,8 +399,9 @@ static void test_target_of_nonsense(void **state) {
         float f[32];
         for (int j = 0; j < 32; j++)
             f[j] = roll(&d) % 3 ? (float)uniform(&d, -2, 2) : bad[roll(&d) % 8];
-        light l = { .p = { f[0], f[1], f[2] }, .kind = (uint32_t)(roll(&d) % 6), .a = { f[3], f[4], f[5] },
-                    .b = { f[6], f[7], f[8] }, .radius = f[9], .e = { f[10], f[11], f[12] } };
+        light l = { .p = { f[0], f[1], f[2] }, .kind = (uint32_t)(roll(&d) % (LIGHT_SPOT + 1)),
+                    .a = { f[3], f[4], f[5] }, .b = { f[6], f[7], f[8] }, .radius = f[9],
+                    .e = { f[10], f[11], f[12] } };
         surf s = { .p = { f[13], f[14], f[15] }, .n = { f[16], f[17], f[18] }, .wo = { f[19], f[20], f[21] },
                    .albedo = { f[22], f[23], f[24] }, .f0 = f[25], .alpha = f[26] };
         float p = target(s, l, (float)uniform(&d, 0, 1), (float)uniform(&d, 0, 1));

@@ -16,7 +16,8 @@ static void make_lights(struct core_context *ctx) {
     for (int i = 0; i < LIGHTS; i++) {
         v3 p = add3(random_in_box(&d, 4), V3(0, 0, 4.5f));
         light *l = &ctx->lights[i];
-        *l = (light){ .p = p, .kind = (uint32_t)(i % 6), .radius = 0.3f, .e = { (float)uniform(&d, 5, 300), 20, 40 } };
+        *l = (light){ .p = p, .kind = (uint32_t)i % (LIGHT_SPOT + 1), .radius = 0.3f,
+                      .e = { (float)uniform(&d, 5, 300), 20, 40 } };
         if (l->kind == LIGHT_POINT)
             continue;
         v3 a = random_direction(&d);

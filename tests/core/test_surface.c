@@ -138,8 +138,9 @@ static void test_nothing_from_behind(void **state) {
 static void test_target_is_luminance(void **state) {
     dice d = { 4 };
     for (int i = 0; i < 100000; i++) {
-        light l = { .p = random_in_box(&d, 5), .kind = (uint32_t)(roll(&d) % 6), .a = random_in_box(&d, 1),
-                    .b = random_in_box(&d, 1), .radius = 0.3f, .flags = LIGHT_TWO_SIDED, .e = { 50, 100, 20 } };
+        light l = { .p = random_in_box(&d, 5), .kind = (uint32_t)(roll(&d) % (LIGHT_SPOT + 1)),
+                    .a = random_in_box(&d, 1), .b = random_in_box(&d, 1), .radius = 0.3f,
+                    .flags = LIGHT_TWO_SIDED, .e = { 50, 100, 20 } };
         surf s = { .p = random_in_box(&d, 5), .n = random_direction(&d), .albedo = { .9f, .2f, .4f },
                    .f0 = roll(&d) & 1 ? 0.04f : 0, .alpha = 0.3f };
         s.wo = random_direction(&d);

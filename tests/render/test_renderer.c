@@ -15,7 +15,8 @@ static noc_scene *small_street(int lights, bool floor) {
             QUAD(s, wall, -5 + 4 * i, 1, 0, 1.5, 0.5, 0, 0, 0, 3);
     }
     for (int i = 0; i < lights; i++) {
-        noc_light l = { .kind = (noc_light_kind)(i % 5), .position = { -7 + 0.31 * i, 5.9 - 0.2 * (i % 5), 1 + i % 7 },
+        noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT), .inner_deg = 30, .outer_deg = 60,
+                        .position = { -7 + 0.31 * i, 5.9 - 0.2 * (i % 5), 1 + i % 7 },
                         .edge_u = { 0.4, 0, 0 }, .edge_v = { 0, 0, 0.7 }, .direction = { 0, -1, -0.5 }, .radius = 0.1,
                         .emission = { 20.f + (float)i, 25, 10 } };
         assert_true(noc_scene_add_light(s, &l) >= 0);
@@ -217,7 +218,8 @@ static void hostile_scenes(void **state) {
     QUAD(s, mirror, -20, 3, -1, 40, 0, 0, 0, 0, 1e-5);
     QUAD(s, mirror, 1, -10, 3.5, 1e-3, 0, 0, 0, 0, 9); /* through the camera's eye */
     for (int i = 0; i < 25; i++) {
-        noc_light l = { .kind = (noc_light_kind)(i % 5), .position = { -2 + 0.2 * i, 0.1 * (i % 4), i < 10 ? 0 : 1e-4 * i },
+        noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT), .inner_deg = 30, .outer_deg = 60,
+                        .position = { -2 + 0.2 * i, 0.1 * (i % 4), i < 10 ? 0 : 1e-4 * i },
                         .edge_u = { i % 3 ? 1e-4 : 3, 0, 0 }, .edge_v = { 0, 2, i % 2 }, .direction = { 0, 0, -1 },
                         .radius = i % 2 ? 1e-4 : 4, .emission = { 1e12f, 1e-30f, 1e12f } };
         assert_true(noc_scene_add_light(s, &l) >= 0);

@@ -24,7 +24,8 @@ static noc_scene *street(int lights) {
     QUAD(s, wall, -3, 1, 0, 1.5, 0.5, 0, 0, 0, 3);
     QUAD(s, lamp, 0, 5.9, 1, 2, 0, 0, 0, 0, 1);
     for (int i = 0; i < lights; i++) {
-        noc_light l = { .kind = (noc_light_kind)(i % 5), .position = { -7 + 0.31 * i, 5.7 - 0.2 * (i % 5), 1 + i % 7 },
+        noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT), .inner_deg = 30, .outer_deg = 60,
+                        .position = { -7 + 0.31 * i, 5.7 - 0.2 * (i % 5), 1 + i % 7 },
                         .edge_u = { 0.4, 0, 0 }, .edge_v = { 0, 0, 0.7 }, .direction = { 0, -1, -0.5 }, .radius = 0.1,
                         .emission = { 20.f + (float)i, 25, 10 } };
         assert_true(noc_scene_add_light(s, &l) >= 0);
@@ -36,13 +37,13 @@ static noc_scene *street(int lights) {
 static noc_camera above(void) { return look(0.3, -14, 9, 0, 0, 0, 60); }
 static noc_camera along(void) { return look(1, -10, 4, 0, 0, 2.5, 60); }
 
-/* Of two pixels' places on the floor, the largest distance within the pixel's block of 4x4: such points may ask together. */
-static double block_size(const noc_camera *c, const noc_render_params *p, int pixel) {
+/* Of two pixels' places on the floor, the largest distance within the pixel's tile of 16x16: such points may ask together. */
+static double tile_size(const noc_camera *c, const noc_render_params *p, int pixel) {
     double size = 0, q[2][3];
-    int x = pixel % W & ~3, y = pixel / W & ~3;
+    int x = pixel % W & ~15, y = pixel / W & ~15;
     for (int i = 0; i < 2; i++) { /* diagonals */
-        floor_point(c, p, x + 3 * i, y, 0, q[0]);
-        floor_point(c, p, x + 3 * !i, y + 3, 0, q[1]);
+        floor_point(c, p, x + 15 * i, y, 0, q[0]);
+        floor_point(c, p, x + 15 * !i, y + 15, 0, q[1]);
         size = NOC_MAX(size, hypot(q[0][0] - q[1][0], q[0][1] - q[1][1]));
     }
     return size;
@@ -68,7 +69,7 @@ static void lights_found_by_the_volumes(void **state) {
         }
         floor_point(&c, &p, i % W, i / W, 0, q);
         int sure = 0, doubtful = 0;
-        double size = block_size(&c, &p, i);
+        double size = tile_size(&c, &p, i);
         for (int l = 0; l < LIGHTS; l++) {
             double x = -9 + 18 * place(l, 0) - q[0], y = -9 + 18 * place(l, 1) - q[1], z = 1 + 0.1 * l - q[2];
             double beyond = sqrt(x * x + y * y + z * z) - 1.2 * sqrt(1 + l);
@@ -144,7 +145,7 @@ static void densities(void **state) {
             double right[2];
             for (int together = 0; together < 2; together++)
                 right[together] = expected(candidates, &c, &p, i, (int)light->value[i], held ? (int)held->value[i] : 0,
-                                           cases[k].lights, together ? block_size(&c, &p, i) : 0);
+                                           cases[k].lights, together ? tile_size(&c, &p, i) : 0);
             assert_true(fabs(density->value[i] - right[0]) <= 1e-4 * right[0] || fabs(density->value[i] - right[1]) <= 1e-4 * right[1]);
             doubtful += right[0] != right[1];
             checked++;

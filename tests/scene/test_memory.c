@@ -73,7 +73,8 @@ static noc_status by_hand(noc_scene *s) {
     ok = ok && add_quad(s, material(s, NOC_CLASS_ROAD), 0, 0, 0, (double[3]){ 9, 0, 0 }, (double[3]){ 0, 9, 0 });
     ok = ok && add_quad(s, noc_scene_add_material(s, &glow), 0, 9, 0, (double[3]){ 9, 0, 0 }, (double[3]){ 0, 0, 9 });
     for (int i = 0; ok && i < 15; i++) {
-        noc_light l = { .kind = (noc_light_kind)(i % 5), .position = { i, 4, 4 }, .direction = { 0, 0, -1 }, .radius = 0.1,
+        noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT), .inner_deg = 30, .outer_deg = 60,
+                        .position = { i, 4, 4 }, .direction = { 0, 0, -1 }, .radius = 0.1,
                         .edge_u = { 1, 0, 0 }, .edge_v = { 0, 1, 0 }, .emission = { 9, 9, (float)i }, .name = "lamp", .moving = i > 10 };
         ok = noc_scene_add_light(s, &l) >= 0;
     }
