@@ -9,17 +9,6 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
-#if defined(__SANITIZE_ADDRESS__)
-#define SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define SANITIZED 1
-#endif
-#endif
-#ifndef SANITIZED
-#define SANITIZED 0
-#endif
-
 #define REQUIRE_LIMITS()                                                                \
     if (SANITIZED) {                                                                    \
         print_message("# skipped: AddressSanitizer needs address space without end\n"); \

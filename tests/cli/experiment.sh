@@ -148,20 +148,30 @@ test $status = 0 && cmp -s a.rows b.rows && grep -q " $((expected - 11)) of them
 result $? "after a kill the rest is made, and the rows are the same" "$(diff a.rows b.rows | head -n 5 | tr '\n' ' ')"
 test "$(head -n 12 a/results.csv)" = "$(head -n 12 b/results.csv)"; result $? "those that were there are kept as they were"
 
+# stop SIGNAL COMMAND ARGUMENT...: starts an experiment, sends it the signal once the command succeeds; its status in $status
+stop() {
+    signal=$1 reached=$2
+    shift 2
+    : >out
+    env --default-signal=INT "$program" experiment "$@" >out 2>err </dev/null &
+    pid=$!
+    tries=0
+    until eval "$reached" || ! kill -0 $pid 2>/dev/null; do
+        tries=$((tries + 1))
+        [ $tries -gt 3000 ] && break
+        sleep 0.02
+    done
+    kill -"$signal" $pid 2>/dev/null
+    wait $pid 2>/dev/null
+    status=$?
+}
+# more_rows FOLDER N: its table has more lines than that
+more_rows() { [ "$(cat "$1/results.csv" 2>/dev/null | wc -l)" -gt "$2" ]; }
+
 # Ctrl-C in the middle of 20000 frames.
 sed 's/"frames": 3/"frames": 20000/; s/"repetitions": 2/"repetitions": 1/' spec.json >long.json
 mkdir c
-env --default-signal=INT "$program" experiment long.json -o c --cache cache >out 2>err </dev/null &
-pid=$!
-tries=0
-until [ "$(cat c/results.csv 2>/dev/null | wc -l)" -gt 12 ]; do
-    tries=$((tries + 1))
-    [ $tries -gt 600 ] && break
-    sleep 0.1
-done
-kill -INT $pid
-wait $pid
-status=$?
+stop INT 'more_rows c 12' long.json -o c --cache cache
 told=$(sed -n 's/.*interrupted: \([0-9,]*\) rows in c.results.csv; the same command goes on there/\1/p' err | tr -d ,)
 test $status = 130 && test "$told" = $(($(wc -l <c/results.csv) - 1)) && test ! -e c/report.md; result $? "Ctrl-C keeps the rows, and says how to go on"
 sed 's/"repetitions": 2/"repetitions": 1/' spec.json >short.json
@@ -173,17 +183,8 @@ cmp -s c.rows d.rows; result $? "and it does, to the same rows" "$(diff c.rows d
 
 # Ctrl-C while a reference is made: what is lost is told.
 sed 's/"rays": 8, "frames": 2/"rays": 64, "frames": 100000/' short.json >endless.json
-env --default-signal=INT "$program" experiment endless.json -o lost --cache cache >out 2>err </dev/null &
-pid=$!
-tries=0
-until grep -q 'reference, about' out; do
-    tries=$((tries + 1))
-    [ $tries -gt 600 ] && break
-    sleep 0.1
-done
-kill -INT $pid
-wait $pid
-test $? = 130 && grep -Eq 'goes on there, but begins this reference anew: the [0-9,]+ frames? of 100000 that' err
+stop INT "grep -q 'reference, about' out" endless.json -o lost --cache cache
+test $status = 130 && grep -Eq 'goes on there, but begins this reference anew: the [0-9,]+ frames? of 100000 that' err
 result $? "Ctrl-C in a reference says that its frames are lost" "$(cat err)"
 
 # Other settings under the same names: their rows are not mixed.
@@ -211,24 +212,11 @@ cat >kill.json <<'SPEC'
                       { "name": "two frames", "frames": 2, "seconds": 0 } ]
 }
 SPEC
-# kill_when COMMAND: starts the experiment, kills it once the command succeeds
-kill_when() {
-    "$program" experiment kill.json -o k --cache kcache >/dev/null 2>&1 </dev/null &
-    pid=$!
-    tries=0
-    until eval "$1" || ! kill -0 $pid 2>/dev/null; do
-        tries=$((tries + 1))
-        [ $tries -gt 600 ] && break
-        sleep 0.02
-    done
-    kill -KILL $pid 2>/dev/null
-    wait $pid 2>/dev/null
-}
-kill_when '[ -d kcache ]'
-kill_when '[ "$(cat k/results.csv 2>/dev/null | wc -l)" -gt 5 ]'
+stop KILL '[ -d kcache ]' kill.json -o k --cache kcache
+stop KILL 'more_rows k 5' kill.json -o k --cache kcache
 before=$(($(wc -l <k/results.csv) - 1))
 head -n $before k/results.csv >k.before
-kill_when '[ "$(wc -l <k/results.csv)" -gt 90 ]'
+stop KILL 'more_rows k 90' kill.json -o k --cache kcache
 run experiment kill.json -o k --cache kcache
 test $status = 0 && test "$before" -ge 5 && test "$(head -n $before k/results.csv | cksum)" = "$(cksum <k.before)"; result $? "killed outright, three times: rows stay, and the rest is made"
 run experiment kill.json -o k --cache kcache

@@ -71,30 +71,27 @@ sed 's/"view": "own"/"view": "own", "path": { "frames": 3, "cut": 2, "before": {
 expect "a path of the camera before the cut" 2 'wrong.json: cameras\[0\]: path: before: no option "path"' experiment wrong.json -o w
 
 # What a spec asks for is limited, and told by the limit.
-big() { # FILE TEXT N: base.json with N times what Python makes of TEXT in the place of LIST
+# asks NAME PATTERN TEXT N: refuses base.json with N times what Python makes of TEXT in the place of LIST
+asks() {
     python3 -c '
 import sys
 items = [eval(sys.argv[1]) for i in range(int(sys.argv[2]))]
-print(open("base.json").read().replace("LIST", ", ".join(items)))' "$2" "$3" >"$1"
+print(open("base.json").read().replace("LIST", ", ".join(items)))' "$3" "$4" >wrong.json
+    expect "$1" 2 "wrong.json: $2\$" experiment wrong.json -o w
 }
 spec base.json 'LIST'
-big wrong.json "'{ \"name\": \"%d\" }' % i" 1001
-expect "too many configurations" 2 'wrong.json: it asks for more than 1000 configurations$' experiment wrong.json -o w
+asks "too many configurations" 'it asks for more than 1000 configurations' "'{ \"name\": \"%d\" }' % i" 1001
 spec base.json '{ "name": "*", "shadow-rays": [LIST] }'
-big wrong.json "'1'" 1001
-expect "and as an array of values" 2 'wrong.json: it asks for more than 1000 configurations$' experiment wrong.json -o w
+asks "and as an array of values" 'it asks for more than 1000 configurations' "'1'" 1001
 spec base.json '{ "name": "a" }'
 sed -i 's/\[ { "name": "own", "view": "own" } \]/[LIST]/' base.json
-big wrong.json "'{ \"name\": \"%d\", \"view\": \"own\" }' % i" 1001
-expect "too many cameras" 2 'wrong.json: it asks for more than 1000 cameras$' experiment wrong.json -o w
+asks "too many cameras" 'it asks for more than 1000 cameras' "'{ \"name\": \"%d\", \"view\": \"own\" }' % i" 1001
 spec base.json '{ "name": "a" }'
 sed -i 's/"builtin:single"/LIST/' base.json
-big wrong.json "'\"a\"'" 10001
-expect "too many inputs" 2 'wrong.json: scene: it asks for more than 10000 inputs$' experiment wrong.json -o w
+asks "too many inputs" 'scene: it asks for more than 10000 inputs' "'\"a\"'" 10001
 spec base.json '{ "name": "a" }'
 sed -i 's/"view": "own"/"eye": [LIST], "target": [0, 0, 0]/' base.json
-big wrong.json "'1'" 1000
-expect "an eye of a thousand numbers" 2 'wrong.json: cameras\[0\]: eye: this cannot be its value$' experiment wrong.json -o w
+asks "an eye of a thousand numbers" 'cameras\[0\]: eye: this cannot be its value' "'1'" 1000
 spec wrong.json '{ "name": "a" }'
 head -c 1100000 /dev/zero | tr '\0' ' ' >>wrong.json
 expect "a spec of a megabyte" 2 'wrong.json: it is larger than 1048576 bytes$' experiment wrong.json -o w

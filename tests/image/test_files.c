@@ -1,5 +1,5 @@
 /* Pictures to files and back: PNG, OpenEXR, metadata, errors. */
-#include "test.h"
+#include "../files.h"
 
 #include "image/internal.h"
 
@@ -9,7 +9,6 @@
 #include <png.h>
 #include <sys/file.h>
 #include <sys/stat.h>
-#include <dirent.h>
 
 static char folder[] = "/tmp/noc-image-XXXXXX";
 static char warnings[4096];
@@ -47,15 +46,6 @@ static const char *in_folder(const char *name) {
     turn = (turn + 1) % 4;
     snprintf(path[turn], sizeof(path[turn]), "%s/%s", folder, name);
     return path[turn];
-}
-
-static size_t files_in_folder(void) {
-    size_t n = 0;
-    DIR *d = opendir(folder);
-    for (struct dirent *e; (e = readdir(d));)
-        n += strcmp(e->d_name, ".") && strcmp(e->d_name, "..");
-    closedir(d);
-    return n;
 }
 
 /* Values over many magnitudes, small negative ones too. */
@@ -211,7 +201,7 @@ static void bad_metadata_is_refused(void **state) {
     static const char *const bad[] = { "", " x", "x ", "a  b", "tab\t", "\xc3\xa4",
         "0123456789012345678901234567890123456789012345678901234567890123456789012345678901" };
     const char *value = "v";
-    size_t before = files_in_folder();
+    size_t before = files_in(folder);
     for (size_t i = 0; i < NOC_COUNT(bad); i++)
         assert_int_equal(noc_image_write(a, in_folder("bad.png"), NULL, &(noc_image_meta){ 1, &bad[i], &value }, log_),
                          NOC_ERR_ARGUMENT);
@@ -219,7 +209,7 @@ static void bad_metadata_is_refused(void **state) {
     for (size_t i = 0; i < NOC_COUNT(taken); i++)
         assert_int_equal(noc_image_write(a, in_folder("bad.exr"), NULL, &(noc_image_meta){ 1, &taken[i], &value }, log_),
                          NOC_ERR_ARGUMENT);
-    assert_int_equal(files_in_folder(), before);
+    assert_int_equal(files_in(folder), before);
     noc_image_destroy(a);
 }
 
@@ -254,7 +244,7 @@ static void one_error(noc_status got, noc_status expected, const char *part) {
 static void writing_fails_once_and_leaves_nothing(void **state) {
     (void)state;
     noc_image *a = random_image(3, 3, false);
-    size_t before = files_in_folder();
+    size_t before = files_in(folder);
     error_count = 0;
     one_error(noc_image_write(a, in_folder("a.jpg"), NULL, NULL, log_), NOC_ERR_UNSUPPORTED, ".png or .exr");
     one_error(noc_image_write(a, "png", NULL, NULL, log_), NOC_ERR_UNSUPPORTED, ".png or .exr");
@@ -263,14 +253,14 @@ static void writing_fails_once_and_leaves_nothing(void **state) {
     one_error(noc_image_write_srgb8((uint8_t[3]){ 0 }, 0, 1, in_folder("a.png"), NULL, log_), NOC_ERR_ARGUMENT, "0 x 1");
     one_error(noc_image_write(a, in_folder("missing/a.exr"), NULL, NULL, log_), NOC_ERR_IO, "No such file");
     one_error(noc_image_write(a, in_folder("missing/a.png"), NULL, NULL, log_), NOC_ERR_IO, "No such file");
-    assert_int_equal(files_in_folder(), before);
+    assert_int_equal(files_in(folder), before);
     mkdir(in_folder("d.png"), 0777);
     one_error(noc_image_write(a, in_folder("d.png"), NULL, NULL, log_), NOC_ERR_IO, "it is a directory");
     rmdir(in_folder("d.png"));
     assert_int_equal(symlink("/dev/full", in_folder("full.exr")), 0);
     one_error(noc_image_write(a, in_folder("full.exr"), NULL, NULL, log_), NOC_ERR_IO, "not a regular file");
     unlink(in_folder("full.exr"));
-    assert_int_equal(files_in_folder(), before);
+    assert_int_equal(files_in(folder), before);
     noc_image_destroy(a);
 }
 
@@ -280,7 +270,7 @@ static void a_full_disk_is_reported(void **state) {
     if (access("/dev/full", W_OK) != 0)
         skip();
     noc_image *a = random_image(64, 64, true);
-    size_t before = files_in_folder();
+    size_t before = files_in(folder);
     for (int exr = 0; exr < 2; exr++) {
         error_count = 0;
         output o;
@@ -291,7 +281,7 @@ static void a_full_disk_is_reported(void **state) {
         uint8_t rgb[64 * 64 * 3] = { 0 };
         noc_status status = exr ? image_write_exr(&o, a, &list, log_) : image_write_png(&o, rgb, 64, 64, &list, log_);
         one_error(output_close(&o, status, log_), NOC_ERR_IO, "No space left");
-        assert_int_equal(files_in_folder(), before);
+        assert_int_equal(files_in(folder), before);
     }
     noc_image_destroy(a);
 }
@@ -387,9 +377,9 @@ static void a_dangling_link_is_followed(void **state) {
 /* What a writer would fail on, asked before: the same errors, and nothing is left or changed. */
 static void paths_are_checked_before(void **state) {
     (void)state;
-    size_t before = files_in_folder();
+    size_t before = files_in(folder);
     assert_int_equal(noc_image_check_path(in_folder("new.exr"), log_), NOC_OK);
-    assert_int_equal(files_in_folder(), before);
+    assert_int_equal(files_in(folder), before);
     FILE *f = fopen(in_folder("given.exr"), "w");
     fputs("old", f);
     fclose(f);
@@ -407,7 +397,7 @@ static void paths_are_checked_before(void **state) {
     assert_int_equal(symlink("ring.exr", in_folder("ring.exr")), 0);
     one_error(noc_image_check_path(in_folder("ring.exr"), log_), NOC_ERR_IO, "symbolic links");
     unlink(in_folder("ring.exr"));
-    assert_int_equal(files_in_folder(), before);
+    assert_int_equal(files_in(folder), before);
 }
 
 static void reading_fails_once(void **state) {

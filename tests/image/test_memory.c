@@ -1,10 +1,9 @@
 /* Memory that is refused to the reading and writing of pictures: each allocation, alone and with all later ones. It ends in
  * NOC_ERR_MEMORY and one message, and leaves no file. */
+#include "../files.h"
 #include "../memory.h"
 
 #include "image/internal.h"
-
-#include <dirent.h>
 
 static char folder[200];
 static noc_log *log_;
@@ -13,16 +12,6 @@ static const char *path_of(const char *name) {
     static char path[300];
     snprintf(path, sizeof(path), "%s/%s", folder, name);
     return path;
-}
-
-static void assert_files(size_t expected) {
-    DIR *dir = opendir(folder);
-    size_t count = 0;
-    assert_non_null(dir);
-    for (struct dirent *e; (e = readdir(dir));)
-        count += strcmp(e->d_name, ".") && strcmp(e->d_name, "..");
-    closedir(dir);
-    assert_int_equal(count, expected);
 }
 
 static noc_image *picture(float shift) {
@@ -50,7 +39,7 @@ static void writing(void **state) {
                 assert_unharmed(true, names[i]); /* what killed runs left is not looked for */
             else
                 assert_refused(status, names[i]);
-            assert_files(status == NOC_OK);
+            assert_int_equal(files_in(folder), status == NOC_OK);
             if (status == NOC_OK) {
                 noc_image *again = noc_image_read(path_of(names[i]), log_, NULL);
                 assert_non_null(again);
@@ -120,7 +109,7 @@ static void comparing_and_channels(void **state) {
         unlink(path_of("d.png"));
         unlink(path_of("c.png"));
         unlink(path_of("c.exr"));
-        assert_files(0);
+        assert_int_equal(files_in(folder), 0);
     }
     noc_channel_destroy(channel);
     noc_image_destroy(x);

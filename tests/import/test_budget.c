@@ -140,36 +140,31 @@ static void json_is_bounded(void **state) {
     allowed("lists.json", 0.1, 0);
 }
 
-/* 400 nodes show one mesh of 999 vertices that lie in no buffer but for one of them. */
-static void gltf_copies_are_bounded(void **state) {
-    FILE *f = create("copies.gltf");
-    fputs("{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":48,\"uri\":\"data:application/octet-stream;base64,"
-          "AAAAAAEAAAACAAAAAAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":12},"
-          "{\"buffer\":0,\"byteOffset\":12,\"byteLength\":36}],\"accessors\":[{\"componentType\":5126,\"type\":\"VEC3\",\"count\":999,"
-          "\"sparse\":{\"count\":3,\"indices\":{\"bufferView\":0,\"componentType\":5125},\"values\":{\"bufferView\":1}}}],"
-          "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0}", f);
-    for (int i = 1; i < 400; i++)
+/* A glTF whose nodes show one mesh of so many vertices, that lie in no buffer but for three of them. */
+static void write_gltf(const char *name, int vertices, int nodes) {
+    FILE *f = create(name);
+    fprintf(f, "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":48,\"uri\":\"data:application/octet-stream;base64,"
+               "AAAAAAEAAAACAAAAAAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":12},"
+               "{\"buffer\":0,\"byteOffset\":12,\"byteLength\":36}],\"accessors\":[{\"componentType\":5126,\"type\":\"VEC3\","
+               "\"count\":%d,\"sparse\":{\"count\":3,\"indices\":{\"bufferView\":0,\"componentType\":5125},"
+               "\"values\":{\"bufferView\":1}}}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+               "\"nodes\":[{\"mesh\":0}", vertices);
+    for (int i = 1; i < nodes; i++)
         fputs(",{\"mesh\":0}", f);
     fputs("]}", f);
     fclose(f);
+}
+
+static void gltf_copies_are_bounded(void **state) {
+    write_gltf("copies.gltf", 999, 400);
     refused("copies.gltf", 0.005, "what its nodes and meshes ask for would take");
     allowed("copies.gltf", 0.05, 400);
 }
 
-/* What all nodes ask for is known before the first is read: 40 nodes of 4 million zeros are 3.8 GB, and nothing of that is taken. */
+/* What all nodes ask for is known before the first is read: of 3.8 GB nothing is taken. */
 static void gltf_is_added_up_first(void **state) {
-    FILE *f = create("zeros.gltf");
-    fputs("{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":48,\"uri\":\"data:application/octet-stream;base64,"
-          "AAAAAAEAAAACAAAAAAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":12},"
-          "{\"buffer\":0,\"byteOffset\":12,\"byteLength\":36}],\"accessors\":[{\"componentType\":5126,\"type\":\"VEC3\",\"count\":4000000,"
-          "\"sparse\":{\"count\":3,\"indices\":{\"bufferView\":0,\"componentType\":5125},\"values\":{\"bufferView\":1}}}],"
-          "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0}", f);
-    for (int i = 1; i < 40; i++)
-        fputs(",{\"mesh\":0}", f);
-    fputs("]}", f);
-    fclose(f);
-    const char *says = "what its nodes and meshes ask for would take 3.84 GB, of a file of";
-    refused("zeros.gltf", 0, says);
+    write_gltf("zeros.gltf", 4000000, 40);
+    refused("zeros.gltf", 0, "what its nodes and meshes ask for would take 3.84 GB, of a file of");
     assert_non_null(strstr(errors, "--max-expansion is 200 times"));
 }
 

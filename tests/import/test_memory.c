@@ -1,5 +1,6 @@
 /* Memory that is refused to an import: every allocation of small ones, alone and with all later ones. Each ends in NOC_ERR_MEMORY and
  * one message, leaves no file, and, in `make asan`, no leak; or what is imported is the same without it. */
+#include "../files.h"
 #include "../memory.h"
 
 #include "geo/geo.h"
@@ -8,7 +9,6 @@
 #include "import/remote.h"
 #include <nocturne/nocturne.h>
 
-#include <dirent.h>
 #include <math.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -29,16 +29,6 @@ static const char *write_text(const char *name, const char *text) {
     assert_int_equal(fwrite(text, 1, strlen(text), f), strlen(text));
     fclose(f);
     return name;
-}
-
-static size_t files_in(const char *of) {
-    DIR *dir = opendir(of);
-    size_t count = 0;
-    assert_non_null(dir);
-    for (struct dirent *e; (e = readdir(dir));)
-        count += strcmp(e->d_name, ".") && strcmp(e->d_name, "..");
-    closedir(dir);
-    return count;
 }
 
 /* ---- what is imported, in one number ---- */
