@@ -227,7 +227,7 @@ static void read_picture(void *state, noc_image *image) {
             for (int k = 0; k < 3; k++)
                 image->rgb[3 * to + k] = b->picture[at].rgb[k][l];
             if (image->emitter)
-                image->emitter[to] = b->emitter[at] >> l & 1;
+                image->emitter[to] = noc_embree_saw_emitter(b, at, l);
             if (image->coverage)
                 noc_embree_read_coverage(b, at, l, image->coverage + 4 * to);
         }

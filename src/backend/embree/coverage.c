@@ -22,7 +22,7 @@ noc_status noc_embree_make_coverage(embree_state *s, const noc_frame *frame) {
     return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for the emitters in a picture of %d x %d", s->b.width, s->b.height);
 }
 
-/* Gives places to the blocks that have seen an emitter. */
+/* Gives places to the blocks that see their first emitter. */
 static void give_places(coverage *c, const uint16_t *emitter, size_t blocks) {
     for (size_t i = 0; i < blocks; i++)
         if (emitter[i] && !c->place[i]) {
@@ -56,12 +56,22 @@ void noc_embree_keep_coverage(embree_state *s, const noc_frame *frame) {
     }
 }
 
+/* NULL: the block has seen none. */
+static const coverage_sum *sum_of(const coverage *c, size_t block) {
+    return c->place && c->place[block] ? &c->sums.data[c->place[block] - 1] : NULL;
+}
+
+bool noc_embree_saw_emitter(const frame_buffers *b, size_t block, int lane) {
+    const coverage_sum *sum = sum_of(&b->coverage, block);
+    return sum && sum->frames[lane];
+}
+
 void noc_embree_read_coverage(const frame_buffers *b, size_t block, int lane, float out[4]) {
     const coverage *c = &b->coverage;
+    const coverage_sum *sum = sum_of(c, block);
     memset(out, 0, 4 * sizeof(*out));
-    if (!c->place || !c->place[block])
+    if (!sum)
         return;
-    const coverage_sum *sum = &c->sums.data[c->place[block] - 1];
     for (int k = 0; k < 3; k++)
         out[k] = sum->rgb[k][lane] / (float)c->frames;
     out[3] = (float)sum->frames[lane] / (float)c->frames;

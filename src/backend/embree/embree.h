@@ -134,7 +134,7 @@ typedef struct frame_buffers {
     uint16_t *visible[NOC_RESERVOIR_SETS]; /* lanes whose sample is known to be seen from its own pixel */
     cblock *colour;    /* of the frame being made */
     cblock *picture;   /* mean, or last frame */
-    uint16_t *emitter; /* lanes that saw an emitter in a frame of the mean */
+    uint16_t *emitter; /* lanes that see an emitter in the frame being made */
     coverage coverage;
     view_buffers views;
     size_t bytes;
@@ -272,6 +272,7 @@ void noc_embree_keep_views(embree_state *s, const noc_frame *frame); /* the fram
 noc_status noc_embree_make_coverage(embree_state *s, const noc_frame *frame); /* room for the frame, when its shading is done */
 void noc_embree_keep_coverage(embree_state *s, const noc_frame *frame); /* the frame is complete */
 void noc_embree_read_coverage(const frame_buffers *b, size_t block, int lane, float out[4]); /* as noc_image.coverage */
+bool noc_embree_saw_emitter(const frame_buffers *b, size_t block, int lane); /* in a frame of the mean */
 void noc_embree_free_coverage(coverage *c);
 bool noc_embree_read_view(void *state, noc_aov aov, float *value);
 void noc_embree_free_views(view_buffers *views);

@@ -176,7 +176,7 @@ static void visibility(stage_run *run, worker *w, tile t) {
     }
 }
 
-/* Emitters seen directly begin the block's colour. */
+/* Emitters seen directly begin the block's colour; seen: the lanes that see one. */
 static void show_emitters(stage_run *run, const gblock *g, uint16_t *seen, cblock *c) {
     const noc_scene *scene = run->s->scene;
     uint32_t lanes = 0;
@@ -188,7 +188,7 @@ static void show_emitters(stage_run *run, const gblock *g, uint16_t *seen, cbloc
         for (int k = 0; run->ctx.frame->params->emitters && k < 3; k++)
             c->rgb[k][l] = scene->lights.data[g->light[l]].e[k];
     }
-    *seen = (uint16_t)((run->ctx.frame->accumulated ? *seen : 0) | lanes);
+    *seen = (uint16_t)lanes;
 }
 
 /* Entry i of the lanes that have so many; returns those lanes. */

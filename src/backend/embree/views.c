@@ -195,7 +195,7 @@ bool noc_embree_read_view(void *state, noc_aov aov, float *value) {
             double out = v->kept[aov][at][l];
             if (MOMENTS >> aov & 1) {
                 double variance = v->kept[NOC_AOV_VARIANCE][at][l] / (n - 1), mean = v->kept[NOC_AOV_ERROR][at][l];
-                bool none = n < 2 || b->emitter[at] >> l & 1 || b->g[v->gbuffer][at].material[l] == NO_SURFACE ||
+                bool none = n < 2 || noc_embree_saw_emitter(b, at, l) || b->g[v->gbuffer][at].material[l] == NO_SURFACE ||
                             (aov == NOC_AOV_ERROR && !(mean > 0));
                 out = none ? -1 : aov == NOC_AOV_ERROR ? sqrt(variance / n) / mean : variance;
             }
