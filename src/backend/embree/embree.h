@@ -199,6 +199,14 @@ typedef struct tile_block {
     int x, y;  /* pixel of lane 0 */
 } tile_block;
 
+/* The surfaces that the blocks of a tile see. */
+typedef struct tile_points {
+    int count;
+    tile_block block[TILE_BLOCKS * TILE_BLOCKS];
+    const gblock *g[TILE_BLOCKS * TILE_BLOCKS];
+    uint32_t lanes[TILE_BLOCKS * TILE_BLOCKS];
+} tile_points;
+
 /* room.c */
 /* Is there memory for a block of so many bytes, and all that TBB may take beside it? */
 bool noc_embree_room(const embree_state *s, size_t bytes);
@@ -250,7 +258,7 @@ void noc_embree_gather_segments(const stage_run *run, worker *w, size_t at, uint
 /* list_rays.c: the passes of a tile where every pixel shares out several rays over its list, after the list was built into
  * w->lists.list */
 bool noc_embree_shares_rays(const noc_render_params *p);
-void noc_embree_share_candidates(stage_run *run, worker *w, tile t, const gblock *const *g, const uint32_t *lanes);
+void noc_embree_share_candidates(stage_run *run, worker *w, const tile_points *points);
 void noc_embree_share_visibility(stage_run *run, worker *w, tile t);
 void noc_embree_share_shade(stage_run *run, worker *w, tile t);
 /* Before a frame's first stage, and when the frame is complete; one that is dropped is not learned from. */

@@ -1,7 +1,7 @@
 /* Light lists with several shadow rays a pixel (core/lists.h, docs/estimator.md): every pixel weighs the entries of its tile's
  * list and shares its rays out over them systematically. ris adds up what they see; restir keeps one of those that are
- * seen as the pixel's own reservoir, and where only frames are reused mixes both. How many rays, and which entries, is steered by what earlier frames have learned of the
- * lights' visibility. */
+ * seen as the pixel's own reservoir, and where only frames are reused mixes both. How many rays, and which entries, is steered by
+ * what earlier frames have learned of the lights' visibility. */
 #include "backend/embree/embree.h"
 
 #include "core/random.h"
@@ -169,7 +169,7 @@ static void fill_list(const noc_render_params *p, light_list *list) {
     list->count = once * list->copies;
 }
 
-void noc_embree_share_candidates(stage_run *run, worker *w, tile at, const gblock *const *g, const uint32_t *lanes) {
+void noc_embree_share_candidates(stage_run *run, worker *w, const tile_points *points) {
     struct core_context ctx = run->ctx;
     frame_buffers *b = &run->s->b;
     tile_rays *t = &w->shared;
@@ -177,25 +177,25 @@ void noc_embree_share_candidates(stage_run *run, worker *w, tile at, const gbloc
     t->count = t->cells = 0;
     t->bright = 0;
     fill_list(run->ctx.frame->params, &w->lists.list);
-    int n = 0;
-    for (int by = at.y0; by < at.y1; by++)
-        for (int bx = at.x0; bx < at.x1; bx++, n++) {
-            int x = bx * BLOCK_SIDE, y = by * BLOCK_SIDE;
-            rblock *r = &b->r[run->stage->target][t->at[n] = (size_t)by * b->blocks_x + bx];
-            b->visible[run->stage->target][t->at[n]] = 0;
-            memset(r, 0, sizeof(*r));
-            for (int l = 0; l < BLOCK; l++) /* whatever was found: M must not depend on the samples */
-                r->m[l] = lanes[n] >> l & 1 ? (float)ctx.frame->params->draws : 0;
-            if (!lanes[n] || !ctx.list->count)
-                continue;
-            t->cell_of[n] = believe(run, g[n], lanes[n], ctx.list, t);
-            run->k->list_weigh(&ctx, g[n], lanes[n], x, y, &t->cell[t->cell_of[n]].beliefs, &t->weighed);
-            for (int l = 0; l < BLOCK; l++)
-                t->bright += t->weighed.bright[l];
-            draw_block(run, t, &ctx, g[n], n, x, y, r);
-            if (ctx.frame->params->aovs)
-                noc_embree_view_candidates(run, w, n, t->at[n], lanes[n], r);
-        }
+    for (int n = 0; n < points->count; n++) {
+        const gblock *g = points->g[n];
+        tile_block at = points->block[n];
+        uint32_t lanes = points->lanes[n];
+        rblock *r = &b->r[run->stage->target][t->at[n] = at.at];
+        b->visible[run->stage->target][at.at] = 0;
+        memset(r, 0, sizeof(*r));
+        for (int l = 0; l < BLOCK; l++) /* whatever was found: M must not depend on the samples */
+            r->m[l] = lanes >> l & 1 ? (float)ctx.frame->params->draws : 0;
+        if (!lanes || !ctx.list->count)
+            continue;
+        t->cell_of[n] = believe(run, g, lanes, ctx.list, t);
+        run->k->list_weigh(&ctx, g, lanes, at.x, at.y, &t->cell[t->cell_of[n]].beliefs, &t->weighed);
+        for (int l = 0; l < BLOCK; l++)
+            t->bright += t->weighed.bright[l];
+        draw_block(run, t, &ctx, g, n, at.x, at.y, r);
+        if (ctx.frame->params->aovs)
+            noc_embree_view_candidates(run, w, n, at.at, lanes, r);
+    }
 }
 
 /* What the rays found goes into the tile's cells, and is handed on to be learned. */

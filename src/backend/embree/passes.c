@@ -59,48 +59,49 @@ static void primary(stage_run *run, worker *w, tile t) {
 }
 
 /* What the tile's points find among the influence volumes. */
-static void find_volumes(stage_run *run, worker *w, const tile_block *blocks, int n) {
-    const gblock *g[TILE_BLOCKS * TILE_BLOCKS] = { NULL };
-    uint32_t lanes[TILE_BLOCKS * TILE_BLOCKS] = { 0 };
-    for (int i = 0; i < n; i++) {
-        g[i] = &run->s->b.g[run->ctx.frame->gbuffer][blocks[i].at];
-        lanes[i] = lanes_with_surface(g[i]);
-    }
-    run->k->influence_find(&run->ctx, g, lanes, n, &w->found);
+static void find_volumes(stage_run *run, worker *w, const tile_points *p) {
+    run->k->influence_find(&run->ctx, p->g, p->lanes, p->count, &w->found);
     w->no_memory = w->no_memory || w->found.no_memory;
-    for (int i = 0; i < n; i++)
-        for (uint32_t bits = lanes[i]; bits; bits &= bits - 1)
+    for (int i = 0; i < p->count; i++)
+        for (uint32_t bits = p->lanes[i]; bits; bits &= bits - 1)
             w->found_counts[NOC_MIN(noc_found_count(&w->found, i, __builtin_ctz(bits)), run->s->found_bins - 1)]++;
 }
 
-/* Draws the candidates of block i of its tile from whatever these parameters name but the uniform draws and the lists. */
-static void pick_lights(stage_run *run, worker *w, const gblock *g, uint32_t lanes, int i, tile_block at, int m) {
-    switch (run->ctx.frame->params->candidates) {
+/* Draws the candidates of block i of its tile from whatever is not drawn in the kernel itself. */
+static void pick_lights(stage_run *run, worker *w, const tile_points *points, int i, noc_candidates from, int m) {
+    tile_block at = points->block[i];
+    switch (from) {
     case NOC_CANDIDATES_POWER: run->k->pick_power(&run->ctx, at.x, at.y, m, &w->picks); break;
     case NOC_CANDIDATES_BVH: run->k->pick_influence(&run->ctx, &w->found, i, at.x, at.y, m, &w->picks); break;
-    case NOC_CANDIDATES_TREE: run->k->pick_tree(&run->ctx, g, lanes, at.x, at.y, m, w->tree_items, &w->picks); break;
+    case NOC_CANDIDATES_TREE:
+        run->k->pick_tree(&run->ctx, points->g[i], points->lanes[i], at.x, at.y, m, w->tree_items, &w->picks);
+        break;
     case NOC_CANDIDATES_UNIFORM:
     case NOC_CANDIDATES_LISTS: break;
     }
 }
 
-static void candidates(stage_run *run, worker *w, int i, tile_block at) {
-    frame_buffers *b = &run->s->b;
+static void candidates(stage_run *run, worker *w, const tile_points *points, int i, noc_candidates from) {
     const noc_render_params *p = run->ctx.frame->params;
-    const gblock *g = &b->g[run->ctx.frame->gbuffer][at.at];
-    rblock *r = &b->r[run->stage->target][at.at];
-    uint32_t lanes = lanes_with_surface(g);
+    const gblock *g = points->g[i];
+    tile_block at = points->block[i];
+    uint32_t lanes = points->lanes[i];
+    rblock *r = &run->s->b.r[run->stage->target][at.at];
     int m = p->method == NOC_METHOD_IS ? 1 : p->draws;
-    bool given = p->method != NOC_METHOD_IS && p->candidates != NOC_CANDIDATES_UNIFORM;
-    if (given && lanes)
-        pick_lights(run, w, g, lanes, i, at, m);
-    if (given)
-        run->k->given(&run->ctx, g, lanes, at.x, at.y, m, &w->picks, r);
-    else
+    if (lanes)
+        pick_lights(run, w, points, i, from, m);
+    if (from == NOC_CANDIDATES_UNIFORM) {
         run->k->candidates(&run->ctx, g, lanes, at.x, at.y, m, r);
+    } else if (from == NOC_CANDIDATES_LISTS) {
+        struct core_context ctx = run->ctx;
+        ctx.list = &w->lists.list;
+        run->k->list_candidates(&ctx, g, lanes, at.x, at.y, r);
+    } else {
+        run->k->given(&run->ctx, g, lanes, at.x, at.y, m, &w->picks, r);
+    }
     if (p->aovs)
         noc_embree_view_candidates(run, w, i, at.at, lanes, r);
-    b->visible[run->stage->target][at.at] = 0;
+    run->s->b.visible[run->stage->target][at.at] = 0;
 }
 
 /* Where the tail of a tile's list starts: anywhere, and from frame to frame on along the golden ratio's sequence, so that the
@@ -111,43 +112,30 @@ static float tail_start(const stage_run *run, tile t) {
     return unit_real(rng_bits(key, DIM_LIST) + f->index * 2654435769u);
 }
 
+static void gather_points(const stage_run *run, tile t, tile_points *out) {
+    out->count = noc_embree_tile_blocks(run, t, out->block);
+    for (int i = 0; i < out->count; i++) {
+        out->g[i] = &run->s->b.g[run->ctx.frame->gbuffer][out->block[i].at];
+        out->lanes[i] = lanes_with_surface(out->g[i]);
+    }
+}
+
 /* All candidates of a tile: from its list, where that is asked for, else each block's own. */
 static void tile_candidates(stage_run *run, worker *w, tile t) {
-    const noc_frame *f = run->ctx.frame;
-    frame_buffers *b = &run->s->b;
-    if (f->params->candidates != NOC_CANDIDATES_LISTS || f->params->method == NOC_METHOD_IS) {
-        tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
-        int all = noc_embree_tile_blocks(run, t, blocks);
-        if (f->params->candidates == NOC_CANDIDATES_BVH && f->params->method != NOC_METHOD_IS)
-            find_volumes(run, w, blocks, all);
-        for (int i = 0; i < all; i++)
-            candidates(run, w, i, blocks[i]);
+    const noc_render_params *p = run->ctx.frame->params;
+    noc_candidates from = p->method == NOC_METHOD_IS ? NOC_CANDIDATES_UNIFORM : p->candidates;
+    tile_points points;
+    gather_points(run, t, &points);
+    if (from == NOC_CANDIDATES_BVH)
+        find_volumes(run, w, &points);
+    if (from == NOC_CANDIDATES_LISTS)
+        run->k->list_build(&run->ctx, points.g, points.lanes, points.count, tail_start(run, t), &w->lists, &w->lists.list);
+    if (from == NOC_CANDIDATES_LISTS && noc_embree_shares_rays(p)) {
+        noc_embree_share_candidates(run, w, &points);
         return;
     }
-    const gblock *g[TILE_BLOCKS * TILE_BLOCKS];
-    uint32_t lanes[TILE_BLOCKS * TILE_BLOCKS];
-    int n = 0;
-    for (int by = t.y0; by < t.y1; by++)
-        for (int bx = t.x0; bx < t.x1; bx++, n++) {
-            g[n] = &b->g[f->gbuffer][block_at(b, bx, by)];
-            lanes[n] = lanes_with_surface(g[n]);
-        }
-    run->k->list_build(&run->ctx, g, lanes, n, tail_start(run, t), &w->lists, &w->lists.list);
-    if (noc_embree_shares_rays(f->params)) {
-        noc_embree_share_candidates(run, w, t, g, lanes);
-        return;
-    }
-    struct core_context ctx = run->ctx;
-    ctx.list = &w->lists.list;
-    n = 0;
-    for (int by = t.y0; by < t.y1; by++)
-        for (int bx = t.x0; bx < t.x1; bx++, n++) {
-            size_t at = block_at(b, bx, by);
-            run->k->list_candidates(&ctx, g[n], lanes[n], bx * BLOCK_SIDE, by * BLOCK_SIDE, &b->r[run->stage->target][at]);
-            if (f->params->aovs)
-                noc_embree_view_candidates(run, w, n, at, lanes[n], &b->r[run->stage->target][at]);
-            b->visible[run->stage->target][at] = 0;
-        }
+    for (int i = 0; i < points.count; i++)
+        candidates(run, w, &points, i, from);
 }
 
 static void visibility(stage_run *run, worker *w, tile t) {
