@@ -14,13 +14,6 @@ float noc_light_intensity(const noc_light_record *l) {
     }
 }
 
-double noc_light_flux(const noc_light_record *l) {
-    if (l->kind == NOC_LIGHT_SPOT)
-        return noc_light_intensity(l) * noc_flux_angle(l);
-    bool round = l->kind == NOC_LIGHT_SPHERE || l->kind == NOC_LIGHT_POINT; /* as strong in every direction */
-    return noc_light_intensity(l) * M_PI * (round ? 4 : l->flags & 1 ? 2 : 1);
-}
-
 noc_light_bound noc_bound_light(const noc_light_record *l) {
     noc_light_bound b = { .intensity = noc_light_intensity(l) };
     memcpy(b.p, l->p, sizeof(b.p));

@@ -21,9 +21,6 @@ noc_light_bound noc_bound_light(const noc_light_record *light);
 /* Greatest luminous intensity of a light, cd: radiance times projected area. */
 float noc_light_intensity(const noc_light_record *light);
 
-/* Luminous flux of a light over all directions that it emits to, lm. */
-double noc_light_flux(const noc_light_record *light);
-
 /* A point of a light, u and v of the unit square, that light leaves in direction d from, clear of the light's own surface. */
 void noc_light_leave(const noc_light_record *light, const float d[3], float u, float v, float out[3]);
 

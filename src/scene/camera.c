@@ -59,11 +59,7 @@ void noc_light_centre(const noc_light_record *r, double p[3]) {
         p[k] = r->p[k] + share * ((double)r->a[k] + r->b[k]);
 }
 
-double noc_light_weight(const noc_light_record *r) {
-    double y = 0.2126 * r->e[0] + 0.7152 * r->e[1] + 0.0722 * r->e[2];
-    bool point = r->kind == NOC_LIGHT_POINT || r->kind == NOC_LIGHT_SPOT;
-    return sqrt(y * (point ? noc_flux_angle(r) : M_PI * r->area));
-}
+double noc_light_weight(const noc_light_record *r) { return sqrt(noc_light_flux(r)); }
 
 /* Without lights, or where those are not the city's, buildings stand in for them: a corner of every so many of their triangles. */
 static bool by_lights(const noc_scene *s) { return s->lights.len && !s->lit_elsewhere; }

@@ -5,7 +5,7 @@
 #include "scene/scene.h"
 
 void noc_light_centre(const noc_light_record *r, double p[3]);
-/* About the square root of its flux, so that one floodlight does not outweigh a street. */
+/* The square root of its flux, so that one floodlight does not outweigh a street. */
 double noc_light_weight(const noc_light_record *r);
 
 /* A view from inside where what lies within lo..hi is a room whose lights are in it; false, and *camera as it was, else. */

@@ -173,12 +173,19 @@ static void set_cones(noc_light_record *r, const noc_light *l) {
     r->b[2] = (float)outer;
 }
 
-/* The integral of ((c - cos outer) / width)^2 over the cosines c between the cones, and of 1 from there to the axis. */
-double noc_flux_angle(const noc_light_record *r) {
-    if (r->kind == NOC_LIGHT_POINT)
-        return 4 * M_PI;
+/* Solid angle, sr, that a spot's greatest intensity would fill with its flux: the integral of ((c - cos outer) / width)^2 over the
+ * cosines c between the cones, and of 1 from there to the axis. */
+static double spot_angle(const noc_light_record *r) {
     double inner = r->b[1], outer = r->b[2], width = falloff_width(inner, outer);
     return 2 * M_PI * (1 - cos(outer) - width * 2 / 3);
+}
+
+/* A Lambertian emitter of luminance L sends pi L from each m2 of each side that it emits from; a point of I candela 4 pi I. */
+double noc_light_flux(const noc_light_record *r) {
+    double e = 0.2126 * r->e[0] + 0.7152 * r->e[1] + 0.0722 * r->e[2];
+    if (r->kind == NOC_LIGHT_POINT || r->kind == NOC_LIGHT_SPOT)
+        return (r->kind == NOC_LIGHT_SPOT ? spot_angle(r) : 4 * M_PI) * e;
+    return M_PI * e * r->area * (r->flags & 1 ? 2 : 1);
 }
 
 static noc_light_record record_of(const noc_light *l) {

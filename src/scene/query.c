@@ -3,23 +3,13 @@
 
 #include <math.h>
 
-static double luminance_of(const float e[3]) { return 0.2126 * e[0] + 0.7152 * e[1] + 0.0722 * e[2]; }
-
-/* Lambertian emitters of luminance L send pi L for each m2 and side (4 pi^2 r^2 L = pi L area for a sphere); a point of I
- * candela 4 pi I, a spot less. */
-static double flux_of(const noc_light_record *r) {
-    double e = luminance_of(r->e);
-    bool point = r->kind == NOC_LIGHT_POINT || r->kind == NOC_LIGHT_SPOT;
-    return point ? noc_flux_angle(r) * e : M_PI * e * r->area * (r->flags & 1 ? 2 : 1);
-}
-
 noc_status noc_scene_get_light(const noc_scene *scene, size_t index, noc_light_info *info) {
     if (!scene || !info)
         return NOC_ERR_ARGUMENT;
     if (index >= scene->lights.len)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "light %zu: the scene has %zu lights", index, scene->lights.len);
     const noc_light_record *r = &scene->lights.data[index];
-    *info = (noc_light_info){ .lumens = flux_of(r), .area = r->area, .two_sided = r->flags & 1,
+    *info = (noc_light_info){ .lumens = noc_light_flux(r), .area = r->area, .two_sided = r->flags & 1,
                               .light = { .kind = (noc_light_kind)r->kind, .name = scene->light_names.data[index],
                                          .inferred = r->flags >> 1 & 1, .moving = (r->flags & NOC_LIGHT_MOVES) != 0 } };
     bool triangle = r->kind == NOC_LIGHT_TRIANGLE, flat = triangle || r->kind == NOC_LIGHT_PARALLELOGRAM;

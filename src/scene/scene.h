@@ -88,8 +88,8 @@ size_t noc_scene_bytes(const noc_scene *s);
 /* query.c: index of the object that a triangle is of, for noc_scene_object_name. */
 size_t noc_scene_object_of(const noc_scene *scene, uint32_t triangle);
 
-/* Solid angle, sr, that a point's or a spot's greatest intensity would fill with its flux: lm / cd. */
-double noc_flux_angle(const noc_light_record *light);
+/* Luminous flux of a light over all directions that it emits to, lm. */
+double noc_light_flux(const noc_light_record *light);
 
 /* The longest way between two corners of a triangle or parallelogram, m. */
 float noc_flat_size(const noc_light_record *light);
