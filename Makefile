@@ -61,12 +61,12 @@ fuzz:
 
 coverage:
 	@tools/install-deps.sh coverage
-	@[ -e build-coverage/build.ninja ] || meson setup build-coverage -Db_coverage=true -Dc_args=-fprofile-update=atomic -Dbuildtype=debugoptimized \
-		-Dbench=false -Dtests=enabled >/dev/null
+	@[ -e build-coverage/build.ninja ] || meson setup build-coverage -Db_coverage=true -Dc_args=-fprofile-update=atomic \
+		-Dbuildtype=debugoptimized -Dbench=false -Dtests=enabled >/dev/null
 	@$(NINJA) -C build-coverage
 	@tools/coverage.py build-coverage build-fuzz/corpus
 
-# PREFIX may differ from that of an earlier `make build`; nothing is built but what is installed, and what was is told.
+# PREFIX may differ from that of an earlier `make build`. Only what is installed is built, and the list tells what was installed.
 INSTALLED = bin/nocturne|nocturne-reader|libnocturne\.so|nocturne\.pc|nocturne\.1|nocturne\.bash|_nocturne|nocturne\.fish
 install: deps build/build.ninja
 	@meson configure build --prefix $(abspath $(PREFIX))
