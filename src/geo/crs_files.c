@@ -1,4 +1,5 @@
 #include "geo/crs_files.h"
+#include "geo/geo.h"
 
 #include <ctype.h>
 #include <fcntl.h>
@@ -126,4 +127,53 @@ bool crs_names_file(PJ_CONTEXT *context, const PJ *crs, char what[40]) {
             return say(what, parameter, strlen(parameter) - 1);
     }
     return crs_text_names_file(wkt, what);
+}
+
+/* Is what is named behind a keyword of WKT, as in PARAMETERFILE["name","@null"], no grid? begin: what comes before the name. */
+static bool is_null_behind(const char *p, const char *begin, bool named) {
+    size_t n = strlen(begin);
+    if (strncmp(p, begin, n))
+        return false;
+    p += n;
+    if (named) {
+        p += strcspn(p, "\",");
+        if (strncmp(p, "\",\"", 3))
+            return false;
+        p += 3;
+    }
+    return is_null_grid(p);
+}
+
+/* "+init=epsg:25832", as older programs write it: PROJ has these in its database. */
+static bool is_epsg_init(const char *text) {
+    static const char init[] = "+init=epsg:";
+    text += strspn(text, " ");
+    if (strncasecmp(text, init, strlen(init)))
+        return false;
+    text += strlen(init);
+    return *text && !text[strspn(text, "0123456789")];
+}
+
+bool geo_crs_text_names_file(const char *text, char what[40]) {
+    static const char file[] = "PARAMETERFILE", grids[] = "PROJ4_GRIDS", value[] = "\"value\"", dictionary[] = "DICT:";
+    const char *begin = text + strspn(text, " \t\r\n");
+    if (is_epsg_init(text))
+        return false;
+    for (const char *p = text; (p = strcasestr(p, file)); p += strlen(file))
+        if (!is_null_behind(p + strlen(file), "[\"", true))
+            return say(what, file, strlen(file));
+    for (const char *p = text; (p = strcasestr(p, grids)); p += strlen(grids))
+        if (!is_null_behind(p + strlen(grids), "\",\"", false))
+            return say(what, grids, strlen(grids));
+    if (*begin == '{' && strchr(text, '\\'))
+        return say(what, "an escape in PROJJSON", 21);
+    for (const char *p = *begin == '{' ? text : ""; (p = strstr(p, value)); p++) { /* that of a parameter is a number */
+        const char *q = p + strlen(value);
+        q += strspn(q, " \t\r\n:");
+        if (*q == '"')
+            return say(what, q, strcspn(q + 1, "\"") + 2);
+    }
+    if (!strncasecmp(begin, dictionary, strlen(dictionary)))
+        return say(what, dictionary, strlen(dictionary) - 1);
+    return crs_text_names_file(text, what);
 }

@@ -22,6 +22,9 @@ const char *geo_crs_name(const geo_crs *crs);       /* "EPSG:25832 (ETRS89 / UTM
 bool geo_crs_is_geographic(const geo_crs *crs);
 bool geo_crs_is_metric(const geo_crs *crs);         /* projected, axes in metres */
 bool geo_crs_lat_first(const geo_crs *crs);         /* the authority's order is northing/latitude first */
+/* The first thing in a text that makes a library which takes it for a CRS open a file: a grid, a file of definitions; copied to
+ * what. False if there is none. */
+bool geo_crs_text_names_file(const char *text, char what[40]);
 bool geo_crs_equal(const geo_crs *a, const geo_crs *b); /* same horizontal CRS */
 /* Longitude and latitude (degrees, WGS 84) of a point given easting northing; false if it has none. Not thread-safe. */
 bool geo_crs_lonlat(geo_crs *crs, double x, double y, double lonlat[2]);

@@ -1,5 +1,5 @@
 /* Map files through GDAL: which files it may open, how, and what becomes of its messages. */
-#include "import/map_source.h"
+#include "import/map_crs.h"
 #include "import/map_parts.h"
 
 #if NOC_HAVE_GDAL
@@ -204,9 +204,20 @@ static bool is_plain_row(const char *sql) {
     return behind_word(unique, "INDEX") != NULL;
 }
 
+/* Whether the CRSs are a view, which need not answer twice alike. What stands before its AS is its name, or hides it. */
+static bool is_view_of_crs(const char *sql) {
+    const char *p = behind_word(behind_word(sql, "CREATE"), "VIEW"), *as = p ? strcasestr(p, " AS ") : NULL;
+    char *head = p ? noc_strndup(p, as ? (size_t)(as - p) : strlen(p)) : NULL;
+    bool is = p && (!head || strcasestr(head, "gpkg_spatial_ref_sys") || strstr(head, "/*") || strstr(head, "--"));
+    free(head);
+    return is;
+}
+
 /* Virtual tables let a file's author open other files by name (VirtualText, VirtualOGR, ...). Indexes are all that is in use. */
 static noc_status check_schema_row(const map_source *m, const char *sql) {
     static const char *const harmless[] = { "rtree", "rtree_i32", "fts3", "fts4", "fts5" };
+    if (is_view_of_crs(sql))
+        return noc_error(m->log, NOC_ERR_UNSUPPORTED, "%s: %s: gpkg_spatial_ref_sys is a view: not read", m->name, m->format);
     if (strncasecmp(sql, "cr", 2) || is_plain_row(sql))
         return NOC_OK;
     const char *module = module_of(behind_word(sql, "CREATE"));
@@ -257,6 +268,8 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
         path = noc_format("%s/" MAP_COPY_NAME, m->copy.path);
         status = path ? NOC_OK : noc_no_memory(log, m->name);
     }
+    if (!status)
+        status = map_check_crs(stream, path, format, log);
     if (!status) {
         const char *const *options = format->kind == MAP_OSM ? osm_options : format->kind == MAP_GEOPACKAGE && !copied ? immutable : none;
         m->dataset = GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, format->drivers, options, NULL);
@@ -266,6 +279,8 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
     }
     if (!status && format->kind == MAP_GEOPACKAGE)
         status = check_virtual_tables(m);
+    if (!status && format->kind == MAP_GEOPACKAGE)
+        status = map_check_crs_rows(m);
     if (m->link[0])
         noc_warn(log, "%s: its CRS is a link (%s), which is not followed: taken as longitudes and latitudes, unless --crs says otherwise",
                  m->name, m->link);

@@ -10,7 +10,7 @@ typedef struct map_format {
     const char *name;
     const char *drivers[3]; /* GDAL's, ended by NULL */
     bool (*probe)(const char *head, size_t size);
-    enum { MAP_PLAIN, MAP_OSM, MAP_GEOPACKAGE, MAP_SHAPEFILE } kind;
+    enum { MAP_GEOJSON, MAP_FLATGEOBUF, MAP_OSM, MAP_GEOPACKAGE, MAP_SHAPEFILE } kind;
 } map_format;
 
 #if NOC_HAVE_GDAL
@@ -28,7 +28,8 @@ typedef struct map_source {
 
 /* Opens the stream's file by the format's drivers alone, for reading alone: nothing is written beside it, nothing fetched. Until
  * it is closed GDAL's messages in this thread go to m->error. Parts of a Shapefile and of a GeoPackage that are no regular
- * files, or lie outside the file's folder (unless `anywhere`), are an error. To be closed after an error, too. */
+ * files, or lie outside the file's folder (unless `anywhere`), are an error, and so are CRSs that name files. To be closed after an
+ * error, too. */
 noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *format, bool anywhere, noc_log *log);
 noc_status map_source_error(const map_source *m); /* reports m->error */
 void map_source_close(map_source *m);

@@ -41,10 +41,10 @@ static bool probe_fgb(const char *head, size_t size) { return size >= 8 && !memc
 static const map_format formats[] = {
     { "OpenStreetMap XML", { "OSM" }, probe_osm_xml, MAP_OSM },
     { "OpenStreetMap PBF", { "OSM" }, probe_pbf, MAP_OSM },
-    { "GeoJSON", { "GeoJSON", "GeoJSONSeq" }, probe_geojson, MAP_PLAIN },
+    { "GeoJSON", { "GeoJSON", "GeoJSONSeq" }, probe_geojson, MAP_GEOJSON },
     { "GeoPackage", { "GPKG" }, probe_gpkg, MAP_GEOPACKAGE },
     { "Shapefile", { "ESRI Shapefile" }, probe_shp, MAP_SHAPEFILE },
-    { "FlatGeobuf", { "FlatGeobuf" }, probe_fgb, MAP_PLAIN },
+    { "FlatGeobuf", { "FlatGeobuf" }, probe_fgb, MAP_FLATGEOBUF },
 };
 
 static const map_format *find_format(const char *head, size_t size) {
@@ -234,7 +234,7 @@ static noc_status start_layer(map_reading *m, OGRLayerH layer) {
     if (!layer_crs(layer, &m->writer.geographic, &crs))
         return no_memory(m);
     const char *given = m->params ? m->params->crs : NULL;
-    bool replaced = crs && m->writer.geographic && given && !strcmp(m->format->name, "GeoJSON") && looks_projected(layer);
+    bool replaced = crs && m->writer.geographic && given && m->format->kind == MAP_GEOJSON && looks_projected(layer);
     if (replaced)
         m->writer.geographic = false;
     noc_status status = lamp_writer_crs(&m->writer, replaced ? NULL : crs);

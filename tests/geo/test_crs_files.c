@@ -99,6 +99,29 @@ static void test_typed(void **state) {
     }
 }
 
+/* Before another library sees a text. */
+static void test_text(void **state) {
+    char what[40];
+    for (size_t i = 0; i < NOC_COUNT(hostile); i++) {
+        char text[2000];
+        snprintf(text, sizeof(text), hostile[i], pipe_path);
+        if (!geo_crs_text_names_file(text, what) || !*what)
+            fail_msg("not seen: %s", text);
+    }
+    static const char *const others[] = {
+        GEOGCS ",DATUM[\"D\",SPHEROID[\"S\",1,2],EXTENSION[\"PROJ4_GRIDS\",\"a.gsb\"]]]", "dict:a,b", "+init=epsg:25832 +nadgrids=a",
+        "PARAMETERFILE[\"a\",\"@null.gsb\"]", "PARAMETERFILE[\"a,\"\"@null\",\"b.gsb\"]", "{\"type\": \"Bound\\u0043RS\"}",
+    };
+    for (size_t i = 0; i < NOC_COUNT(others); i++)
+        if (!geo_crs_text_names_file(others[i], what))
+            fail_msg("not seen: %s", others[i]);
+    static const char *const fine[] = { "PARAMETERFILE[\"Latitude and longitude difference file\",\"@null\"]", "+init=epsg:25832", "a city",
+                                        "OSGB36 / British National Grid", "{\"type\": \"x\", \"value\": 1}", "" };
+    for (size_t i = 0; i < NOC_COUNT(fine); i++)
+        if (geo_crs_text_names_file(fine[i], what))
+            fail_msg("refused for %s: %s", what, fine[i]);
+}
+
 static void silent(void *user, noc_log_level level, const char *text) {}
 
 static void test_why(void **state) {
@@ -123,8 +146,9 @@ static void test_plain(void **state) {
     };
     noc_log *log = noc_log_create(NULL);
     for (size_t i = 0; i < NOC_COUNT(plain); i++) {
+        char what[40];
         geo_crs *crs = geo_crs_create_plain(plain[i], "file", log, NULL);
-        if (!crs)
+        if (!crs || geo_crs_text_names_file(plain[i], what))
             fail_msg("refused: %s", plain[i]);
         geo_crs_destroy(crs);
     }
@@ -135,6 +159,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_of_files),
         cmocka_unit_test(test_typed),
+        cmocka_unit_test(test_text),
         cmocka_unit_test(test_why),
         cmocka_unit_test(test_plain),
     };

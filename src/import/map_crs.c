@@ -1,0 +1,255 @@
+/* The CRSs of maps are looked at before GDAL reads them: grids and files of definitions that a text names are opened at
+ * once. */
+#include "import/map_crs.h"
+
+#if NOC_HAVE_GDAL
+
+#include <cpl_conv.h>
+#include <cpl_string.h>
+#include <cpl_vsi.h>
+#include <ctype.h>
+
+enum { LONGEST = 1 << 16 }; /* bytes of a CRS's text */
+
+noc_status map_check_crs_text(const char *text, const char *name, noc_log *log) {
+    char what[40];
+    if (!geo_crs_text_names_file(text, what))
+        return NOC_OK;
+    return noc_error(log, NOC_ERR_FORMAT, "%s: the CRS \"%.200s\" may open files (%s), which a file's CRS must not", name,
+                     text, what);
+}
+
+/* ---- GeoJSON ---- */
+
+/* Finds the strings of members "crs", however deep, as the readers of GDAL would: what comments and single quotes hide
+ * from one of them and not from the other is refused. */
+typedef struct json_scan {
+    const char *name;
+    noc_log *log;
+    size_t depth, crs_depth; /* crs_depth: of the member that is being read, 0: none */
+    bool in_string, escaped;
+    int hex;                 /* digits of \u still to come */
+    unsigned code;
+    size_t length;           /* of the string so far, though only its begin is kept */
+    char text[LONGEST];
+} json_scan;
+
+static bool is_crs_key(const char *text) { return noc_ieq(text, "crs") || noc_ieq(text, "coordRefSys"); }
+
+/* Elsewhere than in a CRS only keys matter, which are short. */
+static void keep(json_scan *s, char c) {
+    if (s->length < (s->crs_depth ? LONGEST : 16) - 1)
+        s->text[s->length] = c;
+    s->length++;
+}
+
+static noc_status string_ended(json_scan *s) {
+    s->text[NOC_MIN(s->length, (s->crs_depth ? LONGEST : 16) - 1)] = 0;
+    s->in_string = false;
+    if (!s->crs_depth)
+        return NOC_OK;
+    if (s->length >= LONGEST)
+        return noc_error(s->log, NOC_ERR_FORMAT, "%s: a CRS of more than %d bytes", s->name, LONGEST);
+    return map_check_crs_text(s->text, s->name, s->log);
+}
+
+static void hex_digit(json_scan *s, char c) {
+    int digit = isdigit((unsigned char)c) ? c - '0' : (tolower((unsigned char)c) - 'a' + 10) & 15;
+    s->code = 16 * s->code + (unsigned)digit;
+    if (!--s->hex)
+        keep(s, s->code < 128 ? (char)s->code : '?');
+}
+
+static noc_status in_string(json_scan *s, char c) {
+    static const char blanks[] = "bfnrt";
+    if (s->hex) {
+        hex_digit(s, c);
+    } else if (s->escaped) {
+        s->escaped = false;
+        s->hex = c == 'u' ? 4 : 0;
+        s->code = 0;
+        if (c != 'u')
+            keep(s, c && strchr(blanks, c) ? ' ' : c);
+    } else if (c == '"') {
+        return string_ended(s);
+    } else if (c == '\\') {
+        s->escaped = true;
+    } else {
+        keep(s, c);
+    }
+    return NOC_OK;
+}
+
+static noc_status between_strings(json_scan *s, char c) {
+    switch (c) {
+    case '"':
+        s->in_string = true;
+        s->length = 0;
+        break;
+    case ':':
+        if (!s->crs_depth && is_crs_key(s->text))
+            s->crs_depth = s->depth;
+        break;
+    case '{': case '[':
+        s->depth++;
+        break;
+    case '}': case ']':
+        s->depth -= s->depth > 0;
+        if (s->depth < s->crs_depth)
+            s->crs_depth = 0;
+        break;
+    case ',':
+        if (s->depth == s->crs_depth)
+            s->crs_depth = 0;
+        break;
+    case '\'': case '/':
+        return noc_error(s->log, NOC_ERR_FORMAT, "%s: GeoJSON: %s outside of strings", s->name,
+                         c == '/' ? "a comment" : "a single quote");
+    }
+    if (c != '"' && !isspace((unsigned char)c) && c != ':')
+        s->text[0] = 0; /* no key */
+    return NOC_OK;
+}
+
+static noc_status check_geojson(noc_stream *stream, noc_log *log) {
+    enum { CHUNK = 1 << 16 };
+    json_scan *s = noc_calloc(1, sizeof(*s));
+    char *buffer = noc_alloc(CHUNK);
+    size_t got = 1;
+    noc_status status = s && buffer ? noc_stream_rewind(stream) : noc_no_memory(log, noc_stream_name(stream));
+    if (s) {
+        s->name = noc_stream_name(stream);
+        s->log = log;
+    }
+    while (!status && got) {
+        status = noc_stream_read(stream, buffer, CHUNK, &got);
+        for (size_t i = 0; i < got && !status; i++)
+            status = s->in_string ? in_string(s, buffer[i]) : between_strings(s, buffer[i]);
+    }
+    free(s);
+    free(buffer);
+    return status;
+}
+
+/* ---- FlatGeobuf ---- */
+
+/* Its header holds texts that end in 0, the CRS's among them. */
+static noc_status check_flatgeobuf(noc_stream *stream, noc_log *log) {
+    enum { BEGIN = 12, MOST = 10 << 20 }; /* GDAL reads no larger header */
+    const char *name = noc_stream_name(stream);
+    unsigned char begin[BEGIN];
+    size_t size = 0, got = 1;
+    noc_status status = noc_stream_rewind(stream);
+    for (; !status && got && size < BEGIN; size += got)
+        status = noc_stream_read(stream, begin + size, BEGIN - size, &got);
+    if (status || size < BEGIN)
+        return status; /* GDAL says what is wrong with it */
+    size_t length = begin[8] | (size_t)begin[9] << 8 | (size_t)begin[10] << 16 | (size_t)begin[11] << 24;
+    length = NOC_MIN(length, MOST);
+    char *header = noc_alloc(length + 1);
+    if (!header)
+        return noc_no_memory(log, name);
+    for (size = 0, got = 1; !status && got && size < length; size += got)
+        status = noc_stream_read(stream, header + size, length - size, &got);
+    header[size] = 0;
+    for (size_t at = 0; !status && at < size; at += strlen(header + at) + 1)
+        status = map_check_crs_text(header + at, name, log);
+    free(header);
+    return status;
+}
+
+/* ---- Shapefile ---- */
+
+static noc_status check_prj(const char *path, const char *name, noc_log *log) {
+    char *text = noc_alloc(LONGEST);
+    VSILFILE *f = text ? VSIFOpenL(path, "rb") : NULL;
+    size_t n = f ? VSIFReadL(text, 1, LONGEST, f) : 0;
+    noc_status status = text ? NOC_OK : noc_no_memory(log, name);
+    if (n == LONGEST)
+        status = noc_error(log, NOC_ERR_FORMAT, "%s: its .prj has more than %d bytes", name, LONGEST);
+    if (!status && n) {
+        for (size_t i = 0; i < n; i++) /* GDAL puts its lines together */
+            if (!text[i] || text[i] == '\n' || text[i] == '\r')
+                text[i] = ' ';
+        text[n] = 0;
+        status = map_check_crs_text(text, name, log);
+    }
+    if (f)
+        VSIFCloseL(f);
+    free(text);
+    return status;
+}
+
+/* Any that is called like it, in whatever case. */
+static noc_status check_shapefile(const char *path, const char *name, noc_log *log) {
+    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strrchr(base, '.');
+    size_t stem = dot ? (size_t)(dot - base) : strlen(base);
+    char *folder = noc_strndup(path, slash ? (size_t)(slash - path) : 0);
+    if (!folder)
+        return noc_no_memory(log, name);
+    char **entries = VSIReadDir(*folder ? folder : slash ? "/" : ".");
+    noc_status status = NOC_OK;
+    for (size_t i = 0; entries && entries[i] && !status; i++) {
+        if (strncasecmp(entries[i], base, stem) || !noc_ieq(entries[i] + NOC_MIN(stem, strlen(entries[i])), ".prj"))
+            continue;
+        char *part = noc_format("%.*s%s", (int)(base - path), path, entries[i]);
+        status = part ? check_prj(part, name, log) : noc_no_memory(log, name);
+        free(part);
+    }
+    CSLDestroy(entries);
+    free(folder);
+    return status;
+}
+
+noc_status map_check_crs(noc_stream *stream, const char *path, const map_format *format, noc_log *log) {
+    return format->kind == MAP_GEOJSON      ? check_geojson(stream, log)
+           : format->kind == MAP_FLATGEOBUF ? check_flatgeobuf(stream, log)
+           : format->kind == MAP_SHAPEFILE  ? check_shapefile(path, noc_stream_name(stream), log)
+                                            : NOC_OK;
+}
+
+/* ---- GeoPackage ---- */
+
+/* The texts that a query of one column gives. As they are cast to text, none is taken for a geometry, which would have a
+ * CRS. */
+static noc_status check_query(map_source *m, const char *query) {
+    OGRLayerH rows = GDALDatasetExecuteSQL(m->dataset, query, NULL, NULL);
+    noc_status status = rows ? NOC_OK : map_source_error(m);
+    OGRFeatureH row;
+    while (!status && (row = OGR_L_GetNextFeature(rows))) {
+        status = map_check_crs_text(OGR_F_GetFieldAsString(row, 0), m->name, m->log);
+        OGR_F_Destroy(row);
+    }
+    if (rows)
+        GDALDatasetReleaseResultSet(m->dataset, rows);
+    return !status && m->error[0] ? map_source_error(m) : status;
+}
+
+static bool has_rows(map_source *m, const char *query) {
+    OGRLayerH rows = GDALDatasetExecuteSQL(m->dataset, query, NULL, NULL);
+    OGRFeatureH row = rows ? OGR_L_GetNextFeature(rows) : NULL;
+    bool any = row != NULL;
+    OGR_F_Destroy(row);
+    if (rows)
+        GDALDatasetReleaseResultSet(m->dataset, rows);
+    return any;
+}
+
+noc_status map_check_crs_rows(map_source *m) {
+    static const char *const columns[] = { "definition", "organization", "definition_12_063" };
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < NOC_COUNT(columns) && !status; i++) {
+        char *there = noc_format("SELECT 1 FROM pragma_table_info('gpkg_spatial_ref_sys') WHERE lower(name) = '%s'",
+                                 columns[i]);
+        char *query = noc_format("SELECT coalesce(CAST(%s AS TEXT), '') FROM gpkg_spatial_ref_sys", columns[i]);
+        if (!there || !query)
+            status = noc_no_memory(m->log, m->name);
+        else if (has_rows(m, there))
+            status = check_query(m, query);
+        free(there);
+        free(query);
+    }
+    return !status && m->error[0] ? map_source_error(m) : status;
+}
+
+#endif

@@ -1,0 +1,276 @@
+/* Maps whose CRS names a file, read in this process: nobody opens it. The file is a pipe without a writer, on which
+ * whoever opens it waits for ever. */
+#include "lamp_sink.h"
+
+#include "noc_config.h"
+
+#if NOC_HAVE_GDAL
+
+#include <cpl_error.h>
+#include <gdal.h>
+#include <ogr_api.h>
+#include <ogr_srs_api.h>
+#include <sys/stat.h>
+
+/* The other name is as long, and nothing has it: GDAL writes maps that name it. */
+static char folder[] = "/tmp/nocturne-map-XXXXXX", pipe_path[60], absent[60];
+
+static int make_pipe(void **state) {
+    if (!mkdtemp(folder))
+        return -1;
+    snprintf(pipe_path, sizeof(pipe_path), "%s/pipe", folder);
+    snprintf(absent, sizeof(absent), "%s/none", folder);
+    alarm(120); /* what hangs fails */
+    return mkfifo(pipe_path, 0600);
+}
+
+static int remove_pipe(void **state) {
+    char command[100];
+    snprintf(command, sizeof(command), "rm -r %s", folder);
+    return system(command);
+}
+
+#define AXES \
+    "CS[ellipsoidal,2],AXIS[\"latitude\",north],AXIS[\"longitude\",east],ANGLEUNIT[\"degree\",0.0174532925199433]"
+#define SOURCE "GEOGCRS[\"x\",DATUM[\"d\",ELLIPSOID[\"e\",6378137,298.25]]," AXES "]"
+#define TARGET \
+    "GEOGCRS[\"WGS 84\",DATUM[\"World Geodetic System 1984\",ELLIPSOID[\"WGS 84\",6378137,298.257223563]]," AXES "," \
+    "ID[\"EPSG\",4326]]"
+
+/* %s is the file. GDAL 3.6 opens all but the last, of which PROJ makes a grid. */
+static const char bound[] =
+    "BOUNDCRS[SOURCECRS[" SOURCE "],TARGETCRS[" TARGET "],ABRIDGEDTRANSFORMATION[\"t\",METHOD[\"NTv2\",ID[\"EPSG\",9615]],"
+    "PARAMETERFILE[\"Latitude and longitude difference file\",\"%s\",ID[\"EPSG\",8656]]]]";
+static const char datum_grid[] = "GEOGCS[\"x\",DATUM[\"d\",SPHEROID[\"s\",6378137,298.25],EXTENSION[\"PROJ4_GRIDS\",\"%s\"]],"
+                                 "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]";
+static const char extension[] =
+    "PROJCS[\"x\",GEOGCS[\"x\",DATUM[\"d\",SPHEROID[\"s\",6378137,298.25]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\","
+    "0.0174532925199433]],PROJECTION[\"Mercator_1SP\"],PARAMETER[\"scale_factor\",1],UNIT[\"metre\",1],"
+    "EXTENSION[\"PROJ4\",\"+proj=merc +nadgrids=%s +wktext\"]]";
+static const char *const texts[] = { "+proj=merc +nadgrids=%s", "+init=%s:x", bound, datum_grid, extension };
+
+static void expect_refused(const char *path) {
+    lamp_sink s;
+    lamp_sink_start(&s);
+    if (read_lamps(&s, path, NULL) != NOC_ERR_FORMAT || !strstr(s.error, "may open files") || !strstr(s.error, path))
+        fail_msg("%s: %s", path, s.error);
+    lamp_sink_end(&s);
+}
+
+/* ---- GeoJSON ---- */
+
+static char *json_text(const char *text) {
+    static char out[3000];
+    size_t n = 0;
+    for (const char *p = text; *p && n + 3 < sizeof(out); p++) {
+        if (*p == '"')
+            out[n++] = '\\';
+        out[n++] = *p;
+    }
+    out[n] = 0;
+    return out;
+}
+
+static void write_geojson(const char *path, const char *before, const char *inside) {
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    fprintf(f, "{\"type\": \"FeatureCollection\", %s \"features\": [{\"type\": \"Feature\", \"properties\": "
+            "{\"highway\": \"street_lamp\", \"note\": \"+proj=merc +nadgrids=x\"}, "
+            "\"geometry\": {\"type\": \"Point\", %s \"coordinates\": [11.42, 48.76]}}]}", before, inside);
+    fclose(f);
+}
+
+static void test_geojson(void **state) {
+    char path[80], member[4000], text[2000];
+    snprintf(path, sizeof(path), "%s/a.geojson", folder);
+    for (size_t i = 0; i < NOC_COUNT(texts); i++) {
+        snprintf(text, sizeof(text), texts[i], pipe_path);
+        snprintf(member, sizeof(member), "\"crs\": {\"type\": \"name\", \"properties\": {\"name\": \"%s\"}},", json_text(text));
+        write_geojson(path, member, "");
+        expect_refused(path);
+        write_geojson(path, "", member);
+        expect_refused(path);
+    }
+    static const char *const spellings[] = {
+        "\"CRS\": {\"type\": \"name\", \"properties\": {\"name\": \"+proj=merc +nadgrids=%s\"}},",
+        "\"\\u0063rs\": {\"type\": \"name\", \"properties\": {\"name\": \"\\u002bproj=merc +nad\\u0067rids=%s\"}},",
+        "\"crs\\u0000x\" : {\"type\": \"name\", \"properties\": {\"name\": \"+proj=merc\\t+nadgrids=%s\"}},",
+        "\"crs\": null, \"crs\": {\"a\": [1, {}], \"type\": \"name\", "
+        "\"properties\": {\"b\": \"\\\"\", \"name\": \"+proj=merc +nadgrids=%s\"}},",
+    };
+    for (size_t i = 0; i < NOC_COUNT(spellings); i++) {
+        snprintf(member, sizeof(member), spellings[i], pipe_path);
+        write_geojson(path, member, "");
+        expect_refused(path);
+    }
+}
+
+/* What one reader of JSON takes for the end of a string is not where another one does. */
+static void test_hidden(void **state) {
+    static const char *const hidden[] = {
+        "/* \" */ \"crs\": {\"type\": \"name\", \"properties\": {\"name\": \"+proj=merc +nadgrids=%s\"}}, \"x\": \"\",",
+        "'\"': 1, \"crs\": {\"type\": \"name\", \"properties\": {\"name\": \"+proj=merc +nadgrids=%s\"}}, \"x\": \"\",",
+    };
+    for (size_t i = 0; i < NOC_COUNT(hidden); i++) {
+        char path[80], member[400];
+        snprintf(path, sizeof(path), "%s/b.geojson", folder);
+        snprintf(member, sizeof(member), hidden[i], pipe_path);
+        write_geojson(path, member, "");
+        lamp_sink s;
+        lamp_sink_start(&s);
+        assert_int_equal(read_lamps(&s, path, NULL), NOC_ERR_FORMAT);
+        assert_non_null(strstr(s.error, "outside of strings"));
+        lamp_sink_end(&s);
+    }
+}
+
+/* Properties are nobody's CRS, and these are CRSs that maps do hold. */
+static void test_plain(void **state) {
+    static const char *const plain[] = {
+        "", "\"crs\": null,", "\"crs\": {\"type\": \"name\", \"properties\": {\"name\": \"urn:ogc:def:crs:OGC:1.3:CRS84\"}},",
+        "\"crs\": {\"type\": \"name\", \"properties\": {\"name\": \"+init=epsg:4326\"}},",
+        "\"crs\": {\"type\": \"name\", \"properties\": {\"name\": \"EPSG:4326\"}}, \"grids\": \"+proj=x +file=y\",",
+    };
+    for (size_t i = 0; i < NOC_COUNT(plain); i++) {
+        char path[80];
+        snprintf(path, sizeof(path), "%s/c.geojson", folder);
+        write_geojson(path, plain[i], "");
+        lamp_sink s;
+        lamp_sink_start(&s);
+        if (read_lamps(&s, path, NULL) || s.lamps.len != 1)
+            fail_msg("%s: %s", plain[i], s.error);
+        lamp_sink_end(&s);
+    }
+}
+
+/* ---- the others ---- */
+
+/* A lamp in a CRS of this text (NULL: of none), by GDAL. */
+static void write_map(const char *driver, const char *path, const char *text) {
+    OGRRegisterAll();
+    CPLPushErrorHandler(CPLQuietErrorHandler); /* that it finds no grid */
+    OGRSpatialReferenceH srs = text ? OSRNewSpatialReference(NULL) : NULL;
+    if (srs)
+        assert_int_equal(OSRSetFromUserInput(srs, text), OGRERR_NONE);
+    GDALDatasetH dataset = GDALCreate(GDALGetDriverByName(driver), path, 0, 0, 0, GDT_Unknown, NULL);
+    assert_non_null(dataset);
+    OGRLayerH layer = GDALDatasetCreateLayer(dataset, "lamps", srs, wkbPoint, NULL);
+    OGRFieldDefnH type = OGR_Fld_Create("LampType", OFTString);
+    assert_int_equal(OGR_L_CreateField(layer, type, 1), OGRERR_NONE);
+    OGRFeatureH feature = OGR_F_Create(OGR_L_GetLayerDefn(layer));
+    OGR_F_SetFieldString(feature, 0, "LED");
+    OGRGeometryH point = OGR_G_CreateGeometry(wkbPoint);
+    OGR_G_SetPoint_2D(point, 0, 11.42, 48.76);
+    assert_int_equal(OGR_F_SetGeometryDirectly(feature, point), OGRERR_NONE);
+    assert_int_equal(OGR_L_CreateFeature(layer, feature), OGRERR_NONE);
+    OGR_F_Destroy(feature);
+    OGR_Fld_Destroy(type);
+    if (srs)
+        OSRDestroySpatialReference(srs);
+    GDALClose(dataset);
+    CPLPopErrorHandler();
+}
+
+static void name_the_pipe(const char *path) {
+    static char data[1 << 20];
+    FILE *f = fopen(path, "rb+");
+    assert_non_null(f);
+    size_t size = fread(data, 1, sizeof(data), f), found = 0;
+    assert_true(size < sizeof(data));
+    for (char *p = data; (p = memmem(p, size - (size_t)(p - data), absent, strlen(absent))); found++)
+        memcpy(p, pipe_path, strlen(pipe_path));
+    assert_true(found > 0);
+    rewind(f);
+    assert_int_equal(fwrite(data, 1, size, f), size);
+    fclose(f);
+}
+
+static void test_flatgeobuf(void **state) {
+    const char *const kinds[] = { texts[0], bound, datum_grid, extension };
+    for (size_t i = 0; i < NOC_COUNT(kinds); i++) {
+        char path[80], text[2000];
+        snprintf(path, sizeof(path), "%s/%zu.fgb", folder, i);
+        snprintf(text, sizeof(text), kinds[i], absent);
+        write_map("FlatGeobuf", path, text);
+        name_the_pipe(path);
+        expect_refused(path);
+    }
+}
+
+static void test_shapefile(void **state) {
+    const char *const kinds[] = { datum_grid, extension };
+    for (size_t i = 0; i < 2 * NOC_COUNT(kinds); i++) {
+        char path[80], prj[80], text[2000];
+        bool lines = i & 1;
+        snprintf(path, sizeof(path), "%s/s%zu.shp", folder, i);
+        snprintf(prj, sizeof(prj), "%s/s%zu.%s", folder, i, i / 2 ? "PRJ" : "prj");
+        snprintf(text, sizeof(text), kinds[i / 2], pipe_path);
+        write_map("ESRI Shapefile", path, NULL);
+        FILE *f = fopen(prj, "w");
+        assert_non_null(f);
+        for (const char *p = text; *p; p++)
+            fprintf(f, "%c%s", *p, lines && *p == ',' ? "\n" : "");
+        fclose(f);
+        if (lines) { /* of which GDAL understands nothing, perhaps */
+            lamp_sink s;
+            lamp_sink_start(&s);
+            assert_int_equal(read_lamps(&s, path, NULL), NOC_ERR_FORMAT);
+            lamp_sink_end(&s);
+        } else {
+            expect_refused(path);
+        }
+    }
+}
+
+/* Runs SQL over a GeoPackage: one statement or two. */
+static void change(const char *path, const char *first, const char *second) {
+    GDALDatasetH dataset = GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_UPDATE, NULL, NULL, NULL);
+    assert_non_null(dataset);
+    assert_null(GDALDatasetExecuteSQL(dataset, first, NULL, NULL));
+    if (second)
+        assert_null(GDALDatasetExecuteSQL(dataset, second, NULL, NULL));
+    GDALClose(dataset);
+}
+
+static void test_geopackage(void **state) {
+    const char *const kinds[] = { bound, datum_grid, extension };
+    for (size_t i = 0; i < NOC_COUNT(kinds); i++) {
+        char path[80], text[2000], sql[3000];
+        snprintf(path, sizeof(path), "%s/%zu.gpkg", folder, i);
+        snprintf(text, sizeof(text), kinds[i], pipe_path);
+        write_map("GPKG", path, "EPSG:4326");
+        snprintf(sql, sizeof(sql), "UPDATE gpkg_spatial_ref_sys SET organization = 'x', definition = '%s'", text);
+        change(path, sql, NULL);
+        expect_refused(path);
+    }
+}
+
+/* A view may give another answer each time. */
+static void test_geopackage_view(void **state) {
+    char path[80], sql[2000], text[1000];
+    snprintf(path, sizeof(path), "%s/view.gpkg", folder);
+    write_map("GPKG", path, "EPSG:4326");
+    snprintf(text, sizeof(text), datum_grid, pipe_path);
+    snprintf(sql, sizeof(sql), "CREATE VIEW \"gpkg_spatial_ref_sys\" AS SELECT srs_name, srs_id, 'x' AS organization, "
+             "organization_coordsys_id, CASE WHEN random() > 0 THEN definition ELSE '%s' END AS definition, description FROM kept", text);
+    change(path, "ALTER TABLE gpkg_spatial_ref_sys RENAME TO kept", sql);
+    lamp_sink s;
+    lamp_sink_start(&s);
+    assert_int_equal(read_lamps(&s, path, NULL), NOC_ERR_UNSUPPORTED);
+    assert_non_null(strstr(s.error, "gpkg_spatial_ref_sys"));
+    lamp_sink_end(&s);
+}
+
+#endif
+
+int main(void) {
+#if NOC_HAVE_GDAL
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_geojson), cmocka_unit_test(test_hidden), cmocka_unit_test(test_plain), cmocka_unit_test(test_flatgeobuf),
+        cmocka_unit_test(test_shapefile), cmocka_unit_test(test_geopackage), cmocka_unit_test(test_geopackage_view),
+    };
+    return cmocka_run_group_tests(tests, make_pipe, remove_pipe);
+#else
+    return 0;
+#endif
+}
