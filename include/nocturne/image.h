@@ -81,6 +81,8 @@ typedef struct noc_metrics {
     double bias;    /* mean(x) / mean(r) */
     double mean_x, mean_r;
     size_t pixels;
+    size_t unlit;        /* pixels that are 0 in r and lit in x: in relmse each counts (x / e)^2 */
+    double relmse_unlit; /* their part of relmse */
 } noc_metrics;
 
 typedef struct noc_comparison {

@@ -46,6 +46,14 @@ static void print_row(const char *name, const noc_metrics *m) {
     printf(isfinite(m->bias) ? "%8.4f\n" : "       -\n", m->bias);
 }
 
+/* What a reference lacks makes up much of relMSE, however good the picture is. */
+static void print_unlit(const noc_metrics *m) {
+    char pixels[64];
+    if (m->unlit && isfinite(m->relmse))
+        printf("  %s lit in the picture and 0 in the reference: %.3g %% of relMSE\n", cli_many(pixels, m->unlit, "pixel"),
+               100 * m->relmse_unlit / m->relmse);
+}
+
 static void print_table(const compare_args *args, const noc_comparison *c, const noc_image *image) {
     char a[160], b[160], clamped[48];
     printf("%s against %s, %d x %d\n\n", cli_clean(a, sizeof(a), args->common.inputs[0]),
@@ -54,6 +62,7 @@ static void print_table(const compare_args *args, const noc_comparison *c, const
     printf("  %-28s %10s  %8s  %10s  %10s  %8s\n", "", "pixels", "RMSE-8", relative ? "RMSE" : "RMSE cd/m2", "relMSE", "bias");
     print_row("all pixels", &c->all);
     if (relative) {
+        print_unlit(&c->all);
         printf("\n  mean luminance %.6g against %.6g of white\n", c->all.mean_x, c->all.mean_r);
         return;
     }
@@ -65,6 +74,7 @@ static void print_table(const compare_args *args, const noc_comparison *c, const
     } else {
         printf("  the reference has no emitter mask: no figures without emitters\n");
     }
+    print_unlit(&c->all);
     printf("\n  mean luminance %.6g against %.6g cd/m2; RMSE-8 at EV100 %.2f\n", c->all.mean_x, c->all.mean_r, c->ev100);
 }
 
@@ -72,6 +82,7 @@ static void json_row(const char *name, const noc_metrics *m, bool last) {
     const struct { const char *key; double value; } fields[] = {
         { "pixels", (double)m->pixels }, { "rmse8", m->rmse8 }, { "rmse", m->rmse }, { "relmse", m->relmse },
         { "bias", m->bias }, { "mean", m->mean_x }, { "mean_reference", m->mean_r },
+        { "unlit", (double)m->unlit }, { "relmse_unlit", m->relmse_unlit },
     };
     printf("  \"%s\": {", name);
     for (size_t i = 0; i < sizeof(fields) / sizeof(*fields); i++) {

@@ -131,6 +131,14 @@ static void plan(experiment_lab *lab) {
     }
 }
 
+static void tell_unlit(const experiment_lab *lab, size_t camera, int status) {
+    char *told = status || lab->args->common.quiet ? NULL : experiment_unlit(lab, camera);
+    const experiment_camera *c = &lab->spec.cameras[camera];
+    if (told)
+        printf("%s, %s: %s\n", lab->spec.scenes[c->scene].name, c->name, told);
+    free(told);
+}
+
 /* All runs under one camera of the present scene. */
 static int work_camera(experiment_lab *lab, size_t camera) {
     const experiment_spec *spec = &lab->spec;
@@ -144,6 +152,7 @@ static int work_camera(experiment_lab *lab, size_t camera) {
     for (size_t i = 0; !status && i < count; i++, lab->runs_done++)
         status = experiment_measure(lab, &runs[i]);
     cli_progress_clear();
+    tell_unlit(lab, camera, status);
     lab->cameras_done++;
     status = status ? status : experiment_make_crops(lab, camera);
     noc_image_destroy(lab->reference);

@@ -106,8 +106,8 @@ typedef struct experiment_spec {
 /* Columns of results.csv that are numbers, after those that tell which row it is. */
 enum {
     COL_WALL, COL_CPU, COL_WALL_TOTAL, COL_CPU_TOTAL,
-    COL_RMSE8, COL_RELMSE, COL_CLAMPED, COL_BIAS,                 /* pixels that see no emitter */
-    COL_RMSE8_ALL, COL_RELMSE_ALL, COL_CLAMPED_ALL, COL_BIAS_ALL, /* all pixels, in the same order */
+    COL_RMSE8, COL_RELMSE, COL_CLAMPED, COL_BIAS, COL_UNLIT, COL_RELMSE_UNLIT, /* pixels that see no emitter */
+    COL_RMSE8_ALL, COL_RELMSE_ALL, COL_CLAMPED_ALL, COL_BIAS_ALL, COL_UNLIT_ALL, COL_RELMSE_UNLIT_ALL, /* all, likewise */
     COL_BUILD, COL_MEMORY, COL_RAYS, COL_DROPPED,
     /* of the structure that candidates are drawn from: seconds to build, and of them in volumes, tuning,
      * hierarchy and boxes, bytes, bytes of the scene and its ray tracing structure, and
@@ -211,6 +211,7 @@ experiment_noise experiment_measure_noise(const experiment_lab *lab, const noc_i
 void experiment_add_batch(experiment_batches *batches, const noc_image *so_far, int frames);
 void experiment_keep_noise(const char *reference, const experiment_noise *noise);
 experiment_noise experiment_read_noise(const char *reference);
+char *experiment_unlit(const experiment_lab *lab, size_t camera); /* a sentence; NULL where no such pixel is; free() it */
 
 /* experiment_run.c */
 int experiment_measure(experiment_lab *lab, experiment_run *run);

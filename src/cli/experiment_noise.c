@@ -1,6 +1,6 @@
-/* Noise of the reference itself: errors near it say nothing. Its first n of N frames are kept on the way; their mean is off from
- * the whole mean by a variance of s^2 (1/n - 1/N), and the whole mean from the truth by s^2 / N. The standard error of its mean luminance, which bias is judged by, is
- * that of the means of equal parts of its frames. */
+/* Noise of the reference itself: errors near it say nothing. Its first n of N frames are kept on the way; their mean is
+ * off from the whole mean by a variance of s^2 (1/n - 1/N), and the whole mean from the truth by s^2 / N. The standard
+ * error of its mean luminance, which bias is judged by, is that of the means of equal parts of its frames. */
 #include "experiment.h"
 
 #include <math.h>
@@ -76,4 +76,31 @@ experiment_noise experiment_read_noise(const char *reference) {
         fclose(file);
     free(path);
     return whole ? n : (experiment_noise){ NAN, NAN, NAN, NAN, NAN, NAN };
+}
+
+/* Pixels that are 0 in the reference and lit in a picture, by the row that has most of them. */
+char *experiment_unlit(const experiment_lab *lab, size_t camera) {
+    const experiment_spec *spec = &lab->spec;
+    const experiment_run *runs = experiment_find_run(lab, camera, 0, 0);
+    int pixels = spec->all_pixels ? COL_UNLIT_ALL : COL_UNLIT, part = spec->all_pixels ? COL_RELMSE_UNLIT_ALL : COL_RELMSE_UNLIT;
+    struct { double pixels, share; const char *name; int mode, frame; } most = { .pixels = 0 };
+    for (size_t i = 0; i < (size_t)spec->repetitions * spec->config_count; i++)
+        for (int mode = 0; mode < EXPERIMENT_MODES; mode++)
+            for (int frame = 1; frame <= runs[i].count; frame++) {
+                const experiment_row *row = &runs[i].rows[mode][frame - 1];
+                if (!row->done || !(row->values[pixels] > most.pixels))
+                    continue;
+                most.pixels = row->values[pixels];
+                most.share = row->values[part] / row->values[spec->all_pixels ? COL_RELMSE_ALL : COL_RELMSE];
+                most.name = spec->configs[runs[i].config].name;
+                most.mode = mode;
+                most.frame = frame;
+            }
+    char many[64];
+    if (!most.name || !isfinite(most.share)) /* all of a black reference, which is told by itself */
+        return NULL;
+    return cli_format("unlit in the reference: up to %s that a picture lights (most in %s, %s %d: %.3g %% of its relMSE). "
+                      "More frames of the reference, or one of ris over lists, may light them.",
+                      cli_many(many, (uint64_t)most.pixels, "pixel"), most.name,
+                      most.mode == EXPERIMENT_ACCUMULATED ? "mean of" : "frame", most.frame, 100 * most.share);
 }

@@ -431,6 +431,13 @@ static void print_noise(FILE *out, const experiment_lab *lab, size_t index) {
                 all ? n->relmse_all : n->relmse, all ? n->clamped_all : n->clamped);
     if (isfinite(all ? n->mean_all : n->mean))
         fprintf(out, "\nIts mean has a standard error of %.2g %%, which any bias is off by too.\n", 100 * (all ? n->mean_all : n->mean));
+    char *unlit = experiment_unlit(lab, index);
+    if (unlit) {
+        fprintf(out, "\n%c", toupper((unsigned char)*unlit));
+        experiment_text(out, unlit + 1);
+        fputc('\n', out);
+    }
+    free(unlit);
 }
 
 /* Plots and tables of one mode. */

@@ -40,6 +40,8 @@ static void keep_figures(double *values, const noc_metrics *raw, const noc_metri
     values[1] = raw->relmse;
     values[2] = clamped->relmse;
     values[3] = raw->bias;
+    values[4] = (double)raw->unlit;
+    values[5] = raw->relmse_unlit;
 }
 
 /* Figures of one picture, and the row they make. */

@@ -14,6 +14,8 @@ typedef struct set {
     bool dark, clamped;
     sums sums;
     double relative; /* sum of (x - r)^2 / (r^2 + e^2), second pass */
+    double unlit;    /* of pixels that are black in r alone */
+    size_t unlit_pixels;
 } set;
 
 noc_status image_check_pair(const noc_image *x, const noc_image *r, noc_log *log) {
@@ -65,9 +67,15 @@ static void add_pixel(sums *s, const float x[3], const float r[3], double e8) {
 static double ratio(double a, double b) { return b != 0 ? a / b : a == 0 ? 1 : copysign(HUGE_VAL, a); }
 
 /* relMSE needs the mean first. Where picture and reference are both black a term is 0, whatever e is. */
-static double relative_error(const float x[3], const float r[3], double e) {
+static void add_relative(set *s, const float x[3], const float r[3], double e) {
     double yx = image_luminance(x), yr = image_luminance(r), d = (yx - yr) * (yx - yr);
-    return d > 0 ? d / (yr * yr + e * e) : 0;
+    if (!(d > 0))
+        return;
+    s->relative += d / (yr * yr + e * e);
+    if (yr == 0) {
+        s->unlit += d / (e * e);
+        s->unlit_pixels++;
+    }
 }
 
 static noc_metrics metrics_of(const set *s) {
@@ -76,7 +84,7 @@ static noc_metrics metrics_of(const set *s) {
     double n = (double)s->sums.pixels;
     return (noc_metrics){ .rmse8 = sqrt(s->sums.squared8 / (3 * n)), .rmse = sqrt(s->sums.squared / n), .relmse = s->relative / n,
                           .bias = ratio(s->sums.x, s->sums.r), .mean_x = s->sums.x / n, .mean_r = s->sums.r / n,
-                          .pixels = s->sums.pixels };
+                          .pixels = s->sums.pixels, .unlit = s->unlit_pixels, .relmse_unlit = s->unlit / n };
 }
 
 /* Calls for both passes: sums first (second = false), then relMSE with each set's own e. */
@@ -97,7 +105,7 @@ static void pass_over(const noc_image *x, const noc_image *r, double ceiling, co
                 continue;
             const float *a = sets[k].clamped ? cx : px, *b = sets[k].clamped ? cr : pr;
             if (second)
-                sets[k].relative += relative_error(a, b, e[k]);
+                add_relative(&sets[k], a, b, e[k]);
             else
                 add_pixel(&sets[k].sums, a, b, sets[k].clamped ? clamped8 : raw8);
         }
@@ -127,7 +135,7 @@ noc_status noc_image_compare(const noc_image *x, const noc_image *r, const noc_c
     pass_over(x, r, p.ceiling, &d, sets, false);
     pass_over(x, r, p.ceiling, &d, sets, true);
     *out = (noc_comparison){ .all = metrics_of(&sets[0]), .all_clamped = metrics_of(&sets[1]), .dark = metrics_of(&sets[2]),
-                             .dark_clamped = metrics_of(&sets[3]), 
+                             .dark_clamped = metrics_of(&sets[3]),
                              .ceiling = p.ceiling, .ev100 = ev100, .has_mask = r->emitter != NULL };
     return NOC_OK;
 }

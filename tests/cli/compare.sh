@@ -16,6 +16,16 @@ result $? "a noisy one is not, and there is a difference picture"
 awk '/^  all pixels/ { found = $4 > 1 && $5 > 0 && $6 > 0 } END { exit !found }' out; result $? "its figures are not zero"
 run compare is.exr reference.exr --json
 grep -q '"no_emitter_clamped": {"pixels": [0-9]' out; result $? "figures as JSON"
+"$program" render $small -q --sky 0 --method is --frames 1 -o weak.exr && "$program" render $small -q --sky 0 --frames 2 -o strong.exr
+run compare strong.exr weak.exr
+cp out table
+run compare --json strong.exr weak.exr
+python3 -c '
+import json, re
+all = json.load(open("out"))["all"]
+pixels, share = re.search(r"^  ([\d,]+) pixels lit in the picture and 0 in the reference: ([\d.]+) % of relMSE$", open("table").read(), re.M).groups()
+assert int(pixels.replace(",", "")) == all["unlit"] > 9 and share == "%.3g" % (100 * all["relmse_unlit"] / all["relmse"])'
+result $? "pixels that the reference leaves black are told" "$(cat table)"
 run compare is.png is.png
 test $status = 0 && grep -q 'of white$' out && ! grep -q 'cd/m2' out && test ! -s err; result $? "PNG against PNG speaks of white, not cd/m2"
 run compare is.png is.png --json

@@ -280,6 +280,31 @@ assert len(whiskers) == 4, len(whiskers) # configurations, the first frame and t
 CHECK
 result $? "four repetitions where a spec says nothing, and standard errors in tables and plots" "$(cat err)"
 
+# A weak reference leaves pixels black that pictures light: they are counted, and told of, also when all rows are read again.
+spec weak.json '{ "name": "rays", "method": "reference", "rays": 8 }'
+sed -i 's/"reference": { "rays": 1/"reference": { "method": "is"/; s/"frames": 1, "repet/"frames": 2, "repet/' weak.json
+for again in "" ", again"; do
+    run experiment weak.json -o weak --cache weak-cache
+    cp out told
+    "$program" compare --json "$(ls weak-cache/*.exr)" "$(ls weak-cache/*.exr)" >itself
+    python3 - <<'CHECK'
+import csv, json, re
+rows = list(csv.DictReader(open("weak/results.csv")))
+pattern = r"nlit in the reference: up to (\d+) pixels that a picture lights \(most in rays, mean of 2: ([\d.]+) % of its relMSE\)"
+most = max(rows, key=lambda r: float(r["unlit"]))
+assert len(rows) == 4 and 1 < float(most["unlit"]) < 32 * 18 and most["unlit"] == most["unlit_all"], rows
+share = "%.3g" % (100 * float(most["relmse_unlit"]) / float(most["relmse"]))
+for path, before in ("told", "one, own: u"), ("weak/report.md", "\nU"):
+    text = open(path).read()
+    assert re.search(before + pattern, text).groups() == (most["unlit"], share), (path, text)
+assert json.load(open("itself"))["all"]["unlit"] == 0
+CHECK
+    result $? "pixels that the reference leaves black are counted$again" "$(cat told)"
+done
+sed 's/"method": "is", "frames": 1/"frames": 400/' weak.json >strong.json
+run experiment strong.json -o strong --cache weak-cache
+test $status = 0 && ! grep -q 'nlit in the reference' out strong/report.md; result $? "nothing is said where there are none" "$(cat out)"
+
 # What is wrong is one line, before any work and before any folder is made.
 spec wrong.json '{ "name": "a", "draws": [[1]] }'
 expect "an array in an array" 2 'wrong.json: configurations\[0\]: draws: this cannot be its value' experiment wrong.json -o w

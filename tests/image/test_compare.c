@@ -82,6 +82,30 @@ static void figures_by_hand(void **state) {
     noc_image_destroy(r);
 }
 
+/* Pixels that the reference leaves black: each adds (x / e)^2, and what they add is told apart. */
+static void unlit_pixels_are_counted(void **state) {
+    static const double x_of[] = { 3, 0, 1, 0.5, 1 }, r_of[] = { 0, 0, 4, 0, 0 };
+    noc_image *x = greys(5, 1, x_of), *r = greys(5, 1, r_of);
+    assert_true(image_add_mask(r, log_));
+    r->emitter[0] = 1;
+    noc_comparison c;
+    noc_compare_params p = noc_compare_default_params();
+    p.ceiling = 2;
+    assert_int_equal(noc_image_compare(x, r, &p, &c, log_), NOC_OK);
+    double e = 0.01 * 4 / 5, dark = 0.01, clamped = 0.01 * 2 / 5;
+    assert_int_equal(c.all.unlit, 3);
+    NEAR(c.all.relmse_unlit, (9 + 0.25 + 1) / (e * e) / 5);
+    NEAR(c.all.relmse, (9 + 0.25 + 1) / (e * e) / 5 + 9 / (16 + e * e) / 5);
+    assert_int_equal(c.dark.unlit, 2);
+    NEAR(c.dark.relmse_unlit, (0.25 + 1) / (dark * dark) / 4);
+    assert_int_equal(c.all_clamped.unlit, 3);
+    NEAR(c.all_clamped.relmse_unlit, (4 + 0.25 + 1) / (clamped * clamped) / 5);
+    assert_int_equal(noc_image_compare(r, x, NULL, &c, log_), NOC_OK); /* lit in the reference alone */
+    assert_true(c.all.unlit == 0 && c.all.relmse_unlit == 0);
+    noc_image_destroy(x);
+    noc_image_destroy(r);
+}
+
 static void without_a_mask_dark_is_all(void **state) {
     (void)state;
     noc_image *x = greys(2, 2, values_x), *r = greys(2, 2, values_r);
@@ -335,6 +359,7 @@ static void difference_of_tiny_and_equal_pictures(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(figures_by_hand),
+        cmocka_unit_test(unlit_pixels_are_counted),
         cmocka_unit_test(without_a_mask_dark_is_all),
         cmocka_unit_test(equal_and_black_pictures),
         cmocka_unit_test(exposure_is_the_references),
