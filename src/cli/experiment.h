@@ -5,7 +5,7 @@
 #include "render.h"
 
 enum { EXPERIMENT_KEY = 33, EXPERIMENT_TIMES = 8, EXPERIMENT_POINTS = 6, EXPERIMENT_VALUES = 32, EXPERIMENT_FRAMES = 100000, EXPERIMENT_ROWS = 1000000,
-       EXPERIMENT_BYTES = 1 << 20 /* of a spec */, EXPERIMENT_INPUTS = 10000 /* of a scene */,
+       EXPERIMENT_BYTES = 1 << 20 /* of a spec */, EXPERIMENT_INPUTS = 10000 /* of a scene */, EXPERIMENT_NUMBERS = 64 /* of a list */,
        EXPERIMENT_ENTRIES = 1000 /* scenes, cameras and configurations, each */,
        EXPERIMENT_REPETITIONS = 4 /* where a spec says nothing: what a figure is worth shows in its spread */ };
 

@@ -66,8 +66,6 @@ static int unknown(const experiment_spec *spec, const char *place, const cli_set
     return experiment_wrong(spec, place, "no option \"%.60s\"; there are %s", name, all);
 }
 
-enum { NUMBERS = 64 };
-
 /* A value as it would be written on the command line; NULL where JSON has no such thing there. An array of a few numbers is a list. */
 static char *spell(const json_t *value) {
     switch (json_typeof(value)) {
@@ -79,8 +77,6 @@ static char *spell(const json_t *value) {
     case JSON_ARRAY: break;
     default: return NULL;
     }
-    if (json_array_size(value) > NUMBERS)
-        return NULL;
     char *text = cli_format("%s", "");
     size_t i;
     json_t *item;
@@ -116,6 +112,8 @@ int experiment_set(experiment_spec *spec, const char *place, const cli_set *sets
         }
         return status;
     }
+    if (json_is_array(value) && o->kind == NOC_OPTION_TEXT && json_array_size(value) > EXPERIMENT_NUMBERS)
+        return experiment_wrong(spec, place, "%s: it asks for more than %d numbers", name, EXPERIMENT_NUMBERS);
     char *text = json_is_array(value) && o->kind != NOC_OPTION_TEXT ? NULL : spell(value);
     if (!text)
         return experiment_wrong(spec, place, "%s: this cannot be its value", name);

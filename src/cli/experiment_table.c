@@ -132,16 +132,23 @@ static int open_for_rows(experiment_lab *lab, const char *path, long whole) {
     return ok ? CLI_OK : CLI_FAILURE;
 }
 
+/* A name that no table has that was put aside before: results.old.csv, results.old-2.csv, ... The folder is locked. */
+static char *old_name(const experiment_lab *lab) {
+    struct stat st;
+    char *name = cli_format("%s/results.old.csv", lab->folder);
+    for (int i = 2; !lstat(name, &st); i++) {
+        free(name);
+        name = cli_format("%s/results.old-%d.csv", lab->folder, i);
+    }
+    return name;
+}
+
 /* replaced: another file is about to take its name, which it keeps until then, so that a kill in between loses nothing. */
-static int put_aside(const experiment_lab *lab, const char *path, bool replaced) {
-    char *old = cli_format("%s/results.old.csv", lab->folder);
-    if (replaced)
-        unlink(old);
+static int put_aside(const char *path, const char *old, bool replaced) {
     bool linked = replaced && !link(path, old); /* not every file system can */
     int status = linked || !rename(path, old) ? CLI_OK : CLI_FAILURE;
     if (status)
         cli_error("%s: %s", path, strerror(errno));
-    free(old);
     return status;
 }
 
@@ -150,8 +157,10 @@ int experiment_open_table(experiment_lab *lab) {
     long whole;
     int status = read_table(lab, path, &whole);
     if (!status && whole < 0) {
-        cli_error("warning: %s is a table of another kind; it is kept as results.old.csv", path);
-        status = put_aside(lab, path, false);
+        char *old = old_name(lab);
+        cli_error("warning: %s is a table of another kind; it is kept as %s", path, strrchr(old, '/') + 1);
+        status = put_aside(path, old, false);
+        free(old);
         whole = 0;
     }
     status = status ? status : open_for_rows(lab, path, whole);
@@ -209,21 +218,21 @@ int experiment_tidy_table(experiment_lab *lab) {
     }
     if (!others)
         return CLI_OK;
-    char rows[64];
-    cli_error("%s of results.csv came from other settings: kept in results.old.csv", cli_many(rows, others, "row"));
-    char *temporary;
+    char *temporary, rows[64];
     FILE *file = experiment_create(lab, "results.csv", &temporary);
     if (!file)
         return CLI_FAILURE;
+    char *path = cli_format("%s/results.csv", lab->folder), *old = old_name(lab);
+    cli_error("%s of results.csv came from other settings: kept in %s", cli_many(rows, others, "row"), strrchr(old, '/') + 1);
     fprintf(file, "%s\n", header);
     for (size_t r = 0; r < lab->run_count; r++)
         for (int frame = 1; frame <= lab->runs[r].count; frame++)
             for (int mode = 0; mode < EXPERIMENT_MODES; mode++)
                 if (lab->runs[r].rows[mode][frame - 1].done)
                     print_row(lab, file, &lab->runs[r], mode, frame);
-    char *path = cli_format("%s/results.csv", lab->folder);
-    int status = fflush(file) ? CLI_OK : put_aside(lab, path, true); /* what could not be written, finishing tells */
+    int status = fflush(file) ? CLI_OK : put_aside(path, old, true); /* what could not be written, finishing tells */
     free(path);
+    free(old);
     if (status) {
         experiment_discard(file, temporary);
         return status;

@@ -44,31 +44,60 @@ static void add_totals(meta_text *meta, const noc_report *report) {
         add(meta, rows[i].key, cli_format("%zu", rows[i].count));
 }
 
-static const char *base_name(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
+/* Paths as they read from their ends: files of one name lie side by side, then those in folders of one name, and so on. */
+static int compare_ends(const void *a, const void *b) {
+    const char *x = **(const char *const *const *)a, *y = **(const char *const *const *)b;
+    const char *p = x + strlen(x), *q = y + strlen(y);
+    while (p > x && q > y && p[-1] == q[-1])
+        p--, q--;
+    int next[2] = { p > x ? (unsigned char)p[-1] : 0, q > y ? (unsigned char)q[-1] : 0 };
+    for (int i = 0; i < 2; i++) /* a folder's end before all letters */
+        next[i] = next[i] == '/' ? 1 : next[i] ? next[i] + 1 : 0;
+    return next[0] - next[1];
 }
 
-/* A file's folder is nobody else's business, but where two files have one name, the folders that they lie in tell them apart. */
-static const char *told_name(const char *const *paths, size_t count, size_t i) {
-    const char *base = base_name(paths[i]), *start = base;
-    bool twin = false;
-    for (size_t k = 0; k < count && !twin; k++)
-        twin = k != i && !strcmp(base_name(paths[k]), base);
-    if (!twin || base == paths[i])
-        return base;
-    for (start--; start > paths[i] && start[-1] != '/';)
-        start--;
-    return start;
-}
-
-static char *join_names(const char *const *paths, size_t count) {
-    char *text = cli_format("%s", "");
-    for (size_t i = 0; i < count; i++) {
-        char *longer = cli_format("%s%s%s", text, i ? ", " : "", told_name(paths, count, i));
-        free(text);
-        text = longer;
+/* How many names two paths have in common at their ends: of the file, of its folder, ... */
+static size_t common_names(const char *x, const char *y) {
+    const char *p = x + strlen(x), *q = y + strlen(y);
+    for (size_t n = 0;; p--, q--) {
+        n += (p == x || p[-1] == '/') && (q == y || q[-1] == '/');
+        if (p == x || q == y || p[-1] != q[-1])
+            return n;
     }
+}
+
+static const char *last_names(const char *path, size_t n) {
+    const char *p = path + strlen(path);
+    while (p > path && !(p[-1] == '/' && !--n))
+        p--;
+    return p;
+}
+
+/* File names with commas between them. A folder is nobody else's business: where several files have one name, each is told
+ * with as many of its folders as no other has. Only what was given twice in the same words is told twice alike. */
+static char *join_names(const char *const *paths, size_t count) {
+    const char *const **order = cli_alloc((count + 1) * sizeof(*order));
+    const char **told = cli_alloc((count + 1) * sizeof(*told));
+    size_t length = 1, common_before = 0;
+    for (size_t i = 0; i < count; i++)
+        order[i] = &paths[i];
+    qsort(order, count, sizeof(*order), compare_ends);
+    for (size_t first = 0, end; first < count; first = end) {
+        for (end = first + 1; end < count && !strcmp(*order[end], *order[first]);)
+            end++;
+        size_t common = end < count ? common_names(*order[first], *order[end]) : 0;
+        const char *name = last_names(*order[first], 1 + (common > common_before ? common : common_before));
+        for (size_t i = first; i < end; i++)
+            told[order[i] - paths] = name;
+        length += (end - first) * (strlen(name) + 2);
+        common_before = common;
+    }
+    char *text = cli_alloc(length), *at = text;
+    *text = 0;
+    for (size_t i = 0; i < count; i++)
+        at += sprintf(at, "%s%s", i ? ", " : "", told[i]);
+    free(order);
+    free(told);
     return text;
 }
 

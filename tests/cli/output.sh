@@ -71,4 +71,9 @@ mkdir -p east west
 cp lamp.obj lamp.mtl east && cp lamp.obj lamp.mtl west
 run render "$PWD/east/lamp.obj" west/lamp.obj --size 16x9 --frames 1 -o twins.png
 test $status = 0 && test "$(meta twins.png inputs)" = "east/lamp.obj, west/lamp.obj"; result $? "inputs of one name are told apart by their folders" "$(meta twins.png inputs)"
+for folder in one two; do mkdir $folder && cp -r east $folder; done
+cp east/lamp.obj lone.obj
+run render one/east/lamp.obj lone.obj "$PWD/two/east/lamp.obj" lamp.obj one/east/../../west/lamp.obj lone.obj --size 16x9 --frames 1 -o twins.png
+test $status = 0 && test "$(meta twins.png inputs)" = "one/east/lamp.obj, lone.obj, two/east/lamp.obj, lamp.obj, west/lamp.obj, lone.obj"
+result $? "and by the folders of these, where they have one name" "$(meta twins.png inputs)"
 finish

@@ -18,6 +18,16 @@ printf 'my own notes' >other/results.csv
 run experiment one.json -o other --cache cache
 test $status = 0 && grep -q 'it is kept as results.old.csv' err && test "$(cat other/results.old.csv)" = 'my own notes'
 result $? "one line without an end is kept"
+printf 'more notes' >other/results.csv
+run experiment one.json -o other --cache cache
+test $status = 0 && grep -q 'it is kept as results.old-2.csv' err && test "$(cat other/results.old.csv)" = 'my own notes' &&
+    test "$(cat other/results.old-2.csv)" = 'more notes'; result $? "and the next, beside it"
+cp other/results.csv before
+sed 's/"name": "a"/"name": "b"/' one.json >two.json
+run experiment two.json -o other --cache cache
+test $status = 0 && grep -q 'other settings: kept in results.old-3.csv' err && head -n 3 other/results.old-3.csv | cmp -s before &&
+    test "$(cat other/results.old.csv)" = 'my own notes'; result $? "and rows of other settings" "$(ls other)"
+cp before other/results.csv
 printf 'my own notes' >notes && ln -s ../notes link/results.csv
 run experiment one.json -o link --cache cache
 test $status = 0 && test "$(cat notes)" = 'my own notes' && test "$(wc -l <link/results.csv)" = 3; result $? "and what a link leads to"

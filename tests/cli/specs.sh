@@ -91,7 +91,8 @@ sed -i 's/"builtin:single"/LIST/' base.json
 asks "too many inputs" 'scene: it asks for more than 10000 inputs' "'\"a\"'" 10001
 spec base.json '{ "name": "a" }'
 sed -i 's/"view": "own"/"eye": [LIST], "target": [0, 0, 0]/' base.json
-asks "an eye of a thousand numbers" 'cameras\[0\]: eye: this cannot be its value' "'1'" 1000
+asks "an eye of a thousand numbers" 'cameras\[0\]: eye: it asks for more than 64 numbers' "'1'" 65
+asks "and one of 64" 'cameras\[0\]: eye and target are three numbers each, \[x, y, z\]' "'1'" 64
 spec wrong.json '{ "name": "a" }'
 head -c 1100000 /dev/zero | tr '\0' ' ' >>wrong.json
 expect "a spec of a megabyte" 2 'wrong.json: it is larger than 1048576 bytes$' experiment wrong.json -o w
