@@ -22,12 +22,13 @@
 #include <seccomp.h>
 #endif
 
-static void limit(int what, rlim_t most) {
+/* grace: how far above it the hard limit lies. */
+static void limit(int what, rlim_t most, rlim_t grace) {
     struct rlimit now;
     if (getrlimit((__rlimit_resource_t)what, &now))
         return;
     now.rlim_cur = NOC_MIN(most, now.rlim_max);
-    now.rlim_max = now.rlim_cur;
+    now.rlim_max = NOC_MIN(most + grace, now.rlim_max);
     setrlimit((__rlimit_resource_t)what, &now);
 }
 
@@ -168,10 +169,12 @@ bool remote_short_of_memory(void) {
 
 void remote_confine(const char *path, bool whole, const noc_import_params *params) {
     unsetenv("SPATIALITE_SECURITY"); /* "relaxed" lets SQL touch files */
-    limit(RLIMIT_CORE, 0);
-    limit(RLIMIT_CPU, (rlim_t)NOC_MIN(params->reader_time, 1e9) + 2); /* where who started it no longer looks at the clock */
+    limit(RLIMIT_CORE, 0, 0);
+    /* Where who started it no longer looks at the clock. SIGXCPU comes at the limit and tells why the process ended; SIGKILL comes
+     * after the grace. */
+    limit(RLIMIT_CPU, (rlim_t)NOC_MIN(params->reader_time, 1e9) + 2, 2);
 #ifndef REMOTE_SANITIZED /* whose shadow takes terabytes of addresses */
-    limit(RLIMIT_AS, (rlim_t)(own_addresses() + import_budget_of(params).memory));
+    limit(RLIMIT_AS, (rlim_t)(own_addresses() + import_budget_of(params).memory), 0);
 #endif
     prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
     confine_files(path, whole, params->allow_outside);

@@ -157,8 +157,9 @@ if "$real" --version | grep -q gdal; then
     # Who started it cannot look at the clock: its own limit of processor time ends it, two seconds after the other.
     "$real" info --reader-time 4 in/endless.gpkg >out 2>err </dev/null &
     pid=$! child=
-    while test -z "$child" && kill -0 $pid 2>/dev/null; do
+    until grep -q 'Max cpu time *[0-9]' "/proc/${child% }/limits" 2>/dev/null; do # it limits itself once it was asked
         child=$(cat /proc/$pid/task/$pid/children 2>/dev/null)
+        kill -0 $pid 2>/dev/null || break
     done
     kill -STOP $pid
     for tick in $(seq 240); do
@@ -167,6 +168,7 @@ if "$real" --version | grep -q gdal; then
         sleep 0.5
     done
     test -n "$child" && test "${ended:-Z}" = Z; result $? "it ends by itself where nobody ends it" "helper ${child:-never seen}: $ended"
+    test "$(kill -l "$(awk '{ print $NF }' "/proc/${child% }/stat")")" = XCPU; result $? "by the signal that tells why"
     kill -CONT $pid
     wait $pid
     test $? = 1 && grep -q 'limit --reader-time' err; result $? "and the error says so"
@@ -204,6 +206,9 @@ END
         (export "$what"; run info in/poles.shp; echo $status >ended)
         test "$(cat ended)" = 1 && test -s err; result $? "the wrong helper is an error ($what)" "$(cat err)"
     done
+    printf '#!/bin/sh\nkill -XCPU $$\n' >spent && chmod +x spent
+    (export NOCTURNE_READER="$work/spent"; run info in/poles.shp; echo $status >ended)
+    test "$(cat ended)" = 1 && grep -q 'limit --reader-time' err; result $? "and its signal is told as that limit" "$(cat err)"
     # says NAME STATUS RECORDS PATTERN ARGUMENT...: a helper that was taken over sends RECORDS; one error comes of it, or none
     says() {
         name=$1 expected=$2 pattern=$4
