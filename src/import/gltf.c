@@ -80,7 +80,7 @@ static noc_status parse(gltf *g, const char *json, size_t size) {
     noc_status status = import_affords(g->budget, import_json_cost(json, size), g->name, "its JSON", g->log);
     if (status)
         return status;
-    g->root = import_json_load(pull, &from, size, JSON_DISABLE_EOF_CHECK, &error);
+    g->root = import_json_load(pull, &from, JSON_DISABLE_EOF_CHECK, &error);
     if (!g->root)
         return import_json_error(&error, g->name, g->log);
     const char *version = json_string_value(json_object_get(json_object_get(g->root, "asset"), "version"));

@@ -22,8 +22,8 @@ bool import_fits(const import_budget *b, double bytes);
 /* Bytes that parsing it takes, at most and roughly; adds up over pieces. */
 double import_json_cost(const char *text, size_t size);
 
-/* json.c: json_load_callback, of about so many bytes, whose allocations may be refused. */
-json_t *import_json_load(size_t (*from)(void *buffer, size_t size, void *user), void *user, size_t bytes, size_t flags, json_error_t *error);
+/* json.c: json_load_callback, whose allocations may be refused. */
+json_t *import_json_load(size_t (*from)(void *buffer, size_t size, void *user), void *user, size_t flags, json_error_t *error);
 /* Reports why it gave NULL, and returns the status. */
 noc_status import_json_error(const json_error_t *error, const char *name, noc_log *log);
 

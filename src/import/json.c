@@ -1,8 +1,8 @@
 /* JSON by jansson, whose allocations are refused with a status.
  *
  * jansson 2.14 does not look whether a text that it reads could grow (lex_save), and reads beyond its end then. So memory is set
- * aside before it begins: where an allocation is refused, that is given back, the allocation tried once more, and the reading ended
- * at the next piece of the file. */
+ * aside before each piece of the file: where an allocation is refused, that is given back, the allocation tried once more, and the
+ * reading ended at the next piece. A text is doubled as it grows, so twice the bytes that came so far are enough. */
 #include "import/import.h"
 
 #include <pthread.h>
@@ -11,6 +11,7 @@ typedef struct json_reading {
     size_t (*pull)(void *buffer, size_t size, void *user);
     void *user;
     void *aside;  /* NULL once it was given back */
+    size_t pulled, aside_size;
     bool refused;
 } json_reading;
 
@@ -38,16 +39,32 @@ static void set_allocator(void) {
         json_set_alloc_funcs(json_alloc, free);
 }
 
-static size_t pull(void *buffer, size_t size, void *user) {
-    const json_reading *r = user;
-    return r->refused ? (size_t)-1 : r->pull(buffer, size, r->user);
+/* Sets aside what bytes that came can take. It grows by half and more, so that it seldom does. */
+static bool set_aside(json_reading *r) {
+    enum { PIECE = 1 << 20 }; /* what all else in a piece of 1 KiB can take, and more */
+    size_t need = 2 * r->pulled + PIECE;
+    if (need > r->aside_size) {
+        free(r->aside);
+        r->aside_size = need + need / 2;
+        r->aside = noc_alloc(r->aside_size);
+        r->refused = !r->aside;
+    }
+    return !r->refused;
 }
 
-json_t *import_json_load(size_t (*from)(void *buffer, size_t size, void *user), void *user, size_t bytes, size_t flags, json_error_t *error) {
-    enum { PIECE = 1 << 20 }; /* what the rest of a piece of 1 KiB can take, and more */
-    json_reading r = { .pull = from, .user = user, .aside = noc_alloc(2 * bytes + PIECE) };
+static size_t pull(void *buffer, size_t size, void *user) {
+    json_reading *r = user;
+    size_t got = r->refused ? (size_t)-1 : r->pull(buffer, size, r->user);
+    if (got == (size_t)-1)
+        return got;
+    r->pulled += got;
+    return set_aside(r) ? got : (size_t)-1;
+}
+
+json_t *import_json_load(size_t (*from)(void *buffer, size_t size, void *user), void *user, size_t flags, json_error_t *error) {
+    json_reading r = { .pull = from, .user = user };
     *error = (json_error_t){ 0 };
-    if (!r.aside)
+    if (!set_aside(&r))
         return NULL;
     pthread_once(&allocator_once, set_allocator);
     reading = &r;

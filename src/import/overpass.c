@@ -123,7 +123,7 @@ static noc_status read_overpass(noc_stream *stream, const noc_import_params *par
     w.geographic = true;
     source from = { .stream = stream, .log = sink->log };
     json_error_t error;
-    json_t *root = import_json_load(pull, &from, (size_t)noc_stream_size(stream), 0, &error);
+    json_t *root = import_json_load(pull, &from, 0, &error);
     if (!root) {
         lamp_writer_free(&w);
         return from.status ? from.status : import_json_error(&error, noc_stream_name(stream), sink->log);

@@ -9,6 +9,7 @@
 #include "import/remote.h"
 #include <nocturne/nocturne.h>
 
+#include <malloc.h>
 #include <math.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -334,6 +335,39 @@ static void a_helper_without_memory(void **state) {
     setenv("NOCTURNE_READER", kept, 1);
 }
 
+typedef struct blanks {
+    size_t left, pulled, in_use; /* in_use: when it began */
+} blanks;
+
+static size_t bytes_in_use(void) {
+    struct mallinfo2 info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+}
+
+static size_t pull_blanks(void *buffer, size_t size, void *user) {
+    blanks *b = user;
+    size_t aside = bytes_in_use() - b->in_use; /* nothing is kept of blanks */
+    assert_in_range(aside, 2 * b->pulled, 3 * b->pulled + (4 << 20));
+    size = b->left < size ? b->left : size;
+    memset(buffer, ' ', size);
+    b->left -= size;
+    b->pulled += size;
+    return size;
+}
+
+/* jansson does not look whether the text that it reads could grow; so what that can take, which is up to twice as much, is set aside. What
+ * counts is what came, not the size of a file that may be compressed. */
+static void json_has_memory_aside(void **state) {
+#if SANITIZED /* which has a malloc of its own */
+    skip();
+#endif
+    blanks b = { .left = 16 << 20, .in_use = bytes_in_use() };
+    json_error_t error;
+    assert_null(import_json_load(pull_blanks, &b, 0, &error)); /* no JSON in it */
+    assert_int_equal(b.pulled, 16 << 20);
+    assert_in_range(bytes_in_use() - b.in_use, 0, 1 << 16);
+}
+
 static int make_inputs(void **state) {
     char command[900];
     snprintf(folder, sizeof(folder), "/tmp/noc-memory-%ld", (long)getpid());
@@ -356,6 +390,7 @@ int main(void) {
         cmocka_unit_test(coordinate_systems), cmocka_unit_test(citygml), cmocka_unit_test(gltf),  cmocka_unit_test(obj),
         cmocka_unit_test(lamps),              cmocka_unit_test(maps),    cmocka_unit_test(places_of_a_scene),
         cmocka_unit_test(polygons),           cmocka_unit_test(a_request), cmocka_unit_test(a_helper_without_memory),
+        cmocka_unit_test(json_has_memory_aside),
     };
     return cmocka_run_group_tests(tests, make_inputs, remove_inputs);
 }
