@@ -62,12 +62,16 @@ static void sweep(void) {
         closedir(dir);
 }
 
-/* false: a sweep took it before it was locked. File systems without locks do without. */
-static bool claim(scratch_folder *s) {
+/* 0, or why it cannot be locked. File systems without locks do without. */
+static int claim(scratch_folder *s) {
     struct stat st;
     s->lock = open(s->path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    return s->lock >= 0 && (!flock(s->lock, LOCK_EX | LOCK_NB) || errno != EWOULDBLOCK) && !stat(s->path, &st);
+    bool locked = s->lock >= 0 && (!flock(s->lock, LOCK_EX | LOCK_NB) || errno != EWOULDBLOCK);
+    return locked && !stat(s->path, &st) ? 0 : errno;
 }
+
+/* A sweep took it between the making and the locking. */
+static bool was_swept(int error) { return error == ENOENT || error == EWOULDBLOCK; }
 
 noc_status scratch_make(scratch_folder *s, const char *name, noc_log *log) {
     *s = (scratch_folder){ .lock = -1 };
@@ -76,16 +80,16 @@ noc_status scratch_make(scratch_folder *s, const char *name, noc_log *log) {
         if (!(s->path = noc_format("%s/" PREFIX "XXXXXX", scratch_place())))
             return noc_no_memory(log, name);
         bool made = mkdtemp(s->path) != NULL;
-        if (made && claim(s))
+        int error = made ? claim(s) : errno;
+        if (!error)
             return NOC_OK;
-        int error = errno;
         if (made)
             rmdir(s->path);
         if (s->lock >= 0)
             close(s->lock);
         free(s->path);
         *s = (scratch_folder){ .lock = -1 };
-        if (!made)
+        if (!made || !was_swept(error))
             return noc_error(log, NOC_ERR_IO, "%s: no temporary folder in %s: %s", name, scratch_place(), strerror(error));
     }
     return noc_error(log, NOC_ERR_IO, "%s: temporary folders in %s are taken away as they are made", name, scratch_place());
