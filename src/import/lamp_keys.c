@@ -198,8 +198,6 @@ lamp_keys *lamp_keys_create(const noc_import_params *params) {
     return NULL;
 }
 
-bool lamp_keys_refused(const lamp_keys *keys) { return keys->arena.refused; }
-
 void lamp_keys_destroy(lamp_keys *keys) {
     if (!keys)
         return;

@@ -48,7 +48,6 @@ lamp_meaning lamp_meaning_of(const char *key);
 /* The keys of one file: what they mean, by words and by --lamp-columns, and which values they had. */
 typedef struct lamp_keys lamp_keys;
 lamp_keys *lamp_keys_create(const noc_import_params *params); /* params may be NULL. NULL: memory was refused */
-bool lamp_keys_refused(const lamp_keys *keys); /* whether memory was refused to what was noted; looked at once, at the end */
 void lamp_keys_destroy(lamp_keys *keys);
 lamp_meaning lamp_keys_meaning(lamp_keys *keys, const char *name); /* keys may be NULL: by the words alone */
 /* A number for the key, which makes asking about its tags fast; 0 where there are too many keys. */

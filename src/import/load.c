@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #define HEAD_SIZE 65536
 #define BUILTIN "builtin:" /* and the name of a scene */

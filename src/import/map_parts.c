@@ -2,9 +2,7 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <limits.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 static char *folder_of(const char *path) {
     const char *slash = strrchr(path, '/');
