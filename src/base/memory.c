@@ -46,25 +46,6 @@ char *noc_strndup(const char *s, size_t n) {
 
 char *noc_strdup(const char *s) { return s ? noc_strndup(s, strlen(s)) : NULL; }
 
-static char *format_v(const char *fmt, va_list ap) {
-    va_list copy;
-    va_copy(copy, ap);
-    int n = noc_vsnprintf(NULL, 0, fmt, copy);
-    va_end(copy);
-    char *s = n < 0 ? NULL : noc_alloc((size_t)n + 1);
-    if (s)
-        noc_vsnprintf(s, (size_t)n + 1, fmt, ap);
-    return s;
-}
-
-char *noc_format(const char *fmt, ...) {
-    va_list ap;
-    va_start(ap, fmt);
-    char *s = format_v(fmt, ap);
-    va_end(ap);
-    return s;
-}
-
 void *noc_alloc_large(size_t count, size_t size) {
     size_t bytes;
     if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX - 63 || noc_allocation_refused())
@@ -127,23 +108,33 @@ char *arena_strndup(noc_arena *arena, const char *s, size_t n) {
 
 char *arena_strdup(noc_arena *arena, const char *s) { return s ? arena_strndup(arena, s, strlen(s)) : NULL; }
 
-static char *arena_format_v(noc_arena *arena, const char *fmt, va_list ap) {
+/* In the arena; to be freed where that is NULL. A text that vsnprintf cannot measure (2 GB) is refused. */
+static char *format_v(noc_arena *arena, const char *fmt, va_list ap) {
     va_list copy;
     va_copy(copy, ap);
     int n = noc_vsnprintf(NULL, 0, fmt, copy);
     va_end(copy);
-    char *p = arena_alloc(arena, (size_t)NOC_MAX(n, 0) + 1);
-    if (p)
-        noc_vsnprintf(p, (size_t)NOC_MAX(n, 0) + 1, fmt, ap);
-    return p;
+    size_t size = n < 0 ? SIZE_MAX / 2 + 1 : (size_t)n + 1; /* which no allocator has */
+    char *s = arena ? arena_alloc(arena, size) : noc_alloc(size);
+    if (s)
+        noc_vsnprintf(s, size, fmt, ap);
+    return s;
+}
+
+char *noc_format(const char *fmt, ...) {
+    va_list ap;
+    va_start(ap, fmt);
+    char *s = format_v(NULL, fmt, ap);
+    va_end(ap);
+    return s;
 }
 
 char *arena_format(noc_arena *arena, const char *fmt, ...) {
     va_list ap;
     va_start(ap, fmt);
-    char *p = arena_format_v(arena, fmt, ap);
+    char *s = format_v(arena, fmt, ap);
     va_end(ap);
-    return p;
+    return s;
 }
 
 void arena_free(noc_arena *arena) {
