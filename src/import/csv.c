@@ -151,12 +151,7 @@ static int find_column(const columns *cols, lamp_field wanted) {
     return best;
 }
 
-static bool has_place(const columns *c) {
-    return (c->lon >= 0 && c->lat >= 0) || (c->x >= 0 && c->y >= 0) || c->wkt >= 0 || c->lat_lon >= 0;
-}
-
-/* The same of a line that is only looked at. */
-static bool fields_have_place(const bool has[LAMP_FIELD_TOTAL]) {
+static bool have_place(const bool has[LAMP_FIELD_TOTAL]) {
     return (has[LAMP_FIELD_LON] && has[LAMP_FIELD_LAT]) || (has[LAMP_FIELD_X] && has[LAMP_FIELD_Y]) || has[LAMP_FIELD_WKT] ||
            has[LAMP_FIELD_LAT_LON];
 }
@@ -207,7 +202,7 @@ static size_t probe_columns(const char *head, size_t size, bool has[LAMP_FIELD_T
 
 bool lamp_csv_probe(const char *head, size_t size) {
     bool has[LAMP_FIELD_TOTAL] = { false };
-    return probe_columns(head, size, has) && fields_have_place(has);
+    return probe_columns(head, size, has) && have_place(has);
 }
 
 /* Text in lines, of which the first is cut by a separator. */
@@ -293,7 +288,10 @@ static noc_status read_header(csv *c, columns *cols) {
     if (!cols->names || cols->count < c->start.len)
         return no_memory(c);
     understand(cols);
-    return has_place(cols) ? NOC_OK : no_place(c, cols);
+    bool has[LAMP_FIELD_TOTAL] = { false };
+    for (size_t i = 0; i < cols->count; i++)
+        has[lamp_keys_meaning(cols->keys, cols->names[i]).field] = true;
+    return have_place(has) ? NOC_OK : no_place(c, cols);
 }
 
 /* Columns called x and y without a CRS: degrees if every one of them could be, and none of them lies where `given` (NULL
