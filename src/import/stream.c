@@ -45,6 +45,8 @@ static noc_status fail(noc_stream *s, noc_status status, const char *cause) {
     return noc_error(s->log, status, "%s: %s", s->name, cause);
 }
 
+static noc_status no_memory(noc_stream *s) { return s->failed = noc_no_memory(s->log, s->name); }
+
 /* ---- plain ---- */
 
 static noc_status read_fd(noc_stream *s, void *data, size_t size, size_t *got) {
@@ -64,11 +66,11 @@ static void zlib_free(void *unused, void *p) { free(p); }
 
 static noc_status gzip_start(noc_stream *s) {
     if (!s->input && !(s->input = noc_alloc(INPUT_SIZE)))
-        return fail(s, NOC_ERR_MEMORY, "out of memory");
+        return no_memory(s);
     s->z = (z_stream){ .zalloc = zlib_alloc, .zfree = zlib_free };
     s->z_member_done = false;
     if (inflateInit2(&s->z, 15 + 16) != Z_OK)
-        return fail(s, NOC_ERR_MEMORY, "out of memory");
+        return no_memory(s);
     s->z_open = true;
     return NOC_OK;
 }
@@ -122,7 +124,7 @@ static noc_status read_gzip(noc_stream *s, void *data, size_t size, size_t *got)
         if (z == Z_STREAM_END)
             s->z_member_done = true;
         else if (z == Z_MEM_ERROR)
-            return fail(s, NOC_ERR_MEMORY, "out of memory");
+            return no_memory(s);
         else if (z != Z_OK && z != Z_BUF_ERROR)
             return fail(s, NOC_ERR_FORMAT, s->z.msg ? s->z.msg : "damaged gzip data");
     }
@@ -174,7 +176,7 @@ static zip_int64_t zip_choose(zip_t *zip, size_t *alike) {
 
 static noc_status zip_fail(noc_stream *s, const char *what, zip_error_t *error) {
     if (zip_error_code_zip(error) == ZIP_ER_MEMORY)
-        return fail(s, NOC_ERR_MEMORY, "out of memory");
+        return no_memory(s);
     char text[256];
     noc_snprintf(text, sizeof(text), "%s: %s", what, zip_error_strerror(error));
     return fail(s, NOC_ERR_FORMAT, text);
@@ -201,7 +203,7 @@ static noc_status zip_open_archive(noc_stream *s) {
     s->member_index = (zip_uint64_t)index;
     char *name = noc_format("%s!%s", s->path, zip_get_name(s->zip, s->member_index, ZIP_FL_ENC_GUESS));
     if (!name)
-        return fail(s, NOC_ERR_MEMORY, "out of memory");
+        return no_memory(s);
     free(s->name);
     s->name = name;
     zip_stat_t stat;
