@@ -29,7 +29,7 @@ enum {
     REMOTE_GO,
     REMOTE_LOG = 32,   /* level, text */
     REMOTE_CRS,        /* texts: srsName, place */
-    REMOTE_LAMP,       /* geo_lamp, text: id */
+    REMOTE_LAMP,       /* geo_lamp, texts: id, ref */
     REMOTE_MATERIAL,   /* noc_material */
     REMOTE_MESH,       /* remote_mesh, text: name, positions, indices */
     REMOTE_ISSUE,      /* repaired, count, texts: reason, examples */
@@ -58,6 +58,8 @@ void remote_put_text(remote_record *r, const char *text); /* NULL is "" */
 bool remote_get(remote_record *r, void *data, size_t size);
 const char *remote_get_text(remote_record *r);            /* in the record; "" where it is bad */
 const void *remote_get_array(remote_record *r, uint64_t count, size_t item); /* not aligned; NULL where it is bad */
+/* Sends (out) or receives so many bytes; false where the other end is gone. */
+bool remote_pass(int fd, void *data, size_t size, bool out);
 /* Puts the record behind others, as what it is, and empties it. */
 void remote_add(remote_record *batch, uint32_t kind, remote_record *r);
 /* Sends all that was added, and empties it. false where nobody listens. */
@@ -90,7 +92,7 @@ typedef struct remote_result {
 } remote_result;
 
 /* Reads path by the reader in the helper. What it emits goes to the sink (its issues and its log, too), and to parts where the
- * reader reads meshes. sink->progress is asked ten times a second. */
+ * reader reads meshes. sink->progress is asked twenty times a second. */
 noc_status remote_read(const noc_reader *reader, const char *path, const noc_import_params *params, geo_sink *sink,
                        const mesh_parts *parts, remote_result *result);
 
@@ -116,7 +118,7 @@ void remote_taker_free(remote_taker *t);
 
 /* ---- the helper's side (remote_serve.c, remote_confine.c) ---- */
 
-/* Limits this process: memory, no core file, and where the system can: no network, no other program, and of files those to
+/* Limits this process: memory, processor time, no core file, and where the system can: no network, no other program, and of files those to
  * be read by name, the folder's where `whole` (or all of them: anywhere), the system's own, and the temporary folder. */
 void remote_confine(const char *path, bool whole, const noc_import_params *params);
 /* Did this process take more than half of the memory that it may? Then a library may have failed because it wanted more:

@@ -2,9 +2,7 @@
 #include "import/load.h"
 #include "import/remote.h"
 
-#include <errno.h>
 #include <nocturne/option.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 /* ---- the library's side ---- */
@@ -51,19 +49,6 @@ void remote_ask(remote_record *batch, const noc_reader *reader, const char *path
 
 /* ---- the helper's side ---- */
 
-static bool receive_all(int fd, void *data, size_t size) {
-    for (char *p = data; size;) {
-        ssize_t n = recv(fd, p, size, 0);
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n <= 0)
-            return false;
-        p += n;
-        size -= (size_t)n;
-    }
-    return true;
-}
-
 static void set_option(remote_request *q, const char *name, const char *value) {
     const char *kept = arena_strdup(&q->texts, value);
     for (const noc_option *o = noc_import_options(); o->name && kept; o++)
@@ -99,14 +84,14 @@ bool remote_receive(int fd, remote_request *q) {
     for (;;) {
         remote_head head;
         remote_record r = { 0 };
-        if (!receive_all(fd, &head, sizeof(head)) || head.size_high || head.size_low > REMOTE_REQUEST_MOST)
+        if (!remote_pass(fd, &head, sizeof(head), false) || head.size_high || head.size_low > REMOTE_REQUEST_MOST)
             return false;
         if (!array_reserve(&r.bytes, (size_t)head.size_low)) {
             q->texts.refused = true;
             return false;
         }
         r.bytes.len = head.size_low;
-        bool good = receive_all(fd, r.bytes.data, r.bytes.len) && take(q, head.kind, &r);
+        bool good = remote_pass(fd, r.bytes.data, r.bytes.len, false) && take(q, head.kind, &r);
         array_free(&r.bytes);
         if (!good || head.kind == REMOTE_GO)
             return good && q->reader && q->path;

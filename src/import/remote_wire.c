@@ -38,9 +38,9 @@ const char *remote_get_text(remote_record *r) {
     return "";
 }
 
-static bool send_all(int fd, const void *data, size_t size) {
-    for (const char *p = data; size;) {
-        ssize_t n = send(fd, p, size, MSG_NOSIGNAL);
+bool remote_pass(int fd, void *data, size_t size, bool out) {
+    for (char *p = data; size;) {
+        ssize_t n = out ? send(fd, p, size, MSG_NOSIGNAL) : recv(fd, p, size, 0);
         if (n < 0 && errno == EINTR)
             continue;
         if (n <= 0)
@@ -60,7 +60,7 @@ void remote_add(remote_record *batch, uint32_t kind, remote_record *r) {
 }
 
 bool remote_send(int fd, remote_record *batch) {
-    bool sent = send_all(fd, batch->bytes.data, batch->bytes.len);
+    bool sent = remote_pass(fd, batch->bytes.data, batch->bytes.len, true);
     batch->bytes.len = 0;
     return sent;
 }
