@@ -44,9 +44,9 @@ bool gltf_numbers(const json_t *object, const char *key, size_t count, double *o
 json_t *gltf_extension(const json_t *object, const char *name);
 noc_status gltf_open_buffers(gltf *g);
 void gltf_close_buffers(gltf *g);
-/* An accessor's elements of `width` numbers each, as doubles (integers normalised where it says so). free() *out. */
-/* Bytes that reading it takes; 0 where it is refused. */
+/* Bytes that gltf_read takes for an accessor; 0 where its numbers are not there. */
 double gltf_cost(const gltf *g, size_t accessor, size_t width);
+/* An accessor's elements of `width` numbers each, as doubles (integers normalised where it says so). free() *out. */
 noc_status gltf_read(const gltf *g, size_t accessor, const char *type, size_t width, double **out, size_t *count);
 
 /* gltf_look.c */

@@ -65,7 +65,8 @@ noc_status lamp_keys_report(lamp_keys *keys, geo_sink *sink, const char *place, 
 
 /* --lamp-columns must be understood even where no input needs it: reported, NOC_ERR_ARGUMENT. */
 noc_status lamp_mapping_check(const noc_import_params *params, noc_log *log);
-/* The first column of --lamp-columns of which found says no; NULL if there is none. free() it. */
+/* *missing: the first column that --lamp-columns names and `found` does not know, to be freed; NULL where it knows all. An error is
+ * reported. */
 noc_status lamp_mapping_missing(const noc_import_params *params, bool (*found)(void *ctx, const char *name), void *ctx, noc_log *log,
                                 char **missing) NOC_MUST_USE;
 /* Are these two names of one column? Case, accents, blanks and signs do not count. */
