@@ -367,7 +367,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "import: no input");
     if (scene->committed)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "import: the scene is committed");
-    importer im = { .log = scene->log, .scene = scene, .params = params, .inspect = inspect };
+    importer im = { .log = scene->log, .scene = scene, .params = params, .memory = import_budget_of(params).memory,
+                    .inspect = inspect };
     im.report = report_create();
     status = im.report ? list_inputs(&im, paths, path_count) : noc_no_memory(scene->log, "import");
     if (!status)

@@ -70,6 +70,7 @@ typedef struct importer {
     noc_log *log;
     noc_scene *scene;
     const noc_import_params *params;
+    double memory;            /* bytes that the scene may take */
     noc_report *report;
     bool inspect;
     input *inputs;

@@ -30,6 +30,7 @@ typedef struct remote {
     int fd;
     pid_t pid;
     uint64_t received;
+    double memory; /* bytes that the file may take */
     double started, ticked;
 } remote;
 
@@ -165,12 +166,12 @@ static noc_status ended_early(remote *r) {
         return out_of_time(r);
     if (got > 0 && WIFEXITED(how) && WEXITSTATUS(how) == REMOTE_NO_MEMORY)
         return noc_error(r->sink->log, NOC_ERR_MEMORY, "%s: the process that reads it needs more than the limit --max-memory, %.3g GB",
-                         r->path, import_budget_of(r->params).memory / 1e9);
+                         r->path, r->memory / 1e9);
     if (got > 0 && WIFSIGNALED(how) && WTERMSIG(how) != SIGKILL)
         return noc_error(r->sink->log, NOC_ERR_FORMAT,
                          "%s: the process that reads it as %s ended by signal %d (%s): the file is broken, or needs more than the limit "
                          "--max-memory, %.3g GB", r->path, r->reader->name, WTERMSIG(how), strsignal(WTERMSIG(how)),
-                         import_budget_of(r->params).memory / 1e9);
+                         r->memory / 1e9);
     return noc_error(r->sink->log, NOC_ERR_IO, "%s: the process that reads it was ended from outside, or could not run (%s)", r->path, r->program);
 }
 
@@ -196,10 +197,9 @@ static noc_status receive(remote *r) {
         return ended_early(r);
     r->from.bytes.len += (size_t)n;
     r->received += (uint64_t)n;
-    const import_budget budget = import_budget_of(r->params);
-    if ((double)r->received > budget.memory)
+    if ((double)r->received > r->memory)
         return noc_error(r->sink->log, NOC_ERR_MEMORY, "%s: it holds more than the limit --max-memory, %.3g GB", r->path,
-                         budget.memory / 1e9);
+                         r->memory / 1e9);
     noc_status status = NOC_OK;
     while (!status && remote_take(&r->from, &status)) /* a small record may take long: a coordinate system of its own */
         status = status ? status : look_at_clock(r);
@@ -233,8 +233,8 @@ static void finish(remote *r) {
 
 noc_status remote_read(const noc_reader *reader, const char *path, const noc_import_params *params, geo_sink *sink,
                        const mesh_parts *parts, remote_result *result) {
-    remote r = { .reader = reader, .path = path, .params = params, .sink = sink, .fd = -1, .started = noc_wall_seconds(),
-                 .from = { .path = path, .sink = sink, .parts = parts, .result = result } };
+    remote r = { .reader = reader, .path = path, .params = params, .sink = sink, .fd = -1, .memory = import_budget_of(params).memory,
+                 .started = noc_wall_seconds(), .from = { .path = path, .sink = sink, .parts = parts, .result = result } };
     *result = (remote_result){ 0 };
     noc_status status = start(&r);
     if (!status)

@@ -76,8 +76,7 @@ noc_status sink_affords(importer *im, size_t more) {
     size_t scene = noc_scene_bytes(im->scene) + more, made = scene - NOC_MIN(scene, im->scene_before);
     size_t waiting = im->lamps.cap * sizeof(*im->lamps.data) + im->lost.cap * sizeof(*im->lost.data) + im->names.bytes +
                      im->records.list.cap * sizeof(*im->records.list.data);
-    import_budget memory = import_budget_of(im->params), growth = { INFINITY, 0, (double)in->bytes };
-    memory.expansion = 0;
+    import_budget memory = { .memory = im->memory }, growth = { INFINITY, 0, (double)in->bytes };
     if (in->reader && in->reader->reads == NOC_READS_CITY) /* other readers see themselves to what files grow to */
         growth.expansion = im->params->max_expansion;
     noc_status status = import_affords(&memory, (double)(scene + waiting), in->path, "the scene with it", im->log);
