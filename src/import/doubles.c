@@ -10,26 +10,15 @@
 #define FEWEST 3        /* lamps that are evidence */
 #define MOST 64         /* lamps of a cell that are looked at */
 
-typedef struct grid {
-    const pending_lamp *lamps;
-    uint32_t *first, *next; /* chains of index + 1 */
-    size_t size;            /* of first: a power of two */
-} grid;
-
-static uint32_t *cell(const grid *g, double cx, double cy) {
-    uint64_t h = (uint64_t)(int64_t)cx * 0x9e3779b97f4a7c15u + (uint64_t)(int64_t)cy * 0xc2b2ae3d27d4eb4fu;
-    return &g->first[(h ^ h >> 32) & (g->size - 1)];
-}
-
 /* The input of the lamp of another file that is this one, it seems: it is near, and less than half as far as the next lamp of the
  * own file. SIZE_MAX: there is none. */
-static size_t twin(const grid *g, const pending_lamp *p) {
-    double cx = floor(p->lamp.xyz[0] / CELL), cy = floor(p->lamp.xyz[1] / CELL), own = INFINITY, other = INFINITY;
+static size_t twin(const pending_lamp *lamps, const lamp_cells *cells, const pending_lamp *p) {
+    double own = INFINITY, other = INFINITY;
     size_t found = SIZE_MAX;
     for (int c = 0; c < 9; c++) {
         size_t seen = 0;
-        for (uint32_t k = *cell(g, cx + c % 3 - 1, cy + c / 3 - 1); k && seen++ < MOST; k = g->next[k - 1]) {
-            const pending_lamp *q = &g->lamps[k - 1];
+        for (uint32_t k = *lamp_cells_at(cells, p->lamp.xyz, c); k && seen++ < MOST; k = cells->next[k - 1]) {
+            const pending_lamp *q = &lamps[k - 1];
             double d = hypot(q->lamp.xyz[0] - p->lamp.xyz[0], q->lamp.xyz[1] - p->lamp.xyz[1]);
             if (q->input == p->input) {
                 own = d > ONE_POLE ? NOC_MIN(own, d) : own;
@@ -44,10 +33,11 @@ static size_t twin(const grid *g, const pending_lamp *p) {
 
 /* Lamps [from, to) are those of one input. counts: zeros, one for each input, as they are left. told: the other input + 1 that a warning
  * of an input was about. */
-static void judge_file(const importer *im, const grid *g, size_t from, size_t to, size_t *counts, size_t *told) {
-    size_t self = g->lamps[from].input, best = 0;
+static void judge_file(const importer *im, const lamp_cells *cells, size_t from, size_t to, size_t *counts, size_t *told) {
+    const pending_lamp *lamps = im->lamps.data;
+    size_t self = lamps[from].input, best = 0;
     for (size_t i = from; i < to; i++) {
-        size_t of = twin(g, &g->lamps[i]);
+        size_t of = twin(lamps, cells, &lamps[i]);
         if (of != SIZE_MAX)
             counts[of]++;
     }
@@ -66,24 +56,17 @@ noc_status warn_of_doubles(const importer *im) {
     size_t count = im->lamps.len;
     if (!count || lamps[0].input == lamps[count - 1].input) /* they lie file by file */
         return NOC_OK;
-    grid g = { .lamps = lamps, .size = 1024, .next = noc_calloc(count, sizeof(*g.next)) };
-    while (g.size < count)
-        g.size *= 2;
-    g.first = noc_calloc(g.size, sizeof(*g.first));
+    lamp_cells cells;
     size_t *counts = noc_calloc(2 * im->input_count, sizeof(*counts));
-    bool kept = g.first && g.next && counts;
-    for (size_t i = 0; i < count && kept; i++) {
-        uint32_t *head = cell(&g, floor(lamps[i].lamp.xyz[0] / CELL), floor(lamps[i].lamp.xyz[1] / CELL));
-        g.next[i] = *head;
-        *head = (uint32_t)i + 1;
-    }
+    bool kept = lamp_cells_create(&cells, count, CELL) && counts;
+    for (size_t i = 0; i < count && kept; i++)
+        lamp_cells_add(&cells, lamps[i].lamp.xyz, i);
     for (size_t from = 0, to; from < count && kept; from = to) {
         for (to = from; to < count && lamps[to].input == lamps[from].input;)
             to++;
-        judge_file(im, &g, from, to, counts, counts + im->input_count);
+        judge_file(im, &cells, from, to, counts, counts + im->input_count);
     }
-    free(g.first);
-    free(g.next);
+    lamp_cells_free(&cells);
     free(counts);
     return kept ? NOC_OK : noc_no_memory(im->log, "import");
 }

@@ -6,7 +6,6 @@
 #include "import/lamp_tags.h"
 
 #include <math.h>
-#include <sys/stat.h>
 
 #define HEAD_SIZE 65536
 #define BUILTIN "builtin:" /* and the name of a scene */
@@ -311,12 +310,6 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
         }
     noc_status status = check_columns(im);
     return status || im->inspect ? status : finish_city(im);
-}
-
-/* Whatever they are called: "a.csv", "./a.csv", a link. */
-static bool same_file(const char *a, const char *b) {
-    struct stat s, t;
-    return !strcmp(a, b) || (!stat(a, &s) && !stat(b, &t) && s.st_dev == t.st_dev && s.st_ino == t.st_ino);
 }
 
 static bool among(const char *path, const char *const *paths, size_t count) {

@@ -162,11 +162,23 @@ void sink_destroy(importer *im);
 int sink_material(importer *im, noc_class cls, const char *id);
 
 /* repeat.c: what is given twice is taken once. */
+bool same_file(const char *a, const char *b); /* whatever they are called: "a.csv", "./a.csv", a link */
 bool repeat_file(importer *im, size_t index); /* is it one of those before it? Said and reported */
 void repeat_polygon(object_now *now, noc_class cls, const double *xyz, size_t count); /* local metres */
 noc_status repeat_object(importer *im, const char *id, bool *repeated); /* is im->now one that was read? Decided once, and reported */
 noc_status repeat_lamps(importer *im); /* drops lamps that an earlier file holds */
 void repeat_free(object_records *records);
+
+/* lamp_cells.c: finds lamps by where they are, whatever the extent: chains of those whose cell has one hash. */
+typedef struct lamp_cells {
+    uint32_t *first, *next; /* index + 1 in the order of its user; 0: no more */
+    size_t size;            /* of first: a power of two */
+    double edge;            /* m */
+} lamp_cells;
+bool lamp_cells_create(lamp_cells *cells, size_t lamps, double edge) NOC_MUST_USE;
+uint32_t *lamp_cells_at(const lamp_cells *cells, const double xy[2], int neighbour); /* 0..8: the cells around; 4: the point's own */
+void lamp_cells_add(lamp_cells *cells, const double xy[2], size_t index);
+void lamp_cells_free(lamp_cells *cells);
 
 /* doubles.c: a warning where most lamps of a file seem to be another file's. */
 noc_status warn_of_doubles(const importer *im);

@@ -45,6 +45,11 @@ static bool same_folder(const char *a, const char *b) {
     return n == m && !memcmp(a, b, n);
 }
 
+bool same_file(const char *a, const char *b) {
+    struct stat s, t;
+    return !strcmp(a, b) || (!stat(a, &s) && !stat(b, &t) && s.st_dev == t.st_dev && s.st_ino == t.st_ino);
+}
+
 /* Why b is a again; NULL where it is not. */
 static const char *file_again(const input *a, const input *b) {
     if (a->reader != b->reader)
@@ -54,7 +59,7 @@ static const char *file_again(const input *a, const input *b) {
         return strcmp(a->path, b->path) ? NULL : "built-in scene that is named twice";
     if (stat(a->path, &s) || stat(b->path, &t) || !S_ISREG(s.st_mode) || !S_ISREG(t.st_mode))
         return NULL;
-    if (s.st_dev == t.st_dev && s.st_ino == t.st_ino)
+    if (same_file(a->path, b->path))
         return "file that is named twice";
     /* a glTF's buffers lie beside it: other ones in another folder */
     bool alone = a->reader != &noc_reader_gltf || same_folder(a->path, b->path);
@@ -225,10 +230,6 @@ void repeat_free(object_records *records) {
 
 /* ---- lamps ---- */
 
-static size_t lamp_bucket(double cx, double cy, size_t size) {
-    return (size_t)mix((uint64_t)(int64_t)cx * 0x9e3779b97f4a7c15u + (uint64_t)(int64_t)cy) & (size - 1);
-}
-
 static bool called_alike(const geo_lamp *a, const geo_lamp *b) {
     const char *const x[2] = { a->id, a->ref }, *const y[2] = { b->id, b->ref };
     for (int i = 0; i < 4; i++)
@@ -244,26 +245,20 @@ static bool same_lamp(const pending_lamp *a, const pending_lamp *b) {
 
 noc_status repeat_lamps(importer *im) {
     pending_lamp *lamps = im->lamps.data;
-    size_t size = 1024, kept = 0;
+    lamp_cells cells;
+    size_t kept = 0;
     bool several = false;
     for (size_t i = 1; i < im->lamps.len; i++)
         several = several || lamps[i].input != lamps[0].input;
     if (!several)
         return NOC_OK;
-    while (size < im->lamps.len)
-        size *= 2;
-    uint32_t *first = noc_calloc(size, sizeof(*first)), *next = noc_calloc(im->lamps.len, sizeof(*next));
-    if (!first || !next) {
-        free(first);
-        free(next);
+    if (!lamp_cells_create(&cells, im->lamps.len, LAMP_CELL))
         return noc_no_memory(im->log, "import");
-    }
     for (size_t i = 0; i < im->lamps.len; i++) {
         const pending_lamp p = lamps[i];
-        double cx = floor(p.lamp.xyz[0] / LAMP_CELL), cy = floor(p.lamp.xyz[1] / LAMP_CELL);
         bool again = false;
         for (int c = 0; c < 9 && !again; c++)
-            for (uint32_t k = first[lamp_bucket(cx + c % 3 - 1, cy + c / 3 - 1, size)]; k && !again; k = next[k - 1])
+            for (uint32_t k = *lamp_cells_at(&cells, p.lamp.xyz, c); k && !again; k = cells.next[k - 1])
                 again = same_lamp(&lamps[k - 1], &p);
         if (again) {
             input *in = &im->inputs[p.input];
@@ -272,17 +267,14 @@ noc_status repeat_lamps(importer *im) {
             continue;
         }
         lamps[kept] = p;
-        uint32_t *head = &first[lamp_bucket(cx, cy, size)];
-        const pending_lamp *last = *head ? &lamps[*head - 1] : NULL;
+        uint32_t newest = *lamp_cells_at(&cells, p.lamp.xyz, 4);
+        const pending_lamp *last = newest ? &lamps[newest - 1] : NULL;
         /* a thousand lamps of one file at one place are one, to those of another */
-        if (!last || last->input != p.input || last->lamp.xyz[0] != p.lamp.xyz[0] || last->lamp.xyz[1] != p.lamp.xyz[1]) {
-            next[kept] = *head;
-            *head = (uint32_t)kept + 1;
-        }
+        if (!last || last->input != p.input || last->lamp.xyz[0] != p.lamp.xyz[0] || last->lamp.xyz[1] != p.lamp.xyz[1])
+            lamp_cells_add(&cells, p.lamp.xyz, kept);
         kept++;
     }
     im->lamps.len = kept;
-    free(first);
-    free(next);
+    lamp_cells_free(&cells);
     return NOC_OK;
 }
