@@ -53,8 +53,8 @@ typedef struct noc_render_params {
     int list, tail;             /* lists: strongest lights of a tile, 0..128; draws from all others, 1..128 */
     int shadow_rays;            /* lists: shadow rays a pixel and frame: a target, 1 to twice as many; 1..8 */
     bool learn;                 /* lists: visibility found in earlier frames says where rays are sent */
-    double influence;           /* bvh: S_r, the distance at which a light of 1 cd is last found, m; 0 = found for the scene,
-                                 * and then for every point */
+    double influence;           /* bvh: S_r, the distance at which a light of 1 cd is last found, m; 0 = found for the scene;
+                                 * points then list the strongest lights within it */
     noc_influence_boxes influence_boxes;
     int influence_cluster;      /* bvh: at most so many lights that lie close together share a volume, 1..64 */
     int uniform_every;          /* bvh: of so many draws one is from all lights, 1..1024 */

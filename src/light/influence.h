@@ -44,7 +44,7 @@ typedef struct noc_influence {
     noc_influence_node *nodes[NOC_INFLUENCE_LEVELS]; /* level 0: a child is 16 volumes in order; the last level has one node */
     int levels;                                     /* 0: no light emits anything */
     float scale;                                    /* S_r for this scene, sqrt(m2 / cd) */
-    noc_influence_rule rule;                        /* for it, and for points that find one of their own */
+    noc_influence_rule rule;                        /* for it, and for what each point lists */
     size_t bytes;
     double seconds[NOC_INFLUENCE_STEPS];            /* wall seconds that each step of building took */
 } noc_influence;

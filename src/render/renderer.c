@@ -40,7 +40,7 @@ noc_renderer *noc_renderer_create(const noc_scene *scene, const noc_renderer_par
     }
     noc_renderer *r = noc_alloc(sizeof(*r));
     if (!r) {
-        noc_error(log, NOC_ERR_MEMORY, "renderer: no memory");
+        noc_no_memory(log, "renderer");
         return NULL;
     }
     *r = (noc_renderer){ .scene = scene, .log = log, .backend = backend };

@@ -39,7 +39,7 @@ noc_material noc_class_material(noc_class cls) {
 noc_scene *noc_scene_create(noc_log *log) {
     noc_scene *scene = noc_calloc(1, sizeof(*scene));
     if (!scene) {
-        noc_error(log, NOC_ERR_MEMORY, "scene: no memory");
+        noc_no_memory(log, "scene");
         return NULL;
     }
     scene->log = log;
