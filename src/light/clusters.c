@@ -131,20 +131,67 @@ static bool near(const build *b, const noc_light_bound *x, const noc_light_bound
     return d2 <= b->reach * b->reach;
 }
 
-/* Where clusters begin, into first (or only how many there are, where that is NULL). */
-static size_t cut(const build *b, uint32_t *first) {
-    size_t count = 0, begin = 0;
-    for (size_t i = 0; i < b->emitting; i++)
-        if (!i || i - begin == NOC_CLUSTER_LIGHTS || !alike(&b->bounds[b->keys[begin].id], &b->bounds[b->keys[i].id]) ||
-            !near(b, &b->bounds[b->keys[begin].id], &b->bounds[b->keys[i].id])) {
-            begin = i;
-            if (first)
-                first[count] = (uint32_t)i;
-            count++;
-        }
-    if (first)
-        first[count] = (uint32_t)b->emitting;
-    return count;
+/* Clusters that lights are still put into. Where neighbours face every which way, each light looks for one of its kind, so that
+ * clusters become full; none stays open for more than OPEN_FOR lights of the curve, so that they stay small. */
+enum { OPEN = 8, OPEN_FOR = 8 * NOC_CLUSTER_LIGHTS };
+
+typedef struct open_cluster {
+    noc_light_key keys[NOC_CLUSTER_LIGHTS];
+    uint32_t count;
+    size_t since; /* place on the curve of the first one */
+} open_cluster;
+
+typedef struct gathering {
+    open_cluster open[OPEN];
+    noc_light_key *to;
+    uint32_t *first;
+    size_t clusters, lights; /* that are closed */
+} gathering;
+
+static void close_cluster(gathering *g, open_cluster *c) {
+    g->first[g->clusters++] = (uint32_t)g->lights;
+    memcpy(g->to + g->lights, c->keys, c->count * sizeof(*c->keys));
+    g->lights += c->count;
+    c->count = 0;
+}
+
+/* The open cluster that light i of the curve belongs into. */
+static open_cluster *cluster_for(const build *b, gathering *g, size_t i) {
+    const noc_light_bound *l = &b->bounds[b->keys[i].id];
+    open_cluster *oldest = NULL;
+    for (int k = 0; k < OPEN; k++) {
+        open_cluster *c = &g->open[k];
+        const noc_light_bound *first = &b->bounds[c->keys[0].id];
+        if (c->count && (i - c->since >= OPEN_FOR || !near(b, first, l)))
+            close_cluster(g, c);
+        if (c->count && alike(first, l))
+            return c;
+        if (!oldest || !c->count || (oldest->count && c->since < oldest->since))
+            oldest = c;
+    }
+    if (oldest->count)
+        close_cluster(g, oldest);
+    oldest->since = i;
+    return oldest;
+}
+
+/* Puts the lights of each cluster side by side, and where it begins into first: room for one entry more than there are lights.
+ * Returns how many there are. */
+static size_t gather(build *b) {
+    gathering g = { .to = b->spare, .first = b->first };
+    for (size_t i = 0; i < b->emitting; i++) {
+        open_cluster *c = cluster_for(b, &g, i);
+        c->keys[c->count++] = b->keys[i];
+        if (c->count == NOC_CLUSTER_LIGHTS)
+            close_cluster(&g, c);
+    }
+    for (int k = 0; k < OPEN; k++)
+        if (g.open[k].count)
+            close_cluster(&g, &g.open[k]);
+    g.first[g.clusters] = (uint32_t)g.lights;
+    b->spare = b->keys;
+    b->keys = g.to;
+    return g.clusters;
 }
 
 /* What a node is made from: lights, or nodes. */
@@ -276,10 +323,11 @@ static bool make_all(build *b, noc_pool *pool) {
     if (!b->emitting)
         return true;
     sort_lights(b, pool);
-    size_t count = cut(b, NULL);
-    if (!allocate(b->c, count) || !(b->first = noc_alloc_large(count + 1, sizeof(*b->first))))
+    if (!(b->first = noc_alloc_large(b->emitting + 1, sizeof(*b->first))))
         return false;
-    cut(b, b->first);
+    size_t count = gather(b);
+    if (!allocate(b->c, count))
+        return false;
     run(b, pool, count, make_cluster);
     for (b->level = 1; b->level < b->c->levels; b->level++)
         run(b, pool, b->c->nodes[b->level], make_node);
