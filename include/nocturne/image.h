@@ -129,6 +129,8 @@ typedef struct noc_channel {
     noc_channel_scale scale;
     const char *name, *unit; /* "rays", "rays a pixel"; unit "" for plain ratios and labels. These and title are not owned */
     const char *title;       /* what the numbers are, for the legend: ASCII */
+    const char *const *labels; /* of NOC_CHANNEL_LABELS, names of the numbers 0 to label_count - 1: ASCII; not owned. NULL: none */
+    size_t label_count;
 } noc_channel;
 
 /* None all over; NULL after reporting an error. */
@@ -139,12 +141,12 @@ typedef struct noc_channel_params {
     double low, high; /* values at the ends of the colour bar; equal: taken from the channel */
 } noc_channel_params;
 
-/* In colours, with a legend below; pixels without a value are grey, vectors are (v + 1) / 2 as red, green, blue. 8-bit sRGB, *out is malloc'ed (free it), its size in
- * *width, *height. NULL params: the bar's ends are round numbers around all but the lowest and highest half percent. */
+/* In colours, with a legend below: a bar, or the names of those labels that are seen, where labels have names. Pixels without
+ * a value are grey, vectors are (v + 1) / 2 as red, green, blue. 8-bit sRGB, *out is malloc'ed (free it), its size in *width, *height. NULL params: the bar's ends are round numbers around all but the lowest and highest half percent. */
 NOC_API noc_status noc_channel_to_srgb8(const noc_channel *channel, const noc_channel_params *params, uint8_t **out, int *width,
                                         int *height, noc_log *log);
 /* By the name's ending: .png in colours, as above; .exr with the numbers, floats in one channel "Y" (vectors: "X", "Y", "Z"), the
- * unit as "units". */
+ * unit as "units". Names of labels are in the metadata of both, "labels": "1 wall #c08060, ..." (EXR: without the colour). */
 NOC_API noc_status noc_channel_write(const noc_channel *channel, const char *path, const noc_channel_params *params,
                                      const noc_image_meta *meta, noc_log *log);
 

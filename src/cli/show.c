@@ -36,6 +36,44 @@ static int compare_values(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+/* A number of a view that is a name, and how many pixels have it. */
+typedef struct label { size_t number, pixels; } label;
+
+static int compare_labels(const void *a, const void *b) {
+    const label *x = a, *y = b;
+    return x->pixels != y->pixels ? (x->pixels < y->pixels ? 1 : -1) : (x->number > y->number) - (x->number < y->number);
+}
+
+static const char *name_of(const render_job *job, size_t number) {
+    if (number < job->view->label_count)
+        return job->view->labels[number];
+    return shown(job->args) == NOC_AOV_OBJECT ? noc_scene_object_name(job->scene, number) : NULL;
+}
+
+/* What the largest of them are, by name, and their shares of all pixels. v: n of the numbers, rising. */
+static void print_names(const render_job *job, const float *v, size_t n, size_t pixels) {
+    enum { SHOWN = 20 };
+    label *labels = cli_alloc((n + 1) * sizeof(*labels));
+    size_t count = 0, told = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (!i || v[i] != v[i - 1])
+            labels[count++] = (label){ (size_t)v[i], 0 };
+        labels[count - 1].pixels++;
+    }
+    qsort(labels, count, sizeof(*labels), compare_labels);
+    for (size_t i = 0; i < count && told < SHOWN; i++) {
+        const char *name = name_of(job, labels[i].number);
+        char text[48];
+        if (name && *name)
+            printf("%s%zu %s %.1f%%", !told ? "            " : told % 4 ? ", " : ",\n            ", labels[i].number,
+                   cli_clean(text, sizeof(text), name), 100.0 * (double)labels[i].pixels / (double)pixels);
+        told += name && *name;
+    }
+    if (told)
+        putchar('\n');
+    free(labels);
+}
+
 /* Figures of the numbers, for the summary. */
 void cli_print_view(const render_job *job) {
     const noc_channel *view = job->view;
@@ -58,8 +96,9 @@ void cli_print_view(const render_job *job) {
         printf("  view      %s: %s different ones, none in %.1f%% of the pixels\n", view->name, cli_count(text, different),
                100.0 * (double)(pixels - n) / (double)pixels);
     else
-        printf("  view      %s: median %.4g, 1%% of the values under %.4g and over %.4g; none in %.1f%% of the pixels\n",
-               view->name,
+        printf("  view      %s: median %.4g, 1%% of the values under %.4g and over %.4g; none in %.1f%% of the pixels\n", view->name,
                (double)v[n / 2], (double)v[n / 100], (double)v[n - 1 - n / 100], 100.0 * (double)(pixels - n) / (double)pixels);
+    if (view->scale == NOC_CHANNEL_LABELS)
+        print_names(job, v, n, pixels);
     free(v);
 }

@@ -62,6 +62,7 @@ noc_status output_failed(output *o, noc_log *log); /* reports errno as a failure
 typedef struct meta_entry { const char *key, *value; } meta_entry;
 typedef struct meta_list { NOC_ARRAY(meta_entry) entries; noc_arena text; } meta_list;
 void meta_add(meta_list *list, const char *key, const char *fmt, ...) NOC_PRINTF(3, 4); /* ours, first; short text */
+void meta_add_long(meta_list *list, const char *key, const char *value); /* both outlive the list; NULL: no memory for it */
 /* The caller's; replaces ours of the same key. An error where a key or value cannot be written, or memory was refused to one of ours. */
 noc_status meta_add_all(meta_list *list, const noc_image_meta *meta, const char *path, noc_log *log);
 void meta_free(meta_list *list);

@@ -185,6 +185,11 @@ void meta_add(meta_list *list, const char *key, const char *fmt, ...) {
         list->text.refused = true; /* told by meta_add_all */
 }
 
+void meta_add_long(meta_list *list, const char *key, const char *value) {
+    if (!value || !array_push(&list->entries, ((meta_entry){ key, value })))
+        list->text.refused = true;
+}
+
 static meta_entry *find(meta_list *list, const char *key) {
     for (size_t i = 0; i < list->entries.len; i++)
         if (strcmp(list->entries.data[i].key, key) == 0)

@@ -48,13 +48,15 @@ void noc_describe_aov(const noc_render_params *p, noc_aov aov, noc_channel *chan
         [NOC_AOV_ERROR] = { "standard error of the mean, relative", "", NOC_CHANNEL_LOG },
         [NOC_AOV_DEPTH] = { "distance from the eye [m]", "m", NOC_CHANNEL_LOG },
         [NOC_AOV_NORMAL] = { "normal: red east, green north, blue up", "", NOC_CHANNEL_LINEAR },
-        [NOC_AOV_CLASS] = { "semantic class: each its own colour", "", NOC_CHANNEL_LABELS },
+        [NOC_AOV_CLASS] = { "semantic class", "", NOC_CHANNEL_LABELS },
         [NOC_AOV_OBJECT] = { "object: each its own colour", "", NOC_CHANNEL_LABELS },
     };
     channel->name = names[aov];
     channel->unit = kinds[aov].unit;
     channel->scale = kinds[aov].scale;
     channel->title = kinds[aov].title;
+    channel->labels = aov == NOC_AOV_CLASS ? noc_class_names : NULL;
+    channel->label_count = channel->labels ? NOC_CLASS_COUNT : 0;
     if (aov == NOC_AOV_LIGHTS && p->candidates == NOC_CANDIDATES_LISTS)
         channel->title = "entries of the tile list";
 }

@@ -4,36 +4,37 @@
 #include <stdio.h>
 
 /* Reflectances: typical values for dry surfaces (CIE 144:2001 for roads; IESNA Lighting Handbook, building materials). */
-static const struct {
-    const char *name;
-    noc_material material;
-} classes[NOC_CLASS_COUNT] = {
-#define CLASS(id, text, r, g, b, spec, rough) [id] = { text, { .albedo = { r, g, b }, .f0 = spec, .roughness = rough, .cls = id } }
-    CLASS(NOC_CLASS_OTHER, "other", .30f, .30f, .30f, 0, 1),
-    CLASS(NOC_CLASS_WALL, "wall", .46f, .42f, .36f, 0, 1),
-    CLASS(NOC_CLASS_ROOF, "roof", .26f, .15f, .11f, .02f, .7f),
-    CLASS(NOC_CLASS_GROUND, "ground", .20f, .20f, .19f, 0, 1),
-    CLASS(NOC_CLASS_CLOSURE, "closure", .30f, .30f, .30f, 0, 1),
-    CLASS(NOC_CLASS_WINDOW, "window", .05f, .06f, .07f, .06f, .15f),
-    CLASS(NOC_CLASS_DOOR, "door", .20f, .13f, .08f, .04f, .5f),
-    CLASS(NOC_CLASS_INSTALLATION, "installation", .38f, .36f, .33f, 0, 1),
-    CLASS(NOC_CLASS_TERRAIN, "terrain", .17f, .17f, .14f, 0, 1),
-    CLASS(NOC_CLASS_ROAD, "road", .09f, .09f, .09f, .04f, .55f),
-    CLASS(NOC_CLASS_SIDEWALK, "sidewalk", .25f, .24f, .23f, .02f, .8f),
-    CLASS(NOC_CLASS_GREEN, "green", .08f, .13f, .05f, 0, 1),
-    CLASS(NOC_CLASS_TREE, "tree", .07f, .12f, .04f, 0, 1),
-    CLASS(NOC_CLASS_WATER, "water", .02f, .03f, .04f, .02f, .12f),
-    CLASS(NOC_CLASS_BRIDGE, "bridge", .30f, .29f, .27f, 0, 1),
-    CLASS(NOC_CLASS_FURNITURE, "furniture", .22f, .22f, .22f, .04f, .5f),
-    CLASS(NOC_CLASS_LAMP, "lamp", .10f, .10f, .10f, .04f, .4f),
-    CLASS(NOC_CLASS_VEHICLE, "vehicle", .20f, .05f, .05f, .05f, .25f),
-#undef CLASS
-};
+#define CLASSES \
+    CLASS(NOC_CLASS_OTHER, "other", .30f, .30f, .30f, 0, 1) \
+    CLASS(NOC_CLASS_WALL, "wall", .46f, .42f, .36f, 0, 1) \
+    CLASS(NOC_CLASS_ROOF, "roof", .26f, .15f, .11f, .02f, .7f) \
+    CLASS(NOC_CLASS_GROUND, "ground", .20f, .20f, .19f, 0, 1) \
+    CLASS(NOC_CLASS_CLOSURE, "closure", .30f, .30f, .30f, 0, 1) \
+    CLASS(NOC_CLASS_WINDOW, "window", .05f, .06f, .07f, .06f, .15f) \
+    CLASS(NOC_CLASS_DOOR, "door", .20f, .13f, .08f, .04f, .5f) \
+    CLASS(NOC_CLASS_INSTALLATION, "installation", .38f, .36f, .33f, 0, 1) \
+    CLASS(NOC_CLASS_TERRAIN, "terrain", .17f, .17f, .14f, 0, 1) \
+    CLASS(NOC_CLASS_ROAD, "road", .09f, .09f, .09f, .04f, .55f) \
+    CLASS(NOC_CLASS_SIDEWALK, "sidewalk", .25f, .24f, .23f, .02f, .8f) \
+    CLASS(NOC_CLASS_GREEN, "green", .08f, .13f, .05f, 0, 1) \
+    CLASS(NOC_CLASS_TREE, "tree", .07f, .12f, .04f, 0, 1) \
+    CLASS(NOC_CLASS_WATER, "water", .02f, .03f, .04f, .02f, .12f) \
+    CLASS(NOC_CLASS_BRIDGE, "bridge", .30f, .29f, .27f, 0, 1) \
+    CLASS(NOC_CLASS_FURNITURE, "furniture", .22f, .22f, .22f, .04f, .5f) \
+    CLASS(NOC_CLASS_LAMP, "lamp", .10f, .10f, .10f, .04f, .4f) \
+    CLASS(NOC_CLASS_VEHICLE, "vehicle", .20f, .05f, .05f, .05f, .25f)
 
-const char *noc_class_name(noc_class cls) { return (unsigned)cls < NOC_CLASS_COUNT ? classes[cls].name : "unknown"; }
+#define CLASS(id, text, r, g, b, spec, rough) [id] = text,
+const char *const noc_class_names[NOC_CLASS_COUNT] = { CLASSES };
+#undef CLASS
+#define CLASS(id, text, r, g, b, spec, rough) [id] = { .albedo = { r, g, b }, .f0 = spec, .roughness = rough, .cls = id },
+static const noc_material class_materials[NOC_CLASS_COUNT] = { CLASSES };
+#undef CLASS
+
+const char *noc_class_name(noc_class cls) { return (unsigned)cls < NOC_CLASS_COUNT ? noc_class_names[cls] : "unknown"; }
 
 noc_material noc_class_material(noc_class cls) {
-    return classes[(unsigned)cls < NOC_CLASS_COUNT ? cls : NOC_CLASS_OTHER].material;
+    return class_materials[(unsigned)cls < NOC_CLASS_COUNT ? cls : NOC_CLASS_OTHER];
 }
 
 noc_scene *noc_scene_create(noc_log *log) {

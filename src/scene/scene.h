@@ -7,6 +7,8 @@
 
 #define NOC_NO_LIGHT UINT32_MAX
 
+extern const char *const noc_class_names[NOC_CLASS_COUNT];
+
 /* 64 bytes, 4-byte scalars only: the same record for C and shaders (core/light.h says what each kind keeps where). */
 typedef struct noc_light_record {
     float p[3];      /* centre or corner */

@@ -114,6 +114,27 @@ test $status = 0 && ! cmp -s lights.png b.png; result $? "--show-range sets the 
 run render $small --show picture -o b.png
 test $status = 0 && cmp -s a.png b.png && test -z "$(meta a.png show)"; result $? "--show picture is the picture"
 
+# What labels mean is in the legend, the metadata and the summary.
+run render $small --show class -o class.png
+cp out told
+"$program" render $small --show class -q -o class.exr
+python3 - "$(meta class.png labels)" "$(meta class.png size)" <<'CHECK'
+import re, sys
+labels = re.findall(r"(\d+) (\w+) (#[0-9a-f]{6})(?:, |$)", sys.argv[1])
+assert len(labels) == 18 and len({c for n, name, c in labels}) == 18 and ("9", "road") in {l[:2] for l in labels}, sys.argv[1]
+told = re.findall(r"(\d+) (\w+) ([\d.]+)%", open("told").read().split("\n  scene")[0].split("pixels\n")[1])
+none = float(re.search(r"none in ([\d.]+)%", open("told").read()).group(1))
+shares = [float(t[2]) for t in told]
+assert len(told) > 5 and shares == sorted(shares, reverse=True) and abs(sum(shares) + none - 100) < 1, (told, none)
+assert {t[:2] for t in told} <= {l[:2] for l in labels}, told
+assert int(sys.argv[2].split()[1]) > 36 + 13 * len(told) // 4
+numbers = ", ".join("%s %s" % l[:2] for l in labels).encode()
+assert numbers in open("class.exr", "rb").read()
+CHECK
+result $? "a view of classes tells their names: in the picture, its metadata, and the summary" "$(meta class.png labels)"
+run render "$source_dir/tests/cli/city.gml" --size 64x36 --frames 1 --show object -o object.png
+test $status = 0 && grep -Eq '^            .*[0-9]+ house [0-9.]+%' out; result $? "one of objects those that have some"
+
 # Influence volumes as OBJ: closed bodies that face outwards; of one-sided lights the half that they face, S_r sqrt(I) around their shape.
 lamp_model
 see="--eye 4,-4,1 --target 0,0,0 --size 32x18 --frames 1 --candidates bvh"

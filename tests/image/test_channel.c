@@ -108,6 +108,49 @@ static void labels(void **state) {
     noc_channel_destroy(b);
 }
 
+static bool has_colour(const shown *s, int from_row, const uint8_t rgb[3]) {
+    for (int i = from_row * s->width; i < s->height * s->width; i++)
+        if (is(s, i, rgb))
+            return true;
+    return false;
+}
+
+/* Labels that have names: the legend shows those that are seen, and what grey is; colours do not depend on what is seen. */
+static void labels_with_names(void **state) {
+    enum { NAMES = 18 }; /* as many as there are classes */
+    static const char *const names[NAMES] = { "nought", "one", "two", "a", "b", "c", "d", "e", "f",
+                                              "g", "h", "i", "j", "k", "l", "m", "n", "the last" };
+    static const uint8_t grey[3] = { 92, 92, 96 };
+    uint8_t colour[NAMES + 1][3];
+    noc_channel *c = ramp(NOC_CHANNEL_LABELS, 0, 1);
+    shown all, some;
+    c->labels = names;
+    c->label_count = NAMES;
+    for (int i = 0; i < W * H; i++)
+        c->value[i] = (float)(i % (NAMES + 1)); /* the last has no name */
+    assert_int_equal(noc_channel_to_srgb8(c, NULL, &all.rgb, &all.width, &all.height, NULL), NOC_OK);
+    memcpy(colour, all.rgb, sizeof(colour));
+    for (int i = 0; i < NAMES; i++) {
+        assert_true(has_colour(&all, H, colour[i]));
+        for (int j = 0; j < i; j++) {
+            int d = 0;
+            for (int k = 0; k < 3; k++)
+                d += abs(colour[i][k] - colour[j][k]);
+            assert_true(d >= 40);
+        }
+    }
+    assert_true(has_colour(&all, H, grey) && !has_colour(&all, H, colour[NAMES]));
+    for (int i = 0; i < W * H; i++)
+        c->value[i] = i % 3 == 0 ? 2 : i % 3 == 1 ? -1 : NAMES;
+    assert_int_equal(noc_channel_to_srgb8(c, NULL, &some.rgb, &some.width, &some.height, NULL), NOC_OK);
+    assert_true(is(&some, 0, colour[2]) && is(&some, 1, grey) && is(&some, 2, colour[NAMES]) && some.height < all.height);
+    for (int i = 0; i <= NAMES; i++)
+        assert_int_equal(has_colour(&some, H, colour[i]), i == 2);
+    free(all.rgb);
+    free(some.rgb);
+    noc_channel_destroy(c);
+}
+
 static void files(void **state) {
     (void)state;
     char exr[] = "/tmp/nocturne-channel-XXXXXX.exr", png[] = "/tmp/nocturne-channel-XXXXXX.png";
@@ -169,7 +212,7 @@ static void what_cannot_be(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(colours_follow_the_bar), cmocka_unit_test(ends_are_found), cmocka_unit_test(any_numbers),
-        cmocka_unit_test(labels),                 cmocka_unit_test(files),          cmocka_unit_test(what_cannot_be),
+        cmocka_unit_test(labels),                 cmocka_unit_test(labels_with_names), cmocka_unit_test(files),          cmocka_unit_test(what_cannot_be),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
