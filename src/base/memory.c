@@ -7,6 +7,26 @@
 #include <time.h>
 #include <unistd.h>
 
+/* Under AddressSanitizer what lies behind an item of an arena may not be touched, and small arrays have no room to spare, so
+ * that it sees who reads or writes beyond them. */
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define SANITIZED 1
+#endif
+#elif defined(__SANITIZE_ADDRESS__)
+#define SANITIZED 1
+#endif
+#ifdef SANITIZED
+#include <sanitizer/asan_interface.h>
+#define FORBID(p, size) ASAN_POISON_MEMORY_REGION(p, size)
+#define ALLOW(p, size) ASAN_UNPOISON_MEMORY_REGION(p, size)
+enum { ARENA_GAP = 16, EXACT_ITEMS = 64 };
+#else
+#define FORBID(p, size) ((void)0)
+#define ALLOW(p, size) ((void)0)
+enum { ARENA_GAP = 0, EXACT_ITEMS = 0 };
+#endif
+
 /* The numbers of allocations to refuse, [first, last]; both 0 where none is, which is all that is looked at then. */
 static _Atomic uint64_t refuse_first, refuse_last, allocations;
 
@@ -56,7 +76,9 @@ void *noc_alloc_large(size_t count, size_t size) {
 }
 
 /* Items that an array has room for after growing. */
-static size_t grown(size_t cap, size_t need) { return NOC_MAX(cap ? cap + cap / 2 : 16, need); }
+static size_t grown(size_t cap, size_t need) {
+    return need <= EXACT_ITEMS ? need : NOC_MAX(cap ? cap + cap / 2 : 16, need);
+}
 
 bool noc_array_grow(void *data, size_t *cap, size_t need, size_t item) {
     size_t n = grown(*cap, need), bytes;
@@ -77,13 +99,15 @@ struct noc_arena_block {
 
 void *arena_alloc(noc_arena *arena, size_t size) {
     struct noc_arena_block *b = arena->head;
+    size_t asked = size;
     if (size <= SIZE_MAX / 2) {
-        size = (size + 15) & ~(size_t)15;
+        size = ((size + 15) & ~(size_t)15) + ARENA_GAP;
         if (!b || b->size - b->used < size) {
             size_t room = NOC_MAX(size, (size_t)64 * 1024 - sizeof(*b));
             if ((b = noc_alloc(sizeof(*b) + room))) {
                 b->used = 0;
                 b->size = room;
+                FORBID(b->data, room);
                 b->next = arena->head;
                 arena->head = b;
                 arena->bytes += sizeof(*b) + room;
@@ -98,7 +122,8 @@ void *arena_alloc(noc_arena *arena, size_t size) {
     }
     void *p = b->data + b->used;
     b->used += size;
-    return memset(p, 0, size);
+    ALLOW(p, asked);
+    return memset(p, 0, asked);
 }
 
 char *arena_strndup(noc_arena *arena, const char *s, size_t n) {

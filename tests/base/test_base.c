@@ -146,6 +146,25 @@ static bool allocate_in_all_ways(void) {
     return ok;
 }
 
+/* Under AddressSanitizer what lies behind an arena's item or a small array is forbidden: make asan. */
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/asan_interface.h>
+static void memory_has_no_room_to_spare(void **state) {
+    (void)state;
+    noc_arena arena = { 0 };
+    NOC_ARRAY(char) a = { 0 };
+    char *first = arena_alloc(&arena, 16), *second = arena_strndup(&arena, "abc", 3);
+    assert_true(first && second && array_push(&a, 'a') && array_append(&a, "bc", 2));
+    assert_true(!__asan_address_is_poisoned(first + 15) && __asan_address_is_poisoned(first + 16));
+    assert_true(!__asan_address_is_poisoned(second + 3) && __asan_address_is_poisoned(second + 4));
+    assert_true(!__asan_address_is_poisoned(a.data + 2) && __asan_address_is_poisoned(a.data + 3));
+    arena_free(&arena);
+    array_free(&a);
+}
+#else
+static void memory_has_no_room_to_spare(void **state) { skip(); }
+#endif
+
 /* Each allocation refused alone, and with all that follow, is told of; nothing leaks (make asan). */
 static void refused_memory_is_told(void **state) {
     noc_refuse_allocation(UINT64_MAX, false);
@@ -237,6 +256,7 @@ int main(void) {
         cmocka_unit_test(siphash_is_as_published),
         cmocka_unit_test(colliding_ids_do_not_flood),
         cmocka_unit_test(pool_runs_each_item_once),
+        cmocka_unit_test(memory_has_no_room_to_spare),
         cmocka_unit_test(refused_memory_is_told),
         cmocka_unit_test(refused_threads_are_done_without),
         cmocka_unit_test(log_reports_once),
