@@ -252,17 +252,19 @@ static bool read_field(reading *r, const lamp_meaning *c, const char *text) {
     r->scale = c->scale;
     switch (c->field) {
     case LAMP_FIELD_HEIGHT:
-        return read_quantity(r, text, LAMP_METRES, .2, 60, "height of a lamp not understood or implausible", &lamp->height);
+        return read_quantity(r, text, LAMP_METRES, .2, LAMP_MOST_METRES, "height of a lamp not understood or implausible",
+                             &lamp->height);
     case LAMP_FIELD_DIRECTION:
         return lamp_direction(text, &lamp->direction) || misread(r, "direction of a lamp not understood");
     case LAMP_FIELD_COUNT:
         return read_count(r, text);
     case LAMP_FIELD_LUMENS:
-        return read_quantity(r, text, LAMP_LUMENS, 5, 500000, "luminous flux not understood or implausible", &lamp->lumens);
+        return read_quantity(r, text, LAMP_LUMENS, 5, LAMP_MOST_LUMENS, "luminous flux not understood or implausible",
+                             &lamp->lumens);
     case LAMP_FIELD_WATTS:
         if (c->rank == 2 && !(text[0] >= '0' && text[0] <= '9')) /* power=pole and the like */
             return false;
-        return read_quantity(r, text, LAMP_WATTS, .5, 5000, "wattage not understood or implausible", &lamp->watts);
+        return read_quantity(r, text, LAMP_WATTS, .5, LAMP_MOST_WATTS, "wattage not understood or implausible", &lamp->watts);
     case LAMP_FIELD_KELVIN:
         return read_kelvin(r, text) || misread(r, "colour temperature not understood or implausible");
     case LAMP_FIELD_COLOUR:

@@ -189,6 +189,9 @@ bool lamp_colour_word(const char *folded, double *kelvin, float rgb[3]);
 
 /* ---- values (lamp_value.c) ---- */
 
+/* The most that is believed of a lamp. */
+enum { LAMP_MOST_METRES = 60, LAMP_MOST_LUMENS = 500000, LAMP_MOST_WATTS = 5000 };
+
 typedef enum lamp_unit { LAMP_METRES, LAMP_WATTS, LAMP_LUMENS, LAMP_KELVIN, LAMP_PLAIN } lamp_unit;
 
 /* "16 ft", "5,5 m", "16'6\"", "2x70 W", "3,000 K", "8.5;6". scale is for values that name no unit. *times gets the factor of

@@ -371,9 +371,10 @@ noc_status place_settle(importer *im, const place_sample *samples, size_t count)
     if (!count)
         return NOC_OK;
     source_crs *s = commonest_source(samples, count);
-    double *both = noc_alloc(2 * count * sizeof(double)), *axis[2] = { both, both + count };
+    double *both = noc_alloc(2 * count * sizeof(double));
     if (!both)
         return noc_no_memory(im->log, im->inputs[im->current].path);
+    double *const axis[2] = { both, both + count };
     double first[3] = { 0 }, point[3] = { 0 };
     size_t n = 0, in_area = 0;
     for (int pass = 0; pass < 3; pass++) /* decides about the axes; counts; takes */

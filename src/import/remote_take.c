@@ -1,4 +1,5 @@
 /* What comes back from the helper. It may have been taken over by the file that it reads: nothing is believed. */
+#include "import/lamp_tags.h"
 #include "import/remote.h"
 
 #include <math.h>
@@ -38,7 +39,8 @@ static noc_status take_lamp(remote_taker *t, remote_record *one) {
     lamp.ref = remote_get_text(one);
     bool kinds = (unsigned)lamp.type <= GEO_LAMP_FLOOD && (unsigned)lamp.source < NOC_SOURCE_COUNT &&
                  (unsigned)lamp.mount <= GEO_MOUNT_SUSPENDED && is_bool(&lamp.head_globe);
-    if (one->bad || !kinds || lamp.body_heads /* of models, not of maps */ || lamp.count < 0 || !isfinite(lamp.xyz[0]) ||
+    bool numbers = !(lamp.height > LAMP_MOST_METRES || lamp.lumens > LAMP_MOST_LUMENS || lamp.watts > LAMP_MOST_WATTS); /* or NaN */
+    if (one->bad || !kinds || !numbers || lamp.body_heads /* of models, not of maps */ || lamp.count < 0 || !isfinite(lamp.xyz[0]) ||
         !isfinite(lamp.xyz[1]))
         return garbled(t);
     return t->sink->lamp(t->sink->ctx, &lamp);
