@@ -33,7 +33,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_memory_back();
     FUZZ_REQUIRE(errors == (status != NOC_OK));
     if (!status)
-        fuzz_check_scene(scene, fuzz_seldom(data, size, 16));
+        fuzz_check_scene(scene, fuzz_seldom(data, size, 256));
     noc_stream_close(stream);
     geo_issues_destroy(issues);
     noc_scene_destroy(scene);

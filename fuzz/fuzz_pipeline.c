@@ -49,7 +49,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     FUZZ_REQUIRE(errors == (status != NOC_OK));
     check_report(report);
     if (!status) {
-        fuzz_check_scene(scene, fuzz_seldom(data, size, 64));
+        fuzz_check_scene(scene, fuzz_seldom(data, size, 256));
         double xyz[3] = { 11.5, 48.1, 500 };
         noc_scene_info info;
         noc_scene_get_info(scene, &info);

@@ -232,6 +232,8 @@ enum { PB_FIELDS = 512 };
 
 /* Number of fields; 0 where the bytes are no message. */
 static int read_fields(fuzz_part in, pb_field *f) {
+    if (!in.size) /* and no data */
+        return 0;
     const uint8_t *p = in.data, *end = in.data + in.size;
     uint64_t value;
     int n = 0;

@@ -3,7 +3,9 @@
  * be made. */
 #include "fuzz.h"
 
+#include <ctype.h>
 #include <dlfcn.h>
+#include <proj.h>
 #include <sanitizer/lsan_interface.h>
 #include <sys/mman.h>
 
@@ -111,43 +113,156 @@ int sqlite3_prepare_v2(void *db, const char *sql, int size, void **statement, co
     return real(db, sql, size, statement, tail);
 }
 
-/* ---- Assimp, which has two buffers of 16 MiB for every OBJ: the same pages each time ---- */
+/* ---- large blocks, of which Assimp takes two of 16 MiB for every OBJ and GDAL many for every OpenStreetMap file: the
+ * same pages each time ---- */
 
 void *_Znwm(size_t size); /* operator new and delete of C++ */
 void _ZdlPv(void *p);
 void _ZdlPvm(void *p, size_t size);
+void *VSIMalloc(size_t size); /* GDAL's, by which it finds memory for itself */
+void *VSICalloc(size_t count, size_t size);
+void *VSIRealloc(void *p, size_t size);
+void VSIFree(void *p);
 
-enum { BUFFERS = 2, BUFFER = 17 << 20, LARGE = 8 << 20 };
-static struct { void *pages; bool taken; } buffers[BUFFERS];
+enum { BLOCKS = 64, LARGE = 1 << 17, ASSIMPS = 1 << 24 };
+static struct large { char *pages; size_t size; bool taken; } blocks[BLOCKS];
+static char *first_block = (char *)UINTPTR_MAX, *last_block;
+
+/* Zeroed pages; NULL where the block is small, or there are too many of them. */
+static void *take_large(size_t size) {
+    struct large *b = blocks, *end = blocks + BLOCKS;
+    if (size < LARGE)
+        return NULL;
+    while (b < end && (b->taken || (b->pages && b->size != size)))
+        b++;
+    if (b == end)
+        return NULL;
+    if (!b->pages) {
+        b->pages = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        if (b->pages == MAP_FAILED)
+            return b->pages = NULL;
+        b->size = size;
+        first_block = NOC_MIN(first_block, b->pages);
+        last_block = NOC_MAX(last_block, b->pages);
+    }
+    b->taken = true;
+    return b->pages;
+}
+
+static struct large *large_at(const void *p) {
+    for (int i = 0; (const char *)p >= first_block && (const char *)p <= last_block && i < BLOCKS; i++)
+        if (blocks[i].taken && blocks[i].pages == p)
+            return &blocks[i];
+    return NULL;
+}
+
+/* What was written to is given back to the system, which zeroes it. */
+static bool give_large(void *p) {
+    struct large *b = large_at(p);
+    if (b) {
+        madvise(b->pages, b->size, MADV_DONTNEED);
+        b->taken = false;
+    }
+    return b != NULL;
+}
 
 void *_Znwm(size_t size) {
-    for (int i = 0; size >= LARGE && size <= BUFFER && i < BUFFERS; i++) {
-        if (buffers[i].taken)
-            continue;
-        if (!buffers[i].pages) {
-            buffers[i].pages = mmap(NULL, BUFFER, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-            FUZZ_REQUIRE(buffers[i].pages != MAP_FAILED);
-        }
-        buffers[i].taken = true;
-        return buffers[i].pages;
-    }
     static void *(*real)(size_t);
     if (!real)
         real = (void *(*)(size_t))dlsym(RTLD_NEXT, "_Znwm");
-    return real(size); /* or it throws */
+    void *p = size == ASSIMPS ? take_large(size) : NULL; /* libFuzzer has large blocks, too */
+    return p ? p : real(size); /* or it throws */
 }
 
 void _ZdlPv(void *p) {
-    for (int i = 0; p && i < BUFFERS; i++) {
-        if (buffers[i].pages == p) {
-            buffers[i].taken = false;
-            return;
-        }
-    }
-    free(p);
+    if (!give_large(p))
+        free(p);
 }
 
 void _ZdlPvm(void *p, size_t size) { _ZdlPv(p); }
+
+void *VSIMalloc(size_t size) {
+    void *p = take_large(size);
+    return p ? p : malloc(size);
+}
+
+void *VSICalloc(size_t count, size_t size) {
+    size_t bytes;
+    void *p = __builtin_mul_overflow(count, size, &bytes) ? NULL : take_large(bytes);
+    return p ? p : calloc(count, size);
+}
+
+void *VSIRealloc(void *p, size_t size) {
+    struct large *b = large_at(p);
+    if (!b)
+        return realloc(p, size);
+    void *now = VSIMalloc(size);
+    if (now) {
+        memcpy(now, p, NOC_MIN(size, b->size));
+        give_large(p);
+    }
+    return now;
+}
+
+void VSIFree(void *p) { _ZdlPv(p); }
+
+/* Assimp fills its 16 MiB, with zeroes (from the second byte on) or ends of lines, and reads files of some kilobytes
+ * into them. */
+void *__asan_memset(void *p, int value, size_t size);
+void *memset(void *p, int value, size_t size) {
+    enum { ENOUGH = 1 << 18 };
+    bool assimps = size >= ASSIMPS - 1 && large_at((void *)((uintptr_t)p & ~(uintptr_t)1));
+    return __asan_memset(p, value, assimps ? ENOUGH : size);
+}
+
+/* ---- Assimp leaks where it throws. What it allocates is not looked at. ---- */
+
+const void *aiImportFileExWithProperties(const char *name, unsigned flags, void *io, const void *settings);
+const void *aiImportFileExWithProperties(const char *name, unsigned flags, void *io, const void *settings) {
+    typedef const void *import(const char *, unsigned, void *, const void *);
+    static import *real;
+    if (!real)
+        real = (import *)dlsym(RTLD_NEXT, "aiImportFileExWithProperties");
+    __lsan_disable();
+    const void *scene = real ? real(name, flags, io, settings) : NULL;
+    __lsan_enable();
+    return scene;
+}
+
+/* ---- PROJ, which for a text that it does not know looks through all names of its database (proj.py): one name
+ * in 16 is looked for ---- */
+
+/* Said by PROJ to be a definition, or a name that it finds at once. */
+static bool is_definition(const char *text) {
+    static const char *const first[] = { "{", "urn:", "http", "EPSG:", "ESRI:", "OGC:", "GEOGCS", "PROJCS", "COMPD_CS",
+                                         "GEOCCS", "VERT_CS", "LOCAL_CS", "GEOGCRS", "GEODCRS", "PROJCRS",
+                                         "COMPOUNDCRS", "BOUNDCRS", "GEODETICCRS", "GEOGRAPHICCRS", "PROJECTEDCRS",
+                                         "VERTCRS", "ENGCRS" };
+    while (isspace((unsigned char)*text))
+        text++;
+    for (size_t i = 0; i < NOC_COUNT(first); i++)
+        if (!strncasecmp(text, first[i], strlen(first[i])))
+            return true;
+    return strstr(text, "proj=") || strstr(text, "init=") || !*text;
+}
+
+PJ *proj_create(PJ_CONTEXT *context, const char *text) {
+    static PJ *(*real)(PJ_CONTEXT *, const char *);
+    if (!real)
+        real = (PJ *(*)(PJ_CONTEXT *, const char *))dlsym(RTLD_NEXT, "proj_create");
+    bool is = is_definition(text) || fuzz_seldom((const uint8_t *)text, strlen(text), 16);
+    return is && real ? real(context, text) : NULL;
+}
+
+/* Its factors of a CRS are those of a transform that it finds anew for each point, in 50 ms: for one place in 8.
+ * Elsewhere lengths are true, as in a national CRS. */
+PJ_FACTORS proj_factors(PJ *pj, PJ_COORD at) {
+    static PJ_FACTORS (*real)(PJ *, PJ_COORD);
+    if (!real)
+        real = (PJ_FACTORS (*)(PJ *, PJ_COORD))dlsym(RTLD_NEXT, "proj_factors");
+    PJ_FACTORS same = { .meridional_scale = 1, .parallel_scale = 1, .areal_scale = 1 };
+    return real && fuzz_seldom((const uint8_t *)&at, sizeof(at), 8) ? real(pj, at) : same;
+}
 
 int LLVMFuzzerInitialize(int *argc, char ***argv) {
     int (*configure)(int, ...) = (int (*)(int, ...))dlsym(RTLD_DEFAULT, "sqlite3_config");

@@ -58,8 +58,6 @@ fuzz() {
         done
         seeds="$seeds $build/real/$1"
     fi
-    # Assimp leaks where it throws, which lsan.supp knows by its name: that takes the slow way up the stack.
-    case $2 in obj|pipeline) export ASAN_OPTIONS="fast_unwind_on_malloc=0:$ASAN_OPTIONS";; esac
     dictionary=
     [ "$4" = - ] || dictionary=-dict=$build/fuzz/dictionaries/$4.dict
     end=$(($(date +%s) + seconds))
@@ -90,6 +88,8 @@ if [ "$seconds" = table ]; then
 fi
 export ASAN_OPTIONS="detect_leaks=1:allocator_may_return_null=1:${ASAN_OPTIONS:-}" UBSAN_OPTIONS="halt_on_error=1:print_stacktrace=1"
 export LSAN_OPTIONS="suppressions=$root/tests/lsan.supp:print_suppressions=0"
+# PROJ's database made small (proj.py)
+[ -s "$build/fuzz/proj/proj.db" ] && export PROJ_DATA="$build/fuzz/proj" PROJ_LIB="$build/fuzz/proj"
 if [ "${1:-}" = alone ]; then
     # shellcheck disable=SC2046 # a row's words
     fuzz $(echo "$corpora" | awk -v corpus="$2" '$1 == corpus')
