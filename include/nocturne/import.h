@@ -29,7 +29,7 @@ typedef struct noc_import_params {
     /* Place lamps by a rule? AUTO, the default: where the inputs hold none; inputs whose lamps are all of no use are an error.
      * ON: where no lamp of the inputs is of use. OFF: nowhere. */
     noc_switch infer_lamps;
-    bool strict;            /* an input of which anything is skipped or repaired is an error; default false */
+    bool strict;            /* an input of which anything is left out or guessed at is an error; default false */
     double lamp_height;     /* m, where not tagged; default 6 */
     double lamp_lumens;     /* lm, where neither flux nor wattage is known; default 5000 */
     double lamp_kelvin;     /* K, where not known; default 3000 */
@@ -68,6 +68,7 @@ typedef struct noc_report_line {
     bool repaired;          /* true: used after repair; false: skipped */
     size_t count;
     const char *examples;   /* up to 5 ids, comma separated */
+    bool lossless;          /* nothing is lost or guessed by it, so noc_import_params.strict lets it pass */
 } noc_report_line;
 
 /* What makes a lamp's light. */

@@ -147,7 +147,7 @@ static void stand(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
     }
     if (site_ground(scene, foot[0], foot[1], &foot[2])) {
         if (fabs(foot[2] - lamp->xyz[2]) > OFF_GROUND)
-            geo_issue(issues, true, "lamp whose elevation is more than 3 m off the ground: stood on the ground", lamp->id);
+            geo_issue(issues, GEO_GUESSED, "lamp whose elevation is more than 3 m off the ground: stood on the ground", lamp->id);
         return;
     }
     foot[2] = lamp->xyz[2];
@@ -163,11 +163,11 @@ static void stand(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
         return;
     }
     if (site_ground_far(scene, foot[0], foot[1], &foot[2])) {
-        geo_issue(issues, true, "lamp outside of the ground: put at the height of the nearest", lamp->id);
+        geo_issue(issues, GEO_GUESSED, "lamp outside of the ground: put at the height of the nearest", lamp->id);
         return;
     }
     foot[2] = params->has_floor ? params->floor : city_floor(scene);
-    geo_issue(issues, true, "lamp outside of the ground: put at the lowest height of the scene", lamp->id);
+    geo_issue(issues, GEO_GUESSED, "lamp outside of the ground: put at the lowest height of the scene", lamp->id);
 }
 
 /* False if the lamp cannot be placed: counted. */
@@ -183,10 +183,10 @@ static bool place(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
     if (site_covered(scene, p->foot[0], p->foot[1], p->foot[2])) {
         double away[2], was[2] = { p->foot[0], p->foot[1] }, z;
         if (!site_free_spot(scene, &p->foot[0], &p->foot[1], p->foot[2], 3, away)) {
-            geo_issue(issues, false, "lamp inside a building, further than 3 m from its outside", lamp->id);
+            geo_issue(issues, GEO_SKIPPED, "lamp inside a building, further than 3 m from its outside", lamp->id);
             return false;
         }
-        geo_issue(issues, true, "lamp inside a building: moved out of it", lamp->id);
+        geo_issue(issues, GEO_GUESSED, "lamp inside a building: moved out of it", lamp->id);
         if (site_ground(scene, p->foot[0], p->foot[1], &z))
             p->foot[2] = z;
         p->on_wall = lamp->mount == GEO_MOUNT_WALL;
@@ -201,7 +201,7 @@ static bool place(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
         for (double r = .7; r < 3 && site_taken(scene, p->foot[0], p->foot[1], p->foot[2]); r += .7)
             for (int k = 0; k < 2; k++)
                 p->foot[k] += .7 * side[k];
-        geo_issue(issues, true, "two lamps at one place: moved apart", lamp->id);
+        geo_issue(issues, GEO_REPAIRED, "two lamps at one place: moved apart", lamp->id);
     }
     if (params->tally)
         params->tally->moved += p->foot[0] != lamp->xyz[0] || p->foot[1] != lamp->xyz[1];
@@ -331,11 +331,11 @@ static int add_to_body(const builder *b) {
 
 int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, bool inferred, geo_issues *issues) {
     if (!isfinite(lamp->xyz[0]) || !isfinite(lamp->xyz[1])) {
-        geo_issue(issues, false, "lamp without a place", lamp->id);
+        geo_issue(issues, GEO_SKIPPED, "lamp without a place", lamp->id);
         return 0;
     }
     if (fabs(lamp->xyz[0]) > FARTHEST || fabs(lamp->xyz[1]) > FARTHEST) {
-        geo_issue(issues, false, "lamp more than 9000 km from the scene's origin", lamp->id);
+        geo_issue(issues, GEO_SKIPPED, "lamp more than 9000 km from the scene's origin", lamp->id);
         return 0;
     }
     placing p = { 0 };
@@ -348,7 +348,7 @@ int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params
         add_pole(&b);
     int lights = lamp->body_heads ? add_to_body(&b) : add_heads(&b);
     if (!shape_add(&b.shape, scene, lamp->id) || !lights) /* the scene said why */
-        geo_issue(issues, false, "lamp that the scene refused", lamp->id);
+        geo_issue(issues, GEO_SKIPPED, "lamp that the scene refused", lamp->id);
     shape_free(&b.shape);
     return lights;
 }

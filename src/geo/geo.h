@@ -97,7 +97,15 @@ typedef struct geo_column {
 
 /* Counted reasons: kept by the importer, a line a reason in the report. */
 typedef struct geo_issues geo_issues;
-void geo_issue(geo_issues *issues, bool repaired, const char *reason, const char *id); /* texts are copied */
+/* What became of a feature. */
+typedef enum geo_issue_kind {
+    GEO_SKIPPED,  /* left out */
+    GEO_REPAIRED, /* used after a repair that loses nothing */
+    GEO_GUESSED,  /* used, and something of it is a guess or missing */
+    GEO_SPARED,   /* left out, and nothing is lost by it: it has no area, is given twice, is gone or inside by its own word */
+    GEO_ISSUE_KINDS
+} geo_issue_kind;
+void geo_issue(geo_issues *issues, geo_issue_kind kind, const char *reason, const char *id); /* texts are copied */
 bool geo_issues_refused(const geo_issues *issues); /* whether memory was refused to any, which is not counted then; looked at once, at the end */
 
 /* The importer's side. Readers call these; any status but NOC_OK makes the reader stop and return it. */
@@ -137,12 +145,13 @@ bool geo_triangulate(const geo_polygon *polygon, geo_triangles *out, geo_issues 
 void geo_triangles_free(geo_triangles *t);
 
 /* The same as often as another list counted it: reason is copied, examples are ids as that list joined them. */
-void geo_issues_add(geo_issues *issues, bool repaired, const char *reason, size_t count, const char *examples);
+void geo_issues_add(geo_issues *issues, geo_issue_kind kind, const char *reason, size_t count, const char *examples);
 
 /* Issues storage, used by the importer. */
 geo_issues *geo_issues_create(void) NOC_MUST_USE; /* NULL: memory was refused */
 void geo_issues_destroy(geo_issues *issues);
 size_t geo_issues_count(const geo_issues *issues);
+geo_issue_kind geo_issues_kind(const geo_issues *issues, size_t i);
 bool geo_issues_get(const geo_issues *issues, size_t i, const char **reason, bool *repaired, size_t *count,
                     const char **examples) NOC_MUST_USE; /* false: memory was refused */
 

@@ -1,11 +1,11 @@
-/* Reasons why features were skipped or repaired, counted, with the ids of the first few. */
+/* Reasons why features were skipped, repaired or guessed at, counted, with the ids of the first few. */
 #include "geo/geo.h"
 
 #define EXAMPLES 5
 
 struct line {
     const char *reason;
-    bool repaired;
+    geo_issue_kind kind;
     size_t count;
     int example_count;
     const char *examples[EXAMPLES];
@@ -32,13 +32,13 @@ void geo_issues_destroy(geo_issues *issues) {
 }
 
 /* There are a few dozen reasons at most, and those in use come first: a linear search. NULL where memory is refused. */
-static struct line *find_line(geo_issues *issues, bool repaired, const char *reason) {
+static struct line *find_line(geo_issues *issues, geo_issue_kind kind, const char *reason) {
     for (size_t i = 0; i < issues->lines.len; i++) {
         struct line *l = &issues->lines.data[i];
-        if (l->repaired == repaired && !strcmp(l->reason, reason))
+        if (l->kind == kind && !strcmp(l->reason, reason))
             return l;
     }
-    struct line line = { .reason = arena_strdup(&issues->names, reason), .repaired = repaired };
+    struct line line = { .reason = arena_strdup(&issues->names, reason), .kind = kind };
     if (!line.reason || !array_push(&issues->lines, line)) {
         issues->names.refused = true;
         return NULL;
@@ -46,10 +46,10 @@ static struct line *find_line(geo_issues *issues, bool repaired, const char *rea
     return &issues->lines.data[issues->lines.len - 1];
 }
 
-void geo_issue(geo_issues *issues, bool repaired, const char *reason, const char *id) {
+void geo_issue(geo_issues *issues, geo_issue_kind kind, const char *reason, const char *id) {
     if (!issues)
         return;
-    struct line *l = find_line(issues, repaired, reason);
+    struct line *l = find_line(issues, kind, reason);
     if (!l)
         return;
     l->count++;
@@ -66,14 +66,16 @@ void geo_issue(geo_issues *issues, bool repaired, const char *reason, const char
     l->joined = NULL;
 }
 
-void geo_issues_add(geo_issues *issues, bool repaired, const char *reason, size_t count, const char *examples) {
+void geo_issues_add(geo_issues *issues, geo_issue_kind kind, const char *reason, size_t count, const char *examples) {
     if (!issues || !count)
         return;
-    geo_issue(issues, repaired, reason, examples);
-    struct line *l = find_line(issues, repaired, reason);
+    geo_issue(issues, kind, reason, examples);
+    struct line *l = find_line(issues, kind, reason);
     if (l)
         l->count += count - 1;
 }
+
+geo_issue_kind geo_issues_kind(const geo_issues *issues, size_t i) { return issues->lines.data[i].kind; }
 
 size_t geo_issues_count(const geo_issues *issues) { return issues ? issues->lines.len : 0; }
 
@@ -81,7 +83,7 @@ bool geo_issues_get(const geo_issues *issues, size_t i, const char **reason, boo
                     const char **examples) {
     struct line *l = &issues->lines.data[i];
     *reason = l->reason;
-    *repaired = l->repaired;
+    *repaired = l->kind == GEO_REPAIRED || l->kind == GEO_GUESSED;
     *count = l->count;
     if (!l->joined) {
         size_t size = 1;

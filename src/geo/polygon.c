@@ -152,7 +152,7 @@ static bool find_plane(struct work *w) {
     for (size_t i = 0; i < w->xyz.len; i++)
         size = NOC_MAX(size, fabs(w->xyz.data[i]));
     if (!(size < LARGEST)) {
-        geo_issue(w->issues, false, "polygon wider than 1000 km", w->id);
+        geo_issue(w->issues, GEO_SKIPPED, "polygon wider than 1000 km", w->id);
         return false;
     }
     double wide[3] = { 0 };
@@ -165,7 +165,7 @@ static bool find_plane(struct work *w) {
     }
     double length = sqrt(dot(w->normal, w->normal));
     if (!(length >= 2 * SMALLEST_AREA)) {
-        geo_issue(w->issues, false, "polygon without area", w->id);
+        geo_issue(w->issues, GEO_SPARED, "polygon without area", w->id);
         return false;
     }
     for (int k = 0; k < 3; k++)
@@ -196,7 +196,7 @@ static void project(struct work *w) {
         highest = NOC_MAX(highest, height);
     }
     if (highest - lowest > 2 * PLANE_TOLERANCE)
-        geo_issue(w->issues, true, "non-planar polygon", w->id);
+        geo_issue(w->issues, GEO_REPAIRED, "non-planar polygon", w->id);
 }
 
 static double signed_area(const double *uv, size_t n) {
@@ -266,11 +266,11 @@ static void check_holes(struct work *w) {
         size_t n = w->ring_size.data[r];
         double *uv = w->uv.data + 2 * first;
         if (r <= MOST_HOLES && is_repeated(w, r))
-            geo_issue(w->issues, true, "interior ring given twice", w->id);
+            geo_issue(w->issues, GEO_REPAIRED, "interior ring given twice", w->id);
         if (!lies_in_exterior(w, uv, n, &looks))
-            geo_issue(w->issues, true, "interior ring outside the exterior", w->id);
+            geo_issue(w->issues, GEO_GUESSED, "interior ring outside the exterior", w->id);
         if (signed_area(uv, n) > 0) {
-            geo_issue(w->issues, true, "interior ring turned like the exterior", w->id);
+            geo_issue(w->issues, GEO_REPAIRED, "interior ring turned like the exterior", w->id);
             reverse_ring(w, first, n);
         }
     }
@@ -294,7 +294,7 @@ static bool prepare(struct work *w, const geo_polygon *polygon) {
     for (size_t r = 0; r < polygon->ring_count; r++)
         points += polygon->ring_size[r];
     if (points > MOST_POINTS) {
-        geo_issue(w->issues, false, "polygon of more than 20 million points", w->id);
+        geo_issue(w->issues, GEO_SKIPPED, "polygon of more than 20 million points", w->id);
         return false;
     }
     w->no_memory = !array_reserve(&w->xyz, 3 * points) || !array_reserve(&w->uv, 2 * points) ||
@@ -310,7 +310,7 @@ static bool prepare(struct work *w, const geo_polygon *polygon) {
         size_t n = add_ring(w, p, polygon->ring_size[r], &found);
         if (n < 3) {
             bool few = polygon->ring_size[r] < 3;
-            geo_issue(w->issues, r > 0, r ? few ? "interior ring with too few points" : "collapsed interior ring"
+            geo_issue(w->issues, r ? GEO_REPAIRED : few ? GEO_SKIPPED : GEO_SPARED, r ? few ? "interior ring with too few points" : "collapsed interior ring"
                                           : few ? "ring with too few points" : "collapsed ring", w->id);
             if (!r)
                 return false;
@@ -320,17 +320,17 @@ static bool prepare(struct work *w, const geo_polygon *polygon) {
         put_ring(w, n);
     }
     if (!w->ring_size.len) {
-        geo_issue(w->issues, false, "ring with too few points", w->id);
+        geo_issue(w->issues, GEO_SKIPPED, "ring with too few points", w->id);
         return false;
     }
     if (!find_plane(w))
         return false;
     if (found.non_finite)
-        geo_issue(w->issues, true, "coordinates that are not finite", w->id);
+        geo_issue(w->issues, GEO_GUESSED, "coordinates that are not finite", w->id);
     if (found.repeated)
-        geo_issue(w->issues, true, "repeated point", w->id);
+        geo_issue(w->issues, GEO_REPAIRED, "repeated point", w->id);
     if (found.spike)
-        geo_issue(w->issues, true, "spike", w->id);
+        geo_issue(w->issues, GEO_REPAIRED, "spike", w->id);
     project(w);
     check_holes(w);
     return true;
@@ -399,14 +399,14 @@ static bool triangulate(struct work *w, geo_triangles *out) {
     if (!simple) {
         tessellation t = tessellate(w->uv.data, w->ring_size.data, w->ring_size.len, out, first_vertex / 3);
         if (t.crossings)
-            geo_issue(w->issues, true, "self-intersecting ring", w->id);
+            geo_issue(w->issues, GEO_GUESSED, "self-intersecting ring", w->id);
         else if (t.touches && w->ring_size.len == 1) /* a hole may touch the exterior */
-            geo_issue(w->issues, true, "self-touching ring", w->id);
+            geo_issue(w->issues, GEO_REPAIRED, "self-touching ring", w->id);
         w->no_memory = t.no_memory;
         drop_flat_triangles(out, first_index);
         if (!t.ok || out->indices.len == first_index) {
             if (!t.no_memory)
-                geo_issue(w->issues, false, t.tangled ? "polygon that crosses itself more than 1000 times"
+                geo_issue(w->issues, t.ok && !t.tangled ? GEO_SPARED : GEO_SKIPPED, t.tangled ? "polygon that crosses itself more than 1000 times"
                                         : t.ok    ? "polygon without area" : "polygon that cannot be triangulated", w->id);
             out->indices.len = first_index;
             out->xyz.len = first_vertex;

@@ -286,7 +286,7 @@ void cg_characters(void *user, const XML_Char *text, int size);
 noc_status cg_fail(cg_parser *p, noc_status status, const char *fmt, ...) NOC_PRINTF(3, 4);
 noc_status cg_no_memory(cg_parser *p);
 /* Counts a defect of the file; once, though the file may be read several times. */
-void cg_issue(cg_parser *p, bool repaired, const char *reason, const char *id);
+void cg_issue(cg_parser *p, geo_issue_kind kind, const char *reason, const char *id);
 /* Stops the parser where what an object or the store takes is over the input's limits. */
 void cg_affords(cg_parser *p, size_t bytes, const char *what);
 /* Whether the object may still grow; false after an error. */

@@ -169,7 +169,7 @@ void cg_emit_shown(cg_parser *p) {
     for (size_t i = 0; s->shown && i < s->items.len && !p->status; i++) {
         const cg_item *item = &s->items.data[i];
         if (item->twin)
-            geo_issue(p->sink->issues, true, "polygon given twice",
+            geo_issue(p->sink->issues, GEO_REPAIRED, "polygon given twice",
                       cg_report_id(p, item->polygon->id, p->object.geometries.data[item->geometry].feature));
         if (!item->shown)
             continue;
@@ -194,16 +194,16 @@ static void left_out(cg_parser *p, const char *why) {
              cls ? cls : "", cls ? "'" : "", function ? cls ? ", function '" : " (function '" : "", function ? function : "",
              function ? "')" : cls ? ")" : "");
     size_t before = geo_issues_count(p->sink->issues);
-    geo_issue(p->sink->issues, false, reason, cg_report_id(p, NULL, 0));
+    geo_issue(p->sink->issues, GEO_SKIPPED, reason, cg_report_id(p, NULL, 0));
     p->kinds_told += (uint32_t)(geo_issues_count(p->sink->issues) - before);
 }
 
 static void emit_object(cg_parser *p) {
     cg_selection *s = &p->selection;
     for (size_t i = 0; i < s->missing.len; i++)
-        geo_issue(p->sink->issues, false, "unresolved xlink", s->missing.data[i]);
+        geo_issue(p->sink->issues, GEO_SKIPPED, "unresolved xlink", s->missing.data[i]);
     if (s->tangled)
-        geo_issue(p->sink->issues, false, "xlinks that lead in circles", cg_report_id(p, NULL, 0));
+        geo_issue(p->sink->issues, GEO_SKIPPED, "xlinks that lead in circles", cg_report_id(p, NULL, 0));
     p->dropped += s->duplicates;
     if (cg_emit_lamp(p))
         return;
@@ -337,7 +337,7 @@ static void finish_object(cg_parser *p) {
 void cg_object_end(cg_parser *p) {
     if (p->object.features.data[0].type->kind == GEO_TERRAIN) {
         for (size_t i = 0; i < p->object.surfaces.len; i++)
-            cg_issue(p, false, "unresolved xlink", p->object.surfaces.data[i].href);
+            cg_issue(p, GEO_SKIPPED, "unresolved xlink", p->object.surfaces.data[i].href);
         if (!p->object_open)
             left_out(p, "no geometry");
         cg_emit_end(p);

@@ -356,7 +356,7 @@ bool cg_emit_lamp(cg_parser *p) {
     if (lamp.body_heads)
         cg_emit_shown(p);
     else if (p->selection.shown)
-        geo_issue(p->sink->issues, true, "lamp whose body is a block around its light: a pole stands in its place",
+        geo_issue(p->sink->issues, GEO_GUESSED, "lamp whose body is a block around its light: a pole stands in its place",
                   cg_report_id(p, NULL, 0));
     if (!p->status)
         cg_stop(p, p->sink->lamp(p->sink->ctx, &lamp));

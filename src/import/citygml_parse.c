@@ -21,9 +21,9 @@ noc_status cg_fail(cg_parser *p, noc_status status, const char *fmt, ...) {
 
 noc_status cg_no_memory(cg_parser *p) { return cg_fail(p, NOC_ERR_MEMORY, "out of memory"); }
 
-void cg_issue(cg_parser *p, bool repaired, const char *reason, const char *id) {
+void cg_issue(cg_parser *p, geo_issue_kind kind, const char *reason, const char *id) {
     if (p->pass == 1)
-        geo_issue(p->sink->issues, repaired, reason, id);
+        geo_issue(p->sink->issues, kind, reason, id);
 }
 
 void cg_affords(cg_parser *p, size_t bytes, const char *what) {
@@ -145,7 +145,7 @@ static void inherit_geometry(cg_parser *p, cg_frame *frame, const attributes *a)
 static void add_reference(cg_parser *p, const cg_frame *frame, const char *href) {
     cg_object *object = &p->object;
     if (href[0] != '#' || !href[1]) {
-        cg_issue(p, false, href[0] == '#' || !href[0] ? "unresolved xlink" : "xlink into another file", href);
+        cg_issue(p, GEO_SKIPPED, href[0] == '#' || !href[0] ? "unresolved xlink" : "xlink into another file", href);
         return;
     }
     if (!cg_object_room(p))
@@ -196,13 +196,13 @@ static bool start_feature(cg_parser *p, cg_frame *frame, const attributes *a) {
     if (type->part == CG_PART_INTERIOR) {
         char reason[80];
         snprintf(reason, sizeof(reason), "%s left out, it is inside", type->name);
-        cg_issue(p, false, reason, a->id ? a->id : "");
+        cg_issue(p, GEO_SPARED, reason, a->id ? a->id : "");
         return false;
     }
     if (type->part == CG_PART_GROUP)
         return top;
     if (type->part == CG_PART_UNREAD) {
-        cg_issue(p, false, type->kind == GEO_TERRAIN ? "relief that is not triangulated" : "object type that is not read",
+        cg_issue(p, GEO_SKIPPED, type->kind == GEO_TERRAIN ? "relief that is not triangulated" : "object type that is not read",
                  a->id && *a->id ? a->id : type->name);
         return false;
     }
@@ -305,7 +305,7 @@ static void start_word(cg_parser *p, const attributes *a) {
 /* Foreign objects are fine in a model, but a person should hear of them. */
 static bool skip_foreign(cg_parser *p, const cg_frame *frame, const cg_frame *parent, const char *name) {
     if (parent && parent->name.code == CG_MEMBER && frame->feature == CG_NONE)
-        cg_issue(p, false, "object type that is not read", cg_local_name(name));
+        cg_issue(p, GEO_SKIPPED, "object type that is not read", cg_local_name(name));
     return false;
 }
 
@@ -463,15 +463,15 @@ static void end_matrix(cg_parser *p, const cg_frame *frame) {
     if (!p->numbers.bad && (count == 16 || count == 12))
         memcpy(implicit_of(p, frame)->matrix, p->numbers.values.data, count * sizeof(double));
     else
-        cg_issue(p, true, "transformation matrix that is not 4 x 4, left out", cg_report_id(p, NULL, frame->feature));
+        cg_issue(p, GEO_GUESSED, "transformation matrix that is not 4 x 4, left out", cg_report_id(p, NULL, frame->feature));
 }
 
 static void end_implicit(cg_parser *p, const cg_frame *frame) {
     const char *id = cg_report_id(p, NULL, frame->feature);
     if (frame->first_surface == p->object.surfaces.len) {
-        cg_issue(p, false, "implicit geometry in an external file", id);
+        cg_issue(p, GEO_SKIPPED, "implicit geometry in an external file", id);
     } else if (!implicit_of(p, frame)->has_point) {
-        cg_issue(p, false, "implicit geometry without a reference point", id);
+        cg_issue(p, GEO_SKIPPED, "implicit geometry without a reference point", id);
         p->object.surfaces.len = frame->first_surface;
         while (p->object.targets.len && p->object.targets.data[p->object.targets.len - 1].first >= frame->first_surface)
             p->object.targets.len--;

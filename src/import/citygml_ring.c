@@ -86,18 +86,18 @@ void cg_ring_end(cg_parser *p, const cg_frame *frame) {
     else if (!p->ring_fault && p->ring_exterior && p->has_exterior)
         p->ring_fault = "polygon with a second exterior ring";
     if (p->ring_fault) {
-        cg_issue(p, false, p->ring_fault, id);
+        cg_issue(p, GEO_SKIPPED, p->ring_fault, id);
         p->polygon_counted = true;
         p->xyz.len = p->ring_first;
         return;
     }
     if (!closed)
-        cg_issue(p, true, "ring not closed", id);
+        cg_issue(p, GEO_REPAIRED, "ring not closed", id);
     if (p->ring_curved)
-        cg_issue(p, true, "arc taken as straight lines", id);
+        cg_issue(p, GEO_GUESSED, "arc taken as straight lines", id);
     if (p->ring_exterior && p->rings.len) {
         /* The schema has the exterior first, so holes before it have lost their place. */
-        cg_issue(p, false, "interior ring before the exterior one", id);
+        cg_issue(p, GEO_SKIPPED, "interior ring before the exterior one", id);
         memmove(p->xyz.data, p->xyz.data + p->ring_first, points * 3 * sizeof(double));
         p->xyz.len = points * 3;
         p->rings.len = 0;
@@ -116,7 +116,7 @@ void cg_polygon_end(cg_parser *p, const cg_frame *frame) {
     p->in_polygon = false;
     if (!p->has_exterior) {
         if (!p->polygon_counted)
-            cg_issue(p, false, "polygon without an exterior ring", cg_report_id(p, p->polygon_id, frame->feature));
+            cg_issue(p, GEO_SKIPPED, "polygon without an exterior ring", cg_report_id(p, p->polygon_id, frame->feature));
         return;
     }
     cg_object *object = &p->object;

@@ -336,7 +336,7 @@ static bool row_tags(csv *c, const columns *cols, lamp_writer *w, const char *ro
     if (c->start.len == 1 && !*field(c, 0))
         return false; /* an empty line */
     if (c->start.len != cols->count) {
-        geo_issue(w->sink->issues, false, "row with too few or too many columns", row);
+        geo_issue(w->sink->issues, GEO_SKIPPED, "row with too few or too many columns", row);
         return false;
     }
     for (size_t i = 0; i < cols->count; i++)

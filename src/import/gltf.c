@@ -120,7 +120,7 @@ static corners triangulate(const gltf *g, const double *index, size_t count, siz
         if (there)
             out.count += 3;
         else
-            geo_issue(g->issues, false, "triangle with a vertex that is not there", name);
+            geo_issue(g->issues, GEO_SKIPPED, "triangle with a vertex that is not there", name);
     }
     return out;
 }
@@ -197,7 +197,7 @@ static gltf_frame own_frame(const gltf *g, const json_t *node, const char *name)
     bad |= !gltf_numbers(node, "rotation", 4, q) && json_object_get(node, "rotation");
     bad |= !gltf_numbers(node, "scale", 3, s) && json_object_get(node, "scale");
     if (bad)
-        geo_issue(g->issues, true, "part of a transform that is no list of as many numbers as it takes, left out", name);
+        geo_issue(g->issues, GEO_GUESSED, "part of a transform that is no list of as many numbers as it takes, left out", name);
     double n = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     double x = q[0] / n, y = q[1] / n, z = q[2] / n, w = q[3] / n;
     if (!(n > 0))
@@ -233,9 +233,9 @@ static noc_status push_nodes(gltf *g, walk *w, const json_t *list, size_t parent
         char id[40];
         snprintf(id, sizeof(id), "node %lld", (long long)index);
         if (index < 0 || (uint64_t)index >= w->count) {
-            geo_issue(g->issues, false, "node that is not there", id);
+            geo_issue(g->issues, GEO_SKIPPED, "node that is not there", id);
         } else if (w->seen[index]) {
-            geo_issue(g->issues, false, "node that is in two places", id); /* a tree is asked for; a loop would not end */
+            geo_issue(g->issues, GEO_SKIPPED, "node that is in two places", id); /* a tree is asked for; a loop would not end */
         } else {
             status = push_node(g, w, (size_t)index, parent);
         }
@@ -274,7 +274,7 @@ static noc_status push_shown(gltf *g, walk *w, const json_t *nodes) {
     bool told = !json_object_get(g->root, "scene") || gltf_index(g->root, "scene", &shown);
     const json_t *scene = told ? gltf_item(g, "scenes", shown) : NULL;
     if (!scene) {
-        geo_issue(g->issues, true, "scene that is not there, the first one instead", "scene");
+        geo_issue(g->issues, GEO_GUESSED, "scene that is not there, the first one instead", "scene");
         scene = gltf_item(g, "scenes", 0);
     }
     return push_nodes(g, w, json_object_get(scene, "nodes"), NO_PARENT);
@@ -295,13 +295,13 @@ static noc_status add_node(gltf *g, const json_t *node, size_t index, gltf_frame
     if (status || !json_object_get(node, "mesh"))
         return status;
     if (!gltf_index(node, "mesh", &mesh) || !gltf_item(g, "meshes", mesh)) {
-        geo_issue(g->issues, false, "mesh that is not there", name);
+        geo_issue(g->issues, GEO_SKIPPED, "mesh that is not there", name);
         return NOC_OK;
     }
     if (json_object_get(node, "skin"))
-        geo_issue(g->issues, true, "skinned mesh, as it is at rest", name);
+        geo_issue(g->issues, GEO_GUESSED, "skinned mesh, as it is at rest", name);
     if (gltf_extension(node, "EXT_mesh_gpu_instancing"))
-        geo_issue(g->issues, false, "copies of a mesh by EXT_mesh_gpu_instancing, all but one", name);
+        geo_issue(g->issues, GEO_SKIPPED, "copies of a mesh by EXT_mesh_gpu_instancing, all but one", name);
     const json_t *primitives = json_object_get(gltf_item(g, "meshes", mesh), "primitives"), *primitive;
     size_t i;
     json_array_foreach(primitives, i, primitive) {

@@ -16,11 +16,11 @@ static double limited(double x, double lo, double hi) { return x >= lo ? NOC_MIN
 static bool no_textures(const gltf *g, const json_t *pbr, const json_t *m, const char *name, noc_material *out) {
     bool base = json_object_get(pbr, "baseColorTexture") != NULL;
     if (base || json_object_get(pbr, "metallicRoughnessTexture") || json_object_get(m, "emissiveTexture"))
-        geo_issue(g->issues, true, "textures are not read, plain material", name);
+        geo_issue(g->issues, GEO_GUESSED, "textures are not read, plain material", name);
     if (json_object_get(m, "emissiveTexture") && (out->emission[0] > 0 || out->emission[1] > 0 || out->emission[2] > 0)) {
         /* it says where the surface shines, most often on little of it */
         memset(out->emission, 0, sizeof(out->emission));
-        geo_issue(g->issues, false, "emission by a texture, left dark", name);
+        geo_issue(g->issues, GEO_SKIPPED, "emission by a texture, left dark", name);
     }
     return base;
 }
@@ -50,7 +50,7 @@ static noc_material convert_material(const gltf *g, const json_t *m, const char 
     out.roughness = (float)limited(roughness, 0.05, 1);
     out.two_sided = json_is_true(json_object_get(m, "doubleSided"));
     if (mode && strcmp(mode, "OPAQUE"))
-        geo_issue(g->issues, true, "transparent material, rendered opaque", name);
+        geo_issue(g->issues, GEO_GUESSED, "transparent material, rendered opaque", name);
     return out;
 }
 
@@ -58,7 +58,7 @@ int gltf_material(gltf *g, const json_t *primitive) {
     size_t count = json_array_size(json_object_get(g->root, "materials")), index = count;
     const json_t *m = gltf_index(primitive, "material", &index) ? gltf_item(g, "materials", index) : NULL;
     if (!m && json_object_get(primitive, "material"))
-        geo_issue(g->issues, true, "material that is not there, the default one instead", "primitive");
+        geo_issue(g->issues, GEO_GUESSED, "material that is not there, the default one instead", "primitive");
     int *have = &g->materials[m ? index : count];
     if (!*have) {
         const char *name = json_string_value(json_object_get(m, "name"));
@@ -111,7 +111,7 @@ static bool usable(const double *v, size_t n, double most) {
 static void set_cones(const gltf *g, const json_t *spot, noc_light *l, const char *name) {
     double outer = gltf_number(spot, "outerConeAngle", M_PI / 4), inner = gltf_number(spot, "innerConeAngle", 0);
     if (!(inner >= 0 && inner < outer && outer <= M_PI / 2 + 1e-6)) /* the extension's own limits */
-        geo_issue(g->issues, true, "cones of a spot light that no light can have, limited", name);
+        geo_issue(g->issues, GEO_GUESSED, "cones of a spot light that no light can have, limited", name);
     l->kind = NOC_LIGHT_SPOT;
     l->outer_deg = limited(outer * 180 / M_PI, 1, 90);
     l->inner_deg = limited(inner * 180 / M_PI, 0, l->outer_deg);
@@ -129,17 +129,17 @@ noc_status gltf_light(gltf *g, const json_t *node, const gltf_frame *frame, cons
     noc_light l = { .kind = NOC_LIGHT_POINT, .name = name };
     gltf_numbers(light, "color", 3, colour);
     if (!type) {
-        geo_issue(g->issues, false, "light that is not there, or of no type", name);
+        geo_issue(g->issues, GEO_SKIPPED, "light that is not there, or of no type", name);
         return NOC_OK;
     }
     if (strcmp(type, "point") && strcmp(type, "spot")) {
-        geo_issue(g->issues, false, strcmp(type, "directional") ? "light of an unknown type" : "directional light", name);
+        geo_issue(g->issues, GEO_SKIPPED, strcmp(type, "directional") ? "light of an unknown type" : "directional light", name);
         return NOC_OK;
     }
     for (int k = 0; k < 3; k++)
         l.emission[k] = (float)limited(colour[k] * intensity, 0, 1e12);
     if (intensity < 0 || colour[0] < 0 || colour[1] < 0 || colour[2] < 0)
-        geo_issue(g->issues, true, "light of negative intensity or colour, taken as 0", name);
+        geo_issue(g->issues, GEO_GUESSED, "light of negative intensity or colour, taken as 0", name);
     if (!(l.emission[0] > 0 || l.emission[1] > 0 || l.emission[2] > 0))
         return NOC_OK; /* switched off */
     noc_status status = place_frame(g, frame, l.position, look, up);
@@ -147,7 +147,7 @@ noc_status gltf_light(gltf *g, const json_t *node, const gltf_frame *frame, cons
         return status;
     bool aimed = look[0] != 0 || look[1] != 0 || look[2] != 0;
     if (!usable(l.position, 3, 1e7) || (*type == 's' && !aimed)) {
-        geo_issue(g->issues, false, "light whose place is not finite, or that looks nowhere", name);
+        geo_issue(g->issues, GEO_SKIPPED, "light whose place is not finite, or that looks nowhere", name);
         return NOC_OK;
     }
     if (*type == 's') {
@@ -164,7 +164,7 @@ noc_status gltf_camera(gltf *g, const json_t *node, const gltf_frame *frame, con
     const json_t *camera = gltf_index(node, "camera", &index) ? gltf_item(g, "cameras", index) : NULL;
     const json_t *perspective = json_object_get(camera, "perspective");
     if (!perspective) {
-        geo_issue(g->issues, false, camera ? "camera without perspective" : "camera that is not there", name);
+        geo_issue(g->issues, GEO_SKIPPED, camera ? "camera without perspective" : "camera that is not there", name);
         return NOC_OK;
     }
     noc_camera c = { .fov_deg = gltf_number(perspective, "yfov", 0) * 180 / M_PI };
@@ -176,7 +176,7 @@ noc_status gltf_camera(gltf *g, const json_t *node, const gltf_frame *frame, con
         c.target[k] = c.eye[k] + 10 * look[k];
     bool aimed = look[0] != 0 || look[1] != 0 || look[2] != 0, upright = c.up[0] != 0 || c.up[1] != 0 || c.up[2] != 0;
     if (!(c.fov_deg >= 1 && c.fov_deg <= 170) || !usable(c.eye, 3, 1e7) || !aimed || !upright) {
-        geo_issue(g->issues, false, "camera that looks nowhere, or whose angle is not within 1 to 170 degrees", name);
+        geo_issue(g->issues, GEO_SKIPPED, "camera that looks nowhere, or whose angle is not within 1 to 170 degrees", name);
         return NOC_OK;
     }
     return noc_scene_set_camera(g->scene, &c);

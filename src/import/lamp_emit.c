@@ -24,7 +24,7 @@ static bool on_earth(double lon, double lat) { return fabs(lon) <= 180 && fabs(l
 
 /* A lamp in use whose place is none. */
 static noc_status lose(lamp_writer *w, const char *reason, const char *id) {
-    geo_issue(w->sink->issues, false, reason, id);
+    geo_issue(w->sink->issues, GEO_SKIPPED, reason, id);
     if (w->sink->lamps_lost)
         ++*w->sink->lamps_lost;
     w->lost++;
@@ -55,7 +55,7 @@ noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count,
     if (!lamp_accept(verdict, lamp.id, w->sink->issues))
         return NOC_OK;
     if (w->kinds.any && !lamp_kinds_tell(&w->kinds, tags, count)) {
-        geo_issue(w->sink->issues, false, "point that is called something other than a lamp", lamp.id);
+        geo_issue(w->sink->issues, GEO_SKIPPED, "point that is called something other than a lamp", lamp.id);
         return NOC_OK;
     }
     if (!isfinite(x) || !isfinite(y))

@@ -138,9 +138,9 @@ lamp_verdict lamp_verdict_of(lamp_keys *keys, const lamp_tag *tags, size_t count
 
 bool lamp_accept(lamp_verdict verdict, const char *id, geo_issues *issues) {
     if (issues && verdict == LAMP_INACTIVE)
-        geo_issue(issues, false, "lamp not in use (removed, disused or planned)", id);
+        geo_issue(issues, GEO_SPARED, "lamp not in use (removed, disused or planned)", id);
     if (issues && verdict == LAMP_INDOORS)
-        geo_issue(issues, false, "lamp indoors or underground", id);
+        geo_issue(issues, GEO_SPARED, "lamp indoors or underground", id);
     return verdict == LAMP_ACTIVE;
 }
 
@@ -155,7 +155,7 @@ typedef struct reading {
 
 static bool misread(const reading *r, const char *reason) {
     if (r->issues)
-        geo_issue(r->issues, true, reason, r->lamp->id);
+        geo_issue(r->issues, GEO_GUESSED, reason, r->lamp->id);
     return false;
 }
 

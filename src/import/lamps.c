@@ -148,7 +148,7 @@ static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_par
         input *in = &im->inputs[p->input];
         double d = e->any ? distance_outside(e, p->lamp.xyz) : 0;
         if (d > OUTSIDE) {
-            geo_issue(in->issues, false, "lamp more than 2 km outside the city", p->lamp.id);
+            geo_issue(in->issues, GEO_SKIPPED, "lamp more than 2 km outside the city", p->lamp.id);
             fate->nearest = NOC_MIN(fate->nearest, d);
             fate->outside++;
             in->file.lamps_dropped++;

@@ -220,7 +220,7 @@ static noc_status read_input(importer *im, size_t index) {
     noc_stream_limit(stream, im->params);
     size_t unread = noc_stream_unread(stream);
     for (size_t i = 0; i < unread; i++)
-        geo_issue(in->issues, false, "file of the archive, like the one that is read", "");
+        geo_issue(in->issues, GEO_SKIPPED, "file of the archive, like the one that is read", "");
     if (unread)
         noc_warn(im->log, "%s: the archive holds %zu more file%s like it, which %s not read: unpack it to read all", noc_stream_name(stream),
                  unread, unread == 1 ? "" : "s", unread == 1 ? "is" : "are");
@@ -251,7 +251,7 @@ static noc_status read_input(importer *im, size_t index) {
     place_finish_file(im, status == NOC_OK);
     if (!status && (in->remote ? result.trailing : noc_stream_trailing(stream))) {
         noc_warn(im->log, "%s: bytes after the gzip data are ignored", in->path);
-        geo_issue(in->issues, false, "bytes after the gzip data", "");
+        geo_issue(in->issues, GEO_SKIPPED, "bytes after the gzip data", "");
     }
     in->file.bytes = in->bytes;
     in->file.bytes_read = in->remote ? result.bytes_read : noc_stream_read_bytes(stream);

@@ -211,9 +211,9 @@ static noc_material convert_material(const struct aiMaterial *m, const char *nam
         for (int i = 0; i < 3; i++)
             out.albedo[i] *= (1 - out.f0) / most;
     if (changed)
-        geo_issue(issues, true, "material values out of range, clamped", name);
+        geo_issue(issues, GEO_GUESSED, "material values out of range, clamped", name);
     if (get_float(m, "$mat.opacity", &opacity) && opacity < 1)
-        geo_issue(issues, true, "transparent material, rendered opaque", name);
+        geo_issue(issues, GEO_GUESSED, "transparent material, rendered opaque", name);
     return out;
 }
 
@@ -314,7 +314,7 @@ static noc_status read_obj(const char *path, library *lib, const mesh_target *to
     } else {
         if (lib->missing) {
             noc_warn(to->parts->log, "%s: default material, because %s", path, lib->missing);
-            geo_issue(lib->issues, true, "library of materials that cannot be read, default material", "mtllib");
+            geo_issue(lib->issues, GEO_GUESSED, "library of materials that cannot be read, default material", "mtllib");
         }
         status = add_scene(from, to);
     }
@@ -356,7 +356,7 @@ static noc_status read_parts(const char *path, noc_stream *stream, const noc_imp
     const mesh_target to = { .parts = parts, .offset = offset, .z_up = params && params->obj_up == NOC_OBJ_UP_Z,
                              .spread = &spread };
     status = folder && lib.main_name ? obj_plain_materials(lib.data, lib.size, &lib.folder, noc_stream_budget(stream),
-                                                           noc_stream_name(stream), parts->log)
+                                                           parts->issues, noc_stream_name(stream), parts->log)
                                      : noc_no_memory(parts->log, path);
     if (!status)
         status = read_obj(path, &lib, &to);

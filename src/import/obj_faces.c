@@ -97,7 +97,7 @@ static bool plain_face(char *begin, char *end, const face_limits *limits) {
             there = is_separator(*p);
         there = there || corners;
         snprintf(id, sizeof(id), "line %zu", limits->line);
-        geo_issue(limits->issues, false, there ? "face of fewer than three vertices" : "face with an index that is not there", id);
+        geo_issue(limits->issues, GEO_SKIPPED, there ? "face of fewer than three vertices" : "face with an index that is not there", id);
         blank(begin, end);
     }
     return corners >= 3;

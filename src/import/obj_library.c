@@ -103,9 +103,9 @@ static void plain_statements(char *data, size_t size, const char *name, geo_issu
             continue;
         snprintf(id, sizeof(id), "%.150s line %zu", name, line);
         if (texture)
-            geo_issue(issues, true, "textures are not read, plain material", id);
+            geo_issue(issues, GEO_GUESSED, "textures are not read, plain material", id);
         else if (numbers > 0)
-            geo_issue(issues, false, "material statement with a number that is none", id);
+            geo_issue(issues, GEO_SKIPPED, "material statement with a number that is none", id);
         memset(p, ' ', (size_t)(end - p));
     }
 }

@@ -53,8 +53,8 @@ static bool add_library(obj_folder *folder, const char *name, import_budget *bud
     return memory;
 }
 
-noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, import_budget *budget, const char *name,
-                               noc_log *log) {
+noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, import_budget *budget, geo_issues *issues,
+                               const char *name, noc_log *log) {
     noc_map defined = { 0 }, libraries = { 0 };
     size_t faces = 0, vertices = 0, undefined = 0;
     char unknown = '?'; /* a name that no library defines */
@@ -82,6 +82,7 @@ noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, impo
         char *material = text_of(&s);
         memory = material != NULL;
         if (memory && !map_get(&defined, material, NULL)) {
+            geo_issue(issues, GEO_GUESSED, "material that is not there, the default one instead", material);
             memset(s.begin, ' ', (size_t)(s.end - s.begin));
             *s.begin = unknown;
             undefined = 1;

@@ -166,7 +166,7 @@ noc_status obj_plain_vertices(char **data, size_t *size, double offset[3], obj_n
             if (!parse_vertex(line, end, xyz, &plain)) {
                 char id[32];
                 snprintf(id, sizeof(id), "line %zu", line_number);
-                geo_issue(issues, false, "vertex that is not three numbers", id);
+                geo_issue(issues, GEO_SKIPPED, "vertex that is not three numbers", id);
                 memory = array_push(bad, number);
             }
             out.data[out.size] = 'v';

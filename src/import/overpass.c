@@ -133,8 +133,10 @@ static noc_status read_overpass(noc_stream *stream, const noc_import_params *par
         status = noc_error(sink->log, NOC_ERR_FORMAT, "%s: \"elements\" is not a list", w.place);
     } else {
         /* the server says here that it ran out of time or memory, and sent what it had */
-        if (json_is_string(remark))
+        if (json_is_string(remark)) {
             noc_warn(sink->log, "%s: incomplete answer: %s", w.place, json_string_value(remark));
+            geo_issue(sink->issues, GEO_SKIPPED, "incomplete answer of the server", "remark");
+        }
         status = lamp_writer_crs(&w, LAMP_WGS84);
         w.inventory = sink->named_lamps && !any_lamp(elements);
         if (!status)

@@ -104,11 +104,11 @@ static void decide_axes(importer *im, source_crs *s, double x, double y, const c
         s->axes_decided = s->swap = true;
         noc_warn(im->log, "%s: the coordinates fit %s only with their axes exchanged: done", im->inputs[im->current].path,
                  geo_crs_name(s->crs));
-        geo_issue(issues, true, "axes exchanged to fit the CRS", id);
+        geo_issue(issues, GEO_GUESSED, "axes exchanged to fit the CRS", id);
     } else if (is_zone_number(s, zone, x, y)) {
         s->axes_decided = true;
         s->shift_x = -1e6 * zone;
-        geo_issue(issues, true, "zone number taken off the easting", id);
+        geo_issue(issues, GEO_REPAIRED, "zone number taken off the easting", id);
     } else {
         s->outside = given;
         s->axes_decided = ++s->tries == AXIS_TRIES;
@@ -416,7 +416,7 @@ noc_status place_points(importer *im, double *xyz, size_t count, const char *id,
     fix_axes(im, s, xyz, count, id);
     im->given.len = 0;
     if (!bounds_of(xyz, count, lo, hi)) {
-        geo_issue(in->issues, false, "coordinates that are not finite", id);
+        geo_issue(in->issues, GEO_SKIPPED, "coordinates that are not finite", id);
         return NOC_OK;
     }
     centre_of(lo, hi, centre);
@@ -437,7 +437,7 @@ noc_status place_points(importer *im, double *xyz, size_t count, const char *id,
             astray++;
         }
     if (failed || astray) {
-        geo_issue(in->issues, false, failed ? "coordinates that have no place in the scene's CRS"
+        geo_issue(in->issues, GEO_SKIPPED, failed ? "coordinates that have no place in the scene's CRS"
                                             : "coordinates that lie nowhere on Earth", id);
         return NOC_OK;
     }

@@ -55,7 +55,8 @@ static void cut_polygon(cut_mesh *m, const unsigned *corner, size_t count) {
     for (int k = 0; k < 3; k++)
         size = NOC_MAX(size, hi[k] - lo[k]);
     if (!finite || !(size > 0 && isfinite(size))) {
-        geo_issue(m->issues, false, "polygon of no extent, or with a coordinate that is no number", m->name);
+        geo_issue(m->issues, finite && !(size > 0) ? GEO_SPARED : GEO_SKIPPED,
+                  finite && !(size > 0) ? "polygon of no extent" : "polygon with a coordinate that is no number", m->name);
     } else {
         double scale = WORKING_SIZE / size;
         for (size_t i = 0; i < 3 * count; i++)

@@ -32,7 +32,7 @@ enum {
     REMOTE_LAMP,       /* geo_lamp, texts: id, ref */
     REMOTE_MATERIAL,   /* noc_material */
     REMOTE_MESH,       /* remote_mesh, text: name, positions, indices */
-    REMOTE_ISSUE,      /* repaired, count, texts: reason, examples */
+    REMOTE_ISSUE,      /* kind, count, texts: reason, examples */
     REMOTE_PROGRESS,   /* double */
     REMOTE_COLUMNS,    /* points, count, and of each column values, mapped, texts: name, field, unit, example */
     REMOTE_END,        /* remote_end, text: format */

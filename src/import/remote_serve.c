@@ -101,10 +101,11 @@ static void send_issues(serving *s, const geo_issues *issues) {
     for (size_t i = 0; i < geo_issues_count(issues); i++) {
         const char *reason, *examples;
         bool repaired;
+        unsigned char kind = (unsigned char)geo_issues_kind(issues, i);
         size_t count;
         if (!geo_issues_get(issues, i, &reason, &repaired, &count, &examples))
             _exit(REMOTE_NO_MEMORY);
-        remote_put(&s->out, &repaired, sizeof(repaired));
+        remote_put(&s->out, &kind, sizeof(kind));
         remote_put(&s->out, &count, sizeof(count));
         remote_put_text(&s->out, reason);
         remote_put_text(&s->out, examples);

@@ -82,14 +82,14 @@ static noc_status take_mesh(remote_taker *t, remote_record *one) {
 }
 
 static noc_status take_issue(remote_taker *t, remote_record *one) {
-    unsigned char repaired = 0;
+    unsigned char kind = 0;
     size_t count = 0;
-    remote_get(one, &repaired, sizeof(repaired));
+    remote_get(one, &kind, sizeof(kind));
     remote_get(one, &count, sizeof(count));
     const char *reason = remote_get_text(one), *examples = remote_get_text(one);
-    if (one->bad)
+    if (one->bad || kind >= GEO_ISSUE_KINDS)
         return garbled(t);
-    geo_issues_add(t->sink->issues, repaired != 0, reason, count, examples);
+    geo_issues_add(t->sink->issues, (geo_issue_kind)kind, reason, count, examples);
     return NOC_OK;
 }
 

@@ -75,7 +75,7 @@ bool repeat_file(importer *im, size_t index) {
         in->started = true;
         in->file.bytes = in->bytes;
         in->file.format = in->reader ? in->reader->name : "built-in scene";
-        geo_issue(in->issues, false, why, im->inputs[i].path);
+        geo_issue(in->issues, GEO_SPARED, why, im->inputs[i].path);
         noc_warn(im->log, "%s: %s (%s): taken once", in->path, why, im->inputs[i].path);
         return true;
     }
@@ -207,7 +207,7 @@ noc_status repeat_object(importer *im, const char *id, bool *repeated) {
         r = find_named(&im->records, now, now->kind, name, im->current);
     if (r) {
         input *in = &im->inputs[im->current];
-        geo_issue(in->issues, false, r->input == im->current ? "object that the file holds twice: taken once"
+        geo_issue(in->issues, GEO_SPARED, r->input == im->current ? "object that the file holds twice: taken once"
                                                              : "object that another file holds, too: taken once", id);
         in->file.objects_repeated++;
         *repeated = now->repeated = true;
@@ -262,7 +262,7 @@ noc_status repeat_lamps(importer *im) {
                 again = same_lamp(&lamps[k - 1], &p);
         if (again) {
             input *in = &im->inputs[p.input];
-            geo_issue(in->issues, false, "lamp that another file holds, too: taken once", p.lamp.id);
+            geo_issue(in->issues, GEO_SPARED, "lamp that another file holds, too: taken once", p.lamp.id);
             in->file.lamps_repeated++;
             continue;
         }

@@ -44,23 +44,25 @@ void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) 
 
 noc_status report_strict(const noc_report *report, noc_log *log) {
     enum { SHOWN = 8 };
-    noc_report_totals totals;
-    noc_report_get_totals(report, &totals);
-    if (!totals.skipped && !totals.repaired)
-        return NOC_OK;
-    char text[1000]; /* as long as a message may be */
-    size_t n = (size_t)noc_snprintf(text, sizeof(text), "--strict: features skipped: %zu, repaired: %zu", totals.skipped, totals.repaired);
-    size_t lines = 0;
+    size_t skipped = 0, guessed = 0, lines = 0, n = 0;
+    char causes[900] = "";
     for (size_t i = 0; i < report->files.len; i++)
         for (size_t k = 0; k < report->files.data[i].line_count; k++) {
             const noc_report_file *f = &report->files.data[i];
             const noc_report_line *l = &f->lines[k];
-            if (++lines <= SHOWN && n < sizeof(text))
-                n += (size_t)noc_snprintf(text + n, sizeof(text) - n, "; %s: %zu x %s%s%s%s", f->path, l->count, l->reason,
+            if (l->lossless)
+                continue;
+            *(l->repaired ? &guessed : &skipped) += l->count;
+            if (++lines <= SHOWN && n < sizeof(causes))
+                n += (size_t)noc_snprintf(causes + n, sizeof(causes) - n, "; %s: %zu x %s%s%s%s", f->path, l->count, l->reason,
                                           *l->examples ? " (" : "", l->examples, *l->examples ? ")" : "");
         }
-    return lines > SHOWN ? noc_error(log, NOC_ERR_FORMAT, "%s; and %zu more", text, lines - SHOWN)
-                         : noc_error(log, NOC_ERR_FORMAT, "%s", text);
+    if (!lines)
+        return NOC_OK;
+    char more[40] = "";
+    if (lines > SHOWN)
+        noc_snprintf(more, sizeof(more), "; and %zu more", lines - SHOWN);
+    return noc_error(log, NOC_ERR_FORMAT, "--strict: features left out: %zu, guessed at: %zu%s%s", skipped, guessed, causes, more);
 }
 
 static const char *keep(noc_report *report, const char *text) { return arena_strdup(&report->arena, text ? text : ""); }
@@ -77,6 +79,8 @@ bool report_add(noc_report *report, const noc_report_file *file, const geo_issue
     for (size_t i = 0; i < f.line_count && lines; i++) {
         if (!geo_issues_get(issues, i, &lines[i].reason, &lines[i].repaired, &lines[i].count, &lines[i].examples))
             return false;
+        geo_issue_kind kind = geo_issues_kind(issues, i);
+        lines[i].lossless = kind == GEO_REPAIRED || kind == GEO_SPARED;
         lines[i].reason = keep(report, lines[i].reason);
         lines[i].examples = keep(report, lines[i].examples);
     }

@@ -2,11 +2,13 @@
 #include "scene/scene.h"
 
 bool import_triangles(noc_scene *scene, const noc_mesh *mesh, geo_issues *issues) {
-    size_t before = scene->triangles_dropped;
+    const char *name = mesh->name ? mesh->name : "unnamed";
+    size_t before = scene->triangles_dropped, flat_before = scene->triangles_flat;
     if (noc_scene_add_mesh(scene, mesh) < 0)
         return false;
-    for (; before < scene->triangles_dropped; before++)
-        geo_issue(issues, false, "triangle without area, or with a coordinate that is no number or beyond all maps", mesh->name ? mesh->name : "unnamed");
+    size_t flat = scene->triangles_flat - flat_before, others = scene->triangles_dropped - before - flat;
+    geo_issues_add(issues, GEO_SPARED, "triangle without area", flat, name);
+    geo_issues_add(issues, GEO_SKIPPED, "triangle with a coordinate that is no number or beyond all maps", others, name);
     return true;
 }
 

@@ -265,7 +265,7 @@ static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDe
     bool table = m->writer.inventory || m->writer.strange;
     if (table && !is_point && (placed || m->writer.strange)) {
         if (m->writer.inventory)
-            geo_issue(m->writer.sink->issues, false, "line or area in a table of lamps", "");
+            geo_issue(m->writer.sink->issues, GEO_SKIPPED, "line or area in a table of lamps", "");
         return NOC_OK;
     }
     if (!collect_fields(feature, defn, m->format->kind == MAP_OSM, &m->tags))
@@ -273,7 +273,7 @@ static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDe
     size_t before = m->writer.lamps;
     noc_status status = lamp_writer_point(&m->writer, m->tags.tags.data, m->tags.tags.len, m->tags.id, xyz);
     if (!status && m->writer.lamps > before && !is_point)
-        geo_issue(m->writer.sink->issues, true, "lamp drawn as a line or an area: put in its middle", m->tags.id);
+        geo_issue(m->writer.sink->issues, GEO_GUESSED, "lamp drawn as a line or an area: put in its middle", m->tags.id);
     return status;
 }
 
@@ -372,6 +372,8 @@ static noc_status read_map(noc_stream *stream, const map_format *format, const n
     if (status)
         return status;
     status = map_source_open(&m.source, stream, format, params && params->allow_outside, sink->log);
+    if (!status && m.source.link[0] && !(params && params->crs))
+        geo_issue(sink->issues, GEO_GUESSED, "CRS that is a link, not followed: longitudes and latitudes instead", "crs");
     if (!status)
         status = read_layers(&m);
     map_source_close(&m.source);

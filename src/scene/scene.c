@@ -183,6 +183,7 @@ int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
         const float *p = scene->positions.data + 3 * first_vertex;
         if (!ok || !(double_area(p + 3 * (size_t)v[0], p + 3 * (size_t)v[1], p + 3 * (size_t)v[2]) > 1e-12)) {
             scene->triangles_dropped++;
+            scene->triangles_flat += ok;
             continue;
         }
         for (int i = 0; i < 3; i++) {

@@ -65,7 +65,7 @@ struct noc_scene {
     NOC_ARRAY(uint32_t) moving;            /* lights with NOC_LIGHT_MOVES */
     uint64_t moves, power_changes;         /* calls that moved a light; those of them that changed what it emits in all */
     noc_arena names;
-    size_t triangles_dropped, lights_inferred;
+    size_t triangles_dropped, triangles_flat /* of these, for they have no area */, lights_inferred;
     double bounds_min[3], bounds_max[3];
     uint32_t backdrop_first, backdrop_count; /* triangles around the city: drawn, but no part of it */
     noc_camera own_camera; /* fov_deg 0: none */

@@ -164,11 +164,11 @@ sed 's/^\([ab]\),\([0-9.]*\),\([0-9.]*\)/\1,\3,\2/' swapped.csv >right.csv
 run render "$gml" right.csv $view -o s.exr
 test $status = 0 && grep -q 'lamps  *2 mapped' out && grep -aq 'lamps-mapped' s.exr && grep -aq 'features-repaired' s.exr
 result $? "the right way round they light the city, and an EXR tells how many"
-expect "--strict refuses what is skipped" 1 'strict: features skipped: 1, .*city.gml: 1 x .*(two-points|stump)' \
+expect "--strict refuses what is left out" 1 'strict: features left out: 1, .*city.gml: 1 x .*(two-points|stump)' \
     render "$gml" right.csv --strict $view -o strict.png
 test ! -e strict.png; result $? "without a picture"
 run info --strict "$gml"
-test $status = 1 && grep -q 'skipped  *1 x' out && grep -q 'strict: features skipped: 1' err; result $? "and info, which tells it all the same"
+test $status = 1 && grep -q 'skipped  *1 x' out && grep -q 'strict: features left out: 1' err; result $? "and info, which tells it all the same"
 set -- $(meta a.png scene-origin)
 test $# = 3 && run render "$gml" $view -o b.png \
     --eye "$(echo "678030 5402980 412 $*" | awk '{printf "%.3f,%.3f,%.3f", $1-$4, $2-$5, $3-$6}')" \

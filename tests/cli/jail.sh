@@ -84,6 +84,9 @@ for name in ../out_there/secret.mtl sub/../../out_there/secret.mtl "$work/out_th
     run info --allow-outside in/model.obj
     test $status = 0 && test "$(lights)" = 1; result $? "unless that is allowed"
 done
+obj sub/fine.mtl
+sed -i 's/usemtl glow/usemtl other/' in/model.obj
+expect "--strict refuses a material that no library defines" 1 'guessed at: 1; .*material that is not there.*other' info --strict in/model.obj
 obj none.mtl
 expect "materials that are not there are told of" 0 'default material, because .*none.mtl' info in/model.obj
 expect "and an error with --strict" 1 'library of materials that cannot be read' info --strict in/model.obj

@@ -155,7 +155,8 @@ static void test_useless_lamps(void **state) {
     finish(&r);
 }
 
-/* --strict: what else is skipped or repaired ends it, with the causes; what is clean goes through. */
+/* --strict: what is left out or guessed at ends it, with the causes; what is clean goes through, and so does what loses
+ * nothing by its repair, or by being left out. */
 static void test_strict(void **state) {
     (void)state;
     struct run r;
@@ -170,9 +171,28 @@ static void test_strict(void **state) {
     LOAD(&r, p, file("rough.city", text));
     assert_int_equal(r.status, NOC_ERR_FORMAT);
     const char *said = noc_log_last_error(r.log);
-    assert_non_null(strstr(said, "skipped: 2, repaired: 0"));
+    assert_non_null(strstr(said, "left out: 2, guessed at: 0"));
     assert_non_null(strstr(said, "rough.city: 1 x ring with too few points (poly)"));
     assert_non_null(strstr(said, "1 x coordinates that are not finite"));
+    finish(&r);
+    char other[2000];
+    snprintf(other, sizeof(other), "%s%s", CITY,
+             "object 0 lossless 1\n"
+             "polygon 1 678000 5404000 0 678001 5404000 0 678001 5404000 0 678001 5404001 0\n" /* a point twice */
+             "polygon 1 678000 5404000 0 678001 5404000 0 678002 5404000 0\nend\n");          /* no area */
+    LOAD(&r, p, file("plain.city", other));
+    assert_int_equal(r.status, NOC_OK);
+    noc_report_totals totals;
+    noc_report_get_totals(r.report, &totals);
+    assert_int_equal(totals.skipped, 1);
+    assert_int_equal(totals.repaired, 1);
+    finish(&r);
+    snprintf(other, sizeof(other), "%s%s", CITY, "object 0 eight 1\npolygon 1 678000 5404000 0 678001 5404001 0 678001 5404000 0 "
+             "678000 5404001 0\nend\n");
+    LOAD(&r, p, file("eight.city", other));
+    assert_int_equal(r.status, NOC_ERR_FORMAT);
+    assert_non_null(strstr(noc_log_last_error(r.log), "left out: 0, guessed at: 1"));
+    assert_non_null(strstr(noc_log_last_error(r.log), "1 x self-intersecting ring"));
     finish(&r);
     LOAD(&r, p, file("a", CITY), file("l", NEAR_LAMP "lamp 52.5 13.4\n"));
     assert_int_equal(r.status, NOC_ERR_FORMAT);

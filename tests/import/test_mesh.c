@@ -333,6 +333,20 @@ static void test_missing_library(void **state) {
     unload(&l);
 }
 
+/* Counted, and no lossless repair, wherever it is asked for. */
+static void test_missing_material(void **state) {
+    loaded l;
+    const char text[] = "mtllib test.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl nowhere\nf 1 2 3\nusemtl ground\nf 1 2 3\nusemtl nowhere\nf 1 3 2\n";
+    write_file("test.mtl", mtl, strlen(mtl));
+    write_file("material.obj", text, strlen(text));
+    load(&l, "material.obj", NOC_OBJ_UP_Y);
+    assert_int_equal(l.status, NOC_OK);
+    assert_true(has_issue(&l, "material that is not there, the default one instead", 2, "nowhere"));
+    assert_int_equal(geo_issues_count(l.issues), 1);
+    assert_int_equal(geo_issues_kind(l.issues, 0), GEO_GUESSED);
+    unload(&l);
+}
+
 static void test_probe(void **state) {
     static const char *const yes[] = { "v 1 2 3\n", "# x\n\nmtllib a.mtl\no b\nv 1", "\r\ng roof\r\nusemtl x\r\n", "v 1 2 \\\n 3\nf 1 2 \\\r\n 3\n",
                                        "\xef\xbb\xbfv 1 2 3\n", "v 1 2 3\ncstype bezier\ncurv 0 1 1 2\nend\n" };
@@ -386,7 +400,7 @@ static int set_up(void **state) {
 }
 
 static int tear_down(void **state) {
-    static const char *const files[] = { "test.mtl", "named.anything", "missing.obj", "bad.obj", "map.obj", "faces.obj", "my test.mtl", "other.mtl" };
+    static const char *const files[] = { "test.mtl", "named.anything", "missing.obj", "material.obj", "bad.obj", "map.obj", "faces.obj", "my test.mtl", "other.mtl" };
     for (size_t i = 0; i < NOC_COUNT(files); i++) {
         char path[300];
         snprintf(path, sizeof(path), "%s/%s", folder, files[i]);
@@ -403,7 +417,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_reads),
         cmocka_unit_test(test_map_coordinates),
-        cmocka_unit_test(test_missing_library),
+        cmocka_unit_test(test_missing_library), cmocka_unit_test(test_missing_material),
         cmocka_unit_test(test_bad_faces),
         cmocka_unit_test(test_vertices),
         cmocka_unit_test(test_polygons),
