@@ -60,7 +60,7 @@ typedef void cli_visit(FILE *out, const noc_option *o, const void *defaults, int
  * group's name; NULL: no heading. */
 void cli_each_option(const cli_command *command, FILE *out, const char *heading, cli_visit *visit, int columns);
 
-/* pages.c: made from the option tables too */
+/* pages.c and completion.c: made from the option tables too */
 void cli_man(FILE *out);                                 /* nocturne.1 */
 bool cli_completion(FILE *out, const char *shell);       /* for bash, zsh or fish; false: for none of them */
 

@@ -10,28 +10,96 @@ if command -v groff >/dev/null; then
 else
     skip "the manual page" "groff is not here"
 fi
-run help --completion bash
-offered() { # WORD...: what bash offers for the last of these words
-    bash -c 'source ./out; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _nocturne; echo "${COMPREPLY[@]}"' _ "$@"
-}
-if command -v bash >/dev/null; then
-    test "$(offered nocturne comp)" = compare && test "$(offered nocturne render a.gml --method re)" = "reference restir" &&
-        test "$(offered nocturne render --jit)" = "" && test "$(offered nocturne render --no-jit)" = "--no-jitter" &&
-        test "$(offered nocturne info --met)" = "" && test "$(offered nocturne render --infer)" = --infer-lamps &&
-        test "$(offered nocturne render --no-infer)" = --no-infer-lamps && test "$(offered nocturne render --method = re)" = "reference restir" &&
-        test "$(offered nocturne render --method = | wc -w)" = 4 && test "$(offered nocturne render builtin : city)" = "city cityscape" &&
-        test "$(offered nocturne render builtin : | wc -w)" = 5 && test "$(offered nocturne info builtin)" = builtin:
-    result $? "bash completes commands, options and choices"
-else
-    skip "completion in bash" "bash is not here"
-fi
-for shell in zsh fish; do
-    run help --completion $shell
+for shell in bash zsh fish; do
+    mkdir -p $shell && "$program" help --completion $shell >$shell/_nocturne
     if command -v $shell >/dev/null; then
-        $shell -n out 2>why; result $? "the completion for $shell is well-formed" "$(head -n 1 why)"
+        $shell -n $shell/_nocturne 2>why; result $? "the completion for $shell is well-formed" "$(head -n 1 why)"
     else
-        grep -q -- 'reference is ris restir' out; result $? "the completion for $shell names the choices"
+        grep -q -- 'reference is ris restir' $shell/_nocturne; result $? "the completion for $shell names the choices"
     fi
+done
+
+# What shells offer at the end of a line, in a folder of two files and another folder: "LINE: WORDS".
+mkdir files home
+: >files/city.gml
+: >files/berlin.gml
+mkdir files/folder
+cat >offers <<'OFFERS'
+nocturne comp: compare
+nocturne : compare experiment help info render
+nocturne help co: compare
+nocturne render --method re: reference restir
+nocturne render --method=re: reference restir
+nocturne render --method=: is reference restir ris
+nocturne render --method : is reference restir ris
+nocturne render --jit:
+nocturne render --no-jit: --no-jitter
+nocturne info --met:
+nocturne render --infer: --infer-lamps
+nocturne render --no-infer: --no-infer-lamps
+nocturne render builtin:city: city cityscape
+nocturne render builtin:: atrium city cityscape mess single
+nocturne render --width :
+nocturne render --width=:
+nocturne render --crs :
+nocturne render ci: city.gml
+nocturne render city.gml fo: folder
+nocturne render -o : berlin.gml city.gml folder
+nocturne render --lamps ber: berlin.gml
+nocturne compare b: berlin.gml
+nocturne compare ren:
+nocturne compare --ce: --ceiling
+nocturne experiment -o : berlin.gml city.gml folder
+OFFERS
+sed 's/: *[^:]*$//' offers >lines
+# SHELL_offers: what the shell offers for the lines of its input, a line each
+bash_offers() {
+    bash -c 'source ../bash/_nocturne
+        compopt() { [ "$1$2" = +odefault ] && default=; }
+        while IFS= read -r line; do
+            split=${line//=/ = }
+            COMP_WORDS=(${split//:/ : }) default=yes
+            [[ $line == *" " ]] && COMP_WORDS+=("")
+            COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
+            _nocturne
+            [ ${#COMPREPLY[@]} = 0 ] && [ "$default" ] && mapfile -t COMPREPLY < <(compgen -f -- "${COMP_WORDS[COMP_CWORD]#=}")
+            echo ${COMPREPLY[@]}
+        done'
+}
+fish_offers() { # fuzzy matches, which it has where nothing begins so, are its own
+    HOME=$work/home XDG_CONFIG_HOME=$work/home XDG_DATA_HOME=$work/home fish --no-config -c 'source ../fish/_nocturne
+        while read -l line
+            set -l word (string match -r "[^ ]*\$" -- $line)
+            set -l hits (complete -C $line | string replace -r "\t.*" "" | string match -- "$word*")
+            echo $hits
+        end'
+}
+zsh_offers() { zsh "$source_dir/tests/cli/zsh_offers.zsh" "$work/zsh"; }
+same_words() { # each line sorted, without what stands before a value, and without a folder's slash
+    while IFS= read -r line; do
+        for word in $line; do
+            case $word in --*=*) word=${word#*=} ;; builtin:?*) word=${word#builtin:} ;; esac
+            echo "${word%/}"
+        done | LC_ALL=C sort -u | tr '\n' ' '
+        echo
+    done
+}
+sed 's/.*: *//' offers >wanted
+for command in render info compare experiment; do # all its options, as its help has them
+    echo "nocturne $command --" >>lines
+    "$program" help $command | grep -o -- '^  \(-., \)\?--[^ ]*' |
+        sed 's/.*--/--/; s/--\[no-\]infer-lamps/--infer-lamps --no-infer-lamps/; s/\[no-\]/no-/' | tr '\n' ' ' >>wanted
+    echo >>wanted
+done
+same_words <wanted >expected
+for shell in bash zsh fish; do
+    if ! command -v $shell >/dev/null; then
+        skip "completion in $shell" "$shell is not here"
+        continue
+    fi
+    (cd files && ${shell}_offers) <lines | same_words >$shell/offers
+    cmp -s $shell/offers expected
+    result $? "$shell completes commands, options, choices, built-in scenes and files" "$(diff $shell/offers expected | head -n 6)"
 done
 expect "a shell without completion" 2 'bash, zsh and fish' help --completion tcsh
 broken=
