@@ -129,6 +129,8 @@ typedef struct cg_feature {
     const char *id;        /* "" if none */
     uint32_t parent;
     int function;          /* noc_class told by function, usage or class, -1 if none */
+    uint32_t first_attribute, end_attribute; /* among these are its own, and those of its parts */
+    uint32_t attributes;
 } cg_feature;
 
 /* Where an id leads: a run of surfaces in document order. */
@@ -138,10 +140,11 @@ typedef struct cg_target {
     bool flip; /* orientation in force outside the element with this id */
 } cg_target;
 
-/* What an object says of itself, in its order: "class", "function", "usage", "name", "terminationDate" (2.0), "validTo" (3.0),
+/* What an object, or a part of it that may be a lamp, says of itself, in its order: "class", "function", "usage", "name", "terminationDate" (2.0), "validTo" (3.0),
  * and generic attributes. */
 typedef struct cg_attribute {
     const char *key, *value;
+    uint32_t feature;
     bool generic;
 } cg_attribute;
 
@@ -296,14 +299,16 @@ void cg_object_free(cg_object *object);
 
 /* citygml_attribute.c: what objects say of themselves. */
 bool cg_attribute_start(cg_parser *p, cg_frame *frame, const char *name); /* false: of no use */
-void cg_attribute_add(cg_parser *p, const char *key, const char *value, bool generic);
+void cg_attribute_add(cg_parser *p, uint32_t feature, const char *key, const char *value, bool generic);
 void cg_attribute_end(cg_parser *p, const cg_frame *frame); /* of a name or a value */
-const char *cg_attribute_get(const cg_object *object, const char *key); /* not a generic one; NULL if there is none */
+const char *cg_attribute_get(const cg_object *object, uint32_t feature, const char *key); /* not a generic one; NULL if there is none */
 /* May an object of this type be a lamp? */
 bool cg_may_be_lamp(const cg_feature_type *type);
 
 /* citygml_lamp.c: objects that are lamps. True where the object is one, and has been dealt with. */
 bool cg_emit_lamp(cg_parser *p);
+/* The installations of an object that are lamps. Their surfaces stay with it, but for blocks around a light, which give way to it. */
+void cg_emit_installed_lamps(cg_parser *p);
 
 /* citygml_ring.c: rings and polygons from coordinates. */
 void cg_polygon_begin(cg_parser *p, const char *id);

@@ -186,7 +186,7 @@ static void left_out(cg_parser *p, const char *why) {
     const cg_object *object = &p->object;
     if (p->pass > 1 && object->features.data[0].type->kind == GEO_TERRAIN)
         return; /* which every pass sees */
-    const char *cls = cg_attribute_get(object, "class"), *function = cg_attribute_get(object, "function");
+    const char *cls = cg_attribute_get(object, 0, "class"), *function = cg_attribute_get(object, 0, "function");
     char reason[200];
     if (p->kinds_told >= MOST)
         cls = function = NULL;
@@ -207,6 +207,7 @@ static void emit_object(cg_parser *p) {
     p->dropped += s->duplicates;
     if (cg_emit_lamp(p))
         return;
+    cg_emit_installed_lamps(p);
     if (!s->shown && !s->duplicates)
         left_out(p, s->above ? "no geometry at or under the level of detail asked for" : "no geometry");
     cg_emit_shown(p);

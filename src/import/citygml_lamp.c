@@ -1,4 +1,4 @@
-/* citygml_lamp.c: city furniture and generic objects that are lamps.
+/* citygml_lamp.c: city furniture, generic objects, and installations of buildings that are lamps.
  *
  * Function, class and usage say so, by the standard's code list or in words, or the name, or attributes that only lamps have.
  * A lamp that is modelled keeps its body, and its light goes where the body leaves it free: under the ends of arms, or in a
@@ -21,12 +21,15 @@
 
 /* ---- is it one? ---- */
 
-static bool tags_of(cg_parser *p, lamp_tag *tags, size_t *count) {
+static bool tags_of(cg_parser *p, uint32_t feature, lamp_tag *tags, size_t *count) {
     const cg_object *object = &p->object;
+    const cg_feature *of = &object->features.data[feature];
     bool sure = false;
     *count = 0;
-    for (size_t i = 0; i < object->attributes.len; i++) {
+    for (size_t i = of->first_attribute; i < of->end_attribute; i++) {
         const cg_attribute *a = &object->attributes.data[i];
+        if (a->feature != feature)
+            continue;
         sure = sure || lamp_object_word(a->value) > 1;
         if (a->generic)
             tags[(*count)++] = (lamp_tag){ a->key, a->value };
@@ -34,11 +37,11 @@ static bool tags_of(cg_parser *p, lamp_tag *tags, size_t *count) {
     return sure;
 }
 
-static bool is_lamp(cg_parser *p, const lamp_tag *tags, size_t count, bool sure) {
+static bool is_lamp(cg_parser *p, uint32_t feature, const lamp_tag *tags, size_t count, bool sure) {
     const cg_object *object = &p->object;
-    if (object->features.data[0].function == NOC_CLASS_LAMP || sure)
+    if (object->features.data[feature].function == NOC_CLASS_LAMP || sure)
         return true;
-    if (object->other_function)
+    if (feature == 0 && object->other_function)
         return false;
     const char **names = noc_calloc(count + 1, sizeof(*names));
     if (!names) {
@@ -61,12 +64,20 @@ typedef struct body {
     double low, high, foot[2];
 } body;
 
-/* The shown surfaces as triangles; false if there are none. */
-static bool read_body(cg_parser *p, body *b) {
+/* Does a geometry belong to the feature, or to a part of it? */
+static bool is_of(const cg_object *object, uint32_t geometry, uint32_t feature) {
+    uint32_t f = object->geometries.data[geometry].feature;
+    while (f != feature && f != CG_NONE)
+        f = object->features.data[f].parent;
+    return f == feature;
+}
+
+/* The feature's shown surfaces as triangles; false if there are none. */
+static bool read_body(cg_parser *p, uint32_t feature, body *b) {
     bool first = true;
     for (size_t i = 0; i < p->selection.items.len && p->selection.lod >= 0 && !p->status; i++) {
         const cg_item *item = &p->selection.items.data[i];
-        if (!item->shown)
+        if (!item->shown || !is_of(&p->object, item->geometry, feature))
             continue;
         const cg_implicit *implicit = p->object.geometries.data[item->geometry].implicit;
         cg_tell_crs(p, implicit ? implicit->srs : item->polygon->srs);
@@ -253,10 +264,18 @@ static void find_heads(const body *b, geo_lamp *lamp) {
             lamp->head[i][k] = b->origin[k] + heads[i][k] / (k < 2 ? b->scale[k] : 1);
 }
 
+/* What is mounted on something has no pole: a body that leaves no light free gives way to a globe in its middle. */
+static void shine_from(geo_lamp *lamp, const double xyz[3], double radius) {
+    lamp->body_heads = 1;
+    lamp->head_globe = true;
+    lamp->head_radius = fmin(fmax(radius, DISC / 2), GLOBE);
+    memcpy(lamp->head[0], xyz, sizeof(lamp->head[0]));
+}
+
 /* Where the lamp stands by its body; false if it has none. */
-static bool place_by_body(cg_parser *p, geo_lamp *lamp) {
+static bool place_by_body(cg_parser *p, uint32_t feature, geo_lamp *lamp, bool *gives_way) {
     body b = { .scale = { 1, 1 } };
-    bool any = read_body(p, &b);
+    bool any = read_body(p, feature, &b);
     if (any) {
         measure(&b);
         find_heads(&b, lamp);
@@ -266,23 +285,29 @@ static bool place_by_body(cg_parser *p, geo_lamp *lamp) {
         lamp->xyz[2] = b.origin[2] + b.low;
         if (!isfinite(lamp->height) && height >= 2 && height <= 25)
             lamp->height = height;
+        *gives_way = !lamp->body_heads;
+        const double middle[3] = { lamp->xyz[0], lamp->xyz[1], b.origin[2] + (b.low + b.high) / 2 };
+        if (*gives_way && feature)
+            shine_from(lamp, middle, height / 2);
     }
     geo_triangles_free(&b.mesh);
     return any;
 }
 
 /* By the reference point of a prototype in another file, or by a point. */
-static bool place_by_point(cg_parser *p, geo_lamp *lamp) {
+static bool place_by_point(cg_parser *p, uint32_t feature, geo_lamp *lamp) {
     for (size_t i = 0; i < p->object.geometries.len; i++) {
         const cg_implicit *implicit = p->object.geometries.data[i].implicit;
-        if (!implicit || !implicit->has_point)
+        if (!implicit || !implicit->has_point || !is_of(&p->object, (uint32_t)i, feature))
             continue;
         cg_tell_crs(p, implicit->srs);
         memset(lamp->xyz, 0, sizeof(lamp->xyz));
         cg_place_point(p, implicit, lamp->xyz);
+        if (feature)
+            shine_from(lamp, lamp->xyz, DISC);
         return true;
     }
-    if (!p->object.has_point)
+    if (!p->object.has_point || feature)
         return false;
     cg_tell_crs(p, p->object.point_srs);
     memcpy(lamp->xyz, p->object.point, sizeof(lamp->xyz));
@@ -296,24 +321,25 @@ static bool place_by_point(cg_parser *p, geo_lamp *lamp) {
 /* ---- on its way to the sink ---- */
 
 /* What the words of class, function, usage and name say of source and fixture counts like a column of them. */
-static void read_lamp(cg_parser *p, lamp_tag *tags, size_t count, geo_lamp *lamp) {
+static void read_lamp(cg_parser *p, uint32_t feature, lamp_tag *tags, size_t count, geo_lamp *lamp) {
     const cg_object *object = &p->object;
-    lamp->id = object->features.data[0].id;
+    const cg_feature *of = &object->features.data[feature];
+    lamp->id = of->id;
     for (size_t i = 0; i < count; i++)
         lamp_keys_note(p->keys, &tags[i]);
-    for (size_t i = 0; i < object->attributes.len; i++)
-        if (!object->attributes.data[i].generic)
+    for (size_t i = of->first_attribute; i < of->end_attribute; i++)
+        if (object->attributes.data[i].feature == feature && !object->attributes.data[i].generic)
             tags[count++] = (lamp_tag){ "fixture", object->attributes.data[i].value };
     lamp->xyz[2] = 0; /* no elevation: the geometry says where it is */
     if (!lamp_read(p->keys, tags, count, lamp, p->sink->issues))
         cg_no_memory(p);
-    const char *function = cg_attribute_get(object, "function");
+    const char *function = feature ? NULL : cg_attribute_get(object, 0, "function");
     if (function && (!strcmp(function, "1220") || !strcmp(function, "1230")) && !object->other_function)
         lamp->type = GEO_LAMP_FLOOD;
 }
 
 /* Is the object gone by today (UTC)? Dates are "2019-05-31", and "2019-05-31T12:00:00". */
-static bool is_gone(const cg_object *object) {
+static bool is_gone(const cg_object *object, uint32_t feature) {
     static const char *const ends[] = { "terminationDate", "validTo" };
     char today[16];
     time_t now = time(NULL);
@@ -321,38 +347,47 @@ static bool is_gone(const cg_object *object) {
     if (!gmtime_r(&now, &utc) || strftime(today, sizeof(today), "%Y-%m-%d", &utc) != 10)
         return false;
     for (size_t i = 0; i < NOC_COUNT(ends); i++) {
-        const char *date = cg_attribute_get(object, ends[i]);
+        const char *date = cg_attribute_get(object, feature, ends[i]);
         if (date && strlen(date) >= 10 && date[4] == '-' && date[7] == '-' && *date >= '0' && *date <= '9' && strncmp(date, today, 10) < 0)
             return true;
     }
     return false;
 }
 
-bool cg_emit_lamp(cg_parser *p) {
+/* Reads the feature as a lamp. False: it is none, or none that shines, and what there is of it is drawn. *gives_way: its body
+ * would swallow its light. */
+static bool make_lamp(cg_parser *p, uint32_t feature, geo_lamp *lamp, bool *gives_way) {
     cg_object *object = &p->object;
-    if (!cg_may_be_lamp(object->features.data[0].type))
-        return false;
-    lamp_tag *tags = noc_calloc(object->attributes.len + 1, sizeof(*tags));
+    const cg_feature *of = &object->features.data[feature];
+    lamp_tag *tags = noc_calloc(of->attributes + 1, sizeof(*tags));
     if (!tags) {
         cg_no_memory(p);
-        return true;
+        return false;
     }
     size_t count;
-    bool sure = tags_of(p, tags, &count), mine = is_lamp(p, tags, count, sure);
-    geo_lamp lamp = { .id = "" };
+    bool sure = tags_of(p, feature, tags, &count), mine = is_lamp(p, feature, tags, count, sure);
     lamp_verdict verdict = mine ? lamp_verdict_of(p->keys, tags, count, true) : LAMP_NONE;
-    if (verdict == LAMP_ACTIVE && is_gone(object))
+    *lamp = (geo_lamp){ .id = "" };
+    *gives_way = false;
+    if (verdict == LAMP_ACTIVE && is_gone(object, feature))
         verdict = LAMP_INACTIVE;
     if (mine) {
-        read_lamp(p, tags, count, &lamp);
-        mine = place_by_body(p, &lamp) || (!p->status && place_by_point(p, &lamp));
+        read_lamp(p, feature, tags, count, lamp);
+        mine = place_by_body(p, feature, lamp, gives_way) || (!p->status && place_by_point(p, feature, lamp));
     }
     free(tags);
-    if (p->status)
-        return true;
-    if (!mine || !lamp_accept(verdict, object->features.data[0].id, p->sink->issues))
-        return false; /* what there is of it is drawn */
-    object->features.data[0].function = NOC_CLASS_LAMP;
+    return !p->status && mine && lamp_accept(verdict, of->id, p->sink->issues);
+}
+
+bool cg_emit_lamp(cg_parser *p) {
+    cg_feature *object = &p->object.features.data[0];
+    geo_lamp lamp;
+    bool gives_way;
+    if (!cg_may_be_lamp(object->type))
+        return false;
+    if (!make_lamp(p, 0, &lamp, &gives_way))
+        return p->status != NOC_OK;
+    object->function = NOC_CLASS_LAMP;
     if (lamp.body_heads)
         cg_emit_shown(p);
     else if (p->selection.shown)
@@ -361,4 +396,22 @@ bool cg_emit_lamp(cg_parser *p) {
     if (!p->status)
         cg_stop(p, p->sink->lamp(p->sink->ctx, &lamp));
     return true;
+}
+
+void cg_emit_installed_lamps(cg_parser *p) {
+    for (uint32_t f = 1; f < p->object.features.len && !p->status; f++) {
+        geo_lamp lamp;
+        bool gives_way;
+        const cg_feature *of = &p->object.features.data[f];
+        if (!of->attributes || !cg_may_be_lamp(of->type) || !make_lamp(p, f, &lamp, &gives_way))
+            continue;
+        for (size_t i = 0; i < p->selection.items.len && gives_way; i++) {
+            cg_item *item = &p->selection.items.data[i];
+            item->shown = item->shown && !is_of(&p->object, item->geometry, f);
+        }
+        if (gives_way)
+            geo_issue(p->sink->issues, GEO_GUESSED, "lamp whose body is a block around its light: a globe in its place",
+                      cg_report_id(p, NULL, f));
+        cg_stop(p, p->sink->lamp(p->sink->ctx, &lamp));
+    }
 }

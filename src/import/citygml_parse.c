@@ -292,6 +292,11 @@ static bool start_envelope(cg_parser *p, const attributes *a) {
     return false;
 }
 
+/* Is it kept what it is called? */
+static bool says_of_itself(const cg_parser *p, uint32_t feature) {
+    return feature == 0 || cg_may_be_lamp(p->object.features.data[feature].type);
+}
+
 static void start_word(cg_parser *p, const attributes *a) {
     const char *space = a->code_space ? a->code_space : "";
     p->text = CG_TEXT_WORD;
@@ -335,7 +340,7 @@ static bool enter(cg_parser *p, cg_frame *frame, const cg_frame *parent, const c
         start_word(p, &a);
         return true;
     case CG_LABEL:
-        if (frame->feature != 0 || in_geometry)
+        if (frame->feature == CG_NONE || in_geometry || !says_of_itself(p, frame->feature))
             return false;
         start_word(p, &a);
         return true;
@@ -481,8 +486,8 @@ static void end_implicit(cg_parser *p, const cg_frame *frame) {
 static void end_word(cg_parser *p, const cg_frame *frame, const char *key) {
     cg_feature *feature = &p->object.features.data[frame->feature];
     p->word[p->word_len] = 0;
-    if (frame->feature == 0)
-        cg_attribute_add(p, key, p->word, false);
+    if (says_of_itself(p, frame->feature))
+        cg_attribute_add(p, frame->feature, key, p->word, false);
     bool furniture = feature->type->kind == GEO_FURNITURE;
     long long code;
     if (frame->name.code == CG_FUNCTION && !(furniture && p->foreign_code && noc_parse_int(p->word, &code))) {

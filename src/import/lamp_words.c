@@ -284,7 +284,21 @@ static int find_word(const char *folded, const word *words, size_t count) {
     return -1;
 }
 
+/* "son70" as "son 70": watts are written behind codes, and no code has a number of two digits or more in it. */
+static const char *part_watts(const char *folded, char *to, size_t size) {
+    size_t n = 0;
+    for (const char *p = folded; *p && n + 2 < size; p++) {
+        bool begins = p > folded && *p >= '1' && *p <= '9' && p[1] >= '0' && p[1] <= '9' && p[-1] >= 'a' && p[-1] <= 'z';
+        if (begins)
+            to[n++] = ' ';
+        to[n++] = *p;
+    }
+    to[n] = 0;
+    return to;
+}
+
 int lamp_source_word(const char *folded) {
+    /* beside plain words: names by Philips and Osram (SON, PL, CDM, CPO, HPL, QL, HQL, NAV, HQI), codes of ZVEI's LBS (HST, HIT, TC) */
     static const word words[] = {
         { "led*", GEO_SOURCE_LED }, { "light emitting diode", GEO_SOURCE_LED }, { "diode*", GEO_SOURCE_LED },
         { "metal halide", GEO_SOURCE_METAL_HALIDE }, { "metal hal*", GEO_SOURCE_METAL_HALIDE }, { "mh", GEO_SOURCE_METAL_HALIDE },
@@ -292,25 +306,30 @@ int lamp_source_word(const char *folded) {
         { "cpo*", GEO_SOURCE_METAL_HALIDE }, { "cosmopolis", GEO_SOURCE_METAL_HALIDE }, { "halogenmetall*", GEO_SOURCE_METAL_HALIDE },
         { "metallhalogen*", GEO_SOURCE_METAL_HALIDE }, { "metaalhalogen*", GEO_SOURCE_METAL_HALIDE },
         { "halogenur*", GEO_SOURCE_METAL_HALIDE }, { "iodure*", GEO_SOURCE_METAL_HALIDE }, { "alogenuri", GEO_SOURCE_METAL_HALIDE },
+        { "hit", GEO_SOURCE_METAL_HALIDE }, { "hie", GEO_SOURCE_METAL_HALIDE },
         { "halogenuros", GEO_SOURCE_METAL_HALIDE }, { "halogenid*", GEO_SOURCE_METAL_HALIDE }, { "hpi*", GEO_SOURCE_METAL_HALIDE },
         { "hps*", GEO_SOURCE_SODIUM }, { "lps*", GEO_SOURCE_SODIUM }, { "sodium", GEO_SOURCE_SODIUM }, { "sodio", GEO_SOURCE_SODIUM },
         { "natrium*", GEO_SOURCE_SODIUM }, { "son", GEO_SOURCE_SODIUM }, { "sont", GEO_SOURCE_SODIUM }, { "sox*", GEO_SOURCE_SODIUM },
         { "nav", GEO_SOURCE_SODIUM }, { "shp", GEO_SOURCE_SODIUM }, { "sbp", GEO_SOURCE_SODIUM }, { "vsbp", GEO_SOURCE_SODIUM }, { "sap", GEO_SOURCE_SODIUM },
         { "vsap", GEO_SOURCE_SODIUM }, { "sodik*", GEO_SOURCE_SODIUM }, { "sodov*", GEO_SOURCE_SODIUM }, { "hogedruknatrium*", GEO_SOURCE_SODIUM },
-        { "lagedruknatrium*", GEO_SOURCE_SODIUM },
-        { "mercury", GEO_SOURCE_MERCURY }, { "mv", GEO_SOURCE_MERCURY }, { "hpl*", GEO_SOURCE_MERCURY }, { "hql*", GEO_SOURCE_MERCURY },
+        { "lagedruknatrium*", GEO_SOURCE_SODIUM }, { "hst", GEO_SOURCE_SODIUM }, { "hse", GEO_SOURCE_SODIUM }, { "lst", GEO_SOURCE_SODIUM },
+        { "mercury", GEO_SOURCE_MERCURY }, { "mv", GEO_SOURCE_MERCURY }, { "hme", GEO_SOURCE_MERCURY }, { "hpl*", GEO_SOURCE_MERCURY }, { "hql*", GEO_SOURCE_MERCURY },
         { "quecksilber*", GEO_SOURCE_MERCURY }, { "kwik*", GEO_SOURCE_MERCURY }, { "mercure", GEO_SOURCE_MERCURY },
         { "mercurio", GEO_SOURCE_MERCURY }, { "vmcc", GEO_SOURCE_MERCURY }, { "rtec*", GEO_SOURCE_MERCURY }, { "rtut*", GEO_SOURCE_MERCURY },
         { "fluo*", GEO_SOURCE_FLUORESCENT }, { "leuchtstoff*", GEO_SOURCE_FLUORESCENT }, { "cfl", GEO_SOURCE_FLUORESCENT },
         { "pll", GEO_SOURCE_FLUORESCENT }, { "tl", GEO_SOURCE_FLUORESCENT }, { "pl", GEO_SOURCE_FLUORESCENT },
+        { "plc", GEO_SOURCE_FLUORESCENT }, { "pls", GEO_SOURCE_FLUORESCENT }, { "plt", GEO_SOURCE_FLUORESCENT }, { "tld", GEO_SOURCE_FLUORESCENT },
+        { "tl5", GEO_SOURCE_FLUORESCENT }, { "tl8", GEO_SOURCE_FLUORESCENT }, { "tc", GEO_SOURCE_FLUORESCENT }, { "ql", GEO_SOURCE_FLUORESCENT },
         { "induction", GEO_SOURCE_FLUORESCENT }, { "inductie", GEO_SOURCE_FLUORESCENT }, { "zarivk*", GEO_SOURCE_FLUORESCENT },
         { "incandescen*", GEO_SOURCE_INCANDESCENT }, { "inc", GEO_SOURCE_INCANDESCENT }, { "halogen*", GEO_SOURCE_INCANDESCENT },
         { "gluh*", GEO_SOURCE_INCANDESCENT }, { "gloei*", GEO_SOURCE_INCANDESCENT }, { "tungsten", GEO_SOURCE_INCANDESCENT },
         { "gas", GEO_SOURCE_GAS }, { "gaslight*", GEO_SOURCE_GAS }, { "gaslamp*", GEO_SOURCE_GAS }, { "gasleucht*", GEO_SOURCE_GAS },
         { "gaslatern*", GEO_SOURCE_GAS }, { "gaslantern*", GEO_SOURCE_GAS }, { "gaz", GEO_SOURCE_GAS },
     };
-    static const word low[] = { { "low pressure", 1 }, { "lps*", 1 }, { "sox*", 1 }, { "sbp", 1 }, { "vsbp", 1 }, { "niederdruck*", 1 },
+    static const word low[] = { { "low pressure", 1 }, { "lps*", 1 }, { "sox*", 1 }, { "lst", 1 }, { "sbp", 1 }, { "vsbp", 1 }, { "niederdruck*", 1 },
                                 { "lagedruk*", 1 }, { "lage druk", 1 }, { "basse pression", 1 }, { "baja presion", 1 } };
+    char parted[300];
+    folded = part_watts(folded, parted, sizeof(parted));
     int source = find_word(folded, words, NOC_COUNT(words));
     return source == GEO_SOURCE_SODIUM && find_word(folded, low, NOC_COUNT(low)) > 0 ? GEO_SOURCE_LOW_SODIUM : source;
 }

@@ -164,6 +164,11 @@ if "$real" --version | grep -q gdal; then
         child=$(cat /proc/$pid/task/$pid/children 2>/dev/null)
         kill -0 $pid 2>/dev/null || break
     done
+    # Before it is asked to read something it waits, and takes no time.
+    for tick in $(seq 240); do
+        test "$(cut -d ' ' -f 14 "/proc/${child% }/stat" 2>/dev/null || echo 999)" -gt 50 && break
+        sleep 0.25
+    done
     kill -STOP $pid
     for tick in $(seq 240); do
         ended=$(sed -n 's/^State:\t\(.\).*/\1/p' "/proc/${child% }/status" 2>/dev/null)

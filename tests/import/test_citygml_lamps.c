@@ -196,6 +196,39 @@ static void test_bodies(void **state) {
 
 /* ---- in a scene ---- */
 
+/* ---- on buildings ---- */
+
+#define INSTALLED(id, words, surfaces)                                                                                 \
+    "<b:outerBuildingInstallation><b:BuildingInstallation g:id='" id "'>" words "<b:lod2Geometry><g:MultiSurface>" surfaces   \
+    "</g:MultiSurface></b:lod2Geometry></b:BuildingInstallation></b:outerBuildingInstallation>"
+
+/* A luminaire that is open below, a closed block that would swallow its light, a lamp that is gone, a balcony. */
+static void test_installations(void **state) {
+    char bodies[4][4000];
+    box(bodies[0], X, Y - .1, 4, X + .4, Y + .1, 4.2);
+    box(bodies[1], X + 9, Y - 1, 3, X + 11, Y + 1, 5);
+    box(bodies[2], X + 20, Y, 4, X + 21, Y + 1, 5);
+    box(bodies[3], X + 30, Y, 4, X + 31, Y + 1, 5);
+    char *text = noc_format(MODEL(MEMBER(BUILDING("house", LOD_SURFACES("2", SQUARE("wall", "1", "0"))
+                                INSTALLED("wall lamp", FUNCTION("b", "street light") ATTRIBUTE("int", "lumen", "700"), "%s")
+                                INSTALLED("block", "<g:name>Laterne 5</g:name><b:class>Laterne</b:class>", "%s")
+                                INSTALLED("gone", FUNCTION("b", "lamp") "<terminationDate>2019-05-31</terminationDate>", "%s")
+                                INSTALLED("balcony", "<g:name>Zur Laterne</g:name>" FUNCTION("b", "1000"), "%s")))),
+                            bodies[0], bodies[1], bodies[2], bodies[3]);
+    read_text(text);
+    free(text);
+    assert_int_equal(sink.lamps.len, 2);
+    const geo_lamp *lamp = &sink.lamps.data[0], *block = &sink.lamps.data[1];
+    assert_float_equal(lamp->lumens, 700, 0);
+    assert_int_equal(lamp->body_heads, 1);
+    assert_true(!lamp->head_globe && lamp->head[0][2] < 4 && lamp->head[0][2] > 3.9 && fabs(lamp->head[0][0] - X - .2) < 1e-6);
+    assert_true(isnan(block->lumens)); /* that is the other one's */
+    assert_true(block->body_heads == 1 && block->head_globe && fabs(block->head[0][2] - 4) < 1e-9 && fabs(block->head[0][0] - X - 10) < 1e-6);
+    assert_int_equal(city_issue(&sink, "lamp whose body is a block around its light: a globe in its place"), 1);
+    assert_int_equal(city_issue(&sink, "lamp not in use (removed, disused or planned)"), 1);
+    assert_int_equal(sink.polygons.len, 1 + 6 + 6 + 6); /* the block's alone are left away */
+}
+
 static bool blocked(const noc_scene *scene, const double o[3], const double d[3]) {
     for (size_t t = 0; t < scene->triangle_material.len; t++) {
         const float *v[3];
@@ -298,6 +331,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_codes),  cmocka_unit_test(test_words),  cmocka_unit_test(test_by_attributes),
         cmocka_unit_test(test_values), cmocka_unit_test(test_places), cmocka_unit_test(test_bodies),
+        cmocka_unit_test(test_installations),
         cmocka_unit_test(test_light_reaches_the_ground), cmocka_unit_test(test_left_out),
     };
     return cmocka_run_group_tests_name("import/citygml_lamps", tests, NULL, clear);

@@ -185,6 +185,21 @@ static void test_words(void **state) {
     assert_int_equal(read_one("lightPower", "2x36 W").count, 2);
     assert_true(isnan(read_one("power", "pole").watts));
     assert_true(isnan(read_one("height", "4000").height));
+    /* codes of Philips, Osram and the LBS, in a column that is called type */
+    static const struct {
+        const char *codes[12];
+        int source;
+    } coded[] = {
+        { { "PL", "PLL", "PL-L", "PL-T", "PLC", "PL36W", "TL", "TL-D", "TLD", "TL5", "QL", "TC-D" }, GEO_SOURCE_FLUORESCENT },
+        { { "SON", "SON-T", "SON/T", "SON70", "HPS", "NAV", "NAV-T", "HST", "HSE-T", "SONT150" }, GEO_SOURCE_SODIUM },
+        { { "CDM", "CDM-T", "CPO", "CPO-TW", "MH", "MH150", "HIT", "HIE", "HQI" }, GEO_SOURCE_METAL_HALIDE },
+        { { "HQL", "HPL", "HPL-N", "HME", "HQL80" }, GEO_SOURCE_MERCURY }, { { "SOX", "SOX-E", "SOX35", "LST" }, GEO_SOURCE_LOW_SODIUM },
+        { { "LED", "LED36" }, GEO_SOURCE_LED }, { { "PLZ", "NAVY", "PL1", "P 36", "HITACHI", "TCP" }, GEO_SOURCE_UNKNOWN },
+    };
+    for (size_t i = 0; i < NOC_COUNT(coded); i++)
+        for (size_t k = 0; k < NOC_COUNT(coded[i].codes) && coded[i].codes[k]; k++)
+            if ((int)read_one("lamp_type", coded[i].codes[k]).source != coded[i].source || (int)read_one("type", coded[i].codes[k]).source != coded[i].source)
+                fail_msg("%s: %d, %d", coded[i].codes[k], read_one("lamp_type", coded[i].codes[k]).source, read_one("type", coded[i].codes[k]).source);
     static const char *const low[] = { "low pressure sodium", "SOX 55", "LPS (low-pressure sodium)", "Natriumdampf-Niederdruck" };
     for (size_t i = 0; i < NOC_COUNT(low); i++)
         assert_int_equal(read_one("lamp_type", low[i]).source, GEO_SOURCE_LOW_SODIUM);
