@@ -99,5 +99,6 @@ bool map_put(noc_map *map, const char *key, uint64_t value, bool *fresh) NOC_MUS
 void map_free(noc_map *map);
 size_t map_longest_probe(const noc_map *map); /* slots that the worst key is away from its own; for tests */
 uint64_t base_siphash(const void *data, size_t size, const uint64_t key[2]);
+uint64_t base_secret(void); /* a number that no file's author knows; the same for all of the process */
 
 #endif

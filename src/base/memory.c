@@ -222,6 +222,11 @@ uint64_t base_siphash(const void *data, size_t size, const uint64_t key[2]) {
     return v[0] ^ v[1] ^ v[2] ^ v[3];
 }
 
+uint64_t base_secret(void) {
+    pthread_once(&hash_key_once, make_hash_key);
+    return hash_key[0];
+}
+
 static uint32_t hash_text(const char *s) {
     pthread_once(&hash_key_once, make_hash_key);
     return (uint32_t)base_siphash(s, strlen(s), hash_key);

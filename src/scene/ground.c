@@ -1,10 +1,14 @@
 /* Vertical rays against the scene, for standing lamps and cameras on it.
  *
- * A uniform grid over x and y. Most triangles lie in a compressed list a cell (offsets, ids), made at the first query;
- * those added later hang on chains over the same cells, until there are as many as the lists hold: then the grid is made
- * anew. So a caller may ask, add, and ask again (every lamp does) at a constant cost a triangle.
+ * Grids over x and y, one a level: their cells are twice as large from level to level. A triangle lies on the level whose cells
+ * are just as large as it is, or larger: in four cells at most. Cells are found by a hash, so what a ray looks at depends on what lies
+ * near it, and not on how far the scene reaches: lamps on two continents cost what those of two towns do.
  *
- * Queries may come from several threads once the scene is no longer changed: bringing the grid up to date is locked. */
+ * Most triangles lie in a compressed list a bucket (offsets, ids), made at the first query; those added later hang on chains over the
+ * same buckets, until there are as many as the lists hold: then all is made anew. So a caller may ask, add, and ask again (every lamp
+ * does) at a constant cost a triangle.
+ *
+ * Queries may come from several threads once the scene is no longer changed: bringing the grids up to date is locked. */
 #include "scene/scene.h"
 
 #include <float.h>
@@ -17,13 +21,18 @@ typedef struct ground_link {
 } ground_link;
 
 #define NO_LINK UINT32_MAX
+#define LEVELS 48
+#define FINEST -22 /* cells are 2^(level + FINEST) m large: from a quarter of a micrometre to more than any scene */
 
 struct noc_ground {
-    double min[2], inv_cell[2];
-    int nx, ny;
-    uint32_t *offsets; /* nx * ny + 1 */
+    uint64_t secret;
+    uint64_t levels;          /* bit: a triangle lies there */
+    uint32_t classes[LEVELS]; /* of the triangles that lie on each */
+    double cells_a_metre[LEVELS];
+    size_t buckets;    /* a power of two */
+    uint32_t *offsets; /* buckets + 1 */
     uint32_t *ids;
-    uint32_t *chains;  /* first link a cell; NULL until a triangle is added */
+    uint32_t *chains;  /* first link a bucket; NULL until a triangle is added */
     NOC_ARRAY(ground_link) links;
     size_t listed;     /* triangles the lists were made of */
     size_t covered;    /* triangles of the scene seen so far; atomic, stored last */
@@ -65,157 +74,93 @@ static bool is_obstacle(const noc_scene *scene, size_t t) {
 #define GROUND_CLASSES                                                                                                 \
     (1u << NOC_CLASS_TERRAIN | 1u << NOC_CLASS_ROAD | 1u << NOC_CLASS_SIDEWALK | 1u << NOC_CLASS_GREEN | 1u << NOC_CLASS_GROUND)
 
-/* The plane is covered with copies of the grid: what lies outside belongs to the cell that it would have in its copy. Lamps that
- * reach beyond their city so fill all cells evenly; in border cells each would be asked about all the others. */
-static int64_t cell_of(const struct noc_ground *g, int axis, double x) {
-    double c = floor((x - g->min[axis]) * g->inv_cell[axis]);
-    return c > -1e15 && c < 1e15 ? (int64_t)c : 0;
+/* Keyed with what a file's author does not know: he cannot put all he writes into one bucket. */
+static size_t bucket_of(const struct noc_ground *g, int level, int64_t x, int64_t y) {
+    uint64_t h = (uint64_t)x * 0x9e3779b97f4a7c15u + (uint64_t)y * 0xc2b2ae3d27d4eb4fu + (uint64_t)level * 0x165667b19e3779f9u;
+    h = (h ^ g->secret) * 0xd6e8feb86659fd93u;
+    return (h ^ h >> 32) & (g->buckets - 1);
 }
 
-static size_t wrapped(int64_t cell, int n) { return (size_t)(cell % n + (cell % n < 0 ? n : 0)); }
-
-static size_t index_of(const struct noc_ground *g, int64_t x, int64_t y) {
-    return wrapped(y, g->ny) * (size_t)g->nx + wrapped(x, g->nx);
-}
-
-static void cells_of(const struct noc_ground *g, const noc_scene *scene, size_t t, int64_t lo[2], int64_t hi[2]) {
+/* The buckets that a triangle is in, 1 to 4, and its level. */
+static int buckets_of(const struct noc_ground *g, const noc_scene *scene, size_t t, size_t buckets[4], int *level) {
     const float *a = corner(scene, t, 0), *b = corner(scene, t, 1), *c = corner(scene, t, 2);
+    double lo[2], hi[2];
+    int n = 0, exponent;
     for (int k = 0; k < 2; k++) {
-        int n = k ? g->ny : g->nx;
-        lo[k] = cell_of(g, k, NOC_MIN(a[k], NOC_MIN(b[k], c[k])));
-        hi[k] = NOC_MIN(cell_of(g, k, NOC_MAX(a[k], NOC_MAX(b[k], c[k]))), lo[k] + n - 1); /* each cell once */
+        lo[k] = NOC_MIN(a[k], NOC_MIN(b[k], c[k]));
+        hi[k] = NOC_MAX(a[k], NOC_MAX(b[k], c[k]));
     }
+    frexp(NOC_MAX(hi[0] - lo[0], hi[1] - lo[1]), &exponent); /* it is smaller than 2^exponent */
+    *level = NOC_CLAMP(exponent - FINEST, 0, LEVELS - 1);
+    double scale = g->cells_a_metre[*level];
+    for (int64_t y = (int64_t)floor(lo[1] * scale); y <= (int64_t)floor(hi[1] * scale); y++)
+        for (int64_t x = (int64_t)floor(lo[0] * scale); x <= (int64_t)floor(hi[0] * scale); x++)
+            buckets[n++] = bucket_of(g, *level, x, y);
+    return n;
 }
 
-static int compare_floats(const void *a, const void *b) {
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
-/* Lamps are added while rays are asked for, along one street after the other: they do not say how large the city is. */
-static bool is_city(const noc_scene *scene, size_t t) {
-    return t - scene->backdrop_first >= scene->backdrop_count && material_of(scene, t)->cls != NOC_CLASS_LAMP;
-}
-
-/* Bounds of nearly all triangles of the city, from a sample: one stray triangle far away must not make the cells too
- * large. Of all triangles where there are none but lamps'. */
-enum { SAMPLES = 4096 };
-static void grid_bounds(struct noc_ground *g, const noc_scene *scene, size_t triangles, float xs[2][SAMPLES], double size[2]) {
-    size_t city = 0, n = 0, seen = 0;
-    for (size_t t = 0; t < triangles; t++)
-        city += is_city(scene, t);
-    size_t all = city ? city : triangles, samples = NOC_MIN(all, (size_t)SAMPLES);
-    for (size_t t = 0; t < triangles && n < samples; t++) {
-        if (city && !is_city(scene, t))
-            continue;
-        if (seen++ == n * all / samples) {
-            for (int k = 0; k < 2; k++)
-                xs[k][n] = corner(scene, t, (int)(n % 3))[k];
-            n++;
-        }
-    }
-    for (int k = 0; k < 2; k++) {
-        qsort(xs[k], n, sizeof(float), compare_floats);
-        double lo = n ? xs[k][n / 50] : 0, hi = n ? xs[k][n - 1 - n / 50] : 0, margin = (hi - lo) * 0.08 + 1;
-        g->min[k] = lo - margin;
-        size[k] = hi - lo + 2 * margin;
-    }
-}
-
-/* Sets the resolution and counts the list entries it needs. */
-static size_t set_resolution(struct noc_ground *g, const noc_scene *scene, const double size[2], double cells) {
-    double edge = sqrt(size[0] * size[1] / cells);
-    g->nx = (int)NOC_CLAMP(size[0] / edge, 1, 4096);
-    g->ny = (int)NOC_CLAMP(size[1] / edge, 1, 4096);
-    g->inv_cell[0] = g->nx / size[0];
-    g->inv_cell[1] = g->ny / size[1];
-    size_t entries = 0;
-    for (size_t t = 0; t < g->listed; t++) {
-        int64_t lo[2], hi[2];
-        if (!is_obstacle(scene, t))
-            continue;
-        cells_of(g, scene, t, lo, hi);
-        entries += (size_t)(hi[0] - lo[0] + 1) * (size_t)(hi[1] - lo[1] + 1);
-    }
-    return entries;
-}
-
-/* Lays an empty grid; returns the list entries it needs. */
-static size_t lay_grid(struct noc_ground *g, const noc_scene *scene, size_t triangles, float xs[2][SAMPLES]) {
-    double size[2], cells = NOC_CLAMP((double)triangles / 2, 1, 4e6);
-    g->listed = g->covered = triangles;
-    grid_bounds(g, scene, triangles, xs, size);
-    size_t entries = set_resolution(g, scene, size, cells);
-    while (entries > 8 * (triangles + 1024) && cells > 16) { /* large triangles: coarser */
-        cells /= 4;
-        entries = set_resolution(g, scene, size, cells);
-    }
-    return entries;
+static void note_level(struct noc_ground *g, int level, noc_class cls) {
+    g->levels |= 1ull << level;
+    g->classes[level] |= 1u << cls;
 }
 
 /* NULL: memory was refused. */
 static struct noc_ground *ground_build(const noc_scene *scene, size_t triangles) {
     struct noc_ground *g = noc_calloc(1, sizeof(*g));
-    float (*samples)[SAMPLES] = noc_alloc(2 * sizeof(*samples));
-    size_t n = 0;
-    if (g && samples) {
-        size_t entries = lay_grid(g, scene, triangles, samples);
-        n = (size_t)g->nx * (size_t)g->ny;
-        g->offsets = noc_calloc(n + 1, sizeof(*g->offsets));
-        g->ids = noc_alloc(entries * sizeof(*g->ids));
-    }
-    free(samples);
-    if (!g || !g->offsets || !g->ids) {
-        noc_ground_free(g);
+    if (!g)
         return NULL;
-    }
-    for (int fill = 0; fill < 2; fill++) {
+    g->secret = base_secret();
+    for (int level = 0; level < LEVELS; level++)
+        g->cells_a_metre[level] = ldexp(1, -(level + FINEST));
+    g->listed = g->covered = triangles;
+    for (g->buckets = 1024; g->buckets < triangles;)
+        g->buckets *= 2;
+    g->offsets = noc_calloc(g->buckets + 1, sizeof(*g->offsets));
+    for (int fill = 0; fill < 2 && g->offsets; fill++) {
         for (size_t t = 0; t < triangles; t++) {
-            int64_t lo[2], hi[2];
+            size_t buckets[4];
+            int level;
             if (!is_obstacle(scene, t))
                 continue;
-            cells_of(g, scene, t, lo, hi);
-            for (int64_t y = lo[1]; y <= hi[1]; y++)
-                for (int64_t x = lo[0]; x <= hi[0]; x++) {
-                    size_t c = index_of(g, x, y);
-                    if (fill)
-                        g->ids[--g->offsets[c]] = (uint32_t)t;
-                    else
-                        g->offsets[c]++;
-                }
+            for (int n = buckets_of(g, scene, t, buckets, &level); n--;)
+                if (fill)
+                    g->ids[--g->offsets[buckets[n]]] = (uint32_t)t;
+                else
+                    g->offsets[buckets[n]]++;
+            note_level(g, level, material_of(scene, t)->cls);
         }
-        if (!fill) /* counts to ends; filling turns ends into beginnings */
-            for (size_t c = 1; c <= n; c++)
-                g->offsets[c] += g->offsets[c - 1];
+        if (fill)
+            return g;
+        for (size_t i = 1; i <= g->buckets; i++) /* counts to ends; filling turns ends into beginnings */
+            g->offsets[i] += g->offsets[i - 1];
+        if (!(g->ids = noc_alloc(g->offsets[g->buckets] * sizeof(*g->ids))))
+            break;
     }
-    return g;
+    noc_ground_free(g);
+    return NULL;
 }
 
-/* Hangs the triangles added since onto the grid; false if the grid should rather be made anew, or memory was refused. */
+/* Hangs the triangles added since onto the grids; false if they should rather be made anew, or memory was refused. */
 static bool chain_new(struct noc_ground *g, const noc_scene *scene, size_t triangles) {
     if (triangles - g->covered + g->links.len > g->listed + 4096)
         return false;
     if (!g->chains) {
-        size_t n = (size_t)g->nx * (size_t)g->ny;
-        if (!(g->chains = noc_alloc(n * sizeof(*g->chains))))
+        if (!(g->chains = noc_alloc(g->buckets * sizeof(*g->chains))))
             return false;
-        memset(g->chains, 0xff, n * sizeof(*g->chains));
+        memset(g->chains, 0xff, g->buckets * sizeof(*g->chains));
     }
     for (size_t t = g->covered; t < triangles; t++) {
-        int64_t lo[2], hi[2];
+        size_t buckets[4];
+        int level;
         if (!is_obstacle(scene, t))
             continue;
-        cells_of(g, scene, t, lo, hi);
-        if (g->links.len > 4 * (g->listed + 4096)) /* large triangles on a fine grid */
-            return false;
-        for (int64_t y = lo[1]; y <= hi[1]; y++)
-            for (int64_t x = lo[0]; x <= hi[0]; x++) {
-                uint32_t *first = &g->chains[index_of(g, x, y)];
-                ground_link link = { (uint32_t)t, *first };
-                if (!array_push(&g->links, link))
-                    return false;
-                *first = (uint32_t)g->links.len - 1;
-            }
+        for (int n = buckets_of(g, scene, t, buckets, &level); n--;) {
+            ground_link link = { (uint32_t)t, g->chains[buckets[n]] };
+            if (!array_push(&g->links, link))
+                return false;
+            g->chains[buckets[n]] = (uint32_t)g->links.len - 1;
+        }
+        note_level(g, level, material_of(scene, t)->cls);
     }
     __atomic_store_n(&g->covered, triangles, __ATOMIC_RELEASE);
     return true;
@@ -269,6 +214,9 @@ static double edge(const float *a, const float *b, double x, double y) {
 
 static bool triangle_height(const noc_scene *scene, size_t t, double x, double y, double *z) {
     const float *a = corner(scene, t, 0), *b = corner(scene, t, 1), *c = corner(scene, t, 2);
+    if (x < NOC_MIN(a[0], NOC_MIN(b[0], c[0])) || x > NOC_MAX(a[0], NOC_MAX(b[0], c[0])) || y < NOC_MIN(a[1], NOC_MIN(b[1], c[1])) ||
+        y > NOC_MAX(a[1], NOC_MAX(b[1], c[1])))
+        return false; /* as nearly all are */
     double u = edge(b, c, x, y), v = edge(c, a, x, y), w = edge(a, b, x, y), sum = u + v + w;
     bool inside = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
     if (!inside || sum == 0)
@@ -279,38 +227,51 @@ static bool triangle_height(const noc_scene *scene, size_t t, double x, double y
     return true;
 }
 
-static void consider(const noc_scene *scene, size_t t, uint32_t classes, double x, double y, double *best) {
+typedef struct vertical_ray {
+    const noc_scene *scene;
+    double x, y;
+    uint32_t classes;
+    double best; /* -DBL_MAX: none yet */
+    size_t looked_at;
+} vertical_ray;
+
+static void consider(vertical_ray *r, size_t t) {
     double h;
-    if ((classes >> material_of(scene, t)->cls & 1) && triangle_height(scene, t, x, y, &h) && h > *best)
-        *best = h;
+    r->looked_at++;
+    if ((r->classes >> material_of(r->scene, t)->cls & 1) && triangle_height(r->scene, t, r->x, r->y, &h) && h > r->best)
+        r->best = h;
+}
+
+static void cast(vertical_ray *r) {
+    const struct noc_ground *g = ground_of(r->scene);
+    for (uint64_t levels = g ? g->levels : 0; levels; levels &= levels - 1) {
+        int level = __builtin_ctzll(levels);
+        if (!(g->classes[level] & r->classes))
+            continue;
+        double scale = g->cells_a_metre[level];
+        size_t b = bucket_of(g, level, (int64_t)floor(r->x * scale), (int64_t)floor(r->y * scale));
+        for (uint32_t i = g->offsets[b]; i < g->offsets[b + 1]; i++)
+            consider(r, g->ids[i]);
+        for (uint32_t l = g->chains ? g->chains[b] : NO_LINK; l != NO_LINK; l = g->links.data[l].next)
+            consider(r, g->links.data[l].triangle);
+    }
 }
 
 bool noc_scene_highest(const noc_scene *scene, uint32_t classes, double x, double y, double *z) {
     if (!(fabs(x) < 1e8 && fabs(y) < 1e8) || !scene->triangle_light.len)
         return false;
-    const struct noc_ground *g = ground_of(scene);
-    if (!g)
+    vertical_ray r = { .scene = scene, .x = x, .y = y, .classes = classes, .best = -DBL_MAX };
+    cast(&r);
+    if (r.best == -DBL_MAX)
         return false;
-    size_t c = index_of(g, cell_of(g, 0, x), cell_of(g, 1, y));
-    double best = -DBL_MAX;
-    for (uint32_t i = g->offsets[c]; i < g->offsets[c + 1]; i++)
-        consider(scene, g->ids[i], classes, x, y, &best);
-    for (uint32_t l = g->chains ? g->chains[c] : NO_LINK; l != NO_LINK; l = g->links.data[l].next)
-        consider(scene, g->links.data[l].triangle, classes, x, y, &best);
-    if (best == -DBL_MAX)
-        return false;
-    *z = best;
+    *z = r.best;
     return true;
 }
 
 size_t noc_ground_load(const noc_scene *scene, double x, double y) {
-    const struct noc_ground *g = ground_of(scene);
-    if (!g)
-        return 0;
-    size_t c = index_of(g, cell_of(g, 0, x), cell_of(g, 1, y)), n = g->offsets[c + 1] - g->offsets[c];
-    for (uint32_t l = g->chains ? g->chains[c] : NO_LINK; l != NO_LINK; l = g->links.data[l].next)
-        n++;
-    return n;
+    vertical_ray r = { .scene = scene, .x = x, .y = y, .classes = UINT32_MAX, .best = -DBL_MAX };
+    cast(&r);
+    return r.looked_at;
 }
 
 bool noc_scene_ground(const noc_scene *scene, double x, double y, double *z) {

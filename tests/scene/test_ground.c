@@ -258,11 +258,28 @@ static void test_beyond(void **ctx) {
     noc_scene_destroy(scene);
 }
 
+/* Two towns' lamps, and each town as far from the other as a scene reaches: a ray costs as if there were one town alone. */
+static void test_two_continents(void **ctx) {
+    enum { LAMPS = 5000 };
+    noc_scene *scene = noc_scene_create(NULL);
+    int lamp = material(scene, NOC_CLASS_LAMP);
+    double looked = 0, z;
+    for (int i = 0; i < LAMPS; i++)
+        for (int k = 0; k < 2; k++) {
+            double x = (k ? 6e6 : 0) + i % 70 * 30, y = (k ? -1e6 : 0) + i / 70 * 30;
+            looked += (double)noc_ground_load(scene, x + .5, y + .5);
+            add_plane(scene, lamp, x, y, x + 1, y + 1, 5);
+            assert_true(noc_scene_top(scene, x + .5, y + .5, &z) && z == 5);
+        }
+    assert_true(looked / LAMPS / 2 < 20);
+    noc_scene_destroy(scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_classes),    cmocka_unit_test(test_highest_wins), cmocka_unit_test(test_random),
         cmocka_unit_test(test_watertight), cmocka_unit_test(test_ask_and_add),  cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_wide),       cmocka_unit_test(test_beyond),
+        cmocka_unit_test(test_wide),       cmocka_unit_test(test_beyond), cmocka_unit_test(test_two_continents),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
