@@ -146,7 +146,7 @@ static bool run(const noc_scene *s, noc_view view, int shared, int points, noc_l
 
 int main(int argc, char **argv) {
     int shared = argc > 3 ? atoi(argv[3]) : 1, points = argc > 4 ? atoi(argv[4]) : 400;
-    noc_log *log = noc_log_create(NULL);
+    noc_log *log = bench_log();
     noc_scene *scene = shared > 0 && points > 0 ? bench_scene(argc > 1 ? argv[1] : "city", log) : NULL;
     bool ok = scene && run(scene, bench_view(argc > 2 ? argv[2] : "street"), shared, points, log);
     noc_scene_destroy(scene);

@@ -153,7 +153,7 @@ int main(int argc, char **argv) {
         fprintf(stderr, "usage: bench_error [SCENE [VIEW [WIDTH HEIGHT [REFERENCE_FRAMES [CACHE [NAME]]]]]]\n");
         return 2;
     }
-    noc_log *log = noc_log_create(NULL);
+    noc_log *log = bench_log();
     noc_scene *scene = bench_scene(spec, log);
     noc_camera camera;
     if (!scene || noc_scene_camera(scene, bench_view(view), (double)width / height, &camera) != NOC_OK)

@@ -188,7 +188,7 @@ int main(int argc, char **argv) {
         fprintf(stderr, "bench_influence: %d values of S_r are given, and %d is the most that it compares\n", argc - 9, MOST_SCALES);
         return 2;
     }
-    noc_log *log = noc_log_create(NULL);
+    noc_log *log = bench_log();
     noc_scene *scene = bench_scene(spec, log);
     noc_camera camera;
     bool ok = scene && noc_scene_camera(scene, bench_view(view), (double)width / height, &camera) == NOC_OK;

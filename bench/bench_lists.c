@@ -196,7 +196,7 @@ int main(int argc, char **argv) {
         fprintf(stderr, "usage: bench_lists [SCENE [VIEW [WIDTH HEIGHT [FRAMES [REFERENCE.exr [REFERENCE_FRAMES]]]]]]\n");
         return 2;
     }
-    noc_log *log = noc_log_create(NULL);
+    noc_log *log = bench_log();
     noc_scene *s = strncmp(spec, "lamps:", 6) ? bench_scene(spec, log) : lamps(NOC_CLAMP(atoi(spec + 6), 1, 50000000), log);
     noc_camera camera;
     bool ok = s && noc_scene_camera(s, bench_view(view), (double)width / height, &camera) == NOC_OK &&

@@ -216,7 +216,7 @@ int main(int argc, char **argv) {
         fprintf(stderr, "usage: bench_rays [SCENE [VIEW [WIDTH HEIGHT [ROUNDS]]]]\n");
         return 2;
     }
-    noc_log *log = noc_log_create(NULL);
+    noc_log *log = bench_log();
     noc_scene *scene = bench_scene(spec, log);
     noc_camera camera;
     void *state = NULL;

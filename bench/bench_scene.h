@@ -8,6 +8,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+static void bench_tell(void *user, noc_log_level level, const char *text) {
+    (void)user;
+    (void)level;
+    fprintf(stderr, "%s\n", text);
+}
+
+/* Warnings and errors go to stderr. */
+static inline noc_log *bench_log(void) {
+    return noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = bench_tell });
+}
+
 /* "city" or "city:METRES" is the built-in city, anything else files to load as one scene, with commas between them. NULL
  * after saying why. */
 static inline noc_scene *bench_scene(const char *spec, noc_log *log) {
