@@ -4,7 +4,8 @@
  * moment of the estimate if it is listed, e^2 N / u if it is not; and what shows is that over the square of what arrives in
  * all. Which lights are seen is not known beforehand. Where the strongest is hidden, the square of the others' light is all
  * there is to compare with, and a list that was made for the strongest alone leaves just those to the draws from all lights. So
- * the rule takes the mean over what may be hidden: each light is seen with probability v, independently. With lights in order,
+ * the rule takes the mean over what may be hidden: each light is seen with probability v, independently. Places differ in how
+ * much they see, so v takes several values, and the loss is the mean over them. With lights in order,
  * e_1 >= e_2 ..., the strongest that is seen is j with probability v (1 - v)^(j - 1), what arrives then is about
  *
  *     L_j = e_j + v sum_{l > j} e_l + floor,
@@ -23,10 +24,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { NOC_RULE_BINS = 48, NOC_RULE_SHIFT = 22 }; /* a float's bits above the shift: two bins an octave */
+enum { NOC_RULE_SHARES = 4, NOC_RULE_BINS = 48, NOC_RULE_SHIFT = 22 }; /* a float's bits above the shift: two bins an octave */
 
 typedef struct noc_influence_rule {
-    float seen;  /* v: a light that a surface faces is seen from it with that probability */
+    float seen[NOC_RULE_SHARES]; /* v, of as many surface points each: a light that they face is seen with that probability */
     float floor; /* lux */
 } noc_influence_rule;
 
@@ -90,22 +91,28 @@ static inline float noc_rule_hidden(float seen, float lights) {
 
 /* The least e on the list with the least loss; 0: it has all lights that there are, and there might be use for more. */
 static inline float noc_rule_best(const noc_influence_bins *b, float n_l, int every, noc_influence_rule rule) {
-    float seen = rule.seen, floor = rule.floor;
-    float sum = 0, beyond[NOC_RULE_BINS], gone = 0, chance = 1, a = 0, lights = 0, least = 0;
+    float sum = 0, beyond[NOC_RULE_BINS], gone = 0, chance[NOC_RULE_SHARES], a = 0, lights = 0, least = 0;
     int best = -1, last = -1;
     for (int i = 0; i < NOC_RULE_BINS; i++) {
         beyond[i] = sum;
         sum += b->bin[i].e;
     }
+    for (int k = 0; k < NOC_RULE_SHARES; k++)
+        chance[k] = 1.0f / NOC_RULE_SHARES;
     for (int i = NOC_RULE_BINS - 1; i >= 0; i--) {
         const noc_influence_bin *bin = &b->bin[i];
         if (bin->lights == 0)
             continue;
-        float e = bin->e / bin->lights, hidden = chance > 1e-4f ? noc_rule_hidden(seen, bin->lights) : 0;
-        float all = e + seen * (beyond[i] + bin->e - e) + floor, inverse = all > 0 ? 1 / (all * all) : 0;
-        a += bin->e2 * (gone + chance * inverse);
-        gone += chance * (1 - hidden) * inverse;
-        chance *= hidden;
+        float e = bin->e / bin->lights, now = 0, then = 0;
+        for (int k = 0; k < NOC_RULE_SHARES; k++) {
+            float hidden = chance[k] > 1e-4f ? noc_rule_hidden(rule.seen[k], bin->lights) : 0;
+            float all = e + rule.seen[k] * (beyond[i] + bin->e - e) + rule.floor, inverse = all > 0 ? 1 / (all * all) : 0;
+            now += chance[k] * inverse;
+            then += chance[k] * (1 - hidden) * inverse;
+            chance[k] *= hidden;
+        }
+        a += bin->e2 * (gone + now);
+        gone += then;
         lights += bin->lights;
         last = i;
         float loss = a * (lights / (float)(every - 1) - n_l);

@@ -18,8 +18,11 @@ static const float enough = 1.5f;
  * examples frames of four views took longer, and errors moved both ways. */
 static const float unserved = 0.7f;
 
-/* Where no rays can tell; and the share of what bright places get that is too little to be seen. */
-static const float usual_seen = 0.4f, dim = 0.05f;
+/* Shares of what places face that they see, where no rays can tell. */
+static const float usual_seen[NOC_RULE_SHARES] = { 0.1f, 0.3f, 0.5f, 0.7f };
+
+/* The share of what bright places get that is too little to be seen. */
+static const float dim = 0.05f;
 
 typedef struct example {
     float p[3], n[3];
@@ -239,7 +242,7 @@ static void look_around(void *ctx, size_t item, int worker) {
     }
     noc_rule_begin(&e->bins, 1 / (most * most));
     e->gets = 0;
-    e->seen = usual_seen;
+    e->seen = usual_seen[item % NOC_RULE_SHARES];
     each_giving(t, e, add_giving, e);
     if (!t->params->probe || !(e->gets > 0))
         return;
@@ -256,13 +259,13 @@ static int by_size(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* What the scene's surfaces have in common: what too little light is, and how much of it they see of what they face, where that
- * is more than too little. v is the mean square of that share: the chance that of two lights both are seen. What hides one hides
- * its neighbours too. */
+/* What the scene's surfaces have in common: what too little light is, and how much of what they face they see, where more than too
+ * little arrives. That differs much from place to place, so the rule is told several shares, each of as many places. */
 static noc_influence_rule rule_of(const tuning *t, int n) {
-    noc_influence_rule rule = { usual_seen, 0 };
-    float gets[EXAMPLES], square = 0;
+    noc_influence_rule rule = { .floor = 0 };
+    float gets[EXAMPLES], seen[EXAMPLES];
     int lit = 0, bright = 0;
+    memcpy(rule.seen, usual_seen, sizeof(rule.seen));
     for (int i = 0; i < n; i++)
         if (t->examples[i].gets * t->examples[i].seen > 0)
             gets[lit++] = t->examples[i].gets * t->examples[i].seen;
@@ -272,10 +275,12 @@ static noc_influence_rule rule_of(const tuning *t, int n) {
     rule.floor = dim * gets[lit * 9 / 10];
     for (int i = 0; i < n; i++) {
         const example *e = &t->examples[i];
-        square += e->gets > rule.floor ? e->seen * e->seen : 0;
-        bright += e->gets > rule.floor;
+        if (e->gets * e->seen > rule.floor)
+            seen[bright++] = e->seen;
     }
-    rule.seen = NOC_CLAMP(square / (float)bright, 0.05f, 0.95f);
+    qsort(seen, (size_t)bright, sizeof(*seen), by_size);
+    for (int k = 0; bright && k < NOC_RULE_SHARES; k++)
+        rule.seen[k] = NOC_CLAMP(seen[(2 * k + 1) * bright / (2 * NOC_RULE_SHARES)], 0.05f, 0.95f);
     return rule;
 }
 

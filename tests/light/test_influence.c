@@ -259,7 +259,7 @@ static void check_worlds(int cluster, noc_probe_fn *boxes) {
             finds_what_there_is(a);
             draws_are_pmf(a);
             if (surface < 2) {
-                double z = distance(a, worlds[i].lights > 10000 ? 1200 : 400);
+                double z = distance(a, worlds[i].lights > 10000 ? 3000 : 400);
                 if (!SANITIZED && !(z < 4.5))
                     fail_msg("%u lights, surface %d: %.1f standard errors from the sum over all lights", worlds[i].lights, surface, z);
             }
@@ -355,8 +355,8 @@ static void scale_is_found(void **state) {
 }
 
 /* Beside a lamp that gives 30 lux, and under lights scattered over a plane, of which the i-th gives 1 / i: of the lists that
- * begin with the strongest, the rule's has nearly the least error, found by playing out which lights are seen. A list made as
- * if all were is worse where most are hidden. */
+ * begin with the strongest, the rule's has nearly the least error, found by playing out which lights are seen: most, few, or most
+ * in some places and few in others. A list made as if all were is worse where most are hidden. */
 static void rule_draws_best(void **state) {
     (void)state;
     enum { LIGHTS = 2000, ROUNDS = 2000 };
@@ -365,14 +365,17 @@ static void rule_draws_best(void **state) {
     float lux[LIGHTS];
     for (int i = 0; i < LIGHTS; i++)
         lux[i] = i ? 1 / (float)(i + 1) : 30;
-    for (int dark = 0; dark < 2; dark++) {
-        noc_influence_rule rule = { dark ? 0.15f : 0.8f, 0.02f }, open = { 1, 0.02f };
+    static const noc_influence_rule rules[] = { { { 0.8f, 0.8f, 0.8f, 0.8f }, 0.02f },
+                                                { { 0.15f, 0.15f, 0.15f, 0.15f }, 0.02f },
+                                                { { 0.05f, 0.2f, 0.8f, 0.95f }, 0.02f } };
+    for (int which = 0; which < 3; which++) {
+        noc_influence_rule rule = rules[which], open = { { 1, 1, 1, 1 }, 0.02f };
         memset(moment, 0, sizeof(moment));
         for (int round = 0; round < ROUNDS; round++) {
             static bool seen[LIGHTS];
             double all = rule.floor;
             for (int i = 0; i < LIGHTS; i++)
-                all += (seen[i] = real_in(0, 1) < rule.seen) ? lux[i] : 0;
+                all += (seen[i] = real_in(0, 1) < rule.seen[round % NOC_RULE_SHARES]) ? lux[i] : 0;
             for (int i = 0; i < LIGHTS; i++)
                 moment[i] += seen[i] ? lux[i] * lux[i] / (all * all) : 0;
         }
@@ -390,10 +393,10 @@ static void rule_draws_best(void **state) {
             have = lux[n - 1] >= weakest ? loss : have;
             naive = lux[n - 1] >= as_if ? loss : naive;
         }
-        print_message("# v = %.2f: %.4f lux, %.3f of the least loss; %.4f, %.3f as if all were seen\n", rule.seen, weakest, have / least,
-                      as_if, naive / least);
-        assert_true(have < 1.1 * least);
-        assert_true(!dark || naive > 1.2 * least);
+        print_message("# v = %.2f to %.2f: %.4f lux, %.3f of the least loss; %.4f, %.3f as if all were seen\n", rule.seen[0],
+                      rule.seen[NOC_RULE_SHARES - 1], weakest, have / least, as_if, naive / least);
+        assert_true(have < (which < 2 ? 1.1 : 1.3) * least); /* a list that is right for most places is so for none of them */
+        assert_true(!which || naive > 1.2 * least);
     }
 }
 
