@@ -16,7 +16,7 @@ static noc_status take_log(remote_taker *t, remote_record *one) {
     int32_t level = 0;
     remote_get(one, &level, sizeof(level));
     const char *text = remote_get_text(one);
-    if (one->bad)
+    if (one->bad || !*text)
         return garbled(t);
     if (level == NOC_LOG_ERROR && t->error)
         return garbled(t);
