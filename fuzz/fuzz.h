@@ -10,6 +10,7 @@
 #include "geo/geo.h"
 #include "scene/scene.h"
 
+#include <sanitizer/asan_interface.h>
 #include <stdint.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -24,6 +25,10 @@ bool fuzz_seldom(const uint8_t *data, size_t size, uint32_t once_in);
 /* Refuses memory in one run in 4, as their bytes say: one of the library's allocations, or all from one on. Until fuzz_memory_back. */
 void fuzz_memory(const uint8_t *data, size_t size);
 void fuzz_memory_back(void);
+
+/* What lies behind the bytes that an array holds, for AddressSanitizer: who touches it is seen, until it is allowed again. */
+#define fuzz_forbid_rest(a) ASAN_POISON_MEMORY_REGION((a)->data + (a)->len, ((a)->cap - (a)->len) * sizeof(*(a)->data))
+#define fuzz_allow_rest(a) ASAN_UNPOISON_MEMORY_REGION((a)->data + (a)->len, ((a)->cap - (a)->len) * sizeof(*(a)->data))
 
 /* A log that counts its errors in *errors. */
 noc_log *fuzz_log(int *errors);

@@ -8,20 +8,35 @@
 
 static fuzz_part bytes;
 
+/* How many bytes come next: one record, so that who reads beyond it is seen; or any number. */
+static size_t piece(size_t at) {
+    remote_head head;
+    size_t left = bytes.size - at, n = 1 + (at * 31 + bytes.size) % 5000;
+    if (bytes.size & 1 && left >= sizeof(head)) {
+        memcpy(&head, bytes.data + at, sizeof(head));
+        n = sizeof(head) + head.size_low;
+    }
+    return NOC_MIN(n, left);
+}
+
 static noc_status take_all(geo_sink *sink, const mesh_parts *parts) {
     remote_result result = { 0 };
     remote_taker t = { .path = "fuzz", .sink = sink, .parts = parts, .result = &result };
     noc_status status = NOC_OK;
     for (size_t at = 0, n; !status && !t.ended && at < bytes.size; at += n) {
-        n = NOC_MIN(1 + (at * 31 + bytes.size) % 5000, bytes.size - at);
+        n = piece(at);
         char *room = remote_room(&t, n);
         status = room ? NOC_OK : NOC_ERR_MEMORY;
         if (room) {
             memcpy(room, bytes.data + at, n);
             t.bytes.len += n;
         }
+        if (room)
+            fuzz_forbid_rest(&t.bytes);
         while (!status && remote_take(&t, &status))
             continue;
+        if (room)
+            fuzz_allow_rest(&t.bytes);
     }
     if (!status && !t.ended)
         status = noc_error(sink->log, NOC_ERR_FORMAT, "ended early");

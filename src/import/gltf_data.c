@@ -106,7 +106,7 @@ static noc_status open_file(const gltf *g, const char *uri, gltf_buffer *b) {
         status = noc_no_memory(g->log, g->name);
     } else if (!f) {
         status = noc_error(g->log, NOC_ERR_IO, "%s: glTF: its buffer \"%.200s\" cannot be opened: %s", g->name, name, why);
-    } else if (!(b->owned = noc_alloc_large(size + 1, 1))) {
+    } else if (!(b->owned = noc_alloc_large(size, 1))) {
         status = noc_no_memory(g->log, g->name);
     } else {
         b->size = fread(b->owned, 1, size, f);
@@ -123,7 +123,8 @@ static noc_status open_data(const gltf *g, const char *uri, size_t index, gltf_b
     const char *comma = strchr(uri, ',');
     if (!comma || comma - uri < 7 || strncmp(comma - 7, ";base64", 7))
         return gltf_error(g, "buffer %zu is a data URI that is not base64", index);
-    b->owned = noc_alloc_large(strlen(comma) / 4 * 3 + 4, 1);
+    size_t digits = strcspn(comma + 1, "=");
+    b->owned = noc_alloc_large(digits / 4 * 3 + digits % 4 * 3 / 4, 1);
     if (!b->owned)
         return noc_no_memory(g->log, g->name);
     b->data = b->owned;

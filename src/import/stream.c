@@ -383,6 +383,13 @@ noc_status noc_stream_read_all(noc_stream *stream, noc_log *log, char **data, si
         *size += got;
     }
     (*data)[*size] = 0;
+    char *exact = noc_realloc(*data, *size + 1); /* it may have room for as much again */
+    if (!exact) {
+        free(*data);
+        *data = NULL;
+        return noc_no_memory(log, noc_stream_name(stream));
+    }
+    *data = exact;
     return NOC_OK;
 }
 
