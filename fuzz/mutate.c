@@ -30,8 +30,21 @@ size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t most, unsigned
     return size;
 }
 
+/* Some bytes again and again: for buffers that end somewhere. */
+static void stretch(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
+    size_t at = mutate_random(random, (uint32_t)in.size), n = 1 + mutate_random(random, 8);
+    n = NOC_MIN(n, in.size - at);
+    FUZZ_REQUIRE(array_append(out, in.data, at));
+    for (size_t end = out->len + NOC_MIN(most, (size_t)8 << mutate_random(random, 8)); out->len < end;)
+        FUZZ_REQUIRE(array_append(out, in.data + at, n));
+    FUZZ_REQUIRE(array_append(out, in.data + at, in.size - at));
+}
+
 void mutate_raw(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
-    (void)random;
+    if (in.size && most > in.size + 16 && !mutate_random(random, 16)) {
+        stretch(in, most - in.size, random, out);
+        return;
+    }
     size_t room = NOC_MAX(in.size, NOC_MIN(most, in.size + in.size / 4 + 64)), at = out->len;
     FUZZ_REQUIRE(array_reserve(out, at + room + 1));
     if (in.size)
@@ -59,7 +72,8 @@ void mutate_number(const char *text, size_t size, uint32_t *random, char out[64]
     double value = 0;
     const char *end = text + size;
     noc_scan_double(text, end, &value);
-    switch (mutate_random(random, 6)) {
+    switch (mutate_random(random, 7)) {
+    case 6: snprintf(out, 64, "%0*.*f", 1 + (int)mutate_random(random, 60), (int)mutate_random(random, 3), fmod(value, 1000)); break;
     case 0: snprintf(out, 64, "%s", odd[mutate_random(random, NOC_COUNT(odd))]); break;
     case 1: snprintf(out, 64, "%.17g", -value); break;
     case 2: snprintf(out, 64, "%.17g", value + (mutate_random(random, 2) ? 1 : -1)); break;
@@ -178,8 +192,12 @@ bool mutate_lines(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) 
         return true;
     fuzz_part line = some_line(in, random), other = some_line(in, random);
     size_t before = (size_t)(line.data - in.data), after = before + line.size;
-    if (what < 5) /* within a line */
-        return false;
+    if (what < 5) { /* within a line, or a part of one made long */
+        if (mutate_random(random, 6))
+            return false;
+        stretch(in, most, random, out);
+        return true;
+    }
     FUZZ_REQUIRE(array_append(out, in.data, before));
     if (what == 5) /* another line in its place, or before it */
         FUZZ_REQUIRE(array_append(out, other.data, other.size));

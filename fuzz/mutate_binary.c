@@ -10,7 +10,7 @@ static uint32_t get(const uint8_t *p, int bytes, bool big_endian) {
     return value;
 }
 
-static fuzz_part part_of(const fuzz_bytes *b) { return (fuzz_part){ b->data, b->len }; }
+static fuzz_part part_of(const fuzz_bytes *b) { return (fuzz_part){ b->len ? b->data : (const uint8_t *)"", b->len }; }
 
 bool mutate_gzip(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
     fuzz_bytes plain = { 0 }, now = { 0 };
@@ -232,8 +232,6 @@ enum { PB_FIELDS = 512 };
 
 /* Number of fields; 0 where the bytes are no message. */
 static int read_fields(fuzz_part in, pb_field *f) {
-    if (!in.size) /* and no data */
-        return 0;
     const uint8_t *p = in.data, *end = in.data + in.size;
     uint64_t value;
     int n = 0;

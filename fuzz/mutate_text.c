@@ -79,7 +79,10 @@ static void change_json(json_t *root, uint32_t *random) {
         json_t *v = value_at(p), *other = value_at(q);
         switch (mutate_random(random, 8)) {
         case 0: key ? json_object_del(p.in, key) : json_array_remove(p.in, p.index); break;
-        case 1: json_array_insert_new(p.in, p.index, json_deep_copy(v)); break; /* once more; fails for objects */
+        case 1: /* once more, or often; fails for objects */
+            for (uint32_t times = mutate_random(random, 4) ? 1 : mutate_random(random, 80); times > 0; times--)
+                json_array_insert_new(p.in, p.index, json_deep_copy(v));
+            break;
         case 2:
             if (key && q.key)
                 json_object_set_new(p.in, q.key, json_deep_copy(v)); /* under another's name too */
@@ -204,10 +207,21 @@ static void changed_text(fuzz_part old, fuzz_part other, uint32_t *random, fuzz_
             out->data[at] = '_';
 }
 
+/* An element within itself, and that within itself. */
+static void nest(fuzz_part in, const xml_tokens *t, const xml_token *a, uint32_t *random, fuzz_bytes *out) {
+    const xml_token *close = &t->list.data[a->match];
+    uint32_t times = 1u << mutate_random(random, 10);
+    for (uint32_t i = 0; i < times; i++)
+        FUZZ_REQUIRE(array_append(out, in.data + a->from, a->to - a->from));
+    FUZZ_REQUIRE(array_append(out, in.data + a->to, close->from - a->to));
+    for (uint32_t i = 0; i < times; i++)
+        FUZZ_REQUIRE(array_append(out, in.data + close->from, close->to - close->from));
+}
+
 static bool change_xml(fuzz_part in, const xml_tokens *t, uint32_t *random, fuzz_bytes *out) {
     fuzz_part old, now = { 0 };
     fuzz_bytes text = { 0 };
-    uint32_t what = mutate_random(random, 8), times = 1;
+    uint32_t what = mutate_random(random, 9), times = 1;
     const xml_token *a = some_token(t, false, random), *b = some_token(t, false, random);
     if (what < 4) {
         old = some_value(in, t, random);
@@ -221,7 +235,10 @@ static bool change_xml(fuzz_part in, const xml_tokens *t, uint32_t *random, fuzz
         old = span(in, t, a);
         now = what == 5 ? span(in, t, b) : old; /* another element in its place; once or more again; none */
         times = what == 4 ? 0 : what == 6 ? 2 + mutate_random(random, 3) : 1;
-        if (what == 7) { /* another one before it */
+        if (what == 8 && a->kind == XML_OPEN) {
+            nest(in, t, a, random, &text);
+            now = (fuzz_part){ text.data, text.len };
+        } else if (what == 7) { /* another one before it */
             fuzz_part s = span(in, t, b);
             FUZZ_REQUIRE(array_append(&text, s.data, s.size));
             FUZZ_REQUIRE(array_append(&text, old.data, old.size));

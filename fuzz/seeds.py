@@ -112,6 +112,8 @@ put("obj", "house", parts(obj, mtl))
 put("obj", "bare", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
 put("obj", "continued", parts("v 0 0 0 \\\n\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 2 0\nf 1 2 \\\n3 4 5\nusemtl none\nf 1 2 99\n", "newmtl a\n"))
 
+put("obj", "libraries", parts("mtllib side.mtl side.mtl\nmtllib a\\\\side.mtl\nmtllib \"side.mtl\"\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl wall\nf -3 -2 -1\n", mtl))
+
 positions = struct.pack("<12f", 0, 0, 0, 4, 0, 0, 4, 3, 0, 0, 3, 0) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
 
 
@@ -144,6 +146,11 @@ glb = (struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(positions)) + struc
        struct.pack("<I4s", len(positions), b"BIN\0") + positions)
 put("gltf", "embedded.gltf", embedded)
 put("gltf", "binary.glb", glb)
+strip = gltf({"byteLength": 60, "uri": "side.bin"})
+del strip["accessors"][0]["sparse"]
+strip["meshes"][0]["primitives"] = [{"attributes": {"POSITION": 0}, "mode": 5}, {"attributes": {"POSITION": 0}, "indices": 1, "mode": 6}]
+strip["bufferViews"][0]["byteStride"] = 12
+put("gltf", "strip", parts(json.dumps(strip), positions))
 put("gltf", "beside", parts(json.dumps(gltf({"byteLength": 60, "uri": "side.bin"})), positions))
 
 # ---- lamps ----
@@ -215,7 +222,7 @@ put("pbf", "lamps.pbf", blob(b"OSMHeader", head) + blob(b"OSMData", block))
 put("pbf", "raw.pbf", blob(b"OSMHeader", head, False) + blob(b"OSMData", block, False))
 
 
-def geopackage():
+def geopackage(more=""):
     path = tempfile.mktemp(suffix=".gpkg")
     db = sqlite3.connect(path)
     wkb = lambda x, y: b"GP\0\1" + struct.pack("<i", 4326) + struct.pack("<BIdd", 1, 1, x, y)
@@ -233,6 +240,8 @@ def geopackage():
         CREATE TABLE lamps (fid INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, geom POINT, highway TEXT, height REAL, watt INTEGER);""")
     db.executemany("INSERT INTO lamps (geom, highway, height, watt) VALUES (?, 'street_lamp', ?, ?)", [(wkb(11.5, 48.1), 8.5, 70), (wkb(11.501, 48.1), None, 50)])
     db.commit()
+    db.executescript(more)
+    db.commit()
     db.close()
     with open(path, "rb") as f:
         data = f.read()
@@ -241,6 +250,8 @@ def geopackage():
 
 
 put("gpkg", "lamps.gpkg", geopackage())
+put("gpkg", "index.gpkg", geopackage("""CREATE VIRTUAL TABLE "rtree_lamps_geom" USING rtree(id, x0, x1);
+    CREATE VIRTUAL TABLE [b] USING rtree_i32(id, x0, x1);"""))
 
 
 def shapefile():
@@ -311,6 +322,8 @@ put("png", "grey16.png", png(3, 3, 16, 0, (b"\1" + bytes(range(6))) * 3))
 put("png", "palette.png", png(8, 2, 1, 3, (b"\0\x5a") * 2, palette))
 put("png", "alpha.png", png(4, 4, 8, 6, (b"\2" + bytes(range(16))) * 4))
 put("png", "interlaced.png", png(1, 1, 8, 2, b"\0abc", b"", 1))
+adam7 = [(0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4), (0, 2, 2, 4), (1, 0, 2, 2), (0, 1, 1, 2)] # first column and row, steps
+put("png", "interlaced-9x9.png", png(9, 9, 8, 2, b"".join(b"\0" + bytes(3 * len(range(x, 9, dx))) for x, y, dx, dy in adam7 for _ in range(y, 9, dy)), b"", 1))
 
 
 def exr(width, height, channels, compression, mask=False):
@@ -346,6 +359,23 @@ def exr(width, height, channels, compression, mask=False):
 
 
 colours = [(b"B", 2), (b"G", 2), (b"R", 2)]
+
+
+def tiled(width, height, side):
+    """Not packed."""
+    plain = exr(width, height, colours, 0)
+    head = plain[:plain.index(b"units\0")]
+    head = head[:4] + struct.pack("<I", 2 | 0x200) + head[8:] + b"tiles\0tiledesc\0" + struct.pack("<iIIB", 9, side, side, 0) + b"\0"
+    tiles = [(x, y) for y in range(0, height, side) for x in range(0, width, side)]
+    at, offsets, body = len(head) + 8 * len(tiles), b"", b""
+    for x, y in tiles:
+        size = 12 * min(side, width - x) * min(side, height - y)
+        offsets += struct.pack("<Q", at + len(body))
+        body += struct.pack("<iiiii", x // side, y // side, 0, 0, size) + b"\0\0\x80\x3f" * (size // 4)
+    return head + offsets + body
+
+
+put("exr", "tiled.exr", tiled(20, 18, 16))
 put("exr", "float.exr", exr(5, 4, colours, 0))
 put("exr", "half.exr", exr(5, 4, [(b"A", 1), (b"B", 1), (b"G", 1), (b"R", 1)], 0))
 put("exr", "zip.exr", exr(20, 18, colours, 3))
