@@ -62,7 +62,7 @@ if [ "$purpose" = fuzz ]; then
     need "clang libclang-rt-14-dev llvm-14" "libFuzzer and the sanitizers" fuzzer
 fi
 if [ "$purpose" = coverage ]; then
-    need gcovr "counts the lines that were run" have gcovr
+    need "clang llvm" "counts the lines that were run" have llvm-cov
 fi
 if [ "$purpose" = check ] || [ "$purpose" = coverage ]; then
     need g++ "tests that the headers serve C++ too" cplusplus
