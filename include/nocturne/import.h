@@ -62,6 +62,10 @@ NOC_DEFAULT_PARAMS(noc_import_params, noc_import_default_params, NOC_IMPORT_DEFA
 #define noc_import_default_params() ((noc_import_params){ NOC_IMPORT_DEFAULTS(NOC_DEFAULT_IN_C) })
 #endif
 
+/* What holds the process that reads other people's formats (noc_import_params.isolate) here: "files by Landlock, system calls by
+ * seccomp", or which of them the build or the system lacks. */
+NOC_API const char *noc_isolation(void);
+
 /* Why a feature was skipped or repaired: a short reason, how often, and the ids of the first few. */
 typedef struct noc_report_line {
     const char *reason;     /* "self-intersecting ring", "unresolved xlink", ... */

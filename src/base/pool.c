@@ -50,6 +50,19 @@ static void *worker_main(void *arg) {
     return NULL;
 }
 
+/* At least LEAST of stack, whatever the limit of the process is (ulimit -s), which is the default of its threads. */
+static bool start_thread(struct worker *w) {
+    enum { LEAST = 2 << 20 };
+    pthread_attr_t attr;
+    size_t size = 0;
+    if (pthread_attr_init(&attr))
+        return false;
+    bool fine = !pthread_attr_getstacksize(&attr, &size) && (size >= LEAST || !pthread_attr_setstacksize(&attr, LEAST)) &&
+                !pthread_create(&w->thread, &attr, worker_main, w);
+    pthread_attr_destroy(&attr);
+    return fine;
+}
+
 noc_pool *noc_pool_create(int threads) {
     if (threads <= 0)
         threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
@@ -68,7 +81,7 @@ noc_pool *noc_pool_create(int threads) {
     for (int i = 1; i < threads; i++) {
         struct worker *w = &pool->workers[i - 1];
         *w = (struct worker){ .pool = pool, .index = i };
-        if (noc_allocation_refused() || pthread_create(&w->thread, NULL, worker_main, w))
+        if (noc_allocation_refused() || !start_thread(w))
             break;
         pool->threads++;
     }

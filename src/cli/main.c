@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 const cli_command *const cli_commands[] = { &cli_render, &cli_info, &cli_compare, &cli_experiment, NULL };
@@ -64,7 +65,25 @@ static int run(const cli_command *command, int argc, char **argv) {
     return status;
 }
 
+/* A stack that is too small would end the program without a word. It grows to the limit that there is by then, so this may
+ * be raised. */
+static bool enough_stack(void) {
+    enum { NEEDED = 1 << 20, USUAL = 8 << 20 };
+    struct rlimit stack;
+    if (getrlimit(RLIMIT_STACK, &stack) || stack.rlim_cur >= NEEDED)
+        return true;
+    rlim_t had = stack.rlim_cur;
+    stack.rlim_cur = stack.rlim_max < USUAL ? stack.rlim_max : USUAL;
+    if (stack.rlim_cur >= NEEDED && !setrlimit(RLIMIT_STACK, &stack))
+        return true;
+    cli_error("the limit of the stack is %llu kB, and %d kB are needed: ulimit -s %d", (unsigned long long)had / 1024, NEEDED / 1024,
+              NEEDED / 1024);
+    return false;
+}
+
 int main(int argc, char **argv) {
+    if (!enough_stack())
+        return CLI_FAILURE;
     signal(SIGXFSZ, SIG_IGN); /* a file over the size limit is a failed write: said, and nothing is left behind */
     if (argc < 2) {
         cli_help(NULL, stderr);
@@ -72,7 +91,7 @@ int main(int argc, char **argv) {
     }
     const char *name = argv[1];
     if (!strcmp(name, "--version")) {
-        printf("nocturne %s (%s)\n", noc_version(), noc_features());
+        printf("nocturne %s (%s)\nisolation of foreign readers: %s\n", noc_version(), noc_features(), noc_isolation());
         return cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
     }
     if (!strcmp(name, "help") || !strcmp(name, "--help") || !strcmp(name, "-h"))

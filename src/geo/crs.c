@@ -181,7 +181,8 @@ static noc_status create(geo_crs *crs, const char *definition, bool strict, cons
     if (!crs->pj && !proj_context_get_database_metadata(crs->context, "EPSG.VERSION")) {
         proj_context_destroy(crs->context); /* others may find it */
         crs->context = NULL;
-        return noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sPROJ finds no proj.db, so no CRS can be read", place, between);
+        return noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sPROJ finds no proj.db, its database, so no CRS can be read: is PROJ_DATA "
+                         "right?", place, between);
     }
     if (!crs->pj)
         return noc_error(log, NOC_ERR_FORMAT, "%s%sthe CRS \"%.200s\" is not understood%s%s", place, between, definition,
@@ -228,6 +229,16 @@ geo_crs *geo_crs_create_plain(const char *definition, const char *place, noc_log
     if (status)
         *status = why;
     return NULL;
+}
+
+bool geo_crs_database(void) {
+    PJ_CONTEXT *context = crs_context_take(true);
+    bool found = context && proj_context_get_database_metadata(context, "EPSG.VERSION");
+    if (found)
+        crs_context_give(context, true);
+    else
+        proj_context_destroy(context); /* others may find it */
+    return found;
 }
 
 geo_crs *geo_crs_utm(double lon, double lat) {

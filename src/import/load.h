@@ -84,6 +84,7 @@ typedef struct importer {
     NOC_ARRAY(double) given;  /* the points that are placed, as they were given */
     NOC_ARRAY(source_crs *) sources;
     source_crs *source;       /* of the coordinates that come next */
+    int strange_crs;          /* that were not understood */
     bool mesh_from_origin;    /* the mesh that is read is in metres from the scene's origin */
     /* the object that is being read (sink.c) */
     char *object_id;

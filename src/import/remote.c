@@ -8,6 +8,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -235,7 +236,10 @@ noc_status remote_read(const noc_reader *reader, const char *path, const noc_imp
                        const mesh_parts *parts, remote_result *result) {
     remote r = { .reader = reader, .path = path, .params = params, .sink = sink, .fd = -1, .memory = import_budget_of(params).memory,
                  .started = noc_wall_seconds(), .from = { .path = path, .sink = sink, .parts = parts, .result = result } };
+    static atomic_bool told;
     *result = (remote_result){ 0 };
+    if (!atomic_exchange(&told, true))
+        noc_info(sink->log, "files of other people's formats are read in %s", noc_isolation());
     noc_status status = start(&r);
     if (!status)
         status = listen_to(&r);

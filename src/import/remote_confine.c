@@ -19,6 +19,7 @@
 #endif
 #if NOC_HAVE_SECCOMP
 #include <errno.h>
+#include <linux/seccomp.h>
 #include <seccomp.h>
 #endif
 
@@ -153,6 +154,33 @@ static void confine_calls(void) {
 #else
 static void confine_calls(void) {}
 #endif
+
+static bool has_landlock(void) {
+#if NOC_HAVE_LANDLOCK
+    return syscall(SYS_landlock_create_ruleset, NULL, 0, LANDLOCK_CREATE_RULESET_VERSION) >= 1;
+#else
+    return false;
+#endif
+}
+
+/* A filter of 0 is refused in any case; EFAULT says that there are filters. */
+static bool has_seccomp(void) {
+#if NOC_HAVE_SECCOMP
+    return prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, NULL, 0, 0) == -1 && errno == EFAULT;
+#else
+    return false;
+#endif
+}
+
+const char *noc_isolation(void) {
+    static const char *const texts[2][2] = {
+        { "a process of its own and limits; neither Landlock for files nor seccomp for system calls is there",
+          "a process of its own and limits, system calls by seccomp; Landlock for files is not there" },
+        { "a process of its own and limits, files by Landlock; seccomp for system calls is not there",
+          "a process of its own and limits, files by Landlock, system calls by seccomp" },
+    };
+    return texts[has_landlock()][has_seccomp()];
+}
 
 bool remote_short_of_memory(void) {
     struct rlimit most;

@@ -123,4 +123,25 @@ if [ -e /dev/full ]; then
     "$program" help render >/dev/full 2>err
     test $? = 1 && grep -q 'standard output' err; result $? "a full disk under stdout is a failure"
 fi
+# ---- limits of the process ----
+# stacked LIMIT ARGUMENT...: by a soft limit (-S) or one that cannot be raised (-SH); dash knows no -s of a soft limit alone
+stacked() {
+    limit=$1
+    shift
+    bash -c 'ulimit $0 -s 64; exec "$@"' "$limit" "$program" "$@" >out 2>err
+    status=$?
+}
+if ! "$program" render builtin:city --city-size 150 --size 32x32 --frames 1 -o whole.png >out 2>err; then
+    skip "a small stack" "nothing is drawn here"
+else
+    stacked -S render builtin:city --city-size 150 --size 32x32 --frames 1 -o small.png
+    test $status = 0 && test -s small.png; result $? "a stack of 64 kB is raised where it may be" "status $status: $(cat err)"
+    stacked -SH render builtin:city --city-size 150 --size 32x32 --frames 1 -o none.png
+    test $status = 1 && grep -q 'limit of the stack is 64 kB' err && test ! -e none.png; result $? "and told where it may not" "status $status: $(cat err)"
+fi
+(PROJ_DATA=/nonexistent PROJ_LIB=/nonexistent; export PROJ_DATA PROJ_LIB; run info "$source_dir/tests/cli/city.gml"; echo $status >ended)
+test "$(cat ended)" = 1 && grep -q 'proj.db' err; result $? "a database of PROJ that is not there is an error" "$(cat err)"
+run --version
+grep -q 'isolation of foreign readers: .*Landlock.*seccomp' out; result $? "the version tells what isolation there is"
+
 finish

@@ -324,6 +324,21 @@ static void test_true_lengths(void **state) {
 }
 
 /* Lamps of one's own, added before the load as scene.h tells: they stay where they were put, beside the lamps of the files. */
+/* Names that PROJ does not know cost a search of its whole database each: there is an end to them. */
+static void test_strange_crs(void **state) {
+    (void)state;
+    struct run r;
+    char text[10000] = "FAKE city\n";
+    for (int i = 0; i < 60; i++)
+        snprintf(text + strlen(text), sizeof(text) - strlen(text), "crs garbage %d\nobject 0 b%d 1\n"
+                 "polygon 2 678000 5404000 0 678001 5404000 0 678001 5404001 0\nend\n", i, i);
+    start(&r);
+    load_with(&r, with_crs("EPSG:25832", NULL), true, PATHS(file("strange", text)));
+    assert_int_equal(r.status, NOC_ERR_FORMAT);
+    assert_non_null(strstr(noc_log_last_error(r.log), "more than 32 CRSs that are not understood, \"garbage 32\""));
+    finish(&r);
+}
+
 static void test_planned_lamps(void **state) {
     (void)state;
     struct run r;
@@ -370,7 +385,7 @@ int main(void) {
         cmocka_unit_test(test_error_after_error), cmocka_unit_test(test_geographic), cmocka_unit_test(test_axes),
         cmocka_unit_test(test_scene_crs),
         cmocka_unit_test(test_missing_crs), cmocka_unit_test(test_mesh_place), cmocka_unit_test(test_true_lengths),
-        cmocka_unit_test(test_planned_lamps),
+        cmocka_unit_test(test_planned_lamps), cmocka_unit_test(test_strange_crs),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
