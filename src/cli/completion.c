@@ -1,5 +1,5 @@
-/* Completions for bash, zsh and fish, from the option tables. All three offer the same: commands, options, values of those
- * that have choices, built-in scenes and files, and nothing where a number or another text is asked for. */
+/* Completions for bash, zsh and fish, from the option tables. All three offer the same: commands, options, values of
+ * those that have choices, built-in scenes and files, and nothing where a number or another text is asked for. */
 #include "cli.h"
 
 #include <string.h>
@@ -74,7 +74,8 @@ static void bash(FILE *out) {
           "    [ \"$before\" = = ] && before=${COMP_WORDS[at-2]}\n"
           "    if [ \"$before\" = : ] && [ \"${COMP_WORDS[at-2]}\" = builtin ]; then\n        files= words='", out);
     builtins(out, "");
-    fputs("'\n    elif [ \"$COMP_CWORD\" = 1 ] || [ \"${COMP_WORDS[1]}:$COMP_CWORD\" = help:2 ]; then\n        files= words='", out);
+    fputs("'\n    elif [ \"$COMP_CWORD\" = 1 ] || [ \"${COMP_WORDS[1]}:$COMP_CWORD\" = help:2 ]; then\n"
+          "        files= words='", out);
     commands(out);
     fputs("'\n    else\n        case ${COMP_WORDS[1]} in\n", out);
     for (const cli_command *const *c = cli_commands; *c; c++) {
@@ -107,7 +108,8 @@ static void quoted(FILE *out, const char *text, const char *escape) {
 
 /* after: "=" behind a long name and "+" behind a letter say that a value may follow in the same word or in the next. */
 static void zsh_form(FILE *out, const noc_option *o, const char *dashes, const char *name, const char *after) {
-    fprintf(out, "            '%s%s%s%s[", o->kind == NOC_OPTION_TEXTS ? "*" : "", dashes, name, cli_is_switch(o) ? "" : after);
+    const char *often = o->kind == NOC_OPTION_TEXTS ? "*" : ""; /* may be given several times */
+    fprintf(out, "            '%s%s%s%s[", often, dashes, name, cli_is_switch(o) ? "" : after);
     quoted(out, o->help, "[]\\:");
     fputc(']', out);
     if (o->kind == NOC_OPTION_CHOICE) {
@@ -192,7 +194,8 @@ static void fish(FILE *out) {
         cli_each_option(*c, out, NULL, fish_option, 0);
         if (!takes_builtins(*c))
             continue;
-        static const char where[] = "complete -c nocturne -n '__nocturne_at %s; and string match -q \"%s*\" -- (commandline -ct)'";
+        static const char where[] = "complete -c nocturne -n '__nocturne_at %s; and "
+                                    "string match -q \"%s*\" -- (commandline -ct)'";
         fprintf(out, where, (*c)->name, "b");
         fputs(" -a '", out);
         builtins(out, "builtin:");
