@@ -114,6 +114,7 @@ typedef struct placing {
     double facing[2];  /* unit vector the heads look along */
     bool on_wall;
     double wall[2];    /* the wall it hangs on */
+    bool crowded;      /* others stand wherever it could */
 } placing;
 
 /* Which way a lamp faces that says nothing and has nothing near: any, but always the same for the same place. */
@@ -201,7 +202,9 @@ static bool place(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
         for (double r = .7; r < 3 && site_taken(scene, p->foot[0], p->foot[1], p->foot[2]); r += .7)
             for (int k = 0; k < 2; k++)
                 p->foot[k] += .7 * side[k];
-        geo_issue(issues, GEO_REPAIRED, "two lamps at one place: moved apart", lamp->id);
+        p->crowded = site_taken(scene, p->foot[0], p->foot[1], p->foot[2]);
+        geo_issue(issues, GEO_REPAIRED, p->crowded ? "lamp where others leave no room: its light beside theirs, without a pole"
+                                                   : "two lamps at one place: moved apart", lamp->id);
     }
     if (params->tally)
         params->tally->moved += p->foot[0] != lamp->xyz[0] || p->foot[1] != lamp->xyz[1];
@@ -251,6 +254,7 @@ static double reach(const builder *b) {
 }
 
 static const double down[3] = { 0, 0, -1 };
+#define FLOOD_TILT (50 * M_PI / 180) /* from straight down */
 
 /* One head towards (dx, dy), its light at the lamp's height; `root` is where its arm begins. */
 static bool add_head(builder *b, double dx, double dy, const double root[3]) {
@@ -259,6 +263,9 @@ static bool add_head(builder *b, double dx, double dy, const double root[3]) {
     double off = reach(b), z = foot[2] + f->height;
     double at[3] = { foot[0] + off * dx, foot[1] + off * dy, z };
     const double along[3] = { dx, dy, 0 };
+    const double flood[3] = { sin(FLOOD_TILT) * dx, sin(FLOOD_TILT) * dy, -cos(FLOOD_TILT) };
+    if (b->placing->crowded) /* however many there are, no more stands there than fits: each next lamp would meet all of it */
+        return add_light(b, at, f->kind == FITTING_FLOOD ? flood : down);
     if (f->kind == FITTING_SPHERE) {
         if (off > 0 || !b->pole) {
             double end[3] = { at[0], at[1], z - f->radius - .02 };
@@ -269,16 +276,15 @@ static bool add_head(builder *b, double dx, double dy, const double root[3]) {
     }
     double gap = .01; /* the light's disc hangs below its housing, which never lies before it */
     if (f->kind == FITTING_FLOOD) {
-        const double tilt = 50 * M_PI / 180; /* from straight down */
-        double look[3] = { sin(tilt) * dx, sin(tilt) * dy, -cos(tilt) }, side[3] = { -dy, dx, 0 }, face[3], back[3];
+        double side[3] = { -dy, dx, 0 }, face[3], back[3];
         for (int k = 0; k < 3; k++) {
-            face[k] = at[k] - gap * look[k];
-            back[k] = at[k] - .14 * look[k];
+            face[k] = at[k] - gap * flood[k];
+            back[k] = at[k] - .14 * flood[k];
         }
-        shape_housing(&b->shape, face, look, side, f->radius * 1.3, f->radius * 1.15, .13);
+        shape_housing(&b->shape, face, flood, side, f->radius * 1.3, f->radius * 1.15, .13);
         if (root)
             shape_bar(&b->shape, root, back, .025);
-        return add_light(b, at, look);
+        return add_light(b, at, flood);
     }
     double face[3] = { at[0], at[1], z + gap }, neck[3] = { at[0] - .3 * dx, at[1] - .3 * dy, z + .07 };
     shape_housing(&b->shape, face, down, along, f->radius * 1.9, f->radius * 1.15, .12);
@@ -344,7 +350,7 @@ int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params
     fitting f = choose_fitting(lamp, params);
     builder b = { .scene = scene, .lamp = lamp, .fitting = &f, .placing = &p, .inferred = inferred,
                   .pole = !p.on_wall && lamp->mount != GEO_MOUNT_SUSPENDED };
-    if (b.pole && !lamp->body_heads)
+    if (b.pole && !lamp->body_heads && !p.crowded)
         add_pole(&b);
     int lights = lamp->body_heads ? add_to_body(&b) : add_heads(&b);
     if (!shape_add(&b.shape, scene, lamp->id) || !lights) /* the scene said why */

@@ -1,12 +1,12 @@
 /* Vertical rays against the scene, for standing lamps and cameras on it.
  *
- * Grids over x and y, one a level: their cells are twice as large from level to level. A triangle lies on the level whose cells
- * are just as large as it is, or larger: in four cells at most. Cells are found by a hash, so what a ray looks at depends on what lies
- * near it, and not on how far the scene reaches: lamps on two continents cost what those of two towns do.
+ * Grids over x and y, one a level: their cells are twice as large from level to level. A triangle lies on the level whose
+ * cells are just as large as it is, or larger: in four cells at most. Cells are found by a hash, so what a ray looks at depends
+ * on what lies near it, and not on how far the scene reaches: lamps on two continents cost what those of two towns do.
  *
- * Most triangles lie in a compressed list a bucket (offsets, ids), made at the first query; those added later hang on chains over the
- * same buckets, until there are as many as the lists hold: then all is made anew. So a caller may ask, add, and ask again (every lamp
- * does) at a constant cost a triangle.
+ * Most triangles lie in a compressed list a bucket (offsets, ids), made at the first query; those added later hang on chains
+ * over the same buckets, until there are as many as the lists hold: then all is made anew. So a caller may ask, add, and ask
+ * again (every lamp does) at a constant cost a triangle.
  *
  * Queries may come from several threads once the scene is no longer changed: bringing the grids up to date is locked. */
 #include "scene/scene.h"

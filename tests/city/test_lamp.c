@@ -322,6 +322,27 @@ static void test_lamps_do_not_stand_on_lamps(void **state) {
     }
 }
 
+/* However many lamps are given at one point: all shine, and what stands there, which each next one meets, is no more than of a few. */
+static void test_lamps_at_one_point(void **state) {
+    enum { LAMPS = 600 };
+    (void)state;
+    noc_scene *scene = noc_scene_create(NULL);
+    geo_issues *issues = geo_issues_create();
+    geo_lamp l = lamp_at(0, 0);
+    add_plane(scene, NOC_CLASS_TERRAIN, -50, -50, 50, 50, 0, 0);
+    for (int i = 0; i < LAMPS; i++)
+        assert_int_equal(city_add_lamp(scene, &l, &defaults, false, issues), 1);
+    assert_int_equal(scene->lights.len, LAMPS);
+    for (size_t i = 0; i < LAMPS; i++)
+        assert_float_equal(flux(&scene->lights.data[i]), defaults.lumens, 1);
+    size_t apart = issues_with(issues, "moved apart"), crowded = issues_with(issues, "leave no room");
+    assert_int_equal(1 + apart + crowded, LAMPS);
+    assert_in_range(apart, 1, 8);
+    assert_true(noc_ground_load(scene, 0, 0) < 200);
+    geo_issues_destroy(issues);
+    noc_scene_destroy(scene);
+}
+
 static double nearest_pair(const noc_scene *scene) {
     double best = INFINITY;
     for (size_t i = 0; i < scene->lights.len; i++)
@@ -509,7 +530,7 @@ int main(void) {
         cmocka_unit_test(test_efficacies),
         cmocka_unit_test(test_own_shape_does_not_shadow),
         cmocka_unit_test(test_inside_building),
-        cmocka_unit_test(test_odd_grounds), cmocka_unit_test(test_lamps_do_not_stand_on_lamps),
+        cmocka_unit_test(test_odd_grounds), cmocka_unit_test(test_lamps_do_not_stand_on_lamps), cmocka_unit_test(test_lamps_at_one_point),
         cmocka_unit_test(test_infer_roads), cmocka_unit_test(test_infer_cancelled),
         cmocka_unit_test(test_infer_buildings),
         cmocka_unit_test(test_no_ground),
