@@ -172,6 +172,8 @@ features = {"type": "FeatureCollection", "name": "lamps", "crs": {"type": "name"
                          {"type": "Feature", "properties": None, "geometry": {"type": "GeometryCollection", "geometries": [{"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]}]}}]}
 put("geojson", "collection.json", json.dumps(features))
 put("geojson", "plain.json", json.dumps({"type": "FeatureCollection", "features": [point(11.5, 48.1, highway="street_lamp")]}))
+hstore = ",".join('"%s"=>"%s"' % (key, value.replace("8 m", 'a \\"quote\\" and \\\\')) for key, value in tags.items())
+put("geojson", "hstore.json", json.dumps({"type": "FeatureCollection", "features": [point(11.5, 48.1, osm_id="7", highway="street_lamp", other_tags=hstore)]}))
 put("geojson", "lines.json", "\x1e" + json.dumps(point(11.5, 48.1, highway="street_lamp")) + "\n\x1e" + json.dumps(point(11.6, 48.1, **tags)) + "\n")
 osm = ('<?xml version="1.0" encoding="UTF-8"?>\n<osm version="0.6" generator="x"><bounds minlat="48" minlon="11" maxlat="49" maxlon="12"/>\n'
        '<node id="1" lat="48.1" lon="11.5" version="1">%s</node><node id="2" lat="48.1001" lon="11.5"/><node id="3" lat="48.1" lon="11.5002"/>\n'
@@ -385,6 +387,7 @@ put("compare", "exr", parts(exr(5, 4, colours, 0), exr(5, 4, [(b"B", 1), (b"G", 
 put("compare", "png", parts(rgb, png(5, 4, 8, 2, (b"\0" + bytes(15)) * 4)))
 put("compare", "wider", parts(exr(5, 4, colours, 0), exr(6, 4, colours, 0)))
 put("compare", "higher", parts(exr(5, 4, colours, 0), exr(5, 5, colours, 0)))
+put("compare", "lower", parts(exr(5, 5, colours, 0), exr(5, 4, colours, 0)))
 put("compare", "mixed", parts(exr(5, 4, colours, 0), rgb))
 
 # ---- coordinate systems ----
