@@ -3,6 +3,10 @@
 
 #include <openexr.h>
 
+/* OpenEXR 3.1 compares each channel with all before it, and so each attribute. */
+#define MOST_CHANNELS 1024
+#define MOST_ATTRIBUTES 4096
+
 typedef struct exr_reader {
     exr_context_t context;
     int part;
@@ -57,6 +61,51 @@ static int64_t read_data(exr_const_context_t context, void *user, void *buffer, 
 static int64_t query_size(exr_const_context_t context, void *user) {
     const exr_reader *r = user;
     return (int64_t)r->size;
+}
+
+/* The text at *at, which is moved behind its end; NULL where it has none. */
+static const char *text_at(const exr_reader *r, size_t *at) {
+    const uint8_t *text = r->data + *at, *end = memchr(text, 0, r->size - *at);
+    *at = end ? (size_t)(end + 1 - r->data) : r->size;
+    return end ? (const char *)text : NULL;
+}
+
+/* Channels of a list that begins at `at`. */
+static size_t count_channels(const exr_reader *r, size_t at, size_t end) {
+    enum { BEHIND_NAME = 16 }; /* bytes: type, linearity, sampling */
+    const char *name;
+    size_t n = 0;
+    for (; at < end && (name = text_at(r, &at)) && *name; at += NOC_MIN((size_t)BEHIND_NAME, r->size - at))
+        n++;
+    return n;
+}
+
+/* Are the headers so long that OpenEXR would not get done with them? What is wrong with them otherwise is left to it. */
+static bool has_too_much(exr_reader *r) {
+    bool several = r->size > 8 && r->data[5] & 0x10; /* headers, ended by an empty one */
+    size_t at = NOC_MIN(r->size, (size_t)8), attributes = 0;
+    const char *name, *type, *much = NULL;
+    for (bool first = true; !much && (name = text_at(r, &at)) && (*name || (several && !first));) {
+        first = !*name;
+        if (first)
+            continue;
+        if (!(type = text_at(r, &at)) || r->size - at < 4)
+            break;
+        const uint8_t *p = r->data + at;
+        size_t size = (size_t)p[0] | (size_t)p[1] << 8 | (size_t)p[2] << 16 | (size_t)p[3] << 24;
+        at += 4;
+        if (size > r->size - at)
+            break;
+        if (++attributes > MOST_ATTRIBUTES)
+            much = "attributes";
+        else if (!strcmp(type, "chlist") && count_channels(r, at, at + size) > MOST_CHANNELS)
+            much = "channels";
+        at += size;
+    }
+    if (much)
+        r->status = noc_error(r->log, NOC_ERR_UNSUPPORTED, "%s: EXR: more than %d %s, which are not read", r->name,
+                              *much == 'a' ? MOST_ATTRIBUTES : MOST_CHANNELS, much);
+    return much != NULL;
 }
 
 static const exr_attr_chlist_entry_t *find_channel(const exr_attr_chlist_t *list, const char *name) {
@@ -322,7 +371,7 @@ noc_image *image_read_exr(const uint8_t *data, size_t size, const char *name, no
     init.max_image_width = init.max_image_height = NOC_IMAGE_MAX_SIDE;
     init.max_tile_width = init.max_tile_height = NOC_IMAGE_MAX_SIDE;
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
-    if (ok(&r, exr_start_read(&r.context, name, &init)) && choose_part(&r) && make_image(&r) &&
+    if (!has_too_much(&r) && ok(&r, exr_start_read(&r.context, name, &init)) && choose_part(&r) && make_image(&r) &&
         (r.tiled ? read_tiles(&r) : read_scanlines(&r)))
         finish_image(&r);
     if (r.context)

@@ -12,10 +12,13 @@ enum { W = 37, H = 21 };
 typedef struct bytes { NOC_ARRAY(uint8_t) a; } bytes;
 
 static int errors;
+static char error[300];
 static void on_message(void *user, noc_log_level level, const char *text) {
     (void)user;
-    (void)text;
-    errors += level == NOC_LOG_ERROR;
+    if (level != NOC_LOG_ERROR)
+        return;
+    errors++;
+    snprintf(error, sizeof(error), "%s", text);
 }
 static noc_log *log_;
 static int set_up(void **state) {
@@ -263,6 +266,55 @@ static void missing_channels_are_an_error(void **state) {
     array_free(&b.a);
 }
 
+static void put_attribute(bytes *b, const char *name, const char *type, const void *data, uint32_t size) {
+    const uint8_t length[4] = { (uint8_t)size, (uint8_t)(size >> 8), (uint8_t)(size >> 16), (uint8_t)(size >> 24) };
+    assert_true(array_append(&b->a, (const uint8_t *)name, strlen(name) + 1));
+    assert_true(array_append(&b->a, (const uint8_t *)type, strlen(type) + 1));
+    assert_true(array_append(&b->a, length, sizeof(length)));
+    assert_true(array_append(&b->a, (const uint8_t *)data, size));
+}
+
+/* What the beginning of a file with so many channels, or attributes, or parts of a few each, is refused for. */
+static void refused_for(int channels, int attributes, int parts, const char *why) {
+    static const uint8_t head[2][8] = { { 0x76, 0x2f, 0x31, 1, 2, 0, 0, 0 }, { 0x76, 0x2f, 0x31, 1, 2, 0x10, 0, 0 } };
+    bytes b = { 0 }, list = { 0 };
+    for (int i = 0; i <= channels; i++) {
+        char entry[24] = { 0 }; /* the last one ends the list */
+        if (i < channels)
+            snprintf(entry, sizeof(entry), "x%06d", i);
+        entry[8] = entry[16] = entry[20] = 1;
+        size_t size = i < channels ? sizeof(entry) : 1;
+        assert_true(array_append(&list.a, (uint8_t *)entry, size));
+    }
+    assert_true(array_append(&b.a, head[parts > 1], sizeof(head[0])));
+    for (int part = 0; part < parts; part++) {
+        put_attribute(&b, "channels", "chlist", list.a.data, (uint32_t)list.a.len);
+        for (int i = 1; i < attributes; i++) {
+            char name[20];
+            snprintf(name, sizeof(name), "a%06d", i);
+            put_attribute(&b, name, "int", &i, sizeof(i));
+        }
+        assert_true(array_push(&b.a, 0));
+    }
+    assert_true(array_push(&b.a, 0));
+    errors = 0;
+    assert_null(image_read_memory(b.a.data, b.a.len, "much.exr", log_, NULL));
+    assert_int_equal(errors, 1);
+    assert_true((strstr(error, "more than") != NULL) == (why != NULL) && (!why || strstr(error, why)));
+    array_free(&b.a);
+    array_free(&list.a);
+}
+
+static void long_headers_are_errors(void **state) {
+    (void)state;
+    refused_for(1024, 4, 1, NULL); /* other attributes are missing */
+    refused_for(1025, 4, 1, "more than 1024 channels");
+    refused_for(3, 4096, 1, NULL);
+    refused_for(3, 4097, 1, "more than 4096 attributes");
+    refused_for(3, 5, 1000, "more than 4096 attributes");
+    refused_for(3, 5, 100, NULL);
+}
+
 static void one_result(const uint8_t *data, size_t n) {
     errors = 0;
     noc_image *a = image_read_memory(data, n, "hostile", log_, NULL);
@@ -379,7 +431,7 @@ int main(void) {
         cmocka_unit_test(every_kind_of_exr),
         cmocka_unit_test(missing_channels_are_an_error),
         cmocka_unit_test(cut_files_are_errors),
-        cmocka_unit_test(huge_sizes_are_errors),
+        cmocka_unit_test(huge_sizes_are_errors), cmocka_unit_test(long_headers_are_errors),
         cmocka_unit_test(mutated_files_end_in_one_error_or_a_picture),
     };
     return cmocka_run_group_tests_name("image read", tests, set_up, tear_down);
