@@ -260,7 +260,7 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
     if (!status && plain && format->kind == MAP_SHAPEFILE)
         status = map_check_shapefile(m->name, anywhere, log);
     if (!status && plain && format->kind == MAP_GEOPACKAGE) {
-        status = map_copy_geopackage(m->name, anywhere, log, &m->copy);
+        status = map_copy_geopackage(m->name, anywhere, noc_stream_budget(stream), log, &m->copy);
         copied = m->copy.path != NULL;
     }
     if (copied && !status) {
