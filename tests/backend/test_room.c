@@ -4,8 +4,11 @@
 
 #include "base/base.h"
 
+#include <dlfcn.h>
+#include <errno.h>
 #include <nocturne/import.h>
 #include <nocturne/nocturne.h>
+#include <pthread.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 
@@ -14,6 +17,17 @@
         print_message("# skipped: AddressSanitizer needs address space without end\n"); \
         skip();                                                                         \
     }
+
+#if !SANITIZED
+/* Takes the place of the system's for all that is linked: TBB ends the process where it can start no thread. */
+static bool no_threads;
+
+int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *), void *argument) {
+    int (*real)(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);
+    *(void **)&real = dlsym(RTLD_NEXT, "pthread_create");
+    return no_threads || !real ? EAGAIN : real(thread, attributes, start, argument);
+}
+#endif
 
 enum { MADE = 40, REFUSED = 41, SILENT = 42, OTHER = 43 };
 
@@ -120,6 +134,23 @@ static void test_renderer(void **state) {
     noc_scene_destroy(scene);
 }
 
+/* ulimit -u, which root does not have. */
+static void test_no_threads(void **state) {
+#if !SANITIZED
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_ERROR, .message = drop });
+    noc_scene *scene = make(false, NULL);
+    assert_non_null(scene);
+    no_threads = true;
+    noc_status status = draw(scene, log);
+    no_threads = false;
+    assert_int_equal(status, NOC_ERR_MEMORY);
+    assert_non_null(strstr(noc_log_last_error(log), "ulimit -u"));
+    assert_int_equal(draw(scene, log), NOC_OK); /* and is as it was */
+    noc_scene_destroy(scene);
+    noc_log_destroy(log);
+#endif
+}
+
 static noc_status build_and_draw(noc_scene *none, noc_log *log) {
     noc_scene *scene = make(true, log);
     noc_status status = scene ? draw(scene, log) : NOC_ERR_MEMORY;
@@ -133,6 +164,6 @@ static void test_all(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_renderer), cmocka_unit_test(test_all) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_renderer), cmocka_unit_test(test_no_threads), cmocka_unit_test(test_all) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -58,7 +58,10 @@ static void attach_triangles(embree_state *s) {
 noc_status noc_embree_build(embree_state *s) {
     double start = noc_wall_seconds();
     char config[64];
-    if (!noc_embree_room_for_threads(s) || !noc_embree_room(s, 0))
+    if (!noc_embree_room_for_threads(s))
+        return s->failed = noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory for its threads, or a limit of their number "
+                                       "(ulimit -u)");
+    if (!noc_embree_room(s, 0))
         return fail(s, RTC_ERROR_OUT_OF_MEMORY, NULL);
     /* The cache is for surfaces that are subdivided; it would take 128 MB. */
     snprintf(config, sizeof(config), "threads=%d,tessellation_cache_size=0", noc_pool_threads(s->pool));

@@ -40,7 +40,7 @@ static void *wait_for_lock(void *lock) {
 
 bool noc_embree_room_for_threads(const embree_state *s) {
     pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-    size_t wanted = helpers(s), started = 0;
+    size_t wanted = NOC_MAX(helpers(s), 1), started = 0; /* as the device goes, TBB starts one whatever it was asked for */
     pthread_t *threads = noc_alloc((wanted + 1) * sizeof(*threads));
     pthread_attr_t attributes;
     if (!threads || pthread_attr_init(&attributes)) {
