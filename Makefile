@@ -6,13 +6,14 @@ unexport NINJA
 NINJA = ninja $$([ -t 1 ] || echo --quiet)
 SANITIZE = -Db_sanitize=address,undefined -Dbuildtype=debugoptimized -Dbench=false
 
-.PHONY: help demo build check asan fuzz coverage install clean deps deps-check
+.PHONY: help demo build check asan tsan fuzz coverage install clean deps deps-check
 
 help:
 	@echo "make demo     build, and draw the built-in city by night: night.png"
 	@echo "make build    build build/nocturne"
 	@echo "make check    build, and run all tests"
 	@echo "make asan     the tests again under AddressSanitizer and UBSan"
+	@echo "make tsan     those of them that run threads, under ThreadSanitizer"
 	@echo "make fuzz     fuzzers of all that reads bytes, TIME=60 seconds each, with a table (CORPUS=\"pbf csv\" for some of them)"
 	@echo "make coverage what share of each room's lines the tests run, and the fuzzers' inputs"
 	@echo "make install  install to PREFIX ($(PREFIX)), DESTDIR respected"
@@ -52,6 +53,14 @@ asan: deps-check
 	@$(NINJA) -C build-asan
 	@tools/run-tests.sh build-asan --timeout-multiplier 4
 
+# The pool, the log, frames, the tables that they share, and what loads a scene.
+THREADED = base-test_base base-test_api backend-test_lists backend-test_many light-test_learned render-test_light_stats \
+	render-test_shadow render-test_renderer render-test_views render-test_memory render-test_golden import-test_load
+tsan: deps-check
+	@[ -e build-tsan/build.ninja ] || meson setup build-tsan -Db_sanitize=thread -Dbuildtype=debugoptimized -Dbench=false -Dtests=enabled >/dev/null
+	@$(NINJA) -C build-tsan
+	@tools/run-tests.sh build-tsan --timeout-multiplier 8 $(THREADED)
+
 TIME = 60
 fuzz:
 	@tools/install-deps.sh fuzz
@@ -80,4 +89,4 @@ install: deps build/build.ninja
 	@grep -E '/($(INSTALLED))$$' build/meson-logs/install-log.txt | sed 's/^/  /'
 
 clean:
-	rm -rf build build-asan build-coverage build-fuzz night.png
+	rm -rf build build-asan build-tsan build-coverage build-fuzz night.png

@@ -13,10 +13,10 @@
 #define REMOTE_NO_MEMORY 3 /* the helper's exit status where it has none for its answer */
 
 #if defined(__has_feature)
-#if __has_feature(address_sanitizer)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define REMOTE_SANITIZED
 #endif
-#elif defined(__SANITIZE_ADDRESS__)
+#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define REMOTE_SANITIZED
 #endif
 

@@ -377,7 +377,7 @@ static void test_no_memory(void **state) {
     fixture *f = *state;
     enum { MANY = 2000000, LEFT = 16 << 20 };
     struct rlimit was;
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     skip(); /* its shadow memory knows no limit */
 #endif
     noc_material lit = noc_class_material(NOC_CLASS_OTHER);
