@@ -1,6 +1,7 @@
 /* Small files that ask for much: each is refused under the limit's name, and read where the limit allows it. */
 #include "../test.h"
 #include "import/load.h"
+#include "import/obj_materials.h"
 #include "nocturne/nocturne.h"
 
 #include <zlib.h>
@@ -288,6 +289,21 @@ static void obj_materials_are_bounded(void **state) {
     allowed("undefined.obj", 0.05, MATERIALS);
 }
 
+/* A library that is named again and again is read once: Assimp would take the product of the two files' sizes. */
+static void obj_libraries_are_read_once(void **state) {
+    FILE *f = create("once.mtl");
+    fputs("newmtl paint\n", f);
+    fclose(f);
+    char text[] = "mtllib once.mtl\nmtllib once.mtl \nmtllib other.mtl\nmtllib once.mtl\nv 0 0 0\n", place[300];
+    snprintf(place, sizeof(place), "%s/", folder);
+    obj_folder beside = { .path = place };
+    import_budget all = { .memory = 1e9 };
+    geo_issues *issues = geo_issues_create();
+    assert_int_equal(obj_plain_materials(text, strlen(text), &beside, &all, issues, "once.obj", NULL), NOC_OK);
+    assert_string_equal(text, "mtllib once.mtl\n                \nmtllib other.mtl\n               \nv 0 0 0\n");
+    geo_issues_destroy(issues);
+}
+
 /* An OBJ whose text itself is too large, and parameters that are none. */
 static void limits_are_checked(void **state) {
     refused("undefined.obj", 0.00001, "its content would take");
@@ -300,7 +316,7 @@ int main(void) {
         cmocka_unit_test(compressed_data_is_bounded), cmocka_unit_test(json_is_bounded), cmocka_unit_test(gltf_copies_are_bounded),
         cmocka_unit_test(gltf_is_added_up_first), cmocka_unit_test(archives_are_measured), cmocka_unit_test(lamps_are_bounded),
         cmocka_unit_test(cities_are_bounded), cmocka_unit_test(city_links_are_bounded),
-        cmocka_unit_test(obj_materials_are_bounded),  cmocka_unit_test(limits_are_checked),
+        cmocka_unit_test(obj_materials_are_bounded), cmocka_unit_test(obj_libraries_are_read_once),  cmocka_unit_test(limits_are_checked),
     };
     return cmocka_run_group_tests_name("budgets", tests, set_up, tear_down);
 }
