@@ -3,6 +3,7 @@
 #include "import/lamp_tags.h"
 
 #define CHUNK (128 * 1024)
+#define MOST_TAG (4 << 20) /* bytes of a tag with its attributes, or a comment: expat looks at all of it again with each chunk */
 
 /* ---- probe ---- */
 
@@ -91,6 +92,7 @@ static noc_status xml_error(cg_parser *p) {
 }
 
 static noc_status parse(cg_parser *p) {
+    XML_Index fed = 0, reached = 0;
     for (bool ended = false; !ended;) {
         void *buffer = XML_GetBuffer(p->xml, CHUNK);
         if (!buffer)
@@ -105,6 +107,10 @@ static noc_status parse(cg_parser *p) {
             return p->status;
         if (xml != XML_STATUS_OK || xml_refused)
             return xml_error(p);
+        fed += (XML_Index)got;
+        reached = NOC_MAX(reached, XML_GetCurrentByteIndex(p->xml)); /* -1 in a long comment before the root */
+        if (fed - reached > MOST_TAG + CHUNK)
+            return cg_fail(p, NOC_ERR_FORMAT, "a tag or comment of more than 4 MB, which is not read");
         double done = p->pass == 1 ? noc_stream_progress(p->stream) : 1;
         if (!p->sink->progress(p->sink->ctx, done))
             return p->status = NOC_ERR_CANCELLED;

@@ -267,6 +267,23 @@ static void city_links_are_bounded(void **state) {
     assert_non_null(strstr(errors, "the limit --max-memory is 0.01 GB"));
 }
 
+/* expat looks at a tag again with each piece of the file, until it ends. One just before the limit is read. */
+static void city_tags_are_bounded(void **state) {
+    for (int longer = 0; longer < 2; longer++) {
+        FILE *f = create("tag.gml");
+        fputs("<CityModel xmlns=\"http://www.opengis.net/citygml/2.0\" xmlns:bldg=\"http://www.opengis.net/citygml/building/2.0\">\n"
+              "<cityObjectMember><bldg:Building name=\"", f);
+        for (int i = 0; i < (4 << 20) + (longer ? 1 << 19 : -100); i++)
+            fputc('x', f);
+        fputs("\"/></cityObjectMember></CityModel>", f);
+        fclose(f);
+        noc_report_file file;
+        assert_int_equal(inspect("tag.gml", 0, &file), longer ? NOC_ERR_FORMAT : NOC_OK);
+        assert_int_equal(error_count, longer);
+        assert_true(!longer || strstr(errors, "tag.gml:2: a tag or comment of more than 4 MB"));
+    }
+}
+
 static void write_obj(const char *name, const char *library, int materials) {
     FILE *f = create(name);
     fprintf(f, "%sv 0 0 0\nv 1 0 0\nv 0 1 0\n", library);
@@ -316,7 +333,7 @@ int main(void) {
         cmocka_unit_test(compressed_data_is_bounded), cmocka_unit_test(json_is_bounded), cmocka_unit_test(gltf_copies_are_bounded),
         cmocka_unit_test(gltf_is_added_up_first), cmocka_unit_test(archives_are_measured), cmocka_unit_test(lamps_are_bounded),
         cmocka_unit_test(cities_are_bounded), cmocka_unit_test(city_links_are_bounded),
-        cmocka_unit_test(obj_materials_are_bounded), cmocka_unit_test(obj_libraries_are_read_once),  cmocka_unit_test(limits_are_checked),
+        cmocka_unit_test(obj_materials_are_bounded), cmocka_unit_test(obj_libraries_are_read_once), cmocka_unit_test(city_tags_are_bounded),  cmocka_unit_test(limits_are_checked),
     };
     return cmocka_run_group_tests_name("budgets", tests, set_up, tear_down);
 }
