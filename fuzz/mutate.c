@@ -56,7 +56,8 @@ void mutate_any(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
     static const mutate_fn formats[] = { mutate_parts, mutate_wire, mutate_gzip, mutate_zip, mutate_png, mutate_glb,
                                          mutate_pbf, mutate_json, mutate_xml, mutate_lines };
     size_t at = out->len;
-    for (size_t i = 0; mutate_random(random, 8) && i < NOC_COUNT(formats); i++) {
+    bool raw = !mutate_random(random, 8);
+    for (size_t i = 0; !raw && i < NOC_COUNT(formats); i++) {
         if (formats[i](in, most, random, out))
             return;
         out->len = at;
@@ -73,10 +74,14 @@ void mutate_number(const char *text, size_t size, uint32_t *random, char out[64]
     const char *end = text + size;
     noc_scan_double(text, end, &value);
     switch (mutate_random(random, 7)) {
-    case 6: snprintf(out, 64, "%0*.*f", 1 + (int)mutate_random(random, 60), (int)mutate_random(random, 3), fmod(value, 1000)); break;
+    case 6:
+        snprintf(out, 64, "%0*.*f", 1 + (int)mutate_random(random, 60), (int)mutate_random(random, 3), fmod(value, 1000));
+        break;
     case 0: snprintf(out, 64, "%s", odd[mutate_random(random, NOC_COUNT(odd))]); break;
     case 1: snprintf(out, 64, "%.17g", -value); break;
-    case 2: snprintf(out, 64, "%.17g", value + (mutate_random(random, 2) ? 1 : -1)); break;
+    case 2:
+        snprintf(out, 64, "%.17g", value + (mutate_random(random, 2) ? 1 : -1) * (1 << mutate_random(random, 6)));
+        break;
     case 3: snprintf(out, 64, "%.9g", value * pow(10, (double)mutate_random(random, 9) - 4)); break;
     case 4: snprintf(out, 64, "%u", mutate_random(random, 100)); break;
     default: snprintf(out, 64, "%.9g", value + ((double)mutate_random(random, 2001) - 1000) / 1000); break;
