@@ -19,13 +19,21 @@
 
 /* Sanitizers look for faults that a few samples show as well, and `make coverage` for lines; what many samples have for a mean, the
  * build without them says. */
-#if defined(FEW_SAMPLES)
-#define SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define ADDRESS_SANITIZED 1
+#elif __has_feature(thread_sanitizer)
 #define SANITIZED 1
 #endif
-#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#elif defined(__SANITIZE_ADDRESS__)
+#define ADDRESS_SANITIZED 1
+#elif defined(__SANITIZE_THREAD__)
+#define SANITIZED 1
+#endif
+#ifndef ADDRESS_SANITIZED
+#define ADDRESS_SANITIZED 0
+#endif
+#if !defined(SANITIZED) && (ADDRESS_SANITIZED || defined(FEW_SAMPLES))
 #define SANITIZED 1
 #endif
 #ifndef SANITIZED

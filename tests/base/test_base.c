@@ -147,7 +147,7 @@ static bool allocate_in_all_ways(void) {
 }
 
 /* Under AddressSanitizer what lies behind an arena's item or a small array is forbidden: make asan. */
-#ifdef __SANITIZE_ADDRESS__
+#if ADDRESS_SANITIZED
 #include <sanitizer/asan_interface.h>
 static void memory_has_no_room_to_spare(void **state) {
     (void)state;
