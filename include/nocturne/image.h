@@ -16,8 +16,9 @@ typedef struct noc_image {
     int width, height;
     float *rgb;              /* width * height * 3; owned */
     uint8_t *emitter;        /* NULL, or width * height: 1 where the pixel, or one next to it, sees an emitter; owned */
-    float *coverage;         /* NULL, or width * height * 4: what emitters seen directly add to rgb, and the share of the frames
-                              * that saw one; owned. Displays alone look at it: noc_image_to_srgb8. Not kept in files */
+    float *coverage;         /* NULL, or width * height * 4: what emitters seen directly add to rgb, and the share of the
+                              * frames that saw one; owned. Displays alone look at it: noc_image_to_srgb8. Not kept in
+                              * files */
 } noc_image;
 
 NOC_API noc_image *noc_image_create(int width, int height, noc_log *log); /* black; NULL after reporting an error */
@@ -41,11 +42,11 @@ NOC_DEFAULT_PARAMS(noc_display_params, noc_display_default_params, NOC_DISPLAY_D
 
 /* The automatic exposure of a picture, as EV100. NaN when memory is refused (256 KiB). */
 NOC_API double noc_image_auto_ev100(const noc_image *image);
-/* 8-bit sRGB, 3 bytes a pixel into out (width * height * 3). Where the image has coverage, the emitter's part of a pixel and the
- * rest go through the tone curve apart and are mixed by the share that each covers, so that edges of windows are as smooth as
- * those of other things; the mean of both would be white wherever a window covers a tenth. What fills no pixel, such as a
- * lamp far away, is shown by that mean all the same: as the bright point that it is. NOC_ERR_MEMORY, with out as it was, where the
- * automatic exposure is refused its memory. */
+/* 8-bit sRGB, 3 bytes a pixel into out (width * height * 3). Where the image has coverage, the emitter's part of a
+ * pixel and the rest go through the tone curve apart and are mixed by the share that each covers, so that edges of
+ * windows are as smooth as those of other things; the mean of both would be white wherever a window covers a tenth.
+ * What fills no pixel, such as a lamp far away, is shown by that mean all the same: as the bright point that it is.
+ * NOC_ERR_MEMORY, with out as it was, where the automatic exposure is refused its memory. */
 NOC_API noc_status noc_image_to_srgb8(const noc_image *image, const noc_display_params *params, uint8_t *out);
 
 /* Text recorded in the file: PNG tEXt / EXR string attributes. */
@@ -56,19 +57,21 @@ typedef struct noc_image_meta {
 } noc_image_meta;
 
 /* Writers write beside the target and rename at the end, so a failure or an interruption leaves no half-written file.
- * The format follows the name's ending, .png or .exr. EXR keeps linear float cd/m2 and the emitter mask; PNG is displayed. */
+ * The format follows the name's ending, .png or .exr. EXR keeps linear float cd/m2 and the emitter mask; PNG is
+ * displayed. */
 NOC_API noc_status noc_image_write(const noc_image *image, const char *path, const noc_display_params *display,
                                    const noc_image_meta *meta, noc_log *log);
 NOC_API noc_status noc_image_write_srgb8(const uint8_t *rgb, int width, int height, const char *path,
                                          const noc_image_meta *meta, noc_log *log);
-/* Writes text into such a picture: letters of 5 x 7 pixels times scale (1 or more), from the left end of their top row at (x, y) on; g, p, q
- * and y reach two more pixels below. What falls outside is not drawn. text is UTF-8: ASCII, superscript two and the multiplication sign are
- * drawn, other characters as boxes. Returns how many pixels wide it is; rgb may be NULL, to ask for that alone. 0 where text is NULL, or
- * colour beside an rgb. */
+/* Writes text into such a picture: letters of 5 x 7 pixels times scale (1 or more), from the left end of their top row
+ * at (x, y) on; g, p, q and y reach two more pixels below. What falls outside is not drawn. text is UTF-8: ASCII,
+ * superscript two and the multiplication sign are drawn, other characters as boxes. Returns how many pixels wide it is;
+ * rgb may be NULL, to ask for that alone. 0 where text is NULL, or colour beside an rgb. */
 #define NOC_TEXT_HEIGHT 7
-NOC_API int noc_text_srgb8(uint8_t *rgb, int width, int height, int x, int y, const char *text, int scale, const uint8_t colour[3]);
-/* Could a file be written under this name? Makes and removes the writers' file beside it; the target is left alone. To be
- * asked before long work. */
+NOC_API int noc_text_srgb8(uint8_t *rgb, int width, int height, int x, int y, const char *text, int scale,
+                           const uint8_t colour[3]);
+/* Could a file be written under this name? Makes and removes the writers' file beside it; the target is left alone. To
+ * be asked before long work. */
 NOC_API noc_status noc_image_check_path(const char *path, noc_log *log);
 /* Reads by content. PNG is taken as sRGB and turned linear with white = 1 (units are lost; compare says so). */
 NOC_API noc_image *noc_image_read(const char *path, noc_log *log, bool *is_linear);
@@ -98,8 +101,9 @@ typedef struct noc_comparison {
 typedef struct noc_compare_params {
     double ceiling;             /* cd/m2; default 10 */
     noc_display_params display; /* for RMSE-8 */
-    bool relative;              /* both pictures have no unit but white = 1, as noc_image_read gives PNG: RMSE-8 takes them
-                                 * as they were displayed, without exposure or tone map, and luminances are shares of white */
+    bool relative;              /* both pictures have no unit but white = 1, as noc_image_read gives PNG: RMSE-8 takes
+                                 * them as they were displayed, without exposure or tone map, and luminances are shares
+                                 * of white */
 } noc_compare_params;
 
 #define NOC_COMPARE_DEFAULTS(set) set(ceiling, 10) set(display.auto_exposure, true) set(display.tonemap, NOC_TONEMAP_FILMIC)
@@ -111,12 +115,14 @@ NOC_DEFAULT_PARAMS(noc_compare_params, noc_compare_default_params, NOC_COMPARE_D
 
 NOC_API noc_status noc_image_compare(const noc_image *x, const noc_image *r, const noc_compare_params *params,
                                      noc_comparison *out, noc_log *log);
-/* Signed difference of luminance in a diverging colour map with a legend (blue: x darker, red: x brighter), as 8-bit sRGB.
- * unit stands in the legend (Latin-1); NULL is cd/m2. *out is malloc'ed (free it), its size in *width, *height. */
-NOC_API noc_status noc_image_difference(const noc_image *x, const noc_image *r, const char *unit, uint8_t **out, int *width,
-                                        int *height, noc_log *log);
+/* Signed difference of luminance in a diverging colour map with a legend (blue: x darker, red: x brighter), as 8-bit
+ * sRGB. unit stands in the legend (Latin-1); NULL is cd/m2. *out is malloc'ed (free it), its size in *width,
+ * *height. */
+NOC_API noc_status noc_image_difference(const noc_image *x, const noc_image *r, const char *unit, uint8_t **out,
+                                        int *width, int *height, noc_log *log);
 
-/* A number or a vector a pixel that is no colour, such as a view of the light sampling (noc_renderer_aov). Rows from the top. */
+/* A number or a vector a pixel that is no colour, such as a view of the light sampling (noc_renderer_aov). Rows from
+ * the top. */
 typedef enum noc_channel_scale {
     NOC_CHANNEL_LINEAR, NOC_CHANNEL_LOG, /* best shown by a colour bar with even steps, or even ratios */
     NOC_CHANNEL_LABELS                   /* numbers are names: each is shown in a colour of its own */
@@ -125,11 +131,12 @@ typedef enum noc_channel_scale {
 typedef struct noc_channel {
     int width, height;
     int components;          /* 1, or 3: a unit vector a pixel */
-    float *value;            /* width * height * components; 0 or more, or -1 where there is none (vectors: 0 0 0); owned */
+    float *value;            /* width * height * components, owned; 0 or more; where there is none -1 (vectors: 0 0 0) */
     noc_channel_scale scale;
     const char *name, *unit; /* "rays", "rays a pixel"; unit "" for plain ratios and labels. These and title are not owned */
     const char *title;       /* what the numbers are, for the legend: ASCII */
-    const char *const *labels; /* of NOC_CHANNEL_LABELS, names of the numbers 0 to label_count - 1: ASCII; not owned. NULL: none */
+    /* of NOC_CHANNEL_LABELS, names of the numbers 0 to label_count - 1: ASCII; not owned. NULL: none */
+    const char *const *labels;
     size_t label_count;
 } noc_channel;
 
@@ -141,12 +148,15 @@ typedef struct noc_channel_params {
     double low, high; /* values at the ends of the colour bar; equal: taken from the channel */
 } noc_channel_params;
 
-/* In colours, with a legend below: a bar, or the names of those labels that are seen, where labels have names. Pixels without
- * a value are grey, vectors are (v + 1) / 2 as red, green, blue. 8-bit sRGB, *out is malloc'ed (free it), its size in *width, *height. NULL params: the bar's ends are round numbers around all but the lowest and highest half percent. */
-NOC_API noc_status noc_channel_to_srgb8(const noc_channel *channel, const noc_channel_params *params, uint8_t **out, int *width,
-                                        int *height, noc_log *log);
-/* By the name's ending: .png in colours, as above; .exr with the numbers, floats in one channel "Y" (vectors: "X", "Y", "Z"), the
- * unit as "units". Names of labels are in the metadata of both, "labels": "1 wall #c08060, ..." (EXR: without the colour). */
+/* In colours, with a legend below: a bar, or the names of those labels that are seen, where labels have names. Pixels
+ * without a value are grey, vectors are (v + 1) / 2 as red, green, blue. 8-bit sRGB, *out is malloc'ed (free it), its
+ * size in *width, *height. NULL params: the bar's ends are round numbers around all but the lowest and highest half
+ * percent. */
+NOC_API noc_status noc_channel_to_srgb8(const noc_channel *channel, const noc_channel_params *params, uint8_t **out,
+                                        int *width, int *height, noc_log *log);
+/* By the name's ending: .png in colours, as above; .exr with the numbers, floats in one channel "Y" (vectors: "X", "Y",
+ * "Z"), the unit as "units". Names of labels are in the metadata of both, "labels": "1 wall #c08060, ..." (EXR: without
+ * the colour). */
 NOC_API noc_status noc_channel_write(const noc_channel *channel, const char *path, const noc_channel_params *params,
                                      const noc_image_meta *meta, noc_log *log);
 

@@ -13,8 +13,9 @@
  *
  * lumens_per_watt: of the luminaire. For discharge and thermal lamps, the middle of the lamp's range in the IES Lighting
  * Handbook (10th ed., ch. 7: high pressure sodium 70..140, low pressure sodium 100..180, metal halide 65..115, mercury
- * 35..60, fluorescent 50..100, incandescent and halogen 10..20 lm/W) times 0.75, the usual light output ratio of a street luminaire. LEDs are rated as
- * luminaires: 110 lm/W is typical of those installed in the 2010s and 2020s. Gas mantles give 1 to 2 lumens a watt of gas.
+ * 35..60, fluorescent 50..100, incandescent and halogen 10..20 lm/W) times 0.75, the usual light output ratio of a street
+ * luminaire. LEDs are rated as luminaires: 110 lm/W is typical of those installed in the 2010s and 2020s. Gas mantles give
+ * 1 to 2 lumens a watt of gas.
  * kelvin: correlated colour temperatures of the same handbook. Sodium is no black body; a Planckian of 2050 K has nearly its
  * chromaticity at high pressure; at low pressure it is the line at 589 nm, whose xy (0.5693, 0.4300) lies outside
  * Rec.709 and whose negative blue is cut. */
@@ -148,7 +149,8 @@ static void stand(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
     }
     if (site_ground(scene, foot[0], foot[1], &foot[2])) {
         if (fabs(foot[2] - lamp->xyz[2]) > OFF_GROUND)
-            geo_issue(issues, GEO_GUESSED, "lamp whose elevation is more than 3 m off the ground: stood on the ground", lamp->id);
+            geo_issue(issues, GEO_GUESSED, "lamp whose elevation is more than 3 m off the ground: stood on the ground",
+                      lamp->id);
         return;
     }
     foot[2] = lamp->xyz[2];
@@ -157,7 +159,8 @@ static void stand(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
     /* a scene without classes: whatever is there, but the lamps that stand already */
     if (noc_scene_highest(scene, ~(1u << NOC_CLASS_LAMP), foot[0], foot[1], &foot[2])) {
         double other;
-        if (params->tally && noc_scene_highest(scene, 1u << NOC_CLASS_OTHER, foot[0], foot[1], &other) && other == foot[2]) {
+        if (params->tally && noc_scene_highest(scene, 1u << NOC_CLASS_OTHER, foot[0], foot[1], &other) &&
+            other == foot[2]) {
             params->tally->classless++;
             params->tally->raised += site_raised(scene, foot[0], foot[1], foot[2]);
         }
@@ -264,7 +267,8 @@ static bool add_head(builder *b, double dx, double dy, const double root[3]) {
     double at[3] = { foot[0] + off * dx, foot[1] + off * dy, z };
     const double along[3] = { dx, dy, 0 };
     const double flood[3] = { sin(FLOOD_TILT) * dx, sin(FLOOD_TILT) * dy, -cos(FLOOD_TILT) };
-    if (b->placing->crowded) /* however many there are, no more stands there than fits: each next lamp would meet all of it */
+    /* however many there are, no more stands there than fits: each next lamp would meet all of it */
+    if (b->placing->crowded)
         return add_light(b, at, f->kind == FITTING_FLOOD ? flood : down);
     if (f->kind == FITTING_SPHERE) {
         if (off > 0 || !b->pole) {

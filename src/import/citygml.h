@@ -140,8 +140,8 @@ typedef struct cg_target {
     bool flip; /* orientation in force outside the element with this id */
 } cg_target;
 
-/* What an object, or a part of it that may be a lamp, says of itself, in its order: "class", "function", "usage", "name", "terminationDate" (2.0), "validTo" (3.0),
- * and generic attributes. */
+/* What an object, or a part of it that may be a lamp, says of itself, in its order: "class", "function", "usage", "name",
+ * "terminationDate" (2.0), "validTo" (3.0), and generic attributes. */
 typedef struct cg_attribute {
     const char *key, *value;
     uint32_t feature;
@@ -284,8 +284,8 @@ typedef struct cg_parser {
 void cg_start_element(void *user, const XML_Char *name, const XML_Char **attributes);
 void cg_end_element(void *user, const XML_Char *name);
 void cg_characters(void *user, const XML_Char *text, int size);
-/* Reports "file:line: cause", stops the parser, and returns the status. Handlers do nothing from then on: where memory is refused
- * (cg_no_memory) what was half built is freed with the parser. */
+/* Reports "file:line: cause", stops the parser, and returns the status. Handlers do nothing from then on: where memory is
+ * refused (cg_no_memory) what was half built is freed with the parser. */
 noc_status cg_fail(cg_parser *p, noc_status status, const char *fmt, ...) NOC_PRINTF(3, 4);
 noc_status cg_no_memory(cg_parser *p);
 /* Counts a defect of the file; once, though the file may be read several times. */
@@ -301,13 +301,15 @@ void cg_object_free(cg_object *object);
 bool cg_attribute_start(cg_parser *p, cg_frame *frame, const char *name); /* false: of no use */
 void cg_attribute_add(cg_parser *p, uint32_t feature, const char *key, const char *value, bool generic);
 void cg_attribute_end(cg_parser *p, const cg_frame *frame); /* of a name or a value */
-const char *cg_attribute_get(const cg_object *object, uint32_t feature, const char *key); /* not a generic one; NULL if there is none */
+/* Not a generic one; NULL if there is none. */
+const char *cg_attribute_get(const cg_object *object, uint32_t feature, const char *key);
 /* May an object of this type be a lamp? */
 bool cg_may_be_lamp(const cg_feature_type *type);
 
 /* citygml_lamp.c: objects that are lamps. True where the object is one, and has been dealt with. */
 bool cg_emit_lamp(cg_parser *p);
-/* The installations of an object that are lamps. Their surfaces stay with it, but for blocks around a light, which give way to it. */
+/* The installations of an object that are lamps. Their surfaces stay with it, but for blocks around a light, which give
+ * way to it. */
 void cg_emit_installed_lamps(cg_parser *p);
 
 /* citygml_ring.c: rings and polygons from coordinates. */

@@ -10,8 +10,10 @@
 /* Are the parts of the Shapefile at path regular files in its folder? An error is reported. */
 noc_status map_check_shapefile(const char *path, bool anywhere, noc_log *log);
 
-/* A GeoPackage with changes that are still in a log beside it is copied with it to a folder of our own, because SQLite would
- * write them into the file. The copy has the holes of the original, and is held to the budget's memory. folder->path is NULL where there is no such log; else to be removed in any case. */
-noc_status map_copy_geopackage(const char *path, bool anywhere, const import_budget *budget, noc_log *log, scratch_folder *folder);
+/* A GeoPackage with changes that are still in a log beside it is copied with it to a folder of our own, because SQLite
+ * would write them into the file. The copy has the holes of the original, and is held to the budget's memory.
+ * folder->path is NULL where there is no such log; else to be removed in any case. */
+noc_status map_copy_geopackage(const char *path, bool anywhere, const import_budget *budget, noc_log *log,
+                               scratch_folder *folder);
 
 #endif

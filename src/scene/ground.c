@@ -74,7 +74,8 @@ static bool is_obstacle(const noc_scene *scene, size_t t) {
 #define GROUND_CLASSES                                                                                                 \
     (1u << NOC_CLASS_TERRAIN | 1u << NOC_CLASS_ROAD | 1u << NOC_CLASS_SIDEWALK | 1u << NOC_CLASS_GREEN | 1u << NOC_CLASS_GROUND)
 
-/* Keyed with what a file's author does not know: he cannot put all he writes into one bucket. */
+/* Keyed with what a file's author does not know: places far apart that share a bucket cannot be chosen. What lies over one place
+ * shares one all the same. */
 static size_t bucket_of(const struct noc_ground *g, int level, int64_t x, int64_t y) {
     uint64_t h = (uint64_t)x * 0x9e3779b97f4a7c15u + (uint64_t)y * 0xc2b2ae3d27d4eb4fu + (uint64_t)level * 0x165667b19e3779f9u;
     h = (h ^ g->secret) * 0xd6e8feb86659fd93u;

@@ -194,8 +194,6 @@ static void test_bodies(void **state) {
     assert_int_equal(of_lamps, 6 * (3 + 4 + 2)); /* bodies stay, but for the block's */
 }
 
-/* ---- in a scene ---- */
-
 /* ---- on buildings ---- */
 
 #define INSTALLED(id, words, surfaces)                                                                                 \
@@ -228,6 +226,8 @@ static void test_installations(void **state) {
     assert_int_equal(city_issue(&sink, "lamp not in use (removed, disused or planned)"), 1);
     assert_int_equal(sink.polygons.len, 1 + 6 + 6 + 6); /* the block's alone are left away */
 }
+
+/* ---- in a scene ---- */
 
 static bool blocked(const noc_scene *scene, const double o[3], const double d[3]) {
     for (size_t t = 0; t < scene->triangle_material.len; t++) {

@@ -323,7 +323,6 @@ static void test_true_lengths(void **state) {
     finish(&r);
 }
 
-/* Lamps of one's own, added before the load as scene.h tells: they stay where they were put, beside the lamps of the files. */
 /* Names that PROJ does not know cost a search of its whole database each: there is an end to them. */
 static void test_strange_crs(void **state) {
     (void)state;
@@ -339,6 +338,7 @@ static void test_strange_crs(void **state) {
     finish(&r);
 }
 
+/* Lamps of one's own, added before the load as scene.h tells: they stay where they were put, beside the lamps of the files. */
 static void test_planned_lamps(void **state) {
     (void)state;
     struct run r;
