@@ -53,8 +53,10 @@ bool cli_parse_numbers(const char *text, char separator, size_t count, double *o
 /* help.c */
 void cli_help(const cli_command *command, FILE *out); /* NULL: of the program */
 void cli_help_markdown(FILE *out);                     /* docs/options.md */
-void cli_spell(char *out, size_t size, const noc_option *o, const void *defaults); /* "--width N", "--[no-]jitter", "-o, --output FILE" */
-void cli_spell_default(char *out, size_t size, const noc_option *o, const void *defaults); /* "[10 px]", "[on]", "" */
+/* Texts for people; free() them. */
+char *cli_spell(const noc_option *o, const void *defaults); /* "--width N", "--[no-]jitter", "-o, --output FILE" */
+char *cli_spell_default(const noc_option *o, const void *defaults); /* "[10 px]", "[on]", "": absent by default */
+char *cli_option_value(const noc_option *o, const void *params);    /* as noc_option_get tells it */
 typedef void cli_visit(FILE *out, const noc_option *o, const void *defaults, int columns);
 /* Options of all the command's tables by group, groups in the order in which they first appear. heading is a format for the
  * group's name; NULL: no heading. */

@@ -151,8 +151,8 @@ static void zsh(FILE *out) {
 
 static const char *fish_command; /* whose options are written */
 
-static void fish_form(FILE *out, const noc_option *o, const char *name) {
-    fprintf(out, "complete -c nocturne -n '__nocturne_at %s' %s", fish_command, name);
+static void fish_form(FILE *out, const noc_option *o, const char *before, const char *after) {
+    fprintf(out, "complete -c nocturne -n '__nocturne_at %s' %s%s%s", fish_command, before, o->name, after);
     if (o->kind == NOC_OPTION_CHOICE) {
         fputs(" -x -a '", out);
         choices(out, o, ' ');
@@ -171,15 +171,13 @@ static void fish_form(FILE *out, const noc_option *o, const char *name) {
 
 static void fish_option(FILE *out, const noc_option *o, const void *defaults, int columns) {
     forms f = forms_of(o, defaults);
-    char name[80], letter[8] = "";
+    if (f.negated)
+        fish_form(out, o, "-l no-", "");
+    char letter[8] = "";
     if (cli_short_name(o))
         snprintf(letter, sizeof(letter), " -s %c", cli_short_name(o));
-    snprintf(name, sizeof(name), "-l no-%.60s", o->name);
-    if (f.negated)
-        fish_form(out, o, name);
-    snprintf(name, sizeof(name), "-l %.60s%s", o->name, letter);
     if (f.name)
-        fish_form(out, o, name);
+        fish_form(out, o, "-l ", letter);
 }
 
 static void fish(FILE *out) {

@@ -6,21 +6,31 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-void cli_spell(char *out, size_t size, const noc_option *o, const void *defaults) {
-    char dash[8] = "", placeholder[24] = "";
-    if (cli_short_name(o))
-        snprintf(dash, sizeof(dash), "-%c, ", cli_short_name(o));
+static const char *placeholder(const noc_option *o) {
     switch (o->kind) {
     case NOC_OPTION_BOOL:
-    case NOC_OPTION_SWITCH: break;
+    case NOC_OPTION_SWITCH: return "";
     case NOC_OPTION_TEXT:
-    case NOC_OPTION_TEXTS: snprintf(placeholder, sizeof(placeholder), " %s", o->unit); break;
-    case NOC_OPTION_CHOICE: snprintf(placeholder, sizeof(placeholder), " NAME"); break;
-    case NOC_OPTION_REAL: snprintf(placeholder, sizeof(placeholder), " X"); break;
-    default: snprintf(placeholder, sizeof(placeholder), " N");
+    case NOC_OPTION_TEXTS: return o->unit;
+    case NOC_OPTION_CHOICE: return "NAME";
+    case NOC_OPTION_REAL: return "X";
+    default: return "N";
     }
+}
+
+char *cli_spell(const noc_option *o, const void *defaults) {
+    char dash[8] = "";
+    if (cli_short_name(o))
+        snprintf(dash, sizeof(dash), "-%c, ", cli_short_name(o));
     bool on = cli_is_switch(o) && *((const char *)defaults + o->offset); /* or automatic */
-    snprintf(out, size, "%s--%s%s%s", dash, on ? "[no-]" : "", o->name, placeholder);
+    return cli_format("%s--%s%s%s%s", dash, on ? "[no-]" : "", o->name, *placeholder(o) ? " " : "", placeholder(o));
+}
+
+char *cli_option_value(const noc_option *o, const void *params) {
+    size_t size = (size_t)noc_option_get(o, params, NULL, 0) + 1;
+    char *value = cli_alloc(size);
+    noc_option_get(o, params, value, size);
+    return value;
 }
 
 /* A default out of the option's range stands for its absence. */
@@ -32,17 +42,17 @@ static bool is_absent(const noc_option *o, const void *defaults) {
     return !(value >= o->min && value <= o->max);
 }
 
-/* Empty where the option is simply absent by default. */
-void cli_spell_default(char *out, size_t size, const noc_option *o, const void *defaults) {
-    char value[64];
-    noc_option_get(o, defaults, value, sizeof(value));
+char *cli_spell_default(const noc_option *o, const void *defaults) {
+    bool text = o->kind == NOC_OPTION_TEXT;
+    char *value = cli_option_value(o, defaults), *spelled;
     if (o->kind == NOC_OPTION_BOOL)
-        snprintf(out, size, "%s", *((const char *)defaults + o->offset) ? "[on]" : "");
+        spelled = cli_format("%s", *((const char *)defaults + o->offset) ? "[on]" : "");
     else if (!*value || is_absent(o, defaults))
-        *out = 0;
+        spelled = cli_format("%s", "");
     else
-        snprintf(out, size, "[%s%s%s]", value, o->kind != NOC_OPTION_TEXT && *o->unit ? " " : "",
-                 o->kind != NOC_OPTION_TEXT ? o->unit : "");
+        spelled = cli_format("[%s%s%s]", value, !text && *o->unit ? " " : "", text ? "" : o->unit);
+    free(value);
+    return spelled;
 }
 
 static int width(FILE *out) {
@@ -86,15 +96,16 @@ static void wrap(FILE *out, const char *text, int column, int columns) {
 
 static void print_option(FILE *out, const noc_option *o, const void *defaults, int columns) {
     enum { COLUMN = 28 };
-    char left[64], value[80], right[320];
-    cli_spell(left, sizeof(left), o, defaults);
-    cli_spell_default(value, sizeof(value), o, defaults);
-    snprintf(right, sizeof(right), "%s%s%s%s%s", o->help, o->kind == NOC_OPTION_CHOICE ? ": " : "",
-             o->kind == NOC_OPTION_CHOICE ? o->choices : "", *value ? " " : "", value);
+    char *left = cli_spell(o, defaults), *value = cli_spell_default(o, defaults);
+    char *right = cli_format("%s%s%s%s%s", o->help, o->kind == NOC_OPTION_CHOICE ? ": " : "",
+                             o->kind == NOC_OPTION_CHOICE ? o->choices : "", *value ? " " : "", value);
     fprintf(out, "  %-*s", COLUMN - 2, left);
     if (strlen(left) > COLUMN - 4)
         fprintf(out, "\n%*s", COLUMN, "");
     wrap(out, right, COLUMN, columns);
+    free(left);
+    free(value);
+    free(right);
 }
 
 void cli_each_option(const cli_command *command, FILE *out, const char *heading, cli_visit *visit, int columns) {
@@ -136,21 +147,17 @@ void cli_help(const cli_command *command, FILE *out) {
 }
 
 static void markdown_row(FILE *out, const noc_option *o, const void *defaults, int columns) {
-    char left[64], value[64], range[96] = "";
-    cli_spell(left, sizeof(left), o, defaults);
-    noc_option_get(o, defaults, value, sizeof(value));
-    if (is_absent(o, defaults))
-        *value = 0;
-    if (o->kind == NOC_OPTION_INT || o->kind == NOC_OPTION_UINT || o->kind == NOC_OPTION_REAL) {
-        snprintf(range, sizeof(range), "%.10g to %.10g%s%s", o->min, o->max, *o->unit ? " " : "", o->unit);
-    } else if (o->kind == NOC_OPTION_CHOICE) {
-        size_t at = 0;
-        for (const char *c = o->choices; *c && at + 4 < sizeof(range); c++)
-            at += (size_t)snprintf(range + at, sizeof(range) - at, *c == '|' ? ", " : "%c", *c);
-    } else if (o->kind == NOC_OPTION_BOOL) {
-        snprintf(value, sizeof(value), "%s", *((const char *)defaults + o->offset) ? "on" : "off");
-    }
-    fprintf(out, "| `%s` | %s | %s | %s |\n", left, o->help, value, range);
+    bool on = o->kind == NOC_OPTION_BOOL && *((const char *)defaults + o->offset);
+    char *left = cli_spell(o, defaults), *value = cli_option_value(o, defaults);
+    fprintf(out, "| `%s` | %s | %s | ", left, o->help,
+            o->kind == NOC_OPTION_BOOL ? on ? "on" : "off" : is_absent(o, defaults) ? "" : value);
+    if (o->kind == NOC_OPTION_INT || o->kind == NOC_OPTION_UINT || o->kind == NOC_OPTION_REAL)
+        fprintf(out, "%.10g to %.10g%s%s", o->min, o->max, *o->unit ? " " : "", o->unit);
+    for (const char *c = o->kind == NOC_OPTION_CHOICE ? o->choices : ""; *c; c++)
+        fprintf(out, *c == '|' ? ", " : "%c", *c);
+    fputs(" |\n", out);
+    free(left);
+    free(value);
 }
 
 void cli_help_markdown(FILE *out) {

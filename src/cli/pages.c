@@ -1,6 +1,7 @@
 /* The manual page, from the option tables. */
 #include "cli.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* Text of a manual page: a backslash and a dash are written, a dot or a quote at the start of a line is no request. */
@@ -20,9 +21,7 @@ static void roff(FILE *out, const char *text) {
 }
 
 static void man_option(FILE *out, const noc_option *o, const void *defaults, int columns) {
-    char left[64], value[80];
-    cli_spell(left, sizeof(left), o, defaults);
-    cli_spell_default(value, sizeof(value), o, defaults);
+    char *left = cli_spell(o, defaults), *value = cli_spell_default(o, defaults);
     fputs(".TP\n.B ", out);
     roff(out, left);
     fputc('\n', out);
@@ -37,6 +36,8 @@ static void man_option(FILE *out, const noc_option *o, const void *defaults, int
         roff(out, value);
     }
     fputc('\n', out);
+    free(left);
+    free(value);
 }
 
 void cli_man(FILE *out) {

@@ -23,11 +23,7 @@ static void add_options(meta_text *meta, const render_args *args) {
                                                           "verbose", "help", "lamps", NULL };
             if (cli_hidden(set, o) || cli_hidden(&(cli_set){ .hidden = told_otherwise }, o))
                 continue;
-            const void *params = (const char *)args + set->offset;
-            int n = noc_option_get(o, params, NULL, 0);
-            char *value = cli_alloc((size_t)n + 1);
-            noc_option_get(o, params, value, (size_t)n + 1);
-            add(meta, o->name, value);
+            add(meta, o->name, cli_option_value(o, (const char *)args + set->offset));
         }
     }
 }

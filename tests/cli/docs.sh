@@ -10,6 +10,36 @@ if command -v groff >/dev/null; then
 else
     skip "the manual page" "groff is not here"
 fi
+# The completion for fish is written without a buffer. What it says of an option stands in each of the other texts, whole.
+cat >whole.py <<'PY'
+import re, subprocess, sys
+def text(*words):
+    return subprocess.run([sys.argv[1], "help", *words], check=True, capture_output=True, text=True).stdout
+def flat(s):
+    return " ".join(s.split())
+pages = {"options.md": flat(text("--markdown")), "man": flat(text("--man").replace("\\-", "-").replace("\\e", "\\"))}
+checked = lost = 0
+for line in text("--completion", "fish").splitlines():
+    m = re.match(r"complete -c nocturne -n '__nocturne_at (\w+)' -l (\S+).*?(?: -a '([^']*)')? -d '(.*)'$", line)
+    if not m:
+        continue
+    command, name, words, said = m[1], m[2], (m[3] or "").split(), flat(re.sub(r"\\(.)", r"\1", m[4]))
+    checked += 1
+    places = dict(pages, help=flat(text(command)))
+    for place, page in places.items():
+        wanted = [said]
+        if words:
+            joined = "|".join(words) if place == "help" else ", ".join(words)
+            wanted.append(joined if place == "options.md" else said + ": " + joined)
+        if place == "help": # lines break behind bars too
+            page, wanted = page.replace("| ", "|"), [w.replace("| ", "|") for w in wanted]
+        for w in wanted:
+            if w not in page:
+                print("%s: %s of %s: \"%s\" is not there" % (place, name, command, w))
+                lost += 1
+sys.exit(lost > 0 or checked < 100)
+PY
+python3 whole.py "$program" >why; result $? "help, manual page and options.md tell each option and all its choices" "$(head -n 1 why)"
 for shell in bash zsh fish; do
     mkdir -p $shell && "$program" help --completion $shell >$shell/_nocturne
     if command -v $shell >/dev/null; then
