@@ -19,6 +19,9 @@ typedef struct noc_image {
     float *coverage;         /* NULL, or width * height * 4: what emitters seen directly add to rgb, and the share of the
                               * frames that saw one; owned. Displays alone look at it: noc_image_to_srgb8. Not kept in
                               * files */
+    /* What the file says that noc_image_read read it from: */
+    char channel[32];        /* the name of a view ("class", "depth"), whose numbers are no light; "" of a picture */
+    double ev100;            /* exposure that a PNG was written with; NaN where it is not told */
 } noc_image;
 
 NOC_API noc_image *noc_image_create(int width, int height, noc_log *log); /* black; NULL after reporting an error */
@@ -155,8 +158,8 @@ typedef struct noc_channel_params {
 NOC_API noc_status noc_channel_to_srgb8(const noc_channel *channel, const noc_channel_params *params, uint8_t **out,
                                         int *width, int *height, noc_log *log);
 /* By the name's ending: .png in colours, as above; .exr with the numbers, floats in one channel "Y" (vectors: "X", "Y",
- * "Z"), the unit as "units". Names of labels are in the metadata of both, "labels": "1 wall #c08060, ..." (EXR: without
- * the colour). */
+ * "Z"), the unit as "units". The metadata of both have the name as "channel", and the names of labels as "labels":
+ * "1 wall #c08060, ..." (EXR: without the colour). */
 NOC_API noc_status noc_channel_write(const noc_channel *channel, const char *path, const noc_channel_params *params,
                                      const noc_image_meta *meta, noc_log *log);
 

@@ -9,7 +9,7 @@
 
 #define ROW(n, f, h) { n, "General", NOC_OPTION_BOOL, offsetof(cli_args, f), 0, 1, NULL, "", h }
 static const noc_option common_options[] = {
-    ROW("quiet", quiet, "say nothing but errors"),
+    ROW("quiet", quiet, "no summary, progress, notes or warnings: what was asked for, and errors"),
     ROW("verbose", verbose, "say more about what is read and done"),
     ROW("help", help, "this text"),
     { NULL },

@@ -33,7 +33,8 @@ const cli_command cli_compare = {
     "RMSE-8 is on 8-bit sRGB, 0 to 255, both with the reference's exposure and one\n"
     "tone map; RMSE and relMSE are on linear luminance; bias is mean(picture) /\n"
     "mean(reference). Definitions: docs/estimator.md. PNG against PNG is compared as\n"
-    "displayed: RMSE-8 is of their 8-bit values, luminances are shares of white.\n"
+    "displayed: RMSE-8 is of their 8-bit values, luminances are shares of white, and\n"
+    "both should have one exposure. PNG against EXR, and views (--show), are refused.\n"
     "Examples\n"
     "  nocturne compare restir.exr reference.exr -o difference.png\n",
     { { options, 0, NULL }, { noc_display_options, offsetof(A, compare.display), by_exposure }, { cli_common_options, 0, NULL } },
@@ -54,6 +55,12 @@ static void print_unlit(const noc_metrics *m) {
                100 * m->relmse_unlit / m->relmse);
 }
 
+static void print_output(const compare_args *args) {
+    char path[240];
+    if (args->output && !args->common.quiet)
+        printf("  difference picture: %s\n", cli_clean(path, sizeof(path), args->output));
+}
+
 static void print_table(const compare_args *args, const noc_comparison *c, const noc_image *image) {
     char a[160], b[160], clamped[48];
     printf("%s against %s, %d x %d\n\n", cli_clean(a, sizeof(a), args->common.inputs[0]),
@@ -64,6 +71,7 @@ static void print_table(const compare_args *args, const noc_comparison *c, const
     if (relative) {
         print_unlit(&c->all);
         printf("\n  mean luminance %.6g against %.6g of white\n", c->all.mean_x, c->all.mean_r);
+        print_output(args);
         return;
     }
     snprintf(clamped, sizeof(clamped), "  clamped to %.6g cd/m2", c->ceiling);
@@ -76,6 +84,7 @@ static void print_table(const compare_args *args, const noc_comparison *c, const
     }
     print_unlit(&c->all);
     printf("\n  mean luminance %.6g against %.6g cd/m2; RMSE-8 at EV100 %.2f\n", c->all.mean_x, c->all.mean_r, c->ev100);
+    print_output(args);
 }
 
 static void json_row(const char *name, const noc_metrics *m, bool last) {
@@ -97,6 +106,10 @@ static void print_json(const compare_args *args, const noc_comparison *c, const 
     cli_json_text(stdout, args->common.inputs[0]);
     printf(",\n  \"reference\": ");
     cli_json_text(stdout, args->common.inputs[1]);
+    if (args->output) {
+        printf(",\n  \"difference\": ");
+        cli_json_text(stdout, args->output);
+    }
     bool relative = args->compare.relative, mask = c->has_mask && !relative;
     printf(",\n  \"width\": %d, \"height\": %d, \"unit\": \"%s\"", image->width, image->height, relative ? "white" : "cd/m2");
     if (!relative) {
@@ -130,6 +143,28 @@ static noc_status write_difference(const compare_args *args, const noc_image *x,
     return status;
 }
 
+/* Views hold no light, and what was displayed has lost its unit: figures of either would mean nothing. */
+static noc_status check_comparable(const compare_args *args, noc_image *const pictures[2], const bool linear[2]) {
+    char shown[160], name[40];
+    for (int i = 0; i < 2; i++) {
+        if (!*pictures[i]->channel)
+            continue;
+        cli_error("%s: it holds the view \"%s\", no luminance: pictures alone are compared",
+                  cli_clean(shown, sizeof(shown), args->common.inputs[i]), cli_clean(name, sizeof(name), pictures[i]->channel));
+        return NOC_ERR_ARGUMENT;
+    }
+    if (linear[0] != linear[1]) {
+        cli_error("%s: it is displayed (PNG), the other is linear (EXR): PNG is compared with PNG, EXR with EXR",
+                  cli_clean(shown, sizeof(shown), args->common.inputs[linear[0]]));
+        return NOC_ERR_ARGUMENT;
+    }
+    double one = pictures[0]->ev100, other = pictures[1]->ev100;
+    if (fabs(one - other) >= 0.005 && !args->common.quiet) /* false where one is not told */
+        cli_error("warning: the exposures differ, EV100 %.2f and %.2f: the figures hold that difference too. Render both with one "
+                  "--exposure, or compare .exr", one, other);
+    return NOC_OK;
+}
+
 static int compare(compare_args *args, noc_log *log) {
     noc_image *pictures[2] = { NULL };
     bool linear[2] = { false };
@@ -139,9 +174,8 @@ static int compare(compare_args *args, noc_log *log) {
         pictures[i] = noc_image_read(args->common.inputs[i], log, &linear[i]);
         status = pictures[i] ? NOC_OK : NOC_ERR_FORMAT;
     }
-    if (!status && linear[0] != linear[1] && !args->common.quiet)
-        cli_error("warning: one picture is linear, the other displayed: only .exr against .exr compares luminances");
-    args->compare.relative = !linear[0] && !linear[1];
+    status = status ? status : check_comparable(args, pictures, linear);
+    args->compare.relative = !linear[0];
     status = status ? status : noc_image_compare(pictures[0], pictures[1], &args->compare, &figures, log);
     if (!status && args->output)
         status = write_difference(args, pictures[0], pictures[1], log);

@@ -286,10 +286,9 @@ noc_status noc_channel_write(const noc_channel *channel, const char *path, const
         return noc_error(log, NOC_ERR_UNSUPPORTED, "%s: the name's ending does not tell a format: use .png or .exr", path);
     meta_list list = { 0 };
     meta_add(&list, "Software", "Nocturne %s", NOC_VERSION);
-    if (exr) {
-        meta_add(&list, "channel", "%s", channel->name);
+    meta_add(&list, "channel", "%s", channel->name);
+    if (exr)
         meta_add(&list, "units", "%s", channel->unit);
-    }
     char *labels = has_names(channel) ? list_labels(channel, !exr) : NULL;
     if (has_names(channel))
         meta_add_long(&list, "labels", labels);

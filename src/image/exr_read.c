@@ -350,8 +350,16 @@ static bool read_tiles(exr_reader *r) {
     return true;
 }
 
+static void read_channel_name(exr_reader *r) {
+    const exr_attribute_t *attribute = NULL;
+    if (exr_get_attribute_by_name(r->context, r->part, "channel", &attribute) == EXR_ERR_SUCCESS && attribute &&
+        attribute->type == EXR_ATTR_STRING)
+        noc_snprintf(r->image->channel, sizeof(r->image->channel), "%.*s", attribute->string->length, attribute->string->str);
+}
+
 static void finish_image(exr_reader *r) {
     size_t n = image_pixels(r->image);
+    read_channel_name(r);
     for (size_t i = 0; r->grey && i < n; i++)
         r->image->rgb[3 * i + 1] = r->image->rgb[3 * i + 2] = r->image->rgb[3 * i];
     for (size_t i = 0; r->mask && i < n; i++)

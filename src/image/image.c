@@ -30,6 +30,7 @@ noc_image *noc_image_create(int width, int height, noc_log *log) {
     }
     image->width = width;
     image->height = height;
+    image->ev100 = NAN;
     image->rgb = image_alloc_pixels(width, height, 3 * sizeof(float), log);
     if (image->rgb)
         return image;

@@ -156,6 +156,22 @@ static bool plausible(png_job *job) {
     return false;
 }
 
+/* What Nocturne's writers tell of a picture, before its pixels. */
+static void read_texts(png_job *job) {
+    png_textp texts = NULL;
+    int count = 0;
+    png_get_text(job->png, job->info, &texts, &count);
+    for (int i = 0; i < count; i++) {
+        double ev100;
+        if (!texts[i].text)
+            continue;
+        if (!strcmp(texts[i].key, "channel"))
+            noc_snprintf(job->image->channel, sizeof(job->image->channel), "%s", texts[i].text);
+        else if (!strcmp(texts[i].key, "ev100") && noc_parse_double(texts[i].text, &ev100))
+            job->image->ev100 = ev100;
+    }
+}
+
 /* libpng may jump out of here, so what must be freed is kept in the job. */
 static void read_pixels(png_job *job) {
     png_set_read_fn(job->png, job, read_data);
@@ -177,6 +193,7 @@ static void read_pixels(png_job *job) {
         job->status = NOC_ERR_MEMORY;
         return;
     }
+    read_texts(job);
     job->buffer = noc_alloc_large(rows, row_bytes);
     if (!job->buffer) {
         job->status = noc_error(job->log, NOC_ERR_MEMORY, "%s: no memory for %d x %d pixels", job->name, width, height);

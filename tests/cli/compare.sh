@@ -14,8 +14,12 @@ run compare is.exr reference.exr --ceiling 2 -o difference.png
 test $status = 0 && grep -q 'clamped to 2 cd/m2' out && meta difference.png size >/dev/null
 result $? "a noisy one is not, and there is a difference picture"
 awk '/^  all pixels/ { found = $4 > 1 && $5 > 0 && $6 > 0 } END { exit !found }' out; result $? "its figures are not zero"
-run compare is.exr reference.exr --json
+grep -q '^  difference picture: difference.png$' out; result $? "and the difference picture is told"
+run compare -q is.exr reference.exr -o difference.png
+test $status = 0 && grep -q '^  all pixels' out && ! grep -q difference out && test ! -s err; result $? "quiet keeps the figures, which are the result"
+run compare is.exr reference.exr --json -o difference.png
 grep -q '"no_emitter_clamped": {"pixels": [0-9]' out; result $? "figures as JSON"
+python3 -c 'import json; assert json.load(open("out"))["difference"] == "difference.png"'; result $? "with the name of the difference picture"
 "$program" render $small -q --sky 0 --method is --frames 1 -o weak.exr && "$program" render $small -q --sky 0 --frames 2 -o strong.exr
 run compare strong.exr weak.exr
 cp out table
@@ -30,8 +34,23 @@ run compare is.png is.png
 test $status = 0 && grep -q 'of white$' out && ! grep -q 'cd/m2' out && test ! -s err; result $? "PNG against PNG speaks of white, not cd/m2"
 run compare is.png is.png --json
 grep -q '"unit": "white"' out && ! grep -q ceiling out && python3 -m json.tool out >/dev/null; result $? "and so does its JSON"
-run compare is.png reference.exr
-test $status = 0 && grep -q 'linear' err; result $? "PNG against EXR says what it is worth"
+expect "PNG against EXR" 1 'is.png: it is displayed .PNG., the other is linear' compare is.png reference.exr -o d.png
+expect "EXR against PNG" 1 'is.png: it is displayed' compare reference.exr is.png
+for view in class depth normal; do
+    "$program" render $small -q --frames 1 --show $view -o $view.exr && "$program" render $small -q --frames 1 --show $view -o $view.png
+    expect "numbers of a view, $view" 1 "$view.exr: it holds the view \"$view\"" compare $view.exr $view.exr -o d.png
+    expect "colours of a view, $view" 1 "$view.png: it holds the view \"$view\"" compare $view.png $view.png
+done
+expect "a view as the reference" 1 'depth.exr: it holds the view' compare reference.exr depth.exr
+"$program" render $small -q --method is --frames 1 --exposure 4 -o four.png
+"$program" render $small -q --method is --frames 1 --exposure 5 -o five.png
+"$program" render $small -q --method is --frames 2 --exposure 5 -o fifth.png
+run compare four.png five.png
+test $status = 0 && grep -q 'exposures differ, EV100 4.00 and 5.00' err; result $? "PNG of two exposures are warned of"
+run compare five.png fifth.png
+test $status = 0 && test ! -s err; result $? "those of one are not"
+run compare -q four.png five.png
+test $status = 0 && grep -q 'all pixels' out && test ! -s err; result $? "nor is anything with -q"
 expect "pictures of different sizes" 1 '(64.*36|32.*36)' compare narrow.exr reference.exr -o d.png
 expect "a missing picture" 1 'missing.exr' compare missing.exr reference.exr
 expect "a folder" 1 'nocturne: ' compare . reference.exr

@@ -166,6 +166,7 @@ static void files(void **state) {
     bool linear = false;
     noc_image *read = noc_image_read(exr, NULL, &linear); /* a single channel Y is read as grey */
     assert_true(read && linear && read->width == W && read->height == H);
+    assert_string_equal(read->channel, "ramp");
     for (int i = 0; i < W * H; i++)
         assert_true(read->rgb[3 * i] == (i == 5 || i == 6 ? -1 : c->value[i]));
     noc_image_destroy(read);
@@ -180,6 +181,7 @@ static void files(void **state) {
     assert_int_equal(noc_channel_write(c, png, NULL, NULL, NULL), NOC_OK);
     read = noc_image_read(png, NULL, &linear);
     assert_true(read && !linear && read->width == W && read->height == H + colorbar_height(1));
+    assert_string_equal(read->channel, "ramp");
     noc_image_destroy(read);
     noc_channel_destroy(c);
     unlink(exr);

@@ -100,6 +100,7 @@ static void png_is_within_quantisation(void **state) {
     noc_image *b = noc_image_read(in_folder("a.png"), log_, &is_linear);
     assert_non_null(b);
     assert_false(is_linear);
+    assert_true(b->ev100 == 0 && !*b->channel && isnan(a->ev100));
     for (size_t i = 0; i < 3 * image_pixels(a); i++)
         assert_true(fabs(srgb_encode(a->rgb[i] / 1.2) - srgb_encode(b->rgb[i])) <= 0.5 / 255 + 1e-6);
     noc_image_destroy(a);
