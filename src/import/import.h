@@ -39,7 +39,7 @@ noc_status noc_stream_read_all(noc_stream *s, noc_log *log, char **data, size_t 
 noc_status noc_stream_rewind(noc_stream *s);
 const char *noc_stream_name(const noc_stream *s);     /* path, or path!member */
 uint64_t noc_stream_size(const noc_stream *s);        /* bytes as stored */
-uint64_t noc_stream_read_bytes(const noc_stream *s);  /* bytes delivered since open or rewind */
+uint64_t noc_stream_read_bytes(const noc_stream *s);  /* how far it was read, whatever was read twice */
 size_t noc_stream_unread(const noc_stream *s);        /* other members of a zip that look like models, too */
 bool noc_stream_trailing(const noc_stream *s);        /* bytes followed the gzip data, and were ignored; known at the end */
 void noc_stream_limit(noc_stream *s, const noc_import_params *params); /* the defaults' hold until it is called */

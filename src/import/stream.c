@@ -21,6 +21,7 @@ struct noc_stream {
     enum { STREAM_PLAIN, STREAM_GZIP, STREAM_ZIP } kind;
     uint64_t stored;     /* size of the file */
     uint64_t delivered;  /* bytes handed out since open or rewind */
+    uint64_t furthest;   /* the most that it was before a rewind */
     noc_status failed;   /* a stream that failed once stays failed, and reports it once */
     bool ended;
     bool measured;       /* that all of it is not too much is known, as far as it is told ahead */
@@ -394,6 +395,7 @@ noc_status noc_stream_read_all(noc_stream *stream, noc_log *log, char **data, si
 }
 
 noc_status noc_stream_rewind(noc_stream *s) {
+    s->furthest = NOC_MAX(s->furthest, s->delivered);
     s->delivered = s->consumed = 0;
     s->ended = false;
     s->failed = NOC_OK;
@@ -414,7 +416,7 @@ noc_status noc_stream_rewind(noc_stream *s) {
 
 const char *noc_stream_name(const noc_stream *s) { return s->name; }
 uint64_t noc_stream_size(const noc_stream *s) { return s->stored; }
-uint64_t noc_stream_read_bytes(const noc_stream *s) { return s->delivered; }
+uint64_t noc_stream_read_bytes(const noc_stream *s) { return NOC_MAX(s->furthest, s->delivered); }
 
 bool noc_stream_trailing(const noc_stream *s) { return s->trailing; }
 import_budget *noc_stream_budget(noc_stream *s) { return &s->budget; }
