@@ -85,32 +85,92 @@ static bool is_plain(const char *key, size_t n) {
     return false;
 }
 
-static bool is_null_grid(const char *value) {
-    value += *value == '@';
-    return !strncmp(value, "null", 4) && !isalnum((unsigned char)value[4]) && !strchr("_-./,", value[4] ? value[4] : ' ');
-}
-
 static bool say(char what[40], const char *text, size_t n) {
     snprintf(what, 40, "%.*s", (int)n, text);
     return true;
 }
 
+/* What parts words for PROJ, or did in some version; more is taken for a blank than any takes. */
+static bool is_blank(char c) { return c && ((unsigned char)c <= ' ' || c == 127 || c == ';' || c == '\\'); }
+
+static const char *skip_blanks(const char *p) {
+    while (is_blank(*p))
+        p++;
+    return p;
+}
+
+/* Behind "@null" or "null"; NULL where the value is another. */
+static const char *behind_null(const char *value) {
+    value += *value == '@';
+    return strncmp(value, "null", 4) ? NULL : value + 4;
+}
+
+/* Is a parameter's value no grid? A comma begins another one, with or without blanks before it. */
+static bool is_null_value(const char *value) {
+    const char *end = behind_null(value);
+    return end && (!*end || is_blank(*end)) && *skip_blanks(end) != ',';
+}
+
+/* And a text of WKT that ends in a quote? Two of them are one that belongs to the text. */
+static bool is_null_text(const char *text) {
+    const char *end = behind_null(text);
+    return end && end[0] == '"' && end[1] != '"';
+}
+
 /* A parameter begins where + or a blank or a quote was: "+nadgrids=x", "proj=merc nadgrids=x". */
-static bool begins_word(const char *text, const char *p) { return p == text || isspace((unsigned char)p[-1]) || strchr("+\"'", p[-1]); }
+static bool begins_word(const char *text, const char *p) { return p == text || is_blank(p[-1]) || strchr("+\"'", p[-1]); }
+
+static size_t word_length(const char *p) {
+    size_t n = 0;
+    while (isalnum((unsigned char)p[n]) || p[n] == '_')
+        n++;
+    return n;
+}
+
+static bool is_word(const char *p, size_t n, const char *word) { return strlen(word) == n && !memcmp(p, word, n); }
+
+/* The value behind a key of n letters; NULL: there is no =. PROJ takes the blanks around it away, and every + behind a blank. */
+static const char *value_of(const char *key, size_t n) {
+    const char *p = skip_blanks(key + n);
+    if (*p != '=')
+        return NULL;
+    p++;
+    while (is_blank(*p) || *p == '+')
+        p++;
+    return p;
+}
+
+/* Methods of WKT and PROJJSON that are PROJ's by name: their parameters' names become its text, whatever they hold. */
+static const char *projs_method(const char *text) {
+    for (const char *p = text; (p = strcasestr(p, "PROJ")); p++)
+        if (p > text && (p[-1] == '"' || p[-1] == '\x9c') && (is_blank(p[4]) || p[4] == '-'))
+            return p;
+    return NULL;
+}
+
+/* Does the text hold parameters of PROJ's? Elsewhere an = means nothing to it. */
+static bool has_parameters(const char *text) {
+    for (const char *p = text; (p = strpbrk(p, "pi")); p++)
+        if ((!strncmp(p, "proj", 4) || !strncmp(p, "init", 4)) && value_of(p, 4))
+            return true;
+    return false;
+}
 
 bool crs_text_names_file(const char *definition, char what[40]) {
-    if (!strstr(definition, "proj=") && !strstr(definition, "init=")) /* elsewhere an = means nothing to PROJ */
+    const char *method = projs_method(definition);
+    if (method)
+        return say(what, method, strcspn(method, "\""));
+    if (!has_parameters(definition))
         return false;
     for (const char *p = definition; *p; p++) {
         if (!isalpha((unsigned char)*p) || !begins_word(definition, p))
             continue;
-        size_t n = 0;
-        while (isalnum((unsigned char)p[n]) || p[n] == '_')
-            n++;
-        bool grid = n == 8 && !memcmp(p, "nadgrids", 8) && p[n] == '=' && is_null_grid(p + n + 1);
-        bool step = p > definition && p[-1] == '+' && n == 4 && !memcmp(p, "step", 4);
-        bool operation = n == 4 && !memcmp(p, "proj", 4) && (strstr(p + n, "=pipeline") == p + n || strstr(p + n, "gridshift") == p + n + 2);
-        if (step || operation || (p[n] == '=' && !grid && !is_plain(p, n)))
+        size_t n = word_length(p);
+        const char *value = value_of(p, n);
+        bool step = p > definition && p[-1] == '+' && is_word(p, n, "step");
+        bool grid = value && is_word(p, n, "nadgrids") && is_null_value(value);
+        bool operation = value && is_word(p, n, "proj") && (!strncmp(value, "pipeline", 8) || strstr(value, "gridshift") == value + 1);
+        if (step || operation || (value && !grid && !is_plain(p, n)))
             return say(what, p, n);
     }
     return false;
@@ -123,7 +183,7 @@ bool crs_names_file(PJ_CONTEXT *context, const PJ *crs, char what[40]) {
         return say(what, "what cannot be written as WKT", 29);
     for (const char *p = wkt; (p = strstr(p, parameter)); p++) {
         const char *comma = strchr(p, ','), *quote = comma ? strchr(comma, '"') : NULL;
-        if (!quote || !is_null_grid(quote + 1))
+        if (!quote || !is_null_text(quote + 1))
             return say(what, parameter, strlen(parameter) - 1);
     }
     return crs_text_names_file(wkt, what);
@@ -141,24 +201,25 @@ static bool is_null_behind(const char *p, const char *begin, bool named) {
             return false;
         p += 3;
     }
-    return is_null_grid(p);
+    return is_null_text(p);
 }
 
-/* "+init=epsg:25832", as older programs write it: PROJ has these in its database. */
-static bool is_epsg_init(const char *text) {
-    static const char init[] = "+init=epsg:";
-    text += strspn(text, " ");
-    if (strncasecmp(text, init, strlen(init)))
-        return false;
-    text += strlen(init);
-    return *text && !text[strspn(text, "0123456789")];
+/* "DICT:FILE,CODE", which GDAL looks for in a file, wherever a word may begin: a prefix may stand before it. */
+static bool names_dictionary(const char *text) {
+    static const char dictionary[] = "DICT:";
+    for (const char *p = text; (p = strcasestr(p, dictionary)); p++)
+        if ((p == text || !isalnum((unsigned char)p[-1])) && strchr(p, ','))
+            return true;
+    return false;
 }
 
 bool geo_crs_text_names_file(const char *text, char what[40]) {
-    static const char file[] = "PARAMETERFILE", grids[] = "PROJ4_GRIDS", value[] = "\"value\"", dictionary[] = "DICT:";
-    const char *begin = text + strspn(text, " \t\r\n");
-    if (is_epsg_init(text))
-        return false;
+    static const char file[] = "PARAMETERFILE", grids[] = "PROJ4_GRIDS", value[] = "\"value\"", esri[] = "ESRI::";
+    const char *begin = skip_blanks(text);
+    while (!strncasecmp(begin, esri, strlen(esri))) /* GDAL leaves it out */
+        begin = skip_blanks(begin + strlen(esri));
+    if (names_dictionary(text))
+        return say(what, "DICT", 4);
     for (const char *p = text; (p = strcasestr(p, file)); p += strlen(file))
         if (!is_null_behind(p + strlen(file), "[\"", true))
             return say(what, file, strlen(file));
@@ -173,7 +234,5 @@ bool geo_crs_text_names_file(const char *text, char what[40]) {
         if (*q == '"')
             return say(what, q, strcspn(q + 1, "\"") + 2);
     }
-    if (!strncasecmp(begin, dictionary, strlen(dictionary)))
-        return say(what, dictionary, strlen(dictionary) - 1);
     return crs_text_names_file(text, what);
 }

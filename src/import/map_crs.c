@@ -133,6 +133,16 @@ static noc_status check_geojson(noc_stream *stream, noc_log *log) {
 
 /* ---- FlatGeobuf ---- */
 
+/* A text of a header. GDAL puts ":" and a number behind that of an authority, and takes both for a CRS. */
+static noc_status check_header_text(const char *text, const char *name, noc_log *log) {
+    char *authority = noc_format("%s:0", text);
+    noc_status status = authority ? map_check_crs_text(text, name, log) : noc_no_memory(log, name);
+    if (!status)
+        status = map_check_crs_text(authority, name, log);
+    free(authority);
+    return status;
+}
+
 /* Its header holds texts that end in 0, the CRS's among them. */
 static noc_status check_flatgeobuf(noc_stream *stream, noc_log *log) {
     enum { BEGIN = 12, MOST = 10 << 20 }; /* GDAL reads no larger header */
@@ -153,30 +163,46 @@ static noc_status check_flatgeobuf(noc_stream *stream, noc_log *log) {
         status = noc_stream_read(stream, header + size, length - size, &got);
     header[size] = 0;
     for (size_t at = 0; !status && at < size; at += strlen(header + at) + 1)
-        status = map_check_crs_text(header + at, name, log);
+        status = check_header_text(header + at, name, log);
     free(header);
     return status;
 }
 
 /* ---- Shapefile ---- */
 
+/* The text as GDAL puts it together: what stands behind a 0 in a line is lost, and nothing stays between the lines. */
+static void join_lines(char *text, size_t n) {
+    size_t kept = 0;
+    bool lost = false;
+    for (size_t i = 0; i < n; i++) {
+        bool line_ends = text[i] == '\n' || text[i] == '\r';
+        lost = !line_ends && (lost || !text[i]);
+        if (!line_ends && !lost)
+            text[kept++] = text[i];
+    }
+    text[kept] = 0;
+}
+
+/* Checked as GDAL reads it today, and as a reader would that keeps the lines apart. */
 static noc_status check_prj(const char *path, const char *name, noc_log *log) {
-    char *text = noc_alloc(LONGEST);
-    VSILFILE *f = text ? VSIFOpenL(path, "rb") : NULL;
+    char *text = noc_alloc(LONGEST), *apart = noc_alloc(LONGEST);
+    VSILFILE *f = text && apart ? VSIFOpenL(path, "rb") : NULL;
     size_t n = f ? VSIFReadL(text, 1, LONGEST, f) : 0;
-    noc_status status = text ? NOC_OK : noc_no_memory(log, name);
+    noc_status status = text && apart ? NOC_OK : noc_no_memory(log, name);
     if (n == LONGEST)
         status = noc_error(log, NOC_ERR_FORMAT, "%s: its .prj has more than %d bytes", name, LONGEST);
     if (!status && n) {
-        for (size_t i = 0; i < n; i++) /* GDAL puts its lines together */
-            if (!text[i] || text[i] == '\n' || text[i] == '\r')
-                text[i] = ' ';
-        text[n] = 0;
+        for (size_t i = 0; i < n; i++)
+            apart[i] = !text[i] || text[i] == '\n' || text[i] == '\r' ? ' ' : text[i];
+        apart[n] = 0;
+        join_lines(text, n);
         status = map_check_crs_text(text, name, log);
+        status = status ? status : map_check_crs_text(apart, name, log);
     }
     if (f)
         VSIFCloseL(f);
     free(text);
+    free(apart);
     return status;
 }
 
@@ -235,9 +261,25 @@ static bool has_rows(map_source *m, const char *query) {
     return any;
 }
 
+/* What is read above must be what GDAL finds, which looks for one row: a column that is computed may be another each time, and
+ * an index need not hold what the table does. The key srs_id INTEGER PRIMARY KEY has none. */
+static noc_status check_plain_table(map_source *m) {
+    static const struct {
+        const char *query, *what;
+    } others[] = {
+        { "SELECT 1 FROM pragma_table_xinfo('gpkg_spatial_ref_sys') WHERE hidden <> 0", "a hidden or generated column" },
+        { "SELECT 1 FROM pragma_index_list('gpkg_spatial_ref_sys')",
+          "an index (a UNIQUE column or another key than srs_id INTEGER PRIMARY KEY is one)" },
+    };
+    for (size_t i = 0; i < NOC_COUNT(others); i++)
+        if (has_rows(m, others[i].query))
+            return noc_error(m->log, NOC_ERR_UNSUPPORTED, "%s: %s: gpkg_spatial_ref_sys has %s: not read", m->name, m->format, others[i].what);
+    return m->error[0] ? map_source_error(m) : NOC_OK;
+}
+
 noc_status map_check_crs_rows(map_source *m) {
     static const char *const columns[] = { "definition", "organization", "definition_12_063" };
-    noc_status status = NOC_OK;
+    noc_status status = check_plain_table(m);
     for (size_t i = 0; i < NOC_COUNT(columns) && !status; i++) {
         char *there = noc_format("SELECT 1 FROM pragma_table_info('gpkg_spatial_ref_sys') WHERE lower(name) = '%s'",
                                  columns[i]);

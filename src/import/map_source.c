@@ -204,20 +204,22 @@ static bool is_plain_row(const char *sql) {
     return behind_word(unique, "INDEX") != NULL;
 }
 
-/* Whether the CRSs are a view, which need not answer twice alike. What stands before its AS is its name, or hides it. */
-static bool is_view_of_crs(const char *sql) {
-    const char *p = behind_word(behind_word(sql, "CREATE"), "VIEW"), *as = p ? strcasestr(p, " AS ") : NULL;
+/* Whether the CRSs are a view or a virtual table, which need not answer twice alike. What stands before the AS of a view is its
+ * name, or hides it. */
+static bool is_other_crs_table(const char *sql) {
+    static const char crs[] = "gpkg_spatial_ref_sys";
+    const char *create = behind_word(sql, "CREATE"), *p = behind_word(create, "VIEW"), *as = p ? strcasestr(p, " AS ") : NULL;
     char *head = p ? noc_strndup(p, as ? (size_t)(as - p) : strlen(p)) : NULL;
-    bool is = p && (!head || strcasestr(head, "gpkg_spatial_ref_sys") || strstr(head, "/*") || strstr(head, "--"));
+    bool is = p && (!head || strcasestr(head, crs) || strstr(head, "/*") || strstr(head, "--"));
     free(head);
-    return is;
+    return is || (behind_word(create, "VIRTUAL") && strcasestr(sql, crs));
 }
 
 /* Virtual tables let a file's author open other files by name (VirtualText, VirtualOGR, ...). Indexes are all that is in use. */
 static noc_status check_schema_row(const map_source *m, const char *sql) {
     static const char *const harmless[] = { "rtree", "rtree_i32", "fts3", "fts4", "fts5" };
-    if (is_view_of_crs(sql))
-        return noc_error(m->log, NOC_ERR_UNSUPPORTED, "%s: %s: gpkg_spatial_ref_sys is a view: not read", m->name, m->format);
+    if (is_other_crs_table(sql))
+        return noc_error(m->log, NOC_ERR_UNSUPPORTED, "%s: %s: gpkg_spatial_ref_sys is a view or a virtual table: not read", m->name, m->format);
     if (strncasecmp(sql, "cr", 2) || is_plain_row(sql))
         return NOC_OK;
     const char *module = module_of(behind_word(sql, "CREATE"));

@@ -27,6 +27,8 @@ static int remove_pipe(void **state) { return unlink(pipe_path) || rmdir(folder)
     "GEOGCRS[\"x\",DATUM[\"D\",ELLIPSOID[\"S\",6378137,298.25]],CS[ellipsoidal,2],AXIS[\"lat\",north],AXIS[\"lon\",east]," \
     "ANGLEUNIT[\"degree\",0.0174532925199433]]"
 
+#define GEOGCRS_BODY "GEOGCRS[\"x\",DATUM[\"D\",ELLIPSOID[\"S\",6378137,298.25]]"
+
 /* %s is the pipe */
 static const char *const hostile[] = {
     "+proj=longlat +ellps=GRS80 +nadgrids=%s +no_defs",
@@ -35,8 +37,16 @@ static const char *const hostile[] = {
     "+proj=utm +zone=32 +ellps=GRS80 +geoidgrids=%s",
     "+proj=utm +zone=32 +ellps=GRS80 nadgrids=%s",
     "proj=utm zone=32 ellps=GRS80 nadgrids=%s",
+    "+proj=utm +zone=32;nadgrids=%s",
+    "+proj = utm +zone=32 +nadgrids = %s",
+    "+title=x +proj\t=\tutm +zone=32 nadgrids\v= + %s",
+    "+proj=longlat +ellps=GRS80 +nadgrids=@null ,%s",
+    "+proj=longlat +ellps=GRS80 +nadgrids=@null\",%s",
     "+init=%s:x",
     "init=%s:x",
+    "+title=x +init = %s:x",
+    "PROJCRS[\"x\",BASE" GEOGCRS_BODY "],CONVERSION[\"c\",METHOD[\"PROJ merc\"],PARAMETER[\"nadgrids=%s,@null\",0]],CS[Cartesian,2],"
+    "AXIS[\"e\",east],AXIS[\"n\",north],LENGTHUNIT[\"metre\",1]]",
     "+proj=pipeline +step +proj=hgridshift +grids=%s",
     "+proj=hgridshift +grids=%s +type=crs",
     "+proj=tinshift +file=%s +type=crs",
@@ -110,12 +120,14 @@ static void test_text(void **state) {
     }
     static const char *const others[] = {
         GEOGCS ",DATUM[\"D\",SPHEROID[\"S\",1,2],EXTENSION[\"PROJ4_GRIDS\",\"a.gsb\"]]]", "dict:a,b", "+init=epsg:25832 +nadgrids=a",
+        "ESRI::DICT:a,b", " esri::ESRI::\tDict:a,b", "ESRI::{\"value\": \"a\"}", "+init=epsg:25832", "+init = epsg:25832", "+proj=merc +nadgrids=@null:0",
+        GEOGCS ",DATUM[\"D\",SPHEROID[\"S\",1,2],EXTENSION[\"PROJ4_GRIDS\",\"@null\"\"/a\"]]]", "{\"method\": {\"name\": \"PROJ merc\"}}",
         "PARAMETERFILE[\"a\",\"@null.gsb\"]", "PARAMETERFILE[\"a,\"\"@null\",\"b.gsb\"]", "{\"type\": \"Bound\\u0043RS\"}",
     };
     for (size_t i = 0; i < NOC_COUNT(others); i++)
         if (!geo_crs_text_names_file(others[i], what))
             fail_msg("not seen: %s", others[i]);
-    static const char *const fine[] = { "PARAMETERFILE[\"Latitude and longitude difference file\",\"@null\"]", "+init=epsg:25832", "a city",
+    static const char *const fine[] = { "PARAMETERFILE[\"Latitude and longitude difference file\",\"@null\"]", "a city", "Predict: a, b",
                                         "OSGB36 / British National Grid", "{\"type\": \"x\", \"value\": 1}", "" };
     for (size_t i = 0; i < NOC_COUNT(fine); i++)
         if (geo_crs_text_names_file(fine[i], what))
