@@ -11,6 +11,9 @@ extern "C" {
 
 typedef enum noc_obj_up { NOC_OBJ_UP_Y, NOC_OBJ_UP_Z } noc_obj_up;
 
+/* What a default of noc_import_params stands in for where a lamp's file does not tell it: lamp_height, lamp_lumens, lamp_kelvin. */
+typedef enum noc_lamp_default { NOC_LAMP_HEIGHT, NOC_LAMP_FLUX, NOC_LAMP_COLOUR, NOC_LAMP_DEFAULT_COUNT } noc_lamp_default;
+
 typedef enum noc_switch { NOC_SWITCH_OFF, NOC_SWITCH_ON, NOC_SWITCH_AUTO } noc_switch; /* false and true are OFF and ON */
 
 #define NOC_TEXTS 32
@@ -29,10 +32,13 @@ typedef struct noc_import_params {
     /* Place lamps by a rule? AUTO, the default: where the inputs hold none; inputs whose lamps are all of no use are an error.
      * ON: where no lamp of the inputs is of use. OFF: nowhere. */
     noc_switch infer_lamps;
-    bool strict;            /* an input of which anything is left out or guessed at is an error; default false */
+    bool strict;            /* an input of which anything is left out or guessed at is an error, and so are lamps placed by a
+                               rule that infer_lamps does not ask for by ON; default false */
     double lamp_height;     /* m, where not tagged; default 6 */
     double lamp_lumens;     /* lm, where neither flux nor wattage is known; default 5000 */
     double lamp_kelvin;     /* K, where not known; default 3000 */
+    unsigned lamp_chosen;   /* those of these three that are the caller's own word, so that strict lets them stand in for what
+                               lamps do not tell: 1 << NOC_LAMP_HEIGHT and so on; default 0 */
     noc_texts lamps;        /* files that hold lamps whatever their words say: each of their points is one, unless its status
                                says that it is gone. Read with the others; one that is among them is read once */
     noc_texts lamp_columns; /* "field=column", several separated by commas: what a table's column, an attribute or a tag is
@@ -125,6 +131,9 @@ typedef struct noc_report_file {
     size_t lamps_with_height, lamps_with_lumens, lamps_with_watts, lamps_with_colour, lamps_with_direction; /* tagged */
     double lamp_height_min, lamp_height_max; /* of those tagged, m */
     size_t lamps_by_source[NOC_SOURCE_COUNT];
+    /* Lamps that do not tell it themselves, so that a default is taken: of those mapped, and of all where no scene was loaded.
+     * Watts tell the flux, and most sources the colour. By noc_lamp_default. */
+    size_t lamps_assumed[NOC_LAMP_DEFAULT_COUNT];
     /* Where a scene was loaded, lamps by what became of them; those in use are mapped. */
     size_t lamps_mapped;       /* stand in the scene */
     size_t lamps_moved;        /* of them: out of a building, or away from another lamp */
@@ -140,6 +149,7 @@ typedef struct noc_report_totals {
     size_t lamps_mapped, lamps_moved, lamps_dropped; /* as in noc_report_file */
     size_t lamps_repeated, objects_repeated;
     size_t lamps_inferred;     /* placed by a rule */
+    size_t lamps_assumed[NOC_LAMP_DEFAULT_COUNT]; /* as in noc_report_file */
     size_t skipped, repaired;  /* features: counts of the files' lines */
 } noc_report_totals;
 

@@ -26,6 +26,9 @@ double city_floor(const noc_scene *scene);
  * added, 0 if it was skipped (reported in issues). */
 int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, bool inferred, geo_issues *issues);
 
+/* Does the lamp not tell it itself, so that params' default stands in? */
+bool city_lamp_assumes(const geo_lamp *lamp, noc_lamp_default what);
+
 /* Places lamps by a rule where the data holds none: along roads if there are any, else around the buildings. *lights gets
  * the number of lights added; all are marked as inferred. progress may be NULL; NOC_ERR_CANCELLED where it says so. */
 noc_status city_infer_lamps(noc_scene *scene, const city_lamp_params *params, const noc_progress *progress,

@@ -73,20 +73,37 @@ static bool unit_luminance(const float colour[3], float rgb[3]) {
     return true;
 }
 
-static void lamp_colour(const geo_lamp *lamp, const city_lamp_params *params, float rgb[3]) {
+/* False if neither the lamp nor its source tells one. */
+static bool told_colour(const geo_lamp *lamp, float rgb[3]) {
     if (unit_luminance(lamp->rgb, rgb) || unit_luminance(sources[lamp->source].rgb, rgb))
-        return;
-    double source = sources[lamp->source].kelvin;
-    city_kelvin_rgb(known(lamp->kelvin, source > 0 ? source : params->kelvin), rgb);
+        return true;
+    double kelvin = known(lamp->kelvin, sources[lamp->source].kelvin);
+    if (kelvin > 0)
+        city_kelvin_rgb(kelvin, rgb);
+    return kelvin > 0;
+}
+
+/* Of one head; 0 if neither the lamp nor its source tells it. */
+static double told_lumens(const geo_lamp *lamp) {
+    double watts = known(lamp->watts, 0) * sources[lamp->source].lumens_per_watt;
+    return known(lamp->lumens, watts > 0 ? watts : sources[lamp->source].lumens);
+}
+
+bool city_lamp_assumes(const geo_lamp *lamp, noc_lamp_default what) {
+    float rgb[3];
+    switch (what) {
+    case NOC_LAMP_HEIGHT: return !lamp->body_heads && !(known(lamp->height, 0) > 0);
+    case NOC_LAMP_FLUX: return !(told_lumens(lamp) > 0);
+    case NOC_LAMP_COLOUR: return !told_colour(lamp, rgb);
+    case NOC_LAMP_DEFAULT_COUNT: break;
+    }
+    return false;
 }
 
 static fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *params) {
     fitting f = { .height = known(lamp->height, params->height) };
     f.heads = NOC_CLAMP(lamp->count, 1, GEO_MAX_HEADS);
-    double otherwise = known(sources[lamp->source].lumens, params->lumens);
-    if (isfinite(lamp->watts) && lamp->watts > 0)
-        otherwise = lamp->watts * sources[lamp->source].lumens_per_watt;
-    f.lumens = known(lamp->lumens, otherwise);
+    f.lumens = known(told_lumens(lamp), params->lumens);
     if (lamp->type == GEO_LAMP_FLOOD)
         f.kind = FITTING_FLOOD;
     else if (lamp->type == GEO_LAMP_LANTERN || (f.height < 3.5 && lamp->mount != GEO_MOUNT_SUSPENDED))
@@ -102,7 +119,8 @@ static fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *para
     }
     double luminance = f.lumens / (M_PI * M_PI * f.radius * f.radius * (f.kind == FITTING_SPHERE ? 4 : 1));
     float rgb[3];
-    lamp_colour(lamp, params, rgb);
+    if (!told_colour(lamp, rgb))
+        city_kelvin_rgb(params->kelvin, rgb);
     for (int i = 0; i < 3; i++)
         f.emission[i] = (float)(luminance * rgb[i]);
     return f;

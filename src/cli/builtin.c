@@ -42,6 +42,33 @@ void cli_add_lamps(cli_args *args, const noc_import_params *import) {
     }
 }
 
+/* By noc_lamp_default. */
+static const struct { const char *option, *what, *unit; } lamp_defaults[NOC_LAMP_DEFAULT_COUNT] = {
+    [NOC_LAMP_HEIGHT] = { "lamp-height", "height", "m" },
+    [NOC_LAMP_FLUX] = { "lamp-lumens", "flux", "lm each" },
+    [NOC_LAMP_COLOUR] = { "lamp-kelvin", "colour", "K" },
+};
+
+void cli_note_chosen(const cli_args *args, noc_import_params *import) {
+    for (int i = 0; i < NOC_LAMP_DEFAULT_COUNT; i++)
+        import->lamp_chosen |= cli_given(args, lamp_defaults[i].option) ? 1u << i : 0;
+}
+
+void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAULT_COUNT], const noc_import_params *import) {
+    const double values[] = { import->lamp_height, import->lamp_lumens, import->lamp_kelvin };
+    char a[32];
+    const char *before = heading;
+    for (int i = 0; i < NOC_LAMP_DEFAULT_COUNT; i++) {
+        if (!assumed[i])
+            continue;
+        printf("%s%s without %s: %.10g %s (--%s)", before, cli_count(a, assumed[i]), lamp_defaults[i].what, values[i],
+               lamp_defaults[i].unit, lamp_defaults[i].option);
+        before = ", ";
+    }
+    if (before != heading)
+        putchar('\n');
+}
+
 noc_status cli_load_scene(noc_scene *scene, const char *const *inputs, size_t count, const noc_builtin_params *builtin,
                           const noc_import_params *import, noc_report **report) {
     const char **files = cli_alloc(sizeof(char *) * count);

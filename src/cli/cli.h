@@ -102,6 +102,10 @@ const char *cli_builtin(const char *input); /* name of the built-in scene that a
 const char *cli_builtin_needed(const noc_option *option, const char *const *inputs, size_t count);
 /* Files named with --lamps are inputs like the others: appended to those of the command line. */
 void cli_add_lamps(cli_args *args, const noc_import_params *import);
+/* Which defaults of lamps the user has said, for --strict. */
+void cli_note_chosen(const cli_args *args, noc_import_params *import);
+/* A line on what lamps do not tell, and what is taken for it; nothing where they tell all. */
+void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAULT_COUNT], const noc_import_params *import);
 /* All inputs as one committed scene. report may be NULL. */
 noc_status cli_load_scene(noc_scene *scene, const char *const *inputs, size_t count, const noc_builtin_params *builtin,
                           const noc_import_params *import, noc_report **report);

@@ -112,6 +112,10 @@ static int read_scene(S *spec, const char *place, json_t *object, experiment_sce
         lamps->text[i] = resolve(spec, lamps->text[i]);
     cli_args all = { .inputs = scene->inputs, .input_count = scene->input_count };
     cli_add_lamps(&all, &scene->import);
+    for (const noc_option *o = noc_import_options(); o->name && all.given_count < CLI_GIVEN; o++)
+        if (json_object_get(object, o->name))
+            all.given[all.given_count++] = o;
+    cli_note_chosen(&all, &scene->import);
     scene->input_count = all.input_count;
     return check_inputs(spec, place, object, scene);
 }

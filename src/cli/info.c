@@ -14,7 +14,7 @@ static int run(void *arguments);
 
 static const info_args defaults = { .import = noc_import_default_params(), .builtin = noc_builtin_default_params() };
 /* Nothing is placed, so the rules for placing do not matter here. */
-static const char *const placing[] = { "scene-crs", "infer-lamps", "lamp-height", "lamp-lumens", "lamp-kelvin", NULL };
+static const char *const placing[] = { "scene-crs", "infer-lamps", NULL };
 
 const cli_command cli_info = {
     "info", "FILE...", "Tells what files hold: format, CRS, extent, objects, lamps, and what was skipped or repaired.",
@@ -93,7 +93,7 @@ static void print_objects(const noc_report_file *file) {
     printf("%s\n", *before == ',' ? ")" : "");
 }
 
-static void print_lamps(const noc_report_file *file) {
+static void print_lamps(const noc_report_file *file, const noc_import_params *import) {
     char a[32], b[64];
     printf("  %-11s %s", "lamps", cli_count(a, file->lamps));
     if (file->lamp_heads != file->lamps)
@@ -116,6 +116,7 @@ static void print_lamps(const noc_report_file *file) {
         if (file->lamps_by_source[s] && (s != NOC_SOURCE_UNKNOWN || file->lamps_by_source[s] != file->lamps))
             printf("    %-13s %10s, %.1f%%\n", s == NOC_SOURCE_UNKNOWN ? "source?" : noc_lamp_source_name((noc_lamp_source)s),
                    cli_count(a, file->lamps_by_source[s]), 100.0 * (double)file->lamps_by_source[s] / (double)file->lamps);
+    cli_print_assumed("  assumed     ", file->lamps_assumed, import);
 }
 
 /* How wide printf must make the text to fill that many columns of a terminal: it counts bytes, and of a character of UTF-8 one fills
@@ -156,7 +157,7 @@ static void print_points(const noc_report_file *file) {
     print_columns(file);
 }
 
-static void print_file(const noc_report_file *file) {
+static void print_file(const noc_report_file *file, const noc_import_params *import) {
     char a[32], b[64], path[400];
     printf("%s\n", cli_clean(path, sizeof(path), file->path));
     print_source(file);
@@ -170,7 +171,7 @@ static void print_file(const noc_report_file *file) {
         printf("  %-11s %s\n", "triangles", cli_count(a, file->triangles));
     }
     if (file->lamps)
-        print_lamps(file);
+        print_lamps(file, import);
     print_points(file);
     if (file->lights)
         printf("  %-11s %s\n", "lights", cli_count(a, file->lights));
@@ -219,7 +220,7 @@ static noc_status inspect(const info_args *args, const char *path, noc_log *log,
         print_scene(path, &info);
     } else if (!status || args->import.strict) { /* strictness does not hide what it found */
         for (size_t i = 0; i < noc_report_file_count(report); i++)
-            print_file(noc_report_get_file(report, i));
+            print_file(noc_report_get_file(report, i), &args->import);
     }
     noc_report_destroy(report);
     noc_scene_destroy(scene);
@@ -229,6 +230,7 @@ static noc_status inspect(const info_args *args, const char *path, noc_log *log,
 static int run(void *arguments) {
     info_args *args = arguments;
     cli_add_lamps(&args->common, &args->import);
+    cli_note_chosen(&args->common, &args->import);
     if (!args->common.input_count)
         return cli_usage(&cli_info, "which file?");
     cli_catch_signals();

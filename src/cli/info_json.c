@@ -77,6 +77,9 @@ static void lamp_details(const noc_report_file *file) {
     number("lamps_with_watts", (double)file->lamps_with_watts);
     number("lamps_with_colour", (double)file->lamps_with_colour);
     number("lamps_with_direction", (double)file->lamps_with_direction);
+    number("lamps_height_assumed", (double)file->lamps_assumed[NOC_LAMP_HEIGHT]);
+    number("lamps_flux_assumed", (double)file->lamps_assumed[NOC_LAMP_FLUX]);
+    number("lamps_colour_assumed", (double)file->lamps_assumed[NOC_LAMP_COLOUR]);
     key("lamps_by_source");
     const char *before = "{";
     for (int s = 0; s < NOC_SOURCE_COUNT; s++) {

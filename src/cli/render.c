@@ -131,6 +131,7 @@ static int check_influence(const render_args *args) {
 static int check(render_job *job) {
     render_args *args = job->args;
     cli_add_lamps(&args->common, &args->import);
+    cli_note_chosen(&args->common, &args->import);
     if (!args->common.input_count)
         return cli_usage(&cli_render, "nothing to draw: name a city model, or builtin:city");
     if (!args->output)

@@ -35,6 +35,8 @@ static void add_totals(meta_text *meta, const noc_report *report) {
     const struct { const char *key; size_t count; } rows[] = {
         { "lamps-mapped", t.lamps_mapped }, { "lamps-inferred", t.lamps_inferred }, { "lamps-dropped", t.lamps_dropped },
         { "lamps-moved", t.lamps_moved }, { "lamps-repeated", t.lamps_repeated }, { "objects-repeated", t.objects_repeated },
+        { "lamps-height-assumed", t.lamps_assumed[NOC_LAMP_HEIGHT] }, { "lamps-flux-assumed", t.lamps_assumed[NOC_LAMP_FLUX] },
+        { "lamps-colour-assumed", t.lamps_assumed[NOC_LAMP_COLOUR] },
         { "features-skipped", t.skipped }, { "features-repaired", t.repaired } };
     for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
         add(meta, rows[i].key, cli_format("%zu", rows[i].count));
@@ -234,7 +236,7 @@ static void print_issues(const noc_report *report) {
     free(issues);
 }
 
-static void print_lamps(const noc_report *report) {
+static void print_lamps(const noc_report *report, const noc_import_params *import) {
     noc_report_totals t;
     char a[32];
     noc_report_get_totals(report, &t);
@@ -248,6 +250,7 @@ static void print_lamps(const noc_report *report) {
         }
     if (*before == ',')
         putchar('\n');
+    cli_print_assumed("  assumed   ", t.lamps_assumed, import);
 }
 
 void cli_print_summary(const render_job *job) {
@@ -271,7 +274,7 @@ void cli_print_summary(const render_job *job) {
     if (*scene->given_crs)
         printf("  origin    %.3f,%.3f,%.3f in %s is 0,0,0 of eye and target\n", scene->given_origin[0], scene->given_origin[1],
                scene->given_origin[2], strcmp(scene->given_crs, scene->crs) ? "the first" : "that CRS");
-    print_lamps(job->report);
+    print_lamps(job->report, &args->import);
     print_issues(job->report);
     printf("  camera    eye %.2f,%.2f,%.2f target %.2f,%.2f,%.2f fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
            job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2], job->camera.fov_deg);

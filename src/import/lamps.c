@@ -159,6 +159,8 @@ static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_par
         in->file.lights += lights > 0 ? (size_t)lights : 0;
         in->file.lamps_moved += lights > 0 ? params->tally->moved - moved : 0;
         *(lights > 0 ? &in->file.lamps_mapped : &in->file.lamps_dropped) += 1;
+        if (lights > 0)
+            report_assumed(&in->file, &p->lamp);
         fate->mapped += lights > 0;
         fate->closest = lights > 0 ? NOC_MIN(fate->closest, d) : fate->closest;
         if (i % 256 == 0 && !go_on(im, 0.9 + 0.1 * (double)i / (double)im->lamps.len))

@@ -378,7 +378,7 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         geo_issues_destroy(im.inputs[i].issues);
     }
     if (!status && params->strict)
-        status = report_strict(im.report, scene->log);
+        status = report_strict(im.report, params, scene->log);
     free(im.inputs);
     place_destroy(&im);
     sink_destroy(&im);

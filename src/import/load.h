@@ -115,8 +115,10 @@ struct noc_report {
 noc_report *report_create(void); /* NULL: memory was refused */
 /* Adds the file with the issues' lines; false, and the file is not in it, where memory is refused to it or was to the issues. */
 bool report_add(noc_report *report, const noc_report_file *file, const geo_issues *issues) NOC_MUST_USE;
+/* Counts what the lamp does not tell. */
+void report_assumed(noc_report_file *file, const geo_lamp *lamp);
 /* The error that --strict makes of what was left out or guessed at; NOC_OK where nothing was. */
-noc_status report_strict(const noc_report *report, noc_log *log);
+noc_status report_strict(const noc_report *report, const noc_import_params *params, noc_log *log);
 
 /* readers.c: first reader in a NULL-ended list whose probe takes the head; NULL if none. */
 extern const noc_reader *const noc_readers[];

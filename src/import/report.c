@@ -1,4 +1,5 @@
 #include "import/load.h"
+#include "city/city.h"
 
 noc_report *report_create(void) { return noc_calloc(1, sizeof(noc_report)); }
 
@@ -37,15 +38,47 @@ void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) 
         totals->lamps_dropped += f->lamps_dropped;
         totals->lamps_repeated += f->lamps_repeated;
         totals->objects_repeated += f->objects_repeated;
+        for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++)
+            totals->lamps_assumed[what] += f->lamps_assumed[what];
         for (size_t k = 0; k < f->line_count; k++)
             *(f->lines[k].repaired ? &totals->repaired : &totals->skipped) += f->lines[k].count;
     }
 }
 
-noc_status report_strict(const noc_report *report, noc_log *log) {
+void report_assumed(noc_report_file *file, const geo_lamp *lamp) {
+    for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++)
+        file->lamps_assumed[what] += city_lamp_assumes(lamp, (noc_lamp_default)what);
+}
+
+/* What strict says of the lamps that the program makes up, wholly or in part. Returns how many guesses that are. */
+static size_t guesses_at_lamps(const noc_report *report, const noc_import_params *params, char *text, size_t size) {
+    const struct { const char *what, *option; double value; } of[NOC_LAMP_DEFAULT_COUNT] = {
+        [NOC_LAMP_HEIGHT] = { "height", "lamp-height", params->lamp_height },
+        [NOC_LAMP_FLUX] = { "flux", "lamp-lumens", params->lamp_lumens },
+        [NOC_LAMP_COLOUR] = { "colour", "lamp-kelvin", params->lamp_kelvin },
+    };
+    noc_report_totals t;
+    size_t guesses = 0, n = 0;
+    noc_report_get_totals(report, &t);
+    for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++) {
+        if (!t.lamps_assumed[what] || params->lamp_chosen >> what & 1)
+            continue;
+        guesses += t.lamps_assumed[what];
+        n += (size_t)noc_snprintf(text + n, size - n, "; %zu x lamp without %s (--%s %g takes that)", t.lamps_assumed[what], of[what].what,
+                                  of[what].option, of[what].value);
+    }
+    if (t.lamps_inferred && params->infer_lamps != NOC_SWITCH_ON) {
+        guesses += t.lamps_inferred;
+        noc_snprintf(text + n, size - n, "; no lamps in the inputs, %zu placed by a rule (--lamps FILE gives some, --infer-lamps takes "
+                     "these, --no-infer-lamps leaves the city dark)", t.lamps_inferred);
+    }
+    return guesses;
+}
+
+noc_status report_strict(const noc_report *report, const noc_import_params *params, noc_log *log) {
     enum { SHOWN = 8 };
     size_t skipped = 0, guessed = 0, lines = 0, n = 0;
-    char causes[900] = "";
+    char causes[900] = "", lamps[500] = "";
     for (size_t i = 0; i < report->files.len; i++)
         for (size_t k = 0; k < report->files.data[i].line_count; k++) {
             const noc_report_file *f = &report->files.data[i];
@@ -57,12 +90,14 @@ noc_status report_strict(const noc_report *report, noc_log *log) {
                 n += (size_t)noc_snprintf(causes + n, sizeof(causes) - n, "; %s: %zu x %s%s%s%s", f->path, l->count, l->reason,
                                           *l->examples ? " (" : "", l->examples, *l->examples ? ")" : "");
         }
-    if (!lines)
+    size_t guesses = guesses_at_lamps(report, params, lamps, sizeof(lamps));
+    if (!lines && !guesses)
         return NOC_OK;
     char more[40] = "";
     if (lines > SHOWN)
         noc_snprintf(more, sizeof(more), "; and %zu more", lines - SHOWN);
-    return noc_error(log, NOC_ERR_FORMAT, "--strict: features left out: %zu, guessed at: %zu%s%s", skipped, guessed, causes, more);
+    return noc_error(log, NOC_ERR_FORMAT, "--strict: features left out: %zu, guessed at: %zu%s%s%s", skipped, guessed + guesses, lamps, causes,
+                     more);
 }
 
 static const char *keep(noc_report *report, const char *text) { return arena_strdup(&report->arena, text ? text : ""); }

@@ -224,8 +224,10 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     memcpy(p.lamp.xyz, points[0], sizeof(points[0]));
     memcpy(p.lamp.head, points[1], heads * sizeof(points[0]));
     count_lamp(&im->inputs[im->current].file, lamp);
-    if (im->inspect)
+    if (im->inspect) {
+        report_assumed(&im->inputs[im->current].file, lamp);
         return NOC_OK;
+    }
     if (im->lamps.len == im->lamps.cap && (status = sink_affords(im, im->lamps.cap * sizeof(p)))) /* it doubles */
         return status;
     p.lamp.id = arena_strdup(&im->names, lamp->id ? lamp->id : "");

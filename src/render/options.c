@@ -89,7 +89,7 @@ static const noc_option import_options[] = {
     TEXT(P, scene_crs, "scene-crs", "City", "CRS", "CRS of the scene; else the first input's, or UTM"),
     INT(P, lod, "lod", "City", 0, 4, "", "highest CityGML level of detail that is taken"),
     SWITCH(P, infer_lamps, "infer-lamps", "City", "place lamps by a rule: where no input holds any; on: or none of use"),
-    BOOL(P, strict, "strict", "City", "what is left out of an input, or guessed at, is an error"),
+    BOOL(P, strict, "strict", "City", "what is left out of an input, guessed at or made up is an error"),
     TEXTS(P, lamps, "lamps", "City", "FILE", "a file whose points are lamps whatever it says; repeatable"),
     TEXTS(P, lamp_columns, "lamp-columns", "City", "MAP", "columns, tags: height=A,watts=B (height_ft=A); repeatable"),
     REAL(P, lamp_height, "lamp-height", "City", 0.5, 60, "m", "height of lamps that are not tagged"),

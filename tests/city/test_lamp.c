@@ -91,6 +91,29 @@ static void test_kelvin(void **state) {
     }
 }
 
+/* What a lamp tells, by itself or by its source, is no assumption. */
+static void test_assumes(void **state) {
+    geo_lamp l = lamp_at(0, 0);
+    for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++)
+        assert_true(city_lamp_assumes(&l, (noc_lamp_default)what));
+    l.height = 4;
+    assert_false(city_lamp_assumes(&l, NOC_LAMP_HEIGHT));
+    l.watts = 50;
+    assert_false(city_lamp_assumes(&l, NOC_LAMP_FLUX));
+    l.source = GEO_SOURCE_LED; /* white of any kind */
+    assert_true(city_lamp_assumes(&l, NOC_LAMP_COLOUR));
+    l.source = GEO_SOURCE_LOW_SODIUM;
+    assert_false(city_lamp_assumes(&l, NOC_LAMP_COLOUR));
+    l = lamp_at(0, 0);
+    l.source = GEO_SOURCE_GAS;
+    assert_false(city_lamp_assumes(&l, NOC_LAMP_FLUX));
+    l = lamp_at(0, 0);
+    l.kelvin = 2700;
+    l.body_heads = 1; /* a body has its height */
+    assert_false(city_lamp_assumes(&l, NOC_LAMP_COLOUR) || city_lamp_assumes(&l, NOC_LAMP_HEIGHT));
+    assert_true(city_lamp_assumes(&l, NOC_LAMP_FLUX));
+}
+
 static void test_flux(void **state) {
     noc_scene *scene = noc_scene_create(NULL);
     add_plane(scene, NOC_CLASS_TERRAIN, -100, -100, 100, 100, 5, 0);
@@ -525,7 +548,7 @@ static void test_add_ground(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_kelvin),
-        cmocka_unit_test(test_flux),
+        cmocka_unit_test(test_assumes), cmocka_unit_test(test_flux),
         cmocka_unit_test(test_direction_and_sources),
         cmocka_unit_test(test_efficacies),
         cmocka_unit_test(test_own_shape_does_not_shadow),

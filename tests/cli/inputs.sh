@@ -164,6 +164,20 @@ sed 's/^\([ab]\),\([0-9.]*\),\([0-9.]*\)/\1,\3,\2/' swapped.csv >right.csv
 run render "$gml" right.csv $view -o s.exr
 test $status = 0 && grep -q 'lamps  *2 mapped' out && grep -aq 'lamps-mapped' s.exr && grep -aq 'features-repaired' s.exr
 result $? "the right way round they light the city, and an EXR tells how many"
+grep -q 'assumed  *2 without height: 6 m (--lamp-height), 2 without flux: 5000 lm each (--lamp-lumens), 2 without colour: 3000 K' out &&
+    grep -aq 'lamps-colour-assumed' s.exr
+result $? "what they do not tell, and what is taken for it, is told"
+printf 'id,lon,lat,lamp_height,lumens\na,11.4226,48.7591,5,900\nb,11.4227,48.7592,,900\n' >told.csv
+run render "$gml" told.csv $view --lamp-kelvin 2700 -o told.png
+test "$(meta told.png lamps-height-assumed) $(meta told.png lamps-flux-assumed) $(meta told.png lamps-colour-assumed)" = "1 0 2" &&
+    grep -q 'assumed  *1 without height: 6 m (--lamp-height), 2 without colour: 2700 K (--lamp-kelvin)$' out
+result $? "and in the metadata"
+run info told.csv
+grep -q 'assumed  *1 without height: 6 m (--lamp-height), 2 without colour: 3000 K (--lamp-kelvin)$' out; result $? "and info tells it"
+expect "--strict refuses what the user did not say" 1 'guessed at: 1; 1 x lamp without height .--lamp-height 6 takes that.$' \
+    info told.csv --strict --lamp-kelvin 3000
+run info told.csv --strict --lamp-kelvin 3000 --lamp-height 6
+test $status = 0; result $? "and takes what the user did"
 expect "--strict refuses what is left out" 1 'strict: features left out: 1, .*city.gml: 1 x .*(two-points|stump)' \
     render "$gml" right.csv --strict $view -o strict.png
 test ! -e strict.png; result $? "without a picture"

@@ -162,9 +162,11 @@ static void test_strict(void **state) {
     struct run r;
     noc_import_params p = DEFAULTS;
     p.strict = true;
+    p.lamp_chosen = (1u << NOC_LAMP_DEFAULT_COUNT) - 1;
     LOAD(&r, p, file("a", CITY), file("l", NEAR_LAMP));
     assert_int_equal(r.status, NOC_OK);
     finish(&r);
+    p.infer_lamps = NOC_SWITCH_OFF; /* that is another one's matter */
     const char *bad = "object 0 bad 1\npolygon 1 678000 5404000 0 678001 5404000 0\npolygon 1 nan nan nan nan nan nan nan nan nan\nend\n";
     char text[2000];
     snprintf(text, sizeof(text), "%s%s", CITY, bad);
@@ -202,6 +204,56 @@ static void test_strict(void **state) {
     load_with(&r, p, true, PATHS(file("rough.city", text))); /* to be looked at, too, and the report is there */
     assert_int_equal(r.status, NOC_ERR_FORMAT);
     assert_int_equal(noc_report_get_file(r.report, 0)->line_count, 2);
+    finish(&r);
+}
+
+/* What the defaults stand in for is counted, and strict takes it only where the user said the default. */
+static void test_assumed(void **state) {
+    (void)state;
+    struct run r;
+    noc_import_params p = DEFAULTS;
+    const char *const lamps = NEAR_LAMP;
+    noc_report_totals t;
+    LOAD(&r, p, file("a", CITY), file("l", lamps));
+    assert_int_equal(r.status, NOC_OK);
+    noc_report_get_totals(r.report, &t);
+    assert_int_equal(t.lamps_mapped, 1);
+    for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++)
+        assert_int_equal(t.lamps_assumed[what], 1);
+    finish(&r);
+    p.strict = true;
+    p.lamp_chosen = 1u << NOC_LAMP_HEIGHT | 1u << NOC_LAMP_COLOUR;
+    LOAD(&r, p, file("a", CITY), file("l", lamps));
+    assert_int_equal(r.status, NOC_ERR_FORMAT);
+    const char *said = noc_log_last_error(r.log);
+    assert_non_null(strstr(said, "guessed at: 1; 1 x lamp without flux (--lamp-lumens 5000 takes that)"));
+    assert_null(strstr(said, "without height"));
+    finish(&r);
+    start(&r); /* the same of a file that is looked at */
+    load_with(&r, p, true, PATHS(file("l", lamps)));
+    assert_int_equal(r.status, NOC_ERR_FORMAT);
+    assert_int_equal(noc_report_get_file(r.report, 0)->lamps_assumed[NOC_LAMP_FLUX], 1);
+    finish(&r);
+}
+
+/* A strict picture is not lit by lamps that nobody gave or asked for. */
+static void test_strict_inferred(void **state) {
+    (void)state;
+    struct run r;
+    noc_import_params p = DEFAULTS;
+    p.strict = true;
+    LOAD(&r, p, file("a", CITY));
+    assert_int_equal(r.status, NOC_ERR_FORMAT);
+    assert_non_null(strstr(noc_log_last_error(r.log), "placed by a rule (--lamps FILE gives some, --infer-lamps takes these"));
+    finish(&r);
+    p.infer_lamps = NOC_SWITCH_ON;
+    LOAD(&r, p, file("a", CITY));
+    assert_int_equal(r.status, NOC_OK);
+    assert_true(r.info.lights_inferred > 0);
+    finish(&r);
+    p.infer_lamps = NOC_SWITCH_OFF;
+    LOAD(&r, p, file("a", CITY));
+    assert_int_equal(r.status, NOC_OK);
     finish(&r);
 }
 
@@ -460,7 +512,7 @@ static void test_other_cities(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_city), cmocka_unit_test(test_lamps), cmocka_unit_test(test_inferred_lamps), cmocka_unit_test(test_useless_lamps), cmocka_unit_test(test_strict),
+        cmocka_unit_test(test_city), cmocka_unit_test(test_lamps), cmocka_unit_test(test_inferred_lamps), cmocka_unit_test(test_useless_lamps), cmocka_unit_test(test_strict), cmocka_unit_test(test_assumed), cmocka_unit_test(test_strict_inferred),
         cmocka_unit_test(test_ground), cmocka_unit_test(test_materials_vary), cmocka_unit_test(test_errors),
         cmocka_unit_test(test_bad_features), cmocka_unit_test(test_progress), cmocka_unit_test(test_inspect),
         cmocka_unit_test(test_ingolstadt), cmocka_unit_test(test_other_cities),
