@@ -166,6 +166,12 @@ static const lamp_column columns[] = {
     /* still there? */
     { "status", F(STATUS), 0, 0 }, { "assetstatus", F(STATUS), 0, 0 }, { "operationalstatus", F(STATUS), 0, 0 },
     { "lampstatus", F(STATUS), 0, 2 }, { "lightstatus", F(STATUS), 0, 2 }, { "lifecyclestatus", F(STATUS), 0, 0 },
+    { "betriebsstatus", F(STATUS), 0, 0 }, { "zustand", F(STATUS), 0, 0 }, { "objektstatus", F(STATUS), 0, 0 },
+    { "leuchtenstatus", F(STATUS), 0, 2 }, { "lampenstatus", F(STATUS), 0, 2 }, { "statut", F(STATUS), 0, 0 },
+    { "etatservice", F(STATUS), 0, 0 }, { "etatexploitation", F(STATUS), 0, 0 }, { "situacion", F(STATUS), 0, 0 },
+    { "situacao", F(STATUS), 0, 0 }, { "provoznistav", F(STATUS), 0, 0 }, { "stan", F(STATUS), 0, 0 },
+    { "tilstand", F(STATUS), 0, 0 }, { "driftstatus", F(STATUS), 0, 0 }, { "driftsstatus", F(STATUS), 0, 0 },
+    { "tila", F(STATUS), 0, 0 }, { "levensfase", F(STATUS), 0, 0 },
     { "betriebszustand", F(STATUS), 0, 0 }, { "toestand", F(STATUS), 0, 0 }, { "etat", F(STATUS), 0, 0 },
     { "estado", F(STATUS), 0, 0 }, { "stato", F(STATUS), 0, 0 }, { "stav", F(STATUS), 0, 0 },
     /* identity */
@@ -370,13 +376,32 @@ int lamp_mount_word(const char *folded) {
 
 bool lamp_inactive_word(const char *folded) {
     static const word words[] = {
-        { "inactive", 1 }, { "removed", 1 }, { "retired", 1 }, { "abandoned", 1 }, { "disused", 1 }, { "decommissioned", 1 },
-        { "demolished", 1 }, { "proposed", 1 }, { "planned", 1 }, { "out of service", 1 }, { "out of order", 1 },
-        { "not in service", 1 }, { "not active", 1 }, { "non operational", 1 }, { "closed", 1 }, { "dismantled", 1 },
-        { "buiten gebruik", 1 }, { "buiten bedrijf", 1 }, { "verwijderd", 1 }, { "vervallen", 1 }, { "ausser betrieb", 1 },
-        { "stillgelegt", 1 }, { "demontiert", 1 }, { "ruckgebaut", 1 }, { "rueckgebaut", 1 }, { "abgebaut", 1 }, { "geplant", 1 }, { "hors service", 1 }, { "supprime*", 1 }, { "depose", 1 },
-        { "fuera de servicio", 1 }, { "retirado", 1 }, { "baja", 1 }, { "fuori servizio", 1 }, { "dismesso", 1 },
-        { "mimo provoz", 1 }, { "zruseno", 1 }, { "under construction", 1 },
+        { "inactive", 1 }, { "removed", 1 }, { "retired", 1 }, { "abandoned", 1 }, { "disused", 1 },
+        { "decommissioned", 1 }, { "demolished", 1 }, { "proposed", 1 }, { "planned", 1 }, { "out of service", 1 },
+        { "out of order", 1 }, { "not in service", 1 }, { "not active", 1 }, { "non operational", 1 },
+        { "closed", 1 }, { "dismantled", 1 }, { "under construction", 1 },
+        { "ausser betrieb", 1 }, { "ausser dienst", 1 }, { "nicht in betrieb", 1 }, { "nicht aktiv", 1 },
+        { "inaktiv*", 1 }, { "stillgelegt*", 1 }, { "demontiert*", 1 }, { "ruckgebaut*", 1 }, { "zuruckgebaut*", 1 }, { "rueckgebaut*", 1 },
+        { "ruckbau", 1 }, { "abgebaut*", 1 }, { "abgeschaltet*", 1 }, { "abgerissen*", 1 }, { "entfernt*", 1 },
+        { "geplant*", 1 }, { "in planung", 1 }, { "im bau", 1 },
+        { "buiten gebruik", 1 }, { "buiten bedrijf", 1 }, { "niet in gebruik", 1 }, { "inactief", 1 },
+        { "verwijderd*", 1 }, { "vervallen", 1 }, { "gesloopt*", 1 }, { "ontmanteld*", 1 }, { "gepland*", 1 },
+        { "hors service", 1 }, { "hors usage", 1 }, { "hors exploitation", 1 }, { "inactif*", 1 },
+        { "supprime*", 1 }, { "depose*", 1 }, { "demonte*", 1 }, { "abandonne*", 1 }, { "en projet", 1 },
+        { "projete*", 1 },
+        { "fuera de servicio", 1 }, { "fuera de uso", 1 }, { "retirad*", 1 }, { "baja", 1 }, { "inactiv*", 1 },
+        { "desmontad*", 1 }, { "eliminad*", 1 }, { "proyectad*", 1 }, { "planificad*", 1 },
+        { "fuori servizio", 1 }, { "fuori uso", 1 }, { "dismess*", 1 }, { "rimoss*", 1 }, { "demolit*", 1 },
+        { "smontat*", 1 }, { "inattiv*", 1 }, { "non attiv*", 1 }, { "in progetto", 1 },
+        { "fora de servico", 1 }, { "fora de uso", 1 }, { "desativad*", 1 }, { "desactivad*", 1 }, { "inativ*", 1 },
+        { "removid*", 1 }, { "planead*", 1 }, { "planejad*", 1 },
+        { "mimo provoz", 1 }, { "zrusen*", 1 }, { "demontovan*", 1 }, { "odstranen*", 1 }, { "planovan*", 1 },
+        { "neaktivni", 1 },
+        { "nieczynn*", 1 }, { "nieaktywn*", 1 }, { "wylaczon*", 1 }, { "zdemontowan*", 1 }, { "usuniet*", 1 },
+        { "planowan*", 1 },
+        { "ur drift", 1 }, { "ute av drift", 1 }, { "ude af drift", 1 }, { "nedlagt", 1 }, { "fjernet", 1 },
+        { "borttag*", 1 }, { "avvecklad*", 1 }, { "planlagt", 1 }, { "planerad*", 1 }, { "poistettu", 1 },
+        { "purettu", 1 }, { "suunniteltu", 1 },
     };
     return find_word(folded, words, NOC_COUNT(words)) > 0;
 }

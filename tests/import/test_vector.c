@@ -221,6 +221,12 @@ static void test_verdicts(void **state) {
         lamp_verdict verdict;
     } row[] = {
         { "ASSETSTATUS_DESC", "Active", LAMP_ACTIVE }, { "ASSETSTATUS_DESC", "Inactive", LAMP_INACTIVE }, { "Status", "au\xc3\x9f" "er Betrieb", LAMP_INACTIVE },
+        { "Zustand", "demontiert", LAMP_INACTIVE }, { "Zustand", "gut", LAMP_ACTIVE }, { "Betriebsstatus", "in Betrieb", LAMP_ACTIVE },
+        { "Betriebsstatus", "nicht in Betrieb", LAMP_INACTIVE }, { "Zustand", "zur\xc3\xbc" "ckgebaut", LAMP_INACTIVE },
+        { "statut", "D\xc3\xa9pos\xc3\xa9" "e", LAMP_INACTIVE }, { "Situaci\xc3\xb3n", "Desmontada", LAMP_INACTIVE },
+        { "stato", "Rimosso", LAMP_INACTIVE }, { "Situa\xc3\xa7\xc3\xa3o", "Desativado", LAMP_INACTIVE }, { "stav", "Zru\xc5\xa1" "eno", LAMP_INACTIVE },
+        { "Stan", "usuni\xc4\x99ty", LAMP_INACTIVE }, { "Driftstatus", "Nedlagt", LAMP_INACTIVE }, { "Tila", "Poistettu", LAMP_INACTIVE },
+        { "toestand", "niet in gebruik", LAMP_INACTIVE },
         { "WHYINACTIVE", "N/A", LAMP_ACTIVE }, { "WHYINACTIVE", "Knocked down", LAMP_INACTIVE },
         { "INOPERATION", "6/3/2013 0:00:00", LAMP_ACTIVE }, { "INOPERATION", "NO", LAMP_INACTIVE }, { "disused", "yes", LAMP_INACTIVE },
     };
