@@ -278,8 +278,23 @@ static bool column_there(void *ctx, const char *name) {
     return false;
 }
 
+/* Only one of them could be read, and nothing says which. */
+static noc_status check_one_column(importer *im, const noc_report_file *file) {
+    for (size_t i = 0; i < file->column_count; i++)
+        for (size_t k = 0; k < i && file->columns[i].mapped; k++)
+            if (file->columns[k].mapped && !strcmp(file->columns[i].field, file->columns[k].field))
+                return noc_error(im->log, NOC_ERR_ARGUMENT, "%s: lamp-columns: both \"%.60s\" and \"%.60s\" are mapped to %s: leave one out",
+                                 file->path, file->columns[k].name, file->columns[i].name, file->columns[i].field);
+    return NOC_OK;
+}
+
 /* A column that is mapped and nowhere there is a mistake of the user's: with what there is, for a line of text. */
 static noc_status check_columns(importer *im) {
+    for (size_t i = 0; i < im->input_count; i++) {
+        noc_status status = check_one_column(im, &im->inputs[i].file);
+        if (status)
+            return status;
+    }
     char *missing, there[400] = "";
     noc_status status = lamp_mapping_missing(im->params, column_there, im, im->log, &missing);
     for (size_t i = 0, n = 0; missing && i < im->input_count; i++)

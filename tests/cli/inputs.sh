@@ -90,6 +90,10 @@ done
 rm linked.csv
 expect "a table without coordinates is offered columns" 1 'strange.csv.*--lamps.*--lamp-columns' render strange.csv -o x.png
 expect "a column that is not there" 1 'no input has.*"HEIGHT".* lat, lon, power' render --lamps plain.csv --lamp-columns height=HEIGHT -o x.png
+for command in 'info' 'render -o x.png'; do
+    expect "two columns for one field: $command" 1 'strange.csv: lamp-columns: both "[A-Za-z]*" and "[A-Za-z]*" are mapped to height' \
+        $command --lamps strange.csv --lamp-columns lon=XX,lat=YY,height_ft=ht,height=ASSET
+done
 expect "a field that is none" 1 'no field "heigth".*height, lumens' render --lamps plain.csv --lamp-columns heigth=power -o x.png
 expect "a city is no table of lamps" 1 'this is CityGML, and --lamps is for' render --lamps "$gml" -o x.png
 expect "a built-in scene is no file of lamps" 1 'builtin:city is no file of lamps' render --lamps builtin:city -o x.png
