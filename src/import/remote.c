@@ -17,6 +17,7 @@
 #define HELPER "nocturne-reader"
 #define HELPER_VARIABLE "NOCTURNE_READER"
 #define TICK 0.05 /* s between looks at the clock */
+#define GRACE 3   /* s that the helper has to end once it has hung up */
 
 extern char **environ;
 
@@ -158,24 +159,6 @@ static noc_status out_of_time(const remote *r) {
                      r->params->reader_time);
 }
 
-/* It ended without a word. */
-static noc_status ended_early(remote *r) {
-    int how = 0;
-    pid_t got = waitpid(r->pid, &how, 0);
-    r->pid = 0;
-    if (got > 0 && WIFSIGNALED(how) && WTERMSIG(how) == SIGXCPU)
-        return out_of_time(r);
-    if (got > 0 && WIFEXITED(how) && WEXITSTATUS(how) == REMOTE_NO_MEMORY)
-        return noc_error(r->sink->log, NOC_ERR_MEMORY, "%s: the process that reads it needs more than the limit --max-memory, %.3g GB",
-                         r->path, r->memory / 1e9);
-    if (got > 0 && WIFSIGNALED(how) && WTERMSIG(how) != SIGKILL)
-        return noc_error(r->sink->log, NOC_ERR_FORMAT,
-                         "%s: the process that reads it as %s ended by signal %d (%s): the file is broken, or needs more than the limit "
-                         "--max-memory, %.3g GB", r->path, r->reader->name, WTERMSIG(how), strsignal(WTERMSIG(how)),
-                         r->memory / 1e9);
-    return noc_error(r->sink->log, NOC_ERR_IO, "%s: the process that reads it was ended from outside, or could not run (%s)", r->path, r->program);
-}
-
 static noc_status look_at_clock(remote *r) {
     double now = noc_wall_seconds();
     if (now - r->ticked < TICK)
@@ -184,6 +167,47 @@ static noc_status look_at_clock(remote *r) {
     if (r->sink->progress && !r->sink->progress(r->sink->ctx, r->from.done))
         return NOC_ERR_CANCELLED;
     return now - r->started > r->params->reader_time ? out_of_time(r) : NOC_OK;
+}
+
+/* Until it has ended, whose way is then told in *how (-1: unknown). One that hangs up and stays is an error, as is one that
+ * outlives its time; finish() ends it. */
+static noc_status wait_for_end(remote *r, int *how) {
+    double until = noc_wall_seconds() + GRACE;
+    noc_status status = NOC_OK;
+    *how = -1;
+    while (!status) {
+        pid_t got = waitpid(r->pid, how, WNOHANG);
+        if (got == r->pid || (got < 0 && errno != EINTR)) {
+            r->pid = 0;
+            return NOC_OK;
+        }
+        status = look_at_clock(r);
+        if (!status && noc_wall_seconds() > until)
+            status = noc_error(r->sink->log, NOC_ERR_IO, "%s: the process that reads it hung up and did not end (%s)", r->path, r->program);
+        if (!status)
+            poll(NULL, 0, 1);
+    }
+    return status;
+}
+
+/* It hung up without a last word. */
+static noc_status ended_early(remote *r) {
+    int how;
+    noc_status status = wait_for_end(r, &how);
+    bool got = how != -1;
+    if (status)
+        return status;
+    if (got && WIFSIGNALED(how) && WTERMSIG(how) == SIGXCPU)
+        return out_of_time(r);
+    if (got && WIFEXITED(how) && WEXITSTATUS(how) == REMOTE_NO_MEMORY)
+        return noc_error(r->sink->log, NOC_ERR_MEMORY, "%s: the process that reads it needs more than the limit --max-memory, %.3g GB",
+                         r->path, r->memory / 1e9);
+    if (got && WIFSIGNALED(how) && WTERMSIG(how) != SIGKILL)
+        return noc_error(r->sink->log, NOC_ERR_FORMAT,
+                         "%s: the process that reads it as %s ended by signal %d (%s): the file is broken, or needs more than the limit "
+                         "--max-memory, %.3g GB", r->path, r->reader->name, WTERMSIG(how), strsignal(WTERMSIG(how)),
+                         r->memory / 1e9);
+    return noc_error(r->sink->log, NOC_ERR_IO, "%s: the process that reads it was ended from outside, or could not run (%s)", r->path, r->program);
 }
 
 static noc_status receive(remote *r) {

@@ -223,6 +223,9 @@ END
     printf '#!/bin/sh\nkill -XCPU $$\n' >spent && chmod +x spent
     (export NOCTURNE_READER="$work/spent"; run info in/poles.shp; echo $status >ended)
     test "$(cat ended)" = 1 && grep -q 'limit --reader-time' err; result $? "and its signal is told as that limit" "$(cat err)"
+    printf '#!/bin/sh\ndd bs=65536 count=1 <&3 >/dev/null 2>&1\nexec 3<&-\nexec sleep 1000\n' >mute && chmod +x mute
+    (export NOCTURNE_READER="$work/mute"; timeout 60 "$program" info in/poles.shp >out 2>err; echo $? >ended)
+    test "$(cat ended)" = 1 && grep -q 'hung up' err; result $? "a helper that hangs up and stays is ended" "status $(cat ended): $(cat err)"
     # says NAME STATUS RECORDS PATTERN ARGUMENT...: a helper that was taken over sends RECORDS; one error comes of it, or none
     says() {
         name=$1 expected=$2 pattern=$4
