@@ -150,7 +150,8 @@ typedef struct experiment_lab {
     size_t stored_count;
     experiment_run *runs;     /* camera by camera, repetition, configuration */
     size_t run_count, runs_done;
-    size_t rows_done, rows_old; /* old: of earlier sessions */
+    size_t rows_done, rows_old;     /* old: of earlier sessions */
+    size_t rows_broken, rows_twice; /* of results.csv, as it was */
     double started, reference_seconds;
     size_t references_made, cameras_done;
     int reference_lost;       /* frames of a reference that was interrupted: it is not kept */

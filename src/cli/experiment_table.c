@@ -111,8 +111,9 @@ static int read_table(experiment_lab *lab, const char *path, long *whole) {
             room = room ? 2 * room : 256;
             lab->stored = experiment_longer(lab->stored, room * sizeof(*lab->stored));
         }
-        if (!first && parse_row(line, &lab->stored[lab->stored_count]))
-            lab->stored_count++;
+        bool row = !first && parse_row(line, &lab->stored[lab->stored_count]);
+        lab->stored_count += row;
+        lab->rows_broken += !first && !row;
         first = false;
     }
     free(line);
@@ -191,6 +192,7 @@ void experiment_claim(experiment_lab *lab, experiment_run *run) {
             row->frame > experiment_frames(&lab->spec, run->camera, run->config))
             continue; /* asked for before, not now: it stays in the table */
         experiment_row *mine = experiment_row_of(run, row->mode, row->frame);
+        lab->rows_twice += mine->done;
         lab->rows_done += !mine->done;
         lab->rows_old += !mine->done;
         mine->done = true;
@@ -206,6 +208,12 @@ int experiment_append(experiment_lab *lab, const experiment_run *run, int mode, 
     return CLI_FAILURE;
 }
 
+static void tell_rows(size_t count, const char *what, const char *old) {
+    char rows[64];
+    if (count)
+        cli_error("%s of results.csv %s: kept in %s", cli_many(rows, count, "row"), what, strrchr(old, '/') + 1);
+}
+
 int experiment_tidy_table(experiment_lab *lab) {
     size_t others = 0;
     for (size_t i = 0; i < lab->stored_count; i++) {
@@ -216,14 +224,16 @@ int experiment_tidy_table(experiment_lab *lab) {
         unlink(picture); /* where there is one; no row shows it any more */
         free(picture);
     }
-    if (!others)
+    if (!others && !lab->rows_broken && !lab->rows_twice)
         return CLI_OK;
-    char *temporary, rows[64];
+    char *temporary;
     FILE *file = experiment_create(lab, "results.csv", &temporary);
     if (!file)
         return CLI_FAILURE;
     char *path = cli_format("%s/results.csv", lab->folder), *old = old_name(lab);
-    cli_error("%s of results.csv came from other settings: kept in %s", cli_many(rows, others, "row"), strrchr(old, '/') + 1);
+    tell_rows(others, "came from other settings", old);
+    tell_rows(lab->rows_broken, "could not be read", old);
+    tell_rows(lab->rows_twice, "stood there twice", old);
     fprintf(file, "%s\n", header);
     for (size_t r = 0; r < lab->run_count; r++)
         for (int frame = 1; frame <= lab->runs[r].count; frame++)

@@ -36,6 +36,14 @@ head -n 1 other/results.csv | head -c 50 >cut/results.csv
 run experiment one.json -o cut --cache cache
 test $status = 0 && test ! -s err && test ! -e cut/results.old.csv; result $? "the beginning of our own header is gone on with"
 
+# Lines that are no rows, and rows that stand there twice, do not stay.
+mkdir worn
+{ cat before; sed -n 2p before; sed -n 3p before | head -c 40; echo; } >worn/results.csv
+run experiment one.json -o worn --cache cache
+test $status = 0 && grep -q '1 row of results.csv could not be read: kept in results.old.csv' err &&
+    grep -q '1 row of results.csv stood there twice: kept in results.old.csv' err && cmp -s before worn/results.csv &&
+    test "$(wc -l <worn/results.old.csv)" = 5; result $? "broken and repeated rows go, and are told" "$(cat err)"
+
 # A row's key is the name of a picture, which goes with it.
 mkdir -p evil/pictures && echo keep >victim-frame1.exr
 key=$(python3 -c 'name = "victim"; print("../../" + "/" * (32 - 6 - len(name)) + name)')
