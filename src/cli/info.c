@@ -157,12 +157,31 @@ static void print_points(const noc_report_file *file) {
     print_columns(file);
 }
 
+/* What a map holds, read or not. */
+static void print_features(const noc_report_file *file) {
+    const struct { size_t count; const char *noun; } kinds[] = { { file->map_points, "point" }, { file->map_lines, "line" },
+        { file->map_areas, "polygon" }, { file->buildings_unread, "building" }, { file->streets_unread, "street or path" } };
+    const char *before = "  features    ";
+    char a[64];
+    for (size_t i = 0; i < sizeof(kinds) / sizeof(*kinds); i++)
+        if (kinds[i].count) {
+            bool streets = i == 4 && kinds[i].count > 1;
+            printf("%s%s%s", before, streets ? cli_count(a, kinds[i].count) : cli_many(a, kinds[i].count, kinds[i].noun),
+                   streets ? " streets and paths" : "");
+            before = ", ";
+        }
+    if (*before == ',')
+        putchar('\n');
+}
+
 static void print_file(const noc_report_file *file, const noc_import_params *import) {
     char a[32], b[64], path[400];
     printf("%s\n", cli_clean(path, sizeof(path), file->path));
     print_source(file);
     print_extent(file);
-    if (file->objects || !file->lamps)
+    print_features(file);
+    bool map = file->map_points || file->map_lines || file->map_areas || file->buildings_unread || file->streets_unread;
+    if (file->objects || (!file->lamps && !map))
         print_objects(file);
     if (file->polygons) {
         printf("  %-11s %s, %s\n", "surfaces", cli_count(a, file->polygons), cli_many(b, file->triangles, "triangle"));

@@ -134,6 +134,11 @@ static void report_file(const noc_report_file *file) {
         columns(file);
     }
     number("lights", (double)file->lights);
+    number("map_points", (double)file->map_points);
+    number("map_lines", (double)file->map_lines);
+    number("map_areas", (double)file->map_areas);
+    number("buildings_unread", (double)file->buildings_unread);
+    number("streets_unread", (double)file->streets_unread);
     lines(file);
 }
 

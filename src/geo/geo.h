@@ -97,6 +97,16 @@ typedef struct geo_column {
     bool mapped;                               /* by the user */
 } geo_column;
 
+/* What a map holds, of whatever kind. */
+enum { GEO_POINTS, GEO_LINES, GEO_AREAS, GEO_DIMENSIONS };
+typedef struct geo_features {
+    uint64_t total[GEO_DIMENSIONS];  /* by geometry; of OpenStreetMap points alone */
+    uint64_t unread[GEO_DIMENSIONS]; /* of them: sets of points, lines and areas that are no lamps */
+    uint64_t buildings, streets;     /* ways and relations of OpenStreetMap, which are not read */
+    bool any;                        /* the box is that of the unread ones, where the file holds no lamps */
+    double lo[2], hi[2];
+} geo_features;
+
 /* Counted reasons: kept by the importer, a line a reason in the report. */
 typedef struct geo_issues geo_issues;
 /* What became of a feature. */
@@ -125,6 +135,8 @@ typedef struct geo_sink {
     noc_status (*lamp)(void *ctx, const geo_lamp *lamp);
     /* Of a file of points, at its end: how many there are, lamps or not, and its columns. May be NULL. */
     noc_status (*columns)(void *ctx, size_t points, const geo_column *columns, size_t count);
+    /* Of a map, at its end. May be NULL. */
+    noc_status (*features)(void *ctx, const geo_features *features);
     /* fraction of the file read; false: cancelled */
     bool (*progress)(void *ctx, double done);
     bool named_lamps; /* the user says that the file's points are lamps */

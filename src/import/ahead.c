@@ -151,6 +151,11 @@ static noc_status on_columns(void *ctx, size_t points, const geo_column *columns
     return a->sink.columns(a->sink.ctx, points, columns, count);
 }
 
+static noc_status on_features(void *ctx, const geo_features *features) {
+    struct look_ahead *a = ctx;
+    return a->sink.features(a->sink.ctx, features);
+}
+
 static bool on_progress(void *ctx, double done) {
     struct look_ahead *a = ctx;
     return a->sink.progress(a->sink.ctx, done);
@@ -169,6 +174,7 @@ struct look_ahead *ahead_create(importer *im, geo_sink *sink) {
     sink->end_object = on_end_object;
     sink->lamp = on_lamp;
     sink->columns = on_columns;
+    sink->features = on_features;
     sink->progress = on_progress;
     return a;
 }

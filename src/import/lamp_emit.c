@@ -71,10 +71,72 @@ noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count,
     return w->sink->lamp(w->sink->ctx, &lamp);
 }
 
+/* ---- what is not read ---- */
+
+static const struct { const char *one, *many, *reason; } unread[] = {
+    [GEO_POINTS] = { "set of points", "sets of points", "set of points that is not read: a lamp is a single one" },
+    [GEO_LINES] = { "line", "lines", "line that is not read: of maps only lamps are read" },
+    [GEO_AREAS] = { "polygon", "polygons", "polygon that is not read: outlines of buildings are not extruded yet" },
+    [GEO_DIMENSIONS] = { "building", "buildings",
+                         "building that is not read: outlines of buildings are not extruded yet" },
+    { "street or path", "streets and paths", "street or path that is not read: of maps only lamps are read" },
+};
+
+void lamp_writer_unread(lamp_writer *w, int dimension, const char *id, const double box[4]) {
+    w->seen.unread[dimension]++;
+    geo_issue(w->sink->issues, GEO_SKIPPED, unread[dimension].reason, id);
+    for (int k = 0; k < 2 && box; k++) {
+        w->seen.lo[k] = w->seen.any ? NOC_MIN(w->seen.lo[k], box[2 * k]) : box[2 * k];
+        w->seen.hi[k] = w->seen.any ? NOC_MAX(w->seen.hi[k], box[2 * k + 1]) : box[2 * k + 1];
+    }
+    w->seen.any |= box != NULL;
+}
+
+/* "1,899" */
+static void put_count(char text[32], uint64_t n) {
+    char digits[24], *out = text;
+    int size = noc_snprintf(digits, sizeof(digits), "%llu", (unsigned long long)n);
+    for (int i = 0; i < size; i++) {
+        if (i && (size - i) % 3 == 0)
+            *out++ = ',';
+        *out++ = digits[i];
+    }
+    *out = 0;
+}
+
+/* Says once what of the map is not read; the report of whoever inspects it tells the same. How many there are. */
+static uint64_t tell_unread(lamp_writer *w) {
+    const geo_features *f = &w->seen;
+    const uint64_t counts[] = { f->unread[GEO_POINTS], f->unread[GEO_LINES], f->unread[GEO_AREAS],
+                                f->buildings, f->streets };
+    char list[240] = "", number[32];
+    uint64_t sum = 0;
+    geo_issues_add(w->sink->issues, GEO_SKIPPED, unread[GEO_DIMENSIONS].reason, f->buildings, "");
+    geo_issues_add(w->sink->issues, GEO_SKIPPED, unread[GEO_DIMENSIONS + 1].reason, f->streets, "");
+    for (size_t i = 0, n = 0; i < NOC_COUNT(counts); i++) {
+        if (!counts[i])
+            continue;
+        put_count(number, counts[i]);
+        n += (size_t)noc_snprintf(list + n, sizeof(list) - n, "%s%s %s", sum ? ", " : "", number,
+                                  counts[i] == 1 ? unread[i].one : unread[i].many);
+        sum += counts[i];
+    }
+    bool outlines = f->unread[GEO_AREAS] || f->buildings;
+    if (sum && !w->sink->inspect)
+        noc_warn(w->sink->log, "%s: %s %s not read: %s", w->place, list, sum == 1 ? "is" : "are",
+                 outlines ? "outlines of buildings are not extruded yet, and of maps only lamps are read"
+                          : "of maps only lamps are read");
+    return sum;
+}
+
 noc_status lamp_writer_end(lamp_writer *w) {
     noc_log *log = w->sink->log;
     lamp_kinds_note(&w->kinds, w->keys);
     noc_status status = lamp_keys_report(w->keys, w->sink, w->place, w->points);
+    uint64_t others = tell_unread(w);
+    w->seen.any = w->seen.any && !w->lamps;
+    if (!status && w->sink->features)
+        status = w->sink->features(w->sink->ctx, &w->seen);
     if (status)
         return status;
     if (w->off_earth > w->lamps && w->exchangeable == w->off_earth)
@@ -96,8 +158,8 @@ noc_status lamp_writer_end(lamp_writer *w) {
     if (w->sink->named_lamps && !w->features)
         return noc_error(log, NOC_ERR_FORMAT, "%s: named with --lamps, but it holds no points", w->place);
     if (w->features && !w->strange_points)
-        noc_warn(log, "%s: none of its %zu features is a street lamp in use", w->place, w->features);
-    else if (!w->features)
+        noc_warn(log, "%s: none of its %zu %s is a street lamp in use", w->place, w->features, others ? "points" : "features");
+    else if (!w->features && !others)
         noc_warn(log, "%s: no tag and no column of it tells of street lamps", w->place);
     return NOC_OK;
 }

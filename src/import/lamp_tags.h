@@ -130,6 +130,7 @@ typedef struct lamp_writer {
     bool inventory;         /* every point is a lamp, unless its status says otherwise */
     bool strange;           /* nothing tells what the points are: they are noted and counted */
     size_t points, strange_points;
+    geo_features seen;
 } lamp_writer;
 
 noc_status lamp_writer_start(lamp_writer *w, geo_sink *sink, const char *place, const noc_import_params *params) NOC_MUST_USE;
@@ -137,6 +138,8 @@ void lamp_writer_free(lamp_writer *w);
 
 /* Tells the sink the CRS. NULL: the file names none; the sink knows whether --crs says it. */
 noc_status lamp_writer_crs(lamp_writer *w, const char *crs);
+/* A feature that is no single point, nor a lamp: counted by its geometry. box: min x, max x, min y, max y; NULL: not known. */
+void lamp_writer_unread(lamp_writer *w, int dimension, const char *id, const double box[4]);
 /* One point feature: judged, read and handed on, or skipped and counted. id: for want of a better one. z may be NaN. */
 noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count, const char *id, const double xyz[3]);
 /* At the end: an error where nothing tells that the points are lamps, or where degrees were expected and nearly all lamps lie

@@ -1,5 +1,6 @@
 /* Overpass JSON: nodes with lat and lon, ways and relations with a center or a geometry. */
 #include "import/lamp_tags.h"
+#include "import/osm_ways.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -59,6 +60,19 @@ static bool is_node(const json_t *element) {
     return type && !strcmp(type, "node");
 }
 
+static void count_way(const json_t *element, geo_features *features) {
+    osm_way way = OSM_NEITHER;
+    const char *key;
+    json_t *value;
+    json_object_foreach(json_object_get(element, "tags"), key, value)
+        if (json_is_string(value)) {
+            osm_way one = osm_way_of(key, json_string_value(value));
+            way = NOC_MAX(way, one);
+        }
+    features->buildings += way == OSM_BUILDING;
+    features->streets += way == OSM_STREET;
+}
+
 typedef struct tag_list {
     NOC_ARRAY(lamp_tag) tags;
     char id[64];
@@ -83,6 +97,10 @@ static noc_status emit(json_t *elements, lamp_writer *w) {
     size_t count = json_array_size(elements);
     for (size_t i = 0; i < count && !status; i++) {
         json_t *element = json_array_get(elements, i);
+        if (is_node(element))
+            w->seen.total[GEO_POINTS]++;
+        else
+            count_way(element, &w->seen);
         if (w->inventory ? !is_node(element) : !json_object_size(json_object_get(element, "tags")))
             continue;
         double xyz[3] = { NAN, NAN, NAN };

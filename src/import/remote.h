@@ -35,6 +35,7 @@ enum {
     REMOTE_ISSUE,      /* kind, count, texts: reason, examples */
     REMOTE_PROGRESS,   /* double */
     REMOTE_COLUMNS,    /* points, count, and of each column values, mapped, texts: name, field, unit, example */
+    REMOTE_FEATURES,   /* geo_features */
     REMOTE_END,        /* remote_end, text: format */
 };
 

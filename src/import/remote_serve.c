@@ -77,6 +77,13 @@ static noc_status on_columns(void *ctx, size_t points, const geo_column *columns
     return NOC_OK;
 }
 
+static noc_status on_features(void *ctx, const geo_features *features) {
+    serving *s = ctx;
+    remote_put(&s->out, features, sizeof(*features));
+    emit(s, REMOTE_FEATURES);
+    return NOC_OK;
+}
+
 static int on_material(void *ctx, const noc_material *material) {
     serving *s = ctx;
     remote_put(&s->out, material, sizeof(*material));
@@ -119,7 +126,7 @@ static void serve(serving *s) {
     if (!log || !issues)
         _exit(REMOTE_NO_MEMORY);
     geo_sink sink = { .ctx = s, .log = log, .issues = issues, .lamps_lost = &s->lamps_lost, .crs = on_crs, .lamp = on_lamp,
-                      .progress = on_progress, .columns = on_columns, .named_lamps = s->asked.sink.named_lamps, .inspect = s->asked.sink.inspect };
+                      .progress = on_progress, .columns = on_columns, .features = on_features, .named_lamps = s->asked.sink.named_lamps, .inspect = s->asked.sink.inspect };
     const mesh_parts parts = { .ctx = s, .log = log, .issues = issues, .material = on_material, .mesh = on_mesh };
     const char *format = s->asked.reader->name;
     noc_status opened;

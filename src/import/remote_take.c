@@ -118,6 +118,15 @@ static noc_status take_columns(remote_taker *t, remote_record *one) {
     return status;
 }
 
+static noc_status take_features(remote_taker *t, remote_record *one) {
+    geo_features f;
+    if (!remote_get(one, &f, sizeof(f)) || !is_bool(&f.any))
+        return garbled(t);
+    if (f.any && !(isfinite(f.lo[0]) && isfinite(f.lo[1]) && isfinite(f.hi[0]) && isfinite(f.hi[1])))
+        return garbled(t);
+    return t->sink->features ? t->sink->features(t->sink->ctx, &f) : NOC_OK;
+}
+
 static noc_status take_end(remote_taker *t, remote_record *one) {
     remote_end end = { 0 };
     remote_get(one, &end, sizeof(end));
@@ -147,6 +156,7 @@ static noc_status take(remote_taker *t, uint32_t kind, remote_record *one) {
     case REMOTE_ISSUE: return take_issue(t, one);
     case REMOTE_PROGRESS: return remote_get(one, &t->done, sizeof(t->done)) && isfinite(t->done) ? NOC_OK : garbled(t);
     case REMOTE_COLUMNS: return take_columns(t, one);
+    case REMOTE_FEATURES: return take_features(t, one);
     case REMOTE_END: return take_end(t, one);
     default: return garbled(t);
     }

@@ -253,6 +253,22 @@ static noc_status on_columns(void *ctx, size_t points, const geo_column *columns
     return NOC_OK;
 }
 
+/* A file of which nothing is read still says where it is, to those who ask what it holds. */
+static noc_status on_features(void *ctx, const geo_features *features) {
+    importer *im = ctx;
+    noc_report_file *file = &im->inputs[im->current].file;
+    file->map_points = (size_t)features->total[GEO_POINTS];
+    file->map_lines = (size_t)features->total[GEO_LINES];
+    file->map_areas = (size_t)features->total[GEO_AREAS];
+    file->buildings_unread = (size_t)features->buildings;
+    file->streets_unread = (size_t)features->streets;
+    if (!im->inspect || !features->any)
+        return NOC_OK;
+    bool usable;
+    double corners[2][3] = { { features->lo[0], features->lo[1], NAN }, { features->hi[0], features->hi[1], NAN } };
+    return place_points(im, corners[0], 2, "", &usable);
+}
+
 static bool on_progress(void *ctx, double done) {
     importer *im = ctx;
     const noc_progress *progress = &im->params->progress;
@@ -267,7 +283,7 @@ geo_sink sink_create(importer *im) {
     return (geo_sink){ .ctx = im, .log = im->log, .issues = im->inputs[im->current].issues,
                        .lamps_lost = &im->inputs[im->current].lamps_lost, .crs = on_crs,
                        .begin_object = on_begin_object, .polygon = on_polygon, .end_object = on_end_object,
-                       .lamp = on_lamp, .columns = on_columns, .progress = on_progress,
+                       .lamp = on_lamp, .columns = on_columns, .features = on_features, .progress = on_progress,
                        .named_lamps = im->inputs[im->current].named_lamps, .inspect = im->inspect };
 }
 

@@ -4,6 +4,7 @@
  * fetch something or run another driver. GDAL's messages never reach stderr: the first failure becomes our error. */
 #include "import/lamp_tags.h"
 #include "import/map_source.h"
+#include "import/osm_ways.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -176,6 +177,11 @@ static bool place_of(OGRFeatureH feature, double xyz[3], bool *is_point) {
     return true;
 }
 
+static int dimension_of(OGRFeatureH feature) {
+    OGRGeometryH g = OGR_F_GetGeometryRef(feature);
+    return g ? NOC_CLAMP(OGR_G_GetDimension(g), GEO_POINTS, GEO_AREAS) : GEO_POINTS;
+}
+
 typedef struct map_reading {
     const map_format *format;
     noc_stream *stream;
@@ -259,19 +265,35 @@ static bool layer_kind(OGRLayerH layer, lamp_keys *keys, bool *tags, bool *inven
     return true;
 }
 
+/* A feature that is neither a single point nor a lamp. */
+static void leave(map_reading *m, OGRFeatureH feature, const double xyz[3]) {
+    OGREnvelope box;
+    char id[64];
+    snprintf(id, sizeof(id), "feature %lld", (long long)OGR_F_GetFID(feature));
+    OGR_G_GetEnvelope(OGR_F_GetGeometryRef(feature), &box);
+    bool somewhere = isfinite(xyz[0]) && isfinite(xyz[1]);
+    lamp_writer_unread(&m->writer, dimension_of(feature), id,
+                       somewhere ? (double[]){ box.MinX, box.MaxX, box.MinY, box.MaxY } : NULL);
+}
+
 static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn) {
     double xyz[3] = { NAN, NAN, NAN };
     bool is_point, placed = place_of(feature, xyz, &is_point);
     bool table = m->writer.inventory || m->writer.strange;
+    m->writer.seen.total[dimension_of(feature)] += placed;
     if (table && !is_point && (placed || m->writer.strange)) {
-        if (m->writer.inventory)
-            geo_issue(m->writer.sink->issues, GEO_SKIPPED, "line or area in a table of lamps", "");
+        if (placed)
+            leave(m, feature, xyz);
         return NOC_OK;
     }
     if (!collect_fields(feature, defn, m->format->kind == MAP_OSM, &m->tags))
         return no_memory(m);
-    size_t before = m->writer.lamps;
+    size_t before = m->writer.lamps, points = m->writer.points;
     noc_status status = lamp_writer_point(&m->writer, m->tags.tags.data, m->tags.tags.len, m->tags.id, xyz);
+    if (!status && placed && !is_point && m->writer.points == points) {
+        m->writer.features--; /* that might have been a lamp */
+        leave(m, feature, xyz);
+    }
     if (!status && m->writer.lamps > before && !is_point)
         geo_issue(m->writer.sink->issues, GEO_GUESSED, "lamp drawn as a line or an area: put in its middle", m->tags.id);
     return status;
@@ -337,7 +359,7 @@ static noc_status judge(map_reading *m, OGRLayerH layer) {
 static noc_status read_layer(map_reading *m, OGRLayerH layer) {
     lamp_writer *w = &m->writer;
     noc_status status = judge(m, layer);
-    if (!status && !w->strange)
+    if (!status && (!w->strange || w->sink->inspect))
         status = start_layer(m, layer);
     if (!status)
         status = read_features(m, layer);
@@ -345,6 +367,7 @@ static noc_status read_layer(map_reading *m, OGRLayerH layer) {
     if (!status && m->format->kind == MAP_OSM && w->sink->named_lamps && !w->lamps) {
         w->inventory = true;
         w->features = 0;
+        w->seen = (geo_features){ 0 };
         OGR_L_ResetReading(layer);
         status = read_features(m, layer);
     }
@@ -357,7 +380,8 @@ static noc_status read_layers(map_reading *m) {
         if (none)
             GDALDatasetReleaseResultSet(m->source.dataset, none);
         OGRLayerH points = GDALDatasetGetLayerByName(m->source.dataset, "points");
-        return points ? read_layer(m, points) : map_source_error(&m->source);
+        noc_status status = points ? read_layer(m, points) : map_source_error(&m->source);
+        return status ? status : osm_count_ways(m->stream, m->format->probe == probe_pbf, m->writer.sink, &m->writer.seen);
     }
     noc_status status = NOC_OK;
     int count = GDALDatasetGetLayerCount(m->source.dataset);

@@ -75,6 +75,27 @@ refused XLSX 'XLSX.*CSV'
 printf 'ACME\n1\n2\n36\nten\n' >stranger
 expect "anything else is told what is read" 1 'none of the formats.*GeoJSONSeq, GeoPackage, Shapefile, FlatGeobuf' render stranger -o x.png
 
+# Outlines of buildings: counted, told, and nothing that --strict lets pass.
+if [ "$("$program" --version | grep -ci gdal)" != 0 ]; then
+    cat >outlines.geojson <<'END'
+{"type": "FeatureCollection", "features": [
+{"type": "Feature", "properties": {"a": 1}, "geometry": {"type": "Polygon", "coordinates": [[[8, 50], [8.5, 50], [8.5, 50.25], [8, 50]]]}},
+{"type": "Feature", "properties": {"a": 2}, "geometry": {"type": "Polygon", "coordinates": [[[8, 50], [8.5, 50], [8.5, 50.25], [8, 50]]]}}]}
+END
+    run info outlines.geojson
+    grep -q 'CRS .*WGS 84' out && grep -q 'x 8.000000 to 8.500000, y 50.000000 to 50.250000' out && grep -q 'features  *2 polygons' out &&
+        ! grep -q objects out
+    result $? "info of outlines tells their CRS, extent and number"
+    run render "$gml" outlines.geojson --frames 1 --size 32x18 -o x.png
+    test $status = 0 && grep -q '2 polygons are not read: outlines of buildings are not extruded yet' err &&
+        grep -q '2 x polygon that is not read' out
+    result $? "outlines are told of by render"
+    rm -f x.png
+    expect "outlines are refused by --strict" 1 '2 x polygon that is not read' render "$gml" outlines.geojson --strict --size 32x18 -o x.png
+else
+    skip "outlines of buildings" "no GDAL"
+fi
+
 # Tables of which nothing tells that they are lamps: the user says so, and what their columns mean.
 printf 'lat,lon,power\n48.76,11.42,70\n48.7601,11.4201,100\n' >plain.csv
 printf 'ASSET,HT,XX,YY\nA,30,11.4202,48.7602\nB,,11.4203,48.7603\n' >strange.csv

@@ -496,12 +496,61 @@ static void test_mutated(void **state) {
 
 static int tear_down(void **state) { return unlink(temp_file("", 0)); }
 
+/* ---- what is not read is told ---- */
+
+static void test_unread(void **state) {
+    (void)state;
+    if (!NOC_HAVE_GDAL)
+        skip();
+    static const char outlines[] = "{\"type\": \"FeatureCollection\", \"features\": [\n"
+        "{\"type\": \"Feature\", \"properties\": {\"a\": 1}, \"geometry\": {\"type\": \"Polygon\", \"coordinates\": "
+        "[[[8, 50], [8.5, 50], [8.5, 50.25], [8, 50]]]}},\n"
+        "{\"type\": \"Feature\", \"properties\": {\"a\": 2}, \"geometry\": {\"type\": \"LineString\", \"coordinates\": [[8, 50], [9, 51]]}}]}";
+    lamp_sink s;
+    lamp_sink_start(&s);
+    assert_int_equal(read_lamps_text(&s, outlines, NULL), NOC_OK);
+    assert_int_equal(issue_count(&s, "polygon that is not read"), 1);
+    assert_int_equal(issue_count(&s, "line that is not read"), 1);
+    assert_int_equal(s.warnings, 1);
+    assert_non_null(strstr(s.warning, "1 line, 1 polygon are not read: outlines of buildings are not extruded yet"));
+    lamp_sink_end(&s);
+    static const char ways[] = "<?xml version='1.0'?><osm version='0.6'><node id='1' lat='50' lon='8'><tag k='highway' v='street_lamp'/></node>"
+        "<node id='2' lat='50' lon='8.1'/>"
+        "<way id='1'><nd ref='1'/><nd ref='2'/><tag k='building' v='yes'/></way>"
+        "<way id='2'><nd ref='1'/><nd ref='2'/><tag k='highway' v='footway'/></way>"
+        "<way id='3'><nd ref='1'/><nd ref='2'/><tag k='building' v='no'/></way>"
+        "<way id='4'><nd ref='1'/><nd ref='2'/><tag k='highway' v='service'/><tag k='building' v='roof'/></way>"
+        "<relation id='5'><member type='way' ref='1' role='outer'/><tag k='building' v='church'/></relation></osm>";
+    lamp_sink_start(&s);
+    assert_int_equal(read_lamps_text(&s, ways, NULL), NOC_OK);
+    assert_int_equal(s.lamps.len, 1);
+    assert_int_equal(issue_count(&s, "building that is not read"), 3);
+    assert_int_equal(issue_count(&s, "street or path that is not read"), 1);
+    assert_non_null(strstr(s.warning, "3 buildings, 1 street or path are not read"));
+    lamp_sink_end(&s);
+}
+
+/* PBF packs its tags, so they are found by another way than those of XML. */
+static void test_unread_pbf(void **state) {
+    if (!NOC_HAVE_GDAL)
+        skip();
+    REQUIRE_SHARED(path, "data/lights/helsinki/Helsinki.osm.pbf");
+    lamp_sink s;
+    lamp_sink_start(&s);
+    assert_int_equal(read_lamps(&s, path, NULL), NOC_OK);
+    assert_int_equal(issue_count(&s, "building that is not read"), 632);
+    assert_int_equal(issue_count(&s, "street or path that is not read"), 2680);
+    assert_non_null(strstr(s.warning, "632 buildings, 2,680 streets and paths are not read"));
+    lamp_sink_end(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_real_counts), cmocka_unit_test(test_washington), cmocka_unit_test(test_heights),
         cmocka_unit_test(test_quantities),  cmocka_unit_test(test_directions), cmocka_unit_test(test_words),
         cmocka_unit_test(test_verdicts),    cmocka_unit_test(test_csv),        cmocka_unit_test(test_geojson),
         cmocka_unit_test(test_osm),         cmocka_unit_test(test_other_maps), cmocka_unit_test(test_cut),        cmocka_unit_test(test_mutated),
+        cmocka_unit_test(test_unread),      cmocka_unit_test(test_unread_pbf),
     };
     return cmocka_run_group_tests_name("import/vector", tests, NULL, tear_down);
 }
