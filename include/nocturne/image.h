@@ -141,6 +141,7 @@ typedef struct noc_channel {
     /* of NOC_CHANNEL_LABELS, names of the numbers 0 to label_count - 1: ASCII; not owned. NULL: none */
     const char *const *labels;
     size_t label_count;
+    const uint8_t (*label_colours)[3]; /* label_count of them, 8-bit sRGB; not owned. NULL: any that differ */
 } noc_channel;
 
 /* None all over; NULL after reporting an error. */

@@ -53,6 +53,7 @@ noc_status cli_place_camera(render_job *job); /* once the scene is there */
 /* show.c */
 int cli_parse_show(render_args *args);
 noc_status cli_write_view(render_job *job, const noc_image_meta *meta);
+void cli_print_view_kind(const render_job *job, bool numbers); /* what the file holds; ends the line */
 void cli_print_view(const render_job *job);
 
 /* report.c */

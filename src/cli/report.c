@@ -14,14 +14,23 @@ static void add(meta_text *meta, const char *key, char *value) {
     meta->values[meta->count++] = value;
 }
 
+/* Has the option a say in this picture? That of a built-in scene has none in a city, nor the tone map in a view. */
+static bool counts(const render_args *args, const noc_option *o) {
+    if (!strcmp(o->name, "view"))
+        return !args->eye;
+    if (!strcmp(o->group, "Display"))
+        return !args->show;
+    return !cli_builtin_needed(o, args->common.inputs, args->common.input_count);
+}
+
 /* Everything needed to make the picture again, besides what the writer adds (units, exposure): each option by name. */
 static void add_options(meta_text *meta, const render_args *args) {
     for (const cli_set *set = cli_render.sets; set->table; set++) {
         for (const noc_option *o = set->table(); o->name; o++) {
-            static const char *const told_otherwise[] = { "output", "view", "eye", "target", "camera-crs", "fov", "stats", "frames",
-                                                          "size", "exposure", "time", "threads", "show", "show-range", "quiet",
-                                                          "verbose", "help", "lamps", NULL };
-            if (cli_hidden(set, o) || cli_hidden(&(cli_set){ .hidden = told_otherwise }, o))
+            static const char *const told_otherwise[] = { "output", "eye", "target", "camera-crs", "fov", "stats",
+                                                          "frames", "size", "exposure", "time", "threads", "show",
+                                                          "show-range", "quiet", "verbose", "help", "lamps", NULL };
+            if (cli_hidden(set, o) || cli_hidden(&(cli_set){ .hidden = told_otherwise }, o) || !counts(args, o))
                 continue;
             add(meta, o->name, cli_option_value(o, (const char *)args + set->offset));
         }
@@ -129,6 +138,8 @@ noc_status cli_write_picture(render_job *job) {
     add(&meta, "camera-target", cli_format("%.17g %.17g %.17g", c->target[0], c->target[1], c->target[2]));
     add(&meta, "camera-up", cli_format("%.17g %.17g %.17g", c->up[0], c->up[1], c->up[2]));
     add(&meta, "camera-fov", cli_format("%.17g", c->fov_deg));
+    add(&meta, "scene-triangles", cli_format("%zu", job->scene_info.triangles));
+    add(&meta, "scene-lights", cli_format("%zu", job->scene_info.lights));
     add_totals(&meta, job->report);
     add(&meta, "given-crs-name", cli_format("%s", job->scene_info.given_crs));
     add(&meta, "given-origin", cli_format("%.12g %.12g %.12g", job->scene_info.given_origin[0], job->scene_info.given_origin[1],
@@ -137,6 +148,8 @@ noc_status cli_write_picture(render_job *job) {
     add(&meta, "scene-origin", cli_format("%.12g %.12g %.12g", job->scene_info.origin[0], job->scene_info.origin[1],
                                           job->scene_info.origin[2]));
     add_options(&meta, args);
+    if (!args->show && is_exr(args->output))
+        add(&meta, "auto-ev100", cli_format("%.4f", auto_ev100(job)));
     if (args->show)
         add(&meta, "show", cli_format("%s", noc_aov_name((noc_aov)(args->show - 1))));
     noc_image_meta texts = { meta.count, (const char *const *)meta.keys, (const char *const *)meta.values };
@@ -258,10 +271,14 @@ void cli_print_summary(const render_job *job) {
     const noc_scene_info *scene = &job->scene_info;
     char a[64], b[64], c[32], name[24] = "", path[240];
     printf("%s\n", cli_clean(path, sizeof(path), args->output));
-    printf("  picture   %d x %d, %s of %s, %s%.2f EV100\n", args->render.width, args->render.height,
-           cli_many(a, (uint64_t)job->frames, "frame"), choice_name("method", &args->render, name, sizeof(name)),
-           is_exr(args->output) ? "linear cd/m2, automatic exposure would be " : "exposure ",
-           is_exr(args->output) ? auto_ev100(job) : ev100(job));
+    printf("  picture   %d x %d, %s of %s, ", args->render.width, args->render.height,
+           cli_many(a, (uint64_t)job->frames, "frame"), choice_name("method", &args->render, name, sizeof(name)));
+    if (job->view)
+        cli_print_view_kind(job, is_exr(args->output));
+    else if (is_exr(args->output))
+        printf("linear cd/m2, automatic exposure would be %.2f EV100\n", auto_ev100(job));
+    else
+        printf("exposure %.2f EV100\n", ev100(job));
     if (job->view)
         cli_print_view(job);
     printf("  scene     %s, %s", cli_many(a, scene->triangles, "triangle"), cli_many(b, scene->lights, "light"));

@@ -74,6 +74,18 @@ static void print_names(const render_job *job, const float *v, size_t n, size_t 
     free(labels);
 }
 
+void cli_print_view_kind(const render_job *job, bool numbers) {
+    const noc_channel *view = job->view;
+    printf("the view %s ", view->name);
+    if (!numbers)
+        puts("in colours, with a legend");
+    else if (view->components > 1)
+        puts("as vectors");
+    else
+        printf("as numbers%s%s\n",
+               *view->unit ? " of unit " : view->scale == NOC_CHANNEL_LABELS ? " that stand for names" : "", view->unit);
+}
+
 /* Figures of the numbers, for the summary. */
 void cli_print_view(const render_job *job) {
     const noc_channel *view = job->view;

@@ -96,6 +96,10 @@ static noc_status range_of(const noc_channel *c, const noc_channel_params *p, co
 /* A colour for a number that is a name: of many hues, neither dark nor grey. Those that have names of their own are few: their
  * hues lie a golden angle apart, with three lightnesses in turn, so that those of near hues differ in that. */
 static void label_colour(const noc_channel *c, uint32_t label, uint8_t rgb[3]) {
+    if (has_names(c) && label < c->label_count && c->label_colours) {
+        memcpy(rgb, c->label_colours[label], 3);
+        return;
+    }
     if (has_names(c) && label < c->label_count) {
         static const double lightness[3] = { 0.72, 0.52, 0.88 };
         colormap_polar(lightness[label % 3], 0.13, fmod(label * 2.399963229728653 - 1.2, 2 * M_PI), rgb);

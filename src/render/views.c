@@ -36,6 +36,19 @@ noc_status noc_check_aovs(const noc_render_params *p, noc_log *log) {
     return NOC_OK;
 }
 
+/* What one expects on a map of land use: grey roads, green plants, blue water, brown earth, red roofs. */
+static const uint8_t class_colours[NOC_CLASS_COUNT][3] = {
+    [NOC_CLASS_OTHER] = { 232, 184, 240 },       [NOC_CLASS_WALL] = { 232, 201, 160 },
+    [NOC_CLASS_ROOF] = { 192, 57, 43 },          [NOC_CLASS_GROUND] = { 142, 90, 168 },
+    [NOC_CLASS_CLOSURE] = { 61, 43, 122 },       [NOC_CLASS_WINDOW] = { 127, 227, 245 },
+    [NOC_CLASS_DOOR] = { 230, 110, 0 },          [NOC_CLASS_INSTALLATION] = { 255, 143, 163 },
+    [NOC_CLASS_TERRAIN] = { 139, 107, 74 },      [NOC_CLASS_ROAD] = { 150, 150, 150 },
+    [NOC_CLASS_SIDEWALK] = { 205, 205, 205 },    [NOC_CLASS_GREEN] = { 111, 191, 74 },
+    [NOC_CLASS_TREE] = { 31, 122, 51 },          [NOC_CLASS_WATER] = { 47, 111, 208 },
+    [NOC_CLASS_BRIDGE] = { 63, 167, 155 },       [NOC_CLASS_FURNITURE] = { 200, 150, 0 },
+    [NOC_CLASS_LAMP] = { 255, 241, 77 },         [NOC_CLASS_VEHICLE] = { 255, 30, 150 },
+};
+
 void noc_describe_aov(const noc_render_params *p, noc_aov aov, noc_channel *channel) {
     static const struct { const char *title, *unit; noc_channel_scale scale; } kinds[NOC_AOV_COUNT] = {
         [NOC_AOV_LIGHTS] = { "influence volumes that hold the point", "lights", NOC_CHANNEL_LINEAR },
@@ -57,6 +70,7 @@ void noc_describe_aov(const noc_render_params *p, noc_aov aov, noc_channel *chan
     channel->title = kinds[aov].title;
     channel->labels = aov == NOC_AOV_CLASS ? noc_class_names : NULL;
     channel->label_count = channel->labels ? NOC_CLASS_COUNT : 0;
+    channel->label_colours = channel->labels ? class_colours : NULL;
     if (aov == NOC_AOV_LIGHTS && p->candidates == NOC_CANDIDATES_LISTS)
         channel->title = "entries of the tile list";
 }

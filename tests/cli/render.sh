@@ -25,16 +25,31 @@ test $status = 0 && ! cmp -s a.png b.png; result $? "another seed, another pictu
 run render $small --city-seed 9 -o b.png
 test $status = 0 && ! cmp -s a.png b.png; result $? "another city, another picture"
 
+run render $small --view street -o c.png
 eye=$(meta a.png camera-eye | tr ' ' ,) target=$(meta a.png camera-target | tr ' ' ,) fov=$(meta a.png camera-fov)
 run render $small --eye "$eye" --target "$target" --fov "$fov" -o b.png
-test -n "$eye" && cmp -s a.png b.png; result $? "the camera in the metadata gives the same file" "$eye $target $fov"
+meta a.png | grep -v '^view: own$' >a.meta
+test -n "$eye" && meta b.png | cmp -s a.meta && "$program" compare b.png a.png | grep -Eq '^  all pixels +2,304 +0\.000 +0 +0 '
+result $? "the camera in the metadata gives the same picture" "$eye $target $fov"
 test "$(meta a.png method)" = ris && test "$(meta a.png seed)" = 1 && test "$(meta a.png frames)" = 2 && test "$(meta a.png city-size)" = 150 &&
     meta a.png Software | grep -q '^Nocturne ' && test -n "$(meta a.png ev100)"
 result $? "the options are in the metadata"
+test "$(meta a.png view) $(meta c.png view)" = "own street" && test -z "$(meta b.png view)" && test -z "$(meta a.png lights)$(meta a.png scene-seed)" &&
+    grep -q "$(meta a.png scene-triangles | sed -E 's/([0-9]{3})$/,\1/') triangles, $(meta a.png scene-lights) light" out
+result $? "and the view, the scene's counts, and no option of other scenes"
+run render "$source_dir/tests/cli/city.gml" --size 32x18 --frames 1 -o b.png
+test $status = 0 && ! meta b.png | grep -E '^(lights|city-size|city-lit|city-seed|scene-seed|auto-ev100):' && meta b.png | grep -q '^tonemap: '
+result $? "a real city's picture has no option of built-in scenes"
 
 run render $small -o a.exr
 test $status = 0 && grep -aq 'cd/m2' a.exr && grep -aq 'camera-eye' a.exr && grep -aq 'scene-origin' a.exr && grep -aq 'candidates' a.exr
 result $? "EXR with units, camera and options"
+auto=$(sed -n 's/.*automatic exposure would be \([-0-9.]*\) EV100$/\1/p' out)
+python3 -c '
+import re, sys
+kept = re.search(rb"auto-ev100\0string\0....([-0-9.]+)", open("a.exr", "rb").read(), re.S)
+assert abs(float(kept.group(1)) - float(sys.argv[1])) < 0.006, (kept, sys.argv)' "$auto"
+result $? "and the automatic exposure that is told"
 run render $small -q -o b.PNG
 test $status = 0 && test ! -s out && test ! -s err && cmp -s a.png b.PNG; result $? "quiet says nothing; endings in capitals count"
 
@@ -117,11 +132,23 @@ test $status = 0 && cmp -s a.png b.png && test -z "$(meta a.png show)"; result $
 # What labels mean is in the legend, the metadata and the summary.
 run render $small --show class -o class.png
 cp out told
-"$program" render $small --show class -q -o class.exr
+grep -q '^  picture   64 x 36, 2 frames of ris, the view class in colours, with a legend$' out && ! grep -q EV100 out && ! meta class.png | grep -q tonemap
+result $? "a view has no exposure"
+run render $small --show depth -o depth.exr
+grep -q 'frames of ris, the view depth as numbers of unit m$' out && ! grep -Eq 'EV100|cd/m2' out; result $? "nor have its numbers"
+run render $small --show class -o class.exr
+grep -q 'frames of ris, the view class as numbers that stand for names$' out && ! grep -Eq 'EV100|cd/m2' out; result $? "nor have those that are names"
 python3 - "$(meta class.png labels)" "$(meta class.png size)" <<'CHECK'
 import re, sys
 labels = re.findall(r"(\d+) (\w+) (#[0-9a-f]{6})(?:, |$)", sys.argv[1])
 assert len(labels) == 18 and len({c for n, name, c in labels}) == 18 and ("9", "road") in {l[:2] for l in labels}, sys.argv[1]
+rgb = {name: [int(c[i:i + 2], 16) for i in (1, 3, 5)] for n, name, c in labels}
+rgb["none"] = [92, 92, 96]
+for a in rgb:
+    assert all(a == b or sum((x - y) ** 2 for x, y in zip(rgb[a], rgb[b])) >= 45 ** 2 for b in rgb), a
+most = lambda name: max(range(3), key=lambda k: rgb[name][k])
+assert all(len(set(rgb[name])) == 1 for name in ("road", "sidewalk")) and most("green") == most("tree") == 1 and most("water") == 2, rgb
+assert rgb["terrain"][0] > rgb["terrain"][1] > rgb["terrain"][2] and most("roof") == 0, rgb
 told = re.findall(r"(\d+) (\w+) ([\d.]+)%", open("told").read().split("\n  scene")[0].split("pixels\n")[1])
 none = float(re.search(r"none in ([\d.]+)%", open("told").read()).group(1))
 shares = [float(t[2]) for t in told]
