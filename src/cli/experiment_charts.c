@@ -159,17 +159,29 @@ static void panel(FILE *out, const experiment_lab *lab, size_t camera, experimen
     }
 }
 
-/* Values that colours stand for, whichever entry has them first. */
-static void values_legend(FILE *out, const experiment_spec *spec, int left, int y) {
+/* Values that colours stand for, whichever entry has them first, and configurations that stand alone. Returns the
+ * lines that it takes. out NULL: that alone. */
+static int values_legend(FILE *out, const experiment_spec *spec, int left, int right, int y) {
+    int x = left, lines = 1;
     for (size_t i = 0; i < spec->config_count; i++) {
-        if (!svg_is_new_value(spec, i))
+        const experiment_config *c = &spec->configs[i];
+        if (c->option && !svg_is_new_value(spec, i))
             continue;
+        const char *text = c->option ? c->value : c->name;
+        int width = 40 + (int)strlen(text) * CHAR;
+        if (x > left && x + width > right) {
+            x = left;
+            lines++;
+        }
         svg_style style = svg_style_of(spec, i);
         style.marker = style.dot;
-        svg_marker(out, &style, left + 6, y - 4);
-        words(out, left + 16, y, "start", "", spec->configs[i].value);
-        left += 40 + (int)strlen(spec->configs[i].value) * CHAR;
+        if (out) {
+            svg_marker(out, &style, x + 6, y + (lines - 1) * LINE - 4);
+            words(out, x + 16, y + (lines - 1) * LINE, "start", "", text);
+        }
+        x += width;
     }
+    return lines;
 }
 
 bool experiment_has_dots(const experiment_spec *spec) { return row_count(spec) <= DOT_MOST && spec->config_count > 1; }
@@ -207,16 +219,18 @@ int experiment_dots(const experiment_lab *lab, const char *name) {
     FILE *out = experiment_create(lab, name, &temporary);
     if (!out)
         return CLI_FAILURE;
-    svg_head(out, left + columns * (PANEL_WIDTH + PANEL_GAP), TOP + LINE + lines * high);
+    int width = left + columns * (PANEL_WIDTH + PANEL_GAP);
+    int head = TOP + (shares_rows(spec) ? values_legend(NULL, spec, left, width, 0) : 1) * LINE;
+    svg_head(out, width, head + lines * high);
     words(out, left, 26, "start", " font-size=\"15\" font-weight=\"bold\"", experiment_figure(spec));
     if (shares_rows(spec))
-        values_legend(out, spec, left, TOP + 8);
+        values_legend(out, spec, left, width, TOP + 8);
     int line = -1;
     column = 0;
     for (size_t camera = 0; camera < spec->camera_count; camera++) {
         bool starts = starts_line(spec, camera, &column);
         line += starts;
-        int top = TOP + LINE + line * high + GAP + 20, from = left + (column - 1) * (PANEL_WIDTH + PANEL_GAP);
+        int top = head + line * high + GAP + 20, from = left + (column - 1) * (PANEL_WIDTH + PANEL_GAP);
         int count = experiment_points(spec, camera, points);
         view_name(out, lab, camera, from, top - 28);
         if (starts)

@@ -55,15 +55,47 @@ static double round_number(int i) {
     return steps[i - 3 * decade] * pow(10, decade);
 }
 
-/* Both ends of an axis are ticks, and have their numbers. */
+/* Room that a number takes along its axis. */
+static double room_of(double v, bool vertical) {
+    char text[32];
+    return vertical ? 7.5 * snprintf(text, sizeof(text), "%.10g", v) + 6 : 15;
+}
+
+static bool is_free(const svg_axis *a, bool vertical, double v, double other) {
+    return fabs(svg_place(a, v) - svg_place(a, other)) >= 0.5 * (room_of(v, vertical) + room_of(other, vertical));
+}
+
+static bool is_on(const svg_axis *a, double v) { return v >= a->lo * 0.999999 && v <= a->hi * 1.000001; }
+
+/* Do the numbers of every step-th round value, from 1 on, stand apart? */
+static bool fits(const svg_axis *a, bool vertical, int step) {
+    double last = 0;
+    for (int i = -45; i <= 45; i++) {
+        double v = round_number(i);
+        if (i % step || !is_on(a, v))
+            continue;
+        if (last > 0 && !is_free(a, vertical, v, last))
+            return false;
+        last = v;
+    }
+    return true;
+}
+
+/* Both ends of an axis are ticks with numbers: 1, 2, 5, ... where there is room for all of them, else powers of ten. */
 void svg_widen(svg_axis *a) {
-    int i = -45, j;
-    while (i < 45 && round_number(i + 1) <= a->lo * 1.000001)
-        i++;
-    for (j = i + 1; j < 45 && round_number(j) < a->hi * 0.999999;)
-        j++;
-    a->lo = round_number(i);
-    a->hi = round_number(j);
+    bool vertical = a->from < a->to;
+    double lo = a->lo, hi = a->hi;
+    for (int step = 1; step <= 3; step += 2) {
+        int i = -45, j;
+        while (i + step <= 45 && round_number(i + step) <= lo * 1.000001)
+            i += step;
+        for (j = i + step; j < 45 && round_number(j) < hi * 0.999999;)
+            j += step;
+        a->lo = round_number(i);
+        a->hi = round_number(j);
+        if (fits(a, vertical, 1))
+            break;
+    }
 }
 
 void svg_text(FILE *out, const char *text, int limit) {
@@ -110,13 +142,7 @@ void svg_marker(FILE *out, const svg_style *style, double x, double y) {
     fprintf(out, "\"/>\n");
 }
 
-/* Room that a number takes along its axis. */
-static double room_of(double v, bool vertical) {
-    char text[32];
-    return vertical ? 7.5 * snprintf(text, sizeof(text), "%.10g", v) + 6 : 15;
-}
-
-/* A line across the plot and, where it does not touch one that has its own, its number. */
+/* A line across the plot, and its number. */
 static void tick(FILE *out, const svg_axis *a, bool vertical, const svg_axis *other, double v, bool numbered) {
     double at = svg_place(a, v);
     if (vertical)
@@ -129,18 +155,13 @@ static void tick(FILE *out, const svg_axis *a, bool vertical, const svg_axis *ot
 }
 
 void svg_grid(FILE *out, const svg_axis *a, bool vertical, const svg_axis *other) {
-    double decades = log10(a->hi / a->lo), end = svg_place(a, a->hi), last = svg_place(a, a->lo), last_value = a->lo;
-    tick(out, a, vertical, other, a->lo, true);
+    int step = 1;
+    while (step < 45 && !fits(a, vertical, step))
+        step = step == 1 ? 3 : step + 3;
     for (int i = -45; i <= 45; i++) {
         double v = round_number(i);
-        if (v < a->lo * 1.000001 || v > a->hi * 0.999999)
-            continue;
-        double at = svg_place(a, v), room = room_of(v, vertical);
-        bool free_before = fabs(at - last) >= 0.5 * (room + room_of(last_value, vertical));
-        bool numbered = free_before && fabs(end - at) >= 0.5 * (room + room_of(a->hi, vertical)) && !(decades > 4 && i % 3);
-        tick(out, a, vertical, other, v, numbered);
-        last = numbered ? at : last;
-        last_value = numbered ? v : last_value;
+        if (is_on(a, v) && v < a->hi * 0.999999)
+            tick(out, a, vertical, other, v, i % step == 0 && is_free(a, vertical, v, a->hi));
     }
     tick(out, a, vertical, other, a->hi, true);
 }

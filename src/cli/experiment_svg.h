@@ -25,8 +25,8 @@ void svg_widen(svg_axis *axis); /* out to round numbers, so that at least two ti
 void svg_text(FILE *out, const char *text, int limit); /* escaped, cut after so many characters */
 void svg_head(FILE *out, int width, int height);
 void svg_marker(FILE *out, const svg_style *style, double x, double y); /* four shapes, filled, then hollow */
-/* Lines across the plot at round values and at both ends, and their numbers; other is the other axis. Numbers between the ends thin out
- * where they would touch. */
+/* Lines across the plot at 1, 2, 5, 10, ... and at the upper end. All have numbers where there is room for them, else
+ * powers of ten alone, and the upper end. other is the other axis. */
 void svg_grid(FILE *out, const svg_axis *axis, bool vertical, const svg_axis *other);
 
 #endif

@@ -93,7 +93,7 @@ bars = tree.parse("a/frame-times.svg").getroot()
 widths = [float(r.get("width")) for r in bars.iter(svg + "rect") if (r.get("class") or "")[0] == "m"]
 assert len(widths) == 2 * (1 + choices) and all(w > 0 for w in widths), widths
 dots = [p for p in tree.parse("a/errors.svg").getroot().iter(svg + "path") if re.match("[lm][0-9]( paper)?$", p.get("class") or "")]
-assert len(dots) == 2 * 3 * (1 + choices) + choices, len(dots) # cameras, frames; and the legend
+assert len(dots) == 2 * 3 * (1 + choices) + 1 + choices, len(dots) # cameras, frames; and the legend
 # The table of one option's values: a cell is the errors of the first frame, the last, the mean of all, by the mean of seeds.
 rows = list(csv.DictReader(open("a/results.csv")))
 def error(mode, frame):
