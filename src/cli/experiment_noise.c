@@ -78,29 +78,36 @@ experiment_noise experiment_read_noise(const char *reference) {
     return whole ? n : (experiment_noise){ NAN, NAN, NAN, NAN, NAN, NAN };
 }
 
-/* Pixels that are 0 in the reference and lit in a picture, by the row that has most of them. */
+#define LEAST_SHARE 0.01 /* of relMSE: less is not worth a word */
+
+/* Pixels that are 0 in the reference and lit in a picture, by the row that they make most of the error of. */
 char *experiment_unlit(const experiment_lab *lab, size_t camera) {
     const experiment_spec *spec = &lab->spec;
     const experiment_run *runs = experiment_find_run(lab, camera, 0, 0);
     int pixels = spec->all_pixels ? COL_UNLIT_ALL : COL_UNLIT, part = spec->all_pixels ? COL_RELMSE_UNLIT_ALL : COL_RELMSE_UNLIT;
-    struct { double pixels, share; const char *name; int mode, frame; } most = { .pixels = 0 };
+    const noc_render_params *reference = &spec->reference.params;
+    bool lists = reference->method == NOC_METHOD_RIS && reference->candidates == NOC_CANDIDATES_LISTS;
+    struct { double pixels, share; const char *name; int mode, frame; } most = { .share = 0 };
     for (size_t i = 0; i < (size_t)spec->repetitions * spec->config_count; i++)
         for (int mode = 0; mode < EXPERIMENT_MODES; mode++)
             for (int frame = 1; frame <= runs[i].count; frame++) {
                 const experiment_row *row = &runs[i].rows[mode][frame - 1];
-                if (!row->done || !(row->values[pixels] > most.pixels))
+                double share = row->values[part] / row->values[spec->all_pixels ? COL_RELMSE_ALL : COL_RELMSE];
+                /* of a black reference it is infinite: told by itself */
+                if (!row->done || !(share > most.share && isfinite(share)))
                     continue;
+                most.share = share;
                 most.pixels = row->values[pixels];
-                most.share = row->values[part] / row->values[spec->all_pixels ? COL_RELMSE_ALL : COL_RELMSE];
                 most.name = spec->configs[runs[i].config].name;
                 most.mode = mode;
                 most.frame = frame;
             }
     char many[64];
-    if (!most.name || !isfinite(most.share)) /* all of a black reference, which is told by itself */
+    if (!most.name || most.share < LEAST_SHARE)
         return NULL;
-    return cli_format("unlit in the reference: up to %s that a picture lights (most in %s, %s %d: %.3g %% of its relMSE). "
-                      "More frames of the reference, or one of ris over lists, may light them.",
-                      cli_many(many, (uint64_t)most.pixels, "pixel"), most.name,
-                      most.mode == EXPERIMENT_ACCUMULATED ? "mean of" : "frame", most.frame, 100 * most.share);
+    return cli_format("unlit in the reference: %s that a picture lights are %.3g %% of its relMSE (%s, %s %d, where "
+                      "their share is largest). More frames of the reference%s may light them.",
+                      cli_many(many, (uint64_t)most.pixels, "pixel"), 100 * most.share, most.name,
+                      most.mode == EXPERIMENT_ACCUMULATED ? "mean of" : "frame", most.frame,
+                      lists ? "" : ", or one of ris over lists,");
 }

@@ -143,17 +143,18 @@ static void print_command(FILE *out) {
 
 static bool draws_candidates(const noc_render_params *p) { return p->method == NOC_METHOD_RIS || p->method == NOC_METHOD_RESTIR; }
 
-/* The method, where its candidates come from, and options of a configuration that are not the renderer's defaults. */
+/* The method, where its candidates come from, and options of a configuration that count and are no defaults. */
 static void print_options(FILE *out, const noc_render_params *params) {
     static const char *const above[] = { "width", "height", "seed", "accumulate", NULL };
     noc_render_params usual = noc_render_default_params();
     bool any = false;
     for (const noc_option *o = noc_render_options(); o->name; o++) {
-        char mine[80], theirs[80];
+        char mine[80], theirs[80], why[160];
         noc_option_get(o, params, mine, sizeof(mine));
         noc_option_get(o, &usual, theirs, sizeof(theirs));
         bool always = !strcmp(o->name, "method") || (!strcmp(o->name, "candidates") && draws_candidates(params));
-        if (cli_hidden(&(cli_set){ .hidden = above }, o) || (!strcmp(mine, theirs) && !always))
+        if (cli_hidden(&(cli_set){ .hidden = above }, o) || (!strcmp(mine, theirs) && !always) ||
+            noc_option_idle(o, noc_render_options(), params, why, sizeof(why)))
             continue;
         fprintf(out, "%s`%s %s`", any ? ", " : "", o->name, mine);
         any = true;
@@ -241,7 +242,12 @@ static void print_crops(FILE *out, const experiment_lab *lab, size_t camera) {
         fprintf(out, "%s%s", !mean ? "frame" : frames > 1 ? "the means of frame" : "the mean of frame", mean || frames > 1 ? "s " : " ");
     for (size_t i = 0; i < frames && !motion; i++)
         fprintf(out, mean ? "%s1 to %d" : "%s%d", i ? ", " : "", spec->shown[i]);
-    fputs(" of each configuration, row by row as in this table: ", out);
+    fputs(" of each configuration, row by row (reference", out);
+    for (size_t i = 1; i <= spec->config_count; i++) {
+        fputs(i % (size_t)crop->columns ? ", " : "; ", out);
+        experiment_text(out, spec->configs[i - 1].name);
+    }
+    fputs("): ", out);
     const experiment_camera *c = &spec->cameras[camera];
     if (!c->inset_count)
         fprintf(out, "the part of %d x %d px at (%d, %d), enlarged %d times", crop->width, crop->height, crop->x, crop->y, crop->scale);
@@ -251,18 +257,7 @@ static void print_crops(FILE *out, const experiment_lab *lab, size_t camera) {
         experiment_text(out, c->insets[i].name);
         fprintf(out, ", %d x %d px at (%d, %d)", box[2], box[3], box[0], box[1]);
     }
-    fputs(". All have the reference's exposure.\n\n|", out);
-    size_t columns = (size_t)crop->columns, count = spec->config_count + 1;
-    for (size_t i = 0; i < (count + columns - 1) / columns * columns; i++) {
-        experiment_cell(out, !i ? "reference" : i < count ? spec->configs[i - 1].name : "");
-        if (i + 1 == columns) {
-            fputs("\n|", out);
-            for (size_t j = 0; j < columns; j++)
-                fputs("---|", out);
-        }
-        if ((i + 1) % columns == 0)
-            fputs(i + 1 < count ? "\n|" : "\n", out);
-    }
+    fputs(". All have the reference's exposure.\n", out);
 }
 
 /* Frames that a table of errors shows: some of those that were measured, and each configuration's last, which differ where CPU

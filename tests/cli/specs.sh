@@ -46,6 +46,7 @@ nocturne: warning: idle.json: reference: tail has no effect: it needs method ris
 nocturne: warning: idle.json: configurations[0]: draws has no effect: it needs method ris|restir, not is
 TOLD
 test $status = 0 && cmp -s told err; result $? "options that change nothing are warned of"
+grep -q '^| is | `jitter false`, `sky 0`, `method is` |$' i/report.md; result $? "and the report does not list them" "$(grep '^| is |' i/report.md)"
 run experiment idle.json -o i --cache cache -q
 test $status = 0 && test ! -s err; result $? "quiet says nothing of them"
 spec wrong.json '{ "name": "fast", "preset": "fast" }'
@@ -124,7 +125,7 @@ result $? "summary.md names entries of several values by what they share"
 spec titled.json '{ "name": "=1+1" }' '"title": "A <b>title</b> & *more*",'
 sed -i 's/"shown": \[\]/"shown": [1]/; s/"view": "own"/"view": "own", "path": { "frames": 2, "pan": 1 }/' titled.json
 run experiment titled.json -o g --cache cache
-test "$(head -n 1 g/report.md)" = "# A &lt;b&gt;title&lt;/b&gt; &amp; \\*more\\*" && grep -q '^Shown is the last frame of each configuration, row by row as in this table: the part of [0-9]* x ' g/report.md
+test "$(head -n 1 g/report.md)" = "# A &lt;b&gt;title&lt;/b&gt; &amp; \\*more\\*" && grep -q '^Shown is the last frame of each configuration, row by row (reference, =1+1): the part of [0-9]* x ' g/report.md
 result $? "a title is the heading, as it reads; what is shown of a camera that moves is said"
 python3 -c 'import csv; assert [r["configuration"] for r in csv.DictReader(open("g/results.csv"))] == ["\x27=1+1"]' && grep -q '^| =1+1 |' g/report.md
 result $? "a name that a spreadsheet would run is text in the table"
@@ -160,6 +161,7 @@ for folder, groups, values in (("arrays", ("ris", "restir"), ("uniform", "power"
     names, marks, root = look(folder + "/errors.svg")
     styles = [names[v] for v in values]
     assert len(set(styles)) == len(values), names
+    assert {style for style, x, y in marks} == set(names.values()), (names, marks) # every series has an entry
     texts = {"".join(t.itertext()): float(t.get("y")) for t in root.iter(svg + "text")}
     configs = {r["configuration"] for r in csv.DictReader(open(folder + "/results.csv"))}
     for group in groups:
@@ -176,6 +178,19 @@ for path in ("arrays/errors.svg", "arrays/1-one-own-mean-frames.svg", "arrays/1-
     numbers = [(float(t.get("x")), float(t.get("y"))) for t in root.iter(svg + "text") if re.fullmatch(r"[\d.e-]+", "".join(t.itertext()))]
     boxes = [[float(r.get(k)) for k in ("x", "y", "width", "height")] for r in root.iter(svg + "rect") if r.get("class") == "frame"]
     assert boxes
+    # Along the axes of one box, numbers are those of 1, 2, 5, ... without a gap, or powers of ten; the end of frames is what it is.
+    for place in range(2):
+        axes = {}
+        for t in root.iter(svg + "text"):
+            text = "".join(t.itertext())
+            if re.fullmatch(r"[\d.e-]+", text) and (t.get("text-anchor") == "middle") == (place == 0):
+                x, y, w, h = min(boxes, key=lambda b: abs(b[1] + b[3] + 18 - float(t.get("y"))) + (abs(b[0] + b[2] / 2 - float(t.get("x")))))
+                axes.setdefault((x, y), []).append(float(text))
+        for numbers_there in axes.values():
+            v = sorted(numbers_there)
+            steps = [round(b / a, 3) for a, b in zip(v, v[1:])]
+            steps = steps[:-1] if "frames" in path and place == 0 else steps
+            assert set(steps) <= {2, 2.5} or len(set(steps)) == 1, (path, v)
     for x, y, w, h in boxes:
         for end in (x, x + w):
             assert any(abs(at - end) < 0.2 and abs(down - (y + h + 18)) < 0.2 for at, down in numbers), (path, end)
@@ -291,13 +306,15 @@ for again in "" ", again"; do
     python3 - <<'CHECK'
 import csv, json, re
 rows = list(csv.DictReader(open("weak/results.csv")))
-pattern = r"nlit in the reference: up to (\d+) pixels that a picture lights \(most in rays, mean of 2: ([\d.]+) % of its relMSE\)"
-most = max(rows, key=lambda r: float(r["unlit"]))
+pattern = r"nlit in the reference: (\d+) pixels that a picture lights are ([\d.]+) % of its relMSE \(rays, (mean of|frame) (\d), .*reference, or one of ris"
+part = lambda r: float(r["relmse_unlit"]) / float(r["relmse"])
+most = max(rows, key=part)
 assert len(rows) == 4 and 1 < float(most["unlit"]) < 32 * 18 and most["unlit"] == most["unlit_all"], rows
-share = "%.3g" % (100 * float(most["relmse_unlit"]) / float(most["relmse"]))
+mode = "mean of" if most["mode"] == "accumulated" else "frame"
 for path, before in ("told", "one, own: u"), ("weak/report.md", "\nU"):
     text = open(path).read()
-    assert re.search(before + pattern, text).groups() == (most["unlit"], share), (path, text)
+    said = re.search(before + pattern, text).groups()
+    assert said[:2] == (most["unlit"], "%.3g" % (100 * part(most))), (path, text)
 assert json.load(open("itself"))["all"]["unlit"] == 0
 CHECK
     result $? "pixels that the reference leaves black are counted$again" "$(cat told)"
