@@ -224,8 +224,11 @@ static bool place(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
             for (int k = 0; k < 2; k++)
                 p->foot[k] += .7 * side[k];
         p->crowded = site_taken(scene, p->foot[0], p->foot[1], p->foot[2]);
-        geo_issue(issues, GEO_REPAIRED, p->crowded ? "lamp where others leave no room: its light beside theirs, without a pole"
-                                                   : "two lamps at one place: moved apart", lamp->id);
+        if (p->crowded)
+            geo_issue(issues, GEO_GUESSED, "lamp where others leave no room: its light in the same place as theirs, without a pole",
+                      lamp->id);
+        else
+            geo_issue(issues, GEO_REPAIRED, "two lamps at one place: moved apart", lamp->id);
     }
     if (params->tally)
         params->tally->moved += p->foot[0] != lamp->xyz[0] || p->foot[1] != lamp->xyz[1];

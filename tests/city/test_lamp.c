@@ -361,6 +361,22 @@ static void test_lamps_at_one_point(void **state) {
     size_t apart = issues_with(issues, "moved apart"), crowded = issues_with(issues, "leave no room");
     assert_int_equal(1 + apart + crowded, LAMPS);
     assert_in_range(apart, 1, 8);
+    size_t places = 0;
+    for (size_t i = 0; i < LAMPS; i++) {
+        bool again = false;
+        for (size_t k = 0; k < i && !again; k++)
+            again = scene->lights.data[i].p[0] == scene->lights.data[k].p[0] && scene->lights.data[i].p[1] == scene->lights.data[k].p[1];
+        places += !again;
+    }
+    assert_int_equal(places, 1 + apart); /* as the report says of the others: in the same place as theirs */
+    assert_int_equal(issues_with(issues, "its light in the same place as theirs"), crowded);
+    for (size_t i = 0; i < geo_issues_count(issues); i++) { /* a pole that is missing does not pass --strict */
+        const char *reason, *examples;
+        bool repaired;
+        size_t count;
+        assert_true(geo_issues_get(issues, i, &reason, &repaired, &count, &examples));
+        assert_int_equal(geo_issues_kind(issues, i), strstr(reason, "leave no room") ? GEO_GUESSED : GEO_REPAIRED);
+    }
     assert_true(noc_ground_load(scene, 0, 0) < 200);
     geo_issues_destroy(issues);
     noc_scene_destroy(scene);
