@@ -231,14 +231,16 @@ geo_crs *geo_crs_create_plain(const char *definition, const char *place, noc_log
     return NULL;
 }
 
-bool geo_crs_database(void) {
+noc_status geo_crs_database(void) {
     PJ_CONTEXT *context = crs_context_take(true);
-    bool found = context && proj_context_get_database_metadata(context, "EPSG.VERSION");
+    if (!context)
+        return NOC_ERR_MEMORY;
+    bool found = proj_context_get_database_metadata(context, "EPSG.VERSION") != NULL;
     if (found)
         crs_context_give(context, true);
     else
         proj_context_destroy(context); /* others may find it */
-    return found;
+    return found ? NOC_OK : NOC_ERR_UNSUPPORTED;
 }
 
 geo_crs *geo_crs_utm(double lon, double lat) {

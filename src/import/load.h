@@ -31,6 +31,7 @@ typedef struct input {
     bool started, repeated;
     size_t lamps_lost;        /* that the reader or the sink found to have no place */
     bool named_lamps;         /* by noc_import_params.lamps */
+    int strange_crs;          /* that were not understood and not replaced by --crs */
 } input;
 
 /* Where a lamp was given: what would be if its axes were exchanged is asked of lamps that are of no use. */
@@ -84,7 +85,6 @@ typedef struct importer {
     NOC_ARRAY(double) given;  /* the points that are placed, as they were given */
     NOC_ARRAY(source_crs *) sources;
     source_crs *source;       /* of the coordinates that come next */
-    int strange_crs;          /* that were not understood */
     bool mesh_from_origin;    /* the mesh that is read is in metres from the scene's origin */
     /* the object that is being read (sink.c) */
     char *object_id;
@@ -97,6 +97,7 @@ typedef struct importer {
     bool has_roads;
     double open_area;         /* m2 of terrain, roads, pavements, lawns and water, seen from above */
     NOC_ARRAY(pending_lamp) lamps;
+    size_t lamp_looks;        /* lamps that repeat_lamps compared: for tests */
     NOC_ARRAY(given_place) lost; /* lamps that have no place in the scene's CRS */
     noc_arena names;
     /* progress */

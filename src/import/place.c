@@ -33,7 +33,8 @@ static source_crs *find_source(importer *im, const char *spelling) {
 /* Of a CRS that the user gave. */
 static noc_status given_status(noc_status status) { return !status || status == NOC_ERR_MEMORY ? status : NOC_ERR_ARGUMENT; }
 
-/* PROJ searches its whole database for a name that it does not know: a tenth of a second each. */
+/* PROJ searches its whole database for a name that it does not know: a tenth of a second each. Where --crs stands in for such
+ * names, there may be as many as a reader takes of one file. */
 enum { MOST_STRANGE = 32 };
 
 /* The CRS that `spelling` means for this run; *crs is NULL for local metres. */
@@ -47,12 +48,15 @@ static noc_status resolve(importer *im, const char *spelling, const char *place,
             return NOC_OK;
         if (status == NOC_ERR_MEMORY)
             return noc_no_memory(im->log, place);
-        if (!geo_crs_database())
-            return noc_error(im->log, NOC_ERR_UNSUPPORTED, "%s: PROJ finds no proj.db, its database, so the CRS \"%.60s\" cannot be read: "
+        status = geo_crs_database();
+        if (status == NOC_ERR_MEMORY)
+            return noc_no_memory(im->log, place);
+        if (status)
+            return noc_error(im->log, status, "%s: PROJ finds no proj.db, its database, so the CRS \"%.60s\" cannot be read: "
                              "is PROJ_DATA right?", place, spelling);
-        if (++im->strange_crs > MOST_STRANGE)
-            return noc_error(im->log, NOC_ERR_FORMAT, "%s: more than %d CRSs that are not understood, \"%.60s\" the last of them", place,
-                             MOST_STRANGE, spelling);
+        if (!fallback && ++im->inputs[im->current].strange_crs > MOST_STRANGE)
+            return noc_error(im->log, NOC_ERR_FORMAT, "%s: more than %d CRSs of the file are not understood, \"%.60s\" the last of them",
+                             place, MOST_STRANGE, spelling);
         if (!fallback && !im->inspect)
             return noc_error(im->log, NOC_ERR_FORMAT,
                              "%s: the CRS \"%.60s\" is not understood, opens files, or is neither geographic nor projected: say with "

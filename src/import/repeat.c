@@ -14,6 +14,7 @@
 #define LAMP_CELL 1.0    /* m */
 #define SAME_PLACE 0.1   /* m between lamps of two files: degrees with six decimals are that coarse */
 #define SAME_LAMP 1.0    /* m between lamps of two files that have one id */
+#define MOST 64          /* lamps of a cell that are looked at: more than stand in a square metre */
 
 /* ---- files ---- */
 
@@ -243,6 +244,28 @@ static bool same_lamp(const pending_lamp *a, const pending_lamp *b) {
     return a->input != b->input && (d <= SAME_PLACE || (d <= SAME_LAMP && called_alike(&a->lamp, &b->lamp)));
 }
 
+/* One of those around that is this lamp in another file? */
+static bool in_other_file(importer *im, const lamp_cells *cells, const pending_lamp *p) {
+    for (int c = 0; c < 9; c++) {
+        size_t seen = 0;
+        for (uint32_t k = *lamp_cells_at(cells, p->lamp.xyz, c); k && seen++ < MOST; k = cells->next[k - 1], im->lamp_looks++)
+            if (same_lamp(&im->lamps.data[k - 1], p))
+                return true;
+    }
+    return false;
+}
+
+/* Does one of its own file stand at the very place? A thousand lamps of one file at one place are one, to those of another. */
+static bool stands_there(importer *im, const lamp_cells *cells, const pending_lamp *p) {
+    size_t seen = 0;
+    for (uint32_t k = *lamp_cells_at(cells, p->lamp.xyz, 4); k && seen++ < MOST; k = cells->next[k - 1], im->lamp_looks++) {
+        const pending_lamp *q = &im->lamps.data[k - 1];
+        if (q->input == p->input && q->lamp.xyz[0] == p->lamp.xyz[0] && q->lamp.xyz[1] == p->lamp.xyz[1])
+            return true;
+    }
+    return false;
+}
+
 noc_status repeat_lamps(importer *im) {
     pending_lamp *lamps = im->lamps.data;
     lamp_cells cells;
@@ -256,21 +279,14 @@ noc_status repeat_lamps(importer *im) {
         return noc_no_memory(im->log, "import");
     for (size_t i = 0; i < im->lamps.len; i++) {
         const pending_lamp p = lamps[i];
-        bool again = false;
-        for (int c = 0; c < 9 && !again; c++)
-            for (uint32_t k = *lamp_cells_at(&cells, p.lamp.xyz, c); k && !again; k = cells.next[k - 1])
-                again = same_lamp(&lamps[k - 1], &p);
-        if (again) {
+        if (in_other_file(im, &cells, &p)) {
             input *in = &im->inputs[p.input];
             geo_issue(in->issues, GEO_SPARED, "lamp that another file holds, too: taken once", p.lamp.id);
             in->file.lamps_repeated++;
             continue;
         }
         lamps[kept] = p;
-        uint32_t newest = *lamp_cells_at(&cells, p.lamp.xyz, 4);
-        const pending_lamp *last = newest ? &lamps[newest - 1] : NULL;
-        /* a thousand lamps of one file at one place are one, to those of another */
-        if (!last || last->input != p.input || last->lamp.xyz[0] != p.lamp.xyz[0] || last->lamp.xyz[1] != p.lamp.xyz[1])
+        if (!stands_there(im, &cells, &p))
             lamp_cells_add(&cells, p.lamp.xyz, kept);
         kept++;
     }

@@ -159,10 +159,16 @@ static const char links[] =
            POLYGON("arm", "20 0 5 20 1.2 5 20 1.2 5.1 20 0 5.1 20 0 5") "</gml:MultiSurface></frn:lod2Geometry></frn:CityFurniture>")
     "</core:CityModel>";
 
+static const char strange[] =
+    "<?xml version='1.0'?><core:CityModel xmlns:core='http://www.opengis.net/citygml/2.0' xmlns:bldg='http://www.opengis.net/citygml/building/2.0' "
+    "xmlns:gml='http://www.opengis.net/gml'><gml:boundedBy><gml:Envelope srsName='our own system'/></gml:boundedBy>"
+    BUILDING("only", POLYGON("wall", "690000 5330000 0 690009 5330000 0 690009 5330000 5 690000 5330000 5 690000 5330000 0")) "</core:CityModel>";
+
 static void citygml(void **state) {
     refuse_each("CityGML", &(import){ { "citygml/whole.gml" }, .all = true });
     refuse_each("CityGML with references between objects", &(import){ { write_text("links.gml", links) } });
     refuse_each("CityGML, zip, another CRS", &(import){ { "citygml/old.zip" }, .scene_crs = "EPSG:25832" });
+    refuse_each("CityGML with a CRS that is not understood", &(import){ { write_text("strange.gml", strange) }, .crs = "EPSG:25832" });
     refuse_each("CityGML, gzip, looked at", &(import){ { "citygml/whole.gml.gz" }, .inspect = true });
 }
 

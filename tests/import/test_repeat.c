@@ -151,6 +151,27 @@ static void test_lamps(void **state) {
     }
 }
 
+/* Lamps in turn at a few points of one square metre, in one file; and as many beside them in another. What is compared grows with
+ * their number alone. */
+static void test_lamps_in_turn(void **state) {
+    (void)state;
+    enum { LAMPS = 3000 };
+    static const size_t points[] = { 1, 2, 60, 90 };
+    for (size_t c = 0; c < NOC_COUNT(points); c++) {
+        input inputs[2] = { { .path = "one" }, { .path = "two" } };
+        importer im = { .inputs = inputs, .input_count = 2 };
+        for (size_t i = 0; i < 2 * LAMPS; i++) {
+            pending_lamp p = { .lamp = { .id = "", .ref = "" }, .input = i / LAMPS };
+            p.lamp.xyz[0] = 0.001 * (double)(i % points[c]) + (i < LAMPS ? 0.1 : 0.8);
+            assert_true(array_push(&im.lamps, p));
+        }
+        assert_int_equal(repeat_lamps(&im), NOC_OK);
+        assert_int_equal(im.lamps.len, 2 * LAMPS);
+        assert_in_range(im.lamp_looks, LAMPS, 2 * LAMPS * NOC_MIN(4 * points[c], 2 * 64));
+        array_free(&im.lamps);
+    }
+}
+
 /* Lamps along a street, every `step` m from x on, half a metre aside where x is not 0; the last `far` of them 10 m to the side. */
 static const char *street(const char *name, size_t count, double step, double x, size_t far) {
     char text[4000];
@@ -225,7 +246,7 @@ static void test_ingolstadt(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_files), cmocka_unit_test(test_objects), cmocka_unit_test(test_large_object),
-                                        cmocka_unit_test(test_lamps), cmocka_unit_test(test_doubles),
+                                        cmocka_unit_test(test_lamps), cmocka_unit_test(test_lamps_in_turn), cmocka_unit_test(test_doubles),
                                         cmocka_unit_test(test_ingolstadt) };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
