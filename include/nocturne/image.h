@@ -16,8 +16,8 @@ typedef struct noc_image {
     int width, height;
     float *rgb;              /* width * height * 3; owned */
     uint8_t *emitter;        /* NULL, or width * height: 1 where the pixel, or one next to it, sees an emitter; owned */
-    float *coverage;         /* NULL, or width * height * 4: what emitters seen directly add to rgb, and the share of the
-                              * frames that saw one; owned. Displays alone look at it: noc_image_to_srgb8. Not kept in
+    float *coverage;         /* NULL, or width * height * 4: what emitters seen directly add to rgb, and the share of
+                              * the frames that saw one; owned. Displays alone look at it: noc_image_to_srgb8. Not kept in
                               * files */
     /* What the file says that noc_image_read read it from: */
     char channel[32];        /* the name of a view ("class", "depth"), whose numbers are no light; "" of a picture */
@@ -134,7 +134,7 @@ typedef enum noc_channel_scale {
 typedef struct noc_channel {
     int width, height;
     int components;          /* 1, or 3: a unit vector a pixel */
-    float *value;            /* width * height * components, owned; 0 or more; where there is none -1 (vectors: 0 0 0) */
+    float *value;            /* width * height * components, owned; where there is none -1 (vectors: 0 0 0) */
     noc_channel_scale scale;
     const char *name, *unit; /* "rays", "rays a pixel"; unit "" for plain ratios and labels. These and title are not owned */
     const char *title;       /* what the numbers are, for the legend: ASCII */

@@ -38,7 +38,8 @@ void cg_affords(cg_parser *p, size_t bytes, const char *what) {
 bool cg_object_room(cg_parser *p) {
     const cg_object *o = &p->object;
     size_t bytes = o->arena.bytes + o->features.len * sizeof(cg_feature) + o->geometries.len * sizeof(cg_geometry) +
-                   o->surfaces.len * sizeof(cg_surface) + o->targets.len * sizeof(cg_target);
+                   o->surfaces.len * sizeof(cg_surface) + o->targets.len * sizeof(cg_target) +
+                   o->attributes.len * sizeof(cg_attribute);
     cg_affords(p, bytes, "an object");
     return !p->status;
 }

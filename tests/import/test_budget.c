@@ -247,6 +247,26 @@ static void cities_are_bounded(void **state) {
     allowed("city.gml", 0.1, 40000);
 }
 
+/* What the parts of an object say of themselves counts as its surfaces do. */
+static void attributes_are_bounded(void **state) {
+    FILE *f = create("words.gml");
+    fputs("<CityModel xmlns='http://www.opengis.net/citygml/2.0' xmlns:gml='http://www.opengis.net/gml' "
+          "xmlns:gen='http://www.opengis.net/citygml/generics/2.0' xmlns:b='http://www.opengis.net/citygml/building/2.0'>"
+          "<cityObjectMember><b:Building gml:id='house'>", f);
+    for (int i = 0; i < 400; i++) {
+        fputs("<b:outerBuildingInstallation><b:BuildingInstallation>", f);
+        for (int k = 0; k < 250; k++)
+            fputs("<gen:stringAttribute name='a'><gen:value>1</gen:value></gen:stringAttribute>", f);
+        fputs("</b:BuildingInstallation></b:outerBuildingInstallation>", f);
+    }
+    fputs("<b:lod1MultiSurface><gml:MultiSurface><gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>"
+          "0 0 0 1 0 0 1 1 0 0 0 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember></gml:MultiSurface>"
+          "</b:lod1MultiSurface></b:Building></cityObjectMember></CityModel>", f);
+    fclose(f);
+    refused("words.gml", 0.0045, "words.gml: an object (\"house\") would take"); /* 100,000 of them take 2.4 MB beside their texts */
+    allowed("words.gml", 0.02, 1);
+}
+
 /* Fifty buildings of a kilobyte in all: each refers twice to all that the one before it shows. */
 static void city_links_are_bounded(void **state) {
     FILE *f = create("links.gml");
@@ -332,7 +352,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(compressed_data_is_bounded), cmocka_unit_test(json_is_bounded), cmocka_unit_test(gltf_copies_are_bounded),
         cmocka_unit_test(gltf_is_added_up_first), cmocka_unit_test(archives_are_measured), cmocka_unit_test(lamps_are_bounded),
-        cmocka_unit_test(cities_are_bounded), cmocka_unit_test(city_links_are_bounded),
+        cmocka_unit_test(cities_are_bounded), cmocka_unit_test(attributes_are_bounded), cmocka_unit_test(city_links_are_bounded),
         cmocka_unit_test(obj_materials_are_bounded), cmocka_unit_test(obj_libraries_are_read_once), cmocka_unit_test(city_tags_are_bounded),  cmocka_unit_test(limits_are_checked),
     };
     return cmocka_run_group_tests_name("budgets", tests, set_up, tear_down);
