@@ -22,7 +22,8 @@ noc_status map_check_crs_text(const char *text, const char *name, noc_log *log) 
 /* ---- GeoJSON ---- */
 
 /* Finds the strings of members "crs", however deep, as the readers of GDAL would: what comments and single quotes hide
- * from one of them and not from the other is refused. */
+ * from one of them and not from the other is refused. So is a name that is an object: GDAL takes its text for the CRS's.
+ * {"type": T, "properties": {"name": N}} has two levels. */
 typedef struct json_scan {
     const char *name;
     noc_log *log;
@@ -92,6 +93,8 @@ static noc_status between_strings(json_scan *s, char c) {
         break;
     case '{': case '[':
         s->depth++;
+        if (s->crs_depth && s->depth > s->crs_depth + 2)
+            return noc_error(s->log, NOC_ERR_FORMAT, "%s: GeoJSON: a CRS in parts (PROJJSON), where its name is expected", s->name);
         break;
     case '}': case ']':
         s->depth -= s->depth > 0;

@@ -99,7 +99,7 @@ static void test_geojson(void **state) {
         "\"CRS\": {\"type\": \"name\", \"properties\": {\"name\": \"+proj=merc +nadgrids=%s\"}},",
         "\"\\u0063rs\": {\"type\": \"name\", \"properties\": {\"name\": \"\\u002bproj=merc +nad\\u0067rids=%s\"}},",
         "\"crs\\u0000x\" : {\"type\": \"name\", \"properties\": {\"name\": \"+proj=merc\\t+nadgrids=%s\"}},",
-        "\"crs\": null, \"crs\": {\"a\": [1, {}], \"type\": \"name\", "
+        "\"crs\": null, \"crs\": {\"a\": {}, \"type\": \"name\", "
         "\"properties\": {\"b\": \"\\\"\", \"name\": \"+proj=merc +nadgrids=%s\"}},",
         NAMED("ESRI::DICT:../..%s,abc"), NAMED("esri::ESRI:: dict:../..%s,abc"), NAMED("+title=x +init = %s:x"), NAMED("+init=epsg:4326"),
         NAMED("+title=x +proj = merc +nadgrids = %s"), NAMED("+proj=merc;nadgrids=%s"), NAMED("+proj=merc +nadgrids= +%s"),
@@ -113,6 +113,27 @@ static void test_geojson(void **state) {
 }
 
 /* What one reader of JSON takes for the end of a string is not where another one does. */
+#define PROJJSON_CRS(name, ellipsoid) \
+    "{\"type\": \"GeographicCRS\", \"name\": \"" name "\", \"datum\": {\"type\": \"GeodeticReferenceFrame\", \"name\": \"d\", " \
+    "\"ellipsoid\": {\"name\": \"" ellipsoid "\", \"semi_major_axis\": 6378137, \"inverse_flattening\": 298.257223563}}, " \
+    "\"coordinate_system\": {\"subtype\": \"ellipsoidal\", \"axis\": [{\"name\": \"Lat\", \"abbreviation\": \"lat\", " \
+    "\"direction\": \"north\", \"unit\": \"degree\"}, {\"name\": \"Lon\", \"abbreviation\": \"lon\", \"direction\": " \
+    "\"east\", \"unit\": \"degree\"}]}}"
+
+/* GDAL takes the text of an object in the name's place, whose strings alone name no grid. */
+static void test_crs_in_parts(void **state) {
+    char path[80], member[3000];
+    snprintf(path, sizeof(path), "%s/parts.geojson", folder);
+    snprintf(member, sizeof(member),
+             "\"crs\": {\"type\": \"name\", \"properties\": {\"name\": {\"type\": \"BoundCRS\", \"source_crs\": "
+             PROJJSON_CRS("x", "e") ", \"target_crs\": " PROJJSON_CRS("WGS 84", "WGS 84") ", \"transformation\": {\"name\": "
+             "\"x\", \"method\": {\"name\": \"NTv2\", \"id\": {\"authority\": \"EPSG\", \"code\": 9615}}, \"parameters\": "
+             "[{\"name\": \"Latitude and longitude difference file\", \"value\": \"%s\", \"id\": {\"authority\": \"EPSG\", "
+             "\"code\": 8656}}]}}}},", pipe_path);
+    write_geojson(path, member, "");
+    expect_error(path, NOC_ERR_FORMAT, "a CRS in parts");
+}
+
 static void test_hidden(void **state) {
     static const char *const hidden[] = {
         "/* \" */ \"crs\": {\"type\": \"name\", \"properties\": {\"name\": \"+proj=merc +nadgrids=%s\"}}, \"x\": \"\",",
@@ -327,7 +348,8 @@ static void test_geopackage_table(void **state) {
 int main(void) {
 #if NOC_HAVE_GDAL
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_geojson), cmocka_unit_test(test_hidden), cmocka_unit_test(test_plain), cmocka_unit_test(test_flatgeobuf),
+        cmocka_unit_test(test_geojson), cmocka_unit_test(test_crs_in_parts), cmocka_unit_test(test_hidden),
+        cmocka_unit_test(test_plain), cmocka_unit_test(test_flatgeobuf),
         cmocka_unit_test(test_flatgeobuf_authority), cmocka_unit_test(test_packed), cmocka_unit_test(test_shapefile), cmocka_unit_test(test_geopackage),
         cmocka_unit_test(test_geopackage_table),
     };
