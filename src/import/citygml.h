@@ -131,6 +131,7 @@ typedef struct cg_feature {
     int function;          /* noc_class told by function, usage or class, -1 if none */
     uint32_t first_attribute, end_attribute; /* among these are its own, and those of its parts */
     uint32_t attributes;
+    uint32_t first_geometry, end_geometry; /* its own, and those of its parts */
 } cg_feature;
 
 /* Where an id leads: a run of surfaces in document order. */
@@ -276,6 +277,7 @@ typedef struct cg_parser {
     bool object_open;       /* begin_object was called and end_object not yet */
     size_t emitted, dropped;
     uint32_t kinds_told;    /* of objects that were left out */
+    size_t looked;          /* features and surfaces looked at for installed lamps, since progress was asked */
 } cg_parser;
 
 #define CG_UNTOLD (UINT32_MAX - 1)

@@ -18,6 +18,7 @@
 #define GLOBE 0.6     /* m; the largest globe */
 #define NO_POLE 1.2   /* m; a body lower than this is a luminaire without a pole */
 #define RAYS 64
+#define ASK 1024      /* features and surfaces that are looked at before progress is asked */
 
 /* ---- is it one? ---- */
 
@@ -64,20 +65,36 @@ typedef struct body {
     double low, high, foot[2];
 } body;
 
-/* Does a geometry belong to the feature, or to a part of it? */
-static bool is_of(const cg_object *object, uint32_t geometry, uint32_t feature) {
-    uint32_t f = object->geometries.data[geometry].feature;
-    while (f != feature && f != CG_NONE)
-        f = object->features.data[f].parent;
-    return f == feature;
+/* The first item of the geometry, or of a later one: items are in the order of geometries. */
+static size_t first_item(const cg_parser *p, uint32_t geometry) {
+    size_t low = 0, high = p->selection.items.len;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (p->selection.items.data[middle].geometry < geometry)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+typedef struct item_range { size_t first, end; } item_range;
+
+/* The items of a feature and of its parts, whose geometries follow each other. */
+static item_range items_of(cg_parser *p, uint32_t feature) {
+    const cg_feature *of = &p->object.features.data[feature];
+    item_range range = { first_item(p, of->first_geometry), first_item(p, of->end_geometry) };
+    p->looked += range.end - range.first;
+    return range;
 }
 
 /* The feature's shown surfaces as triangles; false if there are none. */
 static bool read_body(cg_parser *p, uint32_t feature, body *b) {
     bool first = true;
-    for (size_t i = 0; i < p->selection.items.len && p->selection.lod >= 0 && !p->status; i++) {
+    const item_range range = items_of(p, feature);
+    for (size_t i = range.first; i < range.end && p->selection.lod >= 0 && !p->status; i++) {
         const cg_item *item = &p->selection.items.data[i];
-        if (!item->shown || !is_of(&p->object, item->geometry, feature))
+        if (!item->shown)
             continue;
         const cg_implicit *implicit = p->object.geometries.data[item->geometry].implicit;
         cg_tell_crs(p, implicit ? implicit->srs : item->polygon->srs);
@@ -296,9 +313,10 @@ static bool place_by_body(cg_parser *p, uint32_t feature, geo_lamp *lamp, bool *
 
 /* By the reference point of a prototype in another file, or by a point. */
 static bool place_by_point(cg_parser *p, uint32_t feature, geo_lamp *lamp) {
-    for (size_t i = 0; i < p->object.geometries.len; i++) {
+    const cg_feature *of = &p->object.features.data[feature];
+    for (uint32_t i = of->first_geometry; i < of->end_geometry; i++) {
         const cg_implicit *implicit = p->object.geometries.data[i].implicit;
-        if (!implicit || !implicit->has_point || !is_of(&p->object, (uint32_t)i, feature))
+        if (!implicit || !implicit->has_point)
             continue;
         cg_tell_crs(p, implicit->srs);
         memset(lamp->xyz, 0, sizeof(lamp->xyz));
@@ -398,17 +416,26 @@ bool cg_emit_lamp(cg_parser *p) {
     return true;
 }
 
+/* Progress is asked as the work goes on: one object may hold very many lamps. */
+static bool goes_on(cg_parser *p) {
+    if (p->status || ++p->looked < ASK)
+        return !p->status;
+    p->looked = 0;
+    if (!p->sink->progress(p->sink->ctx, p->pass == 1 ? noc_stream_progress(p->stream) : 1))
+        cg_stop(p, NOC_ERR_CANCELLED);
+    return !p->status;
+}
+
 void cg_emit_installed_lamps(cg_parser *p) {
-    for (uint32_t f = 1; f < p->object.features.len && !p->status; f++) {
+    for (uint32_t f = 1; f < p->object.features.len && goes_on(p); f++) {
         geo_lamp lamp;
         bool gives_way;
         const cg_feature *of = &p->object.features.data[f];
         if (!of->attributes || !cg_may_be_lamp(of->type) || !make_lamp(p, f, &lamp, &gives_way))
             continue;
-        for (size_t i = 0; i < p->selection.items.len && gives_way; i++) {
-            cg_item *item = &p->selection.items.data[i];
-            item->shown = item->shown && !is_of(&p->object, item->geometry, f);
-        }
+        const item_range range = items_of(p, f);
+        for (size_t i = range.first; i < range.end && gives_way; i++)
+            p->selection.items.data[i].shown = false;
         if (gives_way)
             geo_issue(p->sink->issues, GEO_GUESSED, "lamp whose body is a block around its light: a globe in its place",
                       cg_report_id(p, NULL, f));

@@ -214,7 +214,8 @@ static bool start_feature(cg_parser *p, cg_frame *frame, const attributes *a) {
         return false;
     }
     cg_feature feature = { .type = type, .id = a->id ? arena_strdup(&p->object.arena, a->id) : "",
-                           .parent = frame->feature, .function = -1 };
+                           .parent = frame->feature, .function = -1,
+                           .first_geometry = (uint32_t)p->object.geometries.len };
     frame->feature = (uint32_t)p->object.features.len;
     frame->geometry = CG_NONE;
     frame->flip = frame->in_reference_point = frame->in_point = false;
@@ -522,6 +523,8 @@ void cg_end_element(void *user, const XML_Char *name) {
     case CG_POLYGON: cg_polygon_end(p, frame); break;
     case CG_IMPLICIT: end_implicit(p, frame); break;
     case CG_FEATURE:
+        if (frame->feature != CG_NONE)
+            p->object.features.data[frame->feature].end_geometry = (uint32_t)p->object.geometries.len;
         if (frame->feature == 0)
             cg_object_end(p);
         break;

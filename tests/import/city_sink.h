@@ -24,6 +24,8 @@ typedef struct city_sink {
     bool lat_first;        /* answer to crs */
     bool in_object;
     size_t calls, stop_at; /* stops at that call with NOC_ERR_CANCELLED; 0: never */
+    size_t asked, asked_amid, lamps_asked; /* for progress; with new lamps since then; lamps at the last time */
+    bool stop_amid;        /* progress stops it once there are lamps */
     noc_status status;
     const char *format;
 } city_sink;
@@ -80,9 +82,12 @@ static noc_status city_lamp(void *ctx, const geo_lamp *lamp) {
 }
 
 static bool city_progress(void *ctx, double done) {
-    (void)ctx;
+    city_sink *s = ctx;
     assert_true(done >= 0 && done <= 1);
-    return true;
+    s->asked++;
+    s->asked_amid += s->lamps.len > s->lamps_asked;
+    s->lamps_asked = s->lamps.len;
+    return !s->stop_amid || !s->lamps.len;
 }
 
 static void city_quiet(void *user, noc_log_level level, const char *text) {
@@ -114,7 +119,7 @@ static void city_clear(city_sink *s) {
 /* Reads a file anew into s, whose lat_first and stop_at are kept. */
 static noc_status city_read(city_sink *s, const char *path, int lod) {
     city_clear(s);
-    s->calls = 0;
+    s->calls = s->asked = s->asked_amid = s->lamps_asked = 0;
     s->in_object = false;
     s->format = "";
     s->sink = (geo_sink){ .ctx = s, .log = noc_log_create(&(noc_log_params){ .message = city_quiet }),

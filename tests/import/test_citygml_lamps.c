@@ -227,6 +227,31 @@ static void test_installations(void **state) {
     assert_int_equal(sink.polygons.len, 1 + 6 + 6 + 6); /* the block's alone are left away */
 }
 
+/* One building with very many: each looks at its own surfaces alone, and the import can be called off amid them. */
+static void test_many_installations(void **state) {
+    enum { LAMPS = 1500 };
+    char body[4000], *text = NULL;
+    size_t size;
+    FILE *f = open_memstream(&text, &size);
+    fputs("<CityModel" NAMESPACES("2.0", GML31) ">" "<cityObjectMember><b:Building g:id='house'>", f);
+    for (int i = 0; i < LAMPS; i++) {
+        box(body, X + 3 * i, Y - 1, 3, X + 3 * i + 2, Y + 1, 5);
+        fprintf(f, INSTALLED("l", FUNCTION("b", "lamp"), "%s"), body);
+    }
+    fputs("</b:Building></cityObjectMember></CityModel>", f);
+    assert_int_equal(fclose(f), 0);
+    read_text(text);
+    assert_int_equal(sink.lamps.len, LAMPS);
+    assert_int_equal(sink.polygons.len, 0); /* all of them give way */
+    assert_true(fabs(sink.lamps.data[LAMPS - 1].xyz[0] - X - 3 * LAMPS + 2) < 1.1);
+    assert_in_range(sink.asked_amid, 10, 30); /* 13 features and surfaces a lamp */
+    sink.stop_amid = true;
+    assert_int_equal(city_read_bytes(&sink, text, size, 3), NOC_ERR_CANCELLED);
+    assert_in_range(sink.lamps.len, 1, LAMPS / 5);
+    sink.stop_amid = false;
+    free(text);
+}
+
 /* ---- in a scene ---- */
 
 static bool blocked(const noc_scene *scene, const double o[3], const double d[3]) {
@@ -331,7 +356,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_codes),  cmocka_unit_test(test_words),  cmocka_unit_test(test_by_attributes),
         cmocka_unit_test(test_values), cmocka_unit_test(test_places), cmocka_unit_test(test_bodies),
-        cmocka_unit_test(test_installations),
+        cmocka_unit_test(test_installations), cmocka_unit_test(test_many_installations),
         cmocka_unit_test(test_light_reaches_the_ground), cmocka_unit_test(test_left_out),
     };
     return cmocka_run_group_tests_name("import/citygml_lamps", tests, NULL, clear);
