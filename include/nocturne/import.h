@@ -112,6 +112,7 @@ typedef struct noc_report_file {
     const char *path, *format; /* "CityGML 2.0", "GeoJSON", ... */
     const char *crs;           /* as understood: "EPSG:25832 (ETRS89 / UTM zone 32N)", "" if none */
     const char *crs_given;     /* as spelled in the file, "" if none */
+    bool crs_taken;            /* the file names none: it is its format's, or what its numbers tell */
     uint64_t bytes;            /* as stored */
     uint64_t bytes_read;       /* after decompression */
     double seconds;

@@ -62,7 +62,9 @@ static void print_source(const noc_report_file *file) {
     printf("\n  %-11s %s", "CRS", known ? cli_clean(text, sizeof(text), file->crs) : "none");
     if (file->crs_given && *file->crs_given)
         printf(", given as \"%s\"", cli_clean(text, sizeof(text), file->crs_given));
-    else if (!known && file->has_extent)
+    else if (known)
+        printf(", %s", file->crs_taken ? "taken as such: the file names none" : "by --crs");
+    else if (file->has_extent)
         printf(" (to put it in place: --crs EPSG:n)");
     putchar('\n');
 }

@@ -110,6 +110,7 @@ static void report_file(const noc_report_file *file) {
     text("format", file->format);
     text("crs", file->crs);
     text("crs_given", file->crs_given);
+    text("crs_from", *file->crs_given ? "file" : file->crs_taken ? "format" : *file->crs ? "option" : "");
     number("bytes", (double)file->bytes);
     number("bytes_unpacked", (double)file->bytes_read);
     number("seconds", file->seconds);

@@ -121,13 +121,16 @@ typedef enum geo_issue_kind {
 void geo_issue(geo_issues *issues, geo_issue_kind kind, const char *reason, const char *id); /* texts are copied */
 bool geo_issues_refused(const geo_issues *issues); /* whether memory was refused to any, which is not counted then; looked at once, at the end */
 
+/* Before a srsName that the file does not hold: it is the format's, or the one that its numbers tell. */
+#define GEO_CRS_TAKEN '='
+
 /* The importer's side. Readers call these; any status but NOC_OK makes the reader stop and return it. */
 typedef struct geo_sink {
     void *ctx;
     noc_log *log;
     geo_issues *issues;
     size_t *lamps_lost; /* where readers count lamps in use whose place is none: they are not emitted; may be NULL */
-    /* srsName as spelled; called before the first coordinate it applies to, again when it changes. Returns in *lat_first
+    /* srsName as spelled, or behind GEO_CRS_TAKEN; called before the first coordinate it applies to, again when it changes. Returns in *lat_first
      * whether the file's tuples are in latitude/northing first order; the reader swaps them before emitting. */
     noc_status (*crs)(void *ctx, const char *srs_name, const char *place, bool *lat_first);
     noc_status (*begin_object)(void *ctx, const geo_object *object);

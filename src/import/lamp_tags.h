@@ -115,7 +115,7 @@ void lamp_kinds_free(lamp_kinds *kinds);
 
 /* ---- on their way to the sink (lamp_emit.c) ---- */
 
-#define LAMP_WGS84 "OGC:CRS84"
+#define LAMP_WGS84 "=OGC:CRS84" /* with GEO_CRS_TAKEN: of files that name none */
 
 typedef struct lamp_writer {
     geo_sink *sink;
@@ -136,7 +136,7 @@ typedef struct lamp_writer {
 noc_status lamp_writer_start(lamp_writer *w, geo_sink *sink, const char *place, const noc_import_params *params) NOC_MUST_USE;
 void lamp_writer_free(lamp_writer *w);
 
-/* Tells the sink the CRS. NULL: the file names none; the sink knows whether --crs says it. */
+/* Tells the sink the CRS, which may begin with GEO_CRS_TAKEN. NULL: the file names none; the sink knows whether --crs says it. */
 noc_status lamp_writer_crs(lamp_writer *w, const char *crs);
 /* A feature that is no single point, nor a lamp: counted by its geometry. box: min x, max x, min y, max y; NULL: not known. */
 void lamp_writer_unread(lamp_writer *w, int dimension, const char *id, const double box[4]);

@@ -11,6 +11,7 @@
 /* One CRS as one file spells it. */
 typedef struct source_crs {
     char *spelling;           /* "" where the file names none */
+    bool taken;               /* the file does not hold it: GEO_CRS_TAKEN */
     size_t input;             /* whose coordinates it is about: axis decisions hold for one file */
     geo_crs *crs;             /* NULL: local metres */
     geo_transform *to_scene;  /* NULL until the first coordinate, and for local metres */

@@ -29,6 +29,7 @@ typedef struct json_scan {
     noc_log *log;
     size_t depth, crs_depth; /* crs_depth: of the member that is being read, 0: none */
     bool in_string, escaped;
+    bool named;              /* the file's own member holds a string */
     int hex;                 /* digits of \u still to come */
     unsigned code;
     size_t length;           /* of the string so far, though only its begin is kept */
@@ -49,6 +50,7 @@ static noc_status string_ended(json_scan *s) {
     s->in_string = false;
     if (!s->crs_depth)
         return NOC_OK;
+    s->named = s->named || s->crs_depth == 1;
     if (s->length >= LONGEST)
         return noc_error(s->log, NOC_ERR_FORMAT, "%s: a CRS of more than %d bytes", s->name, LONGEST);
     return map_check_crs_text(s->text, s->name, s->log);
@@ -114,7 +116,7 @@ static noc_status between_strings(json_scan *s, char c) {
     return NOC_OK;
 }
 
-static noc_status check_geojson(noc_stream *stream, noc_log *log) {
+static noc_status check_geojson(noc_stream *stream, bool *named, noc_log *log) {
     enum { CHUNK = 1 << 16 };
     json_scan *s = noc_calloc(1, sizeof(*s));
     char *buffer = noc_alloc(CHUNK);
@@ -129,6 +131,7 @@ static noc_status check_geojson(noc_stream *stream, noc_log *log) {
         for (size_t i = 0; i < got && !status; i++)
             status = s->in_string ? in_string(s, buffer[i]) : between_strings(s, buffer[i]);
     }
+    *named = s && s->named;
     free(s);
     free(buffer);
     return status;
@@ -230,8 +233,9 @@ static noc_status check_shapefile(const char *path, const char *name, noc_log *l
     return status;
 }
 
-noc_status map_check_crs(noc_stream *stream, const char *path, const map_format *format, noc_log *log) {
-    return format->kind == MAP_GEOJSON      ? check_geojson(stream, log)
+noc_status map_check_crs(noc_stream *stream, const char *path, const map_format *format, bool *named, noc_log *log) {
+    *named = true;
+    return format->kind == MAP_GEOJSON      ? check_geojson(stream, named, log)
            : format->kind == MAP_FLATGEOBUF ? check_flatgeobuf(stream, log)
            : format->kind == MAP_SHAPEFILE  ? check_shapefile(path, noc_stream_name(stream), log)
                                             : NOC_OK;

@@ -271,7 +271,7 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
         status = path ? NOC_OK : noc_no_memory(log, m->name);
     }
     if (!status)
-        status = map_check_crs(stream, path, format, log);
+        status = map_check_crs(stream, path, format, &m->crs_named, log);
     if (!status) {
         const char *const *options = format->kind == MAP_OSM ? osm_options : format->kind == MAP_GEOPACKAGE && !copied ? immutable : none;
         m->dataset = GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, format->drivers, options, NULL);

@@ -21,6 +21,7 @@ typedef struct map_source {
     GDALDatasetH dataset;
     char error[512];      /* GDAL's first failure since it was opened, "" if none */
     char link[200];       /* the first address that a content asked for, "" if none: it is not fetched */
+    bool crs_named;       /* false: a GeoJSON without one, whose CRS is its format's */
     const char *name, *format;
     noc_log *log;
     scratch_folder copy;  /* with our own copy of the file, where it is not read in place */

@@ -23,9 +23,9 @@ static bool is_blank(const char *text) {
     return !text || !*text;
 }
 
-static source_crs *find_source(importer *im, const char *spelling) {
+static source_crs *find_source(importer *im, const char *spelling, bool taken) {
     for (size_t i = 0; i < im->sources.len; i++)
-        if (im->sources.data[i]->input == im->current && !strcmp(im->sources.data[i]->spelling, spelling))
+        if (im->sources.data[i]->input == im->current && im->sources.data[i]->taken == taken && !strcmp(im->sources.data[i]->spelling, spelling))
             return im->sources.data[i];
     return NULL;
 }
@@ -72,8 +72,9 @@ static noc_status resolve(importer *im, const char *spelling, const char *place,
 
 noc_status place_crs(importer *im, const char *srs_name, const char *place, bool *lat_first) {
     input *in = &im->inputs[im->current];
-    const char *spelling = is_blank(srs_name) ? "" : srs_name;
-    source_crs *source = find_source(im, spelling);
+    bool taken = srs_name && *srs_name == GEO_CRS_TAKEN;
+    const char *spelling = is_blank(srs_name) ? "" : srs_name + taken;
+    source_crs *source = find_source(im, spelling, taken);
     if (!source) {
         geo_crs *crs;
         noc_status status = resolve(im, spelling, place ? place : in->path, &crs);
@@ -87,7 +88,7 @@ noc_status place_crs(importer *im, const char *srs_name, const char *place, bool
             geo_crs_destroy(crs);
             return noc_no_memory(im->log, in->path);
         }
-        *source = (source_crs){ .spelling = kept, .input = im->current, .crs = crs };
+        *source = (source_crs){ .spelling = kept, .taken = taken, .input = im->current, .crs = crs };
     }
     im->source = source;
     if (lat_first)
@@ -315,7 +316,8 @@ static noc_status prepare(importer *im, source_crs *s, const double point[3]) {
     if (!file->crs) {
         file->crs = s->crs ? arena_strdup(&im->report->arena, geo_crs_name(s->crs)) : "";
         file->degrees = s->crs && geo_crs_is_geographic(s->crs);
-        file->crs_given = arena_strdup(&im->report->arena, s->spelling);
+        file->crs_given = arena_strdup(&im->report->arena, s->taken ? "" : s->spelling);
+        file->crs_taken = s->taken && s->crs;
     }
     return im->report->arena.refused ? noc_no_memory(im->log, path) : NOC_OK;
 }

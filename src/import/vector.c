@@ -193,8 +193,9 @@ typedef struct map_reading {
 
 static noc_status no_memory(const map_reading *m) { return noc_no_memory(m->writer.sink->log, m->writer.place); }
 
-/* The layer's CRS as AUTHORITY:CODE or WKT, NULL if it names none; free() it. False: memory was refused. */
-static bool layer_crs(OGRLayerH layer, bool *geographic, char **crs) {
+/* The layer's CRS as AUTHORITY:CODE or WKT, behind GEO_CRS_TAKEN where the file names none; NULL if there is none; free() it. False:
+ * memory was refused. */
+static bool layer_crs(OGRLayerH layer, bool named, bool *geographic, char **crs) {
     OGRSpatialReferenceH srs = OGR_L_GetSpatialRef(layer);
     *geographic = srs && OSRIsGeographic(srs);
     *crs = NULL;
@@ -202,7 +203,7 @@ static bool layer_crs(OGRLayerH layer, bool *geographic, char **crs) {
         return true;
     const char *authority = OSRGetAuthorityName(srs, NULL), *code = OSRGetAuthorityCode(srs, NULL);
     if (authority && code)
-        return (*crs = noc_format("%s:%s", authority, code)) != NULL;
+        return (*crs = noc_format("%s%s:%s", named ? "" : (char[]){ GEO_CRS_TAKEN, 0 }, authority, code)) != NULL;
     char *wkt = NULL;
     const char *const options[] = { "FORMAT=WKT2_2018", NULL };
     bool told = OSRExportToWktEx(srs, &wkt, options) == OGRERR_NONE && wkt && *wkt;
@@ -237,7 +238,7 @@ static noc_status start_layer(map_reading *m, OGRLayerH layer) {
         return lamp_writer_crs(&m->writer, LAMP_WGS84);
     }
     char *crs;
-    if (!layer_crs(layer, &m->writer.geographic, &crs))
+    if (!layer_crs(layer, m->source.crs_named && !m->source.link[0], &m->writer.geographic, &crs))
         return no_memory(m);
     const char *given = m->params ? m->params->crs : NULL;
     bool replaced = crs && m->writer.geographic && given && m->format->kind == MAP_GEOJSON && looks_projected(layer);

@@ -21,6 +21,7 @@ typedef struct lamp_sink {
     size_t points;
     NOC_ARRAY(geo_column) columns; /* texts in names */
     int errors, warnings;
+    bool crs_taken;
     size_t cancel_after; /* lamps; 0: never */
 } lamp_sink;
 
@@ -39,7 +40,8 @@ static noc_status sink_crs(void *ctx, const char *srs_name, const char *place, b
     lamp_sink *s = ctx;
     assert_non_null(srs_name);
     assert_non_null(place);
-    snprintf(s->crs, sizeof(s->crs), "%s", srs_name);
+    s->crs_taken = *srs_name == GEO_CRS_TAKEN;
+    snprintf(s->crs, sizeof(s->crs), "%s", srs_name + s->crs_taken);
     *lat_first = false;
     return NOC_OK;
 }

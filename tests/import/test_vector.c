@@ -322,6 +322,21 @@ static void test_geojson(void **state) {
     expect_map(COLLECTION("", POINT(LAMP, "500000", "5600000")), NULL, NOC_ERR_FORMAT, 0, NULL);
     expect_map(COLLECTION("", POINT(LAMP, "500000", "5600000")), "EPSG:25832", NOC_OK, 1, "");
     expect_map(COLLECTION("", POINT(LAMP, "8.5", "50.5")), "EPSG:25832", NOC_OK, 1, "EPSG:4326");
+    /* a CRS that the file does not name is its format's: a feature's property of that name is none */
+    static const struct { const char *text; bool taken; } named[] = {
+        { COLLECTION("", POINT(LAMP, "8.5", "50.5")), true }, { COLLECTION("\"crs\":null,", POINT(LAMP, "8.5", "50.5")), true },
+        { COLLECTION("", POINT(LAMP ",\"crs\":\"EPSG:4326\"", "8.5", "50.5")), true },
+        { COLLECTION("\"crs\":{\"type\":\"name\",\"properties\":{\"name\":\"urn:ogc:def:crs:OGC:1.3:CRS84\"}},",
+                     POINT(LAMP, "8.5", "50.5")), false },
+        { "lon,lat,lamp_type\n8.5,50.5,LED\n", true },
+    };
+    for (size_t i = 0; i < NOC_COUNT(named); i++) {
+        lamp_sink s;
+        lamp_sink_start(&s);
+        assert_int_equal(read_lamps_text(&s, named[i].text, NULL), NOC_OK);
+        assert_int_equal(s.crs_taken, named[i].taken);
+        lamp_sink_end(&s);
+    }
     /* one stray is skipped; nothing to see is no error */
     expect_map(COLLECTION("", POINT(LAMP, "8.5", "50.5") "," POINT(LAMP, "8.6", "50.5") "," POINT(LAMP, "999", "50")), NULL, NOC_OK, 2, NULL);
     /* nor does one with text or nothing for coordinates cost the others */
