@@ -75,7 +75,7 @@ NOC_API const char *noc_isolation(void);
 /* Why a feature was skipped or repaired: a short reason, how often, and the ids of the first few. */
 typedef struct noc_report_line {
     const char *reason;     /* "self-intersecting ring", "unresolved xlink", ... */
-    bool repaired;          /* true: used after repair; false: skipped */
+    bool repaired;          /* true: used after repair, or where it is not lossless by a guess; false: skipped */
     size_t count;
     const char *examples;   /* up to 5 ids, comma separated */
     bool lossless;          /* nothing is lost or guessed by it, so noc_import_params.strict lets it pass */
@@ -154,7 +154,8 @@ typedef struct noc_report_totals {
     size_t lamps_repeated, objects_repeated;
     size_t lamps_inferred;     /* placed by a rule */
     size_t lamps_assumed[NOC_LAMP_DEFAULT_COUNT]; /* as in noc_report_file */
-    size_t skipped, repaired;  /* features: counts of the files' lines */
+    size_t skipped, repaired, guessed; /* features: counts of the files' lines; guessed are those of repaired that are not
+                                        lossless */
 } noc_report_totals;
 
 typedef struct noc_report noc_report; /* owned by the caller */

@@ -33,14 +33,17 @@ static void print_counts(const char *title, const size_t counts[NOC_CLASS_COUNT]
             printf("    %-13s %10s%s\n", noc_class_name((noc_class)i), cli_count(a, counts[i]), title);
 }
 
-static void print_lines(const noc_report_file *file, bool repaired) {
+
+const char *info_action(const noc_report_line *line) { return !line->repaired ? "skipped" : line->lossless ? "repaired" : "guessed"; }
+
+static void print_lines(const noc_report_file *file, const char *action) {
     char a[32], examples[72], reason[160]; /* a line holds an id or two; JSON has all of them */
     bool first = true;
     for (size_t i = 0; i < file->line_count; i++) {
         const noc_report_line *line = &file->lines[i];
-        if (line->repaired != repaired)
+        if (strcmp(info_action(line), action))
             continue;
-        printf("  %-11s %s x %s", first ? repaired ? "repaired" : "skipped" : "", cli_count(a, line->count),
+        printf("  %-11s %s x %s", first ? action : "", cli_count(a, line->count),
                cli_clean(reason, sizeof(reason), line->reason));
         if (line->examples && *line->examples)
             printf(": %s", cli_clean(examples, sizeof(examples), line->examples));
@@ -196,8 +199,9 @@ static void print_file(const noc_report_file *file, const noc_import_params *imp
     print_points(file);
     if (file->lights)
         printf("  %-11s %s\n", "lights", cli_count(a, file->lights));
-    print_lines(file, false);
-    print_lines(file, true);
+    print_lines(file, "skipped");
+    print_lines(file, "repaired");
+    print_lines(file, "guessed");
 }
 
 static void print_scene(const char *name, const noc_scene_info *info) {

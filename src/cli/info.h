@@ -11,6 +11,9 @@ typedef struct info_args {
     noc_builtin_params builtin;
 } info_args;
 
+/* "skipped", "repaired" or "guessed". */
+const char *info_action(const noc_report_line *line);
+
 /* One input as a JSON object: an error, a report, or the built-in scene; the others are NULL. */
 void cli_info_json(const char *path, const char *error, const noc_report *report, const noc_scene_info *scene);
 

@@ -57,7 +57,7 @@ static void lines(const noc_report_file *file) {
     for (size_t i = 0; i < file->line_count; i++) {
         const noc_report_line *line = &file->lines[i];
         printf("%s\n      {\"action\": \"%s\", \"lossless\": %s, \"count\": %zu, \"reason\": ", i ? "," : "",
-               line->repaired ? "repaired" : "skipped", line->lossless ? "true" : "false", line->count);
+               info_action(line), line->lossless ? "true" : "false", line->count);
         cli_json_text(stdout, line->reason);
         fputs(", \"examples\": ", stdout);
         examples(line->examples);

@@ -46,7 +46,7 @@ static void add_totals(meta_text *meta, const noc_report *report) {
         { "lamps-moved", t.lamps_moved }, { "lamps-repeated", t.lamps_repeated }, { "objects-repeated", t.objects_repeated },
         { "lamps-height-assumed", t.lamps_assumed[NOC_LAMP_HEIGHT] }, { "lamps-flux-assumed", t.lamps_assumed[NOC_LAMP_FLUX] },
         { "lamps-colour-assumed", t.lamps_assumed[NOC_LAMP_COLOUR] },
-        { "features-skipped", t.skipped }, { "features-repaired", t.repaired } };
+        { "features-skipped", t.skipped }, { "features-repaired", t.repaired }, { "features-guessed", t.guessed } };
     for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
         add(meta, rows[i].key, cli_format("%zu", rows[i].count));
 }
@@ -204,7 +204,7 @@ typedef struct issue {
     size_t count;                /* in all files */
 } issue;
 
-/* What was skipped before what was repaired, then the most frequent; the order of the files decides between equals. */
+/* What was skipped before what was repaired or guessed, then the most frequent; the order of the files decides between equals. */
 static int compare_issues(const void *a, const void *b) {
     const issue *x = a, *y = b;
     if (x->line->repaired != y->line->repaired)
@@ -215,7 +215,9 @@ static int compare_issues(const void *a, const void *b) {
 /* The inputs' and the lamps' troubles, the same reason in several files as one. */
 static void print_issues(const noc_report *report) {
     enum { SHOWN = 8 };
-    size_t lines = 0, n = 0, skipped = 0, repaired = 0;
+    size_t lines = 0, n = 0;
+    noc_report_totals t;
+    noc_report_get_totals(report, &t);
     for (size_t i = 0; i < noc_report_file_count(report); i++)
         lines += noc_report_get_file(report, i)->line_count;
     if (!lines)
@@ -231,12 +233,11 @@ static void print_issues(const noc_report *report) {
             if (k == n)
                 issues[n++] = (issue){ line, 0 };
             issues[k].count += line->count;
-            *(line->repaired ? &repaired : &skipped) += line->count;
         }
     }
     qsort(issues, n, sizeof(*issues), compare_issues);
-    char a[64], b[32], reason[160], examples[72];
-    printf("  inputs    features skipped: %s, repaired: %s\n", cli_count(a, skipped), cli_count(b, repaired));
+    char a[64], b[32], c[32], reason[160], examples[72];
+    printf("  inputs    features skipped: %s, repaired: %s, guessed at: %s\n", cli_count(a, t.skipped), cli_count(b, t.repaired), cli_count(c, t.guessed));
     for (size_t i = 0; i < n && i < SHOWN; i++) {
         const noc_report_line *line = issues[i].line;
         printf("            %s x %s", cli_count(a, issues[i].count), cli_clean(reason, sizeof(reason), line->reason));

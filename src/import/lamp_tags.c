@@ -165,8 +165,6 @@ static bool read_quantity(reading *r, const char *text, lamp_unit unit, double l
     int times;
     if (!lamp_quantity(text, unit, r->scale, r->decimal, &value, &times))
         return misread(r, reason);
-    if (value > hi && r->decimal) /* "8,500" m beside coordinates with points */
-        lamp_quantity(text, unit, r->scale, 0, &value, &times);
     if (value == 0)
         return false;
     if (value < lo || value > hi)
@@ -252,7 +250,7 @@ static bool read_field(reading *r, const lamp_meaning *c, const char *text) {
     r->scale = c->scale;
     switch (c->field) {
     case LAMP_FIELD_HEIGHT:
-        return read_quantity(r, text, LAMP_METRES, .2, LAMP_MOST_METRES, "height of a lamp not understood or implausible",
+        return read_quantity(r, text, LAMP_METRES, .5, LAMP_MOST_METRES, "height of a lamp not understood or implausible",
                              &lamp->height);
     case LAMP_FIELD_DIRECTION:
         return lamp_direction(text, &lamp->direction) || misread(r, "direction of a lamp not understood");

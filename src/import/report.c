@@ -41,7 +41,7 @@ void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) 
         for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++)
             totals->lamps_assumed[what] += f->lamps_assumed[what];
         for (size_t k = 0; k < f->line_count; k++)
-            *(f->lines[k].repaired ? &totals->repaired : &totals->skipped) += f->lines[k].count;
+            *(!f->lines[k].repaired ? &totals->skipped : f->lines[k].lossless ? &totals->repaired : &totals->guessed) += f->lines[k].count;
     }
 }
 

@@ -177,14 +177,18 @@ static void test_thousands(void **state) {
         { "lat,lon,lumens,height (mm)\n50.12,8.34,\"12,000.5\",8500\n", 12000.5, 8.5, 0 },
         { "lat;lon;lumens;height\n50.12;8.34;12.000;8,5\n", 12, 8.5, 1 }, /* both signs are decimal ones: no evidence, but told */
         { "lat;lon;lumens;height\n50;8;12.000;8\n", 12, 8, 1 },
-        { "lat;lon;lumens;height\n50.12;8.34;120;8,500\n", 120, 8.5, 0 }, /* no lamp is 8500 m high */
+        { "lat;lon;lumens;height\n50.12;8.34;120;8,500\n", 120, NAN, 0 }, /* 8500 m: no lamp is that high */
+        { "lat;lon;lumens;height\n50,12;8,34;120;1.200\n", 120, NAN, 0 },
+        { "lat;lon;lumens;height (ft)\n50.12;8.34;120;1.200\n", 120, NAN, 0 }, /* 0.37 m: nor that low */
+        { "lat;lon;lumens;height\n50.12;8.34;120;0.5\n", 120, .5, 0 },
         { "lat;lon;lumens;height\n50;8;120;8\n", 120, 8, 0 },
     };
     for (size_t i = 0; i < NOC_COUNT(cases); i++) {
         lamp_sink s;
         assert_int_equal(read_with(&s, cases[i].text, false, NULL), NOC_OK);
         const geo_lamp *l = &s.lamps.data[0];
-        if (fabs(l->lumens - cases[i].lumens) > 1e-9 || fabs(l->height - cases[i].height) > 1e-9 || issue_count(&s, "thousands") != cases[i].told)
+        bool none = isnan(cases[i].height), height = none ? isnan(l->height) : fabs(l->height - cases[i].height) < 1e-9;
+        if (fabs(l->lumens - cases[i].lumens) > 1e-9 || !height || issue_count(&s, "height of a lamp") != none || issue_count(&s, "thousands") != cases[i].told)
             fail_msg("case %zu: %g lm, %g m, %zu told", i, l->lumens, l->height, issue_count(&s, "thousands"));
         lamp_sink_end(&s);
     }
