@@ -130,7 +130,10 @@ typedef struct noc_report_file {
     const noc_report_column *columns;
     size_t lamp_heads;         /* of all lamps: each makes a light; a lamp that does not tell has one */
     size_t lamps_with_height, lamps_with_lumens, lamps_with_watts, lamps_with_colour, lamps_with_direction; /* tagged */
+    size_t lamps_with_kelvin;  /* of those with a colour */
     double lamp_height_min, lamp_height_max; /* of those tagged, m */
+    double lamp_lumens_min, lamp_lumens_max, lamp_watts_min, lamp_watts_max, lamp_kelvin_min, lamp_kelvin_max; /* the same */
+    char decimal_sign;         /* of a CSV: '.' or ','; '?' where its numbers do not tell; 0: no CSV */
     size_t lamps_by_source[NOC_SOURCE_COUNT];
     /* Lamps that do not tell it themselves, so that a default is taken: of those mapped, and of all where no scene was loaded.
      * Watts tell the flux, and most sources the colour. By noc_lamp_default. */

@@ -33,7 +33,6 @@ static void print_counts(const char *title, const size_t counts[NOC_CLASS_COUNT]
             printf("    %-13s %10s%s\n", noc_class_name((noc_class)i), cli_count(a, counts[i]), title);
 }
 
-
 const char *info_action(const noc_report_line *line) { return !line->repaired ? "skipped" : line->lossless ? "repaired" : "guessed"; }
 
 static void print_lines(const noc_report_file *file, const char *action) {
@@ -104,17 +103,20 @@ static void print_lamps(const noc_report_file *file, const noc_import_params *im
     if (file->lamp_heads != file->lamps)
         printf(" with %s, each a light", cli_many(b, file->lamp_heads, "head"));
     putchar('\n');
-    const struct { const char *name; size_t count; } known[] = {
-        { "height", file->lamps_with_height }, { "lumens", file->lamps_with_lumens }, { "watts", file->lamps_with_watts },
-        { "colour", file->lamps_with_colour }, { "direction", file->lamps_with_direction },
+    const struct { const char *name; size_t count; const char *unit; double min, max; } known[] = {
+        { "height", file->lamps_with_height, "m", file->lamp_height_min, file->lamp_height_max },
+        { "lumens", file->lamps_with_lumens, "lm", file->lamp_lumens_min, file->lamp_lumens_max },
+        { "watts", file->lamps_with_watts, "W", file->lamp_watts_min, file->lamp_watts_max },
+        { "colour", file->lamps_with_colour, file->lamps_with_kelvin ? "K" : NULL, file->lamp_kelvin_min, file->lamp_kelvin_max },
+        { "direction", file->lamps_with_direction, NULL, 0, 0 },
     };
     for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {
         if (!known[i].count)
             continue;
         printf("    %-13s %10s, %.1f%%", known[i].name, cli_count(a, known[i].count),
                100.0 * (double)known[i].count / (double)file->lamps);
-        if (i == 0)
-            printf(": %.4g to %.4g m", file->lamp_height_min, file->lamp_height_max);
+        if (known[i].unit)
+            printf(": %.6g to %.6g %s", known[i].min, known[i].max, known[i].unit);
         putchar('\n');
     }
     for (int s = 0; s < NOC_SOURCE_COUNT; s++)
@@ -160,6 +162,11 @@ static void print_points(const noc_report_file *file) {
         printf("  %-11s %s, and nothing tells that they are lamps in use: --lamps FILE says so\n", "points",
                cli_count(a, file->points));
     print_columns(file);
+    if (file->decimal_sign == '?')
+        printf("  %-11s not told by the numbers: 12.000 is read as 12\n", "decimals");
+    else if (file->decimal_sign)
+        printf("  %-11s behind '%c'; a '%c' before three digits parts thousands\n", "decimals", file->decimal_sign,
+               file->decimal_sign == ',' ? '.' : ',');
 }
 
 /* What a map holds, read or not. */

@@ -66,17 +66,25 @@ static void lines(const noc_report_file *file) {
     putchar(']');
 }
 
+static void range(const char *min_name, const char *max_name, size_t count, double min, double max) {
+    if (!count)
+        return;
+    number(min_name, min);
+    number(max_name, max);
+}
+
 static void lamp_details(const noc_report_file *file) {
     number("lamp_heads", (double)file->lamp_heads);
     number("lamps_with_height", (double)file->lamps_with_height);
-    if (file->lamps_with_height) {
-        number("lamp_height_min", file->lamp_height_min);
-        number("lamp_height_max", file->lamp_height_max);
-    }
     number("lamps_with_lumens", (double)file->lamps_with_lumens);
     number("lamps_with_watts", (double)file->lamps_with_watts);
     number("lamps_with_colour", (double)file->lamps_with_colour);
     number("lamps_with_direction", (double)file->lamps_with_direction);
+    number("lamps_with_kelvin", (double)file->lamps_with_kelvin);
+    range("lamp_height_min", "lamp_height_max", file->lamps_with_height, file->lamp_height_min, file->lamp_height_max);
+    range("lamp_lumens_min", "lamp_lumens_max", file->lamps_with_lumens, file->lamp_lumens_min, file->lamp_lumens_max);
+    range("lamp_watts_min", "lamp_watts_max", file->lamps_with_watts, file->lamp_watts_min, file->lamp_watts_max);
+    range("lamp_kelvin_min", "lamp_kelvin_max", file->lamps_with_kelvin, file->lamp_kelvin_min, file->lamp_kelvin_max);
     number("lamps_height_assumed", (double)file->lamps_assumed[NOC_LAMP_HEIGHT]);
     number("lamps_flux_assumed", (double)file->lamps_assumed[NOC_LAMP_FLUX]);
     number("lamps_colour_assumed", (double)file->lamps_assumed[NOC_LAMP_COLOUR]);
@@ -133,6 +141,7 @@ static void report_file(const noc_report_file *file) {
     if (file->column_count) {
         number("points", (double)file->points);
         columns(file);
+        text("decimal_sign", (char[]){ file->decimal_sign == '?' ? 0 : file->decimal_sign, 0 });
     }
     number("lights", (double)file->lights);
     number("map_points", (double)file->map_points);

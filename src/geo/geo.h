@@ -129,6 +129,7 @@ typedef struct geo_sink {
     void *ctx;
     noc_log *log;
     geo_issues *issues;
+    char *decimal_sign; /* where readers of tables tell which one they take: noc_report_file's; may be NULL */
     size_t *lamps_lost; /* where readers count lamps in use whose place is none: they are not emitted; may be NULL */
     /* srsName as spelled, or behind GEO_CRS_TAKEN; called before the first coordinate it applies to, again when it changes. Returns in *lat_first
      * whether the file's tuples are in latitude/northing first order; the reader swaps them before emitting. */

@@ -451,6 +451,8 @@ noc_status lamp_csv_read(noc_stream *stream, const noc_import_params *params, ge
     status = read_header(c, &cols);
     if (!status)
         status = find_decimal_sign(c, &cols);
+    if (!status && sink->decimal_sign)
+        *sink->decimal_sign = lamp_keys_decimal(w.keys) ? lamp_keys_decimal(w.keys) : '?';
     if (!status)
         status = judge(c, &cols, &w);
     if (!status && !w.strange)

@@ -186,18 +186,25 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
 
 _Static_assert((int)GEO_SOURCE_LED == NOC_SOURCE_LED && (int)GEO_SOURCE_LOW_SODIUM == NOC_SOURCE_LOW_SODIUM, "sources are those of the report");
 
+/* Counts a value that is known, and widens the range of those. */
+static void count_value(double value, size_t *count, double *min, double *max) {
+    if (!isfinite(value) || value <= 0)
+        return;
+    *min = *count ? NOC_MIN(*min, value) : value;
+    *max = *count ? NOC_MAX(*max, value) : value;
+    ++*count;
+}
+
 /* What a lamp tells of itself, for the report. */
 static void count_lamp(noc_report_file *file, const geo_lamp *lamp) {
     file->lamps++;
     file->lamp_heads += (size_t)NOC_CLAMP(lamp->count, 1, GEO_MAX_HEADS);
-    if (isfinite(lamp->height) && lamp->height > 0) {
-        file->lamp_height_min = file->lamps_with_height ? NOC_MIN(file->lamp_height_min, lamp->height) : lamp->height;
-        file->lamp_height_max = NOC_MAX(file->lamp_height_max, lamp->height);
-        file->lamps_with_height++;
-    }
-    file->lamps_with_lumens += isfinite(lamp->lumens) && lamp->lumens > 0;
-    file->lamps_with_watts += isfinite(lamp->watts) && lamp->watts > 0;
-    file->lamps_with_colour += (isfinite(lamp->kelvin) && lamp->kelvin > 0) || lamp->rgb[0] >= 0;
+    size_t with_kelvin = file->lamps_with_kelvin;
+    count_value(lamp->height, &file->lamps_with_height, &file->lamp_height_min, &file->lamp_height_max);
+    count_value(lamp->lumens, &file->lamps_with_lumens, &file->lamp_lumens_min, &file->lamp_lumens_max);
+    count_value(lamp->watts, &file->lamps_with_watts, &file->lamp_watts_min, &file->lamp_watts_max);
+    count_value(lamp->kelvin, &file->lamps_with_kelvin, &file->lamp_kelvin_min, &file->lamp_kelvin_max);
+    file->lamps_with_colour += file->lamps_with_kelvin > with_kelvin || lamp->rgb[0] >= 0;
     file->lamps_with_direction += isfinite(lamp->direction) != 0;
     file->lamps_by_source[(unsigned)lamp->source < NOC_SOURCE_COUNT ? lamp->source : GEO_SOURCE_UNKNOWN]++;
 }
@@ -281,7 +288,8 @@ static bool on_progress(void *ctx, double done) {
 
 geo_sink sink_create(importer *im) {
     return (geo_sink){ .ctx = im, .log = im->log, .issues = im->inputs[im->current].issues,
-                       .lamps_lost = &im->inputs[im->current].lamps_lost, .crs = on_crs,
+                       .lamps_lost = &im->inputs[im->current].lamps_lost,
+                       .decimal_sign = &im->inputs[im->current].file.decimal_sign, .crs = on_crs,
                        .begin_object = on_begin_object, .polygon = on_polygon, .end_object = on_end_object,
                        .lamp = on_lamp, .columns = on_columns, .features = on_features, .progress = on_progress,
                        .named_lamps = im->inputs[im->current].named_lamps, .inspect = im->inspect };

@@ -197,7 +197,19 @@ run render "$gml" told.csv $view --lamp-kelvin 2700 -o told.png
 test "$(meta told.png lamps-height-assumed) $(meta told.png lamps-flux-assumed) $(meta told.png lamps-colour-assumed)" = "1 0 2" &&
     grep -q 'assumed  *1 without height: 6 m (--lamp-height), 2 without colour: 2700 K (--lamp-kelvin)$' out
 result $? "and in the metadata"
+printf 'id;lon;lat;lamp_height;lumens;watts;cct\na;11,4226;48,7591;5;1.200;20;2700\nb;11,4227;48,7592;1.200;9.000;70;4000\n' >comma.csv
+run info comma.csv
+grep -q 'lumens  *2, 100.0%: 1200 to 9000 lm' out && grep -q 'watts  *2, 100.0%: 20 to 70 W' out && grep -q 'colour  *2, 100.0%: 2700 to 4000 K' out
+result $? "info tells the ranges that were understood"
+grep -q "decimals  *behind ','; a '.' before three digits" out && grep -q 'guessed  *1 x height of a lamp not understood or implausible: b' out
+result $? "and the decimal sign, and that no lamp is 1200 m high"
+run info --json comma.csv
+python3 -c 'import json; f = json.load(open("out"))["files"][0]
+assert f["decimal_sign"] == "," and f["lamp_lumens_max"] == 9000 and f["lamp_watts_min"] == 20 and f["lamp_kelvin_max"] == 4000, f
+assert [i["action"] for i in f["issues"]] == ["guessed"] and f["crs_given"] == "" and f["crs_from"] == "format", f'
+result $? "in JSON, too"
 run info told.csv
+grep -q 'CRS .*, taken as such: the file names none$' out; result $? "a CRS that no file names is not said to be given"
 grep -q 'assumed  *1 without height: 6 m (--lamp-height), 2 without colour: 3000 K (--lamp-kelvin)$' out; result $? "and info tells it"
 expect "--strict refuses what the user did not say" 1 'guessed at: 1; 1 x lamp without height .--lamp-height 6 takes that.$' \
     info told.csv --strict --lamp-kelvin 3000
