@@ -114,6 +114,7 @@ static void run(outcome *o) {
 
 static void nothing_depends_on_the_locale(void **state) {
     outcome point, comma;
+    run(&point); /* what is told once a process is told now */
     run(&point);
     assert_non_null(strstr(point.text, "1234.5"));
     REQUIRE_COMMA_LOCALE(folder);
