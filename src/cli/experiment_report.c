@@ -242,10 +242,11 @@ static void print_crops(FILE *out, const experiment_lab *lab, size_t camera) {
         fprintf(out, "%s%s", !mean ? "frame" : frames > 1 ? "the means of frame" : "the mean of frame", mean || frames > 1 ? "s " : " ");
     for (size_t i = 0; i < frames && !motion; i++)
         fprintf(out, mean ? "%s1 to %d" : "%s%d", i ? ", " : "", spec->shown[i]);
-    fputs(" of each configuration, row by row (reference", out);
+    fputs(" of each configuration, row by row (\"reference\"", out);
     for (size_t i = 1; i <= spec->config_count; i++) {
-        fputs(i % (size_t)crop->columns ? ", " : "; ", out);
+        fputs(i % (size_t)crop->columns ? ", \"" : "; \"", out);
         experiment_text(out, spec->configs[i - 1].name);
+        fputc('"', out);
     }
     fputs("): ", out);
     const experiment_camera *c = &spec->cameras[camera];

@@ -125,7 +125,7 @@ result $? "summary.md names entries of several values by what they share"
 spec titled.json '{ "name": "=1+1" }' '"title": "A <b>title</b> & *more*",'
 sed -i 's/"shown": \[\]/"shown": [1]/; s/"view": "own"/"view": "own", "path": { "frames": 2, "pan": 1 }/' titled.json
 run experiment titled.json -o g --cache cache
-test "$(head -n 1 g/report.md)" = "# A &lt;b&gt;title&lt;/b&gt; &amp; \\*more\\*" && grep -q '^Shown is the last frame of each configuration, row by row (reference, =1+1): the part of [0-9]* x ' g/report.md
+test "$(head -n 1 g/report.md)" = "# A &lt;b&gt;title&lt;/b&gt; &amp; \\*more\\*" && grep -q '^Shown is the last frame of each configuration, row by row ("reference", "=1+1"): the part of [0-9]* x ' g/report.md
 result $? "a title is the heading, as it reads; what is shown of a camera that moves is said"
 python3 -c 'import csv; assert [r["configuration"] for r in csv.DictReader(open("g/results.csv"))] == ["\x27=1+1"]' && grep -q '^| =1+1 |' g/report.md
 result $? "a name that a spreadsheet would run is text in the table"
