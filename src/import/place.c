@@ -35,7 +35,7 @@ static noc_status given_status(noc_status status) { return !status || status == 
 
 /* PROJ searches its whole database for a name that it does not know: a tenth of a second each. Where --crs stands in for such
  * names, there may be as many as a reader takes of one file. */
-enum { MOST_STRANGE = 32 };
+enum { MOST_STRANGE = 8 };
 
 /* The CRS that `spelling` means for this run; *crs is NULL for local metres. */
 static noc_status resolve(importer *im, const char *spelling, const char *place, geo_crs **crs) {
