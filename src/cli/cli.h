@@ -79,6 +79,10 @@ const char *cli_many(char text[64], uint64_t n, const char *noun); /* "1 light",
 const char *cli_bytes(char text[32], uint64_t n);                 /* "4.1 MB" */
 const char *cli_seconds(char text[32], double s);                 /* "0.42 s", "2 min 05 s" */
 const char *cli_clean(char *text, size_t size, const char *from); /* control characters blanked, long text cut short */
+/* Ids of a report, comma separated, of which only whole ones are shown: the first, and as many more as fit; then how
+ * many of the `count` features are left. free() it. */
+#define CLI_IDS_WIDTH 72
+char *cli_ids(const char *list, size_t count, size_t width);
 void cli_json_text(FILE *out, const char *text);                  /* quoted and escaped; valid UTF-8 whatever came in */
 void cli_json_number(FILE *out, double v);                        /* null where it is not finite */
 FILE *cli_open(const char *path);                                 /* a regular file, for reading (a pipe would hang); NULL after saying why */

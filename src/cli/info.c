@@ -36,7 +36,7 @@ static void print_counts(const char *title, const size_t counts[NOC_CLASS_COUNT]
 const char *info_action(const noc_report_line *line) { return !line->repaired ? "skipped" : line->lossless ? "repaired" : "guessed"; }
 
 static void print_lines(const noc_report_file *file, const char *action) {
-    char a[32], examples[72], reason[160]; /* a line holds an id or two; JSON has all of them */
+    char a[32], reason[160]; /* a line holds an id or two; JSON has five */
     bool first = true;
     for (size_t i = 0; i < file->line_count; i++) {
         const noc_report_line *line = &file->lines[i];
@@ -44,9 +44,9 @@ static void print_lines(const noc_report_file *file, const char *action) {
             continue;
         printf("  %-11s %s x %s", first ? action : "", cli_count(a, line->count),
                cli_clean(reason, sizeof(reason), line->reason));
-        if (line->examples && *line->examples)
-            printf(": %s", cli_clean(examples, sizeof(examples), line->examples));
-        putchar('\n');
+        char *ids = cli_ids(line->examples, line->count, CLI_IDS_WIDTH);
+        printf("%s%s\n", *ids ? ": " : "", ids);
+        free(ids);
         first = false;
     }
 }

@@ -204,9 +204,25 @@ typedef struct issue {
     size_t count;                /* in all files */
 } issue;
 
-/* What was skipped before what was repaired or guessed, then the most frequent; the order of the files decides between equals. */
+/* Is it about a lamp, or a value of one? */
+static bool is_of_lamps(const char *reason) {
+    static const char *const parts[] = { " of a lamp", "lamps on a pole", "luminous flux", "wattage",
+                                         "colour temperature" };
+    bool found = !strncmp(reason, "lamp ", 5);
+    for (size_t i = 0; i < sizeof(parts) / sizeof(*parts); i++)
+        found = found || strstr(reason, parts[i]);
+    return found;
+}
+
+/* Lamps before surfaces, what is lost or guessed at before what is not, what was skipped before what was repaired, then
+ * the most frequent; the order of the files decides between equals. */
 static int compare_issues(const void *a, const void *b) {
     const issue *x = a, *y = b;
+    bool lamps[2] = { is_of_lamps(x->line->reason), is_of_lamps(y->line->reason) };
+    if (lamps[0] != lamps[1])
+        return lamps[0] ? -1 : 1;
+    if (x->line->lossless != y->line->lossless)
+        return x->line->lossless ? 1 : -1;
     if (x->line->repaired != y->line->repaired)
         return x->line->repaired ? 1 : -1;
     return x->count != y->count ? (x->count < y->count ? 1 : -1) : (x->line > y->line) - (x->line < y->line);
@@ -236,14 +252,14 @@ static void print_issues(const noc_report *report) {
         }
     }
     qsort(issues, n, sizeof(*issues), compare_issues);
-    char a[64], b[32], c[32], reason[160], examples[72];
+    char a[64], b[32], c[32], reason[160];
     printf("  inputs    features skipped: %s, repaired: %s, guessed at: %s\n", cli_count(a, t.skipped), cli_count(b, t.repaired), cli_count(c, t.guessed));
     for (size_t i = 0; i < n && i < SHOWN; i++) {
         const noc_report_line *line = issues[i].line;
         printf("            %s x %s", cli_count(a, issues[i].count), cli_clean(reason, sizeof(reason), line->reason));
-        if (line->examples && *line->examples)
-            printf(": %s", cli_clean(examples, sizeof(examples), line->examples));
-        putchar('\n');
+        char *ids = cli_ids(line->examples, issues[i].count, CLI_IDS_WIDTH);
+        printf("%s%s\n", *ids ? ": " : "", ids);
+        free(ids);
     }
     if (n > SHOWN)
         printf("            and for %s\n", cli_many(a, n - SHOWN, "other reason"));

@@ -21,6 +21,26 @@ const char *cli_clean(char *text, size_t size, const char *from) {
     return text;
 }
 
+char *cli_ids(const char *list, size_t count, size_t width) {
+    enum { LISTED = 5 }; /* by the library: fewer are all there are */
+    size_t shown = 0, listed = 0, end = 0;
+    for (const char *at = list; *at; listed++) {
+        size_t n = strcspn(at, ",");
+        if (shown == listed && (!shown || (size_t)(at - list) + n <= width)) {
+            end = (size_t)(at - list) + n;
+            shown++;
+        }
+        at += n;
+        at += strspn(at, ", ");
+    }
+    char more[64] = "", number[32];
+    if (count > shown && (shown < listed || listed == LISTED))
+        snprintf(more, sizeof(more), " and %s more", cli_count(number, count - shown));
+    char *text = cli_format("%.*s%s", (int)end, list, more);
+    cli_clean(text, strlen(text) + 1, text);
+    return text;
+}
+
 static void vreport(const char *prefix, const char *fmt, va_list ap) {
     char text[1024], clean[1024];
     vsnprintf(text, sizeof(text), fmt, ap);

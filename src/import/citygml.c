@@ -182,7 +182,8 @@ static noc_status read_citygml(noc_stream *stream, const noc_import_params *para
         status = run_pass(p, pass);
         p->deferred.len = p->deferred_kept;
     }
-    noc_debug(sink->log, "%s: %zu polygons used, %zu given twice", noc_stream_name(stream), p->emitted, p->dropped);
+    noc_debug(sink->log, "%s: %zu polygons used, %zu given twice, %zu named again by xlinks or solids",
+              noc_stream_name(stream), p->emitted, p->twins, p->dropped - p->twins);
     if (!status)
         status = lamp_keys_report(p->keys, sink, noc_stream_name(stream), 0);
     free_parser(p);

@@ -275,7 +275,7 @@ typedef struct cg_parser {
     NOC_ARRAY(double) out;
     NOC_ARRAY(size_t) out_rings;
     bool object_open;       /* begin_object was called and end_object not yet */
-    size_t emitted, dropped;
+    size_t emitted, dropped, twins; /* polygons: used; there already; of these with the shape of another one */
     uint32_t kinds_told;    /* of objects that were left out */
     size_t looked;          /* features and surfaces looked at for installed lamps, since progress was asked */
 } cg_parser;

@@ -168,6 +168,7 @@ void cg_emit_shown(cg_parser *p) {
     cg_selection *s = &p->selection;
     for (size_t i = 0; s->shown && i < s->items.len && !p->status; i++) {
         const cg_item *item = &s->items.data[i];
+        p->twins += item->twin;
         if (item->twin)
             geo_issue(p->sink->issues, GEO_REPAIRED, "polygon given twice",
                       cg_report_id(p, item->polygon->id, p->object.geometries.data[item->geometry].feature));

@@ -75,10 +75,27 @@ static size_t guesses_at_lamps(const noc_report *report, const noc_import_params
     return guesses;
 }
 
+/* Adds a cause with all of its ids or with none, for a part of an id cannot be searched for. False, and nothing is
+ * added, where there is no room. */
+static bool put_cause(char *text, size_t size, size_t *used, const char *path, const noc_report_line *l) {
+    for (int ids = *l->examples != 0; ids >= 0; ids--) {
+        int n = noc_snprintf(text + *used, size - *used, ids ? "; %s: %zu x %s (%s)" : "; %s: %zu x %s", path, l->count,
+                             l->reason, l->examples);
+        if (n >= 0 && *used + (size_t)n < size) {
+            *used += (size_t)n;
+            return true;
+        }
+        text[*used] = 0;
+    }
+    return false;
+}
+
 noc_status report_strict(const noc_report *report, const noc_import_params *params, noc_log *log) {
     enum { SHOWN = 8 };
-    size_t skipped = 0, guessed = 0, lines = 0, n = 0;
+    size_t skipped = 0, guessed = 0, lines = 0, shown = 0, n = 0;
     char causes[900] = "", lamps[500] = "";
+    size_t guesses = guesses_at_lamps(report, params, lamps, sizeof(lamps));
+    size_t room = sizeof(causes) - strlen(lamps); /* a message is cut somewhere */
     for (size_t i = 0; i < report->files.len; i++)
         for (size_t k = 0; k < report->files.data[i].line_count; k++) {
             const noc_report_file *f = &report->files.data[i];
@@ -86,16 +103,14 @@ noc_status report_strict(const noc_report *report, const noc_import_params *para
             if (l->lossless)
                 continue;
             *(l->repaired ? &guessed : &skipped) += l->count;
-            if (++lines <= SHOWN && n < sizeof(causes))
-                n += (size_t)noc_snprintf(causes + n, sizeof(causes) - n, "; %s: %zu x %s%s%s%s", f->path, l->count, l->reason,
-                                          *l->examples ? " (" : "", l->examples, *l->examples ? ")" : "");
+            lines++;
+            shown += shown < SHOWN && put_cause(causes, room, &n, f->path, l);
         }
-    size_t guesses = guesses_at_lamps(report, params, lamps, sizeof(lamps));
     if (!lines && !guesses)
         return NOC_OK;
     char more[40] = "";
-    if (lines > SHOWN)
-        noc_snprintf(more, sizeof(more), "; and %zu more", lines - SHOWN);
+    if (lines > shown)
+        noc_snprintf(more, sizeof(more), "; and %zu more", lines - shown);
     return noc_error(log, NOC_ERR_FORMAT, "--strict: features left out: %zu, guessed at: %zu%s%s%s", skipped, guessed + guesses, lamps, causes,
                      more);
 }

@@ -75,6 +75,40 @@ refused XLSX 'XLSX.*CSV'
 printf 'ACME\n1\n2\n36\nten\n' >stranger
 expect "anything else is told what is read" 1 'none of the formats.*GeoJSONSeq, GeoPackage, Shapefile, FlatGeobuf' render stranger -o x.png
 
+# Ids are whole, for a part of one cannot be searched for; and causes of lamps come first.
+python3 - >many.csv <<'END'
+print("lat,lon,lamp_type,id,height,lumens,cct")
+for i in range(9):
+    print(f"48.7546,11.422{i},LED,UUID_{i:040d},99999,5000,3000")
+END
+run info many.csv
+grep -Eq '9 x height of a lamp.*: UUID_0{40} and 8 more$' out
+result $? "info shows whole ids, and how many more there are"
+run render "$gml" many.csv --frames 1 --size 32x18 -o x.png
+test $status = 0 && grep -A1 'features skipped' out | grep -Eq '9 x height of a lamp.*: UUID_0{40} and 8 more$'
+result $? "so does the summary, with lamps first"
+rm -f x.png
+sed 's/,99999,5000,3000$/,99999,1,5/; s/cct$/cct,watts/; s/,5$/,5,1e9/' many.csv >worse.csv
+cp "$gml" house.gml
+run render house.gml worse.csv --strict --frames 1 --size 32x18 -o x.png
+test $status = 1 && grep -Eq 'UUID_0{40}, ' err &&
+    ! grep -Eq 'UUID_[0-9]{0,39}([^0-9]|$)' err &&
+    grep -Eq 'wattage not understood or implausible(;|$)' err
+result $? "and --strict, where there is room"
+python3 - "$gml" >twin.gml <<'END'
+import re, sys
+text = open(sys.argv[1]).read()
+roof = re.search(r'<gml:surfaceMember><gml:Polygon gml:id="p2">.*?</gml:surfaceMember>', text, re.S).group(0)
+solid = "<bldg:lod2Solid><gml:Solid><gml:exterior><gml:CompositeSurface>%s</gml:CompositeSurface></gml:exterior></gml:Solid>"
+again = "</bldg:lod2Solid><bldg:lod2MultiSurface><gml:MultiSurface>%s</gml:MultiSurface></bldg:lod2MultiSurface>"
+link = '<gml:surfaceMember xlink:href="#p2"/>'
+building = '<bldg:Building gml:id="house">%s</bldg:Building>' % (solid % (roof + link) + again % roof.replace("p2", "p2b"))
+print(re.sub("<bldg:Building.*</bldg:Building>", lambda m: building, text, flags=re.S))
+END
+run info -v twin.gml
+grep -q '1 given twice, 1 named again' err && grep -q ' 1 x polygon given twice: p2b$' out
+result $? "a polygon that is given twice is counted alike by -v and in the report"
+
 # Outlines of buildings: counted, told, and nothing that --strict lets pass.
 if [ "$("$program" --version | grep -ci gdal)" != 0 ]; then
     cat >outlines.geojson <<'END'
