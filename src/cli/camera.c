@@ -30,20 +30,50 @@ int cli_parse_camera(render_job *job) {
 
 #define FAR_AWAY 20 /* extents of the scene */
 
-static void warn_if_far(render_job *job) {
+#define NOWHERE 100   /* extents, */
+#define NOWHERE_METRES 100e3 /* and this far: nothing of the scene is seen from there */
+
+static double distance_from(const noc_scene_info *scene, const double p[3]) {
+    double distance = 0;
+    for (int k = 0; k < 3; k++)
+        distance = hypot(distance, p[k] - (scene->bounds_min[k] + scene->bounds_max[k]) / 2);
+    return distance;
+}
+
+/* How far the eye were if its first two numbers were exchanged; INFINITY where they then are no place. */
+static double exchanged_distance(const render_job *job) {
+    const char *crs = job->args->camera_crs;
+    double p[3] = { job->eye[1], job->eye[0], job->eye[2] };
+    bool degrees = fabs(p[0]) <= 360 && fabs(p[1]) <= 360;
+    if (!crs || (degrees && (fabs(p[0]) > 180 || fabs(p[1]) > 90)))
+        return INFINITY;
+    noc_status status = noc_scene_to_local(job->scene, strcmp(crs, "scene") ? crs : NULL, p);
+    return status ? INFINITY : distance_from(&job->scene_info, p);
+}
+
+/* A camera that is somewhat far away is warned of; one that is nowhere near draws an empty picture, which is an error. */
+static noc_status check_distance(render_job *job) {
     const noc_scene_info *scene = &job->scene_info;
-    double extent = 0, distance = 0;
-    for (int k = 0; k < 3; k++) {
+    double extent = 0, distance = distance_from(scene, job->camera.eye);
+    for (int k = 0; k < 3; k++)
         extent = hypot(extent, scene->bounds_max[k] - scene->bounds_min[k]);
-        distance = hypot(distance, job->camera.eye[k] - (scene->bounds_min[k] + scene->bounds_max[k]) / 2);
-    }
-    if (job->args->common.quiet || !(distance > FAR_AWAY * extent))
-        return;
+    bool nowhere = distance > NOWHERE * extent && distance > NOWHERE_METRES;
+    if (!(distance > FAR_AWAY * extent) || (job->args->common.quiet && !nowhere))
+        return NOC_OK;
     job->far_away = true;
+    double exchanged = nowhere ? exchanged_distance(job) : INFINITY;
+    if (exchanged <= FAR_AWAY * extent) {
+        cli_error("the camera is %.6g km away from a scene of %.1f km; with the first two numbers of --eye exchanged "
+                  "it is %.1f km away: longitude comes before latitude, and easting before northing, whatever the CRS says",
+                  distance / 1000, extent / 1000, exchanged / 1000);
+        return NOC_ERR_ARGUMENT;
+    }
     const char *hint = job->args->camera_crs ? "are eye and --camera-crs right?"
                        : scene->crs && *scene->crs ? "are these coordinates of the scene's CRS? then add --camera-crs scene"
                                                    : "eye is in metres from the scene's origin";
-    cli_error("warning: the camera is %.6g km away from a scene of %.1f km: %s", distance / 1000, extent / 1000, hint);
+    cli_error("%sthe camera is %.6g km away from a scene of %.1f km: %s", nowhere ? "" : "warning: ", distance / 1000,
+              extent / 1000, hint);
+    return nowhere ? NOC_ERR_ARGUMENT : NOC_OK;
 }
 
 noc_status cli_place_camera(render_job *job) {
@@ -68,7 +98,9 @@ noc_status cli_place_camera(render_job *job) {
         if (status)
             return status;
     }
-    warn_if_far(job);
+    noc_status status = check_distance(job);
+    if (status)
+        return status;
     /* Looking straight down or up, "up" is north. */
     double dx = job->camera.target[0] - job->camera.eye[0], dy = job->camera.target[1] - job->camera.eye[1],
            dz = job->camera.target[2] - job->camera.eye[2];

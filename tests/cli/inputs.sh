@@ -266,8 +266,17 @@ run render builtin:city --city-size 150 $view --camera-crs EPSG:25832 --eye 0,0,
 test $status = 1 && test ! -e c.png; result $? "a camera in a CRS where the scene has none"
 
 # Pictures that succeed and show nothing: said, with the likely cause.
-expect "a camera in map coordinates" 0 'km away from a scene .*--camera-crs scene' \
+rm -f d.png
+expect "a camera in map coordinates" 1 '^nocturne: the camera is .*km away from a scene .*--camera-crs scene' \
     render "$gml" $view --eye 678030,5402980,412 --target 678005,5403004,403 -o d.png
+test ! -e d.png; result $? "and nothing is written"
+expect "a camera with its axes exchanged" 1 'with the first two numbers of --eye exchanged it is 0.0 km away' \
+    render "$gml" $view --camera-crs EPSG:4326 --eye 48.75436,11.42222,412 --target 48.75458,11.42189,403 -q -o d.png
+test "$(wc -l <err)" = 1; result $? "in one line, also with -q"
+expect "a camera in another country" 1 'km away from a scene .*are eye and --camera-crs right' \
+    render "$gml" $view --camera-crs EPSG:4326 --eye 2.35,48.85,412 --target 2.36,48.85,403 -o d.png
+expect "a camera that is merely far away" 0 'warning: the camera is .*km away from a scene' \
+    render "$gml" $view --eye 50000,0,412 --target 0,0,0 -o d.png
 expect "a camera that looks at the sky" 0 'sees nothing that a lamp could light' \
     render "$gml" $view --eye 20,-20,430 --target 20,-20,1000 -o d.png
 expect "a camera inside a building" 0 'inside a building' \
