@@ -30,6 +30,8 @@ const char *stranger_told(const char *head) {
         { "IESNA", "", PHOTOMETRY("IES") }, { "", "\nTILT=", PHOTOMETRY("IES") },
         { "<", "<gpx", "this is GPX, which is not read: convert it to GeoJSON, with ogr2ogr for example" },
         { "<", "<kml", "this is KML, which is not read: convert it to GeoJSON, with ogr2ogr for example" },
+        { "<", "<OpenDRIVE", "this is OpenDRIVE (roads for driving simulators), which is not read: "
+                             "city models are CityGML, OBJ or glTF, lamps are tables and maps of points" },
         { "<", "schemas.openxmlformats.org", office }, { "<", "oasis:names:tc:opendocument", office },
     };
     const char *text = head + (strncmp(head, "\xef\xbb\xbf", 3) ? 0 : 3);
