@@ -5,7 +5,7 @@ import socket
 import struct
 import time
 
-LOG, LAMP, END = 32, 34, 40
+LOG, LAMP, END = 32, 34, 41 # remote.h
 
 
 def text(t):
