@@ -142,7 +142,7 @@ typedef struct noc_report_file {
     size_t lamps_mapped;       /* stand in the scene */
     size_t lamps_moved;        /* of them: out of a building, or away from another lamp */
     size_t lamps_dropped;      /* of no use: outside the city, in a building, without a place */
-    size_t lamps_repeated;     /* that another file holds, too: taken once, and counted there */
+    size_t lamps_repeated;     /* that another file holds, too, or the file twice: taken once, and counted there */
     size_t objects_repeated;   /* the same of objects; of a file's own, too */
     /* Of a map: its features by their geometry, of which only lamps are read; of OpenStreetMap only points are in these. */
     size_t map_points, map_lines, map_areas;

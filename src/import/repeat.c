@@ -244,15 +244,22 @@ static bool same_lamp(const pending_lamp *a, const pending_lamp *b) {
     return a->input != b->input && (d <= SAME_PLACE || (d <= SAME_LAMP && called_alike(&a->lamp, &b->lamp)));
 }
 
-/* One of those around that is this lamp in another file? */
-static bool in_other_file(importer *im, const lamp_cells *cells, const pending_lamp *p) {
+/* A lamp with a body belongs to an object, whose id is its own: the same again comes of an object that the file holds twice. Rows
+ * of a table are lamps each, though two of one pole share its name. */
+static bool given_twice(const pending_lamp *a, const pending_lamp *b) {
+    return a->input == b->input && a->lamp.body_heads && b->lamp.body_heads && *a->lamp.id && !strcmp(a->lamp.id, b->lamp.id) &&
+           !memcmp(a->lamp.xyz, b->lamp.xyz, sizeof(a->lamp.xyz));
+}
+
+/* One of those around that is this lamp; NULL: there is none. */
+static const pending_lamp *find_lamp(importer *im, const lamp_cells *cells, const pending_lamp *p) {
     for (int c = 0; c < 9; c++) {
         size_t seen = 0;
         for (uint32_t k = *lamp_cells_at(cells, p->lamp.xyz, c); k && seen++ < MOST; k = cells->next[k - 1], im->lamp_looks++)
-            if (same_lamp(&im->lamps.data[k - 1], p))
-                return true;
+            if (same_lamp(&im->lamps.data[k - 1], p) || given_twice(&im->lamps.data[k - 1], p))
+                return &im->lamps.data[k - 1];
     }
-    return false;
+    return NULL;
 }
 
 /* Does one of its own file stand at the very place? A thousand lamps of one file at one place are one, to those of another. */
@@ -272,16 +279,18 @@ noc_status repeat_lamps(importer *im) {
     size_t kept = 0;
     bool several = false;
     for (size_t i = 1; i < im->lamps.len; i++)
-        several = several || lamps[i].input != lamps[0].input;
+        several = several || lamps[i].input != lamps[0].input || lamps[i].lamp.body_heads;
     if (!several)
         return NOC_OK;
     if (!lamp_cells_create(&cells, im->lamps.len, LAMP_CELL))
         return noc_no_memory(im->log, "import");
     for (size_t i = 0; i < im->lamps.len; i++) {
         const pending_lamp p = lamps[i];
-        if (in_other_file(im, &cells, &p)) {
+        const pending_lamp *same = find_lamp(im, &cells, &p);
+        if (same) {
             input *in = &im->inputs[p.input];
-            geo_issue(in->issues, GEO_SPARED, "lamp that another file holds, too: taken once", p.lamp.id);
+            geo_issue(in->issues, GEO_SPARED, same->input == p.input ? "lamp that the file holds twice: taken once"
+                                                                     : "lamp that another file holds, too: taken once", p.lamp.id);
             in->file.lamps_repeated++;
             continue;
         }

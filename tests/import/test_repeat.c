@@ -172,6 +172,28 @@ static void test_lamps_in_turn(void **state) {
     }
 }
 
+/* A building that its file holds twice brings its lamps twice; two rows of a table are two lamps. */
+static void test_lamps_of_objects(void **state) {
+    (void)state;
+    static const struct { const char *id; int body_heads; double x; size_t kept; } second[] = {
+        { "lamp", 1, 5, 1 }, { "lamp", 0, 5, 2 }, { "other", 1, 5, 2 }, { "lamp", 1, 5.01, 2 },
+    };
+    for (size_t i = 0; i < NOC_COUNT(second); i++) {
+        input in = { .path = "one", .issues = geo_issues_create() };
+        importer im = { .inputs = &in, .input_count = 1 };
+        pending_lamp a = { .lamp = { .id = "lamp", .ref = "", .xyz = { 5 }, .body_heads = 1 } }, b = a;
+        b.lamp.id = second[i].id;
+        b.lamp.body_heads = second[i].body_heads;
+        b.lamp.xyz[0] = second[i].x;
+        assert_true(array_push(&im.lamps, a) && array_push(&im.lamps, b));
+        assert_int_equal(repeat_lamps(&im), NOC_OK);
+        assert_int_equal(im.lamps.len, second[i].kept);
+        assert_int_equal(in.file.lamps_repeated, 2 - second[i].kept);
+        array_free(&im.lamps);
+        geo_issues_destroy(in.issues);
+    }
+}
+
 /* Lamps along a street, every `step` m from x on, half a metre aside where x is not 0; the last `far` of them 10 m to the side. */
 static const char *street(const char *name, size_t count, double step, double x, size_t far) {
     char text[4000];
@@ -246,7 +268,8 @@ static void test_ingolstadt(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_files), cmocka_unit_test(test_objects), cmocka_unit_test(test_large_object),
-                                        cmocka_unit_test(test_lamps), cmocka_unit_test(test_lamps_in_turn), cmocka_unit_test(test_doubles),
+                                        cmocka_unit_test(test_lamps), cmocka_unit_test(test_lamps_in_turn),
+                                        cmocka_unit_test(test_lamps_of_objects), cmocka_unit_test(test_doubles),
                                         cmocka_unit_test(test_ingolstadt) };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
