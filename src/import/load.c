@@ -236,10 +236,12 @@ static noc_status read_input(importer *im, size_t index) {
         else
             status = in->remote ? read_remote(im, in, &sink, NULL, &result) : in->reader->read(stream, im->params, &sink, &in->file.format);
         if (ahead && status != NOC_ERR_MEMORY) { /* after an error too: the report holds what came before it */
-            noc_log *log = im->log;
-            im->log = status ? NULL : log; /* which is told, and no other */
+            noc_log *log = im->log, *of_scene = im->scene->log;
+            if (status)
+                im->log = im->scene->log = NULL; /* it is told, and no other */
             noc_status released = ahead_release(ahead);
             im->log = log;
+            im->scene->log = of_scene;
             status = status ? status : released;
         }
         if (!status)
