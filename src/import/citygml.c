@@ -2,9 +2,6 @@
 #include "import/citygml.h"
 #include "import/lamp_tags.h"
 
-#define CHUNK (128 * 1024)
-#define MOST_TAG (4 << 20) /* bytes of a tag with its attributes, or a comment: expat looks at all of it again with each chunk */
-
 /* ---- probe ---- */
 
 /* Skips what may stand before the root element. NULL where the head ends first. */
@@ -64,25 +61,12 @@ static void refuse_entities(void *user, const XML_Char *name, int is_parameter, 
     cg_fail(user, NOC_ERR_FORMAT, "the document declares an entity (\"%s\"); such files are refused", name);
 }
 
-/* expat goes on after some allocations that it was refused, and then finds a fault in the file. */
-static _Thread_local bool xml_refused;
-
-static void *xml_alloc(size_t size) {
-    void *p = noc_alloc(size);
-    xml_refused = xml_refused || !p;
-    return p;
-}
-
-static void *xml_realloc(void *old, size_t size) {
-    void *p = noc_realloc(old, size);
-    xml_refused = xml_refused || !p;
-    return p;
-}
-
-static noc_status xml_error(cg_parser *p) {
+static noc_status xml_error(cg_parser *p, xml_fault fault) {
     enum XML_Error code = XML_GetErrorCode(p->xml);
-    if (xml_refused)
+    if (fault == XML_FAULT_MEMORY)
         return cg_no_memory(p);
+    if (fault == XML_FAULT_TAG)
+        return cg_fail(p, NOC_ERR_FORMAT, "a tag or comment of more than 4 MB, which is not read");
     if (code == XML_ERROR_UNKNOWN_ENCODING || code == XML_ERROR_INCORRECT_ENCODING)
         return cg_fail(p, NOC_ERR_UNSUPPORTED, "character encoding that is not read; UTF-8, UTF-16, ISO-8859-1 and "
                                                "US-ASCII are");
@@ -91,31 +75,20 @@ static noc_status xml_error(cg_parser *p) {
     return cg_fail(p, NOC_ERR_FORMAT, "%s", XML_ErrorString(code));
 }
 
+static noc_status after_chunk(void *user) {
+    cg_parser *p = user;
+    if (p->status)
+        return p->status;
+    double done = p->pass == 1 ? noc_stream_progress(p->stream) : 1;
+    return p->sink->progress(p->sink->ctx, done) ? NOC_OK : NOC_ERR_CANCELLED;
+}
+
 static noc_status parse(cg_parser *p) {
-    XML_Index fed = 0, reached = 0;
-    for (bool ended = false; !ended;) {
-        void *buffer = XML_GetBuffer(p->xml, CHUNK);
-        if (!buffer)
-            return xml_error(p);
-        size_t got;
-        noc_status status = noc_stream_read(p->stream, buffer, CHUNK, &got);
-        if (status)
-            return p->status = status;
-        ended = got == 0;
-        enum XML_Status xml = XML_ParseBuffer(p->xml, (int)got, ended);
-        if (p->status)
-            return p->status;
-        if (xml != XML_STATUS_OK || xml_refused)
-            return xml_error(p);
-        fed += (XML_Index)got;
-        reached = NOC_MAX(reached, XML_GetCurrentByteIndex(p->xml)); /* -1 in a long comment before the root */
-        if (fed - reached > MOST_TAG + CHUNK)
-            return cg_fail(p, NOC_ERR_FORMAT, "a tag or comment of more than 4 MB, which is not read");
-        double done = p->pass == 1 ? noc_stream_progress(p->stream) : 1;
-        if (!p->sink->progress(p->sink->ctx, done))
-            return p->status = NOC_ERR_CANCELLED;
-    }
-    return NOC_OK;
+    xml_fault fault;
+    noc_status status = xml_read(p->xml, p->stream, after_chunk, p, &fault);
+    if (status)
+        return p->status = status;
+    return fault ? xml_error(p, fault) : NOC_OK;
 }
 
 static noc_status run_pass(cg_parser *p, int pass) {
@@ -124,8 +97,7 @@ static noc_status run_pass(cg_parser *p, int pass) {
     p->in_polygon = p->in_ring = false;
     p->text = CG_TEXT_NONE;
     p->ordinal = p->deferred_next = p->deferred_kept = 0;
-    xml_refused = false;
-    p->xml = XML_ParserCreate_MM(NULL, &(XML_Memory_Handling_Suite){ xml_alloc, xml_realloc, free }, "\n");
+    p->xml = xml_create("\n");
     if (!p->xml)
         return p->status = noc_no_memory(p->sink->log, noc_stream_name(p->stream));
     XML_SetUserData(p->xml, p);

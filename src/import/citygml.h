@@ -8,8 +8,7 @@
 #define NOC_CITYGML_H
 
 #include "import/import.h"
-
-#include <expat.h>
+#include "import/xml.h"
 
 #define CG_MAX_DEPTH 200          /* elements in elements */
 #define CG_MAX_NUMBERS (1u << 25) /* in one polygon; more is taken for an attack */

@@ -1,6 +1,7 @@
 #include "import/osm_ways.h"
 
-#include <expat.h>
+#include "import/xml.h"
+
 #include <zlib.h>
 
 #define MOST_HEADER (64 << 10) /* bytes: the limits of the format */
@@ -43,6 +44,8 @@ static bool go_on(noc_stream *stream, geo_sink *sink) {
 /* ---- XML ---- */
 
 typedef struct xml_count {
+    noc_stream *stream;
+    geo_sink *sink;
     geo_features *features;
     bool within;
     osm_way way;
@@ -72,44 +75,24 @@ static void on_end(void *user, const char *name) {
     x->within = false;
 }
 
-/* expat goes on after some allocations that it was refused, and then finds a fault in the file. */
-static _Thread_local bool xml_refused;
-
-static void *xml_alloc(size_t size) {
-    void *p = noc_alloc(size);
-    xml_refused = xml_refused || !p;
-    return p;
+static noc_status after_chunk(void *user) {
+    const xml_count *x = user;
+    return go_on(x->stream, x->sink) ? NOC_OK : NOC_ERR_CANCELLED;
 }
 
-static void *xml_realloc(void *old, size_t size) {
-    void *p = noc_realloc(old, size);
-    xml_refused = xml_refused || !p;
-    return p;
-}
-
+/* GDAL has read the file before, and has told of what else is wrong with it. */
 static noc_status count_xml(noc_stream *stream, geo_sink *sink, geo_features *features) {
-    enum { CHUNK = 1 << 16 };
-    xml_count x = { .features = features };
-    xml_refused = false;
-    XML_Parser xml = XML_ParserCreate_MM(NULL, &(XML_Memory_Handling_Suite){ xml_alloc, xml_realloc, free }, NULL);
+    xml_count x = { .stream = stream, .sink = sink, .features = features };
+    xml_fault fault;
+    XML_Parser xml = xml_create(NULL);
     if (!xml)
         return noc_no_memory(sink->log, noc_stream_name(stream));
     XML_SetUserData(xml, &x);
     XML_SetElementHandler(xml, on_start, on_end);
-    noc_status status = NOC_OK;
-    enum XML_Status parsed = XML_STATUS_OK;
-    for (size_t got = 1; got && !status && parsed == XML_STATUS_OK;) {
-        void *buffer = XML_GetBuffer(xml, CHUNK);
-        status = buffer ? noc_stream_read(stream, buffer, CHUNK, &got)
-                        : noc_no_memory(sink->log, noc_stream_name(stream));
-        if (!status)
-            parsed = XML_ParseBuffer(xml, (int)got, got == 0);
-        if (!status && !go_on(stream, sink))
-            status = NOC_ERR_CANCELLED;
-    }
-    if (!status && xml_refused)
-        status = noc_no_memory(sink->log, noc_stream_name(stream));
+    noc_status status = xml_read(xml, stream, after_chunk, &x, &fault);
     XML_ParserFree(xml);
+    if (!status && fault == XML_FAULT_MEMORY)
+        status = noc_no_memory(sink->log, noc_stream_name(stream));
     return status;
 }
 
