@@ -2,10 +2,10 @@
  *
  *   bench_boxes [SCENE [VIEW [SHARED [POINTS]]]]     default: city street 1 400
  *
- * SHARED: so many lights may share a volume. For POINTS pixels of a view and every light whose sphere holds the surface there,
- * a ray to the light's middle tells whether it is seen. "seen" is how many of those that are seen the boxes keep, "light" how
- * much of what they give, "hidden" how many of those that are not seen they keep; all at the scene's S_r, and at 4 times as
- * much, as points ask that find too few. */
+ * SHARED: so many lights may share a volume. For POINTS pixels of a view and every light whose sphere holds the surface
+ * there, a ray to the light's middle tells whether it is seen. "seen" is how many of those that are seen the boxes
+ * keep, "light" how much of what they give, "hidden" how many of those that are not seen they keep; all at the scene's
+ * S_r, and at 4 times as much, as points ask that find too few. */
 #include "bench_scene.h"
 
 #include "backend/embree/embree.h"
@@ -26,9 +26,12 @@ typedef struct bench {
     const gblock *g;
     int lane;
     noc_probes probes; /* from the surface to lights that wait to be told seen or not */
-    struct { bool kept; double light; } waiting[NOC_PROBES];
+    struct {
+        bool kept;
+        double light;
+    } waiting[NOC_PROBES];
     int count;
-    bool found;        /* the surface sees a light that a box keeps */
+    bool found; /* the surface sees a light that a box keeps */
     tally t;
 } bench;
 
@@ -58,7 +61,9 @@ static void look_at(bench *b, uint32_t id, bool kept) {
     noc_light_bound at = noc_bound_light(&b->s->lights.data[id]);
     light record;
     memcpy(&record, &b->s->lights.data[id], sizeof(record));
-    surf y = { .p = { g->px[l], g->py[l], g->pz[l] }, .n = { g->nx[l], g->ny[l], g->nz[l] }, .albedo = { 0.3f, 0.3f, 0.3f } };
+    surf y = { .p = { g->px[l], g->py[l], g->pz[l] },
+               .n = { g->nx[l], g->ny[l], g->nz[l] },
+               .albedo = { 0.3f, 0.3f, 0.3f } };
     y.wo = y.n;
     b->waiting[b->count].kept = kept;
     b->waiting[b->count].light = target(y, record, 0.5f, 0.5f);
@@ -97,9 +102,11 @@ static void measure(bench *b, int points, float scale) {
         b->t.dark += !b->found;
     }
     const tally *t = &b->t;
-    printf("S_r %6.2f: %7.1f lights a point, %7.1f seen; kept: %6.2f%% of those seen, %6.2f%% of their light, %6.2f%% of those hidden; "
-           "%.1f%% of the points find none\n", scale, t->pairs / t->points, t->seen / t->points, 100 * t->seen_kept / t->seen,
-           100 * t->light_kept / t->light, 100 * t->hidden_kept / t->hidden, 100 * t->dark / t->points);
+    printf(
+        "S_r %6.2f: %7.1f lights a point, %7.1f seen; kept: %6.2f%% of those seen, %6.2f%% of their light, %6.2f%% of those hidden; "
+        "%.1f%% of the points find none\n",
+        scale, t->pairs / t->points, t->seen / t->points, 100 * t->seen_kept / t->seen, 100 * t->light_kept / t->light,
+        100 * t->hidden_kept / t->hidden, 100 * t->dark / t->points);
 }
 
 static bool run(const noc_scene *s, noc_view view, int shared, int points, noc_log *log) {
@@ -121,7 +128,8 @@ static bool run(const noc_scene *s, noc_view view, int shared, int points, noc_l
     if (ok) {
         noc_make_frame_camera(&camera, &p, 0, &f.camera);
         noc_backend_embree.resize(state, WIDTH, HEIGHT, 1);
-        ok = noc_embree_prepare_lights(b.e, &p) == NOC_OK && noc_backend_embree.stage(state, &f, &primary, NULL, 0, 1) == NOC_OK;
+        ok = noc_embree_prepare_lights(b.e, &p) == NOC_OK &&
+             noc_backend_embree.stage(state, &f, &primary, NULL, 0, 1) == NOC_OK;
     }
     noc_influence_params params = { .cluster = shared, .pool = b.e->pool };
     b.spheres = ok ? noc_influence_create(s, &params, log) : NULL;
@@ -132,8 +140,8 @@ static bool run(const noc_scene *s, noc_view view, int shared, int points, noc_l
     wall = noc_wall_seconds() - wall;
     cpu = noc_cpu_seconds() - cpu;
     if (b.spheres && b.boxes) {
-        printf("%zu lights, %u volumes, %u boxes: %.3f s wall, %.3f s CPU, %.1f bytes a light\n", s->lights.len, b.boxes->volume_count,
-               b.boxes->box_count, wall, cpu, (double)b.boxes->bytes / (double)s->lights.len);
+        printf("%zu lights, %u volumes, %u boxes: %.3f s wall, %.3f s CPU, %.1f bytes a light\n", s->lights.len,
+               b.boxes->volume_count, b.boxes->box_count, wall, cpu, (double)b.boxes->bytes / (double)s->lights.len);
         measure(&b, points, b.boxes->scale);
         measure(&b, points, 4 * b.boxes->scale);
     }

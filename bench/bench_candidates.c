@@ -1,6 +1,6 @@
-/* How many light candidates (draw, point on the light, unshadowed target, reservoir) a core makes a second, by instruction
- * set, by the layout of the lights in memory, and by what is lit by what. Million a second of thread CPU time, the best of
- * RUNS. All rows of one scene must agree on every choice and weight: the checksums are compared.
+/* How many light candidates (draw, point on the light, unshadowed target, reservoir) a core makes a second, by
+ * instruction set, by the layout of the lights in memory, and by what is lit by what. Million a second of thread CPU
+ * time, the best of RUNS. All rows of one scene must agree on every choice and weight: the checksums are compared.
  * Usage: bench_candidates [surfaces [M]] */
 #include "candidates.h"
 
@@ -16,7 +16,8 @@ _Static_assert(offsetof(noc_light_record, kind) == offsetof(light, kind) &&
                    offsetof(noc_light_record, a) == offsetof(light, a) &&
                    offsetof(noc_light_record, flags) == offsetof(light, flags) &&
                    offsetof(noc_light_record, e) == offsetof(light, e) &&
-                   offsetof(noc_light_record, area) == offsetof(light, area) && sizeof(light) == sizeof(noc_light_record),
+                   offsetof(noc_light_record, area) == offsetof(light, area) &&
+                   sizeof(light) == sizeof(noc_light_record),
                "records are what core/wide_load.h loads");
 
 enum { RUNS = 9 };
@@ -66,7 +67,10 @@ static double measure(candidates_fn *fn, const candidates_job *job, int layout, 
     return best;
 }
 
-static const struct { const char *name; candidates_fn *fn; } sets[] = {
+static const struct {
+    const char *name;
+    candidates_fn *fn;
+} sets[] = {
     { "scalar", candidates_scalar },
     { "baseline x4", candidates_baseline },
 #if defined(HAVE_X86_WIDE)

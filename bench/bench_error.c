@@ -1,11 +1,12 @@
 /* Error against the reference by method and frame.
  *
- *   bench_error [SCENE [VIEW [WIDTH HEIGHT [REFERENCE_FRAMES [CACHE [NAME]]]]]]     default: city street 480 270 64 build
+ *   bench_error [SCENE [VIEW [WIDTH HEIGHT [REFERENCE_FRAMES [CACHE [NAME]]]]]]     default: city street 480 270 64
+ * build
  *
  * NAME: only the variants whose names hold it. Figures: RMSE-8 and relMSE clamped to 10 cd/m2, and unclamped bias
- * (docs/estimator.md, "Error figures") on pixels that see no emitter, after 1, 2, 4, 8, 16 and 32 frames: accumulated, and of that frame alone. Candidates are uniform where the name
- * does not say what else. The reference is kept as EXR in the CACHE folder under a name made of everything that it depends on:
- * scene content, camera, size and frames. */
+ * (docs/estimator.md, "Error figures") on pixels that see no emitter, after 1, 2, 4, 8, 16 and 32 frames: accumulated,
+ * and of that frame alone. Candidates are uniform where the name does not say what else. The reference is kept as EXR
+ * in the CACHE folder under a name made of everything that it depends on: scene content, camera, size and frames. */
 #include "bench_scene.h"
 
 #include "render/backend.h"
@@ -113,7 +114,8 @@ static bool compare(noc_renderer *r, const noc_image *want, noc_metrics *out, no
     return ok;
 }
 
-static bool measure(const noc_scene *scene, const noc_camera *camera, const variant *v, const noc_image *want, noc_log *log) {
+static bool measure(const noc_scene *scene, const noc_camera *camera, const variant *v, const noc_image *want,
+                    noc_log *log) {
     noc_metrics figures[2][STEPS];
     double cpu = 0;
     for (int alone = 0; alone < 2; alone++) {

@@ -2,8 +2,9 @@
  *
  *   bench_frame [SCENE [VIEW [WIDTH HEIGHT [FRAMES]]]]     default: city street 1920 1080 4
  *
- * M = 32, k = 5, no sky, uniform candidates unless the name says lists (32 + 32). Wall seconds are the median over the frames after the first (which has no history); pass times are
- * thread seconds. The floor is traced after each frame from the very rays of that frame. */
+ * M = 32, k = 5, no sky, uniform candidates unless the name says lists (32 + 32). Wall seconds are the median over the
+ * frames after the first (which has no history); pass times are thread seconds. The floor is traced after each frame
+ * from the very rays of that frame. */
 #include "bench_scene.h"
 
 typedef struct variant {
@@ -23,11 +24,13 @@ static const variant variants[] = {
     { "restir mis + rays", NOC_METHOD_RESTIR, NOC_BIAS_MIS, true, true, true },
     { "restir pairwise + rays", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, true },
     { "ris, lists", NOC_METHOD_RIS, .candidates = NOC_CANDIDATES_LISTS },
-    { "pairwise + rays, lists", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, true, .candidates = NOC_CANDIDATES_LISTS },
+    { "pairwise + rays, lists", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, true,
+      .candidates = NOC_CANDIDATES_LISTS },
     { "restir pairwise, scalar", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, false, true, true, NOC_ISA_SCALAR },
 };
 
-static bool measure(const noc_scene *scene, const noc_camera *camera, const variant *v, int width, int height, int frames) {
+static bool measure(const noc_scene *scene, const noc_camera *camera, const variant *v, int width, int height,
+                    int frames) {
     noc_render_params p = noc_render_default_params();
     p.width = width;
     p.height = height;

@@ -1,6 +1,7 @@
 /* Candidates from influence volumes: frame times against uniform ones, and error by S_r.
  *
- *   bench_influence [SCENE [VIEW [WIDTH HEIGHT [FRAMES [METHOD REFERENCE SEEDS S_R...]]]]]     default: city street 640 360 9
+ *   bench_influence [SCENE [VIEW [WIDTH HEIGHT [FRAMES [METHOD REFERENCE SEEDS S_R...]]]]]     default: city street 640
+ * 360 9
  *
  * Without a REFERENCE two renderers, restir at M = 32 and restir at M = 32 from volumes, make frames in turn in one
  * process and so meet the same disturbances; times are medians of CPU seconds. The first frame of each, without a
@@ -68,8 +69,8 @@ static bool times(const noc_scene *scene, const noc_camera *camera, int width, i
         }
         noc_renderer_light_stats(side[1].r, &found);
         printf("frames %.3f, candidates %.3f of uniform's; S_r %.3f, found: median %u, 99%% %u, none %.2f%%\n",
-               cpu[1] / cpu[0], pass[1][NOC_PASS_CANDIDATES] / pass[0][NOC_PASS_CANDIDATES], found.influence, found.found_median,
-               found.found_99, 100 * found.found_none);
+               cpu[1] / cpu[0], pass[1][NOC_PASS_CANDIDATES] / pass[0][NOC_PASS_CANDIDATES], found.influence,
+               found.found_median, found.found_99, 100 * found.found_none);
     }
     for (int i = 0; i < 2; i++)
         noc_renderer_destroy(side[i].r);
@@ -111,7 +112,8 @@ static bool compare(erring *e, const noc_image *want, int moment, int seed, noc_
 }
 
 /* Frames of all of them in turn, so that they meet the same disturbances. */
-static bool run_seed(erring *e, int n, const noc_camera *camera, const noc_image *want, int frames, int seed, noc_log *log) {
+static bool run_seed(erring *e, int n, const noc_camera *camera, const noc_image *want, int frames, int seed,
+                     noc_log *log) {
     bool ok = true;
     for (int i = 0; i < n; i++) {
         e[i].params.seed = (uint32_t)seed + 1;
@@ -130,8 +132,11 @@ static bool run_seed(erring *e, int n, const noc_camera *camera, const noc_image
     return ok;
 }
 
-/* What the error of a mean of frames becomes in `time` times their CPU time, by how it fell from half of them to all. */
-static double in_time(double half, double all, double time) { return all * pow(time, all > 0 && half > all ? log2(all / half) : 0); }
+/* What the error of a mean of frames becomes in `time` times their CPU time, by how it fell from half of them to all.
+ */
+static double in_time(double half, double all, double time) {
+    return all * pow(time, all > 0 && half > all ? log2(all / half) : 0);
+}
 
 static void print_erring(const erring *e, const erring *first, int seeds) {
     noc_light_stats found;
@@ -142,14 +147,16 @@ static void print_erring(const erring *e, const erring *first, int seeds) {
         rmse8[m] = spread_of(e->rmse8[m], seeds);
         relmse[m] = spread_of(e->relmse[m], seeds);
     }
-    printf("S_r %8.3f%s  RMSE-8 %6.2f +- %.2f  relMSE %.4f +- %.4f  %.1f CPU ms, the fastest frame | in the first one's time: %6.2f %.4f | found: "
-           "median %u, 99%% %u, none %.2f%%\n", found.influence, e->params.influence > 0 ? "  " : " *", rmse8[ALL].mean, rmse8[ALL].error,
-           relmse[ALL].mean, relmse[ALL].error, 1e3 * e->fastest, in_time(rmse8[HALF].mean, rmse8[ALL].mean, time),
-           in_time(relmse[HALF].mean, relmse[ALL].mean, time), found.found_median, found.found_99, 100 * found.found_none);
+    printf(
+        "S_r %8.3f%s  RMSE-8 %6.2f +- %.2f  relMSE %.4f +- %.4f  %.1f CPU ms, the fastest frame | in the first one's time: %6.2f %.4f | found: "
+        "median %u, 99%% %u, none %.2f%%\n",
+        found.influence, e->params.influence > 0 ? "  " : " *", rmse8[ALL].mean, rmse8[ALL].error, relmse[ALL].mean,
+        relmse[ALL].error, 1e3 * e->fastest, in_time(rmse8[HALF].mean, rmse8[ALL].mean, time),
+        in_time(relmse[HALF].mean, relmse[ALL].mean, time), found.found_median, found.found_99, 100 * found.found_none);
 }
 
-static bool errors(const noc_scene *scene, const noc_camera *camera, noc_render_params p, const char *path, int frames, int seeds,
-                   char **scales, noc_log *log) {
+static bool errors(const noc_scene *scene, const noc_camera *camera, noc_render_params p, const char *path, int frames,
+                   int seeds, char **scales, noc_log *log) {
     static erring e[MOST_SCALES];
     bool linear, ok = true;
     int n = 0;
@@ -180,12 +187,15 @@ int main(int argc, char **argv) {
     int frames = argc > 5 ? atoi(argv[5]) : 9;
     noc_method method = argc > 6 && !strcmp(argv[6], "restir") ? NOC_METHOD_RESTIR : NOC_METHOD_RIS;
     int seeds = argc > 8 ? atoi(argv[8]) : 1;
-    if (width < 1 || height < 1 || frames < 1 || frames > MOST_FRAMES || argc == 7 || argc == 8 || seeds < 1 || seeds > MOST_SEEDS) {
-        fprintf(stderr, "usage: bench_influence [SCENE [VIEW [WIDTH HEIGHT [FRAMES [METHOD REFERENCE SEEDS S_R...]]]]]\n");
+    if (width < 1 || height < 1 || frames < 1 || frames > MOST_FRAMES || argc == 7 || argc == 8 || seeds < 1 ||
+        seeds > MOST_SEEDS) {
+        fprintf(stderr,
+                "usage: bench_influence [SCENE [VIEW [WIDTH HEIGHT [FRAMES [METHOD REFERENCE SEEDS S_R...]]]]]\n");
         return 2;
     }
     if (argc > 9 + MOST_SCALES) {
-        fprintf(stderr, "bench_influence: %d values of S_r are given, and %d is the most that it compares\n", argc - 9, MOST_SCALES);
+        fprintf(stderr, "bench_influence: %d values of S_r are given, and %d is the most that it compares\n", argc - 9,
+                MOST_SCALES);
         return 2;
     }
     noc_log *log = bench_log();
@@ -193,7 +203,8 @@ int main(int argc, char **argv) {
     noc_camera camera;
     bool ok = scene && noc_scene_camera(scene, bench_view(view), (double)width / height, &camera) == NOC_OK;
     if (ok && argc > 8)
-        ok = errors(scene, &camera, params_of(width, height, method, NOC_CANDIDATES_BVH), argv[7], frames, seeds, argv + 9, log);
+        ok = errors(scene, &camera, params_of(width, height, method, NOC_CANDIDATES_BVH), argv[7], frames, seeds,
+                    argv + 9, log);
     else if (ok)
         ok = times(scene, &camera, width, height, frames, log);
     noc_scene_destroy(scene);

@@ -2,11 +2,11 @@
  *
  *   bench_lists [SCENE [VIEW [WIDTH HEIGHT [FRAMES [REFERENCE.exr [REFERENCE_FRAMES]]]]]]
  *
- * SCENE may also be lamps:N, N windows and lamps on a plain of boxes. First the structure: seconds and bytes a light; then
- * microseconds a tile for the list alone (one thread, median of FRAMES rounds over all tiles). With a reference, relMSE of
- * single frames of ris with one ray (mean over FRAMES seeds): of the choice alone (no shadows: against the unshadowed
- * truth) and of the picture, clamped to 10 cd/m2 and not. A reference that is not there yet is rendered by lists of 128 + 128,
- * REFERENCE_FRAMES of them, with and without shadows (REFERENCE.exr.free.exr). */
+ * SCENE may also be lamps:N, N windows and lamps on a plain of boxes. First the structure: seconds and bytes a light;
+ * then microseconds a tile for the list alone (one thread, median of FRAMES rounds over all tiles). With a reference,
+ * relMSE of single frames of ris with one ray (mean over FRAMES seeds): of the choice alone (no shadows: against the
+ * unshadowed truth) and of the picture, clamped to 10 cd/m2 and not. A reference that is not there yet is rendered by
+ * lists of 128 + 128, REFERENCE_FRAMES of them, with and without shadows (REFERENCE.exr.free.exr). */
 #include "bench_scene.h"
 
 #include "backend/embree/embree.h"
@@ -27,12 +27,17 @@ static void add_box(noc_scene *s, int material, double x, double y, double side,
         p[3 * i + 1] = y + (i & 2 ? side : 0);
         p[3 * i + 2] = i & 4 ? height : 0;
     }
-    noc_mesh m = { .vertex_count = 8, .positions = p, .triangle_count = 10, .material = material,
-                   .indices = (uint32_t[]){ 0, 1, 5, 0, 5, 4, 1, 3, 7, 1, 7, 5, 3, 2, 6, 3, 6, 7, 2, 0, 4, 2, 4, 6, 4, 5, 7, 4, 7, 6 } };
+    noc_mesh m = { .vertex_count = 8,
+                   .positions = p,
+                   .triangle_count = 10,
+                   .material = material,
+                   .indices = (uint32_t[]){ 0, 1, 5, 0, 5, 4, 1, 3, 7, 1, 7, 5, 3, 2, 6,
+                                            3, 6, 7, 2, 0, 4, 2, 4, 6, 4, 5, 7, 4, 7, 6 } };
     noc_scene_add_mesh(s, &m);
 }
 
-/* Boxes of 12 m on a grid of 25 m, a hundred lights each: windows on the four walls, one light in ten a lamp in the street. */
+/* Boxes of 12 m on a grid of 25 m, a hundred lights each: windows on the four walls, one light in ten a lamp in the
+ * street. */
 static noc_scene *lamps(int lights, noc_log *log) {
     noc_scene *s = noc_scene_create(log);
     uint32_t r = 5;
@@ -40,8 +45,11 @@ static noc_scene *lamps(int lights, noc_log *log) {
     double side = 25.0 * boxes;
     noc_material grey = { .albedo = { 0.3f, 0.3f, 0.3f }, .roughness = 1 };
     int material = noc_scene_add_material(s, &grey);
-    noc_mesh ground = { .vertex_count = 4, .positions = (double[]){ 0, 0, 0, side, 0, 0, side, side, 0, 0, side, 0 },
-                        .triangle_count = 2, .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 }, .material = material };
+    noc_mesh ground = { .vertex_count = 4,
+                        .positions = (double[]){ 0, 0, 0, side, 0, 0, side, side, 0, 0, side, 0 },
+                        .triangle_count = 2,
+                        .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+                        .material = material };
     noc_scene_add_mesh(s, &ground);
     for (int b = 0, i = 0; b < boxes * boxes; b++) {
         double x = 25.0 * (b % boxes) + 6, y = 25.0 * (b / boxes) + 6, height = 6 + 30 * unit(&r) * unit(&r);
@@ -49,7 +57,9 @@ static noc_scene *lamps(int lights, noc_log *log) {
         for (int end = (int)((double)lights * (b + 1) / (boxes * boxes)); i < end; i++) {
             noc_light l = { .kind = i % 10 ? NOC_LIGHT_PARALLELOGRAM : NOC_LIGHT_SPHERE, .radius = 0.1 };
             double along = 11 * unit(&r), up = 1 + (height - 2.5) * unit(&r), out = 0.02;
-            double at[4][2] = { { x + along, y - out }, { x + 12 + out, y + along }, { x + 12 - along, y + 12 + out },
+            double at[4][2] = { { x + along, y - out },
+                                { x + 12 + out, y + along },
+                                { x + 12 - along, y + 12 + out },
                                 { x - out, y + 12 - along } };
             double way[4][2] = { { 1, 0 }, { 0, 1 }, { -1, 0 }, { 0, -1 } };
             int wall = (int)(4 * unit(&r)) & 3;
@@ -95,15 +105,16 @@ static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, 
     noc_backend_embree.resize(state, width, height, 1);
     noc_stage primary = { .passes = 1u << NOC_PASS_PRIMARY };
     double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
-    if (noc_embree_prepare_lights(e, &p) != NOC_OK || noc_backend_embree.stage(state, &f, &primary, NULL, 0, 1) != NOC_OK)
+    if (noc_embree_prepare_lights(e, &p) != NOC_OK ||
+        noc_backend_embree.stage(state, &f, &primary, NULL, 0, 1) != NOC_OK)
         return false;
     wall = noc_wall_seconds();
     cpu = noc_cpu_seconds();
     noc_clusters *c = noc_clusters_create(s, e->pool, NULL);
     wall = noc_wall_seconds() - wall;
     cpu = noc_cpu_seconds() - cpu;
-    printf("%zu lights, %zu clusters: built in %.3f s (CPU %.3f s), %.1f bytes a light\n", s->lights.len, c->count, wall, cpu,
-           (double)c->bytes / (double)s->lights.len);
+    printf("%zu lights, %zu clusters: built in %.3f s (CPU %.3f s), %.1f bytes a light\n", s->lights.len, c->count,
+           wall, cpu, (double)c->bytes / (double)s->lights.len);
     noc_clusters_destroy(c);
     const frame_buffers *b = &e->b;
     struct core_context ctx = { s->lights.data, (uint32_t)s->lights.len, s->material_records.data, &f, e->clusters };
@@ -126,22 +137,23 @@ static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, 
             if (!any)
                 continue;
             u32 key = rng_key(1, (uint32_t)t, (uint32_t)round);
-            e->kernels->list_build(&ctx, g, lanes, n, rng(key, DIM_LIST), &e->workers[0].lists, &e->workers[0].lists.list);
+            e->kernels->list_build(&ctx, g, lanes, n, rng(key, DIM_LIST), &e->workers[0].lists,
+                                   &e->workers[0].lists.list);
             entries += e->workers[0].lists.list.count;
             tiles++;
         }
         us[round] = 1e6 * (noc_cpu_seconds() - start) / (double)NOC_MAX(tiles, 1);
     }
     qsort(us, (size_t)rounds, sizeof(*us), bench_by_size);
-    printf("%zu tiles, %.1f entries each: %.2f us a tile (%s)\n", tiles, entries / (double)NOC_MAX(tiles, 1), us[rounds / 2],
-           e->kernels->name);
+    printf("%zu tiles, %.1f entries each: %.2f us a tile (%s)\n", tiles, entries / (double)NOC_MAX(tiles, 1),
+           us[rounds / 2], e->kernels->name);
     free(us);
     noc_backend_embree.destroy(state);
     return true;
 }
 
-static noc_image *reference(const noc_scene *s, const noc_camera *camera, int width, int height, int frames, const char *path,
-                            bool shadows, noc_log *log) {
+static noc_image *reference(const noc_scene *s, const noc_camera *camera, int width, int height, int frames,
+                            const char *path, bool shadows, noc_log *log) {
     bool linear;
     if (!access(path, R_OK))
         return noc_image_read(path, log, &linear);
@@ -182,8 +194,8 @@ static void errors(const noc_scene *s, const noc_camera *camera, const noc_rende
         cpu += stats.cpu_seconds;
     }
     if (done)
-        printf("%-22s relMSE %.4f (unclamped %.4f), bias %+.2f%%, %.0f ms CPU a frame\n", name, clamped / done, raw / done,
-               100 * (bias / done - 1), 1e3 * cpu / done);
+        printf("%-22s relMSE %.4f (unclamped %.4f), bias %+.2f%%, %.0f ms CPU a frame\n", name, clamped / done,
+               raw / done, 100 * (bias / done - 1), 1e3 * cpu / done);
     fflush(stdout);
     noc_renderer_destroy(r);
 }
@@ -193,11 +205,13 @@ int main(int argc, char **argv) {
     int width = argc > 4 ? atoi(argv[3]) : 960, height = argc > 4 ? atoi(argv[4]) : 540;
     int frames = argc > 5 ? atoi(argv[5]) : 5, most = argc > 7 ? atoi(argv[7]) : 256;
     if (width < 1 || height < 1 || frames < 1 || most < 1) {
-        fprintf(stderr, "usage: bench_lists [SCENE [VIEW [WIDTH HEIGHT [FRAMES [REFERENCE.exr [REFERENCE_FRAMES]]]]]]\n");
+        fprintf(stderr,
+                "usage: bench_lists [SCENE [VIEW [WIDTH HEIGHT [FRAMES [REFERENCE.exr [REFERENCE_FRAMES]]]]]]\n");
         return 2;
     }
     noc_log *log = bench_log();
-    noc_scene *s = strncmp(spec, "lamps:", 6) ? bench_scene(spec, log) : lamps(NOC_CLAMP(atoi(spec + 6), 1, 50000000), log);
+    noc_scene *s =
+        strncmp(spec, "lamps:", 6) ? bench_scene(spec, log) : lamps(NOC_CLAMP(atoi(spec + 6), 1, 50000000), log);
     noc_camera camera;
     bool ok = s && noc_scene_camera(s, bench_view(view), (double)width / height, &camera) == NOC_OK &&
               time_lists(s, &camera, width, height, frames);

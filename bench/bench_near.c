@@ -2,17 +2,20 @@
  *
  *   bench_near [SEEDS]     default: 16
  *
- * "facing": the window lies parallel to the floor, this gap above it, and shines down on it. "standing": it stands on edge, its
- * lower edge this gap above the floor. Alone, or among 2,000 windows 20 to 300 m away. The floor below (before) it, 1 x 1.5 m (1 x
- * 1 m), is seen through the window, which was made to move and so has no shape. The truth is Lambert's formula. Printed: median,
- * largest and root mean square error of the ratio to the truth of a pixel of one frame, and the mean ratio. */
+ * "facing": the window lies parallel to the floor, this gap above it, and shines down on it. "standing": it stands on
+ * edge, its lower edge this gap above the floor. Alone, or among 2,000 windows 20 to 300 m away. The floor below
+ * (before) it, 1 x 1.5 m (1 x 1 m), is seen through the window, which was made to move and so has no shape. The truth
+ * is Lambert's formula. Printed: median, largest and root mean square error of the ratio to the truth of a pixel of one
+ * frame, and the mean ratio. */
 #include "bench_scene.h"
 
 #include <math.h>
 
 enum { W = 48, H = 48, CROWD = 2000 };
 
-typedef struct quad { double p[3], a[3], b[3]; } quad;
+typedef struct quad {
+    double p[3], a[3], b[3];
+} quad;
 
 static void cross(const double *a, const double *b, double *c) {
     for (int k = 0; k < 3; k++)
@@ -48,13 +51,21 @@ static void add(noc_scene *s, const quad *q) {
     noc_scene_add_light(s, &l);
 }
 
-typedef struct view { int standing; double gap; int lights; quad quads[1 + CROWD]; } view;
+typedef struct view {
+    int standing;
+    double gap;
+    int lights;
+    quad quads[1 + CROWD];
+} view;
 
 static void measure(const view *v, const char *name, noc_candidates candidates, noc_method method, int seeds) {
     noc_scene *s = noc_scene_create(NULL);
     noc_material matte = { .albedo = { .5f, .5f, .5f }, .roughness = 1 };
     const double floor[12] = { -40, -40, 0, 40, -40, 0, 40, 40, 0, -40, 40, 0 };
-    noc_mesh m = { .vertex_count = 4, .positions = floor, .triangle_count = 2, .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+    noc_mesh m = { .vertex_count = 4,
+                   .positions = floor,
+                   .triangle_count = 2,
+                   .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
                    .material = noc_scene_add_material(s, &matte) };
     noc_scene_add_mesh(s, &m);
     for (int i = 0; i < v->lights; i++)
@@ -69,7 +80,10 @@ static void measure(const view *v, const char *name, noc_candidates candidates, 
     p.method = method;
     p.candidates = candidates;
     double side = 1, height = 60; /* half a metre around the middle at this distance: nearly parallel rays */
-    noc_camera c = { .eye = { 0, 0, height }, .target = { 0, 0, 0 }, .up = { 0, 1, 0 }, .fov_deg = 2 * atan(side / 2 / height) * 180 / M_PI };
+    noc_camera c = { .eye = { 0, 0, height },
+                     .target = { 0, 0, 0 },
+                     .up = { 0, 1, 0 },
+                     .fov_deg = 2 * atan(side / 2 / height) * 180 / M_PI };
     static double ratio[64 * W * H];
     double truth[W * H], sum = 0, square = 0;
     size_t n = 0;
@@ -92,8 +106,9 @@ static void measure(const view *v, const char *name, noc_candidates candidates, 
         noc_image_destroy(image);
     }
     double median = bench_median(ratio, (int)n);
-    printf("%-9s %6.2f m %5d lights  %-20s median %6.3f  most %8.2f  rms error %7.3f  mean %.4f\n", v->standing ? "standing" : "facing",
-           v->gap, v->lights, name, median, ratio[n - 1], sqrt(square / (double)n), sum / (double)n);
+    printf("%-9s %6.2f m %5d lights  %-20s median %6.3f  most %8.2f  rms error %7.3f  mean %.4f\n",
+           v->standing ? "standing" : "facing", v->gap, v->lights, name, median, ratio[n - 1], sqrt(square / (double)n),
+           sum / (double)n);
     fflush(stdout);
     noc_renderer_destroy(r);
     noc_scene_destroy(s);

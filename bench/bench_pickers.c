@@ -21,13 +21,18 @@ static noc_scene *random_city(int lights) {
     double side = 3 * sqrt((double)lights);
     double floor[] = { 0, 0, 0, side, 0, 0, side, side, 0, 0, side, 0 };
     noc_material grey = { .albedo = { 0.3f, 0.3f, 0.3f }, .roughness = 1 };
-    noc_mesh ground = { .vertex_count = 4, .positions = floor, .triangle_count = 2,
-                        .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 }, .material = noc_scene_add_material(s, &grey) };
+    noc_mesh ground = { .vertex_count = 4,
+                        .positions = floor,
+                        .triangle_count = 2,
+                        .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+                        .material = noc_scene_add_material(s, &grey) };
     noc_scene_add_mesh(s, &ground);
     for (int i = 0; i < lights; i++) {
         double x = side * unit(&r), y = side * unit(&r), z = 2 + 20 * unit(&r);
-        noc_light l = { .kind = i % 20 ? NOC_LIGHT_PARALLELOGRAM : NOC_LIGHT_SPHERE, .position = { x, y, i % 20 ? z : 6 },
-                        .edge_u = { i & 1 ? 1.2 : 0, i & 1 ? 0 : 1.2, 0 }, .edge_v = { 0, 0, i & 2 ? 1.5 : -1.5 },
+        noc_light l = { .kind = i % 20 ? NOC_LIGHT_PARALLELOGRAM : NOC_LIGHT_SPHERE,
+                        .position = { x, y, i % 20 ? z : 6 },
+                        .edge_u = { i & 1 ? 1.2 : 0, i & 1 ? 0 : 1.2, 0 },
+                        .edge_v = { 0, 0, i & 2 ? 1.5 : -1.5 },
                         .radius = 0.15 };
         for (int k = 0; k < 3; k++)
             l.emission[k] = i % 20 ? 5 + 20 * unit(&r) : 8000;
@@ -55,9 +60,9 @@ static void builds(void) {
         double t4 = noc_cpu_seconds();
         wall = noc_wall_seconds() - wall;
         if (c && a && v && t)
-            printf("%9d %12.4f %12.4f %12.4f %12.3f %12.4f %12.4f   %zu %zu %zu %zu (depth %d)\n", n, t1 - t0, t2 - t1, t3 - t2,
-                   v->scale, t4 - t3, wall, c->bytes / (size_t)n, a->bytes / (size_t)n, v->bytes / (size_t)n, t->bytes / (size_t)n,
-                   t->depth);
+            printf("%9d %12.4f %12.4f %12.4f %12.3f %12.4f %12.4f   %zu %zu %zu %zu (depth %d)\n", n, t1 - t0, t2 - t1,
+                   t3 - t2, v->scale, t4 - t3, wall, c->bytes / (size_t)n, a->bytes / (size_t)n, v->bytes / (size_t)n,
+                   t->bytes / (size_t)n, t->depth);
         noc_tree_destroy(t);
         noc_clusters_destroy(c);
         noc_alias_destroy(a);

@@ -2,10 +2,11 @@
  *
  *   bench_rays [SCENE [VIEW [WIDTH HEIGHT [ROUNDS]]]]     default: city street 640 360 3
  *
- * Shadow rays: from the pixels to what they chose of 32 uniform candidates, or of their tile's list; and the same samples seen
- * from 12 pixels to the right, as bias rays are. Every form traces all rays of a tile, tile by tile, and the fastest of the
- * rounds counts (CPU seconds; sorting is counted in "as built" only). "differ" is the number of rays whose answer is not
- * that of the first form. "medium", "high": other structures over the same triangles, not robust unless they say so. */
+ * Shadow rays: from the pixels to what they chose of 32 uniform candidates, or of their tile's list; and the same
+ * samples seen from 12 pixels to the right, as bias rays are. Every form traces all rays of a tile, tile by tile, and
+ * the fastest of the rounds counts (CPU seconds; sorting is counted in "as built" only). "differ" is the number of rays
+ * whose answer is not that of the first form. "medium", "high": other structures over the same triangles, not robust
+ * unless they say so. */
 #include "bench_scene.h"
 
 #include "backend/embree/embree.h"
@@ -30,10 +31,13 @@ typedef struct form {
 } form;
 
 static const form forms[] = {
-    { "16, blocks of pixels", BLOCKS, SIXTEEN }, { "1", PIXELS, ONE },
-    { "16, by octant", BY_OCTANT, SIXTEEN },     { "16, by light", BY_LIGHT, SIXTEEN },
+    { "16, blocks of pixels", BLOCKS, SIXTEEN },
+    { "1", PIXELS, ONE },
+    { "16, by octant", BY_OCTANT, SIXTEEN },
+    { "16, by light", BY_LIGHT, SIXTEEN },
 #ifdef RT_STREAMS
-    { "stream", PIXELS, STREAM },                { "stream, by light", BY_LIGHT, STREAM },
+    { "stream", PIXELS, STREAM },
+    { "stream, by light", BY_LIGHT, STREAM },
 #endif
     { "as built", BLOCKS, BUILT },
 };
@@ -42,8 +46,14 @@ enum { FORMS = sizeof(forms) / sizeof(forms[0]) };
 static struct RTCRay ray_of(const segment_block *own, uint16_t at) {
     const rayblock *b = &own[at / BLOCK].rays;
     int l = at % BLOCK;
-    return (struct RTCRay){ .org_x = b->o[0][l], .org_y = b->o[1][l], .org_z = b->o[2][l], .dir_x = b->d[0][l],
-                            .dir_y = b->d[1][l], .dir_z = b->d[2][l], .tfar = 1, .mask = UINT32_MAX };
+    return (struct RTCRay){ .org_x = b->o[0][l],
+                            .org_y = b->o[1][l],
+                            .org_z = b->o[2][l],
+                            .dir_x = b->d[0][l],
+                            .dir_y = b->d[1][l],
+                            .dir_z = b->d[2][l],
+                            .tfar = 1,
+                            .mask = UINT32_MAX };
 }
 
 static int by_key(const void *a, const void *b) {
@@ -158,7 +168,8 @@ static void measure(RTCScene scene, ray_set *set, const form *f, int rounds, boo
     fflush(stdout);
 }
 
-static RTCScene build(RTCDevice device, const noc_scene *scene, enum RTCBuildQuality quality, enum RTCSceneFlags flags) {
+static RTCScene build(RTCDevice device, const noc_scene *scene, enum RTCBuildQuality quality,
+                      enum RTCSceneFlags flags) {
     RTCScene s = rtcNewScene(device);
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSceneFlags(s, flags);
@@ -189,16 +200,20 @@ static void collect(const embree_state *s, const struct core_context *ctx, int s
             memcpy(out->light, r->light, sizeof(out->light));
             out->valid = lanes_with_surface(g);
             for (int l = 0; l < BLOCK; l++)
-                out->valid &= ~((uint32_t)!(r->w[l] > 0) << l);
+                out->valid &= ~((uint32_t) !(r->w[l] > 0) << l);
             set->count += (size_t)__builtin_popcount(out->valid);
         }
 }
 
 static void measure_all(embree_state *s, ray_set *set, const char *name, int rounds) {
-    static const struct { const char *name; enum RTCBuildQuality quality; enum RTCSceneFlags flags; } builds[] = {
-        { "medium", RTC_BUILD_QUALITY_MEDIUM, RTC_SCENE_FLAG_NONE },
-        { "medium robust compact", RTC_BUILD_QUALITY_MEDIUM, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT },
-        { "high robust", RTC_BUILD_QUALITY_HIGH, RTC_SCENE_FLAG_ROBUST } };
+    static const struct {
+        const char *name;
+        enum RTCBuildQuality quality;
+        enum RTCSceneFlags flags;
+    } builds[] = { { "medium", RTC_BUILD_QUALITY_MEDIUM, RTC_SCENE_FLAG_NONE },
+                   { "medium robust compact", RTC_BUILD_QUALITY_MEDIUM,
+                     RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT },
+                   { "high robust", RTC_BUILD_QUALITY_HIGH, RTC_SCENE_FLAG_ROBUST } };
     printf("%s: %zu rays\n", name, set->count);
     for (int f = 0; f < FORMS; f++)
         measure(s->rtc, set, &forms[f], rounds, f == 0);
@@ -211,7 +226,8 @@ static void measure_all(embree_state *s, ray_set *set, const char *name, int rou
 
 int main(int argc, char **argv) {
     const char *spec = argc > 1 ? argv[1] : "city", *view = argc > 2 ? argv[2] : "street";
-    int width = argc > 4 ? atoi(argv[3]) : 640, height = argc > 4 ? atoi(argv[4]) : 360, rounds = argc > 5 ? atoi(argv[5]) : 3;
+    int width = argc > 4 ? atoi(argv[3]) : 640, height = argc > 4 ? atoi(argv[4]) : 360,
+        rounds = argc > 5 ? atoi(argv[5]) : 3;
     if (width < 1 || height < 1 || rounds < 1) {
         fprintf(stderr, "usage: bench_rays [SCENE [VIEW [WIDTH HEIGHT [ROUNDS]]]]\n");
         return 2;
@@ -226,7 +242,8 @@ int main(int argc, char **argv) {
         noc_backend_embree.resize(state, width, height, 1) != NOC_OK)
         return 1;
     embree_state *s = state;
-    printf("%s, %s, %d x %d: %zu triangles, %zu lights\n", spec, view, width, height, scene->indices.len / 3, scene->lights.len);
+    printf("%s, %s, %d x %d: %zu triangles, %zu lights\n", spec, view, width, height, scene->indices.len / 3,
+           scene->lights.len);
     ray_set set = { .tiles = (size_t)s->b.tiles_x * s->b.tiles_y };
     set.blocks = noc_alloc_large(set.tiles * TILE, sizeof(*set.blocks));
     set.first = noc_calloc(set.tiles * TILE, sizeof(*set.first));
@@ -237,15 +254,18 @@ int main(int argc, char **argv) {
     noc_frame frame = { .params = &p };
     noc_make_frame_camera(&camera, &p, 0, &frame.camera);
     const noc_stage stage = { .passes = 1u << NOC_PASS_PRIMARY | 1u << NOC_PASS_CANDIDATES };
-    struct core_context ctx = { .lights = scene->lights.data, .light_count = (uint32_t)scene->lights.len,
-                                .materials = scene->material_records.data, .frame = &frame };
+    struct core_context ctx = { .lights = scene->lights.data,
+                                .light_count = (uint32_t)scene->lights.len,
+                                .materials = scene->material_records.data,
+                                .frame = &frame };
     static const noc_candidates sources[] = { NOC_CANDIDATES_UNIFORM, NOC_CANDIDATES_LISTS };
     for (int i = 0; set.blocks && i < 4; i++) {
         p.candidates = sources[i / 2];
         if (noc_backend_embree.stage(state, &frame, &stage, NULL, 0, 1) != NOC_OK)
             return 1;
         collect(s, &ctx, i % 2 ? 3 : 0, &set);
-        measure_all(s, &set, (const char *const[]){ "uniform", "uniform, bias rays", "lists", "lists, bias rays" }[i], rounds);
+        measure_all(s, &set, (const char *const[]){ "uniform", "uniform, bias rays", "lists", "lists, bias rays" }[i],
+                    rounds);
     }
     free(set.blocks);
     free(set.first);

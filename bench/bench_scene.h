@@ -19,8 +19,8 @@ static inline noc_log *bench_log(void) {
     return noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = bench_tell });
 }
 
-/* "city" or "city:METRES" is the built-in city, anything else files to load as one scene, with commas between them. NULL
- * after saying why. */
+/* "city" or "city:METRES" is the built-in city, anything else files to load as one scene, with commas between them.
+ * NULL after saying why. */
 static inline noc_scene *bench_scene(const char *spec, noc_log *log) {
     noc_scene *scene = noc_scene_create(log);
     noc_city_params city = noc_city_default_params();
@@ -46,8 +46,10 @@ static inline noc_scene *bench_scene(const char *spec, noc_log *log) {
 }
 
 static inline noc_view bench_view(const char *name) {
-    return !strcmp(name, "aerial") ? NOC_VIEW_AERIAL : !strcmp(name, "overview") ? NOC_VIEW_OVERVIEW :
-           !strcmp(name, "own") ? NOC_VIEW_OWN : NOC_VIEW_STREET;
+    return !strcmp(name, "aerial")     ? NOC_VIEW_AERIAL
+           : !strcmp(name, "overview") ? NOC_VIEW_OVERVIEW
+           : !strcmp(name, "own")      ? NOC_VIEW_OWN
+                                       : NOC_VIEW_STREET;
 }
 
 static inline int bench_by_size(const void *a, const void *b) {

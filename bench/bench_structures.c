@@ -2,12 +2,11 @@
  *
  *   bench_structures [THREADS [MOST [NAME]]]     over random cities of 1k, 10k, ... up to MOST (1000000) lights
  *
- * NAME: only the structures whose names hold it. Wall and CPU seconds and bytes a light of the alias table (power), influence
- * volumes (bvh: simple, shared by up to 8 lights, visibility-aware), the tree and the clusters of the lists. CPU seconds are
- * those of a small frame that builds the structure less those of one that finds it there. Visibility-aware boxes are probed
- * against a city of blocks.
- * "share" is bytes over what the scene and its ray tracing structure hold, which is little here: twelve triangles a block and
- * a light for each ten metres of it. */
+ * NAME: only the structures whose names hold it. Wall and CPU seconds and bytes a light of the alias table (power),
+ * influence volumes (bvh: simple, shared by up to 8 lights, visibility-aware), the tree and the clusters of the lists.
+ * CPU seconds are those of a small frame that builds the structure less those of one that finds it there.
+ * Visibility-aware boxes are probed against a city of blocks. "share" is bytes over what the scene and its ray tracing
+ * structure hold, which is little here: twelve triangles a block and a light for each ten metres of it. */
 #include "bench_scene.h"
 
 static float unit(uint32_t *state) {
@@ -16,7 +15,8 @@ static float unit(uint32_t *state) {
 }
 
 static void add_block(noc_scene *s, int material, double x, double y, double w, double h) {
-    static const uint32_t faces[] = { 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7, 4, 5, 6, 4, 6, 7, 0, 2, 1, 0, 3, 2 };
+    static const uint32_t faces[] = { 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6,
+                                      3, 0, 4, 3, 4, 7, 4, 5, 6, 4, 6, 7, 0, 2, 1, 0, 3, 2 };
     double xyz[24];
     for (int i = 0; i < 8; i++) {
         xyz[3 * i] = x + ((i & 3) == 1 || (i & 3) == 2 ? w : 0);
@@ -36,7 +36,10 @@ static noc_scene *random_city(int lights) {
     while (20 * side * side < lights)
         side++;
     double edge = 32.0 * side, floor[] = { 0, 0, 0, edge, 0, 0, edge, edge, 0, 0, edge, 0 };
-    noc_mesh ground = { .vertex_count = 4, .positions = floor, .triangle_count = 2, .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+    noc_mesh ground = { .vertex_count = 4,
+                        .positions = floor,
+                        .triangle_count = 2,
+                        .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
                         .material = grey };
     noc_scene_add_mesh(s, &ground);
     for (int i = 0; i < lights; i++) {
@@ -44,7 +47,9 @@ static noc_scene *random_city(int lights) {
         double x = 32.0 * (block % side), y = 32.0 * (block / side), along = 18 * unit(&r), up = 2 + 12 * unit(&r);
         if (lamp)
             add_block(s, grey, x, y, 20, 15);
-        noc_light l = { .kind = lamp ? NOC_LIGHT_SPHERE : NOC_LIGHT_PARALLELOGRAM, .radius = 0.15, .edge_v = { 0, 0, 1.5 } };
+        noc_light l = { .kind = lamp ? NOC_LIGHT_SPHERE : NOC_LIGHT_PARALLELOGRAM,
+                        .radius = 0.15,
+                        .edge_v = { 0, 0, 1.5 } };
         bool front = i & 1; /* faces -y; else +x */
         l.edge_u[front ? 0 : 1] = 1.2;
         l.position[0] = lamp ? x + 26 : front ? x + along : x + 20.02;
@@ -94,8 +99,8 @@ static bool row(const noc_scene *s, int threads, const structure *what) {
     }
     if (ok) {
         noc_renderer_light_stats(r, &l);
-        printf("%9zu  %-14s %8.4f s wall %8.4f s CPU %7.1f bytes a light, share %5.2f%%", l.lights, what->name, l.build_seconds,
-               frame[0].cpu_seconds - frame[1].cpu_seconds, (double)l.bytes / (double)l.lights,
+        printf("%9zu  %-14s %8.4f s wall %8.4f s CPU %7.1f bytes a light, share %5.2f%%", l.lights, what->name,
+               l.build_seconds, frame[0].cpu_seconds - frame[1].cpu_seconds, (double)l.bytes / (double)l.lights,
                100.0 * (double)l.bytes / (double)l.scene_bytes);
         if (l.volumes)
             printf(", S_r %.2f, %zu volumes", l.influence, l.volumes);

@@ -7,11 +7,11 @@
 enum { LAYOUT_SOA, LAYOUT_RECORDS, LAYOUT_AHEAD, LAYOUT_COUNT };
 
 typedef struct candidates_job {
-    const float *records;    /* 16 floats a light, 64-byte aligned */
-    const float *soa[16];    /* the same, an array a field */
+    const float *records; /* 16 floats a light, 64-byte aligned */
+    const float *soa[16]; /* the same, an array a field */
     uint32_t lights;
     const float *surfaces[13]; /* p n wo albedo f0: an array a field */
-    uint32_t surface_count;  /* a multiple of 16 */
+    uint32_t surface_count;    /* a multiple of 16 */
     int m;
 } candidates_job;
 

@@ -132,8 +132,15 @@ static bool progress(void *ctx, double done) {
 
 void fuzz_sink_start(fuzz_sink *s, noc_log *log) {
     *s = (fuzz_sink){ 0 };
-    s->sink = (geo_sink){ .ctx = s, .log = log, .issues = geo_issues_create(), .crs = crs, .begin_object = begin_object,
-                          .polygon = polygon, .end_object = end_object, .lamp = lamp, .progress = progress };
+    s->sink = (geo_sink){ .ctx = s,
+                          .log = log,
+                          .issues = geo_issues_create(),
+                          .crs = crs,
+                          .begin_object = begin_object,
+                          .polygon = polygon,
+                          .end_object = end_object,
+                          .lamp = lamp,
+                          .progress = progress };
 }
 
 void fuzz_sink_end(fuzz_sink *s) {

@@ -26,7 +26,8 @@ static void inspect(const char *path, const noc_import_params *params, noc_log *
     noc_report_destroy(report);
 }
 
-/* The size chooses what is asked besides: a CRS for files that name none, lamps by a rule, a look at the first file alone. */
+/* The size chooses what is asked besides: a CRS for files that name none, lamps by a rule, a look at the first file
+ * alone. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_part part[FUZZ_PARTS];
     int n = fuzz_parts(data, size, part), errors = 0;

@@ -53,8 +53,8 @@ void mutate_raw(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
 }
 
 void mutate_any(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
-    static const mutate_fn formats[] = { mutate_parts, mutate_wire, mutate_gzip, mutate_zip, mutate_png, mutate_glb,
-                                         mutate_pbf, mutate_json, mutate_xml, mutate_lines };
+    static const mutate_fn formats[] = { mutate_parts, mutate_wire, mutate_gzip, mutate_zip, mutate_png,
+                                         mutate_glb,   mutate_pbf,  mutate_json, mutate_xml, mutate_lines };
     size_t at = out->len;
     bool raw = !mutate_random(random, 8);
     for (size_t i = 0; !raw && i < NOC_COUNT(formats); i++) {
@@ -66,16 +66,37 @@ void mutate_any(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
 }
 
 void mutate_number(const char *text, size_t size, uint32_t *random, char out[64]) {
-    static const char *const odd[] = {
-        "0", "-0", "-1", "1", "2", "1e308", "-1e308", "1e-320", "nan", "inf", "4294967295", "4294967296", "2147483647", "-2147483648",
-        "9223372036854775807", "18446744073709551616", "1e999", "0.1", "65535", "256", "1000000", "1e15", "0x10", ""
-    };
+    static const char *const odd[] = { "0",
+                                       "-0",
+                                       "-1",
+                                       "1",
+                                       "2",
+                                       "1e308",
+                                       "-1e308",
+                                       "1e-320",
+                                       "nan",
+                                       "inf",
+                                       "4294967295",
+                                       "4294967296",
+                                       "2147483647",
+                                       "-2147483648",
+                                       "9223372036854775807",
+                                       "18446744073709551616",
+                                       "1e999",
+                                       "0.1",
+                                       "65535",
+                                       "256",
+                                       "1000000",
+                                       "1e15",
+                                       "0x10",
+                                       "" };
     double value = 0;
     const char *end = text + size;
     noc_scan_double(text, end, &value);
     switch (mutate_random(random, 7)) {
     case 6:
-        snprintf(out, 64, "%0*.*f", 1 + (int)mutate_random(random, 60), (int)mutate_random(random, 3), fmod(value, 1000));
+        snprintf(out, 64, "%0*.*f", 1 + (int)mutate_random(random, 60), (int)mutate_random(random, 3),
+                 fmod(value, 1000));
         break;
     case 0: snprintf(out, 64, "%s", odd[mutate_random(random, NOC_COUNT(odd))]); break;
     case 1: snprintf(out, 64, "%.17g", -value); break;

@@ -1,11 +1,14 @@
-/* Mutations that know formats: what is changed lies inside the checksums, lengths, compression and syntax around it, which
- * are made anew. One mutation in eight is libFuzzer's own, on the bytes as they are. */
+/* Mutations that know formats: what is changed lies inside the checksums, lengths, compression and syntax around it,
+ * which are made anew. One mutation in eight is libFuzzer's own, on the bytes as they are. */
 #ifndef NOC_FUZZ_MUTATE_H
 #define NOC_FUZZ_MUTATE_H
 
 #include "fuzz.h"
 
-typedef struct fuzz_bytes { uint8_t *data; size_t len, cap; } fuzz_bytes;
+typedef struct fuzz_bytes {
+    uint8_t *data;
+    size_t len, cap;
+} fuzz_bytes;
 
 /* Random numbers, one stream a mutation. */
 uint32_t mutate_random(uint32_t *state, uint32_t below); /* 0 where below is 0 */

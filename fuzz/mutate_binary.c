@@ -29,7 +29,10 @@ bool mutate_gzip(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
 /* ---- zip ---- */
 
 enum { ZIP_MEMBERS = 16 };
-typedef struct zip_member { fuzz_part name; fuzz_bytes content; } zip_member;
+typedef struct zip_member {
+    fuzz_part name;
+    fuzz_bytes content;
+} zip_member;
 
 /* Members by their local headers, as a writer that knows sizes beforehand leaves them. */
 static int read_members(fuzz_part in, zip_member *m) {
@@ -226,7 +229,7 @@ static void put_varint(fuzz_bytes *out, uint64_t value) {
 typedef struct pb_field {
     const uint8_t *start, *end; /* with its tag */
     uint64_t tag;
-    fuzz_part bytes;            /* of wire type 2 */
+    fuzz_part bytes; /* of wire type 2 */
 } pb_field;
 enum { PB_FIELDS = 512 };
 
@@ -303,8 +306,8 @@ static void mutate_message(fuzz_part in, int depth, uint32_t *random, fuzz_bytes
         mutate_raw(in, in.size + 16, random, out);
 }
 
-/* A blob of OpenStreetMap's format: length of its header (4 bytes), header {1: type, 3: length}, blob {1: raw | 2: size,
- * 3: zlib}. */
+/* A blob of OpenStreetMap's format: length of its header (4 bytes), header {1: type, 3: length}, blob {1: raw | 2:
+ * size, 3: zlib}. */
 static bool put_blob(fuzz_part type, fuzz_part content, uint32_t *random, fuzz_bytes *out) {
     fuzz_bytes blob = { 0 }, header = { 0 }, packed = { 0 };
     bool raw = !mutate_random(random, 3);

@@ -12,7 +12,9 @@ typedef struct place {
     size_t index;
     const char *key; /* NULL: of an array */
 } place;
-typedef struct places { NOC_ARRAY(place) list; } places;
+typedef struct places {
+    NOC_ARRAY(place) list;
+} places;
 
 static void collect(json_t *v, places *all) {
     const char *key;
@@ -126,7 +128,10 @@ typedef struct xml_token {
     enum { XML_OPEN, XML_CLOSE, XML_ALONE, XML_TEXT, XML_OTHER } kind;
     size_t from, to, match; /* match: the token that closes an opening one */
 } xml_token;
-typedef struct xml_tokens { NOC_ARRAY(xml_token) list; NOC_ARRAY(size_t) open; } xml_tokens;
+typedef struct xml_tokens {
+    NOC_ARRAY(xml_token) list;
+    NOC_ARRAY(size_t) open;
+} xml_tokens;
 
 /* False where tags are not nested. */
 static bool read_tokens(fuzz_part in, xml_tokens *t) {
@@ -257,7 +262,8 @@ static bool change_xml(fuzz_part in, const xml_tokens *t, uint32_t *random, fuzz
 bool mutate_xml(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
     xml_tokens t = { 0 };
     (void)most;
-    bool is = in.size > 8 && memchr("<\xef \n", in.data[0], 4) && read_tokens(in, &t), done = is && change_xml(in, &t, random, out);
+    bool is = in.size > 8 && memchr("<\xef \n", in.data[0], 4) && read_tokens(in, &t),
+         done = is && change_xml(in, &t, random, out);
     array_free(&t.list);
     array_free(&t.open);
     return done;

@@ -6,7 +6,10 @@
 #include <math.h>
 
 enum { RECORDS = 64 };
-typedef struct wire_record { uint32_t kind; fuzz_part content; } wire_record;
+typedef struct wire_record {
+    uint32_t kind;
+    fuzz_part content;
+} wire_record;
 
 static bool is_kind(uint32_t kind) {
     return (kind >= REMOTE_READER && kind <= REMOTE_GO) || (kind >= REMOTE_LOG && kind <= REMOTE_END);
@@ -81,8 +84,10 @@ bool mutate_wire(fuzz_part in, size_t most, uint32_t *random, fuzz_bytes *out) {
             for (uint32_t other = mutate_random(random, n), k = 0; other != i && k < 1; k++)
                 put_record(out, records[other].kind, records[other].content.size, records[other].content);
         else if (what == 3) /* of a size that it has not */
-            put_record(out, r.kind, mutate_random(random, 2) ? r.content.size + mutate_random(random, 9) - 4
-                                                             : lies[mutate_random(random, NOC_COUNT(lies))], r.content);
+            put_record(out, r.kind,
+                       mutate_random(random, 2) ? r.content.size + mutate_random(random, 9) - 4
+                                                : lies[mutate_random(random, NOC_COUNT(lies))],
+                       r.content);
         else
             change_content(r, most - NOC_MIN(most, in.size), random, out);
     }

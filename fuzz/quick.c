@@ -19,7 +19,7 @@ void *__libc_malloc(size_t size);
 void __libc_free(void *p);
 
 enum { BEFORE = 16, SMALLEST = 5, LARGEST = 16, POOL = 1 << 20 }; /* BEFORE: bytes that hold the size */
-static struct free_block { struct free_block *next; } *free_blocks[LARGEST + 1];
+static struct free_block { struct free_block *next; } * free_blocks[LARGEST + 1];
 static char *pool, *pool_end;
 
 static int class_of(size_t size) {
@@ -125,7 +125,11 @@ void *VSIRealloc(void *p, size_t size);
 void VSIFree(void *p);
 
 enum { BLOCKS = 64, LARGE = 1 << 17, ASSIMPS = 1 << 24 };
-static struct large { char *pages; size_t size; bool taken; } blocks[BLOCKS];
+static struct large {
+    char *pages;
+    size_t size;
+    bool taken;
+} blocks[BLOCKS];
 static char *first_block = (char *)UINTPTR_MAX, *last_block;
 
 /* Zeroed pages; NULL where the block is small, or there are too many of them. */
@@ -171,7 +175,7 @@ void *_Znwm(size_t size) {
     if (!real)
         real = (void *(*)(size_t))dlsym(RTLD_NEXT, "_Znwm");
     void *p = size == ASSIMPS ? take_large(size) : NULL; /* libFuzzer has large blocks, too */
-    return p ? p : real(size); /* or it throws */
+    return p ? p : real(size);                           /* or it throws */
 }
 
 void _ZdlPv(void *p) {
@@ -234,10 +238,11 @@ const void *aiImportFileExWithProperties(const char *name, unsigned flags, void 
 
 /* Said by PROJ to be a definition, or a name that it finds at once. */
 static bool is_definition(const char *text) {
-    static const char *const first[] = { "{", "urn:", "http", "EPSG:", "ESRI:", "OGC:", "GEOGCS", "PROJCS", "COMPD_CS",
-                                         "GEOCCS", "VERT_CS", "LOCAL_CS", "GEOGCRS", "GEODCRS", "PROJCRS",
-                                         "COMPOUNDCRS", "BOUNDCRS", "GEODETICCRS", "GEOGRAPHICCRS", "PROJECTEDCRS",
-                                         "VERTCRS", "ENGCRS" };
+    static const char *const first[] = {
+        "{",        "urn:",        "http",          "EPSG:",        "ESRI:",   "OGC:",    "GEOGCS",  "PROJCS",
+        "COMPD_CS", "GEOCCS",      "VERT_CS",       "LOCAL_CS",     "GEOGCRS", "GEODCRS", "PROJCRS", "COMPOUNDCRS",
+        "BOUNDCRS", "GEODETICCRS", "GEOGRAPHICCRS", "PROJECTEDCRS", "VERTCRS", "ENGCRS"
+    };
     while (isspace((unsigned char)*text))
         text++;
     for (size_t i = 0; i < NOC_COUNT(first); i++)
@@ -249,7 +254,7 @@ static bool is_definition(const char *text) {
 PJ *proj_create(PJ_CONTEXT *context, const char *text) {
     static PJ *(*real)(PJ_CONTEXT *, const char *);
     if (!real)
-        real = (PJ *(*)(PJ_CONTEXT *, const char *))dlsym(RTLD_NEXT, "proj_create");
+        real = (PJ * (*)(PJ_CONTEXT *, const char *)) dlsym(RTLD_NEXT, "proj_create");
     bool is = is_definition(text) || fuzz_seldom((const uint8_t *)text, strlen(text), 16);
     return is && real ? real(context, text) : NULL;
 }
@@ -259,7 +264,7 @@ PJ *proj_create(PJ_CONTEXT *context, const char *text) {
 PJ_FACTORS proj_factors(PJ *pj, PJ_COORD at) {
     static PJ_FACTORS (*real)(PJ *, PJ_COORD);
     if (!real)
-        real = (PJ_FACTORS (*)(PJ *, PJ_COORD))dlsym(RTLD_NEXT, "proj_factors");
+        real = (PJ_FACTORS(*)(PJ *, PJ_COORD))dlsym(RTLD_NEXT, "proj_factors");
     PJ_FACTORS same = { .meridional_scale = 1, .parallel_scale = 1, .areal_scale = 1 };
     return real && fuzz_seldom((const uint8_t *)&at, sizeof(at), 8) ? real(pj, at) : same;
 }

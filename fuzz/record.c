@@ -58,7 +58,7 @@ static void record(const char *helper, const char *out, const char *path) {
     write_file(out, "request", name, asked.bytes.data, asked.bytes.len);
     FUZZ_REQUIRE(remote_send(ends[0], &asked));
     size_t size = 0;
-    for (ssize_t n = 1; n > 0 && size < sizeof(answer); size += n > 0 ? (size_t)n : 0)
+    for (ssize_t n = 1; n > 0 && size<sizeof(answer); size += n> 0 ? (size_t)n : 0)
         n = recv(ends[0], answer + size, sizeof(answer) - size, 0);
     close(ends[0]);
     waitpid(pid, NULL, 0);

@@ -7,7 +7,8 @@
 #include <locale.h>
 #include <stdbool.h>
 
-/* Sets it for the whole process: one that is installed, else one made in `folder` by localedef. false where there is neither. */
+/* Sets it for the whole process: one that is installed, else one made in `folder` by localedef. false where there is
+ * neither. */
 static inline bool set_comma_locale(const char *folder) {
     static const char *const installed[] = { "de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "cs_CZ.UTF-8" };
     for (size_t i = 0; i < sizeof(installed) / sizeof(*installed); i++)

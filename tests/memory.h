@@ -41,8 +41,8 @@ static inline bool end_refusal(void) {
 /* Each for a while, then ever fewer: where work goes on and on, it asks from the same places. */
 static inline uint64_t next_refusal(uint64_t number) { return number + 1 + (number > 60 ? number / 8 : 0); }
 
-#define FOR_EACH_REFUSAL(reached)                     \
-    for (int later = 0; later < 2; later++)           \
+#define FOR_EACH_REFUSAL(reached)                                                                                      \
+    for (int later = 0; later < 2; later++)                                                                            \
         for (uint64_t n = ((reached) = true, 1); (reached); n = next_refusal(n))
 
 /* What a call said that met a refusal: memory, once. */

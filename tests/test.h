@@ -13,12 +13,13 @@
 /* after the standard headers */
 #include <cmocka.h>
 
-/* cmocka 1.1 reports a skipped test as "not ok # SKIP", which Meson counts as failed. All uses are in the test's own function. */
+/* cmocka 1.1 reports a skipped test as "not ok # SKIP", which Meson counts as failed. All uses are in the test's own
+ * function. */
 #undef skip
 #define skip() return
 
-/* Sanitizers look for faults that a few samples show as well, and `make coverage` for lines; what many samples have for a mean, the
- * build without them says. */
+/* Sanitizers look for faults that a few samples show as well, and `make coverage` for lines; what many samples have for
+ * a mean, the build without them says. */
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #define ADDRESS_SANITIZED 1

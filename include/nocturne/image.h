@@ -14,14 +14,15 @@ extern "C" {
 
 typedef struct noc_image {
     int width, height;
-    float *rgb;              /* width * height * 3; owned */
-    uint8_t *emitter;        /* NULL, or width * height: 1 where the pixel, or one next to it, sees an emitter; owned */
-    float *coverage;         /* NULL, or width * height * 4: what emitters seen directly add to rgb, and the share of
-                              * the frames that saw one; owned. Displays alone look at it: noc_image_to_srgb8. Not kept in
-                              * files */
+    float *rgb;       /* width * height * 3; owned */
+    uint8_t *emitter; /* NULL, or width * height: 1 where the pixel, or one next to it, sees an emitter; owned */
+    /* NULL, or width * height * 4: what emitters seen directly add to rgb, and the share of
+     * the frames that saw one; owned. Displays alone look at it: noc_image_to_srgb8. Not kept in
+     * files */
+    float *coverage;
     /* What the file says that noc_image_read read it from: */
-    char channel[32];        /* the name of a view ("class", "depth"), whose numbers are no light; "" of a picture */
-    double ev100;            /* exposure that a PNG was written with; NaN where it is not told */
+    char channel[32]; /* the name of a view ("class", "depth"), whose numbers are no light; "" of a picture */
+    double ev100;     /* exposure that a PNG was written with; NaN where it is not told */
 } noc_image;
 
 NOC_API noc_image *noc_image_create(int width, int height, noc_log *log); /* black; NULL after reporting an error */
@@ -30,9 +31,10 @@ NOC_API void noc_image_destroy(noc_image *image);
 typedef enum noc_tonemap { NOC_TONEMAP_FILMIC, NOC_TONEMAP_REINHARD, NOC_TONEMAP_LINEAR } noc_tonemap;
 
 typedef struct noc_display_params {
-    bool auto_exposure;   /* default true */
-    double ev100;         /* used when auto_exposure is false: luminance of 1.2 * 2^ev100 maps to 1 before tone mapping */
-    double compensation;  /* stops added to the automatic exposure, positive is brighter; default 0 */
+    bool auto_exposure; /* default true */
+    /* used when auto_exposure is false: luminance of 1.2 * 2^ev100 maps to 1 before tone mapping */
+    double ev100;
+    double compensation; /* stops added to the automatic exposure, positive is brighter; default 0 */
     noc_tonemap tonemap;
 } noc_display_params;
 
@@ -81,10 +83,10 @@ NOC_API noc_image *noc_image_read(const char *path, noc_log *log, bool *is_linea
 
 /* Error figures of picture x against reference r (docs/estimator.md, "Error figures"). */
 typedef struct noc_metrics {
-    double rmse8;   /* 8-bit sRGB, 0..255, both shown with the reference's exposure */
-    double rmse;    /* linear luminance, cd/m2 */
-    double relmse;  /* mean((x-r)^2 / (r^2 + e^2)), e = 1% of the reference's mean */
-    double bias;    /* mean(x) / mean(r) */
+    double rmse8;  /* 8-bit sRGB, 0..255, both shown with the reference's exposure */
+    double rmse;   /* linear luminance, cd/m2 */
+    double relmse; /* mean((x-r)^2 / (r^2 + e^2)), e = 1% of the reference's mean */
+    double bias;   /* mean(x) / mean(r) */
     double mean_x, mean_r;
     size_t pixels;
     size_t unlit;        /* pixels that are 0 in r and lit in x: in relmse each counts (x / e)^2 */
@@ -92,24 +94,26 @@ typedef struct noc_metrics {
 } noc_metrics;
 
 typedef struct noc_comparison {
-    noc_metrics all;          /* every pixel */
-    noc_metrics all_clamped;  /* both clamped to ceiling */
-    noc_metrics dark;         /* pixels that see no emitter within one pixel (needs a mask in r, else equal to all) */
+    noc_metrics all;         /* every pixel */
+    noc_metrics all_clamped; /* both clamped to ceiling */
+    noc_metrics dark;        /* pixels that see no emitter within one pixel (needs a mask in r, else equal to all) */
     noc_metrics dark_clamped;
-    double ceiling;           /* cd/m2 */
-    double ev100;             /* exposure of both pictures in RMSE-8; without meaning where they are relative */
+    double ceiling; /* cd/m2 */
+    double ev100;   /* exposure of both pictures in RMSE-8; without meaning where they are relative */
     bool has_mask;
 } noc_comparison;
 
 typedef struct noc_compare_params {
     double ceiling;             /* cd/m2; default 10 */
     noc_display_params display; /* for RMSE-8 */
-    bool relative;              /* both pictures have no unit but white = 1, as noc_image_read gives PNG: RMSE-8 takes
-                                 * them as they were displayed, without exposure or tone map, and luminances are shares
-                                 * of white */
+    /* both pictures have no unit but white = 1, as noc_image_read gives PNG: RMSE-8 takes
+     * them as they were displayed, without exposure or tone map, and luminances are shares
+     * of white */
+    bool relative;
 } noc_compare_params;
 
-#define NOC_COMPARE_DEFAULTS(set) set(ceiling, 10) set(display.auto_exposure, true) set(display.tonemap, NOC_TONEMAP_FILMIC)
+#define NOC_COMPARE_DEFAULTS(set)                                                                                      \
+    set(ceiling, 10) set(display.auto_exposure, true) set(display.tonemap, NOC_TONEMAP_FILMIC)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_compare_params, noc_compare_default_params, NOC_COMPARE_DEFAULTS)
 #else
@@ -127,17 +131,19 @@ NOC_API noc_status noc_image_difference(const noc_image *x, const noc_image *r, 
 /* A number or a vector a pixel that is no colour, such as a view of the light sampling (noc_renderer_aov). Rows from
  * the top. */
 typedef enum noc_channel_scale {
-    NOC_CHANNEL_LINEAR, NOC_CHANNEL_LOG, /* best shown by a colour bar with even steps, or even ratios */
-    NOC_CHANNEL_LABELS                   /* numbers are names: each is shown in a colour of its own */
+    NOC_CHANNEL_LINEAR,
+    NOC_CHANNEL_LOG,   /* best shown by a colour bar with even steps, or even ratios */
+    NOC_CHANNEL_LABELS /* numbers are names: each is shown in a colour of its own */
 } noc_channel_scale;
 
 typedef struct noc_channel {
     int width, height;
-    int components;          /* 1, or 3: a unit vector a pixel */
-    float *value;            /* width * height * components, owned; where there is none -1 (vectors: 0 0 0) */
+    int components; /* 1, or 3: a unit vector a pixel */
+    float *value;   /* width * height * components, owned; where there is none -1 (vectors: 0 0 0) */
     noc_channel_scale scale;
-    const char *name, *unit; /* "rays", "rays a pixel"; unit "" for plain ratios and labels. These and title are not owned */
-    const char *title;       /* what the numbers are, for the legend: ASCII */
+    /* "rays", "rays a pixel"; unit "" for plain ratios and labels. These and title are not owned */
+    const char *name, *unit;
+    const char *title; /* what the numbers are, for the legend: ASCII */
     /* of NOC_CHANNEL_LABELS, names of the numbers 0 to label_count - 1: ASCII; not owned. NULL: none */
     const char *const *labels;
     size_t label_count;

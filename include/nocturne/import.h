@@ -1,5 +1,5 @@
-/* nocturne/import.h: from files to a scene. Inputs are told apart by content, never by name: CityGML (plain, .gz, .zip),
- * OBJ, glTF and GLB, OpenStreetMap XML and PBF, Overpass JSON, GeoJSON, CSV. Several inputs make one scene. */
+/* nocturne/import.h: from files to a scene. Inputs are told apart by content, never by name: CityGML (plain, .gz,
+ * .zip), OBJ, glTF and GLB, OpenStreetMap XML and PBF, Overpass JSON, GeoJSON, CSV. Several inputs make one scene. */
 #ifndef NOCTURNE_IMPORT_H
 #define NOCTURNE_IMPORT_H
 
@@ -11,10 +11,17 @@ extern "C" {
 
 typedef enum noc_obj_up { NOC_OBJ_UP_Y, NOC_OBJ_UP_Z } noc_obj_up;
 
-/* What a default of noc_import_params stands in for where a lamp's file does not tell it: lamp_height, lamp_lumens, lamp_kelvin. */
-typedef enum noc_lamp_default { NOC_LAMP_HEIGHT, NOC_LAMP_FLUX, NOC_LAMP_COLOUR, NOC_LAMP_DEFAULT_COUNT } noc_lamp_default;
+/* What a default of noc_import_params stands in for where a lamp's file does not tell it: lamp_height, lamp_lumens,
+ * lamp_kelvin. */
+typedef enum noc_lamp_default {
+    NOC_LAMP_HEIGHT,
+    NOC_LAMP_FLUX,
+    NOC_LAMP_COLOUR,
+    NOC_LAMP_DEFAULT_COUNT
+} noc_lamp_default;
 
-typedef enum noc_switch { NOC_SWITCH_OFF, NOC_SWITCH_ON, NOC_SWITCH_AUTO } noc_switch; /* false and true are OFF and ON */
+/* false and true are OFF and ON */
+typedef enum noc_switch { NOC_SWITCH_OFF, NOC_SWITCH_ON, NOC_SWITCH_AUTO } noc_switch;
 
 #define NOC_TEXTS 32
 
@@ -25,67 +32,73 @@ typedef struct noc_texts {
 } noc_texts;
 
 typedef struct noc_import_params {
-    const char *crs;        /* CRS of inputs that name none (any PROJ definition), NULL: such inputs fail if they need one */
-    const char *scene_crs;  /* CRS of the scene; NULL: the first input's if projected in metres, else UTM of its centre. Where its
-                             * lengths are not those of the ground, the scene is computed in UTM: noc_scene_info.given_crs */
-    int lod;                /* highest CityGML level of detail taken, 0..4; default 3. The best one at or under it wins */
-    /* Place lamps by a rule? AUTO, the default: where the inputs hold none; inputs whose lamps are all of no use are an error.
-     * ON: where no lamp of the inputs is of use. OFF: nowhere. */
+    /* CRS of inputs that name none (any PROJ definition), NULL: such inputs fail if they need one */
+    const char *crs;
+    /* CRS of the scene; NULL: the first input's if projected in metres, else UTM of its centre. Where its
+     * lengths are not those of the ground, the scene is computed in UTM: noc_scene_info.given_crs */
+    const char *scene_crs;
+    /* highest CityGML level of detail taken, 0..4; default 3. The best one at or under it wins */
+    int lod;
+    /* Place lamps by a rule? AUTO, the default: where the inputs hold none; inputs whose lamps are all of no use are an
+     * error. ON: where no lamp of the inputs is of use. OFF: nowhere. */
     noc_switch infer_lamps;
-    bool strict;            /* an input of which anything is left out or guessed at is an error, and so are lamps placed by a
-                               rule that infer_lamps does not ask for by ON; default false */
-    double lamp_height;     /* m, where not tagged; default 6 */
-    double lamp_lumens;     /* lm, where neither flux nor wattage is known; default 5000 */
-    double lamp_kelvin;     /* K, where not known; default 3000 */
-    unsigned lamp_chosen;   /* those of these three that are the caller's own word, so that strict lets them stand in for what
-                               lamps do not tell: 1 << NOC_LAMP_HEIGHT and so on; default 0 */
-    noc_texts lamps;        /* files that hold lamps whatever their words say: each of their points is one, unless its status
-                               says that it is gone. Read with the others; one that is among them is read once */
-    noc_texts lamp_columns; /* "field=column", several separated by commas: what a table's column, an attribute or a tag is
-                               read as. height_ft=H says a unit. Fields: height, lumens, watts, kelvin, colour, source,
-                               direction, count, mount, status, id, ele, lon, lat, x, y, wkt, latlon */
-    noc_obj_up obj_up;      /* axis of OBJ files that points up (they do not say it); default y, as most programs write */
-    bool allow_outside;     /* files that an input names (mtllib, glTF buffers, parts of a Shapefile) may lie anywhere; default:
-                               below the input's folder alone, links followed. Nothing is ever fetched from a network */
-    bool isolate;           /* OBJ and map files are read by the program nocturne-reader, which is started for each of them, may
-                               read that file and its parts alone, and is ended when the call is cancelled; default true. It is
-                               looked for beside the library, in a folder nocturne there, and where the environment's
-                               NOCTURNE_READER says. false: in this process, where nothing stops the libraries that read */
+    bool strict; /* an input of which anything is left out or guessed at is an error, and so are lamps placed by a
+                    rule that infer_lamps does not ask for by ON; default false */
+    double lamp_height;   /* m, where not tagged; default 6 */
+    double lamp_lumens;   /* lm, where neither flux nor wattage is known; default 5000 */
+    double lamp_kelvin;   /* K, where not known; default 3000 */
+    unsigned lamp_chosen; /* those of these three that are the caller's own word, so that strict lets them stand in for
+                             what lamps do not tell: 1 << NOC_LAMP_HEIGHT and so on; default 0 */
+    noc_texts lamps; /* files that hold lamps whatever their words say: each of their points is one, unless its status
+                        says that it is gone. Read with the others; one that is among them is read once */
+    noc_texts lamp_columns; /* "field=column", several separated by commas: what a table's column, an attribute or a tag
+                               is read as. height_ft=H says a unit. Fields: height, lumens, watts, kelvin, colour,
+                               source, direction, count, mount, status, id, ele, lon, lat, x, y, wkt, latlon */
+    /* axis of OBJ files that points up (they do not say it); default y, as most programs write */
+    noc_obj_up obj_up;
+    bool allow_outside; /* files that an input names (mtllib, glTF buffers, parts of a Shapefile) may lie anywhere;
+                           default: below the input's folder alone, links followed. Nothing is ever fetched from a
+                           network */
+    bool isolate; /* OBJ and map files are read by the program nocturne-reader, which is started for each of them, may
+                     read that file and its parts alone, and is ended when the call is cancelled; default true. It is
+                     looked for beside the library, in a folder nocturne there, and where the environment's
+                     NOCTURNE_READER says. false: in this process, where nothing stops the libraries that read */
     /* Limits on what one input may cost. Messages name them; what would be larger is NOC_ERR_MEMORY. */
-    double reader_time;     /* s that a file may take which nocturne-reader reads; default 600 */
-    double max_memory;      /* GB (1e9 bytes) that reading an input may take, in nocturne-reader, too; 0, the default:
-                               three quarters of the machine's */
-    double max_expansion;   /* times its stored size that it may grow to, where that is over 1 GiB; 0: any; default
-                               200 */
+    double reader_time;   /* s that a file may take which nocturne-reader reads; default 600 */
+    double max_memory;    /* GB (1e9 bytes) that reading an input may take, in nocturne-reader, too; 0, the default:
+                             three quarters of the machine's */
+    double max_expansion; /* times its stored size that it may grow to, where that is over 1 GiB; 0: any; default
+                             200 */
     noc_progress progress;
 } noc_import_params;
 
-#define NOC_IMPORT_DEFAULTS(set) set(lod, 3) set(infer_lamps, NOC_SWITCH_AUTO) set(lamp_height, 6) \
-    set(lamp_lumens, 5000) set(lamp_kelvin, 3000) set(isolate, true) set(reader_time, 600) set(max_expansion, 200)
+#define NOC_IMPORT_DEFAULTS(set)                                                                                       \
+    set(lod, 3) set(infer_lamps, NOC_SWITCH_AUTO) set(lamp_height, 6) set(lamp_lumens, 5000) set(lamp_kelvin, 3000)    \
+        set(isolate, true) set(reader_time, 600) set(max_expansion, 200)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_import_params, noc_import_default_params, NOC_IMPORT_DEFAULTS)
 #else
 #define noc_import_default_params() ((noc_import_params){ NOC_IMPORT_DEFAULTS(NOC_DEFAULT_IN_C) })
 #endif
 
-/* What holds the process that reads other people's formats (noc_import_params.isolate) here: "files by Landlock, system calls by
- * seccomp", or which of them the build or the system lacks. */
+/* What holds the process that reads other people's formats (noc_import_params.isolate) here: "files by Landlock, system
+ * calls by seccomp", or which of them the build or the system lacks. */
 NOC_API const char *noc_isolation(void);
 
 /* Why a feature was skipped or repaired: a short reason, how often, and the ids of the first few. */
 typedef struct noc_report_line {
-    const char *reason;     /* "self-intersecting ring", "unresolved xlink", ... */
-    bool repaired;          /* true: used after repair, or where it is not lossless by a guess; false: skipped */
+    const char *reason; /* "self-intersecting ring", "unresolved xlink", ... */
+    bool repaired;      /* true: used after repair, or where it is not lossless by a guess; false: skipped */
     size_t count;
-    const char *examples;   /* up to 5 ids, comma separated */
-    bool lossless;          /* nothing is lost or guessed by it, so noc_import_params.strict lets it pass */
+    const char *examples; /* up to 5 ids, comma separated */
+    bool lossless;        /* nothing is lost or guessed by it, so noc_import_params.strict lets it pass */
 } noc_report_line;
 
 /* What makes a lamp's light. */
 typedef enum noc_lamp_source {
     NOC_SOURCE_UNKNOWN,
     NOC_SOURCE_LED,
-    NOC_SOURCE_SODIUM,     /* high pressure, or not told which */
+    NOC_SOURCE_SODIUM, /* high pressure, or not told which */
     NOC_SOURCE_MERCURY,
     NOC_SOURCE_METAL_HALIDE,
     NOC_SOURCE_FLUORESCENT,
@@ -99,13 +112,13 @@ NOC_API const char *noc_lamp_source_name(noc_lamp_source source); /* "unknown", 
 
 /* A column of a table, an attribute or a tag, and what it was read as. */
 typedef struct noc_report_column {
-    const char *name;       /* as in the file */
-    const char *field;      /* "height", "watts", ...: a name of noc_import_params.lamp_columns, or "kind" where its
-                               values say what is a lamp; "" where it is not used */
-    const char *unit;       /* of values that name none: "m", "ft", "W", ...; "" where there is none */
-    const char *example;    /* the first value, cut short; "" where all are blank */
-    size_t values;          /* that are not blank */
-    bool mapped;            /* by noc_import_params.lamp_columns */
+    const char *name;    /* as in the file */
+    const char *field;   /* "height", "watts", ...: a name of noc_import_params.lamp_columns, or "kind" where its
+                            values say what is a lamp; "" where it is not used */
+    const char *unit;    /* of values that name none: "m", "ft", "W", ...; "" where there is none */
+    const char *example; /* the first value, cut short; "" where all are blank */
+    size_t values;       /* that are not blank */
+    bool mapped;         /* by noc_import_params.lamp_columns */
 } noc_report_column;
 
 typedef struct noc_report_file {
@@ -117,34 +130,36 @@ typedef struct noc_report_file {
     uint64_t bytes_read;       /* after decompression */
     double seconds;
     bool has_extent;
-    bool degrees;              /* the extent's x and y are longitude and latitude */
+    bool degrees;                        /* the extent's x and y are longitude and latitude */
     double extent_min[3], extent_max[3]; /* in the file's CRS, easting northing height (x y z) order */
-    size_t objects;            /* top-level features */
+    size_t objects;                      /* top-level features */
     size_t buildings;
-    size_t polygons;           /* used */
+    size_t polygons; /* used */
     size_t polygons_by_class[NOC_CLASS_COUNT];
-    size_t lod_used[5];        /* buildings by the level of detail that was taken */
+    size_t lod_used[5]; /* buildings by the level of detail that was taken */
     size_t triangles, lamps, lights;
-    size_t points;             /* of a table or map: lamps or not */
-    size_t column_count;       /* of a table or map, in its order; of maps with tags, those of its lamps */
+    size_t points;       /* of a table or map: lamps or not */
+    size_t column_count; /* of a table or map, in its order; of maps with tags, those of its lamps */
     const noc_report_column *columns;
-    size_t lamp_heads;         /* of all lamps: each makes a light; a lamp that does not tell has one */
+    size_t lamp_heads; /* of all lamps: each makes a light; a lamp that does not tell has one */
     size_t lamps_with_height, lamps_with_lumens, lamps_with_watts, lamps_with_colour, lamps_with_direction; /* tagged */
-    size_t lamps_with_kelvin;  /* of those with a colour */
+    size_t lamps_with_kelvin;                /* of those with a colour */
     double lamp_height_min, lamp_height_max; /* of those tagged, m */
-    double lamp_lumens_min, lamp_lumens_max, lamp_watts_min, lamp_watts_max, lamp_kelvin_min, lamp_kelvin_max; /* the same */
-    char decimal_sign;         /* of a CSV: '.' or ','; '?' where its numbers do not tell; 0: no CSV */
+    /* the same */
+    double lamp_lumens_min, lamp_lumens_max, lamp_watts_min, lamp_watts_max, lamp_kelvin_min, lamp_kelvin_max;
+    char decimal_sign; /* of a CSV: '.' or ','; '?' where its numbers do not tell; 0: no CSV */
     size_t lamps_by_source[NOC_SOURCE_COUNT];
-    /* Lamps that do not tell it themselves, so that a default is taken: of those mapped, and of all where no scene was loaded.
-     * Watts tell the flux, and most sources the colour. By noc_lamp_default. */
+    /* Lamps that do not tell it themselves, so that a default is taken: of those mapped, and of all where no scene was
+     * loaded. Watts tell the flux, and most sources the colour. By noc_lamp_default. */
     size_t lamps_assumed[NOC_LAMP_DEFAULT_COUNT];
     /* Where a scene was loaded, lamps by what became of them; those in use are mapped. */
-    size_t lamps_mapped;       /* stand in the scene */
-    size_t lamps_moved;        /* of them: out of a building, or away from another lamp */
-    size_t lamps_dropped;      /* of no use: outside the city, in a building, without a place */
-    size_t lamps_repeated;     /* that another file holds, too, or the file twice: taken once, and counted there */
-    size_t objects_repeated;   /* the same of objects; of a file's own, too */
-    /* Of a map: its features by their geometry, of which only lamps are read; of OpenStreetMap only points are in these. */
+    size_t lamps_mapped;     /* stand in the scene */
+    size_t lamps_moved;      /* of them: out of a building, or away from another lamp */
+    size_t lamps_dropped;    /* of no use: outside the city, in a building, without a place */
+    size_t lamps_repeated;   /* that another file holds, too, or the file twice: taken once, and counted there */
+    size_t objects_repeated; /* the same of objects; of a file's own, too */
+    /* Of a map: its features by their geometry, of which only lamps are read; of OpenStreetMap only points are in
+     * these. */
     size_t map_points, map_lines, map_areas;
     size_t buildings_unread, streets_unread; /* of OpenStreetMap, by the tags of ways and relations */
     size_t line_count;
@@ -155,34 +170,37 @@ typedef struct noc_report_file {
 typedef struct noc_report_totals {
     size_t lamps_mapped, lamps_moved, lamps_dropped; /* as in noc_report_file */
     size_t lamps_repeated, objects_repeated;
-    size_t lamps_inferred;     /* placed by a rule */
+    size_t lamps_inferred;                        /* placed by a rule */
     size_t lamps_assumed[NOC_LAMP_DEFAULT_COUNT]; /* as in noc_report_file */
-    size_t skipped, repaired, guessed; /* features: counts of the files' lines; guessed are those of repaired that are not
-                                        lossless */
+    size_t skipped, repaired, guessed; /* features: counts of the files' lines; guessed are those of repaired that are
+                                        not lossless */
 } noc_report_totals;
 
 typedef struct noc_report noc_report; /* owned by the caller */
 
 NOC_API size_t noc_report_file_count(const noc_report *report);
 NOC_API const noc_report_file *noc_report_get_file(const noc_report *report, size_t index);
-NOC_API void noc_report_get_totals(const noc_report *report, noc_report_totals *totals); /* all 0 where report is NULL */
+/* all 0 where report is NULL */
+NOC_API void noc_report_get_totals(const noc_report *report, noc_report_totals *totals);
 NOC_API void noc_report_destroy(noc_report *report);
 
-/* Loads all paths, and the files of lamps in params, into the scene as one, stands the lamps on the ground, and commits. "builtin:NAME" is the built-in
- * scene of that name. On failure the scene must be destroyed. *report may be NULL; where given it is set even on failure (possibly NULL). */
+/* Loads all paths, and the files of lamps in params, into the scene as one, stands the lamps on the ground, and
+ * commits. "builtin:NAME" is the built-in scene of that name. On failure the scene must be destroyed. *report may be
+ * NULL; where given it is set even on failure (possibly NULL). */
 NOC_API noc_status noc_scene_load(noc_scene *scene, const char *const *paths, size_t path_count,
                                   const noc_import_params *params, noc_report **report);
 
-/* Reads one file into a throwaway scene and reports what it holds; used by `nocturne info`. A file without a CRS is fine, and
- * so is a table of which nothing tells that its points are lamps. Files of lamps in params are not read: only whether the path
- * is one of them counts. */
+/* Reads one file into a throwaway scene and reports what it holds; used by `nocturne info`. A file without a CRS is
+ * fine, and so is a table of which nothing tells that its points are lamps. Files of lamps in params are not read: only
+ * whether the path is one of them counts. */
 NOC_API noc_status noc_inspect(noc_log *log, const char *path, const noc_import_params *params, noc_report **report);
 
-/* All that the program nocturne-reader does: its main. Not for others to call. Returns its exit status, or does not return. */
+/* All that the program nocturne-reader does: its main. Not for others to call. Returns its exit status, or does not
+ * return. */
 NOC_API int noc_reader_main(void);
 
-/* Converts between the scene's local frame and any CRS (NULL: the scene's own, noc_scene_info.given_crs). xyz in place, easting northing height
- * (or longitude latitude height in degrees) order. */
+/* Converts between the scene's local frame and any CRS (NULL: the scene's own, noc_scene_info.given_crs). xyz in place,
+ * easting northing height (or longitude latitude height in degrees) order. */
 NOC_API noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xyz[3]);
 NOC_API noc_status noc_scene_from_local(const noc_scene *scene, const char *crs, double xyz[3]);
 

@@ -23,15 +23,16 @@ typedef enum noc_option_kind {
 } noc_option_kind;
 
 typedef struct noc_option {
-    const char *name;      /* long name without dashes; NULL ends a table */
-    const char *group;     /* heading in the help */
+    const char *name;  /* long name without dashes; NULL ends a table */
+    const char *group; /* heading in the help */
     noc_option_kind kind;
-    size_t offset;         /* of the field in its struct */
-    double min, max;       /* INT, UINT, REAL; inclusive */
-    const char *choices;   /* CHOICE: "a|b|c" */
-    const char *unit;      /* "m", "px", "cd/m2", "" */
-    const char *help;      /* one line */
-    const char *needs;     /* "option=a|b,option=c": where others of its table say otherwise it changes no picture; may be NULL */
+    size_t offset;       /* of the field in its struct */
+    double min, max;     /* INT, UINT, REAL; inclusive */
+    const char *choices; /* CHOICE: "a|b|c" */
+    const char *unit;    /* "m", "px", "cd/m2", "" */
+    const char *help;    /* one line */
+    /* "option=a|b,option=c": where others of its table say otherwise it changes no picture; may be NULL */
+    const char *needs;
 } noc_option;
 
 NOC_API const noc_option *noc_render_options(void);  /* fields of noc_render_params */
@@ -40,16 +41,17 @@ NOC_API const noc_option *noc_import_options(void);  /* fields of noc_import_par
 NOC_API const noc_option *noc_city_options(void);    /* fields of noc_city_params */
 NOC_API const noc_option *noc_builtin_options(void); /* fields of noc_builtin_params, but for the city's */
 
-/* Sets one field from text (TEXTS: adds to it). value is NULL for a bare bool; NOC_ERR_ARGUMENT, reported with the option's name, the text
- * and what would be right. For BOOL and SWITCH, "true/false/on/off/yes/no/1/0". */
+/* Sets one field from text (TEXTS: adds to it). value is NULL for a bare bool; NOC_ERR_ARGUMENT, reported with the
+ * option's name, the text and what would be right. For BOOL and SWITCH, "true/false/on/off/yes/no/1/0". */
 NOC_API noc_status noc_option_set(const noc_option *option, void *params, const char *value, noc_log *log);
 /* The field's present value as text, for help and metadata. Returns the length, like snprintf. */
 NOC_API int noc_option_get(const noc_option *option, const void *params, char *text, size_t size);
 /* Bytes of the field; of a text, those of its pointer. */
 NOC_API size_t noc_option_size(const noc_option *option);
-/* True where params lack what the option needs, so that its value changes no picture; why then tells, for a message: "it
- * needs method ris, not is". table: of params, where the options that it needs are. */
-NOC_API bool noc_option_idle(const noc_option *option, const noc_option *table, const void *params, char *why, size_t size);
+/* True where params lack what the option needs, so that its value changes no picture; why then tells, for a message:
+ * "it needs method ris, not is". table: of params, where the options that it needs are. */
+NOC_API bool noc_option_idle(const noc_option *option, const noc_option *table, const void *params, char *why,
+                             size_t size);
 
 #ifdef __cplusplus
 }

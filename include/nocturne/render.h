@@ -12,8 +12,13 @@ extern "C" {
 typedef enum noc_method { NOC_METHOD_REFERENCE, NOC_METHOD_IS, NOC_METHOD_RIS, NOC_METHOD_RESTIR } noc_method;
 typedef enum noc_bias { NOC_BIAS_BIASED, NOC_BIAS_MIS, NOC_BIAS_PAIRWISE } noc_bias;
 /* Where light candidates come from: docs/estimator.md, "Candidates". */
-typedef enum noc_candidates { NOC_CANDIDATES_UNIFORM, NOC_CANDIDATES_LISTS, NOC_CANDIDATES_POWER, NOC_CANDIDATES_BVH,
-                             NOC_CANDIDATES_TREE } noc_candidates;
+typedef enum noc_candidates {
+    NOC_CANDIDATES_UNIFORM,
+    NOC_CANDIDATES_LISTS,
+    NOC_CANDIDATES_POWER,
+    NOC_CANDIDATES_BVH,
+    NOC_CANDIDATES_TREE
+} noc_candidates;
 /* bvh: what bounds a light's influence volume: distance, or what its light reaches as well. */
 typedef enum noc_influence_boxes { NOC_INFLUENCE_SPHERE, NOC_INFLUENCE_VISIBLE } noc_influence_boxes;
 /* Code that computes what is between rays. All of them give the same bits. */
@@ -28,70 +33,78 @@ typedef enum noc_isa {
 NOC_API const char *noc_isa_name(noc_isa isa); /* "avx2" */
 NOC_API bool noc_isa_runs(noc_isa isa);        /* on this processor */
 
-/* Views of how lights were sampled, and of the surfaces that are seen: docs/views.md. The reservoir is the one that the frame shaded. */
+/* Views of how lights were sampled, and of the surfaces that are seen: docs/views.md. The reservoir is the one that the
+ * frame shaded. */
 typedef enum noc_aov {
-    NOC_AOV_LIGHTS,     /* lights that the query found: bvh: volumes that hold the point; lists: entries of the tile's list */
-    NOC_AOV_DENSITY,    /* of the light that this frame's candidates chose: how often it is expected among a pixel's candidates */
+    /* lights that the query found: bvh: volumes that hold the point; lists: entries of the tile's list */
+    NOC_AOV_LIGHTS,
+    /* of the light that this frame's candidates chose: how often it is expected among a pixel's candidates */
+    NOC_AOV_DENSITY,
     NOC_AOV_LIGHT,      /* the reservoir's light: its index in the scene, exact below 2^24 */
     NOC_AOV_WEIGHT,     /* the reservoir's W: 1 / (density of its sample), 0 where it holds none */
     NOC_AOV_CONFIDENCE, /* the reservoir's M, candidates */
     NOC_AOV_RAYS,       /* shadow rays traced for the pixel in the last frame, for the sky too */
-    NOC_AOV_VARIANCE,   /* of the luminance of one frame, (cd/m2)^2, from the frames accumulated since it was asked for */
-    NOC_AOV_ERROR,      /* relative standard error of their mean: sqrt(variance / frames) / mean */
-    NOC_AOV_DEPTH,      /* distance from the eye of what the last frame saw, m */
-    NOC_AOV_NORMAL,     /* its unit normal on the viewer's side, in the scene's local frame: three components */
-    NOC_AOV_CLASS,      /* its noc_class */
-    NOC_AOV_OBJECT,     /* its object, for noc_scene_object_name; exact below 2^24 */
+    /* of the luminance of one frame, (cd/m2)^2, from the frames accumulated since it was asked for */
+    NOC_AOV_VARIANCE,
+    NOC_AOV_ERROR,  /* relative standard error of their mean: sqrt(variance / frames) / mean */
+    NOC_AOV_DEPTH,  /* distance from the eye of what the last frame saw, m */
+    NOC_AOV_NORMAL, /* its unit normal on the viewer's side, in the scene's local frame: three components */
+    NOC_AOV_CLASS,  /* its noc_class */
+    NOC_AOV_OBJECT, /* its object, for noc_scene_object_name; exact below 2^24 */
     NOC_AOV_COUNT
 } noc_aov;
 
 typedef struct noc_render_params {
-    int width, height;          /* 1..NOC_IMAGE_MAX_SIDE */
+    int width, height; /* 1..NOC_IMAGE_MAX_SIDE */
     noc_method method;
-    noc_candidates candidates;  /* ris, restir: source of the light candidates */
-    int draws;                  /* M: candidates a pixel and frame, 1..1024 */
-    int list, tail;             /* lists: strongest lights of a tile, 0..128; draws from all others, 1..128 */
-    int shadow_rays;            /* lists: shadow rays a pixel and frame: a target, 1 to twice as many; 1..8 */
-    bool learn;                 /* lists: visibility found in earlier frames says where rays are sent */
-    double influence;           /* bvh: S_r, the distance at which a light of 1 cd is last found, m; 0 = found for the scene;
-                                 * points then list the strongest lights within it */
+    noc_candidates candidates; /* ris, restir: source of the light candidates */
+    int draws;                 /* M: candidates a pixel and frame, 1..1024 */
+    int list, tail;            /* lists: strongest lights of a tile, 0..128; draws from all others, 1..128 */
+    int shadow_rays;           /* lists: shadow rays a pixel and frame: a target, 1 to twice as many; 1..8 */
+    bool learn;                /* lists: visibility found in earlier frames says where rays are sent */
+    /* bvh: S_r, the distance at which a light of 1 cd is last found, m; 0 = found for the scene;
+     * points then list the strongest lights within it */
+    double influence;
     noc_influence_boxes influence_boxes;
-    int influence_cluster;      /* bvh: at most so many lights that lie close together share a volume, 1..64 */
-    int uniform_every;          /* bvh: of so many draws one is from all lights, 1..1024 */
-    int rays;                   /* reference: shadow rays a pixel and frame, 1..1024 */
+    int influence_cluster; /* bvh: at most so many lights that lie close together share a volume, 1..64 */
+    int uniform_every;     /* bvh: of so many draws one is from all lights, 1..1024 */
+    int rays;              /* reference: shadow rays a pixel and frame, 1..1024 */
     /* reuse (restir only) */
     bool temporal, spatial;
-    int neighbours;             /* k, 0..16 */
-    double radius;              /* pixels, 1..64 */
-    int passes;                 /* spatial passes, 1..4 */
-    double history;             /* cap of M as a multiple of a frame's candidates, 0..1000 */
+    int neighbours; /* k, 0..16 */
+    double radius;  /* pixels, 1..64 */
+    int passes;     /* spatial passes, 1..4 */
+    double history; /* cap of M as a multiple of a frame's candidates, 0..1000 */
     noc_bias bias;
-    bool bias_rays;             /* mis, pairwise: visibility in the target of the combination, which makes it unbiased. Not
-                                 * needed, and not traced, without visibility_reuse: targets are unshadowed then */
-    bool visibility_reuse;      /* one shadow ray after the candidates: occluded ones are not reused (ris, restir) */
-    bool final_ray;             /* shadow ray to the chosen light; off = unshadowed: no shadow rays at all */
-    double reject_depth;        /* relative distance to a neighbour's plane that rejects it */
-    double reject_normal;       /* cosine between normals that rejects it */
+    /* mis, pairwise: visibility in the target of the combination, which makes it unbiased. Not
+     * needed, and not traced, without visibility_reuse: targets are unshadowed then */
+    bool bias_rays;
+    bool visibility_reuse; /* one shadow ray after the candidates: occluded ones are not reused (ris, restir) */
+    bool final_ray;        /* shadow ray to the chosen light; off = unshadowed: no shadow rays at all */
+    double reject_depth;   /* relative distance to a neighbour's plane that rejects it */
+    double reject_normal;  /* cosine between normals that rejects it */
     /* picture */
     uint32_t seed;
-    bool jitter;                /* sub-pixel positions change from frame to frame */
-    bool accumulate;            /* running mean over frames, else the last frame alone */
-    double sky;                 /* luminance of the sky at the zenith, cd/m2; 0 = off */
-    bool emitters;              /* emitters seen directly are shown */
-    noc_isa isa;                /* instruction set; one that the processor lacks is NOC_ERR_UNSUPPORTED. Embree's own code for
-                                 * rays is chosen by Embree */
-    uint32_t aovs;              /* views to keep, bits 1 << noc_aov. They never change the picture, and may be asked for and
-                                 * dropped from frame to frame: history and accumulation go on */
+    bool jitter;     /* sub-pixel positions change from frame to frame */
+    bool accumulate; /* running mean over frames, else the last frame alone */
+    double sky;      /* luminance of the sky at the zenith, cd/m2; 0 = off */
+    bool emitters;   /* emitters seen directly are shown */
+    /* instruction set; one that the processor lacks is NOC_ERR_UNSUPPORTED. Embree's own code for
+     * rays is chosen by Embree */
+    noc_isa isa;
+    /* views to keep, bits 1 << noc_aov. They never change the picture, and may be asked for and
+     * dropped from frame to frame: history and accumulation go on */
+    uint32_t aovs;
 } noc_render_params;
 
-#define NOC_RENDER_DEFAULTS(set) \
-    set(width, 1280) set(height, 720) set(method, NOC_METHOD_RIS) set(candidates, NOC_CANDIDATES_LISTS) \
-    set(draws, 32) set(list, 64) set(tail, 128) set(shadow_rays, 8) set(learn, true) \
-    set(influence_cluster, 1) set(uniform_every, 4) set(rays, 64) set(temporal, true) set(spatial, true) \
-    set(neighbours, 5) set(radius, 10) set(passes, 1) set(history, 20) set(bias, NOC_BIAS_PAIRWISE) \
-    set(bias_rays, true) set(visibility_reuse, true) set(final_ray, true) set(reject_depth, 0.1) \
-    set(reject_normal, 0.9) set(seed, 1) set(jitter, true) set(accumulate, true) set(sky, 0.02) \
-    set(emitters, true) set(isa, NOC_ISA_AUTO)
+#define NOC_RENDER_DEFAULTS(set)                                                                                       \
+    set(width, 1280) set(height, 720) set(method, NOC_METHOD_RIS) set(candidates, NOC_CANDIDATES_LISTS) set(draws, 32) \
+        set(list, 64) set(tail, 128) set(shadow_rays, 8) set(learn, true) set(influence_cluster, 1)                    \
+            set(uniform_every, 4) set(rays, 64) set(temporal, true) set(spatial, true) set(neighbours, 5)              \
+                set(radius, 10) set(passes, 1) set(history, 20) set(bias, NOC_BIAS_PAIRWISE) set(bias_rays, true)      \
+                    set(visibility_reuse, true) set(final_ray, true) set(reject_depth, 0.1) set(reject_normal, 0.9)    \
+                        set(seed, 1) set(jitter, true) set(accumulate, true) set(sky, 0.02) set(emitters, true)        \
+                            set(isa, NOC_ISA_AUTO)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_render_params, noc_render_default_params, NOC_RENDER_DEFAULTS)
 #else
@@ -100,8 +113,9 @@ NOC_DEFAULT_PARAMS(noc_render_params, noc_render_default_params, NOC_RENDER_DEFA
 
 /* Settings for a purpose, chosen by measurement (docs/estimator.md, "Presets"). */
 typedef enum noc_preset {
-    NOC_PRESET_STILL,       /* least error after a minute: the defaults */
-    NOC_PRESET_INTERACTIVE  /* least error of the first frames and of single ones under a moving camera, in half the time */
+    NOC_PRESET_STILL,      /* least error after a minute: the defaults */
+    NOC_PRESET_INTERACTIVE /* least error of the first frames and of single ones under a moving camera, in half the time
+                            */
 } noc_preset;
 
 /* Sets all that says how light is estimated and reused; the picture's size, seed, sky and the like stay as they are. */
@@ -110,8 +124,8 @@ NOC_API void noc_render_use_preset(noc_render_params *params, noc_preset preset)
 typedef struct noc_renderer noc_renderer;
 
 typedef struct noc_renderer_params {
-    int threads;              /* 0: one a core */
-    const char *backend;      /* NULL or "embree" */
+    int threads;         /* 0: one a core */
+    const char *backend; /* NULL or "embree" */
 } noc_renderer_params;
 
 #define NOC_RENDERER_DEFAULTS(set) set(threads, 0)
@@ -121,12 +135,13 @@ NOC_DEFAULT_PARAMS(noc_renderer_params, noc_renderer_default_params, NOC_RENDERE
 #define noc_renderer_default_params() ((noc_renderer_params){ NOC_RENDERER_DEFAULTS(NOC_DEFAULT_IN_C) })
 #endif
 
-/* Threads. A renderer belongs to one thread at a time: while noc_renderer_frame or noc_renderer_trace_floor runs, no other call may
- * be made on it, neither from another thread nor from the progress callback, which comes from the thread that made the call.
- * Other renderers, of the same committed scene too, may work meanwhile. What only reads the scene (noc_scene_get_info,
- * get_light, object_name, ground, camera, to_local, from_local) may be called at any time from any thread, also during a
- * frame and in callbacks; noc_scene_move_light only while no frame of the scene is rendered. noc_image and noc_channel are
- * the caller's: any thread may use them once the call that made them has returned. The log's callback may come from any thread.
+/* Threads. A renderer belongs to one thread at a time: while noc_renderer_frame or noc_renderer_trace_floor runs, no
+ * other call may be made on it, neither from another thread nor from the progress callback, which comes from the thread
+ * that made the call. Other renderers, of the same committed scene too, may work meanwhile. What only reads the scene
+ * (noc_scene_get_info, get_light, object_name, ground, camera, to_local, from_local) may be called at any time from any
+ * thread, also during a frame and in callbacks; noc_scene_move_light only while no frame of the scene is rendered.
+ * noc_image and noc_channel are the caller's: any thread may use them once the call that made them has returned. The
+ * log's callback may come from any thread.
  *
  * The scene must be committed and outlive the renderer. NULL after reporting an error. */
 NOC_API noc_renderer *noc_renderer_create(const noc_scene *scene, const noc_renderer_params *params, noc_log *log);
@@ -136,10 +151,10 @@ NOC_API void noc_renderer_destroy(noc_renderer *renderer);
 NOC_API noc_status noc_render_check(const noc_render_params *params, noc_log *log);
 
 /* Renders one frame; NULL params are the defaults. History and accumulation start anew when size, method or any other
- * parameter changes; accumulation also when the camera or a light moves (history then goes on). progress may be NULL; when it
- * cancels, the frame is dropped, what was accumulated stays (of the camera and parameters that it was made with, so nothing where
- * those have changed), and NOC_ERR_CANCELLED is returned. So it is with NOC_ERR_MEMORY; where there was none for the picture's
- * buffers, all starts anew. Either way the next frame may succeed. */
+ * parameter changes; accumulation also when the camera or a light moves (history then goes on). progress may be NULL;
+ * when it cancels, the frame is dropped, what was accumulated stays (of the camera and parameters that it was made
+ * with, so nothing where those have changed), and NOC_ERR_CANCELLED is returned. So it is with NOC_ERR_MEMORY; where
+ * there was none for the picture's buffers, all starts anew. Either way the next frame may succeed. */
 NOC_API noc_status noc_renderer_frame(noc_renderer *renderer, const noc_camera *camera, const noc_render_params *params,
                                       const noc_progress *progress);
 NOC_API void noc_renderer_reset(noc_renderer *renderer); /* forgets history and accumulation, frame number too */
@@ -148,61 +163,73 @@ NOC_API void noc_renderer_reset(noc_renderer *renderer); /* forgets history and 
 NOC_API noc_image *noc_renderer_image(noc_renderer *renderer);
 
 NOC_API const char *noc_aov_name(noc_aov aov); /* "lights" */
-/* Copy of a view that the last complete frame kept. -1 where a pixel has none: no surface, an emitter seen directly, no light
- * chosen, fewer than two frames. NULL after reporting an error, and before the first frame. */
+/* Copy of a view that the last complete frame kept. -1 where a pixel has none: no surface, an emitter seen directly, no
+ * light chosen, fewer than two frames. NULL after reporting an error, and before the first frame. */
 NOC_API noc_channel *noc_renderer_aov(noc_renderer *renderer, noc_aov aov);
 
 typedef enum noc_pass {
-    NOC_PASS_PRIMARY, NOC_PASS_CANDIDATES, NOC_PASS_VISIBILITY, NOC_PASS_TEMPORAL, NOC_PASS_SPATIAL, NOC_PASS_SHADE,
-    NOC_PASS_SKY, NOC_PASS_COUNT
+    NOC_PASS_PRIMARY,
+    NOC_PASS_CANDIDATES,
+    NOC_PASS_VISIBILITY,
+    NOC_PASS_TEMPORAL,
+    NOC_PASS_SPATIAL,
+    NOC_PASS_SHADE,
+    NOC_PASS_SKY,
+    NOC_PASS_COUNT
 } noc_pass;
 
 NOC_API const char *noc_pass_name(noc_pass pass);
 
 typedef struct noc_frame_stats {
-    uint64_t frames;                        /* accumulated so far */
-    double wall_seconds;                    /* of the last frame */
-    double cpu_seconds;                     /* process CPU time of the last frame */
-    double pass_seconds[NOC_PASS_COUNT];    /* thread seconds summed over threads, last frame */
-    uint64_t rays_primary, rays_shadow;     /* of the last frame */
-    uint64_t dropped;                       /* samples dropped for being NaN or infinite, since the last reset */
-    double build_seconds;                   /* of the ray tracing structure */
-    size_t memory_bytes;                    /* of the renderer, without the scene */
-    const char *path;                       /* instruction set and lanes: "scalar", "avx2 x8", "avx512 x16", ... */
+    uint64_t frames;                     /* accumulated so far */
+    double wall_seconds;                 /* of the last frame */
+    double cpu_seconds;                  /* process CPU time of the last frame */
+    double pass_seconds[NOC_PASS_COUNT]; /* thread seconds summed over threads, last frame */
+    uint64_t rays_primary, rays_shadow;  /* of the last frame */
+    uint64_t dropped;                    /* samples dropped for being NaN or infinite, since the last reset */
+    double build_seconds;                /* of the ray tracing structure */
+    size_t memory_bytes;                 /* of the renderer, without the scene */
+    const char *path;                    /* instruction set and lanes: "scalar", "avx2 x8", "avx512 x16", ... */
 } noc_frame_stats;
 
 NOC_API void noc_renderer_get_stats(const noc_renderer *renderer, noc_frame_stats *stats);
 
 /* The structure that the last frame's light candidates were drawn from. What does not apply to it is 0. */
 typedef struct noc_light_stats {
-    noc_candidates candidates;              /* of the last frame */
-    size_t lights;                          /* of the scene */
-    double build_seconds;                   /* wall seconds that the structure took to build */
-    size_t bytes;                           /* that it holds */
-    size_t scene_bytes;                     /* what that is to be compared with: the scene's geometry, materials and lights, and
-                                             * the ray tracing structure */
-    double influence;                       /* bvh: S_r, m */
-    size_t volumes;                         /* bvh: influence volumes; fewer than lights where lights share them */
-    /* bvh: what build_seconds went into: volumes and their order; S_r, where none was set; the hierarchy; visibility-aware boxes */
+    noc_candidates candidates; /* of the last frame */
+    size_t lights;             /* of the scene */
+    double build_seconds;      /* wall seconds that the structure took to build */
+    size_t bytes;              /* that it holds */
+    /* what that is to be compared with: the scene's geometry, materials and lights, and
+     * the ray tracing structure */
+    size_t scene_bytes;
+    double influence; /* bvh: S_r, m */
+    size_t volumes;   /* bvh: influence volumes; fewer than lights where lights share them */
+    /* bvh: what build_seconds went into: volumes and their order; S_r, where none was set; the hierarchy;
+     * visibility-aware boxes */
     double volumes_seconds, tuning_seconds, hierarchy_seconds, boxes_seconds;
-    uint64_t surfaces;                      /* bvh: pixels of the last frame that saw a surface, and so asked for lights */
-    double found_none;                      /* bvh: share of them that no volume held */
-    uint32_t found_median, found_99;        /* bvh: lights that they found: median and 99th percentile; 65,536 stands for more too */
+    /* bvh: pixels of the last frame that saw a surface, and so asked for lights */
+    uint64_t surfaces;
+    double found_none; /* bvh: share of them that no volume held */
+    /* bvh: lights that they found: median and 99th percentile; 65,536 stands for more too */
+    uint32_t found_median, found_99;
 } noc_light_stats;
 
 /* All 0 but lights and scene_bytes before the first frame, and for methods that draw no candidates. */
 NOC_API void noc_renderer_light_stats(const noc_renderer *renderer, noc_light_stats *stats);
 
-/* Writes the influence volumes that these parameters ask for (influence, influence_boxes, influence_cluster; NULL: the defaults), whatever the
- * candidates are, as OBJ to look at: metres in the scene's local frame, y up as most programs take it (x, y, z of the scene are written as x z -y).
- * Each volume is an object, a sphere or the part of one that one-sided lights face, its corners on the surface, its name that of its
- * first light; visibility-aware boxes follow, and names tell which volume lies in which. The target
- * is replaced when the file is whole. About 6 kB a volume. Not during a frame. */
-NOC_API noc_status noc_renderer_write_influence(noc_renderer *renderer, const noc_render_params *params, const char *path);
+/* Writes the influence volumes that these parameters ask for (influence, influence_boxes, influence_cluster; NULL: the
+ * defaults), whatever the candidates are, as OBJ to look at: metres in the scene's local frame, y up as most programs
+ * take it (x, y, z of the scene are written as x z -y). Each volume is an object, a sphere or the part of one that
+ * one-sided lights face, its corners on the surface, its name that of its first light; visibility-aware boxes follow,
+ * and names tell which volume lies in which. The target is replaced when the file is whole. About 6 kB a volume. Not
+ * during a frame. */
+NOC_API noc_status noc_renderer_write_influence(noc_renderer *renderer, const noc_render_params *params,
+                                                const char *path);
 
-/* The trace floor: renders the next frame as noc_renderer_frame does, keeps its rays (primary, visibility, bias, final, and
- * sky where it is on), then traces those rays again through the same structure and nothing else. Wall seconds of the second
- * time into *seconds. Takes about 600 bytes for 16 rays while it lasts. */
+/* The trace floor: renders the next frame as noc_renderer_frame does, keeps its rays (primary, visibility, bias, final,
+ * and sky where it is on), then traces those rays again through the same structure and nothing else. Wall seconds of
+ * the second time into *seconds. Takes about 600 bytes for 16 rays while it lasts. */
 NOC_API noc_status noc_renderer_trace_floor(noc_renderer *renderer, const noc_camera *camera,
                                             const noc_render_params *params, double *seconds);
 

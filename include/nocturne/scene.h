@@ -20,20 +20,20 @@ typedef enum noc_class {
     NOC_CLASS_OTHER,
     NOC_CLASS_WALL,
     NOC_CLASS_ROOF,
-    NOC_CLASS_GROUND,       /* a building's ground surface */
-    NOC_CLASS_CLOSURE,      /* virtual surface that closes a volume: read and counted, not rendered */
+    NOC_CLASS_GROUND,  /* a building's ground surface */
+    NOC_CLASS_CLOSURE, /* virtual surface that closes a volume: read and counted, not rendered */
     NOC_CLASS_WINDOW,
     NOC_CLASS_DOOR,
     NOC_CLASS_INSTALLATION, /* balconies, chimneys, stairs */
     NOC_CLASS_TERRAIN,
     NOC_CLASS_ROAD,
     NOC_CLASS_SIDEWALK,
-    NOC_CLASS_GREEN,        /* lawns, plant cover, land use */
+    NOC_CLASS_GREEN, /* lawns, plant cover, land use */
     NOC_CLASS_TREE,
     NOC_CLASS_WATER,
     NOC_CLASS_BRIDGE,
     NOC_CLASS_FURNITURE,
-    NOC_CLASS_LAMP,         /* poles and housings */
+    NOC_CLASS_LAMP, /* poles and housings */
     NOC_CLASS_VEHICLE,
     NOC_CLASS_COUNT
 } noc_class;
@@ -54,11 +54,11 @@ NOC_API noc_material noc_class_material(noc_class cls);
 
 typedef struct noc_mesh {
     size_t vertex_count;
-    const double *positions;  /* 3 a vertex, local metres */
+    const double *positions; /* 3 a vertex, local metres */
     size_t triangle_count;
-    const uint32_t *indices;  /* 3 a triangle, counter-clockwise seen from outside */
-    int material;             /* from noc_scene_add_material */
-    const char *name;         /* object id, gml:id; may be NULL. Copied */
+    const uint32_t *indices; /* 3 a triangle, counter-clockwise seen from outside */
+    int material;            /* from noc_scene_add_material */
+    const char *name;        /* object id, gml:id; may be NULL. Copied */
 } noc_mesh;
 
 typedef enum noc_light_kind {
@@ -67,13 +67,14 @@ typedef enum noc_light_kind {
     NOC_LIGHT_TRIANGLE,      /* position = corner, edges; faces edge_u x edge_v */
     NOC_LIGHT_PARALLELOGRAM, /* position = corner, edges; faces edge_u x edge_v */
     NOC_LIGHT_POINT,         /* position; isotropic, emission is intensity in cd */
-    NOC_LIGHT_SPOT,          /* position, direction, inner_deg, outer_deg; emission is the inner cone's intensity in cd */
+    /* position, direction, inner_deg, outer_deg; emission is the inner cone's intensity in cd */
+    NOC_LIGHT_SPOT,
     NOC_LIGHT_KIND_COUNT
 } noc_light_kind;
 
 /* One light. Its visible shape is made with it, except for points, spots and lights that move: those are not seen
- * themselves and cast no shadow, they light. A spot's intensity at an angle t off its direction is that of the inner cone times
- * clamp((cos t - cos outer) / (cos inner - cos outer), 0, 1)^2, as glTF's KHR_lights_punctual has it. */
+ * themselves and cast no shadow, they light. A spot's intensity at an angle t off its direction is that of the inner
+ * cone times clamp((cos t - cos outer) / (cos inner - cos outer), 0, 1)^2, as glTF's KHR_lights_punctual has it. */
 typedef struct noc_light {
     noc_light_kind kind;
     double position[3];
@@ -81,18 +82,20 @@ typedef struct noc_light {
     double direction[3];
     double radius;
     double inner_deg, outer_deg; /* spot: degrees off its direction, 0 <= inner <= outer, outer within 1 to 90 */
-    float emission[3]; /* cd/m2, or cd for NOC_LIGHT_POINT and NOC_LIGHT_SPOT; one-sided */
-    const char *name;  /* may be NULL; copied */
-    bool inferred;     /* placed by a rule, not found in data */
-    bool moving;       /* noc_scene_move_light may change it between frames */
+    float emission[3];           /* cd/m2, or cd for NOC_LIGHT_POINT and NOC_LIGHT_SPOT; one-sided */
+    const char *name;            /* may be NULL; copied */
+    bool inferred;               /* placed by a rule, not found in data */
+    bool moving;                 /* noc_scene_move_light may change it between frames */
 } noc_light;
 
-NOC_API noc_scene *noc_scene_create(noc_log *log); /* log may be NULL; it must outlive the scene. NULL: no memory, reported */
+/* log may be NULL; it must outlive the scene. NULL: no memory, reported */
+NOC_API noc_scene *noc_scene_create(noc_log *log);
 NOC_API void noc_scene_destroy(noc_scene *scene);
 
 /* These return an index >= 0, or -1 after reporting an error. Non-finite or degenerate geometry is an error here; bad
  * triangles inside a mesh (zero area, index out of range, non-finite) are dropped and counted. A committed scene takes
- * nothing more, nor does one that memory was refused to: that is reported once, and NOC_ERR_MEMORY is what its commit returns. */
+ * nothing more, nor does one that memory was refused to: that is reported once, and NOC_ERR_MEMORY is what its commit
+ * returns. */
 NOC_API int noc_scene_add_material(noc_scene *scene, const noc_material *material);
 NOC_API int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh);
 NOC_API int noc_scene_add_light(noc_scene *scene, const noc_light *light);
@@ -100,33 +103,35 @@ NOC_API int noc_scene_add_light(noc_scene *scene, const noc_light *light);
 /* Freezes the scene for rendering: makes triangle lights of emissive meshes. noc_scene_load commits by itself. */
 NOC_API noc_status noc_scene_commit(noc_scene *scene);
 
-/* Places a moving light of a committed scene anew: position, shape, direction and emission as `to` has them, emission 0 puts it
- * out. index is what noc_scene_add_light returned; the kind stays, and so do name and inferred, which are not read. Renderers
- * take notice with their next frame; no frame may be rendered meanwhile. NOC_ERR_ARGUMENT after reporting it, and the light as
- * it was: no such light, it was not made to move, another kind, or what noc_scene_add_light would refuse. */
+/* Places a moving light of a committed scene anew: position, shape, direction and emission as `to` has them, emission 0
+ * puts it out. index is what noc_scene_add_light returned; the kind stays, and so do name and inferred, which are not
+ * read. Renderers take notice with their next frame; no frame may be rendered meanwhile. NOC_ERR_ARGUMENT after
+ * reporting it, and the light as it was: no such light, it was not made to move, another kind, or what
+ * noc_scene_add_light would refuse. */
 NOC_API noc_status noc_scene_move_light(noc_scene *scene, int index, const noc_light *to);
 
-/* A light as the scene has it now, to list and to map: those of noc_scene_add_light, of inputs, and the triangles of meshes that
- * shine, which noc_scene_commit adds. */
+/* A light as the scene has it now, to list and to map: those of noc_scene_add_light, of inputs, and the triangles of
+ * meshes that shine, which noc_scene_commit adds. */
 typedef struct noc_light_info {
-    noc_light light;     /* to the precision of floats, in the local frame; direction is set for flat kinds too; name belongs to
-                          * the scene: a lamp's id, or the name of the mesh */
-    double centre[3];    /* local metres */
-    double lumens;       /* luminous flux that leaves it, from both sides where it is two-sided */
-    double area;         /* m2; of a disc, triangle or parallelogram one side, 0 for points and spots */
+    /* to the precision of floats, in the local frame; direction is set for flat kinds too; name belongs to
+     * the scene: a lamp's id, or the name of the mesh */
+    noc_light light;
+    double centre[3]; /* local metres */
+    double lumens;    /* luminous flux that leaves it, from both sides where it is two-sided */
+    double area;      /* m2; of a disc, triangle or parallelogram one side, 0 for points and spots */
     bool two_sided;
 } noc_light_info;
 
 /* index is below noc_scene_info.lights, and what NOC_AOV_LIGHT shows; else NOC_ERR_ARGUMENT after reporting. */
 NOC_API noc_status noc_scene_get_light(const noc_scene *scene, size_t index, noc_light_info *info);
 
-/* Name of an object that NOC_AOV_OBJECT shows: the id in its file (gml:id), or of a lamp. NULL where it has none, and where there
- * is no such object. Belongs to the scene. */
+/* Name of an object that NOC_AOV_OBJECT shows: the id in its file (gml:id), or of a lamp. NULL where it has none, and
+ * where there is no such object. Belongs to the scene. */
 NOC_API const char *noc_scene_object_name(const noc_scene *scene, size_t object);
 
-/* Place of the scene in the world: crs is any definition PROJ reads, NULL for none. To be said before a load, which keeps to
- * it, where things of one's own are added first: noc_scene_load commits the scene, so planned lamps go in before. Their local
- * coordinates are those in crs less origin, which should lie within some kilometres of the city:
+/* Place of the scene in the world: crs is any definition PROJ reads, NULL for none. To be said before a load, which
+ * keeps to it, where things of one's own are added first: noc_scene_load commits the scene, so planned lamps go in
+ * before. Their local coordinates are those in crs less origin, which should lie within some kilometres of the city:
  *
  *     noc_scene_set_crs(scene, "EPSG:25832", (double[3]){ 678000, 5403000, 370 });
  *     double at[3] = { 678120.5, 5403410.2, 378 };
@@ -134,7 +139,8 @@ NOC_API const char *noc_scene_object_name(const noc_scene *scene, size_t object)
  *     noc_scene_add_light(scene, &(noc_light){ .kind = NOC_LIGHT_DISC, .position = { at[0], at[1], at[2] }, ... });
  *     noc_scene_load(scene, paths, count, &params, &report);
  *
- * Such a lamp stays where it was put, with whatever name it has; lamps are inferred beside it unless params say otherwise. */
+ * Such a lamp stays where it was put, with whatever name it has; lamps are inferred beside it unless params say
+ * otherwise. */
 NOC_API noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double origin[3]);
 
 typedef struct noc_scene_info {
@@ -144,10 +150,11 @@ typedef struct noc_scene_info {
     size_t triangles_dropped;
     double bounds_min[3], bounds_max[3]; /* local; of all that is rendered but the empty country around a city */
     double origin[3];
-    const char *crs;      /* name for people, "" if none; owned by the scene: crs = local + origin */
-    /* The CRS that the user speaks (the first input's, or noc_import_params.scene_crs), and where the local frame's origin lies
-     * in it. That is crs and origin but where lengths in it are not those of the ground, as in Web Mercator: the scene is then
-     * computed in a local CRS, and given_crs is reached by noc_scene_to_local, not by adding an origin. */
+    const char *crs; /* name for people, "" if none; owned by the scene: crs = local + origin */
+    /* The CRS that the user speaks (the first input's, or noc_import_params.scene_crs), and where the local frame's
+     * origin lies in it. That is crs and origin but where lengths in it are not those of the ground, as in Web
+     * Mercator: the scene is then computed in a local CRS, and given_crs is reached by noc_scene_to_local, not by
+     * adding an origin. */
     const char *given_crs;
     double given_origin[3];
     size_t memory_bytes;
@@ -155,10 +162,11 @@ typedef struct noc_scene_info {
 
 NOC_API void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info);
 
-/* A name for all that pictures of a scene depend on but camera and parameters: surfaces, materials and lights, where moving ones
- * are now. It is a hash of the numbers themselves, whichever files they came from, as 32 hexadecimal digits and a 0: equal scenes
- * have equal names, others differ. Names of machines of another byte order, or of another version, do not compare. Takes about a second
- * for 15 million triangles. Any number of threads may ask while the scene is not being changed. */
+/* A name for all that pictures of a scene depend on but camera and parameters: surfaces, materials and lights, where
+ * moving ones are now. It is a hash of the numbers themselves, whichever files they came from, as 32 hexadecimal digits
+ * and a 0: equal scenes have equal names, others differ. Names of machines of another byte order, or of another
+ * version, do not compare. Takes about a second for 15 million triangles. Any number of threads may ask while the scene
+ * is not being changed. */
 #define NOC_CONTENT_KEY 33
 NOC_API void noc_scene_content(const noc_scene *scene, char key[NOC_CONTENT_KEY]);
 
@@ -170,38 +178,39 @@ NOC_API bool noc_scene_ground(const noc_scene *scene, double x, double y, double
 typedef struct noc_camera {
     double eye[3], target[3]; /* local metres */
     double up[3];
-    double fov_deg;           /* vertical field of view */
+    double fov_deg; /* vertical field of view */
 } noc_camera;
 
 #define noc_camera_default() ((noc_camera){ .up = { 0, 0, 1 }, .fov_deg = 50 })
 
-/* Where a picture of width x height pixels shows the place xyz (local metres): x to the right, y down, the first pixel's centre
- * at 0.5, 0.5; and its distance from the eye (may be NULL). It may lie outside of the picture, and behind something. false:
- * behind the camera, or the camera looks nowhere. */
+/* Where a picture of width x height pixels shows the place xyz (local metres): x to the right, y down, the first
+ * pixel's centre at 0.5, 0.5; and its distance from the eye (may be NULL). It may lie outside of the picture, and
+ * behind something. false: behind the camera, or the camera looks nowhere. */
 NOC_API bool noc_camera_project(const noc_camera *camera, int width, int height, const double xyz[3], double pixel[2],
                                 double *distance);
-/* The place that is seen at pixel, so far from the eye (NOC_AOV_DEPTH), local metres. NOC_ERR_ARGUMENT: the camera looks nowhere. */
+/* The place that is seen at pixel, so far from the eye (NOC_AOV_DEPTH), local metres. NOC_ERR_ARGUMENT: the camera
+ * looks nowhere. */
 NOC_API noc_status noc_camera_unproject(const noc_camera *camera, int width, int height, const double pixel[2],
                                         double distance, double xyz[3]);
 
 typedef enum noc_view { NOC_VIEW_STREET, NOC_VIEW_AERIAL, NOC_VIEW_OVERVIEW, NOC_VIEW_OWN } noc_view;
 
-/* The camera that a scene comes with: built-in scenes and glTF files may set one, and the first one stays. The eye must not
- * be the target, fov_deg is within 1..170. */
+/* The camera that a scene comes with: built-in scenes and glTF files may set one, and the first one stays. The eye must
+ * not be the target, fov_deg is within 1..170. */
 NOC_API noc_status noc_scene_set_camera(noc_scene *scene, const noc_camera *camera);
 
-/* A camera derived from the city: street stands at eye height in open ground near lamps and looks along it, aerial flies
- * over the roofs, overview sees the whole extent; own is the one that the scene comes with, street where it has none.
- * Meshes that are no city have no street: a room is then seen from inside, anything else as by overview.
- * aspect = width / height of the picture. */
+/* A camera derived from the city: street stands at eye height in open ground near lamps and looks along it, aerial
+ * flies over the roofs, overview sees the whole extent; own is the one that the scene comes with, street where it has
+ * none. Meshes that are no city have no street: a room is then seen from inside, anything else as by overview. aspect =
+ * width / height of the picture. */
 NOC_API noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect, noc_camera *camera);
 
 /* The built-in procedural night city. The same seed and size give the same city on every machine. NULL params are the
  * defaults. */
 typedef struct noc_city_params {
     uint32_t seed;
-    double size;         /* edge of the square it covers, metres, 150..5000 */
-    double lit_windows;  /* share of windows that are lit, 0..1 */
+    double size;        /* edge of the square it covers, metres, 150..5000 */
+    double lit_windows; /* share of windows that are lit, 0..1 */
 } noc_city_params;
 
 #define NOC_CITY_DEFAULTS(set) set(seed, 1) set(size, 420) set(lit_windows, 0.35)
@@ -213,10 +222,10 @@ NOC_DEFAULT_PARAMS(noc_city_params, noc_city_default_params, NOC_CITY_DEFAULTS)
 
 NOC_API noc_status noc_scene_add_city(noc_scene *scene, const noc_city_params *params);
 
-/* Built-in scenes, each with a camera of its own but the city. The last four are of the character of those that Gardishyan
- * (2025, section 5.2) compares light sampling on: cityscape is some streets under strings of coloured lights, mess is small
- * coloured lights on and among many objects, single is one detailed object by one light, atrium a courtyard of many
- * triangles by one light. Equal params give equal scenes on every machine. */
+/* Built-in scenes, each with a camera of its own but the city. The last four are of the character of those that
+ * Gardishyan (2025, section 5.2) compares light sampling on: cityscape is some streets under strings of coloured
+ * lights, mess is small coloured lights on and among many objects, single is one detailed object by one light, atrium a
+ * courtyard of many triangles by one light. Equal params give equal scenes on every machine. */
 typedef struct noc_builtin_params {
     noc_city_params city; /* of city */
     uint32_t seed;        /* of cityscape and mess */
@@ -228,7 +237,7 @@ typedef struct noc_builtin_params {
 #define NOC_BUILTIN_ALL_DEFAULTS(set) set(city, noc_city_default_params()) NOC_BUILTIN_DEFAULTS(set)
 NOC_DEFAULT_PARAMS(noc_builtin_params, noc_builtin_default_params, NOC_BUILTIN_ALL_DEFAULTS)
 #else
-#define noc_builtin_default_params() \
+#define noc_builtin_default_params()                                                                                   \
     ((noc_builtin_params){ .city = { NOC_CITY_DEFAULTS(NOC_DEFAULT_IN_C) }, NOC_BUILTIN_DEFAULTS(NOC_DEFAULT_IN_C) })
 #endif
 

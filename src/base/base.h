@@ -15,8 +15,9 @@
 #define NOC_MUST_USE __attribute__((warn_unused_result))
 static inline bool NOC_MUST_USE noc_must_use(bool done) { return done; }
 
-/* Memory. Where it is refused these give NULL or false, and what they should have changed is as it was: the caller frees what it has
- * made and returns NOC_ERR_MEMORY, after reporting it once (noc_no_memory). Nothing here ends the program. free() them. */
+/* Memory. Where it is refused these give NULL or false, and what they should have changed is as it was: the caller
+ * frees what it has made and returns NOC_ERR_MEMORY, after reporting it once (noc_no_memory). Nothing here ends the
+ * program. free() them. */
 void *noc_alloc(size_t size) NOC_MUST_USE;                /* uninitialised */
 void *noc_calloc(size_t count, size_t size) NOC_MUST_USE; /* zeroed; NULL when count * size overflows, too */
 void *noc_realloc(void *p, size_t size) NOC_MUST_USE;     /* p lives on where the result is NULL */
@@ -24,33 +25,45 @@ char *noc_strdup(const char *s) NOC_MUST_USE;             /* NULL stays NULL */
 char *noc_strndup(const char *s, size_t n) NOC_MUST_USE;
 char *noc_format(const char *fmt, ...) NOC_PRINTF(1, 2) NOC_MUST_USE;
 
-/* For tests: of all allocations of the library from now on, the one numbered `number` (from 1) is refused, and with and_later all that
- * follow. 0: none is. Every allocation of src/ passes here, and so does every start of a thread of a pool. */
+/* For tests: of all allocations of the library from now on, the one numbered `number` (from 1) is refused, and with
+ * and_later all that follow. 0: none is. Every allocation of src/ passes here, and so does every start of a thread of a
+ * pool. */
 void noc_refuse_allocation(uint64_t number, bool and_later);
-uint64_t noc_allocations(void); /* allocations since noc_refuse_allocation(number > 0, ...) */
+uint64_t noc_allocations(void);    /* allocations since noc_refuse_allocation(number > 0, ...) */
 bool noc_allocation_refused(void); /* whether the one that comes now is refused; for what allocates by other means */
 
-/* Large allocations whose size a user decides: 64-byte aligned, zeroed; NULL when refused or when count * size overflows. */
+/* Large allocations whose size a user decides: 64-byte aligned, zeroed; NULL when refused or when count * size
+ * overflows. */
 void *noc_alloc_large(size_t count, size_t size) NOC_MUST_USE;
 
-/* Growable array: NOC_ARRAY(float) a = { 0 }; if (!array_push(&a, 1.f)) ...; array_free(&a). False, and the array is as it was, when
- * memory is refused. */
-#define NOC_ARRAY(T) struct { T *data; size_t len, cap; }
-#define array_reserve(a, n) \
+/* Growable array: NOC_ARRAY(float) a = { 0 }; if (!array_push(&a, 1.f)) ...; array_free(&a). False, and the array is as
+ * it was, when memory is refused. */
+#define NOC_ARRAY(T)                                                                                                   \
+    struct {                                                                                                           \
+        T *data;                                                                                                       \
+        size_t len, cap;                                                                                               \
+    }
+#define array_reserve(a, n)                                                                                            \
     noc_must_use((n) <= (a)->cap || noc_array_grow(&(a)->data, &(a)->cap, (n), sizeof(*(a)->data)))
-#define array_push(a, ...) \
-    noc_must_use(((a)->len < (a)->cap || noc_array_grow(&(a)->data, &(a)->cap, (a)->len + 1, sizeof(*(a)->data))) && \
+#define array_push(a, ...)                                                                                             \
+    noc_must_use(((a)->len < (a)->cap || noc_array_grow(&(a)->data, &(a)->cap, (a)->len + 1, sizeof(*(a)->data))) &&   \
                  ((a)->data[(a)->len++] = (__VA_ARGS__), true))
-#define array_append(a, src, n) \
-    noc_must_use(((n) <= (a)->cap - (a)->len || noc_array_grow(&(a)->data, &(a)->cap, (a)->len + (n), sizeof(*(a)->data))) && \
-                 ((n) ? (void)memcpy((a)->data + (a)->len, (src), (n) * sizeof(*(a)->data)) : (void)0, (a)->len += (n), true))
+#define array_append(a, src, n)                                                                                        \
+    noc_must_use(                                                                                                      \
+        ((n) <= (a)->cap - (a)->len || noc_array_grow(&(a)->data, &(a)->cap, (a)->len + (n), sizeof(*(a)->data))) &&   \
+        ((n) ? (void)memcpy((a)->data + (a)->len, (src), (n) * sizeof(*(a)->data)) : (void)0, (a)->len += (n), true))
 #define array_free(a) (free((a)->data), (a)->data = NULL, (a)->len = (a)->cap = 0, (void)0)
-bool noc_array_grow(void *data, size_t *cap, size_t need, size_t item) NOC_MUST_USE; /* data: address of the array's pointer */
+/* data: address of the array's pointer */
+bool noc_array_grow(void *data, size_t *cap, size_t need, size_t item) NOC_MUST_USE;
 
-/* Arena: everything in it is freed at once. Zero-initialise; not thread-safe. What is refused is NULL, and `refused` stays set, so that
- * who fills a record with many texts looks once, at its end. */
-typedef struct noc_arena { struct noc_arena_block *head; size_t bytes; bool refused; } noc_arena;
-void *arena_alloc(noc_arena *arena, size_t size) NOC_MUST_USE; /* zeroed, 16-byte aligned */
+/* Arena: everything in it is freed at once. Zero-initialise; not thread-safe. What is refused is NULL, and `refused`
+ * stays set, so that who fills a record with many texts looks once, at its end. */
+typedef struct noc_arena {
+    struct noc_arena_block *head;
+    size_t bytes;
+    bool refused;
+} noc_arena;
+void *arena_alloc(noc_arena *arena, size_t size) NOC_MUST_USE;    /* zeroed, 16-byte aligned */
 char *arena_strdup(noc_arena *arena, const char *s) NOC_MUST_USE; /* NULL stays NULL */
 char *arena_strndup(noc_arena *arena, const char *s, size_t n) NOC_MUST_USE;
 char *arena_format(noc_arena *arena, const char *fmt, ...) NOC_PRINTF(2, 3) NOC_MUST_USE;
@@ -69,20 +82,22 @@ void noc_warn(noc_log *log, const char *fmt, ...) NOC_PRINTF(2, 3);
 void noc_info(noc_log *log, const char *fmt, ...) NOC_PRINTF(2, 3);
 void noc_debug(noc_log *log, const char *fmt, ...) NOC_PRINTF(2, 3);
 
-/* Numbers and text, independent of the locale, which belongs to the host: its decimal point may be a comma. All text that
- * leaves the library is formatted by these, or by what stands on them (noc_format, arena_format, messages). */
+/* Numbers and text, independent of the locale, which belongs to the host: its decimal point may be a comma. All text
+ * that leaves the library is formatted by these, or by what stands on them (noc_format, arena_format, messages). */
 int noc_snprintf(char *text, size_t size, const char *fmt, ...) NOC_PRINTF(3, 4);
 int noc_vsnprintf(char *text, size_t size, const char *fmt, va_list ap) NOC_PRINTF(3, 0);
-bool noc_parse_double(const char *s, double *out);           /* the whole string must be one finite number (blanks around it allowed) */
-const char *noc_scan_double(const char *s, const char *end, double *out); /* next number in [s, end): position after it, NULL if none */
+/* the whole string must be one finite number (blanks around it allowed) */
+bool noc_parse_double(const char *s, double *out);
+/* next number in [s, end): position after it, NULL if none */
+const char *noc_scan_double(const char *s, const char *end, double *out);
 bool noc_parse_int(const char *s, long long *out);
-bool noc_ieq(const char *a, const char *b);                   /* ASCII case-insensitive equality; NULL equals nothing */
+bool noc_ieq(const char *a, const char *b); /* ASCII case-insensitive equality; NULL equals nothing */
 
 double noc_wall_seconds(void);
-double noc_cpu_seconds(void);                                 /* of the process, all threads */
+double noc_cpu_seconds(void); /* of the process, all threads */
 
-/* Thread pool. run() calls fn(ctx, item, worker) for item in [0, items), spread over the workers (0 <= worker < threads);
- * the caller is worker 0. Returns when all are done. One run at a time. */
+/* Thread pool. run() calls fn(ctx, item, worker) for item in [0, items), spread over the workers (0 <= worker <
+ * threads); the caller is worker 0. Returns when all are done. One run at a time. */
 typedef struct noc_pool noc_pool;
 /* 0: one a core. Fewer where the system starts no more. NULL when memory is refused. */
 noc_pool *noc_pool_create(int threads) NOC_MUST_USE;
@@ -90,11 +105,16 @@ void noc_pool_destroy(noc_pool *pool);
 int noc_pool_threads(const noc_pool *pool);
 void noc_pool_run(noc_pool *pool, size_t items, void (*fn)(void *ctx, size_t item, int worker), void *ctx);
 
-/* String interning / id -> index map: open addressing, keys are copied into the map's arena. The hash differs from process
- * to process, so a map has no order that a result could depend on. */
-typedef struct noc_map { struct noc_map_slot *slots; size_t len, cap; noc_arena keys; } noc_map;
+/* String interning / id -> index map: open addressing, keys are copied into the map's arena. The hash differs from
+ * process to process, so a map has no order that a result could depend on. */
+typedef struct noc_map {
+    struct noc_map_slot *slots;
+    size_t len, cap;
+    noc_arena keys;
+} noc_map;
 bool map_get(const noc_map *map, const char *key, uint64_t *value);
-/* fresh, which may be NULL: whether key was not there; if it was, its value is replaced. False, and the map is as it was, when memory is refused. */
+/* fresh, which may be NULL: whether key was not there; if it was, its value is replaced. False, and the map is as it
+ * was, when memory is refused. */
 bool map_put(noc_map *map, const char *key, uint64_t value, bool *fresh) NOC_MUST_USE;
 void map_free(noc_map *map);
 size_t map_longest_probe(const noc_map *map); /* slots that the worst key is away from its own; for tests */

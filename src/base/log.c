@@ -69,7 +69,9 @@ noc_status noc_null(noc_log *log, const char *function) {
     return noc_error(log, NOC_ERR_ARGUMENT, "%s: a pointer that is needed is NULL", function);
 }
 
-noc_status noc_no_memory(noc_log *log, const char *where) { return noc_error(log, NOC_ERR_MEMORY, "%s: out of memory", where); }
+noc_status noc_no_memory(noc_log *log, const char *where) {
+    return noc_error(log, NOC_ERR_MEMORY, "%s: out of memory", where);
+}
 
 noc_status noc_cancelled(noc_log *log, const char *fmt, ...) {
     va_list ap;
@@ -83,7 +85,7 @@ noc_status noc_cancelled(noc_log *log, const char *fmt, ...) {
     void name(noc_log *log, const char *fmt, ...) {                                                                    \
         va_list ap;                                                                                                    \
         va_start(ap, fmt);                                                                                             \
-        emit(log, level, false, fmt, ap);                                                                                    \
+        emit(log, level, false, fmt, ap);                                                                              \
         va_end(ap);                                                                                                    \
     }
 NOC_LOG_FUNCTION(noc_warn, NOC_LOG_WARN)

@@ -7,8 +7,8 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Under AddressSanitizer what lies behind an item of an arena may not be touched, and small arrays have no room to spare, so
- * that it sees who reads or writes beyond them. */
+/* Under AddressSanitizer what lies behind an item of an arena may not be touched, and small arrays have no room to
+ * spare, so that it sees who reads or writes beyond them. */
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #define SANITIZED 1
@@ -185,9 +185,9 @@ struct noc_map_slot {
     uint32_t hash;
 };
 
-/* Ids come from files, whose author may choose ones that collide: the hash is keyed with what he cannot know. SipHash-1-3
- * (Aumasson and Bernstein 2012; one round a word and three at the end, as hash tables commonly take it). No result depends
- * on the key, as no one walks through a map. */
+/* Ids come from files, whose author may choose ones that collide: the hash is keyed with what he cannot know.
+ * SipHash-1-3 (Aumasson and Bernstein 2012; one round a word and three at the end, as hash tables commonly take it). No
+ * result depends on the key, as no one walks through a map. */
 static uint64_t hash_key[2];
 static pthread_once_t hash_key_once = PTHREAD_ONCE_INIT;
 
@@ -262,7 +262,9 @@ bool map_get(const noc_map *map, const char *key, uint64_t *value) {
 bool map_put(noc_map *map, const char *key, uint64_t value, bool *fresh) {
     if (map->len * 4 >= map->cap * 3) {
         size_t cap = map->cap ? map->cap * 2 : 64;
-        noc_map bigger = { .slots = noc_calloc(cap, sizeof(*bigger.slots)), .cap = cap, .keys = map->keys, .len = map->len };
+        noc_map bigger = {
+            .slots = noc_calloc(cap, sizeof(*bigger.slots)), .cap = cap, .keys = map->keys, .len = map->len
+        };
         if (!bigger.slots)
             return false;
         for (size_t i = 0; i < map->cap; i++)

@@ -15,7 +15,7 @@ struct noc_pool {
     struct worker *workers; /* threads - 1 of them: the caller is worker 0 */
     pthread_mutex_t lock;
     pthread_cond_t start, done;
-    uint64_t run;           /* counts runs; a change wakes the workers */
+    uint64_t run; /* counts runs; a change wakes the workers */
     int busy;
     bool stop;
     void (*fn)(void *, size_t, int);
@@ -57,7 +57,8 @@ static bool start_thread(struct worker *w) {
     size_t size = 0;
     if (pthread_attr_init(&attr))
         return false;
-    bool fine = !pthread_attr_getstacksize(&attr, &size) && (size >= LEAST || !pthread_attr_setstacksize(&attr, LEAST)) &&
+    bool fine = !pthread_attr_getstacksize(&attr, &size) &&
+                (size >= LEAST || !pthread_attr_setstacksize(&attr, LEAST)) &&
                 !pthread_create(&w->thread, &attr, worker_main, w);
     pthread_attr_destroy(&attr);
     return fine;

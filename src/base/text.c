@@ -47,7 +47,9 @@ const char *noc_scan_double(const char *s, const char *end, double *out) {
 
 /* Plain decimals with up to 15 digits convert exactly with one division; the rest goes to strtod. */
 static bool parse_plain(const char *s, double *out) {
-    static const double pow10[] = { 1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15 };
+    static const double pow10[] = {
+        1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15
+    };
     bool negative = *s == '-';
     if (*s == '-' || *s == '+')
         s++;

@@ -1,13 +1,16 @@
 /* The built-in scenes by name. */
 #include "city/scene_kit.h"
 
-static noc_status city(noc_scene *scene, const noc_builtin_params *params) { return noc_scene_add_city(scene, &params->city); }
+static noc_status city(noc_scene *scene, const noc_builtin_params *params) {
+    return noc_scene_add_city(scene, &params->city);
+}
 
 static const struct {
     const char *name;
     noc_status (*add)(noc_scene *scene, const noc_builtin_params *params);
 } scenes[] = {
-    { "city", city }, { "cityscape", scene_cityscape }, { "mess", scene_mess }, { "single", scene_single }, { "atrium", scene_atrium },
+    { "city", city },           { "cityscape", scene_cityscape }, { "mess", scene_mess },
+    { "single", scene_single }, { "atrium", scene_atrium },
 };
 
 const char *const *noc_builtin_names(void) {

@@ -9,7 +9,7 @@
 typedef struct city_lamp_params {
     double height, lumens, kelvin;
     bool has_floor;
-    double floor; /* where a lamp stands that has no ground near: taken before any lamp is stood */
+    double floor;                  /* where a lamp stands that has no ground near: taken before any lamp is stood */
     struct city_lamp_tally *tally; /* counted up; may be NULL */
 } city_lamp_params;
 
@@ -24,25 +24,28 @@ double city_floor(const noc_scene *scene);
 
 /* Adds pole, head and light for one lamp whose xyz is local metres (z NaN: on the ground). Returns the number of lights
  * added, 0 if it was skipped (reported in issues). */
-int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, bool inferred, geo_issues *issues);
+int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, bool inferred,
+                  geo_issues *issues);
 
 /* Does the lamp not tell it itself, so that params' default stands in? */
 bool city_lamp_assumes(const geo_lamp *lamp, noc_lamp_default what);
 
-/* Places lamps by a rule where the data holds none: along roads if there are any, else around the buildings. *lights gets
- * the number of lights added; all are marked as inferred. progress may be NULL; NOC_ERR_CANCELLED where it says so. */
+/* Places lamps by a rule where the data holds none: along roads if there are any, else around the buildings. *lights
+ * gets the number of lights added; all are marked as inferred. progress may be NULL; NOC_ERR_CANCELLED where it says
+ * so. */
 noc_status city_infer_lamps(noc_scene *scene, const city_lamp_params *params, const noc_progress *progress,
                             geo_issues *issues, int *lights);
 
 /* Linear Rec.709 of a black body / daylight at a colour temperature, luminance 1. Source: see lamp.c. */
 void city_kelvin_rgb(double kelvin, float rgb[3]);
 
-/* A ground under a city without terrain, a little larger than it, at the height its buildings stand at; skirts from walls
- * that stand over it; its surroundings. points (3 doubles each, local; heights may be NaN) are places it must reach too. */
+/* A ground under a city without terrain, a little larger than it, at the height its buildings stand at; skirts from
+ * walls that stand over it; its surroundings. points (3 doubles each, local; heights may be NaN) are places it must
+ * reach too. */
 void city_add_ground(noc_scene *scene, const double *points, size_t point_count);
 
-/* The same in two steps, so that it can be asked whether the points' heights are to be believed. NULL: there is nothing to
- * stand under, or the scene is out of memory. Until it is laid, which frees it, the scene does not change. */
+/* The same in two steps, so that it can be asked whether the points' heights are to be believed. NULL: there is nothing
+ * to stand under, or the scene is out of memory. Until it is laid, which frees it, the scene does not change. */
 typedef struct city_ground city_ground;
 city_ground *city_ground_start(noc_scene *scene, const double *points, size_t count);
 /* Height by what the city tells, and how far away the nearest of that is, m (INFINITY: it tells nothing). */
@@ -55,7 +58,8 @@ bool city_wall_foot(const float *a, const float *b, const float *c);
 /* Extends walls down to the terrain they stand over. */
 void city_add_skirts(noc_scene *scene);
 
-/* Country around the city, to the horizon: from a rim (count points, counter-clockwise, around its own middle) outwards. */
+/* Country around the city, to the horizon: from a rim (count points, counter-clockwise, around its own middle)
+ * outwards. */
 void city_add_surroundings(noc_scene *scene, const double *rim, size_t count, int material);
 
 #endif

@@ -1,5 +1,5 @@
-/* ground_field: the grid that a ground of our own is made on. ground_plane.c fills it from the city, ground_survey.c draws it
- * through places whose height is known. */
+/* ground_field: the grid that a ground of our own is made on. ground_plane.c fills it from the city, ground_survey.c
+ * draws it through places whose height is known. */
 #ifndef NOC_CITY_GROUND_FIELD_H
 #define NOC_CITY_GROUND_FIELD_H
 
@@ -20,8 +20,8 @@ typedef struct ground_field {
 double field_height(const ground_field *f, double x, double y);
 void field_measure(ground_field *f); /* fills away */
 double field_distance(const ground_field *f, double x, double y);
-/* Moves the field so that it runs through the points (3 doubles each; those without a height are passed over) and, more softly,
- * along the feet of the buildings. Streets stay uncovered. */
+/* Moves the field so that it runs through the points (3 doubles each; those without a height are passed over) and, more
+ * softly, along the feet of the buildings. Streets stay uncovered. */
 void field_follow(ground_field *f, const double *points, size_t count);
 
 #endif

@@ -1,21 +1,21 @@
 /* A ground for a city that comes without one.
  *
- * Cells of a coarse grid that hold feet of buildings or pieces of street know their height: the mean of the feet, but no
- * higher than a street there. The others are filled in from coarser grids and all are smoothed, so that the ground runs
- * evenly between the buildings; surveyed points draw it to them (ground_survey.c). It fills gaps and does not cover
- * streets; walls that then stand over it get skirts, and those that reach into it do not show it. A level city gets one
- * plane. Around it the land runs on to the horizon. */
+ * Cells of a coarse grid that hold feet of buildings or pieces of street know their height: the mean of the feet, but
+ * no higher than a street there. The others are filled in from coarser grids and all are smoothed, so that the ground
+ * runs evenly between the buildings; surveyed points draw it to them (ground_survey.c). It fills gaps and does not
+ * cover streets; walls that then stand over it get skirts, and those that reach into it do not show it. A level city
+ * gets one plane. Around it the land runs on to the horizon. */
 #include "city/ground_field.h"
 #include "scene/scene.h"
 
 #include <float.h>
 #include <math.h>
 
-#define CELL 6.0    /* m */
+#define CELL 6.0 /* m */
 #define MAX_SIDE 256
-#define UNDER 0.02  /* m below what stands on it */
-#define LEVEL 0.05  /* m: less than this is flat */
-#define FOOT 1.5    /* m: what begins higher over the lowest in its cell is no foot */
+#define UNDER 0.02   /* m below what stands on it */
+#define LEVEL 0.05   /* m: less than this is flat */
+#define FOOT 1.5     /* m: what begins higher over the lowest in its cell is no foot */
 #define STEEPEST 0.6 /* what rises faster from its surroundings is a dormer or a tower, not a foot */
 
 typedef ground_field field;
@@ -68,12 +68,14 @@ static void lower(field *f, double x, double y, double z, bool street) {
 
 /* Corners and, where a triangle is larger than a cell, points on it. */
 static void add_triangle(field *f, const float *a, const float *b, const float *c, bool street) {
-    double span = NOC_MAX(hypot((double)b[0] - a[0], (double)b[1] - a[1]), hypot((double)c[0] - a[0], (double)c[1] - a[1]));
+    double span =
+        NOC_MAX(hypot((double)b[0] - a[0], (double)b[1] - a[1]), hypot((double)c[0] - a[0], (double)c[1] - a[1]));
     int n = (int)NOC_CLAMP(2 * span / NOC_MIN(f->step[0], f->step[1]), 1, 600);
     for (int i = 0; i <= n; i++)
         for (int j = 0; i + j <= n; j++) {
             double u = (double)i / n, v = (double)j / n, w = 1 - u - v;
-            lower(f, w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1], w * a[2] + u * b[2] + v * c[2], street);
+            lower(f, w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1], w * a[2] + u * b[2] + v * c[2],
+                  street);
         }
 }
 
@@ -205,7 +207,8 @@ static void raise_to_feet(field *f, const noc_scene *scene) {
     for (size_t t = 0; t < scene->triangle_light.len; t++) {
         noc_class cls = class_of(scene, t);
         for (int i = 0; i < 3 && (cls == NOC_CLASS_WALL || cls == NOC_CLASS_GROUND); i++) {
-            const float *a = corner(scene, t, i), *b = corner(scene, t, (i + 1) % 3), *c = corner(scene, t, (i + 2) % 3);
+            const float *a = corner(scene, t, i), *b = corner(scene, t, (i + 1) % 3),
+                        *c = corner(scene, t, (i + 2) % 3);
             if (cls == NOC_CLASS_WALL && !city_wall_foot(a, b, c))
                 continue;
             double length = hypot((double)b[0] - a[0], (double)b[1] - a[1]);
@@ -303,8 +306,12 @@ static void add_mesh(noc_scene *scene, const field *f, double z, bool level) {
             memcpy(indices + t, quad, sizeof(quad));
             t += 6;
         }
-    noc_mesh mesh = { .vertex_count = v / 3, .positions = xyz, .triangle_count = t / 3, .indices = indices,
-                      .material = noc_scene_add_material(scene, &m), .name = "ground" };
+    noc_mesh mesh = { .vertex_count = v / 3,
+                      .positions = xyz,
+                      .triangle_count = t / 3,
+                      .indices = indices,
+                      .material = noc_scene_add_material(scene, &m),
+                      .name = "ground" };
     if (mesh.material >= 0 && noc_scene_add_mesh(scene, &mesh) >= 0)
         surround(scene, xyz, nx, ny, mesh.material);
     free(xyz);
@@ -346,9 +353,9 @@ static bool make_field(field *f, const noc_scene *scene, const double *points, s
 struct city_ground {
     noc_scene *scene;
     field f;
-    bool known;        /* something in the scene tells a height */
+    bool known; /* something in the scene tells a height */
     bool level;
-    double z;          /* of a level one */
+    double z; /* of a level one */
 };
 
 /* Heights from what is known in the cells. False: no memory. */
@@ -421,7 +428,8 @@ double city_ground_height(const city_ground *g, double x, double y, double *dist
 void city_ground_lay(city_ground *g, const double *points, size_t count) {
     bool off = false;
     for (size_t i = 0; i < count && !off; i++)
-        off = isfinite(points[3 * i + 2]) && fabs(points[3 * i + 2] - field_height(&g->f, points[3 * i], points[3 * i + 1])) > LEVEL / 2;
+        off = isfinite(points[3 * i + 2]) &&
+              fabs(points[3 * i + 2] - field_height(&g->f, points[3 * i], points[3 * i + 1])) > LEVEL / 2;
     if (off || !g->level)
         field_follow(&g->f, points, count);
     add_mesh(g->scene, &g->f, g->z, g->level && !off);

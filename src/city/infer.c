@@ -1,18 +1,18 @@
 /* Lamps by a rule, where the data holds none: along the edges of roads, else around the buildings.
  *
- * Candidates are taken at short steps along the edges, in the order of the scene's triangles, and the first ones win: each
- * keeps a distance from all that were accepted before it. Along roads a first round asks for twice that distance on the
- * same kerb, so that the lamps of the other kerb stand between them; a second round fills where there is no other kerb. The
- * same scene always gets the same lamps. */
+ * Candidates are taken at short steps along the edges, in the order of the scene's triangles, and the first ones win:
+ * each keeps a distance from all that were accepted before it. Along roads a first round asks for twice that distance
+ * on the same kerb, so that the lamps of the other kerb stand between them; a second round fills where there is no
+ * other kerb. The same scene always gets the same lamps. */
 #include "city/lamp.h"
 
 #include <math.h>
 #include <stdio.h>
 
-#define ROAD_SPACING 28.0   /* m between lamps along roads: usual for poles of 6 to 8 m (EN 13201 classes P and M5) */
+#define ROAD_SPACING 28.0 /* m between lamps along roads: usual for poles of 6 to 8 m (EN 13201 classes P and M5) */
 #define WALL_SPACING 25.0
-#define WALL_DISTANCE 3.0   /* m in front of a wall */
-#define KERB_DISTANCE 0.6   /* m behind the road's edge */
+#define WALL_DISTANCE 3.0 /* m in front of a wall */
+#define KERB_DISTANCE 0.6 /* m behind the road's edge */
 #define MAX_LAMPS 200000
 
 /* ---- places that are taken, by cells as large as the spacing ---- */
@@ -37,8 +37,8 @@ static uint32_t bucket_of(int64_t cx, int64_t cy) {
 /* Too near, or, while sides alternate, on the same kerb within twice the spacing? */
 static bool conflicts(const spots *s, const spot *have, double x, double y, const double facing[2]) {
     double dx = have->x - x, dy = have->y - y, distance = hypot(dx, dy);
-    bool same_kerb = have->facing[0] * facing[0] + have->facing[1] * facing[1] > .7 &&
-                     fabs(dx * facing[0] + dy * facing[1]) < 4;
+    bool same_kerb =
+        have->facing[0] * facing[0] + have->facing[1] * facing[1] > .7 && fabs(dx * facing[0] + dy * facing[1]) < 4;
     return distance < .9 * s->spacing || (s->alternate && same_kerb && distance < 1.9 * s->spacing);
 }
 
@@ -95,8 +95,14 @@ static void propose(inference *in, double x, double y, double dx, double dy, dou
         return;
     char id[32];
     snprintf(id, sizeof(id), "inferred-%d", in->lamps + 1);
-    geo_lamp lamp = { .xyz = { x, y, z }, .height = NAN, .direction = atan2(dx, dy) * 180 / M_PI, .lumens = NAN, .watts = NAN,
-                      .kelvin = NAN, .rgb = { -1, -1, -1 }, .id = id };
+    geo_lamp lamp = { .xyz = { x, y, z },
+                      .height = NAN,
+                      .direction = atan2(dx, dy) * 180 / M_PI,
+                      .lumens = NAN,
+                      .watts = NAN,
+                      .kelvin = NAN,
+                      .rgb = { -1, -1, -1 },
+                      .id = id };
     int lights = city_add_lamp(in->scene, &lamp, in->params, true, in->issues);
     if (!lights)
         return;
@@ -125,8 +131,8 @@ static void along_edge(inference *in, const float *a, const float *b, double off
     int steps = (int)NOC_CLAMP(length / 4, 1, 1e5);
     for (int i = 0; i < steps && !in->cancelled && !in->scene->no_memory; i++) {
         double t = (i + .5) / steps, sign = outward ? 1 : -1;
-        propose(in, p[0] + t * d[0] + off * right[0], p[1] + t * d[1] + off * right[1], sign * right[0], sign * right[1],
-                p[2] + t * d[2]);
+        propose(in, p[0] + t * d[0] + off * right[0], p[1] + t * d[1] + off * right[1], sign * right[0],
+                sign * right[1], p[2] + t * d[2]);
     }
 }
 
@@ -148,7 +154,8 @@ static void along_roads(inference *in, int round) {
         double area = ((double)v[1][0] - v[0][0]) * ((double)v[2][1] - v[0][1]) -
                       ((double)v[1][1] - v[0][1]) * ((double)v[2][0] - v[0][0]);
         for (int i = 0; i < 3; i++) {
-            /* counter-clockwise seen from above, so that right of the edge is outside; arrays may have moved meanwhile */
+            /* counter-clockwise seen from above, so that right of the edge is outside; arrays may have moved meanwhile
+             */
             const float *a = corner(in->scene, t, area > 0 ? i : (i + 1) % 3);
             const float *b = corner(in->scene, t, area > 0 ? (i + 1) % 3 : i);
             if (area != 0 && hypot((double)b[0] - a[0], (double)b[1] - a[1]) >= .5 && !road_beside(in->scene, a, b, .3))
@@ -172,8 +179,8 @@ static void around_buildings(inference *in) {
         double x = (a[0] + (double)b[0]) / 2, y = (a[1] + (double)b[1]) / 2, z;
         if (fabs((double)a[2] - b[2]) > 1 || (site_ground(in->scene, x, y, &z) && NOC_MIN(a[2], b[2]) > z + 1))
             continue;
-        /* a wall seen from outside runs counter-clockwise, so the street is on the right of its lower edge; where the wall
-         * is given inside out, the left side is tried */
+        /* a wall seen from outside runs counter-clockwise, so the street is on the right of its lower edge; where the
+         * wall is given inside out, the left side is tried */
         double d[2] = { (double)b[0] - a[0], (double)b[1] - a[1] }, l = hypot(d[0], d[1]);
         if (l < .5)
             continue;
@@ -184,8 +191,9 @@ static void around_buildings(inference *in) {
 
 noc_status city_infer_lamps(noc_scene *scene, const city_lamp_params *params, const noc_progress *progress,
                             geo_issues *issues, int *lights) {
-    inference in = { .scene = scene, .params = params, .issues = issues, .progress = progress,
-                     .spots = noc_calloc(1, sizeof(spots)) };
+    inference in = {
+        .scene = scene, .params = params, .issues = issues, .progress = progress, .spots = noc_calloc(1, sizeof(spots))
+    };
     noc_scene_info info;
     *lights = 0;
     if (!in.spots)

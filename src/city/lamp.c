@@ -1,46 +1,45 @@
 /* Lamps: where one stands, which light its tags mean, and its emission from lumens and colour temperature.
  *
  * Emission. A disc facing down radiates like a Lambertian surface on one side: flux = pi L A = pi^2 r^2 L. A sphere
- * radiates L from every point: flux = pi L 4 pi r^2 = 4 pi^2 r^2 L. The radius is a choice of ours; the flux is the lamp's. */
+ * radiates L from every point: flux = pi L 4 pi r^2 = 4 pi^2 r^2 L. The radius is a choice of ours; the flux is the
+ * lamp's. */
 #include "city/lamp.h"
 
 #include <math.h>
 
 #define OFF_GROUND 3.0 /* m between a lamp's elevation and the ground that are told of */
-#define FARTHEST 9e6 /* m; a scene ends at 1e7 */
+#define FARTHEST 9e6   /* m; a scene ends at 1e7 */
 
 /* What a source means where its lumens and its colour are not tagged.
  *
- * lumens_per_watt: of the luminaire. For discharge and thermal lamps, the middle of the lamp's range in the IES Lighting
- * Handbook (10th ed., ch. 7: high pressure sodium 70..140, low pressure sodium 100..180, metal halide 65..115, mercury
- * 35..60, fluorescent 50..100, incandescent and halogen 10..20 lm/W) times 0.75, the usual light output ratio of a street
- * luminaire. LEDs are rated as luminaires: 110 lm/W is typical of those installed in the 2010s and 2020s. Gas mantles give
- * 1 to 2 lumens a watt of gas.
- * kelvin: correlated colour temperatures of the same handbook. Sodium is no black body; a Planckian of 2050 K has nearly its
- * chromaticity at high pressure; at low pressure it is the line at 589 nm, whose xy (0.5693, 0.4300) lies outside
- * Rec.709 and whose negative blue is cut. */
+ * lumens_per_watt: of the luminaire. For discharge and thermal lamps, the middle of the lamp's range in the IES
+ * Lighting Handbook (10th ed., ch. 7: high pressure sodium 70..140, low pressure sodium 100..180, metal halide 65..115,
+ * mercury 35..60, fluorescent 50..100, incandescent and halogen 10..20 lm/W) times 0.75, the usual light output ratio
+ * of a street luminaire. LEDs are rated as luminaires: 110 lm/W is typical of those installed in the 2010s and 2020s.
+ * Gas mantles give 1 to 2 lumens a watt of gas. kelvin: correlated colour temperatures of the same handbook. Sodium is
+ * no black body; a Planckian of 2050 K has nearly its chromaticity at high pressure; at low pressure it is the line at
+ * 589 nm, whose xy (0.5693, 0.4300) lies outside Rec.709 and whose negative blue is cut. */
 static const struct {
     double lumens_per_watt, kelvin, lumens; /* 0: the parameter's */
-    float rgb[3]; /* of one line, whatever the temperature; 0: by temperature */
+    float rgb[3];                           /* of one line, whatever the temperature; 0: by temperature */
 } sources[] = {
-    [GEO_SOURCE_UNKNOWN] = { 80, 0, 0, { 0 } },
-    [GEO_SOURCE_LED] = { 110, 0, 0, { 0 } },
-    [GEO_SOURCE_SODIUM] = { 78, 2050, 0, { 0 } },
-    [GEO_SOURCE_LOW_SODIUM] = { 105, 0, 0, { 2.73f, .588f, 0 } },
-    [GEO_SOURCE_MERCURY] = { 36, 4100, 0, { 0 } },
-    [GEO_SOURCE_METAL_HALIDE] = { 68, 4000, 0, { 0 } },
-    [GEO_SOURCE_FLUORESCENT] = { 56, 4000, 0, { 0 } },
-    [GEO_SOURCE_INCANDESCENT] = { 11, 2700, 0, { 0 } },
+    [GEO_SOURCE_UNKNOWN] = { 80, 0, 0, { 0 } },        [GEO_SOURCE_LED] = { 110, 0, 0, { 0 } },
+    [GEO_SOURCE_SODIUM] = { 78, 2050, 0, { 0 } },      [GEO_SOURCE_LOW_SODIUM] = { 105, 0, 0, { 2.73f, .588f, 0 } },
+    [GEO_SOURCE_MERCURY] = { 36, 4100, 0, { 0 } },     [GEO_SOURCE_METAL_HALIDE] = { 68, 4000, 0, { 0 } },
+    [GEO_SOURCE_FLUORESCENT] = { 56, 4000, 0, { 0 } }, [GEO_SOURCE_INCANDESCENT] = { 11, 2700, 0, { 0 } },
     [GEO_SOURCE_GAS] = { 1.5, 2700, 600, { 0 } }, /* a lantern of four mantles, not a 5000 lm luminaire */
 };
 
-/* Krystek's approximation of the Planckian locus in CIE 1960 (u, v), 1000..15000 K: M. Krystek, "An algorithm to calculate
- * correlated colour temperature", Color Research & Application 10 (1985) 38-40. Then (u, v) -> (x, y) -> XYZ with Y = 1 ->
- * linear Rec.709 (IEC 61966-2-1 matrix). What lies outside the gamut is clipped, and the luminance made 1 again. */
+/* Krystek's approximation of the Planckian locus in CIE 1960 (u, v), 1000..15000 K: M. Krystek, "An algorithm to
+ * calculate correlated colour temperature", Color Research & Application 10 (1985) 38-40. Then (u, v) -> (x, y) -> XYZ
+ * with Y = 1 -> linear Rec.709 (IEC 61966-2-1 matrix). What lies outside the gamut is clipped, and the luminance made 1
+ * again. */
 void city_kelvin_rgb(double kelvin, float rgb[3]) {
     double t = isfinite(kelvin) ? NOC_CLAMP(kelvin, 1000, 15000) : 6500;
-    double u = (0.860117757 + 1.54118254e-4 * t + 1.28641212e-7 * t * t) / (1 + 8.42420235e-4 * t + 7.08145163e-7 * t * t);
-    double v = (0.317398726 + 4.22806245e-5 * t + 4.20481691e-8 * t * t) / (1 - 2.89741816e-5 * t + 1.61456053e-7 * t * t);
+    double u =
+        (0.860117757 + 1.54118254e-4 * t + 1.28641212e-7 * t * t) / (1 + 8.42420235e-4 * t + 7.08145163e-7 * t * t);
+    double v =
+        (0.317398726 + 4.22806245e-5 * t + 4.20481691e-8 * t * t) / (1 - 2.89741816e-5 * t + 1.61456053e-7 * t * t);
     double d = 2 * u - 8 * v + 4, x = 3 * u / d, y = 2 * v / d;
     double X = x / y, Z = (1 - x - y) / y;
     double c[3] = { 3.2404542 * X - 1.5371385 - 0.4985314 * Z, -0.9692660 * X + 1.8760108 + 0.0415560 * Z,
@@ -130,10 +129,10 @@ static fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *para
 
 typedef struct placing {
     double foot[3];
-    double facing[2];  /* unit vector the heads look along */
+    double facing[2]; /* unit vector the heads look along */
     bool on_wall;
-    double wall[2];    /* the wall it hangs on */
-    bool crowded;      /* others stand wherever it could */
+    double wall[2]; /* the wall it hangs on */
+    bool crowded;   /* others stand wherever it could */
 } placing;
 
 /* Which way a lamp faces that says nothing and has nothing near: any, but always the same for the same place. */
@@ -159,7 +158,8 @@ double city_floor(const noc_scene *scene) {
 static void stand(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, double foot[3],
                   geo_issues *issues) {
     double deck;
-    bool on_deck = isfinite(lamp->xyz[2]) && noc_scene_highest(scene, 1u << NOC_CLASS_BRIDGE, foot[0], foot[1], &deck) &&
+    bool on_deck = isfinite(lamp->xyz[2]) &&
+                   noc_scene_highest(scene, 1u << NOC_CLASS_BRIDGE, foot[0], foot[1], &deck) &&
                    fabs(deck - lamp->xyz[2]) < 1;
     if (on_deck) { /* which is no ground where it is not given as a road */
         foot[2] = deck;
@@ -225,7 +225,8 @@ static bool place(const noc_scene *scene, const geo_lamp *lamp, const city_lamp_
                 p->foot[k] += .7 * side[k];
         p->crowded = site_taken(scene, p->foot[0], p->foot[1], p->foot[2]);
         if (p->crowded)
-            geo_issue(issues, GEO_GUESSED, "lamp where others leave no room: its light in the same place as theirs, without a pole",
+            geo_issue(issues, GEO_GUESSED,
+                      "lamp where others leave no room: its light in the same place as theirs, without a pole",
                       lamp->id);
         else
             geo_issue(issues, GEO_REPAIRED, "two lamps at one place: moved apart", lamp->id);
@@ -255,7 +256,9 @@ typedef struct builder {
 
 static bool add_light(const builder *b, const double position[3], const double direction[3]) {
     noc_light light = { .kind = b->fitting->kind == FITTING_SPHERE ? NOC_LIGHT_SPHERE : NOC_LIGHT_DISC,
-                        .radius = b->fitting->radius, .name = b->lamp->id, .inferred = b->inferred };
+                        .radius = b->fitting->radius,
+                        .name = b->lamp->id,
+                        .inferred = b->inferred };
     memcpy(light.position, position, sizeof(light.position));
     memcpy(light.direction, direction, sizeof(light.direction));
     memcpy(light.emission, b->fitting->emission, sizeof(light.emission));
@@ -268,12 +271,9 @@ static double reach(const builder *b) {
     if (!b->pole)
         return f->heads > 1 ? .35 : 0;
     switch (f->kind) {
-    case FITTING_SPHERE:
-        return f->heads > 1 ? f->radius + .25 : 0;
-    case FITTING_FLOOD:
-        return .35;
-    default:
-        return NOC_CLAMP(.15 * f->height, .6, 1.5);
+    case FITTING_SPHERE: return f->heads > 1 ? f->radius + .25 : 0;
+    case FITTING_FLOOD: return .35;
+    default: return NOC_CLAMP(.15 * f->height, .6, 1.5);
     }
 }
 
@@ -347,7 +347,8 @@ static void add_pole(builder *b) {
         top -= f->heads > 1 ? f->radius + .22 : f->radius + .005; /* under the globe, or above the roots of its arms */
     else
         top += .08;
-    double foot_radius = NOC_CLAMP(.045 + .006 * f->height, .03, .2), top_radius = NOC_MIN(foot_radius * .6, f->radius * .4);
+    double foot_radius = NOC_CLAMP(.045 + .006 * f->height, .03, .2),
+           top_radius = NOC_MIN(foot_radius * .6, f->radius * .4);
     if (top > foot[2] + .12)
         shape_pole(&b->shape, foot, top, foot_radius, top_radius);
 }
@@ -360,7 +361,8 @@ static int add_to_body(const builder *b) {
     return lights;
 }
 
-int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, bool inferred, geo_issues *issues) {
+int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, bool inferred,
+                  geo_issues *issues) {
     if (!isfinite(lamp->xyz[0]) || !isfinite(lamp->xyz[1])) {
         geo_issue(issues, GEO_SKIPPED, "lamp without a place", lamp->id);
         return 0;
@@ -373,7 +375,11 @@ int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params
     if (!lamp->body_heads && !place(scene, lamp, params, &p, issues))
         return 0;
     fitting f = choose_fitting(lamp, params);
-    builder b = { .scene = scene, .lamp = lamp, .fitting = &f, .placing = &p, .inferred = inferred,
+    builder b = { .scene = scene,
+                  .lamp = lamp,
+                  .fitting = &f,
+                  .placing = &p,
+                  .inferred = inferred,
                   .pole = !p.on_wall && lamp->mount != GEO_MOUNT_SUSPENDED };
     if (b.pole && !lamp->body_heads && !p.crowded)
         add_pole(&b);

@@ -36,8 +36,8 @@ void shape_pole(lamp_shape *s, const double foot[3], double top_z, double foot_r
 void shape_bar(lamp_shape *s, const double from[3], const double to[3], double half_width);
 /* Closed housing behind a face: centre of the face, the unit vector it looks along, a unit vector along its length.
  * 12 triangles. */
-void shape_housing(lamp_shape *s, const double centre[3], const double look[3], const double along[3], double half_length,
-                   double half_width, double depth);
+void shape_housing(lamp_shape *s, const double centre[3], const double look[3], const double along[3],
+                   double half_length, double half_width, double depth);
 /* Adds it as one mesh of class LAMP; false after an error that was reported. */
 bool shape_add(lamp_shape *s, noc_scene *scene, const char *name);
 void shape_free(lamp_shape *s);

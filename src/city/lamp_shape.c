@@ -69,8 +69,8 @@ void shape_bar(lamp_shape *s, const double from[3], const double to[3], double h
     }
 }
 
-void shape_housing(lamp_shape *s, const double centre[3], const double look[3], const double along[3], double half_length,
-                   double half_width, double depth) {
+void shape_housing(lamp_shape *s, const double centre[3], const double look[3], const double along[3],
+                   double half_length, double half_width, double depth) {
     double side[3];
     cross(look, along, side);
     static const int sign[4][2] = { { -1, -1 }, { 1, -1 }, { 1, 1 }, { -1, 1 } };
@@ -99,7 +99,8 @@ static int lamp_material(noc_scene *scene) {
     for (size_t i = 0; i < scene->materials.len; i++) {
         const noc_material *have = &scene->materials.data[i];
         if (have->cls == m.cls && have->f0 == m.f0 && have->roughness == m.roughness &&
-            !memcmp(have->albedo, m.albedo, sizeof(m.albedo)) && !memcmp(have->emission, m.emission, sizeof(m.emission)))
+            !memcmp(have->albedo, m.albedo, sizeof(m.albedo)) &&
+            !memcmp(have->emission, m.emission, sizeof(m.emission)))
             return (int)i;
     }
     return noc_scene_add_material(scene, &m);
@@ -110,8 +111,12 @@ bool shape_add(lamp_shape *s, noc_scene *scene, const char *name) {
         noc_scene_out_of_memory(scene);
     if (!s->indices.len)
         return true;
-    noc_mesh mesh = { .vertex_count = s->xyz.len / 3, .positions = s->xyz.data, .triangle_count = s->indices.len / 3,
-                      .indices = s->indices.data, .material = lamp_material(scene), .name = name };
+    noc_mesh mesh = { .vertex_count = s->xyz.len / 3,
+                      .positions = s->xyz.data,
+                      .triangle_count = s->indices.len / 3,
+                      .indices = s->indices.data,
+                      .material = lamp_material(scene),
+                      .name = name };
     return mesh.material >= 0 && noc_scene_add_mesh(scene, &mesh) >= 0;
 }
 

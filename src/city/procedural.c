@@ -15,46 +15,80 @@ static int add_material(town *t, noc_class cls, float r, float g, float b, float
 
 /* Reflectances of dry materials; renders and paints between 0.25 and 0.65, as on real fronts. */
 static void add_materials(town *t) {
-    static const struct { town_mat mat; noc_class cls; float r, g, b, f0, roughness; } table[] = {
-        { TM_WALL, NOC_CLASS_WALL, .60f, .53f, .42f, 0, 1 },         { TM_WALL + 1, NOC_CLASS_WALL, .60f, .52f, .38f, 0, 1 },
-        { TM_WALL + 2, NOC_CLASS_WALL, .62f, .58f, .52f, 0, 1 },     { TM_WALL + 3, NOC_CLASS_WALL, .56f, .45f, .36f, 0, 1 },
-        { TM_WALL + 4, NOC_CLASS_WALL, .33f, .17f, .12f, 0, 1 },     { TM_WALL + 5, NOC_CLASS_WALL, .46f, .48f, .46f, 0, 1 },
-        { TM_WALL + 6, NOC_CLASS_WALL, .58f, .50f, .34f, 0, 1 },     { TM_WALL + 7, NOC_CLASS_WALL, .46f, .52f, .45f, 0, 1 },
-        { TM_WALL + 8, NOC_CLASS_WALL, .64f, .60f, .55f, 0, 1 },     { TM_WALL + 9, NOC_CLASS_WALL, .50f, .54f, .60f, 0, 1 },
-        { TM_TILES, NOC_CLASS_ROOF, .30f, .13f, .08f, .02f, .7f },   { TM_TILES_DARK, NOC_CLASS_ROOF, .19f, .11f, .09f, .02f, .7f },
-        { TM_SLATE, NOC_CLASS_ROOF, .11f, .12f, .14f, .04f, .45f },  { TM_COPPER, NOC_CLASS_ROOF, .20f, .35f, .28f, .05f, .5f },
-        { TM_FLAT_ROOF, NOC_CLASS_ROOF, .20f, .20f, .20f, 0, 1 },    { TM_STONE, NOC_CLASS_WALL, .56f, .53f, .48f, 0, 1 },
-        { TM_CONCRETE, NOC_CLASS_WALL, .50f, .47f, .41f, 0, 1 },     { TM_METAL, NOC_CLASS_WALL, .16f, .17f, .19f, .08f, .35f },
-        { TM_GLASS, NOC_CLASS_WINDOW, .04f, .05f, .06f, .06f, .12f }, { TM_FRAME, NOC_CLASS_INSTALLATION, .58f, .57f, .54f, 0, 1 },
-        { TM_DOOR, NOC_CLASS_DOOR, .20f, .12f, .07f, .04f, .5f },    { TM_SHOP, NOC_CLASS_OTHER, .62f, .60f, .56f, 0, 1 },
-        { TM_SHOP_DARK, NOC_CLASS_DOOR, .04f, .05f, .06f, .06f, .12f }, { TM_SHOP_FLOOR, NOC_CLASS_OTHER, .34f, .28f, .21f, .04f, .4f },
-        { TM_AWNING, NOC_CLASS_INSTALLATION, .50f, .10f, .08f, 0, 1 }, { TM_AWNING + 1, NOC_CLASS_INSTALLATION, .10f, .26f, .34f, 0, 1 },
-        { TM_AWNING + 2, NOC_CLASS_INSTALLATION, .62f, .55f, .38f, 0, 1 }, { TM_ROAD, NOC_CLASS_ROAD, .095f, .095f, .10f, .04f, .55f },
-        { TM_MARKING, NOC_CLASS_ROAD, .55f, .55f, .52f, .03f, .6f }, { TM_SIDEWALK, NOC_CLASS_SIDEWALK, .25f, .24f, .22f, .02f, .7f },
-        { TM_KERBSTONE, NOC_CLASS_SIDEWALK, .38f, .37f, .35f, 0, 1 }, { TM_PAVING, NOC_CLASS_SIDEWALK, .30f, .27f, .23f, .03f, .55f },
-        { TM_GRAVEL, NOC_CLASS_SIDEWALK, .40f, .35f, .27f, 0, 1 },   { TM_LAWN, NOC_CLASS_GREEN, .08f, .14f, .045f, 0, 1 },
-        { TM_WATER, NOC_CLASS_WATER, .015f, .022f, .026f, .03f, .16f }, { TM_QUAY, NOC_CLASS_BRIDGE, .34f, .32f, .28f, 0, 1 },
-        { TM_BRIDGE, NOC_CLASS_BRIDGE, .38f, .35f, .30f, 0, 1 },     { TM_TRUNK, NOC_CLASS_TREE, .14f, .10f, .07f, 0, 1 },
-        { TM_LEAF, NOC_CLASS_TREE, .075f, .13f, .035f, 0, 1 },       { TM_LEAF + 1, NOC_CLASS_TREE, .10f, .15f, .04f, 0, 1 },
-        { TM_LEAF + 2, NOC_CLASS_TREE, .06f, .11f, .045f, 0, 1 },    { TM_LEAF + 3, NOC_CLASS_TREE, .13f, .13f, .04f, 0, 1 },
-        { TM_POLE, NOC_CLASS_LAMP, .10f, .11f, .11f, .04f, .4f },    { TM_WOOD, NOC_CLASS_FURNITURE, .30f, .19f, .10f, .03f, .6f },
-        { TM_CAR, NOC_CLASS_VEHICLE, .45f, .45f, .46f, .05f, .2f },  { TM_CAR + 1, NOC_CLASS_VEHICLE, .03f, .03f, .035f, .06f, .15f },
-        { TM_CAR + 2, NOC_CLASS_VEHICLE, .30f, .03f, .03f, .05f, .2f }, { TM_CAR + 3, NOC_CLASS_VEHICLE, .05f, .09f, .24f, .05f, .2f },
-        { TM_CAR + 4, NOC_CLASS_VEHICLE, .62f, .62f, .60f, .05f, .2f }, { TM_CAR + 5, NOC_CLASS_VEHICLE, .16f, .17f, .18f, .06f, .2f },
-        { TM_CAR_GLASS, NOC_CLASS_VEHICLE, .02f, .02f, .025f, .06f, .1f }, { TM_TYRE, NOC_CLASS_VEHICLE, .03f, .03f, .03f, 0, 1 },
+    static const struct {
+        town_mat mat;
+        noc_class cls;
+        float r, g, b, f0, roughness;
+    } table[] = {
+        { TM_WALL, NOC_CLASS_WALL, .60f, .53f, .42f, 0, 1 },
+        { TM_WALL + 1, NOC_CLASS_WALL, .60f, .52f, .38f, 0, 1 },
+        { TM_WALL + 2, NOC_CLASS_WALL, .62f, .58f, .52f, 0, 1 },
+        { TM_WALL + 3, NOC_CLASS_WALL, .56f, .45f, .36f, 0, 1 },
+        { TM_WALL + 4, NOC_CLASS_WALL, .33f, .17f, .12f, 0, 1 },
+        { TM_WALL + 5, NOC_CLASS_WALL, .46f, .48f, .46f, 0, 1 },
+        { TM_WALL + 6, NOC_CLASS_WALL, .58f, .50f, .34f, 0, 1 },
+        { TM_WALL + 7, NOC_CLASS_WALL, .46f, .52f, .45f, 0, 1 },
+        { TM_WALL + 8, NOC_CLASS_WALL, .64f, .60f, .55f, 0, 1 },
+        { TM_WALL + 9, NOC_CLASS_WALL, .50f, .54f, .60f, 0, 1 },
+        { TM_TILES, NOC_CLASS_ROOF, .30f, .13f, .08f, .02f, .7f },
+        { TM_TILES_DARK, NOC_CLASS_ROOF, .19f, .11f, .09f, .02f, .7f },
+        { TM_SLATE, NOC_CLASS_ROOF, .11f, .12f, .14f, .04f, .45f },
+        { TM_COPPER, NOC_CLASS_ROOF, .20f, .35f, .28f, .05f, .5f },
+        { TM_FLAT_ROOF, NOC_CLASS_ROOF, .20f, .20f, .20f, 0, 1 },
+        { TM_STONE, NOC_CLASS_WALL, .56f, .53f, .48f, 0, 1 },
+        { TM_CONCRETE, NOC_CLASS_WALL, .50f, .47f, .41f, 0, 1 },
+        { TM_METAL, NOC_CLASS_WALL, .16f, .17f, .19f, .08f, .35f },
+        { TM_GLASS, NOC_CLASS_WINDOW, .04f, .05f, .06f, .06f, .12f },
+        { TM_FRAME, NOC_CLASS_INSTALLATION, .58f, .57f, .54f, 0, 1 },
+        { TM_DOOR, NOC_CLASS_DOOR, .20f, .12f, .07f, .04f, .5f },
+        { TM_SHOP, NOC_CLASS_OTHER, .62f, .60f, .56f, 0, 1 },
+        { TM_SHOP_DARK, NOC_CLASS_DOOR, .04f, .05f, .06f, .06f, .12f },
+        { TM_SHOP_FLOOR, NOC_CLASS_OTHER, .34f, .28f, .21f, .04f, .4f },
+        { TM_AWNING, NOC_CLASS_INSTALLATION, .50f, .10f, .08f, 0, 1 },
+        { TM_AWNING + 1, NOC_CLASS_INSTALLATION, .10f, .26f, .34f, 0, 1 },
+        { TM_AWNING + 2, NOC_CLASS_INSTALLATION, .62f, .55f, .38f, 0, 1 },
+        { TM_ROAD, NOC_CLASS_ROAD, .095f, .095f, .10f, .04f, .55f },
+        { TM_MARKING, NOC_CLASS_ROAD, .55f, .55f, .52f, .03f, .6f },
+        { TM_SIDEWALK, NOC_CLASS_SIDEWALK, .25f, .24f, .22f, .02f, .7f },
+        { TM_KERBSTONE, NOC_CLASS_SIDEWALK, .38f, .37f, .35f, 0, 1 },
+        { TM_PAVING, NOC_CLASS_SIDEWALK, .30f, .27f, .23f, .03f, .55f },
+        { TM_GRAVEL, NOC_CLASS_SIDEWALK, .40f, .35f, .27f, 0, 1 },
+        { TM_LAWN, NOC_CLASS_GREEN, .08f, .14f, .045f, 0, 1 },
+        { TM_WATER, NOC_CLASS_WATER, .015f, .022f, .026f, .03f, .16f },
+        { TM_QUAY, NOC_CLASS_BRIDGE, .34f, .32f, .28f, 0, 1 },
+        { TM_BRIDGE, NOC_CLASS_BRIDGE, .38f, .35f, .30f, 0, 1 },
+        { TM_TRUNK, NOC_CLASS_TREE, .14f, .10f, .07f, 0, 1 },
+        { TM_LEAF, NOC_CLASS_TREE, .075f, .13f, .035f, 0, 1 },
+        { TM_LEAF + 1, NOC_CLASS_TREE, .10f, .15f, .04f, 0, 1 },
+        { TM_LEAF + 2, NOC_CLASS_TREE, .06f, .11f, .045f, 0, 1 },
+        { TM_LEAF + 3, NOC_CLASS_TREE, .13f, .13f, .04f, 0, 1 },
+        { TM_POLE, NOC_CLASS_LAMP, .10f, .11f, .11f, .04f, .4f },
+        { TM_WOOD, NOC_CLASS_FURNITURE, .30f, .19f, .10f, .03f, .6f },
+        { TM_CAR, NOC_CLASS_VEHICLE, .45f, .45f, .46f, .05f, .2f },
+        { TM_CAR + 1, NOC_CLASS_VEHICLE, .03f, .03f, .035f, .06f, .15f },
+        { TM_CAR + 2, NOC_CLASS_VEHICLE, .30f, .03f, .03f, .05f, .2f },
+        { TM_CAR + 3, NOC_CLASS_VEHICLE, .05f, .09f, .24f, .05f, .2f },
+        { TM_CAR + 4, NOC_CLASS_VEHICLE, .62f, .62f, .60f, .05f, .2f },
+        { TM_CAR + 5, NOC_CLASS_VEHICLE, .16f, .17f, .18f, .06f, .2f },
+        { TM_CAR_GLASS, NOC_CLASS_VEHICLE, .02f, .02f, .025f, .06f, .1f },
+        { TM_TYRE, NOC_CLASS_VEHICLE, .03f, .03f, .03f, 0, 1 },
     };
     _Static_assert(NOC_COUNT(table) == TM_COUNT, "every surface has a material");
     for (size_t i = 0; i < NOC_COUNT(table); i++)
-        t->material[table[i].mat] = add_material(t, table[i].cls, table[i].r, table[i].g, table[i].b, table[i].f0, table[i].roughness);
-    static const double kelvin[] = { [LIGHT_SODIUM] = 2080, [LIGHT_CANDLE] = 2350, [LIGHT_WARM] = 2750, [LIGHT_WHITE] = 3400,
-                                     [LIGHT_NEUTRAL] = 4100, [LIGHT_COOL] = 5500, [LIGHT_SCREEN] = 8500 };
+        t->material[table[i].mat] =
+            add_material(t, table[i].cls, table[i].r, table[i].g, table[i].b, table[i].f0, table[i].roughness);
+    static const double kelvin[] = {
+        [LIGHT_SODIUM] = 2080,  [LIGHT_CANDLE] = 2350, [LIGHT_WARM] = 2750,  [LIGHT_WHITE] = 3400,
+        [LIGHT_NEUTRAL] = 4100, [LIGHT_COOL] = 5500,   [LIGHT_SCREEN] = 8500
+    };
     for (size_t i = 0; i < NOC_COUNT(kelvin); i++)
         city_kelvin_rgb(kelvin[i], t->white[i]);
 }
 
 /* Divides one axis into blocks of uneven width and the streets between them. */
 static void axis_make(town *t, int axis, bool river) {
-    double total = 2 * t->half, width[TOWN_BLOCKS_MOST], sum = 0, streets = 18, river_width = 2 * (TOWN_QUAY_STREET + TOWN_PROMENADE) + 34;
+    double total = 2 * t->half, width[TOWN_BLOCKS_MOST], sum = 0, streets = 18,
+           river_width = 2 * (TOWN_QUAY_STREET + TOWN_PROMENADE) + 34;
     int n = NOC_CLAMP((int)((total - (river ? river_width : 0)) / 74), 1, TOWN_BLOCKS_MOST);
     town_rng rng = { town_hash(t->params.seed, 40u + (uint32_t)axis) };
     town_gap gap[TOWN_BLOCKS_MOST + 1] = { 0 };
@@ -97,7 +131,9 @@ static role role_of(const town *t, int i, int j) {
 
 static town_poly cell_poly(const town *t, int i, int j) {
     const town_gap *w = &t->axis[0].gaps.data[i], *e = w + 1, *s = &t->axis[1].gaps.data[j], *n = s + 1;
-    return (town_poly){ 4, { { w->hi, s->hi }, { e->lo, s->hi }, { e->lo, n->lo }, { w->hi, n->lo } }, { s->kind, e->kind, n->kind, w->kind } };
+    return (town_poly){ 4,
+                        { { w->hi, s->hi }, { e->lo, s->hi }, { e->lo, n->lo }, { w->hi, n->lo } },
+                        { s->kind, e->kind, n->kind, w->kind } };
 }
 
 /* The raised pavement of a block and its kerb. */
@@ -148,7 +184,8 @@ static void towers(town *t, const town_poly *line, int id) {
         for (int k = 1; k < 6; k++) {
             vec2 a = green.p[i], b = green.p[(i + 1) % green.n];
             double f = (k + 0.35 * ((i + k) % 3)) / 6.4;
-            town_tree(t, town_warp(t, (vec2){ a.x + (b.x - a.x) * f, a.y + (b.y - a.y) * f }), TOWN_KERB, 8.5, 70, town_hash(t->params.seed, (uint32_t)(id * 512 + i * 16 + k)));
+            town_tree(t, town_warp(t, (vec2){ a.x + (b.x - a.x) * f, a.y + (b.y - a.y) * f }), TOWN_KERB, 8.5, 70,
+                      town_hash(t->params.seed, (uint32_t)(id * 512 + i * 16 + k)));
         }
     town_flush(t, "block %d/trees", id);
 }
@@ -219,7 +256,8 @@ static void diagonal_markings(town *t) {
         for (int j = 0; j + 1 < (int)t->axis[1].gaps.len; j++)
             for (int i = 0; i + 1 < (int)t->axis[0].gaps.len; i++) {
                 town_poly cell = cell_poly(t, i, j);
-                bool inside = p.x > cell.p[0].x + 3 && p.x < cell.p[2].x - 3 && p.y > cell.p[0].y + 3 && p.y < cell.p[2].y - 3;
+                bool inside =
+                    p.x > cell.p[0].x + 3 && p.x < cell.p[2].x - 3 && p.y > cell.p[0].y + 3 && p.y < cell.p[2].y - 3;
                 if (!inside || !cut_by_diagonal(t, i, j))
                     continue;
                 town_rect(p, d, 1.5, 0.07, c);
@@ -241,7 +279,10 @@ static void belt(town *t) {
             vec2 q[4], out[2];
             for (int k = 0; k < 2; k++) {
                 double f = 2.0 * (i + k) / n - 1;
-                vec2 in = side == 0 ? (vec2){ f * h, -h } : side == 1 ? (vec2){ h, f * h } : side == 2 ? (vec2){ -f * h, h } : (vec2){ -h, -f * h };
+                vec2 in = side == 0   ? (vec2){ f * h, -h }
+                          : side == 1 ? (vec2){ h, f * h }
+                          : side == 2 ? (vec2){ -f * h, h }
+                                      : (vec2){ -h, -f * h };
                 q[k ? 2 : 3] = town_warp(t, in);
                 out[k] = (vec2){ in.x / h * edge, in.y / h * edge };
             }
@@ -256,7 +297,8 @@ static void belt(town *t) {
                 double f = town_range(&rng, 0.35, 0.9), g = town_next(&rng);
                 vec2 a = { q[3].x + f * (q[0].x - q[3].x), q[3].y + f * (q[0].y - q[3].y) };
                 vec2 b = { q[2].x + f * (q[1].x - q[2].x), q[2].y + f * (q[1].y - q[2].y) };
-                town_tree(t, (vec2){ a.x + g * (b.x - a.x), a.y + g * (b.y - a.y) }, 0.05, 9, 70, town_hash(rng.state, 4));
+                town_tree(t, (vec2){ a.x + g * (b.x - a.x), a.y + g * (b.y - a.y) }, 0.05, 9, 70,
+                          town_hash(rng.state, 4));
             }
         }
     town_flush(t, "belt");
@@ -297,7 +339,8 @@ noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dr
         array_free(&t->batch[m].indices);
     }
     free(t);
-    return scene->no_memory ? NOC_ERR_MEMORY : failed ? NOC_ERR_ARGUMENT : NOC_OK; /* what failed was reported where it did */
+    /* what failed was reported where it did */
+    return scene->no_memory ? NOC_ERR_MEMORY : failed ? NOC_ERR_ARGUMENT : NOC_OK;
 }
 
 noc_status noc_scene_add_city(noc_scene *scene, const noc_city_params *params) {

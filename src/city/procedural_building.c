@@ -22,10 +22,17 @@ static house house_make(const town *t, uint32_t seed, town_way way) {
     bool avenue = way == WAY_AVENUE;
     double modern = town_next(&rng);
     int storeys = (avenue ? 4 : 3) + (int)(town_next(&rng) * 2.6);
-    h.front = (town_facade){ .wall = TM_WALL + (town_mat)town_below(&rng, 10), .storeys = storeys, .base = TOWN_KERB, .deep = true,
+    h.front = (town_facade){ .wall = TM_WALL + (town_mat)town_below(&rng, 10),
+                             .storeys = storeys,
+                             .base = TOWN_KERB,
+                             .deep = true,
                              .ground = avenue ? town_range(&rng, 4.1, 4.6) : town_range(&rng, 3.3, 3.7),
-                             .storey = town_range(&rng, 2.95, 3.45), .seed = town_hash(seed, 12), .door = true };
-    h.front.shops = avenue ? town_chance(&rng, 0.85) : way == WAY_QUAY ? town_chance(&rng, 0.35) : town_chance(&rng, 0.12);
+                             .storey = town_range(&rng, 2.95, 3.45),
+                             .seed = town_hash(seed, 12),
+                             .door = true };
+    h.front.shops = avenue            ? town_chance(&rng, 0.85)
+                    : way == WAY_QUAY ? town_chance(&rng, 0.35)
+                                      : town_chance(&rng, 0.12);
     if (h.front.shops && !avenue)
         h.front.ground = 4.1;
     if (modern < 0.22) { /* after-war: wide windows, flat roof */
@@ -57,8 +64,8 @@ static house house_make(const town *t, uint32_t seed, town_way way) {
 /* The ground under one house: front o0-o1 along the street, back n1-n0, world coordinates. */
 typedef struct lot {
     vec2 o0, o1, n0, n1;
-    double mitre0, mitre1;        /* of the front, where it turns a corner */
-    const house *left, *right;    /* neighbours at o0-n0 and o1-n1 */
+    double mitre0, mitre1;     /* of the front, where it turns a corner */
+    const house *left, *right; /* neighbours at o0-n0 and o1-n1 */
 } lot;
 
 static vec2 mix(vec2 a, vec2 b, double f) { return (vec2){ a.x + f * (b.x - a.x), a.y + f * (b.y - a.y) }; }
@@ -69,7 +76,10 @@ static void put(double out[3], vec2 p, double z) {
     out[2] = z;
 }
 
-typedef struct profile { int n; double f[6], z[6]; } profile; /* across a roof, front to back */
+typedef struct profile {
+    int n;
+    double f[6], z[6];
+} profile; /* across a roof, front to back */
 
 static profile roof_profile(const house *h, double depth) {
     double f = NOC_MIN(1.5 / depth, 0.3);
@@ -79,7 +89,8 @@ static profile roof_profile(const house *h, double depth) {
 }
 
 /* The wall between two houses, as far as it shows above the other one. a is at the front. */
-static void party_wall(town *t, const house *h, const house *other, const profile *roof, vec2 a, vec2 b, bool facing_back_to_front) {
+static void party_wall(town *t, const house *h, const house *other, const profile *roof, vec2 a, vec2 b,
+                       bool facing_back_to_front) {
     double from = other ? other->eave : h->front.base, q[4][3];
     if (other && other->seed == h->seed)
         return;
@@ -102,7 +113,8 @@ static void party_wall(town *t, const house *h, const house *other, const profil
 }
 
 /* A small window house on the slope: its face stands `back` metres behind the front wall. */
-static void dormer(town *t, const town_wall *w, const house *h, double s, double back, double z0, double reach, int index) {
+static void dormer(town *t, const town_wall *w, const house *h, double s, double back, double z0, double reach,
+                   int index) {
     double q[8][3], s0 = s - 0.75, s1 = s + 0.75, z1 = z0 + 1.75;
     const double ss[4] = { s0, s1, s1, s0 }, zz[4] = { z0, z0, z1, z1 };
     for (int i = 0; i < 4; i++) {
@@ -117,8 +129,8 @@ static void dormer(town *t, const town_wall *w, const house *h, double s, double
     town_rng rng = { town_hash(h->seed, 300 + (uint32_t)index) };
     town_wall_rect(t, TM_GLASS, w, s0 + 0.2, s1 - 0.2, z0 + 0.3, z1 - 0.2, -back + 0.012);
     if (town_chance(&rng, t->params.lit_windows))
-        town_wall_light(t, w, s0 + 0.2, s1 - 0.2, z0 + 0.3, z1 - 0.2, -back + 0.03, pane.seed & 1 ? LIGHT_WARM : LIGHT_CANDLE,
-                        pane.seed & 2 ? 85 : 42, "window");
+        town_wall_light(t, w, s0 + 0.2, s1 - 0.2, z0 + 0.3, z1 - 0.2, -back + 0.03,
+                        pane.seed & 1 ? LIGHT_WARM : LIGHT_CANDLE, pane.seed & 2 ? 85 : 42, "window");
 }
 
 static void chimney(town *t, const house *h, vec2 p, vec2 dir, double z) {
@@ -126,13 +138,16 @@ static void chimney(town *t, const house *h, vec2 p, vec2 dir, double z) {
     town_rect(p, dir, 0.65, 0.4, c);
     town_box(t, h->front.wall, c, z - 1.5, z + 1.3);
     for (int i = -1; i <= 1; i++)
-        town_pole(t, TM_TILES, (vec2){ p.x + 0.38 * i * dir.x, p.y + 0.38 * i * dir.y }, 5, 0.14, 0.11, z + 1.3, z + 1.75);
+        town_pole(t, TM_TILES, (vec2){ p.x + 0.38 * i * dir.x, p.y + 0.38 * i * dir.y }, 5, 0.14, 0.11, z + 1.3,
+                  z + 1.75);
 }
 
 static void pitched_roof(town *t, const house *h, const lot *l, const profile *r, const town_wall *front) {
     double over = 0.42; /* the eave overhangs the cornice a little; it turns corners with the mitre */
-    vec2 e0 = { l->o0.x + over * (front->out.x - front->mitre0 * front->dir.x), l->o0.y + over * (front->out.y - front->mitre0 * front->dir.y) };
-    vec2 e1 = { l->o1.x + over * (front->out.x + front->mitre1 * front->dir.x), l->o1.y + over * (front->out.y + front->mitre1 * front->dir.y) };
+    vec2 e0 = { l->o0.x + over * (front->out.x - front->mitre0 * front->dir.x),
+                l->o0.y + over * (front->out.y - front->mitre0 * front->dir.y) };
+    vec2 e1 = { l->o1.x + over * (front->out.x + front->mitre1 * front->dir.x),
+                l->o1.y + over * (front->out.y + front->mitre1 * front->dir.y) };
     for (int i = 0; i + 1 < r->n; i++) {
         double q[4][3];
         put(q[0], i ? mix(l->o0, l->n0, r->f[i]) : e0, h->eave + (i ? r->z[i] : -0.01));
@@ -175,7 +190,8 @@ static void flat_roof(town *t, const vec2 *p, int n, double z, double parapet, t
     for (int i = 0; i < n; i++) {
         int j = (i + 1) % n;
         double q[4][3];
-        put(q[0], p[i], z + parapet), put(q[1], p[j], z + parapet), put(q[2], inner[j], z + parapet), put(q[3], inner[i], z + parapet);
+        put(q[0], p[i], z + parapet), put(q[1], p[j], z + parapet), put(q[2], inner[j], z + parapet),
+            put(q[3], inner[i], z + parapet);
         town_quad(t, TM_STONE, q[0], q[1], q[2], q[3]);
         town_wall inside = town_wall_make(inner[j], inner[i]);
         town_wall_rect(t, wall, &inside, 0, inside.length, z, z + parapet, 0);
@@ -227,10 +243,12 @@ bool town_perimeter_fits(const town_poly *line, double depth) {
     town_poly yard = inner_line(line, depth);
     if (yard.n != line->n || town_poly_area(&yard) < 90)
         return false;
-    for (int i = 0; i < yard.n; i++) { /* each edge of the yard behind its own edge of the line, long enough for a house */
+    /* each edge of the yard behind its own edge of the line, long enough for a house */
+    for (int i = 0; i < yard.n; i++) {
         town_wall w = town_wall_make(line->p[i], line->p[(i + 1) % line->n]);
         vec2 a = yard.p[i], b = yard.p[(i + 1) % yard.n];
-        if ((b.x - a.x) * w.dir.x + (b.y - a.y) * w.dir.y < 4 || fabs((a.x - w.a.x) * w.out.x + (a.y - w.a.y) * w.out.y + depth) > 0.01)
+        if ((b.x - a.x) * w.dir.x + (b.y - a.y) * w.dir.y < 4 ||
+            fabs((a.x - w.a.x) * w.out.x + (a.y - w.a.y) * w.out.y + depth) > 0.01)
             return false;
     }
     return true;
@@ -250,7 +268,8 @@ void town_perimeter(town *t, const town_poly *line, double depth, int block) {
     house corner[TOWN_POLY_MAX]; /* a corner house belongs to both its streets; the greater one decides */
     for (int k = 0; k < line->n; k++) {
         town_way a = line->way[k], b = line->way[(k + line->n - 1) % line->n];
-        corner[k] = house_make(t, town_hash(block_seed, (uint32_t)k), a == WAY_AVENUE || b == WAY_AVENUE ? WAY_AVENUE : a);
+        corner[k] =
+            house_make(t, town_hash(block_seed, (uint32_t)k), a == WAY_AVENUE || b == WAY_AVENUE ? WAY_AVENUE : a);
     }
     int number = 0;
     for (int k = 0; k < line->n; k++) {
@@ -259,7 +278,8 @@ void town_perimeter(town *t, const town_poly *line, double depth, int block) {
         double s_first = (yard.p[k].x - edge.a.x) * edge.dir.x + (yard.p[k].y - edge.a.y) * edge.dir.y;
         double s_last = (yard.p[next].x - edge.a.x) * edge.dir.x + (yard.p[next].y - edge.a.y) * edge.dir.y;
         town_rng rng = { town_hash(block_seed, 100u + (uint32_t)k) };
-        double first = NOC_MAX(s_first, 0) + 2.5 + 4 * town_next(&rng), last = NOC_MIN(s_last, edge.length) - 2.5 - 4 * town_next(&rng);
+        double first = NOC_MAX(s_first, 0) + 2.5 + 4 * town_next(&rng),
+               last = NOC_MIN(s_last, edge.length) - 2.5 - 4 * town_next(&rng);
         double cut[LOTS_MAX + 1] = { 0 };
         house row[LOTS_MAX];
         int n = 0;
@@ -287,8 +307,12 @@ void town_perimeter(town *t, const town_poly *line, double depth, int block) {
             b[i] = town_warp(t, i == 0 ? yard.p[k] : i == n ? yard.p[next] : (vec2){ p[0], p[1] });
         }
         for (int i = 0; i < n; i++) {
-            lot l = { .o0 = o[i], .o1 = o[i + 1], .n0 = b[i], .n1 = b[i + 1],
-                      .left = i ? &row[i - 1] : &corner[k], .right = i + 1 < n ? &row[i + 1] : &corner[next] };
+            lot l = { .o0 = o[i],
+                      .o1 = o[i + 1],
+                      .n0 = b[i],
+                      .n1 = b[i + 1],
+                      .left = i ? &row[i - 1] : &corner[k],
+                      .right = i + 1 < n ? &row[i + 1] : &corner[next] };
             if (i == 0)
                 l.mitre0 = mitre_of(town_warp(t, line->p[prev]), o[0], o[1]);
             if (i == n - 1)
@@ -363,9 +387,18 @@ void town_tower(town *t, const town_poly *line, int block, bool square) {
     vec2 centre = town_warp(t, town_poly_centre(line)), ahead = town_poly_centre(line), c[4];
     ahead.x += 10;
     vec2 dir = town_wall_make(centre, town_warp(t, ahead)).dir;
-    double reach = 0.5 * sqrt(town_poly_area(line)), along = NOC_MIN(reach * town_range(&rng, 0.5, 0.62), 17), across = square ? along : NOC_MIN(0.72 * along, 11.5);
-    town_facade f = { .wall = office ? TM_METAL : TM_CONCRETE, .storeys = 12 + town_below(&rng, 9), .base = TOWN_KERB, .ground = 4.6, .storey = office ? 3.5 : 3.0,
-                      .bay = office ? 2.1 : 3.0, .width = office ? 1.85 : 1.7, .height = office ? 2.3 : 1.5, .sill = office ? 0.6 : 0.9, .office = office };
+    double reach = 0.5 * sqrt(town_poly_area(line)), along = NOC_MIN(reach * town_range(&rng, 0.5, 0.62), 17),
+           across = square ? along : NOC_MIN(0.72 * along, 11.5);
+    town_facade f = { .wall = office ? TM_METAL : TM_CONCRETE,
+                      .storeys = 12 + town_below(&rng, 9),
+                      .base = TOWN_KERB,
+                      .ground = 4.6,
+                      .storey = office ? 3.5 : 3.0,
+                      .bay = office ? 2.1 : 3.0,
+                      .width = office ? 1.85 : 1.7,
+                      .height = office ? 2.3 : 1.5,
+                      .sill = office ? 0.6 : 0.9,
+                      .office = office };
     town_rect(centre, dir, along, across, c);
     tower_body(t, c, &f, 1.1, seed);
     town_flush(t, "block %d/building 0", block);

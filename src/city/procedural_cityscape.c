@@ -1,10 +1,11 @@
-/* The cityscape: some streets of the built-in city with few lit windows, and strings of coloured lights that zigzag over
- * them from post to post: lamp posts that light streets, and thousands of weak lights that each matter on a few metres. */
+/* The cityscape: some streets of the built-in city with few lit windows, and strings of coloured lights that zigzag
+ * over them from post to post: lamp posts that light streets, and thousands of weak lights that each matter on a few
+ * metres. */
 #include "city/scene_kit.h"
 
 #include <math.h>
 
-#define SIZE 270.0     /* m: three by three blocks */
+#define SIZE 270.0 /* m: three by three blocks */
 #define POST_APART 7.5
 #define POST_HEIGHT 6.1
 #define SAG 0.8
@@ -14,7 +15,8 @@
 #define SPOT_LUMENS 2600.0
 #define BENCH_LUMENS 12.0
 
-static const float colours[][3] = { { 1, .06f, .03f }, { 1, .42f, .04f }, { 1, .80f, .18f }, { .10f, 1, .12f }, { .06f, .35f, 1 }, { .75f, .08f, .9f } };
+static const float colours[][3] = { { 1, .06f, .03f }, { 1, .42f, .04f }, { 1, .80f, .18f },
+                                    { .10f, 1, .12f }, { .06f, .35f, 1 }, { .75f, .08f, .9f } };
 
 /* Does a place of the plan lie on the slanting avenue? */
 static bool on_diagonal(const town *t, vec2 p) {
@@ -29,7 +31,10 @@ static void bulb(town *t, vec3 p, int colour) {
     town_rect((vec2){ p.x, p.y }, (vec2){ 1, 0 }, 0.02, 0.02, socket);
     town_box(t, TM_METAL, socket, p.z - 0.07, p.z + 0.02);
     const double luminance = BULB_LUMENS / (4 * 3.14159265358979 * 3.14159265358979 * BULB_RADIUS * BULB_RADIUS);
-    noc_light l = { .kind = NOC_LIGHT_SPHERE, .position = { p.x, p.y, p.z - 0.08 - BULB_RADIUS }, .radius = BULB_RADIUS, .name = "party light" };
+    noc_light l = { .kind = NOC_LIGHT_SPHERE,
+                    .position = { p.x, p.y, p.z - 0.08 - BULB_RADIUS },
+                    .radius = BULB_RADIUS,
+                    .name = "party light" };
     for (int c = 0; c < 3; c++)
         l.emission[c] = (float)luminance * colours[colour][c];
     t->failed = t->failed || noc_scene_add_light(t->scene, &l) < 0;
@@ -69,8 +74,11 @@ static void spot(town *t, vec2 post, vec2 out, int colour) {
     vec2 body[4], c = { post.x + 0.16 * out.x, post.y + 0.16 * out.y };
     town_rect(c, out, 0.11, 0.1, body);
     town_box(t, TM_METAL, body, z - 0.1, z + 0.1);
-    noc_light l = { .kind = NOC_LIGHT_DISC, .position = { c.x + 0.125 * out.x, c.y + 0.125 * out.y, z }, .direction = { out.x, out.y, 0.35 },
-                    .radius = r, .name = "coloured floodlight" };
+    noc_light l = { .kind = NOC_LIGHT_DISC,
+                    .position = { c.x + 0.125 * out.x, c.y + 0.125 * out.y, z },
+                    .direction = { out.x, out.y, 0.35 },
+                    .radius = r,
+                    .name = "coloured floodlight" };
     for (int k = 0; k < 3; k++)
         l.emission[k] = (float)(SPOT_LUMENS / (3.14159265358979 * 3.14159265358979 * r * r)) * colours[colour][k];
     t->failed = t->failed || noc_scene_add_light(t->scene, &l) < 0;
@@ -78,16 +86,22 @@ static void spot(town *t, vec2 post, vec2 out, int colour) {
 
 /* A bench with a dim lamp under its seat, which no other light reaches: what a picker of lights overlooks first. */
 static void bench(town *t, vec2 p, vec2 along) {
-    const double r = 0.06, z = TOWN_KERB + 0.40, luminance = BENCH_LUMENS / (3.14159265358979 * 3.14159265358979 * r * r);
+    const double r = 0.06, z = TOWN_KERB + 0.40,
+                 luminance = BENCH_LUMENS / (3.14159265358979 * 3.14159265358979 * r * r);
     vec2 c[4], across = { -along.y, along.x };
     town_rect(p, along, 1.1, 0.3, c);
     town_box(t, TM_METAL, c, z, z + 0.08);
     for (int side = -1; side < 2; side++) { /* two feet, and a panel behind */
-        vec2 at = side ? (vec2){ p.x + side * 1.0 * along.x, p.y + side * 1.0 * along.y } : (vec2){ p.x - 0.27 * across.x, p.y - 0.27 * across.y };
+        vec2 at = side ? (vec2){ p.x + side * 1.0 * along.x, p.y + side * 1.0 * along.y }
+                       : (vec2){ p.x - 0.27 * across.x, p.y - 0.27 * across.y };
         town_rect(at, along, side ? 0.05 : 1.1, side ? 0.25 : 0.03, c);
         town_box(t, TM_METAL, c, TOWN_KERB, z);
     }
-    noc_light l = { .kind = NOC_LIGHT_DISC, .position = { p.x, p.y, z - 0.02 }, .direction = { 0, 0, -1 }, .radius = r, .name = "bench light" };
+    noc_light l = { .kind = NOC_LIGHT_DISC,
+                    .position = { p.x, p.y, z - 0.02 },
+                    .direction = { 0, 0, -1 },
+                    .radius = r,
+                    .name = "bench light" };
     for (int k = 0; k < 3; k++)
         l.emission[k] = (float)luminance * colours[3][k];
     t->failed = t->failed || noc_scene_add_light(t->scene, &l) < 0;
@@ -131,12 +145,16 @@ static void dress(town *t) {
     town_flush(t, "party lights");
     const town_gap *street = &t->axis[0].gaps.data[2]; /* a narrow one, where the strings hang low and close */
     double along = t->axis[1].gaps.data[1].hi;
-    vec2 seat = town_warp(t, (vec2){ street->hi + 1.3, along + 8.5 }), end = town_warp(t, (vec2){ street->hi + 1.3, along + 9.5 });
+    vec2 seat = town_warp(t, (vec2){ street->hi + 1.3, along + 8.5 }),
+         end = town_warp(t, (vec2){ street->hi + 1.3, along + 9.5 });
     double length = sqrt((end.x - seat.x) * (end.x - seat.x) + (end.y - seat.y) * (end.y - seat.y));
     bench(t, seat, (vec2){ (end.x - seat.x) / length, (end.y - seat.y) / length });
     town_flush(t, "bench");
-    vec2 eye = town_warp(t, (vec2){ street->lo + 1.8, along - 3 }), target = town_warp(t, (vec2){ street->hi - 2, along + 35 });
-    noc_camera c = { .eye = { eye.x, eye.y, 1.9 }, .target = { target.x, target.y, 5.0 }, .up = { 0, 0, 1 }, .fov_deg = 58 };
+    vec2 eye = town_warp(t, (vec2){ street->lo + 1.8, along - 3 }),
+         target = town_warp(t, (vec2){ street->hi - 2, along + 35 });
+    noc_camera c = {
+        .eye = { eye.x, eye.y, 1.9 }, .target = { target.x, target.y, 5.0 }, .up = { 0, 0, 1 }, .fov_deg = 58
+    };
     t->failed = t->failed || noc_scene_set_camera(t->scene, &c) != NOC_OK;
 }
 

@@ -43,7 +43,8 @@ void town_tri(town *t, town_mat mat, const double a[3], const double b[3], const
 
 void town_quad(town *t, town_mat mat, const double a[3], const double b[3], const double c[3], const double d[3]) {
     town_batch *batch = &t->batch[mat];
-    uint32_t first = (uint32_t)(batch->xyz.len / 3), corners[6] = { first, first + 1, first + 2, first, first + 2, first + 3 };
+    uint32_t first = (uint32_t)(batch->xyz.len / 3),
+             corners[6] = { first, first + 1, first + 2, first, first + 2, first + 3 };
     if (!array_append(&batch->xyz, a, 3) || !array_append(&batch->xyz, b, 3) || !array_append(&batch->xyz, c, 3) ||
         !array_append(&batch->xyz, d, 3) || !array_append(&batch->indices, corners, 6))
         t->failed = noc_scene_out_of_memory(t->scene);
@@ -112,8 +113,12 @@ void town_flush(town *t, const char *fmt, ...) {
         town_batch *b = &t->batch[m];
         if (!b->indices.len)
             continue;
-        noc_mesh mesh = { .vertex_count = b->xyz.len / 3, .positions = b->xyz.data, .triangle_count = b->indices.len / 3,
-                          .indices = b->indices.data, .material = t->material[m], .name = name };
+        noc_mesh mesh = { .vertex_count = b->xyz.len / 3,
+                          .positions = b->xyz.data,
+                          .triangle_count = b->indices.len / 3,
+                          .indices = b->indices.data,
+                          .material = t->material[m],
+                          .name = name };
         t->failed = t->failed || noc_scene_add_mesh(t->scene, &mesh) < 0;
         b->xyz.len = b->indices.len = 0;
     }

@@ -35,7 +35,8 @@ static void sheet(town *t, town_mat mat, const town_poly *poly, double z) {
         vec2 a = poly->p[i], b = poly->p[(i + 1) % poly->n];
         int pieces = NOC_MAX((int)(distance(a, b) / 8), 1);
         for (int k = 0; k < pieces; k++) {
-            vec2 c[3] = { middle, town_warp(t, toward(a, b, (double)k / pieces)), town_warp(t, toward(a, b, (k + 1.0) / pieces)) };
+            vec2 c[3] = { middle, town_warp(t, toward(a, b, (double)k / pieces)),
+                          town_warp(t, toward(a, b, (k + 1.0) / pieces)) };
             town_flat(t, mat, c, 3, z);
         }
     }
@@ -52,7 +53,8 @@ static void disc(town *t, town_mat mat, vec2 c, double rx, double ry, double z) 
 static void rim(town *t, vec2 c, double rx, double ry, double z0, double z1) {
     for (int i = 0; i < 20; i++) {
         double a = i / 20.0, b = (i + 1) / 20.0;
-        vec2 in0 = { c.x + rx * town_cos(a), c.y + ry * town_sin(a) }, in1 = { c.x + rx * town_cos(b), c.y + ry * town_sin(b) };
+        vec2 in0 = { c.x + rx * town_cos(a), c.y + ry * town_sin(a) },
+             in1 = { c.x + rx * town_cos(b), c.y + ry * town_sin(b) };
         vec2 out0 = { c.x + (rx + 0.4) * town_cos(a), c.y + (ry + 0.4) * town_sin(a) };
         vec2 out1 = { c.x + (rx + 0.4) * town_cos(b), c.y + (ry + 0.4) * town_sin(b) };
         town_wall outside = town_wall_make(out0, out1), inside = town_wall_make(in1, in0);
@@ -101,7 +103,8 @@ void town_park(town *t, const town_poly *block, int id) {
         vec2 c = town_warp(t, centre), at = { c.x + 6.7 * town_cos(i / 6.0), c.y + 6.7 * town_sin(i / 6.0) };
         town_bench(t, at, (vec2){ -town_sin(i / 6.0), town_cos(i / 6.0) }, TOWN_KERB + 0.1);
         if (i % 2)
-            town_globe_lamp(t, (vec2){ c.x + 7 * town_cos((i + 0.5) / 6), c.y + 7 * town_sin((i + 0.5) / 6) }, TOWN_KERB + 0.1, LIGHT_NEUTRAL);
+            town_globe_lamp(t, (vec2){ c.x + 7 * town_cos((i + 0.5) / 6), c.y + 7 * town_sin((i + 0.5) / 6) },
+                            TOWN_KERB + 0.1, LIGHT_NEUTRAL);
     }
     vec2 lo = lawn.p[0], hi = lawn.p[0];
     for (int i = 1; i < lawn.n; i++) {
@@ -129,8 +132,11 @@ static void uplight(town *t, vec2 p, vec2 at, double z, double rise, double lume
     double reach = distance(p, at), r = 0.14;
     town_rect(p, dir, 0.16, 0.2, c);
     town_box(t, TM_METAL, c, z, z + 0.22);
-    noc_light l = { .kind = NOC_LIGHT_DISC, .position = { p.x + 0.05 * dir.x, p.y + 0.05 * dir.y, z + 0.4 }, .direction = { dir.x * reach, dir.y * reach, rise },
-                    .radius = r, .name = "floodlight" };
+    noc_light l = { .kind = NOC_LIGHT_DISC,
+                    .position = { p.x + 0.05 * dir.x, p.y + 0.05 * dir.y, z + 0.4 },
+                    .direction = { dir.x * reach, dir.y * reach, rise },
+                    .radius = r,
+                    .name = "floodlight" };
     town_light(t, &l, LIGHT_WARM, lumens / (3.14159265358979 * 3.14159265358979 * r * r));
 }
 
@@ -140,7 +146,8 @@ static void church_windows(town *t, const town_wall *w, int n, double z0, double
         town_wall_rect(t, TM_STONE, w, s - 0.5 * width - 0.3, s + 0.5 * width + 0.3, z0 - 0.3, z1 + 0.3, 0.05);
         town_wall_rect(t, TM_GLASS, w, s - 0.5 * width, s + 0.5 * width, z0, z1, 0.07);
         if (lit)
-            town_wall_light(t, w, s - 0.5 * width + 0.08, s + 0.5 * width - 0.08, z0 + 0.1, z1 - 0.1, 0.09, LIGHT_CANDLE, 28, "church window");
+            town_wall_light(t, w, s - 0.5 * width + 0.08, s + 0.5 * width - 0.08, z0 + 0.1, z1 - 0.1, 0.09,
+                            LIGHT_CANDLE, 28, "church window");
     }
 }
 
@@ -196,12 +203,15 @@ void town_church(town *t, vec2 centre, vec2 dir) {
         put3(q[0], crown[i], tower), put3(q[1], crown[(i + 1) % 4], tower), put3(q[2], front, tip);
         town_tri(t, TM_COPPER, q[0], q[1], q[2]);
         town_wall_rect(t, TM_STONE, &e, 0, e.length, tower - 0.6, tower, 0);
-        noc_light clock = { .kind = NOC_LIGHT_DISC, .radius = 1.4, .direction = { w.out.x, w.out.y, 0 }, .name = "clock" };
+        noc_light clock = {
+            .kind = NOC_LIGHT_DISC, .radius = 1.4, .direction = { w.out.x, w.out.y, 0 }, .name = "clock"
+        };
         town_wall_point(&w, 0.5 * w.length, z + 25.1, 0.06, clock.position);
         town_light(t, &clock, LIGHT_WHITE, 95);
         double hands[2][4] = { { -0.06, 0.06, -0.2, 1.1 }, { -0.2, 0.8, -0.07, 0.07 } };
         for (int k = 0; k < 2; k++)
-            town_wall_rect(t, TM_METAL, &w, 0.5 * w.length + hands[k][0], 0.5 * w.length + hands[k][1], z + 25.1 + hands[k][2], z + 25.1 + hands[k][3], 0.09 + 0.01 * k);
+            town_wall_rect(t, TM_METAL, &w, 0.5 * w.length + hands[k][0], 0.5 * w.length + hands[k][1],
+                           z + 25.1 + hands[k][2], z + 25.1 + hands[k][3], 0.09 + 0.01 * k);
     }
     town_wall portal = town_wall_make(shaft[3], shaft[0]);
     town_wall_band(t, TM_STONE, &portal, z, z + 0.3, 1.0);
@@ -209,7 +219,8 @@ void town_church(town *t, vec2 centre, vec2 dir) {
     town_wall_rect(t, TM_DOOR, &portal, 2.9, 5.5, z + 0.3, z + 4.6, 0.09);
     for (int side = -1; side <= 1; side += 2) {
         for (int k = 0; k < 3; k++) {
-            vec2 at = { centre.x + (k - 1) * 10 * dir.x + side * 6.8 * across.x, centre.y + (k - 1) * 10 * dir.y + side * 6.8 * across.y };
+            vec2 at = { centre.x + (k - 1) * 10 * dir.x + side * 6.8 * across.x,
+                        centre.y + (k - 1) * 10 * dir.y + side * 6.8 * across.y };
             uplight(t, (vec2){ at.x + side * 4.5 * across.x, at.y + side * 4.5 * across.y }, at, z, 6, 2600);
         }
         vec2 at = { front.x + side * 4.2 * across.x, front.y + side * 4.2 * across.y };

@@ -30,15 +30,18 @@ static void parapet(town *t, vec2 a, vec2 b, vec2 a_left, vec2 b_left, double z0
 /* Both banks between x0 and x1, where there is no bridge. */
 static void banks(town *t, const town_gap *g, double x0, double x1) {
     int n = NOC_MAX((int)((x1 - x0) / 9), 1);
-    double s_street = g->lo + TOWN_QUAY_STREET, s_edge = s_street + TOWN_PROMENADE, n_street = g->hi - TOWN_QUAY_STREET, n_edge = n_street - TOWN_PROMENADE;
+    double s_street = g->lo + TOWN_QUAY_STREET, s_edge = s_street + TOWN_PROMENADE, n_street = g->hi - TOWN_QUAY_STREET,
+           n_edge = n_street - TOWN_PROMENADE;
     for (int i = 0; i < n; i++) {
         double a = x0 + (x1 - x0) * i / n, b = x0 + (x1 - x0) * (i + 1) / n;
         patch(t, TM_PAVING, a, b, s_street, s_edge, TOWN_KERB);
         patch(t, TM_PAVING, a, b, n_edge, n_street, TOWN_KERB);
         face(t, TM_KERBSTONE, at(t, a, s_street), at(t, b, s_street), -0.02, TOWN_KERB);
         face(t, TM_KERBSTONE, at(t, b, n_street), at(t, a, n_street), -0.02, TOWN_KERB);
-        parapet(t, at(t, b, s_edge), at(t, a, s_edge), at(t, b, s_edge - 0.35), at(t, a, s_edge - 0.35), TOWN_KERB, TOWN_KERB + 0.95);
-        parapet(t, at(t, a, n_edge), at(t, b, n_edge), at(t, a, n_edge + 0.35), at(t, b, n_edge + 0.35), TOWN_KERB, TOWN_KERB + 0.95);
+        parapet(t, at(t, b, s_edge), at(t, a, s_edge), at(t, b, s_edge - 0.35), at(t, a, s_edge - 0.35), TOWN_KERB,
+                TOWN_KERB + 0.95);
+        parapet(t, at(t, a, n_edge), at(t, b, n_edge), at(t, a, n_edge + 0.35), at(t, b, n_edge + 0.35), TOWN_KERB,
+                TOWN_KERB + 0.95);
     }
     for (int side = 0; side < 2; side++) { /* lamps by the parapet, trees by the street */
         double lamp = side ? n_edge + 0.9 : s_edge - 0.9, tree = side ? n_street - 1.1 : s_street + 1.1;
@@ -48,7 +51,8 @@ static void banks(town *t, const town_gap *g, double x0, double x1) {
             town_globe_lamp(t, at(t, x, lamp), TOWN_KERB, LIGHT_NEUTRAL);
             for (int k = -1; k <= 1; k += 2)
                 if (fabs(x + 4.8 * k - x0) > 4 && fabs(x + 4.8 * k - x1) > 4)
-                    town_tree(t, at(t, x + 4.8 * k, tree), TOWN_KERB, 6.8, 200, town_hash(t->params.seed, (uint32_t)(int)(x * 8 + 40000) + (uint32_t)side));
+                    town_tree(t, at(t, x + 4.8 * k, tree), TOWN_KERB, 6.8, 200,
+                              town_hash(t->params.seed, (uint32_t)(int)(x * 8 + 40000) + (uint32_t)side));
         }
     }
     town_flush(t, "river/bank");
@@ -58,7 +62,8 @@ static void banks(town *t, const town_gap *g, double x0, double x1) {
 static void bridge(town *t, const town_gap *g, const town_gap *way, int number) {
     enum { SPANS = 3, STEPS = 8 };
     double x[4] = { way->lo - BRIDGE_WALK, way->lo, way->hi, way->hi + BRIDGE_WALK };
-    double y0 = g->lo + TOWN_QUAY_STREET, y1 = g->hi - TOWN_QUAY_STREET, w0 = y0 + TOWN_PROMENADE, w1 = y1 - TOWN_PROMENADE;
+    double y0 = g->lo + TOWN_QUAY_STREET, y1 = g->hi - TOWN_QUAY_STREET, w0 = y0 + TOWN_PROMENADE,
+           w1 = y1 - TOWN_PROMENADE;
     double pier = 0.9, span = (w1 - w0 - (SPANS - 1) * 2 * pier) / SPANS;
     for (int i = 0; i < 6; i++) { /* deck, warped in pieces */
         double a = y0 + (y1 - y0) * i / 6, b = y0 + (y1 - y0) * (i + 1) / 6;
@@ -66,7 +71,8 @@ static void bridge(town *t, const town_gap *g, const town_gap *way, int number) 
         for (int side = 0; side < 2; side++) {
             double in = x[side ? 2 : 1], out = x[side ? 3 : 0], rail = side ? out - 0.4 : out + 0.4;
             patch(t, TM_SIDEWALK, NOC_MIN(in, out), NOC_MAX(in, out), a, b, TOWN_KERB);
-            vec2 k0 = at(t, in, side ? b : a), k1 = at(t, in, side ? a : b), o0 = at(t, out, side ? a : b), o1 = at(t, out, side ? b : a);
+            vec2 k0 = at(t, in, side ? b : a), k1 = at(t, in, side ? a : b), o0 = at(t, out, side ? a : b),
+                 o1 = at(t, out, side ? b : a);
             face(t, TM_KERBSTONE, k0, k1, -0.02, TOWN_KERB);
             parapet(t, o0, o1, at(t, rail, side ? a : b), at(t, rail, side ? b : a), TOWN_KERB, TOWN_KERB + 1.0);
         }
@@ -75,7 +81,8 @@ static void bridge(town *t, const town_gap *g, const town_gap *way, int number) 
         double from = w0 + s * (span + 2 * pier);
         for (int i = 0; i < STEPS; i++) {
             double f0 = (double)i / STEPS, f1 = (i + 1.0) / STEPS, a = from + span * f0, b = from + span * f1;
-            double za = DECK_UNDER - 2.4 * (2 * f0 - 1) * (2 * f0 - 1), zb = DECK_UNDER - 2.4 * (2 * f1 - 1) * (2 * f1 - 1);
+            double za = DECK_UNDER - 2.4 * (2 * f0 - 1) * (2 * f0 - 1),
+                   zb = DECK_UNDER - 2.4 * (2 * f1 - 1) * (2 * f1 - 1);
             vec2 p[4] = { at(t, x[0], a), at(t, x[0], b), at(t, x[3], b), at(t, x[3], a) };
             double q[4][3], soffit[4][3];
             for (int side = 0; side < 2; side++) {
@@ -103,7 +110,8 @@ static void bridge(town *t, const town_gap *g, const town_gap *way, int number) 
     }
     for (int i = 0; i < 4; i++)
         for (int side = 0; side < 2; side++)
-            town_globe_lamp(t, at(t, side ? x[3] - 0.8 : x[0] + 0.8, y0 + (y1 - y0) * (i + 0.5) / 4), TOWN_KERB, LIGHT_WARM);
+            town_globe_lamp(t, at(t, side ? x[3] - 0.8 : x[0] + 0.8, y0 + (y1 - y0) * (i + 0.5) / 4), TOWN_KERB,
+                            LIGHT_WARM);
     town_flush(t, "bridge %d", number);
 }
 

@@ -5,8 +5,8 @@
 
 /* ---- trees, lamps, benches, cars ---- */
 
-/* A crown of leaf sprays: triangles strewn through an ellipsoid, denser towards its skin, tilted outwards. Light of a lamp
- * passes between them, as it does in a real tree. */
+/* A crown of leaf sprays: triangles strewn through an ellipsoid, denser towards its skin, tilted outwards. Light of a
+ * lamp passes between them, as it does in a real tree. */
 static void crown(town *t, vec2 p, double z, double radius, double height, int sprays, uint32_t seed) {
     town_mat mat = TM_LEAF + (town_mat)(seed % 4);
     town_rng rng = { town_hash(seed, 41) };
@@ -20,7 +20,13 @@ static void crown(town *t, vec2 p, double z, double radius, double height, int s
         for (int k = 0; k < 3; k++) {
             n[k] = out[k] + town_range(&rng, -0.7, 0.7);
             u[k] = town_range(&rng, -1, 1);
-            c[k] = (k == 0 ? p.x : k == 1 ? p.y : z) + depth * out[k] * (k < 2 ? radius : up < 0 ? 0.72 * height : height);
+            c[k] = (k == 0   ? p.x
+                    : k == 1 ? p.y
+                             : z) +
+                   depth * out[k] *
+                       (k < 2    ? radius
+                        : up < 0 ? 0.72 * height
+                                 : height);
         }
         for (int k = 0; k < 3; k++)
             v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
@@ -48,7 +54,8 @@ void town_tree(town *t, vec2 p, double z, double height, int sprays, uint32_t se
     crown(t, p, z + 0.66 * h, radius, 0.34 * h, sprays, town_hash(seed, 3));
 }
 
-/* Light that leaves flat and downwards: Phi = pi L A. The housing above is wider than the light, so it shades only the sky. */
+/* Light that leaves flat and downwards: Phi = pi L A. The housing above is wider than the light, so it shades only the
+ * sky. */
 void town_arm_lamp(town *t, vec2 p, double z, vec2 to_road) {
     const double height = 8.6, reach = 1.9, radius = 0.17, lumens = 10000;
     vec2 head = { p.x + reach * to_road.x, p.y + reach * to_road.y }, c[4];
@@ -59,7 +66,11 @@ void town_arm_lamp(town *t, vec2 p, double z, vec2 to_road) {
     town_box(t, TM_POLE, c, z + height, z + height + 0.16);
     vec2 under[4] = { c[3], c[2], c[1], c[0] };
     town_flat(t, TM_POLE, under, 4, z + height);
-    noc_light l = { .kind = NOC_LIGHT_DISC, .position = { head.x, head.y, z + height - 0.015 }, .direction = { 0, 0, -1 }, .radius = radius, .name = "lamp" };
+    noc_light l = { .kind = NOC_LIGHT_DISC,
+                    .position = { head.x, head.y, z + height - 0.015 },
+                    .direction = { 0, 0, -1 },
+                    .radius = radius,
+                    .name = "lamp" };
     town_light(t, &l, LIGHT_SODIUM, lumens / (3.14159265358979 * 3.14159265358979 * radius * radius));
 }
 
@@ -86,7 +97,8 @@ void town_bench(town *t, vec2 p, vec2 dir, double z) {
 
 /* A section along x (front +) lofted across: body to the waist, then a narrower cabin. */
 void town_car(town *t, vec2 p, vec2 dir, double z, bool lights, uint32_t seed) {
-    static const double body[7][2] = { { 2.1, 0.3 }, { 2.15, 0.55 }, { 1.9, 0.75 }, { 0.95, 0.92 }, { -1.7, 0.95 }, { -2.1, 0.8 }, { -2.1, 0.3 } };
+    static const double body[7][2] = { { 2.1, 0.3 },   { 2.15, 0.55 }, { 1.9, 0.75 }, { 0.95, 0.92 },
+                                       { -1.7, 0.95 }, { -2.1, 0.8 },  { -2.1, 0.3 } };
     static const double cabin[4][2] = { { 0.95, 0.92 }, { 0.25, 1.42 }, { -1.05, 1.45 }, { -1.75, 0.95 } };
     town_mat paint = TM_CAR + (town_mat)(seed % 6);
     town_wall w = { .a = p, .dir = dir, .out = { dir.y, -dir.x }, .length = 1 }; /* s forward, before to the right */
@@ -109,7 +121,8 @@ void town_car(town *t, vec2 p, vec2 dir, double z, bool lights, uint32_t seed) {
         }
         for (int i = 0; i < 4; i++)
             town_wall_point(&w, cabin[i][0], z + cabin[i][1], side * (i == 0 || i == 3 ? waist : roof), q[i]);
-        town_quad(t, TM_CAR_GLASS, side > 0 ? q[0] : q[3], side > 0 ? q[1] : q[2], side > 0 ? q[2] : q[1], side > 0 ? q[3] : q[0]);
+        town_quad(t, TM_CAR_GLASS, side > 0 ? q[0] : q[3], side > 0 ? q[1] : q[2], side > 0 ? q[2] : q[1],
+                  side > 0 ? q[3] : q[0]);
         for (int i = -1; i <= 1; i += 2) { /* wheels */
             vec2 c[4];
             double hub[3];
@@ -127,8 +140,14 @@ void town_car(town *t, vec2 p, vec2 dir, double z, bool lights, uint32_t seed) {
         town_quad(t, i == 1 ? paint : TM_CAR_GLASS, q[0], q[1], q[2], q[3]);
     }
     for (int side = -1; lights && side <= 1; side += 2) {
-        noc_light head = { .kind = NOC_LIGHT_DISC, .radius = 0.08, .direction = { dir.x, dir.y, -0.12 }, .name = "headlamp" };
-        noc_light tail = { .kind = NOC_LIGHT_DISC, .radius = 0.07, .direction = { -dir.x, -dir.y, 0 }, .emission = { 650, 25, 12 }, .name = "tail lamp" };
+        noc_light head = {
+            .kind = NOC_LIGHT_DISC, .radius = 0.08, .direction = { dir.x, dir.y, -0.12 }, .name = "headlamp"
+        };
+        noc_light tail = { .kind = NOC_LIGHT_DISC,
+                           .radius = 0.07,
+                           .direction = { -dir.x, -dir.y, 0 },
+                           .emission = { 650, 25, 12 },
+                           .name = "tail lamp" };
         town_wall_point(&w, 2.2, z + 0.6, side * 0.62, head.position);
         town_wall_point(&w, -2.12, z + 0.68, side * 0.66, tail.position);
         town_light(t, &head, LIGHT_WHITE, 7000);
@@ -161,12 +180,14 @@ void town_kerbside(town *t, const town_poly *block, int id) {
                 town_globe_lamp(t, at, TOWN_KERB, LIGHT_NEUTRAL);
         }
         double step = avenue ? 10.3 : 13;
-        for (double s = 3.5 + 0.37 * spacing; s < e.length - 5 && (avenue || way == WAY_QUAY || (id + k) % 3 == 0); s += step) {
+        for (double s = 3.5 + 0.37 * spacing; s < e.length - 5 && (avenue || way == WAY_QUAY || (id + k) % 3 == 0);
+             s += step) {
             double phase = (s - first) / spacing, off = fabs(phase - floor(phase + 0.5)) * spacing;
             if (off < 2.4 || town_chance(&rng, 0.1))
                 continue; /* clear of the lamps */
             town_wall_point(&e, s, 0, -1.3, road);
-            town_tree(t, town_warp(t, (vec2){ road[0], road[1] }), TOWN_KERB, avenue ? 8.6 : 7, 220, town_hash(rng.state, 77));
+            town_tree(t, town_warp(t, (vec2){ road[0], road[1] }), TOWN_KERB, avenue ? 8.6 : 7, 220,
+                      town_hash(rng.state, 77));
         }
         for (double s = 9; s < e.length - 9; s += 5.7) {
             if (!town_chance(&rng, avenue ? 0.3 : 0.42))
@@ -212,7 +233,6 @@ static void plan_quad(town *t, town_mat mat, int along, double s0, double s1, do
     }
 }
 
-
 /* Streets along one axis: dashes between the lanes, zebra crossings where avenues meet others. */
 static void markings(town *t, int along) {
     const town_axis *own = &t->axis[!along], *other = &t->axis[along];
@@ -256,7 +276,9 @@ void town_roads(town *t) {
         for (size_t j = 0; j + 1 < t->axis[1].gaps.len; j++) {
             const town_gap *a = &t->axis[1].gaps.data[j], *b = &t->axis[1].gaps.data[j + 1];
             double y0 = a->river ? a->hi - TOWN_QUAY_STREET : j ? 0.5 * (a->lo + a->hi) : a->lo;
-            double y1 = b->river ? b->lo + TOWN_QUAY_STREET : j + 2 < t->axis[1].gaps.len ? 0.5 * (b->lo + b->hi) : b->hi;
+            double y1 = b->river                      ? b->lo + TOWN_QUAY_STREET
+                        : j + 2 < t->axis[1].gaps.len ? 0.5 * (b->lo + b->hi)
+                                                      : b->hi;
             for (int k = 0; k < 4; k++)
                 plan_quad(t, TM_ROAD, 0, x0, x1, y0 + (y1 - y0) * k / 4, y0 + (y1 - y0) * (k + 1) / 4, 0);
         }

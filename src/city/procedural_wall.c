@@ -18,7 +18,8 @@ void town_wall_point(const town_wall *w, double s, double z, double before, doub
     out[2] = z;
 }
 
-void town_wall_rect(town *t, town_mat mat, const town_wall *w, double s0, double s1, double z0, double z1, double before) {
+void town_wall_rect(town *t, town_mat mat, const town_wall *w, double s0, double s1, double z0, double z1,
+                    double before) {
     double q[4][3];
     if (s1 - s0 < 1e-6 || z1 - z0 < 1e-6)
         return;
@@ -30,8 +31,8 @@ void town_wall_rect(town *t, town_mat mat, const town_wall *w, double s0, double
 }
 
 /* A box that stands out of the wall: front, top, bottom, ends. */
-static void wall_box(town *t, town_mat mat, const town_wall *w, double s0, double s1, double z0, double z1, double near, double far,
-                     double out0, double out1) {
+static void wall_box(town *t, town_mat mat, const town_wall *w, double s0, double s1, double z0, double z1, double near,
+                     double far, double out0, double out1) {
     double q[8][3]; /* back then front, each counter-clockwise seen from before the wall */
     const double z[4] = { z0, z0, z1, z1 };
     for (int i = 0; i < 4; i++) {
@@ -81,14 +82,19 @@ static bool window_lit(const town *t, const town_facade *f, int storey, int colu
     if (f->office)
         *colour = v < 0.35 ? LIGHT_COOL : v < 0.8 ? LIGHT_NEUTRAL : LIGHT_WHITE;
     else
-        *colour = v < 0.16 ? LIGHT_CANDLE : v < 0.66 ? LIGHT_WARM : v < 0.84 ? LIGHT_WHITE : v < 0.94 ? LIGHT_NEUTRAL : LIGHT_SCREEN;
+        *colour = v < 0.16   ? LIGHT_CANDLE
+                  : v < 0.66 ? LIGHT_WARM
+                  : v < 0.84 ? LIGHT_WHITE
+                  : v < 0.94 ? LIGHT_NEUTRAL
+                             : LIGHT_SCREEN;
     int low = *colour == LIGHT_SCREEN ? 0 : f->office ? 2 : 1, n = *colour == LIGHT_SCREEN ? 2 : 7 - low;
     *luminance = levels[low + town_below(&rng, n)];
     return true;
 }
 
 /* Blinds and curtains take part of the pane: the dark glass behind shows there. */
-static void lit_pane(town *t, const town_wall *w, const town_facade *f, int storey, int column, const double r[4], double before) {
+static void lit_pane(town *t, const town_wall *w, const town_facade *f, int storey, int column, const double r[4],
+                     double before) {
     int colour;
     double luminance, s0 = r[0], s1 = r[1], z0 = r[2], z1 = r[3];
     if (!window_lit(t, f, storey, column, &colour, &luminance))
@@ -173,9 +179,11 @@ static void shop(town *t, const town_wall *w, const town_facade *f, int column, 
         town_light(t, &panel, colour, 4 * level);
         /* something to sell: a counter and shelves */
         wall_box(t, TM_WOOD, w, r[0] + 0.3, r[1] - 0.3, r[2] + 0.5, r[2] + 0.55, -depth, -depth + 0.35, 0, 0);
-        wall_box(t, TM_AWNING + (town_mat)town_below(&rng, 3), w, r[0] + 0.4, sm - 0.2, r[2] + 0.55, r[2] + 1.1, -depth, -depth + 0.3, 0, 0);
+        wall_box(t, TM_AWNING + (town_mat)town_below(&rng, 3), w, r[0] + 0.4, sm - 0.2, r[2] + 0.55, r[2] + 1.1, -depth,
+                 -depth + 0.3, 0, 0);
         wall_box(t, TM_WOOD, w, r[0] + 0.3, r[1] - 0.3, r[2] + 1.3, r[2] + 1.34, -depth, -depth + 0.35, 0, 0);
-        wall_box(t, TM_AWNING + (town_mat)town_below(&rng, 3), w, sm, r[1] - 0.5, r[2] + 1.34, r[2] + 1.7, -depth, -depth + 0.3, 0, 0);
+        wall_box(t, TM_AWNING + (town_mat)town_below(&rng, 3), w, sm, r[1] - 0.5, r[2] + 1.34, r[2] + 1.7, -depth,
+                 -depth + 0.3, 0, 0);
         wall_box(t, TM_WOOD, w, sm - 0.7, sm + 0.5, r[2], r[2] + 0.8, -1.3, -0.8, 0, 0);
     } else {
         recess(t, TM_FRAME, TM_SHOP_DARK, w, r, 0.22);
@@ -184,7 +192,8 @@ static void shop(town *t, const town_wall *w, const town_facade *f, int column, 
             for (int i = 0; i < panes; i++) { /* one brightness a pane: displays, a poster, the door */
                 double a = r[0] + (r[1] - r[0]) * i / panes, b = r[0] + (r[1] - r[0]) * (i + 1) / panes;
                 double lo = town_chance(&rng, 0.35) ? r[2] + 0.7 : r[2] + 0.12;
-                town_wall_light(t, w, a + 0.05, b - 0.05, lo, r[3] - 0.08, -0.2, colour, level * (0.3 + 0.12 * town_below(&rng, 3)), "shop");
+                town_wall_light(t, w, a + 0.05, b - 0.05, lo, r[3] - 0.08, -0.2, colour,
+                                level * (0.3 + 0.12 * town_below(&rng, 3)), "shop");
                 if (i)
                     town_wall_rect(t, TM_FRAME, w, a - 0.05, a + 0.05, r[2], r[3], -0.17);
             }
@@ -193,7 +202,11 @@ static void shop(town *t, const town_wall *w, const town_facade *f, int column, 
     double u = town_next(&rng), s0 = r[0] + 0.3, s1 = r[1] - 0.3;
     wall_box(t, u < 0.5 ? TM_METAL : TM_WOOD, w, r[0], r[1], sign, sign + 0.55, 0, 0.08, 0, 0);
     if (u < 0.45 && kind < 0.9) { /* letters as one bright strip */
-        static const float hue[5][3] = { { 2.6f, 0.55f, 0.5f }, { 0.4f, 1.1f, 1.7f }, { 1.7f, 0.85f, 0.3f }, { 0.5f, 1.25f, 0.5f }, { 2.1f, 0.5f, 2.1f } };
+        static const float hue[5][3] = { { 2.6f, 0.55f, 0.5f },
+                                         { 0.4f, 1.1f, 1.7f },
+                                         { 1.7f, 0.85f, 0.3f },
+                                         { 0.5f, 1.25f, 0.5f },
+                                         { 2.1f, 0.5f, 2.1f } };
         noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM, .name = "sign" };
         int h = town_below(&rng, 5);
         double width = (s1 - s0) * town_range(&rng, 0.45, 0.95), start = s0 + 0.5 * (s1 - s0 - width);

@@ -1,40 +1,51 @@
-/* A courtyard with arcades on two floors, about a quarter of a million triangles, by one lantern that hangs in its middle:
- * much geometry, hard shadows of columns and balusters, and nothing to choose among lights.
+/* A courtyard with arcades on two floors, about a quarter of a million triangles, by one lantern that hangs in its
+ * middle: much geometry, hard shadows of columns and balusters, and nothing to choose among lights.
  *
  * Bays run along the four sides of the court; each side is built along its own x axis, looking into the court. */
 #include "city/scene_kit.h"
 
 #define BAY 2.7
-#define LONG 9          /* bays along x */
-#define SHORT 5         /* along y */
-#define DEPTH 3.4       /* of the arcades */
-#define GROUND 4.9      /* height of the ground floor's arcade, floor to floor */
+#define LONG 9     /* bays along x */
+#define SHORT 5    /* along y */
+#define DEPTH 3.4  /* of the arcades */
+#define GROUND 4.9 /* height of the ground floor's arcade, floor to floor */
 #define UPPER 4.2
-#define PIER 0.34       /* half the thickness of the wall over the arches */
+#define PIER 0.34 /* half the thickness of the wall over the arches */
 
-typedef struct storey { double z, height, column, radius; } storey; /* floor, to the next; columns: to the arches' spring */
+/* floor, to the next; columns: to the arches' spring */
+typedef struct storey {
+    double z, height, column, radius;
+} storey;
 
 static const storey storeys[2] = { { 0, GROUND, 2.75, 0.26 }, { GROUND, UPPER, 2.3, 0.2 } };
 
-typedef struct materials { int stone, plaster, floor, tiles, cloth[3], iron; } materials;
+typedef struct materials {
+    int stone, plaster, floor, tiles, cloth[3], iron;
+} materials;
 
 /* ---- a bay: between two columns at x = 0 and x = BAY, of a wall whose middle is y = 0; the court is at y < 0 ---- */
 
 static void column(kit *k, const storey *s) {
     const double r = s->radius, h = s->column;
-    const double base[][2] = { { 0, 0.14 }, { 1.45 * r, 0.14 }, { 1.5 * r, 0.18 }, { 1.42 * r, 0.25 }, { 1.15 * r, 0.27 }, { 1.12 * r, 0.31 }, { 1.25 * r, 0.35 },
-                               { 1.2 * r, 0.39 }, { 1.0 * r, 0.42 } };
+    const double base[][2] = { { 0, 0.14 },        { 1.45 * r, 0.14 }, { 1.5 * r, 0.18 },
+                               { 1.42 * r, 0.25 }, { 1.15 * r, 0.27 }, { 1.12 * r, 0.31 },
+                               { 1.25 * r, 0.35 }, { 1.2 * r, 0.39 },  { 1.0 * r, 0.42 } };
     const double shaft[][2] = { { r, 0.42 }, { 1.0 * r, 0.3 * h }, { 0.95 * r, 0.6 * h }, { 0.84 * r, h - 0.48 } };
-    const double capital[][2] = { { 0.84 * r, h - 0.48 }, { 1.0 * r, h - 0.45 }, { 1.0 * r, h - 0.42 }, { 0.86 * r, h - 0.39 }, { 0.95 * r, h - 0.28 },
-                                  { 1.3 * r, h - 0.17 }, { 1.45 * r, h - 0.14 }, { 0, h - 0.14 } };
+    const double capital[][2] = { { 0.84 * r, h - 0.48 }, { 1.0 * r, h - 0.45 },  { 1.0 * r, h - 0.42 },
+                                  { 0.86 * r, h - 0.39 }, { 0.95 * r, h - 0.28 }, { 1.3 * r, h - 0.17 },
+                                  { 1.45 * r, h - 0.14 }, { 0, h - 0.14 } };
     kit_box(k, v3(-1.55 * r, -1.55 * r, 0), v3(1.55 * r, 1.55 * r, 0.14));
     kit_turned(k, 28, 14, &(kit_lathe){ .profile = base, .count = (int)NOC_COUNT(base), .smooth = true });
-    kit_turned(k, 60, 5, &(kit_lathe){ .profile = shaft, .count = (int)NOC_COUNT(shaft), .smooth = true, .flutes = 15, .depth = 0.1 });
+    kit_turned(k, 60, 5,
+               &(kit_lathe){
+                   .profile = shaft, .count = (int)NOC_COUNT(shaft), .smooth = true, .flutes = 15, .depth = 0.1 });
     kit_turned(k, 28, 12, &(kit_lathe){ .profile = capital, .count = (int)NOC_COUNT(capital), .smooth = true });
     kit_box(k, v3(-1.6 * r, -PIER - 0.04, h - 0.14), v3(1.6 * r, PIER + 0.04, h));
 }
 
-typedef struct arch { double radius, spring, top, y, out; } arch;
+typedef struct arch {
+    double radius, spring, top, y, out;
+} arch;
 
 /* Point of the arch at u: from its left foot over the crown to its right foot. */
 static vec3 arch_point(const arch *a, double u, double radius, double y) {
@@ -85,8 +96,9 @@ static void arcade_bay(kit *k, const storey *s) {
 }
 
 static void balustrade(kit *k, const storey *s) {
-    static const double baluster[][2] = { { 0.055, 0 }, { 0.06, 0.06 }, { 0.035, 0.1 }, { 0.05, 0.18 }, { 0.072, 0.3 }, { 0.06, 0.42 }, { 0.032, 0.58 },
-                                          { 0.036, 0.64 }, { 0.055, 0.7 } };
+    static const double baluster[][2] = { { 0.055, 0 },    { 0.06, 0.06 },  { 0.035, 0.1 },
+                                          { 0.05, 0.18 },  { 0.072, 0.3 },  { 0.06, 0.42 },
+                                          { 0.032, 0.58 }, { 0.036, 0.64 }, { 0.055, 0.7 } };
     const vec3 origin = k->origin;
     double from = 1.55 * s->radius, to = BAY - from;
     kit_box(k, v3(from, -0.09, 0), v3(to, 0.09, 0.12));
@@ -122,13 +134,17 @@ static void gallery(kit *k, const storey *s, const materials *m, bool doorway) {
 
 /* ---- cloths that hang from the upper gallery ---- */
 
-typedef struct drape { double width, length, phase; } drape;
+typedef struct drape {
+    double width, length, phase;
+} drape;
 
 static vec3 cloth(const void *shape, double u, double v) {
     const drape *d = shape;
-    double fold = 0.05 + 0.07 * v, wave = town_sin(4.5 * u + d->phase) + 0.4 * town_sin(10 * u + 0.35 * v + 2 * d->phase);
+    double fold = 0.05 + 0.07 * v,
+           wave = town_sin(4.5 * u + d->phase) + 0.4 * town_sin(10 * u + 0.35 * v + 2 * d->phase);
     double narrow = 1 - 0.16 * v * (1 - 0.3 * v);
-    return v3(0.5 * BAY + d->width * (u - 0.5) * narrow, -PIER - 0.3 - fold * wave - 0.12 * v, GROUND + 0.94 - d->length * v);
+    return v3(0.5 * BAY + d->width * (u - 0.5) * narrow, -PIER - 0.3 - fold * wave - 0.12 * v,
+              GROUND + 0.94 - d->length * v);
 }
 
 static void add_side(kit *k, const materials *m, int bays, vec3 from, double turns, int first_bay) {
@@ -168,7 +184,8 @@ static vec3 paving(const void *shape, double u, double v) {
 /* The rooms' corners, where two arcades meet. */
 static void corner(kit *k, const materials *m, double x, double y) {
     double sx = x < 0 ? -1 : 1, sy = y < 0 ? -1 : 1, deep = PIER + DEPTH + 0.35, top = GROUND + UPPER;
-    double x1 = x + sx * deep, y1 = y + sy * deep, lx = x < x1 ? x : x1, hx = x < x1 ? x1 : x, ly = y < y1 ? y : y1, hy = y < y1 ? y1 : y;
+    double x1 = x + sx * deep, y1 = y + sy * deep, lx = x < x1 ? x : x1, hx = x < x1 ? x1 : x, ly = y < y1 ? y : y1,
+           hy = y < y1 ? y1 : y;
     for (int s = 0; s < 2; s++)
         kit_box(k, v3(lx, ly, storeys[s].z + storeys[s].height - 0.25), v3(hx, hy, storeys[s].z + storeys[s].height));
     kit_box(k, v3(lx, sy < 0 ? ly : hy - 0.35, 0), v3(hx, sy < 0 ? ly + 0.35 : hy, top - 0.25));
@@ -188,22 +205,29 @@ static void lantern(kit *k, const materials *m, double half_width) {
     kit_turned(k, 32, 12, &(kit_lathe){ .profile = cap, .count = (int)NOC_COUNT(cap), .smooth = true });
     kit_place(k, v3(0, 0, 0), 0, 1);
     kit_flush(k, m->iron, "lantern");
-    const double luminance = 12000 / (4 * 3.14159265358979 * 3.14159265358979 * r * r); /* 12 klm: Phi = pi L 4 pi r^2 */
-    noc_light l = { .kind = NOC_LIGHT_SPHERE, .position = { 0, 0, z }, .radius = r, .name = "lantern",
+    /* 12 klm: Phi = pi L 4 pi r^2 */
+    const double luminance = 12000 / (4 * 3.14159265358979 * 3.14159265358979 * r * r);
+    noc_light l = { .kind = NOC_LIGHT_SPHERE,
+                    .position = { 0, 0, z },
+                    .radius = r,
+                    .name = "lantern",
                     .emission = { (float)(1.34 * luminance), (float)(0.95 * luminance), (float)(0.5 * luminance) } };
     kit_light(k, &l);
 }
 
 noc_status scene_atrium(noc_scene *scene, const noc_builtin_params *params) {
     kit k = kit_start(scene);
-    const materials m = { .stone = kit_material(&k, .52f, .48f, .41f, 0, 1), .plaster = kit_material(&k, .58f, .52f, .43f, 0, 1),
-                          .floor = kit_material(&k, .34f, .31f, .28f, .04f, .3f), .tiles = kit_material(&k, .32f, .16f, .10f, .02f, .7f),
-                          .cloth = { kit_material(&k, .45f, .06f, .05f, 0, 1), kit_material(&k, .07f, .13f, .38f, 0, 1), kit_material(&k, .10f, .30f, .12f, 0, 1) },
+    const materials m = { .stone = kit_material(&k, .52f, .48f, .41f, 0, 1),
+                          .plaster = kit_material(&k, .58f, .52f, .43f, 0, 1),
+                          .floor = kit_material(&k, .34f, .31f, .28f, .04f, .3f),
+                          .tiles = kit_material(&k, .32f, .16f, .10f, .02f, .7f),
+                          .cloth = { kit_material(&k, .45f, .06f, .05f, 0, 1), kit_material(&k, .07f, .13f, .38f, 0, 1),
+                                     kit_material(&k, .10f, .30f, .12f, 0, 1) },
                           .iron = kit_material(&k, .05f, .05f, .05f, .06f, .4f) };
     const double x = 0.5 * LONG * BAY, y = 0.5 * SHORT * BAY;
     kit_patch(&k, 32, 24, paving, NULL);
     kit_flush(&k, m.floor, "floor");
-    add_side(&k, &m, LONG, v3(x, -y, 0), 0.5, 0);   /* south, then on clockwise; the court is at each side's y < 0 */
+    add_side(&k, &m, LONG, v3(x, -y, 0), 0.5, 0); /* south, then on clockwise; the court is at each side's y < 0 */
     add_side(&k, &m, SHORT, v3(-x, -y, 0), 0.25, LONG);
     add_side(&k, &m, LONG, v3(-x, y, 0), 0, LONG + SHORT);
     add_side(&k, &m, SHORT, v3(x, y, 0), 0.75, 2 * LONG + SHORT);

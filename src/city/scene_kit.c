@@ -16,7 +16,8 @@ kit kit_start(noc_scene *scene) {
 noc_status kit_finish(kit *k) {
     array_free(&k->xyz);
     array_free(&k->indices);
-    return k->scene->no_memory ? NOC_ERR_MEMORY : k->failed ? NOC_ERR_ARGUMENT : NOC_OK; /* what failed was reported where it did */
+    /* what failed was reported where it did */
+    return k->scene->no_memory ? NOC_ERR_MEMORY : k->failed ? NOC_ERR_ARGUMENT : NOC_OK;
 }
 
 int kit_material(kit *k, float r, float g, float b, float f0, float roughness) {
@@ -35,8 +36,12 @@ void kit_place(kit *k, vec3 at, double turns, double size) {
 }
 
 void kit_flush(kit *k, int material, const char *name) {
-    noc_mesh mesh = { .vertex_count = k->xyz.len / 3, .positions = k->xyz.data, .triangle_count = k->indices.len / 3,
-                      .indices = k->indices.data, .material = material, .name = name };
+    noc_mesh mesh = { .vertex_count = k->xyz.len / 3,
+                      .positions = k->xyz.data,
+                      .triangle_count = k->indices.len / 3,
+                      .indices = k->indices.data,
+                      .material = material,
+                      .name = name };
     if (!k->failed && k->indices.len)
         k->failed = noc_scene_add_mesh(k->scene, &mesh) < 0;
     k->xyz.len = k->indices.len = 0;
@@ -90,7 +95,8 @@ void kit_box(kit *k, vec3 lo, vec3 hi) {
     vec3 p[8];
     for (int i = 0; i < 8; i++)
         p[i] = v3(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z);
-    static const int face[6][4] = { { 0, 2, 3, 1 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 4, 6, 2 }, { 1, 3, 7, 5 } };
+    static const int face[6][4] = { { 0, 2, 3, 1 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 },
+                                    { 2, 6, 7, 3 }, { 0, 4, 6, 2 }, { 1, 3, 7, 5 } };
     for (int i = 0; i < 6; i++)
         kit_quad(k, p[face[i][0]], p[face[i][1]], p[face[i][2]], p[face[i][3]]);
 }
@@ -102,8 +108,9 @@ static vec3 turned(const void *shape, double u, double v) {
     double f = at - i;
     for (int c = 0; c < 2; c++) {
         double p0 = l->profile[before][c], p1 = l->profile[i][c], p2 = l->profile[i + 1][c], p3 = l->profile[after][c];
-        q[c] = l->smooth ? p1 + 0.5 * f * (p2 - p0 + f * (2 * p0 - 5 * p1 + 4 * p2 - p3 + f * (3 * (p1 - p2) + p3 - p0)))
-                         : p1 + f * (p2 - p1);
+        q[c] = l->smooth
+                   ? p1 + 0.5 * f * (p2 - p0 + f * (2 * p0 - 5 * p1 + 4 * p2 - p3 + f * (3 * (p1 - p2) + p3 - p0)))
+                   : p1 + f * (p2 - p1);
     }
     double r = NOC_MAX(q[0], 0);
     if (l->flutes)
@@ -157,6 +164,9 @@ void kit_knotted(kit *k, int nu, int nv, const kit_knot *n) { kit_patch(k, nu, n
 void kit_light(kit *k, const noc_light *light) { k->failed = k->failed || noc_scene_add_light(k->scene, light) < 0; }
 
 void kit_camera(kit *k, vec3 eye, vec3 target, double fov_deg) {
-    noc_camera c = { .eye = { eye.x, eye.y, eye.z }, .target = { target.x, target.y, target.z }, .up = { 0, 0, 1 }, .fov_deg = fov_deg };
+    noc_camera c = { .eye = { eye.x, eye.y, eye.z },
+                     .target = { target.x, target.y, target.z },
+                     .up = { 0, 0, 1 },
+                     .fov_deg = fov_deg };
     k->failed = k->failed || noc_scene_set_camera(k->scene, &c) != NOC_OK;
 }

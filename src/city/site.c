@@ -72,7 +72,8 @@ bool site_free_spot(const noc_scene *scene, double *x, double *y, double z, doub
 }
 
 /* Mean direction of the spots that satisfy a test on the nearest ring where any does. */
-static bool nearest(const noc_scene *scene, uint32_t classes, double x, double y, double min_z, double reach, double mean[2]) {
+static bool nearest(const noc_scene *scene, uint32_t classes, double x, double y, double min_z, double reach,
+                    double mean[2]) {
     for (double r = 1; r <= reach; r += 1) {
         double sum[2] = { 0 };
         for (int i = 0; i < DIRECTIONS; i++) {

@@ -6,10 +6,10 @@
 
 #define HORIZON 9000.0 /* m at least, from the middle */
 #define RINGS 9
-#define DEEPEST 8.0    /* m a building's lowest walls are extended */
-#define DEEP 1.2       /* m those of its walls are that begin higher: more would close doors and passages */
-#define STEP 6.0       /* m between the points of a skirt */
-#define INTO 0.15      /* m that skirts reach into the ground */
+#define DEEPEST 8.0 /* m a building's lowest walls are extended */
+#define DEEP 1.2    /* m those of its walls are that begin higher: more would close doors and passages */
+#define STEP 6.0    /* m between the points of a skirt */
+#define INTO 0.15   /* m that skirts reach into the ground */
 
 void city_add_surroundings(noc_scene *scene, const double *rim, size_t count, int material) {
     if (count < 3 || count > 100000)
@@ -46,8 +46,12 @@ void city_add_surroundings(noc_scene *scene, const double *rim, size_t count, in
             memcpy(indices + t, quad, sizeof(quad));
             t += 6;
         }
-    noc_mesh mesh = { .vertex_count = (RINGS + 1) * count, .positions = xyz, .triangle_count = t / 3, .indices = indices,
-                      .material = material, .name = "surroundings" };
+    noc_mesh mesh = { .vertex_count = (RINGS + 1) * count,
+                      .positions = xyz,
+                      .triangle_count = t / 3,
+                      .indices = indices,
+                      .material = material,
+                      .name = "surroundings" };
     if (xyz && indices)
         noc_scene_add_backdrop(scene, &mesh);
     free(xyz);
@@ -122,8 +126,11 @@ void city_add_skirts(noc_scene *scene) {
         }
     }
     for (size_t m = 0; m < materials; m++) {
-        noc_mesh mesh = { .vertex_count = skirts[m].xyz.len / 3, .positions = skirts[m].xyz.data,
-                          .triangle_count = skirts[m].indices.len / 3, .indices = skirts[m].indices.data, .material = (int)m,
+        noc_mesh mesh = { .vertex_count = skirts[m].xyz.len / 3,
+                          .positions = skirts[m].xyz.data,
+                          .triangle_count = skirts[m].indices.len / 3,
+                          .indices = skirts[m].indices.data,
+                          .material = (int)m,
                           .name = "foundations" };
         if (mesh.triangle_count)
             noc_scene_add_mesh(scene, &mesh);

@@ -1,18 +1,23 @@
 /* town: the built-in city's own parts. Nothing outside procedural*.c uses this, but its random numbers and sines.
  *
- * The city is planned on a flat sheet: straight streets between convex blocks. Every point of the plan then goes through a
- * gentle warp, so that streets bend and no two blocks are alike. Walls stand on warped corners, so they stay plane.
- * Only +, -, *, / and sqrt decide anything (no libm functions whose last bit differs from one machine to the next). */
+ * The city is planned on a flat sheet: straight streets between convex blocks. Every point of the plan then goes
+ * through a gentle warp, so that streets bend and no two blocks are alike. Walls stand on warped corners, so they stay
+ * plane. Only +, -, *, / and sqrt decide anything (no libm functions whose last bit differs from one machine to the
+ * next). */
 #ifndef NOC_TOWN_H
 #define NOC_TOWN_H
 
 #include "scene/scene.h"
 
-typedef struct vec2 { double x, y; } vec2;
+typedef struct vec2 {
+    double x, y;
+} vec2;
 
 /* ---- random numbers: streams keyed by what they are for ---- */
 
-typedef struct town_rng { uint32_t state; } town_rng;
+typedef struct town_rng {
+    uint32_t state;
+} town_rng;
 
 uint32_t town_hash(uint32_t a, uint32_t b);
 double town_next(town_rng *rng); /* 0 <= x < 1 */
@@ -41,7 +46,11 @@ void town_poly_clip(town_poly *poly, vec2 a, vec2 d, town_way way);
 /* Moves every edge inwards by distance[its way]. */
 town_poly town_poly_inset(const town_poly *poly, const double distance[4]);
 
-typedef struct town_gap { double lo, hi; town_way kind; bool river; } town_gap; /* between two rows of blocks */
+typedef struct town_gap {
+    double lo, hi;
+    town_way kind;
+    bool river;
+} town_gap;                      /* between two rows of blocks */
 enum { TOWN_BLOCKS_MOST = 120 }; /* between two rims */
 typedef struct town_axis {
     struct {
@@ -50,20 +59,51 @@ typedef struct town_axis {
     } gaps; /* first and last are the rims of the city, of no width */
 } town_axis;
 
-#define TOWN_WATER -4.2      /* m, below the streets */
+#define TOWN_WATER -4.2 /* m, below the streets */
 #define TOWN_KERB 0.12
-#define TOWN_PROMENADE 4.5   /* width of the walk between quay street and river */
+#define TOWN_PROMENADE 4.5 /* width of the walk between quay street and river */
 #define TOWN_QUAY_STREET 8.0
 
 /* ---- surfaces ---- */
 
 typedef enum town_mat {
-    TM_WALL, TM_WALL_LAST = TM_WALL + 9,
-    TM_TILES, TM_TILES_DARK, TM_SLATE, TM_COPPER, TM_FLAT_ROOF,
-    TM_STONE, TM_CONCRETE, TM_METAL, TM_GLASS, TM_FRAME, TM_DOOR, TM_SHOP, TM_SHOP_DARK, TM_SHOP_FLOOR, TM_AWNING, TM_AWNING_LAST = TM_AWNING + 2,
-    TM_ROAD, TM_MARKING, TM_SIDEWALK, TM_KERBSTONE, TM_PAVING, TM_GRAVEL, TM_LAWN, TM_WATER, TM_QUAY, TM_BRIDGE,
-    TM_TRUNK, TM_LEAF, TM_LEAF_LAST = TM_LEAF + 3, TM_POLE, TM_WOOD,
-    TM_CAR, TM_CAR_LAST = TM_CAR + 5, TM_CAR_GLASS, TM_TYRE,
+    TM_WALL,
+    TM_WALL_LAST = TM_WALL + 9,
+    TM_TILES,
+    TM_TILES_DARK,
+    TM_SLATE,
+    TM_COPPER,
+    TM_FLAT_ROOF,
+    TM_STONE,
+    TM_CONCRETE,
+    TM_METAL,
+    TM_GLASS,
+    TM_FRAME,
+    TM_DOOR,
+    TM_SHOP,
+    TM_SHOP_DARK,
+    TM_SHOP_FLOOR,
+    TM_AWNING,
+    TM_AWNING_LAST = TM_AWNING + 2,
+    TM_ROAD,
+    TM_MARKING,
+    TM_SIDEWALK,
+    TM_KERBSTONE,
+    TM_PAVING,
+    TM_GRAVEL,
+    TM_LAWN,
+    TM_WATER,
+    TM_QUAY,
+    TM_BRIDGE,
+    TM_TRUNK,
+    TM_LEAF,
+    TM_LEAF_LAST = TM_LEAF + 3,
+    TM_POLE,
+    TM_WOOD,
+    TM_CAR,
+    TM_CAR_LAST = TM_CAR + 5,
+    TM_CAR_GLASS,
+    TM_TYRE,
     TM_COUNT
 } town_mat;
 
@@ -106,8 +146,8 @@ void town_light(town *t, const noc_light *light, int colour, double luminance);
 
 /* ---- walls (procedural_wall.c) ---- */
 
-/* A wall from a to b, facing right of that direction. mitre0/1: how far an edge sticks out at each end for every metre that
- * it stands before the wall, so that cornices meet around corners. */
+/* A wall from a to b, facing right of that direction. mitre0/1: how far an edge sticks out at each end for every metre
+ * that it stands before the wall, so that cornices meet around corners. */
 typedef struct town_wall {
     vec2 a, b, dir, out;
     double length, mitre0, mitre1;
@@ -115,7 +155,8 @@ typedef struct town_wall {
 
 town_wall town_wall_make(vec2 a, vec2 b);
 void town_wall_point(const town_wall *w, double s, double z, double before, double out[3]);
-void town_wall_rect(town *t, town_mat mat, const town_wall *w, double s0, double s1, double z0, double z1, double before);
+void town_wall_rect(town *t, town_mat mat, const town_wall *w, double s0, double s1, double z0, double z1,
+                    double before);
 /* A band along the whole wall that stands before it: cornices, plinths, slabs. */
 void town_wall_band(town *t, town_mat mat, const town_wall *w, double z0, double z1, double before);
 /* A parallelogram light on a wall. */
@@ -124,11 +165,11 @@ void town_wall_light(town *t, const town_wall *w, double s0, double s1, double z
 
 typedef struct town_facade {
     town_mat wall;
-    int storeys;                 /* above the ground floor */
-    double base;                 /* z of the pavement at the wall */
-    double ground, storey;       /* heights */
+    int storeys;                     /* above the ground floor */
+    double base;                     /* z of the pavement at the wall */
+    double ground, storey;           /* heights */
     double bay, width, height, sill; /* windows */
-    bool deep;                   /* windows in recesses with frames; else panes on the wall */
+    bool deep;                       /* windows in recesses with frames; else panes on the wall */
     bool shops, door, balconies, office;
     uint32_t seed;
 } town_facade;
@@ -154,14 +195,15 @@ void town_church(town *t, vec2 centre, vec2 dir);
 
 /* ---- street furniture; positions in world coordinates, z of the ground they stand on ---- */
 
-void town_tree(town *t, vec2 p, double z, double height, int sprays, uint32_t seed); /* sprays: triangles of its crown */
+/* sprays: triangles of its crown */
+void town_tree(town *t, vec2 p, double z, double height, int sprays, uint32_t seed);
 void town_arm_lamp(town *t, vec2 p, double z, vec2 to_road);
 void town_globe_lamp(town *t, vec2 p, double z, int colour);
 void town_bench(town *t, vec2 p, vec2 dir, double z);
 void town_car(town *t, vec2 p, vec2 dir, double z, bool lights, uint32_t seed);
 /* What stands along the kerb of a block: lamps, trees, parked cars. */
 void town_kerbside(town *t, const town_poly *block, int id);
-void town_roads(town *t);    /* carriageways and their markings */
+void town_roads(town *t);                                                  /* carriageways and their markings */
 void town_diagonal(const town *t, vec2 *a, vec2 *dir, double *half_width); /* the slanting avenue, in plan */
 
 #endif

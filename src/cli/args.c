@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ROW(n, f, h) { n, "General", NOC_OPTION_BOOL, offsetof(cli_args, f), 0, 1, NULL, "", h }
+#define ROW(n, f, h)                                                                                                   \
+    { n, "General", NOC_OPTION_BOOL, offsetof(cli_args, f), 0, 1, NULL, "", h }
 static const noc_option common_options[] = {
     ROW("quiet", quiet, "no summary, progress, notes or warnings: what was asked for, and errors"),
     ROW("verbose", verbose, "say more about what is read and done"),
@@ -16,7 +17,9 @@ static const noc_option common_options[] = {
 };
 const noc_option *cli_common_options(void) { return common_options; }
 
-bool cli_is_switch(const noc_option *option) { return option->kind == NOC_OPTION_BOOL || option->kind == NOC_OPTION_SWITCH; }
+bool cli_is_switch(const noc_option *option) {
+    return option->kind == NOC_OPTION_BOOL || option->kind == NOC_OPTION_SWITCH;
+}
 
 bool cli_hidden(const cli_set *set, const noc_option *option) {
     for (const char *const *name = set->hidden; name && *name; name++)
@@ -99,10 +102,12 @@ bool cli_parse_numbers(const char *text, char separator, size_t count, double *o
 }
 
 /* One option of the command by its long (short_name 0) or short name. */
-static const noc_option *find(const cli_command *command, const char *name, size_t length, char short_name, size_t *offset) {
+static const noc_option *find(const cli_command *command, const char *name, size_t length, char short_name,
+                              size_t *offset) {
     for (const cli_set *set = command->sets; set->table; set++) {
         for (const noc_option *o = set->table(); o->name; o++) {
-            bool match = short_name ? cli_short_name(o) == short_name : strlen(o->name) == length && !strncmp(o->name, name, length);
+            bool match = short_name ? cli_short_name(o) == short_name
+                                    : strlen(o->name) == length && !strncmp(o->name, name, length);
             if (match && !cli_hidden(set, o)) {
                 *offset = set->offset;
                 return o;
@@ -131,12 +136,14 @@ static int unknown(const cli_command *command, const char *given) {
     const char *nearest = cli_nearest(name + strspn(name, "-"), words, count);
     char shown[80];
     cli_clean(shown, sizeof(shown), given);
-    return nearest ? cli_usage(command, "no option %s; is it --%s?", shown, nearest) : cli_usage(command, "no option %s", shown);
+    return nearest ? cli_usage(command, "no option %s; is it --%s?", shown, nearest)
+                   : cli_usage(command, "no option %s", shown);
 }
 
 static void keep_message(void *user, noc_log_level level, const char *text) { snprintf(user, 256, "%s", text); }
 
-static int set_option(const cli_command *command, const noc_option *o, void *params, const char *value, cli_args *args) {
+static int set_option(const cli_command *command, const noc_option *o, void *params, const char *value,
+                      cli_args *args) {
     char message[256] = "";
     /* Which of two outputs is meant nobody can know; for the rest the last one wins, as scripts expect. */
     if (!strcmp(o->name, "output") && cli_given(args, "output"))

@@ -1,4 +1,5 @@
-/* Built-in scenes as inputs: "builtin:" and a name. They take options, so the program adds them; the library loads the rest. */
+/* Built-in scenes as inputs: "builtin:" and a name. They take options, so the program adds them; the library loads the
+ * rest. */
 #include "cli.h"
 
 #include <stdlib.h>
@@ -6,7 +7,9 @@
 
 #define BUILTIN "builtin:"
 
-const char *cli_builtin(const char *input) { return strncmp(input, BUILTIN, strlen(BUILTIN)) ? NULL : input + strlen(BUILTIN); }
+const char *cli_builtin(const char *input) {
+    return strncmp(input, BUILTIN, strlen(BUILTIN)) ? NULL : input + strlen(BUILTIN);
+}
 
 static bool among(const char *const *inputs, size_t count, const char *scene) {
     for (size_t i = 0; i < count; i++)
@@ -21,7 +24,9 @@ const char *cli_builtin_needed(const noc_option *option, const char *const *inpu
             return among(inputs, count, "city") ? NULL : "builtin:city";
     for (const noc_option *o = noc_builtin_options(); o->name; o++)
         if (o == option && !among(inputs, count, "mess"))
-            return !strcmp(o->name, "lights") ? "builtin:mess" : among(inputs, count, "cityscape") ? NULL : "builtin:cityscape or builtin:mess";
+            return !strcmp(o->name, "lights")          ? "builtin:mess"
+                   : among(inputs, count, "cityscape") ? NULL
+                                                       : "builtin:cityscape or builtin:mess";
     return NULL;
 }
 
@@ -38,12 +43,15 @@ void cli_add_lamps(cli_args *args, const noc_import_params *import) {
         for (size_t k = 0; k < args->input_count && !there; k++)
             there = !strcmp(args->inputs[k], import->lamps.text[i]);
         if (!there)
-            args->inputs[args->input_count++] = import->lamps.text[i]; /* there is room for every word of the command line */
+            /* there is room for every word of the command line */
+            args->inputs[args->input_count++] = import->lamps.text[i];
     }
 }
 
 /* By noc_lamp_default. */
-static const struct { const char *option, *what, *unit; } lamp_defaults[NOC_LAMP_DEFAULT_COUNT] = {
+static const struct {
+    const char *option, *what, *unit;
+} lamp_defaults[NOC_LAMP_DEFAULT_COUNT] = {
     [NOC_LAMP_HEIGHT] = { "lamp-height", "height", "m" },
     [NOC_LAMP_FLUX] = { "lamp-lumens", "flux", "lm each" },
     [NOC_LAMP_COLOUR] = { "lamp-kelvin", "colour", "K" },
@@ -54,7 +62,8 @@ void cli_note_chosen(const cli_args *args, noc_import_params *import) {
         import->lamp_chosen |= cli_given(args, lamp_defaults[i].option) ? 1u << i : 0;
 }
 
-void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAULT_COUNT], const noc_import_params *import) {
+void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAULT_COUNT],
+                       const noc_import_params *import) {
     const double values[] = { import->lamp_height, import->lamp_lumens, import->lamp_kelvin };
     char a[32];
     const char *before = heading;
@@ -76,7 +85,8 @@ noc_status cli_load_scene(noc_scene *scene, const char *const *inputs, size_t co
     noc_status status = NOC_OK;
     cli_nothing_to_keep(true);
     for (size_t i = 0; i < count && !status; i++) {
-        const char *name = among_lamps(import, inputs[i]) ? NULL : cli_builtin(inputs[i]); /* no file of lamps: an error */
+        /* no file of lamps: an error */
+        const char *name = among_lamps(import, inputs[i]) ? NULL : cli_builtin(inputs[i]);
         if (!name) {
             files[file_count++] = inputs[i];
         } else if (!among(inputs, i, name)) { /* once is enough */

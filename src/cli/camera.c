@@ -10,7 +10,8 @@ int cli_parse_camera(render_job *job) {
     if (args->target && !cli_parse_numbers(args->target, ',', 3, job->target))
         return cli_usage(&cli_render, "--target: \"%.60s\" is not X,Y,Z", args->target);
     if (!args->eye != !args->target)
-        return cli_usage(&cli_render, "--%s needs --%s too", args->eye ? "eye" : "target", args->eye ? "target" : "eye");
+        return cli_usage(&cli_render, "--%s needs --%s too", args->eye ? "eye" : "target",
+                         args->eye ? "target" : "eye");
     if (args->eye && cli_given(&args->common, "view"))
         return cli_usage(&cli_render, "--view and --eye exclude each other");
     if (args->camera_crs && !args->eye)
@@ -21,7 +22,8 @@ int cli_parse_camera(render_job *job) {
     double limit = args->camera_crs ? 1e9 : 1e7;
     for (int k = 0; k < 3; k++)
         if (!(fabs(job->eye[k]) < limit && fabs(job->target[k]) < limit))
-            return cli_usage(&cli_render, "--%s: \"%.60s\" is more than %g km away", fabs(job->eye[k]) < limit ? "target" : "eye",
+            return cli_usage(&cli_render, "--%s: \"%.60s\" is more than %g km away",
+                             fabs(job->eye[k]) < limit ? "target" : "eye",
                              fabs(job->eye[k]) < limit ? args->target : args->eye, limit / 1000);
     if (!memcmp(job->eye, job->target, sizeof(job->eye)))
         return cli_usage(&cli_render, "--eye and --target are the same place");
@@ -30,7 +32,7 @@ int cli_parse_camera(render_job *job) {
 
 #define FAR_AWAY 20 /* extents of the scene */
 
-#define NOWHERE 100   /* extents, */
+#define NOWHERE 100          /* extents, */
 #define NOWHERE_METRES 100e3 /* and this far: nothing of the scene is seen from there */
 
 static double distance_from(const noc_scene_info *scene, const double p[3]) {
@@ -51,7 +53,8 @@ static double exchanged_distance(const render_job *job) {
     return status ? INFINITY : distance_from(&job->scene_info, p);
 }
 
-/* A camera that is somewhat far away is warned of; one that is nowhere near draws an empty picture, which is an error. */
+/* A camera that is somewhat far away is warned of; one that is nowhere near draws an empty picture, which is an error.
+ */
 static noc_status check_distance(render_job *job) {
     const noc_scene_info *scene = &job->scene_info;
     double extent = 0, distance = distance_from(scene, job->camera.eye);
@@ -63,14 +66,16 @@ static noc_status check_distance(render_job *job) {
     job->far_away = true;
     double exchanged = nowhere ? exchanged_distance(job) : INFINITY;
     if (exchanged <= FAR_AWAY * extent) {
-        cli_error("the camera is %.6g km away from a scene of %.1f km; with the first two numbers of --eye exchanged "
-                  "it is %.1f km away: longitude comes before latitude, and easting before northing, whatever the CRS says",
-                  distance / 1000, extent / 1000, exchanged / 1000);
+        cli_error(
+            "the camera is %.6g km away from a scene of %.1f km; with the first two numbers of --eye exchanged "
+            "it is %.1f km away: longitude comes before latitude, and easting before northing, whatever the CRS says",
+            distance / 1000, extent / 1000, exchanged / 1000);
         return NOC_ERR_ARGUMENT;
     }
     const char *hint = job->args->camera_crs ? "are eye and --camera-crs right?"
-                       : scene->crs && *scene->crs ? "are these coordinates of the scene's CRS? then add --camera-crs scene"
-                                                   : "eye is in metres from the scene's origin";
+                       : scene->crs && *scene->crs
+                           ? "are these coordinates of the scene's CRS? then add --camera-crs scene"
+                           : "eye is in metres from the scene's origin";
     cli_error("%sthe camera is %.6g km away from a scene of %.1f km: %s", nowhere ? "" : "warning: ", distance / 1000,
               extent / 1000, hint);
     return nowhere ? NOC_ERR_ARGUMENT : NOC_OK;

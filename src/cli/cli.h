@@ -32,8 +32,8 @@ typedef struct cli_command {
     const char *notes;                      /* end of the help: examples */
     cli_set sets[CLI_SETS];                 /* ended by a NULL table */
     size_t args_size;
-    const void *defaults;                   /* args_size bytes; the first member is a cli_args */
-    int (*run)(void *args);                 /* returns the exit status */
+    const void *defaults;   /* args_size bytes; the first member is a cli_args */
+    int (*run)(void *args); /* returns the exit status */
 } cli_command;
 
 extern const cli_command cli_render, cli_info, cli_compare, cli_experiment;
@@ -41,64 +41,70 @@ extern const cli_command *const cli_commands[]; /* NULL-ended */
 const cli_command *cli_find_command(const char *name);
 
 /* args.c */
-const noc_option *cli_common_options(void); /* quiet, verbose, help: fields of cli_args */
+const noc_option *cli_common_options(void);   /* quiet, verbose, help: fields of cli_args */
 bool cli_is_switch(const noc_option *option); /* --name and --no-name, without a value */
 bool cli_hidden(const cli_set *set, const noc_option *option);
 int cli_parse(const cli_command *command, int argc, char **argv, void *args); /* CLI_OK or CLI_USAGE, reported */
 bool cli_given(const cli_args *args, const char *name);
-char cli_short_name(const noc_option *option);                                /* 'o' of output, 0 if none */
-const char *cli_nearest(const char *word, const char *const *words, size_t count); /* NULL if none is near */
+char cli_short_name(const noc_option *option);                                       /* 'o' of output, 0 if none */
+const char *cli_nearest(const char *word, const char *const *words, size_t count);   /* NULL if none is near */
 bool cli_parse_numbers(const char *text, char separator, size_t count, double *out); /* exactly count finite numbers */
 
 /* help.c */
 void cli_help(const cli_command *command, FILE *out); /* NULL: of the program */
-void cli_help_markdown(FILE *out);                     /* docs/options.md */
+void cli_help_markdown(FILE *out);                    /* docs/options.md */
 /* Texts for people; free() them. */
 char *cli_spell(const noc_option *o, const void *defaults); /* "--width N", "--[no-]jitter", "-o, --output FILE" */
 char *cli_spell_default(const noc_option *o, const void *defaults); /* "[10 px]", "[on]", "": absent by default */
 char *cli_option_value(const noc_option *o, const void *params);    /* as noc_option_get tells it */
 typedef void cli_visit(FILE *out, const noc_option *o, const void *defaults, int columns);
-/* Options of all the command's tables by group, groups in the order in which they first appear. heading is a format for the
- * group's name; NULL: no heading. */
+/* Options of all the command's tables by group, groups in the order in which they first appear. heading is a format for
+ * the group's name; NULL: no heading. */
 void cli_each_option(const cli_command *command, FILE *out, const char *heading, cli_visit *visit, int columns);
 
 /* pages.c and completion.c: made from the option tables too */
-void cli_man(FILE *out);                                 /* nocturne.1 */
-bool cli_completion(FILE *out, const char *shell);       /* for bash, zsh or fish; false: for none of them */
+void cli_man(FILE *out);                           /* nocturne.1 */
+bool cli_completion(FILE *out, const char *shell); /* for bash, zsh or fish; false: for none of them */
 
 /* text.c: messages and numbers for people and for machines. */
-void cli_error(const char *fmt, ...) NOC_PRINTF(1, 2);            /* one line on stderr, after "nocturne: " */
-int cli_usage(const cli_command *command, const char *fmt, ...) NOC_PRINTF(2, 3); /* the same, and where to read on; CLI_USAGE */
+void cli_error(const char *fmt, ...) NOC_PRINTF(1, 2); /* one line on stderr, after "nocturne: " */
+/* the same, and where to read on; CLI_USAGE */
+int cli_usage(const cli_command *command, const char *fmt, ...) NOC_PRINTF(2, 3);
 noc_log *cli_log_create(const cli_args *args);
-_Noreturn void cli_no_memory(void);                               /* says so, and ends the program */
-double cli_auto_ev100(const noc_image *image);                    /* noc_image_auto_ev100; ends the program when memory is gone */
-void *cli_alloc(size_t size);                                     /* zeroed; ends the program when memory is gone */
+_Noreturn void cli_no_memory(void); /* says so, and ends the program */
+/* noc_image_auto_ev100; ends the program when memory is gone */
+double cli_auto_ev100(const noc_image *image);
+void *cli_alloc(size_t size); /* zeroed; ends the program when memory is gone */
 char *cli_format(const char *fmt, ...) NOC_PRINTF(1, 2) __attribute__((nonnull(1))); /* free() it */
-const char *cli_count(char text[32], uint64_t n);                 /* 1234567 -> "1,234,567" */
-const char *cli_many(char text[64], uint64_t n, const char *noun); /* "1 light", "1,234 lights" */
-const char *cli_bytes(char text[32], uint64_t n);                 /* "4.1 MB" */
-const char *cli_seconds(char text[32], double s);                 /* "0.42 s", "2 min 05 s" */
+const char *cli_count(char text[32], uint64_t n);                                    /* 1234567 -> "1,234,567" */
+const char *cli_many(char text[64], uint64_t n, const char *noun);                   /* "1 light", "1,234 lights" */
+const char *cli_bytes(char text[32], uint64_t n);                                    /* "4.1 MB" */
+const char *cli_seconds(char text[32], double s);                                    /* "0.42 s", "2 min 05 s" */
 const char *cli_clean(char *text, size_t size, const char *from); /* control characters blanked, long text cut short */
 /* Ids of a report, comma separated, of which only whole ones are shown: the first, and as many more as fit; then how
  * many of the `count` features are left. free() it. */
 #define CLI_IDS_WIDTH 72
 char *cli_ids(const char *list, size_t count, size_t width);
-void cli_json_text(FILE *out, const char *text);                  /* quoted and escaped; valid UTF-8 whatever came in */
-void cli_json_number(FILE *out, double v);                        /* null where it is not finite */
-FILE *cli_open(const char *path);                                 /* a regular file, for reading (a pipe would hang); NULL after saying why */
-bool cli_flush(FILE *out);                                        /* false after saying that stdout could not be written */
+void cli_json_text(FILE *out, const char *text); /* quoted and escaped; valid UTF-8 whatever came in */
+void cli_json_number(FILE *out, double v);       /* null where it is not finite */
+/* a regular file, for reading (a pipe would hang); NULL after saying why */
+FILE *cli_open(const char *path);
+/* false after saying that stdout could not be written */
+bool cli_flush(FILE *out);
 
-/* progress.c: a bar on stderr where that is a terminal, else a line after ten seconds and then ever more rarely; and the
- * signals that end the work early. */
+/* progress.c: a bar on stderr where that is a terminal, else a line after ten seconds and then ever more rarely; and
+ * the signals that end the work early. */
 void cli_progress_start(bool quiet);
-void cli_progress_show(double done, double left, const char *fmt, ...) NOC_PRINTF(3, 4); /* left: seconds, < 0 unknown */
+/* left: seconds, < 0 unknown */
+void cli_progress_show(double done, double left, const char *fmt, ...) NOC_PRINTF(3, 4);
 void cli_progress_clear(void);
 bool cli_load_progress(void *user, const char *what, double done); /* for noc_progress; cancels when interrupted */
-void cli_catch_signals(void);  /* the first signal is remembered, the second ends the program */
-/* While there is nothing, an interruption is not waited on: half a second later the program ends. False when it starts. */
+void cli_catch_signals(void); /* the first signal is remembered, the second ends the program */
+/* While there is nothing, an interruption is not waited on: half a second later the program ends. False when it starts.
+ */
 void cli_nothing_to_keep(bool nothing);
-int cli_interrupted(void);     /* its number, 0 if there was none */
-double cli_now(void);          /* wall clock, seconds */
+int cli_interrupted(void); /* its number, 0 if there was none */
+double cli_now(void);      /* wall clock, seconds */
 
 /* builtin.c */
 const char *cli_builtin(const char *input); /* name of the built-in scene that an input is, NULL for a file */
@@ -109,20 +115,26 @@ void cli_add_lamps(cli_args *args, const noc_import_params *import);
 /* Which defaults of lamps the user has said, for --strict. */
 void cli_note_chosen(const cli_args *args, noc_import_params *import);
 /* A line on what lamps do not tell, and what is taken for it; nothing where they tell all. */
-void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAULT_COUNT], const noc_import_params *import);
+void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAULT_COUNT],
+                       const noc_import_params *import);
 /* All inputs as one committed scene. report may be NULL. */
 noc_status cli_load_scene(noc_scene *scene, const char *const *inputs, size_t count, const noc_builtin_params *builtin,
                           const noc_import_params *import, noc_report **report);
 
 /* render.c */
 /* Row of the option --preset, field preset of struct S. */
-#define CLI_PRESET(S, group) { "preset", group, NOC_OPTION_CHOICE, offsetof(S, preset), 0, 0, "still|interactive", "", \
-                               "settings for a still, or a moving camera; options beside it win" }
-int cli_parse_exposure(const cli_command *command, const char *text, noc_display_params *display); /* compare takes it too */
+#define CLI_PRESET(S, group)                                                                                           \
+    {                                                                                                                  \
+        "preset", group, NOC_OPTION_CHOICE, offsetof(S, preset), 0, 0, "still|interactive", "",                        \
+            "settings for a still, or a moving camera; options beside it win"                                          \
+    }
+/* compare takes it too */
+int cli_parse_exposure(const cli_command *command, const char *text, noc_display_params *display);
 
 /* output.c */
 typedef enum cli_ending { CLI_PNG = 1, CLI_EXR = 2, CLI_OBJ = 4 } cli_ending;
-/* Can path be written as one of these formats? Asked before the long work. CLI_OK, or an exit status after reporting. */
+/* Can path be written as one of these formats? Asked before the long work. CLI_OK, or an exit status after reporting.
+ */
 int cli_check_output(const cli_command *command, const char *path, int endings, const cli_args *args);
 
 #endif

@@ -14,7 +14,8 @@ typedef struct compare_args {
 
 #define A compare_args
 static const noc_option own_options[] = {
-    { "output", "Output", NOC_OPTION_TEXT, offsetof(A, output), 0, 0, NULL, "FILE", "difference picture to write, .png" },
+    { "output", "Output", NOC_OPTION_TEXT, offsetof(A, output), 0, 0, NULL, "FILE",
+      "difference picture to write, .png" },
     { "json", "Output", NOC_OPTION_BOOL, offsetof(A, json), 0, 1, NULL, "", "print JSON instead of a table" },
     { "ceiling", "Figures", NOC_OPTION_REAL, offsetof(A, compare.ceiling), 1e-6, 1e9, NULL, "cd/m2",
       "both pictures are cut off here in the clamped rows (not for PNG)" },
@@ -29,7 +30,9 @@ static const compare_args defaults = { .exposure = "auto", .compare = noc_compar
 static const char *const by_exposure[] = { "auto-exposure", "ev100", NULL };
 
 const cli_command cli_compare = {
-    "compare", "PICTURE REFERENCE", "Prints how far a picture is from a reference of the same size.",
+    "compare",
+    "PICTURE REFERENCE",
+    "Prints how far a picture is from a reference of the same size.",
     "RMSE-8 is on 8-bit sRGB, 0 to 255, both with the reference's exposure and one\n"
     "tone map; RMSE and relMSE are on linear luminance; bias is mean(picture) /\n"
     "mean(reference). Definitions: docs/estimator.md. PNG against PNG is compared as\n"
@@ -37,8 +40,12 @@ const cli_command cli_compare = {
     "both should have one exposure. PNG against EXR, and views (--show), are refused.\n"
     "Examples\n"
     "  nocturne compare restir.exr reference.exr -o difference.png\n",
-    { { options, 0, NULL }, { noc_display_options, offsetof(A, compare.display), by_exposure }, { cli_common_options, 0, NULL } },
-    sizeof(compare_args), &defaults, run,
+    { { options, 0, NULL },
+      { noc_display_options, offsetof(A, compare.display), by_exposure },
+      { cli_common_options, 0, NULL } },
+    sizeof(compare_args),
+    &defaults,
+    run,
 };
 
 static void print_row(const char *name, const noc_metrics *m) {
@@ -51,8 +58,8 @@ static void print_row(const char *name, const noc_metrics *m) {
 static void print_unlit(const noc_metrics *m) {
     char pixels[64];
     if (m->unlit && isfinite(m->relmse))
-        printf("  %s lit in the picture and 0 in the reference: %.3g %% of relMSE\n", cli_many(pixels, m->unlit, "pixel"),
-               100 * m->relmse_unlit / m->relmse);
+        printf("  %s lit in the picture and 0 in the reference: %.3g %% of relMSE\n",
+               cli_many(pixels, m->unlit, "pixel"), 100 * m->relmse_unlit / m->relmse);
 }
 
 static void print_output(const compare_args *args) {
@@ -66,7 +73,8 @@ static void print_table(const compare_args *args, const noc_comparison *c, const
     printf("%s against %s, %d x %d\n\n", cli_clean(a, sizeof(a), args->common.inputs[0]),
            cli_clean(b, sizeof(b), args->common.inputs[1]), image->width, image->height);
     bool relative = args->compare.relative;
-    printf("  %-28s %10s  %8s  %10s  %10s  %8s\n", "", "pixels", "RMSE-8", relative ? "RMSE" : "RMSE cd/m2", "relMSE", "bias");
+    printf("  %-28s %10s  %8s  %10s  %10s  %8s\n", "", "pixels", "RMSE-8", relative ? "RMSE" : "RMSE cd/m2", "relMSE",
+           "bias");
     print_row("all pixels", &c->all);
     if (relative) {
         print_unlit(&c->all);
@@ -83,15 +91,19 @@ static void print_table(const compare_args *args, const noc_comparison *c, const
         printf("  the reference has no emitter mask: no figures without emitters\n");
     }
     print_unlit(&c->all);
-    printf("\n  mean luminance %.6g against %.6g cd/m2; RMSE-8 at EV100 %.2f\n", c->all.mean_x, c->all.mean_r, c->ev100);
+    printf("\n  mean luminance %.6g against %.6g cd/m2; RMSE-8 at EV100 %.2f\n", c->all.mean_x, c->all.mean_r,
+           c->ev100);
     print_output(args);
 }
 
 static void json_row(const char *name, const noc_metrics *m, bool last) {
-    const struct { const char *key; double value; } fields[] = {
-        { "pixels", (double)m->pixels }, { "rmse8", m->rmse8 }, { "rmse", m->rmse }, { "relmse", m->relmse },
-        { "bias", m->bias }, { "mean", m->mean_x }, { "mean_reference", m->mean_r },
-        { "unlit", (double)m->unlit }, { "relmse_unlit", m->relmse_unlit },
+    const struct {
+        const char *key;
+        double value;
+    } fields[] = {
+        { "pixels", (double)m->pixels }, { "rmse8", m->rmse8 },         { "rmse", m->rmse },
+        { "relmse", m->relmse },         { "bias", m->bias },           { "mean", m->mean_x },
+        { "mean_reference", m->mean_r }, { "unlit", (double)m->unlit }, { "relmse_unlit", m->relmse_unlit },
     };
     printf("  \"%s\": {", name);
     for (size_t i = 0; i < sizeof(fields) / sizeof(*fields); i++) {
@@ -111,7 +123,8 @@ static void print_json(const compare_args *args, const noc_comparison *c, const 
         cli_json_text(stdout, args->output);
     }
     bool relative = args->compare.relative, mask = c->has_mask && !relative;
-    printf(",\n  \"width\": %d, \"height\": %d, \"unit\": \"%s\"", image->width, image->height, relative ? "white" : "cd/m2");
+    printf(",\n  \"width\": %d, \"height\": %d, \"unit\": \"%s\"", image->width, image->height,
+           relative ? "white" : "cd/m2");
     if (!relative) {
         printf(", \"ceiling\": ");
         cli_json_number(stdout, c->ceiling);
@@ -137,7 +150,7 @@ static noc_status write_difference(const compare_args *args, const noc_image *x,
     if (status)
         return status;
     const char *keys[] = { "picture" }, *values[] = { relative ? "signed difference of luminance, white = 1"
-                                                                      : "signed difference of luminance, cd/m2" };
+                                                               : "signed difference of luminance, cd/m2" };
     status = noc_image_write_srgb8(rgb, width, height, args->output, &(noc_image_meta){ 1, keys, values }, log);
     free(rgb);
     return status;
@@ -150,7 +163,8 @@ static noc_status check_comparable(const compare_args *args, noc_image *const pi
         if (!*pictures[i]->channel)
             continue;
         cli_error("%s: it holds the view \"%s\", no luminance: pictures alone are compared",
-                  cli_clean(shown, sizeof(shown), args->common.inputs[i]), cli_clean(name, sizeof(name), pictures[i]->channel));
+                  cli_clean(shown, sizeof(shown), args->common.inputs[i]),
+                  cli_clean(name, sizeof(name), pictures[i]->channel));
         return NOC_ERR_ARGUMENT;
     }
     if (linear[0] != linear[1]) {
@@ -160,8 +174,10 @@ static noc_status check_comparable(const compare_args *args, noc_image *const pi
     }
     double one = pictures[0]->ev100, other = pictures[1]->ev100;
     if (fabs(one - other) >= 0.005 && !args->common.quiet) /* false where one is not told */
-        cli_error("warning: the exposures differ, EV100 %.2f and %.2f: the figures hold that difference too. Render both with one "
-                  "--exposure, or compare .exr", one, other);
+        cli_error(
+            "warning: the exposures differ, EV100 %.2f and %.2f: the figures hold that difference too. Render both with one "
+            "--exposure, or compare .exr",
+            one, other);
     return NOC_OK;
 }
 

@@ -35,7 +35,9 @@ static bool takes_files(const noc_option *o) {
 }
 
 /* The forms of an option that say something: of a switch that is on, --no-name; of one that is automatic, either. */
-typedef struct forms { bool name, negated; } forms;
+typedef struct forms {
+    bool name, negated;
+} forms;
 static forms forms_of(const noc_option *o, const void *defaults) {
     bool on = cli_is_switch(o) && *((const char *)defaults + o->offset);
     return (forms){ !on || o->kind == NOC_OPTION_SWITCH, on };
@@ -72,10 +74,12 @@ static void bash(FILE *out) {
           "    local word=${COMP_WORDS[at]} before=${COMP_WORDS[at-1]} words=\n"
           "    case $word in =|:) before=$word word= at=$((at + 1)) ;; esac\n"
           "    [ \"$before\" = = ] && before=${COMP_WORDS[at-2]}\n"
-          "    if [ \"$before\" = : ] && [ \"${COMP_WORDS[at-2]}\" = builtin ]; then\n        files= words='", out);
+          "    if [ \"$before\" = : ] && [ \"${COMP_WORDS[at-2]}\" = builtin ]; then\n        files= words='",
+          out);
     builtins(out, "");
     fputs("'\n    elif [ \"$COMP_CWORD\" = 1 ] || [ \"${COMP_WORDS[1]}:$COMP_CWORD\" = help:2 ]; then\n"
-          "        files= words='", out);
+          "        files= words='",
+          out);
     commands(out);
     fputs("'\n    else\n        case ${COMP_WORDS[1]} in\n", out);
     for (const cli_command *const *c = cli_commands; *c; c++) {
@@ -84,7 +88,8 @@ static void bash(FILE *out) {
         fputs("            *) case $word in\n", out);
         if (takes_builtins(*c))
             fputs("                b|bu*) [[ builtin: = \"$word\"* ]] && words=builtin: && "
-                  "compopt -o nospace 2>/dev/null ;;\n", out);
+                  "compopt -o nospace 2>/dev/null ;;\n",
+                  out);
         fputs("                -*) files= words='", out);
         cli_each_option(*c, out, NULL, bash_word, 0);
         fputs("' ;;\n                esac ;;\n            esac ;;\n", out);
@@ -92,7 +97,8 @@ static void bash(FILE *out) {
     fputs("        esac\n    fi\n    mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$word\"\n"
           "        [ \"$words\" = builtin: ] && compgen -f -- \"$word\")\n"
           "    [ \"$files\" ] || compopt +o default 2>/dev/null\n}\n"
-          "complete -o default -F _nocturne nocturne\n", out);
+          "complete -o default -F _nocturne nocturne\n",
+          out);
 }
 
 /* Help text within single quotes and, for zsh, within brackets. */
@@ -135,10 +141,12 @@ static void zsh_option(FILE *out, const noc_option *o, const void *defaults, int
 
 static void zsh(FILE *out) {
     fputs("#compdef nocturne\n_nocturne() {\n    if (( CURRENT == 2 )) || [[ $words[2]:$CURRENT == help:3 ]]; then\n"
-          "        compadd ", out);
+          "        compadd ",
+          out);
     commands(out);
     fputs("\n        return\n    fi\n    local command=$words[2] inputs=_files\n"
-          "    [[ $PREFIX == b* ]] && inputs='_alternative \"scene:scene:(", out);
+          "    [[ $PREFIX == b* ]] && inputs='_alternative \"scene:scene:(",
+          out);
     builtins(out, "builtin\\:");
     fputs(")\" \"file:file:_files\"'\n    shift words\n    (( CURRENT-- ))\n    case $command in\n", out);
     for (const cli_command *const *c = cli_commands; *c; c++) {
@@ -184,7 +192,8 @@ static void fish(FILE *out) {
     fputs("function __nocturne_at\n    set -l words (commandline -opc)\n    test \"$words[2]\" = $argv[1]\nend\n"
           "function __nocturne_command\n    set -l words (commandline -opc)\n"
           "    test (count $words) = 1; or test \"$words[2]\" = help -a (count $words) = 2\nend\n"
-          "complete -c nocturne -n __nocturne_command -f -a '", out);
+          "complete -c nocturne -n __nocturne_command -f -a '",
+          out);
     commands(out);
     fputs("'\n", out);
     for (const cli_command *const *c = cli_commands; *c; c++) {
@@ -204,8 +213,10 @@ static void fish(FILE *out) {
 }
 
 bool cli_completion(FILE *out, const char *shell) {
-    static const struct { const char *name; void (*write)(FILE *out); } shells[] = {
-        { "bash", bash }, { "zsh", zsh }, { "fish", fish } };
+    static const struct {
+        const char *name;
+        void (*write)(FILE *out);
+    } shells[] = { { "bash", bash }, { "zsh", zsh }, { "fish", fish } };
     for (size_t i = 0; i < sizeof(shells) / sizeof(*shells); i++)
         if (!strcmp(shells[i].name, shell)) {
             shells[i].write(out);

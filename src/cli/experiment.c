@@ -24,7 +24,9 @@ static int run(void *arguments);
 static const experiment_args defaults = { .threads = 0 };
 
 const cli_command cli_experiment = {
-    "experiment", "SPEC [-o FOLDER]", "Measures error and time of methods and settings against a reference, as a JSON file says.",
+    "experiment",
+    "SPEC [-o FOLDER]",
+    "Measures error and time of methods and settings against a reference, as a JSON file says.",
     "FOLDER gets results.csv, plots (SVG), first frames side by side (PNG) and\n"
     "report.md. What a spec may hold is told in docs/experiments.md; some are ready\n"
     "in experiments/.\n"
@@ -32,7 +34,9 @@ const cli_command cli_experiment = {
     "  nocturne experiment experiments/methods-and-bias.json -o methods\n"
     "Ctrl-C ends with status 130; the same command goes on where it stopped.\n",
     { { options, 0, NULL }, { cli_common_options, 0, NULL } },
-    sizeof(experiment_args), &defaults, run,
+    sizeof(experiment_args),
+    &defaults,
+    run,
 };
 
 /* Makes a folder and those above it. */
@@ -111,7 +115,8 @@ static int reserve(experiment_lab *lab) {
     if (room)
         return CLI_OK;
     char text[32];
-    cli_error("no memory for pictures of %d x %d (%s)", lab->spec.width, lab->spec.height, cli_bytes(text, sizeof(double) * 3 * pixels + others));
+    cli_error("no memory for pictures of %d x %d (%s)", lab->spec.width, lab->spec.height,
+              cli_bytes(text, sizeof(double) * 3 * pixels + others));
     return CLI_FAILURE;
 }
 
@@ -177,14 +182,18 @@ static int work(experiment_lab *lab) {
         }
     }
     if (status > CLI_INTERRUPTED && lab->reference_lost)
-        cli_error("interrupted: %s in %s/results.csv; the same command goes on there, but begins this reference anew: the %s of %d that were there are lost",
-                  cli_many(rows, lab->rows_done, "row"), lab->folder, cli_many(frames, (uint64_t)lab->reference_lost, "frame"), spec->reference.frames);
+        cli_error(
+            "interrupted: %s in %s/results.csv; the same command goes on there, but begins this reference anew: the %s of %d that were there are lost",
+            cli_many(rows, lab->rows_done, "row"), lab->folder,
+            cli_many(frames, (uint64_t)lab->reference_lost, "frame"), spec->reference.frames);
     else if (status > CLI_INTERRUPTED)
-        cli_error("interrupted: %s in %s/results.csv; the same command goes on there", cli_many(rows, lab->rows_done, "row"), lab->folder);
+        cli_error("interrupted: %s in %s/results.csv; the same command goes on there",
+                  cli_many(rows, lab->rows_done, "row"), lab->folder);
     status = status ? status : experiment_tidy_table(lab);
     status = status ? status : experiment_write_report(lab);
     if (!status && !lab->args->common.quiet)
-        printf("%s/report.md: %s, %zu of them made now\n", lab->folder, cli_many(rows, lab->rows_done, "row"), lab->rows_done - lab->rows_old);
+        printf("%s/report.md: %s, %zu of them made now\n", lab->folder, cli_many(rows, lab->rows_done, "row"),
+               lab->rows_done - lab->rows_old);
     return status;
 }
 

@@ -35,10 +35,12 @@ static const noc_option inset_options[] = {
 static const noc_option *inset_table(void) { return inset_options; }
 static const cli_set inset_sets[] = { { inset_table, 0, NULL }, { NULL } };
 static const char *const inset_others[] = { "name", NULL };
-static const char *const camera_others[] = { "name", "path", "insets", NULL }, *const path_others[] = { "before", NULL };
+static const char *const camera_others[] = { "name", "path", "insets", NULL }, *const path_others[] = { "before",
+                                                                                                        NULL };
 
 /* others: members of the object that are no options of a pose. */
-static int read_pose(experiment_spec *spec, const char *place, json_t *object, const char *const *others, experiment_pose *pose) {
+static int read_pose(experiment_spec *spec, const char *place, json_t *object, const char *const *others,
+                     experiment_pose *pose) {
     render_args *args = &pose->args;
     *args = *(const render_args *)cli_render.defaults;
     int status = experiment_set_all(spec, place, object, pose_sets, others, args);
@@ -50,7 +52,8 @@ static int read_pose(experiment_spec *spec, const char *place, json_t *object, c
         return experiment_wrong(spec, place, "view and eye exclude each other");
     if (args->camera_crs && !args->eye)
         return experiment_wrong(spec, place, "camera-crs is for eye and target");
-    if (args->eye && (!cli_parse_numbers(args->eye, ',', 3, pose->eye) || !cli_parse_numbers(args->target, ',', 3, pose->target)))
+    if (args->eye &&
+        (!cli_parse_numbers(args->eye, ',', 3, pose->eye) || !cli_parse_numbers(args->target, ',', 3, pose->target)))
         return experiment_wrong(spec, place, "eye and target are three numbers each, [x, y, z]");
     if (args->eye && !memcmp(pose->eye, pose->target, sizeof(pose->eye)))
         return experiment_wrong(spec, place, "eye and target are the same place");
@@ -71,7 +74,8 @@ static int read_path(experiment_spec *spec, const char *place, json_t *path, C *
         return experiment_wrong(spec, place, "dolly is [right, forward, up], metres from the first frame to the last");
     json_t *before = json_object_get(path, "before");
     if (!camera->cut != !before)
-        return experiment_wrong(spec, place, "cut and before come together: how many frames another camera sees first, and that camera");
+        return experiment_wrong(
+            spec, place, "cut and before come together: how many frames another camera sees first, and that camera");
     if (camera->cut >= camera->frames)
         return experiment_wrong(spec, place, "cut: frames must be left after it");
     char inner[96];
@@ -83,7 +87,9 @@ static int read_insets(experiment_spec *spec, const char *place, json_t *insets,
     size_t i;
     json_t *object;
     if (insets && (!json_is_array(insets) || json_array_size(insets) > EXPERIMENT_INSETS))
-        return experiment_wrong(spec, place, "insets must be an array of up to %d, {\"name\": ..., \"box\": [x, y, width, height]}", EXPERIMENT_INSETS);
+        return experiment_wrong(spec, place,
+                                "insets must be an array of up to %d, {\"name\": ..., \"box\": [x, y, width, height]}",
+                                EXPERIMENT_INSETS);
     json_array_foreach(insets, i, object) {
         experiment_inset *inset = &camera->insets[i];
         char inner[96];
@@ -93,7 +99,8 @@ static int read_insets(experiment_spec *spec, const char *place, json_t *insets,
         if (status)
             return status;
         if (!inset->text || !experiment_read_box(inset->text, spec->width, spec->height, inset->box))
-            return experiment_wrong(spec, inner, "box must be [x, y, width, height] inside the picture of %d x %d px", spec->width, spec->height);
+            return experiment_wrong(spec, inner, "box must be [x, y, width, height] inside the picture of %d x %d px",
+                                    spec->width, spec->height);
         camera->inset_count++;
     }
     return CLI_OK;
@@ -112,7 +119,8 @@ static int read_camera(experiment_spec *spec, const char *place, json_t *object,
 int experiment_read_cameras(experiment_spec *spec, const char *place, json_t *cameras, size_t scene) {
     size_t count = json_array_size(cameras), first = spec->camera_count;
     if (!count)
-        return experiment_wrong(spec, place, "it needs cameras, an array that is not empty; here, or once for all scenes");
+        return experiment_wrong(spec, place,
+                                "it needs cameras, an array that is not empty; here, or once for all scenes");
     int few = experiment_too_many(spec, place, first + count, EXPERIMENT_ENTRIES, "cameras");
     if (few)
         return few;
@@ -127,7 +135,8 @@ int experiment_read_cameras(experiment_spec *spec, const char *place, json_t *ca
             return status;
         for (size_t j = first; j + 1 < spec->camera_count; j++)
             if (!strcmp(spec->cameras[j].name, camera->name))
-                return experiment_wrong(spec, *place ? place : "cameras", "the name \"%s\" is given twice", camera->name);
+                return experiment_wrong(spec, *place ? place : "cameras", "the name \"%s\" is given twice",
+                                        camera->name);
     }
     return CLI_OK;
 }
@@ -135,7 +144,9 @@ int experiment_read_cameras(experiment_spec *spec, const char *place, json_t *ca
 static int place(experiment_lab *lab, size_t scene, experiment_pose *pose, noc_camera *camera) {
     pose->args.render.width = lab->spec.width;
     pose->args.render.height = lab->spec.height;
-    render_job job = { .args = &pose->args, .scene = lab->scene, .log = lab->log, .scene_info = lab->scene_infos[scene] };
+    render_job job = {
+        .args = &pose->args, .scene = lab->scene, .log = lab->log, .scene_info = lab->scene_infos[scene]
+    };
     memcpy(job.eye, pose->eye, sizeof(job.eye));
     memcpy(job.target, pose->target, sizeof(job.target));
     if (cli_place_camera(&job))
@@ -167,8 +178,8 @@ static void right_of(const noc_camera *camera, const double forward[3], double r
         right[k] /= length;
 }
 
-/* The way from the first frame to the last is gone backwards from the pose: turned about the eye, moved along the axes that it
- * has at the pose, turned about the target. */
+/* The way from the first frame to the last is gone backwards from the pose: turned about the eye, moved along the axes
+ * that it has at the pose, turned about the target. */
 noc_camera experiment_camera_at(const experiment_lab *lab, size_t index, int frame) {
     const C *path = &lab->spec.cameras[index];
     if (!path->frames || frame >= path->frames)
@@ -187,7 +198,8 @@ noc_camera experiment_camera_at(const experiment_lab *lab, size_t index, int fra
     right_of(&camera, forward, right);
     turn(sight, back * path->pan * degrees);
     for (int k = 0; k < 3; k++) {
-        camera.eye[k] += back * (path->dolly[0] * right[k] + path->dolly[1] * forward[k] + (k == 2 ? path->dolly[2] : 0));
+        camera.eye[k] +=
+            back * (path->dolly[0] * right[k] + path->dolly[1] * forward[k] + (k == 2 ? path->dolly[2] : 0));
         camera.target[k] = camera.eye[k] + sight[k];
     }
     turn(sight, back * path->orbit * degrees);

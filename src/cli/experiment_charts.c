@@ -1,4 +1,5 @@
-/* Charts over all cameras of an experiment: frame times as bars, and errors as dots, a panel for each camera and frame. */
+/* Charts over all cameras of an experiment: frame times as bars, and errors as dots, a panel for each camera and frame.
+ */
 #include "experiment_svg.h"
 
 #include <math.h>
@@ -6,7 +7,16 @@
 #include <string.h>
 
 enum {
-    BAR_MOST = 24, NAME_MAX_CHARS = 40, CHAR = 7, LINE = 20, TOP = 44, GAP = 26, BARS_WIDTH = 480, PANEL_WIDTH = 220, PANEL_GAP = 36, BOTTOM = 34,
+    BAR_MOST = 24,
+    NAME_MAX_CHARS = 40,
+    CHAR = 7,
+    LINE = 20,
+    TOP = 44,
+    GAP = 26,
+    BARS_WIDTH = 480,
+    PANEL_WIDTH = 220,
+    PANEL_GAP = 36,
+    BOTTOM = 34,
     DOT_MOST = 60
 };
 
@@ -21,7 +31,8 @@ static int name_width(const experiment_lab *lab, bool rows) {
 }
 
 static void words(FILE *out, double x, double y, const char *anchor, const char *style, const char *text) {
-    fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\"%s>", x, y, anchor, style);
+    fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\"%s>", x, y, anchor,
+            style);
     svg_text(out, text, 100);
     fprintf(out, "</text>\n");
 }
@@ -83,11 +94,12 @@ int experiment_bars(const experiment_lab *lab, const char *name) {
             if (off > 0)
                 snprintf(spread, sizeof(spread), " \302\261 %.2g", off);
             snprintf(text, sizeof(text), "%.3g%s", ms, spread);
-            fprintf(out, "<rect class=\"m%d\" fill=\"%s\" x=\"%d\" y=\"%.1f\" width=\"%.1f\" height=\"%d\"/>\n", style.colour,
-                    svg_colours[style.colour], left, y + 2, BARS_WIDTH * ms / end, LINE - 5);
+            fprintf(out, "<rect class=\"m%d\" fill=\"%s\" x=\"%d\" y=\"%.1f\" width=\"%.1f\" height=\"%d\"/>\n",
+                    style.colour, svg_colours[style.colour], left, y + 2, BARS_WIDTH * ms / end, LINE - 5);
             if (off > 0)
-                fprintf(out, "<path class=\"frame\" fill=\"none\" stroke=\"#555555\" d=\"M%.1f %.1fH%.1f\"/>\n", left + BARS_WIDTH * fmax(ms - off, 0) / end,
-                        y + 0.5 * LINE - 0.5, left + BARS_WIDTH * (ms + off) / end);
+                fprintf(out, "<path class=\"frame\" fill=\"none\" stroke=\"#555555\" d=\"M%.1f %.1fH%.1f\"/>\n",
+                        left + BARS_WIDTH * fmax(ms - off, 0) / end, y + 0.5 * LINE - 0.5,
+                        left + BARS_WIDTH * (ms + off) / end);
             words(out, left + BARS_WIDTH * (ms + off) / end + 5, y + 13, "start", "", text);
         }
     }
@@ -142,12 +154,15 @@ static void panel(FILE *out, const experiment_lab *lab, size_t camera, experimen
     x.to = left + PANEL_WIDTH;
     svg_grid(out, &x, true, &y);
     for (int r = 0; r < rows; r++)
-        fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%d %dh%d\"/>\n", left, top + r * LINE + LINE / 2, PANEL_WIDTH);
-    fprintf(out, "<rect class=\"frame\" fill=\"none\" stroke=\"#555555\" x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\"/>\n", left, top, PANEL_WIDTH,
-            rows * LINE);
+        fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%d %dh%d\"/>\n", left, top + r * LINE + LINE / 2,
+                PANEL_WIDTH);
+    fprintf(out,
+            "<rect class=\"frame\" fill=\"none\" stroke=\"#555555\" x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\"/>\n",
+            left, top, PANEL_WIDTH, rows * LINE);
     words(out, left + PANEL_WIDTH / 2, top - 7, "middle", "", experiment_point_name(spec, camera, point));
     for (size_t i = 0; i < spec->config_count; i++) {
-        double error, v = experiment_at_point(lab, camera, i, point, experiment_column(spec), &error), at = top + row_of(spec, i) * LINE + LINE / 2;
+        double error, v = experiment_at_point(lab, camera, i, point, experiment_column(spec), &error),
+                      at = top + row_of(spec, i) * LINE + LINE / 2;
         svg_style style = svg_style_of(spec, i);
         if (shares_rows(spec))
             style.marker = style.dot;
@@ -189,7 +204,8 @@ bool experiment_has_dots(const experiment_spec *spec) { return row_count(spec) <
 /* Cameras with one frame to show stand side by side, up to four; true where this one starts a line of panels. */
 static bool starts_line(const experiment_spec *spec, size_t camera, int *column) {
     experiment_point points[EXPERIMENT_POINTS];
-    bool beside = camera && *column < 4 && experiment_points(spec, camera, points) == 1 && experiment_points(spec, camera - 1, points) == 1;
+    bool beside = camera && *column < 4 && experiment_points(spec, camera, points) == 1 &&
+                  experiment_points(spec, camera - 1, points) == 1;
     *column = beside ? *column + 1 : 1;
     return !beside;
 }

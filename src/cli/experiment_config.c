@@ -1,12 +1,13 @@
-/* Configurations of an experiment. One entry of the spec may stand for several: an option with an array of values, or a choice
- * with "*", makes one of each. */
+/* Configurations of an experiment. One entry of the spec may stand for several: an option with an array of values, or a
+ * choice with "*", makes one of each. */
 #include "experiment.h"
 
 #include <jansson.h>
 #include <string.h>
 
 static const noc_option config_options[] = {
-    { "frames", "Configuration", NOC_OPTION_INT, offsetof(experiment_config, frames), 1, EXPERIMENT_FRAMES, NULL, "", "" },
+    { "frames", "Configuration", NOC_OPTION_INT, offsetof(experiment_config, frames), 1, EXPERIMENT_FRAMES, NULL, "",
+      "" },
     { "seconds", "Configuration", NOC_OPTION_REAL, offsetof(experiment_config, seconds), 0, 1e6, NULL, "s", "" },
     { NULL },
 };
@@ -17,8 +18,10 @@ static const noc_option preset_options[] = {
 static const noc_option *config_table(void) { return config_options; }
 static const noc_option *preset_table(void) { return preset_options; }
 static const char *const said_above[] = { "width", "height", "seed", "accumulate", NULL };
-#define RENDER_SETS { preset_table, 0, NULL }, { noc_render_options, offsetof(experiment_config, params), said_above }
-static const cli_set shared_sets[] = { RENDER_SETS, { NULL } }, config_sets[] = { { config_table, 0, NULL }, RENDER_SETS, { NULL } };
+#define RENDER_SETS                                                                                                    \
+    { preset_table, 0, NULL }, { noc_render_options, offsetof(experiment_config, params), said_above }
+static const cli_set shared_sets[] = { RENDER_SETS, { NULL } },
+                     config_sets[] = { { config_table, 0, NULL }, RENDER_SETS, { NULL } };
 static const char *const named[] = { "name", NULL };
 
 /* The option of an entry that stands for several of its values. *status where more than one does. */
@@ -78,9 +81,10 @@ static experiment_config *add(experiment_spec *spec, const experiment_config *sh
     return config;
 }
 
-/* Options of one object. Its preset comes before all others, wherever it stands: they win over it, as on the command line. */
-static int read_options(experiment_spec *spec, const char *place, json_t *object, const cli_set *sets, const char *const *others,
-                        experiment_config *config) {
+/* Options of one object. Its preset comes before all others, wherever it stands: they win over it, as on the command
+ * line. */
+static int read_options(experiment_spec *spec, const char *place, json_t *object, const cli_set *sets,
+                        const char *const *others, experiment_config *config) {
     json_t *preset = json_object_get(object, "preset");
     int status = preset ? experiment_set(spec, place, sets, NULL, config, "preset", preset) : CLI_OK;
     if (!status && preset)
@@ -88,8 +92,8 @@ static int read_options(experiment_spec *spec, const char *place, json_t *object
     return status ? status : experiment_set_all(spec, place, object, sets, others, config);
 }
 
-/* Of members of an object that change nothing: in none of the configurations from first to before end, nor with the other
- * params, which may be NULL. */
+/* Of members of an object that change nothing: in none of the configurations from first to before end, nor with the
+ * other params, which may be NULL. */
 static void warn_of_idle(const experiment_spec *spec, const char *place, json_t *object, size_t first, size_t end,
                          const noc_render_params *other) {
     const noc_option *table = noc_render_options();
@@ -136,12 +140,14 @@ static int read_members(experiment_spec *spec, const char *place, json_t *object
     return status;
 }
 
-int experiment_read_config(experiment_spec *spec, const char *place, json_t *object, const experiment_config *shared, size_t entry) {
+int experiment_read_config(experiment_spec *spec, const char *place, json_t *object, const experiment_config *shared,
+                           size_t entry) {
     int status = CLI_OK;
     const char *name = NULL;
     const noc_option *option = json_is_object(object) ? several(spec, place, object, &status) : NULL;
     if (status || !option) {
-        status = status ? status : experiment_too_many(spec, "", spec->config_count + 1, EXPERIMENT_ENTRIES, "configurations");
+        status = status ? status
+                        : experiment_too_many(spec, "", spec->config_count + 1, EXPERIMENT_ENTRIES, "configurations");
         experiment_config *config = status ? NULL : add(spec, shared, entry, -1);
         status = status ? status : read_members(spec, place, object, config);
         return status ? status : experiment_read_name(spec, place, object, &config->name);
@@ -150,7 +156,8 @@ int experiment_read_config(experiment_spec *spec, const char *place, json_t *obj
     json_t *values = values_of(option, json_object_get(object, option->name)), *value;
     size_t i;
     status = status ? status
-        : experiment_too_many(spec, "", spec->config_count + json_array_size(values), EXPERIMENT_ENTRIES, "configurations");
+                    : experiment_too_many(spec, "", spec->config_count + json_array_size(values), EXPERIMENT_ENTRIES,
+                                          "configurations");
     json_array_foreach(values, i, value) {
         if (status)
             break;

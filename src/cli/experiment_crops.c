@@ -12,9 +12,9 @@ typedef struct panels {
     const experiment_lab *lab;
     size_t camera;
     int frame;
-    int width, height;   /* of a picture */
-    double ev100;        /* of all: the reference's automatic exposure */
-    uint8_t *reference;  /* 8-bit sRGB */
+    int width, height;  /* of a picture */
+    double ev100;       /* of all: the reference's automatic exposure */
+    uint8_t *reference; /* 8-bit sRGB */
 } panels;
 
 bool experiment_shows(const experiment_spec *spec, size_t camera, int frame) {
@@ -116,8 +116,10 @@ static int write_sheet(const panels *p, const experiment_crop *crop, const char 
         free(picture);
     }
     char *path = cli_format("%s/%s", p->lab->folder, name);
-    const char *keys[] = { "picture" }, *values[] = { "the reference, and one frame of each configuration, row by row" };
-    if (!status && noc_image_write_srgb8(sheet.rgb, sheet.width, sheet.height, path, &(noc_image_meta){ 1, keys, values }, p->lab->log))
+    const char *keys[] = { "picture" },
+               *values[] = { "the reference, and one frame of each configuration, row by row" };
+    if (!status && noc_image_write_srgb8(sheet.rgb, sheet.width, sheet.height, path,
+                                         &(noc_image_meta){ 1, keys, values }, p->lab->log))
         status = CLI_FAILURE;
     free(path);
     free(sheet.rgb);
@@ -129,7 +131,9 @@ int experiment_make_crops(experiment_lab *lab, size_t camera) {
     experiment_crop *crop = &lab->crops[camera];
     double ev100 = cli_auto_ev100(lab->reference);
     panels p = { lab, camera, 0, spec->width, spec->height, ev100, display(lab->reference, ev100) };
-    *crop = (experiment_crop){ .x = spec->crop_box[0], .y = spec->crop_box[1], .width = spec->crop_box[2], .height = spec->crop_box[3] };
+    *crop = (experiment_crop){
+        .x = spec->crop_box[0], .y = spec->crop_box[1], .width = spec->crop_box[2], .height = spec->crop_box[3]
+    };
     int motion = spec->cameras[camera].frames, status = CLI_OK;
     if (spec->cameras[camera].inset_count)
         *crop = (experiment_crop){ .width = spec->width, .height = spec->height };

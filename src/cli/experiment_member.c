@@ -1,4 +1,5 @@
-/* Members of the spec's objects: each is an option of a table, under the same name and the same rules as on the command line. */
+/* Members of the spec's objects: each is an option of a table, under the same name and the same rules as on the command
+ * line. */
 #include "experiment.h"
 
 #include <jansson.h>
@@ -44,7 +45,8 @@ const noc_option *experiment_option(const cli_set *sets, const char *name, size_
 
 enum { FEW = 24 }; /* names that an error lists */
 
-static int unknown(const experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others, const char *name) {
+static int unknown(const experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others,
+                   const char *name) {
     const char *words[2 * CLI_GIVEN] = { NULL };
     size_t count = 0;
     for (const cli_set *set = sets; set->table; set++)
@@ -52,21 +54,25 @@ static int unknown(const experiment_spec *spec, const char *place, const cli_set
             if (!cli_hidden(set, o))
                 words[count++] = o->name;
             else if (!strcmp(o->name, name))
-                return experiment_wrong(spec, place, "%s: the spec says it for all pictures (size, seed, accumulate)", name);
+                return experiment_wrong(spec, place, "%s: the spec says it for all pictures (size, seed, accumulate)",
+                                        name);
     for (; others && *others && count < 2 * CLI_GIVEN; others++)
         words[count++] = *others;
     const char *nearest = cli_nearest(name, words, count);
     if (nearest)
         return experiment_wrong(spec, place, "no option \"%.60s\"; is it \"%s\"?", name, nearest);
     if (count > FEW)
-        return experiment_wrong(spec, place, "no option \"%.60s\"; 'nocturne help render' and docs/experiments.md tell which there are", name);
+        return experiment_wrong(
+            spec, place, "no option \"%.60s\"; 'nocturne help render' and docs/experiments.md tell which there are",
+            name);
     char all[400];
     for (size_t i = 0, at = 0; i < count && at < sizeof(all); i++)
         at += (size_t)snprintf(all + at, sizeof(all) - at, "%s%s", i ? ", " : "", words[i]);
     return experiment_wrong(spec, place, "no option \"%.60s\"; there are %s", name, all);
 }
 
-/* A value as it would be written on the command line; NULL where JSON has no such thing there. An array of a few numbers is a list. */
+/* A value as it would be written on the command line; NULL where JSON has no such thing there. An array of a few
+ * numbers is a list. */
 static char *spell(const json_t *value) {
     switch (json_typeof(value)) {
     case JSON_STRING: return cli_format("%s", json_string_value(value));
@@ -94,8 +100,8 @@ static char *spell(const json_t *value) {
 
 static void keep_message(void *user, noc_log_level level, const char *text) { snprintf(user, 256, "%s", text); }
 
-int experiment_set(experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others, void *params,
-                   const char *name, json_t *value) {
+int experiment_set(experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others,
+                   void *params, const char *name, json_t *value) {
     size_t offset = 0;
     for (const char *const *other = others; other && *other; other++)
         if (!strcmp(*other, name))
@@ -125,8 +131,8 @@ int experiment_set(experiment_spec *spec, const char *place, const cli_set *sets
     return status ? experiment_wrong(spec, place, "%s", message) : CLI_OK;
 }
 
-int experiment_set_all(experiment_spec *spec, const char *place, json_t *object, const cli_set *sets, const char *const *others,
-                       void *params) {
+int experiment_set_all(experiment_spec *spec, const char *place, json_t *object, const cli_set *sets,
+                       const char *const *others, void *params) {
     if (!object)
         return CLI_OK;
     if (!json_is_object(object))

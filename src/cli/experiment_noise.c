@@ -33,13 +33,15 @@ static double mean_error(const experiment_batches *b, int all) {
     int frames = b->frames[b->count];
     for (int i = 1; i <= b->count; i++) {
         int n = b->frames[i] - b->frames[i - 1];
-        double before = i > 1 ? b->frames[i - 1] * b->mean[all][i - 1] : 0, own = (b->frames[i] * b->mean[all][i] - before) / n;
+        double before = i > 1 ? b->frames[i - 1] * b->mean[all][i - 1] : 0,
+               own = (b->frames[i] * b->mean[all][i] - before) / n;
         squares += n * (own - whole) * (own - whole);
     }
     return sqrt(squares / (b->count - 1) / frames) / whole;
 }
 
-experiment_noise experiment_measure_noise(const experiment_lab *lab, const noc_image *half, int half_frames, const experiment_batches *batches) {
+experiment_noise experiment_measure_noise(const experiment_lab *lab, const noc_image *half, int half_frames,
+                                          const experiment_batches *batches) {
     experiment_noise noise = { NAN, NAN, NAN, NAN, mean_error(batches, 0), mean_error(batches, 1) };
     noc_compare_params params = noc_compare_default_params();
     params.ceiling = lab->spec.ceiling;
@@ -47,8 +49,12 @@ experiment_noise experiment_measure_noise(const experiment_lab *lab, const noc_i
     if (!half || noc_image_compare(half, lab->reference, &params, &c, lab->log))
         return noise;
     double share = (double)half_frames / (lab->spec.reference.frames - half_frames);
-    return (experiment_noise){ share * c.dark.relmse, share * c.dark_clamped.relmse, share * c.all.relmse, share * c.all_clamped.relmse,
-                               noise.mean, noise.mean_all };
+    return (experiment_noise){ share * c.dark.relmse,
+                               share * c.dark_clamped.relmse,
+                               share * c.all.relmse,
+                               share * c.all_clamped.relmse,
+                               noise.mean,
+                               noise.mean_all };
 }
 
 static char *beside(const char *reference) { return cli_format("%.*s.noise", (int)strlen(reference) - 4, reference); }
@@ -57,8 +63,8 @@ static char *beside(const char *reference) { return cli_format("%.*s.noise", (in
 void experiment_keep_noise(const char *reference, const experiment_noise *noise) {
     char *path = beside(reference), *temporary = cli_format("%s.%ld", path, (long)getpid());
     FILE *file = fopen(temporary, "wx");
-    bool kept = file && fprintf(file, "%.9g %.9g %.9g %.9g %.9g %.9g\n", noise->relmse, noise->clamped, noise->relmse_all, noise->clamped_all,
-                                 noise->mean, noise->mean_all) > 0;
+    bool kept = file && fprintf(file, "%.9g %.9g %.9g %.9g %.9g %.9g\n", noise->relmse, noise->clamped,
+                                noise->relmse_all, noise->clamped_all, noise->mean, noise->mean_all) > 0;
     if (file)
         kept = !fclose(file) && kept;
     if (!kept || rename(temporary, path))
@@ -71,7 +77,8 @@ experiment_noise experiment_read_noise(const char *reference) {
     experiment_noise n;
     char *path = beside(reference);
     FILE *file = access(path, F_OK) ? NULL : cli_open(path);
-    bool whole = file && fscanf(file, "%lf %lf %lf %lf %lf %lf", &n.relmse, &n.clamped, &n.relmse_all, &n.clamped_all, &n.mean, &n.mean_all) == 6;
+    bool whole = file && fscanf(file, "%lf %lf %lf %lf %lf %lf", &n.relmse, &n.clamped, &n.relmse_all, &n.clamped_all,
+                                &n.mean, &n.mean_all) == 6;
     if (file)
         fclose(file);
     free(path);
@@ -84,10 +91,15 @@ experiment_noise experiment_read_noise(const char *reference) {
 char *experiment_unlit(const experiment_lab *lab, size_t camera) {
     const experiment_spec *spec = &lab->spec;
     const experiment_run *runs = experiment_find_run(lab, camera, 0, 0);
-    int pixels = spec->all_pixels ? COL_UNLIT_ALL : COL_UNLIT, part = spec->all_pixels ? COL_RELMSE_UNLIT_ALL : COL_RELMSE_UNLIT;
+    int pixels = spec->all_pixels ? COL_UNLIT_ALL : COL_UNLIT,
+        part = spec->all_pixels ? COL_RELMSE_UNLIT_ALL : COL_RELMSE_UNLIT;
     const noc_render_params *reference = &spec->reference.params;
     bool lists = reference->method == NOC_METHOD_RIS && reference->candidates == NOC_CANDIDATES_LISTS;
-    struct { double pixels, share; const char *name; int mode, frame; } most = { .share = 0 };
+    struct {
+        double pixels, share;
+        const char *name;
+        int mode, frame;
+    } most = { .share = 0 };
     for (size_t i = 0; i < (size_t)spec->repetitions * spec->config_count; i++)
         for (int mode = 0; mode < EXPERIMENT_MODES; mode++)
             for (int frame = 1; frame <= runs[i].count; frame++) {

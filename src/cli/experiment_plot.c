@@ -6,12 +6,20 @@
 #include <string.h>
 
 enum {
-    LEFT = 74, TOP = 44, BOTTOM = 56, PLOT_WIDTH = 560, LEAST_HEIGHT = 340, MOST_HEIGHT = 600, LEGEND_ROW = 20, NAME_MAX_CHARS = 44
+    LEFT = 74,
+    TOP = 44,
+    BOTTOM = 56,
+    PLOT_WIDTH = 560,
+    LEAST_HEIGHT = 340,
+    MOST_HEIGHT = 600,
+    LEGEND_ROW = 20,
+    NAME_MAX_CHARS = 44
 };
 
 /* What lies within a standard error of the mean over the repetitions. */
 static void band(FILE *out, const experiment_series *s, bool over_time, const svg_axis *x, const svg_axis *y) {
-    int column = experiment_column(&s->lab->spec), frames = experiment_last(s), colour = svg_style_of(&s->lab->spec, s->config).colour;
+    int column = experiment_column(&s->lab->spec), frames = experiment_last(s),
+        colour = svg_style_of(&s->lab->spec, s->config).colour;
     if (s->lab->spec.repetitions < 2)
         return;
     fprintf(out, "<polygon class=\"m%d\" fill=\"%s\" fill-opacity=\"0.2\" points=\"", colour, svg_colours[colour]);
@@ -30,8 +38,10 @@ static void curve(FILE *out, const experiment_series *s, bool over_time, const s
     int column = experiment_column(&s->lab->spec);
     svg_style style = svg_style_of(&s->lab->spec, s->config);
     int frames = experiment_last(s);
-    fprintf(out, "<g>\n<polyline class=\"l%d\" fill=\"none\" stroke=\"%s\" stroke-width=\"2\" stroke-linejoin=\"round\"%s points=\"",
-            style.colour, svg_colours[style.colour], style.dash);
+    fprintf(
+        out,
+        "<g>\n<polyline class=\"l%d\" fill=\"none\" stroke=\"%s\" stroke-width=\"2\" stroke-linejoin=\"round\"%s points=\"",
+        style.colour, svg_colours[style.colour], style.dash);
     for (int pass = 0; pass < 2; pass++) {
         double last = -1e9;
         for (int f = 1; f <= frames; f++) {
@@ -65,7 +75,8 @@ static void legend(FILE *out, const experiment_lab *lab) {
     }
 }
 
-static void ranges(const experiment_lab *lab, experiment_series s, bool over_time, int bottom, svg_axis *x, svg_axis *y) {
+static void ranges(const experiment_lab *lab, experiment_series s, bool over_time, int bottom, svg_axis *x,
+                   svg_axis *y) {
     int column = experiment_column(&lab->spec), most = 1;
     *x = (svg_axis){ INFINITY, 0, LEFT, LEFT + PLOT_WIDTH };
     *y = (svg_axis){ INFINITY, 0, bottom, TOP };
@@ -123,22 +134,27 @@ int experiment_plot(const experiment_lab *lab, size_t camera, int mode, bool ove
     fprintf(out, "%s</text>\n", mode == EXPERIMENT_ALONE ? ": each frame alone" : ": mean of the frames so far");
     svg_grid(out, &x, true, &y);
     svg_grid(out, &y, false, &x);
-    fprintf(out, "<rect class=\"frame\" fill=\"none\" stroke=\"#555555\" x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\"/>\n", LEFT, TOP,
-            PLOT_WIDTH, plot);
+    fprintf(out,
+            "<rect class=\"frame\" fill=\"none\" stroke=\"#555555\" x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\"/>\n",
+            LEFT, TOP, PLOT_WIDTH, plot);
     for (s.config = 0; s.config < spec->config_count; s.config++)
         band(out, &s, over_time, &x, &y);
     for (s.config = 0; s.config < spec->config_count; s.config++)
         curve(out, &s, over_time, &x, &y);
     legend(out, lab);
-    fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%d\" y=\"%d\" text-anchor=\"middle\">%s</text>\n", LEFT + PLOT_WIDTH / 2,
-            bottom + 42, over_time ? "process CPU time, seconds" : "frame");
-    fprintf(out, "<text class=\"ink\" fill=\"#222222\" transform=\"translate(20 %d) rotate(-90)\" text-anchor=\"middle\">",
+    fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%d\" y=\"%d\" text-anchor=\"middle\">%s</text>\n",
+            LEFT + PLOT_WIDTH / 2, bottom + 42, over_time ? "process CPU time, seconds" : "frame");
+    fprintf(out,
+            "<text class=\"ink\" fill=\"#222222\" transform=\"translate(20 %d) rotate(-90)\" text-anchor=\"middle\">",
             TOP + plot / 2);
     svg_text(out, experiment_figure(spec), 100);
     fputs("</text>\n", out);
     if (spec->repetitions > 1)
-        fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%d\" y=\"%d\" text-anchor=\"end\" font-size=\"11\">bands: \302\261 standard error of %d "
-                     "repetitions</text>\n", LEFT + PLOT_WIDTH, bottom + 42, spec->repetitions);
+        fprintf(
+            out,
+            "<text class=\"ink\" fill=\"#222222\" x=\"%d\" y=\"%d\" text-anchor=\"end\" font-size=\"11\">bands: \302\261 standard error of %d "
+            "repetitions</text>\n",
+            LEFT + PLOT_WIDTH, bottom + 42, spec->repetitions);
     fputs("</svg>\n", out);
     return experiment_finish(lab, out, name, temporary);
 }

@@ -43,7 +43,8 @@ FILE *experiment_create(const experiment_lab *lab, const char *name, char **temp
 
 int experiment_finish(const experiment_lab *lab, FILE *file, const char *name, char *temporary) {
     char *path = cli_format("%s/%s", lab->folder, name);
-    bool failed = ferror(file) || fflush(file) || (fsync(fileno(file)) && errno != EINVAL); /* EINVAL: nothing to write through */
+    /* EINVAL: nothing to write through */
+    bool failed = ferror(file) || fflush(file) || (fsync(fileno(file)) && errno != EINVAL);
     failed = fclose(file) || failed;
     failed = failed || rename(temporary, path);
     if (failed) {
@@ -88,7 +89,9 @@ void experiment_number(FILE *out, double v, const char *fmt) {
 }
 
 /* A few digits, but no power of ten where whole numbers read better. */
-static const char *readable(double v, const char *fmt) { return fabs(v) >= 100 && fabs(v) < 1e6 && strchr(fmt, 'g') ? "%.0f" : fmt; }
+static const char *readable(double v, const char *fmt) {
+    return fabs(v) >= 100 && fabs(v) < 1e6 && strchr(fmt, 'g') ? "%.0f" : fmt;
+}
 
 void experiment_print_spread(FILE *out, double v, double error, const char *fmt) {
     char text[40] = "-";
@@ -128,7 +131,9 @@ static void print_command(FILE *out) {
         fclose(file);
     for (size_t i = 0; i < n;) {
         size_t length = strnlen(text + i, n - i);
-        bool plain = length && strspn(text + i, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%") == length;
+        bool plain =
+            length &&
+            strspn(text + i, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%") == length;
         fputs(i ? plain ? " " : " '" : plain ? "" : "'", out);
         for (size_t j = i; j < i + length; j++) {
             if (text[j] == '\'')
@@ -141,7 +146,9 @@ static void print_command(FILE *out) {
     }
 }
 
-static bool draws_candidates(const noc_render_params *p) { return p->method == NOC_METHOD_RIS || p->method == NOC_METHOD_RESTIR; }
+static bool draws_candidates(const noc_render_params *p) {
+    return p->method == NOC_METHOD_RIS || p->method == NOC_METHOD_RESTIR;
+}
 
 /* The method, where its candidates come from, and options of a configuration that count and are no defaults. */
 static void print_options(FILE *out, const noc_render_params *params) {
@@ -161,7 +168,8 @@ static void print_options(FILE *out, const noc_render_params *params) {
     }
 }
 
-/* Few repetitions know their own spread badly: two-sided 95 % quantiles of Student's t with n - 1 degrees of freedom. */
+/* Few repetitions know their own spread badly: two-sided 95 % quantiles of Student's t with n - 1 degrees of freedom.
+ */
 static void print_confidence(FILE *out, int n) {
     static const double t[] = { [2] = 12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262 };
     if (n < (int)(sizeof(t) / sizeof(*t)))
@@ -179,8 +187,8 @@ static void print_setting(FILE *out, const experiment_lab *lab) {
     fputs("\n\n", out);
     if (spec->note)
         fprintf(out, "%s\n\n", spec->note);
-    fprintf(out, "Made by nocturne %s (%s) on %s, on %s; the code that ran: %s.\n\n    ", noc_version(), noc_features(), date,
-            experiment_machine(), *lab->path ? lab->path : "none, all rows were there");
+    fprintf(out, "Made by nocturne %s (%s) on %s, on %s; the code that ran: %s.\n\n    ", noc_version(), noc_features(),
+            date, experiment_machine(), *lab->path ? lab->path : "none, all rows were there");
     print_command(out);
     char extent[64];
     if (spec->seconds > 0)
@@ -189,7 +197,10 @@ static void print_setting(FILE *out, const experiment_lab *lab) {
         cli_many(extent, (uint64_t)spec->frames, "frame");
     fprintf(out, "\n\nPictures of %d x %d px, %s, ", spec->width, spec->height, extent);
     if (spec->repetitions > 1) {
-        fprintf(out, "%d repetitions with different seeds. Figures are their means, \302\261 the standard error of the mean.\n", spec->repetitions);
+        fprintf(
+            out,
+            "%d repetitions with different seeds. Figures are their means, \302\261 the standard error of the mean.\n",
+            spec->repetitions);
         print_confidence(out, spec->repetitions);
     } else {
         fprintf(out, "1 repetition: how far another seed's figures would be off is not known.\n");
@@ -200,13 +211,16 @@ static void print_setting(FILE *out, const experiment_lab *lab) {
     else
         print_options(out, &spec->reference.params);
     fprintf(out, ", %s.\n", spec->reference.params.jitter ? "jittered" : "through the centres of pixels");
-    fprintf(out, "All rows: [results.csv](results.csv). Definitions of the figures: docs/estimator.md, \"Error figures\".\n");
+    fprintf(
+        out,
+        "All rows: [results.csv](results.csv). Definitions of the figures: docs/estimator.md, \"Error figures\".\n");
     table_head(out, "| Scene | Triangles | Lights | Memory |", 3);
     for (size_t i = 0; i < spec->scene_count; i++) {
         fputc('|', out);
         experiment_cell(out, spec->scenes[i].name);
         fprintf(out, " %s |", cli_count(text, lab->scene_infos[i].triangles));
-        fprintf(out, " %s | %s |\n", cli_count(text, lab->scene_infos[i].lights), cli_bytes(memory, lab->scene_infos[i].memory_bytes));
+        fprintf(out, " %s | %s |\n", cli_count(text, lab->scene_infos[i].lights),
+                cli_bytes(memory, lab->scene_infos[i].memory_bytes));
     }
     fprintf(out, "\n| Configuration | Method, candidates, and options that are not the defaults |\n|---|---|\n");
     for (size_t i = 0; i < spec->config_count; i++) {
@@ -239,7 +253,11 @@ static void print_crops(FILE *out, const experiment_lab *lab, size_t camera) {
     if (motion)
         fprintf(out, "the last frame");
     else
-        fprintf(out, "%s%s", !mean ? "frame" : frames > 1 ? "the means of frame" : "the mean of frame", mean || frames > 1 ? "s " : " ");
+        fprintf(out, "%s%s",
+                !mean        ? "frame"
+                : frames > 1 ? "the means of frame"
+                             : "the mean of frame",
+                mean || frames > 1 ? "s " : " ");
     for (size_t i = 0; i < frames && !motion; i++)
         fprintf(out, mean ? "%s1 to %d" : "%s%d", i ? ", " : "", spec->shown[i]);
     fputs(" of each configuration, row by row (\"reference\"", out);
@@ -251,7 +269,8 @@ static void print_crops(FILE *out, const experiment_lab *lab, size_t camera) {
     fputs("): ", out);
     const experiment_camera *c = &spec->cameras[camera];
     if (!c->inset_count)
-        fprintf(out, "the part of %d x %d px at (%d, %d), enlarged %d times", crop->width, crop->height, crop->x, crop->y, crop->scale);
+        fprintf(out, "the part of %d x %d px at (%d, %d), enlarged %d times", crop->width, crop->height, crop->x,
+                crop->y, crop->scale);
     for (int i = 0; i < c->inset_count; i++) {
         const int *box = c->insets[i].box;
         fprintf(out, "%s%s is ", i ? "; " : "", experiment_inset_colour(i));
@@ -261,9 +280,12 @@ static void print_crops(FILE *out, const experiment_lab *lab, size_t camera) {
     fputs(". All have the reference's exposure.\n", out);
 }
 
-/* Frames that a table of errors shows: some of those that were measured, and each configuration's last, which differ where CPU
- * seconds end the runs. */
-typedef struct table_frames { int frames[SHOWN + 1], count; bool own_last; } table_frames;
+/* Frames that a table of errors shows: some of those that were measured, and each configuration's last, which differ
+ * where CPU seconds end the runs. */
+typedef struct table_frames {
+    int frames[SHOWN + 1], count;
+    bool own_last;
+} table_frames;
 
 static bool is_there(experiment_series s, int frame) {
     bool any = false;
@@ -309,7 +331,8 @@ static void print_legend(FILE *out, experiment_series s) {
 }
 
 /* A cell: an error, or a bias in %, with its standard error. */
-static void print_figure(FILE *out, const experiment_series *s, int column, int frame, const char *fmt, const char *after) {
+static void print_figure(FILE *out, const experiment_series *s, int column, int frame, const char *fmt,
+                         const char *after) {
     bool bias = column == COL_BIAS || column == COL_BIAS_ALL;
     double v = experiment_at(s, column, frame), error = experiment_error_at(s, column, frame);
     experiment_spread(out, bias ? 100 * (v - 1) : v, bias ? 100 * error : error, fmt, after);
@@ -367,8 +390,10 @@ static void print_one_frame(FILE *out, experiment_series s, const char *clamped,
 
 static void print_times(FILE *out, experiment_series s) {
     const experiment_spec *spec = &s.lab->spec;
-    table_head(out, "| Frame times | first, CPU ms | median, CPU ms | median, wall ms | shadow rays, millions | "
-                    "ray tracing structure, ms | renderer's memory |", 6);
+    table_head(out,
+               "| Frame times | first, CPU ms | median, CPU ms | median, wall ms | shadow rays, millions | "
+               "ray tracing structure, ms | renderer's memory |",
+               6);
     for (s.config = 0; s.config < spec->config_count; s.config++) {
         char memory[32];
         fputc('|', out);
@@ -392,7 +417,8 @@ static double first_time_to(const experiment_series *s, int column, double error
 /* CPU seconds to an error, and errors after CPU seconds. */
 static void print_equal_time(FILE *out, experiment_series s) {
     const experiment_spec *spec = &s.lab->spec;
-    int column = spec->figure == EXPERIMENT_RMSE8 ? spec->all_pixels ? COL_CLAMPED_ALL : COL_CLAMPED : experiment_column(spec);
+    int column =
+        spec->figure == EXPERIMENT_RMSE8 ? spec->all_pixels ? COL_CLAMPED_ALL : COL_CLAMPED : experiment_column(spec);
     char head[400];
     int at = snprintf(head, sizeof(head), "| CPU seconds to relMSE |");
     for (size_t i = 0; i < 3; i++)
@@ -415,18 +441,22 @@ static void print_equal_time(FILE *out, experiment_series s) {
                               experiment_error_of(&s, experiment_error_after, column, spec->times[i]), "%.3g", "");
         fputc('\n', out);
     }
-    fprintf(out, "\nBetween frames by interpolation in logarithms; \"under\": the first frame is better already; -: not reached in the "
-                 "frames rendered, or before the first frame is done.\n");
+    fprintf(
+        out,
+        "\nBetween frames by interpolation in logarithms; \"under\": the first frame is better already; -: not reached in the "
+        "frames rendered, or before the first frame is done.\n");
 }
 
 static void print_noise(FILE *out, const experiment_lab *lab, size_t index) {
     const experiment_noise *n = &lab->noises[index];
     bool all = lab->spec.all_pixels;
     if (isfinite(n->relmse))
-        fprintf(out, "\nThe reference's own noise is a relMSE of about %.2g, clamped %.2g: errors near it say nothing.\n",
+        fprintf(out,
+                "\nThe reference's own noise is a relMSE of about %.2g, clamped %.2g: errors near it say nothing.\n",
                 all ? n->relmse_all : n->relmse, all ? n->clamped_all : n->clamped);
     if (isfinite(all ? n->mean_all : n->mean))
-        fprintf(out, "\nIts mean has a standard error of %.2g %%, which any bias is off by too.\n", 100 * (all ? n->mean_all : n->mean));
+        fprintf(out, "\nIts mean has a standard error of %.2g %%, which any bias is off by too.\n",
+                100 * (all ? n->mean_all : n->mean));
     char *unlit = experiment_unlit(lab, index);
     if (unlit) {
         fprintf(out, "\n%c", toupper((unsigned char)*unlit));

@@ -14,11 +14,13 @@ typedef struct measuring {
 } measuring;
 
 int experiment_shown_mode(const experiment_spec *spec, size_t camera) {
-    return !spec->cameras[camera].frames && spec->accumulate == EXPERIMENT_ACCUMULATED ? EXPERIMENT_ACCUMULATED : EXPERIMENT_ALONE;
+    return !spec->cameras[camera].frames && spec->accumulate == EXPERIMENT_ACCUMULATED ? EXPERIMENT_ACCUMULATED
+                                                                                       : EXPERIMENT_ALONE;
 }
 
 char *experiment_picture(const experiment_lab *lab, const char *key, int mode, int frame) {
-    return cli_format("%s/pictures/%s-%s%d.exr", lab->folder, key, mode == EXPERIMENT_ACCUMULATED ? "mean" : "frame", frame);
+    return cli_format("%s/pictures/%s-%s%d.exr", lab->folder, key, mode == EXPERIMENT_ACCUMULATED ? "mean" : "frame",
+                      frame);
 }
 
 static bool frame_progress(void *user, const char *what, double done) {
@@ -29,7 +31,8 @@ static bool frame_progress(void *user, const char *what, double done) {
     share = ((double)lab->runs_done + share) / (double)lab->run_count;
     double spent = cli_now() - lab->started - lab->reference_seconds, left = spent / share - spent;
     if (lab->references_made) /* those to come, as if none were there */
-        left += lab->reference_seconds / (double)lab->references_made * (double)(lab->spec.camera_count - lab->cameras_done - 1);
+        left += lab->reference_seconds / (double)lab->references_made *
+                (double)(lab->spec.camera_count - lab->cameras_done - 1);
     /* What earlier sessions made passes in no time, so time left is told where there was nothing. */
     cli_progress_show(share, !lab->rows_old && spent > 2 ? left : -1, "%s, frame %d", config->name, m->frame);
     return !cli_interrupted();
@@ -45,7 +48,8 @@ static void keep_figures(double *values, const noc_metrics *raw, const noc_metri
 }
 
 /* Figures of one picture, and the row they make. */
-static int add_row(const measuring *m, int mode, const noc_image *image, const noc_frame_stats *stats, const noc_light_stats *lights) {
+static int add_row(const measuring *m, int mode, const noc_image *image, const noc_frame_stats *stats,
+                   const noc_light_stats *lights) {
     experiment_lab *lab = m->lab;
     if (!experiment_has_mode(&lab->spec, m->run->camera, mode))
         return CLI_OK;
@@ -97,7 +101,8 @@ static void average(const measuring *m, noc_image *image) {
 
 static int keep_picture(const measuring *m, int mode, const noc_image *image) {
     const experiment_spec *spec = &m->lab->spec;
-    if (m->run->repetition || mode != experiment_shown_mode(spec, m->run->camera) || !experiment_shows(spec, m->run->camera, m->frame))
+    if (m->run->repetition || mode != experiment_shown_mode(spec, m->run->camera) ||
+        !experiment_shows(spec, m->run->camera, m->frame))
         return CLI_OK;
     char *path = experiment_picture(m->lab, m->run->key, mode, m->frame);
     noc_display_params display = noc_display_default_params();
@@ -126,7 +131,8 @@ static bool is_measured(const experiment_lab *lab, const experiment_run *run, in
 
 /* Is any row there of this frame? */
 static bool has_row(const experiment_run *run, int frame) {
-    return frame <= run->count && (run->rows[EXPERIMENT_ALONE][frame - 1].done || run->rows[EXPERIMENT_ACCUMULATED][frame - 1].done);
+    return frame <= run->count &&
+           (run->rows[EXPERIMENT_ALONE][frame - 1].done || run->rows[EXPERIMENT_ACCUMULATED][frame - 1].done);
 }
 
 /* One frame is there: its rows and picture, if it is one of those that are measured, or the last. */
@@ -138,7 +144,8 @@ static int take_frame(measuring *m, noc_renderer *renderer, bool *last) {
     noc_renderer_light_stats(renderer, &lights);
     add_times(m, &stats);
     double seconds = lab->spec.configs[m->run->config].seconds;
-    bool spent = seconds > 0 && m->cpu >= seconds && m->frame >= m->run->count && !lab->spec.cameras[m->run->camera].frames;
+    bool spent =
+        seconds > 0 && m->cpu >= seconds && m->frame >= m->run->count && !lab->spec.cameras[m->run->camera].frames;
     *last = spent || m->frame == m->frames;
     snprintf(lab->path, sizeof(lab->path), "%s", stats.path ? stats.path : "");
     bool rows = is_measured(lab, m->run, m->frame) || spent || has_row(m->run, m->frame);
@@ -169,7 +176,8 @@ static int row_missing(const experiment_lab *lab, const experiment_run *run) {
                 last = frame;
         if (!(seconds > 0) || lab->spec.cameras[run->camera].frames)
             continue;
-        if (!last && there && run->rows[experiment_shown_mode(&lab->spec, run->camera)][frame - 1].values[COL_CPU_TOTAL] >= seconds)
+        if (!last && there &&
+            run->rows[experiment_shown_mode(&lab->spec, run->camera)][frame - 1].values[COL_CPU_TOTAL] >= seconds)
             return 0;
         if (last)
             return frames; /* time decides which is the last */
@@ -177,14 +185,16 @@ static int row_missing(const experiment_lab *lab, const experiment_run *run) {
     return last;
 }
 
-/* Frames that must be rendered: up to the last whose row or picture misses. Earlier ones are made again without new rows,
- * because a frame needs those before it. */
+/* Frames that must be rendered: up to the last whose row or picture misses. Earlier ones are made again without new
+ * rows, because a frame needs those before it. */
 static int frames_missing(const experiment_lab *lab, const experiment_run *run) {
     const experiment_spec *spec = &lab->spec;
     int last = row_missing(lab, run), mode = experiment_shown_mode(spec, run->camera);
-    int frames = spec->configs[run->config].seconds > 0 ? run->count : experiment_frames(spec, run->camera, run->config);
+    int frames =
+        spec->configs[run->config].seconds > 0 ? run->count : experiment_frames(spec, run->camera, run->config);
     for (int frame = last + 1; !run->repetition && frame <= frames; frame++) {
-        char *picture = experiment_shows(spec, run->camera, frame) ? experiment_picture(lab, run->key, mode, frame) : NULL;
+        char *picture =
+            experiment_shows(spec, run->camera, frame) ? experiment_picture(lab, run->key, mode, frame) : NULL;
         if (picture && access(picture, R_OK))
             last = frame;
         free(picture);
@@ -196,13 +206,15 @@ int experiment_measure(experiment_lab *lab, experiment_run *run) {
     measuring m = { .lab = lab, .run = run, .frame = 1, .frames = frames_missing(lab, run) };
     if (!m.frames)
         return CLI_OK;
-    noc_renderer *renderer = noc_renderer_create(lab->scene, &(noc_renderer_params){ .threads = lab->args->threads }, lab->log);
+    noc_renderer *renderer =
+        noc_renderer_create(lab->scene, &(noc_renderer_params){ .threads = lab->args->threads }, lab->log);
     int status = renderer ? CLI_OK : CLI_FAILURE;
     noc_render_params params = experiment_params(lab, run);
     for (bool last = false; !status && !last; m.frame++) {
         noc_camera camera = experiment_camera_at(lab, run->camera, m.frame);
-        noc_status rendered = cli_interrupted() ? NOC_ERR_CANCELLED
-            : noc_renderer_frame(renderer, &camera, &params, &(noc_progress){ frame_progress, &m });
+        noc_status rendered =
+            cli_interrupted() ? NOC_ERR_CANCELLED
+                              : noc_renderer_frame(renderer, &camera, &params, &(noc_progress){ frame_progress, &m });
         if (rendered)
             status = cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_FAILURE;
         else

@@ -1,5 +1,5 @@
-/* Scenes, cameras and the reference of an experiment. A reference is kept in the cache folder under a hash of all that it
- * depends on; the files there may be deleted at any time. */
+/* Scenes, cameras and the reference of an experiment. A reference is kept in the cache folder under a hash of all that
+ * it depends on; the files there may be deleted at any time. */
 #include "experiment.h"
 
 #include <dlfcn.h>
@@ -11,9 +11,13 @@
 #define LONG_WAIT 10 /* s */
 
 /* FNV-1a of 128 bits: no guard against malice, but no two experiments meet by chance. */
-typedef struct hash_state { unsigned __int128 h; } hash_state;
+typedef struct hash_state {
+    unsigned __int128 h;
+} hash_state;
 
-static hash_state hash_start(void) { return (hash_state){ ((unsigned __int128)0x6c62272e07bb0142u << 64) | 0x62b821756295c58du }; }
+static hash_state hash_start(void) {
+    return (hash_state){ ((unsigned __int128)0x6c62272e07bb0142u << 64) | 0x62b821756295c58du };
+}
 
 static void hash_bytes(hash_state *hash, const void *data, size_t size) {
     const unsigned __int128 prime = ((unsigned __int128)1 << 88) | 0x13b;
@@ -28,8 +32,8 @@ static void hash_finish(const hash_state *hash, char key[EXPERIMENT_KEY]) {
     snprintf(key, EXPERIMENT_KEY, "%016llx%016llx", (unsigned long long)(hash->h >> 64), (unsigned long long)hash->h);
 }
 
-/* Each option by name and value: an option that is new to the tables is part of the hash without a word here. effective: those that
- * change nothing beside the others are left out. */
+/* Each option by name and value: an option that is new to the tables is part of the hash without a word here.
+ * effective: those that change nothing beside the others are left out. */
 static void hash_options(hash_state *hash, const noc_render_params *params, bool effective) {
     char why[160];
     for (const noc_option *o = noc_render_options(); o->name; o++) {
@@ -64,7 +68,9 @@ int experiment_load_scene(experiment_lab *lab, size_t index) {
     experiment_scene *scene = &lab->spec.scenes[index];
     lab->scene = noc_scene_create(lab->log);
     scene->import.progress = (noc_progress){ cli_load_progress, NULL };
-    noc_status status = lab->scene ? cli_load_scene(lab->scene, scene->inputs, scene->input_count, &scene->builtin, &scene->import, NULL) : NOC_ERR_MEMORY;
+    noc_status status = lab->scene ? cli_load_scene(lab->scene, scene->inputs, scene->input_count, &scene->builtin,
+                                                    &scene->import, NULL)
+                                   : NOC_ERR_MEMORY;
     if (!lab->scene || status)
         return cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_FAILURE;
     noc_scene_get_info(lab->scene, &lab->scene_infos[index]);
@@ -83,9 +89,9 @@ static void hash_camera(hash_state *hash, const noc_camera *c) {
     hash_bytes(hash, &c->fov_deg, sizeof(c->fov_deg));
 }
 
-
-/* A reference is named by what the scene holds, not by the files it was read from: an OBJ's materials lie in another file than it,
- * and what code makes of a file may change. So specs that show the same share it, whatever they call their inputs. */
+/* A reference is named by what the scene holds, not by the files it was read from: an OBJ's materials lie in another
+ * file than it, and what code makes of a file may change. So specs that show the same share it, whatever they call
+ * their inputs. */
 static void name_reference(experiment_lab *lab) {
     const experiment_spec *spec = &lab->spec;
     hash_state hash = hash_start();
@@ -107,7 +113,8 @@ typedef struct making {
 static bool frame_progress(void *user, const char *what, double done) {
     const making *m = user;
     double share = (m->frame - 1 + done) / m->frames, spent = cli_now() - m->started;
-    cli_progress_show(share, spent > 2 && share > 0 ? spent / share - spent : -1, "%s: reference, frame %d of %d", m->view, m->frame, m->frames);
+    cli_progress_show(share, spent > 2 && share > 0 ? spent / share - spent : -1, "%s: reference, frame %d of %d",
+                      m->view, m->frame, m->frames);
     return !cli_interrupted();
 }
 
@@ -136,14 +143,16 @@ static noc_image *read_cached(const experiment_lab *lab, const char *path) {
 
 static int render_reference(experiment_lab *lab, const char *view, const char *path, experiment_noise *noise) {
     const experiment_spec *spec = &lab->spec;
-    noc_renderer *renderer = noc_renderer_create(lab->scene, &(noc_renderer_params){ .threads = lab->args->threads }, lab->log);
+    noc_renderer *renderer =
+        noc_renderer_create(lab->scene, &(noc_renderer_params){ .threads = lab->args->threads }, lab->log);
     noc_status status = renderer ? NOC_OK : NOC_ERR_MEMORY;
     making m = { view, 1, spec->reference.frames, cli_now() };
     int halfway = m.frames / 2, parts = m.frames < EXPERIMENT_BATCHES ? m.frames : EXPERIMENT_BATCHES;
     experiment_batches batches = { .count = 0 };
     noc_image *half = NULL;
     for (; !status && m.frame <= m.frames; m.frame++) {
-        status = noc_renderer_frame(renderer, &lab->camera, &spec->reference.params, &(noc_progress){ frame_progress, &m });
+        status =
+            noc_renderer_frame(renderer, &lab->camera, &spec->reference.params, &(noc_progress){ frame_progress, &m });
         if (!status && m.frame == (m.frames > 16 ? 3 : 1)) /* the first frames build what they need and learn */
             tell_estimate(lab, &m);
         bool part_ends = m.frame * parts / m.frames > batches.count;
@@ -196,8 +205,8 @@ int experiment_make_reference(experiment_lab *lab, size_t camera) {
     } else {
         double start = cli_now();
         if (!quiet)
-            printf("%s: making the reference, %s of %d x %d px\n", view, cli_many(frames, (uint64_t)spec->reference.frames, "frame"), spec->width,
-                   spec->height);
+            printf("%s: making the reference, %s of %d x %d px\n", view,
+                   cli_many(frames, (uint64_t)spec->reference.frames, "frame"), spec->width, spec->height);
         fflush(stdout);
         status = render_reference(lab, view, path, noise);
         lab->reference_seconds += cli_now() - start;
@@ -238,7 +247,8 @@ const char *experiment_machine(void) {
         fclose(file);
     struct utsname name = { .sysname = "" };
     uname(&name);
-    snprintf(machine, sizeof(machine), "%s, %ld processors, %.20s %.40s", model, sysconf(_SC_NPROCESSORS_ONLN), name.sysname, name.machine);
+    snprintf(machine, sizeof(machine), "%s, %ld processors, %.20s %.40s", model, sysconf(_SC_NPROCESSORS_ONLN),
+             name.sysname, name.machine);
     return machine;
 }
 

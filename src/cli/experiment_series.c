@@ -83,7 +83,9 @@ double experiment_error_of(const experiment_series *s, experiment_asked *asked, 
 
 static double at(const experiment_series *s, int column, double frame) { return experiment_at(s, column, (int)frame); }
 
-double experiment_error_at(const experiment_series *s, int column, int frame) { return experiment_error_of(s, at, column, frame); }
+double experiment_error_at(const experiment_series *s, int column, int frame) {
+    return experiment_error_of(s, at, column, frame);
+}
 
 int experiment_column(const experiment_spec *spec) {
     int first = spec->all_pixels ? COL_RMSE8_ALL : COL_RMSE8;
@@ -96,7 +98,8 @@ const char *experiment_figure(const experiment_spec *spec) {
     if (spec->figure == EXPERIMENT_CLAMPED)
         snprintf(text, sizeof(text), "relMSE clamped to %g cd/m\302\262, %s", spec->ceiling, pixels);
     else
-        snprintf(text, sizeof(text), "%s, %s", spec->figure == EXPERIMENT_RELMSE ? "relMSE" : "RMSE-8 (0 to 255)", pixels);
+        snprintf(text, sizeof(text), "%s, %s", spec->figure == EXPERIMENT_RELMSE ? "relMSE" : "RMSE-8 (0 to 255)",
+                 pixels);
     return text;
 }
 

@@ -7,8 +7,14 @@
 
 enum { GAP = 4, LABEL = 22, NAME = 14, FRAME = 2 };
 
-static const struct { const char *name; uint8_t rgb[3]; } colours[EXPERIMENT_INSETS] = {
-    { "red", { 235, 70, 60 } }, { "green", { 70, 200, 90 } }, { "blue", { 90, 150, 255 } }, { "yellow", { 240, 205, 60 } },
+static const struct {
+    const char *name;
+    uint8_t rgb[3];
+} colours[EXPERIMENT_INSETS] = {
+    { "red", { 235, 70, 60 } },
+    { "green", { 70, 200, 90 } },
+    { "blue", { 90, 150, 255 } },
+    { "yellow", { 240, 205, 60 } },
 };
 
 const char *experiment_inset_colour(int inset) { return colours[inset].name; }
@@ -35,9 +41,13 @@ static int inset_height(const experiment_sheet *s, int inset) {
     return height < 1 ? 1 : height > s->picture_height ? s->picture_height : height;
 }
 
-int experiment_start_sheet(experiment_sheet *s, const experiment_crop *crop, const experiment_camera *camera, size_t panels) {
+int experiment_start_sheet(experiment_sheet *s, const experiment_crop *crop, const experiment_camera *camera,
+                           size_t panels) {
     int columns = crop->columns, rows = ((int)panels + columns - 1) / columns, insets = 0;
-    *s = (experiment_sheet){ .crop = crop, .camera = camera, .panel_width = crop->width * crop->scale, .picture_height = crop->height * crop->scale };
+    *s = (experiment_sheet){ .crop = crop,
+                             .camera = camera,
+                             .panel_width = crop->width * crop->scale,
+                             .picture_height = crop->height * crop->scale };
     for (int i = 0; i < camera->inset_count; i++)
         insets = inset_height(s, i) > insets ? inset_height(s, i) : insets;
     s->panel_height = LABEL + s->picture_height + (insets ? GAP + insets + NAME : 0);
@@ -52,9 +62,11 @@ int experiment_start_sheet(experiment_sheet *s, const experiment_crop *crop, con
 }
 
 /* A box of a picture, enlarged to so many pixels: each is the nearest of the picture's. */
-static void enlarge(experiment_sheet *s, const uint8_t *rgb, int width, const int box[4], int left, int top, int w, int h) {
+static void enlarge(experiment_sheet *s, const uint8_t *rgb, int width, const int box[4], int left, int top, int w,
+                    int h) {
     for (int y = 0; y < h; y++) {
-        const uint8_t *row = rgb + ((size_t)(box[1] + (int)((long long)y * box[3] / h)) * (size_t)width + (size_t)box[0]) * 3;
+        const uint8_t *row =
+            rgb + ((size_t)(box[1] + (int)((long long)y * box[3] / h)) * (size_t)width + (size_t)box[0]) * 3;
         uint8_t *to = s->rgb + ((size_t)(top + y) * (size_t)s->width + (size_t)left) * 3;
         for (int x = 0; x < w; x++)
             memcpy(to + 3 * (size_t)x, row + 3 * (size_t)((long long)x * box[2] / w), 3);
@@ -97,12 +109,14 @@ static void write_in(experiment_sheet *s, int x, int y, int w, const char *text,
 void experiment_add_panel(experiment_sheet *s, size_t panel, const uint8_t *rgb, int width, const char *label) {
     static const uint8_t white[3] = { 235, 235, 235 };
     const experiment_crop *crop = s->crop;
-    int left = (int)(panel % (size_t)crop->columns) * (s->panel_width + GAP), top = (int)(panel / (size_t)crop->columns) * (s->panel_height + GAP);
+    int left = (int)(panel % (size_t)crop->columns) * (s->panel_width + GAP),
+        top = (int)(panel / (size_t)crop->columns) * (s->panel_height + GAP);
     write_in(s, left + 2, top + 2, s->panel_width - 4, label, 2, white);
     if (!rgb)
         return;
     top += LABEL;
-    enlarge(s, rgb, width, (const int[]){ crop->x, crop->y, crop->width, crop->height }, left, top, s->panel_width, s->picture_height);
+    enlarge(s, rgb, width, (const int[]){ crop->x, crop->y, crop->width, crop->height }, left, top, s->panel_width,
+            s->picture_height);
     for (int i = 0; i < s->camera->inset_count; i++) {
         const experiment_inset *in = &s->camera->insets[i];
         int w = inset_width(s), h = inset_height(s, i), x = left + i * (w + GAP), y = top + s->picture_height + GAP;
@@ -112,7 +126,7 @@ void experiment_add_panel(experiment_sheet *s, size_t panel, const uint8_t *rgb,
     }
     for (int i = 0; i < s->camera->inset_count; i++) {
         const int *box = s->camera->insets[i].box;
-        frame(s, left + box[0] * crop->scale - FRAME, top + box[1] * crop->scale - FRAME, box[2] * crop->scale + 2 * FRAME,
-              box[3] * crop->scale + 2 * FRAME, colours[i].rgb);
+        frame(s, left + box[0] * crop->scale - FRAME, top + box[1] * crop->scale - FRAME,
+              box[2] * crop->scale + 2 * FRAME, box[3] * crop->scale + 2 * FRAME, colours[i].rgb);
     }
 }

@@ -10,9 +10,13 @@
 #include <unistd.h>
 
 #define S experiment_spec
-#define TEXT(n, f) { n, "Spec", NOC_OPTION_TEXT, offsetof(S, f), 0, 0, NULL, "", "" }
+#define TEXT(n, f)                                                                                                     \
+    { n, "Spec", NOC_OPTION_TEXT, offsetof(S, f), 0, 0, NULL, "", "" }
 static const noc_option spec_options[] = {
-    TEXT("title", title), TEXT("note", note), TEXT("size", size), TEXT("crop", crop),
+    TEXT("title", title),
+    TEXT("note", note),
+    TEXT("size", size),
+    TEXT("crop", crop),
     { "frames", "Spec", NOC_OPTION_INT, offsetof(S, frames), 1, EXPERIMENT_FRAMES, NULL, "", "" },
     { "seconds", "Spec", NOC_OPTION_REAL, offsetof(S, seconds), 0, 1e6, NULL, "s", "" },
     { "repetitions", "Spec", NOC_OPTION_INT, offsetof(S, repetitions), 1, 1000, NULL, "", "" },
@@ -35,17 +39,15 @@ static const noc_option *reference_table(void) { return reference_options; }
 static const char *const by_spec[] = { "width", "height", "accumulate", NULL };
 
 static const cli_set spec_sets[] = { { spec_table, 0, NULL }, { NULL } };
-static const cli_set reference_sets[] = {
-    { reference_table, 0, NULL }, { noc_render_options, offsetof(S, reference.params), by_spec }, { NULL }
-};
-static const cli_set scene_sets[] = {
-    { noc_import_options, offsetof(experiment_scene, import), NULL },
-    { noc_city_options, offsetof(experiment_scene, builtin.city), NULL },
-    { noc_builtin_options, offsetof(experiment_scene, builtin), NULL },
-    { NULL }
-};
-static const char *const objects[] = { "scene", "scenes", "cameras", "options", "reference", "configurations", "equal-time", "measured", "shown",
-                                       NULL };
+static const cli_set reference_sets[] = { { reference_table, 0, NULL },
+                                          { noc_render_options, offsetof(S, reference.params), by_spec },
+                                          { NULL } };
+static const cli_set scene_sets[] = { { noc_import_options, offsetof(experiment_scene, import), NULL },
+                                      { noc_city_options, offsetof(experiment_scene, builtin.city), NULL },
+                                      { noc_builtin_options, offsetof(experiment_scene, builtin), NULL },
+                                      { NULL } };
+static const char *const objects[] = { "scene",          "scenes",     "cameras",  "options", "reference",
+                                       "configurations", "equal-time", "measured", "shown",   NULL };
 static const char *const scene_others[] = { "name", "inputs", "cameras", NULL };
 
 /* Files are named as seen from the spec's folder. */
@@ -68,7 +70,8 @@ static int check_inputs(const S *spec, const char *place, json_t *object, const 
     const noc_option *const tables[] = { noc_city_options(), noc_builtin_options() };
     for (size_t k = 0; k < 2; k++)
         for (const noc_option *o = tables[k]; o->name; o++) {
-            const char *needed = json_object_get(object, o->name) ? cli_builtin_needed(o, scene->inputs, scene->input_count) : NULL;
+            const char *needed =
+                json_object_get(object, o->name) ? cli_builtin_needed(o, scene->inputs, scene->input_count) : NULL;
             if (needed)
                 return experiment_wrong(spec, place, "%s is for the input %s", o->name, needed);
         }
@@ -148,21 +151,26 @@ static int read_lists(S *spec, json_t *root, const experiment_config *shared) {
         json_t *object = scenes ? json_array_get(scenes, spec->scene_count) : scene;
         status = read_scene(spec, place, object, &spec->scenes[spec->scene_count]);
         json_t *own = status ? NULL : json_object_get(object, "cameras");
-        status = status ? status : experiment_read_cameras(spec, own ? place : "", own ? own : cameras, spec->scene_count);
+        status =
+            status ? status : experiment_read_cameras(spec, own ? place : "", own ? own : cameras, spec->scene_count);
     }
     for (size_t i = 0; !status && i < json_array_size(configs); i++) {
         snprintf(place, sizeof(place), "configurations[%zu]", i);
         status = experiment_read_config(spec, place, json_array_get(configs, i), shared, i);
     }
-    status = status ? status : check_twice(spec, "scenes", &spec->scenes->name, sizeof(*spec->scenes), spec->scene_count);
-    return status ? status : check_twice(spec, "configurations", &spec->configs->name, sizeof(*spec->configs), spec->config_count);
+    status =
+        status ? status : check_twice(spec, "scenes", &spec->scenes->name, sizeof(*spec->scenes), spec->scene_count);
+    return status
+               ? status
+               : check_twice(spec, "configurations", &spec->configs->name, sizeof(*spec->configs), spec->config_count);
 }
 
 static int read_size(S *spec) {
     double size[2];
     if (!cli_parse_numbers(spec->size, 'x', 2, size) || size[0] != floor(size[0]) || size[1] != floor(size[1]) ||
         !(size[0] >= 1 && size[0] <= NOC_IMAGE_MAX_SIDE && size[1] >= 1 && size[1] <= NOC_IMAGE_MAX_SIDE))
-        return experiment_wrong(spec, "size", "\"%.60s\" is not WIDTHxHEIGHT, 1 to %d px a side", spec->size, NOC_IMAGE_MAX_SIDE);
+        return experiment_wrong(spec, "size", "\"%.60s\" is not WIDTHxHEIGHT, 1 to %d px a side", spec->size,
+                                NOC_IMAGE_MAX_SIDE);
     spec->width = (int)size[0];
     spec->height = (int)size[1];
     if (!spec->crop)
@@ -195,7 +203,9 @@ static int read_times(S *spec, json_t *times) {
         return experiment_wrong(spec, "equal-time", "this must be an array of CPU seconds, such as [1, 3, 10]");
     json_array_foreach(times, i, time) {
         if (i == EXPERIMENT_TIMES || !json_is_number(time) || !(json_number_value(time) > 0))
-            return experiment_wrong(spec, "equal-time", "this must be up to %d CPU seconds, each above 0, such as [1, 3, 10]", EXPERIMENT_TIMES);
+            return experiment_wrong(spec, "equal-time",
+                                    "this must be up to %d CPU seconds, each above 0, such as [1, 3, 10]",
+                                    EXPERIMENT_TIMES);
         spec->times[spec->time_count++] = json_number_value(time);
     }
     return CLI_OK;
@@ -207,31 +217,37 @@ static int check_frames(const S *spec, const char *name, const int *frames, size
     for (size_t c = 0; c < spec->camera_count; c++)
         for (size_t i = 0; i < spec->config_count && !spec->cameras[c].frames; i++)
             most = spec->configs[i].frames > most ? spec->configs[i].frames : most;
-    return !most || !count || frames[count - 1] <= most ? CLI_OK
-        : experiment_wrong(spec, name, "frame %d is after the last, %d", frames[count - 1], most);
+    return !most || !count || frames[count - 1] <= most
+               ? CLI_OK
+               : experiment_wrong(spec, name, "frame %d is after the last, %d", frames[count - 1], most);
 }
 
 static int check_times(const S *spec) {
     size_t resting = 0;
     for (size_t c = 0; c < spec->camera_count; c++)
         resting += !spec->cameras[c].frames;
-    return !spec->time_count || resting ? CLI_OK
-        : experiment_wrong(spec, "equal-time", "this needs a camera at rest: of one with a path the last frame alone is measured");
+    return !spec->time_count || resting
+               ? CLI_OK
+               : experiment_wrong(spec, "equal-time",
+                                  "this needs a camera at rest: of one with a path the last frame alone is measured");
 }
 
 static int check_rows(const S *spec) {
     double rows = 0;
     for (size_t c = 0; c < spec->camera_count; c++)
         for (size_t i = 0; i < spec->config_count; i++)
-            rows += spec->configs[i].seconds > 0 ? 100 : experiment_frames(spec, c, i); /* seconds: about so many are measured */
+            /* seconds: about so many are measured */
+            rows += spec->configs[i].seconds > 0 ? 100 : experiment_frames(spec, c, i);
     rows *= 2.0 * spec->repetitions;
-    return rows > EXPERIMENT_ROWS ? experiment_wrong(spec, "", "it asks for more than %d rows", EXPERIMENT_ROWS) : CLI_OK;
+    return rows > EXPERIMENT_ROWS ? experiment_wrong(spec, "", "it asks for more than %d rows", EXPERIMENT_ROWS)
+                                  : CLI_OK;
 }
 
 static int read_root(S *spec, json_t *root) {
     if (!json_is_object(root))
         return experiment_wrong(spec, "", "a spec is one object, {...}");
-    /* What is judged is light sampling, not the edges of surfaces nor the sky: a spec says otherwise where it means it. */
+    /* What is judged is light sampling, not the edges of surfaces nor the sky: a spec says otherwise where it means it.
+     */
     experiment_config shared = { .params = noc_render_default_params() };
     shared.params.sky = 0;
     shared.params.jitter = false;
@@ -239,13 +255,17 @@ static int read_root(S *spec, json_t *root) {
     if (!status && spec->seconds > 0 && !json_object_get(root, "frames"))
         spec->frames = EXPERIMENT_FRAMES;
     if (!status) {
-        char *title = experiment_keep(spec, spec->title ? cli_format("%s", spec->title) : experiment_spec_name(spec->path));
+        char *title =
+            experiment_keep(spec, spec->title ? cli_format("%s", spec->title) : experiment_spec_name(spec->path));
         spec->title = cli_clean(title, strlen(title) + 1, title);
     }
     status = status ? status : read_size(spec);
     status = status ? status : read_times(spec, json_object_get(root, "equal-time"));
-    status = status ? status : read_frames(spec, "measured", json_object_get(root, "measured"), &spec->measured, &spec->measured_count);
-    status = status ? status : read_frames(spec, "shown", json_object_get(root, "shown"), &spec->shown, &spec->shown_count);
+    status = status ? status
+                    : read_frames(spec, "measured", json_object_get(root, "measured"), &spec->measured,
+                                  &spec->measured_count);
+    status =
+        status ? status : read_frames(spec, "shown", json_object_get(root, "shown"), &spec->shown, &spec->shown_count);
     if (!status && !json_object_get(root, "shown"))
         spec->shown[spec->shown_count++] = 1;
     shared.params.width = spec->width;
@@ -254,7 +274,9 @@ static int read_root(S *spec, json_t *root) {
     spec->reference.params = shared.params;
     spec->reference.params.method = NOC_METHOD_REFERENCE;
     spec->reference.params.seed = 4711;
-    status = status ? status : experiment_set_all(spec, "reference", json_object_get(root, "reference"), reference_sets, NULL, spec);
+    status =
+        status ? status
+               : experiment_set_all(spec, "reference", json_object_get(root, "reference"), reference_sets, NULL, spec);
     status = status ? status : read_lists(spec, root, &shared);
     status = status ? status : check_frames(spec, "measured", spec->measured, spec->measured_count);
     status = status ? status : check_frames(spec, "shown", spec->shown, spec->shown_count);
@@ -271,8 +293,15 @@ char *experiment_spec_name(const char *path) {
 }
 
 int experiment_read_spec(S *spec, const char *path, bool quiet) {
-    *spec = (S){ .path = path, .quiet = quiet, .size = "480x270", .frames = 20, .repetitions = EXPERIMENT_REPETITIONS, .accumulate = EXPERIMENT_MODES, .seed = 1,
-                 .ceiling = 10, .reference = { .frames = 16 } };
+    *spec = (S){ .path = path,
+                 .quiet = quiet,
+                 .size = "480x270",
+                 .frames = 20,
+                 .repetitions = EXPERIMENT_REPETITIONS,
+                 .accumulate = EXPERIMENT_MODES,
+                 .seed = 1,
+                 .ceiling = 10,
+                 .reference = { .frames = 16 } };
     json_error_t error;
     FILE *file = cli_open(path);
     if (!file)

@@ -1,18 +1,20 @@
-/* summary.md: an experiment in a few tables. Where entries of the spec stand for several values of an option, they are the rows
- * and the values the columns; other configurations are rows with a column a camera. */
+/* summary.md: an experiment in a few tables. Where entries of the spec stand for several values of an option, they are
+ * the rows and the values the columns; other configurations are rows with a column a camera. */
 #include "experiment.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Frames told in a table of cameras that stand still: those that the spec measures, if they are few, else the first and the last. */
+/* Frames told in a table of cameras that stand still: those that the spec measures, if they are few, else the first and
+ * the last. */
 int experiment_points(const experiment_spec *spec, size_t camera, experiment_point out[EXPERIMENT_POINTS]) {
     if (spec->cameras[camera].frames) {
         out[0] = (experiment_point){ EXPERIMENT_ALONE, 0 };
         return 1;
     }
-    bool alone = experiment_has_mode(spec, camera, EXPERIMENT_ALONE), listed = spec->measured_count && spec->measured_count < EXPERIMENT_POINTS;
+    bool alone = experiment_has_mode(spec, camera, EXPERIMENT_ALONE),
+         listed = spec->measured_count && spec->measured_count < EXPERIMENT_POINTS;
     bool one = true; /* frame is all there is */
     for (size_t i = 0; i < spec->config_count; i++)
         one &= experiment_frames(spec, camera, i) == 1;
@@ -29,7 +31,8 @@ int experiment_points(const experiment_spec *spec, size_t camera, experiment_poi
     return count;
 }
 
-double experiment_at_point(const experiment_lab *lab, size_t camera, size_t config, experiment_point point, int column, double *error) {
+double experiment_at_point(const experiment_lab *lab, size_t camera, size_t config, experiment_point point, int column,
+                           double *error) {
     experiment_series s = { lab, camera, config, point.mode, 0 };
     int frame = point.frame ? point.frame : experiment_last(&s);
     *error = experiment_error_at(&s, column, frame);
@@ -89,7 +92,8 @@ char *experiment_row_name(const experiment_lab *lab, size_t config) {
     const experiment_config *c = &lab->spec.configs[config];
     if (c->choice < 0)
         return cli_format("%s", c->name);
-    /* The entry's name without the value's place and what joins it; with it in the middle, where the rest would not read. */
+    /* The entry's name without the value's place and what joins it; with it in the middle, where the rest would not
+     * read. */
     const char *name = c->pattern, *star = strchr(name, '*'), *after = star ? star + 1 : "";
     size_t before = star ? (size_t)(star - name) : strlen(name);
     while (before && strchr(", =", name[before - 1]))
@@ -129,7 +133,8 @@ static void print_matrix(FILE *out, const experiment_lab *lab, size_t camera, co
         free(name);
         for (size_t k = 0; k < count; k++) {
             size_t j = i;
-            while (j < spec->config_count && (spec->configs[j].entry != spec->configs[i].entry || strcmp(spec->configs[j].value, values[k])))
+            while (j < spec->config_count &&
+                   (spec->configs[j].entry != spec->configs[i].entry || strcmp(spec->configs[j].value, values[k])))
                 j++;
             if (j < spec->config_count)
                 print_errors(out, lab, camera, j);
@@ -207,15 +212,18 @@ static void print_structures(FILE *out, const experiment_lab *lab) {
         if (!built || is_repeated(lab, i))
             continue;
         if (!any) {
-            fputs("\n| Light structure | Scene, camera | build, ms | volumes | tuning of S_r | hierarchy | boxes | memory, kB | of the scene's, % | S_r, m | pixels that find none, % | "
-                  "lights found, median | 99th percentile |", out);
+            fputs(
+                "\n| Light structure | Scene, camera | build, ms | volumes | tuning of S_r | hierarchy | boxes | memory, kB | of the scene's, % | S_r, m | pixels that find none, % | "
+                "lights found, median | 99th percentile |",
+                out);
             experiment_table_rule(out, 12);
         }
         any = true;
         for (size_t camera = 0; camera < spec->camera_count; camera++) {
             if (!has_structure_row(spec, camera))
                 continue;
-            char *view = cli_format("%s, %s", spec->scenes[spec->cameras[camera].scene].name, spec->cameras[camera].name);
+            char *view =
+                cli_format("%s, %s", spec->scenes[spec->cameras[camera].scene].name, spec->cameras[camera].name);
             bool volumes = structure(lab, camera, i, COL_INFLUENCE) > 0;
             fputc('|', out);
             experiment_cell(out, spec->configs[i].name);
@@ -225,7 +233,10 @@ static void print_structures(FILE *out, const experiment_lab *lab) {
             for (int step = COL_VOLUMES; step <= COL_BOXES; step++)
                 experiment_number(out, volumes ? 1e3 * structure(lab, camera, i, step) : NAN, "%.3g");
             experiment_number(out, 1e-3 * structure(lab, camera, i, COL_LIGHT_BYTES), "%.1f");
-            experiment_number(out, 100 * structure(lab, camera, i, COL_LIGHT_BYTES) / structure(lab, camera, i, COL_SCENE_BYTES), "%.2f");
+            experiment_number(out,
+                              100 * structure(lab, camera, i, COL_LIGHT_BYTES) /
+                                  structure(lab, camera, i, COL_SCENE_BYTES),
+                              "%.2f");
             experiment_number(out, volumes ? structure(lab, camera, i, COL_INFLUENCE) : NAN, "%.3g");
             experiment_number(out, volumes ? 100 * structure(lab, camera, i, COL_FOUND_NONE) : NAN, "%.1f");
             experiment_number(out, volumes ? structure(lab, camera, i, COL_FOUND_MEDIAN) : NAN, "%.0f");
@@ -248,7 +259,8 @@ int experiment_write_summary(experiment_lab *lab) {
         fprintf(out, "%s\n\n", spec->note);
     fprintf(out, "%s; %d x %d px, ", experiment_figure(spec), spec->width, spec->height);
     if (spec->repetitions > 1)
-        fprintf(out, "means of %d repetitions with different seeds, \302\261 their standard error.\n", spec->repetitions);
+        fprintf(out, "means of %d repetitions with different seeds, \302\261 their standard error.\n",
+                spec->repetitions);
     else
         fputs("one run: its spread is not known.\n", out);
     bool plain = false;

@@ -1,20 +1,23 @@
-/* What the laboratory's plots are drawn with. Colours keep apart for the colour-blind (after Okabe and Ito), and each curve has its
- * own marker too; a style sheet in the file swaps them where the reader's system is dark. */
+/* What the laboratory's plots are drawn with. Colours keep apart for the colour-blind (after Okabe and Ito), and each
+ * curve has its own marker too; a style sheet in the file swaps them where the reader's system is dark. */
 #include "experiment_svg.h"
 
 #include <math.h>
 #include <string.h>
 
-const char *const svg_colours[SVG_COLOURS] = { "#0072b2", "#d55e00", "#009e73", "#b8568f", "#c98600", "#3a9bd6", "#666666" };
-static const char *const dark[SVG_COLOURS] = { "#4aa8e8", "#f2833a", "#2fc79a", "#e49ac4", "#f0b93a", "#9bd8fa", "#bbbbbb" };
+const char *const svg_colours[SVG_COLOURS] = { "#0072b2", "#d55e00", "#009e73", "#b8568f",
+                                               "#c98600", "#3a9bd6", "#666666" };
+static const char *const dark[SVG_COLOURS] = { "#4aa8e8", "#f2833a", "#2fc79a", "#e49ac4",
+                                               "#f0b93a", "#9bd8fa", "#bbbbbb" };
 static const char *const dashes[] = { "", " stroke-dasharray=\"7 4\"", " stroke-dasharray=\"2 3\"" };
 
-/* The first configuration that has this one's value of the same option. Where in its array a value stands says nothing: entries of
- * one spec may list different ones. */
+/* The first configuration that has this one's value of the same option. Where in its array a value stands says nothing:
+ * entries of one spec may list different ones. */
 static size_t first_like(const experiment_spec *spec, size_t config) {
     const experiment_config *c = &spec->configs[config];
     size_t i = 0;
-    while (i < config && (!c->option || spec->configs[i].option != c->option || strcmp(spec->configs[i].value, c->value)))
+    while (i < config &&
+           (!c->option || spec->configs[i].option != c->option || strcmp(spec->configs[i].value, c->value)))
         i++;
     return i;
 }
@@ -33,19 +36,23 @@ svg_style svg_style_of(const experiment_spec *spec, size_t config) {
         value += is_new && i < first;
         alone += i < config && !spec->configs[i].option;
     }
-    int colour = c->option ? value : values + alone, around = colour / SVG_COLOURS; /* colours come again: other markers tell them apart */
+    /* colours come again: other markers tell them apart */
+    int colour = c->option ? value : values + alone, around = colour / SVG_COLOURS;
     int line = values ? (int)c->entry : around;
-    return (svg_style){ colour % SVG_COLOURS, ((values ? (int)c->entry + around : alone)) % SVG_MARKERS, colour % SVG_MARKERS,
-                        dashes[line % 3] };
+    return (svg_style){ colour % SVG_COLOURS, ((values ? (int)c->entry + around : alone)) % SVG_MARKERS,
+                        colour % SVG_MARKERS, dashes[line % 3] };
 }
 
-double svg_place(const svg_axis *a, double v) { return a->from + (a->to - a->from) * log(v / a->lo) / log(a->hi / a->lo); }
+double svg_place(const svg_axis *a, double v) {
+    return a->from + (a->to - a->from) * log(v / a->lo) / log(a->hi / a->lo);
+}
 
 double svg_inside(const svg_axis *a, double v) { return svg_place(a, v > a->lo ? v < a->hi ? v : a->hi : a->lo); }
 
 void svg_whisker(FILE *out, int colour, double from, double to, double y) {
-    fprintf(out, "<path class=\"l%d whisker\" fill=\"none\" stroke=\"%s\" d=\"M%.1f %.1fH%.1fM%.1f %.1fv6M%.1f %.1fv6\"/>\n", colour,
-            svg_colours[colour], from, y, to, from, y - 3, to, y - 3);
+    fprintf(out,
+            "<path class=\"l%d whisker\" fill=\"none\" stroke=\"%s\" d=\"M%.1f %.1fH%.1fM%.1f %.1fv6M%.1f %.1fv6\"/>\n",
+            colour, svg_colours[colour], from, y, to, from, y - 3, to, y - 3);
 }
 
 /* The i-th of ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ...; 0 is 1. */
@@ -117,10 +124,13 @@ void svg_text(FILE *out, const char *text, int limit) {
 }
 
 void svg_head(FILE *out, int width, int height) {
-    fprintf(out, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
-                 "font-family=\"sans-serif\" font-size=\"13\">\n<style>\n"
-                 "@media (prefers-color-scheme: dark) {\n.paper { fill: #14171c } .ink { fill: #e6e6e6 } .grid { stroke: #343a44 } "
-                 ".frame { stroke: #8a93a0 }\n", width, height, width, height);
+    fprintf(
+        out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
+        "font-family=\"sans-serif\" font-size=\"13\">\n<style>\n"
+        "@media (prefers-color-scheme: dark) {\n.paper { fill: #14171c } .ink { fill: #e6e6e6 } .grid { stroke: #343a44 } "
+        ".frame { stroke: #8a93a0 }\n",
+        width, height, width, height);
     for (int i = 0; i < SVG_COLOURS; i++)
         fprintf(out, ".l%d { stroke: %s } .m%d { fill: %s }\n", i, dark[i], i, dark[i]);
     fprintf(out, "}\n</style>\n<rect class=\"paper\" width=\"%d\" height=\"%d\" fill=\"#ffffff\"/>\n", width, height);
@@ -132,7 +142,8 @@ void svg_marker(FILE *out, const svg_style *style, double x, double y) {
     if (style->marker < 4)
         fprintf(out, "<path class=\"m%d\" fill=\"%s\" d=\"", c, svg_colours[c]);
     else
-        fprintf(out, "<path class=\"l%d paper\" fill=\"#ffffff\" stroke=\"%s\" stroke-width=\"1.5\" d=\"", c, svg_colours[c]);
+        fprintf(out, "<path class=\"l%d paper\" fill=\"#ffffff\" stroke=\"%s\" stroke-width=\"1.5\" d=\"", c,
+                svg_colours[c]);
     switch (style->marker % 4) {
     case 0: fprintf(out, "M%.1f %.1fa3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0 -7 0z", x - 3.5, y); break;
     case 1: fprintf(out, "M%.1f %.1fh6v6h-6z", x - 3, y - 3); break;
@@ -151,7 +162,8 @@ static void tick(FILE *out, const svg_axis *a, bool vertical, const svg_axis *ot
         fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%g %.1fH%g\"/>\n", other->from, at, other->to);
     if (numbered)
         fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">%.10g</text>\n",
-                vertical ? at : other->from - 8, vertical ? other->from + 18 : at + 4.5, vertical ? "middle" : "end", v);
+                vertical ? at : other->from - 8, vertical ? other->from + 18 : at + 4.5, vertical ? "middle" : "end",
+                v);
 }
 
 void svg_grid(FILE *out, const svg_axis *a, bool vertical, const svg_axis *other) {

@@ -1,5 +1,6 @@
-/* results.csv: one row a configuration, camera, repetition, frame and mode, appended as they come. Its key column tells which
- * settings a row belongs to, so an experiment goes on where it stopped and never mixes in rows of other settings. */
+/* results.csv: one row a configuration, camera, repetition, frame and mode, appended as they come. Its key column tells
+ * which settings a row belongs to, so an experiment goes on where it stopped and never mixes in rows of other settings.
+ */
 #include "experiment.h"
 
 #include <errno.h>
@@ -84,10 +85,12 @@ static void print_row(const experiment_lab *lab, FILE *out, const experiment_run
 /* Is the file's first line our header, whole, or cut where the program was killed? */
 static bool is_header(const char *line, size_t n) {
     size_t whole = sizeof(header) - 1;
-    return n <= whole ? !memcmp(line, header, n) : n == whole + 1 && !memcmp(line, header, whole) && line[whole] == '\n';
+    return n <= whole ? !memcmp(line, header, n)
+                      : n == whole + 1 && !memcmp(line, header, whole) && line[whole] == '\n';
 }
 
-/* Reads what earlier sessions left. *whole: bytes up to the end of the last whole line; -1 where the file is no such table. */
+/* Reads what earlier sessions left. *whole: bytes up to the end of the last whole line; -1 where the file is no such
+ * table. */
 static int read_table(experiment_lab *lab, const char *path, long *whole) {
     struct stat st;
     *whole = 0;
@@ -144,7 +147,8 @@ static char *old_name(const experiment_lab *lab) {
     return name;
 }
 
-/* replaced: another file is about to take its name, which it keeps until then, so that a kill in between loses nothing. */
+/* replaced: another file is about to take its name, which it keeps until then, so that a kill in between loses nothing.
+ */
 static int put_aside(const char *path, const char *old, bool replaced) {
     bool linked = replaced && !link(path, old); /* not every file system can */
     int status = linked || !rename(path, old) ? CLI_OK : CLI_FAILURE;

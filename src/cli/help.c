@@ -150,7 +150,9 @@ static void markdown_row(FILE *out, const noc_option *o, const void *defaults, i
     bool on = o->kind == NOC_OPTION_BOOL && *((const char *)defaults + o->offset);
     char *left = cli_spell(o, defaults), *value = cli_option_value(o, defaults);
     fprintf(out, "| `%s` | %s | %s | ", left, o->help,
-            o->kind == NOC_OPTION_BOOL ? on ? "on" : "off" : is_absent(o, defaults) ? "" : value);
+            o->kind == NOC_OPTION_BOOL ? on ? "on" : "off"
+            : is_absent(o, defaults)   ? ""
+                                       : value);
     if (o->kind == NOC_OPTION_INT || o->kind == NOC_OPTION_UINT || o->kind == NOC_OPTION_REAL)
         fprintf(out, "%.10g to %.10g%s%s", o->min, o->max, *o->unit ? " " : "", o->unit);
     for (const char *c = o->kind == NOC_OPTION_CHOICE ? o->choices : ""; *c; c++)
@@ -161,11 +163,14 @@ static void markdown_row(FILE *out, const noc_option *o, const void *defaults, i
 }
 
 void cli_help_markdown(FILE *out) {
-    fprintf(out, "# Options\n\nMade by `tools/update-docs.sh` from the option tables (`src/render/options.c`, `src/cli/`); a test holds the\n"
-                 "two equal. Write `--option value` or `--option=value`.\n");
+    fprintf(
+        out,
+        "# Options\n\nMade by `tools/update-docs.sh` from the option tables (`src/render/options.c`, `src/cli/`); a test holds the\n"
+        "two equal. Write `--option value` or `--option=value`.\n");
     for (const cli_command *const *c = cli_commands; *c; c++) {
         fprintf(out, "\n## nocturne %s %s\n\n%s\n", (*c)->name, (*c)->arguments, (*c)->summary);
-        cli_each_option(*c, out, "\n### %s\n\n| Option | What it does | Default | Values |\n|---|---|---|---|\n", markdown_row, 0);
+        cli_each_option(*c, out, "\n### %s\n\n| Option | What it does | Default | Values |\n|---|---|---|---|\n",
+                        markdown_row, 0);
         fprintf(out, "\n```\n%s```\n", (*c)->notes);
     }
 }

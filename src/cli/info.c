@@ -17,13 +17,20 @@ static const info_args defaults = { .import = noc_import_default_params(), .buil
 static const char *const placing[] = { "scene-crs", "infer-lamps", NULL };
 
 const cli_command cli_info = {
-    "info", "FILE...", "Tells what files hold: format, CRS, extent, objects, lamps, and what was skipped or repaired.",
+    "info",
+    "FILE...",
+    "Tells what files hold: format, CRS, extent, objects, lamps, and what was skipped or repaired.",
     "Examples\n"
     "  nocturne info city.gml lamps.geojson\n"
     "  nocturne info --json city.gml.gz\n",
-    { { options, 0, NULL }, { noc_import_options, offsetof(A, import), placing }, { noc_city_options, offsetof(A, builtin.city), NULL }, { noc_builtin_options, offsetof(A, builtin), NULL },
+    { { options, 0, NULL },
+      { noc_import_options, offsetof(A, import), placing },
+      { noc_city_options, offsetof(A, builtin.city), NULL },
+      { noc_builtin_options, offsetof(A, builtin), NULL },
       { cli_common_options, 0, NULL } },
-    sizeof(info_args), &defaults, run,
+    sizeof(info_args),
+    &defaults,
+    run,
 };
 
 static void print_counts(const char *title, const size_t counts[NOC_CLASS_COUNT]) {
@@ -33,7 +40,9 @@ static void print_counts(const char *title, const size_t counts[NOC_CLASS_COUNT]
             printf("    %-13s %10s%s\n", noc_class_name((noc_class)i), cli_count(a, counts[i]), title);
 }
 
-const char *info_action(const noc_report_line *line) { return !line->repaired ? "skipped" : line->lossless ? "repaired" : "guessed"; }
+const char *info_action(const noc_report_line *line) {
+    return !line->repaired ? "skipped" : line->lossless ? "repaired" : "guessed";
+}
 
 static void print_lines(const noc_report_file *file, const char *action) {
     char a[32], reason[160]; /* a line holds an id or two; JSON has five */
@@ -53,7 +62,8 @@ static void print_lines(const noc_report_file *file, const char *action) {
 
 static void print_source(const noc_report_file *file) {
     char a[32], b[32], c[32], text[240];
-    printf("  %-11s %s\n", "format", cli_clean(text, sizeof(text), file->format && *file->format ? file->format : "unknown"));
+    printf("  %-11s %s\n", "format",
+           cli_clean(text, sizeof(text), file->format && *file->format ? file->format : "unknown"));
     printf("  %-11s %s", "size", cli_bytes(a, file->bytes));
     if (file->bytes_read > file->bytes)
         printf(", %s unpacked", cli_bytes(b, file->bytes_read));
@@ -76,7 +86,8 @@ static void print_extent(const noc_report_file *file) {
     if (!file->has_extent)
         return;
     int decimals = file->degrees ? 6 : 2;
-    printf("  %-11s x %.*f to %.*f, y %.*f to %.*f", "extent", decimals, lo[0], decimals, hi[0], decimals, lo[1], decimals, hi[1]);
+    printf("  %-11s x %.*f to %.*f, y %.*f to %.*f", "extent", decimals, lo[0], decimals, hi[0], decimals, lo[1],
+           decimals, hi[1]);
     if (lo[2] != 0 || hi[2] != 0)
         printf(", z %.2f to %.2f", lo[2], hi[2]);
     putchar('\n');
@@ -103,11 +114,17 @@ static void print_lamps(const noc_report_file *file, const noc_import_params *im
     if (file->lamp_heads != file->lamps)
         printf(" with %s, each a light", cli_many(b, file->lamp_heads, "head"));
     putchar('\n');
-    const struct { const char *name; size_t count; const char *unit; double min, max; } known[] = {
+    const struct {
+        const char *name;
+        size_t count;
+        const char *unit;
+        double min, max;
+    } known[] = {
         { "height", file->lamps_with_height, "m", file->lamp_height_min, file->lamp_height_max },
         { "lumens", file->lamps_with_lumens, "lm", file->lamp_lumens_min, file->lamp_lumens_max },
         { "watts", file->lamps_with_watts, "W", file->lamp_watts_min, file->lamp_watts_max },
-        { "colour", file->lamps_with_colour, file->lamps_with_kelvin ? "K" : NULL, file->lamp_kelvin_min, file->lamp_kelvin_max },
+        { "colour", file->lamps_with_colour, file->lamps_with_kelvin ? "K" : NULL, file->lamp_kelvin_min,
+          file->lamp_kelvin_max },
         { "direction", file->lamps_with_direction, NULL, 0, 0 },
     };
     for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {
@@ -121,13 +138,15 @@ static void print_lamps(const noc_report_file *file, const noc_import_params *im
     }
     for (int s = 0; s < NOC_SOURCE_COUNT; s++)
         if (file->lamps_by_source[s] && (s != NOC_SOURCE_UNKNOWN || file->lamps_by_source[s] != file->lamps))
-            printf("    %-13s %10s, %.1f%%\n", s == NOC_SOURCE_UNKNOWN ? "source?" : noc_lamp_source_name((noc_lamp_source)s),
-                   cli_count(a, file->lamps_by_source[s]), 100.0 * (double)file->lamps_by_source[s] / (double)file->lamps);
+            printf("    %-13s %10s, %.1f%%\n",
+                   s == NOC_SOURCE_UNKNOWN ? "source?" : noc_lamp_source_name((noc_lamp_source)s),
+                   cli_count(a, file->lamps_by_source[s]),
+                   100.0 * (double)file->lamps_by_source[s] / (double)file->lamps);
     cli_print_assumed("  assumed     ", file->lamps_assumed, import);
 }
 
-/* How wide printf must make the text to fill that many columns of a terminal: it counts bytes, and of a character of UTF-8 one fills
- * one. */
+/* How wide printf must make the text to fill that many columns of a terminal: it counts bytes, and of a character of
+ * UTF-8 one fills one. */
 static int padded(const char *text, int columns) {
     for (; *text; text++)
         columns += ((unsigned char)*text & 0xc0) == 0x80;
@@ -171,14 +190,21 @@ static void print_points(const noc_report_file *file) {
 
 /* What a map holds, read or not. */
 static void print_features(const noc_report_file *file) {
-    const struct { size_t count; const char *noun; } kinds[] = { { file->map_points, "point" }, { file->map_lines, "line" },
-        { file->map_areas, "polygon" }, { file->buildings_unread, "building" }, { file->streets_unread, "street or path" } };
+    const struct {
+        size_t count;
+        const char *noun;
+    } kinds[] = { { file->map_points, "point" },
+                  { file->map_lines, "line" },
+                  { file->map_areas, "polygon" },
+                  { file->buildings_unread, "building" },
+                  { file->streets_unread, "street or path" } };
     const char *before = "  features    ";
     char a[64];
     for (size_t i = 0; i < sizeof(kinds) / sizeof(*kinds); i++)
         if (kinds[i].count) {
             bool streets = i == 4 && kinds[i].count > 1;
-            printf("%s%s%s", before, streets ? cli_count(a, kinds[i].count) : cli_many(a, kinds[i].count, kinds[i].noun),
+            printf("%s%s%s", before,
+                   streets ? cli_count(a, kinds[i].count) : cli_many(a, kinds[i].count, kinds[i].noun),
                    streets ? " streets and paths" : "");
             before = ", ";
         }
@@ -214,9 +240,10 @@ static void print_file(const noc_report_file *file, const noc_import_params *imp
 static void print_scene(const char *name, const noc_scene_info *info) {
     char a[32], b[32];
     printf("%s\n  %-11s built-in scene\n", name, "format");
-    printf("  %-11s x %.2f to %.2f, y %.2f to %.2f, z %.2f to %.2f\n", "extent", info->bounds_min[0], info->bounds_max[0],
-           info->bounds_min[1], info->bounds_max[1], info->bounds_min[2], info->bounds_max[2]);
-    printf("  %-11s %s in %s mesh%s\n", "triangles", cli_count(a, info->triangles), cli_count(b, info->meshes), info->meshes == 1 ? "" : "es");
+    printf("  %-11s x %.2f to %.2f, y %.2f to %.2f, z %.2f to %.2f\n", "extent", info->bounds_min[0],
+           info->bounds_max[0], info->bounds_min[1], info->bounds_max[1], info->bounds_min[2], info->bounds_max[2]);
+    printf("  %-11s %s in %s mesh%s\n", "triangles", cli_count(a, info->triangles), cli_count(b, info->meshes),
+           info->meshes == 1 ? "" : "es");
     print_counts("", info->triangles_by_class);
     printf("  %-11s %s\n", "lights", cli_count(a, info->lights));
     static const char *const kinds[] = { "sphere", "disc", "triangle", "parallelogram", "point", "spot" };
@@ -245,7 +272,8 @@ static noc_status inspect(const info_args *args, const char *path, noc_log *log,
         noc_scene_info info = { 0 };
         if (scene && !status)
             noc_scene_get_info(scene, &info);
-        cli_info_json(path, status ? noc_log_last_error(log) : NULL, (status && !args->import.strict) || scene ? NULL : report, scene && !status ? &info : NULL);
+        cli_info_json(path, status ? noc_log_last_error(log) : NULL,
+                      (status && !args->import.strict) || scene ? NULL : report, scene && !status ? &info : NULL);
     } else if (!status && scene) {
         noc_scene_info info;
         noc_scene_get_info(scene, &info);

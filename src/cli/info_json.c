@@ -104,7 +104,9 @@ static void columns(const noc_report_file *file) {
     putchar('[');
     for (size_t i = 0; i < file->column_count; i++) {
         const noc_report_column *c = &file->columns[i];
-        const char *const texts[][2] = { { "name", c->name }, { "field", c->field }, { "unit", c->unit }, { "example", c->example } };
+        const char *const texts[][2] = {
+            { "name", c->name }, { "field", c->field }, { "unit", c->unit }, { "example", c->example }
+        };
         for (size_t k = 0; k < sizeof(texts) / sizeof(*texts); k++) {
             printf("%s\"%s\": ", k ? ", " : i ? ",\n      {" : "\n      {", texts[k][0]);
             cli_json_text(stdout, texts[k][1]);

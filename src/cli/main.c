@@ -28,8 +28,8 @@ static int unknown_command(const char *name) {
     if (nearest)
         return cli_usage(NULL, "no command \"%s\"; is it %s?", shown, nearest);
     return !access(name, R_OK) || !strncmp(name, "builtin:", 8)
-        ? cli_usage(NULL, "\"%s\" is no command; to draw it: nocturne render %s -o night.png", shown, shown)
-        : cli_usage(NULL, "no command \"%s\"", shown);
+               ? cli_usage(NULL, "\"%s\" is no command; to draw it: nocturne render %s -o night.png", shown, shown)
+               : cli_usage(NULL, "no command \"%s\"", shown);
 }
 
 static int help(int argc, char **argv) {
@@ -41,7 +41,8 @@ static int help(int argc, char **argv) {
     }
     if (argc > 1)
         return cli_usage(NULL, "help takes one command");
-    if (argc && (!strcmp(argv[0], "--markdown") || !strcmp(argv[0], "--man"))) { /* how docs/options.md and nocturne.1 are made */
+    /* how docs/options.md and nocturne.1 are made */
+    if (argc && (!strcmp(argv[0], "--markdown") || !strcmp(argv[0], "--man"))) {
         (strcmp(argv[0], "--man") ? cli_help_markdown : cli_man)(stdout);
         return cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
     }
@@ -65,8 +66,8 @@ static int run(const cli_command *command, int argc, char **argv) {
     return status;
 }
 
-/* A stack that is too small would end the program without a word. It grows to the limit that there is by then, so this may
- * be raised. */
+/* A stack that is too small would end the program without a word. It grows to the limit that there is by then, so this
+ * may be raised. */
 static bool enough_stack(void) {
     enum { NEEDED = 1 << 20, USUAL = 8 << 20 };
     struct rlimit stack;
@@ -76,8 +77,8 @@ static bool enough_stack(void) {
     stack.rlim_cur = stack.rlim_max < USUAL ? stack.rlim_max : USUAL;
     if (stack.rlim_cur >= NEEDED && !setrlimit(RLIMIT_STACK, &stack))
         return true;
-    cli_error("the limit of the stack is %llu kB, and %d kB are needed: ulimit -s %d", (unsigned long long)had / 1024, NEEDED / 1024,
-              NEEDED / 1024);
+    cli_error("the limit of the stack is %llu kB, and %d kB are needed: ulimit -s %d", (unsigned long long)had / 1024,
+              NEEDED / 1024, NEEDED / 1024);
     return false;
 }
 

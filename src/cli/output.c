@@ -43,7 +43,8 @@ int cli_check_output(const cli_command *command, const char *path, int endings, 
     if ((endings & CLI_OBJ) && !has_ending(path, ".obj"))
         return cli_usage(command, "%s must end in .obj", shown);
     if (!((endings & CLI_PNG) && png) && !((endings & CLI_EXR) && exr) && !(endings & CLI_OBJ))
-        return cli_usage(command, "%s must end in .png%s: the ending decides the format", shown, endings & CLI_EXR ? " or .exr" : "");
+        return cli_usage(command, "%s must end in .png%s: the ending decides the format", shown,
+                         endings & CLI_EXR ? " or .exr" : "");
     if (exists && !S_ISREG(st.st_mode)) {
         cli_error("%s is no ordinary file and is left alone", shown);
         return CLI_FAILURE;

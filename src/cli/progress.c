@@ -29,7 +29,8 @@ void cli_progress_start(bool quiet) {
     next_told = FIRST_TOLD;
 }
 
-/* A sign of life in a pipe or a log, where a bar has no place: a line after FIRST_TOLD seconds, and then ever more rarely. */
+/* A sign of life in a pipe or a log, where a bar has no place: a line after FIRST_TOLD seconds, and then ever more
+ * rarely. */
 static void tell(double done, double left, const char *what) {
     double spent = cli_now() - started;
     if (!told_at_all || spent < next_told)
@@ -93,7 +94,8 @@ bool cli_load_progress(void *user, const char *what, double done) {
 static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
 enum { SIGNALS = sizeof(signals) / sizeof(*signals) };
 
-/* Libraries that cannot be asked to stop (a triangulation, a hierarchy) are not waited for where nothing is to be kept. */
+/* Libraries that cannot be asked to stop (a triangulation, a hierarchy) are not waited for where nothing is to be kept.
+ */
 #define GRACE_NS 500000000
 static volatile sig_atomic_t nothing_to_keep;
 static timer_t grace;

@@ -5,27 +5,35 @@
 #include <string.h>
 
 #define A render_args
-#define TEXT(n, g, f, u, h) { n, g, NOC_OPTION_TEXT, offsetof(A, f), 0, 0, NULL, u, h }
+#define TEXT(n, g, f, u, h)                                                                                            \
+    { n, g, NOC_OPTION_TEXT, offsetof(A, f), 0, 0, NULL, u, h }
 static const noc_option own_options[] = {
     TEXT("output", "Output", output, "FILE", "picture to write: .png as displayed, .exr linear in cd/m2"),
     { "show", "Output", NOC_OPTION_CHOICE, offsetof(A, show), 0, 0,
       "picture|lights|density|light|weight|confidence|rays|variance|error|depth|normal|class|object", "",
       "what is written: the picture, how lights were sampled, or what is seen" },
     TEXT("show-range", "Output", show_range, "LOW,HIGH", "ends of that view's colour bar; else found from its numbers"),
-    TEXT("influence-obj", "Output", influence_obj, "FILE", "write the influence volumes of --candidates bvh, and boxes, as OBJ too"),
+    TEXT("influence-obj", "Output", influence_obj, "FILE",
+         "write the influence volumes of --candidates bvh, and boxes, as OBJ too"),
     CLI_PRESET(A, "Estimator"),
-    { "frames", "Output", NOC_OPTION_INT, offsetof(A, frames), 1, 1e9, NULL, "", "frames that are rendered and averaged" },
+    { "frames", "Output", NOC_OPTION_INT, offsetof(A, frames), 1, 1e9, NULL, "",
+      "frames that are rendered and averaged" },
     { "time", "Output", NOC_OPTION_REAL, offsetof(A, time), 0, 1e9, NULL, "s",
       "render for about this long instead; 0 = no limit" },
-    { "stats", "Output", NOC_OPTION_BOOL, offsetof(A, stats), 0, 1, NULL, "", "print times by pass, rays and the trace floor" },
+    { "stats", "Output", NOC_OPTION_BOOL, offsetof(A, stats), 0, 1, NULL, "",
+      "print times by pass, rays and the trace floor" },
     { "threads", "Output", NOC_OPTION_INT, offsetof(A, threads), 0, 1024, NULL, "", "threads; 0 = one a core" },
-    { "view", "Camera", NOC_OPTION_CHOICE, offsetof(A, view), 0, 0, "street|aerial|overview|own", "", "camera derived from the city; own: the scene's, else street" },
+    { "view", "Camera", NOC_OPTION_CHOICE, offsetof(A, view), 0, 0, "street|aerial|overview|own", "",
+      "camera derived from the city; own: the scene's, else street" },
     TEXT("eye", "Camera", eye, "X,Y,Z", "place of the camera, metres in the scene's local frame, z up"),
     TEXT("target", "Camera", target, "X,Y,Z", "what it looks at"),
-    TEXT("camera-crs", "Camera", camera_crs, "CRS", "eye and target are easting,northing,height in this CRS; \"scene\": the scene's"),
-    { "fov", "Camera", NOC_OPTION_REAL, offsetof(A, fov), 1, 170, NULL, "degrees", "vertical field of view; else that of the view, with --eye 50" },
+    TEXT("camera-crs", "Camera", camera_crs, "CRS",
+         "eye and target are easting,northing,height in this CRS; \"scene\": the scene's"),
+    { "fov", "Camera", NOC_OPTION_REAL, offsetof(A, fov), 1, 170, NULL, "degrees",
+      "vertical field of view; else that of the view, with --eye 50" },
     TEXT("size", "Picture", size, "WxH", "width and height at once, such as 1920x1080"),
-    TEXT("exposure", "Display", exposure, "EV", "\"auto\" (noise moves it), or EV100, to compare pictures: one more is half as bright"),
+    TEXT("exposure", "Display", exposure, "EV",
+         "\"auto\" (noise moves it), or EV100, to compare pictures: one more is half as bright"),
     { NULL },
 };
 static const noc_option *options(void) { return own_options; }
@@ -33,14 +41,20 @@ static const noc_option *options(void) { return own_options; }
 static int run(void *arguments);
 
 static const render_args defaults = {
-    .frames = 32, .view = NOC_VIEW_OWN, .exposure = "auto",
-    .render = noc_render_default_params(), .display = noc_display_default_params(),
-    .import = noc_import_default_params(), .builtin = noc_builtin_default_params(),
+    .frames = 32,
+    .view = NOC_VIEW_OWN,
+    .exposure = "auto",
+    .render = noc_render_default_params(),
+    .display = noc_display_default_params(),
+    .import = noc_import_default_params(),
+    .builtin = noc_builtin_default_params(),
 };
 static const char *const by_exposure[] = { "auto-exposure", "ev100", NULL }; /* --exposure says both */
 
 const cli_command cli_render = {
-    "render", "INPUT... -o FILE", "Draws a city at night. Inputs (cities, meshes, lamps, builtin:NAME) make one scene.",
+    "render",
+    "INPUT... -o FILE",
+    "Draws a city at night. Inputs (cities, meshes, lamps, builtin:NAME) make one scene.",
     "Examples\n"
     "  nocturne render builtin:city -o night.png\n"
     "  nocturne render builtin:mess --lights 100000 -o mess.png\n"
@@ -57,7 +71,9 @@ const cli_command cli_render = {
       { noc_city_options, offsetof(A, builtin.city), NULL },
       { noc_builtin_options, offsetof(A, builtin), NULL },
       { cli_common_options, 0, NULL } },
-    sizeof(render_args), &defaults, run,
+    sizeof(render_args),
+    &defaults,
+    run,
 };
 
 static int parse_size(render_args *args) {
@@ -113,7 +129,8 @@ static void warn_of_idle(const render_args *args) {
         if (!noc_option_idle(o, display ? noc_display_options() : noc_render_options(),
                              display ? (const void *)&args->display : &args->render, why, sizeof(why)))
             continue;
-        bool off = o->kind == NOC_OPTION_BOOL && (noc_option_get(o, &args->render, value, sizeof(value)), *value == 'f');
+        bool off =
+            o->kind == NOC_OPTION_BOOL && (noc_option_get(o, &args->render, value, sizeof(value)), *value == 'f');
         cli_error("warning: --%s%s has no effect: %s", off ? "no-" : "", o->name, why);
     }
 }
@@ -123,7 +140,9 @@ static int check_influence(const render_args *args) {
         return CLI_OK;
     bool draws = args->render.method == NOC_METHOD_RIS || args->render.method == NOC_METHOD_RESTIR;
     if (args->render.candidates != NOC_CANDIDATES_BVH || !draws)
-        return cli_usage(&cli_render, "--influence-obj needs --candidates bvh, with the method ris or restir: others have no influence volumes");
+        return cli_usage(
+            &cli_render,
+            "--influence-obj needs --candidates bvh, with the method ris or restir: others have no influence volumes");
     return cli_check_output(&cli_render, args->influence_obj, CLI_OBJ, &args->common);
 }
 
@@ -153,10 +172,12 @@ static noc_status load(render_job *job) {
     render_args *args = job->args;
     char triangles[64], lights[64];
     args->import.progress = (noc_progress){ cli_load_progress, NULL };
-    noc_status status = noc_render_check(&args->render, job->log); /* what a frame would refuse, before a city is read */
+    /* what a frame would refuse, before a city is read */
+    noc_status status = noc_render_check(&args->render, job->log);
     if (status)
         return status;
-    status = cli_load_scene(job->scene, args->common.inputs, args->common.input_count, &args->builtin, &args->import, &job->report);
+    status = cli_load_scene(job->scene, args->common.inputs, args->common.input_count, &args->builtin, &args->import,
+                            &job->report);
     noc_scene_get_info(job->scene, &job->scene_info);
     job->loaded = cli_now();
     if (!status && args->common.verbose)
@@ -213,8 +234,8 @@ static noc_status render_frames(render_job *job) {
 /* Ctrl-C is no failure of the work: what is complete is kept. */
 static bool is_failure(noc_status status) { return status && !(status == NOC_ERR_CANCELLED && cli_interrupted()); }
 
-/* What the picture and its writing take is asked for before the frames: an hour's work must not fail at its end. It is not
- * touched, so it costs addresses only. */
+/* What the picture and its writing take is asked for before the frames: an hour's work must not fail at its end. It is
+ * not touched, so it costs addresses only. */
 static noc_status reserve(render_job *job) {
     const noc_render_params *p = &job->args->render;
     size_t bytes = (size_t)p->width * (size_t)p->height * (job->args->show ? 32 : 20) + ((size_t)8 << 20);
@@ -251,7 +272,8 @@ static int work(render_job *job) {
         cli_error("interrupted: no frame was complete, nothing was saved");
         return ending;
     }
-    if (cli_write_picture(job) || (args->influence_obj && noc_renderer_write_influence(job->renderer, &args->render, args->influence_obj)))
+    if (cli_write_picture(job) ||
+        (args->influence_obj && noc_renderer_write_influence(job->renderer, &args->render, args->influence_obj)))
         return CLI_FAILURE;
     cli_warn_of_picture(job);
     /* After the picture: the floor is measured on one more frame. */

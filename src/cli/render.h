@@ -8,16 +8,16 @@ typedef struct render_args {
     cli_args common;
     const char *output;
     int frames;
-    double time;             /* s; 0: no limit */
+    double time; /* s; 0: no limit */
     int threads;
     bool stats;
-    int preset;              /* noc_preset */
-    int show;                /* 0: the picture, else 1 + noc_aov */
+    int preset; /* noc_preset */
+    int show;   /* 0: the picture, else 1 + noc_aov */
     const char *show_range, *influence_obj;
     noc_channel_params range;
-    int view;                /* noc_view */
+    int view; /* noc_view */
     const char *eye, *target, *camera_crs;
-    double fov;              /* 0: not given */
+    double fov; /* 0: not given */
     const char *size, *exposure;
     noc_render_params render;
     noc_display_params display;
@@ -33,21 +33,21 @@ typedef struct render_job {
     noc_scene *scene;
     noc_renderer *renderer;
     noc_image *image;
-    noc_channel *view;        /* --show */
-    void *room;               /* memory that the picture and its file will take, held while frames are rendered */
+    noc_channel *view; /* --show */
+    void *room;        /* memory that the picture and its file will take, held while frames are rendered */
     noc_camera camera;
-    bool far_away;            /* the camera is, and it was said */
+    bool far_away; /* the camera is, and it was said */
     noc_scene_info scene_info;
-    noc_report *report;       /* on the inputs; NULL without any */
-    noc_frame_stats last;     /* of the last complete frame */
-    double started, loaded, ready, rendered; /* wall clock */
-    int frames;               /* complete */
+    noc_report *report;                                              /* on the inputs; NULL without any */
+    noc_frame_stats last;                                            /* of the last complete frame */
+    double started, loaded, ready, rendered;                         /* wall clock */
+    int frames;                                                      /* complete */
     double frame_seconds, cpu_seconds, pass_seconds[NOC_PASS_COUNT]; /* summed over complete frames */
-    double floor_seconds;     /* trace floor of one frame; 0: not measured */
+    double floor_seconds;                                            /* trace floor of one frame; 0: not measured */
 } render_job;
 
 /* camera.c */
-int cli_parse_camera(render_job *job);      /* --eye, --target: checked before the long work */
+int cli_parse_camera(render_job *job);        /* --eye, --target: checked before the long work */
 noc_status cli_place_camera(render_job *job); /* once the scene is there */
 
 /* show.c */
@@ -61,6 +61,6 @@ void cli_print_summary(const render_job *job);
 void cli_print_stats(const render_job *job);
 bool cli_is_black(const noc_image *image);
 void cli_warn_of_picture(const render_job *job); /* once it is written */
-noc_status cli_write_picture(render_job *job); /* with all of its metadata */
+noc_status cli_write_picture(render_job *job);   /* with all of its metadata */
 
 #endif

@@ -5,7 +5,10 @@
 #include <string.h>
 #include <sys/resource.h>
 
-typedef struct meta_text { char *keys[160], *values[160]; size_t count; } meta_text;
+typedef struct meta_text {
+    char *keys[160], *values[160];
+    size_t count;
+} meta_text;
 
 static void add(meta_text *meta, const char *key, char *value) {
     if (meta->count == sizeof(meta->keys) / sizeof(*meta->keys))
@@ -27,9 +30,10 @@ static bool counts(const render_args *args, const noc_option *o) {
 static void add_options(meta_text *meta, const render_args *args) {
     for (const cli_set *set = cli_render.sets; set->table; set++) {
         for (const noc_option *o = set->table(); o->name; o++) {
-            static const char *const told_otherwise[] = { "output", "eye", "target", "camera-crs", "fov", "stats",
-                                                          "frames", "size", "exposure", "time", "threads", "show",
-                                                          "show-range", "quiet", "verbose", "help", "lamps", NULL };
+            static const char *const told_otherwise[] = { "output",  "eye",    "target",     "camera-crs", "fov",
+                                                          "stats",   "frames", "size",       "exposure",   "time",
+                                                          "threads", "show",   "show-range", "quiet",      "verbose",
+                                                          "help",    "lamps",  NULL };
             if (cli_hidden(set, o) || cli_hidden(&(cli_set){ .hidden = told_otherwise }, o) || !counts(args, o))
                 continue;
             add(meta, o->name, cli_option_value(o, (const char *)args + set->offset));
@@ -41,17 +45,27 @@ static void add_options(meta_text *meta, const render_args *args) {
 static void add_totals(meta_text *meta, const noc_report *report) {
     noc_report_totals t;
     noc_report_get_totals(report, &t);
-    const struct { const char *key; size_t count; } rows[] = {
-        { "lamps-mapped", t.lamps_mapped }, { "lamps-inferred", t.lamps_inferred }, { "lamps-dropped", t.lamps_dropped },
-        { "lamps-moved", t.lamps_moved }, { "lamps-repeated", t.lamps_repeated }, { "objects-repeated", t.objects_repeated },
-        { "lamps-height-assumed", t.lamps_assumed[NOC_LAMP_HEIGHT] }, { "lamps-flux-assumed", t.lamps_assumed[NOC_LAMP_FLUX] },
-        { "lamps-colour-assumed", t.lamps_assumed[NOC_LAMP_COLOUR] },
-        { "features-skipped", t.skipped }, { "features-repaired", t.repaired }, { "features-guessed", t.guessed } };
+    const struct {
+        const char *key;
+        size_t count;
+    } rows[] = { { "lamps-mapped", t.lamps_mapped },
+                 { "lamps-inferred", t.lamps_inferred },
+                 { "lamps-dropped", t.lamps_dropped },
+                 { "lamps-moved", t.lamps_moved },
+                 { "lamps-repeated", t.lamps_repeated },
+                 { "objects-repeated", t.objects_repeated },
+                 { "lamps-height-assumed", t.lamps_assumed[NOC_LAMP_HEIGHT] },
+                 { "lamps-flux-assumed", t.lamps_assumed[NOC_LAMP_FLUX] },
+                 { "lamps-colour-assumed", t.lamps_assumed[NOC_LAMP_COLOUR] },
+                 { "features-skipped", t.skipped },
+                 { "features-repaired", t.repaired },
+                 { "features-guessed", t.guessed } };
     for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
         add(meta, rows[i].key, cli_format("%zu", rows[i].count));
 }
 
-/* Paths as they read from their ends: files of one name lie side by side, then those in folders of one name, and so on. */
+/* Paths as they read from their ends: files of one name lie side by side, then those in folders of one name, and so on.
+ */
 static int compare_ends(const void *a, const void *b) {
     const char *x = **(const char *const *const *)a, *y = **(const char *const *const *)b;
     const char *p = x + strlen(x), *q = y + strlen(y);
@@ -80,8 +94,8 @@ static const char *last_names(const char *path, size_t n) {
     return p;
 }
 
-/* File names with commas between them. A folder is nobody else's business: where several files have one name, each is told
- * with as many of its folders as no other has. Only what was given twice in the same words is told twice alike. */
+/* File names with commas between them. A folder is nobody else's business: where several files have one name, each is
+ * told with as many of its folders as no other has. Only what was given twice in the same words is told twice alike. */
 static char *join_names(const char *const *paths, size_t count) {
     const char *const **order = cli_alloc((count + 1) * sizeof(*order));
     const char **told = cli_alloc((count + 1) * sizeof(*told));
@@ -113,9 +127,7 @@ static bool is_exr(const char *path) {
     return n >= 4 && (path[n - 1] | 32) == 'r';
 }
 
-static double auto_ev100(const render_job *job) {
-    return cli_auto_ev100(job->image) - job->args->display.compensation;
-}
+static double auto_ev100(const render_job *job) { return cli_auto_ev100(job->image) - job->args->display.compensation; }
 
 static double ev100(const render_job *job) {
     const noc_display_params *display = &job->args->display;
@@ -142,11 +154,13 @@ noc_status cli_write_picture(render_job *job) {
     add(&meta, "scene-lights", cli_format("%zu", job->scene_info.lights));
     add_totals(&meta, job->report);
     add(&meta, "given-crs-name", cli_format("%s", job->scene_info.given_crs));
-    add(&meta, "given-origin", cli_format("%.12g %.12g %.12g", job->scene_info.given_origin[0], job->scene_info.given_origin[1],
-                                          job->scene_info.given_origin[2]));
+    add(&meta, "given-origin",
+        cli_format("%.12g %.12g %.12g", job->scene_info.given_origin[0], job->scene_info.given_origin[1],
+                   job->scene_info.given_origin[2]));
     add(&meta, "scene-crs-name", cli_format("%s", job->scene_info.crs));
-    add(&meta, "scene-origin", cli_format("%.12g %.12g %.12g", job->scene_info.origin[0], job->scene_info.origin[1],
-                                          job->scene_info.origin[2]));
+    add(&meta, "scene-origin",
+        cli_format("%.12g %.12g %.12g", job->scene_info.origin[0], job->scene_info.origin[1],
+                   job->scene_info.origin[2]));
     add_options(&meta, args);
     if (!args->show && is_exr(args->output))
         add(&meta, "auto-ev100", cli_format("%.4f", auto_ev100(job)));
@@ -176,7 +190,8 @@ void cli_warn_of_picture(const render_job *job) {
     if (job->args->common.quiet || job->far_away || !job->scene_info.lights)
         return;
     bool black = cli_is_black(job->image);
-    bool surfaces = job->scene_info.lights_by_kind[NOC_LIGHT_TRIANGLE]; /* of a model, which may be wound the other way */
+    /* of a model, which may be wound the other way */
+    bool surfaces = job->scene_info.lights_by_kind[NOC_LIGHT_TRIANGLE];
     if (p->final_ray && !job->last.rays_shadow && black)
         cli_error("warning: the picture is black: the camera sees nothing that a lamp could light%s",
                   surfaces ? "; surfaces shine from one side" : "");
@@ -244,7 +259,8 @@ static void print_issues(const noc_report *report) {
         for (size_t j = 0; j < file->line_count; j++) {
             const noc_report_line *line = &file->lines[j];
             size_t k = 0;
-            while (k < n && (issues[k].line->repaired != line->repaired || strcmp(issues[k].line->reason, line->reason)))
+            while (k < n &&
+                   (issues[k].line->repaired != line->repaired || strcmp(issues[k].line->reason, line->reason)))
                 k++;
             if (k == n)
                 issues[n++] = (issue){ line, 0 };
@@ -253,7 +269,8 @@ static void print_issues(const noc_report *report) {
     }
     qsort(issues, n, sizeof(*issues), compare_issues);
     char a[64], b[32], c[32], reason[160];
-    printf("  inputs    features skipped: %s, repaired: %s, guessed at: %s\n", cli_count(a, t.skipped), cli_count(b, t.repaired), cli_count(c, t.guessed));
+    printf("  inputs    features skipped: %s, repaired: %s, guessed at: %s\n", cli_count(a, t.skipped),
+           cli_count(b, t.repaired), cli_count(c, t.guessed));
     for (size_t i = 0; i < n && i < SHOWN; i++) {
         const noc_report_line *line = issues[i].line;
         printf("            %s x %s", cli_count(a, issues[i].count), cli_clean(reason, sizeof(reason), line->reason));
@@ -270,8 +287,14 @@ static void print_lamps(const noc_report *report, const noc_import_params *impor
     noc_report_totals t;
     char a[32];
     noc_report_get_totals(report, &t);
-    const struct { const char *what; size_t count; } rows[] = { { "mapped", t.lamps_mapped }, { "moved", t.lamps_moved },
-        { "inferred", t.lamps_inferred }, { "dropped", t.lamps_dropped }, { "repeated", t.lamps_repeated } };
+    const struct {
+        const char *what;
+        size_t count;
+    } rows[] = { { "mapped", t.lamps_mapped },
+                 { "moved", t.lamps_moved },
+                 { "inferred", t.lamps_inferred },
+                 { "dropped", t.lamps_dropped },
+                 { "repeated", t.lamps_repeated } };
     const char *before = "  lamps     ";
     for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
         if (rows[i].count) {
@@ -306,13 +329,16 @@ void cli_print_summary(const render_job *job) {
         printf(", computed in %s", scene->crs);
     putchar('\n');
     if (*scene->given_crs)
-        printf("  origin    %.3f,%.3f,%.3f in %s is 0,0,0 of eye and target\n", scene->given_origin[0], scene->given_origin[1],
-               scene->given_origin[2], strcmp(scene->given_crs, scene->crs) ? "the first" : "that CRS");
+        printf("  origin    %.3f,%.3f,%.3f in %s is 0,0,0 of eye and target\n", scene->given_origin[0],
+               scene->given_origin[1], scene->given_origin[2],
+               strcmp(scene->given_crs, scene->crs) ? "the first" : "that CRS");
     print_lamps(job->report, &args->import);
     print_issues(job->report);
     printf("  camera    eye %.2f,%.2f,%.2f target %.2f,%.2f,%.2f fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
-           job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2], job->camera.fov_deg);
-    printf("  time      %s: loading %s, ", cli_seconds(a, cli_now() - job->started), cli_seconds(b, job->loaded - job->started));
+           job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2],
+           job->camera.fov_deg);
+    printf("  time      %s: loading %s, ", cli_seconds(a, cli_now() - job->started),
+           cli_seconds(b, job->loaded - job->started));
     printf("ray tracing structure %s, ", cli_seconds(a, job->last.build_seconds));
     printf("%s a frame (%s)\n", cli_seconds(a, job->frame_seconds / job->frames), job->last.path ? job->last.path : "");
     printf("  memory    %s at most\n", cli_bytes(a, peak_memory()));
@@ -330,11 +356,12 @@ void cli_print_stats(const render_job *job) {
                sum > 0 ? 100 * job->pass_seconds[i] / sum : 0);
     double frame = job->frame_seconds / job->frames;
     char a[32], b[32];
-    printf("  %-12s %10.2f           wall; %.2f processor\n", "frame", 1e3 * frame, 1e3 * job->cpu_seconds / job->frames);
+    printf("  %-12s %10.2f           wall; %.2f processor\n", "frame", 1e3 * frame,
+           1e3 * job->cpu_seconds / job->frames);
     printf("  %-12s %s primary, %s shadow (last frame)\n", "rays", cli_count(a, job->last.rays_primary),
            cli_count(b, job->last.rays_shadow));
     if (job->floor_seconds > 0)
-        printf("  %-12s %10.2f           wall; the frame takes %.2f times as long\n", "trace floor", 1e3 * job->floor_seconds,
-               frame / job->floor_seconds);
+        printf("  %-12s %10.2f           wall; the frame takes %.2f times as long\n", "trace floor",
+               1e3 * job->floor_seconds, frame / job->floor_seconds);
     printf("  %-12s %s\n", "memory", cli_bytes(a, job->last.memory_bytes));
 }

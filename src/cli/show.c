@@ -14,7 +14,8 @@ int cli_parse_show(render_args *args) {
     if (!args->show)
         return CLI_OK;
     double ends[2] = { 0, 0 };
-    if (args->show_range && (!cli_parse_numbers(args->show_range, ',', 2, ends) || !(ends[0] >= 0 && ends[0] < ends[1])))
+    if (args->show_range &&
+        (!cli_parse_numbers(args->show_range, ',', 2, ends) || !(ends[0] >= 0 && ends[0] < ends[1])))
         return cli_usage(&cli_render, "--show-range: \"%.60s\" is not LOW,HIGH, the lower one first", args->show_range);
     args->range = (noc_channel_params){ ends[0], ends[1] };
     if ((shown(args) == NOC_AOV_VARIANCE || shown(args) == NOC_AOV_ERROR) && args->frames < 2 && !(args->time > 0))
@@ -28,7 +29,8 @@ int cli_parse_show(render_args *args) {
 
 noc_status cli_write_view(render_job *job, const noc_image_meta *meta) {
     job->view = noc_renderer_aov(job->renderer, shown(job->args));
-    return job->view ? noc_channel_write(job->view, job->args->output, &job->args->range, meta, job->log) : NOC_ERR_MEMORY;
+    return job->view ? noc_channel_write(job->view, job->args->output, &job->args->range, meta, job->log)
+                     : NOC_ERR_MEMORY;
 }
 
 static int compare_values(const void *a, const void *b) {
@@ -37,11 +39,14 @@ static int compare_values(const void *a, const void *b) {
 }
 
 /* A number of a view that is a name, and how many pixels have it. */
-typedef struct label { size_t number, pixels; } label;
+typedef struct label {
+    size_t number, pixels;
+} label;
 
 static int compare_labels(const void *a, const void *b) {
     const label *x = a, *y = b;
-    return x->pixels != y->pixels ? (x->pixels < y->pixels ? 1 : -1) : (x->number > y->number) - (x->number < y->number);
+    return x->pixels != y->pixels ? (x->pixels < y->pixels ? 1 : -1)
+                                  : (x->number > y->number) - (x->number < y->number);
 }
 
 static const char *name_of(const render_job *job, size_t number) {
@@ -65,8 +70,12 @@ static void print_names(const render_job *job, const float *v, size_t n, size_t 
         const char *name = name_of(job, labels[i].number);
         char text[48];
         if (name && *name)
-            printf("%s%zu %s %.1f%%", !told ? "            " : told % 4 ? ", " : ",\n            ", labels[i].number,
-                   cli_clean(text, sizeof(text), name), 100.0 * (double)labels[i].pixels / (double)pixels);
+            printf("%s%zu %s %.1f%%",
+                   !told      ? "            "
+                   : told % 4 ? ", "
+                              : ",\n            ",
+                   labels[i].number, cli_clean(text, sizeof(text), name),
+                   100.0 * (double)labels[i].pixels / (double)pixels);
         told += name && *name;
     }
     if (told)
@@ -83,7 +92,10 @@ void cli_print_view_kind(const render_job *job, bool numbers) {
         puts("as vectors");
     else
         printf("as numbers%s%s\n",
-               *view->unit ? " of unit " : view->scale == NOC_CHANNEL_LABELS ? " that stand for names" : "", view->unit);
+               *view->unit                         ? " of unit "
+               : view->scale == NOC_CHANNEL_LABELS ? " that stand for names"
+                                                   : "",
+               view->unit);
 }
 
 /* Figures of the numbers, for the summary. */
@@ -105,11 +117,13 @@ void cli_print_view(const render_job *job) {
     if (!n)
         printf("  view      %s: no pixel has a value\n", view->name);
     else if (view->scale == NOC_CHANNEL_LABELS)
-        printf("  view      %s: %s different ones, none in %.1f%% of the pixels\n", view->name, cli_count(text, different),
-               100.0 * (double)(pixels - n) / (double)pixels);
+        printf("  view      %s: %s different ones, none in %.1f%% of the pixels\n", view->name,
+               cli_count(text, different), 100.0 * (double)(pixels - n) / (double)pixels);
     else
-        printf("  view      %s: median %.4g, 1%% of the values under %.4g and over %.4g; none in %.1f%% of the pixels\n", view->name,
-               (double)v[n / 2], (double)v[n / 100], (double)v[n - 1 - n / 100], 100.0 * (double)(pixels - n) / (double)pixels);
+        printf(
+            "  view      %s: median %.4g, 1%% of the values under %.4g and over %.4g; none in %.1f%% of the pixels\n",
+            view->name, (double)v[n / 2], (double)v[n / 100], (double)v[n - 1 - n / 100],
+            100.0 * (double)(pixels - n) / (double)pixels);
     if (view->scale == NOC_CHANNEL_LABELS)
         print_names(job, v, n, pixels);
     free(v);

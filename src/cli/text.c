@@ -76,7 +76,9 @@ void cli_no_memory(void) {
 
 noc_log *cli_log_create(const cli_args *args) {
     noc_log *log = noc_log_create(&(noc_log_params){
-        .level = args->quiet ? NOC_LOG_ERROR : args->verbose ? NOC_LOG_DEBUG : NOC_LOG_WARN,
+        .level = args->quiet     ? NOC_LOG_ERROR
+                 : args->verbose ? NOC_LOG_DEBUG
+                                 : NOC_LOG_WARN,
         .message = log_message,
     });
     if (!log)

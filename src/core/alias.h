@@ -1,6 +1,7 @@
-/* core/alias.h: lights picked in proportion to their power from an alias table (Walker 1977; Vose 1991, "A Linear Algorithm
- * for Generating Random Numbers with a Given Distribution"). Slot i belongs to light i: it is drawn as often as any other
- * slot, keeps its own light with probability `keep`, and gives `other` else. Includers supply the bridge alias_load(CTX i). */
+/* core/alias.h: lights picked in proportion to their power from an alias table (Walker 1977; Vose 1991, "A Linear
+ * Algorithm for Generating Random Numbers with a Given Distribution"). Slot i belongs to light i: it is drawn as often
+ * as any other slot, keeps its own light with probability `keep`, and gives `other` else. Includers supply the bridge
+ * alias_load(CTX i). */
 #ifndef CORE_ALIAS_H
 #define CORE_ALIAS_H
 

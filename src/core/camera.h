@@ -6,9 +6,9 @@
 
 struct camera {
     v3 eye;
-    v3 right;   /* from the picture's centre to its right edge, at distance 1 */
-    v3 up;      /* to its upper edge */
-    v3 forward; /* unit */
+    v3 right;        /* from the picture's centre to its right edge, at distance 1 */
+    v3 up;           /* to its upper edge */
+    v3 forward;      /* unit */
     real inv_right2; /* 1 / |right|^2 */
     real inv_up2;
     real width;
@@ -26,7 +26,8 @@ FN v3 camera_direction(camera c, real px, real py) {
     return add3(c.forward, add3(mul3(c.right, x), mul3(c.up, y)));
 }
 
-/* Where a point is seen: pixel coordinates in x, y and depth along the view in z (not in front of the camera: z <= 0). */
+/* Where a point is seen: pixel coordinates in x, y and depth along the view in z (not in front of the camera: z <= 0).
+ */
 FN v3 camera_project(camera c, v3 p) {
     v3 d = sub3(p, c.eye);
     real z = dot3(d, c.forward);

@@ -1,12 +1,12 @@
-/* core/cones.h: bounds of surfaces and of lights (a sphere and a cone of directions), and how strongly the lights of one bound
- * could shine on the surfaces of another: what choosing lights by the group goes by. */
+/* core/cones.h: bounds of surfaces and of lights (a sphere and a cone of directions), and how strongly the lights of
+ * one bound could shine on the surfaces of another: what choosing lights by the group goes by. */
 #ifndef CORE_CONES_H
 #define CORE_CONES_H
 
 #include "core/dialect.h"
 
-/* Points within `radius` of c, with normals within a cone around axis. spread: the sine of its half angle; 2 where that is a
- * right angle or more. Used for receivers and for lights. */
+/* Points within `radius` of c, with normals within a cone around axis. spread: the sine of its half angle; 2 where that
+ * is a right angle or more. Used for receivers and for lights. */
 struct cone_bound {
     v3 c;
     real radius;
@@ -14,8 +14,9 @@ struct cone_bound {
     real spread;
 };
 
-/* One bound as seen from another. slope, facing: upper bounds of the cosines at the receivers and at the lights; below 0 only
- * if none of the lights can reach any of the receivers. d: towards the lights, of length 1 where the spheres are apart. */
+/* One bound as seen from another. slope, facing: upper bounds of the cosines at the receivers and at the lights; below
+ * 0 only if none of the lights can reach any of the receivers. d: towards the lights, of length 1 where the spheres are
+ * apart. */
 struct cone_view {
     v3 d;
     real inv2; /* 1 / squared distance of the centres, or of spheres that touch, whichever is less */
@@ -28,8 +29,8 @@ typedef struct cone_bound cone_bound;
 typedef struct cone_view cone_view;
 #endif
 
-/* cos(angle - a - b) <= cos(angle) + sin(a) + sin(b), and the two change sign together or the right side later: so no roots
- * but one, and what is looked at most, lights that are small and far for their distance, loses nothing. */
+/* cos(angle - a - b) <= cos(angle) + sin(a) + sin(b), and the two change sign together or the right side later: so no
+ * roots but one, and what is looked at most, lights that are small and far for their distance, loses nothing. */
 FN cone_view cone_between(cone_bound receivers, cone_bound lights) {
     cone_view w;
     v3 d = sub3(lights.c, receivers.c);

@@ -1,15 +1,16 @@
 /* core/dialect.h: one language, three readers.
  *
- * Everything in src/core is written so that it is scalar C, C with LANES values in each variable, and GLSL. The reader is
- * chosen before inclusion: CORE_GLSL (a shader), CORE_LANES = 4, 8 or 16 (wide GNU C), or neither (scalar C).
+ * Everything in src/core is written so that it is scalar C, C with LANES values in each variable, and GLSL. The reader
+ * is chosen before inclusion: CORE_GLSL (a shader), CORE_LANES = 4, 8 or 16 (wide GNU C), or neither (scalar C).
  *
- * Rules: functions are pure and return structs, no pointers, no out-parameters. Operators work on real and u32; vectors go
- * through add3, mul3, dot3, ... A choice that depends on data is sel(mask, a, b), with and_/or_/not_ on masks; a real branch
- * only as `if (ANY(mask))` around work that sel then picks from. Loops have uniform bounds. Literals are K(0.5f) and KU(7u),
- * uniform integers K(F32(n)) and KU(U32(n)). No enum, static, union, typedef, cast, ternary or compound literal outside this
- * file; no identifiers that GLSL reserves (sample, buffer, filter, input, output, half, patch, smooth, flat, active, common).
- * Resources come through bridge functions that take CTX, which is a context pointer in C and nothing in GLSL. EXACT marks
- * variables whose rounding must be the same everywhere. Compile with -ffp-contract=off and never with -ffast-math. */
+ * Rules: functions are pure and return structs, no pointers, no out-parameters. Operators work on real and u32; vectors
+ * go through add3, mul3, dot3, ... A choice that depends on data is sel(mask, a, b), with and_/or_/not_ on masks; a
+ * real branch only as `if (ANY(mask))` around work that sel then picks from. Loops have uniform bounds. Literals are
+ * K(0.5f) and KU(7u), uniform integers K(F32(n)) and KU(U32(n)). No enum, static, union, typedef, cast, ternary or
+ * compound literal outside this file; no identifiers that GLSL reserves (sample, buffer, filter, input, output, half,
+ * patch, smooth, flat, active, common). Resources come through bridge functions that take CTX, which is a context
+ * pointer in C and nothing in GLSL. EXACT marks variables whose rounding must be the same everywhere. Compile with
+ * -ffp-contract=off and never with -ffast-math. */
 #ifndef CORE_DIALECT_H
 #define CORE_DIALECT_H
 
@@ -100,13 +101,15 @@ FN u32 to_u32(real f) { return (u32)(int32_t)f; }
 
 #endif
 
-typedef struct { real x, y, z; } v3;
+typedef struct {
+    real x, y, z;
+} v3;
 #define V3(x, y, z) ((v3){ x, y, z })
 
 #endif
 
-/* to_real takes values below 2^31, to_u32 truncates values in [0, 2^31). min_ and max_ give b where either is NaN. high_u32
- * is the upper half of the 64-bit product. */
+/* to_real takes values below 2^31, to_u32 truncates values in [0, 2^31). min_ and max_ give b where either is NaN.
+ * high_u32 is the upper half of the 64-bit product. */
 
 FN v3 add3(v3 a, v3 b) { return V3(a.x + b.x, a.y + b.y, a.z + b.z); }
 FN v3 sub3(v3 a, v3 b) { return V3(a.x - b.x, a.y - b.y, a.z - b.z); }

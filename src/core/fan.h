@@ -1,25 +1,27 @@
 /* core/fan.h: places on a parallelogram or triangle, uniform in the solid angle that it covers.
  *
- * A parallelogram is two spherical triangles that share a corner B, a triangle is one. u sweeps an arc from B over them, with an
- * even share of the solid angle behind it (Arvo 1995, "Stratified sampling of spherical triangles"); v goes along the arc, evenly in
- * the cosine of the angle from B. For the triangle A, B, C of unit vectors, with D = det(A, B, C),
+ * A parallelogram is two spherical triangles that share a corner B, a triangle is one. u sweeps an arc from B over
+ * them, with an even share of the solid angle behind it (Arvo 1995, "Stratified sampling of spherical triangles"); v
+ * goes along the arc, evenly in the cosine of the angle from B. For the triangle A, B, C of unit vectors, with D =
+ * det(A, B, C),
  *
  *     tan(E / 2) = D / (1 + A.B + B.C + A.C)            (Van Oosterom and Strackee 1983),
  *
- * and the same of A, B and a point C' of the side A C says where C' is that cuts off the solid angle E: it is A mirrored at
+ * and the same of A, B and a point C' of the side A C says where C' is that cuts off the solid angle E: it is A
+ * mirrored at
  *
  *     M = (D cos(E / 2) - (A.C + B.C) sin(E / 2)) A + (1 + A.B) sin(E / 2) C.
  *
- * So no angle is a difference of others, and small and thin triangles lose no digits; D comes from the height over the plane.
- * The place is a mean of the corners with weights that are not negative: it always lies on the light. */
+ * So no angle is a difference of others, and small and thin triangles lose no digits; D comes from the height over the
+ * plane. The place is a mean of the corners with weights that are not negative: it always lies on the light. */
 #ifndef CORE_FAN_H
 #define CORE_FAN_H
 
 #include "core/warp.h"
 
 struct fan {
-    v3 d;       /* from the receiver to the place */
-    real s;     /* the place is q + s a + t b */
+    v3 d;   /* from the receiver to the place */
+    real s; /* the place is q + s a + t b */
     real t;
     real angle; /* solid angle of the whole, sr */
 };
@@ -33,8 +35,8 @@ FN real inverse_length(v3 a) {
     return inv;
 }
 
-/* The corners q, q + a, q + a + b, q + b where `whole`, else the triangle q, q + a, q + b; the receiver lies at 0, the volume is
- * that of q, a and b and not negative. */
+/* The corners q, q + a, q + a + b, q + b where `whole`, else the triangle q, q + a, q + b; the receiver lies at 0, the
+ * volume is that of q, a and b and not negative. */
 FN fan sample_fan(v3 q, v3 a, v3 b, mask whole, real volume, real u, real v) {
     fan r;
     v3 first = add3(q, a);

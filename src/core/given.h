@@ -1,5 +1,5 @@
-/* core/given.h: streaming RIS over candidates that a picker has drawn. Includers supply pick_load(CTX i), candidate i of the
- * pixel. */
+/* core/given.h: streaming RIS over candidates that a picker has drawn. Includers supply pick_load(CTX i), candidate i
+ * of the pixel. */
 #ifndef CORE_GIVEN_H
 #define CORE_GIVEN_H
 

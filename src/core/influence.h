@@ -1,15 +1,16 @@
-/* core/influence.h: influence volumes (Gardishyan 2025, Algorithm 3). A light's volume holds the points nearer to its shape
- * than S_r sqrt(I), I its greatest luminous intensity (radiance times area for flat lights, times the disc's area for spheres,
- * the intensity itself for points and spots): further away it gives less than 1 / S_r^2 lux. One-sided lights and spots
- * have the half of it that they face, and a volume does not hold a surface that the whole light is behind. Lights that share
- * a volume have a sphere around all of them, and the largest of their I.
+/* core/influence.h: influence volumes (Gardishyan 2025, Algorithm 3). A light's volume holds the points nearer to its
+ * shape than S_r sqrt(I), I its greatest luminous intensity (radiance times area for flat lights, times the disc's area
+ * for spheres, the intensity itself for points and spots): further away it gives less than 1 / S_r^2 lux. One-sided
+ * lights and spots have the half of it that they face, and a volume does not hold a surface that the whole light is
+ * behind. Lights that share a volume have a sphere around all of them, and the largest of their I.
  *
- * Of m candidates of a surface point every `every`th, the first one too, is drawn from all lights alike (u of them), the
- * others from the N_f lights that the point lists (b of them): those whose volumes hold it, or of those the ones that give it
- * at least so many lux. Whichever way a candidate came, its density is (b g / N_f + u / N_L) / (b + u), g = 1 exactly if its
- * own light is listed. Where none is, all are drawn from all lights. What is listed may differ from point to point: it is known
- * before anything is drawn. Points that lie close together ask as one: their volumes are those that reach the box around them.
- * "Holds the point" then means that, for the draws from all lights too, and densities stay exact. */
+ * Of m candidates of a surface point every `every`th, the first one too, is drawn from all lights alike (u of them),
+ * the others from the N_f lights that the point lists (b of them): those whose volumes hold it, or of those the ones
+ * that give it at least so many lux. Whichever way a candidate came, its density is (b g / N_f + u / N_L) / (b + u), g
+ * = 1 exactly if its own light is listed. Where none is, all are drawn from all lights. What is listed may differ from
+ * point to point: it is known before anything is drawn. Points that lie close together ask as one: their volumes are
+ * those that reach the box around them. "Holds the point" then means that, for the draws from all lights too, and
+ * densities stay exact. */
 #ifndef CORE_INFLUENCE_H
 #define CORE_INFLUENCE_H
 
@@ -18,23 +19,24 @@
 /* A record of 8 floats. Lights without emission have size = -infinity: no S_r is enough. */
 struct influence {
     v3 c;
-    real size;   /* radius of the sphere around the light or lights */
-    v3 m;        /* they all shine into the half space dot(m, p - c) >= -1; 0: every way */
-    real root;   /* square root of I */
+    real size; /* radius of the sphere around the light or lights */
+    v3 m;      /* they all shine into the half space dot(m, p - c) >= -1; 0: every way */
+    real root; /* square root of I */
 };
 
 #ifndef CORE_GLSL
 typedef struct influence influence;
 #endif
 
-/* Points of surfaces that ask together: the box around them, the normal that they have in common on the side that is seen
- * (0: none), and their least dot(n, point) (where n = 0: -infinity). A volume holds them if it would hold a point of the box. */
+/* Points of surfaces that ask together: the box around them, the normal that they have in common on the side that is
+ * seen (0: none), and their least dot(n, point) (where n = 0: -infinity). A volume holds them if it would hold a point
+ * of the box. */
 struct influence_region {
     v3 lo;
     v3 hi;
     v3 n;
     real back;
-    v3 middle;  /* of the box */
+    v3 middle;    /* of the box */
     real spread2; /* mean square of its points' distance from there, if they lie evenly in it */
     real spread;  /* its root */
 };
@@ -87,9 +89,9 @@ FN real influence_turn(influence v) {
     return sel(m2 > K(0.0f), turn, K(0.0f));
 }
 
-/* What one light of the volume gives the region's points on average where it is seen, about, lux: I over the squared distance
- * (that of the box's centre and a third of its squared half diagonal, if the points lie evenly in it), by the cosines at both
- * ends, where there are normals, to half the sizes of box and light. */
+/* What one light of the volume gives the region's points on average where it is seen, about, lux: I over the squared
+ * distance (that of the box's centre and a third of its squared half diagonal, if the points lie evenly in it), by the
+ * cosines at both ends, where there are normals, to half the sizes of box and light. */
 FN real influence_gives(influence v, real turn, influence_region r) {
     v3 d = sub3(v.c, r.middle);
     EXACT real far = sqrt_(max_(dot3(d, d) + r.spread2, K(1e-30f)));

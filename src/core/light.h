@@ -1,15 +1,16 @@
 /* core/light.h: the kinds of light, each a map from the unit square to what a receiving point gets.
  *
- * A sample is (light, u, v), u and v in the unit square. light_sample returns the direction and distance to the point that
- * (u, v) stands for as seen from y, and `le`: radiance times the Jacobian of that map, so that the light's contribution to
- * reflected radiance is the integral over the unit square of f_r * cos(theta_y) * le * V. For flat lights the map is uniform
- * in area from afar (le = L cos(theta_l) A / d^2) and in solid angle from close by (le = L * angle, core/fan.h); which one is
- * a matter of the receiver and the light alone, never of (u, v). For spheres it is uniform in the solid angle of the visible cone
- * (le = L * angle; Shirley, Wang and Zimmerman 1996, section 3.2): so nothing makes 1 / d^2 spikes but points and spots, for
- * which it is constant (le = I / d^2). Emission is one-sided unless flagged.
+ * A sample is (light, u, v), u and v in the unit square. light_sample returns the direction and distance to the point
+ * that (u, v) stands for as seen from y, and `le`: radiance times the Jacobian of that map, so that the light's
+ * contribution to reflected radiance is the integral over the unit square of f_r * cos(theta_y) * le * V. For flat
+ * lights the map is uniform in area from afar (le = L cos(theta_l) A / d^2) and in solid angle from close by (le = L *
+ * angle, core/fan.h); which one is a matter of the receiver and the light alone, never of (u, v). For spheres it is
+ * uniform in the solid angle of the visible cone (le = L * angle; Shirley, Wang and Zimmerman 1996, section 3.2): so
+ * nothing makes 1 / d^2 spikes but points and spots, for which it is constant (le = I / d^2). Emission is one-sided
+ * unless flagged.
  *
- * A spot is a point whose intensity is I f^2, f = clamp(s cos(t) + o, 0, 1), at an angle t from its axis: I within the inner
- * cone, 0 beyond the outer one (KHR_lights_punctual, "Inner and Outer Cone Angles"). */
+ * A spot is a point whose intensity is I f^2, f = clamp(s cos(t) + o, 0, 1), at an angle t from its axis: I within the
+ * inner cone, 0 beyond the outer one (KHR_lights_punctual, "Inner and Outer Cone Angles"). */
 #ifndef CORE_LIGHT_H
 #define CORE_LIGHT_H
 
@@ -22,26 +23,26 @@
 #define LIGHT_POINT 4u
 #define LIGHT_SPOT 5u
 #define LIGHT_TWO_SIDED 1u /* flag */
-/* Flat lights are sampled by solid angle where p is nearer than so many times `radius`; discs, which lose a fifth of their samples
- * by it, nearer than so many. */
+/* Flat lights are sampled by solid angle where p is nearer than so many times `radius`; discs, which lose a fifth of
+ * their samples by it, nearer than so many. */
 #define LIGHT_CLOSE 2.0f
 #define LIGHT_CLOSE_DISC 1.5f
 
 struct light {
-    v3 p;       /* centre or corner */
+    v3 p; /* centre or corner */
     u32 kind;
-    v3 a;       /* edge u; disc: first radius vector; spot: its axis, s long */
+    v3 a;        /* edge u; disc: first radius vector; spot: its axis, s long */
     real radius; /* triangle, parallelogram: the longest way between two corners */
-    v3 b;       /* edge v; disc: second radius vector; faces a x b; spot: o, then both angles, which only C reads */
+    v3 b;        /* edge v; disc: second radius vector; faces a x b; spot: o, then both angles, which only C reads */
     u32 flags;
-    v3 e;       /* radiance, cd/m2; point: intensity, cd; spot: its greatest */
+    v3 e; /* radiance, cd/m2; point: intensity, cd; spot: its greatest */
     real area;
 };
 
 struct light_sample {
-    v3 wi;      /* unit, from y towards the light */
-    real dist;  /* m */
-    v3 le;      /* 0 where the light cannot reach y */
+    v3 wi;     /* unit, from y towards the light */
+    real dist; /* m */
+    v3 le;     /* 0 where the light cannot reach y */
 };
 
 #ifndef CORE_GLSL

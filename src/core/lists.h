@@ -1,8 +1,8 @@
-/* core/lists.h: light lists. A tile of the picture gathers its strongest lights, each with weight 1, and a tail of draws
- * from all the others, each with weight 1 / (expected number of times it is drawn); every pixel of the tile evaluates them
- * all. sum(weight * f) over the entries is then an unbiased estimate of the sum over all lights, whatever the scores were,
- * as long as a score is only 0 where no light of the cluster can reach any point of the tile. Here: that bound, and the
- * pixel's choice among the entries. Building the list is the backend's (it sorts). */
+/* core/lists.h: light lists. A tile of the picture gathers its strongest lights, each with weight 1, and a tail of
+ * draws from all the others, each with weight 1 / (expected number of times it is drawn); every pixel of the tile
+ * evaluates them all. sum(weight * f) over the entries is then an unbiased estimate of the sum over all lights,
+ * whatever the scores were, as long as a score is only 0 where no light of the cluster can reach any point of the tile.
+ * Here: that bound, and the pixel's choice among the entries. Building the list is the backend's (it sorts). */
 #ifndef CORE_LISTS_H
 #define CORE_LISTS_H
 
@@ -36,7 +36,8 @@ FN resv ris_list(CTX surf s, u32 key, int count) {
         real u = list_u(shift_u, i);
         real v = list_v(shift_v, i);
         real p = target(s, light_load(PASS e.light), u, v);
-        st = stream_add(st, e.light, u, v, p, p * e.weight, K(0.0f), K(0.0f), rng(key, KU(DIM_CANDIDATE + 2u + U32(i))));
+        st =
+            stream_add(st, e.light, u, v, p, p * e.weight, K(0.0f), K(0.0f), rng(key, KU(DIM_CANDIDATE + 2u + U32(i))));
     }
     return stream_end(st, K(1.0f));
 }

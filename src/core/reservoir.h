@@ -1,5 +1,5 @@
-/* core/reservoir.h: weighted reservoir sampling and resampled importance sampling (Talbot et al. 2005; Bitterli et al. 2020,
- * Algorithms 2 to 6). Includers supply the bridge light_load(CTX i). */
+/* core/reservoir.h: weighted reservoir sampling and resampled importance sampling (Talbot et al. 2005; Bitterli et al.
+ * 2020, Algorithms 2 to 6). Includers supply the bridge light_load(CTX i). */
 #ifndef CORE_RESERVOIR_H
 #define CORE_RESERVOIR_H
 
@@ -11,9 +11,9 @@ struct resv {
     u32 light;
     real u;
     real v;
-    real w;  /* W; 0: no sample */
-    real m;  /* M */
-    real p;  /* p_hat of the sample at its own pixel, unshadowed */
+    real w; /* W; 0: no sample */
+    real m; /* M */
+    real p; /* p_hat of the sample at its own pixel, unshadowed */
 };
 
 /* A reservoir being filled. */
@@ -21,10 +21,10 @@ struct stream {
     u32 light;
     real u;
     real v;
-    real p;     /* target of the sample held */
+    real p; /* target of the sample held */
     real w_sum;
     real m;
-    real tag;   /* whatever the caller wants to remember of the sample held */
+    real tag; /* whatever the caller wants to remember of the sample held */
 };
 
 #ifndef CORE_GLSL
@@ -99,8 +99,8 @@ FN stream stream_candidate(CTX stream st, surf s, u32 key, u32 id, int i) {
     return stream_add(st, id, u, v, p, p, K(1.0f), K(0.0f), rng(key, dim + KU(2u)));
 }
 
-/* Streaming RIS over `count` lights picked uniformly, m candidates: W = (1/m) sum(p_hat / pmf) / p_hat(chosen), pmf = 1/count
- * over (light) times 1 over the unit square. count > 0. */
+/* Streaming RIS over `count` lights picked uniformly, m candidates: W = (1/m) sum(p_hat / pmf) / p_hat(chosen), pmf =
+ * 1/count over (light) times 1 over the unit square. count > 0. */
 FN resv ris_uniform(CTX surf s, u32 key, u32 count, int m) {
     stream st = stream_empty();
     for (int i = 0; i < m; i++)

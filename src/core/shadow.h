@@ -1,11 +1,11 @@
 /* core/shadow.h: the segment between a surface and a sample of a light that nothing may block.
  *
- * Both ends stand off their surfaces, along the normals, by a distance that follows the coordinates' precision: 4 * 2^-23 of
- * the largest coordinate (4 to 8 units in the last place: rounding of the point itself, of the vertices and of the traversal
- * each take about one), never under `least`, which is 0.1 mm in a city and less in scenes of a few metres and below. A window 1 cm off its
- * wall is told apart from it up to 20 km from the origin. A point has no normal, and may lie in a surface: its end stands off
- * towards the receiver, eight times as far, for the surface may be seen at a slant. A sphere's end lies before its shape
- * (scene/light.c), which reaches out a little further than the sphere. */
+ * Both ends stand off their surfaces, along the normals, by a distance that follows the coordinates' precision: 4 *
+ * 2^-23 of the largest coordinate (4 to 8 units in the last place: rounding of the point itself, of the vertices and of
+ * the traversal each take about one), never under `least`, which is 0.1 mm in a city and less in scenes of a few metres
+ * and below. A window 1 cm off its wall is told apart from it up to 20 km from the origin. A point has no normal, and
+ * may lie in a surface: its end stands off towards the receiver, eight times as far, for the surface may be seen at a
+ * slant. A sphere's end lies before its shape (scene/light.c), which reaches out a little further than the sphere. */
 #ifndef CORE_SHADOW_H
 #define CORE_SHADOW_H
 

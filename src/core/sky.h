@@ -1,8 +1,8 @@
 /* core/sky.h: the bright night sky over a lit city, and how it is sampled.
  *
- * Luminance at the zenith is given; it grows towards the horizon by a factor of 4, as light pollution does (Garstang 1989
- * finds 3 to 6 over towns), and turns from bluish to the warm grey of lamps seen through haze. Under the horizon lies dark
- * country: a tenth of the zenith. No moon, no stars. */
+ * Luminance at the zenith is given; it grows towards the horizon by a factor of 4, as light pollution does (Garstang
+ * 1989 finds 3 to 6 over towns), and turns from bluish to the warm grey of lamps seen through haze. Under the horizon
+ * lies dark country: a tenth of the zenith. No moon, no stars. */
 #ifndef CORE_SKY_H
 #define CORE_SKY_H
 
@@ -20,7 +20,8 @@ FN v3 sky_above(real z, real scale) {
     return mul3(add3(blue, mul3(warm, glow)), scale);
 }
 
-/* Radiance (luminance in cd/m2, linear Rec.709) from the unit direction d, for `zenith` cd/m2 straight up: what lights. */
+/* Radiance (luminance in cd/m2, linear Rec.709) from the unit direction d, for `zenith` cd/m2 straight up: what lights.
+ */
 FN v3 sky_radiance(v3 d, real zenith) {
     real below = max_(K(1.0f) + d.z * K(8.0f), K(0.025f));
     EXACT real scale = zenith * sel(d.z < K(0.0f), below, K(1.0f));
@@ -35,9 +36,9 @@ FN v3 sky_backdrop(v3 d, real zenith) {
     return sky_above(max_(d.z, K(0.0f)), scale);
 }
 
-/* Two numbers in [0, 1) a pixel and frame, in x and y: random in the first frame (key: of the pixel, frame 0), then along
- * the two-dimensional golden ratio's sequence (Roberts 2018: R2), which spreads the frames of a pixel evenly. Each frame's
- * numbers are uniform, so each frame is unbiased. */
+/* Two numbers in [0, 1) a pixel and frame, in x and y: random in the first frame (key: of the pixel, frame 0), then
+ * along the two-dimensional golden ratio's sequence (Roberts 2018: R2), which spreads the frames of a pixel evenly.
+ * Each frame's numbers are uniform, so each frame is unbiased. */
 FN v3 sky_numbers(u32 key, u32 frame) {
     u32 a = rng_bits(key, KU(DIM_SKY)) + frame * KU(0xc13fa9a9u);
     u32 b = rng_bits(key, KU(DIM_SKY + 1u)) + frame * KU(0x91e10da5u);
@@ -68,8 +69,8 @@ FN real visible_normal_density(surf s, v3 wi) {
     return p;
 }
 
-/* wo mirrored at a normal of the lobe that is visible from wo (Heitz 2018), by spherical caps (Dupuy and Benyoub 2023). May
- * lie under the surface, where nothing is reflected. */
+/* wo mirrored at a normal of the lobe that is visible from wo (Heitz 2018), by spherical caps (Dupuy and Benyoub 2023).
+ * May lie under the surface, where nothing is reflected. */
 FN v3 visible_normal_direction(surf s, real u, real v) {
     real nv = max_(dot3(s.n, s.wo), K(1e-4f));
     v3 flat_ = mul3(sub3(s.wo, mul3(s.n, nv)), s.alpha);
@@ -90,7 +91,8 @@ FN v3 visible_normal_direction(surf s, real u, real v) {
     return sub3(mul3(h, twice), s.wo);
 }
 
-/* A direction for the sky's light: cosine-distributed, or by the lobe, chosen by u, what is left of u being used again. */
+/* A direction for the sky's light: cosine-distributed, or by the lobe, chosen by u, what is left of u being used again.
+ */
 FN v3 sky_direction(surf s, real u, real v) {
     real q = sky_gloss_share(s);
     mask shiny = u < q;

@@ -1,8 +1,8 @@
-/* core/surface.h: the receiving point and what it reflects: a diffuse part plus one isotropic GGX lobe (Walter et al. 2007;
- * Smith shadowing, height-correlated: Heitz 2014, eq. 99; Schlick 1994 Fresnel). Without gloss (f0 = 0) the diffuse part is
- * Lambert's. Under gloss it is what the gloss leaves of light on its way in and out (the matte part of Kelemen and
- * Szirmay-Kalos 2001), so that no surface reflects more than it gets, also where a bright wall is seen at a grazing angle.
- * Reciprocal. Both parts work on the side that is seen. */
+/* core/surface.h: the receiving point and what it reflects: a diffuse part plus one isotropic GGX lobe (Walter et al.
+ * 2007; Smith shadowing, height-correlated: Heitz 2014, eq. 99; Schlick 1994 Fresnel). Without gloss (f0 = 0) the
+ * diffuse part is Lambert's. Under gloss it is what the gloss leaves of light on its way in and out (the matte part of
+ * Kelemen and Szirmay-Kalos 2001), so that no surface reflects more than it gets, also where a bright wall is seen at a
+ * grazing angle. Reciprocal. Both parts work on the side that is seen. */
 #ifndef CORE_SURFACE_H
 #define CORE_SURFACE_H
 
@@ -10,8 +10,8 @@
 
 struct surf {
     v3 p;
-    v3 n;       /* unit, on the viewer's side */
-    v3 wo;      /* unit, towards the viewer */
+    v3 n;  /* unit, on the viewer's side */
+    v3 wo; /* unit, towards the viewer */
     v3 albedo;
     real f0;    /* 0: purely diffuse */
     real alpha; /* GGX alpha, roughness squared */
@@ -50,8 +50,8 @@ FN real glossy(surf s, v3 wi, real nl) {
 }
 
 /* The diffuse part under gloss, relative to Lambert's: (1 - E(nl)) (1 - E(nv)) / (1 - mean of E), where
- * E(c) = f0 + (1 - f0) k (1 - c)^3 bounds the share that the lobe reflects from above; k was fitted to integrals of the lobe
- * over roughness 0.05 to 1 (tests/core/test_surface.c holds the sum at or under 1). */
+ * E(c) = f0 + (1 - f0) k (1 - c)^3 bounds the share that the lobe reflects from above; k was fitted to integrals of the
+ * lobe over roughness 0.05 to 1 (tests/core/test_surface.c holds the sum at or under 1). */
 FN real under_gloss(surf s, real nl) {
     EXACT real k = K(1.0f) / (K(1.0f) + s.alpha * (K(13.0f) + K(9.0f) * s.alpha));
     real ci = K(1.0f) - nl;

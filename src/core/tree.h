@@ -1,5 +1,5 @@
-/* core/tree.h: the probability with which a draw from a light tree (core/tree_node.h) is a given light. The turns to every
- * light are kept as bits, so that pmf can take the way of its draws. Includers supply tree_load(CTX pair). */
+/* core/tree.h: the probability with which a draw from a light tree (core/tree_node.h) is a given light. The turns to
+ * every light are kept as bits, so that pmf can take the way of its draws. Includers supply tree_load(CTX pair). */
 #ifndef CORE_TREE_H
 #define CORE_TREE_H
 
@@ -7,8 +7,8 @@
 
 FN tree_pair tree_load(CTX u32 i);
 
-/* link: the tree's root. path: the turns to a light, bit i is 1 where turn i goes to the second child. depth: turns on the
- * tree's longest way. */
+/* link: the tree's root. path: the turns to a light, bit i is 1 where turn i goes to the second child. depth: turns on
+ * the tree's longest way. */
 FN real tree_pmf(CTX v3 p, v3 n, u32 link, u32 path, int depth) {
     real pmf = K(1.0f);
     u32 at = link;

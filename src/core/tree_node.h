@@ -1,12 +1,12 @@
-/* core/tree_node.h: stochastic descent of a light tree (Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with
- * Adaptive Tree Splitting"; for real time: Moreau, Pharr and Clarberg 2019). A node bounds its lights by a sphere and a cone
- * of the directions they face and knows the sum of their intensities; draws are shared out between the two children of a
- * node in proportion to a bound of what each could give the surface. A child is only left out for certain where none of its
- * lights can reach the surface. Every leaf is one light.
+/* core/tree_node.h: stochastic descent of a light tree (Conty Estevez and Kulla 2018, "Importance Sampling of Many
+ * Lights with Adaptive Tree Splitting"; for real time: Moreau, Pharr and Clarberg 2019). A node bounds its lights by a
+ * sphere and a cone of the directions they face and knows the sum of their intensities; draws are shared out between
+ * the two children of a node in proportion to a bound of what each could give the surface. A child is only left out for
+ * certain where none of its lights can reach the surface. Every leaf is one light.
  *
- * Two children are one cache line, and are looked at once for all draws that come by: of n draws, floor(n s + u) go to the
- * child with the smaller share s, with a random u for each pixel and pair. So a light of probability p gets n p draws on
- * average (by induction on its way), and the numbers of draws are stratified. */
+ * Two children are one cache line, and are looked at once for all draws that come by: of n draws, floor(n s + u) go to
+ * the child with the smaller share s, with a random u for each pixel and pair. So a light of probability p gets n p
+ * draws on average (by induction on its way), and the numbers of draws are stratified. */
 #ifndef CORE_TREE_NODE_H
 #define CORE_TREE_NODE_H
 
@@ -15,7 +15,7 @@
 #define TREE_LEAF 0x80000000u /* set in the link of a child that is one light */
 
 struct tree_child {
-    v3 c;          /* sphere around the lights */
+    v3 c; /* sphere around the lights */
     real radius;
     u32 axis_xy;   /* axis of the cone of the directions they face, as tree_unit reads it: x low, y high */
     u32 axis_cone; /* z low; high: sine of half the cone's half angle, 65535 for 1. Every direction: axis 0, sine 1 */
@@ -34,7 +34,7 @@ struct tree_pair {
 
 /* How a pair's draws are shared out. */
 struct tree_shares {
-    real less;      /* probability of the child that is less likely, at most 1/2 */
+    real less; /* probability of the child that is less likely, at most 1/2 */
     mask less_is_b;
 };
 
@@ -49,17 +49,18 @@ FN real tree_unit(u32 bits) {
 }
 
 /* What the lights of a child could give the surface at p with normal n: 0 only if none of them can reach it. As
- * core/cones.h's cone_score, with lower floors: there a floor guards a whole cluster against a loose bound; here it would
- * give the windows beside a window in a wall, which shine past that wall, more draws than those across the street. Inside a
- * node the distance is taken as half its size. Cosines and sines stay multiplied by the distance or its square, which saves
- * most of the divisions and roots. */
+ * core/cones.h's cone_score, with lower floors: there a floor guards a whole cluster against a loose bound; here it
+ * would give the windows beside a window in a wall, which shine past that wall, more draws than those across the
+ * street. Inside a node the distance is taken as half its size. Cosines and sines stay multiplied by the distance or
+ * its square, which saves most of the divisions and roots. */
 FN real tree_score(v3 p, v3 n, tree_child l) {
     v3 d = sub3(l.c, p);
     real d2 = dot3(d, d);
     real size2 = l.radius * l.radius;
     mask apart = d2 > size2 * K(1.0001f);
     real w = K(1.0f) / max_(max_(d2, size2 * K(0.25f)), K(1e-6f));
-    real reach = sqrt_(max_(d2 - size2, K(0.0f))); /* times the cosine of the sphere's half angle; its sine: the radius */
+    /* times the cosine of the sphere's half angle; its sine: the radius */
+    real reach = sqrt_(max_(d2 - size2, K(0.0f)));
 
     real cr = dot3(n, d); /* at the receiver */
     EXACT real sr2 = d2 - cr * cr;
@@ -71,7 +72,8 @@ FN real tree_score(v3 p, v3 n, tree_child l) {
     EXACT real h2 = h * h;
     real sin_cone = K(2.0f) * h * sqrt_(max_(K(1.0f) - h2, K(0.0f)));
     EXACT real cone = K(1.0f) - K(2.0f) * h2;
-    real ce = K(0.0f) - dot3(axis, d); /* at the lights: first turned towards the surface by the cone, then by the sphere */
+    /* at the lights: first turned towards the surface by the cone, then by the sphere */
+    real ce = K(0.0f) - dot3(axis, d);
     EXACT real se2 = d2 - ce * ce;
     real se = sqrt_(max_(se2, K(0.0f)));
     EXACT real c1 = ce * cone + se * sin_cone;

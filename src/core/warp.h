@@ -4,7 +4,8 @@
 
 #include "core/dialect.h"
 
-/* (cos, sin) of 2 pi t for t in [0, 1], in x and y; z is 0. Taylor polynomials on an eighth of the circle, error < 4e-7. */
+/* (cos, sin) of 2 pi t for t in [0, 1], in x and y; z is 0. Taylor polynomials on an eighth of the circle, error <
+ * 4e-7. */
 FN v3 circle(real t) {
     u32 q = to_u32(t * K(4.0f) + K(0.5f));
     EXACT real x = (t - to_real(q) * K(0.25f)) * K(6.28318530717959f);
@@ -22,23 +23,24 @@ FN v3 circle(real t) {
     return V3(cs, sn, K(0.0f));
 }
 
-/* atan2(y, x) / 2 pi for y >= 0, so 0 to 1/2; circle's inverse. A polynomial that interpolates the arc tangent at Chebyshev's
- * points; relative error < 3e-7, also next to 0. */
+/* atan2(y, x) / 2 pi for y >= 0, so 0 to 1/2; circle's inverse. A polynomial that interpolates the arc tangent at
+ * Chebyshev's points; relative error < 3e-7, also next to 0. */
 FN real turn_of(real x, real y) {
     real ax = abs_(x);
     mask steep = y > ax;
     EXACT real r = min_(ax, y) / max_(max_(ax, y), K(1e-30f));
     EXACT real r2 = r * r;
-    EXACT real low = K(1.68996617e-2f) + r2 * (K(-1.18679531e-2f) + r2 * (K(6.70641109e-3f) + r2 * (K(-2.50370606e-3f) +
-                     r2 * K(4.40267693e-4f))));
-    EXACT real a = r * (K(0.15915494f) + r2 * (K(-5.30511756e-2f) + r2 * (K(3.18180526e-2f) + r2 * (K(-2.2596497e-2f) +
-                   r2 * low))));
+    EXACT real low =
+        K(1.68996617e-2f) +
+        r2 * (K(-1.18679531e-2f) + r2 * (K(6.70641109e-3f) + r2 * (K(-2.50370606e-3f) + r2 * K(4.40267693e-4f))));
+    EXACT real a = r * (K(0.15915494f) +
+                        r2 * (K(-5.30511756e-2f) + r2 * (K(3.18180526e-2f) + r2 * (K(-2.2596497e-2f) + r2 * low))));
     a = sel(steep, K(0.25f) - a, a);
     return sel(x < K(0.0f), K(0.5f) - a, a);
 }
 
-/* x u + y v + z n for an orthonormal frame (u, v, n) around the unit vector n (Duff et al. 2017, "Building an Orthonormal
- * Basis, Revisited"). */
+/* x u + y v + z n for an orthonormal frame (u, v, n) around the unit vector n (Duff et al. 2017, "Building an
+ * Orthonormal Basis, Revisited"). */
 FN v3 around(v3 n, real x, real y, real z) {
     real s = sel(n.z < K(0.0f), K(-1.0f), K(1.0f));
     EXACT real a = K(-1.0f) / (s + n.z);

@@ -74,6 +74,6 @@ FN u32 high_u32(u32 a, u32 b) {
 
 FN real abs_(real a) { return (real)((u32)a & KU(0x7fffffffu)); }
 FN real to_real(u32 u) { return __builtin_convertvector((mask)u, real); }
-FN u32 to_u32(real f) { return (u32)__builtin_convertvector(f, mask); }
+FN u32 to_u32(real f) { return (u32) __builtin_convertvector(f, mask); }
 
 #endif

@@ -1,8 +1,9 @@
 /* core/wide_load.h: lights from 64-byte records into lanes. C only, for dialect.h's scalar and wide readers.
  *
- * A record is one cache line of 16 floats, the fields of struct light in their order: p kind | a radius | b flags | e area.
- * Each lane loads its own record, four floats at a time, and four registers are turned by a transposition inside 128-bit
- * parts: no gathers, and a quarter of a record that is not looked at costs nothing. records must be 64-byte aligned. */
+ * A record is one cache line of 16 floats, the fields of struct light in their order: p kind | a radius | b flags | e
+ * area. Each lane loads its own record, four floats at a time, and four registers are turned by a transposition inside
+ * 128-bit parts: no gathers, and a quarter of a record that is not looked at costs nothing. records must be 64-byte
+ * aligned. */
 #ifndef CORE_WIDE_LOAD_H
 #define CORE_WIDE_LOAD_H
 
@@ -15,7 +16,9 @@
 #if defined(CORE_LANES)
 
 /* Four fields of all lanes, of records that are `stride` floats apart (a multiple of 4). */
-typedef struct { real f[4]; } wide_quad;
+typedef struct {
+    real f[4];
+} wide_quad;
 
 #if CORE_LANES == 16 && defined(__AVX512F__)
 
@@ -81,8 +84,10 @@ FN light light_from_records(const float *records, u32 index) {
     uint32_t at[CORE_LANES];
     memcpy(at, &index, sizeof(at));
     __asm__("" : "+m"(at)); /* through memory: taking a vector apart in registers is slower */
-    wide_quad p = wide_quad_load(records, LIGHT_RECORD_FLOATS, at), a = wide_quad_load(records + 4, LIGHT_RECORD_FLOATS, at);
-    wide_quad b = wide_quad_load(records + 8, LIGHT_RECORD_FLOATS, at), e = wide_quad_load(records + 12, LIGHT_RECORD_FLOATS, at);
+    wide_quad p = wide_quad_load(records, LIGHT_RECORD_FLOATS, at),
+              a = wide_quad_load(records + 4, LIGHT_RECORD_FLOATS, at);
+    wide_quad b = wide_quad_load(records + 8, LIGHT_RECORD_FLOATS, at),
+              e = wide_quad_load(records + 12, LIGHT_RECORD_FLOATS, at);
     light l = { V3(p.f[0], p.f[1], p.f[2]), (u32)p.f[3], V3(a.f[0], a.f[1], a.f[2]), a.f[3],
                 V3(b.f[0], b.f[1], b.f[2]), (u32)b.f[3], V3(e.f[0], e.f[1], e.f[2]), e.f[3] };
     return l;
@@ -112,8 +117,8 @@ FN void light_prefetch(const float *records, u32 index) {
 
 #endif
 
-/* ris_uniform, to the bit, where memory is slower than arithmetic: lights are asked for RIS_AHEAD to 2 RIS_AHEAD candidates
- * before they are looked at. records: what light_load reads. */
+/* ris_uniform, to the bit, where memory is slower than arithmetic: lights are asked for RIS_AHEAD to 2 RIS_AHEAD
+ * candidates before they are looked at. records: what light_load reads. */
 #define RIS_AHEAD 8
 FN resv ris_uniform_ahead(CTX const float *records, surf s, u32 key, u32 count, int m) {
     stream st = stream_empty();

@@ -17,7 +17,7 @@ struct geo_crs {
     PJ *easting_first;   /* made on first use of geo_crs_scale */
     char *name;
     bool geographic, metric, lat_first;
-    double height_unit;  /* metres */
+    double height_unit; /* metres */
     bool has_area;
     double west, south, east, north; /* area of use, degrees on WGS 84; west > east across the antimeridian */
 };
@@ -107,8 +107,8 @@ static bool is_direction(const char *direction, const char *a, const char *b) {
     return noc_ieq(direction, a) || noc_ieq(direction, b);
 }
 
-/* Type, axes, units, area of use. False if it is not a CRS of the ground (geocentric, vertical, local). Without a name: memory is
- * refused. */
+/* Type, axes, units, area of use. False if it is not a CRS of the ground (geocentric, vertical, local). Without a name:
+ * memory is refused. */
 static bool inspect(geo_crs *crs) {
     PJ_CONTEXT *context = crs->context;
     const PJ *pj = crs->pj;
@@ -134,7 +134,8 @@ static bool inspect(geo_crs *crs) {
             crs->height_unit = crs->geographic ? 1 : unit0;
         crs->has_area = proj_get_area_of_use(context, pj, &crs->west, &crs->south, &crs->east, &crs->north, NULL) &&
                         crs->west > -1000; /* -1000: not known */
-        const char *authority = proj_get_id_auth_name(pj, 0), *code = proj_get_id_code(pj, 0), *name = proj_get_name(pj);
+        const char *authority = proj_get_id_auth_name(pj, 0), *code = proj_get_id_code(pj, 0),
+                   *name = proj_get_name(pj);
         crs->name = authority && code ? noc_format("%s:%s (%s)", authority, code, name) : noc_strdup(name);
     }
     proj_destroy(cs);
@@ -157,12 +158,13 @@ static bool make_free(geo_crs *crs) {
 }
 
 static noc_status refuse(const char *definition, const char *what, const char *place, noc_log *log) {
-    return noc_error(log, NOC_ERR_FORMAT, "%s%sthe CRS \"%.200s\" may open files (%s), which a file's CRS must not", place, *place ? ": " : "",
-              definition, what);
+    return noc_error(log, NOC_ERR_FORMAT, "%s%sthe CRS \"%.200s\" may open files (%s), which a file's CRS must not",
+                     place, *place ? ": " : "", definition, what);
 }
 
 static noc_status no_memory(const char *definition, const char *place, noc_log *log) {
-    return noc_error(log, NOC_ERR_MEMORY, "%s%sout of memory for the CRS \"%.200s\"", place, *place ? ": " : "", definition);
+    return noc_error(log, NOC_ERR_MEMORY, "%s%sout of memory for the CRS \"%.200s\"", place, *place ? ": " : "",
+                     definition);
 }
 
 static noc_status create(geo_crs *crs, const char *definition, bool strict, const char *place, noc_log *log) {
@@ -175,18 +177,21 @@ static noc_status create(geo_crs *crs, const char *definition, bool strict, cons
     crs->strict = strict;
     if (registered || (strlen(definition) < sizeof(crs->key) && !crs_text_names_file(definition, what)))
         snprintf(crs->key, sizeof(crs->key), "%s", registered ? spelling.horizontal : definition);
-    crs->pj = registered ? create_registered(crs->context, spelling.horizontal) : create_free_form(crs->context, definition, &refused);
+    crs->pj = registered ? create_registered(crs->context, spelling.horizontal)
+                         : create_free_form(crs->context, definition, &refused);
     if (refused)
         return no_memory(definition, place, log);
     if (!crs->pj && !proj_context_get_database_metadata(crs->context, "EPSG.VERSION")) {
         proj_context_destroy(crs->context); /* others may find it */
         crs->context = NULL;
-        return noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sPROJ finds no proj.db, its database, so no CRS can be read: is PROJ_DATA "
-                         "right?", place, between);
+        return noc_error(log, NOC_ERR_UNSUPPORTED,
+                         "%s%sPROJ finds no proj.db, its database, so no CRS can be read: is PROJ_DATA "
+                         "right?",
+                         place, between);
     }
     if (!crs->pj)
-        return noc_error(log, NOC_ERR_FORMAT, "%s%sthe CRS \"%.200s\" is not understood%s%s", place, between, definition,
-                         registered ? ": no registered " : "", registered ? spelling.horizontal : "");
+        return noc_error(log, NOC_ERR_FORMAT, "%s%sthe CRS \"%.200s\" is not understood%s%s", place, between,
+                         definition, registered ? ": no registered " : "", registered ? spelling.horizontal : "");
     reduce_to_horizontal(crs);
     if (spelling.vertical[0]) {
         PJ *vertical = create_registered(crs->context, spelling.vertical);
@@ -199,8 +204,8 @@ static noc_status create(geo_crs *crs, const char *definition, bool strict, cons
     if (strict && !make_free(crs)) /* it names no file: those that come now are of PROJ's own database */
         return no_memory(definition, place, log);
     if (!crs->pj || !inspect(crs))
-        return noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sthe CRS \"%.200s\" is neither geographic nor projected", place, between,
-                         definition);
+        return noc_error(log, NOC_ERR_UNSUPPORTED, "%s%sthe CRS \"%.200s\" is neither geographic nor projected", place,
+                         between, definition);
     return crs->name ? NOC_OK : no_memory(definition, place, log);
 }
 
@@ -348,11 +353,11 @@ double geo_crs_scale(geo_crs *crs, double x, double y) {
 
 struct geo_transform {
     PJ_CONTEXT *context;
-    PJ *pj;             /* NULL: identity */
+    PJ *pj; /* NULL: identity */
     bool swap_from, swap_to;
     double height_scale;
     noc_log *log;
-    char *names;        /* for the message about accuracy; NULL once it was checked */
+    char *names; /* for the message about accuracy; NULL once it was checked */
 };
 
 static noc_status make_transform(geo_transform *t, const geo_crs *from, const geo_crs *to, noc_log *log) {
@@ -370,7 +375,9 @@ static noc_status make_transform(geo_transform *t, const geo_crs *from, const ge
         t->pj = proj_create_crs_to_crs_from_pj(t->context, from->pj, to->pj, NULL, NULL);
         crs_keep(t->pj, from->key, to->key);
     }
-    return t->pj ? NOC_OK : noc_error(log, NOC_ERR_UNSUPPORTED, "no transformation is known from %s to %s", from->name, to->name);
+    return t->pj
+               ? NOC_OK
+               : noc_error(log, NOC_ERR_UNSUPPORTED, "no transformation is known from %s to %s", from->name, to->name);
 }
 
 geo_transform *geo_transform_create(const geo_crs *from, const geo_crs *to, noc_log *log, noc_status *status) {
@@ -399,7 +406,8 @@ static void check_accuracy(geo_transform *t) {
     if (!used)
         return;
     if (proj_coordoperation_has_ballpark_transformation(t->context, used))
-        noc_warn(t->log, "%s: no datum shift is known here, positions may be off by up to a few hundred metres", t->names);
+        noc_warn(t->log, "%s: no datum shift is known here, positions may be off by up to a few hundred metres",
+                 t->names);
     proj_destroy(used);
     free(t->names);
     t->names = NULL;
@@ -413,8 +421,8 @@ size_t geo_transform_points(geo_transform *t, double *xyz, size_t count) {
     if (t->pj && count) {
         double *first = xyz + t->swap_from, *second = xyz + !t->swap_from;
         /* without z: it is the height's own business, and NaN there (a lamp on the ground) must not spoil x and y */
-        proj_trans_generic(t->pj, PJ_FWD, first, 3 * sizeof(double), count, second, 3 * sizeof(double), count, NULL, 0, 0,
-                           NULL, 0, 0);
+        proj_trans_generic(t->pj, PJ_FWD, first, 3 * sizeof(double), count, second, 3 * sizeof(double), count, NULL, 0,
+                           0, NULL, 0, 0);
         proj_errno_reset(t->pj);
     }
     for (size_t i = 0; i < count; i++) {

@@ -18,7 +18,8 @@ static bool is_projs_own(const char *name) {
 
 static PROJ_FILE_HANDLE *on_open(PJ_CONTEXT *context, const char *name, PROJ_OPEN_ACCESS access, void *user) {
     struct stat st;
-    if ((user == strict_files && !is_projs_own(name)) || access != PROJ_OPEN_ACCESS_READ_ONLY || stat(name, &st) || !S_ISREG(st.st_mode))
+    if ((user == strict_files && !is_projs_own(name)) || access != PROJ_OPEN_ACCESS_READ_ONLY || stat(name, &st) ||
+        !S_ISREG(st.st_mode))
         return NULL;
     int fd = open(name, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     FILE *f = fd >= 0 ? fdopen(fd, "rb") : NULL;
@@ -31,7 +32,9 @@ static size_t on_read(PJ_CONTEXT *context, PROJ_FILE_HANDLE *f, void *to, size_t
     return fread(to, 1, size, (FILE *)f);
 }
 
-static size_t on_write(PJ_CONTEXT *context, PROJ_FILE_HANDLE *f, const void *from, size_t size, void *user) { return 0; }
+static size_t on_write(PJ_CONTEXT *context, PROJ_FILE_HANDLE *f, const void *from, size_t size, void *user) {
+    return 0;
+}
 
 static int on_seek(PJ_CONTEXT *context, PROJ_FILE_HANDLE *f, long long offset, int whence, void *user) {
     return fseeko((FILE *)f, (off_t)offset, whence) == 0;
@@ -57,7 +60,8 @@ static void ignore_message(void *user, int level, const char *text) {
 }
 
 PJ_CONTEXT *crs_context_create(bool strict) {
-    static const PROJ_FILE_API files = { 1, on_open, on_read, on_write, on_seek, on_tell, on_close, on_exists, on_mkdir, on_unlink, on_rename };
+    static const PROJ_FILE_API files = { 1,        on_open,   on_read,  on_write,  on_seek,  on_tell,
+                                         on_close, on_exists, on_mkdir, on_unlink, on_rename };
     PJ_CONTEXT *context = proj_context_create();
     if (!context)
         return NULL;
@@ -69,15 +73,19 @@ PJ_CONTEXT *crs_context_create(bool strict) {
 
 /* ---- what a definition names ---- */
 
-/* Parameters of projections, ellipsoids, datums and units whose values are numbers or words of PROJ's. nadgrids is here for
+/* Parameters of projections, ellipsoids, datums and units whose values are numbers or words of PROJ's. nadgrids is here
+ * for
  * "@null" alone, which web Mercator is written with. */
 static bool is_plain(const char *key, size_t n) {
     static const char *const plain[] = {
-        "proj", "zone", "south", "lat_0", "lon_0", "lat_1", "lon_1", "lat_2", "lon_2", "lat_3", "lon_3", "lat_ts", "lat_b", "lon_wrap",
-        "lonc", "k", "k_0", "x_0", "y_0", "z_0", "a", "b", "rf", "f", "es", "e", "R", "R_A", "R_V", "R_a", "R_g", "R_h", "R_lat_a",
-        "R_lat_g", "ellps", "datum", "units", "to_meter", "vunits", "vto_meter", "towgs84", "pm", "axis", "no_defs", "wktext", "over",
-        "type", "alpha", "gamma", "no_uoff", "no_off", "h", "sweep", "tilt", "azi", "approx", "algo", "title", "o_proj", "o_lat_p",
-        "o_lon_p", "o_alpha", "o_lon_c", "o_lat_c", "W", "M", "n", "m", "q", "theta", "geoc", "guam", "hyperbolic", "czech", "bf",
+        "proj",    "zone",    "south",      "lat_0",    "lon_0",  "lat_1",  "lon_1", "lat_2",    "lon_2",  "lat_3",
+        "lon_3",   "lat_ts",  "lat_b",      "lon_wrap", "lonc",   "k",      "k_0",   "x_0",      "y_0",    "z_0",
+        "a",       "b",       "rf",         "f",        "es",     "e",      "R",     "R_A",      "R_V",    "R_a",
+        "R_g",     "R_h",     "R_lat_a",    "R_lat_g",  "ellps",  "datum",  "units", "to_meter", "vunits", "vto_meter",
+        "towgs84", "pm",      "axis",       "no_defs",  "wktext", "over",   "type",  "alpha",    "gamma",  "no_uoff",
+        "no_off",  "h",       "sweep",      "tilt",     "azi",    "approx", "algo",  "title",    "o_proj", "o_lat_p",
+        "o_lon_p", "o_alpha", "o_lon_c",    "o_lat_c",  "W",      "M",      "n",     "m",        "q",      "theta",
+        "geoc",    "guam",    "hyperbolic", "czech",    "bf",
     };
     for (size_t i = 0; i < NOC_COUNT(plain); i++)
         if (strlen(plain[i]) == n && !memcmp(plain[i], key, n))
@@ -118,7 +126,9 @@ static bool is_null_text(const char *text) {
 }
 
 /* A parameter begins where + or a blank or a quote was: "+nadgrids=x", "proj=merc nadgrids=x". */
-static bool begins_word(const char *text, const char *p) { return p == text || is_blank(p[-1]) || strchr("+\"'", p[-1]); }
+static bool begins_word(const char *text, const char *p) {
+    return p == text || is_blank(p[-1]) || strchr("+\"'", p[-1]);
+}
 
 static size_t word_length(const char *p) {
     size_t n = 0;
@@ -129,7 +139,8 @@ static size_t word_length(const char *p) {
 
 static bool is_word(const char *p, size_t n, const char *word) { return strlen(word) == n && !memcmp(p, word, n); }
 
-/* The value behind a key of n letters; NULL: there is no =. PROJ takes the blanks around it away, and every + behind a blank. */
+/* The value behind a key of n letters; NULL: there is no =. PROJ takes the blanks around it away, and every + behind a
+ * blank. */
 static const char *value_of(const char *key, size_t n) {
     const char *p = skip_blanks(key + n);
     if (*p != '=')
@@ -169,7 +180,8 @@ bool crs_text_names_file(const char *definition, char what[40]) {
         const char *value = value_of(p, n);
         bool step = p > definition && p[-1] == '+' && is_word(p, n, "step");
         bool grid = value && is_word(p, n, "nadgrids") && is_null_value(value);
-        bool operation = value && is_word(p, n, "proj") && (!strncmp(value, "pipeline", 8) || strstr(value, "gridshift") == value + 1);
+        bool operation = value && is_word(p, n, "proj") &&
+                         (!strncmp(value, "pipeline", 8) || strstr(value, "gridshift") == value + 1);
         if (step || operation || (value && !grid && !is_plain(p, n)))
             return say(what, p, n);
     }
@@ -189,7 +201,8 @@ bool crs_names_file(PJ_CONTEXT *context, const PJ *crs, char what[40]) {
     return crs_text_names_file(wkt, what);
 }
 
-/* Is what is named behind a keyword of WKT, as in PARAMETERFILE["name","@null"], no grid? begin: what comes before the name. */
+/* Is what is named behind a keyword of WKT, as in PARAMETERFILE["name","@null"], no grid? begin: what comes before the
+ * name. */
 static bool is_null_behind(const char *p, const char *begin, bool named) {
     size_t n = strlen(begin);
     if (strncmp(p, begin, n))

@@ -101,7 +101,8 @@ static bool lookup(const char *name, size_t size, char out[48]) {
 }
 
 /* One component: fields between separators, of which one is an authority and the last that is not empty the code, as in
- * EPSG:6.12:25833, crs:EPSG::5783, def/crs/EPSG/0/6697. What comes before "crs" is a namespace (urn:ogc:def:crs:EPSG::4326). */
+ * EPSG:6.12:25833, crs:EPSG::5783, def/crs/EPSG/0/6697. What comes before "crs" is a namespace
+ * (urn:ogc:def:crs:EPSG::4326). */
 static bool parse_component(const char *s, size_t size, char separator, char out[48]) {
     const char *authority = NULL, *code = NULL;
     size_t code_size = 0;

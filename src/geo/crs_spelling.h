@@ -10,8 +10,8 @@ typedef struct crs_spelling {
     char vertical[48];
 } crs_spelling;
 
-/* True if the definition names a registered CRS in one of the known spellings; false: it may be WKT, a PROJ string or the
- * full name of a CRS, which are PROJ's to read. */
+/* True if the definition names a registered CRS in one of the known spellings; false: it may be WKT, a PROJ string or
+ * the full name of a CRS, which are PROJ's to read. */
 bool crs_spelling_parse(const char *definition, crs_spelling *out);
 
 #endif

@@ -1,4 +1,5 @@
-/* geo: a city as surveyors keep it. Double coordinates in the file's own CRS, semantics, and the sink that readers feed. */
+/* geo: a city as surveyors keep it. Double coordinates in the file's own CRS, semantics, and the sink that readers
+ * feed. */
 #ifndef NOC_GEO_H
 #define NOC_GEO_H
 
@@ -10,38 +11,40 @@
 typedef struct geo_crs geo_crs;
 
 /* From any spelling: EPSG:n, URNs and URLs of OGC (compound ones too), urn:adv, "CH1903", WKT, PROJ strings. NULL after
- * reporting what was not understood (and where: `place` is put before the message, e.g. "city.gml:12"); *status, which may be NULL, tells
- * that from memory that was refused. */
+ * reporting what was not understood (and where: `place` is put before the message, e.g. "city.gml:12"); *status, which
+ * may be NULL, tells that from memory that was refused. */
 geo_crs *geo_crs_create(const char *definition, const char *place, noc_log *log, noc_status *status);
-/* The same of a definition that a file holds: one that makes PROJ open any file (grids, +init, pipelines) is refused. */
+/* The same of a definition that a file holds: one that makes PROJ open any file (grids, +init, pipelines) is refused.
+ */
 geo_crs *geo_crs_create_plain(const char *definition, const char *place, noc_log *log, noc_status *status);
 geo_crs *geo_crs_utm(double lon, double lat); /* WGS 84 UTM zone of a place; NULL: memory was refused */
 geo_crs *geo_crs_clone(const geo_crs *crs);   /* NULL: memory was refused, or crs is NULL */
 void geo_crs_destroy(geo_crs *crs);
-const char *geo_crs_name(const geo_crs *crs);       /* "EPSG:25832 (ETRS89 / UTM zone 32N)" */
+const char *geo_crs_name(const geo_crs *crs); /* "EPSG:25832 (ETRS89 / UTM zone 32N)" */
 bool geo_crs_is_geographic(const geo_crs *crs);
-bool geo_crs_is_metric(const geo_crs *crs);         /* projected, axes in metres */
-bool geo_crs_lat_first(const geo_crs *crs);         /* the authority's order is northing/latitude first */
-/* The first thing in a text that makes a library which takes it for a CRS open a file: a grid, a file of definitions; copied to
- * what. False if there is none. */
+bool geo_crs_is_metric(const geo_crs *crs); /* projected, axes in metres */
+bool geo_crs_lat_first(const geo_crs *crs); /* the authority's order is northing/latitude first */
+/* The first thing in a text that makes a library which takes it for a CRS open a file: a grid, a file of definitions;
+ * copied to what. False if there is none. */
 bool geo_crs_text_names_file(const char *text, char what[40]);
-/* Does PROJ find its database, without which no CRS can be read? NOC_ERR_UNSUPPORTED, not reported: it does not. NOC_ERR_MEMORY:
- * it could not be asked. */
+/* Does PROJ find its database, without which no CRS can be read? NOC_ERR_UNSUPPORTED, not reported: it does not.
+ * NOC_ERR_MEMORY: it could not be asked. */
 noc_status geo_crs_database(void);
 bool geo_crs_equal(const geo_crs *a, const geo_crs *b); /* same horizontal CRS */
 /* Longitude and latitude (degrees, WGS 84) of a point given easting northing; false if it has none. Not thread-safe. */
 bool geo_crs_lonlat(geo_crs *crs, double x, double y, double lonlat[2]);
-/* How far a point (easting northing) lies outside the area the CRS is meant for: degrees, 0 inside, INFINITY where it has
- * no place on Earth. What tells exchanged axes and wrong CRSs. Not thread-safe. */
+/* How far a point (easting northing) lies outside the area the CRS is meant for: degrees, 0 inside, INFINITY where it
+ * has no place on Earth. What tells exchanged axes and wrong CRSs. Not thread-safe. */
 double geo_crs_outside(geo_crs *crs, double x, double y);
-/* How long a metre of the ground at a point (easting northing) is in a projected CRS: its point scale, of the meridian's and
- * the parallel's the one that is farther from 1. NaN where it is not known. Not thread-safe. */
+/* How long a metre of the ground at a point (easting northing) is in a projected CRS: its point scale, of the
+ * meridian's and the parallel's the one that is farther from 1. NaN where it is not known. Not thread-safe. */
 double geo_crs_scale(geo_crs *crs, double x, double y);
 
-/* Transform between two CRSs; not thread-safe, one a thread. Points are easting northing height (lon lat height, degrees):
- * axis order is normalised. Height passes through unchanged, but for its unit (feet to metres). */
+/* Transform between two CRSs; not thread-safe, one a thread. Points are easting northing height (lon lat height,
+ * degrees): axis order is normalised. Height passes through unchanged, but for its unit (feet to metres). */
 typedef struct geo_transform geo_transform;
-geo_transform *geo_transform_create(const geo_crs *from, const geo_crs *to, noc_log *log, noc_status *status); /* as geo_crs_create */
+/* as geo_crs_create */
+geo_transform *geo_transform_create(const geo_crs *from, const geo_crs *to, noc_log *log, noc_status *status);
 void geo_transform_destroy(geo_transform *t);
 /* In place; points that cannot be transformed become NaN. Returns how many failed. */
 size_t geo_transform_points(geo_transform *t, double *xyz, size_t count);
@@ -49,14 +52,22 @@ size_t geo_transform_points(geo_transform *t, double *xyz, size_t count);
 /* ---- what readers emit ---- */
 
 typedef enum geo_kind {
-    GEO_BUILDING, GEO_TERRAIN, GEO_TRANSPORT, GEO_VEGETATION, GEO_WATER, GEO_FURNITURE, GEO_BRIDGE, GEO_LANDUSE, GEO_OTHER,
+    GEO_BUILDING,
+    GEO_TERRAIN,
+    GEO_TRANSPORT,
+    GEO_VEGETATION,
+    GEO_WATER,
+    GEO_FURNITURE,
+    GEO_BRIDGE,
+    GEO_LANDUSE,
+    GEO_OTHER,
     GEO_KIND_COUNT
 } geo_kind;
 
 typedef struct geo_object {
     geo_kind kind;
-    const char *id;   /* gml:id, "" if none; valid during the call */
-    int lod;          /* taken, -1 if not applicable */
+    const char *id; /* gml:id, "" if none; valid during the call */
+    int lod;        /* taken, -1 if not applicable */
 } geo_object;
 
 /* Rings without the repeated last point. Coordinates in the file's CRS, easting northing height order. */
@@ -73,25 +84,36 @@ typedef struct geo_polygon {
 
 /* A lamp as tagged. NaN / 0 / NULL where unknown. */
 typedef struct geo_lamp {
-    double xyz[3];        /* file CRS; xyz[2] NaN: stands on the ground */
-    double height;        /* of the light above the ground, m */
-    double direction;     /* degrees clockwise from north the head faces, NaN: none */
-    int count;            /* heads on the pole; 0 = unknown */
+    double xyz[3];    /* file CRS; xyz[2] NaN: stands on the ground */
+    double height;    /* of the light above the ground, m */
+    double direction; /* degrees clockwise from north the head faces, NaN: none */
+    int count;        /* heads on the pole; 0 = unknown */
     double lumens, watts, kelvin;
-    float rgb[3];         /* colour tag; negative if none */
+    float rgb[3]; /* colour tag; negative if none */
     enum { GEO_LAMP_STREET, GEO_LAMP_LANTERN, GEO_LAMP_FLOOD } type;
-    enum { GEO_SOURCE_UNKNOWN, GEO_SOURCE_LED, GEO_SOURCE_SODIUM, GEO_SOURCE_MERCURY, GEO_SOURCE_METAL_HALIDE,
-           GEO_SOURCE_FLUORESCENT, GEO_SOURCE_INCANDESCENT, GEO_SOURCE_GAS, GEO_SOURCE_LOW_SODIUM } source;
+    enum {
+        GEO_SOURCE_UNKNOWN,
+        GEO_SOURCE_LED,
+        GEO_SOURCE_SODIUM,
+        GEO_SOURCE_MERCURY,
+        GEO_SOURCE_METAL_HALIDE,
+        GEO_SOURCE_FLUORESCENT,
+        GEO_SOURCE_INCANDESCENT,
+        GEO_SOURCE_GAS,
+        GEO_SOURCE_LOW_SODIUM
+    } source;
     enum { GEO_MOUNT_UNKNOWN, GEO_MOUNT_POLE, GEO_MOUNT_WALL, GEO_MOUNT_SUSPENDED } mount;
     const char *id, *ref; /* what else it is called, for other files may call it so; ref may be NULL */
-    /* A lamp whose body is among the surfaces shines from here, and gets neither a pole nor another place. body_heads 0: none. */
+    /* A lamp whose body is among the surfaces shines from here, and gets neither a pole nor another place. body_heads
+     * 0: none. */
     int body_heads;
     double head[GEO_BODY_HEADS][3]; /* centres of the lights, file CRS */
     double head_radius;             /* m */
     bool head_globe;                /* spheres around the body's head; else discs under it, facing down */
 } geo_lamp;
 
-/* A column of a table, an attribute or a tag, and what a reader of lamps took it for. Texts are valid during the call. */
+/* A column of a table, an attribute or a tag, and what a reader of lamps took it for. Texts are valid during the call.
+ */
 typedef struct geo_column {
     const char *name, *field, *unit, *example; /* field: "" where it is not used */
     size_t values;                             /* that are not blank */
@@ -115,11 +137,13 @@ typedef enum geo_issue_kind {
     GEO_SKIPPED,  /* left out */
     GEO_REPAIRED, /* used after a repair that loses nothing */
     GEO_GUESSED,  /* used, and something of it is a guess or missing */
-    GEO_SPARED,   /* left out, and nothing is lost by it: it has no area, is given twice, is gone or inside by its own word */
+    /* left out, and nothing is lost by it: it has no area, is given twice, is gone or inside by its own word */
+    GEO_SPARED,
     GEO_ISSUE_KINDS
 } geo_issue_kind;
 void geo_issue(geo_issues *issues, geo_issue_kind kind, const char *reason, const char *id); /* texts are copied */
-bool geo_issues_refused(const geo_issues *issues); /* whether memory was refused to any, which is not counted then; looked at once, at the end */
+/* whether memory was refused to any, which is not counted then; looked at once, at the end */
+bool geo_issues_refused(const geo_issues *issues);
 
 /* Before a srsName that the file does not hold: it is the format's, or the one that its numbers tell. */
 #define GEO_CRS_TAKEN '='
@@ -131,8 +155,9 @@ typedef struct geo_sink {
     geo_issues *issues;
     char *decimal_sign; /* where readers of tables tell which one they take: noc_report_file's; may be NULL */
     size_t *lamps_lost; /* where readers count lamps in use whose place is none: they are not emitted; may be NULL */
-    /* srsName as spelled, or behind GEO_CRS_TAKEN; called before the first coordinate it applies to, again when it changes. Returns in *lat_first
-     * whether the file's tuples are in latitude/northing first order; the reader swaps them before emitting. */
+    /* srsName as spelled, or behind GEO_CRS_TAKEN; called before the first coordinate it applies to, again when it
+     * changes. Returns in *lat_first whether the file's tuples are in latitude/northing first order; the reader swaps
+     * them before emitting. */
     noc_status (*crs)(void *ctx, const char *srs_name, const char *place, bool *lat_first);
     noc_status (*begin_object)(void *ctx, const geo_object *object);
     noc_status (*polygon)(void *ctx, const geo_polygon *polygon);
@@ -150,9 +175,9 @@ typedef struct geo_sink {
 
 /* ---- polygons (polygon.c) ---- */
 
-/* Cleans (repeated points, spikes, non-finite values) and triangulates a polygon with holes, keeping the exterior ring's
- * orientation. Non-planar ones are triangulated in their best plane, keeping their vertices. What was repaired or is
- * beyond repair goes to `issues`. Returns triangles as index triples into the cleaned points. */
+/* Cleans (repeated points, spikes, non-finite values) and triangulates a polygon with holes, keeping the exterior
+ * ring's orientation. Non-planar ones are triangulated in their best plane, keeping their vertices. What was repaired
+ * or is beyond repair goes to `issues`. Returns triangles as index triples into the cleaned points. */
 typedef struct geo_triangles {
     NOC_ARRAY(double) xyz;       /* 3 a vertex */
     NOC_ARRAY(uint32_t) indices; /* 3 a triangle */

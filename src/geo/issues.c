@@ -9,7 +9,7 @@ struct line {
     size_t count;
     int example_count;
     const char *examples[EXAMPLES];
-    char *joined;       /* made on request */
+    char *joined; /* made on request */
 };
 
 struct geo_issues {

@@ -4,15 +4,16 @@
 
 #include <math.h>
 
-#define SAME_POINT 1e-4    /* m; neighbouring points nearer than this are one */
+#define SAME_POINT 1e-4      /* m; neighbouring points nearer than this are one */
 #define PLANE_TOLERANCE 0.01 /* m; points further off the best plane make a polygon non-planar */
-#define LARGEST 1e6        /* m; no surface of a city is wider, and floats could not hold it */
-#define MOST_HOLES 1000    /* that are compared with each other */
+#define LARGEST 1e6          /* m; no surface of a city is wider, and floats could not hold it */
+#define MOST_HOLES 1000      /* that are compared with each other */
 #define MOST_POINTS 20000000 /* of a polygon; ten times the largest that is known of a map */
 #define MOST_LOOKS 200000000 /* at edges of the exterior, to tell of holes outside of it */
-#define SMALLEST_AREA 1e-8 /* m2 */
+#define SMALLEST_AREA 1e-8   /* m2 */
 
-/* A polygon at work: cleaned points of all rings, relative to `centre`, and the same in the coordinates of its plane. */
+/* A polygon at work: cleaned points of all rings, relative to `centre`, and the same in the coordinates of its plane.
+ */
 struct work {
     const char *id;
     geo_issues *issues;
@@ -231,8 +232,8 @@ static void reverse_ring(struct work *w, size_t first, size_t n) {
     }
 }
 
-/* Does any of the ring's edges (of a sample of them, if there are many) have its middle in the exterior ring? Corners say
- * less: they may touch it. Where many looks were taken already, it is believed. */
+/* Does any of the ring's edges (of a sample of them, if there are many) have its middle in the exterior ring? Corners
+ * say less: they may touch it. Where many looks were taken already, it is believed. */
 static bool lies_in_exterior(const struct work *w, const double *uv, size_t n, size_t *looks) {
     size_t step = n / 64 + 1, edges = w->ring_size.data[0];
     for (size_t i = 0; i < n; i += step) {
@@ -310,8 +311,14 @@ static bool prepare(struct work *w, const geo_polygon *polygon) {
         size_t n = add_ring(w, p, polygon->ring_size[r], &found);
         if (n < 3) {
             bool few = polygon->ring_size[r] < 3;
-            geo_issue(w->issues, r ? GEO_REPAIRED : few ? GEO_SKIPPED : GEO_SPARED, r ? few ? "interior ring with too few points" : "collapsed interior ring"
-                                          : few ? "ring with too few points" : "collapsed ring", w->id);
+            geo_issue(w->issues,
+                      r     ? GEO_REPAIRED
+                      : few ? GEO_SKIPPED
+                            : GEO_SPARED,
+                      r     ? few ? "interior ring with too few points" : "collapsed interior ring"
+                      : few ? "ring with too few points"
+                            : "collapsed ring",
+                      w->id);
             if (!r)
                 return false;
             w->xyz.len -= 3 * n;
@@ -354,7 +361,8 @@ static bool cut_simple(const struct work *w, uint32_t v, geo_triangles *out) {
         out->indices.len += 3;
         return true;
     }
-    bool ac = corner(uv, 0, 1, 2) > 0 && corner(uv, 0, 2, 3) > 0, bd = corner(uv, 1, 2, 3) > 0 && corner(uv, 1, 3, 0) > 0;
+    bool ac = corner(uv, 0, 1, 2) > 0 && corner(uv, 0, 2, 3) > 0,
+         bd = corner(uv, 1, 2, 3) > 0 && corner(uv, 1, 3, 0) > 0;
     if (!ac && !bd)
         return false;
     if (ac && bd) {
@@ -363,7 +371,9 @@ static bool cut_simple(const struct work *w, uint32_t v, geo_triangles *out) {
         subtract(w->xyz.data + 9, w->xyz.data + 3, q);
         ac = dot(p, p) <= dot(q, q);
     }
-    memcpy(to, ac ? (uint32_t[]){ v, v + 1, v + 2, v, v + 2, v + 3 } : (uint32_t[]){ v + 1, v + 2, v + 3, v + 1, v + 3, v }, 6 * sizeof(*to));
+    memcpy(to,
+           ac ? (uint32_t[]){ v, v + 1, v + 2, v, v + 2, v + 3 } : (uint32_t[]){ v + 1, v + 2, v + 3, v + 1, v + 3, v },
+           6 * sizeof(*to));
     out->indices.len += 6;
     return true;
 }
@@ -391,7 +401,8 @@ static bool triangulate(struct work *w, geo_triangles *out) {
         return false;
     /* With two triangles fewer than points, and two more a hole. */
     size_t triangles = w->xyz.len / 3 + 2 * w->ring_size.len;
-    if (!array_reserve(&out->indices, out->indices.len + 3 * triangles) || !array_append(&out->xyz, w->xyz.data, w->xyz.len)) {
+    if (!array_reserve(&out->indices, out->indices.len + 3 * triangles) ||
+        !array_append(&out->xyz, w->xyz.data, w->xyz.len)) {
         w->no_memory = true;
         return false;
     }
@@ -406,8 +417,11 @@ static bool triangulate(struct work *w, geo_triangles *out) {
         drop_flat_triangles(out, first_index);
         if (!t.ok || out->indices.len == first_index) {
             if (!t.no_memory)
-                geo_issue(w->issues, t.ok && !t.tangled ? GEO_SPARED : GEO_SKIPPED, t.tangled ? "polygon that crosses itself more than 1000 times"
-                                        : t.ok    ? "polygon without area" : "polygon that cannot be triangulated", w->id);
+                geo_issue(w->issues, t.ok && !t.tangled ? GEO_SPARED : GEO_SKIPPED,
+                          t.tangled ? "polygon that crosses itself more than 1000 times"
+                          : t.ok    ? "polygon without area"
+                                    : "polygon that cannot be triangulated",
+                          w->id);
             out->indices.len = first_index;
             out->xyz.len = first_vertex;
             return false;

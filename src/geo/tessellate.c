@@ -1,5 +1,5 @@
-/* Polygons are cut into triangles by GLU's tessellator, whose time grows with points times edges that its sweep meets at
- * once. Where that would be long, the plane is halved until each piece is small. */
+/* Polygons are cut into triangles by GLU's tessellator, whose time grows with points times edges that its sweep meets
+ * at once. Where that would be long, the plane is halved until each piece is small. */
 #include "geo/tessellate.h"
 
 #include <GL/glu.h>
@@ -17,7 +17,9 @@ static void refuse(struct job *job) {
     job->result.ok = false;
 }
 
-static void *as_pointer(size_t vertex) { return (void *)(uintptr_t)(vertex + 1); } /* never NULL: GLU gives NULL for none */
+static void *as_pointer(size_t vertex) {
+    return (void *)(uintptr_t)(vertex + 1);
+} /* never NULL: GLU gives NULL for none */
 
 static void on_vertex(void *data, void *user) {
     struct job *job = user;
@@ -34,8 +36,8 @@ static void on_error(GLenum error, void *user) {
     job->result.no_memory |= error == GLU_OUT_OF_MEMORY;
 }
 
-/* Edges cross, or points coincide. The new vertex lies between its (up to) four neighbours in space, so that a ring that is
- * not flat stays closed. */
+/* Edges cross, or points coincide. The new vertex lies between its (up to) four neighbours in space, so that a ring
+ * that is not flat stays closed. */
 static void on_combine(GLdouble place[3], void *data[4], GLfloat weight[4], void **out, void *user) {
     (void)place;
     struct job *job = user;
@@ -90,13 +92,14 @@ static bool cross_properly(const edge *e, const edge *f) {
     return side(e->a, e->b, f->a) * side(e->a, e->b, f->b) < 0 && side(f->a, f->b, e->a) * side(f->a, f->b, e->b) < 0;
 }
 
-#define FEW_POINTS 100        /* that many cannot cross often enough to matter */
+#define FEW_POINTS 100 /* that many cannot cross often enough to matter */
 #define MANY_CROSSINGS 1000
-#define PAIR_BUDGET 20000000  /* pairs of edges that are looked at; the rest is extrapolated */
+#define PAIR_BUDGET 20000000 /* pairs of edges that are looked at; the rest is extrapolated */
 
 /* Each crossing costs the tessellator time that grows with the number of edges: a ring of a few thousand random points
  * takes minutes. */
-static bool crosses_too_often(struct job *job, const double *uv, const size_t *ring_size, size_t ring_count, size_t points) {
+static bool crosses_too_often(struct job *job, const double *uv, const size_t *ring_size, size_t ring_count,
+                              size_t points) {
     if (points < FEW_POINTS)
         return false;
     edge *edges = noc_alloc(points * sizeof(*edges));
@@ -136,8 +139,8 @@ static void piece_free(piece *p) {
     array_free(&p->ring_size);
 }
 
-/* Directions that a polygon may be swept along: u, v, and across most of its edges' length (the minor axis of their second
- * moments): teeth of a comb are swept one after the other however they are turned. */
+/* Directions that a polygon may be swept along: u, v, and across most of its edges' length (the minor axis of their
+ * second moments): teeth of a comb are swept one after the other however they are turned. */
 enum { ALONG_U, ALONG_V, ACROSS_EDGES, DIRECTIONS };
 
 static void directions(const piece *p, double axis[DIRECTIONS][2]) {
@@ -155,7 +158,8 @@ static void directions(const piece *p, double axis[DIRECTIONS][2]) {
     memcpy(axis, all, sizeof(all));
 }
 
-/* Lengths of all edges along each direction, over the polygon's extent: the edges that a line across it meets on average. */
+/* Lengths of all edges along each direction, over the polygon's extent: the edges that a line across it meets on
+ * average. */
 static void edges_at_once(const piece *p, const double axis[DIRECTIONS][2], double met[DIRECTIONS]) {
     double length[DIRECTIONS] = { 0 }, lo[DIRECTIONS], hi[DIRECTIONS];
     for (int d = 0; d < DIRECTIONS; d++)
@@ -224,17 +228,17 @@ static void sweep(struct job *job, const piece *p, bool odd) {
 /* Where an edge crosses the cut. */
 typedef struct crossing {
     double v;
-    uint32_t vertex;  /* made there */
-    size_t to;        /* the point that the edge leads to */
-    size_t edge;      /* the point that it comes from */
-    size_t partner;   /* crossing that a ring goes on from, along the cut */
-    bool up;          /* from the lower half to the upper one */
+    uint32_t vertex; /* made there */
+    size_t to;       /* the point that the edge leads to */
+    size_t edge;     /* the point that it comes from */
+    size_t partner;  /* crossing that a ring goes on from, along the cut */
+    bool up;         /* from the lower half to the upper one */
 } crossing;
 
 typedef struct cut_line {
     double at;
-    size_t *next;     /* of each point: the one behind it in its ring */
-    size_t *crossed;  /* of each point: crossing + 1 of its edge, 0 if none; SIZE_MAX once it is in a half */
+    size_t *next;    /* of each point: the one behind it in its ring */
+    size_t *crossed; /* of each point: crossing + 1 of its edge, 0 if none; SIZE_MAX once it is in a half */
     NOC_ARRAY(crossing) crossings;
 } cut_line;
 
@@ -256,8 +260,11 @@ static void find_crossings(struct job *job, const piece *p, cut_line *line) {
             const double *y = job->out->xyz.data + 3 * (size_t)p->vertex.data[b];
             for (int k = 0; k < 3; k++)
                 xyz[k] = x[k] + t * (y[k] - x[k]);
-            crossing c = { .v = uv[2 * a + 1] + t * (uv[2 * b + 1] - uv[2 * a + 1]), .vertex = (uint32_t)(job->out->xyz.len / 3),
-                           .to = b, .edge = a, .up = uv[2 * b] > line->at };
+            crossing c = { .v = uv[2 * a + 1] + t * (uv[2 * b + 1] - uv[2 * a + 1]),
+                           .vertex = (uint32_t)(job->out->xyz.len / 3),
+                           .to = b,
+                           .edge = a,
+                           .up = uv[2 * b] > line->at };
             if (!array_append(&job->out->xyz, xyz, 3) || !array_push(&line->crossings, c)) {
                 refuse(job);
                 return;
@@ -265,8 +272,8 @@ static void find_crossings(struct job *job, const piece *p, cut_line *line) {
         }
 }
 
-/* Joins ends along the cut: each with the next one of the other direction that has no partner, like brackets. Where no rings
- * cross these are neighbours, so that no two joints overlap. */
+/* Joins ends along the cut: each with the next one of the other direction that has no partner, like brackets. Where no
+ * rings cross these are neighbours, so that no two joints overlap. */
 static void join_ends(struct job *job, cut_line *line) {
     crossing *c = line->crossings.data;
     size_t n = line->crossings.len, depth = 0, *open = noc_alloc((n + 1) * sizeof(*open));
@@ -298,7 +305,9 @@ static void put_point(piece *p, double u, double v, uint32_t vertex) {
 /* Cuts a piece in two where u is `at`. */
 static void cut(struct job *job, const piece *p, double at, piece half[2]) {
     size_t n = p->vertex.len;
-    cut_line line = { .at = at, .next = noc_alloc(n * sizeof(*line.next)), .crossed = noc_calloc(n, sizeof(*line.crossed)) };
+    cut_line line = { .at = at,
+                      .next = noc_alloc(n * sizeof(*line.next)),
+                      .crossed = noc_calloc(n, sizeof(*line.crossed)) };
     if (!line.next || !line.crossed)
         refuse(job);
     if (job->result.ok)
@@ -342,8 +351,8 @@ static int by_value(const void *x, const void *y) {
     return (a > b) - (a < b);
 }
 
-/* Median of a sample of the points' u, or the middle between the first and last where it is one of these: points of earlier
- * cuts lie there in numbers. */
+/* Median of a sample of the points' u, or the middle between the first and last where it is one of these: points of
+ * earlier cuts lie there in numbers. */
 static double middle(const piece *p) {
     enum { SAMPLE = 1023 };
     double sample[SAMPLE];
@@ -355,8 +364,8 @@ static double middle(const piece *p) {
     return median > lo && median < hi ? median : (lo + hi) / 2;
 }
 
-#define WORK_AT_ONCE 2e7      /* points times edges met at once, that GLU does in a second */
-#define WORK_OF_PIECE 2e5     /* the same, of pieces: small ones cost less in all, but their cuts show in the triangles */
+#define WORK_AT_ONCE 2e7  /* points times edges met at once, that GLU does in a second */
+#define WORK_OF_PIECE 2e5 /* the same, of pieces: small ones cost less in all, but their cuts show in the triangles */
 #define POINTS_AT_ONCE 500000 /* GLU takes half a kilobyte a point */
 #define MOST_MADE 8           /* points made by cutting, a point given */
 
@@ -404,13 +413,15 @@ tessellation tessellate(const double *uv, const size_t *ring_size, size_t ring_c
     size_t points = 0;
     for (size_t r = 0; r < ring_count; r++)
         points += ring_size[r];
-    struct job job = { .out = out, .first_index = out->indices.len, .first_made = first_vertex + points, .result = { .ok = true } };
+    struct job job = {
+        .out = out, .first_index = out->indices.len, .first_made = first_vertex + points, .result = { .ok = true }
+    };
     if (crosses_too_often(&job, uv, ring_size, ring_count, points))
         return (tessellation){ .tangled = true };
     piece whole = { 0 };
     size_t numbers = 2 * points;
-    if (!job.result.ok || !array_append(&whole.uv, uv, numbers) || !array_append(&whole.ring_size, ring_size, ring_count) ||
-        !array_reserve(&whole.vertex, points)) {
+    if (!job.result.ok || !array_append(&whole.uv, uv, numbers) ||
+        !array_append(&whole.ring_size, ring_size, ring_count) || !array_reserve(&whole.vertex, points)) {
         refuse(&job);
         piece_free(&whole);
         return job.result;

@@ -8,8 +8,8 @@ static const uint8_t ground[3] = { 24, 24, 28 }, ink[3] = { 224, 224, 224 }, non
 
 noc_channel *noc_channel_create(int width, int height, int components, noc_log *log) {
     if (!image_size_allowed(width, height) || (components != 1 && components != 3)) {
-        noc_error(log, NOC_ERR_ARGUMENT, "channel: %d x %d pixels of %d components: sides are 1..%d, components 1 or 3", width, height,
-                  components, NOC_IMAGE_MAX_SIDE);
+        noc_error(log, NOC_ERR_ARGUMENT, "channel: %d x %d pixels of %d components: sides are 1..%d, components 1 or 3",
+                  width, height, components, NOC_IMAGE_MAX_SIDE);
         return NULL;
     }
     noc_channel *channel = noc_calloc(1, sizeof(*channel));
@@ -24,7 +24,9 @@ noc_channel *noc_channel_create(int width, int height, int components, noc_log *
     }
     for (size_t i = 0; components == 1 && i < (size_t)width * (size_t)height; i++)
         value[i] = -1;
-    *channel = (noc_channel){ .width = width, .height = height, .components = components, .value = value, .name = "", .unit = "", .title = "" };
+    *channel = (noc_channel){
+        .width = width, .height = height, .components = components, .value = value, .name = "", .unit = "", .title = ""
+    };
     return channel;
 }
 
@@ -64,8 +66,8 @@ static double round_down(double v) {
     return steps[i] * power;
 }
 
-/* Ends of the colour bar: what was asked for, or round numbers around all but the lowest and highest half percent of the
- * numbers (on a logarithmic bar: of those above 0). */
+/* Ends of the colour bar: what was asked for, or round numbers around all but the lowest and highest half percent of
+ * the numbers (on a logarithmic bar: of those above 0). */
 static noc_status range_of(const noc_channel *c, const noc_channel_params *p, colorbar *bar, noc_log *log) {
     bar->logarithmic = c->scale == NOC_CHANNEL_LOG;
     bar->low = p ? p->low : 0;
@@ -73,8 +75,8 @@ static noc_status range_of(const noc_channel *c, const noc_channel_params *p, co
     if (bar->low != bar->high) {
         if (isfinite(bar->low) && isfinite(bar->high) && bar->low < bar->high && (bar->low > 0 || !bar->logarithmic))
             return NOC_OK;
-        return noc_error(log, NOC_ERR_ARGUMENT, "%s: a legend from %g to %g cannot be drawn: it must rise%s", c->name, bar->low,
-                         bar->high, bar->logarithmic ? ", and begin above 0" : "");
+        return noc_error(log, NOC_ERR_ARGUMENT, "%s: a legend from %g to %g cannot be drawn: it must rise%s", c->name,
+                         bar->low, bar->high, bar->logarithmic ? ", and begin above 0" : "");
     }
     float *sorted = noc_alloc_large(pixels_of(c), sizeof(*sorted));
     if (!sorted)
@@ -93,8 +95,9 @@ static noc_status range_of(const noc_channel *c, const noc_channel_params *p, co
     return NOC_OK;
 }
 
-/* A colour for a number that is a name: of many hues, neither dark nor grey. Those that have names of their own are few: their
- * hues lie a golden angle apart, with three lightnesses in turn, so that those of near hues differ in that. */
+/* A colour for a number that is a name: of many hues, neither dark nor grey. Those that have names of their own are
+ * few: their hues lie a golden angle apart, with three lightnesses in turn, so that those of near hues differ in that.
+ */
 static void label_colour(const noc_channel *c, uint32_t label, uint8_t rgb[3]) {
     if (has_names(c) && label < c->label_count && c->label_colours) {
         memcpy(rgb, c->label_colours[label], 3);
@@ -134,7 +137,7 @@ static void vector_colour(const float *v, uint8_t rgb[3]) {
 /* Names of the labels that a picture shows, in columns, and grey for none. In units of scale. */
 enum { MARGIN = 6, GAP = 4, SWATCH = 9, LINE = SWATCH + GAP };
 typedef struct names {
-    bool *seen; /* label_count of them; NULL where labels have no names */
+    bool *seen;                 /* label_count of them; NULL where labels have no names */
     int count, columns, column; /* column: pixels */
 } names;
 
@@ -217,11 +220,13 @@ noc_status noc_channel_to_srgb8(const noc_channel *channel, const noc_channel_pa
     }
     if (!c.rgb) {
         free(n.seen);
-        return noc_error(log, NOC_ERR_MEMORY, "%s: no memory for %d x %d pixels", channel->name, channel->width, channel->height);
+        return noc_error(log, NOC_ERR_MEMORY, "%s: no memory for %d x %d pixels", channel->name, channel->width,
+                         channel->height);
     }
     colormap_init(&map, COLORMAP_SEQUENTIAL);
     canvas_fill(&c, 0, 0, c.width, c.height, ground);
-    size_t margin = (size_t)(c.width - channel->width) / 2; /* a picture narrower than its legend stands in the middle */
+    /* a picture narrower than its legend stands in the middle */
+    size_t margin = (size_t)(c.width - channel->width) / 2;
     for (size_t i = 0; i < pixels_of(channel); i++) {
         size_t column = i % (size_t)channel->width, row = i / (size_t)channel->width;
         uint8_t *rgb = c.rgb + 3 * (row * (size_t)c.width + margin + column);
@@ -264,7 +269,8 @@ static noc_status write_coloured(const noc_channel *channel, const char *path, c
     if (status != NOC_OK)
         return status;
     if (!image_size_allowed(width, height))
-        status = noc_error(log, NOC_ERR_ARGUMENT, "%s: %d x %d pixels, with the legend, cannot be written", path, width, height);
+        status = noc_error(log, NOC_ERR_ARGUMENT, "%s: %d x %d pixels, with the legend, cannot be written", path, width,
+                           height);
     status = status ? status : output_open(&o, path, log);
     if (status == NOC_OK)
         status = output_close(&o, image_write_png(&o, rgb, width, height, meta, log), log);
@@ -283,11 +289,12 @@ noc_status noc_channel_write(const noc_channel *channel, const char *path, const
     if (!channel || !path)
         return noc_null(log, __func__);
     if (!image_size_allowed(channel->width, channel->height))
-        return noc_error(log, NOC_ERR_ARGUMENT, "%s: a channel of %d x %d pixels cannot be written", path, channel->width,
-                         channel->height);
+        return noc_error(log, NOC_ERR_ARGUMENT, "%s: a channel of %d x %d pixels cannot be written", path,
+                         channel->width, channel->height);
     bool exr = image_path_ends_in(path, ".exr");
     if (!exr && !image_path_ends_in(path, ".png"))
-        return noc_error(log, NOC_ERR_UNSUPPORTED, "%s: the name's ending does not tell a format: use .png or .exr", path);
+        return noc_error(log, NOC_ERR_UNSUPPORTED, "%s: the name's ending does not tell a format: use .png or .exr",
+                         path);
     meta_list list = { 0 };
     meta_add(&list, "Software", "Nocturne %s", NOC_VERSION);
     meta_add(&list, "channel", "%s", channel->name);

@@ -4,7 +4,9 @@
 
 #include <math.h>
 
-typedef struct lab { double l, a, b; } lab;
+typedef struct lab {
+    double l, a, b;
+} lab;
 
 /* Oklab to linear sRGB, by its definition. */
 static void lab_to_linear(lab c, double rgb[3]) {
@@ -30,12 +32,13 @@ static lab diverging(double t) {
     return polar(0.96 - 0.48 * s, 0.19 * s, t < 0.5 ? 260 : 28);
 }
 
-/* Hue runs from 280 degrees (indigo) over 0 (crimson) to 105 (yellow), chroma is largest in the middle, within the gamut. */
-static lab sequential(double t) {
-    return polar(0.14 + 0.82 * t, 0.03 + 0.47 * t * (1 - t) + 0.05 * t, -80 + 185 * t);
-}
+/* Hue runs from 280 degrees (indigo) over 0 (crimson) to 105 (yellow), chroma is largest in the middle, within the
+ * gamut. */
+static lab sequential(double t) { return polar(0.14 + 0.82 * t, 0.03 + 0.47 * t * (1 - t) + 0.05 * t, -80 + 185 * t); }
 
-static double distance(lab p, lab q) { return sqrt((p.l - q.l) * (p.l - q.l) + (p.a - q.a) * (p.a - q.a) + (p.b - q.b) * (p.b - q.b)); }
+static double distance(lab p, lab q) {
+    return sqrt((p.l - q.l) * (p.l - q.l) + (p.a - q.a) * (p.a - q.a) + (p.b - q.b) * (p.b - q.b));
+}
 
 /* Walks the curve in small steps and takes a colour at equal lengths. */
 static void walk(lab (*curve)(double), lab out[COLORMAP_SIZE]) {
@@ -91,7 +94,9 @@ void canvas_fill(canvas *c, int x, int y, int width, int height, const uint8_t r
 /* Layout in units of scale. */
 enum { MARGIN = 6, GAP = 3, BAR = 10, TICK = 3, MIN_WIDTH = 260, TICKS = 16 };
 
-int colorbar_height(int scale) { return scale * (MARGIN + TEXT_HEIGHT + GAP + BAR + TICK + GAP + TEXT_HEIGHT + MARGIN); }
+int colorbar_height(int scale) {
+    return scale * (MARGIN + TEXT_HEIGHT + GAP + BAR + TICK + GAP + TEXT_HEIGHT + MARGIN);
+}
 int colorbar_min_width(int scale) { return scale * MIN_WIDTH; }
 
 /* Linear: the smallest of 1, 2, 5 times 10^k that gives at most max ticks. */
@@ -129,7 +134,8 @@ static size_t log_ticks(double low, double high, double *ticks, size_t max) {
 size_t colorbar_ticks(const colorbar *bar, double *ticks, size_t max) {
     if (max < 2 || !(bar->high > bar->low) || !isfinite(bar->high - bar->low) || (bar->logarithmic && !(bar->low > 0)))
         return 0;
-    return bar->logarithmic ? log_ticks(bar->low, bar->high, ticks, max) : linear_ticks(bar->low, bar->high, ticks, max);
+    return bar->logarithmic ? log_ticks(bar->low, bar->high, ticks, max)
+                            : linear_ticks(bar->low, bar->high, ticks, max);
 }
 
 static double position(const colorbar *bar, double v) {
@@ -139,7 +145,8 @@ static double position(const colorbar *bar, double v) {
 void colorbar_draw(canvas *c, int x, int y, int width, int scale, const colorbar *bar) {
     static const uint8_t ground[3] = { 24, 24, 28 }, ink[3] = { 224, 224, 224 };
     canvas_fill(c, x, y, width, colorbar_height(scale), ground);
-    int side = 24 * scale, left = x + side, length = NOC_MAX(width - 2 * side, 1); /* room for half a number at either end */
+    /* room for half a number at either end */
+    int side = 24 * scale, left = x + side, length = NOC_MAX(width - 2 * side, 1);
     y += MARGIN * scale;
     text_draw(c, x + (width - text_width(bar->title, scale)) / 2, y, bar->title, scale, ink);
     y += (TEXT_HEIGHT + GAP) * scale;

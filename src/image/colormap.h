@@ -6,13 +6,15 @@
 #include <nocturne/image.h>
 
 /* Equal steps of t are equal steps of colour in Oklab.
- * DIVERGING: two straight lines of equal length from near-white in the middle (t = 0.5) to blue (0) and red (1) of the same
- * lightness, so neither sign looks larger. SEQUENTIAL: from nearly black indigo over crimson and orange to pale yellow, with
- * lightness rising all along, so it also reads in grey. */
+ * DIVERGING: two straight lines of equal length from near-white in the middle (t = 0.5) to blue (0) and red (1) of the
+ * same lightness, so neither sign looks larger. SEQUENTIAL: from nearly black indigo over crimson and orange to pale
+ * yellow, with lightness rising all along, so it also reads in grey. */
 typedef enum colormap_kind { COLORMAP_DIVERGING, COLORMAP_SEQUENTIAL } colormap_kind;
 
 #define COLORMAP_SIZE 1025 /* odd: the middle is an entry */
-typedef struct colormap { uint8_t rgb[COLORMAP_SIZE][3]; } colormap;
+typedef struct colormap {
+    uint8_t rgb[COLORMAP_SIZE][3];
+} colormap;
 
 void colormap_init(colormap *map, colormap_kind kind);
 const uint8_t *colormap_at(const colormap *map, double t); /* t is clamped to 0..1; NaN gives the entry of 0 */
@@ -27,8 +29,8 @@ typedef struct canvas {
 } canvas;
 void canvas_fill(canvas *c, int x, int y, int width, int height, const uint8_t rgb[3]);
 
-/* text.c: 5 x 7 pixel letters in cells of 6, times scale. ASCII; Latin-1 superscript two (0xb2) and multiplication sign (0xd7).
- * Unknown characters are drawn as a box. g, p, q and y reach two pixels below TEXT_HEIGHT. */
+/* text.c: 5 x 7 pixel letters in cells of 6, times scale. ASCII; Latin-1 superscript two (0xb2) and multiplication sign
+ * (0xd7). Unknown characters are drawn as a box. g, p, q and y reach two pixels below TEXT_HEIGHT. */
 #define TEXT_HEIGHT NOC_TEXT_HEIGHT
 int text_width(const char *s, int scale);
 void text_draw(canvas *c, int x, int y, const char *s, int scale, const uint8_t rgb[3]);
@@ -36,9 +38,9 @@ void text_draw(canvas *c, int x, int y, const char *s, int scale, const uint8_t 
 /* A horizontal colour bar with ticks at round values, numbers under them, and a title above. */
 typedef struct colorbar {
     const colormap *map;
-    double low, high;   /* values at the ends; low < high, and 0 < low where logarithmic */
+    double low, high; /* values at the ends; low < high, and 0 < low where logarithmic */
     bool logarithmic;
-    const char *title;  /* with the unit: "luminance [cd/m\xb2]" */
+    const char *title; /* with the unit: "luminance [cd/m\xb2]" */
 } colorbar;
 int colorbar_height(int scale);    /* pixels it takes */
 int colorbar_min_width(int scale); /* under this numbers may touch */

@@ -20,8 +20,8 @@ typedef struct set {
 
 noc_status image_check_pair(const noc_image *x, const noc_image *r, noc_log *log) {
     if (x->width != r->width || x->height != r->height)
-        return noc_error(log, NOC_ERR_ARGUMENT, "compare: the pictures differ in size: %d x %d and %d x %d", x->width, x->height,
-                         r->width, r->height);
+        return noc_error(log, NOC_ERR_ARGUMENT, "compare: the pictures differ in size: %d x %d and %d x %d", x->width,
+                         x->height, r->width, r->height);
     for (int k = 0; k < 2; k++) {
         const noc_image *image = k ? r : x;
         size_t n = image_pixels(image), bad = 0, first = 0;
@@ -31,8 +31,10 @@ noc_status image_check_pair(const noc_image *x, const noc_image *r, noc_log *log
                 first = i;
             }
         if (bad)
-            return noc_error(log, NOC_ERR_ARGUMENT, "compare: %zu pixels of the %s are not finite, the first at %zu, %zu: there is "
-                             "no error figure", bad, k ? "reference" : "picture", first % (size_t)image->width,
+            return noc_error(log, NOC_ERR_ARGUMENT,
+                             "compare: %zu pixels of the %s are not finite, the first at %zu, %zu: there is "
+                             "no error figure",
+                             bad, k ? "reference" : "picture", first % (size_t)image->width,
                              first / (size_t)image->width);
     }
     return NOC_OK;
@@ -82,13 +84,20 @@ static noc_metrics metrics_of(const set *s) {
     if (s->sums.pixels == 0)
         return (noc_metrics){ 0 };
     double n = (double)s->sums.pixels;
-    return (noc_metrics){ .rmse8 = sqrt(s->sums.squared8 / (3 * n)), .rmse = sqrt(s->sums.squared / n), .relmse = s->relative / n,
-                          .bias = ratio(s->sums.x, s->sums.r), .mean_x = s->sums.x / n, .mean_r = s->sums.r / n,
-                          .pixels = s->sums.pixels, .unlit = s->unlit_pixels, .relmse_unlit = s->unlit / n };
+    return (noc_metrics){ .rmse8 = sqrt(s->sums.squared8 / (3 * n)),
+                          .rmse = sqrt(s->sums.squared / n),
+                          .relmse = s->relative / n,
+                          .bias = ratio(s->sums.x, s->sums.r),
+                          .mean_x = s->sums.x / n,
+                          .mean_r = s->sums.r / n,
+                          .pixels = s->sums.pixels,
+                          .unlit = s->unlit_pixels,
+                          .relmse_unlit = s->unlit / n };
 }
 
 /* Calls for both passes: sums first (second = false), then relMSE with each set's own e. */
-static void pass_over(const noc_image *x, const noc_image *r, double ceiling, const display_map *d, set sets[4], bool second) {
+static void pass_over(const noc_image *x, const noc_image *r, double ceiling, const display_map *d, set sets[4],
+                      bool second) {
     size_t n = image_pixels(x);
     double e[4];
     for (int k = 0; k < 4; k++)
@@ -112,8 +121,8 @@ static void pass_over(const noc_image *x, const noc_image *r, double ceiling, co
     }
 }
 
-noc_status noc_image_compare(const noc_image *x, const noc_image *r, const noc_compare_params *params, noc_comparison *out,
-                             noc_log *log) {
+noc_status noc_image_compare(const noc_image *x, const noc_image *r, const noc_compare_params *params,
+                             noc_comparison *out, noc_log *log) {
     if (!x || !r || !out)
         return noc_null(log, __func__);
     noc_compare_params p = params ? *params : noc_compare_default_params();
@@ -134,8 +143,12 @@ noc_status noc_image_compare(const noc_image *x, const noc_image *r, const noc_c
     set sets[4] = { { .dark = false }, { .clamped = true }, { .dark = true }, { .dark = true, .clamped = true } };
     pass_over(x, r, p.ceiling, &d, sets, false);
     pass_over(x, r, p.ceiling, &d, sets, true);
-    *out = (noc_comparison){ .all = metrics_of(&sets[0]), .all_clamped = metrics_of(&sets[1]), .dark = metrics_of(&sets[2]),
+    *out = (noc_comparison){ .all = metrics_of(&sets[0]),
+                             .all_clamped = metrics_of(&sets[1]),
+                             .dark = metrics_of(&sets[2]),
                              .dark_clamped = metrics_of(&sets[3]),
-                             .ceiling = p.ceiling, .ev100 = ev100, .has_mask = r->emitter != NULL };
+                             .ceiling = p.ceiling,
+                             .ev100 = ev100,
+                             .has_mask = r->emitter != NULL };
     return NOC_OK;
 }

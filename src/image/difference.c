@@ -16,8 +16,8 @@ static double percentile(double *v, size_t n, double p) {
     return v[NOC_CLAMP(rank, 1, n) - 1];
 }
 
-/* Where the colours end: the 99th percentile of |x - r|, or the largest where fewer pixels than that differ, or 1 cd/m2 where
- * none does. The rare large differences beyond it saturate and do not fade the rest. */
+/* Where the colours end: the 99th percentile of |x - r|, or the largest where fewer pixels than that differ, or 1 cd/m2
+ * where none does. The rare large differences beyond it saturate and do not fade the rest. */
 static double scale_of(const noc_image *x, const noc_image *r, double *d, size_t n) {
     for (size_t i = 0; i < n; i++)
         d[i] = fabs(image_luminance(x->rgb + 3 * i) - image_luminance(r->rgb + 3 * i));
@@ -27,8 +27,8 @@ static double scale_of(const noc_image *x, const noc_image *r, double *d, size_t
     return scale > 1e-30 && isfinite(scale) ? scale : 1;
 }
 
-noc_status noc_image_difference(const noc_image *x, const noc_image *r, const char *unit, uint8_t **out, int *width, int *height,
-                                noc_log *log) {
+noc_status noc_image_difference(const noc_image *x, const noc_image *r, const char *unit, uint8_t **out, int *width,
+                                int *height, noc_log *log) {
     if (!x || !r || !out || !width || !height)
         return noc_null(log, __func__);
     noc_status status = image_check_pair(x, r, log);

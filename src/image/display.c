@@ -7,15 +7,15 @@
  *
  * A picture of a night is mostly dark, with pools of light and a few emitters a thousand times brighter than what they
  * light. What lamps light decides; what only the sky lights stays dark, however much of the picture it covers. So:
- *   1. Luminance is averaged over a grid of at most METER_CELLS a side, which takes the noise out of few samples. Pixels
- *      of the emitter mask do not count, unless nothing else is lit. Of a picture without a mask the brightest
+ *   1. Luminance is averaged over a grid of at most METER_CELLS a side, which takes the noise out of few samples.
+ * Pixels of the emitter mask do not count, unless nothing else is lit. Of a picture without a mask the brightest
  *      METER_TRIM of the lit cells are left out: emitters, glare.
- *   2. The lit cells are ranked. The one that METER_BRIGHT of them stay under is shown at METER_BRIGHT_AT of white, as far
- *      as a street is lit, that is the lit road.
- *   3. Seen from afar, lamps light a hundredth of a picture, and rank METER_BRIGHT lies in the dark between them. The cell at
- *      METER_PEAK, then the middle of a lamp's pool, is never shown above METER_PEAK_AT of white: the tone map takes that
- *      just before it burns. This is the floor of the exposure.
- * Ranks scale with the picture: 2^k times the light is k more EV. Without any light the answer is METER_BLACK. */
+ *   2. The lit cells are ranked. The one that METER_BRIGHT of them stay under is shown at METER_BRIGHT_AT of white, as
+ * far as a street is lit, that is the lit road.
+ *   3. Seen from afar, lamps light a hundredth of a picture, and rank METER_BRIGHT lies in the dark between them. The
+ * cell at METER_PEAK, then the middle of a lamp's pool, is never shown above METER_PEAK_AT of white: the tone map takes
+ * that just before it burns. This is the floor of the exposure. Ranks scale with the picture: 2^k times the light is k
+ * more EV. Without any light the answer is METER_BLACK. */
 #define METER_CELLS 256
 #define METER_TRIM 0.08
 #define METER_BRIGHT 0.95
@@ -73,7 +73,8 @@ double noc_image_auto_ev100(const noc_image *image) {
         lit -= (size_t)(METER_TRIM * (double)lit);
     double white = 0;
     if (lit)
-        white = NOC_MAX(cell_at(cells, lit, METER_BRIGHT) / METER_BRIGHT_AT, cell_at(cells, lit, METER_PEAK) / METER_PEAK_AT);
+        white = NOC_MAX(cell_at(cells, lit, METER_BRIGHT) / METER_BRIGHT_AT,
+                        cell_at(cells, lit, METER_PEAK) / METER_PEAK_AT);
     free(cells);
     return white > 0 ? log2(white / IMAGE_SATURATION) : METER_BLACK;
 }
@@ -95,9 +96,9 @@ const char *tonemap_name(noc_tonemap tonemap) {
     return "linear";
 }
 
-/* The filmic curve is (a x^2 + b x) / (c x^2 + d x + 1), with b the slope of its toe (0.7: blacks gently deepened) and a, c, d
- * solved from three conditions: mid-grey 0.18 stays where it is, the contrast there is 1.05 (slope in log-log), and white
- * is reached at 16, 6.5 stops above mid-grey. a d > b c and a, b > 0, so it rises everywhere. */
+/* The filmic curve is (a x^2 + b x) / (c x^2 + d x + 1), with b the slope of its toe (0.7: blacks gently deepened) and
+ * a, c, d solved from three conditions: mid-grey 0.18 stays where it is, the contrast there is 1.05 (slope in log-log),
+ * and white is reached at 16, 6.5 stops above mid-grey. a d > b c and a, b > 0, so it rises everywhere. */
 #define FILMIC_A 6.553
 #define FILMIC_B 0.7
 #define FILMIC_C 6.359
@@ -123,13 +124,14 @@ void display_init(display_map *d, noc_tonemap tonemap, double ev100) {
     srgb8_table_init(&d->srgb);
 }
 
-/* Exposed value at which a quarter of the chroma has gone: warm windows and pools stay warm, lamps themselves turn white. */
+/* Exposed value at which a quarter of the chroma has gone: warm windows and pools stay warm, lamps themselves turn
+ * white. */
 #define DESATURATION 6.0
 
-/* The curve is applied to the largest component, and the others keep their ratio to it, so hue holds (a curve a channel turns
- * sodium lamps lemon). Film and eyes see a strong coloured light as white: the colour is mixed with white of the same peak by
- * (p / (p + DESATURATION))^2, nothing at mid-grey, a quarter at p = DESATURATION, and nearly all of it far above. Both
- * factors rise with exposure, so every channel does. The linear tone map shows what is there, clipped. */
+/* The curve is applied to the largest component, and the others keep their ratio to it, so hue holds (a curve a channel
+ * turns sodium lamps lemon). Film and eyes see a strong coloured light as white: the colour is mixed with white of the
+ * same peak by (p / (p + DESATURATION))^2, nothing at mid-grey, a quarter at p = DESATURATION, and nearly all of it far
+ * above. Both factors rise with exposure, so every channel does. The linear tone map shows what is there, clipped. */
 static void display_linear(const display_map *d, const float rgb[3], double v[3]) {
     double peak = 0;
     bool finite = image_finite(rgb);
@@ -155,8 +157,9 @@ void display_pixel(const display_map *d, const float rgb[3], uint8_t out[3]) {
         out[k] = srgb8_encode(&d->srgb, (float)v[k]);
 }
 
-/* How far the emitter in pixel i is an area, not a point: the square of the largest share that one covers within a pixel. A lamp
- * that fills no pixel is a point whose glare is its brightness: a mean after the curve would put it out. */
+/* How far the emitter in pixel i is an area, not a point: the square of the largest share that one covers within a
+ * pixel. A lamp that fills no pixel is a point whose glare is its brightness: a mean after the curve would put it out.
+ */
 static double area_of_emitter(const noc_image *image, size_t i) {
     int x = (int)(i % (size_t)image->width), y = (int)(i / (size_t)image->width);
     float most = 0;

@@ -1,4 +1,5 @@
-/* OpenEXR, reading, by its C core: flat scanline and tiled parts, half, float and uint, R G B or Y, any compression it knows. */
+/* OpenEXR, reading, by its C core: flat scanline and tiled parts, half, float and uint, R G B or Y, any compression it
+ * knows. */
 #include "image/internal.h"
 
 #include <openexr.h>
@@ -16,12 +17,12 @@ typedef struct exr_reader {
     noc_log *log;
     noc_status status;
     noc_image *image;
-    float *mask;          /* emitter channel, as floats */
+    float *mask; /* emitter channel, as floats */
     exr_attr_box2i_t window;
-    bool grey;            /* Y alone */
+    bool grey; /* Y alone */
     bool has_mask;
     bool tiled;
-    int x, y;             /* of the chunk being unpacked, relative to the window */
+    int x, y; /* of the chunk being unpacked, relative to the window */
 } exr_reader;
 
 static noc_status status_of(exr_result_t code) {
@@ -80,7 +81,8 @@ static size_t count_channels(const exr_reader *r, size_t at, size_t end) {
     return n;
 }
 
-/* Are the headers so long that OpenEXR would not get done with them? What is wrong with them otherwise is left to it. */
+/* Are the headers so long that OpenEXR would not get done with them? What is wrong with them otherwise is left to it.
+ */
 static bool has_too_much(exr_reader *r) {
     bool several = r->size > 8 && r->data[5] & 0x10; /* headers, ended by an empty one */
     size_t at = NOC_MIN(r->size, (size_t)8), attributes = 0;
@@ -128,7 +130,8 @@ static bool choose_part(exr_reader *r) {
     for (r->part = 0; r->part < count; r->part++) {
         exr_storage_t storage;
         const exr_attr_chlist_t *list = NULL;
-        if (!ok(r, exr_get_storage(r->context, r->part, &storage)) || !ok(r, exr_get_channels(r->context, r->part, &list)))
+        if (!ok(r, exr_get_storage(r->context, r->part, &storage)) ||
+            !ok(r, exr_get_channels(r->context, r->part, &list)))
             return false;
         r->tiled = storage == EXR_STORAGE_TILED;
         if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
@@ -140,8 +143,9 @@ static bool choose_part(exr_reader *r) {
         r->has_mask = find_channel(list, "emitter") != NULL;
         for (int i = 0; i < list->num_channels; i++)
             if (list->entries[i].x_sampling != 1 || list->entries[i].y_sampling != 1) {
-                r->status = noc_error(r->log, NOC_ERR_UNSUPPORTED, "%s: EXR: channel '%s' is subsampled, which is not read",
-                                      r->name, list->entries[i].name.str);
+                r->status =
+                    noc_error(r->log, NOC_ERR_UNSUPPORTED, "%s: EXR: channel '%s' is subsampled, which is not read",
+                              r->name, list->entries[i].name.str);
                 return false;
             }
         return true;
@@ -169,7 +173,8 @@ static bool plausible(exr_reader *r, double width, double height) {
     const exr_attr_chlist_t *list = NULL;
     int32_t chunks = 0;
     uint64_t chunk_bytes = 0;
-    if (!ok(r, exr_get_compression(r->context, r->part, &compression)) || !ok(r, exr_get_channels(r->context, r->part, &list)) ||
+    if (!ok(r, exr_get_compression(r->context, r->part, &compression)) ||
+        !ok(r, exr_get_channels(r->context, r->part, &list)) ||
         !ok(r, exr_get_chunk_count(r->context, r->part, &chunks)) ||
         !ok(r, exr_get_chunk_unpacked_size(r->context, r->part, &chunk_bytes)))
         return false;
@@ -179,18 +184,20 @@ static bool plausible(exr_reader *r, double width, double height) {
     /* Each chunk has 8 bytes in the table and at least 8 of its own. */
     if (16.0 * chunks <= (double)r->size && (bound == 0 || bytes <= bound * (double)r->size) && chunk_bytes < 1u << 31)
         return true;
-    r->status = noc_error(r->log, NOC_ERR_FORMAT, "%s: EXR: %.0f x %.0f pixels in %d channels cannot be in a file of %zu bytes",
-                          r->name, width, height, list->num_channels, r->size);
+    r->status =
+        noc_error(r->log, NOC_ERR_FORMAT, "%s: EXR: %.0f x %.0f pixels in %d channels cannot be in a file of %zu bytes",
+                  r->name, width, height, list->num_channels, r->size);
     return false;
 }
 
 static bool make_image(exr_reader *r) {
     if (!ok(r, exr_get_data_window(r->context, r->part, &r->window)))
         return false;
-    double width = (double)r->window.max.x - r->window.min.x + 1, height = (double)r->window.max.y - r->window.min.y + 1;
+    double width = (double)r->window.max.x - r->window.min.x + 1,
+           height = (double)r->window.max.y - r->window.min.y + 1;
     if (!(width >= 1 && height >= 1 && width <= NOC_IMAGE_MAX_SIDE && height <= NOC_IMAGE_MAX_SIDE)) {
-        r->status = noc_error(r->log, NOC_ERR_FORMAT, "%s: EXR: %.0f x %.0f pixels is outside 1..%d a side", r->name, width,
-                              height, NOC_IMAGE_MAX_SIDE);
+        r->status = noc_error(r->log, NOC_ERR_FORMAT, "%s: EXR: %.0f x %.0f pixels is outside 1..%d a side", r->name,
+                              width, height, NOC_IMAGE_MAX_SIDE);
         return false;
     }
     if (!plausible(r, width, height))
@@ -248,8 +255,8 @@ static float *target(exr_reader *r, const char *channel, size_t x, size_t y, int
     return found ? r->image->rgb + 3 * pixel + (found - (r->grey ? "Y" : "RGB")) : NULL;
 }
 
-/* In the pipeline in place of the library's own routines: one of those, in 3.1.5, was seen to write outside the picture on a
- * damaged tiled file. Lines of a chunk follow each other, in each its channels, planar. */
+/* In the pipeline in place of the library's own routines: one of those, in 3.1.5, was seen to write outside the picture
+ * on a damaged tiled file. Lines of a chunk follow each other, in each its channels, planar. */
 static exr_result_t unpack_chunk(exr_decode_pipeline_t *decode) {
     exr_reader *r = decode->decoding_user_data;
     const exr_chunk_info_t *chunk = &decode->chunk;
@@ -271,8 +278,8 @@ static exr_result_t unpack_chunk(exr_decode_pipeline_t *decode) {
     return EXR_ERR_SUCCESS;
 }
 
-/* Buffers begin as zeros, so that what a damaged chunk leaves out is black and not what was in memory before; and have some bytes
- * more than asked for, since decoders of bit streams read ahead. */
+/* Buffers begin as zeros, so that what a damaged chunk leaves out is black and not what was in memory before; and have
+ * some bytes more than asked for, since decoders of bit streams read ahead. */
 static void *alloc_buffer(exr_transcoding_pipeline_buffer_id_t id, size_t size) {
     return size < SIZE_MAX - 64 ? noc_calloc(1, size + 64) : NULL;
 }
@@ -354,7 +361,8 @@ static void read_channel_name(exr_reader *r) {
     const exr_attribute_t *attribute = NULL;
     if (exr_get_attribute_by_name(r->context, r->part, "channel", &attribute) == EXR_ERR_SUCCESS && attribute &&
         attribute->type == EXR_ATTR_STRING)
-        noc_snprintf(r->image->channel, sizeof(r->image->channel), "%.*s", attribute->string->length, attribute->string->str);
+        noc_snprintf(r->image->channel, sizeof(r->image->channel), "%.*s", attribute->string->length,
+                     attribute->string->str);
 }
 
 static void finish_image(exr_reader *r) {

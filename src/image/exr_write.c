@@ -1,4 +1,5 @@
-/* OpenEXR, writing, by its C core: pictures as linear float cd/m2 with their mask, channels as floats; ZIP, with units. */
+/* OpenEXR, writing, by its C core: pictures as linear float cd/m2 with their mask, channels as floats; ZIP, with units.
+ */
 #include "image/internal.h"
 
 #include <errno.h>
@@ -13,8 +14,8 @@ typedef struct exr_writer {
     int width, height;
     noc_log *log;
     noc_status status;
-    float *rgb;         /* one chunk, finite */
-    uint16_t *emitter;  /* one chunk, half */
+    float *rgb;        /* one chunk, finite */
+    uint16_t *emitter; /* one chunk, half */
 } exr_writer;
 
 static noc_status status_of(exr_result_t code) { return code == EXR_ERR_OUT_OF_MEMORY ? NOC_ERR_MEMORY : NOC_ERR_IO; }
@@ -48,13 +49,15 @@ static int components(const exr_writer *w) { return w->channel ? w->channel->com
 /* Returns false when a step failed; the handler has reported it, or it is reported here. */
 static bool ok(exr_writer *w, exr_result_t result) {
     if (result != EXR_ERR_SUCCESS && w->status == NOC_OK)
-        w->status = noc_error(w->log, status_of(result), "%s: EXR: %s", w->out->path, exr_get_default_error_message(result));
+        w->status =
+            noc_error(w->log, status_of(result), "%s: EXR: %s", w->out->path, exr_get_default_error_message(result));
     return w->status == NOC_OK;
 }
 
 /* Names that readers give a meaning to even where this file does not set them. */
 static bool is_reserved(const char *key) {
-    static const char *const names[] = { "chunkCount", "maxSamplesPerPixel", "name", "preview", "tiles", "type", "version" };
+    static const char *const names[] = { "chunkCount", "maxSamplesPerPixel", "name", "preview", "tiles", "type",
+                                         "version" };
     for (size_t i = 0; i < NOC_COUNT(names); i++)
         if (!strcmp(key, names[i]))
             return true;
@@ -70,8 +73,12 @@ static bool write_header(exr_writer *w, const meta_list *meta) {
     for (int k = 0; w->image && k < 3 && good; k++)
         good = ok(w, exr_add_channel(c, w->part, colours[k], EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
     for (int k = 0; w->channel && k < components(w) && good; k++) /* a vector's are X, Y, Z, a number is Y */
-        good = ok(w, exr_add_channel(c, w->part, components(w) == 1 ? "Y" : k == 0 ? "X" : k == 1 ? "Y" : "Z", EXR_PIXEL_FLOAT,
-                                     EXR_PERCEPTUALLY_LINEAR, 1, 1));
+        good = ok(w, exr_add_channel(c, w->part,
+                                     components(w) == 1 ? "Y"
+                                     : k == 0           ? "X"
+                                     : k == 1           ? "Y"
+                                                        : "Z",
+                                     EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LINEAR, 1, 1));
     if (w->image && w->image->emitter && good)
         good = ok(w, exr_add_channel(c, w->part, "emitter", EXR_PIXEL_HALF, EXR_PERCEPTUALLY_LINEAR, 1, 1));
     if (w->image && good)
@@ -84,8 +91,8 @@ static bool write_header(exr_writer *w, const meta_list *meta) {
         /* "Channels" may be a key, "channels" is what the format itself needs. */
         bool set = exr_get_attribute_by_name(c, w->part, e->key, &old) == EXR_ERR_SUCCESS && old;
         if (is_reserved(e->key) || (set && old->type != EXR_ATTR_STRING))
-            w->status = noc_error(w->log, NOC_ERR_ARGUMENT, "%s: EXR: metadata key '%s' is taken by the format", w->out->path,
-                                  e->key);
+            w->status = noc_error(w->log, NOC_ERR_ARGUMENT, "%s: EXR: metadata key '%s' is taken by the format",
+                                  w->out->path, e->key);
         good = w->status == NOC_OK && ok(w, exr_attr_set_string(c, w->part, e->key, e->value));
     }
     return good && ok(w, exr_write_header(c));
@@ -120,7 +127,8 @@ static bool set_channels(exr_writer *w, exr_encode_pipeline_t *encode) {
         int k = name == 'R' || name == 'X' ? 0 : name == 'G' || name == 'Y' ? 1 : 2;
         ch->user_pixel_stride = mask ? 2 : 4 * components(w);
         ch->user_line_stride = ch->user_pixel_stride * w->width;
-        ch->encode_from_ptr = mask ? (const uint8_t *)w->emitter : (const uint8_t *)(w->rgb + (components(w) == 1 ? 0 : k));
+        ch->encode_from_ptr =
+            mask ? (const uint8_t *)w->emitter : (const uint8_t *)(w->rgb + (components(w) == 1 ? 0 : k));
     }
     return true;
 }

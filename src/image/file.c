@@ -28,7 +28,8 @@ static void warn_non_finite(const noc_image *image, const char *path, noc_log *l
         noc_warn(log, "%s: %zu of %zu pixels are not finite and are written as 0", path, bad, n);
 }
 
-static noc_status write_png(const uint8_t *rgb, int width, int height, const char *path, const meta_list *meta, noc_log *log) {
+static noc_status write_png(const uint8_t *rgb, int width, int height, const char *path, const meta_list *meta,
+                            noc_log *log) {
     output o;
     noc_status status = output_open(&o, path, log);
     if (status != NOC_OK)
@@ -90,12 +91,13 @@ noc_status noc_image_write(const noc_image *image, const char *path, const noc_d
     return status;
 }
 
-noc_status noc_image_write_srgb8(const uint8_t *rgb, int width, int height, const char *path, const noc_image_meta *meta,
-                                 noc_log *log) {
+noc_status noc_image_write_srgb8(const uint8_t *rgb, int width, int height, const char *path,
+                                 const noc_image_meta *meta, noc_log *log) {
     if (!rgb || !path)
         return noc_null(log, __func__);
     if (!image_size_allowed(width, height))
-        return noc_error(log, NOC_ERR_ARGUMENT, "%s: a picture of %d x %d pixels cannot be written", path, width, height);
+        return noc_error(log, NOC_ERR_ARGUMENT, "%s: a picture of %d x %d pixels cannot be written", path, width,
+                         height);
     if (!image_path_ends_in(path, ".png"))
         return bad_ending(path, ".png", log);
     meta_list list = { 0 };

@@ -4,7 +4,8 @@
 #include <math.h>
 #include <unistd.h>
 
-/* Memory of the machine. A picture beyond it is refused here: the kernel would promise it, and then kill the program. */
+/* Memory of the machine. A picture beyond it is refused here: the kernel would promise it, and then kill the program.
+ */
 static double machine_bytes(void) {
     long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
     return pages > 0 && page > 0 ? (double)pages * (double)page : 1e30;
@@ -14,13 +15,15 @@ void *image_alloc_pixels(int width, int height, size_t size, noc_log *log) {
     double bytes = (double)width * height * (double)size;
     void *p = bytes < machine_bytes() ? noc_alloc_large((size_t)width * (size_t)height, size) : NULL;
     if (!p)
-        noc_error(log, NOC_ERR_MEMORY, "image: no memory for %d x %d pixels (%.0f MB)", width, height, ceil(bytes * 1e-6));
+        noc_error(log, NOC_ERR_MEMORY, "image: no memory for %d x %d pixels (%.0f MB)", width, height,
+                  ceil(bytes * 1e-6));
     return p;
 }
 
 noc_image *noc_image_create(int width, int height, noc_log *log) {
     if (width < 1 || height < 1 || width > NOC_IMAGE_MAX_SIDE || height > NOC_IMAGE_MAX_SIDE) {
-        noc_error(log, NOC_ERR_ARGUMENT, "image: %d x %d pixels is outside 1..%d a side", width, height, NOC_IMAGE_MAX_SIDE);
+        noc_error(log, NOC_ERR_ARGUMENT, "image: %d x %d pixels is outside 1..%d a side", width, height,
+                  NOC_IMAGE_MAX_SIDE);
         return NULL;
     }
     noc_image *image = noc_calloc(1, sizeof(*image));

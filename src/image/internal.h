@@ -7,9 +7,7 @@
 #include <stdio.h>
 
 /* Photometric luminance of linear Rec.709. */
-static inline double image_luminance(const float rgb[3]) {
-    return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
-}
+static inline double image_luminance(const float rgb[3]) { return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]; }
 static inline bool image_finite(const float rgb[3]) {
     return __builtin_isfinite(rgb[0]) && __builtin_isfinite(rgb[1]) && __builtin_isfinite(rgb[2]);
 }
@@ -28,9 +26,11 @@ bool image_add_mask(noc_image *image, noc_log *log);
 /* srgb.c: the transfer function of IEC 61966-2-1, exactly. */
 double srgb_encode(double linear); /* display linear -> code value, both 0..1 */
 double srgb_decode(double code);
-typedef struct srgb8_table { float threshold[255]; } srgb8_table; /* linear value where code i turns into i + 1 */
+typedef struct srgb8_table {
+    float threshold[255];
+} srgb8_table; /* linear value where code i turns into i + 1 */
 void srgb8_table_init(srgb8_table *table);
-uint8_t srgb8_encode(const srgb8_table *table, float linear);     /* the nearest code; clamps; NaN gives 0 */
+uint8_t srgb8_encode(const srgb8_table *table, float linear); /* the nearest code; clamps; NaN gives 0 */
 
 /* display.c: from cd/m2 to 8-bit sRGB, one pixel at a time. */
 typedef struct display_map {
@@ -53,17 +53,26 @@ typedef struct output {
     char *target;    /* with symbolic links resolved */
     char *temporary; /* beside target */
 } output;
-noc_status output_open(output *o, const char *path, noc_log *log); /* on failure nothing is left, and o need not be closed */
-/* Closes; if status is NOC_OK renames, else removes. Returns status, or the reported failure of the closing or renaming. */
+/* on failure nothing is left, and o need not be closed */
+noc_status output_open(output *o, const char *path, noc_log *log);
+/* Closes; if status is NOC_OK renames, else removes. Returns status, or the reported failure of the closing or
+ * renaming. */
 noc_status output_close(output *o, noc_status status, noc_log *log);
 noc_status output_failed(output *o, noc_log *log); /* reports errno as a failure of writing */
 
 /* Metadata of a file: the caller's and ours; the caller's win where the keys are equal. */
-typedef struct meta_entry { const char *key, *value; } meta_entry;
-typedef struct meta_list { NOC_ARRAY(meta_entry) entries; noc_arena text; } meta_list;
+typedef struct meta_entry {
+    const char *key, *value;
+} meta_entry;
+typedef struct meta_list {
+    NOC_ARRAY(meta_entry) entries;
+    noc_arena text;
+} meta_list;
 void meta_add(meta_list *list, const char *key, const char *fmt, ...) NOC_PRINTF(3, 4); /* ours, first; short text */
-void meta_add_long(meta_list *list, const char *key, const char *value); /* both outlive the list; NULL: no memory for it */
-/* The caller's; replaces ours of the same key. An error where a key or value cannot be written, or memory was refused to one of ours. */
+/* both outlive the list; NULL: no memory for it */
+void meta_add_long(meta_list *list, const char *key, const char *value);
+/* The caller's; replaces ours of the same key. An error where a key or value cannot be written, or memory was refused
+ * to one of ours. */
 noc_status meta_add_all(meta_list *list, const noc_image_meta *meta, const char *path, noc_log *log);
 void meta_free(meta_list *list);
 

@@ -13,8 +13,8 @@ static noc_status fail(const char *path, const char *what, noc_log *log) {
     return noc_error(log, NOC_ERR_IO, "%s: %s: %s", path, what, strerror(errno));
 }
 
-/* The target itself: what a symbolic link points to is replaced (or made, where it is not there yet), not the link. NULL: memory was
- * refused. */
+/* The target itself: what a symbolic link points to is replaced (or made, where it is not there yet), not the link.
+ * NULL: memory was refused. */
 static char *resolve(const char *path) {
     char *real = realpath(path, NULL);
     if (real)
@@ -61,8 +61,8 @@ static bool is_temporary(const char *name, const char *target) {
     return attempt && !strcmp(p + attempt, ".part");
 }
 
-/* Removes what killed runs left of this target. A writer that lives holds a lock on its file. What is not removed now, as memory is
- * refused, is by the next writer. */
+/* Removes what killed runs left of this target. A writer that lives holds a lock on its file. What is not removed now,
+ * as memory is refused, is by the next writer. */
 static void sweep(const char *target) {
     int length = folder_length(target);
     char *folder = noc_format("%.*s", length ? length : 1, length ? target : ".");
@@ -82,7 +82,8 @@ static void sweep(const char *target) {
         closedir(dir);
 }
 
-/* Locks a new file; false where a sweep of another process took it in between. File systems without locks do without. */
+/* Locks a new file; false where a sweep of another process took it in between. File systems without locks do without.
+ */
 static bool claim(int fd) {
     struct stat st;
     return (!flock(fd, LOCK_EX | LOCK_NB) || errno != EWOULDBLOCK) && !fstat(fd, &st) && st.st_nlink;
@@ -147,8 +148,8 @@ fail:
 noc_status output_failed(output *o, noc_log *log) { return fail(o->path, "writing failed", log); }
 
 noc_status output_close(output *o, noc_status status, noc_log *log) {
-    /* What is still buffered may be what no longer fits on the disk. A name that is on the disk before the content is would
-     * be an empty file after a power cut. EINVAL: the file system has nothing to write through. */
+    /* What is still buffered may be what no longer fits on the disk. A name that is on the disk before the content is
+     * would be an empty file after a power cut. EINVAL: the file system has nothing to write through. */
     if (status == NOC_OK && (fflush(o->file) != 0 || (fsync(fileno(o->file)) != 0 && errno != EINVAL)))
         status = output_failed(o, log);
     if (fclose(o->file) != 0 && status == NOC_OK)
@@ -211,8 +212,10 @@ static bool good_key(const char *key) {
 noc_status meta_add_all(meta_list *list, const noc_image_meta *meta, const char *path, noc_log *log) {
     for (size_t i = 0; meta && i < meta->count; i++) {
         if (!good_key(meta->keys[i]) || !meta->values[i])
-            return noc_error(log, NOC_ERR_ARGUMENT, "%s: metadata entry %zu: a key has 1 to 79 printable ASCII characters, single "
-                             "spaces inside, and a value", path, i);
+            return noc_error(log, NOC_ERR_ARGUMENT,
+                             "%s: metadata entry %zu: a key has 1 to 79 printable ASCII characters, single "
+                             "spaces inside, and a value",
+                             path, i);
         meta_entry entry = { meta->keys[i], meta->values[i] }; /* outlive the list */
         meta_entry *old = find(list, entry.key);
         if (old)

@@ -23,7 +23,8 @@ typedef struct png_job {
 static void on_error(png_structp png, png_const_charp message) {
     png_job *job = png_get_error_ptr(png);
     if (job->status == NOC_OK)
-        job->status = job->refused ? noc_no_memory(job->log, job->name) : noc_error(job->log, NOC_ERR_FORMAT, "%s: PNG: %s", job->name, message);
+        job->status = job->refused ? noc_no_memory(job->log, job->name)
+                                   : noc_error(job->log, NOC_ERR_FORMAT, "%s: PNG: %s", job->name, message);
     longjmp(job->escape, 1);
 }
 
@@ -60,7 +61,8 @@ static void flush_data(png_structp png) { (void)png; }
 static void read_data(png_structp png, png_bytep data, png_size_t size) {
     png_job *job = png_get_io_ptr(png);
     if (size > job->size - job->at) {
-        job->status = noc_error(job->log, NOC_ERR_FORMAT, "%s: PNG: the file ends too early, at byte %zu", job->name, job->size);
+        job->status =
+            noc_error(job->log, NOC_ERR_FORMAT, "%s: PNG: the file ends too early, at byte %zu", job->name, job->size);
         png_error(png, "end of file");
     }
     memcpy(data, job->data + job->at, size);
@@ -94,8 +96,8 @@ noc_status image_write_png(output *o, const uint8_t *rgb, int width, int height,
     }
     if (setjmp(job.escape) == 0) {
         png_set_write_fn(job.png, &job, write_data, flush_data);
-        png_set_IHDR(job.png, job.info, (png_uint_32)width, (png_uint_32)height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                     PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        png_set_IHDR(job.png, job.info, (png_uint_32)width, (png_uint_32)height, 8, PNG_COLOR_TYPE_RGB,
+                     PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
         png_set_sRGB_gAMA_and_cHRM(job.png, job.info, PNG_sRGB_INTENT_PERCEPTUAL);
         set_text(&job, meta);
         png_write_info(job.png, job.info);
@@ -151,8 +153,9 @@ static bool plausible(png_job *job) {
     double packed = (double)png_get_rowbytes(job->png, job->info) * png_get_image_height(job->png, job->info);
     if (packed / 1032 <= (double)job->size)
         return true;
-    job->status = noc_error(job->log, NOC_ERR_FORMAT, "%s: PNG: %u x %u pixels cannot be in a file of %zu bytes", job->name,
-                            png_get_image_width(job->png, job->info), png_get_image_height(job->png, job->info), job->size);
+    job->status =
+        noc_error(job->log, NOC_ERR_FORMAT, "%s: PNG: %u x %u pixels cannot be in a file of %zu bytes", job->name,
+                  png_get_image_width(job->png, job->info), png_get_image_height(job->png, job->info), job->size);
     return false;
 }
 

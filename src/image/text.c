@@ -135,8 +135,10 @@ void text_draw(canvas *c, int x, int y, const char *s, int scale, const uint8_t 
 
 /* Letters of Latin-1 from U+00C0 on as plain ones: two of them where the sound wants it. */
 static const char *const latin[64] = {
-    "A", "A", "A", "A", "Ae", "A", "AE", "C", "E", "E", "E", "E", "I", "I", "I", "I", "D", "N", "O", "O", "O", "O", "Oe", NULL, "O", "U", "U", "U", "Ue", "Y", "Th", "ss",
-    "a", "a", "a", "a", "ae", "a", "ae", "c", "e", "e", "e", "e", "i", "i", "i", "i", "d", "n", "o", "o", "o", "o", "oe", NULL, "o", "u", "u", "u", "ue", "y", "th", "y",
+    "A", "A", "A", "A", "Ae", "A", "AE", "C",  "E", "E", "E", "E", "I",  "I", "I",  "I",
+    "D", "N", "O", "O", "O",  "O", "Oe", NULL, "O", "U", "U", "U", "Ue", "Y", "Th", "ss",
+    "a", "a", "a", "a", "ae", "a", "ae", "c",  "e", "e", "e", "e", "i",  "i", "i",  "i",
+    "d", "n", "o", "o", "o",  "o", "oe", NULL, "o", "u", "u", "u", "ue", "y", "th", "y",
 };
 
 /* The next character as the table has it, or the letters in its stead; 127 where there are none. */
@@ -153,7 +155,8 @@ static void next_codes(const char **text, char codes[3]) {
     codes[2] = 0;
 }
 
-int noc_text_srgb8(uint8_t *rgb, int width, int height, int x, int y, const char *text, int scale, const uint8_t colour[3]) {
+int noc_text_srgb8(uint8_t *rgb, int width, int height, int x, int y, const char *text, int scale,
+                   const uint8_t colour[3]) {
     canvas c = { rgb, width, height };
     int from = x;
     if (!text || (rgb && !colour))

@@ -1,6 +1,6 @@
-/* Looks at a file's first objects before the scene's place is settled: a sink between the reader and the importer's own,
- * which keeps what comes until there is enough of it, and from then on passes everything through. So one stray object at
- * the beginning does not decide where the whole city lies. */
+/* Looks at a file's first objects before the scene's place is settled: a sink between the reader and the importer's
+ * own, which keeps what comes until there is enough of it, and from then on passes everything through. So one stray
+ * object at the beginning does not decide where the whole city lies. */
 #include "import/load.h"
 
 #include <math.h>
@@ -56,7 +56,9 @@ noc_status ahead_release(struct look_ahead *a) {
     return status;
 }
 
-static noc_status no_memory(struct look_ahead *a) { return noc_no_memory(a->im->log, a->im->inputs[a->im->current].path); }
+static noc_status no_memory(struct look_ahead *a) {
+    return noc_no_memory(a->im->log, a->im->inputs[a->im->current].path);
+}
 
 /* An event whose texts and arrays were put into the arena. */
 static noc_status push(struct look_ahead *a, ahead_event e) {

@@ -1,5 +1,6 @@
-/* Files that another file names: materials of an OBJ, buffers of a glTF, the parts of a Shapefile. A file's author decides
- * these names, so they are looked at before anything is opened: no pipe may hang us, no link lead out of the folder. */
+/* Files that another file names: materials of an OBJ, buffers of a glTF, the parts of a Shapefile. A file's author
+ * decides these names, so they are looked at before anything is opened: no pipe may hang us, no link lead out of the
+ * folder. */
 #include "import/import.h"
 
 #include <errno.h>
@@ -25,7 +26,9 @@ const char *import_named_trouble(const char *folder, const char *path, bool anyw
         return strerror(errno);
     if (!S_ISREG(st.st_mode))
         return "is not a regular file";
-    return anywhere || lies_below(folder, path) ? NULL : "lies outside the folder of the file that names it (--allow-outside lets it)";
+    return anywhere || lies_below(folder, path)
+               ? NULL
+               : "lies outside the folder of the file that names it (--allow-outside lets it)";
 }
 
 FILE *import_open_named(const char *folder, const char *name, bool anywhere, size_t *size, const char **why) {

@@ -14,11 +14,13 @@ bool import_fits(const import_budget *b, double bytes) { return bytes <= b->memo
 
 noc_status import_affords(const import_budget *b, double bytes, const char *name, const char *what, noc_log *log) {
     if (bytes > b->memory)
-        return noc_error(log, NOC_ERR_MEMORY, "%s: %s would take %.3g GB; the limit --max-memory is %.3g GB", name, what,
-                         bytes / 1e9, b->memory / 1e9);
+        return noc_error(log, NOC_ERR_MEMORY, "%s: %s would take %.3g GB; the limit --max-memory is %.3g GB", name,
+                         what, bytes / 1e9, b->memory / 1e9);
     if (bytes > most_expanded(b))
-        return noc_error(log, NOC_ERR_MEMORY, "%s: %s would take %.3g GB, of a file of %.3g MB; the limit --max-expansion is "
-                         "%g times", name, what, bytes / 1e9, b->stored / 1e6, b->expansion);
+        return noc_error(log, NOC_ERR_MEMORY,
+                         "%s: %s would take %.3g GB, of a file of %.3g MB; the limit --max-expansion is "
+                         "%g times",
+                         name, what, bytes / 1e9, b->stored / 1e6, b->expansion);
     return NOC_OK;
 }
 

@@ -1,4 +1,5 @@
-/* citygml.c: the CityGML reader. CityGML 1.0 and 2.0, and of 3.0 what shares their structure, by expat, in bounded memory. */
+/* citygml.c: the CityGML reader. CityGML 1.0 and 2.0, and of 3.0 what shares their structure, by expat, in bounded
+ * memory. */
 #include "import/citygml.h"
 #include "import/lamp_tags.h"
 
@@ -45,7 +46,8 @@ static bool probe(const char *head, size_t size) {
                               !bytes[0] || !bytes[1]);
     char text[(1 << 16) + 1]; /* probes take no memory, so that none is refused */
     size_t n = 0;
-    for (size_t i = start; i < size && n + 1 < sizeof(text); i++) /* UTF-16: names are ASCII, so every other byte is 0 */
+    for (size_t i = start; i < size && n + 1 < sizeof(text);
+         i++) /* UTF-16: names are ASCII, so every other byte is 0 */
         if (!wide || (bytes[i] && bytes[i] < 0x80))
             text[n++] = head[i] ? head[i] : ' ';
     text[n] = 0;
@@ -68,8 +70,9 @@ static noc_status xml_error(cg_parser *p, xml_fault fault) {
     if (fault == XML_FAULT_TAG)
         return cg_fail(p, NOC_ERR_FORMAT, "a tag or comment of more than 4 MB, which is not read");
     if (code == XML_ERROR_UNKNOWN_ENCODING || code == XML_ERROR_INCORRECT_ENCODING)
-        return cg_fail(p, NOC_ERR_UNSUPPORTED, "character encoding that is not read; UTF-8, UTF-16, ISO-8859-1 and "
-                                               "US-ASCII are");
+        return cg_fail(p, NOC_ERR_UNSUPPORTED,
+                       "character encoding that is not read; UTF-8, UTF-16, ISO-8859-1 and "
+                       "US-ASCII are");
     if (code == XML_ERROR_NO_ELEMENTS || code == XML_ERROR_UNCLOSED_TOKEN)
         return cg_fail(p, NOC_ERR_FORMAT, "the file ends too early: is it cut? (%s)", XML_ErrorString(code));
     return cg_fail(p, NOC_ERR_FORMAT, "%s", XML_ErrorString(code));
@@ -132,7 +135,8 @@ static void free_parser(cg_parser *p) {
     free(p);
 }
 
-static noc_status read_citygml(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
+static noc_status read_citygml(noc_stream *stream, const noc_import_params *params, geo_sink *sink,
+                               const char **format) {
     cg_parser *p = noc_calloc(1, sizeof(*p));
     if (p)
         p->keys = lamp_keys_create(params);
@@ -148,7 +152,8 @@ static noc_status read_citygml(noc_stream *stream, const noc_import_params *para
     *format = "CityGML";
     noc_status status = run_pass(p, 1);
     for (int pass = 2; pass <= 3 && !status && p->deferred.len; pass++) {
-        noc_debug(sink->log, "%s: %zu objects refer to others; reading once more", noc_stream_name(stream), p->deferred.len);
+        noc_debug(sink->log, "%s: %zu objects refer to others; reading once more", noc_stream_name(stream),
+                  p->deferred.len);
         if ((status = noc_stream_rewind(stream)))
             break;
         status = run_pass(p, pass);
@@ -162,4 +167,6 @@ static noc_status read_citygml(noc_stream *stream, const noc_import_params *para
     return status;
 }
 
-const noc_reader noc_reader_citygml = { .name = "CityGML", .reads = NOC_READS_CITY, .probe = probe, .read = read_citygml };
+const noc_reader noc_reader_citygml = {
+    .name = "CityGML", .reads = NOC_READS_CITY, .probe = probe, .read = read_citygml
+};

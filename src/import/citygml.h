@@ -21,20 +21,33 @@
 typedef enum cg_code {
     CG_FOREIGN, /* not CityGML or GML, or of no use here: skipped with all in it */
     CG_PLAIN,   /* a property or wrapper without meaning of its own: looked into */
-    CG_MODEL, CG_MEMBER,
+    CG_MODEL,
+    CG_MEMBER,
     CG_FEATURE,           /* value: index into cg_feature_types */
     CG_GEOMETRY_PROPERTY, /* value: lod * 16 + role */
     CG_FUNCTION,          /* function, usage, class: tells roads from pavements */
     CG_LABEL,             /* name of an object, or the date of its end */
     CG_ATTRIBUTE,         /* generic attribute: with its name in XML (1.0, 2.0), or as an element (3.0) */
-    CG_ATTRIBUTE_NAME, CG_ATTRIBUTE_VALUE,
-    CG_IMPLICIT, CG_MATRIX, CG_REFERENCE_POINT, CG_RELATIVE_GEOMETRY,
-    CG_BOUNDED_BY, CG_ENVELOPE,
-    CG_AGGREGATE,         /* MultiSurface, Solid, Surface, TriangulatedSurface, ... */
-    CG_SURFACE_PROPERTY,  /* surfaceMember, baseSurface, ...: may be an xlink */
-    CG_ORIENTABLE, CG_POLYGON, CG_POINT,
-    CG_EXTERIOR, CG_INTERIOR, CG_RING, CG_ARC,
-    CG_POS_LIST, CG_POS, CG_COORDINATES,
+    CG_ATTRIBUTE_NAME,
+    CG_ATTRIBUTE_VALUE,
+    CG_IMPLICIT,
+    CG_MATRIX,
+    CG_REFERENCE_POINT,
+    CG_RELATIVE_GEOMETRY,
+    CG_BOUNDED_BY,
+    CG_ENVELOPE,
+    CG_AGGREGATE,        /* MultiSurface, Solid, Surface, TriangulatedSurface, ... */
+    CG_SURFACE_PROPERTY, /* surfaceMember, baseSurface, ...: may be an xlink */
+    CG_ORIENTABLE,
+    CG_POLYGON,
+    CG_POINT,
+    CG_EXTERIOR,
+    CG_INTERIOR,
+    CG_RING,
+    CG_ARC,
+    CG_POS_LIST,
+    CG_POS,
+    CG_COORDINATES,
 } cg_code;
 
 typedef struct cg_name {
@@ -52,9 +65,9 @@ typedef enum cg_part {
     CG_PART_SPACE,        /* groups others; its own geometry is empty space (3.0) */
     CG_PART_BOUNDARY,     /* a surface with a meaning: wall, traffic area, water surface */
     CG_PART_OPENING,
-    CG_PART_GROUP,        /* CityObjectGroup: members written inside it are objects of their own */
-    CG_PART_INTERIOR,     /* counted, and skipped: a night view from outside needs no rooms */
-    CG_PART_UNREAD,       /* skipped and counted */
+    CG_PART_GROUP,    /* CityObjectGroup: members written inside it are objects of their own */
+    CG_PART_INTERIOR, /* counted, and skipped: a night view from outside needs no rooms */
+    CG_PART_UNREAD,   /* skipped and counted */
 } cg_part;
 
 typedef struct cg_feature_type {
@@ -66,7 +79,11 @@ typedef struct cg_feature_type {
 
 extern const cg_feature_type cg_feature_types[];
 
-typedef struct cg_names { struct cg_name_slot *slots; size_t len; noc_arena arena; } cg_names;
+typedef struct cg_names {
+    struct cg_name_slot *slots;
+    size_t len;
+    noc_arena arena;
+} cg_names;
 /* name as expat gives it: namespace, '\n', local name. */
 cg_name cg_names_get(cg_names *names, const char *name);
 void cg_names_free(cg_names *names);
@@ -77,14 +94,14 @@ const char *cg_local_name(const char *name);
 /* Collects numbers from character data that comes in pieces. */
 typedef struct cg_numbers {
     NOC_ARRAY(double) values;
-    char token[64];      /* a number cut by the end of a piece */
+    char token[64]; /* a number cut by the end of a piece */
     uint32_t token_len;
-    bool bad;            /* something that is no number, or too many of them */
-    bool refused;        /* memory, to one of them; stays set */
+    bool bad;             /* something that is no number, or too many of them */
+    bool refused;         /* memory, to one of them; stays set */
     char cs, ts, decimal; /* gml:coordinates; 0, 0, '.' for lists separated by blanks */
-    uint32_t tuple;      /* gml:coordinates: numbers a tuple, 0 before the first ended */
+    uint32_t tuple;       /* gml:coordinates: numbers a tuple, 0 before the first ended */
     uint32_t in_tuple;
-    bool after_cs;       /* nothing but blanks since the last separator of numbers */
+    bool after_cs; /* nothing but blanks since the last separator of numbers */
 } cg_numbers;
 
 void cg_numbers_begin(cg_numbers *n, char decimal, char cs, char ts);
@@ -94,12 +111,12 @@ void cg_numbers_end(cg_numbers *n);
 /* ---- one top-level object ---- */
 
 typedef struct cg_polygon {
-    const char *id;       /* NULL if none */
-    uint32_t srs;         /* index into parser.srs, CG_NONE if none applies */
+    const char *id; /* NULL if none */
+    uint32_t srs;   /* index into parser.srs, CG_NONE if none applies */
     uint32_t ring_count;
-    uint32_t shown;       /* selection it was last chosen in; 0: none; CG_EMITTED: stored, and given to the sink */
+    uint32_t shown; /* selection it was last chosen in; 0: none; CG_EMITTED: stored, and given to the sink */
     const size_t *ring_size;
-    const double *xyz;    /* 3 a point, in the file's tuple order */
+    const double *xyz;       /* 3 a point, in the file's tuple order */
     struct cg_polygon *copy; /* in the store, NULL if none: one, however many ids lead to it */
 } cg_polygon;
 
@@ -111,7 +128,7 @@ typedef struct cg_surface {
 } cg_surface;
 
 typedef struct cg_implicit {
-    double matrix[16];   /* row by row */
+    double matrix[16]; /* row by row */
     double point[3];
     uint32_t srs;
     bool has_point;
@@ -125,9 +142,9 @@ typedef struct cg_geometry {
 
 typedef struct cg_feature {
     const cg_feature_type *type;
-    const char *id;        /* "" if none */
+    const char *id; /* "" if none */
     uint32_t parent;
-    int function;          /* noc_class told by function, usage or class, -1 if none */
+    int function;                            /* noc_class told by function, usage or class, -1 if none */
     uint32_t first_attribute, end_attribute; /* among these are its own, and those of its parts */
     uint32_t attributes;
     uint32_t first_geometry, end_geometry; /* its own, and those of its parts */
@@ -140,8 +157,8 @@ typedef struct cg_target {
     bool flip; /* orientation in force outside the element with this id */
 } cg_target;
 
-/* What an object, or a part of it that may be a lamp, says of itself, in its order: "class", "function", "usage", "name",
- * "terminationDate" (2.0), "validTo" (3.0), and generic attributes. */
+/* What an object, or a part of it that may be a lamp, says of itself, in its order: "class", "function", "usage",
+ * "name", "terminationDate" (2.0), "validTo" (3.0), and generic attributes. */
 typedef struct cg_attribute {
     const char *key, *value;
     uint32_t feature;
@@ -151,16 +168,16 @@ typedef struct cg_attribute {
 typedef struct cg_object {
     noc_arena arena;
     NOC_ARRAY(cg_attribute) attributes;
-    bool has_point;       /* a geometry that is a point: the first */
-    double point[3];      /* in the file's tuple order; height NaN in two dimensions */
+    bool has_point;  /* a geometry that is a point: the first */
+    double point[3]; /* in the file's tuple order; height NaN in two dimensions */
     uint32_t point_srs;
-    bool other_function;  /* a code of the standard's list says that it is something other than a lamp */
+    bool other_function;            /* a code of the standard's list says that it is something other than a lamp */
     NOC_ARRAY(cg_feature) features; /* the first is the object itself */
     NOC_ARRAY(cg_geometry) geometries;
     NOC_ARRAY(cg_surface) surfaces;
     NOC_ARRAY(cg_target) targets;
-    noc_map ids;          /* of targets, once a reference asks */
-    size_t steps;         /* references followed so far */
+    noc_map ids;  /* of targets, once a reference asks */
+    size_t steps; /* references followed so far */
 } cg_object;
 
 /* A surface with references followed. */
@@ -168,18 +185,18 @@ typedef struct cg_item {
     cg_polygon *polygon; /* NULL: nothing here (yet) */
     uint32_t geometry;
     bool flip, shown;
-    bool twin;           /* not shown, for the same shape is already */
-    bool local;          /* written as part of an implicit geometry: its coordinates are no places */
-    bool stored;         /* a copy of another object's surface */
-    bool elsewhere;      /* that other object shows it */
+    bool twin;      /* not shown, for the same shape is already */
+    bool local;     /* written as part of an implicit geometry: its coordinates are no places */
+    bool stored;    /* a copy of another object's surface */
+    bool elsewhere; /* that other object shows it */
 } cg_item;
 
 /* A body's choice; unused for features that belong to another body. */
 typedef struct cg_body {
-    uint32_t owner;            /* the body of this feature */
-    uint8_t levels, waiting;   /* bit i: has geometry of level i; has references of level i that lead nowhere yet */
-    int8_t lod;                /* chosen, -1 if none */
-    bool boundaries;           /* at that level there are surfaces with a meaning */
+    uint32_t owner;          /* the body of this feature */
+    uint8_t levels, waiting; /* bit i: has geometry of level i; has references of level i that lead nowhere yet */
+    int8_t lod;              /* chosen, -1 if none */
+    bool boundaries;         /* at that level there are surfaces with a meaning */
 } cg_body;
 
 typedef struct cg_selection {
@@ -215,7 +232,7 @@ typedef struct cg_frame {
     bool flip;
     bool in_reference_point, in_point, in_attribute;
     uint32_t feature, geometry, srs;
-    uint32_t dimension;    /* srsDimension, 0 where not given */
+    uint32_t dimension;     /* srsDimension, 0 where not given */
     uint32_t first_surface; /* of an element with an id */
     const char *id;
 } cg_frame;
@@ -227,21 +244,21 @@ typedef struct cg_parser {
     int max_lod;
     const char **format;
     noc_status status;
-    int pass;               /* 1, 2, 3 */
-    int version;            /* major, 0 until seen */
+    int pass;    /* 1, 2, 3 */
+    int version; /* major, 0 until seen */
 
     cg_names names;
     cg_frame frames[CG_MAX_DEPTH];
     uint32_t depth;
-    uint32_t skip;          /* elements open inside a skipped one, itself included */
+    uint32_t skip; /* elements open inside a skipped one, itself included */
 
     cg_object object;
     cg_selection selection;
-    size_t ordinal;         /* of the top-level object, from 1 */
-    NOC_ARRAY(size_t) deferred; /* ordinals that wait for surfaces of other objects, ascending */
+    size_t ordinal;                      /* of the top-level object, from 1 */
+    NOC_ARRAY(size_t) deferred;          /* ordinals that wait for surfaces of other objects, ascending */
     size_t deferred_next, deferred_kept; /* position in it; of those seen in the second pass, how many wait on */
     cg_store store;
-    uint32_t selections;    /* marks polygons as shown in the present selection */
+    uint32_t selections; /* marks polygons as shown in the present selection */
 
     /* polygon being read */
     NOC_ARRAY(double) xyz;
@@ -252,7 +269,7 @@ typedef struct cg_parser {
     bool polygon_counted;   /* a fault of one of its rings has been reported */
     const char *ring_fault; /* why the ring cannot be used, NULL if it can */
     bool ring_curved;
-    size_t ring_first;      /* index into xyz of the ring's first number */
+    size_t ring_first; /* index into xyz of the ring's first number */
     cg_numbers numbers;
     enum { CG_TEXT_NONE, CG_TEXT_NUMBERS, CG_TEXT_WORD } text;
     char word[128];
@@ -265,18 +282,21 @@ typedef struct cg_parser {
 
     /* CRSs in the order met; names live in the arena */
     noc_arena persistent;
-    struct { const char *name; unsigned long line; } srs[CG_MAX_CRS];
+    struct {
+        const char *name;
+        unsigned long line;
+    } srs[CG_MAX_CRS];
     uint32_t srs_count;
-    uint32_t sink_srs;      /* the one the sink was told last; CG_UNTOLD before the first */
+    uint32_t sink_srs; /* the one the sink was told last; CG_UNTOLD before the first */
     bool lat_first;
 
     /* scratch of the emitter */
     NOC_ARRAY(double) out;
     NOC_ARRAY(size_t) out_rings;
-    bool object_open;       /* begin_object was called and end_object not yet */
+    bool object_open;               /* begin_object was called and end_object not yet */
     size_t emitted, dropped, twins; /* polygons: used; there already; of these with the shape of another one */
-    uint32_t kinds_told;    /* of objects that were left out */
-    size_t looked;          /* features and surfaces looked at for installed lamps, since progress was asked */
+    uint32_t kinds_told;            /* of objects that were left out */
+    size_t looked;                  /* features and surfaces looked at for installed lamps, since progress was asked */
 } cg_parser;
 
 #define CG_UNTOLD (UINT32_MAX - 1)
@@ -285,8 +305,8 @@ typedef struct cg_parser {
 void cg_start_element(void *user, const XML_Char *name, const XML_Char **attributes);
 void cg_end_element(void *user, const XML_Char *name);
 void cg_characters(void *user, const XML_Char *text, int size);
-/* Reports "file:line: cause", stops the parser, and returns the status. Handlers do nothing from then on: where memory is
- * refused (cg_no_memory) what was half built is freed with the parser. */
+/* Reports "file:line: cause", stops the parser, and returns the status. Handlers do nothing from then on: where memory
+ * is refused (cg_no_memory) what was half built is freed with the parser. */
 noc_status cg_fail(cg_parser *p, noc_status status, const char *fmt, ...) NOC_PRINTF(3, 4);
 noc_status cg_no_memory(cg_parser *p);
 /* Counts a defect of the file; once, though the file may be read several times. */
@@ -324,25 +344,25 @@ void cg_ring_add(cg_parser *p, cg_code code, uint32_t dimension);
 const char *cg_report_id(const cg_parser *p, const char *polygon_id, uint32_t feature);
 
 /* citygml_select.c */
-void cg_resolve(cg_parser *p);  /* surfaces and stored ones -> selection.items, .missing */
+void cg_resolve(cg_parser *p); /* surfaces and stored ones -> selection.items, .missing */
 /* Appends what an id leads to, for a surface of that geometry. */
 void cg_follow(cg_parser *p, const char *id, uint32_t geometry, bool flip);
-void cg_select(cg_parser *p);   /* level of detail, what is shown */
+void cg_select(cg_parser *p);                                                       /* level of detail, what is shown */
 int cg_function_class(const cg_feature_type *type, const char *word, bool plateau); /* noc_class or -1 */
 bool cg_standard_function(const char *word); /* a code of the standard's list for city furniture */
 
 /* citygml_emit.c */
-void cg_object_end(cg_parser *p);                       /* a top-level object is complete */
+void cg_object_end(cg_parser *p); /* a top-level object is complete */
 void cg_emit_polygon(cg_parser *p, const cg_polygon *polygon, uint32_t geometry, bool flip);
-void cg_tell_crs(cg_parser *p, uint32_t srs);           /* to the sink, of what comes next */
+void cg_tell_crs(cg_parser *p, uint32_t srs); /* to the sink, of what comes next */
 /* A polygon's points into p->out, p->out_rings: easting northing height, placed and turned over where asked. */
 void cg_transform(cg_parser *p, const cg_polygon *polygon, const cg_implicit *implicit, bool flip);
 void cg_place_point(const cg_parser *p, const cg_implicit *implicit, double *point); /* of a prototype */
 /* Metres a unit of x and y about a point: 1, but for degrees. */
 void cg_metres(const cg_parser *p, const double *point, double *east, double *north);
-void cg_emit_shown(cg_parser *p);                       /* the selected surfaces, as an object */
-void cg_stop(cg_parser *p, noc_status status);          /* of the sink, which has reported it */
-void cg_emit_end(cg_parser *p);                         /* closes the sink's object if one is open */
+void cg_emit_shown(cg_parser *p);              /* the selected surfaces, as an object */
+void cg_stop(cg_parser *p, noc_status status); /* of the sink, which has reported it */
+void cg_emit_end(cg_parser *p);                /* closes the sink's object if one is open */
 void cg_store_free(cg_store *store);
 
 #endif

@@ -1,5 +1,5 @@
-/* citygml_attribute.c: what an object says of itself: its class, function, usage and name, and generic attributes, which
- * carry their names in XML in CityGML 1.0 and 2.0, and as elements in 3.0. */
+/* citygml_attribute.c: what an object says of itself: its class, function, usage and name, and generic attributes,
+ * which carry their names in XML in CityGML 1.0 and 2.0, and as elements in 3.0. */
 #include "import/citygml.h"
 
 #include <stdio.h>
@@ -12,7 +12,8 @@ bool cg_may_be_lamp(const cg_feature_type *type) {
     size_t n = strlen(type->name), m = strlen(installation);
     if (type->part == CG_PART_INSTALLATION && n > m && !strcmp(type->name + n - m, installation))
         return true;
-    return type->kind == GEO_FURNITURE || (type->kind == GEO_OTHER && type->part == CG_PART_BODY && !strncmp(type->name, "Generic", 7));
+    return type->kind == GEO_FURNITURE ||
+           (type->kind == GEO_OTHER && type->part == CG_PART_BODY && !strncmp(type->name, "Generic", 7));
 }
 
 void cg_attribute_add(cg_parser *p, uint32_t feature, const char *key, const char *value, bool generic) {

@@ -66,7 +66,8 @@ void cg_place_point(const cg_parser *p, const cg_implicit *implicit, double *poi
     point[2] = anchor[2] + local[2];
 }
 
-/* Into p->out, p->out_rings: easting northing height, turned over where asked. p->status tells where memory is refused. */
+/* Into p->out, p->out_rings: easting northing height, turned over where asked. p->status tells where memory is refused.
+ */
 void cg_transform(cg_parser *p, const cg_polygon *polygon, const cg_implicit *implicit, bool flip) {
     p->out.len = p->out_rings.len = 0;
     const double *in = polygon->xyz;
@@ -122,7 +123,8 @@ static noc_class class_of(const cg_parser *p, const cg_geometry *g) {
     if (feature->function >= 0)
         return (noc_class)feature->function;
     if (kind == GEO_BRIDGE)
-        return type->part == CG_PART_OPENING || type->cls == NOC_CLASS_CLOSURE ? (noc_class)type->cls : NOC_CLASS_BRIDGE;
+        return type->part == CG_PART_OPENING || type->cls == NOC_CLASS_CLOSURE ? (noc_class)type->cls
+                                                                               : NOC_CLASS_BRIDGE;
     if (kind != GEO_BUILDING || type->part != CG_PART_BODY)
         return (noc_class)type->cls;
     return g->role == CG_ROLE_FOOTPRINT   ? NOC_CLASS_GROUND
@@ -158,8 +160,11 @@ void cg_emit_polygon(cg_parser *p, const cg_polygon *polygon, uint32_t geometry,
     cg_transform(p, polygon, g->implicit, flip);
     if (p->status)
         return;
-    geo_polygon out = { .cls = class_of(p, g), .id = cg_report_id(p, polygon->id, g->feature),
-                        .ring_count = p->out_rings.len, .ring_size = p->out_rings.data, .xyz = p->out.data };
+    geo_polygon out = { .cls = class_of(p, g),
+                        .id = cg_report_id(p, polygon->id, g->feature),
+                        .ring_count = p->out_rings.len,
+                        .ring_size = p->out_rings.data,
+                        .xyz = p->out.data };
     cg_stop(p, p->sink->polygon(p->sink->ctx, &out));
     p->emitted++;
 }
@@ -191,9 +196,12 @@ static void left_out(cg_parser *p, const char *why) {
     char reason[200];
     if (p->kinds_told >= MOST)
         cls = function = NULL;
-    snprintf(reason, sizeof(reason), "%s left out, %s%s%.40s%s%s%.40s%s", object->features.data[0].type->name, why, cls ? " (class '" : "",
-             cls ? cls : "", cls ? "'" : "", function ? cls ? ", function '" : " (function '" : "", function ? function : "",
-             function ? "')" : cls ? ")" : "");
+    snprintf(reason, sizeof(reason), "%s left out, %s%s%.40s%s%s%.40s%s", object->features.data[0].type->name, why,
+             cls ? " (class '" : "", cls ? cls : "", cls ? "'" : "",
+             function ? cls ? ", function '" : " (function '" : "", function ? function : "",
+             function ? "')"
+             : cls    ? ")"
+                      : "");
     size_t before = geo_issues_count(p->sink->issues);
     geo_issue(p->sink->issues, GEO_SKIPPED, reason, cg_report_id(p, NULL, 0));
     p->kinds_told += (uint32_t)(geo_issues_count(p->sink->issues) - before);
@@ -243,7 +251,8 @@ static cg_polygon *copy_polygon(cg_store *store, cg_polygon *polygon) {
 static void store_items(cg_parser *p, size_t first, cg_stored *stored) {
     cg_selection *s = &p->selection;
     size_t before = stored->items.cap * sizeof(cg_item), bytes = (s->items.len - first) * sizeof(cg_item);
-    cg_affords(p, p->store.arena.bytes + p->store.item_bytes + s->items.cap * sizeof(cg_item) + bytes, "what xlinks lead to, of this object");
+    cg_affords(p, p->store.arena.bytes + p->store.item_bytes + s->items.cap * sizeof(cg_item) + bytes,
+               "what xlinks lead to, of this object");
     if (p->status)
         return;
     if (!array_reserve(&stored->items, stored->items.len + s->items.len - first)) {
@@ -256,8 +265,10 @@ static void store_items(cg_parser *p, size_t first, cg_stored *stored) {
         if (!item.polygon)
             continue;
         bool shown = item.stored ? item.elsewhere : item.polygon->shown == p->selections;
-        cg_item kept = { .polygon = item.stored ? item.polygon : copy_polygon(&p->store, item.polygon), .flip = item.flip,
-                         .local = item.local, .elsewhere = shown };
+        cg_item kept = { .polygon = item.stored ? item.polygon : copy_polygon(&p->store, item.polygon),
+                         .flip = item.flip,
+                         .local = item.local,
+                         .elsewhere = shown };
         if (!kept.polygon || !array_push(&stored->items, kept)) {
             cg_no_memory(p);
             return;
@@ -317,7 +328,8 @@ void cg_store_free(cg_store *store) {
 static void finish_object(cg_parser *p) {
     if (p->pass == 2)
         collect(p);
-    bool turn = p->pass == 1 || (p->deferred_next < p->deferred.len && p->deferred.data[p->deferred_next] == p->ordinal);
+    bool turn =
+        p->pass == 1 || (p->deferred_next < p->deferred.len && p->deferred.data[p->deferred_next] == p->ordinal);
     if (!turn || p->status)
         return;
     if (p->pass > 1)

@@ -1,24 +1,24 @@
 /* citygml_lamp.c: city furniture, generic objects, and installations of buildings that are lamps.
  *
- * Function, class and usage say so, by the standard's code list or in words, or the name, or attributes that only lamps have.
- * A lamp that is modelled keeps its body, and its light goes where the body leaves it free: under the ends of arms, or in a
- * globe around the head of a post. Whether it is free is asked of rays against the body itself. A body that is but a block
- * around the lamp would swallow any light in it: such a lamp gets a pole of ours in its stead. */
+ * Function, class and usage say so, by the standard's code list or in words, or the name, or attributes that only lamps
+ * have. A lamp that is modelled keeps its body, and its light goes where the body leaves it free: under the ends of
+ * arms, or in a globe around the head of a post. Whether it is free is asked of rays against the body itself. A body
+ * that is but a block around the lamp would swallow any light in it: such a lamp gets a pole of ours in its stead. */
 #include "import/citygml.h"
 #include "import/lamp_tags.h"
 
 #include <math.h>
 #include <time.h>
 
-#define FREE 0.75     /* share of a light that must leave the body */
-#define ARM 0.45      /* m off the foot from which on a head hangs on an arm */
-#define END 0.8       /* m: what belongs to the end of an arm */
-#define GAP 0.03      /* m under it */
-#define DISC 0.15     /* m; the radius of a lamp's disc */
-#define GLOBE 0.6     /* m; the largest globe */
-#define NO_POLE 1.2   /* m; a body lower than this is a luminaire without a pole */
+#define FREE 0.75   /* share of a light that must leave the body */
+#define ARM 0.45    /* m off the foot from which on a head hangs on an arm */
+#define END 0.8     /* m: what belongs to the end of an arm */
+#define GAP 0.03    /* m under it */
+#define DISC 0.15   /* m; the radius of a lamp's disc */
+#define GLOBE 0.6   /* m; the largest globe */
+#define NO_POLE 1.2 /* m; a body lower than this is a luminaire without a pole */
 #define RAYS 64
-#define ASK 1024      /* features and surfaces that are looked at before progress is asked */
+#define ASK 1024 /* features and surfaces that are looked at before progress is asked */
 
 /* ---- is it one? ---- */
 
@@ -59,9 +59,9 @@ static bool is_lamp(cg_parser *p, uint32_t feature, const lamp_tag *tags, size_t
 /* ---- its body ---- */
 
 typedef struct body {
-    geo_triangles mesh;  /* metres about `origin` */
-    double origin[3];    /* easting northing height, as the file has them */
-    double scale[2];     /* metres a unit of x and y */
+    geo_triangles mesh; /* metres about `origin` */
+    double origin[3];   /* easting northing height, as the file has them */
+    double scale[2];    /* metres a unit of x and y */
     double low, high, foot[2];
 } body;
 
@@ -78,7 +78,9 @@ static size_t first_item(const cg_parser *p, uint32_t geometry) {
     return low;
 }
 
-typedef struct item_range { size_t first, end; } item_range;
+typedef struct item_range {
+    size_t first, end;
+} item_range;
 
 /* The items of a feature and of its parts, whose geometries follow each other. */
 static item_range items_of(cg_parser *p, uint32_t feature) {
@@ -108,7 +110,10 @@ static bool read_body(cg_parser *p, uint32_t feature, body *b) {
         }
         for (size_t k = 0; k < p->out.len; k++)
             p->out.data[k] = (p->out.data[k] - b->origin[k % 3]) * (k % 3 < 2 ? b->scale[k % 3] : 1);
-        geo_polygon polygon = { .cls = NOC_CLASS_LAMP, .id = "", .ring_count = p->out_rings.len, .ring_size = p->out_rings.data,
+        geo_polygon polygon = { .cls = NOC_CLASS_LAMP,
+                                .id = "",
+                                .ring_count = p->out_rings.len,
+                                .ring_size = p->out_rings.data,
                                 .xyz = p->out.data };
         geo_triangulate(&polygon, &b->mesh, NULL);
         if (b->mesh.no_memory)
@@ -366,14 +371,15 @@ static bool is_gone(const cg_object *object, uint32_t feature) {
         return false;
     for (size_t i = 0; i < NOC_COUNT(ends); i++) {
         const char *date = cg_attribute_get(object, feature, ends[i]);
-        if (date && strlen(date) >= 10 && date[4] == '-' && date[7] == '-' && *date >= '0' && *date <= '9' && strncmp(date, today, 10) < 0)
+        if (date && strlen(date) >= 10 && date[4] == '-' && date[7] == '-' && *date >= '0' && *date <= '9' &&
+            strncmp(date, today, 10) < 0)
             return true;
     }
     return false;
 }
 
-/* Reads the feature as a lamp. False: it is none, or none that shines, and what there is of it is drawn. *gives_way: its body
- * would swallow its light. */
+/* Reads the feature as a lamp. False: it is none, or none that shines, and what there is of it is drawn. *gives_way:
+ * its body would swallow its light. */
 static bool make_lamp(cg_parser *p, uint32_t feature, geo_lamp *lamp, bool *gives_way) {
     cg_object *object = &p->object;
     const cg_feature *of = &object->features.data[feature];
@@ -409,8 +415,8 @@ bool cg_emit_lamp(cg_parser *p) {
     if (lamp.body_heads)
         cg_emit_shown(p);
     else if (p->selection.shown)
-        geo_issue(p->sink->issues, GEO_GUESSED, "lamp whose body is a block around its light: a pole stands in its place",
-                  cg_report_id(p, NULL, 0));
+        geo_issue(p->sink->issues, GEO_GUESSED,
+                  "lamp whose body is a block around its light: a pole stands in its place", cg_report_id(p, NULL, 0));
     if (!p->status)
         cg_stop(p, p->sink->lamp(p->sink->ctx, &lamp));
     return true;

@@ -1,10 +1,11 @@
 /* citygml_names.c: what each element means. Elements are known by local name and family of namespaces (GML 3.1 and 3.2,
- * CityGML of any version and module), never by prefix. Lookups are remembered: a city has millions of elements and a few
- * dozen names. */
+ * CityGML of any version and module), never by prefix. Lookups are remembered: a city has millions of elements and a
+ * few dozen names. */
 #include "import/citygml.h"
 
 #include <ctype.h>
 
+/* clang-format off */
 const cg_feature_type cg_feature_types[] = {
     { "Building", CG_PART_BODY, GEO_BUILDING, NOC_CLASS_OTHER },
     { "BuildingPart", CG_PART_BODY, GEO_BUILDING, NOC_CLASS_OTHER },
@@ -79,9 +80,14 @@ const cg_feature_type cg_feature_types[] = {
     { "RasterRelief", CG_PART_UNREAD, GEO_TERRAIN, 0 },
     { "CityObjectGroup", CG_PART_GROUP, GEO_OTHER, 0 },
 };
+/* clang-format on */
 
-typedef struct cg_word { const char *name; uint8_t code; } cg_word;
+typedef struct cg_word {
+    const char *name;
+    uint8_t code;
+} cg_word;
 
+/* clang-format off */
 static const cg_word gml_words[] = {
     { "FeatureCollection", CG_MODEL }, { "featureMember", CG_MEMBER }, { "featureMembers", CG_MEMBER },
     { "member", CG_MEMBER }, { "boundedBy", CG_BOUNDED_BY }, { "Envelope", CG_ENVELOPE },
@@ -105,7 +111,9 @@ static const cg_word gml_words[] = {
     { "pointProperty", CG_PLAIN }, { "pointRep", CG_PLAIN }, { "curveMember", CG_PLAIN },
     { "LineString", CG_PLAIN }, { "Curve", CG_PLAIN }, { "segments", CG_PLAIN }, { "LineStringSegment", CG_PLAIN },
 };
+/* clang-format on */
 
+/* clang-format off */
 static const cg_word city_words[] = {
     { "CityModel", CG_MODEL }, { "cityObjectMember", CG_MEMBER }, { "groupMember", CG_MEMBER },
     { "function", CG_FUNCTION }, { "usage", CG_FUNCTION }, { "class", CG_FUNCTION },
@@ -121,6 +129,7 @@ static const cg_word city_words[] = {
     { "appearance", CG_FOREIGN }, { "appearanceMember", CG_FOREIGN }, { "Appearance", CG_FOREIGN },
     { "address", CG_FOREIGN }, { "Address", CG_FOREIGN },
 };
+/* clang-format on */
 
 static bool starts_with(const char *text, const char *start) { return !strncmp(text, start, strlen(start)); }
 
@@ -136,13 +145,24 @@ static uint8_t find_word(const cg_word *words, size_t count, const char *local, 
     return otherwise;
 }
 
-/* lod2MultiSurface and the like; curves and terrain intersections hold nothing to render, points only where a lamp stands. */
+/* lod2MultiSurface and the like; curves and terrain intersections hold nothing to render, points only where a lamp
+ * stands. */
 static bool geometry_property(const char *local, cg_name *out) {
-    static const struct { const char *name; uint8_t role; } roles[] = {
-        { "MultiSurface", CG_ROLE_SURFACES }, { "Surface", CG_ROLE_SURFACES }, { "Geometry", CG_ROLE_SURFACES },
-        { "GenericGeometry", CG_ROLE_SURFACES }, { "ImplicitRepresentation", CG_ROLE_SURFACES },
-        { "Solid", CG_ROLE_SOLID }, { "MultiSolid", CG_ROLE_SOLID },
-        { "Point", CG_ROLE_SURFACES }, { "MultiPoint", CG_ROLE_SURFACES }, { "FootPrint", CG_ROLE_FOOTPRINT }, { "RoofEdge", CG_ROLE_ROOF_EDGE },
+    static const struct {
+        const char *name;
+        uint8_t role;
+    } roles[] = {
+        { "MultiSurface", CG_ROLE_SURFACES },
+        { "Surface", CG_ROLE_SURFACES },
+        { "Geometry", CG_ROLE_SURFACES },
+        { "GenericGeometry", CG_ROLE_SURFACES },
+        { "ImplicitRepresentation", CG_ROLE_SURFACES },
+        { "Solid", CG_ROLE_SOLID },
+        { "MultiSolid", CG_ROLE_SOLID },
+        { "Point", CG_ROLE_SURFACES },
+        { "MultiPoint", CG_ROLE_SURFACES },
+        { "FootPrint", CG_ROLE_FOOTPRINT },
+        { "RoofEdge", CG_ROLE_ROOF_EDGE },
     };
     if (!strcmp(local, "tin")) {
         *out = (cg_name){ .code = CG_GEOMETRY_PROPERTY, .value = 1 * 16 + CG_ROLE_SURFACES };
@@ -187,7 +207,10 @@ static cg_name classify(const char *name) {
 
 #define NAME_SLOTS 4096 /* a power of two; names beyond half of it are classified anew each time */
 
-struct cg_name_slot { const char *name; cg_name value; };
+struct cg_name_slot {
+    const char *name;
+    cg_name value;
+};
 
 static uint32_t hash(const char *name) {
     uint32_t h = 2166136261u;

@@ -48,7 +48,8 @@ void cg_object_clear(cg_object *object) {
     arena_free(&object->arena);
     map_free(&object->ids);
     object->steps = 0;
-    object->features.len = object->geometries.len = object->surfaces.len = object->targets.len = object->attributes.len = 0;
+    object->features.len = object->geometries.len = object->surfaces.len = object->targets.len =
+        object->attributes.len = 0;
     object->has_point = object->other_function = false;
 }
 
@@ -151,7 +152,9 @@ static void add_reference(cg_parser *p, const cg_frame *frame, const char *href)
     }
     if (!cg_object_room(p))
         return;
-    cg_surface surface = { .href = arena_strdup(&object->arena, href + 1), .geometry = frame->geometry, .flip = frame->flip };
+    cg_surface surface = { .href = arena_strdup(&object->arena, href + 1),
+                           .geometry = frame->geometry,
+                           .flip = frame->flip };
     if (!surface.href || !array_push(&object->surfaces, surface))
         cg_no_memory(p);
 }
@@ -203,7 +206,8 @@ static bool start_feature(cg_parser *p, cg_frame *frame, const attributes *a) {
     if (type->part == CG_PART_GROUP)
         return top;
     if (type->part == CG_PART_UNREAD) {
-        cg_issue(p, GEO_SKIPPED, type->kind == GEO_TERRAIN ? "relief that is not triangulated" : "object type that is not read",
+        cg_issue(p, GEO_SKIPPED,
+                 type->kind == GEO_TERRAIN ? "relief that is not triangulated" : "object type that is not read",
                  a->id && *a->id ? a->id : type->name);
         return false;
     }
@@ -213,8 +217,10 @@ static bool start_feature(cg_parser *p, cg_frame *frame, const attributes *a) {
     } else if (!cg_object_room(p)) {
         return false;
     }
-    cg_feature feature = { .type = type, .id = a->id ? arena_strdup(&p->object.arena, a->id) : "",
-                           .parent = frame->feature, .function = -1,
+    cg_feature feature = { .type = type,
+                           .id = a->id ? arena_strdup(&p->object.arena, a->id) : "",
+                           .parent = frame->feature,
+                           .function = -1,
                            .first_geometry = (uint32_t)p->object.geometries.len };
     frame->feature = (uint32_t)p->object.features.len;
     frame->geometry = CG_NONE;
@@ -333,7 +339,8 @@ static bool enter(cg_parser *p, cg_frame *frame, const cg_frame *parent, const c
     bool in_geometry = frame->geometry != CG_NONE;
     switch (code) {
     case CG_PLAIN:
-        return parent && parent->name.code == CG_MEMBER && frame->name.version ? skip_foreign(p, frame, parent, name) : true;
+        return parent && parent->name.code == CG_MEMBER && frame->name.version ? skip_foreign(p, frame, parent, name)
+                                                                               : true;
     case CG_FEATURE: return start_feature(p, frame, &a);
     case CG_GEOMETRY_PROPERTY: return start_geometry_property(p, frame, &a);
     case CG_FUNCTION:
@@ -380,9 +387,7 @@ static bool enter(cg_parser *p, cg_frame *frame, const cg_frame *parent, const c
         if (code == CG_ORIENTABLE && a.orientation && !strcmp(a.orientation, "-"))
             frame->flip = !frame->flip;
         return true;
-    case CG_POLYGON:
-        inherit_geometry(p, frame, &a);
-        return start_polygon(p, frame, &a);
+    case CG_POLYGON: inherit_geometry(p, frame, &a); return start_polygon(p, frame, &a);
     case CG_EXTERIOR:
     case CG_INTERIOR: return start_exterior(p, frame, &a);
     case CG_RING:
@@ -390,16 +395,11 @@ static bool enter(cg_parser *p, cg_frame *frame, const cg_frame *parent, const c
             return false;
         cg_ring_begin(p, parent->name.code != CG_INTERIOR);
         return true;
-    case CG_ARC:
-        p->ring_curved = true;
-        return p->in_ring;
+    case CG_ARC: p->ring_curved = true; return p->in_ring;
     case CG_POS_LIST:
     case CG_POS:
-    case CG_COORDINATES:
-        inherit_geometry(p, frame, &a);
-        return start_coordinates(p, frame, &a);
-    default: /* models, members, boundedBy */
-        return true;
+    case CG_COORDINATES: inherit_geometry(p, frame, &a); return start_coordinates(p, frame, &a);
+    default: /* models, members, boundedBy */ return true;
     }
 }
 
@@ -470,7 +470,8 @@ static void end_matrix(cg_parser *p, const cg_frame *frame) {
     if (!p->numbers.bad && (count == 16 || count == 12))
         memcpy(implicit_of(p, frame)->matrix, p->numbers.values.data, count * sizeof(double));
     else
-        cg_issue(p, GEO_GUESSED, "transformation matrix that is not 4 x 4, left out", cg_report_id(p, NULL, frame->feature));
+        cg_issue(p, GEO_GUESSED, "transformation matrix that is not 4 x 4, left out",
+                 cg_report_id(p, NULL, frame->feature));
 }
 
 static void end_implicit(cg_parser *p, const cg_frame *frame) {
@@ -530,7 +531,9 @@ void cg_end_element(void *user, const XML_Char *name) {
         break;
     default: break;
     }
-    const cg_target target = { .id = frame->id, .first = frame->first_surface, .flip = outer_flip,
+    const cg_target target = { .id = frame->id,
+                               .first = frame->first_surface,
+                               .flip = outer_flip,
                                .count = (uint32_t)p->object.surfaces.len - frame->first_surface };
     if (p->numbers.refused || (frame->id && !array_push(&p->object.targets, target)))
         cg_no_memory(p);

@@ -116,12 +116,16 @@ void cg_polygon_end(cg_parser *p, const cg_frame *frame) {
     p->in_polygon = false;
     if (!p->has_exterior) {
         if (!p->polygon_counted)
-            cg_issue(p, GEO_SKIPPED, "polygon without an exterior ring", cg_report_id(p, p->polygon_id, frame->feature));
+            cg_issue(p, GEO_SKIPPED, "polygon without an exterior ring",
+                     cg_report_id(p, p->polygon_id, frame->feature));
         return;
     }
     cg_object *object = &p->object;
-    cg_polygon polygon = { .id = p->polygon_id, .srs = frame->srs,
-                           .ring_count = (uint32_t)p->rings.len, .ring_size = p->rings.data, .xyz = p->xyz.data };
+    cg_polygon polygon = { .id = p->polygon_id,
+                           .srs = frame->srs,
+                           .ring_count = (uint32_t)p->rings.len,
+                           .ring_size = p->rings.data,
+                           .xyz = p->xyz.data };
     /* Terrain has no levels to choose from and no references: it goes straight through, however large it is. */
     if (object->features.data[0].type->kind == GEO_TERRAIN) {
         if (p->pass == 1)
@@ -132,7 +136,8 @@ void cg_polygon_end(cg_parser *p, const cg_frame *frame) {
         return;
     polygon.ring_size = arena_copy(&object->arena, p->rings.data, p->rings.len * sizeof(size_t));
     polygon.xyz = arena_copy(&object->arena, p->xyz.data, p->xyz.len * sizeof(double));
-    cg_surface surface = { .polygon = arena_copy(&object->arena, &polygon, sizeof(polygon)), .geometry = frame->geometry,
+    cg_surface surface = { .polygon = arena_copy(&object->arena, &polygon, sizeof(polygon)),
+                           .geometry = frame->geometry,
                            .flip = frame->flip };
     if (!polygon.ring_size || !polygon.xyz || !surface.polygon || !array_push(&object->surfaces, surface))
         cg_no_memory(p);

@@ -74,7 +74,9 @@ static void follow(cg_parser *p, const char *id, uint32_t geometry, bool flip, i
         if (s->href)
             follow(p, s->href, geometry, turned, links + 1);
         else if (++object->steps <= object->surfaces.len * 4 + 65536)
-            push_item(p, (cg_item){ .polygon = s->polygon, .geometry = geometry, .flip = turned,
+            push_item(p, (cg_item){ .polygon = s->polygon,
+                                    .geometry = geometry,
+                                    .flip = turned,
                                     .local = object->geometries.data[s->geometry].implicit != NULL });
     }
 }
@@ -100,7 +102,9 @@ void cg_resolve(cg_parser *p) {
         if (s->href)
             cg_follow(p, s->href, s->geometry, s->flip);
         else
-            push_item(p, (cg_item){ .polygon = s->polygon, .geometry = s->geometry, .flip = s->flip,
+            push_item(p, (cg_item){ .polygon = s->polygon,
+                                    .geometry = s->geometry,
+                                    .flip = s->flip,
                                     .local = object->geometries.data[s->geometry].implicit != NULL });
     }
 }
@@ -236,7 +240,8 @@ static void show(cg_parser *p, cg_item *item, bool compare, bool remember) {
     s->shown++;
 }
 
-/* Notes what each body has at its level. Returns whether any has both surfaces of its own and a second account of them. */
+/* Notes what each body has at its level. Returns whether any has both surfaces of its own and a second account of them.
+ */
 static bool survey(cg_parser *p) {
     const cg_object *object = &p->object;
     cg_selection *s = &p->selection;
@@ -305,16 +310,19 @@ static bool has_word(const char *text, const char *const *words) {
     return false;
 }
 
-static const char *const green_words[] = { "green", "grass", "lawn", "plant", "tree", "flower", "vegetation", "forest",
-                                           "park", "agricult", "garden", "meadow", NULL };
+static const char *const green_words[] = { "green",  "grass", "lawn",     "plant",  "tree",   "flower", "vegetation",
+                                           "forest", "park",  "agricult", "garden", "meadow", NULL };
 
 /* Codes of CityGML's code lists (OGC 12-019, annex C) and of PLATEAU's (TrafficArea_function and so on). */
 static int traffic_class(long long code, bool plateau) {
     if (plateau)
         return code >= 2000 && code < 3000 ? NOC_CLASS_SIDEWALK : NOC_CLASS_ROAD;
     switch (code) {
-    case 2: case 4: case 19: case 22: return NOC_CLASS_SIDEWALK; /* footpath, foot and cycle path, platform, stairs */
-    case 30: return NOC_CLASS_GREEN;                              /* green spaces */
+    case 2:
+    case 4:
+    case 19:
+    case 22: return NOC_CLASS_SIDEWALK; /* footpath, foot and cycle path, platform, stairs */
+    case 30: return NOC_CLASS_GREEN;    /* green spaces */
     default: return NOC_CLASS_ROAD;
     }
 }
@@ -325,8 +333,8 @@ static int land_class(long long code, bool plateau) {
     return code / 1000 == 3 ? NOC_CLASS_GREEN : code / 1000 == 4 ? NOC_CLASS_WATER : -1;
 }
 
-/* Of city furniture. The standard's list (OGC 12-019, C.4): 1150 street lamp, latern or candelabra, 1170 lamp post, 1220
- * directional spot light, 1230 floodlight mast. Project PLATEAU's: 4200 lighting facilities. */
+/* Of city furniture. The standard's list (OGC 12-019, C.4): 1150 street lamp, latern or candelabra, 1170 lamp post,
+ * 1220 directional spot light, 1230 floodlight mast. Project PLATEAU's: 4200 lighting facilities. */
 static bool lamp_code(long long code, bool plateau) {
     return plateau ? code == 4200 : code == 1150 || code == 1170 || code == 1220 || code == 1230;
 }

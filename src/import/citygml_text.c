@@ -3,8 +3,8 @@
 
 static bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; }
 
-/* Plain decimals of up to 19 digits: exact where the digits fit 2^53 and the power of ten is exact as well (the quotient
- * of two exact numbers is correctly rounded). NULL: anything else, for the slow way. */
+/* Plain decimals of up to 19 digits: exact where the digits fit 2^53 and the power of ten is exact as well (the
+ * quotient of two exact numbers is correctly rounded). NULL: anything else, for the slow way. */
 static const char *scan_plain(const char *s, const char *end, double *out) {
     static const double pow10[] = { 1,    1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                     1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22 };

@@ -11,12 +11,12 @@ typedef struct csv {
     noc_stream *stream;
     noc_log *log;
     char separator;
-    bool special[2][256];   /* bytes that are not just part of a field's text, outside quotes and within */
+    bool special[2][256]; /* bytes that are not just part of a field's text, outside quotes and within */
     char chunk[1 << 16];
     size_t len, pos;
-    size_t line;            /* where the present record began, from 1 */
+    size_t line; /* where the present record began, from 1 */
     size_t next_line;
-    NOC_ARRAY(char) text;   /* fields of the record, each ended by a 0 */
+    NOC_ARRAY(char) text; /* fields of the record, each ended by a 0 */
     NOC_ARRAY(size_t) start;
     bool ended;
 } csv;
@@ -152,8 +152,8 @@ static int find_column(const columns *cols, lamp_field wanted) {
 }
 
 static bool have_place(const bool has[LAMP_FIELD_TOTAL]) {
-    return (has[LAMP_FIELD_LON] && has[LAMP_FIELD_LAT]) || (has[LAMP_FIELD_X] && has[LAMP_FIELD_Y]) || has[LAMP_FIELD_WKT] ||
-           has[LAMP_FIELD_LAT_LON];
+    return (has[LAMP_FIELD_LON] && has[LAMP_FIELD_LAT]) || (has[LAMP_FIELD_X] && has[LAMP_FIELD_Y]) ||
+           has[LAMP_FIELD_WKT] || has[LAMP_FIELD_LAT_LON];
 }
 
 static void understand(columns *cols) {
@@ -176,7 +176,8 @@ static void free_columns(columns *cols) {
     free(cols->names);
 }
 
-/* What the columns of a table's first line are, and how many; 0 if it is none. Probes take no memory, so that none is refused. */
+/* What the columns of a table's first line are, and how many; 0 if it is none. Probes take no memory, so that none is
+ * refused. */
 static size_t probe_columns(const char *head, size_t size, bool has[LAMP_FIELD_TOTAL]) {
     if (size >= 3 && !memcmp(head, "\xef\xbb\xbf", 3)) {
         head += 3;
@@ -255,9 +256,10 @@ static noc_status no_place(csv *c, const columns *cols) {
     size_t n = 0, i = 0;
     for (; i < cols->count && n < 200; i++)
         n += (size_t)noc_snprintf(names + n, sizeof(names) - n, "%s%.40s", i ? ", " : "", cols->names[i]);
-    return noc_error(c->log, NOC_ERR_FORMAT, "%s:%zu: no columns with coordinates (longitude and latitude, or x and y) in the header: it "
-                     "has %s%s. Say which they are: --lamp-columns lon=A,lat=B or x=A,y=B", noc_stream_name(c->stream), c->line, names,
-                     i < cols->count ? ", ..." : "");
+    return noc_error(c->log, NOC_ERR_FORMAT,
+                     "%s:%zu: no columns with coordinates (longitude and latitude, or x and y) in the header: it "
+                     "has %s%s. Say which they are: --lamp-columns lon=A,lat=B or x=A,y=B",
+                     noc_stream_name(c->stream), c->line, names, i < cols->count ? ", ..." : "");
 }
 
 /* Opens the table: header read, the next record is the first row. */
@@ -294,8 +296,9 @@ static noc_status read_header(csv *c, columns *cols) {
     return have_place(has) ? NOC_OK : no_place(c, cols);
 }
 
-/* Columns called x and y without a CRS: degrees if every one of them could be, and none of them lies where `given` (NULL
- * if there is none) is for. --crs is often meant for the city beside the table. One that cannot be is enough to know. */
+/* Columns called x and y without a CRS: degrees if every one of them could be, and none of them lies where `given`
+ * (NULL if there is none) is for. --crs is often meant for the city beside the table. One that cannot be is enough to
+ * know. */
 static noc_status looks_like_degrees(csv *c, columns *cols, geo_crs *given, bool *degrees) {
     size_t inside = 0, outside = 0;
     noc_status status = NOC_OK;
@@ -322,7 +325,8 @@ static noc_status settle_crs(csv *c, columns *cols, lamp_writer *w, const noc_im
     if (!degrees && !(given && geo_crs_is_geographic(given))) {
         status = looks_like_degrees(c, cols, given, &degrees);
         if (!status && degrees)
-            noc_info(c->log, "%s: its coordinates name no CRS and lie within 180 by 90: taken as WGS 84 degrees", w->place);
+            noc_info(c->log, "%s: its coordinates name no CRS and lie within 180 by 90: taken as WGS 84 degrees",
+                     w->place);
     }
     geo_crs_destroy(given);
     if (status)
@@ -440,7 +444,8 @@ noc_status lamp_csv_read(noc_stream *stream, const noc_import_params *params, ge
     *format = "CSV";
     lamp_writer w;
     csv *c = noc_calloc(1, sizeof(*c));
-    noc_status status = c ? lamp_writer_start(&w, sink, noc_stream_name(stream), params) : noc_no_memory(sink->log, noc_stream_name(stream));
+    noc_status status = c ? lamp_writer_start(&w, sink, noc_stream_name(stream), params)
+                          : noc_no_memory(sink->log, noc_stream_name(stream));
     if (status) {
         free(c);
         return status;

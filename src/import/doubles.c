@@ -1,17 +1,19 @@
-/* Two files that describe the same lamps, half a metre to a few metres apart (rounded coordinates, a map beside an inventory), light the
- * city twice. No rule can tell that of one lamp; of a whole file it can be told, and a person is asked. */
+/* Two files that describe the same lamps, half a metre to a few metres apart (rounded coordinates, a map beside an
+ * inventory), light the city twice. No rule can tell that of one lamp; of a whole file it can be told, and a person is
+ * asked. */
 #include "import/load.h"
 
 #include <math.h>
 
-#define NEAR 3.0        /* m: how far surveys of one lamp lie apart. Lamps along a street stand ten times as far from each other */
+#define NEAR                                                                                                           \
+    3.0 /* m: how far surveys of one lamp lie apart. Lamps along a street stand ten times as far from each other */
 #define ONE_POLE 1.0    /* m: lamps of one file that are nearer are heads of one pole */
 #define CELL (2 * NEAR) /* m: cells around a lamp's own hold all that is as near as the rule asks for */
 #define FEWEST 3        /* lamps that are evidence */
 #define MOST 64         /* lamps of a cell that are looked at */
 
-/* The input of the lamp of another file that is this one, it seems: it is near, and less than half as far as the next lamp of the
- * own file. SIZE_MAX: there is none. */
+/* The input of the lamp of another file that is this one, it seems: it is near, and less than half as far as the next
+ * lamp of the own file. SIZE_MAX: there is none. */
 static size_t twin(const pending_lamp *lamps, const lamp_cells *cells, const pending_lamp *p) {
     double own = INFINITY, other = INFINITY;
     size_t found = SIZE_MAX;
@@ -31,9 +33,10 @@ static size_t twin(const pending_lamp *lamps, const lamp_cells *cells, const pen
     return other <= NEAR && 2 * other < own ? found : SIZE_MAX;
 }
 
-/* Lamps [from, to) are those of one input. counts: zeros, one for each input, as they are left. told: the other input + 1 that a warning
- * of an input was about. */
-static void judge_file(const importer *im, const lamp_cells *cells, size_t from, size_t to, size_t *counts, size_t *told) {
+/* Lamps [from, to) are those of one input. counts: zeros, one for each input, as they are left. told: the other input +
+ * 1 that a warning of an input was about. */
+static void judge_file(const importer *im, const lamp_cells *cells, size_t from, size_t to, size_t *counts,
+                       size_t *told) {
     const pending_lamp *lamps = im->lamps.data;
     size_t self = lamps[from].input, best = 0;
     for (size_t i = from; i < to; i++) {
@@ -45,8 +48,11 @@ static void judge_file(const importer *im, const lamp_cells *cells, size_t from,
         best = counts[i] > counts[best] ? i : best;
     if (counts[best] >= FEWEST && 2 * counts[best] >= to - from && told[best] != self + 1) {
         told[self] = best + 1;
-        noc_warn(im->log, "%zu of %zu lamps of %s stand within %g m of a lamp of %s: the same lamps? If so they shine twice: leave one "
-                          "of the files out", counts[best], to - from, im->inputs[self].path, NEAR, im->inputs[best].path);
+        noc_warn(
+            im->log,
+            "%zu of %zu lamps of %s stand within %g m of a lamp of %s: the same lamps? If so they shine twice: leave one "
+            "of the files out",
+            counts[best], to - from, im->inputs[self].path, NEAR, im->inputs[best].path);
     }
     memset(counts, 0, im->input_count * sizeof(*counts));
 }

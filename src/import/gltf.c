@@ -1,13 +1,13 @@
-/* glTF 2.0, as JSON or GLB, read here rather than through Assimp: version 5.2 of that knows no KHR_materials_emissive_strength,
- * gives a light that several nodes share to the last of them, and keeps floats; a street of lamps that are copies of
- * one would have one lamp.
+/* glTF 2.0, as JSON or GLB, read here rather than through Assimp: version 5.2 of that knows no
+ * KHR_materials_emissive_strength, gives a light that several nodes share to the last of them, and keeps floats; a
+ * street of lamps that are copies of one would have one lamp.
  *
- * glTF is in metres, y up, and says so: turned to z up. Nodes' transforms are applied, each use of a mesh is a mesh of its own. */
+ * glTF is in metres, y up, and says so: turned to z up. Nodes' transforms are applied, each use of a mesh is a mesh of
+ * its own. */
 #include "import/gltf.h"
 
 #include <math.h>
 #include <stdio.h>
-
 
 static const char *skip_blanks(const char *p) {
     if (!strncmp(p, "\xef\xbb\xbf", 3))
@@ -29,12 +29,15 @@ static bool probe(const char *head, size_t size) {
 
 /* ---- the container ---- */
 
-static uint32_t le32(const unsigned char *p) { return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24; }
+static uint32_t le32(const unsigned char *p) {
+    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+}
 
 /* Finds the JSON of a GLB, and its binary chunk. */
 static noc_status open_glb(gltf *g, const unsigned char *data, size_t size, const char **json, size_t *json_size) {
     if (size < 20 || le32(data + 4) != 2)
-        return gltf_error(g, size < 20 ? "the file is cut short" : "version %u of GLB, not 2", size < 20 ? 0 : le32(data + 4));
+        return gltf_error(g, size < 20 ? "the file is cut short" : "version %u of GLB, not 2",
+                          size < 20 ? 0 : le32(data + 4));
     if (le32(data + 8) > size)
         return gltf_error(g, "the file is cut short: %zu bytes of %u", size, le32(data + 8));
     size = NOC_MAX(le32(data + 8), 20u); /* what follows is not the model's */
@@ -57,14 +60,17 @@ static noc_status open_glb(gltf *g, const unsigned char *data, size_t size, cons
 }
 
 static bool is_read(const char *extension) {
-    static const char *const known[] = { "KHR_lights_punctual", "KHR_mesh_quantization", "KHR_texture_", "KHR_materials_", "EXT_texture_", "KHR_xmp" };
+    static const char *const known[] = { "KHR_lights_punctual", "KHR_mesh_quantization", "KHR_texture_",
+                                         "KHR_materials_",      "EXT_texture_",          "KHR_xmp" };
     for (size_t i = 0; i < NOC_COUNT(known); i++)
         if (!strncmp(extension, known[i], strlen(known[i])))
             return true;
     return false;
 }
 
-typedef struct text { const char *at, *end; } text;
+typedef struct text {
+    const char *at, *end;
+} text;
 
 static size_t pull(void *buffer, size_t size, void *user) {
     text *t = user;
@@ -91,21 +97,29 @@ static noc_status parse(gltf *g, const char *json, size_t size) {
     json_array_foreach(required, i, item) {
         const char *extension = json_string_value(item);
         if (extension && !is_read(extension))
-            return noc_error(g->log, NOC_ERR_UNSUPPORTED, "%s: glTF: it needs %.80s, which is not read", g->name, extension);
+            return noc_error(g->log, NOC_ERR_UNSUPPORTED, "%s: glTF: it needs %.80s, which is not read", g->name,
+                             extension);
     }
     return NOC_OK;
 }
 
 /* ---- meshes ---- */
 
-typedef struct corners { uint32_t *v; size_t count; } corners; /* of triangles */
+typedef struct corners {
+    uint32_t *v;
+    size_t count;
+} corners; /* of triangles */
 
 /* Triangles of a list, a strip or a fan, less those whose corners are not there. index: NULL counts up. */
-static corners triangulate(const gltf *g, const double *index, size_t count, size_t vertices, size_t mode, bool mirrored, const char *name) {
+static corners triangulate(const gltf *g, const double *index, size_t count, size_t vertices, size_t mode,
+                           bool mirrored, const char *name) {
     size_t most = mode == 4 ? count / 3 : count >= 3 ? count - 2 : 0;
     corners out = { noc_alloc_large(most * 3 + 1, sizeof(*out.v)), 0 };
     for (size_t t = 0; t < most && out.v; t++) {
-        size_t at[3] = { mode == 4 ? 3 * t : mode == 6 ? 0 : t, mode == 4 ? 3 * t + 1 : t + 1, mode == 4 ? 3 * t + 2 : t + 2 };
+        size_t at[3] = { mode == 4   ? 3 * t
+                         : mode == 6 ? 0
+                                     : t,
+                         mode == 4 ? 3 * t + 1 : t + 1, mode == 4 ? 3 * t + 2 : t + 2 };
         if ((mode == 5 && t % 2) != mirrored) {
             size_t swap = at[1];
             at[1] = at[2];
@@ -138,13 +152,15 @@ static noc_status add_primitive(gltf *g, const json_t *primitive, const gltf_fra
     if (status)
         return status;
     if (json_object_get(primitive, "indices")) {
-        status = gltf_index(primitive, "indices", &index_accessor) ? gltf_read(g, index_accessor, "SCALAR", 1, &index, &index_count)
-                                                                   : gltf_error(g, "mesh %.80s: its indices are not there", name);
+        status = gltf_index(primitive, "indices", &index_accessor)
+                     ? gltf_read(g, index_accessor, "SCALAR", 1, &index, &index_count)
+                     : gltf_error(g, "mesh %.80s: its indices are not there", name);
     } else {
         index_count = count;
     }
     const double *m = frame->m;
-    double turn = m[0] * (m[4] * m[8] - m[5] * m[7]) - m[3] * (m[1] * m[8] - m[2] * m[7]) + m[6] * (m[1] * m[5] - m[2] * m[4]);
+    double turn =
+        m[0] * (m[4] * m[8] - m[5] * m[7]) - m[3] * (m[1] * m[8] - m[2] * m[7]) + m[6] * (m[1] * m[5] - m[2] * m[4]);
     for (size_t i = 0; i < count; i++) {
         double p[3] = { xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2] }, q[3];
         for (int k = 0; k < 3; k++)
@@ -164,7 +180,12 @@ static noc_status add_primitive(gltf *g, const json_t *primitive, const gltf_fra
         if (!c.v)
             status = noc_no_memory(g->log, g->name);
     }
-    noc_mesh mesh = { .vertex_count = count, .positions = xyz, .triangle_count = c.count / 3, .indices = c.v, .material = material, .name = name };
+    noc_mesh mesh = { .vertex_count = count,
+                      .positions = xyz,
+                      .triangle_count = c.count / 3,
+                      .indices = c.v,
+                      .material = material,
+                      .name = name };
     if (!status && c.count && !import_triangles(g->scene, &mesh, g->issues))
         status = NOC_ERR_UNSUPPORTED;
     free(c.v);
@@ -179,7 +200,8 @@ static gltf_frame times(const gltf_frame *a, const gltf_frame *b) {
     gltf_frame out;
     for (int c = 0; c < 4; c++)
         for (int r = 0; r < 3; r++)
-            out.m[3 * c + r] = a->m[r] * b->m[3 * c] + a->m[3 + r] * b->m[3 * c + 1] + a->m[6 + r] * b->m[3 * c + 2] + (c == 3 ? a->m[9 + r] : 0);
+            out.m[3 * c + r] = a->m[r] * b->m[3 * c] + a->m[3 + r] * b->m[3 * c + 1] + a->m[6 + r] * b->m[3 * c + 2] +
+                               (c == 3 ? a->m[9 + r] : 0);
     return out;
 }
 
@@ -197,13 +219,15 @@ static gltf_frame own_frame(const gltf *g, const json_t *node, const char *name)
     bad |= !gltf_numbers(node, "rotation", 4, q) && json_object_get(node, "rotation");
     bad |= !gltf_numbers(node, "scale", 3, s) && json_object_get(node, "scale");
     if (bad)
-        geo_issue(g->issues, GEO_GUESSED, "part of a transform that is no list of as many numbers as it takes, left out", name);
+        geo_issue(g->issues, GEO_GUESSED,
+                  "part of a transform that is no list of as many numbers as it takes, left out", name);
     double n = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     double x = q[0] / n, y = q[1] / n, z = q[2] / n, w = q[3] / n;
     if (!(n > 0))
         x = y = z = 0, w = 1;
-    const double rotation[9] = { 1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w), 2 * (x * y - z * w), 1 - 2 * (x * x + z * z),
-                                 2 * (y * z + x * w), 2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y) };
+    const double rotation[9] = { 1 - 2 * (y * y + z * z), 2 * (x * y + z * w),     2 * (x * z - y * w),
+                                 2 * (x * y - z * w),     1 - 2 * (x * x + z * z), 2 * (y * z + x * w),
+                                 2 * (x * z + y * w),     2 * (y * z - x * w),     1 - 2 * (x * x + y * y) };
     for (int i = 0; i < 9; i++)
         out.m[i] = rotation[i] * s[i / 3];
     memcpy(&out.m[9], t, sizeof(t));
@@ -212,7 +236,10 @@ static gltf_frame own_frame(const gltf *g, const json_t *node, const char *name)
 
 #define NO_PARENT SIZE_MAX
 /* parent: its place in the walk's list, before the node's own. */
-typedef struct walked_node { size_t index, parent; gltf_frame frame; } walked_node;
+typedef struct walked_node {
+    size_t index, parent;
+    gltf_frame frame;
+} walked_node;
 typedef struct walk {
     NOC_ARRAY(walked_node) stack, list;
     bool *seen;
@@ -235,7 +262,8 @@ static noc_status push_nodes(gltf *g, walk *w, const json_t *list, size_t parent
         if (index < 0 || (uint64_t)index >= w->count) {
             geo_issue(g->issues, GEO_SKIPPED, "node that is not there", id);
         } else if (w->seen[index]) {
-            geo_issue(g->issues, GEO_SKIPPED, "node that is in two places", id); /* a tree is asked for; a loop would not end */
+            /* a tree is asked for; a loop would not end */
+            geo_issue(g->issues, GEO_SKIPPED, "node that is in two places", id);
         } else {
             status = push_node(g, w, (size_t)index, parent);
         }
@@ -362,8 +390,13 @@ static noc_status add_scene(gltf *g) {
 
 static noc_status read_gltf(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,
                             const mesh_place *place, geo_issues *issues, const char **format) {
-    gltf g = { .name = noc_stream_name(stream), .budget = noc_stream_budget(stream), .log = scene->log,
-               .scene = scene, .place = place, .issues = issues, .anywhere = params && params->allow_outside };
+    gltf g = { .name = noc_stream_name(stream),
+               .budget = noc_stream_budget(stream),
+               .log = scene->log,
+               .scene = scene,
+               .place = place,
+               .issues = issues,
+               .anywhere = params && params->allow_outside };
     char *data;
     size_t size, json_size = 0;
     noc_status status = noc_stream_read_all(stream, scene->log, &data, &size);

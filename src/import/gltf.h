@@ -1,5 +1,6 @@
-/* gltf: glTF 2.0 and GLB. gltf_data.c finds the numbers, gltf_look.c makes materials, lights and cameras of them, gltf.c
- * walks the nodes. The specification meant is Khronos's glTF 2.0 (ISO/IEC 12113:2022) and its extensions by name. */
+/* gltf: glTF 2.0 and GLB. gltf_data.c finds the numbers, gltf_look.c makes materials, lights and cameras of them,
+ * gltf.c walks the nodes. The specification meant is Khronos's glTF 2.0 (ISO/IEC 12113:2022) and its extensions by
+ * name. */
 #ifndef NOC_IMPORT_GLTF_H
 #define NOC_IMPORT_GLTF_H
 
@@ -15,9 +16,9 @@ typedef struct gltf_buffer {
 } gltf_buffer;
 
 typedef struct gltf {
-    const char *name;   /* of the file, for messages */
-    char *folder;       /* it lies in, with a slash at its end, or "" */
-    bool anywhere;      /* its buffers may lie outside that folder */
+    const char *name; /* of the file, for messages */
+    char *folder;     /* it lies in, with a slash at its end, or "" */
+    bool anywhere;    /* its buffers may lie outside that folder */
     noc_log *log;
     noc_scene *scene;
     const mesh_place *place;
@@ -32,11 +33,13 @@ typedef struct gltf {
 } gltf;
 
 /* Affine map of a node: columns x, y, z, then the translation. */
-typedef struct gltf_frame { double m[12]; } gltf_frame;
+typedef struct gltf_frame {
+    double m[12];
+} gltf_frame;
 
 /* gltf_data.c. Reported errors say "FILE: glTF: WHAT". */
 noc_status gltf_error(const gltf *g, const char *fmt, ...) NOC_PRINTF(2, 3);
-json_t *gltf_item(const gltf *g, const char *list, size_t index); /* root.list[index], NULL if there is none */
+json_t *gltf_item(const gltf *g, const char *list, size_t index);      /* root.list[index], NULL if there is none */
 bool gltf_index(const json_t *object, const char *key, size_t *index); /* a whole number >= 0 */
 double gltf_number(const json_t *object, const char *key, double otherwise);
 /* count numbers of an array; false (and out as it was) where it is not that. */

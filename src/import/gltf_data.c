@@ -5,7 +5,9 @@
 #include <stdio.h>
 
 #define MOST_ELEMENTS ((size_t)1 << 31)
-#define MOST_ZEROS ((size_t)1 << 22) /* elements of an accessor without data but its sparse part: some bytes may not ask for gigabytes */
+#define MOST_ZEROS                                                                                                     \
+    ((size_t)1                                                                                                         \
+     << 22) /* elements of an accessor without data but its sparse part: some bytes may not ask for gigabytes */
 
 noc_status gltf_error(const gltf *g, const char *fmt, ...) {
     char text[400];
@@ -49,7 +51,9 @@ bool gltf_numbers(const json_t *object, const char *key, size_t count, double *o
     return true;
 }
 
-json_t *gltf_extension(const json_t *object, const char *name) { return json_object_get(json_object_get(object, "extensions"), name); }
+json_t *gltf_extension(const json_t *object, const char *name) {
+    return json_object_get(json_object_get(object, "extensions"), name);
+}
 
 /* ---- buffers: the GLB's own, data URIs, files beside it ---- */
 
@@ -80,7 +84,9 @@ static bool decode_base64(const char *text, unsigned char *out, size_t *size) {
     return true;
 }
 
-static int hex(char c) { return c >= '0' && c <= '9' ? c - '0' : (c | 32) >= 'a' && (c | 32) <= 'f' ? (c | 32) - 'a' + 10 : -1; }
+static int hex(char c) {
+    return c >= '0' && c <= '9' ? c - '0' : (c | 32) >= 'a' && (c | 32) <= 'f' ? (c | 32) - 'a' + 10 : -1;
+}
 
 /* %20 and the like, in place. */
 static void decode_percent(char *text) {
@@ -105,7 +111,8 @@ static noc_status open_file(const gltf *g, const char *uri, gltf_buffer *b) {
     if (!f && !why) {
         status = noc_no_memory(g->log, g->name);
     } else if (!f) {
-        status = noc_error(g->log, NOC_ERR_IO, "%s: glTF: its buffer \"%.200s\" cannot be opened: %s", g->name, name, why);
+        status =
+            noc_error(g->log, NOC_ERR_IO, "%s: glTF: its buffer \"%.200s\" cannot be opened: %s", g->name, name, why);
     } else if (!(b->owned = noc_alloc_large(size, 1))) {
         status = noc_no_memory(g->log, g->name);
     } else {
@@ -170,7 +177,10 @@ void gltf_close_buffers(gltf *g) {
 
 /* ---- accessors ---- */
 
-typedef struct component { size_t size; bool sign, real; } component;
+typedef struct component {
+    size_t size;
+    bool sign, real;
+} component;
 
 static bool component_of(const json_t *object, component *c) {
     size_t type;
@@ -204,32 +214,36 @@ static double decode(const unsigned char *p, component c, bool normalised) {
     return c.sign ? NOC_MAX(x / (double)(most / 2), -1) : x / (double)most;
 }
 
-/* Where count elements of `element` bytes of a view begin, and how far they are apart; NULL where they are not all there. */
+/* Where count elements of `element` bytes of a view begin, and how far they are apart; NULL where they are not all
+ * there. */
 static const unsigned char *view_data(const gltf *g, const json_t *from, size_t count, size_t element, size_t *stride) {
     size_t view_index, offset = 0, buffer, start = 0, length;
     const json_t *view = gltf_index(from, "bufferView", &view_index) ? gltf_item(g, "bufferViews", view_index) : NULL;
     *stride = element;
-    if (!view || !gltf_index(view, "buffer", &buffer) || buffer >= g->buffer_count || !gltf_index(view, "byteLength", &length))
+    if (!view || !gltf_index(view, "buffer", &buffer) || buffer >= g->buffer_count ||
+        !gltf_index(view, "byteLength", &length))
         return NULL;
     if ((json_object_get(view, "byteOffset") && !gltf_index(view, "byteOffset", &start)) ||
         (json_object_get(from, "byteOffset") && !gltf_index(from, "byteOffset", &offset)) ||
         (json_object_get(view, "byteStride") && !gltf_index(view, "byteStride", stride)))
         return NULL;
     const gltf_buffer *b = &g->buffers[buffer];
-    bool inside = *stride >= element && *stride <= 4096 && start <= b->size && length <= b->size - start && offset <= length;
+    bool inside =
+        *stride >= element && *stride <= 4096 && start <= b->size && length <= b->size - start && offset <= length;
     if (!inside || !b->data || length - offset < element || (length - offset - element) / *stride < count - 1)
         return NULL;
     return b->data + start + offset;
 }
 
-static noc_status read_sparse(const gltf *g, const json_t *sparse, size_t accessor, component c, bool normalised, size_t width,
-                              double *out, size_t count) {
+static noc_status read_sparse(const gltf *g, const json_t *sparse, size_t accessor, component c, bool normalised,
+                              size_t width, double *out, size_t count) {
     json_t *indices = json_object_get(sparse, "indices"), *values = json_object_get(sparse, "values");
     component ic;
     size_t n, index_stride, value_stride;
     if (!gltf_index(sparse, "count", &n) || !n || n > count || !component_of(indices, &ic) || ic.real)
         return gltf_error(g, "accessor %zu: its sparse part is not as it should be", accessor);
-    const unsigned char *at = view_data(g, indices, n, ic.size, &index_stride), *from = view_data(g, values, n, c.size * width, &value_stride);
+    const unsigned char *at = view_data(g, indices, n, ic.size, &index_stride),
+                        *from = view_data(g, values, n, c.size * width, &value_stride);
     if (!at || !from)
         return gltf_error(g, "accessor %zu: its sparse part reaches beyond its buffer", accessor);
     for (size_t i = 0; i < n; i++) {

@@ -1,14 +1,14 @@
 /* What shines and what is seen: materials, KHR_lights_punctual, cameras.
  *
  * Units: emissiveFactor times emissiveStrength is a radiance of cd/m2, lights are in cd, as the specifications have it.
- * Colours are linear already. Textures are not read; what they would have been multiplied with stands in for them where that
- * makes sense, and the report says so. */
+ * Colours are linear already. Textures are not read; what they would have been multiplied with stands in for them where
+ * that makes sense, and the report says so. */
 #include "import/gltf.h"
 
 #include <math.h>
 #include <stdio.h>
 
-#define DIELECTRIC 0.04 /* f0, as the specification's default */
+#define DIELECTRIC 0.04     /* f0, as the specification's default */
 #define UNKNOWN_TEXTURE 0.5 /* reflectance of a base colour that is in a texture, as a share of its factor */
 
 static double limited(double x, double lo, double hi) { return x >= lo ? NOC_MIN(x, hi) : lo; } /* NaN becomes lo */
@@ -17,7 +17,8 @@ static bool no_textures(const gltf *g, const json_t *pbr, const json_t *m, const
     bool base = json_object_get(pbr, "baseColorTexture") != NULL;
     if (base || json_object_get(pbr, "metallicRoughnessTexture") || json_object_get(m, "emissiveTexture"))
         geo_issue(g->issues, GEO_GUESSED, "textures are not read, plain material", name);
-    if (json_object_get(m, "emissiveTexture") && (out->emission[0] > 0 || out->emission[1] > 0 || out->emission[2] > 0)) {
+    if (json_object_get(m, "emissiveTexture") &&
+        (out->emission[0] > 0 || out->emission[1] > 0 || out->emission[2] > 0)) {
         /* it says where the surface shines, most often on little of it */
         memset(out->emission, 0, sizeof(out->emission));
         geo_issue(g->issues, GEO_SKIPPED, "emission by a texture, left dark", name);
@@ -35,7 +36,8 @@ static noc_material convert_material(const gltf *g, const json_t *m, const char 
     double strength = gltf_number(gltf_extension(m, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
     for (int k = 0; k < 3; k++)
         out.emission[k] = (float)limited(emission[k] * strength, 0, 1e12);
-    bool textured = no_textures(g, pbr, m, name, &out), mapped = json_object_get(pbr, "metallicRoughnessTexture") != NULL;
+    bool textured = no_textures(g, pbr, m, name, &out),
+         mapped = json_object_get(pbr, "metallicRoughnessTexture") != NULL;
     double metallic = mapped ? 0 : limited(gltf_number(pbr, "metallicFactor", 1), 0, 1);
     double roughness = mapped ? 0.8 : limited(gltf_number(pbr, "roughnessFactor", 1), 0, 1), luminance = 0;
     for (int k = 0; k < 3; k++) {
@@ -133,7 +135,8 @@ noc_status gltf_light(gltf *g, const json_t *node, const gltf_frame *frame, cons
         return NOC_OK;
     }
     if (strcmp(type, "point") && strcmp(type, "spot")) {
-        geo_issue(g->issues, GEO_SKIPPED, strcmp(type, "directional") ? "light of an unknown type" : "directional light", name);
+        geo_issue(g->issues, GEO_SKIPPED,
+                  strcmp(type, "directional") ? "light of an unknown type" : "directional light", name);
         return NOC_OK;
     }
     for (int k = 0; k < 3; k++)
@@ -176,7 +179,8 @@ noc_status gltf_camera(gltf *g, const json_t *node, const gltf_frame *frame, con
         c.target[k] = c.eye[k] + 10 * look[k];
     bool aimed = look[0] != 0 || look[1] != 0 || look[2] != 0, upright = c.up[0] != 0 || c.up[1] != 0 || c.up[2] != 0;
     if (!(c.fov_deg >= 1 && c.fov_deg <= 170) || !usable(c.eye, 3, 1e7) || !aimed || !upright) {
-        geo_issue(g->issues, GEO_SKIPPED, "camera that looks nowhere, or whose angle is not within 1 to 170 degrees", name);
+        geo_issue(g->issues, GEO_SKIPPED, "camera that looks nowhere, or whose angle is not within 1 to 170 degrees",
+                  name);
         return NOC_OK;
     }
     return noc_scene_set_camera(g->scene, &c);

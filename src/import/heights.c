@@ -4,10 +4,11 @@
 
 #include <math.h>
 
-#define OTHER_SYSTEM 8.0 /* m off, all alike: another height system. Those in use in one country differ by less, or by some 50 m */
-#define ALIKE 0.2        /* of that offset: half of the lamps lie within so much of it */
-#define STEEP 0.2        /* a lamp is believed that far off what the city tells, for each metre to where it tells it */
-#define OFF 3.0          /* m more */
+#define OTHER_SYSTEM                                                                                                   \
+    8.0 /* m off, all alike: another height system. Those in use in one country differ by less, or by some 50 m */
+#define ALIKE 0.2 /* of that offset: half of the lamps lie within so much of it */
+#define STEEP 0.2 /* a lamp is believed that far off what the city tells, for each metre to where it tells it */
+#define OFF 3.0   /* m more */
 
 /* Height of the ground that the city tells of, and how far away it tells it; false where it does not. */
 static bool told_height(const importer *im, const city_ground *ground, const double *p, double *z, double *distance) {
@@ -47,9 +48,11 @@ static void check_input(importer *im, const city_ground *ground, size_t index, d
     for (size_t i = 0; i < im->lamps.len; i++)
         if (im->lamps.data[i].input == index)
             im->lamps.data[i].lamp.xyz[2] = NAN;
-    noc_warn(im->log, "%s: its %zu lamps with a height lie some %.1f m %s the city's ground, alike: are their heights of another system "
-                      "(ellipsoidal, another datum, feet)? They are not followed: the lamps stand on the ground", im->inputs[index].path, n,
-             fabs(middle), middle > 0 ? "above" : "below");
+    noc_warn(
+        im->log,
+        "%s: its %zu lamps with a height lie some %.1f m %s the city's ground, alike: are their heights of another system "
+        "(ellipsoidal, another datum, feet)? They are not followed: the lamps stand on the ground",
+        im->inputs[index].path, n, fabs(middle), middle > 0 ? "above" : "below");
 }
 
 noc_status heights_check(importer *im, const city_ground *ground) {
@@ -66,7 +69,8 @@ noc_status heights_check(importer *im, const city_ground *ground) {
 void heights_lay(importer *im, city_ground *ground, double *points, size_t count) {
     for (size_t i = 0; i < count; i++) {
         double *p = points + 3 * i, z, distance;
-        /* between houses the city tells little: there a lamp may be on a hill; beside one it may be a slip of the pen */
+        /* between houses the city tells little: there a lamp may be on a hill; beside one it may be a slip of the pen
+         */
         if (isfinite(p[2]) && told_height(im, ground, p, &z, &distance) && !(fabs(p[2] - z) <= OFF + STEEP * distance))
             p[2] = NAN;
     }

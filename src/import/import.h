@@ -1,5 +1,5 @@
-/* import: one reader a format, in one table; told apart by content. Readers emit into a geo_sink, or, for meshes that are
- * already triangles with materials, into a scene. */
+/* import: one reader a format, in one table; told apart by content. Readers emit into a geo_sink, or, for meshes that
+ * are already triangles with materials, into a scene. */
 #ifndef NOC_IMPORT_H
 #define NOC_IMPORT_H
 
@@ -23,11 +23,13 @@ bool import_fits(const import_budget *b, double bytes);
 double import_json_cost(const char *text, size_t size);
 
 /* json.c: json_load_callback, whose allocations may be refused. */
-json_t *import_json_load(size_t (*from)(void *buffer, size_t size, void *user), void *user, size_t flags, json_error_t *error);
+json_t *import_json_load(size_t (*from)(void *buffer, size_t size, void *user), void *user, size_t flags,
+                         json_error_t *error);
 /* Reports why it gave NULL, and returns the status. */
 noc_status import_json_error(const json_error_t *error, const char *name, noc_log *log);
 
-/* Sequential bytes of a plain, gzip or zip file (one member of a zip: the first whose name tells a model or map best). */
+/* Sequential bytes of a plain, gzip or zip file (one member of a zip: the first whose name tells a model or map best).
+ */
 typedef struct noc_stream noc_stream;
 /* NULL after reporting an error, which *status (may be NULL) gets; directories are an error. */
 noc_stream *noc_stream_open(const char *path, noc_log *log, noc_status *status);
@@ -37,21 +39,23 @@ noc_status noc_stream_read(noc_stream *s, void *data, size_t size, size_t *got);
 /* The whole content, with a 0 behind it; *data is NULL after an error, free() it otherwise. */
 noc_status noc_stream_read_all(noc_stream *s, noc_log *log, char **data, size_t *size);
 noc_status noc_stream_rewind(noc_stream *s);
-const char *noc_stream_name(const noc_stream *s);     /* path, or path!member */
-uint64_t noc_stream_size(const noc_stream *s);        /* bytes as stored */
-uint64_t noc_stream_read_bytes(const noc_stream *s);  /* how far it was read, whatever was read twice */
-size_t noc_stream_unread(const noc_stream *s);        /* other members of a zip that look like models, too */
-bool noc_stream_trailing(const noc_stream *s);        /* bytes followed the gzip data, and were ignored; known at the end */
+const char *noc_stream_name(const noc_stream *s);    /* path, or path!member */
+uint64_t noc_stream_size(const noc_stream *s);       /* bytes as stored */
+uint64_t noc_stream_read_bytes(const noc_stream *s); /* how far it was read, whatever was read twice */
+size_t noc_stream_unread(const noc_stream *s);       /* other members of a zip that look like models, too */
+/* bytes followed the gzip data, and were ignored; known at the end */
+bool noc_stream_trailing(const noc_stream *s);
 void noc_stream_limit(noc_stream *s, const noc_import_params *params); /* the defaults' hold until it is called */
-import_budget *noc_stream_budget(noc_stream *s);      /* what compressed data grows to is held to it */
-double noc_stream_progress(const noc_stream *s);      /* share of the stored bytes consumed, 0..1 */
+import_budget *noc_stream_budget(noc_stream *s);                       /* what compressed data grows to is held to it */
+double noc_stream_progress(const noc_stream *s);                       /* share of the stored bytes consumed, 0..1 */
 
-/* Files that another file names (beside.c). `folder` is that file's, with a slash at its end, or "" for the working one. */
+/* Files that another file names (beside.c). `folder` is that file's, with a slash at its end, or "" for the working
+ * one. */
 /* What keeps the file at path (as it is to be opened) from being read: it is not there, no regular file, or, unless
  * `anywhere`, lies outside the folder once links are followed. NULL if nothing does; else valid until the next call. */
 const char *import_named_trouble(const char *folder, const char *path, bool anywhere);
-/* Opens one for reading and tells its size. NULL with *why where there is trouble, and with a *why of NULL where memory is refused.
- * Never waits for a pipe. */
+/* Opens one for reading and tells its size. NULL with *why where there is trouble, and with a *why of NULL where memory
+ * is refused. Never waits for a pipe. */
 FILE *import_open_named(const char *folder, const char *name, bool anywhere, size_t *size, const char **why);
 
 /* Takes a mesh's coordinates (x east, y north, z up, as the file has them) to the scene's frame, in place. */
@@ -68,8 +72,9 @@ typedef struct mesh_parts {
     void *ctx;
     noc_log *log;
     geo_issues *issues;
-    int (*material)(void *ctx, const noc_material *material);                /* its index; negative after reporting */
-    noc_status (*mesh)(void *ctx, noc_mesh *mesh, double *positions);        /* the mesh's, as the file has them: may be moved */
+    int (*material)(void *ctx, const noc_material *material); /* its index; negative after reporting */
+    /* the mesh's, as the file has them: may be moved */
+    noc_status (*mesh)(void *ctx, noc_mesh *mesh, double *positions);
 } mesh_parts;
 
 /* Parts that go into a scene. */
@@ -81,7 +86,7 @@ typedef struct mesh_scene {
 mesh_parts mesh_scene_parts(mesh_scene *to);
 
 typedef struct noc_reader {
-    const char *name;  /* "CityGML" */
+    const char *name; /* "CityGML" */
     enum { NOC_READS_CITY, NOC_READS_MESH, NOC_READS_LAMPS } reads;
     /* Does the beginning of the (decompressed) content look like this format? head is size bytes and then a 0. */
     bool (*probe)(const char *head, size_t size);
@@ -92,8 +97,8 @@ typedef struct noc_reader {
     noc_status (*read_mesh)(const char *path, noc_stream *stream, const noc_import_params *params, noc_scene *scene,
                             const mesh_place *place, geo_issues *issues, const char **format);
     /* Meshes that come as parts alone: read_mesh is then the same into a scene. */
-    noc_status (*read_parts)(const char *path, noc_stream *stream, const noc_import_params *params, const mesh_parts *parts,
-                             const char **format);
+    noc_status (*read_parts)(const char *path, noc_stream *stream, const noc_import_params *params,
+                             const mesh_parts *parts, const char **format);
     /* Is this content read by a library that nothing stops (GDAL, Assimp)? Then remote.c reads it. NULL: never. */
     bool (*foreign)(const char *head, size_t size);
     const char *missing; /* not NULL: this build lacks the part; the text says which */
@@ -101,6 +106,5 @@ typedef struct noc_reader {
 
 /* The table, ended by a NULL name. */
 extern const noc_reader noc_reader_citygml, noc_reader_mesh, noc_reader_gltf, noc_reader_overpass, noc_reader_vector;
-
 
 #endif

@@ -1,8 +1,9 @@
 /* JSON by jansson, whose allocations are refused with a status.
  *
- * jansson 2.14 does not look whether a text that it reads could grow (lex_save), and reads beyond its end then. So memory is set
- * aside before each piece of the file: where an allocation is refused, that is given back, the allocation tried once more, and the
- * reading ended at the next piece. A text is doubled as it grows, so twice the bytes that came so far are enough. */
+ * jansson 2.14 does not look whether a text that it reads could grow (lex_save), and reads beyond its end then. So
+ * memory is set aside before each piece of the file: where an allocation is refused, that is given back, the allocation
+ * tried once more, and the reading ended at the next piece. A text is doubled as it grows, so twice the bytes that came
+ * so far are enough. */
 #include "import/import.h"
 
 #include <pthread.h>
@@ -10,7 +11,7 @@
 typedef struct json_reading {
     size_t (*pull)(void *buffer, size_t size, void *user);
     void *user;
-    void *aside;  /* NULL once it was given back */
+    void *aside; /* NULL once it was given back */
     size_t pulled, aside_size;
     bool refused;
 } json_reading;
@@ -61,7 +62,8 @@ static size_t pull(void *buffer, size_t size, void *user) {
     return set_aside(r) ? got : (size_t)-1;
 }
 
-json_t *import_json_load(size_t (*from)(void *buffer, size_t size, void *user), void *user, size_t flags, json_error_t *error) {
+json_t *import_json_load(size_t (*from)(void *buffer, size_t size, void *user), void *user, size_t flags,
+                         json_error_t *error) {
     json_reading r = { .pull = from, .user = user };
     *error = (json_error_t){ 0 };
     if (!set_aside(&r))

@@ -15,7 +15,8 @@ bool lamp_cells_create(lamp_cells *cells, size_t lamps, double edge) {
 }
 
 uint32_t *lamp_cells_at(const lamp_cells *cells, const double xy[2], int neighbour) {
-    int64_t x = (int64_t)floor(xy[0] / cells->edge) + neighbour % 3 - 1, y = (int64_t)floor(xy[1] / cells->edge) + neighbour / 3 - 1;
+    int64_t x = (int64_t)floor(xy[0] / cells->edge) + neighbour % 3 - 1,
+            y = (int64_t)floor(xy[1] / cells->edge) + neighbour / 3 - 1;
     uint64_t h = (uint64_t)x * 0x9e3779b97f4a7c15u + (uint64_t)y * 0xc2b2ae3d27d4eb4fu;
     return &cells->first[(h ^ h >> 32) & (cells->size - 1)];
 }

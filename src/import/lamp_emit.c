@@ -49,7 +49,8 @@ noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count,
     note(w, tags, count, verdict != LAMP_NONE);
     if (verdict == LAMP_NONE)
         return NOC_OK;
-    geo_lamp lamp = { .xyz = { x, y, isfinite(z) && z != 0 ? z : NAN }, .id = id }; /* 0: written for want of a height */
+    /* 0: written for want of a height */
+    geo_lamp lamp = { .xyz = { x, y, isfinite(z) && z != 0 ? z : NAN }, .id = id };
     if (!lamp_read(w->keys, tags, count, &lamp, verdict == LAMP_ACTIVE ? w->sink->issues : NULL))
         return noc_no_memory(w->sink->log, w->place);
     if (!lamp_accept(verdict, lamp.id, w->sink->issues))
@@ -73,7 +74,9 @@ noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count,
 
 /* ---- what is not read ---- */
 
-static const struct { const char *one, *many, *reason; } unread[] = {
+static const struct {
+    const char *one, *many, *reason;
+} unread[] = {
     [GEO_POINTS] = { "set of points", "sets of points", "set of points that is not read: a lamp is a single one" },
     [GEO_LINES] = { "line", "lines", "line that is not read: of maps only lamps are read" },
     [GEO_AREAS] = { "polygon", "polygons", "polygon that is not read: outlines of buildings are not extruded yet" },
@@ -107,8 +110,8 @@ static void put_count(char text[32], uint64_t n) {
 /* Says once what of the map is not read; the report of whoever inspects it tells the same. How many there are. */
 static uint64_t tell_unread(lamp_writer *w) {
     const geo_features *f = &w->seen;
-    const uint64_t counts[] = { f->unread[GEO_POINTS], f->unread[GEO_LINES], f->unread[GEO_AREAS],
-                                f->buildings, f->streets };
+    const uint64_t counts[] = { f->unread[GEO_POINTS], f->unread[GEO_LINES], f->unread[GEO_AREAS], f->buildings,
+                                f->streets };
     char list[240] = "", number[32];
     uint64_t sum = 0;
     geo_issues_add(w->sink->issues, GEO_SKIPPED, unread[GEO_DIMENSIONS].reason, f->buildings, "");
@@ -140,25 +143,31 @@ noc_status lamp_writer_end(lamp_writer *w) {
     if (status)
         return status;
     if (w->off_earth > w->lamps && w->exchangeable == w->off_earth)
-        return noc_error(log, NOC_ERR_FORMAT,
-                         "%s: its coordinates are no longitudes and latitudes; with the two exchanged all %zu are: exchange them in the "
-                         "file", w->place, w->off_earth);
+        return noc_error(
+            log, NOC_ERR_FORMAT,
+            "%s: its coordinates are no longitudes and latitudes; with the two exchanged all %zu are: exchange them in the "
+            "file",
+            w->place, w->off_earth);
     if (w->off_earth > w->lamps)
-        return noc_error(log, NOC_ERR_FORMAT,
-                         "%s: its coordinates are no longitudes and latitudes, and it names no other CRS; give one with --crs",
-                         w->place);
+        return noc_error(
+            log, NOC_ERR_FORMAT,
+            "%s: its coordinates are no longitudes and latitudes, and it names no other CRS; give one with --crs",
+            w->place);
     if (w->lost && !w->lamps)
         return NOC_OK; /* the importer says that none of its lamps is of use */
     if (w->lamps)
         return NOC_OK;
     if (w->strange_points && !w->sink->inspect)
-        return noc_error(log, NOC_ERR_FORMAT,
-                         "%s: nothing tells that its %zu points are lamps: if they are, say --lamps %s (nocturne info shows its "
-                         "columns, --lamp-columns says what they mean)", w->place, w->strange_points, w->place);
+        return noc_error(
+            log, NOC_ERR_FORMAT,
+            "%s: nothing tells that its %zu points are lamps: if they are, say --lamps %s (nocturne info shows its "
+            "columns, --lamp-columns says what they mean)",
+            w->place, w->strange_points, w->place);
     if (w->sink->named_lamps && !w->features)
         return noc_error(log, NOC_ERR_FORMAT, "%s: named with --lamps, but it holds no points", w->place);
     if (w->features && !w->strange_points)
-        noc_warn(log, "%s: none of its %zu %s is a street lamp in use", w->place, w->features, others ? "points" : "features");
+        noc_warn(log, "%s: none of its %zu %s is a street lamp in use", w->place, w->features,
+                 others ? "points" : "features");
     else if (!w->features && !others)
         noc_warn(log, "%s: no tag and no column of it tells of street lamps", w->place);
     return NOC_OK;

@@ -1,5 +1,5 @@
-/* What the keys of a file mean: by the words, and by what the user maps with --lamp-columns; and which values they had, so
- * that a person can see what was read as what. */
+/* What the keys of a file mean: by the words, and by what the user maps with --lamp-columns; and which values they had,
+ * so that a person can see what was read as what. */
 #include "import/lamp_tags.h"
 
 #define MAX_KEYS 4096 /* of one file: tags may be anything, columns end there as well */
@@ -10,16 +10,36 @@ static const struct {
     const char *name;
     lamp_field field;
 } fields[] = {
-    { "height", LAMP_FIELD_HEIGHT }, { "lumens", LAMP_FIELD_LUMENS }, { "lumen", LAMP_FIELD_LUMENS }, { "flux", LAMP_FIELD_LUMENS },
-    { "watts", LAMP_FIELD_WATTS }, { "watt", LAMP_FIELD_WATTS }, { "wattage", LAMP_FIELD_WATTS }, { "power", LAMP_FIELD_WATTS },
-    { "kelvin", LAMP_FIELD_KELVIN }, { "cct", LAMP_FIELD_KELVIN }, { "colour", LAMP_FIELD_COLOUR }, { "color", LAMP_FIELD_COLOUR },
-    { "source", LAMP_FIELD_TYPE }, { "type", LAMP_FIELD_TYPE }, { "direction", LAMP_FIELD_DIRECTION },
-    { "count", LAMP_FIELD_COUNT }, { "mount", LAMP_FIELD_MOUNT }, { "status", LAMP_FIELD_STATUS }, { "id", LAMP_FIELD_ID },
-    { "ele", LAMP_FIELD_ELEVATION }, { "lon", LAMP_FIELD_LON }, { "lat", LAMP_FIELD_LAT }, { "x", LAMP_FIELD_X },
-    { "y", LAMP_FIELD_Y }, { "wkt", LAMP_FIELD_WKT }, { "latlon", LAMP_FIELD_LAT_LON },
+    { "height", LAMP_FIELD_HEIGHT },
+    { "lumens", LAMP_FIELD_LUMENS },
+    { "lumen", LAMP_FIELD_LUMENS },
+    { "flux", LAMP_FIELD_LUMENS },
+    { "watts", LAMP_FIELD_WATTS },
+    { "watt", LAMP_FIELD_WATTS },
+    { "wattage", LAMP_FIELD_WATTS },
+    { "power", LAMP_FIELD_WATTS },
+    { "kelvin", LAMP_FIELD_KELVIN },
+    { "cct", LAMP_FIELD_KELVIN },
+    { "colour", LAMP_FIELD_COLOUR },
+    { "color", LAMP_FIELD_COLOUR },
+    { "source", LAMP_FIELD_TYPE },
+    { "type", LAMP_FIELD_TYPE },
+    { "direction", LAMP_FIELD_DIRECTION },
+    { "count", LAMP_FIELD_COUNT },
+    { "mount", LAMP_FIELD_MOUNT },
+    { "status", LAMP_FIELD_STATUS },
+    { "id", LAMP_FIELD_ID },
+    { "ele", LAMP_FIELD_ELEVATION },
+    { "lon", LAMP_FIELD_LON },
+    { "lat", LAMP_FIELD_LAT },
+    { "x", LAMP_FIELD_X },
+    { "y", LAMP_FIELD_Y },
+    { "wkt", LAMP_FIELD_WKT },
+    { "latlon", LAMP_FIELD_LAT_LON },
 };
-#define FIELD_NAMES "height, lumens, watts, kelvin, colour, source, direction, count, mount, status, id, ele, lon, lat, x, y, " \
-                    "wkt, latlon"
+#define FIELD_NAMES                                                                                                    \
+    "height, lumens, watts, kelvin, colour, source, direction, count, mount, status, id, ele, lon, lat, x, y, "        \
+    "wkt, latlon"
 
 static const char *field_name(lamp_field field) {
     for (size_t i = 0; i < NOC_COUNT(fields); i++)
@@ -41,13 +61,15 @@ static lamp_unit unit_of(lamp_field field) {
 }
 
 static const char *default_unit(lamp_unit unit) {
-    static const char *const names[] = { [LAMP_METRES] = "m", [LAMP_WATTS] = "W", [LAMP_LUMENS] = "lm", [LAMP_KELVIN] = "K",
-                                         [LAMP_PLAIN] = "" };
+    static const char *const names[] = {
+        [LAMP_METRES] = "m", [LAMP_WATTS] = "W", [LAMP_LUMENS] = "lm", [LAMP_KELVIN] = "K", [LAMP_PLAIN] = ""
+    };
     return names[unit];
 }
 
 /* Finds what a folded name means, as it is or without a unit at its end; the unit must be one of the field's. */
-static lamp_field find_with_unit(const char *folded, lamp_field (*find)(const char *, lamp_meaning *), lamp_meaning *m) {
+static lamp_field find_with_unit(const char *folded, lamp_field (*find)(const char *, lamp_meaning *),
+                                 lamp_meaning *m) {
     *m = (lamp_meaning){ .scale = 1, .unit = "" };
     m->field = find(folded, m);
     if (m->field) {
@@ -127,7 +149,8 @@ static noc_status add_mapping(mappings *maps, char *item, noc_log *log) {
     lamp_fold(item, false, field, sizeof(field));
     map.unit_named = !find_field(field, &map.meaning);
     if (!find_with_unit(field, find_field, &map.meaning))
-        return noc_error(log, NOC_ERR_ARGUMENT, "lamp-columns: there is no field \"%.40s\"; the fields are " FIELD_NAMES, item);
+        return noc_error(log, NOC_ERR_ARGUMENT,
+                         "lamp-columns: there is no field \"%.40s\"; the fields are " FIELD_NAMES, item);
     for (size_t i = 0; i < maps->len; i++)
         if (lamp_same_key(maps->data[i].column, map.column))
             return noc_error(log, NOC_ERR_ARGUMENT, "lamp-columns: the column \"%.40s\" is named twice", map.column);
@@ -158,8 +181,8 @@ noc_status lamp_mapping_check(const noc_import_params *params, noc_log *log) {
     return status;
 }
 
-noc_status lamp_mapping_missing(const noc_import_params *params, bool (*found)(void *ctx, const char *name), void *ctx, noc_log *log,
-                                char **missing) {
+noc_status lamp_mapping_missing(const noc_import_params *params, bool (*found)(void *ctx, const char *name), void *ctx,
+                                noc_log *log, char **missing) {
     mappings maps = { 0 };
     noc_status status = parse_mappings(params, &maps, log);
     *missing = NULL;
@@ -178,8 +201,8 @@ typedef struct key {
     size_t values;
     char *example;
     const char *ignored; /* the heading's unit, where a mapped field names another one; else NULL */
-    bool tells; /* what is a lamp */
-    bool noted; /* belongs into the table of columns; the others were only asked for */
+    bool tells;          /* what is a lamp */
+    bool noted;          /* belongs into the table of columns; the others were only asked for */
 } key;
 
 struct lamp_keys {
@@ -208,8 +231,8 @@ void lamp_keys_destroy(lamp_keys *keys) {
     free(keys);
 }
 
-/* The unit that a heading names for a field it is mapped to: where the words know it as that field, theirs; else its last word,
- * for "Shaft" ends in "ft" and is no unit. */
+/* The unit that a heading names for a field it is mapped to: where the words know it as that field, theirs; else its
+ * last word, for "Shaft" ends in "ft" and is no unit. */
 static bool heading_unit(const char *name, lamp_field field, double *scale, const char **unit) {
     char folded[128];
     lamp_meaning m = lamp_meaning_of(name);
@@ -281,8 +304,8 @@ unsigned lamp_keys_know(lamp_keys *keys, const char *name) {
 
 void lamp_keys_weigh(lamp_keys *keys, const lamp_tag *tag) {
     lamp_field field = lamp_tag_meaning(keys, tag).field;
-    bool number = field == LAMP_FIELD_LON || field == LAMP_FIELD_LAT || field == LAMP_FIELD_X || field == LAMP_FIELD_Y ||
-                  (field && unit_of(field) != LAMP_PLAIN);
+    bool number = field == LAMP_FIELD_LON || field == LAMP_FIELD_LAT || field == LAMP_FIELD_X ||
+                  field == LAMP_FIELD_Y || (field && unit_of(field) != LAMP_PLAIN);
     char sign = number && tag->value ? lamp_decimal_sign(tag->value) : 0;
     keys->commas += sign == ',';
     keys->points += sign == '.';
@@ -333,8 +356,8 @@ static void warn_of_units(const lamp_keys *keys, noc_log *log, const char *place
     for (size_t i = 0; i < keys->keys.len; i++) {
         const key *k = &keys->keys.data[i];
         if (k->noted && k->ignored)
-            noc_warn(log, "%s: the column \"%.60s\" says %s, and --lamp-columns says %s: taken as %s", place, k->name, k->ignored,
-                     k->meaning.unit, k->meaning.unit);
+            noc_warn(log, "%s: the column \"%.60s\" says %s, and --lamp-columns says %s: taken as %s", place, k->name,
+                     k->ignored, k->meaning.unit, k->meaning.unit);
     }
 }
 
@@ -353,8 +376,11 @@ noc_status lamp_keys_report(lamp_keys *keys, geo_sink *sink, const char *place, 
         if (!k->noted)
             continue;
         bool kind = k->tells || (!k->meaning.field && lamp_key_tells(k->name));
-        columns[n++] = (geo_column){ .name = k->name, .field = kind ? "kind" : field_name(k->meaning.field), .unit = k->meaning.unit,
-                                     .example = k->example ? k->example : "", .values = k->values,
+        columns[n++] = (geo_column){ .name = k->name,
+                                     .field = kind ? "kind" : field_name(k->meaning.field),
+                                     .unit = k->meaning.unit,
+                                     .example = k->example ? k->example : "",
+                                     .values = k->values,
                                      .mapped = k->meaning.rank < 0 };
     }
     noc_status status = sink->columns(sink->ctx, points, columns, n);

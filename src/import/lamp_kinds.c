@@ -1,7 +1,7 @@
-/* Tables whose values, not whose columns, say that their rows are lamps: "Lichtmast mit Auslegerleuchte" in a column called
- * "bezeichnung". A column says what the rows are where at least half of its values name street lamps, or where it is called
- * like one that says such things ("type", "Objektart") and a value names a street lamp beyond doubt. So an inn called "Zur
- * Laterne" among other places stays an inn. */
+/* Tables whose values, not whose columns, say that their rows are lamps: "Lichtmast mit Auslegerleuchte" in a column
+ * called "bezeichnung". A column says what the rows are where at least half of its values name street lamps, or where
+ * it is called like one that says such things ("type", "Objektart") and a value names a street lamp beyond doubt. So an
+ * inn called "Zur Laterne" among other places stays an inn. */
 #include "import/lamp_tags.h"
 
 /* Values of such columns come again and again: what was found of some of them. */
@@ -17,24 +17,81 @@ struct lamp_kind {
 
 int lamp_object_word(const char *text) {
     static const char *const sure[] = {
-        "lichtmast*", "beleuchtungsmast*", "leuchtenmast*", "lampenmast*", "strassenlatern*", "strassenleucht*", "strassenlamp*",
-        "strassenbeleucht*", "*auslegerleuchte", "*auslegerleuchten", "*mastleuchte", "*mastleuchten", "*ansatzleuchte",
-        "*aufsatzleuchte", "*pollerleuchte", "*seilleuchte", "street light*", "streetlight*", "street lamp*", "streetlamp*",
-        "street lantern*", "lamp post*", "lamppost*", "lamp pole*", "light pole*", "lightpole*", "lighting pole*",
-        "lighting column*", "light column*", "light standard*", "lighting standard*", "public lighting", "lantaarnpa*",
-        "straatlantaarn*", "straatverlichting*", "lampadaire*", "candelabre*", "reverbere*", "point lumineux", "points lumineux",
-        "eclairage public", "farola*", "luminaria*", "alumbrado publico", "punto de luz", "lampione", "lampioni", "punto luce",
-        "illuminazione pubblica", "iluminacao publica", "verejne osvetleni", "svetelne misto", "svitidlo", "latarnia*", "latarnie",
-        "oswietlenie uliczne", "gatubelysning", "gatlykt*", "lyktstolp*", "gadelampe*", "gadebelysning", "veilys", "gatelys*",
+        "lichtmast*",
+        "beleuchtungsmast*",
+        "leuchtenmast*",
+        "lampenmast*",
+        "strassenlatern*",
+        "strassenleucht*",
+        "strassenlamp*",
+        "strassenbeleucht*",
+        "*auslegerleuchte",
+        "*auslegerleuchten",
+        "*mastleuchte",
+        "*mastleuchten",
+        "*ansatzleuchte",
+        "*aufsatzleuchte",
+        "*pollerleuchte",
+        "*seilleuchte",
+        "street light*",
+        "streetlight*",
+        "street lamp*",
+        "streetlamp*",
+        "street lantern*",
+        "lamp post*",
+        "lamppost*",
+        "lamp pole*",
+        "light pole*",
+        "lightpole*",
+        "lighting pole*",
+        "lighting column*",
+        "light column*",
+        "light standard*",
+        "lighting standard*",
+        "public lighting",
+        "lantaarnpa*",
+        "straatlantaarn*",
+        "straatverlichting*",
+        "lampadaire*",
+        "candelabre*",
+        "reverbere*",
+        "point lumineux",
+        "points lumineux",
+        "eclairage public",
+        "farola*",
+        "luminaria*",
+        "alumbrado publico",
+        "punto de luz",
+        "lampione",
+        "lampioni",
+        "punto luce",
+        "illuminazione pubblica",
+        "iluminacao publica",
+        "verejne osvetleni",
+        "svetelne misto",
+        "svitidlo",
+        "latarnia*",
+        "latarnie",
+        "oswietlenie uliczne",
+        "gatubelysning",
+        "gatlykt*",
+        "lyktstolp*",
+        "gadelampe*",
+        "gadebelysning",
+        "veilys",
+        "gatelys*",
         "katuvalo*",
     };
     static const char *const some[] = {
-        "latern*", "*laterne", "*laternen", "leuchte", "leuchten", "*leuchte", "*leuchten", "lamp", "lamps", "lampe", "lampen",
-        "*lampe", "lantern*", "luminaire*", "lantaarn*", "lighting", "floodlight*", "flood light*", "strahler", "*strahler",
-        "verlichting", "eclairage", "farol", "lampara*", "lampa", "armatuur",
+        "latern*",   "*laterne", "*laternen",   "leuchte",      "leuchten", "*leuchte",  "*leuchten",
+        "lamp",      "lamps",    "lampe",       "lampen",       "*lampe",   "lantern*",  "luminaire*",
+        "lantaarn*", "lighting", "floodlight*", "flood light*", "strahler", "*strahler", "verlichting",
+        "eclairage", "farol",    "lampara*",    "lampa",        "armatuur",
     };
     /* street lamp, road lighting, security light, in Japanese and Chinese; folding drops what is not Latin */
-    static const char *const as_written[] = { "街灯", "街路灯", "照明灯", "道路照明", "防犯灯", "路灯", "街路燈", "路燈" };
+    static const char *const as_written[] = {
+        "街灯", "街路灯", "照明灯", "道路照明", "防犯灯", "路灯", "街路燈", "路燈"
+    };
     char folded[256];
     bool letters = false, foreign = false;
     for (const char *p = text ? text : ""; *p; p++) {
@@ -58,10 +115,12 @@ int lamp_object_word(const char *text) {
 }
 
 static bool is_of_kinds(const char *name) {
-    static const char *const keys[] = { "art", "typ", "type", "kind", "class", "klasse", "kategorie", "category", "objekt", "object",
-                                        "objektart", "objecttype", "objekttyp", "featuretype", "feature", "assettype", "asset",
-                                        "gattung", "bauart", "soort", "tipo", "categorie", "categoria", "clase", "classe", "nature",
-                                        "typologie", "druh", "rodzaj", "subtype", "furniture", "mobiliar" };
+    static const char *const keys[] = { "art",       "typ",         "type",      "kind",      "class",     "klasse",
+                                        "kategorie", "category",    "objekt",    "object",    "objektart", "objecttype",
+                                        "objekttyp", "featuretype", "feature",   "assettype", "asset",     "gattung",
+                                        "bauart",    "soort",       "tipo",      "categorie", "categoria", "clase",
+                                        "classe",    "nature",      "typologie", "druh",      "rodzaj",    "subtype",
+                                        "furniture", "mobiliar" };
     char folded[64];
     lamp_fold(name, false, folded, sizeof(folded));
     for (size_t i = 0; i < NOC_COUNT(keys); i++)

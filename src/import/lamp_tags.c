@@ -7,12 +7,12 @@
 static const struct {
     const char *key, *value;
 } lamp_makers[] = {
-    { "highway", "street_lamp" },     { "highway", "street_light" },   { "highway", "streetlamp" },
-    { "man_made", "street_lamp" },    { "man_made", "streetlamp" },    { "man_made", "lamp" },
-    { "man_made", "light_pole" },     { "man_made", "floodlight" },    { "amenity", "street_lamp" },
-    { "light_source", "lantern" },    { "light_source", "floodlight" }, { "light_source", "street_lamp" },
-    { "light_source", "spotlight" },  { "light_source", "bollard" },   { "light_source", "electric_lamp" },
-    { "tower:type", "lighting" },     { "street_lamp", "yes" },
+    { "highway", "street_lamp" },    { "highway", "street_light" },    { "highway", "streetlamp" },
+    { "man_made", "street_lamp" },   { "man_made", "streetlamp" },     { "man_made", "lamp" },
+    { "man_made", "light_pole" },    { "man_made", "floodlight" },     { "amenity", "street_lamp" },
+    { "light_source", "lantern" },   { "light_source", "floodlight" }, { "light_source", "street_lamp" },
+    { "light_source", "spotlight" }, { "light_source", "bollard" },    { "light_source", "electric_lamp" },
+    { "tower:type", "lighting" },    { "street_lamp", "yes" },
 };
 
 /* "a;b" holds b. */
@@ -61,8 +61,9 @@ bool lamp_columns_tell(lamp_keys *keys, const char *const *names, size_t count) 
 
 /* The part after a lifecycle prefix ("disused:highway" -> "highway"), NULL if there is none. */
 static const char *after_lifecycle(const char *key) {
-    static const char *const prefixes[] = { "disused:", "abandoned:", "removed:", "razed:", "demolished:", "destroyed:",
-                                            "was:", "proposed:", "planned:", "construction:", "historic:" };
+    static const char *const prefixes[] = { "disused:",    "abandoned:",    "removed:", "razed:",
+                                            "demolished:", "destroyed:",    "was:",     "proposed:",
+                                            "planned:",    "construction:", "historic:" };
     for (size_t i = 0; i < NOC_COUNT(prefixes); i++)
         if (!strncmp(key, prefixes[i], strlen(prefixes[i])))
             return key + strlen(prefixes[i]);
@@ -78,11 +79,16 @@ static void makers_of(const char *key, lamp_meaning *m) {
 }
 
 void lamp_roles_of(const char *key, lamp_meaning *m) {
-    static const struct { const char *folded; lamp_role role; } roles[] = {
-        { "disused", LAMP_ROLE_GONE }, { "abandoned", LAMP_ROLE_GONE }, { "removed", LAMP_ROLE_GONE }, { "demolished", LAMP_ROLE_GONE },
-        { "indoor", LAMP_ROLE_INDOORS }, { "tunnel", LAMP_ROLE_INDOORS }, { "location", LAMP_ROLE_LOCATION },
-        { "whyinactive", LAMP_ROLE_WHY_NOT }, { "inactivereason", LAMP_ROLE_WHY_NOT },
-        { "inoperation", LAMP_ROLE_WORKS }, { "active", LAMP_ROLE_WORKS }, /* elsewhere a date since when it works */
+    static const struct {
+        const char *folded;
+        lamp_role role;
+    } roles[] = {
+        { "disused", LAMP_ROLE_GONE },           { "abandoned", LAMP_ROLE_GONE },
+        { "removed", LAMP_ROLE_GONE },           { "demolished", LAMP_ROLE_GONE },
+        { "indoor", LAMP_ROLE_INDOORS },         { "tunnel", LAMP_ROLE_INDOORS },
+        { "location", LAMP_ROLE_LOCATION },      { "whyinactive", LAMP_ROLE_WHY_NOT },
+        { "inactivereason", LAMP_ROLE_WHY_NOT }, { "inoperation", LAMP_ROLE_WORKS },
+        { "active", LAMP_ROLE_WORKS }, /* elsewhere a date since when it works */
     };
     char folded[128];
     makers_of(key, m);
@@ -160,7 +166,8 @@ static bool misread(const reading *r, const char *reason) {
 }
 
 /* A quantity in its plausible range; 0 stands for "not known" in many tables. True if *out was set. */
-static bool read_quantity(reading *r, const char *text, lamp_unit unit, double lo, double hi, const char *reason, double *out) {
+static bool read_quantity(reading *r, const char *text, lamp_unit unit, double lo, double hi, const char *reason,
+                          double *out) {
     double value;
     int times;
     if (!lamp_quantity(text, unit, r->scale, r->decimal, &value, &times))
@@ -250,44 +257,49 @@ static bool read_field(reading *r, const lamp_meaning *c, const char *text) {
     r->scale = c->scale;
     switch (c->field) {
     case LAMP_FIELD_HEIGHT:
-        return read_quantity(r, text, LAMP_METRES, .5, LAMP_MOST_METRES, "height of a lamp not understood or implausible",
-                             &lamp->height);
+        return read_quantity(r, text, LAMP_METRES, .5, LAMP_MOST_METRES,
+                             "height of a lamp not understood or implausible", &lamp->height);
     case LAMP_FIELD_DIRECTION:
         return lamp_direction(text, &lamp->direction) || misread(r, "direction of a lamp not understood");
-    case LAMP_FIELD_COUNT:
-        return read_count(r, text);
+    case LAMP_FIELD_COUNT: return read_count(r, text);
     case LAMP_FIELD_LUMENS:
         return read_quantity(r, text, LAMP_LUMENS, 5, LAMP_MOST_LUMENS, "luminous flux not understood or implausible",
                              &lamp->lumens);
     case LAMP_FIELD_WATTS:
         if (c->rank == 2 && !(text[0] >= '0' && text[0] <= '9')) /* power=pole and the like */
             return false;
-        return read_quantity(r, text, LAMP_WATTS, .5, LAMP_MOST_WATTS, "wattage not understood or implausible", &lamp->watts);
+        return read_quantity(r, text, LAMP_WATTS, .5, LAMP_MOST_WATTS, "wattage not understood or implausible",
+                             &lamp->watts);
     case LAMP_FIELD_KELVIN:
         return read_kelvin(r, text) || misread(r, "colour temperature not understood or implausible");
-    case LAMP_FIELD_COLOUR:
-        return read_colour(r, text, c->rank <= 0);
+    case LAMP_FIELD_COLOUR: return read_colour(r, text, c->rank <= 0);
     case LAMP_FIELD_TYPE:
         return read_type(r, text, c->rank < 4); /* a bare "type" may be the pole's: of it only a source is believed */
-    case LAMP_FIELD_MOUNT:
-        return read_mount(r, text);
-    case LAMP_FIELD_ID:
-        lamp->id = text;
-        return true;
+    case LAMP_FIELD_MOUNT: return read_mount(r, text);
+    case LAMP_FIELD_ID: lamp->id = text; return true;
     case LAMP_FIELD_ELEVATION:
         if ((!isfinite(lamp->xyz[2]) || c->rank < 0) && lamp_coordinate(text, &x) && fabs(x * c->scale) < 9000)
             lamp->xyz[2] = x * c->scale;
         return true;
-    default:
-        return false;
+    default: return false;
     }
 }
 
 bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *lamp, geo_issues *issues) {
-    *lamp = (geo_lamp){ .xyz = { lamp->xyz[0], lamp->xyz[1], lamp->xyz[2] }, .height = NAN, .direction = NAN, .lumens = NAN,
-                        .watts = NAN, .kelvin = NAN, .rgb = { -1, -1, -1 }, .id = lamp->id ? lamp->id : "", .ref = "" };
+    *lamp = (geo_lamp){ .xyz = { lamp->xyz[0], lamp->xyz[1], lamp->xyz[2] },
+                        .height = NAN,
+                        .direction = NAN,
+                        .lumens = NAN,
+                        .watts = NAN,
+                        .kelvin = NAN,
+                        .rgb = { -1, -1, -1 },
+                        .id = lamp->id ? lamp->id : "",
+                        .ref = "" };
     reading r = { .lamp = lamp, .issues = issues, .times = 1, .scale = 1, .decimal = lamp_keys_decimal(keys) };
-    struct said { lamp_meaning meaning; const char *value; } few[32];
+    struct said {
+        lamp_meaning meaning;
+        const char *value;
+    } few[32];
     struct said *said = count > NOC_COUNT(few) ? noc_alloc(count * sizeof(*said)) : few;
     if (!said)
         return false;
@@ -312,7 +324,8 @@ bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *la
             }
     for (int rank = -1; rank < ranks && !*lamp->ref; rank++)
         for (size_t i = 0; i < n && !*lamp->ref; i++)
-            if (said[i].meaning.field == LAMP_FIELD_ID && said[i].meaning.rank == rank && strcmp(said[i].value, lamp->id) != 0)
+            if (said[i].meaning.field == LAMP_FIELD_ID && said[i].meaning.rank == rank &&
+                strcmp(said[i].value, lamp->id) != 0)
                 lamp->ref = said[i].value;
     if (said != few)
         free(said);

@@ -11,8 +11,8 @@ static const char *skip_blanks(const char *s) {
 }
 
 bool lamp_blank(const char *text) {
-    static const char *const none[] = { "na", "n a", "null", "none", "unknown", "nan", "onbekend", "unbekannt", "inconnu",
-                                        "nil", "not applicable", "not known" };
+    static const char *const none[] = { "na",       "n a",       "null",    "none", "unknown",        "nan",
+                                        "onbekend", "unbekannt", "inconnu", "nil",  "not applicable", "not known" };
     if (!text)
         return true;
     char c = *text;
@@ -28,12 +28,13 @@ bool lamp_blank(const char *text) {
 }
 
 static bool three_digits(const char *s) {
-    return isdigit((unsigned char)s[0]) && isdigit((unsigned char)s[1]) && isdigit((unsigned char)s[2]) && !isdigit((unsigned char)s[3]);
+    return isdigit((unsigned char)s[0]) && isdigit((unsigned char)s[1]) && isdigit((unsigned char)s[2]) &&
+           !isdigit((unsigned char)s[3]);
 }
 
-/* An unsigned decimal at s. decimal: the file's sign, '.' or ','; the other one, before three digits and no more, parts thousands. 0: both
- * are decimal signs, but for a comma before three digits in a quantity that runs to thousands. Returns the position after it, NULL if
- * there is none. */
+/* An unsigned decimal at s. decimal: the file's sign, '.' or ','; the other one, before three digits and no more, parts
+ * thousands. 0: both are decimal signs, but for a comma before three digits in a quantity that runs to thousands.
+ * Returns the position after it, NULL if there is none. */
 static const char *scan_number(const char *s, bool thousands, char decimal, double *out) {
     char text[48], parts = decimal ? ".,"[decimal == '.'] : thousands ? ',' : 0;
     size_t n = 0;
@@ -61,16 +62,35 @@ static const struct unit {
     double factor;
     const char *shown;
 } units[] = {
-    { LAMP_METRES, "m", 1, "m" }, { LAMP_METRES, "mtr", 1, "m" }, { LAMP_METRES, "meter", 1, "m" },
-    { LAMP_METRES, "meters", 1, "m" }, { LAMP_METRES, "metre", 1, "m" }, { LAMP_METRES, "metres", 1, "m" },
-    { LAMP_METRES, "cm", .01, "cm" }, { LAMP_METRES, "mm", .001, "mm" }, { LAMP_METRES, "ft", .3048, "ft" },
-    { LAMP_METRES, "feet", .3048, "ft" }, { LAMP_METRES, "foot", .3048, "ft" }, { LAMP_METRES, "fuss", .3048, "ft" },
-    { LAMP_METRES, "in", .0254, "in" }, { LAMP_METRES, "inches", .0254, "in" },
-    { LAMP_WATTS, "w", 1, "W" }, { LAMP_WATTS, "watt", 1, "W" }, { LAMP_WATTS, "watts", 1, "W" }, { LAMP_WATTS, "kw", 1000, "kW" },
-    { LAMP_WATTS, "kilowatt", 1000, "kW" }, { LAMP_WATTS, "kilowatts", 1000, "kW" },
-    { LAMP_LUMENS, "lm", 1, "lm" }, { LAMP_LUMENS, "lumen", 1, "lm" }, { LAMP_LUMENS, "lumens", 1, "lm" },
-    { LAMP_LUMENS, "klm", 1000, "klm" }, { LAMP_LUMENS, "kilolumen", 1000, "klm" }, { LAMP_LUMENS, "kilolumens", 1000, "klm" },
-    { LAMP_KELVIN, "k", 1, "K" }, { LAMP_KELVIN, "kelvin", 1, "K" }, { LAMP_KELVIN, "kk", 1000, "kK" },
+    { LAMP_METRES, "m", 1, "m" },
+    { LAMP_METRES, "mtr", 1, "m" },
+    { LAMP_METRES, "meter", 1, "m" },
+    { LAMP_METRES, "meters", 1, "m" },
+    { LAMP_METRES, "metre", 1, "m" },
+    { LAMP_METRES, "metres", 1, "m" },
+    { LAMP_METRES, "cm", .01, "cm" },
+    { LAMP_METRES, "mm", .001, "mm" },
+    { LAMP_METRES, "ft", .3048, "ft" },
+    { LAMP_METRES, "feet", .3048, "ft" },
+    { LAMP_METRES, "foot", .3048, "ft" },
+    { LAMP_METRES, "fuss", .3048, "ft" },
+    { LAMP_METRES, "in", .0254, "in" },
+    { LAMP_METRES, "inches", .0254, "in" },
+    { LAMP_WATTS, "w", 1, "W" },
+    { LAMP_WATTS, "watt", 1, "W" },
+    { LAMP_WATTS, "watts", 1, "W" },
+    { LAMP_WATTS, "kw", 1000, "kW" },
+    { LAMP_WATTS, "kilowatt", 1000, "kW" },
+    { LAMP_WATTS, "kilowatts", 1000, "kW" },
+    { LAMP_LUMENS, "lm", 1, "lm" },
+    { LAMP_LUMENS, "lumen", 1, "lm" },
+    { LAMP_LUMENS, "lumens", 1, "lm" },
+    { LAMP_LUMENS, "klm", 1000, "klm" },
+    { LAMP_LUMENS, "kilolumen", 1000, "klm" },
+    { LAMP_LUMENS, "kilolumens", 1000, "klm" },
+    { LAMP_KELVIN, "k", 1, "K" },
+    { LAMP_KELVIN, "kelvin", 1, "K" },
+    { LAMP_KELVIN, "kk", 1000, "kK" },
 };
 
 bool lamp_unit_word(const char *word, lamp_unit unit, double *scale, const char **name) {
@@ -158,10 +178,11 @@ bool lamp_direction(const char *text, double *degrees) {
         const char *name;
         double degrees;
     } points[] = {
-        { "n", 0 }, { "nne", 22.5 }, { "ne", 45 }, { "ene", 67.5 }, { "e", 90 }, { "ese", 112.5 }, { "se", 135 },
-        { "sse", 157.5 }, { "s", 180 }, { "ssw", 202.5 }, { "sw", 225 }, { "wsw", 247.5 }, { "w", 270 }, { "wnw", 292.5 },
-        { "nw", 315 }, { "nnw", 337.5 }, { "north", 0 }, { "northeast", 45 }, { "east", 90 }, { "southeast", 135 },
-        { "south", 180 }, { "southwest", 225 }, { "west", 270 }, { "northwest", 315 },
+        { "n", 0 },       { "nne", 22.5 },      { "ne", 45 },        { "ene", 67.5 },      { "e", 90 },
+        { "ese", 112.5 }, { "se", 135 },        { "sse", 157.5 },    { "s", 180 },         { "ssw", 202.5 },
+        { "sw", 225 },    { "wsw", 247.5 },     { "w", 270 },        { "wnw", 292.5 },     { "nw", 315 },
+        { "nnw", 337.5 }, { "north", 0 },       { "northeast", 45 }, { "east", 90 },       { "southeast", 135 },
+        { "south", 180 }, { "southwest", 225 }, { "west", 270 },     { "northwest", 315 },
     };
     if (lamp_blank(text))
         return false;

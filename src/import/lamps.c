@@ -6,9 +6,9 @@
 #include <stdio.h>
 
 #define COARSE_DISTANCE 100e3 /* m */
-#define OUTSIDE 2000.0       /* m; lamps farther than this from the city do not light it */
-#define BESIDE 150.0         /* m; lamps this near stand along streets of the city whose surfaces are not in it */
-#define GROUND_SHARE 0.2     /* of the extent that streets, lawns and water cover when they are the ground */
+#define OUTSIDE 2000.0        /* m; lamps farther than this from the city do not light it */
+#define BESIDE 150.0          /* m; lamps this near stand along streets of the city whose surfaces are not in it */
+#define GROUND_SHARE 0.2      /* of the extent that streets, lawns and water cover when they are the ground */
 
 typedef struct extent {
     bool any;
@@ -31,8 +31,8 @@ static extent city_extent(const noc_scene *scene) {
     return e;
 }
 
-/* What comes without terrain stands on a ground of ours, unless its streets and lawns are there; so do lamps alone. Scenes
- * that are no cities (meshes) are left as they are. */
+/* What comes without terrain stands on a ground of ours, unless its streets and lawns are there; so do lamps alone.
+ * Scenes that are no cities (meshes) are left as they are. */
 static bool needs_ground(const importer *im, const extent *e) {
     bool city = false;
     for (size_t i = 0; i < im->input_count; i++)
@@ -107,9 +107,10 @@ static void warn_if_coarse(const importer *im) {
         farthest = NOC_MAX(farthest, d);
     }
     if (far && !im->far_said)
-        noc_warn(im->log, "%zu of %zu vertices lie more than %.0f km from the scene's origin, the farthest %.0f km: positions "
-                          "there are rounded to about %.2g m", far, vertices, COARSE_DISTANCE / 1e3, farthest / 1e3,
-                 ldexp(1, ilogb(farthest) - 24));
+        noc_warn(im->log,
+                 "%zu of %zu vertices lie more than %.0f km from the scene's origin, the farthest %.0f km: positions "
+                 "there are rounded to about %.2g m",
+                 far, vertices, COARSE_DISTANCE / 1e3, farthest / 1e3, ldexp(1, ilogb(farthest) - 24));
 }
 
 static bool go_on(importer *im, double done) {
@@ -130,14 +131,16 @@ typedef struct lamp_fate {
     double nearest;                      /* of those outside, m */
     double closest;                      /* of those mapped, m; 0 within the city */
     size_t others;                       /* lights of the scene that are no lamps of these */
-    size_t exchanged;                    /* lie within the city if their axes are exchanged; counted where none is of use */
+    /* lie within the city if their axes are exchanged; counted where none is of use */
+    size_t exchanged;
 } lamp_fate;
 
 /* Stands the lamps that were read. */
 static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_params *params, lamp_fate *fate) {
     noc_status status = NOC_OK;
-    *fate = (lamp_fate){ .given = im->lamps.len, .nearest = INFINITY, .closest = INFINITY,
-                         .others = im->scene->lights.len };
+    *fate = (lamp_fate){
+        .given = im->lamps.len, .nearest = INFINITY, .closest = INFINITY, .others = im->scene->lights.len
+    };
     for (size_t i = 0; i < im->input_count; i++) {
         fate->lost += im->inputs[i].lamps_lost;
         im->inputs[i].file.lamps_dropped = im->inputs[i].lamps_lost;
@@ -175,7 +178,8 @@ static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_par
 static void count_exchanged(importer *im, const extent *e, lamp_fate *fate) {
     double xy[2];
     for (size_t i = 0; i < im->lamps.len; i++)
-        fate->exchanged += place_exchanged(im, &im->lamps.data[i].given, xy) && e->any && distance_outside(e, xy) <= OUTSIDE;
+        fate->exchanged +=
+            place_exchanged(im, &im->lamps.data[i].given, xy) && e->any && distance_outside(e, xy) <= OUTSIDE;
     for (size_t i = 0; i < im->lost.len; i++)
         fate->exchanged += place_exchanged(im, &im->lost.data[i], xy) && e->any && distance_outside(e, xy) <= OUTSIDE;
 }
@@ -196,20 +200,22 @@ static void tell_useless(const importer *im, const lamp_fate *fate, char *text, 
     if (files > 1)
         snprintf(more, sizeof(more), " and %zu more", files - 1);
     if (fate->outside)
-        snprintf(outside, sizeof(outside), ", %zu outside the city, the nearest %.1f km away", fate->outside, fate->nearest / 1000);
+        snprintf(outside, sizeof(outside), ", %zu outside the city, the nearest %.1f km away", fate->outside,
+                 fate->nearest / 1000);
     if (fate->lost)
         snprintf(lost, sizeof(lost), ", %zu without a place in it", fate->lost);
     if (others)
         snprintf(rest, sizeof(rest), ", %zu inside buildings or refused", others);
     if (2 * fate->exchanged > fate->given)
-        snprintf(cause, sizeof(cause), "with %s exchanged %s%zu of them fall within the city, so exchange them in the file",
-                 degrees ? "longitude and latitude" : "the two coordinates", fate->exchanged == fate->given ? "all " : "",
-                 fate->exchanged);
+        snprintf(cause, sizeof(cause),
+                 "with %s exchanged %s%zu of them fall within the city, so exchange them in the file",
+                 degrees ? "longitude and latitude" : "the two coordinates",
+                 fate->exchanged == fate->given ? "all " : "", fate->exchanged);
     else
-        snprintf(cause, sizeof(cause), "%s", fate->outside ? "is one of the CRSs wrong, or are they another town's?"
-                                                           : "nocturne info tells more");
-    noc_snprintf(text, size, "%s%s: none of %zu lamp%s is of use%s%s%s: %s", first ? first->path : "", more, fate->given,
-                 fate->given == 1 ? "" : "s", outside, lost, rest, cause);
+        snprintf(cause, sizeof(cause), "%s",
+                 fate->outside ? "is one of the CRSs wrong, or are they another town's?" : "nocturne info tells more");
+    noc_snprintf(text, size, "%s%s: none of %zu lamp%s is of use%s%s%s: %s", first ? first->path : "", more,
+                 fate->given, fate->given == 1 ? "" : "s", outside, lost, rest, cause);
 }
 
 /* A picture by lamps of our own must not pass for one by the lamps that were given. */
@@ -227,20 +233,26 @@ static noc_status refuse_useless(importer *im, const extent *e, lamp_fate *fate)
     return status;
 }
 
-/* They are drawn all the same: a lone building whose street is 200 m away is no mistake, and an error would leave no way to draw it. */
+/* They are drawn all the same: a lone building whose street is 200 m away is no mistake, and an error would leave no
+ * way to draw it. */
 static void warn_of_distance(importer *im, const lamp_fate *fate) {
     bool apart = fate->mapped && fate->closest > BESIDE;
     im->scene->lit_elsewhere = apart && !fate->others;
     if (apart)
-        noc_warn(im->log, "none of the lamps stands in the city: the nearest is %.*f %s from it. Is one of the CRSs wrong, or are they another town's?",
-                 fate->closest < 1000 ? 0 : 1, fate->closest / (fate->closest < 1000 ? 1 : 1000), fate->closest < 1000 ? "m" : "km");
+        noc_warn(
+            im->log,
+            "none of the lamps stands in the city: the nearest is %.*f %s from it. Is one of the CRSs wrong, or are they another town's?",
+            fate->closest < 1000 ? 0 : 1, fate->closest / (fate->closest < 1000 ? 1 : 1000),
+            fate->closest < 1000 ? "m" : "km");
 }
 
 static void warn_of_roofs(const importer *im, const city_lamp_tally *tally) {
     if (tally->raised)
-        noc_warn(im->log, "%zu of %zu lamps that stand on surfaces without a class stand 2 m or more above what is around them, on roofs "
-                          "perhaps: an elevation (ele, z) says where a lamp's foot is, a model with classes (CityGML) where the ground is",
-                 tally->raised, tally->classless);
+        noc_warn(
+            im->log,
+            "%zu of %zu lamps that stand on surfaces without a class stand 2 m or more above what is around them, on roofs "
+            "perhaps: an elevation (ele, z) says where a lamp's foot is, a model with classes (CityGML) where the ground is",
+            tally->raised, tally->classless);
 }
 
 /* Lamps by a rule, or a word on why the scene stays dark. */
@@ -248,9 +260,10 @@ static noc_status infer(importer *im, const extent *e, city_lamp_params *params,
     bool wanted = im->params->infer_lamps != NOC_SWITCH_OFF;
     if (!wanted || !(im->buildings > 0 || im->has_roads)) {
         if (e->any || fate->given)
-            noc_warn(im->log, "nothing in the scene shines: %s", wanted ?
-                     "the inputs hold no lamps that could be used, and no streets or buildings to place some along" :
-                     "the inputs hold no lamps that could be used, and none are to be placed");
+            noc_warn(
+                im->log, "nothing in the scene shines: %s",
+                wanted ? "the inputs hold no lamps that could be used, and no streets or buildings to place some along"
+                       : "the inputs hold no lamps that could be used, and none are to be placed");
         return NOC_OK;
     }
     int lights;
@@ -263,7 +276,8 @@ static noc_status infer(importer *im, const extent *e, city_lamp_params *params,
     if (lights > 0)
         noc_warn(im->log, "no lamps in the inputs%s: %d placed by a rule (inferred, not surveyed)", usable, lights);
     else
-        noc_warn(im->log, "no lamps in the inputs%s, and no place for any was found: nothing in the scene shines", usable);
+        noc_warn(im->log, "no lamps in the inputs%s, and no place for any was found: nothing in the scene shines",
+                 usable);
     return NOC_OK;
 }
 
@@ -283,8 +297,9 @@ noc_status finish_city(importer *im) {
     if (status)
         return status;
     city_lamp_tally tally = { 0 };
-    city_lamp_params params = { im->params->lamp_height, im->params->lamp_lumens, im->params->lamp_kelvin, true,
-                                city_floor(scene), &tally };
+    city_lamp_params params = { im->params->lamp_height, im->params->lamp_lumens,
+                                im->params->lamp_kelvin, true,
+                                city_floor(scene),       &tally };
     lamp_fate fate;
     status = stand_lamps(im, &e, &params, &fate);
     if (im->cancelled)

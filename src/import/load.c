@@ -1,5 +1,5 @@
-/* Runs the inputs: all are opened and recognised before any is read; then cities, meshes and lamps, in an order that lets
- * the city settle the place. Lamps are stood on the ground at the end. */
+/* Runs the inputs: all are opened and recognised before any is read; then cities, meshes and lamps, in an order that
+ * lets the city settle the place. Lamps are stood on the ground at the end. */
 #include "import/load.h"
 #include "import/remote.h"
 #include "city/city.h"
@@ -24,8 +24,10 @@ static noc_status check_params(const noc_import_params *p, noc_log *log) {
     if (!(p->reader_time > 0))
         return noc_error(log, NOC_ERR_ARGUMENT, "import: reader_time is %g s", p->reader_time);
     if (!(p->max_memory >= 0 && p->max_expansion >= 0))
-        return noc_error(log, NOC_ERR_ARGUMENT, "import: max_memory is %g GB and max_expansion %g: neither may be "
-                         "negative", p->max_memory, p->max_expansion);
+        return noc_error(log, NOC_ERR_ARGUMENT,
+                         "import: max_memory is %g GB and max_expansion %g: neither may be "
+                         "negative",
+                         p->max_memory, p->max_expansion);
     if ((unsigned)p->obj_up > NOC_OBJ_UP_Z)
         return noc_error(log, NOC_ERR_ARGUMENT, "import: obj_up is %d, not a noc_obj_up", (int)p->obj_up);
     if (p->lamps.count > NOC_TEXTS || p->lamp_columns.count > NOC_TEXTS)
@@ -35,15 +37,18 @@ static noc_status check_params(const noc_import_params *p, noc_log *log) {
 
 /* --crs and --scene-crs must be understood even where no input needs them. */
 static noc_status check_crs(const noc_import_params *p, noc_log *log) {
-    const struct { const char *option, *crs; bool metric; } given[] = { { "--crs", p->crs, false },
-                                                                        { "--scene-crs", p->scene_crs, true } };
+    const struct {
+        const char *option, *crs;
+        bool metric;
+    } given[] = { { "--crs", p->crs, false }, { "--scene-crs", p->scene_crs, true } };
     for (size_t i = 0; i < NOC_COUNT(given); i++) {
         if (!given[i].crs || !given[i].crs[strspn(given[i].crs, " \t\r\n")])
             continue;
         noc_status status;
         geo_crs *crs = geo_crs_create(given[i].crs, given[i].option, log, &status);
         if (crs && given[i].metric && !geo_crs_is_metric(crs))
-            status = noc_error(log, NOC_ERR_ARGUMENT, "%s: a scene's CRS must be projected, in metres", geo_crs_name(crs));
+            status =
+                noc_error(log, NOC_ERR_ARGUMENT, "%s: a scene's CRS must be projected, in metres", geo_crs_name(crs));
         geo_crs_destroy(crs);
         if (status)
             return status == NOC_ERR_MEMORY ? status : NOC_ERR_ARGUMENT;
@@ -75,22 +80,25 @@ static const noc_reader *find_named(const noc_reader *const *readers, const char
     return NULL;
 }
 
-static noc_status refuse(importer *im, const char *name, const noc_reader *const *readers, const char *head, size_t size) {
+static noc_status refuse(importer *im, const char *name, const noc_reader *const *readers, const char *head,
+                         size_t size) {
     const char *stranger = stranger_told(head);
     if (stranger)
         return noc_error(im->log, NOC_ERR_UNSUPPORTED, "%s: %s", name, stranger);
     char names[300] = ""; /* "CityGML, OBJ, ..." */
     for (size_t i = 0, n = 0; readers[i] && n < sizeof(names); i++)
         n += (size_t)noc_snprintf(names + n, sizeof(names) - n, "%s%s", i ? ", " : "", readers[i]->name);
-    const char *offer = find_named(readers, head, size)
-                            ? ". If it is a table of lamps, say so with --lamps, and with --lamp-columns lon=A,lat=B where they are"
-                            : "";
+    const char *offer =
+        find_named(readers, head, size)
+            ? ". If it is a table of lamps, say so with --lamps, and with --lamp-columns lon=A,lat=B where they are"
+            : "";
     return noc_error(im->log, NOC_ERR_FORMAT, "%s: in none of the formats that are read (%s)%s", name, names, offer);
 }
 
 static noc_status recognise(importer *im, input *in, const noc_reader *const *readers) {
     if (!strncmp(in->path, BUILTIN, strlen(BUILTIN)))
-        return in->named_lamps ? noc_error(im->log, NOC_ERR_ARGUMENT, "lamps: %s is no file of lamps", in->path) : NOC_OK;
+        return in->named_lamps ? noc_error(im->log, NOC_ERR_ARGUMENT, "lamps: %s is no file of lamps", in->path)
+                               : NOC_OK;
     noc_status status;
     noc_stream *stream = noc_stream_open(in->path, im->log, &status);
     if (!stream)
@@ -174,8 +182,9 @@ static noc_status read_mesh(importer *im, input *in, noc_stream *stream, remote_
     double lo[2], hi[2];
     bounds_so_far(im, lo, hi);
     geo_sink sink = sink_create(im);
-    status = in->remote ? read_remote(im, in, &sink, &place, result)
-                        : in->reader->read_mesh(in->path, stream, im->params, im->scene, &place, in->issues, &in->file.format);
+    status = in->remote
+                 ? read_remote(im, in, &sink, &place, result)
+                 : in->reader->read_mesh(in->path, stream, im->params, im->scene, &place, in->issues, &in->file.format);
     if (!status)
         warn_if_far(im, lo, hi, floats);
     in->file.triangles = im->scene->indices.len / 3 - triangles;
@@ -184,7 +193,8 @@ static noc_status read_mesh(importer *im, input *in, noc_stream *stream, remote_
     for (size_t i = meshes; i < im->scene->meshes.len; i++) {
         const noc_scene_mesh *m = &im->scene->meshes.data[i];
         const float *e = im->scene->materials.data[m->material].emission;
-        bool shape = m->triangle_count && im->scene->triangle_light.data[m->first_triangle] != NOC_NO_LIGHT; /* of a light that is counted */
+        /* of a light that is counted */
+        bool shape = m->triangle_count && im->scene->triangle_light.data[m->first_triangle] != NOC_NO_LIGHT;
         if (shape)
             continue;
         if (e[0] > 0 || e[1] > 0 || e[2] > 0)
@@ -222,8 +232,8 @@ static noc_status read_input(importer *im, size_t index) {
     for (size_t i = 0; i < unread; i++)
         geo_issue(in->issues, GEO_SKIPPED, "file of the archive, like the one that is read", "");
     if (unread)
-        noc_warn(im->log, "%s: the archive holds %zu more file%s like it, which %s not read: unpack it to read all", noc_stream_name(stream),
-                 unread, unread == 1 ? "" : "s", unread == 1 ? "is" : "are");
+        noc_warn(im->log, "%s: the archive holds %zu more file%s like it, which %s not read: unpack it to read all",
+                 noc_stream_name(stream), unread, unread == 1 ? "" : "s", unread == 1 ? "is" : "are");
     remote_result result = { 0 };
     in->file.format = in->reader->name;
     if (in->reader->read_mesh) {
@@ -234,7 +244,8 @@ static noc_status read_input(importer *im, size_t index) {
         if (!im->placed && !ahead)
             status = noc_no_memory(im->log, in->path);
         else
-            status = in->remote ? read_remote(im, in, &sink, NULL, &result) : in->reader->read(stream, im->params, &sink, &in->file.format);
+            status = in->remote ? read_remote(im, in, &sink, NULL, &result)
+                                : in->reader->read(stream, im->params, &sink, &in->file.format);
         if (ahead && status != NOC_ERR_MEMORY) { /* after an error too: the report holds what came before it */
             noc_log *log = im->log, *of_scene = im->scene->log;
             if (status)
@@ -285,7 +296,8 @@ static noc_status check_one_column(importer *im, const noc_report_file *file) {
     for (size_t i = 0; i < file->column_count; i++)
         for (size_t k = 0; k < i && file->columns[i].mapped; k++)
             if (file->columns[k].mapped && !strcmp(file->columns[i].field, file->columns[k].field))
-                return noc_error(im->log, NOC_ERR_ARGUMENT, "%s: lamp-columns: both \"%.60s\" and \"%.60s\" are mapped to %s: leave one out",
+                return noc_error(im->log, NOC_ERR_ARGUMENT,
+                                 "%s: lamp-columns: both \"%.60s\" and \"%.60s\" are mapped to %s: leave one out",
                                  file->path, file->columns[k].name, file->columns[i].name, file->columns[i].field);
     return NOC_OK;
 }
@@ -301,12 +313,13 @@ static noc_status check_columns(importer *im) {
     noc_status status = lamp_mapping_missing(im->params, column_there, im, im->log, &missing);
     for (size_t i = 0, n = 0; missing && i < im->input_count; i++)
         for (size_t k = 0; k < im->inputs[i].file.column_count && n < 300; k++)
-            n += (size_t)noc_snprintf(there + n, sizeof(there) - n, "%s%.40s", n ? ", " : "", im->inputs[i].file.columns[k].name);
+            n += (size_t)noc_snprintf(there + n, sizeof(there) - n, "%s%.40s", n ? ", " : "",
+                                      im->inputs[i].file.columns[k].name);
     if (missing && im->inspect)
         noc_warn(im->log, "%s: lamp-columns: there is no column or tag \"%.60s\"", im->inputs[0].path, missing);
     else if (missing)
-        status = noc_error(im->log, NOC_ERR_ARGUMENT, "lamp-columns: no input has a column or tag \"%.60s\"%s%s", missing,
-                           *there ? "; there are " : "", there);
+        status = noc_error(im->log, NOC_ERR_ARGUMENT, "lamp-columns: no input has a column or tag \"%.60s\"%s%s",
+                           missing, *there ? "; there are " : "", there);
     free(missing);
     return status;
 }
@@ -377,7 +390,10 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "import: no input");
     if (scene->committed)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "import: the scene is committed");
-    importer im = { .log = scene->log, .scene = scene, .params = params, .memory = import_budget_of(params).memory,
+    importer im = { .log = scene->log,
+                    .scene = scene,
+                    .params = params,
+                    .memory = import_budget_of(params).memory,
                     .inspect = inspect };
     im.report = report_create();
     status = im.report ? list_inputs(&im, paths, path_count) : noc_no_memory(scene->log, "import");
@@ -406,8 +422,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     return status;
 }
 
-noc_status noc_scene_load(noc_scene *scene, const char *const *paths, size_t path_count, const noc_import_params *params,
-                          noc_report **report) {
+noc_status noc_scene_load(noc_scene *scene, const char *const *paths, size_t path_count,
+                          const noc_import_params *params, noc_report **report) {
     return load_inputs(scene, noc_readers, paths, path_count, params, false, report);
 }
 
@@ -423,7 +439,8 @@ noc_status noc_inspect(noc_log *log, const char *path, const noc_import_params *
 }
 
 /* By its definition, or a copy of one where that is NULL. */
-static geo_crs *crs_of(const noc_scene *scene, const char *definition, const char *place, const geo_crs *known, noc_status *status) {
+static geo_crs *crs_of(const noc_scene *scene, const char *definition, const char *place, const geo_crs *known,
+                       noc_status *status) {
     geo_crs *crs = definition ? geo_crs_create(definition, place, scene->log, status) : geo_crs_clone(known);
     if (!definition)
         *status = crs ? NOC_OK : noc_no_memory(scene->log, "CRS");
@@ -436,13 +453,17 @@ static geo_crs *crs_of(const noc_scene *scene, const char *definition, const cha
 static noc_status convert(const noc_scene *scene, const char *crs, bool to_local, double xyz[3]) {
     if (!scene->crs && !scene->crs_name)
         return scene->without_crs
-                   ? noc_error(scene->log, NOC_ERR_ARGUMENT, "%s names no CRS, so coordinates in %s have no place in the scene: say with "
-                               "--crs which one it is in", scene->without_crs, crs)
-                   : noc_error(scene->log, NOC_ERR_ARGUMENT, "the scene has no CRS, so coordinates in %s have no place in it", crs);
+                   ? noc_error(scene->log, NOC_ERR_ARGUMENT,
+                               "%s names no CRS, so coordinates in %s have no place in the scene: say with "
+                               "--crs which one it is in",
+                               scene->without_crs, crs)
+                   : noc_error(scene->log, NOC_ERR_ARGUMENT,
+                               "the scene has no CRS, so coordinates in %s have no place in it", crs);
     noc_status status;
     geo_crs *user = crs_of(scene, crs, NULL, scene->given_crs, &status);
     geo_crs *own = user ? crs_of(scene, scene->crs ? NULL : scene->crs_name, "scene", scene->crs, &status) : NULL;
-    geo_transform *t = user && own ? geo_transform_create(to_local ? user : own, to_local ? own : user, scene->log, &status) : NULL;
+    geo_transform *t =
+        user && own ? geo_transform_create(to_local ? user : own, to_local ? own : user, scene->log, &status) : NULL;
     double p[3] = { xyz[0], xyz[1], xyz[2] };
     if (t && geo_transform_points(t, p, 1))
         status = noc_error(scene->log, NOC_ERR_ARGUMENT, "%.10g %.10g in %s has no place in %s", xyz[0], xyz[1],

@@ -10,16 +10,16 @@
 
 /* One CRS as one file spells it. */
 typedef struct source_crs {
-    char *spelling;           /* "" where the file names none */
-    bool taken;               /* the file does not hold it: GEO_CRS_TAKEN */
-    size_t input;             /* whose coordinates it is about: axis decisions hold for one file */
-    geo_crs *crs;             /* NULL: local metres */
-    geo_transform *to_scene;  /* NULL until the first coordinate, and for local metres */
-    bool ready;               /* to_scene is made, if one is needed */
+    char *spelling;          /* "" where the file names none */
+    bool taken;              /* the file does not hold it: GEO_CRS_TAKEN */
+    size_t input;            /* whose coordinates it is about: axis decisions hold for one file */
+    geo_crs *crs;            /* NULL: local metres */
+    geo_transform *to_scene; /* NULL until the first coordinate, and for local metres */
+    bool ready;              /* to_scene is made, if one is needed */
     bool axes_decided, swap;
     int tries;
-    double outside;           /* degrees outside the CRS's area of use, of the last try */
-    double shift_x;           /* zone number before the easting */
+    double outside; /* degrees outside the CRS's area of use, of the last try */
+    double shift_x; /* zone number before the easting */
 } source_crs;
 
 typedef struct input {
@@ -27,12 +27,12 @@ typedef struct input {
     const noc_reader *reader; /* NULL: built-in */
     uint64_t bytes;
     geo_issues *issues;
-    noc_report_file file;     /* texts in the report's arena */
-    bool remote;              /* read by the helper */
+    noc_report_file file; /* texts in the report's arena */
+    bool remote;          /* read by the helper */
     bool started, repeated;
-    size_t lamps_lost;        /* that the reader or the sink found to have no place */
-    bool named_lamps;         /* by noc_import_params.lamps */
-    int strange_crs;          /* that were not understood and not replaced by --crs */
+    size_t lamps_lost; /* that the reader or the sink found to have no place */
+    bool named_lamps;  /* by noc_import_params.lamps */
+    int strange_crs;   /* that were not understood and not replaced by --crs */
 } input;
 
 /* Where a lamp was given: what would be if its axes were exchanged is asked of lamps that are of no use. */
@@ -42,7 +42,7 @@ typedef struct given_place {
 } given_place;
 
 typedef struct pending_lamp {
-    geo_lamp lamp;            /* local metres; id in importer.names */
+    geo_lamp lamp; /* local metres; id in importer.names */
     given_place given;
     size_t input;
 } pending_lamp;
@@ -51,59 +51,59 @@ typedef struct pending_lamp {
 typedef struct object_now {
     geo_kind kind;
     bool any, decided, repeated;
-    uint64_t shape;           /* of its corners and their classes, in any order */
+    uint64_t shape; /* of its corners and their classes, in any order */
     double lo[3], hi[3];
     size_t polygons, by_class[NOC_CLASS_COUNT]; /* that wait to be counted */
 } object_now;
 
 typedef struct object_record {
-    uint64_t place, shape;    /* hashes: of id, kind and the cell of its middle; of its corners */
+    uint64_t place, shape; /* hashes: of id, kind and the cell of its middle; of its corners */
     float lo[3], hi[3];
     uint32_t input, kind, next[2];
 } object_record;
 
 typedef struct object_records {
     NOC_ARRAY(object_record) list;
-    uint32_t *first[2];       /* chains by place and by shape: index + 1 */
-    size_t size;              /* of both: a power of two */
+    uint32_t *first[2]; /* chains by place and by shape: index + 1 */
+    size_t size;        /* of both: a power of two */
 } object_records;
 
 typedef struct importer {
     noc_log *log;
     noc_scene *scene;
     const noc_import_params *params;
-    double memory;            /* bytes that the scene may take */
+    double memory; /* bytes that the scene may take */
     noc_report *report;
     bool inspect;
     input *inputs;
     size_t input_count, current;
     /* place of the scene (place.c) */
     bool placed;
-    geo_crs *scene_crs;       /* belongs to the scene; NULL: local metres */
+    geo_crs *scene_crs; /* belongs to the scene; NULL: local metres */
     double origin[3];
-    const char *placed_by;    /* path of the input that settled it */
-    bool far_said;            /* that an input lies far from the others */
-    NOC_ARRAY(double) given;  /* the points that are placed, as they were given */
+    const char *placed_by;   /* path of the input that settled it */
+    bool far_said;           /* that an input lies far from the others */
+    NOC_ARRAY(double) given; /* the points that are placed, as they were given */
     NOC_ARRAY(source_crs *) sources;
-    source_crs *source;       /* of the coordinates that come next */
-    bool mesh_from_origin;    /* the mesh that is read is in metres from the scene's origin */
+    source_crs *source;    /* of the coordinates that come next */
+    bool mesh_from_origin; /* the mesh that is read is in metres from the scene's origin */
     /* the object that is being read (sink.c) */
     char *object_id;
     object_now now;
-    object_records records;   /* of those that were read */
+    object_records records; /* of those that were read */
     NOC_ARRAY(double) scratch;
     geo_triangles surfaces[NOC_CLASS_COUNT];
     int material[NOC_CLASS_COUNT][PALETTE]; /* index + 1 in the scene, 0 if not made yet */
     size_t buildings;
     bool has_roads;
-    double open_area;         /* m2 of terrain, roads, pavements, lawns and water, seen from above */
+    double open_area; /* m2 of terrain, roads, pavements, lawns and water, seen from above */
     NOC_ARRAY(pending_lamp) lamps;
-    size_t lamp_looks;        /* lamps that repeat_lamps compared: for tests */
+    size_t lamp_looks;           /* lamps that repeat_lamps compared: for tests */
     NOC_ARRAY(given_place) lost; /* lamps that have no place in the scene's CRS */
     noc_arena names;
     /* progress */
     double bytes_total, bytes_before;
-    size_t scene_before;      /* bytes of the scene before the present input */
+    size_t scene_before; /* bytes of the scene before the present input */
     bool cancelled;
 } importer;
 
@@ -115,7 +115,8 @@ struct noc_report {
 
 /* report.c */
 noc_report *report_create(void); /* NULL: memory was refused */
-/* Adds the file with the issues' lines; false, and the file is not in it, where memory is refused to it or was to the issues. */
+/* Adds the file with the issues' lines; false, and the file is not in it, where memory is refused to it or was to the
+ * issues. */
 bool report_add(noc_report *report, const noc_report_file *file, const geo_issues *issues) NOC_MUST_USE;
 /* Counts what the lamp does not tell. */
 void report_assumed(noc_report_file *file, const geo_lamp *lamp);
@@ -144,8 +145,8 @@ noc_status place_crs(importer *im, const char *srs_name, const char *place, bool
 /* Coordinates as emitted (the extent is taken of them) to local metres, in place. *usable is false if they cannot be
  * transformed. The first ones settle the scene's CRS and origin. */
 noc_status place_points(importer *im, double *xyz, size_t count, const char *id, bool *usable);
-/* Meshes name no CRS. With --crs they are in it; without, they are metres from the scene's origin where the scene has a CRS,
- * else in the same local metres as all the rest. */
+/* Meshes name no CRS. With --crs they are in it; without, they are metres from the scene's origin where the scene has a
+ * CRS, else in the same local metres as all the rest. */
 noc_status place_mesh(importer *im);
 noc_status place_mesh_points(void *importer, double *xyz, size_t count);
 /* The point with its axes exchanged, in the scene; false where it then has no place. */
@@ -170,7 +171,8 @@ int sink_material(importer *im, noc_class cls, const char *id);
 bool same_file(const char *a, const char *b); /* whatever they are called: "a.csv", "./a.csv", a link */
 bool repeat_file(importer *im, size_t index); /* is it one of those before it? Said and reported */
 void repeat_polygon(object_now *now, noc_class cls, const double *xyz, size_t count); /* local metres */
-noc_status repeat_object(importer *im, const char *id, bool *repeated); /* is im->now one that was read? Decided once, and reported */
+/* is im->now one that was read? Decided once, and reported */
+noc_status repeat_object(importer *im, const char *id, bool *repeated);
 noc_status repeat_lamps(importer *im); /* drops lamps that an earlier file holds */
 void repeat_free(object_records *records);
 
@@ -181,7 +183,8 @@ typedef struct lamp_cells {
     double edge;            /* m */
 } lamp_cells;
 bool lamp_cells_create(lamp_cells *cells, size_t lamps, double edge) NOC_MUST_USE;
-uint32_t *lamp_cells_at(const lamp_cells *cells, const double xy[2], int neighbour); /* 0..8: the cells around; 4: the point's own */
+/* 0..8: the cells around; 4: the point's own */
+uint32_t *lamp_cells_at(const lamp_cells *cells, const double xy[2], int neighbour);
 void lamp_cells_add(lamp_cells *cells, const double xy[2], size_t index);
 void lamp_cells_free(lamp_cells *cells);
 
@@ -190,8 +193,8 @@ noc_status warn_of_doubles(const importer *im);
 
 /* heights.c */
 struct city_ground;
-/* Forgets the lamps' heights of an input that are not of this city's system, with a warning. ground: NULL where the scene's own is
- * there. */
+/* Forgets the lamps' heights of an input that are not of this city's system, with a warning. ground: NULL where the
+ * scene's own is there. */
 noc_status heights_check(importer *im, const struct city_ground *ground);
 /* Lays the ground through those of the points (3 doubles each, changed) whose heights can be believed. */
 void heights_lay(importer *im, struct city_ground *ground, double *points, size_t count);

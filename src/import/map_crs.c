@@ -15,24 +15,25 @@ noc_status map_check_crs_text(const char *text, const char *name, noc_log *log) 
     char what[40];
     if (!geo_crs_text_names_file(text, what))
         return NOC_OK;
-    return noc_error(log, NOC_ERR_FORMAT, "%s: the CRS \"%.200s\" may open files (%s), which a file's CRS must not", name,
-                     text, what);
+    return noc_error(log, NOC_ERR_FORMAT, "%s: the CRS \"%.200s\" may open files (%s), which a file's CRS must not",
+                     name, text, what);
 }
 
 /* ---- GeoJSON ---- */
 
 /* Finds the strings of members "crs", however deep, as the readers of GDAL would: what comments and single quotes hide
- * from one of them and not from the other is refused. So is a name that is an object: GDAL takes its text for the CRS's.
+ * from one of them and not from the other is refused. So is a name that is an object: GDAL takes its text for the
+ * CRS's.
  * {"type": T, "properties": {"name": N}} has two levels. */
 typedef struct json_scan {
     const char *name;
     noc_log *log;
     size_t depth, crs_depth; /* crs_depth: of the member that is being read, 0: none */
     bool in_string, escaped;
-    bool named;              /* the file's own member holds a string */
-    int hex;                 /* digits of \u still to come */
+    bool named; /* the file's own member holds a string */
+    int hex;    /* digits of \u still to come */
     unsigned code;
-    size_t length;           /* of the string so far, though only its begin is kept */
+    size_t length; /* of the string so far, though only its begin is kept */
     char text[LONGEST];
 } json_scan;
 
@@ -93,12 +94,15 @@ static noc_status between_strings(json_scan *s, char c) {
         if (!s->crs_depth && is_crs_key(s->text))
             s->crs_depth = s->depth;
         break;
-    case '{': case '[':
+    case '{':
+    case '[':
         s->depth++;
         if (s->crs_depth && s->depth > s->crs_depth + 2)
-            return noc_error(s->log, NOC_ERR_FORMAT, "%s: GeoJSON: a CRS in parts (PROJJSON), where its name is expected", s->name);
+            return noc_error(s->log, NOC_ERR_FORMAT,
+                             "%s: GeoJSON: a CRS in parts (PROJJSON), where its name is expected", s->name);
         break;
-    case '}': case ']':
+    case '}':
+    case ']':
         s->depth -= s->depth > 0;
         if (s->depth < s->crs_depth)
             s->crs_depth = 0;
@@ -107,7 +111,8 @@ static noc_status between_strings(json_scan *s, char c) {
         if (s->depth == s->crs_depth)
             s->crs_depth = 0;
         break;
-    case '\'': case '/':
+    case '\'':
+    case '/':
         return noc_error(s->log, NOC_ERR_FORMAT, "%s: GeoJSON: %s outside of strings", s->name,
                          c == '/' ? "a comment" : "a single quote");
     }
@@ -243,8 +248,8 @@ noc_status map_check_crs(noc_stream *stream, const char *path, const map_format 
 
 /* ---- GeoPackage ---- */
 
-/* The texts that a query of one column gives. As they are cast to text, none is taken for a geometry, which would have a
- * CRS. */
+/* The texts that a query of one column gives. As they are cast to text, none is taken for a geometry, which would have
+ * a CRS. */
 static noc_status check_query(map_source *m, const char *query) {
     OGRLayerH rows = GDALDatasetExecuteSQL(m->dataset, query, NULL, NULL);
     noc_status status = rows ? NOC_OK : map_source_error(m);
@@ -268,19 +273,21 @@ static bool has_rows(map_source *m, const char *query) {
     return any;
 }
 
-/* What is read above must be what GDAL finds, which looks for one row: a column that is computed may be another each time, and
- * an index need not hold what the table does. The key srs_id INTEGER PRIMARY KEY has none. */
+/* What is read above must be what GDAL finds, which looks for one row: a column that is computed may be another each
+ * time, and an index need not hold what the table does. The key srs_id INTEGER PRIMARY KEY has none. */
 static noc_status check_plain_table(map_source *m) {
     static const struct {
         const char *query, *what;
     } others[] = {
-        { "SELECT 1 FROM pragma_table_xinfo('gpkg_spatial_ref_sys') WHERE hidden <> 0", "a hidden or generated column" },
+        { "SELECT 1 FROM pragma_table_xinfo('gpkg_spatial_ref_sys') WHERE hidden <> 0",
+          "a hidden or generated column" },
         { "SELECT 1 FROM pragma_index_list('gpkg_spatial_ref_sys')",
           "an index (a UNIQUE column or another key than srs_id INTEGER PRIMARY KEY is one)" },
     };
     for (size_t i = 0; i < NOC_COUNT(others); i++)
         if (has_rows(m, others[i].query))
-            return noc_error(m->log, NOC_ERR_UNSUPPORTED, "%s: %s: gpkg_spatial_ref_sys has %s: not read", m->name, m->format, others[i].what);
+            return noc_error(m->log, NOC_ERR_UNSUPPORTED, "%s: %s: gpkg_spatial_ref_sys has %s: not read", m->name,
+                             m->format, others[i].what);
     return m->error[0] ? map_source_error(m) : NOC_OK;
 }
 
@@ -288,8 +295,8 @@ noc_status map_check_crs_rows(map_source *m) {
     static const char *const columns[] = { "definition", "organization", "definition_12_063" };
     noc_status status = check_plain_table(m);
     for (size_t i = 0; i < NOC_COUNT(columns) && !status; i++) {
-        char *there = noc_format("SELECT 1 FROM pragma_table_info('gpkg_spatial_ref_sys') WHERE lower(name) = '%s'",
-                                 columns[i]);
+        char *there =
+            noc_format("SELECT 1 FROM pragma_table_info('gpkg_spatial_ref_sys') WHERE lower(name) = '%s'", columns[i]);
         char *query = noc_format("SELECT coalesce(CAST(%s AS TEXT), '') FROM gpkg_spatial_ref_sys", columns[i]);
         if (!there || !query)
             status = noc_no_memory(m->log, m->name);

@@ -33,7 +33,8 @@ noc_status map_check_shapefile(const char *path, bool anywhere, noc_log *log) {
     const char *base = path + strlen(folder), *dot = strrchr(base, '.');
     size_t stem = dot ? (size_t)(dot - base) : strlen(base);
     DIR *dir = opendir(*folder ? folder : ".");
-    noc_status status = dir ? NOC_OK : noc_error(log, NOC_ERR_IO, "%s: its folder cannot be read: %s", path, strerror(errno));
+    noc_status status =
+        dir ? NOC_OK : noc_error(log, NOC_ERR_IO, "%s: its folder cannot be read: %s", path, strerror(errno));
     struct dirent *entry;
     while (!status && dir && (entry = readdir(dir))) {
         if (strncasecmp(entry->d_name, base, stem) || !is_part(entry->d_name + NOC_MIN(stem, strlen(entry->d_name))))
@@ -52,7 +53,8 @@ noc_status map_check_shapefile(const char *path, bool anywhere, noc_log *log) {
 
 enum { COPY_BLOCK = 1 << 18 };
 
-/* The next piece of a file that is no hole, from *begin on: false where none is left. File systems that tell of none have one piece. */
+/* The next piece of a file that is no hole, from *begin on: false where none is left. File systems that tell of none
+ * have one piece. */
 static bool next_piece(int fd, off_t size, off_t *begin, off_t *end) {
     off_t data = *begin < size ? lseek(fd, *begin, SEEK_DATA) : -1;
     if (data < 0 && (*begin >= size || errno == ENXIO))
@@ -64,8 +66,8 @@ static bool next_piece(int fd, off_t size, off_t *begin, off_t *end) {
 }
 
 /* Holes stay holes: whoever makes the file decides how large it seems. *copied grows by the bytes that are none. */
-static noc_status copy_pieces(FILE *in, FILE *out, size_t size, char *buffer, const import_budget *budget, double *copied,
-                              const char *name, noc_log *log, bool *good) {
+static noc_status copy_pieces(FILE *in, FILE *out, size_t size, char *buffer, const import_budget *budget,
+                              double *copied, const char *name, noc_log *log, bool *good) {
     off_t begin = 0, end;
     while (*good && next_piece(fileno(in), (off_t)size, &begin, &end)) {
         *copied += (double)(end - begin);
@@ -82,7 +84,8 @@ static noc_status copy_pieces(FILE *in, FILE *out, size_t size, char *buffer, co
     return NOC_OK;
 }
 
-static noc_status copy_file(const char *from, const char *to, const import_budget *budget, double *copied, noc_log *log) {
+static noc_status copy_file(const char *from, const char *to, const import_budget *budget, double *copied,
+                            noc_log *log) {
     const char *why;
     size_t size;
     FILE *in = import_open_named("", from, true, &size, &why), *out = in ? fopen(to, "wbx") : NULL;
@@ -101,11 +104,13 @@ static noc_status copy_file(const char *from, const char *to, const import_budge
         return noc_no_memory(log, from);
     if (status || good)
         return status;
-    return noc_error(log, NOC_ERR_IO, "%s: cannot be copied to %s, which its log needs: %s", from, to, in ? strerror(error) : why);
+    return noc_error(log, NOC_ERR_IO, "%s: cannot be copied to %s, which its log needs: %s", from, to,
+                     in ? strerror(error) : why);
 }
 
 /* Into a new folder. */
-static noc_status copy_itself(const char *path, const import_budget *budget, double *copied, noc_log *log, scratch_folder *folder) {
+static noc_status copy_itself(const char *path, const import_budget *budget, double *copied, noc_log *log,
+                              scratch_folder *folder) {
     noc_status status = scratch_make(folder, path, log);
     char *copy = status ? NULL : noc_format("%s/" MAP_COPY_NAME, folder->path);
     if (!status)
@@ -114,7 +119,8 @@ static noc_status copy_itself(const char *path, const import_budget *budget, dou
     return status;
 }
 
-noc_status map_copy_geopackage(const char *path, bool anywhere, const import_budget *budget, noc_log *log, scratch_folder *folder) {
+noc_status map_copy_geopackage(const char *path, bool anywhere, const import_budget *budget, noc_log *log,
+                               scratch_folder *folder) {
     static const char *const logs[] = { "-wal", "-journal" };
     const import_budget memory = { .memory = budget->memory };
     double copied = 0;

@@ -31,8 +31,8 @@ static void shorten_numbers(char *text) {
     *out = 0;
 }
 
-/* What GDAL's GeoJSON reader says of a geometry that it leaves out ("Invalid 'x' coordinate. Type is not double ...", "Invalid Point
- * object. ..."): its feature then has no place, and is counted so. */
+/* What GDAL's GeoJSON reader says of a geometry that it leaves out ("Invalid 'x' coordinate. Type is not double ...",
+ * "Invalid Point object. ..."): its feature then has no place, and is counted so. */
 static bool is_of_one_geometry(const char *text) { return !strncmp(text, "Invalid ", 8) && !strstr(text, "Feature"); }
 
 static void CPL_STDCALL on_gdal_error(CPLErr level, CPLErrorNum code, const char *text) {
@@ -49,8 +49,8 @@ static void CPL_STDCALL on_gdal_error(CPLErr level, CPLErrorNum code, const char
 }
 
 /* Takes the place of curl: a GeoJSON's CRS may be a link, and whoever writes it decides where to. */
-static CPLHTTPResult *refuse_fetch(const char *url, CSLConstList options, GDALProgressFunc progress, void *progress_data,
-                                   CPLHTTPFetchWriteFunc write, void *write_data, void *user) {
+static CPLHTTPResult *refuse_fetch(const char *url, CSLConstList options, GDALProgressFunc progress,
+                                   void *progress_data, CPLHTTPFetchWriteFunc write, void *write_data, void *user) {
     map_source *m = user;
     if (!m->link[0])
         snprintf(m->link, sizeof(m->link), "%s", url);
@@ -84,9 +84,9 @@ static const struct {
 } gdal_settings[] = {
     { "CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO" }, /* nothing is written beside the input */
     { "CPL_CURL_ENABLE_VSIMEM", "NO" },
-    { "GDAL_DISABLE_READDIR_ON_OPEN", "NO" },   /* a Shapefile's other parts are found */
-    { "GDAL_PAM_ENABLED", "NO" },               /* no .aux.xml, neither read nor written */
-    { "OGR_SQLITE_LOAD_EXTENSIONS", "" },         /* whatever the environment says */
+    { "GDAL_DISABLE_READDIR_ON_OPEN", "NO" },      /* a Shapefile's other parts are found */
+    { "GDAL_PAM_ENABLED", "NO" },                  /* no .aux.xml, neither read nor written */
+    { "OGR_SQLITE_LOAD_EXTENSIONS", "" },          /* whatever the environment says */
     { "OGR_SQLITE_PRAGMA", "trusted_schema=OFF" }, /* no views or triggers over functions that touch files */
     { "OGR_SQLITE_LIST_VIRTUAL_OGR", "NO" },
     { "SHAPE_RESTORE_SHX", "NO" },
@@ -135,11 +135,12 @@ static bool is_gzip(const char *path) {
     return gzip;
 }
 
-/* The path itself, /vsigzip/path or /vsizip/{path}/member; *plain in the first case. A name that begins with /vsi is that of a
- * file here: what GDAL would make of it is kept away by the slashes. */
+/* The path itself, /vsigzip/path or /vsizip/{path}/member; *plain in the first case. A name that begins with /vsi is
+ * that of a file here: what GDAL would make of it is kept away by the slashes. */
 static noc_status gdal_path(noc_stream *stream, noc_log *log, char **path, bool *plain) {
     const char *name = noc_stream_name(stream);
-    const char *slash = *name != '/' ? "./" : !strncmp(name, "/vsi", 4) ? "/./" : ""; /* "http://x" stays a file's name */
+    /* "http://x" stays a file's name */
+    const char *slash = *name != '/' ? "./" : !strncmp(name, "/vsi", 4) ? "/./" : "";
     *plain = false;
     if (access(name, F_OK)) { /* path!member */
         const char *bang = name + strlen(name);
@@ -180,7 +181,8 @@ static const char *behind_word(const char *p, const char *word) {
     return blanks ? p + n + blanks : NULL;
 }
 
-/* The module of "VIRTUAL TABLE name USING module", NULL where the text is not just that: comments hide what SQLite reads. */
+/* The module of "VIRTUAL TABLE name USING module", NULL where the text is not just that: comments hide what SQLite
+ * reads. */
 static const char *module_of(const char *sql) {
     const char *p = behind_word(behind_word(sql, "VIRTUAL"), "TABLE");
     if (!p)
@@ -193,8 +195,8 @@ static const char *module_of(const char *sql) {
     return behind_word(end + strspn(end, " \t\r\n"), "USING");
 }
 
-/* SQLite reads as SQL whatever the schema's rows hold that begins with "cr", and a row's other columns tell nothing of what comes of it.
- * So each row must be plainly one of what SQLite itself writes there. */
+/* SQLite reads as SQL whatever the schema's rows hold that begins with "cr", and a row's other columns tell nothing of
+ * what comes of it. So each row must be plainly one of what SQLite itself writes there. */
 static bool is_plain_row(const char *sql) {
     static const char *const plain[] = { "TABLE", "VIEW", "INDEX", "TRIGGER" };
     const char *p = behind_word(sql, "CREATE"), *unique = behind_word(p, "UNIQUE");
@@ -204,22 +206,25 @@ static bool is_plain_row(const char *sql) {
     return behind_word(unique, "INDEX") != NULL;
 }
 
-/* Whether the CRSs are a view or a virtual table, which need not answer twice alike. What stands before the AS of a view is its
- * name, or hides it. */
+/* Whether the CRSs are a view or a virtual table, which need not answer twice alike. What stands before the AS of a
+ * view is its name, or hides it. */
 static bool is_other_crs_table(const char *sql) {
     static const char crs[] = "gpkg_spatial_ref_sys";
-    const char *create = behind_word(sql, "CREATE"), *p = behind_word(create, "VIEW"), *as = p ? strcasestr(p, " AS ") : NULL;
+    const char *create = behind_word(sql, "CREATE"), *p = behind_word(create, "VIEW"),
+               *as = p ? strcasestr(p, " AS ") : NULL;
     char *head = p ? noc_strndup(p, as ? (size_t)(as - p) : strlen(p)) : NULL;
     bool is = p && (!head || strcasestr(head, crs) || strstr(head, "/*") || strstr(head, "--"));
     free(head);
     return is || (behind_word(create, "VIRTUAL") && strcasestr(sql, crs));
 }
 
-/* Virtual tables let a file's author open other files by name (VirtualText, VirtualOGR, ...). Indexes are all that is in use. */
+/* Virtual tables let a file's author open other files by name (VirtualText, VirtualOGR, ...). Indexes are all that is
+ * in use. */
 static noc_status check_schema_row(const map_source *m, const char *sql) {
     static const char *const harmless[] = { "rtree", "rtree_i32", "fts3", "fts4", "fts5" };
     if (is_other_crs_table(sql))
-        return noc_error(m->log, NOC_ERR_UNSUPPORTED, "%s: %s: gpkg_spatial_ref_sys is a view or a virtual table: not read", m->name, m->format);
+        return noc_error(m->log, NOC_ERR_UNSUPPORTED,
+                         "%s: %s: gpkg_spatial_ref_sys is a view or a virtual table: not read", m->name, m->format);
     if (strncasecmp(sql, "cr", 2) || is_plain_row(sql))
         return NOC_OK;
     const char *module = module_of(behind_word(sql, "CREATE"));
@@ -227,13 +232,16 @@ static noc_status check_schema_row(const map_source *m, const char *sql) {
     for (size_t i = 0; i < NOC_COUNT(harmless); i++)
         if (strlen(harmless[i]) == n && !strncasecmp(harmless[i], module, n))
             return NOC_OK;
-    return noc_error(m->log, NOC_ERR_UNSUPPORTED, "%s: %s: a virtual table (%.*s) may open other files: not read", m->name, m->format,
-                     module ? (int)NOC_MIN(n, 60) : 7, module ? module : "unclear");
+    return noc_error(m->log, NOC_ERR_UNSUPPORTED, "%s: %s: a virtual table (%.*s) may open other files: not read",
+                     m->name, m->format, module ? (int)NOC_MIN(n, 60) : 7, module ? module : "unclear");
 }
 
 static noc_status check_virtual_tables(map_source *m) {
-    OGRLayerH rows = GDALDatasetExecuteSQL(m->dataset, "SELECT CASE typeof(sql) WHEN 'text' THEN sql ELSE 'CREATE' END FROM sqlite_master "
-                                           "WHERE sql IS NOT NULL", NULL, NULL);
+    OGRLayerH rows =
+        GDALDatasetExecuteSQL(m->dataset,
+                              "SELECT CASE typeof(sql) WHEN 'text' THEN sql ELSE 'CREATE' END FROM sqlite_master "
+                              "WHERE sql IS NOT NULL",
+                              NULL, NULL);
     noc_status status = rows ? NOC_OK : map_source_error(m);
     OGRFeatureH row;
     while (!status && (row = OGR_L_GetNextFeature(rows))) {
@@ -273,8 +281,11 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
     if (!status)
         status = map_check_crs(stream, path, format, &m->crs_named, log);
     if (!status) {
-        const char *const *options = format->kind == MAP_OSM ? osm_options : format->kind == MAP_GEOPACKAGE && !copied ? immutable : none;
-        m->dataset = GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, format->drivers, options, NULL);
+        const char *const *options = format->kind == MAP_OSM                     ? osm_options
+                                     : format->kind == MAP_GEOPACKAGE && !copied ? immutable
+                                                                                 : none;
+        m->dataset =
+            GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, format->drivers, options, NULL);
         if (m->dataset && m->link[0])
             m->error[0] = 0; /* that it was not fetched is said below */
         status = m->dataset && !m->error[0] ? NOC_OK : map_source_error(m);
@@ -284,8 +295,10 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
     if (!status && format->kind == MAP_GEOPACKAGE)
         status = map_check_crs_rows(m);
     if (m->link[0])
-        noc_warn(log, "%s: its CRS is a link (%s), which is not followed: taken as longitudes and latitudes, unless --crs says otherwise",
-                 m->name, m->link);
+        noc_warn(
+            log,
+            "%s: its CRS is a link (%s), which is not followed: taken as longitudes and latitudes, unless --crs says otherwise",
+            m->name, m->link);
     free(path);
     return status;
 }

@@ -19,18 +19,18 @@ typedef struct map_format {
 
 typedef struct map_source {
     GDALDatasetH dataset;
-    char error[512];      /* GDAL's first failure since it was opened, "" if none */
-    char link[200];       /* the first address that a content asked for, "" if none: it is not fetched */
-    bool crs_named;       /* false: a GeoJSON without one, whose CRS is its format's */
+    char error[512]; /* GDAL's first failure since it was opened, "" if none */
+    char link[200];  /* the first address that a content asked for, "" if none: it is not fetched */
+    bool crs_named;  /* false: a GeoJSON without one, whose CRS is its format's */
     const char *name, *format;
     noc_log *log;
-    scratch_folder copy;  /* with our own copy of the file, where it is not read in place */
+    scratch_folder copy; /* with our own copy of the file, where it is not read in place */
 } map_source;
 
-/* Opens the stream's file by the format's drivers alone, for reading alone: nothing is written beside it, nothing fetched. Until
- * it is closed GDAL's messages in this thread go to m->error. Parts of a Shapefile and of a GeoPackage that are no regular
- * files, or lie outside the file's folder (unless `anywhere`), are an error, and so are CRSs that name files. To be closed after an
- * error, too. */
+/* Opens the stream's file by the format's drivers alone, for reading alone: nothing is written beside it, nothing
+ * fetched. Until it is closed GDAL's messages in this thread go to m->error. Parts of a Shapefile and of a GeoPackage
+ * that are no regular files, or lie outside the file's folder (unless `anywhere`), are an error, and so are CRSs that
+ * name files. To be closed after an error, too. */
 noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *format, bool anywhere, noc_log *log);
 noc_status map_source_error(const map_source *m); /* reports m->error */
 void map_source_close(map_source *m);

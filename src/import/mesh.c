@@ -1,11 +1,13 @@
 /* Wavefront OBJ with MTL through Assimp. Researchers' night scenes come so, with their lamps as emissive surfaces.
  *
- * Units: metres; import/place.c says where the coordinates belong. OBJ does not say which axis is up; y is what most programs write, and
- * noc_import_params.obj_up says otherwise. MTL: Kd is the diffuse reflectance (linear), Ke the radiance in cd/m2, Ks with
- * illum 2 and above the reflectance of the glossy lobe at normal incidence, Ns its Blinn-Phong exponent n, turned into the
- * GGX lobe of the same width, alpha^2 = 2 / (n + 2) (Walter et al. 2007, eq. 37 ff.). Textures are not read.
+ * Units: metres; import/place.c says where the coordinates belong. OBJ does not say which axis is up; y is what most
+ * programs write, and noc_import_params.obj_up says otherwise. MTL: Kd is the diffuse reflectance (linear), Ke the
+ * radiance in cd/m2, Ks with illum 2 and above the reflectance of the glossy lobe at normal incidence, Ns its
+ * Blinn-Phong exponent n, turned into the GGX lobe of the same width, alpha^2 = 2 / (n + 2) (Walter et al. 2007, eq. 37
+ * ff.). Textures are not read.
  *
- * One odd number makes Assimp refuse a file whole, so it sees a text that obj_offset.c, obj_faces.c and obj_library.c made plain. */
+ * One odd number makes Assimp refuse a file whole, so it sees a text that obj_offset.c, obj_faces.c and obj_library.c
+ * made plain. */
 #include "import/import.h"
 #include "import/obj_faces.h"
 #include "import/obj_library.h"
@@ -24,10 +26,12 @@
 #define BOM "\xef\xbb\xbf" /* some editors' mark of UTF-8 */
 
 static bool is_keyword(const char *line, size_t len) {
-    static const char *const keywords[] = { "v", "vt", "vn", "vp", "f", "o", "g", "s", "l", "p", "usemtl", "mtllib", "usemap",
-                                            "maplib", "deg", "cstype", "bevel", "lod", "fo", "curv", "curv2", "surf", "parm",
-                                            "trim", "hole", "scrv", "sp", "end", "con", "mg", "bmat", "step", "c_interp", "d_interp",
-                                            "ctech", "stech", "shadow_obj", "trace_obj" };
+    static const char *const keywords[] = {
+        "v",      "vt",     "vn",       "vp",       "f",     "o",      "g",          "s",        "l",   "p",
+        "usemtl", "mtllib", "usemap",   "maplib",   "deg",   "cstype", "bevel",      "lod",      "fo",  "curv",
+        "curv2",  "surf",   "parm",     "trim",     "hole",  "scrv",   "sp",         "end",      "con", "mg",
+        "bmat",   "step",   "c_interp", "d_interp", "ctech", "stech",  "shadow_obj", "trace_obj"
+    };
     size_t n = 0;
     while (n < len && line[n] != ' ' && line[n] != '\t' && line[n] != '\r')
         n++;
@@ -78,11 +82,11 @@ static bool probe(const char *head, size_t size) {
 
 typedef struct library {
     obj_folder folder;
-    char *main_name;      /* what the OBJ is called to Assimp: its content decides, so always .obj */
+    char *main_name; /* what the OBJ is called to Assimp: its content decides, so always .obj */
     char *data;
     size_t size, faces;
-    char *missing;        /* first library that could not be opened, and why */
-    bool refused;         /* memory was, to what Assimp would have read */
+    char *missing; /* first library that could not be opened, and why */
+    bool refused;  /* memory was, to what Assimp would have read */
     geo_issues *issues;
 } library;
 
@@ -127,7 +131,7 @@ static struct aiFile *library_open(struct aiFileIO *io, const char *name, const 
         lib->refused = lib->refused || lib->folder.refused;
         if (!o.data && !lib->missing && !lib->refused) {
             lib->missing = noc_format("%s%s cannot be opened: %s", *relative == '/' ? "" : lib->folder.path, relative,
-                                          lib->folder.why);
+                                      lib->folder.why);
             lib->refused = !lib->missing;
         }
         if (!o.data)
@@ -144,8 +148,13 @@ static struct aiFile *library_open(struct aiFileIO *io, const char *name, const 
         return NULL;
     }
     *held = o;
-    *f = (struct aiFile){ .ReadProc = file_read, .WriteProc = file_write, .TellProc = file_tell, .FileSizeProc = file_size,
-                          .SeekProc = file_seek, .FlushProc = file_flush, .UserData = (char *)held };
+    *f = (struct aiFile){ .ReadProc = file_read,
+                          .WriteProc = file_write,
+                          .TellProc = file_tell,
+                          .FileSizeProc = file_size,
+                          .SeekProc = file_seek,
+                          .FlushProc = file_flush,
+                          .UserData = (char *)held };
     return f;
 }
 
@@ -262,10 +271,13 @@ static noc_status add_mesh(const mesh_target *to, const struct aiMesh *m, int ma
     memory = memory && !cut.extra.no_memory && join_polygons(&cut, &xyz, &indices, &vertices);
     if (memory)
         obj_spread_add(to->spread, xyz, vertices, indices, cut.triangle_count);
-    noc_mesh mesh = { .vertex_count = vertices, .positions = xyz, .triangle_count = cut.triangle_count, .indices = indices,
-                      .material = material, .name = name };
-    noc_status status = memory ? to->parts->mesh(to->parts->ctx, &mesh, xyz)
-                               : noc_no_memory(to->parts->log, cut.name);
+    noc_mesh mesh = { .vertex_count = vertices,
+                      .positions = xyz,
+                      .triangle_count = cut.triangle_count,
+                      .indices = indices,
+                      .material = material,
+                      .name = name };
+    noc_status status = memory ? to->parts->mesh(to->parts->ctx, &mesh, xyz) : noc_no_memory(to->parts->log, cut.name);
     geo_triangles_free(&cut.extra);
     free(xyz);
     free(indices);
@@ -286,7 +298,8 @@ static noc_status add_scene(const struct aiScene *from, const mesh_target *to) {
         if (*material < 0) {
             struct aiString name = { 0 };
             aiGetMaterialString(from->mMaterials[m->mMaterialIndex], "?mat.name", 0, 0, &name);
-            noc_material converted = convert_material(from->mMaterials[m->mMaterialIndex], name.data, to->parts->issues);
+            noc_material converted =
+                convert_material(from->mMaterials[m->mMaterialIndex], name.data, to->parts->issues);
             *material = to->parts->material(to->parts->ctx, &converted);
         }
         status = *material < 0 ? NOC_ERR_ARGUMENT : add_mesh(to, m, *material);
@@ -302,9 +315,10 @@ static noc_status read_obj(const char *path, library *lib, const mesh_target *to
     aiSetImportPropertyInteger(settings, AI_CONFIG_PP_RVC_FLAGS,
                                aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
                                    aiComponent_TEXCOORDS | aiComponent_TEXTURES);
-    const struct aiScene *from = aiImportFileExWithProperties(
-        lib->main_name, aiProcess_SortByPType | aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices,
-        &io, settings);
+    const struct aiScene *from = aiImportFileExWithProperties(lib->main_name,
+                                                              aiProcess_SortByPType | aiProcess_RemoveComponent |
+                                                                  aiProcess_JoinIdenticalVertices,
+                                                              &io, settings);
     noc_status status;
     if (lib->refused) {
         status = noc_no_memory(to->parts->log, path);
@@ -336,8 +350,8 @@ static noc_status plain_text(library *lib, double offset[3], const char *name, n
     return status;
 }
 
-static noc_status read_parts(const char *path, noc_stream *stream, const noc_import_params *params, const mesh_parts *parts,
-                             const char **format) {
+static noc_status read_parts(const char *path, noc_stream *stream, const noc_import_params *params,
+                             const mesh_parts *parts, const char **format) {
     *format = "OBJ";
     library lib = { .issues = parts->issues };
     double offset[3];
@@ -353,8 +367,9 @@ static noc_status read_parts(const char *path, noc_stream *stream, const noc_imp
     lib.folder = (obj_folder){ .path = folder, .anywhere = params && params->allow_outside };
     lib.main_name = noc_format(ROOT "%.*s.obj", (int)(dot ? dot - base : (ptrdiff_t)strlen(base)), base);
     obj_spread spread = { 0 };
-    const mesh_target to = { .parts = parts, .offset = offset, .z_up = params && params->obj_up == NOC_OBJ_UP_Z,
-                             .spread = &spread };
+    const mesh_target to = {
+        .parts = parts, .offset = offset, .z_up = params && params->obj_up == NOC_OBJ_UP_Z, .spread = &spread
+    };
     status = folder && lib.main_name ? obj_plain_materials(lib.data, lib.size, &lib.folder, noc_stream_budget(stream),
                                                            parts->issues, noc_stream_name(stream), parts->log)
                                      : noc_no_memory(parts->log, path);
@@ -378,12 +393,18 @@ static noc_status read_mesh(const char *path, noc_stream *stream, const noc_impo
 
 static bool foreign(const char *head, size_t size) { return true; }
 
-const noc_reader noc_reader_mesh = { .name = "OBJ", .reads = NOC_READS_MESH, .probe = probe, .read_mesh = read_mesh,
-                                     .read_parts = read_parts, .foreign = foreign };
+const noc_reader noc_reader_mesh = { .name = "OBJ",
+                                     .reads = NOC_READS_MESH,
+                                     .probe = probe,
+                                     .read_mesh = read_mesh,
+                                     .read_parts = read_parts,
+                                     .foreign = foreign };
 
 #else
 
-const noc_reader noc_reader_mesh = { .name = "OBJ", .reads = NOC_READS_MESH, .probe = probe,
+const noc_reader noc_reader_mesh = { .name = "OBJ",
+                                     .reads = NOC_READS_MESH,
+                                     .probe = probe,
                                      .missing = "OBJ files need Assimp, which this build is without" };
 
 #endif

@@ -1,5 +1,5 @@
-/* Faces are checked in the text, before Assimp sees them. Indices count from 1 over the whole file; negative ones count back
- * from the last vertex before the face. */
+/* Faces are checked in the text, before Assimp sees them. Indices count from 1 over the whole file; negative ones count
+ * back from the last vertex before the face. */
 #include "import/obj_faces.h"
 
 #include <stdio.h>
@@ -97,7 +97,8 @@ static bool plain_face(char *begin, char *end, const face_limits *limits) {
             there = is_separator(*p);
         there = there || corners;
         snprintf(id, sizeof(id), "line %zu", limits->line);
-        geo_issue(limits->issues, GEO_SKIPPED, there ? "face of fewer than three vertices" : "face with an index that is not there", id);
+        geo_issue(limits->issues, GEO_SKIPPED,
+                  there ? "face of fewer than three vertices" : "face with an index that is not there", id);
         blank(begin, end);
     }
     return corners >= 3;

@@ -70,8 +70,12 @@ static char *find_all(obj_folder *folder, char *names, size_t *size) {
 
 /* How many numbers stand behind a keyword that Assimp reads; 0: it reads something else, -1: it reads none such. */
 static int numbers_of(const char *word, size_t n) {
-    static const struct { const char *word; int numbers; } known[] = {
-        { "newmtl", 0 }, { "Ka", 3 }, { "Kd", 3 }, { "Ks", 3 }, { "Ke", 3 }, { "Tf", 3 }, { "Ns", 1 }, { "Ni", 1 }, { "d", 1 }, { "Tr", 1 }, { "illum", 1 },
+    static const struct {
+        const char *word;
+        int numbers;
+    } known[] = {
+        { "newmtl", 0 }, { "Ka", 3 }, { "Kd", 3 }, { "Ks", 3 }, { "Ke", 3 },    { "Tf", 3 },
+        { "Ns", 1 },     { "Ni", 1 }, { "d", 1 },  { "Tr", 1 }, { "illum", 1 },
     };
     for (size_t i = 0; i < NOC_COUNT(known); i++)
         if (strlen(known[i].word) == n && !memcmp(known[i].word, word, n))

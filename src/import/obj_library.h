@@ -12,9 +12,9 @@ typedef struct obj_folder {
     bool refused;     /* memory was, to one of them, which then is not there; stays set */
 } obj_folder;
 
-/* The text of a library named by mtllib, with a 0 behind it, free() it; NULL where there is none. The name may hold blanks,
- * be several names, or a path of another machine, whose last part is then looked for in the folder. Statements with numbers
- * that are none are blanked out and counted, as are textures. */
+/* The text of a library named by mtllib, with a 0 behind it, free() it; NULL where there is none. The name may hold
+ * blanks, be several names, or a path of another machine, whose last part is then looked for in the folder. Statements
+ * with numbers that are none are blanked out and counted, as are textures. */
 char *obj_open_library(obj_folder *folder, const char *name, size_t *size, geo_issues *issues);
 
 #endif

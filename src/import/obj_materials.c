@@ -68,7 +68,8 @@ noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, impo
         if (is_a(p, end, "mtllib", &s)) {
             char *library = text_of(&s);
             bool fresh;
-            memory = library && map_put(&libraries, library, 1, &fresh) && (!fresh || add_library(folder, library, budget, &defined));
+            memory = library && map_put(&libraries, library, 1, &fresh) &&
+                     (!fresh || add_library(folder, library, budget, &defined));
             if (memory && !fresh) /* Assimp would read all of it again */
                 memset(p, ' ', (size_t)(end - p));
             free(library);

@@ -6,7 +6,8 @@
 #include "import/obj_library.h"
 
 /* Names that usemtl asks for and no library in the folder defines become one, as all of them stand for the default
- * material, and are counted. Then counts what reading the text will take; NOC_ERR_MEMORY after reporting where that is more than the budget has. */
+ * material, and are counted. Then counts what reading the text will take; NOC_ERR_MEMORY after reporting where that is
+ * more than the budget has. */
 noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, import_budget *budget, geo_issues *issues,
                                const char *name, noc_log *log);
 

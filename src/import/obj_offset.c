@@ -1,4 +1,5 @@
-/* Vertices are parsed in double precision, lose the offset, and are written back, with micrometres where they had one. */
+/* Vertices are parsed in double precision, lose the offset, and are written back, with micrometres where they had one.
+ */
 #include "import/obj_offset.h"
 #include "import/obj_faces.h"
 
@@ -6,16 +7,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define FAR 4096.0     /* from here on the step of a float is above half a millimetre */
-#define SAMPLE 1023    /* vertices that are looked at: their median, so that a stray one at zero does not decide */
-#define MOST 1e12      /* m; what the fixed decimals below hold */
+#define FAR 4096.0  /* from here on the step of a float is above half a millimetre */
+#define SAMPLE 1023 /* vertices that are looked at: their median, so that a stray one at zero does not decide */
+#define MOST 1e12   /* m; what the fixed decimals below hold */
 #define MOST_FLOAT 1e38
 #define NUMBER_SIZE 24 /* "-1000000000000.000000" and a blank */
 
 #define MOST_NUMBERS 7 /* in a vertex: place, weight or colour, and one too many */
 
 static bool is_vertex(const char *line, const char *end) {
-    return end - line >= 2 && line[0] == 'v' && (line[1] == ' ' || line[1] == '\t' || line[1] == '\r' || line[1] == '\\');
+    return end - line >= 2 && line[0] == 'v' &&
+           (line[1] == ' ' || line[1] == '\t' || line[1] == '\r' || line[1] == '\\');
 }
 
 /* A number as every parser reads it: no sign but -, a digit first. */
@@ -146,8 +148,8 @@ static char *write_place(char *to, const double xyz[3], const double offset[3]) 
     return to;
 }
 
-noc_status obj_plain_vertices(char **data, size_t *size, double offset[3], obj_numbers *bad, geo_issues *issues, const char *name,
-                              noc_log *log) {
+noc_status obj_plain_vertices(char **data, size_t *size, double offset[3], obj_numbers *bad, geo_issues *issues,
+                              const char *name, noc_log *log) {
     memset(offset, 0, 3 * sizeof(*offset));
     bool plain;
     find_offset(*data, *size, offset, &plain);

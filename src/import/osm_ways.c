@@ -11,10 +11,13 @@
 enum { KEY_BUILDING = 1, KEY_STREET = 2, VALUE_NO = 4, VALUE_LAMP = 8 };
 
 static unsigned text_kind(const char *text, size_t size) {
-    static const struct { const char *text; unsigned kind; } known[] = {
+    static const struct {
+        const char *text;
+        unsigned kind;
+    } known[] = {
         { "building", KEY_BUILDING }, { "building:part", KEY_BUILDING },
-        { "highway", KEY_STREET }, { "area:highway", KEY_STREET },
-        { "no", VALUE_NO }, { "street_lamp", VALUE_LAMP },
+        { "highway", KEY_STREET },    { "area:highway", KEY_STREET },
+        { "no", VALUE_NO },           { "street_lamp", VALUE_LAMP },
     };
     for (size_t i = 0; i < NOC_COUNT(known); i++)
         if (strlen(known[i].text) == size && !memcmp(text, known[i].text, size))
@@ -98,7 +101,9 @@ static noc_status count_xml(noc_stream *stream, geo_sink *sink, geo_features *fe
 
 /* ---- PBF: messages of protocol buffers, in blocks ---- */
 
-typedef struct wire { const unsigned char *at, *end; } wire;
+typedef struct wire {
+    const unsigned char *at, *end;
+} wire;
 
 typedef struct wire_field {
     unsigned number;
@@ -219,8 +224,11 @@ static noc_status unpack(pbf_count *p, wire packed, uint64_t size, wire *block) 
         return NOC_OK;
     if (!array_reserve(&p->block, (size_t)size))
         return no_memory(p);
-    z_stream z = { .zalloc = z_alloc, .zfree = z_free, .next_in = (unsigned char *)packed.at,
-                   .avail_in = (uInt)(packed.end - packed.at), .next_out = p->block.data,
+    z_stream z = { .zalloc = z_alloc,
+                   .zfree = z_free,
+                   .next_in = (unsigned char *)packed.at,
+                   .avail_in = (uInt)(packed.end - packed.at),
+                   .next_out = p->block.data,
                    .avail_out = (uInt)size };
     if (inflateInit(&z) != Z_OK)
         return no_memory(p);

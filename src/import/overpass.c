@@ -33,7 +33,8 @@ static bool place_of(const json_t *element, double *lon, double *lat) {
         return true;
     double w, s, e, n;
     const json_t *box = json_object_get(element, "bounds");
-    if (box && number(box, "minlon", &w) && number(box, "minlat", &s) && number(box, "maxlon", &e) && number(box, "maxlat", &n)) {
+    if (box && number(box, "minlon", &w) && number(box, "minlat", &s) && number(box, "maxlon", &e) &&
+        number(box, "maxlat", &n)) {
         *lon = (w + e) / 2;
         *lat = (s + n) / 2;
         return true;
@@ -47,10 +48,10 @@ static bool any_lamp(json_t *elements) {
     for (size_t i = 0; i < count; i++) {
         const char *key;
         json_t *value;
-        json_object_foreach(json_object_get(json_array_get(elements, i), "tags"), key, value)
-            if (json_is_string(value) &&
-                lamp_verdict_of(NULL, &(lamp_tag){ key, json_string_value(value) }, 1, false) != LAMP_NONE)
-                return true;
+        json_object_foreach(json_object_get(json_array_get(elements, i), "tags"), key,
+                            value) if (json_is_string(value) &&
+                                       lamp_verdict_of(NULL, &(lamp_tag){ key, json_string_value(value) }, 1, false) !=
+                                           LAMP_NONE) return true;
     }
     return false;
 }
@@ -64,11 +65,10 @@ static void count_way(const json_t *element, geo_features *features) {
     osm_way way = OSM_NEITHER;
     const char *key;
     json_t *value;
-    json_object_foreach(json_object_get(element, "tags"), key, value)
-        if (json_is_string(value)) {
-            osm_way one = osm_way_of(key, json_string_value(value));
-            way = NOC_MAX(way, one);
-        }
+    json_object_foreach(json_object_get(element, "tags"), key, value) if (json_is_string(value)) {
+        osm_way one = osm_way_of(key, json_string_value(value));
+        way = NOC_MAX(way, one);
+    }
     features->buildings += way == OSM_BUILDING;
     features->streets += way == OSM_STREET;
 }
@@ -83,11 +83,11 @@ static bool collect_tags(json_t *element, tag_list *list) {
     list->tags.len = 0;
     const char *type = json_string_value(json_object_get(element, "type")), *key;
     json_t *id = json_object_get(element, "id"), *value;
-    snprintf(list->id, sizeof(list->id), "%.16s/%" JSON_INTEGER_FORMAT, type ? type : "element", json_integer_value(id));
+    snprintf(list->id, sizeof(list->id), "%.16s/%" JSON_INTEGER_FORMAT, type ? type : "element",
+             json_integer_value(id));
     bool kept = array_push(&list->tags, (lamp_tag){ "@id", list->id });
-    json_object_foreach(json_object_get(element, "tags"), key, value)
-        if (json_is_string(value))
-            kept = kept && array_push(&list->tags, (lamp_tag){ key, json_string_value(value) });
+    json_object_foreach(json_object_get(element, "tags"), key, value) if (json_is_string(value)) kept =
+        kept && array_push(&list->tags, (lamp_tag){ key, json_string_value(value) });
     return kept;
 }
 
@@ -106,8 +106,10 @@ static noc_status emit(json_t *elements, lamp_writer *w) {
         double xyz[3] = { NAN, NAN, NAN };
         if (!place_of(element, &xyz[0], &xyz[1]))
             xyz[0] = xyz[1] = NAN;
-        status = !collect_tags(element, &list) ? noc_no_memory(w->sink->log, w->place) : lamp_writer_point(w, list.tags.data, list.tags.len, list.id, xyz);
-        if (!status && i % 1024 == 0 && w->sink->progress && !w->sink->progress(w->sink->ctx, (double)i / (double)count))
+        status = !collect_tags(element, &list) ? noc_no_memory(w->sink->log, w->place)
+                                               : lamp_writer_point(w, list.tags.data, list.tags.len, list.id, xyz);
+        if (!status && i % 1024 == 0 && w->sink->progress &&
+            !w->sink->progress(w->sink->ctx, (double)i / (double)count))
             status = NOC_ERR_CANCELLED;
     }
     array_free(&list.tags);
@@ -127,12 +129,13 @@ static size_t pull(void *buffer, size_t size, void *user) {
     s->status = noc_stream_read(s->stream, buffer, size, &got);
     s->cost += import_json_cost(buffer, got);
     if (!s->status)
-        s->status = import_affords(noc_stream_budget(s->stream), s->cost, noc_stream_name(s->stream), "its JSON",
-                                   s->log);
+        s->status =
+            import_affords(noc_stream_budget(s->stream), s->cost, noc_stream_name(s->stream), "its JSON", s->log);
     return s->status ? (size_t)-1 : got;
 }
 
-static noc_status read_overpass(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
+static noc_status read_overpass(noc_stream *stream, const noc_import_params *params, geo_sink *sink,
+                                const char **format) {
     *format = "Overpass JSON";
     lamp_writer w;
     noc_status status = lamp_writer_start(&w, sink, noc_stream_name(stream), params);
@@ -167,4 +170,6 @@ static noc_status read_overpass(noc_stream *stream, const noc_import_params *par
     return status;
 }
 
-const noc_reader noc_reader_overpass = { .name = "Overpass JSON", .reads = NOC_READS_LAMPS, .probe = probe, .read = read_overpass };
+const noc_reader noc_reader_overpass = {
+    .name = "Overpass JSON", .reads = NOC_READS_LAMPS, .probe = probe, .read = read_overpass
+};

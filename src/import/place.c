@@ -9,9 +9,9 @@
 #include <ctype.h>
 #include <math.h>
 
-#define AXIS_TRIES 16      /* polygons that are looked at before the order of axes is left as it is */
-#define FAR_OUTSIDE 3.0    /* degrees outside the CRS's area of use that are worth a warning */
-#define STRAY_METRES 20e3  /* a first object this far from the middle of the first ones does not settle the place */
+#define AXIS_TRIES 16     /* polygons that are looked at before the order of axes is left as it is */
+#define FAR_OUTSIDE 3.0   /* degrees outside the CRS's area of use that are worth a warning */
+#define STRAY_METRES 20e3 /* a first object this far from the middle of the first ones does not settle the place */
 #define STRAY_DEGREES 0.2
 #define NOWHERE 1e8        /* m from the origin: farther than anything on Earth in any projection in use */
 #define TRUE_SCALE 1e-3    /* lengths in the scene's CRS are those of the ground to within this share */
@@ -25,16 +25,19 @@ static bool is_blank(const char *text) {
 
 static source_crs *find_source(importer *im, const char *spelling, bool taken) {
     for (size_t i = 0; i < im->sources.len; i++)
-        if (im->sources.data[i]->input == im->current && im->sources.data[i]->taken == taken && !strcmp(im->sources.data[i]->spelling, spelling))
+        if (im->sources.data[i]->input == im->current && im->sources.data[i]->taken == taken &&
+            !strcmp(im->sources.data[i]->spelling, spelling))
             return im->sources.data[i];
     return NULL;
 }
 
 /* Of a CRS that the user gave. */
-static noc_status given_status(noc_status status) { return !status || status == NOC_ERR_MEMORY ? status : NOC_ERR_ARGUMENT; }
+static noc_status given_status(noc_status status) {
+    return !status || status == NOC_ERR_MEMORY ? status : NOC_ERR_ARGUMENT;
+}
 
-/* PROJ searches its whole database for a name that it does not know: a tenth of a second each. Where --crs stands in for such
- * names, there may be as many as a reader takes of one file. */
+/* PROJ searches its whole database for a name that it does not know: a tenth of a second each. Where --crs stands in
+ * for such names, there may be as many as a reader takes of one file. */
 enum { MOST_STRANGE = 8 };
 
 /* The CRS that `spelling` means for this run; *crs is NULL for local metres. */
@@ -52,15 +55,20 @@ static noc_status resolve(importer *im, const char *spelling, const char *place,
         if (status == NOC_ERR_MEMORY)
             return noc_no_memory(im->log, place);
         if (status)
-            return noc_error(im->log, status, "%s: PROJ finds no proj.db, its database, so the CRS \"%.60s\" cannot be read: "
-                             "is PROJ_DATA right?", place, spelling);
+            return noc_error(im->log, status,
+                             "%s: PROJ finds no proj.db, its database, so the CRS \"%.60s\" cannot be read: "
+                             "is PROJ_DATA right?",
+                             place, spelling);
         if (!fallback && ++im->inputs[im->current].strange_crs > MOST_STRANGE)
-            return noc_error(im->log, NOC_ERR_FORMAT, "%s: more than %d CRSs of the file are not understood, \"%.60s\" the last of them",
-                             place, MOST_STRANGE, spelling);
-        if (!fallback && !im->inspect)
             return noc_error(im->log, NOC_ERR_FORMAT,
-                             "%s: the CRS \"%.60s\" is not understood, opens files, or is neither geographic nor projected: say with "
-                             "--crs which one it is", place, spelling);
+                             "%s: more than %d CRSs of the file are not understood, \"%.60s\" the last of them", place,
+                             MOST_STRANGE, spelling);
+        if (!fallback && !im->inspect)
+            return noc_error(
+                im->log, NOC_ERR_FORMAT,
+                "%s: the CRS \"%.60s\" is not understood, opens files, or is neither geographic nor projected: say with "
+                "--crs which one it is",
+                place, spelling);
         noc_warn(im->log, "%s: the CRS \"%.60s\" is not understood: %s%s", place, spelling,
                  fallback ? "taken as " : "taken as local metres", fallback ? fallback : "");
     }
@@ -98,16 +106,17 @@ noc_status place_crs(importer *im, const char *srs_name, const char *place, bool
 
 /* ---- axes ---- */
 
-/* Is `zone` million metres of the easting the number of the UTM zone that the point lies in without them? Zones reach over their
- * edges a little. */
+/* Is `zone` million metres of the easting the number of the UTM zone that the point lies in without them? Zones reach
+ * over their edges a little. */
 static bool is_zone_number(source_crs *s, double zone, double x, double y) {
     double p[2];
-    return !geo_crs_is_geographic(s->crs) && zone >= 1 && zone <= 60 && geo_crs_outside(s->crs, x - 1e6 * zone, y) == 0 &&
-           geo_crs_lonlat(s->crs, x - 1e6 * zone, y, p) && fabs(floor((p[0] + 180) / 6) + 1 - zone) <= 1;
+    return !geo_crs_is_geographic(s->crs) && zone >= 1 && zone <= 60 &&
+           geo_crs_outside(s->crs, x - 1e6 * zone, y) == 0 && geo_crs_lonlat(s->crs, x - 1e6 * zone, y, p) &&
+           fabs(floor((p[0] + 180) / 6) + 1 - zone) <= 1;
 }
 
-/* Swaps the axes, or takes the zone number off the easting (32 512 345 m instead of 512 345 m), if that is what brings the
- * point into the CRS's area of use. */
+/* Swaps the axes, or takes the zone number off the easting (32 512 345 m instead of 512 345 m), if that is what brings
+ * the point into the CRS's area of use. */
 static void decide_axes(importer *im, source_crs *s, double x, double y, const char *id) {
     geo_issues *issues = im->inputs[im->current].issues;
     double zone = floor(x / 1e6);
@@ -116,8 +125,8 @@ static void decide_axes(importer *im, source_crs *s, double x, double y, const c
         s->axes_decided = true;
     } else if (geo_crs_outside(s->crs, y, x) == 0) {
         s->axes_decided = s->swap = true;
-        noc_warn(im->log, "%s: the coordinates fit %s only with their axes exchanged: done", im->inputs[im->current].path,
-                 geo_crs_name(s->crs));
+        noc_warn(im->log, "%s: the coordinates fit %s only with their axes exchanged: done",
+                 im->inputs[im->current].path, geo_crs_name(s->crs));
         geo_issue(issues, GEO_GUESSED, "axes exchanged to fit the CRS", id);
     } else if (is_zone_number(s, zone, x, y)) {
         s->axes_decided = true;
@@ -188,8 +197,8 @@ static noc_status set_place(importer *im, geo_crs *crs, const double origin[3]) 
     return crs || im->scene->without_crs ? NOC_OK : noc_no_memory(im->log, im->placed_by);
 }
 
-/* Lengths must be those of the ground: light falls with their square. Where *crs has others at a point (Web Mercator, a zone far
- * away), the scene gets the UTM zone of that place instead, and *given what it would have had. */
+/* Lengths must be those of the ground: light falls with their square. Where *crs has others at a point (Web Mercator, a
+ * zone far away), the scene gets the UTM zone of that place instead, and *given what it would have had. */
 static noc_status make_metres_true(importer *im, geo_crs **crs, double p[3], geo_crs **given) {
     const char *path = im->inputs[im->current].path;
     double scale = geo_crs_scale(*crs, p[0], p[1]), lonlat[2];
@@ -204,12 +213,14 @@ static noc_status make_metres_true(importer *im, geo_crs **crs, double p[3], geo
     if (!ok) {
         bool refused = !local || status == NOC_ERR_MEMORY;
         geo_crs_destroy(local);
-        return refused ? (status ? status : noc_no_memory(im->log, path)) : noc_error(im->log, NOC_ERR_FORMAT, "%s: 100 m of %s are %.1f m on the ground there, and no local CRS was found", path,
-                         geo_crs_name(*crs), 100 / scale);
+        return refused ? (status ? status : noc_no_memory(im->log, path))
+                       : noc_error(im->log, NOC_ERR_FORMAT,
+                                   "%s: 100 m of %s are %.1f m on the ground there, and no local CRS was found", path,
+                                   geo_crs_name(*crs), 100 / scale);
     }
     if (!im->inspect)
-        noc_warn(im->log, "%s: 100 m of %s are %.1f m on the ground there: the scene is computed in %s", path, geo_crs_name(*crs),
-                 100 / scale, geo_crs_name(local));
+        noc_warn(im->log, "%s: 100 m of %s are %.1f m on the ground there: the scene is computed in %s", path,
+                 geo_crs_name(*crs), 100 / scale, geo_crs_name(local));
     *given = *crs;
     *crs = local;
     return NOC_OK;
@@ -257,7 +268,8 @@ static noc_status settle(importer *im, const source_crs *source, const double po
         return set_place(im, NULL, (double[3]){ near_zero ? 0 : round(point[0]), near_zero ? 0 : round(point[1]), 0 });
     }
     double lonlat[2], p[3] = { point[0], point[1], 0 };
-    bool metric = geo_crs_is_metric(source->crs), made = !crs && (metric || geo_crs_lonlat(source->crs, point[0], point[1], lonlat));
+    bool metric = geo_crs_is_metric(source->crs),
+         made = !crs && (metric || geo_crs_lonlat(source->crs, point[0], point[1], lonlat));
     if (made)
         crs = metric ? geo_crs_clone(source->crs) : geo_crs_utm(lonlat[0], lonlat[1]);
     if (made && !crs)
@@ -300,11 +312,13 @@ static noc_status prepare(importer *im, source_crs *s, const double point[3]) {
             return status;
     }
     if (!s->crs && im->scene_crs)
-        return noc_error(im->log, NOC_ERR_FORMAT, "%s names no CRS, but %s does (%s): say with --crs which one it is in",
-                         path, im->placed_by, geo_crs_name(im->scene_crs));
+        return noc_error(im->log, NOC_ERR_FORMAT,
+                         "%s names no CRS, but %s does (%s): say with --crs which one it is in", path, im->placed_by,
+                         geo_crs_name(im->scene_crs));
     if (s->crs && !im->scene_crs)
-        return noc_error(im->log, NOC_ERR_FORMAT, "%s names no CRS, but %s does (%s): say with --crs which one it is in",
-                         im->placed_by, path, geo_crs_name(s->crs));
+        return noc_error(im->log, NOC_ERR_FORMAT,
+                         "%s names no CRS, but %s does (%s): say with --crs which one it is in", im->placed_by, path,
+                         geo_crs_name(s->crs));
     if (s->crs) {
         noc_status status;
         s->to_scene = geo_transform_create(s->crs, im->scene_crs, im->log, &status);
@@ -452,8 +466,10 @@ noc_status place_points(importer *im, double *xyz, size_t count, const char *id,
             astray++;
         }
     if (failed || astray) {
-        geo_issue(in->issues, GEO_SKIPPED, failed ? "coordinates that have no place in the scene's CRS"
-                                            : "coordinates that lie nowhere on Earth", id);
+        geo_issue(in->issues, GEO_SKIPPED,
+                  failed ? "coordinates that have no place in the scene's CRS"
+                         : "coordinates that lie nowhere on Earth",
+                  id);
         return NOC_OK;
     }
     for (size_t i = 0; i < 3 * count; i++)
@@ -494,8 +510,8 @@ noc_status place_mesh(importer *im) {
             return given_status(status);
         if (metric)
             return NOC_OK;
-        return noc_error(im->log, NOC_ERR_ARGUMENT, "--crs %s: %s is in metres, so its CRS must be projected, in metres",
-                         im->params->crs, path);
+        return noc_error(im->log, NOC_ERR_ARGUMENT,
+                         "--crs %s: %s is in metres, so its CRS must be projected, in metres", im->params->crs, path);
     }
     if (!im->placed) {
         noc_status status = settle_by_scene(im);
@@ -504,8 +520,8 @@ noc_status place_mesh(importer *im) {
     }
     im->mesh_from_origin = im->placed && im->scene_crs;
     if (im->mesh_from_origin)
-        noc_info(im->log, "%s: coordinates are taken as metres from the scene's origin (%.0f %.0f)", path, im->origin[0],
-                 im->origin[1]);
+        noc_info(im->log, "%s: coordinates are taken as metres from the scene's origin (%.0f %.0f)", path,
+                 im->origin[0], im->origin[1]);
     return NOC_OK;
 }
 

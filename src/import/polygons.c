@@ -2,7 +2,8 @@
 
 #include <math.h>
 
-#define WORKING_SIZE 100.0 /* m; geo_triangulate's tolerances are for buildings, so a polygon is cut at the size of one */
+#define WORKING_SIZE                                                                                                   \
+    100.0 /* m; geo_triangulate's tolerances are for buildings, so a polygon is cut at the size of one */
 
 static void area_vector(const double *a, const double *b, const double *c, double out[3]) {
     double e[3], f[3];
@@ -21,7 +22,8 @@ static void add_triangle(cut_mesh *m, unsigned a, unsigned b, unsigned c) {
     to[2] = c;
 }
 
-/* Along a diagonal that leaves both triangles on the same side; false where none does (it crosses itself, or is flat). */
+/* Along a diagonal that leaves both triangles on the same side; false where none does (it crosses itself, or is flat).
+ */
 static bool cut_quad(cut_mesh *m, const unsigned *v) {
     for (int first = 0; first < 2; first++) {
         unsigned a = v[first], b = v[first + 1], c = v[first + 2], d = v[(first + 3) % 4];
@@ -56,12 +58,15 @@ static void cut_polygon(cut_mesh *m, const unsigned *corner, size_t count) {
         size = NOC_MAX(size, hi[k] - lo[k]);
     if (!finite || !(size > 0 && isfinite(size))) {
         geo_issue(m->issues, finite && !(size > 0) ? GEO_SPARED : GEO_SKIPPED,
-                  finite && !(size > 0) ? "polygon of no extent" : "polygon with a coordinate that is no number", m->name);
+                  finite && !(size > 0) ? "polygon of no extent" : "polygon with a coordinate that is no number",
+                  m->name);
     } else {
         double scale = WORKING_SIZE / size;
         for (size_t i = 0; i < 3 * count; i++)
             ring[i] = (ring[i] - lo[i % 3]) * scale;
-        const geo_polygon polygon = { .cls = NOC_CLASS_OTHER, .id = m->name, .ring_count = 1, .ring_size = &count, .xyz = ring };
+        const geo_polygon polygon = {
+            .cls = NOC_CLASS_OTHER, .id = m->name, .ring_count = 1, .ring_size = &count, .xyz = ring
+        };
         size_t before = m->extra.xyz.len;
         if (geo_triangulate(&polygon, &m->extra, m->issues))
             for (size_t i = before; i < m->extra.xyz.len; i++)

@@ -45,8 +45,9 @@ static noc_status find_program(remote *r) {
     Dl_info info;
     if (given && *given) {
         if (access(given, X_OK))
-            return noc_error(r->sink->log, NOC_ERR_UNSUPPORTED, "%s: %s is read by a helper program, and " HELPER_VARIABLE " names none (%s)",
-                             r->path, r->reader->name, given);
+            return noc_error(r->sink->log, NOC_ERR_UNSUPPORTED,
+                             "%s: %s is read by a helper program, and " HELPER_VARIABLE " names none (%s)", r->path,
+                             r->reader->name, given);
         r->program = noc_strdup(given);
         return r->program ? NOC_OK : noc_no_memory(r->sink->log, r->path);
     }
@@ -66,13 +67,16 @@ static noc_status find_program(remote *r) {
     const char *folder = slash ? real : "?";
     if (!status && !r->program)
         status = noc_error(r->sink->log, NOC_ERR_UNSUPPORTED,
-                           "%s: %s is read by the helper program " HELPER ", which is not in %s or %s/nocturne: install it, name it in "
-                           HELPER_VARIABLE ", or read in this process (--no-isolate)", r->path, r->reader->name, folder, folder);
+                           "%s: %s is read by the helper program " HELPER
+                           ", which is not in %s or %s/nocturne: install it, name it in " HELPER_VARIABLE
+                           ", or read in this process (--no-isolate)",
+                           r->path, r->reader->name, folder, folder);
     free(real);
     return status;
 }
 
-/* The environment with TMPDIR in the scratch folder: whatever the helper leaves goes with it. NULL: memory was refused. */
+/* The environment with TMPDIR in the scratch folder: whatever the helper leaves goes with it. NULL: memory was refused.
+ */
 static char **make_environment(const char *scratch, char **own) {
     size_t n = 0, kept = 0;
     while (environ[n])
@@ -91,7 +95,8 @@ static char **make_environment(const char *scratch, char **own) {
     return list;
 }
 
-/* No code of ours runs between fork and exec: the host may have threads. Signals of its terminal do not reach the helper. */
+/* No code of ours runs between fork and exec: the host may have threads. Signals of its terminal do not reach the
+ * helper. */
 static int spawn(remote *r, int end) {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
@@ -139,7 +144,8 @@ static noc_status start(remote *r) {
     if (error == ENOMEM)
         return noc_no_memory(r->sink->log, r->path);
     if (error)
-        return noc_error(r->sink->log, NOC_ERR_IO, "%s: %s cannot be started: %s", r->path, r->program, strerror(error));
+        return noc_error(r->sink->log, NOC_ERR_IO, "%s: %s cannot be started: %s", r->path, r->program,
+                         strerror(error));
     remote_record request = { 0 };
     remote_ask(&request, r->reader, r->path, r->params, r->sink);
     bool sent = !request.refused && remote_send(r->fd, &request);
@@ -155,7 +161,8 @@ static noc_status start(remote *r) {
 /* ---- until the end ---- */
 
 static noc_status out_of_time(const remote *r) {
-    return noc_error(r->sink->log, NOC_ERR_UNSUPPORTED, "%s: it is still being read after %g s, which is the limit --reader-time", r->path,
+    return noc_error(r->sink->log, NOC_ERR_UNSUPPORTED,
+                     "%s: it is still being read after %g s, which is the limit --reader-time", r->path,
                      r->params->reader_time);
 }
 
@@ -169,8 +176,8 @@ static noc_status look_at_clock(remote *r) {
     return now - r->started > r->params->reader_time ? out_of_time(r) : NOC_OK;
 }
 
-/* Until it has ended, whose way is then told in *how (-1: unknown). One that hangs up and stays is an error, as is one that
- * outlives its time; finish() ends it. */
+/* Until it has ended, whose way is then told in *how (-1: unknown). One that hangs up and stays is an error, as is one
+ * that outlives its time; finish() ends it. */
 static noc_status wait_for_end(remote *r, int *how) {
     double until = noc_wall_seconds() + GRACE;
     noc_status status = NOC_OK;
@@ -183,7 +190,8 @@ static noc_status wait_for_end(remote *r, int *how) {
         }
         status = look_at_clock(r);
         if (!status && noc_wall_seconds() > until)
-            status = noc_error(r->sink->log, NOC_ERR_IO, "%s: the process that reads it hung up and did not end (%s)", r->path, r->program);
+            status = noc_error(r->sink->log, NOC_ERR_IO, "%s: the process that reads it hung up and did not end (%s)",
+                               r->path, r->program);
         if (!status)
             poll(NULL, 0, 1);
     }
@@ -200,14 +208,18 @@ static noc_status ended_early(remote *r) {
     if (got && WIFSIGNALED(how) && WTERMSIG(how) == SIGXCPU)
         return out_of_time(r);
     if (got && WIFEXITED(how) && WEXITSTATUS(how) == REMOTE_NO_MEMORY)
-        return noc_error(r->sink->log, NOC_ERR_MEMORY, "%s: the process that reads it needs more than the limit --max-memory, %.3g GB",
-                         r->path, r->memory / 1e9);
-    if (got && WIFSIGNALED(how) && WTERMSIG(how) != SIGKILL)
-        return noc_error(r->sink->log, NOC_ERR_FORMAT,
-                         "%s: the process that reads it as %s ended by signal %d (%s): the file is broken, or needs more than the limit "
-                         "--max-memory, %.3g GB", r->path, r->reader->name, WTERMSIG(how), strsignal(WTERMSIG(how)),
+        return noc_error(r->sink->log, NOC_ERR_MEMORY,
+                         "%s: the process that reads it needs more than the limit --max-memory, %.3g GB", r->path,
                          r->memory / 1e9);
-    return noc_error(r->sink->log, NOC_ERR_IO, "%s: the process that reads it was ended from outside, or could not run (%s)", r->path, r->program);
+    if (got && WIFSIGNALED(how) && WTERMSIG(how) != SIGKILL)
+        return noc_error(
+            r->sink->log, NOC_ERR_FORMAT,
+            "%s: the process that reads it as %s ended by signal %d (%s): the file is broken, or needs more than the limit "
+            "--max-memory, %.3g GB",
+            r->path, r->reader->name, WTERMSIG(how), strsignal(WTERMSIG(how)), r->memory / 1e9);
+    return noc_error(r->sink->log, NOC_ERR_IO,
+                     "%s: the process that reads it was ended from outside, or could not run (%s)", r->path,
+                     r->program);
 }
 
 static noc_status receive(remote *r) {
@@ -223,8 +235,8 @@ static noc_status receive(remote *r) {
     r->from.bytes.len += (size_t)n;
     r->received += (uint64_t)n;
     if ((double)r->received > r->memory)
-        return noc_error(r->sink->log, NOC_ERR_MEMORY, "%s: it holds more than the limit --max-memory, %.3g GB", r->path,
-                         r->memory / 1e9);
+        return noc_error(r->sink->log, NOC_ERR_MEMORY, "%s: it holds more than the limit --max-memory, %.3g GB",
+                         r->path, r->memory / 1e9);
     noc_status status = NOC_OK;
     while (!status && remote_take(&r->from, &status)) /* a small record may take long: a coordinate system of its own */
         status = status ? status : look_at_clock(r);
@@ -258,8 +270,14 @@ static void finish(remote *r) {
 
 noc_status remote_read(const noc_reader *reader, const char *path, const noc_import_params *params, geo_sink *sink,
                        const mesh_parts *parts, remote_result *result) {
-    remote r = { .reader = reader, .path = path, .params = params, .sink = sink, .fd = -1, .memory = import_budget_of(params).memory,
-                 .started = noc_wall_seconds(), .from = { .path = path, .sink = sink, .parts = parts, .result = result } };
+    remote r = { .reader = reader,
+                 .path = path,
+                 .params = params,
+                 .sink = sink,
+                 .fd = -1,
+                 .memory = import_budget_of(params).memory,
+                 .started = noc_wall_seconds(),
+                 .from = { .path = path, .sink = sink, .parts = parts, .result = result } };
     static atomic_bool told;
     *result = (remote_result){ 0 };
     if (!atomic_exchange(&told, true))

@@ -1,5 +1,5 @@
-/* What the helper may do. Limits of the process hold everywhere; Landlock (files, Linux 5.13) and seccomp (system calls) where the
- * system and the build have them: they are a second fence behind the rules that the readers keep. */
+/* What the helper may do. Limits of the process hold everywhere; Landlock (files, Linux 5.13) and seccomp (system
+ * calls) where the system and the build have them: they are a second fence behind the rules that the readers keep. */
 #include "import/remote.h"
 #include "import/scratch.h"
 #include "noc_config.h"
@@ -34,7 +34,8 @@ static void limit(int what, rlim_t most, rlim_t grace) {
 }
 
 #ifndef REMOTE_SANITIZED
-/* Bytes of addresses that this program takes whatever it reads: its libraries, which are there, and what they set up. */
+/* Bytes of addresses that this program takes whatever it reads: its libraries, which are there, and what they set up.
+ */
 static double own_addresses(void) {
     enum { SET_UP = 256 << 20 };
     double pages = 0;
@@ -51,8 +52,9 @@ static double own_addresses(void) {
 
 #define READ_FILES (LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_EXECUTE)
 #define READ_FOLDERS (READ_FILES | LANDLOCK_ACCESS_FS_READ_DIR)
-#define WRITE (LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_REMOVE_FILE | LANDLOCK_ACCESS_FS_REMOVE_DIR | LANDLOCK_ACCESS_FS_MAKE_REG | \
-               LANDLOCK_ACCESS_FS_MAKE_DIR)
+#define WRITE                                                                                                          \
+    (LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_REMOVE_FILE | LANDLOCK_ACCESS_FS_REMOVE_DIR |                  \
+     LANDLOCK_ACCESS_FS_MAKE_REG | LANDLOCK_ACCESS_FS_MAKE_DIR)
 
 static void allow(int rules, const char *path, uint64_t access) {
     struct landlock_path_beneath_attr attr = { .allowed_access = access, .parent_fd = open(path, O_PATH | O_CLOEXEC) };
@@ -60,16 +62,30 @@ static void allow(int rules, const char *path, uint64_t access) {
     if (attr.parent_fd < 0 || fstat(attr.parent_fd, &st))
         return;
     if (!S_ISDIR(st.st_mode))
-        attr.allowed_access &= LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_WRITE_FILE;
+        attr.allowed_access &=
+            LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_WRITE_FILE;
     syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &attr, 0);
     close(attr.parent_fd);
 }
 
 /* Where libraries, their data and their plugins are. */
 static void allow_system(int rules) {
-    static const char *const places[] = { "/usr", "/lib", "/lib64", "/opt", "/nix/store", "/gnu/store", "/etc/ld.so.cache", "/etc/localtime",
-                                          "/sys/devices/system/cpu", "/dev/null", "/dev/urandom", "/proc/self", "/proc/cpuinfo", "/proc/meminfo" };
-    static const char *const variables[] = { "PROJ_DATA", "PROJ_LIB", "GDAL_DATA", "GDAL_DRIVER_PATH", "OGR_DRIVER_PATH", "LD_LIBRARY_PATH" };
+    static const char *const places[] = { "/usr",
+                                          "/lib",
+                                          "/lib64",
+                                          "/opt",
+                                          "/nix/store",
+                                          "/gnu/store",
+                                          "/etc/ld.so.cache",
+                                          "/etc/localtime",
+                                          "/sys/devices/system/cpu",
+                                          "/dev/null",
+                                          "/dev/urandom",
+                                          "/proc/self",
+                                          "/proc/cpuinfo",
+                                          "/proc/meminfo" };
+    static const char *const variables[] = { "PROJ_DATA",        "PROJ_LIB",        "GDAL_DATA",
+                                             "GDAL_DRIVER_PATH", "OGR_DRIVER_PATH", "LD_LIBRARY_PATH" };
     for (size_t i = 0; i < NOC_COUNT(places); i++)
         allow(rules, places[i], READ_FOLDERS);
     for (size_t i = 0; i < NOC_COUNT(variables); i++) {
@@ -88,7 +104,8 @@ static void allow_system(int rules) {
 static void allow_beside(int rules, const char *function) {
     Dl_info info;
     void *at = dlsym(RTLD_DEFAULT, function);
-    char *path = at && dladdr(at, &info) ? realpath(info.dli_fname, NULL) : NULL, *slash = path ? strrchr(path, '/') : NULL;
+    char *path = at && dladdr(at, &info) ? realpath(info.dli_fname, NULL) : NULL,
+         *slash = path ? strrchr(path, '/') : NULL;
     if (slash) {
         char share[PATH_MAX + 10];
         noc_snprintf(share, sizeof(share), "%.*s/../share", (int)(slash - path), path);
@@ -141,9 +158,22 @@ static void confine_files(const char *path, bool whole, bool anywhere) {}
 
 #if NOC_HAVE_SECCOMP
 static void confine_calls(void) {
-    static const int calls[] = { SCMP_SYS(socket), SCMP_SYS(connect), SCMP_SYS(bind), SCMP_SYS(listen), SCMP_SYS(execve), SCMP_SYS(execveat),
-                                 SCMP_SYS(ptrace), SCMP_SYS(process_vm_readv), SCMP_SYS(process_vm_writev), SCMP_SYS(io_uring_setup),
-                                 SCMP_SYS(mount), SCMP_SYS(unshare), SCMP_SYS(setns), SCMP_SYS(bpf), SCMP_SYS(keyctl), SCMP_SYS(userfaultfd) };
+    static const int calls[] = { SCMP_SYS(socket),
+                                 SCMP_SYS(connect),
+                                 SCMP_SYS(bind),
+                                 SCMP_SYS(listen),
+                                 SCMP_SYS(execve),
+                                 SCMP_SYS(execveat),
+                                 SCMP_SYS(ptrace),
+                                 SCMP_SYS(process_vm_readv),
+                                 SCMP_SYS(process_vm_writev),
+                                 SCMP_SYS(io_uring_setup),
+                                 SCMP_SYS(mount),
+                                 SCMP_SYS(unshare),
+                                 SCMP_SYS(setns),
+                                 SCMP_SYS(bpf),
+                                 SCMP_SYS(keyctl),
+                                 SCMP_SYS(userfaultfd) };
     scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
     for (size_t i = 0; filter && i < NOC_COUNT(calls); i++)
         seccomp_rule_add(filter, SCMP_ACT_ERRNO(EPERM), calls[i], 0);
@@ -198,8 +228,8 @@ bool remote_short_of_memory(void) {
 void remote_confine(const char *path, bool whole, const noc_import_params *params) {
     unsetenv("SPATIALITE_SECURITY"); /* "relaxed" lets SQL touch files */
     limit(RLIMIT_CORE, 0, 0);
-    /* Where who started it no longer looks at the clock. SIGXCPU comes at the limit and tells why the process ended; SIGKILL comes
-     * after the grace. */
+    /* Where who started it no longer looks at the clock. SIGXCPU comes at the limit and tells why the process ended;
+     * SIGKILL comes after the grace. */
     limit(RLIMIT_CPU, (rlim_t)NOC_MIN(params->reader_time, 1e9) + 2, 2);
 #ifndef REMOTE_SANITIZED /* whose shadow takes terabytes of addresses */
     limit(RLIMIT_AS, (rlim_t)(own_addresses() + import_budget_of(params).memory), 0);

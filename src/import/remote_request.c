@@ -33,7 +33,8 @@ static void ask_options(const noc_import_params *params, remote_record *batch, r
     }
 }
 
-void remote_ask(remote_record *batch, const noc_reader *reader, const char *path, const noc_import_params *params, const geo_sink *sink) {
+void remote_ask(remote_record *batch, const noc_reader *reader, const char *path, const noc_import_params *params,
+                const geo_sink *sink) {
     remote_record one = { 0 };
     remote_put_text(&one, reader->name);
     remote_add(batch, REMOTE_READER, &one);

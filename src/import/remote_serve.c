@@ -125,8 +125,17 @@ static void serve(serving *s) {
     geo_issues *issues = geo_issues_create();
     if (!log || !issues)
         _exit(REMOTE_NO_MEMORY);
-    geo_sink sink = { .ctx = s, .log = log, .issues = issues, .lamps_lost = &s->lamps_lost, .crs = on_crs, .lamp = on_lamp,
-                      .progress = on_progress, .columns = on_columns, .features = on_features, .named_lamps = s->asked.sink.named_lamps, .inspect = s->asked.sink.inspect };
+    geo_sink sink = { .ctx = s,
+                      .log = log,
+                      .issues = issues,
+                      .lamps_lost = &s->lamps_lost,
+                      .crs = on_crs,
+                      .lamp = on_lamp,
+                      .progress = on_progress,
+                      .columns = on_columns,
+                      .features = on_features,
+                      .named_lamps = s->asked.sink.named_lamps,
+                      .inspect = s->asked.sink.inspect };
     const mesh_parts parts = { .ctx = s, .log = log, .issues = issues, .material = on_material, .mesh = on_mesh };
     const char *format = s->asked.reader->name;
     noc_status opened;
@@ -134,11 +143,15 @@ static void serve(serving *s) {
     remote_end end = { .status = (int32_t)opened };
     if (stream) {
         noc_stream_limit(stream, &s->asked.params);
-        end.status = s->asked.reader->read_parts ? (int32_t)s->asked.reader->read_parts(s->asked.path, stream, &s->asked.params, &parts, &format)
-                                           : (int32_t)s->asked.reader->read(stream, &s->asked.params, &sink, &format);
+        end.status =
+            s->asked.reader->read_parts
+                ? (int32_t)s->asked.reader->read_parts(s->asked.path, stream, &s->asked.params, &parts, &format)
+                : (int32_t)s->asked.reader->read(stream, &s->asked.params, &sink, &format);
         if (end.status == NOC_ERR_FORMAT && remote_short_of_memory())
-            noc_warn(log, "%s: the process that reads it took more than half of what it may: it may need more than the "
-                     "limit --max-memory, %.3g GB", s->asked.path, import_budget_of(&s->asked.params).memory / 1e9);
+            noc_warn(log,
+                     "%s: the process that reads it took more than half of what it may: it may need more than the "
+                     "limit --max-memory, %.3g GB",
+                     s->asked.path, import_budget_of(&s->asked.params).memory / 1e9);
         end.bytes_read = noc_stream_read_bytes(stream);
         end.trailing = noc_stream_trailing(stream);
     }
@@ -156,8 +169,10 @@ int noc_reader_main(void) {
     socklen_t size = sizeof(type);
     serving s = { 0 };
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getsockopt(REMOTE_FD, SOL_SOCKET, SO_TYPE, &type, &size) || !remote_receive(REMOTE_FD, &s.asked) || getppid() != s.asked.sink.parent)
-        return s.asked.texts.refused ? REMOTE_NO_MEMORY : 1; /* not started by the library, or whoever started it ended before it asked to end with it */
+    if (getsockopt(REMOTE_FD, SOL_SOCKET, SO_TYPE, &type, &size) || !remote_receive(REMOTE_FD, &s.asked) ||
+        getppid() != s.asked.sink.parent)
+        /* not started by the library, or whoever started it ended before it asked to end with it */
+        return s.asked.texts.refused ? REMOTE_NO_MEMORY : 1;
     remote_confine(s.asked.path, s.asked.reader->read_parts != NULL, &s.asked.params);
     serve(&s);
     _exit(0); /* what is left to tidy up goes with the process */

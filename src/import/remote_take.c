@@ -6,7 +6,8 @@
 #include <stdio.h>
 
 static noc_status garbled(const remote_taker *t) {
-    return noc_error(t->sink->log, NOC_ERR_FORMAT, "%s: what came back from the process that reads it makes no sense", t->path);
+    return noc_error(t->sink->log, NOC_ERR_FORMAT, "%s: what came back from the process that reads it makes no sense",
+                     t->path);
 }
 
 /* Bytes that a bool may be. */
@@ -39,9 +40,10 @@ static noc_status take_lamp(remote_taker *t, remote_record *one) {
     lamp.ref = remote_get_text(one);
     bool kinds = (unsigned)lamp.type <= GEO_LAMP_FLOOD && (unsigned)lamp.source < NOC_SOURCE_COUNT &&
                  (unsigned)lamp.mount <= GEO_MOUNT_SUSPENDED && is_bool(&lamp.head_globe);
-    bool numbers = !(lamp.height > LAMP_MOST_METRES || lamp.lumens > LAMP_MOST_LUMENS || lamp.watts > LAMP_MOST_WATTS); /* or NaN */
-    if (one->bad || !kinds || !numbers || lamp.body_heads /* of models, not of maps */ || lamp.count < 0 || !isfinite(lamp.xyz[0]) ||
-        !isfinite(lamp.xyz[1]))
+    /* or NaN */
+    bool numbers = !(lamp.height > LAMP_MOST_METRES || lamp.lumens > LAMP_MOST_LUMENS || lamp.watts > LAMP_MOST_WATTS);
+    if (one->bad || !kinds || !numbers || lamp.body_heads /* of models, not of maps */ || lamp.count < 0 ||
+        !isfinite(lamp.xyz[0]) || !isfinite(lamp.xyz[1]))
         return garbled(t);
     return t->sink->lamp(t->sink->ctx, &lamp);
 }
@@ -72,8 +74,12 @@ static noc_status take_mesh(remote_taker *t, remote_record *one) {
     } else {
         memcpy(xyz, positions, (size_t)m.vertices * 3 * sizeof(*xyz));
         memcpy(corners, indices, (size_t)m.triangles * 3 * sizeof(*corners));
-        noc_mesh mesh = { .vertex_count = (size_t)m.vertices, .positions = xyz, .triangle_count = (size_t)m.triangles, .indices = corners,
-                          .material = t->materials.data[m.material], .name = *name ? name : NULL };
+        noc_mesh mesh = { .vertex_count = (size_t)m.vertices,
+                          .positions = xyz,
+                          .triangle_count = (size_t)m.triangles,
+                          .indices = corners,
+                          .material = t->materials.data[m.material],
+                          .name = *name ? name : NULL };
         status = t->parts->mesh(t->parts->ctx, &mesh, xyz);
     }
     free(xyz);
@@ -131,7 +137,8 @@ static noc_status take_end(remote_taker *t, remote_record *one) {
     remote_end end = { 0 };
     remote_get(one, &end, sizeof(end));
     const char *format = remote_get_text(one);
-    if (one->bad || end.status < NOC_OK || end.status > NOC_ERR_CANCELLED || (end.status != NOC_OK) != (t->error != NULL) || !is_bool(&end.trailing))
+    if (one->bad || end.status < NOC_OK || end.status > NOC_ERR_CANCELLED ||
+        (end.status != NOC_OK) != (t->error != NULL) || !is_bool(&end.trailing))
         return garbled(t);
     snprintf(t->result->format, sizeof(t->result->format), "%s", format);
     t->result->bytes_read = end.bytes_read;

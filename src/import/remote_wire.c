@@ -3,7 +3,9 @@
 #include <errno.h>
 #include <sys/socket.h>
 
-void remote_put(remote_record *r, const void *data, size_t size) { r->refused = !array_append(&r->bytes, data, size) || r->refused; }
+void remote_put(remote_record *r, const void *data, size_t size) {
+    r->refused = !array_append(&r->bytes, data, size) || r->refused;
+}
 
 void remote_put_text(remote_record *r, const char *text) {
     uint32_t size = (uint32_t)NOC_MIN(strlen(text ? text : ""), (size_t)1 << 30);

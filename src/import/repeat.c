@@ -1,7 +1,9 @@
-/* The same thing named twice gives its light once: files, objects of overlapping tiles, lamps. docs/formats.md states the rules.
+/* The same thing named twice gives its light once: files, objects of overlapping tiles, lamps. docs/formats.md states
+ * the rules.
  *
- * Of an object only a record stays: hashes of its id and of its corners, and its extent. It is made when the object ends, or,
- * of those too large to be held, when its first part is handed on; equal objects are cut at the same corner. */
+ * Of an object only a record stays: hashes of its id and of its corners, and its extent. It is made when the object
+ * ends, or, of those too large to be held, when its first part is handed on; equal objects are cut at the same corner.
+ */
 #include "import/load.h"
 
 #include <fcntl.h>
@@ -9,12 +11,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define GRID 1e-3        /* m; corners are equal where they round to the same of it */
-#define CELL 2.0         /* m; of the places of objects: their tolerance is half of it at most */
-#define LAMP_CELL 1.0    /* m */
-#define SAME_PLACE 0.1   /* m between lamps of two files: degrees with six decimals are that coarse */
-#define SAME_LAMP 1.0    /* m between lamps of two files that have one id */
-#define MOST 64          /* lamps of a cell that are looked at: more than stand in a square metre */
+#define GRID 1e-3      /* m; corners are equal where they round to the same of it */
+#define CELL 2.0       /* m; of the places of objects: their tolerance is half of it at most */
+#define LAMP_CELL 1.0  /* m */
+#define SAME_PLACE 0.1 /* m between lamps of two files: degrees with six decimals are that coarse */
+#define SAME_LAMP 1.0  /* m between lamps of two files that have one id */
+#define MOST 64        /* lamps of a cell that are looked at: more than stand in a square metre */
 
 /* ---- files ---- */
 
@@ -208,8 +210,10 @@ noc_status repeat_object(importer *im, const char *id, bool *repeated) {
         r = find_named(&im->records, now, now->kind, name, im->current);
     if (r) {
         input *in = &im->inputs[im->current];
-        geo_issue(in->issues, GEO_SPARED, r->input == im->current ? "object that the file holds twice: taken once"
-                                                             : "object that another file holds, too: taken once", id);
+        geo_issue(in->issues, GEO_SPARED,
+                  r->input == im->current ? "object that the file holds twice: taken once"
+                                          : "object that another file holds, too: taken once",
+                  id);
         in->file.objects_repeated++;
         *repeated = now->repeated = true;
         return NOC_OK;
@@ -219,7 +223,8 @@ noc_status repeat_object(importer *im, const char *id, bool *repeated) {
         record.lo[k] = (float)now->lo[k];
         record.hi[k] = (float)now->hi[k];
     }
-    record.place = place_key(name, now->kind, floor((now->lo[0] + now->hi[0]) / 2 / CELL), floor((now->lo[1] + now->hi[1]) / 2 / CELL));
+    record.place = place_key(name, now->kind, floor((now->lo[0] + now->hi[0]) / 2 / CELL),
+                             floor((now->lo[1] + now->hi[1]) / 2 / CELL));
     return add_record(&im->records, record) ? NOC_OK : noc_no_memory(im->log, im->inputs[im->current].path);
 }
 
@@ -244,28 +249,31 @@ static bool same_lamp(const pending_lamp *a, const pending_lamp *b) {
     return a->input != b->input && (d <= SAME_PLACE || (d <= SAME_LAMP && called_alike(&a->lamp, &b->lamp)));
 }
 
-/* A lamp with a body belongs to an object, whose id is its own: the same again comes of an object that the file holds twice. Rows
- * of a table are lamps each, though two of one pole share its name. */
+/* A lamp with a body belongs to an object, whose id is its own: the same again comes of an object that the file holds
+ * twice. Rows of a table are lamps each, though two of one pole share its name. */
 static bool given_twice(const pending_lamp *a, const pending_lamp *b) {
-    return a->input == b->input && a->lamp.body_heads && b->lamp.body_heads && *a->lamp.id && !strcmp(a->lamp.id, b->lamp.id) &&
-           !memcmp(a->lamp.xyz, b->lamp.xyz, sizeof(a->lamp.xyz));
+    return a->input == b->input && a->lamp.body_heads && b->lamp.body_heads && *a->lamp.id &&
+           !strcmp(a->lamp.id, b->lamp.id) && !memcmp(a->lamp.xyz, b->lamp.xyz, sizeof(a->lamp.xyz));
 }
 
 /* One of those around that is this lamp; NULL: there is none. */
 static const pending_lamp *find_lamp(importer *im, const lamp_cells *cells, const pending_lamp *p) {
     for (int c = 0; c < 9; c++) {
         size_t seen = 0;
-        for (uint32_t k = *lamp_cells_at(cells, p->lamp.xyz, c); k && seen++ < MOST; k = cells->next[k - 1], im->lamp_looks++)
+        for (uint32_t k = *lamp_cells_at(cells, p->lamp.xyz, c); k && seen++ < MOST;
+             k = cells->next[k - 1], im->lamp_looks++)
             if (same_lamp(&im->lamps.data[k - 1], p) || given_twice(&im->lamps.data[k - 1], p))
                 return &im->lamps.data[k - 1];
     }
     return NULL;
 }
 
-/* Does one of its own file stand at the very place? A thousand lamps of one file at one place are one, to those of another. */
+/* Does one of its own file stand at the very place? A thousand lamps of one file at one place are one, to those of
+ * another. */
 static bool stands_there(importer *im, const lamp_cells *cells, const pending_lamp *p) {
     size_t seen = 0;
-    for (uint32_t k = *lamp_cells_at(cells, p->lamp.xyz, 4); k && seen++ < MOST; k = cells->next[k - 1], im->lamp_looks++) {
+    for (uint32_t k = *lamp_cells_at(cells, p->lamp.xyz, 4); k && seen++ < MOST;
+         k = cells->next[k - 1], im->lamp_looks++) {
         const pending_lamp *q = &im->lamps.data[k - 1];
         if (q->input == p->input && q->lamp.xyz[0] == p->lamp.xyz[0] && q->lamp.xyz[1] == p->lamp.xyz[1])
             return true;
@@ -289,8 +297,10 @@ noc_status repeat_lamps(importer *im) {
         const pending_lamp *same = find_lamp(im, &cells, &p);
         if (same) {
             input *in = &im->inputs[p.input];
-            geo_issue(in->issues, GEO_SPARED, same->input == p.input ? "lamp that the file holds twice: taken once"
-                                                                     : "lamp that another file holds, too: taken once", p.lamp.id);
+            geo_issue(in->issues, GEO_SPARED,
+                      same->input == p.input ? "lamp that the file holds twice: taken once"
+                                             : "lamp that another file holds, too: taken once",
+                      p.lamp.id);
             in->file.lamps_repeated++;
             continue;
         }

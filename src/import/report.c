@@ -5,9 +5,14 @@ noc_report *report_create(void) { return noc_calloc(1, sizeof(noc_report)); }
 
 const char *noc_lamp_source_name(noc_lamp_source source) {
     static const char *const names[NOC_SOURCE_COUNT] = {
-        [NOC_SOURCE_UNKNOWN] = "unknown", [NOC_SOURCE_LED] = "LED", [NOC_SOURCE_SODIUM] = "sodium",
-        [NOC_SOURCE_MERCURY] = "mercury", [NOC_SOURCE_METAL_HALIDE] = "metal halide",
-        [NOC_SOURCE_FLUORESCENT] = "fluorescent", [NOC_SOURCE_INCANDESCENT] = "incandescent", [NOC_SOURCE_GAS] = "gas",
+        [NOC_SOURCE_UNKNOWN] = "unknown",
+        [NOC_SOURCE_LED] = "LED",
+        [NOC_SOURCE_SODIUM] = "sodium",
+        [NOC_SOURCE_MERCURY] = "mercury",
+        [NOC_SOURCE_METAL_HALIDE] = "metal halide",
+        [NOC_SOURCE_FLUORESCENT] = "fluorescent",
+        [NOC_SOURCE_INCANDESCENT] = "incandescent",
+        [NOC_SOURCE_GAS] = "gas",
         [NOC_SOURCE_LOW_SODIUM] = "low-pressure sodium",
     };
     return (unsigned)source < NOC_SOURCE_COUNT ? names[source] : "unknown";
@@ -41,7 +46,9 @@ void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) 
         for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++)
             totals->lamps_assumed[what] += f->lamps_assumed[what];
         for (size_t k = 0; k < f->line_count; k++)
-            *(!f->lines[k].repaired ? &totals->skipped : f->lines[k].lossless ? &totals->repaired : &totals->guessed) += f->lines[k].count;
+            *(!f->lines[k].repaired  ? &totals->skipped
+              : f->lines[k].lossless ? &totals->repaired
+                                     : &totals->guessed) += f->lines[k].count;
     }
 }
 
@@ -52,7 +59,10 @@ void report_assumed(noc_report_file *file, const geo_lamp *lamp) {
 
 /* What strict says of the lamps that the program makes up, wholly or in part. Returns how many guesses that are. */
 static size_t guesses_at_lamps(const noc_report *report, const noc_import_params *params, char *text, size_t size) {
-    const struct { const char *what, *option; double value; } of[NOC_LAMP_DEFAULT_COUNT] = {
+    const struct {
+        const char *what, *option;
+        double value;
+    } of[NOC_LAMP_DEFAULT_COUNT] = {
         [NOC_LAMP_HEIGHT] = { "height", "lamp-height", params->lamp_height },
         [NOC_LAMP_FLUX] = { "flux", "lamp-lumens", params->lamp_lumens },
         [NOC_LAMP_COLOUR] = { "colour", "lamp-kelvin", params->lamp_kelvin },
@@ -64,13 +74,15 @@ static size_t guesses_at_lamps(const noc_report *report, const noc_import_params
         if (!t.lamps_assumed[what] || params->lamp_chosen >> what & 1)
             continue;
         guesses += t.lamps_assumed[what];
-        n += (size_t)noc_snprintf(text + n, size - n, "; %zu x lamp without %s (--%s %g takes that)", t.lamps_assumed[what], of[what].what,
-                                  of[what].option, of[what].value);
+        n += (size_t)noc_snprintf(text + n, size - n, "; %zu x lamp without %s (--%s %g takes that)",
+                                  t.lamps_assumed[what], of[what].what, of[what].option, of[what].value);
     }
     if (t.lamps_inferred && params->infer_lamps != NOC_SWITCH_ON) {
         guesses += t.lamps_inferred;
-        noc_snprintf(text + n, size - n, "; no lamps in the inputs, %zu placed by a rule (--lamps FILE gives some, --infer-lamps takes "
-                     "these, --no-infer-lamps leaves the city dark)", t.lamps_inferred);
+        noc_snprintf(text + n, size - n,
+                     "; no lamps in the inputs, %zu placed by a rule (--lamps FILE gives some, --infer-lamps takes "
+                     "these, --no-infer-lamps leaves the city dark)",
+                     t.lamps_inferred);
     }
     return guesses;
 }
@@ -111,8 +123,8 @@ noc_status report_strict(const noc_report *report, const noc_import_params *para
     char more[40] = "";
     if (lines > shown)
         noc_snprintf(more, sizeof(more), "; and %zu more", lines - shown);
-    return noc_error(log, NOC_ERR_FORMAT, "--strict: features left out: %zu, guessed at: %zu%s%s%s", skipped, guessed + guesses, lamps, causes,
-                     more);
+    return noc_error(log, NOC_ERR_FORMAT, "--strict: features left out: %zu, guessed at: %zu%s%s%s", skipped,
+                     guessed + guesses, lamps, causes, more);
 }
 
 static const char *keep(noc_report *report, const char *text) { return arena_strdup(&report->arena, text ? text : ""); }

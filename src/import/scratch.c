@@ -90,9 +90,11 @@ noc_status scratch_make(scratch_folder *s, const char *name, noc_log *log) {
         free(s->path);
         *s = (scratch_folder){ .lock = -1 };
         if (!made || !was_swept(error))
-            return noc_error(log, NOC_ERR_IO, "%s: no temporary folder in %s: %s", name, scratch_place(), strerror(error));
+            return noc_error(log, NOC_ERR_IO, "%s: no temporary folder in %s: %s", name, scratch_place(),
+                             strerror(error));
     }
-    return noc_error(log, NOC_ERR_IO, "%s: temporary folders in %s are taken away as they are made", name, scratch_place());
+    return noc_error(log, NOC_ERR_IO, "%s: temporary folders in %s are taken away as they are made", name,
+                     scratch_place());
 }
 
 void scratch_remove(scratch_folder *s) {

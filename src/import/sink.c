@@ -1,4 +1,5 @@
-/* What city readers emit becomes meshes: one an object and class, so that ids stay findable and a mesh has one material. */
+/* What city readers emit becomes meshes: one an object and class, so that ids stay findable and a mesh has one
+ * material. */
 #include "import/load.h"
 
 #include <math.h>
@@ -64,7 +65,8 @@ static bool is_open_ground(noc_class cls) {
 static double area_from_above(const geo_triangles *t) {
     double sum = 0;
     for (size_t i = 0; i < t->indices.len; i += 3) {
-        const double *a = t->xyz.data + 3 * (size_t)t->indices.data[i], *b = t->xyz.data + 3 * (size_t)t->indices.data[i + 1],
+        const double *a = t->xyz.data + 3 * (size_t)t->indices.data[i],
+                     *b = t->xyz.data + 3 * (size_t)t->indices.data[i + 1],
                      *c = t->xyz.data + 3 * (size_t)t->indices.data[i + 2];
         sum += fabs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
     }
@@ -94,8 +96,12 @@ static noc_status flush_class(importer *im, noc_class cls) {
         t->xyz.len = t->indices.len = 0;
         return status;
     }
-    noc_mesh mesh = { .vertex_count = t->xyz.len / 3, .positions = t->xyz.data, .triangle_count = t->indices.len / 3,
-                      .indices = t->indices.data, .material = sink_material(im, cls, id), .name = *id ? id : NULL };
+    noc_mesh mesh = { .vertex_count = t->xyz.len / 3,
+                      .positions = t->xyz.data,
+                      .triangle_count = t->indices.len / 3,
+                      .indices = t->indices.data,
+                      .material = sink_material(im, cls, id),
+                      .name = *id ? id : NULL };
     if (mesh.material < 0 || noc_scene_add_mesh(im->scene, &mesh) < 0)
         return NOC_ERR_UNSUPPORTED; /* said by the scene */
     im->inputs[im->current].file.triangles += mesh.triangle_count;
@@ -184,7 +190,8 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
     return im->surfaces[cls].indices.len >= 3 * FLUSH_TRIANGLES ? flush_class(im, cls) : NOC_OK;
 }
 
-_Static_assert((int)GEO_SOURCE_LED == NOC_SOURCE_LED && (int)GEO_SOURCE_LOW_SODIUM == NOC_SOURCE_LOW_SODIUM, "sources are those of the report");
+_Static_assert((int)GEO_SOURCE_LED == NOC_SOURCE_LED && (int)GEO_SOURCE_LOW_SODIUM == NOC_SOURCE_LOW_SODIUM,
+               "sources are those of the report");
 
 /* Counts a value that is known, and widens the range of those. */
 static void count_value(double value, size_t *count, double *min, double *max) {
@@ -239,7 +246,8 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
         return status;
     p.lamp.id = arena_strdup(&im->names, lamp->id ? lamp->id : "");
     p.lamp.ref = lamp->ref && *lamp->ref ? arena_strdup(&im->names, lamp->ref) : "";
-    return p.lamp.id && p.lamp.ref && array_push(&im->lamps, p) ? NOC_OK : noc_no_memory(im->log, im->inputs[im->current].path);
+    return p.lamp.id && p.lamp.ref && array_push(&im->lamps, p) ? NOC_OK
+                                                                : noc_no_memory(im->log, im->inputs[im->current].path);
 }
 
 /* Of a file that has been read. */
@@ -249,9 +257,12 @@ static noc_status on_columns(void *ctx, size_t points, const geo_column *columns
     noc_arena *arena = &im->report->arena;
     noc_report_column *kept = arena_alloc(arena, (count + 1) * sizeof(*kept));
     for (size_t i = 0; i < count && kept; i++)
-        kept[i] = (noc_report_column){ .name = arena_strdup(arena, columns[i].name), .field = arena_strdup(arena, columns[i].field),
-                                       .unit = arena_strdup(arena, columns[i].unit), .values = columns[i].values,
-                                       .example = arena_strdup(arena, columns[i].example), .mapped = columns[i].mapped };
+        kept[i] = (noc_report_column){ .name = arena_strdup(arena, columns[i].name),
+                                       .field = arena_strdup(arena, columns[i].field),
+                                       .unit = arena_strdup(arena, columns[i].unit),
+                                       .values = columns[i].values,
+                                       .example = arena_strdup(arena, columns[i].example),
+                                       .mapped = columns[i].mapped };
     if (arena->refused)
         return noc_no_memory(im->log, im->inputs[im->current].path);
     file->points = points;
@@ -287,12 +298,21 @@ static bool on_progress(void *ctx, double done) {
 }
 
 geo_sink sink_create(importer *im) {
-    return (geo_sink){ .ctx = im, .log = im->log, .issues = im->inputs[im->current].issues,
+    return (geo_sink){ .ctx = im,
+                       .log = im->log,
+                       .issues = im->inputs[im->current].issues,
                        .lamps_lost = &im->inputs[im->current].lamps_lost,
-                       .decimal_sign = &im->inputs[im->current].file.decimal_sign, .crs = on_crs,
-                       .begin_object = on_begin_object, .polygon = on_polygon, .end_object = on_end_object,
-                       .lamp = on_lamp, .columns = on_columns, .features = on_features, .progress = on_progress,
-                       .named_lamps = im->inputs[im->current].named_lamps, .inspect = im->inspect };
+                       .decimal_sign = &im->inputs[im->current].file.decimal_sign,
+                       .crs = on_crs,
+                       .begin_object = on_begin_object,
+                       .polygon = on_polygon,
+                       .end_object = on_end_object,
+                       .lamp = on_lamp,
+                       .columns = on_columns,
+                       .features = on_features,
+                       .progress = on_progress,
+                       .named_lamps = im->inputs[im->current].named_lamps,
+                       .inspect = im->inspect };
 }
 
 void sink_destroy(importer *im) {

@@ -19,26 +19,26 @@ struct noc_stream {
     noc_log *log;
     char *path, *name;
     enum { STREAM_PLAIN, STREAM_GZIP, STREAM_ZIP } kind;
-    uint64_t stored;     /* size of the file */
-    uint64_t delivered;  /* bytes handed out since open or rewind */
-    uint64_t furthest;   /* the most that it was before a rewind */
-    noc_status failed;   /* a stream that failed once stays failed, and reports it once */
+    uint64_t stored;    /* size of the file */
+    uint64_t delivered; /* bytes handed out since open or rewind */
+    uint64_t furthest;  /* the most that it was before a rewind */
+    noc_status failed;  /* a stream that failed once stays failed, and reports it once */
     bool ended;
-    bool measured;       /* that all of it is not too much is known, as far as it is told ahead */
+    bool measured; /* that all of it is not too much is known, as far as it is told ahead */
     import_budget budget;
     /* plain and gzip */
     int fd;
-    uint64_t consumed;   /* bytes taken from fd */
+    uint64_t consumed; /* bytes taken from fd */
     z_stream z;
     bool z_open, z_member_done;
-    bool trailing;       /* bytes follow that are not gzip's */
+    bool trailing; /* bytes follow that are not gzip's */
     unsigned char *input;
     /* zip */
     zip_t *zip;
     zip_file_t *member;
     zip_uint64_t member_index;
     uint64_t member_size;
-    size_t unread;       /* other members that look as if they should be read, too */
+    size_t unread; /* other members that look as if they should be read, too */
 };
 
 static noc_status fail(noc_stream *s, noc_status status, const char *cause) {
@@ -140,8 +140,8 @@ static bool ends_with(const char *text, const char *end) {
     return n >= m && noc_ieq(text + n - m, end);
 }
 
-/* 3: a model's ending, 2: a model's or a map's, 1: another (metadata is often XML or JSON, beside the model), 0: any file;
- * -1: no file. */
+/* 3: a model's ending, 2: a model's or a map's, 1: another (metadata is often XML or JSON, beside the model), 0: any
+ * file; -1: no file. */
 static int zip_rank(const char *name) {
     static const char *const endings[][8] = { { ".xml", ".json" },
                                               { ".geojson", ".osm", ".pbf", ".csv", ".shp", ".gpkg", ".fgb" },
@@ -305,8 +305,8 @@ static import_budget growth_of(const noc_stream *s) {
     return growth;
 }
 
-/* How large gzip data is, or, where that is more than it may be, so much of it as tells: inflating alone is faster by far
- * than reading. 0 where that cannot be told. */
+/* How large gzip data is, or, where that is more than it may be, so much of it as tells: inflating alone is faster by
+ * far than reading. 0 where that cannot be told. */
 static uint64_t measure_gzip(const noc_stream *s) {
     const import_budget growth = growth_of(s);
     noc_stream *again = noc_stream_open(s->path, NULL, NULL);
@@ -362,8 +362,8 @@ noc_status noc_stream_read_all(noc_stream *stream, noc_log *log, char **data, si
     for (;;) {
         if (cap - *size < (1 << 16)) {
             cap = cap ? cap * 2 : NOC_MIN((size_t)noc_stream_size(stream) + (1 << 17), (size_t)1 << 30);
-            noc_status status = import_affords(&stream->budget, (double)cap, noc_stream_name(stream), "its content",
-                                               log);
+            noc_status status =
+                import_affords(&stream->budget, (double)cap, noc_stream_name(stream), "its content", log);
             char *grown = status ? NULL : noc_realloc(*data, cap);
             if (!grown) {
                 free(*data);

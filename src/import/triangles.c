@@ -8,7 +8,8 @@ bool import_triangles(noc_scene *scene, const noc_mesh *mesh, geo_issues *issues
         return false;
     size_t flat = scene->triangles_flat - flat_before, others = scene->triangles_dropped - before - flat;
     geo_issues_add(issues, GEO_SPARED, "triangle without area", flat, name);
-    geo_issues_add(issues, GEO_SKIPPED, "triangle with a coordinate that is no number or beyond all maps", others, name);
+    geo_issues_add(issues, GEO_SKIPPED, "triangle with a coordinate that is no number or beyond all maps", others,
+                   name);
     return true;
 }
 
@@ -26,5 +27,7 @@ static noc_status add_mesh(void *ctx, noc_mesh *mesh, double *positions) {
 }
 
 mesh_parts mesh_scene_parts(mesh_scene *to) {
-    return (mesh_parts){ .ctx = to, .log = to->scene->log, .issues = to->issues, .material = add_material, .mesh = add_mesh };
+    return (mesh_parts){
+        .ctx = to, .log = to->scene->log, .issues = to->issues, .material = add_material, .mesh = add_mesh
+    };
 }

@@ -1,4 +1,5 @@
-/* Lamps from maps: OpenStreetMap XML and PBF, GeoJSON, GeoPackage, Shapefile and FlatGeobuf through GDAL, and CSV without it.
+/* Lamps from maps: OpenStreetMap XML and PBF, GeoJSON, GeoPackage, Shapefile and FlatGeobuf through GDAL, and CSV
+ * without it.
  *
  * The format is known from the content, and only its driver may open the file, so no name and no content can make GDAL
  * fetch something or run another driver. GDAL's messages never reach stderr: the first failure becomes our error. */
@@ -13,7 +14,9 @@ static bool has(const char *head, size_t size, const char *text) {
     return head && memmem(head, size, text, strlen(text)) != NULL;
 }
 
-static bool probe_osm_xml(const char *head, size_t size) { return has(head, size, "<osm ") || has(head, size, "<osm>"); }
+static bool probe_osm_xml(const char *head, size_t size) {
+    return has(head, size, "<osm ") || has(head, size, "<osm>");
+}
 
 static bool probe_pbf(const char *head, size_t size) { return has(head, NOC_MIN(size, 64), "OSMHeader"); }
 
@@ -193,8 +196,8 @@ typedef struct map_reading {
 
 static noc_status no_memory(const map_reading *m) { return noc_no_memory(m->writer.sink->log, m->writer.place); }
 
-/* The layer's CRS as AUTHORITY:CODE or WKT, behind GEO_CRS_TAKEN where the file names none; NULL if there is none; free() it. False:
- * memory was refused. */
+/* The layer's CRS as AUTHORITY:CODE or WKT, behind GEO_CRS_TAKEN where the file names none; NULL if there is none;
+ * free() it. False: memory was refused. */
 static bool layer_crs(OGRLayerH layer, bool named, bool *geographic, char **crs) {
     OGRSpatialReferenceH srs = OGR_L_GetSpatialRef(layer);
     *geographic = srs && OSRIsGeographic(srs);
@@ -212,8 +215,8 @@ static bool layer_crs(OGRLayerH layer, bool named, bool *geographic, char **crs)
     return *crs || !told;
 }
 
-/* GeoJSON that names no CRS is WGS 84 by its standard; municipal exports break that. If most of the first places are not
- * on Earth in degrees, --crs says what they are; without it the end of the reading is an error. */
+/* GeoJSON that names no CRS is WGS 84 by its standard; municipal exports break that. If most of the first places are
+ * not on Earth in degrees, --crs says what they are; without it the end of the reading is an error. */
 static bool looks_projected(OGRLayerH layer) {
     size_t inside = 0, outside = 0;
     OGRFeatureH feature;
@@ -249,7 +252,8 @@ static noc_status start_layer(map_reading *m, OGRLayerH layer) {
     return status;
 }
 
-/* Lamps by their tags; else, if the columns are those of an inventory of lamps, every feature. False: memory was refused. */
+/* Lamps by their tags; else, if the columns are those of an inventory of lamps, every feature. False: memory was
+ * refused. */
 static bool layer_kind(OGRLayerH layer, lamp_keys *keys, bool *tags, bool *inventory) {
     OGRFeatureDefnH defn = OGR_L_GetLayerDefn(layer);
     int count = OGR_FD_GetFieldCount(defn);
@@ -296,7 +300,8 @@ static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDe
         leave(m, feature, xyz);
     }
     if (!status && m->writer.lamps > before && !is_point)
-        geo_issue(m->writer.sink->issues, GEO_GUESSED, "lamp drawn as a line or an area: put in its middle", m->tags.id);
+        geo_issue(m->writer.sink->issues, GEO_GUESSED, "lamp drawn as a line or an area: put in its middle",
+                  m->tags.id);
     return status;
 }
 
@@ -382,7 +387,8 @@ static noc_status read_layers(map_reading *m) {
             GDALDatasetReleaseResultSet(m->source.dataset, none);
         OGRLayerH points = GDALDatasetGetLayerByName(m->source.dataset, "points");
         noc_status status = points ? read_layer(m, points) : map_source_error(&m->source);
-        return status ? status : osm_count_ways(m->stream, m->format->probe == probe_pbf, m->writer.sink, &m->writer.seen);
+        return status ? status
+                      : osm_count_ways(m->stream, m->format->probe == probe_pbf, m->writer.sink, &m->writer.seen);
     }
     noc_status status = NOC_OK;
     int count = GDALDatasetGetLayerCount(m->source.dataset);
@@ -391,14 +397,16 @@ static noc_status read_layers(map_reading *m) {
     return status;
 }
 
-static noc_status read_map(noc_stream *stream, const map_format *format, const noc_import_params *params, geo_sink *sink) {
+static noc_status read_map(noc_stream *stream, const map_format *format, const noc_import_params *params,
+                           geo_sink *sink) {
     map_reading m = { .format = format, .stream = stream, .params = params };
     noc_status status = lamp_writer_start(&m.writer, sink, noc_stream_name(stream), params);
     if (status)
         return status;
     status = map_source_open(&m.source, stream, format, params && params->allow_outside, sink->log);
     if (!status && m.source.link[0] && !(params && params->crs))
-        geo_issue(sink->issues, GEO_GUESSED, "CRS that is a link, not followed: longitudes and latitudes instead", "crs");
+        geo_issue(sink->issues, GEO_GUESSED, "CRS that is a link, not followed: longitudes and latitudes instead",
+                  "crs");
     if (!status)
         status = read_layers(&m);
     map_source_close(&m.source);
@@ -411,14 +419,16 @@ static noc_status read_map(noc_stream *stream, const map_format *format, const n
 
 #else
 
-static noc_status read_map(noc_stream *stream, const map_format *format, const noc_import_params *params, geo_sink *sink) {
-    return noc_error(sink->log, NOC_ERR_UNSUPPORTED, "%s: %s needs GDAL, which this build is without", noc_stream_name(stream),
-                     format->name);
+static noc_status read_map(noc_stream *stream, const map_format *format, const noc_import_params *params,
+                           geo_sink *sink) {
+    return noc_error(sink->log, NOC_ERR_UNSUPPORTED, "%s: %s needs GDAL, which this build is without",
+                     noc_stream_name(stream), format->name);
 }
 
 #endif
 
-static noc_status read_vector(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
+static noc_status read_vector(noc_stream *stream, const noc_import_params *params, geo_sink *sink,
+                              const char **format) {
     char head[8192];
     size_t len;
     noc_status status = read_head(stream, head, sizeof(head), &len);
@@ -432,6 +442,11 @@ static noc_status read_vector(noc_stream *stream, const noc_import_params *param
 static bool foreign(const char *head, size_t size) { return NOC_HAVE_GDAL && find_format(head, size); }
 
 /* Never `missing`: CSV needs no GDAL, and the others say so one by one. */
-const noc_reader noc_reader_vector = { .name = "OpenStreetMap, GeoJSON and GeoJSONSeq, GeoPackage, Shapefile, FlatGeobuf, CSV",
-                                       .reads = NOC_READS_LAMPS, .probe = probe, .probe_named = lamp_csv_probe_table,
-                                       .read = read_vector, .foreign = foreign };
+const noc_reader noc_reader_vector = {
+    .name = "OpenStreetMap, GeoJSON and GeoJSONSeq, GeoPackage, Shapefile, FlatGeobuf, CSV",
+    .reads = NOC_READS_LAMPS,
+    .probe = probe,
+    .probe_named = lamp_csv_probe_table,
+    .read = read_vector,
+    .foreign = foreign
+};

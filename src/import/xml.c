@@ -1,6 +1,7 @@
 #include "import/xml.h"
 
-#define MOST_TAG (4 << 20) /* bytes of a tag with its attributes, or a comment: expat looks at all of it again with each chunk */
+#define MOST_TAG                                                                                                       \
+    (4 << 20) /* bytes of a tag with its attributes, or a comment: expat looks at all of it again with each chunk */
 
 /* expat goes on after some allocations that it was refused, and then finds a fault in the file. */
 static _Thread_local bool refused;

@@ -1,5 +1,5 @@
-/* import/xml: expat on a stream, for files of any content: memory that it is refused is told, and so is a tag that would take more
- * time than it is worth. */
+/* import/xml: expat on a stream, for files of any content: memory that it is refused is told, and so is a tag that
+ * would take more time than it is worth. */
 #ifndef NOC_IMPORT_XML_H
 #define NOC_IMPORT_XML_H
 
@@ -14,11 +14,12 @@ typedef enum xml_fault {
     XML_FAULT_MEMORY, /* was refused */
 } xml_fault;
 
-/* separator: between a namespace and a name; NULL: namespaces are not looked at. NULL: memory was refused. XML_ParserFree() it. */
+/* separator: between a namespace and a name; NULL: namespaces are not looked at. NULL: memory was refused.
+ * XML_ParserFree() it. */
 XML_Parser xml_create(const char *separator);
 
-/* Parses all of the stream. after: asked behind each chunk, ends the reading by another status than NOC_OK. Returns that, or the
- * stream's own; *fault tells what else ended it, and nobody has been told of that. */
+/* Parses all of the stream. after: asked behind each chunk, ends the reading by another status than NOC_OK. Returns
+ * that, or the stream's own; *fault tells what else ended it, and nobody has been told of that. */
 noc_status xml_read(XML_Parser xml, noc_stream *stream, noc_status (*after)(void *user), void *user, xml_fault *fault);
 
 #endif

@@ -2,8 +2,8 @@
 
 #include "light/bound.h"
 
-/* Weights that sum to the number of lights. Lights without emission get 0; the weakest others a millionth of the mean, so that
- * a weak light close by is still found, and 1 / pmf stays a sane number. Returns false where nothing emits. */
+/* Weights that sum to the number of lights. Lights without emission get 0; the weakest others a millionth of the mean,
+ * so that a weak light close by is still found, and 1 / pmf stays a sane number. Returns false where nothing emits. */
 static bool weigh(const noc_scene *scene, double *weight) {
     size_t n = scene->lights.len, shining = 0;
     double total = 0, raised = 0;

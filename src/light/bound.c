@@ -63,7 +63,9 @@ void noc_light_leave(const noc_light_record *l, const float d[3], float u, float
         case NOC_LIGHT_POINT:
         case NOC_LIGHT_SPOT: out[k] = l->p[k] + d[k] * (l->radius + clear); break;
         case NOC_LIGHT_DISC: out[k] = l->p[k] + (u - 0.5f) * l->a[k] + (v - 0.5f) * l->b[k] + d[k] * clear; break;
-        default: out[k] = l->p[k] + 0.5f * (u * l->a[k] + v * l->b[k]) + 0.25f * (l->a[k] + l->b[k]) + d[k] * clear; break;
+        default:
+            out[k] = l->p[k] + 0.5f * (u * l->a[k] + v * l->b[k]) + 0.25f * (l->a[k] + l->b[k]) + d[k] * clear;
+            break;
         }
     }
 }

@@ -1,5 +1,5 @@
-/* light/bound: what structures over lights need of each: where it is, which way it faces, how strong it is; and an order in
- * which lights that lie close together follow each other. */
+/* light/bound: what structures over lights need of each: where it is, which way it faces, how strong it is; and an
+ * order in which lights that lie close together follow each other. */
 #ifndef NOC_LIGHT_BOUND_H
 #define NOC_LIGHT_BOUND_H
 
@@ -21,7 +21,8 @@ noc_light_bound noc_bound_light(const noc_light_record *light);
 /* Greatest luminous intensity of a light, cd: radiance times projected area. */
 float noc_light_intensity(const noc_light_record *light);
 
-/* A point of a light, u and v of the unit square, that light leaves in direction d from, clear of the light's own surface. */
+/* A point of a light, u and v of the unit square, that light leaves in direction d from, clear of the light's own
+ * surface. */
 void noc_light_leave(const noc_light_record *light, const float d[3], float u, float v, float out[3]);
 
 /* Which of the six sides of a cube a direction goes through; 6: none. */

@@ -15,7 +15,7 @@ typedef struct build {
     uint32_t *first;             /* a cluster: its first key; one more at the end */
     size_t items, emitting;
     float lo[3], scale, reach;
-    int level;                   /* being made from the one below */
+    int level; /* being made from the one below */
     void (*work)(struct build *b, size_t item);
 } build;
 
@@ -49,8 +49,9 @@ static unsigned face(const float n[3]) {
     return n[axis] == 0 ? 6 : 2u * (unsigned)axis + (n[axis] < 0);
 }
 
-/* Place along Hilbert's curve through a cube of 2^CURVE_BITS cells a side: what follows each other on it lies together, with
- * no leaps, so that 16 in a row make a small sphere. J. Skilling 2004, "Programming the Hilbert curve", AIP Conf. Proc. 707. */
+/* Place along Hilbert's curve through a cube of 2^CURVE_BITS cells a side: what follows each other on it lies together,
+ * with no leaps, so that 16 in a row make a small sphere. J. Skilling 2004, "Programming the Hilbert curve", AIP Conf.
+ * Proc. 707. */
 static uint64_t hilbert(uint32_t x[3]) {
     const uint32_t top = 1u << (CURVE_BITS - 1);
     for (uint32_t q = top; q > 1; q >>= 1)
@@ -88,8 +89,8 @@ static int by_size(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* The cube that the curve runs through: three times what nine of ten lights span, by a sample of them, so that a moon or a
- * stray lamp does not squeeze the city into one cell of it. */
+/* The cube that the curve runs through: three times what nine of ten lights span, by a sample of them, so that a moon
+ * or a stray lamp does not squeeze the city into one cell of it. */
 static void span_lights(build *b) {
     float sample[SAMPLE], size = 0;
     size_t n = NOC_MIN(b->emitting, (size_t)SAMPLE);
@@ -131,8 +132,8 @@ static bool near(const build *b, const noc_light_bound *x, const noc_light_bound
     return d2 <= b->reach * b->reach;
 }
 
-/* Clusters that lights are still put into. Where neighbours face every which way, each light looks for one of its kind, so that
- * clusters become full; none stays open for more than OPEN_FOR lights of the curve, so that they stay small. */
+/* Clusters that lights are still put into. Where neighbours face every which way, each light looks for one of its kind,
+ * so that clusters become full; none stays open for more than OPEN_FOR lights of the curve, so that they stay small. */
 enum { OPEN = 8, OPEN_FOR = 8 * NOC_CLUSTER_LIGHTS };
 
 typedef struct open_cluster {
@@ -175,8 +176,8 @@ static open_cluster *cluster_for(const build *b, gathering *g, size_t i) {
     return oldest;
 }
 
-/* Puts the lights of each cluster side by side, and where it begins into first: room for one entry more than there are lights.
- * Returns how many there are. */
+/* Puts the lights of each cluster side by side, and where it begins into first: room for one entry more than there are
+ * lights. Returns how many there are. */
 static size_t gather(build *b) {
     gathering g = { .to = b->spare, .first = b->first };
     for (size_t i = 0; i < b->emitting; i++) {
@@ -201,7 +202,8 @@ typedef struct part {
 
 /* Sphere and cone around the parts, into lane `lane`. */
 static void close_node(noc_cluster_block *block, int lane, const part *parts, int count) {
-    float lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY }, n[3] = { 0 }, power = 0;
+    float lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY }, n[3] = { 0 },
+          power = 0;
     bool any = false;
     for (int i = 0; i < count; i++) {
         power += parts[i].power;
@@ -275,7 +277,10 @@ static void make_cluster(build *b, size_t i) {
         const noc_light_bound *l = &b->bounds[out->id[j]];
         bool any = face(l->n) == 6;
         out->shine[j] = half_intensity(l->intensity) | (any ? 0 : octahedron(l->n));
-        parts[j] = (part){ { l->p[0], l->p[1], l->p[2] }, l->radius, { l->n[0], l->n[1], l->n[2] }, any ? -1 : 1,
+        parts[j] = (part){ { l->p[0], l->p[1], l->p[2] },
+                           l->radius,
+                           { l->n[0], l->n[1], l->n[2] },
+                           any ? -1 : 1,
                            full_intensity(out->shine[j]) };
     }
     close_node(block, lane, parts, count);
@@ -296,8 +301,11 @@ static void make_node(build *b, size_t i) {
     part parts[16] = { 0 };
     int count = (int)NOC_MIN((size_t)16, b->c->nodes[b->level - 1] - 16 * i);
     for (int j = 0; j < count; j++)
-        parts[j] = (part){ { below->x[j], below->y[j], below->z[j] }, below->radius[j],
-                           { below->ax[j], below->ay[j], below->az[j] }, below->cos_cone[j], below->power[j] };
+        parts[j] = (part){ { below->x[j], below->y[j], below->z[j] },
+                           below->radius[j],
+                           { below->ax[j], below->ay[j], below->az[j] },
+                           below->cos_cone[j],
+                           below->power[j] };
     close_node(&b->c->level[b->level][i / 16], (int)(i % 16), parts, count);
 }
 
@@ -336,8 +344,11 @@ static bool make_all(build *b, noc_pool *pool) {
 
 noc_clusters *noc_clusters_create(const noc_scene *scene, noc_pool *pool, noc_log *log) {
     size_t all = scene->lights.len;
-    build b = { .scene = scene, .c = noc_calloc(1, sizeof(*b.c)), .bounds = noc_alloc_large(all, sizeof(*b.bounds)),
-                .keys = noc_alloc_large(all, sizeof(*b.keys)), .spare = noc_alloc_large(all, sizeof(*b.spare)) };
+    build b = { .scene = scene,
+                .c = noc_calloc(1, sizeof(*b.c)),
+                .bounds = noc_alloc_large(all, sizeof(*b.bounds)),
+                .keys = noc_alloc_large(all, sizeof(*b.keys)),
+                .spare = noc_alloc_large(all, sizeof(*b.spare)) };
     if (!b.c || !b.bounds || !b.keys || !b.spare || !make_all(&b, pool)) {
         noc_error(log, NOC_ERR_MEMORY, "light clusters: no memory for %zu lights", all);
         noc_clusters_destroy(b.c);

@@ -3,7 +3,6 @@
 
 #include "core/influence.h"
 
-
 void noc_influence_destroy(noc_influence *v) {
     if (!v)
         return;
@@ -21,8 +20,11 @@ void noc_influence_destroy(noc_influence *v) {
 /* ---- boxes of points ---- */
 
 noc_near_query noc_near_none(float scale, size_t most) {
-    return (noc_near_query){ .lo = { INFINITY, INFINITY, INFINITY }, .hi = { -INFINITY, -INFINITY, -INFINITY }, .back = INFINITY,
-                             .scale = scale, .most = most };
+    return (noc_near_query){ .lo = { INFINITY, INFINITY, INFINITY },
+                             .hi = { -INFINITY, -INFINITY, -INFINITY },
+                             .back = INFINITY,
+                             .scale = scale,
+                             .most = most };
 }
 
 void noc_near_add(noc_near_query *q, const float *const p[3], const float *const n[3], uint32_t lanes) {
@@ -54,7 +56,8 @@ void noc_found_free(noc_found *f) {
 bool noc_influence_finds(const noc_influence *v, uint32_t light, const noc_near_query *q) {
     influence a;
     uint32_t volume = v->volume_of[light];
-    influence_region r = influence_box(V3(q->lo[0], q->lo[1], q->lo[2]), V3(q->hi[0], q->hi[1], q->hi[2]), V3(q->n[0], q->n[1], q->n[2]), q->back);
+    influence_region r = influence_box(V3(q->lo[0], q->lo[1], q->lo[2]), V3(q->hi[0], q->hi[1], q->hi[2]),
+                                       V3(q->n[0], q->n[1], q->n[2]), q->back);
     memcpy(&a, &v->volumes[volume], sizeof(a));
     if (!influence_holds(a, r, q->scale) || (q->least > 0 && !(influence_gives(a, influence_turn(a), r) >= q->least)))
         return false;

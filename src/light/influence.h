@@ -1,8 +1,8 @@
 /* light/influence: a hierarchy over the lights' influence volumes (core/influence.h), for point queries.
  *
- * Volumes scale with S_r, so the hierarchy does not know it: a node holds the box around its lights' shapes and the largest
- * sqrt(intensity), and is entered if the box comes nearer than S_r times that. Lights are sorted by size first and Morton
- * code then, so that few large volumes do not blow up the nodes of many small ones. */
+ * Volumes scale with S_r, so the hierarchy does not know it: a node holds the box around its lights' shapes and the
+ * largest sqrt(intensity), and is entered if the box comes nearer than S_r times that. Lights are sorted by size first
+ * and Morton code then, so that few large volumes do not blow up the nodes of many small ones. */
 #ifndef NOC_LIGHT_INFLUENCE_H
 #define NOC_LIGHT_INFLUENCE_H
 
@@ -32,24 +32,28 @@ typedef struct noc_influence_box {
 enum { NOC_STEP_VOLUMES, NOC_STEP_TUNING, NOC_STEP_HIERARCHY, NOC_STEP_BOXES, NOC_INFLUENCE_STEPS };
 
 typedef struct noc_influence {
-    uint32_t count;                                 /* lights of the scene, those without emission too */
-    uint32_t shining;                               /* lights that emit something */
+    uint32_t count;   /* lights of the scene, those without emission too */
+    uint32_t shining; /* lights that emit something */
     uint32_t volume_count, box_count;
-    noc_influence_volume *volumes;                  /* in the hierarchy's order; behind the last, one that holds nothing */
-    uint32_t *box_of;                               /* parallel: the box that a volume shares with volumes near it */
-    noc_influence_box *boxes;                       /* what their lights see; NULL: nothing stands in their way */
-    uint32_t *first;                                /* volume i has the lights ids[first[i]..first[i + 1]); NULL: one each */
+    /* in the hierarchy's order; behind the last, one that holds nothing */
+    noc_influence_volume *volumes;
+    uint32_t *box_of;         /* parallel: the box that a volume shares with volumes near it */
+    noc_influence_box *boxes; /* what their lights see; NULL: nothing stands in their way */
+    /* volume i has the lights ids[first[i]..first[i + 1]); NULL: one each */
+    uint32_t *first;
     uint32_t *ids;
-    uint32_t *volume_of;                            /* a light of the scene */
-    noc_influence_node *nodes[NOC_INFLUENCE_LEVELS]; /* level 0: a child is 16 volumes in order; the last level has one node */
-    int levels;                                     /* 0: no light emits anything */
-    float scale;                                    /* S_r for this scene, sqrt(m2 / cd) */
-    noc_influence_rule rule;                        /* for it, and for what each point lists */
+    uint32_t *volume_of; /* a light of the scene */
+    /* level 0: a child is 16 volumes in order; the last level has one node */
+    noc_influence_node *nodes[NOC_INFLUENCE_LEVELS];
+    int levels;              /* 0: no light emits anything */
+    float scale;             /* S_r for this scene, sqrt(m2 / cd) */
+    noc_influence_rule rule; /* for it, and for what each point lists */
     size_t bytes;
-    double seconds[NOC_INFLUENCE_STEPS];            /* wall seconds that each step of building took */
+    double seconds[NOC_INFLUENCE_STEPS]; /* wall seconds that each step of building took */
 } noc_influence;
 
-/* A S_r that was set, as volumes take it: 0 stays "found for the scene", and what is too small for a float does not become 0. */
+/* A S_r that was set, as volumes take it: 0 stays "found for the scene", and what is too small for a float does not
+ * become 0. */
 static inline float noc_influence_scale(double set) { return set > 0 ? fmaxf((float)set, FLT_MIN) : 0; }
 
 /* Distances along segments o + t d, t in [0, 1], to what they hit first; 1 where nothing is in their way. Called from
@@ -67,11 +71,11 @@ typedef struct noc_influence_params {
     bool boxes;          /* visibility-aware boxes (Algorithm 4): wants a probe */
     noc_probe_fn *probe; /* traces; NULL: S_r is found as if some lights were hidden anywhere */
     void *user;
-    noc_pool *pool;      /* NULL: the caller's thread alone */
+    noc_pool *pool; /* NULL: the caller's thread alone */
 } noc_influence_params;
 
-/* NULL params are those of one volume a light, without boxes. Equal for any number of threads. Returns NULL after reporting
- * that memory was refused. */
+/* NULL params are those of one volume a light, without boxes. Equal for any number of threads. Returns NULL after
+ * reporting that memory was refused. */
 noc_influence *noc_influence_create(const noc_scene *scene, const noc_influence_params *params, noc_log *log);
 void noc_influence_destroy(noc_influence *influence); /* NULL is allowed */
 
@@ -108,8 +112,8 @@ typedef struct noc_near_query {
 noc_near_query noc_near_none(float scale, size_t most);
 void noc_near_add(noc_near_query *query, const float *const p[3], const float *const n[3], uint32_t lanes);
 
-/* Points that ask as one, and what they found. Where S_r was set, the lights whose volumes hold the query; where it is found, those
- * of them that give at least as many lux as the points settled for. */
+/* Points that ask as one, and what they found. Where S_r was set, the lights whose volumes hold the query; where it is
+ * found, those of them that give at least as many lux as the points settled for. */
 typedef struct noc_found_group {
     noc_near_query query;
     uint32_t count, from; /* ids[from], ids[from + 1], ... */
@@ -136,8 +140,8 @@ static inline uint32_t noc_found_count(const noc_found *found, int block, int po
 /* Does a query find the light? */
 bool noc_influence_finds(const noc_influence *influence, uint32_t light, const noc_near_query *query);
 
-/* influence_obj.c: each volume as a closed body, each box as a box, in OBJ with y up. set: S_r that was set, 0: the one that was found. What cannot be
- * written shows in the file's error flag. */
+/* influence_obj.c: each volume as a closed body, each box as a box, in OBJ with y up. set: S_r that was set, 0: the one
+ * that was found. What cannot be written shows in the file's error flag. */
 void noc_influence_write(const noc_influence *influence, const noc_scene *scene, double set, FILE *file);
 
 #endif

@@ -1,5 +1,5 @@
-/* Building influence volumes: their order, the lights that share one, and the hierarchy over them. Every step is linear but
- * the radix sort, which is linear for keys of 64 bits. */
+/* Building influence volumes: their order, the lights that share one, and the hierarchy over them. Every step is linear
+ * but the radix sort, which is linear for keys of 64 bits. */
 #include "light/influence_parts.h"
 
 #include "light/bound.h"
@@ -87,7 +87,8 @@ static void volume_chunk(void *ctx, size_t item, int worker) {
 
 /* May a light come into the volume of lights whose box of centres is lo..hi? Its volume must be similar: as large to a
  * factor of 1.5, shining the same way, and most of it in common. */
-static bool joins(const noc_light_bound *first, const noc_light_bound *a, const float lo[3], const float hi[3], float scale) {
+static bool joins(const noc_light_bound *first, const noc_light_bound *a, const float lo[3], const float hi[3],
+                  float scale) {
     float d2 = 0, cos = 0, reach = scale * sqrtf(first->intensity);
     bool any = first->n[0] == 0 && first->n[1] == 0 && first->n[2] == 0;
     for (int k = 0; k < 3; k++) {
@@ -100,7 +101,8 @@ static bool joins(const noc_light_bound *first, const noc_light_bound *a, const 
            first->intensity <= 2.25f * a->intensity;
 }
 
-static noc_influence_volume shared_volume(const build *b, uint32_t begin, uint32_t end, const float lo[3], const float hi[3]) {
+static noc_influence_volume shared_volume(const build *b, uint32_t begin, uint32_t end, const float lo[3],
+                                          const float hi[3]) {
     const noc_light_bound *first = &b->bounds[b->v->ids[begin]];
     noc_influence_volume v = { .c = { 0 } };
     float back = 0, most = 0;
@@ -265,8 +267,9 @@ static bool build_volumes(build *b) {
 noc_influence *noc_influence_create(const noc_scene *scene, const noc_influence_params *params, noc_log *log) {
     size_t all = scene->lights.len;
     noc_influence *v = noc_calloc(1, sizeof(*v));
-    build b = { .scene = scene, .params = params ? params : &(noc_influence_params){ 0 }, .v = v,
-                .since = noc_wall_seconds() };
+    build b = {
+        .scene = scene, .params = params ? params : &(noc_influence_params){ 0 }, .v = v, .since = noc_wall_seconds()
+    };
     b.bounds = noc_alloc_large(all + 1, sizeof(*b.bounds));
     b.keys = noc_alloc_large(2 * all + 1, sizeof(*b.keys));
     bool ok = v && b.bounds && b.keys && (v->volumes = noc_alloc_large(all + 1, sizeof(*v->volumes))) &&
@@ -286,7 +289,8 @@ noc_influence *noc_influence_create(const noc_scene *scene, const noc_influence_
         for (size_t i = 0; i < all; i++)
             if (!(b.bounds[i].intensity > 0))
                 v->volume_of[i] = v->volume_count;
-        v->bytes += ((size_t)v->volume_count + 1) * sizeof(*v->volumes) + (all + 1) * (sizeof(*v->ids) + sizeof(*v->volume_of));
+        v->bytes +=
+            ((size_t)v->volume_count + 1) * sizeof(*v->volumes) + (all + 1) * (sizeof(*v->ids) + sizeof(*v->volume_of));
     }
     free(b.bounds);
     free(b.keys);

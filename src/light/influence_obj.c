@@ -1,4 +1,5 @@
-/* Influence volumes as OBJ, to be looked at. y points up in the file, as most programs take OBJ: (x, y, z) is written as x z -y. */
+/* Influence volumes as OBJ, to be looked at. y points up in the file, as most programs take OBJ: (x, y, z) is written
+ * as x z -y. */
 #include "light/influence.h"
 
 #include <ctype.h>
@@ -42,7 +43,8 @@ static void ring(obj_out *o, const double c[3], const double n[3], double radius
     }
 }
 
-/* A sphere, or the part of it before the plane `behind` metres behind its centre, which closes it. Corners lie on its surface, faces look out. */
+/* A sphere, or the part of it before the plane `behind` metres behind its centre, which closes it. Corners lie on its
+ * surface, faces look out. */
 static void solid(obj_out *o, const double c[3], const double n[3], double radius, double behind) {
     bool cut = behind < radius;
     double end = cut ? acos(-behind / radius) : M_PI, pole[3], other[3];
@@ -91,7 +93,8 @@ static void name_of(const noc_influence *v, const noc_scene *scene, uint32_t vol
 }
 
 static void box(obj_out *o, const noc_influence_box *b) {
-    static const unsigned faces[6][4] = { { 0, 2, 3, 1 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 4, 6, 2 }, { 1, 3, 7, 5 } };
+    static const unsigned faces[6][4] = { { 0, 2, 3, 1 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 },
+                                          { 2, 6, 7, 3 }, { 0, 4, 6, 2 }, { 1, 3, 7, 5 } };
     size_t first = o->vertices + 1;
     for (int i = 0; i < 8; i++) {
         double p[3];
@@ -100,15 +103,17 @@ static void box(obj_out *o, const noc_influence_box *b) {
         vertex(o, p);
     }
     for (int f = 0; f < 6; f++)
-        fprintf(o->file, "f %zu %zu %zu %zu\n", first + faces[f][0], first + faces[f][1], first + faces[f][2], first + faces[f][3]);
+        fprintf(o->file, "f %zu %zu %zu %zu\n", first + faces[f][0], first + faces[f][1], first + faces[f][2],
+                first + faces[f][3]);
 }
 
 void noc_influence_write(const noc_influence *v, const noc_scene *scene, double set, FILE *file) {
     obj_out o = { file, 0 };
     double scale = set > 0 ? (double)noc_influence_scale(set) : (double)v->scale;
-    fprintf(file, "# Influence volumes of %u lights, S_r = %.6g m; metres in the scene's local frame, y up\n", v->shining, scale);
-    fprintf(file, "# scene-crs-name %s\n# scene-origin %.12g %.12g %.12g\n", scene->crs_name ? scene->crs_name : "", scene->origin[0], scene->origin[1],
-            scene->origin[2]);
+    fprintf(file, "# Influence volumes of %u lights, S_r = %.6g m; metres in the scene's local frame, y up\n",
+            v->shining, scale);
+    fprintf(file, "# scene-crs-name %s\n# scene-origin %.12g %.12g %.12g\n", scene->crs_name ? scene->crs_name : "",
+            scene->origin[0], scene->origin[1], scene->origin[2]);
     for (uint32_t i = 0; i < v->volume_count; i++) {
         const noc_influence_volume *a = &v->volumes[i];
         double c[3] = { a->c[0], a->c[1], a->c[2] }, n[3] = { 0, 0, 1 };

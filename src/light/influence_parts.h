@@ -5,7 +5,8 @@
 #include "light/influence.h"
 
 /* Items over the pool, or one after the other where there is none. */
-static inline void noc_influence_run(noc_pool *pool, size_t items, void (*fn)(void *ctx, size_t item, int worker), void *ctx) {
+static inline void noc_influence_run(noc_pool *pool, size_t items, void (*fn)(void *ctx, size_t item, int worker),
+                                     void *ctx) {
     if (pool) {
         noc_pool_run(pool, items, fn, ctx);
         return;
@@ -14,7 +15,8 @@ static inline void noc_influence_run(noc_pool *pool, size_t items, void (*fn)(vo
         fn(ctx, i, 0);
 }
 
-/* influence_tune.c: S_r for this scene, and the influence's rule; the volumes are one a light. 0: memory was refused. */
+/* influence_tune.c: S_r for this scene, and the influence's rule; the volumes are one a light. 0: memory was refused.
+ */
 float noc_influence_tune(noc_influence *influence, const noc_scene *scene, const noc_influence_params *params);
 
 /* influence_visible.c: makes the boxes. false: memory was refused. */

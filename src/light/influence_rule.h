@@ -1,21 +1,23 @@
 /* light/influence_rule: which lights are best listed at a point, from what they would give it.
  *
- * Of m draws b come from a list of n lights and u from all N. A light that is seen and gives e lux adds e^2 n / b to the second
- * moment of the estimate if it is listed, e^2 N / u if it is not; and what shows is that over the square of what arrives in
- * all. Which lights are seen is not known beforehand. Where the strongest is hidden, the square of the others' light is all
- * there is to compare with, and a list that was made for the strongest alone leaves just those to the draws from all lights. So
- * the rule takes the mean over what may be hidden: each light is seen with probability v, independently. Places differ in how
- * much they see, so v takes several values, and the loss is the mean over them. With lights in order,
- * e_1 >= e_2 ..., the strongest that is seen is j with probability v (1 - v)^(j - 1), what arrives then is about
+ * Of m draws b come from a list of n lights and u from all N. A light that is seen and gives e lux adds e^2 n / b to
+ * the second moment of the estimate if it is listed, e^2 N / u if it is not; and what shows is that over the square of
+ * what arrives in all. Which lights are seen is not known beforehand. Where the strongest is hidden, the square of the
+ * others' light is all there is to compare with, and a list that was made for the strongest alone leaves just those to
+ * the draws from all lights. So the rule takes the mean over what may be hidden: each light is seen with probability v,
+ * independently. Places differ in how much they see, so v takes several values, and the loss is the mean over them.
+ * With lights in order, e_1 >= e_2 ..., the strongest that is seen is j with probability v (1 - v)^(j - 1), what
+ * arrives then is about
  *
  *     L_j = e_j + v sum_{l > j} e_l + floor,
  *
  * and the loss of a list of the first n is, but for what no list changes,
  *
- *     n / b sum_{i <= n} a_i - N / u sum_{i <= n} a_i,    a_i = e_i^2 (sum_{j < i} v (1 - v)^(j - 1) / L_j^2 + (1 - v)^(i - 1) / L_i^2).
+ *     n / b sum_{i <= n} a_i - N / u sum_{i <= n} a_i,    a_i = e_i^2 (sum_{j < i} v (1 - v)^(j - 1) / L_j^2 + (1 -
+ * v)^(i - 1) / L_i^2).
  *
- * The floor is light that is too little to be seen. Lights come in bins of half an octave. The rule steers the noise only: whatever
- * it says, densities are exact. */
+ * The floor is light that is too little to be seen. Lights come in bins of half an octave. The rule steers the noise
+ * only: whatever it says, densities are exact. */
 #ifndef NOC_LIGHT_INFLUENCE_RULE_H
 #define NOC_LIGHT_INFLUENCE_RULE_H
 
@@ -24,10 +26,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { NOC_RULE_SHARES = 4, NOC_RULE_BINS = 48, NOC_RULE_SHIFT = 22 }; /* a float's bits above the shift: two bins an octave */
+/* a float's bits above the shift: two bins an octave */
+enum { NOC_RULE_SHARES = 4, NOC_RULE_BINS = 48, NOC_RULE_SHIFT = 22 };
 
 typedef struct noc_influence_rule {
-    float seen[NOC_RULE_SHARES]; /* v, of as many surface points each: a light that they face is seen with that probability */
+    /* v, of as many surface points each: a light that they face is seen with that probability */
+    float seen[NOC_RULE_SHARES];
     float floor; /* lux */
 } noc_influence_rule;
 
@@ -106,7 +110,8 @@ static inline float noc_rule_best(const noc_influence_bins *b, float n_l, int ev
         float e = bin->e / bin->lights, now = 0, then = 0;
         for (int k = 0; k < NOC_RULE_SHARES; k++) {
             float hidden = chance[k] > 1e-4f ? noc_rule_hidden(rule.seen[k], bin->lights) : 0;
-            float all = e + rule.seen[k] * (beyond[i] + bin->e - e) + rule.floor, inverse = all > 0 ? 1 / (all * all) : 0;
+            float all = e + rule.seen[k] * (beyond[i] + bin->e - e) + rule.floor,
+                  inverse = all > 0 ? 1 / (all * all) : 0;
             now += chance[k] * inverse;
             then += chance[k] * (1 - hidden) * inverse;
             chance[k] *= hidden;

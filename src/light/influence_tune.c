@@ -5,17 +5,17 @@
 
 #include "core/influence.h"
 
-/* Surface points that S_r is found for, fewer where there are many lights; volumes in a row that are one where they are far
- * away. */
+/* Surface points that S_r is found for, fewer where there are many lights; volumes in a row that are one where they are
+ * far away. */
 enum { EXAMPLES = 512, FEWEST_EXAMPLES = 64, EVERY = 4, RUN = 64 };
 static const size_t most_looks = (size_t)1 << 24;
 
-/* Where lights lie about evenly in a plane, lists of sqrt(b N / u) are best. Ones that are longer by more than that cost more than
- * they are worth: each point looks at all lights that the scene's S_r finds. */
+/* Where lights lie about evenly in a plane, lists of sqrt(b N / u) are best. Ones that are longer by more than that
+ * cost more than they are worth: each point looks at all lights that the scene's S_r finds. */
 static const float enough = 1.5f;
 
-/* So many of the examples would list weaker lights than the scene's S_r finds. Those are many, and bring little. With a half of the
- * examples frames of four views took longer, and errors moved both ways. */
+/* So many of the examples would list weaker lights than the scene's S_r finds. Those are many, and bring little. With a
+ * half of the examples frames of four views took longer, and errors moved both ways. */
 static const float unserved = 0.7f;
 
 /* Shares of what places face that they see, where no rays can tell. */
@@ -84,9 +84,10 @@ static box box_of_lights(const tuning *t) {
     return b;
 }
 
-/* Edges a, b and unit normal n of a triangle from its first corner p; returns its area inside the box, about. Triangles that
- * show a light count as nothing. */
-static double triangle(const noc_scene *s, size_t t, const box *in, const float **p, float a[3], float b[3], float n[3]) {
+/* Edges a, b and unit normal n of a triangle from its first corner p; returns its area inside the box, about. Triangles
+ * that show a light count as nothing. */
+static double triangle(const noc_scene *s, size_t t, const box *in, const float **p, float a[3], float b[3],
+                       float n[3]) {
     const float *c[3];
     if (s->triangle_light.len > t && s->triangle_light.data[t] != NOC_NO_LIGHT)
         return 0;
@@ -155,8 +156,8 @@ static float run_distance(const volume_run *r, const float p[3], float *half) {
     return sqrtf(d2);
 }
 
-/* What volume k, or all of a run that is far away, gives an example: e lux from each light. Those of a run count as if they were in
- * its middle; of them a quarter of what they give, for which way they face is not looked at. */
+/* What volume k, or all of a run that is far away, gives an example: e lux from each light. Those of a run count as if
+ * they were in its middle; of them a quarter of what they give, for which way they face is not looked at. */
 typedef struct giving {
     size_t first, end; /* volumes */
     float e;
@@ -226,7 +227,8 @@ static void aim(looking *look, uint32_t volume) {
 static void aim_at(void *ctx, const giving *g) {
     looking *look = ctx;
     look->passed += (float)(g->end - g->first) * g->e;
-    while (look->rays < NOC_PROBES && look->passed >= look->e->gets * ((float)look->rays + rng(look->key, 0u)) / NOC_PROBES)
+    while (look->rays < NOC_PROBES &&
+           look->passed >= look->e->gets * ((float)look->rays + rng(look->key, 0u)) / NOC_PROBES)
         aim(look, (uint32_t)(g->first + hash_u32(look->key + (uint32_t)look->rays) % (g->end - g->first)));
 }
 
@@ -259,8 +261,9 @@ static int by_size(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* What the scene's surfaces have in common: what too little light is, and how much of what they face they see, where more than too
- * little arrives. That differs much from place to place, so the rule is told several shares, each of as many places. */
+/* What the scene's surfaces have in common: what too little light is, and how much of what they face they see, where
+ * more than too little arrives. That differs much from place to place, so the rule is told several shares, each of as
+ * many places. */
 static noc_influence_rule rule_of(const tuning *t, int n) {
     noc_influence_rule rule = { .floor = 0 };
     float gets[EXAMPLES], seen[EXAMPLES];
@@ -284,7 +287,8 @@ static noc_influence_rule rule_of(const tuning *t, int n) {
     return rule;
 }
 
-/* The S_r at which a volume ends where its light gives as little as most examples list that face more than too little light. */
+/* The S_r at which a volume ends where its light gives as little as most examples list that face more than too little
+ * light. */
 static float tune(tuning *t, const noc_scene *scene) {
     noc_pool *pool = t->params->pool;
     float least[EXAMPLES];

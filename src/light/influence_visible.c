@@ -1,8 +1,8 @@
-/* Visibility-aware boxes (Algorithm 4): rays from lights, as long as their reach, and the box around their ends. Surfaces
- * outside it are taken not to see these lights; those that do, through gaps between the rays, have the uniform draws. Unlike
- * in the thesis, volumes that lie close together and shine the same way share a box, and its rays start from their lights in
- * turn: what one window of a facade sees its neighbours see too, so that rays are a few a light. Directions are spread evenly,
- * and the box grows by what may lie between them. */
+/* Visibility-aware boxes (Algorithm 4): rays from lights, as long as their reach, and the box around their ends.
+ * Surfaces outside it are taken not to see these lights; those that do, through gaps between the rays, have the uniform
+ * draws. Unlike in the thesis, volumes that lie close together and shine the same way share a box, and its rays start
+ * from their lights in turn: what one window of a facade sees its neighbours see too, so that rays are a few a light.
+ * Directions are spread evenly, and the box grows by what may lie between them. */
 #include "light/influence_parts.h"
 
 #include "core/random.h"
@@ -13,7 +13,8 @@
 /* Volumes that share a box, at most; rays a box; volumes that a thread takes at once. */
 enum { GROUP = 16, RAYS = 32, CHUNK = 1024 };
 
-/* Volumes are not cut nearer to their lights than that share of S_r: what is missed there is the strongest light (bench/bench_boxes). */
+/* Volumes are not cut nearer to their lights than that share of S_r: what is missed there is the strongest light
+ * (bench/bench_boxes). */
 static const float uncut = 0.25f;
 
 /* Rays go beyond the volume by that: the box around the ends of a few ends short of a sphere of their length. */
@@ -82,8 +83,8 @@ static void facing(const noc_influence_volume *a, float n[3]) {
         n[k] = length > 0 ? a->m[k] / length : 0;
 }
 
-/* Side of a cube that they face, Morton code of 15 bits an axis. The volumes' own order has their sizes first, and neighbours
- * of one facade do not follow each other in it. */
+/* Side of a cube that they face, Morton code of 15 bits an axis. The volumes' own order has their sizes first, and
+ * neighbours of one facade do not follow each other in it. */
 static void key_chunk(void *ctx, size_t chunk, int worker) {
     probing *b = ctx;
     size_t end = NOC_MIN((chunk + 1) * CHUNK, (size_t)b->v->volume_count);
@@ -119,8 +120,8 @@ static bool sort_volumes(probing *b) {
     return true;
 }
 
-/* The end of the group that starts with the volume at `begin` of the order: those that follow it, face alike, and lie within
- * half of what the largest reaches; so it is for lights that share a volume. */
+/* The end of the group that starts with the volume at `begin` of the order: those that follow it, face alike, and lie
+ * within half of what the largest reaches; so it is for lights that share a volume. */
 static size_t group_end(const probing *b, size_t begin, size_t end) {
     const noc_influence_volume *volumes = b->v->volumes, *first = &volumes[b->order[begin].id];
     float n[3], lo[3], hi[3], root = first->root;
@@ -178,7 +179,8 @@ static void trace(const probing *b, const noc_light_key *group, uint32_t count, 
         for (uint32_t i = 0; i < NOC_PROBES; i++) {
             uint32_t ray = first + i;
             float o[3];
-            noc_light_leave(light_of(b, group, count, ray), d[ray], rng(key, 1u + 2u * ray), rng(key, 2u + 2u * ray), o);
+            noc_light_leave(light_of(b, group, count, ray), d[ray], rng(key, 1u + 2u * ray), rng(key, 2u + 2u * ray),
+                            o);
             for (int k = 0; k < 3; k++) {
                 probes.o[k][i] = o[k];
                 probes.d[k][i] = d[ray][k] * reach;

@@ -32,7 +32,8 @@ noc_learned *noc_learned_create(size_t tiles, noc_log *log) {
         t->bytes = count * sizeof(*t->cells);
         return t;
     }
-    noc_error(log, NOC_ERR_MEMORY, "lights: no memory to learn their visibility (%zu MB)", count * sizeof(*t->cells) >> 20);
+    noc_error(log, NOC_ERR_MEMORY, "lights: no memory to learn their visibility (%zu MB)",
+              count * sizeof(*t->cells) >> 20);
     free(t);
     return NULL;
 }
@@ -84,8 +85,8 @@ static int slot_of(const noc_cell *c, uint32_t light) {
     return -1;
 }
 
-/* Two lights' worth of asking for what is believed beforehand: of a light, what all lights of the cell came to; of those, a
- * half. */
+/* Two lights' worth of asking for what is believed beforehand: of a light, what all lights of the cell came to; of
+ * those, a half. */
 float noc_cell_visibility(const noc_cell *c, uint32_t light) {
     const float worth = 2;
     if (!c)

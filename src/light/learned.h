@@ -1,7 +1,8 @@
-/* light/learned: which lights are seen from where, learned from the shadow rays of earlier frames. The scene is cut into
- * cubic cells, each with counts for the lights that were asked for from the surfaces in it that face one of six ways. Cells
- * come in sizes of powers of two; a renderer asks for those that suit a surface's distance. Being in world space, it survives
- * a moving camera. It only ever guides where rays go (core/lists.h), so no picture's mean depends on its being right. */
+/* light/learned: which lights are seen from where, learned from the shadow rays of earlier frames. The scene is cut
+ * into cubic cells, each with counts for the lights that were asked for from the surfaces in it that face one of six
+ * ways. Cells come in sizes of powers of two; a renderer asks for those that suit a surface's distance. Being in world
+ * space, it survives a moving camera. It only ever guides where rays go (core/lists.h), so no picture's mean depends on
+ * its being right. */
 #ifndef NOC_LIGHT_LEARNED_H
 #define NOC_LIGHT_LEARNED_H
 
@@ -13,16 +14,16 @@ enum { NOC_CELL_WAYS = 4, NOC_CELL_SETS = 16, NOC_CELL_LIGHTS = NOC_CELL_WAYS * 
 #define NOC_UNKNOWN_LIGHT 0.5f /* the visibility of a light that nothing is known of */
 
 typedef struct noc_cell {
-    uint64_t key;                       /* 0: free */
-    uint32_t used;                      /* time of the last sighting */
-    uint32_t asked_all, seen_all;       /* of all lights */
-    uint32_t light[NOC_CELL_LIGHTS];    /* set by set; a place is free where asked is 0 */
+    uint64_t key;                    /* 0: free */
+    uint32_t used;                   /* time of the last sighting */
+    uint32_t asked_all, seen_all;    /* of all lights */
+    uint32_t light[NOC_CELL_LIGHTS]; /* set by set; a place is free where asked is 0 */
     uint16_t asked[NOC_CELL_LIGHTS], seen[NOC_CELL_LIGHTS];
 } noc_cell;
 
 typedef struct noc_learned {
     noc_cell *cells;
-    size_t count;  /* power of two */
+    size_t count; /* power of two */
     uint32_t time;
     size_t bytes;
 } noc_learned;

@@ -65,7 +65,8 @@ static void grow(tree_build *b, uint32_t standing) {
     uint32_t moving = t->lights - standing;
     bool both = standing && moving;
     noc_tree_part still = { .count = standing, .base = both };
-    t->moving = (noc_tree_part){ .first = standing, .count = moving, .base = both ? standing : 0, .path = both, .depth = both };
+    t->moving =
+        (noc_tree_part){ .first = standing, .count = moving, .base = both ? standing : 0, .path = both, .depth = both };
     still.depth = both;
     noc_tree_child root[2] = { { .link = 0 }, { .link = 0 } };
     if (standing)
@@ -88,7 +89,8 @@ noc_tree *noc_tree_create(const noc_scene *scene, noc_pool *pool, noc_log *log) 
     uint32_t standing = ok ? take_lights(&b) : 0;
     moving = ok ? t->lights - standing : 0;
     ok = ok && (t->pairs = noc_alloc_large(t->lights, sizeof(*t->pairs))) &&
-         (t->paths = noc_alloc_large(all + 1, sizeof(*t->paths))) && (t->order = noc_alloc_large(moving, sizeof(*t->order)));
+         (t->paths = noc_alloc_large(all + 1, sizeof(*t->paths))) &&
+         (t->order = noc_alloc_large(moving, sizeof(*t->order)));
     if (ok) {
         t->bytes = t->lights * sizeof(*t->pairs) + (all + 1) * sizeof(*t->paths) + moving * sizeof(*t->order);
         memset(t->paths, 0xff, (all + 1) * sizeof(*t->paths));
@@ -127,7 +129,8 @@ noc_status noc_tree_refit(noc_tree *t, const noc_scene *scene, noc_log *log) {
     if (part.depth)
         t->pairs[0].child[1] = root;
     free_build(&b);
-    return b.no_memory ? noc_error(log, NOC_ERR_MEMORY, "light tree: no memory for %u moving lights", part.count) : NOC_OK;
+    return b.no_memory ? noc_error(log, NOC_ERR_MEMORY, "light tree: no memory for %u moving lights", part.count)
+                       : NOC_OK;
 }
 
 void noc_tree_destroy(noc_tree *t) {

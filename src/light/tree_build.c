@@ -35,15 +35,17 @@ void noc_tree_chunks(noc_pool *pool, uint32_t first, uint32_t end, tree_chunk_fn
 
 /* ---- what the heuristic goes by ---- */
 
-/* A box, the sum of the ways the lights face (as if of length 1), the sum of their intensities. Fours, for the compiler. */
+/* A box, the sum of the ways the lights face (as if of length 1), the sum of their intensities. Fours, for the
+ * compiler. */
 typedef struct heap {
     float lo[4], hi[4];
     float sum[4];
     uint32_t count;
 } heap;
 
-static const heap empty_heap = { { INFINITY, INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY, -INFINITY },
-                                 { 0 }, 0 };
+static const heap empty_heap = {
+    { INFINITY, INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY, -INFINITY }, { 0 }, 0
+};
 
 static inline void heap_add(heap *h, const tree_light *l) {
     for (int k = 0; k < 4; k++) {
@@ -75,8 +77,9 @@ static float longest_side(const heap *h) {
     return size;
 }
 
-/* Power times surface area times spread of directions. The spread is judged by the length of the mean direction: 1 where
- * all agree, 0 where they cancel out or face every way. Areas are kept from vanishing where lights lie on a line. */
+/* Power times surface area times spread of directions. The spread is judged by the length of the mean direction: 1
+ * where all agree, 0 where they cancel out or face every way. Areas are kept from vanishing where lights lie on a line.
+ */
 static float heap_cost(const heap *h, float least) {
     float d[3];
     for (int k = 0; k < 3; k++)
@@ -137,8 +140,8 @@ static void widen_chunk(void *ctx, size_t chunk, uint32_t first, uint32_t end) {
 
 static uint32_t quantise(float x) { return (uint32_t)(lrintf(NOC_CLAMP(x, -1, 1) * 32767) + 32767); }
 
-/* Sphere around the box's middle, cone around the mean direction, outwards of their rounding. The cone is the half chord of
- * its half angle, which keeps narrow cones narrow. */
+/* Sphere around the box's middle, cone around the mean direction, outwards of their rounding. The cone is the half
+ * chord of its half angle, which keeps narrow cones narrow. */
 static noc_tree_child bound_lights(const tree_build *build, uint32_t first, uint32_t end, const heap *all) {
     bound b = { .radius = 0 };
     uint32_t axis[3];
@@ -395,8 +398,8 @@ typedef struct task {
 
 static int bits_for(uint32_t lights) { return lights > 1 ? 32 - __builtin_clz(lights - 1) : 0; }
 
-/* Splits a node, evenly where the way down would get too long else, and writes its pair. Returns how many of its children
- * are to be split in turn; *deepest: the longest way to a leaf seen. */
+/* Splits a node, evenly where the way down would get too long else, and writes its pair. Returns how many of its
+ * children are to be split in turn; *deepest: the longest way to a leaf seen. */
 static int split_task(tree_build *b, const task *t, task next[2], int *deepest) {
     const noc_tree_part *p = &t->part;
     uint32_t n = p->count, end = p->first + n, left = 0;
@@ -411,8 +414,11 @@ static int split_task(tree_build *b, const task *t, task next[2], int *deepest) 
     noc_tree_pair *pair = &b->tree->pairs[p->base];
     int more = 0;
     for (uint32_t k = 0; k < 2; k++) {
-        noc_tree_part c = { .first = k ? p->first + left : p->first, .count = k ? n - left : left,
-                            .base = p->base + (k ? left : 1), .path = p->path | k << p->depth, .depth = p->depth + 1 };
+        noc_tree_part c = { .first = k ? p->first + left : p->first,
+                            .count = k ? n - left : left,
+                            .base = p->base + (k ? left : 1),
+                            .path = p->path | k << p->depth,
+                            .depth = p->depth + 1 };
         pair->child[k] = bound_lights(b, c.first, c.first + c.count, &side[k]);
         pair->child[k].link = c.base;
         if (c.count > 1) {
@@ -491,7 +497,9 @@ noc_tree_child noc_tree_grow(tree_build *b, const noc_tree_part *part) {
 }
 
 noc_tree_child noc_tree_bound(tree_build *b, const noc_tree_part *part, double *cost) {
-    struct { uint32_t first, count, base; } stack[NOC_TREE_DEPTH + 2];
+    struct {
+        uint32_t first, count, base;
+    } stack[NOC_TREE_DEPTH + 2];
     heap all = heap_of(b->lights, part->first, part->first + part->count);
     noc_tree_child root = bound_lights(b, part->first, part->first + part->count, &all);
     double whole = heap_cost(&all, 0.01f * longest_side(&all)), sum = 0;

@@ -13,13 +13,13 @@ typedef struct tree_light {
 typedef struct tree_build {
     noc_tree *tree;
     const noc_scene *scene;
-    noc_pool *pool;        /* NULL: none */
-    tree_light *lights;    /* reordered as the tree splits them */
-    uint32_t *ids;         /* of them */
-    tree_light *spare;     /* as many again */
+    noc_pool *pool;     /* NULL: none */
+    tree_light *lights; /* reordered as the tree splits them */
+    uint32_t *ids;      /* of them */
+    tree_light *spare;  /* as many again */
     uint32_t *spare_ids;
     struct tree_scratch *scratch; /* of nodes that all threads work on; NULL where none has so many lights */
-    bool no_memory;        /* was refused in noc_tree_grow: the tree is no good */
+    bool no_memory;               /* was refused in noc_tree_grow: the tree is no good */
 } tree_build;
 
 /* For parts of so many lights at most; false: no memory. */

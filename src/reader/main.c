@@ -1,4 +1,5 @@
-/* nocturne-reader: reads one file for libnocturne, which starts it. What comes in and goes out is the library's business. */
+/* nocturne-reader: reads one file for libnocturne, which starts it. What comes in and goes out is the library's
+ * business. */
 #include <nocturne/import.h>
 #include <stdio.h>
 

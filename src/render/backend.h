@@ -14,26 +14,28 @@ typedef struct noc_frame_camera {
     float jitter[2];
 } noc_frame_camera;
 
-/* Sets of reservoirs. The schedule names them; a backend holds NOC_RESERVOIR_SETS of them, or as many as it was told. */
+/* Sets of reservoirs. The schedule names them; a backend holds NOC_RESERVOIR_SETS of them, or as many as it was told.
+ */
 enum { NOC_RESERVOIR_SETS = 3 };
 
 /* One frame. Nothing in it changes while the frame is run. */
 typedef struct noc_frame {
     const noc_render_params *params;
-    uint32_t index;            /* since the last reset: the frame's random numbers */
-    uint64_t accumulated;      /* frames in the mean so far; 0 starts it anew */
+    uint32_t index;       /* since the last reset: the frame's random numbers */
+    uint64_t accumulated; /* frames in the mean so far; 0 starts it anew */
     noc_frame_camera camera, previous;
-    bool history;              /* the frame before is of the same size and parameters: its reservoirs can be reused */
-    int history_set;           /* set that holds the previous frame's reservoirs */
-    int gbuffer;               /* 0 or 1: this frame's G-buffer; the other one holds the previous frame's */
+    bool history;    /* the frame before is of the same size and parameters: its reservoirs can be reused */
+    int history_set; /* set that holds the previous frame's reservoirs */
+    int gbuffer;     /* 0 or 1: this frame's G-buffer; the other one holds the previous frame's */
 } noc_frame;
 
-/* A run over all pixels of passes that only look at their own pixel, or at what an earlier stage (or frame) has left. */
+/* A run over all pixels of passes that only look at their own pixel, or at what an earlier stage (or frame) has left.
+ */
 typedef struct noc_stage {
-    uint32_t passes;           /* 1 << noc_pass, done in the order of noc_pass */
-    int source, target;        /* reservoirs read from other pixels; reservoirs worked on and left behind */
-    int round;                 /* number of the spatial pass */
-    bool resolve_visibility;   /* leave no sample whose visibility at its own pixel is unknown */
+    uint32_t passes;         /* 1 << noc_pass, done in the order of noc_pass */
+    int source, target;      /* reservoirs read from other pixels; reservoirs worked on and left behind */
+    int round;               /* number of the spatial pass */
+    bool resolve_visibility; /* leave no sample whose visibility at its own pixel is unknown */
 } noc_stage;
 
 enum { NOC_MAX_STAGES = 8 };
@@ -41,8 +43,8 @@ enum { NOC_MAX_STAGES = 8 };
 typedef struct noc_schedule {
     noc_stage stages[NOC_MAX_STAGES];
     int count;
-    int sets;                  /* reservoir sets that are used */
-    int next_history;          /* set that feeds the next frame, -1: none */
+    int sets;         /* reservoir sets that are used */
+    int next_history; /* set that feeds the next frame, -1: none */
 } noc_schedule;
 
 struct noc_influence;
@@ -58,17 +60,20 @@ typedef struct noc_backend {
     /* progress may be NULL; from..to is the stage's share of the frame. Any error leaves the picture as it was. */
     noc_status (*stage)(void *state, const noc_frame *frame, const noc_stage *stage, const noc_progress *progress,
                         double from, double to);
-    /* Adds the frame to the picture: into the mean, or in its place when frame->accumulated is 0. NOC_ERR_MEMORY leaves it as it was. */
+    /* Adds the frame to the picture: into the mean, or in its place when frame->accumulated is 0. NOC_ERR_MEMORY leaves
+     * it as it was. */
     noc_status (*accumulate)(void *state, const noc_frame *frame);
     /* Picture, emitter mask (1 where the pixel itself sees an emitter in a frame of the mean) and coverage. */
     void (*read)(void *state, noc_image *image);
-    /* A view that the last accumulated frame kept into value, a number a pixel (-1: none), normals three (0: none). False where it kept none. */
+    /* A view that the last accumulated frame kept into value, a number a pixel (-1: none), normals three (0: none).
+     * False where it kept none. */
     bool (*aov)(void *state, noc_aov aov, float *value);
     /* Adds up into stats: pass_seconds, rays, dropped, all since the last call; sets build_seconds, memory and path. */
     void (*stats)(void *state, noc_frame_stats *stats);
     /* Of the structure that these parameters (of the last frame; NULL: there was none) draw candidates from. */
     void (*light_stats)(void *state, const noc_render_params *params, noc_light_stats *stats);
-    /* Influence volumes for these parameters, whatever they draw from; the backend's own, until the next call of any. */
+    /* Influence volumes for these parameters, whatever they draw from; the backend's own, until the next call of any.
+     */
     noc_status (*influence)(void *state, const noc_render_params *params, const struct noc_influence **volumes);
     /* Rays of the stages run between record(true) and record(false) are kept; replay traces them and nothing else. */
     void (*record)(void *state, bool on);
@@ -109,20 +114,20 @@ void noc_describe_aov(const noc_render_params *params, noc_aov aov, noc_channel 
 
 /* history.c: what may be carried from frame to frame. */
 typedef struct noc_history {
-    bool started;             /* params and camera are those of an earlier frame */
-    bool reusable;            /* that frame was completed, and its reservoirs are there */
+    bool started;  /* params and camera are those of an earlier frame */
+    bool reusable; /* that frame was completed, and its reservoirs are there */
     noc_render_params params;
     noc_camera camera;
     noc_frame_camera view;
-    uint32_t index;           /* of the next frame */
+    uint32_t index; /* of the next frame */
     uint64_t accumulated;
-    uint64_t moves;           /* of the scene's lights, that the frame knew */
+    uint64_t moves; /* of the scene's lights, that the frame knew */
     int set, gbuffer;
 } noc_history;
 
 void noc_history_reset(noc_history *history);
-/* Describes the next frame; forgets what this camera, these parameters and lights that moved (moves: noc_scene.moves) make
- * useless. */
+/* Describes the next frame; forgets what this camera, these parameters and lights that moved (moves: noc_scene.moves)
+ * make useless. */
 void noc_history_begin(noc_history *history, const noc_camera *camera, const noc_render_params *params, uint64_t moves,
                        noc_frame *frame);
 /* The frame was completed, or dropped, in its first stage or later. */

@@ -52,7 +52,9 @@ noc_status noc_render_check(const noc_render_params *p, noc_log *log) {
     return status == NOC_OK ? noc_check_aovs(p, log) : status;
 }
 
-typedef struct { double x, y, z; } vec;
+typedef struct {
+    double x, y, z;
+} vec;
 
 static vec cross(vec a, vec b) { return (vec){ a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x }; }
 static double norm(vec a) { return sqrt(a.x * a.x + a.y * a.y + a.z * a.z); }
@@ -64,7 +66,8 @@ noc_status noc_check_camera(const noc_camera *c, noc_log *log) {
         if (!(fabs(c->eye[i]) < 1e7 && fabs(c->target[i]) < 1e7 && isfinite(c->up[i])))
             return noc_error(log, NOC_ERR_ARGUMENT, "camera: eye, target and up must be finite and within 10 000 km");
     if (!(c->fov_deg >= 0.01 && c->fov_deg <= 179))
-        return noc_error(log, NOC_ERR_ARGUMENT, "camera: field of view is %g degrees, must be in 0.01..179", c->fov_deg);
+        return noc_error(log, NOC_ERR_ARGUMENT, "camera: field of view is %g degrees, must be in 0.01..179",
+                         c->fov_deg);
     vec eye = load(c->eye), target = load(c->target);
     vec forward = { target.x - eye.x, target.y - eye.y, target.z - eye.z };
     double l = norm(forward), up = norm(load(c->up));
@@ -121,9 +124,10 @@ void noc_make_frame_camera(const noc_camera *camera, const noc_render_params *pa
 /* Reservoir sets: `history` is read by the temporal pass only, so it is free to take the first spatial pass's output.
  *
  * What feeds the next frame: the last spatial output where the combination is pairwise and unbiased (measured on the
- * built-in city, 240 x 136: relMSE after 32 frames .24 against .42 with the temporal output, .33 against .57 for frame 32
- * alone, at the same cost), else the temporal output: biased spatial output fed back compounds its bias, and that of the
- * balance rule, which picks a sample before it weighs it, compounds its outliers (frame 32 alone: .93 against .66). */
+ * built-in city, 240 x 136: relMSE after 32 frames .24 against .42 with the temporal output, .33 against .57 for frame
+ * 32 alone, at the same cost), else the temporal output: biased spatial output fed back compounds its bias, and that of
+ * the balance rule, which picks a sample before it weighs it, compounds its outliers (frame 32 alone: .93 against .66).
+ */
 void noc_make_schedule(const noc_render_params *p, int history_set, noc_schedule *s) {
     *s = (noc_schedule){ .sets = 1, .next_history = -1 };
     uint32_t shade = BIT(SHADE) | (p->sky > 0 ? BIT(SKY) : 0);
@@ -159,8 +163,11 @@ void noc_make_schedule(const noc_render_params *p, int history_set, noc_schedule
     int from = fresh, to = 1 - fresh;
     for (int i = 0; i < rounds; i++) {
         bool last = i == rounds - 1;
-        s->stages[s->count++] = (noc_stage){ .passes = BIT(SPATIAL) | (last ? shade : 0), .source = from, .target = to,
-                                             .round = i, .resolve_visibility = resolve && (!last || feed) };
+        s->stages[s->count++] = (noc_stage){ .passes = BIT(SPATIAL) | (last ? shade : 0),
+                                             .source = from,
+                                             .target = to,
+                                             .round = i,
+                                             .resolve_visibility = resolve && (!last || feed) };
         int next = from == fresh ? 2 : from; /* the temporal output is kept: it may be the next history */
         from = to;
         to = next;

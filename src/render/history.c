@@ -8,7 +8,8 @@ void noc_history_reset(noc_history *history) { *history = (noc_history){ .set = 
 static bool same_vec(const double a[3], const double b[3]) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
 
 static bool same_camera(const noc_camera *a, const noc_camera *b) {
-    return same_vec(a->eye, b->eye) && same_vec(a->target, b->target) && same_vec(a->up, b->up) && a->fov_deg == b->fov_deg;
+    return same_vec(a->eye, b->eye) && same_vec(a->target, b->target) && same_vec(a->up, b->up) &&
+           a->fov_deg == b->fov_deg;
 }
 
 /* Row by row of the option table, which names every field that can change a picture; views are not among them. */
@@ -50,8 +51,8 @@ void noc_history_end(noc_history *h, const noc_frame *frame, int next_set) {
     h->index++;
 }
 
-/* The dropped frame's random numbers are not used again, so that what replaces it is independent of where it stopped. The first
- * stage only reads what the frame before left. */
+/* The dropped frame's random numbers are not used again, so that what replaces it is independent of where it stopped.
+ * The first stage only reads what the frame before left. */
 void noc_history_drop(noc_history *h, const noc_frame *frame, bool first_stage) {
     h->index++;
     h->reusable = frame->history && first_stage;

@@ -17,7 +17,9 @@ bool noc_isa_runs(noc_isa isa) {
     bool avx2 = false, avx512 = false;
 #endif
     switch (isa) {
-    case NOC_ISA_AUTO: case NOC_ISA_SCALAR: case NOC_ISA_BASELINE: return true;
+    case NOC_ISA_AUTO:
+    case NOC_ISA_SCALAR:
+    case NOC_ISA_BASELINE: return true;
     case NOC_ISA_AVX2: return avx2;
     case NOC_ISA_AVX512: return avx512;
     default: return false;
@@ -31,7 +33,10 @@ static void list_names(noc_isa first, bool all, char *text, size_t size) {
     while (!all && !noc_isa_runs(last))
         last--;
     for (noc_isa i = first; i <= last && at < size; i++)
-        at += (size_t)snprintf(text + at, size - at, "%s%s", names[i], i == last ? "" : i + 1 == last ? (all ? " or " : " and ") : ", ");
+        at += (size_t)snprintf(text + at, size - at, "%s%s", names[i],
+                               i == last       ? ""
+                               : i + 1 == last ? (all ? " or " : " and ")
+                                               : ", ");
 }
 
 noc_status noc_choose_isa(noc_isa asked, noc_isa *chosen, noc_log *log) {
@@ -43,14 +48,16 @@ noc_status noc_choose_isa(noc_isa asked, noc_isa *chosen, noc_log *log) {
             ;
         if (asked == NOC_ISA_COUNT) {
             list_names(NOC_ISA_AUTO, true, words, sizeof(words));
-            return noc_error(log, NOC_ERR_ARGUMENT, "%s: \"%.60s\" is no instruction set, must be %s", from, text, words);
+            return noc_error(log, NOC_ERR_ARGUMENT, "%s: \"%.60s\" is no instruction set, must be %s", from, text,
+                             words);
         }
     }
     if ((unsigned)asked >= NOC_ISA_COUNT)
         return noc_error(log, NOC_ERR_ARGUMENT, "render: isa is %d, must be a noc_isa", (int)asked);
     if (!noc_isa_runs(asked)) {
         list_names(NOC_ISA_SCALAR, false, words, sizeof(words));
-        return noc_error(log, NOC_ERR_UNSUPPORTED, "%s: this processor has no %s, it runs %s", from, names[asked], words);
+        return noc_error(log, NOC_ERR_UNSUPPORTED, "%s: this processor has no %s, it runs %s", from, names[asked],
+                         words);
     }
     for (*chosen = asked ? asked : NOC_ISA_COUNT - 1; !noc_isa_runs(*chosen);)
         --*chosen;

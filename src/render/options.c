@@ -1,19 +1,28 @@
-/* The tables behind the command line, its help, its errors and docs/options.md. Each row names a field of a params struct;
- * what a row does not say (the default) is in that struct's default macro, so it cannot be stated twice. */
+/* The tables behind the command line, its help, its errors and docs/options.md. Each row names a field of a params
+ * struct; what a row does not say (the default) is in that struct's default macro, so it cannot be stated twice. */
 #include "base/base.h"
 
 #include <nocturne/option.h>
 #include <stdio.h>
 
-#define BOOL(st, f, n, g, ...) { n, g, NOC_OPTION_BOOL, offsetof(st, f), 0, 1, NULL, "", __VA_ARGS__ }
-#define SWITCH(st, f, n, g, h) { n, g, NOC_OPTION_SWITCH, offsetof(st, f), 0, 2, NULL, "", h }
-#define INT(st, f, n, g, lo, hi, u, ...) { n, g, NOC_OPTION_INT, offsetof(st, f), lo, hi, NULL, u, __VA_ARGS__ }
-#define UINT(st, f, n, g, h) { n, g, NOC_OPTION_UINT, offsetof(st, f), 0, UINT32_MAX, NULL, "", h }
-#define REAL(st, f, n, g, lo, hi, u, ...) { n, g, NOC_OPTION_REAL, offsetof(st, f), lo, hi, NULL, u, __VA_ARGS__ }
-#define CHOICE(st, f, n, g, c, ...) { n, g, NOC_OPTION_CHOICE, offsetof(st, f), 0, 0, c, "", __VA_ARGS__ }
-#define TEXT(st, f, n, g, u, h) { n, g, NOC_OPTION_TEXT, offsetof(st, f), 0, 0, NULL, u, h }
-#define TEXTS(st, f, n, g, u, h) { n, g, NOC_OPTION_TEXTS, offsetof(st, f), 0, 0, NULL, u, h }
-#define END { NULL, NULL, NOC_OPTION_BOOL, 0, 0, 0, NULL, NULL, NULL }
+#define BOOL(st, f, n, g, ...)                                                                                         \
+    { n, g, NOC_OPTION_BOOL, offsetof(st, f), 0, 1, NULL, "", __VA_ARGS__ }
+#define SWITCH(st, f, n, g, h)                                                                                         \
+    { n, g, NOC_OPTION_SWITCH, offsetof(st, f), 0, 2, NULL, "", h }
+#define INT(st, f, n, g, lo, hi, u, ...)                                                                               \
+    { n, g, NOC_OPTION_INT, offsetof(st, f), lo, hi, NULL, u, __VA_ARGS__ }
+#define UINT(st, f, n, g, h)                                                                                           \
+    { n, g, NOC_OPTION_UINT, offsetof(st, f), 0, UINT32_MAX, NULL, "", h }
+#define REAL(st, f, n, g, lo, hi, u, ...)                                                                              \
+    { n, g, NOC_OPTION_REAL, offsetof(st, f), lo, hi, NULL, u, __VA_ARGS__ }
+#define CHOICE(st, f, n, g, c, ...)                                                                                    \
+    { n, g, NOC_OPTION_CHOICE, offsetof(st, f), 0, 0, c, "", __VA_ARGS__ }
+#define TEXT(st, f, n, g, u, h)                                                                                        \
+    { n, g, NOC_OPTION_TEXT, offsetof(st, f), 0, 0, NULL, u, h }
+#define TEXTS(st, f, n, g, u, h)                                                                                       \
+    { n, g, NOC_OPTION_TEXTS, offsetof(st, f), 0, 0, NULL, u, h }
+#define END                                                                                                            \
+    { NULL, NULL, NOC_OPTION_BOOL, 0, 0, 0, NULL, NULL, NULL }
 
 /* Ends of rows: what the option needs (noc_option.needs). tests/render/test_needs.c holds them to pictures. */
 #define CANDIDATES "method=ris|restir"
@@ -24,6 +33,7 @@
 #define SPATIAL RESTIR ",spatial=true"
 
 #define P noc_render_params
+/* clang-format off */
 static const noc_option render_options[] = {
     INT(P, width, "width", "Picture", 1, NOC_IMAGE_MAX_SIDE, "px", "width of the picture"),
     INT(P, height, "height", "Picture", 1, NOC_IMAGE_MAX_SIDE, "px", "height of the picture"),
@@ -70,9 +80,11 @@ static const noc_option render_options[] = {
          "cosine between normals under which one is rejected", RESTIR),
     END,
 };
+/* clang-format on */
 #undef P
 
 #define P noc_display_params
+/* clang-format off */
 static const noc_option display_options[] = {
     BOOL(P, auto_exposure, "auto-exposure", "Display", "measure the picture; off: ev100 decides"),
     REAL(P, ev100, "ev100", "Display", -30, 30, "EV", "exposure when auto-exposure is off"),
@@ -81,9 +93,11 @@ static const noc_option display_options[] = {
     CHOICE(P, tonemap, "tonemap", "Display", "filmic|reinhard|linear", "curve from luminance to the screen"),
     END,
 };
+/* clang-format on */
 #undef P
 
 #define P noc_import_params
+/* clang-format off */
 static const noc_option import_options[] = {
     TEXT(P, crs, "crs", "City", "CRS", "CRS of inputs that name none, such as OBJ (EPSG:n, WKT, PROJ)"),
     TEXT(P, scene_crs, "scene-crs", "City", "CRS", "CRS of the scene; else the first input's, or UTM"),
@@ -103,6 +117,7 @@ static const noc_option import_options[] = {
     BOOL(P, allow_outside, "allow-outside", "Reading", "files that inputs name may lie outside the inputs' folders"),
     END,
 };
+/* clang-format on */
 #undef P
 
 #define P noc_city_params
@@ -276,7 +291,13 @@ size_t noc_option_size(const noc_option *option) {
 int noc_option_get(const noc_option *option, const void *params, char *text, size_t size) {
     if (!option || !params)
         return 0;
-    union { bool b; int i; uint32_t u; double d; const char *s; } v;
+    union {
+        bool b;
+        int i;
+        uint32_t u;
+        double d;
+        const char *s;
+    } v;
     const char *field = (const char *)params + option->offset;
     switch (option->kind) {
     case NOC_OPTION_BOOL: memcpy(&v.b, field, sizeof(v.b)); return snprintf(text, size, "%s", v.b ? "true" : "false");

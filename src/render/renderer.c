@@ -93,8 +93,9 @@ static noc_status fit(noc_renderer *r, const noc_render_params *p, int sets) {
     uint64_t pixels = ((uint64_t)p->width + 3) * ((uint64_t)p->height + 3);
     uint64_t need = pixels * r->backend->bytes_a_pixel(sets, p->aovs), have = machine_memory();
     if (need > have - have / 8)
-        return noc_error(r->log, NOC_ERR_MEMORY, "render: a picture of %d x %d needs %.1f GB of memory, this machine has %.1f",
-                         p->width, p->height, (double)need * 1e-9, (double)have * 1e-9);
+        return noc_error(r->log, NOC_ERR_MEMORY,
+                         "render: a picture of %d x %d needs %.1f GB of memory, this machine has %.1f", p->width,
+                         p->height, (double)need * 1e-9, (double)have * 1e-9);
     noc_history_reset(&r->history);
     r->width = r->height = r->sets = 0;
     noc_status status = r->backend->resize(r->state, p->width, p->height, sets);
@@ -175,7 +176,8 @@ noc_image *noc_renderer_image(noc_renderer *r) {
     /* grown by one pixel, along rows and then along columns */
     for (size_t i = 0; i < n; i++) {
         int x = (int)(i % (size_t)image->width);
-        wide[i] = image->emitter[i] | (x > 0 && image->emitter[i - 1]) | (x + 1 < image->width && image->emitter[i + 1]);
+        wide[i] =
+            image->emitter[i] | (x > 0 && image->emitter[i - 1]) | (x + 1 < image->width && image->emitter[i + 1]);
     }
     size_t row = (size_t)image->width;
     for (size_t i = 0; i < n; i++)
@@ -200,7 +202,8 @@ noc_channel *noc_renderer_aov(noc_renderer *r, noc_aov aov) {
     if (r->backend->aov(r->state, aov, channel->value))
         return channel;
     noc_channel_destroy(channel);
-    noc_error(r->log, NOC_ERR_ARGUMENT, "render: the last frame did not keep the view \"%s\": name it in aovs", noc_aov_name(aov));
+    noc_error(r->log, NOC_ERR_ARGUMENT, "render: the last frame did not keep the view \"%s\": name it in aovs",
+              noc_aov_name(aov));
     return NULL;
 }
 

@@ -4,10 +4,10 @@
 #include <stdio.h>
 
 static const char *const names[NOC_AOV_COUNT] = {
-    [NOC_AOV_LIGHTS] = "lights",   [NOC_AOV_DENSITY] = "density",       [NOC_AOV_LIGHT] = "light",
-    [NOC_AOV_WEIGHT] = "weight",   [NOC_AOV_CONFIDENCE] = "confidence", [NOC_AOV_RAYS] = "rays",
-    [NOC_AOV_VARIANCE] = "variance", [NOC_AOV_ERROR] = "error",         [NOC_AOV_DEPTH] = "depth",
-    [NOC_AOV_NORMAL] = "normal",   [NOC_AOV_CLASS] = "class",           [NOC_AOV_OBJECT] = "object",
+    [NOC_AOV_LIGHTS] = "lights",     [NOC_AOV_DENSITY] = "density",       [NOC_AOV_LIGHT] = "light",
+    [NOC_AOV_WEIGHT] = "weight",     [NOC_AOV_CONFIDENCE] = "confidence", [NOC_AOV_RAYS] = "rays",
+    [NOC_AOV_VARIANCE] = "variance", [NOC_AOV_ERROR] = "error",           [NOC_AOV_DEPTH] = "depth",
+    [NOC_AOV_NORMAL] = "normal",     [NOC_AOV_CLASS] = "class",           [NOC_AOV_OBJECT] = "object",
 };
 
 const char *noc_aov_name(noc_aov aov) { return (unsigned)aov < NOC_AOV_COUNT ? names[aov] : "unknown"; }
@@ -24,8 +24,9 @@ noc_status noc_check_aovs(const noc_render_params *p, noc_log *log) {
     if (p->aovs >> NOC_AOV_COUNT)
         return noc_error(log, NOC_ERR_ARGUMENT, "render: aovs is 0x%x, must be bits 1 << noc_aov", p->aovs);
     if (asks(p, NOC_AOV_LIGHTS) && !has_query(p))
-        return noc_error(log, NOC_ERR_ARGUMENT, "render: view \"lights\": only ris and restir with candidates bvh or lists ask for "
-                                                "the lights around a point");
+        return noc_error(log, NOC_ERR_ARGUMENT,
+                         "render: view \"lights\": only ris and restir with candidates bvh or lists ask for "
+                         "the lights around a point");
     for (size_t i = 0; i < NOC_COUNT(of_reservoirs); i++)
         if (asks(p, of_reservoirs[i]) && p->method == NOC_METHOD_REFERENCE)
             return noc_error(log, NOC_ERR_ARGUMENT, "render: view \"%s\": the reference method chooses no light",
@@ -38,19 +39,22 @@ noc_status noc_check_aovs(const noc_render_params *p, noc_log *log) {
 
 /* What one expects on a map of land use: grey roads, green plants, blue water, brown earth, red roofs. */
 static const uint8_t class_colours[NOC_CLASS_COUNT][3] = {
-    [NOC_CLASS_OTHER] = { 232, 184, 240 },       [NOC_CLASS_WALL] = { 232, 201, 160 },
-    [NOC_CLASS_ROOF] = { 192, 57, 43 },          [NOC_CLASS_GROUND] = { 142, 90, 168 },
-    [NOC_CLASS_CLOSURE] = { 61, 43, 122 },       [NOC_CLASS_WINDOW] = { 127, 227, 245 },
-    [NOC_CLASS_DOOR] = { 230, 110, 0 },          [NOC_CLASS_INSTALLATION] = { 255, 143, 163 },
-    [NOC_CLASS_TERRAIN] = { 139, 107, 74 },      [NOC_CLASS_ROAD] = { 150, 150, 150 },
-    [NOC_CLASS_SIDEWALK] = { 205, 205, 205 },    [NOC_CLASS_GREEN] = { 111, 191, 74 },
-    [NOC_CLASS_TREE] = { 31, 122, 51 },          [NOC_CLASS_WATER] = { 47, 111, 208 },
-    [NOC_CLASS_BRIDGE] = { 63, 167, 155 },       [NOC_CLASS_FURNITURE] = { 200, 150, 0 },
-    [NOC_CLASS_LAMP] = { 255, 241, 77 },         [NOC_CLASS_VEHICLE] = { 255, 30, 150 },
+    [NOC_CLASS_OTHER] = { 232, 184, 240 },    [NOC_CLASS_WALL] = { 232, 201, 160 },
+    [NOC_CLASS_ROOF] = { 192, 57, 43 },       [NOC_CLASS_GROUND] = { 142, 90, 168 },
+    [NOC_CLASS_CLOSURE] = { 61, 43, 122 },    [NOC_CLASS_WINDOW] = { 127, 227, 245 },
+    [NOC_CLASS_DOOR] = { 230, 110, 0 },       [NOC_CLASS_INSTALLATION] = { 255, 143, 163 },
+    [NOC_CLASS_TERRAIN] = { 139, 107, 74 },   [NOC_CLASS_ROAD] = { 150, 150, 150 },
+    [NOC_CLASS_SIDEWALK] = { 205, 205, 205 }, [NOC_CLASS_GREEN] = { 111, 191, 74 },
+    [NOC_CLASS_TREE] = { 31, 122, 51 },       [NOC_CLASS_WATER] = { 47, 111, 208 },
+    [NOC_CLASS_BRIDGE] = { 63, 167, 155 },    [NOC_CLASS_FURNITURE] = { 200, 150, 0 },
+    [NOC_CLASS_LAMP] = { 255, 241, 77 },      [NOC_CLASS_VEHICLE] = { 255, 30, 150 },
 };
 
 void noc_describe_aov(const noc_render_params *p, noc_aov aov, noc_channel *channel) {
-    static const struct { const char *title, *unit; noc_channel_scale scale; } kinds[NOC_AOV_COUNT] = {
+    static const struct {
+        const char *title, *unit;
+        noc_channel_scale scale;
+    } kinds[NOC_AOV_COUNT] = {
         [NOC_AOV_LIGHTS] = { "influence volumes that hold the point", "lights", NOC_CHANNEL_LINEAR },
         [NOC_AOV_DENSITY] = { "expected candidates of the chosen light", "candidates", NOC_CHANNEL_LOG },
         [NOC_AOV_LIGHT] = { "chosen light: each its own colour", "", NOC_CHANNEL_LABELS },

@@ -9,16 +9,16 @@
 typedef struct view_light {
     double p[3];
     double weight;
-    bool lamp;     /* as opposed to a window */
+    bool lamp; /* as opposed to a window */
 } view_light;
 
 /* The city as the presets see it. */
 typedef struct view_city {
     const noc_scene *scene;
     double min[3], max[3];
-    double middle[2];            /* half of the triangles lie to each side */
-    double hot[2];               /* middle of the densest lit part */
-    bool classes;                /* something says that it is a wall, a roof, a road, ...: a city, not just any mesh */
+    double middle[2];             /* half of the triangles lie to each side */
+    double hot[2];                /* middle of the densest lit part */
+    bool classes;                 /* something says that it is a wall, a roof, a road, ...: a city, not just any mesh */
     NOC_ARRAY(view_light) lights; /* around it */
     bool no_memory;
 } view_city;
@@ -30,7 +30,8 @@ static int compare_doubles(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Bounds of what is rendered; where strays make them much larger than nearly all triangles need, those of nearly all. */
+/* Bounds of what is rendered; where strays make them much larger than nearly all triangles need, those of nearly all.
+ */
 static void city_bounds(view_city *city) {
     const noc_scene *s = city->scene;
     size_t triangles = noc_scene_city_triangles(s), n = NOC_MIN(triangles, (size_t)SAMPLES);
@@ -38,7 +39,9 @@ static void city_bounds(view_city *city) {
     city->no_memory = city->no_memory || !v;
     for (int k = 0; v && k < 3; k++) {
         for (size_t i = 0; i < n; i++)
-            v[i] = s->positions.data[3 * (size_t)s->indices.data[3 * noc_scene_city_triangle(s, i * triangles / n) + i % 3] + (size_t)k];
+            v[i] = s->positions
+                       .data[3 * (size_t)s->indices.data[3 * noc_scene_city_triangle(s, i * triangles / n) + i % 3] +
+                             (size_t)k];
         qsort(v, n, sizeof(*v), compare_doubles);
         double lo = v[n / 50], hi = v[n - 1 - n / 50], margin = (hi - lo) * 0.02 + 1;
         if (k < 2)
@@ -61,7 +64,8 @@ void noc_light_centre(const noc_light_record *r, double p[3]) {
 
 double noc_light_weight(const noc_light_record *r) { return sqrt(noc_light_flux(r)); }
 
-/* Without lights, or where those are not the city's, buildings stand in for them: a corner of every so many of their triangles. */
+/* Without lights, or where those are not the city's, buildings stand in for them: a corner of every so many of their
+ * triangles. */
 static bool by_lights(const noc_scene *s) { return s->lights.len && !s->lit_elsewhere; }
 
 static size_t source_count(const view_city *city) {
@@ -90,7 +94,8 @@ static void find_classes(view_city *city) {
     const noc_scene *s = city->scene;
     for (size_t i = 0; i < s->meshes.len && !city->classes; i++) {
         noc_class cls = s->materials.data[s->meshes.data[i].material].cls;
-        city->classes = cls != NOC_CLASS_OTHER && cls != NOC_CLASS_LAMP && s->meshes.data[i].first_triangle != s->backdrop_first;
+        city->classes =
+            cls != NOC_CLASS_OTHER && cls != NOC_CLASS_LAMP && s->meshes.data[i].first_triangle != s->backdrop_first;
     }
 }
 
@@ -113,13 +118,15 @@ static void find_hot(view_city *city) {
         city->hot[k] = 0.5 * (city->min[k] + city->max[k]);
         cell[k] = (city->max[k] - city->min[k]) / HOT_CELLS;
     }
-    size_t lamps = 0; /* where there are lamps they decide: an office tower is bright, but streets are what one looks at */
+    /* where there are lamps they decide: an office tower is bright, but streets are what one looks at */
+    size_t lamps = 0;
     for (size_t i = 0; i < n; i++)
         lamps += source_get(city, i, &l) && l.lamp;
     for (size_t i = 0; i < n; i++)
         if (source_get(city, i, &l) && (lamps < 8 || l.lamp))
             h[hot_cell(city, 1, l.p[1]) * HOT_CELLS + hot_cell(city, 0, l.p[0])] += NOC_MIN(l.weight, 200.0);
-    int rx = (int)NOC_CLAMP(50 / NOC_MAX(cell[0], 1e-6), 1, 12), ry = (int)NOC_CLAMP(50 / NOC_MAX(cell[1], 1e-6), 1, 12);
+    int rx = (int)NOC_CLAMP(50 / NOC_MAX(cell[0], 1e-6), 1, 12),
+        ry = (int)NOC_CLAMP(50 / NOC_MAX(cell[1], 1e-6), 1, 12);
     for (int y = 0; y < HOT_CELLS; y++)
         for (int x = 0; x < HOT_CELLS; x++) {
             double sum = 0;
@@ -153,8 +160,8 @@ static void gather_lights(view_city *city, double radius) {
 }
 
 /* Light that a view from eye along (dx, dy) takes in; at `soft` metres a light counts half as much as at none. */
-static double light_in_view(const view_city *city, const double eye[3], double dx, double dy, double half_angle, double reach,
-                            double soft, bool lamps_only) {
+static double light_in_view(const view_city *city, const double eye[3], double dx, double dy, double half_angle,
+                            double reach, double soft, bool lamps_only) {
     double sum = 0, cosine = cos(half_angle);
     for (size_t i = 0; i < city->lights.len; i++) {
         const view_light *l = &city->lights.data[i];
@@ -176,7 +183,8 @@ static void overview(const view_city *city, double aspect, noc_camera *camera) {
     /* from the south, or the east where the city is longer that way, turned so that no street is seen end on */
     double yaw = (size[1] > 1.2 * size[0] ? 0 : -M_PI / 2) + 0.3, pitch = 0.55;
     double d[3] = { cos(yaw) * cos(pitch), sin(yaw) * cos(pitch), sin(pitch) };
-    double right[3] = { -sin(yaw), cos(yaw), 0 }, up[3] = { -cos(yaw) * sin(pitch), -sin(yaw) * sin(pitch), cos(pitch) };
+    double right[3] = { -sin(yaw), cos(yaw), 0 },
+           up[3] = { -cos(yaw) * sin(pitch), -sin(yaw) * sin(pitch), cos(pitch) };
     camera->fov_deg = 36;
     /* frame what is there, not the box around it: the nearest distance, then the middle of what is seen */
     double tv = tan(camera->fov_deg * M_PI / 360) / 1.04, th = tv * aspect;
@@ -192,7 +200,8 @@ static void overview(const view_city *city, double aspect, noc_camera *camera) {
                 size_t corner = i < 8 ? 0 : (i - 8) * corners / n; /* the corners of the ground, then of triangles */
                 size_t v = s->indices.data[3 * noc_scene_city_triangle(s, corner / 3) + corner % 3];
                 for (int k = 0; k < 3; k++) {
-                    double c = i < 8 ? (k == 2 || !(i >> k & 1) ? city->min[k] : city->max[k]) : (double)s->positions.data[3 * v + (size_t)k];
+                    double c = i < 8 ? (k == 2 || !(i >> k & 1) ? city->min[k] : city->max[k])
+                                     : (double)s->positions.data[3 * v + (size_t)k];
                     double q = NOC_CLAMP(c, city->min[k], city->max[k]) - centre[k];
                     along += q * d[k], x += q * right[k], y += q * up[k];
                 }
@@ -242,7 +251,8 @@ static double clear_share(const noc_scene *scene, const double eye[3], const dou
 /* The same to both sides of the target: nothing tall may stand across the picture. */
 static double clear_aside(const noc_scene *scene, const double eye[3], const double target[3]) {
     double dx = target[0] - eye[0], dy = target[1] - eye[1];
-    double left[3] = { target[0] - 0.35 * dy, target[1] + 0.35 * dx, target[2] + 4 }, right[3] = { target[0] + 0.35 * dy, target[1] - 0.35 * dx, target[2] + 4 };
+    double left[3] = { target[0] - 0.35 * dy, target[1] + 0.35 * dx, target[2] + 4 },
+           right[3] = { target[0] + 0.35 * dy, target[1] - 0.35 * dx, target[2] + 4 };
     return 0.5 * (clear_share(scene, eye, left) + clear_share(scene, eye, right));
 }
 
@@ -269,8 +279,9 @@ static void aerial(view_city *city, double aspect, noc_camera *camera) {
         double mx = city->middle[0] - city->hot[0], my = city->middle[1] - city->hot[1];
         inside *= 1 + 0.6 * (mx * dx + my * dy) / NOC_MAX(hypot(mx, my), reach);
         double steep = (eye[2] - ground) / reach; /* a tower below would lift the eye too high */
-        double score = (1e-6 + light_in_view(city, eye, dx, dy, half_width(camera->fov_deg, aspect), 500, 200, false)) * inside *
-                       (0.1 + clear_share(scene, eye, target)) * (0.1 + clear_aside(scene, eye, target)) / (1 + NOC_MAX(steep - 0.5, 0) * 3);
+        double score = (1e-6 + light_in_view(city, eye, dx, dy, half_width(camera->fov_deg, aspect), 500, 200, false)) *
+                       inside * (0.1 + clear_share(scene, eye, target)) * (0.1 + clear_aside(scene, eye, target)) /
+                       (1 + NOC_MAX(steep - 0.5, 0) * 3);
         if (score > best * 1.0001) {
             best = score;
             memcpy(camera->eye, eye, sizeof(eye));
@@ -335,9 +346,10 @@ static bool pole_in_view(const view_city *city, const double eye[3], double dx, 
 
 enum { DIRECTIONS = 32 };
 
-/* Nothing says what the triangles of a mesh are. A street is where walls stand around, and lights not far above; a small
- * model must enclose the place, or it is an object on a plate, seen better from outside. */
-static bool is_street(const view_city *city, const double eye[3], const bool wall[DIRECTIONS], const double free_way[DIRECTIONS]) {
+/* Nothing says what the triangles of a mesh are. A street is where walls stand around, and lights not far above; a
+ * small model must enclose the place, or it is an object on a plate, seen better from outside. */
+static bool is_street(const view_city *city, const double eye[3], const bool wall[DIRECTIONS],
+                      const double free_way[DIRECTIONS]) {
     double extent = NOC_MAX(city->max[0] - city->min[0], city->max[1] - city->min[1]);
     int around = 0;
     for (int i = 0; i < DIRECTIONS; i++)
@@ -355,7 +367,8 @@ static double street_look(const view_city *city, const double eye[3], double asp
     double best = 0, free_way[DIRECTIONS];
     bool wall[DIRECTIONS];
     for (int i = 0; i < DIRECTIONS; i++)
-        free_way[i] = free_distance(city->scene, eye, cos(2 * M_PI * i / DIRECTIONS), sin(2 * M_PI * i / DIRECTIONS), &wall[i]);
+        free_way[i] =
+            free_distance(city->scene, eye, cos(2 * M_PI * i / DIRECTIONS), sin(2 * M_PI * i / DIRECTIONS), &wall[i]);
     if (!city->classes && !is_street(city, eye, wall, free_way))
         return 0;
     for (int i = 0; i < DIRECTIONS; i++) {
@@ -430,7 +443,8 @@ noc_status noc_scene_set_camera(noc_scene *scene, const noc_camera *camera) {
         up += fabs(camera->up[k]);
     }
     if (!(along > 0 && along < 1e8 && up > 0 && isfinite(up) && camera->fov_deg >= 1 && camera->fov_deg <= 170))
-        return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: it looks nowhere, or its field of view is not within 1 to 170 degrees");
+        return noc_error(scene->log, NOC_ERR_ARGUMENT,
+                         "camera: it looks nowhere, or its field of view is not within 1 to 170 degrees");
     if (scene->committed)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the scene is committed");
     if (!(scene->own_camera.fov_deg > 0))
@@ -442,7 +456,8 @@ noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect
     if (!scene || !camera)
         return noc_null(scene ? scene->log : NULL, __func__);
     if (!(aspect > 0 && isfinite(aspect)))
-        return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the aspect is %g, must be finite and more than 0", aspect);
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the aspect is %g, must be finite and more than 0",
+                         aspect);
     aspect = NOC_CLAMP(aspect, 0.01, 100); /* what slits of pictures see decides nothing */
     if ((unsigned)view > NOC_VIEW_OWN)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: no view %d", (int)view);
@@ -473,7 +488,8 @@ noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect
     if (city.no_memory)
         return noc_error(scene->log, NOC_ERR_MEMORY, "camera: no memory to look at the scene");
     if (view == NOC_VIEW_STREET && (room || !found))
-        noc_warn(scene->log, "view street: the scene has none, so it is seen from %s", room ? "inside, as a room" : "outside");
+        noc_warn(scene->log, "view street: the scene has none, so it is seen from %s",
+                 room ? "inside, as a room" : "outside");
     *camera = c;
     return NOC_OK;
 }

@@ -8,7 +8,8 @@ void noc_light_centre(const noc_light_record *r, double p[3]);
 /* The square root of its flux, so that one floodlight does not outweigh a street. */
 double noc_light_weight(const noc_light_record *r);
 
-/* A view from inside where what lies within lo..hi is a room whose lights are in it; false, and *camera as it was, else. */
+/* A view from inside where what lies within lo..hi is a room whose lights are in it; false, and *camera as it was,
+ * else. */
 bool noc_room_camera(const noc_scene *scene, const double lo[3], const double hi[3], double aspect, noc_camera *camera);
 
 #endif

@@ -1,16 +1,18 @@
 /* A view from inside, for models that are rooms: seen from outside they are boxes, dark ones.
  *
- * Vertical rays know only what is highest, a ceiling, so the few rays that are needed are tested against every triangle. */
+ * Vertical rays know only what is highest, a ceiling, so the few rays that are needed are tested against every
+ * triangle. */
 #include "scene/camera.h"
 
 #include <math.h>
 
 enum { GRID = 12, PLACES = 8, FAN = 5 };
 
-#define COVERED 0.9      /* share of the floor, and of the light, that has something above it in a room */
-#define MOST_TESTS 2e8   /* rays times triangles: a second or so */
+#define COVERED 0.9    /* share of the floor, and of the light, that has something above it in a room */
+#define MOST_TESTS 2e8 /* rays times triangles: a second or so */
 
-/* Does the light shine into what lies below the ceiling at height z? One let into the ceiling looks down from it, or both ways. */
+/* Does the light shine into what lies below the ceiling at height z? One let into the ceiling looks down from it, or
+ * both ways. */
 static bool is_below(const noc_light_record *r, const double p[3], double z, double slack) {
     bool down = r->kind != NOC_LIGHT_TRIANGLE || (r->flags & 1) || r->a[0] * r->b[1] < r->a[1] * r->b[0];
     return z > p[2] + slack || (down && z >= p[2] - slack);
@@ -44,7 +46,8 @@ static double ray_distance(const noc_scene *s, const double from[3], const doubl
     size_t n = noc_scene_city_triangles(s);
     for (size_t i = 0; i < n; i++) {
         const uint32_t *v = &s->indices.data[3 * noc_scene_city_triangle(s, i)];
-        const float *a = &s->positions.data[3 * (size_t)v[0]], *b = &s->positions.data[3 * (size_t)v[1]], *c = &s->positions.data[3 * (size_t)v[2]];
+        const float *a = &s->positions.data[3 * (size_t)v[0]], *b = &s->positions.data[3 * (size_t)v[1]],
+                    *c = &s->positions.data[3 * (size_t)v[2]];
         double e[3], f[3], r[3], p[3], q[3];
         for (int k = 0; k < 3; k++)
             e[k] = (double)b[k] - (double)a[k], f[k] = (double)c[k] - (double)a[k], r[k] = from[k] - (double)a[k];
@@ -76,7 +79,8 @@ static double room_seen(const noc_scene *s, const noc_camera *c, double aspect, 
         up[k] = right[(k + 1) % 3] * look[(k + 2) % 3] - right[(k + 2) % 3] * look[(k + 1) % 3];
     for (int j = 0; j < fan; j++)
         for (int i = 0; i < fan; i++) {
-            double d[3], x = (2 * (i + 0.5) / fan - 1) * t * aspect, y = (2 * (j + 0.5) / fan - 1) * t, n = sqrt(1 + x * x + y * y);
+            double d[3], x = (2 * (i + 0.5) / fan - 1) * t * aspect, y = (2 * (j + 0.5) / fan - 1) * t,
+                         n = sqrt(1 + x * x + y * y);
             for (int k = 0; k < 3; k++)
                 d[k] = (look[k] + x * right[k] + y * up[k]) / n;
             double far = ray_distance(s, c->eye, d, most);
@@ -103,7 +107,10 @@ bool noc_room_camera(const noc_scene *s, const double lo[3], const double hi[3],
         double yaw = 2 * M_PI * i / PLACES - 0.75 * M_PI;
         double reach = 0.43 / NOC_MAX(fabs(cos(yaw)), fabs(sin(yaw)));
         memcpy(c.target, (double[3]){ centre[0], centre[1], lo[2] + 0.42 * size[2] }, sizeof(c.target));
-        memcpy(c.eye, (double[3]){ centre[0] + reach * cos(yaw) * size[0], centre[1] + reach * sin(yaw) * size[1], lo[2] + 0.56 * size[2] }, sizeof(c.eye));
+        memcpy(c.eye,
+               (double[3]){ centre[0] + reach * cos(yaw) * size[0], centre[1] + reach * sin(yaw) * size[1],
+                            lo[2] + 0.56 * size[2] },
+               sizeof(c.eye));
         double seen = room_seen(s, &c, aspect, diagonal, fan);
         if (seen > best * 1.0001) {
             best = seen;

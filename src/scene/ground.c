@@ -1,14 +1,16 @@
 /* Vertical rays against the scene, for standing lamps and cameras on it.
  *
- * Grids over x and y, one a level: their cells are twice as large from level to level. A triangle lies on the level whose
- * cells are just as large as it is, or larger: in four cells at most. Cells are found by a hash, so what a ray looks at depends
- * on what lies near it, and not on how far the scene reaches: lamps on two continents cost what those of two towns do.
+ * Grids over x and y, one a level: their cells are twice as large from level to level. A triangle lies on the level
+ * whose cells are just as large as it is, or larger: in four cells at most. Cells are found by a hash, so what a ray
+ * looks at depends on what lies near it, and not on how far the scene reaches: lamps on two continents cost what those
+ * of two towns do.
  *
- * Most triangles lie in a compressed list a bucket (offsets, ids), made at the first query; those added later hang on chains
- * over the same buckets, until there are as many as the lists hold: then all is made anew. So a caller may ask, add, and ask
- * again (every lamp does) at a constant cost a triangle.
+ * Most triangles lie in a compressed list a bucket (offsets, ids), made at the first query; those added later hang on
+ * chains over the same buckets, until there are as many as the lists hold: then all is made anew. So a caller may ask,
+ * add, and ask again (every lamp does) at a constant cost a triangle.
  *
- * Queries may come from several threads once the scene is no longer changed: bringing the grids up to date is locked. */
+ * Queries may come from several threads once the scene is no longer changed: bringing the grids up to date is locked.
+ */
 #include "scene/scene.h"
 
 #include <float.h>
@@ -32,10 +34,10 @@ struct noc_ground {
     size_t buckets;    /* a power of two */
     uint32_t *offsets; /* buckets + 1 */
     uint32_t *ids;
-    uint32_t *chains;  /* first link a bucket; NULL until a triangle is added */
+    uint32_t *chains; /* first link a bucket; NULL until a triangle is added */
     NOC_ARRAY(ground_link) links;
-    size_t listed;     /* triangles the lists were made of */
-    size_t covered;    /* triangles of the scene seen so far; atomic, stored last */
+    size_t listed;  /* triangles the lists were made of */
+    size_t covered; /* triangles of the scene seen so far; atomic, stored last */
 };
 
 static pthread_mutex_t ground_lock = PTHREAD_MUTEX_INITIALIZER;
@@ -58,13 +60,14 @@ static const noc_material *material_of(const noc_scene *scene, size_t t) {
     return &scene->materials.data[scene->triangle_material.data[t]];
 }
 
-/* Something a vertical ray can hit: the shapes of lamps do not count (a lamp does not stand on another's globe), nor what
- * is not rendered. Exactly vertical triangles have no area from above. */
+/* Something a vertical ray can hit: the shapes of lamps do not count (a lamp does not stand on another's globe), nor
+ * what is not rendered. Exactly vertical triangles have no area from above. */
 static bool is_obstacle(const noc_scene *scene, size_t t) {
     const noc_material *m = material_of(scene, t);
     if (t - scene->backdrop_first < scene->backdrop_count) /* unsigned: what comes before is far beyond */
         return false;
-    if (m->cls == NOC_CLASS_CLOSURE || (m->cls == NOC_CLASS_LAMP && (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0)))
+    if (m->cls == NOC_CLASS_CLOSURE ||
+        (m->cls == NOC_CLASS_LAMP && (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0)))
         return false;
     const float *a = corner(scene, t, 0), *b = corner(scene, t, 1), *c = corner(scene, t, 2);
     return ((double)b[0] - a[0]) * ((double)c[1] - a[1]) != ((double)b[1] - a[1]) * ((double)c[0] - a[0]);
@@ -72,12 +75,14 @@ static bool is_obstacle(const noc_scene *scene, size_t t) {
 
 /* What a lamp or a person stands on. Water is no ground; a bridge's deck is, where it is given as road or sidewalk. */
 #define GROUND_CLASSES                                                                                                 \
-    (1u << NOC_CLASS_TERRAIN | 1u << NOC_CLASS_ROAD | 1u << NOC_CLASS_SIDEWALK | 1u << NOC_CLASS_GREEN | 1u << NOC_CLASS_GROUND)
+    (1u << NOC_CLASS_TERRAIN | 1u << NOC_CLASS_ROAD | 1u << NOC_CLASS_SIDEWALK | 1u << NOC_CLASS_GREEN |               \
+     1u << NOC_CLASS_GROUND)
 
-/* Keyed with what a file's author does not know: places far apart that share a bucket cannot be chosen. What lies over one place
- * shares one all the same. */
+/* Keyed with what a file's author does not know: places far apart that share a bucket cannot be chosen. What lies over
+ * one place shares one all the same. */
 static size_t bucket_of(const struct noc_ground *g, int level, int64_t x, int64_t y) {
-    uint64_t h = (uint64_t)x * 0x9e3779b97f4a7c15u + (uint64_t)y * 0xc2b2ae3d27d4eb4fu + (uint64_t)level * 0x165667b19e3779f9u;
+    uint64_t h =
+        (uint64_t)x * 0x9e3779b97f4a7c15u + (uint64_t)y * 0xc2b2ae3d27d4eb4fu + (uint64_t)level * 0x165667b19e3779f9u;
     h = (h ^ g->secret) * 0xd6e8feb86659fd93u;
     return (h ^ h >> 32) & (g->buckets - 1);
 }
@@ -169,13 +174,14 @@ static bool chain_new(struct noc_ground *g, const noc_scene *scene, size_t trian
 
 static void tell_refusal(const noc_scene *scene) {
     if (scene->committed)
-        noc_error(scene->log, NOC_ERR_MEMORY, "scene: no memory to find the ground of %zu triangles", scene->triangle_light.len);
+        noc_error(scene->log, NOC_ERR_MEMORY, "scene: no memory to find the ground of %zu triangles",
+                  scene->triangle_light.len);
     else
         noc_scene_out_of_memory((noc_scene *)scene);
 }
 
-/* The grid, up to date with the scene; NULL where memory is refused, which is reported. It is a cache, so a const scene may get
- * one. */
+/* The grid, up to date with the scene; NULL where memory is refused, which is reported. It is a cache, so a const scene
+ * may get one. */
 static const struct noc_ground *ground_of(const noc_scene *scene) {
     struct noc_ground **slot = &((noc_scene *)scene)->ground;
     struct noc_ground *g = __atomic_load_n(slot, __ATOMIC_ACQUIRE);
@@ -204,8 +210,8 @@ static const struct noc_ground *ground_of(const noc_scene *scene) {
 
 noc_status noc_ground_ready(const noc_scene *scene) { return ground_of(scene) ? NOC_OK : NOC_ERR_MEMORY; }
 
-/* Twice the signed area of (a, b, p). Exactly antisymmetric in a and b, so that a point on, or very near, an edge that two
- * triangles share lies in at least one of them. */
+/* Twice the signed area of (a, b, p). Exactly antisymmetric in a and b, so that a point on, or very near, an edge that
+ * two triangles share lies in at least one of them. */
 static double edge(const float *a, const float *b, double x, double y) {
     bool swapped = a[0] > b[0] || (a[0] == b[0] && a[1] > b[1]);
     const float *p = swapped ? b : a, *q = swapped ? a : b;
@@ -215,8 +221,8 @@ static double edge(const float *a, const float *b, double x, double y) {
 
 static bool triangle_height(const noc_scene *scene, size_t t, double x, double y, double *z) {
     const float *a = corner(scene, t, 0), *b = corner(scene, t, 1), *c = corner(scene, t, 2);
-    if (x < NOC_MIN(a[0], NOC_MIN(b[0], c[0])) || x > NOC_MAX(a[0], NOC_MAX(b[0], c[0])) || y < NOC_MIN(a[1], NOC_MIN(b[1], c[1])) ||
-        y > NOC_MAX(a[1], NOC_MAX(b[1], c[1])))
+    if (x < NOC_MIN(a[0], NOC_MIN(b[0], c[0])) || x > NOC_MAX(a[0], NOC_MAX(b[0], c[0])) ||
+        y < NOC_MIN(a[1], NOC_MIN(b[1], c[1])) || y > NOC_MAX(a[1], NOC_MAX(b[1], c[1])))
         return false; /* as nearly all are */
     double u = edge(b, c, x, y), v = edge(c, a, x, y), w = edge(a, b, x, y), sum = u + v + w;
     bool inside = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
@@ -239,7 +245,8 @@ typedef struct vertical_ray {
 static void consider(vertical_ray *r, size_t t) {
     double h;
     r->looked_at++;
-    if ((r->classes >> material_of(r->scene, t)->cls & 1) && triangle_height(r->scene, t, r->x, r->y, &h) && h > r->best)
+    if ((r->classes >> material_of(r->scene, t)->cls & 1) && triangle_height(r->scene, t, r->x, r->y, &h) &&
+        h > r->best)
         r->best = h;
 }
 

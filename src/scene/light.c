@@ -71,24 +71,26 @@ static uint32_t middle(double unit[][3], uint32_t edges[][2], uint32_t *count, u
     return i;
 }
 
-/* As large as the true sphere seems, averaged over all directions: a convex body's mean projected area is a quarter of its surface
- * (Cauchy), so the surface is made 4 pi r^2; from any one side it is within 1.2 % of that. Its vertices lie outside of the true
- * sphere, within LIGHT_SPHERE_SHAPE radii, where shadow rays to the light end (core/shadow.h). */
+/* As large as the true sphere seems, averaged over all directions: a convex body's mean projected area is a quarter of
+ * its surface (Cauchy), so the surface is made 4 pi r^2; from any one side it is within 1.2 % of that. Its vertices lie
+ * outside of the true sphere, within LIGHT_SPHERE_SHAPE radii, where shadow rays to the light end (core/shadow.h). */
 static size_t sphere_shape(const noc_light *l, double *xyz, uint32_t *indices, size_t *triangles) {
     static const uint8_t faces[20][3] = { { 0, 11, 5 }, { 0, 5, 1 },  { 0, 1, 7 },   { 0, 7, 10 }, { 0, 10, 11 },
                                           { 1, 5, 9 },  { 5, 11, 4 }, { 11, 10, 2 }, { 10, 7, 6 }, { 7, 1, 8 },
                                           { 3, 9, 4 },  { 3, 4, 2 },  { 3, 2, 6 },   { 3, 6, 8 },  { 3, 8, 9 },
                                           { 4, 9, 5 },  { 2, 4, 11 }, { 6, 2, 10 },  { 8, 6, 7 },  { 9, 8, 1 } };
-    const double gold = (1 + sqrt(5)) / 2, base[12][3] = { { -1, gold, 0 }, { 1, gold, 0 }, { -1, -gold, 0 }, { 1, -gold, 0 },
-                                                           { 0, -1, gold }, { 0, 1, gold }, { 0, -1, -gold }, { 0, 1, -gold },
-                                                           { gold, 0, -1 }, { gold, 0, 1 }, { -gold, 0, -1 }, { -gold, 0, 1 } };
+    const double gold = (1 + sqrt(5)) / 2,
+                 base[12][3] = { { -1, gold, 0 }, { 1, gold, 0 }, { -1, -gold, 0 }, { 1, -gold, 0 },
+                                 { 0, -1, gold }, { 0, 1, gold }, { 0, -1, -gold }, { 0, 1, -gold },
+                                 { gold, 0, -1 }, { gold, 0, 1 }, { -gold, 0, -1 }, { -gold, 0, 1 } };
     double unit[SPHERE_VERTICES][3], area = 0;
     uint32_t edges[SPHERE_VERTICES][2], count = 12;
     for (int i = 0; i < 12; i++)
         point_on_sphere(base[i], unit[i]);
     for (int i = 0; i < 20; i++) {
         uint32_t a = faces[i][0], b = faces[i][1], c = faces[i][2];
-        uint32_t x = middle(unit, edges, &count, a, b), y = middle(unit, edges, &count, b, c), z = middle(unit, edges, &count, c, a);
+        uint32_t x = middle(unit, edges, &count, a, b), y = middle(unit, edges, &count, b, c),
+                 z = middle(unit, edges, &count, c, a);
         memcpy(indices + 12 * i, (uint32_t[]){ a, x, z, x, b, y, z, y, c, x, y, z }, 12 * sizeof(uint32_t));
     }
     for (int t = 0; t < SPHERE_TRIANGLES; t++) {
@@ -111,8 +113,8 @@ static int light_material(noc_scene *scene, const noc_light *l) {
     memcpy(m.emission, l->emission, sizeof(m.emission));
     for (size_t i = scene->materials.len; i-- > 0 && i + 256 > scene->materials.len;) {
         const noc_material *have = &scene->materials.data[i];
-        if (have->cls == m.cls && have->albedo[0] == 0 && have->albedo[1] == 0 && have->albedo[2] == 0 && have->f0 == 0 &&
-            !have->two_sided && !memcmp(have->emission, m.emission, sizeof(m.emission)))
+        if (have->cls == m.cls && have->albedo[0] == 0 && have->albedo[1] == 0 && have->albedo[2] == 0 &&
+            have->f0 == 0 && !have->two_sided && !memcmp(have->emission, m.emission, sizeof(m.emission)))
             return (int)i;
     }
     return noc_scene_add_material(scene, &m);
@@ -160,8 +162,8 @@ float noc_flat_size(const noc_light_record *r) {
     return (float)fmax(length(difference), other);
 }
 
-/* What the falloff of a spot divides by. The specification's code keeps it from 0 by 0.001, which would dim cones of less
- * than 2.6 degrees; floats do with less. */
+/* What the falloff of a spot divides by. The specification's code keeps it from 0 by 0.001, which would dim cones of
+ * less than 2.6 degrees; floats do with less. */
 static double falloff_width(double inner, double outer) { return fmax(cos(inner) - cos(outer), 1e-5); }
 
 static void set_cones(noc_light_record *r, const noc_light *l) {
@@ -173,14 +175,15 @@ static void set_cones(noc_light_record *r, const noc_light *l) {
     r->b[2] = (float)outer;
 }
 
-/* Solid angle, sr, that a spot's greatest intensity would fill with its flux: the integral of ((c - cos outer) / width)^2 over the
- * cosines c between the cones, and of 1 from there to the axis. */
+/* Solid angle, sr, that a spot's greatest intensity would fill with its flux: the integral of ((c - cos outer) /
+ * width)^2 over the cosines c between the cones, and of 1 from there to the axis. */
 static double spot_angle(const noc_light_record *r) {
     double inner = r->b[1], outer = r->b[2], width = falloff_width(inner, outer);
     return 2 * M_PI * (1 - cos(outer) - width * 2 / 3);
 }
 
-/* A Lambertian emitter of luminance L sends pi L from each m2 of each side that it emits from; a point of I candela 4 pi I. */
+/* A Lambertian emitter of luminance L sends pi L from each m2 of each side that it emits from; a point of I candela 4
+ * pi I. */
 double noc_light_flux(const noc_light_record *r) {
     double e = 0.2126 * r->e[0] + 0.7152 * r->e[1] + 0.0722 * r->e[2];
     if (r->kind == NOC_LIGHT_POINT || r->kind == NOC_LIGHT_SPOT)
@@ -243,8 +246,12 @@ static bool add_shape(noc_scene *scene, const noc_light *l, uint32_t index) {
     }
     int material = light_material(scene, l);
     size_t first = scene->triangle_light.len;
-    noc_mesh mesh = { .vertex_count = vertices, .positions = xyz, .triangle_count = triangles, .indices = indices,
-                      .material = material, .name = l->name };
+    noc_mesh mesh = { .vertex_count = vertices,
+                      .positions = xyz,
+                      .triangle_count = triangles,
+                      .indices = indices,
+                      .material = material,
+                      .name = l->name };
     if (material < 0 || noc_scene_add_mesh(scene, &mesh) < 0)
         return false;
     for (size_t t = first; t < scene->triangle_light.len; t++)

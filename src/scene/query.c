@@ -9,9 +9,13 @@ noc_status noc_scene_get_light(const noc_scene *scene, size_t index, noc_light_i
     if (index >= scene->lights.len)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "light %zu: the scene has %zu lights", index, scene->lights.len);
     const noc_light_record *r = &scene->lights.data[index];
-    *info = (noc_light_info){ .lumens = noc_light_flux(r), .area = r->area, .two_sided = r->flags & 1,
-                              .light = { .kind = (noc_light_kind)r->kind, .name = scene->light_names.data[index],
-                                         .inferred = r->flags >> 1 & 1, .moving = (r->flags & NOC_LIGHT_MOVES) != 0 } };
+    *info = (noc_light_info){ .lumens = noc_light_flux(r),
+                              .area = r->area,
+                              .two_sided = r->flags & 1,
+                              .light = { .kind = (noc_light_kind)r->kind,
+                                         .name = scene->light_names.data[index],
+                                         .inferred = r->flags >> 1 & 1,
+                                         .moving = (r->flags & NOC_LIGHT_MOVES) != 0 } };
     bool triangle = r->kind == NOC_LIGHT_TRIANGLE, flat = triangle || r->kind == NOC_LIGHT_PARALLELOGRAM;
     info->light.radius = flat ? 0 : r->radius;
     for (int k = 0; k < 3; k++) {
@@ -29,7 +33,8 @@ noc_status noc_scene_get_light(const noc_scene *scene, size_t index, noc_light_i
         info->light.outer_deg = r->b[2] * 180 / M_PI;
     }
     if (flat || r->kind == NOC_LIGHT_DISC) {
-        double n[3] = { (double)r->a[1] * r->b[2] - (double)r->a[2] * r->b[1], (double)r->a[2] * r->b[0] - (double)r->a[0] * r->b[2],
+        double n[3] = { (double)r->a[1] * r->b[2] - (double)r->a[2] * r->b[1],
+                        (double)r->a[2] * r->b[0] - (double)r->a[0] * r->b[2],
                         (double)r->a[0] * r->b[1] - (double)r->a[1] * r->b[0] };
         double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         for (int k = 0; k < 3; k++)
@@ -48,7 +53,9 @@ static size_t mesh_of(const noc_scene *scene, uint32_t triangle) {
     return low;
 }
 
-static bool same_name(const noc_scene_mesh *a, const noc_scene_mesh *b) { return a->name && b->name && !strcmp(a->name, b->name); }
+static bool same_name(const noc_scene_mesh *a, const noc_scene_mesh *b) {
+    return a->name && b->name && !strcmp(a->name, b->name);
+}
 
 /* An object comes as several meshes, one a class and material, one after the other: the first stands for them. */
 size_t noc_scene_object_of(const noc_scene *scene, uint32_t triangle) {
@@ -62,8 +69,8 @@ const char *noc_scene_object_name(const noc_scene *scene, size_t object) {
     return scene && object < scene->meshes.len ? scene->meshes.data[object].name : NULL;
 }
 
-/* A camera's axes in doubles: forward of length 1, right and up as long as half of the picture at distance 1. false: it looks
- * nowhere. */
+/* A camera's axes in doubles: forward of length 1, right and up as long as half of the picture at distance 1. false: it
+ * looks nowhere. */
 static bool camera_axes(const noc_camera *c, int width, int height, double axes[3][3]) {
     double *forward = axes[0], *right = axes[1], *up = axes[2], length = 0, side = 0;
     for (int k = 0; k < 3; k++) {
@@ -75,7 +82,8 @@ static bool camera_axes(const noc_camera *c, int width, int height, double axes[
     for (int k = 0; k < 3; k++)
         forward[k] /= sqrt(length);
     double given = sqrt(c->up[0] * c->up[0] + c->up[1] * c->up[1] + c->up[2] * c->up[2]), helper[3];
-    for (int turn = 0; turn < 2 && !(side > 1e-6 * 1e-6); turn++) { /* as noc_renderer_frame: looking along up, another stands in */
+    /* as noc_renderer_frame: looking along up, another stands in */
+    for (int turn = 0; turn < 2 && !(side > 1e-6 * 1e-6); turn++) {
         bool other = turn == 1;
         for (int k = 0; k < 3; k++)
             helper[k] = other ? k == (fabs(forward[1]) < 0.9 ? 1 : 0) : c->up[k] / given;
@@ -99,7 +107,8 @@ static bool camera_axes(const noc_camera *c, int width, int height, double axes[
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-bool noc_camera_project(const noc_camera *camera, int width, int height, const double xyz[3], double pixel[2], double *distance) {
+bool noc_camera_project(const noc_camera *camera, int width, int height, const double xyz[3], double pixel[2],
+                        double *distance) {
     double axes[3][3], to[3];
     if (!camera || !xyz || !pixel || !camera_axes(camera, width, height, axes))
         return false;
@@ -110,7 +119,8 @@ bool noc_camera_project(const noc_camera *camera, int width, int height, const d
         *distance = sqrt(dot(to, to));
     if (!(along > 0))
         return false;
-    double x = dot(to, axes[1]) / (along * dot(axes[1], axes[1])), y = dot(to, axes[2]) / (along * dot(axes[2], axes[2]));
+    double x = dot(to, axes[1]) / (along * dot(axes[1], axes[1])),
+           y = dot(to, axes[2]) / (along * dot(axes[2], axes[2]));
     pixel[0] = 0.5 * (1 + x) * width;
     pixel[1] = 0.5 * (1 - y) * height;
     return isfinite(pixel[0]) && isfinite(pixel[1]);

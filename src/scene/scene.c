@@ -3,31 +3,33 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Reflectances: typical values for dry surfaces (CIE 144:2001 for roads; IESNA Lighting Handbook, building materials). */
-#define CLASSES \
-    CLASS(NOC_CLASS_OTHER, "other", .30f, .30f, .30f, 0, 1) \
-    CLASS(NOC_CLASS_WALL, "wall", .46f, .42f, .36f, 0, 1) \
-    CLASS(NOC_CLASS_ROOF, "roof", .26f, .15f, .11f, .02f, .7f) \
-    CLASS(NOC_CLASS_GROUND, "ground", .20f, .20f, .19f, 0, 1) \
-    CLASS(NOC_CLASS_CLOSURE, "closure", .30f, .30f, .30f, 0, 1) \
-    CLASS(NOC_CLASS_WINDOW, "window", .05f, .06f, .07f, .06f, .15f) \
-    CLASS(NOC_CLASS_DOOR, "door", .20f, .13f, .08f, .04f, .5f) \
-    CLASS(NOC_CLASS_INSTALLATION, "installation", .38f, .36f, .33f, 0, 1) \
-    CLASS(NOC_CLASS_TERRAIN, "terrain", .17f, .17f, .14f, 0, 1) \
-    CLASS(NOC_CLASS_ROAD, "road", .09f, .09f, .09f, .04f, .55f) \
-    CLASS(NOC_CLASS_SIDEWALK, "sidewalk", .25f, .24f, .23f, .02f, .8f) \
-    CLASS(NOC_CLASS_GREEN, "green", .08f, .13f, .05f, 0, 1) \
-    CLASS(NOC_CLASS_TREE, "tree", .07f, .12f, .04f, 0, 1) \
-    CLASS(NOC_CLASS_WATER, "water", .02f, .03f, .04f, .02f, .12f) \
-    CLASS(NOC_CLASS_BRIDGE, "bridge", .30f, .29f, .27f, 0, 1) \
-    CLASS(NOC_CLASS_FURNITURE, "furniture", .22f, .22f, .22f, .04f, .5f) \
-    CLASS(NOC_CLASS_LAMP, "lamp", .10f, .10f, .10f, .04f, .4f) \
+/* Reflectances: typical values for dry surfaces (CIE 144:2001 for roads; IESNA Lighting Handbook, building materials).
+ */
+#define CLASSES                                                                                                        \
+    CLASS(NOC_CLASS_OTHER, "other", .30f, .30f, .30f, 0, 1)                                                            \
+    CLASS(NOC_CLASS_WALL, "wall", .46f, .42f, .36f, 0, 1)                                                              \
+    CLASS(NOC_CLASS_ROOF, "roof", .26f, .15f, .11f, .02f, .7f)                                                         \
+    CLASS(NOC_CLASS_GROUND, "ground", .20f, .20f, .19f, 0, 1)                                                          \
+    CLASS(NOC_CLASS_CLOSURE, "closure", .30f, .30f, .30f, 0, 1)                                                        \
+    CLASS(NOC_CLASS_WINDOW, "window", .05f, .06f, .07f, .06f, .15f)                                                    \
+    CLASS(NOC_CLASS_DOOR, "door", .20f, .13f, .08f, .04f, .5f)                                                         \
+    CLASS(NOC_CLASS_INSTALLATION, "installation", .38f, .36f, .33f, 0, 1)                                              \
+    CLASS(NOC_CLASS_TERRAIN, "terrain", .17f, .17f, .14f, 0, 1)                                                        \
+    CLASS(NOC_CLASS_ROAD, "road", .09f, .09f, .09f, .04f, .55f)                                                        \
+    CLASS(NOC_CLASS_SIDEWALK, "sidewalk", .25f, .24f, .23f, .02f, .8f)                                                 \
+    CLASS(NOC_CLASS_GREEN, "green", .08f, .13f, .05f, 0, 1)                                                            \
+    CLASS(NOC_CLASS_TREE, "tree", .07f, .12f, .04f, 0, 1)                                                              \
+    CLASS(NOC_CLASS_WATER, "water", .02f, .03f, .04f, .02f, .12f)                                                      \
+    CLASS(NOC_CLASS_BRIDGE, "bridge", .30f, .29f, .27f, 0, 1)                                                          \
+    CLASS(NOC_CLASS_FURNITURE, "furniture", .22f, .22f, .22f, .04f, .5f)                                               \
+    CLASS(NOC_CLASS_LAMP, "lamp", .10f, .10f, .10f, .04f, .4f)                                                         \
     CLASS(NOC_CLASS_VEHICLE, "vehicle", .20f, .05f, .05f, .05f, .25f)
 
 #define CLASS(id, text, r, g, b, spec, rough) [id] = text,
 const char *const noc_class_names[NOC_CLASS_COUNT] = { CLASSES };
 #undef CLASS
-#define CLASS(id, text, r, g, b, spec, rough) [id] = { .albedo = { r, g, b }, .f0 = spec, .roughness = rough, .cls = id },
+#define CLASS(id, text, r, g, b, spec, rough)                                                                          \
+    [id] = { .albedo = { r, g, b }, .f0 = spec, .roughness = rough, .cls = id },
 static const noc_material class_materials[NOC_CLASS_COUNT] = { CLASSES };
 #undef CLASS
 
@@ -165,7 +167,8 @@ int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
     }
     size_t first_vertex = scene->positions.len / 3, first_triangle = scene->indices.len / 3;
     if (mesh->vertex_count > UINT32_MAX - first_vertex || mesh->triangle_count > UINT32_MAX - 1 - first_triangle) {
-        noc_error(scene->log, NOC_ERR_UNSUPPORTED, "mesh %s: more than 4294967295 vertices or triangles in a scene", name);
+        noc_error(scene->log, NOC_ERR_UNSUPPORTED, "mesh %s: more than 4294967295 vertices or triangles in a scene",
+                  name);
         return -1;
     }
     char *kept_name = arena_strdup(&scene->names, mesh->name);
@@ -231,7 +234,8 @@ static bool reserve_triangle_lights(noc_scene *scene) {
     size_t lights = scene->lights.len;
     for (size_t i = 0; i < scene->meshes.len; i++) {
         const noc_scene_mesh *m = &scene->meshes.data[i];
-        for (size_t t = m->first_triangle; mesh_shines(scene, m) && t < (size_t)m->first_triangle + m->triangle_count; t++)
+        for (size_t t = m->first_triangle; mesh_shines(scene, m) && t < (size_t)m->first_triangle + m->triangle_count;
+             t++)
             lights += scene->triangle_light.data[t] == NOC_NO_LIGHT;
     }
     return (array_reserve(&scene->lights, lights) && array_reserve(&scene->light_names, lights)) ||
@@ -305,8 +309,8 @@ noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double ori
 size_t noc_scene_bytes(const noc_scene *s) {
     return s->positions.cap * sizeof(float) +
            (s->indices.cap + s->triangle_material.cap + s->triangle_light.cap + s->moving.cap) * sizeof(uint32_t) +
-           s->lights.cap * sizeof(noc_light_record) + s->light_names.cap * sizeof(char *) + s->meshes.cap * sizeof(noc_scene_mesh) +
-           s->names.bytes;
+           s->lights.cap * sizeof(noc_light_record) + s->light_names.cap * sizeof(char *) +
+           s->meshes.cap * sizeof(noc_scene_mesh) + s->names.bytes;
 }
 
 void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info) {

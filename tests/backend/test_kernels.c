@@ -1,5 +1,5 @@
-/* Every kernel table this machine can run gives the scalar table's bits, on random blocks: surfaces behind and before the
- * lights, missing surfaces, empty reservoirs, rejected neighbours, lights of all kinds. */
+/* Every kernel table this machine can run gives the scalar table's bits, on random blocks: surfaces behind and before
+ * the lights, missing surfaces, empty reservoirs, rejected neighbours, lights of all kinds. */
 #include "../render/rooms.h"
 
 #include "backend/embree/kernels.h"
@@ -22,7 +22,8 @@ static void make_world(world *w) {
     for (int i = 0; i < LIGHTS; i++) {
         noc_light_record *r = &w->lights[i];
         *r = (noc_light_record){ .kind = (uint32_t)i % NOC_LIGHT_KIND_COUNT,
-                                 .flags = (uint32_t)(i % 3 == 0), .radius = real_in(0.05f, 1) };
+                                 .flags = (uint32_t)(i % 3 == 0),
+                                 .radius = real_in(0.05f, 1) };
         for (int k = 0; k < 3; k++) {
             r->p[k] = real_in(-10, 10);
             r->a[k] = real_in(-1, 1);
@@ -32,7 +33,8 @@ static void make_world(world *w) {
     }
     for (int i = 0; i < MATERIALS; i++)
         w->materials[i] = (noc_material_record){ .albedo = { real_in(0, 1), real_in(0, 1), real_in(0, 1) },
-                                                 .f0 = i % 2 ? real_in(0, 0.2f) : 0, .alpha = real_in(0.01f, 1) };
+                                                 .f0 = i % 2 ? real_in(0, 0.2f) : 0,
+                                                 .alpha = real_in(0.01f, 1) };
     w->params = measure(64, 48, NOC_METHOD_RESTIR);
     w->params.sky = 0.3;
     w->params.rays = 9;

@@ -1,5 +1,6 @@
-/* Building a tile's light list: over all places that the tail can start from, every light that can reach a surface of the tile
- * has a weight of 1 on average, whatever the scores were; few lights are all listed; and all kernel tables build the same. */
+/* Building a tile's light list: over all places that the tail can start from, every light that can reach a surface of
+ * the tile has a weight of 1 on average, whatever the scores were; few lights are all listed; and all kernel tables
+ * build the same. */
 #include "../render/rooms.h"
 
 #include "backend/embree/kernels.h"
@@ -18,7 +19,9 @@ static noc_scene *scene_of(int lights, double side) {
     for (int i = 0; i < lights; i++) {
         noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT),
                         .position = { real_in(-side, side), real_in(-side, side), real_in(0, 20) },
-                        .radius = real_in(0.05, 0.5), .inner_deg = 20, .outer_deg = 90 };
+                        .radius = real_in(0.05, 0.5),
+                        .inner_deg = 20,
+                        .outer_deg = 90 };
         double power = i % 7 == 3 ? 0 : pow(10, real_in(-1, 3));
         for (int k = 0; k < 3; k++) {
             l.edge_u[k] = real_in(-1, 1);
@@ -55,8 +58,10 @@ static void make_world(world *w, int lights, double side, int list, int tail) {
     w->frame = (noc_frame){ .params = &w->params };
     noc_camera c = look(20, 3, 4, 0, 0, 0, 50);
     noc_make_frame_camera(&c, &w->params, 0, &w->frame.camera);
-    w->ctx = (struct core_context){ .lights = w->scene->lights.data, .light_count = (uint32_t)w->scene->lights.len,
-                                    .materials = w->scene->material_records.data, .frame = &w->frame,
+    w->ctx = (struct core_context){ .lights = w->scene->lights.data,
+                                    .light_count = (uint32_t)w->scene->lights.len,
+                                    .materials = w->scene->material_records.data,
+                                    .frame = &w->frame,
                                     .clusters = w->clusters };
     for (int b = 0; b < BLOCKS; b++) {
         gblock *g = &w->g[b];
@@ -81,7 +86,8 @@ static void free_world(world *w) {
 /* Can the light reach a surface of the tile? Looked at without bounds: a few places on it, all surfaces. */
 static bool reaches(const world *w, const noc_light_record *r) {
     bool round = r->kind == NOC_LIGHT_SPHERE || r->kind == NOC_LIGHT_POINT;
-    double n[3] = { (double)r->a[1] * r->b[2] - (double)r->a[2] * r->b[1], (double)r->a[2] * r->b[0] - (double)r->a[0] * r->b[2],
+    double n[3] = { (double)r->a[1] * r->b[2] - (double)r->a[2] * r->b[1],
+                    (double)r->a[2] * r->b[0] - (double)r->a[0] * r->b[2],
                     (double)r->a[0] * r->b[1] - (double)r->a[1] * r->b[0] };
     if (!(luma(r->e) > 0))
         return false;
@@ -91,14 +97,15 @@ static bool reaches(const world *w, const noc_light_record *r) {
         for (int l = 0; l < BLOCK; l++) {
             double d[3] = { r->p[0] - w->g[b].px[l], r->p[1] - w->g[b].py[l], r->p[2] - w->g[b].pz[l] };
             double facing = -(n[0] * d[0] + n[1] * d[1] + n[2] * d[2]);
-            if (w->lanes[b] >> l & 1 && w->g[b].nx[l] * d[0] + w->g[b].nz[l] * d[2] > 0 && (round || r->flags & 1 || facing > 0))
+            if (w->lanes[b] >> l & 1 && w->g[b].nx[l] * d[0] + w->g[b].nz[l] * d[2] > 0 &&
+                (round || r->flags & 1 || facing > 0))
                 return true;
         }
     return false;
 }
 
-/* The tail's draws are evenly spaced, so with the starts evenly spaced too, a light of weight w is met every 1/w-th time to
- * within one: its mean weight is 1 to within w / rounds a way into it. */
+/* The tail's draws are evenly spaced, so with the starts evenly spaced too, a light of weight w is met every 1/w-th
+ * time to within one: its mean weight is 1 to within w / rounds a way into it. */
 static void weights_are_one(int lights, double side, int list, int tail) {
     static world w;
     make_world(&w, lights, side, list, tail);
@@ -129,8 +136,9 @@ static void weights_are_one(int lights, double side, int list, int tail) {
         tested++;
         wrong += fabs(mean[i] - 1) > 2 * largest[i] / ROUNDS + 1e-3;
     }
-    print_message("# %d lights: %d can reach the tile, %d tested one by one, %d wrong, %d never met, mean weight by light %.4f\n",
-                  lights, can, tested, wrong, missed, sum / all);
+    print_message(
+        "# %d lights: %d can reach the tile, %d tested one by one, %d wrong, %d never met, mean weight by light %.4f\n",
+        lights, can, tested, wrong, missed, sum / all);
     assert_true(tested > 20);
     assert_int_equal(wrong, 0);
     assert_true(fabs(sum / all - 1) < 0.01);
@@ -140,9 +148,18 @@ static void weights_are_one(int lights, double side, int list, int tail) {
     free_world(&w);
 }
 
-static void small_scene(void **state) { (void)state; weights_are_one(300, 15, 16, 16); }
-static void large_scene(void **state) { (void)state; weights_are_one(6000, 60, 16, 64); }
-static void deep_scene(void **state) { (void)state; weights_are_one(90000, 400, 0, 128); }
+static void small_scene(void **state) {
+    (void)state;
+    weights_are_one(300, 15, 16, 16);
+}
+static void large_scene(void **state) {
+    (void)state;
+    weights_are_one(6000, 60, 16, 64);
+}
+static void deep_scene(void **state) {
+    (void)state;
+    weights_are_one(90000, 400, 0, 128);
+}
 
 /* Lux of a light at a surface, as if it were a point, no nearer than its size. */
 static double lux_at(const noc_light_record *r, const gblock *g, int l) {
@@ -154,9 +171,9 @@ static double lux_at(const noc_light_record *r, const gblock *g, int l) {
     return b.intensity * fmax(slope, 0) * fmax(facing, 0) / (d2 * fmax(d2, b.radius * b.radius));
 }
 
-/* Thousands of lights all around and between the surfaces of the tile, each of which matters most to those beside it: what
- * the lists add up to at a surface is close to the sum of all, at all surfaces. Lists that score lights for the tile as a whole
- * have twenty times this error. */
+/* Thousands of lights all around and between the surfaces of the tile, each of which matters most to those beside it:
+ * what the lists add up to at a surface is close to the sum of all, at all surfaces. Lists that score lights for the
+ * tile as a whole have twenty times this error. */
 static void tail_is_quiet(void **state) {
     (void)state;
     enum { STARTS = 24 };
@@ -176,7 +193,8 @@ static void tail_is_quiet(void **state) {
             for (size_t i = 0; i < w.scene->lights.len; i++)
                 all[b][l] += lux_at(&w.scene->lights.data[i], &w.g[b], l);
     for (int k = 0; k < STARTS; k++) {
-        noc_pick_kernels(NOC_ISA_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, (float)((k + 0.5) / STARTS), s, &s->list);
+        noc_pick_kernels(NOC_ISA_AUTO)
+            ->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, (float)((k + 0.5) / STARTS), s, &s->list);
         for (int b = 0; b < BLOCKS; b++)
             for (int l = 0; l < BLOCK; l++) {
                 double sum = 0;
@@ -242,7 +260,9 @@ static void far_lights_stand_alone(void **state) {
     (void)state;
     noc_scene *s = noc_scene_create(NULL);
     for (int i = 0; i < 301; i++) {
-        noc_light l = { .kind = NOC_LIGHT_POINT, .position = { real_in(-20, 20), real_in(-20, 20), 3 }, .emission = { 30, 30, 30 } };
+        noc_light l = { .kind = NOC_LIGHT_POINT,
+                        .position = { real_in(-20, 20), real_in(-20, 20), 3 },
+                        .emission = { 30, 30, 30 } };
         if (i == 150)
             l = (noc_light){ .kind = NOC_LIGHT_POINT, .position = { 1e5, 0, 1e5 }, .emission = { 5e9, 5e9, 5e9 } };
         assert_true(noc_scene_add_light(s, &l) >= 0);
@@ -258,12 +278,9 @@ static void far_lights_stand_alone(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(small_scene),
-        cmocka_unit_test(large_scene),
-        cmocka_unit_test(deep_scene),
-        cmocka_unit_test(far_lights_stand_alone),
-        cmocka_unit_test(tail_is_quiet),
-        cmocka_unit_test(few_lights_are_listed),
+        cmocka_unit_test(small_scene),   cmocka_unit_test(large_scene),
+        cmocka_unit_test(deep_scene),    cmocka_unit_test(far_lights_stand_alone),
+        cmocka_unit_test(tail_is_quiet), cmocka_unit_test(few_lights_are_listed),
         cmocka_unit_test(tables_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -24,7 +24,10 @@ static embree_state *chequered(noc_scene **scene) {
         }
     *scene = noc_scene_create(NULL);
     const noc_material grey = { .albedo = { 0.5f, 0.5f, 0.5f }, .roughness = 1 };
-    const noc_mesh mesh = { .vertex_count = v / 3, .positions = positions, .triangle_count = t / 3, .indices = indices,
+    const noc_mesh mesh = { .vertex_count = v / 3,
+                            .positions = positions,
+                            .triangle_count = t / 3,
+                            .indices = indices,
                             .material = noc_scene_add_material(*scene, &grey) };
     assert_true(noc_scene_add_mesh(*scene, &mesh) >= 0);
     assert_int_equal(noc_scene_commit(*scene), NOC_OK);
@@ -37,8 +40,8 @@ static embree_state *chequered(noc_scene **scene) {
 static uint32_t next(uint32_t *seed) { return *seed = *seed * 1664525u + 1013904223u; }
 static float unit(uint32_t *seed) { return (float)(next(seed) >> 8) / 16777216.0f; }
 
-/* Segments from z = 0 to one of `lights` lamps at z = 10, lamp i of them below the screen when i is a multiple of 5. Lanes that
- * pass near an edge are not valid, nor is one in four others. expect: those that the screen leaves free. */
+/* Segments from z = 0 to one of `lights` lamps at z = 10, lamp i of them below the screen when i is a multiple of 5.
+ * Lanes that pass near an edge are not valid, nor is one in four others. expect: those that the screen leaves free. */
 static void make_block(uint32_t *seed, uint32_t lights, segment_block *b, uint32_t *expect) {
     *b = (segment_block){ .clear = next(seed) };
     *expect = 0;

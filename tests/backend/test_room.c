@@ -1,5 +1,5 @@
-/* Limits of memory, from none to one that is enough: a renderer and its frame are made, or the library says that it had no
- * memory. */
+/* Limits of memory, from none to one that is enough: a renderer and its frame are made, or the library says that it had
+ * no memory. */
 #include "../test.h"
 
 #include "base/base.h"
@@ -12,10 +12,10 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
-#define REQUIRE_LIMITS()                                                                \
-    if (SANITIZED) {                                                                    \
-        print_message("# skipped: AddressSanitizer needs address space without end\n"); \
-        skip();                                                                         \
+#define REQUIRE_LIMITS()                                                                                               \
+    if (SANITIZED) {                                                                                                   \
+        print_message("# skipped: AddressSanitizer needs address space without end\n");                                \
+        skip();                                                                                                        \
     }
 
 #if !SANITIZED
@@ -74,8 +74,8 @@ static int limited(size_t more, noc_status (*work)(noc_scene *scene, noc_log *lo
     return WEXITSTATUS(status);
 }
 
-/* Every limit from none to `most`, so far apart: refused at first, made where there is more than enough (stacks and arenas of all
- * threads take 70 MB each, or less, as they come to need them). */
+/* Every limit from none to `most`, so far apart: refused at first, made where there is more than enough (stacks and
+ * arenas of all threads take 70 MB each, or less, as they come to need them). */
 static void sweep(size_t most, size_t step, noc_status (*work)(noc_scene *scene, noc_log *log), noc_scene *scene) {
     assert_int_equal(limited(0, work, scene), REFUSED);
     for (size_t more = step; more < most; more += step)
@@ -100,8 +100,11 @@ static noc_scene *make(bool city, noc_log *log) {
             xyz[3 * k] = i / SIDE + corners[k][0];
             xyz[3 * k + 1] = i % SIDE + corners[k][1];
         }
-        ok = noc_scene_add_mesh(scene, &(noc_mesh){ .vertex_count = 4, .positions = xyz, .triangle_count = 2,
-                                                    .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 }, .material = 0 }) >= 0;
+        ok = noc_scene_add_mesh(scene, &(noc_mesh){ .vertex_count = 4,
+                                                    .positions = xyz,
+                                                    .triangle_count = 2,
+                                                    .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+                                                    .material = 0 }) >= 0;
     }
     if (ok && noc_scene_commit(scene) == NOC_OK)
         return scene;
@@ -167,6 +170,7 @@ static void test_all(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_renderer), cmocka_unit_test(test_no_threads), cmocka_unit_test(test_all) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_renderer), cmocka_unit_test(test_no_threads),
+                                        cmocka_unit_test(test_all) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* The public API without what may be left out: logs, params, reports, progress. What fails must say so by its status. */
+/* The public API without what may be left out: logs, params, reports, progress. What fails must say so by its status.
+ */
 #include "../test.h"
 
 #include <nocturne/nocturne.h>
@@ -61,7 +62,8 @@ static void test_scenes(void **state) {
     noc_render_params params = noc_render_default_params();
     params.width = 0;
     assert_int_equal(noc_renderer_frame(renderer, &noc_camera_default(), &params, NULL), NOC_ERR_ARGUMENT);
-    assert_int_equal(noc_renderer_frame(renderer, &noc_camera_default(), NULL, NULL), NOC_ERR_ARGUMENT); /* eye is target */
+    /* eye is target */
+    assert_int_equal(noc_renderer_frame(renderer, &noc_camera_default(), NULL, NULL), NOC_ERR_ARGUMENT);
     noc_renderer_destroy(renderer);
     noc_renderer_destroy(NULL);
     noc_scene_destroy(scene);
@@ -88,12 +90,13 @@ static void test_options(void **state) {
     noc_render_params params = noc_render_default_params();
     for (const noc_option *o = noc_render_options(); o->name; o++) {
         assert_int_equal(noc_option_set(o, &params, "no value of any", NULL), NOC_ERR_ARGUMENT);
-        assert_int_equal(noc_option_set(o, &params, NULL, NULL), o->kind == NOC_OPTION_BOOL ? NOC_OK : NOC_ERR_ARGUMENT);
+        assert_int_equal(noc_option_set(o, &params, NULL, NULL),
+                         o->kind == NOC_OPTION_BOOL ? NOC_OK : NOC_ERR_ARGUMENT);
     }
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_images), cmocka_unit_test(test_scenes), cmocka_unit_test(test_files),
-                                        cmocka_unit_test(test_options) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_images), cmocka_unit_test(test_scenes),
+                                        cmocka_unit_test(test_files), cmocka_unit_test(test_options) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

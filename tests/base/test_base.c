@@ -54,9 +54,13 @@ static void arrays_and_maps(void **state) {
 /* CPython 3.11 and later hash bytes with SipHash-1-3; PYTHONHASHSEED=0 makes the key zero:
  * PYTHONHASHSEED=0 python3 -c 'print(hex(hash(b"abcdefg") & (2**64 - 1)))' */
 static void siphash_is_as_published(void **state) {
-    static const struct { const char *text; uint64_t hash; } known[] = {
-        { "a", 0x407448d2b89b1813u }, { "abcdefg", 0x6db12aae9070f506u }, { "abcdefgh", 0x3f7b849c0b8e35eau }, { "gml_id_0123456789abcdef", 0xf95c63219c1929d2u }
-    };
+    static const struct {
+        const char *text;
+        uint64_t hash;
+    } known[] = { { "a", 0x407448d2b89b1813u },
+                  { "abcdefg", 0x6db12aae9070f506u },
+                  { "abcdefgh", 0x3f7b849c0b8e35eau },
+                  { "gml_id_0123456789abcdef", 0xf95c63219c1929d2u } };
     for (size_t i = 0; i < NOC_COUNT(known); i++)
         assert_true(base_siphash(known[i].text, strlen(known[i].text), (uint64_t[2]){ 0, 0 }) == known[i].hash);
     assert_true(base_siphash("a", 1, (uint64_t[2]){ 1, 0 }) != known[0].hash);
@@ -74,8 +78,8 @@ static int by_number(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* 2^16 ids with one FNV-1a hash, which the map had once: 16 blocks, each of which may be either of two that collide (Joux
- * 2004). They must lie as far apart as any others. */
+/* 2^16 ids with one FNV-1a hash, which the map had once: 16 blocks, each of which may be either of two that collide
+ * (Joux 2004). They must lie as far apart as any others. */
 static void colliding_ids_do_not_flood(void **state) {
     enum { BLOCKS = 16, TRIES = 1 << 18 };
     static uint64_t tried[TRIES];
@@ -111,15 +115,16 @@ static void count_item(void *ctx, size_t item, int worker) {
     atomic_fetch_add(&hits[item], 1);
 }
 
-/* One use of each way to allocate; returns whether all went well. What was there before a refusal must be there still. */
+/* One use of each way to allocate; returns whether all went well. What was there before a refusal must be there still.
+ */
 static bool allocate_in_all_ways(void) {
     NOC_ARRAY(int) a = { 0 };
     noc_arena arena = { 0 };
     noc_map map = { 0 };
     bool fresh = false, ok = array_push(&a, 7) && array_reserve(&a, 20) && array_append(&a, a.data, 1);
     assert_true(!ok || (a.len == 2 && a.data[1] == 7));
-    void *p[] = { noc_alloc(3), noc_calloc(2, 3), noc_strdup("text"), noc_strndup("text", 2), noc_format("%d", 5),
-                  noc_alloc_large(2, 3), noc_pool_create(1), noc_log_create(NULL) };
+    void *p[] = { noc_alloc(3),        noc_calloc(2, 3),      noc_strdup("text"), noc_strndup("text", 2),
+                  noc_format("%d", 5), noc_alloc_large(2, 3), noc_pool_create(1), noc_log_create(NULL) };
     for (size_t i = 0; i < NOC_COUNT(p); i++)
         ok = ok && p[i];
     assert_true(!ok || !strcmp(p[3], "te"));

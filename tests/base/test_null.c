@@ -16,100 +16,101 @@ static noc_image *image;
 static noc_channel *channel;
 static noc_camera camera;
 
-#define PROBES(P)                                                                                                              \
-    P(noc_image_destroy(NULL), true)                                                                                           \
-    P(0, isfinite(noc_image_auto_ev100(NULL)))                                                       \
-    P(0, noc_image_to_srgb8(NULL, NULL, (uint8_t[3]){ 0 }) == NOC_ERR_ARGUMENT)                                                \
-    P(0, noc_image_to_srgb8(image, NULL, NULL) == NOC_ERR_ARGUMENT)                                                            \
-    P(0, noc_image_write(NULL, "a.png", NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                 \
-    P(0, noc_image_write(image, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                   \
-    P(0, noc_image_write_srgb8(NULL, 1, 1, "a.png", NULL, NULL) == NOC_ERR_ARGUMENT)                                           \
-    P(0, noc_image_write_srgb8((uint8_t[3]){ 0 }, 1, 1, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                 \
-    P(0, noc_image_check_path(NULL, NULL) == NOC_ERR_ARGUMENT)                                                                 \
-    P(0, noc_image_read(NULL, NULL, NULL) == NULL)                                                                             \
-    P(0, noc_image_compare(NULL, image, NULL, &(noc_comparison){ 0 }, NULL) == NOC_ERR_ARGUMENT)                               \
-    P(0, noc_image_compare(image, NULL, NULL, &(noc_comparison){ 0 }, NULL) == NOC_ERR_ARGUMENT)                               \
-    P(0, noc_image_compare(image, image, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                \
-    P(0, noc_image_difference(NULL, image, NULL, &(uint8_t *){ 0 }, &(int){ 0 }, &(int){ 0 }, NULL) == NOC_ERR_ARGUMENT)       \
-    P(0, noc_image_difference(image, image, NULL, NULL, &(int){ 0 }, &(int){ 0 }, NULL) == NOC_ERR_ARGUMENT)                   \
-    P(0, noc_image_difference(image, image, NULL, &(uint8_t *){ 0 }, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                    \
-    P(noc_channel_destroy(NULL), true)                                                                                         \
-    P(0, noc_channel_to_srgb8(NULL, NULL, &(uint8_t *){ 0 }, &(int){ 0 }, &(int){ 0 }, NULL) == NOC_ERR_ARGUMENT)              \
-    P(0, noc_channel_to_srgb8(channel, NULL, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                      \
-    P(0, noc_channel_write(NULL, "a.png", NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                               \
-    P(0, noc_channel_write(channel, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                               \
-    P(noc_log_destroy(NULL), noc_log_last_error(NULL)[0] == 0)                                                                 \
-    P(noc_scene_destroy(NULL), true)                                                                                           \
-    P(0, noc_scene_add_material(NULL, &(noc_material){ .roughness = 1 }) == -1)                                                \
-    P(0, noc_scene_add_material(scene, NULL) == -1)                                                                            \
-    P(0, noc_scene_add_mesh(NULL, &(noc_mesh){ 0 }) == -1)                                                                     \
-    P(0, noc_scene_add_mesh(scene, NULL) == -1)                                                                                \
-    P(0, noc_scene_add_mesh(scene, &(noc_mesh){ .vertex_count = 3, .triangle_count = 1 }) == -1)                               \
-    P(0, noc_scene_add_light(NULL, &(noc_light){ 0 }) == -1)                                                                   \
-    P(0, noc_scene_add_light(scene, NULL) == -1)                                                                               \
-    P(0, noc_scene_commit(NULL) == NOC_ERR_ARGUMENT)                                                                           \
-    P(0, noc_scene_move_light(NULL, 0, &(noc_light){ 0 }) == NOC_ERR_ARGUMENT)                                                 \
-    P(0, noc_scene_move_light(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                             \
-    P(0, noc_scene_get_light(NULL, 0, &(noc_light_info){ 0 }) == NOC_ERR_ARGUMENT)                                             \
-    P(0, noc_scene_get_light(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                              \
-    P(0, noc_scene_object_name(NULL, 0) == NULL)                                                                               \
-    P(0, noc_scene_set_crs(NULL, "EPSG:25832", (double[3]){ 0 }) == NOC_ERR_ARGUMENT)                                          \
-    P(0, noc_scene_set_crs(scene, NULL, NULL) == NOC_ERR_ARGUMENT)                                                             \
-    P(noc_scene_get_info(NULL, &(noc_scene_info){ 0 }), true)                                                                  \
-    P(noc_scene_get_info(scene, NULL), true)                                                                                   \
-    P((noc_scene_content(NULL, (char[NOC_CONTENT_KEY]){ 0 })), true)                                                           \
-    P(noc_scene_content(scene, NULL), true)                                                                                    \
-    P(0, !noc_scene_ground(NULL, 0, 0, &(double){ 0 }))                                                                        \
-    P(0, !noc_scene_ground(scene, 0, 0, NULL))                                                                                 \
-    P(0, noc_scene_set_camera(NULL, &camera) == NOC_ERR_ARGUMENT)                                                              \
-    P(0, noc_scene_set_camera(scene, NULL) == NOC_ERR_ARGUMENT)                                                                \
-    P(0, noc_scene_camera(NULL, NOC_VIEW_AERIAL, 1, &camera) == NOC_ERR_ARGUMENT)                                              \
-    P(0, noc_scene_camera(scene, NOC_VIEW_AERIAL, 1, NULL) == NOC_ERR_ARGUMENT)                                                \
-    P(0, !noc_camera_project(NULL, 4, 4, (double[3]){ 0 }, (double[2]){ 0 }, NULL))                                            \
-    P(0, !noc_camera_project(&camera, 4, 4, NULL, NULL, NULL))                                                                 \
-    P(0, noc_camera_unproject(NULL, 4, 4, (double[2]){ 0 }, 1, (double[3]){ 0 }) == NOC_ERR_ARGUMENT)                          \
-    P(0, noc_camera_unproject(&camera, 4, 4, NULL, 1, NULL) == NOC_ERR_ARGUMENT)                                               \
-    P(0, noc_scene_add_city(NULL, NULL) == NOC_ERR_ARGUMENT)                                                                   \
-    P(0, noc_scene_add_builtin(NULL, "city", NULL) == NOC_ERR_ARGUMENT)                                                        \
-    P(0, noc_scene_add_builtin(scene, NULL, NULL) == NOC_ERR_ARGUMENT)                                                         \
-    P(0, noc_report_file_count(NULL) == 0 && !noc_report_get_file(NULL, 0))                                                    \
-    P(noc_report_get_totals(NULL, NULL), true)                                                                                 \
-    P(noc_report_destroy(NULL), true)                                                                                          \
-    P(0, noc_scene_load(NULL, (const char *[]){ "a" }, 1, NULL, NULL) == NOC_ERR_ARGUMENT)                                     \
-    P(0, noc_scene_load(noc_scene_create(NULL), NULL, 1, NULL, NULL) == NOC_ERR_ARGUMENT)                                      \
-    P(0, noc_scene_load(noc_scene_create(NULL), (const char *[]){ NULL }, 1, NULL, NULL) == NOC_ERR_ARGUMENT)                  \
-    P(0, noc_inspect(NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                              \
-    P(0, noc_scene_to_local(NULL, NULL, (double[3]){ 0 }) == NOC_ERR_ARGUMENT)                                                 \
-    P(0, noc_scene_to_local(scene, NULL, NULL) == NOC_ERR_ARGUMENT)                                                            \
-    P(0, noc_scene_from_local(NULL, NULL, (double[3]){ 0 }) == NOC_ERR_ARGUMENT)                                               \
-    P(0, noc_scene_from_local(scene, NULL, NULL) == NOC_ERR_ARGUMENT)                                                          \
-    P(0, noc_option_set(NULL, &camera, "1", NULL) == NOC_ERR_ARGUMENT)                                                         \
-    P(0, noc_option_set(noc_render_options(), NULL, "1", NULL) == NOC_ERR_ARGUMENT)                                            \
-    P(0, noc_option_get(NULL, &camera, (char[8]){ 0 }, 8) == 0)                                                                \
-    P(0, noc_option_get(noc_render_options(), NULL, (char[8]){ 0 }, 8) == 0)                                                   \
-    P(0, noc_option_size(NULL) == 0)                                                                                           \
-    P(0, !noc_option_idle(NULL, NULL, NULL, (char[8]){ 0 }, 8))                                                                \
-    P(noc_render_use_preset(NULL, NOC_PRESET_STILL), true)                                                                     \
-    P(0, noc_renderer_create(NULL, NULL, NULL) == NULL)                                                                        \
-    P(noc_renderer_destroy(NULL), true)                                                                                        \
-    P(0, noc_render_check(NULL, NULL) == NOC_ERR_ARGUMENT)                                                                               \
-    P(0, noc_renderer_frame(NULL, &camera, NULL, NULL) == NOC_ERR_ARGUMENT)                                                    \
-    P(0, noc_renderer_frame(renderer, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                   \
-    P(noc_renderer_reset(NULL), true)                                                                                          \
-    P(0, noc_renderer_image(NULL) == NULL)                                                                                     \
-    P(0, noc_renderer_aov(NULL, NOC_AOV_LIGHT) == NULL)                                                                        \
-    P(noc_renderer_get_stats(NULL, &(noc_frame_stats){ 0 }), true)                                                             \
-    P(noc_renderer_get_stats(renderer, NULL), true)                                                                            \
-    P(noc_renderer_light_stats(NULL, &(noc_light_stats){ 0 }), true)                                                           \
-    P(noc_renderer_light_stats(renderer, NULL), true)                                                                          \
-    P(0, noc_renderer_write_influence(NULL, NULL, "a.obj") == NOC_ERR_ARGUMENT)                                                \
-    P(0, noc_renderer_write_influence(renderer, NULL, NULL) == NOC_ERR_ARGUMENT)                                               \
-    P(0, noc_text_srgb8(NULL, 1, 1, 0, 0, NULL, 1, NULL) == 0)                                                                 \
-    P(0, noc_text_srgb8((uint8_t[3]){ 0 }, 1, 1, 0, 0, "a", 1, NULL) == 0)                                                     \
-    P(noc_log_destroy(noc_log_create(NULL)), true)                                                                             \
-    P(0, noc_image_create(0, 0, NULL) == NULL)                                                                                 \
-    P(0, noc_channel_create(0, 0, 1, NULL) == NULL)                                                                          \
-    P(0, noc_renderer_trace_floor(NULL, &camera, NULL, &(double){ 0 }) == NOC_ERR_ARGUMENT)                                    \
+#define PROBES(P)                                                                                                      \
+    P(noc_image_destroy(NULL), true)                                                                                   \
+    P(0, isfinite(noc_image_auto_ev100(NULL)))                                                                         \
+    P(0, noc_image_to_srgb8(NULL, NULL, (uint8_t[3]){ 0 }) == NOC_ERR_ARGUMENT)                                        \
+    P(0, noc_image_to_srgb8(image, NULL, NULL) == NOC_ERR_ARGUMENT)                                                    \
+    P(0, noc_image_write(NULL, "a.png", NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                         \
+    P(0, noc_image_write(image, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                           \
+    P(0, noc_image_write_srgb8(NULL, 1, 1, "a.png", NULL, NULL) == NOC_ERR_ARGUMENT)                                   \
+    P(0, noc_image_write_srgb8((uint8_t[3]){ 0 }, 1, 1, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                         \
+    P(0, noc_image_check_path(NULL, NULL) == NOC_ERR_ARGUMENT)                                                         \
+    P(0, noc_image_read(NULL, NULL, NULL) == NULL)                                                                     \
+    P(0, noc_image_compare(NULL, image, NULL, &(noc_comparison){ 0 }, NULL) == NOC_ERR_ARGUMENT)                       \
+    P(0, noc_image_compare(image, NULL, NULL, &(noc_comparison){ 0 }, NULL) == NOC_ERR_ARGUMENT)                       \
+    P(0, noc_image_compare(image, image, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                        \
+    P(0,                                                                                                               \
+      noc_image_difference(NULL, image, NULL, &(uint8_t *){ 0 }, &(int){ 0 }, &(int){ 0 }, NULL) == NOC_ERR_ARGUMENT)  \
+    P(0, noc_image_difference(image, image, NULL, NULL, &(int){ 0 }, &(int){ 0 }, NULL) == NOC_ERR_ARGUMENT)           \
+    P(0, noc_image_difference(image, image, NULL, &(uint8_t *){ 0 }, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)            \
+    P(noc_channel_destroy(NULL), true)                                                                                 \
+    P(0, noc_channel_to_srgb8(NULL, NULL, &(uint8_t *){ 0 }, &(int){ 0 }, &(int){ 0 }, NULL) == NOC_ERR_ARGUMENT)      \
+    P(0, noc_channel_to_srgb8(channel, NULL, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                              \
+    P(0, noc_channel_write(NULL, "a.png", NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                       \
+    P(0, noc_channel_write(channel, NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                       \
+    P(noc_log_destroy(NULL), noc_log_last_error(NULL)[0] == 0)                                                         \
+    P(noc_scene_destroy(NULL), true)                                                                                   \
+    P(0, noc_scene_add_material(NULL, &(noc_material){ .roughness = 1 }) == -1)                                        \
+    P(0, noc_scene_add_material(scene, NULL) == -1)                                                                    \
+    P(0, noc_scene_add_mesh(NULL, &(noc_mesh){ 0 }) == -1)                                                             \
+    P(0, noc_scene_add_mesh(scene, NULL) == -1)                                                                        \
+    P(0, noc_scene_add_mesh(scene, &(noc_mesh){ .vertex_count = 3, .triangle_count = 1 }) == -1)                       \
+    P(0, noc_scene_add_light(NULL, &(noc_light){ 0 }) == -1)                                                           \
+    P(0, noc_scene_add_light(scene, NULL) == -1)                                                                       \
+    P(0, noc_scene_commit(NULL) == NOC_ERR_ARGUMENT)                                                                   \
+    P(0, noc_scene_move_light(NULL, 0, &(noc_light){ 0 }) == NOC_ERR_ARGUMENT)                                         \
+    P(0, noc_scene_move_light(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                     \
+    P(0, noc_scene_get_light(NULL, 0, &(noc_light_info){ 0 }) == NOC_ERR_ARGUMENT)                                     \
+    P(0, noc_scene_get_light(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                      \
+    P(0, noc_scene_object_name(NULL, 0) == NULL)                                                                       \
+    P(0, noc_scene_set_crs(NULL, "EPSG:25832", (double[3]){ 0 }) == NOC_ERR_ARGUMENT)                                  \
+    P(0, noc_scene_set_crs(scene, NULL, NULL) == NOC_ERR_ARGUMENT)                                                     \
+    P(noc_scene_get_info(NULL, &(noc_scene_info){ 0 }), true)                                                          \
+    P(noc_scene_get_info(scene, NULL), true)                                                                           \
+    P((noc_scene_content(NULL, (char[NOC_CONTENT_KEY]){ 0 })), true)                                                   \
+    P(noc_scene_content(scene, NULL), true)                                                                            \
+    P(0, !noc_scene_ground(NULL, 0, 0, &(double){ 0 }))                                                                \
+    P(0, !noc_scene_ground(scene, 0, 0, NULL))                                                                         \
+    P(0, noc_scene_set_camera(NULL, &camera) == NOC_ERR_ARGUMENT)                                                      \
+    P(0, noc_scene_set_camera(scene, NULL) == NOC_ERR_ARGUMENT)                                                        \
+    P(0, noc_scene_camera(NULL, NOC_VIEW_AERIAL, 1, &camera) == NOC_ERR_ARGUMENT)                                      \
+    P(0, noc_scene_camera(scene, NOC_VIEW_AERIAL, 1, NULL) == NOC_ERR_ARGUMENT)                                        \
+    P(0, !noc_camera_project(NULL, 4, 4, (double[3]){ 0 }, (double[2]){ 0 }, NULL))                                    \
+    P(0, !noc_camera_project(&camera, 4, 4, NULL, NULL, NULL))                                                         \
+    P(0, noc_camera_unproject(NULL, 4, 4, (double[2]){ 0 }, 1, (double[3]){ 0 }) == NOC_ERR_ARGUMENT)                  \
+    P(0, noc_camera_unproject(&camera, 4, 4, NULL, 1, NULL) == NOC_ERR_ARGUMENT)                                       \
+    P(0, noc_scene_add_city(NULL, NULL) == NOC_ERR_ARGUMENT)                                                           \
+    P(0, noc_scene_add_builtin(NULL, "city", NULL) == NOC_ERR_ARGUMENT)                                                \
+    P(0, noc_scene_add_builtin(scene, NULL, NULL) == NOC_ERR_ARGUMENT)                                                 \
+    P(0, noc_report_file_count(NULL) == 0 && !noc_report_get_file(NULL, 0))                                            \
+    P(noc_report_get_totals(NULL, NULL), true)                                                                         \
+    P(noc_report_destroy(NULL), true)                                                                                  \
+    P(0, noc_scene_load(NULL, (const char *[]){ "a" }, 1, NULL, NULL) == NOC_ERR_ARGUMENT)                             \
+    P(0, noc_scene_load(noc_scene_create(NULL), NULL, 1, NULL, NULL) == NOC_ERR_ARGUMENT)                              \
+    P(0, noc_scene_load(noc_scene_create(NULL), (const char *[]){ NULL }, 1, NULL, NULL) == NOC_ERR_ARGUMENT)          \
+    P(0, noc_inspect(NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                      \
+    P(0, noc_scene_to_local(NULL, NULL, (double[3]){ 0 }) == NOC_ERR_ARGUMENT)                                         \
+    P(0, noc_scene_to_local(scene, NULL, NULL) == NOC_ERR_ARGUMENT)                                                    \
+    P(0, noc_scene_from_local(NULL, NULL, (double[3]){ 0 }) == NOC_ERR_ARGUMENT)                                       \
+    P(0, noc_scene_from_local(scene, NULL, NULL) == NOC_ERR_ARGUMENT)                                                  \
+    P(0, noc_option_set(NULL, &camera, "1", NULL) == NOC_ERR_ARGUMENT)                                                 \
+    P(0, noc_option_set(noc_render_options(), NULL, "1", NULL) == NOC_ERR_ARGUMENT)                                    \
+    P(0, noc_option_get(NULL, &camera, (char[8]){ 0 }, 8) == 0)                                                        \
+    P(0, noc_option_get(noc_render_options(), NULL, (char[8]){ 0 }, 8) == 0)                                           \
+    P(0, noc_option_size(NULL) == 0)                                                                                   \
+    P(0, !noc_option_idle(NULL, NULL, NULL, (char[8]){ 0 }, 8))                                                        \
+    P(noc_render_use_preset(NULL, NOC_PRESET_STILL), true)                                                             \
+    P(0, noc_renderer_create(NULL, NULL, NULL) == NULL)                                                                \
+    P(noc_renderer_destroy(NULL), true)                                                                                \
+    P(0, noc_render_check(NULL, NULL) == NOC_ERR_ARGUMENT)                                                             \
+    P(0, noc_renderer_frame(NULL, &camera, NULL, NULL) == NOC_ERR_ARGUMENT)                                            \
+    P(0, noc_renderer_frame(renderer, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                           \
+    P(noc_renderer_reset(NULL), true)                                                                                  \
+    P(0, noc_renderer_image(NULL) == NULL)                                                                             \
+    P(0, noc_renderer_aov(NULL, NOC_AOV_LIGHT) == NULL)                                                                \
+    P(noc_renderer_get_stats(NULL, &(noc_frame_stats){ 0 }), true)                                                     \
+    P(noc_renderer_get_stats(renderer, NULL), true)                                                                    \
+    P(noc_renderer_light_stats(NULL, &(noc_light_stats){ 0 }), true)                                                   \
+    P(noc_renderer_light_stats(renderer, NULL), true)                                                                  \
+    P(0, noc_renderer_write_influence(NULL, NULL, "a.obj") == NOC_ERR_ARGUMENT)                                        \
+    P(0, noc_renderer_write_influence(renderer, NULL, NULL) == NOC_ERR_ARGUMENT)                                       \
+    P(0, noc_text_srgb8(NULL, 1, 1, 0, 0, NULL, 1, NULL) == 0)                                                         \
+    P(0, noc_text_srgb8((uint8_t[3]){ 0 }, 1, 1, 0, 0, "a", 1, NULL) == 0)                                             \
+    P(noc_log_destroy(noc_log_create(NULL)), true)                                                                     \
+    P(0, noc_image_create(0, 0, NULL) == NULL)                                                                         \
+    P(0, noc_channel_create(0, 0, 1, NULL) == NULL)                                                                    \
+    P(0, noc_renderer_trace_floor(NULL, &camera, NULL, &(double){ 0 }) == NOC_ERR_ARGUMENT)                            \
     P(0, noc_renderer_trace_floor(renderer, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)
 
 #define NAME(call, check) #call " / " #check,
@@ -117,10 +118,10 @@ static const char *const names[] = { PROBES(NAME) };
 
 static bool probe(int index) {
     int at = 0;
-#define RUN(call, check)     \
-    if (at++ == index) {     \
-        (void)(call);        \
-        return check;        \
+#define RUN(call, check)                                                                                               \
+    if (at++ == index) {                                                                                               \
+        (void)(call);                                                                                                  \
+        return check;                                                                                                  \
     }
     PROBES(RUN)
     return false;

@@ -13,9 +13,13 @@ static int material(noc_scene *scene, noc_class cls) {
     return noc_scene_add_material(scene, &m);
 }
 
-static void add_plane(noc_scene *scene, noc_class cls, double x0, double y0, double x1, double y1, double z, double slope) {
+static void add_plane(noc_scene *scene, noc_class cls, double x0, double y0, double x1, double y1, double z,
+                      double slope) {
     double xyz[12] = { x0, y0, z + slope * x0, x1, y0, z + slope * x1, x1, y1, z + slope * x1, x0, y1, z + slope * x0 };
-    noc_mesh mesh = { .vertex_count = 4, .positions = xyz, .triangle_count = 2, .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+    noc_mesh mesh = { .vertex_count = 4,
+                      .positions = xyz,
+                      .triangle_count = 2,
+                      .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
                       .material = material(scene, cls) };
     assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
 }
@@ -29,17 +33,29 @@ static void add_building(noc_scene *scene, double x0, double y0, double x1, doub
         memcpy(walls + n, quad, sizeof(quad));
         n += 6;
     }
-    noc_mesh mesh = { .vertex_count = 8, .positions = xyz, .triangle_count = 8, .indices = walls,
+    noc_mesh mesh = { .vertex_count = 8,
+                      .positions = xyz,
+                      .triangle_count = 8,
+                      .indices = walls,
                       .material = material(scene, NOC_CLASS_WALL) };
     assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
-    noc_mesh roof = { .vertex_count = 8, .positions = xyz, .triangle_count = 2, .indices = (uint32_t[]){ 4, 5, 6, 4, 6, 7 },
+    noc_mesh roof = { .vertex_count = 8,
+                      .positions = xyz,
+                      .triangle_count = 2,
+                      .indices = (uint32_t[]){ 4, 5, 6, 4, 6, 7 },
                       .material = material(scene, NOC_CLASS_ROOF) };
     assert_true(noc_scene_add_mesh(scene, &roof) >= 0);
 }
 
 static geo_lamp lamp_at(double x, double y) {
-    return (geo_lamp){ .xyz = { x, y, NAN }, .height = NAN, .direction = NAN, .lumens = NAN, .watts = NAN, .kelvin = NAN,
-                       .rgb = { -1, -1, -1 }, .id = "lamp" };
+    return (geo_lamp){ .xyz = { x, y, NAN },
+                       .height = NAN,
+                       .direction = NAN,
+                       .lumens = NAN,
+                       .watts = NAN,
+                       .kelvin = NAN,
+                       .rgb = { -1, -1, -1 },
+                       .id = "lamp" };
 }
 
 static double luminance(const float e[3]) { return 0.2126 * e[0] + 0.7152 * e[1] + 0.0722 * e[2]; }
@@ -73,7 +89,9 @@ static void chromaticity(const float c[3], double xy[2]) {
 
 static void test_kelvin(void **state) {
     /* black body chromaticities, CIE 1931 (CIE 15: illuminant A is 2856 K) */
-    static const double table[][3] = { { 2856, .4476, .4074 }, { 4000, .3805, .3768 }, { 6500, .3135, .3237 }, { 10000, .2807, .2884 } };
+    static const double table[][3] = {
+        { 2856, .4476, .4074 }, { 4000, .3805, .3768 }, { 6500, .3135, .3237 }, { 10000, .2807, .2884 }
+    };
     for (size_t i = 0; i < NOC_COUNT(table); i++) {
         float rgb[3];
         double xy[2];
@@ -172,7 +190,7 @@ static void test_direction_and_sources(void **state) {
     assert_int_equal(city_add_lamp(scene, &l, &defaults, false, NULL), 1);
     const noc_light_record *r = scene->lights.data;
     assert_true(r[0].p[1] > -.5 && r[1].p[1] < -1.5);
-    assert_true(r[0].e[0] > 2 * r[0].e[2]);          /* sodium is orange */
+    assert_true(r[0].e[0] > 2 * r[0].e[2]);           /* sodium is orange */
     assert_float_equal(r[1].e[0] / r[1].e[2], 1, .1); /* 6500 K is white */
     assert_true(r[2].e[2] > 0 && r[2].e[0] == 0);
     for (int i = 0; i < 3; i++)
@@ -180,14 +198,21 @@ static void test_direction_and_sources(void **state) {
     noc_scene_destroy(scene);
 }
 
-/* Lumens that `watts` of a source become: the middle of the lamp's range times 0.75, told in docs/formats.md. Low pressure
- * sodium (100..180 lm/W) is not high pressure sodium (70..140). */
+/* Lumens that `watts` of a source become: the middle of the lamp's range times 0.75, told in docs/formats.md. Low
+ * pressure sodium (100..180 lm/W) is not high pressure sodium (70..140). */
 static void test_efficacies(void **state) {
-    static const struct { int source; double lumens_per_watt; } table[] = {
-        { GEO_SOURCE_UNKNOWN, 80 }, { GEO_SOURCE_LED, 110 }, { GEO_SOURCE_SODIUM, .75 * (70 + 140) / 2 },
-        { GEO_SOURCE_LOW_SODIUM, .75 * (100 + 180) / 2 }, { GEO_SOURCE_MERCURY, .75 * (35 + 60) / 2 },
-        { GEO_SOURCE_METAL_HALIDE, .75 * (65 + 115) / 2 }, { GEO_SOURCE_FLUORESCENT, .75 * (50 + 100) / 2 },
-        { GEO_SOURCE_INCANDESCENT, .75 * (10 + 20) / 2 }, { GEO_SOURCE_GAS, 1.5 } };
+    static const struct {
+        int source;
+        double lumens_per_watt;
+    } table[] = { { GEO_SOURCE_UNKNOWN, 80 },
+                  { GEO_SOURCE_LED, 110 },
+                  { GEO_SOURCE_SODIUM, .75 * (70 + 140) / 2 },
+                  { GEO_SOURCE_LOW_SODIUM, .75 * (100 + 180) / 2 },
+                  { GEO_SOURCE_MERCURY, .75 * (35 + 60) / 2 },
+                  { GEO_SOURCE_METAL_HALIDE, .75 * (65 + 115) / 2 },
+                  { GEO_SOURCE_FLUORESCENT, .75 * (50 + 100) / 2 },
+                  { GEO_SOURCE_INCANDESCENT, .75 * (10 + 20) / 2 },
+                  { GEO_SOURCE_GAS, 1.5 } };
     noc_scene *scene = noc_scene_create(NULL);
     add_plane(scene, NOC_CLASS_TERRAIN, -100, -100, 400, 100, 0, 0);
     for (size_t i = 0; i < NOC_COUNT(table); i++) {
@@ -225,7 +250,8 @@ static bool ray_hits(const noc_scene *scene, const double o[3], const double d[3
         double u = (s[0] * p[0] + s[1] * p[1] + s[2] * p[2]) / det;
         for (int k = 0; k < 3; k++)
             q[k] = s[(k + 1) % 3] * e1[(k + 2) % 3] - s[(k + 2) % 3] * e1[(k + 1) % 3];
-        double w = (d[0] * q[0] + d[1] * q[1] + d[2] * q[2]) / det, x = (e2[0] * q[0] + e2[1] * q[1] + e2[2] * q[2]) / det;
+        double w = (d[0] * q[0] + d[1] * q[1] + d[2] * q[2]) / det,
+               x = (e2[0] * q[0] + e2[1] * q[1] + e2[2] * q[2]) / det;
         if (u >= 0 && w >= 0 && u + w <= 1 && x > 1e-3 && x < reach && scene->triangle_light.data[t] == NOC_NO_LIGHT)
             return true;
     }
@@ -316,7 +342,7 @@ static void test_odd_grounds(void **state) {
     assert_int_equal(city_add_lamp(scene, &l, &defaults, false, issues), 1);
     assert_int_equal(issues_with(issues, "height of the nearest"), 1);
     assert_float_equal(scene->lights.data[3].p[2], 107, .5); /* near the rim, 60 m off */
-    for (int i = 0; i < 3; i++) { /* three at one place stand side by side */
+    for (int i = 0; i < 3; i++) {                            /* three at one place stand side by side */
         l = lamp_at(-5, -5);
         assert_int_equal(city_add_lamp(scene, &l, &defaults, false, issues), 1);
     }
@@ -325,10 +351,12 @@ static void test_odd_grounds(void **state) {
     noc_scene_destroy(scene);
 }
 
-/* Inventories have a row a luminaire: lamps at one point, or under the arm of another, stand on what carries the first one. */
+/* Inventories have a row a luminaire: lamps at one point, or under the arm of another, stand on what carries the first
+ * one. */
 static void test_lamps_do_not_stand_on_lamps(void **state) {
     enum { LAMPS = 40 };
-    static const noc_class grounds[] = { NOC_CLASS_OTHER, NOC_CLASS_TERRAIN, NOC_CLASS_COUNT }; /* the last: beside all ground */
+    /* the last: beside all ground */
+    static const noc_class grounds[] = { NOC_CLASS_OTHER, NOC_CLASS_TERRAIN, NOC_CLASS_COUNT };
     (void)state;
     for (size_t g = 0; g < NOC_COUNT(grounds); g++) {
         noc_scene *scene = noc_scene_create(NULL);
@@ -345,7 +373,8 @@ static void test_lamps_do_not_stand_on_lamps(void **state) {
     }
 }
 
-/* However many lamps are given at one point: all shine, and what stands there, which each next one meets, is no more than of a few. */
+/* However many lamps are given at one point: all shine, and what stands there, which each next one meets, is no more
+ * than of a few. */
 static void test_lamps_at_one_point(void **state) {
     enum { LAMPS = 600 };
     (void)state;
@@ -365,7 +394,8 @@ static void test_lamps_at_one_point(void **state) {
     for (size_t i = 0; i < LAMPS; i++) {
         bool again = false;
         for (size_t k = 0; k < i && !again; k++)
-            again = scene->lights.data[i].p[0] == scene->lights.data[k].p[0] && scene->lights.data[i].p[1] == scene->lights.data[k].p[1];
+            again = scene->lights.data[i].p[0] == scene->lights.data[k].p[0] &&
+                    scene->lights.data[i].p[1] == scene->lights.data[k].p[1];
         places += !again;
     }
     assert_int_equal(places, 1 + apart); /* as the report says of the others: in the same place as theirs */
@@ -477,7 +507,8 @@ static void test_infer_buildings(void **state) {
     noc_scene_destroy(scene);
 }
 
-/* Lamps without ground near them do not sink with each other's feet, in a scene with a ground far off and without any. */
+/* Lamps without ground near them do not sink with each other's feet, in a scene with a ground far off and without any.
+ */
 static void test_no_ground(void **state) {
     (void)state;
     for (int with_ground = 0; with_ground < 2; with_ground++) {
@@ -564,13 +595,17 @@ static void test_add_ground(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_kelvin),
-        cmocka_unit_test(test_assumes), cmocka_unit_test(test_flux),
+        cmocka_unit_test(test_assumes),
+        cmocka_unit_test(test_flux),
         cmocka_unit_test(test_direction_and_sources),
         cmocka_unit_test(test_efficacies),
         cmocka_unit_test(test_own_shape_does_not_shadow),
         cmocka_unit_test(test_inside_building),
-        cmocka_unit_test(test_odd_grounds), cmocka_unit_test(test_lamps_do_not_stand_on_lamps), cmocka_unit_test(test_lamps_at_one_point),
-        cmocka_unit_test(test_infer_roads), cmocka_unit_test(test_infer_cancelled),
+        cmocka_unit_test(test_odd_grounds),
+        cmocka_unit_test(test_lamps_do_not_stand_on_lamps),
+        cmocka_unit_test(test_lamps_at_one_point),
+        cmocka_unit_test(test_infer_roads),
+        cmocka_unit_test(test_infer_cancelled),
         cmocka_unit_test(test_infer_buildings),
         cmocka_unit_test(test_no_ground),
         cmocka_unit_test(test_skirts),

@@ -1,4 +1,5 @@
-/* The built-in city: the same for the same seed, in its bounds, lit as asked, nothing floating, nothing in one place twice. */
+/* The built-in city: the same for the same seed, in its bounds, lit as asked, nothing floating, nothing in one place
+ * twice. */
 #include "../test.h"
 
 #include "scene/scene.h"
@@ -51,7 +52,10 @@ static void check_sane(const noc_scene *scene, double size) {
 }
 
 static void test_sizes(void **state) {
-    static const struct { double size; size_t triangles[2], lights[2]; } table[] = {
+    static const struct {
+        double size;
+        size_t triangles[2], lights[2];
+    } table[] = {
         { 150, { 10000, 80000 }, { 150, 2000 } },
         { 420, { 150000, 450000 }, { 4000, 10000 } },
         { 800, { 600000, 2000000 }, { 14000, 36000 } },
@@ -88,7 +92,8 @@ static void test_lit_share(void **state) {
         noc_scene *scene = city(420, shares[i], 7);
         noc_scene_info info;
         noc_scene_get_info(scene, &info);
-        double windows = (double)info.triangles_by_class[NOC_CLASS_WINDOW] / 2, lit = (double)named(scene, "window") / windows;
+        double windows = (double)info.triangles_by_class[NOC_CLASS_WINDOW] / 2,
+               lit = (double)named(scene, "window") / windows;
         assert_true(windows > 5000);
         assert_true(fabs(lit - shares[i]) < 0.04);
         assert_true(named(scene, "lamp") > 200);
@@ -104,7 +109,8 @@ static void test_lamps(void **state) {
         const noc_light_record *r = &scene->lights.data[i];
         if (strcmp(scene->light_names.data[i], "lamp"))
             continue;
-        double z, luminance = 0.2126 * r->e[0] + 0.7152 * r->e[1] + 0.0722 * r->e[2], lumens = M_PI * luminance * r->area;
+        double z, luminance = 0.2126 * r->e[0] + 0.7152 * r->e[1] + 0.0722 * r->e[2],
+                  lumens = M_PI * luminance * r->area;
         assert_true(noc_scene_ground(scene, r->p[0], r->p[1], &z));
         double height = r->p[2] - z;
         if (r->kind == NOC_LIGHT_SPHERE) {
@@ -126,10 +132,14 @@ static void test_lamps(void **state) {
 
 /* ---- rays ---- */
 
-typedef struct hit { double t; uint32_t triangle; } hit;
+typedef struct hit {
+    double t;
+    uint32_t triangle;
+} hit;
 
 /* The two nearest hits in [from, to]; nearest first. Light shapes count unless skip_lights. */
-static int nearest(const noc_scene *s, const double o[3], const double d[3], double from, double to, bool skip_lights, hit out[2]) {
+static int nearest(const noc_scene *s, const double o[3], const double d[3], double from, double to, bool skip_lights,
+                   hit out[2]) {
     int n = 0;
     for (size_t t = 0; t < s->indices.len / 3; t++) {
         if (skip_lights && s->triangle_light.data[t] != NOC_NO_LIGHT)
@@ -150,7 +160,8 @@ static int nearest(const noc_scene *s, const double o[3], const double d[3], dou
             continue;
         for (int k = 0; k < 3; k++)
             q[k] = w[(k + 1) % 3] * e1[(k + 2) % 3] - w[(k + 2) % 3] * e1[(k + 1) % 3];
-        double v = (d[0] * q[0] + d[1] * q[1] + d[2] * q[2]) / det, at = (e2[0] * q[0] + e2[1] * q[1] + e2[2] * q[2]) / det;
+        double v = (d[0] * q[0] + d[1] * q[1] + d[2] * q[2]) / det,
+               at = (e2[0] * q[0] + e2[1] * q[1] + e2[2] * q[2]) / det;
         if (v < 0 || u + v > 1 || at < from || at > to)
             continue;
         hit fresh = { at, (uint32_t)t };
@@ -176,7 +187,8 @@ static void test_windows_on_walls(void **state) {
             continue;
         double n[3], l = 0, back[3];
         for (int k = 0; k < 3; k++)
-            n[k] = (double)r->a[(k + 1) % 3] * r->b[(k + 2) % 3] - (double)r->a[(k + 2) % 3] * r->b[(k + 1) % 3], l += n[k] * n[k];
+            n[k] = (double)r->a[(k + 1) % 3] * r->b[(k + 2) % 3] - (double)r->a[(k + 2) % 3] * r->b[(k + 1) % 3],
+            l += n[k] * n[k];
         for (int k = 0; k < 3; k++)
             n[k] /= sqrt(l), back[k] = -n[k];
         bool open = false, fixed = true;
@@ -203,8 +215,8 @@ static double uniform(double lo, double hi) {
     return lo + (hi - lo) * (random_state >> 8) / 16777216.0;
 }
 
-/* Where a ray from the open air first meets something, it must not meet another material at the same distance. (Houses of
- * a row do share a wall; nobody sees it.) */
+/* Where a ray from the open air first meets something, it must not meet another material at the same distance. (Houses
+ * of a row do share a wall; nobody sees it.) */
 static void test_no_surface_twice(void **state) {
     noc_scene *scene = city(240, 0.35, 5);
     int hits = 0, twice = 0;
@@ -217,7 +229,8 @@ static void test_no_surface_twice(void **state) {
         hit h[2];
         int n = nearest(scene, o, d, 0, 1e9, false, h);
         hits += n > 0;
-        twice += n == 2 && h[1].t - h[0].t < 1e-5 && scene->triangle_material.data[h[0].triangle] != scene->triangle_material.data[h[1].triangle];
+        twice += n == 2 && h[1].t - h[0].t < 1e-5 &&
+                 scene->triangle_material.data[h[0].triangle] != scene->triangle_material.data[h[1].triangle];
     }
     assert_true(hits > 200);
     assert_int_equal(twice, 0);
@@ -259,9 +272,15 @@ static void test_no_params(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_deterministic), cmocka_unit_test(test_sizes), cmocka_unit_test(test_large),
-        cmocka_unit_test(test_lit_share),     cmocka_unit_test(test_lamps), cmocka_unit_test(test_windows_on_walls),
-        cmocka_unit_test(test_no_surface_twice), cmocka_unit_test(test_bad_params), cmocka_unit_test(test_no_params),
+        cmocka_unit_test(test_deterministic),
+        cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_large),
+        cmocka_unit_test(test_lit_share),
+        cmocka_unit_test(test_lamps),
+        cmocka_unit_test(test_windows_on_walls),
+        cmocka_unit_test(test_no_surface_twice),
+        cmocka_unit_test(test_bad_params),
+        cmocka_unit_test(test_no_params),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

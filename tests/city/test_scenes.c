@@ -1,4 +1,5 @@
-/* The built-in scenes: the same for the same seed, of the sizes asked for, faces outwards, lights where they stand or hang. */
+/* The built-in scenes: the same for the same seed, of the sizes asked for, faces outwards, lights where they stand or
+ * hang. */
 #include "../test.h"
 
 #include "scene/scene.h"
@@ -43,9 +44,14 @@ static void test_deterministic(void **state) {
 }
 
 static void test_sizes(void **state) {
-    static const struct { const char *name; size_t triangles[2], lights[2]; } table[] = {
-        { "cityscape", { 200000, 800000 }, { 2000, 6000 } }, { "mess", { 100000, 500000 }, { 3000, 3000 } },
-        { "single", { 20000, 150000 }, { 1, 1 } },           { "atrium", { 200000, 300000 }, { 1, 1 } },
+    static const struct {
+        const char *name;
+        size_t triangles[2], lights[2];
+    } table[] = {
+        { "cityscape", { 200000, 800000 }, { 2000, 6000 } },
+        { "mess", { 100000, 500000 }, { 3000, 3000 } },
+        { "single", { 20000, 150000 }, { 1, 1 } },
+        { "atrium", { 200000, 300000 }, { 1, 1 } },
     };
     for (size_t i = 0; i < NOC_COUNT(table); i++) {
         noc_scene *scene = make(table[i].name, 1, 3000);
@@ -86,14 +92,21 @@ static double volume(const noc_scene *s, const noc_scene_mesh *m) {
         for (uint32_t i = 0; i < 3; i++)
             p[i] = &s->positions.data[3 * (size_t)s->indices.data[3 * t + i]];
         for (int k = 0; k < 3; k++)
-            sum += (double)p[0][k] * ((double)p[1][(k + 1) % 3] * p[2][(k + 2) % 3] - (double)p[1][(k + 2) % 3] * p[2][(k + 1) % 3]) / 6;
+            sum += (double)p[0][k] *
+                   ((double)p[1][(k + 1) % 3] * p[2][(k + 2) % 3] - (double)p[1][(k + 2) % 3] * p[2][(k + 1) % 3]) / 6;
     }
     return sum;
 }
 
 static void test_faces_outwards(void **state) {
-    static const struct { const char *scene, *mesh; double least, most; size_t count; } table[] = {
-        { "mess", "object", 0.002, 1.6, 40 }, { "single", "knot", 0.5, 2.5, 1 }, { "single", "plinth", 2, 4.2, 1 },
+    static const struct {
+        const char *scene, *mesh;
+        double least, most;
+        size_t count;
+    } table[] = {
+        { "mess", "object", 0.002, 1.6, 40 },
+        { "single", "knot", 0.5, 2.5, 1 },
+        { "single", "plinth", 2, 4.2, 1 },
     };
     for (size_t i = 0; i < NOC_COUNT(table); i++) {
         noc_scene *s = make(table[i].scene, 1, 10);
@@ -158,7 +171,9 @@ static void test_mess(void **state) {
             double p[3]; /* the middle of the edge that it stands on, or the centre; a disc leans back by 53 degrees */
             for (int k = 0; k < 3; k++)
                 p[k] = (double)r->p[k] + (flat ? 0.5 * (double)r->a[k] : 0);
-            assert_true(distance_to_surface(s, p) < (flat ? 0.003 : r->kind == NOC_LIGHT_DISC ? 0.75 * r->radius : 1.1 * r->radius));
+            assert_true(distance_to_surface(s, p) < (flat                        ? 0.003
+                                                     : r->kind == NOC_LIGHT_DISC ? 0.75 * r->radius
+                                                                                 : 1.1 * r->radius));
         }
         noc_scene_destroy(s);
     }
@@ -207,7 +222,9 @@ static void test_wrong(void **state) {
         assert_int_equal(noc_scene_add_builtin(scene, "mess", &params), NOC_ERR_ARGUMENT);
         assert_int_equal(scene->indices.len, 0);
     }
-    const noc_camera bad[] = { { .up = { 0, 0, 1 }, .fov_deg = 50 }, { .target = { 1 }, .fov_deg = 50 }, { .target = { 1 }, .up = { 0, 0, 1 }, .fov_deg = 0 },
+    const noc_camera bad[] = { { .up = { 0, 0, 1 }, .fov_deg = 50 },
+                               { .target = { 1 }, .fov_deg = 50 },
+                               { .target = { 1 }, .up = { 0, 0, 1 }, .fov_deg = 0 },
                                { .target = { NAN }, .up = { 0, 0, 1 }, .fov_deg = 50 } };
     for (size_t i = 0; i < NOC_COUNT(bad); i++)
         assert_int_equal(noc_scene_set_camera(scene, &bad[i]), NOC_ERR_ARGUMENT);
@@ -224,8 +241,9 @@ static void test_wrong(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_deterministic), cmocka_unit_test(test_sizes), cmocka_unit_test(test_cameras), cmocka_unit_test(test_faces_outwards),
-        cmocka_unit_test(test_mess),          cmocka_unit_test(test_cityscape), cmocka_unit_test(test_wrong),
+        cmocka_unit_test(test_deterministic),  cmocka_unit_test(test_sizes), cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_faces_outwards), cmocka_unit_test(test_mess),  cmocka_unit_test(test_cityscape),
+        cmocka_unit_test(test_wrong),
     };
     return cmocka_run_group_tests_name("city/scenes", tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Helpers of the tests of src/core: random input that does not come from the code under test, and sums with their errors. */
+/* Helpers of the tests of src/core: random input that does not come from the code under test, and sums with their
+ * errors. */
 #ifndef TESTS_CORE_TEST_H
 #define TESTS_CORE_TEST_H
 
@@ -8,7 +9,9 @@
 #include <math.h>
 
 /* SplitMix64, and uniform numbers from it. */
-typedef struct dice { uint64_t state; } dice;
+typedef struct dice {
+    uint64_t state;
+} dice;
 
 static inline uint64_t roll(dice *d) {
     uint64_t z = d->state += 0x9e3779b97f4a7c15u;
@@ -37,7 +40,9 @@ static inline v3 random_direction(dice *d) {
 }
 
 /* Mean and the standard error of the mean. */
-typedef struct mean { double n, sum, squares; } mean;
+typedef struct mean {
+    double n, sum, squares;
+} mean;
 static inline void mean_add(mean *m, double x) {
     m->n++;
     m->sum += x;
@@ -49,14 +54,16 @@ static inline double mean_error(const mean *m) {
     return sqrt((v > 0 ? v : 0) / (m->n - 1));
 }
 /* Distance of the mean from the truth, in standard errors. */
-static inline double mean_off(const mean *m, double truth) { return fabs(mean_of(m) - truth) / (mean_error(m) + 1e-300); }
+static inline double mean_off(const mean *m, double truth) {
+    return fabs(mean_of(m) - truth) / (mean_error(m) + 1e-300);
+}
 
 static inline bool finite3(v3 a) { return isfinite(a.x) && isfinite(a.y) && isfinite(a.z); }
 
 #define assert_close(have, want, relative)                                                                             \
     do {                                                                                                               \
         double have_ = (have), want_ = (want);                                                                         \
-        if (!(fabs(have_ - want_) <= (relative) * fabs(want_)))                                                        \
+        if (!(fabs(have_ - want_) <= (relative)*fabs(want_)))                                                          \
             fail_msg("%s is %.9g, %s is %.9g", #have, have_, #want, want_);                                            \
     } while (0)
 

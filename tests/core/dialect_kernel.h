@@ -1,6 +1,7 @@
-/* Every function of src/core on random input, in the dialect itself: compiled as scalar C, as wide C and as GLSL. One item is
- * one set of inputs, made from its number alone; what the functions answer goes out through the bridge, slot by slot.
- * Includers supply put_real(CTX item, slot, x) and put_u32(CTX item, slot, x); ITEM_SLOTS is the number of slots. */
+/* Every function of src/core on random input, in the dialect itself: compiled as scalar C, as wide C and as GLSL. One
+ * item is one set of inputs, made from its number alone; what the functions answer goes out through the bridge, slot by
+ * slot. Includers supply put_real(CTX item, slot, x) and put_u32(CTX item, slot, x); ITEM_SLOTS is the number of slots.
+ */
 #ifndef DIALECT_KERNEL_H
 #define DIALECT_KERNEL_H
 
@@ -15,11 +16,14 @@
 FN real any_real(u32 key, u32 dim) {
     real x = rng(key, dim) * K(2.0f) - K(1.0f);
     u32 size = shr(rng_bits(key, dim + KU(1u)), 28);
-    real scale = sel(size < KU(4u), K(0.0625f), sel(size < KU(10u), K(8.0f), sel(size < KU(14u), K(256.0f), K(4096.0f))));
+    real scale =
+        sel(size < KU(4u), K(0.0625f), sel(size < KU(10u), K(8.0f), sel(size < KU(14u), K(256.0f), K(4096.0f))));
     return x * scale;
 }
 
-FN v3 any_v3(u32 key, u32 dim) { return V3(any_real(key, dim), any_real(key, dim + KU(2u)), any_real(key, dim + KU(4u))); }
+FN v3 any_v3(u32 key, u32 dim) {
+    return V3(any_real(key, dim), any_real(key, dim + KU(2u)), any_real(key, dim + KU(4u)));
+}
 
 FN v3 unit3(v3 a) {
     real d2 = dot3(a, a);

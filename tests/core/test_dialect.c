@@ -1,5 +1,5 @@
-/* One source, three readers: every function of src/core gives the same bits as scalar C, as C of 4, 8 and 16 lanes, and as
- * GLSL on a Vulkan device that rounds as C does; on other devices it stays within a tolerance. */
+/* One source, three readers: every function of src/core gives the same bits as scalar C, as C of 4, 8 and 16 lanes, and
+ * as GLSL on a Vulkan device that rounds as C does; on other devices it stays within a tolerance. */
 #include "../test.h"
 
 #include <math.h>
@@ -21,19 +21,67 @@ void dialect_run_16(uint32_t *out, uint32_t items);
 #endif
 
 /* First slot of each group of dialect_kernel.h, for messages. */
-static const struct { int first; const char *name; } groups[] = {
-    { 0, "random bits" },  { 1, "rng" },           { 2, "unit_low" },    { 3, "unit_high" },      { 4, "scale_u32" },
-    { 6, "circle" },       { 9, "around" },        { 12, "cosine_hemisphere" }, { 15, "cross3" }, { 18, "luminance" },
-    { 19, "sqrt_" },       { 20, "sphere" },       { 27, "disc" },       { 34, "triangle" },      { 41, "parallelogram" },
-    { 48, "point" },       { 55, "sample_light" }, { 56, "reflect, glossy" }, { 59, "reflect, diffuse" }, { 62, "target" },
-    { 63, "camera_project" }, { 66, "camera_direction" }, { 69, "abs_" }, { 70, "to_u32" },       { 71, "ris_uniform, 1 candidate" },
-    { 77, "ris_uniform" }, { 83, "resv_cap" },     { 89, "stream" },     { 95, "stream tag" },    { 96, "mis_scale" },
-    { 98, "pair_share" },  { 99, "pair_weight" },  { 100, "pair_canonical" }, { 101, "min_, max_" }, { 103, "selu" },
-    { 104, "shadow_segment, begin" }, { 107, "shadow_segment, way" }, { 110, "sky_radiance" }, { 113, "stand_off" },
-    { 114, "sky_numbers" }, { 116, "sky_direction" }, { 119, "visible_normal_direction" }, { 122, "sky_density" },
-    { 123, "sky_backdrop" }, { 126, "alias_draw" }, { 128, "alias_pmf" }, { 129, "tree_split" }, { 130, "tree_share_of" }, { 131, "tree_pmf" },
-    { 132, "influence_gives" }, { 133, "influence_pmf" }, { 134, "influence_uniform" }, { 135, "ris_given" },
-    { 141, "disc, close" }, { 148, "triangle, close" }, { 155, "parallelogram, close" }, { 162, "turn_of" },
+static const struct {
+    int first;
+    const char *name;
+} groups[] = {
+    { 0, "random bits" },
+    { 1, "rng" },
+    { 2, "unit_low" },
+    { 3, "unit_high" },
+    { 4, "scale_u32" },
+    { 6, "circle" },
+    { 9, "around" },
+    { 12, "cosine_hemisphere" },
+    { 15, "cross3" },
+    { 18, "luminance" },
+    { 19, "sqrt_" },
+    { 20, "sphere" },
+    { 27, "disc" },
+    { 34, "triangle" },
+    { 41, "parallelogram" },
+    { 48, "point" },
+    { 55, "sample_light" },
+    { 56, "reflect, glossy" },
+    { 59, "reflect, diffuse" },
+    { 62, "target" },
+    { 63, "camera_project" },
+    { 66, "camera_direction" },
+    { 69, "abs_" },
+    { 70, "to_u32" },
+    { 71, "ris_uniform, 1 candidate" },
+    { 77, "ris_uniform" },
+    { 83, "resv_cap" },
+    { 89, "stream" },
+    { 95, "stream tag" },
+    { 96, "mis_scale" },
+    { 98, "pair_share" },
+    { 99, "pair_weight" },
+    { 100, "pair_canonical" },
+    { 101, "min_, max_" },
+    { 103, "selu" },
+    { 104, "shadow_segment, begin" },
+    { 107, "shadow_segment, way" },
+    { 110, "sky_radiance" },
+    { 113, "stand_off" },
+    { 114, "sky_numbers" },
+    { 116, "sky_direction" },
+    { 119, "visible_normal_direction" },
+    { 122, "sky_density" },
+    { 123, "sky_backdrop" },
+    { 126, "alias_draw" },
+    { 128, "alias_pmf" },
+    { 129, "tree_split" },
+    { 130, "tree_share_of" },
+    { 131, "tree_pmf" },
+    { 132, "influence_gives" },
+    { 133, "influence_pmf" },
+    { 134, "influence_uniform" },
+    { 135, "ris_given" },
+    { 141, "disc, close" },
+    { 148, "triangle, close" },
+    { 155, "parallelogram, close" },
+    { 162, "turn_of" },
     { 163, "spot" },
 };
 
@@ -80,8 +128,9 @@ static void expect_same(const char *what, const uint32_t *have, const uint32_t *
             if (same(have[at], want[at], holds_integers(slot), flushes))
                 continue;
             if (!here++)
-                print_message("# %s: slot %d (%s), item %zu: %08x (%.9g), scalar C has %08x (%.9g)\n", what, slot, group_name(slot),
-                              i, (unsigned)have[at], as_float(have[at]), (unsigned)want[at], as_float(want[at]));
+                print_message("# %s: slot %d (%s), item %zu: %08x (%.9g), scalar C has %08x (%.9g)\n", what, slot,
+                              group_name(slot), i, (unsigned)have[at], as_float(have[at]), (unsigned)want[at],
+                              as_float(want[at]));
         }
         different += here;
     }

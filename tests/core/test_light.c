@@ -36,7 +36,8 @@ static double irradiance(light l, v3 y, v3 n, int side) {
     return sum / ((double)side * side);
 }
 
-/* Lambert's formula for a polygon (corners in order, seen from its front), clipped by the receiver's horizon; doubles. */
+/* Lambert's formula for a polygon (corners in order, seen from its front), clipped by the receiver's horizon; doubles.
+ */
 static double polygon_irradiance(const v3 *corners, int count, v3 y, v3 n) {
     double p[16][3], h[16], q[16][3];
     int m = 0;
@@ -138,7 +139,8 @@ static double solid_angle(const v3 *corners, int i, int j, int k, v3 y) {
     int at[3] = { i, j, k };
     double p[3][3];
     for (int m = 0; m < 3; m++) {
-        double w[3] = { (double)corners[at[m]].x - y.x, (double)corners[at[m]].y - y.y, (double)corners[at[m]].z - y.z };
+        double w[3] = { (double)corners[at[m]].x - y.x, (double)corners[at[m]].y - y.y,
+                        (double)corners[at[m]].z - y.z };
         double len = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
         for (int c = 0; c < 3; c++)
             p[m][c] = w[c] / len;
@@ -153,8 +155,8 @@ static double solid_angle(const v3 *corners, int i, int j, int k, v3 y) {
     return 2 * atan2(fabs(det), dots);
 }
 
-/* From close by every place stands for the same solid angle, so a sample's light only differs by the receiver's cosine; places
- * cover the light evenly in solid angle: all receivers' irradiances are Lambert's. */
+/* From close by every place stands for the same solid angle, so a sample's light only differs by the receiver's cosine;
+ * places cover the light evenly in solid angle: all receivers' irradiances are Lambert's. */
 static void check_close(uint32_t kind, uint64_t seed) {
     dice d = { seed };
     int checked = 0;
@@ -170,7 +172,8 @@ static void check_close(uint32_t kind, uint64_t seed) {
         if (dot3(w, w) > 3.9f * l.radius * l.radius)
             continue;
         bool whole = kind == LIGHT_PARALLELOGRAM;
-        double angle = whole ? solid_angle(corners, 0, 1, 2, y) + solid_angle(corners, 0, 2, 3, y) : solid_angle(corners, 0, 1, 3, y);
+        double angle = whole ? solid_angle(corners, 0, 1, 2, y) + solid_angle(corners, 0, 2, 3, y)
+                             : solid_angle(corners, 0, 1, 3, y);
         for (int k = 0; k < 16; k++) {
             light_sample s = sample_light(l, y, (float)uniform(&d, 0, 1), (float)uniform(&d, 0, 1));
             assert_close(s.le.x, L * angle, 1e-4);
@@ -187,10 +190,12 @@ static void check_close(uint32_t kind, uint64_t seed) {
 static void test_close_parallelogram(void **state) { check_close(LIGHT_PARALLELOGRAM, 10); }
 static void test_close_triangle(void **state) { check_close(LIGHT_TRIANGLE, 11); }
 
-/* A window of 1 x 1.5 m, 1 cm over a table: its middle, under an edge, beside a corner. One sample is never far off: where the
- * window is all that is seen, no place gives more than twice the mean (the cosine's range); by area it is 15,000 / pi times. */
+/* A window of 1 x 1.5 m, 1 cm over a table: its middle, under an edge, beside a corner. One sample is never far off:
+ * where the window is all that is seen, no place gives more than twice the mean (the cosine's range); by area it is
+ * 15,000 / pi times. */
 static void test_close_window(void **state) {
-    const v3 up = V3(0, 0, 1), places[] = { { 0.5f, 0.75f, 0 }, { 0.3f, 0.2f, 0 }, { 0, 0.6f, 0 }, { 1.005f, 1.502f, 0 } };
+    const v3 up = V3(0, 0, 1),
+             places[] = { { 0.5f, 0.75f, 0 }, { 0.3f, 0.2f, 0 }, { 0, 0.6f, 0 }, { 1.005f, 1.502f, 0 } };
     light l = make_flat(LIGHT_PARALLELOGRAM, V3(0, 0, 0.01f), V3(0, 1.5f, 0), V3(1, 0, 0));
     for (size_t i = 0; i < sizeof(places) / sizeof(*places); i++) {
         v3 y = places[i], corners[4] = { l.p, add3(l.p, l.a), add3(l.p, add3(l.a, l.b)), add3(l.p, l.b) };
@@ -258,19 +263,22 @@ static void test_point(void **state) {
     }
 }
 
-/* A spot with the cones' cosines ci and co, by the extension's own words: scale 1 / (ci - co), offset -co times that. */
+/* A spot with the cones' cosines ci and co, by the extension's own words: scale 1 / (ci - co), offset -co times that.
+ */
 static light make_spot(v3 p, v3 axis, double ci, double co) {
     float s = (float)(1 / (ci - co));
     v3 b = V3((float)(-co / (ci - co)), 0, 0);
     return (light){ .p = p, .kind = LIGHT_SPOT, .a = mul3(axis, s), .b = b, .e = { L, L, L } };
 }
 
-/* E = I f^2 cos / d^2: f is 1 within the inner cone, 0 beyond the outer one, linear in the angle's cosine between them. */
+/* E = I f^2 cos / d^2: f is 1 within the inner cone, 0 beyond the outer one, linear in the angle's cosine between them.
+ */
 static void test_spot(void **state) {
     dice d = { 15 };
     int inside = 0, between = 0, outside = 0;
     for (int i = 0; i < 3000; i++) {
-        double outer = uniform(&d, 0.05, M_PI / 2), inner = uniform(&d, 0, 0.95) * outer, co = cos(outer), ci = cos(inner);
+        double outer = uniform(&d, 0.05, M_PI / 2), inner = uniform(&d, 0, 0.95) * outer, co = cos(outer),
+               ci = cos(inner);
         v3 axis = random_direction(&d), n = random_direction(&d), y = random_in_box(&d, 30);
         light l = make_spot(random_in_box(&d, 30), axis, ci, co);
         if (i % 2) /* near the axis */
@@ -325,7 +333,8 @@ static void test_samples_lie_on_the_light(void **state) {
             if (kind == LIGHT_DISC)
                 assert_true(cu * cu + cv * cv < 1 + 2 * e);
             else
-                assert_true(cu > -e && cv > -e && (kind == LIGHT_TRIANGLE ? cu + cv < 1 + 2 * e : cu < 1 + e && cv < 1 + e));
+                assert_true(cu > -e && cv > -e &&
+                            (kind == LIGHT_TRIANGLE ? cu + cv < 1 + 2 * e : cu < 1 + e && cv < 1 + e));
         }
     }
 }
@@ -366,25 +375,35 @@ static float odd_number(dice *d, double largest) {
     default: return (float)(uniform(d, -1, 1) * pow(10, uniform(d, -6, log10(largest))));
     }
 }
-static v3 odd_v3(dice *d, double largest) { return V3(odd_number(d, largest), odd_number(d, largest), odd_number(d, largest)); }
+static v3 odd_v3(dice *d, double largest) {
+    return V3(odd_number(d, largest), odd_number(d, largest), odd_number(d, largest));
+}
 
 /* Coordinates to 10,000 km, lights to 10 km, 1e9 cd/m2: nothing but finite numbers comes out. */
 static void test_extreme_input(void **state) {
     dice d = { 8 };
     size_t lit = 0;
     for (int i = 0; i < 400000; i++) {
-        light l = { .p = odd_v3(&d, 1e7), .kind = (uint32_t)(roll(&d) % (LIGHT_SPOT + 1)), .a = odd_v3(&d, 1e4),
-                    .b = odd_v3(&d, 1e4), .radius = fabsf(odd_number(&d, 1e4)), .flags = (uint32_t)(roll(&d) & 1),
+        light l = { .p = odd_v3(&d, 1e7),
+                    .kind = (uint32_t)(roll(&d) % (LIGHT_SPOT + 1)),
+                    .a = odd_v3(&d, 1e4),
+                    .b = odd_v3(&d, 1e4),
+                    .radius = fabsf(odd_number(&d, 1e4)),
+                    .flags = (uint32_t)(roll(&d) & 1),
                     .e = { 1e9f, 1e9f, 1e9f } };
-        surf s = { .p = roll(&d) % 4 ? odd_v3(&d, 1e7) : add3(l.p, odd_v3(&d, 1)), .n = random_direction(&d),
-                   .albedo = { .5f, .5f, .5f }, .f0 = roll(&d) & 1 ? 0 : 0.5f, .alpha = roll(&d) & 1 ? 0.0025f : 1 };
+        surf s = { .p = roll(&d) % 4 ? odd_v3(&d, 1e7) : add3(l.p, odd_v3(&d, 1)),
+                   .n = random_direction(&d),
+                   .albedo = { .5f, .5f, .5f },
+                   .f0 = roll(&d) & 1 ? 0 : 0.5f,
+                   .alpha = roll(&d) & 1 ? 0.0025f : 1 };
         s.wo = roll(&d) % 4 ? random_direction(&d) : s.n;
         float u = (float)(roll(&d) % 3) / 2, v = (float)uniform(&d, 0, 1);
         light_sample got = sample_light(l, s.p, u, v);
         v3 c = reflected(s, got);
         float p = target(s, l, u, v);
         if (!finite3(got.wi) || !isfinite(got.dist) || !finite3(got.le) || !finite3(c))
-            fail_msg("case %d, kind %u: wi %g %g %g, dist %g, le %g", i, l.kind, got.wi.x, got.wi.y, got.wi.z, got.dist, got.le.x);
+            fail_msg("case %d, kind %u: wi %g %g %g, dist %g, le %g", i, l.kind, got.wi.x, got.wi.y, got.wi.z, got.dist,
+                     got.le.x);
         assert_true(got.le.x >= 0 && got.dist >= -l.radius && p >= 0 && isfinite(p));
         lit += p > 0;
     }
@@ -399,11 +418,18 @@ static void test_target_of_nonsense(void **state) {
         float f[32];
         for (int j = 0; j < 32; j++)
             f[j] = roll(&d) % 3 ? (float)uniform(&d, -2, 2) : bad[roll(&d) % 8];
-        light l = { .p = { f[0], f[1], f[2] }, .kind = (uint32_t)(roll(&d) % (LIGHT_SPOT + 1)),
-                    .a = { f[3], f[4], f[5] }, .b = { f[6], f[7], f[8] }, .radius = f[9],
+        light l = { .p = { f[0], f[1], f[2] },
+                    .kind = (uint32_t)(roll(&d) % (LIGHT_SPOT + 1)),
+                    .a = { f[3], f[4], f[5] },
+                    .b = { f[6], f[7], f[8] },
+                    .radius = f[9],
                     .e = { f[10], f[11], f[12] } };
-        surf s = { .p = { f[13], f[14], f[15] }, .n = { f[16], f[17], f[18] }, .wo = { f[19], f[20], f[21] },
-                   .albedo = { f[22], f[23], f[24] }, .f0 = f[25], .alpha = f[26] };
+        surf s = { .p = { f[13], f[14], f[15] },
+                   .n = { f[16], f[17], f[18] },
+                   .wo = { f[19], f[20], f[21] },
+                   .albedo = { f[22], f[23], f[24] },
+                   .f0 = f[25],
+                   .alpha = f[26] };
         float p = target(s, l, (float)uniform(&d, 0, 1), (float)uniform(&d, 0, 1));
         assert_true(p >= 0 && isfinite(p));
     }

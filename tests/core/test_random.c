@@ -45,7 +45,8 @@ static double worst_uniformity(bits_fn *bits) {
                 uint32_t at[3], next[3];
                 walk(axis, i, at);
                 walk(axis, i + 1, next);
-                uint32_t pair = (bits(at[0], at[1], at[2]) >> shift & 15) << 4 | (bits(next[0], next[1], next[2]) >> shift & 15);
+                uint32_t pair =
+                    (bits(at[0], at[1], at[2]) >> shift & 15) << 4 | (bits(next[0], next[1], next[2]) >> shift & 15);
                 bins[pair]++;
             }
             worst = fmax(worst, fabs(chi_square(bins, 256, N)));
@@ -74,8 +75,8 @@ static double worst_correlation(bits_fn *bits) {
     return worst;
 }
 
-/* 24 values of chi-square and 63 correlations: 5 standard deviations are out of reach of a good generator. (Chi-square of 255
- * degrees of freedom is skewed: 5 of its deviations are rarer than 1e-5.) */
+/* 24 values of chi-square and 63 correlations: 5 standard deviations are out of reach of a good generator. (Chi-square
+ * of 255 degrees of freedom is skewed: 5 of its deviations are rarer than 1e-5.) */
 static void test_uniform_and_independent(void **state) {
     assert_true(worst_uniformity(good) < 5);
     assert_true(worst_correlation(good) < 5);
@@ -111,7 +112,8 @@ static void test_ranges(void **state) {
 
 static void test_scale(void **state) {
     dice d = { 4 };
-    static const uint32_t edges[] = { 0, 1, 2, 3, 0xffff, 0x10000, 0x10001, 0x7fffffff, 0x80000000, 0xfffffffe, 0xffffffff };
+    static const uint32_t edges[] = { 0,       1,          2,          3,          0xffff,    0x10000,
+                                      0x10001, 0x7fffffff, 0x80000000, 0xfffffffe, 0xffffffff };
     for (int i = 0; i < 11; i++)
         for (int j = 0; j < 11; j++)
             assert_true(scale_u32(edges[i], edges[j]) == (uint32_t)((unsigned __int128)edges[i] * edges[j] >> 32));
@@ -138,13 +140,23 @@ static void test_circle(void **state) {
     }
     print_message("# circle: error %.3g, off the circle by %.3g\n", worst, round);
     assert_true(worst < 4e-7 && round < 8e-7);
-    assert_true(circle(0).x == 1 && circle(0).y == 0 && circle(1).x == 1 && circle(0.25f).y == 1 && circle(0.5f).x == -1);
+    assert_true(circle(0).x == 1 && circle(0).y == 0 && circle(1).x == 1 && circle(0.25f).y == 1 &&
+                circle(0.5f).x == -1);
 }
 
 static void test_around(void **state) {
     dice d = { 5 };
     for (int i = 0; i < 200000; i++) {
-        v3 n = i < 6 ? V3(i == 0 ? 1 : i == 1 ? -1 : 0, i == 2 ? 1 : i == 3 ? -1 : 0, i == 4 ? 1 : i == 5 ? -1 : 0) : random_direction(&d);
+        v3 n = i < 6 ? V3(i == 0   ? 1
+                          : i == 1 ? -1
+                                   : 0,
+                          i == 2   ? 1
+                          : i == 3 ? -1
+                                   : 0,
+                          i == 4   ? 1
+                          : i == 5 ? -1
+                                   : 0)
+                     : random_direction(&d);
         v3 x = around(n, 1, 0, 0), y = around(n, 0, 1, 0), z = around(n, 0, 0, 1);
         float e = 1e-6f;
         assert_true(fabsf(dot3(x, y)) < e && fabsf(dot3(x, z)) < e && fabsf(dot3(y, z)) < e);

@@ -4,7 +4,9 @@
 #include "core/wide_load.h"
 
 enum { LIGHTS = 40 };
-struct core_context { light lights[LIGHTS]; };
+struct core_context {
+    light lights[LIGHTS];
+};
 FN light light_load(CTX u32 i) { return ctx->lights[i]; }
 
 #include "core/reuse.h"
@@ -16,8 +18,9 @@ static void make_lights(struct core_context *ctx) {
     for (int i = 0; i < LIGHTS; i++) {
         v3 p = add3(random_in_box(&d, 4), V3(0, 0, 4.5f));
         light *l = &ctx->lights[i];
-        *l = (light){ .p = p, .kind = (uint32_t)i % (LIGHT_SPOT + 1), .radius = 0.3f,
-                      .e = { (float)uniform(&d, 5, 300), 20, 40 } };
+        *l = (light){
+            .p = p, .kind = (uint32_t)i % (LIGHT_SPOT + 1), .radius = 0.3f, .e = { (float)uniform(&d, 5, 300), 20, 40 }
+        };
         if (l->kind == LIGHT_POINT)
             continue;
         v3 a = random_direction(&d);
@@ -29,11 +32,16 @@ static void make_lights(struct core_context *ctx) {
 }
 
 static surf make_surface(void) {
-    return (surf){ .p = { 0.3f, -0.2f, 0 }, .n = { 0, 0, 1 }, .wo = normalised(V3(0.6f, 0.1f, 0.5f)),
-                   .albedo = { .3f, .5f, .2f }, .f0 = 0.05f, .alpha = 0.2f };
+    return (surf){ .p = { 0.3f, -0.2f, 0 },
+                   .n = { 0, 0, 1 },
+                   .wo = normalised(V3(0.6f, 0.1f, 0.5f)),
+                   .albedo = { .3f, .5f, .2f },
+                   .f0 = 0.05f,
+                   .alpha = 0.2f };
 }
 
-/* What is estimated is red light, while the target is luminance: W must be right for every function, not for the target. */
+/* What is estimated is red light, while the target is luminance: W must be right for every function, not for the
+ * target. */
 static double red(const struct core_context *ctx, surf s, resv r) {
     return r.w > 0 ? reflected(s, sample_light(ctx->lights[r.light], s.p, r.u, r.v)).x * (double)r.w : 0;
 }
@@ -133,7 +141,8 @@ static void test_stream_is_proportional(void **state) {
     for (int i = 0; i < N; i++) {
         stream st = stream_empty();
         for (uint32_t k = 0; k < 7; k++)
-            st = stream_add(st, k, 0, 0, 1, weights[k], 2, (float)k, k == 1 && i % 2 ? 0 : (float)uniform(&d, 0, 0.99999994));
+            st = stream_add(st, k, 0, 0, 1, weights[k], 2, (float)k,
+                            k == 1 && i % 2 ? 0 : (float)uniform(&d, 0, 0.99999994));
         assert_true(st.m == 14 && st.w_sum == 7.5f && st.tag == (float)st.light);
         held[st.light]++;
     }
@@ -162,8 +171,8 @@ enum { SAMPLES = 6, PIXELS = 4 };
 typedef struct toy {
     float p[PIXELS][SAMPLES]; /* targets; pixel 0 is where the reservoirs are combined */
     bool seen[PIXELS][SAMPLES];
-    double f[SAMPLES];        /* what is estimated, at pixel 0 */
-    int m[PIXELS];            /* candidates of each */
+    double f[SAMPLES]; /* what is estimated, at pixel 0 */
+    int m[PIXELS];     /* candidates of each */
 } toy;
 
 /* Neighbours that cannot make samples pixel 0 needs, and others that like them too much. */
@@ -192,7 +201,8 @@ static resv initial(const toy *t, int pixel, dice *d) {
     stream st = stream_empty();
     for (int i = 0; i < t->m[pixel]; i++) {
         uint32_t id = (uint32_t)(roll(d) % SAMPLES);
-        st = stream_add(st, id, 0, 0, t->p[pixel][id], t->p[pixel][id] * SAMPLES, 1, 0, (float)uniform(d, 0, 0.99999994));
+        st = stream_add(st, id, 0, 0, t->p[pixel][id], t->p[pixel][id] * SAMPLES, 1, 0,
+                        (float)uniform(d, 0, 0.99999994));
     }
     resv r = stream_end(st, 1.0f / (float)t->m[pixel]);
     if (!t->seen[pixel][r.light])
@@ -207,7 +217,8 @@ static float target_at(const toy *t, int pixel, uint32_t x, bool rays) {
     return rays && !t->seen[pixel][x] ? 0 : t->p[pixel][x];
 }
 
-/* Combination of r[0] (canonical) with the others at pixel 0. CARELESS counts only the neighbours that brought something. */
+/* Combination of r[0] (canonical) with the others at pixel 0. CARELESS counts only the neighbours that brought
+ * something. */
 static resv combine(const toy *t, const resv *r, mode how, bool rays, dice *d) {
     stream st = stream_empty();
     if (how == PAIRWISE) {
@@ -219,9 +230,11 @@ static resv combine(const toy *t, const resv *r, mode how, bool rays, dice *d) {
             float share = r[i].m / m_n;
             float w = pair_weight(share, m_n, target_at(t, i, x, rays), r[0].m, target_at(t, 0, x, rays), r[i].w);
             st = stream_add(st, x, 0, 0, t->p[0][x], w, r[i].m, (float)i, (float)uniform(d, 0, 0.99999994));
-            m_c += pair_canonical(share, m_n, target_at(t, i, r[0].light, rays), r[0].m, target_at(t, 0, r[0].light, rays));
+            m_c += pair_canonical(share, m_n, target_at(t, i, r[0].light, rays), r[0].m,
+                                  target_at(t, 0, r[0].light, rays));
         }
-        st = stream_add(st, r[0].light, 0, 0, r[0].p, m_c * r[0].p * r[0].w, r[0].m, 0, (float)uniform(d, 0, 0.99999994));
+        st = stream_add(st, r[0].light, 0, 0, r[0].p, m_c * r[0].p * r[0].w, r[0].m, 0,
+                        (float)uniform(d, 0, 0.99999994));
         return stream_end(st, 1);
     }
     for (int i = 0; i < PIXELS; i++) {
@@ -265,7 +278,8 @@ static mean simulate(const toy *t, mode how, bool rays, bool twice, uint64_t see
 static void expect(const char *what, const toy *t, mode how, bool rays, bool twice, bool unbiased) {
     mean m = simulate(t, how, rays, twice, 31 + (uint64_t)how);
     double off = mean_off(&m, truth_of(t));
-    print_message("# %s: %.4f +- %.4f of %.4f (%.1f standard errors)\n", what, mean_of(&m), mean_error(&m), truth_of(t), off);
+    print_message("# %s: %.4f +- %.4f of %.4f (%.1f standard errors)\n", what, mean_of(&m), mean_error(&m), truth_of(t),
+                  off);
     if (unbiased)
         assert_true(off < 4);
     else

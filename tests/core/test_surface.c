@@ -4,7 +4,9 @@
 #include "core/warp.h"
 
 static surf make_surface(v3 wo, float albedo, float f0, float roughness) {
-    return (surf){ .n = { 0, 0, 1 }, .wo = wo, .albedo = { albedo, albedo, albedo }, .f0 = f0, .alpha = roughness * roughness };
+    return (surf){
+        .n = { 0, 0, 1 }, .wo = wo, .albedo = { albedo, albedo, albedo }, .f0 = f0, .alpha = roughness * roughness
+    };
 }
 
 /* A direction `cosine` over the surface. */
@@ -65,12 +67,14 @@ static void test_energy(void **state) {
             for (int c = 0; c < 8; c++) {
                 double error, e = furnace(make_surface(tilted(cosines[c], 2), 1, f0s[f], roughs[r]), 11, 20000, &error);
                 if (e - 4 * error > 1)
-                    fail_msg("f0 %g, roughness %g, cosine %g reflects %g +- %g", f0s[f], roughs[r], cosines[c], e, error);
+                    fail_msg("f0 %g, roughness %g, cosine %g reflects %g +- %g", f0s[f], roughs[r], cosines[c], e,
+                             error);
                 most = fmax(most, e);
                 if (f < 2 && cosines[c] > 0.3)
                     least = fmin(least, e);
             }
-    print_message("# white under gloss reflects at most %.3f; white walls (f0 <= 0.04), not grazing: at least %.3f\n", most, least);
+    print_message("# white under gloss reflects at most %.3f; white walls (f0 <= 0.04), not grazing: at least %.3f\n",
+                  most, least);
     assert_true(least > 0.8);
     /* a smooth mirror gives back what Fresnel says */
     double error, mirror = furnace(make_surface(tilted(0.8, 0), 0, 1, 0.05f), 12, 50000, &error);
@@ -138,11 +142,18 @@ static void test_nothing_from_behind(void **state) {
 static void test_target_is_luminance(void **state) {
     dice d = { 4 };
     for (int i = 0; i < 100000; i++) {
-        light l = { .p = random_in_box(&d, 5), .kind = (uint32_t)(roll(&d) % (LIGHT_SPOT + 1)),
-                    .a = random_in_box(&d, 1), .b = random_in_box(&d, 1), .radius = 0.3f,
-                    .flags = LIGHT_TWO_SIDED, .e = { 50, 100, 20 } };
-        surf s = { .p = random_in_box(&d, 5), .n = random_direction(&d), .albedo = { .9f, .2f, .4f },
-                   .f0 = roll(&d) & 1 ? 0.04f : 0, .alpha = 0.3f };
+        light l = { .p = random_in_box(&d, 5),
+                    .kind = (uint32_t)(roll(&d) % (LIGHT_SPOT + 1)),
+                    .a = random_in_box(&d, 1),
+                    .b = random_in_box(&d, 1),
+                    .radius = 0.3f,
+                    .flags = LIGHT_TWO_SIDED,
+                    .e = { 50, 100, 20 } };
+        surf s = { .p = random_in_box(&d, 5),
+                   .n = random_direction(&d),
+                   .albedo = { .9f, .2f, .4f },
+                   .f0 = roll(&d) & 1 ? 0.04f : 0,
+                   .alpha = 0.3f };
         s.wo = random_direction(&d);
         if (dot3(s.n, s.wo) < 0)
             s.wo = mul3(s.wo, -1);

@@ -5,8 +5,8 @@
 #include <string.h>
 #include <vulkan/vulkan.h>
 
-/* Drivers leak a little and are unloaded before leaks are looked for, so that no suppression can name them: what is allocated
- * inside the loader's calls is not counted. */
+/* Drivers leak a little and are unloaded before leaks are looked for, so that no suppression can name them: what is
+ * allocated inside the loader's calls is not counted. */
 #if defined(__SANITIZE_ADDRESS__)
 #include <sanitizer/lsan_interface.h>
 #define THEIRS(call) (__lsan_disable(), ours_again(call))
@@ -51,7 +51,7 @@ static bool fail(vulkan_run *run, const char *what, VkResult result) {
 
 #define TRY(call)                                                                                                      \
     do {                                                                                                               \
-        VkResult result_ = THEIRS(call);                                                                                     \
+        VkResult result_ = THEIRS(call);                                                                               \
         if (result_ != VK_SUCCESS)                                                                                     \
             return fail(run, #call, result_);                                                                          \
     } while (0)
@@ -86,7 +86,8 @@ static bool make_instance(vulkan_run *run) {
     const char *layers[] = { LAYER }, *extensions[] = { VK_EXT_DEBUG_UTILS_EXTENSION_NAME };
     VkDebugUtilsMessengerCreateInfoEXT messages = {
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
-        .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        .messageSeverity =
+            VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
         .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
         .pfnUserCallback = on_message,
         .pUserData = run,
@@ -103,8 +104,8 @@ static bool make_instance(vulkan_run *run) {
     };
     TRY(vkCreateInstance(&info, NULL, &s->instance));
     if (run->validated) {
-        PFN_vkCreateDebugUtilsMessengerEXT create = (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
-            s->instance, "vkCreateDebugUtilsMessengerEXT");
+        PFN_vkCreateDebugUtilsMessengerEXT create =
+            (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(s->instance, "vkCreateDebugUtilsMessengerEXT");
         TRY(create(s->instance, &messages, NULL, &s->messenger));
     }
     return true;
@@ -159,8 +160,8 @@ void vulkan_close(vulkan_run *run) {
     if (s->device)
         vkDestroyDevice(s->device, NULL);
     if (s->messenger) {
-        PFN_vkDestroyDebugUtilsMessengerEXT destroy = (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
-            s->instance, "vkDestroyDebugUtilsMessengerEXT");
+        PFN_vkDestroyDebugUtilsMessengerEXT destroy =
+            (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(s->instance, "vkDestroyDebugUtilsMessengerEXT");
         destroy(s->instance, s->messenger, NULL);
     }
     if (s->instance)
@@ -180,8 +181,8 @@ static bool make_buffer(vulkan_run *run, job *j, size_t bytes) {
     vkGetPhysicalDeviceMemoryProperties(run->state->physical, &memory);
     VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     uint32_t type = 0;
-    while (type < memory.memoryTypeCount && !((need.memoryTypeBits >> type & 1) &&
-                                              (memory.memoryTypes[type].propertyFlags & wanted) == wanted))
+    while (type < memory.memoryTypeCount &&
+           !((need.memoryTypeBits >> type & 1) && (memory.memoryTypes[type].propertyFlags & wanted) == wanted))
         type++;
     if (type == memory.memoryTypeCount)
         return fail(run, "no memory that the host sees", VK_ERROR_FEATURE_NOT_PRESENT);
@@ -226,10 +227,9 @@ static bool make_pipeline(vulkan_run *run, job *j, const uint32_t *spirv, size_t
 
 static bool make_set(vulkan_run *run, job *j) {
     VkDescriptorPoolSize size = { VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1 };
-    VkDescriptorPoolCreateInfo pool = { .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                        .maxSets = 1,
-                                        .poolSizeCount = 1,
-                                        .pPoolSizes = &size };
+    VkDescriptorPoolCreateInfo pool = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, .maxSets = 1, .poolSizeCount = 1, .pPoolSizes = &size
+    };
     TRY(vkCreateDescriptorPool(j->device, &pool, NULL, &j->descriptors));
     VkDescriptorSetAllocateInfo allocate = { .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                              .descriptorPool = j->descriptors,
@@ -266,12 +266,14 @@ static bool dispatch(vulkan_run *run, job *j, const void *push, uint32_t push_by
     VkMemoryBarrier barrier = { .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
                                 .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
                                 .dstAccessMask = VK_ACCESS_HOST_READ_BIT };
-    vkCmdPipelineBarrier(command, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &barrier, 0, NULL,
-                         0, NULL);
+    vkCmdPipelineBarrier(command, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &barrier, 0,
+                         NULL, 0, NULL);
     TRY(vkEndCommandBuffer(command));
     VkFenceCreateInfo fence = { .sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO };
     TRY(vkCreateFence(j->device, &fence, NULL, &j->fence));
-    VkSubmitInfo submit = { .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &command };
+    VkSubmitInfo submit = { .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                            .commandBufferCount = 1,
+                            .pCommandBuffers = &command };
     TRY(vkQueueSubmit(run->state->queue, 1, &submit, j->fence));
     TRY(vkWaitForFences(j->device, 1, &j->fence, VK_TRUE, UINT64_MAX));
     return true;
@@ -280,8 +282,8 @@ static bool dispatch(vulkan_run *run, job *j, const void *push, uint32_t push_by
 bool vulkan_compute(vulkan_run *run, const uint32_t *spirv, size_t spirv_bytes, const void *push, uint32_t push_bytes,
                     uint32_t groups, void *out, size_t out_bytes) {
     job j = { .device = run->state->device };
-    bool ok = make_buffer(run, &j, out_bytes) && make_pipeline(run, &j, spirv, spirv_bytes, push_bytes) && make_set(run, &j) &&
-              dispatch(run, &j, push, push_bytes, groups);
+    bool ok = make_buffer(run, &j, out_bytes) && make_pipeline(run, &j, spirv, spirv_bytes, push_bytes) &&
+              make_set(run, &j) && dispatch(run, &j, push, push_bytes, groups);
     if (ok) {
         void *mapped;
         VkResult result = vkMapMemory(j.device, j.memory, 0, VK_WHOLE_SIZE, 0, &mapped);

@@ -15,7 +15,9 @@
 
 static void silent(void *user, noc_log_level level, const char *text) { (void)user, (void)level, (void)text; }
 
-static noc_log *quiet_log(void) { return noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = silent }); }
+static noc_log *quiet_log(void) {
+    return noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = silent });
+}
 
 static void test_spellings(void **state) {
     (void)state;
@@ -28,7 +30,8 @@ static void test_spellings(void **state) {
         { "urn:adv:crs:DE_DHDN_3GK2_NW101", "EPSG:31466 (DHDN / 3-degree Gauss-Kruger zone 2)", false, true },
         { "urn:adv:crs:DE_DHDN_3GK4*DE_DHHN92_NH", "EPSG:31468 (DHDN / 3-degree Gauss-Kruger zone 4)", false, true },
         { "urn:adv:crs:ETRS89_Lat-Lon", "EPSG:4258 (ETRS89)", true, true },
-        { "urn:ogc:def:crs,crs:EPSG:6.12:25833,crs:EPSG:6.12:5783", "EPSG:25833 (ETRS89 / UTM zone 33N)", false, false },
+        { "urn:ogc:def:crs,crs:EPSG:6.12:25833,crs:EPSG:6.12:5783", "EPSG:25833 (ETRS89 / UTM zone 33N)", false,
+          false },
         { "urn:ogc:def:crs,crs:EPSG:6.12:3068,crs:EPSG:6.12:5783", "EPSG:3068 (DHDN / Soldner Berlin)", false, true },
         { "urn:ogc:def:crs:EPSG::7415", "EPSG:28992 (Amersfoort / RD New)", false, false },
         { "urn:ogc:def:crs:EPSG:6.9:4326", "EPSG:4326 (WGS 84)", true, true },
@@ -39,7 +42,8 @@ static void test_spellings(void **state) {
         { "https://www.opengis.net/def/crs/EPSG/0/2056", "EPSG:2056 (CH1903+ / LV95)", false, false },
         { "http://www.opengis.net/gml/srs/epsg.xml#4326", "EPSG:4326 (WGS 84)", true, true },
         { "http://www.opengis.net/def/crs-compound?1=http://www.opengis.net/def/crs/EPSG/0/28992&"
-          "2=http://www.opengis.net/def/crs/EPSG/0/5709", "EPSG:28992 (Amersfoort / RD New)", false, false },
+          "2=http://www.opengis.net/def/crs/EPSG/0/5709",
+          "EPSG:28992 (Amersfoort / RD New)", false, false },
         { "EPSG:25833", "EPSG:25833 (ETRS89 / UTM zone 33N)", false, false },
         { "epsg:31256", "EPSG:31256 (MGI / Austria GK East)", false, true },
         { "EPSG:25832+7837", "EPSG:25832 (ETRS89 / UTM zone 32N)", false, false },
@@ -53,7 +57,8 @@ static void test_spellings(void **state) {
         { "RGF93 v1 / Lambert-93", "EPSG:2154 (RGF93 v1 / Lambert-93)", false, false },
         { "+proj=utm +zone=32 +datum=WGS84", "unknown", false, false },
         { "GEOGCS[\"plain\",DATUM[\"D\",SPHEROID[\"S\",6378137,298.25]],PRIMEM[\"Greenwich\",0],"
-          "UNIT[\"degree\",0.0174532925199433]]", "plain", true, false },
+          "UNIT[\"degree\",0.0174532925199433]]",
+          "plain", true, false },
     };
     noc_log *log = noc_log_create(NULL);
     for (size_t i = 0; i < NOC_COUNT(cases); i++) {
@@ -79,10 +84,27 @@ static void test_not_understood(void **state) {
     char *longest = noc_alloc(100001);
     memset(longest, 'E', 100000);
     longest[100000] = 0;
-    const char *cases[] = { "", " ", "foo", "Local", "local cartesian", "EPSG:", "EPSG:999999", "EPSG:abc", "urn:ogc:def:crs:",
-                            "urn:ogc:def:crs,crs:", "http://www.opengis.net/def/crs/", "EPSG:4978" /* geocentric */,
-                            "EPSG:5783" /* heights */, "+proj=", "+proj=nonsense", "PROJCS[", "{}", "[[[[[[", "%s%n%s",
-                            "\xff\xfe", longest };
+    const char *cases[] = { "",
+                            " ",
+                            "foo",
+                            "Local",
+                            "local cartesian",
+                            "EPSG:",
+                            "EPSG:999999",
+                            "EPSG:abc",
+                            "urn:ogc:def:crs:",
+                            "urn:ogc:def:crs,crs:",
+                            "http://www.opengis.net/def/crs/",
+                            "EPSG:4978" /* geocentric */,
+                            "EPSG:5783" /* heights */,
+                            "+proj=",
+                            "+proj=nonsense",
+                            "PROJCS[",
+                            "{}",
+                            "[[[[[[",
+                            "%s%n%s",
+                            "\xff\xfe",
+                            longest };
     for (size_t i = 0; i < NOC_COUNT(cases); i++) {
         geo_crs *crs = geo_crs_create(cases[i], "city.gml:12", log, NULL);
         if (crs)
@@ -113,9 +135,10 @@ struct ellipsoid {
 static const struct ellipsoid bessel = { 6377397.155, 299.1528128 }, grs80 = { 6378137, 298.257222101 },
                               wgs84 = { 6378137, 298.257223563 };
 
-/* Transverse Mercator by Krueger's series in n to the fourth order (Karney, J. Geodesy 85, 2011), below a millimetre. */
-static void transverse_mercator(struct ellipsoid e, double lon0, double k0, double e0, double n0, double lon, double lat,
-                                double out[2]) {
+/* Transverse Mercator by Krueger's series in n to the fourth order (Karney, J. Geodesy 85, 2011), below a millimetre.
+ */
+static void transverse_mercator(struct ellipsoid e, double lon0, double k0, double e0, double n0, double lon,
+                                double lat, double out[2]) {
     double f = 1 / e.inverse_f, n = f / (2 - f), n2 = n * n, n3 = n2 * n, n4 = n3 * n;
     double A = e.a / (1 + n) * (1 + n2 / 4 + n4 / 64);
     double alpha[] = { n / 2 - 2 * n2 / 3 + 5 * n3 / 16 + 41 * n4 / 180, 13 * n2 / 48 - 3 * n3 / 5 + 557 * n4 / 1440,
@@ -132,7 +155,8 @@ static void transverse_mercator(struct ellipsoid e, double lon0, double k0, doub
 }
 
 /* Seven parameters as position vector (m, arc seconds, ppm), height 0. */
-static void helmert(struct ellipsoid from, const double p[7], struct ellipsoid to, double lon, double lat, double out[2]) {
+static void helmert(struct ellipsoid from, const double p[7], struct ellipsoid to, double lon, double lat,
+                    double out[2]) {
     double f = 1 / from.inverse_f, e2 = f * (2 - f), phi = lat * M_PI / 180, lambda = lon * M_PI / 180;
     double nu = from.a / sqrt(1 - e2 * sin(phi) * sin(phi));
     double v[3] = { nu * cos(phi) * cos(lambda), nu * cos(phi) * sin(lambda), nu * (1 - e2) * sin(phi) };
@@ -163,7 +187,8 @@ static void convert(const char *from, const char *to, const double in[3], double
     assert_int_equal(geo_transform_points(there, out, 1), 0);
     double again[3] = { out[0], out[1], out[2] };
     assert_int_equal(geo_transform_points(back, again, 1), 0);
-    double tolerance = geo_crs_is_geographic(a) ? 5e-3 * METRE : 5e-3; /* datum shifts by small angles invert to millimetres */
+    /* datum shifts by small angles invert to millimetres */
+    double tolerance = geo_crs_is_geographic(a) ? 5e-3 * METRE : 5e-3;
     for (int k = 0; k < 3; k++)
         assert_close(again[k], in[k], tolerance);
     geo_transform_destroy(there);
@@ -189,17 +214,20 @@ static void test_netherlands_28992(void **state) {
     }
 }
 
-/* Krovak: the worked example of EPSG Guidance Note 7-2 (S-JTSK, without a datum shift), then Prague to WGS 84 by the seven
- * parameters of EPSG:5239 (coordinate frame: its rotations have the other sign) from the CRS's own geographic base. */
+/* Krovak: the worked example of EPSG Guidance Note 7-2 (S-JTSK, without a datum shift), then Prague to WGS 84 by the
+ * seven parameters of EPSG:5239 (coordinate frame: its rotations have the other sign) from the CRS's own geographic
+ * base. */
 static void test_czechia_5514(void **state) {
     (void)state;
     double out[3], base[3], expected[2];
-    convert("EPSG:4156", "EPSG:5514", (double[]){ 16 + 50 / 60. + 59.179 / 3600, 50 + 12 / 60. + 32.442 / 3600, 0 }, out);
+    convert("EPSG:4156", "EPSG:5514", (double[]){ 16 + 50 / 60. + 59.179 / 3600, 50 + 12 / 60. + 32.442 / 3600, 0 },
+            out);
     assert_close(out[0], -568990.997, 0.02);
     assert_close(out[1], -1050538.643, 0.02);
     double prague[] = { -743100, -1043000, 190 };
     convert("EPSG:5514", "EPSG:4156", prague, base);
-    helmert(bessel, (double[]){ 572.213, 85.334, 461.94, 4.9732, 1.529, 5.2484, 3.5378 }, wgs84, base[0], base[1], expected);
+    helmert(bessel, (double[]){ 572.213, 85.334, 461.94, 4.9732, 1.529, 5.2484, 3.5378 }, wgs84, base[0], base[1],
+            expected);
     convert("EPSG:5514", "EPSG:4326", prague, out);
     assert_close(out[0], expected[0], 0.01 * METRE);
     assert_close(out[1], expected[1], 0.01 * METRE);
@@ -253,7 +281,8 @@ static void test_japan_6697(void **state) {
 static void test_transform_details(void **state) {
     (void)state;
     noc_log *log = quiet_log();
-    geo_crs *utm = geo_crs_create("EPSG:25832", NULL, log, NULL), *lonlat = geo_crs_create("EPSG:4326", NULL, log, NULL);
+    geo_crs *utm = geo_crs_create("EPSG:25832", NULL, log, NULL),
+            *lonlat = geo_crs_create("EPSG:4326", NULL, log, NULL);
     geo_transform *t = geo_transform_create(lonlat, utm, log, NULL);
     /* a height that is not known stays so; a point that is nowhere becomes NaN, its neighbours do not */
     double p[] = { 9, 48, NAN, NAN, 48, 0, 9, 48, 7, INFINITY, 0, 0 };
@@ -275,7 +304,8 @@ static void test_transform_details(void **state) {
             *metres = geo_crs_create("urn:ogc:def:crs,crs:EPSG::2263,crs:EPSG::5703", NULL, log, NULL);
     assert_false(geo_crs_is_metric(feet));
     double a[] = { 980000, 200000, 100 }, b[] = { 980000, 200000, 100 };
-    geo_transform *from_feet = geo_transform_create(feet, lonlat, log, NULL), *from_metres = geo_transform_create(metres, lonlat, log, NULL);
+    geo_transform *from_feet = geo_transform_create(feet, lonlat, log, NULL),
+                  *from_metres = geo_transform_create(metres, lonlat, log, NULL);
     geo_transform_points(from_feet, a, 1);
     geo_transform_points(from_metres, b, 1);
     assert_close(a[2], 100 * 1200 / 3937., 1e-9);
@@ -295,8 +325,11 @@ static void test_equal(void **state) {
     static const struct {
         const char *a, *b;
         bool equal;
-    } cases[] = { { "urn:ogc:def:crs:EPSG::7415", "EPSG:28992", true }, { "EPSG:25832", "EPSG:25833", false },
-                  { "CH1903", "EPSG:21781", true }, { "CH1903", "CH1903+", false }, { "EPSG:4326", "EPSG:4258", false } };
+    } cases[] = { { "urn:ogc:def:crs:EPSG::7415", "EPSG:28992", true },
+                  { "EPSG:25832", "EPSG:25833", false },
+                  { "CH1903", "EPSG:21781", true },
+                  { "CH1903", "CH1903+", false },
+                  { "EPSG:4326", "EPSG:4258", false } };
     for (size_t i = 0; i < NOC_COUNT(cases); i++) {
         geo_crs *a = geo_crs_create(cases[i].a, NULL, NULL, NULL), *b = geo_crs_create(cases[i].b, NULL, NULL, NULL);
         assert_int_equal(geo_crs_equal(a, b), cases[i].equal);
@@ -310,8 +343,9 @@ static void test_area_of_use(void **state) {
     static const struct {
         const char *crs;
         double x, y;
-    } inside[] = { { "EPSG:5514", -743100, -1043000 }, { "EPSG:28992", 155000, 463000 }, { "EPSG:2950", 300000, 5040000 },
-                   { "EPSG:31256", 3000, 341000 },     { "EPSG:25832", 678000, 5404000 }, { "EPSG:6697", 139.7, 35.6 } };
+    } inside[] = { { "EPSG:5514", -743100, -1043000 }, { "EPSG:28992", 155000, 463000 },
+                   { "EPSG:2950", 300000, 5040000 },   { "EPSG:31256", 3000, 341000 },
+                   { "EPSG:25832", 678000, 5404000 },  { "EPSG:6697", 139.7, 35.6 } };
     for (size_t i = 0; i < NOC_COUNT(inside); i++) {
         geo_crs *crs = geo_crs_create(inside[i].crs, NULL, NULL, NULL);
         assert_close(geo_crs_outside(crs, inside[i].x, inside[i].y), 0, 0);
@@ -330,7 +364,9 @@ static void test_area_of_use(void **state) {
     static const struct {
         double lon, lat;
         const char *name;
-    } zones[] = { { 14.42, 50.09, "EPSG:32633" }, { -58.4, -34.6, "EPSG:32721" }, { 180, 10, "EPSG:32660" },
+    } zones[] = { { 14.42, 50.09, "EPSG:32633" },
+                  { -58.4, -34.6, "EPSG:32721" },
+                  { 180, 10, "EPSG:32660" },
                   { -180, 10, "EPSG:32601" } };
     for (size_t i = 0; i < NOC_COUNT(zones); i++) {
         geo_crs *utm = geo_crs_utm(zones[i].lon, zones[i].lat);
@@ -340,17 +376,22 @@ static void test_area_of_use(void **state) {
     }
 }
 
-/* Point scales against the formulas of Snyder 1987 (Map Projections, USGS PP 1395): Mercator's eq. 7-8, and for Web Mercator
- * the sphere's easting and northing over the ellipsoid's radii of curvature. */
+/* Point scales against the formulas of Snyder 1987 (Map Projections, USGS PP 1395): Mercator's eq. 7-8, and for Web
+ * Mercator the sphere's easting and northing over the ellipsoid's radii of curvature. */
 static void test_scale(void **state) {
     (void)state;
     const double a = 6378137, e2 = 0.00669437999014, lat = 48.8 * M_PI / 180, s = sin(lat), w = 1 - e2 * s * s;
     const double along = a / (a * (1 - e2) / (w * sqrt(w))) / cos(lat), across = sqrt(w) / cos(lat);
-    static const struct { const char *crs; double lon, lat; } places[] = {
-        { "EPSG:3857", 11.4, 48.8 }, { "EPSG:3395", 11.4, 48.8 }, { "EPSG:32632", 9, 48.8 }, { "EPSG:31468", 12, 48.8 } };
+    static const struct {
+        const char *crs;
+        double lon, lat;
+    } places[] = {
+        { "EPSG:3857", 11.4, 48.8 }, { "EPSG:3395", 11.4, 48.8 }, { "EPSG:32632", 9, 48.8 }, { "EPSG:31468", 12, 48.8 }
+    };
     const double expected[] = { fabs(along - 1) > fabs(across - 1) ? along : across, across, .9996, 1 };
     for (size_t i = 0; i < NOC_COUNT(places); i++) {
-        geo_crs *crs = geo_crs_create(places[i].crs, NULL, NULL, NULL), *degrees = geo_crs_create("OGC:CRS84", NULL, NULL, NULL);
+        geo_crs *crs = geo_crs_create(places[i].crs, NULL, NULL, NULL),
+                *degrees = geo_crs_create("OGC:CRS84", NULL, NULL, NULL);
         geo_transform *t = geo_transform_create(degrees, crs, NULL, NULL);
         double p[3] = { places[i].lon, places[i].lat, 0 };
         assert_int_equal(geo_transform_points(t, p, 1), 0);
@@ -375,12 +416,13 @@ static void test_far_longitude(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_scale), cmocka_unit_test(test_spellings),       cmocka_unit_test(test_not_understood),
-        cmocka_unit_test(test_netherlands_28992), cmocka_unit_test(test_czechia_5514),
-        cmocka_unit_test(test_austria_31256),   cmocka_unit_test(test_montreal_2950),
-        cmocka_unit_test(test_utm_25832),       cmocka_unit_test(test_japan_6697),
-        cmocka_unit_test(test_transform_details), cmocka_unit_test(test_equal),
-        cmocka_unit_test(test_area_of_use),     cmocka_unit_test(test_far_longitude),
+        cmocka_unit_test(test_scale),          cmocka_unit_test(test_spellings),
+        cmocka_unit_test(test_not_understood), cmocka_unit_test(test_netherlands_28992),
+        cmocka_unit_test(test_czechia_5514),   cmocka_unit_test(test_austria_31256),
+        cmocka_unit_test(test_montreal_2950),  cmocka_unit_test(test_utm_25832),
+        cmocka_unit_test(test_japan_6697),     cmocka_unit_test(test_transform_details),
+        cmocka_unit_test(test_equal),          cmocka_unit_test(test_area_of_use),
+        cmocka_unit_test(test_far_longitude),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

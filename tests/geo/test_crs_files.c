@@ -22,8 +22,9 @@ static int make_pipe(void **state) {
 
 static int remove_pipe(void **state) { return unlink(pipe_path) || rmdir(folder); }
 
-#define GEOGCS "GEOGCS[\"x\",DATUM[\"D\",SPHEROID[\"S\",6378137,298.25]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]"
-#define GEOGCRS                                                                                                        \
+#define GEOGCS                                                                                                         \
+    "GEOGCS[\"x\",DATUM[\"D\",SPHEROID[\"S\",6378137,298.25]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]"
+#define GEOGCRS                                                                                                            \
     "GEOGCRS[\"x\",DATUM[\"D\",ELLIPSOID[\"S\",6378137,298.25]],CS[ellipsoidal,2],AXIS[\"lat\",north],AXIS[\"lon\",east]," \
     "ANGLEUNIT[\"degree\",0.0174532925199433]]"
 
@@ -45,14 +46,16 @@ static const char *const hostile[] = {
     "+init=%s:x",
     "init=%s:x",
     "+title=x +init = %s:x",
-    "PROJCRS[\"x\",BASE" GEOGCRS_BODY "],CONVERSION[\"c\",METHOD[\"PROJ merc\"],PARAMETER[\"nadgrids=%s,@null\",0]],CS[Cartesian,2],"
+    "PROJCRS[\"x\",BASE" GEOGCRS_BODY
+    "],CONVERSION[\"c\",METHOD[\"PROJ merc\"],PARAMETER[\"nadgrids=%s,@null\",0]],CS[Cartesian,2],"
     "AXIS[\"e\",east],AXIS[\"n\",north],LENGTHUNIT[\"metre\",1]]",
     "+proj=pipeline +step +proj=hgridshift +grids=%s",
     "+proj=hgridshift +grids=%s +type=crs",
     "+proj=tinshift +file=%s +type=crs",
     "+proj=defmodel +model=%s +type=crs",
     GEOGCS ",EXTENSION[\"PROJ4\",\"+proj=longlat +ellps=GRS80 +nadgrids=%s +no_defs\"]]",
-    "BOUNDCRS[SOURCECRS[" GEOGCRS "],TARGETCRS[" GEOGCRS "],ABRIDGEDTRANSFORMATION[\"t\",METHOD[\"NTv2\",ID[\"EPSG\",9615]],"
+    "BOUNDCRS[SOURCECRS[" GEOGCRS "],TARGETCRS[" GEOGCRS
+    "],ABRIDGEDTRANSFORMATION[\"t\",METHOD[\"NTv2\",ID[\"EPSG\",9615]],"
     "PARAMETERFILE[\"Latitude and longitude difference file\",\"%s\",ID[\"EPSG\",8656]]]]",
     "{\"type\":\"BoundCRS\",\"source_crs\":{\"type\":\"GeographicCRS\",\"name\":\"x\",\"datum\":{\"type\":\"GeodeticReferenceFrame\","
     "\"name\":\"D\",\"ellipsoid\":{\"name\":\"S\",\"semi_major_axis\":6378137,\"inverse_flattening\":298.25}},\"coordinate_system\":"
@@ -119,16 +122,30 @@ static void test_text(void **state) {
             fail_msg("not seen: %s", text);
     }
     static const char *const others[] = {
-        GEOGCS ",DATUM[\"D\",SPHEROID[\"S\",1,2],EXTENSION[\"PROJ4_GRIDS\",\"a.gsb\"]]]", "dict:a,b", "+init=epsg:25832 +nadgrids=a",
-        "ESRI::DICT:a,b", " esri::ESRI::\tDict:a,b", "ESRI::{\"value\": \"a\"}", "+init=epsg:25832", "+init = epsg:25832", "+proj=merc +nadgrids=@null:0",
-        GEOGCS ",DATUM[\"D\",SPHEROID[\"S\",1,2],EXTENSION[\"PROJ4_GRIDS\",\"@null\"\"/a\"]]]", "{\"method\": {\"name\": \"PROJ merc\"}}",
-        "PARAMETERFILE[\"a\",\"@null.gsb\"]", "PARAMETERFILE[\"a,\"\"@null\",\"b.gsb\"]", "{\"type\": \"Bound\\u0043RS\"}",
+        GEOGCS ",DATUM[\"D\",SPHEROID[\"S\",1,2],EXTENSION[\"PROJ4_GRIDS\",\"a.gsb\"]]]",
+        "dict:a,b",
+        "+init=epsg:25832 +nadgrids=a",
+        "ESRI::DICT:a,b",
+        " esri::ESRI::\tDict:a,b",
+        "ESRI::{\"value\": \"a\"}",
+        "+init=epsg:25832",
+        "+init = epsg:25832",
+        "+proj=merc +nadgrids=@null:0",
+        GEOGCS ",DATUM[\"D\",SPHEROID[\"S\",1,2],EXTENSION[\"PROJ4_GRIDS\",\"@null\"\"/a\"]]]",
+        "{\"method\": {\"name\": \"PROJ merc\"}}",
+        "PARAMETERFILE[\"a\",\"@null.gsb\"]",
+        "PARAMETERFILE[\"a,\"\"@null\",\"b.gsb\"]",
+        "{\"type\": \"Bound\\u0043RS\"}",
     };
     for (size_t i = 0; i < NOC_COUNT(others); i++)
         if (!geo_crs_text_names_file(others[i], what))
             fail_msg("not seen: %s", others[i]);
-    static const char *const fine[] = { "PARAMETERFILE[\"Latitude and longitude difference file\",\"@null\"]", "a city", "Predict: a, b",
-                                        "OSGB36 / British National Grid", "{\"type\": \"x\", \"value\": 1}", "" };
+    static const char *const fine[] = { "PARAMETERFILE[\"Latitude and longitude difference file\",\"@null\"]",
+                                        "a city",
+                                        "Predict: a, b",
+                                        "OSGB36 / British National Grid",
+                                        "{\"type\": \"x\", \"value\": 1}",
+                                        "" };
     for (size_t i = 0; i < NOC_COUNT(fine); i++)
         if (geo_crs_text_names_file(fine[i], what))
             fail_msg("refused for %s: %s", what, fine[i]);
@@ -147,11 +164,15 @@ static void test_why(void **state) {
 /* What files do hold. */
 static void test_plain(void **state) {
     static const char *const plain[] = {
-        "EPSG:25832", "urn:ogc:def:crs:EPSG::25832", "+proj=utm +zone=32 +datum=WGS84 +units=m +no_defs",
+        "EPSG:25832",
+        "urn:ogc:def:crs:EPSG::25832",
+        "+proj=utm +zone=32 +datum=WGS84 +units=m +no_defs",
         "+proj=merc +a=6378137 +b=6378137 +lat_ts=0 +lon_0=0 +x_0=0 +y_0=0 +k=1 +units=m +nadgrids=@null +wktext +no_defs",
         "+proj=tmerc +lat_0=0 +lon_0=9 +k=1 +x_0=3500000 +y_0=0 +ellps=bessel +towgs84=598.1,73.7,418.2,0.202,0.045,-2.455,6.7 +units=m +no_defs",
-        GEOGCS ",REMARK[\"a=b c=d\"]]", GEOGCRS,
-        "PROJCS[\"WGS 84 / Pseudo-Mercator\"," GEOGCS "],PROJECTION[\"Mercator_1SP\"],PARAMETER[\"central_meridian\",0],"
+        GEOGCS ",REMARK[\"a=b c=d\"]]",
+        GEOGCRS,
+        "PROJCS[\"WGS 84 / Pseudo-Mercator\"," GEOGCS
+        "],PROJECTION[\"Mercator_1SP\"],PARAMETER[\"central_meridian\",0],"
         "PARAMETER[\"scale_factor\",1],PARAMETER[\"false_easting\",0],PARAMETER[\"false_northing\",0],UNIT[\"metre\",1],"
         "EXTENSION[\"PROJ4\",\"+proj=merc +a=6378137 +b=6378137 +lat_ts=0.0 +lon_0=0.0 +x_0=0.0 +y_0=0 +k=1.0 +units=m "
         "+nadgrids=@null +wktext +no_defs\"]]",
@@ -169,11 +190,8 @@ static void test_plain(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_of_files),
-        cmocka_unit_test(test_typed),
-        cmocka_unit_test(test_text),
-        cmocka_unit_test(test_why),
-        cmocka_unit_test(test_plain),
+        cmocka_unit_test(test_of_files), cmocka_unit_test(test_typed), cmocka_unit_test(test_text),
+        cmocka_unit_test(test_why),      cmocka_unit_test(test_plain),
     };
     return cmocka_run_group_tests(tests, make_pipe, remove_pipe);
 }

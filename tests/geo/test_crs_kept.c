@@ -20,7 +20,10 @@ static void transform(const char *from, double xyz[3]) {
     geo_crs_destroy(b);
 }
 
-static const struct { const char *crs; double xyz[3]; } places[] = {
+static const struct {
+    const char *crs;
+    double xyz[3];
+} places[] = {
     { "EPSG:25832", { 678000, 5404000, 0 } },
     { "EPSG:31468", { 4458000, 5402000, 0 } }, /* DHDN: one of several ways between the datums, by place */
     { "+proj=utm +zone=32 +ellps=bessel +towgs84=598.1,73.7,418.2,0.202,0.045,-2.455,6.7", { 678000, 5404000, 0 } },
@@ -67,7 +70,7 @@ static void test_bounded(void **state) {
 }
 
 static void *work(void *into) {
-    double (*results)[3] = into;
+    double(*results)[3] = into;
     for (int k = 0; k < 8; k++)
         for (size_t i = 0; i < NOC_COUNT(places); i++) {
             memcpy(results[i], places[i].xyz, sizeof(results[i]));

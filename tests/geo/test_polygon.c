@@ -1,4 +1,5 @@
-/* Triangulation: areas against closed forms and against the shoelace formula, orientation, and every kind of bad ring. */
+/* Triangulation: areas against closed forms and against the shoelace formula, orientation, and every kind of bad ring.
+ */
 #include "geo/geo.h"
 #include "../test.h"
 
@@ -100,8 +101,8 @@ static void test_simple_shapes(void **state) {
     expect(RUN(0, 0, 5, 0, 3, 5, 4, 0, 5), 6, -1);
     expect(RUN(0, 0, 1, 4, 0, 1, 4, 3, 1, 0, 3, 1), 12, 1);
     expect(RUN(0, 0, 1, 0, 3, 1, 4, 3, 1, 4, 0, 1), 12, -1);
-    expect(RUN(0, 0, 1, 4, 4, 1, 0, 1, 1, -4, 4, 1), 4, 1);   /* dart, reflex at the third point */
-    expect(RUN(4, 4, 1, 0, 1, 1, -4, 4, 1, 0, 0, 1), 4, 1);   /* the same from the next */
+    expect(RUN(0, 0, 1, 4, 4, 1, 0, 1, 1, -4, 4, 1), 4, 1);                  /* dart, reflex at the third point */
+    expect(RUN(4, 4, 1, 0, 1, 1, -4, 4, 1, 0, 0, 1), 4, 1);                  /* the same from the next */
     expect(RUN(0, 0, 0, 3, 0, 0, 3, 1, 0, 1, 1, 0, 1, 3, 0, 0, 3, 0), 5, 1); /* L */
     /* a wall at Ingolstadt's coordinates (UTM 32), facing south */
     struct result wall = RUN(677000, 5402000, 370, 677010, 5402000, 370, 677010, 5402000, 379, 677000, 5402000, 379);
@@ -133,14 +134,17 @@ static void test_holes(void **state) {
     expect(run((double[]){ HOLE(0, 0, 10), SQUARE(2, 2, 3) }, two, 2), 91, -1);
     expect(run((double[]){ SQUARE(0, 0, 10), HOLE(1, 1, 2), HOLE(5, 5, 4) }, three, 3), 80, 1);
     expect(run((double[]){ SQUARE(0, 0, 10), HOLE(0, 0, 2) }, two, 2), 96, 1); /* touches a corner */
-    expect_issue(run((double[]){ SQUARE(0, 0, 10), SQUARE(2, 2, 3) }, two, 2), 91, "interior ring turned like the exterior");
-    expect_issue(run((double[]){ SQUARE(0, 0, 10), HOLE(20, 2, 3) }, two, 2), 100, "interior ring outside the exterior");
+    expect_issue(run((double[]){ SQUARE(0, 0, 10), SQUARE(2, 2, 3) }, two, 2), 91,
+                 "interior ring turned like the exterior");
+    expect_issue(run((double[]){ SQUARE(0, 0, 10), HOLE(20, 2, 3) }, two, 2), 100,
+                 "interior ring outside the exterior");
     expect_issue(run((double[]){ SQUARE(0, 0, 10), HOLE(8, 2, 4) }, two, 2), 92, "self-intersecting ring");
     size_t small[] = { 4, 2 };
     expect_issue(run((double[]){ SQUARE(0, 0, 10), 1, 1, 0, 2, 2, 0 }, small, 2), 100,
                  "interior ring with too few points");
     expect_issue(run((double[]){ SQUARE(0, 0, 10), SQUARE(1, 1, 0) }, two, 2), 100, "collapsed interior ring");
-    expect_issue(run((double[]){ SQUARE(0, 0, 10), HOLE(2, 2, 3), HOLE(2, 2, 3) }, three, 3), 91, "interior ring given twice");
+    expect_issue(run((double[]){ SQUARE(0, 0, 10), HOLE(2, 2, 3), HOLE(2, 2, 3) }, three, 3), 91,
+                 "interior ring given twice");
     expect_issue(run((double[]){ SQUARE(0, 0, 10), HOLE(2, 2, 3), 5, 2, 0, 2, 2, 0, 2, 5, 0, 5, 5, 0 }, three, 3), 91,
                  "interior ring given twice");
     struct result nested = run((double[]){ SQUARE(0, 0, 10), HOLE(2, 2, 5), HOLE(3, 3, 1) }, three, 3);
@@ -154,10 +158,11 @@ static void test_repairs(void **state) {
     expect_issue(RUN(0, 0, 0, 4, 0, 0, 4, 0, 0, 4, 3, 0, 0, 3, 0), 12, "repeated point");
     expect_issue(RUN(0, 0, 0, 4, 0, 0, 4, 3, 0, 0, 3, 0, 0, 0, 0), 12, "repeated point");
     expect_issue(RUN(0, 0, 0, 4, 0, 0, 9, 0, 0, 4, 0, 0, 4, 3, 0, 0, 3, 0), 12, "spike");
-    expect_issue(RUN(0, 0, 0, 9, 0, 0, 4, 0, 0, 4, 3, 0, 0, 3, 0), 12, "spike");   /* overshoot */
-    expect_issue(RUN(0, 9, 0, 0, 0, 0, 4, 0, 0, 4, 3, 0, 0, 3, 0), 12, "spike");   /* at the first point */
-    expect_issue(RUN(0, 0, 0, 4, 0, 0, 4, 3, 0, 0, 3, 0, 0, -2, 0), 12, "spike");  /* at the last */
-    expect_issue(RUN(0, 0, 0, NAN, 1, 1, 4, 0, 0, 4, 3, 0, 0, 3, INFINITY, 0, 3, 0), 12, "coordinates that are not finite");
+    expect_issue(RUN(0, 0, 0, 9, 0, 0, 4, 0, 0, 4, 3, 0, 0, 3, 0), 12, "spike");  /* overshoot */
+    expect_issue(RUN(0, 9, 0, 0, 0, 0, 4, 0, 0, 4, 3, 0, 0, 3, 0), 12, "spike");  /* at the first point */
+    expect_issue(RUN(0, 0, 0, 4, 0, 0, 4, 3, 0, 0, 3, 0, 0, -2, 0), 12, "spike"); /* at the last */
+    expect_issue(RUN(0, 0, 0, NAN, 1, 1, 4, 0, 0, 4, 3, 0, 0, 3, INFINITY, 0, 3, 0), 12,
+                 "coordinates that are not finite");
     expect_issue(RUN(NAN, 0, 0, 0, 0, 0, 4, 0, 0, 4, 3, 0, 0, 3, 0), 12, "coordinates that are not finite");
     /* a bow tie of two equal lobes has no area by Newell: both lobes are kept */
     expect_issue(RUN(0, 0, 0, 4, 4, 0, 4, 0, 0, 0, 4, 0), 8, "self-intersecting ring");
@@ -226,7 +231,8 @@ static void test_random_polygons(void **state) {
             size_t count = ring ? h : n;
             double u0 = 0, v0 = 0, u1 = 0, v1 = 0, sum = 0;
             for (size_t i = 0; i < count; i++, at++) {
-                double angle = 2 * M_PI * ((double)i + 0.8 * uniform()) / (double)count, r = ring ? 0.5 + uniform() : 5 + 10 * uniform();
+                double angle = 2 * M_PI * ((double)i + 0.8 * uniform()) / (double)count,
+                       r = ring ? 0.5 + uniform() : 5 + 10 * uniform();
                 if (flip != (ring == 1))
                     angle = -angle;
                 double u = r * cos(angle), v = r * sin(angle);
@@ -262,8 +268,11 @@ static void test_garbage(void **state) {
             total += sizes[r] = (size_t)(uniform() * 15);
         for (size_t i = 0; i < 3 * total; i++) {
             double u = uniform();
-            p[i] = round % 4 == 0 ? odd[(size_t)(u * NOC_COUNT(odd))] : round % 4 == 1 ? floor(4 * u)
-                   : round % 4 == 2 ? 100 * u : i % 3 == 2 ? 0 : floor(6 * u);
+            p[i] = round % 4 == 0   ? odd[(size_t)(u * NOC_COUNT(odd))]
+                   : round % 4 == 1 ? floor(4 * u)
+                   : round % 4 == 2 ? 100 * u
+                   : i % 3 == 2     ? 0
+                                    : floor(6 * u);
         }
         struct result r = run(p, sizes, rings);
         assert_true(r.ok ? isfinite(r.area) : geo_issues_count(r.issues) > 0);
@@ -325,8 +334,8 @@ static double shoelace(const double *p, size_t n) {
     return area;
 }
 
-/* A star whose rays cross any line by the thousand, with a star-shaped hole and small ones between: too much for one sweep,
- * so it is divided. Its area is that of the rings, no triangle is flipped, and nothing is said of the cuts. */
+/* A star whose rays cross any line by the thousand, with a star-shaped hole and small ones between: too much for one
+ * sweep, so it is divided. Its area is that of the rings, no triangle is flipped, and nothing is said of the cuts. */
 static void test_large(void **state) {
     (void)state;
     enum { N = 60000, HOLE = 20000, SMALL = 100 };
@@ -370,9 +379,12 @@ static void test_long_spike(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_simple_shapes),  cmocka_unit_test(test_star),    cmocka_unit_test(test_holes),
-        cmocka_unit_test(test_repairs),        cmocka_unit_test(test_non_planar), cmocka_unit_test(test_skipped),
-        cmocka_unit_test(test_random_polygons), cmocka_unit_test(test_garbage), cmocka_unit_test(test_tangle), cmocka_unit_test(test_large), cmocka_unit_test(test_long_spike), cmocka_unit_test(test_issue_examples),
+        cmocka_unit_test(test_simple_shapes),   cmocka_unit_test(test_star),
+        cmocka_unit_test(test_holes),           cmocka_unit_test(test_repairs),
+        cmocka_unit_test(test_non_planar),      cmocka_unit_test(test_skipped),
+        cmocka_unit_test(test_random_polygons), cmocka_unit_test(test_garbage),
+        cmocka_unit_test(test_tangle),          cmocka_unit_test(test_large),
+        cmocka_unit_test(test_long_spike),      cmocka_unit_test(test_issue_examples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

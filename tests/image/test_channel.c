@@ -25,10 +25,14 @@ static noc_channel *ramp(noc_channel_scale scale, float from, float step) {
     return c;
 }
 
-typedef struct shown { uint8_t *rgb; int width, height; } shown;
+typedef struct shown {
+    uint8_t *rgb;
+    int width, height;
+} shown;
 static shown show(const noc_channel *c, double low, double high) {
     shown s;
-    assert_int_equal(noc_channel_to_srgb8(c, &(noc_channel_params){ low, high }, &s.rgb, &s.width, &s.height, NULL), NOC_OK);
+    assert_int_equal(noc_channel_to_srgb8(c, &(noc_channel_params){ low, high }, &s.rgb, &s.width, &s.height, NULL),
+                     NOC_OK);
     assert_true(s.width == W && s.height == H + colorbar_height(1));
     return s;
 }
@@ -41,13 +45,14 @@ static void colours_follow_the_bar(void **state) {
     colormap_init(&map, COLORMAP_SEQUENTIAL);
     noc_channel *c = ramp(NOC_CHANNEL_LINEAR, 0, 1);
     shown s = show(c, 50, 250);
-    assert_true(is(&s, 0, colormap_at(&map, 0)) && is(&s, 50, colormap_at(&map, 0)) && is(&s, 250, colormap_at(&map, 1)));
+    assert_true(is(&s, 0, colormap_at(&map, 0)) && is(&s, 50, colormap_at(&map, 0)) &&
+                is(&s, 250, colormap_at(&map, 1)));
     assert_true(is(&s, 150, colormap_at(&map, 0.5)) && is(&s, 299, colormap_at(&map, 1)));
     free(s.rgb);
     c->scale = NOC_CHANNEL_LOG; /* 1, 10, 100 are even steps */
     s = show(c, 1, 100);
-    assert_true(is(&s, 0, colormap_at(&map, 0)) && is(&s, 1, colormap_at(&map, 0)) && is(&s, 10, colormap_at(&map, 0.5)) &&
-                is(&s, 100, colormap_at(&map, 1)));
+    assert_true(is(&s, 0, colormap_at(&map, 0)) && is(&s, 1, colormap_at(&map, 0)) &&
+                is(&s, 10, colormap_at(&map, 0.5)) && is(&s, 100, colormap_at(&map, 1)));
     free(s.rgb);
     noc_channel_destroy(c);
 }
@@ -115,11 +120,12 @@ static bool has_colour(const shown *s, int from_row, const uint8_t rgb[3]) {
     return false;
 }
 
-/* Labels that have names: the legend shows those that are seen, and what grey is; colours do not depend on what is seen. */
+/* Labels that have names: the legend shows those that are seen, and what grey is; colours do not depend on what is
+ * seen. */
 static void labels_with_names(void **state) {
     enum { NAMES = 18 }; /* as many as there are classes */
     static const char *const names[NAMES] = { "nought", "one", "two", "a", "b", "c", "d", "e", "f",
-                                              "g", "h", "i", "j", "k", "l", "m", "n", "the last" };
+                                              "g",      "h",   "i",   "j", "k", "l", "m", "n", "the last" };
     static const uint8_t grey[3] = { 92, 92, 96 };
     uint8_t colour[NAMES + 1][3];
     noc_channel *c = ramp(NOC_CHANNEL_LABELS, 0, 1);
@@ -143,7 +149,8 @@ static void labels_with_names(void **state) {
     for (int i = 0; i < W * H; i++)
         c->value[i] = i % 3 == 0 ? 2 : i % 3 == 1 ? -1 : NAMES;
     assert_int_equal(noc_channel_to_srgb8(c, NULL, &some.rgb, &some.width, &some.height, NULL), NOC_OK);
-    assert_true(is(&some, 0, colour[2]) && is(&some, 1, grey) && is(&some, 2, colour[NAMES]) && some.height < all.height);
+    assert_true(is(&some, 0, colour[2]) && is(&some, 1, grey) && is(&some, 2, colour[NAMES]) &&
+                some.height < all.height);
     for (int i = 0; i <= NAMES; i++)
         assert_int_equal(has_colour(&some, H, colour[i]), i == 2);
     free(all.rgb);
@@ -213,8 +220,13 @@ static void what_cannot_be(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(colours_follow_the_bar), cmocka_unit_test(ends_are_found), cmocka_unit_test(any_numbers),
-        cmocka_unit_test(labels),                 cmocka_unit_test(labels_with_names), cmocka_unit_test(files),          cmocka_unit_test(what_cannot_be),
+        cmocka_unit_test(colours_follow_the_bar),
+        cmocka_unit_test(ends_are_found),
+        cmocka_unit_test(any_numbers),
+        cmocka_unit_test(labels),
+        cmocka_unit_test(labels_with_names),
+        cmocka_unit_test(files),
+        cmocka_unit_test(what_cannot_be),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

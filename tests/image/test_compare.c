@@ -62,7 +62,8 @@ static void figures_by_hand(void **state) {
     NEAR(c.all.rmse8, sqrt((pow(codes[0] - codes[1], 2) + pow(codes[0] - codes[2], 2)) / 4));
 
     NEAR(c.ev100, 2.0);
-    p.relative = true; /* as PNG are read: white is 1, whatever the exposure. Only the last pixel differs: black, white */
+    /* as PNG are read: white is 1, whatever the exposure. Only the last pixel differs: black, white */
+    p.relative = true;
     assert_int_equal(noc_image_compare(x, r, &p, &c, log_), NOC_OK);
     NEAR(c.all.rmse8, sqrt(255 * 255 / 4.0));
     p.relative = false;
@@ -270,7 +271,8 @@ static void ticks_are_round(void **state) {
         size_t n = colorbar_ticks(&bar, t, 7);
         assert_in_range(n, 1, 7);
         for (size_t k = 0; k < n; k++)
-            assert_true(t[k] >= low - 1e-6 * (high - low) && t[k] <= high + 1e-6 * (high - low) && (!k || t[k] > t[k - 1]));
+            assert_true(t[k] >= low - 1e-6 * (high - low) && t[k] <= high + 1e-6 * (high - low) &&
+                        (!k || t[k] > t[k - 1]));
     }
 }
 
@@ -287,14 +289,20 @@ static void text_is_drawn(void **state) {
         lit += rgb[3 * i] == 255;
     assert_int_equal(lit, 10); /* 1 + 2 + 4 + 3 */
     static const uint8_t white[3] = { 255, 255, 255 };
-    uint8_t one[3 * 10 * 8] = { 0 }, two[3 * 10 * 8] = { 0 }; /* a letter is drawn by either, and as many bytes as UTF-8 has are one */
+    /* a letter is drawn by either, and as many bytes as UTF-8 has are one */
+    uint8_t one[3 * 10 * 8] = { 0 }, two[3 * 10 * 8] = { 0 };
     text_draw(&(canvas){ one, 10, 8 }, 1, 1, "\xd7", 1, white);
     assert_int_equal(noc_text_srgb8(two, 10, 8, 1, 1, "\xc3\x97", 1, white), 5);
     assert_memory_equal(one, two, sizeof(one));
-    assert_int_equal(noc_text_srgb8(NULL, 0, 0, 0, 0, "a\xe2\x82\xac\xc2", 2, white), 2 * 17); /* the last is cut short */
+    /* the last is cut short */
+    assert_int_equal(noc_text_srgb8(NULL, 0, 0, 0, 0, "a\xe2\x82\xac\xc2", 2, white), 2 * 17);
     assert_int_equal(noc_text_srgb8(NULL, 0, 0, 0, 0, "", 2, white), 0);
     uint8_t street[3 * 40 * 8] = { 0 }, plain[3 * 40 * 8] = { 0 }; /* Straße, élan: the font has plain letters alone */
-    assert_int_equal(noc_text_srgb8(street, 40, 8, 0, 0, "a\xc3\x9f" "e \xc3\xa9", 1, white), 6 * 6 - 1);
+    assert_int_equal(noc_text_srgb8(street, 40, 8, 0, 0,
+                                    "a\xc3\x9f"
+                                    "e \xc3\xa9",
+                                    1, white),
+                     6 * 6 - 1);
     text_draw(&(canvas){ plain, 40, 8 }, 0, 0, "asse e", 1, white);
     assert_memory_equal(street, plain, sizeof(plain));
     text_draw(&c, -3, -3, "clipped at every side \x01", 4, ink); /* no crash: ASan watches */

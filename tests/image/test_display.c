@@ -14,8 +14,12 @@ static double uniform(void) {
 static void srgb_known_values(void **state) {
     (void)state;
     /* IEC 61966-2-1, by hand: (linear, code). */
-    static const double known[][2] = { { 0, 0 }, { 1, 1 }, { 0.5, 0.7353569830524495 }, { 0.18, 0.46135612950044164 },
-        { 0.001, 0.01292 }, { 0.0031308, 0.040449936 } };
+    static const double known[][2] = { { 0, 0 },
+                                       { 1, 1 },
+                                       { 0.5, 0.7353569830524495 },
+                                       { 0.18, 0.46135612950044164 },
+                                       { 0.001, 0.01292 },
+                                       { 0.0031308, 0.040449936 } };
     for (size_t i = 0; i < NOC_COUNT(known); i++) {
         assert_true(fabs(srgb_encode(known[i][0]) - known[i][1]) < 1e-6);
         assert_true(fabs(srgb_decode(known[i][1]) - known[i][0]) < 1e-6);
@@ -59,7 +63,8 @@ static void curves_rise_within_range(void **state) {
     /* What the filmic curve was solved for. */
     assert_true(fabs(tonemap_curve(NOC_TONEMAP_FILMIC, 0.18) - 0.18) < 1e-4);
     assert_true(fabs(tonemap_curve(NOC_TONEMAP_FILMIC, 16) - 1) < 1e-4);
-    double slope = log(tonemap_curve(NOC_TONEMAP_FILMIC, 0.1818) / tonemap_curve(NOC_TONEMAP_FILMIC, 0.1782)) / log(0.1818 / 0.1782);
+    double slope = log(tonemap_curve(NOC_TONEMAP_FILMIC, 0.1818) / tonemap_curve(NOC_TONEMAP_FILMIC, 0.1782)) /
+                   log(0.1818 / 0.1782);
     assert_true(fabs(slope - 1.05) < 1e-3);
 }
 
@@ -105,8 +110,8 @@ static void hue_holds(void **state) {
     }
 }
 
-/* A window of 3000 K (Planck's colour in Rec.709, about 1 : 0.53 : 0.19) that shines four stops above white is bright and still
- * clearly warm; a thousand times white it is as good as white. */
+/* A window of 3000 K (Planck's colour in Rec.709, about 1 : 0.53 : 0.19) that shines four stops above white is bright
+ * and still clearly warm; a thousand times white it is as good as white. */
 static void warm_stays_warm(void **state) {
     (void)state;
     const float warm[3] = { 1, 0.53f, 0.19f };
@@ -203,8 +208,8 @@ static void exposure_meters_what_is_lit(void **state) {
     noc_image_destroy(b);
 }
 
-/* Seen from afar: ground under a faint sky, and lamps whose pools cover a share of it. The night stays dark whatever that
- * share is, and the pools are neither dark nor all white. */
+/* Seen from afar: ground under a faint sky, and lamps whose pools cover a share of it. The night stays dark whatever
+ * that share is, and the pools are neither dark nor all white. */
 static void exposure_keeps_the_night_dark(void **state) {
     (void)state;
     static const double shares[] = { 0.001, 0.005, 0.01, 0.03, 0.1, 0.3 };
@@ -284,8 +289,8 @@ static void compensation_brightens(void **state) {
     noc_image_destroy(a);
 }
 
-/* A row: a window that covers pixel 0 whole and pixel 1 by a quarter, at 100 times white, beside a wall of a tenth of white; and
- * far away, a lamp that covers a quarter of pixel 4 alone. */
+/* A row: a window that covers pixel 0 whole and pixel 1 by a quarter, at 100 times white, beside a wall of a tenth of
+ * white; and far away, a lamp that covers a quarter of pixel 4 alone. */
 static void edges_of_windows_are_mixed_after_the_curve(void **state) {
     (void)state;
     noc_image *a = noc_image_create(6, 1, NULL);

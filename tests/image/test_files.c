@@ -199,8 +199,15 @@ static void exr_holds_units_and_metadata(void **state) {
 static void bad_metadata_is_refused(void **state) {
     (void)state;
     noc_image *a = random_image(2, 2, false);
-    static const char *const bad[] = { "", " x", "x ", "a  b", "tab\t", "\xc3\xa4",
-        "0123456789012345678901234567890123456789012345678901234567890123456789012345678901" };
+    static const char *const bad[] = {
+        "",
+        " x",
+        "x ",
+        "a  b",
+        "tab\t",
+        "\xc3\xa4",
+        "0123456789012345678901234567890123456789012345678901234567890123456789012345678901"
+    };
     const char *value = "v";
     size_t before = files_in(folder);
     for (size_t i = 0; i < NOC_COUNT(bad); i++)
@@ -208,7 +215,8 @@ static void bad_metadata_is_refused(void **state) {
                          NOC_ERR_ARGUMENT);
     static const char *const taken[] = { "channels", "version", "tiles" };
     for (size_t i = 0; i < NOC_COUNT(taken); i++)
-        assert_int_equal(noc_image_write(a, in_folder("bad.exr"), NULL, &(noc_image_meta){ 1, &taken[i], &value }, log_),
+        assert_int_equal(noc_image_write(a, in_folder("bad.exr"), NULL, &(noc_image_meta){ 1, &taken[i], &value },
+                                         log_),
                          NOC_ERR_ARGUMENT);
     assert_int_equal(files_in(folder), before);
     noc_image_destroy(a);
@@ -250,8 +258,10 @@ static void writing_fails_once_and_leaves_nothing(void **state) {
     one_error(noc_image_write(a, in_folder("a.jpg"), NULL, NULL, log_), NOC_ERR_UNSUPPORTED, ".png or .exr");
     one_error(noc_image_write(a, "png", NULL, NULL, log_), NOC_ERR_UNSUPPORTED, ".png or .exr");
     one_error(noc_image_write(a, ".exr", NULL, NULL, log_), NOC_ERR_UNSUPPORTED, ".png or .exr");
-    one_error(noc_image_write_srgb8((uint8_t[3]){ 0 }, 1, 1, in_folder("a.exr"), NULL, log_), NOC_ERR_UNSUPPORTED, "use .png");
-    one_error(noc_image_write_srgb8((uint8_t[3]){ 0 }, 0, 1, in_folder("a.png"), NULL, log_), NOC_ERR_ARGUMENT, "0 x 1");
+    one_error(noc_image_write_srgb8((uint8_t[3]){ 0 }, 1, 1, in_folder("a.exr"), NULL, log_), NOC_ERR_UNSUPPORTED,
+              "use .png");
+    one_error(noc_image_write_srgb8((uint8_t[3]){ 0 }, 0, 1, in_folder("a.png"), NULL, log_), NOC_ERR_ARGUMENT,
+              "0 x 1");
     one_error(noc_image_write(a, in_folder("missing/a.exr"), NULL, NULL, log_), NOC_ERR_IO, "No such file");
     one_error(noc_image_write(a, in_folder("missing/a.png"), NULL, NULL, log_), NOC_ERR_IO, "No such file");
     assert_int_equal(files_in(folder), before);
@@ -312,8 +322,9 @@ static void make_file(const char *name) {
 static void leftovers_are_swept(void **state) {
     (void)state;
     static const char *const left[] = { ".swept.exr.1-0.part", ".swept.exr.999999-12.part" };
-    static const char *const kept[] = { ".other.exr.1-0.part", ".swept.exr.part", ".swept.exr.1-.part", ".swept.exr.1-0.parts",
-                                        ".swept.exr.x-0.part", "swept.exr.1-0.part", ".swept.exr.77-0.part" };
+    static const char *const kept[] = { ".other.exr.1-0.part",  ".swept.exr.part",     ".swept.exr.1-.part",
+                                        ".swept.exr.1-0.parts", ".swept.exr.x-0.part", "swept.exr.1-0.part",
+                                        ".swept.exr.77-0.part" };
     noc_image *a = random_image(2, 2, false);
     for (size_t i = 0; i < NOC_COUNT(left); i++)
         make_file(left[i]);
@@ -321,7 +332,8 @@ static void leftovers_are_swept(void **state) {
         make_file(kept[i]);
     int living = open(in_folder(kept[6]), O_RDWR); /* as a writer that lives holds it */
     assert_int_equal(flock(living, LOCK_EX), 0);
-    assert_int_equal(noc_image_check_path(in_folder("swept.exr"), log_), NOC_OK); /* before the work, as the program does */
+    /* before the work, as the program does */
+    assert_int_equal(noc_image_check_path(in_folder("swept.exr"), log_), NOC_OK);
     for (size_t i = 0; i < NOC_COUNT(left); i++)
         assert_int_equal(access(in_folder(left[i]), F_OK), -1);
     for (size_t i = 0; i < NOC_COUNT(kept); i++)

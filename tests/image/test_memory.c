@@ -1,5 +1,5 @@
-/* Memory that is refused to the reading and writing of pictures: each allocation, alone and with all later ones. It ends in
- * NOC_ERR_MEMORY and one message, and leaves no file. */
+/* Memory that is refused to the reading and writing of pictures: each allocation, alone and with all later ones. It
+ * ends in NOC_ERR_MEMORY and one message, and leaves no file. */
 #include "../files.h"
 #include "../memory.h"
 
@@ -24,7 +24,8 @@ static noc_image *picture(float shift) {
     return image;
 }
 
-static const noc_image_meta meta = { 2, (const char *const[]){ "Title", "place" }, (const char *const[]){ "a night", "48.1 \xc2\xb0N" } };
+static const noc_image_meta meta = { 2, (const char *const[]){ "Title", "place" },
+                                     (const char *const[]){ "a night", "48.1 \xc2\xb0N" } };
 
 static void writing(void **state) {
     static const char *const names[] = { "a.png", "a.exr" };
@@ -158,7 +159,7 @@ static int remove_folder(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(writing), cmocka_unit_test(reading), cmocka_unit_test(comparing_and_channels),
-                                        cmocka_unit_test(made_and_shown) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(writing), cmocka_unit_test(reading),
+                                        cmocka_unit_test(comparing_and_channels), cmocka_unit_test(made_and_shown) };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

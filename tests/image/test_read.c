@@ -9,7 +9,9 @@
 
 enum { W = 37, H = 21 };
 
-typedef struct bytes { NOC_ARRAY(uint8_t) a; } bytes;
+typedef struct bytes {
+    NOC_ARRAY(uint8_t) a;
+} bytes;
 
 static int errors;
 static char error[300];
@@ -98,10 +100,13 @@ static void expected_png(int colour, int depth, int x, int y, double rgb[3]) {
         rgb[k] = srgb_decode(pattern(x, y, grey ? 0 : k, depth) / top) * alpha;
 }
 
-static const int png_kinds[][2] = { { PNG_COLOR_TYPE_GRAY, 1 }, { PNG_COLOR_TYPE_GRAY, 2 }, { PNG_COLOR_TYPE_GRAY, 4 },
-    { PNG_COLOR_TYPE_GRAY, 8 }, { PNG_COLOR_TYPE_GRAY, 16 }, { PNG_COLOR_TYPE_GRAY_ALPHA, 8 }, { PNG_COLOR_TYPE_GRAY_ALPHA, 16 },
-    { PNG_COLOR_TYPE_RGB, 8 }, { PNG_COLOR_TYPE_RGB, 16 }, { PNG_COLOR_TYPE_RGBA, 8 }, { PNG_COLOR_TYPE_RGBA, 16 },
-    { PNG_COLOR_TYPE_PALETTE, 1 }, { PNG_COLOR_TYPE_PALETTE, 4 }, { PNG_COLOR_TYPE_PALETTE, 8 } };
+static const int png_kinds[][2] = { { PNG_COLOR_TYPE_GRAY, 1 },        { PNG_COLOR_TYPE_GRAY, 2 },
+                                    { PNG_COLOR_TYPE_GRAY, 4 },        { PNG_COLOR_TYPE_GRAY, 8 },
+                                    { PNG_COLOR_TYPE_GRAY, 16 },       { PNG_COLOR_TYPE_GRAY_ALPHA, 8 },
+                                    { PNG_COLOR_TYPE_GRAY_ALPHA, 16 }, { PNG_COLOR_TYPE_RGB, 8 },
+                                    { PNG_COLOR_TYPE_RGB, 16 },        { PNG_COLOR_TYPE_RGBA, 8 },
+                                    { PNG_COLOR_TYPE_RGBA, 16 },       { PNG_COLOR_TYPE_PALETTE, 1 },
+                                    { PNG_COLOR_TYPE_PALETTE, 4 },     { PNG_COLOR_TYPE_PALETTE, 8 } };
 
 static void every_kind_of_png(void **state) {
     (void)state;
@@ -133,7 +138,8 @@ typedef struct exr_kind {
     const char *channels; /* one letter each, 'e' for emitter, in the order of the alphabet */
 } exr_kind;
 
-static int64_t put(exr_const_context_t c, void *user, const void *data, uint64_t n, uint64_t at, exr_stream_error_func_ptr_t e) {
+static int64_t put(exr_const_context_t c, void *user, const void *data, uint64_t n, uint64_t at,
+                   exr_stream_error_func_ptr_t e) {
     (void)c;
     (void)e;
     bytes *b = user;
@@ -192,12 +198,14 @@ static bytes make_exr(const exr_kind *kind, int x0, int y0) {
     EXR_OK(exr_start_write(&c, "memory", EXR_WRITE_FILE_DIRECTLY, &init));
     EXR_OK(exr_add_part(c, NULL, kind->tile ? EXR_STORAGE_TILED : EXR_STORAGE_SCANLINE, &part));
     exr_attr_box2i_t window = { .min = { .x = x0, .y = y0 }, .max = { .x = x0 + W - 1, .y = y0 + H - 1 } };
-    EXR_OK(exr_initialize_required_attr(c, 0, &window, &window, 1, &(exr_attr_v2f_t){ 0 }, 1, EXR_LINEORDER_INCREASING_Y,
-                                        kind->compression));
+    EXR_OK(exr_initialize_required_attr(c, 0, &window, &window, 1, &(exr_attr_v2f_t){ 0 }, 1,
+                                        EXR_LINEORDER_INCREASING_Y, kind->compression));
     if (kind->tile)
-        EXR_OK(exr_set_tile_descriptor(c, 0, (uint32_t)kind->tile, (uint32_t)kind->tile, EXR_TILE_ONE_LEVEL, EXR_TILE_ROUND_DOWN));
+        EXR_OK(exr_set_tile_descriptor(c, 0, (uint32_t)kind->tile, (uint32_t)kind->tile, EXR_TILE_ONE_LEVEL,
+                                       EXR_TILE_ROUND_DOWN));
     for (const char *ch = kind->channels; *ch; ch++)
-        EXR_OK(exr_add_channel(c, 0, *ch == 'e' ? "emitter" : (char[2]){ *ch, 0 }, kind->type, EXR_PERCEPTUALLY_LINEAR, 1, 1));
+        EXR_OK(exr_add_channel(c, 0, *ch == 'e' ? "emitter" : (char[2]){ *ch, 0 }, kind->type, EXR_PERCEPTUALLY_LINEAR,
+                               1, 1));
     EXR_OK(exr_write_header(c));
     exr_chunk_info_t chunk;
     int32_t lines = 1;
@@ -218,12 +226,12 @@ static bytes make_exr(const exr_kind *kind, int x0, int y0) {
 
 static const exr_kind exr_kinds[] = {
     { EXR_PIXEL_FLOAT, EXR_COMPRESSION_NONE, 0, "BGR" }, { EXR_PIXEL_HALF, EXR_COMPRESSION_NONE, 0, "ABGR" },
-    { EXR_PIXEL_UINT, EXR_COMPRESSION_NONE, 0, "BGR" }, { EXR_PIXEL_FLOAT, EXR_COMPRESSION_RLE, 0, "BGRe" },
-    { EXR_PIXEL_HALF, EXR_COMPRESSION_ZIPS, 0, "Y" }, { EXR_PIXEL_UINT, EXR_COMPRESSION_ZIP, 0, "BGRe" },
-    { EXR_PIXEL_HALF, EXR_COMPRESSION_PIZ, 0, "BGR" }, { EXR_PIXEL_FLOAT, EXR_COMPRESSION_PIZ, 0, "ABGRZ" },
+    { EXR_PIXEL_UINT, EXR_COMPRESSION_NONE, 0, "BGR" },  { EXR_PIXEL_FLOAT, EXR_COMPRESSION_RLE, 0, "BGRe" },
+    { EXR_PIXEL_HALF, EXR_COMPRESSION_ZIPS, 0, "Y" },    { EXR_PIXEL_UINT, EXR_COMPRESSION_ZIP, 0, "BGRe" },
+    { EXR_PIXEL_HALF, EXR_COMPRESSION_PIZ, 0, "BGR" },   { EXR_PIXEL_FLOAT, EXR_COMPRESSION_PIZ, 0, "ABGRZ" },
     { EXR_PIXEL_HALF, EXR_COMPRESSION_PXR24, 0, "BGR" }, { EXR_PIXEL_FLOAT, EXR_COMPRESSION_ZIP, 16, "BGR" },
     { EXR_PIXEL_HALF, EXR_COMPRESSION_NONE, 8, "BGRe" }, { EXR_PIXEL_FLOAT, EXR_COMPRESSION_NONE, 64, "Ye" },
-    { EXR_PIXEL_HALF, EXR_COMPRESSION_RLE, 1, "BGR" }, { EXR_PIXEL_HALF, EXR_COMPRESSION_B44, 0, "BGR" },
+    { EXR_PIXEL_HALF, EXR_COMPRESSION_RLE, 1, "BGR" },   { EXR_PIXEL_HALF, EXR_COMPRESSION_B44, 0, "BGR" },
     { EXR_PIXEL_HALF, EXR_COMPRESSION_PIZ, 16, "BGR" },
 };
 
@@ -246,7 +254,8 @@ static void every_kind_of_exr(void **state) {
         for (int y = 0; y < H; y++)
             for (int x = 0; x < W; x++) {
                 for (int k = 0; k < 3; k++)
-                    assert_true(fabs(a->rgb[3 * (y * W + x) + k] - exr_value(x, y, grey ? 'Y' : "RGB"[k])) <= tolerance);
+                    assert_true(fabs(a->rgb[3 * (y * W + x) + k] - exr_value(x, y, grey ? 'Y' : "RGB"[k])) <=
+                                tolerance);
                 if (a->emitter)
                     assert_int_equal(a->emitter[y * W + x], (x + y) % 3 == 0);
             }
@@ -349,7 +358,8 @@ static uint32_t next(uint32_t n) {
 /* Checksums hide everything behind them from plain mutations: libpng is told elsewhere, here they are mended. */
 static void mend_png(uint8_t *data, size_t n) {
     for (size_t at = 8; at + 12 <= n;) {
-        uint32_t length = (uint32_t)data[at] << 24 | (uint32_t)data[at + 1] << 16 | (uint32_t)data[at + 2] << 8 | data[at + 3];
+        uint32_t length =
+            (uint32_t)data[at] << 24 | (uint32_t)data[at + 1] << 16 | (uint32_t)data[at + 2] << 8 | data[at + 3];
         if (length > n - at - 12)
             return;
         uint32_t crc = 0xffffffffu;
@@ -403,7 +413,9 @@ static void mutated_files_end_in_one_error_or_a_picture(void **state) {
 static void huge_sizes_are_errors(void **state) {
     (void)state;
     bytes b = make_png(PNG_COLOR_TYPE_RGB, 8, false);
-    static const uint8_t sides[][4] = { { 0x00, 0x00, 0x80, 0x00 }, { 0x7f, 0xff, 0xff, 0xff }, { 0xff, 0xff, 0xff, 0xff } };
+    static const uint8_t sides[][4] = { { 0x00, 0x00, 0x80, 0x00 },
+                                        { 0x7f, 0xff, 0xff, 0xff },
+                                        { 0xff, 0xff, 0xff, 0xff } };
     for (size_t i = 0; i < NOC_COUNT(sides); i++) {
         memcpy(b.a.data + 16, sides[i], 4);
         memcpy(b.a.data + 20, sides[i], 4);
@@ -431,7 +443,8 @@ int main(void) {
         cmocka_unit_test(every_kind_of_exr),
         cmocka_unit_test(missing_channels_are_an_error),
         cmocka_unit_test(cut_files_are_errors),
-        cmocka_unit_test(huge_sizes_are_errors), cmocka_unit_test(long_headers_are_errors),
+        cmocka_unit_test(huge_sizes_are_errors),
+        cmocka_unit_test(long_headers_are_errors),
         cmocka_unit_test(mutated_files_end_in_one_error_or_a_picture),
     };
     return cmocka_run_group_tests_name("image read", tests, set_up, tear_down);

@@ -13,7 +13,12 @@ typedef struct seen_polygon {
     size_t crs;  /* how many CRSs had been told by then */
 } seen_polygon;
 
-typedef struct seen_object { geo_kind kind; char *id; int lod; size_t polygons; } seen_object;
+typedef struct seen_object {
+    geo_kind kind;
+    char *id;
+    int lod;
+    size_t polygons;
+} seen_object;
 
 typedef struct city_sink {
     geo_sink sink;
@@ -23,9 +28,9 @@ typedef struct city_sink {
     NOC_ARRAY(char *) crs; /* "(none)" for NULL */
     bool lat_first;        /* answer to crs */
     bool in_object;
-    size_t calls, stop_at; /* stops at that call with NOC_ERR_CANCELLED; 0: never */
+    size_t calls, stop_at;                 /* stops at that call with NOC_ERR_CANCELLED; 0: never */
     size_t asked, asked_amid, lamps_asked; /* for progress; with new lamps since then; lamps at the last time */
-    bool stop_amid;        /* progress stops it once there are lamps */
+    bool stop_amid;                        /* progress stops it once there are lamps */
     noc_status status;
     const char *format;
 } city_sink;
@@ -54,7 +59,9 @@ static noc_status city_polygon(void *ctx, const geo_polygon *polygon) {
     assert_true(s->crs.len > 0);
     assert_non_null(polygon->id);
     assert_true(polygon->ring_count > 0);
-    seen_polygon p = { .cls = polygon->cls, .id = noc_strdup(polygon->id), .rings = polygon->ring_count, .crs = s->crs.len };
+    seen_polygon p = {
+        .cls = polygon->cls, .id = noc_strdup(polygon->id), .rings = polygon->ring_count, .crs = s->crs.len
+    };
     seen_object *object = &s->objects.data[s->objects.len - 1];
     object->polygons++;
     p.object = object->id;
@@ -122,9 +129,14 @@ static noc_status city_read(city_sink *s, const char *path, int lod) {
     s->calls = s->asked = s->asked_amid = s->lamps_asked = 0;
     s->in_object = false;
     s->format = "";
-    s->sink = (geo_sink){ .ctx = s, .log = noc_log_create(&(noc_log_params){ .message = city_quiet }),
-                          .issues = geo_issues_create(), .crs = city_crs, .begin_object = city_begin,
-                          .polygon = city_polygon, .end_object = city_end, .lamp = city_lamp,
+    s->sink = (geo_sink){ .ctx = s,
+                          .log = noc_log_create(&(noc_log_params){ .message = city_quiet }),
+                          .issues = geo_issues_create(),
+                          .crs = city_crs,
+                          .begin_object = city_begin,
+                          .polygon = city_polygon,
+                          .end_object = city_end,
+                          .lamp = city_lamp,
                           .progress = city_progress };
     noc_import_params params = noc_import_default_params();
     params.lod = lod;

@@ -66,23 +66,32 @@ static noc_status fake_line(geo_sink *sink, char *line, bool *swap, const char *
             double x = v[3 * i];
             v[3 * i] = v[3 * i + 1], v[3 * i + 1] = x;
         }
-        return sink->polygon(sink->ctx, &(geo_polygon){ .cls = (noc_class)cls, .id = "poly", .ring_count = 1,
-                                                        .ring_size = &n, .xyz = v });
+        return sink->polygon(sink->ctx,
+                             &(geo_polygon){
+                                 .cls = (noc_class)cls, .id = "poly", .ring_count = 1, .ring_size = &n, .xyz = v });
     }
     if (sscanf(line, "many %d %lf %lf %d", &cls, &v[0], &v[1], &lod) == 4) {
         noc_status status = NOC_OK;
         for (int i = 0; i < lod && !status; i++) {
             size_t n = 3;
             double x = v[0] + i * .5, xyz[9] = { x, v[1], 370, x + .5, v[1], 370, x, v[1] + 1, 370 };
-            status = sink->polygon(sink->ctx, &(geo_polygon){ .cls = (noc_class)cls, .id = "many", .ring_count = 1,
-                                                              .ring_size = &n, .xyz = xyz });
+            status =
+                sink->polygon(sink->ctx,
+                              &(geo_polygon){
+                                  .cls = (noc_class)cls, .id = "many", .ring_count = 1, .ring_size = &n, .xyz = xyz });
         }
         return status;
     }
     if (!strncmp(line, "lamp ", 5)) {
         size_t n = numbers(line + 5, v, 3);
-        geo_lamp lamp = { .xyz = { v[*swap], v[!*swap], n > 2 ? v[2] : NAN }, .height = NAN, .direction = NAN, .lumens = NAN,
-                          .watts = NAN, .kelvin = NAN, .rgb = { -1, -1, -1 }, .id = strchr(line, '#') ? strchr(line, '#') : "",
+        geo_lamp lamp = { .xyz = { v[*swap], v[!*swap], n > 2 ? v[2] : NAN },
+                          .height = NAN,
+                          .direction = NAN,
+                          .lumens = NAN,
+                          .watts = NAN,
+                          .kelvin = NAN,
+                          .rgb = { -1, -1, -1 },
+                          .id = strchr(line, '#') ? strchr(line, '#') : "",
                           .ref = strrchr(line, '#') };
         return sink->lamp(sink->ctx, &lamp);
     }
@@ -125,17 +134,28 @@ static noc_status fake_mesh(const char *path, noc_stream *stream, const noc_impo
     noc_status status = place->points(place->ctx, xyz, 3);
     if (status)
         return status;
-    noc_mesh mesh = { .vertex_count = 3, .positions = xyz, .triangle_count = 1,
-                      .indices = (uint32_t[]){ 0, 1, 2 }, .material = noc_scene_add_material(scene, &shining) };
+    noc_mesh mesh = { .vertex_count = 3,
+                      .positions = xyz,
+                      .triangle_count = 1,
+                      .indices = (uint32_t[]){ 0, 1, 2 },
+                      .material = noc_scene_add_material(scene, &shining) };
     reads++;
     *format = "fake mesh";
     return noc_scene_add_mesh(scene, &mesh) >= 0 ? NOC_OK : NOC_ERR_FORMAT;
 }
 
-static const noc_reader city_reader = { .name = "fake city", .reads = NOC_READS_CITY, .probe = probe_city, .read = fake_read };
-static const noc_reader lamp_reader = { .name = "fake lamps", .reads = NOC_READS_LAMPS, .probe = probe_lamps, .read = fake_read };
-static const noc_reader mesh_reader = { .name = "fake mesh", .reads = NOC_READS_MESH, .probe = probe_mesh, .read_mesh = fake_mesh };
-static const noc_reader missing_reader = { .name = "fake absent", .probe = probe_missing, .missing = "this build lacks it" };
+static const noc_reader city_reader = {
+    .name = "fake city", .reads = NOC_READS_CITY, .probe = probe_city, .read = fake_read
+};
+static const noc_reader lamp_reader = {
+    .name = "fake lamps", .reads = NOC_READS_LAMPS, .probe = probe_lamps, .read = fake_read
+};
+static const noc_reader mesh_reader = {
+    .name = "fake mesh", .reads = NOC_READS_MESH, .probe = probe_mesh, .read_mesh = fake_mesh
+};
+static const noc_reader missing_reader = { .name = "fake absent",
+                                           .probe = probe_missing,
+                                           .missing = "this build lacks it" };
 static const noc_reader *const fakes[] = { &city_reader, &lamp_reader, &mesh_reader, &missing_reader, NULL };
 
 /* ---- helpers ---- */
@@ -192,7 +212,8 @@ static void finish(struct run *r) {
     noc_log_destroy(r->log);
 }
 
-#define PATHS(...) sizeof((const char *[]){ __VA_ARGS__ }) / sizeof(char *), (const char *[]){ __VA_ARGS__ }
+#define PATHS(...)                                                                                                     \
+    sizeof((const char *[]){ __VA_ARGS__ }) / sizeof(char *), (const char *[]) { __VA_ARGS__ }
 #define LOAD(r, params, ...) (start(r), load_with(r, params, false, PATHS(__VA_ARGS__)))
 #define DEFAULTS noc_import_default_params()
 
@@ -206,10 +227,10 @@ static bool has_line(const noc_report_file *f, const char *reason, size_t count)
 /* A house of 10 m in Ingolstadt (UTM 32): a wall, a roof, a floor, a closure surface. */
 #define HOUSE_AT(id, x0, x1, y0, y1)                                                                                   \
     "object 0 " id " 2\n"                                                                                              \
-    "polygon 1 " x0 " " y0 " 370 " x1 " " y0 " 370 " x1 " " y0 " 380 " x0 " " y0 " 380\n"                               \
-    "polygon 2 " x0 " " y0 " 380 " x1 " " y0 " 380 " x1 " " y1 " 380 " x0 " " y1 " 380\n"                               \
-    "polygon 3 " x0 " " y0 " 370 " x0 " " y1 " 370 " x1 " " y1 " 370 " x1 " " y0 " 370\n"                               \
-    "polygon 4 " x0 " " y0 " 370 " x0 " " y1 " 370 " x0 " " y1 " 380 " x0 " " y0 " 380\n"                               \
+    "polygon 1 " x0 " " y0 " 370 " x1 " " y0 " 370 " x1 " " y0 " 380 " x0 " " y0 " 380\n"                              \
+    "polygon 2 " x0 " " y0 " 380 " x1 " " y0 " 380 " x1 " " y1 " 380 " x0 " " y1 " 380\n"                              \
+    "polygon 3 " x0 " " y0 " 370 " x0 " " y1 " 370 " x1 " " y1 " 370 " x1 " " y0 " 370\n"                              \
+    "polygon 4 " x0 " " y0 " 370 " x0 " " y1 " 370 " x0 " " y1 " 380 " x0 " " y0 " 380\n"                              \
     "end\n"
 #define HOUSE HOUSE_AT("house", "678000.5", "678010.5", "5404000.5", "5404010.5")
 #define CITY "FAKE city\ncrs EPSG:25832\n" HOUSE

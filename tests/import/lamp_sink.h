@@ -75,8 +75,12 @@ static noc_status sink_columns(void *ctx, size_t points, const geo_column *colum
 static inline void lamp_sink_start(lamp_sink *s) {
     *s = (lamp_sink){ 0 };
     s->log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = sink_message, .user = s });
-    s->sink = (geo_sink){ .ctx = s, .log = s->log, .issues = geo_issues_create(), .crs = sink_crs, .lamp = sink_lamp,
-                         .columns = sink_columns };
+    s->sink = (geo_sink){ .ctx = s,
+                          .log = s->log,
+                          .issues = geo_issues_create(),
+                          .crs = sink_crs,
+                          .lamp = sink_lamp,
+                          .columns = sink_columns };
 }
 
 static inline void lamp_sink_end(lamp_sink *s) {
@@ -125,7 +129,8 @@ static inline noc_status read_lamps(lamp_sink *s, const char *path, const noc_im
     head[len] = 0;
     const noc_reader *reader = NULL;
     for (size_t i = 0; !status && !reader && i < NOC_COUNT(readers); i++)
-        if (readers[i]->probe(head, len) || (s->sink.named_lamps && readers[i]->probe_named && readers[i]->probe_named(head, len)))
+        if (readers[i]->probe(head, len) ||
+            (s->sink.named_lamps && readers[i]->probe_named && readers[i]->probe_named(head, len)))
             reader = readers[i];
     if (!status)
         status = noc_stream_rewind(stream);

@@ -144,12 +144,15 @@ static void json_is_bounded(void **state) {
 /* A glTF whose nodes show one mesh of so many vertices, that lie in no buffer but for three of them. */
 static void write_gltf(const char *name, int vertices, int nodes) {
     FILE *f = create(name);
-    fprintf(f, "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":48,\"uri\":\"data:application/octet-stream;base64,"
-               "AAAAAAEAAAACAAAAAAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":12},"
-               "{\"buffer\":0,\"byteOffset\":12,\"byteLength\":36}],\"accessors\":[{\"componentType\":5126,\"type\":\"VEC3\","
-               "\"count\":%d,\"sparse\":{\"count\":3,\"indices\":{\"bufferView\":0,\"componentType\":5125},"
-               "\"values\":{\"bufferView\":1}}}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
-               "\"nodes\":[{\"mesh\":0}", vertices);
+    fprintf(
+        f,
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":48,\"uri\":\"data:application/octet-stream;base64,"
+        "AAAAAAEAAAACAAAAAAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":12},"
+        "{\"buffer\":0,\"byteOffset\":12,\"byteLength\":36}],\"accessors\":[{\"componentType\":5126,\"type\":\"VEC3\","
+        "\"count\":%d,\"sparse\":{\"count\":3,\"indices\":{\"bufferView\":0,\"componentType\":5125},"
+        "\"values\":{\"bufferView\":1}}}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+        "\"nodes\":[{\"mesh\":0}",
+        vertices);
     for (int i = 1; i < nodes; i++)
         fputs(",{\"mesh\":0}", f);
     fputs("]}", f);
@@ -227,15 +230,19 @@ static void lamps_are_bounded(void **state) {
 static void cities_are_bounded(void **state) {
     FILE *f = create("city.gml");
     fputs("<CityModel xmlns=\"http://www.opengis.net/citygml/2.0\" xmlns:gml=\"http://www.opengis.net/gml\""
-          " xmlns:bldg=\"http://www.opengis.net/citygml/building/2.0\">", f);
+          " xmlns:bldg=\"http://www.opengis.net/citygml/building/2.0\">",
+          f);
     for (int i = 0; i < 2000; i++) {
         if (i < 1000 || i == 1000)
             fprintf(f, "<cityObjectMember><bldg:Building gml:id=\"b%d\">", i);
         for (int k = 0; k < 10; k++) {
             int x = 10 * i + k;
-            fprintf(f, "<bldg:lod1MultiSurface><gml:MultiSurface><gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing>"
-                       "<gml:posList srsDimension=\"3\">%d 0 0 %d 1 0 %d 1 5 %d 0 5 %d 0 0</gml:posList></gml:LinearRing></gml:exterior>"
-                       "</gml:Polygon></gml:surfaceMember></gml:MultiSurface></bldg:lod1MultiSurface>", x, x, x, x, x);
+            fprintf(
+                f,
+                "<bldg:lod1MultiSurface><gml:MultiSurface><gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing>"
+                "<gml:posList srsDimension=\"3\">%d 0 0 %d 1 0 %d 1 5 %d 0 5 %d 0 0</gml:posList></gml:LinearRing></gml:exterior>"
+                "</gml:Polygon></gml:surfaceMember></gml:MultiSurface></bldg:lod1MultiSurface>",
+                x, x, x, x, x);
         }
         if (i < 1000 || i == 1999)
             fputs("</bldg:Building></cityObjectMember>", f);
@@ -250,35 +257,47 @@ static void cities_are_bounded(void **state) {
 /* What the parts of an object say of themselves counts as its surfaces do. */
 static void attributes_are_bounded(void **state) {
     FILE *f = create("words.gml");
-    fputs("<CityModel xmlns='http://www.opengis.net/citygml/2.0' xmlns:gml='http://www.opengis.net/gml' "
-          "xmlns:gen='http://www.opengis.net/citygml/generics/2.0' xmlns:b='http://www.opengis.net/citygml/building/2.0'>"
-          "<cityObjectMember><b:Building gml:id='house'>", f);
+    fputs(
+        "<CityModel xmlns='http://www.opengis.net/citygml/2.0' xmlns:gml='http://www.opengis.net/gml' "
+        "xmlns:gen='http://www.opengis.net/citygml/generics/2.0' xmlns:b='http://www.opengis.net/citygml/building/2.0'>"
+        "<cityObjectMember><b:Building gml:id='house'>",
+        f);
     for (int i = 0; i < 400; i++) {
         fputs("<b:outerBuildingInstallation><b:BuildingInstallation>", f);
         for (int k = 0; k < 250; k++)
             fputs("<gen:stringAttribute name='a'><gen:value>1</gen:value></gen:stringAttribute>", f);
         fputs("</b:BuildingInstallation></b:outerBuildingInstallation>", f);
     }
-    fputs("<b:lod1MultiSurface><gml:MultiSurface><gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>"
-          "0 0 0 1 0 0 1 1 0 0 0 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember></gml:MultiSurface>"
-          "</b:lod1MultiSurface></b:Building></cityObjectMember></CityModel>", f);
+    fputs(
+        "<b:lod1MultiSurface><gml:MultiSurface><gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>"
+        "0 0 0 1 0 0 1 1 0 0 0 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember></gml:MultiSurface>"
+        "</b:lod1MultiSurface></b:Building></cityObjectMember></CityModel>",
+        f);
     fclose(f);
-    refused("words.gml", 0.0045, "words.gml: an object (\"house\") would take"); /* 100,000 of them take 2.4 MB beside their texts */
+    /* 100,000 of them take 2.4 MB beside their texts */
+    refused("words.gml", 0.0045, "words.gml: an object (\"house\") would take");
     allowed("words.gml", 0.02, 1);
 }
 
 /* Fifty buildings of a kilobyte in all: each refers twice to all that the one before it shows. */
 static void city_links_are_bounded(void **state) {
     FILE *f = create("links.gml");
-    fputs("<CityModel xmlns=\"http://www.opengis.net/citygml/2.0\" xmlns:gml=\"http://www.opengis.net/gml\" xmlns:xlink="
-          "\"http://www.w3.org/1999/xlink\" xmlns:bldg=\"http://www.opengis.net/citygml/building/2.0\">", f);
+    fputs(
+        "<CityModel xmlns=\"http://www.opengis.net/citygml/2.0\" xmlns:gml=\"http://www.opengis.net/gml\" xmlns:xlink="
+        "\"http://www.w3.org/1999/xlink\" xmlns:bldg=\"http://www.opengis.net/citygml/building/2.0\">",
+        f);
     for (int i = 0; i <= 50; i++) {
-        fprintf(f, "<cityObjectMember><bldg:Building gml:id=\"b%d\"><bldg:lod1MultiSurface><gml:MultiSurface gml:id=\"m%d\">", i, i);
+        fprintf(
+            f,
+            "<cityObjectMember><bldg:Building gml:id=\"b%d\"><bldg:lod1MultiSurface><gml:MultiSurface gml:id=\"m%d\">",
+            i, i);
         for (int k = 0; k < 2 && i; k++)
             fprintf(f, "<gml:surfaceMember xlink:href=\"#m%d\"/>", i - 1);
         if (!i)
-            fputs("<gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>0 0 0 1 0 0 1 1 0 0 0 0</gml:posList>"
-                  "</gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>", f);
+            fputs(
+                "<gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>0 0 0 1 0 0 1 1 0 0 0 0</gml:posList>"
+                "</gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>",
+                f);
         fputs("</gml:MultiSurface></bldg:lod1MultiSurface></bldg:Building></cityObjectMember>", f);
     }
     fputs("</CityModel>", f);
@@ -291,8 +310,10 @@ static void city_links_are_bounded(void **state) {
 static void city_tags_are_bounded(void **state) {
     for (int longer = 0; longer < 2; longer++) {
         FILE *f = create("tag.gml");
-        fputs("<CityModel xmlns=\"http://www.opengis.net/citygml/2.0\" xmlns:bldg=\"http://www.opengis.net/citygml/building/2.0\">\n"
-              "<cityObjectMember><bldg:Building name=\"", f);
+        fputs(
+            "<CityModel xmlns=\"http://www.opengis.net/citygml/2.0\" xmlns:bldg=\"http://www.opengis.net/citygml/building/2.0\">\n"
+            "<cityObjectMember><bldg:Building name=\"",
+            f);
         for (int i = 0; i < (4 << 20) + (longer ? 1 << 19 : -100); i++)
             fputc('x', f);
         fputs("\"/></cityObjectMember></CityModel>", f);
@@ -350,10 +371,13 @@ static void limits_are_checked(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(compressed_data_is_bounded), cmocka_unit_test(json_is_bounded), cmocka_unit_test(gltf_copies_are_bounded),
-        cmocka_unit_test(gltf_is_added_up_first), cmocka_unit_test(archives_are_measured), cmocka_unit_test(lamps_are_bounded),
-        cmocka_unit_test(cities_are_bounded), cmocka_unit_test(attributes_are_bounded), cmocka_unit_test(city_links_are_bounded),
-        cmocka_unit_test(obj_materials_are_bounded), cmocka_unit_test(obj_libraries_are_read_once), cmocka_unit_test(city_tags_are_bounded),  cmocka_unit_test(limits_are_checked),
+        cmocka_unit_test(compressed_data_is_bounded),  cmocka_unit_test(json_is_bounded),
+        cmocka_unit_test(gltf_copies_are_bounded),     cmocka_unit_test(gltf_is_added_up_first),
+        cmocka_unit_test(archives_are_measured),       cmocka_unit_test(lamps_are_bounded),
+        cmocka_unit_test(cities_are_bounded),          cmocka_unit_test(attributes_are_bounded),
+        cmocka_unit_test(city_links_are_bounded),      cmocka_unit_test(obj_materials_are_bounded),
+        cmocka_unit_test(obj_libraries_are_read_once), cmocka_unit_test(city_tags_are_bounded),
+        cmocka_unit_test(limits_are_checked),
     };
     return cmocka_run_group_tests_name("budgets", tests, set_up, tear_down);
 }

@@ -20,32 +20,36 @@ static size_t holes(void) {
     return count;
 }
 
-/* Files of one level of detail: what is used must be what was counted in them by other means (shared/data/README.md). */
+/* Files of one level of detail: what is used must be what was counted in them by other means (shared/data/README.md).
+ */
 static void test_models_of_one_level(void **state) {
     (void)state;
-    const struct { const char *path, *crs, *format; size_t objects, polygons, holes; } files[] = {
+    const struct {
+        const char *path, *crs, *format;
+        size_t objects, polygons, holes;
+    } files[] = {
         { "berlin/berlin_mitte_lod2_v10.gml.gz", "EPSG:25833", "CityGML 1.0", 61, 1125, 5 },
         { "dresden/LoD2_33_416_5656_2_SN_14_Buildings.gml.gz", "urn:adv:crs:ETRS89_UTM33*DE_DHHN2016_NH", "CityGML 1.0",
           14, 586, 1 },
-        { "nrw/LoD2_32_280_5659_1_NW.gml.gz", "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH*GCG2016", "CityGML 1.0",
-          109, 1441, 0 },
+        { "nrw/LoD2_32_280_5659_1_NW.gml.gz", "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH*GCG2016", "CityGML 1.0", 109,
+          1441, 0 },
         { "zurich/zurich-lod2-citygml1.gml", "CH1903", "CityGML 1.0", 4, 61, 0 },
         { "denhaag/dh_1.gml", "urn:ogc:def:crs:EPSG::28992", "CityGML 1.0", 1, 52, 0 },
-        { "potsdam/Potsdam_LoD1.gml.gz", "urn:ogc:def:crs,crs:EPSG:6.12:25833,crs:EPSG:6.12:5783", "CityGML 1.0",
-          97, 1547, 0 },
+        { "potsdam/Potsdam_LoD1.gml.gz", "urn:ogc:def:crs,crs:EPSG:6.12:25833,crs:EPSG:6.12:5783", "CityGML 1.0", 97,
+          1547, 0 },
         { "helsinki/viikintiedepuisto.gml.gz", "urn:ogc:def:crs:EPSG::3879", "CityGML 2.0", 23, 1080, 6 },
         { "lyon/LYON_1ER_BATI_2015_small_house.gml", "(none)", "CityGML 2.0", 1, 7, 0 },
-        { "plateau_tamana/49303414_brid_6697_op.gml.gz", "http://www.opengis.net/def/crs/EPSG/0/6697", "CityGML 2.0",
-          3, 1772, 0 },
+        { "plateau_tamana/49303414_brid_6697_op.gml.gz", "http://www.opengis.net/def/crs/EPSG/0/6697", "CityGML 2.0", 3,
+          1772, 0 },
         { "plateau_yokosuka/523965_dem_6697_05_op.gml.gz", "http://www.opengis.net/def/crs/EPSG/0/6697", "CityGML 2.0",
           2, 1066, 0 },
-        { "samples/citygml4j/lod3_building_v2.gml.gz",
-          "urn:ogc:def:crs,crs:EPSG:6.12:3068,crs:EPSG:6.12:5783", "CityGML 2.0", 1, 3092, 0 },
+        { "samples/citygml4j/lod3_building_v2.gml.gz", "urn:ogc:def:crs,crs:EPSG:6.12:3068,crs:EPSG:6.12:5783",
+          "CityGML 2.0", 1, 3092, 0 },
         { "samples/ogc_xlink/3_Building_With_Nested_Features__CityGML_2.gml", "urn:adv:crs:ETRS89_UTM32*DE_DHHN92_NH",
           "CityGML 2.0", 1, 17, 1 },
         { "samples/ogc_xlink/4_Cross-Top-Level-XLink__CityGML_2.gml", "(none)", "CityGML 2.0", 2, 14, 0 },
-        { "samples/ogc_xlink/5_Building_with_Building_Installation__CityGML_2.gml.gz", "EPSG:25832", "CityGML 2.0",
-          1, 3142, 665 },
+        { "samples/ogc_xlink/5_Building_with_Building_Installation__CityGML_2.gml.gz", "EPSG:25832", "CityGML 2.0", 1,
+          3142, 665 },
         { "samples/citygml4j/lod2_buildings_v3.gml.gz", "urn:ogc:def:crs,crs:EPSG:6.12:3068,crs:EPSG:6.12:5783",
           "CityGML 3.0", 100, 700, 0 },
     };
@@ -137,7 +141,10 @@ static void test_bad_files(void **state) {
 
 static void test_known_faults(void **state) {
     (void)state;
-    const struct { const char *path, *reason; size_t count; } faults[] = {
+    const struct {
+        const char *path, *reason;
+        size_t count;
+    } faults[] = {
         { "citygml-qie/i101_1.gml", "ring with too few points", 1 },
         { "citygml-qie/i103_1.gml", "ring not closed", 1 },
         { "plateau/53396570_squr_crossfile_xlinks.gml.gz", "xlink into another file", 5512 },
@@ -150,7 +157,8 @@ static void test_known_faults(void **state) {
         assert_int_equal(city_issue(&sink, faults[i].reason), faults[i].count);
         free(relative);
     }
-    assert_int_equal(city_read(&sink, shared_path("data/bad/plateau/53392642_unbound_prefix.gml.gz"), 3), NOC_ERR_FORMAT);
+    assert_int_equal(city_read(&sink, shared_path("data/bad/plateau/53392642_unbound_prefix.gml.gz"), 3),
+                     NOC_ERR_FORMAT);
     assert_non_null(strstr(noc_log_last_error(sink.sink.log), "unbound_prefix.gml.gz:538: unbound prefix"));
 }
 
@@ -250,7 +258,7 @@ int main(void) {
 #define T(f) cmocka_unit_test_teardown(f, finish)
     const struct CMUnitTest tests[] = {
         T(test_models_of_one_level), T(test_ingolstadt), T(test_levels_of_plateau), T(test_bad_files),
-        T(test_known_faults), T(test_mutations), T(test_garbage), T(test_cut_building),
+        T(test_known_faults),        T(test_mutations),  T(test_garbage),           T(test_cut_building),
     };
     return cmocka_run_group_tests_name("import/citygml_files", tests, NULL, NULL);
 }

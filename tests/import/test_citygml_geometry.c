@@ -71,9 +71,18 @@ static void test_two_dimensions(void **state) {
 static void test_numbers_exact(void **state) {
     (void)state;
     /* Long decimals take another way than short ones; both must give what the C library gives. */
-    const char *words[] = { "35.672789148820186", "139.66581885090204", "5403455.767", "-0.1", "678016.20000000001",
-                            "9007199254740993", "1e-300", "0.30000000000000004", "123456789012345678901234567890",
-                            "-.5", "00012.2500", "4.35" };
+    const char *words[] = { "35.672789148820186",
+                            "139.66581885090204",
+                            "5403455.767",
+                            "-0.1",
+                            "678016.20000000001",
+                            "9007199254740993",
+                            "1e-300",
+                            "0.30000000000000004",
+                            "123456789012345678901234567890",
+                            "-.5",
+                            "00012.2500",
+                            "4.35" };
     for (size_t i = 0; i < NOC_COUNT(words); i++) {
         char *text = noc_format(IN_POLYGON("<g:posList>%s 0 0 0 1 0 0 0 1</g:posList>"), words[i]);
         assert_int_equal(read_surfaces(text), 1);
@@ -84,7 +93,10 @@ static void test_numbers_exact(void **state) {
 
 static void test_bad_rings(void **state) {
     (void)state;
-    const struct { const char *positions, *reason; size_t polygons; } cases[] = {
+    const struct {
+        const char *positions, *reason;
+        size_t polygons;
+    } cases[] = {
         { "0 0 0 1 0 0 0 0 0", "ring with too few points", 0 },
         { "", "ring with too few points", 0 },
         { "0 0 0 1 0 0 1 1 0 7 0 0 0", "incomplete coordinates", 0 },
@@ -115,64 +127,86 @@ static void test_bad_rings(void **state) {
 
 static void test_holes(void **state) {
     (void)state;
-    const char *good = SURFACES("<g:Polygon g:id='p'><g:exterior>" RING("0 0 0 9 0 0 9 9 0 0 9 0 0 0 0") "</g:exterior>"
-        "<g:interior>" RING("1 1 0 1 2 0 2 2 0 1 1 0") "</g:interior><g:interior>" RING("5 5 0 5 6 0 6 6 0 5 5 0")
-        "</g:interior></g:Polygon>");
+    const char *good = SURFACES("<g:Polygon g:id='p'><g:exterior>" RING(
+        "0 0 0 9 0 0 9 9 0 0 9 0 0 0 0") "</g:exterior>"
+                                         "<g:interior>" RING("1 1 0 1 2 0 2 2 0 1 1 0") "</g:interior><g:interior>" RING(
+                                             "5 5 0 5 6 0 6 6 0 5 5 0") "</g:interior></g:Polygon>");
     assert_int_equal(read_surfaces(good), 1);
     assert_int_equal(city_find(&sink, "p")->rings, 3);
     assert_int_equal(city_find(&sink, "p")->points, 4 + 3 + 3);
     /* A bad hole goes, the polygon stays. */
-    assert_int_equal(read_surfaces(SURFACES("<g:Polygon g:id='p'><g:exterior>" RING("0 0 0 9 0 0 9 9 0 0 0 0")
-        "</g:exterior><g:interior>" RING("1 1 0 1 2 0") "</g:interior></g:Polygon>")), 1);
+    assert_int_equal(
+        read_surfaces(SURFACES("<g:Polygon g:id='p'><g:exterior>" RING(
+            "0 0 0 9 0 0 9 9 0 0 0 0") "</g:exterior><g:interior>" RING("1 1 0 1 2 0") "</g:interior></g:Polygon>")),
+        1);
     assert_int_equal(city_find(&sink, "p")->rings, 1);
     assert_int_equal(city_issue(&sink, "ring with too few points"), 1);
     /* Without an exterior there is no polygon. */
-    assert_int_equal(read_surfaces(SURFACES("<g:Polygon/><g:Polygon><g:interior>" RING("0 0 0 9 0 0 9 9 0 0 0 0")
-        "</g:interior></g:Polygon>")), 0);
+    assert_int_equal(read_surfaces(SURFACES("<g:Polygon/><g:Polygon><g:interior>" RING(
+                         "0 0 0 9 0 0 9 9 0 0 0 0") "</g:interior></g:Polygon>")),
+                     0);
     assert_int_equal(city_issue(&sink, "polygon without an exterior ring"), 2);
     /* The old names, in the wrong order. */
-    assert_int_equal(read_surfaces(SURFACES("<g:Polygon g:id='p'><g:innerBoundaryIs>" RING("1 1 0 1 2 0 2 2 0 1 1 0")
-        "</g:innerBoundaryIs><g:outerBoundaryIs>" RING("0 0 0 9 0 0 9 9 0 0 0 0") "</g:outerBoundaryIs></g:Polygon>")), 1);
+    assert_int_equal(
+        read_surfaces(SURFACES(
+            "<g:Polygon g:id='p'><g:innerBoundaryIs>" RING("1 1 0 1 2 0 2 2 0 1 1 0") "</g:innerBoundaryIs><g:outerBoundaryIs>" RING(
+                "0 0 0 9 0 0 9 9 0 0 0 0") "</g:outerBoundaryIs></g:Polygon>")),
+        1);
     const double outer[] = { 0, 0, 0, 9, 0, 0, 9, 9, 0 };
     expect_points(city_find(&sink, "p"), 3, outer);
     assert_int_equal(city_issue(&sink, "interior ring before the exterior one"), 1);
-    assert_int_equal(read_surfaces(SURFACES("<g:Polygon g:id='p'><g:exterior>" RING("0 0 0 9 0 0 9 9 0 0 0 0")
-        "</g:exterior><g:exterior>" RING("1 1 0 1 2 0 2 2 0 1 1 0") "</g:exterior></g:Polygon>")), 1);
+    assert_int_equal(
+        read_surfaces(SURFACES(
+            "<g:Polygon g:id='p'><g:exterior>" RING("0 0 0 9 0 0 9 9 0 0 0 0") "</g:exterior><g:exterior>" RING(
+                "1 1 0 1 2 0 2 2 0 1 1 0") "</g:exterior></g:Polygon>")),
+        1);
     assert_int_equal(city_issue(&sink, "polygon with a second exterior ring"), 1);
 }
 
 static void test_containers(void **state) {
     (void)state;
-    assert_int_equal(read_surfaces(
-        "<g:MultiGeometry><g:geometryMember><g:MultiSolid><g:solidMember><g:CompositeSolid><g:solidMember>"
-        SHELL(MEMBERS(SQUARE("a", "1", "1"))) "</g:solidMember></g:CompositeSolid></g:solidMember></g:MultiSolid>"
-        "</g:geometryMember><g:geometryMember>" SURFACES("<g:CompositeSurface><g:surfaceMembers>" SQUARE("b", "1", "2")
-        SQUARE("c", "1", "3") "</g:surfaceMembers></g:CompositeSurface>") "</g:geometryMember></g:MultiGeometry>"
-        "<g:TriangulatedSurface><g:trianglePatches><g:Triangle><g:exterior>" RING("0 0 0 1 0 0 1 1 0 0 0 0")
-        "</g:exterior></g:Triangle></g:trianglePatches></g:TriangulatedSurface>"
-        "<g:Tin g:id='t'><g:trianglePatches><g:Triangle><g:exterior>" RING("0 0 0 1 0 0 1 1 0 0 0 0")
-        "</g:exterior></g:Triangle></g:trianglePatches><g:controlPoint><g:posList>0 0 0 1 1 1</g:posList>"
-        "</g:controlPoint></g:Tin>"
-        "<g:Surface g:id='s'><g:patches><g:PolygonPatch><g:exterior>" RING("0 0 0 1 0 0 1 1 0 0 0 0")
-        "</g:exterior></g:PolygonPatch><g:Rectangle><g:exterior>" RING("0 0 0 1 0 0 1 1 0 0 1 0 0 0 0")
-        "</g:exterior></g:Rectangle></g:patches></g:Surface>"
-        "<g:Solid><g:interior><g:Shell>" MEMBERS(SQUARE("void", "1", "1")) "</g:Shell></g:interior></g:Solid>"
-        "<g:MultiCurve><g:curveMember><g:LineString><g:posList>0 0 0 1 1 1</g:posList></g:LineString></g:curveMember>"
-        "</g:MultiCurve>"), 3 + 1 + 1 + 2 + 1);
+    assert_int_equal(
+        read_surfaces("<g:MultiGeometry><g:geometryMember><g:MultiSolid><g:solidMember><g:CompositeSolid><g:solidMember>" SHELL(MEMBERS(SQUARE(
+            "a", "1",
+            "1"))) "</g:solidMember></g:CompositeSolid></g:solidMember></g:MultiSolid>"
+                   "</g:geometryMember><g:geometryMember>" SURFACES("<g:CompositeSurface><g:surfaceMembers>" SQUARE("b", "1", "2") SQUARE(
+                       "c", "1",
+                       "3") "</g:surfaceMembers></g:CompositeSurface>") "</g:geometryMember></g:MultiGeometry>"
+                                                                        "<g:TriangulatedSurface><g:trianglePatches><g:Triangle><g:exterior>" RING(
+                                                                            "0 0 0 1 0 0 1 1 0 0 0 0") "</g:exterior></g:Triangle></g:trianglePatches></g:TriangulatedSurface>"
+                                                                                                       "<g:Tin g:id='t'><g:trianglePatches><g:Triangle><g:exterior>" RING(
+                                                                                                           "0 0 0 1 0 0 1 1 0 0 0 0") "</g:exterior></g:Triangle></g:trianglePatches><g:controlPoint><g:posList>0 0 0 1 1 1</g:posList>"
+                                                                                                                                      "</g:controlPoint></g:Tin>"
+                                                                                                                                      "<g:Surface g:id='s'><g:patches><g:PolygonPatch><g:exterior>" RING("0 0 0 1 0 0 1 1 0 0 0 0") "</g:exterior></g:PolygonPatch><g:Rectangle><g:exterior>" RING(
+                                                                                                                                          "0 0 0 1 0 0 1 1 0 0 1 0 0 0 0") "</g:exterior></g:Rectangle></g:patches></g:Surface>"
+                                                                                                                                                                           "<g:Solid><g:interior><g:Shell>" MEMBERS(
+                                                                                                                                                                               SQUARE(
+                                                                                                                                                                                   "void",
+                                                                                                                                                                                   "1",
+                                                                                                                                                                                   "1")) "</g:Shell></g:interior></g:Solid>"
+                                                                                                                                                                                         "<g:MultiCurve><g:curveMember><g:LineString><g:posList>0 0 0 1 1 1</g:posList></g:LineString></g:curveMember>"
+                                                                                                                                                                                         "</g:MultiCurve>"),
+        3 + 1 + 1 + 2 + 1);
     assert_int_equal(geo_issues_count(sink.sink.issues), 0);
 }
 
 static void test_rings_of_curves(void **state) {
     (void)state;
     const double joined[] = { 0, 0, 0, 4, 0, 0, 4, 0, 0, 4, 3, 0 };
-    assert_int_equal(read_surfaces(SURFACES("<g:Polygon g:id='p'><g:exterior><g:Ring><g:curveMember><g:LineString>"
-        "<g:posList>0 0 0 4 0 0</g:posList></g:LineString></g:curveMember><g:curveMember><g:Curve><g:segments>"
-        "<g:LineStringSegment><g:posList>4 0 0 4 3 0 0 0 0</g:posList></g:LineStringSegment></g:segments></g:Curve>"
-        "</g:curveMember></g:Ring></g:exterior></g:Polygon>")), 1);
+    assert_int_equal(
+        read_surfaces(SURFACES(
+            "<g:Polygon g:id='p'><g:exterior><g:Ring><g:curveMember><g:LineString>"
+            "<g:posList>0 0 0 4 0 0</g:posList></g:LineString></g:curveMember><g:curveMember><g:Curve><g:segments>"
+            "<g:LineStringSegment><g:posList>4 0 0 4 3 0 0 0 0</g:posList></g:LineStringSegment></g:segments></g:Curve>"
+            "</g:curveMember></g:Ring></g:exterior></g:Polygon>")),
+        1);
     expect_points(city_find(&sink, "p"), 4, joined); /* repeated points are geo's business */
-    assert_int_equal(read_surfaces(SURFACES("<g:Polygon g:id='p'><g:exterior><g:Ring><g:curveMember><g:Curve><g:segments>"
-        "<g:Arc><g:posList>0 0 0 2 2 0 4 0 0</g:posList></g:Arc><g:LineStringSegment><g:posList>4 0 0 0 0 0</g:posList>"
-        "</g:LineStringSegment></g:segments></g:Curve></g:curveMember></g:Ring></g:exterior></g:Polygon>")), 1);
+    assert_int_equal(
+        read_surfaces(SURFACES(
+            "<g:Polygon g:id='p'><g:exterior><g:Ring><g:curveMember><g:Curve><g:segments>"
+            "<g:Arc><g:posList>0 0 0 2 2 0 4 0 0</g:posList></g:Arc><g:LineStringSegment><g:posList>4 0 0 0 0 0</g:posList>"
+            "</g:LineStringSegment></g:segments></g:Curve></g:curveMember></g:Ring></g:exterior></g:Polygon>")),
+        1);
     assert_int_equal(city_issue(&sink, "arc taken as straight lines"), 1);
 }
 
@@ -183,16 +217,18 @@ static void test_orientation(void **state) {
 #define ORIENTED(sign, content) "<g:OrientableSurface orientation='" sign "'>" content "</g:OrientableSurface>"
 #define BASE(content) "<g:baseSurface>" content "</g:baseSurface>"
     assert_int_equal(read_surfaces(ORIENTED("+", BASE(P("plus"))) ORIENTED("-", BASE(P("minus")))
-                                   ORIENTED("-", BASE(ORIENTED("-", BASE(P("twice")))))), 3);
+                                       ORIENTED("-", BASE(ORIENTED("-", BASE(P("twice")))))),
+                     3);
     expect_points(city_find(&sink, "plus"), 3, forth);
     expect_points(city_find(&sink, "minus"), 3, back);
     expect_points(city_find(&sink, "twice"), 3, forth);
     /* Turned by reference: what the reference says counts, not where the polygon is written. */
-    char *text = noc_format(MODEL(MEMBER(BUILDING("B",
-        "<b:lod1MultiSurface>%s</b:lod1MultiSurface><b:lod2MultiSurface>%s</b:lod2MultiSurface>"))),
-        ORIENTED("-", BASE(P("p"))) ORIENTED("-", "<g:baseSurface>" P("q") "</g:baseSurface>"),
-        SURFACES("</g:surfaceMember><g:surfaceMember x:href='#p'/><g:surfaceMember>"
-                 ORIENTED("-", "<g:baseSurface x:href='#q'/>")));
+    char *text =
+        noc_format(MODEL(MEMBER(BUILDING(
+                       "B", "<b:lod1MultiSurface>%s</b:lod1MultiSurface><b:lod2MultiSurface>%s</b:lod2MultiSurface>"))),
+                   ORIENTED("-", BASE(P("p"))) ORIENTED("-", "<g:baseSurface>" P("q") "</g:baseSurface>"),
+                   SURFACES("</g:surfaceMember><g:surfaceMember x:href='#p'/><g:surfaceMember>" ORIENTED(
+                       "-", "<g:baseSurface x:href='#q'/>")));
     assert_int_equal(city_read_bytes(&sink, text, strlen(text), 3), NOC_OK);
     free(text);
     expect_points(city_find(&sink, "p"), 3, forth);
@@ -202,12 +238,16 @@ static void test_orientation(void **state) {
 static void test_terrain(void **state) {
     (void)state;
 #define FACE(positions) "<g:Triangle><g:exterior>" RING(positions) "</g:exterior></g:Triangle>"
-    const char *text = MODEL(MEMBER("<d:ReliefFeature g:id='R'><d:lod>1</d:lod><d:reliefComponent><d:TINRelief g:id='T'>"
-        "<d:extent>" POLYGON("extent", "0 0 0 9 0 0 9 9 0 0 0 0") "</d:extent><d:tin><g:TriangulatedSurface>"
-        "<g:trianglePatches>" FACE("0 0 0 1 0 0 1 1 0 0 0 0") FACE("0 0 0 1 1 0 0 1 0 0 0 0") FACE("0 0 0 1 1 0")
-        "</g:trianglePatches></g:TriangulatedSurface></d:tin></d:TINRelief></d:reliefComponent><d:reliefComponent>"
-        "<d:MassPointRelief g:id='M'><d:reliefPoints><g:MultiPoint/></d:reliefPoints></d:MassPointRelief>"
-        "</d:reliefComponent><d:reliefComponent><d:BreaklineRelief/></d:reliefComponent></d:ReliefFeature>"));
+    const char *text = MODEL(MEMBER(
+        "<d:ReliefFeature g:id='R'><d:lod>1</d:lod><d:reliefComponent><d:TINRelief g:id='T'>"
+        "<d:extent>" POLYGON(
+            "extent",
+            "0 0 0 9 0 0 9 9 0 0 0 0") "</d:extent><d:tin><g:TriangulatedSurface>"
+                                       "<g:trianglePatches>" FACE("0 0 0 1 0 0 1 1 0 0 0 0")
+                                           FACE("0 0 0 1 1 0 0 1 0 0 0 0") FACE(
+                                               "0 0 0 1 1 0") "</g:trianglePatches></g:TriangulatedSurface></d:tin></d:TINRelief></d:reliefComponent><d:reliefComponent>"
+                                                              "<d:MassPointRelief g:id='M'><d:reliefPoints><g:MultiPoint/></d:reliefPoints></d:MassPointRelief>"
+                                                              "</d:reliefComponent><d:reliefComponent><d:BreaklineRelief/></d:reliefComponent></d:ReliefFeature>"));
     assert_int_equal(city_read_bytes(&sink, text, strlen(text), 3), NOC_OK);
     assert_int_equal(sink.polygons.len, 2);
     assert_int_equal(sink.objects.len, 1);
@@ -222,11 +262,14 @@ static void test_terrain(void **state) {
 /* Expat hands text over in pieces: wherever a piece ends, the numbers must be the same. */
 static void test_pieces(void **state) {
     (void)state;
-    const char *shape = MEMBER(BUILDING("B", "<b:lod2MultiSurface>"
-        SURFACES(POLYGON("p", "678016.20123 5403455.76712 412.9291 678017.2 5403455.7 412.9 678017.2 5403456.7 412.9"))
-        "</b:lod2MultiSurface>"));
+    const char *shape = MEMBER(BUILDING(
+        "B",
+        "<b:lod2MultiSurface>" SURFACES(POLYGON(
+            "p",
+            "678016.20123 5403455.76712 412.9291 678017.2 5403455.7 412.9 678017.2 5403456.7 412.9")) "</b:lod2MultiSurface>"));
     const char *head = "<CityModel" NAMESPACES("2.0", GML31) "><!--", *tail = "-->";
-    const double want[] = { 678016.20123, 5403455.76712, 412.9291, 678017.2, 5403455.7, 412.9, 678017.2, 5403456.7, 412.9 };
+    const double want[] = { 678016.20123, 5403455.76712, 412.9291,  678017.2, 5403455.7,
+                            412.9,        678017.2,      5403456.7, 412.9 };
     const size_t chunk = 128 * 1024; /* of the reader */
     size_t lead = strlen(head) + strlen(tail), first = (size_t)(strstr(shape, "678016") - shape);
     char *text = noc_alloc(2 * chunk);
@@ -243,8 +286,9 @@ static void test_pieces(void **state) {
 static void test_long_text(void **state) {
     (void)state;
     NOC_ARRAY(char) text = { 0 };
-    const char *head = "<CityModel" NAMESPACES("2.0", GML31) "><cityObjectMember><b:Building><b:lod2MultiSurface>"
-                       "<g:MultiSurface><g:surfaceMember><g:Polygon><g:exterior><g:LinearRing><g:posList>";
+    const char *head = "<CityModel" NAMESPACES(
+        "2.0", GML31) "><cityObjectMember><b:Building><b:lod2MultiSurface>"
+                      "<g:MultiSurface><g:surfaceMember><g:Polygon><g:exterior><g:LinearRing><g:posList>";
     const char *tail = "</g:posList></g:LinearRing></g:exterior></g:Polygon></g:surfaceMember></g:MultiSurface>"
                        "</b:lod2MultiSurface></b:Building></cityObjectMember></CityModel>";
     const size_t points = 300000;
@@ -268,9 +312,17 @@ static void test_long_text(void **state) {
 int main(void) {
 #define T(f) cmocka_unit_test_teardown(f, finish)
     const struct CMUnitTest tests[] = {
-        T(test_spellings_of_coordinates), T(test_two_dimensions), T(test_numbers_exact), T(test_bad_rings),
-        T(test_holes), T(test_containers), T(test_rings_of_curves), T(test_orientation), T(test_terrain),
-        T(test_pieces), T(test_long_text),
+        T(test_spellings_of_coordinates),
+        T(test_two_dimensions),
+        T(test_numbers_exact),
+        T(test_bad_rings),
+        T(test_holes),
+        T(test_containers),
+        T(test_rings_of_curves),
+        T(test_orientation),
+        T(test_terrain),
+        T(test_pieces),
+        T(test_long_text),
     };
     return cmocka_run_group_tests_name("import/citygml_geometry", tests, NULL, NULL);
 }

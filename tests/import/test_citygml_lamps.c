@@ -1,4 +1,5 @@
-/* Lamps among city furniture and generic objects: what makes one, what it says of itself, and light that its own body leaves free. */
+/* Lamps among city furniture and generic objects: what makes one, what it says of itself, and light that its own body
+ * leaves free. */
 #include "city_pieces.h"
 #include "city_sink.h"
 
@@ -14,7 +15,8 @@ static city_sink sink;
 #define GENERIC(id, content) MEMBER("<gen:GenericCityObject g:id='" id "'>" content "</gen:GenericCityObject>")
 #define FUNCTION(f, text) "<" f ":function>" text "</" f ":function>"
 #define POINT(f, position) "<" f ":lod1Geometry><g:Point><g:pos>" position "</g:pos></g:Point></" f ":lod1Geometry>"
-#define ATTRIBUTE(kind, name, value) "<gen:" kind "Attribute name='" name "'><gen:value>" value "</gen:value></gen:" kind "Attribute>"
+#define ATTRIBUTE(kind, name, value)                                                                                   \
+    "<gen:" kind "Attribute name='" name "'><gen:value>" value "</gen:value></gen:" kind "Attribute>"
 
 static void read_text(const char *text) { assert_int_equal(city_read_bytes(&sink, text, strlen(text), 3), NOC_OK); }
 
@@ -22,7 +24,8 @@ static void read_text(const char *text) { assert_int_equal(city_read_bytes(&sink
 
 static void expect_lamp(const char *what, bool generic, const char *content, bool lamp) {
     const char *open = generic ? "<gen:GenericCityObject g:id='o'>" : "<f:CityFurniture g:id='o'>";
-    const char *close = generic ? POINT("gen", "5 6 7") "</gen:GenericCityObject>" : POINT("f", "5 6 7") "</f:CityFurniture>";
+    const char *close =
+        generic ? POINT("gen", "5 6 7") "</gen:GenericCityObject>" : POINT("f", "5 6 7") "</f:CityFurniture>";
     char *text = noc_format(MODEL("<cityObjectMember>%s%s%s</cityObjectMember>"), open, content, close);
     read_text(text);
     free(text);
@@ -31,11 +34,22 @@ static void expect_lamp(const char *what, bool generic, const char *content, boo
 }
 
 static void test_codes(void **state) {
-    static const struct { const char *space, *code; bool lamp; } codes[] = {
-        { "", "1150", true }, { "", "1170", true }, { "", "1220", true }, { "", "1230", true }, { "", "1080", false }, { "", "1160", false },
+    static const struct {
+        const char *space, *code;
+        bool lamp;
+    } codes[] = {
+        { "", "1150", true },
+        { "", "1170", true },
+        { "", "1220", true },
+        { "", "1230", true },
+        { "", "1080", false },
+        { "", "1160", false },
         { "http://www.sig3d.de/codelists/standard/cityfurniture/2.0/CityFurniture_function.xml", "1150", true },
-        { "../../codelists/CityFurniture_function.xml", "4200", true }, { "../../codelists/CityFurniture_function.xml", "1150", false },
-        { "../../codelists/CityFurniture_function.xml", "4900", false }, { "http://example.org/own-list.xml", "1150", false }, { "", "4200", false },
+        { "../../codelists/CityFurniture_function.xml", "4200", true },
+        { "../../codelists/CityFurniture_function.xml", "1150", false },
+        { "../../codelists/CityFurniture_function.xml", "4900", false },
+        { "http://example.org/own-list.xml", "1150", false },
+        { "", "4200", false },
     };
     for (size_t i = 0; i < NOC_COUNT(codes); i++) {
         char *content = noc_format("<f:function codeSpace='%s'>%s</f:function>", codes[i].space, codes[i].code);
@@ -48,18 +62,28 @@ static void test_codes(void **state) {
 static void test_words(void **state) {
     expect_lamp("street lamp", false, FUNCTION("f", "street lamp"), true);
     expect_lamp("streetLamp", false, "<f:class>StreetLamp</f:class>", true);
-    expect_lamp("Strassenlaterne", false, "<f:usage>Stra\xc3\x9f" "enlaterne</f:usage>", true);
+    expect_lamp("Strassenlaterne", false,
+                "<f:usage>Stra\xc3\x9f"
+                "enlaterne</f:usage>",
+                true);
     expect_lamp("Laterne", true, "<gen:class>Laterne</gen:class>", true);
     expect_lamp("lantern", true, FUNCTION("gen", "lantern"), true);
-    expect_lamp("by name", true, "<g:name>Stra\xc3\x9f" "enleuchte 12</g:name>", true);
+    expect_lamp("by name", true,
+                "<g:name>Stra\xc3\x9f"
+                "enleuchte 12</g:name>",
+                true);
     expect_lamp("Japanese", false, FUNCTION("f", "\xe8\xa1\x97\xe8\xb7\xaf\xe7\x81\xaf"), true);
     expect_lamp("by an attribute", true, ATTRIBUTE("string", "Objektart", "Lichtmast mit Auslegerleuchte"), true);
     expect_lamp("an inn", true, "<g:name>Zur Laterne</g:name>", false);
-    expect_lamp("described beside one", false, "<g:description>bench under a street light</g:description>" FUNCTION("f", "bench"), false);
-    expect_lamp("gone in 2019", false, "<terminationDate>2019-05-31</terminationDate>" FUNCTION("f", "street lamp"), false);
+    expect_lamp("described beside one", false,
+                "<g:description>bench under a street light</g:description>" FUNCTION("f", "bench"), false);
+    expect_lamp("gone in 2019", false, "<terminationDate>2019-05-31</terminationDate>" FUNCTION("f", "street lamp"),
+                false);
     assert_int_equal(city_issue(&sink, "lamp not in use (removed, disused or planned)"), 1);
-    expect_lamp("gone in 2019, 3.0", false, "<validTo>2019-05-31T12:00:00Z</validTo>" FUNCTION("f", "street lamp"), false);
-    expect_lamp("to be gone", false, "<terminationDate>2919-05-31</terminationDate>" FUNCTION("f", "street lamp"), true);
+    expect_lamp("gone in 2019, 3.0", false, "<validTo>2019-05-31T12:00:00Z</validTo>" FUNCTION("f", "street lamp"),
+                false);
+    expect_lamp("to be gone", false, "<terminationDate>2919-05-31</terminationDate>" FUNCTION("f", "street lamp"),
+                true);
     expect_lamp("no date", false, "<terminationDate>unknown</terminationDate>" FUNCTION("f", "street lamp"), true);
     expect_lamp("traffic light", false, FUNCTION("f", "traffic light"), false);
     expect_lamp("gas tank", true, FUNCTION("gen", "gas tank") ATTRIBUTE("double", "Gas volume", "4334.99"), false);
@@ -67,7 +91,8 @@ static void test_words(void **state) {
 
 static void test_by_attributes(void **state) {
     expect_lamp("lumen", false, ATTRIBUTE("int", "lumen", "4000"), true);
-    expect_lamp("wattage and mast height", true, ATTRIBUTE("double", "wattage", "70") ATTRIBUTE("double", "mastheight", "6"), true);
+    expect_lamp("wattage and mast height", true,
+                ATTRIBUTE("double", "wattage", "70") ATTRIBUTE("double", "mastheight", "6"), true);
     expect_lamp("height alone", true, ATTRIBUTE("double", "height", "6"), false);
     expect_lamp("a traffic light with lamps", false, FUNCTION("f", "1080") ATTRIBUTE("int", "lumen", "400"), false);
     expect_lamp("gone", false, FUNCTION("f", "1150") ATTRIBUTE("string", "status", "removed"), false);
@@ -77,9 +102,12 @@ static void test_by_attributes(void **state) {
 /* ---- what it says of itself ---- */
 
 static void test_values(void **state) {
-    read_text(MODEL(FURNITURE("two", FUNCTION("f", "1150") ATTRIBUTE("string", "lamp_type", "SOX") ATTRIBUTE("int", "lumen", "4500")
-                              "<gen:measureAttribute name='height'><gen:value uom='urn:ogc:def:uom:UCUM::ft'>30</gen:value></gen:measureAttribute>"
-                              ATTRIBUTE("double", "Wattage", " 55.5 ") POINT("f", "5 6 7")) FURNITURE("flood", FUNCTION("f", "1230") POINT("f", "5 6"))));
+    read_text(MODEL(FURNITURE(
+        "two",
+        FUNCTION("f", "1150") ATTRIBUTE("string", "lamp_type", "SOX")
+            ATTRIBUTE("int", "lumen", "4500") "<gen:measureAttribute name='height'><gen:value uom='urn:ogc:def:uom:UCUM::ft'>30</gen:value></gen:measureAttribute>" ATTRIBUTE(
+                "double", "Wattage", " 55.5 ") POINT("f", "5 6 7"))
+                        FURNITURE("flood", FUNCTION("f", "1230") POINT("f", "5 6"))));
     assert_int_equal(sink.lamps.len, 2);
     const geo_lamp *two = &sink.lamps.data[0];
     assert_float_equal(two->height, 9.144, 1e-9);
@@ -90,11 +118,12 @@ static void test_values(void **state) {
     assert_true(two->xyz[0] == 5 && two->xyz[1] == 6 && two->xyz[2] == 7);
     assert_int_equal(sink.lamps.data[1].type, GEO_LAMP_FLOOD);
     assert_true(isnan(sink.lamps.data[1].xyz[2])); /* two dimensions: on the ground */
-    static const char three[] =
-        "<CityModel" NAMESPACES("3.0", GML32) " xmlns:c='http://www.opengis.net/citygml/3.0'><cityObjectMember><gen:GenericOccupiedSpace g:id='three'>"
-        "<genericAttribute><gen:StringAttribute><gen:name>Leuchtmittel</gen:name><gen:value>LED</gen:value></gen:StringAttribute></genericAttribute>"
-        "<genericAttribute><gen:MeasureAttribute><gen:name>height</gen:name><gen:value uom='m'>8.5</gen:value></gen:MeasureAttribute></genericAttribute>"
-        "<lod0Point><g:Point><g:pos>1 2 3</g:pos></g:Point></lod0Point></gen:GenericOccupiedSpace></cityObjectMember></CityModel>";
+    static const char three[] = "<CityModel" NAMESPACES(
+        "3.0",
+        GML32) " xmlns:c='http://www.opengis.net/citygml/3.0'><cityObjectMember><gen:GenericOccupiedSpace g:id='three'>"
+               "<genericAttribute><gen:StringAttribute><gen:name>Leuchtmittel</gen:name><gen:value>LED</gen:value></gen:StringAttribute></genericAttribute>"
+               "<genericAttribute><gen:MeasureAttribute><gen:name>height</gen:name><gen:value uom='m'>8.5</gen:value></gen:MeasureAttribute></genericAttribute>"
+               "<lod0Point><g:Point><g:pos>1 2 3</g:pos></g:Point></lod0Point></gen:GenericOccupiedSpace></cityObjectMember></CityModel>";
     read_text(three);
     assert_int_equal(sink.lamps.len, 1);
     assert_float_equal(sink.lamps.data[0].height, 8.5, 1e-9);
@@ -102,23 +131,30 @@ static void test_values(void **state) {
 }
 
 static void test_places(void **state) {
-    read_text(MODEL(FURNITURE("far", FUNCTION("f", "1150") "<f:lod2ImplicitRepresentation><ImplicitGeometry><mimeType>model/x3d</mimeType>"
-                              "<libraryObject>lamp.x3d</libraryObject><referencePoint><g:Point><g:pos>11 12 13</g:pos></g:Point></referencePoint>"
-                              "</ImplicitGeometry></f:lod2ImplicitRepresentation>")));
+    read_text(MODEL(FURNITURE(
+        "far",
+        FUNCTION(
+            "f",
+            "1150") "<f:lod2ImplicitRepresentation><ImplicitGeometry><mimeType>model/x3d</mimeType>"
+                    "<libraryObject>lamp.x3d</libraryObject><referencePoint><g:Point><g:pos>11 12 13</g:pos></g:Point></referencePoint>"
+                    "</ImplicitGeometry></f:lod2ImplicitRepresentation>")));
     assert_int_equal(sink.lamps.len, 1);
     assert_true(sink.lamps.data[0].xyz[0] == 11 && sink.lamps.data[0].xyz[2] == 13);
     sink.lat_first = true;
     read_text(MODEL(FURNITURE("lat", FUNCTION("f", "1150") POINT("f", "48.5 11.25 400"))));
     sink.lat_first = false;
-    assert_true(sink.lamps.data[0].xyz[0] == 11.25 && sink.lamps.data[0].xyz[1] == 48.5 && sink.lamps.data[0].xyz[2] == 400);
+    assert_true(sink.lamps.data[0].xyz[0] == 11.25 && sink.lamps.data[0].xyz[1] == 48.5 &&
+                sink.lamps.data[0].xyz[2] == 400);
 }
 
 /* ---- bodies ---- */
 
 /* The six sides of a box, counter-clockwise from outside. */
 static char *box(char *at, double x0, double y0, double z0, double x1, double y1, double z1) {
-    const double c[8][3] = { { x0, y0, z0 }, { x1, y0, z0 }, { x1, y1, z0 }, { x0, y1, z0 }, { x0, y0, z1 }, { x1, y0, z1 }, { x1, y1, z1 }, { x0, y1, z1 } };
-    static const int side[6][4] = { { 3, 2, 1, 0 }, { 4, 5, 6, 7 }, { 0, 1, 5, 4 }, { 1, 2, 6, 5 }, { 2, 3, 7, 6 }, { 3, 0, 4, 7 } };
+    const double c[8][3] = { { x0, y0, z0 }, { x1, y0, z0 }, { x1, y1, z0 }, { x0, y1, z0 },
+                             { x0, y0, z1 }, { x1, y0, z1 }, { x1, y1, z1 }, { x0, y1, z1 } };
+    static const int side[6][4] = { { 3, 2, 1, 0 }, { 4, 5, 6, 7 }, { 0, 1, 5, 4 },
+                                    { 1, 2, 6, 5 }, { 2, 3, 7, 6 }, { 3, 0, 4, 7 } };
     for (int s = 0; s < 6; s++) {
         at += sprintf(at, "<g:surfaceMember><g:Polygon><g:exterior><g:LinearRing><g:posList>");
         for (int k = 0; k < 5; k++) {
@@ -134,7 +170,8 @@ static char *box(char *at, double x0, double y0, double z0, double x1, double y1
 #define X 500.0
 #define Y 700.0
 
-/* A model of lamps: pole with an arm and a head; pole with two; a lantern on a post; a block as large as all of a lamp. */
+/* A model of lamps: pole with an arm and a head; pole with two; a lantern on a post; a block as large as all of a lamp.
+ */
 static void write_lamps(char *bodies[4]) {
     char *at = bodies[0];
     at = box(at, X - .06, Y - .06, 2, X + .06, Y + .06, 10);
@@ -157,14 +194,19 @@ static char *lamp_city(const char *crs) {
         bodies[i] = noc_calloc(1, 20000);
     write_lamps(bodies);
     for (int i = 0; i < 4; i++) {
-        char *longer = noc_format("%s" FURNITURE("lamp%d", FUNCTION("f", "1150") ATTRIBUTE("int", "lumen", "3000") BODY), text, i, bodies[i]);
+        char *longer =
+            noc_format("%s" FURNITURE("lamp%d", FUNCTION("f", "1150") ATTRIBUTE("int", "lumen", "3000") BODY), text, i,
+                       bodies[i]);
         free(text);
         free(bodies[i]);
         text = longer;
     }
-    char *model = noc_format("<CityModel" NAMESPACES("2.0", GML31) "><g:boundedBy><g:Envelope srsName='%s'/></g:boundedBy>%s"
-                             MEMBER("<l:LandUse g:id='ground'><l:lod1MultiSurface>" SURFACES(POLYGON("ground", "400 600 2 700 600 2 700 800 2 400 800 2 400 600 2"))
-                                    "</l:lod1MultiSurface></l:LandUse>") "</CityModel>", crs, text);
+    char *model = noc_format(
+        "<CityModel" NAMESPACES("2.0", GML31) "><g:boundedBy><g:Envelope srsName='%s'/></g:boundedBy>%s" MEMBER(
+            "<l:LandUse g:id='ground'><l:lod1MultiSurface>" SURFACES(POLYGON(
+                "ground",
+                "400 600 2 700 600 2 700 800 2 400 800 2 400 600 2")) "</l:lod1MultiSurface></l:LandUse>") "</CityModel>",
+        crs, text);
     free(text);
     return model;
 }
@@ -177,7 +219,8 @@ static void test_bodies(void **state) {
     const geo_lamp *l = sink.lamps.data;
     assert_int_equal(l[0].body_heads, 1);
     assert_false(l[0].head_globe);
-    assert_true(fabs(l[0].head[0][0] - (X + 1.7)) < .3 && fabs(l[0].head[0][1] - Y) < .01); /* under its head, not its pole */
+    /* under its head, not its pole */
+    assert_true(fabs(l[0].head[0][0] - (X + 1.7)) < .3 && fabs(l[0].head[0][1] - Y) < .01);
     assert_true(l[0].head[0][2] < 9.7 && l[0].head[0][2] > 9.6);
     assert_float_equal(l[0].xyz[0], X, 1e-6);
     assert_float_equal(l[0].xyz[2], 2, 1e-9);
@@ -197,7 +240,8 @@ static void test_bodies(void **state) {
 /* ---- on buildings ---- */
 
 #define INSTALLED(id, words, surfaces)                                                                                 \
-    "<b:outerBuildingInstallation><b:BuildingInstallation g:id='" id "'>" words "<b:lod2Geometry><g:MultiSurface>" surfaces   \
+    "<b:outerBuildingInstallation><b:BuildingInstallation g:id='" id "'>" words                                        \
+    "<b:lod2Geometry><g:MultiSurface>" surfaces                                                                        \
     "</g:MultiSurface></b:lod2Geometry></b:BuildingInstallation></b:outerBuildingInstallation>"
 
 /* A luminaire that is open below, a closed block that would swallow its light, a lamp that is gone, a balcony. */
@@ -207,21 +251,26 @@ static void test_installations(void **state) {
     box(bodies[1], X + 9, Y - 1, 3, X + 11, Y + 1, 5);
     box(bodies[2], X + 20, Y, 4, X + 21, Y + 1, 5);
     box(bodies[3], X + 30, Y, 4, X + 31, Y + 1, 5);
-    char *text = noc_format(MODEL(MEMBER(BUILDING("house", LOD_SURFACES("2", SQUARE("wall", "1", "0"))
-                                INSTALLED("wall lamp", FUNCTION("b", "street light") ATTRIBUTE("int", "lumen", "700"), "%s")
-                                INSTALLED("block", "<g:name>Laterne 5</g:name><b:class>Laterne</b:class>", "%s")
-                                INSTALLED("gone", FUNCTION("b", "lamp") "<terminationDate>2019-05-31</terminationDate>", "%s")
-                                INSTALLED("balcony", "<g:name>Zur Laterne</g:name>" FUNCTION("b", "1000"), "%s")))),
-                            bodies[0], bodies[1], bodies[2], bodies[3]);
+    char *text = noc_format(
+        MODEL(MEMBER(BUILDING(
+            "house",
+            LOD_SURFACES("2", SQUARE("wall", "1", "0"))
+                INSTALLED("wall lamp", FUNCTION("b", "street light") ATTRIBUTE("int", "lumen", "700"), "%s")
+                    INSTALLED("block", "<g:name>Laterne 5</g:name><b:class>Laterne</b:class>", "%s")
+                        INSTALLED("gone", FUNCTION("b", "lamp") "<terminationDate>2019-05-31</terminationDate>", "%s")
+                            INSTALLED("balcony", "<g:name>Zur Laterne</g:name>" FUNCTION("b", "1000"), "%s")))),
+        bodies[0], bodies[1], bodies[2], bodies[3]);
     read_text(text);
     free(text);
     assert_int_equal(sink.lamps.len, 2);
     const geo_lamp *lamp = &sink.lamps.data[0], *block = &sink.lamps.data[1];
     assert_float_equal(lamp->lumens, 700, 0);
     assert_int_equal(lamp->body_heads, 1);
-    assert_true(!lamp->head_globe && lamp->head[0][2] < 4 && lamp->head[0][2] > 3.9 && fabs(lamp->head[0][0] - X - .2) < 1e-6);
+    assert_true(!lamp->head_globe && lamp->head[0][2] < 4 && lamp->head[0][2] > 3.9 &&
+                fabs(lamp->head[0][0] - X - .2) < 1e-6);
     assert_true(isnan(block->lumens)); /* that is the other one's */
-    assert_true(block->body_heads == 1 && block->head_globe && fabs(block->head[0][2] - 4) < 1e-9 && fabs(block->head[0][0] - X - 10) < 1e-6);
+    assert_true(block->body_heads == 1 && block->head_globe && fabs(block->head[0][2] - 4) < 1e-9 &&
+                fabs(block->head[0][0] - X - 10) < 1e-6);
     assert_int_equal(city_issue(&sink, "lamp whose body is a block around its light: a globe in its place"), 1);
     assert_int_equal(city_issue(&sink, "lamp not in use (removed, disused or planned)"), 1);
     assert_int_equal(sink.polygons.len, 1 + 6 + 6 + 6); /* the block's alone are left away */
@@ -233,7 +282,9 @@ static void test_many_installations(void **state) {
     char body[4000], *text = NULL;
     size_t size;
     FILE *f = open_memstream(&text, &size);
-    fputs("<CityModel" NAMESPACES("2.0", GML31) ">" "<cityObjectMember><b:Building g:id='house'>", f);
+    fputs("<CityModel" NAMESPACES("2.0", GML31) ">"
+                                                "<cityObjectMember><b:Building g:id='house'>",
+          f);
     for (int i = 0; i < LAMPS; i++) {
         box(body, X + 3 * i, Y - 1, 3, X + 3 * i + 2, Y + 1, 5);
         fprintf(f, INSTALLED("l", FUNCTION("b", "lamp"), "%s"), body);
@@ -258,7 +309,8 @@ static bool blocked(const noc_scene *scene, const double o[3], const double d[3]
     for (size_t t = 0; t < scene->triangle_material.len; t++) {
         const float *v[3];
         double e1[3], e2[3], s[3], p[3], q[3];
-        if (scene->materials.data[scene->triangle_material.data[t]].cls != NOC_CLASS_LAMP || scene->triangle_light.data[t] != NOC_NO_LIGHT)
+        if (scene->materials.data[scene->triangle_material.data[t]].cls != NOC_CLASS_LAMP ||
+            scene->triangle_light.data[t] != NOC_NO_LIGHT)
             continue;
         for (int i = 0; i < 3; i++)
             v[i] = scene->positions.data + 3 * (size_t)scene->indices.data[3 * t + (size_t)i];
@@ -312,7 +364,8 @@ static void test_light_reaches_the_ground(void **state) {
                 double o[3] = { l->p[0] + 2 * k * cos(a * M_PI / 6), l->p[1] + 2 * k * sin(a * M_PI / 6), 2.01 }, d[3];
                 for (int j = 0; j < 3; j++)
                     d[j] = l->p[j] - o[j];
-                double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), shorter = l->kind == NOC_LIGHT_SPHERE ? (length - r) / length : 1;
+                double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]),
+                       shorter = l->kind == NOC_LIGHT_SPHERE ? (length - r) / length : 1;
                 for (int j = 0; j < 3; j++)
                     d[j] *= shorter;
                 seen += !blocked(scene, o, d);
@@ -328,8 +381,9 @@ static void test_light_reaches_the_ground(void **state) {
 /* ---- what is left out ---- */
 
 static void test_left_out(void **state) {
-    read_text(MODEL(FURNITURE("a", "<f:class>1000</f:class>" FUNCTION("f", "1080")) FURNITURE("b", "<f:class>1000</f:class>" FUNCTION("f", "1080"))
-                    GENERIC("c", "<gen:class>Sirene</gen:class>") MEMBER("<l:LandUse g:id='d'/>")));
+    read_text(MODEL(FURNITURE("a", "<f:class>1000</f:class>" FUNCTION("f", "1080"))
+                        FURNITURE("b", "<f:class>1000</f:class>" FUNCTION("f", "1080"))
+                            GENERIC("c", "<gen:class>Sirene</gen:class>") MEMBER("<l:LandUse g:id='d'/>")));
     assert_int_equal(city_issue(&sink, "CityFurniture left out, no geometry (class '1000', function '1080')"), 2);
     assert_int_equal(city_issue(&sink, "GenericCityObject left out, no geometry (class 'Sirene')"), 1);
     assert_int_equal(city_issue(&sink, "LandUse left out, no geometry"), 1);
@@ -354,10 +408,16 @@ static int clear(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_codes),  cmocka_unit_test(test_words),  cmocka_unit_test(test_by_attributes),
-        cmocka_unit_test(test_values), cmocka_unit_test(test_places), cmocka_unit_test(test_bodies),
-        cmocka_unit_test(test_installations), cmocka_unit_test(test_many_installations),
-        cmocka_unit_test(test_light_reaches_the_ground), cmocka_unit_test(test_left_out),
+        cmocka_unit_test(test_codes),
+        cmocka_unit_test(test_words),
+        cmocka_unit_test(test_by_attributes),
+        cmocka_unit_test(test_values),
+        cmocka_unit_test(test_places),
+        cmocka_unit_test(test_bodies),
+        cmocka_unit_test(test_installations),
+        cmocka_unit_test(test_many_installations),
+        cmocka_unit_test(test_light_reaches_the_ground),
+        cmocka_unit_test(test_left_out),
     };
     return cmocka_run_group_tests_name("import/citygml_lamps", tests, NULL, clear);
 }

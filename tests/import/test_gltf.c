@@ -45,7 +45,9 @@ static void load(loaded *l, const char *name) {
     l->issues = geo_issues_create();
     noc_import_params params = noc_import_default_params();
     noc_stream *stream = noc_stream_open(path, l->log, NULL);
-    l->status = stream ? noc_reader_gltf.read_mesh(path, stream, &params, l->scene, &(mesh_place){ NULL, as_it_is }, l->issues, &l->format) : NOC_ERR_IO;
+    l->status = stream ? noc_reader_gltf.read_mesh(path, stream, &params, l->scene, &(mesh_place){ NULL, as_it_is },
+                                                   l->issues, &l->format)
+                       : NOC_ERR_IO;
     noc_stream_close(stream);
 }
 
@@ -85,7 +87,8 @@ static const char *base64(const unsigned char *data, size_t n) {
     static char text[4000];
     char *to = text;
     for (size_t i = 0; i < n; i += 3) {
-        uint32_t u = (uint32_t)data[i] << 16 | (i + 1 < n ? (uint32_t)data[i + 1] << 8 : 0) | (i + 2 < n ? data[i + 2] : 0);
+        uint32_t u =
+            (uint32_t)data[i] << 16 | (i + 1 < n ? (uint32_t)data[i + 1] << 8 : 0) | (i + 2 < n ? data[i + 2] : 0);
         for (int k = 0; k < 4; k++)
             *to++ = i + (size_t)k > n ? '=' : digits[u >> (18 - 6 * k) & 63];
     }
@@ -93,9 +96,10 @@ static const char *base64(const unsigned char *data, size_t n) {
     return text;
 }
 
-#define VIEWS "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 48}, {\"buffer\": 0, \"byteOffset\": 48, \"byteLength\": 12}],"
+#define VIEWS                                                                                                          \
+    "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 48}, {\"buffer\": 0, \"byteOffset\": 48, \"byteLength\": 12}],"
 #define ACCESSORS                                                                                                      \
-    "\"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 4, \"type\": \"VEC3\"},"                     \
+    "\"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 4, \"type\": \"VEC3\"},"                  \
     " {\"bufferView\": 1, \"componentType\": 5123, \"count\": 6, \"type\": \"SCALAR\"}],"
 #define MESHES "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 0}]}],"
 #define ASSET "{\"asset\": {\"version\": \"2.0\"}, "
@@ -105,7 +109,9 @@ static char *file_text(const char *before, const char *rest) {
     static char text[8000];
     memcpy(bytes, square, sizeof(square));
     memcpy(bytes + sizeof(square), corners, sizeof(corners));
-    int n = snprintf(text, sizeof(text), ASSET "%s %s \"buffers\": [{\"byteLength\": %d, \"uri\": \"data:application/octet-stream;base64,%s\"}]}",
+    int n = snprintf(text, sizeof(text),
+                     ASSET
+                     "%s %s \"buffers\": [{\"byteLength\": %d, \"uri\": \"data:application/octet-stream;base64,%s\"}]}",
                      before, rest, BUFFER, base64(bytes, BUFFER));
     assert_in_range(n, 1, sizeof(text) - 1);
     return text;
@@ -126,10 +132,14 @@ static void assert_place(const loaded *l, size_t vertex, double x, double y, dou
 /* y up becomes z up: (x, y, z) is at (x, -z, y). A parent's rotation by 90 degrees about y takes x to -z and z to x. */
 static void test_nodes(void **state) {
     loaded l;
-    load_text(&l, file_text(PLAIN, "\"scene\": 1, \"scenes\": [{\"nodes\": [2]}, {\"nodes\": [0, 3]}],"
-                                   "\"nodes\": [{\"children\": [1], \"translation\": [10, 20, 30], \"rotation\": [0, 0.70710678118, 0, 0.70710678118]},"
-                                   " {\"mesh\": 0, \"scale\": [2, 3, 1], \"name\": \"window\"}, {\"mesh\": 0},"
-                                   " {\"mesh\": 0, \"matrix\": [1,0,0,0, 0,1,0,0, 0,0,-1,0, 5,6,7,1]}],"));
+    load_text(
+        &l,
+        file_text(
+            PLAIN,
+            "\"scene\": 1, \"scenes\": [{\"nodes\": [2]}, {\"nodes\": [0, 3]}],"
+            "\"nodes\": [{\"children\": [1], \"translation\": [10, 20, 30], \"rotation\": [0, 0.70710678118, 0, 0.70710678118]},"
+            " {\"mesh\": 0, \"scale\": [2, 3, 1], \"name\": \"window\"}, {\"mesh\": 0},"
+            " {\"mesh\": 0, \"matrix\": [1,0,0,0, 0,1,0,0, 0,0,-1,0, 5,6,7,1]}],"));
     assert_string_equal(l.error, "");
     assert_int_equal(l.status, NOC_OK);
     assert_string_equal(l.format, "glTF");
@@ -137,13 +147,14 @@ static void test_nodes(void **state) {
     assert_int_equal(l.scene->indices.len, 12);
     assert_string_equal(l.scene->meshes.data[0].name, "window");
     assert_place(&l, 0, 10, -30, 20);
-    assert_place(&l, 1, 10, -28, 20);  /* (2, 0, 0) turned to (0, 0, -2) */
+    assert_place(&l, 1, 10, -28, 20); /* (2, 0, 0) turned to (0, 0, -2) */
     assert_place(&l, 2, 10, -28, 23);
     assert_place(&l, 4, 5, -7, 6);
     assert_place(&l, 5, 6, -7, 6);
     /* the second is mirrored: its winding is turned, so that it looks along -z still as its matrix says */
     const uint32_t *t = &l.scene->indices.data[6];
-    const float *a = &l.scene->positions.data[3 * t[0]], *b = &l.scene->positions.data[3 * t[1]], *c = &l.scene->positions.data[3 * t[2]];
+    const float *a = &l.scene->positions.data[3 * t[0]], *b = &l.scene->positions.data[3 * t[1]],
+                *c = &l.scene->positions.data[3 * t[2]];
     double ny = (double)((b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2]));
     assert_true(ny > 0); /* glTF's -z is our +y */
     unload(&l);
@@ -154,7 +165,10 @@ static void test_containers(void **state) {
     char json[3000];
     unsigned char glb[4000] = "glTF\2\0\0\0";
     file_text("", "");
-    int n = snprintf(json, sizeof(json), ASSET PLAIN "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}], \"buffers\": [{\"byteLength\": 60}]}");
+    int n =
+        snprintf(json, sizeof(json),
+                 ASSET PLAIN
+                 "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}], \"buffers\": [{\"byteLength\": 60}]}");
     while (n % 4)
         json[n++] = ' ';
     uint32_t total = 12 + 8 + (uint32_t)n + 8 + BUFFER, length = (uint32_t)n, binary = BUFFER;
@@ -180,8 +194,18 @@ static void test_containers(void **state) {
         unload(&l);
     }
     /* lengths that lie: of the file (more, then less than there is), and of its chunks */
-    const struct { size_t at; uint32_t value; } lies[] = { { 8, total + 1 }, { 8, UINT32_MAX }, { 8, 0 }, { 8, total - 8 }, { 12, 0 }, { 12, length + 4 },
-                                                           { 12, UINT32_MAX }, { 20 + length, BUFFER + 1 }, { 20 + length, UINT32_MAX - 2 } };
+    const struct {
+        size_t at;
+        uint32_t value;
+    } lies[] = { { 8, total + 1 },
+                 { 8, UINT32_MAX },
+                 { 8, 0 },
+                 { 8, total - 8 },
+                 { 12, 0 },
+                 { 12, length + 4 },
+                 { 12, UINT32_MAX },
+                 { 20 + length, BUFFER + 1 },
+                 { 20 + length, UINT32_MAX - 2 } };
     for (size_t i = 0; i < NOC_COUNT(lies); i++) {
         unsigned char lying[sizeof(glb)];
         memcpy(lying, glb, sizeof(glb));
@@ -198,7 +222,8 @@ static void test_containers(void **state) {
     assert_int_equal(l.scene->indices.len, 6);
     unload(&l);
     /* beside it, under a name with a blank */
-    const char *text = ASSET PLAIN "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}], \"buffers\": [{\"byteLength\": 60, \"uri\": \"b%20c.bin\"}]}";
+    const char *text = ASSET PLAIN
+        "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}], \"buffers\": [{\"byteLength\": 60, \"uri\": \"b%20c.bin\"}]}";
     write_file("b c.bin", bytes, BUFFER);
     load_text(&l, text);
     assert_int_equal(l.scene->indices.len, 6);
@@ -217,7 +242,8 @@ static void test_containers(void **state) {
     unload(&l);
 }
 
-/* Normalised short integers 8 bytes apart, with one place put right by a sparse part; strips and fans turn the same way. */
+/* Normalised short integers 8 bytes apart, with one place put right by a sparse part; strips and fans turn the same
+ * way. */
 static void test_accessors(void **state) {
     static const int16_t places[4][4] = { { 0, 0, 0, 77 }, { 32767, 0, 0, 77 }, { 0, 32767, 0, 77 }, { 5, 5, 5, 77 } };
     static const int16_t right[3] = { 32767, 32767, 0 };
@@ -229,22 +255,26 @@ static void test_accessors(void **state) {
     char text[2000];
     for (int mode = 5; mode <= 6; mode++) {
         loaded l;
-        snprintf(text, sizeof(text), ASSET
-                 "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 32, \"byteStride\": 8}, {\"buffer\": 0, \"byteOffset\": 32, \"byteLength\": 1},"
-                 " {\"buffer\": 0, \"byteOffset\": 36, \"byteLength\": 6}, {\"buffer\": 0, \"byteOffset\": 44, \"byteLength\": 4}],"
-                 "\"accessors\": [{\"bufferView\": 0, \"componentType\": 5122, \"normalized\": true, \"count\": 4, \"type\": \"VEC3\","
-                 " \"sparse\": {\"count\": 1, \"indices\": {\"bufferView\": 1, \"componentType\": 5121}, \"values\": {\"bufferView\": 2}}},"
-                 " {\"bufferView\": 3, \"componentType\": 5121, \"count\": 4, \"type\": \"SCALAR\"}],"
-                 "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}%s, \"mode\": %d}]}],"
-                 "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}],"
-                 "\"buffers\": [{\"byteLength\": 48, \"uri\": \"data:;base64,%s\"}]}", mode == 6 ? ", \"indices\": 1" : "", mode, base64(data, 48));
+        snprintf(
+            text, sizeof(text),
+            ASSET
+            "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 32, \"byteStride\": 8}, {\"buffer\": 0, \"byteOffset\": 32, \"byteLength\": 1},"
+            " {\"buffer\": 0, \"byteOffset\": 36, \"byteLength\": 6}, {\"buffer\": 0, \"byteOffset\": 44, \"byteLength\": 4}],"
+            "\"accessors\": [{\"bufferView\": 0, \"componentType\": 5122, \"normalized\": true, \"count\": 4, \"type\": \"VEC3\","
+            " \"sparse\": {\"count\": 1, \"indices\": {\"bufferView\": 1, \"componentType\": 5121}, \"values\": {\"bufferView\": 2}}},"
+            " {\"bufferView\": 3, \"componentType\": 5121, \"count\": 4, \"type\": \"SCALAR\"}],"
+            "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}%s, \"mode\": %d}]}],"
+            "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}],"
+            "\"buffers\": [{\"byteLength\": 48, \"uri\": \"data:;base64,%s\"}]}",
+            mode == 6 ? ", \"indices\": 1" : "", mode, base64(data, 48));
         load_text(&l, text);
         assert_string_equal(l.error, "");
         assert_place(&l, 3, 1, 0, 1);
         assert_int_equal(l.scene->indices.len, 6);
         for (int t = 0; t < 2; t++) { /* all look along z, our -y */
             const uint32_t *v = &l.scene->indices.data[3 * t];
-            const float *a = &l.scene->positions.data[3 * v[0]], *b = &l.scene->positions.data[3 * v[1]], *c = &l.scene->positions.data[3 * v[2]];
+            const float *a = &l.scene->positions.data[3 * v[0]], *b = &l.scene->positions.data[3 * v[1]],
+                        *c = &l.scene->positions.data[3 * v[2]];
             assert_float_equal((b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2]), -1, 1e-4);
         }
         unload(&l);
@@ -253,15 +283,18 @@ static void test_accessors(void **state) {
 
 static void test_materials(void **state) {
     loaded l;
-    load_text(&l, file_text(VIEWS ACCESSORS,
-        "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 0},"
-        " {\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 1}, {\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 2},"
-        " {\"attributes\": {\"POSITION\": 0}, \"mode\": 1}]}],"
-        "\"materials\": [{\"emissiveFactor\": [1, 0.5, 0.25], \"extensions\": {\"KHR_materials_emissive_strength\": {\"emissiveStrength\": 800}},"
-        " \"doubleSided\": true, \"pbrMetallicRoughness\": {\"baseColorFactor\": [0.2, 0.4, 0.6, 1], \"metallicFactor\": 0, \"roughnessFactor\": 0.3}},"
-        " {\"pbrMetallicRoughness\": {\"baseColorFactor\": [0.5, 0.5, 0.5, 1]}},"
-        " {\"emissiveFactor\": [1, 1, 1], \"emissiveTexture\": {\"index\": 0}, \"alphaMode\": \"BLEND\"}],"
-        "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}],"));
+    load_text(
+        &l,
+        file_text(
+            VIEWS ACCESSORS,
+            "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 0},"
+            " {\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 1}, {\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 2},"
+            " {\"attributes\": {\"POSITION\": 0}, \"mode\": 1}]}],"
+            "\"materials\": [{\"emissiveFactor\": [1, 0.5, 0.25], \"extensions\": {\"KHR_materials_emissive_strength\": {\"emissiveStrength\": 800}},"
+            " \"doubleSided\": true, \"pbrMetallicRoughness\": {\"baseColorFactor\": [0.2, 0.4, 0.6, 1], \"metallicFactor\": 0, \"roughnessFactor\": 0.3}},"
+            " {\"pbrMetallicRoughness\": {\"baseColorFactor\": [0.5, 0.5, 0.5, 1]}},"
+            " {\"emissiveFactor\": [1, 1, 1], \"emissiveTexture\": {\"index\": 0}, \"alphaMode\": \"BLEND\"}],"
+            "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}],"));
     assert_string_equal(l.error, "");
     assert_int_equal(l.scene->meshes.len, 3); /* lines are left out */
     const noc_material *m = l.scene->materials.data;
@@ -289,23 +322,27 @@ static void test_materials(void **state) {
 
 static void test_lights(void **state) {
     loaded l;
-    load_text(&l, file_text(PLAIN,
-        "\"extensions\": {\"KHR_lights_punctual\": {\"lights\": ["
-        "{\"type\": \"spot\", \"intensity\": 300, \"color\": [1, 0.5, 0.25], \"spot\": {\"innerConeAngle\": 0.3, \"outerConeAngle\": 0.6}},"
-        "{\"type\": \"point\", \"intensity\": 40}, {\"type\": \"directional\", \"intensity\": 9}, {\"type\": \"blob\"}]}},"
-        "\"scenes\": [{\"nodes\": [0, 1, 2, 3, 4, 5]}], \"nodes\": ["
-        "{\"translation\": [1, 5, 2], \"rotation\": [-0.70710678118, 0, 0, 0.70710678118], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}},"
-        "{\"translation\": [9, 5, 2], \"scale\": [3, 3, 3], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}},"
-        "{\"translation\": [0, 7, -1], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 1}}},"
-        "{\"name\": \"sun\", \"extensions\": {\"KHR_lights_punctual\": {\"light\": 2}}},"
-        "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 3}}}, {\"extensions\": {\"KHR_lights_punctual\": {\"light\": 77}}}],"));
+    load_text(
+        &l,
+        file_text(
+            PLAIN,
+            "\"extensions\": {\"KHR_lights_punctual\": {\"lights\": ["
+            "{\"type\": \"spot\", \"intensity\": 300, \"color\": [1, 0.5, 0.25], \"spot\": {\"innerConeAngle\": 0.3, \"outerConeAngle\": 0.6}},"
+            "{\"type\": \"point\", \"intensity\": 40}, {\"type\": \"directional\", \"intensity\": 9}, {\"type\": \"blob\"}]}},"
+            "\"scenes\": [{\"nodes\": [0, 1, 2, 3, 4, 5]}], \"nodes\": ["
+            "{\"translation\": [1, 5, 2], \"rotation\": [-0.70710678118, 0, 0, 0.70710678118], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}},"
+            "{\"translation\": [9, 5, 2], \"scale\": [3, 3, 3], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}},"
+            "{\"translation\": [0, 7, -1], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 1}}},"
+            "{\"name\": \"sun\", \"extensions\": {\"KHR_lights_punctual\": {\"light\": 2}}},"
+            "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 3}}}, {\"extensions\": {\"KHR_lights_punctual\": {\"light\": 77}}}],"));
     assert_string_equal(l.error, "");
     assert_int_equal(l.scene->lights.len, 3); /* two nodes share the first: it shines twice */
     assert_int_equal(skipped_count(&l, "directional light"), 1);
     assert_int_equal(skipped_count(&l, "unknown type"), 1);
     assert_int_equal(skipped_count(&l, "not there"), 1);
     assert_int_equal(l.scene->indices.len, 0); /* punctual: nothing of them is seen */
-    const double axes[2][3] = { { 0, 0, -1 }, { 0, 1, 0 } }; /* -z of glTF is our +y; the first is turned to look down */
+    /* -z of glTF is our +y; the first is turned to look down */
+    const double axes[2][3] = { { 0, 0, -1 }, { 0, 1, 0 } };
     int spots = 0, points = 0;
     for (size_t i = 0; i < 3; i++) {
         noc_light_info info;
@@ -331,9 +368,14 @@ static void test_lights(void **state) {
     unload(&l);
 }
 
-/* What the extension's numbers do not allow is limited and counted; what it leaves out has its defaults, 0 and 45 degrees. */
+/* What the extension's numbers do not allow is limited and counted; what it leaves out has its defaults, 0 and 45
+ * degrees. */
 static void test_cones(void **state) {
-    static const struct { const char *spot; double inner, outer; size_t limited; } cases[] = {
+    static const struct {
+        const char *spot;
+        double inner, outer;
+        size_t limited;
+    } cases[] = {
         { "", 0, 45, 0 },
         { ", \"spot\": {\"outerConeAngle\": 1.5707963267948966}", 0, 90, 0 },
         { ", \"spot\": {\"innerConeAngle\": 0.5, \"outerConeAngle\": 0.4}", .4 * 180 / M_PI, .4 * 180 / M_PI, 1 },
@@ -344,7 +386,8 @@ static void test_cones(void **state) {
         loaded l;
         char *text = noc_format("\"extensions\": {\"KHR_lights_punctual\": {\"lights\": [{\"type\": \"spot\"%s}]}},"
                                 "\"scenes\": [{\"nodes\": [0]}],"
-                                "\"nodes\": [{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}}],", cases[i].spot);
+                                "\"nodes\": [{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}}],",
+                                cases[i].spot);
         load_text(&l, file_text(PLAIN, text));
         assert_string_equal(l.error, "");
         noc_light_info info;
@@ -359,8 +402,12 @@ static void test_cones(void **state) {
 
 static void test_camera(void **state) {
     loaded l;
-    load_text(&l, file_text(PLAIN, "\"cameras\": [{\"type\": \"perspective\", \"perspective\": {\"yfov\": 0.7853981634}}],"
-                                   "\"scenes\": [{\"nodes\": [0, 1]}], \"nodes\": [{\"mesh\": 0}, {\"camera\": 0, \"translation\": [1, 2, 3]}],"));
+    load_text(
+        &l,
+        file_text(
+            PLAIN,
+            "\"cameras\": [{\"type\": \"perspective\", \"perspective\": {\"yfov\": 0.7853981634}}],"
+            "\"scenes\": [{\"nodes\": [0, 1]}], \"nodes\": [{\"mesh\": 0}, {\"camera\": 0, \"translation\": [1, 2, 3]}],"));
     noc_camera c;
     assert_int_equal(noc_scene_camera(l.scene, NOC_VIEW_OWN, 1.5, &c), NOC_OK);
     assert_float_equal(c.fov_deg, 45, 1e-6);
@@ -375,27 +422,40 @@ static void test_camera(void **state) {
 /* ---- what is wrong ---- */
 
 static void test_bad(void **state) {
-    static const struct { const char *text; const char *says; } bad[] = {
+    static const struct {
+        const char *text;
+        const char *says;
+    } bad[] = {
         { "{\"asset\": {\"version\": \"1.0\"}}", "version 1.0" },
         { "{\"asset\": 3}", "version none" },
-        { "{\"asset\": {\"version\": \"2.0\"}, \"extensionsRequired\": [\"KHR_draco_mesh_compression\"]}", "KHR_draco_mesh_compression" },
+        { "{\"asset\": {\"version\": \"2.0\"}, \"extensionsRequired\": [\"KHR_draco_mesh_compression\"]}",
+          "KHR_draco_mesh_compression" },
         { "{\"asset\": {\"version\": \"2.0\"},\n \"meshes\": [}", "a.gltf:2" },
         { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"data:;base64,AA==\"}]}", "fewer than it says" },
         { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"data:;base64,*!AAAA\"}]}", "not base64" },
         { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"data:text/plain,AAAA\"}]}", "not base64" },
         { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"https://example.org/a.bin\"}]}", "network" },
-        { ASSET "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 9}}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}", "accessor 9" },
-        { ASSET "\"accessors\": [{\"componentType\": 5126, \"count\": 4000000000, \"type\": \"VEC3\"}],"
-          "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}", "accessor 0" },
+        { ASSET
+          "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 9}}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}",
+          "accessor 9" },
+        { ASSET
+          "\"accessors\": [{\"componentType\": 5126, \"count\": 4000000000, \"type\": \"VEC3\"}],"
+          "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}",
+          "accessor 0" },
         /* some bytes that ask for 24 GB of zeros */
-        { ASSET "\"accessors\": [{\"componentType\": 5126, \"count\": 1000000000, \"type\": \"VEC3\", \"sparse\": {\"count\": 1,"
+        { ASSET
+          "\"accessors\": [{\"componentType\": 5126, \"count\": 1000000000, \"type\": \"VEC3\", \"sparse\": {\"count\": 1,"
           " \"indices\": {\"bufferView\": 0, \"componentType\": 5121}, \"values\": {\"bufferView\": 0}}}],"
-          "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}", "without data" },
+          "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}",
+          "without data" },
         { ASSET "\"buffers\": [{\"uri\": \"data:;base64,AAAA\"}]}", "does not say its byteLength" },
-        { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"none.bin\"}]}", "none.bin\" cannot be opened: No such file" },
+        { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"none.bin\"}]}",
+          "none.bin\" cannot be opened: No such file" },
         { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \".\"}]}", "not a regular file" },
         { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"\"}]}", "\" cannot be opened" },
-        { ASSET "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"mode\": -1}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}", "mode" },
+        { ASSET
+          "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"mode\": -1}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}",
+          "mode" },
     };
     for (size_t i = 0; i < NOC_COUNT(bad); i++) {
         loaded l;
@@ -419,7 +479,9 @@ static void test_bad(void **state) {
 static void test_skipped(void **state) {
     loaded l;
     file_text(PLAIN, "");
-    char *text = file_text(PLAIN, "\"scenes\": [{\"nodes\": [0, 0, 99]}], \"nodes\": [{\"mesh\": 0, \"children\": [1]}, {\"mesh\": 0, \"children\": [0, 1]}],");
+    char *text = file_text(
+        PLAIN,
+        "\"scenes\": [{\"nodes\": [0, 0, 99]}], \"nodes\": [{\"mesh\": 0, \"children\": [1]}, {\"mesh\": 0, \"children\": [0, 1]}],");
     uint16_t wrong = 4;
     memcpy(bytes + sizeof(square) + 2 * 5, &wrong, 2); /* the last corner of the second triangle */
     char *payload = strstr(text, "base64,") + 7;
@@ -437,15 +499,18 @@ static void test_skipped(void **state) {
 /* What is not as it should be is told, and the rest is there. */
 static void test_told(void **state) {
     loaded l;
-    load_text(&l, file_text(PLAIN,
-        "\"extensions\": {\"KHR_lights_punctual\": {\"lights\": ["
-        "{\"type\": \"point\", \"intensity\": -40}, {\"type\": \"spot\", \"spot\": {\"innerConeAngle\": 0.6, \"outerConeAngle\": 0.3}},"
-        "{\"type\": \"spot\", \"spot\": {\"outerConeAngle\": 3}}, {\"type\": \"point\", \"intensity\": 0}]}},"
-        "\"cameras\": [{\"type\": \"orthographic\"}, {\"perspective\": {\"yfov\": 3.1}}, {\"perspective\": {\"yfov\": 0.5}}], \"scene\": 3,"
-        "\"scenes\": [{\"nodes\": [0, \"a\", 0.5, 1, 2, 3, 4, 5, 6, 7, 8, 9]}], \"nodes\": [{\"mesh\": 0, \"scale\": [2, 2]}, {\"mesh\": 5},"
-        "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}}, {\"extensions\": {\"KHR_lights_punctual\": {\"light\": 1}}},"
-        "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 2}}}, {\"extensions\": {\"KHR_lights_punctual\": {\"light\": 3}}},"
-        "{\"camera\": 0}, {\"camera\": 1}, {\"camera\": 2, \"scale\": [0, 0, 0]}, {\"camera\": 7}],"));
+    load_text(
+        &l,
+        file_text(
+            PLAIN,
+            "\"extensions\": {\"KHR_lights_punctual\": {\"lights\": ["
+            "{\"type\": \"point\", \"intensity\": -40}, {\"type\": \"spot\", \"spot\": {\"innerConeAngle\": 0.6, \"outerConeAngle\": 0.3}},"
+            "{\"type\": \"spot\", \"spot\": {\"outerConeAngle\": 3}}, {\"type\": \"point\", \"intensity\": 0}]}},"
+            "\"cameras\": [{\"type\": \"orthographic\"}, {\"perspective\": {\"yfov\": 3.1}}, {\"perspective\": {\"yfov\": 0.5}}], \"scene\": 3,"
+            "\"scenes\": [{\"nodes\": [0, \"a\", 0.5, 1, 2, 3, 4, 5, 6, 7, 8, 9]}], \"nodes\": [{\"mesh\": 0, \"scale\": [2, 2]}, {\"mesh\": 5},"
+            "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}}, {\"extensions\": {\"KHR_lights_punctual\": {\"light\": 1}}},"
+            "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 2}}}, {\"extensions\": {\"KHR_lights_punctual\": {\"light\": 3}}},"
+            "{\"camera\": 0}, {\"camera\": 1}, {\"camera\": 2, \"scale\": [0, 0, 0]}, {\"camera\": 7}],"));
     assert_string_equal(l.error, "");
     assert_int_equal(l.scene->lights.len, 2); /* the spot lights; one that is off is none */
     assert_place(&l, 1, 1, 0, 0);
@@ -467,9 +532,12 @@ static void test_told(void **state) {
 static void test_roots(void **state) {
     enum { DEPTH = 10000 };
     loaded l;
-    load_text(&l, file_text(PLAIN, "\"nodes\": [{\"mesh\": 0}, {\"children\": [0], \"translation\": [1, 0, 0]}, {\"mesh\": 0}],"));
+    load_text(&l,
+              file_text(PLAIN,
+                        "\"nodes\": [{\"mesh\": 0}, {\"children\": [0], \"translation\": [1, 0, 0]}, {\"mesh\": 0}],"));
     assert_int_equal(l.scene->meshes.len, 2);
-    assert_int_equal(geo_issues_count(l.issues), 1); /* the material that PLAIN names without having one; nothing else */
+    /* the material that PLAIN names without having one; nothing else */
+    assert_int_equal(geo_issues_count(l.issues), 1);
     unload(&l);
     char *nodes = malloc(64 * DEPTH), *text = malloc(64 * DEPTH + 8000), *to = nodes;
     if (!nodes || !text) {
@@ -489,8 +557,10 @@ static void test_roots(void **state) {
 }
 
 static void test_probe(void **state) {
-    static const char *const yes[] = { "glTF\2\0\0\0........", " {\"asset\": {\"version\": \"2.0\"}}", "{\"scenes\": [], \"nodes\": [" };
-    static const char *const no[] = { "", "glTF", "{\"type\": \"FeatureCollection\", \"asset\": 1}", "{\"type\": \"CityJSON\", \"asset\": 1}", "{\"elements\": []}" };
+    static const char *const yes[] = { "glTF\2\0\0\0........", " {\"asset\": {\"version\": \"2.0\"}}",
+                                       "{\"scenes\": [], \"nodes\": [" };
+    static const char *const no[] = { "", "glTF", "{\"type\": \"FeatureCollection\", \"asset\": 1}",
+                                      "{\"type\": \"CityJSON\", \"asset\": 1}", "{\"elements\": []}" };
     for (size_t i = 0; i < NOC_COUNT(yes); i++)
         assert_true(noc_reader_gltf.probe(yes[i], i ? strlen(yes[i]) : 16));
     for (size_t i = 0; i < NOC_COUNT(no); i++)
@@ -500,11 +570,14 @@ static void test_probe(void **state) {
 /* Cut, and with bytes changed: an error, once, or a scene; never a crash. */
 static void test_broken(void **state) {
     char whole[8000];
-    snprintf(whole, sizeof(whole), "%s", file_text(PLAIN,
-        "\"extensions\": {\"KHR_lights_punctual\": {\"lights\": [{\"type\": \"spot\", \"spot\": {\"innerConeAngle\": 0.3}}, {\"type\": \"point\"}]}},"
-        "\"cameras\": [{\"perspective\": {\"yfov\": 0.8}}], \"materials\": [{\"emissiveFactor\": [9, 8, 7]}], \"scenes\": [{\"nodes\": [0, 2]}],"
-        "\"nodes\": [{\"mesh\": 0, \"children\": [1], \"scale\": [2, 3, 4]}, {\"mesh\": 0, \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}},"
-        " {\"camera\": 0, \"rotation\": [0, 1, 0, 0], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 1}}}],"));
+    snprintf(
+        whole, sizeof(whole), "%s",
+        file_text(
+            PLAIN,
+            "\"extensions\": {\"KHR_lights_punctual\": {\"lights\": [{\"type\": \"spot\", \"spot\": {\"innerConeAngle\": 0.3}}, {\"type\": \"point\"}]}},"
+            "\"cameras\": [{\"perspective\": {\"yfov\": 0.8}}], \"materials\": [{\"emissiveFactor\": [9, 8, 7]}], \"scenes\": [{\"nodes\": [0, 2]}],"
+            "\"nodes\": [{\"mesh\": 0, \"children\": [1], \"scale\": [2, 3, 4]}, {\"mesh\": 0, \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}},"
+            " {\"camera\": 0, \"rotation\": [0, 1, 0, 0], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 1}}}],"));
     uint32_t seed = 7;
     int read = 0, refused = 0;
     for (int i = 0; i < 1500; i++) {
@@ -549,9 +622,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_nodes),     cmocka_unit_test(test_containers), cmocka_unit_test(test_accessors),
         cmocka_unit_test(test_materials), cmocka_unit_test(test_lights),     cmocka_unit_test(test_cones),
-        cmocka_unit_test(test_camera),
-        cmocka_unit_test(test_bad),       cmocka_unit_test(test_skipped),    cmocka_unit_test(test_probe),
-        cmocka_unit_test(test_told),      cmocka_unit_test(test_roots),      cmocka_unit_test(test_broken),
+        cmocka_unit_test(test_camera),    cmocka_unit_test(test_bad),        cmocka_unit_test(test_skipped),
+        cmocka_unit_test(test_probe),     cmocka_unit_test(test_told),       cmocka_unit_test(test_roots),
+        cmocka_unit_test(test_broken),
     };
     return cmocka_run_group_tests_name("import/gltf", tests, set_up, tear_down);
 }

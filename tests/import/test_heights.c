@@ -1,5 +1,5 @@
-/* Ground that is made up runs through what is surveyed: lamps with an elevation, feet of buildings. And elevations that cannot be
- * believed are told of. */
+/* Ground that is made up runs through what is surveyed: lamps with an elevation, feet of buildings. And elevations that
+ * cannot be believed are told of. */
 #include "fake_reader.h"
 
 static double ground_at(const noc_scene *scene, double x, double y) {
@@ -15,9 +15,10 @@ static const char *row_of_houses(char *text, size_t size) {
     size_t n = (size_t)snprintf(text, size, "FAKE city\ncrs EPSG:25832\n");
     for (int i = 0; i < 10; i++) {
         double x = 678000 + 30 * i, z = slope(x + 5);
-        n += (size_t)snprintf(text + n, size - n, "object 0 h%d 2\npolygon 3 %g 5404000 %g %g 5404010 %g %g 5404010 %g %g 5404000 %g\n"
-                              "polygon 1 %g 5404000 %g %g 5404000 %g %g 5404000 %g %g 5404000 %g\nend\n", i, x, z, x, z, x + 10, z, x + 10, z,
-                              x, z, x + 10, z, x + 10, z + 8, x, z + 8);
+        n += (size_t)snprintf(text + n, size - n,
+                              "object 0 h%d 2\npolygon 3 %g 5404000 %g %g 5404010 %g %g 5404010 %g %g 5404000 %g\n"
+                              "polygon 1 %g 5404000 %g %g 5404000 %g %g 5404000 %g %g 5404000 %g\nend\n",
+                              i, x, z, x, z, x + 10, z, x + 10, z, x, z, x + 10, z, x + 10, z + 8, x, z + 8);
     }
     return file("row", text);
 }
@@ -27,7 +28,8 @@ static const char *row_of_lamps(char *text, size_t size, double above, double sl
     size_t n = (size_t)snprintf(text, size, "FAKE lamps\ncrs EPSG:25832\n");
     for (int i = 0; i < 12; i++) {
         double x = 678000 + 23 * i;
-        n += (size_t)snprintf(text + n, size - n, "lamp %g 5403988 %.3f #l%d\n", x, slope(x) + above + (i == 11 ? slip : 0), i);
+        n += (size_t)snprintf(text + n, size - n, "lamp %g 5403988 %.3f #l%d\n", x,
+                              slope(x) + above + (i == 11 ? slip : 0), i);
     }
     return file("row.lamps", text);
 }
@@ -55,8 +57,11 @@ static void test_followed(void **state) {
         finish(&r);
     }
     /* two lamps a metre apart on two levels, as on a wall: between them, and no spike */
-    LOAD(&r, DEFAULTS, row_of_houses(houses, sizeof(houses)),
-         file("wall.lamps", "FAKE lamps\ncrs EPSG:25832\nlamp 678100 5403985 366.4\nlamp 678101 5403985 367.6\nlamp 678103.5 5403985.5 366.5\n"));
+    LOAD(
+        &r, DEFAULTS, row_of_houses(houses, sizeof(houses)),
+        file(
+            "wall.lamps",
+            "FAKE lamps\ncrs EPSG:25832\nlamp 678100 5403985 366.4\nlamp 678101 5403985 367.6\nlamp 678103.5 5403985.5 366.5\n"));
     assert_int_equal(r.status, NOC_OK);
     for (double x = 678080; x < 678120; x += .5)
         for (double y = 5403965; y < 5404000; y += .5)
@@ -65,7 +70,8 @@ static void test_followed(void **state) {
     /* one slip of the pen is told of, and does not dent the ground */
     LOAD(&r, DEFAULTS, row_of_houses(houses, sizeof(houses)), row_of_lamps(lamps, sizeof(lamps), 0, 100));
     assert_int_equal(r.status, NOC_OK);
-    assert_true(has_line(noc_report_get_file(r.report, 1), "lamp whose elevation is more than 3 m off the ground: stood on the ground", 1));
+    assert_true(has_line(noc_report_get_file(r.report, 1),
+                         "lamp whose elevation is more than 3 m off the ground: stood on the ground", 1));
     assert_string_equal(noc_report_get_file(r.report, 1)->lines[0].examples, "#l11");
     assert_close(ground_at(r.scene, 678253, 5403988), slope(678253), .3);
     finish(&r);
@@ -80,8 +86,10 @@ static void test_other_system(void **state) {
         for (int below = 0; below < 2; below++) {
             const char *city = row_of_houses(houses, sizeof(houses));
             if (with_terrain) {
-                snprintf(terrain, sizeof(terrain), "%sobject 1 dem -1\npolygon 8 677900 5403900 373 678400 5403900 358 678400 5404100 358 "
-                         "677900 5404100 373\nend\n", houses);
+                snprintf(terrain, sizeof(terrain),
+                         "%sobject 1 dem -1\npolygon 8 677900 5403900 373 678400 5403900 358 678400 5404100 358 "
+                         "677900 5404100 373\nend\n",
+                         houses);
                 city = file("row", terrain);
             }
             LOAD(&r, DEFAULTS, city, row_of_lamps(lamps, sizeof(lamps), below ? -47.3 : 47.3, 0));
@@ -101,10 +109,12 @@ static void test_other_system(void **state) {
 static void test_bridge(void **state) {
     (void)state;
     struct run r;
-    const char *text = "FAKE city\ncrs EPSG:25832\nobject 1 dem -1\npolygon 8 677900 5403900 370 678100 5403900 370 678100 5404100 370 "
-                       "677900 5404100 370\nend\nobject 6 b -1\npolygon 14 677990 5403990 378 678010 5403990 378 678010 5404010 378 "
-                       "677990 5404010 378\nend\n";
-    LOAD(&r, DEFAULTS, file("bridge", text), file("l", "FAKE lamps\ncrs EPSG:25832\nlamp 678002 5404002 378.1\nlamp 677996 5404000 370\n"));
+    const char *text =
+        "FAKE city\ncrs EPSG:25832\nobject 1 dem -1\npolygon 8 677900 5403900 370 678100 5403900 370 678100 5404100 370 "
+        "677900 5404100 370\nend\nobject 6 b -1\npolygon 14 677990 5403990 378 678010 5403990 378 678010 5404010 378 "
+        "677990 5404010 378\nend\n";
+    LOAD(&r, DEFAULTS, file("bridge", text),
+         file("l", "FAKE lamps\ncrs EPSG:25832\nlamp 678002 5404002 378.1\nlamp 677996 5404000 370\n"));
     assert_int_equal(r.status, NOC_OK);
     assert_int_equal(noc_report_get_file(r.report, 1)->line_count, 0);
     assert_close(r.scene->lights.data[0].p[2], 384, .02);
@@ -141,7 +151,7 @@ static void test_ingolstadt(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_followed), cmocka_unit_test(test_other_system), cmocka_unit_test(test_bridge),
-                                        cmocka_unit_test(test_ingolstadt) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_followed), cmocka_unit_test(test_other_system),
+                                        cmocka_unit_test(test_bridge), cmocka_unit_test(test_ingolstadt) };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

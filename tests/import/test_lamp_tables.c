@@ -1,4 +1,5 @@
-/* Tables and maps whose columns say little: named as lamps, with columns mapped, units in headers, and kinds in values. */
+/* Tables and maps whose columns say little: named as lamps, with columns mapped, units in headers, and kinds in values.
+ */
 #include "lamp_sink.h"
 
 #include "import/lamp_tags.h"
@@ -21,7 +22,8 @@ static const geo_column *column(const lamp_sink *s, const char *name) {
     return NULL;
 }
 
-static void expect_column(const lamp_sink *s, const char *name, const char *field, const char *unit, const char *example) {
+static void expect_column(const lamp_sink *s, const char *name, const char *field, const char *unit,
+                          const char *example) {
     const geo_column *c = column(s, name);
     assert_string_equal(c->field, field);
     assert_string_equal(c->unit, unit);
@@ -37,14 +39,24 @@ static void test_units_of_keys(void **state) {
         double scale;
         const char *unit;
     } keys[] = {
-        { "Height (ft)", LAMP_FIELD_HEIGHT, .3048, "ft" }, { "MOUNT_HT_FT", LAMP_FIELD_HEIGHT, .3048, "ft" },
-        { "mounting height [feet]", LAMP_FIELD_HEIGHT, .3048, "ft" }, { "Pole Height in Feet", LAMP_FIELD_HEIGHT, .3048, "ft" },
-        { "MOUNT_HT", LAMP_FIELD_HEIGHT, 1, "m" }, { "Masth\xc3\xb6he [m]", LAMP_FIELD_HEIGHT, 1, "m" },
-        { "pole_hgt_cm", LAMP_FIELD_HEIGHT, .01, "cm" }, { "Power (kW)", LAMP_FIELD_WATTS, 1000, "kW" },
-        { "Lichtstrom [klm]", LAMP_FIELD_LUMENS, 1000, "klm" }, { "lamp_power_w", LAMP_FIELD_WATTS, 1, "W" },
-        { "elevation_ft", LAMP_FIELD_ELEVATION, .3048, "ft" }, { "CCT (K)", LAMP_FIELD_KELVIN, 1, "K" },
-        { "lamp_type", LAMP_FIELD_TYPE, 1, "" }, { "light", LAMP_FIELD_NONE, 1, "" }, { "weight", LAMP_FIELD_NONE, 1, "" },
-        { "Height (lm)", LAMP_FIELD_NONE, 1, "" }, { "ft", LAMP_FIELD_NONE, 1, "" }, { "\xe9\xab\x98\xe3\x81\x95", LAMP_FIELD_NONE, 1, "" },
+        { "Height (ft)", LAMP_FIELD_HEIGHT, .3048, "ft" },
+        { "MOUNT_HT_FT", LAMP_FIELD_HEIGHT, .3048, "ft" },
+        { "mounting height [feet]", LAMP_FIELD_HEIGHT, .3048, "ft" },
+        { "Pole Height in Feet", LAMP_FIELD_HEIGHT, .3048, "ft" },
+        { "MOUNT_HT", LAMP_FIELD_HEIGHT, 1, "m" },
+        { "Masth\xc3\xb6he [m]", LAMP_FIELD_HEIGHT, 1, "m" },
+        { "pole_hgt_cm", LAMP_FIELD_HEIGHT, .01, "cm" },
+        { "Power (kW)", LAMP_FIELD_WATTS, 1000, "kW" },
+        { "Lichtstrom [klm]", LAMP_FIELD_LUMENS, 1000, "klm" },
+        { "lamp_power_w", LAMP_FIELD_WATTS, 1, "W" },
+        { "elevation_ft", LAMP_FIELD_ELEVATION, .3048, "ft" },
+        { "CCT (K)", LAMP_FIELD_KELVIN, 1, "K" },
+        { "lamp_type", LAMP_FIELD_TYPE, 1, "" },
+        { "light", LAMP_FIELD_NONE, 1, "" },
+        { "weight", LAMP_FIELD_NONE, 1, "" },
+        { "Height (lm)", LAMP_FIELD_NONE, 1, "" },
+        { "ft", LAMP_FIELD_NONE, 1, "" },
+        { "\xe9\xab\x98\xe3\x81\x95", LAMP_FIELD_NONE, 1, "" },
     };
     for (size_t i = 0; i < NOC_COUNT(keys); i++) {
         lamp_meaning m = lamp_meaning_of(keys[i].key);
@@ -55,8 +67,11 @@ static void test_units_of_keys(void **state) {
 
 static void test_units_in_tables(void **state) {
     lamp_sink s;
-    assert_int_equal(read_with(&s, "id,lon,lat,lamp_type,MOUNT_HT_FT,Power (kW),flux lumineux klm,elevation_ft\n"
-                                   "a,8,50,LED,30,0.1,12,1000\nb,8,50.1,LED,9 m,70 W,4000 lm,\nc,8,50.2,LED,\"25'\",,,\n", false, NULL), NOC_OK);
+    assert_int_equal(read_with(&s,
+                               "id,lon,lat,lamp_type,MOUNT_HT_FT,Power (kW),flux lumineux klm,elevation_ft\n"
+                               "a,8,50,LED,30,0.1,12,1000\nb,8,50.1,LED,9 m,70 W,4000 lm,\nc,8,50.2,LED,\"25'\",,,\n",
+                               false, NULL),
+                     NOC_OK);
     const geo_lamp *a = lamp_by_id(&s, "a"), *b = lamp_by_id(&s, "b"), *c = lamp_by_id(&s, "c");
     assert_float_equal(a->height, 9.144, 1e-9);
     assert_float_equal(a->watts, 100, 1e-9);
@@ -119,7 +134,8 @@ static void test_looked_at(void **state) { /* by info: no error, and the columns
 }
 
 static void test_mapped(void **state) {
-    static const char text[] = "A Nr,B,C,D,E,Gr\xc3\xb6\xc3\x9f" "e,height\n1,8,50,30,70,LED,5\n2,8,51,,2 kW,SON,6\n";
+    static const char text[] = "A Nr,B,C,D,E,Gr\xc3\xb6\xc3\x9f"
+                               "e,height\n1,8,50,30,70,LED,5\n2,8,51,,2 kW,SON,6\n";
     lamp_sink s;
     assert_int_equal(read_with(&s, text, true, NULL), NOC_ERR_FORMAT); /* where are they? it has ... */
     assert_non_null(strstr(s.error, "A Nr, B, C"));
@@ -143,11 +159,20 @@ static void test_mapped(void **state) {
 
 /* A heading's unit holds for a mapped column, too, unless the field names one. */
 static void test_mapped_units(void **state) {
-    static const struct { const char *heading, *map; double height; int warnings; } cases[] = {
-        { "Mount Height (ft)", "height=Mount Height (ft)", 9.144, 0 }, { "POLE (ft)", "height=POLE (ft)", 9.144, 0 },
-        { "heightft", "height=HeightFt", 9.144, 0 }, { "Shaft", "height=Shaft", 30, 0 }, { "Mast [m]", "height=Mast [m]", 30, 0 },
-        { "POLE (ft)", "height_ft=POLE (ft)", 9.144, 0 }, { "POLE (ft)", "height_m=POLE (ft)", 30, 1 },
-        { "Mast [m]", "height_ft=Mast [m]", 9.144, 1 }, { "Shaft", "height_m=Shaft", 30, 0 },
+    static const struct {
+        const char *heading, *map;
+        double height;
+        int warnings;
+    } cases[] = {
+        { "Mount Height (ft)", "height=Mount Height (ft)", 9.144, 0 },
+        { "POLE (ft)", "height=POLE (ft)", 9.144, 0 },
+        { "heightft", "height=HeightFt", 9.144, 0 },
+        { "Shaft", "height=Shaft", 30, 0 },
+        { "Mast [m]", "height=Mast [m]", 30, 0 },
+        { "POLE (ft)", "height_ft=POLE (ft)", 9.144, 0 },
+        { "POLE (ft)", "height_m=POLE (ft)", 30, 1 },
+        { "Mast [m]", "height_ft=Mast [m]", 9.144, 1 },
+        { "Shaft", "height_m=Shaft", 30, 0 },
     };
     for (size_t i = 0; i < NOC_COUNT(cases); i++) {
         char text[200];
@@ -169,13 +194,18 @@ static void test_mapped_units(void **state) {
 
 /* The decimal sign of a file tells what parts thousands in it. */
 static void test_thousands(void **state) {
-    static const struct { const char *text; double lumens, height; size_t told; } cases[] = {
+    static const struct {
+        const char *text;
+        double lumens, height;
+        size_t told;
+    } cases[] = {
         { "lat;lon;lumens;height\n50,12;8,34;12.000;8,5\n", 12000, 8.5, 0 },
         { "lat;lon;lumens;height\n50,12;8,34;1.234,5;8\n", 1234.5, 8, 0 },
         { "lat;lon;lumens;height\n50,12;8,34;12.5;8,250\n", 12.5, 8.25, 0 },
         { "lat,lon,lumens,height (mm)\n50.12,8.34,\"12,000\",\"8,500\"\n", 12000, 8.5, 0 },
         { "lat,lon,lumens,height (mm)\n50.12,8.34,\"12,000.5\",8500\n", 12000.5, 8.5, 0 },
-        { "lat;lon;lumens;height\n50.12;8.34;12.000;8,5\n", 12, 8.5, 1 }, /* both signs are decimal ones: no evidence, but told */
+        /* both signs are decimal ones: no evidence, but told */
+        { "lat;lon;lumens;height\n50.12;8.34;12.000;8,5\n", 12, 8.5, 1 },
         { "lat;lon;lumens;height\n50;8;12.000;8\n", 12, 8, 1 },
         { "lat;lon;lumens;height\n50.12;8.34;120;8,500\n", 120, NAN, 0 }, /* 8500 m: no lamp is that high */
         { "lat;lon;lumens;height\n50,12;8,34;120;1.200\n", 120, NAN, 0 },
@@ -188,13 +218,18 @@ static void test_thousands(void **state) {
         assert_int_equal(read_with(&s, cases[i].text, false, NULL), NOC_OK);
         const geo_lamp *l = &s.lamps.data[0];
         bool none = isnan(cases[i].height), height = none ? isnan(l->height) : fabs(l->height - cases[i].height) < 1e-9;
-        if (fabs(l->lumens - cases[i].lumens) > 1e-9 || !height || issue_count(&s, "height of a lamp") != none || issue_count(&s, "thousands") != cases[i].told)
+        if (fabs(l->lumens - cases[i].lumens) > 1e-9 || !height || issue_count(&s, "height of a lamp") != none ||
+            issue_count(&s, "thousands") != cases[i].told)
             fail_msg("case %zu: %g lm, %g m, %zu told", i, l->lumens, l->height, issue_count(&s, "thousands"));
         lamp_sink_end(&s);
     }
     lamp_sink s;
-    assert_int_equal(read_with(&s, "lat,lon,lamp_type,status\n50,8,LED,demontiert\n50,9,LED,abgebaut\n50,10,LED,r\xc3\xbc" "ckgebaut\n"
-                                   "50,11,LED,in Betrieb\n", false, NULL), NOC_OK);
+    assert_int_equal(read_with(&s,
+                               "lat,lon,lamp_type,status\n50,8,LED,demontiert\n50,9,LED,abgebaut\n50,10,LED,r\xc3\xbc"
+                               "ckgebaut\n"
+                               "50,11,LED,in Betrieb\n",
+                               false, NULL),
+                     NOC_OK);
     assert_int_equal(s.lamps.len, 1);
     lamp_sink_end(&s);
 }
@@ -202,7 +237,9 @@ static void test_thousands(void **state) {
 /* The first identity is the id, the next one is kept beside it. */
 static void test_refs(void **state) {
     lamp_sink s;
-    assert_int_equal(read_with(&s, "ref,id,lat,lon,lamp_type\n17,object/17,50,8,LED\n,b,50,9,LED\nc,c,50,10,LED\n", false, NULL), NOC_OK);
+    assert_int_equal(read_with(&s, "ref,id,lat,lon,lamp_type\n17,object/17,50,8,LED\n,b,50,9,LED\nc,c,50,10,LED\n",
+                               false, NULL),
+                     NOC_OK);
     assert_string_equal(lamp_by_id(&s, "object/17")->ref, "17");
     assert_string_equal(lamp_by_id(&s, "b")->ref, "");
     assert_string_equal(lamp_by_id(&s, "c")->ref, "");
@@ -212,9 +249,16 @@ static void test_refs(void **state) {
 static void say(void *user, noc_log_level level, const char *text) { snprintf(user, 400, "%s", text); }
 
 static void test_bad_maps(void **state) {
-    static const struct { const char *map, *part; } bad[] = {
-        { "heigth=A", "no field \"heigth\"; the fields are height, lumens, watts" }, { "height", "not FIELD=COLUMN" }, { "=A", "not FIELD=COLUMN" },
-        { "height=", "not FIELD=COLUMN" }, { "height=A,", "not FIELD=COLUMN" }, { "height=A,watts=a", "named twice" }, { "height_kg=A", "no field" },
+    static const struct {
+        const char *map, *part;
+    } bad[] = {
+        { "heigth=A", "no field \"heigth\"; the fields are height, lumens, watts" },
+        { "height", "not FIELD=COLUMN" },
+        { "=A", "not FIELD=COLUMN" },
+        { "height=", "not FIELD=COLUMN" },
+        { "height=A,", "not FIELD=COLUMN" },
+        { "height=A,watts=a", "named twice" },
+        { "height_kg=A", "no field" },
         { "height_lm=A", "no field" },
     };
     for (size_t i = 0; i < NOC_COUNT(bad); i++) {
@@ -231,7 +275,7 @@ static void test_bad_maps(void **state) {
 
 /* ---- maps ---- */
 
-#define POINT(props, x, y) \
+#define POINT(props, x, y)                                                                                             \
     "{\"type\":\"Feature\",\"properties\":{" props "},\"geometry\":{\"type\":\"Point\",\"coordinates\":[" x "," y "]}}"
 #define COLLECTION(features) "{\"type\":\"FeatureCollection\",\"features\":[" features "]}"
 
@@ -246,14 +290,18 @@ static void expect_lamps(const char *text, bool named, noc_status status, size_t
 /* A column that is called Typ and no more names the source; it does not make its rows lamps. */
 static void test_bare_type(void **state) {
     lamp_sink s;
-    assert_int_equal(read_with(&s, "id,lat,lon,Typ,wattage,masthoehe\na,50,8,LED,50,8\nb,50,9,Quecksilberdampf,80,8\nc,50,10,Kegel,80,8\n", false,
-                               NULL), NOC_OK);
+    assert_int_equal(
+        read_with(
+            &s, "id,lat,lon,Typ,wattage,masthoehe\na,50,8,LED,50,8\nb,50,9,Quecksilberdampf,80,8\nc,50,10,Kegel,80,8\n",
+            false, NULL),
+        NOC_OK);
     assert_int_equal(lamp_by_id(&s, "a")->source, GEO_SOURCE_LED);
     assert_int_equal(lamp_by_id(&s, "b")->source, GEO_SOURCE_MERCURY);
     assert_int_equal(lamp_by_id(&s, "c")->source, GEO_SOURCE_UNKNOWN);
     assert_int_equal(lamp_by_id(&s, "c")->type, GEO_LAMP_STREET);
     lamp_sink_end(&s);
-    assert_int_equal(read_with(&s, "lat,lon,lamp_type,type\n50,8,HPS,LED\n", false, NULL), NOC_OK); /* what is surely the lamp's first */
+    /* what is surely the lamp's first */
+    assert_int_equal(read_with(&s, "lat,lon,lamp_type,type\n50,8,HPS,LED\n", false, NULL), NOC_OK);
     assert_int_equal(s.lamps.data[0].source, GEO_SOURCE_SODIUM);
     lamp_sink_end(&s);
     expect_lamps("lat,lon,type\n50,8,LED\n", false, NOC_ERR_FORMAT, 0);
@@ -263,16 +311,34 @@ static void test_bare_type(void **state) {
 }
 
 static void test_kinds_in_values(void **state) {
-    static const struct { const char *text; int word; } words[] = {
-        { "Lichtmast mit Auslegerleuchte", 2 }, { "Stra\xc3\x9f" "enlaterne", 2 }, { "Street Light - LED", 2 }, { "lampadaire", 2 },
-        { "\xe8\xa1\x97\xe7\x81\xaf", 2 }, { "Wandleuchte", 1 }, { "Zur Laterne", 1 }, { "Lantern", 1 }, { "Laternengasse", 1 },
-        { "Leuchtreklame", 0 }, { "Schaltschrank", 0 }, { "Traffic light", 0 }, { "", 0 }, { NULL, 0 },
+    static const struct {
+        const char *text;
+        int word;
+    } words[] = {
+        { "Lichtmast mit Auslegerleuchte", 2 },
+        { "Stra\xc3\x9f"
+          "enlaterne",
+          2 },
+        { "Street Light - LED", 2 },
+        { "lampadaire", 2 },
+        { "\xe8\xa1\x97\xe7\x81\xaf", 2 },
+        { "Wandleuchte", 1 },
+        { "Zur Laterne", 1 },
+        { "Lantern", 1 },
+        { "Laternengasse", 1 },
+        { "Leuchtreklame", 0 },
+        { "Schaltschrank", 0 },
+        { "Traffic light", 0 },
+        { "", 0 },
+        { NULL, 0 },
     };
     for (size_t i = 0; i < NOC_COUNT(words); i++)
         if (lamp_object_word(words[i].text) != words[i].word)
             fail_msg("%s: %d", words[i].text, lamp_object_word(words[i].text));
     /* most values of a column name street lamps: the rest of its rows are none */
-    expect_lamps("lon,lat,bezeichnung\n8,50,Lichtmast mit Auslegerleuchte\n8,51,Lichtmast\n8,52,Schaltschrank\n8,53,Wandleuchte\n", false, NOC_OK, 3);
+    expect_lamps(
+        "lon,lat,bezeichnung\n8,50,Lichtmast mit Auslegerleuchte\n8,51,Lichtmast\n8,52,Schaltschrank\n8,53,Wandleuchte\n",
+        false, NOC_OK, 3);
     /* kinds of furniture: the one that is a lamp beyond doubt */
     expect_lamps("lon,lat,Objektart\n8,50,Bank\n8,51,Papierkorb\n8,52,Lichtmast\n8,53,Poller\n", false, NOC_OK, 1);
     /* inns and streets with lanterns in their names, and one lamp shop */
@@ -280,10 +346,13 @@ static void test_kinds_in_values(void **state) {
     expect_lamps("lon,lat,type,name\n8,50,inn,Zur Laterne\n8,51,shop,Leuchten Meier\n", false, NOC_ERR_FORMAT, 0);
     if (!NOC_HAVE_GDAL)
         return;
-    expect_lamps(COLLECTION(POINT("\"a\":1,\"art\":\"Lichtmast mit Auslegerleuchte\"", "8", "50") "," POINT("\"art\":\"Lichtmast\"", "8", "51")), false,
-                 NOC_OK, 2);
+    expect_lamps(COLLECTION(POINT("\"a\":1,\"art\":\"Lichtmast mit Auslegerleuchte\"", "8",
+                                  "50") "," POINT("\"art\":\"Lichtmast\"", "8", "51")),
+                 false, NOC_OK, 2);
     lamp_sink s;
-    assert_int_equal(read_with(&s, COLLECTION(POINT("\"text\":\"Lichtmast mit Auslegerleuchte\"", "8", "50")), false, NULL), NOC_OK);
+    assert_int_equal(read_with(&s, COLLECTION(POINT("\"text\":\"Lichtmast mit Auslegerleuchte\"", "8", "50")), false,
+                               NULL),
+                     NOC_OK);
     assert_int_equal(s.lamps.len, 1);
     expect_column(&s, "text", "kind", "", "Lichtmast mit Auslegerleuchte");
     lamp_sink_end(&s);
@@ -296,8 +365,9 @@ static void test_named_maps(void **state) {
     expect_lamps(two, false, NOC_ERR_FORMAT, 0);
     expect_lamps(two, true, NOC_OK, 2);
     expect_lamps(COLLECTION(POINT("\"highway\":\"stop\"", "8", "50")), true, NOC_OK, 1);
-    static const char area[] = COLLECTION("{\"type\":\"Feature\",\"properties\":{\"a\":1},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":"
-                                          "[[[8,50],[8.1,50],[8.1,50.1],[8,50]]]}}");
+    static const char area[] =
+        COLLECTION("{\"type\":\"Feature\",\"properties\":{\"a\":1},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":"
+                   "[[[8,50],[8.1,50],[8.1,50.1],[8,50]]]}}");
     expect_lamps(area, false, NOC_OK, 0);
     expect_lamps(area, true, NOC_ERR_FORMAT, 0); /* it holds no points */
     lamp_sink s;
@@ -306,7 +376,8 @@ static void test_named_maps(void **state) {
     lamp_sink_end(&s);
     /* an extract of OpenStreetMap holds everything: its tags decide, where they tell of lamps at all */
 #define OSM(nodes) "<?xml version='1.0'?>\n<osm version=\"0.6\">\n" nodes "</osm>\n"
-#define NODE(id, k, v) "<node id=\"" id "\" lat=\"50.5\" lon=\"8." id "\" version=\"1\"><tag k=\"" k "\" v=\"" v "\"/></node>\n"
+#define NODE(id, k, v)                                                                                                 \
+    "<node id=\"" id "\" lat=\"50.5\" lon=\"8." id "\" version=\"1\"><tag k=\"" k "\" v=\"" v "\"/></node>\n"
     expect_lamps(OSM(NODE("1", "highway", "street_lamp") NODE("2", "shop", "bakery")), true, NOC_OK, 1);
     expect_lamps(OSM(NODE("1", "lamp_ht", "5") NODE("2", "lamp_ht", "6")), true, NOC_OK, 2);
     expect_lamps(OSM(NODE("1", "lamp_ht", "5")), false, NOC_OK, 0);
@@ -323,10 +394,13 @@ static void test_named_overpass(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_units_of_keys), cmocka_unit_test(test_units_in_tables), cmocka_unit_test(test_named_csv),
-        cmocka_unit_test(test_looked_at),     cmocka_unit_test(test_mapped),          cmocka_unit_test(test_bad_maps),
-        cmocka_unit_test(test_mapped_units), cmocka_unit_test(test_refs), cmocka_unit_test(test_thousands), cmocka_unit_test(test_bare_type),
-        cmocka_unit_test(test_kinds_in_values), cmocka_unit_test(test_named_maps),    cmocka_unit_test(test_named_overpass),
+        cmocka_unit_test(test_units_of_keys),   cmocka_unit_test(test_units_in_tables),
+        cmocka_unit_test(test_named_csv),       cmocka_unit_test(test_looked_at),
+        cmocka_unit_test(test_mapped),          cmocka_unit_test(test_bad_maps),
+        cmocka_unit_test(test_mapped_units),    cmocka_unit_test(test_refs),
+        cmocka_unit_test(test_thousands),       cmocka_unit_test(test_bare_type),
+        cmocka_unit_test(test_kinds_in_values), cmocka_unit_test(test_named_maps),
+        cmocka_unit_test(test_named_overpass),
     };
     return cmocka_run_group_tests_name("import/lamp_tables", tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* What the importer makes of inputs: surfaces, lamps, ground, colours, reports, errors. From a fake reader, and on real files. */
+/* What the importer makes of inputs: surfaces, lamps, ground, colours, reports, errors. From a fake reader, and on real
+ * files. */
 #include "fake_reader.h"
 
 #include "noc_config.h"
@@ -36,9 +37,11 @@ static void test_city(void **state) {
     double lo[3] = { INFINITY, INFINITY, INFINITY };
     for (size_t i = 0; i < r.scene->meshes.len; i++) {
         const noc_scene_mesh *m = &r.scene->meshes.data[i];
-        for (size_t k = 3 * (size_t)m->first_triangle; m->name && k < 3 * (size_t)(m->first_triangle + m->triangle_count); k++)
+        for (size_t k = 3 * (size_t)m->first_triangle;
+             m->name && k < 3 * (size_t)(m->first_triangle + m->triangle_count); k++)
             for (int c = 0; !strcmp(m->name, "house") && c < 3; c++)
-                lo[c] = NOC_MIN(lo[c], (double)r.scene->positions.data[3 * (size_t)r.scene->indices.data[k] + (size_t)c]);
+                lo[c] =
+                    NOC_MIN(lo[c], (double)r.scene->positions.data[3 * (size_t)r.scene->indices.data[k] + (size_t)c]);
     }
     assert_close(lo[0] + r.info.origin[0], 678000.5, 1e-4);
     assert_close(lo[1] + r.info.origin[1], 5404000.5, 1e-4);
@@ -64,8 +67,9 @@ static void test_lamps(void **state) {
     noc_report_get_totals(NULL, &totals);
     assert_int_equal(totals.lamps_mapped + totals.lamps_dropped + totals.skipped, 0);
     /* a piece of street and lamps around it: there is a ground under them, and it does not cover the street */
-    LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:25832\nobject 2 r -1\npolygon 9 678000 5404000 370 678030 5404000 370 "
-                                 "678030 5404020 370 678000 5404020 370\nend\n"),
+    LOAD(&r, DEFAULTS,
+         file("a", "FAKE city\ncrs EPSG:25832\nobject 2 r -1\npolygon 9 678000 5404000 370 678030 5404000 370 "
+                   "678030 5404020 370 678000 5404020 370\nend\n"),
          file("l", "FAKE lamps\ncrs EPSG:25832\nlamp 678015 5404010\nlamp 678100 5404080\nlamp 677900 5404010\n"));
     assert_int_equal(r.status, NOC_OK);
     assert_int_equal(r.info.lights, 3);
@@ -78,15 +82,18 @@ static void test_lamps(void **state) {
     finish(&r);
     /* beside the city, and out of it: drawn, and told (the house ends at 678010.5) */
     for (int far = 0; far < 2; far++) {
-        LOAD(&r, DEFAULTS, file("a", CITY), file("l", far ? "FAKE lamps\ncrs EPSG:25832\nlamp 679410 5404005\nlamp 679440 5404005\n"
-                                                          : "FAKE lamps\ncrs EPSG:25832\nlamp 678155 5404005\nlamp 679440 5404005\n"));
+        LOAD(&r, DEFAULTS, file("a", CITY),
+             file("l", far ? "FAKE lamps\ncrs EPSG:25832\nlamp 679410 5404005\nlamp 679440 5404005\n"
+                           : "FAKE lamps\ncrs EPSG:25832\nlamp 678155 5404005\nlamp 679440 5404005\n"));
         assert_int_equal(r.status, NOC_OK);
         assert_int_equal(r.info.lights, 2);
         assert_int_equal(r.warnings, far);
-        assert_true(!far || strstr(r.last_warning, "none of the lamps stands in the city: the nearest is 1.4 km from it"));
+        assert_true(!far ||
+                    strstr(r.last_warning, "none of the lamps stands in the city: the nearest is 1.4 km from it"));
         noc_camera camera; /* the views look at the house */
         assert_int_equal(noc_scene_camera(r.scene, NOC_VIEW_AERIAL, 1.5, &camera), NOC_OK);
-        assert_true(hypot(camera.target[0] + r.info.origin[0] - 678005, camera.target[1] + r.info.origin[1] - 5404005) < 300);
+        assert_true(hypot(camera.target[0] + r.info.origin[0] - 678005, camera.target[1] + r.info.origin[1] - 5404005) <
+                    300);
         finish(&r);
     }
     /* lamps alone make a scene too: nothing they could be outside of */
@@ -112,7 +119,8 @@ static void test_useless_lamps(void **state) {
     static const struct {
         const char *text, *says;
     } cases[] = {
-        { "crs EPSG:4326\nlamp 52.5 13.4\n", "none of 1 lamp is of use, 1 outside the city, the nearest 4" }, /* Berlin, 440 km */
+        /* Berlin, 440 km */
+        { "crs EPSG:4326\nlamp 52.5 13.4\n", "none of 1 lamp is of use, 1 outside the city, the nearest 4" },
         { "crs OGC:CRS84\nlamp 48.76231 11.42278\nlamp 48.76240 11.42278\n",
           "2 outside the city, the nearest 5" }, /* in Ethiopia, some 5000 km away */
         { "crs OGC:CRS84\nlamp 48.76231 11.42278\nlamp 48.76240 11.42278\n",
@@ -167,7 +175,8 @@ static void test_strict(void **state) {
     assert_int_equal(r.status, NOC_OK);
     finish(&r);
     p.infer_lamps = NOC_SWITCH_OFF; /* that is another one's matter */
-    const char *bad = "object 0 bad 1\npolygon 1 678000 5404000 0 678001 5404000 0\npolygon 1 nan nan nan nan nan nan nan nan nan\nend\n";
+    const char *bad =
+        "object 0 bad 1\npolygon 1 678000 5404000 0 678001 5404000 0\npolygon 1 nan nan nan nan nan nan nan nan nan\nend\n";
     char text[2000];
     snprintf(text, sizeof(text), "%s%s", CITY, bad);
     LOAD(&r, p, file("rough.city", text));
@@ -181,7 +190,7 @@ static void test_strict(void **state) {
     snprintf(other, sizeof(other), "%s%s", CITY,
              "object 0 lossless 1\n"
              "polygon 1 678000 5404000 0 678001 5404000 0 678001 5404000 0 678001 5404001 0\n" /* a point twice */
-             "polygon 1 678000 5404000 0 678001 5404000 0 678002 5404000 0\nend\n");          /* no area */
+             "polygon 1 678000 5404000 0 678001 5404000 0 678002 5404000 0\nend\n");           /* no area */
     LOAD(&r, p, file("plain.city", other));
     assert_int_equal(r.status, NOC_OK);
     noc_report_totals totals;
@@ -189,7 +198,8 @@ static void test_strict(void **state) {
     assert_int_equal(totals.skipped, 1);
     assert_int_equal(totals.repaired, 1);
     finish(&r);
-    snprintf(other, sizeof(other), "%s%s", CITY, "object 0 eight 1\npolygon 1 678000 5404000 0 678001 5404001 0 678001 5404000 0 "
+    snprintf(other, sizeof(other), "%s%s", CITY,
+             "object 0 eight 1\npolygon 1 678000 5404000 0 678001 5404001 0 678001 5404000 0 "
              "678000 5404001 0\nend\n");
     LOAD(&r, p, file("eight.city", other));
     assert_int_equal(r.status, NOC_ERR_FORMAT);
@@ -244,7 +254,8 @@ static void test_strict_inferred(void **state) {
     p.strict = true;
     LOAD(&r, p, file("a", CITY));
     assert_int_equal(r.status, NOC_ERR_FORMAT);
-    assert_non_null(strstr(noc_log_last_error(r.log), "placed by a rule (--lamps FILE gives some, --infer-lamps takes these"));
+    assert_non_null(
+        strstr(noc_log_last_error(r.log), "placed by a rule (--lamps FILE gives some, --infer-lamps takes these"));
     finish(&r);
     p.infer_lamps = NOC_SWITCH_ON;
     LOAD(&r, p, file("a", CITY));
@@ -274,7 +285,8 @@ static void test_inferred_lamps(void **state) {
     assert_non_null(strstr(r.last_warning, "nothing in the scene shines"));
     finish(&r);
     /* terrain alone is no place for lamps; that, and nothing at all, is worth a word */
-    LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:25832\npolygon 8 677900 5403900 370 678100 5403900 370 678000 5404200 370\n"));
+    LOAD(&r, DEFAULTS,
+         file("a", "FAKE city\ncrs EPSG:25832\npolygon 8 677900 5403900 370 678100 5403900 370 678000 5404200 370\n"));
     assert_int_equal(r.info.lights, 0);
     assert_int_equal(r.warnings, 1);
     assert_non_null(strstr(r.last_warning, "nothing in the scene shines"));
@@ -303,10 +315,15 @@ static void test_ground(void **state) {
     LOAD(&r, p, file("a", CITY));
     assert_true(r.info.triangles_by_class[NOC_CLASS_TERRAIN] > 0);
     finish(&r);
-    LOAD(&r, p, file("a", CITY "object 1 dem -1\npolygon 8 677900 5403900 370 678100 5403900 370 678000 5404200 370\nend\n"));
+    LOAD(&r, p,
+         file("a", CITY "object 1 dem -1\npolygon 8 677900 5403900 370 678100 5403900 370 678000 5404200 370\nend\n"));
     assert_int_equal(r.info.triangles_by_class[NOC_CLASS_TERRAIN], 1);
     finish(&r);
-    LOAD(&r, p, file("a", CITY "object 2 r -1\npolygon 9 677990 5403990 370 678020 5403990 370 678020 5404020 370 677990 5404020 370\nend\n"));
+    LOAD(
+        &r, p,
+        file(
+            "a", CITY
+            "object 2 r -1\npolygon 9 677990 5403990 370 678020 5403990 370 678020 5404020 370 677990 5404020 370\nend\n"));
     assert_int_equal(r.info.triangles_by_class[NOC_CLASS_TERRAIN], 0);
     assert_int_equal(r.info.triangles_by_class[NOC_CLASS_ROAD], 2);
     finish(&r);
@@ -318,8 +335,8 @@ static void test_materials_vary(void **state) {
     char text[20000] = "FAKE city\ncrs EPSG:25832\n";
     for (int i = 0; i < 60; i++) {
         char object[300];
-        snprintf(object, sizeof(object), "object 0 DEBY_%d 2\npolygon 1 %d 5404000 0 %d 5404000 0 %d 5404000 9\nend\n", 4000 + i,
-                 678000 + 20 * i, 678010 + 20 * i, 678010 + 20 * i);
+        snprintf(object, sizeof(object), "object 0 DEBY_%d 2\npolygon 1 %d 5404000 0 %d 5404000 0 %d 5404000 9\nend\n",
+                 4000 + i, 678000 + 20 * i, 678010 + 20 * i, 678010 + 20 * i);
         strcat(text, object);
     }
     LOAD(&r, DEFAULTS, file("a", text));
@@ -391,10 +408,11 @@ static void test_errors(void **state) {
 static void test_bad_features(void **state) {
     (void)state;
     struct run r;
-    LOAD(&r, DEFAULTS, file("a", CITY "object 0 bad 1\npolygon 1 678000 5404000 0 678001 5404000 0\n"
-                                      "polygon 1 nan nan nan nan nan nan nan nan nan\n"
-                                      "polygon 1 1e9 1e30 0 1e9 1e31 0 1e30 1e30 0\n"
-                                      "polygon 99 678000 5404000 0 678009 5404000 0 678009 5404009 0\nend\n"));
+    LOAD(&r, DEFAULTS,
+         file("a", CITY "object 0 bad 1\npolygon 1 678000 5404000 0 678001 5404000 0\n"
+                        "polygon 1 nan nan nan nan nan nan nan nan nan\n"
+                        "polygon 1 1e9 1e30 0 1e9 1e31 0 1e30 1e30 0\n"
+                        "polygon 99 678000 5404000 0 678009 5404000 0 678009 5404009 0\nend\n"));
     assert_int_equal(r.status, NOC_OK);
     const noc_report_file *f = noc_report_get_file(r.report, 0);
     assert_int_equal(f->polygons, 5);
@@ -512,10 +530,21 @@ static void test_other_cities(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_city), cmocka_unit_test(test_lamps), cmocka_unit_test(test_inferred_lamps), cmocka_unit_test(test_useless_lamps), cmocka_unit_test(test_strict), cmocka_unit_test(test_assumed), cmocka_unit_test(test_strict_inferred),
-        cmocka_unit_test(test_ground), cmocka_unit_test(test_materials_vary), cmocka_unit_test(test_errors),
-        cmocka_unit_test(test_bad_features), cmocka_unit_test(test_progress), cmocka_unit_test(test_inspect),
-        cmocka_unit_test(test_ingolstadt), cmocka_unit_test(test_other_cities),
+        cmocka_unit_test(test_city),
+        cmocka_unit_test(test_lamps),
+        cmocka_unit_test(test_inferred_lamps),
+        cmocka_unit_test(test_useless_lamps),
+        cmocka_unit_test(test_strict),
+        cmocka_unit_test(test_assumed),
+        cmocka_unit_test(test_strict_inferred),
+        cmocka_unit_test(test_ground),
+        cmocka_unit_test(test_materials_vary),
+        cmocka_unit_test(test_errors),
+        cmocka_unit_test(test_bad_features),
+        cmocka_unit_test(test_progress),
+        cmocka_unit_test(test_inspect),
+        cmocka_unit_test(test_ingolstadt),
+        cmocka_unit_test(test_other_cities),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

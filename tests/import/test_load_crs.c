@@ -1,4 +1,5 @@
-/* CRS of the inputs and of the scene, axes, and where a mesh that names none lies: through the importer, from a fake reader. */
+/* CRS of the inputs and of the scene, axes, and where a mesh that names none lies: through the importer, from a fake
+ * reader. */
 #include "fake_reader.h"
 
 #include <nocturne/render.h>
@@ -14,8 +15,9 @@ static noc_import_params with_crs(const char *crs, const char *scene_crs) {
 static void test_geographic(void **state) {
     (void)state;
     struct run r;
-    LOAD(&r, DEFAULTS, file("tokyo", "FAKE city\ncrs http://www.opengis.net/def/crs/EPSG/0/6697\nobject 0 b 1\n"
-                                     "polygon 2 35.6812 139.7671 9 35.6812 139.7672 9 35.6813 139.7672 9 35.6813 139.7671 9\nend\n"));
+    LOAD(&r, DEFAULTS,
+         file("tokyo", "FAKE city\ncrs http://www.opengis.net/def/crs/EPSG/0/6697\nobject 0 b 1\n"
+                       "polygon 2 35.6812 139.7671 9 35.6812 139.7672 9 35.6813 139.7672 9 35.6813 139.7671 9\nend\n"));
     assert_int_equal(r.status, NOC_OK);
     assert_string_equal(r.info.crs, "EPSG:32654 (WGS 84 / UTM zone 54N)");
     const noc_report_file *f = noc_report_get_file(r.report, 0);
@@ -42,15 +44,20 @@ static void test_axes(void **state) {
         double x, y; /* of the first corner, as understood */
     } cases[] = {
         /* northing first, against practice, in a CRS that has it so by the book; and in one that has not */
-        { "crs EPSG:31468\npolygon 2 5400000 4458000 0 5400000 4458009 0 5400009 4458009 0\n", "axes exchanged to fit the CRS", 4458000, 5400000 },
-        { "crs EPSG:25832\npolygon 2 5404000 678000 0 5404000 678009 0 5404009 678009 0\n", "axes exchanged to fit the CRS", 678000, 5404000 },
-        { "crs EPSG:5514\npolygon 2 -1043000 -743100 0 -1043000 -743000 0 -1042900 -743000 0\n", "axes exchanged to fit the CRS", -743100, -1043000 },
+        { "crs EPSG:31468\npolygon 2 5400000 4458000 0 5400000 4458009 0 5400009 4458009 0\n",
+          "axes exchanged to fit the CRS", 4458000, 5400000 },
+        { "crs EPSG:25832\npolygon 2 5404000 678000 0 5404000 678009 0 5404009 678009 0\n",
+          "axes exchanged to fit the CRS", 678000, 5404000 },
+        { "crs EPSG:5514\npolygon 2 -1043000 -743100 0 -1043000 -743000 0 -1042900 -743000 0\n",
+          "axes exchanged to fit the CRS", -743100, -1043000 },
         /* easting first, as practically always */
         { "crs EPSG:31468\npolygon 2 4458000 5400000 0 4458009 5400000 0 4458009 5400009 0\n", NULL, 4458000, 5400000 },
         { "crs EPSG:31256\npolygon 2 3000 341000 0 3009 341000 0 3009 341009 0\n", NULL, 3000, 341000 },
         /* longitude first under a name that has latitude first: only this order has such a place */
-        { "crs EPSG:4258\npolygon 2 11.4 48.7 0 11.4001 48.7 0 11.4001 48.7001 0\n", "axes exchanged to fit the CRS", 11.4, 48.7 },
-        { "crs urn:ogc:def:crs:EPSG::4326\npolygon 2 150.1 -33.7 0 150.1001 -33.7 0 150.1001 -33.7001 0\n", "axes exchanged to fit the CRS", 150.1, -33.7 },
+        { "crs EPSG:4258\npolygon 2 11.4 48.7 0 11.4001 48.7 0 11.4001 48.7001 0\n", "axes exchanged to fit the CRS",
+          11.4, 48.7 },
+        { "crs urn:ogc:def:crs:EPSG::4326\npolygon 2 150.1 -33.7 0 150.1001 -33.7 0 150.1001 -33.7001 0\n",
+          "axes exchanged to fit the CRS", 150.1, -33.7 },
         { "crs EPSG:4326\npolygon 2 48.7 11.4 0 48.7 11.4001 0 48.7001 11.4001 0\n", NULL, 11.4, 48.7 },
         { "crs urn:adv:crs:ETRS89_UTM32*DE_DHHN92_NH\npolygon 2 32678000 5404000 0 32678009 5404000 0 32678009 5404009 0\n",
           "zone number taken off the easting", 678000, 5404000 },
@@ -69,13 +76,15 @@ static void test_axes(void **state) {
         finish(&r);
     }
     /* no order of axes helps: said once, and taken as it is */
-    LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:31466\npolygon 2 1 1 0 3 1 0 3 4 0\npolygon 2 1 1 9 3 1 9 3 4 9\nlamp 2 2\n"));
+    LOAD(&r, DEFAULTS,
+         file("a", "FAKE city\ncrs EPSG:31466\npolygon 2 1 1 0 3 1 0 3 4 0\npolygon 2 1 1 9 3 1 9 3 4 9\nlamp 2 2\n"));
     assert_int_equal(r.status, NOC_OK);
     assert_int_equal(r.warnings, 2); /* and that its metres are none there */
     assert_non_null(strstr(r.last_warning, "is it the right CRS?"));
     finish(&r);
     /* the decision is one of a file: a second file in the same CRS decides for itself */
-    LOAD(&r, DEFAULTS, file("a", "FAKE city\ncrs EPSG:25832\npolygon 2 5404000 678000 0 5404000 678009 0 5404009 678009 0\n"),
+    LOAD(&r, DEFAULTS,
+         file("a", "FAKE city\ncrs EPSG:25832\npolygon 2 5404000 678000 0 5404000 678009 0 5404009 678009 0\n"),
          file("b", "FAKE city\ncrs EPSG:25832\npolygon 2 678000 5404000 0 678009 5404000 0 678009 5404009 0\n"));
     assert_true(has_line(noc_report_get_file(r.report, 0), "axes exchanged to fit the CRS", 1));
     assert_int_equal(noc_report_get_file(r.report, 1)->line_count, 0);
@@ -170,12 +179,14 @@ static void test_missing_crs(void **state) {
     finish(&r);
 }
 
-/* A mesh names no CRS: with --crs it is in it, in doubles; without, it counts from the origin, wherever in the list it is. */
+/* A mesh names no CRS: with --crs it is in it, in doubles; without, it counts from the origin, wherever in the list it
+ * is. */
 static void test_mesh_place(void **state) {
     (void)state;
     struct run r;
     noc_import_params p = with_crs("EPSG:25832", NULL);
-    const char *city = file("a", CITY "object 2 r -1\npolygon 9 678090 5403590 0 678120 5403590 0 678120 5403620 0\nend\n");
+    const char *city =
+        file("a", CITY "object 2 r -1\npolygon 9 678090 5403590 0 678120 5403590 0 678120 5403620 0\nend\n");
     const char *mesh = file("m", "FAKE mesh\n");
     p.infer_lamps = false;
     p.infer_lamps = false;
@@ -206,7 +217,8 @@ static void test_mesh_place(void **state) {
     assert_float_equal(r.info.bounds_max[0] + r.scene->origin[0], 678105, 1e-3);
     finish(&r);
     mesh_x = mesh_y = 0;
-    LOAD(&r, p, mesh, file("l", "FAKE lamps\ncrs EPSG:25832\nlamp 678100 5403580 5\n")); /* lamps settle the place just so */
+    /* lamps settle the place just so */
+    LOAD(&r, p, mesh, file("l", "FAKE lamps\ncrs EPSG:25832\nlamp 678100 5403580 5\n"));
     assert_int_equal(r.status, NOC_OK);
     assert_int_equal(r.warnings, 0);
     assert_float_equal(r.scene->origin[0], 678100, 0);
@@ -221,8 +233,10 @@ static void test_mesh_place(void **state) {
 
 /* A street of 120 m by 20 m with lamps 60 m apart, in Ingolstadt at 48.8 N, written in a CRS. */
 static const char *street_in(const char *crs, char *text, size_t size) {
-    static const double corners[6][2] = { { 677940, 5404080 }, { 678060, 5404080 }, { 678060, 5404100 }, { 677940, 5404100 },
-                                          { 677970, 5404101.5 }, { 678030, 5404101.5 } }; /* beside it: they face it */
+    static const double corners[6][2] = {
+        { 677940, 5404080 }, { 678060, 5404080 },   { 678060, 5404100 },
+        { 677940, 5404100 }, { 677970, 5404101.5 }, { 678030, 5404101.5 }
+    }; /* beside it: they face it */
     geo_crs *utm = geo_crs_create("EPSG:32632", NULL, NULL, NULL), *to = geo_crs_create(crs, NULL, NULL, NULL);
     geo_transform *t = geo_transform_create(utm, to, NULL, NULL);
     size_t n = (size_t)snprintf(text, size, "FAKE city\ncrs %s\nobject 2 street -1\npolygon 9", crs);
@@ -281,7 +295,8 @@ static void test_true_lengths(void **state) {
     double expected = luminance_between(&r);
     assert_true(expected > 0);
     finish(&r);
-    /* Web Mercator under its names, on the ellipsoid, and a zone far away; the last one is true enough (0.45 per mille) */
+    /* Web Mercator under its names, on the ellipsoid, and a zone far away; the last one is true enough (0.45 per mille)
+     */
     static const char *const crs[] = { "EPSG:3857", "EPSG:900913", "EPSG:3395", "EPSG:32630", "EPSG:25833" };
     for (size_t i = 0; i < NOC_COUNT(crs); i++) {
         bool moves = i < 4;
@@ -302,7 +317,8 @@ static void test_true_lengths(void **state) {
         double origin[3] = { r.info.given_origin[0], r.info.given_origin[1], 0 }, corner[3];
         assert_int_equal(noc_scene_to_local(r.scene, NULL, origin), NOC_OK);
         assert_close(hypot(origin[0], origin[1]), 0, 1e-3);
-        assert_int_equal(sscanf(strstr(text, "polygon 9"), "polygon 9 %lf %lf %lf", &corner[0], &corner[1], &corner[2]), 3);
+        assert_int_equal(sscanf(strstr(text, "polygon 9"), "polygon 9 %lf %lf %lf", &corner[0], &corner[1], &corner[2]),
+                         3);
         assert_int_equal(noc_scene_to_local(r.scene, NULL, corner), NOC_OK);
         double again[3] = { corner[0], corner[1], corner[2] }; /* and back */
         assert_int_equal(noc_scene_from_local(r.scene, NULL, again), NOC_OK);
@@ -327,8 +343,10 @@ static void test_true_lengths(void **state) {
 static const char *strangely_placed(const char *name, int count) {
     char text[10000] = "FAKE city\n";
     for (int i = 0; i < count; i++)
-        snprintf(text + strlen(text), sizeof(text) - strlen(text), "crs garbage %d\nobject 0 b%d 1\n"
-                 "polygon 2 678000 5404000 0 678001 5404000 0 678001 5404001 0\nend\n", i, i);
+        snprintf(text + strlen(text), sizeof(text) - strlen(text),
+                 "crs garbage %d\nobject 0 b%d 1\n"
+                 "polygon 2 678000 5404000 0 678001 5404000 0 678001 5404001 0\nend\n",
+                 i, i);
     return file(name, text);
 }
 
@@ -338,9 +356,11 @@ static void test_strange_crs(void **state) {
     struct run r;
     const char *strange = strangely_placed("strange", 9);
     start(&r);
-    load_with(&r, DEFAULTS, true, PATHS(strangely_placed("one", 1), strange)); /* those of another file are not this one's */
+    /* those of another file are not this one's */
+    load_with(&r, DEFAULTS, true, PATHS(strangely_placed("one", 1), strange));
     assert_int_equal(r.status, NOC_ERR_FORMAT);
-    assert_non_null(strstr(noc_log_last_error(r.log), "/strange: more than 8 CRSs of the file are not understood, \"garbage 8\""));
+    assert_non_null(
+        strstr(noc_log_last_error(r.log), "/strange: more than 8 CRSs of the file are not understood, \"garbage 8\""));
     finish(&r);
     start(&r); /* what the file calls them does not matter where the user says */
     load_with(&r, with_crs("EPSG:25832", NULL), true, PATHS(strange));
@@ -349,7 +369,8 @@ static void test_strange_crs(void **state) {
     finish(&r);
 }
 
-/* Lamps of one's own, added before the load as scene.h tells: they stay where they were put, beside the lamps of the files. */
+/* Lamps of one's own, added before the load as scene.h tells: they stay where they were put, beside the lamps of the
+ * files. */
 static void test_planned_lamps(void **state) {
     (void)state;
     struct run r;
@@ -357,8 +378,12 @@ static void test_planned_lamps(void **state) {
     assert_int_equal(noc_scene_set_crs(r.scene, "EPSG:25832", (double[]){ 678000, 5404000, 370 }), NOC_OK);
     double at[3] = { 678020.5, 5404003.25, 378 };
     assert_int_equal(noc_scene_to_local(r.scene, NULL, at), NOC_OK);
-    noc_light lamp = { .kind = NOC_LIGHT_DISC, .position = { at[0], at[1], at[2] }, .direction = { 0, 0, -1 }, .radius = 0.15,
-                       .emission = { 1000, 1000, 1000 }, .name = "planned 1" };
+    noc_light lamp = { .kind = NOC_LIGHT_DISC,
+                       .position = { at[0], at[1], at[2] },
+                       .direction = { 0, 0, -1 },
+                       .radius = 0.15,
+                       .emission = { 1000, 1000, 1000 },
+                       .name = "planned 1" };
     assert_int_equal(noc_scene_add_light(r.scene, &lamp), 0);
     load_with(&r, DEFAULTS, false, PATHS(file("a", CITY), file("l", NEAR_LAMP)));
     assert_int_equal(r.status, NOC_OK);
@@ -378,8 +403,8 @@ static void test_planned_lamps(void **state) {
     finish(&r);
 }
 
-/* What came before a reader's error goes to the report, and what is wrong with that is no second error: here a lamp on the Moon, to
- * which no transformation leads. LOAD looks that one error is told. */
+/* What came before a reader's error goes to the report, and what is wrong with that is no second error: here a lamp on
+ * the Moon, to which no transformation leads. LOAD looks that one error is told. */
 static void test_error_after_error(void **state) {
     (void)state;
     struct run r;
@@ -393,10 +418,15 @@ static void test_error_after_error(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_error_after_error), cmocka_unit_test(test_geographic), cmocka_unit_test(test_axes),
+        cmocka_unit_test(test_error_after_error),
+        cmocka_unit_test(test_geographic),
+        cmocka_unit_test(test_axes),
         cmocka_unit_test(test_scene_crs),
-        cmocka_unit_test(test_missing_crs), cmocka_unit_test(test_mesh_place), cmocka_unit_test(test_true_lengths),
-        cmocka_unit_test(test_planned_lamps), cmocka_unit_test(test_strange_crs),
+        cmocka_unit_test(test_missing_crs),
+        cmocka_unit_test(test_mesh_place),
+        cmocka_unit_test(test_true_lengths),
+        cmocka_unit_test(test_planned_lamps),
+        cmocka_unit_test(test_strange_crs),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

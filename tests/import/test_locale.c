@@ -1,4 +1,5 @@
-/* The host's locale changes nothing: what is read, reported and written is the same where the decimal point is a comma. */
+/* The host's locale changes nothing: what is read, reported and written is the same where the decimal point is a comma.
+ */
 #include "../comma_locale.h"
 #include "import/load.h"
 #include "nocturne/nocturne.h"
@@ -8,16 +9,22 @@
 
 static char folder[] = "/tmp/noc-locale-XXXXXX";
 
-static const struct { const char *name, *text; } files[] = {
-    { "city.obj", "mtllib city.mtl\nusemtl lit\nv 500000.125 5400000.25 0.5\nv 500010.125 5400000.25 0.5\nv 500010.125 5400020.75 0.5\n"
-                  "v 500000.125 5400020.75 1.5e0\nf 1 2 3\nf 1 3 4\n" },
+static const struct {
+    const char *name, *text;
+} files[] = {
+    { "city.obj",
+      "mtllib city.mtl\nusemtl lit\nv 500000.125 5400000.25 0.5\nv 500010.125 5400000.25 0.5\nv 500010.125 5400020.75 0.5\n"
+      "v 500000.125 5400020.75 1.5e0\nf 1 2 3\nf 1 3 4\n" },
     { "city.mtl", "newmtl lit\nKd 0.25 0.5 0.75\nKe 1.5 2.5 3.5\n" },
-    { "lamps.csv", "lon,lat,height,lumens,street_lamp\n15.00003,48.75210,4.5,5250.5,yes\n15.00012,48.75215,6.25,1.5e3,yes\n" },
-    { "lamps.geojson", "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":{\"highway\":\"street_lamp\","
-                       "\"height\":\"7.5\"},\"geometry\":{\"type\":\"Point\",\"coordinates\":[15.00008,48.75212]}}]}" },
-    { "box.gltf", "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_lights_punctual\"],\"extensions\":{\"KHR_lights_punctual\":"
-                  "{\"lights\":[{\"type\":\"point\",\"intensity\":12.5,\"color\":[0.5,0.25,0.125]}]}},\"nodes\":[{\"translation\":"
-                  "[1.5,2.25,-3.125],\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}]}" },
+    { "lamps.csv",
+      "lon,lat,height,lumens,street_lamp\n15.00003,48.75210,4.5,5250.5,yes\n15.00012,48.75215,6.25,1.5e3,yes\n" },
+    { "lamps.geojson",
+      "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":{\"highway\":\"street_lamp\","
+      "\"height\":\"7.5\"},\"geometry\":{\"type\":\"Point\",\"coordinates\":[15.00008,48.75212]}}]}" },
+    { "box.gltf",
+      "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_lights_punctual\"],\"extensions\":{\"KHR_lights_punctual\":"
+      "{\"lights\":[{\"type\":\"point\",\"intensity\":12.5,\"color\":[0.5,0.25,0.125]}]}},\"nodes\":[{\"translation\":"
+      "[1.5,2.25,-3.125],\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}]}" },
 };
 
 static const char *in_folder(const char *name) {
@@ -46,7 +53,9 @@ static int tear_down(void **state) {
 }
 
 /* All that one import leaves behind, as text. */
-typedef struct outcome { char text[20000]; } outcome;
+typedef struct outcome {
+    char text[20000];
+} outcome;
 
 static void keep(void *user, noc_log_level level, const char *text) {
     outcome *o = user;
@@ -74,7 +83,8 @@ static void run(outcome *o) {
     memset(o, 0, sizeof(*o));
     noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_DEBUG, .message = keep, .user = o });
     noc_scene *scene = noc_scene_create(log);
-    const char *paths[] = { in_folder("city.obj"), in_folder("lamps.csv"), in_folder("lamps.geojson"), in_folder("box.gltf") };
+    const char *paths[] = { in_folder("city.obj"), in_folder("lamps.csv"), in_folder("lamps.geojson"),
+                            in_folder("box.gltf") };
     noc_import_params params = noc_import_default_params();
     params.crs = "+proj=utm +zone=33 +ellps=GRS80 +units=m +x_0=500000.0 +k_0=0.9996";
     params.scene_crs = "EPSG:25833";

@@ -30,19 +30,20 @@ static int remove_pipe(void **state) {
     return system(command);
 }
 
-#define AXES \
+#define AXES                                                                                                           \
     "CS[ellipsoidal,2],AXIS[\"latitude\",north],AXIS[\"longitude\",east],ANGLEUNIT[\"degree\",0.0174532925199433]"
 #define SOURCE "GEOGCRS[\"x\",DATUM[\"d\",ELLIPSOID[\"e\",6378137,298.25]]," AXES "]"
-#define TARGET \
-    "GEOGCRS[\"WGS 84\",DATUM[\"World Geodetic System 1984\",ELLIPSOID[\"WGS 84\",6378137,298.257223563]]," AXES "," \
+#define TARGET                                                                                                         \
+    "GEOGCRS[\"WGS 84\",DATUM[\"World Geodetic System 1984\",ELLIPSOID[\"WGS 84\",6378137,298.257223563]]," AXES ","   \
     "ID[\"EPSG\",4326]]"
 
 /* %s is the file. GDAL 3.6 opens all but the last, of which PROJ makes a grid. */
-static const char bound[] =
-    "BOUNDCRS[SOURCECRS[" SOURCE "],TARGETCRS[" TARGET "],ABRIDGEDTRANSFORMATION[\"t\",METHOD[\"NTv2\",ID[\"EPSG\",9615]],"
-    "PARAMETERFILE[\"Latitude and longitude difference file\",\"%s\",ID[\"EPSG\",8656]]]]";
-static const char datum_grid[] = "GEOGCS[\"x\",DATUM[\"d\",SPHEROID[\"s\",6378137,298.25],EXTENSION[\"PROJ4_GRIDS\",\"%s\"]],"
-                                 "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]";
+static const char bound[] = "BOUNDCRS[SOURCECRS[" SOURCE "],TARGETCRS[" TARGET
+                            "],ABRIDGEDTRANSFORMATION[\"t\",METHOD[\"NTv2\",ID[\"EPSG\",9615]],"
+                            "PARAMETERFILE[\"Latitude and longitude difference file\",\"%s\",ID[\"EPSG\",8656]]]]";
+static const char datum_grid[] =
+    "GEOGCS[\"x\",DATUM[\"d\",SPHEROID[\"s\",6378137,298.25],EXTENSION[\"PROJ4_GRIDS\",\"%s\"]],"
+    "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]";
 static const char extension[] =
     "PROJCS[\"x\",GEOGCS[\"x\",DATUM[\"d\",SPHEROID[\"s\",6378137,298.25]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\","
     "0.0174532925199433]],PROJECTION[\"Mercator_1SP\"],PARAMETER[\"scale_factor\",1],UNIT[\"metre\",1],"
@@ -76,9 +77,11 @@ static char *json_text(const char *text) {
 static void write_geojson(const char *path, const char *before, const char *inside) {
     FILE *f = fopen(path, "w");
     assert_non_null(f);
-    fprintf(f, "{\"type\": \"FeatureCollection\", %s \"features\": [{\"type\": \"Feature\", \"properties\": "
+    fprintf(f,
+            "{\"type\": \"FeatureCollection\", %s \"features\": [{\"type\": \"Feature\", \"properties\": "
             "{\"highway\": \"street_lamp\", \"note\": \"+proj=merc +nadgrids=x\"}, "
-            "\"geometry\": {\"type\": \"Point\", %s \"coordinates\": [11.42, 48.76]}}]}", before, inside);
+            "\"geometry\": {\"type\": \"Point\", %s \"coordinates\": [11.42, 48.76]}}]}",
+            before, inside);
     fclose(f);
 }
 
@@ -89,7 +92,8 @@ static void test_geojson(void **state) {
     snprintf(path, sizeof(path), "%s/a.geojson", folder);
     for (size_t i = 0; i < NOC_COUNT(texts); i++) {
         snprintf(text, sizeof(text), texts[i], pipe_path);
-        snprintf(member, sizeof(member), "\"crs\": {\"type\": \"name\", \"properties\": {\"name\": \"%s\"}},", json_text(text));
+        snprintf(member, sizeof(member), "\"crs\": {\"type\": \"name\", \"properties\": {\"name\": \"%s\"}},",
+                 json_text(text));
         write_geojson(path, member, "");
         expect_refused(path);
         write_geojson(path, "", member);
@@ -101,9 +105,16 @@ static void test_geojson(void **state) {
         "\"crs\\u0000x\" : {\"type\": \"name\", \"properties\": {\"name\": \"+proj=merc\\t+nadgrids=%s\"}},",
         "\"crs\": null, \"crs\": {\"a\": {}, \"type\": \"name\", "
         "\"properties\": {\"b\": \"\\\"\", \"name\": \"+proj=merc +nadgrids=%s\"}},",
-        NAMED("ESRI::DICT:../..%s,abc"), NAMED("esri::ESRI:: dict:../..%s,abc"), NAMED("+title=x +init = %s:x"), NAMED("+init=epsg:4326"),
-        NAMED("+title=x +proj = merc +nadgrids = %s"), NAMED("+proj=merc;nadgrids=%s"), NAMED("+proj=merc +nadgrids= +%s"),
-        NAMED("+proj=merc +nadgrids=@null ,%s"), NAMED("+proj=merc +nadgrids=@null\\\",%s"), NAMED("+proj=merc\\u000bnadgrids\\u000b=%s"),
+        NAMED("ESRI::DICT:../..%s,abc"),
+        NAMED("esri::ESRI:: dict:../..%s,abc"),
+        NAMED("+title=x +init = %s:x"),
+        NAMED("+init=epsg:4326"),
+        NAMED("+title=x +proj = merc +nadgrids = %s"),
+        NAMED("+proj=merc;nadgrids=%s"),
+        NAMED("+proj=merc +nadgrids= +%s"),
+        NAMED("+proj=merc +nadgrids=@null ,%s"),
+        NAMED("+proj=merc +nadgrids=@null\\\",%s"),
+        NAMED("+proj=merc\\u000bnadgrids\\u000b=%s"),
     };
     for (size_t i = 0; i < NOC_COUNT(spellings); i++) {
         snprintf(member, sizeof(member), spellings[i], pipe_path);
@@ -113,23 +124,29 @@ static void test_geojson(void **state) {
 }
 
 /* What one reader of JSON takes for the end of a string is not where another one does. */
-#define PROJJSON_CRS(name, ellipsoid) \
-    "{\"type\": \"GeographicCRS\", \"name\": \"" name "\", \"datum\": {\"type\": \"GeodeticReferenceFrame\", \"name\": \"d\", " \
-    "\"ellipsoid\": {\"name\": \"" ellipsoid "\", \"semi_major_axis\": 6378137, \"inverse_flattening\": 298.257223563}}, " \
+#define PROJJSON_CRS(name, ellipsoid)                                                                                  \
+    "{\"type\": \"GeographicCRS\", \"name\": \"" name                                                                  \
+    "\", \"datum\": {\"type\": \"GeodeticReferenceFrame\", \"name\": \"d\", "                                          \
+    "\"ellipsoid\": {\"name\": \"" ellipsoid                                                                           \
+    "\", \"semi_major_axis\": 6378137, \"inverse_flattening\": 298.257223563}}, "                                      \
     "\"coordinate_system\": {\"subtype\": \"ellipsoidal\", \"axis\": [{\"name\": \"Lat\", \"abbreviation\": \"lat\", " \
-    "\"direction\": \"north\", \"unit\": \"degree\"}, {\"name\": \"Lon\", \"abbreviation\": \"lon\", \"direction\": " \
+    "\"direction\": \"north\", \"unit\": \"degree\"}, {\"name\": \"Lon\", \"abbreviation\": \"lon\", \"direction\": "  \
     "\"east\", \"unit\": \"degree\"}]}}"
 
 /* GDAL takes the text of an object in the name's place, whose strings alone name no grid. */
 static void test_crs_in_parts(void **state) {
     char path[80], member[3000];
     snprintf(path, sizeof(path), "%s/parts.geojson", folder);
-    snprintf(member, sizeof(member),
-             "\"crs\": {\"type\": \"name\", \"properties\": {\"name\": {\"type\": \"BoundCRS\", \"source_crs\": "
-             PROJJSON_CRS("x", "e") ", \"target_crs\": " PROJJSON_CRS("WGS 84", "WGS 84") ", \"transformation\": {\"name\": "
-             "\"x\", \"method\": {\"name\": \"NTv2\", \"id\": {\"authority\": \"EPSG\", \"code\": 9615}}, \"parameters\": "
-             "[{\"name\": \"Latitude and longitude difference file\", \"value\": \"%s\", \"id\": {\"authority\": \"EPSG\", "
-             "\"code\": 8656}}]}}}},", pipe_path);
+    snprintf(
+        member, sizeof(member),
+        "\"crs\": {\"type\": \"name\", \"properties\": {\"name\": {\"type\": \"BoundCRS\", \"source_crs\": " PROJJSON_CRS(
+            "x",
+            "e") ", \"target_crs\": " PROJJSON_CRS("WGS 84",
+                                                   "WGS 84") ", \"transformation\": {\"name\": "
+                                                             "\"x\", \"method\": {\"name\": \"NTv2\", \"id\": {\"authority\": \"EPSG\", \"code\": 9615}}, \"parameters\": "
+                                                             "[{\"name\": \"Latitude and longitude difference file\", \"value\": \"%s\", \"id\": {\"authority\": \"EPSG\", "
+                                                             "\"code\": 8656}}]}}}},",
+        pipe_path);
     write_geojson(path, member, "");
     expect_error(path, NOC_ERR_FORMAT, "a CRS in parts");
 }
@@ -155,7 +172,9 @@ static void test_hidden(void **state) {
 /* Properties are nobody's CRS, and these are CRSs that maps do hold. */
 static void test_plain(void **state) {
     static const char *const plain[] = {
-        "", "\"crs\": null,", "\"crs\": {\"type\": \"name\", \"properties\": {\"name\": \"urn:ogc:def:crs:OGC:1.3:CRS84\"}},",
+        "",
+        "\"crs\": null,",
+        "\"crs\": {\"type\": \"name\", \"properties\": {\"name\": \"urn:ogc:def:crs:OGC:1.3:CRS84\"}},",
         "\"crs\": {\"type\": \"name\", \"properties\": {\"name\": \"EPSG:4326\"}}, \"grids\": \"+proj=x +file=y\",",
     };
     for (size_t i = 0; i < NOC_COUNT(plain); i++) {
@@ -231,7 +250,8 @@ static void test_flatgeobuf_authority(void **state) {
     char path[80], wkt[1000];
     assert_int_equal(sizeof(name), sizeof(text));
     snprintf(path, sizeof(path), "%s/authority.fgb", folder);
-    snprintf(wkt, sizeof(wkt), "GEOGCRS[\"x\",DATUM[\"d\",ELLIPSOID[\"e\",6378137,298.25]]," AXES ",ID[\"%s\",5]]", name);
+    snprintf(wkt, sizeof(wkt), "GEOGCRS[\"x\",DATUM[\"d\",ELLIPSOID[\"e\",6378137,298.25]]," AXES ",ID[\"%s\",5]]",
+             name);
     write_map("FlatGeobuf", path, wkt);
     lamp_sink s;
     lamp_sink_start(&s);
@@ -268,7 +288,8 @@ static void test_shapefile(void **state) {
     static const struct {
         const char *within, *between;
         size_t length;
-    } parted[] = { { "", "", 0 }, { "_GRIDS", "\n", 1 }, { "grids", "\r\n", 2 }, { "xtension", "\r", 1 }, { "ID", "\0no\n", 4 }, { "rids", "\0\r", 2 }, { ",", "\n", 1 } };
+    } parted[] = { { "", "", 0 },         { "_GRIDS", "\n", 1 }, { "grids", "\r\n", 2 }, { "xtension", "\r", 1 },
+                   { "ID", "\0no\n", 4 }, { "rids", "\0\r", 2 }, { ",", "\n", 1 } };
     const char *const kinds[] = { datum_grid, extension };
     for (size_t i = 0; i < NOC_COUNT(kinds) * NOC_COUNT(parted); i++) {
         char path[80], prj[80], text[2000];
@@ -312,27 +333,38 @@ static void test_geopackage(void **state) {
     }
 }
 
-/* A view may give another answer each time, and so may what is computed; an index holds what whoever made it wrote there. */
+/* A view may give another answer each time, and so may what is computed; an index holds what whoever made it wrote
+ * there. */
 static void test_geopackage_table(void **state) {
     static const char rename[] = "ALTER TABLE gpkg_spatial_ref_sys RENAME TO kept";
     static const struct {
         const char *first, *second, *why;
     } others[] = {
-        { rename, "CREATE VIEW \"gpkg_spatial_ref_sys\" AS SELECT srs_name, srs_id, 'x' AS organization, organization_coordsys_id, "
-          "CASE WHEN random() > 0 THEN definition ELSE '+proj=merc +nadgrids=x' END AS definition, description FROM kept", "a view" },
-        { rename, "CREATE VIRTUAL TABLE \"gpkg_spatial_ref_sys\" USING rtree(srs_id, a, b, +srs_name, +organization, "
-          "+organization_coordsys_id, +definition, +description)", "a virtual table" },
-        { rename, "CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT, srs_id INTEGER NOT NULL PRIMARY KEY, organization TEXT, "
+        { rename,
+          "CREATE VIEW \"gpkg_spatial_ref_sys\" AS SELECT srs_name, srs_id, 'x' AS organization, organization_coordsys_id, "
+          "CASE WHEN random() > 0 THEN definition ELSE '+proj=merc +nadgrids=x' END AS definition, description FROM kept",
+          "a view" },
+        { rename,
+          "CREATE VIRTUAL TABLE \"gpkg_spatial_ref_sys\" USING rtree(srs_id, a, b, +srs_name, +organization, "
+          "+organization_coordsys_id, +definition, +description)",
+          "a virtual table" },
+        { rename,
+          "CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT, srs_id INTEGER NOT NULL PRIMARY KEY, organization TEXT, "
           "organization_coordsys_id INTEGER, kept TEXT, definition TEXT GENERATED ALWAYS AS (kept) VIRTUAL, description TEXT)",
           "a hidden or generated column" },
-        { rename, "CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT, srs_id INTEGER NOT NULL PRIMARY KEY, organization TEXT, "
+        { rename,
+          "CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT, srs_id INTEGER NOT NULL PRIMARY KEY, organization TEXT, "
           "organization_coordsys_id INTEGER, definition TEXT GENERATED ALWAYS AS ('+proj=merc +nadgrids=x') STORED, description TEXT)",
           "a hidden or generated column" },
         { "CREATE INDEX i ON gpkg_spatial_ref_sys (srs_id, definition, organization)", NULL, "an index" },
-        { rename, "CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT, srs_id INTEGER NOT NULL PRIMARY KEY, organization TEXT, "
-          "organization_coordsys_id INTEGER, definition TEXT UNIQUE, description TEXT)", "an index" },
-        { rename, "CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT, srs_id INTEGER, organization TEXT, organization_coordsys_id INTEGER, "
-          "definition TEXT, description TEXT, PRIMARY KEY (srs_id, definition)) WITHOUT ROWID", "an index" },
+        { rename,
+          "CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT, srs_id INTEGER NOT NULL PRIMARY KEY, organization TEXT, "
+          "organization_coordsys_id INTEGER, definition TEXT UNIQUE, description TEXT)",
+          "an index" },
+        { rename,
+          "CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT, srs_id INTEGER, organization TEXT, organization_coordsys_id INTEGER, "
+          "definition TEXT, description TEXT, PRIMARY KEY (srs_id, definition)) WITHOUT ROWID",
+          "an index" },
     };
     for (size_t i = 0; i < NOC_COUNT(others); i++) {
         char path[80];
@@ -348,10 +380,11 @@ static void test_geopackage_table(void **state) {
 int main(void) {
 #if NOC_HAVE_GDAL
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_geojson), cmocka_unit_test(test_crs_in_parts), cmocka_unit_test(test_hidden),
-        cmocka_unit_test(test_plain), cmocka_unit_test(test_flatgeobuf),
-        cmocka_unit_test(test_flatgeobuf_authority), cmocka_unit_test(test_packed), cmocka_unit_test(test_shapefile), cmocka_unit_test(test_geopackage),
-        cmocka_unit_test(test_geopackage_table),
+        cmocka_unit_test(test_geojson),    cmocka_unit_test(test_crs_in_parts),
+        cmocka_unit_test(test_hidden),     cmocka_unit_test(test_plain),
+        cmocka_unit_test(test_flatgeobuf), cmocka_unit_test(test_flatgeobuf_authority),
+        cmocka_unit_test(test_packed),     cmocka_unit_test(test_shapefile),
+        cmocka_unit_test(test_geopackage), cmocka_unit_test(test_geopackage_table),
     };
     return cmocka_run_group_tests(tests, make_pipe, remove_pipe);
 #else

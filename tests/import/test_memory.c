@@ -1,5 +1,6 @@
-/* Memory that is refused to an import: every allocation of small ones, alone and with all later ones. Each ends in NOC_ERR_MEMORY and
- * one message, leaves no file, and, in `make asan`, no leak; or what is imported is the same without it. */
+/* Memory that is refused to an import: every allocation of small ones, alone and with all later ones. Each ends in
+ * NOC_ERR_MEMORY and one message, leaves no file, and, in `make asan`, no leak; or what is imported is the same without
+ * it. */
 #include "../files.h"
 #include "../memory.h"
 
@@ -34,7 +35,9 @@ static const char *write_text(const char *name, const char *text) {
 
 /* ---- what is imported, in one number ---- */
 
-typedef struct digest { uint64_t sum; } digest;
+typedef struct digest {
+    uint64_t sum;
+} digest;
 
 static void add_bytes(digest *d, const void *data, size_t size) {
     for (const unsigned char *p = data; size--; p++)
@@ -61,7 +64,8 @@ static uint64_t digest_of(const noc_scene *scene, const noc_report *report) {
     for (size_t i = 0; i < noc_report_file_count(report); i++) {
         const noc_report_file *f = noc_report_get_file(report, i);
         const char *texts[] = { f->path, f->format, f->crs, f->crs_given };
-        const size_t numbers[] = { f->objects, f->polygons, f->triangles, f->lights, f->lamps, f->lamps_mapped, f->points, f->column_count, f->line_count };
+        const size_t numbers[] = { f->objects,      f->polygons, f->triangles,    f->lights,    f->lamps,
+                                   f->lamps_mapped, f->points,   f->column_count, f->line_count };
         for (size_t k = 0; k < NOC_COUNT(texts); k++)
             add_text(&d, texts[k]);
         for (size_t k = 0; k < NOC_COUNT(numbers); k++)
@@ -147,43 +151,67 @@ static const char links[] =
     "xmlns:frn='http://www.opengis.net/citygml/cityfurniture/2.0' xmlns:gen='http://www.opengis.net/citygml/generics/2.0' "
     "xmlns:gml='http://www.opengis.net/gml' xmlns:xlink='http://www.w3.org/1999/xlink'>"
 #define MEMBER(xml) "<core:cityObjectMember>" xml "</core:cityObjectMember>"
-#define POLYGON(id, list) "<gml:surfaceMember><gml:Polygon gml:id='" id "'><gml:exterior><gml:LinearRing><gml:posList>" list \
-                          "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>"
-#define BUILDING(id, inside) MEMBER("<bldg:Building gml:id='" id "'><bldg:lod2MultiSurface><gml:MultiSurface>" inside \
-                                    "</gml:MultiSurface></bldg:lod2MultiSurface></bldg:Building>")
-    BUILDING("first", "<gml:surfaceMember xlink:href='#wall'/>" POLYGON("five", "0 0 0 9 0 0 9 0 5 5 0 9 0 0 5 0 0 0")) /* forwards */
-    BUILDING("second", POLYGON("wall", "0 9 0 9 9 0 9 9 6 0 9 6 0 9 0"))
-    BUILDING("third", "<gml:surfaceMember xlink:href='#wall'/><gml:surfaceMember xlink:href='#nowhere'/>" POLYGON("flat", "0 0 0 1 0 0 2 0 0 0 0 0"))
-    MEMBER("<frn:CityFurniture gml:id='lamp'><gen:stringAttribute name='Leuchtmittel'><gen:value>LED 30 W</gen:value></gen:stringAttribute>"
-           "<frn:function>1150</frn:function><frn:lod2Geometry><gml:MultiSurface>" POLYGON("pole", "20 0 0 20.1 0 0 20.1 0 5 20 0 5 20 0 0")
-           POLYGON("arm", "20 0 5 20 1.2 5 20 1.2 5.1 20 0 5.1 20 0 5") "</gml:MultiSurface></frn:lod2Geometry></frn:CityFurniture>")
-    "</core:CityModel>";
+#define POLYGON(id, list)                                                                                              \
+    "<gml:surfaceMember><gml:Polygon gml:id='" id "'><gml:exterior><gml:LinearRing><gml:posList>" list                 \
+    "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>"
+#define BUILDING(id, inside)                                                                                           \
+    MEMBER("<bldg:Building gml:id='" id "'><bldg:lod2MultiSurface><gml:MultiSurface>" inside                           \
+           "</gml:MultiSurface></bldg:lod2MultiSurface></bldg:Building>")
+    BUILDING("first",
+             "<gml:surfaceMember xlink:href='#wall'/>" POLYGON("five",
+                                                               "0 0 0 9 0 0 9 0 5 5 0 9 0 0 5 0 0 0")) /* forwards */
+    BUILDING("second", POLYGON("wall", "0 9 0 9 9 0 9 9 6 0 9 6 0 9 0")) BUILDING(
+        "third", "<gml:surfaceMember xlink:href='#wall'/><gml:surfaceMember xlink:href='#nowhere'/>" POLYGON(
+                     "flat", "0 0 0 1 0 0 2 0 0 0 0 0"))
+        MEMBER(
+            "<frn:CityFurniture gml:id='lamp'><gen:stringAttribute name='Leuchtmittel'><gen:value>LED 30 W</gen:value></gen:stringAttribute>"
+            "<frn:function>1150</frn:function><frn:lod2Geometry><gml:MultiSurface>" POLYGON(
+                "pole", "20 0 0 20.1 0 0 20.1 0 5 20 0 5 20 0 0")
+                POLYGON(
+                    "arm",
+                    "20 0 5 20 1.2 5 20 1.2 5.1 20 0 5.1 20 0 5") "</gml:MultiSurface></frn:lod2Geometry></frn:CityFurniture>") "</core:CityModel>";
 
 static const char strange[] =
     "<?xml version='1.0'?><core:CityModel xmlns:core='http://www.opengis.net/citygml/2.0' xmlns:bldg='http://www.opengis.net/citygml/building/2.0' "
-    "xmlns:gml='http://www.opengis.net/gml'><gml:boundedBy><gml:Envelope srsName='our own system'/></gml:boundedBy>"
-    BUILDING("only", POLYGON("wall", "690000 5330000 0 690009 5330000 0 690009 5330000 5 690000 5330000 5 690000 5330000 0")) "</core:CityModel>";
+    "xmlns:gml='http://www.opengis.net/gml'><gml:boundedBy><gml:Envelope srsName='our own system'/></gml:boundedBy>" BUILDING(
+        "only",
+        POLYGON(
+            "wall",
+            "690000 5330000 0 690009 5330000 0 690009 5330000 5 690000 5330000 5 690000 5330000 0")) "</core:CityModel>";
 
 static void citygml(void **state) {
     refuse_each("CityGML", &(import){ { "citygml/whole.gml" }, .all = true });
     refuse_each("CityGML with references between objects", &(import){ { write_text("links.gml", links) } });
     refuse_each("CityGML, zip, another CRS", &(import){ { "citygml/old.zip" }, .scene_crs = "EPSG:25832" });
-    refuse_each("CityGML with a CRS that is not understood", &(import){ { write_text("strange.gml", strange) }, .crs = "EPSG:25832" });
+    refuse_each("CityGML with a CRS that is not understood",
+                &(import){ { write_text("strange.gml", strange) }, .crs = "EPSG:25832" });
     refuse_each("CityGML, gzip, looked at", &(import){ { "citygml/whole.gml.gz" }, .inspect = true });
 }
 
 static void gltf(void **state) {
     refuse_each("glTF", &(import){ { "gltf/embedded.gltf" }, .all = true });
-    write_text("library.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"nodes\": [{\"mesh\": 0, \"children\": [1], \"name\": \"a name longer than sixteen letters\"}, {}],"
-                               "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"accessors\": [{\"bufferView\": 0, \"componentType\": 5126,"
-                               "\"count\": 3, \"type\": \"VEC3\"}], \"bufferViews\": [{\"buffer\": 0, \"byteLength\": 36}], \"buffers\": [{\"byteLength\": 36, \"uri\": "
-                               "\"side%20by%20side.bin\"}]}");
-    write_text("side by side.bin", "\x01\x01\x80?" "\x01\x01\x80?" "\x01\x01\x80?" "\x01\x01\x01\x40" "\x01\x01\x80?" "\x01\x01\x80?" "\x01\x01\x80?" "\x01\x01\x01\x40" "\x01\x01\x80?");
+    write_text(
+        "library.gltf",
+        "{\"asset\": {\"version\": \"2.0\"}, \"nodes\": [{\"mesh\": 0, \"children\": [1], \"name\": \"a name longer than sixteen letters\"}, {}],"
+        "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"accessors\": [{\"bufferView\": 0, \"componentType\": 5126,"
+        "\"count\": 3, \"type\": \"VEC3\"}], \"bufferViews\": [{\"buffer\": 0, \"byteLength\": 36}], \"buffers\": [{\"byteLength\": 36, \"uri\": "
+        "\"side%20by%20side.bin\"}]}");
+    write_text("side by side.bin", "\x01\x01\x80?"
+                                   "\x01\x01\x80?"
+                                   "\x01\x01\x80?"
+                                   "\x01\x01\x01\x40"
+                                   "\x01\x01\x80?"
+                                   "\x01\x01\x80?"
+                                   "\x01\x01\x80?"
+                                   "\x01\x01\x01\x40"
+                                   "\x01\x01\x80?");
     refuse_each("glTF with its buffer beside it", &(import){ { "library.gltf" }, .crs = "EPSG:25832" });
 }
 
 static void obj(void **state) {
-    write_text("house.obj", "mtllib house.mtl none.mtl\nv 0 0 0\nv 10 0 0\nv 10 0 8\nv 0 0 8\nv 5 0 12\nv 5 x 12\nusemtl wall\nf 1 2 3 5 4\nusemtl lamp\nf 1 3 2\nf 1 2 9\n");
+    write_text(
+        "house.obj",
+        "mtllib house.mtl none.mtl\nv 0 0 0\nv 10 0 0\nv 10 0 8\nv 0 0 8\nv 5 0 12\nv 5 x 12\nusemtl wall\nf 1 2 3 5 4\nusemtl lamp\nf 1 3 2\nf 1 2 9\n");
     write_text("house.mtl", "newmtl wall\nKd 0.5 0.4 0.3\nnewmtl lamp\nKe 20 18 15\nmap_Kd none.png\n");
     refuse_each("OBJ", &(import){ { "house.obj" } });
     refuse_each("OBJ by the helper", &(import){ { "house.obj" }, .isolate = true });
@@ -192,10 +220,15 @@ static void obj(void **state) {
 static void lamps(void **state) {
     refuse_each("CSV", &(import){ { "csv/comma.csv" } });
     refuse_each("CSV with a CRS", &(import){ { "csv/semicolon.csv" }, .crs = "EPSG:31468" });
-    write_text("kinds.csv", "x;y;art\n690110;5330110;Lichtmast mit Auslegerleuchte\n690150;5330110;Lichtmast\n690180;5330110;\"Mast \"\"alt\"\"\"\n");
+    write_text(
+        "kinds.csv",
+        "x;y;art\n690110;5330110;Lichtmast mit Auslegerleuchte\n690150;5330110;Lichtmast\n690180;5330110;\"Mast \"\"alt\"\"\"\n");
     refuse_each("CSV whose values tell", &(import){ { "kinds.csv" }, .crs = "EPSG:25832" });
     write_text("named.csv", "x,y,pow\n690110,5330110,50\n690150,5330110,70\n");
-    refuse_each("CSV that is named, beside a city", &(import){ { "citygml/whole.gml" }, .lamps = "named.csv", .columns = "watts=pow,x=x,y=y", .crs = "EPSG:25832" });
+    refuse_each("CSV that is named, beside a city", &(import){ { "citygml/whole.gml" },
+                                                               .lamps = "named.csv",
+                                                               .columns = "watts=pow,x=x,y=y",
+                                                               .crs = "EPSG:25832" });
     refuse_each("Overpass", &(import){ { "overpass/nodes.json" } });
 }
 
@@ -214,7 +247,8 @@ static void maps(void **state) {
 
 static noc_status use_crs(const char *from, const char *to) {
     noc_status status;
-    geo_crs *a = geo_crs_create_plain(from, "file", log_, &status), *b = a ? geo_crs_create(to, NULL, log_, &status) : NULL;
+    geo_crs *a = geo_crs_create_plain(from, "file", log_, &status),
+            *b = a ? geo_crs_create(to, NULL, log_, &status) : NULL;
     geo_transform *t = b ? geo_transform_create(a, b, log_, &status) : NULL;
     double p[3] = { 11, 48, 500 };
     if (t)
@@ -361,8 +395,8 @@ static size_t pull_blanks(void *buffer, size_t size, void *user) {
     return size;
 }
 
-/* jansson does not look whether the text that it reads could grow; so what that can take, which is up to twice as much, is set aside. What
- * counts is what came, not the size of a file that may be compressed. */
+/* jansson does not look whether the text that it reads could grow; so what that can take, which is up to twice as much,
+ * is set aside. What counts is what came, not the size of a file that may be compressed. */
 static void json_has_memory_aside(void **state) {
 #if SANITIZED /* which has a malloc of its own */
     skip();
@@ -378,7 +412,8 @@ static int make_inputs(void **state) {
     char command[900];
     snprintf(folder, sizeof(folder), "/tmp/noc-memory-%ld", (long)getpid());
     snprintf(scratch, sizeof(scratch), "%s/tmp", folder);
-    snprintf(command, sizeof(command), "mkdir -p %s && python3 %s/fuzz/seeds.py %s true -", scratch, getenv("NOC_SOURCE"), folder);
+    snprintf(command, sizeof(command), "mkdir -p %s && python3 %s/fuzz/seeds.py %s true -", scratch,
+             getenv("NOC_SOURCE"), folder);
     setenv("TMPDIR", scratch, 1);
     log_ = counting_log();
     return system(command);
@@ -393,9 +428,16 @@ static int remove_inputs(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(coordinate_systems), cmocka_unit_test(citygml), cmocka_unit_test(gltf),  cmocka_unit_test(obj),
-        cmocka_unit_test(lamps),              cmocka_unit_test(maps),    cmocka_unit_test(places_of_a_scene),
-        cmocka_unit_test(polygons),           cmocka_unit_test(a_request), cmocka_unit_test(a_helper_without_memory),
+        cmocka_unit_test(coordinate_systems),
+        cmocka_unit_test(citygml),
+        cmocka_unit_test(gltf),
+        cmocka_unit_test(obj),
+        cmocka_unit_test(lamps),
+        cmocka_unit_test(maps),
+        cmocka_unit_test(places_of_a_scene),
+        cmocka_unit_test(polygons),
+        cmocka_unit_test(a_request),
+        cmocka_unit_test(a_helper_without_memory),
         cmocka_unit_test(json_has_memory_aside),
     };
     return cmocka_run_group_tests(tests, make_inputs, remove_inputs);

@@ -53,7 +53,9 @@ static void load(loaded *l, const char *name, noc_obj_up up) {
     noc_import_params params = noc_import_default_params();
     params.obj_up = up;
     noc_stream *stream = noc_stream_open(path, l->log, NULL);
-    l->status = stream ? noc_reader_mesh.read_mesh(path, stream, &params, l->scene, &(mesh_place){ NULL, place_by }, l->issues, &l->format) : NOC_ERR_IO;
+    l->status = stream ? noc_reader_mesh.read_mesh(path, stream, &params, l->scene, &(mesh_place){ NULL, place_by },
+                                                   l->issues, &l->format)
+                       : NOC_ERR_IO;
     noc_stream_close(stream);
 }
 
@@ -110,7 +112,7 @@ static void test_reads(void **state) {
     assert_int_equal(l.scene->lights.len, 1);
     const noc_light_record *r = l.scene->lights.data;
     assert_true(r->a[0] * r->b[1] - r->a[1] * r->b[0] < 0); /* wound to face down; the turn of axes keeps it */
-    assert_int_equal(r->flags & 1, 0); /* and its back is dark */
+    assert_int_equal(r->flags & 1, 0);                      /* and its back is dark */
     unload(&l);
     load(&l, "named.anything", NOC_OBJ_UP_Z);
     noc_scene_get_info(l.scene, &info);
@@ -132,7 +134,8 @@ static void test_map_coordinates(void **state) {
             if (i == 3)
                 n += snprintf(text + n, sizeof(text) - (size_t)n, "v %.3f %.3f %.3f 2\r\n", 2 * e, 2 * y, 2 * z);
             else
-                n += snprintf(text + n, sizeof(text) - (size_t)n, "  v %.3f %.3f %.3f%s\r\n", e, y, z, i == 5 ? " 1 0 0" : "");
+                n += snprintf(text + n, sizeof(text) - (size_t)n, "  v %.3f %.3f %.3f%s\r\n", e, y, z,
+                              i == 5 ? " 1 0 0" : "");
             n += snprintf(text + n, sizeof(text) - (size_t)n, "v %.3f %.3f %.3f\n", e + 2, y, z);
         }
         n += snprintf(text + n, sizeof(text) - (size_t)n, "o stair\n");
@@ -176,21 +179,21 @@ static bool has_issue(const loaded *l, const char *reason, size_t count, const c
 static void test_bad_faces(void **state) {
     static const char text[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n"
                                "f 1 2 3\n"
-                               "f 1 2 4\n"                           /* line 7: the vertex comes later, which is right */
+                               "f 1 2 4\n" /* line 7: the vertex comes later, which is right */
                                "f -1 -2 -3\n"
-                               "f -1 -2 -4\n"                        /* line 9: bad, before the fourth vertex */
+                               "f -1 -2 -4\n" /* line 9: bad, before the fourth vertex */
                                "v 1 1 0\n"
                                "f -1 -2 -4\n"
                                "f 1/1/1 2/1/1 3/1/1\n"
                                "f 1//1 2//1 3//1\n"
                                "f 1/1 2/1 3/1 # a remark\n"
-                               "f 1/2 2/1 3/1\n"                     /* no second texture place, but it is not used */
-                               "f 1//1 2//1 3//9\n"                  /* nor is a ninth normal */
-                               "f 0 1 2\n"                           /* line 17 */
-                               "f 1 2 99999999999999999999999\n"     /* line 18 */
-                               "f 1 2 \\\n 77\n"                    /* lines 19 and 20 */
+                               "f 1/2 2/1 3/1\n"                 /* no second texture place, but it is not used */
+                               "f 1//1 2//1 3//9\n"              /* nor is a ninth normal */
+                               "f 0 1 2\n"                       /* line 17 */
+                               "f 1 2 99999999999999999999999\n" /* line 18 */
+                               "f 1 2 \\\n 77\n"                 /* lines 19 and 20 */
                                "f 1 2 \\\r\n 3\r\n"
-                               "f one two three\n";                  /* line 23 */
+                               "f one two three\n"; /* line 23 */
     loaded l;
     write_file("faces.obj", text, strlen(text));
     load(&l, "faces.obj", NOC_OBJ_UP_Y);
@@ -212,7 +215,8 @@ static double total_area(const loaded *l) {
         double v[3][3], n[3];
         for (size_t c = 0; c < 3; c++)
             for (size_t k = 0; k < 3; k++)
-                v[c][k] = (double)l->scene->positions.data[3 * (size_t)l->scene->indices.data[i + c] + k] - (c ? v[0][k] : 0);
+                v[c][k] =
+                    (double)l->scene->positions.data[3 * (size_t)l->scene->indices.data[i + c] + k] - (c ? v[0][k] : 0);
         for (int k = 0; k < 3; k++)
             n[k] = v[1][(k + 1) % 3] * v[2][(k + 2) % 3] - v[1][(k + 2) % 3] * v[2][(k + 1) % 3];
         sum += sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / 2;
@@ -222,7 +226,11 @@ static double total_area(const loaded *l) {
 
 /* Vertices in every spelling; one that is none costs its faces, and moves no other's number. */
 static void test_vertices(void **state) {
-    static const struct { const char *text; double area; const char *bad; } texts[] = {
+    static const struct {
+        const char *text;
+        double area;
+        const char *bad;
+    } texts[] = {
         { "\xef\xbb\xbfv 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n", 2, NULL },
         { "  v 0 0 0\n\tv +2 +0 0\n v .0 2. 0\n  f 1 2 3\n", 2, NULL },
         { "v 0 0 0 1\nv 4 0 0 2\nv 0 2 0 1.0\nf 1 2 3\n", 2, NULL },
@@ -244,7 +252,8 @@ static void test_vertices(void **state) {
         assert_int_equal(l.status, NOC_OK);
         assert_float_equal(total_area(&l), texts[i].area, 1e-5 * texts[i].area);
         if (texts[i].bad) /* told, and so are the faces that would need it */
-            assert_true(has_issue(&l, "vertex that is not three numbers", strchr(texts[i].bad, ',') ? 2 : 1, texts[i].bad));
+            assert_true(
+                has_issue(&l, "vertex that is not three numbers", strchr(texts[i].bad, ',') ? 2 : 1, texts[i].bad));
         else
             assert_int_equal(geo_issues_count(l.issues), 0);
         unload(&l);
@@ -261,7 +270,8 @@ static void test_polygons(void **state) {
     for (size_t i = 0; i < NOC_COUNT(shapes); i++)
         for (double s = 1e-2; s < 2e4; s *= 1e3) {
             char text[400];
-            snprintf(text, sizeof(text), shapes[i], s, .25 * s, .25 * s, s); /* an arrow: the third corner is pushed in */
+            /* an arrow: the third corner is pushed in */
+            snprintf(text, sizeof(text), shapes[i], s, .25 * s, .25 * s, s);
             load_text(&l, text);
             assert_int_equal(l.scene->indices.len, 6);
             assert_float_equal(total_area(&l) / (s * s), .25, 1e-5); /* two triangles of 1 by 1/4 */
@@ -289,7 +299,8 @@ static void test_polygons(void **state) {
     assert_int_equal(l.scene->indices.len, 3);
     assert_true(has_issue(&l, "face of fewer than three vertices", 2, "line 4, line 5"));
     unload(&l);
-    load_text(&l, "v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\nf 1 2 9\n"); /* nothing that can be drawn is no error of the file's */
+    /* nothing that can be drawn is no error of the file's */
+    load_text(&l, "v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\nf 1 2 9\n");
     assert_int_equal(l.status, NOC_OK);
     assert_int_equal(l.errors + (int)l.scene->indices.len, 0);
     unload(&l);
@@ -297,16 +308,19 @@ static void test_polygons(void **state) {
 
 /* Libraries under names as they are found in the wild, and with lines that are none. */
 static void test_libraries(void **state) {
-    static const char *const names[] = { "my test.mtl", "my test.mtl  \r", "C:\\work\\my test.mtl", "sub\\my test.mtl", "/nowhere/my test.mtl", "test.mtl other.mtl" };
+    static const char *const names[] = { "my test.mtl",      "my test.mtl  \r",      "C:\\work\\my test.mtl",
+                                         "sub\\my test.mtl", "/nowhere/my test.mtl", "test.mtl other.mtl" };
     static const char good[] = "newmtl a\nKd 0.1 0.2 0.3\nKe 5 6 7\nnewmtl b\nKd 1 1 1\n";
-    static const char odd[] = "newmtl a\nKd nan inf -3\n Kd 0.1 0.2 0.3\nKe 1e400 nan 1\nKe spectral x.rfl\nNs\nd -halo\nKe 5 6 7\nmap_Kd wall.png\n\xff\xfe\n";
+    static const char odd[] =
+        "newmtl a\nKd nan inf -3\n Kd 0.1 0.2 0.3\nKe 1e400 nan 1\nKe spectral x.rfl\nNs\nd -halo\nKe 5 6 7\nmap_Kd wall.png\n\xff\xfe\n";
     loaded l;
     write_file("my test.mtl", good, strlen(good));
     write_file("other.mtl", "newmtl c\nKd 1 0 0\n", 18);
     for (size_t i = 0; i <= NOC_COUNT(names); i++) {
         char text[300];
         write_file("test.mtl", i < NOC_COUNT(names) ? good : odd, strlen(i < NOC_COUNT(names) ? good : odd));
-        snprintf(text, sizeof(text), "mtllib %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\no it\nusemtl a\nf 1 2 3\n", i < NOC_COUNT(names) ? names[i] : "test.mtl");
+        snprintf(text, sizeof(text), "mtllib %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\no it\nusemtl a\nf 1 2 3\n",
+                 i < NOC_COUNT(names) ? names[i] : "test.mtl");
         load_text(&l, text);
         assert_string_equal(l.error, "");
         assert_string_equal(l.warning, "");
@@ -314,7 +328,8 @@ static void test_libraries(void **state) {
         assert_float_equal(m->albedo[1], .2, 1e-6);
         assert_float_equal(m->emission[2], 7, 1e-6);
         if (i == NOC_COUNT(names)) {
-            assert_true(has_issue(&l, "material statement with a number that is none", 5, "test.mtl line 2, test.mtl line 4"));
+            assert_true(
+                has_issue(&l, "material statement with a number that is none", 5, "test.mtl line 2, test.mtl line 4"));
             assert_true(has_issue(&l, "textures are not read, plain material", 1, "test.mtl line 9"));
         }
         unload(&l);
@@ -336,7 +351,8 @@ static void test_missing_library(void **state) {
 /* Counted, and no lossless repair, wherever it is asked for. */
 static void test_missing_material(void **state) {
     loaded l;
-    const char text[] = "mtllib test.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl nowhere\nf 1 2 3\nusemtl ground\nf 1 2 3\nusemtl nowhere\nf 1 3 2\n";
+    const char text[] =
+        "mtllib test.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl nowhere\nf 1 2 3\nusemtl ground\nf 1 2 3\nusemtl nowhere\nf 1 3 2\n";
     write_file("test.mtl", mtl, strlen(mtl));
     write_file("material.obj", text, strlen(text));
     load(&l, "material.obj", NOC_OBJ_UP_Y);
@@ -348,10 +364,20 @@ static void test_missing_material(void **state) {
 }
 
 static void test_probe(void **state) {
-    static const char *const yes[] = { "v 1 2 3\n", "# x\n\nmtllib a.mtl\no b\nv 1", "\r\ng roof\r\nusemtl x\r\n", "v 1 2 \\\n 3\nf 1 2 \\\r\n 3\n",
-                                       "\xef\xbb\xbfv 1 2 3\n", "v 1 2 3\ncstype bezier\ncurv 0 1 1 2\nend\n" };
-    static const char *const no[] = { "", "<?xml version='1.0'?>", "{\"a\": 1}", "vertex 1 2 3\n", "lon,lat,lamp\n1,2,3\n",
-                                      "ply\nformat ascii 1.0\n", "# only a comment\n", "\xef\xbb\xbf{}" };
+    static const char *const yes[] = { "v 1 2 3\n",
+                                       "# x\n\nmtllib a.mtl\no b\nv 1",
+                                       "\r\ng roof\r\nusemtl x\r\n",
+                                       "v 1 2 \\\n 3\nf 1 2 \\\r\n 3\n",
+                                       "\xef\xbb\xbfv 1 2 3\n",
+                                       "v 1 2 3\ncstype bezier\ncurv 0 1 1 2\nend\n" };
+    static const char *const no[] = { "",
+                                      "<?xml version='1.0'?>",
+                                      "{\"a\": 1}",
+                                      "vertex 1 2 3\n",
+                                      "lon,lat,lamp\n1,2,3\n",
+                                      "ply\nformat ascii 1.0\n",
+                                      "# only a comment\n",
+                                      "\xef\xbb\xbf{}" };
     for (size_t i = 0; i < NOC_COUNT(yes); i++)
         assert_true(noc_reader_mesh.probe(yes[i], strlen(yes[i])));
     for (size_t i = 0; i < NOC_COUNT(no); i++)
@@ -360,9 +386,13 @@ static void test_probe(void **state) {
 
 /* Cut, with bytes changed, with mad indices: an error with the file's name, or a scene; never a crash. */
 static void test_broken(void **state) {
-    static const char *const bad[] = { "v 0 0 0\nf 1 2 3\n# an index too large\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -7 -8 -9\n# negative\n",
-                                       "v nan inf 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n# numbers\n", "v\nv 1\nf\nf 1\nusemtl\nmtllib\no\ng\n",
-                                       "f 99999999999999999999 1 2\nv 1 2 3\n# overflow\n", "v 1 2 3\n", "o only\ng names\n# no faces\n" };
+    static const char *const bad[] = { "v 0 0 0\nf 1 2 3\n# an index too large\n",
+                                       "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -7 -8 -9\n# negative\n",
+                                       "v nan inf 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n# numbers\n",
+                                       "v\nv 1\nf\nf 1\nusemtl\nmtllib\no\ng\n",
+                                       "f 99999999999999999999 1 2\nv 1 2 3\n# overflow\n",
+                                       "v 1 2 3\n",
+                                       "o only\ng names\n# no faces\n" };
     loaded l;
     for (size_t i = 0; i < NOC_COUNT(bad); i++) {
         write_file("bad.obj", bad[i], strlen(bad[i]));
@@ -400,7 +430,8 @@ static int set_up(void **state) {
 }
 
 static int tear_down(void **state) {
-    static const char *const files[] = { "test.mtl", "named.anything", "missing.obj", "material.obj", "bad.obj", "map.obj", "faces.obj", "my test.mtl", "other.mtl" };
+    static const char *const files[] = { "test.mtl", "named.anything", "missing.obj", "material.obj", "bad.obj",
+                                         "map.obj",  "faces.obj",      "my test.mtl", "other.mtl" };
     for (size_t i = 0; i < NOC_COUNT(files); i++) {
         char path[300];
         snprintf(path, sizeof(path), "%s/%s", folder, files[i]);
@@ -415,15 +446,11 @@ int main(void) {
         return 0;
     }
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_reads),
-        cmocka_unit_test(test_map_coordinates),
+        cmocka_unit_test(test_reads),           cmocka_unit_test(test_map_coordinates),
         cmocka_unit_test(test_missing_library), cmocka_unit_test(test_missing_material),
-        cmocka_unit_test(test_bad_faces),
-        cmocka_unit_test(test_vertices),
-        cmocka_unit_test(test_polygons),
-        cmocka_unit_test(test_libraries),
-        cmocka_unit_test(test_probe),
-        cmocka_unit_test(test_broken),
+        cmocka_unit_test(test_bad_faces),       cmocka_unit_test(test_vertices),
+        cmocka_unit_test(test_polygons),        cmocka_unit_test(test_libraries),
+        cmocka_unit_test(test_probe),           cmocka_unit_test(test_broken),
     };
     return cmocka_run_group_tests_name("import/mesh", tests, set_up, tear_down);
 }

@@ -15,21 +15,26 @@ static void on_message(void *user, noc_log_level level, const char *text) {
         snprintf(last_warning, sizeof(last_warning), "%s", text);
 }
 
-typedef struct box { double lo[3], size[3]; } box;
+typedef struct box {
+    double lo[3], size[3];
+} box;
 
 /* count boxes, `step` apart, nx in a row; x east, y north, z up, written with y or z up. */
 static void write_boxes(box b, int nx, int count, double step, bool z_up) {
-    static const int faces[6][4] = { { 0, 1, 3, 2 }, { 4, 6, 7, 5 }, { 0, 4, 5, 1 }, { 2, 3, 7, 6 }, { 0, 2, 6, 4 }, { 1, 5, 7, 3 } };
+    static const int faces[6][4] = { { 0, 1, 3, 2 }, { 4, 6, 7, 5 }, { 0, 4, 5, 1 },
+                                     { 2, 3, 7, 6 }, { 0, 2, 6, 4 }, { 1, 5, 7, 3 } };
     FILE *f = fopen(path, "w");
     assert_non_null(f);
     for (int i = 0; i < count; i++) {
         for (int c = 0; c < 8; c++) {
-            double x = b.lo[0] + i % nx * step + (c & 1 ? b.size[0] : 0), y = b.lo[1] + i / nx * step + (c & 2 ? b.size[1] : 0);
+            double x = b.lo[0] + i % nx * step + (c & 1 ? b.size[0] : 0),
+                   y = b.lo[1] + i / nx * step + (c & 2 ? b.size[1] : 0);
             double z = b.lo[2] + (c & 4 ? b.size[2] + i % 5 * b.size[2] / 5 : 0);
             fprintf(f, "v %.3f %.3f %.3f\n", x, z_up ? y : z, z_up ? z : -y);
         }
         for (int k = 0; k < 6; k++)
-            fprintf(f, "f %d %d %d %d\n", 8 * i + 1 + faces[k][0], 8 * i + 1 + faces[k][1], 8 * i + 1 + faces[k][2], 8 * i + 1 + faces[k][3]);
+            fprintf(f, "f %d %d %d %d\n", 8 * i + 1 + faces[k][0], 8 * i + 1 + faces[k][1], 8 * i + 1 + faces[k][2],
+                    8 * i + 1 + faces[k][3]);
     }
     fclose(f);
 }
@@ -90,12 +95,12 @@ static void test_roofs(void **state) {
     for (int with_ele = 0; with_ele < 2; with_ele++) {
         FILE *f = fopen(path, "w");
         fputs("v 500000 5400000 370\nv 500100 5400000 370\nv 500100 5400100 370\nv 500000 5400100 370\nf 1 2 3 4\n"
-              "v 500040 5400040 380\nv 500060 5400040 380\nv 500060 5400060 380\nv 500040 5400060 380\nf 5 6 7 8\n", f);
+              "v 500040 5400040 380\nv 500060 5400040 380\nv 500060 5400060 380\nv 500040 5400060 380\nf 5 6 7 8\n",
+              f);
         fclose(f);
         f = fopen(lamps, "w");
         fprintf(f, "lamp_id,x,y,lamp_type%s\na,500050,5400050,LED%s\nb,500010,5400010,LED%s\nc,500080,5400080,LED%s\n",
-                with_ele ? ",ele" : "", with_ele ? ",370" : "",
-                with_ele ? ",370" : "", with_ele ? ",370" : "");
+                with_ele ? ",ele" : "", with_ele ? ",370" : "", with_ele ? ",370" : "", with_ele ? ",370" : "");
         fclose(f);
         noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = on_message });
         noc_scene *scene = noc_scene_create(log);
@@ -107,7 +112,8 @@ static void test_roofs(void **state) {
         if (with_ele)
             assert_null(strstr(last_warning, "roofs"));
         else
-            assert_non_null(strstr(last_warning, "1 of 3 lamps that stand on surfaces without a class stand 2 m or more above"));
+            assert_non_null(
+                strstr(last_warning, "1 of 3 lamps that stand on surfaces without a class stand 2 m or more above"));
         *last_warning = 0;
         noc_scene_destroy(scene);
         noc_log_destroy(log);

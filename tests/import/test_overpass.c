@@ -119,11 +119,16 @@ static void test_ways(void **state) {
     (void)state;
     lamp_sink s;
     lamp_sink_start(&s);
-    assert_int_equal(read_lamps_text(&s, "{\"generator\": \"test\", \"elements\": [\n"
-        "{\"type\": \"node\", \"id\": 1, \"lat\": 50.5, \"lon\": 8.25, \"tags\": {\"highway\": \"street_lamp\"}},\n"
-        "{\"type\": \"way\", \"id\": 2, \"tags\": {\"building\": \"yes\"}},\n"
-        "{\"type\": \"way\", \"id\": 3, \"tags\": {\"highway\": \"residential\"}},\n"
-        "{\"type\": \"way\", \"id\": 4, \"tags\": {\"highway\": \"street_lamp\"}}]}", NULL), NOC_OK);
+    assert_int_equal(
+        read_lamps_text(
+            &s,
+            "{\"generator\": \"test\", \"elements\": [\n"
+            "{\"type\": \"node\", \"id\": 1, \"lat\": 50.5, \"lon\": 8.25, \"tags\": {\"highway\": \"street_lamp\"}},\n"
+            "{\"type\": \"way\", \"id\": 2, \"tags\": {\"building\": \"yes\"}},\n"
+            "{\"type\": \"way\", \"id\": 3, \"tags\": {\"highway\": \"residential\"}},\n"
+            "{\"type\": \"way\", \"id\": 4, \"tags\": {\"highway\": \"street_lamp\"}}]}",
+            NULL),
+        NOC_OK);
     assert_int_equal(issue_count(&s, "building that is not read"), 1);
     assert_int_equal(issue_count(&s, "street or path that is not read"), 1);
     assert_non_null(strstr(s.warning, "1 building, 1 street or path are not read"));
@@ -132,8 +137,8 @@ static void test_ways(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_helsinki), cmocka_unit_test(test_neukoelln), cmocka_unit_test(test_ways), cmocka_unit_test(test_elements),
-        cmocka_unit_test(test_cut),      cmocka_unit_test(test_cancel),
+        cmocka_unit_test(test_helsinki), cmocka_unit_test(test_neukoelln), cmocka_unit_test(test_ways),
+        cmocka_unit_test(test_elements), cmocka_unit_test(test_cut),       cmocka_unit_test(test_cancel),
     };
     return cmocka_run_group_tests_name("import/overpass", tests, NULL, tear_down);
 }

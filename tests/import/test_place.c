@@ -21,16 +21,20 @@ static void on_message(void *user, noc_log_level level, const char *text) {
 static void write_city(const char *crs, const double (*xy)[2], size_t count) {
     FILE *f = fopen(path, "w");
     assert_non_null(f);
-    fprintf(f, "<CityModel xmlns='http://www.opengis.net/citygml/2.0' xmlns:b='http://www.opengis.net/citygml/building/2.0' "
-               "xmlns:g='http://www.opengis.net/gml'><g:boundedBy><g:Envelope %s%s%s/></g:boundedBy>",
-            *crs ? "srsName='" : "", crs, *crs ? "'" : "");
+    fprintf(
+        f,
+        "<CityModel xmlns='http://www.opengis.net/citygml/2.0' xmlns:b='http://www.opengis.net/citygml/building/2.0' "
+        "xmlns:g='http://www.opengis.net/gml'><g:boundedBy><g:Envelope %s%s%s/></g:boundedBy>",
+        *crs ? "srsName='" : "", crs, *crs ? "'" : "");
     for (size_t i = 0; i < count; i++) {
         double x = xy[i][0], y = xy[i][1];
-        fprintf(f, "<cityObjectMember><b:Building g:id='b%zu'><b:boundedBy><b:RoofSurface><b:lod2MultiSurface><g:MultiSurface>"
-                   "<g:surfaceMember><g:Polygon><g:exterior><g:LinearRing><g:posList>%.9g %.9g 5 %.9g %.9g 5 %.9g %.9g 5 %.9g "
-                   "%.9g 5 %.9g %.9g 5</g:posList></g:LinearRing></g:exterior></g:Polygon></g:surfaceMember></g:MultiSurface>"
-                   "</b:lod2MultiSurface></b:RoofSurface></b:boundedBy></b:Building></cityObjectMember>",
-                i, x, y, x + 10, y, x + 10, y + 10, x, y + 10, x, y);
+        fprintf(
+            f,
+            "<cityObjectMember><b:Building g:id='b%zu'><b:boundedBy><b:RoofSurface><b:lod2MultiSurface><g:MultiSurface>"
+            "<g:surfaceMember><g:Polygon><g:exterior><g:LinearRing><g:posList>%.9g %.9g 5 %.9g %.9g 5 %.9g %.9g 5 %.9g "
+            "%.9g 5 %.9g %.9g 5</g:posList></g:LinearRing></g:exterior></g:Polygon></g:surfaceMember></g:MultiSurface>"
+            "</b:lod2MultiSurface></b:RoofSurface></b:boundedBy></b:Building></cityObjectMember>",
+            i, x, y, x + 10, y, x + 10, y + 10, x, y + 10, x, y);
     }
     fputs("</CityModel>", f);
     fclose(f);
@@ -75,13 +79,15 @@ static void expect_origin(const char *crs, const double (*xy)[2], size_t count, 
 static void test_origin(void **state) {
     (void)state;
     /* the first object's, where nothing speaks against it */
-    expect_origin("EPSG:25832", CITY({ 678000, 5403000 }, { 678900, 5403000 }, { 678500, 5403900 }), 678000, 5403000, 0);
+    expect_origin("EPSG:25832", CITY({ 678000, 5403000 }, { 678900, 5403000 }, { 678500, 5403900 }), 678000, 5403000,
+                  0);
     /* a stray at the beginning, at the end, and alone with one building */
     expect_origin("EPSG:25832", CITY({ 0, 0 }, { 678000, 5403000 }, { 678100, 5403000 }), 678000, 5403000, 1);
     expect_origin("EPSG:25832", CITY({ 678000, 5403000 }, { 678100, 5403000 }, { 0, 0 }), 678000, 5403000, 1);
     expect_origin("EPSG:25832", CITY({ 0, 0 }, { 678000, 5403000 }), 678000, 5403000, 1);
     /* a stray within the CRS's area is outvoted */
-    expect_origin("EPSG:25832", CITY({ 400000, 5700000 }, { 678000, 5403000 }, { 678100, 5403000 }), 678000, 5403000, 1);
+    expect_origin("EPSG:25832", CITY({ 400000, 5700000 }, { 678000, 5403000 }, { 678100, 5403000 }), 678000, 5403000,
+                  1);
     expect_origin("", CITY({ 0, 0 }, { 678000, 5403000 }, { 678100, 5403000 }), 678000, 5403000, 1);
     /* axes are told by those that come after the stray, too */
     expect_origin("EPSG:25832", CITY({ 0, 0 }, { 5403000, 678000 }, { 5403000, 678100 }), 678000, 5403000, 2);

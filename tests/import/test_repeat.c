@@ -73,9 +73,12 @@ static void test_objects(void **state) {
         /* the house anew, some decimetres larger (another level of detail), under its id; and under another: two */
         { TILE A B, TILE HOUSE_AT("2", "678020.3", "678030.7", "5404000.4", "5404010.5"), 2, 1 },
         { TILE A B, TILE HOUSE_AT("3", "678020.3", "678030.7", "5404000.4", "5404010.5"), 3, 0 },
-        { TILE A, TILE HOUSE_AT("other", "678000.5", "678010.5", "5404000.5", "5404010.5"), 1, 1 }, /* equal corners, another id */
+        /* equal corners, another id */
+        { TILE A, TILE HOUSE_AT("other", "678000.5", "678010.5", "5404000.5", "5404010.5"), 1, 1 },
         { TILE A, TILE HOUSE_AT("1", "678000.5", "678010.5", "5404010.5", "5404020.5"), 2, 0 }, /* the neighbour */
-        { TILE A, TILE "object 3 1 2\npolygon 1 678000.5 5404000.5 370 678010.5 5404000.5 370 678010.5 5404010.5 380\nend\n", 2, 0 },
+        { TILE A,
+          TILE "object 3 1 2\npolygon 1 678000.5 5404000.5 370 678010.5 5404000.5 370 678010.5 5404010.5 380\nend\n", 2,
+          0 },
         { TILE A A B, TILE, 2, 1 },
     };
     for (size_t i = 0; i < NOC_COUNT(cases); i++) {
@@ -107,7 +110,9 @@ static void test_large_object(void **state) {
     for (int i = 0; i < 2; i++) {
         char one[300], two[300];
         snprintf(one, sizeof(one), TILE "object 1 dem -1\nmany 8 %s 600000\nend\n", strips[0]);
-        snprintf(two, sizeof(two), TILE "object 1 dem2 -1\nmany 8 %s 600000\nend\nobject 1 x -1\nmany 8 678000 5404900 5\nend\n", strips[i]);
+        snprintf(two, sizeof(two),
+                 TILE "object 1 dem2 -1\nmany 8 %s 600000\nend\nobject 1 x -1\nmany 8 678000 5404900 5\nend\n",
+                 strips[i]);
         LOAD(&r, DEFAULTS, file("one", one), file("two", two));
         assert_int_equal(r.status, NOC_OK);
         assert_int_equal(totals_of(&r).objects_repeated, i == 0);
@@ -123,7 +128,7 @@ static void test_lamps(void **state) {
         const char *one, *two;
         size_t lamps, repeated;
     } cases[] = {
-        { "lamp 678000 5404000\n", "lamp 678000.05 5404000\n", 1, 1 },      /* the decimals of degrees */
+        { "lamp 678000 5404000\n", "lamp 678000.05 5404000\n", 1, 1 }, /* the decimals of degrees */
         { "lamp 678000 5404000\n", "lamp 678000.5 5404000\n", 2, 0 },
         { "lamp 678000 5404000 #7\n", "lamp 678000.5 5404000 #7\n", 1, 1 }, /* one id, surveyed twice */
         { "lamp 678000 5404000 #7\n", "lamp 678000.5 5404000 #8\n", 2, 0 },
@@ -131,9 +136,10 @@ static void test_lamps(void **state) {
         { "lamp 678000 5404000 #8\n", "lamp 678000.5 5404000 #7#8\n", 1, 1 },
         { "lamp 678000 5404000 #7#8\n", "lamp 678000.5 5404000 #9#8\n", 1, 1 },
         { "lamp 678000 5404000 #7#8\n", "lamp 678000.5 5404000 #7#9\n", 2, 0 },
-        { "lamp 678000 5404000 #7\n", "lamp 678005 5404000 #7\n", 2, 0 },   /* an id that both files use */
+        { "lamp 678000 5404000 #7\n", "lamp 678005 5404000 #7\n", 2, 0 },                /* an id that both files use */
         { "lamp 678000 5404000\nlamp 678000 5404000\n", "lamp 678009 5404000\n", 3, 0 }, /* two on one pole */
-        { "lamp 678000 5404000\nlamp 678000 5404000\n", "lamp 678000 5404000\nlamp 678000 5404000\nlamp 678003 5404000\n", 3, 2 },
+        { "lamp 678000 5404000\nlamp 678000 5404000\n",
+          "lamp 678000 5404000\nlamp 678000 5404000\nlamp 678003 5404000\n", 3, 2 },
         { "lamp 677999.99 5403999.99\n", "lamp 678000.01 5404000.01\n", 1, 1 }, /* across the border of a cell */
     };
     for (size_t i = 0; i < NOC_COUNT(cases); i++) {
@@ -151,8 +157,8 @@ static void test_lamps(void **state) {
     }
 }
 
-/* Lamps in turn at a few points of one square metre, in one file; and as many beside them in another. What is compared grows with
- * their number alone. */
+/* Lamps in turn at a few points of one square metre, in one file; and as many beside them in another. What is compared
+ * grows with their number alone. */
 static void test_lamps_in_turn(void **state) {
     (void)state;
     enum { LAMPS = 3000 };
@@ -175,8 +181,16 @@ static void test_lamps_in_turn(void **state) {
 /* A building that its file holds twice brings its lamps twice; two rows of a table are two lamps. */
 static void test_lamps_of_objects(void **state) {
     (void)state;
-    static const struct { const char *id; int body_heads; double x; size_t kept; } second[] = {
-        { "lamp", 1, 5, 1 }, { "lamp", 0, 5, 2 }, { "other", 1, 5, 2 }, { "lamp", 1, 5.01, 2 },
+    static const struct {
+        const char *id;
+        int body_heads;
+        double x;
+        size_t kept;
+    } second[] = {
+        { "lamp", 1, 5, 1 },
+        { "lamp", 0, 5, 2 },
+        { "other", 1, 5, 2 },
+        { "lamp", 1, 5.01, 2 },
     };
     for (size_t i = 0; i < NOC_COUNT(second); i++) {
         input in = { .path = "one", .issues = geo_issues_create() };
@@ -194,16 +208,21 @@ static void test_lamps_of_objects(void **state) {
     }
 }
 
-/* Lamps along a street, every `step` m from x on, half a metre aside where x is not 0; the last `far` of them 10 m to the side. */
+/* Lamps along a street, every `step` m from x on, half a metre aside where x is not 0; the last `far` of them 10 m to
+ * the side. */
 static const char *street(const char *name, size_t count, double step, double x, size_t far) {
     char text[4000];
     size_t n = (size_t)sprintf(text, "FAKE lamps\ncrs EPSG:25832\n");
     for (size_t i = 0; i < count; i++)
-        n += (size_t)sprintf(text + n, "lamp %.2f %.2f\n", 678000 + x + step * (double)i, i >= count - far ? 5404010.0 : x > 0 ? 5404000.5 : 5404000.0);
+        n += (size_t)sprintf(text + n, "lamp %.2f %.2f\n", 678000 + x + step * (double)i,
+                             i >= count - far ? 5404010.0
+                             : x > 0          ? 5404000.5
+                                              : 5404000.0);
     return file(name, text);
 }
 
-/* Two files of the same lamps, some way apart, are told; lamps that stand as near in their own file, and files that share a few, are not. */
+/* Two files of the same lamps, some way apart, are told; lamps that stand as near in their own file, and files that
+ * share a few, are not. */
 static void test_doubles(void **state) {
     (void)state;
     static const struct {
@@ -212,8 +231,13 @@ static void test_doubles(void **state) {
         size_t far;
         const char *says;
     } cases[] = {
-        { 40, 25, 1.5, 2, "38 of 40 lamps of " }, { 40, 25, 2.9, 20, "20 of 40 lamps of " }, { 40, 25, 1.5, 21, NULL },
-        { 40, 25, 3.5, 0, NULL }, { 40, 3, 1.5, 0, NULL }, { 40, 5, 1.6, 0, "40 of 40 lamps of " }, { 2, 25, 1.5, 0, NULL },
+        { 40, 25, 1.5, 2, "38 of 40 lamps of " },
+        { 40, 25, 2.9, 20, "20 of 40 lamps of " },
+        { 40, 25, 1.5, 21, NULL },
+        { 40, 25, 3.5, 0, NULL },
+        { 40, 3, 1.5, 0, NULL },
+        { 40, 5, 1.6, 0, "40 of 40 lamps of " },
+        { 2, 25, 1.5, 0, NULL },
     };
     for (size_t i = 0; i < NOC_COUNT(cases); i++) {
         struct run r;
@@ -224,7 +248,8 @@ static void test_doubles(void **state) {
         if (r.warnings != (cases[i].says != NULL))
             fail_msg("case %zu: %d warnings, %s", i, r.warnings, r.last_warning);
         if (cases[i].says)
-            assert_true(strstr(r.last_warning, cases[i].says) && strstr(r.last_warning, one) && strstr(r.last_warning, other));
+            assert_true(strstr(r.last_warning, cases[i].says) && strstr(r.last_warning, one) &&
+                        strstr(r.last_warning, other));
         assert_int_equal(r.info.lights, 2 * cases[i].count);
         finish(&r);
     }
@@ -267,9 +292,9 @@ static void test_ingolstadt(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_files), cmocka_unit_test(test_objects), cmocka_unit_test(test_large_object),
-                                        cmocka_unit_test(test_lamps), cmocka_unit_test(test_lamps_in_turn),
-                                        cmocka_unit_test(test_lamps_of_objects), cmocka_unit_test(test_doubles),
-                                        cmocka_unit_test(test_ingolstadt) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_files),         cmocka_unit_test(test_objects),
+                                        cmocka_unit_test(test_large_object),  cmocka_unit_test(test_lamps),
+                                        cmocka_unit_test(test_lamps_in_turn), cmocka_unit_test(test_lamps_of_objects),
+                                        cmocka_unit_test(test_doubles),       cmocka_unit_test(test_ingolstadt) };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -9,7 +9,9 @@
 
 static char error[500];
 
-static void on_message(void *user, noc_log_level level, const char *text) { snprintf(error, sizeof(error), "%s", text); }
+static void on_message(void *user, noc_log_level level, const char *text) {
+    snprintf(error, sizeof(error), "%s", text);
+}
 
 static void without_files_to_open(void **state) {
     noc_log *log = noc_log_create(&(noc_log_params){ .message = on_message });
@@ -69,6 +71,7 @@ static void holes_are_not_copied(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(without_files_to_open), cmocka_unit_test(holes_are_not_copied) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(without_files_to_open),
+                                        cmocka_unit_test(holes_are_not_copied) };
     return cmocka_run_group_tests_name("import/scratch", tests, NULL, NULL);
 }

@@ -189,7 +189,9 @@ static void test_gzip_damaged(void **state) {
     assert_int_equal(drain(write_file("crc.gz", packed, n)), NOC_ERR_FORMAT);
 }
 
-typedef struct member { const char *name, *text; } member;
+typedef struct member {
+    const char *name, *text;
+} member;
 
 static const char *make_zip(const char *name, const member *members, size_t count) {
     const char *path = path_of(name);
@@ -220,8 +222,11 @@ static void expect_member(const char *path, const char *name, const char *text) 
 
 static void test_zip(void **state) {
     (void)state;
-    const member model[] = { { "data", NULL }, { "readme.txt", "read me" }, { "__MACOSX/._city.gml", "shadow" },
-                             { "data/city.GML", "<CityModel/>" }, { "other.xml", "<x/>" } };
+    const member model[] = { { "data", NULL },
+                             { "readme.txt", "read me" },
+                             { "__MACOSX/._city.gml", "shadow" },
+                             { "data/city.GML", "<CityModel/>" },
+                             { "other.xml", "<x/>" } };
     expect_member(make_zip("model.zip", model, NOC_COUNT(model)), "data/city.GML", "<CityModel/>");
     /* metadata before the model; then a tile among tiles */
     const member metadata[] = { { "metadata.xml", "<meta/>" }, { "a.json", "{}" }, { "tile.gml", "<CityModel/>" } };
@@ -262,8 +267,8 @@ static void test_zip_damaged(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_plain), cmocka_unit_test(test_refused), cmocka_unit_test(test_gzip),
-        cmocka_unit_test(test_gzip_damaged), cmocka_unit_test(test_zip), cmocka_unit_test(test_zip_damaged),
+        cmocka_unit_test(test_plain),        cmocka_unit_test(test_refused), cmocka_unit_test(test_gzip),
+        cmocka_unit_test(test_gzip_damaged), cmocka_unit_test(test_zip),     cmocka_unit_test(test_zip_damaged),
     };
     return cmocka_run_group_tests_name("import/stream", tests, set_up, tear_down);
 }

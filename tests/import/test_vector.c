@@ -111,11 +111,14 @@ static void test_quantities(void **state) {
         double value;
         int times;
     } good[] = {
-        { "5", LAMP_METRES, 5, 1 },          { "5.5 m", LAMP_METRES, 5.5, 1 },    { "5,5m", LAMP_METRES, 5.5, 1 },
-        { "16 ft", LAMP_METRES, 4.8768, 1 }, { "16'", LAMP_METRES, 4.8768, 1 },   { "16'6\"", LAMP_METRES, 5.0292, 1 },
-        { "450 cm", LAMP_METRES, 4.5, 1 },   { "~8", LAMP_METRES, 8, 1 },         { "8;6", LAMP_METRES, 8, 1 },
-        { "70 W", LAMP_WATTS, 70, 1 },       { "2x70 W", LAMP_WATTS, 70, 2 },     { "0,25 kW", LAMP_WATTS, 250, 1 }, { "0,150 kW", LAMP_WATTS, 150, 1 },
-        { "3,000 K", LAMP_KELVIN, 3000, 1 }, { "2700K", LAMP_KELVIN, 2700, 1 },   { "12,000 lm", LAMP_LUMENS, 12000, 1 },
+        { "5", LAMP_METRES, 5, 1 },          { "5.5 m", LAMP_METRES, 5.5, 1 },
+        { "5,5m", LAMP_METRES, 5.5, 1 },     { "16 ft", LAMP_METRES, 4.8768, 1 },
+        { "16'", LAMP_METRES, 4.8768, 1 },   { "16'6\"", LAMP_METRES, 5.0292, 1 },
+        { "450 cm", LAMP_METRES, 4.5, 1 },   { "~8", LAMP_METRES, 8, 1 },
+        { "8;6", LAMP_METRES, 8, 1 },        { "70 W", LAMP_WATTS, 70, 1 },
+        { "2x70 W", LAMP_WATTS, 70, 2 },     { "0,25 kW", LAMP_WATTS, 250, 1 },
+        { "0,150 kW", LAMP_WATTS, 150, 1 },  { "3,000 K", LAMP_KELVIN, 3000, 1 },
+        { "2700K", LAMP_KELVIN, 2700, 1 },   { "12,000 lm", LAMP_LUMENS, 12000, 1 },
         { "4.2 klm", LAMP_LUMENS, 4200, 1 }, { "2 x 1000 lm", LAMP_LUMENS, 1000, 2 },
     };
     static const char *const bad[] = { "", "high", "N/A", "5 apples", "-3", "m", "nan", "1e999", "x5", "--", "''" };
@@ -134,7 +137,8 @@ static void test_directions(void **state) {
     static const struct {
         const char *text;
         double degrees;
-    } good[] = { { "0", 0 }, { "360", 0 }, { "135.5", 135.5 }, { "N", 0 }, { "nnw", 337.5 }, { "South-West", 225 }, { "90 deg", 90 }, { "-90", 270 } };
+    } good[] = { { "0", 0 },       { "360", 0 },          { "135.5", 135.5 }, { "N", 0 },
+                 { "nnw", 337.5 }, { "South-West", 225 }, { "90 deg", 90 },   { "-90", 270 } };
     static const char *const bad[] = { "", "both", "forward", "0-360", "90;270", "400", "NNNW" };
     double v;
     for (size_t i = 0; i < NOC_COUNT(good); i++) {
@@ -157,13 +161,20 @@ static void test_words(void **state) {
         const char *key, *value;
         int source;
     } sources[] = {
-        { "light:method", "LED", GEO_SOURCE_LED }, { "lamp_type", "high_pressure_sodium", GEO_SOURCE_SODIUM },
-        { "LIGHTTYPE_DESC", "HPS-High Pressure Sodium", GEO_SOURCE_SODIUM }, { "Leuchtmittel", "Natriumdampf-Hochdruck", GEO_SOURCE_SODIUM },
-        { "lamp_type", "SON-T", GEO_SOURCE_SODIUM }, { "light:method", "mercury", GEO_SOURCE_MERCURY },
-        { "Lampentyp", "HQL 80", GEO_SOURCE_MERCURY }, { "lamp_type", "metal-halide", GEO_SOURCE_METAL_HALIDE },
-        { "type_lampe", "Iodures m\xc3\xa9talliques", GEO_SOURCE_METAL_HALIDE }, { "lamp_type", "fluorescent", GEO_SOURCE_FLUORESCENT },
-        { "lamp_type", "incandescent", GEO_SOURCE_INCANDESCENT }, { "lamp_type", "gaslight", GEO_SOURCE_GAS },
-        { "lamp_type", "electric", GEO_SOURCE_UNKNOWN }, { "lampsoort", "hogedruknatrium", GEO_SOURCE_SODIUM },
+        { "light:method", "LED", GEO_SOURCE_LED },
+        { "lamp_type", "high_pressure_sodium", GEO_SOURCE_SODIUM },
+        { "LIGHTTYPE_DESC", "HPS-High Pressure Sodium", GEO_SOURCE_SODIUM },
+        { "Leuchtmittel", "Natriumdampf-Hochdruck", GEO_SOURCE_SODIUM },
+        { "lamp_type", "SON-T", GEO_SOURCE_SODIUM },
+        { "light:method", "mercury", GEO_SOURCE_MERCURY },
+        { "Lampentyp", "HQL 80", GEO_SOURCE_MERCURY },
+        { "lamp_type", "metal-halide", GEO_SOURCE_METAL_HALIDE },
+        { "type_lampe", "Iodures m\xc3\xa9talliques", GEO_SOURCE_METAL_HALIDE },
+        { "lamp_type", "fluorescent", GEO_SOURCE_FLUORESCENT },
+        { "lamp_type", "incandescent", GEO_SOURCE_INCANDESCENT },
+        { "lamp_type", "gaslight", GEO_SOURCE_GAS },
+        { "lamp_type", "electric", GEO_SOURCE_UNKNOWN },
+        { "lampsoort", "hogedruknatrium", GEO_SOURCE_SODIUM },
         { "highway", "led", GEO_SOURCE_UNKNOWN },
     };
     for (size_t i = 0; i < NOC_COUNT(sources); i++)
@@ -190,17 +201,23 @@ static void test_words(void **state) {
         const char *codes[12];
         int source;
     } coded[] = {
-        { { "PL", "PLL", "PL-L", "PL-T", "PLC", "PL36W", "TL", "TL-D", "TLD", "TL5", "QL", "TC-D" }, GEO_SOURCE_FLUORESCENT },
+        { { "PL", "PLL", "PL-L", "PL-T", "PLC", "PL36W", "TL", "TL-D", "TLD", "TL5", "QL", "TC-D" },
+          GEO_SOURCE_FLUORESCENT },
         { { "SON", "SON-T", "SON/T", "SON70", "HPS", "NAV", "NAV-T", "HST", "HSE-T", "SONT150" }, GEO_SOURCE_SODIUM },
         { { "CDM", "CDM-T", "CPO", "CPO-TW", "MH", "MH150", "HIT", "HIE", "HQI" }, GEO_SOURCE_METAL_HALIDE },
-        { { "HQL", "HPL", "HPL-N", "HME", "HQL80" }, GEO_SOURCE_MERCURY }, { { "SOX", "SOX-E", "SOX35", "LST" }, GEO_SOURCE_LOW_SODIUM },
-        { { "LED", "LED36" }, GEO_SOURCE_LED }, { { "PLZ", "NAVY", "PL1", "P 36", "HITACHI", "TCP" }, GEO_SOURCE_UNKNOWN },
+        { { "HQL", "HPL", "HPL-N", "HME", "HQL80" }, GEO_SOURCE_MERCURY },
+        { { "SOX", "SOX-E", "SOX35", "LST" }, GEO_SOURCE_LOW_SODIUM },
+        { { "LED", "LED36" }, GEO_SOURCE_LED },
+        { { "PLZ", "NAVY", "PL1", "P 36", "HITACHI", "TCP" }, GEO_SOURCE_UNKNOWN },
     };
     for (size_t i = 0; i < NOC_COUNT(coded); i++)
         for (size_t k = 0; k < NOC_COUNT(coded[i].codes) && coded[i].codes[k]; k++)
-            if ((int)read_one("lamp_type", coded[i].codes[k]).source != coded[i].source || (int)read_one("type", coded[i].codes[k]).source != coded[i].source)
-                fail_msg("%s: %d, %d", coded[i].codes[k], read_one("lamp_type", coded[i].codes[k]).source, read_one("type", coded[i].codes[k]).source);
-    static const char *const low[] = { "low pressure sodium", "SOX 55", "LPS (low-pressure sodium)", "Natriumdampf-Niederdruck" };
+            if ((int)read_one("lamp_type", coded[i].codes[k]).source != coded[i].source ||
+                (int)read_one("type", coded[i].codes[k]).source != coded[i].source)
+                fail_msg("%s: %d, %d", coded[i].codes[k], read_one("lamp_type", coded[i].codes[k]).source,
+                         read_one("type", coded[i].codes[k]).source);
+    static const char *const low[] = { "low pressure sodium", "SOX 55", "LPS (low-pressure sodium)",
+                                       "Natriumdampf-Niederdruck" };
     for (size_t i = 0; i < NOC_COUNT(low); i++)
         assert_int_equal(read_one("lamp_type", low[i]).source, GEO_SOURCE_LOW_SODIUM);
 }
@@ -210,9 +227,15 @@ static void test_verdicts(void **state) {
         const char *key, *value;
         lamp_verdict verdict;
     } one[] = {
-        { "highway", "street_lamp", LAMP_ACTIVE }, { "man_made", "street_lamp", LAMP_ACTIVE }, { "light_source", "lantern", LAMP_ACTIVE },
-        { "highway", "bus_stop;street_lamp", LAMP_ACTIVE }, { "highway", "street_lamps", LAMP_NONE }, { "highway", "", LAMP_NONE },
-        { "abandoned:highway", "street_lamp", LAMP_INACTIVE }, { "highway", "residential", LAMP_NONE }, { "light_source", "aviation", LAMP_NONE },
+        { "highway", "street_lamp", LAMP_ACTIVE },
+        { "man_made", "street_lamp", LAMP_ACTIVE },
+        { "light_source", "lantern", LAMP_ACTIVE },
+        { "highway", "bus_stop;street_lamp", LAMP_ACTIVE },
+        { "highway", "street_lamps", LAMP_NONE },
+        { "highway", "", LAMP_NONE },
+        { "abandoned:highway", "street_lamp", LAMP_INACTIVE },
+        { "highway", "residential", LAMP_NONE },
+        { "light_source", "aviation", LAMP_NONE },
     };
     for (size_t i = 0; i < NOC_COUNT(one); i++)
         assert_int_equal(lamp_verdict_of(NULL, &(lamp_tag){ one[i].key, one[i].value }, 1, false), one[i].verdict);
@@ -220,19 +243,45 @@ static void test_verdicts(void **state) {
         const char *key, *value;
         lamp_verdict verdict;
     } row[] = {
-        { "ASSETSTATUS_DESC", "Active", LAMP_ACTIVE }, { "ASSETSTATUS_DESC", "Inactive", LAMP_INACTIVE }, { "Status", "au\xc3\x9f" "er Betrieb", LAMP_INACTIVE },
-        { "Zustand", "demontiert", LAMP_INACTIVE }, { "Zustand", "gut", LAMP_ACTIVE }, { "Betriebsstatus", "in Betrieb", LAMP_ACTIVE },
-        { "Betriebsstatus", "nicht in Betrieb", LAMP_INACTIVE }, { "Zustand", "zur\xc3\xbc" "ckgebaut", LAMP_INACTIVE },
-        { "statut", "D\xc3\xa9pos\xc3\xa9" "e", LAMP_INACTIVE }, { "Situaci\xc3\xb3n", "Desmontada", LAMP_INACTIVE },
-        { "stato", "Rimosso", LAMP_INACTIVE }, { "Situa\xc3\xa7\xc3\xa3o", "Desativado", LAMP_INACTIVE }, { "stav", "Zru\xc5\xa1" "eno", LAMP_INACTIVE },
-        { "Stan", "usuni\xc4\x99ty", LAMP_INACTIVE }, { "Driftstatus", "Nedlagt", LAMP_INACTIVE }, { "Tila", "Poistettu", LAMP_INACTIVE },
+        { "ASSETSTATUS_DESC", "Active", LAMP_ACTIVE },
+        { "ASSETSTATUS_DESC", "Inactive", LAMP_INACTIVE },
+        { "Status",
+          "au\xc3\x9f"
+          "er Betrieb",
+          LAMP_INACTIVE },
+        { "Zustand", "demontiert", LAMP_INACTIVE },
+        { "Zustand", "gut", LAMP_ACTIVE },
+        { "Betriebsstatus", "in Betrieb", LAMP_ACTIVE },
+        { "Betriebsstatus", "nicht in Betrieb", LAMP_INACTIVE },
+        { "Zustand",
+          "zur\xc3\xbc"
+          "ckgebaut",
+          LAMP_INACTIVE },
+        { "statut",
+          "D\xc3\xa9pos\xc3\xa9"
+          "e",
+          LAMP_INACTIVE },
+        { "Situaci\xc3\xb3n", "Desmontada", LAMP_INACTIVE },
+        { "stato", "Rimosso", LAMP_INACTIVE },
+        { "Situa\xc3\xa7\xc3\xa3o", "Desativado", LAMP_INACTIVE },
+        { "stav",
+          "Zru\xc5\xa1"
+          "eno",
+          LAMP_INACTIVE },
+        { "Stan", "usuni\xc4\x99ty", LAMP_INACTIVE },
+        { "Driftstatus", "Nedlagt", LAMP_INACTIVE },
+        { "Tila", "Poistettu", LAMP_INACTIVE },
         { "toestand", "niet in gebruik", LAMP_INACTIVE },
-        { "WHYINACTIVE", "N/A", LAMP_ACTIVE }, { "WHYINACTIVE", "Knocked down", LAMP_INACTIVE },
-        { "INOPERATION", "6/3/2013 0:00:00", LAMP_ACTIVE }, { "INOPERATION", "NO", LAMP_INACTIVE }, { "disused", "yes", LAMP_INACTIVE },
+        { "WHYINACTIVE", "N/A", LAMP_ACTIVE },
+        { "WHYINACTIVE", "Knocked down", LAMP_INACTIVE },
+        { "INOPERATION", "6/3/2013 0:00:00", LAMP_ACTIVE },
+        { "INOPERATION", "NO", LAMP_INACTIVE },
+        { "disused", "yes", LAMP_INACTIVE },
     };
     for (size_t i = 0; i < NOC_COUNT(row); i++)
         assert_int_equal(lamp_verdict_of(NULL, &(lamp_tag){ row[i].key, row[i].value }, 1, true), row[i].verdict);
-    static const char *const inventory[] = { "OBJECTID", "LampType" }, *const masts[] = { "STRAAT", "MASTNUMMER", "MASTLENGTE" },
+    static const char *const inventory[] = { "OBJECTID", "LampType" },
+                             *const masts[] = { "STRAAT", "MASTNUMMER", "MASTLENGTE" },
                              *const trees[] = { "id", "height", "species", "status", "support" };
     assert_true(lamp_columns_tell(NULL, inventory, 2));
     assert_true(lamp_columns_tell(NULL, masts, 3));
@@ -254,19 +303,26 @@ static void expect_csv(const char *text, noc_status status, size_t lamps, const 
 
 static void test_csv(void **state) {
     expect_csv("lon,lat,lamp_type\n8.5,50.5,LED\n8.6,50.6,SON\n", NOC_OK, 2, "OGC:CRS84");
-    expect_csv("\xef\xbb\xbfL\xc3\xa4ngengrad;Breitengrad;Leuchtmittel\r\n8,5;50,5;LED\r\n\r\n", NOC_OK, 1, "OGC:CRS84");
-    expect_csv("id\tX\tY\twattage\tcct\n1\t3500000\t5600000\t70\t3000\n", NOC_OK, 1, "");   /* --crs is the sink's matter */
-    expect_csv("X,Y,wattage,cct\n8.5,50.5,70,3000\n", NOC_OK, 1, "OGC:CRS84");              /* degrees in all rows */
+    expect_csv("\xef\xbb\xbfL\xc3\xa4ngengrad;Breitengrad;Leuchtmittel\r\n8,5;50,5;LED\r\n\r\n", NOC_OK, 1,
+               "OGC:CRS84");
+    /* --crs is the sink's matter */
+    expect_csv("id\tX\tY\twattage\tcct\n1\t3500000\t5600000\t70\t3000\n", NOC_OK, 1, "");
+    expect_csv("X,Y,wattage,cct\n8.5,50.5,70,3000\n", NOC_OK, 1, "OGC:CRS84"); /* degrees in all rows */
     expect_csv("geo_point_2d;lampe\n\"50.5, 8.5\";LED\n", NOC_OK, 1, "OGC:CRS84");
     expect_csv("wkt,lumens,a\n\"POINT Z (8.5 50.5 3)\",900,\"say \"\"hi\"\"\nthere\"\n", NOC_OK, 1, "OGC:CRS84");
-    expect_csv("lon,lat,species\n8.5,50.5,oak\n", NOC_ERR_FORMAT, 0, NULL);                  /* trees */
+    expect_csv("lon,lat,species\n8.5,50.5,oak\n", NOC_ERR_FORMAT, 0, NULL); /* trees */
     expect_csv("lon,lat,highway\n8.5,50.5,street_lamp\n8.5,50.5,bus_stop\n", NOC_OK, 1, "OGC:CRS84");
-    expect_csv("lon,lat,lamp_type\n8.5,50.5\n8.5,50.5,LED,more\n,,LED\n1e3,0,LED\n8.5,50.5,LED\n9,51,LED", NOC_OK, 2, NULL);
+    expect_csv("lon,lat,lamp_type\n8.5,50.5\n8.5,50.5,LED,more\n,,LED\n1e3,0,LED\n8.5,50.5,LED\n9,51,LED", NOC_OK, 2,
+               NULL);
     expect_csv("lon,lat,lamp_type\n8.5,50.5,\"LED\n", NOC_ERR_FORMAT, 0, NULL);
     expect_csv("lon,lat,lamp_type\n500000,5600000,LED\n500001,5600001,LED\n", NOC_ERR_FORMAT, 0, NULL);
     /* --crs is for the city beside it: degrees stay degrees, unless they are metres there */
-    static const struct { const char *given, *row, *crs; } beside[] = {
-        { "EPSG:25832", "8.5,50.5", "OGC:CRS84" }, { "EPSG:25832", "500000,5600000", "" }, { "EPSG:4326", "8.5,50.5", "" },
+    static const struct {
+        const char *given, *row, *crs;
+    } beside[] = {
+        { "EPSG:25832", "8.5,50.5", "OGC:CRS84" },
+        { "EPSG:25832", "500000,5600000", "" },
+        { "EPSG:4326", "8.5,50.5", "" },
         { "+proj=tmerc +lat_0=50 +lon_0=8 +datum=WGS84 +type=crs", "8.5,50.5", "" },
     };
     for (size_t i = 0; i < NOC_COUNT(beside); i++) {
@@ -282,7 +338,9 @@ static void test_csv(void **state) {
     }
     lamp_sink s;
     lamp_sink_start(&s);
-    assert_int_equal(read_lamps_text(&s, "lon,lat,lamp_type\n8.5,50.5\nx,y,LED\n500,0,LED\n8.5,50.5,LED\n9,51,LED", NULL), NOC_OK);
+    assert_int_equal(read_lamps_text(&s, "lon,lat,lamp_type\n8.5,50.5\nx,y,LED\n500,0,LED\n8.5,50.5,LED\n9,51,LED",
+                                     NULL),
+                     NOC_OK);
     assert_int_equal(issue_count(&s, "too few or too many"), 1);
     assert_int_equal(issue_count(&s, "without a place"), 1);
     assert_int_equal(issue_count(&s, "out of range"), 1);
@@ -291,7 +349,7 @@ static void test_csv(void **state) {
 
 /* ---- GeoJSON and OSM ---- */
 
-#define POINT(props, x, y) \
+#define POINT(props, x, y)                                                                                             \
     "{\"type\":\"Feature\",\"properties\":{" props "},\"geometry\":{\"type\":\"Point\",\"coordinates\":[" x "," y "]}}"
 #define COLLECTION(crs, features) "{\"type\":\"FeatureCollection\"," crs "\"features\":[" features "]}"
 #define CRS(name) "\"crs\":{\"type\":\"name\",\"properties\":{\"name\":\"" name "\"}},"
@@ -316,18 +374,24 @@ static void test_geojson(void **state) {
     if (!NOC_HAVE_GDAL)
         skip();
     expect_map(COLLECTION("", POINT(LAMP, "8.5", "50.5")), NULL, NOC_OK, 1, "EPSG:4326");
-    expect_map(COLLECTION(CRS("urn:ogc:def:crs:EPSG::25832"), POINT(LAMP, "500000", "5600000")), NULL, NOC_OK, 1, "EPSG:25832");
+    expect_map(COLLECTION(CRS("urn:ogc:def:crs:EPSG::25832"), POINT(LAMP, "500000", "5600000")), NULL, NOC_OK, 1,
+               "EPSG:25832");
     expect_map(COLLECTION(CRS("EPSG:28992"), POINT(LAMP, "136000", "455000")), NULL, NOC_OK, 1, "EPSG:28992");
     /* projected, but not said: --crs must say it */
     expect_map(COLLECTION("", POINT(LAMP, "500000", "5600000")), NULL, NOC_ERR_FORMAT, 0, NULL);
     expect_map(COLLECTION("", POINT(LAMP, "500000", "5600000")), "EPSG:25832", NOC_OK, 1, "");
     expect_map(COLLECTION("", POINT(LAMP, "8.5", "50.5")), "EPSG:25832", NOC_OK, 1, "EPSG:4326");
     /* a CRS that the file does not name is its format's: a feature's property of that name is none */
-    static const struct { const char *text; bool taken; } named[] = {
-        { COLLECTION("", POINT(LAMP, "8.5", "50.5")), true }, { COLLECTION("\"crs\":null,", POINT(LAMP, "8.5", "50.5")), true },
+    static const struct {
+        const char *text;
+        bool taken;
+    } named[] = {
+        { COLLECTION("", POINT(LAMP, "8.5", "50.5")), true },
+        { COLLECTION("\"crs\":null,", POINT(LAMP, "8.5", "50.5")), true },
         { COLLECTION("", POINT(LAMP ",\"crs\":\"EPSG:4326\"", "8.5", "50.5")), true },
         { COLLECTION("\"crs\":{\"type\":\"name\",\"properties\":{\"name\":\"urn:ogc:def:crs:OGC:1.3:CRS84\"}},",
-                     POINT(LAMP, "8.5", "50.5")), false },
+                     POINT(LAMP, "8.5", "50.5")),
+          false },
         { "lon,lat,lamp_type\n8.5,50.5,LED\n", true },
     };
     for (size_t i = 0; i < NOC_COUNT(named); i++) {
@@ -338,20 +402,25 @@ static void test_geojson(void **state) {
         lamp_sink_end(&s);
     }
     /* one stray is skipped; nothing to see is no error */
-    expect_map(COLLECTION("", POINT(LAMP, "8.5", "50.5") "," POINT(LAMP, "8.6", "50.5") "," POINT(LAMP, "999", "50")), NULL, NOC_OK, 2, NULL);
+    expect_map(COLLECTION("", POINT(LAMP, "8.5", "50.5") "," POINT(LAMP, "8.6", "50.5") "," POINT(LAMP, "999", "50")),
+               NULL, NOC_OK, 2, NULL);
     /* nor does one with text or nothing for coordinates cost the others */
     static const char *const odd[] = { "\"8.6\"", "\"here\"", "true", "null", "[]", "{}" };
     for (size_t i = 0; i < NOC_COUNT(odd); i++) {
         char text[1000];
-        snprintf(text, sizeof(text), COLLECTION("", POINT(LAMP, "8.5", "50.5") "," POINT(LAMP, "%s", "50.6") "," POINT(LAMP, "8.7", "%s")), odd[i],
-                 odd[i]);
+        snprintf(text, sizeof(text),
+                 COLLECTION("", POINT(LAMP, "8.5", "50.5") "," POINT(LAMP, "%s", "50.6") "," POINT(LAMP, "8.7", "%s")),
+                 odd[i], odd[i]);
         expect_map(text, NULL, NOC_OK, 1, NULL);
     }
     expect_map(COLLECTION("", POINT("\"amenity\":\"bench\"", "8.5", "50.5")), NULL, NOC_OK, 0, NULL);
     expect_map(COLLECTION("", ""), NULL, NOC_OK, 0, NULL);
     /* an inventory: all its points; a tagged file: only the tagged ones */
-    expect_map(COLLECTION("", POINT("\"LampType\":\"Acorn\"", "8", "50") "," POINT("\"LampType\":null", "8", "51")), NULL, NOC_OK, 2, NULL);
-    expect_map(COLLECTION("", POINT(LAMP ",\"lamp_type\":\"led\"", "8", "50") "," POINT("\"highway\":\"stop\"", "8", "51")), NULL, NOC_OK, 1, NULL);
+    expect_map(COLLECTION("", POINT("\"LampType\":\"Acorn\"", "8", "50") "," POINT("\"LampType\":null", "8", "51")),
+               NULL, NOC_OK, 2, NULL);
+    expect_map(COLLECTION("",
+                          POINT(LAMP ",\"lamp_type\":\"led\"", "8", "50") "," POINT("\"highway\":\"stop\"", "8", "51")),
+               NULL, NOC_OK, 1, NULL);
 }
 
 static const char osm[] =
@@ -469,7 +538,8 @@ static noc_status read_bytes(const char *data, size_t size, size_t *lamps) {
 static void test_cut(void **state) {
     if (!NOC_HAVE_GDAL)
         skip();
-    static const char *const paths[] = { "data/lights/kamiyama/street_lamps.geojson", "data/lights/paris/paris_bss.osm.pbf",
+    static const char *const paths[] = { "data/lights/kamiyama/street_lamps.geojson",
+                                         "data/lights/paris/paris_bss.osm.pbf",
                                          "data/lights/worcester_ma/street_lamps.geojson.gz",
                                          "data/lights/washington_dc/streetlights.csv.gz",
                                          "data/lights/berlin_tiergarten/berlin-siegessaeule.osm.gz" };
@@ -491,8 +561,10 @@ static void test_cut(void **state) {
 }
 
 static void test_mutated(void **state) {
-    static const char *const texts[] = { "lon,lat,lamp_type,height\n8.5,50.5,LED,\"6 m\"\n8.6,50.6,SON,16'6\"\n",
-                                         COLLECTION("", POINT(LAMP ",\"height\":\"5 m\"", "8.5", "50.5") "," POINT(LAMP, "8", "50")), osm };
+    static const char *const texts[] = {
+        "lon,lat,lamp_type,height\n8.5,50.5,LED,\"6 m\"\n8.6,50.6,SON,16'6\"\n",
+        COLLECTION("", POINT(LAMP ",\"height\":\"5 m\"", "8.5", "50.5") "," POINT(LAMP, "8", "50")), osm
+    };
     uint32_t seed = 7;
     for (int i = 0; i < 600; i++) {
         const char *text = texts[i % 3];
@@ -517,7 +589,8 @@ static void test_unread(void **state) {
     (void)state;
     if (!NOC_HAVE_GDAL)
         skip();
-    static const char outlines[] = "{\"type\": \"FeatureCollection\", \"features\": [\n"
+    static const char outlines[] =
+        "{\"type\": \"FeatureCollection\", \"features\": [\n"
         "{\"type\": \"Feature\", \"properties\": {\"a\": 1}, \"geometry\": {\"type\": \"Polygon\", \"coordinates\": "
         "[[[8, 50], [8.5, 50], [8.5, 50.25], [8, 50]]]}},\n"
         "{\"type\": \"Feature\", \"properties\": {\"a\": 2}, \"geometry\": {\"type\": \"LineString\", \"coordinates\": [[8, 50], [9, 51]]}}]}";
@@ -529,7 +602,8 @@ static void test_unread(void **state) {
     assert_int_equal(s.warnings, 1);
     assert_non_null(strstr(s.warning, "1 line, 1 polygon are not read: outlines of buildings are not extruded yet"));
     lamp_sink_end(&s);
-    static const char ways[] = "<?xml version='1.0'?><osm version='0.6'><node id='1' lat='50' lon='8'><tag k='highway' v='street_lamp'/></node>"
+    static const char ways[] =
+        "<?xml version='1.0'?><osm version='0.6'><node id='1' lat='50' lon='8'><tag k='highway' v='street_lamp'/></node>"
         "<node id='2' lat='50' lon='8.1'/>"
         "<way id='1'><nd ref='1'/><nd ref='2'/><tag k='building' v='yes'/></way>"
         "<way id='2'><nd ref='1'/><nd ref='2'/><tag k='highway' v='footway'/></way>"
@@ -564,8 +638,8 @@ int main(void) {
         cmocka_unit_test(test_real_counts), cmocka_unit_test(test_washington), cmocka_unit_test(test_heights),
         cmocka_unit_test(test_quantities),  cmocka_unit_test(test_directions), cmocka_unit_test(test_words),
         cmocka_unit_test(test_verdicts),    cmocka_unit_test(test_csv),        cmocka_unit_test(test_geojson),
-        cmocka_unit_test(test_osm),         cmocka_unit_test(test_other_maps), cmocka_unit_test(test_cut),        cmocka_unit_test(test_mutated),
-        cmocka_unit_test(test_unread),      cmocka_unit_test(test_unread_pbf),
+        cmocka_unit_test(test_osm),         cmocka_unit_test(test_other_maps), cmocka_unit_test(test_cut),
+        cmocka_unit_test(test_mutated),     cmocka_unit_test(test_unread),     cmocka_unit_test(test_unread_pbf),
     };
     return cmocka_run_group_tests_name("import/vector", tests, NULL, tear_down);
 }

@@ -1,6 +1,7 @@
-/* Influence volumes: what a block's points find is what a walk over all lights finds; draws' densities are the pmf, which
- * sums to 1, and f / pmf of many draws lies within 4.5 standard errors of the sum over all lights. Through every kernel that
- * this machine runs, with lights of their own volumes, lights that share them, and visibility-aware boxes. */
+/* Influence volumes: what a block's points find is what a walk over all lights finds; draws' densities are the pmf,
+ * which sums to 1, and f / pmf of many draws lies within 4.5 standard errors of the sum over all lights. Through every
+ * kernel that this machine runs, with lights of their own volumes, lights that share them, and visibility-aware boxes.
+ */
 #include "../render/rooms.h"
 
 #include "backend/embree/kernels.h"
@@ -19,8 +20,10 @@ static float real_in(float lo, float hi) { return lo + (hi - lo) * unit_real(bit
 typedef enum { MIXED, DARK_ONES, ONE_PLACE, ALL_DARK, WINDOWS } sort;
 
 static noc_light light_of(uint32_t i, sort what, float half) {
-    noc_light l = { .kind = (noc_light_kind)((i + i / 6) % NOC_LIGHT_KIND_COUNT), .radius = real_in(0.05f, 0.4f),
-                    .inner_deg = 20, .outer_deg = 50 }; /* kinds of even and of odd lights alike */
+    noc_light l = { .kind = (noc_light_kind)((i + i / 6) % NOC_LIGHT_KIND_COUNT),
+                    .radius = real_in(0.05f, 0.4f),
+                    .inner_deg = 20,
+                    .outer_deg = 50 }; /* kinds of even and of odd lights alike */
     bool dark = what == ALL_DARK || (what == DARK_ONES && i % 3 != 1);
     float strong = i % 50 == 17 ? 3000 : 3;
     for (int k = 0; k < 3; k++) {
@@ -41,8 +44,10 @@ static noc_light window_of(uint32_t i, float half) {
         x = real_in(-half, half);
         y = real_in(-half, half);
     }
-    noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { x + 1.5f * (float)(w % 6), y, 1 + 3 * (float)(w / 6) },
-                    .edge_u = { 1, 0, 0 }, .edge_v = { 0, 0, 1.2 } };
+    noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM,
+                    .position = { x + 1.5f * (float)(w % 6), y, 1 + 3 * (float)(w / 6) },
+                    .edge_u = { 1, 0, 0 },
+                    .edge_v = { 0, 0, 1.2 } };
     for (int k = 0; k < 3; k++)
         l.emission[k] = real_in(4, 6);
     return l;
@@ -90,7 +95,7 @@ typedef struct asked {
     noc_frame frame;
     struct core_context ctx;
     gblock g, before; /* the second and the first block of a tile */
-    surf y[BLOCK]; /* of g */
+    surf y[BLOCK];    /* of g */
     noc_found found;
     uint32_t light[DRAWS + PICK_AHEAD][BLOCK];
     float inverse[DRAWS + PICK_AHEAD][BLOCK];
@@ -106,7 +111,9 @@ static asked *begin(const noc_scene *s, const noc_influence *v, const kernels *k
     a->params.influence = scale;
     a->params.uniform_every = EVERY;
     a->frame = (noc_frame){ .params = &a->params };
-    a->ctx = (struct core_context){ .lights = s->lights.data, .light_count = (uint32_t)s->lights.len, .frame = &a->frame, .influence = v };
+    a->ctx = (struct core_context){
+        .lights = s->lights.data, .light_count = (uint32_t)s->lights.len, .frame = &a->frame, .influence = v
+    };
     return a;
 }
 
@@ -148,15 +155,14 @@ static void look_from(asked *a, surf y, float apart, bool bent) {
 
 static void draw(asked *a) {
     a->frame.index++;
-    a->k->influence_find(&a->ctx, (const gblock *const[2]){ &a->before, &a->g }, (const uint32_t[2]){ 0xffff, LANES_ASKED }, 2, &a->found);
+    a->k->influence_find(&a->ctx, (const gblock *const[2]){ &a->before, &a->g },
+                         (const uint32_t[2]){ 0xffff, LANES_ASKED }, 2, &a->found);
     a->k->pick_influence(&a->ctx, &a->found, 1, 8, 12, DRAWS, &(pick_block){ a->light, a->inverse });
 }
 
 static const noc_found_group *found_by(const asked *a, int l) { return &a->found.group[a->found.of[1][l]]; }
 
-static bool held(const asked *a, uint32_t id, int l) {
-    return noc_influence_finds(a->v, id, &found_by(a, l)->query);
-}
+static bool held(const asked *a, uint32_t id, int l) { return noc_influence_finds(a->v, id, &found_by(a, l)->query); }
 
 static double pmf(const asked *a, uint32_t id, int l) {
     bool in = found_by(a, l)->count && held(a, id, l);
@@ -177,7 +183,12 @@ static void finds_what_there_is(asked *a) {
     for (int l = 0; l < BLOCK; l++) {
         uint32_t count = 0;
         for (int k = 0; k < 3 && (LANES_ASKED >> l & 1); k++) { /* each point is among those it asked with */
-            float p = (k == 0 ? a->g.px : k == 1 ? a->g.py : a->g.pz)[l], m = (k == 0 ? a->g.nx : k == 1 ? a->g.ny : a->g.nz)[l];
+            float p = (k == 0   ? a->g.px
+                       : k == 1 ? a->g.py
+                                : a->g.pz)[l],
+                  m = (k == 0   ? a->g.nx
+                       : k == 1 ? a->g.ny
+                                : a->g.nz)[l];
             const noc_near_query *q = &found_by(a, l)->query;
             assert_true(p >= q->lo[k] && p <= q->hi[k]);
             assert_true(fabsf(q->n[k] - m) <= 1e-5f || q->back == -INFINITY);
@@ -204,8 +215,8 @@ static void draws_are_pmf(asked *a) {
                 assert_true(a->light[i][l] < a->scene->lights.len);
                 double x = pmf(a, a->light[i][l], l) * a->inverse[i][l];
                 if (!(fabs(x - 1) < 1e-5))
-                    fail_msg("light %u of %zu, lane %d: draw's p is 1/%g, pmf %g", a->light[i][l], a->scene->lights.len, l,
-                             a->inverse[i][l], pmf(a, a->light[i][l], l));
+                    fail_msg("light %u of %zu, lane %d: draw's p is 1/%g, pmf %g", a->light[i][l], a->scene->lights.len,
+                             l, a->inverse[i][l], pmf(a, a->light[i][l], l));
             }
     }
     double sum = 0;
@@ -214,8 +225,8 @@ static void draws_are_pmf(asked *a) {
     assert_true(fabs(sum - 1) < 1e-4 || a->wrong > 0);
 }
 
-/* Of `rounds` sets of draws, the distance of their mean estimate from the sum over all lights, in standard errors. Every lane's
- * estimate counts, as a share of what its surface gets. */
+/* Of `rounds` sets of draws, the distance of their mean estimate from the sum over all lights, in standard errors.
+ * Every lane's estimate counts, as a share of what its surface gets. */
 static double distance(asked *a, int rounds) {
     double want[BLOCK] = { 0 }, sum = 0, square = 0;
     int n = 0;
@@ -239,9 +250,12 @@ static double distance(asked *a, int rounds) {
     return n ? fabs(mean - 1) / fmax(error, 1e-5) : 0;
 }
 
-static const struct { uint32_t lights; sort what; } worlds[] = {
-    { 1, MIXED }, { 2, MIXED }, { 3, DARK_ONES }, { 9, ONE_PLACE }, { 50, MIXED }, { 300, DARK_ONES }, { 500, ONE_PLACE },
-    { 1000, MIXED }, { 960, WINDOWS }, { 20, ALL_DARK }, { 30000, MIXED },
+static const struct {
+    uint32_t lights;
+    sort what;
+} worlds[] = {
+    { 1, MIXED },       { 2, MIXED },    { 3, DARK_ONES }, { 9, ONE_PLACE }, { 50, MIXED },    { 300, DARK_ONES },
+    { 500, ONE_PLACE }, { 1000, MIXED }, { 960, WINDOWS }, { 20, ALL_DARK }, { 30000, MIXED },
 };
 
 static void check_worlds(int cluster, noc_probe_fn *boxes) {
@@ -249,7 +263,9 @@ static void check_worlds(int cluster, noc_probe_fn *boxes) {
     int kernels_here = noc_runnable_kernels(all);
     for (size_t i = 0; i < NOC_COUNT(worlds); i++) {
         noc_scene *s = world(worlds[i].lights, worlds[i].what);
-        noc_influence *v = noc_influence_create(s, &(noc_influence_params){ .cluster = cluster, .boxes = boxes, .probe = boxes }, NULL);
+        noc_influence *v =
+            noc_influence_create(s, &(noc_influence_params){ .cluster = cluster, .boxes = boxes, .probe = boxes },
+                                 NULL);
         float half = 10 + 2 * sqrtf((float)worlds[i].lights);
         assert_non_null(v);
         for (int surface = 0; surface < 8; surface++) {
@@ -261,7 +277,8 @@ static void check_worlds(int cluster, noc_probe_fn *boxes) {
             if (surface < 2) {
                 double z = distance(a, worlds[i].lights > 10000 ? 3000 : 400);
                 if (!SANITIZED && !(z < 4.5))
-                    fail_msg("%u lights, surface %d: %.1f standard errors from the sum over all lights", worlds[i].lights, surface, z);
+                    fail_msg("%u lights, surface %d: %.1f standard errors from the sum over all lights",
+                             worlds[i].lights, surface, z);
             }
             end(a);
         }
@@ -270,10 +287,22 @@ static void check_worlds(int cluster, noc_probe_fn *boxes) {
     }
 }
 
-static void volumes_of_one(void **state) { (void)state; check_worlds(1, NULL); }
-static void shared_volumes(void **state) { (void)state; check_worlds(8, NULL); }
-static void boxes(void **state) { (void)state; check_worlds(1, probe); }
-static void shared_boxes(void **state) { (void)state; check_worlds(8, probe); }
+static void volumes_of_one(void **state) {
+    (void)state;
+    check_worlds(1, NULL);
+}
+static void shared_volumes(void **state) {
+    (void)state;
+    check_worlds(8, NULL);
+}
+static void boxes(void **state) {
+    (void)state;
+    check_worlds(1, probe);
+}
+static void shared_boxes(void **state) {
+    (void)state;
+    check_worlds(8, probe);
+}
 
 /* Lights of a facade share volumes, and a shared volume holds what its lights' own volumes hold. */
 static void shared_volumes_hold_their_lights(void **state) {
@@ -299,7 +328,8 @@ static void shared_volumes_hold_their_lights(void **state) {
     noc_scene_destroy(s);
 }
 
-/* Boxes end at what is in the way: little beyond the wall at x = 4 is left to the windows before it, and nearly all that they see. */
+/* Boxes end at what is in the way: little beyond the wall at x = 4 is left to the windows before it, and nearly all
+ * that they see. */
 static void boxes_end_at_walls(void **state) {
     (void)state;
     noc_scene *s = world(1992, WINDOWS);
@@ -315,7 +345,8 @@ static void boxes_end_at_walls(void **state) {
             count[1] += holds(v, i, p, n);
         }
     }
-    print_message("# pairs before the wall: %zu of %zu kept, beyond it: %zu of %zu\n", before[1], before[0], behind[1], behind[0]);
+    print_message("# pairs before the wall: %zu of %zu kept, beyond it: %zu of %zu\n", before[1], before[0], behind[1],
+                  behind[0]);
     assert_true(before[0] > 1000 && behind[0] > 1000);
     assert_true((double)before[1] > 0.95 * (double)before[0] && (double)behind[1] < 0.6 * (double)behind[0]);
     noc_influence_destroy(own);
@@ -347,16 +378,17 @@ static void scale_is_found(void **state) {
         few += found_by(a, POINT)->count < 4;
         many += found_by(a, POINT)->count > 500;
     }
-    print_message("# S_r %.2f: %u of 400 points find no light, %u fewer than 4, %u more than a tenth of all\n", v->scale, none, few, many);
+    print_message("# S_r %.2f: %u of 400 points find no light, %u fewer than 4, %u more than a tenth of all\n",
+                  v->scale, none, few, many);
     assert_true(none <= 4 && few < 40 && many < 40);
     end(a);
     noc_influence_destroy(v);
     noc_scene_destroy(s);
 }
 
-/* Beside a lamp that gives 30 lux, and under lights scattered over a plane, of which the i-th gives 1 / i: of the lists that
- * begin with the strongest, the rule's has nearly the least error, found by playing out which lights are seen: most, few, or most
- * in some places and few in others. A list made as if all were is worse where most are hidden. */
+/* Beside a lamp that gives 30 lux, and under lights scattered over a plane, of which the i-th gives 1 / i: of the lists
+ * that begin with the strongest, the rule's has nearly the least error, found by playing out which lights are seen:
+ * most, few, or most in some places and few in others. A list made as if all were is worse where most are hidden. */
 static void rule_draws_best(void **state) {
     (void)state;
     enum { LIGHTS = 2000, ROUNDS = 2000 };
@@ -393,15 +425,16 @@ static void rule_draws_best(void **state) {
             have = lux[n - 1] >= weakest ? loss : have;
             naive = lux[n - 1] >= as_if ? loss : naive;
         }
-        print_message("# v = %.2f to %.2f: %.4f lux, %.3f of the least loss; %.4f, %.3f as if all were seen\n", rule.seen[0],
-                      rule.seen[NOC_RULE_SHARES - 1], weakest, have / least, as_if, naive / least);
-        assert_true(have < (which < 2 ? 1.1 : 1.3) * least); /* a list that is right for most places is so for none of them */
+        print_message("# v = %.2f to %.2f: %.4f lux, %.3f of the least loss; %.4f, %.3f as if all were seen\n",
+                      rule.seen[0], rule.seen[NOC_RULE_SHARES - 1], weakest, have / least, as_if, naive / least);
+        /* a list that is right for most places is so for none of them */
+        assert_true(have < (which < 2 ? 1.1 : 1.3) * least);
         assert_true(!which || naive > 1.2 * least);
     }
 }
 
-/* Where S_r is found, a list of n lights is the n that give the point most, nearly: of windows, those that face it and that it faces,
- * not those whose volumes reach it by more. */
+/* Where S_r is found, a list of n lights is the n that give the point most, nearly: of windows, those that face it and
+ * that it faces, not those whose volumes reach it by more. */
 static void lists_hold_the_strongest(void **state) {
     (void)state;
     enum { WINDOWS_HERE = 1992 };
@@ -438,7 +471,8 @@ static void threads_build_the_same(void **state) {
     (void)state;
     noc_scene *s = world(30000, MIXED);
     noc_pool *pool = noc_pool_create(3);
-    noc_influence_params one = { .cluster = 4, .boxes = true, .probe = probe }, three = { .cluster = 4, .boxes = true, .probe = probe, .pool = pool };
+    noc_influence_params one = { .cluster = 4, .boxes = true, .probe = probe },
+                         three = { .cluster = 4, .boxes = true, .probe = probe, .pool = pool };
     noc_influence *a = noc_influence_create(s, &one, NULL), *b = noc_influence_create(s, &three, NULL);
     assert_int_equal(a->volume_count, b->volume_count);
     assert_memory_equal(a->volumes, b->volumes, a->volume_count * sizeof(*a->volumes));

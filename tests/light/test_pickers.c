@@ -1,6 +1,6 @@
-/* Light pickers: draw's p is pmf's, the pmf of all lights sum to 1, and f / pmf of many draws lies within 4 standard errors
- * of the sum over all lights: for every kind of light mixed, some dark, some in one place, from 1 to 100,000 of them. The
- * sums come from every light evaluated by core/surface.h, without any picker. */
+/* Light pickers: draw's p is pmf's, the pmf of all lights sum to 1, and f / pmf of many draws lies within 4 standard
+ * errors of the sum over all lights: for every kind of light mixed, some dark, some in one place, from 1 to 100,000 of
+ * them. The sums come from every light evaluated by core/surface.h, without any picker. */
 #include "worlds.h"
 
 #include "light/alias.h"
@@ -59,8 +59,8 @@ static void draws_are_pmf(picker *p) {
             assert_true(got[i].light < p->scene->lights.len);
             double x = pmf(p, got[i].light) * got[i].inverse;
             if (!(fabs(x - 1) < 1e-5))
-                fail_msg("light %u of %zu: draw's p is 1/%g, pmf %g", got[i].light, p->scene->lights.len, got[i].inverse,
-                         pmf(p, got[i].light));
+                fail_msg("light %u of %zu: draw's p is 1/%g, pmf %g", got[i].light, p->scene->lights.len,
+                         got[i].inverse, pmf(p, got[i].light));
         }
     }
 }
@@ -130,11 +130,16 @@ static void power_follows_flux(void **state) {
     noc_scene *s = noc_scene_create(NULL);
     const float y[] = { 1, 0.5f, 1, 0 };
     for (int i = 0; i < 4; i++) {
-        noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM, .edge_u = { 1, 0, 0 }, .edge_v = { 0, 1, 0 },
+        noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM,
+                        .edge_u = { 1, 0, 0 },
+                        .edge_v = { 0, 1, 0 },
                         .emission = { y[i], y[i], y[i] } };
         assert_true(noc_scene_add_light(s, &l) >= 0);
     }
-    noc_light spot = { .kind = NOC_LIGHT_SPOT, .direction = { 0, 0, -1 }, .inner_deg = 60, .outer_deg = 90,
+    noc_light spot = { .kind = NOC_LIGHT_SPOT,
+                       .direction = { 0, 0, -1 },
+                       .inner_deg = 60,
+                       .outer_deg = 90,
                        .emission = { 2.25f, 2.25f, 2.25f } };
     assert_true(noc_scene_add_light(s, &spot) >= 0);
     assert_int_equal(noc_scene_commit(s), NOC_OK);

@@ -1,6 +1,6 @@
-/* The light tree: for a point, the number of draws that a light gets is n times its pmf on average, draw's p is pmf's, the pmf
- * of all lights sum to 1, and f / pmf of many draws lies within 4 standard errors of the sum over all lights; so it is with
- * lights that move, after they were moved, and in every reader of core/. */
+/* The light tree: for a point, the number of draws that a light gets is n times its pmf on average, draw's p is pmf's,
+ * the pmf of all lights sum to 1, and f / pmf of many draws lies within 4 standard errors of the sum over all lights;
+ * so it is with lights that move, after they were moved, and in every reader of core/. */
 #include "worlds.h"
 
 #include "backend/embree/kernels.h"
@@ -31,7 +31,9 @@ typedef struct drawer {
 } drawer;
 
 static void open_drawer(drawer *d, const noc_scene *s, noc_pool *pool) {
-    *d = (drawer){ .scene = s, .tree = noc_tree_create(s, pool, NULL), .kernels = noc_pick_kernels(NOC_ISA_AUTO),
+    *d = (drawer){ .scene = s,
+                   .tree = noc_tree_create(s, pool, NULL),
+                   .kernels = noc_pick_kernels(NOC_ISA_AUTO),
                    .params = { .width = 16 } };
     assert_non_null(d->tree);
     assert_true(d->tree->depth <= NOC_TREE_DEPTH);
@@ -57,8 +59,10 @@ static void close_drawer(drawer *d) {
 
 static struct core_context context(drawer *d) {
     d->frame = (noc_frame){ .params = &d->params };
-    return (struct core_context){ .lights = d->scene->lights.data, .light_count = (uint32_t)d->scene->lights.len,
-                                  .frame = &d->frame, .tree = d->tree };
+    return (struct core_context){ .lights = d->scene->lights.data,
+                                  .light_count = (uint32_t)d->scene->lights.len,
+                                  .frame = &d->frame,
+                                  .tree = d->tree };
 }
 
 /* Lane AT is the point that is asked about, the others lie about. */
@@ -100,13 +104,15 @@ static void draws_are_pmf(drawer *d) {
                 continue;
             double x = pmf(d, id) * d->picks.inverse[i][AT];
             if (!(fabs(x - 1) < 1e-5))
-                fail_msg("light %u of %zu: draw's p is 1/%g, pmf %g", id, d->scene->lights.len, d->picks.inverse[i][AT], pmf(d, id));
+                fail_msg("light %u of %zu: draw's p is 1/%g, pmf %g", id, d->scene->lights.len, d->picks.inverse[i][AT],
+                         pmf(d, id));
         }
     }
 }
 
-/* Of sets of m draws, the distance of their mean estimate from the sum, in standard errors. Every lane's estimate counts, as a
- * share of what its surface gets. wrong: share that is added to the pmf of odd lights: a test of the test. */
+/* Of sets of m draws, the distance of their mean estimate from the sum, in standard errors. Every lane's estimate
+ * counts, as a share of what its surface gets. wrong: share that is added to the pmf of odd lights: a test of the test.
+ */
 static double distance(drawer *d, int rounds, int m, double wrong) {
     double want[BLOCK] = { 0 }, sum = 0, square = 0;
     int n = 0;
@@ -152,7 +158,8 @@ static void check(drawer *d, bool draws_anything) {
 
 /* pi for a light that faces every way. */
 static double angle_from_axis(const noc_tree_child *node, const float n[3]) {
-    double a[3] = { tree_unit(node->axis_xy), tree_unit(node->axis_xy >> 16), tree_unit(node->axis_cone) }, cross2 = 0, dot = 0;
+    double a[3] = { tree_unit(node->axis_xy), tree_unit(node->axis_xy >> 16), tree_unit(node->axis_cone) }, cross2 = 0,
+           dot = 0;
     if (n[0] == 0 && n[1] == 0 && n[2] == 0)
         return M_PI;
     for (int k = 0; k < 3; k++) {
@@ -163,7 +170,8 @@ static double angle_from_axis(const noc_tree_child *node, const float n[3]) {
     return atan2(sqrt(cross2), dot);
 }
 
-/* A node's sphere and cone hold all lights below it, and its power is theirs; every light is at the end of its own way. */
+/* A node's sphere and cone hold all lights below it, and its power is theirs; every light is at the end of its own way.
+ */
 static void check_bounds(const noc_scene *s, const noc_tree *t) {
     uint32_t found = 0;
     for (uint32_t i = 0; i < s->lights.len; i++) {
@@ -210,7 +218,9 @@ static void of_uneven_lights(void **state) {
     (void)state;
     noc_scene *s = noc_scene_create(NULL);
     for (int i = 0; i < 1060; i++) {
-        noc_light l = { .kind = NOC_LIGHT_POINT, .position = { i < 60 ? ldexp(1e-6, i / 3) : 0, 0, 3 }, .emission = { 1, 1, 1 } };
+        noc_light l = { .kind = NOC_LIGHT_POINT,
+                        .position = { i < 60 ? ldexp(1e-6, i / 3) : 0, 0, 3 },
+                        .emission = { 1, 1, 1 } };
         assert_true(noc_scene_add_light(s, &l) >= 0);
     }
     assert_int_equal(noc_scene_commit(s), NOC_OK);
@@ -311,13 +321,16 @@ static void shift(noc_scene *s, uint32_t i, float by) {
         s->lights.data[i].p[k] += real_in(-by, by);
 }
 
-/* Every third, all, or the only light moves: a little, for which bounds are refitted, and then far, for which the tree is
- * built anew. */
+/* Every third, all, or the only light moves: a little, for which bounds are refitted, and then far, for which the tree
+ * is built anew. */
 static void follows_lights(void **state) {
     (void)state;
-    static const struct { uint32_t lights, step; sort what; } cases[] = {
-        { 1, 1, MIXED }, { 2, 2, MIXED }, { 9, 1, ONE_PLACE }, { 300, 3, MIXED }, { 300, 3, DARK_ONES }, { 2000, 1, MIXED },
-        { 20000, 3, MIXED },
+    static const struct {
+        uint32_t lights, step;
+        sort what;
+    } cases[] = {
+        { 1, 1, MIXED },       { 2, 2, MIXED },    { 9, 1, ONE_PLACE }, { 300, 3, MIXED },
+        { 300, 3, DARK_ONES }, { 2000, 1, MIXED }, { 20000, 3, MIXED },
     };
     for (size_t c = 0; c < NOC_COUNT(cases); c++) {
         noc_scene *s = world(cases[c].lights, cases[c].what);
@@ -340,8 +353,8 @@ static void follows_lights(void **state) {
     }
 }
 
-/* Lights that change places with each other are far from where the tree has put them: it is built anew, and is as good as a
- * new one. A few steps on a street only move its bounds. */
+/* Lights that change places with each other are far from where the tree has put them: it is built anew, and is as good
+ * as a new one. A few steps on a street only move its bounds. */
 static void is_built_anew_when_bad(void **state) {
     (void)state;
     noc_scene *s = world(3000, MIXED);
@@ -371,12 +384,9 @@ static void is_built_anew_when_bad(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(of_all_worlds),
-        cmocka_unit_test(of_uneven_lights),
-        cmocka_unit_test(is_the_same_for_all),
-        cmocka_unit_test(draws_are_stratified),
-        cmocka_unit_test(wrong_pmf_is_seen),
-        cmocka_unit_test(follows_lights),
+        cmocka_unit_test(of_all_worlds),          cmocka_unit_test(of_uneven_lights),
+        cmocka_unit_test(is_the_same_for_all),    cmocka_unit_test(draws_are_stratified),
+        cmocka_unit_test(wrong_pmf_is_seen),      cmocka_unit_test(follows_lights),
         cmocka_unit_test(is_built_anew_when_bad),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

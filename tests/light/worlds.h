@@ -19,8 +19,10 @@ static inline noc_scene *world(uint32_t lights, sort what) {
     float half = 10 + 2 * sqrtf((float)lights);
     add_floor(s, matte(s, 0.5f), 0, 0, 0, half);
     for (uint32_t i = 0; i < lights; i++) {
-        noc_light l = { .kind = (noc_light_kind)((i + i / 6) % NOC_LIGHT_KIND_COUNT), .radius = real_in(0.05f, 0.4f),
-                        .inner_deg = 20, .outer_deg = 50 }; /* kinds of even and of odd lights alike */
+        noc_light l = { .kind = (noc_light_kind)((i + i / 6) % NOC_LIGHT_KIND_COUNT),
+                        .radius = real_in(0.05f, 0.4f),
+                        .inner_deg = 20,
+                        .outer_deg = 50 }; /* kinds of even and of odd lights alike */
         bool dark = what == ALL_DARK || (what == DARK_ONES && i % 3 != 1);
         float strong = i % 50 == 17 ? 3000 : 3;
         for (int k = 0; k < 3; k++) {
@@ -53,9 +55,12 @@ static inline double shine(const noc_scene *s, surf y, uint32_t i) {
     return target(y, l, 0.3f, 0.6f);
 }
 
-static const struct { uint32_t lights; sort what; } worlds[] = {
-    { 1, MIXED }, { 2, MIXED }, { 3, DARK_ONES }, { 9, ONE_PLACE }, { 50, MIXED }, { 300, DARK_ONES }, { 500, ONE_PLACE },
-    { 1000, MIXED }, { 20, ALL_DARK }, { 100000, MIXED },
+static const struct {
+    uint32_t lights;
+    sort what;
+} worlds[] = {
+    { 1, MIXED },       { 2, MIXED },       { 3, DARK_ONES }, { 9, ONE_PLACE }, { 50, MIXED },
+    { 300, DARK_ONES }, { 500, ONE_PLACE }, { 1000, MIXED },  { 20, ALL_DARK }, { 100000, MIXED },
 };
 
 #endif

@@ -22,12 +22,15 @@ static inline void add_quad(noc_scene *s, int material, const double p[3], const
         xyz[6 + k] = p[k] + a[k] + b[k];
         xyz[9 + k] = p[k] + b[k];
     }
-    noc_mesh m = { .vertex_count = 4, .positions = xyz, .triangle_count = 2,
-                   .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 }, .material = material };
+    noc_mesh m = { .vertex_count = 4,
+                   .positions = xyz,
+                   .triangle_count = 2,
+                   .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+                   .material = material };
     assert_true(noc_scene_add_mesh(s, &m) >= 0);
 }
 
-#define QUAD(s, m, px, py, pz, ax, ay, az, bx, by, bz) \
+#define QUAD(s, m, px, py, pz, ax, ay, az, bx, by, bz)                                                                 \
     add_quad(s, m, (double[3]){ px, py, pz }, (double[3]){ ax, ay, az }, (double[3]){ bx, by, bz })
 
 /* A horizontal square floor around (x, y) at height z, seen from above. */

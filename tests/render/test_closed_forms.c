@@ -45,8 +45,12 @@ static void spot_over_plane(void **state) {
         add_floor(s, matte(s, 0.5f), 0, 0, 0, 40);
         double h = 5, intensity = 700, inner = 25, outer = 50;
         double ci = cos(inner * M_PI / 180), co = cos(outer * M_PI / 180);
-        noc_light l = { .kind = NOC_LIGHT_SPOT, .position = { 0, 0, h }, .direction = { 0.4 * tilted, 0.2 * tilted, -1 },
-                        .inner_deg = inner, .outer_deg = outer, .emission = { 700, 700, 700 } };
+        noc_light l = { .kind = NOC_LIGHT_SPOT,
+                        .position = { 0, 0, h },
+                        .direction = { 0.4 * tilted, 0.2 * tilted, -1 },
+                        .inner_deg = inner,
+                        .outer_deg = outer,
+                        .emission = { 700, 700, 700 } };
         assert_true(noc_scene_add_light(s, &l) >= 0);
         scene_done(s);
         double side = 16, length = sqrt(1 + 0.2 * tilted), area = side * side / (64 * 64);
@@ -93,7 +97,10 @@ static void rectangle_over_plane(void **state) {
     noc_scene *s = noc_scene_create(NULL);
     add_floor(s, matte(s, 0.4f), 0, 0, 0, 30);
     /* faces down: edge_u x edge_v = -z */
-    noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { -1, -2, 3 }, .edge_u = { 0, 4, 0 }, .edge_v = { 3, 0, 0 },
+    noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM,
+                    .position = { -1, -2, 3 },
+                    .edge_u = { 0, 4, 0 },
+                    .edge_v = { 3, 0, 0 },
                     .emission = { 50, 50, 50 } };
     assert_true(noc_scene_add_light(s, &l) >= 0);
     scene_done(s);

@@ -1,6 +1,6 @@
 /* Golden pictures of tiny scenes: what was looked at once and found right must stay so. They are EXR files beside this
- * file; NOC_GOLDEN=write makes them anew (then look at them before they are committed). A picture fails when it differs by
- * more than noise and rounding can explain; its mirror image must fail, so that the threshold is known to bite. */
+ * file; NOC_GOLDEN=write makes them anew (then look at them before they are committed). A picture fails when it differs
+ * by more than noise and rounding can explain; its mirror image must fail, so that the threshold is known to bite. */
 #include "rooms.h"
 
 #include <nocturne/import.h>
@@ -12,17 +12,28 @@ static noc_scene *corner(noc_camera *camera) {
     noc_scene *s = noc_scene_create(NULL);
     int grey = matte(s, 0.5f);
     int red = noc_scene_add_material(s, &(noc_material){ .albedo = { 0.6f, 0.2f, 0.1f }, .roughness = 1 });
-    int gloss = noc_scene_add_material(s, &(noc_material){ .albedo = { 0.1f, 0.1f, 0.2f }, .f0 = 0.3f, .roughness = 0.3f });
+    int gloss =
+        noc_scene_add_material(s, &(noc_material){ .albedo = { 0.1f, 0.1f, 0.2f }, .f0 = 0.3f, .roughness = 0.3f });
     add_floor(s, gloss, 0, 0, 0, 4);
     QUAD(s, grey, -4, 4, 0, 8, 0, 0, 0, 0, 4);
     QUAD(s, red, -4, -4, 0, 0, 8, 0, 0, 0, 4);
     QUAD(s, grey, -1, 0, 0, 1, 0, 0, 0, 0, 1.5); /* a screen that throws shadows to both sides */
     const noc_light lights[] = {
         { .kind = NOC_LIGHT_SPHERE, .position = { 1.5, 1, 1 }, .radius = 0.25, .emission = { 30, 25, 15 } },
-        { .kind = NOC_LIGHT_DISC, .position = { -2, 2, 3 }, .radius = 0.3, .direction = { 0, 0, -1 }, .emission = { 20, 30, 40 } },
-        { .kind = NOC_LIGHT_TRIANGLE, .position = { -3.9, -1, 1 }, .edge_u = { 0, 1, 0 }, .edge_v = { 0, 0, 1 },
+        { .kind = NOC_LIGHT_DISC,
+          .position = { -2, 2, 3 },
+          .radius = 0.3,
+          .direction = { 0, 0, -1 },
+          .emission = { 20, 30, 40 } },
+        { .kind = NOC_LIGHT_TRIANGLE,
+          .position = { -3.9, -1, 1 },
+          .edge_u = { 0, 1, 0 },
+          .edge_v = { 0, 0, 1 },
           .emission = { 10, 40, 10 } },
-        { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { 3, 3.9, 1 }, .edge_u = { -1.5, 0, 0 }, .edge_v = { 0, 0, -0.5 },
+        { .kind = NOC_LIGHT_PARALLELOGRAM,
+          .position = { 3, 3.9, 1 },
+          .edge_u = { -1.5, 0, 0 },
+          .edge_v = { 0, 0, -0.5 },
           .emission = { 40, 10, 30 } },
         { .kind = NOC_LIGHT_POINT, .position = { 2, -2, 2 }, .emission = { 3, 3, 3 } },
     };
@@ -85,7 +96,8 @@ static void check(const char *name, noc_scene *(*make)(noc_camera *)) {
     assert_int_equal(noc_image_compare(image, golden, &c, &right, NULL), NOC_OK);
     mirror(image);
     assert_int_equal(noc_image_compare(image, golden, &c, &wrong, NULL), NOC_OK);
-    print_message("# %s: RMSE-8 %.3f, bias %.4f; mirrored %.1f\n", name, right.all.rmse8, right.all.bias, wrong.all.rmse8);
+    print_message("# %s: RMSE-8 %.3f, bias %.4f; mirrored %.1f\n", name, right.all.rmse8, right.all.bias,
+                  wrong.all.rmse8);
     assert_true(right.all.rmse8 < 1.5);
     assert_true(fabs(right.all.bias - 1) < 0.01);
     assert_true(wrong.all.rmse8 > 15);
@@ -95,9 +107,18 @@ static void check(const char *name, noc_scene *(*make)(noc_camera *)) {
     free(path);
 }
 
-static void golden_corner(void **state) { (void)state; check("corner", corner); }
-static void golden_house(void **state) { (void)state; check("house", house); }
-static void golden_city(void **state) { (void)state; check("city", city); }
+static void golden_corner(void **state) {
+    (void)state;
+    check("corner", corner);
+}
+static void golden_house(void **state) {
+    (void)state;
+    check("house", house);
+}
+static void golden_city(void **state) {
+    (void)state;
+    check("city", city);
+}
 
 int main(void) {
     const struct CMUnitTest tests[] = {

@@ -1,4 +1,5 @@
-/* What a renderer tells of its candidates: how many lights surfaces find, and the S_r that it looked for or was given. */
+/* What a renderer tells of its candidates: how many lights surfaces find, and the S_r that it looked for or was given.
+ */
 #include "rooms.h"
 
 static noc_camera view(double t) { return look(1 + t, -10, 4, 0.5 * t, 0, 2, 60); }
@@ -22,10 +23,14 @@ static noc_light_stats stats_of(const noc_scene *s, const noc_camera *c, const n
     return found;
 }
 
-/* With volumes that hold everything every pixel finds all lights, however many; with the least of them it finds none. */
+/* With volumes that hold everything every pixel finds all lights, however many; with the least of them it finds none.
+ */
 static void number_of_lights_found(void **state) {
     (void)state;
-    static const struct { int lights; uint32_t told; } cases[] = { { 3, 3 }, { 1500, 1500 }, { 4321, 4321 }, { 70000, 65536 } };
+    static const struct {
+        int lights;
+        uint32_t told;
+    } cases[] = { { 3, 3 }, { 1500, 1500 }, { 4321, 4321 }, { 70000, 65536 } };
     noc_camera c = view(0), sky = look(0, 0, 50, 0, 0, 90, 60);
     noc_render_params p = measure(16, 8, NOC_METHOD_RIS);
     p.candidates = NOC_CANDIDATES_BVH;
@@ -50,7 +55,8 @@ static void number_of_lights_found(void **state) {
     }
 }
 
-/* S_r that was set is not looked for; the steps of building are all of it; and what S_r was set before changes nothing. */
+/* S_r that was set is not looked for; the steps of building are all of it; and what S_r was set before changes nothing.
+ */
 static void set_reach_is_not_looked_for(void **state) {
     (void)state;
     noc_scene *s = bundle(1500);
@@ -65,7 +71,8 @@ static void set_reach_is_not_looked_for(void **state) {
         p.influence_boxes = way & 1 ? NOC_INFLUENCE_VISIBLE : NOC_INFLUENCE_SPHERE;
         p.influence_cluster = way & 2 ? 8 : 1;
         noc_light_stats set = stats_of(s, &c, &p);
-        assert_true(set.tuning_seconds == 0 && set.volumes_seconds > 0 && set.hierarchy_seconds > 0 && set.influence == 2);
+        assert_true(set.tuning_seconds == 0 && set.volumes_seconds > 0 && set.hierarchy_seconds > 0 &&
+                    set.influence == 2);
         assert_true((set.boxes_seconds > 0) == (way & 1));
         double steps = set.volumes_seconds + set.hierarchy_seconds + set.boxes_seconds;
         assert_true(steps > 0 && steps <= set.build_seconds);

@@ -1,13 +1,17 @@
-/* Memory that is refused to a renderer: every allocation of its making and of its frames, alone and with all later ones. It ends in
- * a status and one message; the next frame with memory is the one that follows a cancelled frame, or a first one. */
+/* Memory that is refused to a renderer: every allocation of its making and of its frames, alone and with all later
+ * ones. It ends in a status and one message; the next frame with memory is the one that follows a cancelled frame, or a
+ * first one. */
 #include "../memory.h"
 #include "rooms.h"
 
 enum { WIDTH = 36, HEIGHT = 20, STANDING = 20, MOVING = 4 };
 
 static noc_light moving_light(int i, int frame) {
-    return (noc_light){ .kind = NOC_LIGHT_SPHERE, .position = { -4 + 2.5 * i + 0.5 * frame, 1, 2.5 }, .radius = 0.2,
-                        .emission = { 40, 30, 20 }, .moving = true };
+    return (noc_light){ .kind = NOC_LIGHT_SPHERE,
+                        .position = { -4 + 2.5 * i + 0.5 * frame, 1, 2.5 },
+                        .radius = 0.2,
+                        .emission = { 40, 30, 20 },
+                        .moving = true };
 }
 
 static void pose(noc_scene *s, int frame) {
@@ -26,10 +30,16 @@ static noc_scene *yard(void) {
     for (int i = 0; i < 6; i++)
         QUAD(s, grey, -6 + 2 * i, 1 - i % 3, 0, 1, 0, 0, 0, 0, 2);
     for (int i = 0; i < STANDING; i++) {
-        noc_light lamp = { .kind = NOC_LIGHT_DISC, .position = { -7 + 0.7 * i, 3 - 2 * (i % 3), 3.5 }, .direction = { 0, 0, -1 },
-                           .radius = 0.15, .emission = { 60, 50, 40 } };
-        noc_light window = { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { -7 + 0.7 * i, 5.99, 1 + i % 4 },
-                             .edge_u = { 0.5, 0, 0 }, .edge_v = { 0, 0, 0.6 }, .emission = { 20, 15, 10 } };
+        noc_light lamp = { .kind = NOC_LIGHT_DISC,
+                           .position = { -7 + 0.7 * i, 3 - 2 * (i % 3), 3.5 },
+                           .direction = { 0, 0, -1 },
+                           .radius = 0.15,
+                           .emission = { 60, 50, 40 } };
+        noc_light window = { .kind = NOC_LIGHT_PARALLELOGRAM,
+                             .position = { -7 + 0.7 * i, 5.99, 1 + i % 4 },
+                             .edge_u = { 0.5, 0, 0 },
+                             .edge_v = { 0, 0, 0.6 },
+                             .emission = { 20, 15, 10 } };
         assert_int_equal(noc_scene_add_light(s, i % 2 ? &lamp : &window), i);
     }
     for (int i = 0; i < MOVING; i++) {
@@ -106,7 +116,8 @@ static picture next_frame(noc_renderer *r, const noc_render_params *p) {
 
 static bool go_on(void *user, const char *what, double done) { return done < *(double *)user; }
 
-/* Cancels a frame at its beginning, or where its last stage begins: half of it where frames are reused in time and space. */
+/* Cancels a frame at its beginning, or where its last stage begins: half of it where frames are reused in time and
+ * space. */
 static void cancelled_frame(noc_renderer *r, const noc_render_params *p, double done) {
     noc_progress progress = { go_on, &done };
     assert_int_equal(noc_renderer_frame(r, camera(), p, &progress), NOC_ERR_CANCELLED);
@@ -198,7 +209,8 @@ static void moved_frame(const config *c) {
         }
         noc_renderer_destroy(r);
     }
-    if (c->candidates == NOC_CANDIDATES_LISTS || c->candidates == NOC_CANDIDATES_BVH || c->candidates == NOC_CANDIDATES_TREE)
+    if (c->candidates == NOC_CANDIDATES_LISTS || c->candidates == NOC_CANDIDATES_BVH ||
+        c->candidates == NOC_CANDIDATES_TREE)
         assert_true(refused > 0); /* what is built over moved lights is built anew */
     noc_renderer_destroy(untouched);
     noc_log_destroy(log);

@@ -1,5 +1,6 @@
-/* Lights that move: frames under a moving camera have the reference's mean whatever the candidates and the reuse; a scene whose
- * lights were moved looks like one that was made with them there; and what a frame accumulates starts anew. */
+/* Lights that move: frames under a moving camera have the reference's mean whatever the candidates and the reuse; a
+ * scene whose lights were moved looks like one that was made with them there; and what a frame accumulates starts anew.
+ */
 #include "unbiased.h"
 
 enum { MOVING = 24 };
@@ -8,12 +9,18 @@ static double turn(double x) { return x - floor(x); }
 
 /* A light that moves, in a frame: each jumps metres from frame to frame, turns around, and some flicker. */
 static noc_light light_at(int i, int frame) {
-    double a = turn(0.618 * i + 0.23 * frame), b = turn(0.387 * i + 0.41 * frame), c = 2 * M_PI * turn(0.71 * i + 0.3 * frame);
+    double a = turn(0.618 * i + 0.23 * frame), b = turn(0.387 * i + 0.41 * frame),
+           c = 2 * M_PI * turn(0.71 * i + 0.3 * frame);
     float power = 1 + (float)((i + frame) % 3);
-    noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT), .moving = true,
+    noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT),
+                    .moving = true,
                     .position = { -9 + 17 * a, -7 + 12 * b, 3.4 + 2.5 * turn(0.17 * i) },
-                    .edge_u = { 0.8 * cos(c), 0.8 * sin(c), 0 }, .edge_v = { 0.2 * sin(c), -0.2 * cos(c), 0.7 },
-                    .direction = { cos(c), sin(c), -0.6 }, .radius = 0.25, .inner_deg = 25, .outer_deg = 60,
+                    .edge_u = { 0.8 * cos(c), 0.8 * sin(c), 0 },
+                    .edge_v = { 0.2 * sin(c), -0.2 * cos(c), 0.7 },
+                    .direction = { cos(c), sin(c), -0.6 },
+                    .radius = 0.25,
+                    .inner_deg = 25,
+                    .outer_deg = 60,
                     .emission = { 30 * power, 25 * power, 15 * power } };
     if (i % 7 == 3 && frame % 2)
         memset(l.emission, 0, sizeof(l.emission)); /* out, every other frame */
@@ -31,7 +38,8 @@ static void pose(noc_scene *s, int frame) {
 static noc_scene *crossing(int frame) {
     noc_scene *s = noc_scene_create(NULL);
     int wall = matte(s, 0.5f);
-    int wet = noc_scene_add_material(s, &(noc_material){ .albedo = { 0.15f, 0.16f, 0.2f }, .f0 = 0.05f, .roughness = 0.3f });
+    int wet =
+        noc_scene_add_material(s, &(noc_material){ .albedo = { 0.15f, 0.16f, 0.2f }, .f0 = 0.05f, .roughness = 0.3f });
     add_floor(s, wet, 0, 0, 0, 15);
     QUAD(s, wall, -10, 8, 0, 20, 0, 0, 0, 0, 8);
     for (int i = 0; i < 8; i++) {
@@ -40,8 +48,11 @@ static noc_scene *crossing(int frame) {
         QUAD(s, wall, x + 1.5, y, 0, 0, 1.5, 0, 0, 0, 2.5);
     }
     for (int i = 0; i < MOVING; i++) {
-        noc_light stands = { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { -9 + 0.75 * i, 7.99, 1 + i % 4 },
-                             .edge_u = { 0.5, 0, 0 }, .edge_v = { 0, 0, 0.6 }, .emission = { 20, 15, 10 } };
+        noc_light stands = { .kind = NOC_LIGHT_PARALLELOGRAM,
+                             .position = { -9 + 0.75 * i, 7.99, 1 + i % 4 },
+                             .edge_u = { 0.5, 0, 0 },
+                             .edge_v = { 0, 0, 0.6 },
+                             .emission = { 20, 15, 10 } };
         noc_light moves = light_at(i, frame);
         assert_int_equal(noc_scene_add_light(s, &stands), 2 * i);
         assert_int_equal(noc_scene_add_light(s, &moves), 2 * i + 1);
@@ -62,8 +73,8 @@ static const config configs[] = {
     { "pairwise + rays, tree", RESTIR(PAIRWISE), .rays = true, .reuse = true, .picker = NOC_CANDIDATES_TREE },
     { "pairwise + rays, bvh", RESTIR(PAIRWISE), .rays = true, .reuse = true, .picker = NOC_CANDIDATES_BVH },
     { "pairwise + rays, lists of 12", RESTIR(PAIRWISE), .rays = true, .reuse = true, .list = 12 },
-    { "pairwise + rays in time, lists of 12", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .rays = true, .reuse = true,
-      .list = 12, .shadow_rays = 4 },
+    { "pairwise + rays in time, lists of 12", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .rays = true,
+      .reuse = true, .list = 12, .shadow_rays = 4 },
     { "pairwise unshadowed, uniform", RESTIR(PAIRWISE) },
     { "mis + rays, uniform", RESTIR(MIS), .rays = true, .reuse = true },
     { "mis + rays, lists of 12", RESTIR(MIS), .rays = true, .reuse = true, .list = 12 },
@@ -96,8 +107,8 @@ static void assert_same_picture(noc_image *a, noc_image *b) {
     noc_image_destroy(b);
 }
 
-/* Nothing that a renderer has built for lights where they were is left: same bits as a scene made with them where they are.
- * Trees are refitted, not built as they would be, so that other candidates are drawn from them. */
+/* Nothing that a renderer has built for lights where they were is left: same bits as a scene made with them where they
+ * are. Trees are refitted, not built as they would be, so that other candidates are drawn from them. */
 static void moved_is_as_if_made_there(void **state) {
     (void)state;
     for (size_t i = 0; i < NOC_COUNT(configs); i++) {
@@ -120,7 +131,8 @@ static void moved_is_as_if_made_there(void **state) {
     }
 }
 
-/* Threads and instruction sets change no bit, the refitted tree's candidates and the previous frame's lights included. */
+/* Threads and instruction sets change no bit, the refitted tree's candidates and the previous frame's lights included.
+ */
 static void same_bits_on_the_move(void **state) {
     (void)state;
     for (size_t i = 0; i < NOC_COUNT(configs); i++) {

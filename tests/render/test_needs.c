@@ -1,4 +1,5 @@
-/* What the option tables say that options need is so: without it an option changes no bit of any picture, with it it does. */
+/* What the option tables say that options need is so: without it an option changes no bit of any picture, with it it
+ * does. */
 #include "rooms.h"
 
 #include <nocturne/option.h>
@@ -6,11 +7,31 @@
 enum { SIDE = 24, FRAMES = 3 };
 
 /* Another value than the default for each option that needs something. */
-static const struct { const char *name, *value; } others[] = {
-    { "candidates", "power" }, { "draws", "5" }, { "list", "8" }, { "tail", "4" }, { "shadow-rays", "2" }, { "learn", "false" },
-    { "influence", "0.5" }, { "influence-boxes", "visible" }, { "influence-cluster", "16" }, { "uniform-every", "2" }, { "rays", "3" },
-    { "temporal", "false" }, { "spatial", "false" }, { "neighbours", "2" }, { "radius", "2" }, { "passes", "2" }, { "history", "1" },
-    { "bias", "biased" }, { "bias-rays", "false" }, { "visibility-reuse", "false" }, { "reject-depth", "0" }, { "reject-normal", "1" },
+static const struct {
+    const char *name, *value;
+} others[] = {
+    { "candidates", "power" },
+    { "draws", "5" },
+    { "list", "8" },
+    { "tail", "4" },
+    { "shadow-rays", "2" },
+    { "learn", "false" },
+    { "influence", "0.5" },
+    { "influence-boxes", "visible" },
+    { "influence-cluster", "16" },
+    { "uniform-every", "2" },
+    { "rays", "3" },
+    { "temporal", "false" },
+    { "spatial", "false" },
+    { "neighbours", "2" },
+    { "radius", "2" },
+    { "passes", "2" },
+    { "history", "1" },
+    { "bias", "biased" },
+    { "bias-rays", "false" },
+    { "visibility-reuse", "false" },
+    { "reject-depth", "0" },
+    { "reject-normal", "1" },
 };
 
 static const char *other_value(const char *option) {
@@ -43,8 +64,11 @@ static noc_scene *yard(void) {
         QUAD(s, grey, 3 * i - 1, 0.5 * i, 0, 2, 0.7, 0, 0, 0, 4);
     QUAD(s, grey, -20, 3.05, 0, 40, 0, 0, 0, 0, 20);
     for (int i = 0; i < 225; i++)
-        assert_true(noc_scene_add_light(s, &(noc_light){ .kind = NOC_LIGHT_SPHERE, .radius = 0.1, .emission = { 90, 80 + i % 9, 60 },
-                                                         .position = { i % 15 - 7, 1.1 * (i / 15 - 7), 2 + 0.1 * (i % 7) } }) >= 0);
+        assert_true(noc_scene_add_light(s, &(noc_light){ .kind = NOC_LIGHT_SPHERE,
+                                                         .radius = 0.1,
+                                                         .emission = { 90, 80 + i % 9, 60 },
+                                                         .position = { i % 15 - 7, 1.1 * (i / 15 - 7),
+                                                                       2 + 0.1 * (i % 7) } }) >= 0);
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     return s;
 }
@@ -125,7 +149,9 @@ static void without_it_does_not(void **state) {
 }
 
 static void it_is_told_what_is_missing(void **state) {
-    static const struct { const char *option, *other, *value, *why; } cases[] = {
+    static const struct {
+        const char *option, *other, *value, *why;
+    } cases[] = {
         { "shadow-rays", "method", "is", "it needs method ris|restir, not is" },
         { "draws", "candidates", "lists", "it needs candidates uniform|power|bvh|tree, not lists" },
         { "learn", "final-ray", "false", "it needs final-ray true, not false" },
@@ -135,7 +161,8 @@ static void it_is_told_what_is_missing(void **state) {
         const noc_option *other = find(cases[i].other, strlen(cases[i].other));
         char why[120];
         noc_render_params p = set(other, noc_render_default_params(), cases[i].value);
-        assert_true(noc_option_idle(find(cases[i].option, strlen(cases[i].option)), noc_render_options(), &p, why, sizeof(why)));
+        assert_true(noc_option_idle(find(cases[i].option, strlen(cases[i].option)), noc_render_options(), &p, why,
+                                    sizeof(why)));
         assert_string_equal(why, cases[i].why);
     }
 }

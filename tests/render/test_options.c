@@ -8,7 +8,11 @@ static noc_display_params display;
 static noc_import_params import;
 static noc_city_params city;
 
-static const struct { const noc_option *(*table)(void); void *params; size_t size; } tables[] = {
+static const struct {
+    const noc_option *(*table)(void);
+    void *params;
+    size_t size;
+} tables[] = {
     { noc_render_options, &render, sizeof(render) },
     { noc_display_options, &display, sizeof(display) },
     { noc_import_options, &import, sizeof(import) },
@@ -31,7 +35,8 @@ static const noc_option *find(const noc_option *table, const char *name) {
     return NULL;
 }
 
-/* Fields lie in their struct without overlapping, and names are unique over all tables, since one command line takes all. */
+/* Fields lie in their struct without overlapping, and names are unique over all tables, since one command line takes
+ * all. */
 static void rows_are_sound(void **state) {
     bool fresh;
     noc_map names = { 0 };
@@ -70,7 +75,8 @@ static void defaults_round_trip(void **state) {
     }
 }
 
-/* Every choice and both ends of every range are taken and read back; one step beyond is an error that changes nothing. */
+/* Every choice and both ends of every range are taken and read back; one step beyond is an error that changes nothing.
+ */
 static void ranges_and_choices(void **state) {
     for (size_t t = 0; t < NOC_COUNT(tables); t++) {
         for (const noc_option *o = tables[t].table(); o->name; o++) {
@@ -116,8 +122,11 @@ static void ranges_and_choices(void **state) {
 
 static void bools(void **state) {
     const noc_option *o = find(noc_render_options(), "temporal");
-    static const struct { const char *text; bool value; } good[] = { { NULL, true }, { "off", false }, { "on", true },
-        { "No", false }, { "YES", true }, { "0", false }, { "1", true }, { "false", false }, { "true", true } };
+    static const struct {
+        const char *text;
+        bool value;
+    } good[] = { { NULL, true }, { "off", false }, { "on", true },     { "No", false }, { "YES", true },
+                 { "0", false }, { "1", true },    { "false", false }, { "true", true } };
     for (size_t i = 0; i < NOC_COUNT(good); i++) {
         render.temporal = !good[i].value;
         assert_int_equal(noc_option_set(o, &render, good[i].text, NULL), NOC_OK);
@@ -131,7 +140,10 @@ static void bools(void **state) {
 static void ignore(void *user, noc_log_level level, const char *text) {}
 
 static void bad_values_are_told(void **state) {
-    static const struct { const noc_option *(*table)(void); const char *name, *value, *part; } bad[] = {
+    static const struct {
+        const noc_option *(*table)(void);
+        const char *name, *value, *part;
+    } bad[] = {
         { noc_render_options, "width", "abc", "not a number" },
         { noc_render_options, "width", "0", "1 to 32768 px" },
         { noc_render_options, "width", "-3", "outside" },
@@ -151,10 +163,13 @@ static void bad_values_are_told(void **state) {
         { noc_city_options, "city-size", "149", "150 to 5000 m" },
     };
     for (size_t i = 0; i < NOC_COUNT(bad); i++) {
-        void *params = bad[i].table == noc_render_options ? (void *)&render : bad[i].table == noc_display_options ? (void *)&display
-            : bad[i].table == noc_import_options ? (void *)&import : (void *)&city;
+        void *params = bad[i].table == noc_render_options    ? (void *)&render
+                       : bad[i].table == noc_display_options ? (void *)&display
+                       : bad[i].table == noc_import_options  ? (void *)&import
+                                                             : (void *)&city;
         noc_log *log = noc_log_create(&(noc_log_params){ .message = ignore });
-        assert_int_equal(noc_option_set(find(bad[i].table(), bad[i].name), params, bad[i].value, log), NOC_ERR_ARGUMENT);
+        assert_int_equal(noc_option_set(find(bad[i].table(), bad[i].name), params, bad[i].value, log),
+                         NOC_ERR_ARGUMENT);
         if (!strstr(noc_log_last_error(log), bad[i].part) || !strstr(noc_log_last_error(log), bad[i].name))
             fail_msg("%s=%s: \"%s\"", bad[i].name, bad[i].value ? bad[i].value : "", noc_log_last_error(log));
         noc_log_destroy(log);
@@ -208,14 +223,10 @@ static void reals_survive_locales(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(rows_are_sound, setup),
-        cmocka_unit_test_setup(defaults_round_trip, setup),
-        cmocka_unit_test_setup(ranges_and_choices, setup),
-        cmocka_unit_test_setup(bools, setup),
-        cmocka_unit_test_setup(bad_values_are_told, setup),
-        cmocka_unit_test_setup(text_points_at_the_callers, setup),
-        cmocka_unit_test_setup(texts_add_up, setup),
-        cmocka_unit_test_setup(reals_survive_locales, setup),
+        cmocka_unit_test_setup(rows_are_sound, setup),      cmocka_unit_test_setup(defaults_round_trip, setup),
+        cmocka_unit_test_setup(ranges_and_choices, setup),  cmocka_unit_test_setup(bools, setup),
+        cmocka_unit_test_setup(bad_values_are_told, setup), cmocka_unit_test_setup(text_points_at_the_callers, setup),
+        cmocka_unit_test_setup(texts_add_up, setup),        cmocka_unit_test_setup(reals_survive_locales, setup),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* The renderer's contract: errors, empty scenes, cancelling, what is kept from frame to frame, the same picture on every
- * path and number of threads. */
+/* The renderer's contract: errors, empty scenes, cancelling, what is kept from frame to frame, the same picture on
+ * every path and number of threads. */
 #include "rooms.h"
 
 #include <nocturne/option.h>
@@ -7,7 +7,8 @@
 static noc_scene *small_street(int lights, bool floor) {
     noc_scene *s = noc_scene_create(NULL);
     int wall = matte(s, 0.5f);
-    int wet = noc_scene_add_material(s, &(noc_material){ .albedo = { 0.2f, 0.15f, 0.1f }, .f0 = 0.05f, .roughness = 0.4f });
+    int wet =
+        noc_scene_add_material(s, &(noc_material){ .albedo = { 0.2f, 0.15f, 0.1f }, .f0 = 0.05f, .roughness = 0.4f });
     if (floor) {
         add_floor(s, wet, 0, 0, 0, 20);
         QUAD(s, wall, -8, 6, 0, 16, 0, 0, 0, 0, 8);
@@ -15,9 +16,14 @@ static noc_scene *small_street(int lights, bool floor) {
             QUAD(s, wall, -5 + 4 * i, 1, 0, 1.5, 0.5, 0, 0, 0, 3);
     }
     for (int i = 0; i < lights; i++) {
-        noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT), .inner_deg = 30, .outer_deg = 60,
+        noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT),
+                        .inner_deg = 30,
+                        .outer_deg = 60,
                         .position = { -7 + 0.31 * i, 5.9 - 0.2 * (i % 5), 1 + i % 7 },
-                        .edge_u = { 0.4, 0, 0 }, .edge_v = { 0, 0, 0.7 }, .direction = { 0, -1, -0.5 }, .radius = 0.1,
+                        .edge_u = { 0.4, 0, 0 },
+                        .edge_v = { 0, 0, 0.7 },
+                        .direction = { 0, -1, -0.5 },
+                        .radius = 0.1,
                         .emission = { 20.f + (float)i, 25, 10 } };
         assert_true(noc_scene_add_light(s, &l) >= 0);
     }
@@ -72,14 +78,31 @@ static noc_render_params variant(int i) {
     p.list = 6; /* of 40 lights */
     p.tail = 5;
     switch (i) {
-    case 0: p.method = NOC_METHOD_REFERENCE; p.rays = 7; break;
-    case 1: p.method = NOC_METHOD_REFERENCE; p.rays = 100; break; /* more rays than lights */
+    case 0:
+        p.method = NOC_METHOD_REFERENCE;
+        p.rays = 7;
+        break;
+    case 1:
+        p.method = NOC_METHOD_REFERENCE;
+        p.rays = 100;
+        break; /* more rays than lights */
     case 2: p.method = NOC_METHOD_IS; break;
     case 3: p.method = NOC_METHOD_RIS; break;
     case 4: p.bias = NOC_BIAS_BIASED; break;
-    case 5: p.bias = NOC_BIAS_MIS; p.passes = 3; break;
-    case 6: p.bias = NOC_BIAS_PAIRWISE; p.passes = 2; p.neighbours = 16; p.radius = 30; break;
-    case 7: p.visibility_reuse = false; p.bias_rays = false; break;
+    case 5:
+        p.bias = NOC_BIAS_MIS;
+        p.passes = 3;
+        break;
+    case 6:
+        p.bias = NOC_BIAS_PAIRWISE;
+        p.passes = 2;
+        p.neighbours = 16;
+        p.radius = 30;
+        break;
+    case 7:
+        p.visibility_reuse = false;
+        p.bias_rays = false;
+        break;
     case 8: p.final_ray = false; break;
     case 9: p.temporal = false; break;
     case 10: p.spatial = false; break;
@@ -88,7 +111,11 @@ static noc_render_params variant(int i) {
     case 13: p.candidates = NOC_CANDIDATES_POWER; break;
     case 14: p.candidates = NOC_CANDIDATES_BVH; break;
     case 15: p.candidates = NOC_CANDIDATES_TREE; break;
-    case 16: p.method = NOC_METHOD_RIS; p.shadow_rays = 8; p.learn = false; break;
+    case 16:
+        p.method = NOC_METHOD_RIS;
+        p.shadow_rays = 8;
+        p.learn = false;
+        break;
     }
     return p;
 }
@@ -114,7 +141,8 @@ static void instruction_sets_agree(void **state) {
         noc_image_destroy(a);
     }
     for (noc_isa isa = NOC_ISA_BASELINE; isa < NOC_ISA_COUNT; isa++)
-        print_message("# %s %s\n", noc_isa_name(isa), noc_isa_runs(isa) ? "compared with scalar" : "not compared: this processor has none");
+        print_message("# %s %s\n", noc_isa_name(isa),
+                      noc_isa_runs(isa) ? "compared with scalar" : "not compared: this processor has none");
     noc_scene_destroy(s);
 }
 
@@ -156,7 +184,8 @@ static void an_instruction_set_is_forced(void **state) {
     setenv("NOCTURNE_ISA", "mmx", 1);
     assert_string_equal(code_of(s, NOC_ISA_AUTO, &status, error), "");
     assert_int_equal(status, NOC_ERR_ARGUMENT);
-    assert_string_equal(error, "NOCTURNE_ISA: \"mmx\" is no instruction set, must be auto, scalar, baseline, avx2 or avx512");
+    assert_string_equal(error,
+                        "NOCTURNE_ISA: \"mmx\" is no instruction set, must be auto, scalar, baseline, avx2 or avx512");
     unsetenv("NOCTURNE_ISA");
     assert_string_equal(code_of(s, NOC_ISA_AUTO, &status, error), code[widest]);
     if (outer)
@@ -208,8 +237,8 @@ static void empty_scenes(void **state) {
     noc_scene_destroy(s);
 }
 
-/* Lamps brighter than the sun that touch, hold or lie in what they light, slivers, a camera in a wall: not one number that is
- * not finite reaches the picture. */
+/* Lamps brighter than the sun that touch, hold or lie in what they light, slivers, a camera in a wall: not one number
+ * that is not finite reaches the picture. */
 static void hostile_scenes(void **state) {
     (void)state;
     noc_scene *s = noc_scene_create(NULL);
@@ -218,10 +247,15 @@ static void hostile_scenes(void **state) {
     QUAD(s, mirror, -20, 3, -1, 40, 0, 0, 0, 0, 1e-5);
     QUAD(s, mirror, 1, -10, 3.5, 1e-3, 0, 0, 0, 0, 9); /* through the camera's eye */
     for (int i = 0; i < 25; i++) {
-        noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT), .inner_deg = 30, .outer_deg = 60,
+        noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT),
+                        .inner_deg = 30,
+                        .outer_deg = 60,
                         .position = { -2 + 0.2 * i, 0.1 * (i % 4), i < 10 ? 0 : 1e-4 * i },
-                        .edge_u = { i % 3 ? 1e-4 : 3, 0, 0 }, .edge_v = { 0, 2, i % 2 }, .direction = { 0, 0, -1 },
-                        .radius = i % 2 ? 1e-4 : 4, .emission = { 1e12f, 1e-30f, 1e12f } };
+                        .edge_u = { i % 3 ? 1e-4 : 3, 0, 0 },
+                        .edge_v = { 0, 2, i % 2 },
+                        .direction = { 0, 0, -1 },
+                        .radius = i % 2 ? 1e-4 : 4,
+                        .emission = { 1e12f, 1e-30f, 1e12f } };
         assert_true(noc_scene_add_light(s, &l) >= 0);
     }
     assert_int_equal(noc_scene_commit(s), NOC_OK);
@@ -245,11 +279,19 @@ static void wrong_arguments(void **state) {
     assert_null(noc_renderer_create(s, &(noc_renderer_params){ .threads = -3 }, log));
     noc_renderer *r = noc_renderer_create(s, NULL, log);
     noc_camera c = view(0);
-    const struct { const char *name; size_t at; bool real; } fields[] = {
-        { "width", offsetof(noc_render_params, width) },           { "height", offsetof(noc_render_params, height) },
-        { "draws", offsetof(noc_render_params, draws) }, { "rays", offsetof(noc_render_params, rays) },
-        { "neighbours", offsetof(noc_render_params, neighbours) }, { "passes", offsetof(noc_render_params, passes) },
-        { "radius", offsetof(noc_render_params, radius), true },   { "history", offsetof(noc_render_params, history), true },
+    const struct {
+        const char *name;
+        size_t at;
+        bool real;
+    } fields[] = {
+        { "width", offsetof(noc_render_params, width) },
+        { "height", offsetof(noc_render_params, height) },
+        { "draws", offsetof(noc_render_params, draws) },
+        { "rays", offsetof(noc_render_params, rays) },
+        { "neighbours", offsetof(noc_render_params, neighbours) },
+        { "passes", offsetof(noc_render_params, passes) },
+        { "radius", offsetof(noc_render_params, radius), true },
+        { "history", offsetof(noc_render_params, history), true },
         { "reject_normal", offsetof(noc_render_params, reject_normal), true },
         { "reject_depth", offsetof(noc_render_params, reject_depth), true },
         { "sky", offsetof(noc_render_params, sky), true },
@@ -277,7 +319,7 @@ static void wrong_arguments(void **state) {
     bad[4].target[0] = 1e30;
     for (size_t i = 0; i < NOC_COUNT(bad); i++)
         assert_int_equal(noc_renderer_frame(r, &bad[i], &p, NULL), NOC_ERR_ARGUMENT);
-    assert_null(noc_renderer_image(r)); /* nothing has been rendered */
+    assert_null(noc_renderer_image(r));      /* nothing has been rendered */
     p.width = p.height = NOC_IMAGE_MAX_SIDE; /* 170 GB and more: refused before anything is allocated */
     if ((uint64_t)sysconf(_SC_PHYS_PAGES) * (uint64_t)sysconf(_SC_PAGESIZE) < (uint64_t)150e9) {
         assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_ERR_MEMORY);
@@ -285,7 +327,7 @@ static void wrong_arguments(void **state) {
     }
     p = measure(16, 16, NOC_METHOD_RIS);
     assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK); /* and it still works */
-    noc_camera down = look(0, 0, 9, 0, 0, 0, 60); /* along up */
+    noc_camera down = look(0, 0, 9, 0, 0, 0, 60);                  /* along up */
     assert_int_equal(noc_renderer_frame(r, &down, &p, NULL), NOC_OK);
     noc_renderer_destroy(r);
     noc_renderer_destroy(NULL);
@@ -303,9 +345,14 @@ static void negative_choices_and_no_params(void **state) {
     noc_scene *s = small_street(3, true);
     noc_renderer *r = noc_renderer_create(s, NULL, log);
     noc_camera c = view(0);
-    static const struct { const char *says; size_t at; } fields[] = {
-        { "method is -1,", offsetof(noc_render_params, method) }, { "candidates is -1,", offsetof(noc_render_params, candidates) },
-        { "bias is -1,", offsetof(noc_render_params, bias) },     { "isa is -1,", offsetof(noc_render_params, isa) },
+    static const struct {
+        const char *says;
+        size_t at;
+    } fields[] = {
+        { "method is -1,", offsetof(noc_render_params, method) },
+        { "candidates is -1,", offsetof(noc_render_params, candidates) },
+        { "bias is -1,", offsetof(noc_render_params, bias) },
+        { "isa is -1,", offsetof(noc_render_params, isa) },
     };
     for (size_t i = 0; i < NOC_COUNT(fields); i++) {
         noc_render_params p = noc_render_default_params();
@@ -354,7 +401,8 @@ static void coverage_of_emitters(void **state) {
         covered += v[3];
     }
     assert_true(edges >= 8 && inside >= 40);
-    /* From 30 m under 60 degrees the picture is 34.64 m high, so a pixel 2.165 m wide; the part of the quad in it is 17.32 x 20 m. */
+    /* From 30 m under 60 degrees the picture is 34.64 m high, so a pixel 2.165 m wide; the part of the quad in it
+     * is 17.32 x 20 m. */
     assert_true(fabs(covered - 17.32 * 20 / (2.165 * 2.165)) < 1);
     noc_image_destroy(image);
     noc_scene_destroy(s);
@@ -399,7 +447,8 @@ static void cancelled_frames(void **state) {
     noc_scene_destroy(s);
 }
 
-/* A small picture may leave the calling thread no tile, yet it can be cancelled; what was reused is reused by the next frame. */
+/* A small picture may leave the calling thread no tile, yet it can be cancelled; what was reused is reused by the next
+ * frame. */
 static void history_outlives_a_cancelled_frame(void **state) {
     (void)state;
     noc_scene *s = small_street(40, true);
@@ -502,8 +551,11 @@ static void frames_and_resets(void **state) {
 static void emitter_mask(void **state) {
     (void)state;
     noc_scene *s = noc_scene_create(NULL);
-    noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { -0.5, 0, -0.5 }, .edge_u = { 1, 0, 0 },
-                    .edge_v = { 0, 0, 1 }, .emission = { 5, 5, 5 } }; /* faces -y, and fills a tenth of the picture */
+    noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM,
+                    .position = { -0.5, 0, -0.5 },
+                    .edge_u = { 1, 0, 0 },
+                    .edge_v = { 0, 0, 1 },
+                    .emission = { 5, 5, 5 } }; /* faces -y, and fills a tenth of the picture */
     assert_true(noc_scene_add_light(s, &l) >= 0);
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     noc_render_params p = measure(40, 40, NOC_METHOD_RIS);
@@ -536,13 +588,13 @@ static void emitter_mask(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(instruction_sets_agree),
-        cmocka_unit_test(an_instruction_set_is_forced), cmocka_unit_test(threads_and_seeds), cmocka_unit_test(empty_scenes),
-        cmocka_unit_test(coverage_of_emitters),
-        cmocka_unit_test(wrong_arguments),       cmocka_unit_test(cancelled_frames),
-        cmocka_unit_test(history_outlives_a_cancelled_frame), cmocka_unit_test(frames_and_resets),
-        cmocka_unit_test(emitter_mask),          cmocka_unit_test(hostile_scenes),
-        cmocka_unit_test(negative_choices_and_no_params), cmocka_unit_test(any_other_parameter),
+        cmocka_unit_test(instruction_sets_agree), cmocka_unit_test(an_instruction_set_is_forced),
+        cmocka_unit_test(threads_and_seeds),      cmocka_unit_test(empty_scenes),
+        cmocka_unit_test(coverage_of_emitters),   cmocka_unit_test(wrong_arguments),
+        cmocka_unit_test(cancelled_frames),       cmocka_unit_test(history_outlives_a_cancelled_frame),
+        cmocka_unit_test(frames_and_resets),      cmocka_unit_test(emitter_mask),
+        cmocka_unit_test(hostile_scenes),         cmocka_unit_test(negative_choices_and_no_params),
+        cmocka_unit_test(any_other_parameter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Shadow rays at both ends: nothing leaks, nothing shadows itself, near the origin and far from it; one-sided emission; sky. */
+/* Shadow rays at both ends: nothing leaks, nothing shadows itself, near the origin and far from it; one-sided emission;
+ * sky. */
 #include "rooms.h"
 
 #include "core/sky.h"
@@ -10,8 +11,8 @@ static double sum(const noc_image *image) {
     return s;
 }
 
-/* A wall at y = 0 facing -y, a floor before it, and a window `off` metres before (or behind) the wall, turned by 30 degrees
- * around z so that nothing is aligned with an axis. */
+/* A wall at y = 0 facing -y, a floor before it, and a window `off` metres before (or behind) the wall, turned by 30
+ * degrees around z so that nothing is aligned with an axis. */
 static noc_scene *walled(double x0, double y0, double off, double angle) {
     noc_scene *s = noc_scene_create(NULL);
     int m = matte(s, 0.5f);
@@ -20,7 +21,9 @@ static noc_scene *walled(double x0, double y0, double off, double angle) {
     add_floor(s, m, x0, y0, 0, 30);
     noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM,
                     .position = { x0 - c + off * d, y0 - d - off * c, 1 },
-                    .edge_u = { 2 * c, 2 * d, 0 }, .edge_v = { 0, 0, 1.5 }, .emission = { 10, 10, 10 } };
+                    .edge_u = { 2 * c, 2 * d, 0 },
+                    .edge_v = { 0, 0, 1.5 },
+                    .emission = { 10, 10, 10 } };
     assert_true(noc_scene_add_light(s, &l) >= 0);
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     return s;
@@ -62,10 +65,16 @@ static void no_acne(void **state) {
             noc_scene *s = noc_scene_create(NULL);
             int m = matte(s, 0.5f);
             for (int i = 0; i < 8; i++) /* a shallow valley: no facet hides another from the lamp */
-                QUAD(s, m, far - 8 + 2 * i, far - 20, 0.05 * (i - 4) * (i - 4), 2, 0, 0.05 * (2 * (i - 4) + 1), 0, 40, 0);
-            noc_light l = { .kind = (noc_light_kind)kind, .position = { far + 0.3, far, 9 }, .radius = 0.2,
-                            .edge_u = { 0, 0.5, 0 }, .edge_v = { 0.5, 0, 0 }, .direction = { 0, 0, -1 },
-                            .outer_deg = 90, .emission = { 500, 500, 500 } };
+                QUAD(s, m, far - 8 + 2 * i, far - 20, 0.05 * (i - 4) * (i - 4), 2, 0, 0.05 * (2 * (i - 4) + 1), 0, 40,
+                     0);
+            noc_light l = { .kind = (noc_light_kind)kind,
+                            .position = { far + 0.3, far, 9 },
+                            .radius = 0.2,
+                            .edge_u = { 0, 0.5, 0 },
+                            .edge_v = { 0.5, 0, 0 },
+                            .direction = { 0, 0, -1 },
+                            .outer_deg = 90,
+                            .emission = { 500, 500, 500 } };
             assert_true(noc_scene_add_light(s, &l) >= 0);
             assert_int_equal(noc_scene_commit(s), NOC_OK);
             noc_camera c = look(far, far - 14, 12, far, far, 0, 40);
@@ -93,7 +102,8 @@ static void expect_unshadowed(noc_scene *s, const noc_camera *c, bool dark) {
     assert_true(sum(open) > 1);
     int wrong = 0;
     for (int k = 0; k < 48 * 32 * 3; k++)
-        wrong += open->rgb[k] > 1e-3f && traced->rgb[k] != (dark ? 0 : open->rgb[k]); /* less: surfaces in the light's plane */
+        /* less: surfaces in the light's plane */
+        wrong += open->rgb[k] > 1e-3f && traced->rgb[k] != (dark ? 0 : open->rgb[k]);
     assert_int_equal(wrong, 0);
     noc_image_destroy(traced);
     noc_image_destroy(open);
@@ -109,8 +119,11 @@ static void point_in_a_surface(void **state) {
         int m = matte(s, 0.5f);
         add_floor(s, m, far, far, 0, 6);
         QUAD(s, m, far - 8, far - 8, 3 - 8 * rise, 0, 16, 0, 16, 0, 16 * rise);
-        noc_light l = { .kind = i % 2 ? NOC_LIGHT_SPOT : NOC_LIGHT_POINT, .position = { far + 0.5, far + 1, 3 + 0.5 * rise },
-                        .direction = { 0, 0, -1 }, .outer_deg = 90, .emission = { 100, 100, 100 } };
+        noc_light l = { .kind = i % 2 ? NOC_LIGHT_SPOT : NOC_LIGHT_POINT,
+                        .position = { far + 0.5, far + 1, 3 + 0.5 * rise },
+                        .direction = { 0, 0, -1 },
+                        .outer_deg = 90,
+                        .emission = { 100, 100, 100 } };
         assert_true(noc_scene_add_light(s, &l) >= 0);
         assert_int_equal(noc_scene_commit(s), NOC_OK);
         noc_camera c = look(far, far - 4, 1.5, far + 0.5, far, 0, 60);
@@ -128,31 +141,39 @@ static void small_model(void **state) {
         add_floor(s, m, 0.001, 0.002, 0.003, 0.012);
         if (sheet)
             QUAD(s, m, -0.011, -0.01, 0.00302, 0.024, 0, 0, 0, 0.024, 0);
-        noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { 0, 0, 0.009 }, .edge_u = { 0, 0.002, 0 },
-                        .edge_v = { 0.002, 0, 0 }, .emission = { 50, 50, 50 } };
+        noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM,
+                        .position = { 0, 0, 0.009 },
+                        .edge_u = { 0, 0.002, 0 },
+                        .edge_v = { 0.002, 0, 0 },
+                        .emission = { 50, 50, 50 } };
         assert_true(noc_scene_add_light(s, &l) >= 0);
         assert_int_equal(noc_scene_commit(s), NOC_OK);
         /* under the sheet: from between the two the floor is seen at a slant */
-        noc_camera c = sheet ? look(0.001, -0.0095, 0.003015, 0.001, 0, 0.003, 20) : look(0.001, -0.03, 0.03, 0.001, 0, 0.003, 20);
+        noc_camera c =
+            sheet ? look(0.001, -0.0095, 0.003015, 0.001, 0, 0.003, 20) : look(0.001, -0.03, 0.03, 0.001, 0, 0.003, 20);
         expect_unshadowed(s, &c, sheet);
         noc_scene_destroy(s);
     }
 }
 
-/* What leaves a lamp as it is seen: the solid angle of its pixels times its luminance is that of the true sphere or disc. */
+/* What leaves a lamp as it is seen: the solid angle of its pixels times its luminance is that of the true sphere or
+ * disc. */
 static void lamps_as_seen(void **state) {
     (void)state;
     enum { SIDE = 200, VIEWS = 24 };
     for (int kind = NOC_LIGHT_SPHERE; kind <= NOC_LIGHT_DISC; kind++) {
         noc_scene *s = noc_scene_create(NULL);
-        noc_light l = { .kind = (noc_light_kind)kind, .radius = 0.15, .direction = { 0, 0, 1 }, .emission = { 70, 70, 70 } };
+        noc_light l = {
+            .kind = (noc_light_kind)kind, .radius = 0.15, .direction = { 0, 0, 1 }, .emission = { 70, 70, 70 }
+        };
         assert_true(noc_scene_add_light(s, &l) >= 0);
         assert_int_equal(noc_scene_commit(s), NOC_OK);
         noc_render_params p = measure(SIDE, SIDE, NOC_METHOD_RIS);
         double mean = 0, half = 0.25, distance = 100;
         for (int i = 0; i < VIEWS; i++) {
             double z = 0.2 + 0.8 * (i + 0.5) / VIEWS, r = sqrt(1 - z * z), t = 2.399963 * i;
-            noc_camera c = look(distance * r * cos(t), distance * r * sin(t), distance * z, 0, 0, 0, 2 * atan(half / distance) * 180 / M_PI);
+            noc_camera c = look(distance * r * cos(t), distance * r * sin(t), distance * z, 0, 0, 0,
+                                2 * atan(half / distance) * 180 / M_PI);
             noc_image *image = render(s, &c, &p, 1);
             double area = sum(image) / 70 * (2 * half / SIDE) * (2 * half / SIDE) / (M_PI * 0.15 * 0.15);
             if (kind == NOC_LIGHT_DISC)
@@ -238,7 +259,8 @@ static void sky_light(void **state) {
     noc_scene_destroy(s);
 }
 
-/* Light of the sky that a floor sends towards wo, by the midpoint rule: no sampling, so nothing of core/sky.h but the sky. */
+/* Light of the sky that a floor sends towards wo, by the midpoint rule: no sampling, so nothing of core/sky.h but the
+ * sky. */
 static double sky_integral(surf s, double zenith) {
     enum { RINGS = 4000, TURNS = 2880 };
     double total = 0;
@@ -254,7 +276,9 @@ static double sky_integral(surf s, double zenith) {
 static double sky_on_floor(double albedo, double f0, double roughness, double height, int frames, uint32_t seed,
                            double want, double *noise) {
     noc_scene *s = noc_scene_create(NULL);
-    noc_material m = { .albedo = { (float)albedo, (float)albedo, (float)albedo }, .f0 = (float)f0, .roughness = (float)roughness };
+    noc_material m = { .albedo = { (float)albedo, (float)albedo, (float)albedo },
+                       .f0 = (float)f0,
+                       .roughness = (float)roughness };
     add_floor(s, noc_scene_add_material(s, &m), 0, 0, 0, 50);
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     noc_render_params p = measure(64, 64, NOC_METHOD_RIS);
@@ -271,22 +295,27 @@ static double sky_on_floor(double albedo, double f0, double roughness, double he
     return mean;
 }
 
-/* Matte, satin, glossy and nearly mirroring floors, black and white, seen from above and at a grazing angle: the mean over
- * independent pixels of one frame, and over frames, is the integral. */
+/* Matte, satin, glossy and nearly mirroring floors, black and white, seen from above and at a grazing angle: the mean
+ * over independent pixels of one frame, and over frames, is the integral. */
 static void sky_on_gloss(void **state) {
     (void)state;
-    static const struct { double albedo, f0, roughness, height; } floors[] = {
-        { 0.5, 0, 1, 6 },      { 0.8, 0.04, 0.4, 6 }, { 0.8, 0.04, 0.15, 1.5 }, { 0, 0.5, 0.3, 4 },
-        { 0.3, 0.5, 0.1, 8 },  { 0, 0.04, 0.15, 6 },  { 0.05, 0.02, 0.3, 0.7 }, { 0.2, 1, 0.6, 3 },
+    static const struct {
+        double albedo, f0, roughness, height;
+    } floors[] = {
+        { 0.5, 0, 1, 6 },     { 0.8, 0.04, 0.4, 6 }, { 0.8, 0.04, 0.15, 1.5 }, { 0, 0.5, 0.3, 4 },
+        { 0.3, 0.5, 0.1, 8 }, { 0, 0.04, 0.15, 6 },  { 0.05, 0.02, 0.3, 0.7 }, { 0.2, 1, 0.6, 3 },
     };
     for (size_t i = 0; i < NOC_COUNT(floors); i++) {
         double h = floors[i].height, d = sqrt(100 + h * h), noise;
-        surf s = { .n = { 0, 0, 1 }, .wo = { 0, (float)(-10 / d), (float)(h / d) }, .f0 = (float)floors[i].f0,
+        surf s = { .n = { 0, 0, 1 },
+                   .wo = { 0, (float)(-10 / d), (float)(h / d) },
+                   .f0 = (float)floors[i].f0,
                    .albedo = { (float)floors[i].albedo, (float)floors[i].albedo, (float)floors[i].albedo },
                    .alpha = (float)(floors[i].roughness * floors[i].roughness) };
         double want = sky_integral(s, 0.2);
         for (int frames = 1; frames <= 16; frames += 15) {
-            double mean = sky_on_floor(floors[i].albedo, floors[i].f0, floors[i].roughness, h, frames, (uint32_t)i, want, &noise);
+            double mean =
+                sky_on_floor(floors[i].albedo, floors[i].f0, floors[i].roughness, h, frames, (uint32_t)i, want, &noise);
             double error = noise / 64; /* 4096 independent pixels */
             print_message("# albedo %g f0 %g roughness %g: %d frames %.5f of %.5f, noise %.3f\n", floors[i].albedo,
                           floors[i].f0, floors[i].roughness, frames, mean, want, noise);
@@ -315,15 +344,9 @@ static void horizon_fades(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(windows_near_walls),
-        cmocka_unit_test(no_acne),
-        cmocka_unit_test(point_in_a_surface),
-        cmocka_unit_test(small_model),
-        cmocka_unit_test(lamps_as_seen),
-        cmocka_unit_test(one_sided),
-        cmocka_unit_test(sky_light),
-        cmocka_unit_test(sky_on_gloss),
-        cmocka_unit_test(horizon_fades),
+        cmocka_unit_test(windows_near_walls), cmocka_unit_test(no_acne),       cmocka_unit_test(point_in_a_surface),
+        cmocka_unit_test(small_model),        cmocka_unit_test(lamps_as_seen), cmocka_unit_test(one_sided),
+        cmocka_unit_test(sky_light),          cmocka_unit_test(sky_on_gloss),  cmocka_unit_test(horizon_fades),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,25 @@
 /* Views of surfaces, held to the scene. */
 #include "views.h"
 
-/* The last frame's surfaces: each pixel's depth leads to the floor, whose class and object it tells; emitters are surfaces too. */
+/* The last frame's surfaces: each pixel's depth leads to the floor, whose class and object it tells; emitters are
+ * surfaces too. */
 static void surfaces_that_are_seen(void **state) {
     noc_scene *s = noc_scene_create(NULL);
-    int road = noc_scene_add_material(s, &(noc_material){ .albedo = { 0.2f, 0.2f, 0.2f }, .roughness = 1, .cls = NOC_CLASS_ROAD });
-    noc_mesh floor = { .vertex_count = 4, .positions = (double[]){ -9, -9, 0, 9, -9, 0, 9, 9, 0, -9, 9, 0 }, .triangle_count = 2,
-                       .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 }, .material = road, .name = "A7" };
+    int road = noc_scene_add_material(s, &(noc_material){
+                                             .albedo = { 0.2f, 0.2f, 0.2f }, .roughness = 1, .cls = NOC_CLASS_ROAD });
+    noc_mesh floor = { .vertex_count = 4,
+                       .positions = (double[]){ -9, -9, 0, 9, -9, 0, 9, 9, 0, -9, 9, 0 },
+                       .triangle_count = 2,
+                       .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+                       .material = road,
+                       .name = "A7" };
     assert_true(noc_scene_add_mesh(s, &floor) >= 0);
-    noc_light lamp = { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { -2, 1, 2 }, .edge_u = { 3, 0, 0 }, .edge_v = { 0, 0, 2 },
-                       .emission = { 9, 9, 9 }, .name = "sign" }; /* faces -y, where the camera is */
+    noc_light lamp = { .kind = NOC_LIGHT_PARALLELOGRAM,
+                       .position = { -2, 1, 2 },
+                       .edge_u = { 3, 0, 0 },
+                       .edge_v = { 0, 0, 2 },
+                       .emission = { 9, 9, 9 },
+                       .name = "sign" }; /* faces -y, where the camera is */
     assert_true(noc_scene_add_light(s, &lamp) >= 0);
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     noc_render_params p = with(NOC_METHOD_RIS, NOC_CANDIDATES_LISTS,

@@ -1,6 +1,7 @@
-/* Noise, which no test of bias sees: an unbiased method that loses what holds its noise down is still unbiased. Each test measures
- * one such thing where it matters, over seeds, against the same method without reuse or learning, in relative mean square error of
- * single frames. Limits lie between what is measured with it and without it; both are told, and so is the spread over seeds. */
+/* Noise, which no test of bias sees: an unbiased method that loses what holds its noise down is still unbiased. Each
+ * test measures one such thing where it matters, over seeds, against the same method without reuse or learning, in
+ * relative mean square error of single frames. Limits lie between what is measured with it and without it; both are
+ * told, and so is the spread over seeds. */
 #include "rooms.h"
 
 enum { W = 96, H = 48, SEEDS = 16 };
@@ -53,12 +54,13 @@ static noc_image *true_picture(noc_scene *s, noc_camera c) {
 
 static void many_points(noc_scene *s, double y_front, double y_behind) {
     for (int i = 0; i < 200; i++)
-        point_light(s, -9 + 0.09 * i, i % 2 ? y_behind + 0.01 * (i % 90) : y_front - 0.01 * (i % 70), -4 + 0.41 * (i % 20),
-                    1 + (float)(i % 5));
+        point_light(s, -9 + 0.09 * i, i % 2 ? y_behind + 0.01 * (i % 90) : y_front - 0.01 * (i % 70),
+                    -4 + 0.41 * (i % 20), 1 + (float)(i % 5));
     assert_int_equal(noc_scene_commit(s), NOC_OK);
 }
 
-/* Slats before a wall, with lamps before them and between: a pixel that a slat has left saw it from another distance. */
+/* Slats before a wall, with lamps before them and between: a pixel that a slat has left saw it from another distance.
+ */
 static noc_scene *slats(void) {
     noc_scene *s = noc_scene_create(NULL);
     int grey = matte(s, 0.5f);
@@ -76,7 +78,8 @@ static noc_scene *folds(void) {
     for (int i = -40; i < 40; i++)
         QUAD(s, grey, 0.25 * i, i % 2 ? 0.25 : 0, -10, 0.25, i % 2 ? -0.25 : 0.25, 0, 0, 0, 20);
     for (int i = 0; i < 200; i++)
-        point_light(s, (i % 2 ? 9 : -9) + 0.01 * (i % 97), -9 - 0.01 * (i % 89), -4 + 0.041 * i, 30 + 10 * (float)(i % 5));
+        point_light(s, (i % 2 ? 9 : -9) + 0.01 * (i % 97), -9 - 0.01 * (i % 89), -4 + 0.041 * i,
+                    30 + 10 * (float)(i % 5));
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     return s;
 }
@@ -84,9 +87,9 @@ static noc_scene *folds(void) {
 static noc_camera passing(int step) { return look(0.3 * step, -6, 0, 0.3 * step, 0, 0, 40); }
 static noc_camera turning(int step) { return look(0.12 * step, -6, 0, 0.12 * step, 0, 0, 40); }
 
-/* Is reuse in time worth it? Share of the error without it that is left, against `limit`. Measured, with and without the check
- * (16 seeds, standard errors 0.01 and, without the check, up to 0.08): slats, mis 0.56 and 1.37, pairwise 0.56 and 0.82; folds, mis
- * 0.86 and 1.25. (Pairwise weights need no check of normals there: 0.80 and 0.64.) */
+/* Is reuse in time worth it? Share of the error without it that is left, against `limit`. Measured, with and without
+ * the check (16 seeds, standard errors 0.01 and, without the check, up to 0.08): slats, mis 0.56 and 1.37, pairwise
+ * 0.56 and 0.82; folds, mis 0.86 and 1.25. (Pairwise weights need no check of normals there: 0.80 and 0.64.) */
 static bool reuse_pays(noc_scene *s, path_fn path, noc_bias bias, double limit) {
     enum { FRAMES = 4 };
     noc_image *truth = true_picture(s, path(FRAMES - 1));
@@ -101,7 +104,8 @@ static bool reuse_pays(noc_scene *s, path_fn path, noc_bias bias, double limit) 
     double with = error_along(s, path, p, FRAMES, NULL, truth, &spread);
     double without = error_along(s, path, q, FRAMES, NULL, truth, &spread_without);
     print_message("# %s: relMSE %.4f +- %.4f with reuse, %.4f +- %.4f without: %.3f, must be under %.2f\n",
-                  bias == NOC_BIAS_MIS ? "mis" : "pairwise", with, spread, without, spread_without, with / without, limit);
+                  bias == NOC_BIAS_MIS ? "mis" : "pairwise", with, spread, without, spread_without, with / without,
+                  limit);
     noc_image_destroy(truth);
     return with / without < limit;
 }
@@ -129,12 +133,14 @@ static noc_camera still(int step) {
 }
 
 static void rise(noc_scene *s, bool up) {
-    noc_light l = { .kind = NOC_LIGHT_POINT, .moving = true, .position = { 0, 2, up ? 3 : -0.5 }, .emission = { 30, 30, 30 } };
+    noc_light l = {
+        .kind = NOC_LIGHT_POINT, .moving = true, .position = { 0, 2, up ? 3 : -0.5 }, .emission = { 30, 30, 30 }
+    };
     assert_int_equal(noc_scene_move_light(s, 0, &l), NOC_OK);
 }
 
-/* A lamp that was learned to be hidden, under the floor, and comes up. Measured: 0.14, and 0.52 where the pull of a light is the
- * root of its visibility and nothing else. */
+/* A lamp that was learned to be hidden, under the floor, and comes up. Measured: 0.14, and 0.52 where the pull of a
+ * light is the root of its visibility and nothing else. */
 static void a_light_thought_hidden_is_still_asked_for(void **state) {
     (void)state;
     noc_scene *s = noc_scene_create(NULL);
@@ -158,7 +164,8 @@ static void a_light_thought_hidden_is_still_asked_for(void **state) {
     noc_scene_destroy(s);
 }
 
-/* A strong light that few points see, through slits in a roof, and a dozen weak ones: as many as fit several times into a list. */
+/* A strong light that few points see, through slits in a roof, and a dozen weak ones: as many as fit several times into
+ * a list. */
 static void rays_go_to_different_lights_of_a_short_list(void **state) {
     (void)state;
     noc_scene *s = noc_scene_create(NULL);
@@ -179,7 +186,8 @@ static void rays_go_to_different_lights_of_a_short_list(void **state) {
         e[many] = error_along(s, still, p, 1, NULL, truth, &spread);
         print_message("# %d rays: relMSE %.4f +- %.4f\n", p.shadow_rays, e[many], spread);
     }
-    /* Measured: 0.09; 1 where a list's copies of its lights come round after round, and systematic draws find one light in each. */
+    /* Measured: 0.09; 1 where a list's copies of its lights come round after round, and systematic draws find one light
+     * in each. */
     assert_true(e[1] < e[0] / 4);
     noc_image_destroy(truth);
     noc_scene_destroy(s);

@@ -17,16 +17,24 @@ static noc_scene *lit_floor(int lights) {
 static noc_scene *street(int lights) {
     noc_scene *s = noc_scene_create(NULL);
     int wall = matte(s, 0.5f);
-    int wet = noc_scene_add_material(s, &(noc_material){ .albedo = { 0.2f, 0.15f, 0.1f }, .f0 = 0.05f, .roughness = 0.4f });
-    int lamp = noc_scene_add_material(s, &(noc_material){ .albedo = { 0.5f, 0.5f, 0.5f }, .roughness = 1, .emission = { 30, 20, 10 } });
+    int wet =
+        noc_scene_add_material(s, &(noc_material){ .albedo = { 0.2f, 0.15f, 0.1f }, .f0 = 0.05f, .roughness = 0.4f });
+    int lamp =
+        noc_scene_add_material(s, &(noc_material){
+                                      .albedo = { 0.5f, 0.5f, 0.5f }, .roughness = 1, .emission = { 30, 20, 10 } });
     add_floor(s, wet, 0, 0, 0, 20);
     QUAD(s, wall, -8, 6, 0, 16, 0, 0, 0, 0, 5);
     QUAD(s, wall, -3, 1, 0, 1.5, 0.5, 0, 0, 0, 3);
     QUAD(s, lamp, 0, 5.9, 1, 2, 0, 0, 0, 0, 1);
     for (int i = 0; i < lights; i++) {
-        noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT), .inner_deg = 30, .outer_deg = 60,
+        noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT),
+                        .inner_deg = 30,
+                        .outer_deg = 60,
                         .position = { -7 + 0.31 * i, 5.7 - 0.2 * (i % 5), 1 + i % 7 },
-                        .edge_u = { 0.4, 0, 0 }, .edge_v = { 0, 0, 0.7 }, .direction = { 0, -1, -0.5 }, .radius = 0.1,
+                        .edge_u = { 0.4, 0, 0 },
+                        .edge_v = { 0, 0, 0.7 },
+                        .direction = { 0, -1, -0.5 },
+                        .radius = 0.1,
                         .emission = { 20.f + (float)i, 25, 10 } };
         assert_true(noc_scene_add_light(s, &l) >= 0);
     }
@@ -37,7 +45,8 @@ static noc_scene *street(int lights) {
 static noc_camera above(void) { return look(0.3, -14, 9, 0, 0, 0, 60); }
 static noc_camera along(void) { return look(1, -10, 4, 0, 0, 2.5, 60); }
 
-/* Of two pixels' places on the floor, the largest distance within the pixel's tile of 16x16: such points may ask together. */
+/* Of two pixels' places on the floor, the largest distance within the pixel's tile of 16x16: such points may ask
+ * together. */
 static double tile_size(const noc_camera *c, const noc_render_params *p, int pixel) {
     double size = 0, q[2][3];
     int x = pixel % W & ~15, y = pixel / W & ~15;
@@ -49,8 +58,8 @@ static double tile_size(const noc_camera *c, const noc_render_params *p, int pix
     return size;
 }
 
-/* Influence volumes counted light by light: a point light's is a ball of radius S_r sqrt(I). One that holds the pixel is found,
- * and one that is further away than the pixels that ask with it is not. */
+/* Influence volumes counted light by light: a point light's is a ball of radius S_r sqrt(I). One that holds the pixel
+ * is found, and one that is further away than the pixels that ask with it is not. */
 static void lights_found_by_the_volumes(void **state) {
     (void)state;
     enum { LIGHTS = 60 };
@@ -106,8 +115,8 @@ static void entries_of_lists(void **state) {
     }
 }
 
-/* What a picker's definition in docs/estimator.md says of the light that was chosen; held: volumes that hold the pixel, or the
- * pixels within `apart` of it that ask with it. */
+/* What a picker's definition in docs/estimator.md says of the light that was chosen; held: volumes that hold the pixel,
+ * or the pixels within `apart` of it that ask with it. */
 static double expected(noc_candidates candidates, const noc_camera *c, const noc_render_params *p, int pixel, int light,
                        int held, int lights, double apart) {
     double q[3], u = held ? ceil((double)p->draws / p->uniform_every) : p->draws;
@@ -124,15 +133,22 @@ static double expected(noc_candidates candidates, const noc_camera *c, const noc
 
 static void densities(void **state) {
     (void)state;
-    static const struct { noc_candidates candidates; int lights; } cases[] = {
-        { NOC_CANDIDATES_UNIFORM, 20 }, { NOC_CANDIDATES_POWER, 20 }, { NOC_CANDIDATES_BVH, 20 }, { NOC_CANDIDATES_TREE, 1 },
+    static const struct {
+        noc_candidates candidates;
+        int lights;
+    } cases[] = {
+        { NOC_CANDIDATES_UNIFORM, 20 },
+        { NOC_CANDIDATES_POWER, 20 },
+        { NOC_CANDIDATES_BVH, 20 },
+        { NOC_CANDIDATES_TREE, 1 },
     };
     noc_camera c = above();
     for (size_t k = 0; k < NOC_COUNT(cases); k++) {
         noc_candidates candidates = cases[k].candidates;
         bool bvh = candidates == NOC_CANDIDATES_BVH;
         noc_scene *s = lit_floor(cases[k].lights);
-        noc_render_params p = with(NOC_METHOD_RIS, candidates, 1u << NOC_AOV_DENSITY | 1u << NOC_AOV_LIGHT | (uint32_t)bvh << NOC_AOV_LIGHTS);
+        noc_render_params p = with(NOC_METHOD_RIS, candidates,
+                                   1u << NOC_AOV_DENSITY | 1u << NOC_AOV_LIGHT | (uint32_t)bvh << NOC_AOV_LIGHTS);
         p.influence = 1.37;
         noc_renderer *r = rendered(s, &c, &p, 1, 2);
         noc_channel *density = view(r, NOC_AOV_DENSITY), *light = view(r, NOC_AOV_LIGHT);
@@ -146,7 +162,8 @@ static void densities(void **state) {
             for (int together = 0; together < 2; together++)
                 right[together] = expected(candidates, &c, &p, i, (int)light->value[i], held ? (int)held->value[i] : 0,
                                            cases[k].lights, together ? tile_size(&c, &p, i) : 0);
-            assert_true(fabs(density->value[i] - right[0]) <= 1e-4 * right[0] || fabs(density->value[i] - right[1]) <= 1e-4 * right[1]);
+            assert_true(fabs(density->value[i] - right[0]) <= 1e-4 * right[0] ||
+                        fabs(density->value[i] - right[1]) <= 1e-4 * right[1]);
             doubtful += right[0] != right[1];
             checked++;
         }
@@ -159,7 +176,8 @@ static void densities(void **state) {
     }
 }
 
-/* A listed light is an entry once, for certain. Of a list with one entry, drawn from many lights, W is that entry's weight. */
+/* A listed light is an entry once, for certain. Of a list with one entry, drawn from many lights, W is that entry's
+ * weight. */
 static void densities_of_lists(void **state) {
     (void)state;
     noc_camera c = above();
@@ -244,7 +262,8 @@ static void weights(void **state) {
                 if (light->value[i] >= 0)
                     of_frame[(int)light->value[i]] += weight->value[i];
             }
-            for (int l = 0; l < LIGHTS; l++) { /* the pixels of a list's tile share its tail: only frames are independent */
+            /* the pixels of a list's tile share its tail: only frames are independent */
+            for (int l = 0; l < LIGHTS; l++) {
                 sum[l] += of_frame[l] / pixels;
                 squares[l] += of_frame[l] / pixels * of_frame[l] / pixels;
             }
@@ -260,7 +279,8 @@ static void weights(void **state) {
     noc_scene_destroy(s);
 }
 
-/* M: the draws of one frame, one more frame's worth with every frame of history, up to the cap; one more with each neighbour. */
+/* M: the draws of one frame, one more frame's worth with every frame of history, up to the cap; one more with each
+ * neighbour. */
 static void confidence(void **state) {
     (void)state;
     noc_scene *s = lit_floor(10);
@@ -299,7 +319,9 @@ static void rays(void **state) {
     noc_scene *s = street(30);
     noc_camera c = along();
     for (int i = 0; i < 6; i++) {
-        noc_render_params p = with(i < 2 ? NOC_METHOD_REFERENCE : i < 4 ? NOC_METHOD_RIS : NOC_METHOD_RESTIR,
+        noc_render_params p = with(i < 2   ? NOC_METHOD_REFERENCE
+                                   : i < 4 ? NOC_METHOD_RIS
+                                           : NOC_METHOD_RESTIR,
                                    i & 1 ? NOC_CANDIDATES_LISTS : NOC_CANDIDATES_UNIFORM, 1u << NOC_AOV_RAYS);
         p.sky = i & 1 ? 0.1 : 0;
         p.bias = i == 4 ? NOC_BIAS_MIS : NOC_BIAS_PAIRWISE;
@@ -363,7 +385,8 @@ static void variance(void **state) {
         }
         assert_true(fabs(v->value[i] - right) <= 1e-4 * right + 1e-6 * mean * mean);
         if (mean > 0)
-            assert_true(fabs(e->value[i] - sqrt(right / USED) / mean) <= 1e-3 * e->value[i] + 1e-3 * (right < 1e-4 * mean * mean));
+            assert_true(fabs(e->value[i] - sqrt(right / USED) / mean) <=
+                        1e-3 * e->value[i] + 1e-3 * (right < 1e-4 * mean * mean));
         else
             assert_true(e->value[i] == -1);
         some += right > 0;
@@ -380,8 +403,12 @@ static void variance(void **state) {
 /* ---- what no view may change, and what may not change a view ---- */
 
 static noc_render_params any(int i) {
-    static const noc_candidates from[] = { NOC_CANDIDATES_BVH, NOC_CANDIDATES_LISTS, NOC_CANDIDATES_TREE, NOC_CANDIDATES_POWER };
-    noc_render_params p = with(i < 4 ? NOC_METHOD_RESTIR : i < 6 ? NOC_METHOD_RIS : i == 6 ? NOC_METHOD_REFERENCE : NOC_METHOD_IS,
+    static const noc_candidates from[] = { NOC_CANDIDATES_BVH, NOC_CANDIDATES_LISTS, NOC_CANDIDATES_TREE,
+                                           NOC_CANDIDATES_POWER };
+    noc_render_params p = with(i < 4    ? NOC_METHOD_RESTIR
+                               : i < 6  ? NOC_METHOD_RIS
+                               : i == 6 ? NOC_METHOD_REFERENCE
+                                        : NOC_METHOD_IS,
                                from[i % 4], ALL);
     p.width = 45; /* neither a multiple of 4 nor of 16 */
     p.height = 31;
@@ -480,7 +507,12 @@ static void wrong_requests(void **state) {
     noc_scene *s = street(3);
     noc_camera c = along();
     noc_renderer *r = noc_renderer_create(s, NULL, log);
-    static const struct { noc_method method; noc_candidates candidates; uint32_t aovs; const char *says; } bad[] = {
+    static const struct {
+        noc_method method;
+        noc_candidates candidates;
+        uint32_t aovs;
+        const char *says;
+    } bad[] = {
         { NOC_METHOD_RIS, NOC_CANDIDATES_UNIFORM, 1u << NOC_AOV_LIGHTS, "\"lights\": only" },
         { NOC_METHOD_RESTIR, NOC_CANDIDATES_TREE, 1u << NOC_AOV_LIGHTS, "\"lights\": only" },
         { NOC_METHOD_IS, NOC_CANDIDATES_BVH, 1u << NOC_AOV_LIGHTS, "\"lights\": only" },

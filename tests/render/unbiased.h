@@ -1,4 +1,5 @@
-/* Means of independent short runs against the reference, in every tile and over the whole picture, at some frames of a run. */
+/* Means of independent short runs against the reference, in every tile and over the whole picture, at some frames of a
+ * run. */
 #ifndef NOC_TEST_UNBIASED_H
 #define NOC_TEST_UNBIASED_H
 
@@ -7,7 +8,10 @@
 enum { W = 24, H = 16, TILE = 8, TILES = (W / TILE) * (H / TILE), FRAMES = 6, CHECKS = 3 };
 static const int check_at[CHECKS] = { 1, 3, 6 };
 
-typedef struct { double sum[TILES + 1], square[TILES + 1]; size_t n; } moments;
+typedef struct {
+    double sum[TILES + 1], square[TILES + 1];
+    size_t n;
+} moments;
 
 static inline void add_picture(moments *m, const noc_image *image) {
     double tile[TILES + 1] = { 0 };
@@ -43,13 +47,13 @@ typedef struct config {
     noc_bias bias;
     bool temporal, spatial, rays, reuse;
     int passes, neighbours;
-    int list; /* > 0: lists of so many lights and as many draws from the rest */
+    int list;              /* > 0: lists of so many lights and as many draws from the rest */
     noc_candidates picker; /* list = 0 */
     noc_influence_boxes boxes;
     double influence; /* bvh: S_r; 0: found */
-    int share; /* bvh: lights a volume; 0: 1 */
-    int times; /* so many times the runs, where rare draws from all lights are worth much; 0: 1 */
-    int shadow_rays; /* ris with lists; 0: the default */
+    int share;        /* bvh: lights a volume; 0: 1 */
+    int times;        /* so many times the runs, where rare draws from all lights are worth much; 0: 1 */
+    int shadow_rays;  /* ris with lists; 0: the default */
     bool unlearned;
 } config;
 
@@ -82,7 +86,9 @@ static inline noc_render_params params_of(const config *c, uint32_t seed) {
     return p;
 }
 
-typedef struct result { moments at[CHECKS]; } result;
+typedef struct result {
+    moments at[CHECKS];
+} result;
 
 /* Moves a scene's lights to where they are in a frame. */
 typedef void (*pose_fn)(noc_scene *s, int frame);

@@ -4,7 +4,13 @@
 
 #include "rooms.h"
 
-enum { W = 40, H = 24, N = W * H, ALL = (1u << NOC_AOV_COUNT) - 1, MOMENTS = 1u << NOC_AOV_VARIANCE | 1u << NOC_AOV_ERROR };
+enum {
+    W = 40,
+    H = 24,
+    N = W * H,
+    ALL = (1u << NOC_AOV_COUNT) - 1,
+    MOMENTS = 1u << NOC_AOV_VARIANCE | 1u << NOC_AOV_ERROR
+};
 
 static inline noc_render_params with(noc_method method, noc_candidates candidates, uint32_t aovs) {
     noc_render_params p = measure(W, H, method);
@@ -14,7 +20,8 @@ static inline noc_render_params with(noc_method method, noc_candidates candidate
     return p;
 }
 
-static inline noc_renderer *rendered(const noc_scene *s, const noc_camera *c, const noc_render_params *p, int frames, int threads) {
+static inline noc_renderer *rendered(const noc_scene *s, const noc_camera *c, const noc_render_params *p, int frames,
+                                     int threads) {
     noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = threads }, NULL);
     for (int i = 0; i < frames; i++)
         assert_int_equal(noc_renderer_frame(r, c, p, NULL), NOC_OK);

@@ -13,8 +13,13 @@ static void add_box(noc_scene *scene, noc_class cls, double x0, double y0, doubl
         p[3 * i + 1] = i & 2 ? y1 : y0;
         p[3 * i + 2] = i & 4 ? z1 : z0;
     }
-    static const uint32_t faces[36] = { 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5 };
-    noc_mesh mesh = { .vertex_count = 8, .positions = p, .triangle_count = 12, .indices = faces, .material = noc_scene_add_material(scene, &m) };
+    static const uint32_t faces[36] = { 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                        2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5 };
+    noc_mesh mesh = { .vertex_count = 8,
+                      .positions = p,
+                      .triangle_count = 12,
+                      .indices = faces,
+                      .material = noc_scene_add_material(scene, &m) };
     assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
 }
 
@@ -96,7 +101,7 @@ static void check_street(const noc_scene *scene) {
     assert_true(top - ground < 0.3); /* under the open sky */
     double dx = c.target[0] - c.eye[0], dy = c.target[1] - c.eye[1], l = hypot(dx, dy);
     uint32_t solid = ~(1u << NOC_CLASS_LAMP | 1u << NOC_CLASS_TREE); /* arms and boughs may hang over the view */
-    for (double d = 0; d < 12; d += 0.5) { /* nothing in front of the nose */
+    for (double d = 0; d < 12; d += 0.5) {                           /* nothing in front of the nose */
         double z;
         assert_true(noc_scene_highest(scene, solid, c.eye[0] + d * dx / l, c.eye[1] + d * dy / l, &z));
         assert_true(z < c.eye[2] + 0.5);
@@ -105,7 +110,8 @@ static void check_street(const noc_scene *scene) {
     for (size_t i = 0; i < scene->lights.len; i++) {
         const noc_light_record *r = &scene->lights.data[i];
         double p[3] = { r->p[0], r->p[1], r->p[2] }, x, y;
-        lamps += (r->kind == NOC_LIGHT_SPHERE || r->kind == NOC_LIGHT_DISC) && project(&c, aspect, p, &x, &y) && fabs(x) < 1 && fabs(y) < 1;
+        lamps += (r->kind == NOC_LIGHT_SPHERE || r->kind == NOC_LIGHT_DISC) && project(&c, aspect, p, &x, &y) &&
+                 fabs(x) < 1 && fabs(y) < 1;
     }
     assert_true(lamps >= 3);
 }
@@ -161,7 +167,11 @@ static void test_one_lamp(void **state) {
     add_box(scene, NOC_CLASS_ROAD, -100, -100, 100, 100, -1, 0);
     add_box(scene, NOC_CLASS_WALL, -100, -60, 100, -6, 0, 15);
     add_box(scene, NOC_CLASS_WALL, -100, 6, 100, 60, 0, 15);
-    noc_light lamp = { .kind = NOC_LIGHT_DISC, .position = { 10, 0, 8 }, .direction = { 0, 0, -1 }, .radius = 0.2, .emission = { 9e3f, 9e3f, 9e3f } };
+    noc_light lamp = { .kind = NOC_LIGHT_DISC,
+                       .position = { 10, 0, 8 },
+                       .direction = { 0, 0, -1 },
+                       .radius = 0.2,
+                       .emission = { 9e3f, 9e3f, 9e3f } };
     assert_true(noc_scene_add_light(scene, &lamp) == 0);
     all_views(scene);
     noc_camera c;
@@ -173,7 +183,8 @@ static void test_one_lamp(void **state) {
     noc_scene_destroy(scene);
 }
 
-/* A panel let into the ceiling: it lights the room where it looks down, or both ways, and then the room is seen from inside. */
+/* A panel let into the ceiling: it lights the room where it looks down, or both ways, and then the room is seen from
+ * inside. */
 static void test_panel(void **state) {
     for (int i = 0; i < 4; i++) {
         bool down = i & 1, both = i & 2;
@@ -182,12 +193,17 @@ static void test_panel(void **state) {
         noc_material glow = { .roughness = 1, .emission = { 9, 9, 9 }, .two_sided = both };
         static const double p[12] = { 2, 3, 3, 4, 3, 3, 4, 5, 3, 2, 5, 3 };
         static const uint32_t faces[2][6] = { { 0, 1, 2, 0, 2, 3 }, { 2, 1, 0, 3, 2, 0 } };
-        noc_mesh panel = { .vertex_count = 4, .positions = p, .triangle_count = 2, .indices = faces[down], .material = noc_scene_add_material(scene, &glow) };
+        noc_mesh panel = { .vertex_count = 4,
+                           .positions = p,
+                           .triangle_count = 2,
+                           .indices = faces[down],
+                           .material = noc_scene_add_material(scene, &glow) };
         assert_true(noc_scene_add_mesh(scene, &panel) >= 0);
         assert_int_equal(noc_scene_commit(scene), NOC_OK);
         noc_camera c;
         assert_int_equal(noc_scene_camera(scene, NOC_VIEW_OWN, 1.5, &c), NOC_OK);
-        assert_true((c.eye[0] > 0 && c.eye[0] < 6 && c.eye[1] > 0 && c.eye[1] < 8 && c.eye[2] > 0 && c.eye[2] < 3) == (down || both));
+        assert_true((c.eye[0] > 0 && c.eye[0] < 6 && c.eye[1] > 0 && c.eye[1] < 8 && c.eye[2] > 0 && c.eye[2] < 3) ==
+                    (down || both));
         noc_scene_destroy(scene);
     }
 }
@@ -242,16 +258,20 @@ static void test_room(void **state) {
         for (int k = 0; k < 2; k++) {
             double s = k ? 20 : 1, x = 6 * s, y = 8 * s, z = 3 * s;
             char warning[128] = "";
-            noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = keep_warning, .user = warning });
+            noc_log *log =
+                noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = keep_warning, .user = warning });
             noc_scene *scene = noc_scene_create(log);
             add_box(scene, NOC_CLASS_OTHER, 0, 0, x, y, 0, z);
             add_box(scene, NOC_CLASS_OTHER, .1 * x, .1 * y, .3 * x, .3 * y, 0, .9 * z); /* a cupboard in a corner */
-            noc_light lamp = { .kind = NOC_LIGHT_POINT, .position = { 3 * s, 4 * s, outside ? 3.5 * s : 2.5 * s }, .emission = { 9, 9, 9 } };
+            noc_light lamp = { .kind = NOC_LIGHT_POINT,
+                               .position = { 3 * s, 4 * s, outside ? 3.5 * s : 2.5 * s },
+                               .emission = { 9, 9, 9 } };
             assert_int_equal(noc_scene_add_light(scene, &lamp), 0);
             all_views(scene);
             noc_camera c;
             assert_int_equal(noc_scene_camera(scene, NOC_VIEW_STREET, 1.5, &c), NOC_OK);
-            assert_non_null(strstr(warning, outside ? "so it is seen from outside" : "so it is seen from inside")); /* not the street asked for */
+            /* not the street asked for */
+            assert_non_null(strstr(warning, outside ? "so it is seen from outside" : "so it is seen from inside"));
             *warning = 0;
             assert_int_equal(noc_scene_camera(scene, NOC_VIEW_OWN, 1.5, &c), NOC_OK);
             assert_string_equal(warning, "");
@@ -290,15 +310,18 @@ static void test_odd_scenes(void **state) {
     assert_int_equal(noc_scene_camera(scene, NOC_VIEW_STREET, 1, &c), NOC_ERR_ARGUMENT);
 
     static const double triangles[][9] = {
-        { 0, 0, 0, 1, 0, 0, 0, 1, 0 },                                     /* small, flat */
-        { 5, 5, 0, 5, 5, 3, 5, 6, 0 },                                     /* upright */
-        { -3e5, 0, 10, 4e5, 100, 20, 0, 2e5, 30 },                         /* very large */
+        { 0, 0, 0, 1, 0, 0, 0, 1, 0 },                                           /* small, flat */
+        { 5, 5, 0, 5, 5, 3, 5, 6, 0 },                                           /* upright */
+        { -3e5, 0, 10, 4e5, 100, 20, 0, 2e5, 30 },                               /* very large */
         { 1234567, 7654321, 100, 1234568, 7654321, 100, 1234567, 7654322, 100 }, /* very far */
     };
     noc_material m = noc_class_material(NOC_CLASS_OTHER);
     for (size_t i = 0; i < NOC_COUNT(triangles); i++) {
         noc_scene *one = noc_scene_create(NULL);
-        noc_mesh mesh = { .vertex_count = 3, .positions = triangles[i], .triangle_count = 1, .indices = (uint32_t[]){ 0, 1, 2 },
+        noc_mesh mesh = { .vertex_count = 3,
+                          .positions = triangles[i],
+                          .triangle_count = 1,
+                          .indices = (uint32_t[]){ 0, 1, 2 },
                           .material = noc_scene_add_material(one, &m) };
         assert_int_equal(noc_scene_add_mesh(one, &mesh), 0);
         all_views(one);
@@ -348,9 +371,11 @@ static void test_slits(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_builtin_city), cmocka_unit_test(test_without_lights), cmocka_unit_test(test_one_lamp),
-                                        cmocka_unit_test(test_object), cmocka_unit_test(test_room), cmocka_unit_test(test_plain_street),
-                                        cmocka_unit_test(test_panel), cmocka_unit_test(test_no_warning),
-                                        cmocka_unit_test(test_odd_scenes), cmocka_unit_test(test_stray), cmocka_unit_test(test_slits) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_builtin_city), cmocka_unit_test(test_without_lights),
+                                        cmocka_unit_test(test_one_lamp),     cmocka_unit_test(test_object),
+                                        cmocka_unit_test(test_room),         cmocka_unit_test(test_plain_street),
+                                        cmocka_unit_test(test_panel),        cmocka_unit_test(test_no_warning),
+                                        cmocka_unit_test(test_odd_scenes),   cmocka_unit_test(test_stray),
+                                        cmocka_unit_test(test_slits) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Vertical queries: against brute force, on shared edges, by class, while meshes are being added, from several threads. */
+/* Vertical queries: against brute force, on shared edges, by class, while meshes are being added, from several threads.
+ */
 #include "../test.h"
 
 #include "scene/scene.h"
@@ -18,24 +19,36 @@ static int material(noc_scene *scene, noc_class cls) {
 }
 
 static void add_triangle(noc_scene *scene, int mat, const double xyz[9]) {
-    noc_mesh mesh = { .vertex_count = 3, .positions = xyz, .triangle_count = 1, .indices = (uint32_t[]){ 0, 1, 2 }, .material = mat };
+    noc_mesh mesh = {
+        .vertex_count = 3, .positions = xyz, .triangle_count = 1, .indices = (uint32_t[]){ 0, 1, 2 }, .material = mat
+    };
     assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
 }
 
 static void add_plane(noc_scene *scene, int mat, double x0, double y0, double x1, double y1, double z) {
     double xyz[12] = { x0, y0, z, x1, y0, z, x1, y1, z, x0, y1, z };
-    noc_mesh mesh = { .vertex_count = 4, .positions = xyz, .triangle_count = 2, .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 }, .material = mat };
+    noc_mesh mesh = { .vertex_count = 4,
+                      .positions = xyz,
+                      .triangle_count = 2,
+                      .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+                      .material = mat };
     assert_true(noc_scene_add_mesh(scene, &mesh) >= 0);
 }
 
 static void test_classes(void **ctx) {
-    static const struct { noc_class cls; bool ground, top; } table[NOC_CLASS_COUNT] = {
-        { NOC_CLASS_OTHER, false, true },   { NOC_CLASS_WALL, false, true },         { NOC_CLASS_ROOF, false, true },
-        { NOC_CLASS_GROUND, true, true },   { NOC_CLASS_CLOSURE, false, false },     { NOC_CLASS_WINDOW, false, true },
-        { NOC_CLASS_DOOR, false, true },    { NOC_CLASS_INSTALLATION, false, true }, { NOC_CLASS_TERRAIN, true, true },
-        { NOC_CLASS_ROAD, true, true },     { NOC_CLASS_SIDEWALK, true, true },      { NOC_CLASS_GREEN, true, true },
-        { NOC_CLASS_TREE, false, true },    { NOC_CLASS_WATER, false, true },        { NOC_CLASS_BRIDGE, false, true },
-        { NOC_CLASS_FURNITURE, false, true }, { NOC_CLASS_LAMP, false, true },       { NOC_CLASS_VEHICLE, false, true },
+    static const struct {
+        noc_class cls;
+        bool ground, top;
+    } table[NOC_CLASS_COUNT] = {
+        { NOC_CLASS_OTHER, false, true },    { NOC_CLASS_WALL, false, true },
+        { NOC_CLASS_ROOF, false, true },     { NOC_CLASS_GROUND, true, true },
+        { NOC_CLASS_CLOSURE, false, false }, { NOC_CLASS_WINDOW, false, true },
+        { NOC_CLASS_DOOR, false, true },     { NOC_CLASS_INSTALLATION, false, true },
+        { NOC_CLASS_TERRAIN, true, true },   { NOC_CLASS_ROAD, true, true },
+        { NOC_CLASS_SIDEWALK, true, true },  { NOC_CLASS_GREEN, true, true },
+        { NOC_CLASS_TREE, false, true },     { NOC_CLASS_WATER, false, true },
+        { NOC_CLASS_BRIDGE, false, true },   { NOC_CLASS_FURNITURE, false, true },
+        { NOC_CLASS_LAMP, false, true },     { NOC_CLASS_VEHICLE, false, true },
     };
     for (size_t i = 0; i < NOC_COUNT(table); i++) {
         noc_scene *scene = noc_scene_create(NULL);
@@ -159,7 +172,8 @@ static void test_watertight(void **ctx) {
         for (int i = 1; i < N; i++) {
             assert_true(noc_scene_ground(scene, (float)p[j][i][0], (float)p[j][i][1], &z));
             for (int s = 0; s < 50; s++) {
-                double t = uniform(0, 1), edge[3][2] = { { p[j][i + 1][0], p[j][i + 1][1] }, { p[j + 1][i][0], p[j + 1][i][1] },
+                double t = uniform(0, 1), edge[3][2] = { { p[j][i + 1][0], p[j][i + 1][1] },
+                                                         { p[j + 1][i][0], p[j + 1][i][1] },
                                                          { p[j + 1][i + 1][0], p[j + 1][i + 1][1] } };
                 for (int e = 0; e < 3; e++) {
                     double x = p[j][i][0] * (1 - t) + edge[e][0] * t, y = p[j][i][1] * (1 - t) + edge[e][1] * t;
@@ -198,7 +212,8 @@ static void test_ask_and_add(void **ctx) {
 static void test_wide(void **ctx) {
     enum { LAMPS = 20000, EACH = 3 };
     noc_scene *scene = noc_scene_create(NULL);
-    int ground = material(scene, NOC_CLASS_GROUND), wall = material(scene, NOC_CLASS_WALL), lamp = material(scene, NOC_CLASS_LAMP);
+    int ground = material(scene, NOC_CLASS_GROUND), wall = material(scene, NOC_CLASS_WALL),
+        lamp = material(scene, NOC_CLASS_LAMP);
     add_plane(scene, ground, 0, 0, 1e6, 1e6, 0);
     add_triangle(scene, wall, (double[]){ 0, 0, 0, 1e6, 0, 0, 1e6, 0, 100 });
     double looked = 0, z;
@@ -214,7 +229,10 @@ static void test_wide(void **ctx) {
     noc_scene_destroy(scene);
 }
 
-typedef struct asked { const noc_scene *scene; int wrong[64]; } asked;
+typedef struct asked {
+    const noc_scene *scene;
+    int wrong[64];
+} asked;
 
 static void ask(void *ctx, size_t item, int worker) {
     asked *a = ctx;
@@ -258,7 +276,8 @@ static void test_beyond(void **ctx) {
     noc_scene_destroy(scene);
 }
 
-/* Two towns' lamps, and each town as far from the other as a scene reaches: a ray costs as if there were one town alone. */
+/* Two towns' lamps, and each town as far from the other as a scene reaches: a ray costs as if there were one town
+ * alone. */
 static void test_two_continents(void **ctx) {
     enum { LAMPS = 5000 };
     noc_scene *scene = noc_scene_create(NULL);
@@ -279,7 +298,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_classes),    cmocka_unit_test(test_highest_wins), cmocka_unit_test(test_random),
         cmocka_unit_test(test_watertight), cmocka_unit_test(test_ask_and_add),  cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_wide),       cmocka_unit_test(test_beyond), cmocka_unit_test(test_two_continents),
+        cmocka_unit_test(test_wide),       cmocka_unit_test(test_beyond),       cmocka_unit_test(test_two_continents),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

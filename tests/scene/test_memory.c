@@ -1,5 +1,5 @@
-/* Memory that is refused while a scene is made: every allocation of what adds to it, commits it, and looks at it, alone and with all
- * later ones. The scene is out of memory then, says so once, and is destroyed as any other. */
+/* Memory that is refused while a scene is made: every allocation of what adds to it, commits it, and looks at it, alone
+ * and with all later ones. The scene is out of memory then, says so once, and is destroyed as any other. */
 #include "../memory.h"
 
 #include "city/city.h"
@@ -60,11 +60,17 @@ static bool add_quad(noc_scene *s, int material, double x, double y, double z, c
         xyz[6 + k] = p[k] + a[k] + b[k];
         xyz[9 + k] = p[k] + b[k];
     }
-    return noc_scene_add_mesh(s, &(noc_mesh){ .vertex_count = 4, .positions = xyz, .triangle_count = 2, .name = "quad",
-                                              .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 }, .material = material }) >= 0;
+    return noc_scene_add_mesh(s, &(noc_mesh){ .vertex_count = 4,
+                                              .positions = xyz,
+                                              .triangle_count = 2,
+                                              .name = "quad",
+                                              .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+                                              .material = material }) >= 0;
 }
 
-static noc_status or_memory(noc_scene *s, bool ok) { return ok ? NOC_OK : s->no_memory ? NOC_ERR_MEMORY : NOC_ERR_ARGUMENT; }
+static noc_status or_memory(noc_scene *s, bool ok) {
+    return ok ? NOC_OK : s->no_memory ? NOC_ERR_MEMORY : NOC_ERR_ARGUMENT;
+}
 
 /* What the public functions add. */
 static noc_status by_hand(noc_scene *s) {
@@ -73,9 +79,17 @@ static noc_status by_hand(noc_scene *s) {
     ok = ok && add_quad(s, material(s, NOC_CLASS_ROAD), 0, 0, 0, (double[3]){ 9, 0, 0 }, (double[3]){ 0, 9, 0 });
     ok = ok && add_quad(s, noc_scene_add_material(s, &glow), 0, 9, 0, (double[3]){ 9, 0, 0 }, (double[3]){ 0, 0, 9 });
     for (int i = 0; ok && i < 15; i++) {
-        noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT), .inner_deg = 30, .outer_deg = 60,
-                        .position = { i, 4, 4 }, .direction = { 0, 0, -1 }, .radius = 0.1,
-                        .edge_u = { 1, 0, 0 }, .edge_v = { 0, 1, 0 }, .emission = { 9, 9, (float)i }, .name = "lamp", .moving = i > 10 };
+        noc_light l = { .kind = (noc_light_kind)(i % NOC_LIGHT_KIND_COUNT),
+                        .inner_deg = 30,
+                        .outer_deg = 60,
+                        .position = { i, 4, 4 },
+                        .direction = { 0, 0, -1 },
+                        .radius = 0.1,
+                        .edge_u = { 1, 0, 0 },
+                        .edge_v = { 0, 1, 0 },
+                        .emission = { 9, 9, (float)i },
+                        .name = "lamp",
+                        .moving = i > 10 };
         ok = noc_scene_add_light(s, &l) >= 0;
     }
     return or_memory(s, ok);

@@ -14,17 +14,37 @@ static void lights_are_listed(void **state) {
     noc_scene *s = noc_scene_create(NULL);
     noc_light lights[] = {
         { .kind = NOC_LIGHT_POINT, .position = { 1, 2, 3 }, .emission = { 10, 10, 10 }, .name = "p" },
-        { .kind = NOC_LIGHT_SPHERE, .position = { 4, 5, 6 }, .radius = 0.5, .emission = { 100, 100, 100 }, .inferred = true },
-        { .kind = NOC_LIGHT_DISC, .position = { 0, 0, 8 }, .radius = 0.2, .direction = { 0, 0, -3 }, .emission = { 0, 100, 0 } },
-        { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { 1, 1, 1 }, .edge_u = { 2, 0, 0 }, .edge_v = { 0, 3, 0 }, .emission = { 5, 5, 5 } },
-        { .kind = NOC_LIGHT_SPOT, .position = { 1, 2, 3 }, .direction = { 0, -4, 0 }, .inner_deg = 60, .outer_deg = 90,
+        { .kind = NOC_LIGHT_SPHERE,
+          .position = { 4, 5, 6 },
+          .radius = 0.5,
+          .emission = { 100, 100, 100 },
+          .inferred = true },
+        { .kind = NOC_LIGHT_DISC,
+          .position = { 0, 0, 8 },
+          .radius = 0.2,
+          .direction = { 0, 0, -3 },
+          .emission = { 0, 100, 0 } },
+        { .kind = NOC_LIGHT_PARALLELOGRAM,
+          .position = { 1, 1, 1 },
+          .edge_u = { 2, 0, 0 },
+          .edge_v = { 0, 3, 0 },
+          .emission = { 5, 5, 5 } },
+        { .kind = NOC_LIGHT_SPOT,
+          .position = { 1, 2, 3 },
+          .direction = { 0, -4, 0 },
+          .inner_deg = 60,
+          .outer_deg = 90,
           .emission = { 10, 10, 10 } },
     };
     for (int i = 0; i < 5; i++)
         assert_int_equal(noc_scene_add_light(s, &lights[i]), i);
     int shop = noc_scene_add_material(s, &(noc_material){ .roughness = 1, .emission = { 7, 7, 7 }, .two_sided = true });
-    noc_mesh mesh = { .vertex_count = 3, .positions = (double[]){ 0, 0, 0, 3, 0, 0, 0, 3, 0 }, .triangle_count = 1,
-                      .indices = (uint32_t[]){ 0, 1, 2 }, .material = shop, .name = "shop" };
+    noc_mesh mesh = { .vertex_count = 3,
+                      .positions = (double[]){ 0, 0, 0, 3, 0, 0, 0, 3, 0 },
+                      .triangle_count = 1,
+                      .indices = (uint32_t[]){ 0, 1, 2 },
+                      .material = shop,
+                      .name = "shop" };
     assert_true(noc_scene_add_mesh(s, &mesh) >= 0);
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     noc_scene_info info;
@@ -55,8 +75,12 @@ static void lights_are_listed(void **state) {
 }
 
 static void add_piece(noc_scene *s, int material, const char *name, double z) {
-    noc_mesh mesh = { .vertex_count = 3, .positions = (double[]){ 0, 0, z, 1, 0, z, 0, 1, z }, .triangle_count = 1,
-                      .indices = (uint32_t[]){ 0, 1, 2 }, .material = material, .name = name };
+    noc_mesh mesh = { .vertex_count = 3,
+                      .positions = (double[]){ 0, 0, z, 1, 0, z, 0, 1, z },
+                      .triangle_count = 1,
+                      .indices = (uint32_t[]){ 0, 1, 2 },
+                      .material = material,
+                      .name = name };
     assert_true(noc_scene_add_mesh(s, &mesh) >= 0);
 }
 
@@ -79,7 +103,8 @@ static void pieces_of_an_object_are_one(void **state) {
 
 /* Against the frame's own camera, for cameras that look along, up, and straight down. */
 static void pixels_and_places(void **state) {
-    noc_camera cameras[] = { look(1, -10, 4, 0, 0, 2.5, 60), look(500000, 7, 2, 500003, 9, 300, 20), look(0, 0, 50, 0, 0, 0, 90) };
+    noc_camera cameras[] = { look(1, -10, 4, 0, 0, 2.5, 60), look(500000, 7, 2, 500003, 9, 300, 20),
+                             look(0, 0, 50, 0, 0, 0, 90) };
     noc_render_params p = measure(64, 40, NOC_METHOD_RIS);
     for (size_t i = 0; i < NOC_COUNT(cameras); i++) {
         const noc_camera *c = &cameras[i];
@@ -110,7 +135,8 @@ static void pixels_and_places(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(lights_are_listed), cmocka_unit_test(pieces_of_an_object_are_one),
+    const struct CMUnitTest tests[] = { cmocka_unit_test(lights_are_listed),
+                                        cmocka_unit_test(pieces_of_an_object_are_one),
                                         cmocka_unit_test(pixels_and_places) };
     return cmocka_run_group_tests_name("scene query", tests, NULL, NULL);
 }

@@ -70,9 +70,14 @@ static void test_materials(void **state) {
 static void test_meshes(void **state) {
     fixture *f = *state;
     double nan_far[] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, NAN, 0, 0, 0, 0, 1e9, 2, 0, 0 };
-    uint32_t indices[] = { 0, 1, 2, /* good */ 0, 1, 3, /* NaN */ 0, 1, 4, /* too far */ 0, 1, 6, /* no such vertex */
-                           0, 1, 5, /* no area */ 1, 1, 2 };
-    noc_mesh mesh = { .vertex_count = 6, .positions = nan_far, .triangle_count = 6, .indices = indices, .material = f->mat,
+    uint32_t indices[] = { 0,           1, 2, /* good */ 0,    1, 3,
+                           /* NaN */ 0, 1, 4, /* too far */ 0, 1, 6, /* no such vertex */
+                           0,           1, 5, /* no area */ 1, 1, 2 };
+    noc_mesh mesh = { .vertex_count = 6,
+                      .positions = nan_far,
+                      .triangle_count = 6,
+                      .indices = indices,
+                      .material = f->mat,
                       .name = "house" };
     assert_int_equal(noc_scene_add_mesh(f->scene, &mesh), 0);
     char name[] = "copied";
@@ -133,13 +138,38 @@ static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a
 static void test_shapes(void **state) {
     fixture *f = *state;
     static const noc_light lights[] = {
-        { .kind = NOC_LIGHT_SPHERE, .position = { 10, 20, 5 }, .radius = 0.3, .emission = { 9, 8, 7 }, .name = "globe" },
-        { .kind = NOC_LIGHT_DISC, .position = { -3, 2, 8 }, .direction = { 0, 0, -2 }, .radius = 0.2, .emission = { 1, 2, 3 } },
-        { .kind = NOC_LIGHT_DISC, .position = { -3, 2, 8 }, .direction = { 1, 1, 0.1 }, .radius = 2, .emission = { 1, 2, 3 } },
-        { .kind = NOC_LIGHT_TRIANGLE, .position = { 1, 1, 1 }, .edge_u = { 2, 0, 0 }, .edge_v = { 0, 3, 0 }, .emission = { 5, 5, 5 } },
-        { .kind = NOC_LIGHT_PARALLELOGRAM, .position = { 0, 0, 3 }, .edge_u = { 1, 1, 0 }, .edge_v = { 0, 0, 2 }, .emission = { 5, 5, 5 }, .inferred = true },
+        { .kind = NOC_LIGHT_SPHERE,
+          .position = { 10, 20, 5 },
+          .radius = 0.3,
+          .emission = { 9, 8, 7 },
+          .name = "globe" },
+        { .kind = NOC_LIGHT_DISC,
+          .position = { -3, 2, 8 },
+          .direction = { 0, 0, -2 },
+          .radius = 0.2,
+          .emission = { 1, 2, 3 } },
+        { .kind = NOC_LIGHT_DISC,
+          .position = { -3, 2, 8 },
+          .direction = { 1, 1, 0.1 },
+          .radius = 2,
+          .emission = { 1, 2, 3 } },
+        { .kind = NOC_LIGHT_TRIANGLE,
+          .position = { 1, 1, 1 },
+          .edge_u = { 2, 0, 0 },
+          .edge_v = { 0, 3, 0 },
+          .emission = { 5, 5, 5 } },
+        { .kind = NOC_LIGHT_PARALLELOGRAM,
+          .position = { 0, 0, 3 },
+          .edge_u = { 1, 1, 0 },
+          .edge_v = { 0, 0, 2 },
+          .emission = { 5, 5, 5 },
+          .inferred = true },
         { .kind = NOC_LIGHT_POINT, .position = { 4, 5, 6 }, .emission = { 100, 0, 0 } },
-        { .kind = NOC_LIGHT_SPOT, .position = { 4, 5, 6 }, .direction = { 0, 2, 0 }, .inner_deg = 5, .outer_deg = 20,
+        { .kind = NOC_LIGHT_SPOT,
+          .position = { 4, 5, 6 },
+          .direction = { 0, 2, 0 },
+          .inner_deg = 5,
+          .outer_deg = 20,
           .emission = { 100, 0, 0 } },
     };
     static const double area[] = { 4 * M_PI * 0.09, M_PI * 0.04, M_PI * 4, 3, 2 * M_SQRT2, 0, 0 };
@@ -153,7 +183,8 @@ static void test_shapes(void **state) {
         assert_true(fabs(r->area - area[i]) <= 1e-5 * area[i]);
         assert_memory_equal(r->e, l->emission, sizeof(r->e));
         assert_int_equal((r->flags >> 1) & 1, l->inferred);
-        double a[3] = { r->a[0], r->a[1], r->a[2] }, b[3] = { r->b[0], r->b[1], r->b[2] }, facing[3], sum = 0, closed[3] = { 0 };
+        double a[3] = { r->a[0], r->a[1], r->a[2] }, b[3] = { r->b[0], r->b[1], r->b[2] }, facing[3], sum = 0,
+               closed[3] = { 0 };
         for (int k = 0; k < 3; k++)
             facing[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
         if (l->kind == NOC_LIGHT_DISC) { /* orthogonal, a radius long, facing its direction */
@@ -173,7 +204,8 @@ static void test_shapes(void **state) {
             assert_true(dot(n, facing) > 0);
             assert_int_equal(f->scene->triangle_light.data[t], i);
         }
-        assert_true(fabs(sum - area[i]) <= 2e-5 * area[i]); /* a closed shape shows a quarter of it on average (Cauchy) */
+        /* a closed shape shows a quarter of it on average (Cauchy) */
+        assert_true(fabs(sum - area[i]) <= 2e-5 * area[i]);
         if (l->kind == NOC_LIGHT_SPHERE)
             assert_true(dot(closed, closed) < 1e-10);
         assert_int_equal(end > first, l->kind < NOC_LIGHT_POINT);
@@ -197,19 +229,25 @@ static void test_shapes(void **state) {
 
 static void test_bad_lights(void **state) {
     fixture *f = *state;
-    noc_light sphere = { .kind = NOC_LIGHT_SPHERE, .radius = 1, .emission = { 1, 1, 1 } }, disc = sphere, quad, spot, bad[19];
+    noc_light sphere = { .kind = NOC_LIGHT_SPHERE, .radius = 1, .emission = { 1, 1, 1 } }, disc = sphere, quad, spot,
+              bad[19];
     disc.kind = NOC_LIGHT_DISC;
     disc.direction[0] = 1;
-    quad = (noc_light){ .kind = NOC_LIGHT_PARALLELOGRAM, .edge_u = { 1, 0, 0 }, .edge_v = { 0, 1, 0 }, .emission = { 1, 1, 1 } };
-    spot = (noc_light){ .kind = NOC_LIGHT_SPOT, .direction = { 0, 0, -1 }, .inner_deg = 10, .outer_deg = 30,
-                        .emission = { 1, 1, 1 } };
+    quad = (noc_light){
+        .kind = NOC_LIGHT_PARALLELOGRAM, .edge_u = { 1, 0, 0 }, .edge_v = { 0, 1, 0 }, .emission = { 1, 1, 1 }
+    };
+    spot = (noc_light){
+        .kind = NOC_LIGHT_SPOT, .direction = { 0, 0, -1 }, .inner_deg = 10, .outer_deg = 30, .emission = { 1, 1, 1 }
+    };
     for (int i = 0; i < 19; i++)
         bad[i] = i < 6 ? sphere : i < 9 ? disc : i < 14 ? quad : spot;
     bad[0].position[2] = NAN, bad[1].position[0] = 1e9, bad[2].radius = 0, bad[3].radius = NAN, bad[4].emission[1] = -1;
     bad[5].emission[2] = INFINITY, bad[6].direction[0] = 0, bad[7].direction[1] = NAN, bad[8].radius = -1;
-    bad[9].edge_u[0] = 0, bad[10].edge_v[0] = INFINITY, bad[11].edge_v[0] = 1, bad[11].edge_v[1] = 0, bad[12].kind = (noc_light_kind)7;
+    bad[9].edge_u[0] = 0, bad[10].edge_v[0] = INFINITY, bad[11].edge_v[0] = 1, bad[11].edge_v[1] = 0,
+    bad[12].kind = (noc_light_kind)7;
     bad[13].kind = NOC_LIGHT_TRIANGLE, bad[13].edge_v[1] = 0;
-    bad[14].direction[2] = 0, bad[15].outer_deg = 91, bad[16].inner_deg = 31, bad[17].inner_deg = -1, bad[18].outer_deg = NAN;
+    bad[14].direction[2] = 0, bad[15].outer_deg = 91, bad[16].inner_deg = 31, bad[17].inner_deg = -1,
+    bad[18].outer_deg = NAN;
     for (int i = 0; i < 19; i++) {
         assert_int_equal(noc_scene_add_light(f->scene, &bad[i]), -1);
         assert_int_equal(f->messages, i + 1);
@@ -231,7 +269,8 @@ static void test_light_materials(void **state) {
         l.position[0] = i;
         l.emission[0] = (float)(1 + i % 10);
         assert_int_equal(noc_scene_add_light(f->scene, &l), i);
-        assert_float_equal(f->scene->material_records.data[f->scene->triangle_material.data[2 * i]].emission[0], 1 + i % 10, 0);
+        assert_float_equal(f->scene->material_records.data[f->scene->triangle_material.data[2 * i]].emission[0],
+                           1 + i % 10, 0);
     }
     assert_int_equal(f->scene->materials.len, 11);
 }
@@ -245,8 +284,12 @@ static void test_emissive_meshes(void **state) {
     glow.cls = NOC_CLASS_CLOSURE;
     int virtual = noc_scene_add_material(f->scene, &glow);
     double xyz[] = { 0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0 };
-    noc_mesh mesh = { .vertex_count = 4, .positions = xyz, .triangle_count = 2, .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
-                      .material = f->mat, .name = "dark" };
+    noc_mesh mesh = { .vertex_count = 4,
+                      .positions = xyz,
+                      .triangle_count = 2,
+                      .indices = (uint32_t[]){ 0, 1, 2, 0, 2, 3 },
+                      .material = f->mat,
+                      .name = "dark" };
     assert_int_equal(noc_scene_add_mesh(f->scene, &mesh), 0);
     mesh.material = lit;
     mesh.name = "sign";
@@ -313,9 +356,17 @@ static void test_moving_lights(void **state) {
     const noc_light stands = { .kind = NOC_LIGHT_POINT, .position = { 1, 2, 3 }, .emission = { 5, 5, 5 } };
     assert_int_equal(noc_scene_add_light(f->scene, &stands), 0);
     for (int kind = 0; kind < NOC_LIGHT_KIND_COUNT; kind++) {
-        noc_light l = { .kind = (noc_light_kind)kind, .position = { 1, 2, 3 }, .edge_u = { 1, 0, 0 }, .edge_v = { 0, 2, 0 },
-                        .direction = { 0, 1, -1 }, .radius = 0.5, .inner_deg = 5, .outer_deg = 30,
-                        .emission = { 5, 6, 7 }, .inferred = true, .moving = true };
+        noc_light l = { .kind = (noc_light_kind)kind,
+                        .position = { 1, 2, 3 },
+                        .edge_u = { 1, 0, 0 },
+                        .edge_v = { 0, 2, 0 },
+                        .direction = { 0, 1, -1 },
+                        .radius = 0.5,
+                        .inner_deg = 5,
+                        .outer_deg = 30,
+                        .emission = { 5, 6, 7 },
+                        .inferred = true,
+                        .moving = true };
         noc_light there = l, again;
         there.position[0] = 9, there.edge_u[1] = 3, there.direction[0] = 2, there.radius = 0.25, there.emission[2] = 0;
         noc_scene *other = noc_scene_create(NULL);
@@ -388,7 +439,10 @@ static void test_no_memory(void **state) {
         indices[i] = (uint32_t)(i % 3);
     for (int way = 0; way < 5; way++) { /* many vertices, triangles, lights, lights that commit makes, materials */
         noc_scene *scene = noc_scene_create(f->log);
-        noc_mesh small = { .vertex_count = 3, .positions = xyz, .triangle_count = 1, .indices = indices,
+        noc_mesh small = { .vertex_count = 3,
+                           .positions = xyz,
+                           .triangle_count = 1,
+                           .indices = indices,
                            .material = noc_scene_add_material(scene, &lit) };
         noc_mesh large = small;
         noc_light light = { .kind = NOC_LIGHT_POINT, .emission = { 1, 1, 1 } };
@@ -410,7 +464,8 @@ static void test_no_memory(void **state) {
         int materials = 1;
         while (way == 4 && materials < MANY && noc_scene_add_material(scene, &lit) >= 0)
             materials++;
-        assert_true(added < MANY && (added > 1000) == (way == 2) && materials < MANY && (materials > 1000) == (way == 4));
+        assert_true(added < MANY && (added > 1000) == (way == 2) && materials < MANY &&
+                    (materials > 1000) == (way == 4));
         assert_int_equal(noc_scene_commit(scene), NOC_ERR_MEMORY);
         assert_int_equal(setrlimit(RLIMIT_AS, &was), 0);
         assert_int_equal(noc_scene_add_mesh(scene, &small), -1);
@@ -439,9 +494,16 @@ static void key_of(int other, char key[NOC_CONTENT_KEY]) {
     m.roughness = other == 5 ? 0.5f : 1;
     double p[] = { 0, 0, 0, 1, 0, 0, 0, other == 6 ? 1.001 : 1, 0, 1, 1, 0 };
     uint32_t v[] = { 0, 1, 2, other == 7 ? 3 : 1, other == 7 ? 1 : 3, 2 };
-    noc_light l = { .kind = NOC_LIGHT_POINT, .position = { 0, 0, other == 8 ? 3 : 2 }, .emission = { 1, 1, other == 9 ? 2 : 1 }, .moving = true };
+    noc_light l = { .kind = NOC_LIGHT_POINT,
+                    .position = { 0, 0, other == 8 ? 3 : 2 },
+                    .emission = { 1, 1, other == 9 ? 2 : 1 },
+                    .moving = true };
     int material = noc_scene_add_material(s, &m);
-    noc_mesh mesh = { .vertex_count = 4, .positions = p, .triangle_count = other == 10 ? 1 : 2, .indices = v, .material = material,
+    noc_mesh mesh = { .vertex_count = 4,
+                      .positions = p,
+                      .triangle_count = other == 10 ? 1 : 2,
+                      .indices = v,
+                      .material = material,
                       .name = other == 12 ? "another name" : "name" };
     assert_int_equal(noc_scene_add_mesh(s, &mesh), 0);
     int light = noc_scene_add_light(s, &l);
@@ -494,9 +556,16 @@ static void test_reflectances_in_docs(void **state) {
 
 int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
-    const struct CMUnitTest tests[] = { TEST(test_materials),       TEST(test_meshes),          TEST(test_shapes), TEST(test_bad_lights),
-                                        TEST(test_light_materials), TEST(test_emissive_meshes), TEST(test_empty),
-                                        TEST(test_committed),       TEST(test_moving_lights), TEST(test_no_memory),
+    const struct CMUnitTest tests[] = { TEST(test_materials),
+                                        TEST(test_meshes),
+                                        TEST(test_shapes),
+                                        TEST(test_bad_lights),
+                                        TEST(test_light_materials),
+                                        TEST(test_emissive_meshes),
+                                        TEST(test_empty),
+                                        TEST(test_committed),
+                                        TEST(test_moving_lights),
+                                        TEST(test_no_memory),
                                         cmocka_unit_test(test_content),
                                         cmocka_unit_test(test_reflectances_in_docs) };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -162,7 +162,12 @@ static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st
                       .ctx = { scene->lights.data, (uint32_t)scene->lights.len,
                                scene->material_records.len ? scene->material_records.data : &s->no_material, frame,
                                s->clusters, NULL, s->alias, s->tree, NULL, 0 },
-                      .stage = st, .k = s->kernels, .progress = progress, .what = "rendering", .from = from, .to = to,
+                      .stage = st,
+                      .k = s->kernels,
+                      .progress = progress,
+                      .what = "rendering",
+                      .from = from,
+                      .to = to,
                       .tiles = (size_t)s->b.tiles_x * s->b.tiles_y };
     if (st->passes >> NOC_PASS_SHADE & 1)
         s->shaded_set = st->target;
@@ -178,8 +183,8 @@ static noc_status stage(void *state, const noc_frame *frame, const noc_stage *st
     noc_pool_run(s->pool, run.tiles, run_tile, &run);
     for (int i = 0; i < s->worker_count; i++)
         if (s->workers[i].no_memory)
-            return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for the lights of a picture of %d x %d", s->b.width,
-                             s->b.height);
+            return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for the lights of a picture of %d x %d",
+                             s->b.width, s->b.height);
     return atomic_load(&run.cancelled) ? NOC_ERR_CANCELLED : NOC_OK;
 }
 

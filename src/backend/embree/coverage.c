@@ -1,6 +1,6 @@
-/* What emitters that are seen directly add to a pixel's mean, apart from the rest. A display needs the two apart: the mean of a
- * lamp and of the wall beside it lies far above white wherever the lamp covers a tenth of the pixel, so edges come out jagged.
- * Few blocks see emitters, so only these have a place. */
+/* What emitters that are seen directly add to a pixel's mean, apart from the rest. A display needs the two apart: the
+ * mean of a lamp and of the wall beside it lies far above white wherever the lamp covers a tenth of the pixel, so edges
+ * come out jagged. Few blocks see emitters, so only these have a place. */
 #include "backend/embree/embree.h"
 
 void noc_embree_free_coverage(coverage *c) {
@@ -19,7 +19,8 @@ noc_status noc_embree_make_coverage(embree_state *s, const noc_frame *frame) {
         places += s->b.emitter[i] || (frame->accumulated && c->place[i]);
     if (ok && array_reserve(&c->sums, places))
         return NOC_OK;
-    return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for the emitters in a picture of %d x %d", s->b.width, s->b.height);
+    return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for the emitters in a picture of %d x %d", s->b.width,
+                     s->b.height);
 }
 
 /* Gives places to the blocks that see their first emitter. */

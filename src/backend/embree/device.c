@@ -9,9 +9,9 @@ static noc_status fail(embree_state *s, enum RTCError code, const char *text) {
     if (s->failed)
         return s->failed;
     if (code == RTC_ERROR_OUT_OF_MEMORY || atomic_load(&s->refused))
-        return s->failed = noc_error(s->log, NOC_ERR_MEMORY,
-                                     "embree: no memory for the ray tracing structure of %zu triangles",
-                                     s->scene->indices.len / 3);
+        return s->failed =
+                   noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory for the ray tracing structure of %zu triangles",
+                             s->scene->indices.len / 3);
     return s->failed = noc_error(s->log, NOC_ERR_UNSUPPORTED, "embree: %s", text && *text ? text : "unknown error");
 }
 
@@ -31,8 +31,8 @@ static bool allow(void *user, ssize_t bytes, bool post) {
     return true;
 }
 
-/* 2^-19 of the largest coordinate, at most 0.1 mm: where a scene is small, so are the gaps in it. Vertices are rounded to 2^-24
- * of theirs. */
+/* 2^-19 of the largest coordinate, at most 0.1 mm: where a scene is small, so are the gaps in it. Vertices are rounded
+ * to 2^-24 of theirs. */
 static float least_stand_off(const noc_scene *scene) {
     float largest = 0;
     for (size_t i = 0; i < scene->positions.len; i++)
@@ -49,7 +49,8 @@ static void attach_triangles(embree_state *s) {
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_MEDIUM);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, scene->positions.data, 0, 12,
                                scene->positions.len / 3);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->indices.data, 0, 12, triangles);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->indices.data, 0, 12,
+                               triangles);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(s->rtc, geometry);
     rtcReleaseGeometry(geometry);
@@ -59,8 +60,9 @@ noc_status noc_embree_build(embree_state *s) {
     double start = noc_wall_seconds();
     char config[64];
     if (!noc_embree_room_for_threads(s))
-        return s->failed = noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory for its threads, or a limit of their number "
-                                       "(ulimit -u)");
+        return s->failed = noc_error(s->log, NOC_ERR_MEMORY,
+                                     "embree: no memory for its threads, or a limit of their number "
+                                     "(ulimit -u)");
     if (!noc_embree_room(s, 0))
         return fail(s, RTC_ERROR_OUT_OF_MEMORY, NULL);
     /* The cache is for surfaces that are subdivided; it would take 128 MB. */
@@ -154,8 +156,8 @@ void noc_embree_free_many(embree_state *s, worker *w, segment_block *blocks, int
     }
 }
 
-/* The hit point from its triangle in doubles: in its plane to half a unit in the last place, however large the triangle.
- * o + t d would be off by the precision of t. */
+/* The hit point from its triangle in doubles: in its plane to half a unit in the last place, however large the
+ * triangle. o + t d would be off by the precision of t. */
 static void fill_hit(const noc_scene *scene, const struct RTCRayHit16 *h, int l, gblock *g) {
     uint32_t prim = h->hit.primID[l];
     const uint32_t *v = scene->indices.data + 3 * (size_t)prim;
@@ -230,7 +232,10 @@ enum { REPLAY_RUN = 64 };
 
 struct replay {
     embree_state *s;
-    struct replay_item { const packet *first; size_t count; } *items;
+    struct replay_item {
+        const packet *first;
+        size_t count;
+    } * items;
 };
 
 static void replay_primary(embree_state *s, const segment_block *b) {
@@ -267,7 +272,8 @@ noc_status noc_embree_replay(embree_state *s, double *seconds) {
         const worker *w = &s->workers[i];
         whole = whole && !w->packets_lost;
         for (size_t k = 0; whole && k < w->packet_count; k += REPLAY_RUN)
-            whole = array_push(&items, (struct replay_item){ w->packets + k, NOC_MIN((size_t)REPLAY_RUN, w->packet_count - k) });
+            whole = array_push(&items, (struct replay_item){ w->packets + k,
+                                                             NOC_MIN((size_t)REPLAY_RUN, w->packet_count - k) });
     }
     if (whole) {
         struct replay r = { s, items.data };
@@ -276,8 +282,9 @@ noc_status noc_embree_replay(embree_state *s, double *seconds) {
         *seconds = noc_wall_seconds() - start;
     }
     array_free(&items);
-    return whole ? NOC_OK : noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory to keep the rays of a frame of %d x %d",
-                                      s->b.width, s->b.height);
+    return whole ? NOC_OK
+                 : noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory to keep the rays of a frame of %d x %d",
+                             s->b.width, s->b.height);
 }
 
 size_t noc_embree_build_bytes(const embree_state *s) {

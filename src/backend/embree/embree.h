@@ -12,7 +12,8 @@
 /* Numbers of lights found are told apart up to that; 64 k bins take half a megabyte a thread. */
 enum { FOUND_MOST = 1 << 16 };
 enum { TILE_BLOCKS = 4 }; /* a tile is 4x4 blocks: 16x16 pixels */
-_Static_assert((int)NOC_QUERY_BLOCKS == TILE_BLOCKS * TILE_BLOCKS && (int)NOC_QUERY_POINTS == (int)BLOCK, "a tile's points ask together");
+_Static_assert((int)NOC_QUERY_BLOCKS == TILE_BLOCKS * TILE_BLOCKS && (int)NOC_QUERY_POINTS == (int)BLOCK,
+               "a tile's points ask together");
 enum { MANY_BLOCKS = 32 }; /* whose segments are traced together */
 
 /* Segments of 16 pixels to be traced together with those of other blocks. */
@@ -56,8 +57,8 @@ typedef struct combining {
     size_t at; /* in the picture */
     int x, y;  /* pixel of lane 0 */
     const rblock *own;
-    uint32_t visible; /* lanes whose sample is known to be seen from its pixel */
-    int k;            /* neighbours */
+    uint32_t visible;               /* lanes whose sample is known to be seen from its pixel */
+    int k;                          /* neighbours */
     uint32_t asked[MAX_NEIGHBOURS]; /* lanes that a ray from the neighbour was asked for */
     uint32_t seen[MAX_NEIGHBOURS];  /* lanes whose sample counts as seen from the neighbour */
     combination c;
@@ -66,12 +67,13 @@ typedef struct combining {
 
 /* What the passes of one tile hand on to each other. */
 typedef struct tile_rays {
-    weighed weighed;                           /* of the block at hand */
-    size_t at[TILE_BLOCKS * TILE_BLOCKS];      /* the tile's blocks in the picture */
+    weighed weighed;                      /* of the block at hand */
+    size_t at[TILE_BLOCKS * TILE_BLOCKS]; /* the tile's blocks in the picture */
     int cell_of[TILE_BLOCKS * TILE_BLOCKS];
     int kept[TILE_BLOCKS * TILE_BLOCKS][BLOCK]; /* the draw that stands for a pixel in views */
     int cells, count;
-    float reused[TILE_BLOCKS * TILE_BLOCKS][BLOCK]; /* restir: what of a pixel's light is its reservoir's; its rays have the rest */
+    /* restir: what of a pixel's light is its reservoir's; its rays have the rest */
+    float reused[TILE_BLOCKS * TILE_BLOCKS][BLOCK];
     double bright;
     tile_cell cell[TILE_BLOCKS * TILE_BLOCKS];
     ray_draw draws[TILE_BLOCKS * TILE_BLOCKS * MOST_SHADOW_RAYS];
@@ -97,15 +99,17 @@ typedef struct worker {
     NOC_ARRAY(noc_sighting) sightings; /* of the frame being made */
     pick_block picks;
     tree_items tree_items[2];
-    noc_found found;                     /* bvh: by a tile */
-    uint64_t *found_counts;              /* [found_bins] surfaces of the frame by the number of lights found; NULL: never asked */
-    bool no_memory;                      /* was refused to a tile: the frame is dropped */
+    noc_found found; /* bvh: by a tile */
+    /* [found_bins] surfaces of the frame by the number of lights found; NULL: never asked */
+    uint64_t *found_counts;
+    bool no_memory;  /* was refused to a tile: the frame is dropped */
     packet *packets; /* kept while recording */
     size_t packet_count, packet_room;
     bool packets_lost; /* there was no memory for all of them */
 } worker;
 
-/* Views (noc_aov): those of the frame being made, and of the last complete one. Entries that are not asked for are NULL. */
+/* Views (noc_aov): those of the frame being made, and of the last complete one. Entries that are not asked for are
+ * NULL. */
 typedef struct view_buffers {
     float (*made[NOC_AOV_COUNT])[BLOCK], (*kept[NOC_AOV_COUNT])[BLOCK];
     uint32_t asked, held; /* bits: buffers that the frame being made works on, that a complete frame has left */
@@ -120,9 +124,9 @@ typedef struct coverage_sum {
 } coverage_sum;
 
 typedef struct coverage {
-    uint32_t *place;               /* [blocks] index + 1 in sums, 0: saw none; NULL: no frame yet */
+    uint32_t *place; /* [blocks] index + 1 in sums, 0: saw none; NULL: no frame yet */
     NOC_ARRAY(coverage_sum) sums;
-    uint64_t frames;               /* of the mean */
+    uint64_t frames; /* of the mean */
 } coverage;
 
 /* Buffers of one picture; every array has an entry a block. */
@@ -132,9 +136,9 @@ typedef struct frame_buffers {
     gblock *g[2];
     rblock *r[NOC_RESERVOIR_SETS];
     uint16_t *visible[NOC_RESERVOIR_SETS]; /* lanes whose sample is known to be seen from its own pixel */
-    cblock *colour;    /* of the frame being made */
-    cblock *picture;   /* mean, or last frame */
-    uint16_t *emitter; /* lanes that see an emitter in the frame being made */
+    cblock *colour;                        /* of the frame being made */
+    cblock *picture;                       /* mean, or last frame */
+    uint16_t *emitter;                     /* lanes that see an emitter in the frame being made */
     coverage coverage;
     view_buffers views;
     size_t bytes;
@@ -147,10 +151,10 @@ typedef struct embree_state {
     RTCDevice device;
     RTCScene rtc;
     double build_seconds;
-    float stand_off;       /* of shadow rays at least, m */
-    _Atomic ssize_t build_bytes; /* held by Embree */
-    atomic_bool refused;   /* memory that it asked for */
-    noc_status failed;     /* its first error, which has been told */
+    float stand_off;                 /* of shadow rays at least, m */
+    _Atomic ssize_t build_bytes;     /* held by Embree */
+    atomic_bool refused;             /* memory that it asked for */
+    noc_status failed;               /* its first error, which has been told */
     noc_material_record no_material; /* stands in where the scene has none */
     frame_buffers b;
     noc_clusters *clusters; /* these are made when first needed */
@@ -158,15 +162,17 @@ typedef struct embree_state {
     noc_influence *influence;
     noc_influence_params influence_params; /* that it was made with */
     noc_tree *tree;
-    uint32_t found_bins; /* of a worker: from 0 to the number of lights; the last of FOUND_MOST + 1 counts what finds more too */
+    /* of a worker: from 0 to the number of lights; the last of FOUND_MOST + 1 counts what finds more too */
+    uint32_t found_bins;
     noc_learned *learned; /* for pictures of this size */
     learned_tile *learned_tiles;
-    noc_sightings *sightings; /* of the frame's tiles */
-    float list_brightness; /* mean luminance that the last frame expected, cd/m2; 0: not known */
+    noc_sightings *sightings;      /* of the frame's tiles */
+    float list_brightness;         /* mean luminance that the last frame expected, cd/m2; 0: not known */
     uint64_t moves, power_changes; /* of the scene's lights, that these know of */
-    noc_light_record *past_lights; /* all lights as they were in the last frame that left reservoirs; NULL: never needed */
-    uint64_t past_moves;           /* of the scene at that frame */
-    bool past_filled;              /* past_lights has been written */
+    /* all lights as they were in the last frame that left reservoirs; NULL: never needed */
+    noc_light_record *past_lights;
+    uint64_t past_moves;                           /* of the scene at that frame */
+    bool past_filled;                              /* past_lights has been written */
     double light_seconds[NOC_CANDIDATES_TREE + 1]; /* what each took to build */
     worker *workers;
     int worker_count;
@@ -215,9 +221,9 @@ bool noc_embree_room_for_threads(const embree_state *s);
 /* device.c */
 noc_status noc_embree_build(embree_state *s);
 void noc_embree_release(embree_state *s);
-/* Traces the segments of many blocks, the more the better up to MANY_BLOCKS: those that lead to one light side by side, the
- * others as a stream (bench/bench_rays has the gain). Sets `clear`, which is 0 outside `valid`. Counts rays where each block
- * says, and keeps them when recording. */
+/* Traces the segments of many blocks, the more the better up to MANY_BLOCKS: those that lead to one light side by side,
+ * the others as a stream (bench/bench_rays has the gain). Sets `clear`, which is 0 outside `valid`. Counts rays where
+ * each block says, and keeps them when recording. */
 void noc_embree_free_many(embree_state *s, worker *w, segment_block *blocks, int count);
 /* Nearest hits of camera rays into a block; lanes outside `valid` see nothing. */
 /* object: of each lane, -1 where there is none; may be NULL. */
@@ -249,14 +255,14 @@ noc_status noc_embree_influence(void *state, const noc_render_params *params, co
 void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t);
 /* The blocks of a tile in their order; returns how many. */
 int noc_embree_tile_blocks(const stage_run *run, tile t, tile_block out[TILE_BLOCKS * TILE_BLOCKS]);
-/* The next block of w->batch, for noc_embree_free_many: `valid` lanes are to be traced, counted for block `at` of the picture.
- * The rays are left to the caller; or they are segments from the surfaces of g to samples. */
+/* The next block of w->batch, for noc_embree_free_many: `valid` lanes are to be traced, counted for block `at` of the
+ * picture. The rays are left to the caller; or they are segments from the surfaces of g to samples. */
 segment_block *noc_embree_gather(const stage_run *run, worker *w, size_t at, uint32_t valid);
 void noc_embree_gather_segments(const stage_run *run, worker *w, size_t at, uint32_t valid, const gblock *g,
                                 const uint32_t *light, const float *u, const float *v);
 
-/* list_rays.c: the passes of a tile where every pixel shares out several rays over its list, after the list was built into
- * w->lists.list */
+/* list_rays.c: the passes of a tile where every pixel shares out several rays over its list, after the list was built
+ * into w->lists.list */
 bool noc_embree_shares_rays(const noc_render_params *p);
 void noc_embree_share_candidates(stage_run *run, worker *w, const tile_points *points);
 void noc_embree_share_visibility(stage_run *run, worker *w, tile t);
@@ -273,12 +279,14 @@ void noc_embree_spatial(stage_run *run, worker *w, tile t);
 /* views.c */
 noc_status noc_embree_begin_views(embree_state *s, uint32_t aovs, bool first_stage);
 /* What the candidates of a block were, as far as the frame asks; r: the reservoirs they ended in. */
-void noc_embree_view_candidates(const stage_run *run, const worker *w, int i, size_t block, uint32_t lanes, const rblock *r);
+void noc_embree_view_candidates(const stage_run *run, const worker *w, int i, size_t block, uint32_t lanes,
+                                const rblock *r);
 void noc_embree_keep_views(embree_state *s, const noc_frame *frame); /* the frame is complete */
 
 /* coverage.c: what emitters that are seen directly add to the mean */
-noc_status noc_embree_make_coverage(embree_state *s, const noc_frame *frame); /* room for the frame, when its shading is done */
-void noc_embree_keep_coverage(embree_state *s, const noc_frame *frame); /* the frame is complete */
+/* room for the frame, when its shading is done */
+noc_status noc_embree_make_coverage(embree_state *s, const noc_frame *frame);
+void noc_embree_keep_coverage(embree_state *s, const noc_frame *frame);                      /* the frame is complete */
 void noc_embree_read_coverage(const frame_buffers *b, size_t block, int lane, float out[4]); /* as noc_image.coverage */
 bool noc_embree_saw_emitter(const frame_buffers *b, size_t block, int lane); /* in a frame of the mean */
 void noc_embree_free_coverage(coverage *c);

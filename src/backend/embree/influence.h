@@ -1,8 +1,8 @@
 /* Candidates from influence volumes (core/influence.h, light/influence.h), included by kernels.c.
  *
- * Points of a tile that lie close together ask as one, 16 volumes against the box around them, and share a list of lights:
- * a hundredth of the tests, and lights that stay in the cache. Of the lights whose volumes hold them they
- * list the strongest, as many as draw best there (light/influence_rule.h). With an S_r that the user gave they list all. */
+ * Points of a tile that lie close together ask as one, 16 volumes against the box around them, and share a list of
+ * lights: a hundredth of the tests, and lights that stay in the cache. Of the lights whose volumes hold them they list
+ * the strongest, as many as draw best there (light/influence_rule.h). With an S_r that the user gave they list all. */
 #ifndef NOC_EMBREE_INFLUENCE_H
 #define NOC_EMBREE_INFLUENCE_H
 
@@ -30,8 +30,8 @@ FN void word_prefetch(const uint32_t *base, u32 index) { record_prefetch((const 
 
 /* ---- what the points find ---- */
 
-/* What each volume near the query's points gives them, lux, from the query's `least` on, which is added to the bins; where that is
- * 0, 1 if it holds them. 0: nothing. False: no memory. */
+/* What each volume near the query's points gives them, lux, from the query's `least` on, which is added to the bins;
+ * where that is 0, 1 if it holds them. 0: nothing. False: no memory. */
 static bool look_closer(const noc_influence *v, const noc_near *near, const noc_near_query *q, noc_found *f) {
     influence_region r = region_splat(q);
     if (!array_reserve(&f->gives, near->groups.len * 16))
@@ -88,7 +88,8 @@ static uint32_t points_close(const gblock *g, uint32_t pending, v3 p, v3 n, floa
 }
 
 /* The points that ask together with the first of those pending in block `first`, in that one and those after it. */
-static void make_group(const gblock *const *g, uint32_t *pending, int first, int blocks, float close, const noc_near_query *none, noc_found *f) {
+static void make_group(const gblock *const *g, uint32_t *pending, int first, int blocks, float close,
+                       const noc_near_query *none, noc_found *f) {
     int lane = __builtin_ctz(pending[first]), number = f->groups++;
     const gblock *o = g[first];
     v3 p = V3(K(o->px[lane]), K(o->py[lane]), K(o->pz[lane])), n = V3(K(o->nx[lane]), K(o->ny[lane]), K(o->nz[lane]));
@@ -126,8 +127,10 @@ static void group_finds(const noc_influence *v, const noc_near *near, int every,
 
 enum { TILE_VOLUMES = 16384 };
 
-/* What the points of a tile find. Volumes are looked for once, near all of them; where that is too many, for each group. */
-static void influence_find(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int n, noc_found *f) {
+/* What the points of a tile find. Volumes are looked for once, near all of them; where that is too many, for each
+ * group. */
+static void influence_find(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int n,
+                           noc_found *f) {
     const noc_influence *v = ctx->influence;
     float fixed = noc_influence_scale(ctx->frame->params->influence), scale = fixed > 0 ? fixed : v->scale;
     float close = influence_close * scale * v->volumes[v->volume_count / 2].root;
@@ -193,10 +196,10 @@ FN influence_region region_load(const asking *a, int l) {
 
 /* ---- draws ---- */
 
-/* Uniform draws of a block's lanes from l on get their densities: the light's own volume is asked. `ahead` draws at a time,
- * so that memory is waited for once. */
-static void weigh_uniform(const noc_influence *v, const asking *a, const noc_near_query *q, int l, int m, int every, real in, real out,
-                          pick_block *picks) {
+/* Uniform draws of a block's lanes from l on get their densities: the light's own volume is asked. `ahead` draws at a
+ * time, so that memory is waited for once. */
+static void weigh_uniform(const noc_influence *v, const asking *a, const noc_near_query *q, int l, int m, int every,
+                          real in, real out, pick_block *picks) {
     enum { AHEAD = 16 };
     u32 volume[AHEAD];
     influence_region r = region_load(a, l);
@@ -222,7 +225,8 @@ static void weigh_uniform(const noc_influence *v, const asking *a, const noc_nea
 }
 
 /* Draws for a block of the tile that found that. */
-static void pick_influence(const struct core_context *ctx, const noc_found *f, int block, int x, int y, int m, pick_block *out) {
+static void pick_influence(const struct core_context *ctx, const noc_found *f, int block, int x, int y, int m,
+                           pick_block *out) {
     const noc_influence *v = ctx->influence;
     int every = ctx->frame->params->uniform_every;
     asking a;

@@ -1,5 +1,5 @@
-/* Searching the hierarchy of influence volumes (light/influence.h), 16 children or volumes at a time; included by kernels.c.
- * All volumes that could hold a point of the box, and some more; always in the same order. */
+/* Searching the hierarchy of influence volumes (light/influence.h), 16 children or volumes at a time; included by
+ * kernels.c. All volumes that could hold a point of the box, and some more; always in the same order. */
 #ifndef NOC_EMBREE_INFLUENCE_NEAR_H
 #define NOC_EMBREE_INFLUENCE_NEAR_H
 
@@ -37,7 +37,8 @@ FN mask box_near(v3 lo, v3 hi, influence_region r, real reach) {
     v3 a = sub3(lo, r.hi);
     v3 b = sub3(r.lo, hi);
     v3 d = V3(max_(max_(a.x, b.x), K(0.0f)), max_(max_(a.y, b.y), K(0.0f)), max_(max_(a.z, b.z), K(0.0f)));
-    EXACT real front = max_(r.n.x * lo.x, r.n.x * hi.x) + max_(r.n.y * lo.y, r.n.y * hi.y) + max_(r.n.z * lo.z, r.n.z * hi.z);
+    EXACT real front =
+        max_(r.n.x * lo.x, r.n.x * hi.x) + max_(r.n.y * lo.y, r.n.y * hi.y) + max_(r.n.z * lo.z, r.n.z * hi.z);
     return and_(and_(reach > K(0.0f), dot3(d, d) <= reach * reach), front >= r.back - K(0.02f) - K(1e-4f) * reach);
 }
 
@@ -113,7 +114,10 @@ FN influence group_load(const noc_near_group *g, int l) {
 FN real with_margin(float scale) { return K(scale * 1.00001f); }
 
 static void influence_near(const noc_influence *v, const noc_near_query *q, noc_near *out) {
-    struct { int level; size_t node; } stack[NOC_INFLUENCE_LEVELS * BLOCK];
+    struct {
+        int level;
+        size_t node;
+    } stack[NOC_INFLUENCE_LEVELS * BLOCK];
     int depth = 0;
     influence_region r = region_splat(q);
     real scale = with_margin(q->scale);

@@ -1,14 +1,18 @@
-/* Kernels of reuse and shading: core/ applied to blocks of pixels. Compiled once as scalar C and once an instruction set,
- * with CORE_LANES and KERNELS (the table's name) defined by the build. */
+/* Kernels of reuse and shading: core/ applied to blocks of pixels. Compiled once as scalar C and once an instruction
+ * set, with CORE_LANES and KERNELS (the table's name) defined by the build. */
 #include "backend/embree/lanes.h"
 
-static void candidates(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m, rblock *out) {
+static void candidates(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
+                       rblock *out) {
     for (int l = 0; l < BLOCK; l += LANES) {
         mask on = mload(lanes, l);
         resv r = resv_empty();
         if (ctx->light_count && ANY(on))
-            r = resv_sel(on, ris_uniform_ahead(ctx, (const float *)ctx->lights, surf_load(ctx, g, l, ctx->frame->camera.eye),
-                                               key_of(ctx, x, y, l), KU(ctx->light_count), m), r);
+            r = resv_sel(on,
+                         ris_uniform_ahead(ctx, (const float *)ctx->lights,
+                                           surf_load(ctx, g, l, ctx->frame->camera.eye), key_of(ctx, x, y, l),
+                                           KU(ctx->light_count), m),
+                         r);
         resv_store(out, l, r);
     }
 }
@@ -25,8 +29,8 @@ static uint32_t project(const struct core_context *ctx, const gblock *g, float p
     return front;
 }
 
-static void segments(const struct core_context *ctx, const gblock *g, const uint32_t *id, const float *u, const float *v,
-                     rayblock *out) {
+static void segments(const struct core_context *ctx, const gblock *g, const uint32_t *id, const float *u,
+                     const float *v, rayblock *out) {
     for (int l = 0; l < BLOCK; l += LANES) {
         v3 p = V3(rload(g->px + l), rload(g->py + l), rload(g->pz + l));
         v3 n = V3(rload(g->nx + l), rload(g->ny + l), rload(g->nz + l));
@@ -79,7 +83,8 @@ static void offer(const struct core_context *ctx, const gblock *g, const rblock 
             real p = K(0.0f);
             if (ANY(has))
                 p = sel(has, target(s, light_load(ctx, q.light), q.u, q.v), K(0.0f));
-            st = stream_add(st, q.light, q.u, q.v, p, q.m * p * q.w, q.m, K(F32(i + 1)), rng(key, KU(dim + 3u * U32(i) + 2u)));
+            st = stream_add(st, q.light, q.u, q.v, p, q.m * p * q.w, q.m, K(F32(i + 1)),
+                            rng(key, KU(dim + 3u * U32(i) + 2u)));
         }
         stream_store(c, l, st);
     }
@@ -143,7 +148,8 @@ static void end_pairwise(const struct core_context *ctx, const gblock *g, const 
             real w = sel(has, pair_weight(share, m_n, q.p, r.m, p, q.w), K(0.0f));
             st = stream_add(st, q.light, q.u, q.v, p, w, q.m, K(F32(i + 1)), rng(key, KU(dim + 3u * U32(i) + 2u)));
         }
-        st = stream_add(st, r.light, r.u, r.v, r.p, m_c * r.p * r.w, r.m, K(0.0f), rng(key, KU(dim + 3u * MAX_NEIGHBOURS)));
+        st = stream_add(st, r.light, r.u, r.v, r.p, m_c * r.p * r.w, r.m, K(0.0f),
+                        rng(key, KU(dim + 3u * MAX_NEIGHBOURS)));
         stream_store(c, l, st);
         resv_store(out, l, stream_end(st, K(1.0f)));
     }
@@ -177,7 +183,8 @@ static uint32_t shade(const struct core_context *ctx, const gblock *g, const rbl
 
 /* ---- sky ---- */
 
-static void sky_rays(const struct core_context *ctx, const gblock *g, int x, int y, const uint32_t *number, rayblock *out) {
+static void sky_rays(const struct core_context *ctx, const gblock *g, int x, int y, const uint32_t *number,
+                     rayblock *out) {
     const float reach = 1e7f; /* further than any scene */
     for (int l = 0; l < BLOCK; l += LANES) {
         v3 at = sky_numbers(key_in(ctx, x, y, l, 0), uload(number + l));
@@ -199,7 +206,8 @@ static uint32_t sky_shade(const struct core_context *ctx, const gblock *g, const
         d = mul3(d, K(1e-7f));
         real p = sky_density(s, d);
         mask some = p > K(0.0f);
-        v3 f = mul3(tint3(reflect(s, d), sky_radiance(d, zenith)), sel(some, rload(share + l) / sel(some, p, K(1.0f)), K(0.0f)));
+        v3 f = mul3(tint3(reflect(s, d), sky_radiance(d, zenith)),
+                    sel(some, rload(share + l) / sel(some, p, K(1.0f)), K(0.0f)));
         dropped |= add_colour(out, l, f, lanes);
     }
     return dropped;

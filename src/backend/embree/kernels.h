@@ -1,6 +1,6 @@
-/* What is computed between rays, for one block of 16 pixels at a time: core/ in scalar C and in wide C, behind one table an
- * instruction set. Ray tracing stays outside: a kernel leaves segments, passes.c has them traced and calls the next one.
- * Lanes are told apart by bits of a uint32_t. Scalar and wide tables give the same bits. */
+/* What is computed between rays, for one block of 16 pixels at a time: core/ in scalar C and in wide C, behind one
+ * table an instruction set. Ray tracing stays outside: a kernel leaves segments, passes.c has them traced and calls the
+ * next one. Lanes are told apart by bits of a uint32_t. Scalar and wide tables give the same bits. */
 #ifndef NOC_EMBREE_KERNELS_H
 #define NOC_EMBREE_KERNELS_H
 
@@ -12,8 +12,8 @@
 #include "render/backend.h"
 
 enum { MOST_SHADOW_RAYS = 16, MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32, LIST_ENTRIES = 128, PICK_AHEAD = 8 };
-/* List building: most pieces of a tile's surfaces that lights are scored at, two a block; most nodes that are opened, of each
- * level and of the lowest; so few that all are; steps that scores are told apart by. */
+/* List building: most pieces of a tile's surfaces that lights are scored at, two a block; most nodes that are opened,
+ * of each level and of the lowest; so few that all are; steps that scores are told apart by. */
 enum { LIST_PATCHES = 32, OPENED_NODES = 96, OPENED_CLUSTERS = 192, FEW_NODES = 64, SCORE_STEPS = 1020 };
 
 /* Most groups of 16 that a list is chosen from. */
@@ -39,7 +39,8 @@ typedef struct tree_items {
     uint32_t *pair, *what; /* what: lane, first draw << 4, draws << 16 */
     float *pmf;
 } tree_items;
-enum { TREE_ITEMS = 16 * 1024 + 64 }; /* every draw of every pixel alone, and places that are read or written past them */
+/* every draw of every pixel alone, and places that are read or written past them */
+enum { TREE_ITEMS = 16 * 1024 + 64 };
 
 /* Uniform for a frame: what core's bridge functions read. */
 struct core_context {
@@ -68,16 +69,17 @@ typedef struct neighbour {
 typedef struct combination {
     ALIGNED float u[BLOCK], v[BLOCK], p[BLOCK], w_sum[BLOCK], m[BLOCK], tag[BLOCK]; /* stream of the sample held */
     uint32_t light[BLOCK];
-    float others[BLOCK];                  /* sum of the neighbours' M */
-    float p_at[MAX_NEIGHBOURS][BLOCK];    /* target of the held (mis) or canonical (pairwise) sample at each neighbour */
+    float others[BLOCK]; /* sum of the neighbours' M */
+    /* target of the held (mis) or canonical (pairwise) sample at each neighbour */
+    float p_at[MAX_NEIGHBOURS][BLOCK];
 } combination;
 
 /* Scratch of the reference method, one a worker. */
 typedef struct reference_scratch {
-    float (*sums)[BLOCK];      /* unshadowed luminance a chunk of lights */
-    uint32_t (*light)[BLOCK];  /* entry, lane: `rays` entries */
+    float (*sums)[BLOCK];     /* unshadowed luminance a chunk of lights */
+    uint32_t (*light)[BLOCK]; /* entry, lane: `rays` entries */
     float (*w)[BLOCK];
-    uint32_t count[BLOCK];     /* entries a lane */
+    uint32_t count[BLOCK]; /* entries a lane */
 } reference_scratch;
 
 /* Scratch of list building, one a worker: groups of 16 nodes of one level (-1: lights), the children of `block`. */
@@ -91,8 +93,8 @@ typedef struct list_scratch {
 
 /* What is believed of a list's entries, and so how they are weighed. */
 typedef struct beliefs {
-    float share[2 * LIST_ENTRIES];   /* weight * pull */
-    float expect[2 * LIST_ENTRIES];  /* weight * visibility */
+    float share[2 * LIST_ENTRIES];  /* weight * pull */
+    float expect[2 * LIST_ENTRIES]; /* weight * visibility */
 } beliefs;
 
 /* A list's entries, weighed for the pixels of a block. */
@@ -105,38 +107,45 @@ typedef struct weighed {
 typedef struct kernels {
     const char *name;
     /* M candidates a lane of `lanes`; w = m = 0 elsewhere. x, y: pixel of lane 0. */
-    void (*candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m, rblock *out);
-    /* The list of a tile of `blocks` blocks. rotation, the tail's start, is a number in [0, 1) that does not depend on what the
-     * tile sees. Then candidates from it. */
+    void (*candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
+                       rblock *out);
+    /* The list of a tile of `blocks` blocks. rotation, the tail's start, is a number in [0, 1) that does not depend on
+     * what the tile sees. Then candidates from it. */
     void (*list_build)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks,
                        float rotation, list_scratch *scratch, light_list *out);
     void (*list_candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, rblock *out);
-    /* Several draws from a list: weigh its entries, draw n[l] of them a lane, find their (u, v). n[l] is a whole number. */
+    /* Several draws from a list: weigh its entries, draw n[l] of them a lane, find their (u, v). n[l] is a whole
+     * number. */
     void (*list_weigh)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, const beliefs *e,
                        weighed *out);
-    void (*list_draw)(int count, const weighed *w, const float n[BLOCK], const float start[BLOCK], uint8_t entry[][BLOCK]);
+    void (*list_draw)(int count, const weighed *w, const float n[BLOCK], const float start[BLOCK],
+                      uint8_t entry[][BLOCK]);
     void (*list_places)(const struct core_context *ctx, int x, int y, const uint8_t entry[BLOCK], rblock *out);
     /* Light pickers: m candidates for the lanes of a block; then a reservoir of such candidates. */
     void (*pick_power)(const struct core_context *ctx, int x, int y, int m, pick_block *out);
     void (*pick_tree)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                       tree_items items[2], pick_block *out);
-    /* What the surfaces of n blocks, a tile, find among the influence volumes; then m candidates for the lanes of one of them. */
-    void (*influence_find)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int n, noc_found *out);
-    void (*pick_influence)(const struct core_context *ctx, const noc_found *found, int block, int x, int y, int m, pick_block *out);
+    /* What the surfaces of n blocks, a tile, find among the influence volumes; then m candidates for the lanes of one
+     * of them. */
+    void (*influence_find)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int n,
+                           noc_found *out);
+    void (*pick_influence)(const struct core_context *ctx, const noc_found *found, int block, int x, int y, int m,
+                           pick_block *out);
     void (*given)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                   const pick_block *picks, rblock *out);
-    /* Where this frame's surfaces were in the previous picture, in pixels; returns the lanes that were in front of it. */
+    /* Where this frame's surfaces were in the previous picture, in pixels; returns the lanes that were in front of it.
+     */
     uint32_t (*project)(const struct core_context *ctx, const gblock *g, float px[BLOCK], float py[BLOCK]);
     /* Segments from g to the samples. */
-    void (*segments)(const struct core_context *ctx, const gblock *g, const uint32_t *light, const float *u, const float *v,
-                     rayblock *out);
-    /* Combination by 1/M or by the balance rule: offers the canonical reservoir and the neighbours' samples. The stream's
-     * tag is 0 for the canonical one, i + 1 for neighbour i. dim: first random dimension, 3 a neighbour. */
+    void (*segments)(const struct core_context *ctx, const gblock *g, const uint32_t *light, const float *u,
+                     const float *v, rayblock *out);
+    /* Combination by 1/M or by the balance rule: offers the canonical reservoir and the neighbours' samples. The
+     * stream's tag is 0 for the canonical one, i + 1 for neighbour i. dim: first random dimension, 3 a neighbour. */
     void (*offer)(const struct core_context *ctx, const gblock *g, const rblock *own, const neighbour *n, int k, int x,
                   int y, uint32_t dim, combination *c);
     /* p_at for the sample held by the stream (c->light, u, v); eye: the neighbours' camera. */
-    void (*targets)(const struct core_context *ctx, const float eye[3], const neighbour *n, int k, const uint32_t *light,
-                    const float *u, const float *v, combination *c);
+    void (*targets)(const struct core_context *ctx, const float eye[3], const neighbour *n, int k,
+                    const uint32_t *light, const float *u, const float *v, combination *c);
     void (*end_biased)(const combination *c, rblock *out);
     void (*end_mis)(const combination *c, const rblock *own, const neighbour *n, int k, const uint32_t *visible,
                     rblock *out);
@@ -150,9 +159,10 @@ typedef struct kernels {
                       reference_scratch *scratch);
     /* (u, v) that `reference` used for a lane's light. */
     void (*reference_place)(const struct core_context *ctx, int x, int y, rblock *r);
-    /* A direction a lane, as a ray that leaves the scene, from place number[lane] of the pixel's sequence; then, where it is free,
-     * its light times share[lane]. */
-    void (*sky_rays)(const struct core_context *ctx, const gblock *g, int x, int y, const uint32_t *number, rayblock *out);
+    /* A direction a lane, as a ray that leaves the scene, from place number[lane] of the pixel's sequence; then, where
+     * it is free, its light times share[lane]. */
+    void (*sky_rays)(const struct core_context *ctx, const gblock *g, int x, int y, const uint32_t *number,
+                     rayblock *out);
     uint32_t (*sky_shade)(const struct core_context *ctx, const gblock *g, const rayblock *rays, const float *share,
                           uint32_t lanes, cblock *out);
     void (*sky_background)(const struct core_context *ctx, uint32_t lanes, int x, int y, cblock *out);

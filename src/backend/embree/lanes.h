@@ -1,4 +1,5 @@
-/* Bridge between core/ and blocks of pixels: loads, stores, masks and light records for CORE_LANES lanes (scalar: 1). */
+/* Bridge between core/ and blocks of pixels: loads, stores, masks and light records for CORE_LANES lanes (scalar: 1).
+ */
 #ifndef NOC_EMBREE_LANES_H
 #define NOC_EMBREE_LANES_H
 
@@ -17,8 +18,16 @@
 
 #if defined(CORE_LANES)
 enum { LANES = CORE_LANES };
-FN real rload(const float *p) { real r; memcpy(&r, p, sizeof(r)); return r; }
-FN u32 uload(const uint32_t *p) { u32 r; memcpy(&r, p, sizeof(r)); return r; }
+FN real rload(const float *p) {
+    real r;
+    memcpy(&r, p, sizeof(r));
+    return r;
+}
+FN u32 uload(const uint32_t *p) {
+    u32 r;
+    memcpy(&r, p, sizeof(r));
+    return r;
+}
 FN mask mload(uint32_t lanes, int first) {
     u32 bit;
     for (int i = 0; i < LANES; i++)
@@ -82,7 +91,8 @@ FN camera camera_load(const noc_frame_camera *f) {
 }
 
 #if !defined(CORE_LANES)
-_Static_assert(offsetof(noc_light_record, kind) == offsetof(light, kind) && offsetof(noc_light_record, a) == offsetof(light, a) &&
+_Static_assert(offsetof(noc_light_record, kind) == offsetof(light, kind) &&
+                   offsetof(noc_light_record, a) == offsetof(light, a) &&
                    offsetof(noc_light_record, radius) == offsetof(light, radius) &&
                    offsetof(noc_light_record, b) == offsetof(light, b) &&
                    offsetof(noc_light_record, flags) == offsetof(light, flags) &&

@@ -42,8 +42,8 @@ static bool draws_candidates(const noc_render_params *p) {
     return p->method == NOC_METHOD_RIS || p->method == NOC_METHOD_RESTIR;
 }
 
-/* Boxes and shared volumes are made for one S_r. Volumes of one light each serve them all, but one that is to be found must have
- * been: it takes far longer to find than volumes to make, so it is not where S_r was set. */
+/* Boxes and shared volumes are made for one S_r. Volumes of one light each serve them all, but one that is to be found
+ * must have been: it takes far longer to find than volumes to make, so it is not where S_r was set. */
 static bool serves(const noc_influence_params *have, const noc_influence_params *want) {
     if (have->cluster != want->cluster || have->boxes != want->boxes)
         return false;
@@ -51,8 +51,12 @@ static bool serves(const noc_influence_params *have, const noc_influence_params 
 }
 
 static noc_status prepare_influence(embree_state *s, const noc_render_params *p) {
-    noc_influence_params want = { .cluster = p->influence_cluster, .scale = p->influence, .probe = noc_embree_probe, .user = s,
-                                  .boxes = p->influence_boxes == NOC_INFLUENCE_VISIBLE, .pool = s->pool };
+    noc_influence_params want = { .cluster = p->influence_cluster,
+                                  .scale = p->influence,
+                                  .probe = noc_embree_probe,
+                                  .user = s,
+                                  .boxes = p->influence_boxes == NOC_INFLUENCE_VISIBLE,
+                                  .pool = s->pool };
     if (s->influence && serves(&s->influence_params, &want))
         return NOC_OK;
     double start = noc_wall_seconds();
@@ -156,7 +160,8 @@ size_t noc_embree_light_bytes(const embree_state *s) {
 }
 
 static size_t scene_bytes(const noc_scene *s) {
-    return s->positions.len * sizeof(float) + (s->indices.len + s->triangle_material.len + s->triangle_light.len) * sizeof(uint32_t) +
+    return s->positions.len * sizeof(float) +
+           (s->indices.len + s->triangle_material.len + s->triangle_light.len) * sizeof(uint32_t) +
            s->material_records.len * sizeof(noc_material_record) + s->lights.len * sizeof(noc_light_record);
 }
 

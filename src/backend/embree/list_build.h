@@ -1,7 +1,7 @@
-/* Building a tile's light list (core/lists.h), included by lists.h. From the top level of the clusters down, the nodes with
- * the highest scores are opened: their 16 children, and in the end the lights of clusters, take their place. The strongest
- * lights are listed; what is left, closed nodes and lights, is what the tail is drawn from. So the work does not grow with
- * the number of lights, only with the number of levels. */
+/* Building a tile's light list (core/lists.h), included by lists.h. From the top level of the clusters down, the nodes
+ * with the highest scores are opened: their 16 children, and in the end the lights of clusters, take their place. The
+ * strongest lights are listed; what is left, closed nodes and lights, is what the tail is drawn from. So the work does
+ * not grow with the number of lights, only with the number of levels. */
 #ifndef NOC_EMBREE_LIST_BUILD_H
 #define NOC_EMBREE_LIST_BUILD_H
 
@@ -39,8 +39,8 @@ static float score_step(uint32_t step) {
     return x;
 }
 
-/* The `most` largest of the scores above 0, as 16 * group + lane in that order; those that share the last step are taken in
- * order. Returns how many. */
+/* The `most` largest of the scores above 0, as 16 * group + lane in that order; those that share the last step are
+ * taken in order. Returns how many. */
 static uint32_t choose(float (*scores)[16], uint32_t begin, uint32_t end, uint32_t most, uint32_t *out) {
     uint32_t low = 1, high = SCORE_STEPS; /* high: the lowest step known to have no more than `most` at or above it */
     while (low < high) {
@@ -77,8 +77,8 @@ static float sum16(const float *x) {
 
 /* ---- the list ---- */
 
-/* How many nodes of the lowest level reached are to be opened: all, where they are few, for then their lights may all be
- * listed; else those that hold more than a 3,000th of all scores; never more than `most`. */
+/* How many nodes of the lowest level reached are to be opened: all, where they are few, for then their lights may all
+ * be listed; else those that hold more than a 3,000th of all scores; never more than `most`. */
 static uint32_t worth_opening(list_scratch *s, uint32_t begin, uint32_t end, uint32_t most) {
     float all = 0;
     for (uint32_t g = 0; g < end; g++)
@@ -98,7 +98,8 @@ static uint32_t open_nodes(const noc_clusters *c, const patches *t, list_scratch
         score_nodes(&c->level[level][b], t, s->scores[n]);
     }
     for (; level >= 0; level--) {
-        uint32_t open = choose(s->scores, begin, n, worth_opening(s, begin, n, level ? OPENED_NODES : OPENED_CLUSTERS), picked);
+        uint32_t open =
+            choose(s->scores, begin, n, worth_opening(s, begin, n, level ? OPENED_NODES : OPENED_CLUSTERS), picked);
         begin = n;
         for (uint32_t i = 0; i < open; i++, n++) {
             uint32_t group = picked[i] / 16, lane = picked[i] % 16, node = 16 * s->block[group] + lane;
@@ -115,8 +116,8 @@ static uint32_t open_nodes(const noc_clusters *c, const patches *t, list_scratch
     return begin;
 }
 
-/* Lane that holds the share *t (0..1) of the scores; *t: what is left of it there, as a share of the lane's own. -1 where all
- * are 0. */
+/* Lane that holds the share *t (0..1) of the scores; *t: what is left of it there, as a share of the lane's own. -1
+ * where all are 0. */
 static int lane_at(const float *scores, float total, float *t) {
     float sum = 0, goal = *t * total;
     int last = -1;
@@ -135,8 +136,8 @@ static int lane_at(const float *scores, float total, float *t) {
 
 /* A light below a lane of a group, by the scores on the way down from it; *share: the probability of that. False where
  * nothing there reaches the tile. */
-static bool descend(const noc_clusters *c, const patches *t, int level, uint32_t block, int lane,
-                    float score, float at, uint32_t *id, float *share) {
+static bool descend(const noc_clusters *c, const patches *t, int level, uint32_t block, int lane, float score, float at,
+                    uint32_t *id, float *share) {
     ALIGNED float scores[16];
     *share = 1;
     for (; level >= 0; level--) {
@@ -157,8 +158,8 @@ static bool descend(const noc_clusters *c, const patches *t, int level, uint32_t
 }
 
 /* `draws` systematic draws over the nodes that stayed closed and the lights that were not listed. */
-static void draw_tail(const noc_clusters *c, const patches *t, list_scratch *s, uint32_t groups,
-                      int draws, float rotation, light_list *out) {
+static void draw_tail(const noc_clusters *c, const patches *t, list_scratch *s, uint32_t groups, int draws,
+                      float rotation, light_list *out) {
     double total = 0;
     for (uint32_t g = 0; g < groups; g++)
         total += s->sums[g] = sum16(s->scores[g]);

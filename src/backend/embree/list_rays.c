@@ -1,7 +1,7 @@
-/* Light lists with several shadow rays a pixel (core/lists.h, docs/estimator.md): every pixel weighs the entries of its tile's
- * list and shares its rays out over them systematically. ris adds up what they see; restir keeps one of those that are
- * seen as the pixel's own reservoir, and where only frames are reused mixes both. How many rays, and which entries, is steered by
- * what earlier frames have learned of the lights' visibility. */
+/* Light lists with several shadow rays a pixel (core/lists.h, docs/estimator.md): every pixel weighs the entries of its
+ * tile's list and shares its rays out over them systematically. ris adds up what they see; restir keeps one of those
+ * that are seen as the pixel's own reservoir, and where only frames are reused mixes both. How many rays, and which
+ * entries, is steered by what earlier frames have learned of the lights' visibility. */
 #include "backend/embree/embree.h"
 
 #include "core/random.h"
@@ -31,7 +31,8 @@ static uint64_t key_of_block(const noc_frame *f, const gblock *g, uint32_t lanes
     return noc_cell_key(p, n, (int)lrintf(log2f(NOC_CLAMP(side, 1e-6f, 1e9f))));
 }
 
-/* How strongly rays are drawn to a light: the root of its expected square, and something for those thought to be hidden. */
+/* How strongly rays are drawn to a light: the root of its expected square, and something for those thought to be
+ * hidden. */
 static float pull(float visibility) { return sqrtf(visibility) + 0.1f; }
 
 /* Number of the block's cell among those of the tile. */
@@ -55,8 +56,8 @@ static int believe(const stage_run *run, const gblock *g, uint32_t lanes, const 
 
 /* ---- rays ---- */
 
-/* Rays of a lane: as many as asked for where nothing is known, more where little light is expected to get through, up to
- * twice as many. A hundredth of the picture's brightness is dark enough not to look for more. */
+/* Rays of a lane: as many as asked for where nothing is known, more where little light is expected to get through, up
+ * to twice as many. A hundredth of the picture's brightness is dark enough not to look for more. */
 static float ray_count(const stage_run *run, const tile_rays *t, int l, float rounding) {
     const float unknown = NOC_UNKNOWN_LIGHT / pull(NOC_UNKNOWN_LIGHT);
     float rays = (float)run->ctx.frame->params->shadow_rays, all = t->weighed.all[l];
@@ -68,9 +69,9 @@ static float ray_count(const stage_run *run, const tile_rays *t, int l, float ro
 
 /* A block's draws. An entry that was drawn several times, which come one after the other, needs one ray. */
 typedef struct block_draws {
-    float n[BLOCK];                             /* draws a lane */
-    uint8_t entry[MOST_SHADOW_RAYS][BLOCK];     /* ray, lane */
-    uint8_t times[MOST_SHADOW_RAYS][BLOCK];     /* drawn so often; 0: no such ray */
+    float n[BLOCK];                         /* draws a lane */
+    uint8_t entry[MOST_SHADOW_RAYS][BLOCK]; /* ray, lane */
+    uint8_t times[MOST_SHADOW_RAYS][BLOCK]; /* drawn so often; 0: no such ray */
 } block_draws;
 
 static int join_equals(block_draws *d) {
@@ -94,7 +95,7 @@ static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ct
     ray_draw *d = &t->draws[t->count];
     segment_block *s = &t->segments[t->count++];
     const light_list *list = ctx->list;
-    float (*counts)[BLOCK] = run->s->b.views.made[NOC_AOV_RAYS];
+    float(*counts)[BLOCK] = run->s->b.views.made[NOC_AOV_RAYS];
     d->block = block;
     s->valid = 0;
     s->counts = counts ? counts[t->at[block]] : NULL;
@@ -104,7 +105,8 @@ static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ct
         s->valid |= (uint32_t)(times > 0) << l;
         s->light[l] = d->r.light[l] = list->light[i];
         d->r.p[l] = t->weighed.weight[i][l] / t->cell[t->cell_of[block]].beliefs.share[i];
-        d->r.w[l] = times > 0 ? times * t->weighed.all[l] / (from->n[l] * t->weighed.weight[i][l]) * list->weight[i] : 0;
+        d->r.w[l] =
+            times > 0 ? times * t->weighed.all[l] / (from->n[l] * t->weighed.weight[i][l]) * list->weight[i] : 0;
     }
     run->k->list_places(ctx, x, y, d->entry, &d->r);
     run->k->segments(&run->ctx, g, d->r.light, d->r.u, d->r.v, &s->rays);
@@ -134,8 +136,8 @@ static uint32_t pixel_key(const noc_frame *f, int x, int y, int l) {
     return rng_key(f->params->seed, pixel, f->index);
 }
 
-static void draw_block(stage_run *run, tile_rays *t, const struct core_context *ctx, const gblock *g, int block, int x, int y,
-                       rblock *out) {
+static void draw_block(stage_run *run, tile_rays *t, const struct core_context *ctx, const gblock *g, int block, int x,
+                       int y, rblock *out) {
     float start[BLOCK], pick[BLOCK];
     block_draws d;
     int first = t->count;
@@ -153,14 +155,15 @@ static void draw_block(stage_run *run, tile_rays *t, const struct core_context *
     keep_one(run, t, &d, pick, block, first, out);
 }
 
-/* A list with room to spare holds its lights several times, each time to be looked at in another point: up to a ray's worth, and
- * in all not in fewer points than the pixel's draws would be (a large light close by differs more from place to place than from
- * light to light). */
+/* A list with room to spare holds its lights several times, each time to be looked at in another point: up to a ray's
+ * worth, and in all not in fewer points than the pixel's draws would be (a large light close by differs more from place
+ * to place than from light to light). */
 static void fill_list(const noc_render_params *p, light_list *list) {
     uint32_t once = list->count, room = (uint32_t)NOC_MIN(p->list + p->tail, 2 * LIST_ENTRIES);
     uint32_t wanted = once ? NOC_MAX((uint32_t)p->shadow_rays, (uint32_t)p->draws / once) : 0;
     uint32_t copies = once ? NOC_MIN(room / once, wanted) : 0;
-    /* Side by side: rays that are an equal distance apart would find the same light again in each round of all of them. */
+    /* Side by side: rays that are an equal distance apart would find the same light again in each round of all of them.
+     */
     for (uint32_t i = once * copies; copies > 1 && i-- > 0;) {
         list->light[i] = list->light[i / copies];
         list->weight[i] = list->weight[i / copies] / (float)copies;
@@ -213,7 +216,8 @@ static void note_sightings(stage_run *run, worker *w, tile at) {
     }
     learned_tile *out = &run->s->learned_tiles[item];
     *out = (learned_tile){ (int)(w - run->s->workers), w->sightings.len, 0, t->bright };
-    if (!array_reserve(&w->sightings, w->sightings.len + (size_t)t->cells * list->count)) { /* they grow with the picture */
+    /* they grow with the picture */
+    if (!array_reserve(&w->sightings, w->sightings.len + (size_t)t->cells * list->count)) {
         w->no_memory = true;
         return;
     }
@@ -225,7 +229,8 @@ static void note_sightings(stage_run *run, worker *w, tile at) {
     out->count = w->sightings.len - out->first;
 }
 
-/* One of a block's samples that are seen, by what each adds; its W stands for all of them. first: of the block's draws. */
+/* One of a block's samples that are seen, by what each adds; its W stands for all of them. first: of the block's draws.
+ */
 static void resample(const stage_run *run, const tile_rays *t, int first, const float pick[BLOCK], rblock *out) {
     int rays = t->draws[first].rays;
     for (int l = 0; l < BLOCK; l++) {
@@ -255,7 +260,8 @@ static void make_reservoirs(const stage_run *run, const tile_rays *t) {
     const noc_frame *f = run->ctx.frame;
     for (int i = 0; i < t->count; i += t->draws[i].rays) {
         size_t block = t->at[t->draws[i].block];
-        int x = (int)(block % (size_t)run->s->b.blocks_x) * BLOCK_SIDE, y = (int)(block / (size_t)run->s->b.blocks_x) * BLOCK_SIDE;
+        int x = (int)(block % (size_t)run->s->b.blocks_x) * BLOCK_SIDE,
+            y = (int)(block / (size_t)run->s->b.blocks_x) * BLOCK_SIDE;
         float pick[BLOCK];
         for (int l = 0; l < BLOCK; l++)
             pick[l] = rng(pixel_key(f, x, y, l), DIM_CANDIDATE + 5);
@@ -293,9 +299,9 @@ void noc_embree_share_visibility(stage_run *run, worker *w, tile at) {
         note_sightings(run, w, at);
 }
 
-/* restir: the rays and the reservoir of a pixel are both unbiased, so any mixture of them is whose shares are fixed before
- * either is drawn. M tells how many frames stand behind the reservoir, whatever they found; its sample has the luminance of all
- * of them, but one light's colour. */
+/* restir: the rays and the reservoir of a pixel are both unbiased, so any mixture of them is whose shares are fixed
+ * before either is drawn. M tells how many frames stand behind the reservoir, whatever they found; its sample has the
+ * luminance of all of them, but one light's colour. */
 static void share_with_reservoirs(const stage_run *run, tile_rays *t, tile at) {
     const float frame = (float)run->ctx.frame->params->draws;
     for (int n = (at.y1 - at.y0) * (at.x1 - at.x0); n-- > 0;) {

@@ -1,7 +1,8 @@
-/* How strongly lights could shine on a tile, included by list_build.h: the tile's surfaces as patches with tight bounds, and
- * scores of nodes and of lights, the root of the mean square over the patches of what they could give there. That is the
- * density with the least variance for the tile's pixels (Cauchy-Schwarz), where scores are exact: a light that is strong in a
- * corner of the tile only is not forgotten, as it is where it counts by its mean, or by a bound of the whole tile. */
+/* How strongly lights could shine on a tile, included by list_build.h: the tile's surfaces as patches with tight
+ * bounds, and scores of nodes and of lights, the root of the mean square over the patches of what they could give
+ * there. That is the density with the least variance for the tile's pixels (Cauchy-Schwarz), where scores are exact: a
+ * light that is strong in a corner of the tile only is not forgotten, as it is where it counts by its mean, or by a
+ * bound of the whole tile. */
 #ifndef NOC_EMBREE_LIST_SCORES_H
 #define NOC_EMBREE_LIST_SCORES_H
 
@@ -11,11 +12,12 @@
 
 /* Some neighbouring surfaces of a tile. */
 typedef struct patch {
-    float c[3], radius, axis[3], spread;   /* core/cones.h */
-    float share;                           /* root of its share of the tile's pixels */
-    float reflectance;                     /* from lux to cd/m2, about, times share */
-    float wo[3];                           /* from its centre to the eye */
-    float gloss, alpha2;                   /* what multiplies the lobe of its first surface, taken for all, and that lobe's alpha^2 */
+    float c[3], radius, axis[3], spread; /* core/cones.h */
+    float share;                         /* root of its share of the tile's pixels */
+    float reflectance;                   /* from lux to cd/m2, about, times share */
+    float wo[3];                         /* from its centre to the eye */
+    /* what multiplies the lobe of its first surface, taken for all, and that lobe's alpha^2 */
+    float gloss, alpha2;
 } patch;
 
 typedef struct patches {
@@ -91,7 +93,8 @@ static uint32_t lanes_in_front(const gblock *g, uint32_t lanes) {
     return front;
 }
 
-static void make_patches(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks, patches *out) {
+static void make_patches(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks,
+                         patches *out) {
     int all = 0;
     out->count = 0;
     for (int b = 0; b < blocks; b++)
@@ -177,8 +180,8 @@ FN real patch_gloss(const patch *t, cone_view w) {
     return K(t->gloss) * (a2 * q * q);
 }
 
-/* The lights of a cluster as points, no nearer to a patch than its radius, and a small share of the cluster's own score, for
- * they have a size, and so that none is 0 where the cluster is not. */
+/* The lights of a cluster as points, no nearer to a patch than its radius, and a small share of the cluster's own
+ * score, for they have a size, and so that none is 0 where the cluster is not. */
 static void score_lights(const noc_clusters *c, uint32_t cluster, const patches *t, float score, float *out) {
     const noc_cluster_block *block = &c->level[0][cluster / 16];
     uint32_t lane = cluster % 16;

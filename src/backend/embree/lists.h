@@ -1,5 +1,5 @@
-/* Light lists (core/lists.h), included by kernels.c: a tile's list is built (list_build.h), then every pixel chooses among its
- * entries. */
+/* Light lists (core/lists.h), included by kernels.c: a tile's list is built (list_build.h), then every pixel chooses
+ * among its entries. */
 #ifndef NOC_EMBREE_LISTS_H
 #define NOC_EMBREE_LISTS_H
 
@@ -13,12 +13,14 @@ FN list_entry list_entry_load(CTX int i) {
     return e;
 }
 
-static void list_candidates(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, rblock *out) {
+static void list_candidates(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y,
+                            rblock *out) {
     for (int l = 0; l < BLOCK; l += LANES) {
         mask on = mload(lanes, l);
         resv r = resv_empty();
         if (ctx->list->count && ANY(on)) {
-            resv q = ris_list(ctx, surf_load(ctx, g, l, ctx->frame->camera.eye), key_of(ctx, x, y, l), (int)ctx->list->count);
+            resv q = ris_list(ctx, surf_load(ctx, g, l, ctx->frame->camera.eye), key_of(ctx, x, y, l),
+                              (int)ctx->list->count);
             r = resv_sel(on, q, r);
         }
         r.m = sel(on, K(F32(ctx->frame->params->draws)), K(0.0f));
@@ -56,7 +58,8 @@ static void list_weigh(const struct core_context *ctx, const gblock *g, uint32_t
 }
 
 /* Systematic draws: entry[k][l] is where the share (k + start) / n of all the weights lies, for k < n. */
-static void list_draw(int count, const weighed *w, const float n[BLOCK], const float start[BLOCK], uint8_t entry[][BLOCK]) {
+static void list_draw(int count, const weighed *w, const float n[BLOCK], const float start[BLOCK],
+                      uint8_t entry[][BLOCK]) {
     for (int l = 0; l < BLOCK; l += LANES) {
         real m = rload(n + l);
         real step = rload(w->all + l) / max_(m, K(1.0f));

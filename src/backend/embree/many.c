@@ -1,12 +1,12 @@
-/* Many shadow rays at once. What a ray costs is decided by its company: neighbours' rays to one light visit the same nodes and
- * make a packet; rays to sixteen lights do not, and as a packet are hardly faster than one by one. bench/bench_rays has the
- * figures. */
+/* Many shadow rays at once. What a ray costs is decided by its company: neighbours' rays to one light visit the same
+ * nodes and make a packet; rays to sixteen lights do not, and as a packet are hardly faster than one by one.
+ * bench/bench_rays has the figures. */
 #include "backend/embree/embree.h"
 
 enum { RAYS = MANY_BLOCKS * BLOCK, SLOTS = 2 * RAYS };
 
-/* Rays (block * BLOCK + lane) by group; group g is at[start[g]] to at[start[g + 1]]. A group leads to one light, in one octant
- * of directions: packets of more than one octant are taken apart by Embree. */
+/* Rays (block * BLOCK + lane) by group; group g is at[start[g]] to at[start[g + 1]]. A group leads to one light, in one
+ * octant of directions: packets of more than one octant are taken apart by Embree. */
 typedef struct grouping {
     uint16_t at[RAYS], start[RAYS + 1];
     int groups, count;
@@ -83,8 +83,14 @@ static void trace_rest(RTCScene scene, segment_block *blocks, const uint16_t *at
     for (int i = 0; i < n; i++) {
         const rayblock *b = &blocks[at[i] / BLOCK].rays;
         int l = at[i] % BLOCK;
-        r[i] = (struct RTCRay){ .org_x = b->o[0][l], .org_y = b->o[1][l], .org_z = b->o[2][l], .dir_x = b->d[0][l],
-                                .dir_y = b->d[1][l], .dir_z = b->d[2][l], .tfar = 1, .mask = UINT32_MAX };
+        r[i] = (struct RTCRay){ .org_x = b->o[0][l],
+                                .org_y = b->o[1][l],
+                                .org_z = b->o[2][l],
+                                .dir_x = b->d[0][l],
+                                .dir_y = b->d[1][l],
+                                .dir_z = b->d[2][l],
+                                .tfar = 1,
+                                .mask = UINT32_MAX };
     }
     if (n)
         rt_occluded_stream(scene, r, (unsigned)n);

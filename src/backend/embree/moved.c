@@ -13,8 +13,10 @@ static void forget_alias(embree_state *s) {
 
 noc_status noc_embree_follow_lights(embree_state *s, const noc_render_params *p) {
     const noc_scene *scene = s->scene;
-    if (needs_past(s, p) && !s->past_lights && !(s->past_lights = noc_alloc_large(scene->lights.len, sizeof(*s->past_lights))))
-        return noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory for the previous frame's %zu lights", scene->lights.len);
+    if (needs_past(s, p) && !s->past_lights &&
+        !(s->past_lights = noc_alloc_large(scene->lights.len, sizeof(*s->past_lights))))
+        return noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory for the previous frame's %zu lights",
+                         scene->lights.len);
     if (s->moves == scene->moves)
         return NOC_OK;
     if (s->tree && noc_tree_refit(s->tree, scene, s->log) != NOC_OK) {

@@ -15,7 +15,7 @@ int noc_embree_tile_blocks(const stage_run *run, tile t, tile_block out[TILE_BLO
 }
 
 segment_block *noc_embree_gather(const stage_run *run, worker *w, size_t at, uint32_t valid) {
-    float (*counts)[BLOCK] = run->s->b.views.made[NOC_AOV_RAYS];
+    float(*counts)[BLOCK] = run->s->b.views.made[NOC_AOV_RAYS];
     segment_block *s = &w->batch.blocks[w->batch.count++];
     s->valid = valid;
     s->counts = counts ? counts[at] : NULL;
@@ -35,8 +35,9 @@ static void primary_block(stage_run *run, worker *w, int bx, int by) {
     const noc_frame *f = run->ctx.frame;
     const noc_frame_camera *c = &f->camera;
     frame_buffers *b = &run->s->b;
-    camera cam = { .right = vec(c->right), .up = vec(c->up), .forward = vec(c->forward), .width = c->width,
-                   .height = c->height };
+    camera cam = {
+        .right = vec(c->right), .up = vec(c->up), .forward = vec(c->forward), .width = c->width, .height = c->height
+    };
     rayblock rays;
     for (int l = 0; l < BLOCK; l++) {
         v3 d = camera_direction(cam, (float)(bx * BLOCK_SIDE + (l & 3)) + c->jitter[0],
@@ -47,7 +48,7 @@ static void primary_block(stage_run *run, worker *w, int bx, int by) {
         rays.d[1][l] = d.y;
         rays.d[2][l] = d.z;
     }
-    float (*objects)[BLOCK] = b->views.made[NOC_AOV_OBJECT];
+    float(*objects)[BLOCK] = b->views.made[NOC_AOV_OBJECT];
     noc_embree_primary(run->s, w, &rays, lanes_inside(b, bx, by), &b->g[f->gbuffer][block_at(b, bx, by)],
                        objects ? objects[block_at(b, bx, by)] : NULL);
 }
@@ -104,8 +105,8 @@ static void candidates(stage_run *run, worker *w, const tile_points *points, int
     run->s->b.visible[run->stage->target][at.at] = 0;
 }
 
-/* Where the tail of a tile's list starts: anywhere, and from frame to frame on along the golden ratio's sequence, so that the
- * mean of some frames has met the lights as evenly as one frame with so many draws. */
+/* Where the tail of a tile's list starts: anywhere, and from frame to frame on along the golden ratio's sequence, so
+ * that the mean of some frames has met the lights as evenly as one frame with so many draws. */
 static float tail_start(const stage_run *run, tile t) {
     const noc_frame *f = run->ctx.frame;
     u32 key = rng_key(f->params->seed, (uint32_t)(t.y0 * run->s->b.blocks_x + t.x0), 0);
@@ -129,7 +130,8 @@ static void tile_candidates(stage_run *run, worker *w, tile t) {
     if (from == NOC_CANDIDATES_BVH)
         find_volumes(run, w, &points);
     if (from == NOC_CANDIDATES_LISTS)
-        run->k->list_build(&run->ctx, points.g, points.lanes, points.count, tail_start(run, t), &w->lists, &w->lists.list);
+        run->k->list_build(&run->ctx, points.g, points.lanes, points.count, tail_start(run, t), &w->lists,
+                           &w->lists.list);
     if (from == NOC_CANDIDATES_LISTS && noc_embree_shares_rays(p)) {
         noc_embree_share_candidates(run, w, &points);
         return;
@@ -217,8 +219,8 @@ static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, cons
     return dropped;
 }
 
-/* The samples of a tile's reservoirs: rays to those that are not known to be seen, all at once. share: what of each pixel's light
- * is its sample's; NULL: all. */
+/* The samples of a tile's reservoirs: rays to those that are not known to be seen, all at once. share: what of each
+ * pixel's light is its sample's; NULL: all. */
 static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, int n, const float (*share)[BLOCK]) {
     frame_buffers *b = &run->s->b;
     const gblock *g = b->g[run->ctx.frame->gbuffer];
@@ -264,7 +266,7 @@ static void shade(stage_run *run, worker *w, tile t) {
     if (noc_embree_shares_rays(f->params) && run->stage->passes >> NOC_PASS_CANDIDATES & 1) {
         noc_embree_share_shade(run, w, t);
         if (f->params->method == NOC_METHOD_RESTIR)
-            shade_samples(run, w, blocks, n, (const float (*)[BLOCK])w->shared.reused);
+            shade_samples(run, w, blocks, n, (const float(*)[BLOCK])w->shared.reused);
     } else if (f->params->method != NOC_METHOD_REFERENCE) {
         shade_samples(run, w, blocks, n, NULL);
     } else {
@@ -277,8 +279,9 @@ static void shade(stage_run *run, worker *w, tile t) {
 
 #define SKY_RAYS 4 /* of a pixel that nothing but the sky lights */
 
-/* A ray to the sky for each lane, SKY_RAYS where this frame's lights brought less than the sky may: there its noise is all the
- * noise there is, and no time went into shadow rays. It is settled before any of them is traced, so it adds no bias. */
+/* A ray to the sky for each lane, SKY_RAYS where this frame's lights brought less than the sky may: there its noise is
+ * all the noise there is, and no time went into shadow rays. It is settled before any of them is traced, so it adds no
+ * bias. */
 static void sky_turns(const stage_run *run, const cblock *c, uint8_t turns[BLOCK]) {
     float zenith = (float)run->ctx.frame->params->sky;
     for (int l = 0; l < BLOCK; l++)
@@ -295,7 +298,8 @@ static void sky(stage_run *run, worker *w, tile t) {
     int n = noc_embree_tile_blocks(run, t, blocks);
     for (int i = 0; i < n; i++) {
         size_t at = blocks[i].at;
-        uint32_t background = lanes_inside(b, blocks[i].x / BLOCK_SIDE, blocks[i].y / BLOCK_SIDE) & ~lanes_with_surface(&g[at]);
+        uint32_t background =
+            lanes_inside(b, blocks[i].x / BLOCK_SIDE, blocks[i].y / BLOCK_SIDE) & ~lanes_with_surface(&g[at]);
         sky_turns(run, &b->colour[at], turns[i]);
         if (background)
             run->k->sky_background(&run->ctx, background, blocks[i].x, blocks[i].y, &b->colour[at]);
@@ -332,8 +336,12 @@ static void sky(stage_run *run, worker *w, tile t) {
 
 void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
     static void (*const passes[NOC_PASS_COUNT])(stage_run *, worker *, tile) = {
-        [NOC_PASS_PRIMARY] = primary, [NOC_PASS_CANDIDATES] = tile_candidates, [NOC_PASS_VISIBILITY] = visibility,
-        [NOC_PASS_TEMPORAL] = noc_embree_temporal, [NOC_PASS_SPATIAL] = noc_embree_spatial, [NOC_PASS_SHADE] = shade,
+        [NOC_PASS_PRIMARY] = primary,
+        [NOC_PASS_CANDIDATES] = tile_candidates,
+        [NOC_PASS_VISIBILITY] = visibility,
+        [NOC_PASS_TEMPORAL] = noc_embree_temporal,
+        [NOC_PASS_SPATIAL] = noc_embree_spatial,
+        [NOC_PASS_SHADE] = shade,
         [NOC_PASS_SKY] = sky,
     };
     bool needs_light = pass == NOC_PASS_CANDIDATES || pass == NOC_PASS_VISIBILITY || pass == NOC_PASS_TEMPORAL ||

@@ -1,5 +1,5 @@
-/* Candidates of the light pickers (core/alias.h, core/tree.h, light/influence.h), included by kernels.c: a picking step fills
- * a pick_block, `given` evaluates it. */
+/* Candidates of the light pickers (core/alias.h, core/tree.h, light/influence.h), included by kernels.c: a picking step
+ * fills a pick_block, `given` evaluates it. */
 #ifndef NOC_EMBREE_PICKS_H
 #define NOC_EMBREE_PICKS_H
 
@@ -37,7 +37,8 @@ FN alias_slot alias_load(CTX u32 i) {
     return s;
 }
 
-/* Candidate i, while the light of a later one is asked for. Entries up to PICK_AHEAD past the last are there to be read. */
+/* Candidate i, while the light of a later one is asked for. Entries up to PICK_AHEAD past the last are there to be
+ * read. */
 FN pick pick_load(CTX int i) {
     light_prefetch((const float *)ctx->lights, uload(ctx->picks->light[i + PICK_AHEAD] + ctx->lane));
     pick p;

@@ -1,10 +1,10 @@
 /* The reference method's kernel, included by kernels.c: every light is evaluated at every pixel.
  *
- * A light's sample (u, v) is one random place a pixel, light and frame. `rays` entries are laid over the lights' cumulative
- * unshadowed luminance by systematic sampling (thresholds (j + xi) T / n): a light of luminance p gets p n / T entries on
- * average, which makes one entry worth T / (n p). Several entries of one light become one of that many times the weight.
- * With no more lights than rays every light gets its own. Lights are summed in chunks, so that the second walk only
- * evaluates the chunks that hold a threshold. */
+ * A light's sample (u, v) is one random place a pixel, light and frame. `rays` entries are laid over the lights'
+ * cumulative unshadowed luminance by systematic sampling (thresholds (j + xi) T / n): a light of luminance p gets p n /
+ * T entries on average, which makes one entry worth T / (n p). Several entries of one light become one of that many
+ * times the weight. With no more lights than rays every light gets its own. Lights are summed in chunks, so that the
+ * second walk only evaluates the chunks that hold a threshold. */
 #ifndef NOC_EMBREE_REFERENCE_H
 #define NOC_EMBREE_REFERENCE_H
 
@@ -33,7 +33,8 @@ static void put_entries(reference_scratch *e, int l, mask lanes, uint32_t id, re
     }
 }
 
-static void reference_lanes(const struct core_context *ctx, const gblock *g, int x, int y, int l, reference_scratch *e) {
+static void reference_lanes(const struct core_context *ctx, const gblock *g, int x, int y, int l,
+                            reference_scratch *e) {
     int n = ctx->frame->params->rays;
     u32 key = key_of(ctx, x, y, l);
     surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
@@ -76,7 +77,8 @@ static void reference_lanes(const struct core_context *ctx, const gblock *g, int
     }
 }
 
-static void reference(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, reference_scratch *e) {
+static void reference(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y,
+                      reference_scratch *e) {
     memset(e->count, 0, sizeof(e->count));
     for (int l = 0; l < BLOCK; l += LANES)
         if (lanes >> l & ((1u << LANES) - 1))

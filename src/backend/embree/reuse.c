@@ -1,10 +1,11 @@
-/* Temporal and spatial reuse of a tile's blocks: neighbours' reservoirs are fetched, combined by core/reuse.h, and visibility is
- * traced where the combination needs it.
+/* Temporal and spatial reuse of a tile's blocks: neighbours' reservoirs are fetched, combined by core/reuse.h, and
+ * visibility is traced where the combination needs it.
  *
  * With bias rays a reservoir's target function includes visibility at its own pixel: every reservoir that is reused has
  * either an unoccluded sample or W = 0. Then the neighbours' p_j in the balance heuristic needs one shadow ray from the
- * neighbour; visibility at the receiving pixel need not be in the weights, since a sample that is occluded there counts as
- * nothing whatever its weight. Without bias rays the targets are unshadowed: unbiased without visibility reuse, biased with. */
+ * neighbour; visibility at the receiving pixel need not be in the weights, since a sample that is occluded there counts
+ * as nothing whatever its weight. Without bias rays the targets are unshadowed: unbiased without visibility reuse,
+ * biased with. */
 #include "backend/embree/embree.h"
 
 #include "core/random.h"
@@ -39,9 +40,10 @@ static void clear(neighbour *n) {
     memset(&n->r, 0, sizeof(n->r));
 }
 
-/* Up to where visibility is needed: offers (not pairwise), and targets at the neighbours. there: the lights that the neighbours'
- * reservoirs were made with. */
-static void begin(const stage_run *run, const struct core_context *there, combining *b, const float eye[3], uint32_t dim) {
+/* Up to where visibility is needed: offers (not pairwise), and targets at the neighbours. there: the lights that the
+ * neighbours' reservoirs were made with. */
+static void begin(const stage_run *run, const struct core_context *there, combining *b, const float eye[3],
+                  uint32_t dim) {
     const gblock *g = &run->s->b.g[run->ctx.frame->gbuffer][b->at];
     noc_bias bias = run->ctx.frame->params->bias;
     combination *c = &b->c;
@@ -122,7 +124,8 @@ static void resolve(const stage_run *run, worker *w, int count) {
 }
 
 /* Combines the first `count` of w->combining into the stage's target. All rays of a step are traced in company. */
-static void combine(stage_run *run, const struct core_context *there, worker *w, int count, const float eye[3], uint32_t dim) {
+static void combine(stage_run *run, const struct core_context *there, worker *w, int count, const float eye[3],
+                    uint32_t dim) {
     frame_buffers *b = &run->s->b;
     bool rays = noc_uses_bias_rays(run->ctx.frame->params);
     w->batch.count = 0;
@@ -197,8 +200,8 @@ void noc_embree_temporal(stage_run *run, worker *w, tile t) {
     combine(run, &past, w, count, f->previous.eye, DIM_TEMPORAL);
 }
 
-/* Neighbour places are drawn once a block: pixels next to each other read reservoirs next to each other, and their bias rays
- * are nearly parallel. Each pixel still has its own set of neighbours, chosen without regard to any sample. */
+/* Neighbour places are drawn once a block: pixels next to each other read reservoirs next to each other, and their bias
+ * rays are nearly parallel. Each pixel still has its own set of neighbours, chosen without regard to any sample. */
 static void neighbour_place(const noc_frame *f, uint32_t key, uint32_t dim, int *dx, int *dy) {
     float radius = (float)f->params->radius * sqrtf(rng(key, dim));
     v3 c = circle(rng(key, dim + 1));

@@ -1,7 +1,7 @@
 /* Is there memory for what Embree is about to do? It has to be known before: Embree turns an allocation of its own that
- * fails into an error, but TBB, which runs its builds, ends the process where a thread or a small object of its own cannot be
- * had. So the room that TBB may take is looked for before anything starts, and again beside each block that Embree announces.
- * Other threads of the host may take it in between, as nothing is kept from them. */
+ * fails into an error, but TBB, which runs its builds, ends the process where a thread or a small object of its own
+ * cannot be had. So the room that TBB may take is looked for before anything starts, and again beside each block that
+ * Embree announces. Other threads of the host may take it in between, as nothing is kept from them. */
 #include "backend/embree/embree.h"
 
 #include <pthread.h>
@@ -40,7 +40,8 @@ static void *wait_for_lock(void *lock) {
 
 bool noc_embree_room_for_threads(const embree_state *s) {
     pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-    size_t wanted = NOC_MAX(helpers(s), 1), started = 0; /* as the device goes, TBB starts one whatever it was asked for */
+    /* as the device goes, TBB starts one whatever it was asked for */
+    size_t wanted = NOC_MAX(helpers(s), 1), started = 0;
     pthread_t *threads = noc_alloc((wanted + 1) * sizeof(*threads));
     pthread_attr_t attributes;
     if (!threads || pthread_attr_init(&attributes)) {

@@ -1,7 +1,7 @@
 /* Embree 3.13 and 4 behind the same few calls.
  *
- * Shadow rays never ask for coherent traversal, though packets to one light would gain by it in open streets: rtcOccluded16 of
- * 3.13.5 then never returned from a packet of ordinary rays (compact structure, the built-in city). */
+ * Shadow rays never ask for coherent traversal, though packets to one light would gain by it in open streets:
+ * rtcOccluded16 of 3.13.5 then never returned from a packet of ordinary rays (compact structure, the built-in city). */
 #ifndef NOC_EMBREE_RT_H
 #define NOC_EMBREE_RT_H
 
@@ -41,8 +41,8 @@ static inline void rt_occluded16(const int *valid, RTCScene scene, struct RTCRay
     rtcOccluded16(valid, scene, &context, rays);
 }
 
-/* Rays of no common direction, all at once: Embree 3 takes them down its tree together, which is a third faster than packets
- * of 16 once there are a hundred or so (bench/bench_rays). Embree 4 has no such call. */
+/* Rays of no common direction, all at once: Embree 3 takes them down its tree together, which is a third faster than
+ * packets of 16 once there are a hundred or so (bench/bench_rays). Embree 4 has no such call. */
 #define RT_STREAMS 1
 static inline void rt_occluded_stream(RTCScene scene, struct RTCRay *rays, unsigned count) {
     struct RTCIntersectContext context;

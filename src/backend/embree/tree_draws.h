@@ -1,7 +1,7 @@
-/* Draws from a light tree for the pixels of a block, included by picks.h: all pixels go down together, a level at a time. An
- * item is a pixel at a pair of nodes with some of its draws; whatever pixels they belong to, LANES items are split at once,
- * and their pairs are known, and asked for, long before they are needed. Which item is split when does not matter: the
- * result is that of core/tree.h, to the bit. */
+/* Draws from a light tree for the pixels of a block, included by picks.h: all pixels go down together, a level at a
+ * time. An item is a pixel at a pair of nodes with some of its draws; whatever pixels they belong to, LANES items are
+ * split at once, and their pairs are known, and asked for, long before they are needed. Which item is split when does
+ * not matter: the result is that of core/tree.h, to the bit. */
 #ifndef NOC_EMBREE_TREE_DRAWS_H
 #define NOC_EMBREE_TREE_DRAWS_H
 

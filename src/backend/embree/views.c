@@ -1,12 +1,13 @@
-/* Views of the light sampling (noc_aov): gathered while a frame is made, kept once it is complete. Nothing here is reached
- * unless a frame asks for it, and nothing here is read by the passes, so a view cannot change the picture. */
+/* Views of the light sampling (noc_aov): gathered while a frame is made, kept once it is complete. Nothing here is
+ * reached unless a frame asks for it, and nothing here is read by the passes, so a view cannot change the picture. */
 #include "backend/embree/embree.h"
 
 #include <math.h>
 
 #define BIT(aov) (1u << NOC_AOV_##aov)
 enum {
-    GATHERED = BIT(LIGHTS) | BIT(DENSITY) | BIT(RAYS) | BIT(OBJECT), /* by the passes, so a dropped frame must not touch what is kept */
+    /* by the passes, so a dropped frame must not touch what is kept */
+    GATHERED = BIT(LIGHTS) | BIT(DENSITY) | BIT(RAYS) | BIT(OBJECT),
     RESERVOIRS = BIT(LIGHT) | BIT(WEIGHT) | BIT(CONFIDENCE),
     SURFACES = BIT(DEPTH) | BIT(NORMAL) | BIT(CLASS) | BIT(OBJECT), /* what is seen: emitters too */
     MOMENTS = BIT(VARIANCE) | BIT(ERROR), /* kept[VARIANCE]: sum of squared deviations; kept[ERROR]: mean luminance */
@@ -52,7 +53,8 @@ noc_status noc_embree_begin_views(embree_state *s, uint32_t aovs, bool first_sta
         bool gathered = GATHERED >> aov & 1;
         if (!(need >> aov & 1)) {
             drop(v, aov);
-        } else if (!allocate(&v->kept[aov], components(aov) * blocks) || (gathered && !allocate(&v->made[aov], blocks))) {
+        } else if (!allocate(&v->kept[aov], components(aov) * blocks) ||
+                   (gathered && !allocate(&v->made[aov], blocks))) {
             noc_embree_free_views(v);
             return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for views of %d x %d", s->b.width, s->b.height);
         } else if (gathered) {
@@ -82,14 +84,16 @@ static float expected(const stage_run *run, const worker *w, uint32_t light, int
     return -1;
 }
 
-void noc_embree_view_candidates(const stage_run *run, const worker *w, int i, size_t block, uint32_t lanes, const rblock *r) {
+void noc_embree_view_candidates(const stage_run *run, const worker *w, int i, size_t block, uint32_t lanes,
+                                const rblock *r) {
     const view_buffers *v = &run->s->b.views;
     bool lists = run->ctx.frame->params->candidates == NOC_CANDIDATES_LISTS;
     for (int l = 0; l < BLOCK; l++) {
         if (!(lanes >> l & 1))
             continue;
         if (v->made[NOC_AOV_LIGHTS])
-            v->made[NOC_AOV_LIGHTS][block][l] = (float)(lists ? w->lists.list.count / w->lists.list.copies : noc_found_count(&w->found, i, l));
+            v->made[NOC_AOV_LIGHTS][block][l] =
+                (float)(lists ? w->lists.list.count / w->lists.list.copies : noc_found_count(&w->found, i, l));
         if (v->made[NOC_AOV_DENSITY] && r->w[l] > 0)
             v->made[NOC_AOV_DENSITY][block][l] = expected(run, w, r->light[l], l);
     }
@@ -164,7 +168,7 @@ void noc_embree_keep_views(embree_state *s, const noc_frame *frame) {
         return;
     for (int aov = 0; aov < NOC_AOV_COUNT; aov++)
         if (v->asked & GATHERED & 1u << aov) {
-            float (*kept)[BLOCK] = v->kept[aov];
+            float(*kept)[BLOCK] = v->kept[aov];
             v->kept[aov] = v->made[aov];
             v->made[aov] = kept;
         }
@@ -195,8 +199,8 @@ bool noc_embree_read_view(void *state, noc_aov aov, float *value) {
             double out = v->kept[aov][at][l];
             if (MOMENTS >> aov & 1) {
                 double variance = v->kept[NOC_AOV_VARIANCE][at][l] / (n - 1), mean = v->kept[NOC_AOV_ERROR][at][l];
-                bool none = n < 2 || noc_embree_saw_emitter(b, at, l) || b->g[v->gbuffer][at].material[l] == NO_SURFACE ||
-                            (aov == NOC_AOV_ERROR && !(mean > 0));
+                bool none = n < 2 || noc_embree_saw_emitter(b, at, l) ||
+                            b->g[v->gbuffer][at].material[l] == NO_SURFACE || (aov == NOC_AOV_ERROR && !(mean > 0));
                 out = none ? -1 : aov == NOC_AOV_ERROR ? sqrt(variance / n) / mean : variance;
             }
             value[to] = isfinite((float)out) ? (float)out : -1;
