@@ -5,11 +5,11 @@ import glob, os, re, sys
 root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "src")
 # name: sources whose words it takes, words besides them
 dictionaries = {
-    "citygml": (["import/citygml*.[ch]"], ["gml:id=\"", "xlink:href=\"#", "srsDimension=\"2\"", "<!--", "<![CDATA[", "&amp;", "&#x10FFFF;", "<!DOCTYPE a [<!ENTITY b \"c\">]>",
+    "citygml": (["import/citygml/*.[ch]"], ["gml:id=\"", "xlink:href=\"#", "srsDimension=\"2\"", "<!--", "<![CDATA[", "&amp;", "&#x10FFFF;", "<!DOCTYPE a [<!ENTITY b \"c\">]>",
                                           "encoding=\"UTF-16\"", "encoding=\"ISO-8859-1\"", "lod0", "lod1", "lod2", "lod3", "lod4"]),
-    "gltf": (["import/gltf*.[ch]"], ["5120", "5121", "5122", "5123", "5125", "5126", "VEC2", "VEC4", "MAT4", "data:application/octet-stream;base64,", "%2e%2e/", "KHR_draco_mesh_compression"]),
-    "obj": (["import/obj_*.c", "import/mesh.c"], ["mtllib ", "usemtl ", "newmtl ", "f ", "v ", "vn ", "vt ", "//", "\\\n", "Ke ", "Kd ", "map_Ke ", "Tr ", "curv ", "surf ", "end", "#", "s off", "-1"]),
-    "lamps": (["import/lamp_*.c", "import/csv.c", "import/overpass.c", "import/vector.c"],
+    "gltf": (["import/mesh/gltf*.[ch]"], ["5120", "5121", "5122", "5123", "5125", "5126", "VEC2", "VEC4", "MAT4", "data:application/octet-stream;base64,", "%2e%2e/", "KHR_draco_mesh_compression"]),
+    "obj": (["import/mesh/obj*.c"], ["mtllib ", "usemtl ", "newmtl ", "f ", "v ", "vn ", "vt ", "//", "\\\n", "Ke ", "Kd ", "map_Ke ", "Tr ", "curv ", "surf ", "end", "#", "s off", "-1"]),
+    "lamps": (["import/lamps/*.c", "import/map/overpass.c", "import/map/vector.c"],
               ["street_lamp", "highway", "FeatureCollection", "coordinates", "\x1e", "POINT (", "POINT Z (", "EPSG:25832", "<osm>", "<node ", "<nd ref=", "<tag k=", "OSMData", "OSMHeader",
                "SELECT ", "CREATE VIEW ", "CREATE VIRTUAL TABLE [", "USING rtree", "all_tags", "other_tags", "\"=>\"", "\"crs\"", "urn:ogc:def:crs:OGC:1.3:CRS84"]),
     "crs": (["geo/crs*.c"], ["urn:ogc:def:crs:", "EPSG::", "urn:adv:crs:", "http://www.opengis.net/def/crs/EPSG/0/", "+proj=", "+zone=32", "+init=epsg:", "+nadgrids=", "+towgs84=", "+type=crs",

@@ -2,7 +2,7 @@
  * FlatGeobuf. */
 #include "fuzz.h"
 
-#include "import/load.h"
+#include "import/load/load.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static const noc_reader *const readers[] = { &noc_reader_overpass, &noc_reader_vector, NULL };

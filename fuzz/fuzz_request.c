@@ -2,7 +2,7 @@
  * same bytes. */
 #include "fuzz.h"
 
-#include "import/remote.h"
+#include "import/remote/remote.h"
 
 #include <sys/socket.h>
 #include <unistd.h>

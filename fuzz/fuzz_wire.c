@@ -3,8 +3,8 @@
  * a mesh. */
 #include "fuzz.h"
 
-#include "import/load.h"
-#include "import/remote.h"
+#include "import/load/load.h"
+#include "import/remote/remote.h"
 
 static fuzz_part bytes;
 

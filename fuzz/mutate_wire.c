@@ -1,7 +1,7 @@
-/* Records between the library and its helper (import/remote.h): heads stay those of what follows them. */
+/* Records between the library and its helper (import/remote/remote.h): heads stay those of what follows them. */
 #include "mutate.h"
 
-#include "import/remote.h"
+#include "import/remote/remote.h"
 
 #include <math.h>
 

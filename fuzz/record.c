@@ -2,8 +2,8 @@
  * OUT/wire/NAME. */
 #include "fuzz.h"
 
-#include "import/load.h"
-#include "import/remote.h"
+#include "import/load/load.h"
+#include "import/remote/remote.h"
 
 #include <fcntl.h>
 #include <stdio.h>

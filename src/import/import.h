@@ -1,5 +1,6 @@
 /* import: one reader a format, in one table; told apart by content. Readers emit into a geo_sink, or, for meshes that
- * are already triangles with materials, into a scene. */
+ * are already triangles with materials, into a scene. What several families of formats need lies here; each family has
+ * a folder of its own. */
 #ifndef NOC_IMPORT_H
 #define NOC_IMPORT_H
 
@@ -99,7 +100,8 @@ typedef struct noc_reader {
     /* Meshes that come as parts alone: read_mesh is then the same into a scene. */
     noc_status (*read_parts)(const char *path, noc_stream *stream, const noc_import_params *params,
                              const mesh_parts *parts, const char **format);
-    /* Is this content read by a library that nothing stops (GDAL, Assimp)? Then remote.c reads it. NULL: never. */
+    /* Is this content read by a library that nothing stops (GDAL, Assimp)? Then remote/remote.c reads it. NULL: never.
+     */
     bool (*foreign)(const char *head, size_t size);
     const char *missing; /* not NULL: this build lacks the part; the text says which */
 } noc_reader;

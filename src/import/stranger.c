@@ -1,6 +1,6 @@
 /* Formats that people bring and that are not read: told by their content, so that the error can name them and the way
  * round. */
-#include "import/load.h"
+#include "import/load/load.h"
 
 static const char *next_line(const char *line) {
     line = strchr(line, '\n');

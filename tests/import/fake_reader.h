@@ -11,7 +11,7 @@
 #ifndef NOC_TEST_FAKE_READER_H
 #define NOC_TEST_FAKE_READER_H
 
-#include "import/load.h"
+#include "import/load/load.h"
 #include "../test.h"
 
 #include <math.h>

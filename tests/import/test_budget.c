@@ -1,7 +1,7 @@
 /* Small files that ask for much: each is refused under the limit's name, and read where the limit allows it. */
 #include "../test.h"
-#include "import/load.h"
-#include "import/obj_materials.h"
+#include "import/load/load.h"
+#include "import/mesh/obj_materials.h"
 #include "nocturne/nocturne.h"
 
 #include <zlib.h>

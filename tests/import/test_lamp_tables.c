@@ -2,7 +2,7 @@
  */
 #include "lamp_sink.h"
 
-#include "import/lamp_tags.h"
+#include "import/lamps/tags.h"
 #include "noc_config.h"
 
 static noc_status read_with(lamp_sink *s, const char *text, bool named, const char *map) {

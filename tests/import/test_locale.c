@@ -1,7 +1,7 @@
 /* The host's locale changes nothing: what is read, reported and written is the same where the decimal point is a comma.
  */
 #include "../comma_locale.h"
-#include "import/load.h"
+#include "import/load/load.h"
 #include "nocturne/nocturne.h"
 
 #include <math.h>

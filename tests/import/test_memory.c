@@ -6,8 +6,8 @@
 
 #include "geo/geo.h"
 #include "import/import.h"
-#include "import/load.h"
-#include "import/remote.h"
+#include "import/load/load.h"
+#include "import/remote/remote.h"
 #include <nocturne/nocturne.h>
 
 #include <malloc.h>

@@ -1,7 +1,7 @@
 /* Where the scene's origin comes to lie, and what is said about places that make no sense. Small CityGML files. */
 #include "../test.h"
 
-#include "import/load.h"
+#include "import/load/load.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* Temporary folders: why there is none, and how large the copies of maps in them become. */
 #include "../test.h"
-#include "import/map_parts.h"
+#include "import/map/parts.h"
 
 #include <errno.h>
 #include <fcntl.h>

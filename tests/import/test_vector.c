@@ -1,7 +1,7 @@
 /* Lamps from OSM, GeoJSON and CSV: counts in real data, every tag that is read, and broken files. */
 #include "lamp_sink.h"
 
-#include "import/lamp_tags.h"
+#include "import/lamps/tags.h"
 #include "noc_config.h"
 
 #if NOC_HAVE_GDAL

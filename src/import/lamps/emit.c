@@ -1,0 +1,174 @@
+/* What all readers of lamps do with a feature once they have its tags and its place. */
+#include "import/lamps/tags.h"
+
+#include <math.h>
+
+noc_status lamp_writer_start(lamp_writer *w, geo_sink *sink, const char *place, const noc_import_params *params) {
+    *w = (lamp_writer){ .sink = sink, .place = place, .keys = lamp_keys_create(params) };
+    return w->keys ? NOC_OK : noc_no_memory(sink->log, place);
+}
+
+void lamp_writer_free(lamp_writer *w) {
+    lamp_keys_destroy(w->keys);
+    lamp_kinds_free(&w->kinds);
+    w->keys = NULL;
+}
+
+noc_status lamp_writer_crs(lamp_writer *w, const char *crs) {
+    /* tuples come to us in easting northing order already: traditional GIS order, whatever the authority says */
+    bool lat_first = false;
+    return w->sink->crs(w->sink->ctx, crs ? crs : "", w->place, &lat_first);
+}
+
+static bool on_earth(double lon, double lat) { return fabs(lon) <= 180 && fabs(lat) <= 90; }
+
+/* A lamp in use whose place is none. */
+static noc_status lose(lamp_writer *w, const char *reason, const char *id) {
+    geo_issue(w->sink->issues, GEO_SKIPPED, reason, id);
+    if (w->sink->lamps_lost)
+        ++*w->sink->lamps_lost;
+    w->lost++;
+    return NOC_OK;
+}
+
+/* Of a table every row is noted, of tagged maps the lamps. Names with an @ are ours. */
+static void note(lamp_writer *w, const lamp_tag *tags, size_t count, bool lamp) {
+    if (!lamp && !w->inventory && !w->strange)
+        return;
+    for (size_t i = 0; i < count; i++)
+        if (tags[i].key[0] != '@')
+            lamp_keys_note(w->keys, &tags[i]);
+}
+
+noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count, const char *id, const double xyz[3]) {
+    w->features++;
+    double x = xyz[0], y = xyz[1], z = xyz[2];
+    lamp_verdict verdict = w->strange ? LAMP_NONE : lamp_verdict_of(w->keys, tags, count, w->inventory);
+    w->points += verdict != LAMP_NONE || w->strange;
+    w->strange_points += w->strange;
+    note(w, tags, count, verdict != LAMP_NONE);
+    if (verdict == LAMP_NONE)
+        return NOC_OK;
+    /* 0: written for want of a height */
+    geo_lamp lamp = { .xyz = { x, y, isfinite(z) && z != 0 ? z : NAN }, .id = id };
+    if (!lamp_read(w->keys, tags, count, &lamp, verdict == LAMP_ACTIVE ? w->sink->issues : NULL))
+        return noc_no_memory(w->sink->log, w->place);
+    if (!lamp_accept(verdict, lamp.id, w->sink->issues))
+        return NOC_OK;
+    if (w->kinds.any && !lamp_kinds_tell(&w->kinds, tags, count)) {
+        geo_issue(w->sink->issues, GEO_SKIPPED, "point that is called something other than a lamp", lamp.id);
+        return NOC_OK;
+    }
+    if (!isfinite(x) || !isfinite(y))
+        return lose(w, "lamp without a place", lamp.id);
+    if (w->geographic && !on_earth(x, y)) {
+        w->off_earth++;
+        w->exchangeable += on_earth(y, x);
+        return lose(w, "lamp whose longitude or latitude is out of range", lamp.id);
+    }
+    if (x == 0 && y == 0)
+        return lose(w, "lamp at 0, 0: no place given", lamp.id);
+    w->lamps++;
+    return w->sink->lamp(w->sink->ctx, &lamp);
+}
+
+/* ---- what is not read ---- */
+
+static const struct {
+    const char *one, *many, *reason;
+} unread[] = {
+    [GEO_POINTS] = { "set of points", "sets of points", "set of points that is not read: a lamp is a single one" },
+    [GEO_LINES] = { "line", "lines", "line that is not read: of maps only lamps are read" },
+    [GEO_AREAS] = { "polygon", "polygons", "polygon that is not read: outlines of buildings are not extruded yet" },
+    [GEO_DIMENSIONS] = { "building", "buildings",
+                         "building that is not read: outlines of buildings are not extruded yet" },
+    { "street or path", "streets and paths", "street or path that is not read: of maps only lamps are read" },
+};
+
+void lamp_writer_unread(lamp_writer *w, int dimension, const char *id, const double box[4]) {
+    w->seen.unread[dimension]++;
+    geo_issue(w->sink->issues, GEO_SKIPPED, unread[dimension].reason, id);
+    for (int k = 0; k < 2 && box; k++) {
+        w->seen.lo[k] = w->seen.any ? NOC_MIN(w->seen.lo[k], box[2 * k]) : box[2 * k];
+        w->seen.hi[k] = w->seen.any ? NOC_MAX(w->seen.hi[k], box[2 * k + 1]) : box[2 * k + 1];
+    }
+    w->seen.any |= box != NULL;
+}
+
+/* "1,899" */
+static void put_count(char text[32], uint64_t n) {
+    char digits[24], *out = text;
+    int size = noc_snprintf(digits, sizeof(digits), "%llu", (unsigned long long)n);
+    for (int i = 0; i < size; i++) {
+        if (i && (size - i) % 3 == 0)
+            *out++ = ',';
+        *out++ = digits[i];
+    }
+    *out = 0;
+}
+
+/* Says once what of the map is not read; the report of whoever inspects it tells the same. How many there are. */
+static uint64_t tell_unread(lamp_writer *w) {
+    const geo_features *f = &w->seen;
+    const uint64_t counts[] = { f->unread[GEO_POINTS], f->unread[GEO_LINES], f->unread[GEO_AREAS], f->buildings,
+                                f->streets };
+    char list[240] = "", number[32];
+    uint64_t sum = 0;
+    geo_issues_add(w->sink->issues, GEO_SKIPPED, unread[GEO_DIMENSIONS].reason, f->buildings, "");
+    geo_issues_add(w->sink->issues, GEO_SKIPPED, unread[GEO_DIMENSIONS + 1].reason, f->streets, "");
+    for (size_t i = 0, n = 0; i < NOC_COUNT(counts); i++) {
+        if (!counts[i])
+            continue;
+        put_count(number, counts[i]);
+        n += (size_t)noc_snprintf(list + n, sizeof(list) - n, "%s%s %s", sum ? ", " : "", number,
+                                  counts[i] == 1 ? unread[i].one : unread[i].many);
+        sum += counts[i];
+    }
+    bool outlines = f->unread[GEO_AREAS] || f->buildings;
+    if (sum && !w->sink->inspect)
+        noc_warn(w->sink->log, "%s: %s %s not read: %s", w->place, list, sum == 1 ? "is" : "are",
+                 outlines ? "outlines of buildings are not extruded yet, and of maps only lamps are read"
+                          : "of maps only lamps are read");
+    return sum;
+}
+
+noc_status lamp_writer_end(lamp_writer *w) {
+    noc_log *log = w->sink->log;
+    lamp_kinds_note(&w->kinds, w->keys);
+    noc_status status = lamp_keys_report(w->keys, w->sink, w->place, w->points);
+    uint64_t others = tell_unread(w);
+    w->seen.any = w->seen.any && !w->lamps;
+    if (!status && w->sink->features)
+        status = w->sink->features(w->sink->ctx, &w->seen);
+    if (status)
+        return status;
+    if (w->off_earth > w->lamps && w->exchangeable == w->off_earth)
+        return noc_error(
+            log, NOC_ERR_FORMAT,
+            "%s: its coordinates are no longitudes and latitudes; with the two exchanged all %zu are: exchange them in the "
+            "file",
+            w->place, w->off_earth);
+    if (w->off_earth > w->lamps)
+        return noc_error(
+            log, NOC_ERR_FORMAT,
+            "%s: its coordinates are no longitudes and latitudes, and it names no other CRS; give one with --crs",
+            w->place);
+    if (w->lost && !w->lamps)
+        return NOC_OK; /* the importer says that none of its lamps is of use */
+    if (w->lamps)
+        return NOC_OK;
+    if (w->strange_points && !w->sink->inspect)
+        return noc_error(
+            log, NOC_ERR_FORMAT,
+            "%s: nothing tells that its %zu points are lamps: if they are, say --lamps %s (nocturne info shows its "
+            "columns, --lamp-columns says what they mean)",
+            w->place, w->strange_points, w->place);
+    if (w->sink->named_lamps && !w->features)
+        return noc_error(log, NOC_ERR_FORMAT, "%s: named with --lamps, but it holds no points", w->place);
+    if (w->features && !w->strange_points)
+        noc_warn(log, "%s: none of its %zu %s is a street lamp in use", w->place, w->features,
+                 others ? "points" : "features");
+    else if (!w->features && !others)
+        noc_warn(log, "%s: no tag and no column of it tells of street lamps", w->place);
+    return NOC_OK;
+}

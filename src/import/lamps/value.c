@@ -1,0 +1,251 @@
+/* Numbers with units, directions and colours as people write them in tags and tables. */
+#include "import/lamps/tags.h"
+
+#include <ctype.h>
+#include <math.h>
+
+static const char *skip_blanks(const char *s) {
+    while (*s == ' ' || *s == '\t' || *s == '~')
+        s++;
+    return s;
+}
+
+bool lamp_blank(const char *text) {
+    static const char *const none[] = { "na",       "n a",       "null",    "none", "unknown",        "nan",
+                                        "onbekend", "unbekannt", "inconnu", "nil",  "not applicable", "not known" };
+    if (!text)
+        return true;
+    char c = *text;
+    if ((c >= '0' && c <= '9') || (((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')) && !strchr("nuoiNUOI", c)))
+        return false; /* begins like none of them */
+    char folded[32];
+    if (!lamp_fold(text, true, folded, sizeof(folded)))
+        return true; /* "", "-", "?" */
+    for (size_t i = 0; i < NOC_COUNT(none); i++)
+        if (!strcmp(folded, none[i]))
+            return true;
+    return false;
+}
+
+static bool three_digits(const char *s) {
+    return isdigit((unsigned char)s[0]) && isdigit((unsigned char)s[1]) && isdigit((unsigned char)s[2]) &&
+           !isdigit((unsigned char)s[3]);
+}
+
+/* An unsigned decimal at s. decimal: the file's sign, '.' or ','; the other one, before three digits and no more, parts
+ * thousands. 0: both are decimal signs, but for a comma before three digits in a quantity that runs to thousands.
+ * Returns the position after it, NULL if there is none. */
+static const char *scan_number(const char *s, bool thousands, char decimal, double *out) {
+    char text[48], parts = decimal ? ".,"[decimal == '.'] : thousands ? ',' : 0;
+    size_t n = 0;
+    bool dot = false;
+    const char *p = s;
+    for (; n + 1 < sizeof(text); p++) {
+        if (isdigit((unsigned char)*p)) {
+            text[n++] = *p;
+        } else if (parts && *p == parts && !dot && n && text[0] != '0' && three_digits(p + 1)) {
+            continue;
+        } else if ((*p == '.' || *p == ',') && !dot && isdigit((unsigned char)p[1])) {
+            text[n++] = '.';
+            dot = true;
+        } else {
+            break;
+        }
+    }
+    text[n] = 0;
+    return n && noc_parse_double(text, out) ? p : NULL;
+}
+
+static const struct unit {
+    lamp_unit unit;
+    const char *name;
+    double factor;
+    const char *shown;
+} units[] = {
+    { LAMP_METRES, "m", 1, "m" },
+    { LAMP_METRES, "mtr", 1, "m" },
+    { LAMP_METRES, "meter", 1, "m" },
+    { LAMP_METRES, "meters", 1, "m" },
+    { LAMP_METRES, "metre", 1, "m" },
+    { LAMP_METRES, "metres", 1, "m" },
+    { LAMP_METRES, "cm", .01, "cm" },
+    { LAMP_METRES, "mm", .001, "mm" },
+    { LAMP_METRES, "ft", .3048, "ft" },
+    { LAMP_METRES, "feet", .3048, "ft" },
+    { LAMP_METRES, "foot", .3048, "ft" },
+    { LAMP_METRES, "fuss", .3048, "ft" },
+    { LAMP_METRES, "in", .0254, "in" },
+    { LAMP_METRES, "inches", .0254, "in" },
+    { LAMP_WATTS, "w", 1, "W" },
+    { LAMP_WATTS, "watt", 1, "W" },
+    { LAMP_WATTS, "watts", 1, "W" },
+    { LAMP_WATTS, "kw", 1000, "kW" },
+    { LAMP_WATTS, "kilowatt", 1000, "kW" },
+    { LAMP_WATTS, "kilowatts", 1000, "kW" },
+    { LAMP_LUMENS, "lm", 1, "lm" },
+    { LAMP_LUMENS, "lumen", 1, "lm" },
+    { LAMP_LUMENS, "lumens", 1, "lm" },
+    { LAMP_LUMENS, "klm", 1000, "klm" },
+    { LAMP_LUMENS, "kilolumen", 1000, "klm" },
+    { LAMP_LUMENS, "kilolumens", 1000, "klm" },
+    { LAMP_KELVIN, "k", 1, "K" },
+    { LAMP_KELVIN, "kelvin", 1, "K" },
+    { LAMP_KELVIN, "kk", 1000, "kK" },
+};
+
+bool lamp_unit_word(const char *word, lamp_unit unit, double *scale, const char **name) {
+    for (size_t i = 0; i < NOC_COUNT(units); i++)
+        if (units[i].unit == unit && !strcmp(units[i].name, word)) {
+            *scale = units[i].factor;
+            *name = units[i].shown;
+            return true;
+        }
+    return false;
+}
+
+/* The longest unit that fits: "klm" before "lm". */
+size_t lamp_unit_tail(const char *folded, lamp_unit unit, double *scale, const char **name) {
+    size_t n = strlen(folded), best = 0;
+    for (size_t i = 0; i < NOC_COUNT(units); i++) {
+        size_t m = strlen(units[i].name);
+        if (units[i].unit != unit || m <= best || m >= n || strcmp(folded + n - m, units[i].name))
+            continue;
+        best = m;
+        *scale = units[i].factor;
+        *name = units[i].shown;
+    }
+    if (best && best + 2 < n && !strncmp(folded + n - best - 2, "in", 2))
+        best += 2; /* "pole height in feet" */
+    return best;
+}
+
+/* Factor of the unit written at s to the unit wanted; `scale` where none is written; 0: not one of its units. */
+static double unit_factor(const char *s, lamp_unit unit, double scale) {
+    char word[16];
+    size_t n = 0;
+    while (n + 1 < sizeof(word) && isalpha((unsigned char)s[n])) {
+        word[n] = (char)tolower((unsigned char)s[n]);
+        n++;
+    }
+    word[n] = 0;
+    if (!n)
+        return scale;
+    const char *name;
+    return lamp_unit_word(word, unit, &scale, &name) ? scale : 0;
+}
+
+bool lamp_quantity(const char *text, lamp_unit unit, double scale, char decimal, double *value, int *times) {
+    *times = 1;
+    if (lamp_blank(text))
+        return false;
+    bool thousands = unit == LAMP_WATTS || unit == LAMP_LUMENS || unit == LAMP_KELVIN;
+    double x;
+    const char *p = scan_number(skip_blanks(text), thousands, decimal, &x);
+    if (!p)
+        return false;
+    const char *q = skip_blanks(p);
+    if ((*q == 'x' || *q == 'X' || *q == '*') && x >= 1 && x <= 99 && x == floor(x)) {
+        double each;
+        const char *r = scan_number(skip_blanks(q + 1), thousands, decimal, &each);
+        if (r) {
+            *times = (int)x;
+            x = each;
+            q = skip_blanks(r);
+        }
+    }
+    if (unit == LAMP_METRES && *q == '\'') { /* feet and inches */
+        double inches = 0;
+        scan_number(skip_blanks(q + 1), false, decimal, &inches);
+        *value = x * .3048 + inches * .0254;
+        return isfinite(*value);
+    }
+    double factor = unit_factor(q, unit, scale);
+    *value = x * factor;
+    return factor > 0 && isfinite(*value);
+}
+
+char lamp_decimal_sign(const char *text) {
+    const char *p = skip_blanks(text);
+    p += *p == '-';
+    size_t before = strspn(p, "0123456789"), after = before && p[before] ? strspn(p + before + 1, "0123456789") : 0;
+    const char *end = skip_blanks(p + before + 1 * (after > 0) + after);
+    bool decimal = before && after && (after != 3 || *p == '0') && (p[before] == '.' || p[before] == ',');
+    return decimal && (!*end || isalpha((unsigned char)*end)) ? p[before] : 0;
+}
+
+bool lamp_direction(const char *text, double *degrees) {
+    static const struct {
+        const char *name;
+        double degrees;
+    } points[] = {
+        { "n", 0 },       { "nne", 22.5 },      { "ne", 45 },        { "ene", 67.5 },      { "e", 90 },
+        { "ese", 112.5 }, { "se", 135 },        { "sse", 157.5 },    { "s", 180 },         { "ssw", 202.5 },
+        { "sw", 225 },    { "wsw", 247.5 },     { "w", 270 },        { "wnw", 292.5 },     { "nw", 315 },
+        { "nnw", 337.5 }, { "north", 0 },       { "northeast", 45 }, { "east", 90 },       { "southeast", 135 },
+        { "south", 180 }, { "southwest", 225 }, { "west", 270 },     { "northwest", 315 },
+    };
+    if (lamp_blank(text))
+        return false;
+    char folded[16];
+    lamp_fold(text, false, folded, sizeof(folded));
+    for (size_t i = 0; i < NOC_COUNT(points); i++)
+        if (!strcmp(folded, points[i].name)) {
+            *degrees = points[i].degrees;
+            return true;
+        }
+    const char *p = skip_blanks(text);
+    bool negative = *p == '-';
+    double x;
+    p = scan_number(p + negative, false, 0, &x);
+    if (!p || x > 360)
+        return false;
+    /* a range or a list ("90-180", "90;270") names no one direction */
+    p = skip_blanks(p);
+    if (*p == '-' || *p == ';')
+        return false;
+    *degrees = fmod(negative ? 360 - x : x, 360);
+    return true;
+}
+
+bool lamp_coordinate(const char *text, double *value) {
+    if (!text)
+        return false;
+    const char *p = skip_blanks(text);
+    bool negative = *p == '-';
+    p = scan_number(p + (*p == '-' || *p == '+'), false, 0, value);
+    if (!p) /* exponents and the like */
+        return noc_parse_double(text, value);
+    p = skip_blanks(p);
+    if (*p == 'e' || *p == 'E') {
+        if (isdigit((unsigned char)p[1]) || ((p[1] == '-' || p[1] == '+') && isdigit((unsigned char)p[2])))
+            return noc_parse_double(text, value);
+    }
+    if ((unsigned char)*p == 0xc2 && (unsigned char)p[1] == 0xb0) /* degree sign */
+        p = skip_blanks(p + 2);
+    bool flip = *p == 'S' || *p == 'W';
+    if (*p && strchr("NSEW", *p))
+        p = skip_blanks(p + 1);
+    if (*p && *p != '\r')
+        return false;
+    *value = negative != flip ? -*value : *value;
+    return true;
+}
+
+static float srgb_to_linear(int v) {
+    double x = v / 255.0;
+    return (float)(x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4));
+}
+
+bool lamp_hex_colour(const char *text, float rgb[3]) {
+    text = skip_blanks(text);
+    if (*text++ != '#')
+        return false;
+    int digit[6], n = 0;
+    for (; isxdigit((unsigned char)text[n]) && n < 6; n++)
+        digit[n] = isdigit((unsigned char)text[n]) ? text[n] - '0' : tolower((unsigned char)text[n]) - 'a' + 10;
+    if ((n != 3 && n != 6) || isxdigit((unsigned char)text[n]))
+        return false;
+    for (int i = 0; i < 3; i++)
+        rgb[i] = srgb_to_linear(n == 3 ? digit[i] * 17 : digit[2 * i] * 16 + digit[2 * i + 1]);
+    return true;
+}

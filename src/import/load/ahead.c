@@ -1,0 +1,191 @@
+/* Looks at a file's first objects before the scene's place is settled: a sink between the reader and the importer's
+ * own, which keeps what comes until there is enough of it, and from then on passes everything through. So one stray
+ * object at the beginning does not decide where the whole city lies. */
+#include "import/load/load.h"
+
+#include <math.h>
+
+#define ENOUGH_OBJECTS 64
+#define ENOUGH_POINTS 200000
+
+/* What a reader emitted, in its order. Texts and arrays in the arena. */
+typedef struct ahead_event {
+    enum { AHEAD_BEGIN, AHEAD_POLYGON, AHEAD_END, AHEAD_LAMP } kind;
+    source_crs *source;
+    union {
+        geo_object object;
+        geo_polygon polygon;
+        geo_lamp lamp;
+    } u;
+} ahead_event;
+
+struct look_ahead {
+    importer *im;
+    geo_sink sink; /* where everything goes in the end */
+    bool passing;
+    bool in_object, sampled; /* in an object whose place is known */
+    size_t points;
+    noc_arena arena;
+    NOC_ARRAY(ahead_event) events;
+    NOC_ARRAY(place_sample) samples;
+};
+
+static noc_status replay(struct look_ahead *a, const ahead_event *e) {
+    a->im->source = e->source;
+    switch (e->kind) {
+    case AHEAD_BEGIN: return a->sink.begin_object(a->sink.ctx, &e->u.object);
+    case AHEAD_POLYGON: return a->sink.polygon(a->sink.ctx, &e->u.polygon);
+    case AHEAD_END: return a->sink.end_object(a->sink.ctx);
+    case AHEAD_LAMP: break;
+    }
+    return a->sink.lamp(a->sink.ctx, &e->u.lamp);
+}
+
+noc_status ahead_release(struct look_ahead *a) {
+    if (a->passing)
+        return NOC_OK;
+    a->passing = true;
+    source_crs *source = a->im->source;
+    noc_status status = a->im->placed ? NOC_OK : place_settle(a->im, a->samples.data, a->samples.len);
+    for (size_t i = 0; i < a->events.len && !status; i++)
+        status = replay(a, &a->events.data[i]);
+    a->im->source = source;
+    array_free(&a->events);
+    array_free(&a->samples);
+    arena_free(&a->arena);
+    return status;
+}
+
+static noc_status no_memory(struct look_ahead *a) {
+    return noc_no_memory(a->im->log, a->im->inputs[a->im->current].path);
+}
+
+/* An event whose texts and arrays were put into the arena. */
+static noc_status push(struct look_ahead *a, ahead_event e) {
+    e.source = a->im->source;
+    return !a->arena.refused && array_push(&a->events, e) ? NOC_OK : no_memory(a);
+}
+
+/* Coordinates need a CRS, even if the file names none. */
+static noc_status ensure_source(struct look_ahead *a) {
+    return a->im->source ? NOC_OK : place_crs(a->im, NULL, a->im->inputs[a->im->current].path, NULL);
+}
+
+/* One sample an object: what has many polygons counts no more than what has one. */
+static noc_status keep_points(struct look_ahead *a, const double *xyz, size_t count, const char *id) {
+    place_sample s = { .source = a->im->source, .id = id };
+    if (!(a->in_object && a->sampled) && place_centre(xyz, count, s.xyz)) {
+        if (!array_push(&a->samples, s))
+            return no_memory(a);
+        a->sampled = true;
+    }
+    a->points += count;
+    return a->samples.len >= ENOUGH_OBJECTS || a->points >= ENOUGH_POINTS ? ahead_release(a) : NOC_OK;
+}
+
+static noc_status on_crs(void *ctx, const char *srs_name, const char *place, bool *lat_first) {
+    struct look_ahead *a = ctx;
+    return a->sink.crs(a->sink.ctx, srs_name, place, lat_first);
+}
+
+static noc_status on_begin_object(void *ctx, const geo_object *object) {
+    struct look_ahead *a = ctx;
+    if (a->passing)
+        return a->sink.begin_object(a->sink.ctx, object);
+    ahead_event e = { .kind = AHEAD_BEGIN, .u.object = *object };
+    e.u.object.id = arena_strdup(&a->arena, object->id);
+    a->in_object = true;
+    a->sampled = false;
+    return push(a, e);
+}
+
+static noc_status on_end_object(void *ctx) {
+    struct look_ahead *a = ctx;
+    if (a->passing)
+        return a->sink.end_object(a->sink.ctx);
+    a->in_object = false;
+    return push(a, (ahead_event){ .kind = AHEAD_END });
+}
+
+static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
+    struct look_ahead *a = ctx;
+    if (a->passing)
+        return a->sink.polygon(a->sink.ctx, polygon);
+    noc_status status = ensure_source(a);
+    if (status)
+        return status;
+    size_t count = 0;
+    for (size_t r = 0; r < polygon->ring_count; r++)
+        count += polygon->ring_size[r];
+    size_t *ring_size = arena_alloc(&a->arena, (polygon->ring_count + 1) * sizeof(*ring_size));
+    double *xyz = arena_alloc(&a->arena, (count + 1) * 3 * sizeof(*xyz));
+    if (a->arena.refused)
+        return no_memory(a);
+    if (polygon->ring_count)
+        memcpy(ring_size, polygon->ring_size, polygon->ring_count * sizeof(*ring_size));
+    if (count)
+        memcpy(xyz, polygon->xyz, count * 3 * sizeof(*xyz));
+    ahead_event e = { .kind = AHEAD_POLYGON, .u.polygon = *polygon };
+    e.u.polygon.ring_size = ring_size;
+    e.u.polygon.xyz = xyz;
+    e.u.polygon.id = arena_strdup(&a->arena, polygon->id);
+    status = push(a, e);
+    return status ? status : keep_points(a, xyz, count, e.u.polygon.id);
+}
+
+static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
+    struct look_ahead *a = ctx;
+    if (a->passing)
+        return a->sink.lamp(a->sink.ctx, lamp);
+    noc_status status = ensure_source(a);
+    if (status)
+        return status;
+    ahead_event e = { .kind = AHEAD_LAMP, .u.lamp = *lamp };
+    e.u.lamp.id = arena_strdup(&a->arena, lamp->id);
+    e.u.lamp.ref = arena_strdup(&a->arena, lamp->ref ? lamp->ref : "");
+    status = push(a, e);
+    a->in_object = false;
+    return status ? status : keep_points(a, lamp->xyz, 1, e.u.lamp.id ? e.u.lamp.id : "");
+}
+
+static noc_status on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
+    struct look_ahead *a = ctx;
+    return a->sink.columns(a->sink.ctx, points, columns, count);
+}
+
+static noc_status on_features(void *ctx, const geo_features *features) {
+    struct look_ahead *a = ctx;
+    return a->sink.features(a->sink.ctx, features);
+}
+
+static bool on_progress(void *ctx, double done) {
+    struct look_ahead *a = ctx;
+    return a->sink.progress(a->sink.ctx, done);
+}
+
+struct look_ahead *ahead_create(importer *im, geo_sink *sink) {
+    struct look_ahead *a = noc_calloc(1, sizeof(*a));
+    if (!a)
+        return NULL;
+    a->im = im;
+    a->sink = *sink;
+    sink->ctx = a;
+    sink->crs = on_crs;
+    sink->begin_object = on_begin_object;
+    sink->polygon = on_polygon;
+    sink->end_object = on_end_object;
+    sink->lamp = on_lamp;
+    sink->columns = on_columns;
+    sink->features = on_features;
+    sink->progress = on_progress;
+    return a;
+}
+
+void ahead_destroy(struct look_ahead *a) {
+    if (!a)
+        return;
+    array_free(&a->events);
+    array_free(&a->samples);
+    arena_free(&a->arena);
+    free(a);
+}

@@ -1,0 +1,78 @@
+/* Surveyed heights of lamps: whether they are heights of this city, and the ground that is laid through them. */
+#include "city/city.h"
+#include "import/load/load.h"
+
+#include <math.h>
+
+#define OTHER_SYSTEM                                                                                                   \
+    8.0 /* m off, all alike: another height system. Those in use in one country differ by less, or by some 50 m */
+#define ALIKE 0.2 /* of that offset: half of the lamps lie within so much of it */
+#define STEEP 0.2 /* a lamp is believed that far off what the city tells, for each metre to where it tells it */
+#define OFF 3.0   /* m more */
+
+/* Height of the ground that the city tells of, and how far away it tells it; false where it does not. */
+static bool told_height(const importer *im, const city_ground *ground, const double *p, double *z, double *distance) {
+    *distance = 0;
+    if (!ground)
+        return noc_scene_ground(im->scene, p[0], p[1], z);
+    *z = city_ground_height(ground, p[0], p[1], distance);
+    return isfinite(*distance);
+}
+
+static int compare_doubles(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *values, size_t count) {
+    qsort(values, count, sizeof(*values), compare_doubles);
+    return values[count / 2];
+}
+
+/* One input's lamps: forgets their heights where all of them are off alike. */
+static void check_input(importer *im, const city_ground *ground, size_t index, double *off) {
+    size_t n = 0;
+    for (size_t i = 0; i < im->lamps.len; i++) {
+        const pending_lamp *p = &im->lamps.data[i];
+        double z, distance;
+        if (p->input == index && isfinite(p->lamp.xyz[2]) && told_height(im, ground, p->lamp.xyz, &z, &distance))
+            off[n++] = p->lamp.xyz[2] - z;
+    }
+    if (n < 3)
+        return;
+    double middle = median(off, n);
+    for (size_t i = 0; i < n; i++)
+        off[i] = fabs(off[i] - middle);
+    if (!(fabs(middle) > OTHER_SYSTEM && median(off, n) < ALIKE * fabs(middle)))
+        return;
+    for (size_t i = 0; i < im->lamps.len; i++)
+        if (im->lamps.data[i].input == index)
+            im->lamps.data[i].lamp.xyz[2] = NAN;
+    noc_warn(
+        im->log,
+        "%s: its %zu lamps with a height lie some %.1f m %s the city's ground, alike: are their heights of another system "
+        "(ellipsoidal, another datum, feet)? They are not followed: the lamps stand on the ground",
+        im->inputs[index].path, n, fabs(middle), middle > 0 ? "above" : "below");
+}
+
+noc_status heights_check(importer *im, const city_ground *ground) {
+    double *off = noc_alloc((im->lamps.len + 1) * sizeof(*off));
+    if (!off)
+        return noc_no_memory(im->log, "import");
+    for (size_t i = 0; i < im->input_count; i++)
+        if (im->inputs[i].file.lamps)
+            check_input(im, ground, i, off);
+    free(off);
+    return NOC_OK;
+}
+
+void heights_lay(importer *im, city_ground *ground, double *points, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        double *p = points + 3 * i, z, distance;
+        /* between houses the city tells little: there a lamp may be on a hill; beside one it may be a slip of the pen
+         */
+        if (isfinite(p[2]) && told_height(im, ground, p, &z, &distance) && !(fabs(p[2] - z) <= OFF + STEEP * distance))
+            p[2] = NAN;
+    }
+    city_ground_lay(ground, points, count);
+}

@@ -1,0 +1,498 @@
+/* Runs the inputs: all are opened and recognised before any is read; then cities, meshes and lamps, in an order that
+ * lets the city settle the place. Lamps are stood on the ground at the end. */
+#include "import/load/load.h"
+#include "import/remote/remote.h"
+#include "city/city.h"
+#include "import/lamps/tags.h"
+
+#include <math.h>
+
+#define HEAD_SIZE 65536
+#define BUILTIN "builtin:" /* and the name of a scene */
+
+static noc_status check_params(const noc_import_params *p, noc_log *log) {
+    if (p->lod < 0 || p->lod > 4)
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: lod is %d, not 0..4", p->lod);
+    if (!(p->lamp_height > 0 && p->lamp_height < 1000))
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp height is %g m, not within 0..1000", p->lamp_height);
+    if (!(p->lamp_lumens >= 0 && p->lamp_lumens < 1e9))
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp flux is %g lm, not within 0..1e9", p->lamp_lumens);
+    if (!(p->lamp_kelvin >= 1000 && p->lamp_kelvin <= 40000))
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp colour is %g K, not within 1000..40000", p->lamp_kelvin);
+    if ((unsigned)p->infer_lamps > NOC_SWITCH_AUTO)
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: infer_lamps is %d, not a noc_switch", (int)p->infer_lamps);
+    if (!(p->reader_time > 0))
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: reader_time is %g s", p->reader_time);
+    if (!(p->max_memory >= 0 && p->max_expansion >= 0))
+        return noc_error(log, NOC_ERR_ARGUMENT,
+                         "import: max_memory is %g GB and max_expansion %g: neither may be "
+                         "negative",
+                         p->max_memory, p->max_expansion);
+    if ((unsigned)p->obj_up > NOC_OBJ_UP_Z)
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: obj_up is %d, not a noc_obj_up", (int)p->obj_up);
+    if (p->lamps.count > NOC_TEXTS || p->lamp_columns.count > NOC_TEXTS)
+        return noc_error(log, NOC_ERR_ARGUMENT, "import: more than %d files of lamps or maps of columns", NOC_TEXTS);
+    return lamp_mapping_check(p, log);
+}
+
+/* --crs and --scene-crs must be understood even where no input needs them. */
+static noc_status check_crs(const noc_import_params *p, noc_log *log) {
+    const struct {
+        const char *option, *crs;
+        bool metric;
+    } given[] = { { "--crs", p->crs, false }, { "--scene-crs", p->scene_crs, true } };
+    for (size_t i = 0; i < NOC_COUNT(given); i++) {
+        if (!given[i].crs || !given[i].crs[strspn(given[i].crs, " \t\r\n")])
+            continue;
+        noc_status status;
+        geo_crs *crs = geo_crs_create(given[i].crs, given[i].option, log, &status);
+        if (crs && given[i].metric && !geo_crs_is_metric(crs))
+            status =
+                noc_error(log, NOC_ERR_ARGUMENT, "%s: a scene's CRS must be projected, in metres", geo_crs_name(crs));
+        geo_crs_destroy(crs);
+        if (status)
+            return status == NOC_ERR_MEMORY ? status : NOC_ERR_ARGUMENT;
+    }
+    return NOC_OK;
+}
+
+/* Reads as much of the head as there is, then a 0. */
+static noc_status read_head(noc_stream *stream, char *head, size_t *size) {
+    *size = 0;
+    for (;;) {
+        size_t got;
+        noc_status status = noc_stream_read(stream, head + *size, HEAD_SIZE - *size, &got);
+        if (status)
+            return status;
+        *size += got;
+        if (!got || *size == HEAD_SIZE) {
+            head[*size] = 0;
+            return NOC_OK;
+        }
+    }
+}
+
+/* A file that no probe knows: a table whose columns the user must explain? */
+static const noc_reader *find_named(const noc_reader *const *readers, const char *head, size_t size) {
+    for (; *readers; readers++)
+        if ((*readers)->probe_named && (*readers)->probe_named(head, size))
+            return *readers;
+    return NULL;
+}
+
+static noc_status refuse(importer *im, const char *name, const noc_reader *const *readers, const char *head,
+                         size_t size) {
+    const char *stranger = stranger_told(head);
+    if (stranger)
+        return noc_error(im->log, NOC_ERR_UNSUPPORTED, "%s: %s", name, stranger);
+    char names[300] = ""; /* "CityGML, OBJ, ..." */
+    for (size_t i = 0, n = 0; readers[i] && n < sizeof(names); i++)
+        n += (size_t)noc_snprintf(names + n, sizeof(names) - n, "%s%s", i ? ", " : "", readers[i]->name);
+    const char *offer =
+        find_named(readers, head, size)
+            ? ". If it is a table of lamps, say so with --lamps, and with --lamp-columns lon=A,lat=B where they are"
+            : "";
+    return noc_error(im->log, NOC_ERR_FORMAT, "%s: in none of the formats that are read (%s)%s", name, names, offer);
+}
+
+static noc_status recognise(importer *im, input *in, const noc_reader *const *readers) {
+    if (!strncmp(in->path, BUILTIN, strlen(BUILTIN)))
+        return in->named_lamps ? noc_error(im->log, NOC_ERR_ARGUMENT, "lamps: %s is no file of lamps", in->path)
+                               : NOC_OK;
+    noc_status status;
+    noc_stream *stream = noc_stream_open(in->path, im->log, &status);
+    if (!stream)
+        return status;
+    noc_stream_limit(stream, im->params);
+    size_t size = 0;
+    char *head = noc_alloc(HEAD_SIZE + 1);
+    status = head ? read_head(stream, head, &size) : noc_no_memory(im->log, in->path);
+    if (!status) {
+        in->bytes = noc_stream_size(stream);
+        in->reader = find_reader(readers, head, size);
+        if (!in->reader && in->named_lamps)
+            in->reader = find_named(readers, head, size);
+        in->remote = in->reader && in->reader->foreign && im->params->isolate && in->reader->foreign(head, size);
+        if (!size) {
+            status = noc_error(im->log, NOC_ERR_FORMAT, "%s: the file is empty", noc_stream_name(stream));
+        } else if (!in->reader) {
+            status = refuse(im, noc_stream_name(stream), readers, head, size);
+        } else if (in->named_lamps && in->reader->reads != NOC_READS_LAMPS) {
+            status = noc_error(im->log, NOC_ERR_FORMAT, "%s: this is %s, and --lamps is for tables and maps of points",
+                               noc_stream_name(stream), in->reader->name);
+        } else if (in->reader->missing) {
+            status = noc_error(im->log, NOC_ERR_UNSUPPORTED, "%s: this is %s, but %s", noc_stream_name(stream),
+                               in->reader->name, in->reader->missing);
+        }
+    }
+    free(head);
+    noc_stream_close(stream);
+    return status;
+}
+
+#define FAR_AWAY 20e3 /* m between a mesh and the rest of the scene that are worth a warning */
+
+/* Bounds of all that is in the scene so far, waiting lamps among it. Empty: lo > hi. */
+static void bounds_so_far(const importer *im, double lo[2], double hi[2]) {
+    for (int k = 0; k < 2; k++) {
+        lo[k] = im->scene->bounds_min[k];
+        hi[k] = im->scene->bounds_max[k];
+        for (size_t i = 0; i < im->lamps.len; i++) {
+            lo[k] = NOC_MIN(lo[k], im->lamps.data[i].lamp.xyz[k]);
+            hi[k] = NOC_MAX(hi[k], im->lamps.data[i].lamp.xyz[k]);
+        }
+    }
+}
+
+static void warn_if_far(importer *im, const double lo[2], const double hi[2], size_t first_float) {
+    double a[2] = { INFINITY, INFINITY }, b[2] = { -INFINITY, -INFINITY }, gap = 0;
+    for (size_t i = first_float; i + 2 < im->scene->positions.len; i += 3)
+        for (size_t k = 0; k < 2; k++) {
+            double x = (double)im->scene->positions.data[i + k];
+            a[k] = NOC_MIN(a[k], x);
+            b[k] = NOC_MAX(b[k], x);
+        }
+    for (int k = 0; k < 2; k++)
+        gap = NOC_MAX(gap, NOC_MAX(a[k] - hi[k], lo[k] - b[k]));
+    bool far = lo[0] <= hi[0] && a[0] <= b[0] && gap > FAR_AWAY;
+    im->far_said = im->far_said || far;
+    if (far)
+        noc_warn(im->log, "%s: lies %.0f km from the rest of the scene: %s", im->inputs[im->current].path, gap / 1000,
+                 im->mesh_from_origin ? "if its coordinates are those of a CRS, say with --crs which one"
+                                      : "are its coordinates in the CRS that --crs says?");
+}
+
+/* In the helper, or here. The sink is where progress is asked, and of maps where all goes. */
+static noc_status read_remote(importer *im, input *in, geo_sink *sink, const mesh_place *place, remote_result *result) {
+    mesh_scene to = { .scene = im->scene, .place = place, .issues = in->issues };
+    const mesh_parts parts = mesh_scene_parts(&to);
+    noc_status status = remote_read(in->reader, in->path, im->params, sink, place ? &parts : NULL, result);
+    if (*result->format)
+        in->file.format = arena_strdup(&im->report->arena, result->format);
+    return !status && im->report->arena.refused ? noc_no_memory(im->log, in->path) : status;
+}
+
+static noc_status read_mesh(importer *im, input *in, noc_stream *stream, remote_result *result) {
+    noc_status status = place_mesh(im);
+    if (status)
+        return status;
+    size_t triangles = im->scene->indices.len / 3, floats = im->scene->positions.len, meshes = im->scene->meshes.len;
+    size_t lights = im->scene->lights.len;
+    const mesh_place place = { im, place_mesh_points };
+    double lo[2], hi[2];
+    bounds_so_far(im, lo, hi);
+    geo_sink sink = sink_create(im);
+    status = in->remote
+                 ? read_remote(im, in, &sink, &place, result)
+                 : in->reader->read_mesh(in->path, stream, im->params, im->scene, &place, in->issues, &in->file.format);
+    if (!status)
+        warn_if_far(im, lo, hi, floats);
+    in->file.triangles = im->scene->indices.len / 3 - triangles;
+    in->file.objects = im->scene->meshes.len - meshes;
+    in->file.lights = im->scene->lights.len - lights;
+    for (size_t i = meshes; i < im->scene->meshes.len; i++) {
+        const noc_scene_mesh *m = &im->scene->meshes.data[i];
+        const float *e = im->scene->materials.data[m->material].emission;
+        /* of a light that is counted */
+        bool shape = m->triangle_count && im->scene->triangle_light.data[m->first_triangle] != NOC_NO_LIGHT;
+        if (shape)
+            continue;
+        if (e[0] > 0 || e[1] > 0 || e[2] > 0)
+            in->file.lights += m->triangle_count;
+    }
+    return status;
+}
+
+static noc_status read_builtin(importer *im, input *in) {
+    size_t triangles = im->scene->indices.len / 3, lights = im->scene->lights.len;
+    noc_status status = noc_scene_add_builtin(im->scene, in->path + strlen(BUILTIN), NULL);
+    in->file.format = "built-in scene";
+    in->file.triangles = im->scene->indices.len / 3 - triangles;
+    in->file.lights = im->scene->lights.len - lights;
+    return status;
+}
+
+static noc_status read_input(importer *im, size_t index) {
+    input *in = &im->inputs[index];
+    im->current = index;
+    in->started = true;
+    im->scene_before = noc_scene_bytes(im->scene);
+    double start = noc_wall_seconds();
+    if (!in->reader) {
+        noc_status status = read_builtin(im, in);
+        in->file.seconds = noc_wall_seconds() - start;
+        return status;
+    }
+    noc_status status;
+    noc_stream *stream = noc_stream_open(in->path, im->log, &status);
+    if (!stream)
+        return status;
+    noc_stream_limit(stream, im->params);
+    size_t unread = noc_stream_unread(stream);
+    for (size_t i = 0; i < unread; i++)
+        geo_issue(in->issues, GEO_SKIPPED, "file of the archive, like the one that is read", "");
+    if (unread)
+        noc_warn(im->log, "%s: the archive holds %zu more file%s like it, which %s not read: unpack it to read all",
+                 noc_stream_name(stream), unread, unread == 1 ? "" : "s", unread == 1 ? "is" : "are");
+    remote_result result = { 0 };
+    in->file.format = in->reader->name;
+    if (in->reader->read_mesh) {
+        status = read_mesh(im, in, stream, &result);
+    } else {
+        geo_sink sink = sink_create(im);
+        struct look_ahead *ahead = im->placed ? NULL : ahead_create(im, &sink);
+        if (!im->placed && !ahead)
+            status = noc_no_memory(im->log, in->path);
+        else
+            status = in->remote ? read_remote(im, in, &sink, NULL, &result)
+                                : in->reader->read(stream, im->params, &sink, &in->file.format);
+        if (ahead && status != NOC_ERR_MEMORY) { /* after an error too: the report holds what came before it */
+            noc_log *log = im->log, *of_scene = im->scene->log;
+            if (status)
+                im->log = im->scene->log = NULL; /* it is told, and no other */
+            noc_status released = ahead_release(ahead);
+            im->log = log;
+            im->scene->log = of_scene;
+            status = status ? status : released;
+        }
+        if (!status)
+            status = sink_flush(im); /* of a reader that gives no objects */
+        ahead_destroy(ahead);
+    }
+    if (im->cancelled)
+        status = NOC_ERR_CANCELLED;
+    place_finish_file(im, status == NOC_OK);
+    if (!status && (in->remote ? result.trailing : noc_stream_trailing(stream))) {
+        noc_warn(im->log, "%s: bytes after the gzip data are ignored", in->path);
+        geo_issue(in->issues, GEO_SKIPPED, "bytes after the gzip data", "");
+    }
+    in->file.bytes = in->bytes;
+    in->file.bytes_read = in->remote ? result.bytes_read : noc_stream_read_bytes(stream);
+    in->file.seconds = noc_wall_seconds() - start;
+    im->bytes_before += (double)in->bytes;
+    noc_stream_close(stream);
+    return status;
+}
+
+/* A mesh in a CRS may settle the place; one that names none counts from the origin that the others settle. */
+static int stage(const importer *im, const input *in) {
+    if (!in->reader || in->reader->reads == NOC_READS_CITY)
+        return 0;
+    bool in_crs = im->params->crs && *im->params->crs;
+    return in->reader->reads == NOC_READS_LAMPS ? 2 : in_crs ? 1 : 3;
+}
+
+static bool column_there(void *ctx, const char *name) {
+    const importer *im = ctx;
+    for (size_t i = 0; i < im->input_count; i++)
+        for (size_t k = 0; k < im->inputs[i].file.column_count; k++)
+            if (lamp_same_key(im->inputs[i].file.columns[k].name, name))
+                return true;
+    return false;
+}
+
+/* Only one of them could be read, and nothing says which. */
+static noc_status check_one_column(importer *im, const noc_report_file *file) {
+    for (size_t i = 0; i < file->column_count; i++)
+        for (size_t k = 0; k < i && file->columns[i].mapped; k++)
+            if (file->columns[k].mapped && !strcmp(file->columns[i].field, file->columns[k].field))
+                return noc_error(im->log, NOC_ERR_ARGUMENT,
+                                 "%s: lamp-columns: both \"%.60s\" and \"%.60s\" are mapped to %s: leave one out",
+                                 file->path, file->columns[k].name, file->columns[i].name, file->columns[i].field);
+    return NOC_OK;
+}
+
+/* A column that is mapped and nowhere there is a mistake of the user's: with what there is, for a line of text. */
+static noc_status check_columns(importer *im) {
+    for (size_t i = 0; i < im->input_count; i++) {
+        noc_status status = check_one_column(im, &im->inputs[i].file);
+        if (status)
+            return status;
+    }
+    char *missing, there[400] = "";
+    noc_status status = lamp_mapping_missing(im->params, column_there, im, im->log, &missing);
+    for (size_t i = 0, n = 0; missing && i < im->input_count; i++)
+        for (size_t k = 0; k < im->inputs[i].file.column_count && n < 300; k++)
+            n += (size_t)noc_snprintf(there + n, sizeof(there) - n, "%s%.40s", n ? ", " : "",
+                                      im->inputs[i].file.columns[k].name);
+    if (missing && im->inspect)
+        noc_warn(im->log, "%s: lamp-columns: there is no column or tag \"%.60s\"", im->inputs[0].path, missing);
+    else if (missing)
+        status = noc_error(im->log, NOC_ERR_ARGUMENT, "lamp-columns: no input has a column or tag \"%.60s\"%s%s",
+                           missing, *there ? "; there are " : "", there);
+    free(missing);
+    return status;
+}
+
+static noc_status run(importer *im, const noc_reader *const *readers) {
+    for (size_t i = 0; i < im->input_count; i++) {
+        noc_status status = recognise(im, &im->inputs[i], readers);
+        if (status)
+            return status;
+        im->inputs[i].repeated = repeat_file(im, i);
+        im->bytes_total += im->inputs[i].repeated ? 0 : (double)im->inputs[i].bytes;
+    }
+    for (int s = 0; s < 4; s++)
+        for (size_t i = 0; i < im->input_count; i++) {
+            noc_status status = !im->inputs[i].repeated && stage(im, &im->inputs[i]) == s ? read_input(im, i) : NOC_OK;
+            if (status)
+                return status;
+        }
+    noc_status status = check_columns(im);
+    return status || im->inspect ? status : finish_city(im);
+}
+
+static bool among(const char *path, const char *const *paths, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (same_file(paths[i], path))
+            return true;
+    return false;
+}
+
+/* The inputs are the paths, and the files of lamps that are not among them. */
+static noc_status list_inputs(importer *im, const char *const *paths, size_t path_count) {
+    const noc_texts *lamps = &im->params->lamps;
+    im->inputs = noc_calloc(path_count + lamps->count + 1, sizeof(*im->inputs));
+    if (!im->inputs)
+        return noc_no_memory(im->log, "import");
+    for (size_t i = 0; i < path_count + lamps->count; i++) {
+        bool named = i >= path_count;
+        const char *path = named ? lamps->text[i - path_count] : paths[i];
+        if (named && (im->inspect || among(path, paths, path_count) || among(path, lamps->text, i - path_count)))
+            continue;
+        input *in = &im->inputs[im->input_count++];
+        *in = (input){ .path = path, .file = { .path = path }, .issues = geo_issues_create() };
+        in->named_lamps = named || among(path, lamps->text, lamps->count);
+        if (!in->issues)
+            return noc_no_memory(im->log, "import");
+    }
+    return NOC_OK;
+}
+
+noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const char *const *paths, size_t path_count,
+                       const noc_import_params *params, bool inspect, noc_report **report) {
+    const noc_import_params defaults = noc_import_default_params();
+    if (report)
+        *report = NULL;
+    if (!scene)
+        return NOC_ERR_ARGUMENT;
+    for (size_t i = 0; i < path_count; i++)
+        if (!paths || !paths[i])
+            return noc_null(scene->log, "noc_scene_load");
+    if (!params)
+        params = &defaults;
+    noc_status status = check_params(params, scene->log);
+    if (!status)
+        status = check_crs(params, scene->log);
+    if (status)
+        return status;
+    if (!path_count && !params->lamps.count)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "import: no input");
+    if (scene->committed)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "import: the scene is committed");
+    importer im = { .log = scene->log,
+                    .scene = scene,
+                    .params = params,
+                    .memory = import_budget_of(params).memory,
+                    .inspect = inspect };
+    im.report = report_create();
+    status = im.report ? list_inputs(&im, paths, path_count) : noc_no_memory(scene->log, "import");
+    if (!status)
+        status = run(&im, readers);
+    if (scene->no_memory)
+        status = NOC_ERR_MEMORY; /* some go on without what the scene refused */
+    if (!status && !inspect)
+        status = noc_scene_commit(scene);
+    if (status == NOC_ERR_CANCELLED)
+        noc_cancelled(scene->log, "import: cancelled");
+    for (size_t i = 0; i < im.input_count; i++) {
+        if (im.inputs[i].started && !report_add(im.report, &im.inputs[i].file, im.inputs[i].issues) && !status)
+            status = noc_no_memory(scene->log, im.inputs[i].path);
+        geo_issues_destroy(im.inputs[i].issues);
+    }
+    if (!status && params->strict)
+        status = report_strict(im.report, params, scene->log);
+    free(im.inputs);
+    place_destroy(&im);
+    sink_destroy(&im);
+    if (report)
+        *report = im.report;
+    else
+        noc_report_destroy(im.report);
+    return status;
+}
+
+noc_status noc_scene_load(noc_scene *scene, const char *const *paths, size_t path_count,
+                          const noc_import_params *params, noc_report **report) {
+    return load_inputs(scene, noc_readers, paths, path_count, params, false, report);
+}
+
+noc_status noc_inspect(noc_log *log, const char *path, const noc_import_params *params, noc_report **report) {
+    noc_scene *scene = noc_scene_create(log);
+    if (report)
+        *report = NULL;
+    if (!scene)
+        return noc_no_memory(log, "scene");
+    noc_status status = load_inputs(scene, noc_readers, &path, 1, params, true, report);
+    noc_scene_destroy(scene);
+    return status;
+}
+
+/* By its definition, or a copy of one where that is NULL. */
+static geo_crs *crs_of(const noc_scene *scene, const char *definition, const char *place, const geo_crs *known,
+                       noc_status *status) {
+    geo_crs *crs = definition ? geo_crs_create(definition, place, scene->log, status) : geo_crs_clone(known);
+    if (!definition)
+        *status = crs ? NOC_OK : noc_no_memory(scene->log, "CRS");
+    else if (*status && *status != NOC_ERR_MEMORY)
+        *status = NOC_ERR_ARGUMENT;
+    return crs;
+}
+
+/* Between the frame of the scene's CRS (crs NULL: the one that the user speaks) and the scene's, in place. */
+static noc_status convert(const noc_scene *scene, const char *crs, bool to_local, double xyz[3]) {
+    if (!scene->crs && !scene->crs_name)
+        return scene->without_crs
+                   ? noc_error(scene->log, NOC_ERR_ARGUMENT,
+                               "%s names no CRS, so coordinates in %s have no place in the scene: say with "
+                               "--crs which one it is in",
+                               scene->without_crs, crs)
+                   : noc_error(scene->log, NOC_ERR_ARGUMENT,
+                               "the scene has no CRS, so coordinates in %s have no place in it", crs);
+    noc_status status;
+    geo_crs *user = crs_of(scene, crs, NULL, scene->given_crs, &status);
+    geo_crs *own = user ? crs_of(scene, scene->crs ? NULL : scene->crs_name, "scene", scene->crs, &status) : NULL;
+    geo_transform *t =
+        user && own ? geo_transform_create(to_local ? user : own, to_local ? own : user, scene->log, &status) : NULL;
+    double p[3] = { xyz[0], xyz[1], xyz[2] };
+    if (t && geo_transform_points(t, p, 1))
+        status = noc_error(scene->log, NOC_ERR_ARGUMENT, "%.10g %.10g in %s has no place in %s", xyz[0], xyz[1],
+                           geo_crs_name(to_local ? user : own), to_local ? "the scene's CRS" : geo_crs_name(user));
+    geo_transform_destroy(t);
+    geo_crs_destroy(user);
+    geo_crs_destroy(own);
+    if (!status)
+        memcpy(xyz, p, sizeof(p));
+    return status;
+}
+
+noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xyz[3]) {
+    if (!scene || !xyz)
+        return NOC_ERR_ARGUMENT;
+    noc_status status = crs || scene->given_crs ? convert(scene, crs, true, xyz) : NOC_OK;
+    for (int k = 0; !status && k < 3; k++)
+        xyz[k] -= scene->origin[k];
+    return status;
+}
+
+noc_status noc_scene_from_local(const noc_scene *scene, const char *crs, double xyz[3]) {
+    if (!scene || !xyz)
+        return NOC_ERR_ARGUMENT;
+    double p[3];
+    for (int k = 0; k < 3; k++)
+        p[k] = xyz[k] + scene->origin[k];
+    noc_status status = crs || scene->given_crs ? convert(scene, crs, false, p) : NOC_OK;
+    if (!status)
+        memcpy(xyz, p, sizeof(p));
+    return status;
+}

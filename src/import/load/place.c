@@ -1,0 +1,576 @@
+/* Where the scene is: which CRS the coordinates of a file are in, which one the scene gets, and the way between.
+ *
+ * Axis order. Geographic CRSs come in the order of their authority (latitude first for EPSG:6697), however they are
+ * spelled. Projected ones come easting first: several of them are northing first by the authority's book (EPSG:31466 to
+ * 31469, 31256), but files do not follow it. Where the first coordinates fit the CRS's area of use only the other way
+ * round, the other way it is, and the report says so. */
+#include "import/load/load.h"
+
+#include <ctype.h>
+#include <math.h>
+
+#define AXIS_TRIES 16     /* polygons that are looked at before the order of axes is left as it is */
+#define FAR_OUTSIDE 3.0   /* degrees outside the CRS's area of use that are worth a warning */
+#define STRAY_METRES 20e3 /* a first object this far from the middle of the first ones does not settle the place */
+#define STRAY_DEGREES 0.2
+#define NOWHERE 1e8        /* m from the origin: farther than anything on Earth in any projection in use */
+#define TRUE_SCALE 1e-3    /* lengths in the scene's CRS are those of the ground to within this share */
+#define LOCAL_ORIGIN 100e3 /* m; local coordinates nearer to zero than this keep it as the origin */
+
+static bool is_blank(const char *text) {
+    while (text && isspace((unsigned char)*text))
+        text++;
+    return !text || !*text;
+}
+
+static source_crs *find_source(importer *im, const char *spelling, bool taken) {
+    for (size_t i = 0; i < im->sources.len; i++)
+        if (im->sources.data[i]->input == im->current && im->sources.data[i]->taken == taken &&
+            !strcmp(im->sources.data[i]->spelling, spelling))
+            return im->sources.data[i];
+    return NULL;
+}
+
+/* Of a CRS that the user gave. */
+static noc_status given_status(noc_status status) {
+    return !status || status == NOC_ERR_MEMORY ? status : NOC_ERR_ARGUMENT;
+}
+
+/* PROJ searches its whole database for a name that it does not know: a tenth of a second each. Where --crs stands in
+ * for such names, there may be as many as a reader takes of one file. */
+enum { MOST_STRANGE = 8 };
+
+/* The CRS that `spelling` means for this run; *crs is NULL for local metres. */
+static noc_status resolve(importer *im, const char *spelling, const char *place, geo_crs **crs) {
+    *crs = NULL;
+    const char *fallback = is_blank(im->params->crs) ? NULL : im->params->crs;
+    noc_status status;
+    if (*spelling) {
+        *crs = geo_crs_create_plain(spelling, place, NULL, &status);
+        if (*crs)
+            return NOC_OK;
+        if (status == NOC_ERR_MEMORY)
+            return noc_no_memory(im->log, place);
+        status = geo_crs_database();
+        if (status == NOC_ERR_MEMORY)
+            return noc_no_memory(im->log, place);
+        if (status)
+            return noc_error(im->log, status,
+                             "%s: PROJ finds no proj.db, its database, so the CRS \"%.60s\" cannot be read: "
+                             "is PROJ_DATA right?",
+                             place, spelling);
+        if (!fallback && ++im->inputs[im->current].strange_crs > MOST_STRANGE)
+            return noc_error(im->log, NOC_ERR_FORMAT,
+                             "%s: more than %d CRSs of the file are not understood, \"%.60s\" the last of them", place,
+                             MOST_STRANGE, spelling);
+        if (!fallback && !im->inspect)
+            return noc_error(
+                im->log, NOC_ERR_FORMAT,
+                "%s: the CRS \"%.60s\" is not understood, opens files, or is neither geographic nor projected: say with "
+                "--crs which one it is",
+                place, spelling);
+        noc_warn(im->log, "%s: the CRS \"%.60s\" is not understood: %s%s", place, spelling,
+                 fallback ? "taken as " : "taken as local metres", fallback ? fallback : "");
+    }
+    if (!fallback)
+        return NOC_OK;
+    *crs = geo_crs_create(fallback, "--crs", im->log, &status);
+    return given_status(status);
+}
+
+noc_status place_crs(importer *im, const char *srs_name, const char *place, bool *lat_first) {
+    input *in = &im->inputs[im->current];
+    bool taken = srs_name && *srs_name == GEO_CRS_TAKEN;
+    const char *spelling = is_blank(srs_name) ? "" : srs_name + taken;
+    source_crs *source = find_source(im, spelling, taken);
+    if (!source) {
+        geo_crs *crs;
+        noc_status status = resolve(im, spelling, place ? place : in->path, &crs);
+        if (status)
+            return status;
+        source = noc_calloc(1, sizeof(*source));
+        char *kept = noc_strdup(spelling);
+        if (!source || !kept || !array_push(&im->sources, source)) {
+            free(source);
+            free(kept);
+            geo_crs_destroy(crs);
+            return noc_no_memory(im->log, in->path);
+        }
+        *source = (source_crs){ .spelling = kept, .taken = taken, .input = im->current, .crs = crs };
+    }
+    im->source = source;
+    if (lat_first)
+        *lat_first = source->crs && geo_crs_is_geographic(source->crs) && geo_crs_lat_first(source->crs);
+    return NOC_OK;
+}
+
+/* ---- axes ---- */
+
+/* Is `zone` million metres of the easting the number of the UTM zone that the point lies in without them? Zones reach
+ * over their edges a little. */
+static bool is_zone_number(source_crs *s, double zone, double x, double y) {
+    double p[2];
+    return !geo_crs_is_geographic(s->crs) && zone >= 1 && zone <= 60 &&
+           geo_crs_outside(s->crs, x - 1e6 * zone, y) == 0 && geo_crs_lonlat(s->crs, x - 1e6 * zone, y, p) &&
+           fabs(floor((p[0] + 180) / 6) + 1 - zone) <= 1;
+}
+
+/* Swaps the axes, or takes the zone number off the easting (32 512 345 m instead of 512 345 m), if that is what brings
+ * the point into the CRS's area of use. */
+static void decide_axes(importer *im, source_crs *s, double x, double y, const char *id) {
+    geo_issues *issues = im->inputs[im->current].issues;
+    double zone = floor(x / 1e6);
+    double given = geo_crs_outside(s->crs, x, y);
+    if (given == 0) {
+        s->axes_decided = true;
+    } else if (geo_crs_outside(s->crs, y, x) == 0) {
+        s->axes_decided = s->swap = true;
+        noc_warn(im->log, "%s: the coordinates fit %s only with their axes exchanged: done",
+                 im->inputs[im->current].path, geo_crs_name(s->crs));
+        geo_issue(issues, GEO_GUESSED, "axes exchanged to fit the CRS", id);
+    } else if (is_zone_number(s, zone, x, y)) {
+        s->axes_decided = true;
+        s->shift_x = -1e6 * zone;
+        geo_issue(issues, GEO_REPAIRED, "zone number taken off the easting", id);
+    } else {
+        s->outside = given;
+        s->axes_decided = ++s->tries == AXIS_TRIES;
+    }
+}
+
+static void fix_axes(importer *im, source_crs *s, double *xyz, size_t count, const char *id) {
+    if (!s->crs)
+        return;
+    for (size_t i = 0; i < count && !s->axes_decided; i++)
+        if (isfinite(xyz[3 * i]) && isfinite(xyz[3 * i + 1])) {
+            decide_axes(im, s, xyz[3 * i], xyz[3 * i + 1], id);
+            break;
+        }
+    if (!s->swap && s->shift_x == 0)
+        return;
+    for (size_t i = 0; i < count; i++) {
+        double *p = xyz + 3 * i, x = p[0];
+        if (s->swap) {
+            p[0] = p[1];
+            p[1] = x;
+        }
+        p[0] += s->shift_x;
+    }
+}
+
+/* ---- the scene's place ---- */
+
+/* The CRS the scene is asked to have, if any: by parameter, or set on the scene before. */
+static noc_status wanted_crs(importer *im, geo_crs **crs) {
+    *crs = NULL;
+    bool by_parameter = !is_blank(im->params->scene_crs);
+    const char *definition = by_parameter ? im->params->scene_crs : im->scene->crs_name;
+    if (is_blank(definition) || im->inspect)
+        return NOC_OK;
+    noc_status status;
+    *crs = geo_crs_create(definition, by_parameter ? "--scene-crs" : "scene", im->log, &status);
+    if (!*crs)
+        return given_status(status);
+    if (geo_crs_is_metric(*crs))
+        return NOC_OK;
+    noc_error(im->log, NOC_ERR_ARGUMENT, "%s: a scene's CRS must be projected, in metres", geo_crs_name(*crs));
+    geo_crs_destroy(*crs);
+    *crs = NULL;
+    return NOC_ERR_ARGUMENT;
+}
+
+/* Takes the crs. */
+static noc_status set_place(importer *im, geo_crs *crs, const double origin[3]) {
+    im->placed = true;
+    im->placed_by = im->inputs[im->current].path;
+    im->scene_crs = crs;
+    memcpy(im->origin, origin, sizeof(im->origin));
+    noc_scene_set_crs(im->scene, crs ? geo_crs_name(crs) : NULL, im->origin);
+    free(im->scene->without_crs);
+    im->scene->without_crs = crs ? NULL : noc_strdup(im->placed_by);
+    if (im->scene->crs && im->scene->crs_free)
+        im->scene->crs_free(im->scene->crs);
+    im->scene->crs = crs;
+    im->scene->crs_free = geo_crs_destroy;
+    if (im->scene->no_memory)
+        return NOC_ERR_MEMORY; /* said by the scene */
+    return crs || im->scene->without_crs ? NOC_OK : noc_no_memory(im->log, im->placed_by);
+}
+
+/* Lengths must be those of the ground: light falls with their square. Where *crs has others at a point (Web Mercator, a
+ * zone far away), the scene gets the UTM zone of that place instead, and *given what it would have had. */
+static noc_status make_metres_true(importer *im, geo_crs **crs, double p[3], geo_crs **given) {
+    const char *path = im->inputs[im->current].path;
+    double scale = geo_crs_scale(*crs, p[0], p[1]), lonlat[2];
+    *given = NULL;
+    if (!(fabs(scale - 1) > TRUE_SCALE) || !geo_crs_lonlat(*crs, p[0], p[1], lonlat))
+        return NOC_OK;
+    noc_status status = NOC_OK;
+    geo_crs *local = geo_crs_utm(lonlat[0], lonlat[1]);
+    geo_transform *t = local ? geo_transform_create(*crs, local, im->log, &status) : NULL;
+    bool ok = t && !geo_transform_points(t, p, 1);
+    geo_transform_destroy(t);
+    if (!ok) {
+        bool refused = !local || status == NOC_ERR_MEMORY;
+        geo_crs_destroy(local);
+        return refused ? (status ? status : noc_no_memory(im->log, path))
+                       : noc_error(im->log, NOC_ERR_FORMAT,
+                                   "%s: 100 m of %s are %.1f m on the ground there, and no local CRS was found", path,
+                                   geo_crs_name(*crs), 100 / scale);
+    }
+    if (!im->inspect)
+        noc_warn(im->log, "%s: 100 m of %s are %.1f m on the ground there: the scene is computed in %s", path,
+                 geo_crs_name(*crs), 100 / scale, geo_crs_name(local));
+    *given = *crs;
+    *crs = local;
+    return NOC_OK;
+}
+
+/* Keeps the CRS that the user speaks, and where the scene's origin lies in it. */
+static noc_status set_given(importer *im, geo_crs *given) {
+    noc_scene *scene = im->scene;
+    noc_status status;
+    geo_transform *t = geo_transform_create(scene->crs, given, im->log, &status);
+    double origin[3] = { im->origin[0], im->origin[1], 0 };
+    if (t && geo_transform_points(t, origin, 1))
+        status = NOC_ERR_UNSUPPORTED;
+    geo_transform_destroy(t);
+    char *name = status ? NULL : noc_strdup(geo_crs_name(given));
+    if (!status && !name)
+        status = noc_no_memory(im->log, im->placed_by);
+    if (status) {
+        geo_crs_destroy(given);
+        return status;
+    }
+    if (scene->given_crs)
+        scene->crs_free(scene->given_crs);
+    free(scene->given_crs_name);
+    scene->given_crs = given;
+    scene->given_crs_name = name;
+    memcpy(scene->given_origin, origin, sizeof(origin));
+    return NOC_OK;
+}
+
+/* Settles CRS and origin by a point, given in their own CRS. Heights stay what they are: z has no origin. */
+static noc_status settle(importer *im, const source_crs *source, const double point[3]) {
+    geo_crs *crs;
+    bool preset = im->scene->crs_name && is_blank(im->params->scene_crs) && !im->inspect;
+    noc_status status = wanted_crs(im, &crs);
+    if (status)
+        return status;
+    if (!source->crs) {
+        if (crs) {
+            geo_crs_destroy(crs);
+            return noc_error(im->log, NOC_ERR_ARGUMENT, "%s names no CRS: say with --crs which one it is in",
+                             im->inputs[im->current].path);
+        }
+        bool near_zero = fabs(point[0]) < LOCAL_ORIGIN && fabs(point[1]) < LOCAL_ORIGIN;
+        return set_place(im, NULL, (double[3]){ near_zero ? 0 : round(point[0]), near_zero ? 0 : round(point[1]), 0 });
+    }
+    double lonlat[2], p[3] = { point[0], point[1], 0 };
+    bool metric = geo_crs_is_metric(source->crs),
+         made = !crs && (metric || geo_crs_lonlat(source->crs, point[0], point[1], lonlat));
+    if (made)
+        crs = metric ? geo_crs_clone(source->crs) : geo_crs_utm(lonlat[0], lonlat[1]);
+    if (made && !crs)
+        return noc_no_memory(im->log, im->inputs[im->current].path);
+    geo_transform *t = crs ? geo_transform_create(source->crs, crs, im->log, &status) : NULL;
+    bool ok = t && !geo_transform_points(t, p, 1);
+    geo_transform_destroy(t);
+    if (status == NOC_ERR_MEMORY) {
+        geo_crs_destroy(crs);
+        return status;
+    }
+    if (!ok) {
+        geo_crs_destroy(crs);
+        return noc_error(im->log, NOC_ERR_FORMAT, "%s: the first coordinates (%.10g %.10g) have no place in %s",
+                         im->inputs[im->current].path, point[0], point[1], geo_crs_name(source->crs));
+    }
+    double outside = preset || is_blank(im->params->scene_crs) ? 0 : geo_crs_outside(crs, p[0], p[1]);
+    if (outside > FAR_OUTSIDE)
+        noc_warn(im->log, "%s: the coordinates lie far outside the area that --scene-crs %s is for",
+                 im->inputs[im->current].path, geo_crs_name(crs));
+    geo_crs *given = NULL;
+    if (!preset) /* else meshes may be there already, in metres of the CRS that was set */
+        status = make_metres_true(im, &crs, p, &given);
+    if (status) {
+        geo_crs_destroy(crs);
+        return status;
+    }
+    status = set_place(im, crs, preset ? im->scene->origin : (double[3]){ round(p[0]), round(p[1]), 0 });
+    if (status)
+        geo_crs_destroy(given);
+    return status || !given ? status : set_given(im, given);
+}
+
+/* Makes the way from the source to the scene, once. */
+static noc_status prepare(importer *im, source_crs *s, const double point[3]) {
+    const char *path = im->inputs[im->current].path;
+    if (!im->placed) {
+        noc_status status = settle(im, s, point);
+        if (status)
+            return status;
+    }
+    if (!s->crs && im->scene_crs)
+        return noc_error(im->log, NOC_ERR_FORMAT,
+                         "%s names no CRS, but %s does (%s): say with --crs which one it is in", path, im->placed_by,
+                         geo_crs_name(im->scene_crs));
+    if (s->crs && !im->scene_crs)
+        return noc_error(im->log, NOC_ERR_FORMAT,
+                         "%s names no CRS, but %s does (%s): say with --crs which one it is in", im->placed_by, path,
+                         geo_crs_name(s->crs));
+    if (s->crs) {
+        noc_status status;
+        s->to_scene = geo_transform_create(s->crs, im->scene_crs, im->log, &status);
+        if (!s->to_scene)
+            return status;
+    }
+    s->ready = true;
+    noc_report_file *file = &im->inputs[im->current].file;
+    if (!file->crs) {
+        file->crs = s->crs ? arena_strdup(&im->report->arena, geo_crs_name(s->crs)) : "";
+        file->degrees = s->crs && geo_crs_is_geographic(s->crs);
+        file->crs_given = arena_strdup(&im->report->arena, s->taken ? "" : s->spelling);
+        file->crs_taken = s->taken && s->crs;
+    }
+    return im->report->arena.refused ? noc_no_memory(im->log, path) : NOC_OK;
+}
+
+/* Bounds of the finite coordinates; heights may have none (lo > hi). False if no place at all is finite. */
+static bool bounds_of(const double *xyz, size_t count, double lo[3], double hi[3]) {
+    for (int k = 0; k < 3; k++) {
+        lo[k] = INFINITY;
+        hi[k] = -INFINITY;
+    }
+    for (size_t i = 0; i < 3 * count; i++)
+        if (isfinite(xyz[i])) {
+            lo[i % 3] = NOC_MIN(lo[i % 3], xyz[i]);
+            hi[i % 3] = NOC_MAX(hi[i % 3], xyz[i]);
+        }
+    return lo[0] <= hi[0] && lo[1] <= hi[1];
+}
+
+static void centre_of(const double lo[3], const double hi[3], double centre[3]) {
+    for (int k = 0; k < 3; k++)
+        centre[k] = lo[k] <= hi[k] ? lo[k] + (hi[k] - lo[k]) / 2 : 0;
+}
+
+bool place_centre(const double *xyz, size_t count, double centre[3]) {
+    double lo[3], hi[3];
+    bool any = bounds_of(xyz, count, lo, hi);
+    if (any)
+        centre_of(lo, hi, centre);
+    return any;
+}
+
+static void widen_extent(noc_report_file *file, const double lo[3], const double hi[3]) {
+    bool has_height = lo[2] <= hi[2]; /* lamps may have none */
+    for (int k = 0; k < 3; k++) {
+        double a = lo[k], b = hi[k];
+        if (k == 2 && !has_height)
+            a = b = file->has_extent ? file->extent_min[2] : 0;
+        file->extent_min[k] = file->has_extent ? NOC_MIN(file->extent_min[k], a) : a;
+        file->extent_max[k] = file->has_extent ? NOC_MAX(file->extent_max[k], b) : b;
+    }
+    file->has_extent = true;
+}
+
+static int compare_doubles(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The CRS that most samples are in, the earlier one of equals. */
+static source_crs *commonest_source(const place_sample *samples, size_t count) {
+    source_crs *best = NULL;
+    size_t most = 0;
+    for (size_t i = 0; i < count; i++) {
+        size_t n = 0;
+        for (size_t j = 0; j < count; j++)
+            n += samples[j].source == samples[i].source;
+        if (n > most) {
+            most = n;
+            best = samples[i].source;
+        }
+    }
+    return best;
+}
+
+noc_status place_settle(importer *im, const place_sample *samples, size_t count) {
+    if (!count)
+        return NOC_OK;
+    source_crs *s = commonest_source(samples, count);
+    double *both = noc_alloc(2 * count * sizeof(double));
+    if (!both)
+        return noc_no_memory(im->log, im->inputs[im->current].path);
+    double *const axis[2] = { both, both + count };
+    double first[3] = { 0 }, point[3] = { 0 };
+    size_t n = 0, in_area = 0;
+    for (int pass = 0; pass < 3; pass++) /* decides about the axes; counts; takes */
+        for (size_t i = 0; i < count; i++) {
+            double p[3];
+            memcpy(p, samples[i].xyz, sizeof(p));
+            fix_axes(im, samples[i].source, p, 1, samples[i].id);
+            if (pass == 0 || samples[i].source != s)
+                continue;
+            bool inside = s->crs && geo_crs_outside(s->crs, p[0], p[1]) <= FAR_OUTSIDE;
+            in_area += pass == 1 && inside;
+            if (pass == 1 || (in_area && !inside)) /* what lies where the CRS is not for, only if all does */
+                continue;
+            if (n == 0)
+                memcpy(first, p, sizeof(p));
+            axis[0][n] = p[0];
+            axis[1][n++] = p[1];
+        }
+    for (int k = 0; k < 2; k++) {
+        qsort(axis[k], n, sizeof(double), compare_doubles);
+        point[k] = axis[k][(n - 1) / 2];
+    }
+    free(both);
+    double stray = s->crs && geo_crs_is_geographic(s->crs) ? STRAY_DEGREES : STRAY_METRES;
+    bool by_first = fabs(first[0] - point[0]) <= stray && fabs(first[1] - point[1]) <= stray;
+    return prepare(im, s, by_first ? first : point);
+}
+
+noc_status place_points(importer *im, double *xyz, size_t count, const char *id, bool *usable) {
+    *usable = false;
+    input *in = &im->inputs[im->current];
+    if (!im->source) {
+        noc_status status = place_crs(im, NULL, in->path, NULL);
+        if (status)
+            return status;
+    }
+    source_crs *s = im->source;
+    double lo[3], hi[3], centre[3];
+    fix_axes(im, s, xyz, count, id);
+    im->given.len = 0;
+    if (!bounds_of(xyz, count, lo, hi)) {
+        geo_issue(in->issues, GEO_SKIPPED, "coordinates that are not finite", id);
+        return NOC_OK;
+    }
+    centre_of(lo, hi, centre);
+    if (!s->ready) {
+        noc_status status = prepare(im, s, centre);
+        if (status)
+            return status;
+    }
+    size_t numbers = 3 * count;
+    if (!array_append(&im->given, xyz, numbers))
+        return noc_no_memory(im->log, in->path);
+    size_t astray = 0, failed = 0;
+    if (s->to_scene)
+        failed = geo_transform_points(s->to_scene, xyz, count);
+    for (size_t i = 0; i < numbers; i++)
+        if (isfinite(xyz[i]) && !(fabs(xyz[i] - im->origin[i % 3]) < NOWHERE)) {
+            xyz[i] = NAN;
+            astray++;
+        }
+    if (failed || astray) {
+        geo_issue(in->issues, GEO_SKIPPED,
+                  failed ? "coordinates that have no place in the scene's CRS"
+                         : "coordinates that lie nowhere on Earth",
+                  id);
+        return NOC_OK;
+    }
+    for (size_t i = 0; i < 3 * count; i++)
+        xyz[i] -= im->origin[i % 3];
+    widen_extent(&in->file, lo, hi);
+    *usable = true;
+    return NOC_OK;
+}
+
+bool place_exchanged(importer *im, const given_place *given, double xy[2]) {
+    double p[3] = { given->xy[1], given->xy[0], 0 };
+    const source_crs *s = given->source;
+    if (s->crs && (!s->to_scene || geo_transform_points(s->to_scene, p, 1)))
+        return false;
+    for (int k = 0; k < 2; k++)
+        xy[k] = p[k] - im->origin[k];
+    return isfinite(xy[0]) && isfinite(xy[1]);
+}
+
+/* A mesh whose coordinates count from the scene's origin may be the first input, or the only one. */
+static noc_status settle_by_scene(importer *im) {
+    geo_crs *crs;
+    bool preset = im->scene->crs_name && is_blank(im->params->scene_crs) && !im->inspect;
+    noc_status status = wanted_crs(im, &crs);
+    return !status && crs ? set_place(im, crs, preset ? im->scene->origin : (double[3]){ 0, 0, 0 }) : status;
+}
+
+noc_status place_mesh(importer *im) {
+    const char *path = im->inputs[im->current].path;
+    im->source = NULL;
+    im->mesh_from_origin = false;
+    if (!is_blank(im->params->crs)) {
+        noc_status status;
+        geo_crs *crs = geo_crs_create(im->params->crs, "--crs", im->log, &status);
+        bool metric = crs && geo_crs_is_metric(crs);
+        geo_crs_destroy(crs);
+        if (status)
+            return given_status(status);
+        if (metric)
+            return NOC_OK;
+        return noc_error(im->log, NOC_ERR_ARGUMENT,
+                         "--crs %s: %s is in metres, so its CRS must be projected, in metres", im->params->crs, path);
+    }
+    if (!im->placed) {
+        noc_status status = settle_by_scene(im);
+        if (status)
+            return status;
+    }
+    im->mesh_from_origin = im->placed && im->scene_crs;
+    if (im->mesh_from_origin)
+        noc_info(im->log, "%s: coordinates are taken as metres from the scene's origin (%.0f %.0f)", path,
+                 im->origin[0], im->origin[1]);
+    return NOC_OK;
+}
+
+noc_status place_mesh_points(void *ctx, double *xyz, size_t count) {
+    importer *im = ctx;
+    bool usable;
+    noc_status status = sink_affords(im, 3 * count * sizeof(float));
+    if (status)
+        return status;
+    if (im->mesh_from_origin) {
+        double lo[3], hi[3];
+        if (bounds_of(xyz, count, lo, hi))
+            widen_extent(&im->inputs[im->current].file, lo, hi);
+        return NOC_OK;
+    }
+    status = place_points(im, xyz, count, "", &usable);
+    if (status || usable)
+        return status;
+    /* what has no place is NaN: the scene leaves out its triangles alone */
+    for (size_t i = 0; i < 3 * count; i++) {
+        xyz[i] -= im->origin[i % 3];
+        if (i < im->given.len && !isfinite(xyz[i]))
+            im->given.data[i] = NAN;
+    }
+    double lo[3], hi[3];
+    if (im->given.len == 3 * count && bounds_of(im->given.data, count, lo, hi))
+        widen_extent(&im->inputs[im->current].file, lo, hi);
+    return NOC_OK;
+}
+
+void place_finish_file(importer *im, bool read) {
+    im->source = NULL;
+    for (size_t i = 0; i < im->sources.len; i++) {
+        const source_crs *s = im->sources.data[i];
+        bool doubtful = s->tries && (!s->axes_decided || s->tries == AXIS_TRIES);
+        if (read && s->input == im->current && doubtful && s->outside > FAR_OUTSIDE)
+            noc_warn(im->log, "%s: the coordinates lie far outside the area that %s is for: is it the right CRS?",
+                     im->inputs[im->current].path, geo_crs_name(s->crs));
+    }
+}
+
+void place_destroy(importer *im) {
+    for (size_t i = 0; i < im->sources.len; i++) {
+        source_crs *s = im->sources.data[i];
+        geo_transform_destroy(s->to_scene);
+        geo_crs_destroy(s->crs);
+        free(s->spelling);
+        free(s);
+    }
+    array_free(&im->sources);
+    array_free(&im->given);
+}

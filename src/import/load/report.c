@@ -1,0 +1,151 @@
+#include "import/load/load.h"
+#include "city/city.h"
+
+noc_report *report_create(void) { return noc_calloc(1, sizeof(noc_report)); }
+
+const char *noc_lamp_source_name(noc_lamp_source source) {
+    static const char *const names[NOC_SOURCE_COUNT] = {
+        [NOC_SOURCE_UNKNOWN] = "unknown",
+        [NOC_SOURCE_LED] = "LED",
+        [NOC_SOURCE_SODIUM] = "sodium",
+        [NOC_SOURCE_MERCURY] = "mercury",
+        [NOC_SOURCE_METAL_HALIDE] = "metal halide",
+        [NOC_SOURCE_FLUORESCENT] = "fluorescent",
+        [NOC_SOURCE_INCANDESCENT] = "incandescent",
+        [NOC_SOURCE_GAS] = "gas",
+        [NOC_SOURCE_LOW_SODIUM] = "low-pressure sodium",
+    };
+    return (unsigned)source < NOC_SOURCE_COUNT ? names[source] : "unknown";
+}
+
+size_t noc_report_file_count(const noc_report *report) { return report ? report->files.len : 0; }
+
+const noc_report_file *noc_report_get_file(const noc_report *report, size_t index) {
+    return report && index < report->files.len ? &report->files.data[index] : NULL;
+}
+
+void noc_report_destroy(noc_report *report) {
+    if (!report)
+        return;
+    array_free(&report->files);
+    arena_free(&report->arena);
+    free(report);
+}
+
+void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) {
+    if (!totals)
+        return;
+    *totals = (noc_report_totals){ .lamps_inferred = report ? report->lamps_inferred : 0 };
+    for (size_t i = 0; i < noc_report_file_count(report); i++) {
+        const noc_report_file *f = &report->files.data[i];
+        totals->lamps_mapped += f->lamps_mapped;
+        totals->lamps_moved += f->lamps_moved;
+        totals->lamps_dropped += f->lamps_dropped;
+        totals->lamps_repeated += f->lamps_repeated;
+        totals->objects_repeated += f->objects_repeated;
+        for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++)
+            totals->lamps_assumed[what] += f->lamps_assumed[what];
+        for (size_t k = 0; k < f->line_count; k++)
+            *(!f->lines[k].repaired  ? &totals->skipped
+              : f->lines[k].lossless ? &totals->repaired
+                                     : &totals->guessed) += f->lines[k].count;
+    }
+}
+
+void report_assumed(noc_report_file *file, const geo_lamp *lamp) {
+    for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++)
+        file->lamps_assumed[what] += city_lamp_assumes(lamp, (noc_lamp_default)what);
+}
+
+/* What strict says of the lamps that the program makes up, wholly or in part. Returns how many guesses that are. */
+static size_t guesses_at_lamps(const noc_report *report, const noc_import_params *params, char *text, size_t size) {
+    const struct {
+        const char *what, *option;
+        double value;
+    } of[NOC_LAMP_DEFAULT_COUNT] = {
+        [NOC_LAMP_HEIGHT] = { "height", "lamp-height", params->lamp_height },
+        [NOC_LAMP_FLUX] = { "flux", "lamp-lumens", params->lamp_lumens },
+        [NOC_LAMP_COLOUR] = { "colour", "lamp-kelvin", params->lamp_kelvin },
+    };
+    noc_report_totals t;
+    size_t guesses = 0, n = 0;
+    noc_report_get_totals(report, &t);
+    for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++) {
+        if (!t.lamps_assumed[what] || params->lamp_chosen >> what & 1)
+            continue;
+        guesses += t.lamps_assumed[what];
+        n += (size_t)noc_snprintf(text + n, size - n, "; %zu x lamp without %s (--%s %g takes that)",
+                                  t.lamps_assumed[what], of[what].what, of[what].option, of[what].value);
+    }
+    if (t.lamps_inferred && params->infer_lamps != NOC_SWITCH_ON) {
+        guesses += t.lamps_inferred;
+        noc_snprintf(text + n, size - n,
+                     "; no lamps in the inputs, %zu placed by a rule (--lamps FILE gives some, --infer-lamps takes "
+                     "these, --no-infer-lamps leaves the city dark)",
+                     t.lamps_inferred);
+    }
+    return guesses;
+}
+
+/* Adds a cause with all of its ids or with none, for a part of an id cannot be searched for. False, and nothing is
+ * added, where there is no room. */
+static bool put_cause(char *text, size_t size, size_t *used, const char *path, const noc_report_line *l) {
+    for (int ids = *l->examples != 0; ids >= 0; ids--) {
+        int n = noc_snprintf(text + *used, size - *used, ids ? "; %s: %zu x %s (%s)" : "; %s: %zu x %s", path, l->count,
+                             l->reason, l->examples);
+        if (n >= 0 && *used + (size_t)n < size) {
+            *used += (size_t)n;
+            return true;
+        }
+        text[*used] = 0;
+    }
+    return false;
+}
+
+noc_status report_strict(const noc_report *report, const noc_import_params *params, noc_log *log) {
+    enum { SHOWN = 8 };
+    size_t skipped = 0, guessed = 0, lines = 0, shown = 0, n = 0;
+    char causes[900] = "", lamps[500] = "";
+    size_t guesses = guesses_at_lamps(report, params, lamps, sizeof(lamps));
+    size_t room = sizeof(causes) - strlen(lamps); /* a message is cut somewhere */
+    for (size_t i = 0; i < report->files.len; i++)
+        for (size_t k = 0; k < report->files.data[i].line_count; k++) {
+            const noc_report_file *f = &report->files.data[i];
+            const noc_report_line *l = &f->lines[k];
+            if (l->lossless)
+                continue;
+            *(l->repaired ? &guessed : &skipped) += l->count;
+            lines++;
+            shown += shown < SHOWN && put_cause(causes, room, &n, f->path, l);
+        }
+    if (!lines && !guesses)
+        return NOC_OK;
+    char more[40] = "";
+    if (lines > shown)
+        noc_snprintf(more, sizeof(more), "; and %zu more", lines - shown);
+    return noc_error(log, NOC_ERR_FORMAT, "--strict: features left out: %zu, guessed at: %zu%s%s%s", skipped,
+                     guessed + guesses, lamps, causes, more);
+}
+
+static const char *keep(noc_report *report, const char *text) { return arena_strdup(&report->arena, text ? text : ""); }
+
+bool report_add(noc_report *report, const noc_report_file *file, const geo_issues *issues) {
+    noc_report_file f = *file;
+    f.path = keep(report, f.path);
+    f.format = keep(report, f.format);
+    f.crs = keep(report, f.crs);
+    f.crs_given = keep(report, f.crs_given);
+    /* the columns are in the arena already */
+    f.line_count = geo_issues_count(issues);
+    noc_report_line *lines = arena_alloc(&report->arena, f.line_count * sizeof(*lines));
+    for (size_t i = 0; i < f.line_count && lines; i++) {
+        if (!geo_issues_get(issues, i, &lines[i].reason, &lines[i].repaired, &lines[i].count, &lines[i].examples))
+            return false;
+        geo_issue_kind kind = geo_issues_kind(issues, i);
+        lines[i].lossless = kind == GEO_REPAIRED || kind == GEO_SPARED;
+        lines[i].reason = keep(report, lines[i].reason);
+        lines[i].examples = keep(report, lines[i].examples);
+    }
+    f.lines = lines;
+    return !report->arena.refused && !geo_issues_refused(issues) && array_push(&report->files, f);
+}

@@ -1,0 +1,311 @@
+/* The CRSs of maps are looked at before GDAL reads them: grids and files of definitions that a text names are opened at
+ * once. */
+#include "import/map/crs.h"
+
+#if NOC_HAVE_GDAL
+
+#include <cpl_conv.h>
+#include <cpl_string.h>
+#include <cpl_vsi.h>
+#include <ctype.h>
+
+enum { LONGEST = 1 << 16 }; /* bytes of a CRS's text */
+
+noc_status map_check_crs_text(const char *text, const char *name, noc_log *log) {
+    char what[40];
+    if (!geo_crs_text_names_file(text, what))
+        return NOC_OK;
+    return noc_error(log, NOC_ERR_FORMAT, "%s: the CRS \"%.200s\" may open files (%s), which a file's CRS must not",
+                     name, text, what);
+}
+
+/* ---- GeoJSON ---- */
+
+/* Finds the strings of members "crs", however deep, as the readers of GDAL would: what comments and single quotes hide
+ * from one of them and not from the other is refused. So is a name that is an object: GDAL takes its text for the
+ * CRS's.
+ * {"type": T, "properties": {"name": N}} has two levels. */
+typedef struct json_scan {
+    const char *name;
+    noc_log *log;
+    size_t depth, crs_depth; /* crs_depth: of the member that is being read, 0: none */
+    bool in_string, escaped;
+    bool named; /* the file's own member holds a string */
+    int hex;    /* digits of \u still to come */
+    unsigned code;
+    size_t length; /* of the string so far, though only its begin is kept */
+    char text[LONGEST];
+} json_scan;
+
+static bool is_crs_key(const char *text) { return noc_ieq(text, "crs") || noc_ieq(text, "coordRefSys"); }
+
+/* Elsewhere than in a CRS only keys matter, which are short. */
+static void keep(json_scan *s, char c) {
+    if (s->length < (s->crs_depth ? LONGEST : 16) - 1)
+        s->text[s->length] = c;
+    s->length++;
+}
+
+static noc_status string_ended(json_scan *s) {
+    s->text[NOC_MIN(s->length, (s->crs_depth ? LONGEST : 16) - 1)] = 0;
+    s->in_string = false;
+    if (!s->crs_depth)
+        return NOC_OK;
+    s->named = s->named || s->crs_depth == 1;
+    if (s->length >= LONGEST)
+        return noc_error(s->log, NOC_ERR_FORMAT, "%s: a CRS of more than %d bytes", s->name, LONGEST);
+    return map_check_crs_text(s->text, s->name, s->log);
+}
+
+static void hex_digit(json_scan *s, char c) {
+    int digit = isdigit((unsigned char)c) ? c - '0' : (tolower((unsigned char)c) - 'a' + 10) & 15;
+    s->code = 16 * s->code + (unsigned)digit;
+    if (!--s->hex)
+        keep(s, s->code < 128 ? (char)s->code : '?');
+}
+
+static noc_status in_string(json_scan *s, char c) {
+    static const char blanks[] = "bfnrt";
+    if (s->hex) {
+        hex_digit(s, c);
+    } else if (s->escaped) {
+        s->escaped = false;
+        s->hex = c == 'u' ? 4 : 0;
+        s->code = 0;
+        if (c != 'u')
+            keep(s, c && strchr(blanks, c) ? ' ' : c);
+    } else if (c == '"') {
+        return string_ended(s);
+    } else if (c == '\\') {
+        s->escaped = true;
+    } else {
+        keep(s, c);
+    }
+    return NOC_OK;
+}
+
+static noc_status between_strings(json_scan *s, char c) {
+    switch (c) {
+    case '"':
+        s->in_string = true;
+        s->length = 0;
+        break;
+    case ':':
+        if (!s->crs_depth && is_crs_key(s->text))
+            s->crs_depth = s->depth;
+        break;
+    case '{':
+    case '[':
+        s->depth++;
+        if (s->crs_depth && s->depth > s->crs_depth + 2)
+            return noc_error(s->log, NOC_ERR_FORMAT,
+                             "%s: GeoJSON: a CRS in parts (PROJJSON), where its name is expected", s->name);
+        break;
+    case '}':
+    case ']':
+        s->depth -= s->depth > 0;
+        if (s->depth < s->crs_depth)
+            s->crs_depth = 0;
+        break;
+    case ',':
+        if (s->depth == s->crs_depth)
+            s->crs_depth = 0;
+        break;
+    case '\'':
+    case '/':
+        return noc_error(s->log, NOC_ERR_FORMAT, "%s: GeoJSON: %s outside of strings", s->name,
+                         c == '/' ? "a comment" : "a single quote");
+    }
+    if (c != '"' && !isspace((unsigned char)c) && c != ':')
+        s->text[0] = 0; /* no key */
+    return NOC_OK;
+}
+
+static noc_status check_geojson(noc_stream *stream, bool *named, noc_log *log) {
+    enum { CHUNK = 1 << 16 };
+    json_scan *s = noc_calloc(1, sizeof(*s));
+    char *buffer = noc_alloc(CHUNK);
+    size_t got = 1;
+    noc_status status = s && buffer ? noc_stream_rewind(stream) : noc_no_memory(log, noc_stream_name(stream));
+    if (s) {
+        s->name = noc_stream_name(stream);
+        s->log = log;
+    }
+    while (!status && got) {
+        status = noc_stream_read(stream, buffer, CHUNK, &got);
+        for (size_t i = 0; i < got && !status; i++)
+            status = s->in_string ? in_string(s, buffer[i]) : between_strings(s, buffer[i]);
+    }
+    *named = s && s->named;
+    free(s);
+    free(buffer);
+    return status;
+}
+
+/* ---- FlatGeobuf ---- */
+
+/* A text of a header. GDAL puts ":" and a number behind that of an authority, and takes both for a CRS. */
+static noc_status check_header_text(const char *text, const char *name, noc_log *log) {
+    char *authority = noc_format("%s:0", text);
+    noc_status status = authority ? map_check_crs_text(text, name, log) : noc_no_memory(log, name);
+    if (!status)
+        status = map_check_crs_text(authority, name, log);
+    free(authority);
+    return status;
+}
+
+/* Its header holds texts that end in 0, the CRS's among them. */
+static noc_status check_flatgeobuf(noc_stream *stream, noc_log *log) {
+    enum { BEGIN = 12, MOST = 10 << 20 }; /* GDAL reads no larger header */
+    const char *name = noc_stream_name(stream);
+    unsigned char begin[BEGIN];
+    size_t size = 0, got = 1;
+    noc_status status = noc_stream_rewind(stream);
+    for (; !status && got && size < BEGIN; size += got)
+        status = noc_stream_read(stream, begin + size, BEGIN - size, &got);
+    if (status || size < BEGIN)
+        return status; /* GDAL says what is wrong with it */
+    size_t length = begin[8] | (size_t)begin[9] << 8 | (size_t)begin[10] << 16 | (size_t)begin[11] << 24;
+    length = NOC_MIN(length, MOST);
+    char *header = noc_alloc(length + 1);
+    if (!header)
+        return noc_no_memory(log, name);
+    for (size = 0, got = 1; !status && got && size < length; size += got)
+        status = noc_stream_read(stream, header + size, length - size, &got);
+    header[size] = 0;
+    for (size_t at = 0; !status && at < size; at += strlen(header + at) + 1)
+        status = check_header_text(header + at, name, log);
+    free(header);
+    return status;
+}
+
+/* ---- Shapefile ---- */
+
+/* The text as GDAL puts it together: what stands behind a 0 in a line is lost, and nothing stays between the lines. */
+static void join_lines(char *text, size_t n) {
+    size_t kept = 0;
+    bool lost = false;
+    for (size_t i = 0; i < n; i++) {
+        bool line_ends = text[i] == '\n' || text[i] == '\r';
+        lost = !line_ends && (lost || !text[i]);
+        if (!line_ends && !lost)
+            text[kept++] = text[i];
+    }
+    text[kept] = 0;
+}
+
+/* Checked as GDAL reads it today, and as a reader would that keeps the lines apart. */
+static noc_status check_prj(const char *path, const char *name, noc_log *log) {
+    char *text = noc_alloc(LONGEST), *apart = noc_alloc(LONGEST);
+    VSILFILE *f = text && apart ? VSIFOpenL(path, "rb") : NULL;
+    size_t n = f ? VSIFReadL(text, 1, LONGEST, f) : 0;
+    noc_status status = text && apart ? NOC_OK : noc_no_memory(log, name);
+    if (n == LONGEST)
+        status = noc_error(log, NOC_ERR_FORMAT, "%s: its .prj has more than %d bytes", name, LONGEST);
+    if (!status && n) {
+        for (size_t i = 0; i < n; i++)
+            apart[i] = !text[i] || text[i] == '\n' || text[i] == '\r' ? ' ' : text[i];
+        apart[n] = 0;
+        join_lines(text, n);
+        status = map_check_crs_text(text, name, log);
+        status = status ? status : map_check_crs_text(apart, name, log);
+    }
+    if (f)
+        VSIFCloseL(f);
+    free(text);
+    free(apart);
+    return status;
+}
+
+/* Any that is called like it, in whatever case. */
+static noc_status check_shapefile(const char *path, const char *name, noc_log *log) {
+    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strrchr(base, '.');
+    size_t stem = dot ? (size_t)(dot - base) : strlen(base);
+    char *folder = noc_strndup(path, slash ? (size_t)(slash - path) : 0);
+    if (!folder)
+        return noc_no_memory(log, name);
+    char **entries = VSIReadDir(*folder ? folder : slash ? "/" : ".");
+    noc_status status = NOC_OK;
+    for (size_t i = 0; entries && entries[i] && !status; i++) {
+        if (strncasecmp(entries[i], base, stem) || !noc_ieq(entries[i] + NOC_MIN(stem, strlen(entries[i])), ".prj"))
+            continue;
+        char *part = noc_format("%.*s%s", (int)(base - path), path, entries[i]);
+        status = part ? check_prj(part, name, log) : noc_no_memory(log, name);
+        free(part);
+    }
+    CSLDestroy(entries);
+    free(folder);
+    return status;
+}
+
+noc_status map_check_crs(noc_stream *stream, const char *path, const map_format *format, bool *named, noc_log *log) {
+    *named = true;
+    return format->kind == MAP_GEOJSON      ? check_geojson(stream, named, log)
+           : format->kind == MAP_FLATGEOBUF ? check_flatgeobuf(stream, log)
+           : format->kind == MAP_SHAPEFILE  ? check_shapefile(path, noc_stream_name(stream), log)
+                                            : NOC_OK;
+}
+
+/* ---- GeoPackage ---- */
+
+/* The texts that a query of one column gives. As they are cast to text, none is taken for a geometry, which would have
+ * a CRS. */
+static noc_status check_query(map_source *m, const char *query) {
+    OGRLayerH rows = GDALDatasetExecuteSQL(m->dataset, query, NULL, NULL);
+    noc_status status = rows ? NOC_OK : map_source_error(m);
+    OGRFeatureH row;
+    while (!status && (row = OGR_L_GetNextFeature(rows))) {
+        status = map_check_crs_text(OGR_F_GetFieldAsString(row, 0), m->name, m->log);
+        OGR_F_Destroy(row);
+    }
+    if (rows)
+        GDALDatasetReleaseResultSet(m->dataset, rows);
+    return !status && m->error[0] ? map_source_error(m) : status;
+}
+
+static bool has_rows(map_source *m, const char *query) {
+    OGRLayerH rows = GDALDatasetExecuteSQL(m->dataset, query, NULL, NULL);
+    OGRFeatureH row = rows ? OGR_L_GetNextFeature(rows) : NULL;
+    bool any = row != NULL;
+    OGR_F_Destroy(row);
+    if (rows)
+        GDALDatasetReleaseResultSet(m->dataset, rows);
+    return any;
+}
+
+/* What is read above must be what GDAL finds, which looks for one row: a column that is computed may be another each
+ * time, and an index need not hold what the table does. The key srs_id INTEGER PRIMARY KEY has none. */
+static noc_status check_plain_table(map_source *m) {
+    static const struct {
+        const char *query, *what;
+    } others[] = {
+        { "SELECT 1 FROM pragma_table_xinfo('gpkg_spatial_ref_sys') WHERE hidden <> 0",
+          "a hidden or generated column" },
+        { "SELECT 1 FROM pragma_index_list('gpkg_spatial_ref_sys')",
+          "an index (a UNIQUE column or another key than srs_id INTEGER PRIMARY KEY is one)" },
+    };
+    for (size_t i = 0; i < NOC_COUNT(others); i++)
+        if (has_rows(m, others[i].query))
+            return noc_error(m->log, NOC_ERR_UNSUPPORTED, "%s: %s: gpkg_spatial_ref_sys has %s: not read", m->name,
+                             m->format, others[i].what);
+    return m->error[0] ? map_source_error(m) : NOC_OK;
+}
+
+noc_status map_check_crs_rows(map_source *m) {
+    static const char *const columns[] = { "definition", "organization", "definition_12_063" };
+    noc_status status = check_plain_table(m);
+    for (size_t i = 0; i < NOC_COUNT(columns) && !status; i++) {
+        char *there =
+            noc_format("SELECT 1 FROM pragma_table_info('gpkg_spatial_ref_sys') WHERE lower(name) = '%s'", columns[i]);
+        char *query = noc_format("SELECT coalesce(CAST(%s AS TEXT), '') FROM gpkg_spatial_ref_sys", columns[i]);
+        if (!there || !query)
+            status = noc_no_memory(m->log, m->name);
+        else if (has_rows(m, there))
+            status = check_query(m, query);
+        free(there);
+        free(query);
+    }
+    return !status && m->error[0] ? map_source_error(m) : status;
+}
+
+#endif

@@ -1,0 +1,452 @@
+/* Lamps from maps: OpenStreetMap XML and PBF, GeoJSON, GeoPackage, Shapefile and FlatGeobuf through GDAL, and CSV
+ * without it.
+ *
+ * The format is known from the content, and only its driver may open the file, so no name and no content can make GDAL
+ * fetch something or run another driver. GDAL's messages never reach stderr: the first failure becomes our error. */
+#include "import/lamps/tags.h"
+#include "import/map/source.h"
+#include "import/map/osm_ways.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static bool has(const char *head, size_t size, const char *text) {
+    return head && memmem(head, size, text, strlen(text)) != NULL;
+}
+
+static bool probe_osm_xml(const char *head, size_t size) {
+    return has(head, size, "<osm ") || has(head, size, "<osm>");
+}
+
+static bool probe_pbf(const char *head, size_t size) { return has(head, NOC_MIN(size, 64), "OSMHeader"); }
+
+static bool probe_geojson(const char *head, size_t size) {
+    const char *p = head, *end = head + size;
+    if (size >= 3 && !memcmp(p, "\xef\xbb\xbf", 3))
+        p += 3;
+    while (p < end && (*p == ' ' || *p == '\n' || *p == '\r' || *p == '\t' || *p == '\x1e'))
+        p++;
+    if (p == end || *p != '{')
+        return false;
+    size = (size_t)(end - p);
+    /* not CityJSON, which is told by its own reader or by none */
+    return !has(p, size, "\"CityJSON") && (has(p, size, "\"FeatureCollection\"") || has(p, size, "\"Feature\"") ||
+                                           (has(p, size, "\"coordinates\"") && has(p, size, "\"geometry\"")));
+}
+
+static bool probe_gpkg(const char *head, size_t size) { return size >= 16 && !memcmp(head, "SQLite format 3", 16); }
+
+static bool probe_shp(const char *head, size_t size) {
+    return size >= 32 && !memcmp(head, "\0\0\x27\x0a", 4) && !memcmp(head + 28, "\xe8\x03\0\0", 4);
+}
+
+static bool probe_fgb(const char *head, size_t size) { return size >= 8 && !memcmp(head, "fgb\3fgb", 7); }
+
+static const map_format formats[] = {
+    { "OpenStreetMap XML", { "OSM" }, probe_osm_xml, MAP_OSM },
+    { "OpenStreetMap PBF", { "OSM" }, probe_pbf, MAP_OSM },
+    { "GeoJSON", { "GeoJSON", "GeoJSONSeq" }, probe_geojson, MAP_GEOJSON },
+    { "GeoPackage", { "GPKG" }, probe_gpkg, MAP_GEOPACKAGE },
+    { "Shapefile", { "ESRI Shapefile" }, probe_shp, MAP_SHAPEFILE },
+    { "FlatGeobuf", { "FlatGeobuf" }, probe_fgb, MAP_FLATGEOBUF },
+};
+
+static const map_format *find_format(const char *head, size_t size) {
+    for (size_t i = 0; i < NOC_COUNT(formats); i++)
+        if (formats[i].probe(head, size))
+            return &formats[i];
+    return NULL;
+}
+
+static bool probe(const char *head, size_t size) { return find_format(head, size) || lamp_csv_probe(head, size); }
+
+static noc_status read_head(noc_stream *stream, char *head, size_t size, size_t *len) {
+    *len = 0;
+    noc_status status = noc_stream_rewind(stream);
+    for (size_t got = 1; !status && got && *len < size - 1; *len += got)
+        status = noc_stream_read(stream, head + *len, size - 1 - *len, &got);
+    head[*len] = 0;
+    return status;
+}
+
+#if NOC_HAVE_GDAL
+
+#include <cpl_conv.h>
+#include <ogr_api.h>
+#include <ogr_srs_api.h>
+
+/* ---- features ---- */
+
+typedef struct tag_buffer {
+    NOC_ARRAY(lamp_tag) tags;
+    NOC_ARRAY(char *) owned;
+    char id[64];
+    bool refused; /* memory, to one of them; stays set */
+} tag_buffer;
+
+static void tag_buffer_clear(tag_buffer *b) {
+    for (size_t i = 0; i < b->owned.len; i++)
+        free(b->owned.data[i]);
+    b->owned.len = b->tags.len = 0;
+}
+
+static void tag_buffer_free(tag_buffer *b) {
+    tag_buffer_clear(b);
+    array_free(&b->tags);
+    array_free(&b->owned);
+}
+
+/* A quoted string of a "key"=>"value" list, unescaped in place; position after it, NULL if there is none. */
+static char *hstore_string(char *p, char **out) {
+    while (*p && *p != '"')
+        p++;
+    if (!*p)
+        return NULL;
+    char *to = *out = ++p;
+    for (; *p && *p != '"'; p++) {
+        if (*p == '\\' && p[1])
+            p++;
+        *to++ = *p;
+    }
+    bool closed = *p == '"';
+    *to = 0;
+    return closed ? p + 1 : NULL;
+}
+
+/* The text, whose memory it takes; NULL where that is refused. */
+static char *own(tag_buffer *b, char *text) {
+    if (text && array_push(&b->owned, text))
+        return text;
+    free(text);
+    b->refused = true;
+    return NULL;
+}
+
+static void add_tag(tag_buffer *b, const char *key, const char *value) {
+    if (!array_push(&b->tags, (lamp_tag){ key, value }))
+        b->refused = true;
+}
+
+static void add_hstore(tag_buffer *b, const char *text) {
+    char *p = own(b, noc_strdup(text)), *key, *value;
+    while (p && (p = hstore_string(p, &key)) && (p = hstore_string(p, &value)))
+        add_tag(b, key, value);
+}
+
+/* False: memory was refused. */
+static bool collect_fields(OGRFeatureH feature, OGRFeatureDefnH defn, bool osm, tag_buffer *b) {
+    tag_buffer_clear(b);
+    int count = OGR_FD_GetFieldCount(defn);
+    for (int i = 0; i < count; i++) {
+        if (!OGR_F_IsFieldSetAndNotNull(feature, i))
+            continue;
+        const char *key = OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(defn, i));
+        const char *text = OGR_F_GetFieldAsString(feature, i);
+        if (!strcmp(key, "all_tags") || !strcmp(key, "other_tags")) {
+            add_hstore(b, text);
+            continue;
+        }
+        char *value = own(b, noc_format("%s%s", osm && !strcmp(key, "osm_id") ? "node/" : "", text));
+        if (value)
+            add_tag(b, key, value);
+    }
+    snprintf(b->id, sizeof(b->id), "feature %lld", (long long)OGR_F_GetFID(feature));
+    return !b->refused;
+}
+
+/* The place of a feature: of its point, or, for a lamp drawn as something else, the middle of its box. */
+static bool place_of(OGRFeatureH feature, double xyz[3], bool *is_point) {
+    OGRGeometryH g = OGR_F_GetGeometryRef(feature);
+    *is_point = false;
+    if (!g || OGR_G_IsEmpty(g))
+        return false;
+    OGRwkbGeometryType type = wkbFlatten(OGR_G_GetGeometryType(g));
+    if (type == wkbMultiPoint || type == wkbGeometryCollection) {
+        g = OGR_G_GetGeometryCount(g) == 1 ? OGR_G_GetGeometryRef(g, 0) : g;
+        type = wkbFlatten(OGR_G_GetGeometryType(g));
+    }
+    if (type == wkbPoint) {
+        *is_point = true;
+        xyz[0] = OGR_G_GetX(g, 0);
+        xyz[1] = OGR_G_GetY(g, 0);
+        xyz[2] = OGR_G_Is3D(g) ? OGR_G_GetZ(g, 0) : NAN;
+        return true;
+    }
+    OGREnvelope box;
+    OGR_G_GetEnvelope(g, &box);
+    xyz[0] = (box.MinX + box.MaxX) / 2;
+    xyz[1] = (box.MinY + box.MaxY) / 2;
+    xyz[2] = NAN;
+    return true;
+}
+
+static int dimension_of(OGRFeatureH feature) {
+    OGRGeometryH g = OGR_F_GetGeometryRef(feature);
+    return g ? NOC_CLAMP(OGR_G_GetDimension(g), GEO_POINTS, GEO_AREAS) : GEO_POINTS;
+}
+
+typedef struct map_reading {
+    const map_format *format;
+    noc_stream *stream;
+    const noc_import_params *params;
+    lamp_writer writer;
+    tag_buffer tags;
+    map_source source;
+} map_reading;
+
+static noc_status no_memory(const map_reading *m) { return noc_no_memory(m->writer.sink->log, m->writer.place); }
+
+/* The layer's CRS as AUTHORITY:CODE or WKT, behind GEO_CRS_TAKEN where the file names none; NULL if there is none;
+ * free() it. False: memory was refused. */
+static bool layer_crs(OGRLayerH layer, bool named, bool *geographic, char **crs) {
+    OGRSpatialReferenceH srs = OGR_L_GetSpatialRef(layer);
+    *geographic = srs && OSRIsGeographic(srs);
+    *crs = NULL;
+    if (!srs)
+        return true;
+    const char *authority = OSRGetAuthorityName(srs, NULL), *code = OSRGetAuthorityCode(srs, NULL);
+    if (authority && code)
+        return (*crs = noc_format("%s%s:%s", named ? "" : (char[]){ GEO_CRS_TAKEN, 0 }, authority, code)) != NULL;
+    char *wkt = NULL;
+    const char *const options[] = { "FORMAT=WKT2_2018", NULL };
+    bool told = OSRExportToWktEx(srs, &wkt, options) == OGRERR_NONE && wkt && *wkt;
+    *crs = told ? noc_strdup(wkt) : NULL;
+    CPLFree(wkt);
+    return *crs || !told;
+}
+
+/* GeoJSON that names no CRS is WGS 84 by its standard; municipal exports break that. If most of the first places are
+ * not on Earth in degrees, --crs says what they are; without it the end of the reading is an error. */
+static bool looks_projected(OGRLayerH layer) {
+    size_t inside = 0, outside = 0;
+    OGRFeatureH feature;
+    OGR_L_ResetReading(layer);
+    while (inside + outside < 200 && (feature = OGR_L_GetNextFeature(layer))) {
+        double p[3];
+        bool is_point;
+        if (place_of(feature, p, &is_point)) {
+            bool on_earth = fabs(p[0]) <= 180 && fabs(p[1]) <= 90;
+            inside += on_earth;
+            outside += !on_earth;
+        }
+        OGR_F_Destroy(feature);
+    }
+    OGR_L_ResetReading(layer);
+    return outside > inside;
+}
+
+static noc_status start_layer(map_reading *m, OGRLayerH layer) {
+    if (m->format->kind == MAP_OSM) {
+        m->writer.geographic = true;
+        return lamp_writer_crs(&m->writer, LAMP_WGS84);
+    }
+    char *crs;
+    if (!layer_crs(layer, m->source.crs_named && !m->source.link[0], &m->writer.geographic, &crs))
+        return no_memory(m);
+    const char *given = m->params ? m->params->crs : NULL;
+    bool replaced = crs && m->writer.geographic && given && m->format->kind == MAP_GEOJSON && looks_projected(layer);
+    if (replaced)
+        m->writer.geographic = false;
+    noc_status status = lamp_writer_crs(&m->writer, replaced ? NULL : crs);
+    free(crs);
+    return status;
+}
+
+/* Lamps by their tags; else, if the columns are those of an inventory of lamps, every feature. False: memory was
+ * refused. */
+static bool layer_kind(OGRLayerH layer, lamp_keys *keys, bool *tags, bool *inventory) {
+    OGRFeatureDefnH defn = OGR_L_GetLayerDefn(layer);
+    int count = OGR_FD_GetFieldCount(defn);
+    const char **names = noc_calloc((size_t)count + 1, sizeof(*names));
+    if (!names)
+        return false;
+    *tags = false;
+    for (int i = 0; i < count; i++) {
+        names[i] = OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(defn, i));
+        *tags |= lamp_key_tells(names[i]) || !strcmp(names[i], "other_tags") || !strcmp(names[i], "all_tags");
+    }
+    *inventory = !*tags && lamp_columns_tell(keys, names, (size_t)count);
+    free(names);
+    return true;
+}
+
+/* A feature that is neither a single point nor a lamp. */
+static void leave(map_reading *m, OGRFeatureH feature, const double xyz[3]) {
+    OGREnvelope box;
+    char id[64];
+    snprintf(id, sizeof(id), "feature %lld", (long long)OGR_F_GetFID(feature));
+    OGR_G_GetEnvelope(OGR_F_GetGeometryRef(feature), &box);
+    bool somewhere = isfinite(xyz[0]) && isfinite(xyz[1]);
+    lamp_writer_unread(&m->writer, dimension_of(feature), id,
+                       somewhere ? (double[]){ box.MinX, box.MaxX, box.MinY, box.MaxY } : NULL);
+}
+
+static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn) {
+    double xyz[3] = { NAN, NAN, NAN };
+    bool is_point, placed = place_of(feature, xyz, &is_point);
+    bool table = m->writer.inventory || m->writer.strange;
+    m->writer.seen.total[dimension_of(feature)] += placed;
+    if (table && !is_point && (placed || m->writer.strange)) {
+        if (placed)
+            leave(m, feature, xyz);
+        return NOC_OK;
+    }
+    if (!collect_fields(feature, defn, m->format->kind == MAP_OSM, &m->tags))
+        return no_memory(m);
+    size_t before = m->writer.lamps, points = m->writer.points;
+    noc_status status = lamp_writer_point(&m->writer, m->tags.tags.data, m->tags.tags.len, m->tags.id, xyz);
+    if (!status && placed && !is_point && m->writer.points == points) {
+        m->writer.features--; /* that might have been a lamp */
+        leave(m, feature, xyz);
+    }
+    if (!status && m->writer.lamps > before && !is_point)
+        geo_issue(m->writer.sink->issues, GEO_GUESSED, "lamp drawn as a line or an area: put in its middle",
+                  m->tags.id);
+    return status;
+}
+
+static noc_status read_features(map_reading *m, OGRLayerH layer) {
+    OGRFeatureDefnH defn = OGR_L_GetLayerDefn(layer);
+    GIntBig total = m->format->kind == MAP_OSM ? 0 : OGR_L_GetFeatureCount(layer, FALSE);
+    OGRFeatureH feature;
+    size_t n = 0;
+    noc_status status = NOC_OK;
+    while (!status && (feature = OGR_L_GetNextFeature(layer))) {
+        status = read_feature(m, feature, defn);
+        OGR_F_Destroy(feature);
+        if (++n % 1024 == 0 && !status && m->writer.sink->progress &&
+            !m->writer.sink->progress(m->writer.sink->ctx, total > 0 ? NOC_MIN((double)n / (double)total, 1) : 0))
+            status = NOC_ERR_CANCELLED;
+    }
+    if (!status && m->source.error[0])
+        status = map_source_error(&m->source);
+    return status;
+}
+
+/* Do the values of the layer's points say what they are? */
+static noc_status read_kinds(map_reading *m, OGRLayerH layer) {
+    OGRFeatureDefnH defn = OGR_L_GetLayerDefn(layer);
+    OGRFeatureH feature;
+    bool kept = true;
+    lamp_kinds_free(&m->writer.kinds);
+    m->writer.kinds = (lamp_kinds){ 0 };
+    OGR_L_ResetReading(layer);
+    while (kept && (feature = OGR_L_GetNextFeature(layer))) {
+        double xyz[3];
+        bool is_point;
+        if (place_of(feature, xyz, &is_point) && is_point)
+            kept = collect_fields(feature, defn, false, &m->tags) &&
+                   lamp_kinds_count(&m->writer.kinds, m->tags.tags.data, m->tags.tags.len);
+        OGR_F_Destroy(feature);
+    }
+    OGR_L_ResetReading(layer);
+    lamp_kinds_decide(&m->writer.kinds);
+    return kept ? NOC_OK : no_memory(m);
+}
+
+/* What tells that a layer's points are lamps: the user, tags, columns, values, or nothing. */
+static noc_status judge(map_reading *m, OGRLayerH layer) {
+    bool tags;
+    noc_status status = NOC_OK;
+    lamp_writer *w = &m->writer;
+    if (!layer_kind(layer, w->keys, &tags, &w->inventory))
+        return no_memory(m);
+    w->kinds.any = w->strange = false;
+    if (w->sink->named_lamps)
+        w->inventory = m->format->kind != MAP_OSM;
+    else if (!w->inventory && !tags) {
+        status = read_kinds(m, layer);
+        w->inventory = w->kinds.any;
+        w->strange = !w->kinds.any;
+    }
+    return status;
+}
+
+static noc_status read_layer(map_reading *m, OGRLayerH layer) {
+    lamp_writer *w = &m->writer;
+    noc_status status = judge(m, layer);
+    if (!status && (!w->strange || w->sink->inspect))
+        status = start_layer(m, layer);
+    if (!status)
+        status = read_features(m, layer);
+    /* an extract of OpenStreetMap holds all kinds of points: only where no tag tells of lamps all of them are meant */
+    if (!status && m->format->kind == MAP_OSM && w->sink->named_lamps && !w->lamps) {
+        w->inventory = true;
+        w->features = 0;
+        w->seen = (geo_features){ 0 };
+        OGR_L_ResetReading(layer);
+        status = read_features(m, layer);
+    }
+    return status;
+}
+
+static noc_status read_layers(map_reading *m) {
+    if (m->format->kind == MAP_OSM) { /* points alone: the geometries of ways and relations are not assembled */
+        OGRLayerH none = GDALDatasetExecuteSQL(m->source.dataset, "SET interest_layers = points", NULL, NULL);
+        if (none)
+            GDALDatasetReleaseResultSet(m->source.dataset, none);
+        OGRLayerH points = GDALDatasetGetLayerByName(m->source.dataset, "points");
+        noc_status status = points ? read_layer(m, points) : map_source_error(&m->source);
+        return status ? status
+                      : osm_count_ways(m->stream, m->format->probe == probe_pbf, m->writer.sink, &m->writer.seen);
+    }
+    noc_status status = NOC_OK;
+    int count = GDALDatasetGetLayerCount(m->source.dataset);
+    for (int i = 0; i < count && !status; i++)
+        status = read_layer(m, GDALDatasetGetLayer(m->source.dataset, i));
+    return status;
+}
+
+static noc_status read_map(noc_stream *stream, const map_format *format, const noc_import_params *params,
+                           geo_sink *sink) {
+    map_reading m = { .format = format, .stream = stream, .params = params };
+    noc_status status = lamp_writer_start(&m.writer, sink, noc_stream_name(stream), params);
+    if (status)
+        return status;
+    status = map_source_open(&m.source, stream, format, params && params->allow_outside, sink->log);
+    if (!status && m.source.link[0] && !(params && params->crs))
+        geo_issue(sink->issues, GEO_GUESSED, "CRS that is a link, not followed: longitudes and latitudes instead",
+                  "crs");
+    if (!status)
+        status = read_layers(&m);
+    map_source_close(&m.source);
+    tag_buffer_free(&m.tags);
+    if (!status)
+        status = lamp_writer_end(&m.writer);
+    lamp_writer_free(&m.writer);
+    return status;
+}
+
+#else
+
+static noc_status read_map(noc_stream *stream, const map_format *format, const noc_import_params *params,
+                           geo_sink *sink) {
+    return noc_error(sink->log, NOC_ERR_UNSUPPORTED, "%s: %s needs GDAL, which this build is without",
+                     noc_stream_name(stream), format->name);
+}
+
+#endif
+
+static noc_status read_vector(noc_stream *stream, const noc_import_params *params, geo_sink *sink,
+                              const char **format) {
+    char head[8192];
+    size_t len;
+    noc_status status = read_head(stream, head, sizeof(head), &len);
+    if (status)
+        return status;
+    const map_format *found = find_format(head, len);
+    *format = found ? found->name : "CSV";
+    return found ? read_map(stream, found, params, sink) : lamp_csv_read(stream, params, sink, format);
+}
+
+static bool foreign(const char *head, size_t size) { return NOC_HAVE_GDAL && find_format(head, size); }
+
+/* Never `missing`: CSV needs no GDAL, and the others say so one by one. */
+const noc_reader noc_reader_vector = {
+    .name = "OpenStreetMap, GeoJSON and GeoJSONSeq, GeoPackage, Shapefile, FlatGeobuf, CSV",
+    .reads = NOC_READS_LAMPS,
+    .probe = probe,
+    .probe_named = lamp_csv_probe_table,
+    .read = read_vector,
+    .foreign = foreign
+};

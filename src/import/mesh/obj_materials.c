@@ -1,0 +1,100 @@
+#include "import/mesh/obj_materials.h"
+
+/* Bytes that Assimp 5.2 takes, measured: a material holds 17 names of a kilobyte, twice; the rest is of a file of a
+ * million triangles. */
+enum { MATERIAL_COST = 36000, FACE_COST = 500, VERTEX_COST = 60 };
+
+typedef struct statement {
+    char *begin, *end; /* what stands behind the keyword, without blanks around it */
+} statement;
+
+static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+/* Is the line [p, end) a statement of this keyword? */
+static bool is_a(char *p, char *end, const char *keyword, statement *s) {
+    size_t n = strlen(keyword);
+    while (p < end && is_blank(*p))
+        p++;
+    if ((size_t)(end - p) <= n || memcmp(p, keyword, n) || !is_blank(p[n]))
+        return false;
+    for (p += n; p < end && is_blank(*p);)
+        p++;
+    while (end > p && is_blank(end[-1]))
+        end--;
+    *s = (statement){ p, end };
+    return p < end;
+}
+
+static char *line_end(char *p, char *stop) {
+    char *newline = memchr(p, '\n', (size_t)(stop - p));
+    return newline ? newline : stop;
+}
+
+/* The statement's text as a string of its own; NULL where there is no memory. */
+static char *text_of(const statement *s) { return noc_strndup(s->begin, (size_t)(s->end - s->begin)); }
+
+/* Adds the materials that a library defines. false where there is no memory. */
+static bool add_library(obj_folder *folder, const char *name, import_budget *budget, noc_map *defined) {
+    size_t size;
+    char *data = obj_open_library(folder, name, &size, NULL);
+    bool memory = !folder->refused;
+    if (data)
+        budget->stored += (double)size;
+    for (char *p = data, *stop = data ? data + size : NULL, *end; p < stop && memory; p = end + (end < stop)) {
+        statement s;
+        end = line_end(p, stop);
+        if (is_a(p, end, "newmtl", &s)) {
+            char *material = text_of(&s);
+            memory = material && map_put(defined, material, 1, NULL);
+            free(material);
+        }
+    }
+    free(data);
+    return memory;
+}
+
+noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, import_budget *budget, geo_issues *issues,
+                               const char *name, noc_log *log) {
+    noc_map defined = { 0 }, libraries = { 0 };
+    size_t faces = 0, vertices = 0, undefined = 0;
+    char unknown = '?'; /* a name that no library defines */
+    bool memory = true;
+    char *stop = data + size;
+    for (char *p = data, *end; p < stop && memory; p = end + (end < stop)) {
+        statement s;
+        end = line_end(p, stop);
+        faces += is_a(p, end, "f", &s);
+        vertices += is_a(p, end, "v", &s);
+        if (is_a(p, end, "mtllib", &s)) {
+            char *library = text_of(&s);
+            bool fresh;
+            memory = library && map_put(&libraries, library, 1, &fresh) &&
+                     (!fresh || add_library(folder, library, budget, &defined));
+            if (memory && !fresh) /* Assimp would read all of it again */
+                memset(p, ' ', (size_t)(end - p));
+            free(library);
+        }
+    }
+    while (unknown > '!' && map_get(&defined, (char[]){ unknown, 0 }, NULL))
+        unknown--;
+    for (char *p = data, *end; p < stop && memory; p = end + (end < stop)) {
+        statement s;
+        end = line_end(p, stop);
+        if (!is_a(p, end, "usemtl", &s))
+            continue;
+        char *material = text_of(&s);
+        memory = material != NULL;
+        if (memory && !map_get(&defined, material, NULL)) {
+            geo_issue(issues, GEO_GUESSED, "material that is not there, the default one instead", material);
+            memset(s.begin, ' ', (size_t)(s.end - s.begin));
+            *s.begin = unknown;
+            undefined = 1;
+        }
+        free(material);
+    }
+    double cost = (double)size + (double)(defined.len + undefined) * MATERIAL_COST + (double)faces * FACE_COST +
+                  (double)vertices * VERTEX_COST;
+    map_free(&defined);
+    map_free(&libraries);
+    return memory ? import_affords(budget, cost, name, "its faces and materials", log) : noc_no_memory(log, name);
+}

@@ -1,0 +1,14 @@
+/* obj_materials: what an OBJ asks of Assimp, whose materials take 36 kB each. */
+#ifndef NOC_OBJ_MATERIALS_H
+#define NOC_OBJ_MATERIALS_H
+
+#include "import/import.h"
+#include "import/mesh/obj_library.h"
+
+/* Names that usemtl asks for and no library in the folder defines become one, as all of them stand for the default
+ * material, and are counted. Then counts what reading the text will take; NOC_ERR_MEMORY after reporting where that is
+ * more than the budget has. */
+noc_status obj_plain_materials(char *data, size_t size, obj_folder *folder, import_budget *budget, geo_issues *issues,
+                               const char *name, noc_log *log);
+
+#endif

@@ -1,0 +1,179 @@
+/* The helper's side: reads one file as it is asked to, and sends what its reader emits. */
+#include "import/load/load.h"
+#include "import/remote/remote.h"
+
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+typedef struct serving {
+    remote_request asked;
+    remote_record out, batch; /* small records wait for others */
+    size_t lamps_lost;
+    int materials;
+} serving;
+
+#define BATCH (1 << 16)
+
+static void emit(serving *s, uint32_t kind) {
+    remote_add(&s->batch, kind, &s->out);
+    if (s->batch.refused)
+        _exit(REMOTE_NO_MEMORY);
+    bool waits = kind == REMOTE_LAMP || kind == REMOTE_MATERIAL || kind == REMOTE_ISSUE || kind == REMOTE_CRS;
+    if ((!waits || s->batch.bytes.len > BATCH) && !remote_send(REMOTE_FD, &s->batch))
+        _exit(1); /* whoever asked is gone: so are we */
+}
+
+static void on_message(void *user, noc_log_level level, const char *text) {
+    serving *s = user;
+    int32_t n = (int32_t)level;
+    remote_put(&s->out, &n, sizeof(n));
+    remote_put_text(&s->out, text);
+    emit(s, REMOTE_LOG);
+}
+
+/* Axes: foreign readers give easting first, whatever the CRS says, so no answer is waited for. */
+static noc_status on_crs(void *ctx, const char *srs_name, const char *place, bool *lat_first) {
+    serving *s = ctx;
+    remote_put_text(&s->out, srs_name);
+    remote_put_text(&s->out, place);
+    emit(s, REMOTE_CRS);
+    *lat_first = false;
+    return NOC_OK;
+}
+
+static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
+    serving *s = ctx;
+    remote_put(&s->out, lamp, sizeof(*lamp));
+    remote_put_text(&s->out, lamp->id);
+    remote_put_text(&s->out, lamp->ref);
+    emit(s, REMOTE_LAMP);
+    return NOC_OK;
+}
+
+static bool on_progress(void *ctx, double done) {
+    serving *s = ctx;
+    remote_put(&s->out, &done, sizeof(done));
+    emit(s, REMOTE_PROGRESS);
+    return true;
+}
+
+static noc_status on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
+    serving *s = ctx;
+    uint64_t numbers[] = { points, count };
+    remote_put(&s->out, numbers, sizeof(numbers));
+    for (size_t i = 0; i < count; i++) {
+        uint64_t values = columns[i].values;
+        unsigned char mapped = columns[i].mapped;
+        remote_put(&s->out, &values, sizeof(values));
+        remote_put(&s->out, &mapped, sizeof(mapped));
+        remote_put_text(&s->out, columns[i].name);
+        remote_put_text(&s->out, columns[i].field);
+        remote_put_text(&s->out, columns[i].unit);
+        remote_put_text(&s->out, columns[i].example);
+    }
+    emit(s, REMOTE_COLUMNS);
+    return NOC_OK;
+}
+
+static noc_status on_features(void *ctx, const geo_features *features) {
+    serving *s = ctx;
+    remote_put(&s->out, features, sizeof(*features));
+    emit(s, REMOTE_FEATURES);
+    return NOC_OK;
+}
+
+static int on_material(void *ctx, const noc_material *material) {
+    serving *s = ctx;
+    remote_put(&s->out, material, sizeof(*material));
+    emit(s, REMOTE_MATERIAL);
+    return s->materials++;
+}
+
+static noc_status on_mesh(void *ctx, noc_mesh *mesh, double *positions) {
+    serving *s = ctx;
+    remote_mesh m = { mesh->vertex_count, mesh->triangle_count, mesh->material };
+    remote_put(&s->out, &m, sizeof(m));
+    remote_put_text(&s->out, mesh->name);
+    remote_put(&s->out, mesh->positions, mesh->vertex_count * 3 * sizeof(double));
+    remote_put(&s->out, mesh->indices, mesh->triangle_count * 3 * sizeof(uint32_t));
+    emit(s, REMOTE_MESH);
+    return NOC_OK;
+}
+
+/* ---- the answer ---- */
+
+static void send_issues(serving *s, const geo_issues *issues) {
+    for (size_t i = 0; i < geo_issues_count(issues); i++) {
+        const char *reason, *examples;
+        bool repaired;
+        unsigned char kind = (unsigned char)geo_issues_kind(issues, i);
+        size_t count;
+        if (!geo_issues_get(issues, i, &reason, &repaired, &count, &examples))
+            _exit(REMOTE_NO_MEMORY);
+        remote_put(&s->out, &kind, sizeof(kind));
+        remote_put(&s->out, &count, sizeof(count));
+        remote_put_text(&s->out, reason);
+        remote_put_text(&s->out, examples);
+        emit(s, REMOTE_ISSUE);
+    }
+}
+
+static void serve(serving *s) {
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_DEBUG, .message = on_message, .user = s });
+    geo_issues *issues = geo_issues_create();
+    if (!log || !issues)
+        _exit(REMOTE_NO_MEMORY);
+    geo_sink sink = { .ctx = s,
+                      .log = log,
+                      .issues = issues,
+                      .lamps_lost = &s->lamps_lost,
+                      .crs = on_crs,
+                      .lamp = on_lamp,
+                      .progress = on_progress,
+                      .columns = on_columns,
+                      .features = on_features,
+                      .named_lamps = s->asked.sink.named_lamps,
+                      .inspect = s->asked.sink.inspect };
+    const mesh_parts parts = { .ctx = s, .log = log, .issues = issues, .material = on_material, .mesh = on_mesh };
+    const char *format = s->asked.reader->name;
+    noc_status opened;
+    noc_stream *stream = noc_stream_open(s->asked.path, log, &opened);
+    remote_end end = { .status = (int32_t)opened };
+    if (stream) {
+        noc_stream_limit(stream, &s->asked.params);
+        end.status =
+            s->asked.reader->read_parts
+                ? (int32_t)s->asked.reader->read_parts(s->asked.path, stream, &s->asked.params, &parts, &format)
+                : (int32_t)s->asked.reader->read(stream, &s->asked.params, &sink, &format);
+        if (end.status == NOC_ERR_FORMAT && remote_short_of_memory())
+            noc_warn(log,
+                     "%s: the process that reads it took more than half of what it may: it may need more than the "
+                     "limit --max-memory, %.3g GB",
+                     s->asked.path, import_budget_of(&s->asked.params).memory / 1e9);
+        end.bytes_read = noc_stream_read_bytes(stream);
+        end.trailing = noc_stream_trailing(stream);
+    }
+    if (geo_issues_refused(issues))
+        _exit(REMOTE_NO_MEMORY);
+    send_issues(s, issues);
+    end.lamps_lost = s->lamps_lost;
+    remote_put(&s->out, &end, sizeof(end));
+    remote_put_text(&s->out, format);
+    emit(s, REMOTE_END);
+}
+
+int noc_reader_main(void) {
+    int type;
+    socklen_t size = sizeof(type);
+    serving s = { 0 };
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getsockopt(REMOTE_FD, SOL_SOCKET, SO_TYPE, &type, &size) || !remote_receive(REMOTE_FD, &s.asked) ||
+        getppid() != s.asked.sink.parent)
+        /* not started by the library, or whoever started it ended before it asked to end with it */
+        return s.asked.texts.refused ? REMOTE_NO_MEMORY : 1;
+    remote_confine(s.asked.path, s.asked.reader->read_parts != NULL, &s.asked.params);
+    serve(&s);
+    _exit(0); /* what is left to tidy up goes with the process */
+}

@@ -1,0 +1,205 @@
+/* What comes back from the helper. It may have been taken over by the file that it reads: nothing is believed. */
+#include "import/lamps/tags.h"
+#include "import/remote/remote.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static noc_status garbled(const remote_taker *t) {
+    return noc_error(t->sink->log, NOC_ERR_FORMAT, "%s: what came back from the process that reads it makes no sense",
+                     t->path);
+}
+
+/* Bytes that a bool may be. */
+static bool is_bool(const void *at) { return *(const unsigned char *)at <= 1; }
+
+static noc_status take_log(remote_taker *t, remote_record *one) {
+    int32_t level = 0;
+    remote_get(one, &level, sizeof(level));
+    const char *text = remote_get_text(one);
+    if (one->bad || !*text)
+        return garbled(t);
+    if (level == NOC_LOG_ERROR && t->error)
+        return garbled(t);
+    if (level == NOC_LOG_ERROR)
+        return (t->error = noc_strdup(text)) ? NOC_OK : noc_no_memory(t->sink->log, t->path);
+    if (level == NOC_LOG_WARN)
+        noc_warn(t->sink->log, "%s", text);
+    else if (level == NOC_LOG_INFO)
+        noc_info(t->sink->log, "%s", text);
+    else
+        noc_debug(t->sink->log, "%s", text);
+    return NOC_OK;
+}
+
+static noc_status take_lamp(remote_taker *t, remote_record *one) {
+    geo_lamp lamp;
+    if (!remote_get(one, &lamp, sizeof(lamp)))
+        return garbled(t);
+    lamp.id = remote_get_text(one);
+    lamp.ref = remote_get_text(one);
+    bool kinds = (unsigned)lamp.type <= GEO_LAMP_FLOOD && (unsigned)lamp.source < NOC_SOURCE_COUNT &&
+                 (unsigned)lamp.mount <= GEO_MOUNT_SUSPENDED && is_bool(&lamp.head_globe);
+    /* or NaN */
+    bool numbers = !(lamp.height > LAMP_MOST_METRES || lamp.lumens > LAMP_MOST_LUMENS || lamp.watts > LAMP_MOST_WATTS);
+    if (one->bad || !kinds || !numbers || lamp.body_heads /* of models, not of maps */ || lamp.count < 0 ||
+        !isfinite(lamp.xyz[0]) || !isfinite(lamp.xyz[1]))
+        return garbled(t);
+    return t->sink->lamp(t->sink->ctx, &lamp);
+}
+
+static noc_status take_material(remote_taker *t, remote_record *one) {
+    noc_material material;
+    if (!remote_get(one, &material, sizeof(material)) || !t->parts || !is_bool(&material.two_sided))
+        return garbled(t);
+    int index = t->parts->material(t->parts->ctx, &material);
+    if (index < 0)
+        return NOC_ERR_ARGUMENT; /* said */
+    return array_push(&t->materials, index) ? NOC_OK : noc_no_memory(t->sink->log, t->path);
+}
+
+static noc_status take_mesh(remote_taker *t, remote_record *one) {
+    remote_mesh m = { 0 };
+    remote_get(one, &m, sizeof(m));
+    const char *name = remote_get_text(one);
+    const void *positions = remote_get_array(one, m.vertices, 3 * sizeof(double));
+    const void *indices = remote_get_array(one, m.triangles, 3 * sizeof(uint32_t));
+    if (one->bad || !t->parts || m.material < 0 || (size_t)m.material >= t->materials.len)
+        return garbled(t);
+    double *xyz = noc_alloc_large((size_t)m.vertices * 3, sizeof(*xyz)); /* aligned */
+    uint32_t *corners = noc_alloc_large((size_t)m.triangles * 3, sizeof(*corners));
+    noc_status status = NOC_OK;
+    if (!xyz || !corners) {
+        status = noc_no_memory(t->sink->log, t->path);
+    } else {
+        memcpy(xyz, positions, (size_t)m.vertices * 3 * sizeof(*xyz));
+        memcpy(corners, indices, (size_t)m.triangles * 3 * sizeof(*corners));
+        noc_mesh mesh = { .vertex_count = (size_t)m.vertices,
+                          .positions = xyz,
+                          .triangle_count = (size_t)m.triangles,
+                          .indices = corners,
+                          .material = t->materials.data[m.material],
+                          .name = *name ? name : NULL };
+        status = t->parts->mesh(t->parts->ctx, &mesh, xyz);
+    }
+    free(xyz);
+    free(corners);
+    return status;
+}
+
+static noc_status take_issue(remote_taker *t, remote_record *one) {
+    unsigned char kind = 0;
+    size_t count = 0;
+    remote_get(one, &kind, sizeof(kind));
+    remote_get(one, &count, sizeof(count));
+    const char *reason = remote_get_text(one), *examples = remote_get_text(one);
+    if (one->bad || kind >= GEO_ISSUE_KINDS)
+        return garbled(t);
+    geo_issues_add(t->sink->issues, (geo_issue_kind)kind, reason, count, examples);
+    return NOC_OK;
+}
+
+static noc_status take_columns(remote_taker *t, remote_record *one) {
+    uint64_t points = 0, count = 0;
+    bool kept = true;
+    NOC_ARRAY(geo_column) columns = { 0 };
+    remote_get(one, &points, sizeof(points));
+    remote_get(one, &count, sizeof(count));
+    for (uint64_t i = 0; i < count && !one->bad && kept; i++) {
+        uint64_t values = 0;
+        unsigned char mapped = 0;
+        remote_get(one, &values, sizeof(values));
+        remote_get(one, &mapped, sizeof(mapped));
+        geo_column c = { .values = (size_t)values, .mapped = mapped != 0 };
+        c.name = remote_get_text(one);
+        c.field = remote_get_text(one);
+        c.unit = remote_get_text(one);
+        c.example = remote_get_text(one);
+        kept = array_push(&columns, c);
+    }
+    noc_status status = one->bad ? garbled(t) : kept ? NOC_OK : noc_no_memory(t->sink->log, t->path);
+    if (!status && t->sink->columns)
+        status = t->sink->columns(t->sink->ctx, (size_t)points, columns.data, columns.len);
+    array_free(&columns);
+    return status;
+}
+
+static noc_status take_features(remote_taker *t, remote_record *one) {
+    geo_features f;
+    if (!remote_get(one, &f, sizeof(f)) || !is_bool(&f.any))
+        return garbled(t);
+    if (f.any && !(isfinite(f.lo[0]) && isfinite(f.lo[1]) && isfinite(f.hi[0]) && isfinite(f.hi[1])))
+        return garbled(t);
+    return t->sink->features ? t->sink->features(t->sink->ctx, &f) : NOC_OK;
+}
+
+static noc_status take_end(remote_taker *t, remote_record *one) {
+    remote_end end = { 0 };
+    remote_get(one, &end, sizeof(end));
+    const char *format = remote_get_text(one);
+    if (one->bad || end.status < NOC_OK || end.status > NOC_ERR_CANCELLED ||
+        (end.status != NOC_OK) != (t->error != NULL) || !is_bool(&end.trailing))
+        return garbled(t);
+    snprintf(t->result->format, sizeof(t->result->format), "%s", format);
+    t->result->bytes_read = end.bytes_read;
+    t->result->trailing = end.trailing;
+    if (t->sink->lamps_lost)
+        *t->sink->lamps_lost += (size_t)end.lamps_lost;
+    t->ended = true;
+    return t->error ? noc_error(t->sink->log, (noc_status)end.status, "%s", t->error) : NOC_OK;
+}
+
+static noc_status take(remote_taker *t, uint32_t kind, remote_record *one) {
+    switch (kind) {
+    case REMOTE_LOG: return take_log(t, one);
+    case REMOTE_CRS: {
+        const char *srs_name = remote_get_text(one), *place = remote_get_text(one);
+        bool lat_first;
+        return one->bad ? garbled(t) : t->sink->crs(t->sink->ctx, srs_name, place, &lat_first);
+    }
+    case REMOTE_LAMP: return take_lamp(t, one);
+    case REMOTE_MATERIAL: return take_material(t, one);
+    case REMOTE_MESH: return take_mesh(t, one);
+    case REMOTE_ISSUE: return take_issue(t, one);
+    case REMOTE_PROGRESS: return remote_get(one, &t->done, sizeof(t->done)) && isfinite(t->done) ? NOC_OK : garbled(t);
+    case REMOTE_COLUMNS: return take_columns(t, one);
+    case REMOTE_FEATURES: return take_features(t, one);
+    case REMOTE_END: return take_end(t, one);
+    default: return garbled(t);
+    }
+}
+
+bool remote_take(remote_taker *t, noc_status *status) {
+    remote_head head;
+    size_t left = t->bytes.len - t->pos;
+    if (t->ended || left < sizeof(head))
+        return false;
+    memcpy(&head, t->bytes.data + t->pos, sizeof(head));
+    uint64_t size = (uint64_t)head.size_high << 32 | head.size_low;
+    if (left - sizeof(head) < size)
+        return false;
+    remote_record one = { .bytes = { .data = t->bytes.data + t->pos + sizeof(head), .len = (size_t)size } };
+    t->pos += sizeof(head) + (size_t)size;
+    *status = take(t, head.kind, &one);
+    return true;
+}
+
+char *remote_room(remote_taker *t, size_t size) {
+    if (t->pos) {
+        memmove(t->bytes.data, t->bytes.data + t->pos, t->bytes.len - t->pos);
+        t->bytes.len -= t->pos;
+        t->pos = 0;
+    }
+    size_t room = t->bytes.len + size;
+    if (room > t->bytes.cap && !array_reserve(&t->bytes, NOC_MAX(room, t->bytes.len * 2))) {
+        noc_no_memory(t->sink->log, t->path);
+        return NULL;
+    }
+    return t->bytes.data + t->bytes.len;
+}
+
+void remote_taker_free(remote_taker *t) {
+    array_free(&t->bytes);
+    array_free(&t->materials);
+    free(t->error);
+}
