@@ -14,7 +14,7 @@ dictionaries = {
                "SELECT ", "CREATE VIEW ", "CREATE VIRTUAL TABLE [", "USING rtree", "all_tags", "other_tags", "\"=>\"", "\"crs\"", "urn:ogc:def:crs:OGC:1.3:CRS84"]),
     "crs": (["geo/crs*.c"], ["urn:ogc:def:crs:", "EPSG::", "urn:adv:crs:", "http://www.opengis.net/def/crs/EPSG/0/", "+proj=", "+zone=32", "+init=epsg:", "+nadgrids=", "+towgs84=", "+type=crs",
                              "PROJCS[", "GEOGCS[", "COMPD_CS[", "BOUNDCRS[", "UNIT[\"metre\",1]", "PARAMETER[", "AUTHORITY[\"EPSG\",\"4326\"]", "AXIS[\"N\",NORTH]", "utm", "longlat", "webmerc"]),
-    "spec": (["cli/experiment*.c", "render/options.c"], ["builtin:city", "builtin:mess", "../", "16x9", "street", "aerial", "overview"]),
+    "spec": (["lab/*.c", "render/options.c"], ["builtin:city", "builtin:mess", "../", "16x9", "street", "aerial", "overview"]),
 }
 
 

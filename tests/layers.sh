@@ -15,7 +15,8 @@ city: geo scene
 import: geo city scene
 render: light scene image core
 backend: render light scene core
-cli:
+lab: cli
+cli: lab
 reader:
 '
 # Libraries that one room alone may touch (jansson: two; neither hands its values on).
@@ -26,7 +27,7 @@ proj.h geo
 gdal|ogr_|cpl_ import
 assimp/ import
 expat.h import
-jansson.h import cli
+jansson.h import lab
 zip.h import
 GL/glu.h geo
 png.h image

@@ -1,5 +1,5 @@
 /* nocturne experiment: configurations over frames against one reference, as a spec says. */
-#include "experiment.h"
+#include "lab/lab.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define A experiment_args
+#define A lab_args
 static const noc_option own_options[] = {
     { "output", "Output", NOC_OPTION_TEXT, offsetof(A, output), 0, 0, NULL, "FOLDER",
       "folder for rows, plots, crops and report; else the spec's name without .json" },
@@ -21,7 +21,7 @@ static const noc_option own_options[] = {
 static const noc_option *options(void) { return own_options; }
 static int run(void *arguments);
 
-static const experiment_args defaults = { .threads = 0 };
+static const lab_args defaults = { .threads = 0 };
 
 const cli_command cli_experiment = {
     "experiment",
@@ -34,7 +34,7 @@ const cli_command cli_experiment = {
     "  nocturne experiment experiments/methods-and-bias.json -o methods\n"
     "Ctrl-C ends with status 130; the same command goes on where it stopped.\n",
     { { options, 0, NULL }, { cli_common_options, 0, NULL } },
-    sizeof(experiment_args),
+    sizeof(lab_args),
     &defaults,
     run,
 };
@@ -66,11 +66,11 @@ static int make_folder(const char *path) {
     return failed ? CLI_FAILURE : CLI_OK;
 }
 
-static char *output_folder(const experiment_args *args) {
+static char *output_folder(const lab_args *args) {
     if (args->output)
         return cli_format("%s", args->output);
     const char *spec = args->common.inputs[0], *slash = strrchr(spec, '/');
-    char *name = experiment_spec_name(spec);
+    char *name = lab_spec_name(spec);
     if (strcmp(name, slash ? slash + 1 : spec))
         return name;
     char *folder = cli_format("%s.results", name); /* the spec has that name itself */
@@ -78,7 +78,7 @@ static char *output_folder(const experiment_args *args) {
     return folder;
 }
 
-static char *cache_folder(const experiment_lab *lab) {
+static char *cache_folder(const lab_session *lab) {
     const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
     if (lab->args->cache)
         return cli_format("%s", lab->args->cache);
@@ -87,7 +87,7 @@ static char *cache_folder(const experiment_lab *lab) {
     return home && *home == '/' ? cli_format("%s/.cache/nocturne", home) : cli_format("%s/cache", lab->folder);
 }
 
-static int open_folders(experiment_lab *lab) {
+static int open_folders(lab_session *lab) {
     lab->folder = output_folder(lab->args);
     lab->cache = cache_folder(lab);
     char *pictures = cli_format("%s/pictures", lab->folder);
@@ -102,12 +102,12 @@ static int open_folders(experiment_lab *lab) {
         cli_error("%s: another experiment is writing there", lab->folder);
         return CLI_FAILURE;
     }
-    return experiment_open_table(lab);
+    return lab_open_table(lab);
 }
 
 /* What pictures take is asked for before the work: the reference, one frame, their mean, and the file of one. It is not
  * touched yet, so it costs addresses only. */
-static int reserve(experiment_lab *lab) {
+static int reserve(lab_session *lab) {
     size_t pixels = (size_t)lab->spec.width * (size_t)lab->spec.height, others = pixels * 4 * 20;
     lab->sum = malloc(sizeof(double) * 3 * pixels);
     void *room = lab->sum ? malloc(others) : NULL;
@@ -120,15 +120,15 @@ static int reserve(experiment_lab *lab) {
     return CLI_FAILURE;
 }
 
-static void plan(experiment_lab *lab) {
-    const experiment_spec *spec = &lab->spec;
+static void plan(lab_session *lab) {
+    const lab_spec *spec = &lab->spec;
     lab->run_count = spec->camera_count * (size_t)spec->repetitions * spec->config_count;
     lab->runs = cli_alloc(sizeof(*lab->runs) * lab->run_count);
     lab->scene_infos = cli_alloc(sizeof(*lab->scene_infos) * spec->scene_count);
     lab->crops = cli_alloc(sizeof(*lab->crops) * spec->camera_count);
     lab->noises = cli_alloc(sizeof(*lab->noises) * spec->camera_count);
     for (size_t i = 0; i < lab->run_count; i++) {
-        experiment_run *run = &lab->runs[i];
+        lab_run *run = &lab->runs[i];
         size_t rest = i / spec->config_count;
         run->config = i % spec->config_count;
         run->repetition = (int)(rest % (size_t)spec->repetitions);
@@ -136,44 +136,44 @@ static void plan(experiment_lab *lab) {
     }
 }
 
-static void tell_unlit(const experiment_lab *lab, size_t camera, int status) {
-    char *told = status || lab->args->common.quiet ? NULL : experiment_unlit(lab, camera);
-    const experiment_camera *c = &lab->spec.cameras[camera];
+static void tell_unlit(const lab_session *lab, size_t camera, int status) {
+    char *told = status || lab->args->common.quiet ? NULL : lab_unlit(lab, camera);
+    const lab_camera *c = &lab->spec.cameras[camera];
     if (told)
         printf("%s, %s: %s\n", lab->spec.scenes[c->scene].name, c->name, told);
     free(told);
 }
 
 /* All runs under one camera of the present scene. */
-static int work_camera(experiment_lab *lab, size_t camera) {
-    const experiment_spec *spec = &lab->spec;
-    int status = experiment_make_reference(lab, camera);
-    experiment_run *runs = experiment_find_run(lab, camera, 0, 0);
+static int work_camera(lab_session *lab, size_t camera) {
+    const lab_spec *spec = &lab->spec;
+    int status = lab_make_reference(lab, camera);
+    lab_run *runs = lab_find_run(lab, camera, 0, 0);
     size_t count = (size_t)spec->repetitions * spec->config_count;
     for (size_t i = 0; !status && i < count; i++) {
-        experiment_run_key(lab, &runs[i]);
-        experiment_claim(lab, &runs[i]);
+        lab_run_key(lab, &runs[i]);
+        lab_claim(lab, &runs[i]);
     }
     for (size_t i = 0; !status && i < count; i++, lab->runs_done++)
-        status = experiment_measure(lab, &runs[i]);
+        status = lab_measure(lab, &runs[i]);
     cli_progress_clear();
     tell_unlit(lab, camera, status);
     lab->cameras_done++;
-    status = status ? status : experiment_make_crops(lab, camera);
+    status = status ? status : lab_make_crops(lab, camera);
     noc_image_destroy(lab->reference);
     lab->reference = NULL;
     return status;
 }
 
-static int work(experiment_lab *lab) {
-    const experiment_spec *spec = &lab->spec;
+static int work(lab_session *lab) {
+    const lab_spec *spec = &lab->spec;
     int status = CLI_OK;
     char rows[64], frames[64];
     lab->started = cli_now();
     for (size_t camera = 0; !status && camera < spec->camera_count; camera++) {
         size_t scene = spec->cameras[camera].scene;
         if (!lab->scene)
-            status = experiment_load_scene(lab, scene);
+            status = lab_load_scene(lab, scene);
         if (!status)
             status = cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : work_camera(lab, camera);
         if (status || camera + 1 == spec->camera_count || spec->cameras[camera + 1].scene != scene) {
@@ -189,22 +189,22 @@ static int work(experiment_lab *lab) {
     else if (status > CLI_INTERRUPTED)
         cli_error("interrupted: %s in %s/results.csv; the same command goes on there",
                   cli_many(rows, lab->rows_done, "row"), lab->folder);
-    status = status ? status : experiment_tidy_table(lab);
-    status = status ? status : experiment_write_report(lab);
+    status = status ? status : lab_tidy_table(lab);
+    status = status ? status : lab_write_report(lab);
     if (!status && !lab->args->common.quiet)
         printf("%s/report.md: %s, %zu of them made now\n", lab->folder, cli_many(rows, lab->rows_done, "row"),
                lab->rows_done - lab->rows_old);
     return status;
 }
 
-static int finish(experiment_lab *lab, int status) {
+static int finish(lab_session *lab, int status) {
     cli_progress_clear();
     if (lab->csv && fclose(lab->csv) && !status) {
         cli_error("%s/results.csv: %s", lab->folder, strerror(errno));
         status = CLI_FAILURE;
     }
     for (size_t i = 0; i < lab->run_count; i++)
-        for (int mode = 0; mode < EXPERIMENT_MODES; mode++)
+        for (int mode = 0; mode < LAB_MODES; mode++)
             free(lab->runs[i].rows[mode]);
     free(lab->runs);
     free(lab->scene_infos);
@@ -220,10 +220,10 @@ static int finish(experiment_lab *lab, int status) {
 }
 
 static int run(void *arguments) {
-    experiment_lab lab = { .args = arguments, .lock = -1 };
+    lab_session lab = { .args = arguments, .lock = -1 };
     if (lab.args->common.input_count != 1)
         return cli_usage(&cli_experiment, "one spec, a JSON file: docs/experiments.md tells what it holds");
-    int status = experiment_read_spec(&lab.spec, lab.args->common.inputs[0], lab.args->common.quiet);
+    int status = lab_read_spec(&lab.spec, lab.args->common.inputs[0], lab.args->common.quiet);
     if (!status) {
         cli_catch_signals();
         cli_progress_start(lab.args->common.quiet);
@@ -234,6 +234,6 @@ static int run(void *arguments) {
         status = finish(&lab, status ? status : work(&lab));
         noc_log_destroy(lab.log);
     }
-    experiment_free_spec(&lab.spec);
+    lab_free_spec(&lab.spec);
     return cli_flush(stdout) ? status : CLI_FAILURE;
 }

@@ -1,8 +1,8 @@
-/* nocturne experiment: what its plots share. */
-#ifndef NOC_CLI_EXPERIMENT_SVG_H
-#define NOC_CLI_EXPERIMENT_SVG_H
+/* the laboratory: what its plots share. */
+#ifndef NOC_LAB_SVG_H
+#define NOC_LAB_SVG_H
 
-#include "experiment.h"
+#include "lab/lab.h"
 
 enum { SVG_COLOURS = 7, SVG_MARKERS = 8 };
 /* on light ground; classes l0, l1, ... (lines) and m0, m1, ... (areas) swap them */
@@ -21,9 +21,9 @@ typedef struct svg_style {
     const char *dash;
 } svg_style;
 
-bool svg_is_new_value(const experiment_spec *spec, size_t config); /* of an option: no configuration before it has it */
+bool svg_is_new_value(const lab_spec *spec, size_t config); /* of an option: no configuration before it has it */
 
-svg_style svg_style_of(const experiment_spec *spec, size_t config);
+svg_style svg_style_of(const lab_spec *spec, size_t config);
 double svg_place(const svg_axis *axis, double v);
 double svg_inside(const svg_axis *axis, double v);                         /* the same, no further than its ends */
 void svg_whisker(FILE *out, int colour, double from, double to, double y); /* a spread along x */

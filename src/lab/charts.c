@@ -1,6 +1,6 @@
 /* Charts over all cameras of an experiment: frame times as bars, and errors as dots, a panel for each camera and frame.
  */
-#include "experiment_svg.h"
+#include "lab/svg.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -20,10 +20,10 @@ enum {
     DOT_MOST = 60
 };
 
-static int name_width(const experiment_lab *lab, bool rows) {
+static int name_width(const lab_session *lab, bool rows) {
     size_t most = 4;
     for (size_t i = 0; i < lab->spec.config_count; i++) {
-        char *name = rows ? experiment_row_name(lab, i) : cli_format("%s", lab->spec.configs[i].name);
+        char *name = rows ? lab_row_name(lab, i) : cli_format("%s", lab->spec.configs[i].name);
         most = strlen(name) > most ? strlen(name) : most;
         free(name);
     }
@@ -37,8 +37,8 @@ static void words(FILE *out, double x, double y, const char *anchor, const char 
     fprintf(out, "</text>\n");
 }
 
-static void view_name(FILE *out, const experiment_lab *lab, size_t camera, double x, double y) {
-    const experiment_camera *c = &lab->spec.cameras[camera];
+static void view_name(FILE *out, const lab_session *lab, size_t camera, double x, double y) {
+    const lab_camera *c = &lab->spec.cameras[camera];
     char *name = cli_format("%s, %s", lab->spec.scenes[c->scene].name, c->name);
     words(out, x, y, "start", " font-weight=\"bold\"", name);
     free(name);
@@ -50,16 +50,16 @@ static double round_up(double v) {
     return v <= decade * 1.0001 ? decade : v <= 2 * decade ? 2 * decade : v <= 5 * decade ? 5 * decade : 10 * decade;
 }
 
-bool experiment_has_bars(const experiment_spec *spec) { return spec->config_count <= BAR_MOST; }
+bool lab_has_bars(const lab_spec *spec) { return spec->config_count <= BAR_MOST; }
 
-static double bar_of(const experiment_lab *lab, size_t camera, size_t config, double *error) {
-    experiment_series s = experiment_timed(lab, camera, config);
-    *error = experiment_error_of(&s, experiment_frame_time, 0, 0);
-    return experiment_frame_time(&s, 0, 0);
+static double bar_of(const lab_session *lab, size_t camera, size_t config, double *error) {
+    lab_series s = lab_timed(lab, camera, config);
+    *error = lab_error_of(&s, lab_frame_time, 0, 0);
+    return lab_frame_time(&s, 0, 0);
 }
 
-int experiment_bars(const experiment_lab *lab, const char *name) {
-    const experiment_spec *spec = &lab->spec;
+int lab_bars(const lab_session *lab, const char *name) {
+    const lab_spec *spec = &lab->spec;
     int left = name_width(lab, false), rows = (int)spec->config_count;
     int width = left + BARS_WIDTH + 130, height = TOP + (int)spec->camera_count * (rows * LINE + GAP) + BOTTOM;
     double most = 0, error;
@@ -68,7 +68,7 @@ int experiment_bars(const experiment_lab *lab, const char *name) {
             most = fmax(most, bar_of(lab, camera, i, &error) * 1e3 + (isfinite(error) ? 1e3 * error : 0));
     double step = most > 0 ? round_up(most / 8) : 1, end = most > 0 ? ceil(most / step) * step : 1;
     char *temporary;
-    FILE *out = experiment_create(lab, name, &temporary);
+    FILE *out = lab_create(lab, name, &temporary);
     if (!out)
         return CLI_FAILURE;
     svg_head(out, width, height);
@@ -104,11 +104,11 @@ int experiment_bars(const experiment_lab *lab, const char *name) {
         }
     }
     fprintf(out, "</svg>\n");
-    return experiment_finish(lab, out, name, temporary);
+    return lab_finish(lab, out, name, temporary);
 }
 
 /* Where all entries stand for values of the same option, an entry is one row of dots; else each configuration. */
-static bool shares_rows(const experiment_spec *spec) {
+static bool shares_rows(const lab_spec *spec) {
     const noc_option *option = spec->configs[0].option;
     for (size_t i = 0; i < spec->config_count; i++)
         if (spec->configs[i].option && option && spec->configs[i].option != option)
@@ -118,20 +118,20 @@ static bool shares_rows(const experiment_spec *spec) {
     return option != NULL;
 }
 
-static int row_of(const experiment_spec *spec, size_t config) {
+static int row_of(const lab_spec *spec, size_t config) {
     return shares_rows(spec) ? (int)spec->configs[config].entry : (int)config;
 }
 
-static int row_count(const experiment_spec *spec) { return row_of(spec, spec->config_count - 1) + 1; }
+static int row_count(const lab_spec *spec) { return row_of(spec, spec->config_count - 1) + 1; }
 
 /* One camera's errors are all on one scale, so that its frames compare. */
-static svg_axis errors_of(const experiment_lab *lab, size_t camera) {
+static svg_axis errors_of(const lab_session *lab, size_t camera) {
     svg_axis axis = { INFINITY, 0, 0, PANEL_WIDTH };
-    experiment_point points[EXPERIMENT_POINTS];
-    int count = experiment_points(&lab->spec, camera, points);
+    lab_point points[LAB_POINTS];
+    int count = lab_points(&lab->spec, camera, points);
     for (int p = 0; p < count; p++) {
         for (size_t i = 0; i < lab->spec.config_count; i++) {
-            double error, v = experiment_at_point(lab, camera, i, points[p], experiment_column(&lab->spec), &error);
+            double error, v = lab_at_point(lab, camera, i, points[p], lab_column(&lab->spec), &error);
             if (v > 0 && isfinite(v)) {
                 axis.lo = fmin(axis.lo, v);
                 axis.hi = fmax(axis.hi, v);
@@ -146,8 +146,8 @@ static svg_axis errors_of(const experiment_lab *lab, size_t camera) {
     return axis;
 }
 
-static void panel(FILE *out, const experiment_lab *lab, size_t camera, experiment_point point, int left, int top) {
-    const experiment_spec *spec = &lab->spec;
+static void panel(FILE *out, const lab_session *lab, size_t camera, lab_point point, int left, int top) {
+    const lab_spec *spec = &lab->spec;
     int rows = row_count(spec);
     svg_axis x = errors_of(lab, camera), y = { 1, 10, top + rows * LINE, top };
     x.from = left;
@@ -159,9 +159,9 @@ static void panel(FILE *out, const experiment_lab *lab, size_t camera, experimen
     fprintf(out,
             "<rect class=\"frame\" fill=\"none\" stroke=\"#555555\" x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\"/>\n",
             left, top, PANEL_WIDTH, rows * LINE);
-    words(out, left + PANEL_WIDTH / 2, top - 7, "middle", "", experiment_point_name(spec, camera, point));
+    words(out, left + PANEL_WIDTH / 2, top - 7, "middle", "", lab_point_name(spec, camera, point));
     for (size_t i = 0; i < spec->config_count; i++) {
-        double error, v = experiment_at_point(lab, camera, i, point, experiment_column(spec), &error),
+        double error, v = lab_at_point(lab, camera, i, point, lab_column(spec), &error),
                       at = top + row_of(spec, i) * LINE + LINE / 2;
         svg_style style = svg_style_of(spec, i);
         if (shares_rows(spec))
@@ -176,10 +176,10 @@ static void panel(FILE *out, const experiment_lab *lab, size_t camera, experimen
 
 /* Values that colours stand for, whichever entry has them first, and configurations that stand alone. Returns the
  * lines that it takes. out NULL: that alone. */
-static int values_legend(FILE *out, const experiment_spec *spec, int left, int right, int y) {
+static int values_legend(FILE *out, const lab_spec *spec, int left, int right, int y) {
     int x = left, lines = 1;
     for (size_t i = 0; i < spec->config_count; i++) {
-        const experiment_config *c = &spec->configs[i];
+        const lab_config *c = &spec->configs[i];
         if (c->option && !svg_is_new_value(spec, i))
             continue;
         const char *text = c->option ? c->value : c->name;
@@ -199,46 +199,46 @@ static int values_legend(FILE *out, const experiment_spec *spec, int left, int r
     return lines;
 }
 
-bool experiment_has_dots(const experiment_spec *spec) { return row_count(spec) <= DOT_MOST && spec->config_count > 1; }
+bool lab_has_dots(const lab_spec *spec) { return row_count(spec) <= DOT_MOST && spec->config_count > 1; }
 
 /* Cameras with one frame to show stand side by side, up to four; true where this one starts a line of panels. */
-static bool starts_line(const experiment_spec *spec, size_t camera, int *column) {
-    experiment_point points[EXPERIMENT_POINTS];
-    bool beside = camera && *column < 4 && experiment_points(spec, camera, points) == 1 &&
-                  experiment_points(spec, camera - 1, points) == 1;
+static bool starts_line(const lab_spec *spec, size_t camera, int *column) {
+    lab_point points[LAB_POINTS];
+    bool beside =
+        camera && *column < 4 && lab_points(spec, camera, points) == 1 && lab_points(spec, camera - 1, points) == 1;
     *column = beside ? *column + 1 : 1;
     return !beside;
 }
 
-static void row_names(FILE *out, const experiment_lab *lab, int left, int top) {
+static void row_names(FILE *out, const lab_session *lab, int left, int top) {
     bool shared = shares_rows(&lab->spec);
     for (size_t i = 0; i < lab->spec.config_count; i++) {
-        char *row = shared ? experiment_row_name(lab, i) : cli_format("%s", lab->spec.configs[i].name);
+        char *row = shared ? lab_row_name(lab, i) : cli_format("%s", lab->spec.configs[i].name);
         if (!shared || lab->spec.configs[i].choice <= 0)
             words(out, left - 8, top + row_of(&lab->spec, i) * LINE + 14, "end", "", row);
         free(row);
     }
 }
 
-int experiment_dots(const experiment_lab *lab, const char *name) {
-    const experiment_spec *spec = &lab->spec;
-    experiment_point points[EXPERIMENT_POINTS];
+int lab_dots(const lab_session *lab, const char *name) {
+    const lab_spec *spec = &lab->spec;
+    lab_point points[LAB_POINTS];
     int left = name_width(lab, shares_rows(spec)), high = row_count(spec) * LINE + BOTTOM + GAP + 24;
     int columns = 1, lines = 0, column = 0;
     for (size_t camera = 0; camera < spec->camera_count; camera++) {
-        int count = experiment_points(spec, camera, points);
+        int count = lab_points(spec, camera, points);
         lines += starts_line(spec, camera, &column);
         columns = count > columns ? count : columns;
         columns = column > columns ? column : columns;
     }
     char *temporary;
-    FILE *out = experiment_create(lab, name, &temporary);
+    FILE *out = lab_create(lab, name, &temporary);
     if (!out)
         return CLI_FAILURE;
     int width = left + columns * (PANEL_WIDTH + PANEL_GAP);
     int head = TOP + (shares_rows(spec) ? values_legend(NULL, spec, left, width, 0) : 1) * LINE;
     svg_head(out, width, head + lines * high);
-    words(out, left, 26, "start", " font-size=\"15\" font-weight=\"bold\"", experiment_figure(spec));
+    words(out, left, 26, "start", " font-size=\"15\" font-weight=\"bold\"", lab_figure(spec));
     if (shares_rows(spec))
         values_legend(out, spec, left, width, TOP + 8);
     int line = -1;
@@ -247,7 +247,7 @@ int experiment_dots(const experiment_lab *lab, const char *name) {
         bool starts = starts_line(spec, camera, &column);
         line += starts;
         int top = head + line * high + GAP + 20, from = left + (column - 1) * (PANEL_WIDTH + PANEL_GAP);
-        int count = experiment_points(spec, camera, points);
+        int count = lab_points(spec, camera, points);
         view_name(out, lab, camera, from, top - 28);
         if (starts)
             row_names(out, lab, left, top);
@@ -255,5 +255,5 @@ int experiment_dots(const experiment_lab *lab, const char *name) {
             panel(out, lab, camera, points[p], from + p * (PANEL_WIDTH + PANEL_GAP), top);
     }
     fprintf(out, "</svg>\n");
-    return experiment_finish(lab, out, name, temporary);
+    return lab_finish(lab, out, name, temporary);
 }

@@ -1,6 +1,6 @@
 /* summary.md: an experiment in a few tables. Where entries of the spec stand for several values of an option, they are
  * the rows and the values the columns; other configurations are rows with a column a camera. */
-#include "experiment.h"
+#include "lab/lab.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,88 +8,87 @@
 
 /* Frames told in a table of cameras that stand still: those that the spec measures, if they are few, else the first and
  * the last. */
-int experiment_points(const experiment_spec *spec, size_t camera, experiment_point out[EXPERIMENT_POINTS]) {
+int lab_points(const lab_spec *spec, size_t camera, lab_point out[LAB_POINTS]) {
     if (spec->cameras[camera].frames) {
-        out[0] = (experiment_point){ EXPERIMENT_ALONE, 0 };
+        out[0] = (lab_point){ LAB_ALONE, 0 };
         return 1;
     }
-    bool alone = experiment_has_mode(spec, camera, EXPERIMENT_ALONE),
-         listed = spec->measured_count && spec->measured_count < EXPERIMENT_POINTS;
+    bool alone = lab_has_mode(spec, camera, LAB_ALONE),
+         listed = spec->measured_count && spec->measured_count < LAB_POINTS;
     bool one = true; /* frame is all there is */
     for (size_t i = 0; i < spec->config_count; i++)
-        one &= experiment_frames(spec, camera, i) == 1;
-    int count = 0, mode = alone ? EXPERIMENT_ALONE : EXPERIMENT_ACCUMULATED;
+        one &= lab_frames(spec, camera, i) == 1;
+    int count = 0, mode = alone ? LAB_ALONE : LAB_ACCUMULATED;
     for (size_t i = 0; listed && i < spec->measured_count; i++)
-        out[count++] = (experiment_point){ mode, spec->measured[i] };
+        out[count++] = (lab_point){ mode, spec->measured[i] };
     if (!listed) {
-        out[count++] = (experiment_point){ mode, 1 };
+        out[count++] = (lab_point){ mode, 1 };
         if (!one)
-            out[count++] = (experiment_point){ mode, 0 };
+            out[count++] = (lab_point){ mode, 0 };
     }
-    if (alone && !one && experiment_has_mode(spec, camera, EXPERIMENT_ACCUMULATED))
-        out[count++] = (experiment_point){ EXPERIMENT_ACCUMULATED, 0 };
+    if (alone && !one && lab_has_mode(spec, camera, LAB_ACCUMULATED))
+        out[count++] = (lab_point){ LAB_ACCUMULATED, 0 };
     return count;
 }
 
-double experiment_at_point(const experiment_lab *lab, size_t camera, size_t config, experiment_point point, int column,
-                           double *error) {
-    experiment_series s = { lab, camera, config, point.mode, 0 };
-    int frame = point.frame ? point.frame : experiment_last(&s);
-    *error = experiment_error_at(&s, column, frame);
-    return experiment_at(&s, column, frame);
+double lab_at_point(const lab_session *lab, size_t camera, size_t config, lab_point point, int column, double *error) {
+    lab_series s = { lab, camera, config, point.mode, 0 };
+    int frame = point.frame ? point.frame : lab_last(&s);
+    *error = lab_error_at(&s, column, frame);
+    return lab_at(&s, column, frame);
 }
 
-const char *experiment_point_name(const experiment_spec *spec, size_t camera, experiment_point point) {
+const char *lab_point_name(const lab_spec *spec, size_t camera, lab_point point) {
     static char text[48];
     int motion = spec->cameras[camera].frames;
     if (motion)
         snprintf(text, sizeof(text), "frame %d", motion);
     else if (point.frame)
-        snprintf(text, sizeof(text), point.mode == EXPERIMENT_ALONE ? "frame %d" : "mean of %d", point.frame);
+        snprintf(text, sizeof(text), point.mode == LAB_ALONE ? "frame %d" : "mean of %d", point.frame);
     else
-        snprintf(text, sizeof(text), "%s", point.mode == EXPERIMENT_ALONE ? "last frame" : "mean of all");
+        snprintf(text, sizeof(text), "%s", point.mode == LAB_ALONE ? "last frame" : "mean of all");
     return text;
 }
 
-experiment_series experiment_timed(const experiment_lab *lab, size_t camera, size_t config) {
-    int mode = experiment_has_mode(&lab->spec, camera, EXPERIMENT_ALONE) ? EXPERIMENT_ALONE : EXPERIMENT_ACCUMULATED;
-    return (experiment_series){ lab, camera, config, mode, 0 };
+lab_series lab_timed(const lab_session *lab, size_t camera, size_t config) {
+    int mode = lab_has_mode(&lab->spec, camera, LAB_ALONE) ? LAB_ALONE : LAB_ACCUMULATED;
+    return (lab_series){ lab, camera, config, mode, 0 };
 }
 
-static void print_errors(FILE *out, const experiment_lab *lab, size_t camera, size_t config) {
-    experiment_point points[EXPERIMENT_POINTS];
-    int count = experiment_points(&lab->spec, camera, points);
+static void print_errors(FILE *out, const lab_session *lab, size_t camera, size_t config) {
+    lab_point points[LAB_POINTS];
+    int count = lab_points(&lab->spec, camera, points);
     for (int i = 0; i < count; i++) {
-        double error, v = experiment_at_point(lab, camera, config, points[i], experiment_column(&lab->spec), &error);
+        double error, v = lab_at_point(lab, camera, config, points[i], lab_column(&lab->spec), &error);
         fputs(i ? " / " : " ", out);
-        experiment_print_spread(out, v, error, "%.2g");
+        lab_print_spread(out, v, error, "%.2g");
     }
-    experiment_series s = experiment_timed(lab, camera, config);
-    double ms = 1e3 * experiment_frame_time(&s, 0, 0);
+    lab_series s = lab_timed(lab, camera, config);
+    double ms = 1e3 * lab_frame_time(&s, 0, 0);
     if (isfinite(ms)) {
         fputs(" \302\267 ", out);
-        experiment_print_spread(out, ms, 1e3 * experiment_error_of(&s, experiment_frame_time, 0, 0), "%.3g");
+        lab_print_spread(out, ms, 1e3 * lab_error_of(&s, lab_frame_time, 0, 0), "%.3g");
         fputs(" ms", out);
     }
     fputs(" |", out);
 }
 
-void experiment_view_name(FILE *out, const experiment_spec *spec, size_t camera) {
-    experiment_text(out, spec->scenes[spec->cameras[camera].scene].name);
+void lab_view_name(FILE *out, const lab_spec *spec, size_t camera) {
+    lab_text(out, spec->scenes[spec->cameras[camera].scene].name);
     fputs(", ", out);
-    experiment_text(out, spec->cameras[camera].name);
+    lab_text(out, spec->cameras[camera].name);
 }
 
-static void print_what(FILE *out, const experiment_lab *lab, size_t camera) {
-    experiment_point points[EXPERIMENT_POINTS];
-    int count = experiment_points(&lab->spec, camera, points);
+static void print_what(FILE *out, const lab_session *lab, size_t camera) {
+    lab_point points[LAB_POINTS];
+    int count = lab_points(&lab->spec, camera, points);
     for (int i = 0; i < count; i++)
-        fprintf(out, "%s%s", i ? " / " : "", experiment_point_name(&lab->spec, camera, points[i]));
+        fprintf(out, "%s%s", i ? " / " : "", lab_point_name(&lab->spec, camera, points[i]));
     fputs(" \302\267 CPU time of a frame", out);
 }
 
-char *experiment_row_name(const experiment_lab *lab, size_t config) {
-    const experiment_config *c = &lab->spec.configs[config];
+char *lab_row_name(const lab_session *lab, size_t config) {
+    const lab_config *c = &lab->spec.configs[config];
     if (c->choice < 0)
         return cli_format("%s", c->name);
     /* The entry's name without the value's place and what joins it; with it in the middle, where the rest would not
@@ -105,31 +104,31 @@ char *experiment_row_name(const experiment_lab *lab, size_t config) {
 }
 
 /* Entries of one option, under one camera. */
-static void print_matrix(FILE *out, const experiment_lab *lab, size_t camera, const noc_option *option) {
-    const experiment_spec *spec = &lab->spec;
-    const char *values[EXPERIMENT_VALUES];
+static void print_matrix(FILE *out, const lab_session *lab, size_t camera, const noc_option *option) {
+    const lab_spec *spec = &lab->spec;
+    const char *values[LAB_VALUES];
     size_t count = 0;
     for (size_t i = 0; i < spec->config_count; i++) {
         size_t k = 0;
         while (k < count && (spec->configs[i].option != option || strcmp(values[k], spec->configs[i].value)))
             k++;
-        if (k == count && count < EXPERIMENT_VALUES && spec->configs[i].option == option)
+        if (k == count && count < LAB_VALUES && spec->configs[i].option == option)
             values[count++] = spec->configs[i].value;
     }
     fputs("\n**", out);
-    experiment_view_name(out, spec, camera);
+    lab_view_name(out, spec, camera);
     fputs("**: ", out);
     print_what(out, lab, camera);
     fprintf(out, ".\n\n| `%s` |", option->name);
     for (size_t k = 0; k < count; k++)
-        experiment_cell(out, values[k]);
-    experiment_table_rule(out, count);
+        lab_cell(out, values[k]);
+    lab_table_rule(out, count);
     for (size_t i = 0; i < spec->config_count; i++) {
         if (spec->configs[i].option != option || spec->configs[i].choice > 0)
             continue;
-        char *name = experiment_row_name(lab, i);
+        char *name = lab_row_name(lab, i);
         fputc('|', out);
-        experiment_cell(out, name);
+        lab_cell(out, name);
         free(name);
         for (size_t k = 0; k < count; k++) {
             size_t j = i;
@@ -145,12 +144,12 @@ static void print_matrix(FILE *out, const experiment_lab *lab, size_t camera, co
     }
 }
 
-static void print_plain(FILE *out, const experiment_lab *lab) {
-    const experiment_spec *spec = &lab->spec;
+static void print_plain(FILE *out, const lab_session *lab) {
+    const lab_spec *spec = &lab->spec;
     fputs("\n", out);
     for (size_t camera = 0; camera < spec->camera_count; camera++) {
         fputs("- **", out);
-        experiment_view_name(out, spec, camera);
+        lab_view_name(out, spec, camera);
         fputs("**: ", out);
         print_what(out, lab, camera);
         fputs("\n", out);
@@ -158,15 +157,15 @@ static void print_plain(FILE *out, const experiment_lab *lab) {
     fputs("\n| |", out);
     for (size_t camera = 0; camera < spec->camera_count; camera++) {
         char *name = cli_format("%s, %s", spec->scenes[spec->cameras[camera].scene].name, spec->cameras[camera].name);
-        experiment_cell(out, name);
+        lab_cell(out, name);
         free(name);
     }
-    experiment_table_rule(out, spec->camera_count);
+    lab_table_rule(out, spec->camera_count);
     for (size_t i = 0; i < spec->config_count; i++) {
         if (spec->configs[i].option)
             continue;
         fputc('|', out);
-        experiment_cell(out, spec->configs[i].name);
+        lab_cell(out, spec->configs[i].name);
         for (size_t camera = 0; camera < spec->camera_count; camera++)
             print_errors(out, lab, camera, i);
         fputc('\n', out);
@@ -174,14 +173,14 @@ static void print_plain(FILE *out, const experiment_lab *lab) {
 }
 
 /* Any row of a run will do: its structure is built once. */
-static double structure(const experiment_lab *lab, size_t camera, size_t config, int column) {
-    experiment_series s = experiment_timed(lab, camera, config);
-    return experiment_median(&s, column);
+static double structure(const lab_session *lab, size_t camera, size_t config, int column) {
+    lab_series s = lab_timed(lab, camera, config);
+    return lab_median(&s, column);
 }
 
 /* Does an earlier configuration draw from the same structure? Its kind, bytes and S_r tell. */
-static bool is_repeated(const experiment_lab *lab, size_t config) {
-    const experiment_spec *spec = &lab->spec;
+static bool is_repeated(const lab_session *lab, size_t config) {
+    const lab_spec *spec = &lab->spec;
     for (size_t i = 0; i < config; i++) {
         bool same = spec->configs[i].params.candidates == spec->configs[config].params.candidates;
         for (size_t camera = 0; same && camera < spec->camera_count; camera++)
@@ -194,7 +193,7 @@ static bool is_repeated(const experiment_lab *lab, size_t config) {
 }
 
 /* A camera that moves finds what one at rest in its scene does, about: it has a row only where there is none. */
-static bool has_structure_row(const experiment_spec *spec, size_t camera) {
+static bool has_structure_row(const lab_spec *spec, size_t camera) {
     bool rests = false;
     for (size_t i = 0; i < spec->camera_count; i++)
         rests |= spec->cameras[i].scene == spec->cameras[camera].scene && !spec->cameras[i].frames;
@@ -202,8 +201,8 @@ static bool has_structure_row(const experiment_spec *spec, size_t camera) {
 }
 
 /* What candidates are drawn from: time to build it, memory, and what influence volumes find. */
-static void print_structures(FILE *out, const experiment_lab *lab) {
-    const experiment_spec *spec = &lab->spec;
+static void print_structures(FILE *out, const lab_session *lab) {
+    const lab_spec *spec = &lab->spec;
     bool any = false;
     for (size_t i = 0; i < spec->config_count; i++) {
         bool built = false;
@@ -216,7 +215,7 @@ static void print_structures(FILE *out, const experiment_lab *lab) {
                 "\n| Light structure | Scene, camera | build, ms | volumes | tuning of S_r | hierarchy | boxes | memory, kB | of the scene's, % | S_r, m | pixels that find none, % | "
                 "lights found, median | 99th percentile |",
                 out);
-            experiment_table_rule(out, 12);
+            lab_table_rule(out, 12);
         }
         any = true;
         for (size_t camera = 0; camera < spec->camera_count; camera++) {
@@ -226,38 +225,37 @@ static void print_structures(FILE *out, const experiment_lab *lab) {
                 cli_format("%s, %s", spec->scenes[spec->cameras[camera].scene].name, spec->cameras[camera].name);
             bool volumes = structure(lab, camera, i, COL_INFLUENCE) > 0;
             fputc('|', out);
-            experiment_cell(out, spec->configs[i].name);
-            experiment_cell(out, view);
+            lab_cell(out, spec->configs[i].name);
+            lab_cell(out, view);
             free(view);
-            experiment_number(out, 1e3 * structure(lab, camera, i, COL_LIGHT_BUILD), "%.3g");
+            lab_number(out, 1e3 * structure(lab, camera, i, COL_LIGHT_BUILD), "%.3g");
             for (int step = COL_VOLUMES; step <= COL_BOXES; step++)
-                experiment_number(out, volumes ? 1e3 * structure(lab, camera, i, step) : NAN, "%.3g");
-            experiment_number(out, 1e-3 * structure(lab, camera, i, COL_LIGHT_BYTES), "%.1f");
-            experiment_number(out,
-                              100 * structure(lab, camera, i, COL_LIGHT_BYTES) /
-                                  structure(lab, camera, i, COL_SCENE_BYTES),
-                              "%.2f");
-            experiment_number(out, volumes ? structure(lab, camera, i, COL_INFLUENCE) : NAN, "%.3g");
-            experiment_number(out, volumes ? 100 * structure(lab, camera, i, COL_FOUND_NONE) : NAN, "%.1f");
-            experiment_number(out, volumes ? structure(lab, camera, i, COL_FOUND_MEDIAN) : NAN, "%.0f");
-            experiment_number(out, volumes ? structure(lab, camera, i, COL_FOUND_99) : NAN, "%.0f");
+                lab_number(out, volumes ? 1e3 * structure(lab, camera, i, step) : NAN, "%.3g");
+            lab_number(out, 1e-3 * structure(lab, camera, i, COL_LIGHT_BYTES), "%.1f");
+            lab_number(out,
+                       100 * structure(lab, camera, i, COL_LIGHT_BYTES) / structure(lab, camera, i, COL_SCENE_BYTES),
+                       "%.2f");
+            lab_number(out, volumes ? structure(lab, camera, i, COL_INFLUENCE) : NAN, "%.3g");
+            lab_number(out, volumes ? 100 * structure(lab, camera, i, COL_FOUND_NONE) : NAN, "%.1f");
+            lab_number(out, volumes ? structure(lab, camera, i, COL_FOUND_MEDIAN) : NAN, "%.0f");
+            lab_number(out, volumes ? structure(lab, camera, i, COL_FOUND_99) : NAN, "%.0f");
             fputc('\n', out);
         }
     }
 }
 
-int experiment_write_summary(experiment_lab *lab) {
-    const experiment_spec *spec = &lab->spec;
+int lab_write_summary(lab_session *lab) {
+    const lab_spec *spec = &lab->spec;
     char *temporary;
-    FILE *out = experiment_create(lab, "summary.md", &temporary);
+    FILE *out = lab_create(lab, "summary.md", &temporary);
     if (!out)
         return CLI_FAILURE;
     fputs("# ", out);
-    experiment_text(out, spec->title);
+    lab_text(out, spec->title);
     fputs("\n\n", out);
     if (spec->note)
         fprintf(out, "%s\n\n", spec->note);
-    fprintf(out, "%s; %d x %d px, ", experiment_figure(spec), spec->width, spec->height);
+    fprintf(out, "%s; %d x %d px, ", lab_figure(spec), spec->width, spec->height);
     if (spec->repetitions > 1)
         fprintf(out, "means of %d repetitions with different seeds, \302\261 their standard error.\n",
                 spec->repetitions);
@@ -278,5 +276,5 @@ int experiment_write_summary(experiment_lab *lab) {
     if (plain)
         print_plain(out, lab);
     print_structures(out, lab);
-    return experiment_finish(lab, out, "summary.md", temporary);
+    return lab_finish(lab, out, "summary.md", temporary);
 }

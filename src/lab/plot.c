@@ -1,5 +1,5 @@
 /* Error over frames or CPU seconds as SVG: logarithmic axes, one curve a configuration. */
-#include "experiment_svg.h"
+#include "lab/svg.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,8 +17,8 @@ enum {
 };
 
 /* What lies within a standard error of the mean over the repetitions. */
-static void band(FILE *out, const experiment_series *s, bool over_time, const svg_axis *x, const svg_axis *y) {
-    int column = experiment_column(&s->lab->spec), frames = experiment_last(s),
+static void band(FILE *out, const lab_series *s, bool over_time, const svg_axis *x, const svg_axis *y) {
+    int column = lab_column(&s->lab->spec), frames = lab_last(s),
         colour = svg_style_of(&s->lab->spec, s->config).colour;
     if (s->lab->spec.repetitions < 2)
         return;
@@ -26,18 +26,18 @@ static void band(FILE *out, const experiment_series *s, bool over_time, const sv
     for (int side = 0; side < 2; side++) /* there above the curve, back below it */
         for (int i = 1; i <= frames; i++) {
             int f = side ? frames + 1 - i : i;
-            double e = experiment_at(s, column, f), t = over_time ? experiment_at(s, COL_CPU_TOTAL, f) : f;
-            double off = experiment_error_at(s, column, f);
+            double e = lab_at(s, column, f), t = over_time ? lab_at(s, COL_CPU_TOTAL, f) : f;
+            double off = lab_error_at(s, column, f);
             if (e > 0 && t > 0 && isfinite(e) && isfinite(off))
                 fprintf(out, "%.1f,%.1f ", svg_place(x, t), svg_inside(y, side ? e - off : e + off));
         }
     fprintf(out, "\"/>\n");
 }
 
-static void curve(FILE *out, const experiment_series *s, bool over_time, const svg_axis *x, const svg_axis *y) {
-    int column = experiment_column(&s->lab->spec);
+static void curve(FILE *out, const lab_series *s, bool over_time, const svg_axis *x, const svg_axis *y) {
+    int column = lab_column(&s->lab->spec);
     svg_style style = svg_style_of(&s->lab->spec, s->config);
-    int frames = experiment_last(s);
+    int frames = lab_last(s);
     fprintf(
         out,
         "<g>\n<polyline class=\"l%d\" fill=\"none\" stroke=\"%s\" stroke-width=\"2\" stroke-linejoin=\"round\"%s points=\"",
@@ -45,7 +45,7 @@ static void curve(FILE *out, const experiment_series *s, bool over_time, const s
     for (int pass = 0; pass < 2; pass++) {
         double last = -1e9;
         for (int f = 1; f <= frames; f++) {
-            double e = experiment_at(s, column, f), t = over_time ? experiment_at(s, COL_CPU_TOTAL, f) : f;
+            double e = lab_at(s, column, f), t = over_time ? lab_at(s, COL_CPU_TOTAL, f) : f;
             if (!(e > 0 && t > 0 && isfinite(e)))
                 continue;
             double px = svg_place(x, t), py = svg_place(y, e);
@@ -62,7 +62,7 @@ static void curve(FILE *out, const experiment_series *s, bool over_time, const s
     fprintf(out, "</g>\n");
 }
 
-static void legend(FILE *out, const experiment_lab *lab) {
+static void legend(FILE *out, const lab_session *lab) {
     for (size_t i = 0; i < lab->spec.config_count; i++) {
         int x = LEFT + PLOT_WIDTH + 20, y = TOP + 10 + LEGEND_ROW * (int)i;
         svg_style style = svg_style_of(&lab->spec, i);
@@ -75,16 +75,15 @@ static void legend(FILE *out, const experiment_lab *lab) {
     }
 }
 
-static void ranges(const experiment_lab *lab, experiment_series s, bool over_time, int bottom, svg_axis *x,
-                   svg_axis *y) {
-    int column = experiment_column(&lab->spec), most = 1;
+static void ranges(const lab_session *lab, lab_series s, bool over_time, int bottom, svg_axis *x, svg_axis *y) {
+    int column = lab_column(&lab->spec), most = 1;
     *x = (svg_axis){ INFINITY, 0, LEFT, LEFT + PLOT_WIDTH };
     *y = (svg_axis){ INFINITY, 0, bottom, TOP };
     for (s.config = 0; s.config < lab->spec.config_count; s.config++) {
-        int frames = experiment_last(&s);
+        int frames = lab_last(&s);
         most = frames > most ? frames : most;
         for (int f = 1; f <= frames; f++) {
-            double e = experiment_at(&s, column, f), t = over_time ? experiment_at(&s, COL_CPU_TOTAL, f) : f;
+            double e = lab_at(&s, column, f), t = over_time ? lab_at(&s, COL_CPU_TOTAL, f) : f;
             if (!(e > 0 && t > 0 && isfinite(e)))
                 continue;
             x->lo = fmin(x->lo, t);
@@ -106,16 +105,16 @@ static void ranges(const experiment_lab *lab, experiment_series s, bool over_tim
     }
 }
 
-static int name_length(const experiment_lab *lab) {
+static int name_length(const lab_session *lab) {
     size_t most = 0;
     for (size_t i = 0; i < lab->spec.config_count; i++)
         most = strlen(lab->spec.configs[i].name) > most ? strlen(lab->spec.configs[i].name) : most;
     return most > NAME_MAX_CHARS ? NAME_MAX_CHARS : (int)most;
 }
 
-int experiment_plot(const experiment_lab *lab, size_t camera, int mode, bool over_time, const char *name) {
-    const experiment_spec *spec = &lab->spec;
-    experiment_series s = { lab, camera, 0, mode, 0 };
+int lab_plot(const lab_session *lab, size_t camera, int mode, bool over_time, const char *name) {
+    const lab_spec *spec = &lab->spec;
+    lab_series s = { lab, camera, 0, mode, 0 };
     svg_axis x, y;
     int rows = LEGEND_ROW * (int)spec->config_count;
     int plot = rows < LEAST_HEIGHT ? LEAST_HEIGHT : rows > MOST_HEIGHT ? MOST_HEIGHT : rows;
@@ -123,7 +122,7 @@ int experiment_plot(const experiment_lab *lab, size_t camera, int mode, bool ove
     int height = TOP + (rows > plot ? rows : plot) + BOTTOM;
     ranges(lab, s, over_time, bottom, &x, &y);
     char *temporary;
-    FILE *out = experiment_create(lab, name, &temporary);
+    FILE *out = lab_create(lab, name, &temporary);
     if (!out)
         return CLI_FAILURE;
     svg_head(out, width, height);
@@ -131,7 +130,7 @@ int experiment_plot(const experiment_lab *lab, size_t camera, int mode, bool ove
     svg_text(out, spec->scenes[spec->cameras[camera].scene].name, 60);
     fputs(", ", out);
     svg_text(out, spec->cameras[camera].name, 60);
-    fprintf(out, "%s</text>\n", mode == EXPERIMENT_ALONE ? ": each frame alone" : ": mean of the frames so far");
+    fprintf(out, "%s</text>\n", mode == LAB_ALONE ? ": each frame alone" : ": mean of the frames so far");
     svg_grid(out, &x, true, &y);
     svg_grid(out, &y, false, &x);
     fprintf(out,
@@ -147,7 +146,7 @@ int experiment_plot(const experiment_lab *lab, size_t camera, int mode, bool ove
     fprintf(out,
             "<text class=\"ink\" fill=\"#222222\" transform=\"translate(20 %d) rotate(-90)\" text-anchor=\"middle\">",
             TOP + plot / 2);
-    svg_text(out, experiment_figure(spec), 100);
+    svg_text(out, lab_figure(spec), 100);
     fputs("</text>\n", out);
     if (spec->repetitions > 1)
         fprintf(
@@ -156,5 +155,5 @@ int experiment_plot(const experiment_lab *lab, size_t camera, int mode, bool ove
             "repetitions</text>\n",
             LEFT + PLOT_WIDTH, bottom + 42, spec->repetitions);
     fputs("</svg>\n", out);
-    return experiment_finish(lab, out, name, temporary);
+    return lab_finish(lab, out, name, temporary);
 }

@@ -1,6 +1,6 @@
 /* What the laboratory's plots are drawn with. Colours keep apart for the colour-blind (after Okabe and Ito), and each
  * curve has its own marker too; a style sheet in the file swaps them where the reader's system is dark. */
-#include "experiment_svg.h"
+#include "lab/svg.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,8 +13,8 @@ static const char *const dashes[] = { "", " stroke-dasharray=\"7 4\"", " stroke-
 
 /* The first configuration that has this one's value of the same option. Where in its array a value stands says nothing:
  * entries of one spec may list different ones. */
-static size_t first_like(const experiment_spec *spec, size_t config) {
-    const experiment_config *c = &spec->configs[config];
+static size_t first_like(const lab_spec *spec, size_t config) {
+    const lab_config *c = &spec->configs[config];
     size_t i = 0;
     while (i < config &&
            (!c->option || spec->configs[i].option != c->option || strcmp(spec->configs[i].value, c->value)))
@@ -22,13 +22,13 @@ static size_t first_like(const experiment_spec *spec, size_t config) {
     return i;
 }
 
-bool svg_is_new_value(const experiment_spec *spec, size_t config) {
+bool svg_is_new_value(const lab_spec *spec, size_t config) {
     return spec->configs[config].option && first_like(spec, config) == config;
 }
 
-svg_style svg_style_of(const experiment_spec *spec, size_t config) {
+svg_style svg_style_of(const lab_spec *spec, size_t config) {
     int values = 0, alone = 0, value = 0;
-    const experiment_config *c = &spec->configs[config];
+    const lab_config *c = &spec->configs[config];
     size_t first = first_like(spec, config);
     for (size_t i = 0; i < spec->config_count; i++) {
         bool is_new = svg_is_new_value(spec, i);

@@ -1,35 +1,35 @@
 /* Cameras of an experiment: where they stand, and how they come there. */
-#include "experiment.h"
+#include "lab/lab.h"
 
 #include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define C experiment_camera
+#define C lab_camera
 static const noc_option path_options[] = {
-    { "frames", "Path", NOC_OPTION_INT, offsetof(C, frames), 2, EXPERIMENT_FRAMES, NULL, "", "" },
+    { "frames", "Path", NOC_OPTION_INT, offsetof(C, frames), 2, LAB_FRAMES, NULL, "", "" },
     { "dolly", "Path", NOC_OPTION_TEXT, offsetof(C, dolly_text), 0, 0, NULL, "", "" },
     { "orbit", "Path", NOC_OPTION_REAL, offsetof(C, orbit), -360, 360, NULL, "degrees", "" },
     { "pan", "Path", NOC_OPTION_REAL, offsetof(C, pan), -360, 360, NULL, "degrees", "" },
-    { "cut", "Path", NOC_OPTION_INT, offsetof(C, cut), 1, EXPERIMENT_FRAMES, NULL, "", "" },
+    { "cut", "Path", NOC_OPTION_INT, offsetof(C, cut), 1, LAB_FRAMES, NULL, "", "" },
     { NULL },
 };
 static const noc_option *path_table(void) { return path_options; }
 
-const noc_option *experiment_camera_options(void) {
+const noc_option *lab_camera_options(void) {
     static noc_option rows[6];
     static const char *const names[] = { "view", "eye", "target", "camera-crs", "fov" };
     size_t offset;
     for (size_t i = 0; i < 5; i++)
-        rows[i] = *experiment_option(cli_render.sets, names[i], &offset);
+        rows[i] = *lab_option(cli_render.sets, names[i], &offset);
     return rows;
 }
 
-static const cli_set pose_sets[] = { { experiment_camera_options, 0, NULL }, { NULL } };
+static const cli_set pose_sets[] = { { lab_camera_options, 0, NULL }, { NULL } };
 static const cli_set path_sets[] = { { path_table, 0, NULL }, { NULL } };
 static const noc_option inset_options[] = {
-    { "box", "Inset", NOC_OPTION_TEXT, offsetof(experiment_inset, text), 0, 0, NULL, "", "" },
+    { "box", "Inset", NOC_OPTION_TEXT, offsetof(lab_inset, text), 0, 0, NULL, "", "" },
     { NULL },
 };
 static const noc_option *inset_table(void) { return inset_options; }
@@ -39,76 +39,75 @@ static const char *const camera_others[] = { "name", "path", "insets", NULL }, *
                                                                                                         NULL };
 
 /* others: members of the object that are no options of a pose. */
-static int read_pose(experiment_spec *spec, const char *place, json_t *object, const char *const *others,
-                     experiment_pose *pose) {
+static int read_pose(lab_spec *spec, const char *place, json_t *object, const char *const *others, lab_pose *pose) {
     render_args *args = &pose->args;
     *args = *(const render_args *)cli_render.defaults;
-    int status = experiment_set_all(spec, place, object, pose_sets, others, args);
+    int status = lab_set_all(spec, place, object, pose_sets, others, args);
     if (status)
         return status;
     if (!args->eye != !args->target)
-        return experiment_wrong(spec, place, "eye and target come together");
+        return lab_wrong(spec, place, "eye and target come together");
     if (args->eye && json_object_get(object, "view"))
-        return experiment_wrong(spec, place, "view and eye exclude each other");
+        return lab_wrong(spec, place, "view and eye exclude each other");
     if (args->camera_crs && !args->eye)
-        return experiment_wrong(spec, place, "camera-crs is for eye and target");
+        return lab_wrong(spec, place, "camera-crs is for eye and target");
     if (args->eye &&
         (!cli_parse_numbers(args->eye, ',', 3, pose->eye) || !cli_parse_numbers(args->target, ',', 3, pose->target)))
-        return experiment_wrong(spec, place, "eye and target are three numbers each, [x, y, z]");
+        return lab_wrong(spec, place, "eye and target are three numbers each, [x, y, z]");
     if (args->eye && !memcmp(pose->eye, pose->target, sizeof(pose->eye)))
-        return experiment_wrong(spec, place, "eye and target are the same place");
+        return lab_wrong(spec, place, "eye and target are the same place");
     size_t offset;
     if (json_object_get(object, "fov"))
-        args->common.given[args->common.given_count++] = experiment_option(cli_render.sets, "fov", &offset);
+        args->common.given[args->common.given_count++] = lab_option(cli_render.sets, "fov", &offset);
     return CLI_OK;
 }
 
-static int read_path(experiment_spec *spec, const char *place, json_t *path, C *camera) {
-    int status = experiment_set_all(spec, place, path, path_sets, path_others, camera);
+static int read_path(lab_spec *spec, const char *place, json_t *path, C *camera) {
+    int status = lab_set_all(spec, place, path, path_sets, path_others, camera);
     if (status)
         return status;
     if (!camera->frames)
-        return experiment_wrong(spec, place, "it needs frames, how many the motion takes");
+        return lab_wrong(spec, place, "it needs frames, how many the motion takes");
     if (camera->dolly_text && (!cli_parse_numbers(camera->dolly_text, ',', 3, camera->dolly) ||
                                !(fabs(camera->dolly[0]) + fabs(camera->dolly[1]) + fabs(camera->dolly[2]) < 1e6)))
-        return experiment_wrong(spec, place, "dolly is [right, forward, up], metres from the first frame to the last");
+        return lab_wrong(spec, place, "dolly is [right, forward, up], metres from the first frame to the last");
     json_t *before = json_object_get(path, "before");
     if (!camera->cut != !before)
-        return experiment_wrong(
-            spec, place, "cut and before come together: how many frames another camera sees first, and that camera");
+        return lab_wrong(spec, place,
+                         "cut and before come together: how many frames another camera sees first, and that camera");
     if (camera->cut >= camera->frames)
-        return experiment_wrong(spec, place, "cut: frames must be left after it");
+        return lab_wrong(spec, place, "cut: frames must be left after it");
     char inner[96];
     snprintf(inner, sizeof(inner), "%s: before", place);
     return before ? read_pose(spec, inner, before, NULL, &camera->before) : CLI_OK;
 }
 
-static int read_insets(experiment_spec *spec, const char *place, json_t *insets, C *camera) {
+static int read_insets(lab_spec *spec, const char *place, json_t *insets, C *camera) {
     size_t i;
     json_t *object;
-    if (insets && (!json_is_array(insets) || json_array_size(insets) > EXPERIMENT_INSETS))
-        return experiment_wrong(spec, place,
-                                "insets must be an array of up to %d, {\"name\": ..., \"box\": [x, y, width, height]}",
-                                EXPERIMENT_INSETS);
+    if (insets && (!json_is_array(insets) || json_array_size(insets) > LAB_INSETS))
+        return lab_wrong(spec, place,
+                         "insets must be an array of up to %d, {\"name\": ..., \"box\": [x, y, width, height]}",
+                         LAB_INSETS);
     json_array_foreach(insets, i, object) {
-        experiment_inset *inset = &camera->insets[i];
+        lab_inset *inset = &camera->insets[i];
         char inner[96];
         snprintf(inner, sizeof(inner), "%s: insets[%zu]", place, i);
-        int status = experiment_set_all(spec, inner, object, inset_sets, inset_others, inset);
-        status = status ? status : experiment_read_name(spec, inner, object, &inset->name);
+        int status = lab_set_all(spec, inner, object, inset_sets, inset_others, inset);
+        status = status ? status : lab_read_name(spec, inner, object, &inset->name);
         if (status)
             return status;
-        if (!inset->text || !experiment_read_box(inset->text, spec->width, spec->height, inset->box))
-            return experiment_wrong(spec, inner, "box must be [x, y, width, height] inside the picture of %d x %d px",
-                                    spec->width, spec->height);
+        if (!inset->text || !lab_read_box(inset->text, spec->width, spec->height, inset->box))
+            return lab_wrong(spec, inner, "box must be [x, y, width, height] inside the picture of %d x %d px",
+                             spec->width, spec->height);
         camera->inset_count++;
     }
     return CLI_OK;
 }
 
-static int read_camera(experiment_spec *spec, const char *place, json_t *object, C *camera) {
+static int read_camera(lab_spec *spec, const char *place, json_t *object, C *camera) {
     int status = read_pose(spec, place, object, camera_others, &camera->pose);
-    status = status ? status : experiment_read_name(spec, place, object, &camera->name);
+    status = status ? status : lab_read_name(spec, place, object, &camera->name);
     status = status ? status : read_insets(spec, place, json_object_get(object, "insets"), camera);
     char inner[80];
     snprintf(inner, sizeof(inner), "%s: path", place);
@@ -116,15 +115,14 @@ static int read_camera(experiment_spec *spec, const char *place, json_t *object,
     return status || !path ? status : read_path(spec, inner, path, camera);
 }
 
-int experiment_read_cameras(experiment_spec *spec, const char *place, json_t *cameras, size_t scene) {
+int lab_read_cameras(lab_spec *spec, const char *place, json_t *cameras, size_t scene) {
     size_t count = json_array_size(cameras), first = spec->camera_count;
     if (!count)
-        return experiment_wrong(spec, place,
-                                "it needs cameras, an array that is not empty; here, or once for all scenes");
-    int few = experiment_too_many(spec, place, first + count, EXPERIMENT_ENTRIES, "cameras");
+        return lab_wrong(spec, place, "it needs cameras, an array that is not empty; here, or once for all scenes");
+    int few = lab_too_many(spec, place, first + count, LAB_ENTRIES, "cameras");
     if (few)
         return few;
-    spec->cameras = experiment_longer(spec->cameras, sizeof(*spec->cameras) * (first + count));
+    spec->cameras = lab_longer(spec->cameras, sizeof(*spec->cameras) * (first + count));
     char where[64];
     for (size_t i = 0; i < count; i++) {
         C *camera = &spec->cameras[spec->camera_count++];
@@ -135,13 +133,12 @@ int experiment_read_cameras(experiment_spec *spec, const char *place, json_t *ca
             return status;
         for (size_t j = first; j + 1 < spec->camera_count; j++)
             if (!strcmp(spec->cameras[j].name, camera->name))
-                return experiment_wrong(spec, *place ? place : "cameras", "the name \"%s\" is given twice",
-                                        camera->name);
+                return lab_wrong(spec, *place ? place : "cameras", "the name \"%s\" is given twice", camera->name);
     }
     return CLI_OK;
 }
 
-static int place(experiment_lab *lab, size_t scene, experiment_pose *pose, noc_camera *camera) {
+static int place(lab_session *lab, size_t scene, lab_pose *pose, noc_camera *camera) {
     pose->args.render.width = lab->spec.width;
     pose->args.render.height = lab->spec.height;
     render_job job = {
@@ -155,7 +152,7 @@ static int place(experiment_lab *lab, size_t scene, experiment_pose *pose, noc_c
     return CLI_OK;
 }
 
-int experiment_place_cameras(experiment_lab *lab, size_t index) {
+int lab_place_cameras(lab_session *lab, size_t index) {
     C *camera = &lab->spec.cameras[index];
     int status = place(lab, camera->scene, &camera->pose, &lab->camera);
     lab->before = lab->camera;
@@ -180,7 +177,7 @@ static void right_of(const noc_camera *camera, const double forward[3], double r
 
 /* The way from the first frame to the last is gone backwards from the pose: turned about the eye, moved along the axes
  * that it has at the pose, turned about the target. */
-noc_camera experiment_camera_at(const experiment_lab *lab, size_t index, int frame) {
+noc_camera lab_camera_at(const lab_session *lab, size_t index, int frame) {
     const C *path = &lab->spec.cameras[index];
     if (!path->frames || frame >= path->frames)
         return lab->camera;

@@ -1,5 +1,5 @@
 /* One configuration over its frames against the reference. */
-#include "experiment.h"
+#include "lab/lab.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,26 +7,24 @@
 #include <unistd.h>
 
 typedef struct measuring {
-    experiment_lab *lab;
-    experiment_run *run;
+    lab_session *lab;
+    lab_run *run;
     int frame, frames; /* frames: at most */
     double cpu, wall;  /* seconds of all frames so far; where a row of an earlier session tells them, as told there */
 } measuring;
 
-int experiment_shown_mode(const experiment_spec *spec, size_t camera) {
-    return !spec->cameras[camera].frames && spec->accumulate == EXPERIMENT_ACCUMULATED ? EXPERIMENT_ACCUMULATED
-                                                                                       : EXPERIMENT_ALONE;
+int lab_shown_mode(const lab_spec *spec, size_t camera) {
+    return !spec->cameras[camera].frames && spec->accumulate == LAB_ACCUMULATED ? LAB_ACCUMULATED : LAB_ALONE;
 }
 
-char *experiment_picture(const experiment_lab *lab, const char *key, int mode, int frame) {
-    return cli_format("%s/pictures/%s-%s%d.exr", lab->folder, key, mode == EXPERIMENT_ACCUMULATED ? "mean" : "frame",
-                      frame);
+char *lab_picture(const lab_session *lab, const char *key, int mode, int frame) {
+    return cli_format("%s/pictures/%s-%s%d.exr", lab->folder, key, mode == LAB_ACCUMULATED ? "mean" : "frame", frame);
 }
 
 static bool frame_progress(void *user, const char *what, double done) {
     const measuring *m = user;
-    const experiment_lab *lab = m->lab;
-    const experiment_config *config = &lab->spec.configs[m->run->config];
+    const lab_session *lab = m->lab;
+    const lab_config *config = &lab->spec.configs[m->run->config];
     double share = config->seconds > 0 ? m->cpu / config->seconds : (m->frame - 1 + done) / m->frames;
     share = ((double)lab->runs_done + share) / (double)lab->run_count;
     double spent = cli_now() - lab->started - lab->reference_seconds, left = spent / share - spent;
@@ -50,10 +48,10 @@ static void keep_figures(double *values, const noc_metrics *raw, const noc_metri
 /* Figures of one picture, and the row they make. */
 static int add_row(const measuring *m, int mode, const noc_image *image, const noc_frame_stats *stats,
                    const noc_light_stats *lights) {
-    experiment_lab *lab = m->lab;
-    if (!experiment_has_mode(&lab->spec, m->run->camera, mode))
+    lab_session *lab = m->lab;
+    if (!lab_has_mode(&lab->spec, m->run->camera, mode))
         return CLI_OK;
-    experiment_row *row = experiment_row_of(m->run, mode, m->frame);
+    lab_row *row = lab_row_of(m->run, mode, m->frame);
     if (row->done)
         return CLI_OK;
     noc_compare_params params = noc_compare_default_params();
@@ -86,7 +84,7 @@ static int add_row(const measuring *m, int mode, const noc_image *image, const n
     v[COL_FOUND_99] = nobody ? NAN : lights->found_99;
     row->done = true;
     lab->rows_done++;
-    return experiment_append(lab, m->run, mode, m->frame);
+    return lab_append(lab, m->run, mode, m->frame);
 }
 
 /* The image becomes the mean of the frames so far. */
@@ -100,11 +98,11 @@ static void average(const measuring *m, noc_image *image) {
 }
 
 static int keep_picture(const measuring *m, int mode, const noc_image *image) {
-    const experiment_spec *spec = &m->lab->spec;
-    if (m->run->repetition || mode != experiment_shown_mode(spec, m->run->camera) ||
-        !experiment_shows(spec, m->run->camera, m->frame))
+    const lab_spec *spec = &m->lab->spec;
+    if (m->run->repetition || mode != lab_shown_mode(spec, m->run->camera) ||
+        !lab_shows(spec, m->run->camera, m->frame))
         return CLI_OK;
-    char *path = experiment_picture(m->lab, m->run->key, mode, m->frame);
+    char *path = lab_picture(m->lab, m->run->key, mode, m->frame);
     noc_display_params display = noc_display_default_params();
     const char *keys[] = { "configuration" }, *values[] = { spec->configs[m->run->config].name };
     noc_status status = noc_image_write(image, path, &display, &(noc_image_meta){ 1, keys, values }, m->lab->log);
@@ -116,8 +114,8 @@ static int keep_picture(const measuring *m, int mode, const noc_image *image) {
 static void add_times(measuring *m, const noc_frame_stats *stats) {
     m->cpu += stats->cpu_seconds;
     m->wall += stats->wall_seconds;
-    for (int mode = 0; mode < EXPERIMENT_MODES && m->frame <= m->run->count; mode++) {
-        const experiment_row *row = &m->run->rows[mode][m->frame - 1];
+    for (int mode = 0; mode < LAB_MODES && m->frame <= m->run->count; mode++) {
+        const lab_row *row = &m->run->rows[mode][m->frame - 1];
         if (!row->done)
             continue;
         m->cpu = row->values[COL_CPU_TOTAL];
@@ -125,19 +123,18 @@ static void add_times(measuring *m, const noc_frame_stats *stats) {
     }
 }
 
-static bool is_measured(const experiment_lab *lab, const experiment_run *run, int frame) {
-    return experiment_measures(&lab->spec, run->camera, run->config, frame);
+static bool is_measured(const lab_session *lab, const lab_run *run, int frame) {
+    return lab_measures(&lab->spec, run->camera, run->config, frame);
 }
 
 /* Is any row there of this frame? */
-static bool has_row(const experiment_run *run, int frame) {
-    return frame <= run->count &&
-           (run->rows[EXPERIMENT_ALONE][frame - 1].done || run->rows[EXPERIMENT_ACCUMULATED][frame - 1].done);
+static bool has_row(const lab_run *run, int frame) {
+    return frame <= run->count && (run->rows[LAB_ALONE][frame - 1].done || run->rows[LAB_ACCUMULATED][frame - 1].done);
 }
 
 /* One frame is there: its rows and picture, if it is one of those that are measured, or the last. */
 static int take_frame(measuring *m, noc_renderer *renderer, bool *last) {
-    experiment_lab *lab = m->lab;
+    lab_session *lab = m->lab;
     noc_frame_stats stats;
     noc_light_stats lights;
     noc_renderer_get_stats(renderer, &stats);
@@ -149,35 +146,35 @@ static int take_frame(measuring *m, noc_renderer *renderer, bool *last) {
     *last = spent || m->frame == m->frames;
     snprintf(lab->path, sizeof(lab->path), "%s", stats.path ? stats.path : "");
     bool rows = is_measured(lab, m->run, m->frame) || spent || has_row(m->run, m->frame);
-    bool mean = experiment_has_mode(&lab->spec, m->run->camera, EXPERIMENT_ACCUMULATED);
-    if (!rows && !mean && !experiment_shows(&lab->spec, m->run->camera, m->frame))
+    bool mean = lab_has_mode(&lab->spec, m->run->camera, LAB_ACCUMULATED);
+    if (!rows && !mean && !lab_shows(&lab->spec, m->run->camera, m->frame))
         return CLI_OK;
     noc_image *image = noc_renderer_image(renderer);
-    int status = image ? keep_picture(m, EXPERIMENT_ALONE, image) : CLI_FAILURE;
+    int status = image ? keep_picture(m, LAB_ALONE, image) : CLI_FAILURE;
     if (!status && rows)
-        status = add_row(m, EXPERIMENT_ALONE, image, &stats, &lights);
+        status = add_row(m, LAB_ALONE, image, &stats, &lights);
     if (!status && mean) {
         average(m, image);
-        status = rows ? add_row(m, EXPERIMENT_ACCUMULATED, image, &stats, &lights) : CLI_OK;
-        status = status ? status : keep_picture(m, EXPERIMENT_ACCUMULATED, image);
+        status = rows ? add_row(m, LAB_ACCUMULATED, image, &stats, &lights) : CLI_OK;
+        status = status ? status : keep_picture(m, LAB_ACCUMULATED, image);
     }
     noc_image_destroy(image);
     return status;
 }
 
 /* The last frame whose row misses; 0: none. */
-static int row_missing(const experiment_lab *lab, const experiment_run *run) {
+static int row_missing(const lab_session *lab, const lab_run *run) {
     double seconds = lab->spec.configs[run->config].seconds;
-    int frames = experiment_frames(&lab->spec, run->camera, run->config), last = 0;
+    int frames = lab_frames(&lab->spec, run->camera, run->config), last = 0;
     for (int frame = 1; frame <= frames; frame++) {
         bool there = has_row(run, frame);
-        for (int mode = 0; mode < EXPERIMENT_MODES && (there || is_measured(lab, run, frame)); mode++)
-            if (experiment_has_mode(&lab->spec, run->camera, mode) && !(there && run->rows[mode][frame - 1].done))
+        for (int mode = 0; mode < LAB_MODES && (there || is_measured(lab, run, frame)); mode++)
+            if (lab_has_mode(&lab->spec, run->camera, mode) && !(there && run->rows[mode][frame - 1].done))
                 last = frame;
         if (!(seconds > 0) || lab->spec.cameras[run->camera].frames)
             continue;
         if (!last && there &&
-            run->rows[experiment_shown_mode(&lab->spec, run->camera)][frame - 1].values[COL_CPU_TOTAL] >= seconds)
+            run->rows[lab_shown_mode(&lab->spec, run->camera)][frame - 1].values[COL_CPU_TOTAL] >= seconds)
             return 0;
         if (last)
             return frames; /* time decides which is the last */
@@ -187,14 +184,12 @@ static int row_missing(const experiment_lab *lab, const experiment_run *run) {
 
 /* Frames that must be rendered: up to the last whose row or picture misses. Earlier ones are made again without new
  * rows, because a frame needs those before it. */
-static int frames_missing(const experiment_lab *lab, const experiment_run *run) {
-    const experiment_spec *spec = &lab->spec;
-    int last = row_missing(lab, run), mode = experiment_shown_mode(spec, run->camera);
-    int frames =
-        spec->configs[run->config].seconds > 0 ? run->count : experiment_frames(spec, run->camera, run->config);
+static int frames_missing(const lab_session *lab, const lab_run *run) {
+    const lab_spec *spec = &lab->spec;
+    int last = row_missing(lab, run), mode = lab_shown_mode(spec, run->camera);
+    int frames = spec->configs[run->config].seconds > 0 ? run->count : lab_frames(spec, run->camera, run->config);
     for (int frame = last + 1; !run->repetition && frame <= frames; frame++) {
-        char *picture =
-            experiment_shows(spec, run->camera, frame) ? experiment_picture(lab, run->key, mode, frame) : NULL;
+        char *picture = lab_shows(spec, run->camera, frame) ? lab_picture(lab, run->key, mode, frame) : NULL;
         if (picture && access(picture, R_OK))
             last = frame;
         free(picture);
@@ -202,16 +197,16 @@ static int frames_missing(const experiment_lab *lab, const experiment_run *run) 
     return last;
 }
 
-int experiment_measure(experiment_lab *lab, experiment_run *run) {
+int lab_measure(lab_session *lab, lab_run *run) {
     measuring m = { .lab = lab, .run = run, .frame = 1, .frames = frames_missing(lab, run) };
     if (!m.frames)
         return CLI_OK;
     noc_renderer *renderer =
         noc_renderer_create(lab->scene, &(noc_renderer_params){ .threads = lab->args->threads }, lab->log);
     int status = renderer ? CLI_OK : CLI_FAILURE;
-    noc_render_params params = experiment_params(lab, run);
+    noc_render_params params = lab_params(lab, run);
     for (bool last = false; !status && !last; m.frame++) {
-        noc_camera camera = experiment_camera_at(lab, run->camera, m.frame);
+        noc_camera camera = lab_camera_at(lab, run->camera, m.frame);
         noc_status rendered =
             cli_interrupted() ? NOC_ERR_CANCELLED
                               : noc_renderer_frame(renderer, &camera, &params, &(noc_progress){ frame_progress, &m });

@@ -1,28 +1,28 @@
 /* Curves of an experiment: means over its repetitions, and times between frames by interpolation. */
-#include "experiment.h"
+#include "lab/lab.h"
 
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
-experiment_run *experiment_find_run(const experiment_lab *lab, size_t camera, size_t config, int repetition) {
-    const experiment_spec *spec = &lab->spec;
+lab_run *lab_find_run(const lab_session *lab, size_t camera, size_t config, int repetition) {
+    const lab_spec *spec = &lab->spec;
     return &lab->runs[(camera * (size_t)spec->repetitions + (size_t)repetition) * spec->config_count + config];
 }
 
 /* Of a camera that moves the last frame alone is measured. */
-bool experiment_has_mode(const experiment_spec *spec, size_t camera, int mode) {
+bool lab_has_mode(const lab_spec *spec, size_t camera, int mode) {
     if (spec->cameras[camera].frames)
-        return mode == EXPERIMENT_ALONE;
-    return spec->accumulate == mode || spec->accumulate == EXPERIMENT_MODES;
+        return mode == LAB_ALONE;
+    return spec->accumulate == mode || spec->accumulate == LAB_MODES;
 }
 
-int experiment_frames(const experiment_spec *spec, size_t camera, size_t config) {
+int lab_frames(const lab_spec *spec, size_t camera, size_t config) {
     return spec->cameras[camera].frames ? spec->cameras[camera].frames : spec->configs[config].frames;
 }
 
-bool experiment_measures(const experiment_spec *spec, size_t camera, size_t config, int frame) {
-    int last = experiment_frames(spec, camera, config);
+bool lab_measures(const lab_spec *spec, size_t camera, size_t config, int frame) {
+    int last = lab_frames(spec, camera, config);
     if (spec->cameras[camera].frames || frame == last)
         return frame == last;
     for (size_t i = 0; i < spec->measured_count; i++)
@@ -38,24 +38,24 @@ bool experiment_measures(const experiment_spec *spec, size_t camera, size_t conf
 }
 
 /* Repetitions that a series is about: from the first to before the end. */
-static int first_of(const experiment_series *s) { return s->only ? s->only - 1 : 0; }
-static int end_of(const experiment_series *s) { return s->only ? s->only : s->lab->spec.repetitions; }
+static int first_of(const lab_series *s) { return s->only ? s->only - 1 : 0; }
+static int end_of(const lab_series *s) { return s->only ? s->only : s->lab->spec.repetitions; }
 
-int experiment_last(const experiment_series *s) {
+int lab_last(const lab_series *s) {
     int last = INT_MAX;
     for (int i = first_of(s); i < end_of(s); i++) {
-        int count = experiment_find_run(s->lab, s->camera, s->config, i)->count;
+        int count = lab_find_run(s->lab, s->camera, s->config, i)->count;
         last = count < last ? count : last;
     }
-    while (last > 0 && isnan(experiment_at(s, 0, last)))
+    while (last > 0 && isnan(lab_at(s, 0, last)))
         last--;
     return last;
 }
 
-double experiment_at(const experiment_series *s, int column, int frame) {
+double lab_at(const lab_series *s, int column, int frame) {
     double sum = 0;
     for (int i = first_of(s); i < end_of(s); i++) {
-        const experiment_run *run = experiment_find_run(s->lab, s->camera, s->config, i);
+        const lab_run *run = lab_find_run(s->lab, s->camera, s->config, i);
         if (frame < 1 || frame > run->count || !run->rows[s->mode] || !run->rows[s->mode][frame - 1].done)
             return NAN;
         sum += run->rows[s->mode][frame - 1].values[column];
@@ -63,14 +63,14 @@ double experiment_at(const experiment_series *s, int column, int frame) {
     return sum / (end_of(s) - first_of(s));
 }
 
-double experiment_error_of(const experiment_series *s, experiment_asked *asked, int column, double what) {
+double lab_error_of(const lab_series *s, lab_asked *asked, int column, double what) {
     double sum = 0, squares = 0;
     int n = s->lab->spec.repetitions;
     if (n < 2)
         return NAN;
     for (int pass = 0; pass < 2; pass++)
         for (int i = 0; i < n; i++) {
-            experiment_series one = *s;
+            lab_series one = *s;
             one.only = i + 1;
             double v = asked(&one, column, what);
             if (pass)
@@ -81,25 +81,22 @@ double experiment_error_of(const experiment_series *s, experiment_asked *asked, 
     return sqrt(squares / (n - 1) / n);
 }
 
-static double at(const experiment_series *s, int column, double frame) { return experiment_at(s, column, (int)frame); }
+static double at(const lab_series *s, int column, double frame) { return lab_at(s, column, (int)frame); }
 
-double experiment_error_at(const experiment_series *s, int column, int frame) {
-    return experiment_error_of(s, at, column, frame);
-}
+double lab_error_at(const lab_series *s, int column, int frame) { return lab_error_of(s, at, column, frame); }
 
-int experiment_column(const experiment_spec *spec) {
+int lab_column(const lab_spec *spec) {
     int first = spec->all_pixels ? COL_RMSE8_ALL : COL_RMSE8;
-    return first + (spec->figure == EXPERIMENT_RMSE8 ? 0 : spec->figure == EXPERIMENT_RELMSE ? 1 : 2);
+    return first + (spec->figure == LAB_RMSE8 ? 0 : spec->figure == LAB_RELMSE ? 1 : 2);
 }
 
-const char *experiment_figure(const experiment_spec *spec) {
+const char *lab_figure(const lab_spec *spec) {
     static char text[120];
     const char *pixels = spec->all_pixels ? "all pixels" : "pixels that see no emitter";
-    if (spec->figure == EXPERIMENT_CLAMPED)
+    if (spec->figure == LAB_CLAMPED)
         snprintf(text, sizeof(text), "relMSE clamped to %g cd/m\302\262, %s", spec->ceiling, pixels);
     else
-        snprintf(text, sizeof(text), "%s, %s", spec->figure == EXPERIMENT_RELMSE ? "relMSE" : "RMSE-8 (0 to 255)",
-                 pixels);
+        snprintf(text, sizeof(text), "%s, %s", spec->figure == LAB_RELMSE ? "relMSE" : "RMSE-8 (0 to 255)", pixels);
     return text;
 }
 
@@ -108,15 +105,15 @@ static int by_size(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-double experiment_median(const experiment_series *s, int column) {
-    const experiment_spec *spec = &s->lab->spec;
+double lab_median(const lab_series *s, int column) {
+    const lab_spec *spec = &s->lab->spec;
     size_t count = 0, room = 0;
     for (int i = 0; i < spec->repetitions; i++)
-        room += (size_t)experiment_find_run(s->lab, s->camera, s->config, i)->count;
+        room += (size_t)lab_find_run(s->lab, s->camera, s->config, i)->count;
     double *values = cli_alloc(sizeof(double) * (room + 1)), median = NAN;
     for (int first = 1; first >= 0 && !count; first--) { /* the first frame only where there is no other */
         for (int i = 0; i < spec->repetitions; i++) {
-            const experiment_run *run = experiment_find_run(s->lab, s->camera, s->config, i);
+            const lab_run *run = lab_find_run(s->lab, s->camera, s->config, i);
             for (int f = first; run->rows[s->mode] && f < run->count; f++)
                 if (run->rows[s->mode][f].done && !isnan(run->rows[s->mode][f].values[column]))
                     values[count++] = run->rows[s->mode][f].values[column];
@@ -136,20 +133,20 @@ static double between(double x0, double y0, double x1, double y1, double y) {
     return exp(log(x0) + (log(x1) - log(x0)) * (log(y) - log(y0)) / (log(y1) - log(y0)));
 }
 
-double experiment_frame_time(const experiment_series *s, int column, double what) {
-    int last = experiment_last(s);
-    double first = experiment_at(s, COL_CPU_TOTAL, 1), total = experiment_at(s, COL_CPU_TOTAL, last);
+double lab_frame_time(const lab_series *s, int column, double what) {
+    int last = lab_last(s);
+    double first = lab_at(s, COL_CPU_TOTAL, 1), total = lab_at(s, COL_CPU_TOTAL, last);
     if (s->lab->spec.cameras[s->camera].frames)
-        return experiment_at(s, COL_CPU, last);
+        return lab_at(s, COL_CPU, last);
     if (last == 1)
         return total;
     return isnan(first) ? total / last : (total - first) / (last - 1);
 }
 
-double experiment_time_to(const experiment_series *s, int column, double error) {
+double lab_time_to(const lab_series *s, int column, double error) {
     double time = 0, before = 0;
-    for (int frame = 1, last = experiment_last(s); frame <= last; frame++) {
-        double now = experiment_at(s, COL_CPU_TOTAL, frame), y = experiment_at(s, column, frame);
+    for (int frame = 1, last = lab_last(s); frame <= last; frame++) {
+        double now = lab_at(s, COL_CPU_TOTAL, frame), y = lab_at(s, column, frame);
         if (isnan(y))
             continue;
         if (y <= error)
@@ -160,10 +157,10 @@ double experiment_time_to(const experiment_series *s, int column, double error) 
     return NAN;
 }
 
-double experiment_error_after(const experiment_series *s, int column, double seconds) {
+double lab_error_after(const lab_series *s, int column, double seconds) {
     double time = 0, before = 0;
-    for (int frame = 1, last = experiment_last(s); frame <= last; frame++) {
-        double now = experiment_at(s, COL_CPU_TOTAL, frame), y = experiment_at(s, column, frame);
+    for (int frame = 1, last = lab_last(s); frame <= last; frame++) {
+        double now = lab_at(s, COL_CPU_TOTAL, frame), y = lab_at(s, column, frame);
         if (isnan(y))
             continue;
         if (now >= seconds)

@@ -1,12 +1,12 @@
 /* Members of the spec's objects: each is an option of a table, under the same name and the same rules as on the command
  * line. */
-#include "experiment.h"
+#include "lab/lab.h"
 
 #include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
 
-int experiment_wrong(const experiment_spec *spec, const char *place, const char *fmt, ...) {
+int lab_wrong(const lab_spec *spec, const char *place, const char *fmt, ...) {
     char text[600];
     va_list ap;
     va_start(ap, fmt);
@@ -15,23 +15,23 @@ int experiment_wrong(const experiment_spec *spec, const char *place, const char 
     return cli_usage(&cli_experiment, "%.200s: %s%s%s", spec->path, place, *place ? ": " : "", text);
 }
 
-int experiment_too_many(const experiment_spec *spec, const char *place, size_t count, size_t most, const char *what) {
-    return count > most ? experiment_wrong(spec, place, "it asks for more than %zu %s", most, what) : CLI_OK;
+int lab_too_many(const lab_spec *spec, const char *place, size_t count, size_t most, const char *what) {
+    return count > most ? lab_wrong(spec, place, "it asks for more than %zu %s", most, what) : CLI_OK;
 }
 
-void *experiment_longer(void *array, size_t size) {
+void *lab_longer(void *array, size_t size) {
     array = realloc(array, size);
     if (!array)
         cli_no_memory();
     return array;
 }
 
-void *experiment_keep(experiment_spec *spec, void *memory) {
-    spec->kept = experiment_longer(spec->kept, sizeof(void *) * (spec->kept_count + 1));
+void *lab_keep(lab_spec *spec, void *memory) {
+    spec->kept = lab_longer(spec->kept, sizeof(void *) * (spec->kept_count + 1));
     return spec->kept[spec->kept_count++] = memory;
 }
 
-const noc_option *experiment_option(const cli_set *sets, const char *name, size_t *offset) {
+const noc_option *lab_option(const cli_set *sets, const char *name, size_t *offset) {
     for (const cli_set *set = sets; set->table; set++) {
         for (const noc_option *o = set->table(); o->name; o++) {
             if (!strcmp(o->name, name) && !cli_hidden(set, o)) {
@@ -45,7 +45,7 @@ const noc_option *experiment_option(const cli_set *sets, const char *name, size_
 
 enum { FEW = 24 }; /* names that an error lists */
 
-static int unknown(const experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others,
+static int unknown(const lab_spec *spec, const char *place, const cli_set *sets, const char *const *others,
                    const char *name) {
     const char *words[2 * CLI_GIVEN] = { NULL };
     size_t count = 0;
@@ -54,21 +54,20 @@ static int unknown(const experiment_spec *spec, const char *place, const cli_set
             if (!cli_hidden(set, o))
                 words[count++] = o->name;
             else if (!strcmp(o->name, name))
-                return experiment_wrong(spec, place, "%s: the spec says it for all pictures (size, seed, accumulate)",
-                                        name);
+                return lab_wrong(spec, place, "%s: the spec says it for all pictures (size, seed, accumulate)", name);
     for (; others && *others && count < 2 * CLI_GIVEN; others++)
         words[count++] = *others;
     const char *nearest = cli_nearest(name, words, count);
     if (nearest)
-        return experiment_wrong(spec, place, "no option \"%.60s\"; is it \"%s\"?", name, nearest);
+        return lab_wrong(spec, place, "no option \"%.60s\"; is it \"%s\"?", name, nearest);
     if (count > FEW)
-        return experiment_wrong(
-            spec, place, "no option \"%.60s\"; 'nocturne help render' and docs/experiments.md tell which there are",
-            name);
+        return lab_wrong(spec, place,
+                         "no option \"%.60s\"; 'nocturne help render' and docs/experiments.md tell which there are",
+                         name);
     char all[400];
     for (size_t i = 0, at = 0; i < count && at < sizeof(all); i++)
         at += (size_t)snprintf(all + at, sizeof(all) - at, "%s%s", i ? ", " : "", words[i]);
-    return experiment_wrong(spec, place, "no option \"%.60s\"; there are %s", name, all);
+    return lab_wrong(spec, place, "no option \"%.60s\"; there are %s", name, all);
 }
 
 /* A value as it would be written on the command line; NULL where JSON has no such thing there. An array of a few
@@ -100,62 +99,62 @@ static char *spell(const json_t *value) {
 
 static void keep_message(void *user, noc_log_level level, const char *text) { snprintf(user, 256, "%s", text); }
 
-int experiment_set(experiment_spec *spec, const char *place, const cli_set *sets, const char *const *others,
-                   void *params, const char *name, json_t *value) {
+int lab_set(lab_spec *spec, const char *place, const cli_set *sets, const char *const *others, void *params,
+            const char *name, json_t *value) {
     size_t offset = 0;
     for (const char *const *other = others; other && *other; other++)
         if (!strcmp(*other, name))
             return CLI_OK;
-    const noc_option *o = experiment_option(sets, name, &offset);
+    const noc_option *o = lab_option(sets, name, &offset);
     if (!o)
         return unknown(spec, place, sets, others, name);
     if (o->kind == NOC_OPTION_TEXTS && json_is_array(value)) { /* one after the other, as on a command line */
         int status = CLI_OK;
         for (size_t i = 0; i < json_array_size(value) && !status; i++) {
             json_t *item = json_array_get(value, i);
-            status = json_is_string(item) ? experiment_set(spec, place, sets, others, params, name, item)
-                                          : experiment_wrong(spec, place, "%s: an array of texts", name);
+            status = json_is_string(item) ? lab_set(spec, place, sets, others, params, name, item)
+                                          : lab_wrong(spec, place, "%s: an array of texts", name);
         }
         return status;
     }
-    if (json_is_array(value) && o->kind == NOC_OPTION_TEXT && json_array_size(value) > EXPERIMENT_NUMBERS)
-        return experiment_wrong(spec, place, "%s: it asks for more than %d numbers", name, EXPERIMENT_NUMBERS);
+    if (json_is_array(value) && o->kind == NOC_OPTION_TEXT && json_array_size(value) > LAB_NUMBERS)
+        return lab_wrong(spec, place, "%s: it asks for more than %d numbers", name, LAB_NUMBERS);
     char *text = json_is_array(value) && o->kind != NOC_OPTION_TEXT ? NULL : spell(value);
     if (!text)
-        return experiment_wrong(spec, place, "%s: this cannot be its value", name);
-    experiment_keep(spec, text);
+        return lab_wrong(spec, place, "%s: this cannot be its value", name);
+    lab_keep(spec, text);
     char message[256] = "";
     noc_log *log = noc_log_create(&(noc_log_params){ .message = keep_message, .user = message });
     noc_status status = noc_option_set(o, (char *)params + offset, text, log);
     noc_log_destroy(log);
-    return status ? experiment_wrong(spec, place, "%s", message) : CLI_OK;
+    return status ? lab_wrong(spec, place, "%s", message) : CLI_OK;
 }
 
-int experiment_set_all(experiment_spec *spec, const char *place, json_t *object, const cli_set *sets,
-                       const char *const *others, void *params) {
+int lab_set_all(lab_spec *spec, const char *place, json_t *object, const cli_set *sets, const char *const *others,
+                void *params) {
     if (!object)
         return CLI_OK;
     if (!json_is_object(object))
-        return experiment_wrong(spec, place, "this must be an object, {...}");
+        return lab_wrong(spec, place, "this must be an object, {...}");
     const char *name;
     json_t *value;
     json_object_foreach(object, name, value) {
-        int status = experiment_set(spec, place, sets, others, params, name, value);
+        int status = lab_set(spec, place, sets, others, params, name, value);
         if (status)
             return status;
     }
     return CLI_OK;
 }
 
-int experiment_read_name(experiment_spec *spec, const char *place, json_t *object, const char **name) {
+int lab_read_name(lab_spec *spec, const char *place, json_t *object, const char **name) {
     const char *text = json_string_value(json_object_get(object, "name"));
     if (!text || !*text)
-        return experiment_wrong(spec, place, "it needs a name");
+        return lab_wrong(spec, place, "it needs a name");
     if (strlen(text) > 80)
-        return experiment_wrong(spec, place, "its name is longer than 80 bytes");
+        return lab_wrong(spec, place, "its name is longer than 80 bytes");
     for (const char *c = text; *c; c++)
         if ((unsigned char)*c < 32 || *c == 127)
-            return experiment_wrong(spec, place, "its name holds a control character");
-    *name = experiment_keep(spec, cli_format("%s", text));
+            return lab_wrong(spec, place, "its name holds a control character");
+    *name = lab_keep(spec, cli_format("%s", text));
     return CLI_OK;
 }

@@ -1,7 +1,7 @@
 /* results.csv: one row a configuration, camera, repetition, frame and mode, appended as they come. Its key column tells
  * which settings a row belongs to, so an experiment goes on where it stopped and never mixes in rows of other settings.
  */
-#include "experiment.h"
+#include "lab/lab.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -37,15 +37,15 @@ static bool split(char *line, char *fields[FIELDS]) {
     return true;
 }
 
-static bool parse_row(char *line, experiment_stored *row) {
+static bool parse_row(char *line, lab_stored *row) {
     char *fields[FIELDS], *end;
     if (!split(line, fields))
         return false;
     const char *key = fields[FIELDS - 1]; /* becomes a picture's name */
-    if (strlen(key) != EXPERIMENT_KEY - 1 || strspn(key, "0123456789abcdef") != EXPERIMENT_KEY - 1)
+    if (strlen(key) != LAB_KEY - 1 || strspn(key, "0123456789abcdef") != LAB_KEY - 1)
         return false;
-    memcpy(row->key, key, EXPERIMENT_KEY);
-    row->mode = strcmp(fields[MODE], modes[EXPERIMENT_ACCUMULATED]) ? EXPERIMENT_ALONE : EXPERIMENT_ACCUMULATED;
+    memcpy(row->key, key, LAB_KEY);
+    row->mode = strcmp(fields[MODE], modes[LAB_ACCUMULATED]) ? LAB_ALONE : LAB_ACCUMULATED;
     row->frame = atoi(fields[FRAME]);
     row->claimed = false;
     for (int i = 0; i < COL_COUNT; i++) {
@@ -53,7 +53,7 @@ static bool parse_row(char *line, experiment_stored *row) {
         if (*end || end == fields[TELLING + i])
             return false;
     }
-    return row->frame > 0 && row->frame <= EXPERIMENT_FRAMES;
+    return row->frame > 0 && row->frame <= LAB_FRAMES;
 }
 
 /* Spreadsheets run what begins like a formula: an apostrophe before it makes it text to them. */
@@ -71,12 +71,12 @@ static void quote(FILE *out, const char *text) {
     fputs(plain ? "," : "\",", out);
 }
 
-static void print_row(const experiment_lab *lab, FILE *out, const experiment_run *run, int mode, int frame) {
-    const experiment_spec *spec = &lab->spec;
+static void print_row(const lab_session *lab, FILE *out, const lab_run *run, int mode, int frame) {
+    const lab_spec *spec = &lab->spec;
     quote(out, spec->scenes[spec->cameras[run->camera].scene].name);
     quote(out, spec->cameras[run->camera].name);
     quote(out, spec->configs[run->config].name);
-    fprintf(out, "%d,%s,%d,%u,", run->repetition + 1, modes[mode], frame, experiment_params(lab, run).seed);
+    fprintf(out, "%d,%s,%d,%u,", run->repetition + 1, modes[mode], frame, lab_params(lab, run).seed);
     for (int i = 0; i < COL_COUNT; i++)
         fprintf(out, "%.9g,", run->rows[mode][frame - 1].values[i]);
     fprintf(out, "%s\n", run->key);
@@ -91,7 +91,7 @@ static bool is_header(const char *line, size_t n) {
 
 /* Reads what earlier sessions left. *whole: bytes up to the end of the last whole line; -1 where the file is no such
  * table. */
-static int read_table(experiment_lab *lab, const char *path, long *whole) {
+static int read_table(lab_session *lab, const char *path, long *whole) {
     struct stat st;
     *whole = 0;
     if (stat(path, &st) && errno == ENOENT)
@@ -112,7 +112,7 @@ static int read_table(experiment_lab *lab, const char *path, long *whole) {
         line[n - 1] = 0;
         if (lab->stored_count == room) {
             room = room ? 2 * room : 256;
-            lab->stored = experiment_longer(lab->stored, room * sizeof(*lab->stored));
+            lab->stored = lab_longer(lab->stored, room * sizeof(*lab->stored));
         }
         bool row = !first && parse_row(line, &lab->stored[lab->stored_count]);
         lab->stored_count += row;
@@ -124,7 +124,7 @@ static int read_table(experiment_lab *lab, const char *path, long *whole) {
     return CLI_OK;
 }
 
-static int open_for_rows(experiment_lab *lab, const char *path, long whole) {
+static int open_for_rows(lab_session *lab, const char *path, long whole) {
     lab->csv = fopen(path, whole ? "r+" : "w");
     bool ok = lab->csv != NULL;
     if (ok && whole) /* a line that was cut short when the program was killed */
@@ -137,7 +137,7 @@ static int open_for_rows(experiment_lab *lab, const char *path, long whole) {
 }
 
 /* A name that no table has that was put aside before: results.old.csv, results.old-2.csv, ... The folder is locked. */
-static char *old_name(const experiment_lab *lab) {
+static char *old_name(const lab_session *lab) {
     struct stat st;
     char *name = cli_format("%s/results.old.csv", lab->folder);
     for (int i = 2; !lstat(name, &st); i++) {
@@ -157,7 +157,7 @@ static int put_aside(const char *path, const char *old, bool replaced) {
     return status;
 }
 
-int experiment_open_table(experiment_lab *lab) {
+int lab_open_table(lab_session *lab) {
     char *path = cli_format("%s/results.csv", lab->folder);
     long whole;
     int status = read_table(lab, path, &whole);
@@ -173,12 +173,12 @@ int experiment_open_table(experiment_lab *lab) {
     return status;
 }
 
-experiment_row *experiment_row_of(experiment_run *run, int mode, int frame) {
+lab_row *lab_row_of(lab_run *run, int mode, int frame) {
     if (frame > run->room) {
         int room = frame > 2 * run->room ? frame : 2 * run->room;
-        for (int m = 0; m < EXPERIMENT_MODES; m++) {
-            run->rows[m] = experiment_longer(run->rows[m], sizeof(experiment_row) * (size_t)room);
-            memset(run->rows[m] + run->room, 0, sizeof(experiment_row) * (size_t)(room - run->room));
+        for (int m = 0; m < LAB_MODES; m++) {
+            run->rows[m] = lab_longer(run->rows[m], sizeof(lab_row) * (size_t)room);
+            memset(run->rows[m] + run->room, 0, sizeof(lab_row) * (size_t)(room - run->room));
         }
         run->room = room;
     }
@@ -186,16 +186,16 @@ experiment_row *experiment_row_of(experiment_run *run, int mode, int frame) {
     return &run->rows[mode][frame - 1];
 }
 
-void experiment_claim(experiment_lab *lab, experiment_run *run) {
+void lab_claim(lab_session *lab, lab_run *run) {
     for (size_t i = 0; i < lab->stored_count; i++) {
-        experiment_stored *row = &lab->stored[i];
+        lab_stored *row = &lab->stored[i];
         if (row->claimed || strcmp(row->key, run->key))
             continue;
         row->claimed = true;
-        if (!experiment_has_mode(&lab->spec, run->camera, row->mode) ||
-            row->frame > experiment_frames(&lab->spec, run->camera, run->config))
+        if (!lab_has_mode(&lab->spec, run->camera, row->mode) ||
+            row->frame > lab_frames(&lab->spec, run->camera, run->config))
             continue; /* asked for before, not now: it stays in the table */
-        experiment_row *mine = experiment_row_of(run, row->mode, row->frame);
+        lab_row *mine = lab_row_of(run, row->mode, row->frame);
         lab->rows_twice += mine->done;
         lab->rows_done += !mine->done;
         lab->rows_old += !mine->done;
@@ -204,7 +204,7 @@ void experiment_claim(experiment_lab *lab, experiment_run *run) {
     }
 }
 
-int experiment_append(experiment_lab *lab, const experiment_run *run, int mode, int frame) {
+int lab_append(lab_session *lab, const lab_run *run, int mode, int frame) {
     print_row(lab, lab->csv, run, mode, frame);
     if (!fflush(lab->csv))
         return CLI_OK;
@@ -218,20 +218,20 @@ static void tell_rows(size_t count, const char *what, const char *old) {
         cli_error("%s of results.csv %s: kept in %s", cli_many(rows, count, "row"), what, strrchr(old, '/') + 1);
 }
 
-int experiment_tidy_table(experiment_lab *lab) {
+int lab_tidy_table(lab_session *lab) {
     size_t others = 0;
     for (size_t i = 0; i < lab->stored_count; i++) {
         if (lab->stored[i].claimed)
             continue;
         others++;
-        char *picture = experiment_picture(lab, lab->stored[i].key, lab->stored[i].mode, lab->stored[i].frame);
+        char *picture = lab_picture(lab, lab->stored[i].key, lab->stored[i].mode, lab->stored[i].frame);
         unlink(picture); /* where there is one; no row shows it any more */
         free(picture);
     }
     if (!others && !lab->rows_broken && !lab->rows_twice)
         return CLI_OK;
     char *temporary;
-    FILE *file = experiment_create(lab, "results.csv", &temporary);
+    FILE *file = lab_create(lab, "results.csv", &temporary);
     if (!file)
         return CLI_FAILURE;
     char *path = cli_format("%s/results.csv", lab->folder), *old = old_name(lab);
@@ -241,15 +241,15 @@ int experiment_tidy_table(experiment_lab *lab) {
     fprintf(file, "%s\n", header);
     for (size_t r = 0; r < lab->run_count; r++)
         for (int frame = 1; frame <= lab->runs[r].count; frame++)
-            for (int mode = 0; mode < EXPERIMENT_MODES; mode++)
+            for (int mode = 0; mode < LAB_MODES; mode++)
                 if (lab->runs[r].rows[mode][frame - 1].done)
                     print_row(lab, file, &lab->runs[r], mode, frame);
     int status = fflush(file) ? CLI_OK : put_aside(path, old, true); /* what could not be written, finishing tells */
     free(path);
     free(old);
     if (status) {
-        experiment_discard(file, temporary);
+        lab_discard(file, temporary);
         return status;
     }
-    return experiment_finish(lab, file, "results.csv", temporary);
+    return lab_finish(lab, file, "results.csv", temporary);
 }

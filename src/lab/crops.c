@@ -1,5 +1,5 @@
 /* Shown frames beside the reference: the same part of each picture, displayed alike, in one PNG. */
-#include "experiment.h"
+#include "lab/lab.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +9,7 @@ enum { PANEL = 320, MOST_COLUMNS = 4 };
 
 /* A picture at a time is read and held: a spec may have a hundred configurations. */
 typedef struct panels {
-    const experiment_lab *lab;
+    const lab_session *lab;
     size_t camera;
     int frame;
     int width, height;  /* of a picture */
@@ -17,7 +17,7 @@ typedef struct panels {
     uint8_t *reference; /* 8-bit sRGB */
 } panels;
 
-bool experiment_shows(const experiment_spec *spec, size_t camera, int frame) {
+bool lab_shows(const lab_spec *spec, size_t camera, int frame) {
     if (spec->cameras[camera].frames)
         return frame == spec->cameras[camera].frames;
     for (size_t i = 0; i < spec->shown_count; i++)
@@ -26,10 +26,10 @@ bool experiment_shows(const experiment_spec *spec, size_t camera, int frame) {
     return false;
 }
 
-char *experiment_sheet_name(const experiment_lab *lab, size_t camera, int frame) {
-    int mode = experiment_shown_mode(&lab->spec, camera);
-    char *slug = experiment_slug(lab, camera);
-    char *name = cli_format("%s-%s%d.png", slug, mode == EXPERIMENT_ACCUMULATED ? "mean" : "frame", frame);
+char *lab_sheet_name(const lab_session *lab, size_t camera, int frame) {
+    int mode = lab_shown_mode(&lab->spec, camera);
+    char *slug = lab_slug(lab, camera);
+    char *name = cli_format("%s-%s%d.png", slug, mode == LAB_ACCUMULATED ? "mean" : "frame", frame);
     free(slug);
     return name;
 }
@@ -45,9 +45,9 @@ static uint8_t *display(const noc_image *image, double ev100) {
 
 /* *picture is NULL where this configuration has no such frame. */
 static int read_picture(const panels *p, size_t config, uint8_t **picture) {
-    const experiment_run *run = experiment_find_run(p->lab, p->camera, config, 0);
+    const lab_run *run = lab_find_run(p->lab, p->camera, config, 0);
     *picture = NULL;
-    char *path = experiment_picture(p->lab, run->key, experiment_shown_mode(&p->lab->spec, p->camera), p->frame);
+    char *path = lab_picture(p->lab, run->key, lab_shown_mode(&p->lab->spec, p->camera), p->frame);
     bool linear;
     noc_image *image = access(path, F_OK) ? NULL : noc_image_read(path, p->lab->log, &linear);
     bool there = image || !access(path, F_OK), same = image && image->width == p->width && image->height == p->height;
@@ -61,7 +61,7 @@ static int read_picture(const panels *p, size_t config, uint8_t **picture) {
 }
 
 /* The part where the pictures differ most from the reference, as seen: a sum over each rectangle by running sums. */
-static int choose(const panels *p, experiment_crop *crop) {
+static int choose(const panels *p, lab_crop *crop) {
     size_t w = (size_t)p->width, count = w * (size_t)p->height;
     double *sums = cli_alloc(sizeof(double) * (w + 1) * ((size_t)p->height + 1)), most = -1;
     uint32_t *differences = cli_alloc(sizeof(uint32_t) * count);
@@ -99,20 +99,20 @@ static int choose(const panels *p, experiment_crop *crop) {
     return status;
 }
 
-static int write_sheet(const panels *p, const experiment_crop *crop, const char *name) {
-    const experiment_spec *spec = &p->lab->spec;
-    experiment_sheet sheet;
-    int status = experiment_start_sheet(&sheet, crop, &spec->cameras[p->camera], spec->config_count + 1);
+static int write_sheet(const panels *p, const lab_crop *crop, const char *name) {
+    const lab_spec *spec = &p->lab->spec;
+    lab_sheet sheet;
+    int status = lab_start_sheet(&sheet, crop, &spec->cameras[p->camera], spec->config_count + 1);
     if (status) {
         cli_error("%s/%s: it would be larger than %d px", p->lab->folder, name, NOC_IMAGE_MAX_SIDE);
         return status;
     }
-    experiment_add_panel(&sheet, 0, p->reference, p->width, "reference");
+    lab_add_panel(&sheet, 0, p->reference, p->width, "reference");
     for (size_t i = 0; i < spec->config_count && !status; i++) {
         uint8_t *picture = NULL;
         status = read_picture(p, i, &picture);
         if (!status)
-            experiment_add_panel(&sheet, i + 1, picture, p->width, spec->configs[i].name);
+            lab_add_panel(&sheet, i + 1, picture, p->width, spec->configs[i].name);
         free(picture);
     }
     char *path = cli_format("%s/%s", p->lab->folder, name);
@@ -126,24 +126,24 @@ static int write_sheet(const panels *p, const experiment_crop *crop, const char 
     return status;
 }
 
-int experiment_make_crops(experiment_lab *lab, size_t camera) {
-    const experiment_spec *spec = &lab->spec;
-    experiment_crop *crop = &lab->crops[camera];
+int lab_make_crops(lab_session *lab, size_t camera) {
+    const lab_spec *spec = &lab->spec;
+    lab_crop *crop = &lab->crops[camera];
     double ev100 = cli_auto_ev100(lab->reference);
     panels p = { lab, camera, 0, spec->width, spec->height, ev100, display(lab->reference, ev100) };
-    *crop = (experiment_crop){
+    *crop = (lab_crop){
         .x = spec->crop_box[0], .y = spec->crop_box[1], .width = spec->crop_box[2], .height = spec->crop_box[3]
     };
     int motion = spec->cameras[camera].frames, status = CLI_OK;
     if (spec->cameras[camera].inset_count)
-        *crop = (experiment_crop){ .width = spec->width, .height = spec->height };
+        *crop = (lab_crop){ .width = spec->width, .height = spec->height };
     for (size_t i = 0; !status && i < (motion ? 1 : spec->shown_count); i++) {
         p.frame = motion ? motion : spec->shown[i];
         if (!crop->width)
             status = choose(&p, crop); /* by the first of them, for all */
         crop->scale = crop->width < PANEL ? PANEL / crop->width : 1;
         crop->columns = spec->config_count + 1 < MOST_COLUMNS ? (int)spec->config_count + 1 : MOST_COLUMNS;
-        char *name = experiment_sheet_name(lab, camera, p.frame);
+        char *name = lab_sheet_name(lab, camera, p.frame);
         status = status ? status : write_sheet(&p, crop, name);
         free(name);
     }

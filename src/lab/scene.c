@@ -1,6 +1,6 @@
 /* Scenes, cameras and the reference of an experiment. A reference is kept in the cache folder under a hash of all that
  * it depends on; the files there may be deleted at any time. */
-#include "experiment.h"
+#include "lab/lab.h"
 
 #include <dlfcn.h>
 #include <stdlib.h>
@@ -28,8 +28,8 @@ static void hash_bytes(hash_state *hash, const void *data, size_t size) {
 
 static void hash_text(hash_state *hash, const char *text) { hash_bytes(hash, text, strlen(text) + 1); }
 
-static void hash_finish(const hash_state *hash, char key[EXPERIMENT_KEY]) {
-    snprintf(key, EXPERIMENT_KEY, "%016llx%016llx", (unsigned long long)(hash->h >> 64), (unsigned long long)hash->h);
+static void hash_finish(const hash_state *hash, char key[LAB_KEY]) {
+    snprintf(key, LAB_KEY, "%016llx%016llx", (unsigned long long)(hash->h >> 64), (unsigned long long)hash->h);
 }
 
 /* Each option by name and value: an option that is new to the tables is part of the hash without a word here.
@@ -64,8 +64,8 @@ static int hash_file(hash_state *hash, const char *path) {
     return failed ? CLI_FAILURE : CLI_OK;
 }
 
-int experiment_load_scene(experiment_lab *lab, size_t index) {
-    experiment_scene *scene = &lab->spec.scenes[index];
+int lab_load_scene(lab_session *lab, size_t index) {
+    lab_scene *scene = &lab->spec.scenes[index];
     lab->scene = noc_scene_create(lab->log);
     scene->import.progress = (noc_progress){ cli_load_progress, NULL };
     noc_status status = lab->scene ? cli_load_scene(lab->scene, scene->inputs, scene->input_count, &scene->builtin,
@@ -92,8 +92,8 @@ static void hash_camera(hash_state *hash, const noc_camera *c) {
 /* A reference is named by what the scene holds, not by the files it was read from: an OBJ's materials lie in another
  * file than it, and what code makes of a file may change. So specs that show the same share it, whatever they call
  * their inputs. */
-static void name_reference(experiment_lab *lab) {
-    const experiment_spec *spec = &lab->spec;
+static void name_reference(lab_session *lab) {
+    const lab_spec *spec = &lab->spec;
     hash_state hash = hash_start();
     hash_text(&hash, noc_version());
     hash_text(&hash, lab->content);
@@ -119,7 +119,7 @@ static bool frame_progress(void *user, const char *what, double done) {
 }
 
 /* What is waited for is said ahead, and how long as soon as that shows. */
-static void tell_estimate(const experiment_lab *lab, const making *m) {
+static void tell_estimate(const lab_session *lab, const making *m) {
     char took[32];
     double left = (cli_now() - m->started) / m->frame * (m->frames - m->frame);
     if (lab->args->common.quiet || left < LONG_WAIT)
@@ -130,7 +130,7 @@ static void tell_estimate(const experiment_lab *lab, const making *m) {
 }
 
 /* NULL where there is none, or none that is whole. */
-static noc_image *read_cached(const experiment_lab *lab, const char *path) {
+static noc_image *read_cached(const lab_session *lab, const char *path) {
     if (access(path, R_OK))
         return NULL;
     bool linear = false;
@@ -141,14 +141,14 @@ static noc_image *read_cached(const experiment_lab *lab, const char *path) {
     return NULL;
 }
 
-static int render_reference(experiment_lab *lab, const char *view, const char *path, experiment_noise *noise) {
-    const experiment_spec *spec = &lab->spec;
+static int render_reference(lab_session *lab, const char *view, const char *path, lab_noise *noise) {
+    const lab_spec *spec = &lab->spec;
     noc_renderer *renderer =
         noc_renderer_create(lab->scene, &(noc_renderer_params){ .threads = lab->args->threads }, lab->log);
     noc_status status = renderer ? NOC_OK : NOC_ERR_MEMORY;
     making m = { view, 1, spec->reference.frames, cli_now() };
-    int halfway = m.frames / 2, parts = m.frames < EXPERIMENT_BATCHES ? m.frames : EXPERIMENT_BATCHES;
-    experiment_batches batches = { .count = 0 };
+    int halfway = m.frames / 2, parts = m.frames < LAB_BATCHES ? m.frames : LAB_BATCHES;
+    lab_batches batches = { .count = 0 };
     noc_image *half = NULL;
     for (; !status && m.frame <= m.frames; m.frame++) {
         status =
@@ -158,7 +158,7 @@ static int render_reference(experiment_lab *lab, const char *view, const char *p
         bool part_ends = m.frame * parts / m.frames > batches.count;
         noc_image *image = !status && (part_ends || m.frame == halfway) ? noc_renderer_image(renderer) : NULL;
         if (image && part_ends)
-            experiment_add_batch(&batches, image, m.frame);
+            lab_add_batch(&batches, image, m.frame);
         if (m.frame == halfway)
             half = image;
         else
@@ -168,7 +168,7 @@ static int render_reference(experiment_lab *lab, const char *view, const char *p
     lab->reference = status ? NULL : noc_renderer_image(renderer);
     noc_renderer_destroy(renderer);
     if (lab->reference)
-        *noise = experiment_measure_noise(lab, half, halfway, &batches);
+        *noise = lab_measure_noise(lab, half, halfway, &batches);
     noc_image_destroy(half);
     if (status && cli_interrupted()) { /* a whole one is kept, whatever comes then */
         lab->reference_lost = m.frame > 2 ? m.frame - 2 : 0;
@@ -182,14 +182,14 @@ static int render_reference(experiment_lab *lab, const char *view, const char *p
     if (noc_image_write(lab->reference, path, &display, &(noc_image_meta){ 2, keys, values }, lab->log))
         cli_error("warning: the reference is not kept; another run makes it again");
     else
-        experiment_keep_noise(path, noise);
+        lab_keep_noise(path, noise);
     return CLI_OK;
 }
 
-int experiment_make_reference(experiment_lab *lab, size_t camera) {
-    experiment_spec *spec = &lab->spec;
+int lab_make_reference(lab_session *lab, size_t camera) {
+    lab_spec *spec = &lab->spec;
     size_t scene = spec->cameras[camera].scene;
-    if (experiment_place_cameras(lab, camera))
+    if (lab_place_cameras(lab, camera))
         return CLI_FAILURE;
     int status = CLI_OK;
     name_reference(lab);
@@ -197,9 +197,9 @@ int experiment_make_reference(experiment_lab *lab, size_t camera) {
     lab->reference = read_cached(lab, path);
     char *view = cli_format("%s, %s", spec->scenes[scene].name, spec->cameras[camera].name);
     bool quiet = lab->args->common.quiet;
-    experiment_noise *noise = &lab->noises[camera];
+    lab_noise *noise = &lab->noises[camera];
     if (lab->reference) {
-        *noise = experiment_read_noise(path);
+        *noise = lab_read_noise(path);
         if (!quiet)
             printf("%s: reference from %s\n", view, path);
     } else {
@@ -222,14 +222,14 @@ int experiment_make_reference(experiment_lab *lab, size_t camera) {
     return status;
 }
 
-noc_render_params experiment_params(const experiment_lab *lab, const experiment_run *run) {
+noc_render_params lab_params(const lab_session *lab, const lab_run *run) {
     noc_render_params p = lab->spec.configs[run->config].params;
     p.seed = lab->spec.seed + (uint32_t)run->repetition;
     p.accumulate = false; /* the mean is made here, so that one run gives both curves */
     return p;
 }
 
-const char *experiment_machine(void) {
+const char *lab_machine(void) {
     static char machine[256];
     if (*machine)
         return machine;
@@ -254,7 +254,7 @@ const char *experiment_machine(void) {
 
 /* The library by its content: between two releases the version stays while estimators change. */
 static const char *build_key(void) {
-    static char key[EXPERIMENT_KEY];
+    static char key[LAB_KEY];
     if (*key)
         return key;
     hash_state hash = hash_start();
@@ -266,19 +266,19 @@ static const char *build_key(void) {
     return key;
 }
 
-void experiment_run_key(const experiment_lab *lab, experiment_run *run) {
-    const experiment_spec *spec = &lab->spec;
-    noc_render_params params = experiment_params(lab, run);
+void lab_run_key(const lab_session *lab, lab_run *run) {
+    const lab_spec *spec = &lab->spec;
+    noc_render_params params = lab_params(lab, run);
     hash_state hash = hash_start();
     hash_text(&hash, lab->reference_key);
     hash_text(&hash, spec->scenes[spec->cameras[run->camera].scene].name);
     hash_text(&hash, spec->cameras[run->camera].name);
     hash_text(&hash, spec->configs[run->config].name);
-    hash_text(&hash, experiment_machine()); /* times of two machines do not mix */
+    hash_text(&hash, lab_machine()); /* times of two machines do not mix */
     hash_text(&hash, build_key());
     hash_options(&hash, &params, false);
     for (int frame = 1; frame <= spec->cameras[run->camera].frames; frame++) {
-        noc_camera camera = experiment_camera_at(lab, run->camera, frame);
+        noc_camera camera = lab_camera_at(lab, run->camera, frame);
         hash_camera(&hash, &camera);
     }
     hash_bytes(&hash, &run->repetition, sizeof(run->repetition));

@@ -1,5 +1,5 @@
 /* Contact sheets: pictures side by side, each with its name above it, and insets below it where its camera has some. */
-#include "experiment.h"
+#include "lab/lab.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,16 +10,16 @@ enum { GAP = 4, LABEL = 22, NAME = 14, FRAME = 2 };
 static const struct {
     const char *name;
     uint8_t rgb[3];
-} colours[EXPERIMENT_INSETS] = {
+} colours[LAB_INSETS] = {
     { "red", { 235, 70, 60 } },
     { "green", { 70, 200, 90 } },
     { "blue", { 90, 150, 255 } },
     { "yellow", { 240, 205, 60 } },
 };
 
-const char *experiment_inset_colour(int inset) { return colours[inset].name; }
+const char *lab_inset_colour(int inset) { return colours[inset].name; }
 
-bool experiment_read_box(const char *text, int width, int height, int box[4]) {
+bool lab_read_box(const char *text, int width, int height, int box[4]) {
     double v[4];
     bool right = cli_parse_numbers(text, ',', 4, v);
     for (int i = 0; right && i < 4; i++) {
@@ -30,24 +30,23 @@ bool experiment_read_box(const char *text, int width, int height, int box[4]) {
 }
 
 /* Insets stand side by side, two at least, so that one alone is not as wide as the picture. */
-static int inset_width(const experiment_sheet *s) {
+static int inset_width(const lab_sheet *s) {
     int n = s->camera->inset_count < 2 ? 2 : s->camera->inset_count;
     return (s->panel_width - (n - 1) * GAP) / n;
 }
 
-static int inset_height(const experiment_sheet *s, int inset) {
+static int inset_height(const lab_sheet *s, int inset) {
     const int *box = s->camera->insets[inset].box;
     int height = (int)((double)inset_width(s) * box[3] / box[2] + 0.5);
     return height < 1 ? 1 : height > s->picture_height ? s->picture_height : height;
 }
 
-int experiment_start_sheet(experiment_sheet *s, const experiment_crop *crop, const experiment_camera *camera,
-                           size_t panels) {
+int lab_start_sheet(lab_sheet *s, const lab_crop *crop, const lab_camera *camera, size_t panels) {
     int columns = crop->columns, rows = ((int)panels + columns - 1) / columns, insets = 0;
-    *s = (experiment_sheet){ .crop = crop,
-                             .camera = camera,
-                             .panel_width = crop->width * crop->scale,
-                             .picture_height = crop->height * crop->scale };
+    *s = (lab_sheet){ .crop = crop,
+                      .camera = camera,
+                      .panel_width = crop->width * crop->scale,
+                      .picture_height = crop->height * crop->scale };
     for (int i = 0; i < camera->inset_count; i++)
         insets = inset_height(s, i) > insets ? inset_height(s, i) : insets;
     s->panel_height = LABEL + s->picture_height + (insets ? GAP + insets + NAME : 0);
@@ -62,8 +61,7 @@ int experiment_start_sheet(experiment_sheet *s, const experiment_crop *crop, con
 }
 
 /* A box of a picture, enlarged to so many pixels: each is the nearest of the picture's. */
-static void enlarge(experiment_sheet *s, const uint8_t *rgb, int width, const int box[4], int left, int top, int w,
-                    int h) {
+static void enlarge(lab_sheet *s, const uint8_t *rgb, int width, const int box[4], int left, int top, int w, int h) {
     for (int y = 0; y < h; y++) {
         const uint8_t *row =
             rgb + ((size_t)(box[1] + (int)((long long)y * box[3] / h)) * (size_t)width + (size_t)box[0]) * 3;
@@ -73,13 +71,13 @@ static void enlarge(experiment_sheet *s, const uint8_t *rgb, int width, const in
     }
 }
 
-static void dot(experiment_sheet *s, int x, int y, const uint8_t colour[3]) {
+static void dot(lab_sheet *s, int x, int y, const uint8_t colour[3]) {
     if (x >= 0 && y >= 0 && x < s->width && y < s->height)
         memcpy(s->rgb + ((size_t)y * (size_t)s->width + (size_t)x) * 3, colour, 3);
 }
 
 /* Inside a rectangle of the sheet, along its edges. */
-static void frame(experiment_sheet *s, int left, int top, int w, int h, const uint8_t colour[3]) {
+static void frame(lab_sheet *s, int left, int top, int w, int h, const uint8_t colour[3]) {
     for (int k = 0; k < FRAME; k++) {
         for (int x = 0; x < w; x++) {
             dot(s, left + x, top + k, colour);
@@ -93,7 +91,7 @@ static void frame(experiment_sheet *s, int left, int top, int w, int h, const ui
 }
 
 /* As large as fits; what is too long even for small letters ends in dots. */
-static void write_in(experiment_sheet *s, int x, int y, int w, const char *text, int scale, const uint8_t colour[3]) {
+static void write_in(lab_sheet *s, int x, int y, int w, const char *text, int scale, const uint8_t colour[3]) {
     char *cut = cli_format("%s", text);
     while (scale > 1 && noc_text_srgb8(NULL, 0, 0, 0, 0, cut, scale, colour) > w)
         scale--;
@@ -106,9 +104,9 @@ static void write_in(experiment_sheet *s, int x, int y, int w, const char *text,
     free(cut);
 }
 
-void experiment_add_panel(experiment_sheet *s, size_t panel, const uint8_t *rgb, int width, const char *label) {
+void lab_add_panel(lab_sheet *s, size_t panel, const uint8_t *rgb, int width, const char *label) {
     static const uint8_t white[3] = { 235, 235, 235 };
-    const experiment_crop *crop = s->crop;
+    const lab_crop *crop = s->crop;
     int left = (int)(panel % (size_t)crop->columns) * (s->panel_width + GAP),
         top = (int)(panel / (size_t)crop->columns) * (s->panel_height + GAP);
     write_in(s, left + 2, top + 2, s->panel_width - 4, label, 2, white);
@@ -118,7 +116,7 @@ void experiment_add_panel(experiment_sheet *s, size_t panel, const uint8_t *rgb,
     enlarge(s, rgb, width, (const int[]){ crop->x, crop->y, crop->width, crop->height }, left, top, s->panel_width,
             s->picture_height);
     for (int i = 0; i < s->camera->inset_count; i++) {
-        const experiment_inset *in = &s->camera->insets[i];
+        const lab_inset *in = &s->camera->insets[i];
         int w = inset_width(s), h = inset_height(s, i), x = left + i * (w + GAP), y = top + s->picture_height + GAP;
         enlarge(s, rgb, width, in->box, x, y, w, h);
         frame(s, x, y, w, h, colours[i].rgb);

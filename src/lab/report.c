@@ -1,5 +1,5 @@
 /* report.md: what was measured, on what, and how to make it again. */
-#include "experiment.h"
+#include "lab/lab.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -23,14 +23,14 @@ static void add_slug(char *out, const char *text) {
 }
 
 /* Numbers keep apart names that differ in other characters alone. */
-char *experiment_slug(const experiment_lab *lab, size_t camera) {
+char *lab_slug(const lab_session *lab, size_t camera) {
     char a[84], b[84];
     add_slug(a, lab->spec.scenes[lab->spec.cameras[camera].scene].name);
     add_slug(b, lab->spec.cameras[camera].name);
     return cli_format("%zu-%s-%s", camera + 1, a, b);
 }
 
-FILE *experiment_create(const experiment_lab *lab, const char *name, char **temporary) {
+FILE *lab_create(const lab_session *lab, const char *name, char **temporary) {
     *temporary = cli_format("%s/.%s.new", lab->folder, name);
     unlink(*temporary); /* of a killed run: the folder is locked */
     FILE *file = fopen(*temporary, "wx");
@@ -41,7 +41,7 @@ FILE *experiment_create(const experiment_lab *lab, const char *name, char **temp
     return file;
 }
 
-int experiment_finish(const experiment_lab *lab, FILE *file, const char *name, char *temporary) {
+int lab_finish(const lab_session *lab, FILE *file, const char *name, char *temporary) {
     char *path = cli_format("%s/%s", lab->folder, name);
     /* EINVAL: nothing to write through */
     bool failed = ferror(file) || fflush(file) || (fsync(fileno(file)) && errno != EINVAL);
@@ -56,13 +56,13 @@ int experiment_finish(const experiment_lab *lab, FILE *file, const char *name, c
     return failed ? CLI_FAILURE : CLI_OK;
 }
 
-void experiment_discard(FILE *file, char *temporary) {
+void lab_discard(FILE *file, char *temporary) {
     fclose(file);
     unlink(temporary);
     free(temporary);
 }
 
-void experiment_text(FILE *out, const char *text) {
+void lab_text(FILE *out, const char *text) {
     for (const char *c = text; *c; c++)
         switch (*c) {
         case '&': fputs("&amp;", out); break;
@@ -75,13 +75,13 @@ void experiment_text(FILE *out, const char *text) {
         }
 }
 
-void experiment_cell(FILE *out, const char *text) {
+void lab_cell(FILE *out, const char *text) {
     fputc(' ', out);
-    experiment_text(out, text);
+    lab_text(out, text);
     fputs(" |", out);
 }
 
-void experiment_number(FILE *out, double v, const char *fmt) {
+void lab_number(FILE *out, double v, const char *fmt) {
     char text[40] = "-";
     if (isfinite(v))
         snprintf(text, sizeof(text), fmt, v);
@@ -93,7 +93,7 @@ static const char *readable(double v, const char *fmt) {
     return fabs(v) >= 100 && fabs(v) < 1e6 && strchr(fmt, 'g') ? "%.0f" : fmt;
 }
 
-void experiment_print_spread(FILE *out, double v, double error, const char *fmt) {
+void lab_print_spread(FILE *out, double v, double error, const char *fmt) {
     char text[40] = "-";
     if (isfinite(v))
         snprintf(text, sizeof(text), readable(v, fmt), v);
@@ -104,13 +104,13 @@ void experiment_print_spread(FILE *out, double v, double error, const char *fmt)
     }
 }
 
-void experiment_spread(FILE *out, double v, double error, const char *fmt, const char *after) {
+void lab_spread(FILE *out, double v, double error, const char *fmt, const char *after) {
     fputc(' ', out);
-    experiment_print_spread(out, v, error, fmt);
+    lab_print_spread(out, v, error, fmt);
     fprintf(out, "%s |", after);
 }
 
-void experiment_table_rule(FILE *out, size_t columns) {
+void lab_table_rule(FILE *out, size_t columns) {
     fputs("\n|---|", out);
     for (size_t i = 0; i < columns; i++)
         fputs("--:|", out);
@@ -119,7 +119,7 @@ void experiment_table_rule(FILE *out, size_t columns) {
 
 static void table_head(FILE *out, const char *first, size_t columns) {
     fprintf(out, "\n%s", first);
-    experiment_table_rule(out, columns);
+    lab_table_rule(out, columns);
 }
 
 /* The command line as a shell would read it. */
@@ -177,18 +177,18 @@ static void print_confidence(FILE *out, int n) {
                 n < 4 ? ": differences smaller than that are not shown by so few repetitions" : "");
 }
 
-static void print_setting(FILE *out, const experiment_lab *lab) {
-    const experiment_spec *spec = &lab->spec;
+static void print_setting(FILE *out, const lab_session *lab) {
+    const lab_spec *spec = &lab->spec;
     char date[40] = "", text[32], memory[32];
     time_t now = time(NULL);
     strftime(date, sizeof(date), "%Y-%m-%d %H:%M UTC", gmtime(&now));
     fputs("# ", out);
-    experiment_text(out, spec->title);
+    lab_text(out, spec->title);
     fputs("\n\n", out);
     if (spec->note)
         fprintf(out, "%s\n\n", spec->note);
     fprintf(out, "Made by nocturne %s (%s) on %s, on %s; the code that ran: %s.\n\n    ", noc_version(), noc_features(),
-            date, experiment_machine(), *lab->path ? lab->path : "none, all rows were there");
+            date, lab_machine(), *lab->path ? lab->path : "none, all rows were there");
     print_command(out);
     char extent[64];
     if (spec->seconds > 0)
@@ -217,7 +217,7 @@ static void print_setting(FILE *out, const experiment_lab *lab) {
     table_head(out, "| Scene | Triangles | Lights | Memory |", 3);
     for (size_t i = 0; i < spec->scene_count; i++) {
         fputc('|', out);
-        experiment_cell(out, spec->scenes[i].name);
+        lab_cell(out, spec->scenes[i].name);
         fprintf(out, " %s |", cli_count(text, lab->scene_infos[i].triangles));
         fprintf(out, " %s | %s |\n", cli_count(text, lab->scene_infos[i].lights),
                 cli_bytes(memory, lab->scene_infos[i].memory_bytes));
@@ -225,30 +225,30 @@ static void print_setting(FILE *out, const experiment_lab *lab) {
     fprintf(out, "\n| Configuration | Method, candidates, and options that are not the defaults |\n|---|---|\n");
     for (size_t i = 0; i < spec->config_count; i++) {
         fputc('|', out);
-        experiment_cell(out, spec->configs[i].name);
+        lab_cell(out, spec->configs[i].name);
         fputc(' ', out);
         print_options(out, &spec->configs[i].params);
         fputs(" |\n", out);
     }
 }
 
-static void print_crops(FILE *out, const experiment_lab *lab, size_t camera) {
-    const experiment_spec *spec = &lab->spec;
-    const experiment_crop *crop = &lab->crops[camera];
-    int motion = spec->cameras[camera].frames, mode = experiment_shown_mode(spec, camera);
+static void print_crops(FILE *out, const lab_session *lab, size_t camera) {
+    const lab_spec *spec = &lab->spec;
+    const lab_crop *crop = &lab->crops[camera];
+    int motion = spec->cameras[camera].frames, mode = lab_shown_mode(spec, camera);
     size_t frames = motion ? 1 : spec->shown_count;
     if (!frames)
         return;
     for (size_t i = 0; i < frames; i++) {
         int frame = motion ? motion : spec->shown[i];
-        char many[64], *name = experiment_sheet_name(lab, camera, frame);
-        if (mode == EXPERIMENT_ACCUMULATED)
+        char many[64], *name = lab_sheet_name(lab, camera, frame);
+        if (mode == LAB_ACCUMULATED)
             fprintf(out, "\n![Mean of %s](%s)\n", cli_many(many, (uint64_t)frame, "frame"), name);
         else
             fprintf(out, "\n![Frame %d](%s)\n", frame, name);
         free(name);
     }
-    bool mean = mode == EXPERIMENT_ACCUMULATED;
+    bool mean = mode == LAB_ACCUMULATED;
     fprintf(out, "\nShown %s ", frames > 1 ? "are" : "is");
     if (motion)
         fprintf(out, "the last frame");
@@ -263,18 +263,18 @@ static void print_crops(FILE *out, const experiment_lab *lab, size_t camera) {
     fputs(" of each configuration, row by row (\"reference\"", out);
     for (size_t i = 1; i <= spec->config_count; i++) {
         fputs(i % (size_t)crop->columns ? ", \"" : "; \"", out);
-        experiment_text(out, spec->configs[i - 1].name);
+        lab_text(out, spec->configs[i - 1].name);
         fputc('"', out);
     }
     fputs("): ", out);
-    const experiment_camera *c = &spec->cameras[camera];
+    const lab_camera *c = &spec->cameras[camera];
     if (!c->inset_count)
         fprintf(out, "the part of %d x %d px at (%d, %d), enlarged %d times", crop->width, crop->height, crop->x,
                 crop->y, crop->scale);
     for (int i = 0; i < c->inset_count; i++) {
         const int *box = c->insets[i].box;
-        fprintf(out, "%s%s is ", i ? "; " : "", experiment_inset_colour(i));
-        experiment_text(out, c->insets[i].name);
+        fprintf(out, "%s%s is ", i ? "; " : "", lab_inset_colour(i));
+        lab_text(out, c->insets[i].name);
         fprintf(out, ", %d x %d px at (%d, %d)", box[2], box[3], box[0], box[1]);
     }
     fputs(". All have the reference's exposure.\n", out);
@@ -287,19 +287,19 @@ typedef struct table_frames {
     bool own_last;
 } table_frames;
 
-static bool is_there(experiment_series s, int frame) {
+static bool is_there(lab_series s, int frame) {
     bool any = false;
     for (s.config = 0; s.config < s.lab->spec.config_count && !any; s.config++)
-        any = !isnan(experiment_at(&s, 0, frame));
+        any = !isnan(lab_at(&s, 0, frame));
     return any;
 }
 
-static table_frames frames_of(experiment_series s) {
-    const experiment_spec *spec = &s.lab->spec;
+static table_frames frames_of(lab_series s) {
+    const lab_spec *spec = &s.lab->spec;
     table_frames t = { .count = 0 };
     int most = 0, least = INT_MAX;
     for (s.config = 0; s.config < spec->config_count; s.config++) {
-        int last = experiment_last(&s);
+        int last = lab_last(&s);
         most = last > most ? last : most;
         least = last < least ? last : least;
     }
@@ -316,12 +316,12 @@ static table_frames frames_of(experiment_series s) {
 }
 
 /* What `-` in the columns means, and whose frame the last is. */
-static void print_legend(FILE *out, experiment_series s) {
+static void print_legend(FILE *out, lab_series s) {
     table_frames t = frames_of(s);
     bool missing = false;
     for (s.config = 0; s.config < s.lab->spec.config_count; s.config++)
         for (int i = 0; i < t.count; i++)
-            missing |= isnan(experiment_at(&s, 0, t.frames[i]));
+            missing |= isnan(lab_at(&s, 0, t.frames[i]));
     if (t.own_last)
         fprintf(out, "\nlast: each configuration's own last frame%s, its number in brackets.",
                 s.lab->spec.repetitions > 1 ? " of those that all repetitions measured" : "");
@@ -331,14 +331,13 @@ static void print_legend(FILE *out, experiment_series s) {
 }
 
 /* A cell: an error, or a bias in %, with its standard error. */
-static void print_figure(FILE *out, const experiment_series *s, int column, int frame, const char *fmt,
-                         const char *after) {
+static void print_figure(FILE *out, const lab_series *s, int column, int frame, const char *fmt, const char *after) {
     bool bias = column == COL_BIAS || column == COL_BIAS_ALL;
-    double v = experiment_at(s, column, frame), error = experiment_error_at(s, column, frame);
-    experiment_spread(out, bias ? 100 * (v - 1) : v, bias ? 100 * error : error, fmt, after);
+    double v = lab_at(s, column, frame), error = lab_error_at(s, column, frame);
+    lab_spread(out, bias ? 100 * (v - 1) : v, bias ? 100 * error : error, fmt, after);
 }
 
-static void print_errors(FILE *out, experiment_series s, const char *what, int column, const char *fmt) {
+static void print_errors(FILE *out, lab_series s, const char *what, int column, const char *fmt) {
     table_frames t = frames_of(s);
     char head[400];
     int at = snprintf(head, sizeof(head), "| %s, frame |", what);
@@ -348,11 +347,11 @@ static void print_errors(FILE *out, experiment_series s, const char *what, int c
     table_head(out, head, (size_t)(t.count + t.own_last));
     for (s.config = 0; s.config < s.lab->spec.config_count; s.config++) {
         fputc('|', out);
-        experiment_cell(out, s.lab->spec.configs[s.config].name);
+        lab_cell(out, s.lab->spec.configs[s.config].name);
         for (int i = 0; i < t.count; i++)
             print_figure(out, &s, column, t.frames[i], fmt, "");
         if (t.own_last) {
-            int last = experiment_last(&s);
+            int last = lab_last(&s);
             char text[24];
             snprintf(text, sizeof(text), " (%d)", last);
             print_figure(out, &s, column, last, fmt, text);
@@ -361,7 +360,7 @@ static void print_errors(FILE *out, experiment_series s, const char *what, int c
     }
 }
 
-static void print_all_frames(FILE *out, experiment_series s, const char *clamped, int first) {
+static void print_all_frames(FILE *out, lab_series s, const char *clamped, int first) {
     print_errors(out, s, clamped, first + 2, "%.3g");
     print_errors(out, s, "relMSE", first + 1, "%.3g");
     print_errors(out, s, "RMSE-8", first, "%.2f");
@@ -370,14 +369,14 @@ static void print_all_frames(FILE *out, experiment_series s, const char *clamped
 }
 
 /* Of a camera that moves. */
-static void print_one_frame(FILE *out, experiment_series s, const char *clamped, int first) {
+static void print_one_frame(FILE *out, lab_series s, const char *clamped, int first) {
     char *head = cli_format("| | %s | relMSE | RMSE-8 | Bias, %% | CPU seconds of this frame | of all |", clamped);
     table_head(out, head, 6);
     free(head);
     for (s.config = 0; s.config < s.lab->spec.config_count; s.config++) {
-        int frame = experiment_last(&s);
+        int frame = lab_last(&s);
         fputc('|', out);
-        experiment_cell(out, s.lab->spec.configs[s.config].name);
+        lab_cell(out, s.lab->spec.configs[s.config].name);
         print_figure(out, &s, first + 2, frame, "%.3g", "");
         print_figure(out, &s, first + 1, frame, "%.3g", "");
         print_figure(out, &s, first, frame, "%.2f", "");
@@ -388,8 +387,8 @@ static void print_one_frame(FILE *out, experiment_series s, const char *clamped,
     }
 }
 
-static void print_times(FILE *out, experiment_series s) {
-    const experiment_spec *spec = &s.lab->spec;
+static void print_times(FILE *out, lab_series s) {
+    const lab_spec *spec = &s.lab->spec;
     table_head(out,
                "| Frame times | first, CPU ms | median, CPU ms | median, wall ms | shadow rays, millions | "
                "ray tracing structure, ms | renderer's memory |",
@@ -397,28 +396,27 @@ static void print_times(FILE *out, experiment_series s) {
     for (s.config = 0; s.config < spec->config_count; s.config++) {
         char memory[32];
         fputc('|', out);
-        experiment_cell(out, spec->configs[s.config].name);
-        experiment_number(out, 1e3 * experiment_at(&s, COL_CPU, 1), "%.1f");
-        experiment_number(out, 1e3 * experiment_median(&s, COL_CPU), "%.1f");
-        experiment_number(out, 1e3 * experiment_median(&s, COL_WALL), "%.1f");
-        experiment_number(out, 1e-6 * experiment_median(&s, COL_RAYS), "%.2f");
-        experiment_number(out, 1e3 * experiment_median(&s, COL_BUILD), "%.1f");
-        double bytes = experiment_median(&s, COL_MEMORY);
+        lab_cell(out, spec->configs[s.config].name);
+        lab_number(out, 1e3 * lab_at(&s, COL_CPU, 1), "%.1f");
+        lab_number(out, 1e3 * lab_median(&s, COL_CPU), "%.1f");
+        lab_number(out, 1e3 * lab_median(&s, COL_WALL), "%.1f");
+        lab_number(out, 1e-6 * lab_median(&s, COL_RAYS), "%.2f");
+        lab_number(out, 1e3 * lab_median(&s, COL_BUILD), "%.1f");
+        double bytes = lab_median(&s, COL_MEMORY);
         fprintf(out, " %s |\n", bytes >= 0 ? cli_bytes(memory, (uint64_t)bytes) : "-");
     }
 }
 
 /* Of a repetition that is there with its first frame, the time of that. */
-static double first_time_to(const experiment_series *s, int column, double error) {
-    double seconds = experiment_time_to(s, column, error);
-    return seconds == 0 ? experiment_at(s, COL_CPU_TOTAL, 1) : seconds;
+static double first_time_to(const lab_series *s, int column, double error) {
+    double seconds = lab_time_to(s, column, error);
+    return seconds == 0 ? lab_at(s, COL_CPU_TOTAL, 1) : seconds;
 }
 
 /* CPU seconds to an error, and errors after CPU seconds. */
-static void print_equal_time(FILE *out, experiment_series s) {
-    const experiment_spec *spec = &s.lab->spec;
-    int column =
-        spec->figure == EXPERIMENT_RMSE8 ? spec->all_pixels ? COL_CLAMPED_ALL : COL_CLAMPED : experiment_column(spec);
+static void print_equal_time(FILE *out, lab_series s) {
+    const lab_spec *spec = &s.lab->spec;
+    int column = spec->figure == LAB_RMSE8 ? spec->all_pixels ? COL_CLAMPED_ALL : COL_CLAMPED : lab_column(spec);
     char head[400];
     int at = snprintf(head, sizeof(head), "| CPU seconds to relMSE |");
     for (size_t i = 0; i < 3; i++)
@@ -428,17 +426,17 @@ static void print_equal_time(FILE *out, experiment_series s) {
     table_head(out, head, 3 + spec->time_count);
     for (s.config = 0; s.config < spec->config_count; s.config++) {
         fputc('|', out);
-        experiment_cell(out, spec->configs[s.config].name);
+        lab_cell(out, spec->configs[s.config].name);
         for (size_t i = 0; i < 3; i++) {
-            double seconds = experiment_time_to(&s, column, targets[i]);
+            double seconds = lab_time_to(&s, column, targets[i]);
             if (seconds > 0 || isnan(seconds))
-                experiment_spread(out, seconds, experiment_error_of(&s, first_time_to, column, targets[i]), "%.3g", "");
+                lab_spread(out, seconds, lab_error_of(&s, first_time_to, column, targets[i]), "%.3g", "");
             else
-                experiment_number(out, experiment_at(&s, COL_CPU_TOTAL, 1), "under %.3g");
+                lab_number(out, lab_at(&s, COL_CPU_TOTAL, 1), "under %.3g");
         }
         for (size_t i = 0; i < spec->time_count; i++)
-            experiment_spread(out, experiment_error_after(&s, column, spec->times[i]),
-                              experiment_error_of(&s, experiment_error_after, column, spec->times[i]), "%.3g", "");
+            lab_spread(out, lab_error_after(&s, column, spec->times[i]),
+                       lab_error_of(&s, lab_error_after, column, spec->times[i]), "%.3g", "");
         fputc('\n', out);
     }
     fprintf(
@@ -447,8 +445,8 @@ static void print_equal_time(FILE *out, experiment_series s) {
         "frames rendered, or before the first frame is done.\n");
 }
 
-static void print_noise(FILE *out, const experiment_lab *lab, size_t index) {
-    const experiment_noise *n = &lab->noises[index];
+static void print_noise(FILE *out, const lab_session *lab, size_t index) {
+    const lab_noise *n = &lab->noises[index];
     bool all = lab->spec.all_pixels;
     if (isfinite(n->relmse))
         fprintf(out,
@@ -457,29 +455,29 @@ static void print_noise(FILE *out, const experiment_lab *lab, size_t index) {
     if (isfinite(all ? n->mean_all : n->mean))
         fprintf(out, "\nIts mean has a standard error of %.2g %%, which any bias is off by too.\n",
                 100 * (all ? n->mean_all : n->mean));
-    char *unlit = experiment_unlit(lab, index);
+    char *unlit = lab_unlit(lab, index);
     if (unlit) {
         fprintf(out, "\n%c", toupper((unsigned char)*unlit));
-        experiment_text(out, unlit + 1);
+        lab_text(out, unlit + 1);
         fputc('\n', out);
     }
     free(unlit);
 }
 
 /* Plots and tables of one mode. */
-static int print_mode(FILE *out, experiment_lab *lab, size_t camera, int mode) {
-    const experiment_spec *spec = &lab->spec;
+static int print_mode(FILE *out, lab_session *lab, size_t camera, int mode) {
+    const lab_spec *spec = &lab->spec;
     int status = CLI_OK, first = spec->all_pixels ? COL_RMSE8_ALL : COL_RMSE8, motion = spec->cameras[camera].frames;
-    experiment_series s = { lab, camera, 0, mode, 0 };
-    char *slug = experiment_slug(lab, camera), clamped[48], before[64];
+    lab_series s = { lab, camera, 0, mode, 0 };
+    char *slug = lab_slug(lab, camera), clamped[48], before[64];
     if (motion)
         fprintf(out, "\n### Frame %d, after %s %s\n", motion, cli_many(before, (uint64_t)motion - 1, "frame"),
                 spec->cameras[camera].cut ? "and a cut" : "of motion");
     else
         fprintf(out, "\n### %s\n", mode_names[mode]);
-    for (int over_time = 0; !status && !motion && over_time <= (mode == EXPERIMENT_ACCUMULATED); over_time++) {
+    for (int over_time = 0; !status && !motion && over_time <= (mode == LAB_ACCUMULATED); over_time++) {
         char *name = cli_format("%s-%s-%s.svg", slug, mode ? "mean" : "alone", over_time ? "cpu" : "frames");
-        status = experiment_plot(lab, camera, mode, over_time, name);
+        status = lab_plot(lab, camera, mode, over_time, name);
         fprintf(out, "\n![Error over %s](%s)\n", over_time ? "CPU time" : "frames", name);
         free(name);
     }
@@ -489,46 +487,46 @@ static int print_mode(FILE *out, experiment_lab *lab, size_t camera, int mode) {
         print_one_frame(out, s, clamped, first);
     else
         print_all_frames(out, s, clamped, first);
-    if (mode == EXPERIMENT_ACCUMULATED || (spec->accumulate == EXPERIMENT_ALONE && !motion))
+    if (mode == LAB_ACCUMULATED || (spec->accumulate == LAB_ALONE && !motion))
         print_equal_time(out, s);
-    if (mode == EXPERIMENT_ACCUMULATED || spec->accumulate == EXPERIMENT_ALONE || motion)
+    if (mode == LAB_ACCUMULATED || spec->accumulate == LAB_ALONE || motion)
         print_times(out, s);
     free(slug);
     return status;
 }
 
-static int print_view(FILE *out, experiment_lab *lab, size_t camera) {
-    const experiment_spec *spec = &lab->spec;
+static int print_view(FILE *out, lab_session *lab, size_t camera) {
+    const lab_spec *spec = &lab->spec;
     int status = CLI_OK;
     fputs("\n## ", out);
-    experiment_view_name(out, spec, camera);
+    lab_view_name(out, spec, camera);
     fputc('\n', out);
     print_noise(out, lab, camera);
     print_crops(out, lab, camera);
-    for (int mode = EXPERIMENT_MODES - 1; !status && mode >= 0; mode--)
-        if (experiment_has_mode(spec, camera, mode))
+    for (int mode = LAB_MODES - 1; !status && mode >= 0; mode--)
+        if (lab_has_mode(spec, camera, mode))
             status = print_mode(out, lab, camera, mode);
     return status;
 }
 
 /* Over all cameras. */
-static int print_charts(FILE *out, experiment_lab *lab) {
-    int status = experiment_write_summary(lab);
+static int print_charts(FILE *out, lab_session *lab) {
+    int status = lab_write_summary(lab);
     fprintf(out, "\nIn short: [summary.md](summary.md).\n");
-    if (!status && experiment_has_dots(&lab->spec)) {
-        status = experiment_dots(lab, "errors.svg");
+    if (!status && lab_has_dots(&lab->spec)) {
+        status = lab_dots(lab, "errors.svg");
         fprintf(out, "\n![Errors](errors.svg)\n");
     }
-    if (!status && experiment_has_bars(&lab->spec)) {
-        status = experiment_bars(lab, "frame-times.svg");
+    if (!status && lab_has_bars(&lab->spec)) {
+        status = lab_bars(lab, "frame-times.svg");
         fprintf(out, "\n![Frame times](frame-times.svg)\n");
     }
     return status;
 }
 
-int experiment_write_report(experiment_lab *lab) {
+int lab_write_report(lab_session *lab) {
     char *temporary;
-    FILE *out = experiment_create(lab, "report.md", &temporary);
+    FILE *out = lab_create(lab, "report.md", &temporary);
     if (!out)
         return CLI_FAILURE;
     print_setting(out, lab);
@@ -536,7 +534,7 @@ int experiment_write_report(experiment_lab *lab) {
     for (size_t camera = 0; !status && camera < lab->spec.camera_count; camera++)
         status = print_view(out, lab, camera);
     if (!status)
-        return experiment_finish(lab, out, "report.md", temporary);
-    experiment_discard(out, temporary);
+        return lab_finish(lab, out, "report.md", temporary);
+    lab_discard(out, temporary);
     return status;
 }

@@ -1,42 +1,41 @@
 /* Configurations of an experiment. One entry of the spec may stand for several: an option with an array of values, or a
  * choice with "*", makes one of each. */
-#include "experiment.h"
+#include "lab/lab.h"
 
 #include <jansson.h>
 #include <string.h>
 
 static const noc_option config_options[] = {
-    { "frames", "Configuration", NOC_OPTION_INT, offsetof(experiment_config, frames), 1, EXPERIMENT_FRAMES, NULL, "",
-      "" },
-    { "seconds", "Configuration", NOC_OPTION_REAL, offsetof(experiment_config, seconds), 0, 1e6, NULL, "s", "" },
+    { "frames", "Configuration", NOC_OPTION_INT, offsetof(lab_config, frames), 1, LAB_FRAMES, NULL, "", "" },
+    { "seconds", "Configuration", NOC_OPTION_REAL, offsetof(lab_config, seconds), 0, 1e6, NULL, "s", "" },
     { NULL },
 };
 static const noc_option preset_options[] = {
-    CLI_PRESET(experiment_config, "Configuration"),
+    CLI_PRESET(lab_config, "Configuration"),
     { NULL },
 };
 static const noc_option *config_table(void) { return config_options; }
 static const noc_option *preset_table(void) { return preset_options; }
 static const char *const said_above[] = { "width", "height", "seed", "accumulate", NULL };
 #define RENDER_SETS                                                                                                    \
-    { preset_table, 0, NULL }, { noc_render_options, offsetof(experiment_config, params), said_above }
+    { preset_table, 0, NULL }, { noc_render_options, offsetof(lab_config, params), said_above }
 static const cli_set shared_sets[] = { RENDER_SETS, { NULL } },
                      config_sets[] = { { config_table, 0, NULL }, RENDER_SETS, { NULL } };
 static const char *const named[] = { "name", NULL };
 
 /* The option of an entry that stands for several of its values. *status where more than one does. */
-static const noc_option *several(experiment_spec *spec, const char *place, json_t *object, int *status) {
+static const noc_option *several(lab_spec *spec, const char *place, json_t *object, int *status) {
     const noc_option *found = NULL;
     const char *name;
     json_t *value;
     json_object_foreach(object, name, value) {
         size_t offset;
-        const noc_option *o = experiment_option(config_sets, name, &offset);
+        const noc_option *o = lab_option(config_sets, name, &offset);
         bool star = json_is_string(value) && !strcmp(json_string_value(value), "*");
         if (!o || o->kind == NOC_OPTION_TEXT || !(star ? o->kind == NOC_OPTION_CHOICE : json_array_size(value) > 0))
             continue;
         if (found)
-            *status = experiment_wrong(spec, place, "one option may have several values, not two");
+            *status = lab_wrong(spec, place, "one option may have several values, not two");
         found = o;
     }
     return found;
@@ -62,17 +61,17 @@ static char *star_name(const char *name, const char *value) {
 }
 
 /* As the library writes it: 0.50 and 5e-1 are both 0.5. */
-static char *value_text(const noc_option *option, const experiment_config *config) {
+static char *value_text(const noc_option *option, const lab_config *config) {
     size_t offset = 0;
-    experiment_option(config_sets, option->name, &offset);
+    lab_option(config_sets, option->name, &offset);
     char text[80];
     noc_option_get(option, (const char *)config + offset, text, sizeof(text));
     return cli_format("%s", text);
 }
 
-static experiment_config *add(experiment_spec *spec, const experiment_config *shared, size_t entry, int choice) {
-    spec->configs = experiment_longer(spec->configs, sizeof(experiment_config) * (spec->config_count + 1));
-    experiment_config *config = &spec->configs[spec->config_count++];
+static lab_config *add(lab_spec *spec, const lab_config *shared, size_t entry, int choice) {
+    spec->configs = lab_longer(spec->configs, sizeof(lab_config) * (spec->config_count + 1));
+    lab_config *config = &spec->configs[spec->config_count++];
     *config = *shared;
     config->frames = spec->frames;
     config->seconds = spec->seconds;
@@ -83,18 +82,18 @@ static experiment_config *add(experiment_spec *spec, const experiment_config *sh
 
 /* Options of one object. Its preset comes before all others, wherever it stands: they win over it, as on the command
  * line. */
-static int read_options(experiment_spec *spec, const char *place, json_t *object, const cli_set *sets,
-                        const char *const *others, experiment_config *config) {
+static int read_options(lab_spec *spec, const char *place, json_t *object, const cli_set *sets,
+                        const char *const *others, lab_config *config) {
     json_t *preset = json_object_get(object, "preset");
-    int status = preset ? experiment_set(spec, place, sets, NULL, config, "preset", preset) : CLI_OK;
+    int status = preset ? lab_set(spec, place, sets, NULL, config, "preset", preset) : CLI_OK;
     if (!status && preset)
         noc_render_use_preset(&config->params, (noc_preset)config->preset);
-    return status ? status : experiment_set_all(spec, place, object, sets, others, config);
+    return status ? status : lab_set_all(spec, place, object, sets, others, config);
 }
 
 /* Of members of an object that change nothing: in none of the configurations from first to before end, nor with the
  * other params, which may be NULL. */
-static void warn_of_idle(const experiment_spec *spec, const char *place, json_t *object, size_t first, size_t end,
+static void warn_of_idle(const lab_spec *spec, const char *place, json_t *object, size_t first, size_t end,
                          const noc_render_params *other) {
     const noc_option *table = noc_render_options();
     const char *name;
@@ -102,7 +101,7 @@ static void warn_of_idle(const experiment_spec *spec, const char *place, json_t 
     json_object_foreach(object, name, value) {
         char why[160] = "";
         size_t offset, i = first;
-        const noc_option *o = experiment_option(config_sets, name, &offset);
+        const noc_option *o = lab_option(config_sets, name, &offset);
         if (!o || !o->needs || (other && !noc_option_idle(o, table, other, why, sizeof(why))))
             continue;
         while (i < end && noc_option_idle(o, table, &spec->configs[i].params, why, sizeof(why)))
@@ -112,7 +111,7 @@ static void warn_of_idle(const experiment_spec *spec, const char *place, json_t 
     }
 }
 
-void experiment_warn_of_idle(const experiment_spec *spec, json_t *root) {
+void lab_warn_of_idle(const lab_spec *spec, json_t *root) {
     const noc_render_params *reference = &spec->reference.params;
     char place[64];
     if (spec->quiet)
@@ -128,46 +127,44 @@ void experiment_warn_of_idle(const experiment_spec *spec, json_t *root) {
     }
 }
 
-int experiment_read_shared(experiment_spec *spec, json_t *object, experiment_config *shared) {
+int lab_read_shared(lab_spec *spec, json_t *object, lab_config *shared) {
     return read_options(spec, "options", object, shared_sets, NULL, shared);
 }
 
 /* Seconds alone decide where frames are not given beside them. */
-static int read_members(experiment_spec *spec, const char *place, json_t *object, experiment_config *config) {
+static int read_members(lab_spec *spec, const char *place, json_t *object, lab_config *config) {
     int status = read_options(spec, place, object, config_sets, named, config);
     if (!status && json_object_get(object, "seconds") && !json_object_get(object, "frames"))
-        config->frames = config->seconds > 0 ? EXPERIMENT_FRAMES : config->frames;
+        config->frames = config->seconds > 0 ? LAB_FRAMES : config->frames;
     return status;
 }
 
-int experiment_read_config(experiment_spec *spec, const char *place, json_t *object, const experiment_config *shared,
-                           size_t entry) {
+int lab_read_config(lab_spec *spec, const char *place, json_t *object, const lab_config *shared, size_t entry) {
     int status = CLI_OK;
     const char *name = NULL;
     const noc_option *option = json_is_object(object) ? several(spec, place, object, &status) : NULL;
     if (status || !option) {
-        status = status ? status
-                        : experiment_too_many(spec, "", spec->config_count + 1, EXPERIMENT_ENTRIES, "configurations");
-        experiment_config *config = status ? NULL : add(spec, shared, entry, -1);
+        status = status ? status : lab_too_many(spec, "", spec->config_count + 1, LAB_ENTRIES, "configurations");
+        lab_config *config = status ? NULL : add(spec, shared, entry, -1);
         status = status ? status : read_members(spec, place, object, config);
-        return status ? status : experiment_read_name(spec, place, object, &config->name);
+        return status ? status : lab_read_name(spec, place, object, &config->name);
     }
-    status = experiment_read_name(spec, place, object, &name);
+    status = lab_read_name(spec, place, object, &name);
     json_t *values = values_of(option, json_object_get(object, option->name)), *value;
     size_t i;
-    status = status ? status
-                    : experiment_too_many(spec, "", spec->config_count + json_array_size(values), EXPERIMENT_ENTRIES,
-                                          "configurations");
+    status = status
+                 ? status
+                 : lab_too_many(spec, "", spec->config_count + json_array_size(values), LAB_ENTRIES, "configurations");
     json_array_foreach(values, i, value) {
         if (status)
             break;
-        experiment_config *config = add(spec, shared, entry, (int)i);
+        lab_config *config = add(spec, shared, entry, (int)i);
         json_object_set(object, option->name, value);
         status = read_members(spec, place, object, config);
         config->option = option;
-        config->value = experiment_keep(spec, value_text(option, config));
+        config->value = lab_keep(spec, value_text(option, config));
         config->pattern = name;
-        config->name = experiment_keep(spec, star_name(name, config->value));
+        config->name = lab_keep(spec, star_name(name, config->value));
     }
     json_decref(values);
     return status;
