@@ -102,11 +102,10 @@ static void measure(bench *b, int points, float scale) {
         b->t.dark += !b->found;
     }
     const tally *t = &b->t;
-    printf(
-        "S_r %6.2f: %7.1f lights a point, %7.1f seen; kept: %6.2f%% of those seen, %6.2f%% of their light, %6.2f%% of those hidden; "
-        "%.1f%% of the points find none\n",
-        scale, t->pairs / t->points, t->seen / t->points, 100 * t->seen_kept / t->seen, 100 * t->light_kept / t->light,
-        100 * t->hidden_kept / t->hidden, 100 * t->dark / t->points);
+    printf("S_r %6.2f: %7.1f lights a point, %7.1f seen; kept: %6.2f%% of those seen, %6.2f%% of their light, "
+           "%6.2f%% of those hidden; %.1f%% of the points find none\n",
+           scale, t->pairs / t->points, t->seen / t->points, 100 * t->seen_kept / t->seen,
+           100 * t->light_kept / t->light, 100 * t->hidden_kept / t->hidden, 100 * t->dark / t->points);
 }
 
 static bool run(const noc_scene *s, noc_view view, int shared, int points, noc_log *log) {

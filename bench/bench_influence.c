@@ -148,8 +148,8 @@ static void print_erring(const erring *e, const erring *first, int seeds) {
         relmse[m] = spread_of(e->relmse[m], seeds);
     }
     printf(
-        "S_r %8.3f%s  RMSE-8 %6.2f +- %.2f  relMSE %.4f +- %.4f  %.1f CPU ms, the fastest frame | in the first one's time: %6.2f %.4f | found: "
-        "median %u, 99%% %u, none %.2f%%\n",
+        "S_r %8.3f%s  RMSE-8 %6.2f +- %.2f  relMSE %.4f +- %.4f  %.1f CPU ms, the fastest frame | in the first one's "
+        "time: %6.2f %.4f | found: median %u, 99%% %u, none %.2f%%\n",
         found.influence, e->params.influence > 0 ? "  " : " *", rmse8[ALL].mean, rmse8[ALL].error, relmse[ALL].mean,
         relmse[ALL].error, 1e3 * e->fastest, in_time(rmse8[HALF].mean, rmse8[ALL].mean, time),
         in_time(relmse[HALF].mean, relmse[ALL].mean, time), found.found_median, found.found_99, 100 * found.found_none);

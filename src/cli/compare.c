@@ -174,10 +174,9 @@ static noc_status check_comparable(const compare_args *args, noc_image *const pi
     }
     double one = pictures[0]->ev100, other = pictures[1]->ev100;
     if (fabs(one - other) >= 0.005 && !args->common.quiet) /* false where one is not told */
-        cli_error(
-            "warning: the exposures differ, EV100 %.2f and %.2f: the figures hold that difference too. Render both with one "
-            "--exposure, or compare .exr",
-            one, other);
+        cli_error("warning: the exposures differ, EV100 %.2f and %.2f: the figures hold that difference too. "
+                  "Render both with one --exposure, or compare .exr",
+                  one, other);
     return NOC_OK;
 }
 

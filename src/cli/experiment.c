@@ -183,7 +183,8 @@ static int work(lab_session *lab) {
     }
     if (status > CLI_INTERRUPTED && lab->reference_lost)
         cli_error(
-            "interrupted: %s in %s/results.csv; the same command goes on there, but begins this reference anew: the %s of %d that were there are lost",
+            "interrupted: %s in %s/results.csv; the same command goes on there, but begins this reference anew: the %s "
+            "of %d that were there are lost",
             cli_many(rows, lab->rows_done, "row"), lab->folder,
             cli_many(frames, (uint64_t)lab->reference_lost, "frame"), spec->reference.frames);
     else if (status > CLI_INTERRUPTED)

@@ -163,10 +163,10 @@ static void markdown_row(FILE *out, const noc_option *o, const void *defaults, i
 }
 
 void cli_help_markdown(FILE *out) {
-    fprintf(
-        out,
-        "# Options\n\nMade by `tools/update-docs.sh` from the option tables (`src/render/options.c`, `src/cli/`); a test holds the\n"
-        "two equal. Write `--option value` or `--option=value`.\n");
+    fprintf(out,
+            "# Options\n\nMade by `tools/update-docs.sh` from the option tables (`src/render/options.c`, `src/cli/`); "
+            "a test holds the\n"
+            "two equal. Write `--option value` or `--option=value`.\n");
     for (const cli_command *const *c = cli_commands; *c; c++) {
         fprintf(out, "\n## nocturne %s %s\n\n%s\n", (*c)->name, (*c)->arguments, (*c)->summary);
         cli_each_option(*c, out, "\n### %s\n\n| Option | What it does | Default | Values |\n|---|---|---|---|\n",

@@ -41,21 +41,21 @@ static void man_option(FILE *out, const noc_option *o, const void *defaults, int
 }
 
 void cli_man(FILE *out) {
-    fprintf(
-        out,
-        ".TH NOCTURNE 1 \"\" \"Nocturne %s\" \"User Commands\"\n.SH NAME\nnocturne \\- pictures and figures of cities at night\n"
-        ".SH SYNOPSIS\n",
-        noc_version());
+    fprintf(out,
+            ".TH NOCTURNE 1 \"\" \"Nocturne %s\" \"User Commands\"\n.SH NAME\n"
+            "nocturne \\- pictures and figures of cities at night\n"
+            ".SH SYNOPSIS\n",
+            noc_version());
     for (const cli_command *const *c = cli_commands; *c; c++) {
         fprintf(out, "%s.B nocturne %s\n[\\fIOPTION\\fR]...\n.I ", c == cli_commands ? "" : ".br\n", (*c)->name);
         roff(out, (*c)->arguments);
         fputc('\n', out);
     }
-    fputs(
-        ".br\n.B nocturne help\n.RI [ COMMAND ]\n.SH DESCRIPTION\n"
-        "City models and the street lamps of a map go in. Pictures with true light come out, and figures in cd/m2.\n"
-        "An option is written as \\fB\\-\\-option\\fR \\fIvalue\\fR or \\fB\\-\\-option=\\fR\\fIvalue\\fR; its default stands in brackets.\n",
-        out);
+    fputs(".br\n.B nocturne help\n.RI [ COMMAND ]\n.SH DESCRIPTION\n"
+          "City models and the street lamps of a map go in. Pictures with true light come out, and figures in cd/m2.\n"
+          "An option is written as \\fB\\-\\-option\\fR \\fIvalue\\fR or \\fB\\-\\-option=\\fR\\fIvalue\\fR; "
+          "its default stands in brackets.\n",
+          out);
     for (const cli_command *const *c = cli_commands; *c; c++) {
         fprintf(out, ".SH NOCTURNE %s\n", (*c)->name);
         roff(out, (*c)->summary);
@@ -64,9 +64,9 @@ void cli_man(FILE *out) {
         roff(out, (*c)->notes);
         fputs(".fi\n", out);
     }
-    fprintf(
-        out,
-        ".SH EXIT STATUS\n0 after success, %d after a failure that was reported, %d for wrong arguments, %d plus the signal's number after\n"
-        "an interruption (130 after Ctrl\\-C).\n",
-        CLI_FAILURE, CLI_USAGE, CLI_INTERRUPTED);
+    fprintf(out,
+            ".SH EXIT STATUS\n0 after success, %d after a failure that was reported, %d for wrong arguments, "
+            "%d plus the signal's number after\n"
+            "an interruption (130 after Ctrl\\-C).\n",
+            CLI_FAILURE, CLI_USAGE, CLI_INTERRUPTED);
 }

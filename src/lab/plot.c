@@ -38,10 +38,10 @@ static void curve(FILE *out, const lab_series *s, bool over_time, const svg_axis
     int column = lab_column(&s->lab->spec);
     svg_style style = svg_style_of(&s->lab->spec, s->config);
     int frames = lab_last(s);
-    fprintf(
-        out,
-        "<g>\n<polyline class=\"l%d\" fill=\"none\" stroke=\"%s\" stroke-width=\"2\" stroke-linejoin=\"round\"%s points=\"",
-        style.colour, svg_colours[style.colour], style.dash);
+    fprintf(out,
+            "<g>\n<polyline class=\"l%d\" fill=\"none\" stroke=\"%s\" stroke-width=\"2\" stroke-linejoin=\"round\"%s "
+            "points=\"",
+            style.colour, svg_colours[style.colour], style.dash);
     for (int pass = 0; pass < 2; pass++) {
         double last = -1e9;
         for (int f = 1; f <= frames; f++) {
@@ -149,11 +149,10 @@ int lab_plot(const lab_session *lab, size_t camera, int mode, bool over_time, co
     svg_text(out, lab_figure(spec), 100);
     fputs("</text>\n", out);
     if (spec->repetitions > 1)
-        fprintf(
-            out,
-            "<text class=\"ink\" fill=\"#222222\" x=\"%d\" y=\"%d\" text-anchor=\"end\" font-size=\"11\">bands: \302\261 standard error of %d "
-            "repetitions</text>\n",
-            LEFT + PLOT_WIDTH, bottom + 42, spec->repetitions);
+        fprintf(out,
+                "<text class=\"ink\" fill=\"#222222\" x=\"%d\" y=\"%d\" text-anchor=\"end\" "
+                "font-size=\"11\">bands: \302\261 standard error of %d repetitions</text>\n",
+                LEFT + PLOT_WIDTH, bottom + 42, spec->repetitions);
     fputs("</svg>\n", out);
     return lab_finish(lab, out, name, temporary);
 }

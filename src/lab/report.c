@@ -439,10 +439,8 @@ static void print_equal_time(FILE *out, lab_series s) {
                        lab_error_of(&s, lab_error_after, column, spec->times[i]), "%.3g", "");
         fputc('\n', out);
     }
-    fprintf(
-        out,
-        "\nBetween frames by interpolation in logarithms; \"under\": the first frame is better already; -: not reached in the "
-        "frames rendered, or before the first frame is done.\n");
+    fprintf(out, "\nBetween frames by interpolation in logarithms; \"under\": the first frame is better already; "
+                 "-: not reached in the frames rendered, or before the first frame is done.\n");
 }
 
 static void print_noise(FILE *out, const lab_session *lab, size_t index) {

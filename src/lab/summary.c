@@ -211,10 +211,10 @@ static void print_structures(FILE *out, const lab_session *lab) {
         if (!built || is_repeated(lab, i))
             continue;
         if (!any) {
-            fputs(
-                "\n| Light structure | Scene, camera | build, ms | volumes | tuning of S_r | hierarchy | boxes | memory, kB | of the scene's, % | S_r, m | pixels that find none, % | "
-                "lights found, median | 99th percentile |",
-                out);
+            fputs("\n| Light structure | Scene, camera | build, ms | volumes | tuning of S_r | hierarchy | boxes | "
+                  "memory, kB | of the scene's, % | S_r, m | pixels that find none, % | "
+                  "lights found, median | 99th percentile |",
+                  out);
             lab_table_rule(out, 12);
         }
         any = true;

@@ -124,13 +124,13 @@ void svg_text(FILE *out, const char *text, int limit) {
 }
 
 void svg_head(FILE *out, int width, int height) {
-    fprintf(
-        out,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
-        "font-family=\"sans-serif\" font-size=\"13\">\n<style>\n"
-        "@media (prefers-color-scheme: dark) {\n.paper { fill: #14171c } .ink { fill: #e6e6e6 } .grid { stroke: #343a44 } "
-        ".frame { stroke: #8a93a0 }\n",
-        width, height, width, height);
+    fprintf(out,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
+            "font-family=\"sans-serif\" font-size=\"13\">\n<style>\n"
+            "@media (prefers-color-scheme: dark) {\n"
+            ".paper { fill: #14171c } .ink { fill: #e6e6e6 } .grid { stroke: #343a44 } "
+            ".frame { stroke: #8a93a0 }\n",
+            width, height, width, height);
     for (int i = 0; i < SVG_COLOURS; i++)
         fprintf(out, ".l%d { stroke: %s } .m%d { fill: %s }\n", i, dark[i], i, dark[i]);
     fprintf(out, "}\n</style>\n<rect class=\"paper\" width=\"%d\" height=\"%d\" fill=\"#ffffff\"/>\n", width, height);

@@ -10,9 +10,11 @@
 #include <unistd.h>
 
 static const char header[] =
-    "scene,camera,configuration,repetition,mode,frame,seed,wall_s,cpu_s,wall_total_s,cpu_total_s,rmse8,relmse,relmse_clamped,"
-    "bias,unlit,relmse_unlit,rmse8_all,relmse_all,relmse_clamped_all,bias_all,unlit_all,relmse_unlit_all,build_s,memory_bytes,rays_shadow,dropped,"
-    "light_build_s,light_volumes_s,light_tuning_s,light_hierarchy_s,light_boxes_s,light_bytes,scene_bytes,influence,found_none,found_median,found_99,key";
+    "scene,camera,configuration,repetition,mode,frame,seed,wall_s,cpu_s,wall_total_s,cpu_total_s,rmse8,relmse,"
+    "relmse_clamped,bias,unlit,relmse_unlit,rmse8_all,relmse_all,relmse_clamped_all,bias_all,unlit_all,"
+    "relmse_unlit_all,build_s,memory_bytes,rays_shadow,dropped,"
+    "light_build_s,light_volumes_s,light_tuning_s,light_hierarchy_s,light_boxes_s,light_bytes,scene_bytes,influence,"
+    "found_none,found_median,found_99,key";
 static const char *const modes[] = { "alone", "accumulated" };
 enum { TELLING = 7, FIELDS = TELLING + COL_COUNT + 1, MODE = 4, FRAME = 5 };
 

@@ -23,10 +23,11 @@ static int make_pipe(void **state) {
 static int remove_pipe(void **state) { return unlink(pipe_path) || rmdir(folder); }
 
 #define GEOGCS                                                                                                         \
-    "GEOGCS[\"x\",DATUM[\"D\",SPHEROID[\"S\",6378137,298.25]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]"
-#define GEOGCRS                                                                                                            \
-    "GEOGCRS[\"x\",DATUM[\"D\",ELLIPSOID[\"S\",6378137,298.25]],CS[ellipsoidal,2],AXIS[\"lat\",north],AXIS[\"lon\",east]," \
-    "ANGLEUNIT[\"degree\",0.0174532925199433]]"
+    "GEOGCS[\"x\",DATUM[\"D\",SPHEROID[\"S\",6378137,298.25]],PRIMEM[\"Greenwich\",0],"                                \
+    "UNIT[\"degree\",0.0174532925199433]"
+#define GEOGCRS                                                                                                        \
+    "GEOGCRS[\"x\",DATUM[\"D\",ELLIPSOID[\"S\",6378137,298.25]],CS[ellipsoidal,2],AXIS[\"lat\",north],"                \
+    "AXIS[\"lon\",east],ANGLEUNIT[\"degree\",0.0174532925199433]]"
 
 #define GEOGCRS_BODY "GEOGCRS[\"x\",DATUM[\"D\",ELLIPSOID[\"S\",6378137,298.25]]"
 
@@ -57,15 +58,20 @@ static const char *const hostile[] = {
     "BOUNDCRS[SOURCECRS[" GEOGCRS "],TARGETCRS[" GEOGCRS
     "],ABRIDGEDTRANSFORMATION[\"t\",METHOD[\"NTv2\",ID[\"EPSG\",9615]],"
     "PARAMETERFILE[\"Latitude and longitude difference file\",\"%s\",ID[\"EPSG\",8656]]]]",
-    "{\"type\":\"BoundCRS\",\"source_crs\":{\"type\":\"GeographicCRS\",\"name\":\"x\",\"datum\":{\"type\":\"GeodeticReferenceFrame\","
-    "\"name\":\"D\",\"ellipsoid\":{\"name\":\"S\",\"semi_major_axis\":6378137,\"inverse_flattening\":298.25}},\"coordinate_system\":"
-    "{\"subtype\":\"ellipsoidal\",\"axis\":[{\"name\":\"lat\",\"abbreviation\":\"lat\",\"direction\":\"north\",\"unit\":\"degree\"},"
-    "{\"name\":\"lon\",\"abbreviation\":\"lon\",\"direction\":\"east\",\"unit\":\"degree\"}]}},\"target_crs\":{\"type\":\"GeographicCRS\","
-    "\"name\":\"y\",\"datum\":{\"type\":\"GeodeticReferenceFrame\",\"name\":\"E\",\"ellipsoid\":{\"name\":\"S\",\"semi_major_axis\":6378137,"
-    "\"inverse_flattening\":298.25}},\"coordinate_system\":{\"subtype\":\"ellipsoidal\",\"axis\":[{\"name\":\"lat\",\"abbreviation\":\"lat\","
-    "\"direction\":\"north\",\"unit\":\"degree\"},{\"name\":\"lon\",\"abbreviation\":\"lon\",\"direction\":\"east\",\"unit\":\"degree\"}]}},"
-    "\"transformation\":{\"name\":\"t\",\"method\":{\"name\":\"NTv2\",\"id\":{\"authority\":\"EPSG\",\"code\":9615}},\"parameters\":[{\"name\":"
-    "\"Latitude and longitude difference file\",\"value\":\"%s\",\"id\":{\"authority\":\"EPSG\",\"code\":8656}}]}}",
+    "{\"type\":\"BoundCRS\",\"source_crs\":{\"type\":\"GeographicCRS\",\"name\":\"x\","
+    "\"datum\":{\"type\":\"GeodeticReferenceFrame\",\"name\":\"D\",\"ellipsoid\":{\"name\":\"S\","
+    "\"semi_major_axis\":6378137,\"inverse_flattening\":298.25}},\"coordinate_system\":"
+    "{\"subtype\":\"ellipsoidal\",\"axis\":[{\"name\":\"lat\",\"abbreviation\":\"lat\",\"direction\":\"north\","
+    "\"unit\":\"degree\"},{\"name\":\"lon\",\"abbreviation\":\"lon\",\"direction\":\"east\","
+    "\"unit\":\"degree\"}]}},\"target_crs\":{\"type\":\"GeographicCRS\",\"name\":\"y\","
+    "\"datum\":{\"type\":\"GeodeticReferenceFrame\",\"name\":\"E\",\"ellipsoid\":{\"name\":\"S\","
+    "\"semi_major_axis\":6378137,\"inverse_flattening\":298.25}},"
+    "\"coordinate_system\":{\"subtype\":\"ellipsoidal\",\"axis\":[{\"name\":\"lat\","
+    "\"abbreviation\":\"lat\",\"direction\":\"north\",\"unit\":\"degree\"},"
+    "{\"name\":\"lon\",\"abbreviation\":\"lon\",\"direction\":\"east\",\"unit\":\"degree\"}]}},"
+    "\"transformation\":{\"name\":\"t\",\"method\":{\"name\":\"NTv2\",\"id\":{\"authority\":\"EPSG\","
+    "\"code\":9615}},\"parameters\":[{\"name\":\"Latitude and longitude difference "
+    "file\",\"value\":\"%s\",\"id\":{\"authority\":\"EPSG\",\"code\":8656}}]}}",
 };
 
 /* Does somebody read the pipe? Opening it for writing without waiting succeeds only then. */
@@ -167,15 +173,17 @@ static void test_plain(void **state) {
         "EPSG:25832",
         "urn:ogc:def:crs:EPSG::25832",
         "+proj=utm +zone=32 +datum=WGS84 +units=m +no_defs",
-        "+proj=merc +a=6378137 +b=6378137 +lat_ts=0 +lon_0=0 +x_0=0 +y_0=0 +k=1 +units=m +nadgrids=@null +wktext +no_defs",
-        "+proj=tmerc +lat_0=0 +lon_0=9 +k=1 +x_0=3500000 +y_0=0 +ellps=bessel +towgs84=598.1,73.7,418.2,0.202,0.045,-2.455,6.7 +units=m +no_defs",
+        "+proj=merc +a=6378137 +b=6378137 +lat_ts=0 +lon_0=0 +x_0=0 +y_0=0 +k=1 +units=m +nadgrids=@null +wktext "
+        "+no_defs",
+        "+proj=tmerc +lat_0=0 +lon_0=9 +k=1 +x_0=3500000 +y_0=0 +ellps=bessel +towgs84=598.1,73.7,418.2,0.202,0.045,"
+        "-2.455,6.7 +units=m +no_defs",
         GEOGCS ",REMARK[\"a=b c=d\"]]",
         GEOGCRS,
         "PROJCS[\"WGS 84 / Pseudo-Mercator\"," GEOGCS
         "],PROJECTION[\"Mercator_1SP\"],PARAMETER[\"central_meridian\",0],"
-        "PARAMETER[\"scale_factor\",1],PARAMETER[\"false_easting\",0],PARAMETER[\"false_northing\",0],UNIT[\"metre\",1],"
-        "EXTENSION[\"PROJ4\",\"+proj=merc +a=6378137 +b=6378137 +lat_ts=0.0 +lon_0=0.0 +x_0=0.0 +y_0=0 +k=1.0 +units=m "
-        "+nadgrids=@null +wktext +no_defs\"]]",
+        "PARAMETER[\"scale_factor\",1],PARAMETER[\"false_easting\",0],PARAMETER[\"false_northing\",0],"
+        "UNIT[\"metre\",1],EXTENSION[\"PROJ4\",\"+proj=merc +a=6378137 +b=6378137 +lat_ts=0.0 +lon_0=0.0 +x_0=0.0 "
+        "+y_0=0 +k=1.0 +units=m +nadgrids=@null +wktext +no_defs\"]]",
     };
     noc_log *log = noc_log_create(NULL);
     for (size_t i = 0; i < NOC_COUNT(plain); i++) {

@@ -146,10 +146,10 @@ static void write_gltf(const char *name, int vertices, int nodes) {
     FILE *f = create(name);
     fprintf(
         f,
-        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":48,\"uri\":\"data:application/octet-stream;base64,"
-        "AAAAAAEAAAACAAAAAAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":12},"
-        "{\"buffer\":0,\"byteOffset\":12,\"byteLength\":36}],\"accessors\":[{\"componentType\":5126,\"type\":\"VEC3\","
-        "\"count\":%d,\"sparse\":{\"count\":3,\"indices\":{\"bufferView\":0,\"componentType\":5125},"
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":48,\"uri\":\"data:application/octet-stream;"
+        "base64,AAAAAAEAAAACAAAAAAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],\"bufferViews\":[{\"buffer\":0,"
+        "\"byteLength\":12},{\"buffer\":0,\"byteOffset\":12,\"byteLength\":36}],\"accessors\":[{\"componentType\":5126,"
+        "\"type\":\"VEC3\",\"count\":%d,\"sparse\":{\"count\":3,\"indices\":{\"bufferView\":0,\"componentType\":5125},"
         "\"values\":{\"bufferView\":1}}}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
         "\"nodes\":[{\"mesh\":0}",
         vertices);
@@ -237,12 +237,12 @@ static void cities_are_bounded(void **state) {
             fprintf(f, "<cityObjectMember><bldg:Building gml:id=\"b%d\">", i);
         for (int k = 0; k < 10; k++) {
             int x = 10 * i + k;
-            fprintf(
-                f,
-                "<bldg:lod1MultiSurface><gml:MultiSurface><gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing>"
-                "<gml:posList srsDimension=\"3\">%d 0 0 %d 1 0 %d 1 5 %d 0 5 %d 0 0</gml:posList></gml:LinearRing></gml:exterior>"
-                "</gml:Polygon></gml:surfaceMember></gml:MultiSurface></bldg:lod1MultiSurface>",
-                x, x, x, x, x);
+            fprintf(f,
+                    "<bldg:lod1MultiSurface><gml:MultiSurface><gml:surfaceMember><gml:Polygon><gml:exterior>"
+                    "<gml:LinearRing><gml:posList srsDimension=\"3\">%d 0 0 %d 1 0 %d 1 5 %d 0 5 %d 0 0</gml:posList>"
+                    "</gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember></gml:MultiSurface>"
+                    "</bldg:lod1MultiSurface>",
+                    x, x, x, x, x);
         }
         if (i < 1000 || i == 1999)
             fputs("</bldg:Building></cityObjectMember>", f);
@@ -268,11 +268,10 @@ static void attributes_are_bounded(void **state) {
             fputs("<gen:stringAttribute name='a'><gen:value>1</gen:value></gen:stringAttribute>", f);
         fputs("</b:BuildingInstallation></b:outerBuildingInstallation>", f);
     }
-    fputs(
-        "<b:lod1MultiSurface><gml:MultiSurface><gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>"
-        "0 0 0 1 0 0 1 1 0 0 0 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember></gml:MultiSurface>"
-        "</b:lod1MultiSurface></b:Building></cityObjectMember></CityModel>",
-        f);
+    fputs("<b:lod1MultiSurface><gml:MultiSurface><gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing>"
+          "<gml:posList>0 0 0 1 0 0 1 1 0 0 0 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>"
+          "</gml:surfaceMember></gml:MultiSurface></b:lod1MultiSurface></b:Building></cityObjectMember></CityModel>",
+          f);
     fclose(f);
     /* 100,000 of them take 2.4 MB beside their texts */
     refused("words.gml", 0.0045, "words.gml: an object (\"house\") would take");
@@ -294,10 +293,10 @@ static void city_links_are_bounded(void **state) {
         for (int k = 0; k < 2 && i; k++)
             fprintf(f, "<gml:surfaceMember xlink:href=\"#m%d\"/>", i - 1);
         if (!i)
-            fputs(
-                "<gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>0 0 0 1 0 0 1 1 0 0 0 0</gml:posList>"
-                "</gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>",
-                f);
+            fputs("<gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing>"
+                  "<gml:posList>0 0 0 1 0 0 1 1 0 0 0 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>"
+                  "</gml:surfaceMember>",
+                  f);
         fputs("</gml:MultiSurface></bldg:lod1MultiSurface></bldg:Building></cityObjectMember>", f);
     }
     fputs("</CityModel>", f);
@@ -310,10 +309,10 @@ static void city_links_are_bounded(void **state) {
 static void city_tags_are_bounded(void **state) {
     for (int longer = 0; longer < 2; longer++) {
         FILE *f = create("tag.gml");
-        fputs(
-            "<CityModel xmlns=\"http://www.opengis.net/citygml/2.0\" xmlns:bldg=\"http://www.opengis.net/citygml/building/2.0\">\n"
-            "<cityObjectMember><bldg:Building name=\"",
-            f);
+        fputs("<CityModel xmlns=\"http://www.opengis.net/citygml/2.0\" "
+              "xmlns:bldg=\"http://www.opengis.net/citygml/building/2.0\">\n"
+              "<cityObjectMember><bldg:Building name=\"",
+              f);
         for (int i = 0; i < (4 << 20) + (longer ? 1 << 19 : -100); i++)
             fputc('x', f);
         fputs("\"/></cityObjectMember></CityModel>", f);

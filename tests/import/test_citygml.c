@@ -71,10 +71,12 @@ static void test_lod_best_under_limit(void **state) {
 
 static void test_lod_per_building(void **state) {
     (void)state;
+    /* clang-format off */
     expect(MODEL(MEMBER(BUILDING("B1", LOD_SOLID("1", MEMBERS(SQUARE("a", "1", "1")))))
-                     MEMBER(BUILDING("B2", LOD_SOLID("1", MEMBERS(SQUARE("b", "1", "1")))
-                                               BOUND("RoofSurface", "2", SQUARE("c", "1", "2"))))),
+                 MEMBER(BUILDING("B2", LOD_SOLID("1", MEMBERS(SQUARE("b", "1", "1")))
+                                       BOUND("RoofSurface", "2", SQUARE("c", "1", "2"))))),
            3, "a c");
+    /* clang-format on */
     assert_int_equal(sink.objects.len, 2);
     assert_int_equal(sink.objects.data[0].lod, 1);
     assert_int_equal(sink.objects.data[1].lod, 2);
@@ -85,17 +87,21 @@ static void test_lod_per_building(void **state) {
 static void test_lod_of_parts(void **state) {
     (void)state;
     /* The whole's block must not stand inside its parts; a part that has only a block keeps it. */
+    /* clang-format off */
     expect(MODEL(MEMBER(BUILDING("B", LOD_SOLID("1", MEMBERS(SQUARE("whole", "1", "1")))
-                                          PART("P1", LOD_SOLID("1", MEMBERS(SQUARE("p1-1", "1", "1")))
-                                                         BOUND("RoofSurface", "2", SQUARE("p1-2", "1", "2")))
-                                              PART("P2", LOD_SOLID("1", MEMBERS(SQUARE("p2-1", "2", "1"))))))),
+                                      PART("P1", LOD_SOLID("1", MEMBERS(SQUARE("p1-1", "1", "1")))
+                                                 BOUND("RoofSurface", "2", SQUARE("p1-2", "1", "2")))
+                                      PART("P2", LOD_SOLID("1", MEMBERS(SQUARE("p2-1", "2", "1"))))))),
            3, "p1-2 p2-1");
+    /* clang-format on */
     assert_int_equal(sink.objects.len, 1);
     /* An outline is no part of a body. */
+    /* clang-format off */
     expect(MODEL(MEMBER(BUILDING("B", PART("P1", BOUND("RoofSurface", "2", SQUARE("p1-2", "1", "2")))
-                                          PART("P2", "<b:lod0FootPrint>" SURFACES(
-                                                         SQUARE("p2-0", "2", "1")) "</b:lod0FootPrint>")))),
+                                      PART("P2", "<b:lod0FootPrint>" SURFACES(SQUARE("p2-0", "2", "1"))
+                                                 "</b:lod0FootPrint>")))),
            3, "p1-2");
+    /* clang-format on */
 }
 
 static void test_lod_of_installations(void **state) {
@@ -123,29 +129,22 @@ static void test_nothing_to_show(void **state) {
 
 static void test_classes_of_buildings(void **state) {
     (void)state;
-    expect(
-        MODEL(MEMBER(BUILDING(
-            "B",
-            BOUND("WallSurface", "3", UPRIGHT("wall", "1")) BOUND("RoofSurface", "3", SQUARE("roof", "2", "3")) BOUND(
-                "GroundSurface", "3", SQUARE("ground", "3", "0")) BOUND("ClosureSurface", "3", UPRIGHT("closure", "4"))
-                BOUND("OuterCeilingSurface", "3",
-                      SQUARE("ceiling", "5", "2")) BOUND("OuterFloorSurface", "3", SQUARE("floor", "6", "2"))
-                    BOUND("FloorSurface", "3", SQUARE("inside", "7", "0")) "<b:boundedBy><b:WallSurface><b:lod3MultiSurface>" SURFACES(
-                        UPRIGHT(
-                            "wall2",
-                            "8")) "</b:lod3MultiSurface>"
-                                  "<b:opening><b:Window><b:lod3MultiSurface>" SURFACES(UPRIGHT(
-                                      "window",
-                                      "9")) "</b:lod3MultiSurface></b:Window>"
-                                            "</b:opening><b:opening><b:Door g:id='D'><b:lod3MultiSurface><g:MultiSurface><g:surfaceMember><g:Polygon>"
-                                            "<g:exterior>" RING(
-                                                "0 0 0 1 0 0 1 0 2") "</g:exterior></g:Polygon></g:surfaceMember></g:MultiSurface>"
-                                                                     "</b:lod3MultiSurface></b:Door></b:opening></b:WallSurface></b:boundedBy>"
-                                                                     "<b:interiorRoom><b:Room>" BOUND(
-                                                                         "InteriorWallSurface", "3",
-                                                                         UPRIGHT("room",
-                                                                                 "1")) "</b:Room></b:interiorRoom>"))),
+    /* clang-format off */
+    expect(MODEL(MEMBER(BUILDING("B",
+        BOUND("WallSurface", "3", UPRIGHT("wall", "1")) BOUND("RoofSurface", "3", SQUARE("roof", "2", "3"))
+        BOUND("GroundSurface", "3", SQUARE("ground", "3", "0")) BOUND("ClosureSurface", "3", UPRIGHT("closure", "4"))
+        BOUND("OuterCeilingSurface", "3", SQUARE("ceiling", "5", "2"))
+        BOUND("OuterFloorSurface", "3", SQUARE("floor", "6", "2"))
+        BOUND("FloorSurface", "3", SQUARE("inside", "7", "0"))
+        "<b:boundedBy><b:WallSurface><b:lod3MultiSurface>" SURFACES(UPRIGHT("wall2", "8")) "</b:lod3MultiSurface>"
+        "<b:opening><b:Window><b:lod3MultiSurface>" SURFACES(UPRIGHT("window", "9")) "</b:lod3MultiSurface></b:Window>"
+        "</b:opening><b:opening><b:Door g:id='D'><b:lod3MultiSurface><g:MultiSurface><g:surfaceMember><g:Polygon>"
+        "<g:exterior>" RING("0 0 0 1 0 0 1 0 2") "</g:exterior></g:Polygon></g:surfaceMember></g:MultiSurface>"
+        "</b:lod3MultiSurface></b:Door></b:opening></b:WallSurface></b:boundedBy>"
+        "<b:interiorRoom><b:Room>" BOUND("InteriorWallSurface", "3", UPRIGHT("room", "1"))
+        "</b:Room></b:interiorRoom>"))),
         3, "wall roof ground closure ceiling floor wall2 window D");
+    /* clang-format on */
     const struct {
         const char *id;
         noc_class cls;
@@ -160,10 +159,12 @@ static void test_classes_of_buildings(void **state) {
 
 static void test_classes_by_normal(void **state) {
     (void)state;
-    const char *text = MODEL(
-        MEMBER(BUILDING("B", LOD_SOLID("1", MEMBERS(SQUARE("up", "1", "3")) MEMBERS(UPRIGHT("side", "1"))
-                                                MEMBERS(POLYGON("down", "1 0 0 1 1 0 2 1 0 2 0 0 1 0 0"))
-                                                    MEMBERS(POLYGON("slope", "0 0 0 1 0 0 1 1 2 0 1 2 0 0 0"))))));
+    /* clang-format off */
+    const char *text = MODEL(MEMBER(BUILDING("B", LOD_SOLID("1",
+        MEMBERS(SQUARE("up", "1", "3")) MEMBERS(UPRIGHT("side", "1"))
+        MEMBERS(POLYGON("down", "1 0 0 1 1 0 2 1 0 2 0 0 1 0 0"))
+        MEMBERS(POLYGON("slope", "0 0 0 1 0 0 1 1 2 0 1 2 0 0 0"))))));
+    /* clang-format on */
     expect(text, 3, "up side down slope");
     assert_int_equal(city_find(&sink, "up")->cls, NOC_CLASS_ROOF);
     assert_int_equal(city_find(&sink, "side")->cls, NOC_CLASS_WALL);
@@ -182,50 +183,42 @@ static void test_classes_by_normal(void **state) {
 
 static void test_other_objects(void **state) {
     (void)state;
-    expect(
-        MODEL(MEMBER("<t:Road g:id='R'><t:lod1MultiSurface>" SURFACES(SQUARE(
-            "road1", "1",
-            "0")) "</t:lod1MultiSurface>"
-                  "<t:trafficArea><t:TrafficArea><t:function>1</t:function><t:lod2MultiSurface>" SURFACES(SQUARE(
-                      "lane", "1",
-                      "0")) "</t:lod2MultiSurface></t:TrafficArea></t:trafficArea>"
-                            "<t:trafficArea><t:TrafficArea><t:function>2</t:function><t:lod2MultiSurface>" SURFACES(SQUARE(
-                                "foot", "2",
-                                "0")) "</t:lod2MultiSurface></t:TrafficArea></t:trafficArea>"
-                                      "<t:trafficArea><t:TrafficArea><t:function codeSpace='../../codelists/TrafficArea_function.xml'>2000"
-                                      "</t:function><t:lod2MultiSurface>" SURFACES(SQUARE(
-                                          "hodo", "3",
-                                          "0")) "</t:lod2MultiSurface></t:TrafficArea></t:trafficArea>"
-                                                "<t:auxiliaryTrafficArea><t:AuxiliaryTrafficArea><t:function>1220</t:function><t:lod2MultiSurface>" SURFACES(
-                                                    SQUARE(
-                                                        "kerb", "4",
-                                                        "0")) "</t:lod2MultiSurface></t:AuxiliaryTrafficArea></t:auxiliaryTrafficArea>"
-                                                              "<t:auxiliaryTrafficArea><t:AuxiliaryTrafficArea><t:function>1020</t:function><t:lod2MultiSurface>" SURFACES(
-                                                                  SQUARE(
-                                                                      "verge", "5",
-                                                                      "0")) "</t:lod2MultiSurface></t:AuxiliaryTrafficArea>"
-                                                                            "</t:auxiliaryTrafficArea></t:Road>")
-                  MEMBER("<v:SolitaryVegetationObject><v:lod2Geometry>" SURFACES(
-                      UPRIGHT("tree", "1")) "</v:lod2Geometry></v:SolitaryVegetationObject>")
-                      MEMBER("<v:PlantCover><v:lod1MultiSurface>" SURFACES(
-                          SQUARE("lawn", "1", "0")) "</v:lod1MultiSurface></v:PlantCover>")
-                          MEMBER(
-                              "<w:WaterBody><w:boundedBy><w:WaterSurface><w:lod2Surface>" SURFACES(SQUARE("river", "1", "0")) "</w:lod2Surface></w:WaterSurface></w:boundedBy><w:boundedBy><w:WaterGroundSurface><w:lod2Surface>" SURFACES(
-                                  SQUARE("bed", "1",
-                                         "0")) "</w:lod2Surface></w:WaterGroundSurface></w:boundedBy></w:WaterBody>")
-                              MEMBER("<f:CityFurniture><f:function>1530</f:function><f:lod1Geometry>" SURFACES(
-                                  SQUARE("bench", "1", "0")) "</f:lod1Geometry></f:CityFurniture>")
-                                  MEMBER("<l:LandUse><l:class>3000</l:class><l:lod1MultiSurface>" SURFACES(
-                                      SQUARE("meadow", "1", "0")) "</l:lod1MultiSurface></l:LandUse>")
-                                      MEMBER("<l:LandUse><l:class>1000</l:class><l:lod1MultiSurface>" SURFACES(
-                                          SQUARE("town", "1", "0")) "</l:lod1MultiSurface></l:LandUse>")
-                                          MEMBER("<br:Bridge><br:boundedBy><br:WallSurface><br:lod2MultiSurface>" SURFACES(
-                                              UPRIGHT(
-                                                  "pier",
-                                                  "1")) "</br:lod2MultiSurface></br:WallSurface></br:boundedBy></br:Bridge>")
-                                              MEMBER("<gen:GenericCityObject><gen:lod1Geometry>" SURFACES(SQUARE(
-                                                  "thing", "1", "0")) "</gen:lod1Geometry></gen:GenericCityObject>")),
+    /* clang-format off */
+    expect(MODEL(
+        MEMBER("<t:Road g:id='R'><t:lod1MultiSurface>" SURFACES(SQUARE("road1", "1", "0")) "</t:lod1MultiSurface>"
+               "<t:trafficArea><t:TrafficArea><t:function>1</t:function><t:lod2MultiSurface>"
+               SURFACES(SQUARE("lane", "1", "0")) "</t:lod2MultiSurface></t:TrafficArea></t:trafficArea>"
+               "<t:trafficArea><t:TrafficArea><t:function>2</t:function><t:lod2MultiSurface>"
+               SURFACES(SQUARE("foot", "2", "0")) "</t:lod2MultiSurface></t:TrafficArea></t:trafficArea>"
+               "<t:trafficArea><t:TrafficArea><t:function codeSpace='../../codelists/TrafficArea_function.xml'>2000"
+               "</t:function><t:lod2MultiSurface>" SURFACES(SQUARE("hodo", "3", "0"))
+               "</t:lod2MultiSurface></t:TrafficArea></t:trafficArea>"
+               "<t:auxiliaryTrafficArea><t:AuxiliaryTrafficArea><t:function>1220</t:function><t:lod2MultiSurface>"
+               SURFACES(SQUARE("kerb", "4", "0")) "</t:lod2MultiSurface></t:AuxiliaryTrafficArea>"
+                                                  "</t:auxiliaryTrafficArea><t:auxiliaryTrafficArea>"
+                                                  "<t:AuxiliaryTrafficArea><t:function>1020</t:function>"
+                                                  "<t:lod2MultiSurface>"
+               SURFACES(SQUARE("verge", "5", "0")) "</t:lod2MultiSurface></t:AuxiliaryTrafficArea>"
+               "</t:auxiliaryTrafficArea></t:Road>")
+        MEMBER("<v:SolitaryVegetationObject><v:lod2Geometry>" SURFACES(UPRIGHT("tree", "1"))
+               "</v:lod2Geometry></v:SolitaryVegetationObject>")
+        MEMBER("<v:PlantCover><v:lod1MultiSurface>" SURFACES(SQUARE("lawn", "1", "0"))
+               "</v:lod1MultiSurface></v:PlantCover>")
+        MEMBER("<w:WaterBody><w:boundedBy><w:WaterSurface><w:lod2Surface>" SURFACES(SQUARE("river", "1", "0"))
+               "</w:lod2Surface></w:WaterSurface></w:boundedBy><w:boundedBy><w:WaterGroundSurface><w:lod2Surface>"
+               SURFACES(SQUARE("bed", "1", "0")) "</w:lod2Surface></w:WaterGroundSurface></w:boundedBy></w:WaterBody>")
+        MEMBER("<f:CityFurniture><f:function>1530</f:function><f:lod1Geometry>" SURFACES(SQUARE("bench", "1", "0"))
+               "</f:lod1Geometry></f:CityFurniture>")
+        MEMBER("<l:LandUse><l:class>3000</l:class><l:lod1MultiSurface>" SURFACES(SQUARE("meadow", "1", "0"))
+               "</l:lod1MultiSurface></l:LandUse>")
+        MEMBER("<l:LandUse><l:class>1000</l:class><l:lod1MultiSurface>" SURFACES(SQUARE("town", "1", "0"))
+               "</l:lod1MultiSurface></l:LandUse>")
+        MEMBER("<br:Bridge><br:boundedBy><br:WallSurface><br:lod2MultiSurface>" SURFACES(UPRIGHT("pier", "1"))
+               "</br:lod2MultiSurface></br:WallSurface></br:boundedBy></br:Bridge>")
+        MEMBER("<gen:GenericCityObject><gen:lod1Geometry>" SURFACES(SQUARE("thing", "1", "0"))
+               "</gen:lod1Geometry></gen:GenericCityObject>")),
         3, "lane foot hodo kerb verge tree lawn river bench meadow town pier thing");
+    /* clang-format on */
     const struct {
         const char *id;
         noc_class cls;
@@ -272,34 +265,38 @@ static void test_group_members(void **state) {
 
 static void test_solid_of_references(void **state) {
     (void)state;
-    expect(MODEL(
-               MEMBER(BUILDING("B", LOD_SOLID("2", LINK("r") LINK("w")) BOUND("RoofSurface", "2", SQUARE("r", "1", "2"))
-                                        BOUND("WallSurface", "2", UPRIGHT("w", "1"))))),
-           3, "r w");
+    /* clang-format off */
+    expect(MODEL(MEMBER(BUILDING("B", LOD_SOLID("2", LINK("r") LINK("w"))
+                                      BOUND("RoofSurface", "2", SQUARE("r", "1", "2"))
+                                      BOUND("WallSurface", "2", UPRIGHT("w", "1"))))), 3, "r w");
+    /* clang-format on */
     assert_int_equal(city_find(&sink, "r")->cls, NOC_CLASS_ROOF);
     /* The solid's own polygons say the same again, without a meaning. */
+    /* clang-format off */
     expect(MODEL(MEMBER(BUILDING("B", LOD_SOLID("2", MEMBERS(SQUARE("s1", "1", "2")) MEMBERS(UPRIGHT("s2", "1")))
-                                          BOUND("RoofSurface", "2", SQUARE("r", "1", "2"))))),
-           3, "r");
+                                      BOUND("RoofSurface", "2", SQUARE("r", "1", "2"))))), 3, "r");
+    /* clang-format on */
     /* Without surfaces of a meaning, the solid is all there is, whichever way it refers. */
-    expect(MODEL(MEMBER(BUILDING("B", LOD_SOLID("2", "<g:surfaceMember><g:CompositeSurface g:id='all'>" MEMBERS(
-                                                         SQUARE("s1", "1", "2")) LINK("s1") "</g:CompositeSurface>"
-                                                                                            "</g:surfaceMember>")
-                                          LOD_SURFACES("2", SQUARE("s1-again", "1", "2"))))
-                     MEMBER(BUILDING("C", "<b:lod1Solid><g:Solid><g:exterior x:href='#shell'/></g:Solid>"
-                                          "</b:lod1Solid><b:lod2MultiSurface><g:MultiSurface g:id='shell'>" MEMBERS(
-                                              SQUARE("c", "1", "1")) "</g:MultiSurface></b:lod2MultiSurface>"))),
-           3, "s1 c");
+    /* clang-format off */
+    expect(MODEL(MEMBER(BUILDING("B", LOD_SOLID("2", "<g:surfaceMember><g:CompositeSurface g:id='all'>"
+                                      MEMBERS(SQUARE("s1", "1", "2")) LINK("s1") "</g:CompositeSurface>"
+                                      "</g:surfaceMember>") LOD_SURFACES("2", SQUARE("s1-again", "1", "2")))
+                        ) MEMBER(BUILDING("C", "<b:lod1Solid><g:Solid><g:exterior x:href='#shell'/></g:Solid>"
+                        "</b:lod1Solid><b:lod2MultiSurface><g:MultiSurface g:id='shell'>" MEMBERS(SQUARE("c", "1", "1"))
+                        "</g:MultiSurface></b:lod2MultiSurface>"))), 3, "s1 c");
+    /* clang-format on */
     assert_int_equal(city_issue(&sink, "polygon given twice"), 1);
 }
 
 static void test_references_between_objects(void **state) {
     (void)state;
     /* Each solid borrows a wall of the other: shown once, by its owner. */
+    /* clang-format off */
     expect(MODEL(MEMBER(BUILDING("A", LOD_SOLID("2", LINK("a") LINK("b")) BOUND("WallSurface", "2", UPRIGHT("a", "1"))))
-                     MEMBER(BUILDING("B", LOD_SOLID("2", LINK("b") LINK("a"))
-                                              BOUND("WallSurface", "2", UPRIGHT("b", "2"))))),
-           3, "b a"); /* B in the second pass, when a is known; A, whose reference leads forward, in the third */
+                 MEMBER(BUILDING("B", LOD_SOLID("2", LINK("b") LINK("a"))
+                                      BOUND("WallSurface", "2", UPRIGHT("b", "2"))))),
+           3, "b a");
+    /* clang-format on */ /* B in the second pass, when a is known; A, whose reference leads forward, in the third */
     assert_int_equal(geo_issues_count(sink.sink.issues), 0);
     assert_int_equal(sink.objects.len, 2);
     assert_int_equal(sink.crs.len, 1);
@@ -325,13 +322,16 @@ static void test_references_that_fail(void **state) {
     assert_int_equal(city_issue(&sink, "unresolved xlink"), 4);
     assert_int_equal(city_issue(&sink, "xlink into another file"), 1);
     /* In a circle, and many times over. */
+    /* clang-format off */
     expect(MODEL(MEMBER(BUILDING("A", "<b:lod2MultiSurface><g:MultiSurface g:id='m'>" LINK("m") LINK("m") LINK("m")
-                                          MEMBERS(SQUARE("a", "1", "1")) "</g:MultiSurface></b:lod2MultiSurface>"))),
+                                      MEMBERS(SQUARE("a", "1", "1")) "</g:MultiSurface></b:lod2MultiSurface>"))),
            3, "a");
+    /* clang-format on */
 #define TEN(x) x x x x x x x x x x
-    expect(MODEL(MEMBER(BUILDING("A", "<b:lod2MultiSurface><g:MultiSurface g:id='m'>" TEN(
-                                          TEN(LINK("m"))) "</g:MultiSurface></b:lod2MultiSurface>"))),
-           3, "");
+    /* clang-format off */
+    expect(MODEL(MEMBER(BUILDING("A", "<b:lod2MultiSurface><g:MultiSurface g:id='m'>" TEN(TEN(LINK("m")))
+                                      "</g:MultiSurface></b:lod2MultiSurface>"))), 3, "");
+    /* clang-format on */
     assert_int_equal(city_issue(&sink, "xlinks that lead in circles"), 1);
 }
 
@@ -385,12 +385,13 @@ static void test_crs(void **state) {
     assert_int_equal(sink.crs.len, 1);
     assert_string_equal(sink.crs.data[0], "(none)");
 
-    expect(MODEL(ENVELOPE("EPSG:1") MEMBER(BUILDING("A", LOD_SURFACES("2", SQUARE("a", "1", "1")))) MEMBER(
-               BUILDING("B", ENVELOPE("EPSG:2") LOD_SURFACES(
-                                 "2", SQUARE("b", "1", "1") "<g:Polygon g:id='b2' srsName='EPSG:3'><g:exterior>" RING(
-                                          "0 0 0 1 0 0 1 1 0") "</g:exterior></g:Polygon>")))
-                     MEMBER(BUILDING("C", LOD_SURFACES("2", SQUARE("c", "1", "1"))))),
-           3, "a b b2 c");
+    /* clang-format off */
+    expect(MODEL(ENVELOPE("EPSG:1") MEMBER(BUILDING("A", LOD_SURFACES("2", SQUARE("a", "1", "1"))))
+                 MEMBER(BUILDING("B", ENVELOPE("EPSG:2") LOD_SURFACES("2", SQUARE("b", "1", "1")
+                        "<g:Polygon g:id='b2' srsName='EPSG:3'><g:exterior>" RING("0 0 0 1 0 0 1 1 0")
+                        "</g:exterior></g:Polygon>") ))
+                 MEMBER(BUILDING("C", LOD_SURFACES("2", SQUARE("c", "1", "1"))))), 3, "a b b2 c");
+    /* clang-format on */
     const char *want[] = { "EPSG:1", "EPSG:2", "EPSG:3", "EPSG:1" };
     assert_int_equal(sink.crs.len, NOC_COUNT(want));
     for (size_t i = 0; i < NOC_COUNT(want); i++) {
@@ -418,19 +419,13 @@ static void test_versions(void **state) {
     expect(OLD_OR_NEW("2.0", GML31), 3, "r");
     assert_string_equal(sink.format, "CityGML 2.0");
     /* 3.0 has other names for the same structure. */
-    expect(
-        "<CityModel" NAMESPACES(
-            "3.0",
-            GML32) "><cityObjectMember><b:Building><boundary><con:WallSurface>"
-                   "<lod3MultiSurface>" SURFACES(UPRIGHT(
-                       "wall",
-                       "1")) "</lod3MultiSurface><con:fillingSurface>"
-                             "<con:WindowSurface><lod3MultiSurface>" SURFACES(UPRIGHT(
-                                 "window",
-                                 "2")) "</lod3MultiSurface>"
-                                       "</con:WindowSurface></con:fillingSurface></con:WallSurface></boundary></b:Building></cityObjectMember>"
-                                       "</CityModel>",
-        3, "wall window");
+    /* clang-format off */
+    expect("<CityModel" NAMESPACES("3.0", GML32) "><cityObjectMember><b:Building><boundary><con:WallSurface>"
+           "<lod3MultiSurface>" SURFACES(UPRIGHT("wall", "1")) "</lod3MultiSurface><con:fillingSurface>"
+           "<con:WindowSurface><lod3MultiSurface>" SURFACES(UPRIGHT("window", "2")) "</lod3MultiSurface>"
+           "</con:WindowSurface></con:fillingSurface></con:WallSurface></boundary></b:Building></cityObjectMember>"
+           "</CityModel>", 3, "wall window");
+    /* clang-format on */
     assert_string_equal(sink.format, "CityGML 3.0");
     assert_int_equal(city_find(&sink, "window")->cls, NOC_CLASS_WINDOW);
     refuse(OLD_OR_NEW("4.0", GML32), NOC_ERR_UNSUPPORTED, "CityGML 4");
@@ -440,9 +435,10 @@ static void test_versions(void **state) {
 static void test_other_roots(void **state) {
     (void)state;
 #define ONE BUILDING("B", LOD_SURFACES("2", SQUARE("s", "1", "1")))
+    /* clang-format off */
     expect("<g:FeatureCollection" NAMESPACES("2.0", GML31) "><g:featureMembers>" ONE ONE "</g:featureMembers>"
-                                                           "</g:FeatureCollection>",
-           3, "s s");
+           "</g:FeatureCollection>", 3, "s s");
+    /* clang-format on */
     expect("<b:Building" NAMESPACES("2.0", GML31) ">" LOD_SURFACES("2", SQUARE("s", "1", "1")) "</b:Building>", 3, "s");
     refuse("<g:FeatureCollection" NAMESPACES("2.0", GML31) "/>", NOC_ERR_FORMAT, "no CityGML");
     refuse("<IndoorFeatures xmlns='http://www.opengis.net/indoorgml/1.0/core'/>", NOC_ERR_FORMAT, "<IndoorFeatures>");
@@ -522,21 +518,17 @@ static void test_hostile(void **state) {
 /* Geometry in all the wrong places. */
 static void test_misplaced(void **state) {
     (void)state;
-    expect(
-        MODEL(SQUARE("p1", "1", "1") MEMBER(SQUARE("p2", "1", "1")) MEMBER(BUILDING(
-            "B",
-            SQUARE("p3", "1", "1") LOD_SURFACES(
-                "2",
-                "<g:Polygon g:id='p4'><g:exterior>" RING(
-                    "0 0 0 1 0 0 1 1 0" SQUARE("p5", "1", "1")) "</g:exterior>" SQUARE("p6", "1", "1")
-                    ONE LOD_SURFACES(
-                        "2",
-                        SQUARE(
-                            "p7",
-                            "1",
-                            "1")) "</g:Polygon>") "<transformationMatrix>1</transformationMatrix><referencePoint><g:pos>1 2 3</g:pos></referencePoint>"
-                                                  "<g:posList>1 2 3</g:posList><b:function><b:function>x</b:function></b:function>")) "<g:boundedBy><g:boundedBy><g:Envelope srsName='x'/></g:boundedBy></g:boundedBy>"),
-        3, "p4");
+    /* clang-format off */
+    expect(MODEL(SQUARE("p1", "1", "1") MEMBER(SQUARE("p2", "1", "1"))
+                 MEMBER(BUILDING("B", SQUARE("p3", "1", "1") LOD_SURFACES("2",
+                        "<g:Polygon g:id='p4'><g:exterior>" RING("0 0 0 1 0 0 1 1 0" SQUARE("p5", "1", "1"))
+                        "</g:exterior>"
+                        SQUARE("p6", "1", "1") ONE LOD_SURFACES("2", SQUARE("p7", "1", "1")) "</g:Polygon>")
+                        "<transformationMatrix>1</transformationMatrix><referencePoint>"
+                        "<g:pos>1 2 3</g:pos></referencePoint><g:posList>1 2 3</g:posList><b:function>"
+                        "<b:function>x</b:function></b:function>"))
+                 "<g:boundedBy><g:boundedBy><g:Envelope srsName='x'/></g:boundedBy></g:boundedBy>"), 3, "p4");
+    /* clang-format on */
 }
 
 static void test_cut_anywhere(void **state) {

@@ -127,10 +127,11 @@ static void test_bad_rings(void **state) {
 
 static void test_holes(void **state) {
     (void)state;
-    const char *good = SURFACES("<g:Polygon g:id='p'><g:exterior>" RING(
-        "0 0 0 9 0 0 9 9 0 0 9 0 0 0 0") "</g:exterior>"
-                                         "<g:interior>" RING("1 1 0 1 2 0 2 2 0 1 1 0") "</g:interior><g:interior>" RING(
-                                             "5 5 0 5 6 0 6 6 0 5 5 0") "</g:interior></g:Polygon>");
+    /* clang-format off */
+    const char *good = SURFACES("<g:Polygon g:id='p'><g:exterior>" RING("0 0 0 9 0 0 9 9 0 0 9 0 0 0 0") "</g:exterior>"
+        "<g:interior>" RING("1 1 0 1 2 0 2 2 0 1 1 0") "</g:interior><g:interior>" RING("5 5 0 5 6 0 6 6 0 5 5 0")
+        "</g:interior></g:Polygon>");
+    /* clang-format on */
     assert_int_equal(read_surfaces(good), 1);
     assert_int_equal(city_find(&sink, "p")->rings, 3);
     assert_int_equal(city_find(&sink, "p")->points, 4 + 3 + 3);
@@ -147,11 +148,11 @@ static void test_holes(void **state) {
                      0);
     assert_int_equal(city_issue(&sink, "polygon without an exterior ring"), 2);
     /* The old names, in the wrong order. */
-    assert_int_equal(
-        read_surfaces(SURFACES(
-            "<g:Polygon g:id='p'><g:innerBoundaryIs>" RING("1 1 0 1 2 0 2 2 0 1 1 0") "</g:innerBoundaryIs><g:outerBoundaryIs>" RING(
-                "0 0 0 9 0 0 9 9 0 0 0 0") "</g:outerBoundaryIs></g:Polygon>")),
-        1);
+    /* clang-format off */
+    assert_int_equal(read_surfaces(SURFACES("<g:Polygon g:id='p'><g:innerBoundaryIs>" RING("1 1 0 1 2 0 2 2 0 1 1 0")
+        "</g:innerBoundaryIs><g:outerBoundaryIs>" RING("0 0 0 9 0 0 9 9 0 0 0 0")
+        "</g:outerBoundaryIs></g:Polygon>")), 1);
+    /* clang-format on */
     const double outer[] = { 0, 0, 0, 9, 0, 0, 9, 9, 0 };
     expect_points(city_find(&sink, "p"), 3, outer);
     assert_int_equal(city_issue(&sink, "interior ring before the exterior one"), 1);
@@ -165,28 +166,24 @@ static void test_holes(void **state) {
 
 static void test_containers(void **state) {
     (void)state;
-    assert_int_equal(
-        read_surfaces("<g:MultiGeometry><g:geometryMember><g:MultiSolid><g:solidMember><g:CompositeSolid><g:solidMember>" SHELL(MEMBERS(SQUARE(
-            "a", "1",
-            "1"))) "</g:solidMember></g:CompositeSolid></g:solidMember></g:MultiSolid>"
-                   "</g:geometryMember><g:geometryMember>" SURFACES("<g:CompositeSurface><g:surfaceMembers>" SQUARE("b", "1", "2") SQUARE(
-                       "c", "1",
-                       "3") "</g:surfaceMembers></g:CompositeSurface>") "</g:geometryMember></g:MultiGeometry>"
-                                                                        "<g:TriangulatedSurface><g:trianglePatches><g:Triangle><g:exterior>" RING(
-                                                                            "0 0 0 1 0 0 1 1 0 0 0 0") "</g:exterior></g:Triangle></g:trianglePatches></g:TriangulatedSurface>"
-                                                                                                       "<g:Tin g:id='t'><g:trianglePatches><g:Triangle><g:exterior>" RING(
-                                                                                                           "0 0 0 1 0 0 1 1 0 0 0 0") "</g:exterior></g:Triangle></g:trianglePatches><g:controlPoint><g:posList>0 0 0 1 1 1</g:posList>"
-                                                                                                                                      "</g:controlPoint></g:Tin>"
-                                                                                                                                      "<g:Surface g:id='s'><g:patches><g:PolygonPatch><g:exterior>" RING("0 0 0 1 0 0 1 1 0 0 0 0") "</g:exterior></g:PolygonPatch><g:Rectangle><g:exterior>" RING(
-                                                                                                                                          "0 0 0 1 0 0 1 1 0 0 1 0 0 0 0") "</g:exterior></g:Rectangle></g:patches></g:Surface>"
-                                                                                                                                                                           "<g:Solid><g:interior><g:Shell>" MEMBERS(
-                                                                                                                                                                               SQUARE(
-                                                                                                                                                                                   "void",
-                                                                                                                                                                                   "1",
-                                                                                                                                                                                   "1")) "</g:Shell></g:interior></g:Solid>"
-                                                                                                                                                                                         "<g:MultiCurve><g:curveMember><g:LineString><g:posList>0 0 0 1 1 1</g:posList></g:LineString></g:curveMember>"
-                                                                                                                                                                                         "</g:MultiCurve>"),
-        3 + 1 + 1 + 2 + 1);
+    /* clang-format off */
+    assert_int_equal(read_surfaces(
+        "<g:MultiGeometry><g:geometryMember><g:MultiSolid><g:solidMember><g:CompositeSolid><g:solidMember>"
+        SHELL(MEMBERS(SQUARE("a", "1", "1"))) "</g:solidMember></g:CompositeSolid></g:solidMember></g:MultiSolid>"
+        "</g:geometryMember><g:geometryMember>" SURFACES("<g:CompositeSurface><g:surfaceMembers>" SQUARE("b", "1", "2")
+        SQUARE("c", "1", "3") "</g:surfaceMembers></g:CompositeSurface>") "</g:geometryMember></g:MultiGeometry>"
+        "<g:TriangulatedSurface><g:trianglePatches><g:Triangle><g:exterior>" RING("0 0 0 1 0 0 1 1 0 0 0 0")
+        "</g:exterior></g:Triangle></g:trianglePatches></g:TriangulatedSurface>"
+        "<g:Tin g:id='t'><g:trianglePatches><g:Triangle><g:exterior>" RING("0 0 0 1 0 0 1 1 0 0 0 0")
+        "</g:exterior></g:Triangle></g:trianglePatches><g:controlPoint><g:posList>0 0 0 1 1 1</g:posList>"
+        "</g:controlPoint></g:Tin>"
+        "<g:Surface g:id='s'><g:patches><g:PolygonPatch><g:exterior>" RING("0 0 0 1 0 0 1 1 0 0 0 0")
+        "</g:exterior></g:PolygonPatch><g:Rectangle><g:exterior>" RING("0 0 0 1 0 0 1 1 0 0 1 0 0 0 0")
+        "</g:exterior></g:Rectangle></g:patches></g:Surface>"
+        "<g:Solid><g:interior><g:Shell>" MEMBERS(SQUARE("void", "1", "1")) "</g:Shell></g:interior></g:Solid>"
+        "<g:MultiCurve><g:curveMember><g:LineString><g:posList>0 0 0 1 1 1</g:posList></g:LineString></g:curveMember>"
+        "</g:MultiCurve>"), 3 + 1 + 1 + 2 + 1);
+    /* clang-format on */
     assert_int_equal(geo_issues_count(sink.sink.issues), 0);
 }
 
@@ -204,8 +201,9 @@ static void test_rings_of_curves(void **state) {
     assert_int_equal(
         read_surfaces(SURFACES(
             "<g:Polygon g:id='p'><g:exterior><g:Ring><g:curveMember><g:Curve><g:segments>"
-            "<g:Arc><g:posList>0 0 0 2 2 0 4 0 0</g:posList></g:Arc><g:LineStringSegment><g:posList>4 0 0 0 0 0</g:posList>"
-            "</g:LineStringSegment></g:segments></g:Curve></g:curveMember></g:Ring></g:exterior></g:Polygon>")),
+            "<g:Arc><g:posList>0 0 0 2 2 0 4 0 0</g:posList></g:Arc><g:LineStringSegment>"
+            "<g:posList>4 0 0 0 0 0</g:posList></g:LineStringSegment></g:segments></g:Curve></g:curveMember></g:Ring>"
+            "</g:exterior></g:Polygon>")),
         1);
     assert_int_equal(city_issue(&sink, "arc taken as straight lines"), 1);
 }
@@ -238,16 +236,16 @@ static void test_orientation(void **state) {
 static void test_terrain(void **state) {
     (void)state;
 #define FACE(positions) "<g:Triangle><g:exterior>" RING(positions) "</g:exterior></g:Triangle>"
+    /* clang-format off */
     const char *text = MODEL(MEMBER(
-        "<d:ReliefFeature g:id='R'><d:lod>1</d:lod><d:reliefComponent><d:TINRelief g:id='T'>"
-        "<d:extent>" POLYGON(
-            "extent",
-            "0 0 0 9 0 0 9 9 0 0 0 0") "</d:extent><d:tin><g:TriangulatedSurface>"
-                                       "<g:trianglePatches>" FACE("0 0 0 1 0 0 1 1 0 0 0 0")
-                                           FACE("0 0 0 1 1 0 0 1 0 0 0 0") FACE(
-                                               "0 0 0 1 1 0") "</g:trianglePatches></g:TriangulatedSurface></d:tin></d:TINRelief></d:reliefComponent><d:reliefComponent>"
-                                                              "<d:MassPointRelief g:id='M'><d:reliefPoints><g:MultiPoint/></d:reliefPoints></d:MassPointRelief>"
-                                                              "</d:reliefComponent><d:reliefComponent><d:BreaklineRelief/></d:reliefComponent></d:ReliefFeature>"));
+        "<d:ReliefFeature g:id='R'><d:lod>1</d:lod><d:reliefComponent>"
+        "<d:TINRelief g:id='T'><d:extent>" POLYGON("extent", "0 0 0 9 0 0 9 9 0 0 0 0")
+        "</d:extent><d:tin><g:TriangulatedSurface>"
+        "<g:trianglePatches>" FACE("0 0 0 1 0 0 1 1 0 0 0 0") FACE("0 0 0 1 1 0 0 1 0 0 0 0") FACE("0 0 0 1 1 0")
+        "</g:trianglePatches></g:TriangulatedSurface></d:tin></d:TINRelief></d:reliefComponent><d:reliefComponent>"
+        "<d:MassPointRelief g:id='M'><d:reliefPoints><g:MultiPoint/></d:reliefPoints></d:MassPointRelief>"
+        "</d:reliefComponent><d:reliefComponent><d:BreaklineRelief/></d:reliefComponent></d:ReliefFeature>"));
+    /* clang-format on */
     assert_int_equal(city_read_bytes(&sink, text, strlen(text), 3), NOC_OK);
     assert_int_equal(sink.polygons.len, 2);
     assert_int_equal(sink.objects.len, 1);
@@ -262,11 +260,11 @@ static void test_terrain(void **state) {
 /* Expat hands text over in pieces: wherever a piece ends, the numbers must be the same. */
 static void test_pieces(void **state) {
     (void)state;
-    const char *shape = MEMBER(BUILDING(
-        "B",
-        "<b:lod2MultiSurface>" SURFACES(POLYGON(
-            "p",
-            "678016.20123 5403455.76712 412.9291 678017.2 5403455.7 412.9 678017.2 5403456.7 412.9")) "</b:lod2MultiSurface>"));
+    /* clang-format off */
+    const char *shape = MEMBER(BUILDING("B", "<b:lod2MultiSurface>"
+        SURFACES(POLYGON("p", "678016.20123 5403455.76712 412.9291 678017.2 5403455.7 412.9 678017.2 5403456.7 412.9"))
+        "</b:lod2MultiSurface>"));
+    /* clang-format on */
     const char *head = "<CityModel" NAMESPACES("2.0", GML31) "><!--", *tail = "-->";
     const double want[] = { 678016.20123, 5403455.76712, 412.9291,  678017.2, 5403455.7,
                             412.9,        678017.2,      5403456.7, 412.9 };

@@ -102,12 +102,14 @@ static void test_by_attributes(void **state) {
 /* ---- what it says of itself ---- */
 
 static void test_values(void **state) {
-    read_text(MODEL(FURNITURE(
-        "two",
-        FUNCTION("f", "1150") ATTRIBUTE("string", "lamp_type", "SOX")
-            ATTRIBUTE("int", "lumen", "4500") "<gen:measureAttribute name='height'><gen:value uom='urn:ogc:def:uom:UCUM::ft'>30</gen:value></gen:measureAttribute>" ATTRIBUTE(
-                "double", "Wattage", " 55.5 ") POINT("f", "5 6 7"))
-                        FURNITURE("flood", FUNCTION("f", "1230") POINT("f", "5 6"))));
+    /* clang-format off */
+    read_text(MODEL(FURNITURE("two", FUNCTION("f", "1150") ATTRIBUTE("string", "lamp_type", "SOX")
+                              ATTRIBUTE("int", "lumen", "4500")
+                              "<gen:measureAttribute name='height'>"
+                              "<gen:value uom='urn:ogc:def:uom:UCUM::ft'>30</gen:value></gen:measureAttribute>"
+                              ATTRIBUTE("double", "Wattage", " 55.5 ") POINT("f", "5 6 7"))
+                    FURNITURE("flood", FUNCTION("f", "1230") POINT("f", "5 6"))));
+    /* clang-format on */
     assert_int_equal(sink.lamps.len, 2);
     const geo_lamp *two = &sink.lamps.data[0];
     assert_float_equal(two->height, 9.144, 1e-9);
@@ -118,12 +120,17 @@ static void test_values(void **state) {
     assert_true(two->xyz[0] == 5 && two->xyz[1] == 6 && two->xyz[2] == 7);
     assert_int_equal(sink.lamps.data[1].type, GEO_LAMP_FLOOD);
     assert_true(isnan(sink.lamps.data[1].xyz[2])); /* two dimensions: on the ground */
-    static const char three[] = "<CityModel" NAMESPACES(
-        "3.0",
-        GML32) " xmlns:c='http://www.opengis.net/citygml/3.0'><cityObjectMember><gen:GenericOccupiedSpace g:id='three'>"
-               "<genericAttribute><gen:StringAttribute><gen:name>Leuchtmittel</gen:name><gen:value>LED</gen:value></gen:StringAttribute></genericAttribute>"
-               "<genericAttribute><gen:MeasureAttribute><gen:name>height</gen:name><gen:value uom='m'>8.5</gen:value></gen:MeasureAttribute></genericAttribute>"
-               "<lod0Point><g:Point><g:pos>1 2 3</g:pos></g:Point></lod0Point></gen:GenericOccupiedSpace></cityObjectMember></CityModel>";
+    /* clang-format off */
+    static const char three[] =
+        "<CityModel" NAMESPACES("3.0", GML32) " xmlns:c='http://www.opengis.net/citygml/3.0'><cityObjectMember>"
+                                              "<gen:GenericOccupiedSpace g:id='three'><genericAttribute>"
+                                              "<gen:StringAttribute><gen:name>Leuchtmittel</gen:name>"
+                                              "<gen:value>LED</gen:value></gen:StringAttribute></genericAttribute>"
+        "<genericAttribute><gen:MeasureAttribute><gen:name>height</gen:name>"
+        "<gen:value uom='m'>8.5</gen:value></gen:MeasureAttribute></genericAttribute>"
+        "<lod0Point><g:Point><g:pos>1 2 3</g:pos></g:Point></lod0Point></gen:GenericOccupiedSpace></cityObjectMember>"
+        "</CityModel>";
+    /* clang-format on */
     read_text(three);
     assert_int_equal(sink.lamps.len, 1);
     assert_float_equal(sink.lamps.data[0].height, 8.5, 1e-9);
@@ -131,13 +138,13 @@ static void test_values(void **state) {
 }
 
 static void test_places(void **state) {
-    read_text(MODEL(FURNITURE(
-        "far",
-        FUNCTION(
-            "f",
-            "1150") "<f:lod2ImplicitRepresentation><ImplicitGeometry><mimeType>model/x3d</mimeType>"
-                    "<libraryObject>lamp.x3d</libraryObject><referencePoint><g:Point><g:pos>11 12 13</g:pos></g:Point></referencePoint>"
-                    "</ImplicitGeometry></f:lod2ImplicitRepresentation>")));
+    /* clang-format off */
+    read_text(MODEL(FURNITURE("far", FUNCTION("f", "1150") "<f:lod2ImplicitRepresentation><ImplicitGeometry>"
+                                                           "<mimeType>model/x3d</mimeType>"
+                                                           "<libraryObject>lamp.x3d</libraryObject><referencePoint>"
+                                                           "<g:Point><g:pos>11 12 13</g:pos></g:Point></referencePoint>"
+                              "</ImplicitGeometry></f:lod2ImplicitRepresentation>")));
+    /* clang-format on */
     assert_int_equal(sink.lamps.len, 1);
     assert_true(sink.lamps.data[0].xyz[0] == 11 && sink.lamps.data[0].xyz[2] == 13);
     sink.lat_first = true;
@@ -201,12 +208,13 @@ static char *lamp_city(const char *crs) {
         free(bodies[i]);
         text = longer;
     }
-    char *model = noc_format(
-        "<CityModel" NAMESPACES("2.0", GML31) "><g:boundedBy><g:Envelope srsName='%s'/></g:boundedBy>%s" MEMBER(
-            "<l:LandUse g:id='ground'><l:lod1MultiSurface>" SURFACES(POLYGON(
-                "ground",
-                "400 600 2 700 600 2 700 800 2 400 800 2 400 600 2")) "</l:lod1MultiSurface></l:LandUse>") "</CityModel>",
-        crs, text);
+    /* clang-format off */
+    char *model = noc_format("<CityModel" NAMESPACES("2.0", GML31) "><g:boundedBy><g:Envelope srsName='%s'/>"
+                                                                   "</g:boundedBy>%s"
+                             MEMBER("<l:LandUse g:id='ground'><l:lod1MultiSurface>"
+                                    SURFACES(POLYGON("ground", "400 600 2 700 600 2 700 800 2 400 800 2 400 600 2"))
+                                    "</l:lod1MultiSurface></l:LandUse>") "</CityModel>", crs, text);
+    /* clang-format on */
     free(text);
     return model;
 }
@@ -282,9 +290,7 @@ static void test_many_installations(void **state) {
     char body[4000], *text = NULL;
     size_t size;
     FILE *f = open_memstream(&text, &size);
-    fputs("<CityModel" NAMESPACES("2.0", GML31) ">"
-                                                "<cityObjectMember><b:Building g:id='house'>",
-          f);
+    fputs("<CityModel" NAMESPACES("2.0", GML31) "><cityObjectMember><b:Building g:id='house'>", f);
     for (int i = 0; i < LAMPS; i++) {
         box(body, X + 3 * i, Y - 1, 3, X + 3 * i + 2, Y + 1, 5);
         fprintf(f, INSTALLED("l", FUNCTION("b", "lamp"), "%s"), body);

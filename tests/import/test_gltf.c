@@ -134,12 +134,11 @@ static void test_nodes(void **state) {
     loaded l;
     load_text(
         &l,
-        file_text(
-            PLAIN,
-            "\"scene\": 1, \"scenes\": [{\"nodes\": [2]}, {\"nodes\": [0, 3]}],"
-            "\"nodes\": [{\"children\": [1], \"translation\": [10, 20, 30], \"rotation\": [0, 0.70710678118, 0, 0.70710678118]},"
-            " {\"mesh\": 0, \"scale\": [2, 3, 1], \"name\": \"window\"}, {\"mesh\": 0},"
-            " {\"mesh\": 0, \"matrix\": [1,0,0,0, 0,1,0,0, 0,0,-1,0, 5,6,7,1]}],"));
+        file_text(PLAIN,
+                  "\"scene\": 1, \"scenes\": [{\"nodes\": [2]}, {\"nodes\": [0, 3]}],"
+                  "\"nodes\": [{\"children\": [1], \"translation\": [10, 20, 30], \"rotation\": [0, 0.70710678118, 0, "
+                  "0.70710678118]}, {\"mesh\": 0, \"scale\": [2, 3, 1], \"name\": \"window\"}, {\"mesh\": 0},"
+                  " {\"mesh\": 0, \"matrix\": [1,0,0,0, 0,1,0,0, 0,0,-1,0, 5,6,7,1]}],"));
     assert_string_equal(l.error, "");
     assert_int_equal(l.status, NOC_OK);
     assert_string_equal(l.format, "glTF");
@@ -222,8 +221,9 @@ static void test_containers(void **state) {
     assert_int_equal(l.scene->indices.len, 6);
     unload(&l);
     /* beside it, under a name with a blank */
-    const char *text = ASSET PLAIN
-        "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}], \"buffers\": [{\"byteLength\": 60, \"uri\": \"b%20c.bin\"}]}";
+    const char *text =
+        ASSET PLAIN "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}], \"buffers\": [{\"byteLength\": 60, "
+                    "\"uri\": \"b%20c.bin\"}]}";
     write_file("b c.bin", bytes, BUFFER);
     load_text(&l, text);
     assert_int_equal(l.scene->indices.len, 6);
@@ -255,18 +255,18 @@ static void test_accessors(void **state) {
     char text[2000];
     for (int mode = 5; mode <= 6; mode++) {
         loaded l;
-        snprintf(
-            text, sizeof(text),
-            ASSET
-            "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 32, \"byteStride\": 8}, {\"buffer\": 0, \"byteOffset\": 32, \"byteLength\": 1},"
-            " {\"buffer\": 0, \"byteOffset\": 36, \"byteLength\": 6}, {\"buffer\": 0, \"byteOffset\": 44, \"byteLength\": 4}],"
-            "\"accessors\": [{\"bufferView\": 0, \"componentType\": 5122, \"normalized\": true, \"count\": 4, \"type\": \"VEC3\","
-            " \"sparse\": {\"count\": 1, \"indices\": {\"bufferView\": 1, \"componentType\": 5121}, \"values\": {\"bufferView\": 2}}},"
-            " {\"bufferView\": 3, \"componentType\": 5121, \"count\": 4, \"type\": \"SCALAR\"}],"
-            "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}%s, \"mode\": %d}]}],"
-            "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}],"
-            "\"buffers\": [{\"byteLength\": 48, \"uri\": \"data:;base64,%s\"}]}",
-            mode == 6 ? ", \"indices\": 1" : "", mode, base64(data, 48));
+        snprintf(text, sizeof(text),
+                 ASSET
+                 "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 32, \"byteStride\": 8}, {\"buffer\": 0, "
+                 "\"byteOffset\": 32, \"byteLength\": 1}, {\"buffer\": 0, \"byteOffset\": 36, \"byteLength\": 6}, "
+                 "{\"buffer\": 0, \"byteOffset\": 44, \"byteLength\": 4}],\"accessors\": [{\"bufferView\": 0, "
+                 "\"componentType\": 5122, \"normalized\": true, \"count\": 4, \"type\": \"VEC3\","
+                 " \"sparse\": {\"count\": 1, \"indices\": {\"bufferView\": 1, \"componentType\": 5121}, "
+                 "\"values\": {\"bufferView\": 2}}}, {\"bufferView\": 3, \"componentType\": 5121, \"count\": 4, "
+                 "\"type\": \"SCALAR\"}],\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}%s, "
+                 "\"mode\": %d}]}],\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}],"
+                 "\"buffers\": [{\"byteLength\": 48, \"uri\": \"data:;base64,%s\"}]}",
+                 mode == 6 ? ", \"indices\": 1" : "", mode, base64(data, 48));
         load_text(&l, text);
         assert_string_equal(l.error, "");
         assert_place(&l, 3, 1, 0, 1);
@@ -288,13 +288,15 @@ static void test_materials(void **state) {
         file_text(
             VIEWS ACCESSORS,
             "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 0},"
-            " {\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 1}, {\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 2},"
+            " {\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 1}, "
+            "{\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 2},"
             " {\"attributes\": {\"POSITION\": 0}, \"mode\": 1}]}],"
-            "\"materials\": [{\"emissiveFactor\": [1, 0.5, 0.25], \"extensions\": {\"KHR_materials_emissive_strength\": {\"emissiveStrength\": 800}},"
-            " \"doubleSided\": true, \"pbrMetallicRoughness\": {\"baseColorFactor\": [0.2, 0.4, 0.6, 1], \"metallicFactor\": 0, \"roughnessFactor\": 0.3}},"
-            " {\"pbrMetallicRoughness\": {\"baseColorFactor\": [0.5, 0.5, 0.5, 1]}},"
-            " {\"emissiveFactor\": [1, 1, 1], \"emissiveTexture\": {\"index\": 0}, \"alphaMode\": \"BLEND\"}],"
-            "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}],"));
+            "\"materials\": [{\"emissiveFactor\": [1, 0.5, 0.25], "
+            "\"extensions\": {\"KHR_materials_emissive_strength\": {\"emissiveStrength\": 800}},"
+            " \"doubleSided\": true, \"pbrMetallicRoughness\": {\"baseColorFactor\": [0.2, 0.4, 0.6, 1], "
+            "\"metallicFactor\": 0, \"roughnessFactor\": 0.3}}, {\"pbrMetallicRoughness\": {\"baseColorFactor\": [0.5, "
+            "0.5, 0.5, 1]}}, {\"emissiveFactor\": [1, 1, 1], \"emissiveTexture\": {\"index\": 0}, "
+            "\"alphaMode\": \"BLEND\"}],\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}],"));
     assert_string_equal(l.error, "");
     assert_int_equal(l.scene->meshes.len, 3); /* lines are left out */
     const noc_material *m = l.scene->materials.data;
@@ -327,14 +329,17 @@ static void test_lights(void **state) {
         file_text(
             PLAIN,
             "\"extensions\": {\"KHR_lights_punctual\": {\"lights\": ["
-            "{\"type\": \"spot\", \"intensity\": 300, \"color\": [1, 0.5, 0.25], \"spot\": {\"innerConeAngle\": 0.3, \"outerConeAngle\": 0.6}},"
-            "{\"type\": \"point\", \"intensity\": 40}, {\"type\": \"directional\", \"intensity\": 9}, {\"type\": \"blob\"}]}},"
-            "\"scenes\": [{\"nodes\": [0, 1, 2, 3, 4, 5]}], \"nodes\": ["
-            "{\"translation\": [1, 5, 2], \"rotation\": [-0.70710678118, 0, 0, 0.70710678118], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}},"
-            "{\"translation\": [9, 5, 2], \"scale\": [3, 3, 3], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}},"
+            "{\"type\": \"spot\", \"intensity\": 300, \"color\": [1, 0.5, 0.25], \"spot\": {\"innerConeAngle\": 0.3, "
+            "\"outerConeAngle\": 0.6}},{\"type\": \"point\", \"intensity\": 40}, {\"type\": \"directional\", "
+            "\"intensity\": 9}, {\"type\": \"blob\"}]}},\"scenes\": [{\"nodes\": [0, 1, 2, 3, 4, 5]}], \"nodes\": ["
+            "{\"translation\": [1, 5, 2], \"rotation\": [-0.70710678118, 0, 0, 0.70710678118], "
+            "\"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}},"
+            "{\"translation\": [9, 5, 2], \"scale\": [3, 3, 3], "
+            "\"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}},"
             "{\"translation\": [0, 7, -1], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 1}}},"
             "{\"name\": \"sun\", \"extensions\": {\"KHR_lights_punctual\": {\"light\": 2}}},"
-            "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 3}}}, {\"extensions\": {\"KHR_lights_punctual\": {\"light\": 77}}}],"));
+            "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 3}}}, "
+            "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 77}}}],"));
     assert_string_equal(l.error, "");
     assert_int_equal(l.scene->lights.len, 3); /* two nodes share the first: it shines twice */
     assert_int_equal(skipped_count(&l, "directional light"), 1);
@@ -403,11 +408,11 @@ static void test_cones(void **state) {
 static void test_camera(void **state) {
     loaded l;
     load_text(
-        &l,
-        file_text(
-            PLAIN,
-            "\"cameras\": [{\"type\": \"perspective\", \"perspective\": {\"yfov\": 0.7853981634}}],"
-            "\"scenes\": [{\"nodes\": [0, 1]}], \"nodes\": [{\"mesh\": 0}, {\"camera\": 0, \"translation\": [1, 2, 3]}],"));
+        &l, file_text(
+                PLAIN,
+                "\"cameras\": [{\"type\": \"perspective\", \"perspective\": {\"yfov\": 0.7853981634}}],"
+                "\"scenes\": [{\"nodes\": [0, 1]}], \"nodes\": [{\"mesh\": 0}, {\"camera\": 0, \"translation\": [1, 2, "
+                "3]}],"));
     noc_camera c;
     assert_int_equal(noc_scene_camera(l.scene, NOC_VIEW_OWN, 1.5, &c), NOC_OK);
     assert_float_equal(c.fov_deg, 45, 1e-6);
@@ -436,25 +441,28 @@ static void test_bad(void **state) {
         { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"data:text/plain,AAAA\"}]}", "not base64" },
         { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"https://example.org/a.bin\"}]}", "network" },
         { ASSET
-          "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 9}}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}",
+          "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 9}}]}], \"scenes\": [{\"nodes\": [0]}], "
+          "\"nodes\": [{\"mesh\": 0}]}",
           "accessor 9" },
         { ASSET
           "\"accessors\": [{\"componentType\": 5126, \"count\": 4000000000, \"type\": \"VEC3\"}],"
-          "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}",
+          "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"scenes\": [{\"nodes\": [0]}], "
+          "\"nodes\": [{\"mesh\": 0}]}",
           "accessor 0" },
         /* some bytes that ask for 24 GB of zeros */
         { ASSET
-          "\"accessors\": [{\"componentType\": 5126, \"count\": 1000000000, \"type\": \"VEC3\", \"sparse\": {\"count\": 1,"
-          " \"indices\": {\"bufferView\": 0, \"componentType\": 5121}, \"values\": {\"bufferView\": 0}}}],"
-          "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}",
+          "\"accessors\": [{\"componentType\": 5126, \"count\": 1000000000, \"type\": \"VEC3\", "
+          "\"sparse\": {\"count\": 1, \"indices\": {\"bufferView\": 0, \"componentType\": 5121}, "
+          "\"values\": {\"bufferView\": 0}}}],\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], "
+          "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}",
           "without data" },
         { ASSET "\"buffers\": [{\"uri\": \"data:;base64,AAAA\"}]}", "does not say its byteLength" },
         { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"none.bin\"}]}",
           "none.bin\" cannot be opened: No such file" },
         { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \".\"}]}", "not a regular file" },
         { ASSET "\"buffers\": [{\"byteLength\": 4, \"uri\": \"\"}]}", "\" cannot be opened" },
-        { ASSET
-          "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"mode\": -1}]}], \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}",
+        { ASSET "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"mode\": -1}]}], "
+                "\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]}",
           "mode" },
     };
     for (size_t i = 0; i < NOC_COUNT(bad); i++) {
@@ -479,9 +487,10 @@ static void test_bad(void **state) {
 static void test_skipped(void **state) {
     loaded l;
     file_text(PLAIN, "");
-    char *text = file_text(
-        PLAIN,
-        "\"scenes\": [{\"nodes\": [0, 0, 99]}], \"nodes\": [{\"mesh\": 0, \"children\": [1]}, {\"mesh\": 0, \"children\": [0, 1]}],");
+    char *text =
+        file_text(PLAIN,
+                  "\"scenes\": [{\"nodes\": [0, 0, 99]}], \"nodes\": [{\"mesh\": 0, \"children\": [1]}, {\"mesh\": 0, "
+                  "\"children\": [0, 1]}],");
     uint16_t wrong = 4;
     memcpy(bytes + sizeof(square) + 2 * 5, &wrong, 2); /* the last corner of the second triangle */
     char *payload = strstr(text, "base64,") + 7;
@@ -504,12 +513,15 @@ static void test_told(void **state) {
         file_text(
             PLAIN,
             "\"extensions\": {\"KHR_lights_punctual\": {\"lights\": ["
-            "{\"type\": \"point\", \"intensity\": -40}, {\"type\": \"spot\", \"spot\": {\"innerConeAngle\": 0.6, \"outerConeAngle\": 0.3}},"
-            "{\"type\": \"spot\", \"spot\": {\"outerConeAngle\": 3}}, {\"type\": \"point\", \"intensity\": 0}]}},"
-            "\"cameras\": [{\"type\": \"orthographic\"}, {\"perspective\": {\"yfov\": 3.1}}, {\"perspective\": {\"yfov\": 0.5}}], \"scene\": 3,"
-            "\"scenes\": [{\"nodes\": [0, \"a\", 0.5, 1, 2, 3, 4, 5, 6, 7, 8, 9]}], \"nodes\": [{\"mesh\": 0, \"scale\": [2, 2]}, {\"mesh\": 5},"
-            "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}}, {\"extensions\": {\"KHR_lights_punctual\": {\"light\": 1}}},"
-            "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 2}}}, {\"extensions\": {\"KHR_lights_punctual\": {\"light\": 3}}},"
+            "{\"type\": \"point\", \"intensity\": -40}, {\"type\": \"spot\", \"spot\": {\"innerConeAngle\": 0.6, "
+            "\"outerConeAngle\": 0.3}},{\"type\": \"spot\", \"spot\": {\"outerConeAngle\": 3}}, {\"type\": \"point\", "
+            "\"intensity\": 0}]}},\"cameras\": [{\"type\": \"orthographic\"}, {\"perspective\": {\"yfov\": 3.1}}, "
+            "{\"perspective\": {\"yfov\": 0.5}}], \"scene\": 3,\"scenes\": [{\"nodes\": [0, \"a\", 0.5, 1, 2, 3, 4, 5, "
+            "6, 7, 8, 9]}], \"nodes\": [{\"mesh\": 0, \"scale\": [2, 2]}, {\"mesh\": 5},"
+            "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}}, "
+            "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 1}}},"
+            "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 2}}}, "
+            "{\"extensions\": {\"KHR_lights_punctual\": {\"light\": 3}}},"
             "{\"camera\": 0}, {\"camera\": 1}, {\"camera\": 2, \"scale\": [0, 0, 0]}, {\"camera\": 7}],"));
     assert_string_equal(l.error, "");
     assert_int_equal(l.scene->lights.len, 2); /* the spot lights; one that is off is none */
@@ -574,10 +586,13 @@ static void test_broken(void **state) {
         whole, sizeof(whole), "%s",
         file_text(
             PLAIN,
-            "\"extensions\": {\"KHR_lights_punctual\": {\"lights\": [{\"type\": \"spot\", \"spot\": {\"innerConeAngle\": 0.3}}, {\"type\": \"point\"}]}},"
-            "\"cameras\": [{\"perspective\": {\"yfov\": 0.8}}], \"materials\": [{\"emissiveFactor\": [9, 8, 7]}], \"scenes\": [{\"nodes\": [0, 2]}],"
-            "\"nodes\": [{\"mesh\": 0, \"children\": [1], \"scale\": [2, 3, 4]}, {\"mesh\": 0, \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}},"
-            " {\"camera\": 0, \"rotation\": [0, 1, 0, 0], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 1}}}],"));
+            "\"extensions\": {\"KHR_lights_punctual\": {\"lights\": [{\"type\": \"spot\", "
+            "\"spot\": {\"innerConeAngle\": 0.3}}, {\"type\": \"point\"}]}},"
+            "\"cameras\": [{\"perspective\": {\"yfov\": 0.8}}], \"materials\": [{\"emissiveFactor\": [9, 8, 7]}], "
+            "\"scenes\": [{\"nodes\": [0, 2]}],\"nodes\": [{\"mesh\": 0, \"children\": [1], \"scale\": [2, 3, 4]}, "
+            "{\"mesh\": 0, \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}},"
+            " {\"camera\": 0, \"rotation\": [0, 1, 0, 0], "
+            "\"extensions\": {\"KHR_lights_punctual\": {\"light\": 1}}}],"));
     uint32_t seed = 7;
     int read = 0, refused = 0;
     for (int i = 0; i < 1500; i++) {

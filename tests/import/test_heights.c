@@ -57,11 +57,9 @@ static void test_followed(void **state) {
         finish(&r);
     }
     /* two lamps a metre apart on two levels, as on a wall: between them, and no spike */
-    LOAD(
-        &r, DEFAULTS, row_of_houses(houses, sizeof(houses)),
-        file(
-            "wall.lamps",
-            "FAKE lamps\ncrs EPSG:25832\nlamp 678100 5403985 366.4\nlamp 678101 5403985 367.6\nlamp 678103.5 5403985.5 366.5\n"));
+    LOAD(&r, DEFAULTS, row_of_houses(houses, sizeof(houses)),
+         file("wall.lamps", "FAKE lamps\ncrs EPSG:25832\nlamp 678100 5403985 366.4\nlamp 678101 5403985 367.6\n"
+                            "lamp 678103.5 5403985.5 366.5\n"));
     assert_int_equal(r.status, NOC_OK);
     for (double x = 678080; x < 678120; x += .5)
         for (double y = 5403965; y < 5404000; y += .5)
@@ -110,7 +108,8 @@ static void test_bridge(void **state) {
     (void)state;
     struct run r;
     const char *text =
-        "FAKE city\ncrs EPSG:25832\nobject 1 dem -1\npolygon 8 677900 5403900 370 678100 5403900 370 678100 5404100 370 "
+        "FAKE city\ncrs EPSG:25832\nobject 1 dem -1\n"
+        "polygon 8 677900 5403900 370 678100 5403900 370 678100 5404100 370 "
         "677900 5404100 370\nend\nobject 6 b -1\npolygon 14 677990 5403990 378 678010 5403990 378 678010 5404010 378 "
         "677990 5404010 378\nend\n";
     LOAD(&r, DEFAULTS, file("bridge", text),

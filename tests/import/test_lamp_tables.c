@@ -336,9 +336,9 @@ static void test_kinds_in_values(void **state) {
         if (lamp_object_word(words[i].text) != words[i].word)
             fail_msg("%s: %d", words[i].text, lamp_object_word(words[i].text));
     /* most values of a column name street lamps: the rest of its rows are none */
-    expect_lamps(
-        "lon,lat,bezeichnung\n8,50,Lichtmast mit Auslegerleuchte\n8,51,Lichtmast\n8,52,Schaltschrank\n8,53,Wandleuchte\n",
-        false, NOC_OK, 3);
+    expect_lamps("lon,lat,bezeichnung\n8,50,Lichtmast mit Auslegerleuchte\n8,51,Lichtmast\n8,52,Schaltschrank\n"
+                 "8,53,Wandleuchte\n",
+                 false, NOC_OK, 3);
     /* kinds of furniture: the one that is a lamp beyond doubt */
     expect_lamps("lon,lat,Objektart\n8,50,Bank\n8,51,Papierkorb\n8,52,Lichtmast\n8,53,Poller\n", false, NOC_OK, 1);
     /* inns and streets with lanterns in their names, and one lamp shop */

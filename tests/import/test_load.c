@@ -176,7 +176,8 @@ static void test_strict(void **state) {
     finish(&r);
     p.infer_lamps = NOC_SWITCH_OFF; /* that is another one's matter */
     const char *bad =
-        "object 0 bad 1\npolygon 1 678000 5404000 0 678001 5404000 0\npolygon 1 nan nan nan nan nan nan nan nan nan\nend\n";
+        "object 0 bad 1\npolygon 1 678000 5404000 0 678001 5404000 0\npolygon 1 nan nan nan nan nan nan nan nan nan\n"
+        "end\n";
     char text[2000];
     snprintf(text, sizeof(text), "%s%s", CITY, bad);
     LOAD(&r, p, file("rough.city", text));
@@ -319,11 +320,10 @@ static void test_ground(void **state) {
          file("a", CITY "object 1 dem -1\npolygon 8 677900 5403900 370 678100 5403900 370 678000 5404200 370\nend\n"));
     assert_int_equal(r.info.triangles_by_class[NOC_CLASS_TERRAIN], 1);
     finish(&r);
-    LOAD(
-        &r, p,
-        file(
-            "a", CITY
-            "object 2 r -1\npolygon 9 677990 5403990 370 678020 5403990 370 678020 5404020 370 677990 5404020 370\nend\n"));
+    LOAD(&r, p,
+         file("a", CITY
+              "object 2 r -1\npolygon 9 677990 5403990 370 678020 5403990 370 678020 5404020 370 677990 5404020 370\n"
+              "end\n"));
     assert_int_equal(r.info.triangles_by_class[NOC_CLASS_TERRAIN], 0);
     assert_int_equal(r.info.triangles_by_class[NOC_CLASS_ROAD], 2);
     finish(&r);

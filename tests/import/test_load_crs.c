@@ -59,7 +59,8 @@ static void test_axes(void **state) {
         { "crs urn:ogc:def:crs:EPSG::4326\npolygon 2 150.1 -33.7 0 150.1001 -33.7 0 150.1001 -33.7001 0\n",
           "axes exchanged to fit the CRS", 150.1, -33.7 },
         { "crs EPSG:4326\npolygon 2 48.7 11.4 0 48.7 11.4001 0 48.7001 11.4001 0\n", NULL, 11.4, 48.7 },
-        { "crs urn:adv:crs:ETRS89_UTM32*DE_DHHN92_NH\npolygon 2 32678000 5404000 0 32678009 5404000 0 32678009 5404009 0\n",
+        { "crs urn:adv:crs:ETRS89_UTM32*DE_DHHN92_NH\n"
+          "polygon 2 32678000 5404000 0 32678009 5404000 0 32678009 5404009 0\n",
           "zone number taken off the easting", 678000, 5404000 },
     };
     for (size_t i = 0; i < NOC_COUNT(cases); i++) {

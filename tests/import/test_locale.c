@@ -12,9 +12,9 @@ static char folder[] = "/tmp/noc-locale-XXXXXX";
 static const struct {
     const char *name, *text;
 } files[] = {
-    { "city.obj",
-      "mtllib city.mtl\nusemtl lit\nv 500000.125 5400000.25 0.5\nv 500010.125 5400000.25 0.5\nv 500010.125 5400020.75 0.5\n"
-      "v 500000.125 5400020.75 1.5e0\nf 1 2 3\nf 1 3 4\n" },
+    { "city.obj", "mtllib city.mtl\nusemtl lit\nv 500000.125 5400000.25 0.5\nv 500010.125 5400000.25 0.5\n"
+                  "v 500010.125 5400020.75 0.5\n"
+                  "v 500000.125 5400020.75 1.5e0\nf 1 2 3\nf 1 3 4\n" },
     { "city.mtl", "newmtl lit\nKd 0.25 0.5 0.75\nKe 1.5 2.5 3.5\n" },
     { "lamps.csv",
       "lon,lat,height,lumens,street_lamp\n15.00003,48.75210,4.5,5250.5,yes\n15.00012,48.75215,6.25,1.5e3,yes\n" },
@@ -22,9 +22,10 @@ static const struct {
       "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":{\"highway\":\"street_lamp\","
       "\"height\":\"7.5\"},\"geometry\":{\"type\":\"Point\",\"coordinates\":[15.00008,48.75212]}}]}" },
     { "box.gltf",
-      "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_lights_punctual\"],\"extensions\":{\"KHR_lights_punctual\":"
-      "{\"lights\":[{\"type\":\"point\",\"intensity\":12.5,\"color\":[0.5,0.25,0.125]}]}},\"nodes\":[{\"translation\":"
-      "[1.5,2.25,-3.125],\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}]}" },
+      "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_lights_punctual\"],"
+      "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\",\"intensity\":12.5,\"color\":[0.5,0.25,"
+      "0.125]}]}},\"nodes\":[{\"translation\":[1.5,2.25,"
+      "-3.125],\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}]}" },
 };
 
 static const char *in_folder(const char *name) {

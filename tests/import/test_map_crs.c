@@ -137,16 +137,16 @@ static void test_geojson(void **state) {
 static void test_crs_in_parts(void **state) {
     char path[80], member[3000];
     snprintf(path, sizeof(path), "%s/parts.geojson", folder);
-    snprintf(
-        member, sizeof(member),
-        "\"crs\": {\"type\": \"name\", \"properties\": {\"name\": {\"type\": \"BoundCRS\", \"source_crs\": " PROJJSON_CRS(
-            "x",
-            "e") ", \"target_crs\": " PROJJSON_CRS("WGS 84",
-                                                   "WGS 84") ", \"transformation\": {\"name\": "
-                                                             "\"x\", \"method\": {\"name\": \"NTv2\", \"id\": {\"authority\": \"EPSG\", \"code\": 9615}}, \"parameters\": "
-                                                             "[{\"name\": \"Latitude and longitude difference file\", \"value\": \"%s\", \"id\": {\"authority\": \"EPSG\", "
-                                                             "\"code\": 8656}}]}}}},",
-        pipe_path);
+    snprintf(member, sizeof(member),
+             "\"crs\": {\"type\": \"name\", \"properties\": {\"name\": {\"type\": \"BoundCRS\", "
+             "\"source_crs\": " PROJJSON_CRS("x", "e") ", \"target_crs\": " PROJJSON_CRS(
+                 "WGS 84", "WGS 84") ", \"transformation\": {\"name\": "
+                                     "\"x\", \"method\": {\"name\": \"NTv2\", "
+                                     "\"id\": {\"authority\": \"EPSG\", \"code\": 9615}}, "
+                                     "\"parameters\": [{\"name\": \"Latitude and longitude "
+                                     "difference file\", \"value\": \"%s\", "
+                                     "\"id\": {\"authority\": \"EPSG\", \"code\": 8656}}]}}}},",
+             pipe_path);
     write_geojson(path, member, "");
     expect_error(path, NOC_ERR_FORMAT, "a CRS in parts");
 }
@@ -341,8 +341,9 @@ static void test_geopackage_table(void **state) {
         const char *first, *second, *why;
     } others[] = {
         { rename,
-          "CREATE VIEW \"gpkg_spatial_ref_sys\" AS SELECT srs_name, srs_id, 'x' AS organization, organization_coordsys_id, "
-          "CASE WHEN random() > 0 THEN definition ELSE '+proj=merc +nadgrids=x' END AS definition, description FROM kept",
+          "CREATE VIEW \"gpkg_spatial_ref_sys\" AS SELECT srs_name, srs_id, 'x' AS organization, "
+          "organization_coordsys_id, CASE WHEN random() > 0 THEN definition ELSE '+proj=merc +nadgrids=x' END AS "
+          "definition, description FROM kept",
           "a view" },
         { rename,
           "CREATE VIRTUAL TABLE \"gpkg_spatial_ref_sys\" USING rtree(srs_id, a, b, +srs_name, +organization, "
@@ -350,11 +351,13 @@ static void test_geopackage_table(void **state) {
           "a virtual table" },
         { rename,
           "CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT, srs_id INTEGER NOT NULL PRIMARY KEY, organization TEXT, "
-          "organization_coordsys_id INTEGER, kept TEXT, definition TEXT GENERATED ALWAYS AS (kept) VIRTUAL, description TEXT)",
+          "organization_coordsys_id INTEGER, kept TEXT, definition TEXT GENERATED ALWAYS AS (kept) VIRTUAL, "
+          "description TEXT)",
           "a hidden or generated column" },
         { rename,
           "CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT, srs_id INTEGER NOT NULL PRIMARY KEY, organization TEXT, "
-          "organization_coordsys_id INTEGER, definition TEXT GENERATED ALWAYS AS ('+proj=merc +nadgrids=x') STORED, description TEXT)",
+          "organization_coordsys_id INTEGER, definition TEXT GENERATED ALWAYS AS ('+proj=merc +nadgrids=x') STORED, "
+          "description TEXT)",
           "a hidden or generated column" },
         { "CREATE INDEX i ON gpkg_spatial_ref_sys (srs_id, definition, organization)", NULL, "an index" },
         { rename,
@@ -362,8 +365,9 @@ static void test_geopackage_table(void **state) {
           "organization_coordsys_id INTEGER, definition TEXT UNIQUE, description TEXT)",
           "an index" },
         { rename,
-          "CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT, srs_id INTEGER, organization TEXT, organization_coordsys_id INTEGER, "
-          "definition TEXT, description TEXT, PRIMARY KEY (srs_id, definition)) WITHOUT ROWID",
+          "CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT, srs_id INTEGER, organization TEXT, "
+          "organization_coordsys_id INTEGER, definition TEXT, description TEXT, PRIMARY KEY (srs_id, "
+          "definition)) WITHOUT ROWID",
           "an index" },
     };
     for (size_t i = 0; i < NOC_COUNT(others); i++) {

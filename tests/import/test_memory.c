@@ -147,9 +147,12 @@ static void refuse_each(const char *what, const import *in) {
 }
 
 static const char links[] =
-    "<?xml version='1.0'?><core:CityModel xmlns:core='http://www.opengis.net/citygml/2.0' xmlns:bldg='http://www.opengis.net/citygml/building/2.0' "
-    "xmlns:frn='http://www.opengis.net/citygml/cityfurniture/2.0' xmlns:gen='http://www.opengis.net/citygml/generics/2.0' "
-    "xmlns:gml='http://www.opengis.net/gml' xmlns:xlink='http://www.w3.org/1999/xlink'>"
+    "<?xml version='1.0'?>"
+    "<core:CityModel xmlns:core='http://www.opengis.net/citygml/2.0' "
+    "xmlns:bldg='http://www.opengis.net/citygml/building/2.0' "
+    "xmlns:frn='http://www.opengis.net/citygml/cityfurniture/2.0' "
+    "xmlns:gen='http://www.opengis.net/citygml/generics/2.0' xmlns:gml='http://www.opengis.net/gml' "
+    "xmlns:xlink='http://www.w3.org/1999/xlink'>"
 #define MEMBER(xml) "<core:cityObjectMember>" xml "</core:cityObjectMember>"
 #define POLYGON(id, list)                                                                                              \
     "<gml:surfaceMember><gml:Polygon gml:id='" id "'><gml:exterior><gml:LinearRing><gml:posList>" list                 \
@@ -157,27 +160,27 @@ static const char links[] =
 #define BUILDING(id, inside)                                                                                           \
     MEMBER("<bldg:Building gml:id='" id "'><bldg:lod2MultiSurface><gml:MultiSurface>" inside                           \
            "</gml:MultiSurface></bldg:lod2MultiSurface></bldg:Building>")
-    BUILDING("first",
-             "<gml:surfaceMember xlink:href='#wall'/>" POLYGON("five",
-                                                               "0 0 0 9 0 0 9 0 5 5 0 9 0 0 5 0 0 0")) /* forwards */
-    BUILDING("second", POLYGON("wall", "0 9 0 9 9 0 9 9 6 0 9 6 0 9 0")) BUILDING(
-        "third", "<gml:surfaceMember xlink:href='#wall'/><gml:surfaceMember xlink:href='#nowhere'/>" POLYGON(
-                     "flat", "0 0 0 1 0 0 2 0 0 0 0 0"))
-        MEMBER(
-            "<frn:CityFurniture gml:id='lamp'><gen:stringAttribute name='Leuchtmittel'><gen:value>LED 30 W</gen:value></gen:stringAttribute>"
-            "<frn:function>1150</frn:function><frn:lod2Geometry><gml:MultiSurface>" POLYGON(
-                "pole", "20 0 0 20.1 0 0 20.1 0 5 20 0 5 20 0 0")
-                POLYGON(
-                    "arm",
-                    "20 0 5 20 1.2 5 20 1.2 5.1 20 0 5.1 20 0 5") "</gml:MultiSurface></frn:lod2Geometry></frn:CityFurniture>") "</core:CityModel>";
+    /* clang-format off */
+    BUILDING("first", "<gml:surfaceMember xlink:href='#wall'/>"
+             POLYGON("five", "0 0 0 9 0 0 9 0 5 5 0 9 0 0 5 0 0 0")) /* forwards */
+    BUILDING("second", POLYGON("wall", "0 9 0 9 9 0 9 9 6 0 9 6 0 9 0"))
+    BUILDING("third", "<gml:surfaceMember xlink:href='#wall'/>"
+                      "<gml:surfaceMember xlink:href='#nowhere'/>" POLYGON("flat", "0 0 0 1 0 0 2 0 0 0 0 0"))
+    MEMBER("<frn:CityFurniture gml:id='lamp'><gen:stringAttribute name='Leuchtmittel'>"
+           "<gen:value>LED 30 W</gen:value></gen:stringAttribute><frn:function>1150</frn:function><frn:lod2Geometry>"
+           "<gml:MultiSurface>" POLYGON("pole", "20 0 0 20.1 0 0 20.1 0 5 20 0 5 20 0 0")
+           POLYGON("arm", "20 0 5 20 1.2 5 20 1.2 5.1 20 0 5.1 20 0 5") "</gml:MultiSurface></frn:lod2Geometry>"
+                                                                        "</frn:CityFurniture>")
+    "</core:CityModel>";
 
 static const char strange[] =
-    "<?xml version='1.0'?><core:CityModel xmlns:core='http://www.opengis.net/citygml/2.0' xmlns:bldg='http://www.opengis.net/citygml/building/2.0' "
-    "xmlns:gml='http://www.opengis.net/gml'><gml:boundedBy><gml:Envelope srsName='our own system'/></gml:boundedBy>" BUILDING(
-        "only",
-        POLYGON(
-            "wall",
-            "690000 5330000 0 690009 5330000 0 690009 5330000 5 690000 5330000 5 690000 5330000 0")) "</core:CityModel>";
+    "<?xml version='1.0'?>"
+    "<core:CityModel xmlns:core='http://www.opengis.net/citygml/2.0' "
+    "xmlns:bldg='http://www.opengis.net/citygml/building/2.0' xmlns:gml='http://www.opengis.net/gml'><gml:boundedBy>"
+    "<gml:Envelope srsName='our own system'/></gml:boundedBy>"
+    BUILDING("only", POLYGON("wall", "690000 5330000 0 690009 5330000 0 690009 5330000 5 690000 5330000 5 690000 "
+                                     "5330000 0")) "</core:CityModel>";
+/* clang-format on */
 
 static void citygml(void **state) {
     refuse_each("CityGML", &(import){ { "citygml/whole.gml" }, .all = true });
@@ -190,12 +193,13 @@ static void citygml(void **state) {
 
 static void gltf(void **state) {
     refuse_each("glTF", &(import){ { "gltf/embedded.gltf" }, .all = true });
-    write_text(
-        "library.gltf",
-        "{\"asset\": {\"version\": \"2.0\"}, \"nodes\": [{\"mesh\": 0, \"children\": [1], \"name\": \"a name longer than sixteen letters\"}, {}],"
-        "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"accessors\": [{\"bufferView\": 0, \"componentType\": 5126,"
-        "\"count\": 3, \"type\": \"VEC3\"}], \"bufferViews\": [{\"buffer\": 0, \"byteLength\": 36}], \"buffers\": [{\"byteLength\": 36, \"uri\": "
-        "\"side%20by%20side.bin\"}]}");
+    write_text("library.gltf",
+               "{\"asset\": {\"version\": \"2.0\"}, \"nodes\": [{\"mesh\": 0, \"children\": [1], "
+               "\"name\": \"a name longer than sixteen letters\"}, "
+               "{}],\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], "
+               "\"accessors\": [{\"bufferView\": 0, \"componentType\": 5126,"
+               "\"count\": 3, \"type\": \"VEC3\"}], \"bufferViews\": [{\"buffer\": 0, \"byteLength\": 36}], "
+               "\"buffers\": [{\"byteLength\": 36, \"uri\": \"side%20by%20side.bin\"}]}");
     write_text("side by side.bin", "\x01\x01\x80?"
                                    "\x01\x01\x80?"
                                    "\x01\x01\x80?"
@@ -209,9 +213,9 @@ static void gltf(void **state) {
 }
 
 static void obj(void **state) {
-    write_text(
-        "house.obj",
-        "mtllib house.mtl none.mtl\nv 0 0 0\nv 10 0 0\nv 10 0 8\nv 0 0 8\nv 5 0 12\nv 5 x 12\nusemtl wall\nf 1 2 3 5 4\nusemtl lamp\nf 1 3 2\nf 1 2 9\n");
+    write_text("house.obj",
+               "mtllib house.mtl none.mtl\nv 0 0 0\nv 10 0 0\nv 10 0 8\nv 0 0 8\nv 5 0 12\nv 5 x 12\nusemtl wall\n"
+               "f 1 2 3 5 4\nusemtl lamp\nf 1 3 2\nf 1 2 9\n");
     write_text("house.mtl", "newmtl wall\nKd 0.5 0.4 0.3\nnewmtl lamp\nKe 20 18 15\nmap_Kd none.png\n");
     refuse_each("OBJ", &(import){ { "house.obj" } });
     refuse_each("OBJ by the helper", &(import){ { "house.obj" }, .isolate = true });
@@ -220,9 +224,8 @@ static void obj(void **state) {
 static void lamps(void **state) {
     refuse_each("CSV", &(import){ { "csv/comma.csv" } });
     refuse_each("CSV with a CRS", &(import){ { "csv/semicolon.csv" }, .crs = "EPSG:31468" });
-    write_text(
-        "kinds.csv",
-        "x;y;art\n690110;5330110;Lichtmast mit Auslegerleuchte\n690150;5330110;Lichtmast\n690180;5330110;\"Mast \"\"alt\"\"\"\n");
+    write_text("kinds.csv", "x;y;art\n690110;5330110;Lichtmast mit Auslegerleuchte\n690150;5330110;Lichtmast\n"
+                            "690180;5330110;\"Mast \"\"alt\"\"\"\n");
     refuse_each("CSV whose values tell", &(import){ { "kinds.csv" }, .crs = "EPSG:25832" });
     write_text("named.csv", "x,y,pow\n690110,5330110,50\n690150,5330110,70\n");
     refuse_each("CSV that is named, beside a city", &(import){ { "citygml/whole.gml" },

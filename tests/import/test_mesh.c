@@ -312,7 +312,8 @@ static void test_libraries(void **state) {
                                          "sub\\my test.mtl", "/nowhere/my test.mtl", "test.mtl other.mtl" };
     static const char good[] = "newmtl a\nKd 0.1 0.2 0.3\nKe 5 6 7\nnewmtl b\nKd 1 1 1\n";
     static const char odd[] =
-        "newmtl a\nKd nan inf -3\n Kd 0.1 0.2 0.3\nKe 1e400 nan 1\nKe spectral x.rfl\nNs\nd -halo\nKe 5 6 7\nmap_Kd wall.png\n\xff\xfe\n";
+        "newmtl a\nKd nan inf -3\n Kd 0.1 0.2 0.3\nKe 1e400 nan 1\nKe spectral x.rfl\nNs\nd -halo\nKe 5 6 7\n"
+        "map_Kd wall.png\n\xff\xfe\n";
     loaded l;
     write_file("my test.mtl", good, strlen(good));
     write_file("other.mtl", "newmtl c\nKd 1 0 0\n", 18);
@@ -352,7 +353,8 @@ static void test_missing_library(void **state) {
 static void test_missing_material(void **state) {
     loaded l;
     const char text[] =
-        "mtllib test.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl nowhere\nf 1 2 3\nusemtl ground\nf 1 2 3\nusemtl nowhere\nf 1 3 2\n";
+        "mtllib test.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl nowhere\nf 1 2 3\nusemtl ground\nf 1 2 3\nusemtl nowhere\n"
+        "f 1 3 2\n";
     write_file("test.mtl", mtl, strlen(mtl));
     write_file("material.obj", text, strlen(text));
     load(&l, "material.obj", NOC_OBJ_UP_Y);

@@ -45,19 +45,24 @@ static void test_neukoelln(void **state) {
 
 static const char answer[] =
     "{\"version\": 0.6, \"generator\": \"test\", \"elements\": [\n"
-    "{\"type\": \"node\", \"id\": 1, \"lat\": 50.5, \"lon\": 8.25, \"tags\": {\"highway\": \"street_lamp\", \"height\": \"16 ft\",\n"
-    "  \"light:count\": \"2\", \"light:direction\": \"NNE\", \"light:colour\": \"#ff8000\", \"light:method\": \"LED\"}},\n"
-    "{\"type\": \"way\", \"id\": 2, \"center\": {\"lat\": 50.6, \"lon\": 8.5}, \"tags\": {\"highway\": \"street_lamp\"}},\n"
+    "{\"type\": \"node\", \"id\": 1, \"lat\": 50.5, \"lon\": 8.25, \"tags\": {\"highway\": \"street_lamp\", "
+    "\"height\": \"16 ft\",\n"
+    "  \"light:count\": \"2\", \"light:direction\": \"NNE\", \"light:colour\": \"#ff8000\", "
+    "\"light:method\": \"LED\"}},\n"
+    "{\"type\": \"way\", \"id\": 2, \"center\": {\"lat\": 50.6, \"lon\": 8.5}, "
+    "\"tags\": {\"highway\": \"street_lamp\"}},\n"
     "{\"type\": \"relation\", \"id\": 3, \"bounds\": {\"minlat\": 50, \"minlon\": 8, \"maxlat\": 51, \"maxlon\": 9},\n"
     "  \"tags\": {\"light_source\": \"floodlight\", \"light:lumen\": \"12,000 lm\", \"ele\": \"120.5\"}},\n"
     "{\"type\": \"way\", \"id\": 4, \"nodes\": [1], \"tags\": {\"highway\": \"street_lamp\"}},\n"
     "{\"type\": \"node\", \"id\": 5, \"lat\": 95, \"lon\": 8, \"tags\": {\"highway\": \"street_lamp\"}},\n"
     "{\"type\": \"node\", \"id\": 6, \"lat\": 50, \"lon\": 8, \"tags\": {\"disused:highway\": \"street_lamp\"}},\n"
-    "{\"type\": \"node\", \"id\": 7, \"lat\": 50, \"lon\": 8, \"tags\": {\"highway\": \"street_lamp\", \"indoor\": \"yes\"}},\n"
+    "{\"type\": \"node\", \"id\": 7, \"lat\": 50, \"lon\": 8, \"tags\": {\"highway\": \"street_lamp\", "
+    "\"indoor\": \"yes\"}},\n"
     "{\"type\": \"node\", \"id\": 8, \"lat\": 50, \"lon\": 8, \"tags\": {\"amenity\": \"bench\"}},\n"
     "{\"type\": \"node\", \"id\": 9, \"lat\": \"x\", \"lon\": [], \"tags\": {\"highway\": \"street_lamp\"}},\n"
     "{\"type\": 5, \"id\": {}, \"tags\": []}, null, 7, \"text\", [],\n"
-    "{\"type\": \"node\", \"id\": 10, \"lat\": 0, \"lon\": 0, \"tags\": {\"highway\": \"street_lamp\", \"height\": 3}}\n"
+    "{\"type\": \"node\", \"id\": 10, \"lat\": 0, \"lon\": 0, \"tags\": {\"highway\": \"street_lamp\", "
+    "\"height\": 3}}\n"
     "]}\n";
 
 static void test_elements(void **state) {

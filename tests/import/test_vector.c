@@ -425,8 +425,9 @@ static void test_geojson(void **state) {
 
 static const char osm[] =
     "<?xml version='1.0' encoding='UTF-8'?>\n<osm version=\"0.6\" generator=\"test\">\n"
-    "<node id=\"1\" lat=\"50.5\" lon=\"8.5\" version=\"1\"><tag k=\"highway\" v=\"street_lamp\"/><tag k=\"light:count\" v=\"2\"/>"
-    "<tag k=\"note\" v=\"a &quot;quoted&quot; \\ word=&gt;\"/><tag k=\"light:colour\" v=\"4000 K\"/></node>\n"
+    "<node id=\"1\" lat=\"50.5\" lon=\"8.5\" version=\"1\"><tag k=\"highway\" v=\"street_lamp\"/>"
+    "<tag k=\"light:count\" v=\"2\"/><tag k=\"note\" v=\"a &quot;quoted&quot; \\ word=&gt;\"/>"
+    "<tag k=\"light:colour\" v=\"4000 K\"/></node>\n"
     "<node id=\"2\" lat=\"50.6\" lon=\"8.6\" version=\"1\"><tag k=\"disused:highway\" v=\"street_lamp\"/></node>\n"
     "<node id=\"3\" lat=\"50.6\" lon=\"8.6\" version=\"1\"/>\n"
     "<way id=\"4\" version=\"1\"><nd ref=\"1\"/><nd ref=\"3\"/><tag k=\"highway\" v=\"street_lamp\"/></way>\n</osm>\n";
@@ -593,7 +594,8 @@ static void test_unread(void **state) {
         "{\"type\": \"FeatureCollection\", \"features\": [\n"
         "{\"type\": \"Feature\", \"properties\": {\"a\": 1}, \"geometry\": {\"type\": \"Polygon\", \"coordinates\": "
         "[[[8, 50], [8.5, 50], [8.5, 50.25], [8, 50]]]}},\n"
-        "{\"type\": \"Feature\", \"properties\": {\"a\": 2}, \"geometry\": {\"type\": \"LineString\", \"coordinates\": [[8, 50], [9, 51]]}}]}";
+        "{\"type\": \"Feature\", \"properties\": {\"a\": 2}, \"geometry\": {\"type\": \"LineString\", "
+        "\"coordinates\": [[8, 50], [9, 51]]}}]}";
     lamp_sink s;
     lamp_sink_start(&s);
     assert_int_equal(read_lamps_text(&s, outlines, NULL), NOC_OK);
@@ -603,8 +605,8 @@ static void test_unread(void **state) {
     assert_non_null(strstr(s.warning, "1 line, 1 polygon are not read: outlines of buildings are not extruded yet"));
     lamp_sink_end(&s);
     static const char ways[] =
-        "<?xml version='1.0'?><osm version='0.6'><node id='1' lat='50' lon='8'><tag k='highway' v='street_lamp'/></node>"
-        "<node id='2' lat='50' lon='8.1'/>"
+        "<?xml version='1.0'?><osm version='0.6'><node id='1' lat='50' lon='8'>"
+        "<tag k='highway' v='street_lamp'/></node><node id='2' lat='50' lon='8.1'/>"
         "<way id='1'><nd ref='1'/><nd ref='2'/><tag k='building' v='yes'/></way>"
         "<way id='2'><nd ref='1'/><nd ref='2'/><tag k='highway' v='footway'/></way>"
         "<way id='3'><nd ref='1'/><nd ref='2'/><tag k='building' v='no'/></way>"

@@ -145,8 +145,8 @@ noc_status lamp_writer_end(lamp_writer *w) {
     if (w->off_earth > w->lamps && w->exchangeable == w->off_earth)
         return noc_error(
             log, NOC_ERR_FORMAT,
-            "%s: its coordinates are no longitudes and latitudes; with the two exchanged all %zu are: exchange them in the "
-            "file",
+            "%s: its coordinates are no longitudes and latitudes; with the two exchanged all %zu are: exchange them in "
+            "the file",
             w->place, w->off_earth);
     if (w->off_earth > w->lamps)
         return noc_error(

@@ -50,8 +50,8 @@ static void judge_file(const importer *im, const lamp_cells *cells, size_t from,
         told[self] = best + 1;
         noc_warn(
             im->log,
-            "%zu of %zu lamps of %s stand within %g m of a lamp of %s: the same lamps? If so they shine twice: leave one "
-            "of the files out",
+            "%zu of %zu lamps of %s stand within %g m of a lamp of %s: the same lamps? If so they shine twice: leave "
+            "one of the files out",
             counts[best], to - from, im->inputs[self].path, NEAR, im->inputs[best].path);
     }
     memset(counts, 0, im->input_count * sizeof(*counts));

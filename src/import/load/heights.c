@@ -50,8 +50,8 @@ static void check_input(importer *im, const city_ground *ground, size_t index, d
             im->lamps.data[i].lamp.xyz[2] = NAN;
     noc_warn(
         im->log,
-        "%s: its %zu lamps with a height lie some %.1f m %s the city's ground, alike: are their heights of another system "
-        "(ellipsoidal, another datum, feet)? They are not followed: the lamps stand on the ground",
+        "%s: its %zu lamps with a height lie some %.1f m %s the city's ground, alike: are their heights of another "
+        "system (ellipsoidal, another datum, feet)? They are not followed: the lamps stand on the ground",
         im->inputs[index].path, n, fabs(middle), middle > 0 ? "above" : "below");
 }
 

@@ -239,19 +239,20 @@ static void warn_of_distance(importer *im, const lamp_fate *fate) {
     bool apart = fate->mapped && fate->closest > BESIDE;
     im->scene->lit_elsewhere = apart && !fate->others;
     if (apart)
-        noc_warn(
-            im->log,
-            "none of the lamps stands in the city: the nearest is %.*f %s from it. Is one of the CRSs wrong, or are they another town's?",
-            fate->closest < 1000 ? 0 : 1, fate->closest / (fate->closest < 1000 ? 1 : 1000),
-            fate->closest < 1000 ? "m" : "km");
+        noc_warn(im->log,
+                 "none of the lamps stands in the city: the nearest is %.*f %s from it. Is one of the CRSs wrong, "
+                 "or are they another town's?",
+                 fate->closest < 1000 ? 0 : 1, fate->closest / (fate->closest < 1000 ? 1 : 1000),
+                 fate->closest < 1000 ? "m" : "km");
 }
 
 static void warn_of_roofs(const importer *im, const city_lamp_tally *tally) {
     if (tally->raised)
         noc_warn(
             im->log,
-            "%zu of %zu lamps that stand on surfaces without a class stand 2 m or more above what is around them, on roofs "
-            "perhaps: an elevation (ele, z) says where a lamp's foot is, a model with classes (CityGML) where the ground is",
+            "%zu of %zu lamps that stand on surfaces without a class stand 2 m or more above what is around them, "
+            "on roofs perhaps: an elevation (ele, z) says where a lamp's foot is, a model with classes (CityGML) where "
+            "the ground is",
             tally->raised, tally->classless);
 }
 

@@ -66,8 +66,8 @@ static noc_status resolve(importer *im, const char *spelling, const char *place,
         if (!fallback && !im->inspect)
             return noc_error(
                 im->log, NOC_ERR_FORMAT,
-                "%s: the CRS \"%.60s\" is not understood, opens files, or is neither geographic nor projected: say with "
-                "--crs which one it is",
+                "%s: the CRS \"%.60s\" is not understood, opens files, or is neither geographic nor projected: say "
+                "with --crs which one it is",
                 place, spelling);
         noc_warn(im->log, "%s: the CRS \"%.60s\" is not understood: %s%s", place, spelling,
                  fallback ? "taken as " : "taken as local metres", fallback ? fallback : "");

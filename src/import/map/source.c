@@ -295,10 +295,10 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
     if (!status && format->kind == MAP_GEOPACKAGE)
         status = map_check_crs_rows(m);
     if (m->link[0])
-        noc_warn(
-            log,
-            "%s: its CRS is a link (%s), which is not followed: taken as longitudes and latitudes, unless --crs says otherwise",
-            m->name, m->link);
+        noc_warn(log,
+                 "%s: its CRS is a link (%s), which is not followed: taken as longitudes and latitudes, "
+                 "unless --crs says otherwise",
+                 m->name, m->link);
     free(path);
     return status;
 }

@@ -56,6 +56,7 @@ void obj_check_up(const obj_spread *s, bool z_up, const char *path, noc_log *log
         return;
     noc_warn(
         log,
-        "%s: read with %c up it is some %.0f m high, over %.0f x %.0f m, at a height of %.0f m: is %c up? --obj-up %c reads it so",
+        "%s: read with %c up it is some %.0f m high, over %.0f x %.0f m, at a height of %.0f m: is %c up? --obj-up %c "
+        "reads it so",
         path, z_up ? 'z' : 'y', length[2], length[0], length[1], s->mean[2], z_up ? 'y' : 'z', z_up ? 'y' : 'z');
 }

@@ -212,11 +212,10 @@ static noc_status ended_early(remote *r) {
                          "%s: the process that reads it needs more than the limit --max-memory, %.3g GB", r->path,
                          r->memory / 1e9);
     if (got && WIFSIGNALED(how) && WTERMSIG(how) != SIGKILL)
-        return noc_error(
-            r->sink->log, NOC_ERR_FORMAT,
-            "%s: the process that reads it as %s ended by signal %d (%s): the file is broken, or needs more than the limit "
-            "--max-memory, %.3g GB",
-            r->path, r->reader->name, WTERMSIG(how), strsignal(WTERMSIG(how)), r->memory / 1e9);
+        return noc_error(r->sink->log, NOC_ERR_FORMAT,
+                         "%s: the process that reads it as %s ended by signal %d (%s): the file is broken, "
+                         "or needs more than the limit --max-memory, %.3g GB",
+                         r->path, r->reader->name, WTERMSIG(how), strsignal(WTERMSIG(how)), r->memory / 1e9);
     return noc_error(r->sink->log, NOC_ERR_IO,
                      "%s: the process that reads it was ended from outside, or could not run (%s)", r->path,
                      r->program);
