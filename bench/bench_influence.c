@@ -43,7 +43,8 @@ static bool times(const noc_scene *scene, const noc_camera *camera, int width, i
     noc_light_stats found;
     bool ok = true;
     for (int i = 0; i < 2; i++) {
-        side[i].params = params_of(width, height, NOC_METHOD_RESTIR, i ? NOC_CANDIDATES_BVH : NOC_CANDIDATES_UNIFORM);
+        side[i].params =
+            params_of(width, height, NOC_METHOD_RESTIR, i ? NOC_CANDIDATES_INFLUENCE : NOC_CANDIDATES_UNIFORM);
         side[i].r = noc_renderer_create(scene, NULL, log);
         ok = ok && side[i].r && noc_renderer_frame(side[i].r, camera, &side[i].params, NULL) == NOC_OK;
     }
@@ -61,7 +62,7 @@ static bool times(const noc_scene *scene, const noc_camera *camera, int width, i
             cpu[i] = bench_median(side[i].cpu, frames);
             for (int k = 0; k < NOC_PASS_COUNT; k++)
                 pass[i][k] = bench_median(side[i].pass[k], frames);
-            printf("%-8s %8.1f CPU ms a frame |", i ? "bvh" : "uniform", 1e3 * cpu[i]);
+            printf("%-8s %8.1f CPU ms a frame |", i ? "influence" : "uniform", 1e3 * cpu[i]);
             for (int k = 0; k < NOC_PASS_COUNT; k++)
                 if (pass[i][k] > 0)
                     printf(" %s %.1f", noc_pass_name((noc_pass)k), 1e3 * pass[i][k]);
@@ -203,7 +204,7 @@ int main(int argc, char **argv) {
     noc_camera camera;
     bool ok = scene && noc_scene_camera(scene, bench_view(view), (double)width / height, &camera) == NOC_OK;
     if (ok && argc > 8)
-        ok = errors(scene, &camera, params_of(width, height, method, NOC_CANDIDATES_BVH), argv[7], frames, seeds,
+        ok = errors(scene, &camera, params_of(width, height, method, NOC_CANDIDATES_INFLUENCE), argv[7], frames, seeds,
                     argv + 9, log);
     else if (ok)
         ok = times(scene, &camera, width, height, frames, log);

@@ -44,8 +44,8 @@ static noc_scene *random_city(int lights) {
 
 static void builds(void) {
     noc_pool *pool = noc_pool_create(0);
-    printf("%9s %12s %12s %12s %12s %12s %12s   bytes a light\n", "lights", "clusters, s", "power, s", "bvh, s", "S_r",
-           "tree, s", "wall");
+    printf("%9s %12s %12s %12s %12s %12s %12s   bytes a light\n", "lights", "clusters, s", "power, s", "influence, s",
+           "S_r", "tree, s", "wall");
     for (int n = 1000; n <= 1000000; n *= 10) {
         noc_scene *s = random_city(n);
         double t0 = noc_cpu_seconds();

@@ -3,8 +3,8 @@
  *   bench_structures [THREADS [MOST [NAME]]]     over random cities of 1k, 10k, ... up to MOST (1000000) lights
  *
  * NAME: only the structures whose names hold it. Wall and CPU seconds and bytes a light of the alias table (power),
- * influence volumes (bvh: simple, shared by up to 8 lights, visibility-aware), the tree and the clusters of the lists.
- * CPU seconds are those of a small frame that builds the structure less those of one that finds it there.
+ * influence volumes (influence: simple, shared by up to 8 lights, visibility-aware), the tree and the clusters of the
+ * lists. CPU seconds are those of a small frame that builds the structure less those of one that finds it there.
  * Visibility-aware boxes are probed against a city of blocks. "share" is bytes over what the scene and its ray tracing
  * structure hold, which is little here: twelve triangles a block and a light for each ten metres of it. */
 #include "bench_scene.h"
@@ -72,11 +72,11 @@ typedef struct structure {
 
 static const structure structures[] = {
     { "power", NOC_CANDIDATES_POWER, 1, NOC_INFLUENCE_SPHERE },
-    { "bvh", NOC_CANDIDATES_BVH, 1, NOC_INFLUENCE_SPHERE },
-    { "bvh, shared", NOC_CANDIDATES_BVH, 8, NOC_INFLUENCE_SPHERE },
-    { "bvh, visible", NOC_CANDIDATES_BVH, 1, NOC_INFLUENCE_VISIBLE },
-    { "bvh, both", NOC_CANDIDATES_BVH, 8, NOC_INFLUENCE_VISIBLE },
-    { "tree", NOC_CANDIDATES_TREE, 1, NOC_INFLUENCE_SPHERE },
+    { "influence", NOC_CANDIDATES_INFLUENCE, 1, NOC_INFLUENCE_SPHERE },
+    { "influence, shared", NOC_CANDIDATES_INFLUENCE, 8, NOC_INFLUENCE_SPHERE },
+    { "influence, visible", NOC_CANDIDATES_INFLUENCE, 1, NOC_INFLUENCE_VISIBLE },
+    { "influence, both", NOC_CANDIDATES_INFLUENCE, 8, NOC_INFLUENCE_VISIBLE },
+    { "light-bvh", NOC_CANDIDATES_LIGHT_BVH, 1, NOC_INFLUENCE_SPHERE },
     { "lists", NOC_CANDIDATES_LISTS, 1, NOC_INFLUENCE_SPHERE },
 };
 

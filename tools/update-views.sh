@@ -18,7 +18,7 @@ figure() {
     convert "$work/both.png" -strip -dither None -colors 128 "$root/docs/views/$name.png"
 }
 
-figure lights --candidates bvh --frames 1 --show-range 0,200
+figure lights --candidates influence --frames 1 --show-range 0,200
 figure density --frames 1 --show-range 0.001,1
 figure light --shadow-rays 1 --frames 1
 figure weight --method restir --frames 1 --show-range 0.1,10000

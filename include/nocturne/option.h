@@ -33,6 +33,8 @@ typedef struct noc_option {
     const char *help;    /* one line */
     /* "option=a|b,option=c": where others of its table say otherwise it changes no picture; may be NULL */
     const char *needs;
+    /* CHOICE: "old=a|older=b": other names of choices, which are taken and never told; may be NULL */
+    const char *aliases;
 } noc_option;
 
 NOC_API const noc_option *noc_render_options(void);  /* fields of noc_render_params */

@@ -16,10 +16,10 @@ typedef enum noc_candidates {
     NOC_CANDIDATES_UNIFORM,
     NOC_CANDIDATES_LISTS,
     NOC_CANDIDATES_POWER,
-    NOC_CANDIDATES_BVH,
-    NOC_CANDIDATES_TREE
+    NOC_CANDIDATES_INFLUENCE,
+    NOC_CANDIDATES_LIGHT_BVH
 } noc_candidates;
-/* bvh: what bounds a light's influence volume: distance, or what its light reaches as well. */
+/* influence: what bounds a light's influence volume: distance, or what its light reaches as well. */
 typedef enum noc_influence_boxes { NOC_INFLUENCE_SPHERE, NOC_INFLUENCE_VISIBLE } noc_influence_boxes;
 /* Code that computes what is between rays. All of them give the same bits. */
 typedef enum noc_isa {
@@ -36,7 +36,7 @@ NOC_API bool noc_isa_runs(noc_isa isa);        /* on this processor */
 /* Views of how lights were sampled, and of the surfaces that are seen: docs/views.md. The reservoir is the one that the
  * frame shaded. */
 typedef enum noc_aov {
-    /* lights that the query found: bvh: volumes that hold the point; lists: entries of the tile's list */
+    /* lights that the query found: influence: volumes that hold the point; lists: entries of the tile's list */
     NOC_AOV_LIGHTS,
     /* of the light that this frame's candidates chose: how often it is expected among a pixel's candidates */
     NOC_AOV_DENSITY,
@@ -62,12 +62,12 @@ typedef struct noc_render_params {
     int list, tail;            /* lists: strongest lights of a tile, 0..128; draws from all others, 1..128 */
     int shadow_rays;           /* lists: shadow rays a pixel and frame: a target, 1 to twice as many; 1..8 */
     bool learn;                /* lists: visibility found in earlier frames says where rays are sent */
-    /* bvh: S_r, the distance at which a light of 1 cd is last found, m; 0 = found for the scene;
+    /* influence: S_r, the distance at which a light of 1 cd is last found, m; 0 = found for the scene;
      * points then list the strongest lights within it */
     double influence;
     noc_influence_boxes influence_boxes;
-    int influence_cluster; /* bvh: at most so many lights that lie close together share a volume, 1..64 */
-    int uniform_every;     /* bvh: of so many draws one is from all lights, 1..1024 */
+    int influence_cluster; /* influence: at most so many lights that lie close together share a volume, 1..64 */
+    int uniform_every;     /* influence: of so many draws one is from all lights, 1..1024 */
     int rays;              /* reference: shadow rays a pixel and frame, 1..1024 */
     /* reuse (restir only) */
     bool temporal, spatial;
@@ -203,15 +203,15 @@ typedef struct noc_light_stats {
     /* what that is to be compared with: the scene's geometry, materials and lights, and
      * the ray tracing structure */
     size_t scene_bytes;
-    double influence; /* bvh: S_r, m */
-    size_t volumes;   /* bvh: influence volumes; fewer than lights where lights share them */
-    /* bvh: what build_seconds went into: volumes and their order; S_r, where none was set; the hierarchy;
+    double influence; /* influence: S_r, m */
+    size_t volumes;   /* influence: influence volumes; fewer than lights where lights share them */
+    /* influence: what build_seconds went into: volumes and their order; S_r, where none was set; the hierarchy;
      * visibility-aware boxes */
     double volumes_seconds, tuning_seconds, hierarchy_seconds, boxes_seconds;
-    /* bvh: pixels of the last frame that saw a surface, and so asked for lights */
+    /* influence: pixels of the last frame that saw a surface, and so asked for lights */
     uint64_t surfaces;
-    double found_none; /* bvh: share of them that no volume held */
-    /* bvh: lights that they found: median and 99th percentile; 65,536 stands for more too */
+    double found_none; /* influence: share of them that no volume held */
+    /* influence: lights that they found: median and 99th percentile; 65,536 stands for more too */
     uint32_t found_median, found_99;
 } noc_light_stats;
 

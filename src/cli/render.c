@@ -14,7 +14,7 @@ static const noc_option own_options[] = {
       "what is written: the picture, how lights were sampled, or what is seen" },
     TEXT("show-range", "Output", show_range, "LOW,HIGH", "ends of that view's colour bar; else found from its numbers"),
     TEXT("influence-obj", "Output", influence_obj, "FILE",
-         "write the influence volumes of --candidates bvh, and boxes, as OBJ too"),
+         "write the influence volumes of --candidates influence, and boxes, as OBJ too"),
     CLI_PRESET(A, "Estimator"),
     { "frames", "Output", NOC_OPTION_INT, offsetof(A, frames), 1, 1e9, NULL, "",
       "frames that are rendered and averaged" },
@@ -59,7 +59,7 @@ const cli_command cli_render = {
     "  nocturne render builtin:city -o night.png\n"
     "  nocturne render builtin:mess --lights 100000 -o mess.png\n"
     "  nocturne render city.gml lamps.geojson --view aerial -o city.png\n"
-    "  nocturne render builtin:city --candidates bvh --show lights -o lights.png\n"
+    "  nocturne render builtin:city --candidates influence --show lights -o a.png\n"
     "  nocturne render city.gml --method reference --frames 64 -o reference.exr\n"
     "Built-in scenes are builtin:city, cityscape, mess, single and atrium.\n"
     "Ctrl-C saves the picture so far and ends with status 130; a second one ends at\n"
@@ -139,10 +139,10 @@ static int check_influence(const render_args *args) {
     if (!args->influence_obj)
         return CLI_OK;
     bool draws = args->render.method == NOC_METHOD_RIS || args->render.method == NOC_METHOD_RESTIR;
-    if (args->render.candidates != NOC_CANDIDATES_BVH || !draws)
+    if (args->render.candidates != NOC_CANDIDATES_INFLUENCE || !draws)
         return cli_usage(
             &cli_render,
-            "--influence-obj needs --candidates bvh, with the method ris or restir: others have no influence volumes");
+            "--influence-obj needs --candidates influence, with the method ris or restir: others have no influence volumes");
     return cli_check_output(&cli_render, args->influence_obj, CLI_OBJ, &args->common);
 }
 

@@ -147,7 +147,8 @@ enum {
     COL_DROPPED,
     /* of the structure that candidates are drawn from: seconds to build, and of them in volumes, tuning,
      * hierarchy and boxes, bytes, bytes of the scene and its ray tracing structure, and
-     * for bvh S_r, the share of surfaces that no light was found for, median and 99th percentile of those found */
+     * for influence volumes S_r, the share of surfaces that no light was found for, median and 99th percentile of those
+     * found */
     COL_LIGHT_BUILD,
     COL_VOLUMES,
     COL_TUNING,

@@ -41,7 +41,7 @@ noc_status noc_render_check(const noc_render_params *p, noc_log *log) {
         }
     if ((unsigned)p->method > NOC_METHOD_RESTIR)
         return wrong(log, "method", (int)p->method, "a noc_method");
-    if ((unsigned)p->candidates > NOC_CANDIDATES_TREE)
+    if ((unsigned)p->candidates > NOC_CANDIDATES_LIGHT_BVH)
         return wrong(log, "candidates", (int)p->candidates, "a noc_candidates");
     if ((unsigned)p->influence_boxes > NOC_INFLUENCE_VISIBLE)
         return wrong(log, "influence_boxes", (int)p->influence_boxes, "a noc_influence_boxes");

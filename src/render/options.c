@@ -26,9 +26,9 @@
 
 /* Ends of rows: what the option needs (noc_option.needs). tests/render/test_needs.c holds them to pictures. */
 #define CANDIDATES "method=ris|restir"
-#define DRAWN CANDIDATES ",candidates=uniform|power|bvh|tree"
+#define DRAWN CANDIDATES ",candidates=uniform|power|influence|light-bvh"
 #define LISTS CANDIDATES ",candidates=lists"
-#define BVH CANDIDATES ",candidates=bvh"
+#define INFLUENCE CANDIDATES ",candidates=influence"
 #define RESTIR "method=restir"
 #define SPATIAL RESTIR ",spatial=true"
 
@@ -45,8 +45,8 @@ static const noc_option render_options[] = {
     BOOL(P, emitters, "emitters", "Picture", "show light sources that are seen directly"),
 
     CHOICE(P, method, "method", "Estimator", "reference|is|ris|restir", "how direct light is estimated"),
-    CHOICE(P, candidates, "candidates", "Estimator", "uniform|lists|power|bvh|tree",
-         "ris, restir: where light candidates come from", CANDIDATES),
+    CHOICE(P, candidates, "candidates", "Estimator", "uniform|lists|power|influence|light-bvh",
+         "ris, restir: where light candidates come from", CANDIDATES, .aliases = "bvh=influence|tree=light-bvh"),
     INT(P, draws, "draws", "Estimator", 1, 1024, "", "light candidates a pixel and frame (M)", DRAWN),
     INT(P, list, "list", "Estimator", 0, 128, "",
         "lists: strongest lights of a tile, seen by each of its pixels", LISTS),
@@ -56,13 +56,13 @@ static const noc_option render_options[] = {
     BOOL(P, learn, "learn", "Estimator",
          "lists: earlier frames' rays say where to send new ones", LISTS ",final-ray=true"),
     REAL(P, influence, "influence", "Estimator", 0, 1e6, "m",
-         "bvh: reach of a light of 1 cd; 0 = found for the scene", BVH),
+         "influence: reach of a light of 1 cd; 0 = found for the scene", INFLUENCE),
     CHOICE(P, influence_boxes, "influence-boxes", "Estimator", "sphere|visible",
-         "bvh: lights reach as far as they shine, or see", BVH),
+         "influence: lights reach as far as they shine, or see", INFLUENCE),
     INT(P, influence_cluster, "influence-cluster", "Estimator", 1, 64, "",
-        "bvh: so many close lights may share a volume", BVH),
+         "influence: so many close lights may share a volume", INFLUENCE),
     INT(P, uniform_every, "uniform-every", "Estimator", 1, 1024, "",
-        "bvh: of so many draws one is from all lights", BVH),
+         "influence: of so many draws one is from all lights", INFLUENCE),
     INT(P, rays, "rays", "Estimator", 1, 1024, "", "reference: shadow rays a pixel and frame", "method=reference"),
     BOOL(P, final_ray, "final-ray", "Estimator", "shadow ray to the chosen light; off: light passes through walls"),
     CHOICE(P, isa, "isa", "Estimator", "auto|scalar|baseline|avx2|avx512",
@@ -195,18 +195,37 @@ static noc_status set_switch(const noc_option *o, void *field, const char *value
     return status;
 }
 
-static noc_status set_choice(const noc_option *o, void *field, const char *value, noc_log *log) {
-    size_t length = strlen(value);
+/* The index of the choice of this name, or -1. */
+static int choice_index(const noc_option *o, const char *name, size_t length) {
     int index = 0;
     for (const char *c = o->choices; *c; index++) {
         size_t n = strcspn(c, "|");
-        if (n == length && !strncmp(c, value, n)) {
-            memcpy(field, &index, sizeof(index));
-            return NOC_OK;
-        }
+        if (n == length && !strncmp(c, name, n))
+            return index;
         c += n + (c[n] == '|');
     }
-    return noc_error(log, NOC_ERR_ARGUMENT, "%s: " QUOTE " is none of %s", o->name, QUOTED(value), o->choices);
+    return -1;
+}
+
+/* The index of the choice that has this alias, or -1. */
+static int alias_index(const noc_option *o, const char *name) {
+    for (const char *a = o->aliases; a && *a;) {
+        size_t alias = strcspn(a, "="), n = strcspn(a + alias + 1, "|");
+        if (strlen(name) == alias && !strncmp(a, name, alias))
+            return choice_index(o, a + alias + 1, n);
+        a += alias + 1 + n;
+        a += *a == '|';
+    }
+    return -1;
+}
+
+static noc_status set_choice(const noc_option *o, void *field, const char *value, noc_log *log) {
+    int index = choice_index(o, value, strlen(value));
+    index = index < 0 ? alias_index(o, value) : index;
+    if (index < 0)
+        return noc_error(log, NOC_ERR_ARGUMENT, "%s: " QUOTE " is none of %s", o->name, QUOTED(value), o->choices);
+    memcpy(field, &index, sizeof(index));
+    return NOC_OK;
 }
 
 static noc_status range_error(const noc_option *o, const char *value, noc_log *log) {

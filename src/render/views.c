@@ -16,7 +16,7 @@ static bool asks(const noc_render_params *p, noc_aov aov) { return p->aovs >> ao
 
 static bool has_query(const noc_render_params *p) {
     return (p->method == NOC_METHOD_RIS || p->method == NOC_METHOD_RESTIR) &&
-           (p->candidates == NOC_CANDIDATES_BVH || p->candidates == NOC_CANDIDATES_LISTS);
+           (p->candidates == NOC_CANDIDATES_INFLUENCE || p->candidates == NOC_CANDIDATES_LISTS);
 }
 
 noc_status noc_check_aovs(const noc_render_params *p, noc_log *log) {
@@ -25,7 +25,7 @@ noc_status noc_check_aovs(const noc_render_params *p, noc_log *log) {
         return noc_error(log, NOC_ERR_ARGUMENT, "render: aovs is 0x%x, must be bits 1 << noc_aov", p->aovs);
     if (asks(p, NOC_AOV_LIGHTS) && !has_query(p))
         return noc_error(log, NOC_ERR_ARGUMENT,
-                         "render: view \"lights\": only ris and restir with candidates bvh or lists ask for "
+                         "render: view \"lights\": only ris and restir with candidates influence or lists ask for "
                          "the lights around a point");
     for (size_t i = 0; i < NOC_COUNT(of_reservoirs); i++)
         if (asks(p, of_reservoirs[i]) && p->method == NOC_METHOD_REFERENCE)

@@ -26,7 +26,7 @@ for row in [table[0]] + sorted(r for r in table[1:] if int(r[frame]) <= last):
 }
 
 run experiment spec.json -o a --cache cache
-choices=$("$program" help render | tr -s '\n ' ' ' | grep -o 'candidates come from: [a-z|]*' | sed 's/.*: //' | tr '|' '\n' | grep -c .)
+choices=$("$program" help render | tr -s '\n ' ' ' | grep -o 'candidates come from: [a-z|-]*' | sed 's/.*: //' | tr '|' '\n' | grep -c .)
 expected=$((2 * 2 * (1 + choices) * 3 * 2)) # cameras, repetitions, configurations, frames, modes
 rows a >a.rows
 test $status = 0 && test "$(wc -l <a/results.csv)" = $((expected + 1)) && test "$choices" -ge 2 && test -s a.rows

@@ -63,7 +63,7 @@ run render $small --method is --shadow-rays 4 --no-temporal --frames 1 -o b.png
 test $status = 0 && test "$(cat err)" = "nocturne: warning: --shadow-rays has no effect: it needs method ris|restir, not is
 nocturne: warning: --no-temporal has no effect: it needs method restir, not is"
 result $? "options without effect are warned of"
-run render $small --candidates bvh --preset interactive --uniform-every 2 --draws 3 --no-bias-rays --frames 1 -o b.png
+run render $small --candidates influence --preset interactive --uniform-every 2 --draws 3 --no-bias-rays --frames 1 -o b.png
 test $status = 0 && test ! -s err
 result $? "and those that have one are not"
 run render $small --exposure 4 --compensation 2 -o b.png && cp err told && run render $small --exposure 4 -o c.png
@@ -115,16 +115,16 @@ fi
 
 # Views of the light sampling in the picture's place.
 for v in lights density light weight confidence rays variance error; do
-    run render $small --candidates bvh --show $v -o $v.png
+    run render $small --candidates influence --show $v -o $v.png
     test $status = 0 && test "$(meta $v.png show)" = $v && grep -Eq "^  view      $v: (median|[0-9,]+ different)" out &&
         ! cmp -s a.png $v.png
     result $? "--show $v"
 done
 test "$(meta lights.png size)" = "260 81"; result $? "a view has a legend below"
-run render $small --candidates bvh --show lights -o lights.exr
+run render $small --candidates influence --show lights -o lights.exr
 test $status = 0 && grep -aq units lights.exr && grep -aq 'candidates' lights.exr && ! grep -aq cd/m2 lights.exr
 result $? "EXR takes a view's numbers and their unit"
-run render $small --candidates bvh --show lights --show-range 0,7 -o b.png
+run render $small --candidates influence --show lights --show-range 0,7 -o b.png
 test $status = 0 && ! cmp -s lights.png b.png; result $? "--show-range sets the colour bar"
 run render $small --show picture -o b.png
 test $status = 0 && cmp -s a.png b.png && test -z "$(meta a.png show)"; result $? "--show picture is the picture"
@@ -164,7 +164,7 @@ test $status = 0 && grep -Eq '^            .*[0-9]+ house [0-9.]+%' out; result 
 
 # Influence volumes as OBJ: closed bodies that face outwards; of one-sided lights the half that they face, S_r sqrt(I) around their shape.
 lamp_model
-see="--eye 4,-4,1 --target 0,0,0 --size 32x18 --frames 1 --candidates bvh"
+see="--eye 4,-4,1 --target 0,0,0 --size 32x18 --frames 1 --candidates influence"
 cat >look.py <<'LOOK'
 import math, sys
 vertices, objects, faces = [], {}, None
@@ -211,7 +211,7 @@ CHECK
 result $? "influence volumes as OBJ: half spheres under lights that shine down"
 run info volumes.obj
 test $status = 0 && ! grep -qi 'skipped' out; result $? "which can be read again"
-run render builtin:city --city-size 150 --size 32x18 --frames 1 --candidates bvh --influence-boxes visible -o b.png --influence-obj volumes.obj
+run render builtin:city --city-size 150 --size 32x18 --frames 1 --candidates influence --influence-boxes visible -o b.png --influence-obj volumes.obj
 test $status = 0 && python3 - volumes.obj <<'CHECK'
 exec(open("look.py").read())
 volumes, boxes = [n for n in objects if n.startswith("volume_")], [n for n in objects if n.startswith("box_")]
@@ -221,7 +221,7 @@ assert any(abs(len(points(n)) - (1 + 6 * 16)) == 0 for n in volumes) and any(len
 assert all(len(points(n)) == 8 for n in boxes)
 CHECK
 result $? "and boxes, with the volumes that lie in them"
-expect "only where there are volumes" 2 'influence-obj needs --candidates bvh' render $small -o b.png --influence-obj volumes.obj
-expect "under a name that tells" 2 'volumes.ply must end in .obj' render $small --candidates bvh -o b.png --influence-obj volumes.ply
-expect "in a folder that is there" 1 'its folder cannot be used' render $small --candidates bvh -o b.png --influence-obj gone/volumes.obj
+expect "only where there are volumes" 2 'influence-obj needs --candidates influence' render $small -o b.png --influence-obj volumes.obj
+expect "under a name that tells" 2 'volumes.ply must end in .obj' render $small --candidates influence -o b.png --influence-obj volumes.ply
+expect "in a folder that is there" 1 'its folder cannot be used' render $small --candidates influence -o b.png --influence-obj gone/volumes.obj
 finish

@@ -37,7 +37,7 @@ test $status = 0 && grep -q '^Reference: 1 frame of `[^|]*`method ris`, `candida
 
 # What changes nothing is told once, by where it stands; what counts in one configuration of an entry is not.
 spec idle.json '{ "name": "is", "method": "is", "draws": 8 }, { "name": "*", "method": "ris", "candidates": ["power", "lists"], "draws": 8 },
-    { "name": "p", "preset": "interactive", "candidates": "bvh", "uniform-every": 2 }' '"options": { "rays": 4, "list": 8, "passes": 2 },'
+    { "name": "p", "preset": "interactive", "candidates": "influence", "uniform-every": 2 }' '"options": { "rays": 4, "list": 8, "passes": 2 },'
 sed -i 's/"reference": { /"reference": { "tail": 3, /' idle.json
 run experiment idle.json -o i --cache cache
 cat >told <<'TOLD'
@@ -99,7 +99,7 @@ head -c 1100000 /dev/zero | tr '\0' ' ' >>wrong.json
 expect "a spec of a megabyte" 2 'wrong.json: it is larger than 1048576 bytes$' experiment wrong.json -o w
 
 # What structures are is told of the camera at rest in a scene, else of those that move; not what nobody saw.
-spec volumes.json '{ "name": "v", "candidates": "bvh", "influence": 100 }'
+spec volumes.json '{ "name": "v", "candidates": "influence", "influence": 100 }'
 sed -i 's/"scene": \(.*\) }, "cameras": .*\], "size"/"scenes": [ \1, "cameras": [ REST, MOVES, SKY ] }, { "name": "two", "inputs": ["builtin:single"], "cameras": [ MOVES ] } ], "size"/
     s/REST/{ "name": "own", "view": "own" }/; s/MOVES/{ "name": "turn", "view": "own", "path": { "frames": 2, "pan": 1 } }/g
     s/SKY/{ "name": "sky", "eye": [0, 0, 50], "target": [0, 0, 90] }/' volumes.json
@@ -132,10 +132,16 @@ result $? "a name that a spreadsheet would run is text in the table"
 run experiment titled.json -o g --cache cache
 test $status = 0 && grep -q ' 0 of them made now' out; result $? "and its rows are found again"
 
+# A spec may say what candidates were called before; reports tell the names of today.
+spec former.json '{ "name": "r, *", "method": "ris", "candidates": ["bvh", "tree"] }'
+run experiment former.json -o former --cache cache
+python3 -c 'import csv; assert {r["configuration"] for r in csv.DictReader(open("former/results.csv"))} == {"r, influence", "r, light-bvh"}'
+result $? "former names of candidates are taken"
+
 # Colours and markers follow the values, wherever in an entry's array they stand; where values are more than colours, all differ.
-spec arrays.json '{ "name": "alone", "method": "is" }, { "name": "ris, *", "method": "ris", "candidates": ["uniform", "power", "bvh", "tree"] },
-    { "name": "restir, *", "method": "restir", "candidates": ["lists", "bvh", "uniform"] }'
-spec many.json '{ "name": "S_r *", "candidates": "bvh", "influence": [0, 0.25, 0.5, 1, 2, 4, 8, 16, 32] }, { "name": "M *", "candidates": "bvh", "influence": [32, 0] }'
+spec arrays.json '{ "name": "alone", "method": "is" }, { "name": "ris, *", "method": "ris", "candidates": ["uniform", "power", "influence", "light-bvh"] },
+    { "name": "restir, *", "method": "restir", "candidates": ["lists", "influence", "uniform"] }'
+spec many.json '{ "name": "S_r *", "candidates": "influence", "influence": [0, 0.25, 0.5, 1, 2, 4, 8, 16, 32] }, { "name": "M *", "candidates": "influence", "influence": [32, 0] }'
 for f in arrays many; do
     sed -i 's/"frames": 1, "repetitions": 1/"frames": 2, "repetitions": 2/' $f.json
     run experiment $f.json -o $f --cache cache
@@ -156,7 +162,7 @@ def look(path):
             last = None
     return names, marks, root
 mean = lambda rows, name: sum(float(r["relmse_clamped"]) for r in rows if r["configuration"] == name and r["frame"] == "1" and r["mode"] == "accumulated")
-for folder, groups, values in (("arrays", ("ris", "restir"), ("uniform", "power", "bvh", "tree", "lists")),
+for folder, groups, values in (("arrays", ("ris", "restir"), ("uniform", "power", "influence", "light-bvh", "lists")),
                                ("many", ("S_r", "M"), ("0", "0.25", "0.5", "1", "2", "4", "8", "16", "32"))):
     names, marks, root = look(folder + "/errors.svg")
     styles = [names[v] for v in values]

@@ -62,7 +62,7 @@ expect "eye and view" 2 'exclude each other' render $c -o a.png --eye 1,2,3 --ta
 expect "camera CRS without eye" 2 '--camera-crs is for' render $c -o a.png --camera-crs EPSG:25832
 expect "options of a city that is not drawn" 2 '--city-size is for the input builtin:city' render city.gml -o a.png --city-size 200
 expect "an unknown view" 2 'show: "lamps" is none of picture\|lights' render $c -o a.png --show lamps
-expect "a view without a query" 2 'view "lights": only ris and restir with candidates bvh or lists' render $c -o a.png --show lights --candidates tree
+expect "a view without a query" 2 'view "lights": only ris and restir with candidates influence or lists' render $c -o a.png --show lights --candidates light-bvh
 expect "a view of no reservoir" 2 'view "weight": the reference method' render $c -o a.png --show weight --method reference
 expect "variance of nothing" 2 'frames must be accumulated' render $c -o a.png --show variance --no-accumulate
 expect "variance of one frame" 2 '--show error needs two frames' render $c -o a.png --show error --frames 1

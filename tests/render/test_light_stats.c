@@ -33,7 +33,7 @@ static void number_of_lights_found(void **state) {
     } cases[] = { { 3, 3 }, { 1500, 1500 }, { 4321, 4321 }, { 70000, 65536 } };
     noc_camera c = view(0), sky = look(0, 0, 50, 0, 0, 90, 60);
     noc_render_params p = measure(16, 8, NOC_METHOD_RIS);
-    p.candidates = NOC_CANDIDATES_BVH;
+    p.candidates = NOC_CANDIDATES_INFLUENCE;
     for (size_t i = 0; i < NOC_COUNT(cases); i++) {
         noc_scene *s = bundle(cases[i].lights);
         p.influence = 1e6;
@@ -62,7 +62,7 @@ static void set_reach_is_not_looked_for(void **state) {
     noc_scene *s = bundle(1500);
     noc_camera c = view(0);
     noc_render_params p = measure(16, 8, NOC_METHOD_RIS);
-    p.candidates = NOC_CANDIDATES_BVH;
+    p.candidates = NOC_CANDIDATES_INFLUENCE;
     noc_light_stats automatic = stats_of(s, &c, &p);
     assert_true(automatic.tuning_seconds > 0 && automatic.volumes_seconds > 0 && automatic.hierarchy_seconds > 0);
     assert_true(automatic.boxes_seconds == 0);

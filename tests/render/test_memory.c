@@ -64,9 +64,9 @@ static const config configs[] = {
     { "ris, uniform", NOC_METHOD_RIS, NOC_CANDIDATES_UNIFORM },
     { "ris, power", NOC_METHOD_RIS, NOC_CANDIDATES_POWER },
     { "ris, lists", NOC_METHOD_RIS, NOC_CANDIDATES_LISTS },
-    { "ris, bvh with boxes and views", NOC_METHOD_RIS, NOC_CANDIDATES_BVH, .boxes = true, .aovs = SEEN },
-    { "restir, bvh", NOC_METHOD_RESTIR, NOC_CANDIDATES_BVH, .reuse = true },
-    { "restir, tree", NOC_METHOD_RESTIR, NOC_CANDIDATES_TREE, .reuse = true },
+    { "ris, influence with boxes and views", NOC_METHOD_RIS, NOC_CANDIDATES_INFLUENCE, .boxes = true, .aovs = SEEN },
+    { "restir, influence", NOC_METHOD_RESTIR, NOC_CANDIDATES_INFLUENCE, .reuse = true },
+    { "restir, light-bvh", NOC_METHOD_RESTIR, NOC_CANDIDATES_LIGHT_BVH, .reuse = true },
     { "restir, lists", NOC_METHOD_RESTIR, NOC_CANDIDATES_LISTS, .reuse = true },
 };
 
@@ -209,8 +209,8 @@ static void moved_frame(const config *c) {
         }
         noc_renderer_destroy(r);
     }
-    if (c->candidates == NOC_CANDIDATES_LISTS || c->candidates == NOC_CANDIDATES_BVH ||
-        c->candidates == NOC_CANDIDATES_TREE)
+    if (c->candidates == NOC_CANDIDATES_LISTS || c->candidates == NOC_CANDIDATES_INFLUENCE ||
+        c->candidates == NOC_CANDIDATES_LIGHT_BVH)
         assert_true(refused > 0); /* what is built over moved lights is built anew */
     noc_renderer_destroy(untouched);
     noc_log_destroy(log);

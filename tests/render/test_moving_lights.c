@@ -65,13 +65,13 @@ static noc_scene *crossing(int frame) {
 static const config configs[] = {
     { "ris, uniform", NOC_METHOD_RIS, .reuse = true },
     { "ris, power", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_POWER },
-    { "ris, tree", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_TREE },
-    { "ris, bvh", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH },
+    { "ris, light-bvh", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_LIGHT_BVH },
+    { "ris, influence", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_INFLUENCE },
     { "ris, lists of 12", NOC_METHOD_RIS, .reuse = true, .list = 12 },
     { "pairwise + rays, uniform", RESTIR(PAIRWISE), .rays = true, .reuse = true },
     { "pairwise + rays, power", RESTIR(PAIRWISE), .rays = true, .reuse = true, .picker = NOC_CANDIDATES_POWER },
-    { "pairwise + rays, tree", RESTIR(PAIRWISE), .rays = true, .reuse = true, .picker = NOC_CANDIDATES_TREE },
-    { "pairwise + rays, bvh", RESTIR(PAIRWISE), .rays = true, .reuse = true, .picker = NOC_CANDIDATES_BVH },
+    { "pairwise + rays, light-bvh", RESTIR(PAIRWISE), .rays = true, .reuse = true, .picker = NOC_CANDIDATES_LIGHT_BVH },
+    { "pairwise + rays, influence", RESTIR(PAIRWISE), .rays = true, .reuse = true, .picker = NOC_CANDIDATES_INFLUENCE },
     { "pairwise + rays, lists of 12", RESTIR(PAIRWISE), .rays = true, .reuse = true, .list = 12 },
     { "pairwise + rays in time, lists of 12", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, .temporal = true, .rays = true,
       .reuse = true, .list = 12, .shadow_rays = 4 },
@@ -112,7 +112,7 @@ static void assert_same_picture(noc_image *a, noc_image *b) {
 static void moved_is_as_if_made_there(void **state) {
     (void)state;
     for (size_t i = 0; i < NOC_COUNT(configs); i++) {
-        if (!configs[i].list && configs[i].picker == NOC_CANDIDATES_TREE)
+        if (!configs[i].list && configs[i].picker == NOC_CANDIDATES_LIGHT_BVH)
             continue;
         noc_render_params p = params_of(&configs[i], 5);
         noc_scene *moved = crossing(1), *made = crossing(4);

@@ -153,7 +153,7 @@ static void it_is_told_what_is_missing(void **state) {
         const char *option, *other, *value, *why;
     } cases[] = {
         { "shadow-rays", "method", "is", "it needs method ris|restir, not is" },
-        { "draws", "candidates", "lists", "it needs candidates uniform|power|bvh|tree, not lists" },
+        { "draws", "candidates", "lists", "it needs candidates uniform|power|influence|light-bvh, not lists" },
         { "learn", "final-ray", "false", "it needs final-ray true, not false" },
         { "temporal", "method", "ris", "it needs method restir, not ris" },
     };

@@ -120,6 +120,44 @@ static void ranges_and_choices(void **state) {
     }
 }
 
+/* Each alias of a table stands for a choice, and for another than itself. */
+static void aliases_name_choices(void **state) {
+    size_t tried = 0;
+    for (size_t t = 0; t < NOC_COUNT(tables); t++) {
+        for (const noc_option *o = tables[t].table(); o->name; o++) {
+            for (const char *a = o->aliases; a && *a; a += *a == '|', tried++) {
+                char alias[32], name[32], back[32];
+                int length = (int)strcspn(a, "="), n = (int)strcspn(a + length + 1, "|");
+                snprintf(alias, sizeof(alias), "%.*s", length, a);
+                snprintf(name, sizeof(name), "%.*s", n, a + length + 1);
+                assert_int_equal(noc_option_set(o, tables[t].params, alias, NULL), NOC_OK);
+                noc_option_get(o, tables[t].params, back, sizeof(back));
+                assert_string_equal(back, name);
+                assert_string_not_equal(alias, name);
+                a += length + 1 + n;
+            }
+        }
+    }
+    assert_true(tried >= 2);
+}
+
+/* The names that candidates had once are still taken. */
+static void former_names_of_candidates(void **state) {
+    const noc_option *o = find(noc_render_options(), "candidates");
+    static const struct {
+        const char *name;
+        noc_candidates value;
+    } former[] = { { "bvh", NOC_CANDIDATES_INFLUENCE }, { "tree", NOC_CANDIDATES_LIGHT_BVH } };
+    for (size_t i = 0; i < NOC_COUNT(former); i++) {
+        render.candidates = NOC_CANDIDATES_LISTS;
+        assert_int_equal(noc_option_set(o, &render, former[i].name, NULL), NOC_OK);
+        assert_int_equal(render.candidates, former[i].value);
+    }
+    static const char *const bad[] = { "bv", "bvh=influence", "tre", "light", "bvh|tree" };
+    for (size_t i = 0; i < NOC_COUNT(bad); i++)
+        assert_int_equal(noc_option_set(o, &render, bad[i], NULL), NOC_ERR_ARGUMENT);
+}
+
 static void bools(void **state) {
     const noc_option *o = find(noc_render_options(), "temporal");
     static const struct {
@@ -223,10 +261,16 @@ static void reals_survive_locales(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(rows_are_sound, setup),      cmocka_unit_test_setup(defaults_round_trip, setup),
-        cmocka_unit_test_setup(ranges_and_choices, setup),  cmocka_unit_test_setup(bools, setup),
-        cmocka_unit_test_setup(bad_values_are_told, setup), cmocka_unit_test_setup(text_points_at_the_callers, setup),
-        cmocka_unit_test_setup(texts_add_up, setup),        cmocka_unit_test_setup(reals_survive_locales, setup),
+        cmocka_unit_test_setup(rows_are_sound, setup),
+        cmocka_unit_test_setup(defaults_round_trip, setup),
+        cmocka_unit_test_setup(ranges_and_choices, setup),
+        cmocka_unit_test_setup(aliases_name_choices, setup),
+        cmocka_unit_test_setup(former_names_of_candidates, setup),
+        cmocka_unit_test_setup(bools, setup),
+        cmocka_unit_test_setup(bad_values_are_told, setup),
+        cmocka_unit_test_setup(text_points_at_the_callers, setup),
+        cmocka_unit_test_setup(texts_add_up, setup),
+        cmocka_unit_test_setup(reals_survive_locales, setup),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -109,8 +109,8 @@ static noc_render_params variant(int i) {
     case 11: p.method = NOC_METHOD_RIS; break;
     case 12: break; /* restir from lists */
     case 13: p.candidates = NOC_CANDIDATES_POWER; break;
-    case 14: p.candidates = NOC_CANDIDATES_BVH; break;
-    case 15: p.candidates = NOC_CANDIDATES_TREE; break;
+    case 14: p.candidates = NOC_CANDIDATES_INFLUENCE; break;
+    case 15: p.candidates = NOC_CANDIDATES_LIGHT_BVH; break;
     case 16:
         p.method = NOC_METHOD_RIS;
         p.shadow_rays = 8;

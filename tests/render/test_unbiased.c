@@ -135,9 +135,10 @@ static const config unbiased[] = {
     { "is", NOC_METHOD_IS },
     { "ris", NOC_METHOD_RIS, .reuse = true },
     { "ris, power", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_POWER, .times = 4 },
-    { "ris, bvh", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH, .times = 4 },
-    { "ris, bvh, shared volumes", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH, .share = 8, .times = 4 },
-    { "ris, tree", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_TREE },
+    { "ris, influence", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_INFLUENCE, .times = 4 },
+    { "ris, influence, shared volumes", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_INFLUENCE, .share = 8,
+      .times = 4 },
+    { "ris, light-bvh", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_LIGHT_BVH },
     { "ris, lists of 12", NOC_METHOD_RIS, .list = 12, .reuse = true },
     { "ris, lists of 12, 1 ray", NOC_METHOD_RIS, .list = 12, .reuse = true, .shadow_rays = 1 },
     { "ris, lists of 12, nothing learned", NOC_METHOD_RIS, .list = 12, .shadow_rays = 3, .unlearned = true },
@@ -181,7 +182,7 @@ static void check_scene(noc_scene *s, plan p) {
     for (size_t i = 0; i < NOC_COUNT(unbiased); i++) {
         const config *c = &unbiased[i];
         if ((p.lists && !c->list) ||
-            (p.one_light && (c->picker == NOC_CANDIDATES_POWER || c->picker == NOC_CANDIDATES_TREE || c->share)))
+            (p.one_light && (c->picker == NOC_CANDIDATES_POWER || c->picker == NOC_CANDIDATES_LIGHT_BVH || c->share)))
             continue;
         result x = measure_runs(s, c, p.moving, NULL, p.runs * NOC_MAX(c->times, 1));
         wrong += !agrees(c->name, &x, &reference);
@@ -200,9 +201,10 @@ static void check_scene(noc_scene *s, plan p) {
 static void boxes_with_a_gap(void **state) {
     (void)state;
     noc_scene *s = gap();
-    const config by[] = { { "ris, bvh, boxes", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH,
+    const config by[] = { { "ris, influence, boxes", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_INFLUENCE,
                             .influence = 8, .boxes = NOC_INFLUENCE_VISIBLE },
-                          { "ris, bvh", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_BVH, .influence = 8 } };
+                          { "ris, influence", NOC_METHOD_RIS, .reuse = true, .picker = NOC_CANDIDATES_INFLUENCE,
+                            .influence = 8 } };
     result reference = measure_reference(s, false, NULL, 600);
     noc_light_stats found[2];
     for (int i = 0; i < 2; i++) {

@@ -65,7 +65,7 @@ static void lights_found_by_the_volumes(void **state) {
     enum { LIGHTS = 60 };
     noc_scene *s = lit_floor(LIGHTS);
     noc_camera c = above();
-    noc_render_params p = with(NOC_METHOD_RIS, NOC_CANDIDATES_BVH, 1u << NOC_AOV_LIGHTS);
+    noc_render_params p = with(NOC_METHOD_RIS, NOC_CANDIDATES_INFLUENCE, 1u << NOC_AOV_LIGHTS);
     p.influence = 1.2;
     noc_renderer *r = rendered(s, &c, &p, 2, 2);
     noc_channel *v = view(r, NOC_AOV_LIGHTS);
@@ -126,7 +126,7 @@ static double expected(noc_candidates candidates, const noc_camera *c, const noc
     switch (candidates) {
     case NOC_CANDIDATES_UNIFORM: return (double)p->draws / lights;
     case NOC_CANDIDATES_POWER: return p->draws * (1.0 + light) / (lights * (lights + 1) / 2.0);
-    case NOC_CANDIDATES_BVH: return (in ? (p->draws - u) / held : 0) + u / lights;
+    case NOC_CANDIDATES_INFLUENCE: return (in ? (p->draws - u) / held : 0) + u / lights;
     default: return p->draws; /* one light, whichever way */
     }
 }
@@ -139,20 +139,20 @@ static void densities(void **state) {
     } cases[] = {
         { NOC_CANDIDATES_UNIFORM, 20 },
         { NOC_CANDIDATES_POWER, 20 },
-        { NOC_CANDIDATES_BVH, 20 },
-        { NOC_CANDIDATES_TREE, 1 },
+        { NOC_CANDIDATES_INFLUENCE, 20 },
+        { NOC_CANDIDATES_LIGHT_BVH, 1 },
     };
     noc_camera c = above();
     for (size_t k = 0; k < NOC_COUNT(cases); k++) {
         noc_candidates candidates = cases[k].candidates;
-        bool bvh = candidates == NOC_CANDIDATES_BVH;
+        bool volumes = candidates == NOC_CANDIDATES_INFLUENCE;
         noc_scene *s = lit_floor(cases[k].lights);
         noc_render_params p = with(NOC_METHOD_RIS, candidates,
-                                   1u << NOC_AOV_DENSITY | 1u << NOC_AOV_LIGHT | (uint32_t)bvh << NOC_AOV_LIGHTS);
+                                   1u << NOC_AOV_DENSITY | 1u << NOC_AOV_LIGHT | (uint32_t)volumes << NOC_AOV_LIGHTS);
         p.influence = 1.37;
         noc_renderer *r = rendered(s, &c, &p, 1, 2);
         noc_channel *density = view(r, NOC_AOV_DENSITY), *light = view(r, NOC_AOV_LIGHT);
-        noc_channel *held = bvh ? view(r, NOC_AOV_LIGHTS) : NULL;
+        noc_channel *held = volumes ? view(r, NOC_AOV_LIGHTS) : NULL;
         int checked = 0, doubtful = 0;
         for (int i = 0; i < N; i++) {
             assert_int_equal(density->value[i] >= 0, light->value[i] >= 0); /* nothing here is in shadow */
@@ -403,7 +403,7 @@ static void variance(void **state) {
 /* ---- what no view may change, and what may not change a view ---- */
 
 static noc_render_params any(int i) {
-    static const noc_candidates from[] = { NOC_CANDIDATES_BVH, NOC_CANDIDATES_LISTS, NOC_CANDIDATES_TREE,
+    static const noc_candidates from[] = { NOC_CANDIDATES_INFLUENCE, NOC_CANDIDATES_LISTS, NOC_CANDIDATES_LIGHT_BVH,
                                            NOC_CANDIDATES_POWER };
     noc_render_params p = with(i < 4    ? NOC_METHOD_RESTIR
                                : i < 6  ? NOC_METHOD_RIS
@@ -514,11 +514,11 @@ static void wrong_requests(void **state) {
         const char *says;
     } bad[] = {
         { NOC_METHOD_RIS, NOC_CANDIDATES_UNIFORM, 1u << NOC_AOV_LIGHTS, "\"lights\": only" },
-        { NOC_METHOD_RESTIR, NOC_CANDIDATES_TREE, 1u << NOC_AOV_LIGHTS, "\"lights\": only" },
-        { NOC_METHOD_IS, NOC_CANDIDATES_BVH, 1u << NOC_AOV_LIGHTS, "\"lights\": only" },
-        { NOC_METHOD_REFERENCE, NOC_CANDIDATES_BVH, 1u << NOC_AOV_DENSITY, "\"density\": the reference" },
-        { NOC_METHOD_REFERENCE, NOC_CANDIDATES_BVH, 1u << NOC_AOV_WEIGHT, "\"weight\": the reference" },
-        { NOC_METHOD_RIS, NOC_CANDIDATES_BVH, 1u << NOC_AOV_COUNT, "aovs is 0x" },
+        { NOC_METHOD_RESTIR, NOC_CANDIDATES_LIGHT_BVH, 1u << NOC_AOV_LIGHTS, "\"lights\": only" },
+        { NOC_METHOD_IS, NOC_CANDIDATES_INFLUENCE, 1u << NOC_AOV_LIGHTS, "\"lights\": only" },
+        { NOC_METHOD_REFERENCE, NOC_CANDIDATES_INFLUENCE, 1u << NOC_AOV_DENSITY, "\"density\": the reference" },
+        { NOC_METHOD_REFERENCE, NOC_CANDIDATES_INFLUENCE, 1u << NOC_AOV_WEIGHT, "\"weight\": the reference" },
+        { NOC_METHOD_RIS, NOC_CANDIDATES_INFLUENCE, 1u << NOC_AOV_COUNT, "aovs is 0x" },
     };
     for (size_t i = 0; i < NOC_COUNT(bad); i++) {
         noc_render_params p = with(bad[i].method, bad[i].candidates, bad[i].aovs);
@@ -526,7 +526,7 @@ static void wrong_requests(void **state) {
         assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_ERR_ARGUMENT);
         assert_non_null(strstr(noc_log_last_error(log), bad[i].says));
     }
-    noc_render_params p = with(NOC_METHOD_RIS, NOC_CANDIDATES_BVH, 1u << NOC_AOV_ERROR);
+    noc_render_params p = with(NOC_METHOD_RIS, NOC_CANDIDATES_INFLUENCE, 1u << NOC_AOV_ERROR);
     p.accumulate = false;
     assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_ERR_ARGUMENT);
     assert_non_null(strstr(noc_log_last_error(log), "\"error\": frames must be accumulated"));

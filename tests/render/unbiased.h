@@ -50,8 +50,8 @@ typedef struct config {
     int list;              /* > 0: lists of so many lights and as many draws from the rest */
     noc_candidates picker; /* list = 0 */
     noc_influence_boxes boxes;
-    double influence; /* bvh: S_r; 0: found */
-    int share;        /* bvh: lights a volume; 0: 1 */
+    double influence; /* influence: S_r; 0: found */
+    int share;        /* influence: lights a volume; 0: 1 */
     int times;        /* so many times the runs, where rare draws from all lights are worth much; 0: 1 */
     int shadow_rays;  /* ris with lists; 0: the default */
     bool unlearned;

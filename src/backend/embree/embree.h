@@ -99,7 +99,7 @@ typedef struct worker {
     NOC_ARRAY(noc_sighting) sightings; /* of the frame being made */
     pick_block picks;
     tree_items tree_items[2];
-    noc_found found; /* bvh: by a tile */
+    noc_found found; /* influence: by a tile */
     /* [found_bins] surfaces of the frame by the number of lights found; NULL: never asked */
     uint64_t *found_counts;
     bool no_memory;  /* was refused to a tile: the frame is dropped */
@@ -171,9 +171,9 @@ typedef struct embree_state {
     uint64_t moves, power_changes; /* of the scene's lights, that these know of */
     /* all lights as they were in the last frame that left reservoirs; NULL: never needed */
     noc_light_record *past_lights;
-    uint64_t past_moves;                           /* of the scene at that frame */
-    bool past_filled;                              /* past_lights has been written */
-    double light_seconds[NOC_CANDIDATES_TREE + 1]; /* what each took to build */
+    uint64_t past_moves;                                /* of the scene at that frame */
+    bool past_filled;                                   /* past_lights has been written */
+    double light_seconds[NOC_CANDIDATES_LIGHT_BVH + 1]; /* what each took to build */
     worker *workers;
     int worker_count;
     bool recording;

@@ -54,7 +54,7 @@ struct core_context {
     const noc_tree *tree;         /* tree only */
     const pick_block *picks;      /* of the block; read from lane `lane` on */
     int lane;
-    const noc_influence *influence; /* bvh only */
+    const noc_influence *influence; /* influence only */
     float stand_off;                /* of shadow rays at least, m: core/shadow.h */
 };
 

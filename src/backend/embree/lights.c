@@ -63,7 +63,7 @@ static noc_status prepare_influence(embree_state *s, const noc_render_params *p)
     noc_influence_destroy(s->influence);
     s->influence = noc_influence_create(s->scene, &want, s->log);
     s->influence_params = want;
-    s->light_seconds[NOC_CANDIDATES_BVH] = noc_wall_seconds() - start;
+    s->light_seconds[NOC_CANDIDATES_INFLUENCE] = noc_wall_seconds() - start;
     return s->influence ? NOC_OK : NOC_ERR_MEMORY;
 }
 
@@ -84,14 +84,14 @@ static noc_status prepare(embree_state *s, const noc_render_params *p) {
         if (!s->alias && !(s->alias = noc_alias_create(s->scene, s->log)))
             return NOC_ERR_MEMORY;
         break;
-    case NOC_CANDIDATES_BVH:
+    case NOC_CANDIDATES_INFLUENCE:
         status = prepare_influence(s, p);
         if (status == NOC_OK)
             status = prepare_found(s);
         if (status != NOC_OK)
             return status;
         break;
-    case NOC_CANDIDATES_TREE:
+    case NOC_CANDIDATES_LIGHT_BVH:
         if (!s->tree && !(s->tree = noc_tree_create(s->scene, s->pool, s->log)))
             return NOC_ERR_MEMORY;
         if (prepare_tree_items(s) != NOC_OK)
@@ -107,8 +107,8 @@ static size_t bytes_of(const embree_state *s, noc_candidates candidates) {
     case NOC_CANDIDATES_UNIFORM: return 0;
     case NOC_CANDIDATES_LISTS: return s->clusters ? s->clusters->bytes : 0;
     case NOC_CANDIDATES_POWER: return s->alias ? s->alias->bytes : 0;
-    case NOC_CANDIDATES_BVH: return s->influence ? s->influence->bytes : 0;
-    case NOC_CANDIDATES_TREE: return s->tree ? s->tree->bytes : 0;
+    case NOC_CANDIDATES_INFLUENCE: return s->influence ? s->influence->bytes : 0;
+    case NOC_CANDIDATES_LIGHT_BVH: return s->tree ? s->tree->bytes : 0;
     }
     return 0;
 }
@@ -119,7 +119,7 @@ noc_status noc_embree_prepare_lights(embree_state *s, const noc_render_params *p
     double start = noc_wall_seconds();
     size_t before = bytes_of(s, p->candidates);
     noc_status status = prepare(s, p);
-    if (p->candidates != NOC_CANDIDATES_BVH && bytes_of(s, p->candidates) != before)
+    if (p->candidates != NOC_CANDIDATES_INFLUENCE && bytes_of(s, p->candidates) != before)
         s->light_seconds[p->candidates] = noc_wall_seconds() - start;
     return status;
 }
@@ -154,7 +154,7 @@ void noc_embree_forget_found(embree_state *s) {
 
 size_t noc_embree_light_bytes(const embree_state *s) {
     size_t bytes = 0;
-    for (int c = 0; c <= NOC_CANDIDATES_TREE; c++)
+    for (int c = 0; c <= NOC_CANDIDATES_LIGHT_BVH; c++)
         bytes += bytes_of(s, (noc_candidates)c);
     return bytes;
 }
@@ -191,7 +191,7 @@ void noc_embree_light_stats(void *state, const noc_render_params *p, noc_light_s
     out->candidates = p->candidates;
     out->build_seconds = s->light_seconds[p->candidates];
     out->bytes = bytes_of(s, p->candidates);
-    if (p->candidates != NOC_CANDIDATES_BVH || !s->influence)
+    if (p->candidates != NOC_CANDIDATES_INFLUENCE || !s->influence)
         return;
     out->influence = p->influence > 0 ? p->influence : s->influence->scale;
     out->volumes = s->influence->volume_count;

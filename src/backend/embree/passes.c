@@ -73,8 +73,8 @@ static void pick_lights(stage_run *run, worker *w, const tile_points *points, in
     tile_block at = points->block[i];
     switch (from) {
     case NOC_CANDIDATES_POWER: run->k->pick_power(&run->ctx, at.x, at.y, m, &w->picks); break;
-    case NOC_CANDIDATES_BVH: run->k->pick_influence(&run->ctx, &w->found, i, at.x, at.y, m, &w->picks); break;
-    case NOC_CANDIDATES_TREE:
+    case NOC_CANDIDATES_INFLUENCE: run->k->pick_influence(&run->ctx, &w->found, i, at.x, at.y, m, &w->picks); break;
+    case NOC_CANDIDATES_LIGHT_BVH:
         run->k->pick_tree(&run->ctx, points->g[i], points->lanes[i], at.x, at.y, m, w->tree_items, &w->picks);
         break;
     case NOC_CANDIDATES_UNIFORM:
@@ -127,7 +127,7 @@ static void tile_candidates(stage_run *run, worker *w, tile t) {
     noc_candidates from = p->method == NOC_METHOD_IS ? NOC_CANDIDATES_UNIFORM : p->candidates;
     tile_points points;
     gather_points(run, t, &points);
-    if (from == NOC_CANDIDATES_BVH)
+    if (from == NOC_CANDIDATES_INFLUENCE)
         find_volumes(run, w, &points);
     if (from == NOC_CANDIDATES_LISTS)
         run->k->list_build(&run->ctx, points.g, points.lanes, points.count, tail_start(run, t), &w->lists,
