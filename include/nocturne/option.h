@@ -50,6 +50,9 @@ NOC_API noc_status noc_option_set(const noc_option *option, void *params, const 
 NOC_API int noc_option_get(const noc_option *option, const void *params, char *text, size_t size);
 /* Bytes of the field; of a text, those of its pointer. */
 NOC_API size_t noc_option_size(const noc_option *option);
+/* Is every field that table has a row for within that row? NOC_ERR_ARGUMENT after reporting the first that is not, as
+ * "OF: FIELD is 0, must be in 1..9"; of says whose fields they are. What takes the params calls it itself. */
+NOC_API noc_status noc_option_check(const noc_option *table, const void *params, const char *of, noc_log *log);
 /* True where params lack what the option needs, so that its value changes no picture; why then tells, for a message:
  * "it needs method ris, not is". table: of params, where the options that it needs are. */
 NOC_API bool noc_option_idle(const noc_option *option, const noc_option *table, const void *params, char *why,

@@ -2,54 +2,17 @@
 #include "render/backend.h"
 
 #include <math.h>
+#include <nocturne/option.h>
 #include <stdio.h>
-
-static noc_status wrong(noc_log *log, const char *name, double value, const char *right) {
-    return noc_error(log, NOC_ERR_ARGUMENT, "render: %s is %g, must be %s", name, value, right);
-}
 
 noc_status noc_render_check(const noc_render_params *p, noc_log *log) {
     if (!p)
         return noc_null(log, __func__);
-    const struct {
-        const char *name;
-        double value, min, max;
-    } ranges[] = {
-        { "width", p->width, 1, NOC_IMAGE_MAX_SIDE },
-        { "height", p->height, 1, NOC_IMAGE_MAX_SIDE },
-        { "draws", p->draws, 1, 1024 },
-        { "list", p->list, 0, 128 },
-        { "tail", p->tail, 1, 128 },
-        { "shadow_rays", p->shadow_rays, 1, 8 },
-        { "influence", p->influence, 0, 1e6 },
-        { "influence_cluster", p->influence_cluster, 1, 64 },
-        { "uniform_every", p->uniform_every, 1, 1024 },
-        { "rays", p->rays, 1, 1024 },
-        { "neighbours", p->neighbours, 0, 16 },
-        { "radius", p->radius, 1, 64 },
-        { "passes", p->passes, 1, 4 },
-        { "history", p->history, 0, 1000 },
-        { "reject_depth", p->reject_depth, 0, 1e6 },
-        { "reject_normal", p->reject_normal, -1, 1 },
-        { "sky", p->sky, 0, 1e6 },
-    };
-    for (size_t i = 0; i < NOC_COUNT(ranges); i++)
-        if (!(ranges[i].value >= ranges[i].min && ranges[i].value <= ranges[i].max)) { /* also for NaN */
-            char right[64];
-            noc_snprintf(right, sizeof(right), "in %g..%g", ranges[i].min, ranges[i].max);
-            return wrong(log, ranges[i].name, ranges[i].value, right);
-        }
-    if ((unsigned)p->method > NOC_METHOD_RESTIR)
-        return wrong(log, "method", (int)p->method, "a noc_method");
-    if ((unsigned)p->candidates > NOC_CANDIDATES_LIGHT_BVH)
-        return wrong(log, "candidates", (int)p->candidates, "a noc_candidates");
-    if ((unsigned)p->influence_boxes > NOC_INFLUENCE_VISIBLE)
-        return wrong(log, "influence_boxes", (int)p->influence_boxes, "a noc_influence_boxes");
-    if ((unsigned)p->bias > NOC_BIAS_PAIRWISE)
-        return wrong(log, "bias", (int)p->bias, "a noc_bias");
     noc_isa isa;
-    noc_status status = noc_choose_isa(p->isa, &isa, log);
-    return status == NOC_OK ? noc_check_aovs(p, log) : status;
+    noc_status status = noc_option_check(noc_render_options(), p, "render", log);
+    if (!status)
+        status = noc_choose_isa(p->isa, &isa, log);
+    return status ? status : noc_check_aovs(p, log);
 }
 
 typedef struct {

@@ -2,6 +2,7 @@
  * struct; what a row does not say (the default) is in that struct's default macro, so it cannot be stated twice. */
 #include "base/base.h"
 
+#include <math.h>
 #include <nocturne/option.h>
 #include <stdio.h>
 
@@ -340,6 +341,61 @@ int noc_option_get(const noc_option *option, const void *params, char *text, siz
     case NOC_OPTION_TEXTS: return join_texts((const noc_texts *)(const void *)field, text, size);
     }
     return snprintf(text, size, "%s", "");
+}
+
+/* The field as a number, and the range of its row: of texts their count, of choices the index. false: any value is
+ * good. */
+static bool number_of(const noc_option *o, const void *params, double *value, double *min, double *max) {
+    union {
+        int i;
+        noc_texts texts;
+    } v;
+    const char *field = (const char *)params + o->offset;
+    *min = o->min;
+    *max = o->max;
+    switch (o->kind) {
+    case NOC_OPTION_REAL: memcpy(value, field, sizeof(*value)); return true;
+    case NOC_OPTION_CHOICE:
+        *max = 0;
+        for (const char *c = o->choices; *c; c++)
+            *max += *c == '|';
+        break;
+    case NOC_OPTION_INT:
+    case NOC_OPTION_SWITCH: break;
+    case NOC_OPTION_TEXTS:
+        memcpy(&v.texts, field, sizeof(v.texts));
+        *value = (double)v.texts.count;
+        *max = NOC_TEXTS;
+        return true;
+    default: return false;
+    }
+    memcpy(&v.i, field, sizeof(v.i));
+    *value = v.i;
+    return true;
+}
+
+noc_status noc_option_check(const noc_option *table, const void *params, const char *of, noc_log *log) {
+    if (!table || !params || !of)
+        return noc_null(log, __func__);
+    for (const noc_option *o = table; o->name; o++) {
+        double value, min, max;
+        if (!number_of(o, params, &value, &min, &max) || (value >= min && value <= max)) /* neither for NaN */
+            continue;
+        bool choice = o->kind == NOC_OPTION_CHOICE, texts = o->kind == NOC_OPTION_TEXTS;
+        const char *more = choice ? o->choices : texts ? "" : o->unit; /* of texts the unit is one of them */
+        char field[64], is[40], lo[40], hi[40];
+        noc_snprintf(field, sizeof(field), "%s", o->name);
+        for (char *c = field; *c; c++)
+            *c = *c == '-' ? '_' : *c;
+        noc_snprintf(is, sizeof(is), "%g", value);
+        if (isfinite(value))
+            format_real(is, sizeof(is), value);
+        format_real(lo, sizeof(lo), min);
+        format_real(hi, sizeof(hi), max);
+        return noc_error(log, NOC_ERR_ARGUMENT, "%s: %s%s is %s, must be in %s..%s%s%s%s", of, field,
+                         texts ? ".count" : "", is, lo, hi, choice ? ", of" : "", *more ? " " : "", more);
+    }
+    return NOC_OK;
 }
 
 static bool among(const char *values, size_t length, const char *value) {

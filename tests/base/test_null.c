@@ -88,6 +88,8 @@ static noc_camera camera;
     P(0, noc_option_set(noc_render_options(), NULL, "1", NULL) == NOC_ERR_ARGUMENT)                                    \
     P(0, noc_option_get(NULL, &camera, (char[8]){ 0 }, 8) == 0)                                                        \
     P(0, noc_option_get(noc_render_options(), NULL, (char[8]){ 0 }, 8) == 0)                                           \
+    P(0, noc_option_check(NULL, &camera, "", NULL) == NOC_ERR_ARGUMENT)                                                \
+    P(0, noc_option_check(noc_render_options(), NULL, "", NULL) == NOC_ERR_ARGUMENT)                                   \
     P(0, noc_option_size(NULL) == 0)                                                                                   \
     P(0, !noc_option_idle(NULL, NULL, NULL, (char[8]){ 0 }, 8))                                                        \
     P(noc_render_use_preset(NULL, NOC_PRESET_STILL), true)                                                             \

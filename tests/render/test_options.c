@@ -1,6 +1,7 @@
 #include "../test.h"
 #include "base/base.h"
 #include <locale.h>
+#include <math.h>
 #include <nocturne/option.h>
 
 static noc_render_params render;
@@ -158,6 +159,109 @@ static void former_names_of_candidates(void **state) {
         assert_int_equal(noc_option_set(o, &render, bad[i], NULL), NOC_ERR_ARGUMENT);
 }
 
+/* ---- what takes params holds them to the same rows ---- */
+
+static void ignore(void *user, noc_log_level level, const char *text) {}
+
+static noc_status take_render(noc_log *log) { return noc_render_check(&render, log); }
+
+/* The params are looked at before the file, and that is missing. */
+static noc_status take_import(noc_log *log) {
+    const char *path = "/nonexistent/city.gml";
+    noc_scene *scene = noc_scene_create(log);
+    noc_status status = noc_scene_load(scene, &path, 1, &import, NULL);
+    noc_scene_destroy(scene);
+    return status;
+}
+
+/* And before the scene, which takes no more. */
+static noc_status take_city(noc_log *log) {
+    noc_scene *scene = noc_scene_create(log);
+    assert_int_equal(noc_scene_commit(scene), NOC_OK);
+    noc_status status = noc_scene_add_city(scene, &city);
+    noc_scene_destroy(scene);
+    return status;
+}
+
+/* The field's number; of texts, how many there are. */
+static void put(const noc_option *o, void *params, double value) {
+    void *field = (char *)params + o->offset;
+    noc_texts texts = { .count = (size_t)value };
+    for (size_t i = 0; i < NOC_TEXTS; i++)
+        texts.text[i] = "x";
+    if (o->kind == NOC_OPTION_REAL)
+        memcpy(field, &value, sizeof(value));
+    else if (o->kind == NOC_OPTION_TEXTS)
+        memcpy(field, &texts, sizeof(texts));
+    else
+        memcpy(field, &(int){ (int)value }, sizeof(int));
+}
+
+static void rows_hold_for_params(void **state) {
+    static const struct {
+        const noc_option *(*table)(void);
+        void *params;
+        noc_status (*take)(noc_log *log);
+        const char *of;
+    } takers[] = {
+        { noc_render_options, &render, take_render, "render" },
+        { noc_import_options, &import, take_import, "import" },
+        { noc_city_options, &city, take_city, "city" },
+    };
+    for (size_t t = 0; t < NOC_COUNT(takers); t++)
+        for (const noc_option *o = takers[t].table(); o->name; o++) {
+            double lo = o->min, hi = o->max;
+            if (o->kind == NOC_OPTION_CHOICE)
+                for (const char *c = o->choices; *c; c++)
+                    hi += *c == '|';
+            if (o->kind == NOC_OPTION_TEXTS)
+                hi = NOC_TEXTS;
+            if (o->kind == NOC_OPTION_BOOL || o->kind == NOC_OPTION_UINT || o->kind == NOC_OPTION_TEXT)
+                continue; /* no value of the field is wrong */
+            const double values[] = { lo, hi, hi + 1, lo - 1, NAN };
+            size_t count = o->kind == NOC_OPTION_REAL ? 5 : o->kind == NOC_OPTION_TEXTS ? 3 : 4;
+            for (size_t i = 0; i < count; i++) {
+                char told[100], *c = told;
+                snprintf(told, sizeof(told), "%s: %s%s is ", takers[t].of, o->name,
+                         o->kind == NOC_OPTION_TEXTS ? ".count" : "");
+                for (c += strcspn(c, ":"); *c; c++)
+                    *c = *c == '-' ? '_' : *c;
+                setup(NULL);
+                put(o, takers[t].params, values[i]);
+                noc_log *log = noc_log_create(&(noc_log_params){ .message = ignore });
+                noc_status status = takers[t].take(log);
+                const char *error = noc_log_last_error(log);
+                bool refused = status == NOC_ERR_ARGUMENT && error && !strncmp(error, told, strlen(told)) &&
+                               strstr(error, ", must be in ");
+                if (refused != (i > 1))
+                    fail_msg("%s %.17g: \"%s\"", o->name, values[i], error);
+                noc_log_destroy(log);
+            }
+        }
+}
+
+/* A field, its value and its range, in one line. */
+static void wrong_params_are_told(void **state) {
+    static const struct {
+        const char *option;
+        double value;
+        const char *told;
+    } cases[] = {
+        { "shadow-rays", 9, "render: shadow_rays is 9, must be in 1..8" },
+        { "width", 1 << 30, "render: width is 1073741824, must be in 1..32768 px" },
+        { "sky", -0.5, "render: sky is -0.5, must be in 0..1000000 cd/m2" },
+        { "bias", 3, "render: bias is 3, must be in 0..2, of biased|mis|pairwise" },
+    };
+    for (size_t i = 0; i < NOC_COUNT(cases); i++) {
+        render = noc_render_default_params();
+        put(find(noc_render_options(), cases[i].option), &render, cases[i].value);
+        noc_log *log = noc_log_create(&(noc_log_params){ .message = ignore });
+        assert_int_equal(noc_option_check(noc_render_options(), &render, "render", log), NOC_ERR_ARGUMENT);
+        assert_string_equal(noc_log_last_error(log), cases[i].told);
+        noc_log_destroy(log);
+    }
+}
+
 static void bools(void **state) {
     const noc_option *o = find(noc_render_options(), "temporal");
     static const struct {
@@ -174,8 +278,6 @@ static void bools(void **state) {
     for (size_t i = 0; i < NOC_COUNT(bad); i++)
         assert_int_equal(noc_option_set(o, &render, bad[i], NULL), NOC_ERR_ARGUMENT);
 }
-
-static void ignore(void *user, noc_log_level level, const char *text) {}
 
 static void bad_values_are_told(void **state) {
     static const struct {
@@ -267,6 +369,8 @@ int main(void) {
         cmocka_unit_test_setup(aliases_name_choices, setup),
         cmocka_unit_test_setup(former_names_of_candidates, setup),
         cmocka_unit_test_setup(bools, setup),
+        cmocka_unit_test_setup(rows_hold_for_params, setup),
+        cmocka_unit_test_setup(wrong_params_are_told, setup),
         cmocka_unit_test_setup(bad_values_are_told, setup),
         cmocka_unit_test_setup(text_points_at_the_callers, setup),
         cmocka_unit_test_setup(texts_add_up, setup),

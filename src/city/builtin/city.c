@@ -3,6 +3,7 @@
 #include "city/builtin/town.h"
 
 #include <math.h>
+#include <nocturne/option.h>
 
 #define BELT 20.0 /* of trees around the city, m; also room for the warp */
 
@@ -305,10 +306,8 @@ static void belt(town *t) {
 }
 
 noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dress)(town *t)) {
-    if (!(params->size >= 150 && params->size <= 5000))
-        return noc_error(scene->log, NOC_ERR_ARGUMENT, "city: size %g m is not in 150..5000 m", params->size);
-    if (!(params->lit_windows >= 0 && params->lit_windows <= 1))
-        return noc_error(scene->log, NOC_ERR_ARGUMENT, "city: lit_windows %g is not in 0..1", params->lit_windows);
+    if (noc_option_check(noc_city_options(), params, "city", scene->log))
+        return NOC_ERR_ARGUMENT;
     if (scene->committed)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "city: the scene is committed");
     town *t = noc_calloc(1, sizeof(*t));

@@ -7,13 +7,13 @@
 #include "city/builtin/kit.h"
 
 #include <math.h>
+#include <nocturne/option.h>
 
 #define OBJECTS 56
 #define TRIES 3000 /* to find room for them */
 #define HALF 4.4   /* m, of the square that they lie on */
 #define BALLS_MOST 20000
 #define FLUX 5200.0 /* lm, of all lights */
-#define LIGHTS_MOST 1000000
 
 typedef struct object {
     vec3 at;
@@ -242,8 +242,8 @@ static vec3 rug(const void *side, double u, double v) {
 }
 
 noc_status scene_mess(noc_scene *scene, const noc_builtin_params *params) {
-    if (params->lights < 1 || params->lights > LIGHTS_MOST)
-        return noc_error(scene->log, NOC_ERR_ARGUMENT, "mess: %d lights are not in 1..%d", params->lights, LIGHTS_MOST);
+    if (noc_option_check(noc_builtin_options(), params, "mess", scene->log))
+        return NOC_ERR_ARGUMENT;
     static const float paint[][3] = { { .62f, .60f, .56f }, { .55f, .30f, .24f }, { .26f, .42f, .52f },
                                       { .56f, .50f, .28f }, { .34f, .50f, .32f }, { .45f, .36f, .52f } };
     kit k = kit_start(scene);

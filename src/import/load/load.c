@@ -6,34 +6,10 @@
 #include "import/lamps/tags.h"
 
 #include <math.h>
+#include <nocturne/option.h>
 
 #define HEAD_SIZE 65536
 #define BUILTIN "builtin:" /* and the name of a scene */
-
-static noc_status check_params(const noc_import_params *p, noc_log *log) {
-    if (p->lod < 0 || p->lod > 4)
-        return noc_error(log, NOC_ERR_ARGUMENT, "import: lod is %d, not 0..4", p->lod);
-    if (!(p->lamp_height > 0 && p->lamp_height < 1000))
-        return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp height is %g m, not within 0..1000", p->lamp_height);
-    if (!(p->lamp_lumens >= 0 && p->lamp_lumens < 1e9))
-        return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp flux is %g lm, not within 0..1e9", p->lamp_lumens);
-    if (!(p->lamp_kelvin >= 1000 && p->lamp_kelvin <= 40000))
-        return noc_error(log, NOC_ERR_ARGUMENT, "import: lamp colour is %g K, not within 1000..40000", p->lamp_kelvin);
-    if ((unsigned)p->infer_lamps > NOC_SWITCH_AUTO)
-        return noc_error(log, NOC_ERR_ARGUMENT, "import: infer_lamps is %d, not a noc_switch", (int)p->infer_lamps);
-    if (!(p->reader_time > 0))
-        return noc_error(log, NOC_ERR_ARGUMENT, "import: reader_time is %g s", p->reader_time);
-    if (!(p->max_memory >= 0 && p->max_expansion >= 0))
-        return noc_error(log, NOC_ERR_ARGUMENT,
-                         "import: max_memory is %g GB and max_expansion %g: neither may be "
-                         "negative",
-                         p->max_memory, p->max_expansion);
-    if ((unsigned)p->obj_up > NOC_OBJ_UP_Z)
-        return noc_error(log, NOC_ERR_ARGUMENT, "import: obj_up is %d, not a noc_obj_up", (int)p->obj_up);
-    if (p->lamps.count > NOC_TEXTS || p->lamp_columns.count > NOC_TEXTS)
-        return noc_error(log, NOC_ERR_ARGUMENT, "import: more than %d files of lamps or maps of columns", NOC_TEXTS);
-    return lamp_mapping_check(p, log);
-}
 
 /* --crs and --scene-crs must be understood even where no input needs them. */
 static noc_status check_crs(const noc_import_params *p, noc_log *log) {
@@ -381,7 +357,9 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
             return noc_null(scene->log, "noc_scene_load");
     if (!params)
         params = &defaults;
-    noc_status status = check_params(params, scene->log);
+    noc_status status = noc_option_check(noc_import_options(), params, "import", scene->log);
+    if (!status)
+        status = lamp_mapping_check(params, scene->log);
     if (!status)
         status = check_crs(params, scene->log);
     if (status)
