@@ -1,5 +1,6 @@
 #!/bin/sh
-# Holds the arrows of docs/architecture.md: reads every #include under src/ and fails when one turns back. TAP.
+# Holds the arrows of docs/architecture.md: reads every #include under src/ and fails when one turns back. It also holds
+# that a library never ends its host: refused memory is a status, and so is all else. TAP.
 set -u
 root=${NOC_SOURCE:-$(cd "$(dirname "$0")/.." && pwd)}
 
@@ -52,6 +53,16 @@ violations() {
                 allowed[room] = 1
                 if (room != "core" && room != "cli" && room != "reader") allowed["base"] = 1
                 split(owners, owner, "\n")
+            }
+            # The programs may end themselves, and so may the helper that reads for a library.
+            /(^|[^A-Za-z0-9_.>])(abort|exit|_exit|_Exit|quick_exit|raise|assert|__builtin_trap)[ \t]*\(/ {
+                if (room != "cli" && room != "reader" && file != "import/remote/serve.c")
+                    print file ": a library may not end its host: " $0
+            }
+            # Tests refuse what base/memory.c allocates; jansson must have its memory (import/json.c says why).
+            /(^|[^A-Za-z0-9_.>])((m|c|re)alloc|reallocarray|aligned_alloc|posix_memalign|alloca|strn?dup|v?asprintf)[ \t]*\(/ {
+                if (room != "cli" && room != "lab" && file != "base/memory.c" && file != "import/json.c")
+                    print file ": allocations are those of base/base.h: " $0
             }
             /^[ \t]*#[ \t]*include[ \t]*"/ {
                 split($0, part, "\""); path = part[2]
@@ -109,8 +120,18 @@ wrong backend/embree/a.c '#include "backend/vulkan/b.h"'
 wrong render/a.c '#include <embree3/rtcore.h>'
 wrong import/a.c '#include <proj.h>'
 wrong attic/a.c 'int x;'
-mkdir -p "$tree/render" && echo '#include "scene/scene.h"' >"$tree/render/a.c"
-[ -z "$(violations "$tree")" ]; result $? "lets an arrow pass that points down"
+wrong base/a.c '    abort();'
+wrong import/load/a.c '    if (!p) exit(1);'
+wrong lab/a.c 'assert(count++ < size);'
+wrong import/remote/remote.c '_exit(1);'
+wrong scene/a.c '    char *p = malloc (size);'
+wrong backend/embree/a.c '    return strdup(name);'
+mkdir -p "$tree/render" "$tree/import/remote" && echo '#include "scene/scene.h"' >"$tree/render/a.c"
+echo '_Static_assert(sizeof(int) == 4, ""); int x = noc_exit(noc_strdup(s->alloca(at_exit(1))));' >>"$tree/render/a.c"
+echo '_exit(0);' >"$tree/import/remote/serve.c"
+found=$(violations "$tree")
+[ -z "$found" ]; result $? "lets an arrow pass that points down, and words that only look like those that end a program"
+[ -n "$found" ] && echo "$found" | sed 's/^/# /'
 
 # Every public header compiles alone.
 compiler=$(command -v cc || command -v gcc || command -v clang)
