@@ -8,7 +8,7 @@
  * S_r, and at 4 times as much, as points ask that find too few. */
 #include "bench_scene.h"
 
-#include "backend/embree/embree.h"
+#include "../tests/backend/cpu_view.h"
 #include "light/bound.h"
 
 #include "core/surface.h"
@@ -20,7 +20,7 @@ typedef struct tally {
 } tally;
 
 typedef struct bench {
-    embree_state *e;
+    cpu_view *e;
     const noc_scene *s;
     noc_influence *spheres, *boxes;
     const gblock *g;
@@ -42,7 +42,7 @@ static void tell(bench *b) {
             b->probes.d[k][i] = b->probes.d[k][0];
         }
     if (b->count)
-        noc_embree_probe(b->e, &b->probes);
+        noc_cpu_probe(b->e->world, &b->probes);
     for (int i = 0; i < b->count; i++) {
         bool seen = b->probes.t[i] >= 1, kept = b->waiting[i].kept;
         b->t.pairs++;
@@ -108,10 +108,10 @@ static void measure(bench *b, int points, float scale) {
            100 * t->light_kept / t->light, 100 * t->hidden_kept / t->hidden, 100 * t->dark / t->points);
 }
 
-static bool run(const noc_scene *s, noc_view view, int shared, int points, noc_log *log) {
+static bool run(const noc_scene *s, noc_viewpoint view, int shared, int points, noc_log *log) {
     enum { WIDTH = 320, HEIGHT = 180 };
     void *state = NULL;
-    if (noc_backend_embree.create(s, &(noc_renderer_params){ 0 }, log, &state) != NOC_OK)
+    if (!(state = open_cpu_view(s, 0, log)))
         return false;
     bench b = { .e = state, .s = s };
     noc_camera camera;
@@ -127,13 +127,13 @@ static bool run(const noc_scene *s, noc_view view, int shared, int points, noc_l
     if (ok) {
         noc_make_frame_camera(&camera, &p, 0, &f.camera);
         noc_backend_embree.resize(state, WIDTH, HEIGHT, 1);
-        ok = noc_embree_prepare_lights(b.e, &p) == NOC_OK &&
+        ok = noc_cpu_prepare_lights(b.e, &p) == NOC_OK &&
              noc_backend_embree.stage(state, &f, &primary, NULL, 0, 1) == NOC_OK;
     }
     noc_influence_params params = { .cluster = shared, .pool = b.e->pool };
     b.spheres = ok ? noc_influence_create(s, &params, log) : NULL;
-    params.probe = noc_embree_probe;
-    params.user = b.e;
+    params.probe = noc_cpu_probe;
+    params.user = b.e->world;
     double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
     b.boxes = ok ? noc_influence_create(s, &params, log) : NULL;
     wall = noc_wall_seconds() - wall;
@@ -147,7 +147,7 @@ static bool run(const noc_scene *s, noc_view view, int shared, int points, noc_l
     ok = b.spheres && b.boxes;
     noc_influence_destroy(b.spheres);
     noc_influence_destroy(b.boxes);
-    noc_backend_embree.destroy(state);
+    close_cpu_view(state);
     return ok;
 }
 

@@ -8,6 +8,7 @@
  * and of that frame alone. Candidates are uniform where the name does not say what else. The reference is kept as EXR
  * in the CACHE folder under a name made of everything that it depends on: scene content, camera, size and frames. */
 #include "bench_scene.h"
+#include "../tests/own_view.h"
 
 #include "render/backend.h"
 
@@ -91,22 +92,22 @@ static noc_image *reference(const noc_scene *scene, const noc_camera *camera, in
         return noc_image_read(path, log, &linear);
     }
     fprintf(stderr, "rendering the reference into %s\n", path);
-    noc_renderer *r = noc_renderer_create(scene, NULL, log);
+    noc_view *r = own_view(scene, 0, log);
     bool ok = r != NULL;
     for (int i = 0; ok && i < frames; i++)
-        ok = noc_renderer_frame(r, camera, &p, NULL) == NOC_OK;
-    noc_image *image = ok ? noc_renderer_image(r) : NULL;
+        ok = noc_view_render(r, camera, &p, NULL) == NOC_OK;
+    noc_image *image = ok ? noc_view_image(r) : NULL;
     noc_display_params display = noc_display_default_params();
     if (image)
         noc_image_write(image, path, &display, NULL, log);
-    noc_renderer_destroy(r);
+    close_view(r);
     return image;
 }
 
-static bool compare(noc_renderer *r, const noc_image *want, noc_metrics *out, noc_log *log) {
+static bool compare(noc_view *r, const noc_image *want, noc_metrics *out, noc_log *log) {
     noc_compare_params c = noc_compare_default_params();
     noc_comparison figures = { 0 };
-    noc_image *have = noc_renderer_image(r);
+    noc_image *have = noc_view_image(r);
     bool ok = have && noc_image_compare(have, want, &c, &figures, log) == NOC_OK;
     noc_image_destroy(have);
     *out = figures.dark_clamped;
@@ -121,17 +122,17 @@ static bool measure(const noc_scene *scene, const noc_camera *camera, const vari
     for (int alone = 0; alone < 2; alone++) {
         noc_render_params p = params_of(v, want->width, want->height);
         p.accumulate = !alone;
-        noc_renderer *r = noc_renderer_create(scene, NULL, log);
+        noc_view *r = own_view(scene, 0, log);
         bool ok = r != NULL;
         for (int frame = 1, at = 0; ok && at < STEPS; frame++) {
-            ok = noc_renderer_frame(r, camera, &p, NULL) == NOC_OK;
+            ok = noc_view_render(r, camera, &p, NULL) == NOC_OK;
             noc_frame_stats stats;
-            noc_renderer_get_stats(r, &stats);
+            noc_view_get_stats(r, &stats);
             cpu += stats.cpu_seconds / (2 * steps[STEPS - 1]);
             if (ok && frame == steps[at])
                 ok = compare(r, want, &figures[alone][at++], log);
         }
-        noc_renderer_destroy(r);
+        close_view(r);
         if (!ok)
             return false;
     }

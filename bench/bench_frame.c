@@ -6,6 +6,7 @@
  * frames after the first (which has no history); pass times are thread seconds. The floor is traced after each frame
  * from the very rays of that frame. */
 #include "bench_scene.h"
+#include "../tests/own_view.h"
 
 typedef struct variant {
     const char *name;
@@ -42,17 +43,17 @@ static bool measure(const noc_scene *scene, const noc_camera *camera, const vari
     p.isa = v->isa;
     p.candidates = v->candidates;
     p.sky = 0;
-    noc_renderer *r = noc_renderer_create(scene, NULL, NULL);
+    noc_view *r = own_view(scene, 0, NULL);
     double wall[64], floor[64], pass[NOC_PASS_COUNT] = { 0 };
     noc_frame_stats stats;
-    bool ok = r && noc_renderer_frame(r, camera, &p, NULL) == NOC_OK;
+    bool ok = r && noc_view_render(r, camera, &p, NULL) == NOC_OK;
     for (int i = 0; ok && i < frames; i++) {
-        ok = noc_renderer_frame(r, camera, &p, NULL) == NOC_OK;
-        noc_renderer_get_stats(r, &stats);
+        ok = noc_view_render(r, camera, &p, NULL) == NOC_OK;
+        noc_view_get_stats(r, &stats);
         wall[i] = stats.wall_seconds;
         for (int k = 0; k < NOC_PASS_COUNT; k++)
             pass[k] += stats.pass_seconds[k] / frames;
-        ok = ok && noc_renderer_trace_floor(r, camera, &p, &floor[i]) == NOC_OK;
+        ok = ok && noc_view_trace_floor(r, camera, &p, &floor[i]) == NOC_OK;
     }
     if (ok) {
         double w = bench_median(wall, frames), f = bench_median(floor, frames), total = 0;
@@ -66,7 +67,7 @@ static bool measure(const noc_scene *scene, const noc_camera *camera, const vari
         printf("\n");
         fflush(stdout);
     }
-    noc_renderer_destroy(r);
+    close_view(r);
     return ok;
 }
 
@@ -85,14 +86,14 @@ int main(int argc, char **argv) {
         return 1;
     noc_scene_info info;
     noc_scene_get_info(scene, &info);
-    noc_renderer *r = noc_renderer_create(scene, NULL, log);
+    noc_view *r = own_view(scene, 0, log);
     noc_frame_stats stats;
     if (!r)
         return 1;
-    noc_renderer_get_stats(r, &stats);
+    noc_view_get_stats(r, &stats);
     printf("%s, %s, %d x %d: %zu triangles, %zu lights, built in %.0f ms\n", spec, view, width, height, info.triangles,
            info.lights, 1e3 * stats.build_seconds);
-    noc_renderer_destroy(r);
+    close_view(r);
     bool ok = true;
     for (size_t i = 0; ok && i < sizeof(variants) / sizeof(variants[0]); i++)
         ok = measure(scene, &camera, &variants[i], width, height, frames);

@@ -15,13 +15,14 @@
  * time is the CPU time of the fastest frame of all seeds, which is what disturbances add least to. There may be 16
  * S_r. */
 #include "bench_scene.h"
+#include "../tests/own_view.h"
 
 #include <math.h>
 
 enum { MOST_FRAMES = 256, MOST_SEEDS = 64 };
 
 typedef struct measured {
-    noc_renderer *r;
+    noc_view *r;
     noc_render_params params;
     double cpu[MOST_FRAMES], pass[NOC_PASS_COUNT][MOST_FRAMES];
 } measured;
@@ -45,14 +46,14 @@ static bool times(const noc_scene *scene, const noc_camera *camera, int width, i
     for (int i = 0; i < 2; i++) {
         side[i].params =
             params_of(width, height, NOC_METHOD_RESTIR, i ? NOC_CANDIDATES_INFLUENCE : NOC_CANDIDATES_UNIFORM);
-        side[i].r = noc_renderer_create(scene, NULL, log);
-        ok = ok && side[i].r && noc_renderer_frame(side[i].r, camera, &side[i].params, NULL) == NOC_OK;
+        side[i].r = own_view(scene, 0, log);
+        ok = ok && side[i].r && noc_view_render(side[i].r, camera, &side[i].params, NULL) == NOC_OK;
     }
     for (int f = 0; ok && f < frames; f++)
         for (int i = 0; ok && i < 2; i++) {
             noc_frame_stats stats;
-            ok = noc_renderer_frame(side[i].r, camera, &side[i].params, NULL) == NOC_OK;
-            noc_renderer_get_stats(side[i].r, &stats);
+            ok = noc_view_render(side[i].r, camera, &side[i].params, NULL) == NOC_OK;
+            noc_view_get_stats(side[i].r, &stats);
             side[i].cpu[f] = stats.cpu_seconds;
             for (int k = 0; k < NOC_PASS_COUNT; k++)
                 side[i].pass[k][f] = stats.pass_seconds[k];
@@ -68,13 +69,13 @@ static bool times(const noc_scene *scene, const noc_camera *camera, int width, i
                     printf(" %s %.1f", noc_pass_name((noc_pass)k), 1e3 * pass[i][k]);
             printf("\n");
         }
-        noc_renderer_light_stats(side[1].r, &found);
+        noc_view_light_stats(side[1].r, &found);
         printf("frames %.3f, candidates %.3f of uniform's; S_r %.3f, found: median %u, 99%% %u, none %.2f%%\n",
                cpu[1] / cpu[0], pass[1][NOC_PASS_CANDIDATES] / pass[0][NOC_PASS_CANDIDATES], found.influence,
                found.found_median, found.found_99, 100 * found.found_none);
     }
     for (int i = 0; i < 2; i++)
-        noc_renderer_destroy(side[i].r);
+        close_view(side[i].r);
     return ok;
 }
 
@@ -96,7 +97,7 @@ static spread spread_of(const double *x, int n) {
 /* Volumes with one S_r. Errors of the mean of half of the frames, and of all of them, a seed each. */
 enum { HALF, ALL, MOMENTS, MOST_SCALES = 16 };
 typedef struct erring {
-    noc_renderer *r;
+    noc_view *r;
     noc_render_params params;
     double rmse8[MOMENTS][MOST_SEEDS], relmse[MOMENTS][MOST_SEEDS], fastest; /* CPU s of a frame */
 } erring;
@@ -104,7 +105,7 @@ typedef struct erring {
 static bool compare(erring *e, const noc_image *want, int moment, int seed, noc_log *log) {
     noc_compare_params c = noc_compare_default_params();
     noc_comparison figures = { 0 };
-    noc_image *have = noc_renderer_image(e->r);
+    noc_image *have = noc_view_image(e->r);
     bool ok = have && noc_image_compare(have, want, &c, &figures, log) == NOC_OK;
     noc_image_destroy(have);
     e->rmse8[moment][seed] = figures.all.rmse8;
@@ -118,13 +119,13 @@ static bool run_seed(erring *e, int n, const noc_camera *camera, const noc_image
     bool ok = true;
     for (int i = 0; i < n; i++) {
         e[i].params.seed = (uint32_t)seed + 1;
-        noc_renderer_reset(e[i].r);
+        noc_view_reset(e[i].r);
     }
     for (int f = 0; ok && f < frames; f++)
         for (int i = 0; ok && i < n; i++) {
             noc_frame_stats stats;
-            ok = noc_renderer_frame(e[i].r, camera, &e[i].params, NULL) == NOC_OK;
-            noc_renderer_get_stats(e[i].r, &stats);
+            ok = noc_view_render(e[i].r, camera, &e[i].params, NULL) == NOC_OK;
+            noc_view_get_stats(e[i].r, &stats);
             e[i].fastest = fmin(e[i].fastest, stats.cpu_seconds);
             for (int moment = HALF; ok && moment <= ALL; moment++)
                 if (f + 1 == (moment == HALF ? frames / 2 : frames))
@@ -143,7 +144,7 @@ static void print_erring(const erring *e, const erring *first, int seeds) {
     noc_light_stats found;
     spread rmse8[MOMENTS], relmse[MOMENTS];
     double time = first->fastest / e->fastest;
-    noc_renderer_light_stats(e->r, &found);
+    noc_view_light_stats(e->r, &found);
     for (int m = 0; m < MOMENTS; m++) {
         rmse8[m] = spread_of(e->rmse8[m], seeds);
         relmse[m] = spread_of(e->relmse[m], seeds);
@@ -168,15 +169,15 @@ static bool errors(const noc_scene *scene, const noc_camera *camera, noc_render_
         e[n].params = p;
         e[n].params.influence = atof(scales[n]);
         e[n].fastest = INFINITY;
-        e[n].r = noc_renderer_create(scene, &(noc_renderer_params){ .threads = 1 }, log);
-        ok = e[n].r && noc_renderer_frame(e[n].r, camera, &e[n].params, NULL) == NOC_OK; /* builds the structures */
+        e[n].r = own_view(scene, 1, log);
+        ok = e[n].r && noc_view_render(e[n].r, camera, &e[n].params, NULL) == NOC_OK; /* builds the structures */
     }
     for (int seed = 0; ok && seed < seeds; seed++)
         ok = run_seed(e, n, camera, want, frames, seed, log);
     for (int i = 0; i < n; i++) {
         if (ok)
             print_erring(&e[i], &e[0], seeds);
-        noc_renderer_destroy(e[i].r);
+        close_view(e[i].r);
     }
     noc_image_destroy(want);
     return ok;

@@ -8,8 +8,9 @@
  * unshadowed truth) and of the picture, clamped to 10 cd/m2 and not. A reference that is not there yet is rendered by
  * lists of 128 + 128, REFERENCE_FRAMES of them, with and without shadows (REFERENCE.exr.free.exr). */
 #include "bench_scene.h"
+#include "../tests/own_view.h"
 
-#include "backend/embree/embree.h"
+#include "../tests/backend/cpu_view.h"
 #include "core/random.h"
 
 #include <math.h>
@@ -96,17 +97,16 @@ static noc_render_params params_of(int width, int height, noc_method method, int
 /* Time of the lists alone: primary hits once, then every tile's list in one thread. */
 static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, int height, int rounds) {
     void *state = NULL;
-    if (noc_backend_embree.create(s, &(noc_renderer_params){ 0 }, NULL, &state) != NOC_OK)
+    if (!(state = open_cpu_view(s, 0, NULL)))
         return false;
-    embree_state *e = state;
+    cpu_view *e = state;
     noc_render_params p = params_of(width, height, NOC_METHOD_RIS, 32, true);
     noc_frame f = { .params = &p };
     noc_make_frame_camera(camera, &p, 0, &f.camera);
     noc_backend_embree.resize(state, width, height, 1);
     noc_stage primary = { .passes = 1u << NOC_PASS_PRIMARY };
     double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
-    if (noc_embree_prepare_lights(e, &p) != NOC_OK ||
-        noc_backend_embree.stage(state, &f, &primary, NULL, 0, 1) != NOC_OK)
+    if (noc_cpu_prepare_lights(e, &p) != NOC_OK || noc_backend_embree.stage(state, &f, &primary, NULL, 0, 1) != NOC_OK)
         return false;
     wall = noc_wall_seconds();
     cpu = noc_cpu_seconds();
@@ -117,7 +117,8 @@ static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, 
            wall, cpu, (double)c->bytes / (double)s->lights.len);
     noc_clusters_destroy(c);
     const frame_buffers *b = &e->b;
-    struct core_context ctx = { s->lights.data, (uint32_t)s->lights.len, s->material_records.data, &f, e->clusters };
+    struct core_context ctx = { s->lights.data, (uint32_t)s->lights.len, s->material_records.data, &f,
+                                e->sources.clusters };
     double *us = noc_alloc((size_t)rounds * sizeof(*us)), entries = 0;
     size_t tiles = 0;
     for (int round = 0; round < rounds; round++) {
@@ -148,7 +149,7 @@ static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, 
     printf("%zu tiles, %.1f entries each: %.2f us a tile (%s)\n", tiles, entries / (double)NOC_MAX(tiles, 1),
            us[rounds / 2], e->kernels->name);
     free(us);
-    noc_backend_embree.destroy(state);
+    close_cpu_view(state);
     return true;
 }
 
@@ -159,35 +160,35 @@ static noc_image *reference(const noc_scene *s, const noc_camera *camera, int wi
         return noc_image_read(path, log, &linear);
     noc_render_params p = params_of(width, height, NOC_METHOD_RIS, 128, shadows);
     p.seed = 4711;
-    noc_renderer *r = noc_renderer_create(s, NULL, log);
+    noc_view *r = own_view(s, 0, log);
     bool ok = r != NULL;
     for (int i = 0; ok && i < frames; i++)
-        ok = noc_renderer_frame(r, camera, &p, NULL) == NOC_OK;
-    noc_image *image = ok ? noc_renderer_image(r) : NULL;
+        ok = noc_view_render(r, camera, &p, NULL) == NOC_OK;
+    noc_image *image = ok ? noc_view_image(r) : NULL;
     noc_display_params display = noc_display_default_params();
     if (image)
         noc_image_write(image, path, &display, NULL, log);
-    noc_renderer_destroy(r);
+    close_view(r);
     return image;
 }
 
 static void errors(const noc_scene *s, const noc_camera *camera, const noc_render_params *params, const noc_image *want,
                    int frames, const char *name, noc_log *log) {
     noc_render_params p = *params;
-    noc_renderer *r = noc_renderer_create(s, NULL, log);
+    noc_view *r = own_view(s, 0, log);
     double clamped = 0, raw = 0, bias = 0, cpu = 0;
     int done = 0;
     for (; r && done < frames; done++) {
         p.seed = (uint32_t)done + 1;
-        if (noc_renderer_frame(r, camera, &p, NULL) != NOC_OK)
+        if (noc_view_render(r, camera, &p, NULL) != NOC_OK)
             break;
-        noc_image *have = noc_renderer_image(r);
+        noc_image *have = noc_view_image(r);
         noc_compare_params c = noc_compare_default_params();
         noc_comparison figures = { 0 };
         noc_image_compare(have, want, &c, &figures, log);
         noc_image_destroy(have);
         noc_frame_stats stats;
-        noc_renderer_get_stats(r, &stats);
+        noc_view_get_stats(r, &stats);
         clamped += figures.dark_clamped.relmse;
         raw += figures.dark.relmse;
         bias += figures.dark.bias;
@@ -197,7 +198,7 @@ static void errors(const noc_scene *s, const noc_camera *camera, const noc_rende
         printf("%-22s relMSE %.4f (unclamped %.4f), bias %+.2f%%, %.0f ms CPU a frame\n", name, clamped / done,
                raw / done, 100 * (bias / done - 1), 1e3 * cpu / done);
     fflush(stdout);
-    noc_renderer_destroy(r);
+    close_view(r);
 }
 
 int main(int argc, char **argv) {

@@ -8,6 +8,7 @@
  * is Lambert's formula. Printed: median, largest and root mean square error of the ratio to the truth of a pixel of one
  * frame, and the mean ratio. */
 #include "bench_scene.h"
+#include "../tests/own_view.h"
 
 #include <math.h>
 
@@ -71,7 +72,7 @@ static void measure(const view *v, const char *name, noc_candidates candidates, 
     for (int i = 0; i < v->lights; i++)
         add(s, &v->quads[i]);
     noc_scene_commit(s);
-    noc_renderer *r = noc_renderer_create(s, NULL, NULL);
+    noc_view *r = own_view(s, 0, NULL);
     noc_render_params p = noc_render_default_params();
     p.width = W;
     p.height = H;
@@ -95,9 +96,9 @@ static void measure(const view *v, const char *name, noc_candidates candidates, 
     }
     for (int i = 0; i < seeds; i++) {
         p.seed = 1000 + (uint32_t)i;
-        noc_renderer_reset(r);
-        noc_renderer_frame(r, &c, &p, NULL);
-        noc_image *image = noc_renderer_image(r);
+        noc_view_reset(r);
+        noc_view_render(r, &c, &p, NULL);
+        noc_image *image = noc_view_image(r);
         for (int k = 0; k < W * H; k++, n++) {
             ratio[n] = image->rgb[3 * k + 1] / truth[k];
             sum += ratio[n];
@@ -110,7 +111,7 @@ static void measure(const view *v, const char *name, noc_candidates candidates, 
            v->standing ? "standing" : "facing", v->gap, v->lights, name, median, ratio[n - 1], sqrt(square / (double)n),
            sum / (double)n);
     fflush(stdout);
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_scene_destroy(s);
 }
 

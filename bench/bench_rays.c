@@ -9,6 +9,7 @@
  * unless they say so. */
 #include "bench_scene.h"
 
+#include "../tests/backend/cpu_view.h"
 #include "backend/embree/embree.h"
 
 #include <math.h>
@@ -186,7 +187,7 @@ static RTCScene build(RTCDevice device, const noc_scene *scene, enum RTCBuildQua
 }
 
 /* Segments from the surfaces of every block, or of the one `shift` to the right, to the block's samples. */
-static void collect(const embree_state *s, const struct core_context *ctx, int shift, ray_set *set) {
+static void collect(const cpu_view *s, const struct core_context *ctx, int shift, ray_set *set) {
     const frame_buffers *b = &s->b;
     set->count = 0;
     memset(set->blocks, 0, set->tiles * TILE * sizeof(*set->blocks));
@@ -205,7 +206,7 @@ static void collect(const embree_state *s, const struct core_context *ctx, int s
         }
 }
 
-static void measure_all(embree_state *s, ray_set *set, const char *name, int rounds) {
+static void measure_all(cpu_view *s, ray_set *set, const char *name, int rounds) {
     static const struct {
         const char *name;
         enum RTCBuildQuality quality;
@@ -216,9 +217,10 @@ static void measure_all(embree_state *s, ray_set *set, const char *name, int rou
                    { "high robust", RTC_BUILD_QUALITY_HIGH, RTC_SCENE_FLAG_ROBUST } };
     printf("%s: %zu rays\n", name, set->count);
     for (int f = 0; f < FORMS; f++)
-        measure(s->rtc, set, &forms[f], rounds, f == 0);
+        measure(((const embree_structure *)s->world->rays)->rtc, set, &forms[f], rounds, f == 0);
     for (size_t i = 0; i < sizeof(builds) / sizeof(builds[0]); i++) {
-        RTCScene other = build(s->device, s->scene, builds[i].quality, builds[i].flags);
+        RTCScene other = build(((const embree_device *)s->world->device->rays)->device, s->scene, builds[i].quality,
+                               builds[i].flags);
         measure(other, set, &(form){ builds[i].name, BLOCKS, BUILT }, rounds, false);
         rtcReleaseScene(other);
     }
@@ -236,12 +238,10 @@ int main(int argc, char **argv) {
     noc_scene *scene = bench_scene(spec, log);
     noc_camera camera;
     void *state = NULL;
-    const noc_renderer_params one = { .threads = 1 };
     if (!scene || noc_scene_camera(scene, bench_view(view), (double)width / height, &camera) != NOC_OK ||
-        noc_backend_embree.create(scene, &one, log, &state) != NOC_OK ||
-        noc_backend_embree.resize(state, width, height, 1) != NOC_OK)
+        !(state = open_cpu_view(scene, 1, log)) || noc_backend_embree.resize(state, width, height, 1) != NOC_OK)
         return 1;
-    embree_state *s = state;
+    cpu_view *s = state;
     printf("%s, %s, %d x %d: %zu triangles, %zu lights\n", spec, view, width, height, scene->indices.len / 3,
            scene->lights.len);
     ray_set set = { .tiles = (size_t)s->b.tiles_x * s->b.tiles_y };
@@ -269,7 +269,7 @@ int main(int argc, char **argv) {
     }
     free(set.blocks);
     free(set.first);
-    noc_backend_embree.destroy(state);
+    close_cpu_view(state);
     noc_scene_destroy(scene);
     noc_log_destroy(log);
     return 0;

@@ -45,11 +45,11 @@ static inline noc_scene *bench_scene(const char *spec, noc_log *log) {
     return NULL;
 }
 
-static inline noc_view bench_view(const char *name) {
-    return !strcmp(name, "aerial")     ? NOC_VIEW_AERIAL
-           : !strcmp(name, "overview") ? NOC_VIEW_OVERVIEW
-           : !strcmp(name, "own")      ? NOC_VIEW_OWN
-                                       : NOC_VIEW_STREET;
+static inline noc_viewpoint bench_view(const char *name) {
+    return !strcmp(name, "aerial")     ? NOC_VIEWPOINT_AERIAL
+           : !strcmp(name, "overview") ? NOC_VIEWPOINT_OVERVIEW
+           : !strcmp(name, "own")      ? NOC_VIEWPOINT_OWN
+                                       : NOC_VIEWPOINT_STREET;
 }
 
 static inline int bench_by_size(const void *a, const void *b) {

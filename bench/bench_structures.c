@@ -8,6 +8,7 @@
  * Visibility-aware boxes are probed against a city of blocks. "share" is bytes over what the scene and its ray tracing
  * structure hold, which is little here: twelve triangles a block and a light for each ten metres of it. */
 #include "bench_scene.h"
+#include "../tests/own_view.h"
 
 static float unit(uint32_t *state) {
     *state = *state * 1664525u + 1013904223u;
@@ -81,7 +82,7 @@ static const structure structures[] = {
 };
 
 static bool row(const noc_scene *s, int threads, const structure *what) {
-    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = threads }, NULL);
+    noc_view *r = own_view(s, threads, NULL);
     noc_render_params p = noc_render_default_params();
     noc_camera c = { .eye = { 26, -10, 3 }, .target = { 26, 50, 3 }, .up = { 0, 0, 1 }, .fov_deg = 50 };
     p.width = p.height = 16;
@@ -93,12 +94,12 @@ static bool row(const noc_scene *s, int threads, const structure *what) {
     noc_frame_stats frame[2] = { { 0 } };
     bool ok = r != NULL;
     for (int i = 0; ok && i < 2; i++) {
-        ok = noc_renderer_frame(r, &c, &p, NULL) == NOC_OK;
+        ok = noc_view_render(r, &c, &p, NULL) == NOC_OK;
         if (ok)
-            noc_renderer_get_stats(r, &frame[i]);
+            noc_view_get_stats(r, &frame[i]);
     }
     if (ok) {
-        noc_renderer_light_stats(r, &l);
+        noc_view_light_stats(r, &l);
         printf("%9zu  %-14s %8.4f s wall %8.4f s CPU %7.1f bytes a light, share %5.2f%%", l.lights, what->name,
                l.build_seconds, frame[0].cpu_seconds - frame[1].cpu_seconds, (double)l.bytes / (double)l.lights,
                100.0 * (double)l.bytes / (double)l.scene_bytes);
@@ -107,7 +108,7 @@ static bool row(const noc_scene *s, int threads, const structure *what) {
         printf("\n");
         fflush(stdout);
     }
-    noc_renderer_destroy(r);
+    close_view(r);
     return ok;
 }
 

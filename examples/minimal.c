@@ -11,20 +11,22 @@ static noc_status draw(noc_scene *scene, noc_log *log, const char *path) {
     params.height = 180;
 
     noc_camera camera;
-    noc_status status = noc_scene_camera(scene, NOC_VIEW_AERIAL, (double)params.width / params.height, &camera);
+    noc_status status = noc_scene_camera(scene, NOC_VIEWPOINT_AERIAL, (double)params.width / params.height, &camera);
     if (status)
         return status;
-    noc_renderer *renderer = noc_renderer_create(scene, &noc_renderer_default_params(), log);
-    if (!renderer)
-        return NOC_ERR_MEMORY;
+    noc_device *device = noc_device_create(&noc_device_default_params(), log);
+    noc_view *view = noc_view_create(device, scene);
+    if (!view)
+        status = NOC_ERR_MEMORY;
     for (int frame = 0; frame < 8 && !status; frame++)
-        status = noc_renderer_frame(renderer, &camera, &params, NULL);
+        status = noc_view_render(view, &camera, &params, NULL);
 
-    noc_image *image = status ? NULL : noc_renderer_image(renderer);
+    noc_image *image = status ? NULL : noc_view_image(view);
     if (image)
         status = noc_image_write(image, path, &noc_display_default_params(), NULL, log);
     noc_image_destroy(image);
-    noc_renderer_destroy(renderer);
+    noc_view_destroy(view);
+    noc_device_destroy(device);
     return status;
 }
 

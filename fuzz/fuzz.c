@@ -163,5 +163,5 @@ void fuzz_check_scene(const noc_scene *scene, bool camera) {
     }
     noc_camera found;
     if (camera && noc_scene_city_triangles(scene))
-        FUZZ_REQUIRE(noc_scene_camera(scene, NOC_VIEW_OWN, 1.5, &found) == NOC_OK);
+        FUZZ_REQUIRE(noc_scene_camera(scene, NOC_VIEWPOINT_OWN, 1.5, &found) == NOC_OK);
 }

@@ -121,33 +121,46 @@ typedef enum noc_preset {
 /* Sets all that says how light is estimated and reused; the picture's size, seed, sky and the like stay as they are. */
 NOC_API void noc_render_use_preset(noc_render_params *params, noc_preset preset);
 
-typedef struct noc_renderer noc_renderer;
+/* A device is what renders: threads, memory, a ray tracer. All scenes and views of a process may share one. */
+typedef struct noc_device noc_device;
 
-typedef struct noc_renderer_params {
+typedef struct noc_device_params {
     int threads;         /* 0: one a core */
     const char *backend; /* NULL or "embree" */
-} noc_renderer_params;
+} noc_device_params;
 
-#define NOC_RENDERER_DEFAULTS(set) set(threads, 0)
+#define NOC_DEVICE_DEFAULTS(set) set(threads, 0)
 #ifdef __cplusplus
-NOC_DEFAULT_PARAMS(noc_renderer_params, noc_renderer_default_params, NOC_RENDERER_DEFAULTS)
+NOC_DEFAULT_PARAMS(noc_device_params, noc_device_default_params, NOC_DEVICE_DEFAULTS)
 #else
-#define noc_renderer_default_params() ((noc_renderer_params){ NOC_RENDERER_DEFAULTS(NOC_DEFAULT_IN_C) })
+#define noc_device_default_params() ((noc_device_params){ NOC_DEVICE_DEFAULTS(NOC_DEFAULT_IN_C) })
 #endif
 
-/* Threads. A renderer belongs to one thread at a time: while noc_renderer_frame or noc_renderer_trace_floor runs, no
- * other call may be made on it, neither from another thread nor from the progress callback, which comes from the thread
- * that made the call. Other renderers, of the same committed scene too, may work meanwhile. What only reads the scene
- * (noc_scene_get_info, get_light, object_name, ground, camera, to_local, from_local) may be called at any time from any
- * thread, also during a frame and in callbacks; noc_scene_move_light only while no frame of the scene is rendered.
- * noc_image and noc_channel are the caller's: any thread may use them once the call that made them has returned. The
- * log's callback may come from any thread.
- *
- * The scene must be committed and outlive the renderer. NULL after reporting an error. */
-NOC_API noc_renderer *noc_renderer_create(const noc_scene *scene, const noc_renderer_params *params, noc_log *log);
-NOC_API void noc_renderer_destroy(noc_renderer *renderer);
+/* NULL params are the defaults; NULL after reporting an error. The device keeps the log, which must outlive it and is
+ * told of all that goes wrong in its views. */
+NOC_API noc_device *noc_device_create(const noc_device_params *params, noc_log *log);
+/* After all of its views. */
+NOC_API void noc_device_destroy(noc_device *device);
 
-/* Everything about params that noc_renderer_frame would refuse, as one reported error: to be asked before long work. */
+/* A view is one picture of a scene: its size, camera, options, history and accumulation. Any number of views may look
+ * at one scene: they share the ray tracing structure and what lights are drawn from, which are built for the first view
+ * of a scene on a device and go with the last.
+ *
+ * Threads. Views are independent: each may render in a thread of its own at the same time, and the device's threads
+ * serve them all. One view belongs to one thread at a time: while noc_view_render or noc_view_trace_floor runs, no
+ * other call may be made on it, neither from another thread nor from the progress callback, which comes from the thread
+ * that made the call. What only reads the scene (noc_scene_get_info, get_light, object_name, ground, camera, to_local,
+ * from_local) may be called at any time from any thread, also during a frame and in callbacks; noc_scene_move_light
+ * only while no frame of the scene is rendered. noc_image and noc_channel are the caller's: any thread may use them
+ * once the call that made them has returned. The log's callback may come from any thread. */
+typedef struct noc_view noc_view;
+
+/* The scene must be committed and outlive the view, as must the device. NULL after reporting an error. */
+NOC_API noc_view *noc_view_create(noc_device *device, const noc_scene *scene);
+NOC_API void noc_view_destroy(noc_view *view);
+NOC_API noc_device *noc_view_device(const noc_view *view); /* that it was created on */
+
+/* Everything about params that noc_view_render would refuse, as one reported error: to be asked before long work. */
 NOC_API noc_status noc_render_check(const noc_render_params *params, noc_log *log);
 
 /* Renders one frame; NULL params are the defaults. History and accumulation start anew when size, method or any other
@@ -155,17 +168,17 @@ NOC_API noc_status noc_render_check(const noc_render_params *params, noc_log *lo
  * when it cancels, the frame is dropped, what was accumulated stays (of the camera and parameters that it was made
  * with, so nothing where those have changed), and NOC_ERR_CANCELLED is returned. So it is with NOC_ERR_MEMORY; where
  * there was none for the picture's buffers, all starts anew. Either way the next frame may succeed. */
-NOC_API noc_status noc_renderer_frame(noc_renderer *renderer, const noc_camera *camera, const noc_render_params *params,
-                                      const noc_progress *progress);
-NOC_API void noc_renderer_reset(noc_renderer *renderer); /* forgets history and accumulation, frame number too */
+NOC_API noc_status noc_view_render(noc_view *view, const noc_camera *camera, const noc_render_params *params,
+                                   const noc_progress *progress);
+NOC_API void noc_view_reset(noc_view *view); /* forgets history and accumulation, frame number too */
 
 /* Copy of the picture so far (accumulated or last frame), with its emitter mask. NULL before the first frame. */
-NOC_API noc_image *noc_renderer_image(noc_renderer *renderer);
+NOC_API noc_image *noc_view_image(noc_view *view);
 
 NOC_API const char *noc_aov_name(noc_aov aov); /* "lights" */
 /* Copy of a view that the last complete frame kept. -1 where a pixel has none: no surface, an emitter seen directly, no
  * light chosen, fewer than two frames. NULL after reporting an error, and before the first frame. */
-NOC_API noc_channel *noc_renderer_aov(noc_renderer *renderer, noc_aov aov);
+NOC_API noc_channel *noc_view_aov(noc_view *view, noc_aov aov);
 
 typedef enum noc_pass {
     NOC_PASS_PRIMARY,
@@ -188,11 +201,11 @@ typedef struct noc_frame_stats {
     uint64_t rays_primary, rays_shadow;  /* of the last frame */
     uint64_t dropped;                    /* samples dropped for being NaN or infinite, since the last reset */
     double build_seconds;                /* of the ray tracing structure */
-    size_t memory_bytes;                 /* of the renderer, without the scene */
+    size_t memory_bytes;                 /* of the view and of what it shares, without the scene */
     const char *path;                    /* instruction set and lanes: "scalar", "avx2 x8", "avx512 x16", ... */
 } noc_frame_stats;
 
-NOC_API void noc_renderer_get_stats(const noc_renderer *renderer, noc_frame_stats *stats);
+NOC_API void noc_view_get_stats(const noc_view *view, noc_frame_stats *stats);
 
 /* The structure that the last frame's light candidates were drawn from. What does not apply to it is 0. */
 typedef struct noc_light_stats {
@@ -216,7 +229,7 @@ typedef struct noc_light_stats {
 } noc_light_stats;
 
 /* All 0 but lights and scene_bytes before the first frame, and for methods that draw no candidates. */
-NOC_API void noc_renderer_light_stats(const noc_renderer *renderer, noc_light_stats *stats);
+NOC_API void noc_view_light_stats(const noc_view *view, noc_light_stats *stats);
 
 /* Writes the influence volumes that these parameters ask for (influence, influence_boxes, influence_cluster; NULL: the
  * defaults), whatever the candidates are, as OBJ to look at: metres in the scene's local frame, y up as most programs
@@ -224,14 +237,13 @@ NOC_API void noc_renderer_light_stats(const noc_renderer *renderer, noc_light_st
  * one-sided lights face, its corners on the surface, its name that of its first light; visibility-aware boxes follow,
  * and names tell which volume lies in which. The target is replaced when the file is whole. About 6 kB a volume. Not
  * during a frame. */
-NOC_API noc_status noc_renderer_write_influence(noc_renderer *renderer, const noc_render_params *params,
-                                                const char *path);
+NOC_API noc_status noc_view_write_influence(noc_view *view, const noc_render_params *params, const char *path);
 
-/* The trace floor: renders the next frame as noc_renderer_frame does, keeps its rays (primary, visibility, bias, final,
+/* The trace floor: renders the next frame as noc_view_render does, keeps its rays (primary, visibility, bias, final,
  * and sky where it is on), then traces those rays again through the same structure and nothing else. Wall seconds of
  * the second time into *seconds. Takes about 600 bytes for 16 rays while it lasts. */
-NOC_API noc_status noc_renderer_trace_floor(noc_renderer *renderer, const noc_camera *camera,
-                                            const noc_render_params *params, double *seconds);
+NOC_API noc_status noc_view_trace_floor(noc_view *view, const noc_camera *camera, const noc_render_params *params,
+                                        double *seconds);
 
 #ifdef __cplusplus
 }

@@ -193,7 +193,12 @@ NOC_API bool noc_camera_project(const noc_camera *camera, int width, int height,
 NOC_API noc_status noc_camera_unproject(const noc_camera *camera, int width, int height, const double pixel[2],
                                         double distance, double xyz[3]);
 
-typedef enum noc_view { NOC_VIEW_STREET, NOC_VIEW_AERIAL, NOC_VIEW_OVERVIEW, NOC_VIEW_OWN } noc_view;
+typedef enum noc_viewpoint {
+    NOC_VIEWPOINT_STREET,
+    NOC_VIEWPOINT_AERIAL,
+    NOC_VIEWPOINT_OVERVIEW,
+    NOC_VIEWPOINT_OWN
+} noc_viewpoint;
 
 /* The camera that a scene comes with: built-in scenes and glTF files may set one, and the first one stays. The eye must
  * not be the target, fov_deg is within 1..170. */
@@ -203,7 +208,7 @@ NOC_API noc_status noc_scene_set_camera(noc_scene *scene, const noc_camera *came
  * flies over the roofs, overview sees the whole extent; own is the one that the scene comes with, street where it has
  * none. Meshes that are no city have no street: a room is then seen from inside, anything else as by overview. aspect =
  * width / height of the picture. */
-NOC_API noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect, noc_camera *camera);
+NOC_API noc_status noc_scene_camera(const noc_scene *scene, noc_viewpoint view, double aspect, noc_camera *camera);
 
 /* The built-in procedural night city. The same seed and size give the same city on every machine. NULL params are the
  * defaults. */

@@ -97,7 +97,9 @@ double noc_wall_seconds(void);
 double noc_cpu_seconds(void); /* of the process, all threads */
 
 /* Thread pool. run() calls fn(ctx, item, worker) for item in [0, items), spread over the workers (0 <= worker <
- * threads); the caller is worker 0. Returns when all are done. One run at a time. */
+ * threads); the caller is worker 0. Returns when all are done. Several threads may run at once, each with its own
+ * items: they share the pool's threads, whose numbers stay the same, so scratch a run and worker is enough. An item may
+ * not start a run. */
 typedef struct noc_pool noc_pool;
 /* 0: one a core. Fewer where the system starts no more. NULL when memory is refused. */
 noc_pool *noc_pool_create(int threads) NOC_MUST_USE;

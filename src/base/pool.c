@@ -10,41 +10,70 @@ struct worker {
     int index;
 };
 
-struct noc_pool {
-    int threads;
-    struct worker *workers; /* threads - 1 of them: the caller is worker 0 */
-    pthread_mutex_t lock;
-    pthread_cond_t start, done;
-    uint64_t run; /* counts runs; a change wakes the workers */
-    int busy;
-    bool stop;
+/* A run: on the stack of the thread that asked for it. */
+struct run {
     void (*fn)(void *, size_t, int);
     void *ctx;
     size_t items;
     atomic_size_t next;
+    int busy; /* workers at it, besides its caller */
+    struct run *later;
 };
 
-static void work(noc_pool *pool, int index) {
-    for (size_t i; (i = atomic_fetch_add(&pool->next, 1)) < pool->items;)
-        pool->fn(pool->ctx, i, index);
+struct noc_pool {
+    int threads;
+    struct worker *workers; /* threads - 1 of them: a run's caller is its worker 0 */
+    pthread_mutex_t lock;
+    pthread_cond_t start, done;
+    bool stop;
+    struct run *runs; /* that may still have items to give, in turn */
+};
+
+static void work(struct run *run, int index) {
+    for (size_t i; (i = atomic_fetch_add(&run->next, 1)) < run->items;)
+        run->fn(run->ctx, i, index);
+}
+
+static void unlink_run(noc_pool *pool, struct run *run) {
+    struct run **at = &pool->runs;
+    while (*at && *at != run)
+        at = &(*at)->later;
+    if (*at)
+        *at = run->later;
+}
+
+/* The run that a worker helps next. It goes to the end of the line, so that runs share the workers. */
+static struct run *next_run(noc_pool *pool) {
+    struct run *run;
+    while ((run = pool->runs) && atomic_load(&run->next) >= run->items)
+        pool->runs = run->later;
+    if (!run || !run->later)
+        return run;
+    struct run *last = run;
+    while (last->later)
+        last = last->later;
+    pool->runs = run->later;
+    last->later = run;
+    run->later = NULL;
+    return run;
 }
 
 static void *worker_main(void *arg) {
     struct worker *w = arg;
     noc_pool *pool = w->pool;
-    uint64_t seen = 0;
+    struct run *run;
     pthread_mutex_lock(&pool->lock);
     for (;;) {
-        while (!pool->stop && pool->run == seen)
+        while (!pool->stop && !(run = next_run(pool)))
             pthread_cond_wait(&pool->start, &pool->lock);
         if (pool->stop)
             break;
-        seen = pool->run;
+        run->busy++;
         pthread_mutex_unlock(&pool->lock);
-        work(pool, w->index);
+        work(run, w->index);
         pthread_mutex_lock(&pool->lock);
-        if (!--pool->busy)
-            pthread_cond_signal(&pool->done);
+        if (!--run->busy)
+            pthread_cond_broadcast(&pool->done);
     }
     pthread_mutex_unlock(&pool->lock);
     return NULL;
@@ -108,18 +137,18 @@ void noc_pool_destroy(noc_pool *pool) {
 int noc_pool_threads(const noc_pool *pool) { return pool->threads; }
 
 void noc_pool_run(noc_pool *pool, size_t items, void (*fn)(void *, size_t, int), void *ctx) {
-    pool->fn = fn;
-    pool->ctx = ctx;
-    pool->items = items;
-    atomic_store(&pool->next, 0);
+    struct run run = { .fn = fn, .ctx = ctx, .items = items };
     pthread_mutex_lock(&pool->lock);
-    pool->busy = pool->threads - 1;
-    pool->run++;
+    struct run **end = &pool->runs;
+    while (*end)
+        end = &(*end)->later;
+    *end = &run;
     pthread_cond_broadcast(&pool->start);
     pthread_mutex_unlock(&pool->lock);
-    work(pool, 0);
+    work(&run, 0);
     pthread_mutex_lock(&pool->lock);
-    while (pool->busy)
+    unlink_run(pool, &run);
+    while (run.busy)
         pthread_cond_wait(&pool->done, &pool->lock);
     pthread_mutex_unlock(&pool->lock);
 }

@@ -85,7 +85,7 @@ noc_status cli_place_camera(render_job *job) {
     const render_args *args = job->args;
     job->camera = noc_camera_default();
     if (!args->eye) {
-        noc_status status = noc_scene_camera(job->scene, (noc_view)args->view,
+        noc_status status = noc_scene_camera(job->scene, (noc_viewpoint)args->view,
                                              (double)args->render.width / args->render.height, &job->camera);
         if (status)
             return status;

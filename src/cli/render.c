@@ -42,7 +42,7 @@ static int run(void *arguments);
 
 static const render_args defaults = {
     .frames = 32,
-    .view = NOC_VIEW_OWN,
+    .view = NOC_VIEWPOINT_OWN,
     .exposure = "auto",
     .render = noc_render_default_params(),
     .display = noc_display_default_params(),
@@ -200,7 +200,7 @@ static bool frame_progress(void *user, const char *what, double done) {
 }
 
 static void add_stats(render_job *job) {
-    noc_renderer_get_stats(job->renderer, &job->last);
+    noc_view_get_stats(job->view, &job->last);
     job->frame_seconds += job->last.wall_seconds;
     job->cpu_seconds += job->last.cpu_seconds;
     for (int i = 0; i < NOC_PASS_COUNT; i++)
@@ -222,7 +222,7 @@ static noc_status render_frames(render_job *job) {
         double spent = cli_now() - job->ready;
         if (args->time > 0 && job->frames && spent + 0.5 * job->frame_seconds / job->frames > args->time)
             break;
-        status = noc_renderer_frame(job->renderer, &job->camera, &args->render, &progress);
+        status = noc_view_render(job->view, &job->camera, &args->render, &progress);
         if (!status)
             add_stats(job);
     }
@@ -260,8 +260,9 @@ static int work(render_job *job) {
         status = reserve(job);
     if (!status && !cli_interrupted()) {
         cli_nothing_to_keep(true); /* until a frame is complete */
-        job->renderer = noc_renderer_create(job->scene, &(noc_renderer_params){ .threads = args->threads }, job->log);
-        status = job->renderer ? render_frames(job) : NOC_ERR_MEMORY;
+        job->device = noc_device_create(&(noc_device_params){ .threads = args->threads }, job->log);
+        job->view = noc_view_create(job->device, job->scene);
+        status = job->view ? render_frames(job) : NOC_ERR_MEMORY;
         cli_nothing_to_keep(false);
     }
     if (is_failure(status))
@@ -273,12 +274,11 @@ static int work(render_job *job) {
         return ending;
     }
     if (cli_write_picture(job) ||
-        (args->influence_obj && noc_renderer_write_influence(job->renderer, &args->render, args->influence_obj)))
+        (args->influence_obj && noc_view_write_influence(job->view, &args->render, args->influence_obj)))
         return CLI_FAILURE;
     cli_warn_of_picture(job);
     /* After the picture: the floor is measured on one more frame. */
-    if (args->stats && !ending &&
-        noc_renderer_trace_floor(job->renderer, &job->camera, &args->render, &job->floor_seconds))
+    if (args->stats && !ending && noc_view_trace_floor(job->view, &job->camera, &args->render, &job->floor_seconds))
         return CLI_FAILURE;
     if (ending && args->time > 0)
         cli_error("interrupted: saved %s to %s", cli_many(text, (uint64_t)job->frames, "frame"), args->output);
@@ -305,8 +305,9 @@ static int run(void *arguments) {
     cli_progress_clear();
     free(job.room);
     noc_image_destroy(job.image);
-    noc_channel_destroy(job.view);
-    noc_renderer_destroy(job.renderer);
+    noc_channel_destroy(job.shown);
+    noc_view_destroy(job.view);
+    noc_device_destroy(job.device);
     noc_report_destroy(job.report);
     noc_scene_destroy(job.scene);
     noc_log_destroy(job.log);

@@ -15,7 +15,7 @@ typedef struct render_args {
     int show;   /* 0: the picture, else 1 + noc_aov */
     const char *show_range, *influence_obj;
     noc_channel_params range;
-    int view; /* noc_view */
+    int view; /* noc_viewpoint */
     const char *eye, *target, *camera_crs;
     double fov; /* 0: not given */
     const char *size, *exposure;
@@ -31,10 +31,11 @@ typedef struct render_job {
     double eye[3], target[3]; /* as given; used when --eye was */
     noc_log *log;
     noc_scene *scene;
-    noc_renderer *renderer;
+    noc_device *device;
+    noc_view *view;
     noc_image *image;
-    noc_channel *view; /* --show */
-    void *room;        /* memory that the picture and its file will take, held while frames are rendered */
+    noc_channel *shown; /* --show */
+    void *room;         /* memory that the picture and its file will take, held while frames are rendered */
     noc_camera camera;
     bool far_away; /* the camera is, and it was said */
     noc_scene_info scene_info;

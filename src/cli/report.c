@@ -139,7 +139,7 @@ noc_status cli_write_picture(render_job *job) {
     const noc_camera *c = &job->camera;
     free(job->room);
     job->room = NULL;
-    job->image = noc_renderer_image(job->renderer);
+    job->image = noc_view_image(job->view);
     if (!job->image)
         return NOC_ERR_MEMORY;
     meta_text meta = { .count = 0 };
@@ -313,13 +313,13 @@ void cli_print_summary(const render_job *job) {
     printf("%s\n", cli_clean(path, sizeof(path), args->output));
     printf("  picture   %d x %d, %s of %s, ", args->render.width, args->render.height,
            cli_many(a, (uint64_t)job->frames, "frame"), choice_name("method", &args->render, name, sizeof(name)));
-    if (job->view)
+    if (job->shown)
         cli_print_view_kind(job, is_exr(args->output));
     else if (is_exr(args->output))
         printf("linear cd/m2, automatic exposure would be %.2f EV100\n", auto_ev100(job));
     else
         printf("exposure %.2f EV100\n", ev100(job));
-    if (job->view)
+    if (job->shown)
         cli_print_view(job);
     printf("  scene     %s, %s", cli_many(a, scene->triangles, "triangle"), cli_many(b, scene->lights, "light"));
     if (scene->lights_inferred)

@@ -28,9 +28,9 @@ int cli_parse_show(render_args *args) {
 }
 
 noc_status cli_write_view(render_job *job, const noc_image_meta *meta) {
-    job->view = noc_renderer_aov(job->renderer, shown(job->args));
-    return job->view ? noc_channel_write(job->view, job->args->output, &job->args->range, meta, job->log)
-                     : NOC_ERR_MEMORY;
+    job->shown = noc_view_aov(job->view, shown(job->args));
+    return job->shown ? noc_channel_write(job->shown, job->args->output, &job->args->range, meta, job->log)
+                      : NOC_ERR_MEMORY;
 }
 
 static int compare_values(const void *a, const void *b) {
@@ -50,8 +50,8 @@ static int compare_labels(const void *a, const void *b) {
 }
 
 static const char *name_of(const render_job *job, size_t number) {
-    if (number < job->view->label_count)
-        return job->view->labels[number];
+    if (number < job->shown->label_count)
+        return job->shown->labels[number];
     return shown(job->args) == NOC_AOV_OBJECT ? noc_scene_object_name(job->scene, number) : NULL;
 }
 
@@ -84,7 +84,7 @@ static void print_names(const render_job *job, const float *v, size_t n, size_t 
 }
 
 void cli_print_view_kind(const render_job *job, bool numbers) {
-    const noc_channel *view = job->view;
+    const noc_channel *view = job->shown;
     printf("the view %s ", view->name);
     if (!numbers)
         puts("in colours, with a legend");
@@ -100,7 +100,7 @@ void cli_print_view_kind(const render_job *job, bool numbers) {
 
 /* Figures of the numbers, for the summary. */
 void cli_print_view(const render_job *job) {
-    const noc_channel *view = job->view;
+    const noc_channel *view = job->shown;
     size_t pixels = (size_t)view->width * (size_t)view->height, n = 0, different = 0;
     if (view->components > 1) {
         printf("  view      %s\n", view->title);

@@ -133,12 +133,12 @@ static bool has_row(const lab_run *run, int frame) {
 }
 
 /* One frame is there: its rows and picture, if it is one of those that are measured, or the last. */
-static int take_frame(measuring *m, noc_renderer *renderer, bool *last) {
+static int take_frame(measuring *m, noc_view *view, bool *last) {
     lab_session *lab = m->lab;
     noc_frame_stats stats;
     noc_light_stats lights;
-    noc_renderer_get_stats(renderer, &stats);
-    noc_renderer_light_stats(renderer, &lights);
+    noc_view_get_stats(view, &stats);
+    noc_view_light_stats(view, &lights);
     add_times(m, &stats);
     double seconds = lab->spec.configs[m->run->config].seconds;
     bool spent =
@@ -149,7 +149,7 @@ static int take_frame(measuring *m, noc_renderer *renderer, bool *last) {
     bool mean = lab_has_mode(&lab->spec, m->run->camera, LAB_ACCUMULATED);
     if (!rows && !mean && !lab_shows(&lab->spec, m->run->camera, m->frame))
         return CLI_OK;
-    noc_image *image = noc_renderer_image(renderer);
+    noc_image *image = noc_view_image(view);
     int status = image ? keep_picture(m, LAB_ALONE, image) : CLI_FAILURE;
     if (!status && rows)
         status = add_row(m, LAB_ALONE, image, &stats, &lights);
@@ -201,20 +201,21 @@ int lab_measure(lab_session *lab, lab_run *run) {
     measuring m = { .lab = lab, .run = run, .frame = 1, .frames = frames_missing(lab, run) };
     if (!m.frames)
         return CLI_OK;
-    noc_renderer *renderer =
-        noc_renderer_create(lab->scene, &(noc_renderer_params){ .threads = lab->args->threads }, lab->log);
-    int status = renderer ? CLI_OK : CLI_FAILURE;
+    noc_device *device = noc_device_create(&(noc_device_params){ .threads = lab->args->threads }, lab->log);
+    noc_view *view = noc_view_create(device, lab->scene);
+    int status = view ? CLI_OK : CLI_FAILURE;
     noc_render_params params = lab_params(lab, run);
     for (bool last = false; !status && !last; m.frame++) {
         noc_camera camera = lab_camera_at(lab, run->camera, m.frame);
-        noc_status rendered =
-            cli_interrupted() ? NOC_ERR_CANCELLED
-                              : noc_renderer_frame(renderer, &camera, &params, &(noc_progress){ frame_progress, &m });
+        noc_status rendered = cli_interrupted()
+                                  ? NOC_ERR_CANCELLED
+                                  : noc_view_render(view, &camera, &params, &(noc_progress){ frame_progress, &m });
         if (rendered)
             status = cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_FAILURE;
         else
-            status = take_frame(&m, renderer, &last);
+            status = take_frame(&m, view, &last);
     }
-    noc_renderer_destroy(renderer);
+    noc_view_destroy(view);
+    noc_device_destroy(device);
     return status;
 }

@@ -143,20 +143,19 @@ static noc_image *read_cached(const lab_session *lab, const char *path) {
 
 static int render_reference(lab_session *lab, const char *view, const char *path, lab_noise *noise) {
     const lab_spec *spec = &lab->spec;
-    noc_renderer *renderer =
-        noc_renderer_create(lab->scene, &(noc_renderer_params){ .threads = lab->args->threads }, lab->log);
-    noc_status status = renderer ? NOC_OK : NOC_ERR_MEMORY;
+    noc_device *device = noc_device_create(&(noc_device_params){ .threads = lab->args->threads }, lab->log);
+    noc_view *picture = noc_view_create(device, lab->scene);
+    noc_status status = picture ? NOC_OK : NOC_ERR_MEMORY;
     making m = { view, 1, spec->reference.frames, cli_now() };
     int halfway = m.frames / 2, parts = m.frames < LAB_BATCHES ? m.frames : LAB_BATCHES;
     lab_batches batches = { .count = 0 };
     noc_image *half = NULL;
     for (; !status && m.frame <= m.frames; m.frame++) {
-        status =
-            noc_renderer_frame(renderer, &lab->camera, &spec->reference.params, &(noc_progress){ frame_progress, &m });
+        status = noc_view_render(picture, &lab->camera, &spec->reference.params, &(noc_progress){ frame_progress, &m });
         if (!status && m.frame == (m.frames > 16 ? 3 : 1)) /* the first frames build what they need and learn */
             tell_estimate(lab, &m);
         bool part_ends = m.frame * parts / m.frames > batches.count;
-        noc_image *image = !status && (part_ends || m.frame == halfway) ? noc_renderer_image(renderer) : NULL;
+        noc_image *image = !status && (part_ends || m.frame == halfway) ? noc_view_image(picture) : NULL;
         if (image && part_ends)
             lab_add_batch(&batches, image, m.frame);
         if (m.frame == halfway)
@@ -165,8 +164,9 @@ static int render_reference(lab_session *lab, const char *view, const char *path
             noc_image_destroy(image);
     }
     cli_progress_clear();
-    lab->reference = status ? NULL : noc_renderer_image(renderer);
-    noc_renderer_destroy(renderer);
+    lab->reference = status ? NULL : noc_view_image(picture);
+    noc_view_destroy(picture);
+    noc_device_destroy(device);
     if (lab->reference)
         *noise = lab_measure_noise(lab, half, halfway, &batches);
     noc_image_destroy(half);

@@ -1,4 +1,4 @@
-/* Point queries of influence volumes, but for the search itself: backend/embree/influence_near.h. */
+/* Point queries of influence volumes, but for the search itself: backend/cpu/influence_near_tmpl.h. */
 #include "light/influence.h"
 
 #include "core/influence.h"

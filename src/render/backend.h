@@ -1,4 +1,4 @@
-/* backend: what a device must be able to do to render. renderer.c validates, keeps history and decides what is run in
+/* backend: what a device must be able to do to render. view.c validates, keeps history and decides what is run in
  * which order (frame.c); a backend only executes, so that methods, history and views are the same on every device. */
 #ifndef NOC_BACKEND_H
 #define NOC_BACKEND_H
@@ -50,34 +50,41 @@ typedef struct noc_schedule {
 struct noc_influence;
 typedef struct noc_backend {
     const char *name;
-    /* Builds the ray tracing structure. *state is only set on success. */
-    noc_status (*create)(const noc_scene *scene, const noc_renderer_params *params, noc_log *log, void **state);
-    void (*destroy)(void *state);
+    /* Each of these sets its last argument on success only, and reports its errors. */
+    noc_status (*device_create)(const noc_device_params *params, noc_log *log, void **device);
+    void (*device_destroy)(void *device);
+    /* A scene on the device: builds the ray tracing structure. Any number of views, from several threads, share it. */
+    noc_status (*world_create)(void *device, const noc_scene *scene, void **world);
+    void (*world_destroy)(void *world);
+    /* What follows is of a view; one thread at a time uses it. */
+    noc_status (*view_create)(void *world, void **view);
+    void (*view_destroy)(void *view);
     /* What a picture takes, to be held against the machine before anything is allocated. */
     size_t (*bytes_a_pixel)(int reservoir_sets, uint32_t aovs);
-    /* Buffers for pictures of this size, with so many reservoir sets; what was held is lost, also when this fails. */
-    noc_status (*resize)(void *state, int width, int height, int reservoir_sets);
+    /* Buffers for pictures of this size, with so many reservoir sets. What was held is lost where the size changes, and
+     * when this fails; more sets for the same size leave it as it is. */
+    noc_status (*resize)(void *view, int width, int height, int reservoir_sets);
     /* progress may be NULL; from..to is the stage's share of the frame. Any error leaves the picture as it was. */
-    noc_status (*stage)(void *state, const noc_frame *frame, const noc_stage *stage, const noc_progress *progress,
+    noc_status (*stage)(void *view, const noc_frame *frame, const noc_stage *stage, const noc_progress *progress,
                         double from, double to);
     /* Adds the frame to the picture: into the mean, or in its place when frame->accumulated is 0. NOC_ERR_MEMORY leaves
      * it as it was. */
-    noc_status (*accumulate)(void *state, const noc_frame *frame);
+    noc_status (*accumulate)(void *view, const noc_frame *frame);
     /* Picture, emitter mask (1 where the pixel itself sees an emitter in a frame of the mean) and coverage. */
-    void (*read)(void *state, noc_image *image);
+    void (*read)(void *view, noc_image *image);
     /* A view that the last accumulated frame kept into value, a number a pixel (-1: none), normals three (0: none).
      * False where it kept none. */
-    bool (*aov)(void *state, noc_aov aov, float *value);
+    bool (*aov)(void *view, noc_aov aov, float *value);
     /* Adds up into stats: pass_seconds, rays, dropped, all since the last call; sets build_seconds, memory and path. */
-    void (*stats)(void *state, noc_frame_stats *stats);
+    void (*stats)(void *view, noc_frame_stats *stats);
     /* Of the structure that these parameters (of the last frame; NULL: there was none) draw candidates from. */
-    void (*light_stats)(void *state, const noc_render_params *params, noc_light_stats *stats);
+    void (*light_stats)(void *view, const noc_render_params *params, noc_light_stats *stats);
     /* Influence volumes for these parameters, whatever they draw from; the backend's own, until the next call of any.
      */
-    noc_status (*influence)(void *state, const noc_render_params *params, const struct noc_influence **volumes);
+    noc_status (*influence)(void *view, const noc_render_params *params, const struct noc_influence **volumes);
     /* Rays of the stages run between record(true) and record(false) are kept; replay traces them and nothing else. */
-    void (*record)(void *state, bool on);
-    noc_status (*replay)(void *state, double *seconds);
+    void (*record)(void *view, bool on);
+    noc_status (*replay)(void *view, double *seconds);
 } noc_backend;
 
 extern const noc_backend noc_backend_embree;
@@ -106,7 +113,7 @@ static inline bool noc_feeds_spatial(const noc_render_params *p) {
  * environment too, and leaves *chosen as it is. */
 noc_status noc_choose_isa(noc_isa asked, noc_isa *chosen, noc_log *log);
 
-/* views.c */
+/* aov.c */
 /* Can these views be had of these parameters? What cannot is reported. */
 noc_status noc_check_aovs(const noc_render_params *params, noc_log *log);
 /* Name, unit, title and scale. */

@@ -452,22 +452,22 @@ noc_status noc_scene_set_camera(noc_scene *scene, const noc_camera *camera) {
     return NOC_OK;
 }
 
-noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect, noc_camera *camera) {
+noc_status noc_scene_camera(const noc_scene *scene, noc_viewpoint view, double aspect, noc_camera *camera) {
     if (!scene || !camera)
         return noc_null(scene ? scene->log : NULL, __func__);
     if (!(aspect > 0 && isfinite(aspect)))
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the aspect is %g, must be finite and more than 0",
                          aspect);
     aspect = NOC_CLAMP(aspect, 0.01, 100); /* what slits of pictures see decides nothing */
-    if ((unsigned)view > NOC_VIEW_OWN)
+    if ((unsigned)view > NOC_VIEWPOINT_OWN)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: no view %d", (int)view);
     if (!noc_scene_city_triangles(scene))
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the scene is empty, so no view can be derived from it");
-    if (view == NOC_VIEW_OWN && scene->own_camera.fov_deg > 0) {
+    if (view == NOC_VIEWPOINT_OWN && scene->own_camera.fov_deg > 0) {
         *camera = scene->own_camera;
         return NOC_OK;
     }
-    if (view != NOC_VIEW_OVERVIEW && noc_ground_ready(scene) != NOC_OK)
+    if (view != NOC_VIEWPOINT_OVERVIEW && noc_ground_ready(scene) != NOC_OK)
         return NOC_ERR_MEMORY;
     view_city city = { .scene = scene };
     noc_camera c = noc_camera_default();
@@ -476,18 +476,18 @@ noc_status noc_scene_camera(const noc_scene *scene, noc_view view, double aspect
     find_hot(&city);
     if (city.no_memory)
         return noc_error(scene->log, NOC_ERR_MEMORY, "camera: no memory to look at the scene");
-    bool stand = view == NOC_VIEW_STREET || view == NOC_VIEW_OWN;
+    bool stand = view == NOC_VIEWPOINT_STREET || view == NOC_VIEWPOINT_OWN;
     /* a room is looked at from inside, another model with nowhere to stand from outside */
     bool room = stand && !city.classes && noc_room_camera(scene, city.min, city.max, aspect, &c);
     bool found = room || (stand && street(&city, aspect, &c));
-    if (view == NOC_VIEW_AERIAL)
+    if (view == NOC_VIEWPOINT_AERIAL)
         aerial(&city, aspect, &c);
     else if (!found)
         overview(&city, aspect, &c);
     array_free(&city.lights);
     if (city.no_memory)
         return noc_error(scene->log, NOC_ERR_MEMORY, "camera: no memory to look at the scene");
-    if (view == NOC_VIEW_STREET && (room || !found))
+    if (view == NOC_VIEWPOINT_STREET && (room || !found))
         noc_warn(scene->log, "view street: the scene has none, so it is seen from %s",
                  room ? "inside, as a room" : "outside");
     *camera = c;

@@ -82,7 +82,7 @@ static bool camera_axes(const noc_camera *c, int width, int height, double axes[
     for (int k = 0; k < 3; k++)
         forward[k] /= sqrt(length);
     double given = sqrt(c->up[0] * c->up[0] + c->up[1] * c->up[1] + c->up[2] * c->up[2]), helper[3];
-    /* as noc_renderer_frame: looking along up, another stands in */
+    /* as noc_view_render: looking along up, another stands in */
     for (int turn = 0; turn < 2 && !(side > 1e-6 * 1e-6); turn++) {
         bool other = turn == 1;
         for (int k = 0; k < 3; k++)

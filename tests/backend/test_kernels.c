@@ -2,7 +2,7 @@
  * the lights, missing surfaces, empty reservoirs, rejected neighbours, lights of all kinds. */
 #include "../render/rooms.h"
 
-#include "backend/embree/kernels.h"
+#include "backend/cpu/kernels.h"
 
 enum { LIGHTS = 77, MATERIALS = 9, ROUNDS = 40 };
 

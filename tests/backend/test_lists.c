@@ -3,7 +3,7 @@
  * build the same. */
 #include "../render/rooms.h"
 
-#include "backend/embree/kernels.h"
+#include "backend/cpu/kernels.h"
 #include "light/bound.h"
 
 enum { BLOCKS = 16, ROUNDS = 3000 };

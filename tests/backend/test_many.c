@@ -1,5 +1,5 @@
 /* Many shadow rays in one call: through a chequered screen, where what is free is known without tracing anything. */
-#include "backend/embree/embree.h"
+#include "cpu_view.h"
 
 #include "test.h"
 
@@ -7,7 +7,7 @@
 
 enum { CELLS = 12, MOST = 70 };
 
-static embree_state *chequered(noc_scene **scene) {
+static cpu_view *chequered(noc_scene **scene) {
     double positions[CELLS * CELLS * 4 * 3];
     uint32_t indices[CELLS * CELLS * 6];
     size_t v = 0, t = 0;
@@ -31,10 +31,9 @@ static embree_state *chequered(noc_scene **scene) {
                             .material = noc_scene_add_material(*scene, &grey) };
     assert_true(noc_scene_add_mesh(*scene, &mesh) >= 0);
     assert_int_equal(noc_scene_commit(*scene), NOC_OK);
-    void *state = NULL;
-    const noc_renderer_params one = { .threads = 1 };
-    assert_int_equal(noc_backend_embree.create(*scene, &one, NULL, &state), NOC_OK);
-    return state;
+    cpu_view *view = open_cpu_view(*scene, 1, NULL);
+    assert_non_null(view);
+    return view;
 }
 
 static uint32_t next(uint32_t *seed) { return *seed = *seed * 1664525u + 1013904223u; }
@@ -65,7 +64,7 @@ static void make_block(uint32_t *seed, uint32_t lights, segment_block *b, uint32
 static void known_answers(void **state) {
     (void)state;
     noc_scene *scene;
-    embree_state *s = chequered(&scene);
+    cpu_view *s = chequered(&scene);
     worker *w = &s->workers[0];
     static segment_block blocks[MOST];
     static float counts[MOST][BLOCK];
@@ -83,7 +82,7 @@ static void known_answers(void **state) {
             open += (uint64_t)__builtin_popcount(expect[k]);
         }
         assert_true(n < 7 || (open > rays / 4 && open < rays) || lights[i / NOC_COUNT(sizes)] == 1);
-        noc_embree_free_many(s, w, blocks, n);
+        noc_cpu_trace_occlusion(s, w, blocks, n);
         assert_int_equal(w->rays_shadow - before, rays);
         for (int k = 0; k < n; k++) {
             assert_int_equal(blocks[k].clear, expect[k]);
@@ -91,7 +90,7 @@ static void known_answers(void **state) {
                 assert_true(counts[k][l] == (k % 3 ? (float)(blocks[k].valid >> l & 1) : 0));
         }
     }
-    noc_backend_embree.destroy(s);
+    close_cpu_view(s);
     noc_scene_destroy(scene);
 }
 
@@ -99,7 +98,7 @@ static void known_answers(void **state) {
 static void company_does_not_matter(void **state) {
     (void)state;
     noc_scene *scene;
-    embree_state *s = chequered(&scene);
+    cpu_view *s = chequered(&scene);
     static segment_block blocks[MANY_BLOCKS], other[MANY_BLOCKS];
     uint32_t expect, seed = 99;
     for (int k = 0; k < MANY_BLOCKS; k++) {
@@ -111,11 +110,11 @@ static void company_does_not_matter(void **state) {
         for (int l = 0; l < BLOCK; l++)
             other[k].light[l] = next(&seed) % 3 ? UINT32_MAX : other[k].light[l] ^ 0xabcd;
     }
-    noc_embree_free_many(s, &s->workers[0], blocks, MANY_BLOCKS);
-    noc_embree_free_many(s, &s->workers[0], other, MANY_BLOCKS);
+    noc_cpu_trace_occlusion(s, &s->workers[0], blocks, MANY_BLOCKS);
+    noc_cpu_trace_occlusion(s, &s->workers[0], other, MANY_BLOCKS);
     for (int k = 0; k < MANY_BLOCKS; k++)
         assert_int_equal(blocks[k].clear, other[MANY_BLOCKS - 1 - k].clear);
-    noc_backend_embree.destroy(s);
+    close_cpu_view(s);
     noc_scene_destroy(scene);
 }
 
@@ -123,7 +122,7 @@ static void company_does_not_matter(void **state) {
 static void kept_rays(void **state) {
     (void)state;
     noc_scene *scene;
-    embree_state *s = chequered(&scene);
+    cpu_view *s = chequered(&scene);
     static segment_block blocks[MANY_BLOCKS + 3];
     uint32_t expect, seed = 3;
     double seconds = -1;
@@ -131,16 +130,16 @@ static void kept_rays(void **state) {
     for (int call = 0; call < 3; call++) {
         for (int k = 0; k < MANY_BLOCKS + 3; k++)
             make_block(&seed, 5, &blocks[k], &expect);
-        noc_embree_free_many(s, &s->workers[0], blocks, MANY_BLOCKS + 3);
+        noc_cpu_trace_occlusion(s, &s->workers[0], blocks, MANY_BLOCKS + 3);
         blocks[0].valid |= 1;
-        noc_embree_free_many(s, &s->workers[0], blocks, 1);
+        noc_cpu_trace_occlusion(s, &s->workers[0], blocks, 1);
     }
     noc_backend_embree.record(s, false);
     assert_int_equal(s->workers[0].packet_count, 3 * (MANY_BLOCKS + 4));
     assert_int_equal(noc_backend_embree.replay(s, &seconds), NOC_OK);
     assert_true(seconds >= 0);
     assert_int_equal(s->workers[0].packet_count, 0);
-    noc_backend_embree.destroy(s);
+    close_cpu_view(s);
     noc_scene_destroy(scene);
 }
 

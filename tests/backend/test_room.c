@@ -1,5 +1,6 @@
 /* Limits of memory, from none to one that is enough: a renderer and its frame are made, or the library says that it had
  * no memory. */
+#include "../own_view.h"
 #include "../test.h"
 
 #include "base/base.h"
@@ -114,17 +115,15 @@ static noc_scene *make(bool city, noc_log *log) {
 
 static noc_status draw(noc_scene *scene, noc_log *log) {
     noc_render_params p = noc_render_default_params();
-    noc_renderer_params threads = noc_renderer_default_params();
     noc_camera camera;
     p.width = 64;
     p.height = 48;
-    threads.threads = 4;
-    noc_renderer *r = noc_renderer_create(scene, &threads, log);
+    noc_view *r = own_view(scene, 4, log);
     if (!r)
         return NOC_ERR_MEMORY;
-    noc_status status = noc_scene_camera(scene, NOC_VIEW_OVERVIEW, 4.0 / 3, &camera);
-    status = status ? status : noc_renderer_frame(r, &camera, &p, NULL);
-    noc_renderer_destroy(r);
+    noc_status status = noc_scene_camera(scene, NOC_VIEWPOINT_OVERVIEW, 4.0 / 3, &camera);
+    status = status ? status : noc_view_render(r, &camera, &p, NULL);
+    close_view(r);
     return status;
 }
 

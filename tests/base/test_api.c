@@ -1,6 +1,7 @@
 /* The public API without what may be left out: logs, params, reports, progress. What fails must say so by its status.
  */
 #include "../test.h"
+#include "../own_view.h"
 
 #include <nocturne/nocturne.h>
 
@@ -51,21 +52,21 @@ static void test_scenes(void **state) {
     assert_int_equal(noc_scene_add_light(scene, &(noc_light){ .kind = NOC_LIGHT_SPHERE }), -1);
     assert_int_equal(noc_scene_set_crs(scene, NULL, NULL), NOC_ERR_ARGUMENT);
     assert_int_equal(noc_scene_to_local(scene, "EPSG:25832", xyz), NOC_ERR_ARGUMENT);
-    assert_int_equal(noc_scene_camera(scene, NOC_VIEW_AERIAL, 1, &camera), NOC_ERR_ARGUMENT);
-    assert_null(noc_renderer_create(scene, NULL, NULL));
-    assert_null(noc_renderer_create(NULL, NULL, NULL));
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_AERIAL, 1, &camera), NOC_ERR_ARGUMENT);
+    assert_null(own_view(scene, 0, NULL));
+    assert_null(own_view(NULL, 0, NULL));
     assert_int_equal(noc_scene_commit(scene), NOC_OK);
     assert_int_equal(noc_scene_add_city(scene, NULL), NOC_ERR_ARGUMENT);
-    noc_renderer *renderer = noc_renderer_create(scene, NULL, NULL);
+    noc_view *renderer = own_view(scene, 0, NULL);
     assert_non_null(renderer);
-    assert_null(noc_renderer_image(renderer));
+    assert_null(noc_view_image(renderer));
     noc_render_params params = noc_render_default_params();
     params.width = 0;
-    assert_int_equal(noc_renderer_frame(renderer, &noc_camera_default(), &params, NULL), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_view_render(renderer, &noc_camera_default(), &params, NULL), NOC_ERR_ARGUMENT);
     /* eye is target */
-    assert_int_equal(noc_renderer_frame(renderer, &noc_camera_default(), NULL, NULL), NOC_ERR_ARGUMENT);
-    noc_renderer_destroy(renderer);
-    noc_renderer_destroy(NULL);
+    assert_int_equal(noc_view_render(renderer, &noc_camera_default(), NULL, NULL), NOC_ERR_ARGUMENT);
+    close_view(renderer);
+    close_view(NULL);
     noc_scene_destroy(scene);
 }
 

@@ -1,5 +1,6 @@
 /* NULL where a pointer should be: a status, not a crash. Each call is made by a process of its own. */
 #include "../test.h"
+#include "../own_view.h"
 
 #include <nocturne/nocturne.h>
 
@@ -11,7 +12,7 @@
 #include <unistd.h>
 
 static noc_scene *scene;
-static noc_renderer *renderer;
+static noc_view *view;
 static noc_image *image;
 static noc_channel *channel;
 static noc_camera camera;
@@ -64,8 +65,8 @@ static noc_camera camera;
     P(0, !noc_scene_ground(scene, 0, 0, NULL))                                                                         \
     P(0, noc_scene_set_camera(NULL, &camera) == NOC_ERR_ARGUMENT)                                                      \
     P(0, noc_scene_set_camera(scene, NULL) == NOC_ERR_ARGUMENT)                                                        \
-    P(0, noc_scene_camera(NULL, NOC_VIEW_AERIAL, 1, &camera) == NOC_ERR_ARGUMENT)                                      \
-    P(0, noc_scene_camera(scene, NOC_VIEW_AERIAL, 1, NULL) == NOC_ERR_ARGUMENT)                                        \
+    P(0, noc_scene_camera(NULL, NOC_VIEWPOINT_AERIAL, 1, &camera) == NOC_ERR_ARGUMENT)                                 \
+    P(0, noc_scene_camera(scene, NOC_VIEWPOINT_AERIAL, 1, NULL) == NOC_ERR_ARGUMENT)                                   \
     P(0, !noc_camera_project(NULL, 4, 4, (double[3]){ 0 }, (double[2]){ 0 }, NULL))                                    \
     P(0, !noc_camera_project(&camera, 4, 4, NULL, NULL, NULL))                                                         \
     P(0, noc_camera_unproject(NULL, 4, 4, (double[2]){ 0 }, 1, (double[3]){ 0 }) == NOC_ERR_ARGUMENT)                  \
@@ -93,27 +94,31 @@ static noc_camera camera;
     P(0, noc_option_size(NULL) == 0)                                                                                   \
     P(0, !noc_option_idle(NULL, NULL, NULL, (char[8]){ 0 }, 8))                                                        \
     P(noc_render_use_preset(NULL, NOC_PRESET_STILL), true)                                                             \
-    P(0, noc_renderer_create(NULL, NULL, NULL) == NULL)                                                                \
-    P(noc_renderer_destroy(NULL), true)                                                                                \
+    P(noc_device_destroy(noc_device_create(NULL, NULL)), true)                                                         \
+    P(noc_device_destroy(NULL), true)                                                                                  \
+    P(0, noc_view_create(NULL, scene) == NULL)                                                                         \
+    P(0, noc_view_create(noc_view_device(view), NULL) == NULL)                                                         \
+    P(0, noc_view_device(NULL) == NULL)                                                                                \
+    P(noc_view_destroy(NULL), true)                                                                                    \
     P(0, noc_render_check(NULL, NULL) == NOC_ERR_ARGUMENT)                                                             \
-    P(0, noc_renderer_frame(NULL, &camera, NULL, NULL) == NOC_ERR_ARGUMENT)                                            \
-    P(0, noc_renderer_frame(renderer, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                           \
-    P(noc_renderer_reset(NULL), true)                                                                                  \
-    P(0, noc_renderer_image(NULL) == NULL)                                                                             \
-    P(0, noc_renderer_aov(NULL, NOC_AOV_LIGHT) == NULL)                                                                \
-    P(noc_renderer_get_stats(NULL, &(noc_frame_stats){ 0 }), true)                                                     \
-    P(noc_renderer_get_stats(renderer, NULL), true)                                                                    \
-    P(noc_renderer_light_stats(NULL, &(noc_light_stats){ 0 }), true)                                                   \
-    P(noc_renderer_light_stats(renderer, NULL), true)                                                                  \
-    P(0, noc_renderer_write_influence(NULL, NULL, "a.obj") == NOC_ERR_ARGUMENT)                                        \
-    P(0, noc_renderer_write_influence(renderer, NULL, NULL) == NOC_ERR_ARGUMENT)                                       \
+    P(0, noc_view_render(NULL, &camera, NULL, NULL) == NOC_ERR_ARGUMENT)                                               \
+    P(0, noc_view_render(view, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                  \
+    P(noc_view_reset(NULL), true)                                                                                      \
+    P(0, noc_view_image(NULL) == NULL)                                                                                 \
+    P(0, noc_view_aov(NULL, NOC_AOV_LIGHT) == NULL)                                                                    \
+    P(noc_view_get_stats(NULL, &(noc_frame_stats){ 0 }), true)                                                         \
+    P(noc_view_get_stats(view, NULL), true)                                                                            \
+    P(noc_view_light_stats(NULL, &(noc_light_stats){ 0 }), true)                                                       \
+    P(noc_view_light_stats(view, NULL), true)                                                                          \
+    P(0, noc_view_write_influence(NULL, NULL, "a.obj") == NOC_ERR_ARGUMENT)                                            \
+    P(0, noc_view_write_influence(view, NULL, NULL) == NOC_ERR_ARGUMENT)                                               \
     P(0, noc_text_srgb8(NULL, 1, 1, 0, 0, NULL, 1, NULL) == 0)                                                         \
     P(0, noc_text_srgb8((uint8_t[3]){ 0 }, 1, 1, 0, 0, "a", 1, NULL) == 0)                                             \
     P(noc_log_destroy(noc_log_create(NULL)), true)                                                                     \
     P(0, noc_image_create(0, 0, NULL) == NULL)                                                                         \
     P(0, noc_channel_create(0, 0, 1, NULL) == NULL)                                                                    \
-    P(0, noc_renderer_trace_floor(NULL, &camera, NULL, &(double){ 0 }) == NOC_ERR_ARGUMENT)                            \
-    P(0, noc_renderer_trace_floor(renderer, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)
+    P(0, noc_view_trace_floor(NULL, &camera, NULL, &(double){ 0 }) == NOC_ERR_ARGUMENT)                                \
+    P(0, noc_view_trace_floor(view, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)
 
 #define NAME(call, check) #call " / " #check,
 static const char *const names[] = { PROBES(NAME) };
@@ -143,7 +148,7 @@ static void null_is_no_crash(void **state) {
         if (!child) {
             signal(SIGSEGV, SIG_DFL); /* cmocka's handler would go on with the next test */
             signal(SIGABRT, SIG_DFL);
-            renderer = noc_renderer_create(other, &(noc_renderer_params){ .threads = 1 }, NULL);
+            view = own_view(other, 1, NULL);
             _exit(probe(i) ? 0 : 1);
         }
         int status;

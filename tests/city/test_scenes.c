@@ -73,8 +73,8 @@ static void test_cameras(void **state) {
         noc_scene *scene = make(*name, 1, 200);
         noc_camera own, street;
         assert_int_equal(noc_scene_commit(scene), NOC_OK);
-        assert_int_equal(noc_scene_camera(scene, NOC_VIEW_OWN, 16. / 9, &own), NOC_OK);
-        assert_int_equal(noc_scene_camera(scene, NOC_VIEW_STREET, 16. / 9, &street), NOC_OK);
+        assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_OWN, 16. / 9, &own), NOC_OK);
+        assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, 16. / 9, &street), NOC_OK);
         bool has_own = strcmp(*name, "city") != 0;
         assert_int_equal(memcmp(own.eye, street.eye, sizeof(own.eye)) == 0, !has_own);
         double top;

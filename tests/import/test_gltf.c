@@ -414,7 +414,7 @@ static void test_camera(void **state) {
                 "\"scenes\": [{\"nodes\": [0, 1]}], \"nodes\": [{\"mesh\": 0}, {\"camera\": 0, \"translation\": [1, 2, "
                 "3]}],"));
     noc_camera c;
-    assert_int_equal(noc_scene_camera(l.scene, NOC_VIEW_OWN, 1.5, &c), NOC_OK);
+    assert_int_equal(noc_scene_camera(l.scene, NOC_VIEWPOINT_OWN, 1.5, &c), NOC_OK);
     assert_float_equal(c.fov_deg, 45, 1e-6);
     assert_float_equal(c.eye[0], 1, 1e-9);
     assert_float_equal(c.eye[1], -3, 1e-9);

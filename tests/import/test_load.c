@@ -91,7 +91,7 @@ static void test_lamps(void **state) {
         assert_true(!far ||
                     strstr(r.last_warning, "none of the lamps stands in the city: the nearest is 1.4 km from it"));
         noc_camera camera; /* the views look at the house */
-        assert_int_equal(noc_scene_camera(r.scene, NOC_VIEW_AERIAL, 1.5, &camera), NOC_OK);
+        assert_int_equal(noc_scene_camera(r.scene, NOC_VIEWPOINT_AERIAL, 1.5, &camera), NOC_OK);
         assert_true(hypot(camera.target[0] + r.info.origin[0] - 678005, camera.target[1] + r.info.origin[1] - 5404005) <
                     300);
         finish(&r);

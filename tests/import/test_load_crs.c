@@ -3,6 +3,7 @@
 #include "fake_reader.h"
 
 #include <nocturne/render.h>
+#include "../own_view.h"
 
 static noc_import_params with_crs(const char *crs, const char *scene_crs) {
     noc_import_params p = DEFAULTS;
@@ -273,14 +274,14 @@ static double luminance_between(const struct run *r) {
     params.sky = 0;
     params.method = NOC_METHOD_REFERENCE;
     params.rays = 64;
-    noc_renderer *renderer = noc_renderer_create(r->scene, &(noc_renderer_params){ .threads = 1 }, r->log);
-    assert_int_equal(noc_renderer_frame(renderer, &camera, &params, NULL), NOC_OK);
-    noc_image *image = noc_renderer_image(renderer);
+    noc_view *renderer = own_view(r->scene, 1, r->log);
+    assert_int_equal(noc_view_render(renderer, &camera, &params, NULL), NOC_OK);
+    noc_image *image = noc_view_image(renderer);
     double sum = 0;
     for (size_t i = 0; i < 32 * 32; i++)
         sum += 0.2126 * image->rgb[3 * i] + 0.7152 * image->rgb[3 * i + 1] + 0.0722 * image->rgb[3 * i + 2];
     noc_image_destroy(image);
-    noc_renderer_destroy(renderer);
+    close_view(renderer);
     return sum / (32 * 32);
 }
 

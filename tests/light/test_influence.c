@@ -4,7 +4,7 @@
  */
 #include "../render/rooms.h"
 
-#include "backend/embree/kernels.h"
+#include "backend/cpu/kernels.h"
 #include "light/bound.h"
 #include "light/influence.h"
 

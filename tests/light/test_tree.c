@@ -3,7 +3,7 @@
  * so it is with lights that move, after they were moved, and in every reader of core/. */
 #include "worlds.h"
 
-#include "backend/embree/kernels.h"
+#include "backend/cpu/kernels.h"
 #include "light/bound.h"
 
 #include "core/tree.h"

@@ -3,6 +3,7 @@
 #define NOC_TEST_ROOMS_H
 
 #include "../test.h"
+#include "../own_view.h"
 
 #include "base/base.h"
 #include "render/backend.h"
@@ -62,13 +63,13 @@ static inline double luma(const float *c) { return 0.2126 * c[0] + 0.7152 * c[1]
 
 /* The picture of `frames` accumulated frames with a fresh renderer. */
 static inline noc_image *render(const noc_scene *s, const noc_camera *c, const noc_render_params *p, int frames) {
-    noc_renderer *r = noc_renderer_create(s, NULL, NULL);
+    noc_view *r = own_view(s, 0, NULL);
     assert_non_null(r);
     for (int i = 0; i < frames; i++)
-        assert_int_equal(noc_renderer_frame(r, c, p, NULL), NOC_OK);
-    noc_image *image = noc_renderer_image(r);
+        assert_int_equal(noc_view_render(r, c, p, NULL), NOC_OK);
+    noc_image *image = noc_view_image(r);
     assert_non_null(image);
-    noc_renderer_destroy(r);
+    close_view(r);
     return image;
 }
 

@@ -1,5 +1,6 @@
 /* Pictures against what can be computed by hand: units and geometry end to end. */
 #include "rooms.h"
+#include "../own_view.h"
 
 static noc_scene *scene_done(noc_scene *s) {
     assert_int_equal(noc_scene_commit(s), NOC_OK);
@@ -109,12 +110,12 @@ static void rectangle_over_plane(void **state) {
         noc_render_params p = measure(32, 16, (noc_method)m);
         p.temporal = false; /* frames independent: their spread says how far off the mean may be */
         int frames = 400;
-        noc_renderer *r = noc_renderer_create(s, NULL, NULL);
+        noc_view *r = own_view(s, 0, NULL);
         double sum[32 * 16] = { 0 }, square[32 * 16] = { 0 };
         p.accumulate = false;
         for (int i = 0; i < frames; i++) {
-            assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
-            noc_image *image = noc_renderer_image(r);
+            assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
+            noc_image *image = noc_view_image(r);
             for (int k = 0; k < 32 * 16; k++) {
                 double v = luma(image->rgb + 3 * k);
                 sum[k] += v;
@@ -122,7 +123,7 @@ static void rectangle_over_plane(void **state) {
             }
             noc_image_destroy(image);
         }
-        noc_renderer_destroy(r);
+        close_view(r);
         int checked = 0;
         for (int y = 8; y < 16; y++)
             for (int x = 1; x < 32; x += 3) {

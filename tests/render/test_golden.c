@@ -51,7 +51,7 @@ static noc_scene *house(noc_camera *camera) {
     noc_import_params p = noc_import_default_params();
     assert_int_equal(noc_scene_load(s, (const char *const[]){ path }, 1, &p, NULL), NOC_OK);
     free(path);
-    assert_int_equal(noc_scene_camera(s, NOC_VIEW_OVERVIEW, (double)W / H, camera), NOC_OK);
+    assert_int_equal(noc_scene_camera(s, NOC_VIEWPOINT_OVERVIEW, (double)W / H, camera), NOC_OK);
     return s;
 }
 
@@ -61,7 +61,7 @@ static noc_scene *city(noc_camera *camera) {
     p.size = 150;
     assert_int_equal(noc_scene_add_city(s, &p), NOC_OK);
     assert_int_equal(noc_scene_commit(s), NOC_OK);
-    assert_int_equal(noc_scene_camera(s, NOC_VIEW_AERIAL, (double)W / H, camera), NOC_OK);
+    assert_int_equal(noc_scene_camera(s, NOC_VIEWPOINT_AERIAL, (double)W / H, camera), NOC_OK);
     return s;
 }
 

@@ -1,6 +1,7 @@
 /* What a renderer tells of its candidates: how many lights surfaces find, and the S_r that it looked for or was given.
  */
 #include "rooms.h"
+#include "../own_view.h"
 
 static noc_camera view(double t) { return look(1 + t, -10, 4, 0.5 * t, 0, 2, 60); }
 
@@ -16,10 +17,10 @@ static noc_scene *bundle(int lights) {
 
 static noc_light_stats stats_of(const noc_scene *s, const noc_camera *c, const noc_render_params *p) {
     noc_light_stats found;
-    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 2 }, NULL);
-    assert_int_equal(noc_renderer_frame(r, c, p, NULL), NOC_OK);
-    noc_renderer_light_stats(r, &found);
-    noc_renderer_destroy(r);
+    noc_view *r = own_view(s, 2, NULL);
+    assert_int_equal(noc_view_render(r, c, p, NULL), NOC_OK);
+    noc_view_light_stats(r, &found);
+    close_view(r);
     return found;
 }
 
@@ -77,19 +78,19 @@ static void set_reach_is_not_looked_for(void **state) {
         double steps = set.volumes_seconds + set.hierarchy_seconds + set.boxes_seconds;
         assert_true(steps > 0 && steps <= set.build_seconds);
     }
-    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 2 }, NULL);
+    noc_view *r = own_view(s, 2, NULL);
     p.influence_boxes = NOC_INFLUENCE_SPHERE;
     p.influence_cluster = 1;
     const double asked[] = { 2, 0, 3, 0 };
     for (size_t i = 0; i < NOC_COUNT(asked); i++) {
         noc_light_stats found;
         p.influence = asked[i];
-        assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
-        noc_renderer_light_stats(r, &found);
+        assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
+        noc_view_light_stats(r, &found);
         assert_true(found.influence == (asked[i] > 0 ? asked[i] : automatic.influence));
         assert_true((found.tuning_seconds > 0) == (i > 0)); /* found once, and kept */
     }
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_scene_destroy(s);
 }
 

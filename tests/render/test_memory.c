@@ -81,19 +81,15 @@ static noc_render_params params_of(const config *c) {
     return p;
 }
 
-static noc_renderer *two_threads(const noc_scene *s, noc_log *log) {
-    noc_renderer_params params = noc_renderer_default_params();
-    params.threads = 2;
-    return noc_renderer_create(s, &params, log);
-}
+static noc_view *two_threads(const noc_scene *s, noc_log *log) { return own_view(s, 2, log); }
 
 /* The picture's bits: of one frame, as every frame here starts the mean anew. */
 typedef struct picture {
     float rgb[3 * WIDTH * HEIGHT];
 } picture;
 
-static picture picture_of(noc_renderer *r) {
-    noc_image *image = noc_renderer_image(r);
+static picture picture_of(noc_view *r) {
+    noc_image *image = noc_view_image(r);
     picture p;
     assert_non_null(image);
     memcpy(p.rgb, image->rgb, sizeof(p.rgb));
@@ -109,8 +105,8 @@ static const noc_camera *camera(void) {
     return &c;
 }
 
-static picture next_frame(noc_renderer *r, const noc_render_params *p) {
-    assert_int_equal(noc_renderer_frame(r, camera(), p, NULL), NOC_OK);
+static picture next_frame(noc_view *r, const noc_render_params *p) {
+    assert_int_equal(noc_view_render(r, camera(), p, NULL), NOC_OK);
     return picture_of(r);
 }
 
@@ -118,9 +114,9 @@ static bool go_on(void *user, const char *what, double done) { return done < *(d
 
 /* Cancels a frame at its beginning, or where its last stage begins: half of it where frames are reused in time and
  * space. */
-static void cancelled_frame(noc_renderer *r, const noc_render_params *p, double done) {
+static void cancelled_frame(noc_view *r, const noc_render_params *p, double done) {
     noc_progress progress = { go_on, &done };
-    assert_int_equal(noc_renderer_frame(r, camera(), p, &progress), NOC_ERR_CANCELLED);
+    assert_int_equal(noc_view_render(r, camera(), p, &progress), NOC_ERR_CANCELLED);
 }
 
 /* ---- a renderer and its first frame ---- */
@@ -129,7 +125,7 @@ static void first_frame(const config *c) {
     noc_scene *s = yard();
     noc_render_params p = params_of(c);
     noc_log *log = counting_log();
-    noc_renderer *untouched = two_threads(s, NULL), *dropped = two_threads(s, NULL);
+    noc_view *untouched = two_threads(s, NULL), *dropped = two_threads(s, NULL);
     picture first = next_frame(untouched, &p);
     cancelled_frame(dropped, &p, 0);
     picture second = next_frame(dropped, &p);
@@ -137,8 +133,8 @@ static void first_frame(const config *c) {
     bool reached;
     FOR_EACH_REFUSAL(reached) {
         begin_refusal(n, later);
-        noc_renderer *r = two_threads(s, log);
-        noc_status status = r ? noc_renderer_frame(r, camera(), &p, NULL) : NOC_ERR_MEMORY;
+        noc_view *r = two_threads(s, log);
+        noc_status status = r ? noc_view_render(r, camera(), &p, NULL) : NOC_ERR_MEMORY;
         reached = end_refusal();
         if (status == NOC_OK) {
             picture now = picture_of(r);
@@ -149,14 +145,14 @@ static void first_frame(const config *c) {
         if (r) {
             picture now = next_frame(r, &p);
             assert_true(status == NOC_OK || same(&now, &first) || same(&now, &second));
-            noc_renderer_reset(r);
+            noc_view_reset(r);
             now = next_frame(r, &p);
             assert_true(same(&now, &first));
         }
-        noc_renderer_destroy(r);
+        close_view(r);
     }
-    noc_renderer_destroy(untouched);
-    noc_renderer_destroy(dropped);
+    close_view(untouched);
+    close_view(dropped);
     noc_log_destroy(log);
     noc_scene_destroy(s);
 }
@@ -168,9 +164,9 @@ static void test_first_frame(void **state) {
 
 /* ---- a frame after lights have moved ---- */
 
-static noc_renderer *after_one_frame(noc_scene *s, const noc_render_params *p, noc_log *log) {
+static noc_view *after_one_frame(noc_scene *s, const noc_render_params *p, noc_log *log) {
     pose(s, 0);
-    noc_renderer *r = two_threads(s, log);
+    noc_view *r = two_threads(s, log);
     next_frame(r, p);
     pose(s, 1);
     return r;
@@ -178,10 +174,10 @@ static noc_renderer *after_one_frame(noc_scene *s, const noc_render_params *p, n
 
 /* The frame after one that was cancelled there. */
 static picture after_cancelling(noc_scene *s, const noc_render_params *p, double done) {
-    noc_renderer *r = after_one_frame(s, p, NULL);
+    noc_view *r = after_one_frame(s, p, NULL);
     cancelled_frame(r, p, done);
     picture now = next_frame(r, p);
-    noc_renderer_destroy(r);
+    close_view(r);
     return now;
 }
 
@@ -190,14 +186,14 @@ static void moved_frame(const config *c) {
     noc_render_params p = params_of(c);
     noc_log *log = counting_log();
     picture early = after_cancelling(s, &p, 0), late = c->reuse ? after_cancelling(s, &p, 0.5) : early;
-    noc_renderer *untouched = after_one_frame(s, &p, NULL);
+    noc_view *untouched = after_one_frame(s, &p, NULL);
     picture second = next_frame(untouched, &p);
     bool reached;
     int refused = 0;
     FOR_EACH_REFUSAL(reached) {
-        noc_renderer *r = after_one_frame(s, &p, log);
+        noc_view *r = after_one_frame(s, &p, log);
         begin_refusal(n, later);
-        noc_status status = noc_renderer_frame(r, camera(), &p, NULL);
+        noc_status status = noc_view_render(r, camera(), &p, NULL);
         reached = end_refusal();
         picture now = status == NOC_OK ? picture_of(r) : next_frame(r, &p);
         if (status == NOC_OK) {
@@ -207,12 +203,12 @@ static void moved_frame(const config *c) {
             assert_true(same(&now, &early) || same(&now, &late));
             refused++;
         }
-        noc_renderer_destroy(r);
+        close_view(r);
     }
     if (c->candidates == NOC_CANDIDATES_LISTS || c->candidates == NOC_CANDIDATES_INFLUENCE ||
         c->candidates == NOC_CANDIDATES_LIGHT_BVH)
         assert_true(refused > 0); /* what is built over moved lights is built anew */
-    noc_renderer_destroy(untouched);
+    close_view(untouched);
     noc_log_destroy(log);
     noc_scene_destroy(s);
 }
@@ -224,11 +220,11 @@ static void test_moved_frame(void **state) {
 
 /* ---- what is read from a renderer, and its trace floor ---- */
 
-static noc_status read_all(noc_renderer *r, const noc_render_params *p) {
+static noc_status read_all(noc_view *r, const noc_render_params *p) {
     double seconds;
-    noc_image *image = noc_renderer_image(r);
-    noc_channel *normal = image ? noc_renderer_aov(r, NOC_AOV_NORMAL) : NULL;
-    noc_status status = normal ? noc_renderer_trace_floor(r, camera(), p, &seconds) : NOC_ERR_MEMORY;
+    noc_image *image = noc_view_image(r);
+    noc_channel *normal = image ? noc_view_aov(r, NOC_AOV_NORMAL) : NULL;
+    noc_status status = normal ? noc_view_trace_floor(r, camera(), p, &seconds) : NOC_ERR_MEMORY;
     noc_image_destroy(image);
     noc_channel_destroy(normal);
     return status;
@@ -238,7 +234,7 @@ static void test_reading(void **state) {
     noc_scene *s = yard();
     noc_log *log = counting_log();
     noc_render_params p = params_of(&configs[4]);
-    noc_renderer *r = two_threads(s, log);
+    noc_view *r = two_threads(s, log);
     bool reached;
     next_frame(r, &p);
     FOR_EACH_REFUSAL(reached) {
@@ -250,7 +246,7 @@ static void test_reading(void **state) {
         assert_true(status == NOC_OK || reached);
         assert_int_equal(read_all(r, &p), NOC_OK);
     }
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_log_destroy(log);
     noc_scene_destroy(s);
 }

@@ -2,6 +2,7 @@
  * scene whose lights were moved looks like one that was made with them there; and what a frame accumulates starts anew.
  */
 #include "unbiased.h"
+#include "../own_view.h"
 
 enum { MOVING = 24 };
 
@@ -93,10 +94,10 @@ static void unbiased_on_the_move(void **state) {
     assert_int_equal(wrong, 0);
 }
 
-static noc_image *pictured(noc_renderer *r, const noc_render_params *p, int frame) {
+static noc_image *pictured(noc_view *r, const noc_render_params *p, int frame) {
     noc_camera cam = camera_at(frame, true);
-    assert_int_equal(noc_renderer_frame(r, &cam, p, NULL), NOC_OK);
-    noc_image *image = noc_renderer_image(r);
+    assert_int_equal(noc_view_render(r, &cam, p, NULL), NOC_OK);
+    noc_image *image = noc_view_image(r);
     assert_non_null(image);
     return image;
 }
@@ -116,16 +117,16 @@ static void moved_is_as_if_made_there(void **state) {
             continue;
         noc_render_params p = params_of(&configs[i], 5);
         noc_scene *moved = crossing(1), *made = crossing(4);
-        noc_renderer *a = noc_renderer_create(moved, NULL, NULL), *b = noc_renderer_create(made, NULL, NULL);
+        noc_view *a = own_view(moved, 0, NULL), *b = own_view(made, 0, NULL);
         for (int f = 1; f <= 3; f++) {
             pose(moved, f);
             noc_image_destroy(pictured(a, &p, f));
         }
         pose(moved, 4);
-        noc_renderer_reset(a);
+        noc_view_reset(a);
         assert_same_picture(pictured(a, &p, 4), pictured(b, &p, 4));
-        noc_renderer_destroy(a);
-        noc_renderer_destroy(b);
+        close_view(a);
+        close_view(b);
         noc_scene_destroy(moved);
         noc_scene_destroy(made);
     }
@@ -138,16 +139,16 @@ static void same_bits_on_the_move(void **state) {
     for (size_t i = 0; i < NOC_COUNT(configs); i++) {
         noc_render_params p = params_of(&configs[i], 8), q = p;
         noc_scene *s = crossing(0), *t = crossing(0);
-        noc_renderer *a = noc_renderer_create(s, &(noc_renderer_params){ .threads = 1 }, NULL);
-        noc_renderer *b = noc_renderer_create(t, &(noc_renderer_params){ .threads = 3 }, NULL);
+        noc_view *a = own_view(s, 1, NULL);
+        noc_view *b = own_view(t, 3, NULL);
         q.isa = NOC_ISA_SCALAR;
         for (int f = 1; f <= 4; f++) {
             pose(s, f);
             pose(t, f);
             assert_same_picture(pictured(a, &p, f), pictured(b, &q, f));
         }
-        noc_renderer_destroy(a);
-        noc_renderer_destroy(b);
+        close_view(a);
+        close_view(b);
         noc_scene_destroy(s);
         noc_scene_destroy(t);
     }
@@ -156,23 +157,23 @@ static void same_bits_on_the_move(void **state) {
 static void accumulation_starts_anew(void **state) {
     (void)state;
     noc_scene *s = crossing(1);
-    noc_renderer *r = noc_renderer_create(s, NULL, NULL);
+    noc_view *r = own_view(s, 0, NULL);
     noc_render_params p = params_of(&configs[9], 3);
     noc_frame_stats stats;
     p.accumulate = true;
     for (int i = 0; i < 3; i++)
         noc_image_destroy(pictured(r, &p, 1));
-    noc_renderer_get_stats(r, &stats);
+    noc_view_get_stats(r, &stats);
     assert_int_equal(stats.frames, 3);
     pose(s, 1); /* they are there */
     noc_image_destroy(pictured(r, &p, 1));
-    noc_renderer_get_stats(r, &stats);
+    noc_view_get_stats(r, &stats);
     assert_int_equal(stats.frames, 4);
     pose(s, 2);
     noc_image_destroy(pictured(r, &p, 1));
-    noc_renderer_get_stats(r, &stats);
+    noc_view_get_stats(r, &stats);
     assert_int_equal(stats.frames, 1);
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_scene_destroy(s);
 }
 

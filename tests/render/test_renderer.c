@@ -1,6 +1,7 @@
 /* The renderer's contract: errors, empty scenes, cancelling, what is kept from frame to frame, the same picture on
  * every path and number of threads. */
 #include "rooms.h"
+#include "../own_view.h"
 
 #include <nocturne/option.h>
 
@@ -58,14 +59,14 @@ static double brightness(const noc_image *a) {
 
 /* Four frames under a moving camera. */
 static noc_image *moving(const noc_scene *s, const noc_render_params *p, int threads) {
-    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = threads }, NULL);
+    noc_view *r = own_view(s, threads, NULL);
     for (int i = 0; i < 4; i++) {
         noc_camera c = view(i < 3 ? 0.2 * i : 0.4);
-        assert_int_equal(noc_renderer_frame(r, &c, p, NULL), NOC_OK);
+        assert_int_equal(noc_view_render(r, &c, p, NULL), NOC_OK);
     }
-    noc_image *image = noc_renderer_image(r);
+    noc_image *image = noc_view_image(r);
     assert_true(all_finite(image));
-    noc_renderer_destroy(r);
+    close_view(r);
     return image;
 }
 
@@ -151,15 +152,15 @@ static const char *code_of(const noc_scene *s, noc_isa isa, noc_status *status, 
     static char ran[40];
     noc_render_params p = measure(8, 8, NOC_METHOD_IS);
     noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_ERROR, .message = drop });
-    noc_renderer *r = noc_renderer_create(s, NULL, log);
+    noc_view *r = own_view(s, 0, log);
     noc_camera c = view(0);
     noc_frame_stats stats;
     p.isa = isa;
-    *status = noc_renderer_frame(r, &c, &p, NULL);
-    noc_renderer_get_stats(r, &stats);
+    *status = noc_view_render(r, &c, &p, NULL);
+    noc_view_get_stats(r, &stats);
     snprintf(ran, sizeof(ran), "%s", *status ? "" : stats.path);
     snprintf(error, 200, "%s", noc_log_last_error(log));
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_log_destroy(log);
     return ran;
 }
@@ -272,12 +273,12 @@ static void wrong_arguments(void **state) {
     (void)state;
     noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_ERROR, .message = drop });
     noc_scene *s = small_street(3, true), *raw = noc_scene_create(NULL);
-    assert_null(noc_renderer_create(raw, NULL, log));
+    assert_null(own_view(raw, 0, log));
     assert_non_null(strstr(noc_log_last_error(log), "not committed"));
-    assert_null(noc_renderer_create(s, &(noc_renderer_params){ .backend = "abacus" }, log));
+    assert_null(noc_device_create(&(noc_device_params){ .backend = "abacus" }, log));
     assert_non_null(strstr(noc_log_last_error(log), "abacus"));
-    assert_null(noc_renderer_create(s, &(noc_renderer_params){ .threads = -3 }, log));
-    noc_renderer *r = noc_renderer_create(s, NULL, log);
+    assert_null(own_view(s, -3, log));
+    noc_view *r = own_view(s, 0, log);
     noc_camera c = view(0);
     const struct {
         const char *name;
@@ -305,11 +306,11 @@ static void wrong_arguments(void **state) {
             *(double *)((char *)&p + fields[i].at) = i & 1 ? NAN : -1e9;
         else
             *(int *)((char *)&p + fields[i].at) = i & 1 ? -1 : 1 << 30;
-        assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_ERR_ARGUMENT);
+        assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_ERR_ARGUMENT);
         assert_non_null(strstr(noc_log_last_error(log), fields[i].name));
     }
     noc_render_params p = measure(16, 16, (noc_method)9);
-    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_ERR_ARGUMENT);
     p = measure(16, 16, NOC_METHOD_RIS);
     noc_camera bad[] = { c, c, c, c, c };
     bad[0].eye[1] = NAN;
@@ -318,19 +319,19 @@ static void wrong_arguments(void **state) {
     memset(bad[3].up, 0, sizeof(bad[3].up));
     bad[4].target[0] = 1e30;
     for (size_t i = 0; i < NOC_COUNT(bad); i++)
-        assert_int_equal(noc_renderer_frame(r, &bad[i], &p, NULL), NOC_ERR_ARGUMENT);
-    assert_null(noc_renderer_image(r));      /* nothing has been rendered */
+        assert_int_equal(noc_view_render(r, &bad[i], &p, NULL), NOC_ERR_ARGUMENT);
+    assert_null(noc_view_image(r));          /* nothing has been rendered */
     p.width = p.height = NOC_IMAGE_MAX_SIDE; /* 170 GB and more: refused before anything is allocated */
     if ((uint64_t)sysconf(_SC_PHYS_PAGES) * (uint64_t)sysconf(_SC_PAGESIZE) < (uint64_t)150e9) {
-        assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_ERR_MEMORY);
+        assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_ERR_MEMORY);
         assert_non_null(strstr(noc_log_last_error(log), "GB"));
     }
     p = measure(16, 16, NOC_METHOD_RIS);
-    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK); /* and it still works */
-    noc_camera down = look(0, 0, 9, 0, 0, 0, 60);                  /* along up */
-    assert_int_equal(noc_renderer_frame(r, &down, &p, NULL), NOC_OK);
-    noc_renderer_destroy(r);
-    noc_renderer_destroy(NULL);
+    assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK); /* and it still works */
+    noc_camera down = look(0, 0, 9, 0, 0, 0, 60);               /* along up */
+    assert_int_equal(noc_view_render(r, &down, &p, NULL), NOC_OK);
+    close_view(r);
+    close_view(NULL);
     noc_scene_destroy(s);
     noc_scene_destroy(raw);
     noc_log_destroy(log);
@@ -343,7 +344,7 @@ static void negative_choices_and_no_params(void **state) {
     (void)state;
     noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_ERROR, .message = drop });
     noc_scene *s = small_street(3, true);
-    noc_renderer *r = noc_renderer_create(s, NULL, log);
+    noc_view *r = own_view(s, 0, log);
     noc_camera c = view(0);
     static const struct {
         const char *says;
@@ -357,15 +358,15 @@ static void negative_choices_and_no_params(void **state) {
     for (size_t i = 0; i < NOC_COUNT(fields); i++) {
         noc_render_params p = noc_render_default_params();
         memcpy((char *)&p + fields[i].at, &(int){ -1 }, sizeof(int));
-        assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_ERR_ARGUMENT);
+        assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_ERR_ARGUMENT);
         assert_non_null(strstr(noc_log_last_error(log), fields[i].says));
     }
-    assert_int_equal(noc_renderer_frame(r, &c, NULL, NULL), NOC_OK);
-    noc_image *image = noc_renderer_image(r);
+    assert_int_equal(noc_view_render(r, &c, NULL, NULL), NOC_OK);
+    noc_image *image = noc_view_image(r);
     assert_int_equal(image->width, noc_render_default_params().width);
     assert_int_equal(image->height, noc_render_default_params().height);
     noc_image_destroy(image);
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_scene_destroy(s);
     noc_log_destroy(log);
 }
@@ -418,31 +419,31 @@ static void cancelled_frames(void **state) {
     noc_camera c = view(0);
     int left = 3, messages = 0;
     noc_log *log = noc_log_create(&(noc_log_params){ .message = count_message, .user = &messages });
-    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 2 }, log);
+    noc_view *r = own_view(s, 2, log);
     noc_progress stop = { count_down, &left };
-    assert_int_equal(noc_renderer_frame(r, &c, &p, &stop), NOC_ERR_CANCELLED);
+    assert_int_equal(noc_view_render(r, &c, &p, &stop), NOC_ERR_CANCELLED);
     assert_string_equal(noc_log_last_error(log), "render: cancelled"); /* the reason, though nobody is alarmed */
     assert_int_equal(messages, 0);
-    assert_null(noc_renderer_image(r)); /* not one frame yet */
+    assert_null(noc_view_image(r)); /* not one frame yet */
     for (int i = 0; i < 3; i++)
-        assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
-    noc_image *before = noc_renderer_image(r);
+        assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
+    noc_image *before = noc_view_image(r);
     for (int i = 1; i < 60; i++) { /* in every stage */
         left = i;
-        noc_status status = noc_renderer_frame(r, &c, &p, &stop);
+        noc_status status = noc_view_render(r, &c, &p, &stop);
         if (status == NOC_OK)
             break;
         assert_int_equal(status, NOC_ERR_CANCELLED);
-        noc_image *after = noc_renderer_image(r);
+        noc_image *after = noc_view_image(r);
         assert_true(same(before, after));
         noc_image_destroy(after);
         noc_frame_stats stats;
-        noc_renderer_get_stats(r, &stats);
+        noc_view_get_stats(r, &stats);
         assert_int_equal(stats.frames, 3);
     }
-    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+    assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
     noc_image_destroy(before);
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_log_destroy(log);
     noc_scene_destroy(s);
 }
@@ -456,28 +457,28 @@ static void history_outlives_a_cancelled_frame(void **state) {
     noc_render_use_preset(&p, NOC_PRESET_INTERACTIVE);
     p.aovs = 1u << NOC_AOV_CONFIDENCE;
     noc_camera c = view(0);
-    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 4 }, NULL);
+    noc_view *r = own_view(s, 4, NULL);
     for (int i = 0; i < 3; i++)
-        assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+        assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
     for (int i = 0; i < 20; i++) {
         int left = 1;
         noc_progress stop = { count_down, &left };
-        assert_int_equal(noc_renderer_frame(r, &c, &p, &stop), NOC_ERR_CANCELLED);
+        assert_int_equal(noc_view_render(r, &c, &p, &stop), NOC_ERR_CANCELLED);
     }
-    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
-    noc_channel *m = noc_renderer_aov(r, NOC_AOV_CONFIDENCE);
+    assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
+    noc_channel *m = noc_view_aov(r, NOC_AOV_CONFIDENCE);
     float most = 0;
     for (int i = 0; i < 16 * 16; i++)
         most = NOC_MAX(most, m->value[i]);
     assert_true(most == 4.f * (float)p.draws);
     noc_channel_destroy(m);
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_scene_destroy(s);
 }
 
-static uint64_t frames_of(noc_renderer *r) {
+static uint64_t frames_of(noc_view *r) {
     noc_frame_stats stats;
-    noc_renderer_get_stats(r, &stats);
+    noc_view_get_stats(r, &stats);
     return stats.frames;
 }
 
@@ -486,11 +487,11 @@ static void any_other_parameter(void **state) {
     (void)state;
     noc_scene *s = small_street(10, true);
     noc_camera c = view(0);
-    noc_renderer *r = noc_renderer_create(s, NULL, NULL);
+    noc_view *r = own_view(s, 0, NULL);
     for (const noc_option *o = noc_render_options(); o->name; o++) {
         noc_render_params p = measure(16, 16, NOC_METHOD_RESTIR), other = p;
         for (int i = 0; i < 2; i++)
-            assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+            assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
         assert_int_equal(frames_of(r), 2);
         char *field = (char *)&other + o->offset;
         switch (o->kind) {
@@ -499,15 +500,15 @@ static void any_other_parameter(void **state) {
         case NOC_OPTION_CHOICE: *(int *)field = !*(int *)field; break;
         default: *(int *)field += *(int *)field == (int)o->max ? -1 : 1; break;
         }
-        assert_int_equal(noc_renderer_frame(r, &c, &other, NULL), NOC_OK);
+        assert_int_equal(noc_view_render(r, &c, &other, NULL), NOC_OK);
         assert_int_equal(frames_of(r), 1);
         other.aovs = 1u << NOC_AOV_RAYS;
         if (other.accumulate) {
-            assert_int_equal(noc_renderer_frame(r, &c, &other, NULL), NOC_OK);
+            assert_int_equal(noc_view_render(r, &c, &other, NULL), NOC_OK);
             assert_int_equal(frames_of(r), 2);
         }
     }
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_scene_destroy(s);
 }
 
@@ -516,35 +517,35 @@ static void frames_and_resets(void **state) {
     noc_scene *s = small_street(40, true);
     noc_render_params p = measure(32, 32, NOC_METHOD_RESTIR);
     noc_camera c = view(0), d = view(1);
-    noc_renderer *r = noc_renderer_create(s, NULL, NULL);
-    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
-    noc_image *first = noc_renderer_image(r);
-    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+    noc_view *r = own_view(s, 0, NULL);
+    assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
+    noc_image *first = noc_view_image(r);
+    assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
     assert_int_equal(frames_of(r), 2);
-    assert_int_equal(noc_renderer_frame(r, &d, &p, NULL), NOC_OK); /* moved: the mean starts anew */
+    assert_int_equal(noc_view_render(r, &d, &p, NULL), NOC_OK); /* moved: the mean starts anew */
     assert_int_equal(frames_of(r), 1);
-    assert_int_equal(noc_renderer_frame(r, &d, &p, NULL), NOC_OK);
+    assert_int_equal(noc_view_render(r, &d, &p, NULL), NOC_OK);
     assert_int_equal(frames_of(r), 2);
     p.radius = 7;
-    assert_int_equal(noc_renderer_frame(r, &d, &p, NULL), NOC_OK); /* other parameters too */
+    assert_int_equal(noc_view_render(r, &d, &p, NULL), NOC_OK); /* other parameters too */
     assert_int_equal(frames_of(r), 1);
     p.radius = measure(1, 1, NOC_METHOD_RESTIR).radius;
-    noc_renderer_reset(r);
-    assert_null(noc_renderer_image(r));
-    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
-    noc_image *again = noc_renderer_image(r);
+    noc_view_reset(r);
+    assert_null(noc_view_image(r));
+    assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
+    noc_image *again = noc_view_image(r);
     assert_true(same(first, again)); /* a reset forgets everything */
     noc_frame_stats stats;
-    noc_renderer_get_stats(r, &stats);
+    noc_view_get_stats(r, &stats);
     assert_int_equal(stats.rays_primary, 32 * 32);
     assert_true(stats.rays_shadow > 0 && stats.memory_bytes > 0 && stats.wall_seconds > 0);
     double seconds = 0;
-    assert_int_equal(noc_renderer_trace_floor(r, &c, &p, &seconds), NOC_OK);
+    assert_int_equal(noc_view_trace_floor(r, &c, &p, &seconds), NOC_OK);
     assert_true(seconds > 0);
     assert_int_equal(frames_of(r), 2); /* it was a frame like any other */
     noc_image_destroy(first);
     noc_image_destroy(again);
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_scene_destroy(s);
 }
 

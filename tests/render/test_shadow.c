@@ -1,6 +1,7 @@
 /* Shadow rays at both ends: nothing leaks, nothing shadows itself, near the origin and far from it; one-sided emission;
  * sky. */
 #include "rooms.h"
+#include "../own_view.h"
 
 #include "core/sky.h"
 
@@ -233,11 +234,11 @@ static void sky_light(void **state) {
     noc_image_destroy(image);
     /* Nothing else lights it: four rays a pixel. */
     noc_frame_stats stats;
-    noc_renderer *r = noc_renderer_create(s, NULL, NULL);
-    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
-    noc_renderer_get_stats(r, &stats);
+    noc_view *r = own_view(s, 0, NULL);
+    assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
+    noc_view_get_stats(r, &stats);
     assert_int_equal(stats.rays_shadow, 4 * 256);
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_camera up = look(0, 0, 1, 0, 0.001, 9, 2);
     image = render(s, &up, &p, 1);
     assert_true(fabs(sum(image) / 256 - 0.2) < 1e-3); /* the zenith itself */

@@ -25,7 +25,7 @@ static void surfaces_that_are_seen(void **state) {
     noc_render_params p = with(NOC_METHOD_RIS, NOC_CANDIDATES_LISTS,
                                1u << NOC_AOV_DEPTH | 1u << NOC_AOV_NORMAL | 1u << NOC_AOV_CLASS | 1u << NOC_AOV_OBJECT);
     noc_camera c = look(1, -10, 4, 0, 0, 1.5, 60);
-    noc_renderer *r = rendered(s, &c, &p, 2, 1);
+    noc_view *r = rendered(s, &c, &p, 2, 1);
     noc_channel *depth = view(r, NOC_AOV_DEPTH), *normal = view(r, NOC_AOV_NORMAL), *cls = view(r, NOC_AOV_CLASS),
                 *object = view(r, NOC_AOV_OBJECT);
     assert_int_equal(cls->label_count, NOC_CLASS_COUNT);
@@ -59,7 +59,7 @@ static void surfaces_that_are_seen(void **state) {
     noc_channel_destroy(normal);
     noc_channel_destroy(cls);
     noc_channel_destroy(object);
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_scene_destroy(s);
 }
 

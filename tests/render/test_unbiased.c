@@ -3,6 +3,7 @@
  * moving camera. The same comparison must reject the biased combinations: a test that accepts everything proves
  * nothing. */
 #include "unbiased.h"
+#include "../own_view.h"
 
 /* ---- scenes ---- */
 
@@ -210,12 +211,12 @@ static void boxes_with_a_gap(void **state) {
     for (int i = 0; i < 2; i++) {
         result x = measure_runs(s, &by[i], false, NULL, 500);
         assert_true(agrees(by[i].name, &x, &reference));
-        noc_renderer *r = noc_renderer_create(s, NULL, NULL);
+        noc_view *r = own_view(s, 0, NULL);
         noc_render_params p = params_of(&by[i], 1);
         noc_camera cam = camera_at(0, false);
-        assert_int_equal(noc_renderer_frame(r, &cam, &p, NULL), NOC_OK);
-        noc_renderer_light_stats(r, &found[i]);
-        noc_renderer_destroy(r);
+        assert_int_equal(noc_view_render(r, &cam, &p, NULL), NOC_OK);
+        noc_view_light_stats(r, &found[i]);
+        close_view(r);
     }
     print_message("# points without a light: %.2f with boxes, %.2f with balls\n", found[0].found_none,
                   found[1].found_none);

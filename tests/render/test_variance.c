@@ -3,6 +3,7 @@
  * relative mean square error of single frames. Limits lie between what is measured with it and without it; both are
  * told, and so is the spread over seeds. */
 #include "rooms.h"
+#include "../own_view.h"
 
 enum { W = 96, H = 48, SEEDS = 16 };
 
@@ -25,20 +26,20 @@ static double error_along(noc_scene *s, path_fn path, noc_render_params p, int f
     double sum = 0, square = 0;
     p.accumulate = false;
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
-        noc_renderer *r = noc_renderer_create(s, NULL, NULL);
+        noc_view *r = own_view(s, 0, NULL);
         p.seed = 7919 * seed + 17;
         for (int i = 0; i < frames; i++) {
             noc_camera c = path(i);
             if (pose)
                 pose(s, i == frames - 1);
-            assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+            assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
         }
-        noc_image *image = noc_renderer_image(r);
+        noc_image *image = noc_view_image(r);
         double e = relative_error(image, truth);
         sum += e / SEEDS;
         square += e * e / SEEDS;
         noc_image_destroy(image);
-        noc_renderer_destroy(r);
+        close_view(r);
     }
     *spread = sqrt(fmax(square - sum * sum, 0));
     return sum;

@@ -1,5 +1,6 @@
 /* Views of the light sampling, held to what they mean. */
 #include "views.h"
+#include "../own_view.h"
 
 static double place(int i, int k) { return fmod(0.5 + (i + 1) * (k ? 0.569840290998 : 0.754877666247), 1.0); }
 
@@ -67,7 +68,7 @@ static void lights_found_by_the_volumes(void **state) {
     noc_camera c = above();
     noc_render_params p = with(NOC_METHOD_RIS, NOC_CANDIDATES_INFLUENCE, 1u << NOC_AOV_LIGHTS);
     p.influence = 1.2;
-    noc_renderer *r = rendered(s, &c, &p, 2, 2);
+    noc_view *r = rendered(s, &c, &p, 2, 2);
     noc_channel *v = view(r, NOC_AOV_LIGHTS);
     int held = 0, most = 0, none = 0;
     for (int i = 0; i < N; i++) {
@@ -91,7 +92,7 @@ static void lights_found_by_the_volumes(void **state) {
     }
     assert_true(held > N / 4 && most > 5 && none > 0 && none < N / 2);
     noc_channel_destroy(v);
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_scene_destroy(s);
 }
 
@@ -104,13 +105,13 @@ static void entries_of_lists(void **state) {
     p.tail = 5;
     for (int lights = 3; lights <= 60; lights += 57) {
         noc_scene *s = lit_floor(lights);
-        noc_renderer *r = rendered(s, &c, &p, 1, 2);
+        noc_view *r = rendered(s, &c, &p, 1, 2);
         noc_channel *v = view(r, NOC_AOV_LIGHTS);
         for (int i = 0; i < N; i++)
             if (v->value[i] >= 0)
                 assert_in_range((int)v->value[i], lights == 3 ? 3 : 6, lights == 3 ? 3 : 11);
         noc_channel_destroy(v);
-        noc_renderer_destroy(r);
+        close_view(r);
         noc_scene_destroy(s);
     }
 }
@@ -150,7 +151,7 @@ static void densities(void **state) {
         noc_render_params p = with(NOC_METHOD_RIS, candidates,
                                    1u << NOC_AOV_DENSITY | 1u << NOC_AOV_LIGHT | (uint32_t)volumes << NOC_AOV_LIGHTS);
         p.influence = 1.37;
-        noc_renderer *r = rendered(s, &c, &p, 1, 2);
+        noc_view *r = rendered(s, &c, &p, 1, 2);
         noc_channel *density = view(r, NOC_AOV_DENSITY), *light = view(r, NOC_AOV_LIGHT);
         noc_channel *held = volumes ? view(r, NOC_AOV_LIGHTS) : NULL;
         int checked = 0, doubtful = 0;
@@ -171,7 +172,7 @@ static void densities(void **state) {
         noc_channel_destroy(density);
         noc_channel_destroy(light);
         noc_channel_destroy(held);
-        noc_renderer_destroy(r);
+        close_view(r);
         noc_scene_destroy(s);
     }
 }
@@ -186,7 +187,7 @@ static void densities_of_lists(void **state) {
         noc_render_params p = with(NOC_METHOD_RIS, NOC_CANDIDATES_LISTS, 1u << NOC_AOV_DENSITY | 1u << NOC_AOV_WEIGHT);
         p.list = lights == 1;
         p.tail = 1;
-        noc_renderer *r = rendered(s, &c, &p, 1, 1);
+        noc_view *r = rendered(s, &c, &p, 1, 1);
         noc_channel *density = view(r, NOC_AOV_DENSITY), *weight = view(r, NOC_AOV_WEIGHT);
         int checked = 0;
         for (int i = 0; i < N; i++) {
@@ -199,7 +200,7 @@ static void densities_of_lists(void **state) {
         assert_true(checked > N / 2);
         noc_channel_destroy(density);
         noc_channel_destroy(weight);
-        noc_renderer_destroy(r);
+        close_view(r);
         noc_scene_destroy(s);
     }
 }
@@ -217,7 +218,7 @@ static void the_chosen_light(void **state) {
     noc_render_params p = with(NOC_METHOD_RIS, NOC_CANDIDATES_UNIFORM, 1u << NOC_AOV_LIGHT | 1u << NOC_AOV_WEIGHT);
     p.draws = 3;
     noc_camera top = look(0, 0, 25, 0, 0.001, 0, 40);
-    noc_renderer *r = rendered(s, &top, &p, 1, 2);
+    noc_view *r = rendered(s, &top, &p, 1, 2);
     noc_channel *light = view(r, NOC_AOV_LIGHT), *weight = view(r, NOC_AOV_WEIGHT);
     int seen[2] = { 0, 0 }, nothing = 0;
     for (int i = 0; i < N; i++) {
@@ -235,7 +236,7 @@ static void the_chosen_light(void **state) {
     assert_true(seen[0] > N / 10 && seen[1] > N / 10 && nothing > N / 10);
     noc_channel_destroy(light);
     noc_channel_destroy(weight);
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_scene_destroy(s);
 }
 
@@ -252,9 +253,9 @@ static void weights(void **state) {
         p.list = 2;
         p.tail = 1;
         double sum[LIGHTS] = { 0 }, squares[LIGHTS] = { 0 };
-        noc_renderer *r = noc_renderer_create(s, NULL, NULL);
+        noc_view *r = own_view(s, 0, NULL);
         for (int frame = 0; frame < FRAMES; frame++) {
-            assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+            assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
             noc_channel *light = view(r, NOC_AOV_LIGHT), *weight = view(r, NOC_AOV_WEIGHT);
             double of_frame[LIGHTS] = { 0 }, pixels = 0;
             for (int i = 0; i < N; i++) {
@@ -274,7 +275,7 @@ static void weights(void **state) {
             double mean = sum[l] / FRAMES, error = sqrt((squares[l] / FRAMES - mean * mean) / (FRAMES - 1));
             assert_true(error < 0.1 && fabs(mean - 1) < 4.5 * error + 1e-5);
         }
-        noc_renderer_destroy(r);
+        close_view(r);
     }
     noc_scene_destroy(s);
 }
@@ -288,15 +289,15 @@ static void confidence(void **state) {
     noc_render_params p = with(NOC_METHOD_RESTIR, NOC_CANDIDATES_UNIFORM, 1u << NOC_AOV_CONFIDENCE);
     p.spatial = false;
     p.history = 3;
-    noc_renderer *r = noc_renderer_create(s, NULL, NULL);
+    noc_view *r = own_view(s, 0, NULL);
     for (int frame = 1; frame <= 6; frame++) {
-        assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
+        assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
         noc_channel *m = view(r, NOC_AOV_CONFIDENCE);
         for (int i = 0; i < N; i++)
             assert_true(m->value[i] == (float)(8 * NOC_MIN(frame, 1 + 3)));
         noc_channel_destroy(m);
     }
-    noc_renderer_destroy(r);
+    close_view(r);
     p.spatial = true;
     p.temporal = false;
     p.neighbours = 4;
@@ -309,7 +310,7 @@ static void confidence(void **state) {
     }
     assert_true(all > N / 4 && all < N); /* not at the picture's edge */
     noc_channel_destroy(m);
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_scene_destroy(s);
 }
 
@@ -325,16 +326,16 @@ static void rays(void **state) {
                                    i & 1 ? NOC_CANDIDATES_LISTS : NOC_CANDIDATES_UNIFORM, 1u << NOC_AOV_RAYS);
         p.sky = i & 1 ? 0.1 : 0;
         p.bias = i == 4 ? NOC_BIAS_MIS : NOC_BIAS_PAIRWISE;
-        noc_renderer *r = rendered(s, &c, &p, 3, 2);
+        noc_view *r = rendered(s, &c, &p, 3, 2);
         noc_channel *v = view(r, NOC_AOV_RAYS);
         noc_frame_stats stats;
-        noc_renderer_get_stats(r, &stats);
+        noc_view_get_stats(r, &stats);
         double sum = 0;
         for (int k = 0; k < N; k++)
             sum += v->value[k];
         assert_true(stats.rays_shadow > 0 && sum == (double)stats.rays_shadow);
         noc_channel_destroy(v);
-        noc_renderer_destroy(r);
+        close_view(r);
     }
     noc_scene_destroy(s);
 }
@@ -350,13 +351,13 @@ static void variance(void **state) {
     static double sum[N], squares[N];
     memset(sum, 0, sizeof(sum));
     memset(squares, 0, sizeof(squares));
-    noc_renderer *r = noc_renderer_create(s, NULL, NULL), *single = noc_renderer_create(s, NULL, NULL);
+    noc_view *r = own_view(s, 0, NULL), *single = own_view(s, 0, NULL);
     noc_image *mask = NULL;
     for (int frame = 0; frame < FRAMES; frame++) {
         p.aovs = frame == 1 || frame >= FIRST ? MOMENTS : 0;
-        assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
-        assert_int_equal(noc_renderer_frame(single, &c, &alone, NULL), NOC_OK);
-        noc_image *image = noc_renderer_image(single);
+        assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
+        assert_int_equal(noc_view_render(single, &c, &alone, NULL), NOC_OK);
+        noc_image *image = noc_view_image(single);
         for (int i = 0; i < N && frame >= FIRST; i++) {
             double y = luma(image->rgb + 3 * i);
             sum[i] += y;
@@ -372,7 +373,7 @@ static void variance(void **state) {
         }
     }
     noc_frame_stats stats;
-    noc_renderer_get_stats(r, &stats);
+    noc_view_get_stats(r, &stats);
     assert_int_equal(stats.frames, FRAMES); /* asking for a view starts nothing anew */
     noc_channel *v = view(r, NOC_AOV_VARIANCE), *e = view(r, NOC_AOV_ERROR);
     int some = 0, emitters = 0;
@@ -395,8 +396,8 @@ static void variance(void **state) {
     noc_image_destroy(mask);
     noc_channel_destroy(v);
     noc_channel_destroy(e);
-    noc_renderer_destroy(r);
-    noc_renderer_destroy(single);
+    close_view(r);
+    close_view(single);
     noc_scene_destroy(s);
 }
 
@@ -424,7 +425,7 @@ static noc_render_params any(int i) {
 }
 enum { KINDS = 8 };
 
-static void assert_same_views(noc_renderer *a, noc_renderer *b, uint32_t aovs) {
+static void assert_same_views(noc_view *a, noc_view *b, uint32_t aovs) {
     for (int aov = 0; aov < NOC_AOV_COUNT; aov++) {
         if (!(aovs >> aov & 1))
             continue;
@@ -441,17 +442,17 @@ static void same_on_every_instruction_set_and_number_of_threads(void **state) {
     noc_camera c = along();
     for (int i = 0; i < KINDS; i++) {
         noc_render_params p = any(i), forced = p;
-        noc_renderer *a = rendered(s, &c, &p, 3, 1), *b = rendered(s, &c, &p, 3, 3);
+        noc_view *a = rendered(s, &c, &p, 3, 1), *b = rendered(s, &c, &p, 3, 3);
         assert_same_views(a, b, p.aovs);
-        noc_renderer_destroy(b);
+        close_view(b);
         for (forced.isa = NOC_ISA_SCALAR; forced.isa < NOC_ISA_COUNT; forced.isa++) {
             if (!noc_isa_runs(forced.isa))
                 continue;
             b = rendered(s, &c, &forced, 3, 2);
             assert_same_views(a, b, p.aovs);
-            noc_renderer_destroy(b);
+            close_view(b);
         }
-        noc_renderer_destroy(a);
+        close_view(a);
     }
     noc_scene_destroy(s);
 }
@@ -463,16 +464,16 @@ static void the_picture_is_the_same(void **state) {
     for (int i = 0; i < KINDS; i++) {
         noc_render_params p = any(i), without = p;
         without.aovs = 0;
-        noc_renderer *a = rendered(s, &c, &without, 4, 2), *b = noc_renderer_create(s, NULL, NULL);
-        noc_image *x = noc_renderer_image(a);
+        noc_view *a = rendered(s, &c, &without, 4, 2), *b = own_view(s, 0, NULL);
+        noc_image *x = noc_view_image(a);
         for (int frame = 0; frame < 4; frame++) /* asked for in turn */
-            assert_int_equal(noc_renderer_frame(b, &c, frame % 2 ? &p : &without, NULL), NOC_OK);
-        noc_image *y = noc_renderer_image(b);
+            assert_int_equal(noc_view_render(b, &c, frame % 2 ? &p : &without, NULL), NOC_OK);
+        noc_image *y = noc_view_image(b);
         assert_memory_equal(x->rgb, y->rgb, sizeof(float) * 3 * (size_t)x->width * x->height);
         noc_image_destroy(x);
         noc_image_destroy(y);
-        noc_renderer_destroy(a);
-        noc_renderer_destroy(b);
+        close_view(a);
+        close_view(b);
     }
     noc_scene_destroy(s);
 }
@@ -487,11 +488,11 @@ static void scenes_of_nothing(void **state) {
         assert_int_equal(noc_scene_commit(s), NOC_OK);
         for (int i = 0; i < KINDS; i++) {
             noc_render_params p = any(i);
-            noc_renderer *r = rendered(s, &c, &p, 2, 2);
+            noc_view *r = rendered(s, &c, &p, 2, 2);
             for (int aov = 0; aov < NOC_AOV_COUNT; aov++)
                 if (p.aovs >> aov & 1)
                     noc_channel_destroy(view(r, (noc_aov)aov));
-            noc_renderer_destroy(r);
+            close_view(r);
         }
         noc_scene_destroy(s);
     }
@@ -506,7 +507,7 @@ static void wrong_requests(void **state) {
     noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_ERROR, .message = drop });
     noc_scene *s = street(3);
     noc_camera c = along();
-    noc_renderer *r = noc_renderer_create(s, NULL, log);
+    noc_view *r = own_view(s, 0, log);
     static const struct {
         noc_method method;
         noc_candidates candidates;
@@ -523,25 +524,25 @@ static void wrong_requests(void **state) {
     for (size_t i = 0; i < NOC_COUNT(bad); i++) {
         noc_render_params p = with(bad[i].method, bad[i].candidates, bad[i].aovs);
         assert_int_equal(noc_render_check(&p, log), NOC_ERR_ARGUMENT);
-        assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_ERR_ARGUMENT);
+        assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_ERR_ARGUMENT);
         assert_non_null(strstr(noc_log_last_error(log), bad[i].says));
     }
     noc_render_params p = with(NOC_METHOD_RIS, NOC_CANDIDATES_INFLUENCE, 1u << NOC_AOV_ERROR);
     p.accumulate = false;
-    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_ERR_ARGUMENT);
     assert_non_null(strstr(noc_log_last_error(log), "\"error\": frames must be accumulated"));
-    assert_null(noc_renderer_aov(r, NOC_AOV_LIGHT)); /* before the first frame */
+    assert_null(noc_view_aov(r, NOC_AOV_LIGHT)); /* before the first frame */
     p.aovs = 1u << NOC_AOV_LIGHT;
-    assert_int_equal(noc_renderer_frame(r, &c, &p, NULL), NOC_OK);
-    assert_null(noc_renderer_aov(r, NOC_AOV_WEIGHT));
+    assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
+    assert_null(noc_view_aov(r, NOC_AOV_WEIGHT));
     assert_non_null(strstr(noc_log_last_error(log), "did not keep the view \"weight\""));
-    assert_null(noc_renderer_aov(r, NOC_AOV_COUNT));
-    assert_null(noc_renderer_aov(r, (noc_aov)-1));
+    assert_null(noc_view_aov(r, NOC_AOV_COUNT));
+    assert_null(noc_view_aov(r, (noc_aov)-1));
     noc_channel_destroy(view(r, NOC_AOV_LIGHT));
-    noc_renderer_reset(r);
-    assert_null(noc_renderer_aov(r, NOC_AOV_LIGHT));
+    noc_view_reset(r);
+    assert_null(noc_view_aov(r, NOC_AOV_LIGHT));
     assert_string_equal(noc_aov_name((noc_aov)99), "unknown");
-    noc_renderer_destroy(r);
+    close_view(r);
     noc_scene_destroy(s);
     noc_log_destroy(log);
 }
@@ -560,14 +561,14 @@ static void cancelled_frames(void **state) {
         noc_render_params p = any(kind);
         p.width = 160;
         p.height = 96;
-        noc_renderer *a = rendered(s, &c, &p, 3, 1), *b = rendered(s, &c, &p, 3, 1);
+        noc_view *a = rendered(s, &c, &p, 3, 1), *b = rendered(s, &c, &p, 3, 1);
         for (int left = 1; left < 60; left += 20) {
             int n = left;
-            assert_int_equal(noc_renderer_frame(b, &c, &p, &(noc_progress){ stop_late, &n }), NOC_ERR_CANCELLED);
+            assert_int_equal(noc_view_render(b, &c, &p, &(noc_progress){ stop_late, &n }), NOC_ERR_CANCELLED);
             assert_same_views(a, b, p.aovs);
         }
-        noc_renderer_destroy(a);
-        noc_renderer_destroy(b);
+        close_view(a);
+        close_view(b);
     }
     noc_scene_destroy(s);
 }

@@ -4,6 +4,7 @@
 #define NOC_TEST_UNBIASED_H
 
 #include "rooms.h"
+#include "../own_view.h"
 
 enum { W = 24, H = 16, TILE = 8, TILES = (W / TILE) * (H / TILE), FRAMES = 6, CHECKS = 3 };
 static const int check_at[CHECKS] = { 1, 3, 6 };
@@ -99,35 +100,35 @@ static inline bool remembers(const config *c) { return c->method == NOC_METHOD_R
 /* moving: the camera; pose: NULL if no light moves. Frames that nothing depends on are not made. */
 static inline result measure_runs(noc_scene *s, const config *c, bool moving, pose_fn pose, int runs) {
     result out = { 0 };
-    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 2 }, NULL);
+    noc_view *r = own_view(s, 2, NULL);
     assert_non_null(r);
     for (int run = 0; run < samples(runs); run++) {
         noc_render_params p = params_of(c, (uint32_t)run * 7919 + 17);
-        noc_renderer_reset(r);
+        noc_view_reset(r);
         for (int f = 1, at = 0; f <= FRAMES; f++) {
             if (f != check_at[at] && !remembers(c))
                 continue;
             noc_camera cam = camera_at(f, moving);
             if (pose)
                 pose(s, f);
-            assert_int_equal(noc_renderer_frame(r, &cam, &p, NULL), NOC_OK);
+            assert_int_equal(noc_view_render(r, &cam, &p, NULL), NOC_OK);
             if (f != check_at[at])
                 continue;
-            noc_image *image = noc_renderer_image(r);
+            noc_image *image = noc_view_image(r);
             add_picture(&out.at[at++], image);
             noc_image_destroy(image);
         }
     }
     noc_frame_stats stats;
-    noc_renderer_get_stats(r, &stats);
+    noc_view_get_stats(r, &stats);
     assert_int_equal(stats.dropped, 0);
-    noc_renderer_destroy(r);
+    close_view(r);
     return out;
 }
 
 static inline result measure_reference(noc_scene *s, bool moving, pose_fn pose, int frames) {
     result out = { 0 };
-    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = 2 }, NULL);
+    noc_view *r = own_view(s, 2, NULL);
     config c = { .method = NOC_METHOD_REFERENCE };
     noc_render_params p = params_of(&c, 99);
     p.rays = 32;
@@ -140,13 +141,13 @@ static inline result measure_reference(noc_scene *s, bool moving, pose_fn pose, 
         if (pose)
             pose(s, check_at[at]);
         for (int f = 0; f < samples(frames); f++) {
-            assert_int_equal(noc_renderer_frame(r, &cam, &p, NULL), NOC_OK);
-            noc_image *image = noc_renderer_image(r);
+            assert_int_equal(noc_view_render(r, &cam, &p, NULL), NOC_OK);
+            noc_image *image = noc_view_image(r);
             add_picture(&out.at[at], image);
             noc_image_destroy(image);
         }
     }
-    noc_renderer_destroy(r);
+    close_view(r);
     return out;
 }
 

@@ -3,6 +3,7 @@
 #define NOC_TEST_VIEWS_H
 
 #include "rooms.h"
+#include "../own_view.h"
 
 enum {
     W = 40,
@@ -20,17 +21,17 @@ static inline noc_render_params with(noc_method method, noc_candidates candidate
     return p;
 }
 
-static inline noc_renderer *rendered(const noc_scene *s, const noc_camera *c, const noc_render_params *p, int frames,
-                                     int threads) {
-    noc_renderer *r = noc_renderer_create(s, &(noc_renderer_params){ .threads = threads }, NULL);
+static inline noc_view *rendered(const noc_scene *s, const noc_camera *c, const noc_render_params *p, int frames,
+                                 int threads) {
+    noc_view *r = own_view(s, threads, NULL);
     for (int i = 0; i < frames; i++)
-        assert_int_equal(noc_renderer_frame(r, c, p, NULL), NOC_OK);
+        assert_int_equal(noc_view_render(r, c, p, NULL), NOC_OK);
     return r;
 }
 
 /* A view of the last frame, checked for what every view promises. */
-static inline noc_channel *view(noc_renderer *r, noc_aov aov) {
-    noc_channel *v = noc_renderer_aov(r, aov);
+static inline noc_channel *view(noc_view *r, noc_aov aov) {
+    noc_channel *v = noc_view_aov(r, aov);
     assert_non_null(v);
     assert_string_equal(v->name, noc_aov_name(aov));
     assert_int_equal(v->components, aov == NOC_AOV_NORMAL ? 3 : 1);

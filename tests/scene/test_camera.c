@@ -46,11 +46,11 @@ static void all_views(const noc_scene *scene) {
     for (int v = 0; v < 3; v++)
         for (size_t i = 0; i < NOC_COUNT(aspects); i++) {
             noc_camera a, b;
-            assert_int_equal(noc_scene_camera(scene, (noc_view)v, aspects[i], &a), NOC_OK);
+            assert_int_equal(noc_scene_camera(scene, (noc_viewpoint)v, aspects[i], &a), NOC_OK);
             check_sane(&a);
             if (i)
                 continue;
-            assert_int_equal(noc_scene_camera(scene, (noc_view)v, aspects[i], &b), NOC_OK);
+            assert_int_equal(noc_scene_camera(scene, (noc_viewpoint)v, aspects[i], &b), NOC_OK);
             assert_memory_equal(&a, &b, sizeof(a)); /* found again */
         }
 }
@@ -79,7 +79,7 @@ static bool project(const noc_camera *c, double aspect, const double p[3], doubl
 static void check_overview(const noc_scene *scene, double aspect) {
     noc_camera c;
     double lo[2] = { 9, 9 }, hi[2] = { -9, -9 };
-    assert_int_equal(noc_scene_camera(scene, NOC_VIEW_OVERVIEW, aspect, &c), NOC_OK);
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_OVERVIEW, aspect, &c), NOC_OK);
     for (size_t i = 0; i < 3 * noc_scene_city_triangles(scene); i++) {
         size_t index = 3 * noc_scene_city_triangle(scene, i / 3) + i % 3;
         const float *v = scene->positions.data + 3 * (size_t)scene->indices.data[index];
@@ -94,7 +94,7 @@ static void check_overview(const noc_scene *scene, double aspect) {
 static void check_street(const noc_scene *scene) {
     noc_camera c;
     double ground, top, aspect = 16.0 / 9;
-    assert_int_equal(noc_scene_camera(scene, NOC_VIEW_STREET, aspect, &c), NOC_OK);
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, aspect, &c), NOC_OK);
     assert_true(noc_scene_ground(scene, c.eye[0], c.eye[1], &ground));
     assert_true(noc_scene_top(scene, c.eye[0], c.eye[1], &top));
     assert_true(fabs(c.eye[2] - ground - 1.7) < 1e-9);
@@ -119,7 +119,7 @@ static void check_street(const noc_scene *scene) {
 static void check_aerial(const noc_scene *scene) {
     noc_camera c;
     double z;
-    assert_int_equal(noc_scene_camera(scene, NOC_VIEW_AERIAL, 16.0 / 9, &c), NOC_OK);
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_AERIAL, 16.0 / 9, &c), NOC_OK);
     if (noc_scene_top(scene, c.eye[0], c.eye[1], &z))
         assert_true(c.eye[2] > z + 3); /* over the roofs */
     assert_true(c.eye[2] > c.target[2]);
@@ -154,7 +154,7 @@ static void test_without_lights(void **state) {
         check_overview(scene, 1.5);
         check_aerial(scene);
         noc_camera c;
-        assert_int_equal(noc_scene_camera(scene, NOC_VIEW_STREET, 1.5, &c), NOC_OK);
+        assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, 1.5, &c), NOC_OK);
         if (ground)
             assert_true(fabs(c.eye[2] - 101.7) < 1e-4);
         noc_scene_destroy(scene);
@@ -176,7 +176,7 @@ static void test_one_lamp(void **state) {
     all_views(scene);
     noc_camera c;
     double x, y;
-    assert_int_equal(noc_scene_camera(scene, NOC_VIEW_STREET, 16.0 / 9, &c), NOC_OK);
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, 16.0 / 9, &c), NOC_OK);
     assert_true(fabs(c.eye[1]) < 6 && fabs(c.eye[2] - 1.7) < 1e-6);
     assert_true(fabs(c.target[0] - c.eye[0]) > 20); /* along the street */
     assert_true(project(&c, 16.0 / 9, lamp.position, &x, &y) && fabs(x) < 1);
@@ -201,7 +201,7 @@ static void test_panel(void **state) {
         assert_true(noc_scene_add_mesh(scene, &panel) >= 0);
         assert_int_equal(noc_scene_commit(scene), NOC_OK);
         noc_camera c;
-        assert_int_equal(noc_scene_camera(scene, NOC_VIEW_OWN, 1.5, &c), NOC_OK);
+        assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_OWN, 1.5, &c), NOC_OK);
         assert_true((c.eye[0] > 0 && c.eye[0] < 6 && c.eye[1] > 0 && c.eye[1] < 8 && c.eye[2] > 0 && c.eye[2] < 3) ==
                     (down || both));
         noc_scene_destroy(scene);
@@ -218,7 +218,7 @@ static void test_no_warning(void **state) {
     noc_camera c;
     assert_int_equal(noc_scene_add_city(scene, &params), NOC_OK);
     assert_int_equal(noc_scene_commit(scene), NOC_OK);
-    assert_int_equal(noc_scene_camera(scene, NOC_VIEW_STREET, 1.5, &c), NOC_OK);
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, 1.5, &c), NOC_OK);
     assert_string_equal(warning, "");
     noc_scene_destroy(scene);
     noc_log_destroy(log);
@@ -244,7 +244,7 @@ static void test_object(void **state) {
         assert_int_equal(noc_scene_add_light(scene, &lamp), 0);
         all_views(scene);
         noc_camera c;
-        assert_int_equal(noc_scene_camera(scene, NOC_VIEW_OWN, 1.5, &c), NOC_OK);
+        assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_OWN, 1.5, &c), NOC_OK);
         assert_in_picture(&c, 1.5, (double[]){ -2 * s, -2 * s, -.05 * s }, (double[]){ 2 * s, 2 * s, 0 });
         assert_in_picture(&c, 1.5, (double[]){ -.5 * s, -.5 * s, 0 }, (double[]){ .5 * s, .5 * s, s });
         assert_true(c.eye[2] > 0.2 * s);
@@ -269,11 +269,11 @@ static void test_room(void **state) {
             assert_int_equal(noc_scene_add_light(scene, &lamp), 0);
             all_views(scene);
             noc_camera c;
-            assert_int_equal(noc_scene_camera(scene, NOC_VIEW_STREET, 1.5, &c), NOC_OK);
+            assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, 1.5, &c), NOC_OK);
             /* not the street asked for */
             assert_non_null(strstr(warning, outside ? "so it is seen from outside" : "so it is seen from inside"));
             *warning = 0;
-            assert_int_equal(noc_scene_camera(scene, NOC_VIEW_OWN, 1.5, &c), NOC_OK);
+            assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_OWN, 1.5, &c), NOC_OK);
             assert_string_equal(warning, "");
             bool inside = c.eye[0] > 0 && c.eye[0] < x && c.eye[1] > 0 && c.eye[1] < y && c.eye[2] > 0 && c.eye[2] < z;
             bool in_cupboard = c.eye[0] < .3 * x && c.eye[1] < .3 * y;
@@ -295,7 +295,7 @@ static void test_plain_street(void **state) {
         assert_true(noc_scene_add_light(scene, &lamp) >= 0);
     }
     noc_camera c;
-    assert_int_equal(noc_scene_camera(scene, NOC_VIEW_OWN, 1.5, &c), NOC_OK);
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_OWN, 1.5, &c), NOC_OK);
     assert_true(fabs(c.eye[1]) < 7 && fabs(c.eye[2] - 1.7) < 1e-6);
     noc_scene_destroy(scene);
 }
@@ -304,10 +304,10 @@ static void test_odd_scenes(void **state) {
     noc_scene *scene = noc_scene_create(NULL);
     noc_camera c = noc_camera_default();
     for (int v = 0; v < 3; v++)
-        assert_int_equal(noc_scene_camera(scene, (noc_view)v, 1, &c), NOC_ERR_ARGUMENT);
+        assert_int_equal(noc_scene_camera(scene, (noc_viewpoint)v, 1, &c), NOC_ERR_ARGUMENT);
     noc_light point = { .kind = NOC_LIGHT_POINT, .emission = { 1, 1, 1 } };
     assert_int_equal(noc_scene_add_light(scene, &point), 0); /* lights alone have no shape to look at */
-    assert_int_equal(noc_scene_camera(scene, NOC_VIEW_STREET, 1, &c), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_STREET, 1, &c), NOC_ERR_ARGUMENT);
 
     static const double triangles[][9] = {
         { 0, 0, 0, 1, 0, 0, 0, 1, 0 },                                           /* small, flat */
@@ -331,8 +331,8 @@ static void test_odd_scenes(void **state) {
     all_views(scene);
     static const double bad[] = { 0, -1, NAN, INFINITY };
     for (size_t i = 0; i < NOC_COUNT(bad); i++)
-        assert_int_equal(noc_scene_camera(scene, NOC_VIEW_AERIAL, bad[i], &c), NOC_ERR_ARGUMENT);
-    assert_int_equal(noc_scene_camera(scene, (noc_view)(NOC_VIEW_OWN + 1), 1, &c), NOC_ERR_ARGUMENT);
+        assert_int_equal(noc_scene_camera(scene, NOC_VIEWPOINT_AERIAL, bad[i], &c), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_scene_camera(scene, (noc_viewpoint)(NOC_VIEWPOINT_OWN + 1), 1, &c), NOC_ERR_ARGUMENT);
     assert_true(c.fov_deg == 50); /* untouched by errors */
     noc_scene_destroy(scene);
 }
@@ -346,7 +346,7 @@ static void test_stray(void **state) {
     add_box(scene, NOC_CLASS_OTHER, 90000, 90000, 90001, 90001, 0, 1);
     for (int v = 0; v < 3; v++) {
         noc_camera c;
-        assert_int_equal(noc_scene_camera(scene, (noc_view)v, 1.5, &c), NOC_OK);
+        assert_int_equal(noc_scene_camera(scene, (noc_viewpoint)v, 1.5, &c), NOC_OK);
         assert_true(fabs(c.target[0] - 150) < 400 && fabs(c.target[1] - 200) < 400);
     }
     noc_scene_destroy(scene);
@@ -361,11 +361,11 @@ static void test_slits(void **state) {
     noc_camera c;
     for (int v = 0; v < 3; v++) {
         for (size_t i = 0; i < NOC_COUNT(good); i++) {
-            assert_int_equal(noc_scene_camera(scene, (noc_view)v, good[i], &c), NOC_OK);
+            assert_int_equal(noc_scene_camera(scene, (noc_viewpoint)v, good[i], &c), NOC_OK);
             check_sane(&c);
         }
         for (size_t i = 0; i < NOC_COUNT(bad); i++)
-            assert_int_equal(noc_scene_camera(scene, (noc_view)v, bad[i], &c), NOC_ERR_ARGUMENT);
+            assert_int_equal(noc_scene_camera(scene, (noc_viewpoint)v, bad[i], &c), NOC_ERR_ARGUMENT);
     }
     noc_scene_destroy(scene);
 }

@@ -136,7 +136,7 @@ static void test_village(void **state) { refuse_each("village", village); }
 /* Looking at a committed scene. */
 static void test_cameras(void **state) {
     noc_log *log = counting_log();
-    for (int view = NOC_VIEW_STREET; view <= NOC_VIEW_OWN; view++) {
+    for (int view = NOC_VIEWPOINT_STREET; view <= NOC_VIEWPOINT_OWN; view++) {
         noc_camera want, have;
         bool reached;
         FOR_EACH_REFUSAL(reached) {
@@ -144,9 +144,9 @@ static void test_cameras(void **state) {
             assert_int_equal(village(s), NOC_OK);
             assert_int_equal(noc_scene_commit(s), NOC_OK);
             begin_refusal(n, later);
-            noc_status status = noc_scene_camera(s, (noc_view)view, 1.5, &have);
+            noc_status status = noc_scene_camera(s, (noc_viewpoint)view, 1.5, &have);
             reached = end_refusal();
-            assert_int_equal(noc_scene_camera(s, (noc_view)view, 1.5, &want), NOC_OK);
+            assert_int_equal(noc_scene_camera(s, (noc_viewpoint)view, 1.5, &want), NOC_OK);
             if (status == NOC_OK)
                 assert_unharmed(!memcmp(&have, &want, sizeof(have)), "camera");
             else

@@ -16,9 +16,9 @@
 #define SLACK (16 * MB)
 
 /* TBB starts no more of them than there are cores. */
-static size_t helpers(const embree_state *s) {
+static size_t helpers(int threads) {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    return (size_t)NOC_MIN(noc_pool_threads(s->pool), NOC_MAX(cores, 1)) - 1;
+    return (size_t)NOC_MIN(threads, NOC_MAX(cores, 1)) - 1;
 }
 
 static bool can_map(size_t bytes, int protection, int flags) {
@@ -26,8 +26,8 @@ static bool can_map(size_t bytes, int protection, int flags) {
     return p != MAP_FAILED && !munmap(p, bytes);
 }
 
-bool noc_embree_room(const embree_state *s, size_t bytes) {
-    size_t space = helpers(s) * THREAD_SPACE;
+bool noc_embree_room(int threads, size_t bytes) {
+    size_t space = helpers(threads) * THREAD_SPACE;
     return !noc_allocation_refused() && can_map(bytes + SLACK, PROT_READ | PROT_WRITE, 0) &&
            can_map(bytes + SLACK + space, PROT_NONE, MAP_NORESERVE);
 }
@@ -38,10 +38,10 @@ static void *wait_for_lock(void *lock) {
     return NULL;
 }
 
-bool noc_embree_room_for_threads(const embree_state *s) {
+bool noc_embree_room_for_threads(int count) {
     pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
     /* as the device goes, TBB starts one whatever it was asked for */
-    size_t wanted = NOC_MAX(helpers(s), 1), started = 0;
+    size_t wanted = NOC_MAX(helpers(count), 1), started = 0;
     pthread_t *threads = noc_alloc((wanted + 1) * sizeof(*threads));
     pthread_attr_t attributes;
     if (!threads || pthread_attr_init(&attributes)) {

@@ -1,12 +1,12 @@
 /* One pass over one tile: kernels and rays in turn, block by block. */
-#include "backend/embree/embree.h"
+#include "backend/cpu/cpu.h"
 
 #include "core/camera.h"
 #include "core/random.h"
 
 static size_t block_at(const frame_buffers *b, int bx, int by) { return (size_t)by * b->blocks_x + bx; }
 
-int noc_embree_tile_blocks(const stage_run *run, tile t, tile_block out[TILE_BLOCKS * TILE_BLOCKS]) {
+int noc_cpu_tile_blocks(const stage_run *run, tile t, tile_block out[TILE_BLOCKS * TILE_BLOCKS]) {
     int n = 0;
     for (int by = t.y0; by < t.y1; by++)
         for (int bx = t.x0; bx < t.x1; bx++)
@@ -14,17 +14,17 @@ int noc_embree_tile_blocks(const stage_run *run, tile t, tile_block out[TILE_BLO
     return n;
 }
 
-segment_block *noc_embree_gather(const stage_run *run, worker *w, size_t at, uint32_t valid) {
-    float(*counts)[BLOCK] = run->s->b.views.made[NOC_AOV_RAYS];
+segment_block *noc_cpu_gather(const stage_run *run, worker *w, size_t at, uint32_t valid) {
+    float(*counts)[BLOCK] = run->s->b.aovs.made[NOC_AOV_RAYS];
     segment_block *s = &w->batch.blocks[w->batch.count++];
     s->valid = valid;
     s->counts = counts ? counts[at] : NULL;
     return s;
 }
 
-void noc_embree_gather_segments(const stage_run *run, worker *w, size_t at, uint32_t valid, const gblock *g,
-                                const uint32_t *light, const float *u, const float *v) {
-    segment_block *s = noc_embree_gather(run, w, at, valid);
+void noc_cpu_gather_segments(const stage_run *run, worker *w, size_t at, uint32_t valid, const gblock *g,
+                             const uint32_t *light, const float *u, const float *v) {
+    segment_block *s = noc_cpu_gather(run, w, at, valid);
     memcpy(s->light, light, sizeof(s->light));
     run->k->segments(&run->ctx, g, light, u, v, &s->rays);
 }
@@ -48,9 +48,9 @@ static void primary_block(stage_run *run, worker *w, int bx, int by) {
         rays.d[1][l] = d.y;
         rays.d[2][l] = d.z;
     }
-    float(*objects)[BLOCK] = b->views.made[NOC_AOV_OBJECT];
-    noc_embree_primary(run->s, w, &rays, lanes_inside(b, bx, by), &b->g[f->gbuffer][block_at(b, bx, by)],
-                       objects ? objects[block_at(b, bx, by)] : NULL);
+    float(*objects)[BLOCK] = b->aovs.made[NOC_AOV_OBJECT];
+    noc_cpu_primary(run->s, w, &rays, lanes_inside(b, bx, by), &b->g[f->gbuffer][block_at(b, bx, by)],
+                    objects ? objects[block_at(b, bx, by)] : NULL);
 }
 
 static void primary(stage_run *run, worker *w, tile t) {
@@ -101,7 +101,7 @@ static void candidates(stage_run *run, worker *w, const tile_points *points, int
         run->k->given(&run->ctx, g, lanes, at.x, at.y, m, &w->picks, r);
     }
     if (p->aovs)
-        noc_embree_view_candidates(run, w, i, at.at, lanes, r);
+        noc_cpu_aov_candidates(run, w, i, at.at, lanes, r);
     run->s->b.visible[run->stage->target][at.at] = 0;
 }
 
@@ -114,7 +114,7 @@ static float tail_start(const stage_run *run, tile t) {
 }
 
 static void gather_points(const stage_run *run, tile t, tile_points *out) {
-    out->count = noc_embree_tile_blocks(run, t, out->block);
+    out->count = noc_cpu_tile_blocks(run, t, out->block);
     for (int i = 0; i < out->count; i++) {
         out->g[i] = &run->s->b.g[run->ctx.frame->gbuffer][out->block[i].at];
         out->lanes[i] = lanes_with_surface(out->g[i]);
@@ -132,8 +132,8 @@ static void tile_candidates(stage_run *run, worker *w, tile t) {
     if (from == NOC_CANDIDATES_LISTS)
         run->k->list_build(&run->ctx, points.g, points.lanes, points.count, tail_start(run, t), &w->lists,
                            &w->lists.list);
-    if (from == NOC_CANDIDATES_LISTS && noc_embree_shares_rays(p)) {
-        noc_embree_share_candidates(run, w, &points);
+    if (from == NOC_CANDIDATES_LISTS && noc_cpu_shares_rays(p)) {
+        noc_cpu_share_candidates(run, w, &points);
         return;
     }
     for (int i = 0; i < points.count; i++)
@@ -146,7 +146,7 @@ static void visibility(stage_run *run, worker *w, tile t) {
     rblock *r = b->r[run->stage->target];
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
     size_t asked[TILE_BLOCKS * TILE_BLOCKS];
-    int n = noc_embree_tile_blocks(run, t, blocks);
+    int n = noc_cpu_tile_blocks(run, t, blocks);
     w->batch.count = 0;
     for (int i = 0; i < n; i++) {
         size_t at = blocks[i].at;
@@ -154,9 +154,9 @@ static void visibility(stage_run *run, worker *w, tile t) {
         if (!lanes)
             continue;
         asked[w->batch.count] = at;
-        noc_embree_gather_segments(run, w, at, lanes, &g[at], r[at].light, r[at].u, r[at].v);
+        noc_cpu_gather_segments(run, w, at, lanes, &g[at], r[at].light, r[at].u, r[at].v);
     }
-    noc_embree_free_many(run->s, w, w->batch.blocks, w->batch.count);
+    noc_cpu_trace_occlusion(run->s, w, w->batch.blocks, w->batch.count);
     for (int i = 0; i < w->batch.count; i++) {
         uint32_t seen = w->batch.blocks[i].clear;
         for (int l = 0; l < BLOCK; l++)
@@ -210,9 +210,9 @@ static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, cons
             lanes[i] = reference_entry(e, first + i, &r[i]);
             run->k->reference_place(&run->ctx, block->x, block->y, &r[i]);
             if (rays)
-                noc_embree_gather_segments(run, w, block->at, lanes[i], g, r[i].light, r[i].u, r[i].v);
+                noc_cpu_gather_segments(run, w, block->at, lanes[i], g, r[i].light, r[i].u, r[i].v);
         }
-        noc_embree_free_many(run->s, w, w->batch.blocks, w->batch.count);
+        noc_cpu_trace_occlusion(run->s, w, w->batch.blocks, w->batch.count);
         for (uint32_t i = 0; i < n; i++)
             dropped |= run->k->shade(&run->ctx, g, &r[i], rays ? w->batch.blocks[i].clear : lanes[i], c);
     }
@@ -232,9 +232,9 @@ static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, i
         lanes[i] = lanes_with_sample(&r[at]);
         asked[i] = run->ctx.frame->params->final_ray ? lanes[i] & ~(uint32_t)b->visible[run->stage->target][at] : 0;
         if (asked[i])
-            noc_embree_gather_segments(run, w, at, asked[i], &g[at], r[at].light, r[at].u, r[at].v);
+            noc_cpu_gather_segments(run, w, at, asked[i], &g[at], r[at].light, r[at].u, r[at].v);
     }
-    noc_embree_free_many(run->s, w, w->batch.blocks, w->batch.count);
+    noc_cpu_trace_occlusion(run->s, w, w->batch.blocks, w->batch.count);
     const segment_block *answer = w->batch.blocks;
     for (int i = 0; i < n; i++) {
         size_t at = blocks[i].at;
@@ -258,13 +258,13 @@ static void shade(stage_run *run, worker *w, tile t) {
     frame_buffers *b = &run->s->b;
     const gblock *g = b->g[f->gbuffer];
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
-    int n = noc_embree_tile_blocks(run, t, blocks);
+    int n = noc_cpu_tile_blocks(run, t, blocks);
     for (int i = 0; i < n; i++)
         show_emitters(run, &g[blocks[i].at], &b->emitter[blocks[i].at], &b->colour[blocks[i].at]);
     if (!run->ctx.light_count)
         return;
-    if (noc_embree_shares_rays(f->params) && run->stage->passes >> NOC_PASS_CANDIDATES & 1) {
-        noc_embree_share_shade(run, w, t);
+    if (noc_cpu_shares_rays(f->params) && run->stage->passes >> NOC_PASS_CANDIDATES & 1) {
+        noc_cpu_share_shade(run, w, t);
         if (f->params->method == NOC_METHOD_RESTIR)
             shade_samples(run, w, blocks, n, (const float(*)[BLOCK])w->shared.reused);
     } else if (f->params->method != NOC_METHOD_REFERENCE) {
@@ -295,7 +295,7 @@ static void sky(stage_run *run, worker *w, tile t) {
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
     uint8_t turns[TILE_BLOCKS * TILE_BLOCKS][BLOCK];
     size_t asked[TILE_BLOCKS * TILE_BLOCKS];
-    int n = noc_embree_tile_blocks(run, t, blocks);
+    int n = noc_cpu_tile_blocks(run, t, blocks);
     for (int i = 0; i < n; i++) {
         size_t at = blocks[i].at;
         uint32_t background =
@@ -319,11 +319,11 @@ static void sky(stage_run *run, worker *w, tile t) {
             if (!lanes)
                 continue;
             asked[w->batch.count] = at;
-            segment_block *s = noc_embree_gather(run, w, at, lanes);
+            segment_block *s = noc_cpu_gather(run, w, at, lanes);
             run->k->sky_rays(&run->ctx, &g[at], blocks[i].x, blocks[i].y, number, &s->rays);
             memset(s->light, 0, sizeof(s->light));
         }
-        noc_embree_free_many(run->s, w, w->batch.blocks, w->batch.count);
+        noc_cpu_trace_occlusion(run->s, w, w->batch.blocks, w->batch.count);
         for (int i = 0; i < w->batch.count; i++) {
             const segment_block *s = &w->batch.blocks[i];
             size_t at = asked[i];
@@ -334,13 +334,13 @@ static void sky(stage_run *run, worker *w, tile t) {
     }
 }
 
-void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
+void noc_cpu_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
     static void (*const passes[NOC_PASS_COUNT])(stage_run *, worker *, tile) = {
         [NOC_PASS_PRIMARY] = primary,
         [NOC_PASS_CANDIDATES] = tile_candidates,
         [NOC_PASS_VISIBILITY] = visibility,
-        [NOC_PASS_TEMPORAL] = noc_embree_temporal,
-        [NOC_PASS_SPATIAL] = noc_embree_spatial,
+        [NOC_PASS_TEMPORAL] = noc_cpu_temporal,
+        [NOC_PASS_SPATIAL] = noc_cpu_spatial,
         [NOC_PASS_SHADE] = shade,
         [NOC_PASS_SKY] = sky,
     };
@@ -348,8 +348,8 @@ void noc_embree_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
                        pass == NOC_PASS_SPATIAL;
     if (needs_light && !run->ctx.light_count)
         return;
-    if (pass == NOC_PASS_VISIBILITY && noc_embree_shares_rays(run->ctx.frame->params))
-        noc_embree_share_visibility(run, w, t);
+    if (pass == NOC_PASS_VISIBILITY && noc_cpu_shares_rays(run->ctx.frame->params))
+        noc_cpu_share_visibility(run, w, t);
     else
         passes[pass](run, w, t);
 }

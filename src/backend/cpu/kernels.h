@@ -1,10 +1,10 @@
 /* What is computed between rays, for one block of 16 pixels at a time: core/ in scalar C and in wide C, behind one
  * table an instruction set. Ray tracing stays outside: a kernel leaves segments, passes.c has them traced and calls the
  * next one. Lanes are told apart by bits of a uint32_t. Scalar and wide tables give the same bits. */
-#ifndef NOC_EMBREE_KERNELS_H
-#define NOC_EMBREE_KERNELS_H
+#ifndef NOC_CPU_KERNELS_H
+#define NOC_CPU_KERNELS_H
 
-#include "backend/embree/blocks.h"
+#include "backend/cpu/blocks.h"
 #include "light/alias.h"
 #include "light/clusters.h"
 #include "light/influence.h"
@@ -33,7 +33,7 @@ typedef struct pick_block {
     float (*inverse)[BLOCK]; /* 1 / pmf; 0: nothing was picked */
 } pick_block;
 
-/* Pixels on their way down a light tree: backend/embree/tree_draws.h. One array a field, TREE_ITEMS each. */
+/* Pixels on their way down a light tree: backend/cpu/tree_draws_tmpl.h. One array a field, TREE_ITEMS each. */
 typedef struct tree_items {
     uint32_t count;
     uint32_t *pair, *what; /* what: lane, first draw << 4, draws << 16 */

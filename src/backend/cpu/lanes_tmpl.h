@@ -1,9 +1,9 @@
 /* Bridge between core/ and blocks of pixels: loads, stores, masks and light records for CORE_LANES lanes (scalar: 1).
  */
-#ifndef NOC_EMBREE_LANES_H
-#define NOC_EMBREE_LANES_H
+#ifndef NOC_CPU_LANES_H
+#define NOC_CPU_LANES_H
 
-#include "backend/embree/kernels.h"
+#include "backend/cpu/kernels.h"
 
 #include "core/camera.h"
 #include "core/random.h"

@@ -1,5 +1,5 @@
 /* Which kernels this machine runs. */
-#include "backend/embree/kernels.h"
+#include "backend/cpu/kernels.h"
 
 static const kernels *const tables[NOC_ISA_COUNT] = {
     [NOC_ISA_SCALAR] = &noc_kernels_scalar,

@@ -1,6 +1,6 @@
 /* Kernels of reuse and shading: core/ applied to blocks of pixels. Compiled once as scalar C and once an instruction
  * set, with CORE_LANES and KERNELS (the table's name) defined by the build. */
-#include "backend/embree/lanes.h"
+#include "backend/cpu/lanes_tmpl.h"
 
 static void candidates(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                        rblock *out) {
@@ -224,10 +224,10 @@ static void sky_background(const struct core_context *ctx, uint32_t lanes, int x
     }
 }
 
-#include "backend/embree/lists.h"
-#include "backend/embree/picks.h"
-#include "backend/embree/influence.h"
-#include "backend/embree/reference.h"
+#include "backend/cpu/lists_tmpl.h"
+#include "backend/cpu/picks_tmpl.h"
+#include "backend/cpu/influence_tmpl.h"
+#include "backend/cpu/reference_tmpl.h"
 
 const kernels KERNELS = {
     .name = KERNELS_NAME,

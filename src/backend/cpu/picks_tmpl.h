@@ -1,7 +1,7 @@
 /* Candidates of the light pickers (core/alias.h, core/tree.h, light/influence.h), included by kernels.c: a picking step
  * fills a pick_block, `given` evaluates it. */
-#ifndef NOC_EMBREE_PICKS_H
-#define NOC_EMBREE_PICKS_H
+#ifndef NOC_CPU_PICKS_H
+#define NOC_CPU_PICKS_H
 
 #include "core/alias.h"
 #include "core/given.h"
@@ -61,7 +61,7 @@ static void pick_power(const struct core_context *ctx, int x, int y, int m, pick
     }
 }
 
-#include "backend/embree/tree_draws.h"
+#include "backend/cpu/tree_draws_tmpl.h"
 
 static void given(const struct core_context *frame, const gblock *g, uint32_t lanes, int x, int y, int m,
                   const pick_block *picks, rblock *out) {

@@ -1,6 +1,6 @@
 /* Views of the light sampling (noc_aov): gathered while a frame is made, kept once it is complete. Nothing here is
  * reached unless a frame asks for it, and nothing here is read by the passes, so a view cannot change the picture. */
-#include "backend/embree/embree.h"
+#include "backend/cpu/cpu.h"
 
 #include <math.h>
 
@@ -16,23 +16,23 @@ enum {
 /* Buffers that these views take. */
 static uint32_t buffers_of(uint32_t aovs) { return aovs & MOMENTS ? aovs | MOMENTS : aovs; }
 
-size_t noc_embree_view_bytes(uint32_t aovs) {
+size_t noc_cpu_aov_bytes(uint32_t aovs) {
     uint32_t kept = buffers_of(aovs);
     int normal = kept & BIT(NORMAL) ? 2 : 0; /* two more than the one that is counted */
     return sizeof(float) * (size_t)(__builtin_popcount(kept) + __builtin_popcount(kept & GATHERED) + normal);
 }
 
-static void drop(view_buffers *v, int aov) {
+static void drop(aov_buffers *v, int aov) {
     free(v->made[aov]);
     free(v->kept[aov]);
     v->made[aov] = v->kept[aov] = NULL;
     v->held &= ~(1u << aov);
 }
 
-void noc_embree_free_views(view_buffers *v) {
+void noc_cpu_free_aovs(aov_buffers *v) {
     for (int aov = 0; aov < NOC_AOV_COUNT; aov++)
         drop(v, aov);
-    *v = (view_buffers){ 0 };
+    *v = (aov_buffers){ 0 };
 }
 
 /* Entries of a block: a vector's components one after the other. */
@@ -42,8 +42,8 @@ static bool allocate(float (**buffer)[BLOCK], size_t blocks) {
     return *buffer || (*buffer = noc_alloc_large(blocks, sizeof(**buffer))) != NULL;
 }
 
-noc_status noc_embree_begin_views(embree_state *s, uint32_t aovs, bool first_stage) {
-    view_buffers *v = &s->b.views;
+noc_status noc_cpu_begin_aovs(cpu_view *s, uint32_t aovs, bool first_stage) {
+    aov_buffers *v = &s->b.aovs;
     uint32_t need = buffers_of(aovs);
     size_t blocks = (size_t)s->b.blocks_x * s->b.blocks_y;
     if (!first_stage || !(need | v->asked))
@@ -55,7 +55,7 @@ noc_status noc_embree_begin_views(embree_state *s, uint32_t aovs, bool first_sta
             drop(v, aov);
         } else if (!allocate(&v->kept[aov], components(aov) * blocks) ||
                    (gathered && !allocate(&v->made[aov], blocks))) {
-            noc_embree_free_views(v);
+            noc_cpu_free_aovs(v);
             return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for views of %d x %d", s->b.width, s->b.height);
         } else if (gathered) {
             for (size_t i = 0; i < blocks; i++)
@@ -84,9 +84,9 @@ static float expected(const stage_run *run, const worker *w, uint32_t light, int
     return -1;
 }
 
-void noc_embree_view_candidates(const stage_run *run, const worker *w, int i, size_t block, uint32_t lanes,
-                                const rblock *r) {
-    const view_buffers *v = &run->s->b.views;
+void noc_cpu_aov_candidates(const stage_run *run, const worker *w, int i, size_t block, uint32_t lanes,
+                            const rblock *r) {
+    const aov_buffers *v = &run->s->b.aovs;
     bool lists = run->ctx.frame->params->candidates == NOC_CANDIDATES_LISTS;
     for (int l = 0; l < BLOCK; l++) {
         if (!(lanes >> l & 1))
@@ -99,7 +99,7 @@ void noc_embree_view_candidates(const stage_run *run, const worker *w, int i, si
     }
 }
 
-static void keep_reservoirs(view_buffers *v, size_t block, const rblock *r) {
+static void keep_reservoirs(aov_buffers *v, size_t block, const rblock *r) {
     for (int l = 0; l < BLOCK; l++) {
         if (v->kept[NOC_AOV_LIGHT])
             v->kept[NOC_AOV_LIGHT][block][l] = r->w[l] > 0 ? (float)r->light[l] : -1;
@@ -110,7 +110,7 @@ static void keep_reservoirs(view_buffers *v, size_t block, const rblock *r) {
     }
 }
 
-static void keep_surfaces(const noc_scene *scene, view_buffers *v, size_t block, const gblock *g) {
+static void keep_surfaces(const noc_scene *scene, aov_buffers *v, size_t block, const gblock *g) {
     for (int l = 0; l < BLOCK; l++) {
         bool some = g->material[l] != NO_SURFACE;
         if (v->kept[NOC_AOV_DEPTH])
@@ -123,7 +123,7 @@ static void keep_surfaces(const noc_scene *scene, view_buffers *v, size_t block,
 }
 
 /* Mean and squared deviations, a frame at a time (Welford 1962). */
-static void add_moments(view_buffers *v, size_t block, const cblock *c) {
+static void add_moments(aov_buffers *v, size_t block, const cblock *c) {
     float *mean = v->kept[NOC_AOV_ERROR][block], *squares = v->kept[NOC_AOV_VARIANCE][block];
     for (int l = 0; l < BLOCK; l++) {
         float y = 0.2126f * c->rgb[0][l] + 0.7152f * c->rgb[1][l] + 0.0722f * c->rgb[2][l];
@@ -134,14 +134,14 @@ static void add_moments(view_buffers *v, size_t block, const cblock *c) {
 }
 
 struct keep_run {
-    embree_state *s;
+    cpu_view *s;
     const noc_frame *frame;
 };
 
 static void keep_row(void *arg, size_t row, int index) {
     const struct keep_run *run = arg;
     frame_buffers *b = &run->s->b;
-    view_buffers *v = &b->views;
+    aov_buffers *v = &b->aovs;
     (void)index;
     size_t first = row * (size_t)b->blocks_x;
     for (size_t i = first; i < first + (size_t)b->blocks_x; i++) {
@@ -162,8 +162,8 @@ static void keep_row(void *arg, size_t row, int index) {
     }
 }
 
-void noc_embree_keep_views(embree_state *s, const noc_frame *frame) {
-    view_buffers *v = &s->b.views;
+void noc_cpu_keep_aovs(cpu_view *s, const noc_frame *frame) {
+    aov_buffers *v = &s->b.aovs;
     if (!v->asked)
         return;
     for (int aov = 0; aov < NOC_AOV_COUNT; aov++)
@@ -180,9 +180,9 @@ void noc_embree_keep_views(embree_state *s, const noc_frame *frame) {
     v->frames += (v->asked & MOMENTS) != 0;
 }
 
-bool noc_embree_read_view(void *state, noc_aov aov, float *value) {
-    const frame_buffers *b = &((embree_state *)state)->b;
-    const view_buffers *v = &b->views;
+bool noc_cpu_read_aov(void *state, noc_aov aov, float *value) {
+    const frame_buffers *b = &((cpu_view *)state)->b;
+    const aov_buffers *v = &b->aovs;
     if (!(v->held >> aov & 1))
         return false;
     double n = (double)v->frames;
@@ -199,8 +199,8 @@ bool noc_embree_read_view(void *state, noc_aov aov, float *value) {
             double out = v->kept[aov][at][l];
             if (MOMENTS >> aov & 1) {
                 double variance = v->kept[NOC_AOV_VARIANCE][at][l] / (n - 1), mean = v->kept[NOC_AOV_ERROR][at][l];
-                bool none = n < 2 || noc_embree_saw_emitter(b, at, l) ||
-                            b->g[v->gbuffer][at].material[l] == NO_SURFACE || (aov == NOC_AOV_ERROR && !(mean > 0));
+                bool none = n < 2 || noc_cpu_saw_emitter(b, at, l) || b->g[v->gbuffer][at].material[l] == NO_SURFACE ||
+                            (aov == NOC_AOV_ERROR && !(mean > 0));
                 out = none ? -1 : aov == NOC_AOV_ERROR ? sqrt(variance / n) / mean : variance;
             }
             value[to] = isfinite((float)out) ? (float)out : -1;

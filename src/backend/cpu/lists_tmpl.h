@@ -1,9 +1,9 @@
 /* Light lists (core/lists.h), included by kernels.c: a tile's list is built (list_build.h), then every pixel chooses
  * among its entries. */
-#ifndef NOC_EMBREE_LISTS_H
-#define NOC_EMBREE_LISTS_H
+#ifndef NOC_CPU_LISTS_H
+#define NOC_CPU_LISTS_H
 
-#include "backend/embree/list_build.h"
+#include "backend/cpu/list_build_tmpl.h"
 #include "core/lists.h"
 
 FN list_entry list_entry_load(CTX int i) {

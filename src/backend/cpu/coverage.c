@@ -1,9 +1,9 @@
 /* What emitters that are seen directly add to a pixel's mean, apart from the rest. A display needs the two apart: the
  * mean of a lamp and of the wall beside it lies far above white wherever the lamp covers a tenth of the pixel, so edges
  * come out jagged. Few blocks see emitters, so only these have a place. */
-#include "backend/embree/embree.h"
+#include "backend/cpu/cpu.h"
 
-void noc_embree_free_coverage(coverage *c) {
+void noc_cpu_free_coverage(coverage *c) {
     free(c->place);
     array_free(&c->sums);
     *c = (coverage){ 0 };
@@ -11,7 +11,7 @@ void noc_embree_free_coverage(coverage *c) {
 
 static size_t block_count(const frame_buffers *b) { return (size_t)b->blocks_x * b->blocks_y; }
 
-noc_status noc_embree_make_coverage(embree_state *s, const noc_frame *frame) {
+noc_status noc_cpu_make_coverage(cpu_view *s, const noc_frame *frame) {
     coverage *c = &s->b.coverage;
     size_t blocks = block_count(&s->b), places = 0;
     bool ok = c->place || (c->place = noc_alloc_large(blocks, sizeof(*c->place)));
@@ -32,7 +32,7 @@ static void give_places(coverage *c, const uint16_t *emitter, size_t blocks) {
         }
 }
 
-void noc_embree_keep_coverage(embree_state *s, const noc_frame *frame) {
+void noc_cpu_keep_coverage(cpu_view *s, const noc_frame *frame) {
     frame_buffers *b = &s->b;
     coverage *c = &b->coverage;
     const gblock *g = b->g[frame->gbuffer];
@@ -62,12 +62,12 @@ static const coverage_sum *sum_of(const coverage *c, size_t block) {
     return c->place && c->place[block] ? &c->sums.data[c->place[block] - 1] : NULL;
 }
 
-bool noc_embree_saw_emitter(const frame_buffers *b, size_t block, int lane) {
+bool noc_cpu_saw_emitter(const frame_buffers *b, size_t block, int lane) {
     const coverage_sum *sum = sum_of(&b->coverage, block);
     return sum && sum->frames[lane];
 }
 
-void noc_embree_read_coverage(const frame_buffers *b, size_t block, int lane, float out[4]) {
+void noc_cpu_read_coverage(const frame_buffers *b, size_t block, int lane, float out[4]) {
     const coverage *c = &b->coverage;
     const coverage_sum *sum = sum_of(c, block);
     memset(out, 0, 4 * sizeof(*out));

@@ -3,8 +3,8 @@
  * there. That is the density with the least variance for the tile's pixels (Cauchy-Schwarz), where scores are exact: a
  * light that is strong in a corner of the tile only is not forgotten, as it is where it counts by its mean, or by a
  * bound of the whole tile. */
-#ifndef NOC_EMBREE_LIST_SCORES_H
-#define NOC_EMBREE_LIST_SCORES_H
+#ifndef NOC_CPU_LIST_SCORES_H
+#define NOC_CPU_LIST_SCORES_H
 
 #include "core/lists.h"
 

@@ -2,10 +2,10 @@
  * with the highest scores are opened: their 16 children, and in the end the lights of clusters, take their place. The
  * strongest lights are listed; what is left, closed nodes and lights, is what the tail is drawn from. So the work does
  * not grow with the number of lights, only with the number of levels. */
-#ifndef NOC_EMBREE_LIST_BUILD_H
-#define NOC_EMBREE_LIST_BUILD_H
+#ifndef NOC_CPU_LIST_BUILD_H
+#define NOC_CPU_LIST_BUILD_H
 
-#include "backend/embree/list_scores.h"
+#include "backend/cpu/list_scores_tmpl.h"
 
 #include <float.h>
 

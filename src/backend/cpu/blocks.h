@@ -1,7 +1,7 @@
 /* Pixels on the CPU: blocks of 4x4, an array of 16 for every value, so that a wide pass loads neighbouring pixels from
  * consecutive memory and 16 primary rays are one coherent packet. Lane = (y & 3) * 4 + (x & 3). */
-#ifndef NOC_EMBREE_BLOCKS_H
-#define NOC_EMBREE_BLOCKS_H
+#ifndef NOC_CPU_BLOCKS_H
+#define NOC_CPU_BLOCKS_H
 
 #include <stdint.h>
 

@@ -6,7 +6,7 @@
  * neighbour; visibility at the receiving pixel need not be in the weights, since a sample that is occluded there counts
  * as nothing whatever its weight. Without bias rays the targets are unshadowed: unbiased without visibility reuse,
  * biased with. */
-#include "backend/embree/embree.h"
+#include "backend/cpu/cpu.h"
 
 #include "core/random.h"
 #include "core/warp.h"
@@ -73,7 +73,7 @@ static void ask_neighbours(const stage_run *run, const struct core_context *ther
         if (!lanes)
             continue;
         b->asked[i] = lanes;
-        segment_block *s = noc_embree_gather(run, w, b->at, lanes);
+        segment_block *s = noc_cpu_gather(run, w, b->at, lanes);
         memcpy(s->light, pairwise ? b->own->light : c->light, sizeof(s->light));
         if (pairwise)
             run->k->segments(there, &b->n[i].g, b->own->light, b->own->u, b->own->v, &s->rays);
@@ -111,9 +111,9 @@ static void resolve(const stage_run *run, worker *w, int count) {
         if (!lanes)
             continue;
         asked[w->batch.count] = &w->combining[i];
-        noc_embree_gather_segments(run, w, at, lanes, &g[at], r[at].light, r[at].u, r[at].v);
+        noc_cpu_gather_segments(run, w, at, lanes, &g[at], r[at].light, r[at].u, r[at].v);
     }
-    noc_embree_free_many(run->s, w, w->batch.blocks, w->batch.count);
+    noc_cpu_trace_occlusion(run->s, w, w->batch.blocks, w->batch.count);
     for (int i = 0; i < w->batch.count; i++) {
         const segment_block *s = &w->batch.blocks[i];
         asked[i]->visible |= s->clear;
@@ -134,7 +134,7 @@ static void combine(stage_run *run, const struct core_context *there, worker *w,
         if (rays)
             ask_neighbours(run, there, w, &w->combining[i]);
     }
-    noc_embree_free_many(run->s, w, w->batch.blocks, w->batch.count);
+    noc_cpu_trace_occlusion(run->s, w, w->batch.blocks, w->batch.count);
     const segment_block *answer = w->batch.blocks;
     for (int i = 0; i < count; i++) {
         combining *c = &w->combining[i];
@@ -179,10 +179,10 @@ static bool fetch_history(const stage_run *run, const tile_block *block, combini
     return n->lanes != 0;
 }
 
-void noc_embree_temporal(stage_run *run, worker *w, tile t) {
+void noc_cpu_temporal(stage_run *run, worker *w, tile t) {
     const noc_frame *f = run->ctx.frame;
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
-    int n = noc_embree_tile_blocks(run, t, blocks), count = 0;
+    int n = noc_cpu_tile_blocks(run, t, blocks), count = 0;
     if (!f->history)
         return;
     for (int i = 0; i < n; i++) {
@@ -196,7 +196,7 @@ void noc_embree_temporal(stage_run *run, worker *w, tile t) {
         c->visible = run->s->b.visible[run->stage->target][c->at];
         count++;
     }
-    struct core_context past = noc_embree_past(run->s, &run->ctx);
+    struct core_context past = noc_cpu_past(run->s, &run->ctx);
     combine(run, &past, w, count, f->previous.eye, DIM_TEMPORAL);
 }
 
@@ -237,12 +237,12 @@ static void fetch_neighbours(const stage_run *run, const tile_block *block, uint
     }
 }
 
-void noc_embree_spatial(stage_run *run, worker *w, tile t) {
+void noc_cpu_spatial(stage_run *run, worker *w, tile t) {
     frame_buffers *b = &run->s->b;
     uint32_t dim = DIM_SPATIAL + 64u * (uint32_t)run->stage->round;
     int source = run->stage->source, target = run->stage->target;
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
-    int n = noc_embree_tile_blocks(run, t, blocks), count = 0;
+    int n = noc_cpu_tile_blocks(run, t, blocks), count = 0;
     for (int i = 0; i < n; i++) {
         combining *c = &w->combining[count];
         size_t at = blocks[i].at;

@@ -2,7 +2,7 @@
  * tile's list and shares its rays out over them systematically. ris adds up what they see; restir keeps one of those
  * that are seen as the pixel's own reservoir, and where only frames are reused mixes both. How many rays, and which
  * entries, is steered by what earlier frames have learned of the lights' visibility. */
-#include "backend/embree/embree.h"
+#include "backend/cpu/cpu.h"
 
 #include "core/random.h"
 
@@ -12,13 +12,13 @@
 enum { CELL_PIXELS = 32, MOST_ASKED_A_TILE = 16 * BLOCK * TILE_BLOCKS * TILE_BLOCKS };
 _Static_assert(MOST_ASKED_A_TILE <= UINT16_MAX, "counts of a tile fit");
 
-bool noc_embree_shares_rays(const noc_render_params *p) {
+bool noc_cpu_shares_rays(const noc_render_params *p) {
     if (p->candidates != NOC_CANDIDATES_LISTS)
         return false;
     return p->method == NOC_METHOD_RIS || (p->method == NOC_METHOD_RESTIR && p->visibility_reuse && p->final_ray);
 }
 
-static bool learns(const noc_render_params *p) { return noc_embree_shares_rays(p) && p->learn && p->final_ray; }
+static bool learns(const noc_render_params *p) { return noc_cpu_shares_rays(p) && p->learn && p->final_ray; }
 
 /* ---- what is believed ---- */
 
@@ -95,7 +95,7 @@ static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ct
     ray_draw *d = &t->draws[t->count];
     segment_block *s = &t->segments[t->count++];
     const light_list *list = ctx->list;
-    float(*counts)[BLOCK] = run->s->b.views.made[NOC_AOV_RAYS];
+    float(*counts)[BLOCK] = run->s->b.aovs.made[NOC_AOV_RAYS];
     d->block = block;
     s->valid = 0;
     s->counts = counts ? counts[t->at[block]] : NULL;
@@ -172,7 +172,7 @@ static void fill_list(const noc_render_params *p, light_list *list) {
     list->count = once * list->copies;
 }
 
-void noc_embree_share_candidates(stage_run *run, worker *w, const tile_points *points) {
+void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *points) {
     struct core_context ctx = run->ctx;
     frame_buffers *b = &run->s->b;
     tile_rays *t = &w->shared;
@@ -197,7 +197,7 @@ void noc_embree_share_candidates(stage_run *run, worker *w, const tile_points *p
             t->bright += t->weighed.bright[l];
         draw_block(run, t, &ctx, g, n, at.x, at.y, r);
         if (ctx.frame->params->aovs)
-            noc_embree_view_candidates(run, w, n, at.at, lanes, r);
+            noc_cpu_aov_candidates(run, w, n, at.at, lanes, r);
     }
 }
 
@@ -280,10 +280,10 @@ static void blank_hidden(const stage_run *run, const tile_rays *t) {
                 r[t->at[t->draws[i].block]].w[l] = 0;
 }
 
-void noc_embree_share_visibility(stage_run *run, worker *w, tile at) {
+void noc_cpu_share_visibility(stage_run *run, worker *w, tile at) {
     tile_rays *t = &w->shared;
     if (run->ctx.frame->params->final_ray)
-        noc_embree_free_many(run->s, w, t->segments, t->count);
+        noc_cpu_trace_occlusion(run->s, w, t->segments, t->count);
     else
         for (int i = 0; i < t->count; i++)
             t->segments[i].clear = t->segments[i].valid;
@@ -316,10 +316,10 @@ static void share_with_reservoirs(const stage_run *run, tile_rays *t, tile at) {
             t->draws[i].r.w[l] *= 1 - t->reused[t->draws[i].block][l];
 }
 
-void noc_embree_share_shade(stage_run *run, worker *w, tile at) {
+void noc_cpu_share_shade(stage_run *run, worker *w, tile at) {
     tile_rays *t = &w->shared;
     if (!(run->stage->passes >> NOC_PASS_VISIBILITY & 1))
-        noc_embree_share_visibility(run, w, at);
+        noc_cpu_share_visibility(run, w, at);
     if (run->ctx.frame->params->method == NOC_METHOD_RESTIR)
         share_with_reservoirs(run, t, at);
     const gblock *g = run->s->b.g[run->ctx.frame->gbuffer];
@@ -333,7 +333,7 @@ void noc_embree_share_shade(stage_run *run, worker *w, tile at) {
 
 /* ---- learning ---- */
 
-noc_status noc_embree_begin_learning(embree_state *s, const noc_frame *frame) {
+noc_status noc_cpu_begin_learning(cpu_view *s, const noc_frame *frame) {
     size_t tiles = (size_t)s->b.tiles_x * s->b.tiles_y;
     if (!learns(frame->params))
         return NOC_OK;
@@ -344,7 +344,7 @@ noc_status noc_embree_begin_learning(embree_state *s, const noc_frame *frame) {
         if (s->learned && !s->sightings)
             noc_error(s->log, NOC_ERR_MEMORY, "lights: no memory to learn their visibility in %zu tiles", tiles);
         if (!s->sightings) {
-            noc_embree_release_learning(s);
+            noc_cpu_release_learning(s);
             return NOC_ERR_MEMORY;
         }
     }
@@ -357,7 +357,7 @@ noc_status noc_embree_begin_learning(embree_state *s, const noc_frame *frame) {
     return NOC_OK;
 }
 
-void noc_embree_end_learning(embree_state *s, const noc_frame *frame) {
+void noc_cpu_end_learning(cpu_view *s, const noc_frame *frame) {
     size_t tiles = (size_t)s->b.tiles_x * s->b.tiles_y;
     double bright = 0;
     if (!learns(frame->params))
@@ -371,7 +371,7 @@ void noc_embree_end_learning(embree_state *s, const noc_frame *frame) {
     s->list_brightness = (float)(bright / ((double)s->b.width * s->b.height));
 }
 
-void noc_embree_release_learning(embree_state *s) {
+void noc_cpu_release_learning(cpu_view *s) {
     noc_learned_destroy(s->learned);
     free(s->learned_tiles);
     free(s->sightings);

@@ -5,8 +5,8 @@
  * T entries on average, which makes one entry worth T / (n p). Several entries of one light become one of that many
  * times the weight. With no more lights than rays every light gets its own. Lights are summed in chunks, so that the
  * second walk only evaluates the chunks that hold a threshold. */
-#ifndef NOC_EMBREE_REFERENCE_H
-#define NOC_EMBREE_REFERENCE_H
+#ifndef NOC_CPU_REFERENCE_H
+#define NOC_CPU_REFERENCE_H
 
 FN real reference_target(CTX surf s, u32 key, uint32_t i) {
     u32 place = rng_bits(key, KU(DIM_CANDIDATE + i));

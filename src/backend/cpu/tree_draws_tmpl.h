@@ -2,8 +2,8 @@
  * time. An item is a pixel at a pair of nodes with some of its draws; whatever pixels they belong to, LANES items are
  * split at once, and their pairs are known, and asked for, long before they are needed. Which item is split when does
  * not matter: the result is that of core/tree.h, to the bit. */
-#ifndef NOC_EMBREE_TREE_DRAWS_H
-#define NOC_EMBREE_TREE_DRAWS_H
+#ifndef NOC_CPU_TREE_DRAWS_H
+#define NOC_CPU_TREE_DRAWS_H
 
 #include "core/tree.h"
 

@@ -1,7 +1,7 @@
 /* Searching the hierarchy of influence volumes (light/influence.h), 16 children or volumes at a time; included by
  * kernels.c. All volumes that could hold a point of the box, and some more; always in the same order. */
-#ifndef NOC_EMBREE_INFLUENCE_NEAR_H
-#define NOC_EMBREE_INFLUENCE_NEAR_H
+#ifndef NOC_CPU_INFLUENCE_NEAR_H
+#define NOC_CPU_INFLUENCE_NEAR_H
 
 #include "core/influence.h"
 

@@ -3,10 +3,10 @@
  * Points of a tile that lie close together ask as one, 16 volumes against the box around them, and share a list of
  * lights: a hundredth of the tests, and lights that stay in the cache. Of the lights whose volumes hold them they list
  * the strongest, as many as draw best there (light/influence_rule.h). With an S_r that the user gave they list all. */
-#ifndef NOC_EMBREE_INFLUENCE_H
-#define NOC_EMBREE_INFLUENCE_H
+#ifndef NOC_CPU_INFLUENCE_H
+#define NOC_CPU_INFLUENCE_H
 
-#include "backend/embree/influence_near.h"
+#include "backend/cpu/influence_near_tmpl.h"
 
 /* Points are close that are within so much of the reach of the scene's median light. */
 static const float influence_close = 0.125f;

@@ -1,0 +1,304 @@
+/* State of the CPU backend: a device, the worlds on it (a scene each), and the views of each world. */
+#ifndef NOC_CPU_H
+#define NOC_CPU_H
+
+#include "backend/cpu/backend.h"
+#include "backend/cpu/kernels.h"
+#include "backend/cpu/tracer.h"
+#include "light/learned.h"
+#include "light/set.h"
+
+#include <stdatomic.h>
+
+/* Numbers of lights found are told apart up to that; 64 k bins take half a megabyte a thread. */
+enum { FOUND_MOST = 1 << 16 };
+enum { TILE_BLOCKS = 4 }; /* a tile is 4x4 blocks: 16x16 pixels */
+_Static_assert((int)NOC_QUERY_BLOCKS == TILE_BLOCKS * TILE_BLOCKS && (int)NOC_QUERY_POINTS == (int)BLOCK,
+               "a tile's points ask together");
+/* A packet kept for the trace floor. Shadow rays that were traced in one call lie one after the other. */
+typedef struct packet {
+    segment_block block;
+    int together; /* so many of them from here on were one call */
+    bool primary;
+} packet;
+
+/* ris over lists: rays of one block, a lane each. */
+typedef struct ray_draw {
+    rblock r;             /* w: W, 0 where the ray was blocked; m and p are not used */
+    uint8_t entry[BLOCK]; /* of the list */
+    int block;            /* of the tile */
+    int rays;             /* the block has so many of them, one after the other */
+} ray_draw;
+
+/* What is believed in a cell of the scene, and what its rays find. */
+typedef struct tile_cell {
+    uint64_t key;
+    beliefs beliefs;
+    uint16_t asked[2 * LIST_ENTRIES], seen[2 * LIST_ENTRIES];
+} tile_cell;
+
+/* Segments of a tile's blocks, gathered to be traced in company. */
+typedef struct segment_batch {
+    int count;
+    segment_block blocks[TILE_BLOCKS * TILE_BLOCKS * MAX_NEIGHBOURS];
+} segment_batch;
+
+/* A block whose reservoirs are being combined with others': reuse.c. */
+typedef struct combining {
+    size_t at; /* in the picture */
+    int x, y;  /* pixel of lane 0 */
+    const rblock *own;
+    uint32_t visible;               /* lanes whose sample is known to be seen from its pixel */
+    int k;                          /* neighbours */
+    uint32_t asked[MAX_NEIGHBOURS]; /* lanes that a ray from the neighbour was asked for */
+    uint32_t seen[MAX_NEIGHBOURS];  /* lanes whose sample counts as seen from the neighbour */
+    combination c;
+    neighbour n[MAX_NEIGHBOURS];
+} combining;
+
+/* What the passes of one tile hand on to each other. */
+typedef struct tile_rays {
+    weighed weighed;                      /* of the block at hand */
+    size_t at[TILE_BLOCKS * TILE_BLOCKS]; /* the tile's blocks in the picture */
+    int cell_of[TILE_BLOCKS * TILE_BLOCKS];
+    int kept[TILE_BLOCKS * TILE_BLOCKS][BLOCK]; /* the draw that stands for a pixel in views */
+    int cells, count;
+    /* restir: what of a pixel's light is its reservoir's; its rays have the rest */
+    float reused[TILE_BLOCKS * TILE_BLOCKS][BLOCK];
+    double bright;
+    tile_cell cell[TILE_BLOCKS * TILE_BLOCKS];
+    ray_draw draws[TILE_BLOCKS * TILE_BLOCKS * MOST_SHADOW_RAYS];
+    segment_block segments[TILE_BLOCKS * TILE_BLOCKS * MOST_SHADOW_RAYS];
+} tile_rays;
+
+/* Where a tile's sightings are. */
+typedef struct learned_tile {
+    int worker;
+    size_t first, count;
+    double bright; /* sum of what its pixels are expected to see, cd/m2 */
+} learned_tile;
+
+/* One a thread; a multiple of a cache line apart. */
+typedef struct worker {
+    ALIGNED double seconds[NOC_PASS_COUNT];
+    uint64_t rays_primary, rays_shadow, dropped;
+    combining *combining; /* of a tile's blocks */
+    segment_batch batch;
+    reference_scratch reference;
+    list_scratch lists;
+    tile_rays shared;
+    NOC_ARRAY(noc_sighting) sightings; /* of the frame being made */
+    pick_block picks;
+    tree_items tree_items[2];
+    noc_found found; /* bvh: by a tile */
+    /* [found_bins] surfaces of the frame by the number of lights found; NULL: never asked */
+    uint64_t *found_counts;
+    bool no_memory;  /* was refused to a tile: the frame is dropped */
+    packet *packets; /* kept while recording */
+    size_t packet_count, packet_room;
+    bool packets_lost; /* there was no memory for all of them */
+} worker;
+
+/* Views (noc_aov): those of the frame being made, and of the last complete one. Entries that are not asked for are
+ * NULL. */
+typedef struct aov_buffers {
+    float (*made[NOC_AOV_COUNT])[BLOCK], (*kept[NOC_AOV_COUNT])[BLOCK];
+    uint32_t asked, held; /* bits: buffers that the frame being made works on, that a complete frame has left */
+    uint64_t frames;      /* in the moments of the luminance */
+    int gbuffer;          /* of the last complete frame */
+} aov_buffers;
+
+/* Sums over the frames of the mean, of those in which a lane saw an emitter: coverage.c. */
+typedef struct coverage_sum {
+    float rgb[3][BLOCK];
+    uint32_t frames[BLOCK];
+} coverage_sum;
+
+typedef struct coverage {
+    uint32_t *place; /* [blocks] index + 1 in sums, 0: saw none; NULL: no frame yet */
+    NOC_ARRAY(coverage_sum) sums;
+    uint64_t frames; /* of the mean */
+} coverage;
+
+/* Buffers of one picture; every array has an entry a block. */
+typedef struct frame_buffers {
+    int width, height, sets;
+    int blocks_x, blocks_y, tiles_x, tiles_y;
+    gblock *g[2];
+    rblock *r[NOC_RESERVOIR_SETS];
+    uint16_t *visible[NOC_RESERVOIR_SETS]; /* lanes whose sample is known to be seen from its own pixel */
+    cblock *colour;                        /* of the frame being made */
+    cblock *picture;                       /* mean, or last frame */
+    uint16_t *emitter;                     /* lanes that see an emitter in the frame being made */
+    coverage coverage;
+    aov_buffers aovs;
+    size_t bytes;
+} frame_buffers;
+
+/* Threads and a ray tracer, shared by all worlds. */
+typedef struct cpu_device {
+    noc_log *log;
+    noc_pool *pool;
+    const noc_tracer *tracer;
+    void *rays; /* the tracer's device */
+} cpu_device;
+
+/* A scene on a device: its ray tracing structure, and what light candidates are drawn from. */
+typedef struct cpu_world {
+    cpu_device *device;
+    const noc_scene *scene;
+    noc_log *log;
+    void *rays; /* the tracer's structure */
+    double build_seconds;
+    float stand_off;                 /* of shadow rays at least, m */
+    noc_material_record no_material; /* stands in where the scene has none */
+    noc_light_set *lights;
+} cpu_world;
+
+/* One picture of a world, with its buffers, its history and the scratch of each thread. */
+typedef struct cpu_view {
+    cpu_world *world;
+    const noc_scene *scene; /* of the world, as are the next two */
+    noc_log *log;
+    noc_pool *pool;
+    noc_light_sources sources; /* of the last frame */
+    frame_buffers b;
+    /* of a worker: from 0 to the number of lights; the last of FOUND_MOST + 1 counts what finds more too */
+    uint32_t found_bins;
+    noc_learned *learned; /* for pictures of this size */
+    learned_tile *learned_tiles;
+    noc_sightings *sightings; /* of the frame's tiles */
+    float list_brightness;    /* mean luminance that the last frame expected, cd/m2; 0: not known */
+    /* all lights as they were in the last frame that left reservoirs; NULL: never needed */
+    noc_light_record *past_lights;
+    uint64_t past_moves; /* of the scene at that frame */
+    bool past_filled;    /* past_lights has been written */
+    worker *workers;
+    int worker_count;
+    bool recording;
+    const kernels *kernels; /* of the last stage */
+    int shaded_set;         /* reservoirs that the last frame shaded */
+} cpu_view;
+
+/* A stage at work: what every tile needs. */
+typedef struct stage_run {
+    cpu_view *s;
+    struct core_context ctx;
+    const noc_stage *stage;
+    const kernels *k;
+    const noc_progress *progress;
+    const char *what;
+    double from, to;
+    size_t tiles;
+    atomic_size_t done;
+    atomic_bool cancelled;
+} stage_run;
+
+/* The blocks of a tile, one after the other. */
+typedef struct tile {
+    int x0, y0, x1, y1; /* blocks */
+} tile;
+
+typedef struct tile_block {
+    size_t at; /* in the picture */
+    int x, y;  /* pixel of lane 0 */
+} tile_block;
+
+/* The surfaces that the blocks of a tile see. */
+typedef struct tile_points {
+    int count;
+    tile_block block[TILE_BLOCKS * TILE_BLOCKS];
+    const gblock *g[TILE_BLOCKS * TILE_BLOCKS];
+    uint32_t lanes[TILE_BLOCKS * TILE_BLOCKS];
+} tile_points;
+
+/* device.c */
+size_t noc_cpu_rays_bytes(const cpu_world *world); /* of the ray tracing structure */
+/* rays.c: what the tracer answers, and the book-keeping around it */
+/* Traces the segments of many blocks, the more the better up to MANY_BLOCKS. Sets `clear`, which is 0 outside `valid`.
+ * Counts rays where each block says, and keeps them when recording. */
+void noc_cpu_trace_occlusion(cpu_view *s, worker *w, segment_block *blocks, int count);
+/* Nearest hits of camera rays into a block; lanes outside `valid` see nothing.
+ * object: of each lane, -1 where there is none; may be NULL. */
+void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g, float *object);
+void noc_cpu_probe(void *user, noc_probes *probes); /* a noc_probe_fn; user is the cpu_world */
+noc_status noc_cpu_replay_rays(cpu_view *s, double *seconds);
+
+/* lights.c: what the candidates of these parameters are drawn from */
+noc_status noc_cpu_prepare_lights(cpu_view *s, const noc_render_params *p);
+void noc_cpu_release_lights(cpu_view *s);
+void noc_cpu_forget_found(cpu_view *s); /* of the last frame, before candidates are drawn */
+/* moved.c: lights that move */
+/* Room for the lights of the previous frame, where a frame with these parameters will want them. */
+noc_status noc_cpu_prepare_past(cpu_view *s, const noc_render_params *p);
+/* After a frame: its reservoirs were made with the lights as they are now. */
+void noc_cpu_keep_lights(cpu_view *s);
+/* The context that the previous frame's targets and visibility are asked of: *now with its lights. */
+struct core_context noc_cpu_past(const cpu_view *s, const struct core_context *now);
+size_t noc_cpu_past_bytes(const cpu_view *s);
+size_t noc_cpu_light_bytes(const cpu_world *world);
+
+/* passes.c: one pass over one tile */
+void noc_cpu_pass(stage_run *run, worker *w, noc_pass pass, tile t);
+/* The blocks of a tile in their order; returns how many. */
+int noc_cpu_tile_blocks(const stage_run *run, tile t, tile_block out[TILE_BLOCKS * TILE_BLOCKS]);
+/* The next block of w->batch, for noc_cpu_trace_occlusion: `valid` lanes are to be traced, counted for block `at` of
+ * the picture. The rays are left to the caller; or they are segments from the surfaces of g to samples. */
+segment_block *noc_cpu_gather(const stage_run *run, worker *w, size_t at, uint32_t valid);
+void noc_cpu_gather_segments(const stage_run *run, worker *w, size_t at, uint32_t valid, const gblock *g,
+                             const uint32_t *light, const float *u, const float *v);
+
+/* list_rays.c: the passes of a tile where every pixel shares out several rays over its list, after the list was built
+ * into w->lists.list */
+bool noc_cpu_shares_rays(const noc_render_params *p);
+void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *points);
+void noc_cpu_share_visibility(stage_run *run, worker *w, tile t);
+void noc_cpu_share_shade(stage_run *run, worker *w, tile t);
+/* Before a frame's first stage, and when the frame is complete; one that is dropped is not learned from. */
+noc_status noc_cpu_begin_learning(cpu_view *s, const noc_frame *frame);
+void noc_cpu_end_learning(cpu_view *s, const noc_frame *frame);
+void noc_cpu_release_learning(cpu_view *s);
+
+/* reuse.c: temporal and spatial combination of a tile's blocks */
+void noc_cpu_temporal(stage_run *run, worker *w, tile t);
+void noc_cpu_spatial(stage_run *run, worker *w, tile t);
+
+/* aov.c */
+noc_status noc_cpu_begin_aovs(cpu_view *s, uint32_t aovs, bool first_stage);
+/* What the candidates of a block were, as far as the frame asks; r: the reservoirs they ended in. */
+void noc_cpu_aov_candidates(const stage_run *run, const worker *w, int i, size_t block, uint32_t lanes,
+                            const rblock *r);
+void noc_cpu_keep_aovs(cpu_view *s, const noc_frame *frame); /* the frame is complete */
+
+/* coverage.c: what emitters that are seen directly add to the mean */
+/* room for the frame, when its shading is done */
+noc_status noc_cpu_make_coverage(cpu_view *s, const noc_frame *frame);
+void noc_cpu_keep_coverage(cpu_view *s, const noc_frame *frame);                          /* the frame is complete */
+void noc_cpu_read_coverage(const frame_buffers *b, size_t block, int lane, float out[4]); /* as noc_image.coverage */
+bool noc_cpu_saw_emitter(const frame_buffers *b, size_t block, int lane);                 /* in a frame of the mean */
+void noc_cpu_free_coverage(coverage *c);
+void noc_cpu_free_aovs(aov_buffers *aovs);
+size_t noc_cpu_aov_bytes(uint32_t aovs); /* a pixel */
+
+static inline uint32_t lanes_inside(const frame_buffers *b, int bx, int by) {
+    uint32_t lanes = 0;
+    for (int l = 0; l < BLOCK; l++)
+        lanes |= (uint32_t)(bx * BLOCK_SIDE + (l & 3) < b->width && by * BLOCK_SIDE + (l >> 2) < b->height) << l;
+    return lanes;
+}
+
+static inline uint32_t lanes_with_surface(const gblock *g) {
+    uint32_t lanes = 0;
+    for (int l = 0; l < BLOCK; l++)
+        lanes |= (uint32_t)(g->material[l] != NO_SURFACE) << l;
+    return lanes;
+}
+
+static inline uint32_t lanes_with_sample(const rblock *r) {
+    uint32_t lanes = 0;
+    for (int l = 0; l < BLOCK; l++)
+        lanes |= (uint32_t)(r->w[l] > 0) << l;
+    return lanes;
+}
+
+#endif

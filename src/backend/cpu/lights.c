@@ -1,0 +1,150 @@
+/* What the candidates of a view are drawn from, and the scratch that drawing takes. */
+#include "backend/cpu/cpu.h"
+
+enum { MAX_DRAWS = 1024 + PICK_AHEAD };
+
+static noc_status prepare_picks(cpu_view *s) {
+    for (int i = 0; i < s->worker_count; i++) {
+        pick_block *p = &s->workers[i].picks;
+        if (!p->light)
+            p->light = noc_alloc_large(MAX_DRAWS, sizeof(*p->light));
+        if (!p->inverse)
+            p->inverse = noc_alloc_large(MAX_DRAWS, sizeof(*p->inverse));
+        if (!p->light || !p->inverse)
+            return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for light candidates");
+    }
+    return NOC_OK;
+}
+
+static noc_status prepare_tree_items(cpu_view *s) {
+    for (int i = 0; i < 2 * s->worker_count; i++) {
+        tree_items *t = &s->workers[i / 2].tree_items[i % 2];
+        t->pair = t->pair ? t->pair : noc_alloc_large(TREE_ITEMS, sizeof(*t->pair));
+        t->what = t->what ? t->what : noc_alloc_large(TREE_ITEMS, sizeof(*t->what));
+        t->pmf = t->pmf ? t->pmf : noc_alloc_large(TREE_ITEMS, sizeof(*t->pmf));
+        if (!t->pair || !t->what || !t->pmf)
+            return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for light candidates");
+    }
+    return NOC_OK;
+}
+
+static noc_status prepare_found(cpu_view *s) {
+    s->found_bins = (uint32_t)NOC_MIN(s->scene->lights.len, (size_t)FOUND_MOST) + 1;
+    for (int i = 0; i < s->worker_count; i++) {
+        uint64_t **counts = &s->workers[i].found_counts;
+        if (!*counts && !(*counts = noc_alloc_large(s->found_bins, sizeof(**counts))))
+            return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory to count the lights that are found");
+    }
+    return NOC_OK;
+}
+
+static bool draws_candidates(const noc_render_params *p) {
+    return p->method == NOC_METHOD_RIS || p->method == NOC_METHOD_RESTIR;
+}
+
+/* Scratch that the candidates of a frame want. */
+static noc_status prepare_scratch(cpu_view *s, noc_candidates candidates) {
+    noc_status status = NOC_OK;
+    if (candidates == NOC_CANDIDATES_UNIFORM || candidates == NOC_CANDIDATES_LISTS)
+        return NOC_OK;
+    if (candidates == NOC_CANDIDATES_INFLUENCE)
+        status = prepare_found(s);
+    if (candidates == NOC_CANDIDATES_LIGHT_BVH)
+        status = prepare_tree_items(s);
+    return status == NOC_OK ? prepare_picks(s) : status;
+}
+
+noc_status noc_cpu_prepare_lights(cpu_view *s, const noc_render_params *p) {
+    if (!draws_candidates(p))
+        return NOC_OK;
+    noc_status status = noc_light_set_get(s->world->lights, p->candidates, p, &s->sources);
+    return status == NOC_OK ? prepare_scratch(s, p->candidates) : status;
+}
+
+void noc_cpu_release_lights(cpu_view *s) {
+    noc_light_set_release(s->world->lights, &s->sources);
+    free(s->past_lights);
+    for (int i = 0; i < s->worker_count; i++) {
+        worker *w = &s->workers[i];
+        free(w->picks.light);
+        free(w->picks.inverse);
+        noc_found_free(&w->found);
+        free(w->found_counts);
+        for (int k = 0; k < 2; k++) {
+            free(w->tree_items[k].pair);
+            free(w->tree_items[k].what);
+            free(w->tree_items[k].pmf);
+        }
+    }
+}
+
+void noc_cpu_forget_found(cpu_view *s) {
+    for (int i = 0; i < s->worker_count; i++) {
+        worker *w = &s->workers[i];
+        if (w->found_counts)
+            memset(w->found_counts, 0, s->found_bins * sizeof(*w->found_counts));
+    }
+}
+
+size_t noc_cpu_light_bytes(const cpu_world *world) {
+    size_t bytes = 0;
+    for (int c = 0; c <= NOC_CANDIDATES_LIGHT_BVH; c++)
+        bytes += noc_light_set_bytes(world->lights, (noc_candidates)c);
+    return bytes;
+}
+
+static size_t scene_bytes(const noc_scene *s) {
+    return s->positions.len * sizeof(float) +
+           (s->indices.len + s->triangle_material.len + s->triangle_light.len) * sizeof(uint32_t) +
+           s->material_records.len * sizeof(noc_material_record) + s->lights.len * sizeof(noc_light_record);
+}
+
+/* Surfaces of the frame that found so many lights. */
+static uint64_t surfaces_finding(const cpu_view *s, uint32_t lights) {
+    uint64_t sum = 0;
+    for (int i = 0; i < s->worker_count; i++)
+        sum += s->workers[i].found_counts ? s->workers[i].found_counts[lights] : 0;
+    return sum;
+}
+
+/* The number of lights that a share of the surfaces does not exceed. */
+static uint32_t percentile(const cpu_view *s, uint64_t surfaces, double share) {
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < s->found_bins; i++)
+        if ((sum += surfaces_finding(s, i)) > share * (double)surfaces)
+            return i;
+    return 0;
+}
+
+void noc_cpu_light_stats(void *view, const noc_render_params *p, noc_light_stats *out) {
+    cpu_view *s = view;
+    out->lights = s->scene->lights.len;
+    out->scene_bytes = scene_bytes(s->scene) + noc_cpu_rays_bytes(s->world);
+    if (!p || !draws_candidates(p))
+        return;
+    out->candidates = p->candidates;
+    out->build_seconds = noc_light_set_seconds(s->world->lights, p->candidates);
+    out->bytes = noc_light_set_bytes(s->world->lights, p->candidates);
+    if (p->candidates != NOC_CANDIDATES_INFLUENCE || !s->sources.influence)
+        return;
+    out->influence = p->influence > 0 ? p->influence : s->sources.influence->scale;
+    out->volumes = s->sources.influence->volume_count;
+    out->volumes_seconds = s->sources.influence->seconds[NOC_STEP_VOLUMES];
+    out->tuning_seconds = s->sources.influence->seconds[NOC_STEP_TUNING];
+    out->hierarchy_seconds = s->sources.influence->seconds[NOC_STEP_HIERARCHY];
+    out->boxes_seconds = s->sources.influence->seconds[NOC_STEP_BOXES];
+    for (uint32_t k = 0; k < s->found_bins; k++)
+        out->surfaces += surfaces_finding(s, k);
+    if (!out->surfaces)
+        return;
+    out->found_none = (double)surfaces_finding(s, 0) / (double)out->surfaces;
+    out->found_median = percentile(s, out->surfaces, 0.5);
+    out->found_99 = percentile(s, out->surfaces, 0.99);
+}
+
+noc_status noc_cpu_influence(void *view, const noc_render_params *params, const struct noc_influence **volumes) {
+    cpu_view *s = view;
+    noc_status status = noc_light_set_get(s->world->lights, NOC_CANDIDATES_INFLUENCE, params, &s->sources);
+    *volumes = s->sources.influence;
+    return status;
+}

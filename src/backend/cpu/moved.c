@@ -1,0 +1,37 @@
+/* Lights that move: the previous frame's are kept for temporal reuse. */
+#include "backend/cpu/cpu.h"
+
+/* Does a frame with these parameters leave reservoirs to one that may see other lights? */
+static bool needs_past(const cpu_view *s, const noc_render_params *p) {
+    return s->scene->moving.len && p->method == NOC_METHOD_RESTIR && p->temporal && p->bias != NOC_BIAS_BIASED;
+}
+
+noc_status noc_cpu_prepare_past(cpu_view *s, const noc_render_params *p) {
+    size_t n = s->scene->lights.len;
+    if (!needs_past(s, p) || s->past_lights || (s->past_lights = noc_alloc_large(n, sizeof(*s->past_lights))))
+        return NOC_OK;
+    return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for the previous frame's %zu lights", n);
+}
+
+void noc_cpu_keep_lights(cpu_view *s) {
+    const noc_scene *scene = s->scene;
+    if (!s->past_lights || (s->past_filled && s->past_moves == scene->moves))
+        return;
+    if (!s->past_filled)
+        memcpy(s->past_lights, scene->lights.data, scene->lights.len * sizeof(*s->past_lights));
+    for (size_t i = 0; i < scene->moving.len; i++)
+        s->past_lights[scene->moving.data[i]] = scene->lights.data[scene->moving.data[i]];
+    s->past_filled = true;
+    s->past_moves = scene->moves;
+}
+
+struct core_context noc_cpu_past(const cpu_view *s, const struct core_context *now) {
+    struct core_context past = *now;
+    if (s->past_filled && s->past_moves != s->scene->moves)
+        past.lights = s->past_lights;
+    return past;
+}
+
+size_t noc_cpu_past_bytes(const cpu_view *s) {
+    return s->past_lights ? s->scene->lights.len * sizeof(*s->past_lights) : 0;
+}

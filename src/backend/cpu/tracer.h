@@ -1,0 +1,41 @@
+/* The seam to what traces rays for the CPU: one table a ray tracing library. Rays come and go in blocks of 16. */
+#ifndef NOC_CPU_TRACER_H
+#define NOC_CPU_TRACER_H
+
+#include "backend/cpu/blocks.h"
+#include "scene/scene.h"
+
+enum { MANY_BLOCKS = 32 }; /* whose segments are traced together */
+
+/* Segments of 16 pixels to be traced together with those of other blocks. */
+typedef struct segment_block {
+    rayblock rays;
+    uint32_t light[BLOCK]; /* what each leads to: any number will do, equal ones are traced together */
+    uint32_t valid, clear; /* lanes to be traced; those of them that nothing blocks */
+    float *counts;         /* of the block's pixels, for the AOV that counts rays, or NULL */
+} segment_block;
+
+/* Nearest hits. */
+typedef struct hitblock {
+    ALIGNED uint32_t triangle[BLOCK]; /* of the scene; NO_HIT */
+    float u[BLOCK], v[BLOCK];         /* barycentric, of the second and the third corner */
+    float t[BLOCK];                   /* along the ray's direction, in its lengths */
+} hitblock;
+#define NO_HIT UINT32_MAX
+
+typedef struct noc_tracer {
+    const char *name;
+    /* threads: of builds. *device is only set on success; errors are reported. */
+    noc_status (*open)(int threads, noc_log *log, void **device);
+    void (*close)(void *device);
+    /* The ray tracing structure of a scene, which is not copied. */
+    noc_status (*build)(void *device, const noc_scene *scene, noc_log *log, void **structure);
+    void (*release)(void *structure);
+    size_t (*bytes)(const void *structure);
+    /* coherent: the rays are a camera's. far: tfar of all rays. */
+    void (*closest)(void *structure, const rayblock *rays, float far, uint32_t valid, bool coherent, hitblock *hits);
+    /* Sets `clear` of up to MANY_BLOCKS blocks. */
+    void (*occluded)(void *structure, segment_block *blocks, int count);
+} noc_tracer;
+
+#endif

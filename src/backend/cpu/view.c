@@ -1,0 +1,188 @@
+/* A view: its buffers, the scratch of its threads, the picture that is read from it. */
+#include "backend/cpu/cpu.h"
+
+static void free_buffers(frame_buffers *b) {
+    for (int i = 0; i < 2; i++)
+        free(b->g[i]);
+    for (int i = 0; i < NOC_RESERVOIR_SETS; i++) {
+        free(b->r[i]);
+        free(b->visible[i]);
+    }
+    free(b->colour);
+    free(b->picture);
+    free(b->emitter);
+    noc_cpu_free_coverage(&b->coverage);
+    noc_cpu_free_aovs(&b->aovs);
+    *b = (frame_buffers){ 0 };
+}
+
+static void free_workers(cpu_view *s) {
+    for (int i = 0; i < s->worker_count; i++) {
+        worker *w = &s->workers[i];
+        free(w->combining);
+        free(w->reference.sums);
+        free(w->reference.light);
+        free(w->reference.w);
+        free(w->packets);
+    }
+    free(s->workers);
+}
+
+static noc_status create_workers(cpu_view *s) {
+    s->worker_count = noc_pool_threads(s->pool);
+    s->workers = noc_alloc_large((size_t)s->worker_count, sizeof(worker));
+    bool ok = s->workers != NULL;
+    if (!ok)
+        s->worker_count = 0;
+    size_t chunks = s->scene->lights.len / REFERENCE_CHUNK + 1;
+    for (int i = 0; i < s->worker_count; i++) {
+        worker *w = &s->workers[i];
+        w->combining = noc_alloc_large(TILE_BLOCKS * TILE_BLOCKS, sizeof(*w->combining));
+        w->reference.sums = noc_alloc_large(chunks, sizeof(*w->reference.sums));
+        w->reference.light = noc_alloc_large(1024, sizeof(*w->reference.light));
+        w->reference.w = noc_alloc_large(1024, sizeof(*w->reference.w));
+        ok = ok && w->combining && w->reference.sums && w->reference.light && w->reference.w;
+    }
+    return ok ? NOC_OK : noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory for %zu lights", s->scene->lights.len);
+}
+
+void noc_cpu_view_destroy(void *state) {
+    cpu_view *s = state;
+    if (!s)
+        return;
+    noc_cpu_release_lights(s);
+    noc_cpu_release_learning(s);
+    free_buffers(&s->b);
+    free_workers(s);
+    free(s);
+}
+
+noc_status noc_cpu_view_create(void *world, void **state) {
+    cpu_world *of = world;
+    cpu_view *s = noc_calloc(1, sizeof(*s));
+    if (!s)
+        return noc_no_memory(of->log, "view");
+    s->world = of;
+    s->scene = of->scene;
+    s->log = of->log;
+    s->pool = of->device->pool;
+    s->kernels = noc_pick_kernels(NOC_ISA_AUTO);
+    noc_status status = create_workers(s);
+    if (status != NOC_OK) {
+        noc_cpu_view_destroy(s);
+        return status;
+    }
+    *state = s;
+    return NOC_OK;
+}
+
+static size_t bytes_a_block(int sets) {
+    return 2 * sizeof(gblock) + (size_t)sets * (sizeof(rblock) + sizeof(uint16_t)) + 2 * sizeof(cblock) +
+           sizeof(uint16_t);
+}
+
+static bool allocate_sets(frame_buffers *b, int sets) {
+    size_t blocks = (size_t)b->blocks_x * b->blocks_y;
+    for (; b->sets < sets; b->sets++) {
+        b->r[b->sets] = noc_alloc_large(blocks, sizeof(rblock));
+        b->visible[b->sets] = noc_alloc_large(blocks, sizeof(uint16_t));
+        if (!b->r[b->sets] || !b->visible[b->sets])
+            return false;
+    }
+    return true;
+}
+
+static bool allocate_picture(frame_buffers *b) {
+    size_t blocks = (size_t)b->blocks_x * b->blocks_y;
+    for (int i = 0; i < 2; i++)
+        if (!(b->g[i] = noc_alloc_large(blocks, sizeof(gblock))))
+            return false;
+    return (b->colour = noc_alloc_large(blocks, sizeof(cblock))) &&
+           (b->picture = noc_alloc_large(blocks, sizeof(cblock))) &&
+           (b->emitter = noc_alloc_large(blocks, sizeof(uint16_t)));
+}
+
+noc_status noc_cpu_view_resize(void *state, int width, int height, int sets) {
+    cpu_view *s = state;
+    frame_buffers *b = &s->b;
+    bool ok = true;
+    if (b->width != width || b->height != height) {
+        free_buffers(b);
+        b->blocks_x = (width + BLOCK_SIDE - 1) / BLOCK_SIDE;
+        b->blocks_y = (height + BLOCK_SIDE - 1) / BLOCK_SIDE;
+        b->tiles_x = (b->blocks_x + TILE_BLOCKS - 1) / TILE_BLOCKS;
+        b->tiles_y = (b->blocks_y + TILE_BLOCKS - 1) / TILE_BLOCKS;
+        b->width = width;
+        b->height = height;
+        ok = allocate_picture(b);
+    }
+    size_t bytes = (size_t)b->blocks_x * b->blocks_y * bytes_a_block(sets);
+    if (!ok || !allocate_sets(b, sets)) {
+        free_buffers(b);
+        return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for a picture of %d x %d (%zu MB)", width, height,
+                         bytes >> 20);
+    }
+    b->bytes = bytes;
+    return NOC_OK;
+}
+
+size_t noc_cpu_bytes_a_pixel(int sets, uint32_t aovs) { return bytes_a_block(sets) / BLOCK + noc_cpu_aov_bytes(aovs); }
+
+void noc_cpu_read(void *state, noc_image *image) {
+    const frame_buffers *b = &((cpu_view *)state)->b;
+    for (int y = 0; y < b->height; y++)
+        for (int x = 0; x < b->width; x++) {
+            size_t at = (size_t)(y / BLOCK_SIDE) * b->blocks_x + x / BLOCK_SIDE, to = (size_t)y * b->width + x;
+            int l = (y & 3) * 4 + (x & 3);
+            for (int k = 0; k < 3; k++)
+                image->rgb[3 * to + k] = b->picture[at].rgb[k][l];
+            if (image->emitter)
+                image->emitter[to] = noc_cpu_saw_emitter(b, at, l);
+            if (image->coverage)
+                noc_cpu_read_coverage(b, at, l, image->coverage + 4 * to);
+        }
+}
+
+void noc_cpu_stats(void *state, noc_frame_stats *out) {
+    cpu_view *s = state;
+    for (int i = 0; i < s->worker_count; i++) {
+        worker *w = &s->workers[i];
+        for (int pass = 0; pass < NOC_PASS_COUNT; pass++) {
+            out->pass_seconds[pass] += w->seconds[pass];
+            w->seconds[pass] = 0;
+        }
+        out->rays_primary += w->rays_primary;
+        out->rays_shadow += w->rays_shadow;
+        out->dropped += w->dropped;
+        w->rays_primary = w->rays_shadow = w->dropped = 0;
+    }
+    out->build_seconds = s->world->build_seconds;
+    out->memory_bytes = s->b.bytes + noc_cpu_rays_bytes(s->world) + noc_cpu_light_bytes(s->world) +
+                        noc_cpu_past_bytes(s) +
+                        (size_t)s->b.blocks_x * s->b.blocks_y * BLOCK * noc_cpu_aov_bytes(s->b.aovs.asked);
+    out->path = s->kernels->name;
+}
+
+static void forget_packets(cpu_view *s) {
+    for (int i = 0; i < s->worker_count; i++) {
+        worker *w = &s->workers[i];
+        free(w->packets);
+        w->packets = NULL;
+        w->packet_count = w->packet_room = 0;
+        w->packets_lost = false;
+    }
+}
+
+void noc_cpu_record(void *state, bool on) {
+    cpu_view *s = state;
+    s->recording = on;
+    if (on)
+        forget_packets(s);
+}
+
+noc_status noc_cpu_replay(void *state, double *seconds) {
+    cpu_view *s = state;
+    noc_status status = noc_cpu_replay_rays(s, seconds);
+    forget_packets(s);
+    return status;
+}

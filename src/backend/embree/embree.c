@@ -1,0 +1,207 @@
+/* The only rtc* calls, with many.c. */
+#include "backend/cpu/backend.h"
+#include "backend/embree/embree.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* ---- errors and memory ---- */
+
+/* One message, whatever follows from the first error. */
+static noc_status fail(embree_structure *s, enum RTCError code, const char *text) {
+    noc_log *log = s->device->log;
+    if (s->failed)
+        return s->failed;
+    if (code == RTC_ERROR_OUT_OF_MEMORY || atomic_load(&s->refused))
+        return s->failed =
+                   noc_error(log, NOC_ERR_MEMORY, "embree: no memory for the ray tracing structure of %zu triangles",
+                             s->scene->indices.len / 3);
+    return s->failed = noc_error(log, NOC_ERR_UNSUPPORTED, "embree: %s", text && *text ? text : "unknown error");
+}
+
+static void report(void *user, enum RTCError code, const char *text) {
+    embree_device *d = user;
+    if (code != RTC_ERROR_NONE && d->current)
+        fail(d->current, code, text);
+}
+
+/* Of a block that Embree takes or has given back. False: Embree gives up, in order, before it takes it. */
+static bool allow(void *user, ssize_t bytes, bool post) {
+    embree_device *d = user;
+    embree_structure *s = d->current;
+    if (bytes > 0 && !post && !noc_embree_room(d->threads, (size_t)bytes)) {
+        if (s)
+            atomic_store(&s->refused, true);
+        return false;
+    }
+    if (s)
+        atomic_fetch_add(&s->bytes, bytes);
+    return true;
+}
+
+static void enter(embree_structure *s) {
+    pthread_mutex_lock(&s->device->lock);
+    s->device->current = s;
+}
+
+static void leave(embree_structure *s) {
+    s->device->current = NULL;
+    pthread_mutex_unlock(&s->device->lock);
+}
+
+/* ---- the device ---- */
+
+static void close_device(void *device) {
+    embree_device *d = device;
+    if (d->device)
+        rtcReleaseDevice(d->device);
+    pthread_mutex_destroy(&d->lock);
+    free(d);
+}
+
+static noc_status open_device(int threads, noc_log *log, void **device) {
+    char config[64];
+    if (!noc_embree_room_for_threads(threads))
+        return noc_error(log, NOC_ERR_MEMORY,
+                         "embree: no memory for its threads, or a limit of their number (ulimit -u)");
+    embree_device *d = noc_calloc(1, sizeof(*d));
+    if (!d || !noc_embree_room(threads, 0)) {
+        free(d);
+        return noc_error(log, NOC_ERR_MEMORY, "embree: no memory for its device");
+    }
+    *d = (embree_device){ .log = log, .threads = threads };
+    pthread_mutex_init(&d->lock, NULL);
+    /* The cache is for surfaces that are subdivided; it would take 128 MB. */
+    snprintf(config, sizeof(config), "threads=%d,tessellation_cache_size=0", threads);
+    d->device = rtcNewDevice(config);
+    if (!d->device) {
+        noc_status status = rtcGetDeviceError(NULL) == RTC_ERROR_OUT_OF_MEMORY ? NOC_ERR_MEMORY : NOC_ERR_UNSUPPORTED;
+        close_device(d);
+        return noc_error(log, status, "embree: no device");
+    }
+    rtcSetDeviceErrorFunction(d->device, report, d);
+    rtcSetDeviceMemoryMonitorFunction(d->device, allow, d);
+    *device = d;
+    return NOC_OK;
+}
+
+/* ---- structures ---- */
+
+static void attach_triangles(embree_structure *s) {
+    const noc_scene *scene = s->scene;
+    size_t triangles = scene->indices.len / 3;
+    RTCGeometry geometry = triangles ? rtcNewGeometry(s->device->device, RTC_GEOMETRY_TYPE_TRIANGLE) : NULL;
+    if (!geometry)
+        return;
+    rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, scene->positions.data, 0, 12,
+                               scene->positions.len / 3);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->indices.data, 0, 12,
+                               triangles);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(s->rtc, geometry);
+    rtcReleaseGeometry(geometry);
+}
+
+static void build_scene(embree_structure *s) {
+    s->rtc = rtcNewScene(s->device->device);
+    if (!s->rtc) {
+        fail(s, rtcGetDeviceError(s->device->device), "no scene");
+        return;
+    }
+    /* Robust: without it rays slip through the edges between walls, and every slip is a bright pixel in a dark room. */
+    rtcSetSceneFlags(s->rtc, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(s->rtc, RTC_BUILD_QUALITY_MEDIUM);
+    attach_triangles(s);
+    if (!s->failed)
+        rtcCommitScene(s->rtc);
+}
+
+static void release_structure(void *structure) {
+    embree_structure *s = structure;
+    enter(s);
+    if (s->rtc)
+        rtcReleaseScene(s->rtc);
+    leave(s);
+    free(s);
+}
+
+static noc_status build_structure(void *device, const noc_scene *scene, noc_log *log, void **structure) {
+    embree_structure *s = noc_calloc(1, sizeof(*s));
+    if (!s)
+        return noc_no_memory(log, "embree");
+    s->device = device;
+    s->scene = scene;
+    enter(s);
+    if (noc_embree_room(s->device->threads, 0))
+        build_scene(s);
+    else
+        fail(s, RTC_ERROR_OUT_OF_MEMORY, NULL);
+    leave(s);
+    noc_status status = s->failed;
+    if (status == NOC_OK)
+        *structure = s;
+    else
+        release_structure(s);
+    return status;
+}
+
+static size_t bytes_of(const void *structure) {
+    ssize_t bytes = atomic_load(&((embree_structure *)structure)->bytes);
+    return bytes > 0 ? (size_t)bytes : 0;
+}
+
+/* ---- rays ---- */
+
+static void fill_rays(const rayblock *rays, float far, struct RTCRay16 *r) {
+    memcpy(r->org_x, rays->o, sizeof(rays->o));
+    memcpy(r->dir_x, rays->d[0], sizeof(rays->d[0]));
+    memcpy(r->dir_y, rays->d[1], sizeof(rays->d[1]));
+    memcpy(r->dir_z, rays->d[2], sizeof(rays->d[2]));
+    for (int l = 0; l < BLOCK; l++) {
+        r->tnear[l] = 0;
+        r->time[l] = 0;
+        r->tfar[l] = far;
+        r->mask[l] = UINT32_MAX;
+        r->id[l] = 0;
+        r->flags[l] = 0;
+    }
+}
+
+static void closest(void *structure, const rayblock *rays, float far, uint32_t valid, bool coherent, hitblock *hits) {
+    const embree_structure *s = structure;
+    ALIGNED int lanes[BLOCK];
+    ALIGNED struct RTCRayHit16 h;
+    for (int l = 0; l < BLOCK; l++)
+        lanes[l] = -(int)(valid >> l & 1);
+    fill_rays(rays, far, &h.ray);
+    memset(h.hit.geomID, 0xff, sizeof(h.hit.geomID));
+    memset(h.hit.instID, 0xff, sizeof(h.hit.instID));
+    rt_intersect16(lanes, s->rtc, &h, coherent);
+    for (int l = 0; l < BLOCK; l++) {
+        bool hit = valid >> l & 1 && h.hit.geomID[l] != RTC_INVALID_GEOMETRY_ID;
+        hits->triangle[l] = hit ? h.hit.primID[l] : NO_HIT;
+        hits->u[l] = h.hit.u[l];
+        hits->v[l] = h.hit.v[l];
+        hits->t[l] = h.ray.tfar[l];
+    }
+}
+
+static void occluded(void *structure, segment_block *blocks, int count) {
+    noc_embree_trace_many(((const embree_structure *)structure)->rtc, blocks, count);
+}
+
+static const noc_tracer tracer = { .name = "embree",
+                                   .open = open_device,
+                                   .close = close_device,
+                                   .build = build_structure,
+                                   .release = release_structure,
+                                   .bytes = bytes_of,
+                                   .closest = closest,
+                                   .occluded = occluded };
+
+static noc_status create(const noc_device_params *params, noc_log *log, void **device) {
+    return noc_cpu_device_create(&tracer, params, log, device);
+}
+
+const noc_backend noc_backend_embree = { .name = "embree", .device_create = create, NOC_CPU_BACKEND };

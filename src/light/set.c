@@ -1,0 +1,232 @@
+#include "light/set.h"
+
+#include <pthread.h>
+
+/* Influence volumes for one set of parameters. */
+typedef struct volumes {
+    noc_influence *influence;
+    noc_influence_params params;
+    int holders;
+} volumes;
+
+struct noc_light_set {
+    const noc_scene *scene;
+    noc_log *log;
+    noc_pool *pool;
+    noc_probe_fn *probe;
+    void *user;
+    pthread_mutex_t lock;
+    noc_clusters *clusters;
+    noc_alias *alias;
+    noc_tree *tree;
+    /* Those that are held, and the last ones that were asked for. */
+    NOC_ARRAY(volumes) volumes;
+    const noc_influence *last;
+    uint64_t moves, power_changes; /* of the scene's lights, that these know of */
+    double seconds[NOC_CANDIDATES_LIGHT_BVH + 1];
+};
+
+noc_light_set *noc_light_set_create(const noc_scene *scene, noc_pool *pool, noc_probe_fn *probe, void *user,
+                                    noc_log *log) {
+    noc_light_set *set = noc_calloc(1, sizeof(*set));
+    if (!set) {
+        noc_no_memory(log, "lights");
+        return NULL;
+    }
+    *set = (noc_light_set){ .scene = scene,
+                            .log = log,
+                            .pool = pool,
+                            .probe = probe,
+                            .user = user,
+                            .moves = scene->moves,
+                            .power_changes = scene->power_changes };
+    pthread_mutex_init(&set->lock, NULL);
+    return set;
+}
+
+static void drop_volumes(noc_light_set *set) {
+    for (size_t i = 0; i < set->volumes.len; i++)
+        noc_influence_destroy(set->volumes.data[i].influence);
+    set->volumes.len = 0;
+    set->last = NULL;
+}
+
+void noc_light_set_destroy(noc_light_set *set) {
+    if (!set)
+        return;
+    noc_clusters_destroy(set->clusters);
+    noc_alias_destroy(set->alias);
+    noc_tree_destroy(set->tree);
+    drop_volumes(set);
+    array_free(&set->volumes);
+    pthread_mutex_destroy(&set->lock);
+    free(set);
+}
+
+/* Lights move between frames only, so nobody reads what is made anew here. */
+static noc_status follow(noc_light_set *set) {
+    const noc_scene *scene = set->scene;
+    if (set->moves == scene->moves)
+        return NOC_OK;
+    if (set->tree && noc_tree_refit(set->tree, scene, set->log) != NOC_OK) {
+        noc_tree_destroy(set->tree);
+        set->tree = NULL;
+        return NOC_ERR_MEMORY;
+    }
+    noc_clusters_destroy(set->clusters);
+    set->clusters = NULL;
+    drop_volumes(set);
+    if (set->power_changes != scene->power_changes) { /* it does not know where lights are */
+        noc_alias_destroy(set->alias);
+        set->alias = NULL;
+    }
+    set->moves = scene->moves;
+    set->power_changes = scene->power_changes;
+    return NOC_OK;
+}
+
+/* ---- influence volumes ---- */
+
+static volumes *held_volumes(noc_light_set *set, const noc_influence *influence) {
+    for (size_t i = 0; i < set->volumes.len; i++)
+        if (influence && set->volumes.data[i].influence == influence)
+            return &set->volumes.data[i];
+    return NULL;
+}
+
+/* Boxes and shared volumes are made for one S_r. Volumes of one light each serve them all, but one that is to be found
+ * must have been: it takes far longer to find than volumes to make, so it is not where S_r was set. */
+static bool serves(const noc_influence_params *have, const noc_influence_params *want) {
+    if (have->cluster != want->cluster || have->boxes != want->boxes)
+        return false;
+    return have->scale == want->scale || (want->scale > 0 && want->cluster <= 1 && !want->boxes);
+}
+
+/* Those that nobody holds and that were not asked for last go. */
+static void forget_volumes(noc_light_set *set) {
+    size_t kept = 0;
+    for (size_t i = 0; i < set->volumes.len; i++) {
+        volumes *v = &set->volumes.data[i];
+        if (v->holders || v->influence == set->last)
+            set->volumes.data[kept++] = *v;
+        else
+            noc_influence_destroy(v->influence);
+    }
+    set->volumes.len = kept;
+}
+
+static noc_status get_influence(noc_light_set *set, const noc_render_params *p, const noc_influence **out) {
+    noc_influence_params want = { .cluster = p->influence_cluster,
+                                  .scale = p->influence,
+                                  .probe = set->probe,
+                                  .user = set->user,
+                                  .boxes = p->influence_boxes == NOC_INFLUENCE_VISIBLE,
+                                  .pool = set->pool };
+    volumes *v = NULL;
+    for (size_t i = 0; i < set->volumes.len && !v; i++)
+        if (serves(&set->volumes.data[i].params, &want))
+            v = &set->volumes.data[i];
+    if (!v) {
+        set->last = NULL;
+        forget_volumes(set);
+        double start = noc_wall_seconds();
+        noc_influence *made = noc_influence_create(set->scene, &want, set->log);
+        if (!made)
+            return NOC_ERR_MEMORY;
+        if (!array_push(&set->volumes, (volumes){ made, want, 0 })) {
+            noc_influence_destroy(made);
+            return noc_no_memory(set->log, "lights");
+        }
+        set->seconds[NOC_CANDIDATES_INFLUENCE] = noc_wall_seconds() - start;
+        v = &set->volumes.data[set->volumes.len - 1];
+    }
+    v->holders++;
+    set->last = *out = v->influence;
+    return NOC_OK;
+}
+
+static void let_go(noc_light_set *set, noc_light_sources *sources) {
+    volumes *v = held_volumes(set, sources->influence);
+    if (v)
+        v->holders--;
+    *sources = (noc_light_sources){ 0 };
+}
+
+/* ---- what a frame asks for ---- */
+
+static noc_status make(noc_light_set *set, noc_candidates candidates, const noc_render_params *p,
+                       noc_light_sources *out) {
+    double start = noc_wall_seconds();
+    bool made = false;
+    switch (candidates) {
+    case NOC_CANDIDATES_UNIFORM: break;
+    case NOC_CANDIDATES_LISTS:
+        made = !set->clusters;
+        if (made && !(set->clusters = noc_clusters_create(set->scene, set->pool, set->log)))
+            return NOC_ERR_MEMORY;
+        break;
+    case NOC_CANDIDATES_POWER:
+        made = !set->alias;
+        if (made && !(set->alias = noc_alias_create(set->scene, set->log)))
+            return NOC_ERR_MEMORY;
+        break;
+    case NOC_CANDIDATES_INFLUENCE: return get_influence(set, p, &out->influence);
+    case NOC_CANDIDATES_LIGHT_BVH:
+        made = !set->tree;
+        if (made && !(set->tree = noc_tree_create(set->scene, set->pool, set->log)))
+            return NOC_ERR_MEMORY;
+        break;
+    }
+    if (made)
+        set->seconds[candidates] = noc_wall_seconds() - start;
+    out->clusters = set->clusters;
+    out->alias = set->alias;
+    out->tree = set->tree;
+    return NOC_OK;
+}
+
+noc_status noc_light_set_get(noc_light_set *set, noc_candidates candidates, const noc_render_params *params,
+                             noc_light_sources *sources) {
+    pthread_mutex_lock(&set->lock);
+    let_go(set, sources);
+    noc_status status = follow(set);
+    if (status == NOC_OK)
+        status = make(set, candidates, params, sources);
+    pthread_mutex_unlock(&set->lock);
+    return status;
+}
+
+void noc_light_set_release(noc_light_set *set, noc_light_sources *sources) {
+    pthread_mutex_lock(&set->lock);
+    let_go(set, sources);
+    pthread_mutex_unlock(&set->lock);
+}
+
+static size_t bytes_of(const noc_light_set *set, noc_candidates candidates) {
+    size_t bytes = 0;
+    switch (candidates) {
+    case NOC_CANDIDATES_UNIFORM: return 0;
+    case NOC_CANDIDATES_LISTS: return set->clusters ? set->clusters->bytes : 0;
+    case NOC_CANDIDATES_POWER: return set->alias ? set->alias->bytes : 0;
+    case NOC_CANDIDATES_INFLUENCE:
+        for (size_t i = 0; i < set->volumes.len; i++)
+            bytes += set->volumes.data[i].influence->bytes;
+        return bytes;
+    case NOC_CANDIDATES_LIGHT_BVH: return set->tree ? set->tree->bytes : 0;
+    }
+    return 0;
+}
+
+size_t noc_light_set_bytes(noc_light_set *set, noc_candidates candidates) {
+    pthread_mutex_lock(&set->lock);
+    size_t bytes = bytes_of(set, candidates);
+    pthread_mutex_unlock(&set->lock);
+    return bytes;
+}
+
+double noc_light_set_seconds(noc_light_set *set, noc_candidates candidates) {
+    pthread_mutex_lock(&set->lock);
+    double seconds = set->seconds[candidates];
+    pthread_mutex_unlock(&set->lock);
+    return seconds;
+}

@@ -1,0 +1,41 @@
+/* light/set: the lights of a scene, as the views of a world draw candidates from them. Each structure is made when a
+ * frame first needs it, follows the scene's lights, and is shared by all views. */
+#ifndef NOC_LIGHT_SET_H
+#define NOC_LIGHT_SET_H
+
+#include "light/alias.h"
+#include "light/clusters.h"
+#include "light/influence.h"
+#include "light/tree.h"
+
+#include <nocturne/render.h>
+
+typedef struct noc_light_set noc_light_set;
+
+/* What a frame draws from. Entries that it did not ask for may be NULL. */
+typedef struct noc_light_sources {
+    const noc_clusters *clusters;
+    const noc_alias *alias;
+    const noc_tree *tree;
+    const noc_influence *influence;
+} noc_light_sources;
+
+/* probe: as in noc_influence_params. The scene must be committed and outlive the set. NULL after reporting that memory
+ * was refused. */
+noc_light_set *noc_light_set_create(const noc_scene *scene, noc_pool *pool, noc_probe_fn *probe, void *user,
+                                    noc_log *log);
+void noc_light_set_destroy(noc_light_set *set); /* NULL is allowed */
+
+/* Follows lights that have changed since, and makes what candidates of that kind need with these parameters. Several
+ * threads may ask at once. What `sources` got is held for its owner until he asks again or releases it; he starts with
+ * a zeroed record. */
+noc_status noc_light_set_get(noc_light_set *set, noc_candidates candidates, const noc_render_params *params,
+                             noc_light_sources *sources);
+void noc_light_set_release(noc_light_set *set, noc_light_sources *sources);
+
+/* Bytes of what candidates of that kind are drawn from, 0 where it is not there; and wall seconds that it took to make.
+ */
+size_t noc_light_set_bytes(noc_light_set *set, noc_candidates candidates);
+double noc_light_set_seconds(noc_light_set *set, noc_candidates candidates);
+
+#endif

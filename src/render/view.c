@@ -1,0 +1,255 @@
+/* A view: checks, drives a backend through the schedule of a frame, keeps history. */
+#include "image/internal.h"
+#include "light/influence.h"
+#include "render/device.h"
+
+#include <stdio.h>
+#include <unistd.h>
+
+struct noc_view {
+    noc_device *device;
+    noc_world *world;
+    const noc_scene *scene;
+    noc_log *log;
+    const noc_backend *backend;
+    void *state; /* the backend's */
+    noc_history history;
+    int width, height, sets; /* of the backend's buffers; 0: none */
+    noc_frame_stats stats;
+};
+
+noc_view *noc_view_create(noc_device *device, const noc_scene *scene) {
+    if (!device)
+        return NULL;
+    if (!scene || !scene->committed) {
+        noc_error(device->log, NOC_ERR_ARGUMENT, "view: the scene is not committed");
+        return NULL;
+    }
+    noc_view *v = noc_alloc(sizeof(*v));
+    if (!v) {
+        noc_no_memory(device->log, "view");
+        return NULL;
+    }
+    *v = (noc_view){ .device = device, .scene = scene, .log = device->log, .backend = device->backend };
+    noc_history_reset(&v->history);
+    v->world = noc_world_enter(device, scene);
+    if (!v->world || v->backend->view_create(v->world->state, &v->state) != NOC_OK) {
+        if (v->world)
+            noc_world_leave(device, v->world);
+        free(v);
+        return NULL;
+    }
+    v->backend->stats(v->state, &v->stats);
+    return v;
+}
+
+void noc_view_destroy(noc_view *v) {
+    if (!v)
+        return;
+    v->backend->view_destroy(v->state);
+    noc_world_leave(v->device, v->world);
+    free(v);
+}
+
+noc_device *noc_view_device(const noc_view *v) { return v ? v->device : NULL; }
+
+void noc_view_reset(noc_view *v) {
+    if (!v)
+        return;
+    noc_history_reset(&v->history);
+    v->stats.dropped = 0;
+    v->stats.frames = 0;
+}
+
+static uint64_t read_number(const char *path) {
+    FILE *f = fopen(path, "r");
+    unsigned long long n = UINT64_MAX;
+    if (!f)
+        return UINT64_MAX;
+    if (fscanf(f, "%llu", &n) != 1)
+        n = UINT64_MAX;
+    fclose(f);
+    return n;
+}
+
+/* Memory of this machine, or of the container it is: the kernel grants more than there is, and kills later. */
+static uint64_t machine_memory(void) {
+    long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
+    uint64_t bytes = pages > 0 && size > 0 ? (uint64_t)pages * (uint64_t)size : UINT64_MAX;
+    bytes = NOC_MIN(bytes, read_number("/sys/fs/cgroup/memory.max"));
+    return NOC_MIN(bytes, read_number("/sys/fs/cgroup/memory/memory.limit_in_bytes"));
+}
+
+static noc_status fit(noc_view *v, const noc_render_params *p, int sets) {
+    if (v->width == p->width && v->height == p->height && v->sets >= sets)
+        return NOC_OK;
+    uint64_t pixels = ((uint64_t)p->width + 3) * ((uint64_t)p->height + 3);
+    uint64_t need = pixels * v->backend->bytes_a_pixel(sets, p->aovs), have = machine_memory();
+    if (need > have - have / 8)
+        return noc_error(v->log, NOC_ERR_MEMORY,
+                         "render: a picture of %d x %d needs %.1f GB of memory, this machine has %.1f", p->width,
+                         p->height, (double)need * 1e-9, (double)have * 1e-9);
+    noc_history_reset(&v->history);
+    v->width = v->height = v->sets = 0;
+    noc_status status = v->backend->resize(v->state, p->width, p->height, sets);
+    if (status == NOC_OK) {
+        v->width = p->width;
+        v->height = p->height;
+        v->sets = sets;
+    }
+    return status;
+}
+
+static noc_status run_frame(noc_view *v, const noc_camera *camera, const noc_render_params *p,
+                            const noc_progress *progress) {
+    noc_schedule schedule;
+    noc_frame frame;
+    double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
+    noc_make_schedule(p, -1, &schedule);
+    noc_status status = fit(v, p, schedule.sets);
+    if (status != NOC_OK)
+        return status;
+    noc_history_begin(&v->history, camera, p, v->scene->moves, &frame);
+    noc_make_schedule(p, frame.history_set, &schedule);
+    int stage = 0;
+    for (; stage < schedule.count && status == NOC_OK; stage++)
+        status = v->backend->stage(v->state, &frame, &schedule.stages[stage], progress, (double)stage / schedule.count,
+                                   (double)(stage + 1) / schedule.count);
+    noc_frame_stats stats = { .dropped = frame.index ? v->stats.dropped : 0 };
+    if (status == NOC_OK)
+        status = v->backend->accumulate(v->state, &frame);
+    if (status == NOC_OK)
+        noc_history_end(&v->history, &frame, schedule.next_history);
+    else
+        noc_history_drop(&v->history, &frame, stage == 1);
+    v->backend->stats(v->state, &stats);
+    stats.frames = v->history.accumulated;
+    stats.wall_seconds = noc_wall_seconds() - wall;
+    stats.cpu_seconds = noc_cpu_seconds() - cpu;
+    v->stats = stats;
+    return status;
+}
+
+static noc_status check(noc_view *v, const noc_camera *camera, const noc_render_params *params) {
+    noc_status status = noc_render_check(params, v->log);
+    return status == NOC_OK ? noc_check_camera(camera, v->log) : status;
+}
+
+noc_status noc_view_render(noc_view *v, const noc_camera *camera, const noc_render_params *params,
+                           const noc_progress *progress) {
+    if (!v || !camera)
+        return noc_null(v ? v->log : NULL, __func__);
+    const noc_render_params defaults = noc_render_default_params();
+    params = params ? params : &defaults;
+    noc_status status = check(v, camera, params);
+    if (status == NOC_OK)
+        status = run_frame(v, camera, params, progress);
+    return status == NOC_ERR_CANCELLED ? noc_cancelled(v->log, "render: cancelled") : status;
+}
+
+noc_image *noc_view_image(noc_view *v) {
+    if (!v)
+        return NULL;
+    if (!v->width || !v->history.accumulated)
+        return NULL;
+    noc_image *image = noc_image_create(v->width, v->height, v->log);
+    if (!image)
+        return NULL;
+    size_t n = (size_t)image->width * image->height;
+    image->emitter = noc_alloc(n);
+    image->coverage = noc_alloc_large(n, 4 * sizeof(float));
+    uint8_t *wide = noc_alloc(n);
+    if (!image->emitter || !image->coverage || !wide) {
+        free(wide);
+        noc_image_destroy(image);
+        noc_error(v->log, NOC_ERR_MEMORY, "render: no memory for the picture's emitter mask");
+        return NULL;
+    }
+    v->backend->read(v->state, image);
+    /* grown by one pixel, along rows and then along columns */
+    for (size_t i = 0; i < n; i++) {
+        int x = (int)(i % (size_t)image->width);
+        wide[i] =
+            image->emitter[i] | (x > 0 && image->emitter[i - 1]) | (x + 1 < image->width && image->emitter[i + 1]);
+    }
+    size_t row = (size_t)image->width;
+    for (size_t i = 0; i < n; i++)
+        image->emitter[i] = wide[i] | (i >= row && wide[i - row]) | (i + row < n && wide[i + row]);
+    free(wide);
+    return image;
+}
+
+noc_channel *noc_view_aov(noc_view *v, noc_aov aov) {
+    if (!v)
+        return NULL;
+    if ((unsigned)aov >= NOC_AOV_COUNT) {
+        noc_error(v->log, NOC_ERR_ARGUMENT, "render: aov is %d, must be a noc_aov", (int)aov);
+        return NULL;
+    }
+    if (!v->width || !v->history.accumulated)
+        return NULL;
+    noc_channel *channel = noc_channel_create(v->width, v->height, aov == NOC_AOV_NORMAL ? 3 : 1, v->log);
+    if (!channel)
+        return NULL;
+    noc_describe_aov(&v->history.params, aov, channel);
+    if (v->backend->aov(v->state, aov, channel->value))
+        return channel;
+    noc_channel_destroy(channel);
+    noc_error(v->log, NOC_ERR_ARGUMENT, "render: the last frame did not keep the view \"%s\": name it in aovs",
+              noc_aov_name(aov));
+    return NULL;
+}
+
+const char *noc_pass_name(noc_pass pass) {
+    static const char *const names[NOC_PASS_COUNT] = {
+        [NOC_PASS_PRIMARY] = "primary",   [NOC_PASS_CANDIDATES] = "candidates", [NOC_PASS_VISIBILITY] = "visibility",
+        [NOC_PASS_TEMPORAL] = "temporal", [NOC_PASS_SPATIAL] = "spatial",       [NOC_PASS_SHADE] = "shade",
+        [NOC_PASS_SKY] = "sky",
+    };
+    return (unsigned)pass < NOC_PASS_COUNT ? names[pass] : "unknown";
+}
+
+void noc_view_get_stats(const noc_view *v, noc_frame_stats *stats) {
+    if (stats)
+        *stats = v ? v->stats : (noc_frame_stats){ 0 };
+}
+
+void noc_view_light_stats(const noc_view *v, noc_light_stats *stats) {
+    if (!stats)
+        return;
+    *stats = (noc_light_stats){ 0 };
+    if (v)
+        v->backend->light_stats(v->state, v->history.started ? &v->history.params : NULL, stats);
+}
+
+noc_status noc_view_write_influence(noc_view *v, const noc_render_params *params, const char *path) {
+    if (!v || !path)
+        return noc_null(v ? v->log : NULL, __func__);
+    const noc_render_params defaults = noc_render_default_params();
+    const noc_influence *volumes;
+    output o;
+    params = params ? params : &defaults;
+    noc_status status = noc_render_check(params, v->log);
+    status = status ? status : v->backend->influence(v->state, params, &volumes);
+    status = status ? status : output_open(&o, path, v->log);
+    if (status)
+        return status;
+    noc_influence_write(volumes, v->scene, params->influence, o.file);
+    return output_close(&o, ferror(o.file) ? output_failed(&o, v->log) : NOC_OK, v->log);
+}
+
+noc_status noc_view_trace_floor(noc_view *v, const noc_camera *camera, const noc_render_params *params,
+                                double *seconds) {
+    if (!v || !camera || !seconds)
+        return noc_null(v ? v->log : NULL, __func__);
+    const noc_render_params defaults = noc_render_default_params();
+    params = params ? params : &defaults;
+    noc_status status = check(v, camera, params);
+    if (status != NOC_OK)
+        return status;
+    v->backend->record(v->state, true);
+    status = run_frame(v, camera, params, NULL);
+    v->backend->record(v->state, false);
+    noc_status traced = v->backend->replay(v->state, seconds);
+    return status != NOC_OK ? status : traced;
+}
