@@ -27,6 +27,7 @@ typedef struct noc_image {
 
 NOC_API noc_image *noc_image_create(int width, int height, noc_log *log); /* black; NULL after reporting an error */
 NOC_API void noc_image_destroy(noc_image *image);
+NOC_API bool noc_image_is_black(const noc_image *image); /* no pixel holds light; NULL is black */
 
 typedef enum noc_tonemap { NOC_TONEMAP_FILMIC, NOC_TONEMAP_REINHARD, NOC_TONEMAP_LINEAR } noc_tonemap;
 

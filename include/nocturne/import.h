@@ -69,6 +69,7 @@ typedef struct noc_import_params {
                              three quarters of the machine's */
     double max_expansion; /* times its stored size that it may grow to, where that is over 1 GiB; 0: any; default
                              200 */
+    const noc_builtin_params *builtin; /* of built-in scenes among the inputs, not owned; NULL, the default: theirs */
     noc_progress progress;
 } noc_import_params;
 
@@ -185,8 +186,8 @@ NOC_API void noc_report_get_totals(const noc_report *report, noc_report_totals *
 NOC_API void noc_report_destroy(noc_report *report);
 
 /* Loads all paths, and the files of lamps in params, into the scene as one, stands the lamps on the ground, and
- * commits. "builtin:NAME" is the built-in scene of that name. On failure the scene must be destroyed. *report may be
- * NULL; where given it is set even on failure (possibly NULL). */
+ * commits. "builtin:NAME" is the built-in scene of that name; such scenes come before all files. On failure the scene
+ * must be destroyed. *report may be NULL; where given it is set even on failure (possibly NULL). */
 NOC_API noc_status noc_scene_load(noc_scene *scene, const char *const *paths, size_t path_count,
                                   const noc_import_params *params, noc_report **report);
 
@@ -203,6 +204,28 @@ NOC_API int noc_reader_main(void);
  * easting northing height (or longitude latitude height in degrees) order. */
 NOC_API noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xyz[3]);
 NOC_API noc_status noc_scene_from_local(const noc_scene *scene, const char *crs, double xyz[3]);
+
+/* Where a camera stands, as people say it: noc_camera_options. The texts are the caller's. */
+typedef struct noc_camera_params {
+    noc_viewpoint viewpoint;  /* a camera derived from the scene, where eye is NULL; default own */
+    const char *eye, *target; /* "X,Y,Z", both or none: local metres, or in crs */
+    const char *crs; /* of eye and target: any that PROJ reads, or "scene" for the scene's; NULL: local metres */
+    double fov;      /* vertical field of view, degrees; 0, the default: that of the view, with eye 50 */
+} noc_camera_params;
+
+#define NOC_CAMERA_DEFAULTS(set) set(viewpoint, NOC_VIEWPOINT_OWN)
+#ifdef __cplusplus
+NOC_DEFAULT_PARAMS(noc_camera_params, noc_camera_default_params, NOC_CAMERA_DEFAULTS)
+#else
+#define noc_camera_default_params() ((noc_camera_params){ NOC_CAMERA_DEFAULTS(NOC_DEFAULT_IN_C) })
+#endif
+
+/* The camera that params say, of a committed scene; aspect = width / height of the picture. NOC_ERR_ARGUMENT after
+ * reporting it: texts that say no place, and an eye from which nothing of the scene can be seen, more than 100 km and
+ * 100 times the scene's extent away. One more than 20 extents away is warned of, and *far_away, which may be NULL, says
+ * so. */
+NOC_API noc_status noc_scene_place_camera(const noc_scene *scene, const noc_camera_params *params, double aspect,
+                                          noc_camera *camera, bool *far_away);
 
 #ifdef __cplusplus
 }

@@ -8,6 +8,7 @@
 #include <nocturne/option.h>
 #include <nocturne/render.h>
 #include <nocturne/scene.h>
+#include <nocturne/text.h>
 
 #ifdef __cplusplus
 extern "C" {

@@ -42,6 +42,14 @@ NOC_API const noc_option *noc_display_options(void); /* fields of noc_display_pa
 NOC_API const noc_option *noc_import_options(void);  /* fields of noc_import_params */
 NOC_API const noc_option *noc_city_options(void);    /* fields of noc_city_params */
 NOC_API const noc_option *noc_builtin_options(void); /* fields of noc_builtin_params, but for the city's */
+NOC_API const noc_option *noc_camera_options(void);  /* fields of noc_camera_params */
+
+/* Row of an option "preset", for tables of one's own: field preset, an int that is a noc_preset, of struct S. */
+#define NOC_OPTION_PRESET(S, group)                                                                                    \
+    {                                                                                                                  \
+        "preset", group, NOC_OPTION_CHOICE, offsetof(S, preset), 0, 0, "still|interactive", "",                        \
+            "settings for a still, or a moving camera; options beside it win"                                          \
+    }
 
 /* Sets one field from text (TEXTS: adds to it). value is NULL for a bare bool; NOC_ERR_ARGUMENT, reported with the
  * option's name, the text and what would be right. For BOOL and SWITCH, "true/false/on/off/yes/no/1/0". */
@@ -57,6 +65,10 @@ NOC_API noc_status noc_option_check(const noc_option *table, const void *params,
  * "it needs method ris, not is". table: of params, where the options that it needs are. */
 NOC_API bool noc_option_idle(const noc_option *option, const noc_option *table, const void *params, char *why,
                              size_t size);
+
+/* Of noc_city_options and noc_builtin_options: the input that the option is for and that is not among these, such as
+ * "builtin:mess". NULL: one is there, or the option is of another table. */
+NOC_API const char *noc_option_needs_input(const noc_option *option, const char *const *inputs, size_t count);
 
 #ifdef __cplusplus
 }

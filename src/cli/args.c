@@ -43,64 +43,6 @@ bool cli_given(const cli_args *args, const char *name) {
     return false;
 }
 
-/* Edits (insert, delete, replace, swap neighbours) between two short words; long ones count as far apart. */
-static int distance(const char *a, const char *b) {
-    enum { MAX = 40 };
-    int rows[3][MAX + 1];
-    size_t n = strlen(a), m = strlen(b);
-    if (n > MAX || m > MAX)
-        return MAX;
-    for (size_t j = 0; j <= m; j++)
-        rows[0][j] = (int)j;
-    for (size_t i = 1; i <= n; i++) {
-        int *row = rows[i % 3], *above = rows[(i + 2) % 3], *above2 = rows[(i + 1) % 3];
-        row[0] = (int)i;
-        for (size_t j = 1; j <= m; j++) {
-            int best = above[j - 1] + (a[i - 1] != b[j - 1]);
-            best = above[j] + 1 < best ? above[j] + 1 : best;
-            best = row[j - 1] + 1 < best ? row[j - 1] + 1 : best;
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && above2[j - 2] + 1 < best)
-                best = above2[j - 2] + 1;
-            row[j] = best;
-        }
-    }
-    return rows[n % 3][m];
-}
-
-const char *cli_nearest(const char *word, const char *const *words, size_t count) {
-    size_t length = strlen(word);
-    const char *nearest = NULL;
-    int least = length < 4 ? 2 : 3 + (int)length / 6;
-    for (size_t i = 0; i < count; i++) {
-        int d = distance(word, words[i]);
-        /* A word that was only begun: --cand for --candidates. */
-        if (length >= 3 && !strncmp(word, words[i], length))
-            d = 1;
-        if (d < least && d < (int)strlen(words[i])) {
-            least = d;
-            nearest = words[i];
-        }
-    }
-    return nearest;
-}
-
-bool cli_parse_numbers(const char *text, char separator, size_t count, double *out) {
-    for (size_t i = 0; i < count; i++) {
-        /* strtod alone would also take blanks, "nan", "inf", and the 0x16 of 0x16 pixels as hexadecimal. */
-        char number[400], *end;
-        size_t n = strspn(text, "+-.0123456789eE");
-        if (!n || n >= sizeof(number) || text[n] != (i + 1 < count ? separator : 0))
-            return false;
-        memcpy(number, text, n);
-        number[n] = 0;
-        out[i] = strtod(number, &end);
-        if (end != number + n || !isfinite(out[i]))
-            return false;
-        text += n + 1;
-    }
-    return true;
-}
-
 /* One option of the command by its long (short_name 0) or short name. */
 static const noc_option *find(const cli_command *command, const char *name, size_t length, char short_name,
                               size_t *offset) {
@@ -133,9 +75,9 @@ static int unknown(const cli_command *command, const char *given) {
         }
     }
     snprintf(name, sizeof(name), "%.*s", (int)strcspn(given, "="), given);
-    const char *nearest = cli_nearest(name + strspn(name, "-"), words, count);
+    const char *nearest = noc_text_nearest(name + strspn(name, "-"), words, count);
     char shown[80];
-    cli_clean(shown, sizeof(shown), given);
+    noc_text_clean(shown, sizeof(shown), given);
     return nearest ? cli_usage(command, "no option %s; is it --%s?", shown, nearest)
                    : cli_usage(command, "no option %s", shown);
 }

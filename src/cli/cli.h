@@ -8,7 +8,7 @@
 /* Exit statuses. An interruption by signal n ends with 128 + n, as shells do: 130 after Ctrl-C. */
 enum { CLI_OK = 0, CLI_FAILURE = 1, CLI_USAGE = 2, CLI_INTERRUPTED = 128 };
 
-#define CLI_SETS 8
+#define CLI_SETS 10
 #define CLI_GIVEN 96
 
 /* What every command's arguments begin with. */
@@ -46,9 +46,7 @@ bool cli_is_switch(const noc_option *option); /* --name and --no-name, without a
 bool cli_hidden(const cli_set *set, const noc_option *option);
 int cli_parse(const cli_command *command, int argc, char **argv, void *args); /* CLI_OK or CLI_USAGE, reported */
 bool cli_given(const cli_args *args, const char *name);
-char cli_short_name(const noc_option *option);                                       /* 'o' of output, 0 if none */
-const char *cli_nearest(const char *word, const char *const *words, size_t count);   /* NULL if none is near */
-bool cli_parse_numbers(const char *text, char separator, size_t count, double *out); /* exactly count finite numbers */
+char cli_short_name(const noc_option *option); /* 'o' of output, 0 if none */
 
 /* help.c */
 void cli_help(const cli_command *command, FILE *out); /* NULL: of the program */
@@ -76,11 +74,6 @@ _Noreturn void cli_no_memory(void); /* says so, and ends the program */
 double cli_auto_ev100(const noc_image *image);
 void *cli_alloc(size_t size); /* zeroed; ends the program when memory is gone */
 char *cli_format(const char *fmt, ...) NOC_PRINTF(1, 2) __attribute__((nonnull(1))); /* free() it */
-const char *cli_count(char text[32], uint64_t n);                                    /* 1234567 -> "1,234,567" */
-const char *cli_many(char text[64], uint64_t n, const char *noun);                   /* "1 light", "1,234 lights" */
-const char *cli_bytes(char text[32], uint64_t n);                                    /* "4.1 MB" */
-const char *cli_seconds(char text[32], double s);                                    /* "0.42 s", "2 min 05 s" */
-const char *cli_clean(char *text, size_t size, const char *from); /* control characters blanked, long text cut short */
 /* Ids of a report, comma separated, of which only whole ones are shown: the first, and as many more as fit; then how
  * many of the `count` features are left. free() it. */
 #define CLI_IDS_WIDTH 72
@@ -108,8 +101,6 @@ double cli_now(void);      /* wall clock, seconds */
 
 /* builtin.c */
 const char *cli_builtin(const char *input); /* name of the built-in scene that an input is, NULL for a file */
-/* The input that an option is for and that is not there, for the message; NULL if nothing is wrong. */
-const char *cli_builtin_needed(const noc_option *option, const char *const *inputs, size_t count);
 /* Files named with --lamps are inputs like the others: appended to those of the command line. */
 void cli_add_lamps(cli_args *args, const noc_import_params *import);
 /* Which defaults of lamps the user has said, for --strict. */
@@ -117,17 +108,8 @@ void cli_note_chosen(const cli_args *args, noc_import_params *import);
 /* A line on what lamps do not tell, and what is taken for it; nothing where they tell all. */
 void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAULT_COUNT],
                        const noc_import_params *import);
-/* All inputs as one committed scene. report may be NULL. */
-noc_status cli_load_scene(noc_scene *scene, const char *const *inputs, size_t count, const noc_builtin_params *builtin,
-                          const noc_import_params *import, noc_report **report);
 
 /* render.c */
-/* Row of the option --preset, field preset of struct S. */
-#define CLI_PRESET(S, group)                                                                                           \
-    {                                                                                                                  \
-        "preset", group, NOC_OPTION_CHOICE, offsetof(S, preset), 0, 0, "still|interactive", "",                        \
-            "settings for a still, or a moving camera; options beside it win"                                          \
-    }
 /* compare takes it too */
 int cli_parse_exposure(const cli_command *command, const char *text, noc_display_params *display);
 

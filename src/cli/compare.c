@@ -50,7 +50,8 @@ const cli_command cli_compare = {
 
 static void print_row(const char *name, const noc_metrics *m) {
     char pixels[32];
-    printf("  %-28s %10s  %8.3f  %10.5g  %10.5g  ", name, cli_count(pixels, m->pixels), m->rmse8, m->rmse, m->relmse);
+    printf("  %-28s %10s  %8.3f  %10.5g  %10.5g  ", name, noc_text_count(pixels, m->pixels), m->rmse8, m->rmse,
+           m->relmse);
     printf(isfinite(m->bias) ? "%8.4f\n" : "       -\n", m->bias);
 }
 
@@ -59,19 +60,19 @@ static void print_unlit(const noc_metrics *m) {
     char pixels[64];
     if (m->unlit && isfinite(m->relmse))
         printf("  %s lit in the picture and 0 in the reference: %.3g %% of relMSE\n",
-               cli_many(pixels, m->unlit, "pixel"), 100 * m->relmse_unlit / m->relmse);
+               noc_text_many(pixels, m->unlit, "pixel"), 100 * m->relmse_unlit / m->relmse);
 }
 
 static void print_output(const compare_args *args) {
     char path[240];
     if (args->output && !args->common.quiet)
-        printf("  difference picture: %s\n", cli_clean(path, sizeof(path), args->output));
+        printf("  difference picture: %s\n", noc_text_clean(path, sizeof(path), args->output));
 }
 
 static void print_table(const compare_args *args, const noc_comparison *c, const noc_image *image) {
     char a[160], b[160], clamped[48];
-    printf("%s against %s, %d x %d\n\n", cli_clean(a, sizeof(a), args->common.inputs[0]),
-           cli_clean(b, sizeof(b), args->common.inputs[1]), image->width, image->height);
+    printf("%s against %s, %d x %d\n\n", noc_text_clean(a, sizeof(a), args->common.inputs[0]),
+           noc_text_clean(b, sizeof(b), args->common.inputs[1]), image->width, image->height);
     bool relative = args->compare.relative;
     printf("  %-28s %10s  %8s  %10s  %10s  %8s\n", "", "pixels", "RMSE-8", relative ? "RMSE" : "RMSE cd/m2", "relMSE",
            "bias");
@@ -163,13 +164,13 @@ static noc_status check_comparable(const compare_args *args, noc_image *const pi
         if (!*pictures[i]->channel)
             continue;
         cli_error("%s: it holds the view \"%s\", no luminance: pictures alone are compared",
-                  cli_clean(shown, sizeof(shown), args->common.inputs[i]),
-                  cli_clean(name, sizeof(name), pictures[i]->channel));
+                  noc_text_clean(shown, sizeof(shown), args->common.inputs[i]),
+                  noc_text_clean(name, sizeof(name), pictures[i]->channel));
         return NOC_ERR_ARGUMENT;
     }
     if (linear[0] != linear[1]) {
         cli_error("%s: it is displayed (PNG), the other is linear (EXR): PNG is compared with PNG, EXR with EXR",
-                  cli_clean(shown, sizeof(shown), args->common.inputs[linear[0]]));
+                  noc_text_clean(shown, sizeof(shown), args->common.inputs[linear[0]]));
         return NOC_ERR_ARGUMENT;
     }
     double one = pictures[0]->ev100, other = pictures[1]->ev100;

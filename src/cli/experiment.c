@@ -116,7 +116,7 @@ static int reserve(lab_session *lab) {
         return CLI_OK;
     char text[32];
     cli_error("no memory for pictures of %d x %d (%s)", lab->spec.width, lab->spec.height,
-              cli_bytes(text, sizeof(double) * 3 * pixels + others));
+              noc_text_bytes(text, sizeof(double) * 3 * pixels + others));
     return CLI_FAILURE;
 }
 
@@ -185,15 +185,15 @@ static int work(lab_session *lab) {
         cli_error(
             "interrupted: %s in %s/results.csv; the same command goes on there, but begins this reference anew: the %s "
             "of %d that were there are lost",
-            cli_many(rows, lab->rows_done, "row"), lab->folder,
-            cli_many(frames, (uint64_t)lab->reference_lost, "frame"), spec->reference.frames);
+            noc_text_many(rows, lab->rows_done, "row"), lab->folder,
+            noc_text_many(frames, (uint64_t)lab->reference_lost, "frame"), spec->reference.frames);
     else if (status > CLI_INTERRUPTED)
         cli_error("interrupted: %s in %s/results.csv; the same command goes on there",
-                  cli_many(rows, lab->rows_done, "row"), lab->folder);
+                  noc_text_many(rows, lab->rows_done, "row"), lab->folder);
     status = status ? status : lab_tidy_table(lab);
     status = status ? status : lab_write_report(lab);
     if (!status && !lab->args->common.quiet)
-        printf("%s/report.md: %s, %zu of them made now\n", lab->folder, cli_many(rows, lab->rows_done, "row"),
+        printf("%s/report.md: %s, %zu of them made now\n", lab->folder, noc_text_many(rows, lab->rows_done, "row"),
                lab->rows_done - lab->rows_old);
     return status;
 }

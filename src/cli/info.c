@@ -37,7 +37,7 @@ static void print_counts(const char *title, const size_t counts[NOC_CLASS_COUNT]
     char a[32];
     for (int i = 0; i < NOC_CLASS_COUNT; i++)
         if (counts[i])
-            printf("    %-13s %10s%s\n", noc_class_name((noc_class)i), cli_count(a, counts[i]), title);
+            printf("    %-13s %10s%s\n", noc_class_name((noc_class)i), noc_text_count(a, counts[i]), title);
 }
 
 const char *info_action(const noc_report_line *line) {
@@ -51,8 +51,8 @@ static void print_lines(const noc_report_file *file, const char *action) {
         const noc_report_line *line = &file->lines[i];
         if (strcmp(info_action(line), action))
             continue;
-        printf("  %-11s %s x %s", first ? action : "", cli_count(a, line->count),
-               cli_clean(reason, sizeof(reason), line->reason));
+        printf("  %-11s %s x %s", first ? action : "", noc_text_count(a, line->count),
+               noc_text_clean(reason, sizeof(reason), line->reason));
         char *ids = cli_ids(line->examples, line->count, CLI_IDS_WIDTH);
         printf("%s%s\n", *ids ? ": " : "", ids);
         free(ids);
@@ -63,17 +63,17 @@ static void print_lines(const noc_report_file *file, const char *action) {
 static void print_source(const noc_report_file *file) {
     char a[32], b[32], c[32], text[240];
     printf("  %-11s %s\n", "format",
-           cli_clean(text, sizeof(text), file->format && *file->format ? file->format : "unknown"));
-    printf("  %-11s %s", "size", cli_bytes(a, file->bytes));
+           noc_text_clean(text, sizeof(text), file->format && *file->format ? file->format : "unknown"));
+    printf("  %-11s %s", "size", noc_text_bytes(a, file->bytes));
     if (file->bytes_read > file->bytes)
-        printf(", %s unpacked", cli_bytes(b, file->bytes_read));
-    printf("; read in %s", cli_seconds(c, file->seconds));
+        printf(", %s unpacked", noc_text_bytes(b, file->bytes_read));
+    printf("; read in %s", noc_text_seconds(c, file->seconds));
     if (file->bytes_read > 1000000 && file->seconds > 0)
         printf(" (%.0f MB/s)", 1e-6 * (double)file->bytes_read / file->seconds);
     bool known = file->crs && *file->crs;
-    printf("\n  %-11s %s", "CRS", known ? cli_clean(text, sizeof(text), file->crs) : "none");
+    printf("\n  %-11s %s", "CRS", known ? noc_text_clean(text, sizeof(text), file->crs) : "none");
     if (file->crs_given && *file->crs_given)
-        printf(", given as \"%s\"", cli_clean(text, sizeof(text), file->crs_given));
+        printf(", given as \"%s\"", noc_text_clean(text, sizeof(text), file->crs_given));
     else if (known)
         printf(", %s", file->crs_taken ? "taken as such: the file names none" : "by --crs");
     else if (file->has_extent)
@@ -95,13 +95,13 @@ static void print_extent(const noc_report_file *file) {
 
 static void print_objects(const noc_report_file *file) {
     char a[32], b[32];
-    printf("  %-11s %s", "objects", cli_count(a, file->objects));
+    printf("  %-11s %s", "objects", noc_text_count(a, file->objects));
     if (file->buildings)
-        printf(", %s of them buildings", cli_count(b, file->buildings));
+        printf(", %s of them buildings", noc_text_count(b, file->buildings));
     const char *before = " (";
     for (int i = 0; i < 5; i++) {
         if (file->lod_used[i]) {
-            printf("%s%s in LOD%d", before, cli_count(a, file->lod_used[i]), i);
+            printf("%s%s in LOD%d", before, noc_text_count(a, file->lod_used[i]), i);
             before = ", ";
         }
     }
@@ -110,9 +110,9 @@ static void print_objects(const noc_report_file *file) {
 
 static void print_lamps(const noc_report_file *file, const noc_import_params *import) {
     char a[32], b[64];
-    printf("  %-11s %s", "lamps", cli_count(a, file->lamps));
+    printf("  %-11s %s", "lamps", noc_text_count(a, file->lamps));
     if (file->lamp_heads != file->lamps)
-        printf(" with %s, each a light", cli_many(b, file->lamp_heads, "head"));
+        printf(" with %s, each a light", noc_text_many(b, file->lamp_heads, "head"));
     putchar('\n');
     const struct {
         const char *name;
@@ -130,7 +130,7 @@ static void print_lamps(const noc_report_file *file, const noc_import_params *im
     for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {
         if (!known[i].count)
             continue;
-        printf("    %-13s %10s, %.1f%%", known[i].name, cli_count(a, known[i].count),
+        printf("    %-13s %10s, %.1f%%", known[i].name, noc_text_count(a, known[i].count),
                100.0 * (double)known[i].count / (double)file->lamps);
         if (known[i].unit)
             printf(": %.6g to %.6g %s", known[i].min, known[i].max, known[i].unit);
@@ -140,7 +140,7 @@ static void print_lamps(const noc_report_file *file, const noc_import_params *im
         if (file->lamps_by_source[s] && (s != NOC_SOURCE_UNKNOWN || file->lamps_by_source[s] != file->lamps))
             printf("    %-13s %10s, %.1f%%\n",
                    s == NOC_SOURCE_UNKNOWN ? "source?" : noc_lamp_source_name((noc_lamp_source)s),
-                   cli_count(a, file->lamps_by_source[s]),
+                   noc_text_count(a, file->lamps_by_source[s]),
                    100.0 * (double)file->lamps_by_source[s] / (double)file->lamps);
     cli_print_assumed("  assumed     ", file->lamps_assumed, import);
 }
@@ -167,9 +167,9 @@ static void print_columns(const noc_report_file *file) {
                 continue;
             snprintf(field, sizeof(field), "%s%s%s%s", used ? c->field : "not used", *c->unit ? ", " : "", c->unit,
                      c->mapped ? " *" : "");
-            cli_clean(name, sizeof(name), c->name);
+            noc_text_clean(name, sizeof(name), c->name);
             printf("    %-9s %-*s %-14s %s\n", "", padded(name, 24), name, field,
-                   c->values ? cli_clean(example, sizeof(example), c->example) : "(blank)");
+                   c->values ? noc_text_clean(example, sizeof(example), c->example) : "(blank)");
         }
     if (unused > MOST)
         printf("    %-9s and %zu more that are not used; --json lists them\n", "", unused - MOST);
@@ -179,7 +179,7 @@ static void print_points(const noc_report_file *file) {
     char a[32];
     if (file->points && !file->lamps)
         printf("  %-11s %s, and nothing tells that they are lamps in use: --lamps FILE says so\n", "points",
-               cli_count(a, file->points));
+               noc_text_count(a, file->points));
     print_columns(file);
     if (file->decimal_sign == '?')
         printf("  %-11s not told by the numbers: 12.000 is read as 12\n", "decimals");
@@ -204,7 +204,7 @@ static void print_features(const noc_report_file *file) {
         if (kinds[i].count) {
             bool streets = i == 4 && kinds[i].count > 1;
             printf("%s%s%s", before,
-                   streets ? cli_count(a, kinds[i].count) : cli_many(a, kinds[i].count, kinds[i].noun),
+                   streets ? noc_text_count(a, kinds[i].count) : noc_text_many(a, kinds[i].count, kinds[i].noun),
                    streets ? " streets and paths" : "");
             before = ", ";
         }
@@ -214,7 +214,7 @@ static void print_features(const noc_report_file *file) {
 
 static void print_file(const noc_report_file *file, const noc_import_params *import) {
     char a[32], b[64], path[400];
-    printf("%s\n", cli_clean(path, sizeof(path), file->path));
+    printf("%s\n", noc_text_clean(path, sizeof(path), file->path));
     print_source(file);
     print_extent(file);
     print_features(file);
@@ -222,16 +222,17 @@ static void print_file(const noc_report_file *file, const noc_import_params *imp
     if (file->objects || (!file->lamps && !map))
         print_objects(file);
     if (file->polygons) {
-        printf("  %-11s %s, %s\n", "surfaces", cli_count(a, file->polygons), cli_many(b, file->triangles, "triangle"));
+        printf("  %-11s %s, %s\n", "surfaces", noc_text_count(a, file->polygons),
+               noc_text_many(b, file->triangles, "triangle"));
         print_counts("", file->polygons_by_class);
     } else if (file->triangles) {
-        printf("  %-11s %s\n", "triangles", cli_count(a, file->triangles));
+        printf("  %-11s %s\n", "triangles", noc_text_count(a, file->triangles));
     }
     if (file->lamps)
         print_lamps(file, import);
     print_points(file);
     if (file->lights)
-        printf("  %-11s %s\n", "lights", cli_count(a, file->lights));
+        printf("  %-11s %s\n", "lights", noc_text_count(a, file->lights));
     print_lines(file, "skipped");
     print_lines(file, "repaired");
     print_lines(file, "guessed");
@@ -242,14 +243,14 @@ static void print_scene(const char *name, const noc_scene_info *info) {
     printf("%s\n  %-11s built-in scene\n", name, "format");
     printf("  %-11s x %.2f to %.2f, y %.2f to %.2f, z %.2f to %.2f\n", "extent", info->bounds_min[0],
            info->bounds_max[0], info->bounds_min[1], info->bounds_max[1], info->bounds_min[2], info->bounds_max[2]);
-    printf("  %-11s %s in %s mesh%s\n", "triangles", cli_count(a, info->triangles), cli_count(b, info->meshes),
-           info->meshes == 1 ? "" : "es");
+    printf("  %-11s %s in %s mesh%s\n", "triangles", noc_text_count(a, info->triangles),
+           noc_text_count(b, info->meshes), info->meshes == 1 ? "" : "es");
     print_counts("", info->triangles_by_class);
-    printf("  %-11s %s\n", "lights", cli_count(a, info->lights));
+    printf("  %-11s %s\n", "lights", noc_text_count(a, info->lights));
     static const char *const kinds[] = { "sphere", "disc", "triangle", "parallelogram", "point", "spot" };
     for (int i = 0; i < NOC_LIGHT_KIND_COUNT; i++)
         if (info->lights_by_kind[i])
-            printf("    %-13s %10s\n", kinds[i], cli_count(a, info->lights_by_kind[i]));
+            printf("    %-13s %10s\n", kinds[i], noc_text_count(a, info->lights_by_kind[i]));
 }
 
 static noc_status inspect_builtin(const info_args *args, const char *name, noc_log *log, noc_scene **scene) {

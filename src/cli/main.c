@@ -22,9 +22,9 @@ static int unknown_command(const char *name) {
     for (const cli_command *const *c = cli_commands; *c; c++)
         words[count++] = (*c)->name;
     words[count++] = "help";
-    const char *nearest = cli_nearest(name, words, count);
+    const char *nearest = noc_text_nearest(name, words, count);
     char shown[80];
-    cli_clean(shown, sizeof(shown), name);
+    noc_text_clean(shown, sizeof(shown), name);
     if (nearest)
         return cli_usage(NULL, "no command \"%s\"; is it %s?", shown, nearest);
     return !access(name, R_OK) || !strncmp(name, "builtin:", 8)

@@ -32,7 +32,7 @@ static int check_folder(const char *path, const char *shown) {
 
 int cli_check_output(const cli_command *command, const char *path, int endings, const cli_args *args) {
     char shown[120];
-    cli_clean(shown, sizeof(shown), path);
+    noc_text_clean(shown, sizeof(shown), path);
     struct stat st, input;
     bool exists = !stat(path, &st), too_long = !exists && errno == ENAMETOOLONG;
     if (exists && S_ISDIR(st.st_mode)) {

@@ -37,7 +37,7 @@ static void tell(double done, double left, const char *what) {
         return;
     char remaining[48] = "", time[32];
     if (left >= 0 && left < 360000)
-        snprintf(remaining, sizeof(remaining), ", about %s left", cli_seconds(time, left));
+        snprintf(remaining, sizeof(remaining), ", about %s left", noc_text_seconds(time, left));
     cli_error("%d %%, %s%s", (int)(100 * (done > 0 ? done < 1 ? done : 1 : 0)), what, remaining);
     next_told = spent + (spent < LONGEST_SILENCE ? spent : LONGEST_SILENCE);
 }
@@ -70,7 +70,7 @@ void cli_progress_show(double done, double left, const char *fmt, ...) {
     int n = snprintf(line, sizeof(line), "[%s] %3d%%  %s", bar, (int)(done * 100), what);
     if (left >= 0 && n < (int)sizeof(line) && left < 360000)
         snprintf(line + n, sizeof(line) - (size_t)n, "  %d:%02d left", (int)left / 60, (int)left % 60);
-    cli_clean(line, sizeof(line), line);
+    noc_text_clean(line, sizeof(line), line);
     /* One line rewritten in place: it must not wrap. */
     fprintf(stderr, "\r%.*s\033[K", columns() - 1, line);
     fflush(stderr);

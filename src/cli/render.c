@@ -15,7 +15,7 @@ static const noc_option own_options[] = {
     TEXT("show-range", "Output", show_range, "LOW,HIGH", "ends of that view's colour bar; else found from its numbers"),
     TEXT("influence-obj", "Output", influence_obj, "FILE",
          "write the influence volumes of --candidates influence, and boxes, as OBJ too"),
-    CLI_PRESET(A, "Estimator"),
+    NOC_OPTION_PRESET(A, "Estimator"),
     { "frames", "Output", NOC_OPTION_INT, offsetof(A, frames), 1, 1e9, NULL, "",
       "frames that are rendered and averaged" },
     { "time", "Output", NOC_OPTION_REAL, offsetof(A, time), 0, 1e9, NULL, "s",
@@ -23,26 +23,23 @@ static const noc_option own_options[] = {
     { "stats", "Output", NOC_OPTION_BOOL, offsetof(A, stats), 0, 1, NULL, "",
       "print times by pass, rays and the trace floor" },
     { "threads", "Output", NOC_OPTION_INT, offsetof(A, threads), 0, 1024, NULL, "", "threads; 0 = one a core" },
-    { "view", "Camera", NOC_OPTION_CHOICE, offsetof(A, view), 0, 0, "street|aerial|overview|own", "",
-      "camera derived from the city; own: the scene's, else street" },
-    TEXT("eye", "Camera", eye, "X,Y,Z", "place of the camera, metres in the scene's local frame, z up"),
-    TEXT("target", "Camera", target, "X,Y,Z", "what it looks at"),
-    TEXT("camera-crs", "Camera", camera_crs, "CRS",
-         "eye and target are easting,northing,height in this CRS; \"scene\": the scene's"),
-    { "fov", "Camera", NOC_OPTION_REAL, offsetof(A, fov), 1, 170, NULL, "degrees",
-      "vertical field of view; else that of the view, with --eye 50" },
+    { NULL },
+};
+static const noc_option *options(void) { return own_options; }
+
+static const noc_option picture_options[] = {
     TEXT("size", "Picture", size, "WxH", "width and height at once, such as 1920x1080"),
     TEXT("exposure", "Display", exposure, "EV",
          "\"auto\" (noise moves it), or EV100, to compare pictures: one more is half as bright"),
     { NULL },
 };
-static const noc_option *options(void) { return own_options; }
+static const noc_option *of_picture(void) { return picture_options; }
 
 static int run(void *arguments);
 
 static const render_args defaults = {
     .frames = 32,
-    .view = NOC_VIEWPOINT_OWN,
+    .camera = noc_camera_default_params(),
     .exposure = "auto",
     .render = noc_render_default_params(),
     .display = noc_display_default_params(),
@@ -65,6 +62,8 @@ const cli_command cli_render = {
     "Ctrl-C saves the picture so far and ends with status 130; a second one ends at\n"
     "once.\n",
     { { options, 0, NULL },
+      { noc_camera_options, offsetof(A, camera), NULL },
+      { of_picture, 0, NULL },
       { noc_render_options, offsetof(A, render), NULL },
       { noc_display_options, offsetof(A, display), by_exposure },
       { noc_import_options, offsetof(A, import), NULL },
@@ -80,7 +79,7 @@ static int parse_size(render_args *args) {
     double size[2];
     if (!args->size)
         return CLI_OK;
-    if (!cli_parse_numbers(args->size, 'x', 2, size) || size[0] != (int)size[0] || size[1] != (int)size[1])
+    if (!noc_text_numbers(args->size, 'x', 2, size) || size[0] != (int)size[0] || size[1] != (int)size[1])
         return cli_usage(&cli_render, "--size: \"%.60s\" is not WIDTHxHEIGHT", args->size);
     if (!(size[0] >= 1 && size[0] <= NOC_IMAGE_MAX_SIDE && size[1] >= 1 && size[1] <= NOC_IMAGE_MAX_SIDE))
         return cli_usage(&cli_render, "--size: a side is 1 to %d px, not %.60s", NOC_IMAGE_MAX_SIDE, args->size);
@@ -95,7 +94,7 @@ int cli_parse_exposure(const cli_command *command, const char *text, noc_display
     if (!strcmp(text, "auto"))
         return CLI_OK;
     display->auto_exposure = false;
-    if (!cli_parse_numbers(text, 0, 1, &display->ev100) || display->ev100 < -30 || display->ev100 > 30)
+    if (!noc_text_numbers(text, 0, 1, &display->ev100) || display->ev100 < -30 || display->ev100 > 30)
         return cli_usage(command, "--exposure: \"%.60s\" is neither auto nor an EV100 of -30 to 30", text);
     return CLI_OK;
 }
@@ -103,7 +102,7 @@ int cli_parse_exposure(const cli_command *command, const char *text, noc_display
 static int check_builtin(const render_args *args) {
     for (size_t i = 0; i < args->common.given_count; i++) {
         const noc_option *o = args->common.given[i];
-        const char *needed = cli_builtin_needed(o, args->common.inputs, args->common.input_count);
+        const char *needed = noc_option_needs_input(o, args->common.inputs, args->common.input_count);
         if (needed)
             return cli_usage(&cli_render, "--%s is for the input %s", o->name, needed);
     }
@@ -159,7 +158,7 @@ static int check(render_job *job) {
     use_preset(args);
     status = status ? status : parse_size(args);
     status = status ? status : cli_parse_exposure(&cli_render, args->exposure, &args->display);
-    status = status ? status : cli_parse_camera(job);
+    status = status ? status : cli_check_camera(args);
     status = status ? status : cli_parse_show(args);
     status = status ? status : cli_check_output(&cli_render, args->output, CLI_PNG | CLI_EXR, &args->common);
     status = status ? status : check_influence(args);
@@ -172,17 +171,20 @@ static noc_status load(render_job *job) {
     render_args *args = job->args;
     char triangles[64], lights[64];
     args->import.progress = (noc_progress){ cli_load_progress, NULL };
+    args->import.builtin = &args->builtin;
     /* what a frame would refuse, before a city is read */
     noc_status status = noc_render_check(&args->render, job->log);
     if (status)
         return status;
-    status = cli_load_scene(job->scene, args->common.inputs, args->common.input_count, &args->builtin, &args->import,
-                            &job->report);
+    cli_nothing_to_keep(true);
+    status = noc_scene_load(job->scene, args->common.inputs, args->common.input_count, &args->import, &job->report);
+    cli_nothing_to_keep(false);
+    cli_progress_clear();
     noc_scene_get_info(job->scene, &job->scene_info);
     job->loaded = cli_now();
     if (!status && args->common.verbose)
-        cli_error("%s, %s, loaded in %.2f s", cli_many(triangles, job->scene_info.triangles, "triangle"),
-                  cli_many(lights, job->scene_info.lights, "light"), job->loaded - job->started);
+        cli_error("%s, %s, loaded in %.2f s", noc_text_many(triangles, job->scene_info.triangles, "triangle"),
+                  noc_text_many(lights, job->scene_info.lights, "light"), job->loaded - job->started);
     return status;
 }
 
@@ -243,7 +245,7 @@ static noc_status reserve(render_job *job) {
     if (job->room)
         return NOC_OK;
     char text[32];
-    cli_error("no memory for a picture of %d x %d (%s)", p->width, p->height, cli_bytes(text, bytes));
+    cli_error("no memory for a picture of %d x %d (%s)", p->width, p->height, noc_text_bytes(text, bytes));
     return NOC_ERR_MEMORY;
 }
 
@@ -255,7 +257,8 @@ static int work(render_job *job) {
         return CLI_FAILURE;
     }
     if (!status && !cli_interrupted())
-        status = cli_place_camera(job);
+        status = noc_scene_place_camera(job->scene, &args->camera, (double)args->render.width / args->render.height,
+                                        &job->camera, &job->far_away);
     if (!status)
         status = reserve(job);
     if (!status && !cli_interrupted()) {
@@ -281,7 +284,7 @@ static int work(render_job *job) {
     if (args->stats && !ending && noc_view_trace_floor(job->view, &job->camera, &args->render, &job->floor_seconds))
         return CLI_FAILURE;
     if (ending && args->time > 0)
-        cli_error("interrupted: saved %s to %s", cli_many(text, (uint64_t)job->frames, "frame"), args->output);
+        cli_error("interrupted: saved %s to %s", noc_text_many(text, (uint64_t)job->frames, "frame"), args->output);
     else if (ending)
         cli_error("interrupted: saved %d of %d frames to %s", job->frames, args->frames, args->output);
     if (!args->common.quiet)

@@ -15,9 +15,7 @@ typedef struct render_args {
     int show;   /* 0: the picture, else 1 + noc_aov */
     const char *show_range, *influence_obj;
     noc_channel_params range;
-    int view; /* noc_viewpoint */
-    const char *eye, *target, *camera_crs;
-    double fov; /* 0: not given */
+    noc_camera_params camera;
     const char *size, *exposure;
     noc_render_params render;
     noc_display_params display;
@@ -28,7 +26,6 @@ typedef struct render_args {
 /* One run of the command: inputs to picture. */
 typedef struct render_job {
     render_args *args;
-    double eye[3], target[3]; /* as given; used when --eye was */
     noc_log *log;
     noc_scene *scene;
     noc_device *device;
@@ -48,8 +45,7 @@ typedef struct render_job {
 } render_job;
 
 /* camera.c */
-int cli_parse_camera(render_job *job);        /* --eye, --target: checked before the long work */
-noc_status cli_place_camera(render_job *job); /* once the scene is there */
+int cli_check_camera(const render_args *args);
 
 /* show.c */
 int cli_parse_show(render_args *args);
@@ -60,7 +56,6 @@ void cli_print_view(const render_job *job);
 /* report.c */
 void cli_print_summary(const render_job *job);
 void cli_print_stats(const render_job *job);
-bool cli_is_black(const noc_image *image);
 void cli_warn_of_picture(const render_job *job); /* once it is written */
 noc_status cli_write_picture(render_job *job);   /* with all of its metadata */
 

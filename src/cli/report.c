@@ -20,10 +20,10 @@ static void add(meta_text *meta, const char *key, char *value) {
 /* Has the option a say in this picture? That of a built-in scene has none in a city, nor the tone map in a view. */
 static bool counts(const render_args *args, const noc_option *o) {
     if (!strcmp(o->name, "view"))
-        return !args->eye;
+        return !args->camera.eye;
     if (!strcmp(o->group, "Display"))
         return !args->show;
-    return !cli_builtin_needed(o, args->common.inputs, args->common.input_count);
+    return !noc_option_needs_input(o, args->common.inputs, args->common.input_count);
 }
 
 /* Everything needed to make the picture again, besides what the writer adds (units, exposure): each option by name. */
@@ -176,20 +176,12 @@ noc_status cli_write_picture(render_job *job) {
     return status;
 }
 
-bool cli_is_black(const noc_image *image) {
-    size_t n = (size_t)image->width * (size_t)image->height * 3;
-    for (size_t i = 0; i < n; i++)
-        if (image->rgb[i] > 0)
-            return false;
-    return true;
-}
-
 /* Pictures that are no failure of the program, but hardly what was wanted. */
 void cli_warn_of_picture(const render_job *job) {
     const noc_render_params *p = &job->args->render;
     if (job->args->common.quiet || job->far_away || !job->scene_info.lights)
         return;
-    bool black = cli_is_black(job->image);
+    bool black = noc_image_is_black(job->image);
     /* of a model, which may be wound the other way */
     bool surfaces = job->scene_info.lights_by_kind[NOC_LIGHT_TRIANGLE];
     if (p->final_ray && !job->last.rays_shadow && black)
@@ -269,17 +261,18 @@ static void print_issues(const noc_report *report) {
     }
     qsort(issues, n, sizeof(*issues), compare_issues);
     char a[64], b[32], c[32], reason[160];
-    printf("  inputs    features skipped: %s, repaired: %s, guessed at: %s\n", cli_count(a, t.skipped),
-           cli_count(b, t.repaired), cli_count(c, t.guessed));
+    printf("  inputs    features skipped: %s, repaired: %s, guessed at: %s\n", noc_text_count(a, t.skipped),
+           noc_text_count(b, t.repaired), noc_text_count(c, t.guessed));
     for (size_t i = 0; i < n && i < SHOWN; i++) {
         const noc_report_line *line = issues[i].line;
-        printf("            %s x %s", cli_count(a, issues[i].count), cli_clean(reason, sizeof(reason), line->reason));
+        printf("            %s x %s", noc_text_count(a, issues[i].count),
+               noc_text_clean(reason, sizeof(reason), line->reason));
         char *ids = cli_ids(line->examples, issues[i].count, CLI_IDS_WIDTH);
         printf("%s%s\n", *ids ? ": " : "", ids);
         free(ids);
     }
     if (n > SHOWN)
-        printf("            and for %s\n", cli_many(a, n - SHOWN, "other reason"));
+        printf("            and for %s\n", noc_text_many(a, n - SHOWN, "other reason"));
     free(issues);
 }
 
@@ -298,7 +291,7 @@ static void print_lamps(const noc_report *report, const noc_import_params *impor
     const char *before = "  lamps     ";
     for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
         if (rows[i].count) {
-            printf("%s%s %s", before, cli_count(a, rows[i].count), rows[i].what);
+            printf("%s%s %s", before, noc_text_count(a, rows[i].count), rows[i].what);
             before = i == 0 && rows[1].count ? ", of them " : ", ";
         }
     if (*before == ',')
@@ -310,9 +303,9 @@ void cli_print_summary(const render_job *job) {
     const render_args *args = job->args;
     const noc_scene_info *scene = &job->scene_info;
     char a[64], b[64], c[32], name[24] = "", path[240];
-    printf("%s\n", cli_clean(path, sizeof(path), args->output));
+    printf("%s\n", noc_text_clean(path, sizeof(path), args->output));
     printf("  picture   %d x %d, %s of %s, ", args->render.width, args->render.height,
-           cli_many(a, (uint64_t)job->frames, "frame"), choice_name("method", &args->render, name, sizeof(name)));
+           noc_text_many(a, (uint64_t)job->frames, "frame"), choice_name("method", &args->render, name, sizeof(name)));
     if (job->shown)
         cli_print_view_kind(job, is_exr(args->output));
     else if (is_exr(args->output))
@@ -321,9 +314,10 @@ void cli_print_summary(const render_job *job) {
         printf("exposure %.2f EV100\n", ev100(job));
     if (job->shown)
         cli_print_view(job);
-    printf("  scene     %s, %s", cli_many(a, scene->triangles, "triangle"), cli_many(b, scene->lights, "light"));
+    printf("  scene     %s, %s", noc_text_many(a, scene->triangles, "triangle"),
+           noc_text_many(b, scene->lights, "light"));
     if (scene->lights_inferred)
-        printf(" (%s placed by a rule, not found in data)", cli_count(c, scene->lights_inferred));
+        printf(" (%s placed by a rule, not found in data)", noc_text_count(c, scene->lights_inferred));
     printf("%s%s", *scene->given_crs ? ", " : "", scene->given_crs);
     if (strcmp(scene->given_crs, scene->crs))
         printf(", computed in %s", scene->crs);
@@ -337,13 +331,14 @@ void cli_print_summary(const render_job *job) {
     printf("  camera    eye %.2f,%.2f,%.2f target %.2f,%.2f,%.2f fov %.1f\n", job->camera.eye[0], job->camera.eye[1],
            job->camera.eye[2], job->camera.target[0], job->camera.target[1], job->camera.target[2],
            job->camera.fov_deg);
-    printf("  time      %s: loading %s, ", cli_seconds(a, cli_now() - job->started),
-           cli_seconds(b, job->loaded - job->started));
-    printf("ray tracing structure %s, ", cli_seconds(a, job->last.build_seconds));
-    printf("%s a frame (%s)\n", cli_seconds(a, job->frame_seconds / job->frames), job->last.path ? job->last.path : "");
-    printf("  memory    %s at most\n", cli_bytes(a, peak_memory()));
+    printf("  time      %s: loading %s, ", noc_text_seconds(a, cli_now() - job->started),
+           noc_text_seconds(b, job->loaded - job->started));
+    printf("ray tracing structure %s, ", noc_text_seconds(a, job->last.build_seconds));
+    printf("%s a frame (%s)\n", noc_text_seconds(a, job->frame_seconds / job->frames),
+           job->last.path ? job->last.path : "");
+    printf("  memory    %s at most\n", noc_text_bytes(a, peak_memory()));
     if (job->last.dropped)
-        printf("  dropped   %s, not finite\n", cli_many(a, job->last.dropped, "sample"));
+        printf("  dropped   %s, not finite\n", noc_text_many(a, job->last.dropped, "sample"));
 }
 
 void cli_print_stats(const render_job *job) {
@@ -358,10 +353,10 @@ void cli_print_stats(const render_job *job) {
     char a[32], b[32];
     printf("  %-12s %10.2f           wall; %.2f processor\n", "frame", 1e3 * frame,
            1e3 * job->cpu_seconds / job->frames);
-    printf("  %-12s %s primary, %s shadow (last frame)\n", "rays", cli_count(a, job->last.rays_primary),
-           cli_count(b, job->last.rays_shadow));
+    printf("  %-12s %s primary, %s shadow (last frame)\n", "rays", noc_text_count(a, job->last.rays_primary),
+           noc_text_count(b, job->last.rays_shadow));
     if (job->floor_seconds > 0)
         printf("  %-12s %10.2f           wall; the frame takes %.2f times as long\n", "trace floor",
                1e3 * job->floor_seconds, frame / job->floor_seconds);
-    printf("  %-12s %s\n", "memory", cli_bytes(a, job->last.memory_bytes));
+    printf("  %-12s %s\n", "memory", noc_text_bytes(a, job->last.memory_bytes));
 }

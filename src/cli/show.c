@@ -14,8 +14,7 @@ int cli_parse_show(render_args *args) {
     if (!args->show)
         return CLI_OK;
     double ends[2] = { 0, 0 };
-    if (args->show_range &&
-        (!cli_parse_numbers(args->show_range, ',', 2, ends) || !(ends[0] >= 0 && ends[0] < ends[1])))
+    if (args->show_range && (!noc_text_numbers(args->show_range, ',', 2, ends) || !(ends[0] >= 0 && ends[0] < ends[1])))
         return cli_usage(&cli_render, "--show-range: \"%.60s\" is not LOW,HIGH, the lower one first", args->show_range);
     args->range = (noc_channel_params){ ends[0], ends[1] };
     if ((shown(args) == NOC_AOV_VARIANCE || shown(args) == NOC_AOV_ERROR) && args->frames < 2 && !(args->time > 0))
@@ -74,7 +73,7 @@ static void print_names(const render_job *job, const float *v, size_t n, size_t 
                    !told      ? "            "
                    : told % 4 ? ", "
                               : ",\n            ",
-                   labels[i].number, cli_clean(text, sizeof(text), name),
+                   labels[i].number, noc_text_clean(text, sizeof(text), name),
                    100.0 * (double)labels[i].pixels / (double)pixels);
         told += name && *name;
     }
@@ -118,7 +117,7 @@ void cli_print_view(const render_job *job) {
         printf("  view      %s: no pixel has a value\n", view->name);
     else if (view->scale == NOC_CHANNEL_LABELS)
         printf("  view      %s: %s different ones, none in %.1f%% of the pixels\n", view->name,
-               cli_count(text, different), 100.0 * (double)(pixels - n) / (double)pixels);
+               noc_text_count(text, different), 100.0 * (double)(pixels - n) / (double)pixels);
     else
         printf(
             "  view      %s: median %.4g, 1%% of the values under %.4g and over %.4g; none in %.1f%% of the pixels\n",

@@ -8,19 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Names come from files and from the command line: none of their control characters may reach a terminal. */
-const char *cli_clean(char *text, size_t size, const char *from) {
-    size_t n = strlen(from);
-    if (n < size)
-        memmove(text, from, n + 1);
-    else
-        snprintf(text, size, "%.*s...", (int)size - 4, from);
-    for (char *c = text; *c; c++)
-        if ((unsigned char)*c < 32 || *c == 127)
-            *c = ' ';
-    return text;
-}
-
 char *cli_ids(const char *list, size_t count, size_t width) {
     enum { LISTED = 5 }; /* by the library: fewer are all there are */
     size_t shown = 0, listed = 0, end = 0;
@@ -35,9 +22,9 @@ char *cli_ids(const char *list, size_t count, size_t width) {
     }
     char more[64] = "", number[32];
     if (count > shown && (shown < listed || listed == LISTED))
-        snprintf(more, sizeof(more), " and %s more", cli_count(number, count - shown));
+        snprintf(more, sizeof(more), " and %s more", noc_text_count(number, count - shown));
     char *text = cli_format("%.*s%s", (int)end, list, more);
-    cli_clean(text, strlen(text) + 1, text);
+    noc_text_clean(text, strlen(text) + 1, text);
     return text;
 }
 
@@ -45,7 +32,7 @@ static void vreport(const char *prefix, const char *fmt, va_list ap) {
     char text[1024], clean[1024];
     vsnprintf(text, sizeof(text), fmt, ap);
     cli_progress_clear();
-    fprintf(stderr, "nocturne: %s%s\n", prefix, cli_clean(clean, sizeof(clean), text));
+    fprintf(stderr, "nocturne: %s%s\n", prefix, noc_text_clean(clean, sizeof(clean), text));
 }
 
 void cli_error(const char *fmt, ...) {
@@ -109,47 +96,6 @@ char *cli_format(const char *fmt, ...) {
     vsnprintf(text, (size_t)n + 1, fmt, again);
     va_end(again);
     va_end(ap);
-    return text;
-}
-
-const char *cli_count(char text[32], uint64_t n) {
-    char digits[24];
-    int count = snprintf(digits, sizeof(digits), "%llu", (unsigned long long)n);
-    char *out = text;
-    for (int i = 0; i < count; i++) {
-        if (i && (count - i) % 3 == 0)
-            *out++ = ',';
-        *out++ = digits[i];
-    }
-    *out = 0;
-    return text;
-}
-
-const char *cli_many(char text[64], uint64_t n, const char *noun) {
-    char count[32];
-    snprintf(text, 64, "%s %.28s%s", cli_count(count, n), noun, n == 1 ? "" : "s");
-    return text;
-}
-
-const char *cli_bytes(char text[32], uint64_t n) {
-    static const char *const units[] = { "bytes", "kB", "MB", "GB", "TB" };
-    double v = (double)n;
-    size_t unit = 0;
-    for (; v >= 999.5 && unit < 4; unit++)
-        v /= 1000;
-    snprintf(text, 32, unit && v < 9.95 ? "%.1f %s" : "%.0f %s", v, n == 1 ? "byte" : units[unit]);
-    return text;
-}
-
-const char *cli_seconds(char text[32], double s) {
-    if (s < 9.995)
-        snprintf(text, 32, "%.2f s", s);
-    else if (s < 99.5)
-        snprintf(text, 32, "%.1f s", s);
-    else if (s < 3599.5)
-        snprintf(text, 32, "%d min %02d s", (int)(s + 0.5) / 60, (int)(s + 0.5) % 60);
-    else
-        snprintf(text, 32, "%.0f h %02.0f min", floor(s / 3600), floor(fmod(s, 3600) / 60));
     return text;
 }
 

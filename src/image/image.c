@@ -55,3 +55,11 @@ void noc_image_destroy(noc_image *image) {
     free(image->coverage);
     free(image);
 }
+
+bool noc_image_is_black(const noc_image *image) {
+    size_t n = image ? (size_t)image->width * (size_t)image->height * 3 : 0;
+    for (size_t i = 0; i < n; i++)
+        if (image->rgb[i] > 0)
+            return false;
+    return true;
+}

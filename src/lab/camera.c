@@ -17,16 +17,7 @@ static const noc_option path_options[] = {
 };
 static const noc_option *path_table(void) { return path_options; }
 
-const noc_option *lab_camera_options(void) {
-    static noc_option rows[6];
-    static const char *const names[] = { "view", "eye", "target", "camera-crs", "fov" };
-    size_t offset;
-    for (size_t i = 0; i < 5; i++)
-        rows[i] = *lab_option(cli_render.sets, names[i], &offset);
-    return rows;
-}
-
-static const cli_set pose_sets[] = { { lab_camera_options, 0, NULL }, { NULL } };
+static const cli_set pose_sets[] = { { noc_camera_options, 0, NULL }, { NULL } };
 static const cli_set path_sets[] = { { path_table, 0, NULL }, { NULL } };
 static const noc_option inset_options[] = {
     { "box", "Inset", NOC_OPTION_TEXT, offsetof(lab_inset, text), 0, 0, NULL, "", "" },
@@ -39,26 +30,23 @@ static const char *const camera_others[] = { "name", "path", "insets", NULL }, *
                                                                                                         NULL };
 
 /* others: members of the object that are no options of a pose. */
-static int read_pose(lab_spec *spec, const char *place, json_t *object, const char *const *others, lab_pose *pose) {
-    render_args *args = &pose->args;
-    *args = *(const render_args *)cli_render.defaults;
-    int status = lab_set_all(spec, place, object, pose_sets, others, args);
+static int read_pose(lab_spec *spec, const char *place, json_t *object, const char *const *others,
+                     noc_camera_params *pose) {
+    double eye[3], target[3];
+    *pose = noc_camera_default_params();
+    int status = lab_set_all(spec, place, object, pose_sets, others, pose);
     if (status)
         return status;
-    if (!args->eye != !args->target)
+    if (!pose->eye != !pose->target)
         return lab_wrong(spec, place, "eye and target come together");
-    if (args->eye && json_object_get(object, "view"))
+    if (pose->eye && json_object_get(object, "view"))
         return lab_wrong(spec, place, "view and eye exclude each other");
-    if (args->camera_crs && !args->eye)
+    if (pose->crs && !pose->eye)
         return lab_wrong(spec, place, "camera-crs is for eye and target");
-    if (args->eye &&
-        (!cli_parse_numbers(args->eye, ',', 3, pose->eye) || !cli_parse_numbers(args->target, ',', 3, pose->target)))
+    if (pose->eye && (!noc_text_numbers(pose->eye, ',', 3, eye) || !noc_text_numbers(pose->target, ',', 3, target)))
         return lab_wrong(spec, place, "eye and target are three numbers each, [x, y, z]");
-    if (args->eye && !memcmp(pose->eye, pose->target, sizeof(pose->eye)))
+    if (pose->eye && !memcmp(eye, target, sizeof(eye)))
         return lab_wrong(spec, place, "eye and target are the same place");
-    size_t offset;
-    if (json_object_get(object, "fov"))
-        args->common.given[args->common.given_count++] = lab_option(cli_render.sets, "fov", &offset);
     return CLI_OK;
 }
 
@@ -68,7 +56,7 @@ static int read_path(lab_spec *spec, const char *place, json_t *path, C *camera)
         return status;
     if (!camera->frames)
         return lab_wrong(spec, place, "it needs frames, how many the motion takes");
-    if (camera->dolly_text && (!cli_parse_numbers(camera->dolly_text, ',', 3, camera->dolly) ||
+    if (camera->dolly_text && (!noc_text_numbers(camera->dolly_text, ',', 3, camera->dolly) ||
                                !(fabs(camera->dolly[0]) + fabs(camera->dolly[1]) + fabs(camera->dolly[2]) < 1e6)))
         return lab_wrong(spec, place, "dolly is [right, forward, up], metres from the first frame to the last");
     json_t *before = json_object_get(path, "before");
@@ -138,25 +126,15 @@ int lab_read_cameras(lab_spec *spec, const char *place, json_t *cameras, size_t 
     return CLI_OK;
 }
 
-static int place(lab_session *lab, size_t scene, lab_pose *pose, noc_camera *camera) {
-    pose->args.render.width = lab->spec.width;
-    pose->args.render.height = lab->spec.height;
-    render_job job = {
-        .args = &pose->args, .scene = lab->scene, .log = lab->log, .scene_info = lab->scene_infos[scene]
-    };
-    memcpy(job.eye, pose->eye, sizeof(job.eye));
-    memcpy(job.target, pose->target, sizeof(job.target));
-    if (cli_place_camera(&job))
-        return CLI_FAILURE;
-    *camera = job.camera;
-    return CLI_OK;
-}
-
 int lab_place_cameras(lab_session *lab, size_t index) {
-    C *camera = &lab->spec.cameras[index];
-    int status = place(lab, camera->scene, &camera->pose, &lab->camera);
+    const C *camera = &lab->spec.cameras[index];
+    double aspect = (double)lab->spec.width / lab->spec.height;
+    if (noc_scene_place_camera(lab->scene, &camera->pose, aspect, &lab->camera, NULL))
+        return CLI_FAILURE;
     lab->before = lab->camera;
-    return status || !camera->cut ? status : place(lab, camera->scene, &camera->before, &lab->before);
+    if (camera->cut && noc_scene_place_camera(lab->scene, &camera->before, aspect, &lab->before, NULL))
+        return CLI_FAILURE;
+    return CLI_OK;
 }
 
 /* v turned about the vertical, counter-clockwise from above. */

@@ -11,7 +11,7 @@ static const noc_option config_options[] = {
     { NULL },
 };
 static const noc_option preset_options[] = {
-    CLI_PRESET(lab_config, "Configuration"),
+    NOC_OPTION_PRESET(lab_config, "Configuration"),
     { NULL },
 };
 static const noc_option *config_table(void) { return config_options; }

@@ -32,12 +32,6 @@ typedef struct lab_scene {
     noc_builtin_params builtin;
 } lab_scene;
 
-/* Where a camera stands: a view derived from the scene, or eye and target. */
-typedef struct lab_pose {
-    render_args args; /* view, eye, target, camera-crs, fov */
-    double eye[3], target[3];
-} lab_pose;
-
 /* Parts of a camera's picture that are shown enlarged below it, in frames of a colour each. */
 enum { LAB_INSETS = 4 };
 typedef struct lab_inset {
@@ -50,14 +44,14 @@ typedef struct lab_inset {
 typedef struct lab_camera {
     const char *name;
     size_t scene;
-    lab_pose pose;
+    noc_camera_params pose;
     int frames; /* of the motion; 0: at rest */
     const char *dolly_text;
     double dolly[3]; /* travelled in the motion: right, forward, up, m */
     /* turned about the target and about the eye in the motion, degrees, counter-clockwise from above */
     double orbit, pan;
     int cut; /* so many of the first frames show what `before` sees */
-    lab_pose before;
+    noc_camera_params before;
     lab_inset insets[LAB_INSETS];
     int inset_count;
 } lab_camera;
@@ -243,7 +237,6 @@ void *lab_longer(void *array, size_t size);   /* realloc that ends the program w
 void lab_warn_of_idle(const lab_spec *spec, struct json_t *root); /* of options that change nothing */
 
 /* camera.c */
-const noc_option *lab_camera_options(void); /* of render's options, those that place a camera */
 /* added to the spec's */
 int lab_read_cameras(lab_spec *spec, const char *place, struct json_t *cameras, size_t scene);
 int lab_place_cameras(lab_session *lab, size_t camera); /* once its scene is there */

@@ -57,7 +57,7 @@ static int unknown(const lab_spec *spec, const char *place, const cli_set *sets,
                 return lab_wrong(spec, place, "%s: the spec says it for all pictures (size, seed, accumulate)", name);
     for (; others && *others && count < 2 * CLI_GIVEN; others++)
         words[count++] = *others;
-    const char *nearest = cli_nearest(name, words, count);
+    const char *nearest = noc_text_nearest(name, words, count);
     if (nearest)
         return lab_wrong(spec, place, "no option \"%.60s\"; is it \"%s\"?", name, nearest);
     if (count > FEW)

@@ -119,7 +119,7 @@ char *lab_unlit(const lab_session *lab, size_t camera) {
         return NULL;
     return cli_format("unlit in the reference: %s that a picture lights are %.3g %% of its relMSE (%s, %s %d, where "
                       "their share is largest). More frames of the reference%s may light them.",
-                      cli_many(many, (uint64_t)most.pixels, "pixel"), 100 * most.share, most.name,
+                      noc_text_many(many, (uint64_t)most.pixels, "pixel"), 100 * most.share, most.name,
                       most.mode == LAB_ACCUMULATED ? "mean of" : "frame", most.frame,
                       lists ? "" : ", or one of ris over lists,");
 }

@@ -194,7 +194,7 @@ static void print_setting(FILE *out, const lab_session *lab) {
     if (spec->seconds > 0)
         snprintf(extent, sizeof(extent), "%.3g s of CPU time", spec->seconds);
     else
-        cli_many(extent, (uint64_t)spec->frames, "frame");
+        noc_text_many(extent, (uint64_t)spec->frames, "frame");
     fprintf(out, "\n\nPictures of %d x %d px, %s, ", spec->width, spec->height, extent);
     if (spec->repetitions > 1) {
         fprintf(
@@ -205,9 +205,9 @@ static void print_setting(FILE *out, const lab_session *lab) {
     } else {
         fprintf(out, "1 repetition: how far another seed's figures would be off is not known.\n");
     }
-    fprintf(out, "Reference: %s of ", cli_many(extent, (uint64_t)spec->reference.frames, "frame"));
+    fprintf(out, "Reference: %s of ", noc_text_many(extent, (uint64_t)spec->reference.frames, "frame"));
     if (spec->reference.params.method == NOC_METHOD_REFERENCE)
-        fprintf(out, "%s a pixel", cli_many(extent, (uint64_t)spec->reference.params.rays, "shadow ray"));
+        fprintf(out, "%s a pixel", noc_text_many(extent, (uint64_t)spec->reference.params.rays, "shadow ray"));
     else
         print_options(out, &spec->reference.params);
     fprintf(out, ", %s.\n", spec->reference.params.jitter ? "jittered" : "through the centres of pixels");
@@ -218,9 +218,9 @@ static void print_setting(FILE *out, const lab_session *lab) {
     for (size_t i = 0; i < spec->scene_count; i++) {
         fputc('|', out);
         lab_cell(out, spec->scenes[i].name);
-        fprintf(out, " %s |", cli_count(text, lab->scene_infos[i].triangles));
-        fprintf(out, " %s | %s |\n", cli_count(text, lab->scene_infos[i].lights),
-                cli_bytes(memory, lab->scene_infos[i].memory_bytes));
+        fprintf(out, " %s |", noc_text_count(text, lab->scene_infos[i].triangles));
+        fprintf(out, " %s | %s |\n", noc_text_count(text, lab->scene_infos[i].lights),
+                noc_text_bytes(memory, lab->scene_infos[i].memory_bytes));
     }
     fprintf(out, "\n| Configuration | Method, candidates, and options that are not the defaults |\n|---|---|\n");
     for (size_t i = 0; i < spec->config_count; i++) {
@@ -243,7 +243,7 @@ static void print_crops(FILE *out, const lab_session *lab, size_t camera) {
         int frame = motion ? motion : spec->shown[i];
         char many[64], *name = lab_sheet_name(lab, camera, frame);
         if (mode == LAB_ACCUMULATED)
-            fprintf(out, "\n![Mean of %s](%s)\n", cli_many(many, (uint64_t)frame, "frame"), name);
+            fprintf(out, "\n![Mean of %s](%s)\n", noc_text_many(many, (uint64_t)frame, "frame"), name);
         else
             fprintf(out, "\n![Frame %d](%s)\n", frame, name);
         free(name);
@@ -403,7 +403,7 @@ static void print_times(FILE *out, lab_series s) {
         lab_number(out, 1e-6 * lab_median(&s, COL_RAYS), "%.2f");
         lab_number(out, 1e3 * lab_median(&s, COL_BUILD), "%.1f");
         double bytes = lab_median(&s, COL_MEMORY);
-        fprintf(out, " %s |\n", bytes >= 0 ? cli_bytes(memory, (uint64_t)bytes) : "-");
+        fprintf(out, " %s |\n", bytes >= 0 ? noc_text_bytes(memory, (uint64_t)bytes) : "-");
     }
 }
 
@@ -469,7 +469,7 @@ static int print_mode(FILE *out, lab_session *lab, size_t camera, int mode) {
     lab_series s = { lab, camera, 0, mode, 0 };
     char *slug = lab_slug(lab, camera), clamped[48], before[64];
     if (motion)
-        fprintf(out, "\n### Frame %d, after %s %s\n", motion, cli_many(before, (uint64_t)motion - 1, "frame"),
+        fprintf(out, "\n### Frame %d, after %s %s\n", motion, noc_text_many(before, (uint64_t)motion - 1, "frame"),
                 spec->cameras[camera].cut ? "and a cut" : "of motion");
     else
         fprintf(out, "\n### %s\n", mode_names[mode]);

@@ -68,9 +68,12 @@ int lab_load_scene(lab_session *lab, size_t index) {
     lab_scene *scene = &lab->spec.scenes[index];
     lab->scene = noc_scene_create(lab->log);
     scene->import.progress = (noc_progress){ cli_load_progress, NULL };
-    noc_status status = lab->scene ? cli_load_scene(lab->scene, scene->inputs, scene->input_count, &scene->builtin,
-                                                    &scene->import, NULL)
+    scene->import.builtin = &scene->builtin;
+    cli_nothing_to_keep(true);
+    noc_status status = lab->scene ? noc_scene_load(lab->scene, scene->inputs, scene->input_count, &scene->import, NULL)
                                    : NOC_ERR_MEMORY;
+    cli_nothing_to_keep(false);
+    cli_progress_clear();
     if (!lab->scene || status)
         return cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_FAILURE;
     noc_scene_get_info(lab->scene, &lab->scene_infos[index]);
@@ -125,7 +128,7 @@ static void tell_estimate(const lab_session *lab, const making *m) {
     if (lab->args->common.quiet || left < LONG_WAIT)
         return;
     cli_progress_clear();
-    printf("%s: reference, about %s to go\n", m->view, cli_seconds(took, left));
+    printf("%s: reference, about %s to go\n", m->view, noc_text_seconds(took, left));
     fflush(stdout);
 }
 
@@ -206,15 +209,15 @@ int lab_make_reference(lab_session *lab, size_t camera) {
         double start = cli_now();
         if (!quiet)
             printf("%s: making the reference, %s of %d x %d px\n", view,
-                   cli_many(frames, (uint64_t)spec->reference.frames, "frame"), spec->width, spec->height);
+                   noc_text_many(frames, (uint64_t)spec->reference.frames, "frame"), spec->width, spec->height);
         fflush(stdout);
         status = render_reference(lab, view, path, noise);
         lab->reference_seconds += cli_now() - start;
         lab->references_made++;
         if (!status && !quiet)
-            printf("%s: reference made in %s: %s\n", view, cli_seconds(took, cli_now() - start), path);
+            printf("%s: reference made in %s: %s\n", view, noc_text_seconds(took, cli_now() - start), path);
     }
-    if (!status && !quiet && cli_is_black(lab->reference))
+    if (!status && !quiet && noc_image_is_black(lab->reference))
         cli_error("warning: %s: the reference is black, so errors say nothing", view);
     fflush(stdout);
     free(view);

@@ -21,7 +21,7 @@ const char *lab_inset_colour(int inset) { return colours[inset].name; }
 
 bool lab_read_box(const char *text, int width, int height, int box[4]) {
     double v[4];
-    bool right = cli_parse_numbers(text, ',', 4, v);
+    bool right = noc_text_numbers(text, ',', 4, v);
     for (int i = 0; right && i < 4; i++) {
         right = v[i] == floor(v[i]) && v[i] >= (i > 1) && v[i] <= NOC_IMAGE_MAX_SIDE;
         box[i] = right ? (int)v[i] : 0;

@@ -71,7 +71,7 @@ static int check_inputs(const S *spec, const char *place, json_t *object, const 
     for (size_t k = 0; k < 2; k++)
         for (const noc_option *o = tables[k]; o->name; o++) {
             const char *needed =
-                json_object_get(object, o->name) ? cli_builtin_needed(o, scene->inputs, scene->input_count) : NULL;
+                json_object_get(object, o->name) ? noc_option_needs_input(o, scene->inputs, scene->input_count) : NULL;
             if (needed)
                 return lab_wrong(spec, place, "%s is for the input %s", o->name, needed);
         }
@@ -166,7 +166,7 @@ static int read_lists(S *spec, json_t *root, const lab_config *shared) {
 
 static int read_size(S *spec) {
     double size[2];
-    if (!cli_parse_numbers(spec->size, 'x', 2, size) || size[0] != floor(size[0]) || size[1] != floor(size[1]) ||
+    if (!noc_text_numbers(spec->size, 'x', 2, size) || size[0] != floor(size[0]) || size[1] != floor(size[1]) ||
         !(size[0] >= 1 && size[0] <= NOC_IMAGE_MAX_SIDE && size[1] >= 1 && size[1] <= NOC_IMAGE_MAX_SIDE))
         return lab_wrong(spec, "size", "\"%.60s\" is not WIDTHxHEIGHT, 1 to %d px a side", spec->size,
                          NOC_IMAGE_MAX_SIDE);
@@ -253,7 +253,7 @@ static int read_root(S *spec, json_t *root) {
         spec->frames = LAB_FRAMES;
     if (!status) {
         char *title = lab_keep(spec, spec->title ? cli_format("%s", spec->title) : lab_spec_name(spec->path));
-        spec->title = cli_clean(title, strlen(title) + 1, title);
+        spec->title = noc_text_clean(title, strlen(title) + 1, title);
     }
     status = status ? status : read_size(spec);
     status = status ? status : read_times(spec, json_object_get(root, "equal-time"));

@@ -217,7 +217,7 @@ int lab_append(lab_session *lab, const lab_run *run, int mode, int frame) {
 static void tell_rows(size_t count, const char *what, const char *old) {
     char rows[64];
     if (count)
-        cli_error("%s of results.csv %s: kept in %s", cli_many(rows, count, "row"), what, strrchr(old, '/') + 1);
+        cli_error("%s of results.csv %s: kept in %s", noc_text_many(rows, count, "row"), what, strrchr(old, '/') + 1);
 }
 
 int lab_tidy_table(lab_session *lab) {

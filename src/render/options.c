@@ -147,11 +147,45 @@ static const noc_option builtin_options[] = {
 };
 #undef P
 
+#define P noc_camera_params
+static const noc_option camera_options[] = {
+    CHOICE(P, viewpoint, "view", "Camera", "street|aerial|overview|own",
+           "camera derived from the city; own: the scene's, else street"),
+    TEXT(P, eye, "eye", "Camera", "X,Y,Z", "place of the camera, metres in the scene's local frame, z up"),
+    TEXT(P, target, "target", "Camera", "X,Y,Z", "what it looks at"),
+    TEXT(P, crs, "camera-crs", "Camera", "CRS",
+         "eye and target are easting,northing,height in this CRS; \"scene\": the scene's"),
+    REAL(P, fov, "fov", "Camera", 1, 170, "degrees", "vertical field of view; else that of the view, with --eye 50"),
+    END,
+};
+#undef P
+
 const noc_option *noc_render_options(void) { return render_options; }
 const noc_option *noc_display_options(void) { return display_options; }
 const noc_option *noc_import_options(void) { return import_options; }
 const noc_option *noc_city_options(void) { return city_options; }
 const noc_option *noc_builtin_options(void) { return builtin_options; }
+const noc_option *noc_camera_options(void) { return camera_options; }
+
+static bool has_input(const char *const *inputs, size_t count, const char *input) {
+    for (size_t i = 0; i < count; i++)
+        if (inputs[i] && !strcmp(inputs[i], input))
+            return true;
+    return false;
+}
+
+const char *noc_option_needs_input(const noc_option *option, const char *const *inputs, size_t count) {
+    count = inputs ? count : 0;
+    for (const noc_option *o = city_options; o->name; o++)
+        if (o == option)
+            return has_input(inputs, count, "builtin:city") ? NULL : "builtin:city";
+    for (const noc_option *o = builtin_options; o->name; o++)
+        if (o == option && !has_input(inputs, count, "builtin:mess"))
+            return !strcmp(o->name, "lights")                  ? "builtin:mess"
+                   : has_input(inputs, count, "builtin:cityscape") ? NULL
+                                                               : "builtin:cityscape or builtin:mess";
+    return NULL;
+}
 
 /* Messages quote what was given; a quote of pages helps nobody. */
 #define QUOTE "\"%.60s%s\""

@@ -85,6 +85,21 @@ static noc_camera camera;
     P(0, noc_scene_to_local(scene, NULL, NULL) == NOC_ERR_ARGUMENT)                                                    \
     P(0, noc_scene_from_local(NULL, NULL, (double[3]){ 0 }) == NOC_ERR_ARGUMENT)                                       \
     P(0, noc_scene_from_local(scene, NULL, NULL) == NOC_ERR_ARGUMENT)                                                  \
+    P(0, noc_scene_place_camera(NULL, NULL, 1, &camera, NULL) == NOC_ERR_ARGUMENT)                                     \
+    P(0, noc_scene_place_camera(scene, NULL, 1, NULL, NULL) == NOC_ERR_ARGUMENT)                                       \
+    P(0, noc_option_needs_input(NULL, NULL, 1) == NULL)                                                                \
+    P(0, noc_option_needs_input(noc_city_options(), NULL, 1) != NULL)                                                  \
+    P(0, noc_image_is_black(NULL))                                                                                     \
+    P(0, noc_text_count(NULL, 1)[0] == 0)                                                                              \
+    P(0, noc_text_many(NULL, 1, "a")[0] == 0)                                                                          \
+    P(0, noc_text_many((char[64]){ 0 }, 1, NULL)[0] == '1')                                                            \
+    P(0, noc_text_bytes(NULL, 1)[0] == 0)                                                                              \
+    P(0, noc_text_seconds(NULL, 1)[0] == 0)                                                                            \
+    P(0, noc_text_clean(NULL, 1, "a")[0] == 0)                                                                         \
+    P(0, noc_text_clean((char[4]){ 1 }, 4, NULL)[0] == 0)                                                              \
+    P(0, noc_text_nearest(NULL, NULL, 1) == NULL)                                                                      \
+    P(0, !noc_text_numbers(NULL, ',', 1, &(double){ 0 }))                                                              \
+    P(0, !noc_text_numbers("1", ',', 1, NULL))                                                                         \
     P(0, noc_option_set(NULL, &camera, "1", NULL) == NOC_ERR_ARGUMENT)                                                 \
     P(0, noc_option_set(noc_render_options(), NULL, "1", NULL) == NOC_ERR_ARGUMENT)                                    \
     P(0, noc_option_get(NULL, &camera, (char[8]){ 0 }, 8) == 0)                                                        \

@@ -5,6 +5,7 @@
 #include "scene/scene.h"
 
 #include <math.h>
+#include <nocturne/option.h>
 #include <nocturne/import.h>
 
 static char last_error[1024];
@@ -239,11 +240,55 @@ static void test_wrong(void **state) {
     noc_log_destroy(log);
 }
 
+/* As inputs: with the params of all inputs, before files, and with a camera that people say. */
+static void test_as_input(void **state) {
+    (void)state;
+    noc_scene *one = noc_scene_create(NULL), *other = noc_scene_create(NULL);
+    noc_builtin_params builtin = noc_builtin_default_params();
+    noc_import_params params = noc_import_default_params();
+    char keys[2][NOC_CONTENT_KEY];
+    builtin.lights = 77;
+    builtin.seed = 5;
+    params.builtin = &builtin;
+    assert_int_equal(noc_scene_load(one, (const char *[]){ "builtin:mess" }, 1, &params, NULL), NOC_OK);
+    assert_int_equal(noc_scene_add_builtin(other, "mess", &builtin), NOC_OK);
+    assert_int_equal(noc_scene_commit(other), NOC_OK);
+    noc_scene_content(one, keys[0]);
+    noc_scene_content(other, keys[1]);
+    assert_string_equal(keys[0], keys[1]);
+    noc_scene_destroy(other);
+
+    noc_camera camera = { .fov_deg = 7 }, own;
+    bool far_away = true;
+    assert_int_equal(noc_scene_camera(one, NOC_VIEWPOINT_OWN, 1.5, &own), NOC_OK);
+    assert_int_equal(noc_scene_place_camera(one, NULL, 1.5, &camera, &far_away), NOC_OK);
+    assert_memory_equal(&camera, &own, sizeof(own));
+    assert_false(far_away);
+    noc_camera_params place = { .eye = "1,2,30", .target = "1,2,0", .fov = 40 };
+    assert_int_equal(noc_scene_place_camera(one, &place, 1.5, &camera, &far_away), NOC_OK);
+    assert_true(camera.eye[2] == 30 && camera.up[1] == 1 && camera.fov_deg == 40 && !far_away);
+    place.eye = "1,2,3e4";
+    assert_int_equal(noc_scene_place_camera(one, &place, 1.5, &camera, &far_away), NOC_OK);
+    assert_true(far_away);
+    static const char *const wrong[] = { NULL, "1,2", "1e9,0,0" };
+    for (size_t i = 0; i < NOC_COUNT(wrong); i++) {
+        place.eye = wrong[i];
+        assert_int_equal(noc_scene_place_camera(one, &place, 1.5, &camera, NULL), NOC_ERR_ARGUMENT);
+        assert_true(camera.eye[2] == 3e4); /* as it was */
+    }
+    noc_scene_destroy(one);
+
+    const noc_option *size = noc_city_options();
+    assert_string_equal(noc_option_needs_input(size, (const char *[]){ "builtin:mess" }, 1), "builtin:city");
+    assert_null(noc_option_needs_input(size, (const char *[]){ "a.gml", "builtin:city" }, 2));
+    assert_null(noc_option_needs_input(noc_render_options(), NULL, 0));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_deterministic),  cmocka_unit_test(test_sizes), cmocka_unit_test(test_cameras),
-        cmocka_unit_test(test_faces_outwards), cmocka_unit_test(test_mess),  cmocka_unit_test(test_cityscape),
-        cmocka_unit_test(test_wrong),
+        cmocka_unit_test(test_deterministic),  cmocka_unit_test(test_sizes),    cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_faces_outwards), cmocka_unit_test(test_mess),     cmocka_unit_test(test_cityscape),
+        cmocka_unit_test(test_wrong),          cmocka_unit_test(test_as_input),
     };
     return cmocka_run_group_tests_name("city/scenes", tests, NULL, NULL);
 }

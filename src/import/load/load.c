@@ -181,7 +181,13 @@ static noc_status read_mesh(importer *im, input *in, noc_stream *stream, remote_
 
 static noc_status read_builtin(importer *im, input *in) {
     size_t triangles = im->scene->indices.len / 3, lights = im->scene->lights.len;
-    noc_status status = noc_scene_add_builtin(im->scene, in->path + strlen(BUILTIN), NULL);
+    const char *name = in->path + strlen(BUILTIN);
+    const noc_progress *progress = &im->params->progress;
+    char what[60];
+    noc_snprintf(what, sizeof(what), "building %.40s", name);
+    if (progress->update && !progress->update(progress->user, what, 0))
+        return NOC_ERR_CANCELLED;
+    noc_status status = noc_scene_add_builtin(im->scene, name, im->params->builtin);
     in->file.format = "built-in scene";
     in->file.triangles = im->scene->indices.len / 3 - triangles;
     in->file.lights = im->scene->lights.len - lights;
@@ -250,12 +256,13 @@ static noc_status read_input(importer *im, size_t index) {
     return status;
 }
 
-/* A mesh in a CRS may settle the place; one that names none counts from the origin that the others settle. */
+/* Built-in scenes are local, so they come first. A mesh in a CRS may settle the place; one that names none counts from
+ * the origin that the others settle. */
 static int stage(const importer *im, const input *in) {
-    if (!in->reader || in->reader->reads == NOC_READS_CITY)
+    if (!in->reader)
         return 0;
     bool in_crs = im->params->crs && *im->params->crs;
-    return in->reader->reads == NOC_READS_LAMPS ? 2 : in_crs ? 1 : 3;
+    return in->reader->reads == NOC_READS_CITY ? 1 : in->reader->reads == NOC_READS_LAMPS ? 3 : in_crs ? 2 : 4;
 }
 
 static bool column_there(void *ctx, const char *name) {
@@ -308,7 +315,7 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
         im->inputs[i].repeated = repeat_file(im, i);
         im->bytes_total += im->inputs[i].repeated ? 0 : (double)im->inputs[i].bytes;
     }
-    for (int s = 0; s < 4; s++)
+    for (int s = 0; s < 5; s++)
         for (size_t i = 0; i < im->input_count; i++) {
             noc_status status = !im->inputs[i].repeated && stage(im, &im->inputs[i]) == s ? read_input(im, i) : NOC_OK;
             if (status)
