@@ -3,12 +3,14 @@
 
     bench/obj_city.py MODEL.city.json[.gz] -o city.obj
 
-reads buildings from CityJSON (1.x and 2.0, coordinates in metres, which Nocturne does not read itself) and writes city.obj, y up, near
-the origin, and city.mtl beside it: walls and roofs as the polygons they are, a flat ground, dark and lit windows, shop fronts, neon
-signs, and street lamps with emissive faces. Ke is radiance in cd/m2. Lit windows are chosen among all so that there are --quads
-emissive quads, every one a parallelogram. The same model, numbers and seed make the same files.
+reads buildings from CityJSON (1.x and 2.0, coordinates in metres, which Nocturne does not read itself) and writes
+city.obj, y up, near the origin, and city.mtl beside it: walls and roofs as the polygons they are, a flat ground, dark
+and lit windows, shop fronts, neon signs, and street lamps with emissive faces. Ke is radiance in cd/m2. Lit windows are
+chosen among all so that there are --quads emissive quads, every one a parallelogram. The same model, numbers and seed
+make the same files.
 
-The land is taken as flat at the foot of the lowest building. Polygons with holes are left out and counted: OBJ has no holes.
+The land is taken as flat at the foot of the lowest building. Polygons with holes are left out and counted: OBJ has no
+holes.
 """
 import argparse
 import collections
@@ -167,7 +169,8 @@ class Model:
         self.buildings = [self.sort(b) for b in buildings]
 
     def read(self, model):
-        scale, shift = ((model.get("transform") or {}).get(k, d) for k, d in (("scale", (1, 1, 1)), ("translate", (0, 0, 0))))
+        scale, shift = ((model.get("transform") or {}).get(k, d)
+                        for k, d in (("scale", (1, 1, 1)), ("translate", (0, 0, 0))))
         vertices = [tuple(v[k] * scale[k] + shift[k] for k in range(3)) for v in model["vertices"]]
         for name in sorted(model["CityObjects"]):
             thing = model["CityObjects"][name]
@@ -214,7 +217,8 @@ class Night:
     def __init__(self, model, seed):
         self.model = model
         self.random = random.Random(seed)
-        self.materials = {"ground": ((.11, .11, .12), None), "roof": ((.16, .13, .12), None), "metal": ((.08, .08, .09), None),
+        self.materials = {"ground": ((.11, .11, .12), None), "roof": ((.16, .13, .12), None),
+                          "metal": ((.08, .08, .09), None),
                           "glass": ((.05, .06, .07), None)}
         for k, rgb in enumerate(PAINT):
             self.materials["wall%d" % k] = (rgb, None)
@@ -337,7 +341,8 @@ class Night:
                 for s0, s1, z0, z1, front in self.openings(wall, shop, wall.z1 - 2.8 if tower else math.inf):
                     if front:
                         white, cd_m2 = self.pick(("warm", "neutral")), self.pick((200, 500))
-                        self.emit(wall.quad(s0, s1, z0, z1, PANE), "shop windows", "shop_%s_%d" % (white, cd_m2), WHITES[white], cd_m2)
+                        self.emit(wall.quad(s0, s1, z0, z1, PANE), "shop windows", "shop_%s_%d" % (white, cd_m2),
+                                  WHITES[white], cd_m2)
                     else: # two casements
                         half = (s1 - s0) / 2 - .04
                         panes = [wall.quad(s, s + half, z0, z1, PANE) for s in (s0, s1 - half)]

@@ -1,31 +1,44 @@
 #!/usr/bin/env python3
-"""dictionaries.py FOLDER: libFuzzer's dictionaries, of the words that the readers themselves look for, and of formats' own."""
+"""dictionaries.py FOLDER: libFuzzer's dictionaries, of the words that the readers themselves look for, and of formats'
+own."""
 import glob, os, re, sys
 
 root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "src")
 # name: sources whose words it takes, words besides them
 dictionaries = {
-    "citygml": (["import/citygml/*.[ch]"], ["gml:id=\"", "xlink:href=\"#", "srsDimension=\"2\"", "<!--", "<![CDATA[", "&amp;", "&#x10FFFF;", "<!DOCTYPE a [<!ENTITY b \"c\">]>",
-                                          "encoding=\"UTF-16\"", "encoding=\"ISO-8859-1\"", "lod0", "lod1", "lod2", "lod3", "lod4"]),
-    "gltf": (["import/mesh/gltf*.[ch]"], ["5120", "5121", "5122", "5123", "5125", "5126", "VEC2", "VEC4", "MAT4", "data:application/octet-stream;base64,", "%2e%2e/", "KHR_draco_mesh_compression"]),
-    "obj": (["import/mesh/obj*.c"], ["mtllib ", "usemtl ", "newmtl ", "f ", "v ", "vn ", "vt ", "//", "\\\n", "Ke ", "Kd ", "map_Ke ", "Tr ", "curv ", "surf ", "end", "#", "s off", "-1"]),
+    "citygml": (["import/citygml/*.[ch]"], ["gml:id=\"", "xlink:href=\"#", "srsDimension=\"2\"", "<!--", "<![CDATA[",
+                                            "&amp;", "&#x10FFFF;", "<!DOCTYPE a [<!ENTITY b \"c\">]>",
+                                          "encoding=\"UTF-16\"", "encoding=\"ISO-8859-1\"", "lod0", "lod1", "lod2",
+                                          "lod3", "lod4"]),
+    "gltf": (["import/mesh/gltf*.[ch]"], ["5120", "5121", "5122", "5123", "5125", "5126", "VEC2", "VEC4", "MAT4",
+                                          "data:application/octet-stream;base64,", "%2e%2e/",
+                                          "KHR_draco_mesh_compression"]),
+    "obj": (["import/mesh/obj*.c"], ["mtllib ", "usemtl ", "newmtl ", "f ", "v ", "vn ", "vt ", "//", "\\\n", "Ke ",
+                                     "Kd ", "map_Ke ", "Tr ", "curv ", "surf ", "end", "#", "s off", "-1"]),
     "lamps": (["import/lamps/*.c", "import/map/overpass.c", "import/map/vector.c"],
-              ["street_lamp", "highway", "FeatureCollection", "coordinates", "\x1e", "POINT (", "POINT Z (", "EPSG:25832", "<osm>", "<node ", "<nd ref=", "<tag k=", "OSMData", "OSMHeader",
-               "SELECT ", "CREATE VIEW ", "CREATE VIRTUAL TABLE [", "USING rtree", "all_tags", "other_tags", "\"=>\"", "\"crs\"", "urn:ogc:def:crs:OGC:1.3:CRS84"]),
-    "crs": (["geo/crs*.c"], ["urn:ogc:def:crs:", "EPSG::", "urn:adv:crs:", "http://www.opengis.net/def/crs/EPSG/0/", "+proj=", "+zone=32", "+init=epsg:", "+nadgrids=", "+towgs84=", "+type=crs",
-                             "PROJCS[", "GEOGCS[", "COMPD_CS[", "BOUNDCRS[", "UNIT[\"metre\",1]", "PARAMETER[", "AUTHORITY[\"EPSG\",\"4326\"]", "AXIS[\"N\",NORTH]", "utm", "longlat", "webmerc"]),
-    "spec": (["lab/*.c", "render/options.c"], ["builtin:city", "builtin:mess", "../", "16x9", "street", "aerial", "overview"]),
+              ["street_lamp", "highway", "FeatureCollection", "coordinates", "\x1e", "POINT (", "POINT Z (",
+               "EPSG:25832", "<osm>", "<node ", "<nd ref=", "<tag k=", "OSMData", "OSMHeader",
+               "SELECT ", "CREATE VIEW ", "CREATE VIRTUAL TABLE [", "USING rtree", "all_tags", "other_tags", "\"=>\"",
+               "\"crs\"", "urn:ogc:def:crs:OGC:1.3:CRS84"]),
+    "crs": (["geo/crs*.c"], ["urn:ogc:def:crs:", "EPSG::", "urn:adv:crs:", "http://www.opengis.net/def/crs/EPSG/0/",
+                             "+proj=", "+zone=32", "+init=epsg:", "+nadgrids=", "+towgs84=", "+type=crs",
+                             "PROJCS[", "GEOGCS[", "COMPD_CS[", "BOUNDCRS[", "UNIT[\"metre\",1]", "PARAMETER[",
+                             "AUTHORITY[\"EPSG\",\"4326\"]", "AXIS[\"N\",NORTH]", "utm", "longlat", "webmerc"]),
+    "spec": (["lab/*.c", "render/options.c"],
+             ["builtin:city", "builtin:mess", "../", "16x9", "street", "aerial", "overview"]),
 }
 
 
 def quoted(word):
-    return '"' + "".join(c if 32 <= ord(c) < 127 and c not in '"\\' else "".join("\\x%02x" % b for b in c.encode()) for c in word) + '"'
+    return '"' + "".join(c if 32 <= ord(c) < 127 and c not in '"\\' else "".join("\\x%02x" % b for b in c.encode())
+                         for c in word) + '"'
 
 
 os.makedirs(sys.argv[1], exist_ok=True)
 for name, (sources, more) in dictionaries.items():
     words = set(more)
     for path in (p for s in sources for p in glob.glob(os.path.join(root, s))):
-        words |= {w for w in re.findall(r'"([^"\\%\s]{2,32})"', open(path, encoding="utf-8").read()) if not w.endswith(".h")}
+        words |= {w for w in re.findall(r'"([^"\\%\s]{2,32})"', open(path, encoding="utf-8").read())
+                  if not w.endswith(".h")}
     with open(os.path.join(sys.argv[1], name + ".dict"), "w") as f:
         f.write("".join(quoted(w) + "\n" for w in sorted(words)))

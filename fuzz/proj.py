@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""proj.py FOLDER: FOLDER/proj.db, a hundredth of PROJ's database, and what the seeds' CRSs need: PROJ reads whole tables of it
-for each definition that it is given, and fuzzers give it many. An empty folder where PROJ's is not found."""
+"""proj.py FOLDER: FOLDER/proj.db, a hundredth of PROJ's database, and what the seeds' CRSs need: PROJ reads whole
+tables of it for each definition that it is given, and fuzzers give it many. An empty folder where PROJ's is not
+found."""
 import ctypes, ctypes.util, os, shutil, sqlite3, sys
 
-codes = """2056 21781 2154 2263 25831 25832 25833 27700 27572 28992 3035 3057 3068 31466 31467 31468 31469 32631 32632 32633
-    3395 3857 5513 5514 7415"""
+codes = """2056 21781 2154 2263 25831 25832 25833 27700 27572 28992 3035 3057 3068 31466 31467 31468 31469 32631 32632
+    32633 3395 3857 5513 5514 7415"""
 vertical = "3855 5709 5773 5783 7837 5728"
 geodetic = "4258 4326 4937 4936 4978 4979 4314 4289 4156 4150 4149 4277 4275 4807 4818"
 
@@ -37,9 +38,11 @@ def keep(table, column, *of):
 
 db.execute("DELETE FROM projected_crs WHERE " + some + listed(codes) + ")")
 db.execute("DELETE FROM vertical_crs WHERE " + some + listed(vertical) + ")")
-db.execute("DELETE FROM geodetic_crs WHERE auth_name <> 'OGC' AND " + some + listed(geodetic) + ") AND auth_name || ':' || code "
+db.execute("DELETE FROM geodetic_crs WHERE auth_name <> 'OGC' AND " + some + listed(geodetic) +
+           ") AND auth_name || ':' || code "
            "NOT IN (SELECT geodetic_crs_auth_name || ':' || geodetic_crs_code FROM projected_crs)")
-db.execute("DELETE FROM compound_crs WHERE vertical_crs_code NOT IN (SELECT code FROM vertical_crs) OR horiz_crs_code NOT IN "
+db.execute("DELETE FROM compound_crs WHERE vertical_crs_code NOT IN (SELECT code FROM vertical_crs) OR horiz_crs_code "
+           "NOT IN "
            "(SELECT code FROM projected_crs UNION SELECT code FROM geodetic_crs)")
 for kind, crs in ("geodetic", "geodetic_crs"), ("vertical", "vertical_crs"):
     members = kind + "_datum_ensemble_member"
@@ -50,9 +53,11 @@ for table in "helmert_transformation_table", "grid_transformation", "other_trans
     for end in "source", "target":
         db.execute("DELETE FROM %s WHERE %s_crs_auth_name || ':' || %s_crs_code NOT IN (%s)" % (table, end, end, crs))
 kept = "SELECT auth_name || ':' || code FROM coordinate_operation_view"
-db.execute("DELETE FROM concatenated_operation WHERE auth_name || ':' || code IN (SELECT operation_auth_name || ':' || operation_code "
+db.execute("DELETE FROM concatenated_operation WHERE auth_name || ':' || code IN (SELECT operation_auth_name || ':' || "
+           "operation_code "
            "FROM concatenated_operation_step WHERE step_auth_name || ':' || step_code NOT IN (%s))" % kept)
-db.execute("DELETE FROM concatenated_operation_step WHERE operation_auth_name || ':' || operation_code NOT IN (%s)" % kept)
+db.execute("DELETE FROM concatenated_operation_step WHERE operation_auth_name || ':' || operation_code NOT IN (%s)" %
+           kept)
 objects = "SELECT auth_name || ':' || code FROM object_view UNION " + kept
 for table, column in ("alias_name", ""), ("usage", "object_"):
     db.execute("DELETE FROM %s WHERE %sauth_name || ':' || %scode NOT IN (%s)" % (table, column, column, objects))

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""seeds.py FOLDER RECORD HELPER: small inputs of every format, made here, a folder a corpus. Fuzzers start from them, and tests replay them.
-RECORD (record.c) notes what the library and the helper that reads maps and OBJ say of them."""
+"""seeds.py FOLDER RECORD HELPER: small inputs of every format, made here, a folder a corpus. Fuzzers start from them,
+and tests replay them. RECORD (record.c) notes what the library and the helper that reads maps and OBJ say of them."""
 import base64, ctypes, ctypes.util, gzip, io, json, os, sqlite3, struct, subprocess, sys, tempfile, zipfile, zlib
 
 here = os.path.dirname(os.path.abspath(__file__))
@@ -31,12 +31,18 @@ def zipped(**members):
 
 def ring(points, tag="posList", id=""):
     text = " ".join("%g %g %g" % tuple(p) for p in points)
-    inner = "<gml:posList>%s</gml:posList>" % text if tag == "posList" else "".join("<gml:pos>%g %g %g</gml:pos>" % tuple(p) for p in points)
+    if tag == "posList":
+        inner = "<gml:posList>%s</gml:posList>" % text
+    else:
+        inner = "".join("<gml:pos>%g %g %g</gml:pos>" % tuple(p) for p in points)
+    inner = "<gml:posList>%s</gml:posList>" % text if tag == "posList" else "".join("<gml:pos>%g %g %g</gml:pos>" %
+                                                                                    tuple(p) for p in points)
     return "<gml:LinearRing%s>%s</gml:LinearRing>" % (id, inner)
 
 
 def polygon(points, id="p", hole=None, tag="posList"):
-    return ('<gml:surfaceMember><gml:Polygon gml:id="%s"><gml:exterior>%s</gml:exterior>%s</gml:Polygon></gml:surfaceMember>'
+    return ('<gml:surfaceMember><gml:Polygon gml:id="%s"><gml:exterior>%s</gml:exterior>%s</gml:Polygon>'
+            '</gml:surfaceMember>'
             % (id, ring(points, tag), "<gml:interior>%s</gml:interior>" % ring(hole) if hole else ""))
 
 
@@ -44,19 +50,24 @@ def box(x, y, z, a, b, c):
     p = lambda i, j, k: (x + a * i, y + b * j, z + c * k)
     floor = [p(0, 0, 0), p(0, 1, 0), p(1, 1, 0), p(1, 0, 0), p(0, 0, 0)]
     roof = [p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1), p(0, 0, 1)]
-    walls = [[p(0, 0, 0), p(1, 0, 0), p(1, 0, 1), p(0, 0, 1), p(0, 0, 0)], [p(1, 0, 0), p(1, 1, 0), p(1, 1, 1), p(1, 0, 1), p(1, 0, 0)]]
+    walls = [[p(0, 0, 0), p(1, 0, 0), p(1, 0, 1), p(0, 0, 1), p(0, 0, 0)],
+             [p(1, 0, 0), p(1, 1, 0), p(1, 1, 1), p(1, 0, 1), p(1, 0, 0)]]
     return floor, roof, walls
 
 
 def citygml(version, crs, body, dimension=3):
     n = "http://www.opengis.net/citygml"
     spaces = " ".join('xmlns:%s="%s/%s/%s"' % (s, n, p, version) for s, p in [
-        ("bldg", "building"), ("dem", "relief"), ("tran", "transportation"), ("frn", "cityfurniture"), ("gen", "generics"), ("luse", "landuse"),
+        ("bldg", "building"), ("dem", "relief"), ("tran", "transportation"), ("frn", "cityfurniture"),
+        ("gen", "generics"), ("luse", "landuse"),
         ("veg", "vegetation"), ("wtr", "waterbody"), ("brid", "bridge"), ("app", "appearance")])
-    return ('<?xml version="1.0" encoding="UTF-8"?>\n<core:CityModel xmlns:core="%s/%s" %s xmlns:gml="http://www.opengis.net/gml" '
+    return ('<?xml version="1.0" encoding="UTF-8"?>\n'
+            '<core:CityModel xmlns:core="%s/%s" %s xmlns:gml="http://www.opengis.net/gml" '
             'xmlns:xlink="http://www.w3.org/1999/xlink" xmlns:xAL="urn:oasis:names:tc:ciq:xsdschema:xAL:2.0">\n'
-            '<gml:boundedBy><gml:Envelope srsName="%s" srsDimension="%d"><gml:lowerCorner>690000 5330000 400</gml:lowerCorner>'
-            '<gml:upperCorner>691000 5331000 600</gml:upperCorner></gml:Envelope></gml:boundedBy>\n%s\n</core:CityModel>\n'
+            '<gml:boundedBy><gml:Envelope srsName="%s" srsDimension="%d">'
+            '<gml:lowerCorner>690000 5330000 400</gml:lowerCorner>'
+            '<gml:upperCorner>691000 5331000 600</gml:upperCorner></gml:Envelope></gml:boundedBy>\n'
+            '%s\n</core:CityModel>\n'
             % (n, version, spaces, crs, dimension, body))
 
 
@@ -65,31 +76,48 @@ def member(xml):
 
 
 floor, roof, walls = box(690100, 5330100, 500, 10, 8, 6)
-surface = lambda kind, poly: ('<bldg:boundedBy><bldg:%s><bldg:lod2MultiSurface><gml:MultiSurface>%s</gml:MultiSurface></bldg:lod2MultiSurface>'
+surface = lambda kind, poly: ('<bldg:boundedBy><bldg:%s><bldg:lod2MultiSurface><gml:MultiSurface>%s</gml:MultiSurface>'
+                              '</bldg:lod2MultiSurface>'
                               '</bldg:%s></bldg:boundedBy>' % (kind, poly, kind))
-lod2 = ('<bldg:Building gml:id="b1"><core:creationDate>2020-01-01</core:creationDate><bldg:function>31001_1000</bldg:function>'
+lod2 = ('<bldg:Building gml:id="b1"><core:creationDate>2020-01-01</core:creationDate>'
+        '<bldg:function>31001_1000</bldg:function>'
         '<bldg:measuredHeight uom="m">6</bldg:measuredHeight>' + surface("GroundSurface", polygon(floor, "g")) +
-        surface("RoofSurface", polygon(roof, "r", hole=[(690102, 5330102, 506), (690104, 5330102, 506), (690104, 5330104, 506), (690102, 5330102, 506)])) +
+        surface("RoofSurface", polygon(roof, "r",
+                                       hole=[(690102, 5330102, 506), (690104, 5330102, 506), (690104, 5330104, 506),
+                                             (690102, 5330102, 506)])) +
         surface("WallSurface", polygon(walls[0], "w0") + polygon(walls[1], "w1", tag="pos")) +
-        '<bldg:lod2Solid><gml:Solid><gml:exterior><gml:CompositeSurface><gml:surfaceMember xlink:href="#w0"/><gml:surfaceMember xlink:href="#none"/>'
+        '<bldg:lod2Solid><gml:Solid><gml:exterior><gml:CompositeSurface><gml:surfaceMember xlink:href="#w0"/>'
+        '<gml:surfaceMember xlink:href="#none"/>'
         '</gml:CompositeSurface></gml:exterior></gml:Solid></bldg:lod2Solid>'
-        '<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id="part"><bldg:lod1Solid><gml:Solid><gml:exterior><gml:CompositeSurface>' +
-        polygon(walls[1], "q") + '</gml:CompositeSurface></gml:exterior></gml:Solid></bldg:lod1Solid></bldg:BuildingPart></bldg:consistsOfBuildingPart></bldg:Building>')
-terrain = ('<dem:ReliefFeature gml:id="t"><dem:lod>2</dem:lod><dem:reliefComponent><dem:TINRelief gml:id="tin"><dem:lod>2</dem:lod><dem:tin><gml:TriangulatedSurface>'
-           '<gml:trianglePatches><gml:Triangle><gml:exterior>%s</gml:exterior></gml:Triangle></gml:trianglePatches></gml:TriangulatedSurface></dem:tin>'
+        '<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id="part"><bldg:lod1Solid><gml:Solid><gml:exterior>'
+        '<gml:CompositeSurface>' +
+        polygon(walls[1], "q") + '</gml:CompositeSurface></gml:exterior></gml:Solid></bldg:lod1Solid>'
+                                 '</bldg:BuildingPart></bldg:consistsOfBuildingPart></bldg:Building>')
+terrain = ('<dem:ReliefFeature gml:id="t"><dem:lod>2</dem:lod><dem:reliefComponent><dem:TINRelief gml:id="tin">'
+           '<dem:lod>2</dem:lod><dem:tin><gml:TriangulatedSurface>'
+           '<gml:trianglePatches><gml:Triangle><gml:exterior>%s</gml:exterior></gml:Triangle></gml:trianglePatches>'
+           '</gml:TriangulatedSurface></dem:tin>'
            '</dem:TINRelief></dem:reliefComponent></dem:ReliefFeature>'
            % ring([(690000, 5330000, 500), (690300, 5330000, 500), (690000, 5330300, 501), (690000, 5330000, 500)]))
-road = ('<tran:Road gml:id="road"><tran:function>1</tran:function><tran:trafficArea><tran:TrafficArea><tran:lod2MultiSurface><gml:MultiSurface>%s</gml:MultiSurface>'
+road = ('<tran:Road gml:id="road"><tran:function>1</tran:function><tran:trafficArea><tran:TrafficArea>'
+        '<tran:lod2MultiSurface><gml:MultiSurface>%s</gml:MultiSurface>'
         '</tran:lod2MultiSurface></tran:TrafficArea></tran:trafficArea></tran:Road>' % polygon(floor, "rp"))
-lamp_object = ('<frn:CityFurniture gml:id="lamp"><gen:stringAttribute name="class"><gen:value>street lamp</gen:value></gen:stringAttribute>'
-               '<gen:doubleAttribute name="height"><gen:value>8.5</gen:value></gen:doubleAttribute><frn:class>1000</frn:class><frn:function>1080</frn:function>'
-               '<frn:lod1ImplicitRepresentation><core:ImplicitGeometry><core:transformationMatrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</core:transformationMatrix>'
-               '<core:referencePoint><gml:Point><gml:pos>690110 5330120 500</gml:pos></gml:Point></core:referencePoint><core:relativeGMLGeometry><gml:MultiSurface>%s'
-               '</gml:MultiSurface></core:relativeGMLGeometry></core:ImplicitGeometry></frn:lod1ImplicitRepresentation></frn:CityFurniture>'
+lamp_object = ('<frn:CityFurniture gml:id="lamp"><gen:stringAttribute name="class">'
+               '<gen:value>street lamp</gen:value></gen:stringAttribute>'
+               '<gen:doubleAttribute name="height"><gen:value>8.5</gen:value></gen:doubleAttribute>'
+               '<frn:class>1000</frn:class><frn:function>1080</frn:function>'
+               '<frn:lod1ImplicitRepresentation><core:ImplicitGeometry>'
+               '<core:transformationMatrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</core:transformationMatrix>'
+               '<core:referencePoint><gml:Point><gml:pos>690110 5330120 500</gml:pos></gml:Point></core:referencePoint>'
+               '<core:relativeGMLGeometry><gml:MultiSurface>%s'
+               '</gml:MultiSurface></core:relativeGMLGeometry></core:ImplicitGeometry></frn:lod1ImplicitRepresentation>'
+               '</frn:CityFurniture>'
                % polygon([(0, 0, 0), (1, 0, 0), (0, 0, 8), (0, 0, 0)], "i"))
-whole = citygml("2.0", "urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::5783", member(lod2) + member(terrain) + member(road) + member(lamp_object))
+whole = citygml("2.0", "urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::5783", member(lod2) + member(terrain) + member(road) +
+                member(lamp_object))
 old = citygml("1.0", "EPSG:31468", member(lod2))
-degrees = citygml("2.0", "urn:ogc:def:crs:EPSG::4979", member('<bldg:Building gml:id="d">' + surface("RoofSurface", polygon(
+degrees = citygml("2.0", "urn:ogc:def:crs:EPSG::4979",
+                  member('<bldg:Building gml:id="d">' + surface("RoofSurface", polygon(
     [(48.1, 11.5, 500), (48.1001, 11.5, 500), (48.1001, 11.5001, 500), (48.1, 11.5, 500)])) + '</bldg:Building>'))
 put("citygml", "whole.gml", whole)
 put("citygml", "old.gml", old)
@@ -110,9 +138,11 @@ l 1 2 3\np 4
 mtl = "newmtl wall\nKd 0.5 0.4 0.3\nillum 2\nnewmtl lamp\nKd 0 0 0\nKe 20 18 15\nNs 10\nd 1\nmap_Kd none.png\n"
 put("obj", "house", parts(obj, mtl))
 put("obj", "bare", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-put("obj", "continued", parts("v 0 0 0 \\\n\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 2 0\nf 1 2 \\\n3 4 5\nusemtl none\nf 1 2 99\n", "newmtl a\n"))
+put("obj", "continued", parts("v 0 0 0 \\\n\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 2 0\nf 1 2 \\\n3 4 5\nusemtl none\n"
+                              "f 1 2 99\n", "newmtl a\n"))
 
-put("obj", "libraries", parts("mtllib side.mtl side.mtl\nmtllib a\\\\side.mtl\nmtllib \"side.mtl\"\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl wall\nf -3 -2 -1\n", mtl))
+put("obj", "libraries", parts("mtllib side.mtl side.mtl\nmtllib a\\\\side.mtl\nmtllib \"side.mtl\"\nv 0 0 0\nv 1 0 0\n"
+                              "v 1 1 0\nusemtl wall\nf -3 -2 -1\n", mtl))
 
 positions = struct.pack("<12f", 0, 0, 0, 4, 0, 0, 4, 3, 0, 0, 3, 0) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
 
@@ -126,59 +156,92 @@ def gltf(buffer):
                   {"mesh": 0, "scale": [2, 2, 2], "extensions": {"KHR_lights_punctual": {"light": 1}}}],
         "cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1, "aspectRatio": 1.5}}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0, "mode": 4}]}],
-        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "roughnessFactor": 0.7, "metallicFactor": 0},
-                       "emissiveFactor": [1, 0.9, 0.7], "doubleSided": True, "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 20}}}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [4, 3, 0],
-                       "sparse": {"count": 1, "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0}}},
+        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "roughnessFactor": 0.7,
+                                                "metallicFactor": 0},
+                       "emissiveFactor": [1, 0.9, 0.7], "doubleSided": True,
+                       "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 20}}}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0],
+                       "max": [4, 3, 0],
+                       "sparse": {"count": 1, "indices": {"bufferView": 1, "componentType": 5123},
+                                  "values": {"bufferView": 0}}},
                       {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
-        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 48},
+                        {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
         "buffers": [buffer],
         "extensionsUsed": ["KHR_lights_punctual", "KHR_materials_emissive_strength"],
-        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 500, "color": [1, 0.8, 0.6], "range": 20},
-                                                          {"type": "spot", "intensity": 900, "spot": {"innerConeAngle": 0.3, "outerConeAngle": 0.8}}]}},
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 500, "color": [1, 0.8, 0.6],
+                                                           "range": 20},
+                                                          {"type": "spot", "intensity": 900,
+                                                           "spot": {"innerConeAngle": 0.3, "outerConeAngle": 0.8}}]}},
     }
 
 
-embedded = json.dumps(gltf({"byteLength": 60, "uri": "data:application/octet-stream;base64," + base64.b64encode(positions).decode()}))
+embedded = json.dumps(gltf({"byteLength": 60, "uri": "data:application/octet-stream;base64," +
+                            base64.b64encode(positions).decode()}))
 text = json.dumps(gltf({"byteLength": 60})).encode()
 text += b" " * (-len(text) % 4)
-glb = (struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(positions)) + struct.pack("<I4s", len(text), b"JSON") + text +
+glb = (struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(positions)) + struct.pack("<I4s", len(text), b"JSON") +
+       text +
        struct.pack("<I4s", len(positions), b"BIN\0") + positions)
 put("gltf", "embedded.gltf", embedded)
 put("gltf", "binary.glb", glb)
 strip = gltf({"byteLength": 60, "uri": "side.bin"})
 del strip["accessors"][0]["sparse"]
-strip["meshes"][0]["primitives"] = [{"attributes": {"POSITION": 0}, "mode": 5}, {"attributes": {"POSITION": 0}, "indices": 1, "mode": 6}]
+strip["meshes"][0]["primitives"] = [{"attributes": {"POSITION": 0}, "mode": 5},
+                                    {"attributes": {"POSITION": 0}, "indices": 1, "mode": 6}]
 strip["bufferViews"][0]["byteStride"] = 12
 put("gltf", "strip", parts(json.dumps(strip), positions))
 put("gltf", "beside", parts(json.dumps(gltf({"byteLength": 60, "uri": "side.bin"})), positions))
 
 # ---- lamps ----
 
-csv = "id,lon,lat,height,lumens,watt,lamp_type,colour,direction\n1,11.5,48.1,8,5000,50,LED,3000K,90\n2,11.501,48.1002,\"6,5\",,70,SON,#ffaa00,W\n3,x,48,,,,,,\n"
+csv = ("id,lon,lat,height,lumens,watt,lamp_type,colour,direction\n1,11.5,48.1,8,5000,50,LED,3000K,90\n"
+       "2,11.501,48.1002,\"6,5\",,70,SON,#ffaa00,W\n3,x,48,,,,,,\n")
 put("csv", "comma.csv", csv)
-put("csv", "semicolon.csv", "\ufeffLeuchtennummer;Rechtswert;Hochwert;Lichtpunkth\u00f6he;Leuchtmittel\nA;4468000,5;5333000,25;8,5;NAV 70 W\nB;4468010;5333010;;LED\n")
-put("csv", "wkt.csv", "lamp_type\tWKT\tmounting_height (ft)\nLED\tPOINT (11.5 48.1)\t24\nSON\tMULTIPOINT ((11.5 48.1))\t\n")
-tags = {"highway": "street_lamp", "height": "8 m", "light:count": "2", "lamp_type": "led", "light:lumens": "5000", "lamp_mount": "bent_mast",
+put("csv", "semicolon.csv", "\ufeffLeuchtennummer;Rechtswert;Hochwert;Lichtpunkth\u00f6he;Leuchtmittel\n"
+                            "A;4468000,5;5333000,25;8,5;NAV 70 W\nB;4468010;5333010;;LED\n")
+put("csv", "wkt.csv", "lamp_type\tWKT\tmounting_height (ft)\nLED\tPOINT (11.5 48.1)\t24\n"
+                      "SON\tMULTIPOINT ((11.5 48.1))\t\n")
+tags = {"highway": "street_lamp", "height": "8 m", "light:count": "2", "lamp_type": "led", "light:lumens": "5000",
+        "lamp_mount": "bent_mast",
         "light:direction": "NE", "light:colour": "white", "light:colour_temperature": "3000 K", "ref": "12"}
-put("overpass", "nodes.json", json.dumps({"version": 0.6, "generator": "Overpass API", "osm3s": {"timestamp_osm_base": "2020-01-01T00:00:00Z"}, "elements": [
-    {"type": "node", "id": 1, "lat": 48.1, "lon": 11.5, "tags": tags}, {"type": "way", "id": 2, "center": {"lat": 48.1, "lon": 11.501}, "tags": tags},
-    {"type": "relation", "id": 3, "bounds": {"minlat": 48, "minlon": 11, "maxlat": 48.2, "maxlon": 11.1}, "tags": {"highway": "street_lamp"}}], "remark": "timed out"}))
-point = lambda x, y, **p: {"type": "Feature", "id": 7, "properties": p, "geometry": {"type": "Point", "coordinates": [x, y]}}
-features = {"type": "FeatureCollection", "name": "lamps", "crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::25832"}},
-            "features": [point(690100, 5330100, **tags), point(690120, 5330100, highway="street_lamp", height=7, watt=70.5, other=None, list=[1, 2]),
-                         {"type": "Feature", "properties": {"man_made": "street_lamp"}, "geometry": {"type": "MultiPoint", "coordinates": [[1, 2, 3], [4, 5]]}},
-                         {"type": "Feature", "properties": {"highway": "residential"}, "geometry": {"type": "LineString", "coordinates": [[1, 2], [4, 5]]}},
-                         {"type": "Feature", "properties": None, "geometry": {"type": "GeometryCollection", "geometries": [{"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]}]}}]}
+put("overpass", "nodes.json",
+    json.dumps({"version": 0.6, "generator": "Overpass API", "osm3s": {"timestamp_osm_base": "2020-01-01T00:00:00Z"},
+                "elements": [
+    {"type": "node", "id": 1, "lat": 48.1, "lon": 11.5, "tags": tags},
+    {"type": "way", "id": 2, "center": {"lat": 48.1, "lon": 11.501}, "tags": tags},
+    {"type": "relation", "id": 3, "bounds": {"minlat": 48, "minlon": 11, "maxlat": 48.2, "maxlon": 11.1},
+     "tags": {"highway": "street_lamp"}}], "remark": "timed out"}))
+point = lambda x, y, **p: {"type": "Feature", "id": 7, "properties": p,
+                           "geometry": {"type": "Point", "coordinates": [x, y]}}
+features = {"type": "FeatureCollection", "name": "lamps",
+            "crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::25832"}},
+            "features": [point(690100, 5330100, **tags),
+                         point(690120, 5330100, highway="street_lamp", height=7, watt=70.5, other=None, list=[1, 2]),
+                         {"type": "Feature", "properties": {"man_made": "street_lamp"},
+                          "geometry": {"type": "MultiPoint", "coordinates": [[1, 2, 3], [4, 5]]}},
+                         {"type": "Feature", "properties": {"highway": "residential"},
+                          "geometry": {"type": "LineString", "coordinates": [[1, 2], [4, 5]]}},
+                         {"type": "Feature", "properties": None,
+                          "geometry": {"type": "GeometryCollection",
+                                       "geometries": [{"type": "Polygon",
+                                                       "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]}]}}]}
 put("geojson", "collection.json", json.dumps(features))
-put("geojson", "plain.json", json.dumps({"type": "FeatureCollection", "features": [point(11.5, 48.1, highway="street_lamp")]}))
+put("geojson", "plain.json",
+    json.dumps({"type": "FeatureCollection", "features": [point(11.5, 48.1, highway="street_lamp")]}))
 hstore = ",".join('"%s"=>"%s"' % (key, value.replace("8 m", 'a \\"quote\\" and \\\\')) for key, value in tags.items())
-put("geojson", "hstore.json", json.dumps({"type": "FeatureCollection", "features": [point(11.5, 48.1, osm_id="7", highway="street_lamp", other_tags=hstore)]}))
-put("geojson", "lines.json", "\x1e" + json.dumps(point(11.5, 48.1, highway="street_lamp")) + "\n\x1e" + json.dumps(point(11.6, 48.1, **tags)) + "\n")
-osm = ('<?xml version="1.0" encoding="UTF-8"?>\n<osm version="0.6" generator="x"><bounds minlat="48" minlon="11" maxlat="49" maxlon="12"/>\n'
-       '<node id="1" lat="48.1" lon="11.5" version="1">%s</node><node id="2" lat="48.1001" lon="11.5"/><node id="3" lat="48.1" lon="11.5002"/>\n'
+put("geojson", "hstore.json",
+    json.dumps({"type": "FeatureCollection",
+                "features": [point(11.5, 48.1, osm_id="7", highway="street_lamp", other_tags=hstore)]}))
+put("geojson", "lines.json", "\x1e" + json.dumps(point(11.5, 48.1, highway="street_lamp")) + "\n\x1e" +
+    json.dumps(point(11.6, 48.1, **tags)) + "\n")
+osm = ('<?xml version="1.0" encoding="UTF-8"?>\n'
+       '<osm version="0.6" generator="x"><bounds minlat="48" minlon="11" maxlat="49" maxlon="12"/>\n'
+       '<node id="1" lat="48.1" lon="11.5" version="1">%s</node><node id="2" lat="48.1001" lon="11.5"/>'
+       '<node id="3" lat="48.1" lon="11.5002"/>\n'
        '<way id="4"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="1"/><tag k="building" v="yes"/></way>\n'
-       '<relation id="5"><member type="way" ref="4" role="outer"/><tag k="type" v="multipolygon"/><tag k="highway" v="street_lamp"/></relation></osm>\n'
+       '<relation id="5"><member type="way" ref="4" role="outer"/><tag k="type" v="multipolygon"/>'
+       '<tag k="highway" v="street_lamp"/></relation></osm>\n'
        % "".join('<tag k="%s" v="%s"/>' % t for t in tags.items()))
 put("osm", "lamps.osm", osm)
 
@@ -212,14 +275,19 @@ def deltas(values):
 
 
 words = [b"", b"highway", b"street_lamp", b"height", b"8", b"building", b"yes", b"type", b"multipolygon", b"outer"]
-dense = (field(1, deltas([1, 2, 3])) + field(8, deltas([481000000, 481001000, 481000000])) + field(9, deltas([115000000, 115000000, 115002000])) +
+dense = (field(1, deltas([1, 2, 3])) + field(8, deltas([481000000, 481001000, 481000000])) +
+         field(9, deltas([115000000, 115000000, 115002000])) +
          field(10, b"".join(map(varint, [1, 2, 3, 4, 0, 1, 2, 0, 0]))))
 way = number(1, 4) + field(2, varint(5)) + field(3, varint(6)) + field(8, deltas([1, 2, 3, 1]))
-relation = number(1, 5) + field(2, varint(7)) + field(3, varint(8)) + field(8, varint(9)) + field(9, deltas([4])) + field(10, varint(1))
-node = number(1, 9 << 1) + field(2, varint(1)) + field(3, varint(2)) + number(8, 481000000 << 1) + number(9, 115000000 << 1)
+relation = (number(1, 5) + field(2, varint(7)) + field(3, varint(8)) + field(8, varint(9)) + field(9, deltas([4])) +
+            field(10, varint(1)))
+node = (number(1, 9 << 1) + field(2, varint(1)) + field(3, varint(2)) + number(8, 481000000 << 1) +
+        number(9, 115000000 << 1))
 group = lambda n, data: field(2, field(n, data))
-block = field(1, b"".join(field(1, w) for w in words)) + group(2, dense) + group(1, node) + group(3, way) + group(4, relation) + number(17, 100)
-head = field(1, number(1, 11 * 10**9 << 1) + number(2, 12 * 10**9 << 1)) + field(4, b"OsmSchema-V0.6") + field(4, b"DenseNodes") + field(16, b"x")
+block = (field(1, b"".join(field(1, w) for w in words)) + group(2, dense) + group(1, node) + group(3, way) +
+         group(4, relation) + number(17, 100))
+head = (field(1, number(1, 11 * 10**9 << 1) + number(2, 12 * 10**9 << 1)) + field(4, b"OsmSchema-V0.6") +
+        field(4, b"DenseNodes") + field(16, b"x"))
 put("pbf", "lamps.pbf", blob(b"OSMHeader", head) + blob(b"OSMData", block))
 put("pbf", "raw.pbf", blob(b"OSMHeader", head, False) + blob(b"OSMData", block, False))
 
@@ -229,18 +297,24 @@ def geopackage(more=""):
     db = sqlite3.connect(path)
     wkb = lambda x, y: b"GP\0\1" + struct.pack("<i", 4326) + struct.pack("<BIdd", 1, 1, x, y)
     db.executescript("""PRAGMA page_size = 512; PRAGMA application_id = 0x47504B47; PRAGMA user_version = 10200;
-        CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT NOT NULL, srs_id INTEGER PRIMARY KEY, organization TEXT NOT NULL, organization_coordsys_id INTEGER NOT NULL,
-            definition TEXT NOT NULL, description TEXT);
+        CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT NOT NULL, srs_id INTEGER PRIMARY KEY,
+            organization TEXT NOT NULL, organization_coordsys_id INTEGER NOT NULL, definition TEXT NOT NULL,
+            description TEXT);
         INSERT INTO gpkg_spatial_ref_sys VALUES ('WGS 84', 4326, 'EPSG', 4326,
-            'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]]', '');
-        CREATE TABLE gpkg_contents (table_name TEXT PRIMARY KEY, data_type TEXT NOT NULL, identifier TEXT, description TEXT, last_change DATETIME, min_x DOUBLE,
-            min_y DOUBLE, max_x DOUBLE, max_y DOUBLE, srs_id INTEGER);
-        INSERT INTO gpkg_contents VALUES ('lamps', 'features', 'lamps', '', '2020-01-01T00:00:00.000Z', 11, 48, 12, 49, 4326);
-        CREATE TABLE gpkg_geometry_columns (table_name TEXT NOT NULL, column_name TEXT NOT NULL, geometry_type_name TEXT NOT NULL, srs_id INTEGER NOT NULL,
-            z TINYINT NOT NULL, m TINYINT NOT NULL);
+            'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],' ||
+            'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]]', '');
+        CREATE TABLE gpkg_contents (table_name TEXT PRIMARY KEY, data_type TEXT NOT NULL, identifier TEXT,
+            description TEXT, last_change DATETIME, min_x DOUBLE, min_y DOUBLE, max_x DOUBLE, max_y DOUBLE,
+            srs_id INTEGER);
+        INSERT INTO gpkg_contents VALUES ('lamps', 'features', 'lamps', '', '2020-01-01T00:00:00.000Z', 11, 48, 12, 49,
+            4326);
+        CREATE TABLE gpkg_geometry_columns (table_name TEXT NOT NULL, column_name TEXT NOT NULL,
+            geometry_type_name TEXT NOT NULL, srs_id INTEGER NOT NULL, z TINYINT NOT NULL, m TINYINT NOT NULL);
         INSERT INTO gpkg_geometry_columns VALUES ('lamps', 'geom', 'POINT', 4326, 0, 0);
-        CREATE TABLE lamps (fid INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, geom POINT, highway TEXT, height REAL, watt INTEGER);""")
-    db.executemany("INSERT INTO lamps (geom, highway, height, watt) VALUES (?, 'street_lamp', ?, ?)", [(wkb(11.5, 48.1), 8.5, 70), (wkb(11.501, 48.1), None, 50)])
+        CREATE TABLE lamps (fid INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, geom POINT, highway TEXT, height REAL,
+            watt INTEGER);""")
+    db.executemany("INSERT INTO lamps (geom, highway, height, watt) VALUES (?, 'street_lamp', ?, ?)",
+                   [(wkb(11.5, 48.1), 8.5, 70), (wkb(11.501, 48.1), None, 50)])
     db.commit()
     db.executescript(more)
     db.commit()
@@ -262,12 +336,14 @@ def shapefile():
     for i, (x, y) in enumerate(places):
         index += struct.pack(">ii", 50 + len(records) // 2, 10)
         records += struct.pack(">ii", i + 1, 10) + struct.pack("<idd", 1, x, y)
-    head = lambda size: (struct.pack(">7i", 9994, 0, 0, 0, 0, 0, (100 + size) // 2) + struct.pack("<ii4d4d", 1000, 1, 11.5, 48.1, 11.501, 48.1, 0, 0, 0, 0))
+    head = lambda size: (struct.pack(">7i", 9994, 0, 0, 0, 0, 0, (100 + size) // 2) +
+                         struct.pack("<ii4d4d", 1000, 1, 11.5, 48.1, 11.501, 48.1, 0, 0, 0, 0))
     columns = [(b"highway", b"C", 12, 0), (b"height", b"N", 8, 2), (b"watt", b"N", 5, 0)]
     dbf = struct.pack("<BBBBIHH20x", 3, 120, 1, 1, len(places), 33 + 32 * len(columns), 1 + sum(c[2] for c in columns))
     dbf += b"".join(struct.pack("<11sc4xBB14x", *c) for c in columns) + b"\r"
     dbf += b" street_lamp     8.50   70" + b" street_lamp     6.00   50" + b"\x1a"
-    prj = 'GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]]'
+    prj = ('GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],'
+           'PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]]')
     return head(len(records)) + records, head(len(index)) + index, dbf, prj
 
 
@@ -283,7 +359,8 @@ def flatgeobuf(source):
     if not library:
         return b""
     gdal = ctypes.CDLL(library)
-    gdal.GDALOpenEx.restype = gdal.GDALVectorTranslateOptionsNew.restype = gdal.GDALVectorTranslate.restype = ctypes.c_void_p
+    gdal.GDALOpenEx.restype = gdal.GDALVectorTranslate.restype = ctypes.c_void_p
+    gdal.GDALVectorTranslateOptionsNew.restype = ctypes.c_void_p
     gdal.GDALAllRegister()
     with tempfile.TemporaryDirectory() as folder:
         paths = [os.path.join(folder, name).encode() for name in ("a.json", "a.fgb")]
@@ -291,7 +368,8 @@ def flatgeobuf(source):
             f.write(source)
         options = gdal.GDALVectorTranslateOptionsNew((ctypes.c_char_p * 3)(b"-f", b"FlatGeobuf", None), None)
         opened = ctypes.c_void_p(gdal.GDALOpenEx(paths[0], 4, None, None, None)) # 4: GDAL_OF_VECTOR
-        made = gdal.GDALVectorTranslate(paths[1], None, 1, ctypes.byref(opened), ctypes.c_void_p(options), None) if opened else None
+        made = gdal.GDALVectorTranslate(paths[1], None, 1, ctypes.byref(opened), ctypes.c_void_p(options),
+                                        None) if opened else None
         if made:
             gdal.GDALClose(ctypes.c_void_p(made))
         return open(paths[1], "rb").read() if os.path.exists(paths[1]) else b""
@@ -313,7 +391,9 @@ put("stream", "members.zip", zipped(a__txt="text", model__gml="<gml/>" * 40, map
 
 def png(width, height, depth, kind, pixels, extra=b"", interlaced=0):
     chunk = lambda tag, data: struct.pack(">I", len(data)) + tag + data + struct.pack(">I", zlib.crc32(tag + data))
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, depth, kind, 0, 0, interlaced)) + extra +
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR",
+                                         struct.pack(">IIBBBBB", width, height, depth, kind, 0, 0, interlaced)) +
+            extra +
             chunk(b"IDAT", zlib.compress(pixels)) + chunk(b"IEND", b""))
 
 
@@ -324,8 +404,11 @@ put("png", "grey16.png", png(3, 3, 16, 0, (b"\1" + bytes(range(6))) * 3))
 put("png", "palette.png", png(8, 2, 1, 3, (b"\0\x5a") * 2, palette))
 put("png", "alpha.png", png(4, 4, 8, 6, (b"\2" + bytes(range(16))) * 4))
 put("png", "interlaced.png", png(1, 1, 8, 2, b"\0abc", b"", 1))
-adam7 = [(0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4), (0, 2, 2, 4), (1, 0, 2, 2), (0, 1, 1, 2)] # first column and row, steps
-put("png", "interlaced-9x9.png", png(9, 9, 8, 2, b"".join(b"\0" + bytes(3 * len(range(x, 9, dx))) for x, y, dx, dy in adam7 for _ in range(y, 9, dy)), b"", 1))
+# first column and row, steps
+adam7 = [(0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4), (0, 2, 2, 4), (1, 0, 2, 2), (0, 1, 1, 2)]
+put("png", "interlaced-9x9.png", png(9, 9, 8, 2,
+                                     b"".join(b"\0" + bytes(3 * len(range(x, 9, dx))) for x, y, dx, dy in adam7
+                                              for _ in range(y, 9, dy)), b"", 1))
 
 
 def exr(width, height, channels, compression, mask=False):
@@ -334,13 +417,19 @@ def exr(width, height, channels, compression, mask=False):
 
     list_ = b"".join(c + b"\0" + struct.pack("<iB3xii", t, 0, 1, 1) for c, t in channels) + b"\0"
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
-    head = (struct.pack("<II", 20000630, 2) + attribute(b"channels", b"chlist", list_) + attribute(b"compression", b"compression", bytes([compression])) +
-            attribute(b"dataWindow", b"box2i", window) + attribute(b"displayWindow", b"box2i", window) + attribute(b"lineOrder", b"lineOrder", b"\0") +
-            attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)) + attribute(b"screenWindowCenter", b"v2f", struct.pack("<ff", 0, 0)) +
-            attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + attribute(b"units", b"string", b"cd/m2") + b"\0")
+    head = (struct.pack("<II", 20000630, 2) + attribute(b"channels", b"chlist", list_) +
+            attribute(b"compression", b"compression", bytes([compression])) +
+            attribute(b"dataWindow", b"box2i", window) + attribute(b"displayWindow", b"box2i", window) +
+            attribute(b"lineOrder", b"lineOrder", b"\0") +
+            attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)) +
+            attribute(b"screenWindowCenter", b"v2f", struct.pack("<ff", 0, 0)) +
+            attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + attribute(b"units", b"string", b"cd/m2") +
+            b"\0")
     rows = []
     for y in range(height):
-        row = b"".join(struct.pack("<%d%s" % (width, "Ief"[t]), *[(1 if t == 0 else 0.25) * (x + y + 1) if t else x for x in range(width)]) for c, t in channels)
+        row = b"".join(struct.pack("<%d%s" % (width, "Ief"[t]),
+                                   *[(1 if t == 0 else 0.25) * (x + y + 1) if t else x for x in range(width)])
+                       for c, t in channels)
         rows.append(row)
     lines = 16 if compression == 3 else 1
     blocks = [b"".join(rows[i:i + lines]) for i in range(0, height, lines)]
@@ -367,7 +456,8 @@ def tiled(width, height, side):
     """Not packed."""
     plain = exr(width, height, colours, 0)
     head = plain[:plain.index(b"units\0")]
-    head = head[:4] + struct.pack("<I", 2 | 0x200) + head[8:] + b"tiles\0tiledesc\0" + struct.pack("<iIIB", 9, side, side, 0) + b"\0"
+    head = (head[:4] + struct.pack("<I", 2 | 0x200) + head[8:] + b"tiles\0tiledesc\0" +
+            struct.pack("<iIIB", 9, side, side, 0) + b"\0")
     tiles = [(x, y) for y in range(0, height, side) for x in range(0, width, side)]
     at, offsets, body = len(head) + 8 * len(tiles), b"", b""
     for x, y in tiles:
@@ -393,14 +483,20 @@ put("compare", "mixed", parts(exr(5, 4, colours, 0), rgb))
 # ---- coordinate systems ----
 
 for i, spelling in enumerate([
-        "EPSG:25832", "epsg:4326", "urn:ogc:def:crs:EPSG::25832", "urn:ogc:def:crs,crs:EPSG:6.12:31466,crs:EPSG:6.12:5783", "25832", "CH1903", "CRS84",
-        "http://www.opengis.net/gml/srs/epsg.xml#31467", "http://www.opengis.net/def/crs/EPSG/0/3857", "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH",
-        "urn:adv:crs:DE_DHDN_3GK4*DE_DHHN92_NH", "urn:ogc:def:crs:OGC:1.3:CRS84", "EPSG:7415", "EPSG:25832+5783", "ETRS89_UTM33",
-        "+proj=utm +zone=32 +ellps=GRS80 +units=m +no_defs", "+proj=tmerc +lat_0=0 +lon_0=9 +k=1 +x_0=3500000 +y_0=0 +ellps=bessel +units=m",
+        "EPSG:25832", "epsg:4326", "urn:ogc:def:crs:EPSG::25832",
+        "urn:ogc:def:crs,crs:EPSG:6.12:31466,crs:EPSG:6.12:5783", "25832", "CH1903", "CRS84",
+        "http://www.opengis.net/gml/srs/epsg.xml#31467", "http://www.opengis.net/def/crs/EPSG/0/3857",
+        "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH", "urn:adv:crs:DE_DHDN_3GK4*DE_DHHN92_NH",
+        "urn:ogc:def:crs:OGC:1.3:CRS84", "EPSG:7415", "EPSG:25832+5783", "ETRS89_UTM33",
+        "+proj=utm +zone=32 +ellps=GRS80 +units=m +no_defs",
+        "+proj=tmerc +lat_0=0 +lon_0=9 +k=1 +x_0=3500000 +y_0=0 +ellps=bessel +units=m",
         "+proj=longlat +datum=WGS84", "+proj=pipeline +step +proj=utm +zone=32", prj,
-        'PROJCS["ETRS89 / UTM zone 32N",GEOGCS["ETRS89",DATUM["European_Terrestrial_Reference_System_1989",SPHEROID["GRS 1980",6378137,298.257222101]],'
-        'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],'
-        'PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1]]']):
+        'PROJCS["ETRS89 / UTM zone 32N",GEOGCS["ETRS89",DATUM["European_Terrestrial_Reference_System_1989",'
+        'SPHEROID["GRS 1980",6378137,298.257222101]],'
+        'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],'
+        'PARAMETER["latitude_of_origin",0],'
+        'PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],'
+        'PARAMETER["false_northing",0],UNIT["metre",1]]']):
     put("crs", "%02d" % i, spelling)
 
 # ---- specs ----
@@ -410,10 +506,15 @@ for name in sorted(os.listdir(folder)):
     if name.endswith(".json"):
         put("spec", name, open(os.path.join(folder, name), "rb").read())
 put("spec", "small", json.dumps({
-    "title": "t", "size": "16x9", "frames": 4, "repetitions": 2, "accumulate": "both", "seed": 3, "crop": "0,0,4,4", "equal-time": [1, 2], "measured": [1, 4], "shown": [1],
-    "scene": {"name": "s", "inputs": ["builtin:city"], "city-size": 200}, "options": {"sky": 0}, "reference": {"frames": 2, "rays": 16},
-    "cameras": [{"name": "a", "view": "street"}, {"name": "b", "view": "street", "path": {"frames": 3, "dolly": [0, 1, 0], "pan": 10, "before": {"view": "aerial"}, "cut": 2}}],
-    "configurations": [{"name": "x", "method": "ris", "draws": [4, 8]}, {"name": "y", "method": "restir", "bias": "mis", "seconds": 2}]}))
+    "title": "t", "size": "16x9", "frames": 4, "repetitions": 2, "accumulate": "both", "seed": 3, "crop": "0,0,4,4",
+    "equal-time": [1, 2], "measured": [1, 4], "shown": [1],
+    "scene": {"name": "s", "inputs": ["builtin:city"], "city-size": 200}, "options": {"sky": 0},
+    "reference": {"frames": 2, "rays": 16},
+    "cameras": [{"name": "a", "view": "street"},
+                {"name": "b", "view": "street",
+                 "path": {"frames": 3, "dolly": [0, 1, 0], "pan": 10, "before": {"view": "aerial"}, "cut": 2}}],
+    "configurations": [{"name": "x", "method": "ris", "draws": [4, 8]},
+                       {"name": "y", "method": "restir", "bias": "mis", "seconds": 2}]}))
 
 # ---- several inputs, to a scene ----
 
@@ -430,5 +531,6 @@ put("pipeline", "zip", parts(gzip.compress(whole.encode(), mtime=0), zipped(lamp
 
 for corpus in "wire", "request":
     os.makedirs(os.path.join(root, corpus), exist_ok=True)
-foreign = [os.path.join(root, corpus, name) for corpus in ("obj", "osm", "pbf", "geojson", "gpkg", "fgb", "shp") for name in os.listdir(os.path.join(root, corpus))]
+foreign = [os.path.join(root, corpus, name) for corpus in ("obj", "osm", "pbf", "geojson", "gpkg", "fgb", "shp")
+           for name in os.listdir(os.path.join(root, corpus))]
 subprocess.run([sys.argv[2], sys.argv[3], root, *sorted(foreign)], check=True)

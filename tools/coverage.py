@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""coverage.py BUILD CORPUS: share of each room's lines that the tests run (BUILD was made by `make coverage`), and that the fuzzers' inputs do:
-their seeds, and what they found in CORPUS where it is there. A line a room. What a process counted is lost where it was killed."""
+"""coverage.py BUILD CORPUS: share of each room's lines that the tests run (BUILD was made by `make coverage`), and that
+the fuzzers' inputs do: their seeds, and what they found in CORPUS where it is there. A line a room. What a process
+counted is lost where it was killed."""
 import glob, json, os, subprocess, sys
 
 build, corpus = (os.path.abspath(a) for a in sys.argv[1:3])
@@ -21,10 +22,13 @@ def rooms(folder):
     """Room: [lines that were run, lines]."""
     merged = folder + ".profdata"
     counted = [p for p in glob.glob(folder + "/*.profraw") if os.path.getsize(p)]
-    subprocess.run(["llvm-profdata", "merge", "-sparse", "-failure-mode=all", "-o", merged, *counted], check=True, stderr=subprocess.DEVNULL)
+    subprocess.run(["llvm-profdata", "merge", "-sparse", "-failure-mode=all", "-o", merged, *counted], check=True,
+                   stderr=subprocess.DEVNULL)
     objects = [os.path.join(build, name) for name in ("libnocturne.so", "nocturne", "nocturne-reader")]
-    out = subprocess.run(["llvm-cov", "export", "-summary-only", "-instr-profile", merged, objects[0], *("-object=" + o for o in objects[1:]),
-                          os.path.join(root, "src")], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True).stdout
+    out = subprocess.run(["llvm-cov", "export", "-summary-only", "-instr-profile", merged, objects[0],
+                          *("-object=" + o for o in objects[1:]),
+                          os.path.join(root, "src")], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                         check=True).stdout
     sums = {}
     for f in json.loads(out)["data"][0]["files"]:
         path = os.path.relpath(f["filename"], root).split("/")
@@ -41,7 +45,8 @@ def replay(environment):
     for test in (t for t in tests if t["name"].startswith("fuzz-")):
         found = os.path.join(corpus, test["name"][5:])
         command = test["cmd"] + ([found] if os.path.isdir(found) and os.listdir(found) else [])
-        if subprocess.call(command, env={**environment, **test["env"]}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL):
+        if subprocess.call(command, env={**environment, **test["env"]}, stdout=subprocess.DEVNULL,
+                           stderr=subprocess.DEVNULL):
             print("coverage: %s breaks something" % test["name"], file=sys.stderr)
 
 
@@ -50,7 +55,8 @@ replay(environment)
 fuzzed = rooms(folder)
 folder, environment = profiles("tests")
 names = [t["name"] for t in tests if not t["name"].startswith("fuzz-")]
-status = subprocess.call(["meson", "test", "-C", build, "--no-rebuild", "--quiet", "--timeout-multiplier", "4", *names], env=environment, stdout=subprocess.DEVNULL)
+status = subprocess.call(["meson", "test", "-C", build, "--no-rebuild", "--quiet", "--timeout-multiplier", "4", *names],
+                         env=environment, stdout=subprocess.DEVNULL)
 tested = rooms(folder)
 print("%-18s %7s %8s %8s" % ("room", "lines", "tests", "fuzzers"))
 total = [0, 0, 0]

@@ -1,7 +1,7 @@
 """geopackage.py FILE [log|view|text|comment|name]: a GeoPackage with two street lamps, made by SQLite alone.
 
-log: a third lamp is in a write-ahead log beside it; view: a layer that never ends; text: a virtual table over the file PIPE;
-comment, name: the same with a comment before VIRTUAL, or in the place of its name.
+log: a third lamp is in a write-ahead log beside it; view: a layer that never ends; text: a virtual table over the file
+PIPE; comment, name: the same with a comment before VIRTUAL, or in the place of its name.
 """
 import os
 import shutil
@@ -12,13 +12,13 @@ import sys
 WGS84 = ('GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],'
          'UNIT["degree",0.0174532925199433],AUTHORITY["EPSG","4326"]]')
 TABLES = """
-CREATE TABLE gpkg_spatial_ref_sys(srs_name TEXT NOT NULL, srs_id INTEGER NOT NULL PRIMARY KEY, organization TEXT NOT NULL,
-  organization_coordsys_id INTEGER NOT NULL, definition TEXT NOT NULL, description TEXT);
+CREATE TABLE gpkg_spatial_ref_sys(srs_name TEXT NOT NULL, srs_id INTEGER NOT NULL PRIMARY KEY,
+  organization TEXT NOT NULL, organization_coordsys_id INTEGER NOT NULL, definition TEXT NOT NULL, description TEXT);
 CREATE TABLE gpkg_contents(table_name TEXT NOT NULL PRIMARY KEY, data_type TEXT NOT NULL, identifier TEXT UNIQUE,
   description TEXT DEFAULT '', last_change DATETIME NOT NULL DEFAULT '2026-01-01T00:00:00Z', min_x DOUBLE, min_y DOUBLE,
   max_x DOUBLE, max_y DOUBLE, srs_id INTEGER);
-CREATE TABLE gpkg_geometry_columns(table_name TEXT NOT NULL, column_name TEXT NOT NULL, geometry_type_name TEXT NOT NULL,
-  srs_id INTEGER NOT NULL, z TINYINT NOT NULL, m TINYINT NOT NULL);
+CREATE TABLE gpkg_geometry_columns(table_name TEXT NOT NULL, column_name TEXT NOT NULL,
+  geometry_type_name TEXT NOT NULL, srs_id INTEGER NOT NULL, z TINYINT NOT NULL, m TINYINT NOT NULL);
 CREATE TABLE lamps(fid INTEGER PRIMARY KEY, geom BLOB, highway TEXT);
 """
 LAYER = """
@@ -48,7 +48,8 @@ def main(path, kind=""):
     add(db, 2, 11.4201, 48.76)
     if kind == "view":
         db.executescript(ENDLESS + LAYER.format("slow"))
-    if kind in VIRTUAL:  # what spatialite would open; SQLite itself knows no such module, so it is written into the schema
+    # what spatialite would open; SQLite itself knows no such module, so it is written into the schema
+    if kind in VIRTUAL:
         db.execute("PRAGMA writable_schema = ON")
         sql = VIRTUAL[kind] + " USING VirtualText('PIPE', 'UTF-8')"
         db.execute("INSERT INTO sqlite_master VALUES('table', 'spy', 'spy', 0, ?)", (sql,))

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""A helper that was taken over: sends what the environment's SAYS tells, a Python expression of records, and never ends by itself."""
+"""A helper that was taken over: sends what the environment's SAYS tells, a Python expression of records, and never ends
+by itself."""
 import os
 import socket
 import struct
