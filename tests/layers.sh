@@ -4,7 +4,8 @@
 set -u
 root=${NOC_SOURCE:-$(cd "$(dirname "$0")/.." && pwd)}
 
-# A room, and the rooms whose headers it may use besides its own and base's; core, cli and reader may not use base either.
+# A room, and the rooms whose headers it may use besides its own and base's; core, cli and reader may not use base
+# either.
 arrows='
 base:
 core:
@@ -150,7 +151,8 @@ echo 'int x;' >"$tree/probe.cc"
 if $compiler -x c++ -fsyntax-only "$tree/probe.cc" 2>/dev/null; then
     alone -x c++ -std=c++14 >"$tree/log" 2>&1; result $? "public headers compile alone as C++"
     sed 's/^/# /' "$tree/log"
-    $compiler -x c++ -std=c++14 -Wall -Wextra -Wpedantic -Wshadow -Werror -I"$root/include" "$root/tests/cli/defaults.cc" \
+    $compiler -x c++ -std=c++14 -Wall -Wextra -Wpedantic -Wshadow -Werror -I"$root/include" \
+        "$root/tests/cli/defaults.cc" \
         -o "$tree/defaults" -lstdc++ >"$tree/log" 2>&1 && "$tree/defaults"
     result $? "default parameters can be had in C++, and their addresses"
     sed 's/^/# /' "$tree/log"

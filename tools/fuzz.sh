@@ -1,8 +1,8 @@
 #!/bin/sh
-# fuzz.sh BUILD SECONDS [CORPUS...]: runs the fuzzer of each corpus for so long, on what it found before and on the seeds, and prints
-# a table. Inputs that break something lie in BUILD/findings/CORPUS, new ones in BUILD/corpus/CORPUS. Fails where something was found.
-# As many corpora at a time as there are cores, or JOBS of them; fuzz.sh BUILD SECONDS alone CORPUS is what each of them runs.
-# fuzz.sh BUILD table: the table of all runs so far.
+# fuzz.sh BUILD SECONDS [CORPUS...]: runs the fuzzer of each corpus for so long, on what it found before and on the
+# seeds, and prints a table. Inputs that break something lie in BUILD/findings/CORPUS, new ones in BUILD/corpus/CORPUS.
+# Fails where something was found. As many corpora at a time as there are cores, or JOBS of them; fuzz.sh BUILD SECONDS
+# alone CORPUS is what each of them runs. fuzz.sh BUILD table: the table of all runs so far.
 set -u
 build=$1 seconds=${2:-60}
 shift 2
@@ -38,14 +38,17 @@ table() {
     printf '%-10s %12s %8s %8s %8s %9s %9s\n' corpus executions minutes 'a second' edges inputs findings
     echo "$corpora" | while read -r corpus program rest; do
         [ -n "$corpus" ] && [ -s "$build/fuzz-logs/$corpus" ] || continue
-        awk -v corpus="$corpus" -v inputs="$(ls "$build/corpus/$corpus" | wc -l)" -v found="$(ls "$build/findings/$corpus" | wc -l)" '
+        awk -v corpus="$corpus" -v inputs="$(ls "$build/corpus/$corpus" |
+            wc -l)" -v found="$(ls "$build/findings/$corpus" | wc -l)" '
             { runs += $1; time += $2; if ($3) edges = $3 }
-            END { printf "%-10s %12d %8.1f %8.1f %8d %9d %9d\n", corpus, runs, time / 60, time ? runs / time : 0, edges, inputs, found }' \
+            END { printf "%-10s %12d %8.1f %8.1f %8d %9d %9d\n",
+                corpus, runs, time / 60, time ? runs / time : 0, edges, inputs, found }' \
             "$build/fuzz-logs/$corpus"
     done
 }
 
-# fuzz CORPUS PROGRAM LENGTH DICTIONARY ENDINGS: a run that breaks something is followed by another, until the time is over.
+# fuzz CORPUS PROGRAM LENGTH DICTIONARY ENDINGS: a run that breaks something is followed by another, until the time is
+# over.
 fuzz() {
     now=$build/corpus/$1 found=$build/findings/$1 log=$build/fuzz-logs/$1.log
     mkdir -p "$now" "$found" "$build/fuzz-logs" "$build/fuzz/seeds/$1"
@@ -54,7 +57,8 @@ fuzz() {
     if [ "$5" != - ] && [ -d "$root/../shared/data" ]; then
         rm -rf "$build/real/$1" && mkdir -p "$build/real/$1"
         for ending in $(echo "$5" | tr , ' '); do
-            find "$root/../shared/data" -type f -name "*.$ending" -size "-$(($3 / 1024))k" -exec ln -sf -t "$build/real/$1" {} +
+            find "$root/../shared/data" -type f -name "*.$ending" -size "-$(($3 / 1024))k" -exec ln -sf \
+                -t "$build/real/$1" {} +
         done
         seeds="$seeds $build/real/$1"
     fi
@@ -64,7 +68,8 @@ fuzz() {
     while left=$((end - $(date +%s))) && [ $left -gt 0 ]; do
         times >"$log.before" # of this process and its children: not in a pipe, whose ends are processes of their own
         # shellcheck disable=SC2086 # lists of words
-        "$build/fuzz/fuzz_$2" $dictionary -max_len="$3" -max_total_time=$left -timeout=60 -report_slow_units=60 -rss_limit_mb=4096 -print_final_stats=1 \
+        "$build/fuzz/fuzz_$2" $dictionary -max_len="$3" -max_total_time=$left -timeout=60 -report_slow_units=60 \
+            -rss_limit_mb=4096 -print_final_stats=1 \
             -artifact_prefix="$found/" -reload=0 -close_fd_mask=1 "$now" $seeds >"$log" 2>&1 </dev/null
         status=$?
         times >"$log.after"
@@ -75,7 +80,8 @@ fuzz() {
             }
             /stat::number_of_executed_units/ { runs = $2 }
             / cov: / { for (i = 1; i < NF; i++) if ($i == "cov:") edges = $(i + 1); n = $1; sub(/#/, "", n); last = n }
-            END { print (runs ? runs : last + 0), time, edges }' "$log.before" "$log.after" "$log" >>"$build/fuzz-logs/$1"
+            END { print (runs ? runs : last + 0), time, edges }' \
+            "$log.before" "$log.after" "$log" >>"$build/fuzz-logs/$1"
         rm "$log.before" "$log.after"
         [ $status = 0 ] && break
         cp "$log" "$build/fuzz-logs/$1.broken.$(date +%s).log"
@@ -86,7 +92,8 @@ if [ "$seconds" = table ]; then
     table
     exit
 fi
-export ASAN_OPTIONS="detect_leaks=1:allocator_may_return_null=1:${ASAN_OPTIONS:-}" UBSAN_OPTIONS="halt_on_error=1:print_stacktrace=1"
+export ASAN_OPTIONS="detect_leaks=1:allocator_may_return_null=1:${ASAN_OPTIONS:-}" \
+    UBSAN_OPTIONS="halt_on_error=1:print_stacktrace=1"
 export LSAN_OPTIONS="suppressions=$root/tests/lsan.supp:print_suppressions=0"
 # PROJ's database made small (proj.py)
 [ -s "$build/fuzz/proj/proj.db" ] && export PROJ_DATA="$build/fuzz/proj" PROJ_LIB="$build/fuzz/proj"

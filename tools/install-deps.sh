@@ -1,6 +1,7 @@
 #!/bin/sh
-# install-deps.sh [build|check|fuzz|coverage]: sees what is missing to build (default), to build and test, to fuzz, or to measure what
-# tests cover, says what and why, and installs it where apt-get is. Says and does nothing when all is there.
+# install-deps.sh [build|check|fuzz|coverage]: sees what is missing to build (default), to build and test, to fuzz, or
+# to measure what tests cover, says what and why, and installs it where apt-get is. Says and does nothing when all is
+# there.
 set -u
 purpose=${1:-build}
 

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Draws the figures of docs/views.md: every view of the built-in city from the street and from the air. Takes the program's
-# path; needs ImageMagick.
+# Draws the figures of docs/views.md: every view of the built-in city from the street and from the air. Takes the
+# program's path; needs ImageMagick.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 program=${1:-$root/build/nocturne}

@@ -8,36 +8,46 @@ small='builtin:city --city-size 150 --size 64x36'
 "$program" render $small -q --size 32x36 --frames 1 -o narrow.exr || exit 1
 
 run compare reference.exr reference.exr
-test $status = 0 && grep -Eq '^  all pixels +2,304 +0\.000 +0 +0 +1\.0000$' out && grep -q 'no emitter' out && test ! -s err
+test $status = 0 && grep -Eq '^  all pixels +2,304 +0\.000 +0 +0 +1\.0000$' out && grep -q 'no emitter' out &&
+    test ! -s err
 result $? "a picture is equal to itself"
 run compare is.exr reference.exr --ceiling 2 -o difference.png
 test $status = 0 && grep -q 'clamped to 2 cd/m2' out && meta difference.png size >/dev/null
 result $? "a noisy one is not, and there is a difference picture"
-awk '/^  all pixels/ { found = $4 > 1 && $5 > 0 && $6 > 0 } END { exit !found }' out; result $? "its figures are not zero"
+awk '/^  all pixels/ { found = $4 > 1 && $5 > 0 && $6 > 0 } END { exit !found }' out
+result $? "its figures are not zero"
 grep -q '^  difference picture: difference.png$' out; result $? "and the difference picture is told"
 run compare -q is.exr reference.exr -o difference.png
-test $status = 0 && grep -q '^  all pixels' out && ! grep -q difference out && test ! -s err; result $? "quiet keeps the figures, which are the result"
+test $status = 0 && grep -q '^  all pixels' out && ! grep -q difference out && test ! -s err
+result $? "quiet keeps the figures, which are the result"
 run compare is.exr reference.exr --json -o difference.png
 grep -q '"no_emitter_clamped": {"pixels": [0-9]' out; result $? "figures as JSON"
-python3 -c 'import json; assert json.load(open("out"))["difference"] == "difference.png"'; result $? "with the name of the difference picture"
-"$program" render $small -q --sky 0 --method is --frames 1 -o weak.exr && "$program" render $small -q --sky 0 --frames 2 -o strong.exr
+python3 -c 'import json; assert json.load(open("out"))["difference"] == "difference.png"'
+result $? "with the name of the difference picture"
+"$program" render $small -q --sky 0 --method is --frames 1 -o weak.exr &&
+    "$program" render $small -q --sky 0 --frames 2 -o strong.exr
 run compare strong.exr weak.exr
 cp out table
 run compare --json strong.exr weak.exr
 python3 -c '
 import json, re
 all = json.load(open("out"))["all"]
-pixels, share = re.search(r"^  ([\d,]+) pixels lit in the picture and 0 in the reference: ([\d.]+) % of relMSE$", open("table").read(), re.M).groups()
-assert int(pixels.replace(",", "")) == all["unlit"] > 9 and share == "%.3g" % (100 * all["relmse_unlit"] / all["relmse"])'
+pixels, share = re.search(r"^  ([\d,]+) pixels lit in the picture and 0 in the reference: ([\d.]+) % of relMSE$",
+                          open("table").read(), re.M).groups()
+assert int(pixels.replace(",",
+                          "")) == all["unlit"] > 9 and share == "%.3g" % (100 * all["relmse_unlit"] / all["relmse"])'
 result $? "pixels that the reference leaves black are told" "$(cat table)"
 run compare is.png is.png
-test $status = 0 && grep -q 'of white$' out && ! grep -q 'cd/m2' out && test ! -s err; result $? "PNG against PNG speaks of white, not cd/m2"
+test $status = 0 && grep -q 'of white$' out && ! grep -q 'cd/m2' out && test ! -s err
+result $? "PNG against PNG speaks of white, not cd/m2"
 run compare is.png is.png --json
-grep -q '"unit": "white"' out && ! grep -q ceiling out && python3 -m json.tool out >/dev/null; result $? "and so does its JSON"
+grep -q '"unit": "white"' out && ! grep -q ceiling out && python3 -m json.tool out >/dev/null
+result $? "and so does its JSON"
 expect "PNG against EXR" 1 'is.png: it is displayed .PNG., the other is linear' compare is.png reference.exr -o d.png
 expect "EXR against PNG" 1 'is.png: it is displayed' compare reference.exr is.png
 for view in class depth normal; do
-    "$program" render $small -q --frames 1 --show $view -o $view.exr && "$program" render $small -q --frames 1 --show $view -o $view.png
+    "$program" render $small -q --frames 1 --show $view -o $view.exr &&
+        "$program" render $small -q --frames 1 --show $view -o $view.png
     expect "numbers of a view, $view" 1 "$view.exr: it holds the view \"$view\"" compare $view.exr $view.exr -o d.png
     expect "colours of a view, $view" 1 "$view.png: it holds the view \"$view\"" compare $view.png $view.png
 done

@@ -9,9 +9,10 @@ int main() {
     const noc_compare_params *compare = &noc_compare_default_params();
     noc_import_params import = noc_import_default_params();
     noc_city_params city = noc_city_default_params();
-    bool good = is_lists(&noc_render_default_params()) && noc_render_default_params().height == 720 && render.accumulate &&
-                render.draws > 0 && compare->ceiling == 10 && compare->display.auto_exposure && import.lod == 3 &&
-                !import.crs && city.seed == 1 && (&noc_display_default_params())->compensation == 0 &&
-                (&noc_device_default_params())->threads == 0 && (&noc_log_default_params())->level == NOC_LOG_WARN;
+    bool good = is_lists(&noc_render_default_params()) && noc_render_default_params().height == 720 &&
+                render.accumulate && render.draws > 0 && compare->ceiling == 10 && compare->display.auto_exposure &&
+                import.lod == 3 && !import.crs && city.seed == 1 &&
+                (&noc_display_default_params())->compensation == 0 && (&noc_device_default_params())->threads == 0 &&
+                (&noc_log_default_params())->level == NOC_LOG_WARN;
     return good ? 0 : 1;
 }

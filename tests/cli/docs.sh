@@ -10,7 +10,8 @@ if command -v groff >/dev/null; then
 else
     skip "the manual page" "groff is not here"
 fi
-# The completion for fish is written without a buffer. What it says of an option stands in each of the other texts, whole.
+# The completion for fish is written without a buffer. What it says of an option stands in each of the other texts,
+# whole.
 cat >whole.py <<'PY'
 import re, subprocess, sys
 def text(*words):
@@ -39,7 +40,8 @@ for line in text("--completion", "fish").splitlines():
                 lost += 1
 sys.exit(lost > 0 or checked < 100)
 PY
-python3 whole.py "$program" >why; result $? "help, manual page and options.md tell each option and all its choices" "$(head -n 1 why)"
+python3 whole.py "$program" >why
+result $? "help, manual page and options.md tell each option and all its choices" "$(head -n 1 why)"
 for shell in bash zsh fish; do
     mkdir -p $shell && "$program" help --completion $shell >$shell/_nocturne
     if command -v $shell >/dev/null; then
@@ -92,7 +94,8 @@ bash_offers() {
             [[ $line == *" " ]] && COMP_WORDS+=("")
             COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
             _nocturne
-            [ ${#COMPREPLY[@]} = 0 ] && [ "$default" ] && mapfile -t COMPREPLY < <(compgen -f -- "${COMP_WORDS[COMP_CWORD]#=}")
+            [ ${#COMPREPLY[@]} = 0 ] && [ "$default" ] &&
+                mapfile -t COMPREPLY < <(compgen -f -- "${COMP_WORDS[COMP_CWORD]#=}")
             echo ${COMPREPLY[@]}
         done'
 }
@@ -129,7 +132,8 @@ for shell in bash zsh fish; do
     fi
     (cd files && ${shell}_offers) <lines | same_words >$shell/offers
     cmp -s $shell/offers expected
-    result $? "$shell completes commands, options, choices, built-in scenes and files" "$(diff $shell/offers expected | head -n 6)"
+    result $? "$shell completes commands, options, choices, built-in scenes and files" "$(diff $shell/offers expected |
+        head -n 6)"
 done
 expect "a shell without completion" 2 'bash, zsh and fish' help --completion tcsh
 broken=

@@ -15,7 +15,8 @@ gzip -c "$gml" >whole.gml.gz && head -c 400 whole.gml.gz >half.gml.gz
 long=$(head -c 10000 /dev/zero | tr '\0' x)
 bytes=$(printf 'caf\351\377.gml')
 
-for input in missing.gml folder empty.gml noise.gml picture.gml cut.gml.gz cut.zip page.gml cut.geojson cut.gml half.gml.gz /dev/zero \
+for input in missing.gml folder empty.gml noise.gml picture.gml cut.gml.gz cut.zip page.gml cut.geojson cut.gml \
+    half.gml.gz /dev/zero \
     /dev/null builtin:town "$bytes" "$long"; do
     shown=$(printf '%.40s' "$input" | tr -cd '\40-\176')
     for command in "render -o x.png" info; do
@@ -31,13 +32,15 @@ grep -v surfaceMember "$gml" >bare.gml
 expect "a city without surfaces" 1 'no surface that can be drawn' render bare.gml -o x.png
 
 run info "$gml"
-test $status = 0 && grep -q 'CityGML 2.0' out && grep -q 'EPSG:25832' out && grep -Eq 'wall +4$' out && grep -Eq 'roof +1$' out &&
+test $status = 0 && grep -q 'CityGML 2.0' out && grep -q 'EPSG:25832' out && grep -Eq 'wall +4$' out &&
+    grep -Eq 'roof +1$' out &&
     grep -Eq 'skipped +1 x .*(two-points|stump)' out && grep -q '1 in LOD2' out
 result $? "info of a house"
 run info whole.gml.gz "$gml"
 test $status = 0 && test "$(grep -c '^  format' out)" = 2; result $? "info of two files, one packed"
 run info missing.gml "$gml"
-test $status = 1 && grep -q 'CityGML 2.0' out && grep -q missing.gml err; result $? "a missing file does not hide the next"
+test $status = 1 && grep -q 'CityGML 2.0' out && grep -q missing.gml err
+result $? "a missing file does not hide the next"
 run info --json "$gml" missing.gml builtin:city --city-size 150
 python3 - out >err <<'END'
 import json, sys
@@ -56,26 +59,31 @@ result $? "info as JSON"
 # Formats that are known, but not read.
 refused() { # name, part of the message; the file is "stranger"
     run render stranger -o x.png
-    test $status = 1 && test "$(wc -l <err)" = 1 && grep -q "stranger.*$2" err && ! grep -q 'none of the formats' err && test ! -e x.png
+    test $status = 1 && test "$(wc -l <err)" = 1 && grep -q "stranger.*$2" err && ! grep -q 'none of the formats' err &&
+        test ! -e x.png
     result $? "refused by name: $1" "$(cat err)"
 }
-printf '{"type":"CityJSON","version":"2.0","CityObjects":{},"vertices":[]}' >stranger; refused CityJSON 'CityJSON.*citygml-tools'
+printf '{"type":"CityJSON","version":"2.0","CityObjects":{},"vertices":[]}' >stranger
+refused CityJSON 'CityJSON.*citygml-tools'
 printf '{"CityObjects":{},"type":"CityJSON"}' >stranger; refused "CityJSON, sorted" 'CityJSON.*citygml-tools'
 printf 'IESNA:LM-63-2002\r\n[TEST] 1\r\nTILT=NONE\r\n1 1000 1 5 1 1 2 0 0 0\r\n' >stranger; refused IES '(IES)'
 printf 'ACME\r\n1\r\n2\r\n36\r\n10\r\n37\r\n2,5\r\nREPORT\r\n' >stranger; refused EULUMDAT '(EULUMDAT)'
 printf '<?xml version="1.0"?><gpx version="1.1"><wpt lat="48" lon="11"/></gpx>' >stranger; refused GPX 'GPX.*GeoJSON'
 printf '<?xml version="1.0"?>\n<OpenDRIVE>\n<header revMajor="1"/></OpenDRIVE>' >stranger
 refused OpenDRIVE 'OpenDRIVE.*CityGML'
-printf '<?xml version="1.0"?><kml xmlns="http://www.opengis.net/kml/2.2"><Document/></kml>' >stranger; refused KML 'KML.*GeoJSON'
+printf '<?xml version="1.0"?><kml xmlns="http://www.opengis.net/kml/2.2"><Document/></kml>' >stranger
+refused KML 'KML.*GeoJSON'
 python3 - <<'END'
 import zipfile
 with zipfile.ZipFile("stranger", "w") as z:
-    z.writestr("[Content_Types].xml", '<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"/>')
+    z.writestr("[Content_Types].xml", '<?xml version="1.0"?>'
+                                      '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"/>')
     z.writestr("xl/workbook.xml", "<workbook/>")
 END
 refused XLSX 'XLSX.*CSV'
 printf 'ACME\n1\n2\n36\nten\n' >stranger
-expect "anything else is told what is read" 1 'none of the formats.*GeoJSONSeq, GeoPackage, Shapefile, FlatGeobuf' render stranger -o x.png
+expect "anything else is told what is read" 1 'none of the formats.*GeoJSONSeq, GeoPackage, Shapefile, FlatGeobuf' \
+    render stranger -o x.png
 
 # Ids are whole, for a part of one cannot be searched for; and causes of lamps come first.
 python3 - >many.csv <<'END'
@@ -101,10 +109,12 @@ python3 - "$gml" >twin.gml <<'END'
 import re, sys
 text = open(sys.argv[1]).read()
 roof = re.search(r'<gml:surfaceMember><gml:Polygon gml:id="p2">.*?</gml:surfaceMember>', text, re.S).group(0)
-solid = "<bldg:lod2Solid><gml:Solid><gml:exterior><gml:CompositeSurface>%s</gml:CompositeSurface></gml:exterior></gml:Solid>"
+solid = ("<bldg:lod2Solid><gml:Solid><gml:exterior><gml:CompositeSurface>%s</gml:CompositeSurface></gml:exterior>"
+         "</gml:Solid>")
 again = "</bldg:lod2Solid><bldg:lod2MultiSurface><gml:MultiSurface>%s</gml:MultiSurface></bldg:lod2MultiSurface>"
 link = '<gml:surfaceMember xlink:href="#p2"/>'
-building = '<bldg:Building gml:id="house">%s</bldg:Building>' % (solid % (roof + link) + again % roof.replace("p2", "p2b"))
+building = '<bldg:Building gml:id="house">%s</bldg:Building>' % (solid % (roof + link) + again %
+                                                                 roof.replace("p2", "p2b"))
 print(re.sub("<bldg:Building.*</bldg:Building>", lambda m: building, text, flags=re.S))
 END
 run info -v twin.gml
@@ -115,11 +125,14 @@ result $? "a polygon that is given twice is counted alike by -v and in the repor
 if [ "$("$program" --version | grep -ci gdal)" != 0 ]; then
     cat >outlines.geojson <<'END'
 {"type": "FeatureCollection", "features": [
-{"type": "Feature", "properties": {"a": 1}, "geometry": {"type": "Polygon", "coordinates": [[[8, 50], [8.5, 50], [8.5, 50.25], [8, 50]]]}},
-{"type": "Feature", "properties": {"a": 2}, "geometry": {"type": "Polygon", "coordinates": [[[8, 50], [8.5, 50], [8.5, 50.25], [8, 50]]]}}]}
+{"type": "Feature", "properties": {"a": 1}, "geometry": {"type": "Polygon",
+    "coordinates": [[[8, 50], [8.5, 50], [8.5, 50.25], [8, 50]]]}},
+{"type": "Feature", "properties": {"a": 2}, "geometry": {"type": "Polygon",
+    "coordinates": [[[8, 50], [8.5, 50], [8.5, 50.25], [8, 50]]]}}]}
 END
     run info outlines.geojson
-    grep -q 'CRS .*WGS 84' out && grep -q 'x 8.000000 to 8.500000, y 50.000000 to 50.250000' out && grep -q 'features  *2 polygons' out &&
+    grep -q 'CRS .*WGS 84' out && grep -q 'x 8.000000 to 8.500000, y 50.000000 to 50.250000' out &&
+        grep -q 'features  *2 polygons' out &&
         ! grep -q objects out
     result $? "info of outlines tells their CRS, extent and number"
     run render "$gml" outlines.geojson --frames 1 --size 32x18 -o x.png
@@ -127,7 +140,8 @@ END
         grep -q '2 x polygon that is not read' out
     result $? "outlines are told of by render"
     rm -f x.png
-    expect "outlines are refused by --strict" 1 '2 x polygon that is not read' render "$gml" outlines.geojson --strict --size 32x18 -o x.png
+    expect "outlines are refused by --strict" 1 '2 x polygon that is not read' render "$gml" outlines.geojson --strict \
+        --size 32x18 -o x.png
 else
     skip "outlines of buildings" "no GDAL"
 fi
@@ -140,28 +154,36 @@ expect "beside a city, too" 1 'plain.csv.* --lamps plain.csv' render "$gml" plai
 ln -sf plain.csv linked.csv
 for other in ./plain.csv "$PWD/plain.csv" linked.csv; do
     run info plain.csv --lamps "$other"
-    test $status = 0 && grep -q 'lamps *2$' out; result $? "a file that is named as lamps by another spelling is lamps" "$other"
+    test $status = 0 && grep -q 'lamps *2$' out
+    result $? "a file that is named as lamps by another spelling is lamps" "$other"
     run render plain.csv --lamps "$other" --lamps plain.csv --size 16x16 --frames 1 -o twice.png
-    test $status = 0 && test "$(meta twice.png lamps-mapped)" = 2 && test "$(meta twice.png lamps-repeated)" = 0; result $? "and counts once" "$other"
+    test $status = 0 && test "$(meta twice.png lamps-mapped)" = 2 && test "$(meta twice.png lamps-repeated)" = 0
+    result $? "and counts once" "$other"
 done
 rm linked.csv
-expect "a table without coordinates is offered columns" 1 'strange.csv.*--lamps.*--lamp-columns' render strange.csv -o x.png
-expect "a column that is not there" 1 'no input has.*"HEIGHT".* lat, lon, power' render --lamps plain.csv --lamp-columns height=HEIGHT -o x.png
+expect "a table without coordinates is offered columns" 1 'strange.csv.*--lamps.*--lamp-columns' render strange.csv \
+    -o x.png
+expect "a column that is not there" 1 'no input has.*"HEIGHT".* lat, lon, power' render --lamps plain.csv \
+    --lamp-columns height=HEIGHT -o x.png
 for command in 'info' 'render -o x.png'; do
-    expect "two columns for one field: $command" 1 'strange.csv: lamp-columns: both "[A-Za-z]*" and "[A-Za-z]*" are mapped to height' \
+    expect "two columns for one field: $command" 1 \
+        'strange.csv: lamp-columns: both "[A-Za-z]*" and "[A-Za-z]*" are mapped to height' \
         $command --lamps strange.csv --lamp-columns lon=XX,lat=YY,height_ft=ht,height=ASSET
 done
-expect "a field that is none" 1 'no field "heigth".*height, lumens' render --lamps plain.csv --lamp-columns heigth=power -o x.png
+expect "a field that is none" 1 'no field "heigth".*height, lumens' render --lamps plain.csv \
+    --lamp-columns heigth=power -o x.png
 expect "a city is no table of lamps" 1 'this is CityGML, and --lamps is for' render --lamps "$gml" -o x.png
 expect "a built-in scene is no file of lamps" 1 'builtin:city is no file of lamps' render --lamps builtin:city -o x.png
 test ! -e x.png; result $? "none of them leaves a picture"
-run render "$gml" --lamps plain.csv --lamps strange.csv --lamp-columns lon=XX,lat=YY --lamp-columns height_ft=ht --crs EPSG:25832 \
+run render "$gml" --lamps plain.csv --lamps strange.csv --lamp-columns lon=XX,lat=YY --lamp-columns height_ft=ht \
+    --crs EPSG:25832 \
     --frames 1 --size 16x16 -o x.png
 test $status = 0 && grep -q ', 4 lights' out && test "$(meta x.png lamps)" = "plain.csv, strange.csv" &&
     test "$(meta x.png lamp-columns)" = "lon=XX,lat=YY,height_ft=ht"
 result $? "named as lamps, with columns mapped"
 run info plain.csv
-test $status = 0 && grep -Eq 'points +2, and nothing tells' out && grep -Eq 'power +watts, W +70$' out; result $? "info shows columns and offers --lamps"
+test $status = 0 && grep -Eq 'points +2, and nothing tells' out && grep -Eq 'power +watts, W +70$' out
+result $? "info shows columns and offers --lamps"
 printf 'lat,lon,H\303\266he,Height,note\n48.76,11.42,8,9,x\n' >umlaut.csv
 run info umlaut.csv
 python3 - out >err <<'END'
@@ -176,17 +198,20 @@ import json, sys
 f = json.load(open(sys.argv[1]))["files"][0]
 c = {x["name"]: x for x in f["columns"]}
 assert (f["lamps"], f["points"], list(c)) == (2, 2, ["ASSET", "HT", "XX", "YY"]), f
-assert (c["HT"]["field"], c["HT"]["unit"], c["HT"]["example"], c["HT"]["values"], c["HT"]["mapped"]) == ("height", "ft", "30", 1, True), c
+assert (c["HT"]["field"], c["HT"]["unit"], c["HT"]["example"], c["HT"]["values"],
+        c["HT"]["mapped"]) == ("height", "ft", "30", 1, True), c
 assert (c["ASSET"]["field"], c["ASSET"]["mapped"]) == ("", False), c
 assert abs(f["lamp_height_max"] - 9.144) < 1e-6, f
 END
 result $? "info as JSON tells of columns"
 
 # What lamps tell of themselves: two heads, 8 m and sodium on one; nothing on the other.
-printf '{"type": "FeatureCollection", "features": [{"type": "Feature", "id": "a", "properties": {"highway": "street_lamp",
+printf '{"type": "FeatureCollection", "features": [{"type": "Feature", "id": "a",
+    "properties": {"highway": "street_lamp",
     "height": "8", "lamp_count": "2", "light:method": "high_pressure_sodium", "light:count": "2"},
     "geometry": {"type": "Point", "coordinates": [11.42, 48.76]}}, {"type": "Feature", "id": "b",
-    "properties": {"highway": "street_lamp"}, "geometry": {"type": "Point", "coordinates": [11.421, 48.76]}}]}' >lamps.geojson
+    "properties": {"highway": "street_lamp"}, "geometry": {"type": "Point",
+    "coordinates": [11.421, 48.76]}}]}' >lamps.geojson
 run info lamps.geojson
 grep -q 'lamps  *2 with 3 heads' out && grep -Eq 'height  *1, 50.0%: 8 to 8 m' out && grep -Eq 'sodium  *1, 50.0%' out
 result $? "info tells what is known of lamps"
@@ -203,51 +228,64 @@ result $? "and so as JSON"
 view='--size 48x27 --frames 1'
 run render "$gml" $view --camera-crs EPSG:25832 --eye 678030,5402980,412 --target 678005,5403004,403 -o a.png
 test $status = 0; result $? "a camera in CRS coordinates"
-case "$(meta a.png given-crs-name)" in "EPSG:25832 "*) true ;; *) false ;; esac && test "$(meta a.png given-origin)" = "$(meta a.png scene-origin)" &&
+case "$(meta a.png given-crs-name)" in "EPSG:25832 "*) true ;; *) false ;; esac &&
+    test "$(meta a.png given-origin)" = "$(meta a.png scene-origin)" &&
     grep -q ', EPSG:25832 ' out && grep -q 'origin  *678[0-9.]*,5403' out
 result $? "the metadata and the summary tell CRS and origin"
 grep -q 'features skipped: 1, repaired: 0' out; result $? "the summary tells that something was skipped"
 grep -Eq '^ +1 x .*(two-points|stump)' out; result $? "and why"
-printf '{"type": "FeatureCollection", "features": [{"type": "Feature", "id": "far", "properties": {"highway": "street_lamp"},
+printf '{"type": "FeatureCollection", "features": [{"type": "Feature", "id": "far",
+    "properties": {"highway": "street_lamp"},
     "geometry": {"type": "Point", "coordinates": [11.6, 48.76]}}]}' >far.geojson
 expect "lamps that are all of no use are an error" 1 'far.geojson: none of 1 lamp is of use, 1 outside the city' \
     render "$gml" far.geojson $view -o far.png
 test ! -e far.png; result $? "and no picture is written"
 run render "$gml" far.geojson --infer-lamps $view -o far.png
 grep -q '1 x lamp more than 2 km outside the city: far' out; result $? "the summary tells why a lamp is not there"
-grep -q 'lamps  *1 inferred, 1 dropped' out && test "$(meta far.png lamps-mapped) $(meta far.png lamps-dropped) $(meta far.png lamps-inferred)" = "0 1 1" &&
+grep -q 'lamps  *1 inferred, 1 dropped' out &&
+    test "$(meta far.png lamps-mapped) $(meta far.png lamps-dropped) $(meta far.png lamps-inferred)" = "0 1 1" &&
     test "$(meta far.png infer-lamps) $(meta far.png features-skipped)" = "true 2"
 result $? "and the metadata how many there are"
 printf 'lamp_id,lon,lat,lamp_type\na,48.7591,11.4226,LED\nb,48.7592,11.4227,LED\n' >swapped.csv
-expect "exchanged axes are told" 1 'swapped.csv: .*with longitude and latitude exchanged all 2 of them fall within the city' \
+expect "exchanged axes are told" 1 \
+    'swapped.csv: .*with longitude and latitude exchanged all 2 of them fall within the city' \
     render "$gml" swapped.csv $view -o s.png
 sed 's/^\([ab]\),\([0-9.]*\),\([0-9.]*\)/\1,\3,\2/' swapped.csv >right.csv
 run render "$gml" right.csv $view -o s.exr
-test $status = 0 && grep -q 'lamps  *2 mapped' out && grep -aq 'lamps-mapped' s.exr && grep -aq 'features-repaired' s.exr
+test $status = 0 && grep -q 'lamps  *2 mapped' out && grep -aq 'lamps-mapped' s.exr &&
+    grep -aq 'features-repaired' s.exr
 result $? "the right way round they light the city, and an EXR tells how many"
-grep -q 'assumed  *2 without height: 6 m (--lamp-height), 2 without flux: 5000 lm each (--lamp-lumens), 2 without colour: 3000 K' out &&
+assumed='2 without height: 6 m (--lamp-height), 2 without flux: 5000 lm each (--lamp-lumens), 2 without colour: 3000 K'
+grep -q "assumed  *$assumed" out &&
     grep -aq 'lamps-colour-assumed' s.exr
 result $? "what they do not tell, and what is taken for it, is told"
 printf 'id,lon,lat,lamp_height,lumens\na,11.4226,48.7591,5,900\nb,11.4227,48.7592,,900\n' >told.csv
 run render "$gml" told.csv $view --lamp-kelvin 2700 -o told.png
-test "$(meta told.png lamps-height-assumed) $(meta told.png lamps-flux-assumed) $(meta told.png lamps-colour-assumed)" = "1 0 2" &&
+test "$(meta told.png lamps-height-assumed) $(meta told.png lamps-flux-assumed) $(meta told.png lamps-colour-assumed)" \
+    = "1 0 2" &&
     grep -q 'assumed  *1 without height: 6 m (--lamp-height), 2 without colour: 2700 K (--lamp-kelvin)$' out
 result $? "and in the metadata"
-printf 'id;lon;lat;lamp_height;lumens;watts;cct\na;11,4226;48,7591;5;1.200;20;2700\nb;11,4227;48,7592;1.200;9.000;70;4000\n' >comma.csv
+printf '%s\n' 'id;lon;lat;lamp_height;lumens;watts;cct' 'a;11,4226;48,7591;5;1.200;20;2700' \
+    'b;11,4227;48,7592;1.200;9.000;70;4000' >comma.csv
 run info comma.csv
-grep -q 'lumens  *2, 100.0%: 1200 to 9000 lm' out && grep -q 'watts  *2, 100.0%: 20 to 70 W' out && grep -q 'colour  *2, 100.0%: 2700 to 4000 K' out
+grep -q 'lumens  *2, 100.0%: 1200 to 9000 lm' out && grep -q 'watts  *2, 100.0%: 20 to 70 W' out &&
+    grep -q 'colour  *2, 100.0%: 2700 to 4000 K' out
 result $? "info tells the ranges that were understood"
-grep -q "decimals  *behind ','; a '.' before three digits" out && grep -q 'guessed  *1 x height of a lamp not understood or implausible: b' out
+grep -q "decimals  *behind ','; a '.' before three digits" out &&
+    grep -q 'guessed  *1 x height of a lamp not understood or implausible: b' out
 result $? "and the decimal sign, and that no lamp is 1200 m high"
 run info --json comma.csv
 python3 -c 'import json; f = json.load(open("out"))["files"][0]
-assert f["decimal_sign"] == "," and f["lamp_lumens_max"] == 9000 and f["lamp_watts_min"] == 20 and f["lamp_kelvin_max"] == 4000, f
+assert f["decimal_sign"] == "," and f["lamp_lumens_max"] == 9000 and f[
+    "lamp_watts_min"] == 20 and f["lamp_kelvin_max"] == 4000, f
 assert [i["action"] for i in f["issues"]] == ["guessed"] and f["crs_given"] == "" and f["crs_from"] == "format", f'
 result $? "in JSON, too"
 run info told.csv
 grep -q 'CRS .*, taken as such: the file names none$' out; result $? "a CRS that no file names is not said to be given"
-grep -q 'assumed  *1 without height: 6 m (--lamp-height), 2 without colour: 3000 K (--lamp-kelvin)$' out; result $? "and info tells it"
-expect "--strict refuses what the user did not say" 1 'guessed at: 1; 1 x lamp without height .--lamp-height 6 takes that.$' \
+grep -q 'assumed  *1 without height: 6 m (--lamp-height), 2 without colour: 3000 K (--lamp-kelvin)$' out
+result $? "and info tells it"
+expect "--strict refuses what the user did not say" 1 \
+    'guessed at: 1; 1 x lamp without height .--lamp-height 6 takes that.$' \
     info told.csv --strict --lamp-kelvin 3000
 run info told.csv --strict --lamp-kelvin 3000 --lamp-height 6
 test $status = 0; result $? "and takes what the user did"
@@ -255,7 +293,8 @@ expect "--strict refuses what is left out" 1 'strict: features left out: 1, .*ci
     render "$gml" right.csv --strict $view -o strict.png
 test ! -e strict.png; result $? "without a picture"
 run info --strict "$gml"
-test $status = 1 && grep -q 'skipped  *1 x' out && grep -q 'strict: features left out: 1' err; result $? "and info, which tells it all the same"
+test $status = 1 && grep -q 'skipped  *1 x' out && grep -q 'strict: features left out: 1' err
+result $? "and info, which tells it all the same"
 set -- $(meta a.png scene-origin)
 test $# = 3 && run render "$gml" $view -o b.png \
     --eye "$(echo "678030 5402980 412 $*" | awk '{printf "%.3f,%.3f,%.3f", $1-$4, $2-$5, $3-$6}')" \
@@ -285,7 +324,8 @@ expect "a camera inside a building" 0 'inside a building' \
     render "$gml" $view --camera-crs scene --eye 678005,5403004,402 --target 678006,5403004,402 -o d.png
 run render "$gml" $view --camera-crs EPSG:25832 --eye 678030,5402980,412 --target 678005,5403004,403 -o d.png
 test "$(grep -c 'warning' err)" = 1 && grep -q 'placed by a rule' err; result $? "and a good one brings no such warning"
-run render "$gml" $view --camera-crs EPSG:25832 --eye 678030,5402980,412 --target 678005,5403004,403 --exposure 17 -o d.exr
+run render "$gml" $view --camera-crs EPSG:25832 --eye 678030,5402980,412 --target 678005,5403004,403 --exposure 17 \
+    -o d.exr
 test $status = 0 && grep -q 'automatic exposure would be' out && ! grep -q '17.00' out
 result $? "the automatic exposure of an EXR is not the one given"
 
@@ -298,16 +338,19 @@ grep -q 'CRS  *EPSG:32618' out && grep -q 'x 0.00 to 1.00,' out; result $? "info
 
 # A lamp whose face is wound to shine up lights no floor below it; the other way round it does. A floor has no street.
 printf 'newmtl glow\nKe 100 100 100\nnewmtl grey\nKd 0.5 0.5 0.5\n' >lamp.mtl
-printf 'mtllib lamp.mtl\nv -3 0 -3\nv 3 0 -3\nv 3 0 3\nv -3 0 3\nv -1 3 -1\nv 1 3 -1\nv 1 3 1\nv -1 3 1\nusemtl grey\nf 1 2 3 4\nusemtl glow\nf 8 7 6 5\n' >up.obj
+printf '%s\n' 'mtllib lamp.mtl' 'v -3 0 -3' 'v 3 0 -3' 'v 3 0 3' 'v -3 0 3' 'v -1 3 -1' 'v 1 3 -1' 'v 1 3 1' \
+    'v -1 3 1' 'usemtl grey' 'f 1 2 3 4' 'usemtl glow' 'f 8 7 6 5' >up.obj
 sed 's/^f 8 7 6 5/f 5 6 7 8/' up.obj >down.obj
 below="--eye 0,-4,1 --target 0,0,0 --sky 0 --size 32x18 --frames 1 -o room.png"
 run render up.obj $below
-test $status = 0 && grep -q '^nocturne: warning: the picture is black: the camera sees nothing that a lamp could light; surfaces shine from one side$' err
+black='the picture is black: the camera sees nothing that a lamp could light; surfaces shine from one side'
+test $status = 0 && grep -q "^nocturne: warning: $black\$" err
 result $? "a black picture below a lamp that shines up is told"
 run render down.obj $below
 test $status = 0 && test ! -s err; result $? "one that shines down lights it"
 run render down.obj --size 32x18 --frames 1 -o out.png
 test $status = 0 && test ! -s err; result $? "a mesh is seen from outside"
 run render down.obj --view street --size 32x18 --frames 1 -o out.png
-test $status = 0 && grep -q '^nocturne: warning: view street: the scene has none, so it is seen from outside$' err; result $? "and where its street was asked for, that is said"
+test $status = 0 && grep -q '^nocturne: warning: view street: the scene has none, so it is seen from outside$' err
+result $? "and where its street was asked for, that is said"
 finish

@@ -24,7 +24,8 @@ interrupt() {
 
 city='builtin:city --city-size 150 --size 64x36'
 interrupt INT 'frame 2:' render $city --frames 1e9 -v -o a.png
-test $status = 130 && grep -Eq 'interrupted: saved [0-9]+ of 1000000000 frames to a.png' err; result $? "Ctrl-C saves the picture so far"
+test $status = 130 && grep -Eq 'interrupted: saved [0-9]+ of 1000000000 frames to a.png' err
+result $? "Ctrl-C saves the picture so far"
 test "$(meta a.png size)" = "64 36"; result $? "which is whole"
 frames=$(sed -n 's/.*saved \([0-9]*\) of.*/\1/p' err)
 test "$(meta a.png frames)" = "$frames"
@@ -43,13 +44,15 @@ until grep -q 'frame 2:' err || ! kill -0 $pid; do sleep 0.1; done
 kill -HUP $pid && kill -INT $pid
 sent=$?
 wait $pid
-test $? = 0 && test $sent = 0 && test -s c.exr && ! grep -q interrupted err; result $? "signals that are ignored stay so"
+test $? = 0 && test $sent = 0 && test -s c.exr && ! grep -q interrupted err
+result $? "signals that are ignored stay so"
 rm c.exr
 
 # One frame of many reference rays a pixel takes minutes: it is interrupted before it is complete.
 long='builtin:city --city-size 150 --size 4000x4000 --method reference --rays 1024'
 interrupt INT 'triangles' render $long -v -o c.png
-test $status = 130 && grep -q 'interrupted: .* nothing was saved' err && test ! -e c.png; result $? "before the first frame nothing is saved"
+test $status = 130 && grep -q 'interrupted: .* nothing was saved' err && test ! -e c.png
+result $? "before the first frame nothing is saved"
 test "$(ls)" = "a.png
 b.exr
 err

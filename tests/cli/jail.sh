@@ -25,12 +25,14 @@ gltf() {
 {"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "buffers": [{"byteLength": 36, "uri": "$1"}],
  "bufferViews": [{"buffer": 0, "byteLength": 36}],
- "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}]}
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+ "max": [1, 1, 0]}]}
 END
 }
 # lamps CRS: in/lamps.geojson with that "crs" member
 lamps() {
-    printf '{"type": "FeatureCollection", "crs": %s, "features": [{"type": "Feature", "properties": {"highway": "street_lamp"},
+    printf '{"type": "FeatureCollection", "crs": %s, "features": [{"type": "Feature",
+        "properties": {"highway": "street_lamp"},
 "geometry": {"type": "Point", "coordinates": [11.42, 48.76]}}]}' "$1" >in/lamps.geojson
 }
 # fine NAME ARGUMENT...: goes well
@@ -62,10 +64,12 @@ expect "materials on a network are not fetched" 0 'No such file' info in/model.o
 gltf "$url"
 expect "nor are buffers" 1 'network' info in/model.gltf
 for entity in "$url" "file://$work/in/pipe"; do
-    { printf '<?xml version="1.0"?><!DOCTYPE x [<!ENTITY e SYSTEM "%s">]>' "$entity"; tail -n +2 in/city.gml; } >in/entity.gml
+    { printf '<?xml version="1.0"?><!DOCTYPE x [<!ENTITY e SYSTEM "%s">]>' "$entity"; tail \
+        -n +2 in/city.gml; } >in/entity.gml
     expect "nor entities of XML ($(echo "$entity" | cut -c 1-4))" 1 'entit' info in/entity.gml
     { printf '<?xml version="1.0"?><!DOCTYPE osm [<!ENTITY e SYSTEM "%s">]>' "$entity"
-      echo '<osm version="0.6"><node id="1" lat="48.7" lon="11.4" version="1"><tag k="highway" v="street_lamp"/><tag k="name" v="&e;"/></node></osm>'; } >in/entity.osm
+      echo '<osm version="0.6"><node id="1" lat="48.7" lon="11.4" version="1"><tag k="highway" v="street_lamp"/>'
+      echo '<tag k="name" v="&e;"/></node></osm>'; } >in/entity.osm
     run info in/entity.osm
     test $status -lt 2; result $? "nor those of OpenStreetMap ($(echo "$entity" | cut -c 1-4))" "status $status"
 done
@@ -76,17 +80,20 @@ test "$(wc -l <heard)" = 1; result $? "nothing was heard on the network" "$(cat 
 obj sub/fine.mtl
 run info in/model.obj
 test $status = 0 && ! grep -q default err && test "$(lights)" = 1; result $? "materials below the folder are read"
-for name in ../out_there/secret.mtl sub/../../out_there/secret.mtl "$work/out_there/secret.mtl" link.mtl linked/secret.mtl; do
+for name in ../out_there/secret.mtl sub/../../out_there/secret.mtl \
+    "$work/out_there/secret.mtl" link.mtl linked/secret.mtl; do
     ln -sfn ../out_there/secret.mtl in/link.mtl
     ln -sfn ../out_there in/linked
     obj "$name"
-    expect "materials elsewhere are not: $(basename "$(dirname "$name")")/$(basename "$name")" 0 'lies outside.*--allow-outside' info in/model.obj
+    expect "materials elsewhere are not: $(basename "$(dirname "$name")")/$(basename "$name")" 0 \
+        'lies outside.*--allow-outside' info in/model.obj
     run info --allow-outside in/model.obj
     test $status = 0 && test "$(lights)" = 1; result $? "unless that is allowed"
 done
 obj sub/fine.mtl
 sed -i 's/usemtl glow/usemtl other/' in/model.obj
-expect "--strict refuses a material that no library defines" 1 'guessed at: 1; .*material that is not there.*other' info --strict in/model.obj
+expect "--strict refuses a material that no library defines" 1 \
+    'guessed at: 1; .*material that is not there.*other' info --strict in/model.obj
 obj none.mtl
 expect "materials that are not there are told of" 0 'default material, because .*none.mtl' info in/model.obj
 expect "and an error with --strict" 1 'library of materials that cannot be read' info --strict in/model.obj
@@ -97,7 +104,9 @@ expect "buffers elsewhere are not" 1 'lies outside.*--allow-outside' info in/mod
 fine "unless that is allowed" info --allow-outside in/model.gltf
 gltf '%2e%2e/out_there/triangle.bin'
 expect "nor those whose way is written in percents" 1 'lies outside' info in/model.gltf
-(cd in && "$program" info model.gltf 2>&1 | grep -q 'lies outside'); result $? "also where the input is in the working folder"
+(cd in && "$program" info model.gltf 2>&1 | grep -q 'lies outside')
+result $? \
+    "also where the input is in the working folder"
 
 # ---- pipes ----
 expect "a pipe as input is refused" 1 'not a regular file' info in/pipe
@@ -107,7 +116,8 @@ obj pipe
 expect "a pipe as materials" 0 'not a regular file' info in/model.obj
 gltf pipe
 expect "a pipe as buffer" 1 'not a regular file' info in/model.gltf
-fine "a pipe as a grid that the user types is left" info --crs "+proj=longlat +ellps=GRS80 +nadgrids=$work/in/pipe +type=crs" in/city.gml
+fine "a pipe as a grid that the user types is left" info \
+    --crs "+proj=longlat +ellps=GRS80 +nadgrids=$work/in/pipe +type=crs" in/city.gml
 python3 - <<'END'
 import struct
 points = [(11.42, 48.76), (11.4201, 48.76)]
@@ -115,10 +125,13 @@ box = struct.pack("<4d", 11.42, 48.76, 11.4201, 48.76) + bytes(32)
 def head(words): return struct.pack(">7i", 9994, 0, 0, 0, 0, 0, words) + struct.pack("<2i", 1000, 1) + box
 record = lambda i, p: struct.pack(">2i", i, 10) + struct.pack("<i2d", 1, *p)
 open("in/poles.shp", "wb").write(head(50 + 14 * len(points)) + b"".join(record(i + 1, p) for i, p in enumerate(points)))
-open("in/poles.shx", "wb").write(head(50 + 4 * len(points)) + b"".join(struct.pack(">2i", 50 + 14 * i, 10) for i in range(len(points))))
+open("in/poles.shx", "wb").write(head(50 + 4 * len(points)) +
+                                 b"".join(struct.pack(">2i", 50 + 14 * i, 10) for i in range(len(points))))
 field = b"highway\0\0\0\0C" + bytes(4) + bytes([20, 0]) + bytes(14)
-open("in/poles.dbf", "wb").write(struct.pack("<B3BIHH20x", 3, 126, 1, 1, 2, 32 + 32 + 1, 21) + field + b"\r" + b" street_lamp         " * 2 + b"\x1a")
-open("in/poles.prj", "w").write('GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["Degree",0.0174532925199433]]')
+open("in/poles.dbf", "wb").write(struct.pack("<B3BIHH20x", 3, 126, 1, 1, 2, 32 + 32 + 1, 21) + field + b"\r" +
+                                 b" street_lamp         " * 2 + b"\x1a")
+open("in/poles.prj", "w").write('GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137,298.257223563]],'
+                                'PRIMEM["Greenwich",0],UNIT["Degree",0.0174532925199433]]')
 END
 if "$real" --version | grep -q gdal; then
     fine "a Shapefile is read" info in/poles.shp
@@ -128,7 +141,8 @@ if "$real" --version | grep -q gdal; then
         expect "a pipe as .$part of a Shapefile" 1 "poles.$part .*not a regular file" info pipes/poles.shp
     done
     rm -f pipes/* && cp in/poles.shp in/poles.shx in/poles.prj pipes && ln -s ../in/poles.dbf pipes/poles.DBF
-    expect "a table of a Shapefile that lies elsewhere" 1 'poles.DBF .*lies outside.*--allow-outside' info pipes/poles.shp
+    expect "a table of a Shapefile that lies elsewhere" 1 \
+        'poles.DBF .*lies outside.*--allow-outside' info pipes/poles.shp
     fine "unless that is allowed" info --allow-outside pipes/poles.shp
 
     # ---- it can be stopped ----
@@ -157,13 +171,15 @@ if "$real" --version | grep -q gdal; then
     test $status = 130; result $? "and Ctrl-C where it is read in the same process" "status $status"
     expect "it is ended after the time that it may take" 1 'limit --reader-time' info --reader-time 0.5 in/endless.gpkg
     test -z "$(ls temporary)"; result $? "nothing is left behind" "$(ls temporary)"
-    # Who started it cannot look at the clock: its own limit of processor time ends it, two seconds after the other. How long
-    # that takes is the machine's business: what counts is the time that it has used, and five times the limit is too much.
+    # Who started it cannot look at the clock: its own limit of processor time ends it, two seconds after the other. How
+    # long that takes is the machine's business: what counts is the time that it has used, and five times the limit is
+    # too much.
     state() { sed -n 's/^State:\t\(.\).*/\1/p' "/proc/$1/status" 2>/dev/null; }
     for seconds in 4 8 16 32 64; do # on a busy machine more time goes by before it can be stopped
         "$real" info --reader-time $seconds in/endless.gpkg >out 2>err </dev/null &
         pid=$! child=
-        until grep -q "^Max cpu time *$((seconds + 2)) " "/proc/$child/limits" 2>/dev/null || [ "$(state $pid)" = Z ]; do
+        until grep -q "^Max cpu time *$((seconds + 2)) " "/proc/$child/limits" 2>/dev/null ||
+            [ "$(state $pid)" = Z ]; do
             child=$(cat /proc/$pid/task/$pid/children 2>/dev/null) # its limit is set once it has all that it was asked
             child=${child% }
         done
@@ -181,7 +197,8 @@ if "$real" --version | grep -q gdal; then
         after=$(state "$child")
     done
     test "${before:-Z}" != Z && test "${after:-Z}" = Z
-    result $? "it ends by itself where nobody ends it" "helper ${child:-never seen}: $before, $after after ${used:-0} ticks"
+    result $? "it ends by itself where nobody ends it" \
+        "helper ${child:-never seen}: $before, $after after ${used:-0} ticks"
     test "$(kill -l "$(awk '{ print $NF }' "/proc/$child/stat")")" = XCPU; result $? "by the signal that tells why"
     kill -CONT $pid
     wait $pid
@@ -203,7 +220,8 @@ with open("in/rows.csv.gz", "wb") as f:
     f.write(gzip.compress(b"longitude,latitude,lamp_type\n"))
     f.write(gzip.compress(b"7.1,51.1,LED\n" * 700000) * 150)
 END
-    expect "an archive that grows to a gigabyte and more is an error" 1 'limit --max-expansion is 200 times' info in/rows.csv.gz
+    expect "an archive that grows to a gigabyte and more is an error" 1 \
+        'limit --max-expansion is 200 times' info in/rows.csv.gz
     rm in/rows.csv.gz
     # Sanitizers take more addresses than any limit by themselves, and the helper has none there.
     limited() {
@@ -222,11 +240,14 @@ END
     done
     printf '#!/bin/sh\nkill -XCPU $$\n' >spent && chmod +x spent
     (export NOCTURNE_READER="$work/spent"; run info in/poles.shp; echo $status >ended)
-    test "$(cat ended)" = 1 && grep -q 'limit --reader-time' err; result $? "and its signal is told as that limit" "$(cat err)"
+    test "$(cat ended)" = 1 && grep -q 'limit --reader-time' err
+    result $? "and its signal is told as that limit" "$(cat err)"
     printf '#!/bin/sh\ndd bs=65536 count=1 <&3 >/dev/null 2>&1\nexec 3<&-\nexec sleep 1000\n' >mute && chmod +x mute
     (export NOCTURNE_READER="$work/mute"; timeout 60 "$program" info in/poles.shp >out 2>err; echo $? >ended)
-    test "$(cat ended)" = 1 && grep -q 'hung up' err; result $? "a helper that hangs up and stays is ended" "status $(cat ended): $(cat err)"
-    # says NAME STATUS RECORDS PATTERN ARGUMENT...: a helper that was taken over sends RECORDS; one error comes of it, or none
+    test "$(cat ended)" = 1 && grep -q 'hung up' err
+    result $? "a helper that hangs up and stays is ended" "status $(cat ended): $(cat err)"
+    # says NAME STATUS RECORDS PATTERN ARGUMENT...: a helper that was taken over sends RECORDS; one error comes of it,
+    # or none
     says() {
         name=$1 expected=$2 pattern=$4
         export SAYS="$3"
@@ -244,7 +265,8 @@ END
     for crs in "+init=$work/in/pipe:x" "+proj=longlat +nadgrids=$work/in/pipe"; do
         lamps "{\"type\": \"name\", \"properties\": {\"name\": \"$crs\"}}"
         for where in isolate no-isolate; do
-            expect "a pipe that GDAL would open, $where: ${crs%=*}" 1 'lamps.geojson: the CRS .* may open files' info --$where in/lamps.geojson
+            expect "a pipe that GDAL would open, $where: ${crs%=*}" 1 'lamps.geojson: the CRS .* may open files' info \
+                --$where in/lamps.geojson
         done
     done
 
@@ -261,7 +283,8 @@ END
     cmp -s before after; result $? "and is as it was: bytes, times and folder" "$(diff before after)"
     test -z "$(ls temporary)"; result $? "no copy of it is left behind" "$(ls temporary)"
     # What a killed run left goes with the next one; what lives, or is not ours, stays.
-    mkdir temporary/nocturne-scratch.kiLLed temporary/nocturne-scratch.living temporary/nocturne-backup && : >temporary/nocturne-scratch.kiLLed/copy
+    mkdir temporary/nocturne-scratch.kiLLed temporary/nocturne-scratch.living temporary/nocturne-backup &&
+        : >temporary/nocturne-scratch.kiLLed/copy
     if command -v flock >/dev/null; then
         flock temporary/nocturne-scratch.living "$program" info packages/plain.gpkg >out 2>err
         test $? = 0 && test "$(ls temporary | tr '\n' ' ')" = "nocturne-backup nocturne-scratch.living "
@@ -274,10 +297,12 @@ END
     expect "a pipe as log of a GeoPackage" 1 'log.gpkg-wal .*not a regular file' info packages/log.gpkg
     for kind in text comment name; do
         python3 "$here/geopackage.py" in/$kind.gpkg $kind
-        expect "a virtual table over another file is not read ($kind)" 1 '(VirtualText|unclear).* may open other files' info in/$kind.gpkg
+        expect "a virtual table over another file is not read ($kind)" 1 \
+            '(VirtualText|unclear).* may open other files' info in/$kind.gpkg
     done
     (export OGR_SQLITE_LOAD_EXTENSIONS=./nothing.so; run info --no-isolate packages/plain.gpkg; echo $status >ended)
-    test "$(cat ended)" = 0 && grep -q 'lamps *2$' out; result $? "libraries for SQLite that the environment names are not loaded" "$(cat err)"
+    test "$(cat ended)" = 0 && grep -q 'lamps *2$' out
+    result $? "libraries for SQLite that the environment names are not loaded" "$(cat err)"
 else
     for what in "a Shapefile is read" "a GeoPackage is read"; do skip "$what" "built without GDAL"; done
 fi

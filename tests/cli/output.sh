@@ -25,13 +25,15 @@ expect "an input" 1 'is an input too' render input.png -o input.png
 expect "an input by another name" 1 'is an input too' render input.png -o ./folder/../input.png
 expect "an input behind a link" 1 'is an input too' render input.png -o link.png
 expect "compare onto an input" 1 'is an input too' compare input.png file -o input.png
-test "$(cat input.png)" = x && test -p pipe.png && test -L device.png && test -d folder.png && test -z "$(ls folder folder.png | grep png$)"
+test "$(cat input.png)" = x && test -p pipe.png && test -L device.png && test -d folder.png &&
+    test -z "$(ls folder folder.png | grep png$)"
 result $? "all is as it was"
 long=$(head -c 251 /dev/zero | tr '\0' x)
 small="$c --city-size 150 --size 1x500 --frames 1 -q"
 expect "a name of 256 bytes" 1 'too long' render $c -o "x$long.png"
 run render $small -o "$long.png"
-test $status = 0 && test "$(meta "$long.png" size)" = "1 500"; result $? "one of 255 bytes can be written, and a slit has a view"
+test $status = 0 && test "$(meta "$long.png" size)" = "1 500"
+result $? "one of 255 bytes can be written, and a slit has a view"
 ln -s ring.png ring.png
 expect "a ring of links" 1 'symbolic links' render $c -o ring.png
 if [ -d /proc/self ]; then
@@ -41,7 +43,8 @@ else
 fi
 ln -s later.png dangling.png
 run render $small -o dangling.png
-test $status = 0 && test -L dangling.png && test "$(meta later.png size)" = "1 500"; result $? "a link to what is not there yet is followed"
+test $status = 0 && test -L dangling.png && test "$(meta later.png size)" = "1 500"
+result $? "a link to what is not there yet is followed"
 test -z "$(ls -A | grep part$)"; result $? "no temporary file is left"
 # Sanitizers take more addresses than this by themselves.
 if (ulimit -v 4000000 && "$program" --version) >out 2>err; then
@@ -70,10 +73,13 @@ lamp_model
 mkdir -p east west
 cp lamp.obj lamp.mtl east && cp lamp.obj lamp.mtl west
 run render "$PWD/east/lamp.obj" west/lamp.obj --size 16x9 --frames 1 -o twins.png
-test $status = 0 && test "$(meta twins.png inputs)" = "east/lamp.obj, west/lamp.obj"; result $? "inputs of one name are told apart by their folders" "$(meta twins.png inputs)"
+test $status = 0 && test "$(meta twins.png inputs)" = "east/lamp.obj, west/lamp.obj"
+result $? "inputs of one name are told apart by their folders" "$(meta twins.png inputs)"
 for folder in one two; do mkdir $folder && cp -r east $folder; done
 cp east/lamp.obj lone.obj
-run render one/east/lamp.obj lone.obj "$PWD/two/east/lamp.obj" lamp.obj one/east/../../west/lamp.obj lone.obj --size 16x9 --frames 1 -o twins.png
-test $status = 0 && test "$(meta twins.png inputs)" = "one/east/lamp.obj, lone.obj, two/east/lamp.obj, lamp.obj, west/lamp.obj, lone.obj"
+run render one/east/lamp.obj lone.obj "$PWD/two/east/lamp.obj" lamp.obj one/east/../../west/lamp.obj lone.obj \
+    --size 16x9 --frames 1 -o twins.png
+test $status = 0 && test "$(meta twins.png inputs)" = \
+    "one/east/lamp.obj, lone.obj, two/east/lamp.obj, lamp.obj, west/lamp.obj, lone.obj"
 result $? "and by the folders of these, where they have one name" "$(meta twins.png inputs)"
 finish

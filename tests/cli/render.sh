@@ -9,7 +9,8 @@ test "$(meta a.png size)" = "64 36"; result $? "the picture has the size asked f
 run render $small --isa baseline -o a.png
 grep -q "a frame (baseline x4)" out; result $? "a forced instruction set runs, and is told of"
 run render $small -o a.png
-grep -q '^a.png$' out && grep -Eq '[0-9] triangles, [0-9,]+ lights' out && grep -q '2 frames of ris' out && grep -q 'a frame' out &&
+grep -q '^a.png$' out && grep -Eq '[0-9] triangles, [0-9,]+ lights' out && grep -q '2 frames of ris' out &&
+    grep -q 'a frame' out &&
     grep -q 'memory .*B at most' out
 result $? "the summary tells path, size, frames, triangles, lights, times, memory"
 test "$(ls)" = "a.png
@@ -29,20 +30,27 @@ run render $small --view street -o c.png
 eye=$(meta a.png camera-eye | tr ' ' ,) target=$(meta a.png camera-target | tr ' ' ,) fov=$(meta a.png camera-fov)
 run render $small --eye "$eye" --target "$target" --fov "$fov" -o b.png
 meta a.png | grep -v '^view: own$' >a.meta
-test -n "$eye" && meta b.png | cmp -s a.meta && "$program" compare b.png a.png | grep -Eq '^  all pixels +2,304 +0\.000 +0 +0 '
+test -n "$eye" && meta b.png | cmp -s a.meta && "$program" compare b.png a.png |
+    grep -Eq '^  all pixels +2,304 +0\.000 +0 +0 '
 result $? "the camera in the metadata gives the same picture" "$eye $target $fov"
-test "$(meta a.png method)" = ris && test "$(meta a.png seed)" = 1 && test "$(meta a.png frames)" = 2 && test "$(meta a.png city-size)" = 150 &&
+test "$(meta a.png method)" = ris && test "$(meta a.png seed)" = 1 && test "$(meta a.png frames)" = 2 &&
+    test "$(meta a.png city-size)" = 150 &&
     meta a.png Software | grep -q '^Nocturne ' && test -n "$(meta a.png ev100)"
 result $? "the options are in the metadata"
-test "$(meta a.png view) $(meta c.png view)" = "own street" && test -z "$(meta b.png view)" && test -z "$(meta a.png lights)$(meta a.png scene-seed)" &&
-    grep -q "$(meta a.png scene-triangles | sed -E 's/([0-9]{3})$/,\1/') triangles, $(meta a.png scene-lights) light" out
+test "$(meta a.png view) $(meta c.png view)" = "own street" && test -z "$(meta b.png view)" &&
+    test -z "$(meta a.png lights)$(meta a.png scene-seed)" &&
+    grep -q "$(meta a.png scene-triangles | sed -E 's/([0-9]{3})$/,\1/') triangles, $(meta a.png scene-lights) light" \
+    out
 result $? "and the view, the scene's counts, and no option of other scenes"
 run render "$source_dir/tests/cli/city.gml" --size 32x18 --frames 1 -o b.png
-test $status = 0 && ! meta b.png | grep -E '^(lights|city-size|city-lit|city-seed|scene-seed|auto-ev100):' && meta b.png | grep -q '^tonemap: '
+test $status = 0 && ! meta b.png | grep -E '^(lights|city-size|city-lit|city-seed|scene-seed|auto-ev100):' &&
+    meta b.png |
+    grep -q '^tonemap: '
 result $? "a real city's picture has no option of built-in scenes"
 
 run render $small -o a.exr
-test $status = 0 && grep -aq 'cd/m2' a.exr && grep -aq 'camera-eye' a.exr && grep -aq 'scene-origin' a.exr && grep -aq 'candidates' a.exr
+test $status = 0 && grep -aq 'cd/m2' a.exr && grep -aq 'camera-eye' a.exr && grep -aq 'scene-origin' a.exr &&
+    grep -aq 'candidates' a.exr
 result $? "EXR with units, camera and options"
 auto=$(sed -n 's/.*automatic exposure would be \([-0-9.]*\) EV100$/\1/p' out)
 python3 -c '
@@ -51,23 +59,29 @@ kept = re.search(rb"auto-ev100\0string\0....([-0-9.]+)", open("a.exr", "rb").rea
 assert abs(float(kept.group(1)) - float(sys.argv[1])) < 0.006, (kept, sys.argv)' "$auto"
 result $? "and the automatic exposure that is told"
 run render $small -q -o b.PNG
-test $status = 0 && test ! -s out && test ! -s err && cmp -s a.png b.PNG; result $? "quiet says nothing; endings in capitals count"
+test $status = 0 && test ! -s out && test ! -s err && cmp -s a.png b.PNG
+result $? "quiet says nothing; endings in capitals count"
 
 run render $small --preset interactive -o b.png
-test "$(meta b.png shadow-rays) $(meta b.png list) $(meta b.png tail)" = "4 32 32" && test "$(meta b.png method) $(meta b.png spatial)" = "restir false"; result $? "a preset is its settings"
+test "$(meta b.png shadow-rays) $(meta b.png list) $(meta b.png tail)" = "4 32 32" &&
+    test "$(meta b.png method) $(meta b.png spatial)" = "restir false"; result $? "a preset is its settings"
 run render $small --tail 99 --preset interactive --shadow-rays 7 -o b.png
-test "$(meta b.png shadow-rays) $(meta b.png list) $(meta b.png tail)" = "7 32 99"; result $? "options beside a preset win"
+test "$(meta b.png shadow-rays) $(meta b.png list) $(meta b.png tail)" = "7 32 99"
+result $? "options beside a preset win"
 
 # What is given and changes nothing: one line each; nothing where it counts, and nothing of what a preset sets.
 run render $small --method is --shadow-rays 4 --no-temporal --frames 1 -o b.png
-test $status = 0 && test "$(cat err)" = "nocturne: warning: --shadow-rays has no effect: it needs method ris|restir, not is
+test $status = 0 && test "$(cat err)" = \
+    "nocturne: warning: --shadow-rays has no effect: it needs method ris|restir, not is
 nocturne: warning: --no-temporal has no effect: it needs method restir, not is"
 result $? "options without effect are warned of"
-run render $small --candidates influence --preset interactive --uniform-every 2 --draws 3 --no-bias-rays --frames 1 -o b.png
+run render $small --candidates influence --preset interactive --uniform-every 2 --draws 3 --no-bias-rays --frames 1 \
+    -o b.png
 test $status = 0 && test ! -s err
 result $? "and those that have one are not"
 run render $small --exposure 4 --compensation 2 -o b.png && cp err told && run render $small --exposure 4 -o c.png
-test "$(meta b.png ev100)" = "$(meta c.png ev100)" && grep -q 'warning: --compensation has no effect' told && test ! -s err
+test "$(meta b.png ev100)" = "$(meta c.png ev100)" && grep -q 'warning: --compensation has no effect' told &&
+    test ! -s err
 result $? "compensation is of the automatic exposure"
 run render $small --method is --shadow-rays 4 -q --frames 1 -o b.png
 test $status = 0 && test ! -s err; result $? "nor in silence"
@@ -87,7 +101,8 @@ for switch in --no-temporal --no-spatial --no-bias-rays --no-visibility-reuse --
     test $status = 0 && ! cmp -s r.png b.png; result $? "restir: $switch changes the picture"
 done
 for switch in --no-learn --shadow-rays=2 --no-final-ray --no-jitter --no-accumulate --no-emitters \
-    --sky=0 --exposure=3 --compensation=1 --tonemap=linear --candidates=uniform --list=3 --tail=3 --city-lit=1 --fov=80; do
+    --sky=0 --exposure=3 --compensation=1 --tonemap=linear --candidates=uniform --list=3 --tail=3 --city-lit=1 \
+    --fov=80; do
     run render $small $switch -o b.png
     test $status = 0 && ! cmp -s a.png b.png; result $? "$switch changes the picture"
 done
@@ -132,22 +147,29 @@ test $status = 0 && cmp -s a.png b.png && test -z "$(meta a.png show)"; result $
 # What labels mean is in the legend, the metadata and the summary.
 run render $small --show class -o class.png
 cp out told
-grep -q '^  picture   64 x 36, 2 frames of ris, the view class in colours, with a legend$' out && ! grep -q EV100 out && ! meta class.png | grep -q tonemap
+grep -q '^  picture   64 x 36, 2 frames of ris, the view class in colours, with a legend$' out && ! grep -q EV100 out &&
+    ! meta class.png | grep -q tonemap
 result $? "a view has no exposure"
 run render $small --show depth -o depth.exr
-grep -q 'frames of ris, the view depth as numbers of unit m$' out && ! grep -Eq 'EV100|cd/m2' out; result $? "nor have its numbers"
+grep -q 'frames of ris, the view depth as numbers of unit m$' out && ! grep -Eq 'EV100|cd/m2' out
+result $? "nor have its numbers"
 run render $small --show class -o class.exr
-grep -q 'frames of ris, the view class as numbers that stand for names$' out && ! grep -Eq 'EV100|cd/m2' out; result $? "nor have those that are names"
+grep -q 'frames of ris, the view class as numbers that stand for names$' out && ! grep -Eq 'EV100|cd/m2' out
+result $? "nor have those that are names"
 python3 - "$(meta class.png labels)" "$(meta class.png size)" <<'CHECK'
 import re, sys
 labels = re.findall(r"(\d+) (\w+) (#[0-9a-f]{6})(?:, |$)", sys.argv[1])
-assert len(labels) == 18 and len({c for n, name, c in labels}) == 18 and ("9", "road") in {l[:2] for l in labels}, sys.argv[1]
+assert len(labels) == 18 and len({c for n, name, c in labels}) == 18 and ("9",
+                                                                          "road") in {l[:2]
+                                                                                      for l in labels}, sys.argv[1]
 rgb = {name: [int(c[i:i + 2], 16) for i in (1, 3, 5)] for n, name, c in labels}
 rgb["none"] = [92, 92, 96]
 for a in rgb:
     assert all(a == b or sum((x - y) ** 2 for x, y in zip(rgb[a], rgb[b])) >= 45 ** 2 for b in rgb), a
 most = lambda name: max(range(3), key=lambda k: rgb[name][k])
-assert all(len(set(rgb[name])) == 1 for name in ("road", "sidewalk")) and most("green") == most("tree") == 1 and most("water") == 2, rgb
+assert all(len(set(rgb[name])) == 1 for name in ("road",
+                                                 "sidewalk")) and most(
+                                                     "green") == most("tree") == 1 and most("water") == 2, rgb
 assert rgb["terrain"][0] > rgb["terrain"][1] > rgb["terrain"][2] and most("roof") == 0, rgb
 told = re.findall(r"(\d+) (\w+) ([\d.]+)%", open("told").read().split("\n  scene")[0].split("pixels\n")[1])
 none = float(re.search(r"none in ([\d.]+)%", open("told").read()).group(1))
@@ -158,11 +180,13 @@ assert int(sys.argv[2].split()[1]) > 36 + 13 * len(told) // 4
 numbers = ", ".join("%s %s" % l[:2] for l in labels).encode()
 assert numbers in open("class.exr", "rb").read()
 CHECK
-result $? "a view of classes tells their names: in the picture, its metadata, and the summary" "$(meta class.png labels)"
+result $? "a view of classes tells their names: in the picture, its metadata, and the summary" \
+    "$(meta class.png labels)"
 run render "$source_dir/tests/cli/city.gml" --size 64x36 --frames 1 --show object -o object.png
 test $status = 0 && grep -Eq '^            .*[0-9]+ house [0-9.]+%' out; result $? "one of objects those that have some"
 
-# Influence volumes as OBJ: closed bodies that face outwards; of one-sided lights the half that they face, S_r sqrt(I) around their shape.
+# Influence volumes as OBJ: closed bodies that face outwards; of one-sided lights the half that they face, S_r sqrt(I)
+# around their shape.
 lamp_model
 see="--eye 4,-4,1 --target 0,0,0 --size 32x18 --frames 1 --candidates influence"
 cat >look.py <<'LOOK'
@@ -185,7 +209,8 @@ def volume(faces):
             edges[a, b] = True
         for b, c in zip(f[1:], f[2:]):
             p, q, r = (vertices[i] for i in (f[0], b, c))
-            total += (p[0] * (q[1] * r[2] - q[2] * r[1]) - p[1] * (q[0] * r[2] - q[2] * r[0]) + p[2] * (q[0] * r[1] - q[1] * r[0])) / 6
+            total += (p[0] * (q[1] * r[2] - q[2] * r[1]) - p[1] * (q[0] * r[2] - q[2] * r[0]) +
+                      p[2] * (q[0] * r[1] - q[1] * r[0])) / 6
     assert all((b, a) in edges for a, b in edges), "not closed"
     return total
 sizes = {name: volume(faces) for name, faces in objects.items()}
@@ -204,24 +229,32 @@ for name, at in zip(sorted(objects), ((0, 1, 2), (0, 2, 3))):
         radius = 3 * math.sqrt(40 * 0.5) + shape
         there.append(all(abs(math.dist(p, c) / radius - 1) < 1e-3 for p in points(name)))
         if there[-1]:
-            assert max(p[1] for p in points(name)) < 2.0011 and sum(abs(p[1] - 2.001) < 1e-4 for p in points(name)) == 16, name
-            assert 0.9 < sizes[name] / (2 / 3 * math.pi * radius ** 3) < 1, sizes # of half a sphere, its corners on the surface
+            assert max(p[1] for p in points(name)) < 2.0011 and sum(abs(p[1] - 2.001) < 1e-4
+                                                                    for p in points(name)) == 16, name
+            # of half a sphere, its corners on the surface
+            assert 0.9 < sizes[name] / (2 / 3 * math.pi * radius ** 3) < 1, sizes
     assert sum(there) == 1, (name, there)
 CHECK
 result $? "influence volumes as OBJ: half spheres under lights that shine down"
 run info volumes.obj
 test $status = 0 && ! grep -qi 'skipped' out; result $? "which can be read again"
-run render builtin:city --city-size 150 --size 32x18 --frames 1 --candidates influence --influence-boxes visible -o b.png --influence-obj volumes.obj
+run render builtin:city --city-size 150 --size 32x18 --frames 1 --candidates influence --influence-boxes visible \
+    -o b.png --influence-obj volumes.obj
 test $status = 0 && python3 - volumes.obj <<'CHECK'
 exec(open("look.py").read())
 volumes, boxes = [n for n in objects if n.startswith("volume_")], [n for n in objects if n.startswith("box_")]
 assert len(volumes) > 300 and len(boxes) > 20 and all(s > 0 for s in sizes.values()), (len(volumes), len(boxes))
 assert {n.split("_in_")[1] for n in volumes} == set(boxes)
-assert any(abs(len(points(n)) - (1 + 6 * 16)) == 0 for n in volumes) and any(len(points(n)) == 2 + 11 * 16 for n in volumes) # one-sided, and all around
+assert any(abs(len(points(n)) - (1 + 6 * 16)) == 0 for n in volumes) and any(len(points(n)) == 2 + 11 * 16
+                                                                             # one-sided, and all around
+                                                                             for n in volumes)
 assert all(len(points(n)) == 8 for n in boxes)
 CHECK
 result $? "and boxes, with the volumes that lie in them"
-expect "only where there are volumes" 2 'influence-obj needs --candidates influence' render $small -o b.png --influence-obj volumes.obj
-expect "under a name that tells" 2 'volumes.ply must end in .obj' render $small --candidates influence -o b.png --influence-obj volumes.ply
-expect "in a folder that is there" 1 'its folder cannot be used' render $small --candidates influence -o b.png --influence-obj gone/volumes.obj
+expect "only where there are volumes" 2 'influence-obj needs --candidates influence' render $small -o b.png \
+    --influence-obj volumes.obj
+expect "under a name that tells" 2 'volumes.ply must end in .obj' render $small --candidates influence -o b.png \
+    --influence-obj volumes.ply
+expect "in a folder that is there" 1 'its folder cannot be used' render $small --candidates influence -o b.png \
+    --influence-obj gone/volumes.obj
 finish

@@ -41,13 +41,16 @@ expect "infinite" 2 'not a number' render $c -o a.png --sky inf
 expect "huge" 2 'not a number' render $c -o a.png --sky 1e400
 expect "unknown choice" 2 'method: "ristir" is none of reference\|is\|ris\|restir' render $c -o a.png --method ristir
 expect "a bool that is none" 2 'temporal: "maybe" is neither true nor false' render $c -o a.png --temporal=maybe
-for size in 0x0 0x10 10x0 -1x5 100000x100000 32769x1 10 10x 10x10x10 10,10 axb 1e9x1 10.5x10 ' 10x10' 'infx10' '0x10x10'; do
+for size in 0x0 0x10 10x0 -1x5 100000x100000 32769x1 10 10x 10x10x10 10,10 axb 1e9x1 10.5x10 ' 10x10' 'infx10' \
+    '0x10x10'; do
     expect "size '$size'" 2 '--size: ' render $c -o a.png "--size=$size"
 done
 for size in 0x0 0x10 10x0; do
-    expect "size '$size' is too small, not misspelt" 2 "a side is 1 to 32768 px, not $size" render $c -o a.png --size $size
+    expect "size '$size' is too small, not misspelt" 2 "a side is 1 to 32768 px, not $size" render $c -o a.png \
+        --size $size
 done
-expect "an eye beyond all bounds" 2 '--eye: "1e300,0,0" is more than 10000 km away' render $c -o a.png --eye 1e300,0,0 --target 0,0,0
+expect "an eye beyond all bounds" 2 '--eye: "1e300,0,0" is more than 10000 km away' render $c -o a.png --eye 1e300,0,0 \
+    --target 0,0,0
 expect "a target beyond them" 2 '--target: "0,-1e7,0" is more than' render $c -o a.png --eye 0,0,0 --target 0,-1e7,0
 expect "size and width" 2 'exclude each other' render $c -o a.png --size 10x10 --width 10
 for v in 1,2 1,2,3,4 a,b,c '1,2,' ',,,' 'nan,0,0' '1, 2, 3' 1e999,0,0; do
@@ -60,10 +63,13 @@ expect "target without eye" 2 '--target needs --eye' render $c -o a.png --target
 expect "eye at target" 2 'the same place' render $c -o a.png --eye 1,2,3 --target 1,2,3.0
 expect "eye and view" 2 'exclude each other' render $c -o a.png --eye 1,2,3 --target 0,0,0 --view aerial
 expect "camera CRS without eye" 2 '--camera-crs is for' render $c -o a.png --camera-crs EPSG:25832
-expect "options of a city that is not drawn" 2 '--city-size is for the input builtin:city' render city.gml -o a.png --city-size 200
+expect "options of a city that is not drawn" 2 '--city-size is for the input builtin:city' render city.gml -o a.png \
+    --city-size 200
 expect "an unknown view" 2 'show: "lamps" is none of picture\|lights' render $c -o a.png --show lamps
-expect "a view without a query" 2 'view "lights": only ris and restir with candidates influence or lists' render $c -o a.png --show lights --candidates light-bvh
-expect "a view of no reservoir" 2 'view "weight": the reference method' render $c -o a.png --show weight --method reference
+expect "a view without a query" 2 'view "lights": only ris and restir with candidates influence or lists' render $c \
+    -o a.png --show lights --candidates light-bvh
+expect "a view of no reservoir" 2 'view "weight": the reference method' render $c -o a.png --show weight \
+    --method reference
 expect "variance of nothing" 2 'frames must be accumulated' render $c -o a.png --show variance --no-accumulate
 expect "variance of one frame" 2 '--show error needs two frames' render $c -o a.png --show error --frames 1
 expect "a bar without a view" 2 '--show-range is for views' render $c -o a.png --show-range 0,1
@@ -102,7 +108,8 @@ out"
 result $? "nothing was written" "$(ls | tr '\n' ' ')"
 
 run help render
-grep -q -- '--fov X .*that of the view' out && ! grep -A1 -- '--fov X' out | grep -q '\['; result $? "--fov has no default of its own"
+grep -q -- '--fov X .*that of the view' out && ! grep -A1 -- '--fov X' out | grep -q '\['
+result $? "--fov has no default of its own"
 run --version
 test $status = 0 && grep -Eq '^nocturne [0-9]+\.[0-9]+\.[0-9]+ \(embree [0-9]+\.[0-9.]+, ' out; result $? "--version"
 for h in help --help -h; do
@@ -124,7 +131,8 @@ if [ -e /dev/full ]; then
     test $? = 1 && grep -q 'standard output' err; result $? "a full disk under stdout is a failure"
 fi
 # ---- limits of the process ----
-# stacked LIMIT ARGUMENT...: by a soft limit (-S) or one that cannot be raised (-SH); dash knows no -s of a soft limit alone
+# stacked LIMIT ARGUMENT...: by a soft limit (-S) or one that cannot be raised (-SH); dash knows no -s of a soft limit
+# alone
 stacked() {
     limit=$1
     shift
@@ -135,16 +143,22 @@ if ! "$program" render builtin:city --city-size 150 --size 32x32 --frames 1 -o w
     skip "a small stack" "nothing is drawn here"
 else
     stacked -S render builtin:city --city-size 150 --size 32x32 --frames 1 -o small.png
-    test $status = 0 && test -s small.png; result $? "a stack of 64 kB is raised where it may be" "status $status: $(cat err)"
+    test $status = 0 && test -s small.png
+    result $? "a stack of 64 kB is raised where it may be" "status $status: $(cat err)"
     stacked -SH render builtin:city --city-size 150 --size 32x32 --frames 1 -o none.png
-    test $status = 1 && grep -q 'limit of the stack is 64 kB' err && test ! -e none.png; result $? "and told where it may not" "status $status: $(cat err)"
+    test $status = 1 && grep -q 'limit of the stack is 64 kB' err && test ! -e none.png
+    result $? "and told where it may not" "status $status: $(cat err)"
 fi
-(PROJ_DATA=/nonexistent PROJ_LIB=/nonexistent; export PROJ_DATA PROJ_LIB; run info "$source_dir/tests/cli/city.gml"; echo $status >ended)
-test "$(cat ended)" = 1 && grep -q 'proj.db' err; result $? "a database of PROJ that is not there is an error" "$(cat err)"
+(PROJ_DATA=/nonexistent PROJ_LIB=/nonexistent; export PROJ_DATA PROJ_LIB; run info \
+    "$source_dir/tests/cli/city.gml"; echo $status >ended)
+test "$(cat ended)" = 1 && grep -q 'proj.db' err
+result $? "a database of PROJ that is not there is an error" "$(cat err)"
 run --version
-files='(files by Landlock|Landlock for files is not there)' calls='(system calls by seccomp|seccomp for system calls is not there)'
+files='(files by Landlock|Landlock for files is not there)' \
+    calls='(system calls by seccomp|seccomp for system calls is not there)'
 none='neither Landlock for files nor seccomp for system calls is there' # in any order: which there are is the system's
-grep -E 'isolation of foreign readers: a process of its own and limits' out | grep -E "$files.*$calls|$calls.*$files|$none" >/dev/null
+grep -E 'isolation of foreign readers: a process of its own and limits' out |
+    grep -E "$files.*$calls|$calls.*$files|$none" >/dev/null
 result $? "the version tells what isolation there is" "$(cat out)"
 
 finish

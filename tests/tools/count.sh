@@ -15,7 +15,8 @@ program() { printf '{"name": "%s", "result": "%s", "stdout": "%s"}\n' "$1" "$2" 
 expect() {
     count=$((count + 1))
     python3 "$source_dir/tools/count-tests.py" "$work" >"$work/out" 2>&1
-    if [ $? = "$2" ] && [ "$(tail -n 1 "$work/out")" = "$3" ] && { [ -z "${4:-}" ] || grep -qxF "$4" "$work/out"; }; then
+    if [ $? = "$2" ] && [ "$(tail -n 1 "$work/out")" = "$3" ] && { [ -z "${4:-}" ] ||
+        grep -qxF "$4" "$work/out"; }; then
         echo "ok $count - $1"
     else
         failed=1
@@ -35,7 +36,8 @@ expect "cmocka skips" 0 "1 passed, 0 failed, 1 skipped" "skipped: a x (shared/x 
 program a OK 'ok 1 - x # SKIP no such device\nok 2 - y\n1..2\n'
 expect "a shell test skips" 0 "1 passed, 0 failed, 1 skipped" "skipped: a x (no such device)"
 program a ERROR '1..5\nok 1 - x\nok 2 - y\n'
-expect "a crash half-way: what was not reached has failed" 1 "2 passed, 3 failed, 0 skipped" "failed: a (not reached) (ERROR)"
+expect "a crash half-way: what was not reached has failed" 1 "2 passed, 3 failed, 0 skipped" \
+    "failed: a (not reached) (ERROR)"
 program a ERROR 'ok 1 - x\n'
 expect "a shell test that stops without its plan" 1 "1 passed, 1 failed, 0 skipped"
 program a ERROR '1..1\nok 1 - x\n'
