@@ -141,7 +141,8 @@ static int check_influence(const render_args *args) {
     if (args->render.candidates != NOC_CANDIDATES_INFLUENCE || !draws)
         return cli_usage(
             &cli_render,
-            "--influence-obj needs --candidates influence, with the method ris or restir: others have no influence volumes");
+            "--influence-obj needs --candidates influence, with the method ris or restir: others have no influence "
+            "volumes");
     return cli_check_output(&cli_render, args->influence_obj, CLI_OBJ, &args->common);
 }
 
