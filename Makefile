@@ -6,7 +6,7 @@ unexport NINJA
 NINJA = ninja $$([ -t 1 ] || echo --quiet)
 SANITIZE = -Db_sanitize=address,undefined -Dbuildtype=debugoptimized -Dbench=false
 
-.PHONY: help demo build check asan tsan fuzz coverage install clean deps deps-check
+.PHONY: help demo build check asan tsan fuzz coverage format install clean deps deps-check
 
 help:
 	@echo "make demo     build, and draw the built-in city by night: night.png"
@@ -16,6 +16,7 @@ help:
 	@echo "make tsan     those of them that run threads, under ThreadSanitizer"
 	@echo "make fuzz     fuzzers of all that reads bytes, TIME=60 seconds each, with a table (CORPUS=\"pbf csv\" for some of them)"
 	@echo "make coverage what share of each room's lines the tests run, and the fuzzers' inputs"
+	@echo "make format   lays out C as clang-format 14 does; make check fails where it would change a file"
 	@echo "make install  install to PREFIX ($(PREFIX)), DESTDIR respected"
 	@echo "make clean    remove what was built"
 
@@ -77,6 +78,9 @@ coverage:
 		-Dbench=false -Dtests=enabled >/dev/null
 	@$(NINJA) -C build-coverage
 	@tools/coverage.py build-coverage build-fuzz/corpus
+
+format:
+	@tools/check-format.sh --write
 
 # PREFIX may differ from that of an earlier `make build`. Only what is installed is built, and the list tells what was installed.
 INSTALLED = bin/nocturne|nocturne-reader|libnocturne\.so|nocturne\.pc|nocturne\.1|nocturne\.bash|_nocturne|nocturne\.fish

@@ -59,6 +59,7 @@ fuzzer() {
     done
     return 1
 }
+formatter() { have clang-format || have clang-format-14; }
 if [ "$purpose" = fuzz ]; then
     need "clang libclang-rt-14-dev llvm-14" "libFuzzer and the sanitizers" fuzzer
 fi
@@ -68,6 +69,7 @@ fi
 if [ "$purpose" = check ] || [ "$purpose" = coverage ]; then
     need g++ "tests that the headers serve C++ too" cplusplus
     need libcmocka-dev "unit tests" module cmocka
+    need clang-format "tests the layout of the sources" formatter
     need glslang-tools "tests that the estimator compiles as GLSL" have glslangValidator
     need libvulkan-dev "runs that GLSL in tests" module vulkan
     need mesa-vulkan-drivers "a Vulkan device in software, for those tests" icd

@@ -181,9 +181,9 @@ const char *noc_option_needs_input(const noc_option *option, const char *const *
             return has_input(inputs, count, "builtin:city") ? NULL : "builtin:city";
     for (const noc_option *o = builtin_options; o->name; o++)
         if (o == option && !has_input(inputs, count, "builtin:mess"))
-            return !strcmp(o->name, "lights")                  ? "builtin:mess"
+            return !strcmp(o->name, "lights")                      ? "builtin:mess"
                    : has_input(inputs, count, "builtin:cityscape") ? NULL
-                                                               : "builtin:cityscape or builtin:mess";
+                                                                   : "builtin:cityscape or builtin:mess";
     return NULL;
 }
 
