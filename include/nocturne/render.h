@@ -11,7 +11,7 @@ extern "C" {
 
 typedef enum noc_method { NOC_METHOD_REFERENCE, NOC_METHOD_IS, NOC_METHOD_RIS, NOC_METHOD_RESTIR } noc_method;
 typedef enum noc_bias { NOC_BIAS_BIASED, NOC_BIAS_MIS, NOC_BIAS_PAIRWISE } noc_bias;
-/* Where light candidates come from: docs/estimator.md, "Candidates". */
+/* Where light candidates come from: docs/estimator.md, "Pickers". */
 typedef enum noc_candidates {
     NOC_CANDIDATES_UNIFORM,
     NOC_CANDIDATES_LISTS,
@@ -111,7 +111,7 @@ NOC_DEFAULT_PARAMS(noc_render_params, noc_render_default_params, NOC_RENDER_DEFA
 #define noc_render_default_params() ((noc_render_params){ NOC_RENDER_DEFAULTS(NOC_DEFAULT_IN_C) })
 #endif
 
-/* Settings for a purpose, chosen by measurement (docs/estimator.md, "Presets"). */
+/* Settings for a purpose, chosen by measurement (docs/measurements.md, "Presets"). */
 typedef enum noc_preset {
     NOC_PRESET_STILL,      /* least error after a minute: the defaults */
     NOC_PRESET_INTERACTIVE /* least error of the first frames and of single ones under a moving camera, in half the time

@@ -136,11 +136,16 @@ for shell in bash zsh fish; do
         head -n 6)"
 done
 expect "a shell without completion" 2 'bash, zsh and fish' help --completion tcsh
-broken=
-for page in "$source_dir"/*.md "$source_dir"/docs/*.md; do
-    for link in $(grep -o '](\([^)#]*\)' "$page" | sed 's/^](//' | grep -Ev '[:,]|\.(png|jpg)$'); do
-        [ -e "$(dirname "$page")/$link" ] || broken="$broken $(basename "$page"):$link"
-    done
-done
-test -z "$broken"; result $? "links between docs lead somewhere" "$broken"
+python3 "$source_dir/tools/draw-frame.py" frame.svg && cmp -s frame.svg "$source_dir/docs/frame.svg"
+result $? "docs/frame.svg is what its script draws" "run tools/draw-frame.py"
+# Links between pages: each file is there, and each heading. A page of links that are broken is told so.
+links="python3 $source_dir/tests/cli/doc_links.py"
+$links "$source_dir"/*.md "$source_dir"/docs/*.md >why; result $? "links between docs lead somewhere" "$(head -n 3 why)"
+printf '# One two\n\n' >page.md
+for i in 1 2 3 4 5 6 7 8 9 10; do printf '[a](page.md#one-two) [b](#one-two) `[c](nowhere.md)`\n' >>page.md; done
+$links page.md >why; result $? "and such links are understood" "$(head -n 3 why)"
+printf '[a](nowhere.md) [b](#three)\n' >>page.md
+$links page.md >why
+test $? = 1 && test "$(cat why)" = "page.md: nowhere.md: no such file
+page.md: #three: no such heading"; result $? "and told where they lead nowhere" "$(cat why)"
 finish
