@@ -251,9 +251,9 @@ int main(int argc, char **argv) {
     p.width = width;
     p.height = height;
     p.method = NOC_METHOD_RIS;
-    noc_plan plan;
-    noc_frame frame = { .params = &p, .plan = &plan };
+    noc_frame frame = { .params = &p };
     noc_make_frame_camera(&camera, &p, 0, &frame.camera);
+    const noc_stage stage = { .passes = 1u << NOC_PASS_PRIMARY | 1u << NOC_PASS_CANDIDATES };
     struct core_context ctx = { .lights = scene->lights.data,
                                 .light_count = (uint32_t)scene->lights.len,
                                 .materials = scene->material_records.data,
@@ -261,8 +261,7 @@ int main(int argc, char **argv) {
     static const noc_candidates sources[] = { NOC_CANDIDATES_UNIFORM, NOC_CANDIDATES_LISTS };
     for (int i = 0; set.blocks && i < 4; i++) {
         p.candidates = sources[i / 2];
-        noc_plan_make(&p, -1, &plan);
-        if (noc_backend_embree.stage(state, &frame, &plan.stages[0], NULL, 0, 1) != NOC_OK)
+        if (noc_backend_embree.stage(state, &frame, &stage, NULL, 0, 1) != NOC_OK)
             return 1;
         collect(s, &ctx, i % 2 ? 3 : 0, &set);
         measure_all(s, &set, (const char *const[]){ "uniform", "uniform, bias rays", "lists", "lists, bias rays" }[i],

@@ -2,8 +2,11 @@
  *
  * Coordinates are metres in the scene's local frame, z up. Where the scene has a CRS, crs = local + origin (doubles).
  * Colours are linear Rec.709; emission is photometric: 0.2126 R + 0.7152 G + 0.0722 B is luminance in cd/m2 (for point
- * luminaires: luminous intensity in cd). A scene is not thread-safe while it is being changed; once committed it may be
- * read by any number of renderers, and all that can still change is where lights are that were made to move. */
+ * luminaires: luminous intensity in cd).
+ *
+ * A scene is edited in transactions. Until the first noc_scene_commit it is being made: one thread adds to it, and no
+ * one looks. From then on any number of threads may render and ask, while one thread at a time calls what adds, sets,
+ * moves and removes: that only stages. noc_scene_commit publishes what is staged, all or nothing, between frames. */
 #ifndef NOCTURNE_SCENE_H
 #define NOCTURNE_SCENE_H
 
@@ -58,6 +61,8 @@ typedef struct noc_mesh {
     size_t triangle_count;
     const uint32_t *indices; /* 3 a triangle, counter-clockwise seen from outside */
     int material;            /* from noc_scene_add_material */
+    int model;               /* from noc_scene_add_model: it is in that model's coordinates; 0: in the scene's */
+    int group;               /* from noc_scene_add_group, of its triangles as lights; 0: none */
     const char *name;        /* object id, gml:id; may be NULL. Copied */
 } noc_mesh;
 
@@ -72,9 +77,10 @@ typedef enum noc_light_kind {
     NOC_LIGHT_KIND_COUNT
 } noc_light_kind;
 
-/* One light. Its visible shape is made with it, except for points, spots and lights that move: those are not seen
- * themselves and cast no shadow, they light. A spot's intensity at an angle t off its direction is that of the inner
- * cone times clamp((cos t - cos outer) / (cos inner - cos outer), 0, 1)^2, as glTF's KHR_lights_punctual has it. */
+/* One light. Its visible shape is made with it, except for points, spots and lights that move by themselves: those are
+ * not seen themselves and cast no shadow, they light. Lights of a model have their shape, and move with its instances.
+ * A spot's intensity at an angle t off its direction is that of the inner cone times clamp((cos t - cos outer) / (cos
+ * inner - cos outer), 0, 1)^2, as glTF's KHR_lights_punctual has it. */
 typedef struct noc_light {
     noc_light_kind kind;
     double position[3];
@@ -85,30 +91,84 @@ typedef struct noc_light {
     float emission[3];           /* cd/m2, or cd for NOC_LIGHT_POINT and NOC_LIGHT_SPOT; one-sided */
     const char *name;            /* may be NULL; copied */
     bool inferred;               /* placed by a rule, not found in data */
-    bool moving;                 /* noc_scene_move_light may change it between frames */
+    bool moving;                 /* noc_scene_move_light may change it; not read of a model's */
+    int model;                   /* from noc_scene_add_model: it is in that model's coordinates; 0: in the scene's */
+    int group;                   /* from noc_scene_add_group; 0: none */
 } noc_light;
+
+/* A model placed in the scene. */
+typedef struct noc_instance {
+    int model; /* from noc_scene_add_model */
+    /* Rows of the 3x4 matrix that takes the model's coordinates to the scene's: a rotation, one scale, a place in m */
+    double transform[12];
+} noc_instance;
 
 /* log may be NULL; it must outlive the scene. NULL: no memory, reported */
 NOC_API noc_scene *noc_scene_create(noc_log *log);
 NOC_API void noc_scene_destroy(noc_scene *scene);
 
 /* These return an index >= 0, or -1 after reporting an error. Non-finite or degenerate geometry is an error here; bad
- * triangles inside a mesh (zero area, index out of range, non-finite) are dropped and counted. A committed scene takes
- * nothing more, nor does one that memory was refused to: that is reported once, and NOC_ERR_MEMORY is what its commit
- * returns. */
+ * triangles inside a mesh (zero area, index out of range, non-finite) are dropped and counted. What is added after the
+ * first commit is there from the next one on, under the index that is returned now. A scene that memory is refused to
+ * before its first commit takes nothing more: that is reported once, and NOC_ERR_MEMORY is what its commit returns.
+ * noc_scene_add_light returns the light's index, which stays its own until it is removed; of a model's light its number
+ * in the model, from 0. */
 NOC_API int noc_scene_add_material(noc_scene *scene, const noc_material *material);
 NOC_API int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh);
 NOC_API int noc_scene_add_light(noc_scene *scene, const noc_light *light);
 
-/* Freezes the scene for rendering: makes triangle lights of emissive meshes. noc_scene_load commits by itself. */
+/* A model: meshes and lights in coordinates of their own (a car with its lamps), which are seen where instances stand.
+ * Returns its index >= 1, for `model` of noc_mesh and noc_light, or -1 after reporting. It takes meshes and lights
+ * until the commit that publishes it, and is never removed. name may be NULL; copied. */
+NOC_API int noc_scene_add_model(noc_scene *scene, const char *name);
+
+/* A group of lights that are switched, dimmed and coloured together. Returns its index >= 1, for `group` of noc_mesh
+ * and noc_light, or -1 after reporting. name may be NULL; copied. */
+NOC_API int noc_scene_add_group(noc_scene *scene, const char *name);
+
+/* An instance. Returns its index >= 0, its own until it is removed, or -1 after reporting. It is there from the next
+ * commit on. Each light of its model becomes a light of the scene, of the kind that moves. */
+NOC_API int noc_scene_add_instance(noc_scene *scene, const noc_instance *instance);
+
+/* Publishes what is staged. The first commit freezes what was added until then for rendering, and noc_scene_load
+ * commits by itself. Later ones wait for the frames that are being rendered and are done before the next begin: so they
+ * must not be called from a frame's progress. Renderers take notice with their next frame. NOC_ERR_MEMORY after
+ * reporting it: the scene is as it was, and what is staged stays staged. */
 NOC_API noc_status noc_scene_commit(noc_scene *scene);
 
-/* Places a moving light of a committed scene anew: position, shape, direction and emission as `to` has them, emission 0
- * puts it out. index is what noc_scene_add_light returned; the kind stays, and so do name and inferred, which are not
- * read. Renderers take notice with their next frame; no frame may be rendered meanwhile. NOC_ERR_ARGUMENT after
- * reporting it, and the light as it was: no such light, it was not made to move, another kind, or what
- * noc_scene_add_light would refuse. */
-NOC_API noc_status noc_scene_move_light(noc_scene *scene, int index, const noc_light *to);
+/* Edits: staged in the order of the calls, and published by noc_scene_commit. They are of things that are there since
+ * the last commit (before the first one: that were added); of what the same transaction removes they do nothing. All
+ * return NOC_ERR_ARGUMENT after reporting an edit that cannot be, and NOC_ERR_MEMORY where memory is refused: that edit
+ * is not staged then. */
+
+/* Another material in place of that one, for all that is made of it. Meshes become triangle lights, or none any more,
+ * as its emission says; a model's mesh keeps its emission. The materials of a transaction are set before its other
+ * edits. */
+NOC_API noc_status noc_scene_set_material(noc_scene *scene, int material, const noc_material *to);
+/* Albedo, f0 and roughness of all materials of that class, also of those added in the transaction. */
+NOC_API noc_status noc_scene_set_class_material(noc_scene *scene, noc_class cls, const noc_material *to);
+/* Emission of a light by its index, an instance's too, in the light's unit; 0: out. Its group's scale comes on top. */
+NOC_API noc_status noc_scene_set_emission(noc_scene *scene, int light, const float emission[3]);
+/* Scales the emission of all lights of a group, channel by channel, from what they were made with: 0 puts them out, 1
+ * is as made. 0..1000000. */
+NOC_API noc_status noc_scene_set_group(noc_scene *scene, int group, const float scale[3]);
+/* Places a light anew that was made with `moving`: position, shape, direction and emission as `to` has them. The kind
+ * stays; name, inferred, model and group are not read. */
+NOC_API noc_status noc_scene_move_light(noc_scene *scene, int light, const noc_light *to);
+/* Places an instance anew, and its lights with it; transform as in noc_instance. */
+NOC_API noc_status noc_scene_set_transform(noc_scene *scene, int instance, const double transform[12]);
+/* An instance's index, and the indices of its lights, may be those of others that are added after the commit. */
+NOC_API noc_status noc_scene_remove_instance(noc_scene *scene, int instance);
+/* A light that was added as one, with its shape. One added after the commit may take its index. */
+NOC_API noc_status noc_scene_remove_light(noc_scene *scene, int light);
+/* A mesh of the scene itself, with the lights that its triangles are. Its index is not used again, and its memory stays
+ * with the scene. */
+NOC_API noc_status noc_scene_remove_mesh(noc_scene *scene, int mesh);
+
+/* Index in the scene of an instance's light: light is its number in the model, where those that noc_scene_add_light
+ * returned come first and triangles of meshes that shine follow. -1 after reporting: there is none, or it is not
+ * committed yet. */
+NOC_API int noc_scene_instance_light(const noc_scene *scene, int instance, int light);
 
 /* A light as the scene has it now, to list and to map: those of noc_scene_add_light, of inputs, and the triangles of
  * meshes that shine, which noc_scene_commit adds. */
@@ -120,13 +180,14 @@ typedef struct noc_light_info {
     double lumens;    /* luminous flux that leaves it, from both sides where it is two-sided */
     double area;      /* m2; of a disc, triangle or parallelogram one side, 0 for points and spots */
     bool two_sided;
+    bool removed; /* there is no light of this index (now); all else is 0 */
 } noc_light_info;
 
-/* index is below noc_scene_info.lights, and what NOC_AOV_LIGHT shows; else NOC_ERR_ARGUMENT after reporting. */
+/* index is below noc_scene_info.light_slots, and what NOC_AOV_LIGHT shows; else NOC_ERR_ARGUMENT after reporting. */
 NOC_API noc_status noc_scene_get_light(const noc_scene *scene, size_t index, noc_light_info *info);
 
-/* Name of an object that NOC_AOV_OBJECT shows: the id in its file (gml:id), or of a lamp. NULL where it has none, and
- * where there is no such object. Belongs to the scene. */
+/* Name of an object that NOC_AOV_OBJECT shows: the id in its file (gml:id), or of a lamp; of an instance the model's.
+ * NULL where it has none, and where there is no such object. Belongs to the scene. */
 NOC_API const char *noc_scene_object_name(const noc_scene *scene, size_t object);
 
 /* Place of the scene in the world: crs is any definition PROJ reads, NULL for none. To be said before a load, which
@@ -144,7 +205,10 @@ NOC_API const char *noc_scene_object_name(const noc_scene *scene, size_t object)
 NOC_API noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double origin[3]);
 
 typedef struct noc_scene_info {
+    /* of all that was not removed; models count once, whatever their instances */
     size_t triangles, vertices, meshes, materials;
+    size_t models, instances;
+    size_t light_slots; /* indices of lights are below it */
     size_t lights, lights_by_kind[NOC_LIGHT_KIND_COUNT], lights_inferred;
     size_t triangles_by_class[NOC_CLASS_COUNT];
     size_t triangles_dropped;
@@ -163,14 +227,14 @@ typedef struct noc_scene_info {
 NOC_API void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info);
 
 /* A name for all that pictures of a scene depend on but camera and parameters: surfaces, materials and lights, where
- * moving ones are now. It is a hash of the numbers themselves, whichever files they came from, as 32 hexadecimal digits
- * and a 0: equal scenes have equal names, others differ. Names of machines of another byte order, or of another
- * version, do not compare. Takes about a second for 15 million triangles. Any number of threads may ask while the scene
- * is not being changed. */
+ * moving ones and instances are now. It is a hash of the numbers themselves, whichever files they came from, as 32
+ * hexadecimal digits and a 0: equal scenes have equal names, others differ. Names of machines of another byte order, or
+ * of another version, do not compare. Takes about a second for 15 million triangles. */
 #define NOC_CONTENT_KEY 33
 NOC_API void noc_scene_content(const noc_scene *scene, char key[NOC_CONTENT_KEY]);
 
 /* Height of the highest ground (terrain, road, sidewalk, green, building ground) under or over (x, y), local metres.
+ * Instances are no ground.
  * Returns false where there is none, and where there was no memory to look for it, which is reported. */
 NOC_API bool noc_scene_ground(const noc_scene *scene, double x, double y, double *z);
 

@@ -22,7 +22,7 @@ struct noc_light_set {
     /* Those that are held, and the last ones that were asked for. */
     NOC_ARRAY(volumes) volumes;
     const noc_influence *last;
-    uint64_t moves, power_changes; /* of the scene's lights, that these know of */
+    noc_scene_versions known; /* of the scene, that these know of */
     double seconds[NOC_CANDIDATES_LIGHT_BVH + 1];
 };
 
@@ -33,13 +33,9 @@ noc_light_set *noc_light_set_create(const noc_scene *scene, noc_pool *pool, noc_
         noc_no_memory(log, "lights");
         return NULL;
     }
-    *set = (noc_light_set){ .scene = scene,
-                            .log = log,
-                            .pool = pool,
-                            .probe = probe,
-                            .user = user,
-                            .moves = scene->moves,
-                            .power_changes = scene->power_changes };
+    *set = (noc_light_set){
+        .scene = scene, .log = log, .pool = pool, .probe = probe, .user = user, .known = scene->versions
+    };
     pthread_mutex_init(&set->lock, NULL);
     return set;
 }
@@ -63,12 +59,21 @@ void noc_light_set_destroy(noc_light_set *set) {
     free(set);
 }
 
-/* Lights move between frames only, so nobody reads what is made anew here. */
+/* Lights change between frames only, so nobody reads what is made anew here. */
 static noc_status follow(noc_light_set *set) {
     const noc_scene *scene = set->scene;
-    if (set->moves == scene->moves)
+    noc_scene_versions known = set->known, now = scene->versions;
+    bool others = known.lights != now.lights, power = others || known.emission != now.emission;
+    if (!power && known.moved == now.moved)
         return NOC_OK;
-    if (set->tree && noc_tree_refit(set->tree, scene, set->log) != NOC_OK) {
+    if (power) { /* it does not know where lights are */
+        noc_alias_destroy(set->alias);
+        set->alias = NULL;
+    }
+    if (others || known.standing != now.standing) { /* its static half is not refitted */
+        noc_tree_destroy(set->tree);
+        set->tree = NULL;
+    } else if (set->tree && noc_tree_refit(set->tree, scene, set->log) != NOC_OK) {
         noc_tree_destroy(set->tree);
         set->tree = NULL;
         return NOC_ERR_MEMORY;
@@ -76,12 +81,7 @@ static noc_status follow(noc_light_set *set) {
     noc_clusters_destroy(set->clusters);
     set->clusters = NULL;
     drop_volumes(set);
-    if (set->power_changes != scene->power_changes) { /* it does not know where lights are */
-        noc_alias_destroy(set->alias);
-        set->alias = NULL;
-    }
-    set->moves = scene->moves;
-    set->power_changes = scene->power_changes;
+    set->known = now;
     return NOC_OK;
 }
 

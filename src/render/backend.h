@@ -3,7 +3,6 @@
 #ifndef NOC_BACKEND_H
 #define NOC_BACKEND_H
 
-#include "render/plan.h"
 #include "scene/scene.h"
 #include <nocturne/render.h>
 
@@ -15,10 +14,13 @@ typedef struct noc_frame_camera {
     float jitter[2];
 } noc_frame_camera;
 
+/* Sets of reservoirs. The schedule names them; a backend holds NOC_RESERVOIR_SETS of them, or as many as it was told.
+ */
+enum { NOC_RESERVOIR_SETS = 3 };
+
 /* One frame. Nothing in it changes while the frame is run. */
 typedef struct noc_frame {
     const noc_render_params *params;
-    const noc_plan *plan;
     uint32_t index;       /* since the last reset: the frame's random numbers */
     uint64_t accumulated; /* frames in the mean so far; 0 starts it anew */
     noc_frame_camera camera, previous;
@@ -26,6 +28,24 @@ typedef struct noc_frame {
     int history_set; /* set that holds the previous frame's reservoirs */
     int gbuffer;     /* 0 or 1: this frame's G-buffer; the other one holds the previous frame's */
 } noc_frame;
+
+/* A run over all pixels of passes that only look at their own pixel, or at what an earlier stage (or frame) has left.
+ */
+typedef struct noc_stage {
+    uint32_t passes;         /* 1 << noc_pass, done in the order of noc_pass */
+    int source, target;      /* reservoirs read from other pixels; reservoirs worked on and left behind */
+    int round;               /* number of the spatial pass */
+    bool resolve_visibility; /* leave no sample whose visibility at its own pixel is unknown */
+} noc_stage;
+
+enum { NOC_MAX_STAGES = 8 };
+
+typedef struct noc_schedule {
+    noc_stage stages[NOC_MAX_STAGES];
+    int count;
+    int sets;         /* reservoir sets that are used */
+    int next_history; /* set that feeds the next frame, -1: none */
+} noc_schedule;
 
 struct noc_influence;
 typedef struct noc_backend {
@@ -74,6 +94,18 @@ extern const noc_backend noc_backend_embree;
 noc_status noc_check_camera(const noc_camera *camera, noc_log *log);
 void noc_make_frame_camera(const noc_camera *camera, const noc_render_params *params, uint32_t frame,
                            noc_frame_camera *out);
+/* What to run for these parameters. history_set: set with the previous frame's reservoirs. */
+void noc_make_schedule(const noc_render_params *params, int history_set, noc_schedule *schedule);
+/* Visibility is a part of the reservoirs' own target functions, and of their combination: see docs/estimator.md. */
+static inline bool noc_uses_bias_rays(const noc_render_params *p) {
+    return p->method == NOC_METHOD_RESTIR && p->bias != NOC_BIAS_BIASED && p->bias_rays && p->visibility_reuse &&
+           p->final_ray;
+}
+
+/* May the last spatial output feed the next frame? See noc_make_schedule. */
+static inline bool noc_feeds_spatial(const noc_render_params *p) {
+    return p->bias == NOC_BIAS_PAIRWISE && (noc_uses_bias_rays(p) || !(p->visibility_reuse && p->final_ray));
+}
 
 /* isa.c */
 #define NOC_ISA_VARIABLE "NOCTURNE_ISA"
@@ -96,15 +128,15 @@ typedef struct noc_history {
     noc_frame_camera view;
     uint32_t index; /* of the next frame */
     uint64_t accumulated;
-    uint64_t moves; /* of the scene's lights, that the frame knew */
+    uint64_t commits; /* of the scene, that the frame knew */
     int set, gbuffer;
 } noc_history;
 
 void noc_history_reset(noc_history *history);
-/* Describes the next frame; forgets what this camera, these parameters and lights that moved (moves: noc_scene.moves)
+/* Describes the next frame; forgets what this camera, these parameters and edits of the scene (commits: its versions')
  * make useless. */
-void noc_history_begin(noc_history *history, const noc_camera *camera, const noc_render_params *params, uint64_t moves,
-                       noc_frame *frame);
+void noc_history_begin(noc_history *history, const noc_camera *camera, const noc_render_params *params,
+                       uint64_t commits, noc_frame *frame);
 /* The frame was completed, or dropped, in its first stage or later. */
 void noc_history_end(noc_history *history, const noc_frame *frame, int next_set);
 void noc_history_drop(noc_history *history, const noc_frame *frame, bool first_stage);

@@ -21,11 +21,11 @@ static bool same_params(const noc_render_params *a, const noc_render_params *b) 
     return true;
 }
 
-void noc_history_begin(noc_history *h, const noc_camera *camera, const noc_render_params *params, uint64_t moves,
+void noc_history_begin(noc_history *h, const noc_camera *camera, const noc_render_params *params, uint64_t commits,
                        noc_frame *frame) {
     if (h->started && !same_params(&h->params, params))
         noc_history_reset(h);
-    if (h->started && (!same_camera(&h->camera, camera) || h->moves != moves))
+    if (h->started && (!same_camera(&h->camera, camera) || h->commits != commits))
         h->accumulated = 0;
     *frame = (noc_frame){ .params = params,
                           .index = h->index,
@@ -39,7 +39,7 @@ void noc_history_begin(noc_history *h, const noc_camera *camera, const noc_rende
     h->reusable = false; /* until the frame is completed */
     h->params = *params;
     h->camera = *camera;
-    h->moves = moves;
+    h->commits = commits;
 }
 
 void noc_history_end(noc_history *h, const noc_frame *frame, int next_set) {

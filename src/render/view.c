@@ -1,4 +1,4 @@
-/* A view: checks, drives a backend through the plan of a frame, keeps history. */
+/* A view: checks, drives a backend through the schedule of a frame, keeps history. */
 #include "image/internal.h"
 #include "light/influence.h"
 #include "render/device.h"
@@ -32,8 +32,11 @@ noc_view *noc_view_create(noc_device *device, const noc_scene *scene) {
     }
     *v = (noc_view){ .device = device, .scene = scene, .log = device->log, .backend = device->backend };
     noc_history_reset(&v->history);
+    noc_scene_lock_read(scene);
     v->world = noc_world_enter(device, scene);
-    if (!v->world || v->backend->view_create(v->world->state, &v->state) != NOC_OK) {
+    bool made = v->world && v->backend->view_create(v->world->state, &v->state) == NOC_OK;
+    noc_scene_unlock_read(scene);
+    if (!made) {
         if (v->world)
             noc_world_leave(device, v->world);
         free(v);
@@ -100,27 +103,26 @@ static noc_status fit(noc_view *v, const noc_render_params *p, int sets) {
     return status;
 }
 
-static noc_status run_frame(noc_view *v, const noc_camera *camera, const noc_render_params *p,
-                            const noc_progress *progress) {
-    noc_plan plan;
+static noc_status make_frame(noc_view *v, const noc_camera *camera, const noc_render_params *p,
+                             const noc_progress *progress) {
+    noc_schedule schedule;
     noc_frame frame;
     double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
-    noc_plan_make(p, -1, &plan);
-    noc_status status = fit(v, p, plan.sets);
+    noc_make_schedule(p, -1, &schedule);
+    noc_status status = fit(v, p, schedule.sets);
     if (status != NOC_OK)
         return status;
-    noc_history_begin(&v->history, camera, p, v->scene->moves, &frame);
-    noc_plan_make(p, frame.history_set, &plan);
-    frame.plan = &plan;
+    noc_history_begin(&v->history, camera, p, v->scene->versions.commits, &frame);
+    noc_make_schedule(p, frame.history_set, &schedule);
     int stage = 0;
-    for (; stage < plan.count && status == NOC_OK; stage++)
-        status = v->backend->stage(v->state, &frame, &plan.stages[stage], progress, (double)stage / plan.count,
-                                   (double)(stage + 1) / plan.count);
+    for (; stage < schedule.count && status == NOC_OK; stage++)
+        status = v->backend->stage(v->state, &frame, &schedule.stages[stage], progress, (double)stage / schedule.count,
+                                   (double)(stage + 1) / schedule.count);
     noc_frame_stats stats = { .dropped = frame.index ? v->stats.dropped : 0 };
     if (status == NOC_OK)
         status = v->backend->accumulate(v->state, &frame);
     if (status == NOC_OK)
-        noc_history_end(&v->history, &frame, plan.next_history);
+        noc_history_end(&v->history, &frame, schedule.next_history);
     else
         noc_history_drop(&v->history, &frame, stage == 1);
     v->backend->stats(v->state, &stats);
@@ -128,6 +130,15 @@ static noc_status run_frame(noc_view *v, const noc_camera *camera, const noc_ren
     stats.wall_seconds = noc_wall_seconds() - wall;
     stats.cpu_seconds = noc_cpu_seconds() - cpu;
     v->stats = stats;
+    return status;
+}
+
+/* No edit of the scene is published meanwhile. */
+static noc_status run_frame(noc_view *v, const noc_camera *camera, const noc_render_params *p,
+                            const noc_progress *progress) {
+    noc_scene_lock_frame(v->scene);
+    noc_status status = make_frame(v, camera, p, progress);
+    noc_scene_unlock_frame(v->scene);
     return status;
 }
 
@@ -201,6 +212,15 @@ noc_channel *noc_view_aov(noc_view *v, noc_aov aov) {
     return NULL;
 }
 
+const char *noc_pass_name(noc_pass pass) {
+    static const char *const names[NOC_PASS_COUNT] = {
+        [NOC_PASS_PRIMARY] = "primary",   [NOC_PASS_CANDIDATES] = "candidates", [NOC_PASS_VISIBILITY] = "visibility",
+        [NOC_PASS_TEMPORAL] = "temporal", [NOC_PASS_SPATIAL] = "spatial",       [NOC_PASS_SHADE] = "shade",
+        [NOC_PASS_SKY] = "sky",
+    };
+    return (unsigned)pass < NOC_PASS_COUNT ? names[pass] : "unknown";
+}
+
 void noc_view_get_stats(const noc_view *v, noc_frame_stats *stats) {
     if (stats)
         *stats = v ? v->stats : (noc_frame_stats){ 0 };
@@ -210,8 +230,11 @@ void noc_view_light_stats(const noc_view *v, noc_light_stats *stats) {
     if (!stats)
         return;
     *stats = (noc_light_stats){ 0 };
-    if (v)
-        v->backend->light_stats(v->state, v->history.started ? &v->history.params : NULL, stats);
+    if (!v)
+        return;
+    noc_scene_lock_read(v->scene);
+    v->backend->light_stats(v->state, v->history.started ? &v->history.params : NULL, stats);
+    noc_scene_unlock_read(v->scene);
 }
 
 noc_status noc_view_write_influence(noc_view *v, const noc_render_params *params, const char *path) {
@@ -222,11 +245,16 @@ noc_status noc_view_write_influence(noc_view *v, const noc_render_params *params
     output o;
     params = params ? params : &defaults;
     noc_status status = noc_render_check(params, v->log);
-    status = status ? status : v->backend->influence(v->state, params, &volumes);
-    status = status ? status : output_open(&o, path, v->log);
     if (status)
         return status;
-    noc_influence_write(volumes, v->scene, params->influence, o.file);
+    noc_scene_lock_read(v->scene);
+    status = v->backend->influence(v->state, params, &volumes);
+    bool opened = status == NOC_OK && (status = output_open(&o, path, v->log)) == NOC_OK;
+    if (opened)
+        noc_influence_write(volumes, v->scene, params->influence, o.file);
+    noc_scene_unlock_read(v->scene);
+    if (!opened)
+        return status;
     return output_close(&o, ferror(o.file) ? output_failed(&o, v->log) : NOC_OK, v->log);
 }
 

@@ -94,8 +94,7 @@ static void find_classes(view_city *city) {
     const noc_scene *s = city->scene;
     for (size_t i = 0; i < s->meshes.len && !city->classes; i++) {
         noc_class cls = s->materials.data[s->meshes.data[i].material].cls;
-        city->classes =
-            cls != NOC_CLASS_OTHER && cls != NOC_CLASS_LAMP && s->meshes.data[i].first_triangle != s->backdrop_first;
+        city->classes = cls != NOC_CLASS_OTHER && cls != NOC_CLASS_LAMP && noc_mesh_in_city(s, &s->meshes.data[i]);
     }
 }
 
@@ -452,9 +451,7 @@ noc_status noc_scene_set_camera(noc_scene *scene, const noc_camera *camera) {
     return NOC_OK;
 }
 
-noc_status noc_scene_camera(const noc_scene *scene, noc_viewpoint view, double aspect, noc_camera *camera) {
-    if (!scene || !camera)
-        return noc_null(scene ? scene->log : NULL, __func__);
+static noc_status derive(const noc_scene *scene, noc_viewpoint view, double aspect, noc_camera *camera) {
     if (!(aspect > 0 && isfinite(aspect)))
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera: the aspect is %g, must be finite and more than 0",
                          aspect);
@@ -492,4 +489,13 @@ noc_status noc_scene_camera(const noc_scene *scene, noc_viewpoint view, double a
                  room ? "inside, as a room" : "outside");
     *camera = c;
     return NOC_OK;
+}
+
+noc_status noc_scene_camera(const noc_scene *scene, noc_viewpoint view, double aspect, noc_camera *camera) {
+    if (!scene || !camera)
+        return noc_null(scene ? scene->log : NULL, __func__);
+    noc_scene_lock_read(scene);
+    noc_status status = derive(scene, view, aspect, camera);
+    noc_scene_unlock_read(scene);
+    return status;
 }

@@ -6,6 +6,8 @@
 /* FNV-1a of 128 bits: no guard against malice, but no two scenes meet by chance. */
 typedef unsigned __int128 content_hash;
 
+static const content_hash start = ((content_hash)0x6c62272e07bb0142u << 64) | 0x62b821756295c58du;
+
 static content_hash add(content_hash h, const void *data, size_t size) {
     const content_hash prime = ((content_hash)1 << 88) | 0x13b;
     const unsigned char *p = data;
@@ -21,19 +23,88 @@ static content_hash add_array(content_hash h, const void *data, size_t count, si
     return count ? add(h, data, count * size) : h;
 }
 
+/* Of what flags say only what a picture can show; groups are in the emission already. */
+static content_hash add_light(content_hash h, noc_light_record r) {
+    r.flags &= NOC_LIGHT_TWO_SIDED | NOC_LIGHT_INFERRED | NOC_LIGHT_MOVES;
+    return add(h, &r, sizeof(r));
+}
+
+/* Emission apart, which lights have. */
+static content_hash add_material(content_hash h, const noc_material *m) {
+    noc_material_record r = noc_material_record_of(m);
+    uint32_t cls = m->cls;
+    memset(r.emission, 0, sizeof(r.emission));
+    return add(add(h, &r, sizeof(r)), &cls, sizeof(cls));
+}
+
+/* The lights that triangles show, run by run: those of the world by what they are, a model's by number. */
+static content_hash add_shown(content_hash h, const noc_scene *s, const noc_scene_mesh *m) {
+    const uint32_t *light = s->triangle_light.data + m->first_triangle;
+    for (uint32_t t = 0, next; t < m->triangle_count; t = next) {
+        for (next = t + 1; next < m->triangle_count && light[next] == light[t];)
+            next++;
+        uint32_t run[] = { next, light[t] == NOC_NO_LIGHT, m->model ? light[t] : 0 };
+        h = add(h, run, sizeof(run));
+        if (!m->model && light[t] != NOC_NO_LIGHT)
+            h = add_light(h, s->lights.data[light[t]]);
+    }
+    return h;
+}
+
+static content_hash add_mesh(content_hash h, const noc_scene *s, size_t mesh) {
+    const noc_scene_mesh *m = &s->meshes.data[mesh];
+    size_t vertices = noc_mesh_end_vertex(s, mesh) - m->first_vertex;
+    h = add_material(h, &s->materials.data[m->material]);
+    h = add_array(h, s->positions.data + 3 * (size_t)m->first_vertex, 3 * vertices, sizeof(float));
+    h = add(h, &m->triangle_count, sizeof(m->triangle_count));
+    for (size_t i = 3 * (size_t)m->first_triangle; i < 3 * ((size_t)m->first_triangle + m->triangle_count); i++) {
+        uint32_t v = s->indices.data[i] - m->first_vertex;
+        h = add(h, &v, sizeof(v));
+    }
+    return add_shown(h, s, m);
+}
+
+static content_hash add_meshes(content_hash h, const noc_scene *s, uint32_t model) {
+    for (size_t i = 0; i < s->meshes.len; i++)
+        if (!s->meshes.data[i].removed && s->meshes.data[i].model == model)
+            h = add_mesh(h, s, i);
+    return h;
+}
+
+/* Lights that no triangle of the world shows. */
+static bool is_bare(const noc_light_record *r) {
+    bool point = r->kind == NOC_LIGHT_POINT || r->kind == NOC_LIGHT_SPOT;
+    return !(r->flags & (NOC_LIGHT_FREE | NOC_LIGHT_OWNED)) && (point || r->flags & NOC_LIGHT_MOVES);
+}
+
+/* Instances in turn: their model, where they stand, what they emit. */
+static content_hash add_instances(content_hash h, const noc_scene *s) {
+    content_hash model = 0;
+    uint32_t last = 0;
+    for (size_t i = 0; i < s->instances.len; i++) {
+        const noc_scene_instance *in = &s->instances.data[i];
+        if (!in->model)
+            continue;
+        model = in->model == last ? model : add_meshes(start, s, in->model);
+        last = in->model;
+        h = add(add(h, &model, sizeof(model)), in->transform, sizeof(in->transform));
+        for (size_t k = 0; k < s->models.data[in->model - 1].lights.len; k++)
+            h = add_light(h, s->lights.data[in->lights[k]]);
+    }
+    return h;
+}
+
+/* What was removed is not there, and what order lights and materials were added in does not matter but to lights that
+ * nothing shows. */
 void noc_scene_content(const noc_scene *s, char key[NOC_CONTENT_KEY]) {
     if (!s || !key)
         return;
-    content_hash h = ((content_hash)0x6c62272e07bb0142u << 64) | 0x62b821756295c58du;
-    h = add_array(h, s->positions.data, s->positions.len, sizeof(float));
-    h = add_array(h, s->indices.data, s->indices.len, sizeof(uint32_t));
-    h = add_array(h, s->triangle_material.data, s->triangle_material.len, sizeof(uint32_t));
-    h = add_array(h, s->triangle_light.data, s->triangle_light.len, sizeof(uint32_t));
-    h = add_array(h, s->material_records.data, s->material_records.len, sizeof(noc_material_record));
-    for (size_t i = 0; i < s->materials.len; i++) { /* closures are not drawn, and light may leave both sides */
-        uint32_t rest[] = { (uint32_t)s->materials.data[i].cls, s->materials.data[i].two_sided };
-        h = add(h, rest, sizeof(rest));
-    }
-    h = add_array(h, s->lights.data, s->lights.len, sizeof(noc_light_record));
+    noc_scene_lock_read(s);
+    content_hash h = add_meshes(start, s, 0);
+    for (size_t i = 0; i < s->lights.len; i++)
+        if (is_bare(&s->lights.data[i]))
+            h = add_light(h, s->lights.data[i]);
+    h = add_instances(h, s);
+    noc_scene_unlock_read(s);
     snprintf(key, NOC_CONTENT_KEY, "%016llx%016llx", (unsigned long long)(h >> 64), (unsigned long long)h);
 }

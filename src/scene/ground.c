@@ -9,7 +9,8 @@
  * chains over the same buckets, until there are as many as the lists hold: then all is made anew. So a caller may ask,
  * add, and ask again (every lamp does) at a constant cost a triangle.
  *
- * Queries may come from several threads once the scene is no longer changed: bringing the grids up to date is locked.
+ * Queries may come from several threads while the scene is not changed: bringing the grids up to date is locked. Models
+ * and their instances are no ground, which does not move.
  */
 #include "scene/scene.h"
 
@@ -64,13 +65,25 @@ static const noc_material *material_of(const noc_scene *scene, size_t t) {
  * what is not rendered. Exactly vertical triangles have no area from above. */
 static bool is_obstacle(const noc_scene *scene, size_t t) {
     const noc_material *m = material_of(scene, t);
-    if (t - scene->backdrop_first < scene->backdrop_count) /* unsigned: what comes before is far beyond */
-        return false;
     if (m->cls == NOC_CLASS_CLOSURE ||
         (m->cls == NOC_CLASS_LAMP && (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0)))
         return false;
     const float *a = corner(scene, t, 0), *b = corner(scene, t, 1), *c = corner(scene, t, 2);
     return ((double)b[0] - a[0]) * ((double)c[1] - a[1]) != ((double)b[1] - a[1]) * ((double)c[0] - a[0]);
+}
+
+/* The next obstacle of the city from triangle t on; `end` if there is none before. mesh: the one that t is of. */
+static size_t next_obstacle(const noc_scene *scene, size_t *mesh, size_t t, size_t end) {
+    while (t < end) {
+        const noc_scene_mesh *m = &scene->meshes.data[*mesh];
+        size_t mesh_end = (size_t)m->first_triangle + m->triangle_count;
+        for (; noc_mesh_in_city(scene, m) && t < mesh_end; t++)
+            if (is_obstacle(scene, t))
+                return t;
+        t = mesh_end;
+        ++*mesh;
+    }
+    return end;
 }
 
 /* What a lamp or a person stands on. Water is no ground; a bridge's deck is, where it is given as road or sidewalk. */
@@ -123,11 +136,10 @@ static struct noc_ground *ground_build(const noc_scene *scene, size_t triangles)
         g->buckets *= 2;
     g->offsets = noc_calloc(g->buckets + 1, sizeof(*g->offsets));
     for (int fill = 0; fill < 2 && g->offsets; fill++) {
-        for (size_t t = 0; t < triangles; t++) {
+        size_t mesh = 0, t = next_obstacle(scene, &mesh, 0, triangles);
+        for (; t < triangles; t = next_obstacle(scene, &mesh, t + 1, triangles)) {
             size_t buckets[4];
             int level;
-            if (!is_obstacle(scene, t))
-                continue;
             for (int n = buckets_of(g, scene, t, buckets, &level); n--;)
                 if (fill)
                     g->ids[--g->offsets[buckets[n]]] = (uint32_t)t;
@@ -155,11 +167,10 @@ static bool chain_new(struct noc_ground *g, const noc_scene *scene, size_t trian
             return false;
         memset(g->chains, 0xff, g->buckets * sizeof(*g->chains));
     }
-    for (size_t t = g->covered; t < triangles; t++) {
+    size_t mesh = noc_scene_mesh_of(scene, g->covered), t = next_obstacle(scene, &mesh, g->covered, triangles);
+    for (; t < triangles; t = next_obstacle(scene, &mesh, t + 1, triangles)) {
         size_t buckets[4];
         int level;
-        if (!is_obstacle(scene, t))
-            continue;
         for (int n = buckets_of(g, scene, t, buckets, &level); n--;) {
             ground_link link = { (uint32_t)t, g->chains[buckets[n]] };
             if (!array_push(&g->links, link))
@@ -285,7 +296,10 @@ size_t noc_ground_load(const noc_scene *scene, double x, double y) {
 bool noc_scene_ground(const noc_scene *scene, double x, double y, double *z) {
     if (!scene || !z)
         return false;
-    return noc_scene_highest(scene, GROUND_CLASSES, x, y, z);
+    noc_scene_lock_read(scene);
+    bool hit = noc_scene_highest(scene, GROUND_CLASSES, x, y, z);
+    noc_scene_unlock_read(scene);
+    return hit;
 }
 
 bool noc_scene_top(const noc_scene *scene, double x, double y, double *z) {

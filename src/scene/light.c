@@ -107,17 +107,23 @@ static size_t sphere_shape(const noc_light *l, double *xyz, uint32_t *indices, s
     return SPHERE_VERTICES;
 }
 
+/* The last one of these that shows lights of that emission; -1: none of those that were made last. */
+static int find_material(const noc_scene *of, const noc_material *m) {
+    for (size_t i = of->materials.len; i-- > 0 && i + 256 > of->materials.len;) {
+        const noc_material *have = &of->materials.data[i];
+        if (noc_material_of_light(have) && !memcmp(have->emission, m->emission, sizeof(m->emission)))
+            return (int)i;
+    }
+    return -1;
+}
+
 /* The material that shows a light: emits, reflects nothing. Lights of one colour share it. */
 static int light_material(noc_scene *scene, const noc_light *l) {
     noc_material m = { .roughness = 1, .cls = NOC_CLASS_LAMP, .two_sided = false };
     memcpy(m.emission, l->emission, sizeof(m.emission));
-    for (size_t i = scene->materials.len; i-- > 0 && i + 256 > scene->materials.len;) {
-        const noc_material *have = &scene->materials.data[i];
-        if (have->cls == m.cls && have->albedo[0] == 0 && have->albedo[1] == 0 && have->albedo[2] == 0 &&
-            have->f0 == 0 && !have->two_sided && !memcmp(have->emission, m.emission, sizeof(m.emission)))
-            return (int)i;
-    }
-    return noc_scene_add_material(scene, &m);
+    int staged = scene->added ? find_material(scene->added, &m) : -1;
+    int i = staged >= 0 ? staged + (int)scene->materials.len : find_material(scene, &m);
+    return i >= 0 ? i : noc_scene_add_material(scene, &m);
 }
 
 static bool is_round(const noc_light *l) { return l->kind == NOC_LIGHT_SPHERE || l->kind == NOC_LIGHT_DISC; }
@@ -131,8 +137,7 @@ static double flat_area(const noc_light *l) {
     return length(n) * (l->kind == NOC_LIGHT_TRIANGLE ? 0.5 : 1);
 }
 
-/* What is wrong with a light, NULL if nothing. */
-static const char *light_fault(const noc_light *l) {
+const char *noc_light_fault(const noc_light *l) {
     if ((unsigned)l->kind >= NOC_LIGHT_KIND_COUNT)
         return "unknown kind";
     if (!all_finite(l->position, 3))
@@ -188,12 +193,13 @@ double noc_light_flux(const noc_light_record *r) {
     double e = 0.2126 * r->e[0] + 0.7152 * r->e[1] + 0.0722 * r->e[2];
     if (r->kind == NOC_LIGHT_POINT || r->kind == NOC_LIGHT_SPOT)
         return (r->kind == NOC_LIGHT_SPOT ? spot_angle(r) : 4 * M_PI) * e;
-    return M_PI * e * r->area * (r->flags & 1 ? 2 : 1);
+    return M_PI * e * r->area * (r->flags & NOC_LIGHT_TWO_SIDED ? 2 : 1);
 }
 
-static noc_light_record record_of(const noc_light *l) {
+noc_light_record noc_light_record_of(const noc_light *l) {
     noc_light_record r = { .kind = (uint32_t)l->kind,
-                           .flags = (l->inferred ? 2u : 0u) | (l->moving ? NOC_LIGHT_MOVES : 0u),
+                           .flags = (l->inferred ? NOC_LIGHT_INFERRED : 0) | (l->moving ? NOC_LIGHT_MOVES : 0) |
+                                    (uint32_t)l->group << NOC_LIGHT_GROUP,
                            .radius = is_round(l) ? (float)l->radius : 0 };
     double u[3] = { 0 }, v[3] = { 0 };
     if (l->kind == NOC_LIGHT_DISC)
@@ -229,6 +235,20 @@ static size_t flat_shape(const noc_light *l, double *xyz, uint32_t *indices) {
     return whole ? 4 : 3;
 }
 
+noc_light_record noc_triangle_light(const float *a, const float *b, const float *c, const noc_material *material) {
+    noc_light_record r = { .kind = NOC_LIGHT_TRIANGLE,
+                           .flags = (material->two_sided ? NOC_LIGHT_TWO_SIDED : 0) | NOC_LIGHT_OWNED };
+    for (int k = 0; k < 3; k++) {
+        r.p[k] = a[k];
+        r.a[k] = b[k] - a[k];
+        r.b[k] = c[k] - a[k];
+        r.e[k] = material->emission[k];
+    }
+    r.area = (float)(0.5 * noc_double_area(a, b, c));
+    r.radius = noc_flat_size(&r);
+    return r;
+}
+
 /* The mesh that shows the light of this index. */
 static bool add_shape(noc_scene *scene, const noc_light *l, uint32_t index) {
     double xyz[3 * SPHERE_VERTICES], u[3], v[3];
@@ -244,19 +264,69 @@ static bool add_shape(noc_scene *scene, const noc_light *l, uint32_t index) {
         vertices = flat_shape(l, xyz, indices);
         triangles = vertices - 2;
     }
-    int material = light_material(scene, l);
-    size_t first = scene->triangle_light.len;
+    noc_scene *to = noc_scene_adding(scene);
+    int material = to ? light_material(scene, l) : -1;
+    size_t first = to ? to->triangle_light.len : 0;
     noc_mesh mesh = { .vertex_count = vertices,
                       .positions = xyz,
                       .triangle_count = triangles,
                       .indices = indices,
                       .material = material,
+                      .model = l->model,
                       .name = l->name };
     if (material < 0 || noc_scene_add_mesh(scene, &mesh) < 0)
         return false;
-    for (size_t t = first; t < scene->triangle_light.len; t++)
-        scene->triangle_light.data[t] = index;
+    for (size_t t = first; t < to->triangle_light.len; t++)
+        to->triangle_light.data[t] = index;
     return true;
+}
+
+/* Of a model: the number that it has there. */
+static int add_to_model(noc_scene *scene, const noc_light *l, const char *name) {
+    noc_scene_model *m = noc_scene_model_of(scene, l->model);
+    uint32_t index = (uint32_t)m->lights.len;
+    if (!array_reserve(&m->lights, index + 1) || !array_reserve(&m->light_names, index + 1)) {
+        noc_scene_out_of_memory(scene);
+        return -1;
+    }
+    if (!is_point(l) && !add_shape(scene, l, index))
+        return -1;
+    m->lights.data[m->lights.len++] = noc_light_record_of(l);
+    m->light_names.data[m->light_names.len++] = name;
+    return (int)index;
+}
+
+/* Straight into the arrays, before the first commit. */
+static int add_to_arrays(noc_scene *scene, const noc_light *l, const char *name) {
+    uint32_t index = (uint32_t)scene->lights.len;
+    if (!array_reserve(&scene->lights, index + 1) || !array_reserve(&scene->light_names, index + 1) ||
+        (l->moving && !array_reserve(&scene->moving, scene->moving.len + 1))) {
+        noc_scene_out_of_memory(scene);
+        return -1;
+    }
+    if (!is_point(l) && !l->moving && !add_shape(scene, l, index))
+        return -1;
+    scene->lights.data[scene->lights.len++] = noc_light_record_of(l);
+    scene->light_names.data[scene->light_names.len++] = name;
+    if (l->moving)
+        scene->moving.data[scene->moving.len++] = index;
+    scene->lights_inferred += l->inferred;
+    return (int)index;
+}
+
+/* Into the slot that commit will find free. */
+static int stage_light(noc_scene *scene, const noc_light *l, const char *name) {
+    uint32_t slot = noc_slot_next(&scene->light_slots, scene->lights.len);
+    if (!array_reserve(&scene->edits, scene->edits.len + 1)) {
+        noc_scene_out_of_memory(scene);
+        return -1;
+    }
+    if (!is_point(l) && !l->moving && !add_shape(scene, l, slot))
+        return -1;
+    noc_slot_take(&scene->light_slots);
+    scene->edits.data[scene->edits.len++] =
+        (noc_edit){ .kind = NOC_EDIT_ADD_LIGHT, .index = slot, .name = name, .light = noc_light_record_of(l) };
+    return (int)slot;
 }
 
 int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
@@ -266,51 +336,17 @@ int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
     }
     if (scene->no_memory)
         return -1;
-    const char *wrong = scene->committed ? "the scene is committed" : light_fault(l);
+    const char *wrong = noc_light_fault(l), *name;
+    if (!wrong)
+        wrong = l->group < 0 || (size_t)l->group > scene->groups.len ? "no such group"
+                                                                     : noc_scene_model_fault(scene, l->model);
     if (wrong) {
         noc_error(scene->log, NOC_ERR_ARGUMENT, "light %s: %s", l->name ? l->name : "unnamed", wrong);
         return -1;
     }
-    uint32_t index = (uint32_t)scene->lights.len;
-    char *name = arena_strdup(&scene->names, l->name);
-    if ((l->name && !name) || !array_reserve(&scene->lights, scene->lights.len + 1) ||
-        !array_reserve(&scene->light_names, scene->lights.len + 1) ||
-        (l->moving && !array_reserve(&scene->moving, scene->moving.len + 1))) {
-        noc_scene_out_of_memory(scene);
+    if (!noc_scene_keep_name(scene, l->name, &name))
         return -1;
-    }
-    if (!is_point(l) && !l->moving && !add_shape(scene, l, index))
-        return -1;
-    scene->lights.data[scene->lights.len++] = record_of(l);
-    scene->light_names.data[scene->light_names.len++] = name;
-    if (l->moving)
-        scene->moving.data[scene->moving.len++] = index;
-    scene->lights_inferred += l->inferred;
-    return (int)index;
-}
-
-noc_status noc_scene_move_light(noc_scene *scene, int index, const noc_light *to) {
-    if (!scene || !to)
-        return noc_null(scene ? scene->log : NULL, __func__);
-    if (!scene->committed)
-        return noc_error(scene->log, NOC_ERR_ARGUMENT, "light %d: only lights of a committed scene are moved", index);
-    if (index < 0 || (size_t)index >= scene->lights.len)
-        return noc_error(scene->log, NOC_ERR_ARGUMENT, "light %d: the scene has %zu lights", index, scene->lights.len);
-    noc_light_record *have = &scene->lights.data[index];
-    const char *name = scene->light_names.data[index], *wrong = light_fault(to);
-    if (!(have->flags & NOC_LIGHT_MOVES))
-        wrong = "it was not made to move";
-    else if (have->kind != (uint32_t)to->kind)
-        wrong = "a light's kind cannot change";
-    if (wrong)
-        return noc_error(scene->log, NOC_ERR_ARGUMENT, "light %d (%s): %s", index, name ? name : "unnamed", wrong);
-    noc_light_record r = record_of(to);
-    r.flags = have->flags;
-    if (!memcmp(have, &r, sizeof(r)))
-        return NOC_OK;
-    bool narrowed = to->kind == NOC_LIGHT_SPOT && memcmp(have->b, r.b, sizeof(r.b));
-    scene->power_changes += memcmp(have->e, r.e, sizeof(r.e)) || have->area != r.area || narrowed;
-    scene->moves++;
-    *have = r;
-    return NOC_OK;
+    if (l->model)
+        return add_to_model(scene, l, name);
+    return scene->committed ? stage_light(scene, l, name) : add_to_arrays(scene, l, name);
 }

@@ -3,18 +3,89 @@
 
 #include <math.h>
 
-noc_status noc_scene_get_light(const noc_scene *scene, size_t index, noc_light_info *info) {
-    if (!scene || !info)
-        return NOC_ERR_ARGUMENT;
-    if (index >= scene->lights.len)
-        return noc_error(scene->log, NOC_ERR_ARGUMENT, "light %zu: the scene has %zu lights", index, scene->lights.len);
+size_t noc_scene_bytes(const noc_scene *s) {
+    size_t models = 0;
+    for (size_t i = 0; i < s->models.len; i++)
+        models += s->models.data[i].lights.cap * sizeof(noc_light_record);
+    return s->positions.cap * sizeof(float) +
+           (s->indices.cap + s->triangle_material.cap + s->triangle_light.cap + s->moving.cap) * sizeof(uint32_t) +
+           s->lights.cap * sizeof(noc_light_record) + s->light_names.cap * sizeof(char *) +
+           s->light_made.cap * sizeof(noc_rgb) + s->meshes.cap * sizeof(noc_scene_mesh) + s->names.bytes +
+           s->later_bytes + models + s->instances.cap * sizeof(noc_scene_instance);
+}
+
+static void count_meshes(const noc_scene *scene, noc_scene_info *info) {
+    for (size_t i = 0; i < scene->meshes.len; i++) {
+        const noc_scene_mesh *m = &scene->meshes.data[i];
+        if (m->removed)
+            continue;
+        info->meshes++;
+        info->triangles += m->triangle_count;
+        info->vertices += noc_mesh_end_vertex(scene, i) - m->first_vertex;
+        info->triangles_by_class[scene->materials.data[m->material].cls] += m->triangle_count;
+    }
+}
+
+static void count_lights(const noc_scene *scene, noc_scene_info *info) {
+    info->light_slots = scene->lights.len;
+    for (size_t i = 0; i < scene->lights.len; i++)
+        if (!(scene->lights.data[i].flags & NOC_LIGHT_FREE)) {
+            info->lights++;
+            info->lights_by_kind[scene->lights.data[i].kind]++;
+        }
+}
+
+/* lo..hi of all that stands and of instances; zeros where there is nothing. */
+static void find_bounds(const noc_scene *scene, double lo[3], double hi[3]) {
+    double all[2][3];
+    memcpy(all[0], scene->bounds_min, sizeof(all[0]));
+    memcpy(all[1], scene->bounds_max, sizeof(all[1]));
+    for (size_t i = 0; i < scene->instances.len; i++)
+        if (scene->instances.data[i].model)
+            noc_join_instance_bounds(scene, &scene->instances.data[i], all[0], all[1]);
+    if (!(all[0][0] <= all[1][0]))
+        return;
+    memcpy(lo, all[0], sizeof(all[0]));
+    memcpy(hi, all[1], sizeof(all[1]));
+}
+
+void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info) {
+    if (!info)
+        return;
+    *info = (noc_scene_info){ 0 };
+    if (!scene)
+        return;
+    noc_scene_lock_read(scene);
+    *info = (noc_scene_info){ .materials = scene->materials.len,
+                              .models = scene->models.len,
+                              .lights_inferred = scene->lights_inferred,
+                              .triangles_dropped = scene->triangles_dropped,
+                              .crs = scene->crs_name ? scene->crs_name : "" };
+    for (size_t i = 0; i < scene->instances.len; i++)
+        info->instances += scene->instances.data[i].model > 0;
+    info->given_crs = scene->given_crs_name ? scene->given_crs_name : info->crs;
+    memcpy(info->given_origin, scene->given_crs_name ? scene->given_origin : scene->origin, sizeof(info->given_origin));
+    memcpy(info->origin, scene->origin, sizeof(info->origin));
+    count_meshes(scene, info);
+    count_lights(scene, info);
+    find_bounds(scene, info->bounds_min, info->bounds_max);
+    info->memory_bytes = noc_scene_bytes(scene);
+    noc_scene_unlock_read(scene);
+}
+
+static void describe_light(const noc_scene *scene, size_t index, noc_light_info *info) {
     const noc_light_record *r = &scene->lights.data[index];
+    if (r->flags & NOC_LIGHT_FREE) {
+        *info = (noc_light_info){ .removed = true };
+        return;
+    }
     *info = (noc_light_info){ .lumens = noc_light_flux(r),
                               .area = r->area,
-                              .two_sided = r->flags & 1,
+                              .two_sided = r->flags & NOC_LIGHT_TWO_SIDED,
                               .light = { .kind = (noc_light_kind)r->kind,
                                          .name = scene->light_names.data[index],
-                                         .inferred = r->flags >> 1 & 1,
+                                         .inferred = (r->flags & NOC_LIGHT_INFERRED) != 0,
+                                         .group = (int)noc_light_group(r),
                                          .moving = (r->flags & NOC_LIGHT_MOVES) != 0 } };
     bool triangle = r->kind == NOC_LIGHT_TRIANGLE, flat = triangle || r->kind == NOC_LIGHT_PARALLELOGRAM;
     info->light.radius = flat ? 0 : r->radius;
@@ -40,33 +111,39 @@ noc_status noc_scene_get_light(const noc_scene *scene, size_t index, noc_light_i
         for (int k = 0; k < 3; k++)
             info->light.direction[k] = length > 0 ? n[k] / length : 0;
     }
-    return NOC_OK;
 }
 
-/* The mesh that a triangle is of. */
-static size_t mesh_of(const noc_scene *scene, uint32_t triangle) {
-    size_t low = 0, high = scene->meshes.len;
-    while (high - low > 1) {
-        size_t middle = (low + high) / 2;
-        *(scene->meshes.data[middle].first_triangle <= triangle ? &low : &high) = middle;
-    }
-    return low;
+noc_status noc_scene_get_light(const noc_scene *scene, size_t index, noc_light_info *info) {
+    if (!scene || !info)
+        return NOC_ERR_ARGUMENT;
+    noc_scene_lock_read(scene);
+    size_t slots = scene->lights.len;
+    if (index < slots)
+        describe_light(scene, index, info);
+    noc_scene_unlock_read(scene);
+    return index < slots ? NOC_OK
+                         : noc_error(scene->log, NOC_ERR_ARGUMENT, "light %zu: the scene has %zu lights", index, slots);
 }
 
 static bool same_name(const noc_scene_mesh *a, const noc_scene_mesh *b) {
-    return a->name && b->name && !strcmp(a->name, b->name);
+    return a->model == b->model && a->name && b->name && !strcmp(a->name, b->name);
 }
 
 /* An object comes as several meshes, one a class and material, one after the other: the first stands for them. */
 size_t noc_scene_object_of(const noc_scene *scene, uint32_t triangle) {
-    size_t mesh = mesh_of(scene, triangle);
+    size_t mesh = noc_scene_mesh_of(scene, triangle);
     while (mesh && same_name(&scene->meshes.data[mesh], &scene->meshes.data[mesh - 1]))
         mesh--;
     return mesh;
 }
 
 const char *noc_scene_object_name(const noc_scene *scene, size_t object) {
-    return scene && object < scene->meshes.len ? scene->meshes.data[object].name : NULL;
+    if (!scene)
+        return NULL;
+    noc_scene_lock_read(scene);
+    const char *name = object < scene->meshes.len ? scene->meshes.data[object].name : NULL;
+    noc_scene_unlock_read(scene);
+    return name;
 }
 
 /* A camera's axes in doubles: forward of length 1, right and up as long as half of the picture at distance 1. false: it

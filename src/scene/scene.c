@@ -1,56 +1,42 @@
+/* The arrays of a scene, and meshes that are added to them. */
 #include "scene/scene.h"
 
 #include <math.h>
-#include <stdio.h>
 
-/* Reflectances: typical values for dry surfaces (CIE 144:2001 for roads; IESNA Lighting Handbook, building materials).
- */
-#define CLASSES                                                                                                        \
-    CLASS(NOC_CLASS_OTHER, "other", .30f, .30f, .30f, 0, 1)                                                            \
-    CLASS(NOC_CLASS_WALL, "wall", .46f, .42f, .36f, 0, 1)                                                              \
-    CLASS(NOC_CLASS_ROOF, "roof", .26f, .15f, .11f, .02f, .7f)                                                         \
-    CLASS(NOC_CLASS_GROUND, "ground", .20f, .20f, .19f, 0, 1)                                                          \
-    CLASS(NOC_CLASS_CLOSURE, "closure", .30f, .30f, .30f, 0, 1)                                                        \
-    CLASS(NOC_CLASS_WINDOW, "window", .05f, .06f, .07f, .06f, .15f)                                                    \
-    CLASS(NOC_CLASS_DOOR, "door", .20f, .13f, .08f, .04f, .5f)                                                         \
-    CLASS(NOC_CLASS_INSTALLATION, "installation", .38f, .36f, .33f, 0, 1)                                              \
-    CLASS(NOC_CLASS_TERRAIN, "terrain", .17f, .17f, .14f, 0, 1)                                                        \
-    CLASS(NOC_CLASS_ROAD, "road", .09f, .09f, .09f, .04f, .55f)                                                        \
-    CLASS(NOC_CLASS_SIDEWALK, "sidewalk", .25f, .24f, .23f, .02f, .8f)                                                 \
-    CLASS(NOC_CLASS_GREEN, "green", .08f, .13f, .05f, 0, 1)                                                            \
-    CLASS(NOC_CLASS_TREE, "tree", .07f, .12f, .04f, 0, 1)                                                              \
-    CLASS(NOC_CLASS_WATER, "water", .02f, .03f, .04f, .02f, .12f)                                                      \
-    CLASS(NOC_CLASS_BRIDGE, "bridge", .30f, .29f, .27f, 0, 1)                                                          \
-    CLASS(NOC_CLASS_FURNITURE, "furniture", .22f, .22f, .22f, .04f, .5f)                                               \
-    CLASS(NOC_CLASS_LAMP, "lamp", .10f, .10f, .10f, .04f, .4f)                                                         \
-    CLASS(NOC_CLASS_VEHICLE, "vehicle", .20f, .05f, .05f, .05f, .25f)
+static void forget_bounds(double lo[3], double hi[3]) {
+    for (int k = 0; k < 3; k++) {
+        lo[k] = INFINITY;
+        hi[k] = -INFINITY;
+    }
+}
 
-#define CLASS(id, text, r, g, b, spec, rough) [id] = text,
-const char *const noc_class_names[NOC_CLASS_COUNT] = { CLASSES };
-#undef CLASS
-#define CLASS(id, text, r, g, b, spec, rough)                                                                          \
-    [id] = { .albedo = { r, g, b }, .f0 = spec, .roughness = rough, .cls = id },
-static const noc_material class_materials[NOC_CLASS_COUNT] = { CLASSES };
-#undef CLASS
-
-const char *noc_class_name(noc_class cls) { return (unsigned)cls < NOC_CLASS_COUNT ? noc_class_names[cls] : "unknown"; }
-
-noc_material noc_class_material(noc_class cls) {
-    return class_materials[(unsigned)cls < NOC_CLASS_COUNT ? cls : NOC_CLASS_OTHER];
+/* Its arrays, empty. */
+static noc_scene *create_arrays(void) {
+    noc_scene *scene = noc_calloc(1, sizeof(*scene));
+    if (scene)
+        forget_bounds(scene->bounds_min, scene->bounds_max);
+    return scene;
 }
 
 noc_scene *noc_scene_create(noc_log *log) {
-    noc_scene *scene = noc_calloc(1, sizeof(*scene));
-    if (!scene) {
+    noc_scene *scene = create_arrays();
+    if (!scene || !(scene->lock = noc_scene_lock_create())) {
+        free(scene);
         noc_no_memory(log, "scene");
         return NULL;
     }
     scene->log = log;
-    for (int i = 0; i < 3; i++) {
-        scene->bounds_min[i] = INFINITY;
-        scene->bounds_max[i] = -INFINITY;
-    }
     return scene;
+}
+
+static void free_model(noc_scene_model *m) {
+    array_free(&m->lights);
+    array_free(&m->light_names);
+}
+
+static void free_slots(noc_slots *s) {
+    array_free(&s->free);
+    array_free(&s->released);
 }
 
 void noc_scene_destroy(noc_scene *scene) {
@@ -64,6 +50,10 @@ void noc_scene_destroy(noc_scene *scene) {
     free(scene->without_crs);
     noc_ground_free(scene->ground);
     free(scene->crs_name);
+    for (size_t i = 0; i < scene->models.len; i++)
+        free_model(&scene->models.data[i]);
+    for (size_t i = 0; i < scene->instances.len; i++)
+        free(scene->instances.data[i].lights);
     array_free(&scene->positions);
     array_free(&scene->indices);
     array_free(&scene->triangle_material);
@@ -73,47 +63,74 @@ void noc_scene_destroy(noc_scene *scene) {
     array_free(&scene->material_records);
     array_free(&scene->lights);
     array_free(&scene->light_names);
+    array_free(&scene->light_made);
     array_free(&scene->moving);
+    array_free(&scene->models);
+    array_free(&scene->instances);
+    array_free(&scene->groups);
+    array_free(&scene->gaps);
+    array_free(&scene->edits);
+    free_slots(&scene->light_slots);
+    free_slots(&scene->instance_slots);
     arena_free(&scene->names);
+    arena_free(&scene->later_names);
+    noc_scene_destroy(scene->added);
+    noc_scene_lock_destroy(scene->lock);
     free(scene);
 }
 
-static bool in_range(float x, float lo, float hi) { return x >= lo && x <= hi; } /* false for NaN */
-
-int noc_scene_add_material(noc_scene *scene, const noc_material *m) {
-    if (!scene || !m) {
-        noc_null(scene ? scene->log : NULL, __func__);
-        return -1;
-    }
-    if (scene->no_memory)
-        return -1;
-    if (scene->committed) {
-        noc_error(scene->log, NOC_ERR_ARGUMENT, "material: the scene is committed");
-        return -1;
-    }
-    bool ok = in_range(m->f0, 0, 1) && in_range(m->roughness, 0.05f, 1) && (unsigned)m->cls < NOC_CLASS_COUNT;
-    for (int i = 0; i < 3; i++)
-        ok = ok && in_range(m->albedo[i], 0, 1) && in_range(m->emission[i], 0, 1e12f);
-    if (!ok) {
-        noc_error(scene->log, NOC_ERR_ARGUMENT,
-                  "material: albedo and f0 must be in 0..1, roughness in 0.05..1, emission finite and not negative");
-        return -1;
-    }
-    noc_material_record r = { .f0 = m->f0, .alpha = m->roughness * m->roughness };
-    memcpy(r.albedo, m->albedo, sizeof(r.albedo));
-    memcpy(r.emission, m->emission, sizeof(r.emission));
-    if (!array_reserve(&scene->materials, scene->materials.len + 1) ||
-        !array_reserve(&scene->material_records, scene->materials.len + 1)) {
-        noc_scene_out_of_memory(scene);
-        return -1;
-    }
-    scene->materials.data[scene->materials.len++] = *m;
-    scene->material_records.data[scene->material_records.len++] = r;
-    return (int)scene->materials.len - 1;
+noc_status noc_scene_out_of_memory(noc_scene *scene) {
+    if (!scene->no_memory)
+        noc_error(scene->log, NOC_ERR_MEMORY, "scene: no memory for more than %zu triangles and %zu lights",
+                  scene->triangle_light.len, scene->lights.len);
+    scene->no_memory = !scene->committed; /* a committed scene stays as it is, and may be edited on */
+    return NOC_ERR_MEMORY;
 }
 
-/* Twice the area of a triangle of float vertices. */
-static double double_area(const float *a, const float *b, const float *c) {
+noc_scene *noc_scene_adding(noc_scene *scene) {
+    if (!scene->committed)
+        return scene;
+    if (!scene->added && !(scene->added = create_arrays()))
+        noc_scene_out_of_memory(scene);
+    return scene->added;
+}
+
+bool noc_scene_keep_name(noc_scene *scene, const char *name, const char **kept) {
+    *kept = arena_strdup(scene->committed ? &scene->later_names : &scene->names, name);
+    if (!name || *kept)
+        return true;
+    noc_scene_out_of_memory(scene);
+    return false;
+}
+
+noc_scene_model *noc_scene_model_of(const noc_scene *scene, int model) {
+    size_t i = (size_t)model - 1, have = scene->models.len;
+    if (model < 1 || i >= have + (scene->added ? scene->added->models.len : 0))
+        return NULL;
+    return i < have ? &scene->models.data[i] : &scene->added->models.data[i - have];
+}
+
+const char *noc_scene_model_fault(const noc_scene *scene, int model) {
+    if (model && !noc_scene_model_of(scene, model))
+        return "no such model";
+    if (model && scene->committed && (size_t)model <= scene->models.len)
+        return "its model is committed, and does not change any more";
+    return NULL;
+}
+
+uint32_t noc_slot_next(const noc_slots *slots, size_t have) {
+    return slots->taken < slots->free.len ? slots->free.data[slots->free.len - 1 - slots->taken]
+                                          : (uint32_t)have + slots->fresh;
+}
+
+void noc_slot_take(noc_slots *slots) {
+    if (slots->taken < slots->free.len)
+        slots->taken++;
+    else
+        slots->fresh++;
+}
+
+double noc_double_area(const float *a, const float *b, const float *c) {
     double u[3], v[3];
     for (int i = 0; i < 3; i++) {
         u[i] = (double)b[i] - a[i];
@@ -128,21 +145,50 @@ static bool finite_position(const double *p) {
     return fabs(p[0]) < 1e7 && fabs(p[1]) < 1e7 && fabs(p[2]) < 1e7;
 }
 
-noc_status noc_scene_out_of_memory(noc_scene *scene) {
-    if (!scene->no_memory)
-        noc_error(scene->log, NOC_ERR_MEMORY, "scene: no memory for more than %zu triangles and %zu lights",
-                  scene->triangle_light.len, scene->lights.len);
-    scene->no_memory = true;
-    return NOC_ERR_MEMORY;
-}
-
 /* Room for all of a mesh, and for Embree, which reads 16 bytes a vertex. */
 static bool reserve_mesh(noc_scene *s, const noc_mesh *mesh) {
     size_t triangles = s->triangle_light.len + mesh->triangle_count;
-    return (array_reserve(&s->positions, s->positions.len + mesh->vertex_count * 3 + 1) &&
-            array_reserve(&s->indices, 3 * triangles) && array_reserve(&s->triangle_material, triangles) &&
-            array_reserve(&s->triangle_light, triangles) && array_reserve(&s->meshes, s->meshes.len + 1)) ||
-           noc_scene_out_of_memory(s) == NOC_OK;
+    return array_reserve(&s->positions, s->positions.len + mesh->vertex_count * 3 + 1) &&
+           array_reserve(&s->indices, 3 * triangles) && array_reserve(&s->triangle_material, triangles) &&
+           array_reserve(&s->triangle_light, triangles) && array_reserve(&s->meshes, s->meshes.len + 1);
+}
+
+/* What is wrong with a mesh, NULL if nothing. */
+static const char *mesh_fault(const noc_scene *s, const noc_mesh *mesh) {
+    if (mesh->material < 0 || (size_t)mesh->material >= noc_scene_material_count(s))
+        return "no such material";
+    if (mesh->group < 0 || (size_t)mesh->group > s->groups.len)
+        return "no such group";
+    return noc_scene_model_fault(s, mesh->model);
+}
+
+/* The triangles of a mesh that are any good, behind those that `to` has. */
+static void push_triangles(noc_scene *to, const noc_mesh *mesh, double lo[3], double hi[3]) {
+    size_t first_vertex = to->positions.len / 3;
+    for (size_t i = 0; i < mesh->vertex_count * 3; i++)
+        to->positions.data[to->positions.len++] = (float)mesh->positions[i];
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *v = mesh->indices + 3 * t;
+        bool ok = true;
+        for (int i = 0; i < 3; i++)
+            ok = ok && v[i] < mesh->vertex_count && finite_position(mesh->positions + 3 * (size_t)v[i]);
+        const float *p = to->positions.data + 3 * first_vertex;
+        if (!ok || !(noc_double_area(p + 3 * (size_t)v[0], p + 3 * (size_t)v[1], p + 3 * (size_t)v[2]) > 1e-12)) {
+            to->triangles_dropped++;
+            to->triangles_flat += ok;
+            continue;
+        }
+        for (int i = 0; i < 3; i++) {
+            to->indices.data[to->indices.len++] = (uint32_t)first_vertex + v[i];
+            for (int k = 0; k < 3; k++) {
+                double x = mesh->positions[3 * (size_t)v[i] + k];
+                lo[k] = NOC_MIN(lo[k], x);
+                hi[k] = NOC_MAX(hi[k], x);
+            }
+        }
+        to->triangle_material.data[to->triangle_material.len++] = (uint32_t)mesh->material;
+        to->triangle_light.data[to->triangle_light.len++] = NOC_NO_LIGHT;
+    }
 }
 
 int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
@@ -150,62 +196,43 @@ int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
         noc_null(scene ? scene->log : NULL, __func__);
         return -1;
     }
-    const char *name = mesh->name ? mesh->name : "unnamed";
+    const char *name = mesh->name ? mesh->name : "unnamed", *wrong = mesh_fault(scene, mesh), *kept_name;
     if (scene->no_memory)
         return -1;
-    if (scene->committed) {
-        noc_error(scene->log, NOC_ERR_ARGUMENT, "mesh %s: the scene is committed", name);
+    if (wrong) {
+        noc_error(scene->log, NOC_ERR_ARGUMENT, "mesh %s: %s", name, wrong);
         return -1;
     }
-    if (mesh->material < 0 || (size_t)mesh->material >= scene->materials.len) {
-        noc_error(scene->log, NOC_ERR_ARGUMENT, "mesh %s: no material %d", name, mesh->material);
+    noc_scene *to = noc_scene_adding(scene);
+    if (!to)
         return -1;
-    }
-    if ((mesh->vertex_count && !mesh->positions) || (mesh->triangle_count && !mesh->indices)) {
-        noc_error(scene->log, NOC_ERR_ARGUMENT, "mesh %s: positions or indices are missing", name);
-        return -1;
-    }
-    size_t first_vertex = scene->positions.len / 3, first_triangle = scene->indices.len / 3;
-    if (mesh->vertex_count > UINT32_MAX - first_vertex || mesh->triangle_count > UINT32_MAX - 1 - first_triangle) {
+    bool later = to != scene;
+    size_t vertices = scene->positions.len / 3 + (later ? to->positions.len / 3 : 0),
+           triangles = scene->triangle_light.len + (later ? to->triangle_light.len : 0);
+    if (mesh->vertex_count > UINT32_MAX - vertices || mesh->triangle_count > UINT32_MAX - 1 - triangles) {
         noc_error(scene->log, NOC_ERR_UNSUPPORTED, "mesh %s: more than 4294967295 vertices or triangles in a scene",
                   name);
         return -1;
     }
-    char *kept_name = arena_strdup(&scene->names, mesh->name);
-    if (mesh->name && !kept_name)
-        noc_scene_out_of_memory(scene);
-    if (scene->no_memory || !reserve_mesh(scene, mesh))
+    if (!noc_scene_keep_name(scene, mesh->name, &kept_name))
         return -1;
-    for (size_t i = 0; i < mesh->vertex_count * 3; i++)
-        scene->positions.data[scene->positions.len++] = (float)mesh->positions[i];
-    for (size_t t = 0; t < mesh->triangle_count; t++) {
-        const uint32_t *v = mesh->indices + 3 * t;
-        bool ok = true;
-        for (int i = 0; i < 3; i++)
-            ok = ok && v[i] < mesh->vertex_count && finite_position(mesh->positions + 3 * (size_t)v[i]);
-        const float *p = scene->positions.data + 3 * first_vertex;
-        if (!ok || !(double_area(p + 3 * (size_t)v[0], p + 3 * (size_t)v[1], p + 3 * (size_t)v[2]) > 1e-12)) {
-            scene->triangles_dropped++;
-            scene->triangles_flat += ok;
-            continue;
-        }
-        for (int i = 0; i < 3; i++) {
-            scene->indices.data[scene->indices.len++] = (uint32_t)first_vertex + v[i];
-            for (int k = 0; k < 3; k++) {
-                double x = mesh->positions[3 * (size_t)v[i] + k];
-                scene->bounds_min[k] = NOC_MIN(scene->bounds_min[k], x);
-                scene->bounds_max[k] = NOC_MAX(scene->bounds_max[k], x);
-            }
-        }
-        scene->triangle_material.data[scene->triangle_material.len++] = (uint32_t)mesh->material;
-        scene->triangle_light.data[scene->triangle_light.len++] = NOC_NO_LIGHT;
+    if (!reserve_mesh(to, mesh) || !array_reserve(&to->gaps, to->gaps.len + 1)) {
+        noc_scene_out_of_memory(scene);
+        return -1;
     }
-    scene->meshes.data[scene->meshes.len++] =
-        (noc_scene_mesh){ .first_triangle = (uint32_t)first_triangle,
-                          .triangle_count = (uint32_t)(scene->indices.len / 3 - first_triangle),
-                          .material = mesh->material,
-                          .name = kept_name };
-    return (int)scene->meshes.len - 1;
+    noc_scene_mesh made = { .first_triangle = (uint32_t)to->triangle_light.len,
+                            .first_vertex = (uint32_t)(to->positions.len / 3),
+                            .material = mesh->material,
+                            .model = (uint16_t)mesh->model,
+                            .group = (uint16_t)mesh->group,
+                            .name = kept_name };
+    noc_scene_model *model = noc_scene_model_of(scene, mesh->model);
+    push_triangles(to, mesh, model ? model->bounds_min : to->bounds_min, model ? model->bounds_max : to->bounds_max);
+    made.triangle_count = (uint32_t)(to->triangle_light.len - made.first_triangle);
+    to->meshes.data[to->meshes.len++] = made;
+    if (model)
+        noc_scene_add_gap(to, made.first_triangle, made.triangle_count);
+    return (int)(to->meshes.len + (later ? scene->meshes.len : 0)) - 1;
 }
 
 bool noc_scene_add_backdrop(noc_scene *scene, const noc_mesh *mesh) {
@@ -221,74 +248,43 @@ bool noc_scene_add_backdrop(noc_scene *scene, const noc_mesh *mesh) {
         return false;
     scene->backdrop_first = scene->meshes.data[index].first_triangle;
     scene->backdrop_count = scene->meshes.data[index].triangle_count;
+    noc_scene_add_gap(scene, scene->backdrop_first, scene->backdrop_count); /* the mesh reserved it */
     return true;
 }
 
-/* Closures are not rendered, so they do not shine either. */
-static bool mesh_shines(const noc_scene *scene, const noc_scene_mesh *m) {
-    const noc_material *mat = &scene->materials.data[m->material];
-    return (mat->emission[0] > 0 || mat->emission[1] > 0 || mat->emission[2] > 0) && mat->cls != NOC_CLASS_CLOSURE;
+void noc_scene_add_gap(noc_scene *scene, size_t first, size_t count) {
+    noc_scene_gap *last = scene->gaps.len ? &scene->gaps.data[scene->gaps.len - 1] : NULL;
+    if (!count)
+        return;
+    if (last && last->end == first)
+        last->end += count;
+    else
+        scene->gaps.data[scene->gaps.len++] = (noc_scene_gap){
+            .first = first, .end = first + count, .before = last ? last->before + (last->end - last->first) : 0
+        };
 }
 
-static bool reserve_triangle_lights(noc_scene *scene) {
-    size_t lights = scene->lights.len;
-    for (size_t i = 0; i < scene->meshes.len; i++) {
-        const noc_scene_mesh *m = &scene->meshes.data[i];
-        for (size_t t = m->first_triangle; mesh_shines(scene, m) && t < (size_t)m->first_triangle + m->triangle_count;
-             t++)
-            lights += scene->triangle_light.data[t] == NOC_NO_LIGHT;
+size_t noc_scene_city_triangle(const noc_scene *scene, size_t i) {
+    size_t low = 0, high = scene->gaps.len; /* gaps below low lie before it */
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        const noc_scene_gap *g = &scene->gaps.data[middle];
+        if (g->first - g->before <= i)
+            low = middle + 1;
+        else
+            high = middle;
     }
-    return (array_reserve(&scene->lights, lights) && array_reserve(&scene->light_names, lights)) ||
-           noc_scene_out_of_memory(scene) == NOC_OK;
+    const noc_scene_gap *g = low ? &scene->gaps.data[low - 1] : NULL;
+    return i + (g ? g->before + (g->end - g->first) : 0);
 }
 
-/* A light a triangle, for every mesh whose material emits and whose triangles do not show a light yet. */
-static void make_triangle_lights(noc_scene *scene) {
-    for (size_t i = 0; i < scene->meshes.len; i++) {
-        const noc_scene_mesh *m = &scene->meshes.data[i];
-        const noc_material *mat = &scene->materials.data[m->material];
-        if (!mesh_shines(scene, m))
-            continue;
-        for (size_t t = m->first_triangle; t < (size_t)m->first_triangle + m->triangle_count; t++) {
-            if (scene->triangle_light.data[t] != NOC_NO_LIGHT)
-                continue;
-            const uint32_t *v = scene->indices.data + 3 * t;
-            const float *a = scene->positions.data + 3 * (size_t)v[0], *b = scene->positions.data + 3 * (size_t)v[1],
-                        *c = scene->positions.data + 3 * (size_t)v[2];
-            noc_light_record r = { .kind = NOC_LIGHT_TRIANGLE, .flags = mat->two_sided };
-            for (int k = 0; k < 3; k++) {
-                r.p[k] = a[k];
-                r.a[k] = b[k] - a[k];
-                r.b[k] = c[k] - a[k];
-                r.e[k] = mat->emission[k];
-            }
-            r.area = (float)(0.5 * double_area(a, b, c));
-            r.radius = noc_flat_size(&r);
-            scene->triangle_light.data[t] = (uint32_t)scene->lights.len;
-            scene->lights.data[scene->lights.len++] = r;
-            scene->light_names.data[scene->light_names.len++] = m->name;
-        }
+size_t noc_scene_mesh_of(const noc_scene *scene, size_t triangle) {
+    size_t low = 0, high = scene->meshes.len;
+    while (high - low > 1) {
+        size_t middle = (low + high) / 2;
+        *(scene->meshes.data[middle].first_triangle <= triangle ? &low : &high) = middle;
     }
-}
-
-noc_status noc_scene_commit(noc_scene *scene) {
-    if (!scene)
-        return NOC_ERR_ARGUMENT;
-    if (scene->committed)
-        return NOC_OK;
-    if (scene->no_memory || !reserve_triangle_lights(scene)) /* reported already */
-        return NOC_ERR_MEMORY;
-    make_triangle_lights(scene);
-    noc_light_record *aligned = noc_alloc_large(scene->lights.len, sizeof(*aligned));
-    if (!aligned)
-        return noc_scene_out_of_memory(scene);
-    if (scene->lights.len)
-        memcpy(aligned, scene->lights.data, scene->lights.len * sizeof(*aligned));
-    free(scene->lights.data);
-    scene->lights.data = aligned;
-    scene->lights.cap = scene->lights.len;
-    scene->committed = true;
-    return NOC_OK;
+    return low;
 }
 
 noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double origin[3]) {
@@ -304,39 +300,4 @@ noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double ori
     scene->crs_name = name;
     memcpy(scene->origin, origin, sizeof(scene->origin));
     return NOC_OK;
-}
-
-size_t noc_scene_bytes(const noc_scene *s) {
-    return s->positions.cap * sizeof(float) +
-           (s->indices.cap + s->triangle_material.cap + s->triangle_light.cap + s->moving.cap) * sizeof(uint32_t) +
-           s->lights.cap * sizeof(noc_light_record) + s->light_names.cap * sizeof(char *) +
-           s->meshes.cap * sizeof(noc_scene_mesh) + s->names.bytes;
-}
-
-void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info) {
-    if (!info)
-        return;
-    *info = (noc_scene_info){ 0 };
-    if (!scene)
-        return;
-    *info = (noc_scene_info){ .triangles = scene->indices.len / 3,
-                              .vertices = scene->positions.len / 3,
-                              .meshes = scene->meshes.len,
-                              .materials = scene->materials.len,
-                              .lights = scene->lights.len,
-                              .lights_inferred = scene->lights_inferred,
-                              .triangles_dropped = scene->triangles_dropped,
-                              .crs = scene->crs_name ? scene->crs_name : "" };
-    info->given_crs = scene->given_crs_name ? scene->given_crs_name : info->crs;
-    memcpy(info->given_origin, scene->given_crs_name ? scene->given_origin : scene->origin, sizeof(info->given_origin));
-    for (size_t i = 0; i < scene->lights.len; i++)
-        info->lights_by_kind[scene->lights.data[i].kind]++;
-    for (size_t t = 0; t < scene->triangle_material.len; t++)
-        info->triangles_by_class[scene->materials.data[scene->triangle_material.data[t]].cls]++;
-    memcpy(info->origin, scene->origin, sizeof(info->origin));
-    if (scene->indices.len) {
-        memcpy(info->bounds_min, scene->bounds_min, sizeof(info->bounds_min));
-        memcpy(info->bounds_max, scene->bounds_max, sizeof(info->bounds_max));
-    }
-    info->memory_bytes = noc_scene_bytes(scene);
 }

@@ -18,11 +18,17 @@ typedef struct noc_light_record {
     /* edge v; disc: second radius vector; the light faces a x b. Spot: offset of its falloff, inner and
      * outer angle in radians */
     float b[3];
-    uint32_t flags; /* bit 0: two-sided; bit 1: inferred; bit 2: NOC_LIGHT_MOVES */
-    float e[3];     /* cd/m2; point, spot: cd */
+    uint32_t flags; /* NOC_LIGHT_...; the group from bit NOC_LIGHT_GROUP on */
+    float e[3];     /* cd/m2; point, spot: cd; as its group scales it */
     float area;     /* m2; 0 for points and spots */
 } noc_light_record;
-#define NOC_LIGHT_MOVES 4u
+#define NOC_LIGHT_TWO_SIDED 1u
+#define NOC_LIGHT_INFERRED 2u
+#define NOC_LIGHT_MOVES 4u  /* of the moving half, else of the static one */
+#define NOC_LIGHT_FREE 8u   /* a slot without a light: no emission, never drawn */
+#define NOC_LIGHT_OWNED 16u /* comes and goes with a mesh or an instance */
+#define NOC_LIGHT_GROUP 16
+static inline uint32_t noc_light_group(const noc_light_record *r) { return r->flags >> NOC_LIGHT_GROUP; }
 _Static_assert(sizeof(noc_light_record) == 64, "light records are one cache line");
 
 /* 32 bytes. */
@@ -34,11 +40,99 @@ typedef struct noc_material_record {
 } noc_material_record;
 _Static_assert(sizeof(noc_material_record) == 32, "material records are half a cache line");
 
+/* Meshes lie one after the other in the arrays. One of a model is in the model's coordinates, and what it shows in
+ * triangle_light are lights of the model. */
 typedef struct noc_scene_mesh {
-    uint32_t first_triangle, triangle_count;
+    uint32_t first_triangle, triangle_count, first_vertex; /* its vertices end where the next mesh's begin */
     int material;
-    const char *name; /* in scene->names */
+    uint16_t model; /* 0: the world */
+    uint16_t group;
+    bool removed;     /* its ranges are dead */
+    const char *name; /* the scene's */
 } noc_scene_mesh;
+
+/* Meshes and lights in coordinates of their own. Published by a commit it does not change any more. */
+typedef struct noc_scene_model {
+    const char *name;
+    double bounds_min[3], bounds_max[3]; /* of its triangles; min > max where it has none */
+    NOC_ARRAY(noc_light_record) lights;
+    NOC_ARRAY(const char *) light_names; /* parallel to lights */
+    size_t shining;                      /* triangles that the commit at work makes lights of */
+    uint32_t instances;                  /* that show it */
+} noc_scene_model;
+
+/* A model placed in the world. */
+typedef struct noc_scene_instance {
+    uint32_t model;      /* 0: a free slot */
+    float transform[12]; /* model to world, rows of 3x4: rigid and one scale */
+    uint32_t *lights;    /* [lights of the model] each one's slot; owned */
+} noc_scene_instance;
+
+typedef struct noc_scene_group {
+    const char *name;
+    float scale[3];
+} noc_scene_group;
+
+/* Of the triangles between first and end none are the city's: the backdrop, models, removed meshes. before: so many
+ * triangles of earlier gaps. */
+typedef struct noc_scene_gap {
+    size_t first, end, before;
+} noc_scene_gap;
+
+/* Which places of an array are free. Who stages an addition gets the place that commit will give it. */
+typedef struct noc_slots {
+    NOC_ARRAY(uint32_t) free, released; /* released: by the commit at work, free for the next transaction */
+    uint32_t taken, fresh;              /* of the free ones, from the end on; and beyond the array's end */
+} noc_slots;
+
+typedef enum noc_edit_kind {
+    NOC_EDIT_MATERIAL,
+    NOC_EDIT_CLASS,
+    NOC_EDIT_GROUP,
+    NOC_EDIT_EMISSION,
+    NOC_EDIT_ADD_LIGHT,
+    NOC_EDIT_MOVE_LIGHT,
+    NOC_EDIT_REMOVE_LIGHT,
+    NOC_EDIT_REMOVE_MESH,
+    NOC_EDIT_ADD_INSTANCE,
+    NOC_EDIT_TRANSFORM,
+    NOC_EDIT_REMOVE_INSTANCE,
+} noc_edit_kind;
+
+/* One staged edit. */
+typedef struct noc_edit {
+    noc_edit_kind kind;
+    uint32_t index;   /* of what is edited */
+    uint32_t model;   /* added instance */
+    uint32_t *lights; /* of an added instance; made by the commit at work, else NULL */
+    const char *name;
+    union {
+        noc_material material;
+        float rgb[3];
+        float transform[12];
+        noc_light_record light;
+    };
+} noc_edit;
+
+/* How often commits have changed what. A follower compares with what it has seen. */
+typedef struct noc_scene_versions {
+    uint64_t commits;   /* that changed anything */
+    uint64_t geometry;  /* meshes added or removed, of the world or in new models */
+    uint64_t instances; /* added, removed, moved */
+    uint64_t materials; /* added or changed */
+    uint64_t lights;    /* added or removed: a slot holds another light than before */
+    uint64_t moved;     /* places, directions and shapes of lights of the moving half */
+    uint64_t emission;  /* what a light emits in all */
+    uint64_t standing;  /* of lights and emission those commits that changed the static half */
+} noc_scene_versions;
+
+typedef struct noc_range {
+    size_t first, end; /* first >= end: nothing */
+} noc_range;
+
+typedef struct noc_rgb {
+    float v[3];
+} noc_rgb;
 
 struct noc_scene {
     noc_log *log;
@@ -63,15 +157,29 @@ struct noc_scene {
     NOC_ARRAY(noc_material_record) material_records; /* parallel to materials */
     NOC_ARRAY(noc_light_record) lights;              /* data is 64-byte aligned after commit */
     NOC_ARRAY(const char *) light_names;             /* parallel to lights, entries may be NULL */
+    NOC_ARRAY(noc_rgb) light_made;                   /* emission before the group's scale; filled where `scaled` */
     NOC_ARRAY(uint32_t) moving;                      /* lights with NOC_LIGHT_MOVES */
-    /* calls that moved a light; those of them that changed what it emits in all */
-    uint64_t moves, power_changes;
+    NOC_ARRAY(noc_scene_model) models;               /* model m is at m - 1 */
+    NOC_ARRAY(noc_scene_instance) instances;
+    NOC_ARRAY(noc_scene_group) groups; /* group g is at g - 1; only who edits looks at them */
+    NOC_ARRAY(noc_scene_gap) gaps;     /* ascending, none touches the next */
     noc_arena names;
     size_t triangles_dropped, triangles_flat /* of these, for they have no area */, lights_inferred;
     double bounds_min[3], bounds_max[3];
     uint32_t backdrop_first, backdrop_count; /* triangles around the city: drawn, but no part of it */
     noc_camera own_camera;                   /* fov_deg 0: none */
+    bool scaled;                             /* a group's scale has been another than 1 */
     bool committed;
+    noc_scene_versions versions;
+    noc_range dirty_lights, dirty_materials; /* records that the last commit wrote or added */
+    /* What is staged: the editing thread's alone. Before the first commit meshes, materials and lights go straight
+     * into the arrays above. */
+    NOC_ARRAY(noc_edit) edits;
+    noc_scene *added; /* arrays that commit appends; its lights are empty. NULL: never needed */
+    noc_slots light_slots, instance_slots;
+    noc_arena later_names; /* of all that is named after the first commit */
+    size_t later_bytes;    /* of them, at the last commit */
+    struct noc_scene_lock *lock;
     bool no_memory;            /* was refused and reported: nothing more is added, and it cannot be committed */
     struct noc_ground *ground; /* built on first use of noc_scene_ground; freed with the scene */
 };
@@ -80,16 +188,102 @@ struct noc_scene {
  * not know it. A scene has one; false, and nothing happens, if it has one already or the mesh was refused. */
 bool noc_scene_add_backdrop(noc_scene *scene, const noc_mesh *mesh);
 
-/* Triangles of the city itself: their number, and the i-th. */
-static inline size_t noc_scene_city_triangles(const noc_scene *s) { return s->triangle_light.len - s->backdrop_count; }
-static inline size_t noc_scene_city_triangle(const noc_scene *s, size_t i) {
-    return i < s->backdrop_first ? i : i + s->backdrop_count;
+/* Triangles of the city itself, without the backdrop, models, and what was removed: their number, and the i-th. */
+static inline size_t noc_scene_city_triangles(const noc_scene *s) {
+    const noc_scene_gap *last = s->gaps.len ? &s->gaps.data[s->gaps.len - 1] : NULL;
+    return s->triangle_light.len - (last ? last->before + (last->end - last->first) : 0);
 }
+size_t noc_scene_city_triangle(const noc_scene *s, size_t i);
+/* Is the mesh of the city itself? */
+static inline bool noc_mesh_in_city(const noc_scene *s, const noc_scene_mesh *m) {
+    return !m->removed && !m->model && !(s->backdrop_count && m->first_triangle == s->backdrop_first);
+}
+/* Triangles behind all gaps that are no city's; room for one gap was reserved. */
+void noc_scene_add_gap(noc_scene *s, size_t first, size_t count);
+/* Index of the mesh that a triangle is of. */
+size_t noc_scene_mesh_of(const noc_scene *s, size_t triangle);
+static inline size_t noc_mesh_end_vertex(const noc_scene *s, size_t mesh) {
+    return mesh + 1 < s->meshes.len ? s->meshes.data[mesh + 1].first_vertex : s->positions.len / 3;
+}
+
+/* lock.c: who reads a scene and who publishes edits. A frame holds it for reading from its first look at the scene to
+ * its last. It lets a commit that waits go first, so that frames one after the other cannot keep it out; a thread must
+ * not hold two. Other readers only wait for a commit at work, and may ask while their thread holds a frame. */
+struct noc_scene_lock *noc_scene_lock_create(void) NOC_MUST_USE; /* NULL: no memory */
+void noc_scene_lock_destroy(struct noc_scene_lock *lock);
+void noc_scene_lock_frame(const noc_scene *s);
+void noc_scene_unlock_frame(const noc_scene *s);
+void noc_scene_lock_read(const noc_scene *s);
+void noc_scene_unlock_read(const noc_scene *s);
+void noc_scene_lock_commit(noc_scene *s);
+void noc_scene_unlock_commit(noc_scene *s);
+
+/* Where a mesh, a material or a model goes: the scene, or what its next commit appends; NULL after reporting that there
+ * is no memory. */
+noc_scene *noc_scene_adding(noc_scene *s);
+/* A copy in the scene's names, of NULL too. false: no memory, reported. */
+bool noc_scene_keep_name(noc_scene *s, const char *name, const char **kept);
+/* The model of this number, published or staged; NULL where there is none. */
+noc_scene_model *noc_scene_model_of(const noc_scene *s, int model);
+/* What is wrong with adding to that model, NULL if nothing. */
+const char *noc_scene_model_fault(const noc_scene *s, int model);
+/* Published and staged. */
+static inline size_t noc_scene_material_count(const noc_scene *s) {
+    return s->materials.len + (s->added ? s->added->materials.len : 0);
+}
+/* Places in arrays: see noc_slots. have: the array's length. */
+uint32_t noc_slot_next(const noc_slots *slots, size_t have);
+void noc_slot_take(noc_slots *slots);
+
+/* material.c */
+/* What is wrong with a material, NULL if nothing. */
+const char *noc_material_fault(const noc_material *m);
+noc_material_record noc_material_record_of(const noc_material *m);
+static inline bool noc_material_shines(const noc_material *m) { /* closures are not rendered, so they do not either */
+    return (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0) && m->cls != NOC_CLASS_CLOSURE;
+}
+/* Does it show a light that was added as one? It emits as that does, and reflects nothing. */
+bool noc_material_of_light(const noc_material *m);
+
+/* light.c */
+const char *noc_light_fault(const noc_light *l); /* what is wrong with it, NULL if nothing */
+noc_light_record noc_light_record_of(const noc_light *l);
+/* The light that a triangle of these corners is. */
+noc_light_record noc_triangle_light(const float *a, const float *b, const float *c, const noc_material *material);
+double noc_double_area(const float *a, const float *b, const float *c); /* twice a triangle's area */
+
+/* relight.c: slots of lights, and what commits put into them. None of these fails: commit has reserved. */
+typedef struct noc_changes {
+    bool geometry, instances, materials, lights, moved, emission, standing;
+    bool moving_left, shape_left; /* a moving light was removed; one with a shape was */
+    bool mesh_left, ground_left;  /* a mesh was removed; the ground's grids are stale */
+} noc_changes;
+uint32_t noc_light_add_slot(noc_scene *s);  /* behind all others */
+uint32_t noc_light_take_slot(noc_scene *s); /* a free one, or that */
+void noc_light_put(noc_scene *s, uint32_t slot, const noc_light_record *made, const char *name, noc_changes *c);
+void noc_light_release(noc_scene *s, uint32_t slot, noc_changes *c);
+/* Its record as made, which keeps its flags and is scaled by its group. */
+void noc_light_change(noc_scene *s, uint32_t slot, const noc_light_record *made, noc_changes *c);
+noc_light_record noc_light_made(const noc_scene *s, uint32_t slot); /* its record before the group's scale */
+void noc_light_scale_group(noc_scene *s, uint32_t group, const float scale[3], noc_changes *c);
+/* Makes the triangles of a mesh into lights, or anew, or puts them out, as its material says. */
+void noc_mesh_relight(noc_scene *s, const noc_scene_mesh *mesh, noc_changes *c);
+/* The same for a mesh of a model that has no instance yet: its triangles become lights of the model. */
+void noc_model_relight(noc_scene *s, const noc_scene_mesh *mesh);
+static inline void noc_range_add(noc_range *r, size_t i) {
+    *r = r->first < r->end ? (noc_range){ NOC_MIN(r->first, i), NOC_MAX(r->end, i + 1) } : (noc_range){ i, i + 1 };
+}
+
+/* model.c */
+/* A model's light where the transform puts it. */
+noc_light_record noc_light_placed(const noc_light_record *light, const float transform[12]);
+/* Bounds of a model where it stands, joined to lo..hi. */
+void noc_join_instance_bounds(const noc_scene *s, const noc_scene_instance *instance, double lo[3], double hi[3]);
 
 /* Bytes that it takes, about. */
 size_t noc_scene_bytes(const noc_scene *s);
 
-/* query.c: index of the object that a triangle is of, for noc_scene_object_name. */
+/* query.c: index of the object that a triangle is of, for noc_scene_object_name. Instances show their model's. */
 size_t noc_scene_object_of(const noc_scene *scene, uint32_t triangle);
 
 /* Luminous flux of a light over all directions that it emits to, lm. */

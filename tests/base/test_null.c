@@ -52,6 +52,24 @@ static noc_camera camera;
     P(0, noc_scene_commit(NULL) == NOC_ERR_ARGUMENT)                                                                   \
     P(0, noc_scene_move_light(NULL, 0, &(noc_light){ 0 }) == NOC_ERR_ARGUMENT)                                         \
     P(0, noc_scene_move_light(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                     \
+    P(0, noc_scene_add_model(NULL, "car") == -1)                                                                       \
+    P(0, noc_scene_add_group(NULL, "street") == -1)                                                                    \
+    P(0, noc_scene_add_instance(NULL, &(noc_instance){ 0 }) == -1)                                                     \
+    P(0, noc_scene_add_instance(scene, NULL) == -1)                                                                    \
+    P(0, noc_scene_set_transform(NULL, 0, (double[12]){ 0 }) == NOC_ERR_ARGUMENT)                                      \
+    P(0, noc_scene_set_transform(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                  \
+    P(0, noc_scene_remove_instance(NULL, 0) == NOC_ERR_ARGUMENT)                                                       \
+    P(0, noc_scene_instance_light(NULL, 0, 0) == -1)                                                                   \
+    P(0, noc_scene_set_material(NULL, 0, &(noc_material){ .roughness = 1 }) == NOC_ERR_ARGUMENT)                       \
+    P(0, noc_scene_set_material(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                   \
+    P(0, noc_scene_set_class_material(NULL, NOC_CLASS_WALL, &(noc_material){ .roughness = 1 }) == NOC_ERR_ARGUMENT)    \
+    P(0, noc_scene_set_class_material(scene, NOC_CLASS_WALL, NULL) == NOC_ERR_ARGUMENT)                                \
+    P(0, noc_scene_set_emission(NULL, 0, (float[3]){ 0 }) == NOC_ERR_ARGUMENT)                                         \
+    P(0, noc_scene_set_emission(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                   \
+    P(0, noc_scene_set_group(NULL, 1, (float[3]){ 0 }) == NOC_ERR_ARGUMENT)                                            \
+    P(0, noc_scene_set_group(scene, 1, NULL) == NOC_ERR_ARGUMENT)                                                      \
+    P(0, noc_scene_remove_light(NULL, 0) == NOC_ERR_ARGUMENT)                                                          \
+    P(0, noc_scene_remove_mesh(NULL, 0) == NOC_ERR_ARGUMENT)                                                           \
     P(0, noc_scene_get_light(NULL, 0, &(noc_light_info){ 0 }) == NOC_ERR_ARGUMENT)                                     \
     P(0, noc_scene_get_light(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                      \
     P(0, noc_scene_object_name(NULL, 0) == NULL)                                                                       \

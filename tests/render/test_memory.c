@@ -19,6 +19,7 @@ static void pose(noc_scene *s, int frame) {
         noc_light l = moving_light(i, frame);
         assert_int_equal(noc_scene_move_light(s, STANDING + i, &l), NOC_OK);
     }
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
 }
 
 /* A floor, a wall, screens between, lamps and lit windows that stand, and some lights that move. */

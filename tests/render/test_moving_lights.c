@@ -33,6 +33,7 @@ static void pose(noc_scene *s, int frame) {
         noc_light l = light_at(i, frame);
         assert_int_equal(noc_scene_move_light(s, 2 * i + 1, &l), NOC_OK);
     }
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
 }
 
 /* Boxes in a yard that throw shadows, weak lights that stand, and between them those that move. */

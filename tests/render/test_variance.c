@@ -138,6 +138,7 @@ static void rise(noc_scene *s, bool up) {
         .kind = NOC_LIGHT_POINT, .moving = true, .position = { 0, 2, up ? 3 : -0.5 }, .emission = { 30, 30, 30 }
     };
     assert_int_equal(noc_scene_move_light(s, 0, &l), NOC_OK);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
 }
 
 /* A lamp that was learned to be hidden, under the floor, and comes up. Measured: 0.14, and 0.52 where the pull of a

@@ -127,7 +127,7 @@ static void resolve(const stage_run *run, worker *w, int count) {
 static void combine(stage_run *run, const struct core_context *there, worker *w, int count, const float eye[3],
                     uint32_t dim) {
     frame_buffers *b = &run->s->b;
-    bool rays = run->ctx.frame->plan->bias_rays;
+    bool rays = noc_uses_bias_rays(run->ctx.frame->params);
     w->batch.count = 0;
     for (int i = 0; i < count; i++) {
         begin(run, there, &w->combining[i], eye, dim);

@@ -198,32 +198,34 @@ static const object_record *find_named(const object_records *all, const object_n
     return NULL;
 }
 
-noc_status repeat_object(importer *im, input *in, const object_now *now, const char *id) {
-    if (in->object_decided || !now->any)
+noc_status repeat_object(importer *im, const char *id, bool *repeated) {
+    object_now *now = &im->now;
+    *repeated = now->repeated;
+    if (now->decided || !now->any)
         return NOC_OK;
-    in->object_decided = true;
-    size_t index = (size_t)(in - im->inputs);
+    now->decided = true;
     uint64_t name = hash_text(id);
     const object_record *r = find_equal(&im->records, now, now->kind);
     if (!r && *id)
-        r = find_named(&im->records, now, now->kind, name, index);
+        r = find_named(&im->records, now, now->kind, name, im->current);
     if (r) {
-        geo_issue(in->found, GEO_SPARED,
-                  r->input == index ? "object that the file holds twice: taken once"
-                                    : "object that another file holds, too: taken once",
+        input *in = &im->inputs[im->current];
+        geo_issue(in->issues, GEO_SPARED,
+                  r->input == im->current ? "object that the file holds twice: taken once"
+                                          : "object that another file holds, too: taken once",
                   id);
         in->file.objects_repeated++;
-        in->object_repeated = true;
+        *repeated = now->repeated = true;
         return NOC_OK;
     }
-    object_record record = { .shape = now->shape, .input = (uint32_t)index, .kind = (uint32_t)now->kind };
+    object_record record = { .shape = now->shape, .input = (uint32_t)im->current, .kind = (uint32_t)now->kind };
     for (int k = 0; k < 3; k++) {
         record.lo[k] = (float)now->lo[k];
         record.hi[k] = (float)now->hi[k];
     }
     record.place = place_key(name, now->kind, floor((now->lo[0] + now->hi[0]) / 2 / CELL),
                              floor((now->lo[1] + now->hi[1]) / 2 / CELL));
-    return add_record(&im->records, record) ? NOC_OK : noc_no_memory(im->log, in->path);
+    return add_record(&im->records, record) ? NOC_OK : noc_no_memory(im->log, im->inputs[im->current].path);
 }
 
 void repeat_free(object_records *records) {

@@ -1,0 +1,84 @@
+/* Materials, and what each class of surface is made of. */
+#include "scene/scene.h"
+
+/* Reflectances: typical values for dry surfaces (CIE 144:2001 for roads; IESNA Lighting Handbook, building materials).
+ */
+#define CLASSES                                                                                                        \
+    CLASS(NOC_CLASS_OTHER, "other", .30f, .30f, .30f, 0, 1)                                                            \
+    CLASS(NOC_CLASS_WALL, "wall", .46f, .42f, .36f, 0, 1)                                                              \
+    CLASS(NOC_CLASS_ROOF, "roof", .26f, .15f, .11f, .02f, .7f)                                                         \
+    CLASS(NOC_CLASS_GROUND, "ground", .20f, .20f, .19f, 0, 1)                                                          \
+    CLASS(NOC_CLASS_CLOSURE, "closure", .30f, .30f, .30f, 0, 1)                                                        \
+    CLASS(NOC_CLASS_WINDOW, "window", .05f, .06f, .07f, .06f, .15f)                                                    \
+    CLASS(NOC_CLASS_DOOR, "door", .20f, .13f, .08f, .04f, .5f)                                                         \
+    CLASS(NOC_CLASS_INSTALLATION, "installation", .38f, .36f, .33f, 0, 1)                                              \
+    CLASS(NOC_CLASS_TERRAIN, "terrain", .17f, .17f, .14f, 0, 1)                                                        \
+    CLASS(NOC_CLASS_ROAD, "road", .09f, .09f, .09f, .04f, .55f)                                                        \
+    CLASS(NOC_CLASS_SIDEWALK, "sidewalk", .25f, .24f, .23f, .02f, .8f)                                                 \
+    CLASS(NOC_CLASS_GREEN, "green", .08f, .13f, .05f, 0, 1)                                                            \
+    CLASS(NOC_CLASS_TREE, "tree", .07f, .12f, .04f, 0, 1)                                                              \
+    CLASS(NOC_CLASS_WATER, "water", .02f, .03f, .04f, .02f, .12f)                                                      \
+    CLASS(NOC_CLASS_BRIDGE, "bridge", .30f, .29f, .27f, 0, 1)                                                          \
+    CLASS(NOC_CLASS_FURNITURE, "furniture", .22f, .22f, .22f, .04f, .5f)                                               \
+    CLASS(NOC_CLASS_LAMP, "lamp", .10f, .10f, .10f, .04f, .4f)                                                         \
+    CLASS(NOC_CLASS_VEHICLE, "vehicle", .20f, .05f, .05f, .05f, .25f)
+
+#define CLASS(id, text, r, g, b, spec, rough) [id] = text,
+const char *const noc_class_names[NOC_CLASS_COUNT] = { CLASSES };
+#undef CLASS
+#define CLASS(id, text, r, g, b, spec, rough)                                                                          \
+    [id] = { .albedo = { r, g, b }, .f0 = spec, .roughness = rough, .cls = id },
+static const noc_material class_materials[NOC_CLASS_COUNT] = { CLASSES };
+#undef CLASS
+
+const char *noc_class_name(noc_class cls) { return (unsigned)cls < NOC_CLASS_COUNT ? noc_class_names[cls] : "unknown"; }
+
+noc_material noc_class_material(noc_class cls) {
+    return class_materials[(unsigned)cls < NOC_CLASS_COUNT ? cls : NOC_CLASS_OTHER];
+}
+
+static bool in_range(float x, float lo, float hi) { return x >= lo && x <= hi; } /* false for NaN */
+
+const char *noc_material_fault(const noc_material *m) {
+    bool ok = in_range(m->f0, 0, 1) && in_range(m->roughness, 0.05f, 1) && (unsigned)m->cls < NOC_CLASS_COUNT;
+    for (int i = 0; i < 3; i++)
+        ok = ok && in_range(m->albedo[i], 0, 1) && in_range(m->emission[i], 0, 1e12f);
+    return ok ? NULL : "albedo and f0 must be in 0..1, roughness in 0.05..1, emission finite and not negative";
+}
+
+noc_material_record noc_material_record_of(const noc_material *m) {
+    noc_material_record r = { .f0 = m->f0, .alpha = m->roughness * m->roughness };
+    memcpy(r.albedo, m->albedo, sizeof(r.albedo));
+    memcpy(r.emission, m->emission, sizeof(r.emission));
+    return r;
+}
+
+bool noc_material_of_light(const noc_material *m) {
+    return m->cls == NOC_CLASS_LAMP && m->albedo[0] == 0 && m->albedo[1] == 0 && m->albedo[2] == 0 && m->f0 == 0 &&
+           !m->two_sided;
+}
+
+int noc_scene_add_material(noc_scene *scene, const noc_material *m) {
+    if (!scene || !m) {
+        noc_null(scene ? scene->log : NULL, __func__);
+        return -1;
+    }
+    if (scene->no_memory)
+        return -1;
+    const char *wrong = noc_material_fault(m);
+    if (wrong) {
+        noc_error(scene->log, NOC_ERR_ARGUMENT, "material: %s", wrong);
+        return -1;
+    }
+    noc_scene *to = noc_scene_adding(scene);
+    if (!to)
+        return -1;
+    if (!array_reserve(&to->materials, to->materials.len + 1) ||
+        !array_reserve(&to->material_records, to->materials.len + 1)) {
+        noc_scene_out_of_memory(scene);
+        return -1;
+    }
+    to->materials.data[to->materials.len++] = *m;
+    to->material_records.data[to->material_records.len++] = noc_material_record_of(m);
+    return (int)noc_scene_material_count(scene) - 1;
+}

@@ -1,0 +1,135 @@
+/* Slots of lights: what commit puts into them, changes, and takes out. */
+#include "scene/scene.h"
+
+static const noc_light_record free_slot = { .kind = NOC_LIGHT_POINT, .flags = NOC_LIGHT_FREE };
+
+uint32_t noc_light_add_slot(noc_scene *s) {
+    s->lights.data[s->lights.len++] = free_slot;
+    s->light_names.data[s->light_names.len++] = NULL;
+    if (s->scaled)
+        s->light_made.data[s->light_made.len++] = (noc_rgb){ { 0, 0, 0 } };
+    return (uint32_t)s->lights.len - 1;
+}
+
+uint32_t noc_light_take_slot(noc_scene *s) {
+    noc_slots *slots = &s->light_slots;
+    return slots->taken < slots->free.len ? slots->free.data[slots->free.len - 1 - slots->taken++]
+                                          : noc_light_add_slot(s);
+}
+
+/* Writes a slot's record: `made`, scaled by its group. */
+static void write_record(noc_scene *s, uint32_t slot, const noc_light_record *made) {
+    noc_light_record *r = &s->lights.data[slot];
+    uint32_t group = noc_light_group(made);
+    *r = *made;
+    if (s->scaled)
+        memcpy(s->light_made.data[slot].v, made->e, sizeof(made->e));
+    for (int k = 0; group && k < 3; k++)
+        r->e[k] *= s->groups.data[group - 1].scale[k];
+    noc_range_add(&s->dirty_lights, slot);
+}
+
+void noc_light_put(noc_scene *s, uint32_t slot, const noc_light_record *made, const char *name, noc_changes *c) {
+    write_record(s, slot, made);
+    s->light_names.data[slot] = name;
+    s->lights_inferred += (made->flags & NOC_LIGHT_INFERRED) != 0;
+    if (made->flags & NOC_LIGHT_MOVES)
+        s->moving.data[s->moving.len++] = slot;
+    c->standing |= !(made->flags & NOC_LIGHT_MOVES);
+    c->lights = true;
+}
+
+void noc_light_release(noc_scene *s, uint32_t slot, noc_changes *c) {
+    uint32_t flags = s->lights.data[slot].flags;
+    s->lights_inferred -= (flags & NOC_LIGHT_INFERRED) != 0;
+    c->moving_left |= (flags & NOC_LIGHT_MOVES) != 0;
+    c->standing |= !(flags & NOC_LIGHT_MOVES);
+    c->lights = true;
+    write_record(s, slot, &free_slot);
+    s->light_names.data[slot] = NULL;
+    s->light_slots.released.data[s->light_slots.released.len++] = slot;
+}
+
+noc_light_record noc_light_made(const noc_scene *s, uint32_t slot) {
+    noc_light_record r = s->lights.data[slot];
+    if (s->scaled)
+        memcpy(r.e, s->light_made.data[slot].v, sizeof(r.e));
+    return r;
+}
+
+void noc_light_change(noc_scene *s, uint32_t slot, const noc_light_record *made, noc_changes *c) {
+    noc_light_record before = s->lights.data[slot], to = *made, have = noc_light_made(s, slot);
+    if (!memcmp(&have, &to, sizeof(to)))
+        return;
+    write_record(s, slot, &to);
+    const noc_light_record *now = &s->lights.data[slot];
+    bool spot = now->kind == NOC_LIGHT_SPOT; /* its cones say how much of its intensity leaves it */
+    bool power = memcmp(before.e, now->e, sizeof(now->e)) || before.area != now->area || before.flags != now->flags ||
+                 (spot && memcmp(before.b, now->b, sizeof(now->b)));
+    c->emission |= power;
+    c->standing |= power && !(now->flags & NOC_LIGHT_MOVES);
+    c->moved |= memcmp(before.p, now->p, sizeof(now->p)) || memcmp(before.a, now->a, sizeof(now->a)) ||
+                memcmp(before.b, now->b, sizeof(now->b)) || before.radius != now->radius;
+}
+
+void noc_light_scale_group(noc_scene *s, uint32_t group, const float scale[3], noc_changes *c) {
+    noc_scene_group *g = &s->groups.data[group - 1];
+    if (!memcmp(g->scale, scale, sizeof(g->scale)))
+        return;
+    memcpy(g->scale, scale, sizeof(g->scale));
+    if (!s->scaled)
+        for (; s->light_made.len < s->lights.len; s->light_made.len++)
+            memcpy(s->light_made.data[s->light_made.len].v, s->lights.data[s->light_made.len].e, sizeof(noc_rgb));
+    s->scaled = true;
+    for (uint32_t i = 0; i < s->lights.len; i++)
+        if (noc_light_group(&s->lights.data[i]) == group) {
+            noc_light_record made = noc_light_made(s, i);
+            write_record(s, i, &made);
+            c->emission = true;
+            c->standing |= !(made.flags & NOC_LIGHT_MOVES);
+        }
+}
+
+static noc_light_record light_of(const noc_scene *s, const noc_scene_mesh *m, size_t t) {
+    const uint32_t *v = s->indices.data + 3 * t;
+    const float *p = s->positions.data;
+    noc_light_record r = noc_triangle_light(p + 3 * (size_t)v[0], p + 3 * (size_t)v[1], p + 3 * (size_t)v[2],
+                                            &s->materials.data[m->material]);
+    r.flags |= (uint32_t)m->group << NOC_LIGHT_GROUP;
+    return r;
+}
+
+void noc_mesh_relight(noc_scene *s, const noc_scene_mesh *m, noc_changes *c) {
+    bool shines = noc_material_shines(&s->materials.data[m->material]);
+    for (size_t t = m->first_triangle; t < (size_t)m->first_triangle + m->triangle_count; t++) {
+        uint32_t *light = &s->triangle_light.data[t];
+        bool lit = *light != NOC_NO_LIGHT;
+        if (lit && !(s->lights.data[*light].flags & NOC_LIGHT_OWNED))
+            continue; /* it shows a light that was added as one */
+        if (!shines) {
+            if (lit)
+                noc_light_release(s, *light, c);
+            *light = NOC_NO_LIGHT;
+            continue;
+        }
+        noc_light_record r = light_of(s, m, t);
+        if (lit) {
+            noc_light_change(s, *light, &r, c);
+        } else {
+            *light = noc_light_take_slot(s);
+            noc_light_put(s, *light, &r, m->name, c);
+        }
+    }
+}
+
+void noc_model_relight(noc_scene *s, const noc_scene_mesh *m) {
+    noc_scene_model *model = &s->models.data[m->model - 1];
+    for (size_t t = m->first_triangle; t < (size_t)m->first_triangle + m->triangle_count; t++) {
+        uint32_t *light = &s->triangle_light.data[t];
+        if (*light != NOC_NO_LIGHT || !noc_material_shines(&s->materials.data[m->material]))
+            continue;
+        *light = (uint32_t)model->lights.len;
+        model->lights.data[model->lights.len++] = light_of(s, m, t);
+        model->light_names.data[model->light_names.len++] = m->name;
+    }
+}
