@@ -122,10 +122,11 @@ static bool run(const noc_scene *s, noc_viewpoint view, int shared, int points, 
     p.candidates = NOC_CANDIDATES_UNIFORM;
     p.jitter = false;
     noc_frame f = { .params = &p };
+    noc_make_frame_constants(&p, 0, false, &f.constants);
     noc_stage primary = { .passes = 1u << NOC_PASS_PRIMARY };
     bool ok = noc_scene_camera(s, view, (double)WIDTH / HEIGHT, &camera) == NOC_OK;
     if (ok) {
-        noc_make_frame_camera(&camera, &p, 0, &f.camera);
+        noc_make_frame_camera(&camera, &p, 0, &f.constants.camera);
         noc_backend_embree.resize(state, WIDTH, HEIGHT, 1);
         ok = noc_cpu_prepare_lights(b.e, &p) == NOC_OK &&
              noc_backend_embree.stage(state, &f, &primary, NULL, 0, 1) == NOC_OK;

@@ -102,7 +102,8 @@ static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, 
     cpu_view *e = state;
     noc_render_params p = params_of(width, height, NOC_METHOD_RIS, 32, true);
     noc_frame f = { .params = &p };
-    noc_make_frame_camera(camera, &p, 0, &f.camera);
+    noc_make_frame_constants(&p, 0, false, &f.constants);
+    noc_make_frame_camera(camera, &p, 0, &f.constants.camera);
     noc_backend_embree.resize(state, width, height, 1);
     noc_stage primary = { .passes = 1u << NOC_PASS_PRIMARY };
     double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
@@ -117,8 +118,11 @@ static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, 
            wall, cpu, (double)c->bytes / (double)s->lights.len);
     noc_clusters_destroy(c);
     const frame_buffers *b = &e->b;
-    struct core_context ctx = { s->lights.data, (uint32_t)s->lights.len, s->material_records.data, &f,
-                                e->sources.clusters };
+    struct core_context ctx = { .frame = &f.constants,
+                                .lights = s->lights.data,
+                                .light_count = (uint32_t)s->lights.len,
+                                .materials = s->material_records.data,
+                                .clusters = e->sources.clusters };
     double *us = noc_alloc((size_t)rounds * sizeof(*us)), entries = 0;
     size_t tiles = 0;
     for (int round = 0; round < rounds; round++) {

@@ -252,12 +252,13 @@ int main(int argc, char **argv) {
     p.height = height;
     p.method = NOC_METHOD_RIS;
     noc_frame frame = { .params = &p };
-    noc_make_frame_camera(&camera, &p, 0, &frame.camera);
+    noc_make_frame_constants(&p, 0, false, &frame.constants);
+    noc_make_frame_camera(&camera, &p, 0, &frame.constants.camera);
     const noc_stage stage = { .passes = 1u << NOC_PASS_PRIMARY | 1u << NOC_PASS_CANDIDATES };
     struct core_context ctx = { .lights = scene->lights.data,
                                 .light_count = (uint32_t)scene->lights.len,
                                 .materials = scene->material_records.data,
-                                .frame = &frame };
+                                .frame = &frame.constants };
     static const noc_candidates sources[] = { NOC_CANDIDATES_UNIFORM, NOC_CANDIDATES_LISTS };
     for (int i = 0; set.blocks && i < 4; i++) {
         p.candidates = sources[i / 2];

@@ -9,7 +9,7 @@ root=${NOC_SOURCE:-$(cd "$(dirname "$0")/.." && pwd)}
 arrows='
 base:
 core:
-scene:
+scene: core
 geo: scene
 image:
 light: scene core

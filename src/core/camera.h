@@ -3,6 +3,7 @@
 #define CORE_CAMERA_H
 
 #include "core/dialect.h"
+#include "core/frame.h"
 
 struct camera {
     v3 eye;
@@ -18,6 +19,19 @@ struct camera {
 #ifndef CORE_GLSL
 typedef struct camera camera;
 #endif
+
+FN camera camera_of(frame_camera f) {
+    camera c;
+    c.eye = splat3(f.eye);
+    c.right = splat3(f.right);
+    c.up = splat3(f.up);
+    c.forward = splat3(f.forward);
+    c.inv_right2 = K(f.inv_right2);
+    c.inv_up2 = K(f.inv_up2);
+    c.width = K(f.width);
+    c.height = K(f.height);
+    return c;
+}
 
 /* Unnormalised direction through a place in the picture. */
 FN v3 camera_direction(camera c, real px, real py) {

@@ -108,6 +108,9 @@ typedef struct {
 
 #endif
 
+/* An array of three uniform floats. */
+#define splat3(a) V3(K((a)[0]), K((a)[1]), K((a)[2]))
+
 /* to_real takes values below 2^31, to_u32 truncates values in [0, 2^31). min_ and max_ give b where either is NaN.
  * high_u32 is the upper half of the 64-bit product. */
 

@@ -15,14 +15,8 @@
 #define CORE_LIGHT_H
 
 #include "core/fan.h"
+#include "core/records.h"
 
-#define LIGHT_SPHERE 0u
-#define LIGHT_DISC 1u
-#define LIGHT_TRIANGLE 2u
-#define LIGHT_PARALLELOGRAM 3u
-#define LIGHT_POINT 4u
-#define LIGHT_SPOT 5u
-#define LIGHT_TWO_SIDED 1u /* flag */
 /* Flat lights are sampled by solid angle where p is nearer than so many times `radius`; discs, which lose a fifth of
  * their samples by it, nearer than so many. */
 #define LIGHT_CLOSE 2.0f
@@ -49,6 +43,27 @@ struct light_sample {
 typedef struct light light;
 typedef struct light_sample light_sample;
 #endif
+
+#if !defined(CORE_GLSL) && !defined(CORE_LANES)
+#define LIGHT_FIELD(field) (offsetof(struct light, field) == offsetof(struct light_record, field))
+_Static_assert(sizeof(struct light) == sizeof(struct light_record) && LIGHT_FIELD(kind) && LIGHT_FIELD(a) &&
+                   LIGHT_FIELD(radius) && LIGHT_FIELD(b) && LIGHT_FIELD(flags) && LIGHT_FIELD(e) && LIGHT_FIELD(area),
+               "a scalar light is its record");
+#endif
+
+/* From memory, the same light in every lane. */
+FN light light_of_record(light_record r) {
+    light l;
+    l.p = splat3(r.p);
+    l.kind = KU(r.kind);
+    l.a = splat3(r.a);
+    l.radius = K(r.radius);
+    l.b = splat3(r.b);
+    l.flags = KU(r.flags);
+    l.e = splat3(r.e);
+    l.area = K(r.area);
+    return l;
+}
 
 /* A place without extent, that no shape shows. */
 FN mask is_point(light l) { return l.kind >= KU(LIGHT_POINT); }

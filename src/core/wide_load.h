@@ -103,8 +103,6 @@ FN void light_prefetch(const float *records, u32 index) {
 
 #else /* scalar: struct light is the record */
 
-_Static_assert(sizeof(light) == 4 * LIGHT_RECORD_FLOATS, "struct light has the layout of a record");
-
 FN light light_from_records(const float *records, u32 index) {
     light l;
     memcpy(&l, records + (size_t)index * LIGHT_RECORD_FLOATS, sizeof(l));

@@ -27,7 +27,7 @@ noc_light_bound noc_bound_light(const noc_light_record *l) {
             b.n[k] = (float)(l->a[k] / len);
         return b;
     }
-    if (!(l->flags & 1)) {
+    if (!(l->flags & LIGHT_TWO_SIDED)) {
         double n[3] = { (double)l->a[1] * l->b[2] - (double)l->a[2] * l->b[1],
                         (double)l->a[2] * l->b[0] - (double)l->a[0] * l->b[2],
                         (double)l->a[0] * l->b[1] - (double)l->a[1] * l->b[0] };

@@ -3,16 +3,9 @@
 #ifndef NOC_BACKEND_H
 #define NOC_BACKEND_H
 
+#include "core/frame.h"
 #include "scene/scene.h"
 #include <nocturne/render.h>
-
-/* Camera as rays use it, in the scene's local frame: the fields of core/camera.h, and the place of this frame's rays in
- * their pixels, 0..1. */
-typedef struct noc_frame_camera {
-    float eye[3], right[3], up[3], forward[3];
-    float inv_right2, inv_up2, width, height;
-    float jitter[2];
-} noc_frame_camera;
 
 /* Sets of reservoirs. The schedule names them; a backend holds NOC_RESERVOIR_SETS of them, or as many as it was told.
  */
@@ -21,12 +14,11 @@ enum { NOC_RESERVOIR_SETS = 3 };
 /* One frame. Nothing in it changes while the frame is run. */
 typedef struct noc_frame {
     const noc_render_params *params;
-    uint32_t index;       /* since the last reset: the frame's random numbers */
-    uint64_t accumulated; /* frames in the mean so far; 0 starts it anew */
-    noc_frame_camera camera, previous;
-    bool history;    /* the frame before is of the same size and parameters: its reservoirs can be reused */
-    int history_set; /* set that holds the previous frame's reservoirs */
-    int gbuffer;     /* 0 or 1: this frame's G-buffer; the other one holds the previous frame's */
+    frame_constants constants; /* what kernels and shaders read of it */
+    uint64_t accumulated;      /* frames in the mean so far; 0 starts it anew */
+    bool history;              /* the frame before is of the same size and parameters: its reservoirs can be reused */
+    int history_set;           /* set that holds the previous frame's reservoirs */
+    int gbuffer;               /* 0 or 1: this frame's G-buffer; the other one holds the previous frame's */
 } noc_frame;
 
 /* A run over all pixels of passes that only look at their own pixel, or at what an earlier stage (or frame) has left.
@@ -93,7 +85,9 @@ extern const noc_backend noc_backend_embree;
 /* Everything of a camera that can be wrong, as one reported error. */
 noc_status noc_check_camera(const noc_camera *camera, noc_log *log);
 void noc_make_frame_camera(const noc_camera *camera, const noc_render_params *params, uint32_t frame,
-                           noc_frame_camera *out);
+                           frame_camera *out);
+/* The constants of a frame of these parameters, but for its cameras. history: as in noc_frame. */
+void noc_make_frame_constants(const noc_render_params *params, uint32_t frame, bool history, frame_constants *out);
 /* What to run for these parameters. history_set: set with the previous frame's reservoirs. */
 void noc_make_schedule(const noc_render_params *params, int history_set, noc_schedule *schedule);
 /* Visibility is a part of the reservoirs' own target functions, and of their combination: see docs/estimator.md. */
@@ -125,7 +119,7 @@ typedef struct noc_history {
     bool reusable; /* that frame was completed, and its reservoirs are there */
     noc_render_params params;
     noc_camera camera;
-    noc_frame_camera view;
+    frame_camera view;
     uint32_t index; /* of the next frame */
     uint64_t accumulated;
     uint64_t commits; /* of the scene, that the frame knew */

@@ -1,4 +1,6 @@
 /* What is rendered in one frame, and in which order. */
+#include "core/blocks.h"
+#include "light/influence.h"
 #include "render/backend.h"
 
 #include <math.h>
@@ -59,7 +61,7 @@ static void frame_jitter(const noc_render_params *p, uint32_t frame, float out[2
 }
 
 void noc_make_frame_camera(const noc_camera *camera, const noc_render_params *params, uint32_t frame,
-                           noc_frame_camera *out) {
+                           frame_camera *out) {
     vec eye = load(camera->eye), target = load(camera->target), up = load(camera->up);
     vec forward = { target.x - eye.x, target.y - eye.y, target.z - eye.z };
     forward = scale(forward, 1 / norm(forward));
@@ -72,7 +74,7 @@ void noc_make_frame_camera(const noc_camera *camera, const noc_render_params *pa
     right = scale(right, 1 / norm(right));
     up = cross(right, forward);
     double t = tan(camera->fov_deg * M_PI / 360), aspect = (double)params->width / params->height;
-    *out = (noc_frame_camera){ .width = (float)params->width, .height = (float)params->height };
+    *out = (frame_camera){ .width = (float)params->width, .height = (float)params->height };
     store(eye, out->eye);
     store(forward, out->forward);
     store(scale(right, t * aspect), out->right);
@@ -80,6 +82,35 @@ void noc_make_frame_camera(const noc_camera *camera, const noc_render_params *pa
     out->inv_right2 = (float)(1 / (t * aspect * t * aspect));
     out->inv_up2 = (float)(1 / (t * t));
     frame_jitter(params, frame, out->jitter);
+}
+
+_Static_assert((int)BIAS_BIASED == NOC_BIAS_BIASED && (int)BIAS_MIS == NOC_BIAS_MIS &&
+                   (int)BIAS_PAIRWISE == NOC_BIAS_PAIRWISE,
+               "a frame's bias is a noc_bias");
+
+void noc_make_frame_constants(const noc_render_params *p, uint32_t frame, bool history, frame_constants *out) {
+    uint32_t flags = (history ? FRAME_HISTORY : 0) | (p->emitters ? FRAME_EMITTERS : 0) |
+                     (p->final_ray ? FRAME_FINAL_RAY : 0) | (noc_uses_bias_rays(p) ? FRAME_BIAS_RAYS : 0);
+    *out = (frame_constants){ .width = (uint32_t)p->width,
+                              .height = (uint32_t)p->height,
+                              .blocks_x = ((uint32_t)p->width + BLOCK_SIDE - 1) / BLOCK_SIDE,
+                              .seed = p->seed,
+                              .index = frame,
+                              .flags = flags,
+                              .bias = (uint32_t)p->bias,
+                              .draws = (uint32_t)p->draws,
+                              .list = (uint32_t)p->list,
+                              .tail = (uint32_t)p->tail,
+                              .shadow_rays = (uint32_t)p->shadow_rays,
+                              .uniform_every = (uint32_t)p->uniform_every,
+                              .rays = (uint32_t)p->rays,
+                              .neighbours = (uint32_t)p->neighbours,
+                              .influence = noc_influence_scale(p->influence),
+                              .radius = (float)p->radius,
+                              .m_max = (float)(p->history * p->draws),
+                              .reject_depth = (float)p->reject_depth,
+                              .reject_normal = (float)p->reject_normal,
+                              .sky = (float)p->sky };
 }
 
 #define BIT(pass) (1u << NOC_PASS_##pass)

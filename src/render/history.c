@@ -28,13 +28,14 @@ void noc_history_begin(noc_history *h, const noc_camera *camera, const noc_rende
     if (h->started && (!same_camera(&h->camera, camera) || h->commits != commits))
         h->accumulated = 0;
     *frame = (noc_frame){ .params = params,
-                          .index = h->index,
                           .accumulated = params->accumulate ? h->accumulated : 0,
                           .history = h->started && h->reusable,
                           .history_set = h->set,
                           .gbuffer = 1 - h->gbuffer };
-    noc_make_frame_camera(camera, params, h->index, &frame->camera);
-    frame->previous = frame->history ? h->view : frame->camera;
+    frame_constants *c = &frame->constants;
+    noc_make_frame_constants(params, h->index, frame->history, c);
+    noc_make_frame_camera(camera, params, h->index, &c->camera);
+    c->previous = frame->history ? h->view : c->camera;
     h->started = true;
     h->reusable = false; /* until the frame is completed */
     h->params = *params;
@@ -43,7 +44,7 @@ void noc_history_begin(noc_history *h, const noc_camera *camera, const noc_rende
 }
 
 void noc_history_end(noc_history *h, const noc_frame *frame, int next_set) {
-    h->view = frame->camera;
+    h->view = frame->constants.camera;
     h->gbuffer = frame->gbuffer;
     h->set = next_set;
     h->reusable = next_set >= 0;

@@ -118,7 +118,7 @@ static noc_status make_frame(noc_view *v, const noc_camera *camera, const noc_re
     for (; stage < schedule.count && status == NOC_OK; stage++)
         status = v->backend->stage(v->state, &frame, &schedule.stages[stage], progress, (double)stage / schedule.count,
                                    (double)(stage + 1) / schedule.count);
-    noc_frame_stats stats = { .dropped = frame.index ? v->stats.dropped : 0 };
+    noc_frame_stats stats = { .dropped = frame.constants.index ? v->stats.dropped : 0 };
     if (status == NOC_OK)
         status = v->backend->accumulate(v->state, &frame);
     if (status == NOC_OK)

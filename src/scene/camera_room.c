@@ -14,7 +14,7 @@ enum { GRID = 12, PLACES = 8, FAN = 5 };
 /* Does the light shine into what lies below the ceiling at height z? One let into the ceiling looks down from it, or
  * both ways. */
 static bool is_below(const noc_light_record *r, const double p[3], double z, double slack) {
-    bool down = r->kind != NOC_LIGHT_TRIANGLE || (r->flags & 1) || r->a[0] * r->b[1] < r->a[1] * r->b[0];
+    bool down = r->kind != NOC_LIGHT_TRIANGLE || (r->flags & LIGHT_TWO_SIDED) || r->a[0] * r->b[1] < r->a[1] * r->b[0];
     return z > p[2] + slack || (down && z >= p[2] - slack);
 }
 

@@ -3,42 +3,28 @@
 #define NOC_SCENE_H
 
 #include "base/base.h"
+#include "core/records.h"
 #include <nocturne/scene.h>
 
-#define NOC_NO_LIGHT UINT32_MAX
+#define NOC_NO_LIGHT NO_LIGHT
 
 extern const char *const noc_class_names[NOC_CLASS_COUNT];
 
-/* 64 bytes, 4-byte scalars only: the same record for C and shaders (core/light.h says what each kind keeps where). */
-typedef struct noc_light_record {
-    float p[3];    /* centre or corner */
-    uint32_t kind; /* noc_light_kind */
-    float a[3];    /* edge u; disc: first radius vector; spot: its axis, times the scale of its falloff */
-    float radius;  /* triangle, parallelogram: noc_flat_size; 0 for points and spots */
-    /* edge v; disc: second radius vector; the light faces a x b. Spot: offset of its falloff, inner and
-     * outer angle in radians */
-    float b[3];
-    uint32_t flags; /* NOC_LIGHT_...; the group from bit NOC_LIGHT_GROUP on */
-    float e[3];     /* cd/m2; point, spot: cd; as its group scales it */
-    float area;     /* m2; 0 for points and spots */
-} noc_light_record;
-#define NOC_LIGHT_TWO_SIDED 1u
+/* The same records for C and shaders (core/records.h). */
+typedef light_record noc_light_record;
+typedef material_record noc_material_record;
+_Static_assert((int)LIGHT_SPHERE == NOC_LIGHT_SPHERE && (int)LIGHT_DISC == NOC_LIGHT_DISC &&
+                   (int)LIGHT_TRIANGLE == NOC_LIGHT_TRIANGLE && (int)LIGHT_PARALLELOGRAM == NOC_LIGHT_PARALLELOGRAM &&
+                   (int)LIGHT_POINT == NOC_LIGHT_POINT && (int)LIGHT_SPOT == NOC_LIGHT_SPOT,
+               "a record's kind is a noc_light_kind");
+/* Flags of a light; from bit NOC_LIGHT_GROUP on its group. */
+#define NOC_LIGHT_TWO_SIDED LIGHT_TWO_SIDED
 #define NOC_LIGHT_INFERRED 2u
 #define NOC_LIGHT_MOVES 4u  /* of the moving half, else of the static one */
 #define NOC_LIGHT_FREE 8u   /* a slot without a light: no emission, never drawn */
 #define NOC_LIGHT_OWNED 16u /* comes and goes with a mesh or an instance */
 #define NOC_LIGHT_GROUP 16
 static inline uint32_t noc_light_group(const noc_light_record *r) { return r->flags >> NOC_LIGHT_GROUP; }
-_Static_assert(sizeof(noc_light_record) == 64, "light records are one cache line");
-
-/* 32 bytes. */
-typedef struct noc_material_record {
-    float albedo[3];
-    float f0;
-    float emission[3];
-    float alpha; /* roughness^2 */
-} noc_material_record;
-_Static_assert(sizeof(noc_material_record) == 32, "material records are half a cache line");
 
 /* Meshes lie one after the other in the arrays. One of a model is in the model's coordinates, and what it shows in
  * triangle_light are lights of the model. */

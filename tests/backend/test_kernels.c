@@ -14,7 +14,7 @@ typedef struct world {
     ALIGNED noc_light_record lights[LIGHTS];
     noc_material_record materials[MATERIALS];
     noc_render_params params;
-    noc_frame frame;
+    frame_constants frame;
     struct core_context ctx;
 } world;
 
@@ -38,11 +38,13 @@ static void make_world(world *w) {
     w->params = measure(64, 48, NOC_METHOD_RESTIR);
     w->params.sky = 0.3;
     w->params.rays = 9;
-    w->frame = (noc_frame){ .params = &w->params, .index = bits() };
+    noc_make_frame_constants(&w->params, bits(), true, &w->frame);
     noc_camera c = look(20, 3, 4, 0, 0, 0, 50), d = look(19, 4, 4, 0, 0, 1, 50);
     noc_make_frame_camera(&c, &w->params, 3, &w->frame.camera);
     noc_make_frame_camera(&d, &w->params, 2, &w->frame.previous);
-    w->ctx = (struct core_context){ w->lights, LIGHTS, w->materials, &w->frame };
+    w->ctx = (struct core_context){
+        .frame = &w->frame, .lights = w->lights, .light_count = LIGHTS, .materials = w->materials
+    };
 }
 
 static void random_surface(gblock *g) {

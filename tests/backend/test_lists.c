@@ -39,7 +39,7 @@ typedef struct world {
     noc_scene *scene;
     noc_clusters *clusters;
     noc_render_params params;
-    noc_frame frame;
+    frame_constants frame;
     struct core_context ctx;
     gblock g[BLOCKS];
     const gblock *blocks[BLOCKS];
@@ -55,7 +55,7 @@ static void make_world(world *w, int lights, double side, int list, int tail) {
     w->params = measure(64, 48, NOC_METHOD_RIS);
     w->params.list = list;
     w->params.tail = tail;
-    w->frame = (noc_frame){ .params = &w->params };
+    noc_make_frame_constants(&w->params, 0, false, &w->frame);
     noc_camera c = look(20, 3, 4, 0, 0, 0, 50);
     noc_make_frame_camera(&c, &w->params, 0, &w->frame.camera);
     w->ctx = (struct core_context){ .lights = w->scene->lights.data,
@@ -98,7 +98,7 @@ static bool reaches(const world *w, const noc_light_record *r) {
             double d[3] = { r->p[0] - w->g[b].px[l], r->p[1] - w->g[b].py[l], r->p[2] - w->g[b].pz[l] };
             double facing = -(n[0] * d[0] + n[1] * d[1] + n[2] * d[2]);
             if (w->lanes[b] >> l & 1 && w->g[b].nx[l] * d[0] + w->g[b].nz[l] * d[2] > 0 &&
-                (round || r->flags & 1 || facing > 0))
+                (round || r->flags & LIGHT_TWO_SIDED || facing > 0))
                 return true;
         }
     return false;

@@ -164,7 +164,7 @@ static void test_flux(void **state) {
     assert_float_equal(r[1].p[0], 20, 1e-4);
     assert_float_equal(r[1].p[2], 9, 1e-4);
     for (int i = 2; i < 5; i++)
-        assert_true(r[i].flags & 2);
+        assert_true(r[i].flags & NOC_LIGHT_INFERRED);
     assert_float_equal(r[2].p[0] + r[3].p[0] + r[4].p[0], 120, 1e-3); /* evenly around the pole */
     /* the flood faces east and down: its normal is a x b */
     double nx = r[5].a[1] * r[5].b[2] - r[5].a[2] * r[5].b[1], nz = r[5].a[0] * r[5].b[1] - r[5].a[1] * r[5].b[0];

@@ -363,7 +363,7 @@ static void test_light_reaches_the_ground(void **state) {
         double luminance = .2126 * l->e[0] + .7152 * l->e[1] + .0722 * l->e[2], r = l->radius;
         double flux = M_PI * M_PI * r * r * luminance * (l->kind == NOC_LIGHT_SPHERE ? 4 : 1);
         assert_float_equal(flux / 3000, 1, 1e-3);
-        assert_false(l->flags & 2);
+        assert_false(l->flags & NOC_LIGHT_INFERRED);
         int seen = 0, all = 0;
         for (int a = 0; a < 12; a++)
             for (int k = 1; k <= 5; k++, all++) {

@@ -316,7 +316,8 @@ static void test_materials(void **state) {
     assert_int_equal(noc_scene_commit(l.scene), NOC_OK);
     assert_int_equal(l.scene->lights.len, 2);
     for (int i = 0; i < 2; i++)
-        assert_int_equal(l.scene->lights.data[i].flags & 1, 1); /* double-sided: both sides shine */
+        assert_int_equal(l.scene->lights.data[i].flags & LIGHT_TWO_SIDED,
+                         LIGHT_TWO_SIDED); /* double-sided: both sides shine */
     unload(&l);
 }
 

@@ -112,7 +112,7 @@ static void test_reads(void **state) {
     assert_int_equal(l.scene->lights.len, 1);
     const noc_light_record *r = l.scene->lights.data;
     assert_true(r->a[0] * r->b[1] - r->a[1] * r->b[0] < 0); /* wound to face down; the turn of axes keeps it */
-    assert_int_equal(r->flags & 1, 0);                      /* and its back is dark */
+    assert_int_equal(r->flags & LIGHT_TWO_SIDED, 0);        /* and its back is dark */
     unload(&l);
     load(&l, "named.anything", NOC_OBJ_UP_Z);
     noc_scene_get_info(l.scene, &info);

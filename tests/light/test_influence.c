@@ -63,7 +63,7 @@ static noc_scene *world(uint32_t lights, sort what) {
     }
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     for (uint32_t i = 0; i < lights && what != WINDOWS; i += 7)
-        s->lights.data[i].flags |= 1; /* two-sided */
+        s->lights.data[i].flags |= LIGHT_TWO_SIDED; /* two-sided */
     return s;
 }
 
@@ -92,7 +92,7 @@ typedef struct asked {
     const noc_influence *v;
     const kernels *k;
     noc_render_params params;
-    noc_frame frame;
+    frame_constants frame;
     struct core_context ctx;
     gblock g, before; /* the second and the first block of a tile */
     surf y[BLOCK];    /* of g */
@@ -110,7 +110,7 @@ static asked *begin(const noc_scene *s, const noc_influence *v, const kernels *k
     a->params = measure(64, 64, NOC_METHOD_RIS);
     a->params.influence = scale;
     a->params.uniform_every = EVERY;
-    a->frame = (noc_frame){ .params = &a->params };
+    noc_make_frame_constants(&a->params, 0, false, &a->frame);
     a->ctx = (struct core_context){
         .lights = s->lights.data, .light_count = (uint32_t)s->lights.len, .frame = &a->frame, .influence = v
     };

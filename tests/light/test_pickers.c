@@ -143,7 +143,7 @@ static void power_follows_flux(void **state) {
                        .emission = { 2.25f, 2.25f, 2.25f } };
     assert_true(noc_scene_add_light(s, &spot) >= 0);
     assert_int_equal(noc_scene_commit(s), NOC_OK);
-    s->lights.data[2].flags |= 1; /* two-sided */
+    s->lights.data[2].flags |= LIGHT_TWO_SIDED; /* two-sided */
     picker p = { .scene = s, .alias = noc_alias_create(s, NULL) };
     const double want[] = { 2 / 13., 1 / 13., 4 / 13., 0, 6 / 13. };
     size_t count[5] = { 0 }, n = 0;

@@ -23,7 +23,7 @@ typedef struct drawer {
     noc_tree *tree;
     const kernels *kernels;
     noc_render_params params;
-    noc_frame frame;
+    frame_constants frame;
     tree_items items[2];
     pick_block picks;
     gblock g;
@@ -58,7 +58,7 @@ static void close_drawer(drawer *d) {
 }
 
 static struct core_context context(drawer *d) {
-    d->frame = (noc_frame){ .params = &d->params };
+    noc_make_frame_constants(&d->params, 0, false, &d->frame);
     return (struct core_context){ .lights = d->scene->lights.data,
                                   .light_count = (uint32_t)d->scene->lights.len,
                                   .frame = &d->frame,
@@ -79,8 +79,8 @@ static void look_from(drawer *d, surf y) {
 }
 
 static void draw(drawer *d, int m) {
-    struct core_context ctx = context(d);
     d->params.seed = bits();
+    struct core_context ctx = context(d);
     d->kernels->pick_tree(&ctx, &d->g, LANES_ASKED, 0, 0, m, d->items, &d->picks);
 }
 

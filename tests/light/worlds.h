@@ -37,7 +37,7 @@ static inline noc_scene *world(uint32_t lights, sort what) {
     assert_int_equal(noc_scene_commit(s), NOC_OK);
     assert_int_equal(s->lights.len, lights);
     for (uint32_t i = 0; i < lights; i += 7)
-        s->lights.data[i].flags |= 1; /* two-sided */
+        s->lights.data[i].flags |= LIGHT_TWO_SIDED; /* two-sided */
     return s;
 }
 

@@ -75,7 +75,7 @@ static inline noc_image *render(const noc_scene *s, const noc_camera *c, const n
 
 /* The point of a horizontal plane that a pixel's centre sees. */
 static inline void floor_point(const noc_camera *c, const noc_render_params *p, int x, int y, double z, double out[3]) {
-    noc_frame_camera f;
+    frame_camera f;
     noc_make_frame_camera(c, p, 0, &f);
     double sx = 2 * (x + 0.5) / p->width - 1, sy = 1 - 2 * (y + 0.5) / p->height, d[3];
     for (int k = 0; k < 3; k++)

@@ -108,7 +108,7 @@ static void pixels_and_places(void **state) {
     noc_render_params p = measure(64, 40, NOC_METHOD_RIS);
     for (size_t i = 0; i < NOC_COUNT(cameras); i++) {
         const noc_camera *c = &cameras[i];
-        noc_frame_camera f;
+        frame_camera f;
         noc_make_frame_camera(c, &p, 0, &f);
         double pixel[2] = { 10.25, 31.5 }, xyz[3], back[2], distance;
         assert_int_equal(noc_camera_unproject(c, 64, 40, pixel, 12, xyz), NOC_OK);

@@ -179,7 +179,7 @@ static void test_shapes(void **state) {
         assert_int_equal(r->kind, l->kind);
         assert_true(fabs(r->area - area[i]) <= 1e-5 * area[i]);
         assert_memory_equal(r->e, l->emission, sizeof(r->e));
-        assert_int_equal((r->flags >> 1) & 1, l->inferred);
+        assert_int_equal((r->flags & NOC_LIGHT_INFERRED) != 0, l->inferred);
         double a[3] = { r->a[0], r->a[1], r->a[2] }, b[3] = { r->b[0], r->b[1], r->b[2] }, facing[3], sum = 0,
                closed[3] = { 0 };
         for (int k = 0; k < 3; k++)

@@ -68,7 +68,7 @@ noc_status noc_cpu_begin_aovs(cpu_view *s, uint32_t aovs, bool first_stage) {
 
 /* How often a light that lane l chose is expected among its candidates. */
 static float expected(const stage_run *run, const worker *w, uint32_t light, int l) {
-    const noc_render_params *p = run->ctx.frame->params;
+    const noc_render_params *p = run->frame->params;
     if (p->method == NOC_METHOD_IS || p->candidates == NOC_CANDIDATES_UNIFORM)
         return (float)(p->method == NOC_METHOD_IS ? 1 : p->draws) / (float)run->ctx.light_count;
     if (p->candidates == NOC_CANDIDATES_LISTS) {
@@ -87,7 +87,7 @@ static float expected(const stage_run *run, const worker *w, uint32_t light, int
 void noc_cpu_aov_candidates(const stage_run *run, const worker *w, int i, size_t block, uint32_t lanes,
                             const rblock *r) {
     const aov_buffers *v = &run->s->b.aovs;
-    bool lists = run->ctx.frame->params->candidates == NOC_CANDIDATES_LISTS;
+    bool lists = run->frame->params->candidates == NOC_CANDIDATES_LISTS;
     for (int l = 0; l < BLOCK; l++) {
         if (!(lanes >> l & 1))
             continue;

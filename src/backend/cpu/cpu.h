@@ -183,6 +183,7 @@ typedef struct cpu_view {
 /* A stage at work: what every tile needs. */
 typedef struct stage_run {
     cpu_view *s;
+    const noc_frame *frame;
     struct core_context ctx;
     const noc_stage *stage;
     const kernels *k;

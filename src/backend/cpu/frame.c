@@ -32,7 +32,7 @@ static struct core_context context_of(const cpu_view *s, const noc_frame *frame)
                                   .light_count = (uint32_t)scene->lights.len,
                                   .materials = scene->material_records.len ? scene->material_records.data
                                                                            : &s->world->no_material,
-                                  .frame = frame,
+                                  .frame = &frame->constants,
                                   .clusters = from->clusters,
                                   .alias = from->alias,
                                   .tree = from->tree,
@@ -54,6 +54,7 @@ noc_status noc_cpu_stage(void *state, const noc_frame *frame, const noc_stage *s
     if (st->passes >> NOC_PASS_CANDIDATES & 1)
         noc_cpu_forget_found(s);
     stage_run run = { .s = s,
+                      .frame = frame,
                       .ctx = context_of(s, frame),
                       .stage = st,
                       .k = s->kernels,

@@ -132,7 +132,7 @@ enum { TILE_VOLUMES = 16384 };
 static void influence_find(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int n,
                            noc_found *f) {
     const noc_influence *v = ctx->influence;
-    float fixed = noc_influence_scale(ctx->frame->params->influence), scale = fixed > 0 ? fixed : v->scale;
+    float fixed = ctx->frame->influence, scale = fixed > 0 ? fixed : v->scale;
     float close = influence_close * scale * v->volumes[v->volume_count / 2].root;
     uint32_t pending[NOC_QUERY_BLOCKS];
     noc_near_query all = noc_near_none(scale, TILE_VOLUMES), none = noc_near_none(scale, SIZE_MAX);
@@ -160,7 +160,7 @@ static void influence_find(const struct core_context *ctx, const gblock *const *
         const noc_near *near = &f->all;
         if (near->over)
             influence_near(v, &f->group[i].query, &f->near), near = &f->near;
-        group_finds(v, near, ctx->frame->params->uniform_every, f, &f->group[i]);
+        group_finds(v, near, (int)ctx->frame->uniform_every, f, &f->group[i]);
     }
 }
 
@@ -228,7 +228,7 @@ static void weigh_uniform(const noc_influence *v, const asking *a, const noc_nea
 static void pick_influence(const struct core_context *ctx, const noc_found *f, int block, int x, int y, int m,
                            pick_block *out) {
     const noc_influence *v = ctx->influence;
-    int every = ctx->frame->params->uniform_every;
+    int every = (int)ctx->frame->uniform_every;
     asking a;
     asking_of(f, f->of[block], &a);
     for (int l = 0; l < BLOCK; l += LANES) {

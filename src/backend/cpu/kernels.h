@@ -4,7 +4,8 @@
 #ifndef NOC_CPU_KERNELS_H
 #define NOC_CPU_KERNELS_H
 
-#include "backend/cpu/blocks.h"
+#include "core/blocks.h"
+#include "core/frame.h"
 #include "light/alias.h"
 #include "light/clusters.h"
 #include "light/influence.h"
@@ -42,20 +43,25 @@ typedef struct tree_items {
 /* every draw of every pixel alone, and places that are read or written past them */
 enum { TREE_ITEMS = 16 * 1024 + 64 };
 
-/* Uniform for a frame: what core's bridge functions read. */
-struct core_context {
-    const noc_light_record *lights;
-    uint32_t light_count;
-    const noc_material_record *materials; /* at least one */
-    const noc_frame *frame;
-    const noc_clusters *clusters; /* lists only */
-    const light_list *list;       /* of the tile */
-    const noc_alias *alias;       /* power only */
-    const noc_tree *tree;         /* tree only */
-    const pick_block *picks;      /* of the block; read from lane `lane` on */
+/* Where core's bridge functions read next. */
+typedef struct core_cursors {
+    const light_list *list;  /* of the tile */
+    const pick_block *picks; /* of the block; read from lane `lane` on */
     int lane;
-    const noc_influence *influence; /* influence only */
-    float stand_off;                /* of shadow rays at least, m: core/shadow.h */
+} core_cursors;
+
+/* What core's bridge functions read. */
+struct core_context {
+    const frame_constants *frame;
+    const light_record *lights;
+    uint32_t light_count;
+    float stand_off;                  /* of shadow rays at least, m: core/shadow.h */
+    const material_record *materials; /* at least one */
+    const noc_clusters *clusters;     /* lists only */
+    const noc_alias *alias;           /* power only */
+    const noc_tree *tree;             /* light-bvh only */
+    const noc_influence *influence;   /* influence only */
+    core_cursors at;
 };
 
 /* A reservoir of another pixel with that pixel's surface; lanes outside `lanes` were rejected and have m = w = 0. */

@@ -18,7 +18,7 @@ static void candidates(const struct core_context *ctx, const gblock *g, uint32_t
 }
 
 static uint32_t project(const struct core_context *ctx, const gblock *g, float px[BLOCK], float py[BLOCK]) {
-    camera c = camera_load(&ctx->frame->previous);
+    camera c = camera_of(ctx->frame->previous);
     uint32_t front = 0;
     for (int l = 0; l < BLOCK; l += LANES) {
         v3 q = camera_project(c, V3(rload(g->px + l), rload(g->py + l), rload(g->pz + l)));
@@ -199,7 +199,7 @@ static void sky_rays(const struct core_context *ctx, const gblock *g, int x, int
 static uint32_t sky_shade(const struct core_context *ctx, const gblock *g, const rayblock *rays, const float *share,
                           uint32_t lanes, cblock *out) {
     uint32_t dropped = 0;
-    real zenith = K((float)ctx->frame->params->sky);
+    real zenith = K(ctx->frame->sky);
     for (int l = 0; l < BLOCK; l += LANES) {
         surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
         v3 d = V3(rload(rays->d[0] + l), rload(rays->d[1] + l), rload(rays->d[2] + l));
@@ -214,8 +214,8 @@ static uint32_t sky_shade(const struct core_context *ctx, const gblock *g, const
 }
 
 static void sky_background(const struct core_context *ctx, uint32_t lanes, int x, int y, cblock *out) {
-    camera cam = camera_load(&ctx->frame->camera);
-    real zenith = K((float)ctx->frame->params->sky);
+    camera cam = camera_of(ctx->frame->camera);
+    real zenith = K(ctx->frame->sky);
     for (int l = 0; l < BLOCK; l += LANES) {
         v3 d = camera_direction(cam, to_real(lane_x(x, l)) + K(ctx->frame->camera.jitter[0]),
                                 to_real(lane_y(y, l)) + K(ctx->frame->camera.jitter[1]));

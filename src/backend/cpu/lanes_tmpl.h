@@ -13,7 +13,6 @@
 #include "core/sky.h"
 #include "core/wide_load.h"
 
-#include <stddef.h>
 #include <string.h>
 
 #if defined(CORE_LANES)
@@ -67,55 +66,17 @@ FN u32 lane_x(int x, int first) { return KU((uint32_t)x) + (lane_numbers(first) 
 FN u32 lane_y(int y, int first) { return KU((uint32_t)y) + shr(lane_numbers(first), 2); }
 
 FN u32 key_in(const struct core_context *ctx, int x, int y, int first, uint32_t frame) {
-    const noc_frame *f = ctx->frame;
-    u32 pixel = lane_y(y, first) * KU((uint32_t)f->params->width) + lane_x(x, first);
-    return rng_key(KU(f->params->seed), pixel, KU(frame));
+    u32 pixel = lane_y(y, first) * KU(ctx->frame->width) + lane_x(x, first);
+    return rng_key(KU(ctx->frame->seed), pixel, KU(frame));
 }
 FN u32 key_of(const struct core_context *ctx, int x, int y, int first) {
     return key_in(ctx, x, y, first, ctx->frame->index);
 }
 
-FN v3 splat3(const float a[3]) { return V3(K(a[0]), K(a[1]), K(a[2])); }
-
-FN camera camera_load(const noc_frame_camera *f) {
-    camera c;
-    c.eye = splat3(f->eye);
-    c.right = splat3(f->right);
-    c.up = splat3(f->up);
-    c.forward = splat3(f->forward);
-    c.inv_right2 = K(f->inv_right2);
-    c.inv_up2 = K(f->inv_up2);
-    c.width = K(f->width);
-    c.height = K(f->height);
-    return c;
-}
-
-#if !defined(CORE_LANES)
-_Static_assert(offsetof(noc_light_record, kind) == offsetof(light, kind) &&
-                   offsetof(noc_light_record, a) == offsetof(light, a) &&
-                   offsetof(noc_light_record, radius) == offsetof(light, radius) &&
-                   offsetof(noc_light_record, b) == offsetof(light, b) &&
-                   offsetof(noc_light_record, flags) == offsetof(light, flags) &&
-                   offsetof(noc_light_record, e) == offsetof(light, e) &&
-                   offsetof(noc_light_record, area) == offsetof(light, area),
-               "light_from_records loads the scene's records");
-#endif
 FN light light_load(CTX u32 i) { return light_from_records((const float *)ctx->lights, i); }
 
 /* The same light in every lane. */
-FN light light_splat(CTX uint32_t i) {
-    const noc_light_record *r = ctx->lights + i;
-    light l;
-    l.p = splat3(r->p);
-    l.kind = KU(r->kind);
-    l.a = splat3(r->a);
-    l.radius = K(r->radius);
-    l.b = splat3(r->b);
-    l.flags = KU(r->flags);
-    l.e = splat3(r->e);
-    l.area = K(r->area);
-    return l;
-}
+FN light light_splat(CTX uint32_t i) { return light_of_record(ctx->lights[i]); }
 
 /* Element `field` of each lane's material record. */
 FN real material_field(const noc_material_record *base, u32 index, int field) {

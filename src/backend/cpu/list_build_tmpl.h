@@ -183,7 +183,6 @@ static void draw_tail(const noc_clusters *c, const patches *t, list_scratch *s, 
 static void list_build(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks,
                        float rotation, list_scratch *s, light_list *out) {
     const noc_clusters *c = ctx->clusters;
-    const noc_render_params *p = ctx->frame->params;
     patches t;
     make_patches(ctx, g, lanes, blocks, &t);
     out->count = 0;
@@ -191,7 +190,8 @@ static void list_build(const struct core_context *ctx, const gblock *const *g, c
     if (!t.count || !c->count)
         return;
     uint32_t picked[2 * LIST_ENTRIES], groups, first = open_nodes(c, &t, s, &groups);
-    uint32_t list = (uint32_t)NOC_MIN(p->list, LIST_ENTRIES), tail = (uint32_t)NOC_MIN(p->tail, LIST_ENTRIES);
+    uint32_t list = NOC_MIN(ctx->frame->list, (uint32_t)LIST_ENTRIES),
+             tail = NOC_MIN(ctx->frame->tail, (uint32_t)LIST_ENTRIES);
     /* A list without a tail where that holds all lights. */
     if (!count_over(s->scores, 0, first, FLT_MIN) && count_over(s->scores, first, groups, FLT_MIN) <= list + tail)
         list += tail;

@@ -22,8 +22,7 @@ static bool learns(const noc_render_params *p) { return noc_cpu_shares_rays(p) &
 
 /* ---- what is believed ---- */
 
-static uint64_t key_of_block(const noc_frame *f, const gblock *g, uint32_t lanes) {
-    const noc_frame_camera *c = &f->camera;
+static uint64_t key_of_block(const frame_camera *c, const gblock *g, uint32_t lanes) {
     int l = lanes >> 5 & 1 ? 5 : __builtin_ctz(lanes); /* one in the middle */
     float right = sqrtf(c->right[0] * c->right[0] + c->right[1] * c->right[1] + c->right[2] * c->right[2]);
     float side = CELL_PIXELS * g->depth[l] * 2 * right / c->width;
@@ -37,8 +36,8 @@ static float pull(float visibility) { return sqrtf(visibility) + 0.1f; }
 
 /* Number of the block's cell among those of the tile. */
 static int believe(const stage_run *run, const gblock *g, uint32_t lanes, const light_list *list, tile_rays *t) {
-    bool learn = learns(run->ctx.frame->params);
-    uint64_t key = learn ? key_of_block(run->ctx.frame, g, lanes) : 1;
+    bool learn = learns(run->frame->params);
+    uint64_t key = learn ? key_of_block(&run->ctx.frame->camera, g, lanes) : 1;
     for (int i = t->cells - 1; i >= 0; i--)
         if (t->cell[i].key == key)
             return i;
@@ -60,7 +59,7 @@ static int believe(const stage_run *run, const gblock *g, uint32_t lanes, const 
  * to twice as many. A hundredth of the picture's brightness is dark enough not to look for more. */
 static float ray_count(const stage_run *run, const tile_rays *t, int l, float rounding) {
     const float unknown = NOC_UNKNOWN_LIGHT / pull(NOC_UNKNOWN_LIGHT);
-    float rays = (float)run->ctx.frame->params->shadow_rays, all = t->weighed.all[l];
+    float rays = (float)run->ctx.frame->shadow_rays, all = t->weighed.all[l];
     if (!(all > 0))
         return 0;
     float mean = rays * unknown * all / (t->weighed.bright[l] + 0.01f * run->s->list_brightness);
@@ -94,7 +93,7 @@ static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ct
                      const block_draws *from, int k, int x, int y) {
     ray_draw *d = &t->draws[t->count];
     segment_block *s = &t->segments[t->count++];
-    const light_list *list = ctx->list;
+    const light_list *list = ctx->at.list;
     float(*counts)[BLOCK] = run->s->b.aovs.made[NOC_AOV_RAYS];
     d->block = block;
     s->valid = 0;
@@ -131,9 +130,9 @@ static void keep_one(const stage_run *run, tile_rays *t, const block_draws *from
     }
 }
 
-static uint32_t pixel_key(const noc_frame *f, int x, int y, int l) {
-    uint32_t pixel = (uint32_t)(y + (l >> 2)) * (uint32_t)f->params->width + (uint32_t)(x + (l & 3));
-    return rng_key(f->params->seed, pixel, f->index);
+static uint32_t pixel_key(const frame_constants *f, int x, int y, int l) {
+    uint32_t pixel = (uint32_t)(y + (l >> 2)) * f->width + (uint32_t)(x + (l & 3));
+    return rng_key(f->seed, pixel, f->index);
 }
 
 static void draw_block(stage_run *run, tile_rays *t, const struct core_context *ctx, const gblock *g, int block, int x,
@@ -147,7 +146,7 @@ static void draw_block(stage_run *run, tile_rays *t, const struct core_context *
         start[l] = rng(key, DIM_CANDIDATE + 3);
         pick[l] = rng(key, DIM_CANDIDATE + 4);
     }
-    run->k->list_draw((int)ctx->list->count, &t->weighed, d.n, start, d.entry);
+    run->k->list_draw((int)ctx->at.list->count, &t->weighed, d.n, start, d.entry);
     for (int k = 0, rays = join_equals(&d); k < rays; k++) {
         t->draws[t->count].rays = rays;
         add_rays(run, t, ctx, g, block, &d, k, x, y);
@@ -176,10 +175,10 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
     struct core_context ctx = run->ctx;
     frame_buffers *b = &run->s->b;
     tile_rays *t = &w->shared;
-    ctx.list = &w->lists.list;
+    ctx.at.list = &w->lists.list;
     t->count = t->cells = 0;
     t->bright = 0;
-    fill_list(run->ctx.frame->params, &w->lists.list);
+    fill_list(run->frame->params, &w->lists.list);
     for (int n = 0; n < points->count; n++) {
         const gblock *g = points->g[n];
         tile_block at = points->block[n];
@@ -188,15 +187,15 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
         b->visible[run->stage->target][at.at] = 0;
         memset(r, 0, sizeof(*r));
         for (int l = 0; l < BLOCK; l++) /* whatever was found: M must not depend on the samples */
-            r->m[l] = lanes >> l & 1 ? (float)ctx.frame->params->draws : 0;
-        if (!lanes || !ctx.list->count)
+            r->m[l] = lanes >> l & 1 ? (float)ctx.frame->draws : 0;
+        if (!lanes || !ctx.at.list->count)
             continue;
-        t->cell_of[n] = believe(run, g, lanes, ctx.list, t);
+        t->cell_of[n] = believe(run, g, lanes, ctx.at.list, t);
         run->k->list_weigh(&ctx, g, lanes, at.x, at.y, &t->cell[t->cell_of[n]].beliefs, &t->weighed);
         for (int l = 0; l < BLOCK; l++)
             t->bright += t->weighed.bright[l];
         draw_block(run, t, &ctx, g, n, at.x, at.y, r);
-        if (ctx.frame->params->aovs)
+        if (run->frame->params->aovs)
             noc_cpu_aov_candidates(run, w, n, at.at, lanes, r);
     }
 }
@@ -257,14 +256,13 @@ static void resample(const stage_run *run, const tile_rays *t, int first, const 
 
 /* The rays of restir's pixels become their own reservoirs, of samples known to be seen. */
 static void make_reservoirs(const stage_run *run, const tile_rays *t) {
-    const noc_frame *f = run->ctx.frame;
     for (int i = 0; i < t->count; i += t->draws[i].rays) {
         size_t block = t->at[t->draws[i].block];
         int x = (int)(block % (size_t)run->s->b.blocks_x) * BLOCK_SIDE,
             y = (int)(block / (size_t)run->s->b.blocks_x) * BLOCK_SIDE;
         float pick[BLOCK];
         for (int l = 0; l < BLOCK; l++)
-            pick[l] = rng(pixel_key(f, x, y, l), DIM_CANDIDATE + 5);
+            pick[l] = rng(pixel_key(run->ctx.frame, x, y, l), DIM_CANDIDATE + 5);
         rblock *r = &run->s->b.r[run->stage->target][block];
         resample(run, t, i, pick, r);
         run->s->b.visible[run->stage->target][block] = (uint16_t)lanes_with_sample(r);
@@ -282,7 +280,7 @@ static void blank_hidden(const stage_run *run, const tile_rays *t) {
 
 void noc_cpu_share_visibility(stage_run *run, worker *w, tile at) {
     tile_rays *t = &w->shared;
-    if (run->ctx.frame->params->final_ray)
+    if (run->ctx.frame->flags & FRAME_FINAL_RAY)
         noc_cpu_trace_occlusion(run->s, w, t->segments, t->count);
     else
         for (int i = 0; i < t->count; i++)
@@ -291,11 +289,11 @@ void noc_cpu_share_visibility(stage_run *run, worker *w, tile at) {
         for (int l = 0; l < BLOCK; l++)
             if (!(t->segments[i].clear >> l & 1))
                 t->draws[i].r.w[l] = 0;
-    if (run->ctx.frame->params->method == NOC_METHOD_RESTIR)
+    if (run->frame->params->method == NOC_METHOD_RESTIR)
         make_reservoirs(run, t);
     else
         blank_hidden(run, t);
-    if (learns(run->ctx.frame->params))
+    if (learns(run->frame->params))
         note_sightings(run, w, at);
 }
 
@@ -303,7 +301,7 @@ void noc_cpu_share_visibility(stage_run *run, worker *w, tile at) {
  * before either is drawn. M tells how many frames stand behind the reservoir, whatever they found; its sample has the
  * luminance of all of them, but one light's colour. */
 static void share_with_reservoirs(const stage_run *run, tile_rays *t, tile at) {
-    const float frame = (float)run->ctx.frame->params->draws;
+    const float frame = (float)run->ctx.frame->draws;
     for (int n = (at.y1 - at.y0) * (at.x1 - at.x0); n-- > 0;) {
         const rblock *r = &run->s->b.r[run->stage->target][t->at[n]];
         for (int l = 0; l < BLOCK; l++) {
@@ -320,9 +318,9 @@ void noc_cpu_share_shade(stage_run *run, worker *w, tile at) {
     tile_rays *t = &w->shared;
     if (!(run->stage->passes >> NOC_PASS_VISIBILITY & 1))
         noc_cpu_share_visibility(run, w, at);
-    if (run->ctx.frame->params->method == NOC_METHOD_RESTIR)
+    if (run->frame->params->method == NOC_METHOD_RESTIR)
         share_with_reservoirs(run, t, at);
-    const gblock *g = run->s->b.g[run->ctx.frame->gbuffer];
+    const gblock *g = run->s->b.g[run->frame->gbuffer];
     for (int i = 0; i < t->count; i++) {
         size_t block = t->at[t->draws[i].block];
         if (t->segments[i].clear)
@@ -348,7 +346,7 @@ noc_status noc_cpu_begin_learning(cpu_view *s, const noc_frame *frame) {
             return NOC_ERR_MEMORY;
         }
     }
-    if (frame->index == 0) {
+    if (frame->constants.index == 0) {
         noc_learned_forget(s->learned);
         s->list_brightness = 0;
     }

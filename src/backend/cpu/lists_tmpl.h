@@ -8,8 +8,8 @@
 
 FN list_entry list_entry_load(CTX int i) {
     list_entry e;
-    e.light = KU(ctx->list->light[i]);
-    e.weight = K(ctx->list->weight[i]);
+    e.light = KU(ctx->at.list->light[i]);
+    e.weight = K(ctx->at.list->weight[i]);
     return e;
 }
 
@@ -18,12 +18,12 @@ static void list_candidates(const struct core_context *ctx, const gblock *g, uin
     for (int l = 0; l < BLOCK; l += LANES) {
         mask on = mload(lanes, l);
         resv r = resv_empty();
-        if (ctx->list->count && ANY(on)) {
+        if (ctx->at.list->count && ANY(on)) {
             resv q = ris_list(ctx, surf_load(ctx, g, l, ctx->frame->camera.eye), key_of(ctx, x, y, l),
-                              (int)ctx->list->count);
+                              (int)ctx->at.list->count);
             r = resv_sel(on, q, r);
         }
-        r.m = sel(on, K(F32(ctx->frame->params->draws)), K(0.0f));
+        r.m = sel(on, K(F32(ctx->frame->draws)), K(0.0f));
         resv_store(out, l, r);
     }
 }
@@ -40,8 +40,8 @@ static void list_weigh(const struct core_context *ctx, const gblock *g, uint32_t
             u32 key = key_of(ctx, x, y, l);
             u32 shift_u = rng_bits(key, KU(DIM_CANDIDATE));
             u32 shift_v = rng_bits(key, KU(DIM_CANDIDATE + 1u));
-            for (int i = 0; i < (int)ctx->list->count; i++) {
-                real p = target(s, light_splat(ctx, ctx->list->light[i]), list_u(shift_u, i), list_v(shift_v, i));
+            for (int i = 0; i < (int)ctx->at.list->count; i++) {
+                real p = target(s, light_splat(ctx, ctx->at.list->light[i]), list_u(shift_u, i), list_v(shift_v, i));
                 p = sel(on, p, K(0.0f));
                 real w = p * K(e->share[i]);
                 rstore(out->weight[i] + l, w);
@@ -49,7 +49,7 @@ static void list_weigh(const struct core_context *ctx, const gblock *g, uint32_t
                 bright = bright + p * K(e->expect[i]);
             }
         } else {
-            for (int i = 0; i < (int)ctx->list->count; i++)
+            for (int i = 0; i < (int)ctx->at.list->count; i++)
                 rstore(out->weight[i] + l, K(0.0f));
         }
         rstore(out->all + l, all);

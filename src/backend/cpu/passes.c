@@ -29,15 +29,10 @@ void noc_cpu_gather_segments(const stage_run *run, worker *w, size_t at, uint32_
     run->k->segments(&run->ctx, g, light, u, v, &s->rays);
 }
 
-static v3 vec(const float a[3]) { return V3(a[0], a[1], a[2]); }
-
 static void primary_block(stage_run *run, worker *w, int bx, int by) {
-    const noc_frame *f = run->ctx.frame;
-    const noc_frame_camera *c = &f->camera;
+    const frame_camera *c = &run->ctx.frame->camera;
     frame_buffers *b = &run->s->b;
-    camera cam = {
-        .right = vec(c->right), .up = vec(c->up), .forward = vec(c->forward), .width = c->width, .height = c->height
-    };
+    camera cam = camera_of(*c);
     rayblock rays;
     for (int l = 0; l < BLOCK; l++) {
         v3 d = camera_direction(cam, (float)(bx * BLOCK_SIDE + (l & 3)) + c->jitter[0],
@@ -49,7 +44,7 @@ static void primary_block(stage_run *run, worker *w, int bx, int by) {
         rays.d[2][l] = d.z;
     }
     float(*objects)[BLOCK] = b->aovs.made[NOC_AOV_OBJECT];
-    noc_cpu_primary(run->s, w, &rays, lanes_inside(b, bx, by), &b->g[f->gbuffer][block_at(b, bx, by)],
+    noc_cpu_primary(run->s, w, &rays, lanes_inside(b, bx, by), &b->g[run->frame->gbuffer][block_at(b, bx, by)],
                     objects ? objects[block_at(b, bx, by)] : NULL);
 }
 
@@ -83,7 +78,7 @@ static void pick_lights(stage_run *run, worker *w, const tile_points *points, in
 }
 
 static void candidates(stage_run *run, worker *w, const tile_points *points, int i, noc_candidates from) {
-    const noc_render_params *p = run->ctx.frame->params;
+    const noc_render_params *p = run->frame->params;
     const gblock *g = points->g[i];
     tile_block at = points->block[i];
     uint32_t lanes = points->lanes[i];
@@ -95,7 +90,7 @@ static void candidates(stage_run *run, worker *w, const tile_points *points, int
         run->k->candidates(&run->ctx, g, lanes, at.x, at.y, m, r);
     } else if (from == NOC_CANDIDATES_LISTS) {
         struct core_context ctx = run->ctx;
-        ctx.list = &w->lists.list;
+        ctx.at.list = &w->lists.list;
         run->k->list_candidates(&ctx, g, lanes, at.x, at.y, r);
     } else {
         run->k->given(&run->ctx, g, lanes, at.x, at.y, m, &w->picks, r);
@@ -108,22 +103,22 @@ static void candidates(stage_run *run, worker *w, const tile_points *points, int
 /* Where the tail of a tile's list starts: anywhere, and from frame to frame on along the golden ratio's sequence, so
  * that the mean of some frames has met the lights as evenly as one frame with so many draws. */
 static float tail_start(const stage_run *run, tile t) {
-    const noc_frame *f = run->ctx.frame;
-    u32 key = rng_key(f->params->seed, (uint32_t)(t.y0 * run->s->b.blocks_x + t.x0), 0);
+    const frame_constants *f = run->ctx.frame;
+    u32 key = rng_key(f->seed, (uint32_t)(t.y0 * run->s->b.blocks_x + t.x0), 0);
     return unit_real(rng_bits(key, DIM_LIST) + f->index * 2654435769u);
 }
 
 static void gather_points(const stage_run *run, tile t, tile_points *out) {
     out->count = noc_cpu_tile_blocks(run, t, out->block);
     for (int i = 0; i < out->count; i++) {
-        out->g[i] = &run->s->b.g[run->ctx.frame->gbuffer][out->block[i].at];
+        out->g[i] = &run->s->b.g[run->frame->gbuffer][out->block[i].at];
         out->lanes[i] = lanes_with_surface(out->g[i]);
     }
 }
 
 /* All candidates of a tile: from its list, where that is asked for, else each block's own. */
 static void tile_candidates(stage_run *run, worker *w, tile t) {
-    const noc_render_params *p = run->ctx.frame->params;
+    const noc_render_params *p = run->frame->params;
     noc_candidates from = p->method == NOC_METHOD_IS ? NOC_CANDIDATES_UNIFORM : p->candidates;
     tile_points points;
     gather_points(run, t, &points);
@@ -142,7 +137,7 @@ static void tile_candidates(stage_run *run, worker *w, tile t) {
 
 static void visibility(stage_run *run, worker *w, tile t) {
     frame_buffers *b = &run->s->b;
-    const gblock *g = b->g[run->ctx.frame->gbuffer];
+    const gblock *g = b->g[run->frame->gbuffer];
     rblock *r = b->r[run->stage->target];
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
     size_t asked[TILE_BLOCKS * TILE_BLOCKS];
@@ -175,7 +170,7 @@ static void show_emitters(stage_run *run, const gblock *g, uint16_t *seen, cbloc
         if (g->light[l] == NOC_NO_LIGHT)
             continue;
         lanes |= 1u << l;
-        for (int k = 0; run->ctx.frame->params->emitters && k < 3; k++)
+        for (int k = 0; run->ctx.frame->flags & FRAME_EMITTERS && k < 3; k++)
             c->rgb[k][l] = scene->lights.data[g->light[l]].e[k];
     }
     *seen = (uint16_t)lanes;
@@ -195,7 +190,7 @@ static uint32_t reference_entry(const reference_scratch *e, uint32_t i, rblock *
 
 static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, const tile_block *block, cblock *c) {
     uint32_t surfaces = lanes_with_surface(g), dropped = 0, most = 0;
-    bool rays = run->ctx.frame->params->final_ray;
+    bool rays = run->ctx.frame->flags & FRAME_FINAL_RAY;
     if (!surfaces)
         return 0;
     reference_scratch *e = &w->reference;
@@ -223,14 +218,15 @@ static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, cons
  * pixel's light is its sample's; NULL: all. */
 static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, int n, const float (*share)[BLOCK]) {
     frame_buffers *b = &run->s->b;
-    const gblock *g = b->g[run->ctx.frame->gbuffer];
+    const gblock *g = b->g[run->frame->gbuffer];
     const rblock *r = b->r[run->stage->target];
     uint32_t lanes[TILE_BLOCKS * TILE_BLOCKS], asked[TILE_BLOCKS * TILE_BLOCKS];
     w->batch.count = 0;
     for (int i = 0; i < n; i++) {
         size_t at = blocks[i].at;
         lanes[i] = lanes_with_sample(&r[at]);
-        asked[i] = run->ctx.frame->params->final_ray ? lanes[i] & ~(uint32_t)b->visible[run->stage->target][at] : 0;
+        asked[i] =
+            run->ctx.frame->flags & FRAME_FINAL_RAY ? lanes[i] & ~(uint32_t)b->visible[run->stage->target][at] : 0;
         if (asked[i])
             noc_cpu_gather_segments(run, w, at, asked[i], &g[at], r[at].light, r[at].u, r[at].v);
     }
@@ -254,7 +250,7 @@ static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, i
 }
 
 static void shade(stage_run *run, worker *w, tile t) {
-    const noc_frame *f = run->ctx.frame;
+    const noc_frame *f = run->frame;
     frame_buffers *b = &run->s->b;
     const gblock *g = b->g[f->gbuffer];
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
@@ -283,14 +279,14 @@ static void shade(stage_run *run, worker *w, tile t) {
  * all the noise there is, and no time went into shadow rays. It is settled before any of them is traced, so it adds no
  * bias. */
 static void sky_turns(const stage_run *run, const cblock *c, uint8_t turns[BLOCK]) {
-    float zenith = (float)run->ctx.frame->params->sky;
+    float zenith = run->ctx.frame->sky;
     for (int l = 0; l < BLOCK; l++)
         turns[l] = 0.2126f * c->rgb[0][l] + 0.7152f * c->rgb[1][l] + 0.0722f * c->rgb[2][l] < zenith ? SKY_RAYS : 1;
 }
 
 static void sky(stage_run *run, worker *w, tile t) {
     frame_buffers *b = &run->s->b;
-    const noc_frame *f = run->ctx.frame;
+    const noc_frame *f = run->frame;
     const gblock *g = b->g[f->gbuffer];
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
     uint8_t turns[TILE_BLOCKS * TILE_BLOCKS][BLOCK];
@@ -311,7 +307,7 @@ static void sky(stage_run *run, worker *w, tile t) {
             size_t at = blocks[i].at;
             uint32_t lanes = lanes_with_surface(&g[at]), number[BLOCK];
             for (int l = 0; l < BLOCK; l++) {
-                number[l] = f->index * turns[i][l] + (uint32_t)turn;
+                number[l] = run->ctx.frame->index * turns[i][l] + (uint32_t)turn;
                 share[w->batch.count][l] = 1.0f / turns[i][l];
                 if (turn >= turns[i][l])
                     lanes &= ~(1u << l);
@@ -348,7 +344,7 @@ void noc_cpu_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
                        pass == NOC_PASS_SPATIAL;
     if (needs_light && !run->ctx.light_count)
         return;
-    if (pass == NOC_PASS_VISIBILITY && noc_cpu_shares_rays(run->ctx.frame->params))
+    if (pass == NOC_PASS_VISIBILITY && noc_cpu_shares_rays(run->frame->params))
         noc_cpu_share_visibility(run, w, t);
     else
         passes[pass](run, w, t);

@@ -40,10 +40,10 @@ FN alias_slot alias_load(CTX u32 i) {
 /* Candidate i, while the light of a later one is asked for. Entries up to PICK_AHEAD past the last are there to be
  * read. */
 FN pick pick_load(CTX int i) {
-    light_prefetch((const float *)ctx->lights, uload(ctx->picks->light[i + PICK_AHEAD] + ctx->lane));
+    light_prefetch((const float *)ctx->lights, uload(ctx->at.picks->light[i + PICK_AHEAD] + ctx->at.lane));
     pick p;
-    p.light = uload(ctx->picks->light[i] + ctx->lane);
-    p.inverse = rload(ctx->picks->inverse[i] + ctx->lane);
+    p.light = uload(ctx->at.picks->light[i] + ctx->at.lane);
+    p.inverse = rload(ctx->at.picks->inverse[i] + ctx->at.lane);
     return p;
 }
 
@@ -67,11 +67,11 @@ static void given(const struct core_context *frame, const gblock *g, uint32_t la
                   const pick_block *picks, rblock *out) {
     struct core_context c = *frame;
     const struct core_context *ctx = &c;
-    c.picks = picks;
+    c.at.picks = picks;
     for (int l = 0; l < BLOCK; l += LANES) {
         mask on = mload(lanes, l);
         resv r = resv_empty();
-        c.lane = l;
+        c.at.lane = l;
         if (ctx->light_count && ANY(on))
             r = resv_sel(on, ris_given(ctx, surf_load(ctx, g, l, ctx->frame->camera.eye), key_of(ctx, x, y, l), m), r);
         resv_store(out, l, r);

@@ -73,7 +73,7 @@ static void fill_hit(const noc_scene *scene, const rayblock *rays, const hitbloc
     g->depth[l] = (float)(h->t[l] * sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
     g->material[l] = scene->triangle_material.data[prim];
     uint32_t light = scene->triangle_light.data[prim];
-    if (light != NOC_NO_LIGHT && !front && !(scene->lights.data[light].flags & 1))
+    if (light != NOC_NO_LIGHT && !front && !(scene->lights.data[light].flags & LIGHT_TWO_SIDED))
         light = NOC_NO_LIGHT; /* the dark back of a one-sided emitter */
     g->light[l] = light;
 }

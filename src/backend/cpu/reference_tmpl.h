@@ -35,7 +35,7 @@ static void put_entries(reference_scratch *e, int l, mask lanes, uint32_t id, re
 
 static void reference_lanes(const struct core_context *ctx, const gblock *g, int x, int y, int l,
                             reference_scratch *e) {
-    int n = ctx->frame->params->rays;
+    int n = (int)ctx->frame->rays;
     u32 key = key_of(ctx, x, y, l);
     surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
     if (ctx->light_count <= (uint32_t)n) {

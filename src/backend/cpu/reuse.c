@@ -27,12 +27,12 @@ static void fetch(const gblock *g, const rblock *r, int from, int to, neighbour 
 }
 
 /* Is the surface of lane j of h like that of lane l of g, seen from about the same distance? */
-static bool alike(const noc_render_params *p, const gblock *g, int l, const gblock *h, int j) {
+static bool alike(const frame_constants *p, const gblock *g, int l, const gblock *h, int j) {
     if (h->material[j] == NO_SURFACE)
         return false;
     float cosine = g->nx[l] * h->nx[j] + g->ny[l] * h->ny[j] + g->nz[l] * h->nz[j];
     float off = g->nx[l] * (h->px[j] - g->px[l]) + g->ny[l] * (h->py[j] - g->py[l]) + g->nz[l] * (h->pz[j] - g->pz[l]);
-    return cosine >= (float)p->reject_normal && fabsf(off) <= (float)p->reject_depth * g->depth[l];
+    return cosine >= p->reject_normal && fabsf(off) <= p->reject_depth * g->depth[l];
 }
 
 static void clear(neighbour *n) {
@@ -44,23 +44,23 @@ static void clear(neighbour *n) {
  * neighbours' reservoirs were made with. */
 static void begin(const stage_run *run, const struct core_context *there, combining *b, const float eye[3],
                   uint32_t dim) {
-    const gblock *g = &run->s->b.g[run->ctx.frame->gbuffer][b->at];
-    noc_bias bias = run->ctx.frame->params->bias;
+    const gblock *g = &run->s->b.g[run->frame->gbuffer][b->at];
+    uint32_t bias = run->ctx.frame->bias;
     combination *c = &b->c;
     memset(b->asked, 0, sizeof(b->asked));
     memset(b->seen, 0xff, sizeof(b->seen));
-    if (bias == NOC_BIAS_PAIRWISE) {
+    if (bias == BIAS_PAIRWISE) {
         run->k->targets(there, eye, b->n, b->k, b->own->light, b->own->u, b->own->v, c);
         return;
     }
     run->k->offer(&run->ctx, g, b->own, b->n, b->k, b->x, b->y, dim, c);
-    if (bias == NOC_BIAS_MIS)
+    if (bias == BIAS_MIS)
         run->k->targets(there, eye, b->n, b->k, c->light, c->u, c->v, c);
 }
 
 /* Asks for rays from the neighbours to the canonical samples (pairwise) or to those held (mis). */
 static void ask_neighbours(const stage_run *run, const struct core_context *there, worker *w, combining *b) {
-    bool pairwise = run->ctx.frame->params->bias == NOC_BIAS_PAIRWISE;
+    bool pairwise = run->ctx.frame->bias == BIAS_PAIRWISE;
     const combination *c = &b->c;
     for (int i = 0; i < b->k; i++) {
         uint32_t lanes = 0;
@@ -84,14 +84,14 @@ static void ask_neighbours(const stage_run *run, const struct core_context *ther
 
 /* From the answers to the new reservoir, in the place of the old one or elsewhere. */
 static void end(const stage_run *run, combining *b, uint32_t dim, rblock *to) {
-    const gblock *g = &run->s->b.g[run->ctx.frame->gbuffer][b->at];
+    const gblock *g = &run->s->b.g[run->frame->gbuffer][b->at];
     rblock out;
-    switch (run->ctx.frame->params->bias) {
-    case NOC_BIAS_PAIRWISE:
+    switch (run->ctx.frame->bias) {
+    case BIAS_PAIRWISE:
         run->k->end_pairwise(&run->ctx, g, b->own, b->n, b->k, b->seen, b->x, b->y, dim, &b->c, &out);
         break;
-    case NOC_BIAS_MIS: run->k->end_mis(&b->c, b->own, b->n, b->k, b->seen, &out); break;
-    case NOC_BIAS_BIASED: run->k->end_biased(&b->c, &out); break;
+    case BIAS_MIS: run->k->end_mis(&b->c, b->own, b->n, b->k, b->seen, &out); break;
+    case BIAS_BIASED: run->k->end_biased(&b->c, &out); break;
     }
     for (int l = 0; l < BLOCK; l++)
         if (b->c.tag[l] != 0)
@@ -101,7 +101,7 @@ static void end(const stage_run *run, combining *b, uint32_t dim, rblock *to) {
 
 /* Zeroes samples that are occluded at their own pixel, so that all that are left are known to be visible. */
 static void resolve(const stage_run *run, worker *w, int count) {
-    const gblock *g = run->s->b.g[run->ctx.frame->gbuffer];
+    const gblock *g = run->s->b.g[run->frame->gbuffer];
     rblock *r = run->s->b.r[run->stage->target];
     combining *asked[TILE_BLOCKS * TILE_BLOCKS];
     w->batch.count = 0;
@@ -127,7 +127,7 @@ static void resolve(const stage_run *run, worker *w, int count) {
 static void combine(stage_run *run, const struct core_context *there, worker *w, int count, const float eye[3],
                     uint32_t dim) {
     frame_buffers *b = &run->s->b;
-    bool rays = noc_uses_bias_rays(run->ctx.frame->params);
+    bool rays = run->ctx.frame->flags & FRAME_BIAS_RAYS;
     w->batch.count = 0;
     for (int i = 0; i < count; i++) {
         begin(run, there, &w->combining[i], eye, dim);
@@ -151,8 +151,7 @@ static void combine(stage_run *run, const struct core_context *there, worker *w,
 
 /* What the last frame left where the block's surfaces were; false: nothing. */
 static bool fetch_history(const stage_run *run, const tile_block *block, combining *c) {
-    const noc_frame *f = run->ctx.frame;
-    const noc_render_params *p = f->params;
+    const noc_frame *f = run->frame;
     const frame_buffers *b = &run->s->b;
     const gblock *g = &b->g[f->gbuffer][block->at];
     uint32_t surfaces = lanes_with_surface(g);
@@ -163,24 +162,23 @@ static bool fetch_history(const stage_run *run, const tile_block *block, combini
     uint32_t front = run->k->project(&run->ctx, g, px, py) & surfaces;
     neighbour *n = c->n;
     clear(n);
-    float m_max = (float)(p->history * p->draws);
     for (int l = 0; l < BLOCK; l++) {
         if (!(front >> l & 1) || !(px[l] >= 0 && px[l] < (float)b->width && py[l] >= 0 && py[l] < (float)b->height))
             continue;
         int x = NOC_MIN((int)px[l], b->width - 1), y = NOC_MIN((int)py[l], b->height - 1), j = (y & 3) * 4 + (x & 3);
         size_t from = block_at(b, x / BLOCK_SIDE, y / BLOCK_SIDE);
         const gblock *h = &b->g[1 - f->gbuffer][from];
-        if (!alike(p, g, l, h, j))
+        if (!alike(run->ctx.frame, g, l, h, j))
             continue;
         fetch(h, &b->r[run->stage->source][from], j, l, n);
-        n->r.m[l] = NOC_MIN(n->r.m[l], m_max);
+        n->r.m[l] = NOC_MIN(n->r.m[l], run->ctx.frame->m_max);
     }
     c->k = 1;
     return n->lanes != 0;
 }
 
 void noc_cpu_temporal(stage_run *run, worker *w, tile t) {
-    const noc_frame *f = run->ctx.frame;
+    const noc_frame *f = run->frame;
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
     int n = noc_cpu_tile_blocks(run, t, blocks), count = 0;
     if (!f->history)
@@ -197,13 +195,13 @@ void noc_cpu_temporal(stage_run *run, worker *w, tile t) {
         count++;
     }
     struct core_context past = noc_cpu_past(run->s, &run->ctx);
-    combine(run, &past, w, count, f->previous.eye, DIM_TEMPORAL);
+    combine(run, &past, w, count, run->ctx.frame->previous.eye, DIM_TEMPORAL);
 }
 
 /* Neighbour places are drawn once a block: pixels next to each other read reservoirs next to each other, and their bias
  * rays are nearly parallel. Each pixel still has its own set of neighbours, chosen without regard to any sample. */
-static void neighbour_place(const noc_frame *f, uint32_t key, uint32_t dim, int *dx, int *dy) {
-    float radius = (float)f->params->radius * sqrtf(rng(key, dim));
+static void neighbour_place(const frame_constants *f, uint32_t key, uint32_t dim, int *dx, int *dy) {
+    float radius = f->radius * sqrtf(rng(key, dim));
     v3 c = circle(rng(key, dim + 1));
     *dx = (int)lrintf(radius * c.x);
     *dy = (int)lrintf(radius * c.y);
@@ -212,13 +210,12 @@ static void neighbour_place(const noc_frame *f, uint32_t key, uint32_t dim, int 
 }
 
 static void fetch_neighbours(const stage_run *run, const tile_block *block, uint32_t dim, combining *c) {
-    const noc_frame *f = run->ctx.frame;
-    const noc_render_params *p = f->params;
+    const frame_constants *f = run->ctx.frame;
     const frame_buffers *b = &run->s->b;
-    const gblock *g = &b->g[f->gbuffer][block->at];
-    uint32_t surfaces = lanes_with_surface(g), key = rng_key(p->seed ^ 0x5bd1e995u, (uint32_t)block->at, f->index);
+    const gblock *buffer = b->g[run->frame->gbuffer], *g = &buffer[block->at];
+    uint32_t surfaces = lanes_with_surface(g), key = rng_key(f->seed ^ 0x5bd1e995u, (uint32_t)block->at, f->index);
     c->k = 0;
-    for (int i = 0; surfaces && i < p->neighbours; i++) {
+    for (int i = 0; surfaces && i < (int)f->neighbours; i++) {
         neighbour *n = &c->n[c->k];
         int dx, dy;
         neighbour_place(f, key, dim + 3u * (uint32_t)i, &dx, &dy);
@@ -228,9 +225,9 @@ static void fetch_neighbours(const stage_run *run, const tile_block *block, uint
             if (!(surfaces >> l & 1) || x < 0 || y < 0 || x >= b->width || y >= b->height)
                 continue;
             size_t from = block_at(b, x / BLOCK_SIDE, y / BLOCK_SIDE);
-            const gblock *h = &b->g[f->gbuffer][from];
+            const gblock *h = &buffer[from];
             int j = (y & 3) * 4 + (x & 3);
-            if (alike(p, g, l, h, j))
+            if (alike(f, g, l, h, j))
                 fetch(h, &b->r[run->stage->source][from], j, l, n);
         }
         c->k += n->lanes != 0;

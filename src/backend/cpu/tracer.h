@@ -2,7 +2,7 @@
 #ifndef NOC_CPU_TRACER_H
 #define NOC_CPU_TRACER_H
 
-#include "backend/cpu/blocks.h"
+#include "core/blocks.h"
 #include "scene/scene.h"
 
 enum { MANY_BLOCKS = 32 }; /* whose segments are traced together */

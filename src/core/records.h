@@ -1,0 +1,70 @@
+/* core/records.h: what lies in memory between passes and frames, the same for C and shaders. Every record is made of
+ * 4-byte scalars without gaps, which is GLSL's `scalar` layout: sizes and offsets are asserted at the end. */
+#ifndef CORE_RECORDS_H
+#define CORE_RECORDS_H
+
+#if defined(CORE_GLSL)
+#define uint32_t uint
+#else
+#include <stddef.h>
+#include <stdint.h>
+#endif
+
+/* Kinds of light: noc_light_kind. */
+#define LIGHT_SPHERE 0u
+#define LIGHT_DISC 1u
+#define LIGHT_TRIANGLE 2u
+#define LIGHT_PARALLELOGRAM 3u
+#define LIGHT_POINT 4u
+#define LIGHT_SPOT 5u
+#define LIGHT_TWO_SIDED 1u /* flag of a light; the other bits are the scene's */
+#define NO_LIGHT 0xffffffffu
+
+/* A light: core/light.h says what each kind keeps where. One cache line. */
+struct light_record {
+    float p[3];    /* centre or corner */
+    uint32_t kind; /* LIGHT_SPHERE, ... */
+    float a[3];    /* edge u; disc: first radius vector; spot: its axis, times the scale of its falloff */
+    float radius;  /* triangle, parallelogram: the longest way between two corners; 0 for points and spots */
+    /* edge v; disc: second radius vector; the light faces a x b. Spot: offset of its falloff, inner and
+     * outer angle in radians */
+    float b[3];
+    uint32_t flags;
+    float e[3]; /* cd/m2; point, spot: cd */
+    float area; /* m2; 0 for points and spots */
+};
+
+/* Half a cache line. */
+struct material_record {
+    float albedo[3];
+    float f0;
+    float emission[3];
+    float alpha; /* roughness^2 */
+};
+
+#if !defined(CORE_GLSL)
+typedef struct light_record light_record;
+typedef struct material_record material_record;
+
+#define RECORD_SIZE(type, words) _Static_assert(sizeof(struct type) == 4 * (words), #type " has no gaps")
+#define RECORD_FIELD(type, field, word)                                                                                \
+    _Static_assert(offsetof(struct type, field) == 4 * (word), #type "." #field " lies where shaders read it")
+
+RECORD_SIZE(light_record, 16);
+RECORD_FIELD(light_record, p, 0);
+RECORD_FIELD(light_record, kind, 3);
+RECORD_FIELD(light_record, a, 4);
+RECORD_FIELD(light_record, radius, 7);
+RECORD_FIELD(light_record, b, 8);
+RECORD_FIELD(light_record, flags, 11);
+RECORD_FIELD(light_record, e, 12);
+RECORD_FIELD(light_record, area, 15);
+
+RECORD_SIZE(material_record, 8);
+RECORD_FIELD(material_record, albedo, 0);
+RECORD_FIELD(material_record, f0, 3);
+RECORD_FIELD(material_record, emission, 4);
+RECORD_FIELD(material_record, alpha, 7);
+#endif
+
+#endif
