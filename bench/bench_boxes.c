@@ -121,15 +121,18 @@ static bool run(const noc_scene *s, noc_viewpoint view, int shared, int points, 
     p.method = NOC_METHOD_RIS;
     p.candidates = NOC_CANDIDATES_UNIFORM;
     p.jitter = false;
-    noc_frame f = { .params = &p };
+    noc_plan plan = { .stages = { { .passes = { NOC_PASS_PRIMARY }, .count = 1 } },
+                      .count = 1,
+                      .draws = true,
+                      .candidates = p.candidates };
+    noc_frame f = { .params = &p, .plan = &plan };
     noc_make_frame_constants(&p, 0, false, &f.constants);
-    noc_stage primary = { .passes = 1u << NOC_PASS_PRIMARY };
     bool ok = noc_scene_camera(s, view, (double)WIDTH / HEIGHT, &camera) == NOC_OK;
     if (ok) {
         noc_make_frame_camera(&camera, &p, 0, &f.constants.camera);
         noc_backend_embree.resize(state, WIDTH, HEIGHT, 1);
-        ok = noc_cpu_prepare_lights(b.e, &p) == NOC_OK &&
-             noc_backend_embree.stage(state, &f, &primary, NULL, 0, 1) == NOC_OK;
+        ok = noc_cpu_prepare_lights(b.e, &plan, &p) == NOC_OK &&
+             noc_backend_embree.stage(state, &f, &plan.stages[0], NULL, 0, 1) == NOC_OK;
     }
     noc_influence_params params = { .cluster = shared, .pool = b.e->pool };
     b.spheres = ok ? noc_influence_create(s, &params, log) : NULL;

@@ -71,8 +71,10 @@ static bool times(const noc_scene *scene, const noc_camera *camera, int width, i
         }
         noc_view_light_stats(side[1].r, &found);
         printf("frames %.3f, candidates %.3f of uniform's; S_r %.3f, found: median %u, 99%% %u, none %.2f%%\n",
-               cpu[1] / cpu[0], pass[1][NOC_PASS_CANDIDATES] / pass[0][NOC_PASS_CANDIDATES], found.influence,
-               found.found_median, found.found_99, 100 * found.found_none);
+               cpu[1] / cpu[0],
+               (pass[1][NOC_PASS_FIND_LIGHTS] + pass[1][NOC_PASS_CANDIDATES_INFLUENCE]) /
+                   pass[0][NOC_PASS_CANDIDATES_UNIFORM],
+               found.influence, found.found_median, found.found_99, 100 * found.found_none);
     }
     for (int i = 0; i < 2; i++)
         close_view(side[i].r);

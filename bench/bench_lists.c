@@ -101,13 +101,17 @@ static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, 
         return false;
     cpu_view *e = state;
     noc_render_params p = params_of(width, height, NOC_METHOD_RIS, 32, true);
-    noc_frame f = { .params = &p };
+    noc_plan plan = { .stages = { { .passes = { NOC_PASS_PRIMARY }, .count = 1 } },
+                      .count = 1,
+                      .draws = true,
+                      .candidates = p.candidates };
+    noc_frame f = { .params = &p, .plan = &plan };
     noc_make_frame_constants(&p, 0, false, &f.constants);
     noc_make_frame_camera(camera, &p, 0, &f.constants.camera);
     noc_backend_embree.resize(state, width, height, 1);
-    noc_stage primary = { .passes = 1u << NOC_PASS_PRIMARY };
     double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
-    if (noc_cpu_prepare_lights(e, &p) != NOC_OK || noc_backend_embree.stage(state, &f, &primary, NULL, 0, 1) != NOC_OK)
+    if (noc_cpu_prepare_lights(e, &plan, &p) != NOC_OK ||
+        noc_backend_embree.stage(state, &f, &plan.stages[0], NULL, 0, 1) != NOC_OK)
         return false;
     wall = noc_wall_seconds();
     cpu = noc_cpu_seconds();

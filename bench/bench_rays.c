@@ -251,10 +251,10 @@ int main(int argc, char **argv) {
     p.width = width;
     p.height = height;
     p.method = NOC_METHOD_RIS;
-    noc_frame frame = { .params = &p };
+    noc_plan plan;
+    noc_frame frame = { .params = &p, .plan = &plan };
     noc_make_frame_constants(&p, 0, false, &frame.constants);
     noc_make_frame_camera(&camera, &p, 0, &frame.constants.camera);
-    const noc_stage stage = { .passes = 1u << NOC_PASS_PRIMARY | 1u << NOC_PASS_CANDIDATES };
     struct core_context ctx = { .lights = scene->lights.data,
                                 .light_count = (uint32_t)scene->lights.len,
                                 .materials = scene->material_records.data,
@@ -262,7 +262,8 @@ int main(int argc, char **argv) {
     static const noc_candidates sources[] = { NOC_CANDIDATES_UNIFORM, NOC_CANDIDATES_LISTS };
     for (int i = 0; set.blocks && i < 4; i++) {
         p.candidates = sources[i / 2];
-        if (noc_backend_embree.stage(state, &frame, &stage, NULL, 0, 1) != NOC_OK)
+        noc_plan_make(&p, -1, &plan);
+        if (noc_backend_embree.stage(state, &frame, &plan.stages[0], NULL, 0, 1) != NOC_OK)
             return 1;
         collect(s, &ctx, i % 2 ? 3 : 0, &set);
         measure_all(s, &set, (const char *const[]){ "uniform", "uniform, bias rays", "lists", "lists, bias rays" }[i],

@@ -180,13 +180,26 @@ NOC_API const char *noc_aov_name(noc_aov aov); /* "lights" */
  * light chosen, fewer than two frames. NULL after reporting an error, and before the first frame. */
 NOC_API noc_channel *noc_view_aov(noc_view *view, noc_aov aov);
 
+/* What a frame is made of, in order; which of them run depends on the parameters. */
 typedef enum noc_pass {
-    NOC_PASS_PRIMARY,
-    NOC_PASS_CANDIDATES,
-    NOC_PASS_VISIBILITY,
+    NOC_PASS_PRIMARY,     /* what each pixel sees */
+    NOC_PASS_FIND_LIGHTS, /* influence: the lights around the points of a tile */
+    NOC_PASS_BUILD_LIST,  /* lists: the strongest lights of a tile, and draws from the others */
+    NOC_PASS_CANDIDATES_UNIFORM,
+    NOC_PASS_CANDIDATES_LIST,
+    NOC_PASS_CANDIDATES_POWER,
+    NOC_PASS_CANDIDATES_INFLUENCE,
+    NOC_PASS_CANDIDATES_LIGHT_BVH,
+    NOC_PASS_SHARE_RAYS,   /* lists: which entries a pixel's shadow rays go to */
+    NOC_PASS_VISIBILITY,   /* a shadow ray to each pixel's sample */
+    NOC_PASS_TRACE_SHARED, /* the shared rays */
+    NOC_PASS_RESAMPLE,     /* one of a pixel's shared rays becomes its reservoir */
     NOC_PASS_TEMPORAL,
     NOC_PASS_SPATIAL,
+    NOC_PASS_EMITTERS, /* that are seen directly */
+    NOC_PASS_SHADE_SHARED,
     NOC_PASS_SHADE,
+    NOC_PASS_SHADE_ALL, /* reference */
     NOC_PASS_SKY,
     NOC_PASS_COUNT
 } noc_pass;

@@ -345,18 +345,19 @@ void cli_print_stats(const render_job *job) {
     double sum = 0;
     for (int i = 0; i < NOC_PASS_COUNT; i++)
         sum += job->pass_seconds[i];
-    printf("\n  %-12s %10s %7s   thread time of a frame, mean of %d\n", "pass", "ms", "share", job->frames);
+    printf("\n  %-20s %10s %7s   thread time of a frame, mean of %d\n", "pass", "ms", "share", job->frames);
     for (int i = 0; i < NOC_PASS_COUNT; i++)
-        printf("  %-12s %10.2f %6.1f%%\n", noc_pass_name((noc_pass)i), 1e3 * job->pass_seconds[i] / job->frames,
-               sum > 0 ? 100 * job->pass_seconds[i] / sum : 0);
+        if (job->pass_seconds[i] > 0)
+            printf("  %-20s %10.2f %6.1f%%\n", noc_pass_name((noc_pass)i), 1e3 * job->pass_seconds[i] / job->frames,
+                   sum > 0 ? 100 * job->pass_seconds[i] / sum : 0);
     double frame = job->frame_seconds / job->frames;
     char a[32], b[32];
-    printf("  %-12s %10.2f           wall; %.2f processor\n", "frame", 1e3 * frame,
+    printf("  %-20s %10.2f           wall; %.2f processor\n", "frame", 1e3 * frame,
            1e3 * job->cpu_seconds / job->frames);
-    printf("  %-12s %s primary, %s shadow (last frame)\n", "rays", noc_text_count(a, job->last.rays_primary),
+    printf("  %-20s %s primary, %s shadow (last frame)\n", "rays", noc_text_count(a, job->last.rays_primary),
            noc_text_count(b, job->last.rays_shadow));
     if (job->floor_seconds > 0)
-        printf("  %-12s %10.2f           wall; the frame takes %.2f times as long\n", "trace floor",
+        printf("  %-20s %10.2f           wall; the frame takes %.2f times as long\n", "trace floor",
                1e3 * job->floor_seconds, frame / job->floor_seconds);
-    printf("  %-12s %s\n", "memory", noc_text_bytes(a, job->last.memory_bytes));
+    printf("  %-20s %s\n", "memory", noc_text_bytes(a, job->last.memory_bytes));
 }

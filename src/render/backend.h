@@ -4,40 +4,20 @@
 #define NOC_BACKEND_H
 
 #include "core/frame.h"
+#include "render/plan.h"
 #include "scene/scene.h"
 #include <nocturne/render.h>
-
-/* Sets of reservoirs. The schedule names them; a backend holds NOC_RESERVOIR_SETS of them, or as many as it was told.
- */
-enum { NOC_RESERVOIR_SETS = 3 };
 
 /* One frame. Nothing in it changes while the frame is run. */
 typedef struct noc_frame {
     const noc_render_params *params;
+    const noc_plan *plan;
     frame_constants constants; /* what kernels and shaders read of it */
     uint64_t accumulated;      /* frames in the mean so far; 0 starts it anew */
     bool history;              /* the frame before is of the same size and parameters: its reservoirs can be reused */
     int history_set;           /* set that holds the previous frame's reservoirs */
     int gbuffer;               /* 0 or 1: this frame's G-buffer; the other one holds the previous frame's */
 } noc_frame;
-
-/* A run over all pixels of passes that only look at their own pixel, or at what an earlier stage (or frame) has left.
- */
-typedef struct noc_stage {
-    uint32_t passes;         /* 1 << noc_pass, done in the order of noc_pass */
-    int source, target;      /* reservoirs read from other pixels; reservoirs worked on and left behind */
-    int round;               /* number of the spatial pass */
-    bool resolve_visibility; /* leave no sample whose visibility at its own pixel is unknown */
-} noc_stage;
-
-enum { NOC_MAX_STAGES = 8 };
-
-typedef struct noc_schedule {
-    noc_stage stages[NOC_MAX_STAGES];
-    int count;
-    int sets;         /* reservoir sets that are used */
-    int next_history; /* set that feeds the next frame, -1: none */
-} noc_schedule;
 
 struct noc_influence;
 typedef struct noc_backend {
@@ -88,18 +68,6 @@ void noc_make_frame_camera(const noc_camera *camera, const noc_render_params *pa
                            frame_camera *out);
 /* The constants of a frame of these parameters, but for its cameras. history: as in noc_frame. */
 void noc_make_frame_constants(const noc_render_params *params, uint32_t frame, bool history, frame_constants *out);
-/* What to run for these parameters. history_set: set with the previous frame's reservoirs. */
-void noc_make_schedule(const noc_render_params *params, int history_set, noc_schedule *schedule);
-/* Visibility is a part of the reservoirs' own target functions, and of their combination: see docs/estimator.md. */
-static inline bool noc_uses_bias_rays(const noc_render_params *p) {
-    return p->method == NOC_METHOD_RESTIR && p->bias != NOC_BIAS_BIASED && p->bias_rays && p->visibility_reuse &&
-           p->final_ray;
-}
-
-/* May the last spatial output feed the next frame? See noc_make_schedule. */
-static inline bool noc_feeds_spatial(const noc_render_params *p) {
-    return p->bias == NOC_BIAS_PAIRWISE && (noc_uses_bias_rays(p) || !(p->visibility_reuse && p->final_ray));
-}
 
 /* isa.c */
 #define NOC_ISA_VARIABLE "NOCTURNE_ISA"

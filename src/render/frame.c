@@ -1,4 +1,5 @@
-/* What is rendered in one frame, and in which order. */
+/* What is the same for all pixels of a frame: its cameras and numbers; and what of cameras and parameters can be wrong.
+ */
 #include "core/blocks.h"
 #include "light/influence.h"
 #include "render/backend.h"
@@ -111,61 +112,4 @@ void noc_make_frame_constants(const noc_render_params *p, uint32_t frame, bool h
                               .reject_depth = (float)p->reject_depth,
                               .reject_normal = (float)p->reject_normal,
                               .sky = (float)p->sky };
-}
-
-#define BIT(pass) (1u << NOC_PASS_##pass)
-
-/* Reservoir sets: `history` is read by the temporal pass only, so it is free to take the first spatial pass's output.
- *
- * What feeds the next frame: the last spatial output where the combination is pairwise and unbiased (measured on the
- * built-in city, 240 x 136: relMSE after 32 frames .24 against .42 with the temporal output, .33 against .57 for frame
- * 32 alone, at the same cost), else the temporal output: biased spatial output fed back compounds its bias, and that of
- * the balance rule, which picks a sample before it weighs it, compounds its outliers (frame 32 alone: .93 against .66).
- */
-void noc_make_schedule(const noc_render_params *p, int history_set, noc_schedule *s) {
-    *s = (noc_schedule){ .sets = 1, .next_history = -1 };
-    uint32_t shade = BIT(SHADE) | (p->sky > 0 ? BIT(SKY) : 0);
-    bool restir = p->method == NOC_METHOD_RESTIR;
-    bool spatial = restir && p->spatial && p->neighbours > 0;
-    noc_stage first = { .passes = BIT(PRIMARY) };
-    if (p->method != NOC_METHOD_REFERENCE)
-        first.passes |= BIT(CANDIDATES);
-    if ((restir || p->method == NOC_METHOD_RIS) && p->visibility_reuse && p->final_ray)
-        first.passes |= BIT(VISIBILITY);
-    if (!restir) {
-        first.passes |= shade;
-        s->stages[s->count++] = first;
-        return;
-    }
-    int rounds = spatial ? p->passes : 0;
-    bool resolve = noc_uses_bias_rays(p), feed = p->temporal && rounds && noc_feeds_spatial(p);
-    int history = history_set < 0 ? 0 : history_set, fresh = p->temporal ? (history + 1) % 2 : 0;
-    if (p->temporal || rounds)
-        s->sets = 2;
-    if (rounds > 1)
-        s->sets = 3;
-    first.target = fresh;
-    first.source = history;
-    first.resolve_visibility = resolve;
-    if (p->temporal) {
-        first.passes |= BIT(TEMPORAL);
-        s->next_history = fresh;
-    }
-    if (!rounds)
-        first.passes |= shade;
-    s->stages[s->count++] = first;
-    int from = fresh, to = 1 - fresh;
-    for (int i = 0; i < rounds; i++) {
-        bool last = i == rounds - 1;
-        s->stages[s->count++] = (noc_stage){ .passes = BIT(SPATIAL) | (last ? shade : 0),
-                                             .source = from,
-                                             .target = to,
-                                             .round = i,
-                                             .resolve_visibility = resolve && (!last || feed) };
-        int next = from == fresh ? 2 : from; /* the temporal output is kept: it may be the next history */
-        from = to;
-        to = next;
-    }
-    if (feed)
-        s->next_history = from;
 }

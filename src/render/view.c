@@ -1,4 +1,4 @@
-/* A view: checks, drives a backend through the schedule of a frame, keeps history. */
+/* A view: checks, drives a backend through the plan of a frame, keeps history. */
 #include "image/internal.h"
 #include "light/influence.h"
 #include "render/device.h"
@@ -105,24 +105,25 @@ static noc_status fit(noc_view *v, const noc_render_params *p, int sets) {
 
 static noc_status make_frame(noc_view *v, const noc_camera *camera, const noc_render_params *p,
                              const noc_progress *progress) {
-    noc_schedule schedule;
+    noc_plan plan;
     noc_frame frame;
     double wall = noc_wall_seconds(), cpu = noc_cpu_seconds();
-    noc_make_schedule(p, -1, &schedule);
-    noc_status status = fit(v, p, schedule.sets);
+    noc_plan_make(p, -1, &plan);
+    noc_status status = fit(v, p, plan.sets);
     if (status != NOC_OK)
         return status;
     noc_history_begin(&v->history, camera, p, v->scene->versions.commits, &frame);
-    noc_make_schedule(p, frame.history_set, &schedule);
+    noc_plan_make(p, frame.history_set, &plan);
+    frame.plan = &plan;
     int stage = 0;
-    for (; stage < schedule.count && status == NOC_OK; stage++)
-        status = v->backend->stage(v->state, &frame, &schedule.stages[stage], progress, (double)stage / schedule.count,
-                                   (double)(stage + 1) / schedule.count);
+    for (; stage < plan.count && status == NOC_OK; stage++)
+        status = v->backend->stage(v->state, &frame, &plan.stages[stage], progress, (double)stage / plan.count,
+                                   (double)(stage + 1) / plan.count);
     noc_frame_stats stats = { .dropped = frame.constants.index ? v->stats.dropped : 0 };
     if (status == NOC_OK)
         status = v->backend->accumulate(v->state, &frame);
     if (status == NOC_OK)
-        noc_history_end(&v->history, &frame, schedule.next_history);
+        noc_history_end(&v->history, &frame, plan.next_history);
     else
         noc_history_drop(&v->history, &frame, stage == 1);
     v->backend->stats(v->state, &stats);
@@ -210,15 +211,6 @@ noc_channel *noc_view_aov(noc_view *v, noc_aov aov) {
     noc_error(v->log, NOC_ERR_ARGUMENT, "render: the last frame did not keep the view \"%s\": name it in aovs",
               noc_aov_name(aov));
     return NULL;
-}
-
-const char *noc_pass_name(noc_pass pass) {
-    static const char *const names[NOC_PASS_COUNT] = {
-        [NOC_PASS_PRIMARY] = "primary",   [NOC_PASS_CANDIDATES] = "candidates", [NOC_PASS_VISIBILITY] = "visibility",
-        [NOC_PASS_TEMPORAL] = "temporal", [NOC_PASS_SPATIAL] = "spatial",       [NOC_PASS_SHADE] = "shade",
-        [NOC_PASS_SKY] = "sky",
-    };
-    return (unsigned)pass < NOC_PASS_COUNT ? names[pass] : "unknown";
 }
 
 void noc_view_get_stats(const noc_view *v, noc_frame_stats *stats) {

@@ -9,7 +9,7 @@
 #include "core/light.h"
 #include "core/random.h"
 
-#define ITEM_SLOTS 170
+#define ITEM_SLOTS 179
 #define KERNEL_LIGHTS 1000u
 
 /* Signed, of a magnitude that differs from item to item: 1/16 to 4096. */
@@ -276,6 +276,23 @@ FN void pickers(CTX u32 item, u32 key, surf s) {
     put_resv(PASS item, 135, ris_given(PASS s, key, 8));
 }
 
+/* Slots 170 to 178. */
+FN void picked(CTX u32 item, u32 key, surf s) {
+    pick a = alias_candidate(PASS KU(KERNEL_LIGHTS), key, 5);
+    put_u32(PASS item, 170, a.light);
+    put_real(PASS item, 171, a.inverse);
+    u32 bits = rng_bits(key, KU(3100u));
+    tree_step w = tree_go(PASS s.p, s.n, key, shr(bits, 25) & KU(63u), shr(bits, 22), rng(key, KU(3101u)));
+    put_u32(PASS item, 172, w.to_a);
+    put_u32(PASS item, 173, w.link_a);
+    put_u32(PASS item, 174, w.link_b);
+    put_real(PASS item, 175, w.pmf_a);
+    put_real(PASS item, 176, w.pmf_b);
+    pick t = tree_draw(PASS s.p, s.n, key, KU(0u), KU(32u), bits & KU(31u), 7);
+    put_u32(PASS item, 177, t.light);
+    put_real(PASS item, 178, t.inverse);
+}
+
 FN void dialect_item(CTX u32 item) {
     u32 key = rng_key(KU(5u), item, KU(9u));
     surf s = any_surf(hash_u32(key + KU(1u)));
@@ -289,6 +306,7 @@ FN void dialect_item(CTX u32 item) {
     reuse(PASS item, key);
     rays(PASS item, key, s, any);
     pickers(PASS item, key, s);
+    picked(PASS item, key, s);
 }
 
 #endif

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#define ITEM_SLOTS 170
+#define ITEM_SLOTS 179
 #define ITEMS 16384u
 
 void dialect_run_1(uint32_t *out, uint32_t items);
@@ -83,11 +83,15 @@ static const struct {
     { 155, "parallelogram, close" },
     { 162, "turn_of" },
     { 163, "spot" },
+    { 170, "alias_candidate" },
+    { 172, "tree_go" },
+    { 177, "tree_draw" },
 };
 
 static bool holds_integers(int slot) {
     return slot == 0 || slot == 4 || slot == 5 || slot == 71 || slot == 77 || slot == 83 || slot == 89 || slot == 103 ||
-           slot == 126 || slot == 129 || slot == 134 || slot == 135;
+           slot == 126 || slot == 129 || slot == 134 || slot == 135 || slot == 170 || (slot >= 172 && slot <= 174) ||
+           slot == 177;
 }
 
 static const char *group_name(int slot) {

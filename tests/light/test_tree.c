@@ -274,6 +274,35 @@ static void is_the_same_for_all(void **state) {
     noc_scene_destroy(s);
 }
 
+/* The way of each draw alone leads where those that went down together came, with the same bits. */
+static void one_way_is_that_of_all(void **state) {
+    (void)state;
+    static const uint32_t counts[] = { 1, 2, 300, 5000 };
+    size_t several = 0;
+    for (size_t c = 0; c < NOC_COUNT(counts); c++) {
+        noc_scene *s = world(counts[c], MIXED);
+        drawer d;
+        open_drawer(&d, s, NULL);
+        for (int round = 0; round < 20; round++) {
+            uint32_t m = round & 1 ? 100 : 7;
+            look_from(&d, random_surf(15));
+            draw(&d, (int)m);
+            struct core_context ctx = context(&d);
+            for (uint32_t l = 0; l < BLOCK; l++)
+                for (uint32_t i = 0; i < m && (LANES_ASKED >> l & 1); i++) {
+                    u32 key = rng_key(d.params.seed, (l >> 2) * (uint32_t)d.params.width + (l & 3), 0);
+                    pick p = tree_draw(&ctx, d.y[l].p, d.y[l].n, key, d.tree->root, m, i, d.tree->depth);
+                    assert_int_equal(p.light, d.picks.light[i][l]);
+                    assert_memory_equal(&p.inverse, &d.picks.inverse[i][l], sizeof(p.inverse));
+                    several += i && p.light != d.picks.light[0][l];
+                }
+        }
+        close_drawer(&d);
+        noc_scene_destroy(s);
+    }
+    assert_true(several > 1000);
+}
+
 /* Draws are shared out evenly: a light of probability p gets n p of n draws give or take a few, where independent draws
  * would be off by sqrt(n p). */
 static void draws_are_stratified(void **state) {
@@ -387,7 +416,7 @@ int main(void) {
         cmocka_unit_test(of_all_worlds),          cmocka_unit_test(of_uneven_lights),
         cmocka_unit_test(is_the_same_for_all),    cmocka_unit_test(draws_are_stratified),
         cmocka_unit_test(wrong_pmf_is_seen),      cmocka_unit_test(follows_lights),
-        cmocka_unit_test(is_built_anew_when_bad),
+        cmocka_unit_test(is_built_anew_when_bad), cmocka_unit_test(one_way_is_that_of_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -68,18 +68,18 @@ noc_status noc_cpu_begin_aovs(cpu_view *s, uint32_t aovs, bool first_stage) {
 
 /* How often a light that lane l chose is expected among its candidates. */
 static float expected(const stage_run *run, const worker *w, uint32_t light, int l) {
-    const noc_render_params *p = run->frame->params;
-    if (p->method == NOC_METHOD_IS || p->candidates == NOC_CANDIDATES_UNIFORM)
-        return (float)(p->method == NOC_METHOD_IS ? 1 : p->draws) / (float)run->ctx.light_count;
+    const noc_plan *p = run->frame->plan;
+    if (p->candidates == NOC_CANDIDATES_UNIFORM)
+        return (float)p->candidate_count / (float)run->ctx.light_count;
     if (p->candidates == NOC_CANDIDATES_LISTS) {
         const light_list *list = &w->lists.list;
         for (uint32_t i = 0; i < list->count; i++)
             if (list->light[i] == light)
                 return 1 / (list->weight[i] * (float)list->copies);
     } else {
-        for (int i = 0; i < p->draws; i++)
+        for (int i = 0; i < p->candidate_count; i++)
             if (w->picks.light[i][l] == light && w->picks.inverse[i][l] > 0)
-                return (float)p->draws / w->picks.inverse[i][l];
+                return (float)p->candidate_count / w->picks.inverse[i][l];
     }
     return -1;
 }
@@ -87,7 +87,7 @@ static float expected(const stage_run *run, const worker *w, uint32_t light, int
 void noc_cpu_aov_candidates(const stage_run *run, const worker *w, int i, size_t block, uint32_t lanes,
                             const rblock *r) {
     const aov_buffers *v = &run->s->b.aovs;
-    bool lists = run->frame->params->candidates == NOC_CANDIDATES_LISTS;
+    bool lists = run->frame->plan->candidates == NOC_CANDIDATES_LISTS;
     for (int l = 0; l < BLOCK; l++) {
         if (!(lanes >> l & 1))
             continue;

@@ -226,12 +226,12 @@ void noc_cpu_probe(void *user, noc_probes *probes); /* a noc_probe_fn; user is t
 noc_status noc_cpu_replay_rays(cpu_view *s, double *seconds);
 
 /* lights.c: what the candidates of these parameters are drawn from */
-noc_status noc_cpu_prepare_lights(cpu_view *s, const noc_render_params *p);
+noc_status noc_cpu_prepare_lights(cpu_view *s, const noc_plan *plan, const noc_render_params *p);
 void noc_cpu_release_lights(cpu_view *s);
 void noc_cpu_forget_found(cpu_view *s); /* of the last frame, before candidates are drawn */
 /* moved.c: lights that move */
 /* Room for the lights of the previous frame, where a frame with these parameters will want them. */
-noc_status noc_cpu_prepare_past(cpu_view *s, const noc_render_params *p);
+noc_status noc_cpu_prepare_past(cpu_view *s, const noc_plan *plan);
 /* After a frame: its reservoirs were made with the lights as they are now. */
 void noc_cpu_keep_lights(cpu_view *s);
 /* The context that the previous frame's targets and visibility are asked of: *now with its lights. */
@@ -251,10 +251,10 @@ void noc_cpu_gather_segments(const stage_run *run, worker *w, size_t at, uint32_
 
 /* list_rays.c: the passes of a tile where every pixel shares out several rays over its list, after the list was built
  * into w->lists.list */
-bool noc_cpu_shares_rays(const noc_render_params *p);
 void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *points);
-void noc_cpu_share_visibility(stage_run *run, worker *w, tile t);
-void noc_cpu_share_shade(stage_run *run, worker *w, tile t);
+void noc_cpu_trace_shared(stage_run *run, worker *w, tile t);
+void noc_cpu_resample(stage_run *run, worker *w, tile t);
+void noc_cpu_shade_shared(stage_run *run, worker *w, tile t);
 /* Before a frame's first stage, and when the frame is complete; one that is dropped is not learned from. */
 noc_status noc_cpu_begin_learning(cpu_view *s, const noc_frame *frame);
 void noc_cpu_end_learning(cpu_view *s, const noc_frame *frame);

@@ -11,10 +11,9 @@ static void run_tile(void *arg, size_t item, int index) {
     int tx = (int)(item % (size_t)b->tiles_x) * TILE_BLOCKS, ty = (int)(item / (size_t)b->tiles_x) * TILE_BLOCKS;
     tile t = { tx, ty, NOC_MIN(tx + TILE_BLOCKS, b->blocks_x), NOC_MIN(ty + TILE_BLOCKS, b->blocks_y) };
     double start = noc_wall_seconds();
-    for (int pass = 0; pass < NOC_PASS_COUNT; pass++) {
-        if (!(run->stage->passes >> pass & 1))
-            continue;
-        noc_cpu_pass(run, w, (noc_pass)pass, t);
+    for (int i = 0; i < run->stage->count; i++) {
+        noc_pass pass = run->stage->passes[i];
+        noc_cpu_pass(run, w, pass, t);
         double now = noc_wall_seconds();
         w->seconds[pass] += now - start;
         start = now;
@@ -44,14 +43,15 @@ noc_status noc_cpu_stage(void *state, const noc_frame *frame, const noc_stage *s
                          double from, double to) {
     cpu_view *s = state;
     s->kernels = noc_pick_kernels(frame->params->isa);
-    noc_status status = noc_cpu_prepare_past(s, frame->params);
+    noc_status status = noc_cpu_prepare_past(s, frame->plan);
     if (status == NOC_OK)
-        status = noc_cpu_prepare_lights(s, frame->params);
+        status = noc_cpu_prepare_lights(s, frame->plan, frame->params);
     if (status == NOC_OK)
-        status = noc_cpu_begin_aovs(s, frame->params->aovs, st->passes >> NOC_PASS_PRIMARY & 1);
+        status = noc_cpu_begin_aovs(s, frame->params->aovs, st == &frame->plan->stages[0]);
     if (status != NOC_OK)
         return status;
-    if (st->passes >> NOC_PASS_CANDIDATES & 1)
+    bool first = st == &frame->plan->stages[0];
+    if (first)
         noc_cpu_forget_found(s);
     stage_run run = { .s = s,
                       .frame = frame,
@@ -63,9 +63,8 @@ noc_status noc_cpu_stage(void *state, const noc_frame *frame, const noc_stage *s
                       .from = from,
                       .to = to,
                       .tiles = (size_t)s->b.tiles_x * s->b.tiles_y };
-    if (st->passes >> NOC_PASS_SHADE & 1)
-        s->shaded_set = st->target;
-    if (st->passes >> NOC_PASS_CANDIDATES & 1 && (status = noc_cpu_begin_learning(s, frame)) != NOC_OK)
+    s->shaded_set = st->target;
+    if (first && (status = noc_cpu_begin_learning(s, frame)) != NOC_OK)
         return status;
     /* Asked before too: the calling thread may get no tile of a small picture. */
     if (progress && progress->update && !progress->update(progress->user, run.what, from))

@@ -54,11 +54,11 @@ static noc_status prepare_scratch(cpu_view *s, noc_candidates candidates) {
     return status == NOC_OK ? prepare_picks(s) : status;
 }
 
-noc_status noc_cpu_prepare_lights(cpu_view *s, const noc_render_params *p) {
-    if (!draws_candidates(p))
+noc_status noc_cpu_prepare_lights(cpu_view *s, const noc_plan *plan, const noc_render_params *p) {
+    if (!plan->draws)
         return NOC_OK;
-    noc_status status = noc_light_set_get(s->world->lights, p->candidates, p, &s->sources);
-    return status == NOC_OK ? prepare_scratch(s, p->candidates) : status;
+    noc_status status = noc_light_set_get(s->world->lights, plan->candidates, p, &s->sources);
+    return status == NOC_OK ? prepare_scratch(s, plan->candidates) : status;
 }
 
 void noc_cpu_release_lights(cpu_view *s) {

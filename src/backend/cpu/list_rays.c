@@ -12,14 +12,6 @@
 enum { CELL_PIXELS = 32, MOST_ASKED_A_TILE = 16 * BLOCK * TILE_BLOCKS * TILE_BLOCKS };
 _Static_assert(MOST_ASKED_A_TILE <= UINT16_MAX, "counts of a tile fit");
 
-bool noc_cpu_shares_rays(const noc_render_params *p) {
-    if (p->candidates != NOC_CANDIDATES_LISTS)
-        return false;
-    return p->method == NOC_METHOD_RIS || (p->method == NOC_METHOD_RESTIR && p->visibility_reuse && p->final_ray);
-}
-
-static bool learns(const noc_render_params *p) { return noc_cpu_shares_rays(p) && p->learn && p->final_ray; }
-
 /* ---- what is believed ---- */
 
 static uint64_t key_of_block(const frame_camera *c, const gblock *g, uint32_t lanes) {
@@ -36,7 +28,7 @@ static float pull(float visibility) { return sqrtf(visibility) + 0.1f; }
 
 /* Number of the block's cell among those of the tile. */
 static int believe(const stage_run *run, const gblock *g, uint32_t lanes, const light_list *list, tile_rays *t) {
-    bool learn = learns(run->frame->params);
+    bool learn = run->frame->plan->learns;
     uint64_t key = learn ? key_of_block(&run->ctx.frame->camera, g, lanes) : 1;
     for (int i = t->cells - 1; i >= 0; i--)
         if (t->cell[i].key == key)
@@ -255,7 +247,9 @@ static void resample(const stage_run *run, const tile_rays *t, int first, const 
 }
 
 /* The rays of restir's pixels become their own reservoirs, of samples known to be seen. */
-static void make_reservoirs(const stage_run *run, const tile_rays *t) {
+void noc_cpu_resample(stage_run *run, worker *w, tile at) {
+    const tile_rays *t = &w->shared;
+    (void)at;
     for (int i = 0; i < t->count; i += t->draws[i].rays) {
         size_t block = t->at[t->draws[i].block];
         int x = (int)(block % (size_t)run->s->b.blocks_x) * BLOCK_SIDE,
@@ -278,7 +272,7 @@ static void blank_hidden(const stage_run *run, const tile_rays *t) {
                 r[t->at[t->draws[i].block]].w[l] = 0;
 }
 
-void noc_cpu_share_visibility(stage_run *run, worker *w, tile at) {
+void noc_cpu_trace_shared(stage_run *run, worker *w, tile at) {
     tile_rays *t = &w->shared;
     if (run->ctx.frame->flags & FRAME_FINAL_RAY)
         noc_cpu_trace_occlusion(run->s, w, t->segments, t->count);
@@ -289,11 +283,8 @@ void noc_cpu_share_visibility(stage_run *run, worker *w, tile at) {
         for (int l = 0; l < BLOCK; l++)
             if (!(t->segments[i].clear >> l & 1))
                 t->draws[i].r.w[l] = 0;
-    if (run->frame->params->method == NOC_METHOD_RESTIR)
-        make_reservoirs(run, t);
-    else
-        blank_hidden(run, t);
-    if (learns(run->frame->params))
+    blank_hidden(run, t);
+    if (run->frame->plan->learns)
         note_sightings(run, w, at);
 }
 
@@ -314,11 +305,9 @@ static void share_with_reservoirs(const stage_run *run, tile_rays *t, tile at) {
             t->draws[i].r.w[l] *= 1 - t->reused[t->draws[i].block][l];
 }
 
-void noc_cpu_share_shade(stage_run *run, worker *w, tile at) {
+void noc_cpu_shade_shared(stage_run *run, worker *w, tile at) {
     tile_rays *t = &w->shared;
-    if (!(run->stage->passes >> NOC_PASS_VISIBILITY & 1))
-        noc_cpu_share_visibility(run, w, at);
-    if (run->frame->params->method == NOC_METHOD_RESTIR)
+    if (run->frame->plan->mixes)
         share_with_reservoirs(run, t, at);
     const gblock *g = run->s->b.g[run->frame->gbuffer];
     for (int i = 0; i < t->count; i++) {
@@ -333,7 +322,7 @@ void noc_cpu_share_shade(stage_run *run, worker *w, tile at) {
 
 noc_status noc_cpu_begin_learning(cpu_view *s, const noc_frame *frame) {
     size_t tiles = (size_t)s->b.tiles_x * s->b.tiles_y;
-    if (!learns(frame->params))
+    if (!frame->plan->learns)
         return NOC_OK;
     if (!s->learned) {
         s->learned = noc_learned_create(tiles, s->log);
@@ -358,7 +347,7 @@ noc_status noc_cpu_begin_learning(cpu_view *s, const noc_frame *frame) {
 void noc_cpu_end_learning(cpu_view *s, const noc_frame *frame) {
     size_t tiles = (size_t)s->b.tiles_x * s->b.tiles_y;
     double bright = 0;
-    if (!learns(frame->params))
+    if (!frame->plan->learns)
         return;
     for (size_t i = 0; i < tiles; i++) {
         const learned_tile *t = &s->learned_tiles[i];

@@ -1,14 +1,10 @@
 /* Lights that move: the previous frame's are kept for temporal reuse. */
 #include "backend/cpu/cpu.h"
 
-/* Does a frame with these parameters leave reservoirs to one that may see other lights? */
-static bool needs_past(const cpu_view *s, const noc_render_params *p) {
-    return s->scene->moving.len && p->method == NOC_METHOD_RESTIR && p->temporal && p->bias != NOC_BIAS_BIASED;
-}
-
-noc_status noc_cpu_prepare_past(cpu_view *s, const noc_render_params *p) {
+noc_status noc_cpu_prepare_past(cpu_view *s, const noc_plan *plan) {
     size_t n = s->scene->lights.len;
-    if (!needs_past(s, p) || s->past_lights || (s->past_lights = noc_alloc_large(n, sizeof(*s->past_lights))))
+    if (!plan->past_lights || !s->scene->moving.len || s->past_lights ||
+        (s->past_lights = noc_alloc_large(n, sizeof(*s->past_lights))))
         return NOC_OK;
     return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for the previous frame's %zu lights", n);
 }

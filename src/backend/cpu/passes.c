@@ -63,42 +63,15 @@ static void find_volumes(stage_run *run, worker *w, const tile_points *p) {
             w->found_counts[NOC_MIN(noc_found_count(&w->found, i, __builtin_ctz(bits)), run->s->found_bins - 1)]++;
 }
 
-/* Draws the candidates of block i of its tile from whatever is not drawn in the kernel itself. */
-static void pick_lights(stage_run *run, worker *w, const tile_points *points, int i, noc_candidates from, int m) {
-    tile_block at = points->block[i];
-    switch (from) {
-    case NOC_CANDIDATES_POWER: run->k->pick_power(&run->ctx, at.x, at.y, m, &w->picks); break;
-    case NOC_CANDIDATES_INFLUENCE: run->k->pick_influence(&run->ctx, &w->found, i, at.x, at.y, m, &w->picks); break;
-    case NOC_CANDIDATES_LIGHT_BVH:
-        run->k->pick_tree(&run->ctx, points->g[i], points->lanes[i], at.x, at.y, m, w->tree_items, &w->picks);
-        break;
-    case NOC_CANDIDATES_UNIFORM:
-    case NOC_CANDIDATES_LISTS: break;
-    }
+/* What is done for each block once its reservoirs are there. */
+static void end_candidates(stage_run *run, worker *w, const tile_points *points, int i) {
+    rblock *r = &run->s->b.r[run->stage->target][points->block[i].at];
+    if (run->frame->params->aovs)
+        noc_cpu_aov_candidates(run, w, i, points->block[i].at, points->lanes[i], r);
+    run->s->b.visible[run->stage->target][points->block[i].at] = 0;
 }
 
-static void candidates(stage_run *run, worker *w, const tile_points *points, int i, noc_candidates from) {
-    const noc_render_params *p = run->frame->params;
-    const gblock *g = points->g[i];
-    tile_block at = points->block[i];
-    uint32_t lanes = points->lanes[i];
-    rblock *r = &run->s->b.r[run->stage->target][at.at];
-    int m = p->method == NOC_METHOD_IS ? 1 : p->draws;
-    if (lanes)
-        pick_lights(run, w, points, i, from, m);
-    if (from == NOC_CANDIDATES_UNIFORM) {
-        run->k->candidates(&run->ctx, g, lanes, at.x, at.y, m, r);
-    } else if (from == NOC_CANDIDATES_LISTS) {
-        struct core_context ctx = run->ctx;
-        ctx.at.list = &w->lists.list;
-        run->k->list_candidates(&ctx, g, lanes, at.x, at.y, r);
-    } else {
-        run->k->given(&run->ctx, g, lanes, at.x, at.y, m, &w->picks, r);
-    }
-    if (p->aovs)
-        noc_cpu_aov_candidates(run, w, i, at.at, lanes, r);
-    run->s->b.visible[run->stage->target][at.at] = 0;
-}
+static rblock *target_block(const stage_run *run, tile_block at) { return &run->s->b.r[run->stage->target][at.at]; }
 
 /* Where the tail of a tile's list starts: anywhere, and from frame to frame on along the golden ratio's sequence, so
  * that the mean of some frames has met the lights as evenly as one frame with so many draws. */
@@ -116,23 +89,75 @@ static void gather_points(const stage_run *run, tile t, tile_points *out) {
     }
 }
 
-/* All candidates of a tile: from its list, where that is asked for, else each block's own. */
-static void tile_candidates(stage_run *run, worker *w, tile t) {
-    const noc_render_params *p = run->frame->params;
-    noc_candidates from = p->method == NOC_METHOD_IS ? NOC_CANDIDATES_UNIFORM : p->candidates;
+static void find_lights(stage_run *run, worker *w, tile t) {
     tile_points points;
     gather_points(run, t, &points);
-    if (from == NOC_CANDIDATES_INFLUENCE)
-        find_volumes(run, w, &points);
-    if (from == NOC_CANDIDATES_LISTS)
-        run->k->list_build(&run->ctx, points.g, points.lanes, points.count, tail_start(run, t), &w->lists,
-                           &w->lists.list);
-    if (from == NOC_CANDIDATES_LISTS && noc_cpu_shares_rays(p)) {
-        noc_cpu_share_candidates(run, w, &points);
-        return;
+    find_volumes(run, w, &points);
+}
+
+static void build_list(stage_run *run, worker *w, tile t) {
+    tile_points points;
+    gather_points(run, t, &points);
+    run->k->list_build(&run->ctx, points.g, points.lanes, points.count, tail_start(run, t), &w->lists, &w->lists.list);
+}
+
+static void candidates_uniform(stage_run *run, worker *w, tile t) {
+    int m = run->frame->plan->candidate_count;
+    tile_points p;
+    gather_points(run, t, &p);
+    for (int i = 0; i < p.count; i++) {
+        run->k->candidates(&run->ctx, p.g[i], p.lanes[i], p.block[i].x, p.block[i].y, m, target_block(run, p.block[i]));
+        end_candidates(run, w, &p, i);
     }
-    for (int i = 0; i < points.count; i++)
-        candidates(run, w, &points, i, from);
+}
+
+static void candidates_list(stage_run *run, worker *w, tile t) {
+    struct core_context ctx = run->ctx;
+    tile_points p;
+    ctx.at.list = &w->lists.list;
+    gather_points(run, t, &p);
+    for (int i = 0; i < p.count; i++) {
+        run->k->list_candidates(&ctx, p.g[i], p.lanes[i], p.block[i].x, p.block[i].y, target_block(run, p.block[i]));
+        end_candidates(run, w, &p, i);
+    }
+}
+
+/* Candidates that a picker draws for a block, then weighs. */
+typedef void draw_fn(const stage_run *run, worker *w, const tile_points *p, int i, int m);
+
+static void draw_power(const stage_run *run, worker *w, const tile_points *p, int i, int m) {
+    run->k->pick_power(&run->ctx, p->block[i].x, p->block[i].y, m, &w->picks);
+}
+
+static void draw_influence(const stage_run *run, worker *w, const tile_points *p, int i, int m) {
+    run->k->pick_influence(&run->ctx, &w->found, i, p->block[i].x, p->block[i].y, m, &w->picks);
+}
+
+static void draw_light_bvh(const stage_run *run, worker *w, const tile_points *p, int i, int m) {
+    run->k->pick_tree(&run->ctx, p->g[i], p->lanes[i], p->block[i].x, p->block[i].y, m, w->tree_items, &w->picks);
+}
+
+static void draw_candidates(stage_run *run, worker *w, tile t, draw_fn *draw) {
+    int m = run->frame->plan->candidate_count;
+    tile_points p;
+    gather_points(run, t, &p);
+    for (int i = 0; i < p.count; i++) {
+        if (p.lanes[i])
+            draw(run, w, &p, i, m);
+        run->k->given(&run->ctx, p.g[i], p.lanes[i], p.block[i].x, p.block[i].y, m, &w->picks,
+                      target_block(run, p.block[i]));
+        end_candidates(run, w, &p, i);
+    }
+}
+
+static void candidates_power(stage_run *run, worker *w, tile t) { draw_candidates(run, w, t, draw_power); }
+static void candidates_influence(stage_run *run, worker *w, tile t) { draw_candidates(run, w, t, draw_influence); }
+static void candidates_light_bvh(stage_run *run, worker *w, tile t) { draw_candidates(run, w, t, draw_light_bvh); }
+
+static void share_rays(stage_run *run, worker *w, tile t) {
+    tile_points points;
+    gather_points(run, t, &points);
+    noc_cpu_share_candidates(run, w, &points);
 }
 
 static void visibility(stage_run *run, worker *w, tile t) {
@@ -249,27 +274,29 @@ static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, i
     }
 }
 
-static void shade(stage_run *run, worker *w, tile t) {
-    const noc_frame *f = run->frame;
+static void emitters(stage_run *run, worker *w, tile t) {
     frame_buffers *b = &run->s->b;
-    const gblock *g = b->g[f->gbuffer];
+    const gblock *g = b->g[run->frame->gbuffer];
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
     int n = noc_cpu_tile_blocks(run, t, blocks);
     for (int i = 0; i < n; i++)
         show_emitters(run, &g[blocks[i].at], &b->emitter[blocks[i].at], &b->colour[blocks[i].at]);
-    if (!run->ctx.light_count)
-        return;
-    if (noc_cpu_shares_rays(f->params) && run->stage->passes >> NOC_PASS_CANDIDATES & 1) {
-        noc_cpu_share_shade(run, w, t);
-        if (f->params->method == NOC_METHOD_RESTIR)
-            shade_samples(run, w, blocks, n, (const float(*)[BLOCK])w->shared.reused);
-    } else if (f->params->method != NOC_METHOD_REFERENCE) {
-        shade_samples(run, w, blocks, n, NULL);
-    } else {
-        for (int i = 0; i < n; i++) {
-            size_t at = blocks[i].at;
-            w->dropped += (uint64_t)__builtin_popcount(shade_reference(run, w, &g[at], &blocks[i], &b->colour[at]));
-        }
+}
+
+static void shade(stage_run *run, worker *w, tile t) {
+    tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
+    int n = noc_cpu_tile_blocks(run, t, blocks);
+    shade_samples(run, w, blocks, n, run->frame->plan->mixes ? (const float(*)[BLOCK])w->shared.reused : NULL);
+}
+
+static void shade_all(stage_run *run, worker *w, tile t) {
+    frame_buffers *b = &run->s->b;
+    const gblock *g = b->g[run->frame->gbuffer];
+    tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
+    int n = noc_cpu_tile_blocks(run, t, blocks);
+    for (int i = 0; i < n; i++) {
+        size_t at = blocks[i].at;
+        w->dropped += (uint64_t)__builtin_popcount(shade_reference(run, w, &g[at], &blocks[i], &b->colour[at]));
     }
 }
 
@@ -333,19 +360,26 @@ static void sky(stage_run *run, worker *w, tile t) {
 void noc_cpu_pass(stage_run *run, worker *w, noc_pass pass, tile t) {
     static void (*const passes[NOC_PASS_COUNT])(stage_run *, worker *, tile) = {
         [NOC_PASS_PRIMARY] = primary,
-        [NOC_PASS_CANDIDATES] = tile_candidates,
+        [NOC_PASS_FIND_LIGHTS] = find_lights,
+        [NOC_PASS_BUILD_LIST] = build_list,
+        [NOC_PASS_CANDIDATES_UNIFORM] = candidates_uniform,
+        [NOC_PASS_CANDIDATES_LIST] = candidates_list,
+        [NOC_PASS_CANDIDATES_POWER] = candidates_power,
+        [NOC_PASS_CANDIDATES_INFLUENCE] = candidates_influence,
+        [NOC_PASS_CANDIDATES_LIGHT_BVH] = candidates_light_bvh,
+        [NOC_PASS_SHARE_RAYS] = share_rays,
         [NOC_PASS_VISIBILITY] = visibility,
+        [NOC_PASS_TRACE_SHARED] = noc_cpu_trace_shared,
+        [NOC_PASS_RESAMPLE] = noc_cpu_resample,
         [NOC_PASS_TEMPORAL] = noc_cpu_temporal,
         [NOC_PASS_SPATIAL] = noc_cpu_spatial,
+        [NOC_PASS_EMITTERS] = emitters,
+        [NOC_PASS_SHADE_SHARED] = noc_cpu_shade_shared,
         [NOC_PASS_SHADE] = shade,
+        [NOC_PASS_SHADE_ALL] = shade_all,
         [NOC_PASS_SKY] = sky,
     };
-    bool needs_light = pass == NOC_PASS_CANDIDATES || pass == NOC_PASS_VISIBILITY || pass == NOC_PASS_TEMPORAL ||
-                       pass == NOC_PASS_SPATIAL;
-    if (needs_light && !run->ctx.light_count)
-        return;
-    if (pass == NOC_PASS_VISIBILITY && noc_cpu_shares_rays(run->frame->params))
-        noc_cpu_share_visibility(run, w, t);
-    else
+    bool without_lights = pass == NOC_PASS_PRIMARY || pass == NOC_PASS_EMITTERS || pass == NOC_PASS_SKY;
+    if (run->ctx.light_count || without_lights)
         passes[pass](run, w, t);
 }

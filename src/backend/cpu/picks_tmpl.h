@@ -53,8 +53,7 @@ static void pick_power(const struct core_context *ctx, int x, int y, int m, pick
         for (int i = 0; i < m; i++) {
             pick p = { KU(0u), K(0.0f) };
             if (ctx->alias->count)
-                p = alias_draw(ctx, KU(ctx->alias->count), rng_bits(key, KU(DIM_CANDIDATE + 3u * U32(i))),
-                               rng(key, KU(DIM_PICK + U32(i))));
+                p = alias_candidate(ctx, KU(ctx->alias->count), key, i);
             ustore(out->light[i] + l, p.light);
             rstore(out->inverse[i] + l, p.inverse);
         }

@@ -80,16 +80,17 @@ FN void tree_append(tree_items *to, uint32_t on, u32 pair, u32 what, real pmf) {
 
 /* Items whose way ends at a light. */
 static void tree_arrive(uint32_t on, u32 link, u32 what, real pmf, pick_block *out) {
-    uint32_t links[LANES], whats[LANES];
+    uint32_t lights[LANES], whats[LANES];
     float inverse[LANES];
-    ustore(links, link & KU(~TREE_LEAF));
+    pick p = tree_arrived(link, pmf);
+    ustore(lights, p.light);
     ustore(whats, what);
-    rstore(inverse, K(1.0f) / max_(pmf, K(1e-30f)));
+    rstore(inverse, p.inverse);
     for (; on; on &= on - 1) {
         int l = __builtin_ctz(on);
         uint32_t lane = whats[l] & 15, first = whats[l] >> 4 & 0xfff, end = first + (whats[l] >> 16);
         for (uint32_t i = first; i < end; i++) {
-            out->light[i][lane] = links[l];
+            out->light[i][lane] = lights[l];
             out->inverse[i][lane] = inverse[l];
         }
     }
@@ -106,15 +107,12 @@ static void tree_down(const struct core_context *ctx, const gblock *g, const uin
         u32 lane = what & KU(15u), first = shr(what, 4) & KU(0xfffu), count = selu(on, shr(what, 16), KU(0u));
         v3 p = V3(block_real(g->px, lane), block_real(g->py, lane), block_real(g->pz, lane));
         v3 n = V3(block_real(g->nx, lane), block_real(g->ny, lane), block_real(g->nz, lane));
-        tree_pair pair = tree_load(ctx, at);
-        tree_shares s = tree_choose(p, n, pair);
-        u32 to_a = tree_split(s, count, tree_number(block_word(keys, lane), at));
+        tree_step w = tree_go(ctx, p, n, block_word(keys, lane), at, count, rload(from->pmf + i));
         for (int side = 0; side < 2; side++) {
-            u32 draws = side ? count - to_a : to_a, link = side ? pair.b.link : pair.a.link;
-            mask is_b = side ? KU(1u) != KU(0u) : KU(1u) == KU(0u);
-            real pmf = rload(from->pmf + i) * tree_share_of(s, is_b);
+            u32 draws = side ? count - w.to_a : w.to_a, link = side ? w.link_b : w.link_a;
+            real pmf = side ? w.pmf_b : w.pmf_a;
             mask any = draws != KU(0u), leaf = (link & KU(TREE_LEAF)) != KU(0u);
-            u32 share = TREE_WHAT(lane, side ? first + to_a : first, draws);
+            u32 share = TREE_WHAT(lane, side ? first + w.to_a : first, draws);
             tree_arrive(mbits(and_(any, leaf)), link, share, pmf, out);
             tree_append(to, mbits(and_(any, not_(leaf))), link, share, pmf);
         }

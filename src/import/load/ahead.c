@@ -20,7 +20,7 @@ typedef struct ahead_event {
 } ahead_event;
 
 struct look_ahead {
-    importer *im;
+    reading *reading;
     geo_sink sink; /* where everything goes in the end */
     bool passing;
     bool in_object, sampled; /* in an object whose place is known */
@@ -31,7 +31,7 @@ struct look_ahead {
 };
 
 static noc_status replay(struct look_ahead *a, const ahead_event *e) {
-    a->im->source = e->source;
+    a->reading->source = e->source;
     switch (e->kind) {
     case AHEAD_BEGIN: return a->sink.begin_object(a->sink.ctx, &e->u.object);
     case AHEAD_POLYGON: return a->sink.polygon(a->sink.ctx, &e->u.polygon);
@@ -45,35 +45,33 @@ noc_status ahead_release(struct look_ahead *a) {
     if (a->passing)
         return NOC_OK;
     a->passing = true;
-    source_crs *source = a->im->source;
-    noc_status status = a->im->placed ? NOC_OK : place_settle(a->im, a->samples.data, a->samples.len);
+    source_crs *source = a->reading->source;
+    noc_status status = a->reading->im->placed ? NOC_OK : place_settle(a->reading, a->samples.data, a->samples.len);
     for (size_t i = 0; i < a->events.len && !status; i++)
         status = replay(a, &a->events.data[i]);
-    a->im->source = source;
+    a->reading->source = source;
     array_free(&a->events);
     array_free(&a->samples);
     arena_free(&a->arena);
     return status;
 }
 
-static noc_status no_memory(struct look_ahead *a) {
-    return noc_no_memory(a->im->log, a->im->inputs[a->im->current].path);
-}
+static noc_status no_memory(struct look_ahead *a) { return noc_no_memory(a->reading->log, a->reading->in->path); }
 
 /* An event whose texts and arrays were put into the arena. */
 static noc_status push(struct look_ahead *a, ahead_event e) {
-    e.source = a->im->source;
+    e.source = a->reading->source;
     return !a->arena.refused && array_push(&a->events, e) ? NOC_OK : no_memory(a);
 }
 
 /* Coordinates need a CRS, even if the file names none. */
 static noc_status ensure_source(struct look_ahead *a) {
-    return a->im->source ? NOC_OK : place_crs(a->im, NULL, a->im->inputs[a->im->current].path, NULL);
+    return a->reading->source ? NOC_OK : place_crs(a->reading, NULL, a->reading->in->path, NULL);
 }
 
 /* One sample an object: what has many polygons counts no more than what has one. */
 static noc_status keep_points(struct look_ahead *a, const double *xyz, size_t count, const char *id) {
-    place_sample s = { .source = a->im->source, .id = id };
+    place_sample s = { .source = a->reading->source, .id = id };
     if (!(a->in_object && a->sampled) && place_centre(xyz, count, s.xyz)) {
         if (!array_push(&a->samples, s))
             return no_memory(a);
@@ -163,11 +161,11 @@ static bool on_progress(void *ctx, double done) {
     return a->sink.progress(a->sink.ctx, done);
 }
 
-struct look_ahead *ahead_create(importer *im, geo_sink *sink) {
+struct look_ahead *ahead_create(reading *r, geo_sink *sink) {
     struct look_ahead *a = noc_calloc(1, sizeof(*a));
     if (!a)
         return NULL;
-    a->im = im;
+    a->reading = r;
     a->sink = *sink;
     sink->ctx = a;
     sink->crs = on_crs;

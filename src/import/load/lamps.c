@@ -168,8 +168,7 @@ static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_par
         fate->closest = lights > 0 ? NOC_MIN(fate->closest, d) : fate->closest;
         if (i % 256 == 0 && !go_on(im, 0.9 + 0.1 * (double)i / (double)im->lamps.len))
             break;
-        im->current = p->input;
-        if (i % 256 == 0 && (status = sink_affords(im, 0)))
+        if (i % 256 == 0 && (status = take_affords(im, in, 0)))
             break;
     }
     return status;
@@ -259,7 +258,10 @@ static void warn_of_roofs(const importer *im, const city_lamp_tally *tally) {
 /* Lamps by a rule, or a word on why the scene stays dark. */
 static noc_status infer(importer *im, const extent *e, city_lamp_params *params, const lamp_fate *fate) {
     bool wanted = im->params->infer_lamps != NOC_SWITCH_OFF;
-    if (!wanted || !(im->buildings > 0 || im->has_roads)) {
+    size_t buildings = 0;
+    for (size_t i = 0; i < im->input_count; i++)
+        buildings += im->inputs[i].file.buildings;
+    if (!wanted || !(buildings > 0 || im->has_roads)) {
         if (e->any || fate->given)
             noc_warn(
                 im->log, "nothing in the scene shines: %s",

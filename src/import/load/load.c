@@ -120,7 +120,8 @@ static void bounds_so_far(const importer *im, double lo[2], double hi[2]) {
     }
 }
 
-static void warn_if_far(importer *im, const double lo[2], const double hi[2], size_t first_float) {
+static void warn_if_far(reading *r, const double lo[2], const double hi[2], size_t first_float) {
+    importer *im = r->im;
     double a[2] = { INFINITY, INFINITY }, b[2] = { -INFINITY, -INFINITY }, gap = 0;
     for (size_t i = first_float; i + 2 < im->scene->positions.len; i += 3)
         for (size_t k = 0; k < 2; k++) {
@@ -133,13 +134,15 @@ static void warn_if_far(importer *im, const double lo[2], const double hi[2], si
     bool far = lo[0] <= hi[0] && a[0] <= b[0] && gap > FAR_AWAY;
     im->far_said = im->far_said || far;
     if (far)
-        noc_warn(im->log, "%s: lies %.0f km from the rest of the scene: %s", im->inputs[im->current].path, gap / 1000,
-                 im->mesh_from_origin ? "if its coordinates are those of a CRS, say with --crs which one"
-                                      : "are its coordinates in the CRS that --crs says?");
+        noc_warn(im->log, "%s: lies %.0f km from the rest of the scene: %s", r->in->path, gap / 1000,
+                 r->mesh_from_origin ? "if its coordinates are those of a CRS, say with --crs which one"
+                                     : "are its coordinates in the CRS that --crs says?");
 }
 
 /* In the helper, or here. The sink is where progress is asked, and of maps where all goes. */
-static noc_status read_remote(importer *im, input *in, geo_sink *sink, const mesh_place *place, remote_result *result) {
+static noc_status read_remote(reading *r, geo_sink *sink, const mesh_place *place, remote_result *result) {
+    importer *im = r->im;
+    input *in = r->in;
     mesh_scene to = { .scene = im->scene, .place = place, .issues = in->issues };
     const mesh_parts parts = mesh_scene_parts(&to);
     noc_status status = remote_read(in->reader, in->path, im->params, sink, place ? &parts : NULL, result);
@@ -148,21 +151,23 @@ static noc_status read_remote(importer *im, input *in, geo_sink *sink, const mes
     return !status && im->report->arena.refused ? noc_no_memory(im->log, in->path) : status;
 }
 
-static noc_status read_mesh(importer *im, input *in, noc_stream *stream, remote_result *result) {
-    noc_status status = place_mesh(im);
+static noc_status read_mesh(reading *r, noc_stream *stream, remote_result *result) {
+    importer *im = r->im;
+    input *in = r->in;
+    noc_status status = place_mesh(r);
     if (status)
         return status;
     size_t triangles = im->scene->indices.len / 3, floats = im->scene->positions.len, meshes = im->scene->meshes.len;
     size_t lights = im->scene->lights.len;
-    const mesh_place place = { im, place_mesh_points };
+    const mesh_place place = { r, place_mesh_points };
     double lo[2], hi[2];
     bounds_so_far(im, lo, hi);
-    geo_sink sink = sink_create(im);
+    geo_sink sink = sink_create(r);
     status = in->remote
-                 ? read_remote(im, in, &sink, &place, result)
+                 ? read_remote(r, &sink, &place, result)
                  : in->reader->read_mesh(in->path, stream, im->params, im->scene, &place, in->issues, &in->file.format);
     if (!status)
-        warn_if_far(im, lo, hi, floats);
+        warn_if_far(r, lo, hi, floats);
     in->file.triangles = im->scene->indices.len / 3 - triangles;
     in->file.objects = im->scene->meshes.len - meshes;
     in->file.lights = im->scene->lights.len - lights;
@@ -180,6 +185,7 @@ static noc_status read_mesh(importer *im, input *in, noc_stream *stream, remote_
 }
 
 static noc_status read_builtin(importer *im, input *in) {
+    double start = noc_wall_seconds();
     size_t triangles = im->scene->indices.len / 3, lights = im->scene->lights.len;
     const char *name = in->path + strlen(BUILTIN);
     const noc_progress *progress = &im->params->progress;
@@ -189,71 +195,80 @@ static noc_status read_builtin(importer *im, input *in) {
         return NOC_ERR_CANCELLED;
     noc_status status = noc_scene_add_builtin(im->scene, name, im->params->builtin);
     in->file.format = "built-in scene";
+    in->file.seconds = noc_wall_seconds() - start;
     in->file.triangles = im->scene->indices.len / 3 - triangles;
     in->file.lights = im->scene->lights.len - lights;
     return status;
 }
 
-static noc_status read_input(importer *im, size_t index) {
-    input *in = &im->inputs[index];
-    im->current = index;
-    in->started = true;
-    im->scene_before = noc_scene_bytes(im->scene);
-    double start = noc_wall_seconds();
-    if (!in->reader) {
-        noc_status status = read_builtin(im, in);
-        in->file.seconds = noc_wall_seconds() - start;
-        return status;
+/* What a reader gives that is no mesh. */
+static noc_status read_objects(reading *r, noc_stream *stream, remote_result *result) {
+    geo_sink sink = sink_create(r);
+    struct look_ahead *ahead = r->im->placed ? NULL : ahead_create(r, &sink);
+    if (!r->im->placed && !ahead)
+        return noc_no_memory(r->log, r->in->path);
+    noc_status status = r->in->remote ? read_remote(r, &sink, NULL, result)
+                                      : r->in->reader->read(stream, r->im->params, &sink, &r->in->file.format);
+    if (ahead && status != NOC_ERR_MEMORY) { /* after an error too: the report holds what came before it */
+        if (status) {                        /* it is told, and no other */
+            r->log = NULL;
+            take_part(r->im, r->in, &(load_part){ .kind = PART_QUIET });
+        }
+        noc_status released = ahead_release(ahead);
+        status = status ? status : released;
     }
+    if (!status)
+        status = sink_flush(r); /* of a reader that gives no objects */
+    ahead_destroy(ahead);
+    return status;
+}
+
+static noc_status read_file(reading *r) {
+    input *in = r->in;
+    double start = noc_wall_seconds();
     noc_status status;
-    noc_stream *stream = noc_stream_open(in->path, im->log, &status);
+    noc_stream *stream = noc_stream_open(in->path, r->log, &status);
     if (!stream)
         return status;
-    noc_stream_limit(stream, im->params);
+    noc_stream_limit(stream, r->im->params);
     size_t unread = noc_stream_unread(stream);
     for (size_t i = 0; i < unread; i++)
         geo_issue(in->issues, GEO_SKIPPED, "file of the archive, like the one that is read", "");
     if (unread)
-        noc_warn(im->log, "%s: the archive holds %zu more file%s like it, which %s not read: unpack it to read all",
+        noc_warn(r->log, "%s: the archive holds %zu more file%s like it, which %s not read: unpack it to read all",
                  noc_stream_name(stream), unread, unread == 1 ? "" : "s", unread == 1 ? "is" : "are");
     remote_result result = { 0 };
     in->file.format = in->reader->name;
-    if (in->reader->read_mesh) {
-        status = read_mesh(im, in, stream, &result);
-    } else {
-        geo_sink sink = sink_create(im);
-        struct look_ahead *ahead = im->placed ? NULL : ahead_create(im, &sink);
-        if (!im->placed && !ahead)
-            status = noc_no_memory(im->log, in->path);
-        else
-            status = in->remote ? read_remote(im, in, &sink, NULL, &result)
-                                : in->reader->read(stream, im->params, &sink, &in->file.format);
-        if (ahead && status != NOC_ERR_MEMORY) { /* after an error too: the report holds what came before it */
-            noc_log *log = im->log, *of_scene = im->scene->log;
-            if (status)
-                im->log = im->scene->log = NULL; /* it is told, and no other */
-            noc_status released = ahead_release(ahead);
-            im->log = log;
-            im->scene->log = of_scene;
-            status = status ? status : released;
-        }
-        if (!status)
-            status = sink_flush(im); /* of a reader that gives no objects */
-        ahead_destroy(ahead);
-    }
-    if (im->cancelled)
+    status = in->reader->read_mesh ? read_mesh(r, stream, &result) : read_objects(r, stream, &result);
+    if (r->im->cancelled)
         status = NOC_ERR_CANCELLED;
-    place_finish_file(im, status == NOC_OK);
+    place_finish_file(r, status == NOC_OK);
     if (!status && (in->remote ? result.trailing : noc_stream_trailing(stream))) {
-        noc_warn(im->log, "%s: bytes after the gzip data are ignored", in->path);
+        noc_warn(r->log, "%s: bytes after the gzip data are ignored", in->path);
         geo_issue(in->issues, GEO_SKIPPED, "bytes after the gzip data", "");
     }
     in->file.bytes = in->bytes;
     in->file.bytes_read = in->remote ? result.bytes_read : noc_stream_read_bytes(stream);
     in->file.seconds = noc_wall_seconds() - start;
-    im->bytes_before += (double)in->bytes;
     noc_stream_close(stream);
     return status;
+}
+
+static noc_status read_input(importer *im, size_t index) {
+    input *in = &im->inputs[index];
+    in->started = true;
+    im->scene_before = noc_scene_bytes(im->scene);
+    if (!in->reader)
+        return read_builtin(im, in);
+    reading r = { .im = im, .in = in, .index = index, .log = im->log };
+    noc_log *log = im->log, *of_scene = im->scene->log; /* PART_QUIET takes them away */
+    noc_status status = read_file(&r);
+    im->log = log;
+    im->scene->log = of_scene;
+    sink_destroy(&r);
+    im->bytes_before += (double)in->bytes;
+    bool told = take_finish(in);
+    return status || told ? status : noc_no_memory(im->log, in->path);
 }
 
 /* Built-in scenes are local, so they come first. A mesh in a CRS may settle the place; one that names none counts from
@@ -344,9 +359,11 @@ static noc_status list_inputs(importer *im, const char *const *paths, size_t pat
         if (named && (im->inspect || among(path, paths, path_count) || among(path, lamps->text, i - path_count)))
             continue;
         input *in = &im->inputs[im->input_count++];
-        *in = (input){ .path = path, .file = { .path = path }, .issues = geo_issues_create() };
+        *in = (input){
+            .path = path, .file = { .path = path }, .issues = geo_issues_create(), .found = geo_issues_create()
+        };
         in->named_lamps = named || among(path, lamps->text, lamps->count);
-        if (!in->issues)
+        if (!in->issues || !in->found)
             return noc_no_memory(im->log, "import");
     }
     return NOC_OK;
@@ -394,12 +411,13 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         if (im.inputs[i].started && !report_add(im.report, &im.inputs[i].file, im.inputs[i].issues) && !status)
             status = noc_no_memory(scene->log, im.inputs[i].path);
         geo_issues_destroy(im.inputs[i].issues);
+        geo_issues_destroy(im.inputs[i].found);
+        place_forget(&im.inputs[i]);
     }
     if (!status && params->strict)
         status = report_strict(im.report, params, scene->log);
     free(im.inputs);
-    place_destroy(&im);
-    sink_destroy(&im);
+    take_destroy(&im);
     if (report)
         *report = im.report;
     else

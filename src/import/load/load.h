@@ -1,5 +1,8 @@
-/* load: from files to a scene. load.c runs the inputs, sink.c takes what city readers emit, place.c settles where the
- * scene is, lamps.c stands the lamps. */
+/* load: from files to a scene. load.c runs the inputs, sink.c hears what city readers emit, place.c settles where the
+ * scene is, take.c puts what comes of it into the scene, lamps.c stands the lamps.
+ *
+ * Who writes what: of a file that is read its reading and its input, of the scene and of all files the importer. Where
+ * one becomes the other, parts are handed over (load_part). */
 #ifndef NOC_IMPORT_LOAD_H
 #define NOC_IMPORT_LOAD_H
 
@@ -8,11 +11,10 @@
 
 #define PALETTE 8 /* materials of a class that varies from building to building */
 
-/* One CRS as one file spells it. */
+/* One CRS as one file spells it; axis decisions hold for that file. */
 typedef struct source_crs {
     char *spelling;          /* "" where the file names none */
     bool taken;              /* the file does not hold it: GEO_CRS_TAKEN */
-    size_t input;            /* whose coordinates it is about: axis decisions hold for one file */
     geo_crs *crs;            /* NULL: local metres */
     geo_transform *to_scene; /* NULL until the first coordinate, and for local metres */
     bool ready;              /* to_scene is made, if one is needed */
@@ -33,6 +35,10 @@ typedef struct input {
     size_t lamps_lost; /* that the reader or the sink found to have no place */
     bool named_lamps;  /* by noc_import_params.lamps */
     int strange_crs;   /* that were not understood and not replaced by --crs */
+    NOC_ARRAY(source_crs *) sources;
+    /* the scene's side: what is found as parts are taken, and the object that is being taken */
+    geo_issues *found;
+    bool object_decided, object_repeated;
 } input;
 
 /* Where a lamp was given: what would be if its axes were exchanged is asked of lamps that are of no use. */
@@ -50,7 +56,8 @@ typedef struct pending_lamp {
 /* The object that is being read, as far as it tells it from others (repeat.c). */
 typedef struct object_now {
     geo_kind kind;
-    bool any, decided, repeated;
+    bool any;
+    bool given;     /* a part of it was handed over, by which it is told from others */
     uint64_t shape; /* of its corners and their classes, in any order */
     double lo[3], hi[3];
     size_t polygons, by_class[NOC_CLASS_COUNT]; /* that wait to be counted */
@@ -76,25 +83,16 @@ typedef struct importer {
     noc_report *report;
     bool inspect;
     input *inputs;
-    size_t input_count, current;
+    size_t input_count;
     /* place of the scene (place.c) */
     bool placed;
     geo_crs *scene_crs; /* belongs to the scene; NULL: local metres */
     double origin[3];
-    const char *placed_by;   /* path of the input that settled it */
-    bool far_said;           /* that an input lies far from the others */
-    NOC_ARRAY(double) given; /* the points that are placed, as they were given */
-    NOC_ARRAY(source_crs *) sources;
-    source_crs *source;    /* of the coordinates that come next */
-    bool mesh_from_origin; /* the mesh that is read is in metres from the scene's origin */
-    /* the object that is being read (sink.c) */
-    char *object_id;
-    object_now now;
-    object_records records; /* of those that were read */
-    NOC_ARRAY(double) scratch;
-    geo_triangles surfaces[NOC_CLASS_COUNT];
+    const char *placed_by; /* path of the input that settled it */
+    bool far_said;         /* that an input lies far from the others */
+    /* what was taken (take.c) */
+    object_records records;
     int material[NOC_CLASS_COUNT][PALETTE]; /* index + 1 in the scene, 0 if not made yet */
-    size_t buildings;
     bool has_roads;
     double open_area; /* m2 of terrain, roads, pavements, lawns and water, seen from above */
     NOC_ARRAY(pending_lamp) lamps;
@@ -106,6 +104,50 @@ typedef struct importer {
     size_t scene_before; /* bytes of the scene before the present input */
     bool cancelled;
 } importer;
+
+/* One file while it is read. */
+typedef struct reading {
+    importer *im;
+    input *in;
+    size_t index;
+    noc_log *log;
+    source_crs *source;      /* of the coordinates that come next */
+    NOC_ARRAY(double) given; /* the points that are placed, as they were given */
+    bool mesh_from_origin;   /* a mesh in metres from the scene's origin */
+    /* the object that is being read (sink.c) */
+    char *object_id;
+    object_now now;
+    NOC_ARRAY(double) scratch;
+    geo_triangles surfaces[NOC_CLASS_COUNT];
+} reading;
+
+/* What a reading hands over. Texts and arrays are valid during the call. */
+typedef struct part_surface {
+    noc_class cls;
+    size_t vertex_count, triangle_count;
+    const double *xyz; /* local metres */
+    const uint32_t *indices;
+} part_surface;
+
+typedef struct load_part {
+    enum {
+        PART_OBJECT, /* surfaces of an object, or outside of any; `last` where it ends with them */
+        PART_LAMP,
+        PART_LOST, /* a lamp without a place */
+        PART_QUIET /* an error is told: none that follows is */
+    } kind;
+    union {
+        struct {
+            const char *id; /* NULL: outside of any */
+            object_now now;
+            bool last;
+            size_t surface_count;
+            const part_surface *surfaces;
+        } object;
+        pending_lamp lamp;
+        given_place lost;
+    } u;
+} load_part;
 
 struct noc_report {
     noc_arena arena;
@@ -140,39 +182,45 @@ typedef struct place_sample {
 bool place_centre(const double *xyz, size_t count, double centre[3]);
 /* Settles the scene's CRS and origin by where a file's first objects lie: by the first one, unless it lies far from the
  * middle of them. Nothing happens without samples. */
-noc_status place_settle(importer *im, const place_sample *samples, size_t count);
-noc_status place_crs(importer *im, const char *srs_name, const char *place, bool *lat_first);
+noc_status place_settle(reading *r, const place_sample *samples, size_t count);
+noc_status place_crs(reading *r, const char *srs_name, const char *place, bool *lat_first);
 /* Coordinates as emitted (the extent is taken of them) to local metres, in place. *usable is false if they cannot be
  * transformed. The first ones settle the scene's CRS and origin. */
-noc_status place_points(importer *im, double *xyz, size_t count, const char *id, bool *usable);
+noc_status place_points(reading *r, double *xyz, size_t count, const char *id, bool *usable);
 /* Meshes name no CRS. With --crs they are in it; without, they are metres from the scene's origin where the scene has a
  * CRS, else in the same local metres as all the rest. */
-noc_status place_mesh(importer *im);
-noc_status place_mesh_points(void *importer, double *xyz, size_t count);
+noc_status place_mesh(reading *r);
+noc_status place_mesh_points(void *reading, double *xyz, size_t count);
 /* The point with its axes exchanged, in the scene; false where it then has no place. */
 bool place_exchanged(importer *im, const given_place *given, double xy[2]);
-void place_finish_file(importer *im, bool read);
-void place_destroy(importer *im);
+void place_finish_file(reading *r, bool read);
+void place_forget(input *in); /* its CRSs: lamps are asked for them until the end */
 
 /* ahead.c: puts itself before a sink until the place is settled. */
-struct look_ahead *ahead_create(importer *im, geo_sink *sink); /* NULL: memory was refused */
+struct look_ahead *ahead_create(reading *r, geo_sink *sink); /* NULL: memory was refused */
 noc_status ahead_release(struct look_ahead *a); /* settles the place with what there is, and passes everything on */
 void ahead_destroy(struct look_ahead *a);       /* NULL is allowed */
 
 /* sink.c */
-geo_sink sink_create(importer *im);
-noc_status sink_flush(importer *im);
+geo_sink sink_create(reading *r);
+noc_status sink_flush(reading *r);
+void sink_destroy(reading *r);
+
+/* take.c: parts into the scene, in the order of the files. */
+noc_status take_part(importer *im, input *in, const load_part *part);
 /* Is what waits and what the scene holds, and will hold with so many bytes more, within the limits? Else reported. */
-noc_status sink_affords(importer *im, size_t more);
-void sink_destroy(importer *im);
-int sink_material(importer *im, noc_class cls, const char *id);
+noc_status take_affords(importer *im, const input *in, size_t more);
+/* Adds what was found on the scene's side to the input's issues. False: memory was refused. */
+bool take_finish(input *in) NOC_MUST_USE;
+void take_destroy(importer *im);
 
 /* repeat.c: what is given twice is taken once. */
 bool same_file(const char *a, const char *b); /* whatever they are called: "a.csv", "./a.csv", a link */
 bool repeat_file(importer *im, size_t index); /* is it one of those before it? Said and reported */
 void repeat_polygon(object_now *now, noc_class cls, const double *xyz, size_t count); /* local metres */
-/* is im->now one that was read? Decided once, and reported */
-noc_status repeat_object(importer *im, const char *id, bool *repeated);
+/* Is it one that was taken? Decided once an object: in->object_decided and
+ * in->object_repeated. Reported. */
+noc_status repeat_object(importer *im, input *in, const object_now *now, const char *id);
 noc_status repeat_lamps(importer *im); /* drops lamps that an earlier file holds */
 void repeat_free(object_records *records);
 

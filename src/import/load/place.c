@@ -23,11 +23,10 @@ static bool is_blank(const char *text) {
     return !text || !*text;
 }
 
-static source_crs *find_source(importer *im, const char *spelling, bool taken) {
-    for (size_t i = 0; i < im->sources.len; i++)
-        if (im->sources.data[i]->input == im->current && im->sources.data[i]->taken == taken &&
-            !strcmp(im->sources.data[i]->spelling, spelling))
-            return im->sources.data[i];
+static source_crs *find_source(reading *r, const char *spelling, bool taken) {
+    for (size_t i = 0; i < r->in->sources.len; i++)
+        if (r->in->sources.data[i]->taken == taken && !strcmp(r->in->sources.data[i]->spelling, spelling))
+            return r->in->sources.data[i];
     return NULL;
 }
 
@@ -41,64 +40,64 @@ static noc_status given_status(noc_status status) {
 enum { MOST_STRANGE = 8 };
 
 /* The CRS that `spelling` means for this run; *crs is NULL for local metres. */
-static noc_status resolve(importer *im, const char *spelling, const char *place, geo_crs **crs) {
+static noc_status resolve(reading *r, const char *spelling, const char *place, geo_crs **crs) {
     *crs = NULL;
-    const char *fallback = is_blank(im->params->crs) ? NULL : im->params->crs;
+    const char *fallback = is_blank(r->im->params->crs) ? NULL : r->im->params->crs;
     noc_status status;
     if (*spelling) {
         *crs = geo_crs_create_plain(spelling, place, NULL, &status);
         if (*crs)
             return NOC_OK;
         if (status == NOC_ERR_MEMORY)
-            return noc_no_memory(im->log, place);
+            return noc_no_memory(r->log, place);
         status = geo_crs_database();
         if (status == NOC_ERR_MEMORY)
-            return noc_no_memory(im->log, place);
+            return noc_no_memory(r->log, place);
         if (status)
-            return noc_error(im->log, status,
+            return noc_error(r->log, status,
                              "%s: PROJ finds no proj.db, its database, so the CRS \"%.60s\" cannot be read: "
                              "is PROJ_DATA right?",
                              place, spelling);
-        if (!fallback && ++im->inputs[im->current].strange_crs > MOST_STRANGE)
-            return noc_error(im->log, NOC_ERR_FORMAT,
+        if (!fallback && ++r->in->strange_crs > MOST_STRANGE)
+            return noc_error(r->log, NOC_ERR_FORMAT,
                              "%s: more than %d CRSs of the file are not understood, \"%.60s\" the last of them", place,
                              MOST_STRANGE, spelling);
-        if (!fallback && !im->inspect)
+        if (!fallback && !r->im->inspect)
             return noc_error(
-                im->log, NOC_ERR_FORMAT,
+                r->log, NOC_ERR_FORMAT,
                 "%s: the CRS \"%.60s\" is not understood, opens files, or is neither geographic nor projected: say "
                 "with --crs which one it is",
                 place, spelling);
-        noc_warn(im->log, "%s: the CRS \"%.60s\" is not understood: %s%s", place, spelling,
+        noc_warn(r->log, "%s: the CRS \"%.60s\" is not understood: %s%s", place, spelling,
                  fallback ? "taken as " : "taken as local metres", fallback ? fallback : "");
     }
     if (!fallback)
         return NOC_OK;
-    *crs = geo_crs_create(fallback, "--crs", im->log, &status);
+    *crs = geo_crs_create(fallback, "--crs", r->log, &status);
     return given_status(status);
 }
 
-noc_status place_crs(importer *im, const char *srs_name, const char *place, bool *lat_first) {
-    input *in = &im->inputs[im->current];
+noc_status place_crs(reading *r, const char *srs_name, const char *place, bool *lat_first) {
+    input *in = r->in;
     bool taken = srs_name && *srs_name == GEO_CRS_TAKEN;
     const char *spelling = is_blank(srs_name) ? "" : srs_name + taken;
-    source_crs *source = find_source(im, spelling, taken);
+    source_crs *source = find_source(r, spelling, taken);
     if (!source) {
         geo_crs *crs;
-        noc_status status = resolve(im, spelling, place ? place : in->path, &crs);
+        noc_status status = resolve(r, spelling, place ? place : in->path, &crs);
         if (status)
             return status;
         source = noc_calloc(1, sizeof(*source));
         char *kept = noc_strdup(spelling);
-        if (!source || !kept || !array_push(&im->sources, source)) {
+        if (!source || !kept || !array_push(&r->in->sources, source)) {
             free(source);
             free(kept);
             geo_crs_destroy(crs);
-            return noc_no_memory(im->log, in->path);
+            return noc_no_memory(r->log, in->path);
         }
-        *source = (source_crs){ .spelling = kept, .taken = taken, .input = im->current, .crs = crs };
+        *source = (source_crs){ .spelling = kept, .taken = taken, .crs = crs };
     }
-    im->source = source;
+    r->source = source;
     if (lat_first)
         *lat_first = source->crs && geo_crs_is_geographic(source->crs) && geo_crs_lat_first(source->crs);
     return NOC_OK;
@@ -117,16 +116,16 @@ static bool is_zone_number(source_crs *s, double zone, double x, double y) {
 
 /* Swaps the axes, or takes the zone number off the easting (32 512 345 m instead of 512 345 m), if that is what brings
  * the point into the CRS's area of use. */
-static void decide_axes(importer *im, source_crs *s, double x, double y, const char *id) {
-    geo_issues *issues = im->inputs[im->current].issues;
+static void decide_axes(reading *r, source_crs *s, double x, double y, const char *id) {
+    geo_issues *issues = r->in->issues;
     double zone = floor(x / 1e6);
     double given = geo_crs_outside(s->crs, x, y);
     if (given == 0) {
         s->axes_decided = true;
     } else if (geo_crs_outside(s->crs, y, x) == 0) {
         s->axes_decided = s->swap = true;
-        noc_warn(im->log, "%s: the coordinates fit %s only with their axes exchanged: done",
-                 im->inputs[im->current].path, geo_crs_name(s->crs));
+        noc_warn(r->log, "%s: the coordinates fit %s only with their axes exchanged: done", r->in->path,
+                 geo_crs_name(s->crs));
         geo_issue(issues, GEO_GUESSED, "axes exchanged to fit the CRS", id);
     } else if (is_zone_number(s, zone, x, y)) {
         s->axes_decided = true;
@@ -138,12 +137,12 @@ static void decide_axes(importer *im, source_crs *s, double x, double y, const c
     }
 }
 
-static void fix_axes(importer *im, source_crs *s, double *xyz, size_t count, const char *id) {
+static void fix_axes(reading *r, source_crs *s, double *xyz, size_t count, const char *id) {
     if (!s->crs)
         return;
     for (size_t i = 0; i < count && !s->axes_decided; i++)
         if (isfinite(xyz[3 * i]) && isfinite(xyz[3 * i + 1])) {
-            decide_axes(im, s, xyz[3 * i], xyz[3 * i + 1], id);
+            decide_axes(r, s, xyz[3 * i], xyz[3 * i + 1], id);
             break;
         }
     if (!s->swap && s->shift_x == 0)
@@ -161,65 +160,65 @@ static void fix_axes(importer *im, source_crs *s, double *xyz, size_t count, con
 /* ---- the scene's place ---- */
 
 /* The CRS the scene is asked to have, if any: by parameter, or set on the scene before. */
-static noc_status wanted_crs(importer *im, geo_crs **crs) {
+static noc_status wanted_crs(reading *r, geo_crs **crs) {
     *crs = NULL;
-    bool by_parameter = !is_blank(im->params->scene_crs);
-    const char *definition = by_parameter ? im->params->scene_crs : im->scene->crs_name;
-    if (is_blank(definition) || im->inspect)
+    bool by_parameter = !is_blank(r->im->params->scene_crs);
+    const char *definition = by_parameter ? r->im->params->scene_crs : r->im->scene->crs_name;
+    if (is_blank(definition) || r->im->inspect)
         return NOC_OK;
     noc_status status;
-    *crs = geo_crs_create(definition, by_parameter ? "--scene-crs" : "scene", im->log, &status);
+    *crs = geo_crs_create(definition, by_parameter ? "--scene-crs" : "scene", r->log, &status);
     if (!*crs)
         return given_status(status);
     if (geo_crs_is_metric(*crs))
         return NOC_OK;
-    noc_error(im->log, NOC_ERR_ARGUMENT, "%s: a scene's CRS must be projected, in metres", geo_crs_name(*crs));
+    noc_error(r->log, NOC_ERR_ARGUMENT, "%s: a scene's CRS must be projected, in metres", geo_crs_name(*crs));
     geo_crs_destroy(*crs);
     *crs = NULL;
     return NOC_ERR_ARGUMENT;
 }
 
 /* Takes the crs. */
-static noc_status set_place(importer *im, geo_crs *crs, const double origin[3]) {
-    im->placed = true;
-    im->placed_by = im->inputs[im->current].path;
-    im->scene_crs = crs;
-    memcpy(im->origin, origin, sizeof(im->origin));
-    noc_scene_set_crs(im->scene, crs ? geo_crs_name(crs) : NULL, im->origin);
-    free(im->scene->without_crs);
-    im->scene->without_crs = crs ? NULL : noc_strdup(im->placed_by);
-    if (im->scene->crs && im->scene->crs_free)
-        im->scene->crs_free(im->scene->crs);
-    im->scene->crs = crs;
-    im->scene->crs_free = geo_crs_destroy;
-    if (im->scene->no_memory)
+static noc_status set_place(reading *r, geo_crs *crs, const double origin[3]) {
+    r->im->placed = true;
+    r->im->placed_by = r->in->path;
+    r->im->scene_crs = crs;
+    memcpy(r->im->origin, origin, sizeof(r->im->origin));
+    noc_scene_set_crs(r->im->scene, crs ? geo_crs_name(crs) : NULL, r->im->origin);
+    free(r->im->scene->without_crs);
+    r->im->scene->without_crs = crs ? NULL : noc_strdup(r->im->placed_by);
+    if (r->im->scene->crs && r->im->scene->crs_free)
+        r->im->scene->crs_free(r->im->scene->crs);
+    r->im->scene->crs = crs;
+    r->im->scene->crs_free = geo_crs_destroy;
+    if (r->im->scene->no_memory)
         return NOC_ERR_MEMORY; /* said by the scene */
-    return crs || im->scene->without_crs ? NOC_OK : noc_no_memory(im->log, im->placed_by);
+    return crs || r->im->scene->without_crs ? NOC_OK : noc_no_memory(r->log, r->im->placed_by);
 }
 
 /* Lengths must be those of the ground: light falls with their square. Where *crs has others at a point (Web Mercator, a
  * zone far away), the scene gets the UTM zone of that place instead, and *given what it would have had. */
-static noc_status make_metres_true(importer *im, geo_crs **crs, double p[3], geo_crs **given) {
-    const char *path = im->inputs[im->current].path;
+static noc_status make_metres_true(reading *r, geo_crs **crs, double p[3], geo_crs **given) {
+    const char *path = r->in->path;
     double scale = geo_crs_scale(*crs, p[0], p[1]), lonlat[2];
     *given = NULL;
     if (!(fabs(scale - 1) > TRUE_SCALE) || !geo_crs_lonlat(*crs, p[0], p[1], lonlat))
         return NOC_OK;
     noc_status status = NOC_OK;
     geo_crs *local = geo_crs_utm(lonlat[0], lonlat[1]);
-    geo_transform *t = local ? geo_transform_create(*crs, local, im->log, &status) : NULL;
+    geo_transform *t = local ? geo_transform_create(*crs, local, r->log, &status) : NULL;
     bool ok = t && !geo_transform_points(t, p, 1);
     geo_transform_destroy(t);
     if (!ok) {
         bool refused = !local || status == NOC_ERR_MEMORY;
         geo_crs_destroy(local);
-        return refused ? (status ? status : noc_no_memory(im->log, path))
-                       : noc_error(im->log, NOC_ERR_FORMAT,
+        return refused ? (status ? status : noc_no_memory(r->log, path))
+                       : noc_error(r->log, NOC_ERR_FORMAT,
                                    "%s: 100 m of %s are %.1f m on the ground there, and no local CRS was found", path,
                                    geo_crs_name(*crs), 100 / scale);
     }
-    if (!im->inspect)
-        noc_warn(im->log, "%s: 100 m of %s are %.1f m on the ground there: the scene is computed in %s", path,
+    if (!r->im->inspect)
+        noc_warn(r->log, "%s: 100 m of %s are %.1f m on the ground there: the scene is computed in %s", path,
                  geo_crs_name(*crs), 100 / scale, geo_crs_name(local));
     *given = *crs;
     *crs = local;
@@ -227,17 +226,17 @@ static noc_status make_metres_true(importer *im, geo_crs **crs, double p[3], geo
 }
 
 /* Keeps the CRS that the user speaks, and where the scene's origin lies in it. */
-static noc_status set_given(importer *im, geo_crs *given) {
-    noc_scene *scene = im->scene;
+static noc_status set_given(reading *r, geo_crs *given) {
+    noc_scene *scene = r->im->scene;
     noc_status status;
-    geo_transform *t = geo_transform_create(scene->crs, given, im->log, &status);
-    double origin[3] = { im->origin[0], im->origin[1], 0 };
+    geo_transform *t = geo_transform_create(scene->crs, given, r->log, &status);
+    double origin[3] = { r->im->origin[0], r->im->origin[1], 0 };
     if (t && geo_transform_points(t, origin, 1))
         status = NOC_ERR_UNSUPPORTED;
     geo_transform_destroy(t);
     char *name = status ? NULL : noc_strdup(geo_crs_name(given));
     if (!status && !name)
-        status = noc_no_memory(im->log, im->placed_by);
+        status = noc_no_memory(r->log, r->im->placed_by);
     if (status) {
         geo_crs_destroy(given);
         return status;
@@ -252,20 +251,20 @@ static noc_status set_given(importer *im, geo_crs *given) {
 }
 
 /* Settles CRS and origin by a point, given in their own CRS. Heights stay what they are: z has no origin. */
-static noc_status settle(importer *im, const source_crs *source, const double point[3]) {
+static noc_status settle(reading *r, const source_crs *source, const double point[3]) {
     geo_crs *crs;
-    bool preset = im->scene->crs_name && is_blank(im->params->scene_crs) && !im->inspect;
-    noc_status status = wanted_crs(im, &crs);
+    bool preset = r->im->scene->crs_name && is_blank(r->im->params->scene_crs) && !r->im->inspect;
+    noc_status status = wanted_crs(r, &crs);
     if (status)
         return status;
     if (!source->crs) {
         if (crs) {
             geo_crs_destroy(crs);
-            return noc_error(im->log, NOC_ERR_ARGUMENT, "%s names no CRS: say with --crs which one it is in",
-                             im->inputs[im->current].path);
+            return noc_error(r->log, NOC_ERR_ARGUMENT, "%s names no CRS: say with --crs which one it is in",
+                             r->in->path);
         }
         bool near_zero = fabs(point[0]) < LOCAL_ORIGIN && fabs(point[1]) < LOCAL_ORIGIN;
-        return set_place(im, NULL, (double[3]){ near_zero ? 0 : round(point[0]), near_zero ? 0 : round(point[1]), 0 });
+        return set_place(r, NULL, (double[3]){ near_zero ? 0 : round(point[0]), near_zero ? 0 : round(point[1]), 0 });
     }
     double lonlat[2], p[3] = { point[0], point[1], 0 };
     bool metric = geo_crs_is_metric(source->crs),
@@ -273,8 +272,8 @@ static noc_status settle(importer *im, const source_crs *source, const double po
     if (made)
         crs = metric ? geo_crs_clone(source->crs) : geo_crs_utm(lonlat[0], lonlat[1]);
     if (made && !crs)
-        return noc_no_memory(im->log, im->inputs[im->current].path);
-    geo_transform *t = crs ? geo_transform_create(source->crs, crs, im->log, &status) : NULL;
+        return noc_no_memory(r->log, r->in->path);
+    geo_transform *t = crs ? geo_transform_create(source->crs, crs, r->log, &status) : NULL;
     bool ok = t && !geo_transform_points(t, p, 1);
     geo_transform_destroy(t);
     if (status == NOC_ERR_MEMORY) {
@@ -283,57 +282,55 @@ static noc_status settle(importer *im, const source_crs *source, const double po
     }
     if (!ok) {
         geo_crs_destroy(crs);
-        return noc_error(im->log, NOC_ERR_FORMAT, "%s: the first coordinates (%.10g %.10g) have no place in %s",
-                         im->inputs[im->current].path, point[0], point[1], geo_crs_name(source->crs));
+        return noc_error(r->log, NOC_ERR_FORMAT, "%s: the first coordinates (%.10g %.10g) have no place in %s",
+                         r->in->path, point[0], point[1], geo_crs_name(source->crs));
     }
-    double outside = preset || is_blank(im->params->scene_crs) ? 0 : geo_crs_outside(crs, p[0], p[1]);
+    double outside = preset || is_blank(r->im->params->scene_crs) ? 0 : geo_crs_outside(crs, p[0], p[1]);
     if (outside > FAR_OUTSIDE)
-        noc_warn(im->log, "%s: the coordinates lie far outside the area that --scene-crs %s is for",
-                 im->inputs[im->current].path, geo_crs_name(crs));
+        noc_warn(r->log, "%s: the coordinates lie far outside the area that --scene-crs %s is for", r->in->path,
+                 geo_crs_name(crs));
     geo_crs *given = NULL;
     if (!preset) /* else meshes may be there already, in metres of the CRS that was set */
-        status = make_metres_true(im, &crs, p, &given);
+        status = make_metres_true(r, &crs, p, &given);
     if (status) {
         geo_crs_destroy(crs);
         return status;
     }
-    status = set_place(im, crs, preset ? im->scene->origin : (double[3]){ round(p[0]), round(p[1]), 0 });
+    status = set_place(r, crs, preset ? r->im->scene->origin : (double[3]){ round(p[0]), round(p[1]), 0 });
     if (status)
         geo_crs_destroy(given);
-    return status || !given ? status : set_given(im, given);
+    return status || !given ? status : set_given(r, given);
 }
 
 /* Makes the way from the source to the scene, once. */
-static noc_status prepare(importer *im, source_crs *s, const double point[3]) {
-    const char *path = im->inputs[im->current].path;
-    if (!im->placed) {
-        noc_status status = settle(im, s, point);
+static noc_status prepare(reading *r, source_crs *s, const double point[3]) {
+    const char *path = r->in->path;
+    if (!r->im->placed) {
+        noc_status status = settle(r, s, point);
         if (status)
             return status;
     }
-    if (!s->crs && im->scene_crs)
-        return noc_error(im->log, NOC_ERR_FORMAT,
-                         "%s names no CRS, but %s does (%s): say with --crs which one it is in", path, im->placed_by,
-                         geo_crs_name(im->scene_crs));
-    if (s->crs && !im->scene_crs)
-        return noc_error(im->log, NOC_ERR_FORMAT,
-                         "%s names no CRS, but %s does (%s): say with --crs which one it is in", im->placed_by, path,
-                         geo_crs_name(s->crs));
+    if (!s->crs && r->im->scene_crs)
+        return noc_error(r->log, NOC_ERR_FORMAT, "%s names no CRS, but %s does (%s): say with --crs which one it is in",
+                         path, r->im->placed_by, geo_crs_name(r->im->scene_crs));
+    if (s->crs && !r->im->scene_crs)
+        return noc_error(r->log, NOC_ERR_FORMAT, "%s names no CRS, but %s does (%s): say with --crs which one it is in",
+                         r->im->placed_by, path, geo_crs_name(s->crs));
     if (s->crs) {
         noc_status status;
-        s->to_scene = geo_transform_create(s->crs, im->scene_crs, im->log, &status);
+        s->to_scene = geo_transform_create(s->crs, r->im->scene_crs, r->log, &status);
         if (!s->to_scene)
             return status;
     }
     s->ready = true;
-    noc_report_file *file = &im->inputs[im->current].file;
+    noc_report_file *file = &r->in->file;
     if (!file->crs) {
-        file->crs = s->crs ? arena_strdup(&im->report->arena, geo_crs_name(s->crs)) : "";
+        file->crs = s->crs ? arena_strdup(&r->im->report->arena, geo_crs_name(s->crs)) : "";
         file->degrees = s->crs && geo_crs_is_geographic(s->crs);
-        file->crs_given = arena_strdup(&im->report->arena, s->taken ? "" : s->spelling);
+        file->crs_given = arena_strdup(&r->im->report->arena, s->taken ? "" : s->spelling);
         file->crs_taken = s->taken && s->crs;
     }
-    return im->report->arena.refused ? noc_no_memory(im->log, path) : NOC_OK;
+    return r->im->report->arena.refused ? noc_no_memory(r->log, path) : NOC_OK;
 }
 
 /* Bounds of the finite coordinates; heights may have none (lo > hi). False if no place at all is finite. */
@@ -396,13 +393,13 @@ static source_crs *commonest_source(const place_sample *samples, size_t count) {
     return best;
 }
 
-noc_status place_settle(importer *im, const place_sample *samples, size_t count) {
+noc_status place_settle(reading *r, const place_sample *samples, size_t count) {
     if (!count)
         return NOC_OK;
     source_crs *s = commonest_source(samples, count);
     double *both = noc_alloc(2 * count * sizeof(double));
     if (!both)
-        return noc_no_memory(im->log, im->inputs[im->current].path);
+        return noc_no_memory(r->log, r->in->path);
     double *const axis[2] = { both, both + count };
     double first[3] = { 0 }, point[3] = { 0 };
     size_t n = 0, in_area = 0;
@@ -410,7 +407,7 @@ noc_status place_settle(importer *im, const place_sample *samples, size_t count)
         for (size_t i = 0; i < count; i++) {
             double p[3];
             memcpy(p, samples[i].xyz, sizeof(p));
-            fix_axes(im, samples[i].source, p, 1, samples[i].id);
+            fix_axes(r, samples[i].source, p, 1, samples[i].id);
             if (pass == 0 || samples[i].source != s)
                 continue;
             bool inside = s->crs && geo_crs_outside(s->crs, p[0], p[1]) <= FAR_OUTSIDE;
@@ -429,39 +426,39 @@ noc_status place_settle(importer *im, const place_sample *samples, size_t count)
     free(both);
     double stray = s->crs && geo_crs_is_geographic(s->crs) ? STRAY_DEGREES : STRAY_METRES;
     bool by_first = fabs(first[0] - point[0]) <= stray && fabs(first[1] - point[1]) <= stray;
-    return prepare(im, s, by_first ? first : point);
+    return prepare(r, s, by_first ? first : point);
 }
 
-noc_status place_points(importer *im, double *xyz, size_t count, const char *id, bool *usable) {
+noc_status place_points(reading *r, double *xyz, size_t count, const char *id, bool *usable) {
     *usable = false;
-    input *in = &im->inputs[im->current];
-    if (!im->source) {
-        noc_status status = place_crs(im, NULL, in->path, NULL);
+    input *in = r->in;
+    if (!r->source) {
+        noc_status status = place_crs(r, NULL, in->path, NULL);
         if (status)
             return status;
     }
-    source_crs *s = im->source;
+    source_crs *s = r->source;
     double lo[3], hi[3], centre[3];
-    fix_axes(im, s, xyz, count, id);
-    im->given.len = 0;
+    fix_axes(r, s, xyz, count, id);
+    r->given.len = 0;
     if (!bounds_of(xyz, count, lo, hi)) {
         geo_issue(in->issues, GEO_SKIPPED, "coordinates that are not finite", id);
         return NOC_OK;
     }
     centre_of(lo, hi, centre);
     if (!s->ready) {
-        noc_status status = prepare(im, s, centre);
+        noc_status status = prepare(r, s, centre);
         if (status)
             return status;
     }
     size_t numbers = 3 * count;
-    if (!array_append(&im->given, xyz, numbers))
-        return noc_no_memory(im->log, in->path);
+    if (!array_append(&r->given, xyz, numbers))
+        return noc_no_memory(r->log, in->path);
     size_t astray = 0, failed = 0;
     if (s->to_scene)
         failed = geo_transform_points(s->to_scene, xyz, count);
     for (size_t i = 0; i < numbers; i++)
-        if (isfinite(xyz[i]) && !(fabs(xyz[i] - im->origin[i % 3]) < NOWHERE)) {
+        if (isfinite(xyz[i]) && !(fabs(xyz[i] - r->im->origin[i % 3]) < NOWHERE)) {
             xyz[i] = NAN;
             astray++;
         }
@@ -473,7 +470,7 @@ noc_status place_points(importer *im, double *xyz, size_t count, const char *id,
         return NOC_OK;
     }
     for (size_t i = 0; i < 3 * count; i++)
-        xyz[i] -= im->origin[i % 3];
+        xyz[i] -= r->im->origin[i % 3];
     widen_extent(&in->file, lo, hi);
     *usable = true;
     return NOC_OK;
@@ -490,87 +487,86 @@ bool place_exchanged(importer *im, const given_place *given, double xy[2]) {
 }
 
 /* A mesh whose coordinates count from the scene's origin may be the first input, or the only one. */
-static noc_status settle_by_scene(importer *im) {
+static noc_status settle_by_scene(reading *r) {
     geo_crs *crs;
-    bool preset = im->scene->crs_name && is_blank(im->params->scene_crs) && !im->inspect;
-    noc_status status = wanted_crs(im, &crs);
-    return !status && crs ? set_place(im, crs, preset ? im->scene->origin : (double[3]){ 0, 0, 0 }) : status;
+    bool preset = r->im->scene->crs_name && is_blank(r->im->params->scene_crs) && !r->im->inspect;
+    noc_status status = wanted_crs(r, &crs);
+    return !status && crs ? set_place(r, crs, preset ? r->im->scene->origin : (double[3]){ 0, 0, 0 }) : status;
 }
 
-noc_status place_mesh(importer *im) {
-    const char *path = im->inputs[im->current].path;
-    im->source = NULL;
-    im->mesh_from_origin = false;
-    if (!is_blank(im->params->crs)) {
+noc_status place_mesh(reading *r) {
+    const char *path = r->in->path;
+    r->source = NULL;
+    r->mesh_from_origin = false;
+    if (!is_blank(r->im->params->crs)) {
         noc_status status;
-        geo_crs *crs = geo_crs_create(im->params->crs, "--crs", im->log, &status);
+        geo_crs *crs = geo_crs_create(r->im->params->crs, "--crs", r->log, &status);
         bool metric = crs && geo_crs_is_metric(crs);
         geo_crs_destroy(crs);
         if (status)
             return given_status(status);
         if (metric)
             return NOC_OK;
-        return noc_error(im->log, NOC_ERR_ARGUMENT,
-                         "--crs %s: %s is in metres, so its CRS must be projected, in metres", im->params->crs, path);
+        return noc_error(r->log, NOC_ERR_ARGUMENT, "--crs %s: %s is in metres, so its CRS must be projected, in metres",
+                         r->im->params->crs, path);
     }
-    if (!im->placed) {
-        noc_status status = settle_by_scene(im);
+    if (!r->im->placed) {
+        noc_status status = settle_by_scene(r);
         if (status)
             return status;
     }
-    im->mesh_from_origin = im->placed && im->scene_crs;
-    if (im->mesh_from_origin)
-        noc_info(im->log, "%s: coordinates are taken as metres from the scene's origin (%.0f %.0f)", path,
-                 im->origin[0], im->origin[1]);
+    r->mesh_from_origin = r->im->placed && r->im->scene_crs;
+    if (r->mesh_from_origin)
+        noc_info(r->log, "%s: coordinates are taken as metres from the scene's origin (%.0f %.0f)", path,
+                 r->im->origin[0], r->im->origin[1]);
     return NOC_OK;
 }
 
 noc_status place_mesh_points(void *ctx, double *xyz, size_t count) {
-    importer *im = ctx;
+    reading *r = ctx;
     bool usable;
-    noc_status status = sink_affords(im, 3 * count * sizeof(float));
+    noc_status status = take_affords(r->im, r->in, 3 * count * sizeof(float));
     if (status)
         return status;
-    if (im->mesh_from_origin) {
+    if (r->mesh_from_origin) {
         double lo[3], hi[3];
         if (bounds_of(xyz, count, lo, hi))
-            widen_extent(&im->inputs[im->current].file, lo, hi);
+            widen_extent(&r->in->file, lo, hi);
         return NOC_OK;
     }
-    status = place_points(im, xyz, count, "", &usable);
+    status = place_points(r, xyz, count, "", &usable);
     if (status || usable)
         return status;
     /* what has no place is NaN: the scene leaves out its triangles alone */
     for (size_t i = 0; i < 3 * count; i++) {
-        xyz[i] -= im->origin[i % 3];
-        if (i < im->given.len && !isfinite(xyz[i]))
-            im->given.data[i] = NAN;
+        xyz[i] -= r->im->origin[i % 3];
+        if (i < r->given.len && !isfinite(xyz[i]))
+            r->given.data[i] = NAN;
     }
     double lo[3], hi[3];
-    if (im->given.len == 3 * count && bounds_of(im->given.data, count, lo, hi))
-        widen_extent(&im->inputs[im->current].file, lo, hi);
+    if (r->given.len == 3 * count && bounds_of(r->given.data, count, lo, hi))
+        widen_extent(&r->in->file, lo, hi);
     return NOC_OK;
 }
 
-void place_finish_file(importer *im, bool read) {
-    im->source = NULL;
-    for (size_t i = 0; i < im->sources.len; i++) {
-        const source_crs *s = im->sources.data[i];
+void place_finish_file(reading *r, bool read) {
+    r->source = NULL;
+    for (size_t i = 0; i < r->in->sources.len; i++) {
+        const source_crs *s = r->in->sources.data[i];
         bool doubtful = s->tries && (!s->axes_decided || s->tries == AXIS_TRIES);
-        if (read && s->input == im->current && doubtful && s->outside > FAR_OUTSIDE)
-            noc_warn(im->log, "%s: the coordinates lie far outside the area that %s is for: is it the right CRS?",
-                     im->inputs[im->current].path, geo_crs_name(s->crs));
+        if (read && doubtful && s->outside > FAR_OUTSIDE)
+            noc_warn(r->log, "%s: the coordinates lie far outside the area that %s is for: is it the right CRS?",
+                     r->in->path, geo_crs_name(s->crs));
     }
 }
 
-void place_destroy(importer *im) {
-    for (size_t i = 0; i < im->sources.len; i++) {
-        source_crs *s = im->sources.data[i];
+void place_forget(input *in) {
+    for (size_t i = 0; i < in->sources.len; i++) {
+        source_crs *s = in->sources.data[i];
         geo_transform_destroy(s->to_scene);
         geo_crs_destroy(s->crs);
         free(s->spelling);
         free(s);
     }
-    array_free(&im->sources);
-    array_free(&im->given);
+    array_free(&in->sources);
 }

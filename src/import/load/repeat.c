@@ -198,34 +198,32 @@ static const object_record *find_named(const object_records *all, const object_n
     return NULL;
 }
 
-noc_status repeat_object(importer *im, const char *id, bool *repeated) {
-    object_now *now = &im->now;
-    *repeated = now->repeated;
-    if (now->decided || !now->any)
+noc_status repeat_object(importer *im, input *in, const object_now *now, const char *id) {
+    if (in->object_decided || !now->any)
         return NOC_OK;
-    now->decided = true;
+    in->object_decided = true;
+    size_t index = (size_t)(in - im->inputs);
     uint64_t name = hash_text(id);
     const object_record *r = find_equal(&im->records, now, now->kind);
     if (!r && *id)
-        r = find_named(&im->records, now, now->kind, name, im->current);
+        r = find_named(&im->records, now, now->kind, name, index);
     if (r) {
-        input *in = &im->inputs[im->current];
-        geo_issue(in->issues, GEO_SPARED,
-                  r->input == im->current ? "object that the file holds twice: taken once"
-                                          : "object that another file holds, too: taken once",
+        geo_issue(in->found, GEO_SPARED,
+                  r->input == index ? "object that the file holds twice: taken once"
+                                    : "object that another file holds, too: taken once",
                   id);
         in->file.objects_repeated++;
-        *repeated = now->repeated = true;
+        in->object_repeated = true;
         return NOC_OK;
     }
-    object_record record = { .shape = now->shape, .input = (uint32_t)im->current, .kind = (uint32_t)now->kind };
+    object_record record = { .shape = now->shape, .input = (uint32_t)index, .kind = (uint32_t)now->kind };
     for (int k = 0; k < 3; k++) {
         record.lo[k] = (float)now->lo[k];
         record.hi[k] = (float)now->hi[k];
     }
     record.place = place_key(name, now->kind, floor((now->lo[0] + now->hi[0]) / 2 / CELL),
                              floor((now->lo[1] + now->hi[1]) / 2 / CELL));
-    return add_record(&im->records, record) ? NOC_OK : noc_no_memory(im->log, im->inputs[im->current].path);
+    return add_record(&im->records, record) ? NOC_OK : noc_no_memory(im->log, in->path);
 }
 
 void repeat_free(object_records *records) {

@@ -1,132 +1,44 @@
-/* What city readers emit becomes meshes: one an object and class, so that ids stay findable and a mesh has one
- * material. */
+/* What city readers emit, placed and triangulated, is handed over object by object. */
 #include "import/load/load.h"
 
 #include <math.h>
 
 #define FLUSH_TRIANGLES 500000 /* of one object and class: terrain is not kept twice */
 
-/* ---- materials ---- */
-
-/* Façades and roofs differ from building to building. Diffuse reflectances, linear; their mean is near the class's own
- * material. */
-static const float wall_albedo[PALETTE][3] = {
-    { .58f, .54f, .47f }, /* light plaster */
-    { .52f, .45f, .33f }, /* cream plaster */
-    { .46f, .37f, .27f }, /* sandstone */
-    { .40f, .40f, .39f }, /* concrete */
-    { .33f, .20f, .15f }, /* brick */
-    { .55f, .55f, .54f }, /* white paint, weathered */
-    { .45f, .34f, .28f }, /* pink plaster */
-    { .38f, .39f, .35f }, /* grey green plaster */
-};
-static const float roof_albedo[PALETTE][3] = {
-    { .30f, .13f, .08f }, /* new clay tiles */
-    { .23f, .11f, .08f }, /* clay tiles */
-    { .18f, .10f, .08f }, /* old clay tiles */
-    { .27f, .15f, .10f }, /* light clay tiles */
-    { .13f, .13f, .14f }, /* slate */
-    { .22f, .21f, .20f }, /* concrete tiles */
-    { .17f, .12f, .10f }, /* brown tiles */
-    { .30f, .29f, .27f }, /* gravel */
-};
-
-/* Neighbouring ids differ in a letter: all bits of the hash must depend on it. */
-static uint32_t hash_id(const char *id) {
-    uint32_t h = 2166136261u;
-    for (; *id; id++)
-        h = (h ^ (unsigned char)*id) * 16777619u;
-    h = (h ^ h >> 16) * 0x85ebca6bu;
-    h = (h ^ h >> 13) * 0xc2b2ae35u;
-    return h ^ h >> 16;
-}
-
-int sink_material(importer *im, noc_class cls, const char *id) {
-    const float(*albedo)[3] = cls == NOC_CLASS_WALL ? wall_albedo : cls == NOC_CLASS_ROOF ? roof_albedo : NULL;
-    uint32_t h = hash_id(id);
-    uint32_t k = !albedo ? 0 : (cls == NOC_CLASS_WALL ? h : h >> 8) % PALETTE;
-    int *index = &im->material[cls][k];
-    if (!*index) {
-        noc_material m = noc_class_material(cls);
-        if (albedo)
-            memcpy(m.albedo, albedo[k], sizeof(m.albedo));
-        *index = noc_scene_add_material(im->scene, &m) + 1;
-    }
-    return *index - 1;
-}
-
 /* ---- surfaces ---- */
 
-static bool is_open_ground(noc_class cls) {
-    return cls == NOC_CLASS_ROAD || cls == NOC_CLASS_SIDEWALK || cls == NOC_CLASS_GREEN || cls == NOC_CLASS_TERRAIN ||
-           cls == NOC_CLASS_WATER;
-}
-
-static double area_from_above(const geo_triangles *t) {
-    double sum = 0;
-    for (size_t i = 0; i < t->indices.len; i += 3) {
-        const double *a = t->xyz.data + 3 * (size_t)t->indices.data[i],
-                     *b = t->xyz.data + 3 * (size_t)t->indices.data[i + 1],
-                     *c = t->xyz.data + 3 * (size_t)t->indices.data[i + 2];
-        sum += fabs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
-    }
-    return sum;
-}
-
-noc_status sink_affords(importer *im, size_t more) {
-    const input *in = &im->inputs[im->current];
-    size_t scene = noc_scene_bytes(im->scene) + more, made = scene - NOC_MIN(scene, im->scene_before);
-    size_t waiting = im->lamps.cap * sizeof(*im->lamps.data) + im->lost.cap * sizeof(*im->lost.data) + im->names.bytes +
-                     im->records.list.cap * sizeof(*im->records.list.data);
-    import_budget memory = { .memory = im->memory }, growth = { INFINITY, 0, (double)in->bytes };
-    if (in->reader && in->reader->reads == NOC_READS_CITY) /* other readers see themselves to what files grow to */
-        growth.expansion = im->params->max_expansion;
-    noc_status status = import_affords(&memory, (double)(scene + waiting), in->path, "the scene with it", im->log);
-    return status ? status : import_affords(&growth, (double)made, in->path, "its part of the scene", im->log);
-}
-
-static noc_status flush_class(importer *im, noc_class cls) {
-    geo_triangles *t = &im->surfaces[cls];
-    if (!t->indices.len)
-        return NOC_OK;
-    const char *id = im->object_id ? im->object_id : "";
-    bool repeated = false;
-    noc_status status = im->object_id ? repeat_object(im, id, &repeated) : NOC_OK;
-    if (status || repeated) {
-        t->xyz.len = t->indices.len = 0;
-        return status;
-    }
-    noc_mesh mesh = { .vertex_count = t->xyz.len / 3,
-                      .positions = t->xyz.data,
-                      .triangle_count = t->indices.len / 3,
-                      .indices = t->indices.data,
-                      .material = sink_material(im, cls, id),
-                      .name = *id ? id : NULL };
-    if (mesh.material < 0 || noc_scene_add_mesh(im->scene, &mesh) < 0)
-        return NOC_ERR_UNSUPPORTED; /* said by the scene */
-    im->inputs[im->current].file.triangles += mesh.triangle_count;
-    status = sink_affords(im, 0);
-    if (status)
-        return status;
-    if (is_open_ground(cls))
-        im->open_area += area_from_above(t);
-    im->has_roads = im->has_roads || cls == NOC_CLASS_ROAD || cls == NOC_CLASS_SIDEWALK;
-    t->xyz.len = t->indices.len = 0;
-    return NOC_OK;
-}
-
-noc_status sink_flush(importer *im) {
+/* Hands over the surfaces of a class, or with NOC_CLASS_COUNT all of them, as the object ends. */
+static noc_status hand_over(reading *r, noc_class only) {
+    part_surface surfaces[NOC_CLASS_COUNT];
+    load_part part = { .kind = PART_OBJECT };
+    part.u.object.id = r->object_id;
+    part.u.object.now = r->now;
+    part.u.object.last = only == NOC_CLASS_COUNT;
+    part.u.object.surfaces = surfaces;
     for (int c = 0; c < NOC_CLASS_COUNT; c++) {
-        noc_status status = flush_class(im, (noc_class)c);
-        if (status)
-            return status;
+        const geo_triangles *t = &r->surfaces[c];
+        if (t->indices.len && (part.u.object.last || c == (int)only))
+            surfaces[part.u.object.surface_count++] = (part_surface){ .cls = (noc_class)c,
+                                                                      .vertex_count = t->xyz.len / 3,
+                                                                      .triangle_count = t->indices.len / 3,
+                                                                      .xyz = t->xyz.data,
+                                                                      .indices = t->indices.data };
     }
-    noc_report_file *file = &im->inputs[im->current].file;
-    for (int c = 0; c < NOC_CLASS_COUNT && !im->now.repeated; c++)
-        file->polygons_by_class[c] += im->now.by_class[c];
-    file->polygons += im->now.repeated ? 0 : im->now.polygons;
-    im->now = (object_now){ 0 };
-    return NOC_OK;
+    if (!part.u.object.surface_count && !r->now.polygons && !r->now.given)
+        return NOC_OK;
+    noc_status status = take_part(r->im, r->in, &part);
+    for (size_t i = 0; i < part.u.object.surface_count; i++) {
+        geo_triangles *t = &r->surfaces[surfaces[i].cls];
+        t->xyz.len = t->indices.len = 0;
+    }
+    r->now.given = true;
+    return status;
+}
+
+noc_status sink_flush(reading *r) {
+    noc_status status = hand_over(r, NOC_CLASS_COUNT);
+    r->now = (object_now){ 0 };
+    return status;
 }
 
 static noc_status on_crs(void *ctx, const char *srs_name, const char *place, bool *lat_first) {
@@ -134,17 +46,16 @@ static noc_status on_crs(void *ctx, const char *srs_name, const char *place, boo
 }
 
 static noc_status on_begin_object(void *ctx, const geo_object *object) {
-    importer *im = ctx;
-    noc_report_file *file = &im->inputs[im->current].file;
-    noc_status status = sink_flush(im);
-    free(im->object_id);
-    im->object_id = noc_strdup(object->id ? object->id : "");
-    if (!status && !im->object_id)
-        status = noc_no_memory(im->log, im->inputs[im->current].path);
-    im->now.kind = object->kind;
+    reading *r = ctx;
+    noc_report_file *file = &r->in->file;
+    noc_status status = sink_flush(r);
+    free(r->object_id);
+    r->object_id = noc_strdup(object->id ? object->id : "");
+    if (!status && !r->object_id)
+        status = noc_no_memory(r->log, r->in->path);
+    r->now.kind = object->kind;
     file->objects++;
     if (object->kind == GEO_BUILDING) {
-        im->buildings++;
         file->buildings++;
         if (object->lod >= 0 && object->lod < (int)NOC_COUNT(file->lod_used))
             file->lod_used[object->lod]++;
@@ -153,41 +64,39 @@ static noc_status on_begin_object(void *ctx, const geo_object *object) {
 }
 
 static noc_status on_end_object(void *ctx) {
-    importer *im = ctx;
-    noc_status status = sink_flush(im);
-    free(im->object_id);
-    im->object_id = NULL;
+    reading *r = ctx;
+    noc_status status = sink_flush(r);
+    free(r->object_id);
+    r->object_id = NULL;
     return status;
 }
 
 static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
-    importer *im = ctx;
-    input *in = &im->inputs[im->current];
+    reading *r = ctx;
+    input *in = r->in;
     noc_class cls = (unsigned)polygon->cls < NOC_CLASS_COUNT ? polygon->cls : NOC_CLASS_OTHER;
     size_t count = 0;
-    for (size_t r = 0; r < polygon->ring_count; r++)
-        count += polygon->ring_size[r];
+    for (size_t i = 0; i < polygon->ring_count; i++)
+        count += polygon->ring_size[i];
     size_t numbers = 3 * count;
-    im->scratch.len = 0;
-    if (!array_append(&im->scratch, polygon->xyz, numbers))
-        return noc_no_memory(im->log, in->path);
+    r->scratch.len = 0;
+    if (!array_append(&r->scratch, polygon->xyz, numbers))
+        return noc_no_memory(r->log, in->path);
     bool usable;
-    noc_status status = place_points(im, im->scratch.data, count, polygon->id, &usable);
+    noc_status status = place_points(r, r->scratch.data, count, polygon->id, &usable);
     if (status || !usable)
         return status;
-    if (im->now.repeated)
-        return NOC_OK;
-    if (im->object_id && !im->now.decided)
-        repeat_polygon(&im->now, cls, im->scratch.data, count);
+    if (r->object_id && !r->now.given)
+        repeat_polygon(&r->now, cls, r->scratch.data, count);
     if (cls != NOC_CLASS_CLOSURE) {
         geo_polygon local = *polygon;
-        local.xyz = im->scratch.data;
-        if (!geo_triangulate(&local, &im->surfaces[cls], in->issues))
-            return im->surfaces[cls].no_memory ? noc_no_memory(im->log, in->path) : NOC_OK;
+        local.xyz = r->scratch.data;
+        if (!geo_triangulate(&local, &r->surfaces[cls], in->issues))
+            return r->surfaces[cls].no_memory ? noc_no_memory(r->log, in->path) : NOC_OK;
     }
-    im->now.polygons++;
-    im->now.by_class[cls]++;
-    return im->surfaces[cls].indices.len >= 3 * FLUSH_TRIANGLES ? flush_class(im, cls) : NOC_OK;
+    r->now.polygons++;
+    r->now.by_class[cls]++;
+    return r->surfaces[cls].indices.len >= 3 * FLUSH_TRIANGLES ? hand_over(r, cls) : NOC_OK;
 }
 
 _Static_assert((int)GEO_SOURCE_LED == NOC_SOURCE_LED && (int)GEO_SOURCE_LOW_SODIUM == NOC_SOURCE_LOW_SODIUM,
@@ -217,44 +126,40 @@ static void count_lamp(noc_report_file *file, const geo_lamp *lamp) {
 }
 
 static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
-    importer *im = ctx;
-    pending_lamp p = { .lamp = *lamp, .input = im->current };
+    reading *r = ctx;
+    pending_lamp p = { .lamp = *lamp, .input = r->index };
     bool usable;
     double points[1 + GEO_BODY_HEADS][3]; /* with its heads, so that they stay where the body has them */
     size_t heads = (size_t)NOC_CLAMP(lamp->body_heads, 0, GEO_BODY_HEADS);
     memcpy(points[0], lamp->xyz, sizeof(points[0]));
     memcpy(points[1], lamp->head, heads * sizeof(points[0]));
-    noc_status status = place_points(im, points[0], 1 + heads, lamp->id ? lamp->id : "", &usable);
-    p.given = (given_place){ { NAN, NAN }, im->source };
-    if (!status && im->given.len >= 2)
-        memcpy(p.given.xy, im->given.data, sizeof(p.given.xy));
+    noc_status status = place_points(r, points[0], 1 + heads, lamp->id ? lamp->id : "", &usable);
+    p.given = (given_place){ { NAN, NAN }, r->source };
+    if (!status && r->given.len >= 2)
+        memcpy(p.given.xy, r->given.data, sizeof(p.given.xy));
     if (!status && !usable) {
-        im->inputs[im->current].lamps_lost++;
-        if (!array_push(&im->lost, p.given))
-            status = noc_no_memory(im->log, im->inputs[im->current].path);
+        r->in->lamps_lost++;
+        status = take_part(r->im, r->in, &(load_part){ .kind = PART_LOST, .u.lost = p.given });
     }
     if (status || !usable)
         return status;
     memcpy(p.lamp.xyz, points[0], sizeof(points[0]));
     memcpy(p.lamp.head, points[1], heads * sizeof(points[0]));
-    count_lamp(&im->inputs[im->current].file, lamp);
-    if (im->inspect) {
-        report_assumed(&im->inputs[im->current].file, lamp);
+    count_lamp(&r->in->file, lamp);
+    if (r->im->inspect) {
+        report_assumed(&r->in->file, lamp);
         return NOC_OK;
     }
-    if (im->lamps.len == im->lamps.cap && (status = sink_affords(im, im->lamps.cap * sizeof(p)))) /* it doubles */
-        return status;
-    p.lamp.id = arena_strdup(&im->names, lamp->id ? lamp->id : "");
-    p.lamp.ref = lamp->ref && *lamp->ref ? arena_strdup(&im->names, lamp->ref) : "";
-    return p.lamp.id && p.lamp.ref && array_push(&im->lamps, p) ? NOC_OK
-                                                                : noc_no_memory(im->log, im->inputs[im->current].path);
+    p.lamp.id = lamp->id ? lamp->id : "";
+    p.lamp.ref = lamp->ref ? lamp->ref : "";
+    return take_part(r->im, r->in, &(load_part){ .kind = PART_LAMP, .u.lamp = p });
 }
 
 /* Of a file that has been read. */
 static noc_status on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
-    importer *im = ctx;
-    noc_report_file *file = &im->inputs[im->current].file;
-    noc_arena *arena = &im->report->arena;
+    reading *r = ctx;
+    noc_report_file *file = &r->in->file;
+    noc_arena *arena = &r->im->report->arena;
     noc_report_column *kept = arena_alloc(arena, (count + 1) * sizeof(*kept));
     for (size_t i = 0; i < count && kept; i++)
         kept[i] = (noc_report_column){ .name = arena_strdup(arena, columns[i].name),
@@ -264,7 +169,7 @@ static noc_status on_columns(void *ctx, size_t points, const geo_column *columns
                                        .example = arena_strdup(arena, columns[i].example),
                                        .mapped = columns[i].mapped };
     if (arena->refused)
-        return noc_no_memory(im->log, im->inputs[im->current].path);
+        return noc_no_memory(r->log, r->in->path);
     file->points = points;
     file->columns = kept;
     file->column_count = count;
@@ -273,36 +178,36 @@ static noc_status on_columns(void *ctx, size_t points, const geo_column *columns
 
 /* A file of which nothing is read still says where it is, to those who ask what it holds. */
 static noc_status on_features(void *ctx, const geo_features *features) {
-    importer *im = ctx;
-    noc_report_file *file = &im->inputs[im->current].file;
+    reading *r = ctx;
+    noc_report_file *file = &r->in->file;
     file->map_points = (size_t)features->total[GEO_POINTS];
     file->map_lines = (size_t)features->total[GEO_LINES];
     file->map_areas = (size_t)features->total[GEO_AREAS];
     file->buildings_unread = (size_t)features->buildings;
     file->streets_unread = (size_t)features->streets;
-    if (!im->inspect || !features->any)
+    if (!r->im->inspect || !features->any)
         return NOC_OK;
     bool usable;
     double corners[2][3] = { { features->lo[0], features->lo[1], NAN }, { features->hi[0], features->hi[1], NAN } };
-    return place_points(im, corners[0], 2, "", &usable);
+    return place_points(r, corners[0], 2, "", &usable);
 }
 
 static bool on_progress(void *ctx, double done) {
-    importer *im = ctx;
-    const noc_progress *progress = &im->params->progress;
-    double bytes = im->bytes_before + NOC_CLAMP(done, 0, 1) * (double)im->inputs[im->current].bytes;
-    if (progress->update && !progress->update(progress->user, im->inputs[im->current].path,
-                                              0.9 * (im->bytes_total > 0 ? bytes / im->bytes_total : 1)))
-        im->cancelled = true;
-    return !im->cancelled;
+    reading *r = ctx;
+    const noc_progress *progress = &r->im->params->progress;
+    double bytes = r->im->bytes_before + NOC_CLAMP(done, 0, 1) * (double)r->in->bytes;
+    if (progress->update &&
+        !progress->update(progress->user, r->in->path, 0.9 * (r->im->bytes_total > 0 ? bytes / r->im->bytes_total : 1)))
+        r->im->cancelled = true;
+    return !r->im->cancelled;
 }
 
-geo_sink sink_create(importer *im) {
-    return (geo_sink){ .ctx = im,
-                       .log = im->log,
-                       .issues = im->inputs[im->current].issues,
-                       .lamps_lost = &im->inputs[im->current].lamps_lost,
-                       .decimal_sign = &im->inputs[im->current].file.decimal_sign,
+geo_sink sink_create(reading *r) {
+    return (geo_sink){ .ctx = r,
+                       .log = r->log,
+                       .issues = r->in->issues,
+                       .lamps_lost = &r->in->lamps_lost,
+                       .decimal_sign = &r->in->file.decimal_sign,
                        .crs = on_crs,
                        .begin_object = on_begin_object,
                        .polygon = on_polygon,
@@ -311,17 +216,14 @@ geo_sink sink_create(importer *im) {
                        .columns = on_columns,
                        .features = on_features,
                        .progress = on_progress,
-                       .named_lamps = im->inputs[im->current].named_lamps,
-                       .inspect = im->inspect };
+                       .named_lamps = r->in->named_lamps,
+                       .inspect = r->im->inspect };
 }
 
-void sink_destroy(importer *im) {
+void sink_destroy(reading *r) {
     for (int c = 0; c < NOC_CLASS_COUNT; c++)
-        geo_triangles_free(&im->surfaces[c]);
-    array_free(&im->scratch);
-    repeat_free(&im->records);
-    free(im->object_id);
-    array_free(&im->lamps);
-    array_free(&im->lost);
-    arena_free(&im->names);
+        geo_triangles_free(&r->surfaces[c]);
+    array_free(&r->scratch);
+    array_free(&r->given);
+    free(r->object_id);
 }

@@ -1,0 +1,131 @@
+/* Plans of all kinds of frames, held to the tables of passes and buffers. */
+#include "../test.h"
+
+#include "render/plan.h"
+
+/* Calls back with every combination of what decides a plan. */
+static int each_plan(void (*check)(const noc_render_params *p, const noc_plan *plan, int history)) {
+    int count = 0;
+    for (int method = 0; method <= NOC_METHOD_RESTIR; method++)
+        for (int from = 0; from <= NOC_CANDIDATES_LIGHT_BVH; from++)
+            for (int bias = 0; bias <= NOC_BIAS_PAIRWISE; bias++)
+                for (int bits = 0; bits < 64; bits++)
+                    for (int passes = 1; passes <= 4; passes++)
+                        for (int history = -1; history <= 2; history++) {
+                            noc_render_params p = noc_render_default_params();
+                            p.method = (noc_method)method;
+                            p.candidates = (noc_candidates)from;
+                            p.bias = (noc_bias)bias;
+                            p.temporal = bits & 1;
+                            p.spatial = bits & 2;
+                            p.visibility_reuse = bits & 4;
+                            p.final_ray = bits & 8;
+                            p.bias_rays = bits & 16;
+                            p.sky = bits & 32 ? 0.02 : 0;
+                            p.passes = passes;
+                            noc_plan plan;
+                            noc_plan_make(&p, history, &plan);
+                            check(&p, &plan, history);
+                            count++;
+                        }
+    return count;
+}
+
+/* A buffer, or a set of reservoirs in it. */
+static uint32_t part(const noc_stage *s, uint32_t bits) {
+    uint32_t out = bits & ~(1u << NOC_BUFFER_RESERVOIRS | 1u << NOC_BUFFER_SOURCE);
+    if (bits >> NOC_BUFFER_RESERVOIRS & 1)
+        out |= 1u << (NOC_BUFFER_COUNT + s->target);
+    if (bits >> NOC_BUFFER_SOURCE & 1)
+        out |= 1u << (NOC_BUFFER_COUNT + s->source);
+    return out;
+}
+
+static uint32_t living(noc_lifetime lifetime) {
+    uint32_t bits = 0;
+    for (int i = 0; i < NOC_BUFFER_COUNT; i++)
+        bits |= (uint32_t)(noc_buffers[i].lifetime == lifetime) << i;
+    return bits;
+}
+
+static void check_stages(const noc_render_params *p, const noc_plan *plan, int history) {
+    uint32_t sets = 0, written = 1u << NOC_BUFFER_PAST | 1u << NOC_BUFFER_CACHE;
+    (void)p;
+    assert_in_range(plan->count, 1, NOC_MAX_STAGES);
+    assert_int_equal(plan->stages[0].passes[0], NOC_PASS_PRIMARY);
+    if (history >= 0 || plan->next_history >= 0) /* in the first frame nobody looks */
+        written |= 1u << (NOC_BUFFER_COUNT + plan->stages[0].source);
+    for (int i = 0; i < plan->count; i++) {
+        const noc_stage *s = &plan->stages[i];
+        uint32_t here = 0, tiles = living(NOC_LIVES_TILE);
+        assert_in_range(s->count, 1, sizeof(s->passes) / sizeof(*s->passes));
+        for (int k = 0; k < s->count; k++) {
+            const noc_pass_row *row = &noc_passes[s->passes[k]];
+            uint32_t reads = part(s, row->reads), others = part(s, row->others), writes = part(s, row->writes);
+            assert_int_equal(row->others & ~row->reads, 0);
+            assert_int_equal(others & here, 0);             /* nobody looks over the fence in a stage */
+            assert_int_equal(reads & ~(written | here), 0); /* what is read is there */
+            assert_int_equal(reads & tiles & ~here, 0);     /* scratch is from this stage */
+            if (row->others && s->passes[k] == NOC_PASS_SPATIAL)
+                assert_int_not_equal(s->source, s->target);
+            here |= writes;
+        }
+        for (int later = 0; later < s->count; later++) /* nor does a later pass write what an earlier one looked at */
+            for (int k = 0; k < later; k++)
+                assert_int_equal(part(s, noc_passes[s->passes[k]].others) &
+                                     part(s, noc_passes[s->passes[later]].writes),
+                                 0);
+        written |= here & ~tiles;
+        sets |= written >> NOC_BUFFER_COUNT;
+    }
+    assert_int_equal(sets >> plan->sets, 0);
+    assert_true(written >> NOC_BUFFER_COLOUR & 1);
+    assert_true(plan->next_history < plan->sets);
+    if (plan->next_history >= 0)
+        assert_true(sets >> plan->next_history & 1);
+}
+
+static void stages_may_run_tile_by_tile(void **state) {
+    (void)state;
+    assert_int_equal(each_plan(check_stages), 4 * 5 * 3 * 64 * 4 * 4);
+}
+
+static void check_shading(const noc_render_params *p, const noc_plan *plan, int history) {
+    int shades = 0, skies = 0;
+    (void)history;
+    for (int i = 0; i < plan->count; i++)
+        for (int k = 0; k < plan->stages[i].count; k++) {
+            noc_pass pass = plan->stages[i].passes[k];
+            shades += pass == NOC_PASS_SHADE || pass == NOC_PASS_SHADE_ALL ||
+                      (pass == NOC_PASS_SHADE_SHARED && p->method != NOC_METHOD_RESTIR);
+            skies += pass == NOC_PASS_SKY;
+            if (noc_passes[pass].others && pass == NOC_PASS_SPATIAL)
+                assert_int_equal(p->method, NOC_METHOD_RESTIR);
+        }
+    assert_int_equal(shades, 1);
+    assert_int_equal(skies, p->sky > 0);
+}
+
+static void light_is_shaded_once(void **state) {
+    (void)state;
+    each_plan(check_shading);
+}
+
+static void names_are_told_apart(void **state) {
+    (void)state;
+    for (int i = 0; i < NOC_PASS_COUNT; i++)
+        for (int k = 0; k < i; k++)
+            assert_string_not_equal(noc_passes[i].name, noc_passes[k].name);
+    for (int i = 0; i < NOC_BUFFER_COUNT; i++)
+        for (int k = 0; k < i; k++)
+            assert_string_not_equal(noc_buffers[i].name, noc_buffers[k].name);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(stages_may_run_tile_by_tile),
+        cmocka_unit_test(light_is_shaded_once),
+        cmocka_unit_test(names_are_told_apart),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
