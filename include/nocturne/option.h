@@ -22,6 +22,15 @@ typedef enum noc_option_kind {
     NOC_OPTION_TEXTS,  /* noc_texts; may be given several times; points at the caller's texts */
 } noc_option_kind;
 
+/* What a view forgets when an option changes: bits. Where the option is idle before and after (noc_option_idle),
+ * nothing. What lights are seen from where stays with the scene, whatever changes but the seed. */
+typedef enum noc_resets {
+    NOC_RESETS_NOTHING = 0,
+    NOC_RESETS_MEAN = 1,       /* accumulation: the picture is another one, or is to be judged anew */
+    NOC_RESETS_RESERVOIRS = 2, /* samples of the frame before do not mean the same any more */
+    NOC_RESETS_ALL = 7         /* as noc_view_reset does: with the frame number, and what was learned of visibility */
+} noc_resets;
+
 typedef struct noc_option {
     const char *name;  /* long name without dashes; NULL ends a table */
     const char *group; /* heading in the help */
@@ -33,6 +42,7 @@ typedef struct noc_option {
     const char *help;    /* one line */
     /* "option=a|b,option=c": where others of its table say otherwise it changes no picture; may be NULL */
     const char *needs;
+    unsigned resets; /* noc_resets; of fields of noc_render_params */
     /* CHOICE: "old=a|older=b": other names of choices, which are taken and never told; may be NULL */
     const char *aliases;
 } noc_option;

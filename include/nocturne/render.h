@@ -163,11 +163,12 @@ NOC_API noc_device *noc_view_device(const noc_view *view); /* that it was create
 /* Everything about params that noc_view_render would refuse, as one reported error: to be asked before long work. */
 NOC_API noc_status noc_render_check(const noc_render_params *params, noc_log *log);
 
-/* Renders one frame; NULL params are the defaults. History and accumulation start anew when size, method or any other
- * parameter changes; accumulation also when the camera or a light moves (history then goes on). progress may be NULL;
- * when it cancels, the frame is dropped, what was accumulated stays (of the camera and parameters that it was made
- * with, so nothing where those have changed), and NOC_ERR_CANCELLED is returned. So it is with NOC_ERR_MEMORY; where
- * there was none for the picture's buffers, all starts anew. Either way the next frame may succeed. */
+/* Renders one frame; NULL params are the defaults. What is forgotten where params differ from those of the frame before
+ * is a column of the option table (noc_option.resets); accumulation starts anew when the camera or a light moves, too,
+ * and history goes on. progress may be NULL; when it cancels, the frame is dropped, what was accumulated stays (of the
+ * camera and parameters that it was made with, so nothing where those have changed), and NOC_ERR_CANCELLED is returned.
+ * So it is with NOC_ERR_MEMORY; where there was none for the picture's buffers, the picture starts anew. Either way the
+ * next frame may succeed. */
 NOC_API noc_status noc_view_render(noc_view *view, const noc_camera *camera, const noc_render_params *params,
                                    const noc_progress *progress);
 NOC_API void noc_view_reset(noc_view *view); /* forgets history and accumulation, frame number too */

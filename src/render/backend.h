@@ -12,6 +12,7 @@
 typedef struct noc_frame {
     const noc_render_params *params;
     const noc_plan *plan;
+    uint32_t epoch;            /* counts resets: what was learned in another one is forgotten */
     frame_constants constants; /* what kernels and shaders read of it */
     uint64_t accumulated;      /* frames in the mean so far; 0 starts it anew */
     bool history;              /* the frame before is of the same size and parameters: its reservoirs can be reused */
@@ -83,6 +84,7 @@ void noc_describe_aov(const noc_render_params *params, noc_aov aov, noc_channel 
 
 /* history.c: what may be carried from frame to frame. */
 typedef struct noc_history {
+    uint32_t epoch;
     bool started;  /* params and camera are those of an earlier frame */
     bool reusable; /* that frame was completed, and its reservoirs are there */
     noc_render_params params;
@@ -95,6 +97,7 @@ typedef struct noc_history {
 } noc_history;
 
 void noc_history_reset(noc_history *history);
+void noc_history_forget(noc_history *history, unsigned resets); /* noc_resets */
 /* Describes the next frame; forgets what this camera, these parameters and edits of the scene (commits: its versions')
  * make useless. */
 void noc_history_begin(noc_history *history, const noc_camera *camera, const noc_render_params *params,

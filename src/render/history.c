@@ -3,7 +3,7 @@
 
 #include <nocturne/option.h>
 
-void noc_history_reset(noc_history *history) { *history = (noc_history){ .set = -1 }; }
+void noc_history_reset(noc_history *history) { *history = (noc_history){ .set = -1, .epoch = history->epoch + 1 }; }
 
 static bool same_vec(const double a[3], const double b[3]) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
 
@@ -12,22 +12,38 @@ static bool same_camera(const noc_camera *a, const noc_camera *b) {
            a->fov_deg == b->fov_deg;
 }
 
-/* Row by row of the option table, which names every field that can change a picture; views are not among them. */
-static bool same_params(const noc_render_params *a, const noc_render_params *b) {
-    for (const noc_option *o = noc_render_options(); o->name; o++) {
-        if (memcmp((const char *)a + o->offset, (const char *)b + o->offset, noc_option_size(o)))
-            return false;
+/* What changed options make useless: row by row of the option table, which names every field that can change a picture;
+ * AOVs are not among them. */
+static unsigned resets_of(const noc_render_params *a, const noc_render_params *b) {
+    const noc_option *table = noc_render_options();
+    unsigned resets = NOC_RESETS_NOTHING;
+    char why[1];
+    for (const noc_option *o = table; o->name; o++) {
+        if (!memcmp((const char *)a + o->offset, (const char *)b + o->offset, noc_option_size(o)))
+            continue;
+        if (!noc_option_idle(o, table, a, why, sizeof(why)) || !noc_option_idle(o, table, b, why, sizeof(why)))
+            resets |= o->resets;
     }
-    return true;
+    return resets;
+}
+
+void noc_history_forget(noc_history *h, unsigned resets) {
+    if (resets == NOC_RESETS_ALL)
+        noc_history_reset(h);
+    if (resets & NOC_RESETS_MEAN)
+        h->accumulated = 0;
+    if (resets & NOC_RESETS_RESERVOIRS)
+        h->reusable = false;
 }
 
 void noc_history_begin(noc_history *h, const noc_camera *camera, const noc_render_params *params, uint64_t commits,
                        noc_frame *frame) {
-    if (h->started && !same_params(&h->params, params))
-        noc_history_reset(h);
+    if (h->started)
+        noc_history_forget(h, resets_of(&h->params, params));
     if (h->started && (!same_camera(&h->camera, camera) || h->commits != commits))
         h->accumulated = 0;
     *frame = (noc_frame){ .params = params,
+                          .epoch = h->epoch,
                           .accumulated = params->accumulate ? h->accumulated : 0,
                           .history = h->started && h->reusable,
                           .history_set = h->set,

@@ -12,8 +12,8 @@
     { n, g, NOC_OPTION_SWITCH, offsetof(st, f), 0, 2, NULL, "", h }
 #define INT(st, f, n, g, lo, hi, u, ...)                                                                               \
     { n, g, NOC_OPTION_INT, offsetof(st, f), lo, hi, NULL, u, __VA_ARGS__ }
-#define UINT(st, f, n, g, h)                                                                                           \
-    { n, g, NOC_OPTION_UINT, offsetof(st, f), 0, UINT32_MAX, NULL, "", h }
+#define UINT(st, f, n, g, ...)                                                                                         \
+    { n, g, NOC_OPTION_UINT, offsetof(st, f), 0, UINT32_MAX, NULL, "", __VA_ARGS__ }
 #define REAL(st, f, n, g, lo, hi, u, ...)                                                                              \
     { n, g, NOC_OPTION_REAL, offsetof(st, f), lo, hi, NULL, u, __VA_ARGS__ }
 #define CHOICE(st, f, n, g, c, ...)                                                                                    \
@@ -33,60 +33,66 @@
 #define RESTIR "method=restir"
 #define SPATIAL RESTIR ",spatial=true"
 
+/* What a change of it makes a view forget (noc_option.resets); tests/render/test_resets.c holds rows to pictures. */
+#define MEAN .resets = NOC_RESETS_MEAN
+#define SAMPLES .resets = NOC_RESETS_MEAN | NOC_RESETS_RESERVOIRS
+#define ALL .resets = NOC_RESETS_ALL
+
 #define P noc_render_params
 /* clang-format off */
 static const noc_option render_options[] = {
-    INT(P, width, "width", "Picture", 1, NOC_IMAGE_MAX_SIDE, "px", "width of the picture"),
-    INT(P, height, "height", "Picture", 1, NOC_IMAGE_MAX_SIDE, "px", "height of the picture"),
-    UINT(P, seed, "seed", "Picture", "start of the random numbers; equal seeds give equal pictures"),
-    BOOL(P, jitter, "jitter", "Picture", "move sub-pixel positions from frame to frame (antialiasing)"),
+    INT(P, width, "width", "Picture", 1, NOC_IMAGE_MAX_SIDE, "px", "width of the picture", SAMPLES),
+    INT(P, height, "height", "Picture", 1, NOC_IMAGE_MAX_SIDE, "px", "height of the picture", SAMPLES),
+    UINT(P, seed, "seed", "Picture", "start of the random numbers; equal seeds give equal pictures", ALL),
+    BOOL(P, jitter, "jitter", "Picture", "move sub-pixel positions from frame to frame (antialiasing)", MEAN),
     BOOL(P, accumulate, "accumulate", "Picture", "mean of all frames; off: the last frame alone"),
     REAL(P, sky, "sky", "Picture", 0, 1e6, "cd/m2",
-         "luminance of the zenith: 0.02 large city, 0.0002 natural; 0 = off"),
-    BOOL(P, emitters, "emitters", "Picture", "show light sources that are seen directly"),
+         "luminance of the zenith: 0.02 large city, 0.0002 natural; 0 = off", MEAN),
+    BOOL(P, emitters, "emitters", "Picture", "show light sources that are seen directly", MEAN),
 
-    CHOICE(P, method, "method", "Estimator", "reference|is|ris|restir", "how direct light is estimated"),
+    CHOICE(P, method, "method", "Estimator", "reference|is|ris|restir", "how direct light is estimated", SAMPLES),
     CHOICE(P, candidates, "candidates", "Estimator", "uniform|lists|power|influence|light-bvh",
-         "ris, restir: where light candidates come from", CANDIDATES, .aliases = "bvh=influence|tree=light-bvh"),
-    INT(P, draws, "draws", "Estimator", 1, 1024, "", "light candidates a pixel and frame (M)", DRAWN),
+         "ris, restir: where light candidates come from", CANDIDATES, .aliases = "bvh=influence|tree=light-bvh", MEAN),
+    INT(P, draws, "draws", "Estimator", 1, 1024, "", "light candidates a pixel and frame (M)", DRAWN, MEAN),
     INT(P, list, "list", "Estimator", 0, 128, "",
-        "lists: strongest lights of a tile, seen by each of its pixels", LISTS),
-    INT(P, tail, "tail", "Estimator", 1, 128, "", "lists: draws a tile from all other lights", LISTS),
+        "lists: strongest lights of a tile, seen by each of its pixels", LISTS, MEAN),
+    INT(P, tail, "tail", "Estimator", 1, 128, "", "lists: draws a tile from all other lights", LISTS, MEAN),
     INT(P, shadow_rays, "shadow-rays", "Estimator", 1, 8, "",
         "lists: shadow rays a pixel, a target: 1 to twice as many are sent", LISTS),
     BOOL(P, learn, "learn", "Estimator",
-         "lists: earlier frames' rays say where to send new ones", LISTS ",final-ray=true"),
+         "lists: earlier frames' rays say where to send new ones", LISTS ",final-ray=true", MEAN),
     REAL(P, influence, "influence", "Estimator", 0, 1e6, "m",
-         "influence: reach of a light of 1 cd; 0 = found for the scene", INFLUENCE),
+         "influence: reach of a light of 1 cd; 0 = found for the scene", INFLUENCE, MEAN),
     CHOICE(P, influence_boxes, "influence-boxes", "Estimator", "sphere|visible",
-         "influence: lights reach as far as they shine, or see", INFLUENCE),
+         "influence: lights reach as far as they shine, or see", INFLUENCE, MEAN),
     INT(P, influence_cluster, "influence-cluster", "Estimator", 1, 64, "",
-         "influence: so many close lights may share a volume", INFLUENCE),
+         "influence: so many close lights may share a volume", INFLUENCE, MEAN),
     INT(P, uniform_every, "uniform-every", "Estimator", 1, 1024, "",
-         "influence: of so many draws one is from all lights", INFLUENCE),
+         "influence: of so many draws one is from all lights", INFLUENCE, MEAN),
     INT(P, rays, "rays", "Estimator", 1, 1024, "", "reference: shadow rays a pixel and frame", "method=reference"),
-    BOOL(P, final_ray, "final-ray", "Estimator", "shadow ray to the chosen light; off: light passes through walls"),
+    BOOL(P, final_ray, "final-ray", "Estimator", "shadow ray to the chosen light; off: light passes through walls",
+         SAMPLES),
     CHOICE(P, isa, "isa", "Estimator", "auto|scalar|baseline|avx2|avx512",
          "instruction set; auto: NOCTURNE_ISA's, else the widest; the picture is the same"),
 
     BOOL(P, temporal, "temporal", "Reuse (restir)",
-         "reuse samples of the previous frame (a still is cleaner without)", RESTIR),
-    BOOL(P, spatial, "spatial", "Reuse (restir)", "reuse samples of neighbouring pixels", RESTIR),
-    INT(P, neighbours, "neighbours", "Reuse (restir)", 0, 16, "", "neighbours a pixel and pass (k)", SPATIAL),
-    REAL(P, radius, "radius", "Reuse (restir)", 1, 64, "px", "radius that neighbours are drawn from", SPATIAL),
-    INT(P, passes, "passes", "Reuse (restir)", 1, 4, "", "spatial passes", SPATIAL),
+         "reuse samples of the previous frame (a still is cleaner without)", RESTIR, MEAN),
+    BOOL(P, spatial, "spatial", "Reuse (restir)", "reuse samples of neighbouring pixels", RESTIR, MEAN),
+    INT(P, neighbours, "neighbours", "Reuse (restir)", 0, 16, "", "neighbours a pixel and pass (k)", SPATIAL, MEAN),
+    REAL(P, radius, "radius", "Reuse (restir)", 1, 64, "px", "radius that neighbours are drawn from", SPATIAL, MEAN),
+    INT(P, passes, "passes", "Reuse (restir)", 1, 4, "", "spatial passes", SPATIAL, MEAN),
     REAL(P, history, "history", "Reuse (restir)", 0, 1000, "",
-         "cap of the history, in frames' worth of candidates", RESTIR ",temporal=true"),
-    CHOICE(P, bias, "bias", "Reuse (restir)", "biased|mis|pairwise", "weights of the combination", RESTIR),
+         "cap of the history, in frames' worth of candidates", RESTIR ",temporal=true", MEAN),
+    CHOICE(P, bias, "bias", "Reuse (restir)", "biased|mis|pairwise", "weights of the combination", RESTIR, SAMPLES),
     BOOL(P, bias_rays, "bias-rays", "Reuse (restir)",
          "visibility in those weights: no bias, more rays",
-         RESTIR ",bias=mis|pairwise,visibility-reuse=true,final-ray=true"),
+         RESTIR ",bias=mis|pairwise,visibility-reuse=true,final-ray=true", SAMPLES),
     BOOL(P, visibility_reuse, "visibility-reuse", "Reuse (restir)",
-         "one shadow ray after the candidates", RESTIR ",final-ray=true"),
+         "one shadow ray after the candidates", RESTIR ",final-ray=true", SAMPLES),
     REAL(P, reject_depth, "reject-depth", "Reuse (restir)", 0, 10, "",
-         "distance to a neighbour's plane that rejects it, share of depth", RESTIR),
+         "distance to a neighbour's plane that rejects it, share of depth", RESTIR, MEAN),
     REAL(P, reject_normal, "reject-normal", "Reuse (restir)", -1, 1, "",
-         "cosine between normals under which one is rejected", RESTIR),
+         "cosine between normals under which one is rejected", RESTIR, MEAN),
     END,
 };
 /* clang-format on */

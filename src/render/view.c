@@ -3,6 +3,7 @@
 #include "light/influence.h"
 #include "render/device.h"
 
+#include <nocturne/option.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -92,14 +93,15 @@ static noc_status fit(noc_view *v, const noc_render_params *p, int sets) {
         return noc_error(v->log, NOC_ERR_MEMORY,
                          "render: a picture of %d x %d needs %.1f GB of memory, this machine has %.1f", p->width,
                          p->height, (double)need * 1e-9, (double)have * 1e-9);
-    noc_history_reset(&v->history);
-    v->width = v->height = v->sets = 0;
+    if (v->width != p->width || v->height != p->height)
+        noc_history_forget(&v->history, NOC_RESETS_MEAN | NOC_RESETS_RESERVOIRS);
     noc_status status = v->backend->resize(v->state, p->width, p->height, sets);
-    if (status == NOC_OK) {
-        v->width = p->width;
-        v->height = p->height;
-        v->sets = sets;
-    }
+    bool there = status == NOC_OK;
+    v->width = there ? p->width : 0;
+    v->height = there ? p->height : 0;
+    v->sets = there ? sets : 0;
+    if (!there)
+        noc_history_forget(&v->history, NOC_RESETS_MEAN | NOC_RESETS_RESERVOIRS);
     return status;
 }
 

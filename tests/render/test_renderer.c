@@ -482,36 +482,6 @@ static uint64_t frames_of(noc_view *r) {
     return stats.frames;
 }
 
-/* Whatever parameter changes, the mean starts anew; views are none. */
-static void any_other_parameter(void **state) {
-    (void)state;
-    noc_scene *s = small_street(10, true);
-    noc_camera c = view(0);
-    noc_view *r = own_view(s, 0, NULL);
-    for (const noc_option *o = noc_render_options(); o->name; o++) {
-        noc_render_params p = measure(16, 16, NOC_METHOD_RESTIR), other = p;
-        for (int i = 0; i < 2; i++)
-            assert_int_equal(noc_view_render(r, &c, &p, NULL), NOC_OK);
-        assert_int_equal(frames_of(r), 2);
-        char *field = (char *)&other + o->offset;
-        switch (o->kind) {
-        case NOC_OPTION_BOOL: *(bool *)field = !*(bool *)field; break;
-        case NOC_OPTION_REAL: *(double *)field = *(double *)field == o->max ? o->min : o->max; break;
-        case NOC_OPTION_CHOICE: *(int *)field = !*(int *)field; break;
-        default: *(int *)field += *(int *)field == (int)o->max ? -1 : 1; break;
-        }
-        assert_int_equal(noc_view_render(r, &c, &other, NULL), NOC_OK);
-        assert_int_equal(frames_of(r), 1);
-        other.aovs = 1u << NOC_AOV_RAYS;
-        if (other.accumulate) {
-            assert_int_equal(noc_view_render(r, &c, &other, NULL), NOC_OK);
-            assert_int_equal(frames_of(r), 2);
-        }
-    }
-    close_view(r);
-    noc_scene_destroy(s);
-}
-
 static void frames_and_resets(void **state) {
     (void)state;
     noc_scene *s = small_street(40, true);
@@ -595,7 +565,6 @@ int main(void) {
         cmocka_unit_test(cancelled_frames),       cmocka_unit_test(history_outlives_a_cancelled_frame),
         cmocka_unit_test(frames_and_resets),      cmocka_unit_test(emitter_mask),
         cmocka_unit_test(hostile_scenes),         cmocka_unit_test(negative_choices_and_no_params),
-        cmocka_unit_test(any_other_parameter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

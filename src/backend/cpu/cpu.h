@@ -165,7 +165,8 @@ typedef struct cpu_view {
     frame_buffers b;
     /* of a worker: from 0 to the number of lights; the last of FOUND_MOST + 1 counts what finds more too */
     uint32_t found_bins;
-    noc_learned *learned; /* for pictures of this size */
+    noc_learned *learned;   /* it is of places in the scene, so it outlives the size of the picture */
+    uint32_t learned_epoch; /* noc_frame.epoch that it is of */
     learned_tile *learned_tiles;
     noc_sightings *sightings; /* of the frame's tiles */
     float list_brightness;    /* mean luminance that the last frame expected, cd/m2; 0: not known */
@@ -258,6 +259,7 @@ void noc_cpu_shade_shared(stage_run *run, worker *w, tile t);
 /* Before a frame's first stage, and when the frame is complete; one that is dropped is not learned from. */
 noc_status noc_cpu_begin_learning(cpu_view *s, const noc_frame *frame);
 void noc_cpu_end_learning(cpu_view *s, const noc_frame *frame);
+void noc_cpu_release_tiles(cpu_view *s); /* what depends on the size of the picture */
 void noc_cpu_release_learning(cpu_view *s);
 
 /* reuse.c: temporal and spatial combination of a tile's blocks */

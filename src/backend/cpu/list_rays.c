@@ -324,20 +324,20 @@ noc_status noc_cpu_begin_learning(cpu_view *s, const noc_frame *frame) {
     size_t tiles = (size_t)s->b.tiles_x * s->b.tiles_y;
     if (!frame->plan->learns)
         return NOC_OK;
-    if (!s->learned) {
-        s->learned = noc_learned_create(tiles, s->log);
-        s->learned_tiles = s->learned ? noc_alloc_large(tiles, sizeof(*s->learned_tiles)) : NULL;
+    if (!s->learned && !(s->learned = noc_learned_create(tiles, s->log)))
+        return NOC_ERR_MEMORY;
+    if (!s->sightings) {
+        s->learned_tiles = noc_alloc_large(tiles, sizeof(*s->learned_tiles));
         s->sightings = s->learned_tiles ? noc_alloc_large(tiles, sizeof(*s->sightings)) : NULL;
-        if (s->learned && !s->sightings)
-            noc_error(s->log, NOC_ERR_MEMORY, "lights: no memory to learn their visibility in %zu tiles", tiles);
         if (!s->sightings) {
-            noc_cpu_release_learning(s);
-            return NOC_ERR_MEMORY;
+            noc_cpu_release_tiles(s);
+            return noc_error(s->log, NOC_ERR_MEMORY, "lights: no memory to learn their visibility in %zu tiles", tiles);
         }
     }
-    if (frame->constants.index == 0) {
+    if (s->learned_epoch != frame->epoch) {
         noc_learned_forget(s->learned);
         s->list_brightness = 0;
+        s->learned_epoch = frame->epoch;
     }
     for (int i = 0; i < s->worker_count; i++)
         s->workers[i].sightings.len = 0;
@@ -358,13 +358,17 @@ void noc_cpu_end_learning(cpu_view *s, const noc_frame *frame) {
     s->list_brightness = (float)(bright / ((double)s->b.width * s->b.height));
 }
 
-void noc_cpu_release_learning(cpu_view *s) {
-    noc_learned_destroy(s->learned);
+void noc_cpu_release_tiles(cpu_view *s) {
     free(s->learned_tiles);
     free(s->sightings);
     for (int i = 0; i < s->worker_count; i++)
         array_free(&s->workers[i].sightings);
     s->sightings = NULL;
-    s->learned = NULL;
     s->learned_tiles = NULL;
+}
+
+void noc_cpu_release_learning(cpu_view *s) {
+    noc_cpu_release_tiles(s);
+    noc_learned_destroy(s->learned);
+    s->learned = NULL;
 }

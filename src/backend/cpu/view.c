@@ -108,6 +108,7 @@ noc_status noc_cpu_view_resize(void *state, int width, int height, int sets) {
     bool ok = true;
     if (b->width != width || b->height != height) {
         free_buffers(b);
+        noc_cpu_release_tiles(s);
         b->blocks_x = (width + BLOCK_SIDE - 1) / BLOCK_SIDE;
         b->blocks_y = (height + BLOCK_SIDE - 1) / BLOCK_SIDE;
         b->tiles_x = (b->blocks_x + TILE_BLOCKS - 1) / TILE_BLOCKS;
