@@ -4,6 +4,8 @@ PREFIX ?= /usr/local
 # `make NINJA='ninja -j1'` is for this file: in the environment Meson takes it for the path of a program.
 unexport NINJA
 NINJA = ninja $$([ -t 1 ] || echo --quiet)
+# Warnings are errors in CI only: users' compilers may know others.
+WERROR = false
 SANITIZE = -Db_sanitize=address,undefined -Dbuildtype=debugoptimized -Dbench=false
 
 .PHONY: help demo build check asan tsan fuzz coverage format install clean deps deps-check
@@ -44,7 +46,8 @@ demo: build
 
 # Tests need packages that the program does not: a build folder made without them must look again.
 check: deps-check build/build.ninja
-	@[ -e build/.tests ] || { meson setup --reconfigure build -Dtests=enabled >build/setup.log && touch build/.tests; }
+	@[ -e build/.tests-$(WERROR) ] || { rm -f build/.tests-* && \
+		meson setup --reconfigure build -Dtests=enabled -Dwerror=$(WERROR) >build/setup.log && touch build/.tests-$(WERROR); }
 	@$(NINJA) -C build
 	@tools/run-tests.sh build
 
@@ -65,7 +68,7 @@ tsan: deps-check
 TIME = 60
 fuzz:
 	@tools/install-deps.sh fuzz
-	@[ -e build-fuzz/build.ninja ] || CC=clang meson setup build-fuzz -Dfuzz=true $(SANITIZE) -Dexamples=false -Dtests=disabled >/dev/null
+	@[ -e build-fuzz/build.ninja ] || CC=clang meson setup build-fuzz -Dfuzz=true $(SANITIZE) -Dwerror=$(WERROR) -Dexamples=false -Dtests=disabled >/dev/null
 	@$(NINJA) -C build-fuzz fuzzers
 	@tools/fuzz.sh build-fuzz $(TIME) $(CORPUS)
 
