@@ -17,8 +17,8 @@ city: geo scene
 import: geo city scene
 render: light scene image core
 backend: render light scene core
-lab: cli
-cli: lab
+lab:
+cli:
 reader:
 '
 # Libraries that one room alone may touch (jansson: two; neither hands its values on).
@@ -104,6 +104,15 @@ found=$(violations "$root/src")
 [ -z "$found" ]; result $? "every arrow points down"
 [ -n "$found" ] && echo "$found" | sed 's/^/# /'
 
+# circles FOLDER: what tsort says of files that include each other's headers in a circle; a.c and a.h are one
+circles() {
+    grep -o '^#include "lab/[a-z_]*\.h"' "$1"/lab/*.[ch] | sed 's|^.*/lab/\([a-z_]*\)\.[ch]:#include "lab/|\1 |; s|\.h"$||' |
+        awk '$1 != $2' | tsort 2>&1 >/dev/null
+}
+found=$(circles "$root/src")
+[ -z "$found" ] && grep -q '"lab/session.h"' "$root/src/lab/run.h"; result $? "the laboratory's files form no circle"
+[ -n "$found" ] && echo "$found" | sed 's/^/# /'
+
 # The check itself: a tree where each of these lines is wrong.
 tree=$(mktemp -d) || exit 1
 trap 'rm -rf "$tree"' EXIT
@@ -127,6 +136,8 @@ wrong backend/cpu/a.c '#include <embree3/rtcore.h>'
 wrong render/a.c '#include <embree3/rtcore.h>'
 wrong import/a.c '#include <proj.h>'
 wrong attic/a.c 'int x;'
+wrong lab/a.c '#include "render/view.h"'
+wrong lab/a.c '#include "cli/cli.h"'
 wrong base/a.c '    abort();'
 wrong import/load/a.c '    if (!p) exit(1);'
 wrong lab/a.c 'assert(count++ < size);'
@@ -139,6 +150,9 @@ echo '_exit(0);' >"$tree/import/remote/serve.c"
 found=$(violations "$tree")
 [ -z "$found" ]; result $? "lets an arrow pass that points down, and words that only look like those that end a program"
 [ -n "$found" ] && echo "$found" | sed 's/^/# /'
+
+mkdir -p "$tree/lab" && echo '#include "lab/b.h"' >"$tree/lab/a.h" && echo '#include "lab/a.h"' >"$tree/lab/b.c"
+[ -n "$(circles "$tree")" ]; result $? "notices a circle of files"
 
 # Every public header compiles alone.
 compiler=$(command -v cc || command -v gcc || command -v clang)

@@ -4,6 +4,7 @@
 
 #include <nocturne/image.h>
 #include <nocturne/import.h>
+#include <nocturne/lab.h>
 #include <nocturne/log.h>
 #include <nocturne/option.h>
 #include <nocturne/render.h>

@@ -3,6 +3,7 @@
 #define NOC_BASE_H
 
 #include <nocturne/log.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -86,6 +87,7 @@ void noc_debug(noc_log *log, const char *fmt, ...) NOC_PRINTF(2, 3);
  * that leaves the library is formatted by these, or by what stands on them (noc_format, arena_format, messages). */
 int noc_snprintf(char *text, size_t size, const char *fmt, ...) NOC_PRINTF(3, 4);
 int noc_vsnprintf(char *text, size_t size, const char *fmt, va_list ap) NOC_PRINTF(3, 0);
+int noc_fprintf(FILE *file, const char *fmt, ...) NOC_PRINTF(2, 3);
 /* the whole string must be one finite number (blanks around it allowed) */
 bool noc_parse_double(const char *s, double *out);
 /* next number in [s, end): position after it, NULL if none */

@@ -28,6 +28,17 @@ int noc_snprintf(char *text, size_t size, const char *fmt, ...) {
     return n;
 }
 
+int noc_fprintf(FILE *file, const char *fmt, ...) {
+    va_list ap;
+    pthread_once(&c_locale_once, make_c_locale);
+    locale_t hosts = uselocale(c_locale);
+    va_start(ap, fmt);
+    int n = vfprintf(file, fmt, ap);
+    va_end(ap);
+    uselocale(hosts);
+    return n;
+}
+
 static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 const char *noc_scan_double(const char *s, const char *end, double *out) {

@@ -68,6 +68,7 @@ bool cli_completion(FILE *out, const char *shell); /* for bash, zsh or fish; fal
 void cli_error(const char *fmt, ...) NOC_PRINTF(1, 2); /* one line on stderr, after "nocturne: " */
 /* the same, and where to read on; CLI_USAGE */
 int cli_usage(const cli_command *command, const char *fmt, ...) NOC_PRINTF(2, 3);
+int cli_read_on(const cli_command *command); /* where to read on alone, after an error that the library told */
 noc_log *cli_log_create(const cli_args *args);
 _Noreturn void cli_no_memory(void); /* says so, and ends the program */
 /* noc_image_auto_ev100; ends the program when memory is gone */
@@ -80,8 +81,6 @@ char *cli_format(const char *fmt, ...) NOC_PRINTF(1, 2) __attribute__((nonnull(1
 char *cli_ids(const char *list, size_t count, size_t width);
 void cli_json_text(FILE *out, const char *text); /* quoted and escaped; valid UTF-8 whatever came in */
 void cli_json_number(FILE *out, double v);       /* null where it is not finite */
-/* a regular file, for reading (a pipe would hang); NULL after saying why */
-FILE *cli_open(const char *path);
 /* false after saying that stdout could not be written */
 bool cli_flush(FILE *out);
 

@@ -42,13 +42,17 @@ void cli_error(const char *fmt, ...) {
     va_end(ap);
 }
 
+int cli_read_on(const cli_command *command) {
+    fprintf(stderr, "Try 'nocturne help%s%s'.\n", command ? " " : "", command ? command->name : "");
+    return CLI_USAGE;
+}
+
 int cli_usage(const cli_command *command, const char *fmt, ...) {
     va_list ap;
     va_start(ap, fmt);
     vreport("", fmt, ap);
     va_end(ap);
-    fprintf(stderr, "Try 'nocturne help%s%s'.\n", command ? " " : "", command ? command->name : "");
-    return CLI_USAGE;
+    return cli_read_on(command);
 }
 
 static void log_message(void *user, noc_log_level level, const char *text) {
@@ -136,17 +140,6 @@ void cli_json_number(FILE *out, double v) {
         fprintf(out, "%.15g", v);
     else
         fputs("null", out);
-}
-
-FILE *cli_open(const char *path) {
-    struct stat st;
-    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    FILE *file = fd >= 0 && !fstat(fd, &st) && S_ISREG(st.st_mode) ? fdopen(fd, "rb") : NULL;
-    if (!file)
-        cli_error("%.200s: %s", path, fd >= 0 ? "is not a regular file" : strerror(errno));
-    if (!file && fd >= 0)
-        close(fd);
-    return file;
 }
 
 bool cli_flush(FILE *out) {

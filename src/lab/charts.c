@@ -1,10 +1,11 @@
 /* Charts over all cameras of an experiment: frame times as bars, and errors as dots, a panel for each camera and frame.
  */
+#include "lab/charts.h"
+#include "lab/file.h"
+#include "lab/series.h"
 #include "lab/svg.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum {
     BAR_MOST = 24,
@@ -22,26 +23,24 @@ enum {
 
 static int name_width(const lab_session *lab, bool rows) {
     size_t most = 4;
-    for (size_t i = 0; i < lab->spec.config_count; i++) {
-        char *name = rows ? lab_row_name(lab, i) : cli_format("%s", lab->spec.configs[i].name);
-        most = strlen(name) > most ? strlen(name) : most;
-        free(name);
+    for (size_t i = 0; i < lab->spec->config_count; i++) {
+        char row[LAB_TEXT];
+        const char *name = rows ? lab_row_name(lab->spec, i, row) : lab->spec->configs[i].name;
+        most = NOC_MAX(strlen(name), most);
     }
     return (int)(most > NAME_MAX_CHARS ? NAME_MAX_CHARS : most) * CHAR + 18;
 }
 
 static void words(FILE *out, double x, double y, const char *anchor, const char *style, const char *text) {
-    fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\"%s>", x, y, anchor,
-            style);
+    noc_fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\"%s>", x, y, anchor,
+                style);
     svg_text(out, text, 100);
-    fprintf(out, "</text>\n");
+    noc_fprintf(out, "</text>\n");
 }
 
 static void view_name(FILE *out, const lab_session *lab, size_t camera, double x, double y) {
-    const lab_camera *c = &lab->spec.cameras[camera];
-    char *name = cli_format("%s, %s", lab->spec.scenes[c->scene].name, c->name);
-    words(out, x, y, "start", " font-weight=\"bold\"", name);
-    free(name);
+    char name[LAB_TEXT];
+    words(out, x, y, "start", " font-weight=\"bold\"", lab_view_name(lab->spec, camera, name));
 }
 
 /* The next of 1, 2, 5, 10, ... from v on. */
@@ -58,8 +57,8 @@ static double bar_of(const lab_session *lab, size_t camera, size_t config, doubl
     return lab_frame_time(&s, 0, 0);
 }
 
-int lab_bars(const lab_session *lab, const char *name) {
-    const lab_spec *spec = &lab->spec;
+noc_status lab_bars(const lab_session *lab, const char *name) {
+    const lab_spec *spec = lab->spec;
     int left = name_width(lab, false), rows = (int)spec->config_count;
     int width = left + BARS_WIDTH + 130, height = TOP + (int)spec->camera_count * (rows * LINE + GAP) + BOTTOM;
     double most = 0, error;
@@ -67,17 +66,18 @@ int lab_bars(const lab_session *lab, const char *name) {
         for (size_t i = 0; i < spec->config_count; i++)
             most = fmax(most, bar_of(lab, camera, i, &error) * 1e3 + (isfinite(error) ? 1e3 * error : 0));
     double step = most > 0 ? round_up(most / 8) : 1, end = most > 0 ? ceil(most / step) * step : 1;
-    char *temporary;
-    FILE *out = lab_create(lab, name, &temporary);
-    if (!out)
-        return CLI_FAILURE;
+    lab_file file;
+    noc_status status = lab_create_file(lab->folder, name, lab->log, &file);
+    if (status)
+        return status;
+    FILE *out = file.out;
     svg_head(out, width, height);
     words(out, left, 26, "start", " font-size=\"15\" font-weight=\"bold\"", "CPU time of a frame, ms");
     for (double v = 0; v <= end * 1.0001; v += step) {
         double x = left + BARS_WIDTH * v / end;
         char text[32];
-        snprintf(text, sizeof(text), "%.6g", v);
-        fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%.1f %dV%d\"/>\n", x, TOP, height - BOTTOM);
+        noc_snprintf(text, sizeof(text), "%.6g", v);
+        noc_fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%.1f %dV%d\"/>\n", x, TOP, height - BOTTOM);
         words(out, x, height - BOTTOM + 18, "middle", "", text);
     }
     for (size_t camera = 0; camera < spec->camera_count; camera++) {
@@ -92,19 +92,19 @@ int lab_bars(const lab_session *lab, const char *name) {
             char text[64], spread[32] = "";
             double off = isfinite(error) ? 1e3 * error : 0;
             if (off > 0)
-                snprintf(spread, sizeof(spread), " \302\261 %.2g", off);
-            snprintf(text, sizeof(text), "%.3g%s", ms, spread);
-            fprintf(out, "<rect class=\"m%d\" fill=\"%s\" x=\"%d\" y=\"%.1f\" width=\"%.1f\" height=\"%d\"/>\n",
-                    style.colour, svg_colours[style.colour], left, y + 2, BARS_WIDTH * ms / end, LINE - 5);
+                noc_snprintf(spread, sizeof(spread), " \302\261 %.2g", off);
+            noc_snprintf(text, sizeof(text), "%.3g%s", ms, spread);
+            noc_fprintf(out, "<rect class=\"m%d\" fill=\"%s\" x=\"%d\" y=\"%.1f\" width=\"%.1f\" height=\"%d\"/>\n",
+                        style.colour, svg_colours[style.colour], left, y + 2, BARS_WIDTH * ms / end, LINE - 5);
             if (off > 0)
-                fprintf(out, "<path class=\"frame\" fill=\"none\" stroke=\"#555555\" d=\"M%.1f %.1fH%.1f\"/>\n",
-                        left + BARS_WIDTH * fmax(ms - off, 0) / end, y + 0.5 * LINE - 0.5,
-                        left + BARS_WIDTH * (ms + off) / end);
+                noc_fprintf(out, "<path class=\"frame\" fill=\"none\" stroke=\"#555555\" d=\"M%.1f %.1fH%.1f\"/>\n",
+                            left + BARS_WIDTH * fmax(ms - off, 0) / end, y + 0.5 * LINE - 0.5,
+                            left + BARS_WIDTH * (ms + off) / end);
             words(out, left + BARS_WIDTH * (ms + off) / end + 5, y + 13, "start", "", text);
         }
     }
-    fprintf(out, "</svg>\n");
-    return lab_finish(lab, out, name, temporary);
+    noc_fprintf(out, "</svg>\n");
+    return lab_finish_file(&file);
 }
 
 /* Where all entries stand for values of the same option, an entry is one row of dots; else each configuration. */
@@ -128,10 +128,10 @@ static int row_count(const lab_spec *spec) { return row_of(spec, spec->config_co
 static svg_axis errors_of(const lab_session *lab, size_t camera) {
     svg_axis axis = { INFINITY, 0, 0, PANEL_WIDTH };
     lab_point points[LAB_POINTS];
-    int count = lab_points(&lab->spec, camera, points);
+    int count = lab_points(lab->spec, camera, points);
     for (int p = 0; p < count; p++) {
-        for (size_t i = 0; i < lab->spec.config_count; i++) {
-            double error, v = lab_at_point(lab, camera, i, points[p], lab_column(&lab->spec), &error);
+        for (size_t i = 0; i < lab->spec->config_count; i++) {
+            double error, v = lab_at_point(lab, camera, i, points[p], lab_column(lab->spec), &error);
             if (v > 0 && isfinite(v)) {
                 axis.lo = fmin(axis.lo, v);
                 axis.hi = fmax(axis.hi, v);
@@ -147,19 +147,20 @@ static svg_axis errors_of(const lab_session *lab, size_t camera) {
 }
 
 static void panel(FILE *out, const lab_session *lab, size_t camera, lab_point point, int left, int top) {
-    const lab_spec *spec = &lab->spec;
+    char name[48];
+    const lab_spec *spec = lab->spec;
     int rows = row_count(spec);
     svg_axis x = errors_of(lab, camera), y = { 1, 10, top + rows * LINE, top };
     x.from = left;
     x.to = left + PANEL_WIDTH;
     svg_grid(out, &x, true, &y);
     for (int r = 0; r < rows; r++)
-        fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%d %dh%d\"/>\n", left, top + r * LINE + LINE / 2,
-                PANEL_WIDTH);
-    fprintf(out,
-            "<rect class=\"frame\" fill=\"none\" stroke=\"#555555\" x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\"/>\n",
-            left, top, PANEL_WIDTH, rows * LINE);
-    words(out, left + PANEL_WIDTH / 2, top - 7, "middle", "", lab_point_name(spec, camera, point));
+        noc_fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%d %dh%d\"/>\n", left, top + r * LINE + LINE / 2,
+                    PANEL_WIDTH);
+    noc_fprintf(
+        out, "<rect class=\"frame\" fill=\"none\" stroke=\"#555555\" x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\"/>\n",
+        left, top, PANEL_WIDTH, rows * LINE);
+    words(out, left + PANEL_WIDTH / 2, top - 7, "middle", "", lab_point_name(spec, camera, point, name));
     for (size_t i = 0; i < spec->config_count; i++) {
         double error, v = lab_at_point(lab, camera, i, point, lab_column(spec), &error),
                       at = top + row_of(spec, i) * LINE + LINE / 2;
@@ -211,17 +212,17 @@ static bool starts_line(const lab_spec *spec, size_t camera, int *column) {
 }
 
 static void row_names(FILE *out, const lab_session *lab, int left, int top) {
-    bool shared = shares_rows(&lab->spec);
-    for (size_t i = 0; i < lab->spec.config_count; i++) {
-        char *row = shared ? lab_row_name(lab, i) : cli_format("%s", lab->spec.configs[i].name);
-        if (!shared || lab->spec.configs[i].choice <= 0)
-            words(out, left - 8, top + row_of(&lab->spec, i) * LINE + 14, "end", "", row);
-        free(row);
+    bool shared = shares_rows(lab->spec);
+    for (size_t i = 0; i < lab->spec->config_count; i++) {
+        char text[LAB_TEXT];
+        const char *row = shared ? lab_row_name(lab->spec, i, text) : lab->spec->configs[i].name;
+        if (!shared || lab->spec->configs[i].choice <= 0)
+            words(out, left - 8, top + row_of(lab->spec, i) * LINE + 14, "end", "", row);
     }
 }
 
-int lab_dots(const lab_session *lab, const char *name) {
-    const lab_spec *spec = &lab->spec;
+noc_status lab_dots(const lab_session *lab, const char *name) {
+    const lab_spec *spec = lab->spec;
     lab_point points[LAB_POINTS];
     int left = name_width(lab, shares_rows(spec)), high = row_count(spec) * LINE + BOTTOM + GAP + 24;
     int columns = 1, lines = 0, column = 0;
@@ -231,14 +232,16 @@ int lab_dots(const lab_session *lab, const char *name) {
         columns = count > columns ? count : columns;
         columns = column > columns ? column : columns;
     }
-    char *temporary;
-    FILE *out = lab_create(lab, name, &temporary);
-    if (!out)
-        return CLI_FAILURE;
+    lab_file file;
+    noc_status status = lab_create_file(lab->folder, name, lab->log, &file);
+    if (status)
+        return status;
+    FILE *out = file.out;
     int width = left + columns * (PANEL_WIDTH + PANEL_GAP);
     int head = TOP + (shares_rows(spec) ? values_legend(NULL, spec, left, width, 0) : 1) * LINE;
     svg_head(out, width, head + lines * high);
-    words(out, left, 26, "start", " font-size=\"15\" font-weight=\"bold\"", lab_figure(spec));
+    char figure[LAB_TEXT];
+    words(out, left, 26, "start", " font-size=\"15\" font-weight=\"bold\"", lab_figure(spec, figure));
     if (shares_rows(spec))
         values_legend(out, spec, left, width, TOP + 8);
     int line = -1;
@@ -254,6 +257,6 @@ int lab_dots(const lab_session *lab, const char *name) {
         for (int p = 0; p < count; p++)
             panel(out, lab, camera, points[p], from + p * (PANEL_WIDTH + PANEL_GAP), top);
     }
-    fprintf(out, "</svg>\n");
-    return lab_finish(lab, out, name, temporary);
+    noc_fprintf(out, "</svg>\n");
+    return lab_finish_file(&file);
 }

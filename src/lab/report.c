@@ -1,126 +1,23 @@
 /* report.md: what was measured, on what, and how to make it again. */
-#include "lab/lab.h"
+#include "lab/report.h"
+#include "lab/charts.h"
+#include "lab/file.h"
+#include "lab/markdown.h"
+#include "lab/noise.h"
+#include "lab/plot.h"
+#include "lab/series.h"
+#include "lab/sheet.h"
+#include "lab/summary.h"
 
-#include <ctype.h>
-#include <errno.h>
 #include <limits.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include <nocturne/nocturne.h>
 #include <time.h>
-#include <unistd.h>
 
 static const int shown_frames[] = { 1, 2, 4, 8, 16, 20, 32, 64, 128, 256, 1024, 4096 };
 enum { SHOWN = sizeof(shown_frames) / sizeof(*shown_frames) };
 static const double targets[] = { 1, 0.3, 0.1 };
 static const char *const mode_names[] = { "Each frame alone", "Mean of the frames so far" };
-
-/* Letters and digits stay, the rest becomes dashes. */
-static void add_slug(char *out, const char *text) {
-    for (const char *c = text; *c; c++)
-        *out++ = isalnum((unsigned char)*c) ? (char)tolower((unsigned char)*c) : '-';
-    *out = 0;
-}
-
-/* Numbers keep apart names that differ in other characters alone. */
-char *lab_slug(const lab_session *lab, size_t camera) {
-    char a[84], b[84];
-    add_slug(a, lab->spec.scenes[lab->spec.cameras[camera].scene].name);
-    add_slug(b, lab->spec.cameras[camera].name);
-    return cli_format("%zu-%s-%s", camera + 1, a, b);
-}
-
-FILE *lab_create(const lab_session *lab, const char *name, char **temporary) {
-    *temporary = cli_format("%s/.%s.new", lab->folder, name);
-    unlink(*temporary); /* of a killed run: the folder is locked */
-    FILE *file = fopen(*temporary, "wx");
-    if (!file) {
-        cli_error("%s/%s: %s", lab->folder, name, strerror(errno));
-        free(*temporary);
-    }
-    return file;
-}
-
-int lab_finish(const lab_session *lab, FILE *file, const char *name, char *temporary) {
-    char *path = cli_format("%s/%s", lab->folder, name);
-    /* EINVAL: nothing to write through */
-    bool failed = ferror(file) || fflush(file) || (fsync(fileno(file)) && errno != EINVAL);
-    failed = fclose(file) || failed;
-    failed = failed || rename(temporary, path);
-    if (failed) {
-        cli_error("%s: %s", path, strerror(errno));
-        unlink(temporary);
-    }
-    free(path);
-    free(temporary);
-    return failed ? CLI_FAILURE : CLI_OK;
-}
-
-void lab_discard(FILE *file, char *temporary) {
-    fclose(file);
-    unlink(temporary);
-    free(temporary);
-}
-
-void lab_text(FILE *out, const char *text) {
-    for (const char *c = text; *c; c++)
-        switch (*c) {
-        case '&': fputs("&amp;", out); break;
-        case '<': fputs("&lt;", out); break;
-        case '>': fputs("&gt;", out); break;
-        default:
-            if (strchr("|\\`*_[]~", *c))
-                fputc('\\', out);
-            fputc(*c, out);
-        }
-}
-
-void lab_cell(FILE *out, const char *text) {
-    fputc(' ', out);
-    lab_text(out, text);
-    fputs(" |", out);
-}
-
-void lab_number(FILE *out, double v, const char *fmt) {
-    char text[40] = "-";
-    if (isfinite(v))
-        snprintf(text, sizeof(text), fmt, v);
-    fprintf(out, " %s |", text);
-}
-
-/* A few digits, but no power of ten where whole numbers read better. */
-static const char *readable(double v, const char *fmt) {
-    return fabs(v) >= 100 && fabs(v) < 1e6 && strchr(fmt, 'g') ? "%.0f" : fmt;
-}
-
-void lab_print_spread(FILE *out, double v, double error, const char *fmt) {
-    char text[40] = "-";
-    if (isfinite(v))
-        snprintf(text, sizeof(text), readable(v, fmt), v);
-    fputs(text, out);
-    if (isfinite(v) && isfinite(error)) {
-        snprintf(text, sizeof(text), readable(error, "%.2g"), error);
-        fprintf(out, " \302\261 %s", text);
-    }
-}
-
-void lab_spread(FILE *out, double v, double error, const char *fmt, const char *after) {
-    fputc(' ', out);
-    lab_print_spread(out, v, error, fmt);
-    fprintf(out, "%s |", after);
-}
-
-void lab_table_rule(FILE *out, size_t columns) {
-    fputs("\n|---|", out);
-    for (size_t i = 0; i < columns; i++)
-        fputs("--:|", out);
-    fputc('\n', out);
-}
-
-static void table_head(FILE *out, const char *first, size_t columns) {
-    fprintf(out, "\n%s", first);
-    lab_table_rule(out, columns);
-}
 
 /* The command line as a shell would read it. */
 static void print_command(FILE *out) {
@@ -160,10 +57,10 @@ static void print_options(FILE *out, const noc_render_params *params) {
         noc_option_get(o, params, mine, sizeof(mine));
         noc_option_get(o, &usual, theirs, sizeof(theirs));
         bool always = !strcmp(o->name, "method") || (!strcmp(o->name, "candidates") && draws_candidates(params));
-        if (cli_hidden(&(cli_set){ .hidden = above }, o) || (!strcmp(mine, theirs) && !always) ||
+        if (lab_among(above, o->name) || (!strcmp(mine, theirs) && !always) ||
             noc_option_idle(o, noc_render_options(), params, why, sizeof(why)))
             continue;
-        fprintf(out, "%s`%s %s`", any ? ", " : "", o->name, mine);
+        noc_fprintf(out, "%s`%s %s`", any ? ", " : "", o->name, mine);
         any = true;
     }
 }
@@ -173,56 +70,58 @@ static void print_options(FILE *out, const noc_render_params *params) {
 static void print_confidence(FILE *out, int n) {
     static const double t[] = { [2] = 12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262 };
     if (n < (int)(sizeof(t) / sizeof(*t)))
-        fprintf(out, "With n = %d, 95 %% of such means lie within %.1f standard errors (Student's t)%s.\n", n, t[n],
-                n < 4 ? ": differences smaller than that are not shown by so few repetitions" : "");
+        noc_fprintf(out, "With n = %d, 95 %% of such means lie within %.1f standard errors (Student's t)%s.\n", n, t[n],
+                    n < 4 ? ": differences smaller than that are not shown by so few repetitions" : "");
 }
 
 static void print_setting(FILE *out, const lab_session *lab) {
-    const lab_spec *spec = &lab->spec;
+    const lab_spec *spec = lab->spec;
     char date[40] = "", text[32], memory[32];
     time_t now = time(NULL);
-    strftime(date, sizeof(date), "%Y-%m-%d %H:%M UTC", gmtime(&now));
+    struct tm utc;
+    if (gmtime_r(&now, &utc))
+        strftime(date, sizeof(date), "%Y-%m-%d %H:%M UTC", &utc);
     fputs("# ", out);
     lab_text(out, spec->title);
     fputs("\n\n", out);
     if (spec->note)
-        fprintf(out, "%s\n\n", spec->note);
-    fprintf(out, "Made by nocturne %s (%s) on %s, on %s; the code that ran: %s.\n\n    ", noc_version(), noc_features(),
-            date, lab_machine(), *lab->path ? lab->path : "none, all rows were there");
+        noc_fprintf(out, "%s\n\n", spec->note);
+    noc_fprintf(out, "Made by nocturne %s (%s) on %s, on %s; the code that ran: %s.\n\n    ", noc_version(),
+                noc_features(), date, lab->machine, *lab->path ? lab->path : "none, all rows were there");
     print_command(out);
     char extent[64];
     if (spec->seconds > 0)
-        snprintf(extent, sizeof(extent), "%.3g s of CPU time", spec->seconds);
+        noc_snprintf(extent, sizeof(extent), "%.3g s of CPU time", spec->seconds);
     else
         noc_text_many(extent, (uint64_t)spec->frames, "frame");
-    fprintf(out, "\n\nPictures of %d x %d px, %s, ", spec->width, spec->height, extent);
+    noc_fprintf(out, "\n\nPictures of %d x %d px, %s, ", spec->width, spec->height, extent);
     if (spec->repetitions > 1) {
-        fprintf(
+        noc_fprintf(
             out,
             "%d repetitions with different seeds. Figures are their means, \302\261 the standard error of the mean.\n",
             spec->repetitions);
         print_confidence(out, spec->repetitions);
     } else {
-        fprintf(out, "1 repetition: how far another seed's figures would be off is not known.\n");
+        noc_fprintf(out, "1 repetition: how far another seed's figures would be off is not known.\n");
     }
-    fprintf(out, "Reference: %s of ", noc_text_many(extent, (uint64_t)spec->reference.frames, "frame"));
+    noc_fprintf(out, "Reference: %s of ", noc_text_many(extent, (uint64_t)spec->reference.frames, "frame"));
     if (spec->reference.params.method == NOC_METHOD_REFERENCE)
-        fprintf(out, "%s a pixel", noc_text_many(extent, (uint64_t)spec->reference.params.rays, "shadow ray"));
+        noc_fprintf(out, "%s a pixel", noc_text_many(extent, (uint64_t)spec->reference.params.rays, "shadow ray"));
     else
         print_options(out, &spec->reference.params);
-    fprintf(out, ", %s.\n", spec->reference.params.jitter ? "jittered" : "through the centres of pixels");
-    fprintf(
+    noc_fprintf(out, ", %s.\n", spec->reference.params.jitter ? "jittered" : "through the centres of pixels");
+    noc_fprintf(
         out,
         "All rows: [results.csv](results.csv). Definitions of the figures: docs/estimator.md, \"Error figures\".\n");
-    table_head(out, "| Scene | Triangles | Lights | Memory |", 3);
+    lab_table_head(out, "| Scene | Triangles | Lights | Memory |", 3);
     for (size_t i = 0; i < spec->scene_count; i++) {
         fputc('|', out);
         lab_cell(out, spec->scenes[i].name);
-        fprintf(out, " %s |", noc_text_count(text, lab->scene_infos[i].triangles));
-        fprintf(out, " %s | %s |\n", noc_text_count(text, lab->scene_infos[i].lights),
-                noc_text_bytes(memory, lab->scene_infos[i].memory_bytes));
+        noc_fprintf(out, " %s |", noc_text_count(text, lab->scene_infos[i].triangles));
+        noc_fprintf(out, " %s | %s |\n", noc_text_count(text, lab->scene_infos[i].lights),
+                    noc_text_bytes(memory, lab->scene_infos[i].memory_bytes));
     }
-    fprintf(out, "\n| Configuration | Method, candidates, and options that are not the defaults |\n|---|---|\n");
+    noc_fprintf(out, "\n| Configuration | Method, candidates, and options that are not the defaults |\n|---|---|\n");
     for (size_t i = 0; i < spec->config_count; i++) {
         fputc('|', out);
         lab_cell(out, spec->configs[i].name);
@@ -233,7 +132,7 @@ static void print_setting(FILE *out, const lab_session *lab) {
 }
 
 static void print_crops(FILE *out, const lab_session *lab, size_t camera) {
-    const lab_spec *spec = &lab->spec;
+    const lab_spec *spec = lab->spec;
     const lab_crop *crop = &lab->crops[camera];
     int motion = spec->cameras[camera].frames, mode = lab_shown_mode(spec, camera);
     size_t frames = motion ? 1 : spec->shown_count;
@@ -241,25 +140,25 @@ static void print_crops(FILE *out, const lab_session *lab, size_t camera) {
         return;
     for (size_t i = 0; i < frames; i++) {
         int frame = motion ? motion : spec->shown[i];
-        char many[64], *name = lab_sheet_name(lab, camera, frame);
+        char many[64], name[LAB_TEXT];
+        lab_sheet_name(spec, camera, frame, name);
         if (mode == LAB_ACCUMULATED)
-            fprintf(out, "\n![Mean of %s](%s)\n", noc_text_many(many, (uint64_t)frame, "frame"), name);
+            noc_fprintf(out, "\n![Mean of %s](%s)\n", noc_text_many(many, (uint64_t)frame, "frame"), name);
         else
-            fprintf(out, "\n![Frame %d](%s)\n", frame, name);
-        free(name);
+            noc_fprintf(out, "\n![Frame %d](%s)\n", frame, name);
     }
     bool mean = mode == LAB_ACCUMULATED;
-    fprintf(out, "\nShown %s ", frames > 1 ? "are" : "is");
+    noc_fprintf(out, "\nShown %s ", frames > 1 ? "are" : "is");
     if (motion)
-        fprintf(out, "the last frame");
+        noc_fprintf(out, "the last frame");
     else
-        fprintf(out, "%s%s",
-                !mean        ? "frame"
-                : frames > 1 ? "the means of frame"
-                             : "the mean of frame",
-                mean || frames > 1 ? "s " : " ");
+        noc_fprintf(out, "%s%s",
+                    !mean        ? "frame"
+                    : frames > 1 ? "the means of frame"
+                                 : "the mean of frame",
+                    mean || frames > 1 ? "s " : " ");
     for (size_t i = 0; i < frames && !motion; i++)
-        fprintf(out, mean ? "%s1 to %d" : "%s%d", i ? ", " : "", spec->shown[i]);
+        noc_fprintf(out, mean ? "%s1 to %d" : "%s%d", i ? ", " : "", spec->shown[i]);
     fputs(" of each configuration, row by row (\"reference\"", out);
     for (size_t i = 1; i <= spec->config_count; i++) {
         fputs(i % (size_t)crop->columns ? ", \"" : "; \"", out);
@@ -269,13 +168,13 @@ static void print_crops(FILE *out, const lab_session *lab, size_t camera) {
     fputs("): ", out);
     const lab_camera *c = &spec->cameras[camera];
     if (!c->inset_count)
-        fprintf(out, "the part of %d x %d px at (%d, %d), enlarged %d times", crop->width, crop->height, crop->x,
-                crop->y, crop->scale);
+        noc_fprintf(out, "the part of %d x %d px at (%d, %d), enlarged %d times", crop->width, crop->height, crop->x,
+                    crop->y, crop->scale);
     for (int i = 0; i < c->inset_count; i++) {
         const int *box = c->insets[i].box;
-        fprintf(out, "%s%s is ", i ? "; " : "", lab_inset_colour(i));
+        noc_fprintf(out, "%s%s is ", i ? "; " : "", lab_inset_colour(i));
         lab_text(out, c->insets[i].name);
-        fprintf(out, ", %d x %d px at (%d, %d)", box[2], box[3], box[0], box[1]);
+        noc_fprintf(out, ", %d x %d px at (%d, %d)", box[2], box[3], box[0], box[1]);
     }
     fputs(". All have the reference's exposure.\n", out);
 }
@@ -289,13 +188,13 @@ typedef struct table_frames {
 
 static bool is_there(lab_series s, int frame) {
     bool any = false;
-    for (s.config = 0; s.config < s.lab->spec.config_count && !any; s.config++)
+    for (s.config = 0; s.config < s.lab->spec->config_count && !any; s.config++)
         any = !isnan(lab_at(&s, 0, frame));
     return any;
 }
 
 static table_frames frames_of(lab_series s) {
-    const lab_spec *spec = &s.lab->spec;
+    const lab_spec *spec = s.lab->spec;
     table_frames t = { .count = 0 };
     int most = 0, least = INT_MAX;
     for (s.config = 0; s.config < spec->config_count; s.config++) {
@@ -319,14 +218,14 @@ static table_frames frames_of(lab_series s) {
 static void print_legend(FILE *out, lab_series s) {
     table_frames t = frames_of(s);
     bool missing = false;
-    for (s.config = 0; s.config < s.lab->spec.config_count; s.config++)
+    for (s.config = 0; s.config < s.lab->spec->config_count; s.config++)
         for (int i = 0; i < t.count; i++)
             missing |= isnan(lab_at(&s, 0, t.frames[i]));
     if (t.own_last)
-        fprintf(out, "\nlast: each configuration's own last frame%s, its number in brackets.",
-                s.lab->spec.repetitions > 1 ? " of those that all repetitions measured" : "");
+        noc_fprintf(out, "\nlast: each configuration's own last frame%s, its number in brackets.",
+                    s.lab->spec->repetitions > 1 ? " of those that all repetitions measured" : "");
     if (missing)
-        fprintf(out, "%s-: the run had ended before that frame, or did not measure it.", t.own_last ? " " : "\n");
+        noc_fprintf(out, "%s-: the run had ended before that frame, or did not measure it.", t.own_last ? " " : "\n");
     fputs(t.own_last || missing ? "\n" : "", out);
 }
 
@@ -340,20 +239,20 @@ static void print_figure(FILE *out, const lab_series *s, int column, int frame, 
 static void print_errors(FILE *out, lab_series s, const char *what, int column, const char *fmt) {
     table_frames t = frames_of(s);
     char head[400];
-    int at = snprintf(head, sizeof(head), "| %s, frame |", what);
+    int at = noc_snprintf(head, sizeof(head), "| %s, frame |", what);
     for (int i = 0; i < t.count; i++)
-        at += snprintf(head + at, sizeof(head) - (size_t)at, " %d |", t.frames[i]);
-    snprintf(head + at, sizeof(head) - (size_t)at, "%s", t.own_last ? " last |" : "");
-    table_head(out, head, (size_t)(t.count + t.own_last));
-    for (s.config = 0; s.config < s.lab->spec.config_count; s.config++) {
+        at += noc_snprintf(head + at, sizeof(head) - (size_t)at, " %d |", t.frames[i]);
+    noc_snprintf(head + at, sizeof(head) - (size_t)at, "%s", t.own_last ? " last |" : "");
+    lab_table_head(out, head, (size_t)(t.count + t.own_last));
+    for (s.config = 0; s.config < s.lab->spec->config_count; s.config++) {
         fputc('|', out);
-        lab_cell(out, s.lab->spec.configs[s.config].name);
+        lab_cell(out, s.lab->spec->configs[s.config].name);
         for (int i = 0; i < t.count; i++)
             print_figure(out, &s, column, t.frames[i], fmt, "");
         if (t.own_last) {
             int last = lab_last(&s);
             char text[24];
-            snprintf(text, sizeof(text), " (%d)", last);
+            noc_snprintf(text, sizeof(text), " (%d)", last);
             print_figure(out, &s, column, last, fmt, text);
         }
         fputc('\n', out);
@@ -370,13 +269,14 @@ static void print_all_frames(FILE *out, lab_series s, const char *clamped, int f
 
 /* Of a camera that moves. */
 static void print_one_frame(FILE *out, lab_series s, const char *clamped, int first) {
-    char *head = cli_format("| | %s | relMSE | RMSE-8 | Bias, %% | CPU seconds of this frame | of all |", clamped);
-    table_head(out, head, 6);
-    free(head);
-    for (s.config = 0; s.config < s.lab->spec.config_count; s.config++) {
+    char head[200];
+    noc_snprintf(head, sizeof(head), "| | %s | relMSE | RMSE-8 | Bias, %% | CPU seconds of this frame | of all |",
+                 clamped);
+    lab_table_head(out, head, 6);
+    for (s.config = 0; s.config < s.lab->spec->config_count; s.config++) {
         int frame = lab_last(&s);
         fputc('|', out);
-        lab_cell(out, s.lab->spec.configs[s.config].name);
+        lab_cell(out, s.lab->spec->configs[s.config].name);
         print_figure(out, &s, first + 2, frame, "%.3g", "");
         print_figure(out, &s, first + 1, frame, "%.3g", "");
         print_figure(out, &s, first, frame, "%.2f", "");
@@ -388,11 +288,11 @@ static void print_one_frame(FILE *out, lab_series s, const char *clamped, int fi
 }
 
 static void print_times(FILE *out, lab_series s) {
-    const lab_spec *spec = &s.lab->spec;
-    table_head(out,
-               "| Frame times | first, CPU ms | median, CPU ms | median, wall ms | shadow rays, millions | "
-               "ray tracing structure, ms | renderer's memory |",
-               6);
+    const lab_spec *spec = s.lab->spec;
+    lab_table_head(out,
+                   "| Frame times | first, CPU ms | median, CPU ms | median, wall ms | shadow rays, millions | "
+                   "ray tracing structure, ms | renderer's memory |",
+                   6);
     for (s.config = 0; s.config < spec->config_count; s.config++) {
         char memory[32];
         fputc('|', out);
@@ -403,7 +303,7 @@ static void print_times(FILE *out, lab_series s) {
         lab_number(out, 1e-6 * lab_median(&s, COL_RAYS), "%.2f");
         lab_number(out, 1e3 * lab_median(&s, COL_BUILD), "%.1f");
         double bytes = lab_median(&s, COL_MEMORY);
-        fprintf(out, " %s |\n", bytes >= 0 ? noc_text_bytes(memory, (uint64_t)bytes) : "-");
+        noc_fprintf(out, " %s |\n", bytes >= 0 ? noc_text_bytes(memory, (uint64_t)bytes) : "-");
     }
 }
 
@@ -415,15 +315,15 @@ static double first_time_to(const lab_series *s, int column, double error) {
 
 /* CPU seconds to an error, and errors after CPU seconds. */
 static void print_equal_time(FILE *out, lab_series s) {
-    const lab_spec *spec = &s.lab->spec;
+    const lab_spec *spec = s.lab->spec;
     int column = spec->figure == LAB_RMSE8 ? spec->all_pixels ? COL_CLAMPED_ALL : COL_CLAMPED : lab_column(spec);
     char head[400];
-    int at = snprintf(head, sizeof(head), "| CPU seconds to relMSE |");
+    int at = noc_snprintf(head, sizeof(head), "| CPU seconds to relMSE |");
     for (size_t i = 0; i < 3; i++)
-        at += snprintf(head + at, sizeof(head) - (size_t)at, " %g |", targets[i]);
+        at += noc_snprintf(head + at, sizeof(head) - (size_t)at, " %g |", targets[i]);
     for (size_t i = 0; i < spec->time_count; i++)
-        at += snprintf(head + at, sizeof(head) - (size_t)at, " relMSE after %g s |", spec->times[i]);
-    table_head(out, head, 3 + spec->time_count);
+        at += noc_snprintf(head + at, sizeof(head) - (size_t)at, " relMSE after %g s |", spec->times[i]);
+    lab_table_head(out, head, 3 + spec->time_count);
     for (s.config = 0; s.config < spec->config_count; s.config++) {
         fputc('|', out);
         lab_cell(out, spec->configs[s.config].name);
@@ -439,48 +339,50 @@ static void print_equal_time(FILE *out, lab_series s) {
                        lab_error_of(&s, lab_error_after, column, spec->times[i]), "%.3g", "");
         fputc('\n', out);
     }
-    fprintf(out, "\nBetween frames by interpolation in logarithms; \"under\": the first frame is better already; "
-                 "-: not reached in the frames rendered, or before the first frame is done.\n");
+    noc_fprintf(out, "\nBetween frames by interpolation in logarithms; \"under\": the first frame is better already; "
+                     "-: not reached in the frames rendered, or before the first frame is done.\n");
 }
 
 static void print_noise(FILE *out, const lab_session *lab, size_t index) {
-    const lab_noise *n = &lab->noises[index];
-    bool all = lab->spec.all_pixels;
+    const noc_lab_noise *n = &lab->noises[index];
+    bool all = lab->spec->all_pixels;
     if (isfinite(n->relmse))
-        fprintf(out,
-                "\nThe reference's own noise is a relMSE of about %.2g, clamped %.2g: errors near it say nothing.\n",
-                all ? n->relmse_all : n->relmse, all ? n->clamped_all : n->clamped);
+        noc_fprintf(
+            out, "\nThe reference's own noise is a relMSE of about %.2g, clamped %.2g: errors near it say nothing.\n",
+            all ? n->relmse_all : n->relmse, all ? n->relmse_clamped_all : n->relmse_clamped);
     if (isfinite(all ? n->mean_all : n->mean))
-        fprintf(out, "\nIts mean has a standard error of %.2g %%, which any bias is off by too.\n",
-                100 * (all ? n->mean_all : n->mean));
-    char *unlit = lab_unlit(lab, index);
-    if (unlit) {
-        fprintf(out, "\n%c", toupper((unsigned char)*unlit));
-        lab_text(out, unlit + 1);
+        noc_fprintf(out, "\nIts mean has a standard error of %.2g %%, which any bias is off by too.\n",
+                    100 * (all ? n->mean_all : n->mean));
+    char unlit[2 * LAB_TEXT];
+    if (lab_tell_unlit(lab, index, unlit)) {
+        *unlit = 'U';
+        fputc('\n', out);
+        lab_text(out, unlit);
         fputc('\n', out);
     }
-    free(unlit);
 }
 
 /* Plots and tables of one mode. */
-static int print_mode(FILE *out, lab_session *lab, size_t camera, int mode) {
-    const lab_spec *spec = &lab->spec;
-    int status = CLI_OK, first = spec->all_pixels ? COL_RMSE8_ALL : COL_RMSE8, motion = spec->cameras[camera].frames;
+static noc_status print_mode(FILE *out, const lab_session *lab, size_t camera, int mode) {
+    const lab_spec *spec = lab->spec;
+    noc_status status = NOC_OK;
+    int first = spec->all_pixels ? COL_RMSE8_ALL : COL_RMSE8, motion = spec->cameras[camera].frames;
     lab_series s = { lab, camera, 0, mode, 0 };
-    char *slug = lab_slug(lab, camera), clamped[48], before[64];
+    char slug[LAB_TEXT], clamped[48], before[64];
+    lab_slug(spec, camera, slug);
     if (motion)
-        fprintf(out, "\n### Frame %d, after %s %s\n", motion, noc_text_many(before, (uint64_t)motion - 1, "frame"),
-                spec->cameras[camera].cut ? "and a cut" : "of motion");
+        noc_fprintf(out, "\n### Frame %d, after %s %s\n", motion, noc_text_many(before, (uint64_t)motion - 1, "frame"),
+                    spec->cameras[camera].cut ? "and a cut" : "of motion");
     else
-        fprintf(out, "\n### %s\n", mode_names[mode]);
+        noc_fprintf(out, "\n### %s\n", mode_names[mode]);
     for (int over_time = 0; !status && !motion && over_time <= (mode == LAB_ACCUMULATED); over_time++) {
-        char *name = cli_format("%s-%s-%s.svg", slug, mode ? "mean" : "alone", over_time ? "cpu" : "frames");
+        char name[LAB_TEXT + 20];
+        noc_snprintf(name, sizeof(name), "%s-%s-%s.svg", slug, mode ? "mean" : "alone", over_time ? "cpu" : "frames");
         status = lab_plot(lab, camera, mode, over_time, name);
-        fprintf(out, "\n![Error over %s](%s)\n", over_time ? "CPU time" : "frames", name);
-        free(name);
+        noc_fprintf(out, "\n![Error over %s](%s)\n", over_time ? "CPU time" : "frames", name);
     }
-    fprintf(out, "\nOn %s:\n", spec->all_pixels ? "all pixels" : "pixels that see no emitter");
-    snprintf(clamped, sizeof(clamped), "relMSE clamped to %g cd/m2", spec->ceiling);
+    noc_fprintf(out, "\nOn %s:\n", spec->all_pixels ? "all pixels" : "pixels that see no emitter");
+    noc_snprintf(clamped, sizeof(clamped), "relMSE clamped to %g cd/m2", spec->ceiling);
     if (motion)
         print_one_frame(out, s, clamped, first);
     else
@@ -489,15 +391,15 @@ static int print_mode(FILE *out, lab_session *lab, size_t camera, int mode) {
         print_equal_time(out, s);
     if (mode == LAB_ACCUMULATED || spec->accumulate == LAB_ALONE || motion)
         print_times(out, s);
-    free(slug);
     return status;
 }
 
-static int print_view(FILE *out, lab_session *lab, size_t camera) {
-    const lab_spec *spec = &lab->spec;
-    int status = CLI_OK;
+static noc_status print_view(FILE *out, const lab_session *lab, size_t camera) {
+    const lab_spec *spec = lab->spec;
+    noc_status status = NOC_OK;
+    char view[LAB_TEXT];
     fputs("\n## ", out);
-    lab_view_name(out, spec, camera);
+    lab_text(out, lab_view_name(spec, camera, view));
     fputc('\n', out);
     print_noise(out, lab, camera);
     print_crops(out, lab, camera);
@@ -508,31 +410,31 @@ static int print_view(FILE *out, lab_session *lab, size_t camera) {
 }
 
 /* Over all cameras. */
-static int print_charts(FILE *out, lab_session *lab) {
-    int status = lab_write_summary(lab);
-    fprintf(out, "\nIn short: [summary.md](summary.md).\n");
-    if (!status && lab_has_dots(&lab->spec)) {
+static noc_status print_charts(FILE *out, const lab_session *lab) {
+    noc_status status = lab_write_summary(lab);
+    noc_fprintf(out, "\nIn short: [summary.md](summary.md).\n");
+    if (!status && lab_has_dots(lab->spec)) {
         status = lab_dots(lab, "errors.svg");
-        fprintf(out, "\n![Errors](errors.svg)\n");
+        noc_fprintf(out, "\n![Errors](errors.svg)\n");
     }
-    if (!status && lab_has_bars(&lab->spec)) {
+    if (!status && lab_has_bars(lab->spec)) {
         status = lab_bars(lab, "frame-times.svg");
-        fprintf(out, "\n![Frame times](frame-times.svg)\n");
+        noc_fprintf(out, "\n![Frame times](frame-times.svg)\n");
     }
     return status;
 }
 
-int lab_write_report(lab_session *lab) {
-    char *temporary;
-    FILE *out = lab_create(lab, "report.md", &temporary);
-    if (!out)
-        return CLI_FAILURE;
-    print_setting(out, lab);
-    int status = print_charts(out, lab);
-    for (size_t camera = 0; !status && camera < lab->spec.camera_count; camera++)
-        status = print_view(out, lab, camera);
+noc_status lab_write_report(const lab_session *lab) {
+    lab_file file;
+    noc_status status = lab_create_file(lab->folder, "report.md", lab->log, &file);
+    if (status)
+        return status;
+    print_setting(file.out, lab);
+    status = print_charts(file.out, lab);
+    for (size_t camera = 0; !status && camera < lab->spec->camera_count; camera++)
+        status = print_view(file.out, lab, camera);
     if (!status)
-        return lab_finish(lab, out, "report.md", temporary);
-    lab_discard(out, temporary);
+        return lab_finish_file(&file);
+    lab_discard_file(&file);
     return status;
 }

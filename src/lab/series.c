@@ -1,45 +1,12 @@
 /* Curves of an experiment: means over its repetitions, and times between frames by interpolation. */
-#include "lab/lab.h"
+#include "lab/series.h"
 
 #include <limits.h>
 #include <math.h>
-#include <stdlib.h>
-
-lab_run *lab_find_run(const lab_session *lab, size_t camera, size_t config, int repetition) {
-    const lab_spec *spec = &lab->spec;
-    return &lab->runs[(camera * (size_t)spec->repetitions + (size_t)repetition) * spec->config_count + config];
-}
-
-/* Of a camera that moves the last frame alone is measured. */
-bool lab_has_mode(const lab_spec *spec, size_t camera, int mode) {
-    if (spec->cameras[camera].frames)
-        return mode == LAB_ALONE;
-    return spec->accumulate == mode || spec->accumulate == LAB_MODES;
-}
-
-int lab_frames(const lab_spec *spec, size_t camera, size_t config) {
-    return spec->cameras[camera].frames ? spec->cameras[camera].frames : spec->configs[config].frames;
-}
-
-bool lab_measures(const lab_spec *spec, size_t camera, size_t config, int frame) {
-    int last = lab_frames(spec, camera, config);
-    if (spec->cameras[camera].frames || frame == last)
-        return frame == last;
-    for (size_t i = 0; i < spec->measured_count; i++)
-        if (spec->measured[i] == frame)
-            return true;
-    if (spec->measured_count || !(spec->configs[config].seconds > 0))
-        return !spec->measured_count;
-    /* Thousands of frames fit into some seconds: their distance rises by an eighth. */
-    int next = 1;
-    while (next < frame)
-        next += next < 16 ? 1 : next / 8;
-    return next == frame;
-}
 
 /* Repetitions that a series is about: from the first to before the end. */
 static int first_of(const lab_series *s) { return s->only ? s->only - 1 : 0; }
-static int end_of(const lab_series *s) { return s->only ? s->only : s->lab->spec.repetitions; }
+static int end_of(const lab_series *s) { return s->only ? s->only : s->lab->spec->repetitions; }
 
 int lab_last(const lab_series *s) {
     int last = INT_MAX;
@@ -65,7 +32,7 @@ double lab_at(const lab_series *s, int column, int frame) {
 
 double lab_error_of(const lab_series *s, lab_asked *asked, int column, double what) {
     double sum = 0, squares = 0;
-    int n = s->lab->spec.repetitions;
+    int n = s->lab->spec->repetitions;
     if (n < 2)
         return NAN;
     for (int pass = 0; pass < 2; pass++)
@@ -90,27 +57,15 @@ int lab_column(const lab_spec *spec) {
     return first + (spec->figure == LAB_RMSE8 ? 0 : spec->figure == LAB_RELMSE ? 1 : 2);
 }
 
-const char *lab_figure(const lab_spec *spec) {
-    static char text[120];
-    const char *pixels = spec->all_pixels ? "all pixels" : "pixels that see no emitter";
-    if (spec->figure == LAB_CLAMPED)
-        snprintf(text, sizeof(text), "relMSE clamped to %g cd/m\302\262, %s", spec->ceiling, pixels);
-    else
-        snprintf(text, sizeof(text), "%s, %s", spec->figure == LAB_RELMSE ? "relMSE" : "RMSE-8 (0 to 255)", pixels);
-    return text;
-}
-
 static int by_size(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
 
 double lab_median(const lab_series *s, int column) {
-    const lab_spec *spec = &s->lab->spec;
-    size_t count = 0, room = 0;
-    for (int i = 0; i < spec->repetitions; i++)
-        room += (size_t)lab_find_run(s->lab, s->camera, s->config, i)->count;
-    double *values = cli_alloc(sizeof(double) * (room + 1)), median = NAN;
+    const lab_spec *spec = s->lab->spec;
+    size_t count = 0;
+    double *values = s->lab->values, median = NAN;
     for (int first = 1; first >= 0 && !count; first--) { /* the first frame only where there is no other */
         for (int i = 0; i < spec->repetitions; i++) {
             const lab_run *run = lab_find_run(s->lab, s->camera, s->config, i);
@@ -122,7 +77,6 @@ double lab_median(const lab_series *s, int column) {
     qsort(values, count, sizeof(double), by_size);
     if (count)
         median = 0.5 * (values[(count - 1) / 2] + values[count / 2]);
-    free(values);
     return median;
 }
 
@@ -136,7 +90,7 @@ static double between(double x0, double y0, double x1, double y1, double y) {
 double lab_frame_time(const lab_series *s, int column, double what) {
     int last = lab_last(s);
     double first = lab_at(s, COL_CPU_TOTAL, 1), total = lab_at(s, COL_CPU_TOTAL, last);
-    if (s->lab->spec.cameras[s->camera].frames)
+    if (s->lab->spec->cameras[s->camera].frames)
         return lab_at(s, COL_CPU, last);
     if (last == 1)
         return total;
@@ -169,4 +123,52 @@ double lab_error_after(const lab_series *s, int column, double seconds) {
         before = y;
     }
     return NAN;
+}
+
+/* Frames told in a table of cameras that stand still: those that the spec measures, if they are few, else the first and
+ * the last. */
+int lab_points(const lab_spec *spec, size_t camera, lab_point out[LAB_POINTS]) {
+    if (spec->cameras[camera].frames) {
+        out[0] = (lab_point){ LAB_ALONE, 0 };
+        return 1;
+    }
+    bool alone = lab_has_mode(spec, camera, LAB_ALONE),
+         listed = spec->measured_count && spec->measured_count < LAB_POINTS;
+    bool one = true; /* frame is all there is */
+    for (size_t i = 0; i < spec->config_count; i++)
+        one &= lab_frames(spec, camera, i) == 1;
+    int count = 0, mode = alone ? LAB_ALONE : LAB_ACCUMULATED;
+    for (size_t i = 0; listed && i < spec->measured_count; i++)
+        out[count++] = (lab_point){ mode, spec->measured[i] };
+    if (!listed) {
+        out[count++] = (lab_point){ mode, 1 };
+        if (!one)
+            out[count++] = (lab_point){ mode, 0 };
+    }
+    if (alone && !one && lab_has_mode(spec, camera, LAB_ACCUMULATED))
+        out[count++] = (lab_point){ LAB_ACCUMULATED, 0 };
+    return count;
+}
+
+double lab_at_point(const lab_session *lab, size_t camera, size_t config, lab_point point, int column, double *error) {
+    lab_series s = { lab, camera, config, point.mode, 0 };
+    int frame = point.frame ? point.frame : lab_last(&s);
+    *error = lab_error_at(&s, column, frame);
+    return lab_at(&s, column, frame);
+}
+
+const char *lab_point_name(const lab_spec *spec, size_t camera, lab_point point, char text[48]) {
+    int motion = spec->cameras[camera].frames;
+    if (motion)
+        noc_snprintf(text, 48, "frame %d", motion);
+    else if (point.frame)
+        noc_snprintf(text, 48, point.mode == LAB_ALONE ? "frame %d" : "mean of %d", point.frame);
+    else
+        noc_snprintf(text, 48, "%s", point.mode == LAB_ALONE ? "last frame" : "mean of all");
+    return text;
+}
+
+lab_series lab_timed(const lab_session *lab, size_t camera, size_t config) {
+    int mode = lab_has_mode(lab->spec, camera, LAB_ALONE) ? LAB_ALONE : LAB_ACCUMULATED;
+    return (lab_series){ lab, camera, config, mode, 0 };
 }

@@ -1,9 +1,5 @@
 /* Contact sheets: pictures side by side, each with its name above it, and insets below it where its camera has some. */
-#include "lab/lab.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "lab/sheet.h"
 
 enum { GAP = 4, LABEL = 22, NAME = 14, FRAME = 2 };
 
@@ -19,16 +15,6 @@ static const struct {
 
 const char *lab_inset_colour(int inset) { return colours[inset].name; }
 
-bool lab_read_box(const char *text, int width, int height, int box[4]) {
-    double v[4];
-    bool right = noc_text_numbers(text, ',', 4, v);
-    for (int i = 0; right && i < 4; i++) {
-        right = v[i] == floor(v[i]) && v[i] >= (i > 1) && v[i] <= NOC_IMAGE_MAX_SIDE;
-        box[i] = right ? (int)v[i] : 0;
-    }
-    return right && box[0] + box[2] <= width && box[1] + box[3] <= height;
-}
-
 /* Insets stand side by side, two at least, so that one alone is not as wide as the picture. */
 static int inset_width(const lab_sheet *s) {
     int n = s->camera->inset_count < 2 ? 2 : s->camera->inset_count;
@@ -41,7 +27,8 @@ static int inset_height(const lab_sheet *s, int inset) {
     return height < 1 ? 1 : height > s->picture_height ? s->picture_height : height;
 }
 
-int lab_start_sheet(lab_sheet *s, const lab_crop *crop, const lab_camera *camera, size_t panels) {
+noc_status lab_start_sheet(lab_sheet *s, const lab_crop *crop, const lab_camera *camera, size_t panels,
+                           const char *name, noc_log *log) {
     int columns = crop->columns, rows = ((int)panels + columns - 1) / columns, insets = 0;
     *s = (lab_sheet){ .crop = crop,
                       .camera = camera,
@@ -53,11 +40,13 @@ int lab_start_sheet(lab_sheet *s, const lab_crop *crop, const lab_camera *camera
     s->width = columns * s->panel_width + (columns - 1) * GAP;
     s->height = rows * s->panel_height + (rows - 1) * GAP;
     if (s->width > NOC_IMAGE_MAX_SIDE || s->height > NOC_IMAGE_MAX_SIDE)
-        return CLI_FAILURE;
+        return noc_error(log, NOC_ERR_ARGUMENT, "%s: it would be larger than %d px", name, NOC_IMAGE_MAX_SIDE);
     size_t bytes = (size_t)s->width * (size_t)s->height * 3;
-    s->rgb = cli_alloc(bytes);
+    s->rgb = noc_alloc(bytes);
+    if (!s->rgb)
+        return noc_no_memory(log, name);
     memset(s->rgb, 40, bytes);
-    return CLI_OK;
+    return NOC_OK;
 }
 
 /* A box of a picture, enlarged to so many pixels: each is the nearest of the picture's. */
@@ -92,7 +81,8 @@ static void frame(lab_sheet *s, int left, int top, int w, int h, const uint8_t c
 
 /* As large as fits; what is too long even for small letters ends in dots. */
 static void write_in(lab_sheet *s, int x, int y, int w, const char *text, int scale, const uint8_t colour[3]) {
-    char *cut = cli_format("%s", text);
+    char cut[LAB_TEXT];
+    noc_snprintf(cut, sizeof(cut), "%s", text);
     while (scale > 1 && noc_text_srgb8(NULL, 0, 0, 0, 0, cut, scale, colour) > w)
         scale--;
     for (size_t n = strlen(cut); n > 3 && noc_text_srgb8(NULL, 0, 0, 0, 0, cut, scale, colour) > w; n--) {
@@ -101,7 +91,6 @@ static void write_in(lab_sheet *s, int x, int y, int w, const char *text, int sc
         memcpy(cut + n - 4, "...", 4);
     }
     noc_text_srgb8(s->rgb, s->width, s->height, x, y, cut, scale, colour);
-    free(cut);
 }
 
 void lab_add_panel(lab_sheet *s, size_t panel, const uint8_t *rgb, int width, const char *label) {

@@ -3,7 +3,6 @@
 #include "lab/svg.h"
 
 #include <math.h>
-#include <string.h>
 
 const char *const svg_colours[SVG_COLOURS] = { "#0072b2", "#d55e00", "#009e73", "#b8568f",
                                                "#c98600", "#3a9bd6", "#666666" };
@@ -50,9 +49,10 @@ double svg_place(const svg_axis *a, double v) {
 double svg_inside(const svg_axis *a, double v) { return svg_place(a, v > a->lo ? v < a->hi ? v : a->hi : a->lo); }
 
 void svg_whisker(FILE *out, int colour, double from, double to, double y) {
-    fprintf(out,
-            "<path class=\"l%d whisker\" fill=\"none\" stroke=\"%s\" d=\"M%.1f %.1fH%.1fM%.1f %.1fv6M%.1f %.1fv6\"/>\n",
-            colour, svg_colours[colour], from, y, to, from, y - 3, to, y - 3);
+    noc_fprintf(
+        out,
+        "<path class=\"l%d whisker\" fill=\"none\" stroke=\"%s\" d=\"M%.1f %.1fH%.1fM%.1f %.1fv6M%.1f %.1fv6\"/>\n",
+        colour, svg_colours[colour], from, y, to, from, y - 3, to, y - 3);
 }
 
 /* The i-th of ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ...; 0 is 1. */
@@ -65,7 +65,7 @@ static double round_number(int i) {
 /* Room that a number takes along its axis. */
 static double room_of(double v, bool vertical) {
     char text[32];
-    return vertical ? 7.5 * snprintf(text, sizeof(text), "%.10g", v) + 6 : 15;
+    return vertical ? 7.5 * noc_snprintf(text, sizeof(text), "%.10g", v) + 6 : 15;
 }
 
 static bool is_free(const svg_axis *a, bool vertical, double v, double other) {
@@ -124,46 +124,47 @@ void svg_text(FILE *out, const char *text, int limit) {
 }
 
 void svg_head(FILE *out, int width, int height) {
-    fprintf(out,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
-            "font-family=\"sans-serif\" font-size=\"13\">\n<style>\n"
-            "@media (prefers-color-scheme: dark) {\n"
-            ".paper { fill: #14171c } .ink { fill: #e6e6e6 } .grid { stroke: #343a44 } "
-            ".frame { stroke: #8a93a0 }\n",
-            width, height, width, height);
+    noc_fprintf(out,
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
+                "font-family=\"sans-serif\" font-size=\"13\">\n<style>\n"
+                "@media (prefers-color-scheme: dark) {\n"
+                ".paper { fill: #14171c } .ink { fill: #e6e6e6 } .grid { stroke: #343a44 } "
+                ".frame { stroke: #8a93a0 }\n",
+                width, height, width, height);
     for (int i = 0; i < SVG_COLOURS; i++)
-        fprintf(out, ".l%d { stroke: %s } .m%d { fill: %s }\n", i, dark[i], i, dark[i]);
-    fprintf(out, "}\n</style>\n<rect class=\"paper\" width=\"%d\" height=\"%d\" fill=\"#ffffff\"/>\n", width, height);
+        noc_fprintf(out, ".l%d { stroke: %s } .m%d { fill: %s }\n", i, dark[i], i, dark[i]);
+    noc_fprintf(out, "}\n</style>\n<rect class=\"paper\" width=\"%d\" height=\"%d\" fill=\"#ffffff\"/>\n", width,
+                height);
 }
 
 /* Four shapes, filled, then hollow. */
 void svg_marker(FILE *out, const svg_style *style, double x, double y) {
     int c = style->colour;
     if (style->marker < 4)
-        fprintf(out, "<path class=\"m%d\" fill=\"%s\" d=\"", c, svg_colours[c]);
+        noc_fprintf(out, "<path class=\"m%d\" fill=\"%s\" d=\"", c, svg_colours[c]);
     else
-        fprintf(out, "<path class=\"l%d paper\" fill=\"#ffffff\" stroke=\"%s\" stroke-width=\"1.5\" d=\"", c,
-                svg_colours[c]);
+        noc_fprintf(out, "<path class=\"l%d paper\" fill=\"#ffffff\" stroke=\"%s\" stroke-width=\"1.5\" d=\"", c,
+                    svg_colours[c]);
     switch (style->marker % 4) {
-    case 0: fprintf(out, "M%.1f %.1fa3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0 -7 0z", x - 3.5, y); break;
-    case 1: fprintf(out, "M%.1f %.1fh6v6h-6z", x - 3, y - 3); break;
-    case 2: fprintf(out, "M%.1f %.1fl4 7h-8z", x, y - 4.5); break;
-    default: fprintf(out, "M%.1f %.1fl4.5 4.5l-4.5 4.5l-4.5 -4.5z", x, y - 4.5);
+    case 0: noc_fprintf(out, "M%.1f %.1fa3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0 -7 0z", x - 3.5, y); break;
+    case 1: noc_fprintf(out, "M%.1f %.1fh6v6h-6z", x - 3, y - 3); break;
+    case 2: noc_fprintf(out, "M%.1f %.1fl4 7h-8z", x, y - 4.5); break;
+    default: noc_fprintf(out, "M%.1f %.1fl4.5 4.5l-4.5 4.5l-4.5 -4.5z", x, y - 4.5);
     }
-    fprintf(out, "\"/>\n");
+    noc_fprintf(out, "\"/>\n");
 }
 
 /* A line across the plot, and its number. */
 static void tick(FILE *out, const svg_axis *a, bool vertical, const svg_axis *other, double v, bool numbered) {
     double at = svg_place(a, v);
     if (vertical)
-        fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%.1f %gV%g\"/>\n", at, other->to, other->from);
+        noc_fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%.1f %gV%g\"/>\n", at, other->to, other->from);
     else
-        fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%g %.1fH%g\"/>\n", other->from, at, other->to);
+        noc_fprintf(out, "<path class=\"grid\" stroke=\"#dcdcdc\" d=\"M%g %.1fH%g\"/>\n", other->from, at, other->to);
     if (numbered)
-        fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">%.10g</text>\n",
-                vertical ? at : other->from - 8, vertical ? other->from + 18 : at + 4.5, vertical ? "middle" : "end",
-                v);
+        noc_fprintf(out, "<text class=\"ink\" fill=\"#222222\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">%.10g</text>\n",
+                    vertical ? at : other->from - 8, vertical ? other->from + 18 : at + 4.5,
+                    vertical ? "middle" : "end", v);
 }
 
 void svg_grid(FILE *out, const svg_axis *a, bool vertical, const svg_axis *other) {

@@ -1,8 +1,8 @@
-/* the laboratory: what its plots share. */
+/* lab: what plots are drawn with. */
 #ifndef NOC_LAB_SVG_H
 #define NOC_LAB_SVG_H
 
-#include "lab/lab.h"
+#include "lab/spec.h"
 
 enum { SVG_COLOURS = 7, SVG_MARKERS = 8 };
 /* on light ground; classes l0, l1, ... (lines) and m0, m1, ... (areas) swap them */

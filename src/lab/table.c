@@ -1,22 +1,59 @@
 /* results.csv: one row a configuration, camera, repetition, frame and mode, appended as they come. Its key column tells
  * which settings a row belongs to, so an experiment goes on where it stopped and never mixes in rows of other settings.
  */
-#include "lab/lab.h"
+#include "lab/table.h"
+#include "lab/file.h"
 
 #include <errno.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const char header[] =
-    "scene,camera,configuration,repetition,mode,frame,seed,wall_s,cpu_s,wall_total_s,cpu_total_s,rmse8,relmse,"
-    "relmse_clamped,bias,unlit,relmse_unlit,rmse8_all,relmse_all,relmse_clamped_all,bias_all,unlit_all,"
-    "relmse_unlit_all,build_s,memory_bytes,rays_shadow,dropped,"
-    "light_build_s,light_volumes_s,light_tuning_s,light_hierarchy_s,light_boxes_s,light_bytes,scene_bytes,influence,"
-    "found_none,found_median,found_99,key";
+#define TELLING "scene,camera,configuration,repetition,mode,frame,seed"
+static const char *const columns[COL_COUNT + 1] = {
+    [COL_WALL] = "wall_s",
+    [COL_CPU] = "cpu_s",
+    [COL_WALL_TOTAL] = "wall_total_s",
+    [COL_CPU_TOTAL] = "cpu_total_s",
+    [COL_RMSE8] = "rmse8",
+    [COL_RELMSE] = "relmse",
+    [COL_CLAMPED] = "relmse_clamped",
+    [COL_BIAS] = "bias",
+    [COL_UNLIT] = "unlit",
+    [COL_RELMSE_UNLIT] = "relmse_unlit",
+    [COL_RMSE8_ALL] = "rmse8_all",
+    [COL_RELMSE_ALL] = "relmse_all",
+    [COL_CLAMPED_ALL] = "relmse_clamped_all",
+    [COL_BIAS_ALL] = "bias_all",
+    [COL_UNLIT_ALL] = "unlit_all",
+    [COL_RELMSE_UNLIT_ALL] = "relmse_unlit_all",
+    [COL_BUILD] = "build_s",
+    [COL_MEMORY] = "memory_bytes",
+    [COL_RAYS] = "rays_shadow",
+    [COL_DROPPED] = "dropped",
+    [COL_LIGHT_BUILD] = "light_build_s",
+    [COL_VOLUMES] = "light_volumes_s",
+    [COL_TUNING] = "light_tuning_s",
+    [COL_HIERARCHY] = "light_hierarchy_s",
+    [COL_BOXES] = "light_boxes_s",
+    [COL_LIGHT_BYTES] = "light_bytes",
+    [COL_SCENE_BYTES] = "scene_bytes",
+    [COL_INFLUENCE] = "influence",
+    [COL_FOUND_NONE] = "found_none",
+    [COL_FOUND_MEDIAN] = "found_median",
+    [COL_FOUND_99] = "found_99",
+};
+
+const char *const *noc_lab_columns(void) { return columns; }
+
+static void print_header(char text[1024]) {
+    int n = noc_snprintf(text, 1024, "%s", TELLING);
+    for (int i = 0; i < COL_COUNT; i++)
+        n += noc_snprintf(text + n, 1024 - (size_t)n, ",%s", columns[i]);
+    noc_snprintf(text + n, 1024 - (size_t)n, ",key");
+}
+
 static const char *const modes[] = { "alone", "accumulated" };
-enum { TELLING = 7, FIELDS = TELLING + COL_COUNT + 1, MODE = 4, FRAME = 5 };
+enum { FIRST = 7, FIELDS = FIRST + COL_COUNT + 1, MODE = 4, FRAME = 5 };
 
 /* Splits a line in place; a field in quotes may hold commas and doubled quotes. false: not this many fields. */
 static bool split(char *line, char *fields[FIELDS]) {
@@ -40,7 +77,7 @@ static bool split(char *line, char *fields[FIELDS]) {
 }
 
 static bool parse_row(char *line, lab_stored *row) {
-    char *fields[FIELDS], *end;
+    char *fields[FIELDS];
     if (!split(line, fields))
         return false;
     const char *key = fields[FIELDS - 1]; /* becomes a picture's name */
@@ -48,14 +85,14 @@ static bool parse_row(char *line, lab_stored *row) {
         return false;
     memcpy(row->key, key, LAB_KEY);
     row->mode = strcmp(fields[MODE], modes[LAB_ACCUMULATED]) ? LAB_ALONE : LAB_ACCUMULATED;
-    row->frame = atoi(fields[FRAME]);
     row->claimed = false;
-    for (int i = 0; i < COL_COUNT; i++) {
-        row->values[i] = strtod(fields[TELLING + i], &end);
-        if (*end || end == fields[TELLING + i])
+    for (int i = 0; i < COL_COUNT; i++)
+        if (!lab_parse_number(fields[FIRST + i], &row->values[i]))
             return false;
-    }
-    return row->frame > 0 && row->frame <= LAB_FRAMES;
+    long long frame;
+    bool right = noc_parse_int(fields[FRAME], &frame) && frame > 0 && frame <= LAB_FRAMES;
+    row->frame = right ? (int)frame : 0;
+    return right;
 }
 
 /* Spreadsheets run what begins like a formula: an apostrophe before it makes it text to them. */
@@ -74,37 +111,50 @@ static void quote(FILE *out, const char *text) {
 }
 
 static void print_row(const lab_session *lab, FILE *out, const lab_run *run, int mode, int frame) {
-    const lab_spec *spec = &lab->spec;
+    const lab_spec *spec = lab->spec;
     quote(out, spec->scenes[spec->cameras[run->camera].scene].name);
     quote(out, spec->cameras[run->camera].name);
     quote(out, spec->configs[run->config].name);
-    fprintf(out, "%d,%s,%d,%u,", run->repetition + 1, modes[mode], frame, lab_params(lab, run).seed);
+    noc_fprintf(out, "%d,%s,%d,%u,", run->repetition + 1, modes[mode], frame, lab_params_of(lab, run).seed);
     for (int i = 0; i < COL_COUNT; i++)
-        fprintf(out, "%.9g,", run->rows[mode][frame - 1].values[i]);
-    fprintf(out, "%s\n", run->key);
+        noc_fprintf(out, "%.9g,", run->rows[mode][frame - 1].values[i]);
+    noc_fprintf(out, "%s\n", run->key);
 }
 
 /* Is the file's first line our header, whole, or cut where the program was killed? */
 static bool is_header(const char *line, size_t n) {
-    size_t whole = sizeof(header) - 1;
+    char header[1024];
+    print_header(header);
+    size_t whole = strlen(header);
     return n <= whole ? !memcmp(line, header, n)
                       : n == whole + 1 && !memcmp(line, header, whole) && line[whole] == '\n';
 }
 
+/* Takes one line without its end. */
+static noc_status read_row(lab_session *lab, char *line) {
+    lab_stored row;
+    if (!parse_row(line, &row))
+        lab->rows_broken++;
+    else if (!array_push(&lab->stored, row))
+        return noc_no_memory(lab->log, "results.csv");
+    return NOC_OK;
+}
+
 /* Reads what earlier sessions left. *whole: bytes up to the end of the last whole line; -1 where the file is no such
  * table. */
-static int read_table(lab_session *lab, const char *path, long *whole) {
+static noc_status read_table(lab_session *lab, const char *path, long *whole) {
     struct stat st;
     *whole = 0;
     if (stat(path, &st) && errno == ENOENT)
-        return CLI_OK;
-    FILE *file = cli_open(path); /* a pipe is not waited for */
+        return NOC_OK;
+    FILE *file = lab_open_file(path, lab->log);
     if (!file)
-        return CLI_FAILURE;
+        return NOC_ERR_IO;
     char *line = NULL;
-    size_t size = 0, room = 0;
+    size_t size = 0;
     bool first = true;
-    for (ssize_t n; (n = getline(&line, &size, file)) > 0; *whole += n) {
+    noc_status status = NOC_OK;
+    for (ssize_t n; !status && (n = getline(&line, &size, file)) > 0; *whole += n) {
         if (first && !is_header(line, (size_t)n)) {
             *whole = -1;
             break;
@@ -112,62 +162,66 @@ static int read_table(lab_session *lab, const char *path, long *whole) {
         if (line[n - 1] != '\n')
             break;
         line[n - 1] = 0;
-        if (lab->stored_count == room) {
-            room = room ? 2 * room : 256;
-            lab->stored = lab_longer(lab->stored, room * sizeof(*lab->stored));
-        }
-        bool row = !first && parse_row(line, &lab->stored[lab->stored_count]);
-        lab->stored_count += row;
-        lab->rows_broken += !first && !row;
+        status = first ? NOC_OK : read_row(lab, line);
         first = false;
     }
+    if (!status && *whole >= 0 && !feof(file)) /* what is not read must not be cut off */
+        status = lab_io_error(lab->log, path);
     free(line);
     fclose(file);
-    return CLI_OK;
+    return status;
 }
 
-static int open_for_rows(lab_session *lab, const char *path, long whole) {
+static noc_status open_for_rows(lab_session *lab, const char *path, long whole) {
+    char header[1024];
+    print_header(header);
     lab->csv = fopen(path, whole ? "r+" : "w");
     bool ok = lab->csv != NULL;
     if (ok && whole) /* a line that was cut short when the program was killed */
         ok = !ftruncate(fileno(lab->csv), whole) && !fseek(lab->csv, 0, SEEK_END);
     else if (ok)
-        ok = fprintf(lab->csv, "%s\n", header) > 0 && !fflush(lab->csv);
-    if (!ok)
-        cli_error("%s: %s", path, strerror(errno));
-    return ok ? CLI_OK : CLI_FAILURE;
+        ok = noc_fprintf(lab->csv, "%s\n", header) > 0 && !fflush(lab->csv);
+    return ok ? NOC_OK : lab_io_error(lab->log, path);
 }
 
-/* A name that no table has that was put aside before: results.old.csv, results.old-2.csv, ... The folder is locked. */
+/* A name that no table has that was put aside before: results.old.csv, results.old-2.csv, ... The folder is locked.
+ * NULL after reporting that memory was refused. */
 static char *old_name(const lab_session *lab) {
     struct stat st;
-    char *name = cli_format("%s/results.old.csv", lab->folder);
-    for (int i = 2; !lstat(name, &st); i++) {
+    char *name = noc_format("%s/results.old.csv", lab->folder);
+    for (int i = 2; name && !lstat(name, &st); i++) {
         free(name);
-        name = cli_format("%s/results.old-%d.csv", lab->folder, i);
+        name = noc_format("%s/results.old-%d.csv", lab->folder, i);
     }
+    if (!name)
+        noc_no_memory(lab->log, "results.csv");
     return name;
 }
 
 /* replaced: another file is about to take its name, which it keeps until then, so that a kill in between loses nothing.
  */
-static int put_aside(const char *path, const char *old, bool replaced) {
+static noc_status put_aside(const lab_session *lab, const char *path, const char *old, bool replaced) {
     bool linked = replaced && !link(path, old); /* not every file system can */
-    int status = linked || !rename(path, old) ? CLI_OK : CLI_FAILURE;
-    if (status)
-        cli_error("%s: %s", path, strerror(errno));
+    return linked || !rename(path, old) ? NOC_OK : lab_io_error(lab->log, path);
+}
+
+/* Another program's file of that name. */
+static noc_status keep_strange(const lab_session *lab, const char *path) {
+    char *old = old_name(lab);
+    if (!old)
+        return NOC_ERR_MEMORY;
+    noc_warn(lab->log, "%s is a table of another kind; it is kept as %s", path, strrchr(old, '/') + 1);
+    noc_status status = put_aside(lab, path, old, false);
+    free(old);
     return status;
 }
 
-int lab_open_table(lab_session *lab) {
-    char *path = cli_format("%s/results.csv", lab->folder);
-    long whole;
-    int status = read_table(lab, path, &whole);
+noc_status lab_open_table(lab_session *lab) {
+    char *path = noc_format("%s/results.csv", lab->folder);
+    long whole = 0;
+    noc_status status = path ? read_table(lab, path, &whole) : noc_no_memory(lab->log, "results.csv");
     if (!status && whole < 0) {
-        char *old = old_name(lab);
-        cli_error("warning: %s is a table of another kind; it is kept as %s", path, strrchr(old, '/') + 1);
-        status = put_aside(path, old, false);
-        free(old);
+        status = keep_strange(lab, path);
         whole = 0;
     }
     status = status ? status : open_for_rows(lab, path, whole);
@@ -175,83 +229,103 @@ int lab_open_table(lab_session *lab) {
     return status;
 }
 
-lab_row *lab_row_of(lab_run *run, int mode, int frame) {
-    if (frame > run->room) {
-        int room = frame > 2 * run->room ? frame : 2 * run->room;
-        for (int m = 0; m < LAB_MODES; m++) {
-            run->rows[m] = lab_longer(run->rows[m], sizeof(lab_row) * (size_t)room);
-            memset(run->rows[m] + run->room, 0, sizeof(lab_row) * (size_t)(room - run->room));
-        }
-        run->room = room;
-    }
-    run->count = frame > run->count ? frame : run->count;
-    return &run->rows[mode][frame - 1];
-}
-
-void lab_claim(lab_session *lab, lab_run *run) {
-    for (size_t i = 0; i < lab->stored_count; i++) {
-        lab_stored *row = &lab->stored[i];
+noc_status lab_claim(lab_session *lab, lab_run *run) {
+    for (size_t i = 0; i < lab->stored.len; i++) {
+        lab_stored *row = &lab->stored.data[i];
         if (row->claimed || strcmp(row->key, run->key))
             continue;
         row->claimed = true;
-        if (!lab_has_mode(&lab->spec, run->camera, row->mode) ||
-            row->frame > lab_frames(&lab->spec, run->camera, run->config))
+        if (!lab_has_mode(lab->spec, run->camera, row->mode) ||
+            row->frame > lab_frames(lab->spec, run->camera, run->config))
             continue; /* asked for before, not now: it stays in the table */
-        lab_row *mine = lab_row_of(run, row->mode, row->frame);
+        lab_row *mine = lab_row_of(lab, run, row->mode, row->frame);
+        if (!mine)
+            return NOC_ERR_MEMORY;
         lab->rows_twice += mine->done;
         lab->rows_done += !mine->done;
         lab->rows_old += !mine->done;
         mine->done = true;
         memcpy(mine->values, row->values, sizeof(mine->values));
     }
+    return NOC_OK;
 }
 
-int lab_append(lab_session *lab, const lab_run *run, int mode, int frame) {
+static noc_status table_error(const lab_session *lab) {
+    return noc_error(lab->log, NOC_ERR_IO, "%s/results.csv: %s", lab->folder, strerror(errno));
+}
+
+noc_status lab_append(lab_session *lab, const lab_run *run, int mode, int frame) {
     print_row(lab, lab->csv, run, mode, frame);
-    if (!fflush(lab->csv))
-        return CLI_OK;
-    cli_error("%s/results.csv: %s", lab->folder, strerror(errno));
-    return CLI_FAILURE;
+    return fflush(lab->csv) ? table_error(lab) : NOC_OK;
 }
 
-static void tell_rows(size_t count, const char *what, const char *old) {
+static void tell_rows(const lab_session *lab, size_t count, const char *what, const char *old) {
     char rows[64];
     if (count)
-        cli_error("%s of results.csv %s: kept in %s", noc_text_many(rows, count, "row"), what, strrchr(old, '/') + 1);
+        noc_warn(lab->log, "%s of results.csv %s: kept in %s", noc_text_many(rows, count, "row"), what,
+                 strrchr(old, '/') + 1);
 }
 
-int lab_tidy_table(lab_session *lab) {
-    size_t others = 0;
-    for (size_t i = 0; i < lab->stored_count; i++) {
-        if (lab->stored[i].claimed)
+/* Pictures of rows that no run has any more go, and are counted. */
+static noc_status drop_pictures(const lab_session *lab, size_t *others) {
+    *others = 0;
+    for (size_t i = 0; i < lab->stored.len; i++) {
+        const lab_stored *row = &lab->stored.data[i];
+        if (row->claimed)
             continue;
-        others++;
-        char *picture = lab_picture(lab, lab->stored[i].key, lab->stored[i].mode, lab->stored[i].frame);
+        char *picture = lab_picture_path(lab, row->key, row->mode, row->frame);
+        if (!picture)
+            return NOC_ERR_MEMORY;
         unlink(picture); /* where there is one; no row shows it any more */
         free(picture);
+        ++*others;
     }
-    if (!others && !lab->rows_broken && !lab->rows_twice)
-        return CLI_OK;
-    char *temporary;
-    FILE *file = lab_create(lab, "results.csv", &temporary);
-    if (!file)
-        return CLI_FAILURE;
-    char *path = cli_format("%s/results.csv", lab->folder), *old = old_name(lab);
-    tell_rows(others, "came from other settings", old);
-    tell_rows(lab->rows_broken, "could not be read", old);
-    tell_rows(lab->rows_twice, "stood there twice", old);
-    fprintf(file, "%s\n", header);
+    return NOC_OK;
+}
+
+static void print_all(const lab_session *lab, FILE *out) {
+    char header[1024];
+    print_header(header);
+    noc_fprintf(out, "%s\n", header);
     for (size_t r = 0; r < lab->run_count; r++)
         for (int frame = 1; frame <= lab->runs[r].count; frame++)
             for (int mode = 0; mode < LAB_MODES; mode++)
                 if (lab->runs[r].rows[mode][frame - 1].done)
-                    print_row(lab, file, &lab->runs[r], mode, frame);
-    int status = fflush(file) ? CLI_OK : put_aside(path, old, true); /* what could not be written, finishing tells */
+                    print_row(lab, out, &lab->runs[r], mode, frame);
+}
+
+/* From here on rows go to the new file. */
+static noc_status turn_to(lab_session *lab, const char *path) {
+    lab->stored.len = lab->rows_broken = lab->rows_twice = 0;
+    fclose(lab->csv); /* each row was flushed */
+    lab->csv = fopen(path, "a");
+    return lab->csv ? NOC_OK : lab_io_error(lab->log, path);
+}
+
+noc_status lab_tidy_table(lab_session *lab) {
+    size_t others;
+    noc_status status = drop_pictures(lab, &others);
+    if (status || (!others && !lab->rows_broken && !lab->rows_twice))
+        return status;
+    char *path = noc_format("%s/results.csv", lab->folder), *old = path ? old_name(lab) : NULL;
+    lab_file file;
+    status = !path ? noc_no_memory(lab->log, "results.csv")
+             : old ? lab_create_file(lab->folder, "results.csv", lab->log, &file)
+                   : NOC_ERR_MEMORY;
+    if (!status) {
+        tell_rows(lab, others, "came from other settings", old);
+        tell_rows(lab, lab->rows_broken, "could not be read", old);
+        tell_rows(lab, lab->rows_twice, "stood there twice", old);
+        print_all(lab, file.out);
+        /* what could not be written, finishing tells */
+        status = fflush(file.out) ? NOC_OK : put_aside(lab, path, old, true);
+        if (status)
+            lab_discard_file(&file);
+        else
+            status = lab_finish_file(&file);
+        status = status ? status : turn_to(lab, path);
+    }
     free(path);
     free(old);
-    if (status) {
-        lab_discard(file, temporary);
-        return status;
-    }
-    return lab_finish(lab, file, "results.csv", temporary);
+    return status;
 }

@@ -118,6 +118,27 @@ static noc_camera camera;
     P(0, noc_text_nearest(NULL, NULL, 1) == NULL)                                                                      \
     P(0, !noc_text_numbers(NULL, ',', 1, &(double){ 0 }))                                                              \
     P(0, !noc_text_numbers("1", ',', 1, NULL))                                                                         \
+    P(0, noc_lab_reference(NULL, scene, &camera, NULL, NULL, &(noc_image *){ 0 }, NULL, NULL) == NOC_ERR_ARGUMENT)     \
+    P(0,                                                                                                               \
+      noc_lab_measure(NULL, scene, &camera, NULL, image, NULL, &(noc_lab_frame){ 0 }, NULL, NULL) == NOC_ERR_ARGUMENT) \
+    P(0, noc_lab_spec_read(NULL, &(noc_lab_spec *){ 0 }, NULL) == NOC_ERR_ARGUMENT)                                    \
+    P(0, noc_lab_spec_read("a.json", NULL, NULL) == NOC_ERR_ARGUMENT)                                                  \
+    P(0, noc_lab_spec_parse(NULL, "a.json", &(noc_lab_spec *){ 0 }, NULL) == NOC_ERR_ARGUMENT)                         \
+    P(0, noc_lab_spec_parse("{}", NULL, &(noc_lab_spec *){ 0 }, NULL) == NOC_ERR_ARGUMENT)                             \
+    P(0, noc_lab_spec_parse("{}", "a.json", NULL, NULL) == NOC_ERR_ARGUMENT)                                           \
+    P(noc_lab_spec_destroy(NULL), true)                                                                                \
+    P(noc_lab_spec_get_info(NULL, &(noc_lab_spec_info){ 0 }), true)                                                    \
+    P(noc_lab_spec_get_info(NULL, NULL), true)                                                                         \
+    P(0, noc_lab_spec_get_camera(NULL, 0, &(noc_lab_camera_info){ 0 }) == NOC_ERR_ARGUMENT)                            \
+    P(0, noc_lab_spec_get_config(NULL, 0, &(noc_lab_config_info){ 0 }) == NOC_ERR_ARGUMENT)                            \
+    P(0, noc_lab_create(NULL, NULL, &(noc_lab *){ 0 }, NULL) == NOC_ERR_ARGUMENT)                                      \
+    P(0, noc_lab_create(NULL, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                   \
+    P(noc_lab_destroy(NULL), true)                                                                                     \
+    P(0, noc_lab_run(NULL) == NOC_ERR_ARGUMENT)                                                                        \
+    P(0, noc_lab_write_report(NULL) == NOC_ERR_ARGUMENT)                                                               \
+    P(noc_lab_get_state(NULL, &(noc_lab_state){ 0 }), true)                                                            \
+    P(noc_lab_get_state(NULL, NULL), true)                                                                             \
+    P(0, !noc_lab_get_row(NULL, 0, &(noc_lab_row){ 0 }))                                                               \
     P(0, noc_option_set(NULL, &camera, "1", NULL) == NOC_ERR_ARGUMENT)                                                 \
     P(0, noc_option_set(noc_render_options(), NULL, "1", NULL) == NOC_ERR_ARGUMENT)                                    \
     P(0, noc_option_get(NULL, &camera, (char[8]){ 0 }, 8) == 0)                                                        \

@@ -13,6 +13,9 @@ int main() {
                 render.accumulate && render.draws > 0 && compare->ceiling == 10 && compare->display.auto_exposure &&
                 import.lod == 3 && !import.crs && city.seed == 1 &&
                 (&noc_display_default_params())->compensation == 0 && (&noc_device_default_params())->threads == 0 &&
-                (&noc_log_default_params())->level == NOC_LOG_WARN;
+                (&noc_log_default_params())->level == NOC_LOG_WARN && noc_lab_measure_default_params().frames == 20 &&
+                noc_lab_measure_default_params().compare.ceiling == 10 &&
+                noc_lab_reference_default_params().frames == 16 && !noc_lab_default_params().folder &&
+                noc_camera_default_params().viewpoint == NOC_VIEWPOINT_OWN;
     return good ? 0 : 1;
 }

@@ -1,0 +1,10 @@
+/* lab: the present scene and its reference. */
+#ifndef NOC_LAB_REFERENCE_H
+#define NOC_LAB_REFERENCE_H
+
+#include "lab/session.h"
+
+noc_status lab_load_scene(lab_session *lab, size_t scene);
+noc_status lab_make_reference(lab_session *lab, size_t camera); /* camera placed, reference read or rendered */
+
+#endif

@@ -1,0 +1,64 @@
+/* Runs and their rows in memory. */
+#include "lab/session.h"
+
+lab_run *lab_find_run(const lab_session *lab, size_t camera, size_t config, int repetition) {
+    const lab_spec *spec = lab->spec;
+    return &lab->runs[(camera * (size_t)spec->repetitions + (size_t)repetition) * spec->config_count + config];
+}
+
+noc_render_params lab_params_of(const lab_session *lab, const lab_run *run) {
+    noc_render_params p = lab->spec->configs[run->config].params;
+    p.seed = lab->spec->seed + (uint32_t)run->repetition;
+    p.accumulate = false; /* the mean is made here, so that one run gives both curves */
+    return p;
+}
+
+lab_row *lab_row_of(const lab_session *lab, lab_run *run, int mode, int frame) {
+    if (frame > run->room) {
+        int room = NOC_MAX(frame, 2 * run->room);
+        for (int m = 0; m < LAB_MODES; m++) {
+            lab_row *rows = noc_realloc(run->rows[m], sizeof(lab_row) * (size_t)room);
+            if (!rows) {
+                noc_no_memory(lab->log, "rows");
+                return NULL;
+            }
+            memset(rows + run->room, 0, sizeof(lab_row) * (size_t)(room - run->room));
+            run->rows[m] = rows;
+        }
+        run->room = room;
+    }
+    run->count = NOC_MAX(run->count, frame);
+    return &run->rows[mode][frame - 1];
+}
+
+char *lab_picture_path(const lab_session *lab, const char *key, int mode, int frame) {
+    char *path =
+        noc_format("%s/pictures/%s-%s%d.exr", lab->folder, key, mode == LAB_ACCUMULATED ? "mean" : "frame", frame);
+    if (!path)
+        noc_no_memory(lab->log, "pictures");
+    return path;
+}
+
+const char *lab_sheet_name(const lab_spec *spec, size_t camera, int frame, char text[LAB_TEXT]) {
+    char slug[LAB_TEXT];
+    bool mean = lab_shown_mode(spec, camera) == LAB_ACCUMULATED;
+    noc_snprintf(text, LAB_TEXT, "%.300s-%s%d.png", lab_slug(spec, camera, slug), mean ? "mean" : "frame", frame);
+    return text;
+}
+
+void lab_note(const lab_session *lab, const char *fmt, ...) {
+    char text[1024];
+    if (!lab->params.note)
+        return;
+    va_list ap;
+    va_start(ap, fmt);
+    noc_vsnprintf(text, sizeof(text), fmt, ap);
+    va_end(ap);
+    lab->params.note(lab->params.user, text);
+}
+
+bool lab_go_on(lab_session *lab, const noc_lab_progress *progress) {
+    if (!lab->cancelled && lab->params.progress)
+        lab->cancelled = !lab->params.progress(lab->params.user, progress);
+    return !lab->cancelled;
+}
