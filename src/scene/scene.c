@@ -287,6 +287,18 @@ size_t noc_scene_mesh_of(const noc_scene *scene, size_t triangle) {
     return low;
 }
 
+size_t noc_scene_mesh_at_vertex(const noc_scene *scene, size_t vertex) {
+    size_t low = 0, high = scene->meshes.len;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (scene->meshes.data[middle].first_vertex < vertex)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double origin[3]) {
     if (!scene)
         return NOC_ERR_ARGUMENT;

@@ -188,6 +188,8 @@ static inline bool noc_mesh_in_city(const noc_scene *s, const noc_scene_mesh *m)
 void noc_scene_add_gap(noc_scene *s, size_t first, size_t count);
 /* Index of the mesh that a triangle is of. */
 size_t noc_scene_mesh_of(const noc_scene *s, size_t triangle);
+/* Index of the first mesh whose vertices begin there or behind. */
+size_t noc_scene_mesh_at_vertex(const noc_scene *s, size_t vertex);
 static inline size_t noc_mesh_end_vertex(const noc_scene *s, size_t mesh) {
     return mesh + 1 < s->meshes.len ? s->meshes.data[mesh + 1].first_vertex : s->positions.len / 3;
 }

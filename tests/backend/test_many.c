@@ -82,7 +82,7 @@ static void known_answers(void **state) {
             open += (uint64_t)__builtin_popcount(expect[k]);
         }
         assert_true(n < 7 || (open > rays / 4 && open < rays) || lights[i / NOC_COUNT(sizes)] == 1);
-        noc_cpu_trace_occlusion(s, w, blocks, n);
+        noc_cpu_trace_occlusion(s, w, NOC_RAYS_NOW, blocks, n);
         assert_int_equal(w->rays_shadow - before, rays);
         for (int k = 0; k < n; k++) {
             assert_int_equal(blocks[k].clear, expect[k]);
@@ -110,8 +110,8 @@ static void company_does_not_matter(void **state) {
         for (int l = 0; l < BLOCK; l++)
             other[k].light[l] = next(&seed) % 3 ? UINT32_MAX : other[k].light[l] ^ 0xabcd;
     }
-    noc_cpu_trace_occlusion(s, &s->workers[0], blocks, MANY_BLOCKS);
-    noc_cpu_trace_occlusion(s, &s->workers[0], other, MANY_BLOCKS);
+    noc_cpu_trace_occlusion(s, &s->workers[0], NOC_RAYS_NOW, blocks, MANY_BLOCKS);
+    noc_cpu_trace_occlusion(s, &s->workers[0], NOC_RAYS_NOW, other, MANY_BLOCKS);
     for (int k = 0; k < MANY_BLOCKS; k++)
         assert_int_equal(blocks[k].clear, other[MANY_BLOCKS - 1 - k].clear);
     close_cpu_view(s);
@@ -130,9 +130,9 @@ static void kept_rays(void **state) {
     for (int call = 0; call < 3; call++) {
         for (int k = 0; k < MANY_BLOCKS + 3; k++)
             make_block(&seed, 5, &blocks[k], &expect);
-        noc_cpu_trace_occlusion(s, &s->workers[0], blocks, MANY_BLOCKS + 3);
+        noc_cpu_trace_occlusion(s, &s->workers[0], NOC_RAYS_NOW, blocks, MANY_BLOCKS + 3);
         blocks[0].valid |= 1;
-        noc_cpu_trace_occlusion(s, &s->workers[0], blocks, 1);
+        noc_cpu_trace_occlusion(s, &s->workers[0], NOC_RAYS_NOW, blocks, 1);
     }
     noc_backend_embree.record(s, false);
     assert_int_equal(s->workers[0].packet_count, 3 * (MANY_BLOCKS + 4));

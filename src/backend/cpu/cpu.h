@@ -8,6 +8,7 @@
 #include "light/learned.h"
 #include "light/set.h"
 
+#include <pthread.h>
 #include <stdatomic.h>
 
 /* Numbers of lights found are told apart up to that; 64 k bins take half a megabyte a thread. */
@@ -130,6 +131,7 @@ typedef struct frame_buffers {
     cblock *colour;                        /* of the frame being made */
     cblock *picture;                       /* mean, or last frame */
     uint16_t *emitter;                     /* lanes that see an emitter in the frame being made */
+    uint32_t (*instance)[BLOCK];           /* that each lane sees, or NO_INSTANCE; NULL: the scene has had none */
     coverage coverage;
     aov_buffers aovs;
     size_t bytes;
@@ -143,13 +145,26 @@ typedef struct cpu_device {
     void *rays; /* the tracer's device */
 } cpu_device;
 
+/* Where an instance stands; model 0: there is none in the slot. */
+typedef struct cpu_place {
+    uint32_t model;
+    float transform[12];
+} cpu_place;
+
+typedef NOC_ARRAY(cpu_place) cpu_places;
+
 /* A scene on a device: its ray tracing structure, and what light candidates are drawn from. */
 typedef struct cpu_world {
     cpu_device *device;
     const noc_scene *scene;
     noc_log *log;
-    void *rays; /* the tracer's structure */
+    void *rays;           /* the tracer's structure */
+    pthread_mutex_t lock; /* held while it follows the scene */
+    uint64_t shape, past; /* noc_cpu_shape of the scene that it knows, and of that before */
+    cpu_places places[2]; /* of instances: now, and then */
     double build_seconds;
+    size_t vertices;                 /* that stand_off knows */
+    float largest;                   /* coordinate of them, and of instances */
     float stand_off;                 /* of shadow rays at least, m */
     noc_material_record no_material; /* stands in where the scene has none */
     noc_light_set *lights;
@@ -172,8 +187,11 @@ typedef struct cpu_view {
     float list_brightness;    /* mean luminance that the last frame expected, cd/m2; 0: not known */
     /* all lights as they were in the last frame that left reservoirs; NULL: never needed */
     noc_light_record *past_lights;
-    uint64_t past_moves; /* of the scene at that frame */
-    bool past_filled;    /* past_lights has been written */
+    size_t past_room;        /* lights that there is room for, those beyond the frame's are dark */
+    noc_scene_versions seen; /* of the scene in the last complete frame */
+    bool past_filled;        /* past_lights is of that frame */
+    bool past_lost;          /* the frame before saw another scene, of which something is not known any more */
+    size_t chunks;           /* of lights, that the reference has room for */
     worker *workers;
     int worker_count;
     bool recording;
@@ -215,14 +233,21 @@ typedef struct tile_points {
 } tile_points;
 
 /* device.c */
+/* What rays can hit is the same where this is. */
+static inline uint64_t noc_cpu_shape(const noc_scene_versions *v) { return v->geometry + v->instances; }
+/* Has the world follow what was edited; before anything of a frame. */
+noc_status noc_cpu_follow(cpu_world *world);
 size_t noc_cpu_rays_bytes(const cpu_world *world); /* of the ray tracing structure */
+/* view.c: before a frame, room for what the scene has more than before */
+noc_status noc_cpu_fit_scene(cpu_view *s);
 /* rays.c: what the tracer answers, and the book-keeping around it */
 /* Traces the segments of many blocks, the more the better up to MANY_BLOCKS. Sets `clear`, which is 0 outside `valid`.
  * Counts rays where each block says, and keeps them when recording. */
-void noc_cpu_trace_occlusion(cpu_view *s, worker *w, segment_block *blocks, int count);
+void noc_cpu_trace_occlusion(cpu_view *s, worker *w, noc_ray_world in, segment_block *blocks, int count);
 /* Nearest hits of camera rays into a block; lanes outside `valid` see nothing.
- * object: of each lane, -1 where there is none; may be NULL. */
-void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g, float *object);
+ * object: of each lane, -1 where there is none; instance: NO_INSTANCE; both may be NULL. */
+void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g, float *object,
+                     uint32_t *instance);
 void noc_cpu_probe(void *user, noc_probes *probes); /* a noc_probe_fn; user is the cpu_world */
 noc_status noc_cpu_replay_rays(cpu_view *s, double *seconds);
 
@@ -230,13 +255,17 @@ noc_status noc_cpu_replay_rays(cpu_view *s, double *seconds);
 noc_status noc_cpu_prepare_lights(cpu_view *s, const noc_plan *plan, const noc_render_params *p);
 void noc_cpu_release_lights(cpu_view *s);
 void noc_cpu_forget_found(cpu_view *s); /* of the last frame, before candidates are drawn */
-/* moved.c: lights that move */
-/* Room for the lights of the previous frame, where a frame with these parameters will want them. */
-noc_status noc_cpu_prepare_past(cpu_view *s, const noc_plan *plan);
-/* After a frame: its reservoirs were made with the lights as they are now. */
-void noc_cpu_keep_lights(cpu_view *s);
-/* The context that the previous frame's targets and visibility are asked of: *now with its lights. */
-struct core_context noc_cpu_past(const cpu_view *s, const struct core_context *now);
+/* moved.c: what the frame before saw of a scene that is edited */
+/* Before a frame: room for the lights of the previous one, where reservoirs of it will be reused with these parameters,
+ * and whether they can be. */
+noc_status noc_cpu_begin_past(cpu_view *s, const noc_plan *plan);
+/* After a frame: its reservoirs were made with the scene as it is now. */
+void noc_cpu_keep_past(cpu_view *s);
+/* The context that the previous frame's targets and visibility are asked of: *now with its lights. in: what its rays
+ * are traced against. */
+struct core_context noc_cpu_past(const cpu_view *s, const struct core_context *now, noc_ray_world *in);
+/* Takes surfaces that instances show back to where they were in the frame before; g itself where all stand. */
+const gblock *noc_cpu_taken_back(const cpu_view *s, size_t at, const gblock *g, gblock *moved);
 size_t noc_cpu_past_bytes(const cpu_view *s);
 size_t noc_cpu_light_bytes(const cpu_world *world);
 

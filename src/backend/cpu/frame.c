@@ -43,7 +43,11 @@ noc_status noc_cpu_stage(void *state, const noc_frame *frame, const noc_stage *s
                          double from, double to) {
     cpu_view *s = state;
     s->kernels = noc_pick_kernels(frame->params->isa);
-    noc_status status = noc_cpu_prepare_past(s, frame->plan);
+    noc_status status = noc_cpu_follow(s->world);
+    if (status == NOC_OK)
+        status = noc_cpu_begin_past(s, frame->plan);
+    if (status == NOC_OK)
+        status = noc_cpu_fit_scene(s);
     if (status == NOC_OK)
         status = noc_cpu_prepare_lights(s, frame->plan, frame->params);
     if (status == NOC_OK)
@@ -103,7 +107,7 @@ noc_status noc_cpu_accumulate(void *state, const noc_frame *frame) {
         return status;
     noc_cpu_keep_aovs(s, frame);
     noc_cpu_keep_coverage(s, frame);
-    noc_cpu_keep_lights(s);
+    noc_cpu_keep_past(s);
     noc_cpu_end_learning(s, frame);
     if (!frame->accumulated) {
         memcpy(s->b.picture, s->b.colour, (size_t)s->b.blocks_x * s->b.blocks_y * sizeof(cblock));

@@ -29,9 +29,15 @@ static noc_status prepare_tree_items(cpu_view *s) {
 }
 
 static noc_status prepare_found(cpu_view *s) {
-    s->found_bins = (uint32_t)NOC_MIN(s->scene->lights.len, (size_t)FOUND_MOST) + 1;
+    uint32_t bins = (uint32_t)NOC_MIN(s->scene->lights.len, (size_t)FOUND_MOST) + 1;
+    bool more = bins > s->found_bins;
+    s->found_bins = NOC_MAX(bins, s->found_bins);
     for (int i = 0; i < s->worker_count; i++) {
         uint64_t **counts = &s->workers[i].found_counts;
+        if (more) {
+            free(*counts);
+            *counts = NULL;
+        }
         if (!*counts && !(*counts = noc_alloc_large(s->found_bins, sizeof(**counts))))
             return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory to count the lights that are found");
     }

@@ -275,7 +275,7 @@ static void blank_hidden(const stage_run *run, const tile_rays *t) {
 void noc_cpu_trace_shared(stage_run *run, worker *w, tile at) {
     tile_rays *t = &w->shared;
     if (run->ctx.frame->flags & FRAME_FINAL_RAY)
-        noc_cpu_trace_occlusion(run->s, w, t->segments, t->count);
+        noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, t->segments, t->count);
     else
         for (int i = 0; i < t->count; i++)
             t->segments[i].clear = t->segments[i].valid;

@@ -44,8 +44,9 @@ static void primary_block(stage_run *run, worker *w, int bx, int by) {
         rays.d[2][l] = d.z;
     }
     float(*objects)[BLOCK] = b->aovs.made[NOC_AOV_OBJECT];
-    noc_cpu_primary(run->s, w, &rays, lanes_inside(b, bx, by), &b->g[run->frame->gbuffer][block_at(b, bx, by)],
-                    objects ? objects[block_at(b, bx, by)] : NULL);
+    size_t at = block_at(b, bx, by);
+    noc_cpu_primary(run->s, w, &rays, lanes_inside(b, bx, by), &b->g[run->frame->gbuffer][at],
+                    objects ? objects[at] : NULL, b->instance ? b->instance[at] : NULL);
 }
 
 static void primary(stage_run *run, worker *w, tile t) {
@@ -176,7 +177,7 @@ static void visibility(stage_run *run, worker *w, tile t) {
         asked[w->batch.count] = at;
         noc_cpu_gather_segments(run, w, at, lanes, &g[at], r[at].light, r[at].u, r[at].v);
     }
-    noc_cpu_trace_occlusion(run->s, w, w->batch.blocks, w->batch.count);
+    noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
     for (int i = 0; i < w->batch.count; i++) {
         uint32_t seen = w->batch.blocks[i].clear;
         for (int l = 0; l < BLOCK; l++)
@@ -232,7 +233,7 @@ static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, cons
             if (rays)
                 noc_cpu_gather_segments(run, w, block->at, lanes[i], g, r[i].light, r[i].u, r[i].v);
         }
-        noc_cpu_trace_occlusion(run->s, w, w->batch.blocks, w->batch.count);
+        noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
         for (uint32_t i = 0; i < n; i++)
             dropped |= run->k->shade(&run->ctx, g, &r[i], rays ? w->batch.blocks[i].clear : lanes[i], c);
     }
@@ -255,7 +256,7 @@ static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, i
         if (asked[i])
             noc_cpu_gather_segments(run, w, at, asked[i], &g[at], r[at].light, r[at].u, r[at].v);
     }
-    noc_cpu_trace_occlusion(run->s, w, w->batch.blocks, w->batch.count);
+    noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
     const segment_block *answer = w->batch.blocks;
     for (int i = 0; i < n; i++) {
         size_t at = blocks[i].at;
@@ -346,7 +347,7 @@ static void sky(stage_run *run, worker *w, tile t) {
             run->k->sky_rays(&run->ctx, &g[at], blocks[i].x, blocks[i].y, number, &s->rays);
             memset(s->light, 0, sizeof(s->light));
         }
-        noc_cpu_trace_occlusion(run->s, w, w->batch.blocks, w->batch.count);
+        noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
         for (int i = 0; i < w->batch.count; i++) {
             const segment_block *s = &w->batch.blocks[i];
             size_t at = asked[i];

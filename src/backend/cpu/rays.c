@@ -32,7 +32,7 @@ static void count_rays(worker *w, float *counts, uint32_t valid) {
         counts[l] += (float)(valid >> l & 1);
 }
 
-void noc_cpu_trace_occlusion(cpu_view *s, worker *w, segment_block *blocks, int count) {
+void noc_cpu_trace_occlusion(cpu_view *s, worker *w, noc_ray_world in, segment_block *blocks, int count) {
     for (int first = 0; first < count; first += MANY_BLOCKS) {
         int n = NOC_MIN(MANY_BLOCKS, count - first);
         for (int i = 0; i < n; i++) {
@@ -40,8 +40,19 @@ void noc_cpu_trace_occlusion(cpu_view *s, worker *w, segment_block *blocks, int 
             count_rays(w, b->counts, b->valid);
             keep(s, w, &b->rays, b->light, b->valid, n - i, false);
         }
-        s->world->device->tracer->occluded(s->world->rays, blocks + first, n);
+        s->world->device->tracer->occluded(s->world->rays, in, blocks + first, n);
     }
+}
+
+/* From a model's coordinates to the scene's; n keeps its direction, not its length. */
+static void place_hit(const float m[12], double p[3], double n[3]) {
+    double q[3], t[3];
+    for (int k = 0; k < 3; k++) {
+        q[k] = m[4 * k] * p[0] + m[4 * k + 1] * p[1] + m[4 * k + 2] * p[2] + m[4 * k + 3];
+        t[k] = m[4 * k] * n[0] + m[4 * k + 1] * n[1] + m[4 * k + 2] * n[2];
+    }
+    memcpy(p, q, sizeof(q));
+    memcpy(n, t, sizeof(t));
 }
 
 /* The hit point from its triangle in doubles: in its plane to half a unit in the last place, however large the
@@ -58,6 +69,12 @@ static void fill_hit(const noc_scene *scene, const rayblock *rays, const hitbloc
         p[k] = a[k] + h->u[l] * e[k] + h->v[l] * f[k];
     }
     double n[3] = { e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0] };
+    uint32_t light = scene->triangle_light.data[prim];
+    if (h->instance[l] != NO_INSTANCE) {
+        const noc_scene_instance *in = &scene->instances.data[h->instance[l]];
+        place_hit(in->transform, p, n);
+        light = light != NOC_NO_LIGHT ? in->lights[light] : light;
+    }
     double d[3] = { rays->d[0][l], rays->d[1][l], rays->d[2][l] };
     double inv = 1 / sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     for (int k = 0; k < 3; k++)
@@ -72,25 +89,27 @@ static void fill_hit(const noc_scene *scene, const rayblock *rays, const hitbloc
     g->nz[l] = (float)(n[2] * inv);
     g->depth[l] = (float)(h->t[l] * sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
     g->material[l] = scene->triangle_material.data[prim];
-    uint32_t light = scene->triangle_light.data[prim];
     if (light != NOC_NO_LIGHT && !front && !(scene->lights.data[light].flags & LIGHT_TWO_SIDED))
         light = NOC_NO_LIGHT; /* the dark back of a one-sided emitter */
     g->light[l] = light;
 }
 
-static void closest(const cpu_world *world, const rayblock *rays, float far, uint32_t valid, bool coherent,
-                    hitblock *hits) {
-    world->device->tracer->closest(world->rays, rays, far, valid, coherent, hits);
+static void closest(const cpu_world *world, noc_ray_world in, const rayblock *rays, float far, uint32_t valid,
+                    bool coherent, hitblock *hits) {
+    world->device->tracer->closest(world->rays, in, rays, far, valid, coherent, hits);
 }
 
-void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g, float *object) {
+void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g, float *object,
+                     uint32_t *instance) {
     hitblock h;
     *g = (gblock){ 0 };
     memset(g->material, 0xff, sizeof(g->material));
     memset(g->light, 0xff, sizeof(g->light));
     w->rays_primary += (uint64_t)__builtin_popcount(valid);
     keep(s, w, rays, NULL, valid, 1, true);
-    closest(s->world, rays, INFINITY, valid, true, &h);
+    closest(s->world, NOC_RAYS_NOW, rays, INFINITY, valid, true, &h);
+    if (instance)
+        memcpy(instance, h.instance, sizeof(h.instance));
     for (int l = 0; l < BLOCK; l++)
         if (h.triangle[l] != NO_HIT) {
             fill_hit(s->scene, rays, &h, l, g);
@@ -104,7 +123,7 @@ void noc_cpu_probe(void *user, noc_probes *p) {
     hitblock h;
     memcpy(rays.o, p->o, sizeof(rays.o));
     memcpy(rays.d, p->d, sizeof(rays.d));
-    closest(user, &rays, 1, 0xffff, false, &h);
+    closest(user, NOC_RAYS_STANDING, &rays, 1, 0xffff, false, &h); /* what moves is not remembered */
     for (int l = 0; l < BLOCK; l++)
         p->t[l] = h.triangle[l] != NO_HIT ? h.t[l] : 1;
 }
@@ -129,11 +148,11 @@ static void replay_run(void *ctx, size_t item, int index) {
         int n = (int)NOC_MIN((ptrdiff_t)p->together, end - p);
         if (p->primary) {
             hitblock hits;
-            closest(r->s->world, &p->block.rays, INFINITY, p->block.valid, true, &hits);
+            closest(r->s->world, NOC_RAYS_NOW, &p->block.rays, INFINITY, p->block.valid, true, &hits);
         } else {
             for (int i = 0; i < n; i++)
                 many[i] = p[i].block;
-            r->s->world->device->tracer->occluded(r->s->world->rays, many, n);
+            r->s->world->device->tracer->occluded(r->s->world->rays, NOC_RAYS_NOW, many, n);
         }
         p += n;
     }

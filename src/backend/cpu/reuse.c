@@ -113,7 +113,7 @@ static void resolve(const stage_run *run, worker *w, int count) {
         asked[w->batch.count] = &w->combining[i];
         noc_cpu_gather_segments(run, w, at, lanes, &g[at], r[at].light, r[at].u, r[at].v);
     }
-    noc_cpu_trace_occlusion(run->s, w, w->batch.blocks, w->batch.count);
+    noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
     for (int i = 0; i < w->batch.count; i++) {
         const segment_block *s = &w->batch.blocks[i];
         asked[i]->visible |= s->clear;
@@ -124,8 +124,8 @@ static void resolve(const stage_run *run, worker *w, int count) {
 }
 
 /* Combines the first `count` of w->combining into the stage's target. All rays of a step are traced in company. */
-static void combine(stage_run *run, const struct core_context *there, worker *w, int count, const float eye[3],
-                    uint32_t dim) {
+static void combine(stage_run *run, const struct core_context *there, noc_ray_world in, worker *w, int count,
+                    const float eye[3], uint32_t dim) {
     frame_buffers *b = &run->s->b;
     bool rays = run->ctx.frame->flags & FRAME_BIAS_RAYS;
     w->batch.count = 0;
@@ -134,7 +134,7 @@ static void combine(stage_run *run, const struct core_context *there, worker *w,
         if (rays)
             ask_neighbours(run, there, w, &w->combining[i]);
     }
-    noc_cpu_trace_occlusion(run->s, w, w->batch.blocks, w->batch.count);
+    noc_cpu_trace_occlusion(run->s, w, in, w->batch.blocks, w->batch.count);
     const segment_block *answer = w->batch.blocks;
     for (int i = 0; i < count; i++) {
         combining *c = &w->combining[i];
@@ -153,12 +153,12 @@ static void combine(stage_run *run, const struct core_context *there, worker *w,
 static bool fetch_history(const stage_run *run, const tile_block *block, combining *c) {
     const noc_frame *f = run->frame;
     const frame_buffers *b = &run->s->b;
-    const gblock *g = &b->g[f->gbuffer][block->at];
+    gblock moved;
+    const gblock *g = noc_cpu_taken_back(run->s, block->at, &b->g[f->gbuffer][block->at], &moved);
     uint32_t surfaces = lanes_with_surface(g);
     if (!surfaces)
         return false;
     ALIGNED float px[BLOCK], py[BLOCK];
-    /* Static geometry: a surface was where it is. A moved one would be taken back by its own motion here. */
     uint32_t front = run->k->project(&run->ctx, g, px, py) & surfaces;
     neighbour *n = c->n;
     clear(n);
@@ -181,7 +181,7 @@ void noc_cpu_temporal(stage_run *run, worker *w, tile t) {
     const noc_frame *f = run->frame;
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
     int n = noc_cpu_tile_blocks(run, t, blocks), count = 0;
-    if (!f->history)
+    if (!f->history || run->s->past_lost)
         return;
     for (int i = 0; i < n; i++) {
         combining *c = &w->combining[count];
@@ -194,8 +194,9 @@ void noc_cpu_temporal(stage_run *run, worker *w, tile t) {
         c->visible = run->s->b.visible[run->stage->target][c->at];
         count++;
     }
-    struct core_context past = noc_cpu_past(run->s, &run->ctx);
-    combine(run, &past, w, count, run->ctx.frame->previous.eye, DIM_TEMPORAL);
+    noc_ray_world in;
+    struct core_context past = noc_cpu_past(run->s, &run->ctx, &in);
+    combine(run, &past, in, w, count, run->ctx.frame->previous.eye, DIM_TEMPORAL);
 }
 
 /* Neighbour places are drawn once a block: pixels next to each other read reservoirs next to each other, and their bias
@@ -256,5 +257,5 @@ void noc_cpu_spatial(stage_run *run, worker *w, tile t) {
         c->visible = b->visible[source][at];
         count++;
     }
-    combine(run, &run->ctx, w, count, run->ctx.frame->camera.eye, dim);
+    combine(run, &run->ctx, NOC_RAYS_NOW, w, count, run->ctx.frame->camera.eye, dim);
 }

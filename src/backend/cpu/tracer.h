@@ -18,10 +18,19 @@ typedef struct segment_block {
 /* Nearest hits. */
 typedef struct hitblock {
     ALIGNED uint32_t triangle[BLOCK]; /* of the scene; NO_HIT */
+    uint32_t instance[BLOCK];         /* of the scene, that shows the triangle; NO_INSTANCE: the world */
     float u[BLOCK], v[BLOCK];         /* barycentric, of the second and the third corner */
     float t[BLOCK];                   /* along the ray's direction, in its lengths */
 } hitblock;
 #define NO_HIT UINT32_MAX
+#define NO_INSTANCE UINT32_MAX
+
+/* What rays are traced against. */
+typedef enum noc_ray_world {
+    NOC_RAYS_NOW,      /* the scene as it is */
+    NOC_RAYS_PAST,     /* as it was before the structure followed it last */
+    NOC_RAYS_STANDING, /* what stands as long as nothing is removed: no instances */
+} noc_ray_world;
 
 typedef struct noc_tracer {
     const char *name;
@@ -31,11 +40,15 @@ typedef struct noc_tracer {
     /* The ray tracing structure of a scene, which is not copied. */
     noc_status (*build)(void *device, const noc_scene *scene, noc_log *log, void **structure);
     void (*release)(void *structure);
+    /* What has changed of the scene's meshes and instances; the structure is as it was where this fails. No ray is
+     * traced meanwhile. */
+    noc_status (*follow)(void *structure);
     size_t (*bytes)(const void *structure);
     /* coherent: the rays are a camera's. far: tfar of all rays. */
-    void (*closest)(void *structure, const rayblock *rays, float far, uint32_t valid, bool coherent, hitblock *hits);
+    void (*closest)(void *structure, noc_ray_world in, const rayblock *rays, float far, uint32_t valid, bool coherent,
+                    hitblock *hits);
     /* Sets `clear` of up to MANY_BLOCKS blocks. */
-    void (*occluded)(void *structure, segment_block *blocks, int count);
+    void (*occluded)(void *structure, noc_ray_world in, segment_block *blocks, int count);
 } noc_tracer;
 
 #endif

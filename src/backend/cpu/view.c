@@ -11,6 +11,7 @@ static void free_buffers(frame_buffers *b) {
     free(b->colour);
     free(b->picture);
     free(b->emitter);
+    free(b->instance);
     noc_cpu_free_coverage(&b->coverage);
     noc_cpu_free_aovs(&b->aovs);
     *b = (frame_buffers){ 0 };
@@ -34,16 +35,42 @@ static noc_status create_workers(cpu_view *s) {
     bool ok = s->workers != NULL;
     if (!ok)
         s->worker_count = 0;
-    size_t chunks = s->scene->lights.len / REFERENCE_CHUNK + 1;
     for (int i = 0; i < s->worker_count; i++) {
         worker *w = &s->workers[i];
         w->combining = noc_alloc_large(TILE_BLOCKS * TILE_BLOCKS, sizeof(*w->combining));
-        w->reference.sums = noc_alloc_large(chunks, sizeof(*w->reference.sums));
         w->reference.light = noc_alloc_large(1024, sizeof(*w->reference.light));
         w->reference.w = noc_alloc_large(1024, sizeof(*w->reference.w));
-        ok = ok && w->combining && w->reference.sums && w->reference.light && w->reference.w;
+        ok = ok && w->combining && w->reference.light && w->reference.w;
     }
-    return ok ? NOC_OK : noc_error(s->log, NOC_ERR_MEMORY, "embree: no memory for %zu lights", s->scene->lights.len);
+    return ok ? NOC_OK : noc_no_memory(s->log, "view");
+}
+
+static bool fit_lights(cpu_view *s) {
+    size_t chunks = s->scene->lights.len / REFERENCE_CHUNK + 1;
+    for (int i = 0; i < s->worker_count && chunks > s->chunks; i++) {
+        reference_scratch *r = &s->workers[i].reference;
+        free(r->sums);
+        if (!(r->sums = noc_alloc_large(chunks, sizeof(*r->sums))))
+            return false;
+    }
+    s->chunks = NOC_MAX(chunks, s->chunks);
+    return true;
+}
+
+noc_status noc_cpu_fit_scene(cpu_view *s) {
+    frame_buffers *b = &s->b;
+    if (!fit_lights(s)) {
+        s->chunks = 0;
+        return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for %zu lights", s->scene->lights.len);
+    }
+    if (!s->scene->instances.len || b->instance)
+        return NOC_OK;
+    b->instance = noc_alloc_large((size_t)b->blocks_x * b->blocks_y, sizeof(*b->instance));
+    if (!b->instance)
+        return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for the instances of a picture of %d x %d",
+                         b->width, b->height);
+    memset(b->instance, 0xff, (size_t)b->blocks_x * b->blocks_y * sizeof(*b->instance));
+    return NOC_OK;
 }
 
 void noc_cpu_view_destroy(void *state) {

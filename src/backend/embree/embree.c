@@ -1,4 +1,4 @@
-/* The only rtc* calls, with many.c. */
+/* The only rtc* calls, with structure.c and many.c. */
 #include "backend/cpu/backend.h"
 #include "backend/embree/embree.h"
 
@@ -8,7 +8,7 @@
 /* ---- errors and memory ---- */
 
 /* One message, whatever follows from the first error. */
-static noc_status fail(embree_structure *s, enum RTCError code, const char *text) {
+noc_status noc_embree_fail(embree_structure *s, enum RTCError code, const char *text) {
     noc_log *log = s->device->log;
     if (s->failed)
         return s->failed;
@@ -22,7 +22,7 @@ static noc_status fail(embree_structure *s, enum RTCError code, const char *text
 static void report(void *user, enum RTCError code, const char *text) {
     embree_device *d = user;
     if (code != RTC_ERROR_NONE && d->current)
-        fail(d->current, code, text);
+        noc_embree_fail(d->current, code, text);
 }
 
 /* Of a block that Embree takes or has given back. False: Embree gives up, in order, before it takes it. */
@@ -87,43 +87,22 @@ static noc_status open_device(int threads, noc_log *log, void **device) {
 
 /* ---- structures ---- */
 
-static void attach_triangles(embree_structure *s) {
-    const noc_scene *scene = s->scene;
-    size_t triangles = scene->indices.len / 3;
-    RTCGeometry geometry = triangles ? rtcNewGeometry(s->device->device, RTC_GEOMETRY_TYPE_TRIANGLE) : NULL;
-    if (!geometry)
-        return;
-    rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_MEDIUM);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, scene->positions.data, 0, 12,
-                               scene->positions.len / 3);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->indices.data, 0, 12,
-                               triangles);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(s->rtc, geometry);
-    rtcReleaseGeometry(geometry);
-}
-
-static void build_scene(embree_structure *s) {
-    s->rtc = rtcNewScene(s->device->device);
-    if (!s->rtc) {
-        fail(s, rtcGetDeviceError(s->device->device), "no scene");
-        return;
-    }
-    /* Robust: without it rays slip through the edges between walls, and every slip is a bright pixel in a dark room. */
-    rtcSetSceneFlags(s->rtc, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(s->rtc, RTC_BUILD_QUALITY_MEDIUM);
-    attach_triangles(s);
-    if (!s->failed)
-        rtcCommitScene(s->rtc);
-}
-
 static void release_structure(void *structure) {
     embree_structure *s = structure;
     enter(s);
-    if (s->rtc)
-        rtcReleaseScene(s->rtc);
+    noc_embree_release_parts(s);
     leave(s);
     free(s);
+}
+
+static noc_status follow(void *structure) {
+    embree_structure *s = structure;
+    if (s->geometry == s->scene->versions.geometry && s->instances == s->scene->versions.instances)
+        return NOC_OK;
+    enter(s);
+    noc_status status = noc_embree_follow(s);
+    leave(s);
+    return status;
 }
 
 static noc_status build_structure(void *device, const noc_scene *scene, noc_log *log, void **structure) {
@@ -133,12 +112,8 @@ static noc_status build_structure(void *device, const noc_scene *scene, noc_log 
     s->device = device;
     s->scene = scene;
     enter(s);
-    if (noc_embree_room(s->device->threads, 0))
-        build_scene(s);
-    else
-        fail(s, RTC_ERROR_OUT_OF_MEMORY, NULL);
+    noc_status status = noc_embree_follow(s);
     leave(s);
-    noc_status status = s->failed;
     if (status == NOC_OK)
         *structure = s;
     else
@@ -168,8 +143,12 @@ static void fill_rays(const rayblock *rays, float far, struct RTCRay16 *r) {
     }
 }
 
-static void closest(void *structure, const rayblock *rays, float far, uint32_t valid, bool coherent, hitblock *hits) {
+static uint32_t first_of(const embree_part *part, uint32_t geometry) { return part->first.data[geometry]; }
+
+static void closest(void *structure, noc_ray_world in, const rayblock *rays, float far, uint32_t valid, bool coherent,
+                    hitblock *hits) {
     const embree_structure *s = structure;
+    const embree_generation *g = in == NOC_RAYS_PAST ? &s->past : &s->now;
     ALIGNED int lanes[BLOCK];
     ALIGNED struct RTCRayHit16 h;
     for (int l = 0; l < BLOCK; l++)
@@ -177,18 +156,36 @@ static void closest(void *structure, const rayblock *rays, float far, uint32_t v
     fill_rays(rays, far, &h.ray);
     memset(h.hit.geomID, 0xff, sizeof(h.hit.geomID));
     memset(h.hit.instID, 0xff, sizeof(h.hit.instID));
-    rt_intersect16(lanes, s->rtc, &h, coherent);
+    rt_intersect16(lanes, g->base->rtc, &h, coherent);
+    if (g->top && in != NOC_RAYS_STANDING)
+        rt_intersect16(lanes, g->top, &h, coherent);
     for (int l = 0; l < BLOCK; l++) {
         bool hit = valid >> l & 1 && h.hit.geomID[l] != RTC_INVALID_GEOMETRY_ID;
-        hits->triangle[l] = hit ? h.hit.primID[l] : NO_HIT;
+        uint32_t above = h.hit.instID[0][l];
+        const embree_above *a = hit && above != RTC_INVALID_GEOMETRY_ID ? &g->above.data[above] : NULL;
+        hits->triangle[l] = hit ? h.hit.primID[l] + first_of(a ? a->part : g->base, h.hit.geomID[l]) : NO_HIT;
+        hits->instance[l] = a ? a->instance : NO_INSTANCE;
         hits->u[l] = h.hit.u[l];
         hits->v[l] = h.hit.v[l];
         hits->t[l] = h.ray.tfar[l];
     }
 }
 
-static void occluded(void *structure, segment_block *blocks, int count) {
-    noc_embree_trace_many(((const embree_structure *)structure)->rtc, blocks, count);
+/* What the base does not block is traced above it. */
+static void occluded(void *structure, noc_ray_world in, segment_block *blocks, int count) {
+    const embree_structure *s = structure;
+    const embree_generation *g = in == NOC_RAYS_PAST ? &s->past : &s->now;
+    uint32_t valid[MANY_BLOCKS];
+    noc_embree_trace_many(g->base->rtc, blocks, count);
+    if (!g->top || in == NOC_RAYS_STANDING)
+        return;
+    for (int i = 0; i < count; i++) {
+        valid[i] = blocks[i].valid;
+        blocks[i].valid = blocks[i].clear;
+    }
+    noc_embree_trace_many(g->top, blocks, count);
+    for (int i = 0; i < count; i++)
+        blocks[i].valid = valid[i];
 }
 
 static const noc_tracer tracer = { .name = "embree",
@@ -196,6 +193,7 @@ static const noc_tracer tracer = { .name = "embree",
                                    .close = close_device,
                                    .build = build_structure,
                                    .release = release_structure,
+                                   .follow = follow,
                                    .bytes = bytes_of,
                                    .closest = closest,
                                    .occluded = occluded };

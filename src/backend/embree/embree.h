@@ -19,14 +19,46 @@ typedef struct embree_device {
     embree_structure *current; /* that one: Embree tells errors and memory a device, not a scene */
 } embree_device;
 
+/* Meshes that are built together: those of the world from first_mesh on, or those of a model. */
+typedef struct embree_part {
+    RTCScene rtc;
+    NOC_ARRAY(uint32_t) first; /* of each geometry of rtc, its first triangle in the scene */
+    size_t first_mesh, end_mesh;
+    size_t meshes, triangles; /* not removed */
+    int holders;
+} embree_part;
+
+typedef NOC_ARRAY(embree_part *) embree_parts;
+
+/* The scene at one time: the world's first part is traced by itself, all else as instances in a structure above. */
+typedef struct embree_above {
+    embree_part *part;
+    uint32_t instance; /* NO_INSTANCE: a later part of the world */
+} embree_above;
+
+typedef struct embree_generation {
+    embree_part *base;
+    RTCScene top;                  /* NULL: there is nothing but the base */
+    NOC_ARRAY(embree_above) above; /* by geometry of top */
+} embree_generation;
+
 struct embree_structure {
     embree_device *device;
     const noc_scene *scene;
-    RTCScene rtc;
-    _Atomic ssize_t bytes; /* held by Embree */
-    atomic_bool refused;   /* memory that it asked for */
-    noc_status failed;     /* its first error, which has been told */
+    embree_generation now, past;  /* past: NULLs before the scene has changed */
+    embree_parts world;           /* parts of it in the order of their meshes; the first is now's base */
+    embree_parts models;          /* NULL for those that no instance has shown */
+    uint64_t geometry, instances; /* versions of the scene that `now` knows */
+    _Atomic ssize_t bytes;        /* held by Embree */
+    atomic_bool refused;          /* memory that it asked for */
+    noc_status failed;            /* first error of the last build, which has been told */
 };
+
+/* structure.c: while the structure is the device's current one */
+noc_status noc_embree_follow(embree_structure *s);
+void noc_embree_release_parts(embree_structure *s);
+/* embree.c */
+noc_status noc_embree_fail(embree_structure *s, enum RTCError code, const char *text);
 
 /* room.c */
 /* Is there memory for a block of so many bytes, and all that TBB may take beside it? threads: of a build. */

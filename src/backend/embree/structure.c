@@ -1,0 +1,267 @@
+/* Ray tracing structures of a scene, and how they follow its edits.
+ *
+ * What is there when a view first looks is one part, built at once and traced first: scenes that are not edited cost
+ * what a single structure does. A structure above it holds instances of models, and meshes that were added later, as
+ * instances that stand where they are. It is small, and made anew whenever something in it moves. Meshes that were
+ * added together are built together; parts grow by joining, so that there are few. A mesh that is removed costs the
+ * part that it lies in.
+ *
+ * Robust structures hold the corners of their triangles, so the scene's arrays are read by builds only, and may move
+ * afterwards. */
+#include "backend/embree/embree.h"
+
+static void let_go(embree_part *part) {
+    if (!part || --part->holders)
+        return;
+    if (part->rtc)
+        rtcReleaseScene(part->rtc);
+    array_free(&part->first);
+    free(part);
+}
+
+static embree_part *held(embree_part *part) {
+    part->holders++;
+    return part;
+}
+
+static void release_parts(embree_parts *parts) {
+    for (size_t i = 0; i < parts->len; i++)
+        let_go(parts->data[i]);
+    array_free(parts);
+}
+
+static void release_generation(embree_generation *g) {
+    if (g->top)
+        rtcReleaseScene(g->top);
+    for (size_t i = 0; i < g->above.len; i++)
+        let_go(g->above.data[i].part);
+    let_go(g->base);
+    array_free(&g->above);
+    *g = (embree_generation){ 0 };
+}
+
+void noc_embree_release_parts(embree_structure *s) {
+    release_generation(&s->now);
+    release_generation(&s->past);
+    release_parts(&s->world);
+    release_parts(&s->models);
+}
+
+static bool no_memory(embree_structure *s) {
+    noc_embree_fail(s, RTC_ERROR_OUT_OF_MEMORY, NULL);
+    return false;
+}
+
+static RTCScene new_scene(embree_structure *s) {
+    RTCScene rtc = rtcNewScene(s->device->device);
+    if (!rtc) {
+        noc_embree_fail(s, rtcGetDeviceError(s->device->device), "no scene");
+        return NULL;
+    }
+    /* Robust: without it rays slip through the edges between walls, and every slip is a bright pixel in a dark room. */
+    rtcSetSceneFlags(rtc, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(rtc, RTC_BUILD_QUALITY_MEDIUM);
+    return rtc;
+}
+
+static bool attach_triangles(embree_structure *s, embree_part *part, size_t first, size_t count) {
+    const noc_scene *scene = s->scene;
+    if (!count)
+        return true;
+    if (!array_push(&part->first, (uint32_t)first))
+        return no_memory(s);
+    RTCGeometry geometry = rtcNewGeometry(s->device->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    if (!geometry)
+        return !noc_embree_fail(s, rtcGetDeviceError(s->device->device), "no geometry");
+    rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, scene->positions.data, 0, 12,
+                               scene->positions.len / 3);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->indices.data, 12 * first,
+                               12, count);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(part->rtc, geometry);
+    rtcReleaseGeometry(geometry);
+    return !s->failed;
+}
+
+static bool belongs(const noc_scene_mesh *m, uint32_t model) { return !m->removed && m->model == model; }
+
+/* What is there of a part now. */
+static void count_part(const noc_scene *scene, uint32_t model, embree_part *part) {
+    part->meshes = part->triangles = 0;
+    for (size_t i = part->first_mesh; i < part->end_mesh; i++)
+        if (belongs(&scene->meshes.data[i], model)) {
+            part->meshes++;
+            part->triangles += scene->meshes.data[i].triangle_count;
+        }
+}
+
+/* A geometry for each run of triangles without a gap. */
+static bool build_part(embree_structure *s, uint32_t model, embree_part *part) {
+    const noc_scene *scene = s->scene;
+    size_t first = 0, end = 0;
+    if (!(part->rtc = new_scene(s)))
+        return false;
+    for (size_t i = part->first_mesh; i < part->end_mesh; i++) {
+        const noc_scene_mesh *m = &scene->meshes.data[i];
+        if (!belongs(m, model))
+            continue;
+        if (m->first_triangle != end) {
+            if (!attach_triangles(s, part, first, end - first))
+                return false;
+            first = m->first_triangle;
+        }
+        end = (size_t)m->first_triangle + m->triangle_count;
+    }
+    if (!attach_triangles(s, part, first, end - first))
+        return false;
+    rtcCommitScene(part->rtc);
+    return !s->failed;
+}
+
+/* One part of the meshes first to end, held once; NULL where it fails. */
+static embree_part *make_part(embree_structure *s, uint32_t model, size_t first, size_t end) {
+    embree_part *part = noc_calloc(1, sizeof(*part));
+    if (!part) {
+        no_memory(s);
+        return NULL;
+    }
+    part->first_mesh = first;
+    part->end_mesh = end;
+    part->holders = 1;
+    count_part(s->scene, model, part);
+    if (build_part(s, model, part))
+        return part;
+    let_go(part);
+    return NULL;
+}
+
+/* Where the world's parts are to begin and end: those of before, what is new, the last ones joined while one is not
+ * twice as large as the next. A part that has to be built has no structure yet. Returns how many there are. */
+static size_t plan(const embree_structure *s, embree_part *parts) {
+    size_t n = 0, end = 0;
+    for (; n < s->world.len; n++) {
+        const embree_part *have = s->world.data[n];
+        parts[n] = (embree_part){ .rtc = have->rtc, .first_mesh = have->first_mesh, .end_mesh = have->end_mesh };
+        count_part(s->scene, 0, &parts[n]);
+        if (parts[n].meshes != have->meshes)
+            parts[n].rtc = NULL;
+        end = have->end_mesh;
+    }
+    parts[n] = (embree_part){ .first_mesh = end, .end_mesh = s->scene->meshes.len };
+    count_part(s->scene, 0, &parts[n]);
+    n += parts[n].triangles > 0 || !n;
+    for (; n > 1 && 2 * parts[n - 1].triangles >= parts[n - 2].triangles; n--) {
+        parts[n - 2].end_mesh = parts[n - 1].end_mesh;
+        parts[n - 2].triangles += parts[n - 1].triangles;
+        parts[n - 2].rtc = NULL;
+    }
+    return n;
+}
+
+/* The world's parts as they are now: those that have not changed are held. */
+static bool make_world(embree_structure *s, embree_parts *out) {
+    size_t count = 0;
+    bool same = s->world.len && s->geometry == s->scene->versions.geometry; /* only instances have moved */
+    embree_part *planned = noc_calloc(s->world.len + 1, sizeof(*planned));
+    bool ok = planned && array_reserve(out, s->world.len + 1);
+    if (!ok)
+        no_memory(s);
+    else if (same)
+        count = s->world.len;
+    else
+        count = plan(s, planned);
+    for (size_t i = 0; ok && i < count; i++) {
+        embree_part *part = same || planned[i].rtc ? held(s->world.data[i])
+                                                   : make_part(s, 0, planned[i].first_mesh, planned[i].end_mesh);
+        ok = part != NULL;
+        if (ok)
+            out->data[out->len++] = part;
+    }
+    free(planned);
+    return ok;
+}
+
+/* The structure of a model, built when an instance first shows it; NULL where that fails. */
+static embree_part *part_of_model(embree_structure *s, uint32_t model) {
+    embree_part **slot = &s->models.data[model - 1];
+    if (!*slot)
+        *slot = make_part(s, model, 0, s->scene->meshes.len);
+    return *slot;
+}
+
+static bool add_above(embree_structure *s, embree_generation *g, embree_part *part, uint32_t instance,
+                      const float transform[12]) {
+    if (!part)
+        return false;
+    if (!part->triangles)
+        return true;
+    if (!array_push(&g->above, (embree_above){ part, instance }))
+        return no_memory(s);
+    held(part);
+    RTCGeometry geometry = rtcNewGeometry(s->device->device, RTC_GEOMETRY_TYPE_INSTANCE);
+    if (!geometry)
+        return !noc_embree_fail(s, rtcGetDeviceError(s->device->device), "no instance");
+    rtcSetGeometryInstancedScene(geometry, part->rtc);
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, transform);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(g->top, geometry);
+    rtcReleaseGeometry(geometry);
+    return !s->failed;
+}
+
+static bool make_top(embree_structure *s, const embree_parts *world, embree_generation *g) {
+    static const float standing[12] = { [0] = 1, [5] = 1, [10] = 1 };
+    const noc_scene *scene = s->scene;
+    bool ok = (g->top = new_scene(s)) != NULL;
+    for (size_t i = 1; ok && i < world->len; i++)
+        ok = add_above(s, g, world->data[i], NO_INSTANCE, standing);
+    for (size_t i = 0; ok && i < scene->instances.len; i++) {
+        const noc_scene_instance *in = &scene->instances.data[i];
+        if (in->model)
+            ok = add_above(s, g, part_of_model(s, in->model), (uint32_t)i, in->transform);
+    }
+    if (ok)
+        rtcCommitScene(g->top);
+    return ok && !s->failed;
+}
+
+static bool has_instances(const noc_scene *scene) {
+    for (size_t i = 0; i < scene->models.len; i++)
+        if (scene->models.data[i].instances)
+            return true;
+    return false;
+}
+
+static bool make_generation(embree_structure *s, const embree_parts *world, embree_generation *g) {
+    g->base = held(world->data[0]);
+    if (world->len == 1 && !has_instances(s->scene))
+        return true;
+    size_t models = s->scene->models.len;
+    if (!array_reserve(&s->models, models))
+        return no_memory(s);
+    while (s->models.len < models)
+        s->models.data[s->models.len++] = NULL;
+    return make_top(s, world, g);
+}
+
+noc_status noc_embree_follow(embree_structure *s) {
+    embree_parts world = { 0 };
+    embree_generation made = { 0 };
+    s->failed = NOC_OK;
+    atomic_store(&s->refused, false);
+    bool ok = noc_embree_room(s->device->threads, 0) || no_memory(s);
+    if (!ok || !make_world(s, &world) || !make_generation(s, &world, &made)) {
+        release_generation(&made);
+        release_parts(&world);
+        return s->failed;
+    }
+    release_generation(&s->past);
+    release_parts(&s->world);
+    s->past = s->now;
+    s->now = made;
+    s->world = world;
+    s->geometry = s->scene->versions.geometry;
+    s->instances = s->scene->versions.instances;
+    return NOC_OK;
+}
