@@ -9,12 +9,6 @@ struct core_context {
     int layout;
 };
 
-#if defined(CORE_LANES)
-enum { LANES = CORE_LANES };
-#else
-enum { LANES = 1 };
-#endif
-
 FN real load(const float *from, size_t at) {
     real r;
     memcpy(&r, from + at, sizeof(r));

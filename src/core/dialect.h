@@ -10,13 +10,22 @@
  * compound literal outside this file; no identifiers that GLSL reserves (sample, buffer, filter, input, output, half,
  * patch, smooth, flat, active, common). Resources come through bridge functions that take CTX, which is a context
  * pointer in C and nothing in GLSL. EXACT marks variables whose rounding must be the same everywhere. Compile with
- * -ffp-contract=off and never with -ffast-math. */
+ * -ffp-contract=off and never with -ffast-math.
+ *
+ * f1, u1, b1 and f3 are values that are one for a whole tile or block, whatever the lanes: float, uint32_t, bool and
+ * three floats. On them if, while, ternary-free expressions with && and || are allowed, and literals are plain. K(f1),
+ * KU(u1) and spread3(f3) spread them over the lanes. FN1 marks functions of such values only, CALL those that are so
+ * long that they stay calls. What is looked at 16 at a time is walked by EACH16(l), which gives the first of LANES
+ * places that a lane value holds; lane_bits and lane_sum bring lanes back to one value. Writing goes through bridge
+ * functions, too. */
 #ifndef CORE_DIALECT_H
 #define CORE_DIALECT_H
 
 #if defined(CORE_GLSL)
 
 #define FN
+#define FN1
+#define CALL
 #define EXACT precise
 #define CTX
 #define PASS
@@ -41,6 +50,25 @@
 #define to_u32(f) uint(f)
 #define shl(a, n) ((a) << (n))
 #define shr(a, n) ((a) >> (n))
+#define real_of_bits uintBitsToFloat
+#define bits_of_real floatBitsToUint
+#define LANES 1
+#define lane_bits(c) ((c) ? 1u : 0u)
+#define lane_sum(a) (a)
+#define f1 float
+#define u1 uint
+#define b1 bool
+#define f3 vec3
+#define F3(x, y, z) vec3(x, y, z)
+#define sqrt1 sqrt
+#define floor1 floor
+#define f1_of_bits uintBitsToFloat
+#define bits_of_f1 floatBitsToUint
+#define bit_count(a) uint(bitCount(a))
+#define low_bit(a) uint(findLSB(a))
+float min1(float a, float b) { return a < b ? a : b; }
+float max1(float a, float b) { return a > b ? a : b; }
+uint minu1(uint a, uint b) { return a < b ? a : b; }
 float min_(float a, float b) { return a < b ? a : b; } /* b where either is NaN */
 float max_(float a, float b) { return a > b ? a : b; }
 uint high_u32(uint a, uint b) {
@@ -56,6 +84,8 @@ uint high_u32(uint a, uint b) {
 #include <stdint.h>
 
 #define FN static inline __attribute__((always_inline)) /* a call would pass structs through memory */
+#define FN1 static inline
+#define CALL static __attribute__((noinline, unused))
 #define EXACT
 #define CTX const struct core_context *ctx,
 #define PASS ctx,
@@ -66,20 +96,48 @@ uint high_u32(uint a, uint b) {
 
 struct core_context; /* the includer's own: what its bridge functions read */
 
+typedef float f1;
+typedef uint32_t u1;
+typedef bool b1;
+typedef struct {
+    f1 x, y, z;
+} f3;
+#define F3(x, y, z) ((f3){ x, y, z })
+FN1 f1 sqrt1(f1 a) { return sqrtf(a); }
+FN1 f1 floor1(f1 a) { return floorf(a); }
+FN1 f1 min1(f1 a, f1 b) { return a < b ? a : b; }
+FN1 f1 max1(f1 a, f1 b) { return a > b ? a : b; }
+FN1 u1 minu1(u1 a, u1 b) { return a < b ? a : b; }
+FN1 u1 bit_count(u1 a) { return (u1)__builtin_popcount(a); }
+FN1 u1 low_bit(u1 a) { return (u1)__builtin_ctz(a); }
+FN1 f1 f1_of_bits(u1 bits) {
+    f1 x;
+    __builtin_memcpy(&x, &bits, sizeof(x));
+    return x;
+}
+FN1 u1 bits_of_f1(f1 x) {
+    u1 bits;
+    __builtin_memcpy(&bits, &x, sizeof(bits));
+    return bits;
+}
+
 #if defined(CORE_LANES)
 
+#define LANES CORE_LANES
 typedef float real __attribute__((vector_size(4 * CORE_LANES)));
 typedef uint32_t u32 __attribute__((vector_size(4 * CORE_LANES)));
 typedef int32_t mask __attribute__((vector_size(4 * CORE_LANES)));
 #define K(x) ((real){ 0 } + (float)(x))
 #define KU(x) ((u32){ 0 } + (uint32_t)(x))
-#include "core/wide.h" /* sel, selu, min_, max_, abs_, sqrt_, high_u32, to_real, to_u32, ANY for this instruction set */
+/* sel, selu, min_, max_, abs_, sqrt_, high_u32, to_real, to_u32, ANY, lane_bits, lane_sum for this instruction set */
+#include "core/wide.h"
 #define and_(a, b) ((a) & (b))
 #define or_(a, b) ((a) | (b))
 #define not_(a) (~(a))
 
 #else /* scalar */
 
+#define LANES 1
 typedef float real;
 typedef uint32_t u32;
 typedef bool mask;
@@ -94,6 +152,10 @@ FN real max_(real a, real b) { return a > b ? a : b; }
 FN u32 high_u32(u32 a, u32 b) { return (u32)((uint64_t)a * b >> 32); }
 FN real to_real(u32 u) { return (float)(int32_t)u; }
 FN u32 to_u32(real f) { return (u32)(int32_t)f; }
+FN real real_of_bits(u32 bits) { return f1_of_bits(bits); }
+FN u32 bits_of_real(real x) { return bits_of_f1(x); }
+FN u1 lane_bits(mask c) { return c ? 1u : 0u; }
+FN u1 lane_sum(u32 a) { return a; }
 #define and_(a, b) ((a) && (b))
 #define or_(a, b) ((a) || (b))
 #define not_(a) (!(a))
@@ -111,8 +173,15 @@ typedef struct {
 /* An array of three uniform floats. */
 #define splat3(a) V3(K((a)[0]), K((a)[1]), K((a)[2]))
 
+/* Places l, l + 1, ..., l + LANES - 1 of 16. A shader whose work groups share out the 16 defines it before inclusion.
+ */
+#ifndef EACH16
+#define EACH16(l) for (int l = 0; l < 16; l += LANES)
+#endif
+
 /* to_real takes values below 2^31, to_u32 truncates values in [0, 2^31). min_ and max_ give b where either is NaN.
- * high_u32 is the upper half of the 64-bit product. */
+ * high_u32 is the upper half of the 64-bit product. low_bit: number of the lowest bit that is set, of a value other
+ * than 0. */
 
 FN v3 add3(v3 a, v3 b) { return V3(a.x + b.x, a.y + b.y, a.z + b.z); }
 FN v3 sub3(v3 a, v3 b) { return V3(a.x - b.x, a.y - b.y, a.z - b.z); }
@@ -120,6 +189,12 @@ FN v3 mul3(v3 a, real s) { return V3(a.x * s, a.y * s, a.z * s); }
 FN v3 tint3(v3 a, v3 b) { return V3(a.x * b.x, a.y * b.y, a.z * b.z); }
 FN v3 sel3(mask c, v3 a, v3 b) { return V3(sel(c, a.x, b.x), sel(c, a.y, b.y), sel(c, a.z, b.z)); }
 FN v3 fill3(real s) { return V3(s, s, s); }
+FN v3 spread3(f3 a) { return V3(K(a.x), K(a.y), K(a.z)); }
+
+FN1 f1 dot1(f3 a, f3 b) {
+    EXACT f1 d = a.x * b.x + a.y * b.y + a.z * b.z;
+    return d;
+}
 
 FN real dot3(v3 a, v3 b) {
     EXACT real d = a.x * b.x + a.y * b.y + a.z * b.z;

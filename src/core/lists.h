@@ -2,42 +2,31 @@
  * draws from all the others, each with weight 1 / (expected number of times it is drawn); every pixel of the tile
  * evaluates them all. sum(weight * f) over the entries is then an unbiased estimate of the sum over all lights,
  * whatever the scores were, as long as a score is only 0 where no light of the cluster can reach any point of the tile.
- * Here: that bound, and the pixel's choice among the entries. Building the list is the backend's (it sorts). */
+ * core/list_build.h makes the list; here is the pixel's choice among its entries. */
 #ifndef CORE_LISTS_H
 #define CORE_LISTS_H
 
-#include "core/cones.h"
+#include "core/list_build.h"
 #include "core/reservoir.h"
 
-struct list_entry {
-    u32 light;
-    real weight;
-};
-
-#ifndef CORE_GLSL
-typedef struct list_entry list_entry;
-FN list_entry list_entry_load(CTX int i);
-#endif
+FN light light_splat(CTX u1 i); /* the same light in every lane */
 
 /* Place on the light that entry i is evaluated at: the R2 sequence over the entries, shifted for each pixel (M. Roberts
  * 2018, "The Unreasonable Effectiveness of Quasirandom Sequences"). Each place alone is uniform. */
-FN real list_u_at(u32 shift, u32 i) { return unit_real(shift + KU(3242174889u) * i); }
-FN real list_v_at(u32 shift, u32 i) { return unit_real(shift + KU(2447445414u) * i); }
-FN real list_u(u32 shift, int i) { return list_u_at(shift, KU(U32(i))); }
-FN real list_v(u32 shift, int i) { return list_v_at(shift, KU(U32(i))); }
+FN real list_u(u32 shift, u32 i) { return unit_real(shift + KU(3242174889u) * i); }
+FN real list_v(u32 shift, u32 i) { return unit_real(shift + KU(2447445414u) * i); }
 
 /* One sample of all the entries: chosen in proportion to weight * p_hat, so W = sum(weight * p_hat) / p_hat(chosen). */
-FN resv ris_list(CTX surf s, u32 key, int count) {
+FN resv ris_list(CTX surf s, u32 key, u1 count) {
     stream st = stream_empty();
-    u32 shift_u = rng_bits(key, KU(DIM_CANDIDATE));
-    u32 shift_v = rng_bits(key, KU(DIM_CANDIDATE + 1u));
-    for (int i = 0; i < count; i++) {
-        list_entry e = list_entry_load(PASS i);
-        real u = list_u(shift_u, i);
-        real v = list_v(shift_v, i);
-        real p = target(s, light_load(PASS e.light), u, v);
-        st =
-            stream_add(st, e.light, u, v, p, p * e.weight, K(0.0f), K(0.0f), rng(key, KU(DIM_CANDIDATE + 2u + U32(i))));
+    u32 shift_u = rng_bits(key, KU(DIM_LIST_PLACE));
+    u32 shift_v = rng_bits(key, KU(DIM_LIST_PLACE + 1u));
+    for (u1 i = 0u; i < count; i++) {
+        list_entry e = entry_load(PASS i);
+        real u = list_u(shift_u, KU(i));
+        real v = list_v(shift_v, KU(i));
+        real p = target(s, light_splat(PASS e.light), u, v);
+        st = stream_add(st, KU(e.light), u, v, p, p * K(e.weight), K(0.0f), K(0.0f), rng(key, KU(DIM_LIST_CHOICE + i)));
     }
     return stream_end(st, K(1.0f));
 }

@@ -42,4 +42,19 @@ FN u32 scale_u32(u32 bits, u32 n) { return high_u32(bits, n); }
 #define DIM_CANDIDATE 512u /* + 3 a candidate */
 #define DIM_PICK 4096u     /* + 1 a candidate: pickers that need a second number */
 
+/* Of pixels that choose among the entries of a list; they draw no other candidates. */
+#define DIM_LIST_PLACE 512u  /* and the next one: where on their lights entries are looked at */
+#define DIM_LIST_CHOICE 514u /* + 1 an entry: one is chosen */
+#define DIM_LIST_RAYS 514u   /* several rays are shared out: how many, */
+#define DIM_LIST_START 515u  /* where they start, */
+#define DIM_LIST_SHOWN 516u  /* which of them stands for the pixel in views, */
+#define DIM_LIST_KEPT 517u   /* and which becomes its reservoir */
+
+/* Where the tail of a tile's list starts, 0 to 1: anywhere, and from frame to frame on along the golden ratio's
+ * sequence, so that the mean of some frames has met the lights as evenly as one frame with so many draws. number: the
+ * tile's in the picture, row by row. */
+FN real tail_start(u32 seed, u32 number, u32 frame) {
+    return unit_real(rng_bits(rng_key(seed, number, KU(0u)), KU(DIM_LIST)) + frame * KU(2654435769u));
+}
+
 #endif

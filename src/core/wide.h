@@ -75,5 +75,28 @@ FN u32 high_u32(u32 a, u32 b) {
 FN real abs_(real a) { return (real)((u32)a & KU(0x7fffffffu)); }
 FN real to_real(u32 u) { return __builtin_convertvector((mask)u, real); }
 FN u32 to_u32(real f) { return (u32) __builtin_convertvector(f, mask); }
+FN real real_of_bits(u32 bits) { return (real)bits; }
+FN u32 bits_of_real(real x) { return (u32)x; }
+
+/* Bit i: lane i. */
+FN u1 lane_bits(mask m) {
+#if CORE_LANES == 16 && defined(__AVX512F__)
+    return (u1)_mm512_movepi32_mask((__m512i)m);
+#elif CORE_LANES == 8 && defined(__AVX2__)
+    return (u1)_mm256_movemask_ps((__m256)m);
+#else
+    u1 bits = 0;
+    for (int i = 0; i < CORE_LANES; i++)
+        bits |= (m[i] ? 1u : 0u) << i;
+    return bits;
+#endif
+}
+
+FN u1 lane_sum(u32 a) {
+    u1 sum = 0;
+    for (int i = 0; i < CORE_LANES; i++)
+        sum += a[i];
+    return sum;
+}
 
 #endif

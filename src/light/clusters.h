@@ -7,11 +7,12 @@
 #ifndef NOC_LIGHT_CLUSTERS_H
 #define NOC_LIGHT_CLUSTERS_H
 
+#include "core/list_limits.h"
 #include "scene/scene.h"
 
-enum { NOC_CLUSTER_LIGHTS = 16, NOC_CLUSTER_LEVELS = 8 };
+enum { NOC_CLUSTER_LIGHTS = 16, NOC_CLUSTER_LEVELS = LIST_LEVELS };
 /* The highest level is the first of at most so many nodes. */
-enum { NOC_CLUSTER_ROOTS = 256 };
+enum { NOC_CLUSTER_ROOTS = LIST_ROOTS };
 
 /* Bounds of 16 nodes. */
 typedef struct noc_cluster_block {

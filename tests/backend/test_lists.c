@@ -113,7 +113,7 @@ static void weights_are_one(int lights, double side, int list, int tail) {
     list_scratch *s = noc_alloc_large(1, sizeof(*s));
     double *mean = noc_calloc((size_t)lights, sizeof(*mean)), *largest = noc_calloc((size_t)lights, sizeof(*largest));
     for (int i = 0; i < ROUNDS; i++) {
-        k->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, (float)((i + 0.5) / ROUNDS), s, &s->list);
+        k->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, (float)((i + 0.5) / ROUNDS), s);
         assert_true(s->list.count <= (uint32_t)(list + tail));
         for (uint32_t j = 0; j < s->list.count; j++) {
             mean[s->list.light[j]] += s->list.weight[j] / ROUNDS;
@@ -193,8 +193,7 @@ static void tail_is_quiet(void **state) {
             for (size_t i = 0; i < w.scene->lights.len; i++)
                 all[b][l] += lux_at(&w.scene->lights.data[i], &w.g[b], l);
     for (int k = 0; k < STARTS; k++) {
-        noc_pick_kernels(NOC_ISA_AUTO)
-            ->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, (float)((k + 0.5) / STARTS), s, &s->list);
+        noc_pick_kernels(NOC_ISA_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, (float)((k + 0.5) / STARTS), s);
         for (int b = 0; b < BLOCKS; b++)
             for (int l = 0; l < BLOCK; l++) {
                 double sum = 0;
@@ -217,7 +216,7 @@ static void few_lights_are_listed(void **state) {
     static world w;
     make_world(&w, 40, 15, 32, 16);
     list_scratch *s = noc_alloc_large(1, sizeof(*s));
-    noc_pick_kernels(NOC_ISA_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, 0.9f, s, &s->list);
+    noc_pick_kernels(NOC_ISA_AUTO)->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, 0.9f, s);
     int can = 0, listed = 0;
     for (size_t i = 0; i < w.scene->lights.len; i++)
         can += reaches(&w, &w.scene->lights.data[i]);
@@ -241,10 +240,10 @@ static void tables_agree(void **state) {
     list_scratch *want = noc_alloc_large(1, sizeof(*want)), *have = noc_alloc_large(1, sizeof(*have));
     for (int round = 0; round < 50; round++) {
         float rotation = (float)real_in(0, 1);
-        all[0]->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, rotation, want, &want->list);
+        all[0]->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, rotation, want);
         assert_int_equal(want->list.count > 24, 1);
         for (int k = 1; k < tables; k++) {
-            all[k]->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, rotation, have, &have->list);
+            all[k]->list_build(&w.ctx, w.blocks, w.lanes, BLOCKS, rotation, have);
             assert_int_equal(have->list.count, want->list.count);
             assert_memory_equal(have->list.light, want->list.light, want->list.count * sizeof(*want->list.light));
             assert_memory_equal(have->list.weight, want->list.weight, want->list.count * sizeof(*want->list.weight));

@@ -1,11 +1,6 @@
 /* The dialect kernel as C with CORE_LANES values a variable, or scalar: one object for each instruction set. */
 #include <string.h>
 
-#if defined(CORE_LANES)
-#define LANES CORE_LANES
-#else
-#define LANES 1
-#endif
 #include "core/dialect.h"
 
 struct core_context {

@@ -35,7 +35,7 @@ typedef struct ray_draw {
 typedef struct tile_cell {
     uint64_t key;
     beliefs beliefs;
-    uint16_t asked[2 * LIST_ENTRIES], seen[2 * LIST_ENTRIES];
+    uint16_t asked[LIST_ROOM], seen[LIST_ROOM];
 } tile_cell;
 
 /* Segments of a tile's blocks, gathered to be traced in company. */

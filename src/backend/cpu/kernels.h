@@ -6,26 +6,21 @@
 
 #include "core/blocks.h"
 #include "core/frame.h"
+#include "core/list_limits.h"
 #include "light/alias.h"
 #include "light/clusters.h"
 #include "light/influence.h"
 #include "light/tree.h"
 #include "render/backend.h"
 
-enum { MOST_SHADOW_RAYS = 16, MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32, LIST_ENTRIES = 128, PICK_AHEAD = 8 };
-/* List building: most pieces of a tile's surfaces that lights are scored at, two a block; most nodes that are opened,
- * of each level and of the lowest; so few that all are; steps that scores are told apart by. */
-enum { LIST_PATCHES = 32, OPENED_NODES = 96, OPENED_CLUSTERS = 192, FEW_NODES = 64, SCORE_STEPS = 1020 };
-
-/* Most groups of 16 that a list is chosen from. */
-enum { LIST_GROUPS = NOC_CLUSTER_ROOTS / 16 + NOC_CLUSTER_LEVELS * OPENED_NODES + OPENED_CLUSTERS };
+enum { MOST_SHADOW_RAYS = 16, MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32, PICK_AHEAD = 8 };
 
 /* What the pixels of a tile evaluate: core/lists.h. */
 typedef struct light_list {
     uint32_t count;
     uint32_t copies; /* of every light: count / copies are told apart */
-    uint32_t light[2 * LIST_ENTRIES];
-    float weight[2 * LIST_ENTRIES];
+    uint32_t light[LIST_ROOM];
+    float weight[LIST_ROOM];
 } light_list;
 
 /* Candidates that a picker has drawn for the pixels of a block: draw, lane. PICK_AHEAD more are there than draws. */
@@ -45,8 +40,10 @@ enum { TREE_ITEMS = 16 * 1024 + 64 };
 
 /* Where core's bridge functions read next. */
 typedef struct core_cursors {
-    const light_list *list;  /* of the tile */
-    const pick_block *picks; /* of the block; read from lane `lane` on */
+    const gblock *const *tile;   /* its blocks */
+    const uint32_t *tile_pixels; /* and what of them sees a surface */
+    struct list_scratch *lists;  /* of the tile */
+    const pick_block *picks;     /* of the block; read from lane `lane` on */
     int lane;
 } core_cursors;
 
@@ -88,26 +85,37 @@ typedef struct reference_scratch {
     uint32_t count[BLOCK]; /* entries a lane */
 } reference_scratch;
 
-/* Scratch of list building, one a worker: groups of 16 nodes of one level (-1: lights), the children of `block`. */
+/* What core/list_build.h remembers of patches and of groups. */
+typedef struct patch_record {
+    float c[3], radius, axis[3], spread, share, reflectance, wo[3], gloss, alpha2;
+} patch_record;
+
+typedef struct group_record {
+    uint32_t block;
+    uint8_t part, level;
+} group_record;
+
+/* A tile's list, and scratch of building it, one a worker. */
 typedef struct list_scratch {
     light_list list;
-    ALIGNED float scores[LIST_GROUPS][16];
+    ALIGNED float scores[LIST_GROUPS + 1][16];
     float sums[LIST_GROUPS];
-    uint32_t block[LIST_GROUPS];
-    int8_t level[LIST_GROUPS];
+    group_record groups[LIST_GROUPS];
+    patch_record patches[LIST_PATCHES];
+    uint32_t chosen[LIST_CHOSEN];
 } list_scratch;
 
 /* What is believed of a list's entries, and so how they are weighed. */
 typedef struct beliefs {
-    float share[2 * LIST_ENTRIES];  /* weight * pull */
-    float expect[2 * LIST_ENTRIES]; /* weight * visibility */
+    float share[LIST_ROOM];  /* weight * pull */
+    float expect[LIST_ROOM]; /* weight * visibility */
 } beliefs;
 
 /* A list's entries, weighed for the pixels of a block. */
 typedef struct weighed {
-    ALIGNED float weight[2 * LIST_ENTRIES][BLOCK]; /* target * share */
-    float all[BLOCK];                              /* their sum */
-    float bright[BLOCK];                           /* sum of target * expect, cd/m2 */
+    ALIGNED float weight[LIST_ROOM][BLOCK]; /* target * share */
+    float all[BLOCK];                       /* their sum */
+    float bright[BLOCK];                    /* sum of target * expect, cd/m2 */
 } weighed;
 
 typedef struct kernels {
@@ -115,10 +123,9 @@ typedef struct kernels {
     /* M candidates a lane of `lanes`; w = m = 0 elsewhere. x, y: pixel of lane 0. */
     void (*candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                        rblock *out);
-    /* The list of a tile of `blocks` blocks. rotation, the tail's start, is a number in [0, 1) that does not depend on
-     * what the tile sees. Then candidates from it. */
+    /* The list of a tile of `blocks` blocks into scratch->list: core/list_build.h. Then candidates from ctx->lists. */
     void (*list_build)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks,
-                       float rotation, list_scratch *scratch, light_list *out);
+                       float rotation, list_scratch *scratch);
     void (*list_candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, rblock *out);
     /* Several draws from a list: weigh its entries, draw n[l] of them a lane, find their (u, v). n[l] is a whole
      * number. */

@@ -232,7 +232,7 @@ static void sky_background(const struct core_context *ctx, uint32_t lanes, int x
 const kernels KERNELS = {
     .name = KERNELS_NAME,
     .candidates = candidates,
-    .list_build = list_build,
+    .list_build = build_list,
     .list_candidates = list_candidates,
     .list_weigh = list_weigh,
     .list_draw = list_draw,

@@ -16,7 +16,6 @@
 #include <string.h>
 
 #if defined(CORE_LANES)
-enum { LANES = CORE_LANES };
 FN real rload(const float *p) {
     real r;
     memcpy(&r, p, sizeof(r));
@@ -33,25 +32,12 @@ FN mask mload(uint32_t lanes, int first) {
         bit[i] = 1u << i;
     return (mask)((KU(lanes >> first) & bit) != KU(0u));
 }
-FN uint32_t mbits(mask m) {
-#if CORE_LANES == 16 && defined(__AVX512F__)
-    return (uint32_t)_mm512_movepi32_mask((__m512i)m);
-#elif CORE_LANES == 8 && defined(__AVX2__)
-    return (uint32_t)_mm256_movemask_ps((__m256)m);
 #else
-    uint32_t bits = 0;
-    for (int i = 0; i < LANES; i++)
-        bits |= (m[i] ? 1u : 0u) << i;
-    return bits;
-#endif
-}
-#else
-enum { LANES = 1 };
 FN real rload(const float *p) { return *p; }
 FN u32 uload(const uint32_t *p) { return *p; }
 FN mask mload(uint32_t lanes, int first) { return lanes >> first & 1; }
-FN uint32_t mbits(mask m) { return m; }
 #endif
+FN uint32_t mbits(mask m) { return lane_bits(m); }
 FN void rstore(float *p, real v) { memcpy(p, &v, sizeof(v)); }
 FN void ustore(uint32_t *p, u32 v) { memcpy(p, &v, sizeof(v)); }
 

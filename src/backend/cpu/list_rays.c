@@ -85,7 +85,7 @@ static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ct
                      const block_draws *from, int k, int x, int y) {
     ray_draw *d = &t->draws[t->count];
     segment_block *s = &t->segments[t->count++];
-    const light_list *list = ctx->at.list;
+    const light_list *list = &ctx->at.lists->list;
     float(*counts)[BLOCK] = run->s->b.aovs.made[NOC_AOV_RAYS];
     d->block = block;
     s->valid = 0;
@@ -138,7 +138,7 @@ static void draw_block(stage_run *run, tile_rays *t, const struct core_context *
         start[l] = rng(key, DIM_CANDIDATE + 3);
         pick[l] = rng(key, DIM_CANDIDATE + 4);
     }
-    run->k->list_draw((int)ctx->at.list->count, &t->weighed, d.n, start, d.entry);
+    run->k->list_draw((int)ctx->at.lists->list.count, &t->weighed, d.n, start, d.entry);
     for (int k = 0, rays = join_equals(&d); k < rays; k++) {
         t->draws[t->count].rays = rays;
         add_rays(run, t, ctx, g, block, &d, k, x, y);
@@ -150,7 +150,7 @@ static void draw_block(stage_run *run, tile_rays *t, const struct core_context *
  * worth, and in all not in fewer points than the pixel's draws would be (a large light close by differs more from place
  * to place than from light to light). */
 static void fill_list(const noc_render_params *p, light_list *list) {
-    uint32_t once = list->count, room = (uint32_t)NOC_MIN(p->list + p->tail, 2 * LIST_ENTRIES);
+    uint32_t once = list->count, room = (uint32_t)NOC_MIN(p->list + p->tail, LIST_ROOM);
     uint32_t wanted = once ? NOC_MAX((uint32_t)p->shadow_rays, (uint32_t)p->draws / once) : 0;
     uint32_t copies = once ? NOC_MIN(room / once, wanted) : 0;
     /* Side by side: rays that are an equal distance apart would find the same light again in each round of all of them.
@@ -167,7 +167,7 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
     struct core_context ctx = run->ctx;
     frame_buffers *b = &run->s->b;
     tile_rays *t = &w->shared;
-    ctx.at.list = &w->lists.list;
+    ctx.at.lists = &w->lists;
     t->count = t->cells = 0;
     t->bright = 0;
     fill_list(run->frame->params, &w->lists.list);
@@ -180,9 +180,9 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
         memset(r, 0, sizeof(*r));
         for (int l = 0; l < BLOCK; l++) /* whatever was found: M must not depend on the samples */
             r->m[l] = lanes >> l & 1 ? (float)ctx.frame->draws : 0;
-        if (!lanes || !ctx.at.list->count)
+        if (!lanes || !ctx.at.lists->list.count)
             continue;
-        t->cell_of[n] = believe(run, g, lanes, ctx.at.list, t);
+        t->cell_of[n] = believe(run, g, lanes, &w->lists.list, t);
         run->k->list_weigh(&ctx, g, lanes, at.x, at.y, &t->cell[t->cell_of[n]].beliefs, &t->weighed);
         for (int l = 0; l < BLOCK; l++)
             t->bright += t->weighed.bright[l];

@@ -4,23 +4,15 @@
 #define NOC_CPU_LISTS_H
 
 #include "backend/cpu/list_build_tmpl.h"
-#include "core/lists.h"
-
-FN list_entry list_entry_load(CTX int i) {
-    list_entry e;
-    e.light = KU(ctx->at.list->light[i]);
-    e.weight = K(ctx->at.list->weight[i]);
-    return e;
-}
 
 static void list_candidates(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y,
                             rblock *out) {
     for (int l = 0; l < BLOCK; l += LANES) {
         mask on = mload(lanes, l);
         resv r = resv_empty();
-        if (ctx->at.list->count && ANY(on)) {
+        if (ctx->at.lists->list.count && ANY(on)) {
             resv q = ris_list(ctx, surf_load(ctx, g, l, ctx->frame->camera.eye), key_of(ctx, x, y, l),
-                              (int)ctx->at.list->count);
+                              ctx->at.lists->list.count);
             r = resv_sel(on, q, r);
         }
         r.m = sel(on, K(F32(ctx->frame->draws)), K(0.0f));
@@ -40,8 +32,9 @@ static void list_weigh(const struct core_context *ctx, const gblock *g, uint32_t
             u32 key = key_of(ctx, x, y, l);
             u32 shift_u = rng_bits(key, KU(DIM_CANDIDATE));
             u32 shift_v = rng_bits(key, KU(DIM_CANDIDATE + 1u));
-            for (int i = 0; i < (int)ctx->at.list->count; i++) {
-                real p = target(s, light_splat(ctx, ctx->at.list->light[i]), list_u(shift_u, i), list_v(shift_v, i));
+            for (int i = 0; i < (int)ctx->at.lists->list.count; i++) {
+                real p = target(s, light_splat(ctx, ctx->at.lists->list.light[i]), list_u(shift_u, KU((uint32_t)i)),
+                                list_v(shift_v, KU((uint32_t)i)));
                 p = sel(on, p, K(0.0f));
                 real w = p * K(e->share[i]);
                 rstore(out->weight[i] + l, w);
@@ -49,7 +42,7 @@ static void list_weigh(const struct core_context *ctx, const gblock *g, uint32_t
                 bright = bright + p * K(e->expect[i]);
             }
         } else {
-            for (int i = 0; i < (int)ctx->at.list->count; i++)
+            for (int i = 0; i < (int)ctx->at.lists->list.count; i++)
                 rstore(out->weight[i] + l, K(0.0f));
         }
         rstore(out->all + l, all);
@@ -99,8 +92,8 @@ static void list_places(const struct core_context *ctx, int x, int y, const uint
         at[l] = entry[l];
     for (int l = 0; l < BLOCK; l += LANES) {
         u32 key = key_of(ctx, x, y, l);
-        rstore(out->u + l, list_u_at(rng_bits(key, KU(DIM_CANDIDATE)), uload(at + l)));
-        rstore(out->v + l, list_v_at(rng_bits(key, KU(DIM_CANDIDATE + 1u)), uload(at + l)));
+        rstore(out->u + l, list_u(rng_bits(key, KU(DIM_CANDIDATE)), uload(at + l)));
+        rstore(out->v + l, list_v(rng_bits(key, KU(DIM_CANDIDATE + 1u)), uload(at + l)));
     }
 }
 

@@ -74,12 +74,9 @@ static void end_candidates(stage_run *run, worker *w, const tile_points *points,
 
 static rblock *target_block(const stage_run *run, tile_block at) { return &run->s->b.r[run->stage->target][at.at]; }
 
-/* Where the tail of a tile's list starts: anywhere, and from frame to frame on along the golden ratio's sequence, so
- * that the mean of some frames has met the lights as evenly as one frame with so many draws. */
-static float tail_start(const stage_run *run, tile t) {
-    const frame_constants *f = run->ctx.frame;
-    u32 key = rng_key(f->seed, (uint32_t)(t.y0 * run->s->b.blocks_x + t.x0), 0);
-    return unit_real(rng_bits(key, DIM_LIST) + f->index * 2654435769u);
+static float start_of_tail(const stage_run *run, tile t) {
+    int number = t.y0 / TILE_BLOCKS * run->s->b.tiles_x + t.x0 / TILE_BLOCKS;
+    return tail_start(run->ctx.frame->seed, (uint32_t)number, run->ctx.frame->index);
 }
 
 static void gather_points(const stage_run *run, tile t, tile_points *out) {
@@ -99,7 +96,7 @@ static void find_lights(stage_run *run, worker *w, tile t) {
 static void build_list(stage_run *run, worker *w, tile t) {
     tile_points points;
     gather_points(run, t, &points);
-    run->k->list_build(&run->ctx, points.g, points.lanes, points.count, tail_start(run, t), &w->lists, &w->lists.list);
+    run->k->list_build(&run->ctx, points.g, points.lanes, points.count, start_of_tail(run, t), &w->lists);
 }
 
 static void candidates_uniform(stage_run *run, worker *w, tile t) {
@@ -115,7 +112,7 @@ static void candidates_uniform(stage_run *run, worker *w, tile t) {
 static void candidates_list(stage_run *run, worker *w, tile t) {
     struct core_context ctx = run->ctx;
     tile_points p;
-    ctx.at.list = &w->lists.list;
+    ctx.at.lists = &w->lists;
     gather_points(run, t, &p);
     for (int i = 0; i < p.count; i++) {
         run->k->list_candidates(&ctx, p.g[i], p.lanes[i], p.block[i].x, p.block[i].y, target_block(run, p.block[i]));
