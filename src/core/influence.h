@@ -16,7 +16,7 @@
 
 #include "core/pick.h"
 
-/* A record of 8 floats. Lights without emission have size = -infinity: no S_r is enough. */
+/* A record of 8 floats. Lights without emission have root = 0: their volumes hold nothing. */
 struct influence {
     v3 c;
     real size; /* radius of the sphere around the light or lights */
@@ -78,7 +78,7 @@ FN mask influence_holds(influence v, influence_region r, real scale) {
               max_(max_(a.z, K(0.0f) - b.z), K(0.0f)));
     EXACT real reach = v.size + scale * v.root;
     mask faces = and_(influence_shines(v, r), dot3(r.n, v.c) + v.size > r.back);
-    return and_(and_(reach >= K(0.0f), dot3(d, d) <= reach * reach), faces);
+    return and_(and_(v.root > K(0.0f), dot3(d, d) <= reach * reach), faces);
 }
 
 /* 1 / length of m, which influence_gives wants to be told; 0 where the lights shine every way. */

@@ -6,11 +6,12 @@
 void noc_influence_destroy(noc_influence *v) {
     if (!v)
         return;
-    for (int i = 0; i < NOC_INFLUENCE_LEVELS; i++)
-        free(v->nodes[i]);
+    for (int i = 0; i < NOC_HALVES; i++)
+        free(v->half[i].nodes);
     free(v->volumes);
     free(v->boxes);
     free(v->box_of);
+    free(v->box_reach);
     free(v->first);
     free(v->ids);
     free(v->volume_of);

@@ -2,10 +2,14 @@
  *
  * Volumes scale with S_r, so the hierarchy does not know it: a node holds the box around its lights' shapes and the
  * largest sqrt(intensity), and is entered if the box comes nearer than S_r times that. Lights are sorted by size first
- * and Morton code then, so that few large volumes do not blow up the nodes of many small ones. */
+ * and Morton code then, so that few large volumes do not blow up the nodes of many small ones.
+ *
+ * Lights that stand and lights that move have a hierarchy each, and a query searches both. Dark lights have volumes
+ * too, which hold nothing until they shine: so a change of what lights emit moves nothing in either hierarchy. */
 #ifndef NOC_LIGHT_INFLUENCE_H
 #define NOC_LIGHT_INFLUENCE_H
 
+#include "light/bound.h"
 #include "light/influence_rule.h"
 #include "scene/scene.h"
 
@@ -24,29 +28,51 @@ typedef struct noc_influence_volume { /* struct influence of core/influence.h */
     float c[3], size, m[3], root;
 } noc_influence_volume;
 
+/* The hierarchy over volumes [first, first + count). Level 0: a child is 16 volumes in order; the last level has one
+ * node. */
+typedef struct noc_influence_half {
+    uint32_t first, count;
+    noc_influence_node *nodes;               /* of all levels */
+    uint32_t level_at[NOC_INFLUENCE_LEVELS]; /* where a level begins among them */
+    int levels;                              /* 0: there is no volume */
+} noc_influence_half;
+
 typedef struct noc_influence_box {
     float lo[3], hi[3];
 } noc_influence_box;
+
+/* How strong lights are: how many shine, and the mean of their roots. */
+typedef struct noc_influence_mean {
+    uint32_t shining;
+    double root;
+} noc_influence_mean;
 
 /* What building takes time for. Tuning is left out where S_r is given, boxes where none are asked for. */
 enum { NOC_STEP_VOLUMES, NOC_STEP_TUNING, NOC_STEP_HIERARCHY, NOC_STEP_BOXES, NOC_INFLUENCE_STEPS };
 
 typedef struct noc_influence {
-    uint32_t count;   /* lights of the scene, those without emission too */
-    uint32_t shining; /* lights that emit something */
+    uint32_t count;               /* lights of the scene, those without emission too */
+    uint32_t stand;               /* of the lights in `ids` those that stand */
+    uint32_t listed;              /* lights in `ids` */
+    uint32_t shining[NOC_HALVES]; /* of them those that emit something */
     uint32_t volume_count, box_count;
-    /* in the hierarchy's order; behind the last, one that holds nothing */
+    /* those that stand, then those that move, each in its hierarchy's order; behind the last, one that holds nothing */
     noc_influence_volume *volumes;
     uint32_t *box_of;         /* parallel: the box that a volume shares with volumes near it */
-    noc_influence_box *boxes; /* what their lights see; NULL: nothing stands in their way */
+    noc_influence_box *boxes; /* what their lights see, then one that is everywhere; NULL: nothing is in their way */
+    float *box_reach;         /* parallel: S_r times the largest root that a box was made for */
     /* volume i has the lights ids[first[i]..first[i + 1]); NULL: one each */
     uint32_t *first;
     uint32_t *ids;
     uint32_t *volume_of; /* a light of the scene */
-    /* level 0: a child is 16 volumes in order; the last level has one node */
-    noc_influence_node *nodes[NOC_INFLUENCE_LEVELS];
-    int levels;              /* 0: no light emits anything */
+    noc_influence_half half[NOC_HALVES];
     float scale;             /* S_r for this scene, sqrt(m2 / cd) */
+    float usual;             /* median root */
+    bool found;              /* S_r, from what the lights emitted then: */
+    float found_scale;       /* S_r */
+    float found_floor;       /* the rule's */
+    float built_usual;       /* median root */
+    noc_influence_mean was;  /* of the lights that stand */
     noc_influence_rule rule; /* for it, and for what each point lists */
     size_t bytes;
     double seconds[NOC_INFLUENCE_STEPS]; /* wall seconds that each step of building took */
@@ -78,6 +104,24 @@ typedef struct noc_influence_params {
  * reporting that memory was refused. */
 noc_influence *noc_influence_create(const noc_scene *scene, const noc_influence_params *params, noc_log *log);
 void noc_influence_destroy(noc_influence *influence); /* NULL is allowed */
+
+/* After lights of the moving half have changed in any way: makes that half anew. others: some were added or removed.
+ * They have volumes of their own, and no boxes. S_r stays: it is found from what stands, and only where nothing that
+ * stands shines from what moves. NOC_ERR_MEMORY after reporting it: then there is nothing left to do with the volumes
+ * but to destroy them; so it is with noc_influence_relight.
+ *
+ * Lights of the standing half that are added, removed or moved want new volumes altogether. */
+noc_status noc_influence_move(noc_influence *influence, const noc_scene *scene, bool others, noc_log *log) NOC_MUST_USE;
+
+/* After lights of the standing half have changed what they emit: sizes and bounds are fitted where they are. Where S_r
+ * was found it goes on with the lights: in proportion to 1 / (r sqrt(n)), n of them shining, r the mean of their roots,
+ * and the rule's floor to r^2 n, so that a city that is dimmed finds what it found before. Boxes are probed anew where
+ * a light reaches further than its box was made for. */
+noc_status noc_influence_relight(noc_influence *influence, const noc_scene *scene, const noc_influence_params *params,
+                                 noc_log *log) NOC_MUST_USE;
+
+/* Was there no light to find S_r from, and now there is? Then the volumes are to be made anew. */
+bool noc_influence_lacks_scale(const noc_influence *influence, const noc_influence_params *params);
 
 /* ---- queries ---- */
 

@@ -1,37 +1,27 @@
-/* Building influence volumes: their order, the lights that share one, and the hierarchy over them. Every step is linear
- * but the radix sort, which is linear for keys of 64 bits. */
+/* Building influence volumes: their order, and the lights that share one. Every step is linear but the radix sort,
+ * which is linear for keys of 64 bits. */
 #include "light/influence_parts.h"
 
 #include "light/bound.h"
 
 #include <math.h>
 
-enum { WIDTH = NOC_INFLUENCE_WIDTH, LEVELS = NOC_INFLUENCE_LEVELS, CHUNK = 4096 };
+enum { CHUNK = 4096 };
 
-typedef struct build {
-    const noc_scene *scene;
-    const noc_influence_params *params;
-    noc_influence *v;
-    noc_light_bound *bounds; /* a light of the scene */
-    noc_light_key *keys;     /* the lights that shine, then room for as many */
-    double since;            /* clock, at the end of the last step */
+/* Lights in one order. */
+typedef struct sorting {
+    const influence_lights *l;
+    noc_light_key *keys;
+    size_t count, first;     /* first: of their volumes */
     float lo[3], size, most; /* of their centres: corner and largest edge; largest intensity */
-} build;
-
-static void bound_chunk(void *ctx, size_t item, int worker) {
-    build *b = ctx;
-    (void)worker;
-    size_t end = NOC_MIN((item + 1) * CHUNK, b->scene->lights.len);
-    for (size_t i = item * CHUNK; i < end; i++)
-        b->bounds[i] = noc_bound_light(&b->scene->lights.data[i]);
-}
+} sorting;
 
 /* ---- order ---- */
 
-static void measure(build *b, size_t n) {
+static void measure(sorting *b) {
     float lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY };
-    for (size_t i = 0; i < n; i++) {
-        const noc_light_bound *a = &b->bounds[b->keys[i].id];
+    for (size_t i = 0; i < b->count; i++) {
+        const noc_light_bound *a = &b->l->bounds[b->keys[i].id];
         b->most = NOC_MAX(b->most, a->intensity);
         for (int k = 0; k < 3; k++) {
             lo[k] = NOC_MIN(lo[k], a->p[k]);
@@ -46,14 +36,16 @@ static void measure(build *b, size_t n) {
 
 /* Size class (a factor of 2 in intensity), side where lights are to share volumes, Morton code. */
 static void key_chunk(void *ctx, size_t item, int worker) {
-    build *b = ctx;
+    sorting *b = ctx;
     (void)worker;
     float scale = b->size > 0 ? 1048575.f / b->size : 0;
-    bool sides = b->params->cluster > 1;
-    size_t end = NOC_MIN((item + 1) * CHUNK, (size_t)b->v->shining);
+    bool sides = b->l->sides;
+    size_t end = NOC_MIN((item + 1) * CHUNK, b->count);
     for (size_t i = item * CHUNK; i < end; i++) {
-        const noc_light_bound *a = &b->bounds[b->keys[i].id];
-        uint64_t m = 0, smaller = (uint64_t)NOC_CLAMP(ilogbf(b->most) - ilogbf(a->intensity), 0, 15);
+        const noc_light_bound *a = &b->l->bounds[b->keys[i].id];
+        uint64_t m = 0, smaller = 0;
+        if (a->intensity > 0)
+            smaller = (uint64_t)NOC_CLAMP(ilogbf(b->most) - ilogbf(a->intensity), 0, 15);
         for (int k = 0; k < 3; k++)
             m |= noc_spread_bits((uint64_t)((a->p[k] - b->lo[k]) * scale)) << k;
         if (sides)
@@ -74,16 +66,63 @@ static noc_influence_volume volume_of(const noc_light_bound *b) {
 }
 
 static void volume_chunk(void *ctx, size_t item, int worker) {
-    build *b = ctx;
-    noc_influence *v = b->v;
+    const sorting *b = ctx;
+    noc_influence *v = b->l->influence;
     (void)worker;
-    size_t end = NOC_MIN((item + 1) * CHUNK, (size_t)v->shining);
+    size_t end = NOC_MIN((item + 1) * CHUNK, b->count);
     for (size_t i = item * CHUNK; i < end; i++) {
-        v->ids[i] = b->keys[i].id;
-        v->volume_of[v->ids[i]] = (uint32_t)i;
-        v->volumes[i] = volume_of(&b->bounds[v->ids[i]]);
+        uint32_t light = b->l->ids[b->keys[i].id];
+        v->ids[b->l->first_id + b->first + i] = light;
+        v->volume_of[light] = (uint32_t)(b->l->first_volume + b->first + i);
+        v->volumes[b->l->first_volume + b->first + i] = volume_of(&b->l->bounds[b->keys[i].id]);
     }
 }
+
+/* Those of the lights that shine, or do not. Returns how many. */
+static size_t put(const influence_lights *l, size_t first, bool shining) {
+    sorting b = { .l = l, .keys = l->keys, .first = first };
+    for (uint32_t i = 0; i < l->count; i++)
+        if ((l->bounds[i].intensity > 0) == shining)
+            b.keys[b.count++].id = i;
+    if (!b.count)
+        return 0;
+    size_t chunks = (b.count + CHUNK - 1) / CHUNK;
+    measure(&b);
+    noc_influence_run(l->pool, chunks, key_chunk, &b);
+    noc_sort_keys(b.keys, b.keys + l->count, b.count);
+    noc_influence_run(l->pool, chunks, volume_chunk, &b);
+    return b.count;
+}
+
+static void bound_chunk(void *ctx, size_t item, int worker) {
+    const influence_lights *l = ctx;
+    (void)worker;
+    size_t end = NOC_MIN((item + 1) * CHUNK, (size_t)l->count);
+    for (size_t i = item * CHUNK; i < end; i++)
+        l->bounds[i] = noc_bound_light(&l->scene->lights.data[l->ids[i]]);
+}
+
+bool noc_influence_make_lights(influence_lights *l, size_t room) {
+    l->ids = noc_alloc_large(room + 1, sizeof(*l->ids));
+    l->bounds = noc_alloc_large(room + 1, sizeof(*l->bounds));
+    l->keys = noc_alloc_large(2 * room + 1, sizeof(*l->keys));
+    return l->ids && l->bounds && l->keys;
+}
+
+void noc_influence_free_lights(influence_lights *l) {
+    free(l->ids);
+    free(l->bounds);
+    free(l->keys);
+}
+
+uint32_t noc_influence_put(influence_lights *l) {
+    noc_influence_run(l->pool, (l->count + CHUNK - 1) / CHUNK, bound_chunk, l);
+    size_t shining = put(l, 0, true);
+    put(l, shining, false);
+    return (uint32_t)shining;
+}
+
+/* ---- sharing ---- */
 
 /* May a light come into the volume of lights whose box of centres is lo..hi? Its volume must be similar: as large to a
  * factor of 1.5, shining the same way, and most of it in common. */
@@ -101,15 +140,16 @@ static bool joins(const noc_light_bound *first, const noc_light_bound *a, const 
            first->intensity <= 2.25f * a->intensity;
 }
 
-static noc_influence_volume shared_volume(const build *b, uint32_t begin, uint32_t end, const float lo[3],
-                                          const float hi[3]) {
-    const noc_light_bound *first = &b->bounds[b->v->ids[begin]];
+/* bounds: of each light of the scene. */
+static noc_influence_volume shared_volume(const noc_influence *of, const noc_light_bound *bounds, uint32_t begin,
+                                          uint32_t end, const float lo[3], const float hi[3]) {
+    const noc_light_bound *first = &bounds[of->ids[begin]];
     noc_influence_volume v = { .c = { 0 } };
     float back = 0, most = 0;
     for (int k = 0; k < 3; k++)
         v.c[k] = 0.5f * (lo[k] + hi[k]);
     for (uint32_t i = begin; i < end; i++) {
-        const noc_light_bound *a = &b->bounds[b->v->ids[i]];
+        const noc_light_bound *a = &bounds[of->ids[i]];
         float d2 = 0, behind = 0;
         for (int k = 0; k < 3; k++) {
             float d = v.c[k] - a->p[k];
@@ -126,17 +166,19 @@ static noc_influence_volume shared_volume(const build *b, uint32_t begin, uint32
     return v;
 }
 
-/* Algorithm 5 without its quadratic search: lights that follow each other in Morton order. */
-static void share_volumes(build *b) {
-    noc_influence *v = b->v;
+/* Algorithm 5 without its quadratic search: lights that follow each other in Morton order. Those that move keep their
+ * own. */
+static void share_volumes(noc_influence *v, const noc_light_bound *bounds, int most) {
     uint32_t n = 0;
-    for (uint32_t i = 0, end; i < v->shining; i = end) {
-        const noc_light_bound *first = &b->bounds[v->ids[i]];
+    for (uint32_t i = 0, end; i < v->listed; i = end) {
+        const noc_light_bound *first = &bounds[v->ids[i]];
         float lo[3], hi[3];
+        if (i == v->stand)
+            v->half[NOC_MOVING].first = n;
         memcpy(lo, first->p, sizeof(lo));
         memcpy(hi, first->p, sizeof(hi));
-        for (end = i + 1; end < v->shining && end - i < (uint32_t)b->params->cluster; end++) {
-            const noc_light_bound *a = &b->bounds[v->ids[end]];
+        for (end = i + 1; end < v->stand && end - i < (uint32_t)most; end++) {
+            const noc_light_bound *a = &bounds[v->ids[end]];
             if (!joins(first, a, lo, hi, v->scale))
                 break;
             for (int k = 0; k < 3; k++) {
@@ -144,70 +186,17 @@ static void share_volumes(build *b) {
                 hi[k] = NOC_MAX(hi[k], a->p[k]);
             }
         }
-        noc_influence_volume shared = end == i + 1 ? v->volumes[i] : shared_volume(b, i, end, lo, hi);
+        noc_influence_volume shared = end == i + 1 ? v->volumes[i] : shared_volume(v, bounds, i, end, lo, hi);
         for (uint32_t k = i; k < end; k++)
             v->volume_of[v->ids[k]] = n;
         v->first[n] = i;
         v->volumes[n++] = shared; /* n <= i */
     }
-    v->first[n] = v->shining;
+    v->first[n] = v->listed;
     v->volume_count = n;
-}
-
-/* ---- hierarchy ---- */
-
-static void grow(float lo[3], float hi[3], const float a[3], const float b[3]) {
-    for (int k = 0; k < 3; k++) {
-        lo[k] = NOC_MIN(lo[k], a[k]);
-        hi[k] = NOC_MAX(hi[k], b[k]);
-    }
-}
-
-/* Box and largest root of child i of a level. */
-static float bound_child(const noc_influence *v, int level, size_t i, float lo[3], float hi[3]) {
-    float root = 0;
-    if (!level) {
-        size_t end = NOC_MIN((i + 1) * WIDTH, (size_t)v->volume_count);
-        for (size_t j = i * WIDTH; j < end; j++) {
-            const noc_influence_volume *a = &v->volumes[j];
-            float from[3] = { a->c[0] - a->size, a->c[1] - a->size, a->c[2] - a->size };
-            float to[3] = { a->c[0] + a->size, a->c[1] + a->size, a->c[2] + a->size };
-            grow(lo, hi, from, to);
-            root = NOC_MAX(root, a->root);
-        }
-        return root;
-    }
-    const noc_influence_node *n = &v->nodes[level - 1][i];
-    for (int s = 0; s < WIDTH && n->root[s] > 0; s++) {
-        float from[3] = { n->lo[0][s], n->lo[1][s], n->lo[2][s] }, to[3] = { n->hi[0][s], n->hi[1][s], n->hi[2][s] };
-        grow(lo, hi, from, to);
-        root = NOC_MAX(root, n->root[s]);
-    }
-    return root;
-}
-
-static bool build_levels(noc_influence *v) {
-    size_t children = ((size_t)v->volume_count + WIDTH - 1) / WIDTH;
-    for (int level = 0; level < LEVELS; level++) {
-        size_t nodes = (children + WIDTH - 1) / WIDTH;
-        noc_influence_node *to = v->nodes[level] = noc_alloc_large(nodes, sizeof(*to));
-        if (!to)
-            return false;
-        v->bytes += nodes * sizeof(*to);
-        v->levels = level + 1;
-        for (size_t i = 0; i < children; i++) {
-            float lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY };
-            to[i / WIDTH].root[i % WIDTH] = bound_child(v, level, i, lo, hi);
-            for (int k = 0; k < 3; k++) {
-                to[i / WIDTH].lo[k][i % WIDTH] = lo[k];
-                to[i / WIDTH].hi[k][i % WIDTH] = hi[k];
-            }
-        }
-        if (nodes == 1)
-            return true;
-        children = nodes;
-    }
-    return false; /* 16^9 lights do not fit in memory */
+    if (v->stand == v->listed)
+        v->half[NOC_MOVING].first = n;
+    v->half[NOC_STANDING].count = v->half[NOC_MOVING].first;
 }
 
 /* ---- all of it ---- */
@@ -222,78 +211,113 @@ static void *trim(void *data, size_t count, size_t size) {
     return less;
 }
 
-/* A step of building ends: what it took since the one before it. */
-static void end_step(build *b, int step) {
+/* What a part of building took since the clock was `since`. */
+static double end_step(noc_influence *v, int step, double since) {
     double now = noc_wall_seconds();
-    b->v->seconds[step] += now - b->since;
-    b->since = now;
+    v->seconds[step] += now - since;
+    return now;
 }
 
-static bool build_volumes(build *b) {
-    noc_influence *v = b->v;
-    noc_pool *pool = b->params->pool;
-    measure(b, v->shining);
-    noc_influence_run(pool, (v->shining + CHUNK - 1) / CHUNK, key_chunk, b);
-    noc_sort_keys(b->keys, b->keys + v->count, v->shining);
-    noc_influence_run(pool, (v->shining + CHUNK - 1) / CHUNK, volume_chunk, b);
-    v->volume_count = v->shining;
-    end_step(b, NOC_STEP_VOLUMES);
-    v->scale = noc_influence_scale(b->params->scale);
-    if (!(v->scale > 0)) {
-        v->scale = noc_influence_tune(v, b->scene, b->params);
-        end_step(b, NOC_STEP_TUNING);
-    }
-    if (!(v->scale > 0))
-        return false;
-    if (b->params->cluster > 1) {
-        v->first = noc_alloc_large((size_t)v->shining + 1, sizeof(*v->first));
-        if (!v->first)
-            return false;
-        share_volumes(b);
+/* Lights of one half, in order of their indices. */
+static void take_half(influence_lights *l, int half) {
+    const noc_light_record *records = l->scene->lights.data;
+    l->count = 0;
+    for (uint32_t i = 0; i < l->scene->lights.len; i++)
+        if (noc_light_half(&records[i]) == half)
+            l->ids[l->count++] = i;
+}
+
+static bool share(noc_influence *v, const noc_scene *scene, const noc_influence_params *params) {
+    noc_light_bound *bounds = noc_alloc_large(scene->lights.len + 1, sizeof(*bounds));
+    v->first = noc_alloc_large((size_t)v->listed + 1, sizeof(*v->first));
+    bool ok = bounds && v->first;
+    if (ok) {
+        for (size_t i = 0; i < v->listed; i++)
+            bounds[v->ids[i]] = noc_bound_light(&scene->lights.data[v->ids[i]]);
+        share_volumes(v, bounds, params->cluster);
         v->first = trim(v->first, (size_t)v->volume_count + 1, sizeof(*v->first));
         v->volumes = trim(v->volumes, (size_t)v->volume_count + 1, sizeof(*v->volumes));
-        v->bytes += ((size_t)v->volume_count + 1) * sizeof(*v->first);
-        end_step(b, NOC_STEP_VOLUMES);
     }
-    bool ok = build_levels(v);
-    end_step(b, NOC_STEP_HIERARCHY);
-    if (!ok || !b->params->boxes)
-        return ok;
-    ok = noc_influence_probe(v, b->scene, b->params);
-    end_step(b, NOC_STEP_BOXES);
+    free(bounds);
+    return ok;
+}
+
+/* S_r, from those that stand, and only where none of them shines from those that move. */
+static bool find_scale(noc_influence *v, const noc_scene *scene, const noc_influence_params *params) {
+    int half = v->shining[NOC_STANDING] ? NOC_STANDING : NOC_MOVING;
+    uint32_t shining = v->shining[half];
+    const noc_influence_half *h = &v->half[half];
+    v->scale = noc_influence_scale(params->scale);
+    if (v->scale > 0)
+        return true;
+    v->scale = 1;
+    v->found = shining > 0;
+    if (v->found)
+        v->scale = noc_influence_tune(v, h->first, shining, scene, params);
+    v->found_scale = v->scale;
+    v->found_floor = v->rule.floor;
+    return v->scale > 0;
+}
+
+/* The root of the volume in the middle of those that shine. */
+static float usual_root(const noc_influence *v) {
+    const noc_influence_half *h = &v->half[v->shining[NOC_STANDING] ? NOC_STANDING : NOC_MOVING];
+    uint32_t shining = 0;
+    while (shining < h->count && v->volumes[h->first + shining].root > 0)
+        shining++;
+    return shining ? v->volumes[h->first + shining / 2].root : 0;
+}
+
+static bool build(noc_influence *v, influence_lights *l, const noc_influence_params *params) {
+    double since = noc_wall_seconds();
+    for (int half = 0; half < NOC_HALVES; half++) {
+        take_half(l, half);
+        l->first_id = l->first_volume = v->listed;
+        v->shining[half] = noc_influence_put(l);
+        v->half[half] = (noc_influence_half){ .first = v->listed, .count = l->count };
+        v->listed += l->count;
+        v->stand = half == NOC_STANDING ? l->count : v->stand;
+    }
+    v->volume_count = v->listed;
+    since = end_step(v, NOC_STEP_VOLUMES, since);
+    if (!find_scale(v, l->scene, params))
+        return false;
+    if (v->found)
+        since = end_step(v, NOC_STEP_TUNING, since);
+    if (params->cluster > 1) {
+        if (!share(v, l->scene, params))
+            return false;
+        since = end_step(v, NOC_STEP_VOLUMES, since);
+    }
+    v->usual = v->built_usual = usual_root(v);
+    v->was = noc_influence_mean_of(v);
+    for (int half = 0; half < NOC_HALVES; half++) {
+        if (!noc_influence_make_half(&v->half[half]))
+            return false;
+        noc_influence_bound_half(v, &v->half[half], params->pool);
+    }
+    since = end_step(v, NOC_STEP_HIERARCHY, since);
+    bool ok = !params->boxes || !v->stand || noc_influence_probe(v, l->scene, params);
+    end_step(v, NOC_STEP_BOXES, since);
     return ok;
 }
 
 noc_influence *noc_influence_create(const noc_scene *scene, const noc_influence_params *params, noc_log *log) {
     size_t all = scene->lights.len;
     noc_influence *v = noc_calloc(1, sizeof(*v));
-    build b = {
-        .scene = scene, .params = params ? params : &(noc_influence_params){ 0 }, .v = v, .since = noc_wall_seconds()
-    };
-    b.bounds = noc_alloc_large(all + 1, sizeof(*b.bounds));
-    b.keys = noc_alloc_large(2 * all + 1, sizeof(*b.keys));
-    bool ok = v && b.bounds && b.keys && (v->volumes = noc_alloc_large(all + 1, sizeof(*v->volumes))) &&
+    params = params ? params : &(noc_influence_params){ 0 };
+    influence_lights l = { .influence = v, .scene = scene, .pool = params->pool, .sides = params->cluster > 1 };
+    bool ok = noc_influence_make_lights(&l, all) && v && (v->volumes = noc_alloc_large(all + 1, sizeof(*v->volumes))) &&
               (v->ids = noc_alloc_large(all + 1, sizeof(*v->ids))) &&
               (v->volume_of = noc_alloc_large(all + 1, sizeof(*v->volume_of)));
     if (ok) {
         v->count = (uint32_t)all;
-        v->scale = 1;
-        noc_influence_run(b.params->pool, (all + CHUNK - 1) / CHUNK, bound_chunk, &b);
-        for (size_t i = 0; i < all; i++)
-            if (b.bounds[i].intensity > 0)
-                b.keys[v->shining++].id = (uint32_t)i;
-        ok = !v->shining || build_volumes(&b);
+        memset(v->volume_of, 0xff, (all + 1) * sizeof(*v->volume_of));
+        ok = build(v, &l, params);
     }
-    if (ok) {
-        v->volumes[v->volume_count] = (noc_influence_volume){ .size = -INFINITY };
-        for (size_t i = 0; i < all; i++)
-            if (!(b.bounds[i].intensity > 0))
-                v->volume_of[i] = v->volume_count;
-        v->bytes +=
-            ((size_t)v->volume_count + 1) * sizeof(*v->volumes) + (all + 1) * (sizeof(*v->ids) + sizeof(*v->volume_of));
-    }
-    free(b.bounds);
-    free(b.keys);
+    if (ok)
+        noc_influence_end(v);
+    noc_influence_free_lights(&l);
     if (ok)
         return v;
     noc_error(log, NOC_ERR_MEMORY, "influence volumes: no memory for %zu lights", all);

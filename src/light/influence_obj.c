@@ -111,7 +111,7 @@ void noc_influence_write(const noc_influence *v, const noc_scene *scene, double 
     obj_out o = { file, 0 };
     double scale = set > 0 ? (double)noc_influence_scale(set) : (double)v->scale;
     fprintf(file, "# Influence volumes of %u lights, S_r = %.6g m; metres in the scene's local frame, y up\n",
-            v->shining, scale);
+            v->shining[NOC_STANDING] + v->shining[NOC_MOVING], scale);
     fprintf(file, "# scene-crs-name %s\n# scene-origin %.12g %.12g %.12g\n", scene->crs_name ? scene->crs_name : "",
             scene->origin[0], scene->origin[1], scene->origin[2]);
     for (uint32_t i = 0; i < v->volume_count; i++) {
@@ -121,8 +121,10 @@ void noc_influence_write(const noc_influence *v, const noc_scene *scene, double 
         for (int k = 0; k < 3 && length > 0; k++)
             n[k] = a->m[k] / length;
         char name[64];
+        if (!(a->root > 0))
+            continue;
         name_of(v, scene, i, name);
-        if (v->boxes)
+        if (v->boxes && v->box_of[i] < v->box_count)
             fprintf(file, "o %s_in_box_%u\n", name, v->box_of[i]);
         else
             fprintf(file, "o %s\n", name);

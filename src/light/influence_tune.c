@@ -44,18 +44,20 @@ typedef struct tuning {
     noc_influence *v;
     const noc_scene *scene;
     const noc_influence_params *params;
+    size_t first, end; /* volumes */
     volume_run *runs;
     size_t run_count;
     example *examples;
 } tuning;
 
-static size_t run_end(const tuning *t, size_t run) { return NOC_MIN((run + 1) * RUN, (size_t)t->v->volume_count); }
+static size_t run_begin(const tuning *t, size_t run) { return t->first + run * RUN; }
+static size_t run_end(const tuning *t, size_t run) { return NOC_MIN(run_begin(t, run) + RUN, t->end); }
 
 static void bound_run(void *ctx, size_t item, int worker) {
     const tuning *t = ctx;
     volume_run r = { { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } }, 0 };
     (void)worker;
-    for (size_t i = item * RUN; i < run_end(t, item); i++) {
+    for (size_t i = run_begin(t, item); i < run_end(t, item); i++) {
         const noc_influence_volume *a = &t->v->volumes[i];
         for (int k = 0; k < 3; k++) {
             r.centres.lo[k] = NOC_MIN(r.centres.lo[k], a->c[k]);
@@ -63,7 +65,7 @@ static void bound_run(void *ctx, size_t item, int worker) {
         }
         r.root += a->root * a->root;
     }
-    r.root = sqrtf(r.root / (float)(run_end(t, item) - item * RUN));
+    r.root = sqrtf(r.root / (float)(run_end(t, item) - run_begin(t, item)));
     t->runs[item] = r;
 }
 
@@ -169,7 +171,7 @@ static void each_giving(const tuning *t, const example *e, giving_fn *fn, void *
     influence_region at = influence_point(V3(e->p[0], e->p[1], e->p[2]), V3(e->n[0], e->n[1], e->n[2]));
     for (size_t i = 0; i < t->run_count; i++) {
         float half, d = run_distance(&t->runs[i], e->p, &half), s = d / t->runs[i].root;
-        giving g = { i * RUN, run_end(t, i), 0.25f / (s * s) };
+        giving g = { run_begin(t, i), run_end(t, i), 0.25f / (s * s) };
         if (d > 3 * half && half > 0) {
             fn(ctx, &g);
             continue;
@@ -295,7 +297,7 @@ static float tune(tuning *t, const noc_scene *scene) {
     int count = 0;
     noc_influence_run(pool, t->run_count, bound_run, t);
     box in = box_of_lights(t);
-    int wanted = (int)NOC_CLAMP(most_looks / t->v->volume_count, (size_t)FEWEST_EXAMPLES, (size_t)EXAMPLES);
+    int wanted = (int)NOC_CLAMP(most_looks / (t->end - t->first), (size_t)FEWEST_EXAMPLES, (size_t)EXAMPLES);
     int n = take_examples(scene, &in, wanted, t->examples);
     noc_influence_run(pool, (size_t)n, look_around, t);
     t->v->rule = rule_of(t, n);
@@ -310,8 +312,10 @@ static float tune(tuning *t, const noc_scene *scene) {
     return count ? NOC_CLAMP(1 / sqrtf(least[(int)(unserved * (float)count)]), 1e-6f, 1e6f) : 1;
 }
 
-float noc_influence_tune(noc_influence *v, const noc_scene *scene, const noc_influence_params *params) {
-    tuning t = { .v = v, .scene = scene, .params = params, .run_count = ((size_t)v->volume_count + RUN - 1) / RUN };
+float noc_influence_tune(noc_influence *v, uint32_t first, uint32_t count, const noc_scene *scene,
+                         const noc_influence_params *params) {
+    tuning t = { .v = v, .scene = scene, .params = params, .first = first, .end = (size_t)first + count };
+    t.run_count = ((size_t)count + RUN - 1) / RUN;
     t.runs = noc_alloc_large(t.run_count, sizeof(*t.runs));
     t.examples = noc_alloc_large(EXAMPLES, sizeof(*t.examples));
     float scale = t.runs && t.examples ? tune(&t, scene) : 0;

@@ -30,7 +30,8 @@ typedef struct probing {
     const noc_influence_params *params;
     noc_influence *v;
     float lo[3], cells;     /* of Morton codes: corner, cells a metre */
-    noc_light_key *order;   /* volumes that lie close together follow each other; then room for as many */
+    size_t count;           /* volumes of lights that stand and shine */
+    noc_light_key *order;   /* of them, those that lie close together follow each other; then room for as many */
     uint32_t *boxes_before; /* a chunk of the order: boxes of the chunks before it */
     lattice_point lattice[RAYS];
 } probing;
@@ -87,36 +88,41 @@ static void facing(const noc_influence_volume *a, float n[3]) {
  * neighbours of one facade do not follow each other in it. */
 static void key_chunk(void *ctx, size_t chunk, int worker) {
     probing *b = ctx;
-    size_t end = NOC_MIN((chunk + 1) * CHUNK, (size_t)b->v->volume_count);
+    size_t end = NOC_MIN((chunk + 1) * CHUNK, b->count);
     (void)worker;
     for (size_t i = chunk * CHUNK; i < end; i++) {
-        const noc_influence_volume *a = &b->v->volumes[i];
+        const noc_influence_volume *a = &b->v->volumes[b->order[i].id];
         uint64_t m = noc_side(a->m) << 45;
         for (int k = 0; k < 3; k++)
             m |= noc_spread_bits((uint64_t)NOC_CLAMP((a->c[k] - b->lo[k]) * b->cells, 0, 32767)) << k;
-        b->order[i] = (noc_light_key){ m, (uint32_t)i };
+        b->order[i].key = m;
     }
 }
 
 static bool sort_volumes(probing *b) {
-    size_t n = b->v->volume_count;
-    const noc_influence_node *root = &b->v->nodes[b->v->levels - 1][0];
-    float size = 0;
-    for (int k = 0; k < 3; k++) {
-        float hi = -INFINITY;
-        b->lo[k] = INFINITY;
-        for (int s = 0; s < NOC_INFLUENCE_WIDTH && root->root[s] > 0; s++) {
-            b->lo[k] = NOC_MIN(b->lo[k], root->lo[k][s]);
-            hi = NOC_MAX(hi, root->hi[k][s]);
-        }
-        size = NOC_MAX(size, hi - b->lo[k]);
-    }
-    b->cells = size > 0 ? 32767 / size : 0;
-    b->order = noc_alloc_large(2 * n, sizeof(*b->order));
+    const noc_influence *v = b->v;
+    const noc_influence_half *h = &v->half[NOC_STANDING];
+    float size = 0, lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY };
+    b->order = noc_alloc_large(2 * (size_t)h->count + 1, sizeof(*b->order));
     if (!b->order)
         return false;
-    noc_influence_run(b->params->pool, (n + CHUNK - 1) / CHUNK, key_chunk, b);
-    noc_sort_keys(b->order, b->order + n, n);
+    for (uint32_t i = h->first; i < h->first + h->count; i++) {
+        const noc_influence_volume *a = &v->volumes[i];
+        for (int k = 0; k < 3 && a->root > 0; k++) {
+            lo[k] = NOC_MIN(lo[k], a->c[k] - a->size);
+            hi[k] = NOC_MAX(hi[k], a->c[k] + a->size);
+        }
+        if (a->root > 0)
+            b->order[b->count++].id = i;
+    }
+    for (int k = 0; k < 3; k++) {
+        b->lo[k] = lo[k];
+        size = NOC_MAX(size, hi[k] - lo[k]);
+    }
+    b->cells = size > 0 ? 32767 / size : 0;
+    noc_influence_run(b->params->pool, (b->count + CHUNK - 1) / CHUNK, key_chunk, b);
+    if (b->count)
+        noc_sort_keys(b->order, b->order + b->count, b->count);
     return true;
 }
 
@@ -149,7 +155,7 @@ static size_t group_end(const probing *b, size_t begin, size_t end) {
 
 static void group_chunk(void *ctx, size_t chunk, int worker) {
     probing *b = ctx;
-    size_t end = NOC_MIN((chunk + 1) * CHUNK, (size_t)b->v->volume_count);
+    size_t end = NOC_MIN((chunk + 1) * CHUNK, b->count);
     uint32_t boxes = 0;
     (void)worker;
     for (size_t i = chunk * CHUNK, next; i < end; i = next, boxes++)
@@ -196,13 +202,15 @@ static void trace(const probing *b, const noc_light_key *group, uint32_t count, 
     }
 }
 
-static void make_box(const probing *b, const noc_light_key *group, uint32_t count, noc_influence_box *box) {
-    float reach = 0;
+/* Returns S_r times the largest root. */
+static float make_box(const probing *b, const noc_light_key *group, uint32_t count, noc_influence_box *box) {
+    float reach = 0, root = 0;
     *box = (noc_influence_box){ { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
     for (uint32_t i = 0; i < count; i++) {
         const noc_influence_volume *a = &b->v->volumes[group[i].id];
         float near = a->root * b->v->scale * uncut + a->size;
         reach = NOC_MAX(reach, a->root * b->v->scale * beyond + a->size);
+        root = NOC_MAX(root, a->root);
         for (int k = 0; k < 3; k++) {
             box->lo[k] = NOC_MIN(box->lo[k], a->c[k] - near);
             box->hi[k] = NOC_MAX(box->hi[k], a->c[k] + near);
@@ -214,41 +222,59 @@ static void make_box(const probing *b, const noc_light_key *group, uint32_t coun
         box->lo[k] -= between;
         box->hi[k] += between;
     }
+    return b->v->scale * root;
 }
 
 static void probe_chunk(void *ctx, size_t chunk, int worker) {
     const probing *b = ctx;
     uint32_t *box_of = b->v->box_of;
-    size_t end = NOC_MIN((chunk + 1) * CHUNK, (size_t)b->v->volume_count);
+    size_t end = NOC_MIN((chunk + 1) * CHUNK, b->count);
     (void)worker;
     for (size_t i = chunk * CHUNK, next; i < end; i = next) {
         uint32_t own = box_of[b->order[i].id], at = b->boxes_before[chunk] + own;
         for (next = i; next < end && box_of[b->order[next].id] == own; next++)
             ;
-        make_box(b, &b->order[i], (uint32_t)(next - i), &b->v->boxes[at]);
+        b->v->box_reach[at] = make_box(b, &b->order[i], (uint32_t)(next - i), &b->v->boxes[at]);
         for (size_t k = i; k < next; k++)
             box_of[b->order[k].id] = at;
     }
 }
 
+/* A box that is everywhere, for volumes that have none: lights that move, and those that are dark now. */
+static void add_open_box(noc_influence *v) {
+    v->boxes[v->box_count] =
+        (noc_influence_box){ { -INFINITY, -INFINITY, -INFINITY }, { INFINITY, INFINITY, INFINITY } };
+    v->box_reach[v->box_count] = 0;
+    for (uint32_t i = 0; i <= v->volume_count; i++)
+        if (i >= v->half[NOC_MOVING].first || !(v->volumes[i].root > 0))
+            v->box_of[i] = v->box_count;
+}
+
 bool noc_influence_probe(noc_influence *v, const noc_scene *scene, const noc_influence_params *params) {
-    size_t chunks = ((size_t)v->volume_count + CHUNK - 1) / CHUNK;
     probing b = { .scene = scene, .params = params, .v = v };
-    b.boxes_before = noc_alloc_large(chunks + 1, sizeof(*b.boxes_before));
+    free(v->boxes);
+    free(v->box_reach);
+    free(v->box_of);
+    v->boxes = NULL;
+    v->box_reach = NULL;
     v->box_of = noc_alloc_large((size_t)v->volume_count + 1, sizeof(*v->box_of));
-    bool ok = b.boxes_before && v->box_of && sort_volumes(&b);
+    bool ok = v->box_of && sort_volumes(&b);
+    size_t chunks = (b.count + CHUNK - 1) / CHUNK;
+    ok = ok && (b.boxes_before = noc_alloc_large(chunks + 1, sizeof(*b.boxes_before)));
     if (ok) {
+        b.boxes_before[0] = 0;
         noc_influence_run(params->pool, chunks, group_chunk, &b);
         for (size_t i = 0; i < chunks; i++)
             b.boxes_before[i + 1] += b.boxes_before[i];
         v->box_count = b.boxes_before[chunks];
-        v->boxes = noc_alloc_large(v->box_count, sizeof(*v->boxes));
-        v->bytes += v->box_count * sizeof(*v->boxes) + ((size_t)v->volume_count + 1) * sizeof(*v->box_of);
-        ok = v->boxes != NULL;
+        v->boxes = noc_alloc_large((size_t)v->box_count + 1, sizeof(*v->boxes));
+        v->box_reach = noc_alloc_large((size_t)v->box_count + 1, sizeof(*v->box_reach));
+        ok = v->boxes && v->box_reach;
     }
     if (ok) {
         make_lattice(b.lattice);
         noc_influence_run(params->pool, chunks, probe_chunk, &b);
+        add_open_box(v);
     }
     free(b.boxes_before);
     free(b.order);

@@ -59,30 +59,75 @@ void noc_light_set_destroy(noc_light_set *set) {
     free(set);
 }
 
-/* Lights change between frames only, so nobody reads what is made anew here. */
+/* ---- lights that have changed ---- */
+
+/* What is different since structures were made, or last followed. */
+typedef struct changes {
+    bool others;             /* lights of the moving half were added or removed, and N may be another */
+    bool moving;             /* that half has changed in any way */
+    bool emission, standing; /* what lights emit; of the static half too */
+    bool anew;               /* lights of the static half were added or removed */
+} changes;
+
+static changes changes_since(const noc_scene_versions *known, const noc_scene_versions *now) {
+    changes c = { .others = known->lights != now->lights, .standing = known->standing != now->standing };
+    c.emission = c.others || known->emission != now->emission;
+    c.moving = c.emission || known->moved != now->moved;
+    c.anew = c.others && c.standing;
+    return c;
+}
+
+static noc_status follow_tree(noc_light_set *set, changes c) {
+    noc_status status = NOC_OK;
+    if (set->tree && !c.anew) {
+        if (c.moving)
+            status = noc_tree_refit(set->tree, set->scene, c.others, set->log);
+        if (status == NOC_OK && c.emission && c.standing)
+            noc_tree_relight(set->tree, set->scene, set->pool);
+        if (status == NOC_OK)
+            return NOC_OK;
+    }
+    noc_tree_destroy(set->tree);
+    set->tree = NULL;
+    return status;
+}
+
+/* Do volumes serve the lights that there are now? */
+static noc_status follow_volumes(noc_light_set *set, volumes *v, changes c) {
+    noc_status status = NOC_OK;
+    if (c.standing)
+        status = noc_influence_relight(v->influence, set->scene, &v->params, set->log);
+    if (status == NOC_OK && c.moving)
+        status = noc_influence_move(v->influence, set->scene, c.others, set->log);
+    return status;
+}
+
+static noc_status follow_all_volumes(noc_light_set *set, changes c) {
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < set->volumes.len && !c.anew && status == NOC_OK; i++) {
+        volumes *v = &set->volumes.data[i];
+        status = follow_volumes(set, v, c);
+        c.anew = noc_influence_lacks_scale(v->influence, &v->params);
+    }
+    if (c.anew || status != NOC_OK)
+        drop_volumes(set);
+    return status;
+}
+
+/* Nobody reads what is changed here: it is done by the first frame after a commit, and commits wait for frames. */
 static noc_status follow(noc_light_set *set) {
-    const noc_scene *scene = set->scene;
-    noc_scene_versions known = set->known, now = scene->versions;
-    bool others = known.lights != now.lights, power = others || known.emission != now.emission;
-    if (!power && known.moved == now.moved)
+    changes c = changes_since(&set->known, &set->scene->versions);
+    if (!c.moving && !c.standing)
         return NOC_OK;
-    if (power) { /* it does not know where lights are */
+    set->known = set->scene->versions;
+    if (c.emission) { /* it does not know where lights are */
         noc_alias_destroy(set->alias);
         set->alias = NULL;
     }
-    if (others || known.standing != now.standing) { /* its static half is not refitted */
-        noc_tree_destroy(set->tree);
-        set->tree = NULL;
-    } else if (set->tree && noc_tree_refit(set->tree, scene, set->log) != NOC_OK) {
-        noc_tree_destroy(set->tree);
-        set->tree = NULL;
-        return NOC_ERR_MEMORY;
-    }
     noc_clusters_destroy(set->clusters);
     set->clusters = NULL;
-    drop_volumes(set);
-    set->known = now;
-    return NOC_OK;
+    noc_status tree = follow_tree(set, c), all_volumes = follow_all_volumes(set, c);
+    return tree != NOC_OK ? tree : all_volumes;
 }
 
 /* ---- influence volumes ---- */

@@ -1,5 +1,18 @@
 /* light/set: the lights of a scene, as the views of a world draw candidates from them. Each structure is made when a
- * frame first needs it, follows the scene's lights, and is shared by all views. */
+ * frame first needs it, follows the scene's lights, and is shared by all views.
+ *
+ * Structures change only while no frame of the scene draws from them: a frame holds the scene for reading from its
+ * first look to its last, a commit waits until none does, and the first frame after a commit that asks for candidates
+ * brings all of them up to date, before it or another draws. What a commit costs then:
+ *
+ *              lights that move                  what lights emit               lights added or removed
+ *   power      nothing                           a new table, linear time       a new table
+ *   influence  their half is made anew           sizes and bounds are refitted  that half is made anew
+ *   light-bvh  their half is refitted, or built  powers are summed up anew      that half is built anew
+ *              anew where it has become bad
+ *
+ * Where lights that stand are added or removed the half of those that move is made anew beside it, as it is whenever
+ * they move. */
 #ifndef NOC_LIGHT_SET_H
 #define NOC_LIGHT_SET_H
 

@@ -1,8 +1,10 @@
 /* light/tree: a binary tree over the lights for stochastic descent (core/tree.h), built from the top by the surface
- * area orientation heuristic (Conty Estevez and Kulla 2018, section 4). Lights without emission are not in it.
+ * area orientation heuristic (Conty Estevez and Kulla 2018, section 4).
  *
  * Two levels: lights that move have a tree of their own, and a top pair chooses between both. So what stands is bounded
- * tightly whatever the others do, and moving them costs what they are, not what the scene is. */
+ * tightly whatever the others do, and moving them costs what they are, not what the scene is. Of those that stand the
+ * ones that are dark when the tree is built have a tree, too, which nothing is drawn from until they shine: a change of
+ * what lights emit only changes powers. */
 #ifndef NOC_LIGHT_TREE_H
 #define NOC_LIGHT_TREE_H
 
@@ -34,11 +36,12 @@ typedef struct noc_tree_part {
 typedef struct noc_tree {
     noc_tree_pair *pairs;
     uint32_t root;   /* link to a pair, or to the only light */
-    uint32_t lights; /* in the tree; 0: none emits anything */
+    uint32_t lights; /* in the tree */
     int depth;       /* turns on the longest way to a light */
     /* a light of the scene: bits of the turns to it, the first one lowest; NOC_TREE_NO_PATH: not here */
     uint32_t *paths;
-    noc_tree_part moving; /* all that move, dark ones too */
+    uint32_t places;      /* of lights in the scene: the length of paths */
+    noc_tree_part moving; /* all that move */
     uint32_t *order;      /* moving.count lights in the order of their leaves */
     double built_cost;    /* of the moving part when it was last built */
     size_t bytes;
@@ -49,9 +52,14 @@ typedef struct noc_tree {
 noc_tree *noc_tree_create(const noc_scene *scene, noc_pool *pool, noc_log *log);
 void noc_tree_destroy(noc_tree *tree); /* NULL is allowed */
 
-/* After lights of the scene have moved: bounds their tree anew where it stands, or builds it anew where its heuristic
- * cost has grown by half since it was built; what stands stays as it is. NOC_ERR_MEMORY after reporting it: then there
- * is nothing left to do with the tree but to destroy it. */
-noc_status noc_tree_refit(noc_tree *tree, const noc_scene *scene, noc_log *log);
+/* After lights of the moving half have changed in any way: bounds their tree anew where it stands, or builds it anew
+ * where its heuristic cost has grown by half since it was built; what stands stays as it is. others: some were added or
+ * removed, for which it is built anew; where none moved before, or none does any more, the whole tree is. Lights that
+ * stand and are added, removed or moved want another tree. NOC_ERR_MEMORY after reporting it: then there is nothing
+ * left to do with the tree but to destroy it. */
+noc_status noc_tree_refit(noc_tree *tree, const noc_scene *scene, bool others, noc_log *log) NOC_MUST_USE;
+
+/* After lights have changed what they emit: the powers of all nodes, from the leaves up. */
+void noc_tree_relight(noc_tree *tree, const noc_scene *scene, noc_pool *pool);
 
 #endif

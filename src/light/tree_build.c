@@ -390,6 +390,11 @@ void noc_tree_free_scratch(tree_build *b) {
 
 /* ---- the tree ---- */
 
+noc_tree_child noc_tree_bound_lights(const tree_build *b, uint32_t first, uint32_t end) {
+    heap all = heap_of(b->lights, first, end);
+    return bound_lights(b, first, end, &all);
+}
+
 /* A node of more than one light that is to be split. */
 typedef struct task {
     noc_tree_part part;

@@ -34,6 +34,9 @@ enum { NOC_TREE_CHUNK = 16384 };
 /* Builds a part of at least one light: pairs, paths and the depth of b->tree; returns what its parent keeps of it. */
 noc_tree_child noc_tree_grow(tree_build *b, const noc_tree_part *part);
 
+/* What a parent keeps of lights [first, end); without a link. */
+noc_tree_child noc_tree_bound_lights(const tree_build *b, uint32_t first, uint32_t end);
+
 /* Bounds the pairs of a part anew and leaves their turns as they are; lights are in the order of its leaves. *cost: the
  * heuristic's, over all its nodes, as a share of the root's. */
 noc_tree_child noc_tree_bound(tree_build *b, const noc_tree_part *part, double *cost);

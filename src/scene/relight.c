@@ -66,6 +66,7 @@ void noc_light_change(noc_scene *s, uint32_t slot, const noc_light_record *made,
     bool spot = now->kind == NOC_LIGHT_SPOT; /* its cones say how much of its intensity leaves it */
     bool power = memcmp(before.e, now->e, sizeof(now->e)) || before.area != now->area || before.flags != now->flags ||
                  (spot && memcmp(before.b, now->b, sizeof(now->b)));
+    c->lights |= before.flags != now->flags; /* it shines another way: as another light would */
     c->emission |= power;
     c->standing |= power && !(now->flags & NOC_LIGHT_MOVES);
     c->moved |= memcmp(before.p, now->p, sizeof(now->p)) || memcmp(before.a, now->a, sizeof(now->a)) ||

@@ -479,7 +479,7 @@ static void threads_build_the_same(void **state) {
     assert_int_equal(a->box_count, b->box_count);
     assert_memory_equal(a->boxes, b->boxes, a->box_count * sizeof(*a->boxes));
     assert_memory_equal(a->box_of, b->box_of, a->volume_count * sizeof(*a->box_of));
-    assert_memory_equal(a->ids, b->ids, a->shining * sizeof(*a->ids));
+    assert_memory_equal(a->ids, b->ids, a->listed * sizeof(*a->ids));
     assert_memory_equal(&a->scale, &b->scale, sizeof(a->scale));
     noc_influence_destroy(a);
     noc_influence_destroy(b);

@@ -65,19 +65,18 @@ static noc_near_group *group_with_room(noc_near *out) {
         }
         noc_near_group *g = &out->groups.data[out->groups.len++];
         memset(g, 0, sizeof(*g));
-        for (int i = 0; i < BLOCK; i++)
-            g->size[i] = -INFINITY;
     }
     return &out->groups.data[out->groups.len - 1];
 }
 
 /* The volumes of a leaf that could hold a point, close together: every group of points looks at them. */
-static void leaf_near(const noc_influence *v, size_t leaf, influence_region r, real scale, noc_near *out) {
-    uint32_t first = (uint32_t)leaf * BLOCK, found = 0;
+static void leaf_near(const noc_influence *v, const noc_influence_half *h, size_t leaf, influence_region r, real scale,
+                      noc_near *out) {
+    uint32_t first = h->first + (uint32_t)leaf * BLOCK, found = 0;
     ALIGNED float turn[BLOCK];
     for (int l = 0; l < BLOCK; l += LANES) {
         u32 i = KU(first) + lane_numbers(l);
-        influence a = influence_gather(v->volumes, selu(i < KU(v->volume_count), i, KU(v->volume_count)));
+        influence a = influence_gather(v->volumes, selu(i < KU(h->first + h->count), i, KU(v->volume_count)));
         found |= mbits(volume_near(a, r, scale)) << l;
         rstore(turn + l, influence_turn(a));
     }
@@ -113,36 +112,42 @@ FN influence group_load(const noc_near_group *g, int l) {
 /* Rounding must not lose what the exact test would take. */
 FN real with_margin(float scale) { return K(scale * 1.00001f); }
 
-static void influence_near(const noc_influence *v, const noc_near_query *q, noc_near *out) {
+static void half_near(const noc_influence *v, const noc_influence_half *h, const noc_near_query *q, influence_region r,
+                      noc_near *out) {
     struct {
         int level;
         size_t node;
     } stack[NOC_INFLUENCE_LEVELS * BLOCK];
     int depth = 0;
-    influence_region r = region_splat(q);
     real scale = with_margin(q->scale);
-    out->count = out->groups.len = 0;
-    out->over = out->no_memory = false;
-    if (!v->levels || q->lo[0] > q->hi[0])
+    if (!h->levels)
         return;
-    stack[depth++].level = v->levels - 1, stack[0].node = 0;
+    stack[depth++].level = h->levels - 1, stack[0].node = 0;
     while (depth) {
         int level = stack[--depth].level;
         size_t node = stack[depth].node;
-        for (uint32_t bits = children_near(&v->nodes[level][node], r, scale); bits; bits &= bits - 1) {
+        for (uint32_t bits = children_near(&h->nodes[h->level_at[level] + node], r, scale); bits; bits &= bits - 1) {
             size_t child = node * BLOCK + (size_t)__builtin_ctz(bits);
             if (level) {
                 stack[depth].level = level - 1;
                 stack[depth++].node = child;
                 continue;
             }
-            leaf_near(v, child, r, scale, out);
+            leaf_near(v, h, child, r, scale, out);
             if (out->count > q->most) {
                 out->over = true;
                 return;
             }
         }
     }
+}
+
+static void influence_near(const noc_influence *v, const noc_near_query *q, noc_near *out) {
+    influence_region r = region_splat(q);
+    out->count = out->groups.len = 0;
+    out->over = out->no_memory = false;
+    for (int i = 0; i < NOC_HALVES && q->lo[0] <= q->hi[0] && !out->over; i++)
+        half_near(v, &v->half[i], q, r, out);
 }
 
 #endif

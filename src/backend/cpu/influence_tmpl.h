@@ -133,7 +133,7 @@ static void influence_find(const struct core_context *ctx, const gblock *const *
                            noc_found *f) {
     const noc_influence *v = ctx->influence;
     float fixed = ctx->frame->influence, scale = fixed > 0 ? fixed : v->scale;
-    float close = influence_close * scale * v->volumes[v->volume_count / 2].root;
+    float close = influence_close * scale * v->usual;
     uint32_t pending[NOC_QUERY_BLOCKS];
     noc_near_query all = noc_near_none(scale, TILE_VOLUMES), none = noc_near_none(scale, SIZE_MAX);
     none.least = fixed > 0 ? 0 : 1 / (scale * scale);
