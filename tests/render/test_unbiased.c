@@ -5,6 +5,8 @@
 #include "unbiased.h"
 #include "../own_view.h"
 
+#include <nocturne/option.h>
+
 /* ---- scenes ---- */
 
 static noc_scene *finish(noc_scene *s) {
@@ -177,6 +179,24 @@ typedef struct {
     bool moving, lists, one_light;
 } plan;
 
+/* Whatever candidates are drawn from is held to the reference. */
+static void every_picker_is_tried(void **state) {
+    const noc_option *o = noc_render_options();
+    (void)state;
+    while (strcmp(o->name, "candidates"))
+        o++;
+    int pickers = 1;
+    for (const char *c = o->choices; *c; c++)
+        pickers += *c == '|';
+    for (int i = 0; i < pickers; i++) {
+        size_t rows = 0;
+        for (size_t k = 0; k < NOC_COUNT(unbiased); k++)
+            rows += (unbiased[k].list ? (int)NOC_CANDIDATES_LISTS : (int)unbiased[k].picker) == i;
+        if (!rows)
+            fail_msg("candidates %d of %s: no row of the unbiased", i, o->choices);
+    }
+}
+
 static void check_scene(noc_scene *s, plan p) {
     result reference = measure_reference(s, p.moving, NULL, p.reference_frames);
     int wrong = 0;
@@ -248,9 +268,10 @@ static void thousands_of_lights(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(boxes_with_a_gap),   cmocka_unit_test(many_lights_resting),
-        cmocka_unit_test(many_lights_moving), cmocka_unit_test(one_light_resting),
-        cmocka_unit_test(one_light_moving),   cmocka_unit_test(thousands_of_lights),
+        cmocka_unit_test(every_picker_is_tried), cmocka_unit_test(boxes_with_a_gap),
+        cmocka_unit_test(many_lights_resting),   cmocka_unit_test(many_lights_moving),
+        cmocka_unit_test(one_light_resting),     cmocka_unit_test(one_light_moving),
+        cmocka_unit_test(thousands_of_lights),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
