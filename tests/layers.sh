@@ -106,8 +106,8 @@ found=$(violations "$root/src")
 
 # circles FOLDER: what tsort says of files that include each other's headers in a circle; a.c and a.h are one
 circles() {
-    grep -o '^#include "lab/[a-z_]*\.h"' "$1"/lab/*.[ch] | sed 's|^.*/lab/\([a-z_]*\)\.[ch]:#include "lab/|\1 |; s|\.h"$||' |
-        awk '$1 != $2' | tsort 2>&1 >/dev/null
+    grep -o '^#include "lab/[a-z_]*\.h"' "$1"/lab/*.[ch] |
+        sed 's|^.*/lab/\([a-z_]*\)\.[ch]:#include "lab/|\1 |; s|\.h"$||' | awk '$1 != $2' | tsort 2>&1 >/dev/null
 }
 found=$(circles "$root/src")
 [ -z "$found" ] && grep -q '"lab/session.h"' "$root/src/lab/run.h"; result $? "the laboratory's files form no circle"

@@ -4,8 +4,8 @@
 sed -n '/^```c$/,/^```$/p' "$source_dir/docs/experiments.md" | sed '/^```/d' >example.c
 grep -q noc_lab_measure example.c; result $? "docs/experiments.md shows a program"
 if command -v "${CC:-cc}" >/dev/null; then
-    ${CC:-cc} -Wall -Wextra -Werror -I"$source_dir/include" example.c -L"$NOC_BUILD" -Wl,-rpath,"$NOC_BUILD" -lnocturne \
-        -o example >out 2>err
+    ${CC:-cc} -Wall -Wextra -Werror -I"$source_dir/include" example.c -L"$NOC_BUILD" -Wl,-rpath,"$NOC_BUILD" \
+        -lnocturne -o example >out 2>err
     result $? "which compiles"
     ./example >out 2>err
     test $? = 0 && test "$(grep -Ec '^mean of [0-9]+: RMSE [0-9.e-]+ cd/m2, relMSE [0-9.e-]+, [0-9.]+ ms$' out)" = 20

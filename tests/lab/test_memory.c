@@ -9,7 +9,8 @@
     "  \"cameras\": [ { \"name\": \"up\", \"eye\": [20, -20, 30], \"target\": [0, 0, 0] } ],"
 #define TAIL                                                                                                           \
     "  \"size\": \"8x6\", \"frames\": 2, \"repetitions\": 1, \"reference\": { \"rays\": 1, \"frames\": 2 },"           \
-    "  \"configurations\": [ { \"name\": \"ris, *\", \"method\": \"ris\", \"candidates\": [\"uniform\", \"power\"] } ] }"
+    "  \"configurations\": [ { \"name\": \"ris, *\", \"method\": \"ris\","                                             \
+    "                          \"candidates\": [\"uniform\", \"power\"] } ] }"
 
 static char folder[] = "/tmp/nocturne-lab-memory-XXXXXX", text[2000];
 
