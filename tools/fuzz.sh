@@ -2,7 +2,8 @@
 # fuzz.sh BUILD SECONDS [CORPUS...]: runs the fuzzer of each corpus for so long, on what it found before and on the
 # seeds, and prints a table. Inputs that break something lie in BUILD/findings/CORPUS, new ones in BUILD/corpus/CORPUS.
 # Fails where something was found. As many corpora at a time as there are cores, or JOBS of them; fuzz.sh BUILD SECONDS
-# alone CORPUS is what each of them runs. fuzz.sh BUILD table: the table of all runs so far.
+# alone CORPUS is what each of them runs. fuzz.sh BUILD table: the table of all runs so far. fuzz.sh BUILD turn N: the
+# corpora whose turn it is at the Nth of several runs that share the work, one in five of them.
 set -u
 build=$1 seconds=${2:-60}
 shift 2
@@ -38,8 +39,9 @@ table() {
     printf '%-10s %12s %8s %8s %8s %9s %9s\n' corpus executions minutes 'a second' edges inputs findings
     echo "$corpora" | while read -r corpus program rest; do
         [ -n "$corpus" ] && [ -s "$build/fuzz-logs/$corpus" ] || continue
-        awk -v corpus="$corpus" -v inputs="$(ls "$build/corpus/$corpus" |
-            wc -l)" -v found="$(ls "$build/findings/$corpus" | wc -l)" '
+        inputs=$(ls "$build/corpus/$corpus" | wc -l)
+        found=$(ls "$build/findings/$corpus" | wc -l)
+        awk -v corpus="$corpus" -v inputs="$inputs" -v found="$found" '
             { runs += $1; time += $2; if ($3) edges = $3 }
             END { printf "%-10s %12d %8.1f %8.1f %8d %9d %9d\n",
                 corpus, runs, time / 60, time ? runs / time : 0, edges, inputs, found }' \
@@ -57,8 +59,8 @@ fuzz() {
     if [ "$5" != - ] && [ -d "$root/../shared/data" ]; then
         rm -rf "$build/real/$1" && mkdir -p "$build/real/$1"
         for ending in $(echo "$5" | tr , ' '); do
-            find "$root/../shared/data" -type f -name "*.$ending" -size "-$(($3 / 1024))k" -exec ln -sf \
-                -t "$build/real/$1" {} +
+            find "$root/../shared/data" -type f -name "*.$ending" -size "-$(($3 / 1024))k" \
+                -exec ln -sf -t "$build/real/$1" {} +
         done
         seeds="$seeds $build/real/$1"
     fi
@@ -90,6 +92,10 @@ fuzz() {
 
 if [ "$seconds" = table ]; then
     table
+    exit
+fi
+if [ "$seconds" = turn ]; then
+    echo "$corpora" | awk -v turn="$1" '$1 && n++ % 5 == turn % 5 { printf "%s ", $1 }'
     exit
 fi
 export ASAN_OPTIONS="detect_leaks=1:allocator_may_return_null=1:${ASAN_OPTIONS:-}" \
