@@ -1,7 +1,8 @@
 /* Error against the reference by method and frame.
  *
- *   bench_error [SCENE [VIEW [WIDTH HEIGHT [REFERENCE_FRAMES [CACHE [NAME]]]]]]     default: city street 480 270 64
- * build
+ *   bench_error [SCENE [VIEW [WIDTH HEIGHT [REFERENCE_FRAMES [CACHE [NAME]]]]]]
+ *
+ * default: city street 480 270 64 build
  *
  * NAME: only the variants whose names hold it. Figures: RMSE-8 and relMSE clamped to 10 cd/m2, and unclamped bias
  * (docs/estimator.md, "Error figures") on pixels that see no emitter, after 1, 2, 4, 8, 16 and 32 frames: accumulated,

@@ -1,7 +1,8 @@
 /* Candidates from influence volumes: frame times against uniform ones, and error by S_r.
  *
- *   bench_influence [SCENE [VIEW [WIDTH HEIGHT [FRAMES [METHOD REFERENCE SEEDS S_R...]]]]]     default: city street 640
- * 360 9
+ *   bench_influence [SCENE [VIEW [WIDTH HEIGHT [FRAMES [METHOD REFERENCE SEEDS S_R...]]]]]
+ *
+ * default: city street 640 360 9
  *
  * Without a REFERENCE two renderers, restir at M = 32 and restir at M = 32 from volumes, make frames in turn in one
  * process and so meet the same disturbances; times are medians of CPU seconds. The first frame of each, without a

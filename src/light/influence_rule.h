@@ -13,8 +13,8 @@
  *
  * and the loss of a list of the first n is, but for what no list changes,
  *
- *     n / b sum_{i <= n} a_i - N / u sum_{i <= n} a_i,    a_i = e_i^2 (sum_{j < i} v (1 - v)^(j - 1) / L_j^2 + (1 -
- * v)^(i - 1) / L_i^2).
+ *     n / b sum_{i <= n} a_i - N / u sum_{i <= n} a_i,
+ *     a_i = e_i^2 (sum_{j < i} v (1 - v)^(j - 1) / L_j^2 + (1 - v)^(i - 1) / L_i^2).
  *
  * The floor is light that is too little to be seen. Lights come in bins of half an octave. The rule steers the noise
  * only: whatever it says, densities are exact. */
