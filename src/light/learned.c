@@ -1,5 +1,7 @@
 #include "light/learned.h"
 
+#include "core/learned.h"
+
 #include <math.h>
 
 enum { PROBES = 8, PARTS = 8, MOST_CELLS = 1 << 18, MOST_ASKED = 1024, MOST_ALL = 1 << 20 };
@@ -85,15 +87,12 @@ static int slot_of(const noc_cell *c, uint32_t light) {
     return -1;
 }
 
-/* Two lights' worth of asking for what is believed beforehand: of a light, what all lights of the cell came to; of
- * those, a half. */
 float noc_cell_visibility(const noc_cell *c, uint32_t light) {
-    const float worth = 2;
     if (!c)
-        return NOC_UNKNOWN_LIGHT;
-    float all = ((float)c->seen_all + worth * NOC_UNKNOWN_LIGHT) / ((float)c->asked_all + worth);
+        return LEARNED_UNKNOWN;
+    float all = learned_visibility((float)c->asked_all, (float)c->seen_all, LEARNED_UNKNOWN);
     int i = slot_of(c, light);
-    return i < 0 ? all : ((float)c->seen[i] + worth * all) / ((float)c->asked[i] + worth);
+    return i < 0 ? all : learned_visibility(c->asked[i], c->seen[i], all);
 }
 
 static void count_sighting(noc_cell *c, const noc_sighting *s) {

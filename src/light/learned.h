@@ -11,7 +11,6 @@
 #include <stdint.h>
 
 enum { NOC_CELL_WAYS = 4, NOC_CELL_SETS = 16, NOC_CELL_LIGHTS = NOC_CELL_WAYS * NOC_CELL_SETS };
-#define NOC_UNKNOWN_LIGHT 0.5f /* the visibility of a light that nothing is known of */
 
 typedef struct noc_cell {
     uint64_t key;                    /* 0: free */

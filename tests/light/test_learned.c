@@ -32,7 +32,7 @@ static void counts(void **state) {
     noc_learned *t = noc_learned_create(1, NULL);
     uint64_t key = noc_cell_key((const float[3]){ 0 }, up, 0);
     assert_null(noc_learned_find(t, key));
-    assert_true(noc_cell_visibility(NULL, 7) == NOC_UNKNOWN_LIGHT);
+    assert_true(noc_cell_visibility(NULL, 7) == 0.5f);
     noc_sighting s[] = { { key, 7, 10, 10 }, { key, 8, 10, 0 } };
     noc_learned_add(t, pool, &(noc_sightings){ s, 2 }, 1);
     const noc_cell *c = noc_learned_find(t, key);

@@ -23,14 +23,6 @@ typedef struct packet {
     bool primary;
 } packet;
 
-/* ris over lists: rays of one block, a lane each. */
-typedef struct ray_draw {
-    rblock r;             /* w: W, 0 where the ray was blocked; m and p are not used */
-    uint8_t entry[BLOCK]; /* of the list */
-    int block;            /* of the tile */
-    int rays;             /* the block has so many of them, one after the other */
-} ray_draw;
-
 /* What is believed in a cell of the scene, and what its rays find. */
 typedef struct tile_cell {
     uint64_t key;
@@ -59,7 +51,7 @@ typedef struct combining {
 
 /* What the passes of one tile hand on to each other. */
 typedef struct tile_rays {
-    weighed weighed;                      /* of the block at hand */
+    list_asked asked;                     /* of the block at hand */
     size_t at[TILE_BLOCKS * TILE_BLOCKS]; /* the tile's blocks in the picture */
     int cell_of[TILE_BLOCKS * TILE_BLOCKS];
     int kept[TILE_BLOCKS * TILE_BLOCKS][BLOCK]; /* the draw that stands for a pixel in views */

@@ -43,7 +43,10 @@ typedef struct core_cursors {
     const gblock *const *tile;   /* its blocks */
     const uint32_t *tile_pixels; /* and what of them sees a surface */
     struct list_scratch *lists;  /* of the tile */
-    const pick_block *picks;     /* of the block; read from lane `lane` on */
+    const struct beliefs *beliefs;
+    struct list_asked *asked; /* of the block; from lane `lane` on */
+    const struct ray_draw *found;
+    const pick_block *picks; /* of the block; read from lane `lane` on */
     int lane;
 } core_cursors;
 
@@ -111,12 +114,23 @@ typedef struct beliefs {
     float expect[LIST_ROOM]; /* weight * visibility */
 } beliefs;
 
-/* A list's entries, weighed for the pixels of a block. */
-typedef struct weighed {
-    ALIGNED float weight[LIST_ROOM][BLOCK]; /* target * share */
-    float all[BLOCK];                       /* their sum */
-    float bright[BLOCK];                    /* sum of target * expect, cd/m2 */
-} weighed;
+/* What the pixels of a block ask for over their tile's list: core/list_rays.h. */
+typedef struct list_asked {
+    ALIGNED float weighed[LIST_ROOM][BLOCK]; /* target * share of each entry */
+    float all[BLOCK], bright[BLOCK];         /* list_sums */
+    float n[BLOCK];                          /* draws */
+    int most;                                /* rays of a lane at most */
+    uint32_t entry[MOST_SHADOW_RAYS][BLOCK]; /* of a lane's ray */
+    float times[MOST_SHADOW_RAYS][BLOCK];    /* drawn so often; 0: no such ray */
+} list_asked;
+
+/* Rays of one block, a lane each. */
+typedef struct ray_draw {
+    rblock r;             /* w: W, 0 where the ray was blocked; m is not used */
+    uint8_t entry[BLOCK]; /* of the list */
+    int block;            /* of the tile */
+    int rays;             /* the block has so many of them, one after the other */
+} ray_draw;
 
 typedef struct kernels {
     const char *name;
@@ -127,13 +141,19 @@ typedef struct kernels {
     void (*list_build)(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int blocks,
                        float rotation, list_scratch *scratch);
     void (*list_candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, rblock *out);
-    /* Several draws from a list: weigh its entries, draw n[l] of them a lane, find their (u, v). n[l] is a whole
-     * number. */
-    void (*list_weigh)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, const beliefs *e,
-                       weighed *out);
-    void (*list_draw)(int count, const weighed *w, const float n[BLOCK], const float start[BLOCK],
-                      uint8_t entry[][BLOCK]);
-    void (*list_places)(const struct core_context *ctx, int x, int y, const uint8_t entry[BLOCK], rblock *out);
+    /* Several rays a pixel over the list (core/list_rays.h): its lights several times where there is room; how many
+     * rays, to which entries; ray k of each lane, into all of out but m; which ray stands for a lane in views of the
+     * candidates. Then, when it is known what the `rays` of a block found: which one becomes a lane's reservoir, with
+     * which W; and what of a pixel is its reservoir's. */
+    void (*list_fill)(const struct core_context *ctx);
+    void (*list_share)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, float brightness,
+                       const beliefs *beliefs, list_asked *out);
+    void (*list_ray)(const struct core_context *ctx, int x, int y, const beliefs *beliefs, list_asked *asked, int k,
+                     rblock *out);
+    void (*list_show)(const struct core_context *ctx, int x, int y, list_asked *asked, uint32_t ray[BLOCK]);
+    void (*list_keep)(const struct core_context *ctx, int x, int y, const ray_draw *found, int rays,
+                      uint32_t ray[BLOCK], float w[BLOCK]);
+    void (*list_mix)(const struct core_context *ctx, const float m[BLOCK], float reused[BLOCK]);
     /* Light pickers: m candidates for the lanes of a block; then a reservoir of such candidates. */
     void (*pick_power)(const struct core_context *ctx, int x, int y, int m, pick_block *out);
     void (*pick_tree)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,

@@ -4,7 +4,7 @@
  * entries, is steered by what earlier frames have learned of the lights' visibility. */
 #include "backend/cpu/cpu.h"
 
-#include "core/random.h"
+#include "core/learned.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,10 +22,6 @@ static uint64_t key_of_block(const frame_camera *c, const gblock *g, uint32_t la
     return noc_cell_key(p, n, (int)lrintf(log2f(NOC_CLAMP(side, 1e-6f, 1e9f))));
 }
 
-/* How strongly rays are drawn to a light: the root of its expected square, and something for those thought to be
- * hidden. */
-static float pull(float visibility) { return sqrtf(visibility) + 0.1f; }
-
 /* Number of the block's cell among those of the tile. */
 static int believe(const stage_run *run, const gblock *g, uint32_t lanes, const light_list *list, tile_rays *t) {
     bool learn = run->frame->plan->learns;
@@ -38,8 +34,9 @@ static int believe(const stage_run *run, const gblock *g, uint32_t lanes, const 
     c->key = key;
     for (uint32_t i = 0; i < list->count; i++) {
         float visibility = noc_cell_visibility(known, list->light[i]);
-        c->beliefs.share[i] = list->weight[i] * pull(visibility);
-        c->beliefs.expect[i] = list->weight[i] * visibility;
+        list_belief b = list_believe(list->weight[i], visibility);
+        c->beliefs.share[i] = b.share;
+        c->beliefs.expect[i] = b.expect;
         c->asked[i] = c->seen[i] = 0;
     }
     return t->cells++;
@@ -47,120 +44,42 @@ static int believe(const stage_run *run, const gblock *g, uint32_t lanes, const 
 
 /* ---- rays ---- */
 
-/* Rays of a lane: as many as asked for where nothing is known, more where little light is expected to get through, up
- * to twice as many. A hundredth of the picture's brightness is dark enough not to look for more. */
-static float ray_count(const stage_run *run, const tile_rays *t, int l, float rounding) {
-    const float unknown = NOC_UNKNOWN_LIGHT / pull(NOC_UNKNOWN_LIGHT);
-    float rays = (float)run->ctx.frame->shadow_rays, all = t->weighed.all[l];
-    if (!(all > 0))
-        return 0;
-    float mean = rays * unknown * all / (t->weighed.bright[l] + 0.01f * run->s->list_brightness);
-    return floorf(NOC_CLAMP(mean, 1.f, 2 * rays) + rounding);
-}
-
-/* A block's draws. An entry that was drawn several times, which come one after the other, needs one ray. */
-typedef struct block_draws {
-    float n[BLOCK];                         /* draws a lane */
-    uint8_t entry[MOST_SHADOW_RAYS][BLOCK]; /* ray, lane */
-    uint8_t times[MOST_SHADOW_RAYS][BLOCK]; /* drawn so often; 0: no such ray */
-} block_draws;
-
-static int join_equals(block_draws *d) {
-    int most = 0;
-    memset(d->times, 0, sizeof(d->times));
-    for (int l = 0; l < BLOCK; l++) {
-        int rays = 0;
-        for (int k = 0; k < (int)d->n[l]; k++) {
-            if (!k || d->entry[k][l] != d->entry[rays - 1][l])
-                d->entry[rays++][l] = d->entry[k][l];
-            d->times[rays - 1][l]++;
-        }
-        most = NOC_MAX(most, rays);
-    }
-    return most;
-}
-
 /* Ray k of each lane that has one. */
-static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ctx, const gblock *g, int block,
-                     const block_draws *from, int k, int x, int y) {
+static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ctx, const gblock *g, int block, int k,
+                     int x, int y) {
     ray_draw *d = &t->draws[t->count];
     segment_block *s = &t->segments[t->count++];
-    const light_list *list = &ctx->at.lists->list;
     float(*counts)[BLOCK] = run->s->b.aovs.made[NOC_AOV_RAYS];
     d->block = block;
+    d->rays = t->asked.most;
     s->valid = 0;
     s->counts = counts ? counts[t->at[block]] : NULL;
+    run->k->list_ray(ctx, x, y, &t->cell[t->cell_of[block]].beliefs, &t->asked, k, &d->r);
     for (int l = 0; l < BLOCK; l++) {
-        float times = from->times[k][l];
-        int i = d->entry[l] = times > 0 ? from->entry[k][l] : 0;
-        s->valid |= (uint32_t)(times > 0) << l;
-        s->light[l] = d->r.light[l] = list->light[i];
-        d->r.p[l] = t->weighed.weight[i][l] / t->cell[t->cell_of[block]].beliefs.share[i];
-        d->r.w[l] =
-            times > 0 ? times * t->weighed.all[l] / (from->n[l] * t->weighed.weight[i][l]) * list->weight[i] : 0;
+        s->valid |= (uint32_t)(t->asked.times[k][l] > 0) << l;
+        s->light[l] = d->r.light[l];
+        d->entry[l] = (uint8_t)t->asked.entry[k][l];
     }
-    run->k->list_places(ctx, x, y, d->entry, &d->r);
     run->k->segments(&run->ctx, g, d->r.light, d->r.u, d->r.v, &s->rays);
 }
 
 /* The reservoir that stands for the block in views of the candidates: one of the draws, at random. */
-static void keep_one(const stage_run *run, tile_rays *t, const block_draws *from, const float pick[BLOCK], int block,
-                     int first, rblock *out) {
+static void keep_one(const stage_run *run, tile_rays *t, const struct core_context *ctx, int block, int x, int y,
+                     rblock *out) {
+    const list_asked *asked = &t->asked;
+    uint32_t ray[BLOCK];
+    run->k->list_show(ctx, x, y, &t->asked, ray);
     for (int l = 0; l < BLOCK; l++) {
         out->u[l] = out->v[l] = 0.5f;
-        if (!(from->n[l] > 0))
+        if (!(asked->n[l] > 0))
             continue;
-        int k = 0;
-        for (float at = NOC_MIN(pick[l] * from->n[l], from->n[l] - 1); at >= from->times[k][l]; k++)
-            at -= from->times[k][l];
-        const ray_draw *d = &t->draws[t->kept[block][l] = first + k];
+        const ray_draw *d = &t->draws[t->kept[block][l] = t->count - asked->most + (int)ray[l]];
         out->light[l] = d->r.light[l];
         out->u[l] = d->r.u[l];
         out->v[l] = d->r.v[l];
-        out->w[l] = d->r.w[l] * from->n[l] / from->times[k][l];
+        out->w[l] = d->r.w[l] * asked->n[l] / asked->times[ray[l]][l];
         out->p[l] = d->r.p[l];
     }
-}
-
-static uint32_t pixel_key(const frame_constants *f, int x, int y, int l) {
-    uint32_t pixel = (uint32_t)(y + (l >> 2)) * f->width + (uint32_t)(x + (l & 3));
-    return rng_key(f->seed, pixel, f->index);
-}
-
-static void draw_block(stage_run *run, tile_rays *t, const struct core_context *ctx, const gblock *g, int block, int x,
-                       int y, rblock *out) {
-    float start[BLOCK], pick[BLOCK];
-    block_draws d;
-    int first = t->count;
-    for (int l = 0; l < BLOCK; l++) {
-        uint32_t key = pixel_key(ctx->frame, x, y, l);
-        d.n[l] = ray_count(run, t, l, rng(key, DIM_CANDIDATE + 2));
-        start[l] = rng(key, DIM_CANDIDATE + 3);
-        pick[l] = rng(key, DIM_CANDIDATE + 4);
-    }
-    run->k->list_draw((int)ctx->at.lists->list.count, &t->weighed, d.n, start, d.entry);
-    for (int k = 0, rays = join_equals(&d); k < rays; k++) {
-        t->draws[t->count].rays = rays;
-        add_rays(run, t, ctx, g, block, &d, k, x, y);
-    }
-    keep_one(run, t, &d, pick, block, first, out);
-}
-
-/* A list with room to spare holds its lights several times, each time to be looked at in another point: up to a ray's
- * worth, and in all not in fewer points than the pixel's draws would be (a large light close by differs more from place
- * to place than from light to light). */
-static void fill_list(const noc_render_params *p, light_list *list) {
-    uint32_t once = list->count, room = (uint32_t)NOC_MIN(p->list + p->tail, LIST_ROOM);
-    uint32_t wanted = once ? NOC_MAX((uint32_t)p->shadow_rays, (uint32_t)p->draws / once) : 0;
-    uint32_t copies = once ? NOC_MIN(room / once, wanted) : 0;
-    /* Side by side: rays that are an equal distance apart would find the same light again in each round of all of them.
-     */
-    for (uint32_t i = once * copies; copies > 1 && i-- > 0;) {
-        list->light[i] = list->light[i / copies];
-        list->weight[i] = list->weight[i / copies] / (float)copies;
-    }
-    list->copies = NOC_MAX(copies, 1u);
-    list->count = once * list->copies;
 }
 
 void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *points) {
@@ -170,7 +89,7 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
     ctx.at.lists = &w->lists;
     t->count = t->cells = 0;
     t->bright = 0;
-    fill_list(run->frame->params, &w->lists.list);
+    run->k->list_fill(&ctx);
     for (int n = 0; n < points->count; n++) {
         const gblock *g = points->g[n];
         tile_block at = points->block[n];
@@ -183,10 +102,13 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
         if (!lanes || !ctx.at.lists->list.count)
             continue;
         t->cell_of[n] = believe(run, g, lanes, &w->lists.list, t);
-        run->k->list_weigh(&ctx, g, lanes, at.x, at.y, &t->cell[t->cell_of[n]].beliefs, &t->weighed);
+        run->k->list_share(&ctx, g, lanes, at.x, at.y, run->s->list_brightness, &t->cell[t->cell_of[n]].beliefs,
+                           &t->asked);
         for (int l = 0; l < BLOCK; l++)
-            t->bright += t->weighed.bright[l];
-        draw_block(run, t, &ctx, g, n, at.x, at.y, r);
+            t->bright += t->asked.bright[l];
+        for (int k = 0; k < t->asked.most; k++)
+            add_rays(run, t, &ctx, g, n, k, at.x, at.y);
+        keep_one(run, t, &ctx, n, at.x, at.y, r);
         if (run->frame->params->aovs)
             noc_cpu_aov_candidates(run, w, n, at.at, lanes, r);
     }
@@ -220,32 +142,6 @@ static void note_sightings(stage_run *run, worker *w, tile at) {
     out->count = w->sightings.len - out->first;
 }
 
-/* One of a block's samples that are seen, by what each adds; its W stands for all of them. first: of the block's draws.
- */
-static void resample(const stage_run *run, const tile_rays *t, int first, const float pick[BLOCK], rblock *out) {
-    int rays = t->draws[first].rays;
-    for (int l = 0; l < BLOCK; l++) {
-        float all = 0, sum = 0;
-        int kept = -1;
-        for (int k = first; k < first + rays; k++)
-            all += t->draws[k].r.p[l] * t->draws[k].r.w[l];
-        for (int k = first; k < first + rays && !(kept >= 0 && sum > pick[l] * all); k++) {
-            float w = t->draws[k].r.p[l] * t->draws[k].r.w[l];
-            sum += w;
-            kept = w > 0 ? k : kept;
-        }
-        out->w[l] = 0;
-        if (kept < 0)
-            continue;
-        const rblock *r = &t->draws[kept].r;
-        out->light[l] = r->light[l];
-        out->u[l] = r->u[l];
-        out->v[l] = r->v[l];
-        out->p[l] = r->p[l];
-        out->w[l] = all / r->p[l];
-    }
-}
-
 /* The rays of restir's pixels become their own reservoirs, of samples known to be seen. */
 void noc_cpu_resample(stage_run *run, worker *w, tile at) {
     const tile_rays *t = &w->shared;
@@ -254,11 +150,18 @@ void noc_cpu_resample(stage_run *run, worker *w, tile at) {
         size_t block = t->at[t->draws[i].block];
         int x = (int)(block % (size_t)run->s->b.blocks_x) * BLOCK_SIDE,
             y = (int)(block / (size_t)run->s->b.blocks_x) * BLOCK_SIDE;
-        float pick[BLOCK];
-        for (int l = 0; l < BLOCK; l++)
-            pick[l] = rng(pixel_key(run->ctx.frame, x, y, l), DIM_CANDIDATE + 5);
+        uint32_t ray[BLOCK];
         rblock *r = &run->s->b.r[run->stage->target][block];
-        resample(run, t, i, pick, r);
+        run->k->list_keep(&run->ctx, x, y, t->draws + i, t->draws[i].rays, ray, r->w);
+        for (int l = 0; l < BLOCK; l++) {
+            const rblock *kept = &t->draws[i + (int)ray[l]].r;
+            if (!(r->w[l] > 0))
+                continue;
+            r->light[l] = kept->light[l];
+            r->u[l] = kept->u[l];
+            r->v[l] = kept->v[l];
+            r->p[l] = kept->p[l];
+        }
         run->s->b.visible[run->stage->target][block] = (uint16_t)lanes_with_sample(r);
     }
 }
@@ -288,18 +191,10 @@ void noc_cpu_trace_shared(stage_run *run, worker *w, tile at) {
         note_sightings(run, w, at);
 }
 
-/* restir: the rays and the reservoir of a pixel are both unbiased, so any mixture of them is whose shares are fixed
- * before either is drawn. M tells how many frames stand behind the reservoir, whatever they found; its sample has the
- * luminance of all of them, but one light's colour. */
+/* restir: a mixture of the rays and the reservoir. */
 static void share_with_reservoirs(const stage_run *run, tile_rays *t, tile at) {
-    const float frame = (float)run->ctx.frame->draws;
-    for (int n = (at.y1 - at.y0) * (at.x1 - at.x0); n-- > 0;) {
-        const rblock *r = &run->s->b.r[run->stage->target][t->at[n]];
-        for (int l = 0; l < BLOCK; l++) {
-            float past = NOC_MAX(r->m[l] - frame, 0.f);
-            t->reused[n][l] = past / (past + 2 * frame);
-        }
-    }
+    for (int n = (at.y1 - at.y0) * (at.x1 - at.x0); n-- > 0;)
+        run->k->list_mix(&run->ctx, run->s->b.r[run->stage->target][t->at[n]].m, t->reused[n]);
     for (int i = 0; i < t->count; i++)
         for (int l = 0; l < BLOCK; l++)
             t->draws[i].r.w[l] *= 1 - t->reused[t->draws[i].block][l];

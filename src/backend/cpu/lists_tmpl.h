@@ -4,6 +4,7 @@
 #define NOC_CPU_LISTS_H
 
 #include "backend/cpu/list_build_tmpl.h"
+#include "core/list_rays.h"
 
 static void list_candidates(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y,
                             rblock *out) {
@@ -20,81 +21,134 @@ static void list_candidates(const struct core_context *ctx, const gblock *g, uin
     }
 }
 
-/* What every entry weighs at the pixels of a block, and what they are expected to see. */
-static void list_weigh(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, const beliefs *e,
-                       weighed *out) {
+/* ---- several rays: core/list_rays.h ---- */
+
+FN list_belief belief_load(CTX u1 i) { return (list_belief){ ctx->at.beliefs->share[i], ctx->at.beliefs->expect[i] }; }
+
+/* Each lane's own element. */
+FN real lane_reals(const float *from, u32 i) {
+    float x[LANES];
+    uint32_t at[LANES];
+    ustore(at, i);
+    for (int l = 0; l < LANES; l++)
+        x[l] = from[at[l]];
+    return rload(x);
+}
+FN real belief_share(CTX u32 i) { return lane_reals(ctx->at.beliefs->share, i); }
+FN real entry_weight(CTX u32 i) { return lane_reals(ctx->at.lists->list.weight, i); }
+FN u32 entry_light(CTX u32 i) {
+    uint32_t at[LANES];
+    ustore(at, i);
+    for (int l = 0; l < LANES; l++)
+        at[l] = ctx->at.lists->list.light[at[l]];
+    return uload(at);
+}
+FN void weighed_store(CTX u1 i, real weighed) { rstore(ctx->at.asked->weighed[i] + ctx->at.lane, weighed); }
+FN real weighed_load(CTX u1 i) { return rload(ctx->at.asked->weighed[i] + ctx->at.lane); }
+FN real weighed_at(CTX u32 i) {
+    return lane_reals(ctx->at.asked->weighed[0] + ctx->at.lane, i * KU(BLOCK) + lane_numbers(0));
+}
+FN void drawn_store(CTX u32 ray, mask on, u32 entry, real times) {
+    uint32_t k[LANES], e[LANES];
+    float t[LANES];
+    ustore(k, ray);
+    ustore(e, entry);
+    rstore(t, times);
+    for (uint32_t bits = lane_bits(on); bits; bits &= bits - 1) {
+        int l = __builtin_ctz(bits);
+        ctx->at.asked->entry[k[l]][ctx->at.lane + l] = e[l];
+        ctx->at.asked->times[k[l]][ctx->at.lane + l] = t[l];
+    }
+}
+FN real drawn_times(CTX u1 ray) { return rload(ctx->at.asked->times[ray] + ctx->at.lane); }
+FN real found_p(CTX u1 ray) { return rload(ctx->at.found[ray].r.p + ctx->at.lane); }
+FN real found_w(CTX u1 ray) { return rload(ctx->at.found[ray].r.w + ctx->at.lane); }
+
+static void fill_list(const struct core_context *ctx) {
+    light_list *list = &ctx->at.lists->list;
+    const frame_constants *f = ctx->frame;
+    list_size size =
+        list_fill(ctx, (list_size){ list->count, list->copies }, f->list + f->tail, f->shadow_rays, f->draws);
+    list->count = size.count;
+    list->copies = size.copies;
+}
+
+static list_sums sums_load(const list_asked *a, int l) {
+    return (list_sums){ rload(a->all + l), rload(a->bright + l) };
+}
+
+static void list_share(const struct core_context *tile, const gblock *g, uint32_t lanes, int x, int y, float brightness,
+                       const beliefs *of, list_asked *out) {
+    struct core_context block = *tile, *ctx = &block;
+    ctx->at.beliefs = of;
+    ctx->at.asked = out;
+    memset(out->entry, 0, sizeof(out->entry));
+    memset(out->times, 0, sizeof(out->times));
+    out->most = 0;
     for (int l = 0; l < BLOCK; l += LANES) {
         mask on = mload(lanes, l);
-        real all = K(0.0f);
-        real bright = K(0.0f);
+        u32 key = key_of(ctx, x, y, l), rays = KU(0u);
+        list_sums sums = { K(0.0f), K(0.0f) };
+        real n = K(0.0f);
+        ctx->at.lane = l;
         if (ANY(on)) {
-            surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
-            u32 key = key_of(ctx, x, y, l);
-            u32 shift_u = rng_bits(key, KU(DIM_CANDIDATE));
-            u32 shift_v = rng_bits(key, KU(DIM_CANDIDATE + 1u));
-            for (int i = 0; i < (int)ctx->at.lists->list.count; i++) {
-                real p = target(s, light_splat(ctx, ctx->at.lists->list.light[i]), list_u(shift_u, KU((uint32_t)i)),
-                                list_v(shift_v, KU((uint32_t)i)));
-                p = sel(on, p, K(0.0f));
-                real w = p * K(e->share[i]);
-                rstore(out->weight[i] + l, w);
-                all = all + w;
-                bright = bright + p * K(e->expect[i]);
-            }
-        } else {
-            for (int i = 0; i < (int)ctx->at.lists->list.count; i++)
-                rstore(out->weight[i] + l, K(0.0f));
+            u1 count = ctx->at.lists->list.count;
+            sums = list_weigh(ctx, surf_load(ctx, g, l, ctx->frame->camera.eye), on, key, count);
+            n = list_draws(sums, (f1)ctx->frame->shadow_rays, brightness, rng(key, KU(DIM_LIST_RAYS)));
+            rays = list_share_out(ctx, sums, count, n, rng(key, KU(DIM_LIST_START)));
         }
-        rstore(out->all + l, all);
-        rstore(out->bright + l, bright);
+        rstore(out->all + l, sums.all);
+        rstore(out->bright + l, sums.bright);
+        rstore(out->n + l, n);
+        for (uint32_t i = 0, r[LANES]; i < LANES; i++) {
+            ustore(r, rays);
+            out->most = NOC_MAX(out->most, (int)r[i]);
+        }
     }
 }
 
-/* Systematic draws: entry[k][l] is where the share (k + start) / n of all the weights lies, for k < n. */
-static void list_draw(int count, const weighed *w, const float n[BLOCK], const float start[BLOCK],
-                      uint8_t entry[][BLOCK]) {
+static void list_ray_of(const struct core_context *tile, int x, int y, const beliefs *of, list_asked *asked, int k,
+                        rblock *out) {
+    struct core_context block = *tile, *ctx = &block;
+    ctx->at.beliefs = of;
+    ctx->at.asked = asked;
     for (int l = 0; l < BLOCK; l += LANES) {
-        real m = rload(n + l);
-        real step = rload(w->all + l) / max_(m, K(1.0f));
-        real next = step * rload(start + l);
-        real sum = K(0.0f);
-        real drawn = K(0.0f);
-        float k[LANES], last[LANES];
-        real held = K(0.0f);
-        for (int i = 0; i < count; i++) {
-            real x = rload(w->weight[i] + l);
-            sum = sum + x;
-            held = sel(x > K(0.0f), K(F32(i)), held);
-            mask over = and_(sum > next, drawn < m);
-            while (ANY(over)) {
-                rstore(k, drawn);
-                for (uint32_t bits = mbits(over); bits; bits &= bits - 1) {
-                    int lane = __builtin_ctz(bits);
-                    entry[(int)k[lane]][l + lane] = (uint8_t)i;
-                }
-                drawn = sel(over, drawn + K(1.0f), drawn);
-                next = sel(over, next + step, next);
-                over = and_(sum > next, drawn < m);
-            }
-        }
-        rstore(k, drawn);
-        rstore(last, held);
-        for (int lane = 0; lane < LANES; lane++) /* what rounding has pushed past the end */
-            for (int j = (int)k[lane]; j < (int)n[l + lane]; j++)
-                entry[j][l + lane] = (uint8_t)last[lane];
+        ctx->at.lane = l;
+        list_ray r = list_ask(ctx, sums_load(asked, l), rload(asked->n + l), key_of(ctx, x, y, l),
+                              uload(asked->entry[k] + l), rload(asked->times[k] + l));
+        ustore(out->light + l, r.light);
+        rstore(out->u + l, r.u);
+        rstore(out->v + l, r.v);
+        rstore(out->w + l, r.w);
+        rstore(out->p + l, r.p);
     }
 }
 
-/* (u, v) that list_weigh used for a lane's entry. */
-static void list_places(const struct core_context *ctx, int x, int y, const uint8_t entry[BLOCK], rblock *out) {
-    uint32_t at[BLOCK];
-    for (int l = 0; l < BLOCK; l++)
-        at[l] = entry[l];
+static void list_show(const struct core_context *tile, int x, int y, list_asked *asked, uint32_t ray[BLOCK]) {
+    struct core_context block = *tile, *ctx = &block;
+    ctx->at.asked = asked;
     for (int l = 0; l < BLOCK; l += LANES) {
-        u32 key = key_of(ctx, x, y, l);
-        rstore(out->u + l, list_u(rng_bits(key, KU(DIM_CANDIDATE)), uload(at + l)));
-        rstore(out->v + l, list_v(rng_bits(key, KU(DIM_CANDIDATE + 1u)), uload(at + l)));
+        ctx->at.lane = l;
+        ustore(ray + l,
+               list_shown(ctx, (u1)asked->most, rload(asked->n + l), rng(key_of(ctx, x, y, l), KU(DIM_LIST_SHOWN))));
     }
+}
+
+static void list_keep(const struct core_context *tile, int x, int y, const ray_draw *found, int rays,
+                      uint32_t ray[BLOCK], float w[BLOCK]) {
+    struct core_context block = *tile, *ctx = &block;
+    ctx->at.found = found;
+    for (int l = 0; l < BLOCK; l += LANES) {
+        ctx->at.lane = l;
+        list_kept kept = list_resample(ctx, (u1)rays, rng(key_of(ctx, x, y, l), KU(DIM_LIST_KEPT)));
+        ustore(ray + l, kept.ray);
+        rstore(w + l, kept.w);
+    }
+}
+
+static void list_mix(const struct core_context *tile, const float m[BLOCK], float reused[BLOCK]) {
+    for (int l = 0; l < BLOCK; l += LANES)
+        rstore(reused + l, list_reused(rload(m + l), (f1)tile->frame->draws));
 }
 
 #endif

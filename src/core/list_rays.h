@@ -1,0 +1,195 @@
+/* core/list_rays.h: several shadow rays a pixel over its tile's list. Asking: a pixel weighs all entries, and shares
+ * its rays out over them systematically; using: what the rays found becomes light, or one sample that stands for all.
+ * How many rays, and which entries, is steered by what is believed of the lights' visibility (core/learned.h). No mean
+ * depends on that, as long as it was settled before any of these rays.
+ *
+ * Includers supply the bridge below: what one pixel (in C, LANES pixels) knows of each entry and of each of its rays.
+ */
+#ifndef CORE_LIST_RAYS_H
+#define CORE_LIST_RAYS_H
+
+#include "core/learned.h"
+#include "core/lists.h"
+
+/* Sums over all entries: target * share, and target * expect, cd/m2. */
+struct list_sums {
+    real all;
+    real bright;
+};
+
+/* A ray to one of the entries. */
+struct list_ray {
+    u32 light;
+    real u;
+    real v;
+    real w; /* unbiased contribution weight W of what it finds; 0: there is no such ray */
+    real p; /* target there, unshadowed */
+};
+
+/* One of a pixel's rays, and its W, which stands for all of them. */
+struct list_kept {
+    u32 ray;
+    real w; /* 0: none was seen */
+};
+
+#ifndef CORE_GLSL
+typedef struct list_sums list_sums;
+typedef struct list_ray list_ray;
+typedef struct list_kept list_kept;
+#endif
+
+FN list_belief belief_load(CTX u1 i); /* of entry i, for the surfaces at hand */
+FN real belief_share(CTX u32 i);      /* each lane its own entry's */
+FN u32 entry_light(CTX u32 i);
+FN real entry_weight(CTX u32 i);
+FN void weighed_store(CTX u1 i, real weighed); /* target * share of entry i */
+FN real weighed_load(CTX u1 i);
+FN real weighed_at(CTX u32 i);
+FN void drawn_store(CTX u32 ray, mask on, u32 entry, real times); /* ray number `ray` of the lanes in `on` */
+FN real drawn_times(CTX u1 ray);                                  /* 0: no such ray */
+FN real found_p(CTX u1 ray);                                      /* of the list_ray */
+FN real found_w(CTX u1 ray);                                      /* 0 where the ray was blocked */
+
+/* ---- ask ---- */
+
+FN list_sums list_weigh(CTX surf s, mask on, u32 key, u1 count) {
+    list_sums sums;
+    sums.all = K(0.0f);
+    sums.bright = K(0.0f);
+    u32 shift_u = rng_bits(key, KU(DIM_LIST_PLACE));
+    u32 shift_v = rng_bits(key, KU(DIM_LIST_PLACE + 1u));
+    for (u1 i = 0u; i < count; i++) {
+        list_belief b = belief_load(PASS i);
+        real p = target(s, light_splat(PASS entry_load(PASS i).light), list_u(shift_u, KU(i)), list_v(shift_v, KU(i)));
+        p = sel(on, p, K(0.0f));
+        EXACT real w = p * K(b.share);
+        weighed_store(PASS i, w);
+        EXACT real all = sums.all + w;
+        EXACT real bright = sums.bright + p * K(b.expect);
+        sums.all = all;
+        sums.bright = bright;
+    }
+    return sums;
+}
+
+/* Draws of a pixel: as many as asked for where nothing is known, more where little light is expected to get through, up
+ * to twice as many. A hundredth of the picture's brightness is dark enough not to look for more. */
+FN real list_draws(list_sums sums, f1 rays, f1 brightness, real rounding) {
+    EXACT f1 unknown = LEARNED_UNKNOWN / learned_pull(LEARNED_UNKNOWN);
+    EXACT real mean = K(rays * unknown) * sums.all / (sums.bright + K(0.01f * brightness));
+    real n = to_real(to_u32(min_(max_(mean, K(1.0f)), K(2.0f * rays)) + rounding));
+    return sel(sums.all > K(0.0f), n, K(0.0f));
+}
+
+/* Systematic draws: draw k < n is of the entry where the share (k + start) / n of all the weights lies. Draws of one
+ * entry follow each other and are one ray. Returns the number of rays. */
+FN u32 list_share_out(CTX list_sums sums, u1 count, real n, real start) {
+    EXACT real step = sums.all / max_(n, K(1.0f));
+    EXACT real next = step * start;
+    real sum = K(0.0f);
+    real drawn = K(0.0f);
+    u32 held = KU(0u); /* the last entry with any weight, */
+    u32 last = KU(0u); /* and the last that was drawn, so often */
+    real last_times = K(0.0f);
+    u32 rays = KU(0u);
+    for (u1 i = 0u; i < count; i++) {
+        real x = weighed_load(PASS i);
+        EXACT real more = sum + x;
+        sum = more;
+        held = selu(x > K(0.0f), KU(i), held);
+        mask over = and_(sum > next, drawn < n);
+        if (ANY(over)) {
+            real times = K(0.0f);
+            while (ANY(over)) {
+                times = sel(over, times + K(1.0f), times);
+                drawn = sel(over, drawn + K(1.0f), drawn);
+                EXACT real beyond = next + step;
+                next = sel(over, beyond, next);
+                over = and_(sum > next, drawn < n);
+            }
+            mask some = times > K(0.0f);
+            drawn_store(PASS rays, some, KU(i), times);
+            rays = selu(some, rays + KU(1u), rays);
+            last = selu(some, KU(i), last);
+            last_times = sel(some, times, last_times);
+        }
+    }
+    mask rest = drawn < n; /* rounding has pushed them past the end */
+    if (ANY(rest)) {
+        mask same = and_(rays > KU(0u), last == held);
+        u32 ray = selu(same, rays - KU(1u), rays);
+        drawn_store(PASS ray, rest, held, n - drawn + sel(same, last_times, K(0.0f)));
+        rays = selu(rest, ray + KU(1u), rays);
+    }
+    return rays;
+}
+
+/* The ray to an entry that was drawn so often. */
+FN list_ray list_ask(CTX list_sums sums, real n, u32 key, u32 entry, real times) {
+    list_ray r;
+    real weighed = weighed_at(PASS entry);
+    EXACT real p = weighed / belief_share(PASS entry);
+    EXACT real w = times * sums.all / (n * weighed) * entry_weight(PASS entry);
+    r.light = entry_light(PASS entry);
+    r.u = list_u(rng_bits(key, KU(DIM_LIST_PLACE)), entry);
+    r.v = list_v(rng_bits(key, KU(DIM_LIST_PLACE + 1u)), entry);
+    r.w = sel(times > K(0.0f), w, K(0.0f));
+    r.p = p;
+    return r;
+}
+
+/* ---- use ---- */
+
+/* One of the draws, at random, as the ray that it became: it stands for the pixel in views of the candidates. */
+FN u32 list_shown(CTX u1 rays, real n, real pick) {
+    EXACT real at = min_(pick * n, n - K(1.0f));
+    u32 ray = KU(0u);
+    mask beyond = n > K(0.0f);
+    for (u1 k = 0u; k < rays; k++) {
+        real times = drawn_times(PASS k);
+        beyond = and_(beyond, at >= times);
+        at = sel(beyond, at - times, at);
+        ray = selu(beyond, KU(k + 1u), ray);
+    }
+    return ray;
+}
+
+/* One of the samples that are seen, by what each adds; its W stands for all of them. */
+FN list_kept list_resample(CTX u1 rays, real pick) {
+    list_kept kept;
+    kept.ray = KU(0u);
+    real all = K(0.0f);
+    real sum = K(0.0f);
+    real p = K(0.0f);
+    for (u1 k = 0u; k < rays; k++) {
+        EXACT real more = all + found_p(PASS k) * found_w(PASS k);
+        all = more;
+    }
+    EXACT real goal = pick * all;
+    mask on = all == all;
+    for (u1 k = 0u; k < rays; k++) {
+        EXACT real w = found_p(PASS k) * found_w(PASS k);
+        on = and_(on, not_(and_(p > K(0.0f), sum > goal)));
+        EXACT real more = sum + w;
+        sum = sel(on, more, sum);
+        mask take = and_(on, w > K(0.0f));
+        kept.ray = selu(take, KU(k), kept.ray);
+        p = sel(take, found_p(PASS k), p);
+    }
+    mask some = p > K(0.0f);
+    EXACT real w = all / sel(some, p, K(1.0f));
+    kept.w = sel(some, w, K(0.0f));
+    return kept;
+}
+
+/* What of a pixel's light its reservoir of M = m shows, where the frames behind it are reused; its rays, of one frame's
+ * M, show the rest. Both are unbiased, so any mixture is whose shares are fixed before either is drawn. M tells how
+ * many frames stand behind the reservoir, whatever they found; its sample has the luminance of all of them, but one
+ * light's colour. */
+FN real list_reused(real m, f1 frame) {
+    real past = max_(m - K(frame), K(0.0f));
+    EXACT real share = past / (past + K(2.0f * frame));
+    return share;
+}
+
+#endif
