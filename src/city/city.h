@@ -51,6 +51,7 @@ city_ground *city_ground_start(noc_scene *scene, const double *points, size_t co
 /* Height by what the city tells, and how far away the nearest of that is, m (INFINITY: it tells nothing). */
 double city_ground_height(const city_ground *g, double x, double y, double *distance);
 void city_ground_lay(city_ground *g, const double *points, size_t count); /* through those that have a height */
+void city_ground_free(city_ground *g);                                    /* one that is not to be laid */
 
 /* Is the edge from a to b the level lower edge of a piece of wall whose third corner is c? */
 bool city_wall_foot(const float *a, const float *b, const float *c);

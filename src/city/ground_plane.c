@@ -381,7 +381,7 @@ static bool settle(city_ground *g) {
     return true;
 }
 
-static void free_ground(city_ground *g) {
+void city_ground_free(city_ground *g) {
     free(g->f.height);
     free(g->f.street);
     free(g->f.foot);
@@ -398,7 +398,7 @@ city_ground *city_ground_start(noc_scene *scene, const double *points, size_t co
     if (!g || !make_field(&g->f, scene, points, count)) {
         noc_scene_out_of_memory(scene);
         if (g)
-            free_ground(g);
+            city_ground_free(g);
         return NULL;
     }
     g->scene = scene;
@@ -416,7 +416,7 @@ city_ground *city_ground_start(noc_scene *scene, const double *points, size_t co
     if (settle(g))
         return g;
     noc_scene_out_of_memory(scene);
-    free_ground(g);
+    city_ground_free(g);
     return NULL;
 }
 
@@ -434,7 +434,7 @@ void city_ground_lay(city_ground *g, const double *points, size_t count) {
         field_follow(&g->f, points, count);
     add_mesh(g->scene, &g->f, g->z, g->level && !off);
     city_add_skirts(g->scene);
-    free_ground(g);
+    city_ground_free(g);
 }
 
 void city_add_ground(noc_scene *scene, const double *points, size_t point_count) {
