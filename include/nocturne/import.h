@@ -70,6 +70,8 @@ typedef struct noc_import_params {
     double max_expansion; /* times its stored size that it may grow to, where that is over 1 GiB; 0: any; default
                              200 */
     const noc_builtin_params *builtin; /* of built-in scenes among the inputs, not owned; NULL, the default: theirs */
+    int threads; /* that read files of cities at once; 0, the default: one a core. The scene is the same for any number
+                  */
     noc_progress progress;
 } noc_import_params;
 

@@ -108,6 +108,12 @@ noc_pool *noc_pool_create(int threads) NOC_MUST_USE;
 void noc_pool_destroy(noc_pool *pool);
 int noc_pool_threads(const noc_pool *pool);
 void noc_pool_run(noc_pool *pool, size_t items, void (*fn)(void *ctx, size_t item, int worker), void *ctx);
+/* A run whose caller takes no item and goes on: the pool's other threads do all, so there must be some. NULL when
+ * memory is refused. wait() returns when all are done, and must be called. */
+typedef struct noc_pool_task noc_pool_task;
+noc_pool_task *noc_pool_start(noc_pool *pool, size_t items, void (*fn)(void *ctx, size_t item, int worker),
+                              void *ctx) NOC_MUST_USE;
+void noc_pool_wait(noc_pool *pool, noc_pool_task *task);
 
 /* String interning / id -> index map: open addressing, keys are copied into the map's arena. The hash differs from
  * process to process, so a map has no order that a result could depend on. */

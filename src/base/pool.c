@@ -136,19 +136,47 @@ void noc_pool_destroy(noc_pool *pool) {
 
 int noc_pool_threads(const noc_pool *pool) { return pool->threads; }
 
-void noc_pool_run(noc_pool *pool, size_t items, void (*fn)(void *, size_t, int), void *ctx) {
-    struct run run = { .fn = fn, .ctx = ctx, .items = items };
+static void link_run(noc_pool *pool, struct run *run) {
     pthread_mutex_lock(&pool->lock);
     struct run **end = &pool->runs;
     while (*end)
         end = &(*end)->later;
-    *end = &run;
+    *end = run;
     pthread_cond_broadcast(&pool->start);
     pthread_mutex_unlock(&pool->lock);
+}
+
+void noc_pool_run(noc_pool *pool, size_t items, void (*fn)(void *, size_t, int), void *ctx) {
+    struct run run = { .fn = fn, .ctx = ctx, .items = items };
+    link_run(pool, &run);
     work(&run, 0);
     pthread_mutex_lock(&pool->lock);
     unlink_run(pool, &run);
     while (run.busy)
         pthread_cond_wait(&pool->done, &pool->lock);
     pthread_mutex_unlock(&pool->lock);
+}
+
+struct noc_pool_task {
+    struct run run;
+};
+
+noc_pool_task *noc_pool_start(noc_pool *pool, size_t items, void (*fn)(void *, size_t, int), void *ctx) {
+    noc_pool_task *task = noc_calloc(1, sizeof(*task));
+    if (!task)
+        return NULL;
+    task->run.fn = fn;
+    task->run.ctx = ctx;
+    task->run.items = items;
+    link_run(pool, &task->run);
+    return task;
+}
+
+void noc_pool_wait(noc_pool *pool, noc_pool_task *task) {
+    pthread_mutex_lock(&pool->lock);
+    while (task->run.busy || atomic_load(&task->run.next) < task->run.items)
+        pthread_cond_wait(&pool->done, &pool->lock);
+    unlink_run(pool, &task->run);
+    pthread_mutex_unlock(&pool->lock);
+    free(task);
 }

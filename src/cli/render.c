@@ -173,6 +173,7 @@ static noc_status load(render_job *job) {
     char triangles[64], lights[64];
     args->import.progress = (noc_progress){ cli_load_progress, NULL };
     args->import.builtin = &args->builtin;
+    args->import.threads = args->threads;
     /* what a frame would refuse, before a city is read */
     noc_status status = noc_render_check(&args->render, job->log);
     if (status)

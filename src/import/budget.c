@@ -4,13 +4,19 @@
 #include <math.h>
 #include <unistd.h>
 
+#define FREE_BYTES 16e6             /* that a reader may take without a word */
 #define FREE_EXPANSION 1073741824.0 /* bytes that any file may grow to: one lamp may be placed ten thousand times */
 
 static double most_expanded(const import_budget *b) {
     return b->expansion > 0 ? NOC_MAX(b->expansion * b->stored, FREE_EXPANSION) : INFINITY;
 }
 
-bool import_fits(const import_budget *b, double bytes) { return bytes <= b->memory && bytes <= most_expanded(b); }
+bool import_fits(const import_budget *b, double bytes) {
+    bool fits = bytes <= b->memory && bytes <= most_expanded(b);
+    if (fits && b->claim && bytes > FREE_BYTES)
+        b->claim(b->claimant, bytes);
+    return fits;
+}
 
 noc_status import_affords(const import_budget *b, double bytes, const char *name, const char *what, noc_log *log) {
     if (bytes > b->memory)

@@ -14,6 +14,10 @@ typedef struct import_budget {
     double memory;    /* bytes */
     double expansion; /* times `stored`; 0: any */
     double stored;    /* bytes of the input and the files it names */
+    /* Told of bytes that are much before they are taken, where several inputs are read at once; may wait. NULL: none.
+     */
+    void (*claim)(void *claimant, double bytes);
+    void *claimant;
 } import_budget;
 import_budget import_budget_of(const noc_import_params *params);
 /* NOC_ERR_MEMORY after reporting where `what` of the input would take more bytes than it may. */

@@ -20,6 +20,7 @@ noc_status lab_load_scene(lab_session *lab, size_t index) {
     noc_import_params import = scene->import;
     import.progress = (noc_progress){ loading, lab };
     import.builtin = &scene->builtin;
+    import.threads = lab->params.threads;
     lab->scene = noc_scene_create(lab->log);
     if (!lab->scene)
         return NOC_ERR_MEMORY;

@@ -15,6 +15,7 @@
 #include "../test.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <sys/stat.h>
 
 #define assert_close(a, b, tolerance)                                                                                  \
@@ -26,7 +27,7 @@
 
 /* ---- the fake reader ---- */
 
-static int reads; /* files that were read, not only probed */
+static atomic_int reads; /* files that were read, not only probed */
 
 static bool is_fake(const char *head, size_t size, const char *kind) {
     char want[16];
@@ -104,7 +105,7 @@ static noc_status fake_line(geo_sink *sink, char *line, bool *swap, const char *
 
 static noc_status fake_read(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
     (void)params;
-    static char text[20000];
+    static _Thread_local char text[20000]; /* files may be read at once */
     size_t size = 0, got;
     do {
         assert_int_equal(noc_stream_read(stream, text + size, sizeof(text) - 1 - size, &got), NOC_OK);
@@ -192,13 +193,14 @@ static void on_message(void *user, noc_log_level level, const char *text) {
         snprintf(r->last_warning, sizeof(r->last_warning), "%s", text);
 }
 
-static void start(struct run *r) {
+static inline void start(struct run *r) {
     *r = (struct run){ 0 };
     r->log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = on_message, .user = r });
     r->scene = noc_scene_create(r->log);
 }
 
-static void load_with(struct run *r, noc_import_params params, bool inspect, size_t count, const char *const *paths) {
+static inline void load_with(struct run *r, noc_import_params params, bool inspect, size_t count,
+                             const char *const *paths) {
     reads = 0;
     r->status = load_inputs(r->scene, fakes, paths, count, &params, inspect, &r->report);
     noc_scene_get_info(r->scene, &r->info);
@@ -206,7 +208,7 @@ static void load_with(struct run *r, noc_import_params params, bool inspect, siz
     assert_int_equal(r->errors, r->status && r->status != NOC_ERR_CANCELLED ? 1 : 0);
 }
 
-static void finish(struct run *r) {
+static inline void finish(struct run *r) {
     noc_scene_destroy(r->scene);
     noc_report_destroy(r->report);
     noc_log_destroy(r->log);
@@ -217,7 +219,7 @@ static void finish(struct run *r) {
 #define LOAD(r, params, ...) (start(r), load_with(r, params, false, PATHS(__VA_ARGS__)))
 #define DEFAULTS noc_import_default_params()
 
-static bool has_line(const noc_report_file *f, const char *reason, size_t count) {
+static inline bool has_line(const noc_report_file *f, const char *reason, size_t count) {
     for (size_t i = 0; i < f->line_count; i++)
         if (!strcmp(f->lines[i].reason, reason))
             return f->lines[i].count == count;

@@ -7,8 +7,10 @@
 
 #include <math.h>
 #include <nocturne/option.h>
+#include <unistd.h>
 
 #define HEAD_SIZE 65536
+#define MOST_THREADS 1024
 #define BUILTIN "builtin:" /* and the name of a scene */
 
 /* --crs and --scene-crs must be understood even where no input needs them. */
@@ -212,7 +214,7 @@ static noc_status read_objects(reading *r, noc_stream *stream, remote_result *re
     if (ahead && status != NOC_ERR_MEMORY) { /* after an error too: the report holds what came before it */
         if (status) {                        /* it is told, and no other */
             r->log = NULL;
-            take_part(r->im, r->in, &(load_part){ .kind = PART_QUIET });
+            sink_hand_over(r, &(load_part){ .kind = PART_QUIET });
         }
         noc_status released = ahead_release(ahead);
         status = status ? status : released;
@@ -223,7 +225,7 @@ static noc_status read_objects(reading *r, noc_stream *stream, remote_result *re
     return status;
 }
 
-static noc_status read_file(reading *r) {
+noc_status read_file(reading *r) {
     input *in = r->in;
     double start = noc_wall_seconds();
     noc_status status;
@@ -231,6 +233,10 @@ static noc_status read_file(reading *r) {
     if (!stream)
         return status;
     noc_stream_limit(stream, r->im->params);
+    if (r->queue) {
+        noc_stream_budget(stream)->claim = queue_claim;
+        noc_stream_budget(stream)->claimant = r->queue;
+    }
     size_t unread = noc_stream_unread(stream);
     for (size_t i = 0; i < unread; i++)
         geo_issue(in->issues, GEO_SKIPPED, "file of the archive, like the one that is read", "");
@@ -240,7 +246,7 @@ static noc_status read_file(reading *r) {
     remote_result result = { 0 };
     in->file.format = in->reader->name;
     status = in->reader->read_mesh ? read_mesh(r, stream, &result) : read_objects(r, stream, &result);
-    if (r->im->cancelled)
+    if (r->stopped)
         status = NOC_ERR_CANCELLED;
     place_finish_file(r, status == NOC_OK);
     if (!status && (in->remote ? result.trailing : noc_stream_trailing(stream))) {
@@ -256,28 +262,42 @@ static noc_status read_file(reading *r) {
 
 static noc_status read_input(importer *im, size_t index) {
     input *in = &im->inputs[index];
-    in->started = true;
-    im->scene_before = noc_scene_bytes(im->scene);
-    if (!in->reader)
-        return read_builtin(im, in);
+    taking t = take_start(im, in);
     reading r = { .im = im, .in = in, .index = index, .log = im->log };
-    noc_log *log = im->log, *of_scene = im->scene->log; /* PART_QUIET takes them away */
-    noc_status status = read_file(&r);
-    im->log = log;
-    im->scene->log = of_scene;
-    sink_destroy(&r);
-    im->bytes_before += (double)in->bytes;
-    bool told = take_finish(in);
-    return status || told ? status : noc_no_memory(im->log, in->path);
+    noc_status status = in->reader ? read_file(&r) : read_builtin(im, in);
+    reading_free(&r);
+    return take_finish(&t, status);
 }
 
 /* Built-in scenes are local, so they come first. A mesh in a CRS may settle the place; one that names none counts from
  * the origin that the others settle. */
+enum { BUILT_IN, CITIES, MESHES_IN_CRS, LAMPS, MESHES, STAGES };
 static int stage(const importer *im, const input *in) {
     if (!in->reader)
-        return 0;
-    bool in_crs = im->params->crs && *im->params->crs;
-    return in->reader->reads == NOC_READS_CITY ? 1 : in->reader->reads == NOC_READS_LAMPS ? 3 : in_crs ? 2 : 4;
+        return BUILT_IN;
+    if (in->reader->reads != NOC_READS_MESH)
+        return in->reader->reads == NOC_READS_CITY ? CITIES : LAMPS;
+    return im->params->crs && *im->params->crs ? MESHES_IN_CRS : MESHES;
+}
+
+/* One by one, or, where the order of their parts alone matters, several at once. */
+static noc_status read_inputs(importer *im, const size_t *inputs, size_t count, bool at_once) {
+    long cores = im->params->threads ? im->params->threads : sysconf(_SC_NPROCESSORS_ONLN);
+    size_t threads = NOC_MIN(count, (size_t)NOC_CLAMP(cores, 1, MOST_THREADS));
+    if (at_once && threads > 1) {
+        noc_pool *pool = noc_pool_create((int)threads + 1);
+        if (!pool)
+            return noc_no_memory(im->log, "import");
+        bool others = noc_pool_threads(pool) > 1;
+        noc_status status = others ? read_at_once(im, inputs, count, pool) : NOC_OK;
+        noc_pool_destroy(pool);
+        if (others)
+            return status;
+    }
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < count && !status; i++)
+        status = read_input(im, inputs[i]);
+    return status;
 }
 
 static bool column_there(void *ctx, const char *name) {
@@ -330,13 +350,18 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
         im->inputs[i].repeated = repeat_file(im, i);
         im->bytes_total += im->inputs[i].repeated ? 0 : (double)im->inputs[i].bytes;
     }
-    for (int s = 0; s < 5; s++)
-        for (size_t i = 0; i < im->input_count; i++) {
-            noc_status status = !im->inputs[i].repeated && stage(im, &im->inputs[i]) == s ? read_input(im, i) : NOC_OK;
-            if (status)
-                return status;
-        }
-    noc_status status = check_columns(im);
+    size_t *inputs = noc_calloc(im->input_count, sizeof(*inputs));
+    noc_status status = inputs ? NOC_OK : noc_no_memory(im->log, "import");
+    for (int s = 0; s < STAGES && !status; s++) {
+        size_t count = 0;
+        for (size_t i = 0; i < im->input_count; i++)
+            if (!im->inputs[i].repeated && stage(im, &im->inputs[i]) == s)
+                inputs[count++] = i;
+        status = read_inputs(im, inputs, count, s == CITIES);
+    }
+    free(inputs);
+    if (!status)
+        status = check_columns(im);
     return status || im->inspect ? status : finish_city(im);
 }
 
@@ -382,6 +407,9 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     if (!params)
         params = &defaults;
     noc_status status = noc_option_check(noc_import_options(), params, "import", scene->log);
+    if (!status && (params->threads < 0 || params->threads > MOST_THREADS))
+        status = noc_error(scene->log, NOC_ERR_ARGUMENT, "import: threads is %d, must be in 0..%d", params->threads,
+                           MOST_THREADS);
     if (!status)
         status = lamp_mapping_check(params, scene->log);
     if (!status)
@@ -396,7 +424,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
                     .scene = scene,
                     .params = params,
                     .memory = import_budget_of(params).memory,
-                    .inspect = inspect };
+                    .inspect = inspect,
+                    .lock = PTHREAD_MUTEX_INITIALIZER };
     im.report = report_create();
     status = im.report ? list_inputs(&im, paths, path_count) : noc_no_memory(scene->log, "import");
     if (!status)

@@ -9,6 +9,8 @@
 #include "import/import.h"
 #include "scene/scene.h"
 
+#include <pthread.h>
+
 #define PALETTE 8 /* materials of a class that varies from building to building */
 
 /* One CRS as one file spells it; axis decisions hold for that file. */
@@ -100,17 +102,21 @@ typedef struct importer {
     NOC_ARRAY(given_place) lost; /* lamps that have no place in the scene's CRS */
     noc_arena names;
     /* progress */
-    double bytes_total, bytes_before;
-    size_t scene_before; /* bytes of the scene before the present input */
+    double bytes_total, bytes_before; /* of all inputs; of those that were taken */
+    size_t scene_before;              /* bytes of the scene before the present input */
     bool cancelled;
+    pthread_mutex_t lock; /* of the report's arena, and of scene_crs, where readings make their ways to it */
 } importer;
 
 /* One file while it is read. */
+typedef struct load_queue load_queue;
 typedef struct reading {
     importer *im;
     input *in;
     size_t index;
     noc_log *log;
+    load_queue *queue; /* where all waits for the file's turn; NULL: it has it */
+    bool stopped;
     source_crs *source;      /* of the coordinates that come next */
     NOC_ARRAY(double) given; /* the points that are placed, as they were given */
     bool mesh_from_origin;   /* a mesh in metres from the scene's origin */
@@ -133,8 +139,9 @@ typedef struct load_part {
     enum {
         PART_OBJECT, /* surfaces of an object, or outside of any; `last` where it ends with them */
         PART_LAMP,
-        PART_LOST, /* a lamp without a place */
-        PART_QUIET /* an error is told: none that follows is */
+        PART_LOST,    /* a lamp without a place */
+        PART_MESSAGE, /* of a file that is read before its turn */
+        PART_QUIET    /* an error is told: none that follows is */
     } kind;
     union {
         struct {
@@ -146,6 +153,10 @@ typedef struct load_part {
         } object;
         pending_lamp lamp;
         given_place lost;
+        struct {
+            noc_log_level level;
+            const char *text;
+        } message;
     } u;
 } load_part;
 
@@ -204,14 +215,23 @@ void ahead_destroy(struct look_ahead *a);       /* NULL is allowed */
 /* sink.c */
 geo_sink sink_create(reading *r);
 noc_status sink_flush(reading *r);
-void sink_destroy(reading *r);
+noc_status sink_hand_over(reading *r, const load_part *part); /* to the scene, or to where it waits */
+/* Asks whether to go on; bytes: of all inputs, that were read. */
+bool import_progress(importer *im, const input *in, double bytes);
+void reading_free(reading *r);
 
 /* take.c: parts into the scene, in the order of the files. */
+typedef struct taking {
+    importer *im;
+    input *in;
+    noc_log *log, *of_scene;
+} taking;
+taking take_start(importer *im, input *in);
 noc_status take_part(importer *im, input *in, const load_part *part);
+/* Ends what take_start began, with the status that the file is read and taken with. */
+noc_status take_finish(const taking *t, noc_status status);
 /* Is what waits and what the scene holds, and will hold with so many bytes more, within the limits? Else reported. */
 noc_status take_affords(importer *im, const input *in, size_t more);
-/* Adds what was found on the scene's side to the input's issues. False: memory was refused. */
-bool take_finish(input *in) NOC_MUST_USE;
 void take_destroy(importer *im);
 
 /* repeat.c: what is given twice is taken once. */
@@ -249,6 +269,16 @@ void heights_lay(importer *im, struct city_ground *ground, double *points, size_
 
 /* lamps.c: ground where there is none, then lamps. */
 noc_status finish_city(importer *im);
+
+/* at_once.c: reads the inputs, by their indices, on the threads of the pool but the caller's. There must be others. */
+noc_status read_at_once(importer *im, const size_t *inputs, size_t count, noc_pool *pool);
+/* Of a reading before its turn. NOC_ERR_MEMORY is told later. */
+noc_status queue_put(load_queue *q, const importer *im, const load_part *part);
+bool queue_progress(load_queue *q, double share); /* false: all is stopped */
+void queue_claim(void *queue, double bytes);      /* import_budget.claim */
+
+/* load.c: reads a file that is not built in. */
+noc_status read_file(reading *r);
 
 /* load.c: noc_scene_load and noc_inspect with a table of readers of one's own (tests bring theirs). */
 noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const char *const *paths, size_t path_count,

@@ -302,8 +302,7 @@ static noc_status settle(reading *r, const source_crs *source, const double poin
     return status || !given ? status : set_given(r, given);
 }
 
-/* Makes the way from the source to the scene, once. */
-static noc_status prepare(reading *r, source_crs *s, const double point[3]) {
+static noc_status prepare_alone(reading *r, source_crs *s, const double point[3]) {
     const char *path = r->in->path;
     if (!r->im->placed) {
         noc_status status = settle(r, s, point);
@@ -331,6 +330,14 @@ static noc_status prepare(reading *r, source_crs *s, const double point[3]) {
         file->crs_taken = s->taken && s->crs;
     }
     return r->im->report->arena.refused ? noc_no_memory(r->log, path) : NOC_OK;
+}
+
+/* Makes the way from the source to the scene, once. */
+static noc_status prepare(reading *r, source_crs *s, const double point[3]) {
+    pthread_mutex_lock(&r->im->lock);
+    noc_status status = prepare_alone(r, s, point);
+    pthread_mutex_unlock(&r->im->lock);
+    return status;
 }
 
 /* Bounds of the finite coordinates; heights may have none (lo > hi). False if no place at all is finite. */

@@ -5,10 +5,14 @@
 
 #define FLUSH_TRIANGLES 500000 /* of one object and class: terrain is not kept twice */
 
+noc_status sink_hand_over(reading *r, const load_part *part) {
+    return r->queue ? queue_put(r->queue, r->im, part) : take_part(r->im, r->in, part);
+}
+
 /* ---- surfaces ---- */
 
 /* Hands over the surfaces of a class, or with NOC_CLASS_COUNT all of them, as the object ends. */
-static noc_status hand_over(reading *r, noc_class only) {
+static noc_status hand_over_object(reading *r, noc_class only) {
     part_surface surfaces[NOC_CLASS_COUNT];
     load_part part = { .kind = PART_OBJECT };
     part.u.object.id = r->object_id;
@@ -26,7 +30,7 @@ static noc_status hand_over(reading *r, noc_class only) {
     }
     if (!part.u.object.surface_count && !r->now.polygons && !r->now.given)
         return NOC_OK;
-    noc_status status = take_part(r->im, r->in, &part);
+    noc_status status = sink_hand_over(r, &part);
     for (size_t i = 0; i < part.u.object.surface_count; i++) {
         geo_triangles *t = &r->surfaces[surfaces[i].cls];
         t->xyz.len = t->indices.len = 0;
@@ -36,7 +40,7 @@ static noc_status hand_over(reading *r, noc_class only) {
 }
 
 noc_status sink_flush(reading *r) {
-    noc_status status = hand_over(r, NOC_CLASS_COUNT);
+    noc_status status = hand_over_object(r, NOC_CLASS_COUNT);
     r->now = (object_now){ 0 };
     return status;
 }
@@ -96,7 +100,7 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
     }
     r->now.polygons++;
     r->now.by_class[cls]++;
-    return r->surfaces[cls].indices.len >= 3 * FLUSH_TRIANGLES ? hand_over(r, cls) : NOC_OK;
+    return r->surfaces[cls].indices.len >= 3 * FLUSH_TRIANGLES ? hand_over_object(r, cls) : NOC_OK;
 }
 
 _Static_assert((int)GEO_SOURCE_LED == NOC_SOURCE_LED && (int)GEO_SOURCE_LOW_SODIUM == NOC_SOURCE_LOW_SODIUM,
@@ -139,7 +143,7 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
         memcpy(p.given.xy, r->given.data, sizeof(p.given.xy));
     if (!status && !usable) {
         r->in->lamps_lost++;
-        status = take_part(r->im, r->in, &(load_part){ .kind = PART_LOST, .u.lost = p.given });
+        status = sink_hand_over(r, &(load_part){ .kind = PART_LOST, .u.lost = p.given });
     }
     if (status || !usable)
         return status;
@@ -152,7 +156,7 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     }
     p.lamp.id = lamp->id ? lamp->id : "";
     p.lamp.ref = lamp->ref ? lamp->ref : "";
-    return take_part(r->im, r->in, &(load_part){ .kind = PART_LAMP, .u.lamp = p });
+    return sink_hand_over(r, &(load_part){ .kind = PART_LAMP, .u.lamp = p });
 }
 
 /* Of a file that has been read. */
@@ -192,14 +196,20 @@ static noc_status on_features(void *ctx, const geo_features *features) {
     return place_points(r, corners[0], 2, "", &usable);
 }
 
+bool import_progress(importer *im, const input *in, double bytes) {
+    const noc_progress *progress = &im->params->progress;
+    double done = im->bytes_total > 0 ? bytes / im->bytes_total : 1;
+    if (progress->update && !progress->update(progress->user, in->path, 0.9 * done))
+        im->cancelled = true;
+    return !im->cancelled;
+}
+
 static bool on_progress(void *ctx, double done) {
     reading *r = ctx;
-    const noc_progress *progress = &r->im->params->progress;
     double bytes = r->im->bytes_before + NOC_CLAMP(done, 0, 1) * (double)r->in->bytes;
-    if (progress->update &&
-        !progress->update(progress->user, r->in->path, 0.9 * (r->im->bytes_total > 0 ? bytes / r->im->bytes_total : 1)))
-        r->im->cancelled = true;
-    return !r->im->cancelled;
+    bool go_on = r->queue ? queue_progress(r->queue, done) : import_progress(r->im, r->in, bytes);
+    r->stopped = r->stopped || !go_on;
+    return go_on;
 }
 
 geo_sink sink_create(reading *r) {
@@ -220,7 +230,7 @@ geo_sink sink_create(reading *r) {
                        .inspect = r->im->inspect };
 }
 
-void sink_destroy(reading *r) {
+void reading_free(reading *r) {
     for (int c = 0; c < NOC_CLASS_COUNT; c++)
         geo_triangles_free(&r->surfaces[c]);
     array_free(&r->scratch);

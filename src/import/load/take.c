@@ -128,17 +128,34 @@ static noc_status take_lamp(importer *im, input *in, pending_lamp p) {
     return p.lamp.id && p.lamp.ref && array_push(&im->lamps, p) ? NOC_OK : noc_no_memory(im->log, in->path);
 }
 
+static void tell(noc_log *log, noc_log_level level, const char *text) {
+    switch (level) {
+    case NOC_LOG_ERROR: noc_error(log, NOC_OK, "%s", text); break;
+    case NOC_LOG_WARN: noc_warn(log, "%s", text); break;
+    case NOC_LOG_INFO: noc_info(log, "%s", text); break;
+    case NOC_LOG_DEBUG: noc_debug(log, "%s", text); break;
+    }
+}
+
+taking take_start(importer *im, input *in) {
+    in->started = true;
+    im->scene_before = noc_scene_bytes(im->scene);
+    return (taking){ im, in, im->log, im->scene->log };
+}
+
 noc_status take_part(importer *im, input *in, const load_part *part) {
     switch (part->kind) {
     case PART_OBJECT: return take_object(im, in, part);
     case PART_LAMP: return take_lamp(im, in, part->u.lamp);
     case PART_LOST: return array_push(&im->lost, part->u.lost) ? NOC_OK : noc_no_memory(im->log, in->path);
+    case PART_MESSAGE: tell(im->log, part->u.message.level, part->u.message.text); return NOC_OK;
     case PART_QUIET: im->log = im->scene->log = NULL; return NOC_OK;
     }
     return NOC_OK;
 }
 
-bool take_finish(input *in) {
+/* What was found as parts were taken stands behind what the reader found. */
+static bool add_found(input *in) {
     for (size_t i = 0; i < geo_issues_count(in->found); i++) {
         const char *reason, *examples;
         bool repaired;
@@ -148,6 +165,14 @@ bool take_finish(input *in) {
         geo_issues_add(in->issues, geo_issues_kind(in->found, i), reason, count, examples);
     }
     return !geo_issues_refused(in->found);
+}
+
+noc_status take_finish(const taking *t, noc_status status) {
+    t->im->log = t->log; /* PART_QUIET took them away */
+    t->im->scene->log = t->of_scene;
+    t->im->bytes_before += (double)t->in->bytes;
+    bool added = add_found(t->in);
+    return status || added ? status : noc_no_memory(t->im->log, t->in->path);
 }
 
 void take_destroy(importer *im) {
