@@ -1,5 +1,6 @@
 /* A scene that is edited while it is looked at: its pictures are those of a scene that was made so from the start, and
  * what reservoirs hold of the frame before costs no light and leaves no ghost. */
+#include "../memory.h"
 #include "unbiased.h"
 
 #include "scene/scene.h"
@@ -256,12 +257,13 @@ static noc_image *picture(noc_view *v, const noc_render_params *p, int frame) {
 }
 
 /* Where lights keep their order the bits are those of a scene made so: nothing is left of what the view and its world
- * had made for what was there before. Trees are refitted, and draw other candidates. */
+ * had made for what was there before. Trees and volumes are fitted, not made as they would be, so that other candidates
+ * are drawn from them. */
 static void same_bits_as_if_made_so(void **state) {
     (void)state;
     for (size_t i = 0; i < NOC_COUNT(configs); i++) {
         street to = street_at(5), from = to;
-        if (configs[i].picker == NOC_CANDIDATES_LIGHT_BVH)
+        if (configs[i].picker == NOC_CANDIDATES_LIGHT_BVH || configs[i].picker == NOC_CANDIDATES_INFLUENCE)
             continue;
         from.frame = 0, from.lamps = .1f, from.cars = 3, from.albedo = .9f;
         noc_scene *edited = made(&from), *want = made(&to);
@@ -336,11 +338,48 @@ static void reuse_goes_with_what_moves(void **state) {
     assert_true(moving < 1.5 * still);
 }
 
+/* A frame that memory is refused to while it follows edits fails once, and the next one is as if nothing had been. */
+static void refused_memory_is_a_status(void **state) {
+    (void)state;
+    noc_log *log = counting_log();
+    noc_render_params p = params_of(&configs[3], 8);
+    street to = street_at(5), from = street_at(4);
+    noc_scene *want = made(&to);
+    noc_view *b = own_view(want, 1, NULL);
+    noc_image *wanted = picture(b, &p, 5);
+    bool reached;
+    from.traffic = to.traffic; /* lights keep their order */
+    FOR_EACH_REFUSAL(reached) {
+        noc_scene *s = made(&from);
+        noc_view *a = own_view(s, 1, log);
+        noc_camera cam = camera_at(5, true);
+        now.is = from;
+        noc_image_destroy(picture(a, &p, 4));
+        pose(s, 5);
+        noc_view_reset(a);
+        begin_refusal(n, later);
+        noc_status status = noc_view_render(a, &cam, &p, NULL);
+        reached = end_refusal();
+        if (status != NOC_OK)
+            assert_refused(status, "a frame after edits");
+        assert_int_equal(status != NOC_OK, reached);
+        noc_view_reset(a);
+        noc_image *x = picture(a, &p, 5);
+        assert_memory_equal(x->rgb, wanted->rgb, sizeof(float) * 3 * W * H);
+        noc_image_destroy(x);
+        close_view(a);
+        noc_scene_destroy(s);
+    }
+    noc_image_destroy(wanted);
+    close_view(b);
+    noc_scene_destroy(want);
+    noc_log_destroy(log);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_bits_as_if_made_so),
-        cmocka_unit_test(reuse_goes_with_what_moves),
-        cmocka_unit_test(edited_is_as_if_made_so),
+        cmocka_unit_test(same_bits_as_if_made_so),    cmocka_unit_test(reuse_goes_with_what_moves),
+        cmocka_unit_test(refused_memory_is_a_status), cmocka_unit_test(edited_is_as_if_made_so),
         cmocka_unit_test(unbiased_while_edited),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -135,7 +135,7 @@ static void versions_count_what_changed(void **unused) {
         const char *counts; /* a letter a version: geometry, instances, materials, lights, moved, emission, standing */
     } table[] = {
         { MATERIAL, "m" },         { CLASS_MATERIAL, "m" },    { SHINES, "mls" },      { GOES_OUT, "mls" },
-        { RECOLOURED, "mes" },     { TWO_SIDED, "mes" },       { EMISSION, "es" },     { DIMMED, "es" },
+        { RECOLOURED, "mes" },     { TWO_SIDED, "mles" },      { EMISSION, "es" },     { DIMMED, "es" },
         { SWITCHED_OFF, "es" },    { LIGHT_MOVED, "o" },       { LIGHT_ADDED, "gls" }, { LIGHT_REMOVED, "gls" },
         { MESH_ADDED, "gls" },     { MESH_REMOVED, "gls" },    { TOWER_REMOVED, "g" }, { INSTANCE_ADDED, "il" },
         { INSTANCE_MOVED, "ioe" }, { INSTANCE_REMOVED, "il" }, { INSTANCE_DARK, "e" },
