@@ -5,12 +5,12 @@
  *
  * Rules: functions are pure and return structs, no pointers, no out-parameters. Operators work on real and u32; vectors
  * go through add3, mul3, dot3, ... A choice that depends on data is sel(mask, a, b), with and_/or_/not_ on masks; a
- * real branch only as `if (ANY(mask))` around work that sel then picks from. Loops have uniform bounds. Literals are
- * K(0.5f) and KU(7u), uniform integers K(F32(n)) and KU(U32(n)). No enum, static, union, typedef, cast, ternary or
- * compound literal outside this file; no identifiers that GLSL reserves (sample, buffer, filter, input, output, half,
- * patch, smooth, flat, active, common). Resources come through bridge functions that take CTX, which is a context
- * pointer in C and nothing in GLSL. EXACT marks variables whose rounding must be the same everywhere. Compile with
- * -ffp-contract=off and never with -ffast-math.
+ * real branch only as `if (ANY(mask))` around work that sel then picks from, or on what is uniform. Loops have uniform
+ * bounds. Literals are K(0.5f) and KU(7u), uniform integers K(F32(n)) and KU(U32(n)). No enum, static, union, typedef,
+ * cast, ternary or compound literal outside this file; no identifiers that GLSL reserves (sample, buffer, filter,
+ * input, output, half, patch, smooth, flat, active, common). Resources come through bridge functions that take CTX,
+ * which is a context pointer in C and nothing in GLSL. EXACT marks variables whose rounding must be the same
+ * everywhere. Compile with -ffp-contract=off and never with -ffast-math.
  *
  * f1, u1, b1 and f3 are values that are one for a whole tile or block, whatever the lanes: float, uint32_t, bool and
  * three floats. On them if, while, ternary-free expressions with && and || are allowed, and literals are plain. K(f1),
@@ -206,6 +206,13 @@ FN v3 cross3(v3 a, v3 b) {
     EXACT real y = a.z * b.x - a.x * b.z;
     EXACT real z = a.x * b.y - a.y * b.x;
     return V3(x, y, z);
+}
+
+/* To the nearest whole number, the even one of two; |a| < 2^22. */
+FN real nearest(real a) {
+    EXACT real high = a + K(12582912.0f);
+    EXACT real whole = high - K(12582912.0f);
+    return whole;
 }
 
 /* Luminance of linear Rec.709. */

@@ -28,6 +28,8 @@ typedef struct frame_camera frame_camera;
 #define FRAME_FINAL_RAY 4u /* shadow rays to what is shaded; without it nothing is shadowed */
 #define FRAME_BIAS_RAYS 8u /* visibility is a part of the targets of a combination: core/reuse.h */
 
+#define MAX_NEIGHBOURS 16
+
 /* How reservoirs are combined: core/reuse.h. */
 #define BIAS_BIASED 0u
 #define BIAS_MIS 1u
@@ -95,6 +97,15 @@ RECORD_FIELD(frame_constants, m_max, 52);
 RECORD_FIELD(frame_constants, reject_depth, 53);
 RECORD_FIELD(frame_constants, reject_normal, 54);
 RECORD_FIELD(frame_constants, sky, 55);
+#endif
+
+/* The constants of the frame at hand, in functions that take CTX; includers may say what that is. */
+#if !defined(FRAME)
+#if defined(CORE_GLSL)
+#define FRAME frame
+#else
+#define FRAME (*ctx->frame)
+#endif
 #endif
 
 #endif

@@ -34,11 +34,11 @@ FN u32 scale_u32(u32 bits, u32 n) { return high_u32(bits, n); }
 
 /* Dimensions, so that no two uses share one. */
 #define DIM_JITTER 0u
-#define DIM_SKY 2u  /* and the next one, of frame 0: every frame goes on from there */
-#define DIM_LIST 4u /* of a tile, not of a pixel, and of frame 0: every frame goes on from there */
-#define DIM_TEMPORAL 8u
+#define DIM_SKY 2u         /* and the next one, of frame 0: every frame goes on from there */
+#define DIM_LIST 4u        /* of a tile, not of a pixel, and of frame 0: every frame goes on from there */
+#define DIM_TEMPORAL 8u    /* as DIM_SPATIAL, but for the places */
 #define DIM_RAYS 16u       /* reference only: no reuse beside it */
-#define DIM_SPATIAL 64u    /* + 64 a pass: 2 a neighbour for its place, 1 for its choice */
+#define DIM_SPATIAL 64u    /* + 64 a pass, + 3 a neighbour: 2 for its place, 1 for its choice; core/reuse.h */
 #define DIM_CANDIDATE 512u /* + 3 a candidate */
 #define DIM_PICK 4096u     /* + 1 a candidate: pickers that need a second number */
 

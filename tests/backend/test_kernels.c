@@ -78,11 +78,12 @@ static void random_reservoirs(rblock *r) {
 
 /* Everything the kernels leave behind, for one random world. */
 typedef struct trace {
-    rblock candidates, biased, mis, pairwise;
-    combination offered, paired;
+    rblock candidates, combined[3];
+    held_block held[3];
     rayblock segments, sky;
     cblock shaded, reference;
-    ALIGNED float px[BLOCK], py[BLOCK];
+    float p_at[3][MAX_NEIGHBOURS][BLOCK];
+    uint32_t asked[3][MAX_NEIGHBOURS], visible[3], x[BLOCK], y[BLOCK];
     uint32_t front, entries[BLOCK], dropped;
 } trace;
 
@@ -106,18 +107,31 @@ static void shade_reference(const kernels *k, const world *w, const gblock *g, t
     }
 }
 
-static void run_all(const kernels *k, const world *w, const gblock *g, const rblock *own, const neighbour *n, int count,
-                    const uint32_t *seen, trace *t) {
+/* Every way to combine, with random answers. */
+static void combine_all(const kernels *k, world *w, combining *b, trace *t) {
+    for (uint32_t bias = 0; bias < 3; bias++) {
+        w->frame.bias = bias;
+        b->visible = 0xbeef;
+        b->eye = bias == BIAS_PAIRWISE ? &w->frame.previous : &w->frame.camera;
+        memset(b->p_at, 0, sizeof(b->p_at));
+        k->reuse_begin(&w->ctx, b);
+        k->reuse_ask(&w->ctx, b);
+        k->reuse_end(&w->ctx, b, &t->combined[bias]);
+        t->held[bias] = b->held;
+        t->visible[bias] = b->visible;
+        memcpy(t->p_at[bias], b->p_at, sizeof(b->p_at));
+        memcpy(t->asked[bias], b->asked, sizeof(b->asked));
+    }
+}
+
+static void run_all(const kernels *k, world *w, combining *b, trace *t) {
+    const gblock *g = b->g;
+    const rblock *own = b->own;
     memset(t, 0, sizeof(*t));
     k->candidates(&w->ctx, g, 0xbeef, 4, 8, 13, &t->candidates);
-    t->front = k->project(&w->ctx, g, t->px, t->py);
+    t->front = k->history_places(&w->ctx, g, t->x, t->y);
     k->segments(&w->ctx, g, own->light, own->u, own->v, &t->segments);
-    k->offer(&w->ctx, g, own, n, count, 4, 8, 64, &t->offered);
-    k->targets(&w->ctx, w->frame.camera.eye, n, count, t->offered.light, t->offered.u, t->offered.v, &t->offered);
-    k->end_biased(&t->offered, &t->biased);
-    k->end_mis(&t->offered, own, n, count, seen, &t->mis);
-    k->targets(&w->ctx, w->frame.previous.eye, n, count, own->light, own->u, own->v, &t->paired);
-    k->end_pairwise(&w->ctx, g, own, n, count, seen, 4, 8, 64, &t->paired, &t->pairwise);
+    combine_all(k, w, b, t);
     t->dropped |= k->shade(&w->ctx, g, own, 0x7ffe, &t->shaded);
     uint32_t number[BLOCK];
     float share[BLOCK];
@@ -136,29 +150,29 @@ static void tables_agree(void **state) {
     const kernels *all[NOC_MAX_KERNELS];
     int tables = noc_runnable_kernels(all), lit = 0;
     assert_true(tables >= 2);
-    static neighbour n[MAX_NEIGHBOURS];
+    static combining b;
     static world w;
     static trace want, have;
     for (int round = 0; round < ROUNDS; round++) {
         gblock g;
         rblock own;
-        uint32_t seen[MAX_NEIGHBOURS];
-        int count = round % (MAX_NEIGHBOURS + 1);
         make_world(&w);
         random_surface(&g);
         random_reservoirs(&own);
-        for (int i = 0; i < count; i++) {
-            random_surface(&n[i].g);
-            random_reservoirs(&n[i].r);
-            n[i].lanes = bits() & 0xffff;
+        b = (combining){ .x = 4, .y = 8, .g = &g, .own = &own, .dim = 64, .k = round % (MAX_NEIGHBOURS + 1) };
+        for (int i = 0; i < b.k; i++) {
+            neighbour *n = &b.n[i];
+            random_surface(&n->g);
+            random_reservoirs(&n->r);
+            n->lanes = bits() & 0xffff;
             for (int l = 0; l < BLOCK; l++)
-                if (!(n[i].lanes >> l & 1))
-                    n[i].r.m[l] = n[i].r.w[l] = 0;
-            seen[i] = bits() & 0xffff;
+                if (!(n->lanes >> l & 1))
+                    n->r.m[l] = n->r.w[l] = 0;
+            b.unoccluded[i] = bits() & 0xffff;
         }
-        run_all(all[0], &w, &g, &own, n, count, seen, &want);
+        run_all(all[0], &w, &b, &want);
         for (int k = 1; k < tables; k++) {
-            run_all(all[k], &w, &g, &own, n, count, seen, &have);
+            run_all(all[k], &w, &b, &have);
             if (memcmp(&want, &have, sizeof(want))) {
                 size_t at = 0;
                 while (((char *)&want)[at] == ((char *)&have)[at])

@@ -5,11 +5,21 @@
 #ifndef DIALECT_KERNEL_H
 #define DIALECT_KERNEL_H
 
+#include "dialect_slots.h"
+
+#define FRAME dialect_frame
 #include "core/camera.h"
 #include "core/light.h"
 #include "core/random.h"
 
-#define ITEM_SLOTS 179
+/* Of the item at hand: what functions of core read that take no item. */
+#if defined(CORE_GLSL)
+frame_constants dialect_frame;
+u32 dialect_key;
+#else
+static frame_constants dialect_frame;
+static u32 dialect_key;
+#endif
 #define KERNEL_LIGHTS 1000u
 
 /* Signed, of a magnitude that differs from item to item: 1/16 to 4096. */
@@ -293,6 +303,8 @@ FN void picked(CTX u32 item, u32 key, surf s) {
     put_real(PASS item, 178, t.inverse);
 }
 
+#include "dialect_frame.h"
+
 FN void dialect_item(CTX u32 item) {
     u32 key = rng_key(KU(5u), item, KU(9u));
     surf s = any_surf(hash_u32(key + KU(1u)));
@@ -307,6 +319,7 @@ FN void dialect_item(CTX u32 item) {
     rays(PASS item, key, s, any);
     pickers(PASS item, key, s);
     picked(PASS item, key, s);
+    frame_item(PASS item, key, s);
 }
 
 #endif

@@ -1,11 +1,11 @@
 /* One source, three readers: every function of src/core gives the same bits as scalar C, as C of 4, 8 and 16 lanes, and
  * as GLSL on a Vulkan device that rounds as C does; on other devices it stays within a tolerance. */
 #include "../test.h"
+#include "dialect_slots.h"
 
 #include <math.h>
 #include <stdbool.h>
 
-#define ITEM_SLOTS 179
 #define ITEMS 16384u
 
 void dialect_run_1(uint32_t *out, uint32_t items);
@@ -86,9 +86,26 @@ static const struct {
     { 170, "alias_candidate" },
     { 172, "tree_go" },
     { 177, "tree_draw" },
+    { FRAME_FIRST, "neighbour_key" },
+    { FRAME_FIRST + 1, "neighbour_offset" },
+    { FRAME_FIRST + 3, "neighbour_place" },
+    { FRAME_FIRST + 6, "history_place" },
+    { FRAME_FIRST + 9, "receivers_alike" },
+    { FRAME_FIRST + 10, "nearest" },
+    { FRAME_FIRST + 11, "reuse, biased" },
+    { FRAME_FIRST + 25, "reuse, mis" },
+    { FRAME_FIRST + 39, "reuse, pairwise" },
+    { FRAME_FIRST + 53, "resv_blocked" },
+    { FRAME_FIRST + 59, "resolve_asks" },
+    { FRAME_FIRST + 60, "reuse_answer" },
 };
 
+static const int frame_integers[] = { 0, 3, 4, 5, 6, 7, 8, 9, 11, 17, 23, 25, 31, 37, 39, 45, 51, 53, 59 };
+
 static bool holds_integers(int slot) {
+    for (size_t i = 0; i < sizeof(frame_integers) / sizeof(frame_integers[0]); i++)
+        if (slot == FRAME_FIRST + frame_integers[i])
+            return true;
     return slot == 0 || slot == 4 || slot == 5 || slot == 71 || slot == 77 || slot == 83 || slot == 89 || slot == 103 ||
            slot == 126 || slot == 129 || slot == 134 || slot == 135 || slot == 170 || (slot >= 172 && slot <= 174) ||
            slot == 177;

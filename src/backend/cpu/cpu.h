@@ -36,19 +36,6 @@ typedef struct segment_batch {
     segment_block blocks[TILE_BLOCKS * TILE_BLOCKS * MAX_NEIGHBOURS];
 } segment_batch;
 
-/* A block whose reservoirs are being combined with others': reuse.c. */
-typedef struct combining {
-    size_t at; /* in the picture */
-    int x, y;  /* pixel of lane 0 */
-    const rblock *own;
-    uint32_t visible;               /* lanes whose sample is known to be seen from its pixel */
-    int k;                          /* neighbours */
-    uint32_t asked[MAX_NEIGHBOURS]; /* lanes that a ray from the neighbour was asked for */
-    uint32_t seen[MAX_NEIGHBOURS];  /* lanes whose sample counts as seen from the neighbour */
-    combination c;
-    neighbour n[MAX_NEIGHBOURS];
-} combining;
-
 /* What the passes of one tile hand on to each other. */
 typedef struct tile_rays {
     list_asked asked;                     /* of the block at hand */

@@ -13,7 +13,7 @@
 #include "light/tree.h"
 #include "render/backend.h"
 
-enum { MOST_SHADOW_RAYS = 16, MAX_NEIGHBOURS = 16, REFERENCE_CHUNK = 32, PICK_AHEAD = 8 };
+enum { MOST_SHADOW_RAYS = 16, REFERENCE_CHUNK = 32, PICK_AHEAD = 8 };
 
 /* What the pixels of a tile evaluate: core/lists.h. */
 typedef struct light_list {
@@ -44,10 +44,11 @@ typedef struct core_cursors {
     const uint32_t *tile_pixels; /* and what of them sees a surface */
     struct list_scratch *lists;  /* of the tile */
     const struct beliefs *beliefs;
-    struct list_asked *asked; /* of the block; from lane `lane` on */
+    struct list_asked *asked; /* of the block */
     const struct ray_draw *found;
-    const pick_block *picks; /* of the block; read from lane `lane` on */
-    int lane;
+    const pick_block *picks; /* of the block */
+    const struct combining *combining;
+    int lane; /* blocks are read from this one on */
 } core_cursors;
 
 /* What core's bridge functions read. */
@@ -71,14 +72,29 @@ typedef struct neighbour {
     uint32_t lanes;
 } neighbour;
 
-/* What a combination remembers between its kernels. */
-typedef struct combination {
-    ALIGNED float u[BLOCK], v[BLOCK], p[BLOCK], w_sum[BLOCK], m[BLOCK], tag[BLOCK]; /* stream of the sample held */
+/* The samples that neighbours are asked about: core's stream. */
+typedef struct held_block {
+    ALIGNED float u[BLOCK];
+    float v[BLOCK], p[BLOCK], w_sum[BLOCK], m[BLOCK], tag[BLOCK];
     uint32_t light[BLOCK];
-    float others[BLOCK]; /* sum of the neighbours' M */
-    /* target of the held (mis) or canonical (pairwise) sample at each neighbour */
-    float p_at[MAX_NEIGHBOURS][BLOCK];
-} combination;
+} held_block;
+
+/* A block whose reservoirs are being combined with others'. */
+typedef struct combining {
+    size_t at; /* in the picture */
+    int x, y;  /* pixel of lane 0 */
+    const gblock *g;
+    const rblock *own;
+    uint32_t visible;        /* lanes whose sample is known to be seen from its pixel */
+    uint32_t dim;            /* DIM_TEMPORAL, or DIM_SPATIAL + 64 a pass */
+    const frame_camera *eye; /* the neighbours' */
+    int k;                   /* neighbours */
+    held_block held;
+    float p_at[MAX_NEIGHBOURS][BLOCK]; /* its target there */
+    uint32_t asked[MAX_NEIGHBOURS],
+        unoccluded[MAX_NEIGHBOURS]; /* lanes of rays from there; those that nothing blocks */
+    neighbour n[MAX_NEIGHBOURS];
+} combining;
 
 /* Scratch of the reference method, one a worker. */
 typedef struct reference_scratch {
@@ -166,25 +182,16 @@ typedef struct kernels {
                            pick_block *out);
     void (*given)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                   const pick_block *picks, rblock *out);
-    /* Where this frame's surfaces were in the previous picture, in pixels; returns the lanes that were in front of it.
-     */
-    uint32_t (*project)(const struct core_context *ctx, const gblock *g, float px[BLOCK], float py[BLOCK]);
+    /* The pixels of the previous picture that saw this frame's surfaces; returns the lanes that have one. */
+    uint32_t (*history_places)(const struct core_context *ctx, const gblock *g, uint32_t x[BLOCK], uint32_t y[BLOCK]);
     /* Segments from g to the samples. */
     void (*segments)(const struct core_context *ctx, const gblock *g, const uint32_t *light, const float *u,
                      const float *v, rayblock *out);
-    /* Combination by 1/M or by the balance rule: offers the canonical reservoir and the neighbours' samples. The
-     * stream's tag is 0 for the canonical one, i + 1 for neighbour i. dim: first random dimension, 3 a neighbour. */
-    void (*offer)(const struct core_context *ctx, const gblock *g, const rblock *own, const neighbour *n, int k, int x,
-                  int y, uint32_t dim, combination *c);
-    /* p_at for the sample held by the stream (c->light, u, v); eye: the neighbours' camera. */
-    void (*targets)(const struct core_context *ctx, const float eye[3], const neighbour *n, int k,
-                    const uint32_t *light, const float *u, const float *v, combination *c);
-    void (*end_biased)(const combination *c, rblock *out);
-    void (*end_mis)(const combination *c, const rblock *own, const neighbour *n, int k, const uint32_t *visible,
-                    rblock *out);
-    /* Pairwise; visible[i]: the canonical sample is seen from neighbour i. Leaves the tag in c. */
-    void (*end_pairwise)(const struct core_context *ctx, const gblock *g, const rblock *own, const neighbour *n, int k,
-                         const uint32_t *visible, int x, int y, uint32_t dim, combination *c, rblock *out);
+    /* The steps of core/reuse.h. reuse_ask sets `p_at` and `asked` for the samples held; there: the context with the
+     * lights that the neighbours' reservoirs were made with. reuse_end leaves in `visible` what still holds. */
+    void (*reuse_begin)(const struct core_context *ctx, combining *b);
+    void (*reuse_ask)(const struct core_context *there, combining *b);
+    void (*reuse_end)(const struct core_context *ctx, combining *b, rblock *out);
     /* rgb += reflected * w for `lanes`; returns the lanes whose sum was not finite: those keep what they had. */
     uint32_t (*shade)(const struct core_context *ctx, const gblock *g, const rblock *r, uint32_t lanes, cblock *out);
     /* The lights' unshadowed luminance at each lane, then entries placed over it: see reference.c. */

@@ -17,18 +17,6 @@ static void candidates(const struct core_context *ctx, const gblock *g, uint32_t
     }
 }
 
-static uint32_t project(const struct core_context *ctx, const gblock *g, float px[BLOCK], float py[BLOCK]) {
-    camera c = camera_of(ctx->frame->previous);
-    uint32_t front = 0;
-    for (int l = 0; l < BLOCK; l += LANES) {
-        v3 q = camera_project(c, V3(rload(g->px + l), rload(g->py + l), rload(g->pz + l)));
-        rstore(px + l, q.x);
-        rstore(py + l, q.y);
-        front |= mbits(q.z > K(0.0f)) << l;
-    }
-    return front;
-}
-
 static void segments(const struct core_context *ctx, const gblock *g, const uint32_t *id, const float *u,
                      const float *v, rayblock *out) {
     for (int l = 0; l < BLOCK; l += LANES) {
@@ -36,122 +24,6 @@ static void segments(const struct core_context *ctx, const gblock *g, const uint
         v3 n = V3(rload(g->nx + l), rload(g->ny + l), rload(g->nz + l));
         segment s = shadow_segment(p, n, light_load(ctx, uload(id + l)), rload(u + l), rload(v + l), K(ctx->stand_off));
         ray_store(out, l, s.o, s.d);
-    }
-}
-
-/* ---- combination ---- */
-
-static stream stream_of(const combination *c, int l) {
-    stream s;
-    s.light = uload(c->light + l);
-    s.u = rload(c->u + l);
-    s.v = rload(c->v + l);
-    s.p = rload(c->p + l);
-    s.w_sum = rload(c->w_sum + l);
-    s.m = rload(c->m + l);
-    s.tag = rload(c->tag + l);
-    return s;
-}
-
-static void stream_store(combination *c, int l, stream s) {
-    ustore(c->light + l, s.light);
-    rstore(c->u + l, s.u);
-    rstore(c->v + l, s.v);
-    rstore(c->p + l, s.p);
-    rstore(c->w_sum + l, s.w_sum);
-    rstore(c->m + l, s.m);
-    rstore(c->tag + l, s.tag);
-}
-
-static real others(const neighbour *n, int k, int l) {
-    real sum = K(0.0f);
-    for (int i = 0; i < k; i++)
-        sum = sum + rload(n[i].r.m + l);
-    return sum;
-}
-
-static void offer(const struct core_context *ctx, const gblock *g, const rblock *own, const neighbour *n, int k, int x,
-                  int y, uint32_t dim, combination *c) {
-    for (int l = 0; l < BLOCK; l += LANES) {
-        u32 key = key_of(ctx, x, y, l);
-        surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
-        resv r = resv_load(own, l);
-        stream st = stream_add(stream_empty(), r.light, r.u, r.v, r.p, r.m * r.p * r.w, r.m, K(0.0f), K(0.0f));
-        for (int i = 0; i < k; i++) {
-            resv q = resv_load(&n[i].r, l);
-            mask has = q.w > K(0.0f);
-            real p = K(0.0f);
-            if (ANY(has))
-                p = sel(has, target(s, light_load(ctx, q.light), q.u, q.v), K(0.0f));
-            st = stream_add(st, q.light, q.u, q.v, p, q.m * p * q.w, q.m, K(F32(i + 1)),
-                            rng(key, KU(dim + 3u * U32(i) + 2u)));
-        }
-        stream_store(c, l, st);
-    }
-}
-
-static void targets(const struct core_context *ctx, const float eye[3], const neighbour *n, int k, const uint32_t *id,
-                    const float *u, const float *v, combination *c) {
-    for (int l = 0; l < BLOCK; l += LANES) {
-        struct light li = light_load(ctx, uload(id + l));
-        for (int i = 0; i < k; i++) {
-            mask on = mload(n[i].lanes, l);
-            real p = K(0.0f);
-            if (ANY(on))
-                p = sel(on, target(surf_load(ctx, &n[i].g, l, eye), li, rload(u + l), rload(v + l)), K(0.0f));
-            rstore(c->p_at[i] + l, p);
-        }
-    }
-}
-
-static void end_biased(const combination *c, rblock *out) {
-    for (int l = 0; l < BLOCK; l += LANES) {
-        stream s = stream_of(c, l);
-        resv_store(out, l, stream_end(s, mis_scale(K(1.0f), s.m)));
-    }
-}
-
-static void end_mis(const combination *c, const rblock *own, const neighbour *n, int k, const uint32_t *visible,
-                    rblock *out) {
-    for (int l = 0; l < BLOCK; l += LANES) {
-        stream s = stream_of(c, l);
-        real held = s.p;
-        real all = rload(own->m + l) * s.p;
-        for (int i = 0; i < k; i++) {
-            real p = sel(mload(visible[i], l), rload(c->p_at[i] + l), K(0.0f));
-            all = all + rload(n[i].r.m + l) * p;
-            held = sel(s.tag == K(F32(i + 1)), p, held);
-        }
-        resv_store(out, l, stream_end(s, mis_scale(held, all)));
-    }
-}
-
-static void end_pairwise(const struct core_context *ctx, const gblock *g, const rblock *own, const neighbour *n, int k,
-                         const uint32_t *visible, int x, int y, uint32_t dim, combination *c, rblock *out) {
-    for (int l = 0; l < BLOCK; l += LANES) {
-        u32 key = key_of(ctx, x, y, l);
-        surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
-        resv r = resv_load(own, l);
-        real m_n = others(n, k, l);
-        real inv = mis_scale(K(1.0f), m_n);
-        real m_c = sel(m_n > K(0.0f), K(0.0f), K(1.0f));
-        stream st = stream_empty();
-        for (int i = 0; i < k; i++) {
-            resv q = resv_load(&n[i].r, l);
-            real share = q.m * inv;
-            real p_c = sel(mload(visible[i], l), rload(c->p_at[i] + l), K(0.0f));
-            m_c = m_c + pair_canonical(share, m_n, p_c, r.m, r.p);
-            mask has = q.w > K(0.0f);
-            real p = K(0.0f);
-            if (ANY(has))
-                p = sel(has, target(s, light_load(ctx, q.light), q.u, q.v), K(0.0f));
-            real w = sel(has, pair_weight(share, m_n, q.p, r.m, p, q.w), K(0.0f));
-            st = stream_add(st, q.light, q.u, q.v, p, w, q.m, K(F32(i + 1)), rng(key, KU(dim + 3u * U32(i) + 2u)));
-        }
-        st = stream_add(st, r.light, r.u, r.v, r.p, m_c * r.p * r.w, r.m, K(0.0f),
-                        rng(key, KU(dim + 3u * MAX_NEIGHBOURS)));
-        stream_store(c, l, st);
-        resv_store(out, l, stream_end(st, K(1.0f)));
     }
 }
 
@@ -224,6 +96,7 @@ static void sky_background(const struct core_context *ctx, uint32_t lanes, int x
     }
 }
 
+#include "backend/cpu/reuse_tmpl.h"
 #include "backend/cpu/lists_tmpl.h"
 #include "backend/cpu/picks_tmpl.h"
 #include "backend/cpu/influence_tmpl.h"
@@ -245,13 +118,11 @@ const kernels KERNELS = {
     .influence_find = influence_find,
     .pick_influence = pick_influence,
     .given = given,
-    .project = project,
+    .history_places = history_places,
     .segments = segments,
-    .offer = offer,
-    .targets = targets,
-    .end_biased = end_biased,
-    .end_mis = end_mis,
-    .end_pairwise = end_pairwise,
+    .reuse_begin = combine_begin,
+    .reuse_ask = combine_ask,
+    .reuse_end = combine_end,
     .shade = shade,
     .reference = reference,
     .reference_place = reference_place,

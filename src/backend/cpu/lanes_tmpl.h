@@ -8,6 +8,7 @@
 #include "core/camera.h"
 #include "core/random.h"
 #include "core/reservoir.h"
+#include "core/receiver.h"
 #include "core/reuse.h"
 #include "core/shadow.h"
 #include "core/sky.h"
@@ -76,6 +77,16 @@ FN real material_field(const noc_material_record *base, u32 index, int field) {
         f[i] = ((const float *)(base + at[i]))[field];
     return rload(f);
 #endif
+}
+
+FN receiver receiver_load(const gblock *g, int l) {
+    receiver r;
+    r.p = V3(rload(g->px + l), rload(g->py + l), rload(g->pz + l));
+    r.n = V3(rload(g->nx + l), rload(g->ny + l), rload(g->nz + l));
+    r.depth = rload(g->depth + l);
+    r.material = uload(g->material + l);
+    r.light = uload(g->light + l);
+    return r;
 }
 
 /* The receiving surfaces, seen from eye. Lanes without a surface get n = 0, and so reflect nothing. */

@@ -1,0 +1,149 @@
+/* What a frame computes between rays, in the dialect test: included by dialect_kernel.h. Slots count from FRAME_FIRST.
+ */
+#ifndef DIALECT_FRAME_H
+#define DIALECT_FRAME_H
+
+#include "core/combine.h"
+#include "core/neighbours.h"
+
+FN frame_camera dialect_camera(float at) {
+    frame_camera c;
+    for (int i = 0; i < 3; i++) {
+        c.eye[i] = at;
+        c.right[i] = 0.0f;
+        c.up[i] = 0.0f;
+        c.forward[i] = 0.0f;
+    }
+    c.right[0] = 2.0f;
+    c.up[2] = 1.5f;
+    c.forward[1] = 1.0f;
+    c.inv_right2 = 0.25f;
+    c.inv_up2 = 1.0f / 2.25f;
+    c.width = 1280.0f;
+    c.height = 720.0f;
+    c.jitter[0] = 0.25f;
+    c.jitter[1] = 0.75f;
+    return c;
+}
+
+FN frame_constants dialect_constants(uint32_t bias) {
+    frame_constants f;
+    f.camera = dialect_camera(0.5f);
+    f.previous = dialect_camera(-3.0f);
+    f.width = 1280u;
+    f.height = 720u;
+    f.blocks_x = 320u;
+    f.seed = 5u;
+    f.index = 9u;
+    f.flags = FRAME_BIAS_RAYS | FRAME_EMITTERS;
+    f.bias = bias;
+    f.draws = 32u;
+    f.list = 64u;
+    f.tail = 128u;
+    f.shadow_rays = 8u;
+    f.uniform_every = 4u;
+    f.rays = 7u;
+    f.neighbours = 3u;
+    f.influence = 0.0f;
+    f.radius = 10.0f;
+    f.m_max = 640.0f;
+    f.reject_depth = 0.1f;
+    f.reject_normal = 0.9f;
+    f.sky = 0.02f;
+    return f;
+}
+
+/* Neighbours of the item at hand. */
+FN mask neighbour_on(CTX int i) { return rng(dialect_key, KU(4000u + U32(i))) < K(0.8f); }
+FN resv neighbour_resv(CTX int i) {
+    resv r;
+    u32 key = hash_u32(dialect_key + KU(4100u + U32(i)));
+    mask empty = rng(key, KU(0u)) < K(0.3f);
+    r.light = scale_u32(rng_bits(key, KU(1u)), KU(KERNEL_LIGHTS));
+    r.u = rng(key, KU(2u));
+    r.v = rng(key, KU(3u));
+    r.w = sel(empty, K(0.0f), rng(key, KU(4u)) * K(50.0f));
+    r.m = to_real(shr(rng_bits(key, KU(5u)), 26));
+    r.p = sel(empty, K(0.0f), rng(key, KU(6u)) * K(5.0f));
+    return r;
+}
+FN surf neighbour_surf(CTX int i) { return any_surf(hash_u32(dialect_key + KU(4200u + U32(i)))); }
+FN real neighbour_answer(CTX int i) {
+    u32 key = hash_u32(dialect_key + KU(4300u + U32(i)));
+    return reuse_answer(rng(key, KU(0u)), rng(key, KU(1u)) < K(0.7f), rng(key, KU(2u)) < K(0.5f));
+}
+
+FN receiver any_receiver(u32 key) {
+    receiver r;
+    r.p = any_v3(key, KU(0u));
+    r.n = unit3(any_v3(key, KU(6u)));
+    r.depth = rng(key, KU(12u)) * K(100.0f);
+    r.material = selu(rng(key, KU(13u)) < K(0.2f), KU(NO_SURFACE), KU(3u));
+    r.light = KU(NO_LIGHT);
+    return r;
+}
+
+FN u32 flag_of(mask m) { return selu(m, KU(1u), KU(0u)); }
+
+FN void put_pixel(CTX u32 item, int slot, pixel p) {
+    put_u32(PASS item, slot, p.x);
+    put_u32(PASS item, slot + 1, p.y);
+    put_u32(PASS item, slot + 2, flag_of(p.inside));
+}
+
+/* Slots 0 to 10. */
+FN void places(CTX u32 item, u32 key) {
+    u32 x = scale_u32(rng_bits(key, KU(4400u)), KU(1280u));
+    u32 y = scale_u32(rng_bits(key, KU(4401u)), KU(720u));
+    u32 of = neighbour_key(PASS x, y);
+    v3 offset = neighbour_offset(PASS of, KU(64u));
+    receiver a = any_receiver(hash_u32(key + KU(4402u)));
+    receiver b = a;
+    b.p = add3(a.p, mul3(any_v3(key, KU(4403u)), K(0.01f)));
+    b.n = unit3(add3(a.n, mul3(any_v3(key, KU(4410u)), K(0.002f))));
+    put_u32(PASS item, FRAME_FIRST, of);
+    put_real(PASS item, FRAME_FIRST + 1, offset.x);
+    put_real(PASS item, FRAME_FIRST + 2, offset.y);
+    put_pixel(PASS item, FRAME_FIRST + 3, neighbour_place(PASS x, y, offset));
+    put_pixel(PASS item, FRAME_FIRST + 6, history_place(PASS a));
+    put_u32(PASS item, FRAME_FIRST + 9, flag_of(receivers_alike(PASS a, b)));
+    put_real(PASS item, FRAME_FIRST + 10, nearest(any_real(key, KU(4420u))));
+}
+
+/* 14 slots: the sample that neighbours are asked about, and what survives. */
+FN void combination(CTX u32 item, int slot, u32 key, surf s, resv own) {
+    stream held = reuse_begin(PASS s, own, key, KU(64u), 3);
+    put_u32(PASS item, slot, held.light);
+    put_real(PASS item, slot + 1, held.u);
+    put_real(PASS item, slot + 2, held.v);
+    put_real(PASS item, slot + 3, held.p);
+    put_real(PASS item, slot + 4, held.w_sum);
+    put_real(PASS item, slot + 5, held.m);
+    combined c = reuse_end(PASS s, own, held, key, KU(64u), 3);
+    put_resv(PASS item, slot + 6, c.r);
+    put_u32(PASS item, slot + 12, flag_of(c.own));
+    real p = reuse_target(PASS 1, held, light_load(PASS held.light));
+    put_real(PASS item, slot + 13, sel(reuse_asks(held, 1, p), p, K(0.0f)));
+}
+
+/* Slots 11 to 60. */
+FN void combinations(CTX u32 item, u32 key, surf s) {
+    resv own = resv_cap(ris_uniform(PASS s, key, KU(KERNEL_LIGHTS), 8), rng(key, KU(4502u)) * K(12.0f));
+    combination(PASS item, FRAME_FIRST + 11, key, s, own);
+    dialect_frame.bias = BIAS_MIS;
+    combination(PASS item, FRAME_FIRST + 25, key, s, own);
+    dialect_frame.bias = BIAS_PAIRWISE;
+    combination(PASS item, FRAME_FIRST + 39, key, s, own);
+    put_resv(PASS item, FRAME_FIRST + 53, resv_blocked(own, rng(key, KU(4500u)) < K(0.5f)));
+    put_u32(PASS item, FRAME_FIRST + 59, flag_of(resolve_asks(own, rng(key, KU(4501u)) < K(0.5f))));
+    put_real(PASS item, FRAME_FIRST + 60, neighbour_answer(PASS 0));
+}
+
+FN void frame_item(CTX u32 item, u32 key, surf s) {
+    dialect_frame = dialect_constants(BIAS_BIASED);
+    dialect_key = key;
+    places(PASS item, key);
+    combinations(PASS item, key, s);
+}
+
+#endif
