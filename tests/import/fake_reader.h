@@ -7,6 +7,7 @@
  *     many class x y count      a strip of so many triangles, eastwards
  *     lamp x y [z] [#id]     #7#8 is called #8, too
  *     fail | slow
+ *     hold bytes             until the file ends
  */
 #ifndef NOC_TEST_FAKE_READER_H
 #define NOC_TEST_FAKE_READER_H
@@ -17,6 +18,7 @@
 #include <math.h>
 #include <stdatomic.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #define assert_close(a, b, tolerance)                                                                                  \
     do {                                                                                                               \
@@ -103,6 +105,17 @@ static noc_status fake_line(geo_sink *sink, char *line, bool *swap, const char *
     return NOC_OK;
 }
 
+static atomic_int holding, most_holding; /* files that hold memory at once */
+
+static bool hold(noc_stream *stream, double bytes) {
+    bool fits = import_fits(noc_stream_budget(stream), bytes);
+    int now = atomic_fetch_add(&holding, 1) + 1, most = atomic_load(&most_holding);
+    while (now > most && !atomic_compare_exchange_weak(&most_holding, &most, now))
+        ;
+    usleep(30000); /* so that others may come */
+    return fits;
+}
+
 static noc_status fake_read(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
     (void)params;
     static _Thread_local char text[20000]; /* files may be read at once */
@@ -114,13 +127,20 @@ static noc_status fake_read(noc_stream *stream, const noc_import_params *params,
     text[size] = 0;
     reads++;
     *format = "fake";
-    bool swap = false;
+    bool swap = false, held = false;
     noc_status status = NOC_OK;
     for (char *line = text, *end; *line && !status; line = end + 1) {
         end = strchr(line, '\n');
         *end = 0;
+        double bytes;
+        if (sscanf(line, "hold %lf", &bytes) == 1 && !held) {
+            held = true;
+            assert_true(hold(stream, bytes));
+        }
         status = fake_line(sink, line, &swap, noc_stream_name(stream));
     }
+    if (held)
+        atomic_fetch_sub(&holding, 1);
     return status;
 }
 

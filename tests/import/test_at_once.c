@@ -152,6 +152,28 @@ static void limits_are_the_same(void **state) {
     }
 }
 
+/* Before their turn all readers together hold a quarter of what one may. */
+static void readers_ahead_share_memory(void **state) {
+    (void)state;
+    noc_import_params params = DEFAULTS;
+    params.max_memory = .2; /* 50 MB ahead: one of these */
+    const char *paths[6];
+    for (int i = 0; i < 6; i++) {
+        char name[2] = { (char)('a' + i), 0 };
+        paths[i] = file(name, i % 2 ? "FAKE city\n" CRS HOUSE_NO(80) "hold 40e6\n" HOUSE_NO(81)
+                                    : "FAKE city\n" CRS HOUSE_NO(80) "hold 40e6\n");
+        FILE *f = fopen(paths[i], "a"); /* no copies of each other */
+        fprintf(f, "#%d\n", i);
+        fclose(f);
+    }
+    outcome one = load_by(1, params, 6, paths);
+    assert_int_equal(one.status, NOC_OK);
+    assert_int_equal(atomic_load(&most_holding), 1);
+    outcome eight = load_by(8, params, 6, paths);
+    assert_true(eight.sum == one.sum);
+    assert_in_range(atomic_load(&most_holding), 1, 2); /* with the one whose turn it is */
+}
+
 typedef struct asked {
     pthread_t by;
     int left;
@@ -224,13 +246,10 @@ static void refused_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scenes_are_the_same),
-        cmocka_unit_test(place_is_the_first_files),
-        cmocka_unit_test(large_objects_wait_their_turn),
-        cmocka_unit_test(errors_are_the_first_files),
-        cmocka_unit_test(limits_are_the_same),
-        cmocka_unit_test(cancelled_at_any_time),
-        cmocka_unit_test(refused_memory),
+        cmocka_unit_test(scenes_are_the_same),           cmocka_unit_test(place_is_the_first_files),
+        cmocka_unit_test(large_objects_wait_their_turn), cmocka_unit_test(errors_are_the_first_files),
+        cmocka_unit_test(limits_are_the_same),           cmocka_unit_test(readers_ahead_share_memory),
+        cmocka_unit_test(cancelled_at_any_time),         cmocka_unit_test(refused_memory),
     };
     return cmocka_run_group_tests_name("import/at_once", tests, make_folder, remove_folder);
 }
