@@ -91,7 +91,7 @@ static void measure(bench *b, int points, float scale) {
         if (!(lanes_with_surface(b->g) >> b->lane & 1) || b->g->light[b->lane] != NOC_NO_LIGHT)
             continue;
         const float *p[3] = { b->g->px, b->g->py, b->g->pz }, *n[3] = { b->g->nx, b->g->ny, b->g->nz };
-        noc_near_query q = noc_near_none(scale, SIZE_MAX);
+        noc_near_query q = noc_near_none(scale, UINT32_MAX);
         noc_near_add(&q, p, n, 1u << b->lane);
         b->found = false;
         for (uint32_t id = 0; id < b->spheres->count; id++)

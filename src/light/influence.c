@@ -20,7 +20,7 @@ void noc_influence_destroy(noc_influence *v) {
 
 /* ---- boxes of points ---- */
 
-noc_near_query noc_near_none(float scale, size_t most) {
+noc_near_query noc_near_none(float scale, uint32_t most) {
     return (noc_near_query){ .lo = { INFINITY, INFINITY, INFINITY },
                              .hi = { -INFINITY, -INFINITY, -INFINITY },
                              .back = INFINITY,
@@ -49,8 +49,8 @@ void noc_near_add(noc_near_query *q, const float *const p[3], const float *const
 
 void noc_found_free(noc_found *f) {
     array_free(&f->ids);
-    array_free(&f->all.groups);
-    array_free(&f->near.groups);
+    array_free(&f->near[0].groups);
+    array_free(&f->near[1].groups);
     array_free(&f->gives);
 }
 

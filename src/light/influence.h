@@ -135,7 +135,6 @@ typedef struct noc_near_group {
 typedef struct noc_near {
     NOC_ARRAY(noc_near_group) groups;
     size_t count;
-    bool over;      /* there were more than were asked for */
     bool no_memory; /* for all of them */
 } noc_near;
 
@@ -148,12 +147,12 @@ typedef struct noc_near_query {
     float back;         /* least dot(n, point); -INFINITY where n = 0 */
     float scale;        /* S_r */
     float least;        /* lights that give less lux there are left out; 0: none */
-    size_t most;        /* stops at more volumes than that */
+    uint32_t most;      /* stops at more volumes than that */
 } noc_near_query;
 
 /* The query for points p (3 arrays) with normals n of the lanes in bits, added to what is in the query; start with
  * noc_near_none. */
-noc_near_query noc_near_none(float scale, size_t most);
+noc_near_query noc_near_none(float scale, uint32_t most);
 void noc_near_add(noc_near_query *query, const float *const p[3], const float *const n[3], uint32_t lanes);
 
 /* Points that ask as one, and what they found. Where S_r was set, the lights whose volumes hold the query; where it is
@@ -169,7 +168,7 @@ typedef struct noc_found {
     noc_found_group group[1 + NOC_QUERY_BLOCKS * NOC_QUERY_POINTS]; /* the first: points that did not ask */
     uint16_t of[NOC_QUERY_BLOCKS][NOC_QUERY_POINTS];                /* a point's group */
     NOC_ARRAY(uint32_t) ids;
-    noc_near all, near;      /* scratch: volumes near all points, near a group */
+    noc_near near[2];        /* scratch: volumes near all points, near a group */
     NOC_ARRAY(float) gives;  /* scratch: by volume near the group, lux; 0: does not hold it */
     noc_influence_bins bins; /* scratch */
     bool no_memory;          /* for all that the tile found: it is less */

@@ -5,6 +5,12 @@
 
 #include "core/influence.h"
 
+struct core_context {
+    noc_influence_bins *bins;
+};
+#define RULE_BINS_OF(ctx) (ctx)->bins
+#include "light/influence_bins.h"
+
 /* Surface points that S_r is found for, fewer where there are many lights; volumes in a row that are one where they are
  * far away. */
 enum { EXAMPLES = 512, FEWEST_EXAMPLES = 64, EVERY = 4, RUN = 64 };
@@ -27,6 +33,7 @@ static const float dim = 0.05f;
 typedef struct example {
     float p[3], n[3];
     float gets, seen; /* from all lights, lux; share of it that arrives */
+    rule_range range;
     noc_influence_bins bins;
 } example;
 
@@ -191,7 +198,7 @@ static void each_giving(const tuning *t, const example *e, giving_fn *fn, void *
 static void add_giving(void *ctx, const giving *g) {
     example *e = ctx;
     float lights = (float)(g->end - g->first);
-    noc_rule_add(&e->bins, lights, g->e);
+    rule_add(&(struct core_context){ &e->bins }, e->range, lights, g->e);
     e->gets += lights * g->e;
 }
 
@@ -244,7 +251,7 @@ static void look_around(void *ctx, size_t item, int worker) {
         float half, d = run_distance(&t->runs[i], e->p, &half);
         most = NOC_MAX(most, (d + half) / t->runs[i].root);
     }
-    noc_rule_begin(&e->bins, 1 / (most * most));
+    e->range = rule_begin(&(struct core_context){ &e->bins }, 1 / (most * most));
     e->gets = 0;
     e->seen = usual_seen[item % NOC_RULE_SHARES];
     each_giving(t, e, add_giving, e);
@@ -303,10 +310,11 @@ static float tune(tuning *t, const noc_scene *scene) {
     t->v->rule = rule_of(t, n);
     float many = enough * sqrtf((float)t->v->count * (EVERY - 1));
     for (int i = 0; i < n; i++) {
-        const example *e = &t->examples[i];
-        float best = noc_rule_best(&e->bins, (float)t->v->count, EVERY, t->v->rule);
+        example *e = &t->examples[i];
+        const struct core_context ctx = { &e->bins };
+        float best = rule_best(&ctx, e->range, rule_of_record(&t->v->rule), (float)t->v->count, EVERY);
         if (e->gets > t->v->rule.floor && best > 0)
-            least[count++] = fmaxf(best, noc_rule_limit(&e->bins, many));
+            least[count++] = fmaxf(best, rule_limit(&ctx, e->range, many));
     }
     qsort(least, (size_t)count, sizeof(*least), by_size);
     return count ? NOC_CLAMP(1 / sqrtf(least[(int)(unserved * (float)count)]), 1e-6f, 1e6f) : 1;

@@ -12,9 +12,17 @@ layout(push_constant) uniform constants { uint items; };
 void put_u32(uint item, int slot, uint x) { answer.bits[uint(slot) * items + item] = x; }
 void put_real(uint item, int slot, float x) { put_u32(item, slot, floatBitsToUint(x)); }
 
+void put_u1(uint item, int slot, uint x) { put_u32(item, slot, x); }
+uint words[256]; /* TILE_WORDS */
+uint word_load(uint i) { return words[i]; }
+void word_store(uint i, uint x) { words[i] = x; }
+uint lane_places(uint first) { return first; }
+
 #include "dialect_kernel.h"
 
 void main() {
-    if (gl_GlobalInvocationID.x < items)
+    if (gl_GlobalInvocationID.x < items) {
         dialect_item(gl_GlobalInvocationID.x);
+        dialect_tile(gl_GlobalInvocationID.x);
+    }
 }

@@ -1,7 +1,9 @@
 /* Every function of src/core on random input, in the dialect itself: compiled as scalar C, as wide C and as GLSL. One
  * item is one set of inputs, made from its number alone; what the functions answer goes out through the bridge, slot by
- * slot. Includers supply put_real(CTX item, slot, x) and put_u32(CTX item, slot, x); ITEM_SLOTS is the number of slots.
- */
+ * slot. What works on values that are one for a tile has each item as a tile. Includers supply put_real(CTX item, slot,
+ * x) and put_u32(CTX item, slot, x), put_u1(CTX item, slot, x) for tiles, words of memory for a tile by word_load(CTX
+ * i) and word_store(CTX i, x), i below TILE_WORDS, and lane_places(first): first, first + 1, ... of the lanes.
+ * ITEM_SLOTS is the number of slots. */
 #ifndef DIALECT_KERNEL_H
 #define DIALECT_KERNEL_H
 
@@ -21,6 +23,7 @@ static frame_constants dialect_frame;
 static u32 dialect_key;
 #endif
 #define KERNEL_LIGHTS 1000u
+#define TILE_WORDS 256
 
 /* Signed, of a magnitude that differs from item to item: 1/16 to 4096. */
 FN real any_real(u32 key, u32 dim) {
@@ -61,7 +64,9 @@ FN light light_load(CTX u32 i) { return any_light(hash_u32(i + KU(77u))); }
 #include "core/sky.h"
 #include "core/alias.h"
 #include "core/given.h"
-#include "core/influence.h"
+#include "core/influence_draw.h"
+#include "core/influence_near.h"
+#include "core/influence_rule.h"
 #include "core/tree.h"
 
 FN surf any_surf(u32 key) {
@@ -304,6 +309,7 @@ FN void picked(CTX u32 item, u32 key, surf s) {
 }
 
 #include "dialect_frame.h"
+#include "dialect_influence.h"
 
 FN void dialect_item(CTX u32 item) {
     u32 key = rng_key(KU(5u), item, KU(9u));
@@ -320,6 +326,7 @@ FN void dialect_item(CTX u32 item) {
     pickers(PASS item, key, s);
     picked(PASS item, key, s);
     frame_item(PASS item, key, s);
+    influence_draws(PASS item, key, s);
 }
 
 #endif

@@ -6,6 +6,7 @@
 struct core_context {
     uint32_t *out; /* slot-major: slot * items + item */
     uint32_t items, first;
+    uint32_t *words; /* of a tile */
 };
 
 FN void put_u32(CTX u32 item, int slot, u32 x) {
@@ -18,6 +19,18 @@ FN void put_real(CTX u32 item, int slot, real x) {
     memcpy(ctx->out + (size_t)slot * ctx->items + ctx->first, &x, sizeof(x));
 }
 
+FN void put_u1(CTX u1 item, int slot, u1 x) { ctx->out[(size_t)slot * ctx->items + item] = x; }
+FN u1 word_load(CTX u1 i) { return ctx->words[i]; }
+FN void word_store(CTX u1 i, u1 x) { ctx->words[i] = x; }
+FN u32 lane_places(u1 first) {
+    uint32_t n[LANES];
+    u32 r;
+    for (uint32_t i = 0; i < LANES; i++)
+        n[i] = first + i;
+    memcpy(&r, n, sizeof(r));
+    return r;
+}
+
 #include "dialect_kernel.h"
 
 #define JOIN2(a, b) a##b
@@ -26,13 +39,15 @@ FN void put_real(CTX u32 item, int slot, real x) {
 /* items must be a multiple of the lanes. */
 void JOIN(dialect_run_, LANES)(uint32_t *out, uint32_t items);
 void JOIN(dialect_run_, LANES)(uint32_t *out, uint32_t items) {
-    uint32_t lane[LANES];
+    uint32_t lane[LANES], words[TILE_WORDS];
     for (uint32_t first = 0; first < items; first += LANES) {
-        struct core_context ctx = { out, items, first };
+        struct core_context ctx = { out, items, first, words };
         for (uint32_t i = 0; i < LANES; i++)
             lane[i] = first + i;
         u32 item;
         memcpy(&item, lane, sizeof(item));
         dialect_item(&ctx, item);
+        for (uint32_t i = 0; i < LANES; i++)
+            dialect_tile(&ctx, first + i);
     }
 }

@@ -5,6 +5,8 @@
 #define KERNEL_SLOTS 179 /* dialect_kernel.h */
 #define FRAME_FIRST KERNEL_SLOTS
 #define FRAME_SLOTS 61 /* dialect_frame.h */
-#define ITEM_SLOTS (FRAME_FIRST + FRAME_SLOTS)
+#define INFLUENCE_FIRST (FRAME_FIRST + FRAME_SLOTS)
+#define INFLUENCE_SLOTS 10 /* dialect_influence.h */
+#define ITEM_SLOTS (INFLUENCE_FIRST + INFLUENCE_SLOTS)
 
 #endif

@@ -98,6 +98,11 @@ static const struct {
     { FRAME_FIRST + 53, "resv_blocked" },
     { FRAME_FIRST + 59, "resolve_asks" },
     { FRAME_FIRST + 60, "reuse_answer" },
+    { INFLUENCE_FIRST, "influence_candidate" },
+    { INFLUENCE_FIRST + 4, "influence_lists" },
+    { INFLUENCE_FIRST + 5, "influence_near" },
+    { INFLUENCE_FIRST + 8, "rule_best" },
+    { INFLUENCE_FIRST + 9, "rule_limit" },
 };
 
 static const int frame_integers[] = { 0, 3, 4, 5, 6, 7, 8, 9, 11, 17, 23, 25, 31, 37, 39, 45, 51, 53, 59 };
@@ -108,7 +113,7 @@ static bool holds_integers(int slot) {
             return true;
     return slot == 0 || slot == 4 || slot == 5 || slot == 71 || slot == 77 || slot == 83 || slot == 89 || slot == 103 ||
            slot == 126 || slot == 129 || slot == 134 || slot == 135 || slot == 170 || (slot >= 172 && slot <= 174) ||
-           slot == 177;
+           slot == 177 || slot == INFLUENCE_FIRST || slot == INFLUENCE_FIRST + 2 || slot >= INFLUENCE_FIRST + 4;
 }
 
 static const char *group_name(int slot) {

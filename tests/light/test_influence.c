@@ -9,6 +9,9 @@
 #include "light/influence.h"
 
 #include "core/influence.h"
+
+#define RULE_BINS_OF(ctx) (&(ctx)->at.volumes->bins)
+#include "light/influence_bins.h"
 #include "core/surface.h"
 
 enum { DRAWS = 32, EVERY = 4, POINT = 5, LANES_ASKED = 0xfff7 };
@@ -82,7 +85,7 @@ static void probe(void *user, noc_probes *r) {
 /* ---- a block of surfaces, and what it draws ---- */
 
 static bool holds(const noc_influence *v, uint32_t id, const float p[3], const float n[3]) {
-    noc_near_query q = noc_near_none(v->scale, SIZE_MAX);
+    noc_near_query q = noc_near_none(v->scale, UINT32_MAX);
     noc_near_add(&q, (const float *const[3]){ p, p + 1, p + 2 }, (const float *const[3]){ n, n + 1, n + 2 }, 1);
     return noc_influence_finds(v, id, &q);
 }
@@ -393,7 +396,8 @@ static void rule_draws_best(void **state) {
     (void)state;
     enum { LIGHTS = 2000, ROUNDS = 2000 };
     static double moment[LIGHTS]; /* e^2 over the square of what arrives, if the light is seen */
-    static noc_influence_bins b;
+    static noc_found found;       /* the bins are in it */
+    const struct core_context ctx = { .at = { .volumes = &found } };
     float lux[LIGHTS];
     for (int i = 0; i < LIGHTS; i++)
         lux[i] = i ? 1 / (float)(i + 1) : 30;
@@ -411,10 +415,11 @@ static void rule_draws_best(void **state) {
             for (int i = 0; i < LIGHTS; i++)
                 moment[i] += seen[i] ? lux[i] * lux[i] / (all * all) : 0;
         }
-        noc_rule_begin(&b, 1e-4f);
+        rule_range range = rule_begin(&ctx, 1e-4f);
         for (int i = 0; i < LIGHTS; i++)
-            noc_rule_add(&b, 1, lux[i]);
-        float weakest = noc_rule_best(&b, LIGHTS, EVERY, rule), as_if = noc_rule_best(&b, LIGHTS, EVERY, open);
+            rule_add(&ctx, range, 1, lux[i]);
+        float weakest = rule_best(&ctx, range, rule_of_record(&rule), LIGHTS, EVERY),
+              as_if = rule_best(&ctx, range, rule_of_record(&open), LIGHTS, EVERY);
         double listed = 0, total = 0, least = INFINITY, have = 0, naive = 0;
         for (int i = 0; i < LIGHTS; i++)
             total += moment[i];

@@ -8,11 +8,22 @@
 
 #include "backend/cpu/influence_near_tmpl.h"
 
+#include "core/influence_draw.h"
+
+#define RULE_BINS_OF(ctx) (&(ctx)->at.volumes->bins)
+#include "light/influence_bins.h"
+
 /* Points are close that are within so much of the reach of the scene's median light. */
 static const float influence_close = 0.125f;
 
-FN mask box_gather_meets(const noc_influence *v, u32 volume, influence_region r) {
+FN u32 influence_found(CTX u32 place) { return word_gather(ctx->at.volumes->ids.data, place); }
+FN u32 influence_volume(CTX u32 id) { return word_gather(ctx->influence->volume_of, id); }
+
+FN mask influence_seen(CTX u32 volume, influence_region r) {
+    const noc_influence *v = ctx->influence;
     const noc_influence_box *boxes = v->boxes;
+    if (!boxes)
+        return KU(0u) == KU(0u);
     u32 at = word_gather(v->box_of, volume) * KU(6u);
     v3 lo = V3(real_gather(boxes, at), real_gather(boxes, at + KU(1u)), real_gather(boxes, at + KU(2u)));
     v3 hi = V3(real_gather(boxes, at + KU(3u)), real_gather(boxes, at + KU(4u)), real_gather(boxes, at + KU(5u)));
@@ -30,10 +41,16 @@ FN void word_prefetch(const uint32_t *base, u32 index) { record_prefetch((const 
 
 /* ---- what the points find ---- */
 
+/* The region of a query in every lane. */
+FN influence_region region_splat(const noc_near_query *q) {
+    return influence_box(splat3(q->lo), splat3(q->hi), splat3(q->n), K(q->back));
+}
+
 /* What each volume near the query's points gives them, lux, from the query's `least` on, which is added to the bins;
  * where that is 0, 1 if it holds them. 0: nothing. False: no memory. */
-static bool look_closer(const noc_influence *v, const noc_near *near, const noc_near_query *q, noc_found *f) {
+static bool look_closer(const struct core_context *ctx, const noc_near *near, const noc_near_query *q, noc_found *f) {
     influence_region r = region_splat(q);
+    rule_range range = rule_from(q->least);
     if (!array_reserve(&f->gives, near->groups.len * 16))
         return false;
     for (size_t i = 0; i < near->groups.len; i++) {
@@ -42,15 +59,15 @@ static bool look_closer(const noc_influence *v, const noc_near *near, const noc_
             float *to = f->gives.data + i * 16 + (size_t)l;
             influence a = group_load(group, l);
             mask held = influence_holds(a, r, K(q->scale));
-            if (v->boxes && ANY(held))
-                held = and_(held, box_gather_meets(v, uload(group->volume + l), r));
+            if (ANY(held))
+                held = and_(held, influence_seen(ctx, uload(group->volume + l), r));
             real gives = sel(held, K(1.0f), K(0.0f));
             if (q->least > 0 && ANY(held))
                 gives = sel(held, influence_gives(a, rload(group->turn + l), r), K(0.0f));
             gives = sel(gives >= K(q->least), gives, K(0.0f));
             rstore(to, gives);
             for (uint32_t bits = q->least > 0 ? mbits(gives > K(0.0f)) : 0; bits; bits &= bits - 1)
-                noc_rule_add(&f->bins, group->lights[l + __builtin_ctz(bits)], to[__builtin_ctz(bits)]);
+                rule_add(ctx, range, group->lights[l + __builtin_ctz(bits)], to[__builtin_ctz(bits)]);
         }
     }
     return true;
@@ -110,16 +127,20 @@ static void make_group(const gblock *const *g, uint32_t *pending, int first, int
 }
 
 /* What the points of a group find among the volumes near them. */
-static void group_finds(const noc_influence *v, const noc_near *near, int every, noc_found *f, noc_found_group *group) {
+static void group_finds(const struct core_context *ctx, const noc_near *near, noc_found *f, noc_found_group *group) {
+    const noc_influence *v = ctx->influence;
     noc_near_query *q = &group->query;
+    rule_range range = rule_from(q->least);
     if (q->least > 0)
-        noc_rule_begin(&f->bins, q->least);
-    f->no_memory = f->no_memory || near->no_memory || !look_closer(v, near, q, f);
+        range = rule_begin(ctx, q->least);
+    f->no_memory = f->no_memory || near->no_memory || !look_closer(ctx, near, q, f);
     if (f->no_memory)
         return;
     group->from = (uint32_t)f->ids.len;
     if (q->least > 0)
-        q->least = fmaxf(noc_rule_best(&f->bins, (float)v->count, every, v->rule), q->least);
+        q->least =
+            fmaxf(rule_best(ctx, range, rule_of_record(&v->rule), (float)v->count, (float)ctx->frame->uniform_every),
+                  q->least);
     take_lights(v, near, q->least > 0 ? q->least : 1, f);
     group->count = (uint32_t)f->ids.len - group->from;
     group->from = group->count ? group->from : 0;
@@ -129,13 +150,15 @@ enum { TILE_VOLUMES = 16384 };
 
 /* What the points of a tile find. Volumes are looked for once, near all of them; where that is too many, for each
  * group. */
-static void influence_find(const struct core_context *ctx, const gblock *const *g, const uint32_t *lanes, int n,
+static void influence_find(const struct core_context *frame, const gblock *const *g, const uint32_t *lanes, int n,
                            noc_found *f) {
+    struct core_context c = *frame, *ctx = &c;
     const noc_influence *v = ctx->influence;
+    c.at.volumes = f;
     float fixed = ctx->frame->influence, scale = fixed > 0 ? fixed : v->scale;
     float close = influence_close * scale * v->usual;
     uint32_t pending[NOC_QUERY_BLOCKS];
-    noc_near_query all = noc_near_none(scale, TILE_VOLUMES), none = noc_near_none(scale, SIZE_MAX);
+    noc_near_query all = noc_near_none(scale, TILE_VOLUMES), none = noc_near_none(scale, UINT32_MAX);
     none.least = fixed > 0 ? 0 : 1 / (scale * scale);
     memset(f->of, 0, sizeof(f->of));
     f->group[0] = (noc_found_group){ .query = none };
@@ -155,12 +178,11 @@ static void influence_find(const struct core_context *ctx, const gblock *const *
             all.hi[k] = NOC_MAX(all.hi[k], f->group[i].query.hi[k]);
         }
     all.back = -INFINITY;
-    influence_near(v, &all, &f->all);
+    bool together = look_near(ctx, 0, &all) || f->near[0].no_memory;
     for (int i = 1; i < f->groups; i++) {
-        const noc_near *near = &f->all;
-        if (near->over)
-            influence_near(v, &f->group[i].query, &f->near), near = &f->near;
-        group_finds(v, near, (int)ctx->frame->uniform_every, f, &f->group[i]);
+        if (!together)
+            look_near(ctx, 1, &f->group[i].query);
+        group_finds(ctx, &f->near[together ? 0 : 1], f, &f->group[i]);
     }
 }
 
@@ -190,66 +212,60 @@ static void asking_of(const noc_found *f, const uint16_t of[BLOCK], asking *a) {
     }
 }
 
-FN influence_region region_load(const asking *a, int l) {
-    return influence_box(load3(a->lo, l), load3(a->hi, l), load3(a->n, l), rload(a->back + l));
+FN influence_asked asked_load(const asking *a, int l) {
+    influence_asked q;
+    q.r = influence_box(load3(a->lo, l), load3(a->hi, l), load3(a->n, l), rload(a->back + l));
+    q.least = rload(a->least + l);
+    q.count = uload(a->count + l);
+    q.from = uload(a->from + l);
+    return q;
 }
 
 /* ---- draws ---- */
 
 /* Uniform draws of a block's lanes from l on get their densities: the light's own volume is asked. `ahead` draws at a
  * time, so that memory is waited for once. */
-static void weigh_uniform(const noc_influence *v, const asking *a, const noc_near_query *q, int l, int m, int every,
-                          real in, real out, pick_block *picks) {
+static void weigh_uniform(const struct core_context *ctx, influence_asked a, const noc_near_query *q, int l, int m,
+                          int every, real in, real out, pick_block *picks) {
     enum { AHEAD = 16 };
     u32 volume[AHEAD];
-    influence_region r = region_load(a, l);
-    real least = rload(a->least + l);
-    mask any = uload(a->count + l) > KU(0u);
     for (int first = 0; first < m; first += AHEAD * every) {
         int end = NOC_MIN(m, first + AHEAD * every), k = 0;
         for (int i = first; i < end; i += every, k++) {
-            volume[k] = word_gather(v->volume_of, uload(picks->light[i] + l));
-            record_prefetch(v->volumes->c, 8, volume[k]);
+            volume[k] = influence_volume(ctx, uload(picks->light[i] + l));
+            record_prefetch(ctx->influence->volumes->c, 8, volume[k]);
         }
         k = 0;
         for (int i = first; i < end; i += every, k++) {
-            influence volume_k = influence_gather(v->volumes, volume[k]);
-            mask held = and_(influence_holds(volume_k, r, K(q->scale)), any);
-            if (q->least > 0)
-                held = and_(held, influence_gives(volume_k, influence_turn(volume_k), r) >= least);
-            if (v->boxes && ANY(held))
-                held = and_(held, box_gather_meets(v, volume[k], r));
+            mask held = influence_lists(ctx, volume[k], influence_load(ctx, volume[k]), a, K(q->scale), q->least > 0);
             rstore(picks->inverse[i] + l, sel(held, in, out));
         }
     }
 }
 
-/* Draws for a block of the tile that found that. */
-static void pick_influence(const struct core_context *ctx, const noc_found *f, int block, int x, int y, int m,
+/* Draws for a block of the tile that found that: those of influence_candidate. */
+static void pick_influence(const struct core_context *frame, const noc_found *f, int block, int x, int y, int m,
                            pick_block *out) {
-    const noc_influence *v = ctx->influence;
+    struct core_context c = *frame, *ctx = &c;
     int every = (int)ctx->frame->uniform_every;
     asking a;
+    c.at.volumes = (noc_found *)f; /* is read */
     asking_of(f, f->of[block], &a);
     for (int l = 0; l < BLOCK; l += LANES) {
-        u32 key = key_of(ctx, x, y, l), count = uload(a.count + l), from = uload(a.from + l), all = KU(v->count);
-        mask any = count > KU(0u);
-        real p_in = K(1.0f) / influence_pmf(any, count, all, m, every);
-        real p_out = K(1.0f) / influence_pmf(mload(0, l), count, all, m, every);
+        u32 key = key_of(ctx, x, y, l), all = KU(ctx->influence->count);
+        influence_asked q = asked_load(&a, l);
+        mask any = q.count > KU(0u);
+        real p_in = K(1.0f) / influence_pmf(any, q.count, all, m, every);
+        real p_out = K(1.0f) / influence_pmf(mload(0, l), q.count, all, m, every);
         for (int i = 0; i < m; i++) {
-            u32 bits = rng_bits(key, KU(DIM_CANDIDATE + 3u * U32(i)));
-            u32 id = scale_u32(bits, all);
-            if (i % every == 0) {
-                word_prefetch(v->volume_of, id);
-            } else if (ANY(any)) {
-                id = selu(any, word_gather(f->ids.data, from + scale_u32(bits, count)), id);
+            u32 id = influence_light(ctx, q, key, all, i, every);
+            if (influence_from_all(i, every))
+                word_prefetch(ctx->influence->volume_of, id);
+            else
                 rstore(out->inverse[i] + l, sel(any, p_in, p_out));
-            } else {
-                rstore(out->inverse[i] + l, p_out);
-            }
             ustore(out->light[i] + l, id);
         }
-        weigh_uniform(v, &a, &f->group[0].query, l, m, every, p_in, p_out, out);
+        weigh_uniform(ctx, q, &f->group[0].query, l, m, every, p_in, p_out, out);
     }
 }
 

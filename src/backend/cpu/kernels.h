@@ -46,6 +46,7 @@ typedef struct core_cursors {
     const struct beliefs *beliefs;
     struct list_asked *asked; /* of the block */
     const struct ray_draw *found;
+    noc_found *volumes;      /* of the tile: what its points find among influence volumes */
     const pick_block *picks; /* of the block */
     const struct combining *combining;
     int lane; /* blocks are read from this one on */
