@@ -165,7 +165,7 @@ FN1 list_place place_at(CTX u1 group, f1 total, f1 at) {
 /* A light below a place of a group, by the scores on the way down from it. */
 FN1 list_found descend(CTX u1 patches, list_group g, list_place from, f1 score) {
     list_found f;
-    f.share = 1.0f;
+    f1 share = 1.0f;
     list_place p = from;
     while (g.level > 0u && p.place < 16u) {
         g.level--;
@@ -175,15 +175,15 @@ FN1 list_found descend(CTX u1 patches, list_group g, list_place from, f1 score) 
         p = place_at(PASS U32(LIST_SPARE), total, p.at);
         if (p.place < 16u) {
             score = score_at(PASS U32(LIST_SPARE), p.place);
-            EXACT f1 share = f.share * (score / total);
-            f.share = share;
+            share = share * (score / total);
         }
     }
     f.light = 0u;
-    if (p.place < 16u)
+    f.share = 0.0f;
+    if (p.place < 16u) {
         f.light = cluster_light(PASS g.part, g.block, p.place);
-    else
-        f.share = 0.0f;
+        f.share = share;
+    }
     return f;
 }
 

@@ -194,6 +194,15 @@ static bool make_buffer(vulkan_run *run, job *j, size_t bytes) {
     return true;
 }
 
+/* Between the host's memory and the buffer. */
+static bool copy(vulkan_run *run, job *j, void *host, size_t bytes, bool in) {
+    void *mapped;
+    TRY(vkMapMemory(j->device, j->memory, 0, VK_WHOLE_SIZE, 0, &mapped));
+    memcpy(in ? mapped : host, in ? host : mapped, bytes);
+    vkUnmapMemory(j->device, j->memory);
+    return true;
+}
+
 static bool make_pipeline(vulkan_run *run, job *j, const uint32_t *spirv, size_t spirv_bytes, uint32_t push_bytes) {
     VkShaderModuleCreateInfo module = { .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                         .codeSize = spirv_bytes,
@@ -282,17 +291,10 @@ static bool dispatch(vulkan_run *run, job *j, const void *push, uint32_t push_by
 bool vulkan_compute(vulkan_run *run, const uint32_t *spirv, size_t spirv_bytes, const void *push, uint32_t push_bytes,
                     uint32_t groups, void *out, size_t out_bytes) {
     job j = { .device = run->state->device };
-    bool ok = make_buffer(run, &j, out_bytes) && make_pipeline(run, &j, spirv, spirv_bytes, push_bytes) &&
-              make_set(run, &j) && dispatch(run, &j, push, push_bytes, groups);
-    if (ok) {
-        void *mapped;
-        VkResult result = vkMapMemory(j.device, j.memory, 0, VK_WHOLE_SIZE, 0, &mapped);
-        ok = result == VK_SUCCESS || fail(run, "vkMapMemory", result);
-        if (ok) {
-            memcpy(out, mapped, out_bytes);
-            vkUnmapMemory(j.device, j.memory);
-        }
-    }
+    bool ok = make_buffer(run, &j, out_bytes) && copy(run, &j, out, out_bytes, true) &&
+              make_pipeline(run, &j, spirv, spirv_bytes, push_bytes) && make_set(run, &j) &&
+              dispatch(run, &j, push, push_bytes, groups);
+    ok = ok && copy(run, &j, out, out_bytes, false);
     vkDeviceWaitIdle(j.device);
     vkDestroyFence(j.device, j.fence, NULL);
     vkDestroyCommandPool(j.device, j.commands, NULL);

@@ -18,7 +18,7 @@ typedef struct vulkan_run {
 /* Opens the device of this number. False, with run->why set, where there is none such; run needs no closing then. */
 bool vulkan_open(vulkan_run *run, uint32_t device);
 /* Runs main() of a shader in groups x 1 x 1 work groups; binding 0 is a storage buffer whose contents (out_bytes) are
- * copied to out afterwards, push its push constants. False with run->why set on failure. */
+ * those of out, before and afterwards, push its push constants. False with run->why set on failure. */
 bool vulkan_compute(vulkan_run *run, const uint32_t *spirv, size_t spirv_bytes, const void *push, uint32_t push_bytes,
                     uint32_t groups, void *out, size_t out_bytes);
 void vulkan_close(vulkan_run *run);

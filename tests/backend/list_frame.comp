@@ -1,0 +1,212 @@
+#version 460
+/* One frame of rays over light lists as a compute shader: list building, the rays' choice, and what they find, from the
+ * headers that the CPU compiles. An invocation is a tile. Words of one buffer hold what goes in and what comes out;
+ * list_frame.h says where. */
+#extension GL_GOOGLE_include_directive : require
+#define CORE_GLSL 1
+
+layout(local_size_x = 8) in;
+layout(std430, binding = 0) buffer memory { uint word[]; } mem;
+
+#include "core/dialect.h"
+#include "core/light.h"
+#include "list_frame.h"
+
+uint tile_; /* of this invocation; and the pixel at hand, its block and its place in it */
+uint block_;
+uint place_;
+
+uint wu(uint at) { return mem.word[at]; }
+float wf(uint at) { return uintBitsToFloat(mem.word[at]); }
+void put(uint at, uint x) { mem.word[at] = x; }
+void put(uint at, float x) { mem.word[at] = floatBitsToUint(x); }
+vec3 wv(uint at) { return vec3(wf(at), wf(at + 1u), wf(at + 2u)); }
+uint scratch(uint at) { return wu(HEAD_SCRATCH) + tile_ * uint(SCRATCH_WORDS) + at; }
+uint answer(uint at) { return wu(HEAD_ANSWER) + tile_ * uint(ANSWER_WORDS) + at; }
+uint pixel_answer(uint at) { return answer(uint(ANSWER_PIXELS) + (block_ * 16u + place_) * uint(PIXEL_WORDS) + at); }
+uint ray_answer(uint ray, uint at) { return pixel_answer(uint(PIXEL_RAYS) + ray * uint(RAY_WORDS) + at); }
+uint gword(uint block, uint field, uint place) {
+    return wu(HEAD_BLOCKS) + ((tile_ * 16u + block) * 9u + field) * 16u + place;
+}
+
+light light_load(uint i) {
+    uint at = wu(HEAD_LIGHTS) + 16u * i;
+    light l;
+    l.p = wv(at);
+    l.kind = wu(at + 3u);
+    l.a = wv(at + 4u);
+    l.radius = wf(at + 7u);
+    l.b = wv(at + 8u);
+    l.flags = wu(at + 11u);
+    l.e = wv(at + 12u);
+    l.area = wf(at + 15u);
+    return l;
+}
+light light_splat(uint i) { return light_load(i); }
+
+#include "core/list_rays.h"
+
+/* ---- the bridge ---- */
+
+float score_load(uint group, int l) { return wf(scratch(16u * group + uint(l))); }
+void score_store(uint group, int l, float score) { put(scratch(16u * group + uint(l)), score); }
+float score_at(uint group, uint place) { return wf(scratch(16u * group + place)); }
+void score_clear(uint group, uint place) { put(scratch(16u * group + place), 0.0); }
+void chosen_store(uint i, uint place) { put(scratch(uint(SCRATCH_CHOSEN) + i), place); }
+uint chosen_load(uint i) { return wu(scratch(uint(SCRATCH_CHOSEN) + i)); }
+void list_group_store(uint group, list_group g) {
+    uint at = scratch(uint(SCRATCH_GROUPS) + 3u * group);
+    put(at, g.part);
+    put(at + 1u, g.level);
+    put(at + 2u, g.block);
+}
+list_group list_group_load(uint group) {
+    uint at = scratch(uint(SCRATCH_GROUPS) + 3u * group);
+    return list_group(wu(at), wu(at + 1u), wu(at + 2u));
+}
+void group_sum_store(uint group, float sum) { put(scratch(uint(SCRATCH_SUMS) + group), sum); }
+float group_sum(uint group) { return wf(scratch(uint(SCRATCH_SUMS) + group)); }
+void entry_store(uint i, list_entry e) {
+    put(answer(uint(ANSWER_LIGHT) + i), e.light);
+    put(answer(uint(ANSWER_WEIGHT) + i), e.weight);
+}
+list_entry entry_load(uint i) {
+    return list_entry(wu(answer(uint(ANSWER_LIGHT) + i)), wf(answer(uint(ANSWER_WEIGHT) + i)));
+}
+
+uint tile_pixels(uint block) {
+    uint bits = 0u;
+    for (uint i = 0u; i < 16u; i++)
+        bits |= (wu(gword(block, 7u, i)) != NO_SURFACE ? 1u : 0u) << i;
+    return bits;
+}
+list_point tile_point(uint block, uint place) {
+    vec3 p = vec3(wf(gword(block, 0u, place)), wf(gword(block, 1u, place)), wf(gword(block, 2u, place)));
+    vec3 n = vec3(wf(gword(block, 3u, place)), wf(gword(block, 4u, place)), wf(gword(block, 5u, place)));
+    return list_point(p, n, wf(gword(block, 6u, place)), wu(gword(block, 7u, place)));
+}
+list_material list_material_load(uint material) {
+    uint at = wu(HEAD_MATERIALS) + 8u * material;
+    return list_material(wv(at), wf(at + 3u), wf(at + 7u));
+}
+void patch_store(uint i, list_patch t) {
+    uint at = scratch(uint(SCRATCH_PATCHES) + 16u * i);
+    for (uint k = 0u; k < 3u; k++) {
+        put(at + k, t.c[k]);
+        put(at + 4u + k, t.axis[k]);
+        put(at + 10u + k, t.wo[k]);
+    }
+    put(at + 3u, t.radius);
+    put(at + 7u, t.spread);
+    put(at + 8u, t.share);
+    put(at + 9u, t.reflectance);
+    put(at + 13u, t.gloss);
+    put(at + 14u, t.alpha2);
+}
+list_patch patch_load(uint i) {
+    uint at = scratch(uint(SCRATCH_PATCHES) + 16u * i);
+    return list_patch(wv(at), wf(at + 3u), wv(at + 4u), wf(at + 7u), wf(at + 8u), wf(at + 9u), wv(at + 10u),
+                      wf(at + 13u), wf(at + 14u));
+}
+
+list_top top_load(uint part) {
+    if (part != 0u)
+        return list_top(0u, 0u);
+    return list_top(wu(HEAD_LEVELS), wu(HEAD_TOP_NODES));
+}
+list_node node_load(uint part, uint level, uint block, int l) {
+    uint at = wu(uint(HEAD_NODES) + level) + 160u * block + uint(l);
+    return list_node(vec3(wf(at), wf(at + 16u), wf(at + 32u)), wf(at + 48u),
+                     vec3(wf(at + 64u), wf(at + 80u), wf(at + 96u)), wf(at + 112u), wf(at + 128u), wf(at + 144u));
+}
+list_cluster cluster_load(uint part, uint cluster) {
+    list_node n = node_load(part, 0u, cluster / 16u, int(cluster % 16u));
+    return list_cluster(n.c, n.radius, n.power);
+}
+list_brief brief_load(uint part, uint cluster, int l) {
+    uint at = wu(HEAD_CLUSTERS) + 48u * cluster + uint(l);
+    return list_brief(wu(at + 16u), wu(at + 32u));
+}
+uint cluster_light(uint part, uint cluster, uint place) { return wu(wu(HEAD_CLUSTERS) + 48u * cluster + place); }
+
+list_belief belief_load(uint i) {
+    list_entry e = entry_load(i);
+    return list_believe(e.weight, wf(wu(HEAD_VISIBILITY) + e.light));
+}
+float belief_share(uint i) { return belief_load(i).share; }
+uint entry_light(uint i) { return entry_load(i).light; }
+float entry_weight(uint i) { return entry_load(i).weight; }
+void weighed_store(uint i, float weighed) { put(scratch(uint(SCRATCH_WEIGHED) + i), weighed); }
+float weighed_load(uint i) { return wf(scratch(uint(SCRATCH_WEIGHED) + i)); }
+float weighed_at(uint i) { return weighed_load(i); }
+void drawn_store(uint ray, bool on, uint entry, float times) {
+    if (on) {
+        put(ray_answer(ray, uint(RAY_ENTRY)), entry);
+        put(ray_answer(ray, uint(RAY_TIMES)), times);
+    }
+}
+float drawn_times(uint ray) { return wf(ray_answer(ray, uint(RAY_TIMES))); }
+float found_p(uint ray) { return wf(ray_answer(ray, uint(RAY_P))); }
+float found_w(uint ray) { return wf(ray_answer(ray, uint(RAY_W))); }
+
+/* ---- the frame ---- */
+
+void share_pixel(uint count, uint x, uint y) {
+    vec3 eye = wv(uint(HEAD_EYE));
+    list_point q = tile_point(block_, place_);
+    list_material m = list_material_load(q.material);
+    surf s;
+    s.p = q.p;
+    s.n = q.n;
+    v3 d = sub3(eye, s.p);
+    EXACT float inv = 1.0 / sqrt(max_(dot3(d, d), 1e-20));
+    s.wo = mul3(d, inv);
+    s.albedo = m.albedo;
+    s.f0 = m.f0;
+    s.alpha = m.alpha;
+    uint pixel = y * wu(HEAD_WIDTH) + x;
+    uint key = rng_key(wu(HEAD_SEED), pixel, wu(HEAD_FRAME));
+    list_sums sums = list_weigh(s, true, key, count);
+    float n = list_draws(sums, float(wu(HEAD_RAYS)), wf(HEAD_BRIGHTNESS), rng(key, DIM_LIST_RAYS));
+    uint rays = list_share_out(sums, count, n, rng(key, DIM_LIST_START));
+    put(pixel_answer(uint(PIXEL_ALL)), sums.all);
+    put(pixel_answer(uint(PIXEL_BRIGHT)), sums.bright);
+    put(pixel_answer(uint(PIXEL_DRAWS)), n);
+    vec3 colour = vec3(0.0);
+    put(pixel_answer(uint(PIXEL_SHOWN)), list_shown(rays, n, rng(key, DIM_LIST_SHOWN)));
+    for (uint k = 0u; k < rays; k++) {
+        list_ray r = list_ask(sums, n, key, wu(ray_answer(k, uint(RAY_ENTRY))), drawn_times(k));
+        bool seen = frame_sees(pixel, k);
+        r.w = seen ? r.w : 0.0;
+        put(ray_answer(k, uint(RAY_LIGHT)), r.light);
+        put(ray_answer(k, uint(RAY_U)), r.u);
+        put(ray_answer(k, uint(RAY_V)), r.v);
+        put(ray_answer(k, uint(RAY_W)), r.w);
+        put(ray_answer(k, uint(RAY_P)), r.p);
+        v3 c = mul3(reflected(s, sample_light(light_load(r.light), s.p, r.u, r.v)), r.w);
+        if (seen && abs(c.x) + abs(c.y) + abs(c.z) < 1e30)
+            colour = add3(colour, c);
+    }
+    list_kept kept = list_resample(rays, rng(key, DIM_LIST_KEPT));
+    put(pixel_answer(uint(PIXEL_KEPT)), kept.ray);
+    put(pixel_answer(uint(PIXEL_KEPT_W)), kept.w);
+    for (uint k = 0u; k < 3u; k++)
+        put(pixel_answer(uint(PIXEL_COLOUR) + k), colour[k]);
+}
+
+void main() {
+    tile_ = gl_GlobalInvocationID.x;
+    if (tile_ >= wu(HEAD_TILES))
+        return;
+    float start = tail_start(wu(HEAD_SEED), tile_, wu(HEAD_FRAME));
+    list_size size = list_build(16u, wv(uint(HEAD_EYE)), wu(HEAD_LIST), wu(HEAD_TAIL), start);
+    size = list_fill(size, wu(HEAD_LIST) + wu(HEAD_TAIL), wu(HEAD_RAYS), wu(HEAD_DRAWS));
+    put(answer(uint(ANSWER_COUNT)), size.count);
+    put(answer(uint(ANSWER_COPIES)), size.copies);
+    uint x0 = tile_ % wu(HEAD_TILES_X) * 16u;
+    uint y0 = tile_ / wu(HEAD_TILES_X) * 16u;
+    for (block_ = 0u; block_ < 16u && size.count > 0u; block_++)
+        for (place_ = 0u; place_ < 16u; place_++)
+            if ((tile_pixels(block_) >> place_ & 1u) != 0u)
+                share_pixel(size.count, x0 + block_ % 4u * 4u + place_ % 4u, y0 + block_ / 4u * 4u + place_ / 4u);
+}
