@@ -19,7 +19,8 @@ typedef struct bench {
     noc_camera camera;
     noc_view *view;
     noc_render_params params;
-    int group, material, cars[CARS], mesh, lamp, base_mesh, round;
+    double z[CARS]; /* of the ground below them */
+    int group, cars[CARS], mesh, lamp, base_mesh, round;
     uint32_t windows;
 } bench;
 
@@ -51,11 +52,13 @@ static bool make_car(noc_scene *s, int *model) {
 }
 
 /* Cars on a grid around the place that is looked at, further on from round to round. */
-static void place(const bench *b, int car, double out[12]) {
-    double yaw = .4 * car, c = cos(yaw), s = sin(yaw), x = b->camera.target[0] + 7 * (car % 20 - 10) + .4 * b->round,
-           y = b->camera.target[1] + 7 * (car / 20 - 5), z = 0;
-    noc_scene_ground(b->scene, x, y, &z);
-    double rows[12] = { c, -s, 0, x, s, c, 0, y, 0, 0, 1, z };
+static void place(bench *b, int car, double out[12]) {
+    double yaw = .4 * car, c = cos(yaw), s = sin(yaw), x = b->camera.target[0] + 7 * (car % 20 - 10),
+           y = b->camera.target[1] + 7 * (car / 20 - 5), on = .4 * b->round;
+    if (!b->view)
+        noc_scene_ground(b->scene, x, y,
+                         &b->z[car]); /* asked once: edits may have the next query make its grids anew */
+    double rows[12] = { c, -s, 0, x + on, s, c, 0, y, 0, 0, 1, b->z[car] };
     memcpy(out, rows, sizeof(rows));
 }
 
