@@ -297,7 +297,9 @@ static bool build(noc_influence *v, influence_lights *l, const noc_influence_par
         noc_influence_bound_half(v, &v->half[half], params->pool);
     }
     since = end_step(v, NOC_STEP_HIERARCHY, since);
-    bool ok = !params->boxes || !v->stand || noc_influence_probe(v, l->scene, params);
+    if (!params->boxes || !v->stand)
+        return true;
+    bool ok = noc_influence_probe(v, l->scene, params);
     end_step(v, NOC_STEP_BOXES, since);
     return ok;
 }
