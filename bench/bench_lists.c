@@ -115,7 +115,7 @@ static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, 
         return false;
     wall = noc_wall_seconds();
     cpu = noc_cpu_seconds();
-    noc_clusters *c = noc_clusters_create(s, e->pool, NULL);
+    noc_clusters *c = noc_clusters_create(s, NOC_STANDING, e->pool, NULL);
     wall = noc_wall_seconds() - wall;
     cpu = noc_cpu_seconds() - cpu;
     printf("%zu lights, %zu clusters: built in %.3f s (CPU %.3f s), %.1f bytes a light\n", s->lights.len, c->count,
@@ -126,7 +126,7 @@ static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, 
                                 .lights = s->lights.data,
                                 .light_count = (uint32_t)s->lights.len,
                                 .materials = s->material_records.data,
-                                .clusters = e->sources.clusters };
+                                .clusters = { e->sources.clusters[0], e->sources.clusters[1] } };
     double *us = noc_alloc((size_t)rounds * sizeof(*us)), entries = 0;
     size_t tiles = 0;
     for (int round = 0; round < rounds; round++) {

@@ -49,7 +49,7 @@ static void builds(void) {
     for (int n = 1000; n <= 1000000; n *= 10) {
         noc_scene *s = random_city(n);
         double t0 = noc_cpu_seconds();
-        noc_clusters *c = noc_clusters_create(s, NULL, NULL);
+        noc_clusters *c = noc_clusters_create(s, NOC_STANDING, NULL, NULL);
         double t1 = noc_cpu_seconds();
         noc_alias *a = noc_alias_create(s, NULL);
         double t2 = noc_cpu_seconds();

@@ -10,10 +10,12 @@ enum { CHUNK = 4096, CURVE_BITS = 12, SAMPLE = 1024 };
 typedef struct build {
     const noc_scene *scene;
     noc_clusters *c;
-    noc_light_bound *bounds;     /* a light of the scene */
-    noc_light_key *keys, *spare; /* emitting lights in the order of the curve */
+    int half;
+    size_t lights;               /* that may be of the half: those of the scene, or those that move */
+    noc_light_bound *bounds;     /* of each of these */
+    noc_light_key *keys, *spare; /* lights of the half in the order of the curve; id: place among these */
     uint32_t *first;             /* a cluster: its first key; one more at the end */
-    size_t items, emitting;
+    size_t items, count;
     float lo[3], scale, reach;
     int level; /* being made from the one below */
     void (*work)(struct build *b, size_t item);
@@ -73,7 +75,12 @@ static uint64_t hilbert(uint32_t x[3]) {
     return noc_spread_bits(x[0] ^ t) << 2 | noc_spread_bits(x[1] ^ t) << 1 | noc_spread_bits(x[2] ^ t);
 }
 
-static void bound_light(build *b, size_t i) { b->bounds[i] = noc_bound_light(&b->scene->lights.data[i]); }
+/* Number of a light in the scene. */
+static uint32_t light_of(const build *b, size_t i) {
+    return b->half == NOC_MOVING ? b->scene->moving.data[i] : (uint32_t)i;
+}
+
+static void bound_light(build *b, size_t i) { b->bounds[i] = noc_bound_light(&b->scene->lights.data[light_of(b, i)]); }
 
 /* By the way they face, then along the curve: groups of any level face alike. */
 static void make_key(build *b, size_t i) {
@@ -93,10 +100,10 @@ static int by_size(const void *a, const void *b) {
  * or a stray lamp does not squeeze the city into one cell of it. */
 static void span_lights(build *b) {
     float sample[SAMPLE], size = 0;
-    size_t n = NOC_MIN(b->emitting, (size_t)SAMPLE);
+    size_t n = NOC_MIN(b->count, (size_t)SAMPLE);
     for (int k = 0; k < 3; k++) {
         for (size_t i = 0; i < n; i++)
-            sample[i] = b->bounds[b->keys[i * b->emitting / n].id].p[k];
+            sample[i] = b->bounds[b->keys[i * b->count / n].id].p[k];
         qsort(sample, n, sizeof(*sample), by_size);
         float low = n ? sample[n / 20] : 0, high = n ? sample[n - 1 - n / 20] : 0;
         b->lo[k] = 0.5f * (low + high);
@@ -110,8 +117,8 @@ static void span_lights(build *b) {
 
 static void sort_lights(build *b, noc_pool *pool) {
     span_lights(b);
-    run(b, pool, b->emitting, make_key);
-    noc_sort_keys(b->keys, b->spare, b->emitting);
+    run(b, pool, b->count, make_key);
+    noc_sort_keys(b->keys, b->spare, b->count);
 }
 
 /* ---- groups ---- */
@@ -180,7 +187,7 @@ static open_cluster *cluster_for(const build *b, gathering *g, size_t i) {
  * lights. Returns how many there are. */
 static size_t gather(build *b) {
     gathering g = { .to = b->spare, .first = b->first };
-    for (size_t i = 0; i < b->emitting; i++) {
+    for (size_t i = 0; i < b->count; i++) {
         open_cluster *c = cluster_for(b, &g, i);
         c->keys[c->count++] = b->keys[i];
         if (c->count == NOC_CLUSTER_LIGHTS)
@@ -242,9 +249,11 @@ static void close_node(noc_cluster_block *block, int lane, const part *parts, in
     block->power[lane] = power;
 }
 
-/* The upper half of an intensity's float, rounded up: never 0, never infinite. */
+/* The upper half of an intensity's float, rounded up: never infinite, and 0 for dark lights alone. */
 static uint32_t half_intensity(float x) {
     uint32_t bits;
+    if (!(x > 0))
+        return 0;
     x = NOC_CLAMP(x, 1e-30f, 1e30f);
     memcpy(&bits, &x, sizeof(bits));
     return (bits + 0xffff) & 0xffff0000u;
@@ -273,9 +282,10 @@ static void make_cluster(build *b, size_t i) {
     part parts[NOC_CLUSTER_LIGHTS] = { 0 };
     int count = (int)(b->first[i + 1] - b->first[i]), lane = (int)(i % 16);
     for (int j = 0; j < count; j++) {
-        out->id[j] = b->keys[b->first[i] + (uint32_t)j].id;
-        const noc_light_bound *l = &b->bounds[out->id[j]];
+        uint32_t id = b->keys[b->first[i] + (uint32_t)j].id;
+        const noc_light_bound *l = &b->bounds[id];
         bool any = face(l->n) == 6;
+        out->id[j] = light_of(b, id);
         out->shine[j] = half_intensity(l->intensity) | (any ? 0 : octahedron(l->n));
         parts[j] = (part){ { l->p[0], l->p[1], l->p[2] },
                            l->radius,
@@ -323,15 +333,14 @@ static bool allocate(noc_clusters *c, size_t count) {
 }
 
 static bool make_all(build *b, noc_pool *pool) {
-    size_t all = b->scene->lights.len;
-    run(b, pool, all, bound_light);
-    for (size_t i = 0; i < all; i++)
-        if (b->bounds[i].intensity > 0)
-            b->keys[b->emitting++].id = (uint32_t)i;
-    if (!b->emitting)
+    run(b, pool, b->lights, bound_light);
+    for (size_t i = 0; i < b->lights; i++)
+        if (noc_light_half(&b->scene->lights.data[light_of(b, i)]) == b->half)
+            b->keys[b->count++].id = (uint32_t)i;
+    if (!b->count)
         return true;
     sort_lights(b, pool);
-    if (!(b->first = noc_alloc_large(b->emitting + 1, sizeof(*b->first))))
+    if (!(b->first = noc_alloc_large(b->count + 1, sizeof(*b->first))))
         return false;
     size_t count = gather(b);
     if (!allocate(b->c, count))
@@ -342,9 +351,11 @@ static bool make_all(build *b, noc_pool *pool) {
     return true;
 }
 
-noc_clusters *noc_clusters_create(const noc_scene *scene, noc_pool *pool, noc_log *log) {
-    size_t all = scene->lights.len;
+noc_clusters *noc_clusters_create(const noc_scene *scene, int half, noc_pool *pool, noc_log *log) {
+    size_t all = half == NOC_MOVING ? scene->moving.len : scene->lights.len;
     build b = { .scene = scene,
+                .half = half,
+                .lights = all,
                 .c = noc_calloc(1, sizeof(*b.c)),
                 .bounds = noc_alloc_large(all, sizeof(*b.bounds)),
                 .keys = noc_alloc_large(all, sizeof(*b.keys)),
@@ -359,6 +370,35 @@ noc_clusters *noc_clusters_create(const noc_scene *scene, noc_pool *pool, noc_lo
     free(b.spare);
     free(b.first);
     return b.c;
+}
+
+/* ---- lights that are switched ---- */
+
+static void relight_cluster(build *b, size_t i) {
+    noc_light_block *lights = &b->c->lights[i];
+    float power = 0;
+    for (int j = 0; j < NOC_CLUSTER_LIGHTS && (!j || lights->id[j] != lights->id[0]); j++) {
+        float intensity = noc_light_intensity(&b->scene->lights.data[lights->id[j]]);
+        lights->shine[j] = half_intensity(intensity) | (lights->shine[j] & 0xffff);
+        power += full_intensity(lights->shine[j]);
+    }
+    b->c->level[0][i / 16].power[i % 16] = power;
+}
+
+static void relight_node(build *b, size_t i) {
+    const noc_cluster_block *below = &b->c->level[b->level - 1][i];
+    int count = (int)NOC_MIN((size_t)16, b->c->nodes[b->level - 1] - 16 * i);
+    float power = 0;
+    for (int j = 0; j < count; j++)
+        power += below->power[j];
+    b->c->level[b->level][i / 16].power[i % 16] = power;
+}
+
+void noc_clusters_relight(noc_clusters *c, const noc_scene *scene, noc_pool *pool) {
+    build b = { .scene = scene, .c = c };
+    run(&b, pool, c->count, relight_cluster);
+    for (b.level = 1; b.level < c->levels; b.level++)
+        run(&b, pool, c->nodes[b.level], relight_node);
 }
 
 void noc_clusters_destroy(noc_clusters *c) {

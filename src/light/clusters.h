@@ -1,5 +1,6 @@
 /* light/clusters: lights in groups of up to 16 that lie close together and face alike, those groups in groups of 16,
- * and so on, for choosing by the group (core/lists.h). Lights without emission are left out: they cannot add anything.
+ * and so on, for choosing by the group (core/lists.h). Dark lights are in them, with no power, for they may be switched
+ * on.
  *
  * Level 0 is the clusters; a node of level k + 1 is the 16 nodes of block i of level k, i its own number; the 16 lights
  * of cluster i are light block i. So there are no pointers, and what is looked at together is one piece of memory.
@@ -40,9 +41,11 @@ typedef struct noc_clusters {
     size_t bytes;
 } noc_clusters;
 
-/* Built by the pool's threads, the same for any number of them; pool may be NULL. Returns NULL after reporting that
- * memory was refused. */
-noc_clusters *noc_clusters_create(const noc_scene *scene, noc_pool *pool, noc_log *log);
+/* Those of the lights of one half: NOC_STANDING or NOC_MOVING of light/bound.h. Built by the pool's threads, the same
+ * for any number of them; pool may be NULL. Returns NULL after reporting that memory was refused. */
+noc_clusters *noc_clusters_create(const noc_scene *scene, int half, noc_pool *pool, noc_log *log);
 void noc_clusters_destroy(noc_clusters *clusters); /* NULL is allowed */
+/* After lights have changed what they emit, and nothing else: powers anew, in place. */
+void noc_clusters_relight(noc_clusters *clusters, const noc_scene *scene, noc_pool *pool);
 
 #endif

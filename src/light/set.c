@@ -16,7 +16,7 @@ struct noc_light_set {
     noc_probe_fn *probe;
     void *user;
     pthread_mutex_t lock;
-    noc_clusters *clusters;
+    noc_clusters *clusters[NOC_HALVES];
     noc_alias *alias;
     noc_tree *tree;
     /* Those that are held, and the last ones that were asked for. */
@@ -40,6 +40,11 @@ noc_light_set *noc_light_set_create(const noc_scene *scene, noc_pool *pool, noc_
     return set;
 }
 
+static void drop_clusters(noc_light_set *set, int half) {
+    noc_clusters_destroy(set->clusters[half]);
+    set->clusters[half] = NULL;
+}
+
 static void drop_volumes(noc_light_set *set) {
     for (size_t i = 0; i < set->volumes.len; i++)
         noc_influence_destroy(set->volumes.data[i].influence);
@@ -50,7 +55,8 @@ static void drop_volumes(noc_light_set *set) {
 void noc_light_set_destroy(noc_light_set *set) {
     if (!set)
         return;
-    noc_clusters_destroy(set->clusters);
+    drop_clusters(set, NOC_STANDING);
+    drop_clusters(set, NOC_MOVING);
     noc_alias_destroy(set->alias);
     noc_tree_destroy(set->tree);
     drop_volumes(set);
@@ -92,6 +98,16 @@ static noc_status follow_tree(noc_light_set *set, changes c) {
     return status;
 }
 
+/* Those of the moving half are hundreds: they are made anew with every change, when a frame asks for them. */
+static void follow_clusters(noc_light_set *set, changes c) {
+    if (c.anew)
+        drop_clusters(set, NOC_STANDING);
+    else if (c.standing && set->clusters[NOC_STANDING])
+        noc_clusters_relight(set->clusters[NOC_STANDING], set->scene, set->pool);
+    if (c.moving)
+        drop_clusters(set, NOC_MOVING);
+}
+
 /* Do volumes serve the lights that there are now? */
 static noc_status follow_volumes(noc_light_set *set, volumes *v, changes c) {
     noc_status status = NOC_OK;
@@ -124,8 +140,7 @@ static noc_status follow(noc_light_set *set) {
         noc_alias_destroy(set->alias);
         set->alias = NULL;
     }
-    noc_clusters_destroy(set->clusters);
-    set->clusters = NULL;
+    follow_clusters(set, c);
     noc_status tree = follow_tree(set, c), all_volumes = follow_all_volumes(set, c);
     return tree != NOC_OK ? tree : all_volumes;
 }
@@ -206,9 +221,12 @@ static noc_status make(noc_light_set *set, noc_candidates candidates, const noc_
     switch (candidates) {
     case NOC_CANDIDATES_UNIFORM: break;
     case NOC_CANDIDATES_LISTS:
-        made = !set->clusters;
-        if (made && !(set->clusters = noc_clusters_create(set->scene, set->pool, set->log)))
-            return NOC_ERR_MEMORY;
+        made = !set->clusters[NOC_STANDING];
+        for (int half = 0; half < NOC_HALVES; half++) {
+            noc_clusters **c = &set->clusters[half];
+            if (!*c && !(*c = noc_clusters_create(set->scene, half, set->pool, set->log)))
+                return NOC_ERR_MEMORY;
+        }
         break;
     case NOC_CANDIDATES_POWER:
         made = !set->alias;
@@ -224,7 +242,8 @@ static noc_status make(noc_light_set *set, noc_candidates candidates, const noc_
     }
     if (made)
         set->seconds[candidates] = noc_wall_seconds() - start;
-    out->clusters = set->clusters;
+    for (int half = 0; half < NOC_HALVES; half++)
+        out->clusters[half] = set->clusters[half];
     out->alias = set->alias;
     out->tree = set->tree;
     return NOC_OK;
@@ -251,7 +270,10 @@ static size_t bytes_of(const noc_light_set *set, noc_candidates candidates) {
     size_t bytes = 0;
     switch (candidates) {
     case NOC_CANDIDATES_UNIFORM: return 0;
-    case NOC_CANDIDATES_LISTS: return set->clusters ? set->clusters->bytes : 0;
+    case NOC_CANDIDATES_LISTS:
+        for (int half = 0; half < NOC_HALVES; half++)
+            bytes += set->clusters[half] ? set->clusters[half]->bytes : 0;
+        return bytes;
     case NOC_CANDIDATES_POWER: return set->alias ? set->alias->bytes : 0;
     case NOC_CANDIDATES_INFLUENCE:
         for (size_t i = 0; i < set->volumes.len; i++)

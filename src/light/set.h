@@ -27,7 +27,7 @@ typedef struct noc_light_set noc_light_set;
 
 /* What a frame draws from. Entries that it did not ask for may be NULL. */
 typedef struct noc_light_sources {
-    const noc_clusters *clusters;
+    const noc_clusters *clusters[NOC_HALVES];
     const noc_alias *alias;
     const noc_tree *tree;
     const noc_influence *influence;

@@ -46,7 +46,7 @@ static const gblock *block_of(const trial *t, int number, int block) {
 
 /* All that the shader reads, behind its head. */
 static void make_words(trial *t) {
-    const noc_clusters *c = t->view->sources.clusters;
+    const noc_clusters *c = t->view->sources.clusters[NOC_STANDING];
     const frame_constants *f = &t->frame.constants;
     append(t, NULL, HEAD_WORDS);
     const uint32_t head[] = { TILES, TILES_X, W, f->seed, f->index, f->list, f->tail, f->shadow_rays, f->draws };
@@ -102,7 +102,7 @@ static void make_trial(trial *t, int list, int tail) {
                                     .lights = t->scene->lights.data,
                                     .light_count = (uint32_t)t->scene->lights.len,
                                     .materials = t->scene->material_records.data,
-                                    .clusters = t->view->sources.clusters };
+                                    .clusters = { t->view->sources.clusters[0], t->view->sources.clusters[1] } };
     t->visibility = noc_calloc(t->scene->lights.len, sizeof(float));
     assert_non_null(t->visibility);
     for (size_t i = 0; i < t->scene->lights.len; i++)

@@ -50,7 +50,7 @@ typedef struct world {
 static void make_world(world *w, int lights, double side, int list, int tail) {
     memset(w, 0, sizeof(*w));
     w->scene = scene_of(lights, side);
-    w->clusters = noc_clusters_create(w->scene, NULL, NULL);
+    w->clusters = noc_clusters_create(w->scene, NOC_STANDING, NULL, NULL);
     assert_non_null(w->clusters);
     w->params = measure(64, 48, NOC_METHOD_RIS);
     w->params.list = list;
@@ -62,7 +62,7 @@ static void make_world(world *w, int lights, double side, int list, int tail) {
                                     .light_count = (uint32_t)w->scene->lights.len,
                                     .materials = w->scene->material_records.data,
                                     .frame = &w->frame,
-                                    .clusters = w->clusters };
+                                    .clusters = { w->clusters } };
     for (int b = 0; b < BLOCKS; b++) {
         gblock *g = &w->g[b];
         w->blocks[b] = g;
@@ -267,7 +267,7 @@ static void far_lights_stand_alone(void **state) {
         assert_true(noc_scene_add_light(s, &l) >= 0);
     }
     assert_int_equal(noc_scene_commit(s), NOC_OK);
-    noc_clusters *c = noc_clusters_create(s, NULL, NULL);
+    noc_clusters *c = noc_clusters_create(s, NOC_STANDING, NULL, NULL);
     assert_non_null(c);
     for (size_t i = 0; i < c->count; i++)
         assert_true(c->level[0][i / 16].radius[i % 16] < 200);

@@ -259,7 +259,7 @@ static void follows(uint32_t step) {
     noc_scene *s = city(step);
     noc_pool *pool = noc_pool_create(2);
     noc_light_set *set = noc_light_set_create(s, pool, probe, NULL, NULL);
-    noc_light_sources from[3] = { { 0 } };
+    noc_light_sources from[3] = { 0 };
     static asker a;
     uint32_t all = 0;
     a = (asker){ .scene = s };

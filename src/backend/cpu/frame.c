@@ -32,7 +32,7 @@ static struct core_context context_of(const cpu_view *s, const noc_frame *frame)
                                   .materials = scene->material_records.len ? scene->material_records.data
                                                                            : &s->world->no_material,
                                   .frame = &frame->constants,
-                                  .clusters = from->clusters,
+                                  .clusters = { from->clusters[NOC_STANDING], from->clusters[NOC_MOVING] },
                                   .alias = from->alias,
                                   .tree = from->tree,
                                   .influence = from->influence,

@@ -59,7 +59,7 @@ struct core_context {
     uint32_t light_count;
     float stand_off;                  /* of shadow rays at least, m: core/shadow.h */
     const material_record *materials; /* at least one */
-    const noc_clusters *clusters;     /* lists only */
+    const noc_clusters *clusters[2];  /* lists only: of lights that stand, of those that move; NULL: none */
     const noc_alias *alias;           /* power only */
     const noc_tree *tree;             /* light-bvh only */
     const noc_influence *influence;   /* influence only */

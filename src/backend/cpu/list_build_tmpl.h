@@ -56,13 +56,13 @@ FN list_patch patch_load(CTX u1 i) {
 /* ---- lights ---- */
 
 FN list_top top_load(CTX u1 part) {
-    const noc_clusters *c = ctx->clusters;
-    if (part || !c->count)
+    const noc_clusters *c = ctx->clusters[part];
+    if (!c || !c->count)
         return (list_top){ 0, 0 };
     return (list_top){ (u1)c->levels, (u1)c->nodes[c->levels - 1] };
 }
 FN list_node node_load(CTX u1 part, u1 level, u1 block, int l) {
-    const noc_cluster_block *c = &ctx->clusters->level[level][block];
+    const noc_cluster_block *c = &ctx->clusters[part]->level[level][block];
     return (list_node){ V3(rload(c->x + l), rload(c->y + l), rload(c->z + l)),
                         rload(c->radius + l),
                         V3(rload(c->ax + l), rload(c->ay + l), rload(c->az + l)),
@@ -71,15 +71,15 @@ FN list_node node_load(CTX u1 part, u1 level, u1 block, int l) {
                         rload(c->power + l) };
 }
 FN list_cluster cluster_load(CTX u1 part, u1 cluster) {
-    const noc_cluster_block *c = &ctx->clusters->level[0][cluster / 16];
+    const noc_cluster_block *c = &ctx->clusters[part]->level[0][cluster / 16];
     u1 l = cluster % 16;
     return (list_cluster){ F3(c->x[l], c->y[l], c->z[l]), c->radius[l], c->power[l] };
 }
 FN list_brief brief_load(CTX u1 part, u1 cluster, int l) {
-    const noc_light_block *b = &ctx->clusters->lights[cluster];
+    const noc_light_block *b = &ctx->clusters[part]->lights[cluster];
     return (list_brief){ uload(b->place + l), uload(b->shine + l) };
 }
-FN u1 cluster_light(CTX u1 part, u1 cluster, u1 at) { return ctx->clusters->lights[cluster].id[at]; }
+FN u1 cluster_light(CTX u1 part, u1 cluster, u1 at) { return ctx->clusters[part]->lights[cluster].id[at]; }
 
 static void build_list(const struct core_context *frame, const gblock *const *g, const uint32_t *lanes, int blocks,
                        float rotation, list_scratch *scratch) {
