@@ -29,6 +29,7 @@ typedef struct frame_camera frame_camera;
 #define FRAME_BIAS_RAYS 8u /* visibility is a part of the targets of a combination: core/reuse.h */
 
 #define MAX_NEIGHBOURS 16
+#define REFERENCE_CHUNK 32u /* lights that the reference method sums at once */
 
 /* How reservoirs are combined: core/reuse.h. */
 #define BIAS_BIASED 0u

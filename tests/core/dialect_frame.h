@@ -4,7 +4,10 @@
 #define DIALECT_FRAME_H
 
 #include "core/combine.h"
+#include "core/moments.h"
 #include "core/neighbours.h"
+#include "core/reference.h"
+#include "core/shading.h"
 
 FN frame_camera dialect_camera(float at) {
     frame_camera c;
@@ -139,11 +142,54 @@ FN void combinations(CTX u32 item, u32 key, surf s) {
     put_real(PASS item, FRAME_FIRST + 60, neighbour_answer(PASS 0));
 }
 
+FN light light_of_all(CTX uint32_t i) { return any_light(hash_u32(KU(i) + KU(77u))); }
+FN void sum_put(CTX uint32_t chunk, real x) { dialect_sums[chunk] = x; }
+FN real sum_load(CTX uint32_t chunk) { return dialect_sums[chunk]; }
+FN void entry_put(CTX mask on, uint32_t i, real w) {
+    dialect_weight = dialect_weight + sel(on, w, K(0.0f));
+    dialect_entries = selu(on, hash_u32(dialect_entries + KU(i)), dialect_entries);
+}
+
+/* Slots 61 to 64. */
+FN void references(CTX u32 item, u32 key, surf s) {
+    dialect_weight = K(0.0f);
+    dialect_entries = KU(0u);
+    reference_entries(PASS s, key, 40u);
+    put_real(PASS item, FRAME_FIRST + 61, dialect_weight);
+    put_u32(PASS item, FRAME_FIRST + 62, dialect_entries);
+    reference_entries(PASS s, key, FRAME.rays);
+    put_real(PASS item, FRAME_FIRST + 63, dialect_weight);
+    put_u32(PASS item, FRAME_FIRST + 64, dialect_entries);
+}
+
+/* Slots 65 to 80. */
+FN void shades(CTX u32 item, u32 key, surf s) {
+    resv r = ris_uniform(PASS s, key, KU(KERNEL_LIGHTS), 4);
+    v3 c = sample_shade(s, r, light_load(PASS r.light));
+    put_v3(PASS item, FRAME_FIRST + 65, c);
+    u32 turns = sky_turns(PASS mul3(c, K(1e-3f)));
+    put_u32(PASS item, FRAME_FIRST + 68, turns);
+    segment ray = sky_ray(s, key, item, K(1e-4f));
+    put_v3(PASS item, FRAME_FIRST + 69, ray.d);
+    v3 sky = sky_shade(PASS s, ray.d, K(1.0f) / to_real(turns));
+    put_v3(PASS item, FRAME_FIRST + 72, sky);
+    put_v3(PASS item, FRAME_FIRST + 75,
+           sky_behind(PASS shr(rng_bits(key, KU(4600u)), 22), shr(rng_bits(key, KU(4601u)), 23)));
+    moments m = moments_add(moments_none(), rng(key, KU(4602u)), K(1.0f));
+    m = moments_add(m, rng(key, KU(4603u)), K(2.0f));
+    m = moments_add(m, rng(key, KU(4604u)), K(3.0f));
+    put_real(PASS item, FRAME_FIRST + 78, m.squares);
+    put_real(PASS item, FRAME_FIRST + 79, mean_add(m.mean, rng(key, KU(4605u)), K(0.25f)));
+    put_u32(PASS item, FRAME_FIRST + 80, flag_of(colour_finite(mul3(c, K(1e29f)))));
+}
+
 FN void frame_item(CTX u32 item, u32 key, surf s) {
     dialect_frame = dialect_constants(BIAS_BIASED);
     dialect_key = key;
     places(PASS item, key);
     combinations(PASS item, key, s);
+    references(PASS item, key, s);
+    shades(PASS item, key, s);
 }
 
 #endif

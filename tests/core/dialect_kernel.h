@@ -18,9 +18,15 @@
 #if defined(CORE_GLSL)
 frame_constants dialect_frame;
 u32 dialect_key;
+real dialect_sums[2];
+real dialect_weight;
+u32 dialect_entries;
 #else
 static frame_constants dialect_frame;
 static u32 dialect_key;
+static real dialect_sums[2]; /* of the reference method: what its chunks sum up to, its entries */
+static real dialect_weight;
+static u32 dialect_entries;
 #endif
 #define KERNEL_LIGHTS 1000u
 #define TILE_WORDS 256

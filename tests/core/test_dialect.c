@@ -98,6 +98,15 @@ static const struct {
     { FRAME_FIRST + 53, "resv_blocked" },
     { FRAME_FIRST + 59, "resolve_asks" },
     { FRAME_FIRST + 60, "reuse_answer" },
+    { FRAME_FIRST + 61, "reference_entries" },
+    { FRAME_FIRST + 65, "sample_shade" },
+    { FRAME_FIRST + 68, "sky_turns" },
+    { FRAME_FIRST + 69, "sky_ray" },
+    { FRAME_FIRST + 72, "sky_shade" },
+    { FRAME_FIRST + 75, "sky_behind" },
+    { FRAME_FIRST + 78, "moments_add" },
+    { FRAME_FIRST + 79, "mean_add" },
+    { FRAME_FIRST + 80, "colour_finite" },
     { INFLUENCE_FIRST, "influence_candidate" },
     { INFLUENCE_FIRST + 4, "influence_lists" },
     { INFLUENCE_FIRST + 5, "influence_near" },
@@ -105,7 +114,9 @@ static const struct {
     { INFLUENCE_FIRST + 9, "rule_limit" },
 };
 
-static const int frame_integers[] = { 0, 3, 4, 5, 6, 7, 8, 9, 11, 17, 23, 25, 31, 37, 39, 45, 51, 53, 59 };
+static const int frame_integers[] = {
+    0, 3, 4, 5, 6, 7, 8, 9, 11, 17, 23, 25, 31, 37, 39, 45, 51, 53, 59, 62, 64, 68, 80
+};
 
 static bool holds_integers(int slot) {
     for (size_t i = 0; i < sizeof(frame_integers) / sizeof(frame_integers[0]); i++)

@@ -1,6 +1,7 @@
 /* Views of the light sampling (noc_aov): gathered while a frame is made, kept once it is complete. Nothing here is
  * reached unless a frame asks for it, and nothing here is read by the passes, so a view cannot change the picture. */
 #include "backend/cpu/cpu.h"
+#include "core/moments.h"
 
 #include <math.h>
 
@@ -122,14 +123,14 @@ static void keep_surfaces(const noc_scene *scene, aov_buffers *v, size_t block, 
     }
 }
 
-/* Mean and squared deviations, a frame at a time (Welford 1962). */
 static void add_moments(aov_buffers *v, size_t block, const cblock *c) {
     float *mean = v->kept[NOC_AOV_ERROR][block], *squares = v->kept[NOC_AOV_VARIANCE][block];
     for (int l = 0; l < BLOCK; l++) {
-        float y = 0.2126f * c->rgb[0][l] + 0.7152f * c->rgb[1][l] + 0.0722f * c->rgb[2][l];
-        float before = v->frames ? y - mean[l] : y;
-        mean[l] = (v->frames ? mean[l] : 0) + before / (float)(v->frames + 1);
-        squares[l] = (v->frames ? squares[l] : 0) + before * (y - mean[l]);
+        float y = luminance(V3(c->rgb[0][l], c->rgb[1][l], c->rgb[2][l]));
+        moments m = v->frames ? (moments){ mean[l], squares[l] } : moments_none();
+        m = moments_add(m, y, (float)(v->frames + 1));
+        mean[l] = m.mean;
+        squares[l] = m.squares;
     }
 }
 

@@ -1,5 +1,6 @@
 /* The stages of a frame over tiles, and the mean over frames. */
 #include "backend/cpu/cpu.h"
+#include "core/moments.h"
 
 static void run_tile(void *arg, size_t item, int index) {
     stage_run *run = arg;
@@ -96,7 +97,7 @@ static void mean_row(void *arg, size_t row, int index) {
         float *mean = run->b->picture[i].rgb[0];
         const float *colour = run->b->colour[i].rgb[0];
         for (int k = 0; k < 3 * BLOCK; k++)
-            mean[k] += (colour[k] - mean[k]) * run->share;
+            mean[k] = mean_add(mean[k], colour[k], run->share);
     }
 }
 

@@ -13,7 +13,7 @@
 #include "light/tree.h"
 #include "render/backend.h"
 
-enum { MOST_SHADOW_RAYS = 16, REFERENCE_CHUNK = 32, PICK_AHEAD = 8 };
+enum { MOST_SHADOW_RAYS = 16, PICK_AHEAD = 8 };
 
 /* What the pixels of a tile evaluate: core/lists.h. */
 typedef struct light_list {
@@ -49,6 +49,7 @@ typedef struct core_cursors {
     noc_found *volumes;      /* of the tile: what its points find among influence volumes */
     const pick_block *picks; /* of the block */
     const struct combining *combining;
+    struct reference_scratch *reference;
     int lane; /* blocks are read from this one on */
 } core_cursors;
 

@@ -1,6 +1,7 @@
 /* Kernels of reuse and shading: core/ applied to blocks of pixels. Compiled once as scalar C and once an instruction
  * set, with CORE_LANES and KERNELS (the table's name) defined by the build. */
 #include "backend/cpu/lanes_tmpl.h"
+#include "core/shading.h"
 
 static void candidates(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                        rblock *out) {
@@ -31,8 +32,7 @@ static void segments(const struct core_context *ctx, const gblock *g, const uint
 
 /* rgb += c for `on`, unless that is not finite. Returns the lanes that were dropped. */
 static uint32_t add_colour(cblock *out, int l, v3 c, uint32_t lanes) {
-    real y = abs_(c.x) + abs_(c.y) + abs_(c.z);
-    mask good = y < K(1e30f); /* false for NaN */
+    mask good = colour_finite(c);
     mask on = and_(mload(lanes, l), good);
     rstore(out->rgb[0] + l, rload(out->rgb[0] + l) + sel(on, c.x, K(0.0f)));
     rstore(out->rgb[1] + l, rload(out->rgb[1] + l) + sel(on, c.y, K(0.0f)));
@@ -46,9 +46,9 @@ static uint32_t shade(const struct core_context *ctx, const gblock *g, const rbl
         mask on = mload(lanes, l);
         if (!ANY(on))
             continue;
+        resv q = resv_load(r, l);
         surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
-        light_sample ls = sample_light(light_load(ctx, uload(r->light + l)), s.p, rload(r->u + l), rload(r->v + l));
-        dropped |= add_colour(out, l, mul3(reflected(s, ls), rload(r->w + l)), lanes);
+        dropped |= add_colour(out, l, sample_shade(s, q, light_load(ctx, q.light)), lanes);
     }
     return dropped;
 }
@@ -57,43 +57,27 @@ static uint32_t shade(const struct core_context *ctx, const gblock *g, const rbl
 
 static void sky_rays(const struct core_context *ctx, const gblock *g, int x, int y, const uint32_t *number,
                      rayblock *out) {
-    const float reach = 1e7f; /* further than any scene */
     for (int l = 0; l < BLOCK; l += LANES) {
-        v3 at = sky_numbers(key_in(ctx, x, y, l, 0), uload(number + l));
-        surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
-        mask on = dot3(s.n, s.n) > K(0.5f);
-        s.n = sel3(on, s.n, V3(K(0.0f), K(0.0f), K(1.0f)));
-        v3 d = sky_direction(s, at.x, at.y);
-        ray_store(out, l, add3(s.p, mul3(s.n, stand_off(max_abs3(s.p), K(ctx->stand_off)))), mul3(d, K(reach)));
+        segment r = sky_ray(surf_load(ctx, g, l, ctx->frame->camera.eye), key_in(ctx, x, y, l, 0), uload(number + l),
+                            K(ctx->stand_off));
+        ray_store(out, l, r.o, r.d);
     }
 }
 
-static uint32_t sky_shade(const struct core_context *ctx, const gblock *g, const rayblock *rays, const float *share,
+static uint32_t sky_light(const struct core_context *ctx, const gblock *g, const rayblock *rays, const float *share,
                           uint32_t lanes, cblock *out) {
     uint32_t dropped = 0;
-    real zenith = K(ctx->frame->sky);
     for (int l = 0; l < BLOCK; l += LANES) {
+        v3 way = V3(rload(rays->d[0] + l), rload(rays->d[1] + l), rload(rays->d[2] + l));
         surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
-        v3 d = V3(rload(rays->d[0] + l), rload(rays->d[1] + l), rload(rays->d[2] + l));
-        d = mul3(d, K(1e-7f));
-        real p = sky_density(s, d);
-        mask some = p > K(0.0f);
-        v3 f = mul3(tint3(reflect(s, d), sky_radiance(d, zenith)),
-                    sel(some, rload(share + l) / sel(some, p, K(1.0f)), K(0.0f)));
-        dropped |= add_colour(out, l, f, lanes);
+        dropped |= add_colour(out, l, sky_shade(ctx, s, way, rload(share + l)), lanes);
     }
     return dropped;
 }
 
 static void sky_background(const struct core_context *ctx, uint32_t lanes, int x, int y, cblock *out) {
-    camera cam = camera_of(ctx->frame->camera);
-    real zenith = K(ctx->frame->sky);
-    for (int l = 0; l < BLOCK; l += LANES) {
-        v3 d = camera_direction(cam, to_real(lane_x(x, l)) + K(ctx->frame->camera.jitter[0]),
-                                to_real(lane_y(y, l)) + K(ctx->frame->camera.jitter[1]));
-        d = mul3(d, K(1.0f) / sqrt_(dot3(d, d)));
-        add_colour(out, l, sky_backdrop(d, zenith), lanes);
-    }
+    for (int l = 0; l < BLOCK; l += LANES)
+        add_colour(out, l, sky_behind(ctx, lane_x(x, l), lane_y(y, l)), lanes);
 }
 
 #include "backend/cpu/reuse_tmpl.h"
@@ -125,8 +109,8 @@ const kernels KERNELS = {
     .reuse_end = combine_end,
     .shade = shade,
     .reference = reference,
-    .reference_place = reference_place,
+    .reference_place = reference_places,
     .sky_rays = sky_rays,
-    .sky_shade = sky_shade,
+    .sky_shade = sky_light,
     .sky_background = sky_background,
 };

@@ -1,8 +1,8 @@
 /* One pass over one tile: kernels and rays in turn, block by block. */
 #include "backend/cpu/cpu.h"
 
-#include "core/camera.h"
-#include "core/random.h"
+#include "backend/cpu/lanes_tmpl.h"
+#include "core/shading.h"
 
 static size_t block_at(const frame_buffers *b, int bx, int by) { return (size_t)by * b->blocks_x + bx; }
 
@@ -23,10 +23,10 @@ segment_block *noc_cpu_gather(const stage_run *run, worker *w, size_t at, uint32
 }
 
 void noc_cpu_gather_segments(const stage_run *run, worker *w, size_t at, uint32_t valid, const gblock *g,
-                             const uint32_t *light, const float *u, const float *v) {
+                             const uint32_t *id, const float *u, const float *v) {
     segment_block *s = noc_cpu_gather(run, w, at, valid);
-    memcpy(s->light, light, sizeof(s->light));
-    run->k->segments(&run->ctx, g, light, u, v, &s->rays);
+    memcpy(s->light, id, sizeof(s->light));
+    run->k->segments(&run->ctx, g, id, u, v, &s->rays);
 }
 
 static void primary_block(stage_run *run, worker *w, int bx, int by) {
@@ -298,17 +298,6 @@ static void shade_all(stage_run *run, worker *w, tile t) {
     }
 }
 
-#define SKY_RAYS 4 /* of a pixel that nothing but the sky lights */
-
-/* A ray to the sky for each lane, SKY_RAYS where this frame's lights brought less than the sky may: there its noise is
- * all the noise there is, and no time went into shadow rays. It is settled before any of them is traced, so it adds no
- * bias. */
-static void sky_turns(const stage_run *run, const cblock *c, uint8_t turns[BLOCK]) {
-    float zenith = run->ctx.frame->sky;
-    for (int l = 0; l < BLOCK; l++)
-        turns[l] = 0.2126f * c->rgb[0][l] + 0.7152f * c->rgb[1][l] + 0.0722f * c->rgb[2][l] < zenith ? SKY_RAYS : 1;
-}
-
 static void sky(stage_run *run, worker *w, tile t) {
     frame_buffers *b = &run->s->b;
     const noc_frame *f = run->frame;
@@ -321,7 +310,10 @@ static void sky(stage_run *run, worker *w, tile t) {
         size_t at = blocks[i].at;
         uint32_t background =
             lanes_inside(b, blocks[i].x / BLOCK_SIDE, blocks[i].y / BLOCK_SIDE) & ~lanes_with_surface(&g[at]);
-        sky_turns(run, &b->colour[at], turns[i]);
+        for (int l = 0; l < BLOCK; l++) {
+            const cblock *c = &b->colour[at];
+            turns[i][l] = (uint8_t)sky_turns(&run->ctx, V3(c->rgb[0][l], c->rgb[1][l], c->rgb[2][l]));
+        }
         if (background)
             run->k->sky_background(&run->ctx, background, blocks[i].x, blocks[i].y, &b->colour[at]);
     }

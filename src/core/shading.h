@@ -1,0 +1,66 @@
+/* core/shading.h: what a pixel's colour is made of: the emitter that it sees, its samples' light, the sky's light, and
+ * the sky behind everything. Includers supply FRAME: core/frame.h. */
+#ifndef CORE_SHADING_H
+#define CORE_SHADING_H
+
+#include "core/camera.h"
+#include "core/reservoir.h"
+#include "core/shadow.h"
+#include "core/sky.h"
+
+#define SKY_RAYS 4     /* of a pixel that nothing but the sky lights */
+#define SKY_REACH 1e7f /* m: further than any scene */
+#define SKY_REACH_BACK 1e-7f
+
+/* May it be added to a picture? False for NaN. */
+FN mask colour_finite(v3 c) { return abs_(c.x) + abs_(c.y) + abs_(c.z) < K(1e30f); }
+
+/* The light of a reservoir's sample, unshadowed. l: its light. */
+FN v3 sample_shade(surf s, resv r, light l) { return mul3(reflected(s, sample_light(l, s.p, r.u, r.v)), r.w); }
+
+/* How many rays go to the sky: SKY_RAYS where this frame's lights brought less than the sky may, c: there its noise is
+ * all the noise there is, and no time went into shadow rays. It is settled before any of them is traced, so it adds no
+ * bias. */
+FN u32 sky_turns(CTX v3 c) { return selu(luminance(c) < K(FRAME.sky), KU(U32(SKY_RAYS)), KU(1u)); }
+
+/* A ray that leaves the scene, from place `number` of the pixel's sequence. key: of the pixel, frame 0. least: as in
+ * shadow_segment. */
+FN segment sky_ray(surf s, u32 key, u32 number, real least) {
+    v3 at = sky_numbers(key, number);
+    mask on = dot3(s.n, s.n) > K(0.5f);
+    s.n = sel3(on, s.n, V3(K(0.0f), K(0.0f), K(1.0f)));
+    segment r;
+    r.o = add3(s.p, mul3(s.n, stand_off(max_abs3(s.p), least)));
+    v3 d = sky_direction(s, at.x, at.y);
+    EXACT real dx = d.x * K(SKY_REACH);
+    EXACT real dy = d.y * K(SKY_REACH);
+    EXACT real dz = d.z * K(SKY_REACH);
+    r.d = V3(dx, dy, dz);
+    return r;
+}
+
+/* What such a ray brings where it is free, of `share` of the pixel's rays. */
+FN v3 sky_shade(CTX surf s, v3 way, real share) {
+    EXACT real dx = way.x * K(SKY_REACH_BACK);
+    EXACT real dy = way.y * K(SKY_REACH_BACK);
+    EXACT real dz = way.z * K(SKY_REACH_BACK);
+    v3 d = V3(dx, dy, dz);
+    real p = sky_density(s, d);
+    mask some = p > K(0.0f);
+    v3 f = reflect(s, d);
+    v3 sky = sky_radiance(d, K(FRAME.sky));
+    EXACT real w = sel(some, share / sel(some, p, K(1.0f)), K(0.0f));
+    EXACT real x = f.x * sky.x * w;
+    EXACT real y = f.y * sky.y * w;
+    EXACT real z = f.z * sky.z * w;
+    return V3(x, y, z);
+}
+
+/* The sky behind pixel (x, y). */
+FN v3 sky_behind(CTX u32 x, u32 y) {
+    v3 d = camera_direction(camera_of(FRAME.camera), to_real(x) + K(FRAME.camera.jitter[0]),
+                            to_real(y) + K(FRAME.camera.jitter[1]));
+    return sky_backdrop(mul3(d, K(1.0f) / sqrt_(dot3(d, d))), K(FRAME.sky));
+}
+
+#endif
