@@ -17,8 +17,8 @@
 enum { TILE = TILE_BLOCKS * TILE_BLOCKS, TILE_RAYS = TILE * BLOCK };
 
 typedef struct ray_set {
-    segment_block *blocks; /* TILE a tile */
-    uint32_t *first;       /* answers of the first form */
+    shadow_block *blocks; /* TILE a tile */
+    uint32_t *first;      /* answers of the first form */
     size_t tiles, count;
 } ray_set;
 
@@ -44,7 +44,7 @@ static const form forms[] = {
 };
 enum { FORMS = sizeof(forms) / sizeof(forms[0]) };
 
-static struct RTCRay ray_of(const segment_block *own, uint16_t at) {
+static struct RTCRay ray_of(const shadow_block *own, uint16_t at) {
     const rayblock *b = &own[at / BLOCK].rays;
     int l = at % BLOCK;
     return (struct RTCRay){ .org_x = b->o[0][l],
@@ -63,7 +63,7 @@ static int by_key(const void *a, const void *b) {
 }
 
 /* The tile's rays in an order, gaps being UINT16_MAX; returns how many. */
-static int arrange(const segment_block *own, arrangement how, uint16_t *out) {
+static int arrange(const shadow_block *own, arrangement how, uint16_t *out) {
     uint64_t keys[TILE_RAYS];
     int n = 0;
     for (uint16_t i = 0; i < TILE_RAYS; i++) {
@@ -83,11 +83,11 @@ static int arrange(const segment_block *own, arrangement how, uint16_t *out) {
     return n;
 }
 
-static void answer(segment_block *own, uint16_t at, bool clear) {
-    own[at / BLOCK].clear |= (uint32_t)clear << at % BLOCK;
+static void answer(shadow_block *own, uint16_t at, bool clear) {
+    own[at / BLOCK].unoccluded |= (uint32_t)clear << at % BLOCK;
 }
 
-static void trace_packets(RTCScene scene, segment_block *own, const uint16_t *at, int n) {
+static void trace_packets(RTCScene scene, shadow_block *own, const uint16_t *at, int n) {
     for (int first = 0; first < n; first += BLOCK) {
         ALIGNED int valid[BLOCK];
         ALIGNED struct RTCRay16 p = { 0 };
@@ -109,7 +109,7 @@ static void trace_packets(RTCScene scene, segment_block *own, const uint16_t *at
     }
 }
 
-static void trace_rays(RTCScene scene, segment_block *own, const uint16_t *at, int n, bool stream) {
+static void trace_rays(RTCScene scene, shadow_block *own, const uint16_t *at, int n, bool stream) {
     struct RTCRay r[TILE_RAYS];
     for (int i = 0; i < n; i++)
         r[i] = ray_of(own, at[i]);
@@ -137,9 +137,9 @@ static double trace(RTCScene scene, const ray_set *set, const form *f, int round
     for (int round = 0; round < rounds; round++) {
         double start = noc_cpu_seconds();
         for (size_t t = 0; t < set->tiles; t++) {
-            segment_block *own = set->blocks + t * TILE;
+            shadow_block *own = set->blocks + t * TILE;
             for (int i = 0; i < TILE; i++)
-                own[i].clear = 0;
+                own[i].unoccluded = 0;
             if (f->call == BUILT)
                 noc_embree_trace_many(scene, own, TILE);
             else if (f->call == ONE || f->call == STREAM)
@@ -160,9 +160,9 @@ static void measure(RTCScene scene, ray_set *set, const form *f, int rounds, boo
     uint64_t clear = 0;
     for (size_t i = 0; i < set->tiles * TILE; i++) {
         if (first)
-            set->first[i] = set->blocks[i].clear;
-        differ += __builtin_popcount(set->blocks[i].clear ^ set->first[i]);
-        clear += (uint64_t)__builtin_popcount(set->blocks[i].clear);
+            set->first[i] = set->blocks[i].unoccluded;
+        differ += __builtin_popcount(set->blocks[i].unoccluded ^ set->first[i]);
+        clear += (uint64_t)__builtin_popcount(set->blocks[i].unoccluded);
     }
     printf("  %-24s %6.2f M/s   free %4.1f%%   differ %d\n", f->name, 1e-6 * (double)set->count / seconds,
            100.0 * (double)clear / (double)NOC_MAX(set->count, (size_t)1), differ);
@@ -196,7 +196,7 @@ static void collect(const cpu_view *s, const struct core_context *ctx, int shift
             size_t at = (size_t)by * b->blocks_x + bx, t = (size_t)(by / TILE_BLOCKS) * b->tiles_x + bx / TILE_BLOCKS;
             const gblock *g = &b->g[0][at + shift];
             const rblock *r = &b->r[0][at];
-            segment_block *out = &set->blocks[t * TILE + by % TILE_BLOCKS * TILE_BLOCKS + bx % TILE_BLOCKS];
+            shadow_block *out = &set->blocks[t * TILE + by % TILE_BLOCKS * TILE_BLOCKS + bx % TILE_BLOCKS];
             s->kernels->segments(ctx, g, r->light, r->u, r->v, &out->rays);
             memcpy(out->light, r->light, sizeof(out->light));
             out->valid = lanes_with_surface(g);

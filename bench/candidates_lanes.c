@@ -72,8 +72,8 @@ static inline __attribute__((always_inline)) uint64_t run(const candidates_job *
         u32 lane;
         memcpy(&lane, pixel, sizeof(lane));
         u32 key = rng_key(KU(1u), lane, KU(0u));
-        resv r = layout == LAYOUT_AHEAD ? ris_uniform_ahead(&ctx, job->records, s, key, KU(job->lights), job->m)
-                                        : ris_uniform(&ctx, s, key, KU(job->lights), job->m);
+        reservoir r = layout == LAYOUT_AHEAD ? ris_uniform_ahead(&ctx, job->records, s, key, KU(job->lights), job->m)
+                                             : ris_uniform(&ctx, s, key, KU(job->lights), job->m);
         uint32_t id[LANES], w[LANES];
         memcpy(id, &r.light, sizeof(id));
         memcpy(w, &r.w, sizeof(w));

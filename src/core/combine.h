@@ -21,7 +21,7 @@
 
 /* What survives. own: it is the pixel's own sample, so what was known of its visibility still holds. */
 struct combined {
-    resv r;
+    reservoir r;
     mask own;
 };
 
@@ -29,7 +29,7 @@ struct combined {
 typedef struct combined combined;
 #endif
 FN mask neighbour_on(CTX int i);
-FN resv neighbour_resv(CTX int i);
+FN reservoir neighbour_resv(CTX int i);
 FN surf neighbour_surf(CTX int i);
 FN real neighbour_answer(CTX int i);
 
@@ -38,7 +38,7 @@ FN real reuse_choice(u32 key, u32 dim, int i) { return rng(key, dim + KU(3u * U3
 FN real reuse_own_choice(u32 key, u32 dim) { return rng(key, dim + KU(3u * U32(MAX_NEIGHBOURS))); }
 
 /* Neighbour i's target at the pixel. */
-FN real reuse_offered(CTX surf s, resv q) {
+FN real reuse_offered(CTX surf s, reservoir q) {
     mask has = q.w > K(0.0f);
     real p = K(0.0f);
     if (ANY(has))
@@ -48,9 +48,9 @@ FN real reuse_offered(CTX surf s, resv q) {
 
 /* The sample that neighbours are asked about: pairwise the pixel's own, else one that is chosen among all by 1/M. The
  * tag is 0 for the pixel's own, i + 1 for neighbour i's. */
-FN stream reuse_begin(CTX surf s, resv own, u32 key, u32 dim, int k) {
+FN reservoir_builder reuse_begin(CTX surf s, reservoir own, u32 key, u32 dim, int k) {
     if (FRAME.bias == BIAS_PAIRWISE) {
-        stream held = stream_empty();
+        reservoir_builder held = builder_empty();
         held.light = own.light;
         held.u = own.u;
         held.v = own.v;
@@ -60,19 +60,19 @@ FN stream reuse_begin(CTX surf s, resv own, u32 key, u32 dim, int k) {
         return held;
     }
     EXACT real w_own = own.m * own.p * own.w;
-    stream st = stream_add(stream_empty(), own.light, own.u, own.v, own.p, w_own, own.m, K(0.0f), K(0.0f));
+    reservoir_builder st = builder_add(builder_empty(), own.light, own.u, own.v, own.p, w_own, own.m, K(0.0f), K(0.0f));
     for (int i = 0; i < k; i++) {
-        resv q = neighbour_resv(PASS i);
+        reservoir q = neighbour_resv(PASS i);
         real p = reuse_offered(PASS s, q);
         EXACT real w = q.m * p * q.w;
-        st = stream_add(st, q.light, q.u, q.v, p, w, q.m, K(F32(i + 1)), reuse_choice(key, dim, i));
+        st = builder_add(st, q.light, q.u, q.v, p, w, q.m, K(F32(i + 1)), reuse_choice(key, dim, i));
     }
     return st;
 }
 
 /* Target of the sample held at neighbour i, unshadowed. l: its light as it was when the neighbour's reservoir was made.
  */
-FN real reuse_target(CTX int i, stream held, light l) {
+FN real reuse_target(CTX int i, reservoir_builder held, light l) {
     mask on = neighbour_on(PASS i);
     real p = K(0.0f);
     if (ANY(on))
@@ -82,38 +82,38 @@ FN real reuse_target(CTX int i, stream held, light l) {
 
 /* Is a ray from neighbour i to the sample held wanted? The neighbour that a sample came from sees it. p: reuse_target.
  */
-FN mask reuse_asks(stream held, int i, real p) {
+FN mask reuse_asks(reservoir_builder held, int i, real p) {
     return and_(held.w_sum > K(0.0f), and_(held.tag != K(F32(i + 1)), p > K(0.0f)));
 }
 
 /* What the answer makes of the target. */
 FN real reuse_answer(real p, mask asked, mask clear) { return sel(and_(asked, not_(clear)), K(0.0f), p); }
 
-FN combined reuse_pairwise(CTX surf s, resv own, u32 key, u32 dim, int k) {
+FN combined reuse_pairwise(CTX surf s, reservoir own, u32 key, u32 dim, int k) {
     real m_n = K(0.0f);
     for (int i = 0; i < k; i++)
         m_n = m_n + neighbour_resv(PASS i).m;
     real inv = mis_scale(K(1.0f), m_n);
     real m_c = sel(m_n > K(0.0f), K(0.0f), K(1.0f));
-    stream st = stream_empty();
+    reservoir_builder st = builder_empty();
     for (int i = 0; i < k; i++) {
-        resv q = neighbour_resv(PASS i);
+        reservoir q = neighbour_resv(PASS i);
         EXACT real share = q.m * inv;
         m_c = m_c + pair_canonical(share, m_n, neighbour_answer(PASS i), own.m, own.p);
         real p = reuse_offered(PASS s, q);
         real w = sel(q.w > K(0.0f), pair_weight(share, m_n, q.p, own.m, p, q.w), K(0.0f));
-        st = stream_add(st, q.light, q.u, q.v, p, w, q.m, K(F32(i + 1)), reuse_choice(key, dim, i));
+        st = builder_add(st, q.light, q.u, q.v, p, w, q.m, K(F32(i + 1)), reuse_choice(key, dim, i));
     }
-    st =
-        stream_add(st, own.light, own.u, own.v, own.p, m_c * own.p * own.w, own.m, K(0.0f), reuse_own_choice(key, dim));
+    st = builder_add(st, own.light, own.u, own.v, own.p, m_c * own.p * own.w, own.m, K(0.0f),
+                     reuse_own_choice(key, dim));
     combined c;
-    c.r = stream_end(st, K(1.0f));
+    c.r = builder_end(st, K(1.0f));
     c.own = st.tag == K(0.0f);
     return c;
 }
 
 /* The balance rule's, or by 1/M. */
-FN combined reuse_weighed(CTX resv own, stream held, int k) {
+FN combined reuse_weighed(CTX reservoir own, reservoir_builder held, int k) {
     real source = K(1.0f);
     real all = held.m;
     if (FRAME.bias == BIAS_MIS) {
@@ -128,22 +128,22 @@ FN combined reuse_weighed(CTX resv own, stream held, int k) {
         }
     }
     combined c;
-    c.r = stream_end(held, mis_scale(source, all));
+    c.r = builder_end(held, mis_scale(source, all));
     c.own = held.tag == K(0.0f);
     return c;
 }
 
-FN combined reuse_end(CTX surf s, resv own, stream held, u32 key, u32 dim, int k) {
+FN combined reuse_end(CTX surf s, reservoir own, reservoir_builder held, u32 key, u32 dim, int k) {
     if (FRAME.bias == BIAS_PAIRWISE)
         return reuse_pairwise(PASS s, own, key, dim, k);
     return reuse_weighed(PASS own, held, k);
 }
 
 /* Is a ray wanted that tells whether the sample is seen from its own pixel? visible: it is known to be. */
-FN mask resolve_asks(resv r, mask visible) { return and_(r.w > K(0.0f), not_(visible)); }
+FN mask resolve_asks(reservoir r, mask visible) { return and_(r.w > K(0.0f), not_(visible)); }
 
 /* No sample is left where it is blocked. */
-FN resv resv_blocked(resv r, mask blocked) {
+FN reservoir reservoir_blocked(reservoir r, mask blocked) {
     r.w = sel(blocked, K(0.0f), r.w);
     return r;
 }

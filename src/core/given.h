@@ -10,8 +10,8 @@ FN pick pick_load(CTX int i);
 
 /* W = (1/m) sum(p_hat / pmf) / p_hat(chosen); draws that picked nothing count in m. Places and choices are those of
  * ris_uniform. */
-FN resv ris_given(CTX surf s, u32 key, int m) {
-    stream st = stream_empty();
+FN reservoir ris_given(CTX surf s, u32 key, int m) {
+    reservoir_builder st = builder_empty();
     for (int i = 0; i < m; i++) {
         u32 dim = KU(DIM_CANDIDATE + 3u * U32(i));
         u32 place = rng_bits(key, dim + KU(1u));
@@ -20,9 +20,9 @@ FN resv ris_given(CTX surf s, u32 key, int m) {
         pick c = pick_load(PASS i);
         real p = target(s, light_load(PASS c.light), u, v);
         EXACT real w = p * c.inverse;
-        st = stream_add(st, c.light, u, v, p, w, K(1.0f), K(0.0f), rng(key, dim + KU(2u)));
+        st = builder_add(st, c.light, u, v, p, w, K(1.0f), K(0.0f), rng(key, dim + KU(2u)));
     }
-    return stream_end(st, K(1.0f) / K(F32(m)));
+    return builder_end(st, K(1.0f) / K(F32(m)));
 }
 
 #endif

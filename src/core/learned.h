@@ -7,7 +7,7 @@
 
 #define LEARNED_UNKNOWN 0.5f /* the visibility of a light that nothing is known of */
 #define LEARNED_PIXELS 32.0f /* side of a cell, in pixels of the picture, about */
-#define LEARNED_WORTH 2.0f   /* asking of so many lights is what is believed beforehand worth */
+#define LEARNED_WORTH 2.0f   /* the prior counts as the rays of so many lights */
 
 /* How strongly rays are drawn to a light: the root of its expected square, and something for those thought to be
  * hidden. */
@@ -20,19 +20,19 @@ FN1 f1 learned_visibility(f1 asked, f1 seen, f1 all) {
     return v;
 }
 
-/* What is believed of an entry of a list: how strongly rays are drawn to it, and what of its light is expected to
+/* The prior of an entry of a list: how strongly rays are drawn to it, and what of its light is expected to
  * arrive. */
-struct list_belief {
+struct list_prior {
     f1 share;  /* weight * pull */
     f1 expect; /* weight * visibility */
 };
 
 #ifndef CORE_GLSL
-typedef struct list_belief list_belief;
+typedef struct list_prior list_prior;
 #endif
 
-FN1 list_belief list_believe(f1 weight, f1 visibility) {
-    list_belief b;
+FN1 list_prior list_prior_of(f1 weight, f1 visibility) {
+    list_prior b;
     EXACT f1 share = weight * learned_pull(visibility);
     EXACT f1 expect = weight * visibility;
     b.share = share;

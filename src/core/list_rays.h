@@ -1,6 +1,6 @@
 /* core/list_rays.h: several shadow rays a pixel over its tile's list. Asking: a pixel weighs all entries, and shares
  * its rays out over them systematically; using: what the rays found becomes light, or one sample that stands for all.
- * How many rays, and which entries, is steered by what is believed of the lights' visibility (core/learned.h). No mean
+ * How many rays, and which entries, is steered by what is expected of the lights' visibility (core/learned.h). No mean
  * depends on that, as long as it was settled before any of these rays.
  *
  * Includers supply the bridge below: what one pixel (in C, LANES pixels) knows of each entry and of each of its rays.
@@ -38,8 +38,8 @@ typedef struct list_ray list_ray;
 typedef struct list_kept list_kept;
 #endif
 
-FN list_belief belief_load(CTX u1 i); /* of entry i, for the surfaces at hand */
-FN real belief_share(CTX u32 i);      /* each lane its own entry's */
+FN list_prior prior_load(CTX u1 i); /* of entry i, for the surfaces at hand */
+FN real prior_share(CTX u32 i);     /* each lane its own entry's */
 FN u32 entry_light(CTX u32 i);
 FN real entry_weight(CTX u32 i);
 FN void weighed_store(CTX u1 i, real weighed); /* target * share of entry i */
@@ -59,7 +59,7 @@ FN list_sums list_weigh(CTX surf s, mask on, u32 key, u1 count) {
     u32 shift_u = rng_bits(key, KU(DIM_LIST_PLACE));
     u32 shift_v = rng_bits(key, KU(DIM_LIST_PLACE + 1u));
     for (u1 i = 0u; i < count; i++) {
-        list_belief b = belief_load(PASS i);
+        list_prior b = prior_load(PASS i);
         real p = target(s, light_splat(PASS entry_load(PASS i).light), list_u(shift_u, KU(i)), list_v(shift_v, KU(i)));
         p = sel(on, p, K(0.0f));
         EXACT real w = p * K(b.share);
@@ -128,7 +128,7 @@ FN u32 list_share_out(CTX list_sums sums, u1 count, real n, real start) {
 FN list_ray list_ask(CTX list_sums sums, real n, u32 key, u32 entry, real times) {
     list_ray r;
     real weighed = weighed_at(PASS entry);
-    EXACT real p = weighed / belief_share(PASS entry);
+    EXACT real p = weighed / prior_share(PASS entry);
     EXACT real w = times * sums.all / (n * weighed) * entry_weight(PASS entry);
     r.light = entry_light(PASS entry);
     r.u = list_u(rng_bits(key, KU(DIM_LIST_PLACE)), entry);

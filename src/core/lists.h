@@ -17,8 +17,8 @@ FN real list_u(u32 shift, u32 i) { return unit_real(shift + KU(3242174889u) * i)
 FN real list_v(u32 shift, u32 i) { return unit_real(shift + KU(2447445414u) * i); }
 
 /* One sample of all the entries: chosen in proportion to weight * p_hat, so W = sum(weight * p_hat) / p_hat(chosen). */
-FN resv ris_list(CTX surf s, u32 key, u1 count) {
-    stream st = stream_empty();
+FN reservoir ris_list(CTX surf s, u32 key, u1 count) {
+    reservoir_builder st = builder_empty();
     u32 shift_u = rng_bits(key, KU(DIM_LIST_PLACE));
     u32 shift_v = rng_bits(key, KU(DIM_LIST_PLACE + 1u));
     for (u1 i = 0u; i < count; i++) {
@@ -26,9 +26,10 @@ FN resv ris_list(CTX surf s, u32 key, u1 count) {
         real u = list_u(shift_u, KU(i));
         real v = list_v(shift_v, KU(i));
         real p = target(s, light_splat(PASS e.light), u, v);
-        st = stream_add(st, KU(e.light), u, v, p, p * K(e.weight), K(0.0f), K(0.0f), rng(key, KU(DIM_LIST_CHOICE + i)));
+        st =
+            builder_add(st, KU(e.light), u, v, p, p * K(e.weight), K(0.0f), K(0.0f), rng(key, KU(DIM_LIST_CHOICE + i)));
     }
-    return stream_end(st, K(1.0f));
+    return builder_end(st, K(1.0f));
 }
 
 #endif

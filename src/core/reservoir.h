@@ -7,7 +7,7 @@
 #include "core/surface.h"
 
 /* What survives a pass: a sample, its unbiased contribution weight W, and how many candidates stand behind it. */
-struct resv {
+struct reservoir {
     u32 light;
     real u;
     real v;
@@ -17,7 +17,7 @@ struct resv {
 };
 
 /* A reservoir being filled. */
-struct stream {
+struct reservoir_builder {
     u32 light;
     real u;
     real v;
@@ -28,13 +28,13 @@ struct stream {
 };
 
 #ifndef CORE_GLSL
-typedef struct resv resv;
-typedef struct stream stream;
+typedef struct reservoir reservoir;
+typedef struct reservoir_builder reservoir_builder;
 FN light light_load(CTX u32 i); /* static inline where it is defined, so that wide code pays for what it uses only */
 #endif
 
-FN stream stream_empty(void) {
-    stream s;
+FN reservoir_builder builder_empty(void) {
+    reservoir_builder s;
     s.light = KU(0u);
     s.u = K(0.5f);
     s.v = K(0.5f);
@@ -45,8 +45,8 @@ FN stream stream_empty(void) {
     return s;
 }
 
-FN resv resv_empty(void) {
-    resv r;
+FN reservoir reservoir_empty(void) {
+    reservoir r;
     r.light = KU(0u);
     r.u = K(0.5f);
     r.v = K(0.5f);
@@ -57,7 +57,8 @@ FN resv resv_empty(void) {
 }
 
 /* Offers a sample of resampling weight w >= 0 that stands for m candidates; xi in [0, 1). */
-FN stream stream_add(stream s, u32 id, real u, real v, real p, real w, real m, real tag, real xi) {
+FN reservoir_builder builder_add(reservoir_builder s, u32 id, real u, real v, real p, real w, real m, real tag,
+                                 real xi) {
     EXACT real sum = s.w_sum + w;
     mask take = xi * sum < w;
     s.w_sum = sum;
@@ -71,8 +72,8 @@ FN stream stream_add(stream s, u32 id, real u, real v, real p, real w, real m, r
 }
 
 /* W = scale * w_sum / p_hat. */
-FN resv stream_end(stream s, real scale) {
-    resv r;
+FN reservoir builder_end(reservoir_builder s, real scale) {
+    reservoir r;
     r.light = s.light;
     r.u = s.u;
     r.v = s.v;
@@ -90,22 +91,22 @@ FN u32 candidate_light(u32 key, u32 count, int i) {
 }
 
 /* Offers candidate i, a light that was picked uniformly. */
-FN stream stream_candidate(CTX stream st, surf s, u32 key, u32 id, int i) {
+FN reservoir_builder builder_candidate(CTX reservoir_builder st, surf s, u32 key, u32 id, int i) {
     u32 dim = KU(DIM_CANDIDATE + 3u * U32(i));
     u32 place = rng_bits(key, dim + KU(1u));
     real u = unit_low(place);
     real v = unit_high(place);
     real p = target(s, light_load(PASS id), u, v);
-    return stream_add(st, id, u, v, p, p, K(1.0f), K(0.0f), rng(key, dim + KU(2u)));
+    return builder_add(st, id, u, v, p, p, K(1.0f), K(0.0f), rng(key, dim + KU(2u)));
 }
 
 /* Streaming RIS over `count` lights picked uniformly, m candidates: W = (1/m) sum(p_hat / pmf) / p_hat(chosen), pmf =
  * 1/count over (light) times 1 over the unit square. count > 0. */
-FN resv ris_uniform(CTX surf s, u32 key, u32 count, int m) {
-    stream st = stream_empty();
+FN reservoir ris_uniform(CTX surf s, u32 key, u32 count, int m) {
+    reservoir_builder st = builder_empty();
     for (int i = 0; i < m; i++)
-        st = stream_candidate(PASS st, s, key, candidate_light(key, count, i), i);
-    return stream_end(st, to_real(count) / K(F32(m)));
+        st = builder_candidate(PASS st, s, key, candidate_light(key, count, i), i);
+    return builder_end(st, to_real(count) / K(F32(m)));
 }
 
 #endif

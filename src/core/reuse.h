@@ -38,7 +38,7 @@ FN real pair_canonical(real share, real m_n, real p_i_of_c, real m_c, real p_q_o
 }
 
 /* Cap of M for history. */
-FN resv resv_cap(resv r, real m_max) {
+FN reservoir reservoir_cap(reservoir r, real m_max) {
     r.m = min_(r.m, m_max);
     return r;
 }

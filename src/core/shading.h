@@ -16,7 +16,7 @@
 FN mask colour_finite(v3 c) { return abs_(c.x) + abs_(c.y) + abs_(c.z) < K(1e30f); }
 
 /* The light of a reservoir's sample, unshadowed. l: its light. */
-FN v3 sample_shade(surf s, resv r, light l) { return mul3(reflected(s, sample_light(l, s.p, r.u, r.v)), r.w); }
+FN v3 sample_shade(surf s, reservoir r, light l) { return mul3(reflected(s, sample_light(l, s.p, r.u, r.v)), r.w); }
 
 /* How many rays go to the sky: SKY_RAYS where this frame's lights brought less than the sky may, c: there its noise is
  * all the noise there is, and no time went into shadow rays. It is settled before any of them is traced, so it adds no
@@ -30,7 +30,7 @@ FN segment sky_ray(surf s, u32 key, u32 number, real least) {
     mask on = dot3(s.n, s.n) > K(0.5f);
     s.n = sel3(on, s.n, V3(K(0.0f), K(0.0f), K(1.0f)));
     segment r;
-    r.o = add3(s.p, mul3(s.n, stand_off(max_abs3(s.p), least)));
+    r.o = add3(s.p, mul3(s.n, ray_offset(max_abs3(s.p), least)));
     v3 d = sky_direction(s, at.x, at.y);
     EXACT real dx = d.x * K(SKY_REACH);
     EXACT real dy = d.y * K(SKY_REACH);

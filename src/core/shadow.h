@@ -27,7 +27,7 @@ FN real max_abs3(v3 a) { return max_(abs_(a.x), max_(abs_(a.y), abs_(a.z))); }
 #define LIGHT_SPHERE_BEYOND 0.0816f /* its square less 1; readers need not fold constants alike */
 
 /* How far to stand off a surface where coordinates are as large as that, m. */
-FN real stand_off(real largest, real least) { return max_(least, largest * K(4.76837158203125e-7f)); }
+FN real ray_offset(real largest, real least) { return max_(least, largest * K(4.76837158203125e-7f)); }
 
 /* n: unit normal of the receiving surface at p, on the side that is lit. */
 FN segment shadow_segment(v3 p, v3 n, light l, real u, real v, real least) {
@@ -39,7 +39,7 @@ FN segment shadow_segment(v3 p, v3 n, light l, real u, real v, real least) {
     real m2 = dot3(m, m);
     real side = sel(dot3(m, s.wi) > K(0.0f), K(-1.0f), K(1.0f));
     real inv = side / sqrt_(max_(m2, K(1e-30f)));
-    real eps = stand_off(max_(max_abs3(p), max_abs3(x)), least);
+    real eps = ray_offset(max_(max_abs3(p), max_abs3(x)), least);
     v3 end = add3(x, mul3(m, inv * eps));
     mask bodiless = or_(point, round);
     if (ANY(bodiless)) { /* back along the ray: to the ball around the shape */

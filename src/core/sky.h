@@ -48,7 +48,7 @@ FN v3 sky_numbers(u32 key, u32 frame) {
 /* The share of directions that are drawn for the lobe: what it reflects of all, by Fresnel's term as it is seen. */
 FN real sky_gloss_share(surf s) {
     real nv = min_(max_(dot3(s.n, s.wo), K(0.0f)), K(1.0f));
-    EXACT real f = s.f0 + (K(1.0f) - s.f0) * fifth(nv);
+    EXACT real f = s.f0 + (K(1.0f) - s.f0) * schlick_weight(nv);
     EXACT real all = f + (K(1.0f) - f) * luminance(s.albedo);
     EXACT real q = f / max_(all, K(1e-6f));
     return sel(s.f0 > K(0.0f), min_(q, K(0.9f)), K(0.0f));

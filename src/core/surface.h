@@ -22,7 +22,7 @@ typedef struct surf surf;
 #endif
 
 /* (1 - x)^5. */
-FN real fifth(real x) {
+FN real schlick_weight(real x) {
     real c = K(1.0f) - x;
     EXACT real c2 = c * c;
     EXACT real f = c2 * c2 * c;
@@ -44,7 +44,7 @@ FN real glossy(surf s, v3 wi, real nl) {
     EXACT real d = a2 / max_(K(CORE_PI) * q * q, K(1e-20f));
     EXACT real gl = nl * sqrt_(a2 + nv * nv * (K(1.0f) - a2));
     EXACT real gv = nv * sqrt_(a2 + nl * nl * (K(1.0f) - a2));
-    EXACT real fr = s.f0 + (K(1.0f) - s.f0) * fifth(vh);
+    EXACT real fr = s.f0 + (K(1.0f) - s.f0) * schlick_weight(vh);
     EXACT real f = d * fr * K(0.5f) / max_(gl + gv, K(1e-10f));
     return f;
 }

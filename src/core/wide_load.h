@@ -118,8 +118,8 @@ FN void light_prefetch(const float *records, u32 index) {
 /* ris_uniform, to the bit, where memory is slower than arithmetic: lights are asked for RIS_AHEAD to 2 RIS_AHEAD
  * candidates before they are looked at. records: what light_load reads. */
 #define RIS_AHEAD 8
-FN resv ris_uniform_ahead(CTX const float *records, surf s, u32 key, u32 count, int m) {
-    stream st = stream_empty();
+FN reservoir ris_uniform_ahead(CTX const float *records, surf s, u32 key, u32 count, int m) {
+    reservoir_builder st = builder_empty();
     u32 ids[2][RIS_AHEAD]; /* this batch and the next one */
     for (int i = 0; i < m + RIS_AHEAD; i += RIS_AHEAD) {
         for (int j = i; j < i + RIS_AHEAD && j < m; j++) {
@@ -128,9 +128,9 @@ FN resv ris_uniform_ahead(CTX const float *records, surf s, u32 key, u32 count, 
             ids[j / RIS_AHEAD & 1][j % RIS_AHEAD] = id;
         }
         for (int j = i - RIS_AHEAD; j >= 0 && j < i && j < m; j++)
-            st = stream_candidate(PASS st, s, key, ids[j / RIS_AHEAD & 1][j % RIS_AHEAD], j);
+            st = builder_candidate(PASS st, s, key, ids[j / RIS_AHEAD & 1][j % RIS_AHEAD], j);
     }
-    return stream_end(st, to_real(count) / K(F32(m)));
+    return builder_end(st, to_real(count) / K(F32(m)));
 }
 
 #endif

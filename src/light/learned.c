@@ -95,7 +95,7 @@ float noc_cell_visibility(const noc_cell *c, uint32_t light) {
     return i < 0 ? all : learned_visibility(c->asked[i], c->seen[i], all);
 }
 
-static void count_sighting(noc_cell *c, const noc_sighting *s) {
+static void count_observation(noc_cell *c, const noc_observation *s) {
     if (c->asked_all > MOST_ALL) {
         c->asked_all /= 2;
         c->seen_all /= 2;
@@ -121,27 +121,27 @@ static void count_sighting(noc_cell *c, const noc_sighting *s) {
 
 struct add_run {
     noc_learned *t;
-    const noc_sightings *tiles;
+    const noc_observations *tiles;
     size_t count;
 };
 
-/* All sightings of one part of the table. */
+/* All observations of one part of the table. */
 static void add_part(void *arg, size_t part, int worker) {
     const struct add_run *run = arg;
     noc_learned *t = run->t;
     (void)worker;
     for (size_t tile = 0; tile < run->count; tile++)
         for (size_t i = 0; i < run->tiles[tile].count; i++) {
-            const noc_sighting *s = run->tiles[tile].data + i;
+            const noc_observation *s = run->tiles[tile].data + i;
             if ((size_t)(run_of(t, s->cell) - t->cells) / (t->count / PARTS) != part)
                 continue;
             noc_cell *c = claim(t, s->cell);
             c->used = t->time;
-            count_sighting(c, s);
+            count_observation(c, s);
         }
 }
 
-void noc_learned_add(noc_learned *t, noc_pool *pool, const noc_sightings *tiles, size_t count) {
+void noc_learned_add(noc_learned *t, noc_pool *pool, const noc_observations *tiles, size_t count) {
     struct add_run run = { t, tiles, count };
     t->time++;
     noc_pool_run(pool, PARTS, add_part, &run);

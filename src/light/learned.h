@@ -14,7 +14,7 @@ enum { NOC_CELL_WAYS = 4, NOC_CELL_SETS = 16, NOC_CELL_LIGHTS = NOC_CELL_WAYS * 
 
 typedef struct noc_cell {
     uint64_t key;                    /* 0: free */
-    uint32_t used;                   /* time of the last sighting */
+    uint32_t used;                   /* time of the last observation */
     uint32_t asked_all, seen_all;    /* of all lights */
     uint32_t light[NOC_CELL_LIGHTS]; /* set by set; a place is free where asked is 0 */
     uint16_t asked[NOC_CELL_LIGHTS], seen[NOC_CELL_LIGHTS];
@@ -28,17 +28,17 @@ typedef struct noc_learned {
 } noc_learned;
 
 /* What the rays from one cell to one light found out. */
-typedef struct noc_sighting {
+typedef struct noc_observation {
     uint64_t cell;
     uint32_t light;
     uint16_t asked, seen; /* 1 <= asked, seen <= asked */
-} noc_sighting;
+} noc_observation;
 
 /* Those of one tile, in their order. */
-typedef struct noc_sightings {
-    const noc_sighting *data;
+typedef struct noc_observations {
+    const noc_observation *data;
     size_t count;
-} noc_sightings;
+} noc_observations;
 
 /* Room for the cells of a picture of so many tiles of 16 x 16 pixels. NULL after reporting that memory was refused. */
 noc_learned *noc_learned_create(size_t tiles, noc_log *log);
@@ -52,7 +52,7 @@ const noc_cell *noc_learned_find(const noc_learned *learned, uint64_t key);
 /* Visibility expected of a light, 0..1; cell may be NULL. */
 float noc_cell_visibility(const noc_cell *cell, uint32_t light);
 
-/* Takes in a frame's sightings, in their order: the outcome is the same for any number of threads. */
-void noc_learned_add(noc_learned *learned, noc_pool *pool, const noc_sightings *tiles, size_t count);
+/* Takes in a frame's observations, in their order: the outcome is the same for any number of threads. */
+void noc_learned_add(noc_learned *learned, noc_pool *pool, const noc_observations *tiles, size_t count);
 
 #endif

@@ -4,7 +4,7 @@
 
 const noc_buffer_row noc_buffers[NOC_BUFFER_COUNT] = {
     [NOC_BUFFER_SURFACES] = { "surfaces", NOC_DOMAIN_PIXEL, NOC_LIVES_ON, 36 },
-    [NOC_BUFFER_PAST] = { "previous surfaces", NOC_DOMAIN_PIXEL, NOC_LIVES_FRAME, 36 },
+    [NOC_BUFFER_PREVIOUS] = { "previous surfaces", NOC_DOMAIN_PIXEL, NOC_LIVES_FRAME, 36 },
     [NOC_BUFFER_LIST] = { "light list", NOC_DOMAIN_TILE, NOC_LIVES_TILE, 0 },
     [NOC_BUFFER_SHARED_RAYS] = { "shared rays", NOC_DOMAIN_TILE, NOC_LIVES_TILE, 0 },
     [NOC_BUFFER_RESERVOIRS] = { "reservoirs", NOC_DOMAIN_PIXEL, NOC_LIVES_ON, 24 },
@@ -34,8 +34,8 @@ const noc_pass_row noc_passes[NOC_PASS_COUNT] = {
     [NOC_PASS_TRACE_SHARED] = { "trace shared", NOC_DOMAIN_TILE, B(SHARED_RAYS),
                                 B(SHARED_RAYS) | B(RESERVOIRS) | B(OBSERVATIONS), 0, NOC_RAYS_OCCLUSION },
     [NOC_PASS_RESAMPLE] = { "resample", NOC_DOMAIN_PIXEL, B(SHARED_RAYS), B(RESERVOIRS) },
-    [NOC_PASS_TEMPORAL] = { "temporal", NOC_DOMAIN_PIXEL, B(SURFACES) | B(PAST) | B(SOURCE) | B(RESERVOIRS),
-                            B(RESERVOIRS), B(PAST) | B(SOURCE), NOC_RAYS_OCCLUSION },
+    [NOC_PASS_TEMPORAL] = { "temporal", NOC_DOMAIN_PIXEL, B(SURFACES) | B(PREVIOUS) | B(SOURCE) | B(RESERVOIRS),
+                            B(RESERVOIRS), B(PREVIOUS) | B(SOURCE), NOC_RAYS_OCCLUSION },
     [NOC_PASS_SPATIAL] = { "spatial", NOC_DOMAIN_PIXEL, B(SURFACES) | B(SOURCE), B(RESERVOIRS), B(SURFACES) | B(SOURCE),
                            NOC_RAYS_OCCLUSION },
     [NOC_PASS_EMITTERS] = { "emitters", NOC_DOMAIN_PIXEL, B(SURFACES), B(COLOUR) },
@@ -161,7 +161,7 @@ void noc_plan_make(const noc_render_params *p, int history_set, noc_plan *plan) 
                         .candidate_count = one ? 1 : p->draws,
                         .shares_rays = lists && (!restir || reuses_visibility(p)),
                         .bias_rays = noc_uses_bias_rays(p),
-                        .past_lights = temporal && p->bias != NOC_BIAS_BIASED };
+                        .previous_lights = temporal && p->bias != NOC_BIAS_BIASED };
     plan->learns = plan->shares_rays && p->learn && p->final_ray;
     plan->mixes = plan->shares_rays && restir && !rounds;
     maker m = { .plan = plan, .next = { .source = history, .target = fresh, .resolve_visibility = plan->bias_rays } };

@@ -9,7 +9,7 @@
 /* What passes work on. The first of a kind is this frame's. */
 typedef enum noc_buffer {
     NOC_BUFFER_SURFACES,     /* the G-buffer: what receivers see */
-    NOC_BUFFER_PAST,         /* that of the frame before */
+    NOC_BUFFER_PREVIOUS,     /* that of the frame before */
     NOC_BUFFER_LIST,         /* a tile's light list, or the lights that its points found */
     NOC_BUFFER_SHARED_RAYS,  /* rays that the pixels of a tile share out over its list, and what they found */
     NOC_BUFFER_RESERVOIRS,   /* the target's set of reservoirs, and which of their samples are known to be unoccluded */
@@ -79,12 +79,12 @@ typedef struct noc_plan {
     int next_history; /* set that feeds the next frame, -1: none */
     bool draws;       /* candidates, from what `candidates` names */
     noc_candidates candidates;
-    int candidate_count; /* a pixel */
-    bool shares_rays;    /* lists: several rays a pixel over the entries of a list */
-    bool mixes;          /* a pixel's light is shared between its reservoir and its shared rays */
-    bool learns;         /* shared rays are steered by the visibility cache, and feed it */
-    bool bias_rays;      /* visibility is a part of the combination's target functions */
-    bool past_lights;    /* reuse asks for lights as they were in the frame before */
+    int candidate_count;  /* a pixel */
+    bool shares_rays;     /* lists: several rays a pixel over the entries of a list */
+    bool mixes;           /* a pixel's light is shared between its reservoir and its shared rays */
+    bool learns;          /* shared rays are steered by the visibility cache, and feed it */
+    bool bias_rays;       /* visibility is a part of the combination's target functions */
+    bool previous_lights; /* reuse asks for lights as they were in the frame before */
 } noc_plan;
 
 /* What to run for these parameters. history_set: set with the previous frame's reservoirs, -1: none. */

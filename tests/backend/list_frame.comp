@@ -129,11 +129,11 @@ list_brief brief_load(uint part, uint cluster, int l) {
 }
 uint cluster_light(uint part, uint cluster, uint place) { return wu(wu(HEAD_CLUSTERS) + 48u * cluster + place); }
 
-list_belief belief_load(uint i) {
+list_prior prior_load(uint i) {
     list_entry e = entry_load(i);
-    return list_believe(e.weight, wf(wu(HEAD_VISIBILITY) + e.light));
+    return list_prior_of(e.weight, wf(wu(HEAD_VISIBILITY) + e.light));
 }
-float belief_share(uint i) { return belief_load(i).share; }
+float prior_share(uint i) { return prior_load(i).share; }
 uint entry_light(uint i) { return entry_load(i).light; }
 float entry_weight(uint i) { return entry_load(i).weight; }
 void weighed_store(uint i, float weighed) { put(scratch(uint(SCRATCH_WEIGHED) + i), weighed); }

@@ -1,5 +1,5 @@
 /* One frame of rays over light lists in the CPU's kernels and in a trial compute shader (list_frame.comp), over the
- * same g-buffer, clusters, beliefs and visibility bits: the lists, the draws, the rays, the samples that stand for a
+ * same g-buffer, clusters, priors and visibility bits: the lists, the draws, the rays, the samples that stand for a
  * pixel and its light are equal to the bit, in every kernel table, and on Vulkan devices that round as C does. */
 #include "../render/rooms.h"
 
@@ -23,7 +23,7 @@ typedef struct trial {
     noc_plan plan;
     cpu_view *view;
     struct core_context ctx;
-    float *visibility; /* believed of each light */
+    float *visibility; /* expected of each light */
     uint32_t *words;   /* of the shader's buffer */
     size_t count;
 } trial;
@@ -121,7 +121,7 @@ static void put_float(uint32_t *at, float x) { memcpy(at, &x, sizeof(x)); }
 
 /* The rays of a block, each as far as a lane has it, and what they bring. */
 static void answer_block(const trial *t, const kernels *k, const struct core_context *ctx, const gblock *g, int x,
-                         int y, const beliefs *b, uint32_t *out) {
+                         int y, const priors *b, uint32_t *out) {
     list_asked *asked = noc_alloc_large(1, sizeof(*asked));
     ray_draw draws[MOST_SHADOW_RAYS];
     uint32_t lanes = lanes_with_surface(g), shown[BLOCK], kept[BLOCK];
@@ -180,13 +180,13 @@ static uint32_t *answer(const trial *t, const kernels *k) {
     for (int number = 0; number < TILES; number++) {
         uint32_t *to = out + (size_t)number * ANSWER_WORDS, lanes[16];
         const gblock *g[16];
-        beliefs b = { 0 };
+        priors b = { 0 };
         for (int i = 0; i < 16; i++)
             lanes[i] = lanes_with_surface(g[i] = block_of(t, number, i));
         k->list_build(&ctx, g, lanes, 16, tail_start(SEED, (u32)number, t->frame.constants.index), s);
         k->list_fill(&ctx);
         for (uint32_t i = 0; i < s->list.count; i++) {
-            list_belief one = list_believe(s->list.weight[i], t->visibility[s->list.light[i]]);
+            list_prior one = list_prior_of(s->list.weight[i], t->visibility[s->list.light[i]]);
             b.share[i] = one.share;
             b.expect[i] = one.expect;
         }

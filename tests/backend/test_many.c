@@ -41,8 +41,8 @@ static float unit(uint32_t *seed) { return (float)(next(seed) >> 8) / 16777216.0
 
 /* Segments from z = 0 to one of `lights` lamps at z = 10, lamp i of them below the screen when i is a multiple of 5.
  * Lanes that pass near an edge are not valid, nor is one in four others. expect: those that the screen leaves free. */
-static void make_block(uint32_t *seed, uint32_t lights, segment_block *b, uint32_t *expect) {
-    *b = (segment_block){ .clear = next(seed) };
+static void make_block(uint32_t *seed, uint32_t lights, shadow_block *b, uint32_t *expect) {
+    *b = (shadow_block){ .unoccluded = next(seed) };
     *expect = 0;
     for (int l = 0; l < BLOCK; l++) {
         uint32_t lamp = next(seed) / 7 % lights;
@@ -66,7 +66,7 @@ static void known_answers(void **state) {
     noc_scene *scene;
     cpu_view *s = chequered(&scene);
     worker *w = &s->workers[0];
-    static segment_block blocks[MOST];
+    static shadow_block blocks[MOST];
     static float counts[MOST][BLOCK];
     uint32_t expect[MOST], seed = 7;
     const int sizes[] = { 1, 2, 7, MANY_BLOCKS, MANY_BLOCKS + 1, MOST };
@@ -85,7 +85,7 @@ static void known_answers(void **state) {
         noc_cpu_trace_occlusion(s, w, NOC_RAYS_NOW, blocks, n);
         assert_int_equal(w->rays_shadow - before, rays);
         for (int k = 0; k < n; k++) {
-            assert_int_equal(blocks[k].clear, expect[k]);
+            assert_int_equal(blocks[k].unoccluded, expect[k]);
             for (int l = 0; l < BLOCK; l++)
                 assert_true(counts[k][l] == (k % 3 ? (float)(blocks[k].valid >> l & 1) : 0));
         }
@@ -99,7 +99,7 @@ static void company_does_not_matter(void **state) {
     (void)state;
     noc_scene *scene;
     cpu_view *s = chequered(&scene);
-    static segment_block blocks[MANY_BLOCKS], other[MANY_BLOCKS];
+    static shadow_block blocks[MANY_BLOCKS], other[MANY_BLOCKS];
     uint32_t expect, seed = 99;
     for (int k = 0; k < MANY_BLOCKS; k++) {
         make_block(&seed, 12, &blocks[k], &expect);
@@ -113,7 +113,7 @@ static void company_does_not_matter(void **state) {
     noc_cpu_trace_occlusion(s, &s->workers[0], NOC_RAYS_NOW, blocks, MANY_BLOCKS);
     noc_cpu_trace_occlusion(s, &s->workers[0], NOC_RAYS_NOW, other, MANY_BLOCKS);
     for (int k = 0; k < MANY_BLOCKS; k++)
-        assert_int_equal(blocks[k].clear, other[MANY_BLOCKS - 1 - k].clear);
+        assert_int_equal(blocks[k].unoccluded, other[MANY_BLOCKS - 1 - k].unoccluded);
     close_cpu_view(s);
     noc_scene_destroy(scene);
 }
@@ -123,7 +123,7 @@ static void kept_rays(void **state) {
     (void)state;
     noc_scene *scene;
     cpu_view *s = chequered(&scene);
-    static segment_block blocks[MANY_BLOCKS + 3];
+    static shadow_block blocks[MANY_BLOCKS + 3];
     uint32_t expect, seed = 3;
     double seconds = -1;
     noc_backend_embree.record(s, true);

@@ -58,8 +58,8 @@ FN frame_constants dialect_constants(uint32_t bias) {
 
 /* Neighbours of the item at hand. */
 FN mask neighbour_on(CTX int i) { return rng(dialect_key, KU(4000u + U32(i))) < K(0.8f); }
-FN resv neighbour_resv(CTX int i) {
-    resv r;
+FN reservoir neighbour_resv(CTX int i) {
+    reservoir r;
     u32 key = hash_u32(dialect_key + KU(4100u + U32(i)));
     mask empty = rng(key, KU(0u)) < K(0.3f);
     r.light = scale_u32(rng_bits(key, KU(1u)), KU(KERNEL_LIGHTS));
@@ -114,8 +114,8 @@ FN void places(CTX u32 item, u32 key) {
 }
 
 /* 14 slots: the sample that neighbours are asked about, and what survives. */
-FN void combination(CTX u32 item, int slot, u32 key, surf s, resv own) {
-    stream held = reuse_begin(PASS s, own, key, KU(64u), 3);
+FN void combination(CTX u32 item, int slot, u32 key, surf s, reservoir own) {
+    reservoir_builder held = reuse_begin(PASS s, own, key, KU(64u), 3);
     put_u32(PASS item, slot, held.light);
     put_real(PASS item, slot + 1, held.u);
     put_real(PASS item, slot + 2, held.v);
@@ -131,13 +131,13 @@ FN void combination(CTX u32 item, int slot, u32 key, surf s, resv own) {
 
 /* Slots 11 to 60. */
 FN void combinations(CTX u32 item, u32 key, surf s) {
-    resv own = resv_cap(ris_uniform(PASS s, key, KU(KERNEL_LIGHTS), 8), rng(key, KU(4502u)) * K(12.0f));
+    reservoir own = reservoir_cap(ris_uniform(PASS s, key, KU(KERNEL_LIGHTS), 8), rng(key, KU(4502u)) * K(12.0f));
     combination(PASS item, FRAME_FIRST + 11, key, s, own);
     dialect_frame.bias = BIAS_MIS;
     combination(PASS item, FRAME_FIRST + 25, key, s, own);
     dialect_frame.bias = BIAS_PAIRWISE;
     combination(PASS item, FRAME_FIRST + 39, key, s, own);
-    put_resv(PASS item, FRAME_FIRST + 53, resv_blocked(own, rng(key, KU(4500u)) < K(0.5f)));
+    put_resv(PASS item, FRAME_FIRST + 53, reservoir_blocked(own, rng(key, KU(4500u)) < K(0.5f)));
     put_u32(PASS item, FRAME_FIRST + 59, flag_of(resolve_asks(own, rng(key, KU(4501u)) < K(0.5f))));
     put_real(PASS item, FRAME_FIRST + 60, neighbour_answer(PASS 0));
 }
@@ -164,7 +164,7 @@ FN void references(CTX u32 item, u32 key, surf s) {
 
 /* Slots 65 to 80. */
 FN void shades(CTX u32 item, u32 key, surf s) {
-    resv r = ris_uniform(PASS s, key, KU(KERNEL_LIGHTS), 4);
+    reservoir r = ris_uniform(PASS s, key, KU(KERNEL_LIGHTS), 4);
     v3 c = sample_shade(s, r, light_load(PASS r.light));
     put_v3(PASS item, FRAME_FIRST + 65, c);
     u32 turns = sky_turns(PASS mul3(c, K(1e-3f)));

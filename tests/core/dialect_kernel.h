@@ -137,7 +137,7 @@ FN void put_sample(CTX u32 item, int slot, light_sample s) {
     put_v3(PASS item, slot + 4, s.le);
 }
 
-FN void put_resv(CTX u32 item, int slot, resv r) {
+FN void put_resv(CTX u32 item, int slot, reservoir r) {
     put_u32(PASS item, slot, r.light);
     put_real(PASS item, slot + 1, r.u);
     put_real(PASS item, slot + 2, r.v);
@@ -224,15 +224,15 @@ FN void surfaces(CTX u32 item, u32 key, surf s, light any) {
 
 /* Slots 71 to 95. */
 FN void reservoirs(CTX u32 item, u32 key, surf s) {
-    resv one = ris_uniform(PASS s, key, KU(KERNEL_LIGHTS), 1);
-    resv r = ris_uniform(PASS s, key + KU(1u), KU(KERNEL_LIGHTS), 16);
+    reservoir one = ris_uniform(PASS s, key, KU(KERNEL_LIGHTS), 1);
+    reservoir r = ris_uniform(PASS s, key + KU(1u), KU(KERNEL_LIGHTS), 16);
     put_resv(PASS item, 71, one);
     put_resv(PASS item, 77, r);
-    put_resv(PASS item, 83, resv_cap(r, K(7.0f)));
-    stream st = stream_empty();
-    st = stream_add(st, one.light, one.u, one.v, one.p, one.p * one.w, one.m, K(1.0f), rng(key, KU(3000u)));
-    st = stream_add(st, r.light, r.u, r.v, r.p, r.p * r.w * r.m, r.m, K(2.0f), rng(key, KU(3001u)));
-    put_resv(PASS item, 89, stream_end(st, K(1.0f) / st.m));
+    put_resv(PASS item, 83, reservoir_cap(r, K(7.0f)));
+    reservoir_builder st = builder_empty();
+    st = builder_add(st, one.light, one.u, one.v, one.p, one.p * one.w, one.m, K(1.0f), rng(key, KU(3000u)));
+    st = builder_add(st, r.light, r.u, r.v, r.p, r.p * r.w * r.m, r.m, K(2.0f), rng(key, KU(3001u)));
+    put_resv(PASS item, 89, builder_end(st, K(1.0f) / st.m));
     put_real(PASS item, 95, st.tag);
 }
 
@@ -259,7 +259,7 @@ FN void rays(CTX u32 item, u32 key, surf s, light any) {
     put_v3(PASS item, 104, g.o);
     put_v3(PASS item, 107, g.d);
     put_v3(PASS item, 110, sky_radiance(s.n, rng(key, KU(3022u))));
-    put_real(PASS item, 113, stand_off(max_abs3(mul3(s.p, K(100.0f))), K(1e-4f)));
+    put_real(PASS item, 113, ray_offset(max_abs3(mul3(s.p, K(100.0f))), K(1e-4f)));
     v3 at = sky_numbers(key, item);
     put_real(PASS item, 114, at.x);
     put_real(PASS item, 115, at.y);

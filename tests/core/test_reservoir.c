@@ -42,7 +42,7 @@ static surf make_surface(void) {
 
 /* What is estimated is red light, while the target is luminance: W must be right for every function, not for the
  * target. */
-static double red(const struct core_context *ctx, surf s, resv r) {
+static double red(const struct core_context *ctx, surf s, reservoir r) {
     return r.w > 0 ? reflected(s, sample_light(ctx->lights[r.light], s.p, r.u, r.v)).x * (double)r.w : 0;
 }
 
@@ -57,17 +57,18 @@ static double exhaustive_red(const struct core_context *ctx, surf s) {
 }
 
 /* RIS with lights picked in proportion to `weight`, told that their probability was pmf. */
-static resv ris_from(const struct core_context *ctx, surf s, dice *d, const double *weight, const double *pmf, int m) {
-    stream st = stream_empty();
+static reservoir ris_from(const struct core_context *ctx, surf s, dice *d, const double *weight, const double *pmf,
+                          int m) {
+    reservoir_builder st = builder_empty();
     for (int i = 0; i < m; i++) {
         double x = uniform(d, 0, 1);
         uint32_t id = 0;
         while (id < LIGHTS - 1 && x >= weight[id])
             x -= weight[id++];
         float u = (float)uniform(d, 0, 1), v = (float)uniform(d, 0, 1), p = target(s, ctx->lights[id], u, v);
-        st = stream_add(st, id, u, v, p, p / (float)pmf[id], 1, 0, (float)uniform(d, 0, 0.99999994));
+        st = builder_add(st, id, u, v, p, p / (float)pmf[id], 1, 0, (float)uniform(d, 0, 0.99999994));
     }
-    return stream_end(st, 1.0f / (float)m);
+    return builder_end(st, 1.0f / (float)m);
 }
 
 static void test_ris_is_unbiased(void **state) {
@@ -108,14 +109,14 @@ static void test_ris_of_one_light_and_of_none_that_shines(void **state) {
     surf s = make_surface();
     ctx.lights[0] = (light){ .p = { 0, 0, 2 }, .kind = LIGHT_POINT, .e = { 100, 100, 100 } };
     for (uint32_t i = 0; i < 1000; i++) {
-        resv r = ris_uniform(&ctx, s, rng_key(1, i, 0), 1, 4);
+        reservoir r = ris_uniform(&ctx, s, rng_key(1, i, 0), 1, 4);
         assert_true(r.light == 0 && r.m == 4);
         assert_close(r.w, 1, 1e-5);
     }
     s.n = V3(0, 0, -1); /* turned away from all of them */
     s.p.z = -10;
     s.wo.z = -s.wo.z;
-    resv r = ris_uniform(&ctx, s, rng_key(1, 1, 0), LIGHTS, 32);
+    reservoir r = ris_uniform(&ctx, s, rng_key(1, 1, 0), LIGHTS, 32);
     assert_true(r.w == 0 && r.m == 32);
 }
 
@@ -126,8 +127,8 @@ static void test_prefetching_changes_nothing(void **state) {
     surf s = make_surface();
     for (int m = 1; m < 40; m++)
         for (uint32_t i = 0; i < 50; i++) {
-            resv a = ris_uniform(&ctx, s, rng_key(1, i, 2), LIGHTS, m);
-            resv b = ris_uniform_ahead(&ctx, (const float *)ctx.lights, s, rng_key(1, i, 2), LIGHTS, m);
+            reservoir a = ris_uniform(&ctx, s, rng_key(1, i, 2), LIGHTS, m);
+            reservoir b = ris_uniform_ahead(&ctx, (const float *)ctx.lights, s, rng_key(1, i, 2), LIGHTS, m);
             assert_memory_equal(&a, &b, sizeof(a));
         }
 }
@@ -139,10 +140,10 @@ static void test_stream_is_proportional(void **state) {
     dice d = { 23 };
     enum { N = 300000 };
     for (int i = 0; i < N; i++) {
-        stream st = stream_empty();
+        reservoir_builder st = builder_empty();
         for (uint32_t k = 0; k < 7; k++)
-            st = stream_add(st, k, 0, 0, 1, weights[k], 2, (float)k,
-                            k == 1 && i % 2 ? 0 : (float)uniform(&d, 0, 0.99999994));
+            st = builder_add(st, k, 0, 0, 1, weights[k], 2, (float)k,
+                             k == 1 && i % 2 ? 0 : (float)uniform(&d, 0, 0.99999994));
         assert_true(st.m == 14 && st.w_sum == 7.5f && st.tag == (float)st.light);
         held[st.light]++;
     }
@@ -156,11 +157,11 @@ static void test_stream_is_proportional(void **state) {
 static void test_nothing_odd_comes_out(void **state) {
     static const float odd[] = { NAN, INFINITY, 0, 1e30f, 1, 1e-40f };
     for (int i = 0; i < 6 * 6 * 6; i++) {
-        stream st = stream_add(stream_empty(), 1, 0, 0, odd[i % 6], odd[i / 6 % 6], 1, 0, 0.5f);
-        resv r = stream_end(st, odd[i / 36]);
+        reservoir_builder st = builder_add(builder_empty(), 1, 0, 0, odd[i % 6], odd[i / 6 % 6], 1, 0, 0.5f);
+        reservoir r = builder_end(st, odd[i / 36]);
         assert_true(r.w >= 0 && r.w < 1.1e30f);
     }
-    assert_true(stream_end(stream_empty(), 1).w == 0 && resv_empty().w == 0);
+    assert_true(builder_end(builder_empty(), 1).w == 0 && reservoir_empty().w == 0);
     assert_true(pair_share(0, 0, 0, 0) == 0 && pair_share(5, 0, 3, 0) == 0 && pair_share(0, 1, 3, 1) == 0);
     assert_true(mis_scale(0, 0) == 0);
 }
@@ -197,14 +198,14 @@ static double truth_of(const toy *t) {
 }
 
 /* One pixel's own reservoir: uniform candidates, then its visibility ray. */
-static resv initial(const toy *t, int pixel, dice *d) {
-    stream st = stream_empty();
+static reservoir initial(const toy *t, int pixel, dice *d) {
+    reservoir_builder st = builder_empty();
     for (int i = 0; i < t->m[pixel]; i++) {
         uint32_t id = (uint32_t)(roll(d) % SAMPLES);
-        st = stream_add(st, id, 0, 0, t->p[pixel][id], t->p[pixel][id] * SAMPLES, 1, 0,
-                        (float)uniform(d, 0, 0.99999994));
+        st = builder_add(st, id, 0, 0, t->p[pixel][id], t->p[pixel][id] * SAMPLES, 1, 0,
+                         (float)uniform(d, 0, 0.99999994));
     }
-    resv r = stream_end(st, 1.0f / (float)t->m[pixel]);
+    reservoir r = builder_end(st, 1.0f / (float)t->m[pixel]);
     if (!t->seen[pixel][r.light])
         r.w = 0;
     return r;
@@ -219,8 +220,8 @@ static float target_at(const toy *t, int pixel, uint32_t x, bool rays) {
 
 /* Combination of r[0] (canonical) with the others at pixel 0. CARELESS counts only the neighbours that brought
  * something. */
-static resv combine(const toy *t, const resv *r, mode how, bool rays, dice *d) {
-    stream st = stream_empty();
+static reservoir combine(const toy *t, const reservoir *r, mode how, bool rays, dice *d) {
+    reservoir_builder st = builder_empty();
     if (how == PAIRWISE) {
         float m_n = 0, m_c = 0;
         for (int i = 1; i < PIXELS; i++)
@@ -229,28 +230,28 @@ static resv combine(const toy *t, const resv *r, mode how, bool rays, dice *d) {
             uint32_t x = r[i].light;
             float share = r[i].m / m_n;
             float w = pair_weight(share, m_n, target_at(t, i, x, rays), r[0].m, target_at(t, 0, x, rays), r[i].w);
-            st = stream_add(st, x, 0, 0, t->p[0][x], w, r[i].m, (float)i, (float)uniform(d, 0, 0.99999994));
+            st = builder_add(st, x, 0, 0, t->p[0][x], w, r[i].m, (float)i, (float)uniform(d, 0, 0.99999994));
             m_c += pair_canonical(share, m_n, target_at(t, i, r[0].light, rays), r[0].m,
                                   target_at(t, 0, r[0].light, rays));
         }
-        st = stream_add(st, r[0].light, 0, 0, r[0].p, m_c * r[0].p * r[0].w, r[0].m, 0,
-                        (float)uniform(d, 0, 0.99999994));
-        return stream_end(st, 1);
+        st = builder_add(st, r[0].light, 0, 0, r[0].p, m_c * r[0].p * r[0].w, r[0].m, 0,
+                         (float)uniform(d, 0, 0.99999994));
+        return builder_end(st, 1);
     }
     for (int i = 0; i < PIXELS; i++) {
         float p = t->p[0][r[i].light], w = r[i].m * p * r[i].w;
-        st = stream_add(st, r[i].light, 0, 0, p, w, how == CARELESS && w == 0 ? 0 : r[i].m, (float)i,
-                        (float)uniform(d, 0, 0.99999994));
+        st = builder_add(st, r[i].light, 0, 0, p, w, how == CARELESS && w == 0 ? 0 : r[i].m, (float)i,
+                         (float)uniform(d, 0, 0.99999994));
     }
     if (how != MIS)
-        return stream_end(st, mis_scale(1, st.m));
+        return builder_end(st, mis_scale(1, st.m));
     float all = 0, held = 0;
     for (int i = 0; i < PIXELS; i++) {
         float p = target_at(t, i, st.light, rays);
         all += r[i].m * p;
         held = st.tag == (float)i ? p : held;
     }
-    return stream_end(st, mis_scale(held, all));
+    return builder_end(st, mis_scale(held, all));
 }
 
 /* Mean of f W over many combinations; twice: what one combination leaves is capped and meets new neighbours. */
@@ -258,14 +259,14 @@ static mean simulate(const toy *t, mode how, bool rays, bool twice, uint64_t see
     dice d = { seed };
     mean out = { 0 };
     for (int i = 0; i < 300000; i++) {
-        resv r[PIXELS];
+        reservoir r[PIXELS];
         for (int k = 0; k < PIXELS; k++)
             r[k] = initial(t, k, &d);
-        resv y = combine(t, r, how, rays, &d);
+        reservoir y = combine(t, r, how, rays, &d);
         if (twice) {
             for (int k = 1; k < PIXELS; k++)
                 r[k] = initial(t, k, &d);
-            r[0] = resv_cap(y, 4);
+            r[0] = reservoir_cap(y, 4);
             if (!t->seen[0][r[0].light])
                 r[0].w = 0;
             y = combine(t, r, how, rays, &d);

@@ -33,8 +33,8 @@ static void counts(void **state) {
     uint64_t key = noc_cell_key((const float[3]){ 0 }, up, 0);
     assert_null(noc_learned_find(t, key));
     assert_true(noc_cell_visibility(NULL, 7) == 0.5f);
-    noc_sighting s[] = { { key, 7, 10, 10 }, { key, 8, 10, 0 } };
-    noc_learned_add(t, pool, &(noc_sightings){ s, 2 }, 1);
+    noc_observation s[] = { { key, 7, 10, 10 }, { key, 8, 10, 0 } };
+    noc_learned_add(t, pool, &(noc_observations){ s, 2 }, 1);
     const noc_cell *c = noc_learned_find(t, key);
     assert_non_null(c);
     /* (seen + 2 * 0.5) / (asked + 2), where 0.5 is what all lights of the cell came to */
@@ -42,7 +42,7 @@ static void counts(void **state) {
     assert_float_equal(noc_cell_visibility(c, 8), 1.0 / 12, 1e-6);
     assert_float_equal(noc_cell_visibility(c, 9), 0.5, 1e-6);
     for (int i = 0; i < 5000; i++) /* counts stay in range, and old ones fade */
-        noc_learned_add(t, pool, &(noc_sightings){ &(noc_sighting){ key, 8, 1000, 1000 }, 1 }, 1);
+        noc_learned_add(t, pool, &(noc_observations){ &(noc_observation){ key, 8, 1000, 1000 }, 1 }, 1);
     c = noc_learned_find(t, key);
     assert_true(noc_cell_visibility(c, 8) > 0.98f && noc_cell_visibility(c, 8) <= 1);
     noc_learned_forget(t);
@@ -57,16 +57,16 @@ static void crowds(void **state) {
     noc_pool *pools[2] = { noc_pool_create(1), noc_pool_create(3) };
     noc_learned *t[2] = { noc_learned_create(1, NULL), noc_learned_create(1, NULL) };
     enum { MANY = 40000 };
-    noc_sighting *s = noc_calloc(MANY, sizeof(*s));
+    noc_observation *s = noc_calloc(MANY, sizeof(*s));
     uint32_t x = 1;
     for (int frame = 0; frame < 3; frame++) {
         for (int i = 0; i < MANY; i++) {
             x = x * 1664525 + 1013904223;
             const float p[3] = { (float)(x >> 22), (float)(x >> 12 & 1023), 0 };
-            s[i] = (noc_sighting){ noc_cell_key(p, up, 4), x >> 8 & 1023, 8, (uint16_t)(x & 7) };
+            s[i] = (noc_observation){ noc_cell_key(p, up, 4), x >> 8 & 1023, 8, (uint16_t)(x & 7) };
         }
         for (int k = 0; k < 2; k++)
-            noc_learned_add(t[k], pools[k], &(noc_sightings){ s, MANY }, 1);
+            noc_learned_add(t[k], pools[k], &(noc_observations){ s, MANY }, 1);
         assert_memory_equal(t[0]->cells, t[1]->cells, t[0]->bytes);
     }
     for (size_t i = 0; i < t[0]->count; i++)

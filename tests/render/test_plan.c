@@ -49,7 +49,7 @@ static uint32_t living(noc_lifetime lifetime) {
 }
 
 static void check_stages(const noc_render_params *p, const noc_plan *plan, int history) {
-    uint32_t sets = 0, written = 1u << NOC_BUFFER_PAST | 1u << NOC_BUFFER_CACHE;
+    uint32_t sets = 0, written = 1u << NOC_BUFFER_PREVIOUS | 1u << NOC_BUFFER_CACHE;
     (void)p;
     assert_in_range(plan->count, 1, NOC_MAX_STAGES);
     assert_int_equal(plan->stages[0].passes[0], NOC_PASS_PRIMARY);

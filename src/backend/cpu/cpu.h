@@ -18,23 +18,23 @@ _Static_assert((int)NOC_QUERY_BLOCKS == TILE_BLOCKS * TILE_BLOCKS && (int)NOC_QU
                "a tile's points ask together");
 /* A packet kept for the trace floor. Shadow rays that were traced in one call lie one after the other. */
 typedef struct packet {
-    segment_block block;
+    shadow_block block;
     int together; /* so many of them from here on were one call */
     bool primary;
 } packet;
 
-/* What is believed in a cell of the scene, and what its rays find. */
+/* What is expected in a cell of the scene, and what its rays find. */
 typedef struct tile_cell {
     uint64_t key;
-    beliefs beliefs;
+    priors priors;
     uint16_t asked[LIST_ROOM], seen[LIST_ROOM];
 } tile_cell;
 
 /* Segments of a tile's blocks, gathered to be traced in company. */
-typedef struct segment_batch {
+typedef struct ray_batch {
     int count;
-    segment_block blocks[TILE_BLOCKS * TILE_BLOCKS * MAX_NEIGHBOURS];
-} segment_batch;
+    shadow_block blocks[TILE_BLOCKS * TILE_BLOCKS * MAX_NEIGHBOURS];
+} ray_batch;
 
 /* What the passes of one tile hand on to each other. */
 typedef struct tile_rays {
@@ -48,10 +48,10 @@ typedef struct tile_rays {
     double bright;
     tile_cell cell[TILE_BLOCKS * TILE_BLOCKS];
     ray_draw draws[TILE_BLOCKS * TILE_BLOCKS * MOST_SHADOW_RAYS];
-    segment_block segments[TILE_BLOCKS * TILE_BLOCKS * MOST_SHADOW_RAYS];
+    shadow_block segments[TILE_BLOCKS * TILE_BLOCKS * MOST_SHADOW_RAYS];
 } tile_rays;
 
-/* Where a tile's sightings are. */
+/* Where a tile's observations are. */
 typedef struct learned_tile {
     int worker;
     size_t first, count;
@@ -63,11 +63,11 @@ typedef struct worker {
     ALIGNED double seconds[NOC_PASS_COUNT];
     uint64_t rays_primary, rays_shadow, dropped;
     combining *combining; /* of a tile's blocks */
-    segment_batch batch;
+    ray_batch batch;
     reference_scratch reference;
     list_scratch lists;
     tile_rays shared;
-    NOC_ARRAY(noc_sighting) sightings; /* of the frame being made */
+    NOC_ARRAY(noc_observation) observations; /* of the frame being made */
     pick_block picks;
     tree_items tree_items[2];
     noc_found found; /* bvh: by a tile */
@@ -142,9 +142,9 @@ typedef struct cpu_world {
     uint64_t shape, past; /* noc_cpu_shape of the scene that it knows, and of that before */
     cpu_places places[2]; /* of instances: now, and then */
     double build_seconds;
-    size_t vertices;                 /* that stand_off knows */
+    size_t vertices;                 /* that ray_offset knows */
     float largest;                   /* coordinate of them, and of instances */
-    float stand_off;                 /* of shadow rays at least, m */
+    float ray_offset;                /* of shadow rays at least, m */
     noc_material_record no_material; /* stands in where the scene has none */
     noc_light_set *lights;
 } cpu_world;
@@ -162,13 +162,13 @@ typedef struct cpu_view {
     noc_learned *learned;   /* it is of places in the scene, so it outlives the size of the picture */
     uint32_t learned_epoch; /* noc_frame.epoch that it is of */
     learned_tile *learned_tiles;
-    noc_sightings *sightings; /* of the frame's tiles */
-    float list_brightness;    /* mean luminance that the last frame expected, cd/m2; 0: not known */
+    noc_observations *observations; /* of the frame's tiles */
+    float list_brightness;          /* mean luminance that the last frame expected, cd/m2; 0: not known */
     /* all lights as they were in the last frame that left reservoirs; NULL: never needed */
-    noc_light_record *past_lights;
+    noc_light_record *previous_lights;
     size_t past_room;        /* lights that there is room for, those beyond the frame's are dark */
     noc_scene_versions seen; /* of the scene in the last complete frame */
-    bool past_filled;        /* past_lights is of that frame */
+    bool past_filled;        /* previous_lights is of that frame */
     bool past_lost;          /* the frame before saw another scene, of which something is not known any more */
     size_t chunks;           /* of lights, that the reference has room for */
     worker *workers;
@@ -222,7 +222,7 @@ noc_status noc_cpu_fit_scene(cpu_view *s);
 /* rays.c: what the tracer answers, and the book-keeping around it */
 /* Traces the segments of many blocks, the more the better up to MANY_BLOCKS. Sets `clear`, which is 0 outside `valid`.
  * Counts rays where each block says, and keeps them when recording. */
-void noc_cpu_trace_occlusion(cpu_view *s, worker *w, noc_ray_world in, segment_block *blocks, int count);
+void noc_cpu_trace_occlusion(cpu_view *s, worker *w, noc_ray_world in, shadow_block *blocks, int count);
 /* Nearest hits of camera rays into a block; lanes outside `valid` see nothing.
  * object: of each lane, -1 where there is none; instance: NO_INSTANCE; both may be NULL. */
 void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g, float *object,
@@ -242,7 +242,7 @@ noc_status noc_cpu_begin_past(cpu_view *s, const noc_plan *plan);
 void noc_cpu_keep_past(cpu_view *s);
 /* The context that the previous frame's targets and visibility are asked of: *now with its lights. in: what its rays
  * are traced against. */
-struct core_context noc_cpu_past(const cpu_view *s, const struct core_context *now, noc_ray_world *in);
+struct core_context noc_cpu_previous(const cpu_view *s, const struct core_context *now, noc_ray_world *in);
 /* Takes surfaces that instances show back to where they were in the frame before; g itself where all stand. */
 const gblock *noc_cpu_taken_back(const cpu_view *s, size_t at, const gblock *g, gblock *moved);
 size_t noc_cpu_past_bytes(const cpu_view *s);
@@ -254,7 +254,7 @@ void noc_cpu_pass(stage_run *run, worker *w, noc_pass pass, tile t);
 int noc_cpu_tile_blocks(const stage_run *run, tile t, tile_block out[TILE_BLOCKS * TILE_BLOCKS]);
 /* The next block of w->batch, for noc_cpu_trace_occlusion: `valid` lanes are to be traced, counted for block `at` of
  * the picture. The rays are left to the caller; or they are segments from the surfaces of g to samples. */
-segment_block *noc_cpu_gather(const stage_run *run, worker *w, size_t at, uint32_t valid);
+shadow_block *noc_cpu_gather(const stage_run *run, worker *w, size_t at, uint32_t valid);
 void noc_cpu_gather_segments(const stage_run *run, worker *w, size_t at, uint32_t valid, const gblock *g,
                              const uint32_t *light, const float *u, const float *v);
 

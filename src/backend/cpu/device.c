@@ -33,7 +33,7 @@ noc_status noc_cpu_device_create(const noc_tracer *tracer, const noc_device_para
 
 /* 2^-19 of the largest coordinate, at most 0.1 mm: where a scene is small, so are the gaps in it. Vertices are rounded
  * to 2^-24 of theirs. It looks at what is new only, and stays as it is where something is removed. */
-static void find_stand_off(cpu_world *w) {
+static void find_ray_offset(cpu_world *w) {
     const noc_scene *s = w->scene;
     for (size_t mesh = noc_scene_mesh_at_vertex(s, w->vertices); mesh < s->meshes.len; mesh++)
         if (!s->meshes.data[mesh].model)
@@ -47,7 +47,7 @@ static void find_stand_off(cpu_world *w) {
             w->largest = NOC_MAX(w->largest, fabsf((float)box[k / 3][k % 3]));
     }
     w->vertices = s->positions.len / 3;
-    w->stand_off = NOC_MIN(w->largest * 0x1p-19f, 1e-4f);
+    w->ray_offset = NOC_MIN(w->largest * 0x1p-19f, 1e-4f);
 }
 
 static bool copy_places(const noc_scene *scene, cpu_places *to) {
@@ -76,7 +76,7 @@ static noc_status follow(cpu_world *w) {
     w->places[1] = then;
     w->past = w->shape;
     w->shape = shape;
-    find_stand_off(w);
+    find_ray_offset(w);
     return copy_places(w->scene, &w->places[0]) ? NOC_OK : NOC_ERR_MEMORY; /* there is room */
 }
 
@@ -109,7 +109,7 @@ noc_status noc_cpu_world_create(void *device, const noc_scene *scene, void **sta
     *w = (cpu_world){ .device = d, .scene = scene, .log = d->log };
     pthread_mutex_init(&w->lock, NULL);
     w->shape = w->past = noc_cpu_shape(&scene->versions);
-    find_stand_off(w);
+    find_ray_offset(w);
     noc_status status = d->tracer->build(d->rays, scene, d->log, &w->rays);
     if (status == NOC_OK && !copy_places(scene, &w->places[0]))
         status = noc_no_memory(d->log, "world");

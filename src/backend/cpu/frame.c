@@ -37,7 +37,7 @@ static struct core_context context_of(const cpu_view *s, const noc_frame *frame)
                                   .alias = from->alias,
                                   .tree = from->tree,
                                   .influence = from->influence,
-                                  .stand_off = s->world->stand_off };
+                                  .ray_offset = s->world->ray_offset };
 }
 
 noc_status noc_cpu_stage(void *state, const noc_frame *frame, const noc_stage *st, const noc_progress *progress,

@@ -43,7 +43,7 @@ typedef struct core_cursors {
     const gblock *const *tile;   /* its blocks */
     const uint32_t *tile_pixels; /* and what of them sees a surface */
     struct list_scratch *lists;  /* of the tile */
-    const struct beliefs *beliefs;
+    const struct priors *priors;
     struct list_asked *asked; /* of the block */
     const struct ray_draw *found;
     noc_found *volumes;      /* of the tile: what its points find among influence volumes */
@@ -58,7 +58,7 @@ struct core_context {
     const frame_constants *frame;
     const light_record *lights;
     uint32_t light_count;
-    float stand_off;                  /* of shadow rays at least, m: core/shadow.h */
+    float ray_offset;                 /* of shadow rays at least, m: core/shadow.h */
     const material_record *materials; /* at least one */
     const noc_clusters *clusters[2];  /* lists only: of lights that stand, of those that move; NULL: none */
     const noc_alias *alias;           /* power only */
@@ -74,7 +74,7 @@ typedef struct neighbour {
     uint32_t lanes;
 } neighbour;
 
-/* The samples that neighbours are asked about: core's stream. */
+/* The samples that neighbours are asked about: core's builder. */
 typedef struct held_block {
     ALIGNED float u[BLOCK];
     float v[BLOCK], p[BLOCK], w_sum[BLOCK], m[BLOCK], tag[BLOCK];
@@ -126,11 +126,11 @@ typedef struct list_scratch {
     uint32_t chosen[LIST_CHOSEN];
 } list_scratch;
 
-/* What is believed of a list's entries, and so how they are weighed. */
-typedef struct beliefs {
+/* What is expected of a list's entries, and so how they are weighed. */
+typedef struct priors {
     float share[LIST_ROOM];  /* weight * pull */
     float expect[LIST_ROOM]; /* weight * visibility */
-} beliefs;
+} priors;
 
 /* What the pixels of a block ask for over their tile's list: core/list_rays.h. */
 typedef struct list_asked {
@@ -165,8 +165,8 @@ typedef struct kernels {
      * which W; and what of a pixel is its reservoir's. */
     void (*list_fill)(const struct core_context *ctx);
     void (*list_share)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, float brightness,
-                       const beliefs *beliefs, list_asked *out);
-    void (*list_ray)(const struct core_context *ctx, int x, int y, const beliefs *beliefs, list_asked *asked, int k,
+                       const priors *priors, list_asked *out);
+    void (*list_ray)(const struct core_context *ctx, int x, int y, const priors *priors, list_asked *asked, int k,
                      rblock *out);
     void (*list_show)(const struct core_context *ctx, int x, int y, list_asked *asked, uint32_t ray[BLOCK]);
     void (*list_keep)(const struct core_context *ctx, int x, int y, const ray_draw *found, int rays,

@@ -7,14 +7,14 @@ static void candidates(const struct core_context *ctx, const gblock *g, uint32_t
                        rblock *out) {
     for (int l = 0; l < BLOCK; l += LANES) {
         mask on = mload(lanes, l);
-        resv r = resv_empty();
+        reservoir r = reservoir_empty();
         if (ctx->light_count && ANY(on))
-            r = resv_sel(on,
-                         ris_uniform_ahead(ctx, (const float *)ctx->lights,
-                                           surf_load(ctx, g, l, ctx->frame->camera.eye), key_of(ctx, x, y, l),
-                                           KU(ctx->light_count), m),
-                         r);
-        resv_store(out, l, r);
+            r = reservoir_sel(on,
+                              ris_uniform_ahead(ctx, (const float *)ctx->lights,
+                                                surf_load(ctx, g, l, ctx->frame->camera.eye), key_of(ctx, x, y, l),
+                                                KU(ctx->light_count), m),
+                              r);
+        reservoir_store(out, l, r);
     }
 }
 
@@ -23,7 +23,8 @@ static void segments(const struct core_context *ctx, const gblock *g, const uint
     for (int l = 0; l < BLOCK; l += LANES) {
         v3 p = V3(rload(g->px + l), rload(g->py + l), rload(g->pz + l));
         v3 n = V3(rload(g->nx + l), rload(g->ny + l), rload(g->nz + l));
-        segment s = shadow_segment(p, n, light_load(ctx, uload(id + l)), rload(u + l), rload(v + l), K(ctx->stand_off));
+        segment s =
+            shadow_segment(p, n, light_load(ctx, uload(id + l)), rload(u + l), rload(v + l), K(ctx->ray_offset));
         ray_store(out, l, s.o, s.d);
     }
 }
@@ -46,7 +47,7 @@ static uint32_t shade(const struct core_context *ctx, const gblock *g, const rbl
         mask on = mload(lanes, l);
         if (!ANY(on))
             continue;
-        resv q = resv_load(r, l);
+        reservoir q = reservoir_load(r, l);
         surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
         dropped |= add_colour(out, l, sample_shade(s, q, light_load(ctx, q.light)), lanes);
     }
@@ -59,7 +60,7 @@ static void sky_rays(const struct core_context *ctx, const gblock *g, int x, int
                      rayblock *out) {
     for (int l = 0; l < BLOCK; l += LANES) {
         segment r = sky_ray(surf_load(ctx, g, l, ctx->frame->camera.eye), key_in(ctx, x, y, l, 0), uload(number + l),
-                            K(ctx->stand_off));
+                            K(ctx->ray_offset));
         ray_store(out, l, r.o, r.d);
     }
 }

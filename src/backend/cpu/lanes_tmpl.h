@@ -105,8 +105,8 @@ FN surf surf_load(CTX const gblock *g, int l, const float eye[3]) {
     return s;
 }
 
-FN resv resv_load(const rblock *b, int l) {
-    resv r;
+FN reservoir reservoir_load(const rblock *b, int l) {
+    reservoir r;
     r.light = uload(b->light + l);
     r.u = rload(b->u + l);
     r.v = rload(b->v + l);
@@ -116,7 +116,7 @@ FN resv resv_load(const rblock *b, int l) {
     return r;
 }
 
-FN void resv_store(rblock *b, int l, resv r) {
+FN void reservoir_store(rblock *b, int l, reservoir r) {
     ustore(b->light + l, r.light);
     rstore(b->u + l, r.u);
     rstore(b->v + l, r.v);
@@ -125,8 +125,8 @@ FN void resv_store(rblock *b, int l, resv r) {
     rstore(b->p + l, r.p);
 }
 
-FN resv resv_sel(mask c, resv a, resv b) {
-    resv r;
+FN reservoir reservoir_sel(mask c, reservoir a, reservoir b) {
+    reservoir r;
     r.light = selu(c, a.light, b.light);
     r.u = sel(c, a.u, b.u);
     r.v = sel(c, a.v, b.v);

@@ -69,7 +69,7 @@ noc_status noc_cpu_prepare_lights(cpu_view *s, const noc_plan *plan, const noc_r
 
 void noc_cpu_release_lights(cpu_view *s) {
     noc_light_set_release(s->world->lights, &s->sources);
-    free(s->past_lights);
+    free(s->previous_lights);
     for (int i = 0; i < s->worker_count; i++) {
         worker *w = &s->workers[i];
         free(w->picks.light);

@@ -12,7 +12,7 @@
 enum { CELL_PIXELS = 32, MOST_ASKED_A_TILE = 16 * BLOCK * TILE_BLOCKS * TILE_BLOCKS };
 _Static_assert(MOST_ASKED_A_TILE <= UINT16_MAX, "counts of a tile fit");
 
-/* ---- what is believed ---- */
+/* ---- what is expected ---- */
 
 static uint64_t key_of_block(const frame_camera *c, const gblock *g, uint32_t lanes) {
     int l = lanes >> 5 & 1 ? 5 : __builtin_ctz(lanes); /* one in the middle */
@@ -23,7 +23,7 @@ static uint64_t key_of_block(const frame_camera *c, const gblock *g, uint32_t la
 }
 
 /* Number of the block's cell among those of the tile. */
-static int believe(const stage_run *run, const gblock *g, uint32_t lanes, const light_list *list, tile_rays *t) {
+static int find_priors(const stage_run *run, const gblock *g, uint32_t lanes, const light_list *list, tile_rays *t) {
     bool learn = run->frame->plan->learns;
     uint64_t key = learn ? key_of_block(&run->ctx.frame->camera, g, lanes) : 1;
     for (int i = t->cells - 1; i >= 0; i--)
@@ -34,9 +34,9 @@ static int believe(const stage_run *run, const gblock *g, uint32_t lanes, const 
     c->key = key;
     for (uint32_t i = 0; i < list->count; i++) {
         float visibility = noc_cell_visibility(known, list->light[i]);
-        list_belief b = list_believe(list->weight[i], visibility);
-        c->beliefs.share[i] = b.share;
-        c->beliefs.expect[i] = b.expect;
+        list_prior b = list_prior_of(list->weight[i], visibility);
+        c->priors.share[i] = b.share;
+        c->priors.expect[i] = b.expect;
         c->asked[i] = c->seen[i] = 0;
     }
     return t->cells++;
@@ -48,13 +48,13 @@ static int believe(const stage_run *run, const gblock *g, uint32_t lanes, const 
 static void add_rays(stage_run *run, tile_rays *t, const struct core_context *ctx, const gblock *g, int block, int k,
                      int x, int y) {
     ray_draw *d = &t->draws[t->count];
-    segment_block *s = &t->segments[t->count++];
+    shadow_block *s = &t->segments[t->count++];
     float(*counts)[BLOCK] = run->s->b.aovs.made[NOC_AOV_RAYS];
     d->block = block;
     d->rays = t->asked.most;
     s->valid = 0;
     s->counts = counts ? counts[t->at[block]] : NULL;
-    run->k->list_ray(ctx, x, y, &t->cell[t->cell_of[block]].beliefs, &t->asked, k, &d->r);
+    run->k->list_ray(ctx, x, y, &t->cell[t->cell_of[block]].priors, &t->asked, k, &d->r);
     for (int l = 0; l < BLOCK; l++) {
         s->valid |= (uint32_t)(t->asked.times[k][l] > 0) << l;
         s->light[l] = d->r.light[l];
@@ -101,8 +101,8 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
             r->m[l] = lanes >> l & 1 ? (float)ctx.frame->draws : 0;
         if (!lanes || !ctx.at.lists->list.count)
             continue;
-        t->cell_of[n] = believe(run, g, lanes, &w->lists.list, t);
-        run->k->list_share(&ctx, g, lanes, at.x, at.y, run->s->list_brightness, &t->cell[t->cell_of[n]].beliefs,
+        t->cell_of[n] = find_priors(run, g, lanes, &w->lists.list, t);
+        run->k->list_share(&ctx, g, lanes, at.x, at.y, run->s->list_brightness, &t->cell[t->cell_of[n]].priors,
                            &t->asked);
         for (int l = 0; l < BLOCK; l++)
             t->bright += t->asked.bright[l];
@@ -115,7 +115,7 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
 }
 
 /* What the rays found goes into the tile's cells, and is handed on to be learned. */
-static void note_sightings(stage_run *run, worker *w, tile at) {
+static void note_observations(stage_run *run, worker *w, tile at) {
     tile_rays *t = &w->shared;
     const light_list *list = &w->lists.list;
     size_t item = (size_t)(at.y0 / TILE_BLOCKS) * (size_t)run->s->b.tiles_x + (size_t)(at.x0 / TILE_BLOCKS);
@@ -124,22 +124,22 @@ static void note_sightings(stage_run *run, worker *w, tile at) {
         for (uint32_t bits = t->segments[i].valid; bits; bits &= bits - 1) {
             int l = __builtin_ctz(bits);
             c->asked[t->draws[i].entry[l]]++;
-            c->seen[t->draws[i].entry[l]] += t->segments[i].clear >> l & 1;
+            c->seen[t->draws[i].entry[l]] += t->segments[i].unoccluded >> l & 1;
         }
     }
     learned_tile *out = &run->s->learned_tiles[item];
-    *out = (learned_tile){ (int)(w - run->s->workers), w->sightings.len, 0, t->bright };
+    *out = (learned_tile){ (int)(w - run->s->workers), w->observations.len, 0, t->bright };
     /* they grow with the picture */
-    if (!array_reserve(&w->sightings, w->sightings.len + (size_t)t->cells * list->count)) {
+    if (!array_reserve(&w->observations, w->observations.len + (size_t)t->cells * list->count)) {
         w->no_memory = true;
         return;
     }
     for (int k = 0; k < t->cells; k++)
         for (uint32_t i = 0; i < list->count; i++)
             if (t->cell[k].asked[i])
-                w->sightings.data[w->sightings.len++] =
-                    (noc_sighting){ t->cell[k].key, list->light[i], t->cell[k].asked[i], t->cell[k].seen[i] };
-    out->count = w->sightings.len - out->first;
+                w->observations.data[w->observations.len++] =
+                    (noc_observation){ t->cell[k].key, list->light[i], t->cell[k].asked[i], t->cell[k].seen[i] };
+    out->count = w->observations.len - out->first;
 }
 
 /* The rays of restir's pixels become their own reservoirs, of samples known to be seen. */
@@ -171,7 +171,8 @@ static void blank_hidden(const stage_run *run, const tile_rays *t) {
     rblock *r = run->s->b.r[run->stage->target];
     for (int i = 0; i < t->count; i += t->draws[i].rays)
         for (int l = 0; l < BLOCK; l++)
-            if (r[t->at[t->draws[i].block]].w[l] > 0 && !(t->segments[t->kept[t->draws[i].block][l]].clear >> l & 1))
+            if (r[t->at[t->draws[i].block]].w[l] > 0 &&
+                !(t->segments[t->kept[t->draws[i].block][l]].unoccluded >> l & 1))
                 r[t->at[t->draws[i].block]].w[l] = 0;
 }
 
@@ -181,14 +182,14 @@ void noc_cpu_trace_shared(stage_run *run, worker *w, tile at) {
         noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, t->segments, t->count);
     else
         for (int i = 0; i < t->count; i++)
-            t->segments[i].clear = t->segments[i].valid;
+            t->segments[i].unoccluded = t->segments[i].valid;
     for (int i = 0; i < t->count; i++)
         for (int l = 0; l < BLOCK; l++)
-            if (!(t->segments[i].clear >> l & 1))
+            if (!(t->segments[i].unoccluded >> l & 1))
                 t->draws[i].r.w[l] = 0;
     blank_hidden(run, t);
     if (run->frame->plan->learns)
-        note_sightings(run, w, at);
+        note_observations(run, w, at);
 }
 
 /* restir: a mixture of the rays and the reservoir. */
@@ -207,9 +208,10 @@ void noc_cpu_shade_shared(stage_run *run, worker *w, tile at) {
     const gblock *g = run->s->b.g[run->frame->gbuffer];
     for (int i = 0; i < t->count; i++) {
         size_t block = t->at[t->draws[i].block];
-        if (t->segments[i].clear)
-            w->dropped += (uint64_t)__builtin_popcount(
-                run->k->shade(&run->ctx, &g[block], &t->draws[i].r, t->segments[i].clear, &run->s->b.colour[block]));
+        if (t->segments[i].unoccluded)
+            w->dropped +=
+                (uint64_t)__builtin_popcount(run->k->shade(&run->ctx, &g[block], &t->draws[i].r,
+                                                           t->segments[i].unoccluded, &run->s->b.colour[block]));
     }
 }
 
@@ -221,10 +223,10 @@ noc_status noc_cpu_begin_learning(cpu_view *s, const noc_frame *frame) {
         return NOC_OK;
     if (!s->learned && !(s->learned = noc_learned_create(tiles, s->log)))
         return NOC_ERR_MEMORY;
-    if (!s->sightings) {
+    if (!s->observations) {
         s->learned_tiles = noc_alloc_large(tiles, sizeof(*s->learned_tiles));
-        s->sightings = s->learned_tiles ? noc_alloc_large(tiles, sizeof(*s->sightings)) : NULL;
-        if (!s->sightings) {
+        s->observations = s->learned_tiles ? noc_alloc_large(tiles, sizeof(*s->observations)) : NULL;
+        if (!s->observations) {
             noc_cpu_release_tiles(s);
             return noc_error(s->log, NOC_ERR_MEMORY, "lights: no memory to learn their visibility in %zu tiles", tiles);
         }
@@ -235,7 +237,7 @@ noc_status noc_cpu_begin_learning(cpu_view *s, const noc_frame *frame) {
         s->learned_epoch = frame->epoch;
     }
     for (int i = 0; i < s->worker_count; i++)
-        s->workers[i].sightings.len = 0;
+        s->workers[i].observations.len = 0;
     return NOC_OK;
 }
 
@@ -246,19 +248,19 @@ void noc_cpu_end_learning(cpu_view *s, const noc_frame *frame) {
         return;
     for (size_t i = 0; i < tiles; i++) {
         const learned_tile *t = &s->learned_tiles[i];
-        s->sightings[i] = (noc_sightings){ s->workers[t->worker].sightings.data + t->first, t->count };
+        s->observations[i] = (noc_observations){ s->workers[t->worker].observations.data + t->first, t->count };
         bright += t->bright;
     }
-    noc_learned_add(s->learned, s->pool, s->sightings, tiles);
+    noc_learned_add(s->learned, s->pool, s->observations, tiles);
     s->list_brightness = (float)(bright / ((double)s->b.width * s->b.height));
 }
 
 void noc_cpu_release_tiles(cpu_view *s) {
     free(s->learned_tiles);
-    free(s->sightings);
+    free(s->observations);
     for (int i = 0; i < s->worker_count; i++)
-        array_free(&s->workers[i].sightings);
-    s->sightings = NULL;
+        array_free(&s->workers[i].observations);
+    s->observations = NULL;
     s->learned_tiles = NULL;
 }
 

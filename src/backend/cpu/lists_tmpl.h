@@ -10,20 +10,20 @@ static void list_candidates(const struct core_context *ctx, const gblock *g, uin
                             rblock *out) {
     for (int l = 0; l < BLOCK; l += LANES) {
         mask on = mload(lanes, l);
-        resv r = resv_empty();
+        reservoir r = reservoir_empty();
         if (ctx->at.lists->list.count && ANY(on)) {
-            resv q = ris_list(ctx, surf_load(ctx, g, l, ctx->frame->camera.eye), key_of(ctx, x, y, l),
-                              ctx->at.lists->list.count);
-            r = resv_sel(on, q, r);
+            reservoir q = ris_list(ctx, surf_load(ctx, g, l, ctx->frame->camera.eye), key_of(ctx, x, y, l),
+                                   ctx->at.lists->list.count);
+            r = reservoir_sel(on, q, r);
         }
         r.m = sel(on, K(F32(ctx->frame->draws)), K(0.0f));
-        resv_store(out, l, r);
+        reservoir_store(out, l, r);
     }
 }
 
 /* ---- several rays: core/list_rays.h ---- */
 
-FN list_belief belief_load(CTX u1 i) { return (list_belief){ ctx->at.beliefs->share[i], ctx->at.beliefs->expect[i] }; }
+FN list_prior prior_load(CTX u1 i) { return (list_prior){ ctx->at.priors->share[i], ctx->at.priors->expect[i] }; }
 
 /* Each lane's own element. */
 FN real lane_reals(const float *from, u32 i) {
@@ -34,7 +34,7 @@ FN real lane_reals(const float *from, u32 i) {
         x[l] = from[at[l]];
     return rload(x);
 }
-FN real belief_share(CTX u32 i) { return lane_reals(ctx->at.beliefs->share, i); }
+FN real prior_share(CTX u32 i) { return lane_reals(ctx->at.priors->share, i); }
 FN real entry_weight(CTX u32 i) { return lane_reals(ctx->at.lists->list.weight, i); }
 FN u32 entry_light(CTX u32 i) {
     uint32_t at[LANES];
@@ -78,9 +78,9 @@ static list_sums sums_load(const list_asked *a, int l) {
 }
 
 static void list_share(const struct core_context *tile, const gblock *g, uint32_t lanes, int x, int y, float brightness,
-                       const beliefs *of, list_asked *out) {
+                       const priors *of, list_asked *out) {
     struct core_context block = *tile, *ctx = &block;
-    ctx->at.beliefs = of;
+    ctx->at.priors = of;
     ctx->at.asked = out;
     memset(out->entry, 0, sizeof(out->entry));
     memset(out->times, 0, sizeof(out->times));
@@ -107,10 +107,10 @@ static void list_share(const struct core_context *tile, const gblock *g, uint32_
     }
 }
 
-static void list_ray_of(const struct core_context *tile, int x, int y, const beliefs *of, list_asked *asked, int k,
+static void list_ray_of(const struct core_context *tile, int x, int y, const priors *of, list_asked *asked, int k,
                         rblock *out) {
     struct core_context block = *tile, *ctx = &block;
-    ctx->at.beliefs = of;
+    ctx->at.priors = of;
     ctx->at.asked = asked;
     for (int l = 0; l < BLOCK; l += LANES) {
         ctx->at.lane = l;

@@ -25,9 +25,9 @@ static bool make_room(cpu_view *s) {
     if (!more)
         return false;
     if (s->past_filled)
-        memcpy(more, s->past_lights, s->past_room * sizeof(*more));
-    free(s->past_lights);
-    s->past_lights = more;
+        memcpy(more, s->previous_lights, s->past_room * sizeof(*more));
+    free(s->previous_lights);
+    s->previous_lights = more;
     s->past_room = room;
     return true;
 }
@@ -35,7 +35,7 @@ static bool make_room(cpu_view *s) {
 noc_status noc_cpu_begin_past(cpu_view *s, const noc_plan *plan) {
     const noc_scene_versions *now = &s->scene->versions, *then = &s->seen;
     s->past_lost = false;
-    if (!plan->past_lights) {
+    if (!plan->previous_lights) {
         s->past_filled = false;
         return NOC_OK;
     }
@@ -51,24 +51,25 @@ void noc_cpu_keep_past(cpu_view *s) {
     const noc_scene *scene = s->scene;
     noc_scene_versions then = s->seen;
     s->seen = scene->versions;
-    if (!s->past_lights || (s->past_filled && same_lights(&then, &s->seen)))
+    if (!s->previous_lights || (s->past_filled && same_lights(&then, &s->seen)))
         return;
     bool last = s->past_filled && then.commits + 1 == s->seen.commits; /* that commit wrote these, and no others */
     noc_range r = last ? scene->dirty_lights : (noc_range){ 0, scene->lights.len };
     if (r.first < r.end)
-        memcpy(s->past_lights + r.first, scene->lights.data + r.first, (r.end - r.first) * sizeof(*s->past_lights));
+        memcpy(s->previous_lights + r.first, scene->lights.data + r.first,
+               (r.end - r.first) * sizeof(*s->previous_lights));
     s->past_filled = true;
 }
 
-struct core_context noc_cpu_past(const cpu_view *s, const struct core_context *now, noc_ray_world *in) {
+struct core_context noc_cpu_previous(const cpu_view *s, const struct core_context *now, noc_ray_world *in) {
     struct core_context past = *now;
     if (s->past_filled && !same_lights(&s->seen, &s->scene->versions))
-        past.lights = s->past_lights;
+        past.lights = s->previous_lights;
     *in = noc_cpu_shape(&s->seen) == noc_cpu_shape(&s->scene->versions) ? NOC_RAYS_NOW : NOC_RAYS_PAST;
     return past;
 }
 
-size_t noc_cpu_past_bytes(const cpu_view *s) { return s->past_room * sizeof(*s->past_lights); }
+size_t noc_cpu_past_bytes(const cpu_view *s) { return s->past_room * sizeof(*s->previous_lights); }
 
 /* v turned by m, or back by it: m is a rotation times a scale, and so is what takes back, by one over the scale. */
 static void turn(const float m[12], bool back, const double v[3], double out[3]) {

@@ -14,9 +14,9 @@ int noc_cpu_tile_blocks(const stage_run *run, tile t, tile_block out[TILE_BLOCKS
     return n;
 }
 
-segment_block *noc_cpu_gather(const stage_run *run, worker *w, size_t at, uint32_t valid) {
+shadow_block *noc_cpu_gather(const stage_run *run, worker *w, size_t at, uint32_t valid) {
     float(*counts)[BLOCK] = run->s->b.aovs.made[NOC_AOV_RAYS];
-    segment_block *s = &w->batch.blocks[w->batch.count++];
+    shadow_block *s = &w->batch.blocks[w->batch.count++];
     s->valid = valid;
     s->counts = counts ? counts[at] : NULL;
     return s;
@@ -24,7 +24,7 @@ segment_block *noc_cpu_gather(const stage_run *run, worker *w, size_t at, uint32
 
 void noc_cpu_gather_segments(const stage_run *run, worker *w, size_t at, uint32_t valid, const gblock *g,
                              const uint32_t *id, const float *u, const float *v) {
-    segment_block *s = noc_cpu_gather(run, w, at, valid);
+    shadow_block *s = noc_cpu_gather(run, w, at, valid);
     memcpy(s->light, id, sizeof(s->light));
     run->k->segments(&run->ctx, g, id, u, v, &s->rays);
 }
@@ -176,7 +176,7 @@ static void visibility(stage_run *run, worker *w, tile t) {
     }
     noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
     for (int i = 0; i < w->batch.count; i++) {
-        uint32_t seen = w->batch.blocks[i].clear;
+        uint32_t seen = w->batch.blocks[i].unoccluded;
         for (int l = 0; l < BLOCK; l++)
             if (!(seen >> l & 1))
                 r[asked[i]].w[l] = 0;
@@ -232,7 +232,7 @@ static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, cons
         }
         noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
         for (uint32_t i = 0; i < n; i++)
-            dropped |= run->k->shade(&run->ctx, g, &r[i], rays ? w->batch.blocks[i].clear : lanes[i], c);
+            dropped |= run->k->shade(&run->ctx, g, &r[i], rays ? w->batch.blocks[i].unoccluded : lanes[i], c);
     }
     return dropped;
 }
@@ -254,11 +254,11 @@ static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, i
             noc_cpu_gather_segments(run, w, at, asked[i], &g[at], r[at].light, r[at].u, r[at].v);
     }
     noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
-    const segment_block *answer = w->batch.blocks;
+    const shadow_block *answer = w->batch.blocks;
     for (int i = 0; i < n; i++) {
         size_t at = blocks[i].at;
         if (asked[i])
-            lanes[i] = (lanes[i] & ~asked[i]) | answer++->clear;
+            lanes[i] = (lanes[i] & ~asked[i]) | answer++->unoccluded;
         if (!lanes[i])
             continue;
         rblock part;
@@ -332,17 +332,17 @@ static void sky(stage_run *run, worker *w, tile t) {
             if (!lanes)
                 continue;
             asked[w->batch.count] = at;
-            segment_block *s = noc_cpu_gather(run, w, at, lanes);
+            shadow_block *s = noc_cpu_gather(run, w, at, lanes);
             run->k->sky_rays(&run->ctx, &g[at], blocks[i].x, blocks[i].y, number, &s->rays);
             memset(s->light, 0, sizeof(s->light));
         }
         noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
         for (int i = 0; i < w->batch.count; i++) {
-            const segment_block *s = &w->batch.blocks[i];
+            const shadow_block *s = &w->batch.blocks[i];
             size_t at = asked[i];
-            if (s->clear)
+            if (s->unoccluded)
                 w->dropped += (uint64_t)__builtin_popcount(
-                    run->k->sky_shade(&run->ctx, &g[at], &s->rays, share[i], s->clear, &b->colour[at]));
+                    run->k->sky_shade(&run->ctx, &g[at], &s->rays, share[i], s->unoccluded, &b->colour[at]));
         }
     }
 }

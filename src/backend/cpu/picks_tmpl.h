@@ -69,11 +69,12 @@ static void given(const struct core_context *frame, const gblock *g, uint32_t la
     c.at.picks = picks;
     for (int l = 0; l < BLOCK; l += LANES) {
         mask on = mload(lanes, l);
-        resv r = resv_empty();
+        reservoir r = reservoir_empty();
         c.at.lane = l;
         if (ctx->light_count && ANY(on))
-            r = resv_sel(on, ris_given(ctx, surf_load(ctx, g, l, ctx->frame->camera.eye), key_of(ctx, x, y, l), m), r);
-        resv_store(out, l, r);
+            r = reservoir_sel(on, ris_given(ctx, surf_load(ctx, g, l, ctx->frame->camera.eye), key_of(ctx, x, y, l), m),
+                              r);
+        reservoir_store(out, l, r);
     }
 }
 

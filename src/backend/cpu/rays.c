@@ -32,11 +32,11 @@ static void count_rays(worker *w, float *counts, uint32_t valid) {
         counts[l] += (float)(valid >> l & 1);
 }
 
-void noc_cpu_trace_occlusion(cpu_view *s, worker *w, noc_ray_world in, segment_block *blocks, int count) {
+void noc_cpu_trace_occlusion(cpu_view *s, worker *w, noc_ray_world in, shadow_block *blocks, int count) {
     for (int first = 0; first < count; first += MANY_BLOCKS) {
         int n = NOC_MIN(MANY_BLOCKS, count - first);
         for (int i = 0; i < n; i++) {
-            segment_block *b = &blocks[first + i];
+            shadow_block *b = &blocks[first + i];
             count_rays(w, b->counts, b->valid);
             keep(s, w, &b->rays, b->light, b->valid, n - i, false);
         }
@@ -142,7 +142,7 @@ struct replay {
 static void replay_run(void *ctx, size_t item, int index) {
     struct replay *r = ctx;
     const packet *p = r->items[item].first, *end = p + r->items[item].count;
-    segment_block many[MANY_BLOCKS];
+    shadow_block many[MANY_BLOCKS];
     (void)index;
     while (p < end) {
         int n = (int)NOC_MIN((ptrdiff_t)p->together, end - p);

@@ -28,7 +28,7 @@ static void ask_neighbours(const stage_run *run, const struct core_context *ther
     for (int i = 0; i < b->k; i++) {
         if (!b->asked[i])
             continue;
-        segment_block *s = noc_cpu_gather(run, w, b->at, b->asked[i]);
+        shadow_block *s = noc_cpu_gather(run, w, b->at, b->asked[i]);
         memcpy(s->light, b->held.light, sizeof(s->light));
         run->k->segments(there, &b->n[i].g, b->held.light, b->held.u, b->held.v, &s->rays);
     }
@@ -50,10 +50,10 @@ static void resolve(const stage_run *run, worker *w, int count) {
     }
     noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
     for (int i = 0; i < w->batch.count; i++) {
-        const segment_block *s = &w->batch.blocks[i];
-        asked[i]->visible |= s->clear;
+        const shadow_block *s = &w->batch.blocks[i];
+        asked[i]->visible |= s->unoccluded;
         for (int l = 0; l < BLOCK; l++)
-            if (s->valid >> l & ~(s->clear >> l) & 1)
+            if (s->valid >> l & ~(s->unoccluded >> l) & 1)
                 r[asked[i]->at].w[l] = 0;
     }
 }
@@ -75,13 +75,13 @@ static void combine(stage_run *run, const struct core_context *there, noc_ray_wo
             memset(c->asked, 0, sizeof(c->asked));
     }
     noc_cpu_trace_occlusion(run->s, w, in, w->batch.blocks, w->batch.count);
-    const segment_block *answer = w->batch.blocks;
+    const shadow_block *answer = w->batch.blocks;
     for (int i = 0; i < count; i++) {
         combining *c = &w->combining[i];
         rblock out; /* the old one may lie where the new one goes */
         for (int k = 0; k < c->k; k++)
             if (c->asked[k])
-                c->unoccluded[k] = answer++->clear;
+                c->unoccluded[k] = answer++->unoccluded;
         run->k->reuse_end(&run->ctx, c, &out);
         b->r[run->stage->target][c->at] = out;
     }
@@ -142,7 +142,7 @@ void noc_cpu_temporal(stage_run *run, worker *w, tile t) {
         count += fetch_history(run, c);
     }
     noc_ray_world in;
-    struct core_context past = noc_cpu_past(run->s, &run->ctx, &in);
+    struct core_context past = noc_cpu_previous(run->s, &run->ctx, &in);
     combine(run, &past, in, w, count);
 }
 

@@ -6,7 +6,7 @@
 #include "core/neighbours.h"
 
 FN mask neighbour_on(CTX int i) { return mload(ctx->at.combining->n[i].lanes, ctx->at.lane); }
-FN resv neighbour_resv(CTX int i) { return resv_load(&ctx->at.combining->n[i].r, ctx->at.lane); }
+FN reservoir neighbour_resv(CTX int i) { return reservoir_load(&ctx->at.combining->n[i].r, ctx->at.lane); }
 FN surf neighbour_surf(CTX int i) {
     const combining *b = ctx->at.combining;
     return surf_load(ctx, &b->n[i].g, ctx->at.lane, b->eye->eye);
@@ -29,8 +29,8 @@ static uint32_t history_places(const struct core_context *ctx, const gblock *g, 
     return lanes;
 }
 
-static stream held_load(const held_block *b, int l) {
-    stream s;
+static reservoir_builder held_load(const held_block *b, int l) {
+    reservoir_builder s;
     s.light = uload(b->light + l);
     s.u = rload(b->u + l);
     s.v = rload(b->v + l);
@@ -41,7 +41,7 @@ static stream held_load(const held_block *b, int l) {
     return s;
 }
 
-static void held_store(held_block *b, int l, stream s) {
+static void held_store(held_block *b, int l, reservoir_builder s) {
     ustore(b->light + l, s.light);
     rstore(b->u + l, s.u);
     rstore(b->v + l, s.v);
@@ -64,7 +64,7 @@ static void combine_begin(const struct core_context *frame, combining *b) {
         struct core_context c = context_at(frame, b, l), *ctx = &c;
         surf s = surf_load(ctx, b->g, l, ctx->frame->camera.eye);
         held_store(&b->held, l,
-                   reuse_begin(ctx, s, resv_load(b->own, l), key_of(ctx, b->x, b->y, l), KU(b->dim), b->k));
+                   reuse_begin(ctx, s, reservoir_load(b->own, l), key_of(ctx, b->x, b->y, l), KU(b->dim), b->k));
     }
 }
 
@@ -72,7 +72,7 @@ static void combine_ask(const struct core_context *there, combining *b) {
     memset(b->asked, 0, sizeof(b->asked));
     for (int l = 0; l < BLOCK; l += LANES) {
         struct core_context c = context_at(there, b, l), *ctx = &c;
-        stream held = held_load(&b->held, l);
+        reservoir_builder held = held_load(&b->held, l);
         light li = light_load(ctx, held.light);
         for (int i = 0; i < b->k; i++) {
             real p = reuse_target(ctx, i, held, li);
@@ -87,9 +87,9 @@ static void combine_end(const struct core_context *frame, combining *b, rblock *
     for (int l = 0; l < BLOCK; l += LANES) {
         struct core_context c = context_at(frame, b, l), *ctx = &c;
         surf s = surf_load(ctx, b->g, l, ctx->frame->camera.eye);
-        combined r = reuse_end(ctx, s, resv_load(b->own, l), held_load(&b->held, l), key_of(ctx, b->x, b->y, l),
+        combined r = reuse_end(ctx, s, reservoir_load(b->own, l), held_load(&b->held, l), key_of(ctx, b->x, b->y, l),
                                KU(b->dim), b->k);
-        resv_store(out, l, r.r);
+        reservoir_store(out, l, r.r);
         own |= mbits(r.own) << l;
     }
     b->visible &= own;

@@ -8,12 +8,12 @@
 enum { MANY_BLOCKS = 32 }; /* whose segments are traced together */
 
 /* Segments of 16 pixels to be traced together with those of other blocks. */
-typedef struct segment_block {
+typedef struct shadow_block {
     rayblock rays;
-    uint32_t light[BLOCK]; /* what each leads to: any number will do, equal ones are traced together */
-    uint32_t valid, clear; /* lanes to be traced; those of them that nothing blocks */
-    float *counts;         /* of the block's pixels, for the AOV that counts rays, or NULL */
-} segment_block;
+    uint32_t light[BLOCK];      /* what each leads to: any number will do, equal ones are traced together */
+    uint32_t valid, unoccluded; /* lanes to be traced; those of them that nothing blocks */
+    float *counts;              /* of the block's pixels, for the AOV that counts rays, or NULL */
+} shadow_block;
 
 /* Nearest hits. */
 typedef struct hitblock {
@@ -48,7 +48,7 @@ typedef struct noc_tracer {
     void (*closest)(void *structure, noc_ray_world in, const rayblock *rays, float far, uint32_t valid, bool coherent,
                     hitblock *hits);
     /* Sets `clear` of up to MANY_BLOCKS blocks. */
-    void (*occluded)(void *structure, noc_ray_world in, segment_block *blocks, int count);
+    void (*occluded)(void *structure, noc_ray_world in, shadow_block *blocks, int count);
 } noc_tracer;
 
 #endif

@@ -172,7 +172,7 @@ static void closest(void *structure, noc_ray_world in, const rayblock *rays, flo
 }
 
 /* What the base does not block is traced above it. */
-static void occluded(void *structure, noc_ray_world in, segment_block *blocks, int count) {
+static void occluded(void *structure, noc_ray_world in, shadow_block *blocks, int count) {
     const embree_structure *s = structure;
     const embree_generation *g = in == NOC_RAYS_PAST ? &s->past : &s->now;
     uint32_t valid[MANY_BLOCKS];
@@ -181,7 +181,7 @@ static void occluded(void *structure, noc_ray_world in, segment_block *blocks, i
         return;
     for (int i = 0; i < count; i++) {
         valid[i] = blocks[i].valid;
-        blocks[i].valid = blocks[i].clear;
+        blocks[i].valid = blocks[i].unoccluded;
     }
     noc_embree_trace_many(g->top, blocks, count);
     for (int i = 0; i < count; i++)

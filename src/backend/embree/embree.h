@@ -67,6 +67,6 @@ bool noc_embree_room(int threads, size_t bytes);
 bool noc_embree_room_for_threads(int threads);
 /* many.c: noc_tracer.occluded. Segments that lead to one light are traced side by side, the others as a stream
  * (bench/bench_rays has the gain). */
-void noc_embree_trace_many(RTCScene scene, segment_block *blocks, int count);
+void noc_embree_trace_many(RTCScene scene, shadow_block *blocks, int count);
 
 #endif

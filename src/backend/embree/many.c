@@ -12,13 +12,13 @@ typedef struct grouping {
     int groups, count;
 } grouping;
 
-static uint64_t group_key(const segment_block *b, int l) {
+static uint64_t group_key(const shadow_block *b, int l) {
     uint32_t octant = (b->rays.d[0][l] < 0) | (b->rays.d[1][l] < 0) << 1 | (b->rays.d[2][l] < 0) << 2;
     return (uint64_t)b->light[l] << 3 | octant;
 }
 
 /* Groups are numbered as they come, so the result is the same everywhere. */
-static void group_rays(const segment_block *blocks, int count, grouping *g) {
+static void group_rays(const shadow_block *blocks, int count, grouping *g) {
     uint64_t keys[RAYS];
     uint16_t slots[SLOTS], ray[RAYS], group[RAYS];
     memset(slots, 0xff, sizeof(slots));
@@ -49,10 +49,10 @@ static void group_rays(const segment_block *blocks, int count, grouping *g) {
         g->at[next[group[i]]++] = ray[i];
 }
 
-static void mark_clear(segment_block *blocks, uint16_t ray) { blocks[ray / BLOCK].clear |= 1u << ray % BLOCK; }
+static void mark_clear(shadow_block *blocks, uint16_t ray) { blocks[ray / BLOCK].unoccluded |= 1u << ray % BLOCK; }
 
 /* Up to 16 rays. */
-static void trace_packet(RTCScene scene, segment_block *blocks, const uint16_t *at, int n) {
+static void trace_packet(RTCScene scene, shadow_block *blocks, const uint16_t *at, int n) {
     ALIGNED int lanes[BLOCK];
     ALIGNED struct RTCRay16 r;
     for (int l = 0; l < BLOCK; l++) {
@@ -77,7 +77,7 @@ static void trace_packet(RTCScene scene, segment_block *blocks, const uint16_t *
 }
 
 /* Rays without company. */
-static void trace_rest(RTCScene scene, segment_block *blocks, const uint16_t *at, int n) {
+static void trace_rest(RTCScene scene, shadow_block *blocks, const uint16_t *at, int n) {
 #ifdef RT_STREAMS
     struct RTCRay r[RAYS];
     for (int i = 0; i < n; i++) {
@@ -103,12 +103,12 @@ static void trace_rest(RTCScene scene, segment_block *blocks, const uint16_t *at
 #endif
 }
 
-void noc_embree_trace_many(RTCScene scene, segment_block *blocks, int count) {
+void noc_embree_trace_many(RTCScene scene, shadow_block *blocks, int count) {
     grouping g;
     uint16_t rest[RAYS];
     int left = 0;
     for (int i = 0; i < count; i++)
-        blocks[i].clear = 0;
+        blocks[i].unoccluded = 0;
     group_rays(blocks, count, &g);
     for (int i = 0; i < g.groups; i++) {
         int from = g.start[i], to = g.start[i + 1];
