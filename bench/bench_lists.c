@@ -146,8 +146,8 @@ static bool time_lists(const noc_scene *s, const noc_camera *camera, int width, 
             if (!any)
                 continue;
             u32 key = rng_key(1, (uint32_t)t, (uint32_t)round);
-            e->kernels->list_build(&ctx, g, lanes, n, rng(key, DIM_LIST), &e->workers[0].lists);
-            entries += e->workers[0].lists.list.count;
+            e->kernels->list_build(&ctx, g, lanes, n, rng(key, DIM_LIST), &e->workers[0].lists->build);
+            entries += e->workers[0].lists->build.list.count;
             tiles++;
         }
         us[round] = 1e6 * (noc_cpu_seconds() - start) / (double)NOC_MAX(tiles, 1);

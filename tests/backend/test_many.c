@@ -135,10 +135,10 @@ static void kept_rays(void **state) {
         noc_cpu_trace_occlusion(s, &s->workers[0], NOC_RAYS_NOW, blocks, 1);
     }
     noc_backend_embree.record(s, false);
-    assert_int_equal(s->workers[0].packet_count, 3 * (MANY_BLOCKS + 4));
+    assert_int_equal(s->workers[0].record.count, 3 * (MANY_BLOCKS + 4));
     assert_int_equal(noc_backend_embree.replay(s, &seconds), NOC_OK);
     assert_true(seconds >= 0);
-    assert_int_equal(s->workers[0].packet_count, 0);
+    assert_int_equal(s->workers[0].record.count, 0);
     close_cpu_view(s);
     noc_scene_destroy(scene);
 }

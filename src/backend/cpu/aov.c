@@ -73,14 +73,14 @@ static float expected(const stage_run *run, const worker *w, uint32_t light, int
     if (p->candidates == NOC_CANDIDATES_UNIFORM)
         return (float)p->candidate_count / (float)run->ctx.light_count;
     if (p->candidates == NOC_CANDIDATES_LISTS) {
-        const light_list *list = &w->lists.list;
+        const light_list *list = &w->lists->build.list;
         for (uint32_t i = 0; i < list->count; i++)
             if (list->light[i] == light)
                 return 1 / (list->weight[i] * (float)list->copies);
     } else {
         for (int i = 0; i < p->candidate_count; i++)
-            if (w->picks.light[i][l] == light && w->picks.inverse[i][l] > 0)
-                return (float)p->candidate_count / w->picks.inverse[i][l];
+            if (w->picks->drawn.light[i][l] == light && w->picks->drawn.inverse[i][l] > 0)
+                return (float)p->candidate_count / w->picks->drawn.inverse[i][l];
     }
     return -1;
 }
@@ -93,8 +93,8 @@ void noc_cpu_aov_candidates(const stage_run *run, const worker *w, int i, size_t
         if (!(lanes >> l & 1))
             continue;
         if (v->made[NOC_AOV_LIGHTS])
-            v->made[NOC_AOV_LIGHTS][block][l] =
-                (float)(lists ? w->lists.list.count / w->lists.list.copies : noc_found_count(&w->found, i, l));
+            v->made[NOC_AOV_LIGHTS][block][l] = (float)(lists ? w->lists->build.list.count / w->lists->build.list.copies
+                                                              : noc_found_count(&w->picks->found, i, l));
         if (v->made[NOC_AOV_DENSITY] && r->w[l] > 0)
             v->made[NOC_AOV_DENSITY][block][l] = expected(run, w, r->light[l], l);
     }

@@ -58,25 +58,39 @@ typedef struct learned_tile {
     double bright; /* sum of what its pixels are expected to see, cd/m2 */
 } learned_tile;
 
+/* Scratch of passes, one a thread, made when a plan first has such a pass (scratch.c). */
+typedef struct list_pass { /* lists: the list of the tile at work and the rays over it, from pass to pass of a stage */
+    list_scratch build;
+    tile_rays rays;
+    NOC_ARRAY(noc_observation) observations; /* of the frame being made */
+} list_pass;
+
+typedef struct pick_pass { /* power, influence, light-bvh */
+    pick_block drawn;
+    tree_items items[2]; /* light-bvh */
+    noc_found found;     /* influence: by the tile at work */
+    /* [found_bins] surfaces of the frame by the number of lights found; NULL: never asked */
+    uint64_t *found_counts;
+} pick_pass;
+
+/* Rays that are kept to be traced again. */
+typedef struct recorder {
+    packet *packets;
+    size_t count, room;
+    bool lost; /* there was no memory for all of them */
+} recorder;
+
 /* One a thread; a multiple of a cache line apart. */
 typedef struct worker {
     ALIGNED double seconds[NOC_PASS_COUNT];
     uint64_t rays_primary, rays_shadow, dropped;
-    combining *combining; /* of a tile's blocks */
-    ray_batch batch;
-    reference_scratch reference;
-    list_scratch lists;
-    tile_rays shared;
-    NOC_ARRAY(noc_observation) observations; /* of the frame being made */
-    pick_block picks;
-    tree_items tree_items[2];
-    noc_found found; /* bvh: by a tile */
-    /* [found_bins] surfaces of the frame by the number of lights found; NULL: never asked */
-    uint64_t *found_counts;
     bool no_memory;  /* was refused to a tile: the frame is dropped */
-    packet *packets; /* kept while recording */
-    size_t packet_count, packet_room;
-    bool packets_lost; /* there was no memory for all of them */
+    ray_batch batch; /* of the pass at work */
+    list_pass *lists;
+    pick_pass *picks;
+    combining *combining; /* reuse: of a tile's blocks */
+    reference_scratch *reference;
+    recorder record;
 } worker;
 
 /* Views (noc_aov): those of the frame being made, and of the last complete one. Entries that are not asked for are
@@ -229,6 +243,10 @@ void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t vali
                      uint32_t *instance);
 void noc_cpu_probe(void *user, noc_probes *probes); /* a noc_probe_fn; user is the cpu_world */
 noc_status noc_cpu_replay_rays(cpu_view *s, double *seconds);
+
+/* scratch.c: what the passes of a plan want, for each thread */
+noc_status noc_cpu_prepare_scratch(cpu_view *s, const noc_plan *plan);
+void noc_cpu_free_scratch(cpu_view *s);
 
 /* lights.c: what the candidates of these parameters are drawn from */
 noc_status noc_cpu_prepare_lights(cpu_view *s, const noc_plan *plan, const noc_render_params *p);

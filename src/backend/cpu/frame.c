@@ -50,6 +50,8 @@ noc_status noc_cpu_stage(void *state, const noc_frame *frame, const noc_stage *s
     if (status == NOC_OK)
         status = noc_cpu_fit_scene(s);
     if (status == NOC_OK)
+        status = noc_cpu_prepare_scratch(s, frame->plan);
+    if (status == NOC_OK)
         status = noc_cpu_prepare_lights(s, frame->plan, frame->params);
     if (status == NOC_OK)
         status = noc_cpu_begin_aovs(s, frame->params->aovs, st == &frame->plan->stages[0]);

@@ -1,94 +1,24 @@
-/* What the candidates of a view are drawn from, and the scratch that drawing takes. */
+/* What the candidates of a view are drawn from, and what is told of it. */
 #include "backend/cpu/cpu.h"
-
-enum { MAX_DRAWS = 1024 + PICK_AHEAD };
-
-static noc_status prepare_picks(cpu_view *s) {
-    for (int i = 0; i < s->worker_count; i++) {
-        pick_block *p = &s->workers[i].picks;
-        if (!p->light)
-            p->light = noc_alloc_large(MAX_DRAWS, sizeof(*p->light));
-        if (!p->inverse)
-            p->inverse = noc_alloc_large(MAX_DRAWS, sizeof(*p->inverse));
-        if (!p->light || !p->inverse)
-            return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for light candidates");
-    }
-    return NOC_OK;
-}
-
-static noc_status prepare_tree_items(cpu_view *s) {
-    for (int i = 0; i < 2 * s->worker_count; i++) {
-        tree_items *t = &s->workers[i / 2].tree_items[i % 2];
-        t->pair = t->pair ? t->pair : noc_alloc_large(TREE_ITEMS, sizeof(*t->pair));
-        t->what = t->what ? t->what : noc_alloc_large(TREE_ITEMS, sizeof(*t->what));
-        t->pmf = t->pmf ? t->pmf : noc_alloc_large(TREE_ITEMS, sizeof(*t->pmf));
-        if (!t->pair || !t->what || !t->pmf)
-            return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for light candidates");
-    }
-    return NOC_OK;
-}
-
-static noc_status prepare_found(cpu_view *s) {
-    uint32_t bins = (uint32_t)NOC_MIN(s->scene->lights.len, (size_t)FOUND_MOST) + 1;
-    bool more = bins > s->found_bins;
-    s->found_bins = NOC_MAX(bins, s->found_bins);
-    for (int i = 0; i < s->worker_count; i++) {
-        uint64_t **counts = &s->workers[i].found_counts;
-        if (more) {
-            free(*counts);
-            *counts = NULL;
-        }
-        if (!*counts && !(*counts = noc_alloc_large(s->found_bins, sizeof(**counts))))
-            return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory to count the lights that are found");
-    }
-    return NOC_OK;
-}
 
 static bool draws_candidates(const noc_render_params *p) {
     return p->method == NOC_METHOD_RIS || p->method == NOC_METHOD_RESTIR;
 }
 
-/* Scratch that the candidates of a frame want. */
-static noc_status prepare_scratch(cpu_view *s, noc_candidates candidates) {
-    noc_status status = NOC_OK;
-    if (candidates == NOC_CANDIDATES_UNIFORM || candidates == NOC_CANDIDATES_LISTS)
-        return NOC_OK;
-    if (candidates == NOC_CANDIDATES_INFLUENCE)
-        status = prepare_found(s);
-    if (candidates == NOC_CANDIDATES_LIGHT_BVH)
-        status = prepare_tree_items(s);
-    return status == NOC_OK ? prepare_picks(s) : status;
-}
-
 noc_status noc_cpu_prepare_lights(cpu_view *s, const noc_plan *plan, const noc_render_params *p) {
-    if (!plan->draws)
-        return NOC_OK;
-    noc_status status = noc_light_set_get(s->world->lights, plan->candidates, p, &s->sources);
-    return status == NOC_OK ? prepare_scratch(s, plan->candidates) : status;
+    return plan->draws ? noc_light_set_get(s->world->lights, plan->candidates, p, &s->sources) : NOC_OK;
 }
 
 void noc_cpu_release_lights(cpu_view *s) {
     noc_light_set_release(s->world->lights, &s->sources);
     free(s->previous_lights);
-    for (int i = 0; i < s->worker_count; i++) {
-        worker *w = &s->workers[i];
-        free(w->picks.light);
-        free(w->picks.inverse);
-        noc_found_free(&w->found);
-        free(w->found_counts);
-        for (int k = 0; k < 2; k++) {
-            free(w->tree_items[k].pair);
-            free(w->tree_items[k].what);
-            free(w->tree_items[k].pmf);
-        }
-    }
 }
 
 void noc_cpu_forget_found(cpu_view *s) {
     for (int i = 0; i < s->worker_count; i++) {
         worker *w = &s->workers[i];
-        if (w->found_counts)
-            memset(w->found_counts, 0, s->found_bins * sizeof(*w->found_counts));
+        if (w->picks && w->picks->found_counts)
+            memset(w->picks->found_counts, 0, s->found_bins * sizeof(*w->picks->found_counts));
     }
 }
 
@@ -108,8 +38,10 @@ static size_t scene_bytes(const noc_scene *s) {
 /* Surfaces of the frame that found so many lights. */
 static uint64_t surfaces_finding(const cpu_view *s, uint32_t lights) {
     uint64_t sum = 0;
-    for (int i = 0; i < s->worker_count; i++)
-        sum += s->workers[i].found_counts ? s->workers[i].found_counts[lights] : 0;
+    for (int i = 0; i < s->worker_count; i++) {
+        const pick_pass *p = s->workers[i].picks;
+        sum += p && p->found_counts ? p->found_counts[lights] : 0;
+    }
     return sum;
 }
 

@@ -85,8 +85,8 @@ static void keep_one(const stage_run *run, tile_rays *t, const struct core_conte
 void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *points) {
     struct core_context ctx = run->ctx;
     frame_buffers *b = &run->s->b;
-    tile_rays *t = &w->shared;
-    ctx.at.lists = &w->lists;
+    tile_rays *t = &w->lists->rays;
+    ctx.at.lists = &w->lists->build;
     t->count = t->cells = 0;
     t->bright = 0;
     run->k->list_fill(&ctx);
@@ -101,7 +101,7 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
             r->m[l] = lanes >> l & 1 ? (float)ctx.frame->draws : 0;
         if (!lanes || !ctx.at.lists->list.count)
             continue;
-        t->cell_of[n] = find_priors(run, g, lanes, &w->lists.list, t);
+        t->cell_of[n] = find_priors(run, g, lanes, &w->lists->build.list, t);
         run->k->list_share(&ctx, g, lanes, at.x, at.y, run->s->list_brightness, &t->cell[t->cell_of[n]].priors,
                            &t->asked);
         for (int l = 0; l < BLOCK; l++)
@@ -116,8 +116,8 @@ void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *poin
 
 /* What the rays found goes into the tile's cells, and is handed on to be learned. */
 static void note_observations(stage_run *run, worker *w, tile at) {
-    tile_rays *t = &w->shared;
-    const light_list *list = &w->lists.list;
+    tile_rays *t = &w->lists->rays;
+    const light_list *list = &w->lists->build.list;
     size_t item = (size_t)(at.y0 / TILE_BLOCKS) * (size_t)run->s->b.tiles_x + (size_t)(at.x0 / TILE_BLOCKS);
     for (int i = 0; i < t->count; i++) {
         tile_cell *c = &t->cell[t->cell_of[t->draws[i].block]];
@@ -128,23 +128,23 @@ static void note_observations(stage_run *run, worker *w, tile at) {
         }
     }
     learned_tile *out = &run->s->learned_tiles[item];
-    *out = (learned_tile){ (int)(w - run->s->workers), w->observations.len, 0, t->bright };
+    *out = (learned_tile){ (int)(w - run->s->workers), w->lists->observations.len, 0, t->bright };
     /* they grow with the picture */
-    if (!array_reserve(&w->observations, w->observations.len + (size_t)t->cells * list->count)) {
+    if (!array_reserve(&w->lists->observations, w->lists->observations.len + (size_t)t->cells * list->count)) {
         w->no_memory = true;
         return;
     }
     for (int k = 0; k < t->cells; k++)
         for (uint32_t i = 0; i < list->count; i++)
             if (t->cell[k].asked[i])
-                w->observations.data[w->observations.len++] =
+                w->lists->observations.data[w->lists->observations.len++] =
                     (noc_observation){ t->cell[k].key, list->light[i], t->cell[k].asked[i], t->cell[k].seen[i] };
-    out->count = w->observations.len - out->first;
+    out->count = w->lists->observations.len - out->first;
 }
 
 /* The rays of restir's pixels become their own reservoirs, of samples known to be seen. */
 void noc_cpu_resample(stage_run *run, worker *w, tile at) {
-    const tile_rays *t = &w->shared;
+    const tile_rays *t = &w->lists->rays;
     (void)at;
     for (int i = 0; i < t->count; i += t->draws[i].rays) {
         size_t block = t->at[t->draws[i].block];
@@ -177,7 +177,7 @@ static void blank_hidden(const stage_run *run, const tile_rays *t) {
 }
 
 void noc_cpu_trace_shared(stage_run *run, worker *w, tile at) {
-    tile_rays *t = &w->shared;
+    tile_rays *t = &w->lists->rays;
     if (run->ctx.frame->flags & FRAME_FINAL_RAY)
         noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, t->segments, t->count);
     else
@@ -202,7 +202,7 @@ static void share_with_reservoirs(const stage_run *run, tile_rays *t, tile at) {
 }
 
 void noc_cpu_shade_shared(stage_run *run, worker *w, tile at) {
-    tile_rays *t = &w->shared;
+    tile_rays *t = &w->lists->rays;
     if (run->frame->plan->mixes)
         share_with_reservoirs(run, t, at);
     const gblock *g = run->s->b.g[run->frame->gbuffer];
@@ -237,7 +237,7 @@ noc_status noc_cpu_begin_learning(cpu_view *s, const noc_frame *frame) {
         s->learned_epoch = frame->epoch;
     }
     for (int i = 0; i < s->worker_count; i++)
-        s->workers[i].observations.len = 0;
+        s->workers[i].lists->observations.len = 0;
     return NOC_OK;
 }
 
@@ -248,7 +248,7 @@ void noc_cpu_end_learning(cpu_view *s, const noc_frame *frame) {
         return;
     for (size_t i = 0; i < tiles; i++) {
         const learned_tile *t = &s->learned_tiles[i];
-        s->observations[i] = (noc_observations){ s->workers[t->worker].observations.data + t->first, t->count };
+        s->observations[i] = (noc_observations){ s->workers[t->worker].lists->observations.data + t->first, t->count };
         bright += t->bright;
     }
     noc_learned_add(s->learned, s->pool, s->observations, tiles);
@@ -259,7 +259,8 @@ void noc_cpu_release_tiles(cpu_view *s) {
     free(s->learned_tiles);
     free(s->observations);
     for (int i = 0; i < s->worker_count; i++)
-        array_free(&s->workers[i].observations);
+        if (s->workers[i].lists)
+            array_free(&s->workers[i].lists->observations);
     s->observations = NULL;
     s->learned_tiles = NULL;
 }

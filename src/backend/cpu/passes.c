@@ -57,11 +57,12 @@ static void primary(stage_run *run, worker *w, tile t) {
 
 /* What the tile's points find among the influence volumes. */
 static void find_volumes(stage_run *run, worker *w, const tile_points *p) {
-    run->k->influence_find(&run->ctx, p->g, p->lanes, p->count, &w->found);
-    w->no_memory = w->no_memory || w->found.no_memory;
+    run->k->influence_find(&run->ctx, p->g, p->lanes, p->count, &w->picks->found);
+    w->no_memory = w->no_memory || w->picks->found.no_memory;
     for (int i = 0; i < p->count; i++)
         for (uint32_t bits = p->lanes[i]; bits; bits &= bits - 1)
-            w->found_counts[NOC_MIN(noc_found_count(&w->found, i, __builtin_ctz(bits)), run->s->found_bins - 1)]++;
+            w->picks->found_counts[NOC_MIN(noc_found_count(&w->picks->found, i, __builtin_ctz(bits)),
+                                           run->s->found_bins - 1)]++;
 }
 
 /* What is done for each block once its reservoirs are there. */
@@ -96,7 +97,7 @@ static void find_lights(stage_run *run, worker *w, tile t) {
 static void build_list(stage_run *run, worker *w, tile t) {
     tile_points points;
     gather_points(run, t, &points);
-    run->k->list_build(&run->ctx, points.g, points.lanes, points.count, start_of_tail(run, t), &w->lists);
+    run->k->list_build(&run->ctx, points.g, points.lanes, points.count, start_of_tail(run, t), &w->lists->build);
 }
 
 static void candidates_uniform(stage_run *run, worker *w, tile t) {
@@ -112,7 +113,7 @@ static void candidates_uniform(stage_run *run, worker *w, tile t) {
 static void candidates_list(stage_run *run, worker *w, tile t) {
     struct core_context ctx = run->ctx;
     tile_points p;
-    ctx.at.lists = &w->lists;
+    ctx.at.lists = &w->lists->build;
     gather_points(run, t, &p);
     for (int i = 0; i < p.count; i++) {
         run->k->list_candidates(&ctx, p.g[i], p.lanes[i], p.block[i].x, p.block[i].y, target_block(run, p.block[i]));
@@ -124,15 +125,16 @@ static void candidates_list(stage_run *run, worker *w, tile t) {
 typedef void draw_fn(const stage_run *run, worker *w, const tile_points *p, int i, int m);
 
 static void draw_power(const stage_run *run, worker *w, const tile_points *p, int i, int m) {
-    run->k->pick_power(&run->ctx, p->block[i].x, p->block[i].y, m, &w->picks);
+    run->k->pick_power(&run->ctx, p->block[i].x, p->block[i].y, m, &w->picks->drawn);
 }
 
 static void draw_influence(const stage_run *run, worker *w, const tile_points *p, int i, int m) {
-    run->k->pick_influence(&run->ctx, &w->found, i, p->block[i].x, p->block[i].y, m, &w->picks);
+    run->k->pick_influence(&run->ctx, &w->picks->found, i, p->block[i].x, p->block[i].y, m, &w->picks->drawn);
 }
 
 static void draw_light_bvh(const stage_run *run, worker *w, const tile_points *p, int i, int m) {
-    run->k->pick_tree(&run->ctx, p->g[i], p->lanes[i], p->block[i].x, p->block[i].y, m, w->tree_items, &w->picks);
+    run->k->pick_tree(&run->ctx, p->g[i], p->lanes[i], p->block[i].x, p->block[i].y, m, w->picks->items,
+                      &w->picks->drawn);
 }
 
 static void draw_candidates(stage_run *run, worker *w, tile t, draw_fn *draw) {
@@ -142,7 +144,7 @@ static void draw_candidates(stage_run *run, worker *w, tile t, draw_fn *draw) {
     for (int i = 0; i < p.count; i++) {
         if (p.lanes[i])
             draw(run, w, &p, i, m);
-        run->k->given(&run->ctx, p.g[i], p.lanes[i], p.block[i].x, p.block[i].y, m, &w->picks,
+        run->k->given(&run->ctx, p.g[i], p.lanes[i], p.block[i].x, p.block[i].y, m, &w->picks->drawn,
                       target_block(run, p.block[i]));
         end_candidates(run, w, &p, i);
     }
@@ -216,7 +218,7 @@ static uint32_t shade_reference(stage_run *run, worker *w, const gblock *g, cons
     bool rays = run->ctx.frame->flags & FRAME_FINAL_RAY;
     if (!surfaces)
         return 0;
-    reference_scratch *e = &w->reference;
+    reference_scratch *e = w->reference;
     run->k->reference(&run->ctx, g, surfaces, block->x, block->y, e);
     for (int l = 0; l < BLOCK; l++)
         most = NOC_MAX(most, e->count[l]);
@@ -284,7 +286,7 @@ static void emitters(stage_run *run, worker *w, tile t) {
 static void shade(stage_run *run, worker *w, tile t) {
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
     int n = noc_cpu_tile_blocks(run, t, blocks);
-    shade_samples(run, w, blocks, n, run->frame->plan->mixes ? (const float(*)[BLOCK])w->shared.reused : NULL);
+    shade_samples(run, w, blocks, n, run->frame->plan->mixes ? (const float(*)[BLOCK])w->lists->rays.reused : NULL);
 }
 
 static void shade_all(stage_run *run, worker *w, tile t) {

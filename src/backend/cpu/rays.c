@@ -5,22 +5,22 @@
 
 static void keep(cpu_view *s, worker *w, const rayblock *rays, const uint32_t *light, uint32_t valid, int together,
                  bool primary) {
-    if (!s->recording || w->packets_lost)
+    if (!s->recording || w->record.lost)
         return;
-    if (w->packet_count == w->packet_room) {
-        size_t room = w->packet_room ? w->packet_room * 2 : 4096;
+    if (w->record.count == w->record.room) {
+        size_t room = w->record.room ? w->record.room * 2 : 4096;
         packet *more = noc_alloc_large(room, sizeof(*more));
         if (!more) {
-            w->packets_lost = true;
+            w->record.lost = true;
             return;
         }
-        if (w->packet_count)
-            memcpy(more, w->packets, w->packet_count * sizeof(*more));
-        free(w->packets);
-        w->packets = more;
-        w->packet_room = room;
+        if (w->record.count)
+            memcpy(more, w->record.packets, w->record.count * sizeof(*more));
+        free(w->record.packets);
+        w->record.packets = more;
+        w->record.room = room;
     }
-    packet *p = &w->packets[w->packet_count++];
+    packet *p = &w->record.packets[w->record.count++];
     *p = (packet){ .block = { .rays = *rays, .valid = valid }, .together = together, .primary = primary };
     if (light)
         memcpy(p->block.light, light, sizeof(p->block.light));
@@ -163,10 +163,10 @@ noc_status noc_cpu_replay_rays(cpu_view *s, double *seconds) {
     bool whole = true;
     for (int i = 0; i < s->worker_count; i++) {
         const worker *w = &s->workers[i];
-        whole = whole && !w->packets_lost;
-        for (size_t k = 0; whole && k < w->packet_count; k += REPLAY_RUN)
-            whole = array_push(&items, (struct replay_item){ w->packets + k,
-                                                             NOC_MIN((size_t)REPLAY_RUN, w->packet_count - k) });
+        whole = whole && !w->record.lost;
+        for (size_t k = 0; whole && k < w->record.count; k += REPLAY_RUN)
+            whole = array_push(&items, (struct replay_item){ w->record.packets + k,
+                                                             NOC_MIN((size_t)REPLAY_RUN, w->record.count - k) });
     }
     if (whole) {
         struct replay r = { s, items.data };

@@ -17,52 +17,17 @@ static void free_buffers(frame_buffers *b) {
     *b = (frame_buffers){ 0 };
 }
 
-static void free_workers(cpu_view *s) {
-    for (int i = 0; i < s->worker_count; i++) {
-        worker *w = &s->workers[i];
-        free(w->combining);
-        free(w->reference.sums);
-        free(w->reference.light);
-        free(w->reference.w);
-        free(w->packets);
-    }
-    free(s->workers);
-}
-
 static noc_status create_workers(cpu_view *s) {
     s->worker_count = noc_pool_threads(s->pool);
     s->workers = noc_alloc_large((size_t)s->worker_count, sizeof(worker));
-    bool ok = s->workers != NULL;
-    if (!ok)
-        s->worker_count = 0;
-    for (int i = 0; i < s->worker_count; i++) {
-        worker *w = &s->workers[i];
-        w->combining = noc_alloc_large(TILE_BLOCKS * TILE_BLOCKS, sizeof(*w->combining));
-        w->reference.light = noc_alloc_large(1024, sizeof(*w->reference.light));
-        w->reference.w = noc_alloc_large(1024, sizeof(*w->reference.w));
-        ok = ok && w->combining && w->reference.light && w->reference.w;
-    }
-    return ok ? NOC_OK : noc_no_memory(s->log, "view");
-}
-
-static bool fit_lights(cpu_view *s) {
-    size_t chunks = s->scene->lights.len / REFERENCE_CHUNK + 1;
-    for (int i = 0; i < s->worker_count && chunks > s->chunks; i++) {
-        reference_scratch *r = &s->workers[i].reference;
-        free(r->sums);
-        if (!(r->sums = noc_alloc_large(chunks, sizeof(*r->sums))))
-            return false;
-    }
-    s->chunks = NOC_MAX(chunks, s->chunks);
-    return true;
+    if (s->workers)
+        return NOC_OK;
+    s->worker_count = 0;
+    return noc_no_memory(s->log, "view");
 }
 
 noc_status noc_cpu_fit_scene(cpu_view *s) {
     frame_buffers *b = &s->b;
-    if (!fit_lights(s)) {
-        s->chunks = 0;
-        return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for %zu lights", s->scene->lights.len);
-    }
     if (!s->scene->instances.len || b->instance)
         return NOC_OK;
     b->instance = noc_alloc_large((size_t)b->blocks_x * b->blocks_y, sizeof(*b->instance));
@@ -80,7 +45,7 @@ void noc_cpu_view_destroy(void *state) {
     noc_cpu_release_lights(s);
     noc_cpu_release_learning(s);
     free_buffers(&s->b);
-    free_workers(s);
+    noc_cpu_free_scratch(s);
     free(s);
 }
 
@@ -194,10 +159,10 @@ void noc_cpu_stats(void *state, noc_frame_stats *out) {
 static void forget_packets(cpu_view *s) {
     for (int i = 0; i < s->worker_count; i++) {
         worker *w = &s->workers[i];
-        free(w->packets);
-        w->packets = NULL;
-        w->packet_count = w->packet_room = 0;
-        w->packets_lost = false;
+        free(w->record.packets);
+        w->record.packets = NULL;
+        w->record.count = w->record.room = 0;
+        w->record.lost = false;
     }
 }
 
