@@ -6,6 +6,7 @@
  * brings all of them up to date, before it or another draws. What a commit costs then:
  *
  *              lights that move                  what lights emit               lights added or removed
+ *   lists      their half is made anew           powers are summed up anew      that half is made anew
  *   power      nothing                           a new table, linear time       a new table
  *   influence  their half is made anew           sizes and bounds are refitted  that half is made anew
  *   light-bvh  their half is refitted, or built  powers are summed up anew      that half is built anew
