@@ -4,6 +4,7 @@
 #define DIALECT_FRAME_H
 
 #include "core/combine.h"
+#include "core/hit.h"
 #include "core/moments.h"
 #include "core/neighbours.h"
 #include "core/reference.h"
@@ -183,6 +184,16 @@ FN void shades(CTX u32 item, u32 key, surf s) {
     put_u32(PASS item, FRAME_FIRST + 80, flag_of(colour_finite(mul3(c, K(1e29f)))));
 }
 
+/* Slots 81 to 86. */
+FN void triangles_hit(CTX u32 item, u32 key) {
+    corners t;
+    t.a = any_v3(key, KU(4700u));
+    t.b = any_v3(key, KU(4710u));
+    t.c = add3(t.b, mul3(any_v3(key, KU(4720u)), K(1e-3f)));
+    put_v3(PASS item, FRAME_FIRST + 81, hit_point(t, rng(key, KU(4730u)), rng(key, KU(4731u))));
+    put_v3(PASS item, FRAME_FIRST + 84, hit_normal(t));
+}
+
 FN void frame_item(CTX u32 item, u32 key, surf s) {
     dialect_frame = dialect_constants(BIAS_BIASED);
     dialect_key = key;
@@ -190,6 +201,7 @@ FN void frame_item(CTX u32 item, u32 key, surf s) {
     combinations(PASS item, key, s);
     references(PASS item, key, s);
     shades(PASS item, key, s);
+    triangles_hit(PASS item, key);
 }
 
 #endif

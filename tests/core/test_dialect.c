@@ -107,6 +107,8 @@ static const struct {
     { FRAME_FIRST + 78, "moments_add" },
     { FRAME_FIRST + 79, "mean_add" },
     { FRAME_FIRST + 80, "colour_finite" },
+    { FRAME_FIRST + 81, "hit_point" },
+    { FRAME_FIRST + 84, "hit_normal" },
     { INFLUENCE_FIRST, "influence_candidate" },
     { INFLUENCE_FIRST + 4, "influence_lists" },
     { INFLUENCE_FIRST + 5, "influence_near" },

@@ -150,8 +150,16 @@ typedef struct ray_draw {
     int rays;             /* the block has so many of them, one after the other */
 } ray_draw;
 
+/* Triangles that the lanes of a block have hit: corner, coordinate, lane; and where. */
+typedef struct cornerblock {
+    ALIGNED float at[3][3][BLOCK];
+    float u[BLOCK], v[BLOCK];
+} cornerblock;
+
 typedef struct kernels {
     const char *name;
+    /* Points of hits, and the normals of their triangles; 0 where the corners are one point. */
+    void (*hits)(const cornerblock *c, gblock *g);
     /* M candidates a lane of `lanes`; w = m = 0 elsewhere. x, y: pixel of lane 0. */
     void (*candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                        rblock *out);

@@ -1,6 +1,7 @@
 /* Kernels of reuse and shading: core/ applied to blocks of pixels. Compiled once as scalar C and once an instruction
  * set, with CORE_LANES and KERNELS (the table's name) defined by the build. */
 #include "backend/cpu/lanes_tmpl.h"
+#include "core/hit.h"
 #include "core/shading.h"
 
 static void candidates(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
@@ -15,6 +16,24 @@ static void candidates(const struct core_context *ctx, const gblock *g, uint32_t
                                                 KU(ctx->light_count), m),
                               r);
         reservoir_store(out, l, r);
+    }
+}
+
+FN v3 corner_load(const cornerblock *c, int corner, int l) {
+    return V3(rload(c->at[corner][0] + l), rload(c->at[corner][1] + l), rload(c->at[corner][2] + l));
+}
+
+static void hits(const cornerblock *c, gblock *g) {
+    for (int l = 0; l < BLOCK; l += LANES) {
+        corners t = { corner_load(c, 0, l), corner_load(c, 1, l), corner_load(c, 2, l) };
+        v3 p = hit_point(t, rload(c->u + l), rload(c->v + l));
+        v3 n = hit_normal(t);
+        rstore(g->px + l, p.x);
+        rstore(g->py + l, p.y);
+        rstore(g->pz + l, p.z);
+        rstore(g->nx + l, n.x);
+        rstore(g->ny + l, n.y);
+        rstore(g->nz + l, n.z);
     }
 }
 
@@ -89,6 +108,7 @@ static void sky_background(const struct core_context *ctx, uint32_t lanes, int x
 
 const kernels KERNELS = {
     .name = KERNELS_NAME,
+    .hits = hits,
     .candidates = candidates,
     .list_build = build_list,
     .list_candidates = list_candidates,

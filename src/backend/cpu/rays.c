@@ -44,52 +44,54 @@ void noc_cpu_trace_occlusion(cpu_view *s, worker *w, noc_ray_world in, shadow_bl
     }
 }
 
-/* From a model's coordinates to the scene's; n keeps its direction, not its length. */
-static void place_hit(const float m[12], double p[3], double n[3]) {
-    double q[3], t[3];
+/* A point and a normal of a model, where the instance has them. */
+static void place_hit(const float m[12], float p[3], float n[3]) {
+    float q[3], t[3], length = 0;
     for (int k = 0; k < 3; k++) {
         q[k] = m[4 * k] * p[0] + m[4 * k + 1] * p[1] + m[4 * k + 2] * p[2] + m[4 * k + 3];
         t[k] = m[4 * k] * n[0] + m[4 * k + 1] * n[1] + m[4 * k + 2] * n[2];
+        length += t[k] * t[k];
     }
-    memcpy(p, q, sizeof(q));
-    memcpy(n, t, sizeof(t));
+    for (int k = 0; k < 3; k++) {
+        p[k] = q[k];
+        n[k] = t[k] / sqrtf(length);
+    }
 }
 
-/* The hit point from its triangle in doubles: in its plane to half a unit in the last place, however large the
- * triangle. o + t d would be off by the precision of t. */
-static void fill_hit(const noc_scene *scene, const rayblock *rays, const hitblock *h, int l, gblock *g) {
-    uint32_t prim = h->triangle[l];
-    const uint32_t *v = scene->indices.data + 3 * (size_t)prim;
-    const float *a = scene->positions.data + 3 * (size_t)v[0], *b = scene->positions.data + 3 * (size_t)v[1],
-                *c = scene->positions.data + 3 * (size_t)v[2];
-    double e[3], f[3], p[3], toward = 0;
-    for (int k = 0; k < 3; k++) {
-        e[k] = (double)b[k] - a[k];
-        f[k] = (double)c[k] - a[k];
-        p[k] = a[k] + h->u[l] * e[k] + h->v[l] * f[k];
+static void gather_corners(const noc_scene *scene, const hitblock *h, cornerblock *out) {
+    for (int l = 0; l < BLOCK; l++) {
+        const uint32_t *v = h->triangle[l] != NO_HIT ? scene->indices.data + 3 * (size_t)h->triangle[l] : NULL;
+        for (int corner = 0; corner < 3; corner++)
+            for (int k = 0; k < 3; k++)
+                out->at[corner][k][l] = v ? scene->positions.data[3 * (size_t)v[corner] + (size_t)k] : 0;
+        out->u[l] = v ? h->u[l] : 0;
+        out->v[l] = v ? h->v[l] : 0;
     }
-    double n[3] = { e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0] };
-    uint32_t light = scene->triangle_light.data[prim];
+}
+
+/* The receiver of lane l, whose point and normal are those of its triangle; its normal is turned to the viewer. */
+static void end_hit(const noc_scene *scene, const rayblock *rays, const hitblock *h, int l, gblock *g) {
+    uint32_t prim = h->triangle[l], light = scene->triangle_light.data[prim];
+    float p[3] = { g->px[l], g->py[l], g->pz[l] }, n[3] = { g->nx[l], g->ny[l], g->nz[l] }, toward = 0, d2 = 0;
     if (h->instance[l] != NO_INSTANCE) {
         const noc_scene_instance *in = &scene->instances.data[h->instance[l]];
         place_hit(in->transform, p, n);
         light = light != NOC_NO_LIGHT ? in->lights[light] : light;
     }
-    double d[3] = { rays->d[0][l], rays->d[1][l], rays->d[2][l] };
-    double inv = 1 / sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    for (int k = 0; k < 3; k++)
-        toward += n[k] * d[k];
-    bool front = toward < 0;
-    inv = front ? inv : -inv;
-    g->px[l] = (float)p[0];
-    g->py[l] = (float)p[1];
-    g->pz[l] = (float)p[2];
-    g->nx[l] = (float)(n[0] * inv);
-    g->ny[l] = (float)(n[1] * inv);
-    g->nz[l] = (float)(n[2] * inv);
-    g->depth[l] = (float)(h->t[l] * sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+    for (int k = 0; k < 3; k++) {
+        toward += n[k] * rays->d[k][l];
+        d2 += rays->d[k][l] * rays->d[k][l];
+    }
+    float side = toward < 0 ? 1 : -1;
+    g->px[l] = p[0];
+    g->py[l] = p[1];
+    g->pz[l] = p[2];
+    g->nx[l] = side * n[0];
+    g->ny[l] = side * n[1];
+    g->nz[l] = side * n[2];
+    g->depth[l] = h->t[l] * sqrtf(d2);
     g->material[l] = scene->triangle_material.data[prim];
-    if (light != NOC_NO_LIGHT && !front && !(scene->lights.data[light].flags & LIGHT_TWO_SIDED))
+    if (light != NOC_NO_LIGHT && side < 0 && !(scene->lights.data[light].flags & LIGHT_TWO_SIDED))
         light = NOC_NO_LIGHT; /* the dark back of a one-sided emitter */
     g->light[l] = light;
 }
@@ -110,9 +112,12 @@ void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t vali
     closest(s->world, NOC_RAYS_NOW, rays, INFINITY, valid, true, &h);
     if (instance)
         memcpy(instance, h.instance, sizeof(h.instance));
+    cornerblock corners;
+    gather_corners(s->scene, &h, &corners);
+    s->kernels->hits(&corners, g);
     for (int l = 0; l < BLOCK; l++)
         if (h.triangle[l] != NO_HIT) {
-            fill_hit(s->scene, rays, &h, l, g);
+            end_hit(s->scene, rays, &h, l, g);
             if (object)
                 object[l] = (float)noc_scene_object_of(s->scene, h.triangle[l]);
         }
