@@ -8,16 +8,24 @@
 #include "scene/scene.h"
 #include <nocturne/render.h>
 
+/* A point that light is to be found for, and the way it faces. What a camera sees makes receivers, too (core/receiver.h
+ * is a receiver as passes have it); points may as well be given, as of a grid that is measured on. */
+typedef struct noc_receiver {
+    float p[3], n[3];  /* local metres; unit */
+    uint32_t material; /* whose reflectance the result is seen by */
+} noc_receiver;
+
 /* One frame. Nothing in it changes while the frame is run. */
 typedef struct noc_frame {
     const noc_render_params *params;
     const noc_plan *plan;
-    uint32_t epoch;            /* counts resets: what was learned in another one is forgotten */
-    frame_constants constants; /* what kernels and shaders read of it */
-    uint64_t accumulated;      /* frames in the mean so far; 0 starts it anew */
-    bool history;              /* the frame before is of the same size and parameters: its reservoirs can be reused */
-    int history_set;           /* set that holds the previous frame's reservoirs */
-    int gbuffer;               /* 0 or 1: this frame's G-buffer; the other one holds the previous frame's */
+    const noc_receiver *receivers; /* one a pixel, row by row; NULL: what the camera sees */
+    uint32_t epoch;                /* counts resets: what was learned in another one is forgotten */
+    frame_constants constants;     /* what kernels and shaders read of it */
+    uint64_t accumulated;          /* frames in the mean so far; 0 starts it anew */
+    bool history;    /* the frame before is of the same size and parameters: its reservoirs can be reused */
+    int history_set; /* set that holds the previous frame's reservoirs */
+    int gbuffer;     /* 0 or 1: this frame's G-buffer; the other one holds the previous frame's */
 } noc_frame;
 
 struct noc_influence;

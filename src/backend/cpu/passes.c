@@ -49,10 +49,37 @@ static void primary_block(stage_run *run, worker *w, int bx, int by) {
                     objects ? objects[at] : NULL, b->instance ? b->instance[at] : NULL);
 }
 
+/* Receivers that are given. */
+static void place_block(const stage_run *run, int bx, int by) {
+    const frame_buffers *b = &run->s->b;
+    const float *eye = run->ctx.frame->camera.eye;
+    gblock *g = &b->g[run->frame->gbuffer][block_at(b, bx, by)];
+    *g = (gblock){ 0 };
+    memset(g->material, 0xff, sizeof(g->material));
+    memset(g->light, 0xff, sizeof(g->light));
+    for (uint32_t bits = lanes_inside(b, bx, by); bits; bits &= bits - 1) {
+        int l = __builtin_ctz(bits), x = bx * BLOCK_SIDE + (l & 3), y = by * BLOCK_SIDE + (l >> 2);
+        const noc_receiver *r = &run->frame->receivers[(size_t)y * (size_t)b->width + (size_t)x];
+        float d[3] = { r->p[0] - eye[0], r->p[1] - eye[1], r->p[2] - eye[2] };
+        g->px[l] = r->p[0];
+        g->py[l] = r->p[1];
+        g->pz[l] = r->p[2];
+        g->nx[l] = r->n[0];
+        g->ny[l] = r->n[1];
+        g->nz[l] = r->n[2];
+        g->depth[l] = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        g->material[l] = r->material;
+    }
+}
+
+/* The receivers of a tile, from wherever they come; what follows asks the G-buffer alone. */
 static void primary(stage_run *run, worker *w, tile t) {
     for (int by = t.y0; by < t.y1; by++)
         for (int bx = t.x0; bx < t.x1; bx++)
-            primary_block(run, w, bx, by);
+            if (run->frame->receivers)
+                place_block(run, bx, by);
+            else
+                primary_block(run, w, bx, by);
 }
 
 /* What the tile's points find among the influence volumes. */
