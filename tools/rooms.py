@@ -12,7 +12,7 @@ SOURCE = re.compile(r"(src|include)/.*\.(c|h|glsl|comp)$")
 # What is a machine's own, by the name of a file without _tmpl: rays and their structure, memory, lanes, how tiles are
 # walked, and the tables and records that connect those.
 MACHINE = set("""backend.c backend.h blocks.h cpu.h device.c embree.c embree.h frame.c kernel_tables.c kernels.h lanes.h
-    lights.c many.c moved.c rays.c room.c rt.h structure.c tracer.h view.c""".split())
+    lights.c many.c moved.c rays.c room.c rt.h scratch.c structure.c tracer.h view.c""".split())
 NOT_CODE = re.compile(r'/\*.*?\*/|//[^\n]*|("(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\')', re.S)
 
 
