@@ -3,8 +3,10 @@
 . "$(dirname "$0")/../cli/lib.sh"
 sed -n '/^```c$/,/^```$/p' "$source_dir/docs/experiments.md" | sed '/^```/d' >example.c
 grep -q noc_lab_measure example.c; result $? "docs/experiments.md shows a program"
+# A library that was built with sanitizers wants them in the program, too.
+sanitize=$(nm -D "$NOC_BUILD/libnocturne.so" 2>/dev/null | grep -q __asan_init && echo -fsanitize=address)
 if command -v "${CC:-cc}" >/dev/null; then
-    ${CC:-cc} -Wall -Wextra -Werror -I"$source_dir/include" example.c -L"$NOC_BUILD" -Wl,-rpath,"$NOC_BUILD" \
+    ${CC:-cc} $sanitize -Wall -Wextra -Werror -I"$source_dir/include" example.c -L"$NOC_BUILD" -Wl,-rpath,"$NOC_BUILD" \
         -lnocturne -o example >out 2>err
     result $? "which compiles"
     ./example >out 2>err
