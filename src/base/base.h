@@ -36,6 +36,9 @@ bool noc_allocation_refused(void); /* whether the one that comes now is refused;
 /* Large allocations whose size a user decides: 64-byte aligned, zeroed; NULL when refused or when count * size
  * overflows. */
 void *noc_alloc_large(size_t count, size_t size) NOC_MUST_USE;
+/* Room for `count` records in such an allocation, with the first `have` of those that it has. array: address of its
+ * pointer, which is as it was when memory is refused. */
+bool noc_resize_large(void *array, size_t have, size_t count, size_t size) NOC_MUST_USE;
 
 /* Growable array: NOC_ARRAY(float) a = { 0 }; if (!array_push(&a, 1.f)) ...; array_free(&a). False, and the array is as
  * it was, when memory is refused. */

@@ -84,6 +84,17 @@ void *noc_alloc_large(size_t count, size_t size) {
     return p;
 }
 
+bool noc_resize_large(void *array, size_t have, size_t count, size_t size) {
+    void **data = array, *more = noc_alloc_large(count, size);
+    if (!more)
+        return false;
+    if (*data)
+        memcpy(more, *data, NOC_MIN(have, count) * size);
+    free(*data);
+    *data = more;
+    return true;
+}
+
 /* Items that an array has room for after growing. */
 static size_t grown(size_t cap, size_t need) {
     return need <= EXACT_ITEMS ? need : NOC_MAX(cap ? cap + cap / 2 : 16, need);

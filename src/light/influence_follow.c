@@ -43,26 +43,15 @@ void noc_influence_end(noc_influence *v) {
 
 /* ---- lights that move ---- */
 
-/* A copy of an array's `have` records in room for `count`, in place of it. */
-static bool resize(void *array, size_t have, size_t count, size_t size) {
-    void **data = array, *more = noc_alloc_large(count, size);
-    if (!more)
-        return false;
-    memcpy(more, *data, NOC_MIN(have, count) * size);
-    free(*data);
-    *data = more;
-    return true;
-}
-
 /* Another number of lights moves, or the scene has places for more. */
 static bool make_room(noc_influence *v, const noc_scene *scene, uint32_t moving) {
     const noc_influence_half *h = &v->half[NOC_MOVING];
     size_t volumes = (size_t)h->first + moving + 1, lights = scene->lights.len;
-    bool ok = resize(&v->volumes, h->first, volumes, sizeof(*v->volumes)) &&
-              resize(&v->ids, v->stand, lights + 1, sizeof(*v->ids)) &&
-              resize(&v->volume_of, v->count, lights + 1, sizeof(*v->volume_of)) &&
-              (!v->first || resize(&v->first, h->first + 1, volumes, sizeof(*v->first))) &&
-              (!v->boxes || resize(&v->box_of, h->first, volumes, sizeof(*v->box_of)));
+    bool ok = noc_resize_large(&v->volumes, h->first, volumes, sizeof(*v->volumes)) &&
+              noc_resize_large(&v->ids, v->stand, lights + 1, sizeof(*v->ids)) &&
+              noc_resize_large(&v->volume_of, v->count, lights + 1, sizeof(*v->volume_of)) &&
+              (!v->first || noc_resize_large(&v->first, h->first + 1, volumes, sizeof(*v->first))) &&
+              (!v->boxes || noc_resize_large(&v->box_of, h->first, volumes, sizeof(*v->box_of)));
     for (size_t i = 0; ok && i < lights; i++)
         if (i >= v->count || v->volume_of[i] >= h->first)
             v->volume_of[i] = UINT32_MAX; /* noc_influence_end sets it */

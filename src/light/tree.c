@@ -138,25 +138,14 @@ noc_tree *noc_tree_create(const noc_scene *scene, noc_pool *pool, noc_log *log) 
 
 /* ---- lights that have changed ---- */
 
-/* A copy of an array's `have` records in room for `count`, in place of it. */
-static bool resize(void *array, size_t have, size_t count, size_t size) {
-    void **data = array, *more = noc_alloc_large(count, size);
-    if (!more)
-        return false;
-    memcpy(more, *data, NOC_MIN(have, count) * size);
-    free(*data);
-    *data = more;
-    return true;
-}
-
 /* Room for other lights that move, in order of their indices; what stands has its pairs before theirs. */
 static bool take_others(noc_tree *t, const noc_scene *scene, uint32_t moving) {
     uint32_t standing = t->lights - t->moving.count, n = 0;
     for (uint32_t i = 0; i < t->moving.count; i++)
         t->paths[t->order[i]] = NOC_TREE_NO_PATH;
-    bool ok = resize(&t->pairs, standing, (size_t)standing + moving, sizeof(*t->pairs)) &&
-              resize(&t->paths, t->places, scene->lights.len + 1, sizeof(*t->paths)) &&
-              resize(&t->order, 0, moving, sizeof(*t->order));
+    bool ok = noc_resize_large(&t->pairs, standing, (size_t)standing + moving, sizeof(*t->pairs)) &&
+              noc_resize_large(&t->paths, t->places, scene->lights.len + 1, sizeof(*t->paths)) &&
+              noc_resize_large(&t->order, 0, moving, sizeof(*t->order));
     for (uint32_t i = 0; ok && i < scene->lights.len; i++) {
         if (i >= t->places)
             t->paths[i] = NOC_TREE_NO_PATH;

@@ -170,6 +170,30 @@ static void memory_has_no_room_to_spare(void **state) {
 static void memory_has_no_room_to_spare(void **state) { skip(); }
 #endif
 
+/* What a large allocation has is kept up to where it is cut, and beyond it is zero. What cannot be had leaves it. */
+static void large_memory_takes_another_size(void **state) {
+    uint32_t *a = NULL;
+    assert_true(noc_resize_large(&a, 0, 3, sizeof(*a)));
+    for (uint32_t i = 0; i < 3; i++)
+        a[i] = i + 1;
+    assert_true(noc_resize_large(&a, 2, 100, sizeof(*a)));
+    assert_int_equal((uintptr_t)a % 64, 0);
+    assert_int_equal(a[0], 1);
+    assert_int_equal(a[1], 2);
+    for (size_t i = 2; i < 100; i++)
+        assert_int_equal(a[i], 0);
+    assert_true(noc_resize_large(&a, 100, 1, sizeof(*a)));
+    assert_int_equal(a[0], 1);
+    uint32_t *before = a;
+    assert_false(noc_resize_large(&a, 1, SIZE_MAX / 2, sizeof(*a)));
+    noc_refuse_allocation(1, false);
+    assert_false(noc_resize_large(&a, 1, 1000, sizeof(*a)));
+    noc_refuse_allocation(0, false);
+    assert_ptr_equal(a, before);
+    assert_int_equal(a[0], 1);
+    free(a);
+}
+
 /* Each allocation refused alone, and with all that follow, is told of; nothing leaks (make asan). */
 static void refused_memory_is_told(void **state) {
     noc_refuse_allocation(UINT64_MAX, false);
@@ -262,6 +286,7 @@ int main(void) {
         cmocka_unit_test(colliding_ids_do_not_flood),
         cmocka_unit_test(pool_runs_each_item_once),
         cmocka_unit_test(memory_has_no_room_to_spare),
+        cmocka_unit_test(large_memory_takes_another_size),
         cmocka_unit_test(refused_memory_is_told),
         cmocka_unit_test(refused_threads_are_done_without),
         cmocka_unit_test(log_reports_once),

@@ -21,13 +21,9 @@ static bool make_room(cpu_view *s) {
     if (room <= s->past_room)
         return true;
     room += s->past_room ? room / 4 : 0;
-    noc_light_record *more = noc_alloc_large(room, sizeof(*more));
-    if (!more)
+    size_t have = s->past_filled ? s->past_room : 0;
+    if (!noc_resize_large(&s->previous_lights, have, room, sizeof(*s->previous_lights)))
         return false;
-    if (s->past_filled)
-        memcpy(more, s->previous_lights, s->past_room * sizeof(*more));
-    free(s->previous_lights);
-    s->previous_lights = more;
     s->past_room = room;
     return true;
 }
