@@ -6,6 +6,7 @@
 typedef struct volumes {
     noc_influence *influence;
     noc_influence_params params;
+    uint64_t number; /* its own: a pointer may come again once these are gone */
     int holders;
 } volumes;
 
@@ -22,6 +23,7 @@ struct noc_light_set {
     /* Those that are held, and the last ones that were asked for. */
     NOC_ARRAY(volumes) volumes;
     const noc_influence *last;
+    uint64_t numbers;         /* of volumes, that have been given out */
     noc_scene_versions known; /* of the scene, that these know of */
     double seconds[NOC_CANDIDATES_LIGHT_BVH + 1];
 };
@@ -147,9 +149,9 @@ static noc_status follow(noc_light_set *set) {
 
 /* ---- influence volumes ---- */
 
-static volumes *held_volumes(noc_light_set *set, const noc_influence *influence) {
+static volumes *held_volumes(noc_light_set *set, uint64_t number) {
     for (size_t i = 0; i < set->volumes.len; i++)
-        if (influence && set->volumes.data[i].influence == influence)
+        if (set->volumes.data[i].number == number)
             return &set->volumes.data[i];
     return NULL;
 }
@@ -175,7 +177,7 @@ static void forget_volumes(noc_light_set *set) {
     set->volumes.len = kept;
 }
 
-static noc_status get_influence(noc_light_set *set, const noc_render_params *p, const noc_influence **out) {
+static noc_status get_influence(noc_light_set *set, const noc_render_params *p, noc_light_sources *out) {
     noc_influence_params want = { .cluster = p->influence_cluster,
                                   .scale = p->influence,
                                   .probe = set->probe,
@@ -193,7 +195,7 @@ static noc_status get_influence(noc_light_set *set, const noc_render_params *p, 
         noc_influence *made = noc_influence_create(set->scene, &want, set->log);
         if (!made)
             return NOC_ERR_MEMORY;
-        if (!array_push(&set->volumes, (volumes){ made, want, 0 })) {
+        if (!array_push(&set->volumes, (volumes){ made, want, ++set->numbers, 0 })) {
             noc_influence_destroy(made);
             return noc_no_memory(set->log, "lights");
         }
@@ -201,12 +203,13 @@ static noc_status get_influence(noc_light_set *set, const noc_render_params *p, 
         v = &set->volumes.data[set->volumes.len - 1];
     }
     v->holders++;
-    set->last = *out = v->influence;
+    set->last = out->influence = v->influence;
+    out->volumes = v->number;
     return NOC_OK;
 }
 
 static void let_go(noc_light_set *set, noc_light_sources *sources) {
-    volumes *v = held_volumes(set, sources->influence);
+    volumes *v = held_volumes(set, sources->volumes);
     if (v)
         v->holders--;
     *sources = (noc_light_sources){ 0 };
@@ -233,7 +236,7 @@ static noc_status make(noc_light_set *set, noc_candidates candidates, const noc_
         if (made && !(set->alias = noc_alias_create(set->scene, set->log)))
             return NOC_ERR_MEMORY;
         break;
-    case NOC_CANDIDATES_INFLUENCE: return get_influence(set, p, &out->influence);
+    case NOC_CANDIDATES_INFLUENCE: return get_influence(set, p, out);
     case NOC_CANDIDATES_LIGHT_BVH:
         made = !set->tree;
         if (made && !(set->tree = noc_tree_create(set->scene, set->pool, set->log)))

@@ -32,6 +32,7 @@ typedef struct noc_light_sources {
     const noc_alias *alias;
     const noc_tree *tree;
     const noc_influence *influence;
+    uint64_t volumes; /* number of what is held of it; 0: nothing */
 } noc_light_sources;
 
 /* probe: as in noc_influence_params. The scene must be committed and outlive the set. NULL after reporting that memory

@@ -351,12 +351,37 @@ static void stands_still(void **state) {
     noc_scene_destroy(s);
 }
 
+/* Volumes that are gone may be followed by others at the same address: who held the former has no say in the latter. */
+static void holders_of_what_is_gone(void **state) {
+    (void)state;
+    noc_scene *s = city(0);
+    noc_light_set *set = noc_light_set_create(s, NULL, NULL, NULL, NULL);
+    noc_light_sources before = { 0 }, now = { 0 }, others = { 0 };
+    noc_render_params p = measure(64, 64, NOC_METHOD_RIS), q = p;
+    p.influence_cluster = 1;
+    q.influence_cluster = 8;
+    assert_int_equal(noc_light_set_get(set, NOC_CANDIDATES_INFLUENCE, &p, &before), NOC_OK);
+    add_standing(s);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    assert_int_equal(noc_light_set_get(set, NOC_CANDIDATES_INFLUENCE, &p, &now), NOC_OK);
+    before.influence = now.influence; /* as where memory comes again */
+    noc_light_set_release(set, &before);
+    size_t held = noc_light_set_bytes(set, NOC_CANDIDATES_INFLUENCE);
+    assert_int_equal(noc_light_set_get(set, NOC_CANDIDATES_INFLUENCE, &q, &others), NOC_OK);
+    assert_int_equal(noc_light_set_bytes(set, NOC_CANDIDATES_INFLUENCE), held + others.influence->bytes);
+    noc_light_set_release(set, &now);
+    noc_light_set_release(set, &others);
+    noc_light_set_destroy(set);
+    noc_scene_destroy(s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(both_halves),
         cmocka_unit_test(all_move),
         cmocka_unit_test(none_moves),
         cmocka_unit_test(stands_still),
+        cmocka_unit_test(holders_of_what_is_gone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
