@@ -173,10 +173,11 @@ typedef struct {
 /* An array of three uniform floats. */
 #define splat3(a) V3(K((a)[0]), K((a)[1]), K((a)[2]))
 
-/* Places l, l + 1, ..., l + LANES - 1 of 16. A shader whose work groups share out the 16 defines it before inclusion.
- */
+/* Places l, l + 1, ..., l + LANES - 1 of 16; and what one value has added up to in all rounds. A shader whose work
+ * groups share out the 16 defines both before inclusion: one round, and a sum over the group. */
 #ifndef EACH16
 #define EACH16(l) for (int l = 0; l < 16; l += LANES)
+#define EACH16_SUM(x) (x)
 #endif
 
 /* to_real takes values below 2^31, to_u32 truncates values in [0, 2^31). min_ and max_ give b where either is NaN.

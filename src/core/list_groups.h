@@ -46,7 +46,7 @@ FN1 u1 scores_over(CTX u1 begin, u1 end, f1 t) {
     for (u1 g = begin; g < end; g++)
         EACH16(l)
     sum = sum + selu(score_load(PASS g, l) >= K(t), KU(1u), KU(0u));
-    return lane_sum(sum);
+    return EACH16_SUM(lane_sum(sum));
 }
 
 /* Which of a group's are. */
@@ -54,7 +54,7 @@ FN1 u1 places_over(CTX u1 group, f1 t) {
     u1 bits = 0u;
     EACH16(l)
     bits = bits | lane_bits(score_load(PASS group, l) >= K(t)) << l;
-    return bits;
+    return EACH16_SUM(bits);
 }
 
 /* Scores are told apart by their exponents and the top two bits of their fractions: 8 to 19 per cent. */

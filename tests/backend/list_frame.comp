@@ -1,20 +1,43 @@
 #version 460
 /* One frame of rays over light lists as a compute shader: list building, the rays' choice, and what they find, from the
- * headers that the CPU compiles. An invocation is a tile. Words of one buffer hold what goes in and what comes out;
- * list_frame.h says where. */
+ * headers that the CPU compiles. Two dispatches: in the first a work group of 16 is a tile, and its invocations share
+ * out the places of EACH16; in the second an invocation is a pixel. Not in one, and not by one invocation a tile: that
+ * takes hundreds of thousands of rounds, and llvmpipe leaves all loops of an invocation after 65,535. Words of one
+ * buffer hold what goes in and what comes out; list_frame.h says where. */
 #extension GL_GOOGLE_include_directive : require
 #define CORE_GLSL 1
 
-layout(local_size_x = 8) in;
+layout(local_size_x = 16) in;
 layout(std430, binding = 0) buffer memory { uint word[]; } mem;
+layout(push_constant) uniform constants { uint dispatch; };
+
+/* What invocations have written before is read after it. */
+void settle() {
+    memoryBarrierBuffer();
+    barrier();
+}
+
+shared uint parts_[16];
+uint sum_of_group(uint x) {
+    barrier();
+    parts_[gl_LocalInvocationID.x] = x;
+    barrier();
+    uint sum = 0u;
+    for (uint i = 0u; i < 16u; i++)
+        sum += parts_[i];
+    return sum;
+}
+#define EACH16(l) for (int l = int(gl_LocalInvocationID.x), last_ = l; l <= last_; l++)
+#define EACH16_SUM(x) sum_of_group(x)
 
 #include "core/dialect.h"
 #include "core/light.h"
 #include "list_frame.h"
 
-uint tile_; /* of this invocation; and the pixel at hand, its block and its place in it */
+uint tile_; /* of this invocation; and of its pixel, the block and the place in it */
 uint block_;
 uint place_;
+float weighed_[LIST_ROOM];
 
 uint wu(uint at) { return mem.word[at]; }
 float wf(uint at) { return uintBitsToFloat(mem.word[at]); }
@@ -46,29 +69,60 @@ light light_splat(uint i) { return light_load(i); }
 
 #include "core/list_rays.h"
 
-/* ---- the bridge ---- */
+/* ---- the bridge ----
+ *
+ * A score is written by the invocation whose place it has, all else by the first. */
+
+bool first() { return gl_LocalInvocationID.x == 0u; }
 
 float score_load(uint group, int l) { return wf(scratch(16u * group + uint(l))); }
-void score_store(uint group, int l, float score) { put(scratch(16u * group + uint(l)), score); }
+void score_store(uint group, int l, float score) {
+    settle();
+    put(scratch(16u * group + uint(l)), score);
+    settle();
+}
 float score_at(uint group, uint place) { return wf(scratch(16u * group + place)); }
-void score_clear(uint group, uint place) { put(scratch(16u * group + place), 0.0); }
-void chosen_store(uint i, uint place) { put(scratch(uint(SCRATCH_CHOSEN) + i), place); }
+void score_clear(uint group, uint place) {
+    settle();
+    if (gl_LocalInvocationID.x == place)
+        put(scratch(16u * group + place), 0.0);
+    settle();
+}
+void chosen_store(uint i, uint place) {
+    settle();
+    if (first())
+        put(scratch(uint(SCRATCH_CHOSEN) + i), place);
+    settle();
+}
 uint chosen_load(uint i) { return wu(scratch(uint(SCRATCH_CHOSEN) + i)); }
 void list_group_store(uint group, list_group g) {
     uint at = scratch(uint(SCRATCH_GROUPS) + 3u * group);
-    put(at, g.part);
-    put(at + 1u, g.level);
-    put(at + 2u, g.block);
+    settle();
+    if (first()) {
+        put(at, g.part);
+        put(at + 1u, g.level);
+        put(at + 2u, g.block);
+    }
+    settle();
 }
 list_group list_group_load(uint group) {
     uint at = scratch(uint(SCRATCH_GROUPS) + 3u * group);
     return list_group(wu(at), wu(at + 1u), wu(at + 2u));
 }
-void group_sum_store(uint group, float sum) { put(scratch(uint(SCRATCH_SUMS) + group), sum); }
+void group_sum_store(uint group, float sum) {
+    settle();
+    if (first())
+        put(scratch(uint(SCRATCH_SUMS) + group), sum);
+    settle();
+}
 float group_sum(uint group) { return wf(scratch(uint(SCRATCH_SUMS) + group)); }
 void entry_store(uint i, list_entry e) {
-    put(answer(uint(ANSWER_LIGHT) + i), e.light);
-    put(answer(uint(ANSWER_WEIGHT) + i), e.weight);
+    settle();
+    if (first()) {
+        put(answer(uint(ANSWER_LIGHT) + i), e.light);
+        put(answer(uint(ANSWER_WEIGHT) + i), e.weight);
+    }
+    settle();
 }
 list_entry entry_load(uint i) {
     return list_entry(wu(answer(uint(ANSWER_LIGHT) + i)), wf(answer(uint(ANSWER_WEIGHT) + i)));
@@ -91,17 +145,21 @@ list_material list_material_load(uint material) {
 }
 void patch_store(uint i, list_patch t) {
     uint at = scratch(uint(SCRATCH_PATCHES) + 16u * i);
-    for (uint k = 0u; k < 3u; k++) {
-        put(at + k, t.c[k]);
-        put(at + 4u + k, t.axis[k]);
-        put(at + 10u + k, t.wo[k]);
+    settle();
+    if (first()) {
+        for (uint k = 0u; k < 3u; k++) {
+            put(at + k, t.c[k]);
+            put(at + 4u + k, t.axis[k]);
+            put(at + 10u + k, t.wo[k]);
+        }
+        put(at + 3u, t.radius);
+        put(at + 7u, t.spread);
+        put(at + 8u, t.share);
+        put(at + 9u, t.reflectance);
+        put(at + 13u, t.gloss);
+        put(at + 14u, t.alpha2);
     }
-    put(at + 3u, t.radius);
-    put(at + 7u, t.spread);
-    put(at + 8u, t.share);
-    put(at + 9u, t.reflectance);
-    put(at + 13u, t.gloss);
-    put(at + 14u, t.alpha2);
+    settle();
 }
 list_patch patch_load(uint i) {
     uint at = scratch(uint(SCRATCH_PATCHES) + 16u * i);
@@ -136,8 +194,8 @@ list_prior prior_load(uint i) {
 float prior_share(uint i) { return prior_load(i).share; }
 uint entry_light(uint i) { return entry_load(i).light; }
 float entry_weight(uint i) { return entry_load(i).weight; }
-void weighed_store(uint i, float weighed) { put(scratch(uint(SCRATCH_WEIGHED) + i), weighed); }
-float weighed_load(uint i) { return wf(scratch(uint(SCRATCH_WEIGHED) + i)); }
+void weighed_store(uint i, float weighed) { weighed_[i] = weighed; }
+float weighed_load(uint i) { return weighed_[i]; }
 float weighed_at(uint i) { return weighed_load(i); }
 void drawn_store(uint ray, bool on, uint entry, float times) {
     if (on) {
@@ -194,19 +252,28 @@ void share_pixel(uint count, uint x, uint y) {
         put(pixel_answer(uint(PIXEL_COLOUR) + k), colour[k]);
 }
 
-void main() {
-    tile_ = gl_GlobalInvocationID.x;
-    if (tile_ >= wu(HEAD_TILES))
-        return;
+void build_tile() {
     float start = tail_start(wu(HEAD_SEED), tile_, wu(HEAD_FRAME));
     list_size size = list_build(16u, wv(uint(HEAD_EYE)), wu(HEAD_LIST), wu(HEAD_TAIL), start);
     size = list_fill(size, wu(HEAD_LIST) + wu(HEAD_TAIL), wu(HEAD_RAYS), wu(HEAD_DRAWS));
-    put(answer(uint(ANSWER_COUNT)), size.count);
-    put(answer(uint(ANSWER_COPIES)), size.copies);
-    uint x0 = tile_ % wu(HEAD_TILES_X) * 16u;
-    uint y0 = tile_ / wu(HEAD_TILES_X) * 16u;
-    for (block_ = 0u; block_ < 16u && size.count > 0u; block_++)
-        for (place_ = 0u; place_ < 16u; place_++)
-            if ((tile_pixels(block_) >> place_ & 1u) != 0u)
-                share_pixel(size.count, x0 + block_ % 4u * 4u + place_ % 4u, y0 + block_ / 4u * 4u + place_ / 4u);
+    if (first()) {
+        put(answer(uint(ANSWER_COUNT)), size.count);
+        put(answer(uint(ANSWER_COPIES)), size.copies);
+    }
+}
+
+void main() {
+    if (dispatch == DISPATCH_TILES) {
+        tile_ = gl_WorkGroupID.x;
+        build_tile();
+        return;
+    }
+    tile_ = gl_WorkGroupID.x / 16u;
+    block_ = gl_WorkGroupID.x % 16u;
+    place_ = gl_LocalInvocationID.x;
+    uint count = wu(answer(uint(ANSWER_COUNT)));
+    uint x = tile_ % wu(HEAD_TILES_X) * 16u + block_ % 4u * 4u + place_ % 4u;
+    uint y = tile_ / wu(HEAD_TILES_X) * 16u + block_ / 4u * 4u + place_ / 4u;
+    if (count > 0u && (tile_pixels(block_) >> place_ & 1u) != 0u)
+        share_pixel(count, x, y);
 }

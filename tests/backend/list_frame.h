@@ -7,6 +7,10 @@
 #include "core/list_limits.h"
 #include "core/random.h"
 
+/* What work groups do: a dispatch's push constant. */
+#define DISPATCH_TILES 0u  /* a list each */
+#define DISPATCH_PIXELS 1u /* the rays of a block each */
+
 #define HEAD_TILES 0
 #define HEAD_TILES_X 1
 #define HEAD_WIDTH 2
@@ -34,8 +38,7 @@
 #define SCRATCH_GROUPS (SCRATCH_SUMS + LIST_GROUPS)
 #define SCRATCH_PATCHES (SCRATCH_GROUPS + 3 * LIST_GROUPS)
 #define SCRATCH_CHOSEN (SCRATCH_PATCHES + 16 * LIST_PATCHES)
-#define SCRATCH_WEIGHED (SCRATCH_CHOSEN + LIST_CHOSEN)
-#define SCRATCH_WORDS (SCRATCH_WEIGHED + LIST_ROOM)
+#define SCRATCH_WORDS (SCRATCH_CHOSEN + LIST_CHOSEN)
 
 #define RAY_ENTRY 0
 #define RAY_TIMES 1

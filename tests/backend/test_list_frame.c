@@ -72,13 +72,11 @@ static void make_words(trial *t) {
         t->words[i] = (uint32_t)at[i];
 }
 
-static void make_trial(trial *t, int list, int tail) {
+static void make_trial(trial *t, const char *scene, const noc_builtin_params *of, int list, int tail) {
     noc_camera camera;
     memset(t, 0, sizeof(*t));
     t->scene = noc_scene_create(NULL);
-    noc_city_params city = noc_city_default_params();
-    city.size = 150;
-    assert_int_equal(noc_scene_add_city(t->scene, &city), NOC_OK);
+    assert_int_equal(noc_scene_add_builtin(t->scene, scene, of), NOC_OK);
     assert_int_equal(noc_scene_commit(t->scene), NOC_OK);
     assert_int_equal(noc_scene_camera(t->scene, NOC_VIEWPOINT_AERIAL, (double)W / H, &camera), NOC_OK);
     t->params = measure(W, H, NOC_METHOD_RIS);
@@ -249,12 +247,14 @@ static double differences(const char *what, const uint32_t *have, const uint32_t
     return (double)all / ((double)TILES * ANSWER_WORDS);
 }
 
-/* The comparison would be worth nothing over empty lists and pixels without rays. */
-static void expect_alive(const uint32_t *a) {
+/* The comparison would be worth nothing over empty lists and pixels without rays. repeats: whether lists hold each of
+ * their lights several times. */
+static void expect_alive(const uint32_t *a, bool repeats) {
     size_t entries = 0, drawn = 0, rays = 0, blocked = 0;
     for (int number = 0; number < TILES; number++) {
         const uint32_t *t = a + (size_t)number * ANSWER_WORDS;
         entries += t[ANSWER_COUNT];
+        assert_int_equal(t[ANSWER_COPIES] > 1, repeats);
         for (uint32_t i = 0; i < t[ANSWER_COUNT]; i++)
             drawn += as_float(t[ANSWER_WEIGHT + i]) != 1;
         for (int i = 0; i < 256 * 16; i++) {
@@ -268,13 +268,20 @@ static void expect_alive(const uint32_t *a) {
                 blocked < rays / 2);
 }
 
-static void compare(int list, int tail) {
+#if defined(HAVE_VULKAN)
+static bool dispatch(vulkan_run *gpu, uint32_t what, uint32_t groups, uint32_t *words, size_t count) {
+    return vulkan_compute(gpu, list_frame_spv, sizeof(list_frame_spv), &what, sizeof(what), groups, words,
+                          count * sizeof(*words));
+}
+#endif
+
+static void compare(const char *scene, const noc_builtin_params *of, int list, int tail, bool repeats) {
     trial t;
-    make_trial(&t, list, tail);
+    make_trial(&t, scene, of, list, tail);
     const kernels *all[NOC_MAX_KERNELS];
     int tables = noc_runnable_kernels(all);
     uint32_t *want = answer(&t, all[0]);
-    expect_alive(want);
+    expect_alive(want, repeats);
     for (int i = 1; i < tables; i++) {
         uint32_t *have = answer(&t, all[i]);
         assert_true(differences(all[i]->name, have, want) == 0);
@@ -287,8 +294,8 @@ static void compare(int list, int tail) {
         uint32_t *words = noc_alloc(t.count * sizeof(*words));
         assert_non_null(words);
         memcpy(words, t.words, t.count * sizeof(*words));
-        bool ok = vulkan_compute(&gpu, list_frame_spv, sizeof(list_frame_spv), NULL, 0, (TILES + 7) / 8, words,
-                                 t.count * sizeof(*words));
+        bool ok = dispatch(&gpu, DISPATCH_TILES, TILES, words, t.count) &&
+                  dispatch(&gpu, DISPATCH_PIXELS, 16 * TILES, words, t.count);
         print_message("# %s %s\n", gpu.device, ok ? "" : gpu.why);
         vulkan_close(&gpu);
         assert_true(ok);
@@ -308,12 +315,38 @@ static void compare(int list, int tail) {
     free_trial(&t);
 }
 
-/* No longer lists: llvmpipe ends an invocation's loops after 65,535 rounds in all. */
+static void city(double size, int list, int tail) {
+    noc_builtin_params of = noc_builtin_default_params();
+    of.city.size = size;
+    compare("city", &of, list, tail, false);
+}
+
 static void lists_with_tails(void **state) {
     (void)state;
-    compare(16, 24);
+    city(150, 16, 24);
 }
+
+static void longest_lists(void **state) {
+    (void)state;
+    city(150, LIST_ENTRIES, LIST_ENTRIES);
+}
+
+/* 11,000: most of the tail is below nodes that stayed closed. */
+static void many_lights(void **state) {
+    (void)state;
+    city(600, 64, 64);
+}
+
+/* Fewer than lists have room for: they hold each of them several times. */
+static void few_lights(void **state) {
+    (void)state;
+    noc_builtin_params of = noc_builtin_default_params();
+    of.lights = 30;
+    compare("mess", &of, 64, 96, true);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(lists_with_tails) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(lists_with_tails), cmocka_unit_test(longest_lists),
+                                        cmocka_unit_test(many_lights), cmocka_unit_test(few_lights) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
