@@ -53,7 +53,7 @@ check: deps-check build/build.ninja
 
 # -O1 and line numbers alone: most of its time goes into compiling.
 asan: deps-check
-	@[ -e build-asan/build.ninja ] || meson setup build-asan $(SANITIZE) -Doptimization=1 -Ddebug=false -Dc_args=-g1 -Dtests=enabled >/dev/null
+	@[ -e build-asan/build.ninja ] || meson setup build-asan $(SANITIZE) -Dwerror=$(WERROR) -Doptimization=1 -Ddebug=false -Dc_args=-g1 -Dtests=enabled >/dev/null
 	@$(NINJA) -C build-asan
 	@tools/run-tests.sh build-asan --timeout-multiplier 4
 

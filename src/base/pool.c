@@ -61,7 +61,7 @@ static struct run *next_run(noc_pool *pool) {
 static void *worker_main(void *arg) {
     struct worker *w = arg;
     noc_pool *pool = w->pool;
-    struct run *run;
+    struct run *run = NULL;
     pthread_mutex_lock(&pool->lock);
     for (;;) {
         while (!pool->stop && !(run = next_run(pool)))

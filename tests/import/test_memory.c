@@ -350,9 +350,8 @@ static size_t pull_blanks(void *buffer, size_t size, void *user) {
 /* jansson does not look whether the text that it reads could grow; so what that can take, which is up to twice as much,
  * is set aside. What counts is what came, not the size of a file that may be compressed. */
 static void json_has_memory_aside(void **state) {
-#if SANITIZED /* which has a malloc of its own */
-    skip();
-#endif
+    if (SANITIZED) /* which has a malloc of its own */
+        skip();
     blanks b = { .left = 16 << 20, .in_use = bytes_in_use() };
     json_error_t error;
     assert_null(import_json_load(pull_blanks, &b, 0, &error)); /* no JSON in it */
