@@ -77,7 +77,7 @@ fuzz:
 COUNT = -fprofile-instr-generate -fcoverage-mapping
 coverage:
 	@tools/install-deps.sh coverage
-	@[ -e build-coverage/build.ninja ] || CC=clang CXX=clang++ meson setup build-coverage -Dc_args='$(COUNT) -DFEW_SAMPLES' -Dcpp_args='$(COUNT)' \
+	@[ -e build-coverage/build.ninja ] || LLVM_PROFILE_FILE=/dev/null CC=clang CXX=clang++ meson setup build-coverage -Dc_args='$(COUNT) -DFEW_SAMPLES' -Dcpp_args='$(COUNT)' \
 		-Dc_link_args=-fprofile-instr-generate -Dcpp_link_args=-fprofile-instr-generate -Doptimization=1 -Ddebug=false -Db_lundef=false \
 		-Dbench=false -Dtests=enabled >/dev/null
 	@$(NINJA) -C build-coverage
