@@ -49,6 +49,8 @@ void noc_cpu_keep_past(cpu_view *s) {
     s->seen = scene->versions;
     if (!s->previous_lights || (s->past_filled && same_lights(&then, &s->seen)))
         return;
+    if (s->past_room < scene->lights.len) /* this frame's plan asked for none, and more lights came */
+        return;
     bool last = s->past_filled && then.commits + 1 == s->seen.commits; /* that commit wrote these, and no others */
     noc_range r = last ? scene->dirty_lights : (noc_range){ 0, scene->lights.len };
     if (r.first < r.end)
