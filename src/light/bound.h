@@ -18,13 +18,14 @@ typedef struct noc_light_key {
 
 noc_light_bound noc_bound_light(const noc_light_record *light);
 
-/* Structures keep lights that stand apart from those that move: what stands costs nothing while the others do. */
+/* Structures keep lights that stand apart from those that move, or were added of late: what stands costs nothing while
+ * the others do. */
 enum { NOC_STANDING, NOC_MOVING, NOC_HALVES };
 /* The half that a light is in; NOC_HALVES: none, for there is no light in that place. */
 static inline int noc_light_half(const noc_light_record *l) {
     if (l->flags & NOC_LIGHT_FREE)
         return NOC_HALVES;
-    return l->flags & NOC_LIGHT_MOVES ? NOC_MOVING : NOC_STANDING;
+    return noc_light_stands(l->flags) ? NOC_STANDING : NOC_MOVING;
 }
 
 /* Greatest luminous intensity of a light, cd: radiance times projected area. */

@@ -110,7 +110,7 @@ void noc_influence_destroy(noc_influence *influence); /* NULL is allowed */
  * stands shines from what moves. NOC_ERR_MEMORY after reporting it: then there is nothing left to do with the volumes
  * but to destroy them; so it is with noc_influence_relight.
  *
- * Lights of the standing half that are added, removed or moved want new volumes altogether. */
+ * Lights that the standing half is to take in, or to forget, want new volumes altogether. */
 noc_status noc_influence_move(noc_influence *influence, const noc_scene *scene, bool others, noc_log *log) NOC_MUST_USE;
 
 /* After lights of the standing half have changed what they emit: sizes and bounds are fitted where they are. Where S_r

@@ -71,17 +71,17 @@ void noc_light_set_destroy(noc_light_set *set) {
 
 /* What is different since structures were made, or last followed. */
 typedef struct changes {
-    bool others;             /* lights of the moving half were added or removed, and N may be another */
+    bool others;             /* lights were added or removed, and N may be another */
     bool moving;             /* that half has changed in any way */
     bool emission, standing; /* what lights emit; of the static half too */
-    bool anew;               /* lights of the static half were added or removed */
+    bool anew;               /* the static half is made of other lights */
 } changes;
 
 static changes changes_since(const noc_scene_versions *known, const noc_scene_versions *now) {
     changes c = { .others = known->lights != now->lights, .standing = known->standing != now->standing };
     c.emission = c.others || known->emission != now->emission;
     c.moving = c.emission || known->moved != now->moved;
-    c.anew = c.others && c.standing;
+    c.anew = known->settled != now->settled;
     return c;
 }
 

@@ -6,14 +6,15 @@
  * brings all of them up to date, before it or another draws. What a commit costs then:
  *
  *              lights that move                  what lights emit               lights added or removed
- *   lists      their half is made anew           powers are summed up anew      that half is made anew
+ *   lists      their half is made anew           powers are summed up anew      the moving half is made anew
  *   power      nothing                           a new table, linear time       a new table
- *   influence  their half is made anew           sizes and bounds are refitted  that half is made anew
- *   light-bvh  their half is refitted, or built  powers are summed up anew      that half is built anew
+ *   influence  their half is made anew           sizes and bounds are refitted  the moving half is made anew
+ *   light-bvh  their half is refitted, or built  powers are summed up anew      the moving half is built anew
  *              anew where it has become bad
  *
- * Where lights that stand are added or removed the half of those that move is made anew beside it, as it is whenever
- * they move. */
+ * Lights that are added after the first commit come to the moving half, and those that stood and are removed stay in
+ * the standing half as dark ones, which costs what a change of emission does. Once there are many of both the scene
+ * settles them (scene/relight.c), and both halves are made anew. */
 #ifndef NOC_LIGHT_SET_H
 #define NOC_LIGHT_SET_H
 

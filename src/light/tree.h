@@ -55,8 +55,8 @@ void noc_tree_destroy(noc_tree *tree); /* NULL is allowed */
 /* After lights of the moving half have changed in any way: bounds their tree anew where it stands, or builds it anew
  * where its heuristic cost has grown by half since it was built; what stands stays as it is. others: some were added or
  * removed, for which it is built anew; where none moved before, or none does any more, the whole tree is. Lights that
- * stand and are added, removed or moved want another tree. NOC_ERR_MEMORY after reporting it: then there is nothing
- * left to do with the tree but to destroy it. */
+ * the standing half is to take in, or to forget, want another tree. NOC_ERR_MEMORY after reporting it: then there is
+ * nothing left to do with the tree but to destroy it. */
 noc_status noc_tree_refit(noc_tree *tree, const noc_scene *scene, bool others, noc_log *log) NOC_MUST_USE;
 
 /* After lights have changed what they emit: the powers of all nodes, from the leaves up. */

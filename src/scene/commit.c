@@ -103,7 +103,7 @@ static bool need_edit(const noc_scene *s, noc_edit *e, need *n) {
     size_t lights;
     switch (e->kind) {
     case NOC_EDIT_GROUP: n->scales |= e->rgb[0] != 1 || e->rgb[1] != 1 || e->rgb[2] != 1; return true;
-    case NOC_EDIT_ADD_LIGHT: n->moving += (e->light.flags & NOC_LIGHT_MOVES) != 0; return true;
+    case NOC_EDIT_ADD_LIGHT: n->moving++; return true;
     case NOC_EDIT_REMOVE_LIGHT:
         n->released_lights++;
         n->gaps++;
@@ -171,7 +171,9 @@ static bool reserve_arrays(noc_scene *s, const need *n) {
            array_reserve(&s->instances, s->instances.len + s->instance_slots.fresh) && reserve_lights(s, lights) &&
            array_reserve(&s->light_names, lights) &&
            (!(s->scaled || n->scales) || array_reserve(&s->light_made, lights)) &&
-           array_reserve(&s->moving, s->moving.len + n->moving) && reserve_slots(&s->light_slots, n->released_lights) &&
+           array_reserve(&s->moving, s->moving.len + n->moving + (s->committed ? n->lights : 0)) &&
+           array_reserve(&s->dark_slots, s->dark_slots.len + n->released_lights) &&
+           reserve_slots(&s->light_slots, s->dark_slots.len + n->released_lights) &&
            reserve_slots(&s->instance_slots, n->released_instances);
 }
 
@@ -420,18 +422,16 @@ static void count_versions(noc_scene_versions *v, const noc_changes *c) {
     v->moved += c->moved;
     v->emission += c->emission;
     v->standing += c->standing;
+    v->settled += c->settled;
     v->commits += c->geometry || c->instances || c->materials || c->lights || c->moved || c->emission;
 }
 
 static void settle(commit *c) {
     noc_scene *s = c->s;
-    size_t kept = 0;
     if (c->changes.shape_left)
         remove_shapes(c);
-    for (size_t i = 0; c->changes.moving_left && i < s->moving.len; i++)
-        if (s->lights.data[s->moving.data[i]].flags & NOC_LIGHT_MOVES)
-            s->moving.data[kept++] = s->moving.data[i];
-    s->moving.len = c->changes.moving_left ? kept : s->moving.len;
+    if (c->changes.lights)
+        noc_lights_settle(s, &c->changes);
     if (c->changes.mesh_left)
         find_gaps(s);
     if (isnan(s->bounds_min[0]))

@@ -1,4 +1,8 @@
-/* Slots of lights: what commit puts into them, changes, and takes out. */
+/* Slots of lights: what commit puts into them, changes, and takes out.
+ *
+ * What stands is dear to make structures of. So lights that are added after the first commit are of the half that is
+ * made anew with every change, and those of the standing half that are removed stay there, dark. Once there are many of
+ * either the standing half is settled: it takes in what was added, and forgets what went. */
 #include "scene/scene.h"
 
 static const noc_light_record free_slot = { .kind = NOC_LIGHT_POINT, .flags = NOC_LIGHT_FREE };
@@ -30,24 +34,34 @@ static void write_record(noc_scene *s, uint32_t slot, const noc_light_record *ma
 }
 
 void noc_light_put(noc_scene *s, uint32_t slot, const noc_light_record *made, const char *name, noc_changes *c) {
-    write_record(s, slot, made);
+    noc_light_record r = *made;
+    if (s->committed && !(r.flags & NOC_LIGHT_MOVES)) {
+        r.flags |= NOC_LIGHT_LATER;
+        s->later++;
+    }
+    write_record(s, slot, &r);
     s->light_names.data[slot] = name;
-    s->lights_inferred += (made->flags & NOC_LIGHT_INFERRED) != 0;
-    if (made->flags & NOC_LIGHT_MOVES)
+    s->lights_inferred += (r.flags & NOC_LIGHT_INFERRED) != 0;
+    if (!noc_light_stands(r.flags)) {
         s->moving.data[s->moving.len++] = slot;
-    c->standing |= !(made->flags & NOC_LIGHT_MOVES);
+        c->moving_came = true;
+    }
     c->lights = true;
 }
 
 void noc_light_release(noc_scene *s, uint32_t slot, noc_changes *c) {
     uint32_t flags = s->lights.data[slot].flags;
+    bool stood = noc_light_stands(flags);
     s->lights_inferred -= (flags & NOC_LIGHT_INFERRED) != 0;
-    c->moving_left |= (flags & NOC_LIGHT_MOVES) != 0;
-    c->standing |= !(flags & NOC_LIGHT_MOVES);
+    s->later -= (flags & NOC_LIGHT_LATER) != 0;
+    c->standing |= stood;
     c->lights = true;
     write_record(s, slot, &free_slot);
     s->light_names.data[slot] = NULL;
-    s->light_slots.released.data[s->light_slots.released.len++] = slot;
+    if (stood)
+        s->dark_slots.data[s->dark_slots.len++] = slot;
+    else
+        s->light_slots.released.data[s->light_slots.released.len++] = slot;
 }
 
 noc_light_record noc_light_made(const noc_scene *s, uint32_t slot) {
@@ -66,9 +80,11 @@ void noc_light_change(noc_scene *s, uint32_t slot, const noc_light_record *made,
     bool spot = now->kind == NOC_LIGHT_SPOT; /* its cones say how much of its intensity leaves it */
     bool power = memcmp(before.e, now->e, sizeof(now->e)) || before.area != now->area || before.flags != now->flags ||
                  (spot && memcmp(before.b, now->b, sizeof(now->b)));
-    c->lights |= before.flags != now->flags; /* it shines another way: as another light would */
+    bool stands = noc_light_stands(now->flags), another = before.flags != now->flags;
+    c->lights |= another; /* it shines another way: as another light would */
+    c->settled |= another && stands;
     c->emission |= power;
-    c->standing |= power && !(now->flags & NOC_LIGHT_MOVES);
+    c->standing |= power && stands;
     c->moved |= memcmp(before.p, now->p, sizeof(now->p)) || memcmp(before.a, now->a, sizeof(now->a)) ||
                 memcmp(before.b, now->b, sizeof(now->b)) || before.radius != now->radius;
 }
@@ -87,7 +103,7 @@ void noc_light_scale_group(noc_scene *s, uint32_t group, const float scale[3], n
             noc_light_record made = noc_light_made(s, i);
             write_record(s, i, &made);
             c->emission = true;
-            c->standing |= !(made.flags & NOC_LIGHT_MOVES);
+            c->standing |= noc_light_stands(made.flags);
         }
 }
 
@@ -115,12 +131,47 @@ void noc_mesh_relight(noc_scene *s, const noc_scene_mesh *m, noc_changes *c) {
         }
         noc_light_record r = light_of(s, m, t);
         if (lit) {
+            r.flags |= s->lights.data[*light].flags & NOC_LIGHT_LATER;
             noc_light_change(s, *light, &r, c);
         } else {
             *light = noc_light_take_slot(s);
             noc_light_put(s, *light, &r, m->name, c);
         }
     }
+}
+
+static int by_index(const void *a, const void *b) {
+    uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* So many lights that were added or went are kept beside those that stand: what is made anew with each change stays
+ * small, and settling costs each of them no more than these many that stand. */
+enum { LEAST_LATER = 1024, SHARE_LATER = 64 };
+
+void noc_lights_settle(noc_scene *s, noc_changes *c) {
+    bool many = s->later + s->dark_slots.len > NOC_MAX((size_t)LEAST_LATER, s->lights.len / SHARE_LATER);
+    size_t kept = 0;
+    c->settled |= s->committed && many;
+    for (size_t i = 0; i < s->moving.len; i++) {
+        uint32_t slot = s->moving.data[i];
+        noc_light_record *r = &s->lights.data[slot];
+        if (c->settled && r->flags & NOC_LIGHT_LATER) {
+            r->flags &= ~NOC_LIGHT_LATER;
+            noc_range_add(&s->dirty_lights, slot);
+        }
+        if (!noc_light_stands(r->flags))
+            s->moving.data[kept++] = slot;
+    }
+    s->moving.len = kept;
+    if (c->moving_came)
+        qsort(s->moving.data, kept, sizeof(*s->moving.data), by_index);
+    if (!c->settled)
+        return;
+    for (size_t i = 0; i < s->dark_slots.len; i++)
+        s->light_slots.released.data[s->light_slots.released.len++] = s->dark_slots.data[i];
+    s->dark_slots.len = s->later = 0;
+    c->lights = c->standing = true;
 }
 
 void noc_model_relight(noc_scene *s, const noc_scene_mesh *m) {

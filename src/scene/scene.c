@@ -71,6 +71,7 @@ void noc_scene_destroy(noc_scene *scene) {
     array_free(&scene->gaps);
     array_free(&scene->edits);
     free_slots(&scene->light_slots);
+    array_free(&scene->dark_slots);
     free_slots(&scene->instance_slots);
     arena_free(&scene->names);
     arena_free(&scene->later_names);

@@ -23,8 +23,11 @@ _Static_assert((int)LIGHT_SPHERE == NOC_LIGHT_SPHERE && (int)LIGHT_DISC == NOC_L
 #define NOC_LIGHT_MOVES 4u  /* of the moving half, else of the static one */
 #define NOC_LIGHT_FREE 8u   /* a slot without a light: no emission, never drawn */
 #define NOC_LIGHT_OWNED 16u /* comes and goes with a mesh or an instance */
+#define NOC_LIGHT_LATER 32u /* stands, and is of the moving half: it was added since what stands was last settled */
 #define NOC_LIGHT_GROUP 16
 static inline uint32_t noc_light_group(const noc_light_record *r) { return r->flags >> NOC_LIGHT_GROUP; }
+/* Is a light of these flags in the half that stands? */
+static inline bool noc_light_stands(uint32_t flags) { return !(flags & (NOC_LIGHT_MOVES | NOC_LIGHT_LATER)); }
 
 /* Meshes lie one after the other in the arrays. One of a model is in the model's coordinates, and what it shows in
  * triangle_light are lights of the model. */
@@ -110,6 +113,7 @@ typedef struct noc_scene_versions {
     uint64_t moved;     /* places, directions and shapes of lights of the moving half */
     uint64_t emission;  /* what a light emits in all */
     uint64_t standing;  /* of lights and emission those commits that changed the static half */
+    uint64_t settled;   /* the static half is to be made anew; where it is not, its lights only went dark */
 } noc_scene_versions;
 
 typedef struct noc_range {
@@ -144,7 +148,7 @@ struct noc_scene {
     NOC_ARRAY(noc_light_record) lights;              /* data is 64-byte aligned after commit */
     NOC_ARRAY(const char *) light_names;             /* parallel to lights, entries may be NULL */
     NOC_ARRAY(noc_rgb) light_made;                   /* emission before the group's scale; filled where `scaled` */
-    NOC_ARRAY(uint32_t) moving;                      /* lights with NOC_LIGHT_MOVES */
+    NOC_ARRAY(uint32_t) moving;                      /* lights of the moving half, ascending */
     NOC_ARRAY(noc_scene_model) models;               /* model m is at m - 1 */
     NOC_ARRAY(noc_scene_instance) instances;
     NOC_ARRAY(noc_scene_group) groups; /* group g is at g - 1; only who edits looks at them */
@@ -163,8 +167,10 @@ struct noc_scene {
     NOC_ARRAY(noc_edit) edits;
     noc_scene *added; /* arrays that commit appends; its lights are empty. NULL: never needed */
     noc_slots light_slots, instance_slots;
-    noc_arena later_names; /* of all that is named after the first commit */
-    size_t later_bytes;    /* of them, at the last commit */
+    NOC_ARRAY(uint32_t) dark_slots; /* of lights that stood: no other light comes there before what stands is settled */
+    size_t later;                   /* lights with NOC_LIGHT_LATER */
+    noc_arena later_names;          /* of all that is named after the first commit */
+    size_t later_bytes;             /* of them, at the last commit */
     struct noc_scene_lock *lock;
     bool no_memory;            /* was refused and reported: nothing more is added, and it cannot be committed */
     struct noc_ground *ground; /* built on first use of noc_scene_ground; freed with the scene */
@@ -242,9 +248,10 @@ double noc_double_area(const float *a, const float *b, const float *c); /* twice
 
 /* relight.c: slots of lights, and what commits put into them. None of these fails: commit has reserved. */
 typedef struct noc_changes {
-    bool geometry, instances, materials, lights, moved, emission, standing;
-    bool moving_left, shape_left; /* a moving light was removed; one with a shape was */
-    bool mesh_left, ground_left;  /* a mesh was removed; the ground's grids are stale */
+    bool geometry, instances, materials, lights, moved, emission, standing, settled;
+    bool moving_came;            /* to the moving half */
+    bool shape_left;             /* a light with a shape was removed */
+    bool mesh_left, ground_left; /* a mesh was removed; the ground's grids are stale */
 } noc_changes;
 uint32_t noc_light_add_slot(noc_scene *s);  /* behind all others */
 uint32_t noc_light_take_slot(noc_scene *s); /* a free one, or that */
@@ -254,6 +261,8 @@ void noc_light_release(noc_scene *s, uint32_t slot, noc_changes *c);
 void noc_light_change(noc_scene *s, uint32_t slot, const noc_light_record *made, noc_changes *c);
 noc_light_record noc_light_made(const noc_scene *s, uint32_t slot); /* its record before the group's scale */
 void noc_light_scale_group(noc_scene *s, uint32_t group, const float scale[3], noc_changes *c);
+/* After all edits: the list of those of the moving half; and, where it is time, what stands is settled. */
+void noc_lights_settle(noc_scene *s, noc_changes *c);
 /* Makes the triangles of a mesh into lights, or anew, or puts them out, as its material says. */
 void noc_mesh_relight(noc_scene *s, const noc_scene_mesh *mesh, noc_changes *c);
 /* The same for a mesh of a model that has no instance yet: its triangles become lights of the model. */

@@ -58,11 +58,12 @@ static noc_scene *city(uint32_t step) {
 static bool is(const noc_scene *s, size_t i, int half) {
     return noc_light_half(&s->lights.data[i]) == half && i < LIGHTS;
 }
+static bool moves(const noc_scene *s, size_t i) { return s->lights.data[i].flags & NOC_LIGHT_MOVES; }
 
 static void move_them(noc_scene *s) {
     for (size_t i = 0; i < s->lights.len; i++)
-        if (is(s, i, NOC_MOVING)) {
-            noc_light l = light_at((uint32_t)i, true, real_in(0, 1) < 0.2f ? 0 : 5);
+        if (moves(s, i) && i < LIGHTS) {
+            noc_light l = light_at(s->lights.data[i].kind, true, real_in(0, 1) < 0.2f ? 0 : 5);
             assert_int_equal(noc_scene_move_light(s, (int)i, &l), NOC_OK);
         }
 }
@@ -84,14 +85,22 @@ static void relight(noc_scene *s) {
         }
 }
 
-static void add_some(noc_scene *s, bool moving) {
-    for (uint32_t i = 0; i < 60; i++) {
+static void add_some(noc_scene *s, bool moving, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
         noc_light l = light_at(i, moving, 8);
         assert_true(noc_scene_add_light(s, &l) >= 0);
     }
 }
-static void add_moving(noc_scene *s) { add_some(s, true); }
-static void add_standing(noc_scene *s) { add_some(s, false); }
+static void add_moving(noc_scene *s) { add_some(s, true, 60); }
+static void add_standing(noc_scene *s) { add_some(s, false, 60); }
+static void add_many(noc_scene *s) { add_some(s, false, 1100); } /* so many that they are settled */
+static void add_one(noc_scene *s) { add_some(s, false, 1); }
+/* Every other one of those that were added and do not move. */
+static void remove_added(noc_scene *s) {
+    for (size_t i = 0; i < s->lights.len; i += 2)
+        if (s->lights.data[i].flags & NOC_LIGHT_LATER)
+            assert_int_equal(noc_scene_remove_light(s, (int)i), NOC_OK);
+}
 
 static void remove_some(noc_scene *s, int half, size_t step) {
     for (size_t i = 0; i < s->lights.len; i += step)
@@ -127,7 +136,15 @@ static const struct {
     { "standing lights removed", remove_standing },
     { "standing lights added", add_standing },
     { "all at once", all_at_once },
+    { "one added", add_one },
+    { "moved once more", move_them },
+    { "another added", add_one },
+    { "what was added removed", remove_added },
     { "moving lights removed, all", nothing_moves },
+    { "standing lights added beside none that moves", add_standing },
+    { "standing lights removed again", remove_standing },
+    { "so many added that they are settled", add_many },
+    { "one added to these", add_one },
     { "moving lights added again", add_moving },
     { "relit again", relight },
 };
@@ -154,6 +171,25 @@ static struct core_context context(asker *a, const noc_light_sources *from) {
 
 static float intensity(const noc_scene *s, size_t i) { return noc_light_intensity(&s->lights.data[i]); }
 
+/* Each light is in one cluster, of its half. */
+static void lists_hold(asker *a, const noc_light_sources *from) {
+    const noc_light_record *lights = a->scene->lights.data;
+    uint8_t *seen = noc_calloc(a->scene->lights.len, 1);
+    for (int half = 0; half < NOC_HALVES; half++)
+        for (size_t i = 0; i < from->clusters[half]->count; i++) {
+            const noc_light_block *b = &from->clusters[half]->lights[i];
+            for (int j = 0; j < NOC_CLUSTER_LIGHTS && (!j || b->id[j] != b->id[0]); j++) {
+                bool gone = noc_light_half(&lights[b->id[j]]) == NOC_HALVES;
+                assert_true(gone || noc_light_half(&lights[b->id[j]]) == half);
+                assert_int_equal(b->shine[j] >> 16 != 0, intensity(a->scene, b->id[j]) > 0);
+                seen[b->id[j]]++;
+            }
+        }
+    for (size_t i = 0; i < a->scene->lights.len; i++)
+        assert_true(noc_light_half(&lights[i]) == NOC_HALVES ? seen[i] <= 1 : seen[i] == 1);
+    free(seen);
+}
+
 static void power_holds(asker *a, const noc_light_sources *from) {
     struct core_context ctx = context(a, from);
     double sum = 0, lit = 0;
@@ -166,7 +202,8 @@ static void power_holds(asker *a, const noc_light_sources *from) {
     assert_true(fabs(sum - (lit > 0)) < 1e-4);
 }
 
-/* A node's sphere holds the lights below it, its power is theirs, and each light is at the end of its own way. */
+/* A node's sphere holds the lights below it, its power is theirs, and each light is at the end of its own way. A slot
+ * whose light is gone has none, or one to a leaf that is dark. */
 static void tree_holds(asker *a, const noc_light_sources *from) {
     const noc_tree *t = from->tree;
     struct core_context ctx = context(a, from);
@@ -175,7 +212,8 @@ static void tree_holds(asker *a, const noc_light_sources *from) {
     for (uint32_t i = 0; i < a->scene->lights.len; i++) {
         noc_light_bound b = noc_bound_light(&a->scene->lights.data[i]);
         uint32_t path = t->paths[i], link = t->root;
-        assert_int_equal(path == NOC_TREE_NO_PATH, noc_light_half(&a->scene->lights.data[i]) == NOC_HALVES);
+        bool gone = noc_light_half(&a->scene->lights.data[i]) == NOC_HALVES;
+        assert_true(path != NOC_TREE_NO_PATH || gone);
         if (path == NOC_TREE_NO_PATH)
             continue;
         for (found++; !(link & TREE_LEAF); path >>= 1) {
@@ -183,15 +221,18 @@ static void tree_holds(asker *a, const noc_light_sources *from) {
             double d2 = 0;
             for (int k = 0; k < 3; k++)
                 d2 += (double)(b.p[k] - n->c[k]) * (b.p[k] - n->c[k]);
-            assert_true(sqrt(d2) + b.radius <= n->radius * 1.000001);
+            assert_true(gone || sqrt(d2) + b.radius <= n->radius * 1.000001);
             assert_true(n->power >= b.intensity * 0.9999f);
             link = n->link;
+            assert_true(!gone || !(link & TREE_LEAF) || n->power == 0);
         }
         assert_int_equal(link & ~TREE_LEAF, i);
         assert_int_equal(path, 0);
         all += b.intensity;
     }
     assert_int_equal(found, t->lights);
+    if (!found)
+        return;
     for (int k = 0; k < 2; k++)
         power += t->pairs[t->root].child[k].power;
     assert_true(fabs(power - all) <= 1e-4 * all);
@@ -276,6 +317,8 @@ static void follows(uint32_t step) {
             a.params.influence_boxes = i == 2 ? NOC_INFLUENCE_VISIBLE : NOC_INFLUENCE_SPHERE;
             assert_int_equal(noc_light_set_get(set, NOC_CANDIDATES_POWER, &a.params, &from[i]), NOC_OK);
             power_holds(&a, &from[i]);
+            assert_int_equal(noc_light_set_get(set, NOC_CANDIDATES_LISTS, &a.params, &from[i]), NOC_OK);
+            lists_hold(&a, &from[i]);
             assert_int_equal(noc_light_set_get(set, NOC_CANDIDATES_LIGHT_BVH, &a.params, &from[i]), NOC_OK);
             tree_holds(&a, &from[i]);
             assert_int_equal(noc_light_set_get(set, NOC_CANDIDATES_INFLUENCE, &a.params, &from[i]), NOC_OK);
@@ -310,8 +353,8 @@ static void none_moves(void **state) {
     follows(0);
 }
 
-/* What stands keeps its place: a commit that moves lights, or changes what they emit, leaves the order of the static
- * half as it is, and S_r goes on with the lights. */
+/* What stands keeps its place: a commit that moves, adds or removes lights, or changes what they emit, leaves the order
+ * of the static half as it is, and S_r goes on with the lights. */
 static void stands_still(void **state) {
     (void)state;
     noc_scene *s = city(MOVING_STEP);
@@ -324,13 +367,15 @@ static void stands_still(void **state) {
     uint32_t stand = v->stand, *ids = noc_alloc(stand * sizeof(*ids));
     float scale = v->scale, floor = v->rule.floor;
     memcpy(ids, v->ids, stand * sizeof(*ids));
-    for (int i = 0; i < 3; i++) {
-        (i == 0 ? move_them : i == 1 ? add_moving : relight)(s);
+    void (*const steps[])(
+        noc_scene *) = { move_them, add_moving, add_standing, remove_added, relight, remove_standing };
+    for (size_t i = 0; i < NOC_COUNT(steps); i++) {
+        steps[i](s);
         assert_int_equal(noc_scene_commit(s), NOC_OK);
         assert_int_equal(noc_light_set_get(set, NOC_CANDIDATES_INFLUENCE, &p, &from), NOC_OK);
         assert_ptr_equal(from.influence, v);
         assert_memory_equal(ids, v->ids, stand * sizeof(*ids));
-        assert_int_equal(v->scale == scale, i < 2);
+        assert_int_equal(v->scale == scale, i < 4);
     }
     scale = v->scale;
     floor = v->rule.floor;

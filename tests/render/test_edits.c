@@ -5,7 +5,7 @@
 
 #include "scene/scene.h"
 
-enum { LAMPS = 1, CARS = 2, CAR = 1, TRAFFIC = 3, PANES = 12 };
+enum { LAMPS = 1, CARS = 2, CAR = 1, TRAFFIC = 3, PANES = 12, PANE = 5 };
 
 /* A parallelogram at p with edges a, b, of a model or of the world; its index. */
 static int quad(noc_scene *s, int material, int model, const double p[3], const double a[3], const double b[3]) {
@@ -73,6 +73,7 @@ typedef struct street {
     float albedo;
     float glow; /* of the sign */
     bool fence;
+    bool globe, pane; /* a lamp that is added later and goes again; one of the panes of the start */
     int traffic;
 } street;
 
@@ -83,6 +84,8 @@ static street street_at(int frame) {
                      .albedo = frame < 3 ? .3f : .6f, /* of one material, reservoirs are not reused in that frame */
                      .glow = frame < 3 ? 8 : 0,
                      .fence = frame % 2,
+                     .globe = frame == 1 || frame == 3 || frame == 4,
+                     .pane = frame != 2 && frame != 3,
                      .traffic = frame % 4 == 2 ? TRAFFIC - 1 : TRAFFIC };
 }
 
@@ -97,6 +100,23 @@ static noc_material sign_of(const street *w) {
 }
 
 static int add_fence(noc_scene *s) { return QUAD_OF(s, PAINT, 0, -5, -2.5, 0, 7, 0, 0, 0, 0, 1.6); }
+
+static int add_globe(noc_scene *s) {
+    noc_light globe = {
+        .kind = NOC_LIGHT_SPHERE, .position = { -2, 1, 3 }, .radius = .3, .emission = { 30, 40, 60 }, .group = LAMPS
+    };
+    return noc_scene_add_light(s, &globe);
+}
+
+static int add_pane(noc_scene *s, int i) {
+    noc_light pane = { .kind = NOC_LIGHT_PARALLELOGRAM,
+                       .position = { -9 + 1.5 * i, 7.99, 1 + i % 4 },
+                       .edge_u = { .5, 0, 0 },
+                       .edge_v = { 0, 0, .6 },
+                       .emission = { 40, 30, i == PANE ? 200 : 20 },
+                       .group = i % 2 ? LAMPS : 0 };
+    return noc_scene_add_light(s, &pane);
+}
 
 static int add_instance(noc_scene *s, int car, int frame) {
     noc_instance in = { .model = CAR };
@@ -125,15 +145,11 @@ static noc_scene *made(const street *w) {
     QUAD_OF(s, SIGN, 0, -3, 7.98, 5, 6, 0, 0, 0, 0, 1);
     for (int i = 0; i < 4; i++)
         box(s, WALL, 0, -8 + 4.4 * i, 4 - 2 * (i % 2), 0, 1, 1, 2);
-    for (int i = 0; i < PANES; i++) {
-        noc_light pane = { .kind = NOC_LIGHT_PARALLELOGRAM,
-                           .position = { -9 + 1.5 * i, 7.99, 1 + i % 4 },
-                           .edge_u = { .5, 0, 0 },
-                           .edge_v = { 0, 0, .6 },
-                           .emission = { 40, 30, 20 },
-                           .group = i % 2 ? LAMPS : 0 };
-        assert_int_equal(noc_scene_add_light(s, &pane), i);
-    }
+    for (int i = 0; i < PANES; i++)
+        if (i != PANE || w->pane)
+            assert_true(add_pane(s, i) >= 0);
+    if (w->globe)
+        assert_int_equal(add_globe(s), PANES - !w->pane);
     add_car(s, PAINT, GLOW);
     if (w->fence)
         add_fence(s);
@@ -150,13 +166,16 @@ static noc_scene *made(const street *w) {
 /* The one street that tests edit, as it is now. */
 static struct {
     street is;
-    int fence; /* mesh */
+    int fence;       /* mesh */
+    int globe, pane; /* lights */
 } now;
 
 static noc_scene *begin_street(int frame) {
     now.is = street_at(frame);
     noc_scene *s = made(&now.is);
     now.fence = (int)s->meshes.len - 1; /* made last, where there is one */
+    now.pane = PANE;
+    now.globe = PANES;
     return s;
 }
 
@@ -178,6 +197,14 @@ static void pose(noc_scene *s, int frame) {
         assert_int_equal(add_instance(s, i, frame), i);
     for (int i = to.traffic; i < now.is.traffic; i++)
         assert_int_equal(noc_scene_remove_instance(s, i), NOC_OK);
+    if (to.globe && !now.is.globe)
+        now.globe = add_globe(s);
+    if (!to.globe && now.is.globe)
+        assert_int_equal(noc_scene_remove_light(s, now.globe), NOC_OK);
+    if (to.pane && !now.is.pane)
+        now.pane = add_pane(s, PANE);
+    if (!to.pane && now.is.pane)
+        assert_int_equal(noc_scene_remove_light(s, now.pane), NOC_OK);
     if (to.fence && !now.is.fence)
         now.fence = add_fence(s);
     if (!to.fence && now.is.fence)
@@ -348,7 +375,7 @@ static void refused_memory_is_a_status(void **state) {
     noc_view *b = own_view(want, 1, NULL);
     noc_image *wanted = picture(b, &p, 5);
     bool reached;
-    from.traffic = to.traffic; /* lights keep their order */
+    from.traffic = to.traffic, from.globe = to.globe, from.pane = to.pane; /* lights keep their order */
     FOR_EACH_REFUSAL(reached) {
         noc_scene *s = made(&from);
         noc_view *a = own_view(s, 1, log);

@@ -132,12 +132,13 @@ static void refused_memory_changes_nothing(void **unused) {
 static void versions_count_what_changed(void **unused) {
     static const struct {
         change edit;
-        const char *counts; /* a letter a version: geometry, instances, materials, lights, moved, emission, standing */
+        /* a letter a version: geometry, instances, materials, lights, moved, emission, standing, settled (d) */
+        const char *counts;
     } table[] = {
-        { MATERIAL, "m" },         { CLASS_MATERIAL, "m" },    { SHINES, "mls" },      { GOES_OUT, "mls" },
-        { RECOLOURED, "mes" },     { TWO_SIDED, "mles" },      { EMISSION, "es" },     { DIMMED, "es" },
-        { SWITCHED_OFF, "es" },    { LIGHT_MOVED, "o" },       { LIGHT_ADDED, "gls" }, { LIGHT_REMOVED, "gls" },
-        { MESH_ADDED, "gls" },     { MESH_REMOVED, "gls" },    { TOWER_REMOVED, "g" }, { INSTANCE_ADDED, "il" },
+        { MATERIAL, "m" },         { CLASS_MATERIAL, "m" },    { SHINES, "ml" },       { GOES_OUT, "mls" },
+        { RECOLOURED, "mes" },     { TWO_SIDED, "mlesd" },     { EMISSION, "es" },     { DIMMED, "es" },
+        { SWITCHED_OFF, "es" },    { LIGHT_MOVED, "o" },       { LIGHT_ADDED, "gl" },  { LIGHT_REMOVED, "gls" },
+        { MESH_ADDED, "gl" },      { MESH_REMOVED, "gls" },    { TOWER_REMOVED, "g" }, { INSTANCE_ADDED, "il" },
         { INSTANCE_MOVED, "ioe" }, { INSTANCE_REMOVED, "il" }, { INSTANCE_DARK, "e" },
     };
     for (size_t i = 0; i < NOC_COUNT(table); i++) {
@@ -150,10 +151,10 @@ static void versions_count_what_changed(void **unused) {
             assert_int_equal(edit(s, table[i].edit), NOC_OK);
             assert_int_equal(noc_scene_commit(s), NOC_OK);
             const uint64_t have[] = { v->geometry, v->instances, v->materials, v->lights,
-                                      v->moved,    v->emission,  v->standing };
+                                      v->moved,    v->emission,  v->standing,  v->settled };
             for (size_t k = 0; k < NOC_COUNT(have); k++)
-                if (have[k] != (strchr(table[i].counts, "gimloes"[k]) != NULL))
-                    fail_msg("edit %d: %c counts %d", table[i].edit, "gimloes"[k], (int)have[k]);
+                if (have[k] != (strchr(table[i].counts, "gimloesd"[k]) != NULL))
+                    fail_msg("edit %d: %c counts %d", table[i].edit, "gimloesd"[k], (int)have[k]);
             assert_int_equal(v->commits, 1);
         }
         noc_scene_destroy(s);

@@ -1,7 +1,8 @@
 /* Slots of lights, and models with their instances. */
 #include "edits.h"
 
-/* A light that is removed leaves a dark slot, which the next one takes; the indices of others stay. */
+/* A light that is removed leaves a dark slot; the indices of others stay. The next one takes it where it was not of
+ * those that stand from the start, which are settled later. */
 static void slots_are_stable(void **unused) {
     noc_scene *s = made(NULL, NOTHING);
     size_t slots = s->lights.len, moving = s->moving.len;
@@ -15,14 +16,18 @@ static void slots_are_stable(void **unused) {
     assert_true(s->lights.data[LAMP].e[0] == 0 && s->lights.data[LAMP].area == 0);
     assert_int_equal(noc_scene_get_light(s, LAMP, &info), NOC_OK);
     assert_true(info.removed && info.lumens == 0);
-    assert_int_equal(noc_scene_add_light(s, &spot), LAMP);
+    assert_int_equal(noc_scene_remove_light(s, (int)slots), NOC_OK);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    assert_int_equal(noc_scene_add_light(s, &spot), slots);
     assert_int_equal(noc_scene_add_light(s, &lamp), (int)slots + 1);
     assert_int_equal(noc_scene_commit(s), NOC_OK);
-    assert_int_equal(noc_scene_get_light(s, LAMP, &info), NOC_OK);
+    assert_int_equal(noc_scene_get_light(s, slots, &info), NOC_OK);
     assert_true(!info.removed && info.light.kind == NOC_LIGHT_SPOT && info.light.position[0] == 50);
-    assert_int_equal(s->moving.len, moving + 1);
+    assert_int_equal(noc_scene_get_light(s, slots + 1, &info), NOC_OK);
+    assert_true(!info.removed && info.light.kind == NOC_LIGHT_DISC && !info.light.moving);
+    assert_int_equal(s->moving.len, moving + 2);
     assert_memory_equal(&s->lights.data[GLOBE], &globe, sizeof(globe));
-    assert_int_equal(s->dirty_lights.first, LAMP);
+    assert_int_equal(s->dirty_lights.first, slots);
     assert_int_equal(s->dirty_lights.end, slots + 2);
     /* an instance's lights take the slots of another's */
     noc_scene_info before, after;
@@ -37,9 +42,41 @@ static void slots_are_stable(void **unused) {
     }
     noc_scene_get_info(s, &after);
     assert_int_equal(after.light_slots, before.light_slots);
-    assert_int_equal(s->moving.len, moving + 1);
-    for (size_t i = 0; i < s->moving.len; i++)
-        assert_true(s->lights.data[s->moving.data[i]].flags & NOC_LIGHT_MOVES);
+    assert_int_equal(s->moving.len, moving + 2);
+    for (size_t i = 0; i < s->moving.len; i++) {
+        assert_false(noc_light_stands(s->lights.data[s->moving.data[i]].flags));
+        assert_true(!i || s->moving.data[i - 1] < s->moving.data[i]);
+    }
+    noc_scene_destroy(s);
+    (void)unused;
+}
+
+static void add_points(noc_scene *s, int count) {
+    noc_light point = { .kind = NOC_LIGHT_POINT, .position = { 3, 4, 5 }, .emission = { 7, 7, 7 } };
+    for (int i = 0; i < count; i++)
+        assert_true(noc_scene_add_light(s, &point) >= 0);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+}
+
+/* What was added stays apart from what stands until it is much: then it joins that, and slots of what went are free. */
+static void many_are_settled(void **unused) {
+    noc_scene *s = made(NULL, NOTHING);
+    size_t moving = s->moving.len;
+    assert_int_equal(noc_scene_remove_light(s, LAMP), NOC_OK);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    add_points(s, 1000);
+    assert_int_equal(s->versions.settled, 0);
+    assert_int_equal(s->moving.len, moving + 1000);
+    add_points(s, 100);
+    assert_int_equal(s->versions.settled, 1);
+    assert_int_equal(s->moving.len, moving);
+    for (size_t i = 0; i < s->lights.len; i++)
+        assert_false(s->lights.data[i].flags & NOC_LIGHT_LATER);
+    noc_light spot = spot_at(50);
+    assert_int_equal(noc_scene_add_light(s, &spot), LAMP);
+    add_points(s, 1);
+    assert_int_equal(s->versions.settled, 1);
+    assert_int_equal(s->moving.len, moving + 2);
     noc_scene_destroy(s);
     (void)unused;
 }
@@ -155,8 +192,8 @@ static void models_are_added_later(void **unused) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(slots_are_stable), cmocka_unit_test(instances_have_lights),
-                                        cmocka_unit_test(models_are_no_city),
+    const struct CMUnitTest tests[] = { cmocka_unit_test(many_are_settled), cmocka_unit_test(slots_are_stable),
+                                        cmocka_unit_test(instances_have_lights), cmocka_unit_test(models_are_no_city),
                                         cmocka_unit_test(models_are_added_later) };
     return cmocka_run_group_tests_name("scene instances", tests, NULL, NULL);
 }
