@@ -115,7 +115,28 @@ static noc_status run_pass(cg_parser *p, int pass) {
     return p->status;
 }
 
-static void free_parser(cg_parser *p) {
+cg_parser *cg_parser_create(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
+    cg_parser *p = noc_calloc(1, sizeof(*p));
+    if (p)
+        p->keys = lamp_keys_create(params);
+    if (!p || !p->keys) {
+        free(p);
+        noc_no_memory(sink->log, noc_stream_name(stream));
+        return NULL;
+    }
+    p->stream = stream;
+    p->place = noc_stream_name(stream);
+    p->sink = sink;
+    p->max_lod = NOC_CLAMP(params->lod, 0, 4);
+    p->format = format;
+    p->sink_srs = CG_UNTOLD;
+    p->pass = 1;
+    return p;
+}
+
+void cg_parser_destroy(cg_parser *p) {
+    if (!p)
+        return;
     lamp_keys_destroy(p->keys);
     cg_names_free(&p->names);
     cg_object_free(&p->object);
@@ -135,21 +156,18 @@ static void free_parser(cg_parser *p) {
     free(p);
 }
 
+noc_status cg_parser_end(cg_parser *p) {
+    noc_debug(p->sink->log, "%s: %zu polygons used, %zu given twice, %zu named again by xlinks or solids",
+              noc_stream_name(p->stream), p->emitted, p->twins, p->dropped - p->twins);
+    return p->status ? p->status : lamp_keys_report(p->keys, p->sink, noc_stream_name(p->stream), 0);
+}
+
 static noc_status read_citygml(noc_stream *stream, const noc_import_params *params, geo_sink *sink,
                                const char **format) {
-    cg_parser *p = noc_calloc(1, sizeof(*p));
-    if (p)
-        p->keys = lamp_keys_create(params);
-    if (!p || !p->keys) {
-        free(p);
-        return noc_no_memory(sink->log, noc_stream_name(stream));
-    }
-    p->stream = stream;
-    p->sink = sink;
-    p->max_lod = NOC_CLAMP(params->lod, 0, 4);
-    p->format = format;
-    p->sink_srs = CG_UNTOLD;
     *format = "CityGML";
+    cg_parser *p = cg_parser_create(stream, params, sink, format);
+    if (!p)
+        return NOC_ERR_MEMORY;
     noc_status status = run_pass(p, 1);
     for (int pass = 2; pass <= 3 && !status && p->deferred.len; pass++) {
         noc_debug(sink->log, "%s: %zu objects refer to others; reading once more", noc_stream_name(stream),
@@ -159,11 +177,9 @@ static noc_status read_citygml(noc_stream *stream, const noc_import_params *para
         status = run_pass(p, pass);
         p->deferred.len = p->deferred_kept;
     }
-    noc_debug(sink->log, "%s: %zu polygons used, %zu given twice, %zu named again by xlinks or solids",
-              noc_stream_name(stream), p->emitted, p->twins, p->dropped - p->twins);
     if (!status)
-        status = lamp_keys_report(p->keys, sink, noc_stream_name(stream), 0);
-    free_parser(p);
+        status = cg_parser_end(p);
+    cg_parser_destroy(p);
     return status;
 }
 

@@ -78,6 +78,7 @@ typedef struct cg_feature_type {
 } cg_feature_type;
 
 extern const cg_feature_type cg_feature_types[];
+const cg_feature_type *cg_feature_type_of(const char *name); /* NULL: none is called so */
 
 typedef struct cg_names {
     struct cg_name_slot *slots;
@@ -238,7 +239,8 @@ typedef struct cg_frame {
 } cg_frame;
 
 typedef struct cg_parser {
-    XML_Parser xml;
+    XML_Parser xml;    /* NULL: objects come from JSON (import/cityjson/) */
+    const char *place; /* of what is read, for errors, where no XML says it */
     noc_stream *stream;
     geo_sink *sink;
     int max_lod;
@@ -284,7 +286,7 @@ typedef struct cg_parser {
     noc_arena persistent;
     struct {
         const char *name;
-        unsigned long line;
+        const char *place; /* where the file says so: "city.gml:12" */
     } srs[CG_MAX_CRS];
     uint32_t srs_count;
     uint32_t sink_srs; /* the one the sink was told last; CG_UNTOLD before the first */
@@ -301,6 +303,12 @@ typedef struct cg_parser {
 
 #define CG_UNTOLD (UINT32_MAX - 1)
 
+/* citygml.c: a parser that has read nothing yet. NULL after reporting. */
+cg_parser *cg_parser_create(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format);
+void cg_parser_destroy(cg_parser *p);
+/* What is told of a file that has been read; nothing is freed. */
+noc_status cg_parser_end(cg_parser *p);
+
 /* parse.c: expat handlers; user data is the parser. */
 void cg_start_element(void *user, const XML_Char *name, const XML_Char **attributes);
 void cg_end_element(void *user, const XML_Char *name);
@@ -315,6 +323,13 @@ void cg_issue(cg_parser *p, geo_issue_kind kind, const char *reason, const char 
 void cg_affords(cg_parser *p, size_t bytes, const char *what);
 /* Whether the object may still grow; false after an error. */
 bool cg_object_room(cg_parser *p);
+/* Index of a CRS that the file names at `place`; new ones are kept for the whole import. */
+uint32_t cg_srs(cg_parser *p, const char *name, const char *place);
+/* A new object (parent CG_NONE) or a part of one. CG_NONE where nothing of it is read, which is counted. */
+uint32_t cg_feature_add(cg_parser *p, const cg_feature_type *type, const char *id, uint32_t parent);
+/* A word that the feature says of itself: `key` is function, usage, class, name, terminationDate or validTo. */
+void cg_word_add(cg_parser *p, uint32_t feature, const char *key, const char *word);
+
 void cg_object_clear(cg_object *object);
 void cg_object_free(cg_object *object);
 

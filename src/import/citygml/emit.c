@@ -8,7 +8,8 @@ void cg_stop(cg_parser *p, noc_status status) {
     if (!status || p->status)
         return;
     p->status = status; /* the sink has reported it */
-    XML_StopParser(p->xml, XML_FALSE);
+    if (p->xml)
+        XML_StopParser(p->xml, XML_FALSE);
 }
 
 /* ---- coordinates ---- */
@@ -21,14 +22,8 @@ void cg_tell_crs(cg_parser *p, uint32_t srs) {
         return;
     p->sink_srs = srs;
     p->lat_first = false;
-    const char *name = noc_stream_name(p->stream);
-    char *place = srs == CG_NONE ? noc_strdup(name) : noc_format("%s:%lu", name, p->srs[srs].line);
-    if (!place) {
-        cg_no_memory(p);
-        return;
-    }
+    const char *place = srs == CG_NONE ? noc_stream_name(p->stream) : p->srs[srs].place;
     cg_stop(p, p->sink->crs(p->sink->ctx, srs == CG_NONE ? NULL : p->srs[srs].name, place, &p->lat_first));
-    free(place);
 }
 
 /* Latitude comes first in geographic CRSs and hardly elsewhere, where it would be no latitude. */

@@ -177,13 +177,20 @@ static bool geometry_property(const char *local, cg_name *out) {
     return true;
 }
 
+const cg_feature_type *cg_feature_type_of(const char *name) {
+    for (size_t i = 0; i < NOC_COUNT(cg_feature_types); i++)
+        if (!strcmp(cg_feature_types[i].name, name))
+            return &cg_feature_types[i];
+    return NULL;
+}
+
 static cg_name city_name(const char *local) {
     cg_name name;
     if (geometry_property(local, &name))
         return name;
-    for (size_t i = 0; i < NOC_COUNT(cg_feature_types); i++)
-        if (!strcmp(cg_feature_types[i].name, local))
-            return (cg_name){ .code = CG_FEATURE, .value = (uint8_t)i };
+    const cg_feature_type *type = cg_feature_type_of(local);
+    if (type)
+        return (cg_name){ .code = CG_FEATURE, .value = (uint8_t)(type - cg_feature_types) };
     return (cg_name){ .code = find_word(city_words, NOC_COUNT(city_words), local, CG_PLAIN) };
 }
 

@@ -13,6 +13,8 @@ noc_status cg_fail(cg_parser *p, noc_status status, const char *fmt, ...) {
     va_start(ap, fmt);
     noc_vsnprintf(cause, sizeof(cause), fmt, ap);
     va_end(ap);
+    if (!p->xml)
+        return p->status = noc_error(p->sink->log, status, "%s: %s", p->place, cause);
     p->status = noc_error(p->sink->log, status, "%s:%lu: %s", noc_stream_name(p->stream),
                           XML_GetCurrentLineNumber(p->xml), cause);
     XML_StopParser(p->xml, XML_FALSE);
@@ -117,8 +119,7 @@ static attributes read_attributes(const XML_Char **list) {
     return a;
 }
 
-/* Index of a CRS; new names are kept for the whole import. */
-static uint32_t intern_srs(cg_parser *p, const char *name) {
+uint32_t cg_srs(cg_parser *p, const char *name, const char *place) {
     for (uint32_t i = 0; i < p->srs_count; i++)
         if (!strcmp(p->srs[i].name, name))
             return i;
@@ -126,12 +127,22 @@ static uint32_t intern_srs(cg_parser *p, const char *name) {
         cg_fail(p, NOC_ERR_FORMAT, "more than %d coordinate reference systems in one file", CG_MAX_CRS);
         return 0;
     }
-    if (!(p->srs[p->srs_count].name = arena_strdup(&p->persistent, name))) {
+    p->srs[p->srs_count].name = arena_strdup(&p->persistent, name);
+    p->srs[p->srs_count].place = arena_strdup(&p->persistent, place);
+    if (p->persistent.refused) {
         cg_no_memory(p);
         return 0;
     }
-    p->srs[p->srs_count].line = XML_GetCurrentLineNumber(p->xml);
     return p->srs_count++;
+}
+
+static uint32_t intern_srs(cg_parser *p, const char *name) {
+    char *place = noc_format("%s:%lu", noc_stream_name(p->stream), XML_GetCurrentLineNumber(p->xml));
+    if (!place)
+        cg_no_memory(p);
+    uint32_t srs = place ? cg_srs(p, name, place) : 0;
+    free(place);
+    return srs;
 }
 
 static void inherit_geometry(cg_parser *p, cg_frame *frame, const attributes *a) {
@@ -192,41 +203,48 @@ static bool see_version(cg_parser *p, int version) {
     return true;
 }
 
-static bool start_feature(cg_parser *p, cg_frame *frame, const attributes *a) {
-    const cg_feature_type *type = &cg_feature_types[frame->name.value];
-    bool top = frame->feature == CG_NONE;
-    if (p->in_polygon)
-        return false;
+uint32_t cg_feature_add(cg_parser *p, const cg_feature_type *type, const char *id, uint32_t parent) {
     if (type->part == CG_PART_INTERIOR) {
         char reason[80];
         snprintf(reason, sizeof(reason), "%s left out, it is inside", type->name);
-        cg_issue(p, GEO_SPARED, reason, a->id ? a->id : "");
-        return false;
+        cg_issue(p, GEO_SPARED, reason, id ? id : "");
+        return CG_NONE;
     }
-    if (type->part == CG_PART_GROUP)
-        return top;
     if (type->part == CG_PART_UNREAD) {
         cg_issue(p, GEO_SKIPPED,
                  type->kind == GEO_TERRAIN ? "relief that is not triangulated" : "object type that is not read",
-                 a->id && *a->id ? a->id : type->name);
-        return false;
+                 id && *id ? id : type->name);
+        return CG_NONE;
     }
-    if (top) {
+    if (parent == CG_NONE) {
         cg_object_clear(&p->object);
         p->ordinal++;
     } else if (!cg_object_room(p)) {
-        return false;
+        return CG_NONE;
     }
     cg_feature feature = { .type = type,
-                           .id = a->id ? arena_strdup(&p->object.arena, a->id) : "",
-                           .parent = frame->feature,
+                           .id = id ? arena_strdup(&p->object.arena, id) : "",
+                           .parent = parent,
                            .function = -1,
                            .first_geometry = (uint32_t)p->object.geometries.len };
-    frame->feature = (uint32_t)p->object.features.len;
+    if (feature.id && array_push(&p->object.features, feature))
+        return (uint32_t)p->object.features.len - 1;
+    cg_no_memory(p);
+    return CG_NONE;
+}
+
+static bool start_feature(cg_parser *p, cg_frame *frame, const attributes *a) {
+    const cg_feature_type *type = &cg_feature_types[frame->name.value];
+    if (p->in_polygon)
+        return false;
+    if (type->part == CG_PART_GROUP)
+        return frame->feature == CG_NONE;
+    uint32_t feature = cg_feature_add(p, type, a->id, frame->feature);
+    if (feature == CG_NONE)
+        return false;
+    frame->feature = feature;
     frame->geometry = CG_NONE;
     frame->flip = frame->in_reference_point = frame->in_point = false;
-    if (!feature.id || !array_push(&p->object.features, feature))
-        cg_no_memory(p);
     return true;
 }
 
@@ -486,19 +504,24 @@ static void end_implicit(cg_parser *p, const cg_frame *frame) {
     }
 }
 
-static void end_word(cg_parser *p, const cg_frame *frame, const char *key) {
-    cg_feature *feature = &p->object.features.data[frame->feature];
-    p->word[p->word_len] = 0;
-    if (says_of_itself(p, frame->feature))
-        cg_attribute_add(p, frame->feature, key, p->word, false);
+void cg_word_add(cg_parser *p, uint32_t index, const char *key, const char *word) {
+    cg_feature *feature = &p->object.features.data[index];
+    if (says_of_itself(p, index))
+        cg_attribute_add(p, index, key, word, false);
     bool furniture = feature->type->kind == GEO_FURNITURE;
+    bool function = !strcmp(key, "function") || !strcmp(key, "usage") || !strcmp(key, "class");
     long long code;
-    if (frame->name.code == CG_FUNCTION && !(furniture && p->foreign_code && noc_parse_int(p->word, &code))) {
-        if (feature->function < 0)
-            feature->function = cg_function_class(feature->type, p->word, p->plateau_code);
-        p->object.other_function |= furniture && frame->feature == 0 && !p->plateau_code && feature->function < 0 &&
-                                    cg_standard_function(p->word);
-    }
+    if (!function || (furniture && p->foreign_code && noc_parse_int(word, &code)))
+        return;
+    if (feature->function < 0)
+        feature->function = cg_function_class(feature->type, word, p->plateau_code);
+    p->object.other_function |=
+        furniture && index == 0 && !p->plateau_code && feature->function < 0 && cg_standard_function(word);
+}
+
+static void end_word(cg_parser *p, const cg_frame *frame, const char *key) {
+    p->word[p->word_len] = 0;
+    cg_word_add(p, frame->feature, key, p->word);
 }
 
 void cg_end_element(void *user, const XML_Char *name) {
