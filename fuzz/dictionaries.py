@@ -10,6 +10,8 @@ dictionaries = {
                                             "&amp;", "&#x10FFFF;", "<!DOCTYPE a [<!ENTITY b \"c\">]>",
                                           "encoding=\"UTF-16\"", "encoding=\"ISO-8859-1\"", "lod0", "lod1", "lod2",
                                           "lod3", "lod4"]),
+    "cityjson": (["import/cityjson/*.c", "import/citygml/names.c"],
+                 ["attributes", "metadata", "\x1e", "MultiPoint", "EPSG:7415", "1.0", "1.1", "2.0", "2.2"]),
     "gltf": (["import/mesh/gltf*.[ch]"], ["5120", "5121", "5122", "5123", "5125", "5126", "VEC2", "VEC4", "MAT4",
                                           "data:application/octet-stream;base64,", "%2e%2e/",
                                           "KHR_draco_mesh_compression"]),

@@ -1,9 +1,11 @@
-/* CityGML, and the streams below it. The file's size chooses the level of detail and the axis order. */
+/* CityGML (FUZZ_CITYJSON 0) and CityJSON (1), and the streams below them. The file's size chooses the level of detail
+ * and the axis order. */
 #include "fuzz.h"
 
 #include "import/import.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    const noc_reader *reader = FUZZ_CITYJSON ? &noc_reader_cityjson : &noc_reader_citygml;
     int errors = 0;
     noc_log *log = fuzz_log(&errors);
     fuzz_sink s;
@@ -17,7 +19,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     noc_status status = NOC_ERR_IO;
     if (stream) {
         const char *format;
-        status = noc_reader_citygml.read(stream, &params, &s.sink, &format);
+        status = reader->read(stream, &params, &s.sink, &format);
         FUZZ_REQUIRE(status || !s.in_object);
     }
     fuzz_memory_back();

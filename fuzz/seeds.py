@@ -193,6 +193,42 @@ strip["bufferViews"][0]["byteStride"] = 12
 put("gltf", "strip", parts(json.dumps(strip), positions))
 put("gltf", "beside", parts(json.dumps(gltf({"byteLength": 60, "uri": "side.bin"})), positions))
 
+# ---- CityJSON ----
+
+corners = [[0, 0, 0], [10, 0, 0], [10, 8, 0], [0, 8, 0], [0, 0, 6], [10, 0, 6], [10, 8, 6], [0, 8, 6]]
+shell = [[[0, 3, 2, 1]], [[4, 5, 6, 7]], [[0, 1, 5, 4]], [[1, 2, 6, 5]], [[2, 3, 7, 6]], [[3, 0, 4, 7], [0, 1, 2]]]
+solid = {"type": "Solid", "lod": "2.2", "boundaries": [shell, shell], "semantics": {
+    "surfaces": [{"type": "GroundSurface"}, {"type": "RoofSurface"}, {"type": "WallSurface", "children": [3]},
+                 {"type": "Window", "parent": 2}, {"type": "FloorSurface"}], "values": [[0, 1, 2, 3, None, 4], None]}}
+surfaces = lambda lod: {"type": "MultiSurface", "lod": lod, "boundaries": shell[:2]}
+instance = {"type": "GeometryInstance", "template": 0, "boundaries": [2],
+            "transformationMatrix": [2, 0, 0, 1, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]}
+city_objects = {
+    "house": {"type": "Building", "children": ["part", "dormer"], "geometry": [surfaces("0.2"), surfaces("1.3"), solid]},
+    "part": {"type": "BuildingPart", "parents": ["house"], "geometry": [
+        {"type": "MultiSolid", "lod": "2", "boundaries": [[shell]]}]},
+    "dormer": {"type": "BuildingInstallation", "parents": ["house"], "geometry": [surfaces("2")]},
+    "room": {"type": "BuildingRoom", "parents": ["house"], "geometry": [surfaces("2")]},
+    "tree": {"type": "SolitaryVegetationObject", "geometry": [instance]},
+    "tin": {"type": "TINRelief", "geometry": [{"type": "CompositeSurface", "lod": "1",
+                                               "boundaries": [[[0, 1, 2]], [[0, 2, 3]]]}]},
+    "lamp": {"type": "CityFurniture", "attributes": {"function": "1150", "watt": 30, "name": ["a", "b"]},
+             "geometry": [{"type": "MultiPoint", "lod": "0", "boundaries": [1]}]},
+    "road": {"type": "Road", "attributes": {"class": "1040"}, "geometry": [dict(surfaces("2"), semantics={
+        "surfaces": [{"type": "TrafficArea", "function": "footpath"}], "values": [0, 0]})]},
+    "+thing": {"type": "+Thing", "geometry": [surfaces("2")]},
+    "group": {"type": "CityObjectGroup", "children": ["house", "road"]}}
+city_head = {"type": "CityJSON", "version": "2.0", "transform": {"scale": [0.5, 0.5, 0.5],
+                                                                 "translate": [690000, 5330000, 500]},
+             "metadata": {"referenceSystem": "https://www.opengis.net/def/crs/EPSG/0/25832"},
+             "geometry-templates": {"templates": [surfaces("2")], "vertices-templates": corners}}
+put("cityjson", "whole.json", json.dumps(dict(city_head, CityObjects=city_objects, vertices=corners)))
+put("cityjson", "old.json", json.dumps({"type": "CityJSON", "version": "1.0", "vertices": corners, "CityObjects": {
+    "b": {"type": "Building", "geometry": [dict(surfaces(1), lod=1)]}}}, indent=1))
+put("cityjson", "lines.jsonl", "".join(json.dumps(v) + "\n" for v in [dict(city_head, CityObjects={}, vertices=[])] + [
+    {"type": "CityJSONFeature", "id": i, "CityObjects": {i: dict(city_objects["house"], children=[])},
+     "vertices": corners} for i in ["a", "b"]]))
+
 # ---- lamps ----
 
 csv = ("id,lon,lat,height,lumens,watt,lamp_type,colour,direction\n1,11.5,48.1,8,5000,50,LED,3000K,90\n"

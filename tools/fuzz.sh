@@ -13,6 +13,7 @@ mkdir -p "$build" && build=$(cd "$build" && pwd) || exit 1
 # corpus, program, longest input, dictionary, endings of real data in shared/ that it starts from, too
 corpora='
 citygml citygml 32768 citygml gml
+cityjson cityjson 16384 cityjson json,jsonl
 gltf gltf 16384 gltf gltf,glb
 obj obj 8192 obj obj
 csv lamps 4096 lamps csv

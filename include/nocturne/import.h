@@ -1,5 +1,6 @@
-/* nocturne/import.h: from files to a scene. Inputs are told apart by content, never by name: CityGML (plain, .gz,
- * .zip), OBJ, glTF and GLB, OpenStreetMap XML and PBF, Overpass JSON, GeoJSON, CSV. Several inputs make one scene. */
+/* nocturne/import.h: from files to a scene. Inputs are told apart by content, never by name: CityGML and CityJSON
+ * (plain, .gz, .zip), OBJ, glTF and GLB, OpenStreetMap XML and PBF, Overpass JSON, GeoJSON, CSV. Several inputs make one
+ * scene. */
 #ifndef NOCTURNE_IMPORT_H
 #define NOCTURNE_IMPORT_H
 
@@ -37,7 +38,7 @@ typedef struct noc_import_params {
     /* CRS of the scene; NULL: the first input's if projected in metres, else UTM of its centre. Where its
      * lengths are not those of the ground, the scene is computed in UTM: noc_scene_info.given_crs */
     const char *scene_crs;
-    /* highest CityGML level of detail taken, 0..4; default 3. The best one at or under it wins */
+    /* highest level of detail of CityGML and CityJSON taken, 0..4; default 3. The best one at or under it wins */
     int lod;
     /* Place lamps by a rule? AUTO, the default: where the inputs hold none; inputs whose lamps are all of no use are an
      * error. ON: where no lamp of the inputs is of use. OFF: nowhere. */

@@ -27,15 +27,11 @@ static bool is_eulumdat(const char *head) {
     "this is a luminaire's photometry (" name "), which is not read: lamps are tables and maps of points"
 
 const char *stranger_told(const char *head) {
-    static const char city_json[] =
-        "this is CityJSON, which is not read yet: convert it to CityGML, with citygml-tools for example";
     static const char office[] =
         "this is a table of an office program (such as XLSX or ODS), which is not read: save it as CSV";
     static const struct {
         const char *start, *part, *told;
     } known[] = {
-        { "{", "\"CityJSON", city_json },
-        { "{", "\"CityObjects\"", city_json },
         { "IESNA", "", PHOTOMETRY("IES") },
         { "", "\nTILT=", PHOTOMETRY("IES") },
         { "<", "<gpx", "this is GPX, which is not read: convert it to GeoJSON, with ogr2ogr for example" },

@@ -22,6 +22,8 @@ typedef struct seen_object {
 
 typedef struct city_sink {
     geo_sink sink;
+    const noc_reader *reader; /* NULL: CityGML's */
+    double max_memory;        /* GB; 0: the default */
     NOC_ARRAY(seen_polygon) polygons;
     NOC_ARRAY(seen_object) objects;
     NOC_ARRAY(geo_lamp) lamps;
@@ -140,8 +142,12 @@ static noc_status city_read(city_sink *s, const char *path, int lod) {
                           .progress = city_progress };
     noc_import_params params = noc_import_default_params();
     params.lod = lod;
+    params.max_memory = s->max_memory;
+    const noc_reader *reader = s->reader ? s->reader : &noc_reader_citygml;
     noc_stream *stream = noc_stream_open(path, s->sink.log, NULL);
-    s->status = stream ? noc_reader_citygml.read(stream, &params, &s->sink, &s->format) : NOC_ERR_IO;
+    if (stream && s->max_memory > 0)
+        noc_stream_limit(stream, &params);
+    s->status = stream ? reader->read(stream, &params, &s->sink, &s->format) : NOC_ERR_IO;
     noc_stream_close(stream);
     if (s->status == NOC_OK)
         assert_false(s->in_object);
@@ -150,7 +156,7 @@ static noc_status city_read(city_sink *s, const char *path, int lod) {
 
 /* Reads a document from memory. */
 static inline noc_status city_read_bytes(city_sink *s, const void *data, size_t size, int lod) {
-    char path[] = "/tmp/noc-citygml-XXXXXX";
+    char path[] = "/tmp/noc-city-XXXXXX";
     int fd = mkstemp(path);
     assert_true(fd >= 0);
     assert_int_equal(write(fd, data, size), (ssize_t)size);

@@ -140,6 +140,11 @@ static void citygml(void **state) {
     refuse_each("CityGML, gzip, looked at", &(import){ { "citygml/whole.gml.gz" }, .inspect = true });
 }
 
+static void cityjson(void **state) {
+    refuse_each("CityJSON", &(import){ { "cityjson/whole.json" }, .all = true });
+    refuse_each("CityJSONSeq", &(import){ { "cityjson/lines.jsonl" }, .scene_crs = "EPSG:25832" });
+}
+
 static void gltf(void **state) {
     refuse_each("glTF", &(import){ { "gltf/embedded.gltf" }, .all = true });
     write_text("library.gltf",
@@ -381,6 +386,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(coordinate_systems),
         cmocka_unit_test(citygml),
+        cmocka_unit_test(cityjson),
         cmocka_unit_test(gltf),
         cmocka_unit_test(obj),
         cmocka_unit_test(lamps),
