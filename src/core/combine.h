@@ -139,13 +139,4 @@ FN combined reuse_end(CTX surf s, reservoir own, reservoir_builder held, u32 key
     return reuse_weighed(PASS own, held, k);
 }
 
-/* Is a ray wanted that tells whether the sample is seen from its own pixel? visible: it is known to be. */
-FN mask resolve_asks(reservoir r, mask visible) { return and_(r.w > K(0.0f), not_(visible)); }
-
-/* No sample is left where it is blocked. */
-FN reservoir reservoir_blocked(reservoir r, mask blocked) {
-    r.w = sel(blocked, K(0.0f), r.w);
-    return r;
-}
-
 #endif

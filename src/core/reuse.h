@@ -43,4 +43,13 @@ FN reservoir reservoir_cap(reservoir r, real m_max) {
     return r;
 }
 
+/* Is a ray wanted that tells whether the sample is seen from its own pixel? visible: it is known to be. */
+FN mask resolve_asks(reservoir r, mask visible) { return and_(r.w > K(0.0f), not_(visible)); }
+
+/* No sample is left where its ray is blocked; M and the rest stay. */
+FN reservoir reservoir_blocked(reservoir r, mask blocked) {
+    r.w = sel(blocked, K(0.0f), r.w);
+    return r;
+}
+
 #endif

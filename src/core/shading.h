@@ -15,6 +15,19 @@
 /* May it be added to a picture? False for NaN. */
 FN mask colour_finite(v3 c) { return abs_(c.x) + abs_(c.y) + abs_(c.z) < K(1e30f); }
 
+/* Does a pixel see an emitter? id: its receiver's light. */
+FN mask sees_emitter(u32 id) { return id != KU(NO_LIGHT); }
+
+/* What a pixel's colour begins with: the emitter that it sees, where those are shown. */
+FN v3 emitter_shade(CTX u32 id) {
+    v3 e = fill3(K(0.0f));
+    mask on = sees_emitter(id);
+    if ((FRAME.flags & FRAME_EMITTERS) != 0u)
+        if (ANY(on))
+            e = sel3(on, light_load(PASS selu(on, id, KU(0u))).e, e);
+    return e;
+}
+
 /* The light of a reservoir's sample, unshadowed. l: its light. */
 FN v3 sample_shade(surf s, reservoir r, light l) { return mul3(reflected(s, sample_light(l, s.p, r.u, r.v)), r.w); }
 

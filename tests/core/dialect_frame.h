@@ -194,6 +194,16 @@ FN void triangles_hit(CTX u32 item, u32 key) {
     put_v3(PASS item, FRAME_FIRST + 84, hit_normal(t));
 }
 
+/* Slots 87 to 90. */
+FN void emitters(CTX u32 item, u32 key) {
+    mask some = rng(key, KU(4800u)) < K(0.5f);
+    u32 id = selu(some, scale_u32(rng_bits(key, KU(4801u)), KU(KERNEL_LIGHTS)), KU(NO_LIGHT));
+    v3 shown = emitter_shade(PASS id);
+    dialect_frame.flags = dialect_frame.flags & ~FRAME_EMITTERS;
+    put_v3(PASS item, FRAME_FIRST + 87, sub3(shown, emitter_shade(PASS id)));
+    put_u32(PASS item, FRAME_FIRST + 90, flag_of(sees_emitter(id)));
+}
+
 FN void frame_item(CTX u32 item, u32 key, surf s) {
     dialect_frame = dialect_constants(BIAS_BIASED);
     dialect_key = key;
@@ -202,6 +212,7 @@ FN void frame_item(CTX u32 item, u32 key, surf s) {
     references(PASS item, key, s);
     shades(PASS item, key, s);
     triangles_hit(PASS item, key);
+    emitters(PASS item, key);
 }
 
 #endif

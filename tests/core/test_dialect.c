@@ -109,6 +109,8 @@ static const struct {
     { FRAME_FIRST + 80, "colour_finite" },
     { FRAME_FIRST + 81, "hit_point" },
     { FRAME_FIRST + 84, "hit_normal" },
+    { FRAME_FIRST + 87, "emitter_shade" },
+    { FRAME_FIRST + 90, "sees_emitter" },
     { INFLUENCE_FIRST, "influence_candidate" },
     { INFLUENCE_FIRST + 4, "influence_lists" },
     { INFLUENCE_FIRST + 5, "influence_near" },
@@ -116,9 +118,8 @@ static const struct {
     { INFLUENCE_FIRST + 9, "rule_limit" },
 };
 
-static const int frame_integers[] = {
-    0, 3, 4, 5, 6, 7, 8, 9, 11, 17, 23, 25, 31, 37, 39, 45, 51, 53, 59, 62, 64, 68, 80
-};
+static const int frame_integers[] = { 0,  3,  4,  5,  6,  7,  8,  9,  11, 17, 23, 25,
+                                      31, 37, 39, 45, 51, 53, 59, 62, 64, 68, 80, 90 };
 
 static bool holds_integers(int slot) {
     for (size_t i = 0; i < sizeof(frame_integers) / sizeof(frame_integers[0]); i++)

@@ -136,6 +136,19 @@ FN reservoir reservoir_sel(mask c, reservoir a, reservoir b) {
     return r;
 }
 
+/* Lanes whose sample has to be asked about. visible: lanes of which it is known to be seen. */
+FN uint32_t lanes_that_ask(const rblock *b, uint32_t visible) {
+    uint32_t lanes = 0;
+    for (int l = 0; l < BLOCK; l += LANES)
+        lanes |= mbits(resolve_asks(reservoir_load(b, l), mload(visible, l))) << l;
+    return lanes;
+}
+
+FN void block_samples(rblock *b, uint32_t blocked) {
+    for (int l = 0; l < BLOCK; l += LANES)
+        rstore(b->w + l, reservoir_blocked(reservoir_load(b, l), mload(blocked, l)).w);
+}
+
 FN void ray_store(rayblock *b, int l, v3 o, v3 d) {
     rstore(b->o[0] + l, o.x);
     rstore(b->o[1] + l, o.y);

@@ -4,6 +4,7 @@
  * entries, is steered by what earlier frames have learned of the lights' visibility. */
 #include "backend/cpu/cpu.h"
 
+#include "backend/cpu/lanes_tmpl.h"
 #include "core/learned.h"
 
 #include <math.h>
@@ -169,11 +170,16 @@ void noc_cpu_resample(stage_run *run, worker *w, tile at) {
 /* Views: a reservoir that stands for its pixel is empty where its ray was blocked. */
 static void blank_hidden(const stage_run *run, const tile_rays *t) {
     rblock *r = run->s->b.r[run->stage->target];
-    for (int i = 0; i < t->count; i += t->draws[i].rays)
-        for (int l = 0; l < BLOCK; l++)
-            if (r[t->at[t->draws[i].block]].w[l] > 0 &&
-                !(t->segments[t->kept[t->draws[i].block][l]].unoccluded >> l & 1))
-                r[t->at[t->draws[i].block]].w[l] = 0;
+    for (int i = 0; i < t->count; i += t->draws[i].rays) {
+        const int *kept = t->kept[t->draws[i].block];
+        rblock *shown = &r[t->at[t->draws[i].block]];
+        uint32_t blocked = 0;
+        for (uint32_t bits = lanes_that_ask(shown, 0); bits; bits &= bits - 1) {
+            int l = __builtin_ctz(bits);
+            blocked |= ~t->segments[kept[l]].unoccluded & 1u << l;
+        }
+        block_samples(shown, blocked);
+    }
 }
 
 void noc_cpu_trace_shared(stage_run *run, worker *w, tile at) {
@@ -184,9 +190,7 @@ void noc_cpu_trace_shared(stage_run *run, worker *w, tile at) {
         for (int i = 0; i < t->count; i++)
             t->segments[i].unoccluded = t->segments[i].valid;
     for (int i = 0; i < t->count; i++)
-        for (int l = 0; l < BLOCK; l++)
-            if (!(t->segments[i].unoccluded >> l & 1))
-                t->draws[i].r.w[l] = 0;
+        block_samples(&t->draws[i].r, ~t->segments[i].unoccluded);
     blank_hidden(run, t);
     if (run->frame->plan->learns)
         note_observations(run, w, at);

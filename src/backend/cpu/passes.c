@@ -197,7 +197,7 @@ static void visibility(stage_run *run, worker *w, tile t) {
     w->batch.count = 0;
     for (int i = 0; i < n; i++) {
         size_t at = blocks[i].at;
-        uint32_t lanes = lanes_with_sample(&r[at]);
+        uint32_t lanes = lanes_that_ask(&r[at], 0);
         if (!lanes)
             continue;
         asked[w->batch.count] = at;
@@ -205,25 +205,21 @@ static void visibility(stage_run *run, worker *w, tile t) {
     }
     noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
     for (int i = 0; i < w->batch.count; i++) {
-        uint32_t seen = w->batch.blocks[i].unoccluded;
-        for (int l = 0; l < BLOCK; l++)
-            if (!(seen >> l & 1))
-                r[asked[i]].w[l] = 0;
-        b->visible[run->stage->target][asked[i]] = (uint16_t)seen;
+        const shadow_block *s = &w->batch.blocks[i];
+        block_samples(&r[asked[i]], s->valid & ~s->unoccluded);
+        b->visible[run->stage->target][asked[i]] = (uint16_t)s->unoccluded;
     }
 }
 
 /* Emitters seen directly begin the block's colour; seen: the lanes that see one. */
-static void show_emitters(stage_run *run, const gblock *g, uint16_t *seen, cblock *c) {
-    const noc_scene *scene = run->s->scene;
+static void show_emitters(const stage_run *run, const gblock *g, uint16_t *seen, cblock *c) {
     uint32_t lanes = 0;
-    memset(c, 0, sizeof(*c));
     for (int l = 0; l < BLOCK; l++) {
-        if (g->light[l] == NOC_NO_LIGHT)
-            continue;
-        lanes |= 1u << l;
-        for (int k = 0; run->ctx.frame->flags & FRAME_EMITTERS && k < 3; k++)
-            c->rgb[k][l] = scene->lights.data[g->light[l]].e[k];
+        v3 e = emitter_shade(&run->ctx, g->light[l]);
+        c->rgb[0][l] = e.x;
+        c->rgb[1][l] = e.y;
+        c->rgb[2][l] = e.z;
+        lanes |= lane_bits(sees_emitter(g->light[l])) << l;
     }
     *seen = (uint16_t)lanes;
 }
@@ -278,7 +274,7 @@ static void shade_samples(stage_run *run, worker *w, const tile_block *blocks, i
         size_t at = blocks[i].at;
         lanes[i] = lanes_with_sample(&r[at]);
         asked[i] =
-            run->ctx.frame->flags & FRAME_FINAL_RAY ? lanes[i] & ~(uint32_t)b->visible[run->stage->target][at] : 0;
+            run->ctx.frame->flags & FRAME_FINAL_RAY ? lanes_that_ask(&r[at], b->visible[run->stage->target][at]) : 0;
         if (asked[i])
             noc_cpu_gather_segments(run, w, at, asked[i], &g[at], r[at].light, r[at].u, r[at].v);
     }

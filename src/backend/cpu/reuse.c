@@ -42,7 +42,7 @@ static void resolve(const stage_run *run, worker *w, int count) {
     w->batch.count = 0;
     for (int i = 0; i < count; i++) {
         size_t at = w->combining[i].at;
-        uint32_t lanes = lanes_with_sample(&r[at]) & ~w->combining[i].visible;
+        uint32_t lanes = lanes_that_ask(&r[at], w->combining[i].visible);
         if (!lanes)
             continue;
         asked[w->batch.count] = &w->combining[i];
@@ -52,9 +52,7 @@ static void resolve(const stage_run *run, worker *w, int count) {
     for (int i = 0; i < w->batch.count; i++) {
         const shadow_block *s = &w->batch.blocks[i];
         asked[i]->visible |= s->unoccluded;
-        for (int l = 0; l < BLOCK; l++)
-            if (s->valid >> l & ~(s->unoccluded >> l) & 1)
-                r[asked[i]->at].w[l] = 0;
+        block_samples(&r[asked[i]->at], s->valid & ~s->unoccluded);
     }
 }
 
