@@ -67,12 +67,12 @@ static int arrange(const shadow_block *own, arrangement how, uint16_t *out) {
     uint64_t keys[TILE_RAYS];
     int n = 0;
     for (uint16_t i = 0; i < TILE_RAYS; i++) {
-        bool real = own[i / BLOCK].valid >> i % BLOCK & 1;
-        out[i] = real ? i : UINT16_MAX;
+        bool ray = own[i / BLOCK].valid >> i % BLOCK & 1;
+        out[i] = ray ? i : UINT16_MAX;
         struct RTCRay r = ray_of(own, i);
         uint64_t octant = (r.dir_x < 0) | (r.dir_y < 0) << 1 | (r.dir_z < 0) << 2;
         uint64_t light = own[i / BLOCK].light[i % BLOCK];
-        if (real)
+        if (ray)
             keys[n++] = (how == BY_LIGHT ? light << 24 | octant << 16 : how == BY_OCTANT ? octant << 16 : 0) | i;
     }
     if (how == BLOCKS)

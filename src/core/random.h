@@ -14,6 +14,15 @@ FN u32 hash_u32(u32 x) {
     return x;
 }
 
+/* The same of a value that is one for all lanes. */
+FN1 u1 hash_u1(u1 x) {
+    x = x ^ shr(x, 16);
+    x = x * 0x7feb352du;
+    x = x ^ shr(x, 15);
+    x = x * 0x846ca68bu;
+    return x ^ shr(x, 16);
+}
+
 /* One key a pixel and frame; seed and frame are uniform. */
 FN u32 rng_key(u32 seed, u32 pixel, u32 frame) {
     return hash_u32(pixel + hash_u32(frame + hash_u32(seed + KU(0x68bc21ebu))));

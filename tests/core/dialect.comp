@@ -13,7 +13,7 @@ void put_u32(uint item, int slot, uint x) { answer.bits[uint(slot) * items + ite
 void put_real(uint item, int slot, float x) { put_u32(item, slot, floatBitsToUint(x)); }
 
 void put_u1(uint item, int slot, uint x) { put_u32(item, slot, x); }
-uint words[256]; /* TILE_WORDS */
+uint words[2144]; /* TILE_WORDS */
 uint word_load(uint i) { return words[i]; }
 void word_store(uint i, uint x) { words[i] = x; }
 uint lane_places(uint first) { return first; }

@@ -95,7 +95,7 @@ FN1 u1 tile_bits(u1 item, u1 i) {
 FN1 f1 tile_real(u1 item, u1 i) { return F32(shr(tile_bits(item, i), 8)) * 5.9604644775390625e-8f; }
 
 /* Slots 5 to 7: a search; 8, 9: the rule. */
-FN void dialect_tile(CTX u1 item) {
+FN void dialect_volumes(CTX u1 item) {
     near_query q;
     q.lo =
         F3(tile_real(item, 0u) * 200.0f - 100.0f, tile_real(item, 1u) * 200.0f - 100.0f, tile_real(item, 2u) * 20.0f);

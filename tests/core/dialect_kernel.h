@@ -29,7 +29,7 @@ static real dialect_weight;
 static u32 dialect_entries;
 #endif
 #define KERNEL_LIGHTS 1000u
-#define TILE_WORDS 256
+#define TILE_WORDS 2144
 
 /* Signed, of a magnitude that differs from item to item: 1/16 to 4096. */
 FN real any_real(u32 key, u32 dim) {
@@ -73,6 +73,7 @@ FN light light_load(CTX u32 i) { return any_light(hash_u32(i + KU(77u))); }
 #include "core/influence_draw.h"
 #include "core/influence_near.h"
 #include "core/influence_rule.h"
+#include "core/learned_cells.h"
 #include "core/tree.h"
 
 FN surf any_surf(u32 key) {
@@ -316,6 +317,7 @@ FN void picked(CTX u32 item, u32 key, surf s) {
 
 #include "dialect_frame.h"
 #include "dialect_influence.h"
+#include "dialect_learned.h"
 
 FN void dialect_item(CTX u32 item) {
     u32 key = rng_key(KU(5u), item, KU(9u));
@@ -333,6 +335,12 @@ FN void dialect_item(CTX u32 item) {
     picked(PASS item, key, s);
     frame_item(PASS item, key, s);
     influence_draws(PASS item, key, s);
+}
+
+FN void dialect_tile(CTX u1 item) {
+    dialect_frame = dialect_constants(BIAS_BIASED);
+    dialect_volumes(PASS item);
+    dialect_cells(PASS item);
 }
 
 #endif

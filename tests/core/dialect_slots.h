@@ -7,6 +7,8 @@
 #define FRAME_SLOTS 91 /* dialect_frame.h */
 #define INFLUENCE_FIRST (FRAME_FIRST + FRAME_SLOTS)
 #define INFLUENCE_SLOTS 10 /* dialect_influence.h */
-#define ITEM_SLOTS (INFLUENCE_FIRST + INFLUENCE_SLOTS)
+#define LEARNED_FIRST (INFLUENCE_FIRST + INFLUENCE_SLOTS)
+#define LEARNED_SLOTS 12 /* dialect_learned.h */
+#define ITEM_SLOTS (LEARNED_FIRST + LEARNED_SLOTS)
 
 #endif

@@ -116,6 +116,14 @@ static const struct {
     { INFLUENCE_FIRST + 5, "influence_near" },
     { INFLUENCE_FIRST + 8, "rule_best" },
     { INFLUENCE_FIRST + 9, "rule_limit" },
+    { LEARNED_FIRST, "cell_key_of" },
+    { LEARNED_FIRST + 2, "cell_lane" },
+    { LEARNED_FIRST + 3, "cell_turn" },
+    { LEARNED_FIRST + 4, "cell_run" },
+    { LEARNED_FIRST + 5, "cell_claim, cell_count" },
+    { LEARNED_FIRST + 6, "cell_find" },
+    { LEARNED_FIRST + 8, "cell_count" },
+    { LEARNED_FIRST + 10, "cell_visibility" },
 };
 
 static const int frame_integers[] = { 0,  3,  4,  5,  6,  7,  8,  9,  11, 17, 23, 25,

@@ -25,7 +25,7 @@ typedef struct packet {
 
 /* What is expected in a cell of the scene, and what its rays find. */
 typedef struct tile_cell {
-    uint64_t key;
+    cell_key key;
     priors priors;
     uint16_t asked[LIST_ROOM], seen[LIST_ROOM];
 } tile_cell;
@@ -51,7 +51,7 @@ typedef struct tile_rays {
     shadow_block segments[TILE_BLOCKS * TILE_BLOCKS * MOST_SHADOW_RAYS];
 } tile_rays;
 
-/* Where a tile's observations are. */
+/* Where a tile's observations are: so many cells. */
 typedef struct learned_tile {
     int worker;
     size_t first, count;
@@ -62,7 +62,8 @@ typedef struct learned_tile {
 typedef struct list_pass { /* lists: the list of the tile at work and the rays over it, from pass to pass of a stage */
     list_scratch build;
     tile_rays rays;
-    NOC_ARRAY(noc_observation) observations; /* of the frame being made */
+    NOC_ARRAY(noc_cell_observations) observed; /* of the frame being made, as are the next ones */
+    NOC_ARRAY(noc_observation) observations;
 } list_pass;
 
 typedef struct pick_pass { /* power, influence, light-bvh */

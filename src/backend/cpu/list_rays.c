@@ -10,25 +10,23 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { CELL_PIXELS = 32, MOST_ASKED_A_TILE = 16 * BLOCK * TILE_BLOCKS * TILE_BLOCKS };
-_Static_assert(MOST_ASKED_A_TILE <= UINT16_MAX, "counts of a tile fit");
+enum { MOST_ASKED_A_TILE = 16 * BLOCK * TILE_BLOCKS * TILE_BLOCKS };
+_Static_assert(MOST_ASKED_A_TILE <= 1 << 15, "counts of a tile fit");
 
 /* ---- what is expected ---- */
 
-static uint64_t key_of_block(const frame_camera *c, const gblock *g, uint32_t lanes) {
-    int l = lanes >> 5 & 1 ? 5 : __builtin_ctz(lanes); /* one in the middle */
-    float right = sqrtf(c->right[0] * c->right[0] + c->right[1] * c->right[1] + c->right[2] * c->right[2]);
-    float side = CELL_PIXELS * g->depth[l] * 2 * right / c->width;
-    const float p[3] = { g->px[l], g->py[l], g->pz[l] }, n[3] = { g->nx[l], g->ny[l], g->nz[l] };
-    return noc_cell_key(p, n, (int)lrintf(log2f(NOC_CLAMP(side, 1e-6f, 1e9f))));
+static cell_key key_of_block(const frame_camera *c, const gblock *g, uint32_t lanes) {
+    uint32_t l = cell_lane(lanes);
+    return cell_key_of((f3){ g->px[l], g->py[l], g->pz[l] }, (f3){ g->nx[l], g->ny[l], g->nz[l] },
+                       cell_level(cell_side(*c, g->depth[l])));
 }
 
 /* Number of the block's cell among those of the tile. */
 static int find_priors(const stage_run *run, const gblock *g, uint32_t lanes, const light_list *list, tile_rays *t) {
     bool learn = run->frame->plan->learns;
-    uint64_t key = learn ? key_of_block(&run->ctx.frame->camera, g, lanes) : 1;
+    cell_key key = learn ? key_of_block(&run->ctx.frame->camera, g, lanes) : (cell_key){ 0 };
     for (int i = t->cells - 1; i >= 0; i--)
-        if (t->cell[i].key == key)
+        if (cell_same(t->cell[i].key, key))
             return i;
     tile_cell *c = &t->cell[t->cells];
     const noc_cell *known = learn ? noc_learned_find(run->s->learned, key) : NULL;
@@ -128,19 +126,26 @@ static void note_observations(stage_run *run, worker *w, tile at) {
             c->seen[t->draws[i].entry[l]] += t->segments[i].unoccluded >> l & 1;
         }
     }
+    list_pass *p = w->lists;
     learned_tile *out = &run->s->learned_tiles[item];
-    *out = (learned_tile){ (int)(w - run->s->workers), w->lists->observations.len, 0, t->bright };
+    *out = (learned_tile){ (int)(w - run->s->workers), p->observed.len, 0, t->bright };
     /* they grow with the picture */
-    if (!array_reserve(&w->lists->observations, w->lists->observations.len + (size_t)t->cells * list->count)) {
+    if (!array_reserve(&p->observed, p->observed.len + (size_t)t->cells) ||
+        !array_reserve(&p->observations, p->observations.len + (size_t)t->cells * list->count)) {
         w->no_memory = true;
         return;
     }
-    for (int k = 0; k < t->cells; k++)
+    for (int k = 0; k < t->cells; k++) {
+        size_t first = p->observations.len;
         for (uint32_t i = 0; i < list->count; i++)
             if (t->cell[k].asked[i])
-                w->lists->observations.data[w->lists->observations.len++] =
-                    (noc_observation){ t->cell[k].key, list->light[i], t->cell[k].asked[i], t->cell[k].seen[i] };
-    out->count = w->lists->observations.len - out->first;
+                p->observations.data[p->observations.len++] =
+                    (noc_observation){ list->light[i], t->cell[k].asked[i], t->cell[k].seen[i] };
+        if (p->observations.len > first)
+            p->observed.data[p->observed.len++] =
+                (noc_cell_observations){ .cell = t->cell[k].key, .count = (uint32_t)(p->observations.len - first) };
+    }
+    out->count = p->observed.len - out->first;
 }
 
 /* The rays of restir's pixels become their own reservoirs, of samples known to be seen. */
@@ -227,6 +232,8 @@ noc_status noc_cpu_begin_learning(cpu_view *s, const noc_frame *frame) {
         return NOC_OK;
     if (!s->learned && !(s->learned = noc_learned_create(tiles, s->log)))
         return NOC_ERR_MEMORY;
+    if (noc_learned_fit(s->learned, tiles, s->log) != NOC_OK)
+        return NOC_ERR_MEMORY;
     if (!s->observations) {
         s->learned_tiles = noc_alloc_large(tiles, sizeof(*s->learned_tiles));
         s->observations = s->learned_tiles ? noc_alloc_large(tiles, sizeof(*s->observations)) : NULL;
@@ -241,8 +248,15 @@ noc_status noc_cpu_begin_learning(cpu_view *s, const noc_frame *frame) {
         s->learned_epoch = frame->epoch;
     }
     for (int i = 0; i < s->worker_count; i++)
-        s->workers[i].lists->observations.len = 0;
+        s->workers[i].lists->observed.len = s->workers[i].lists->observations.len = 0;
     return NOC_OK;
+}
+
+/* Where the observations of each cell are, now that their array grows no more. */
+static void find_observations(list_pass *p) {
+    const noc_observation *at = p->observations.data;
+    for (size_t i = 0; i < p->observed.len; at += p->observed.data[i++].count)
+        p->observed.data[i].data = at;
 }
 
 void noc_cpu_end_learning(cpu_view *s, const noc_frame *frame) {
@@ -250,9 +264,11 @@ void noc_cpu_end_learning(cpu_view *s, const noc_frame *frame) {
     double bright = 0;
     if (!frame->plan->learns)
         return;
+    for (int i = 0; i < s->worker_count; i++)
+        find_observations(s->workers[i].lists);
     for (size_t i = 0; i < tiles; i++) {
         const learned_tile *t = &s->learned_tiles[i];
-        s->observations[i] = (noc_observations){ s->workers[t->worker].lists->observations.data + t->first, t->count };
+        s->observations[i] = (noc_observations){ s->workers[t->worker].lists->observed.data + t->first, t->count };
         bright += t->bright;
     }
     noc_learned_add(s->learned, s->pool, s->observations, tiles);
@@ -263,8 +279,10 @@ void noc_cpu_release_tiles(cpu_view *s) {
     free(s->learned_tiles);
     free(s->observations);
     for (int i = 0; i < s->worker_count; i++)
-        if (s->workers[i].lists)
+        if (s->workers[i].lists) {
+            array_free(&s->workers[i].lists->observed);
             array_free(&s->workers[i].lists->observations);
+        }
     s->observations = NULL;
     s->learned_tiles = NULL;
 }
