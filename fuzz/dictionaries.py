@@ -26,6 +26,8 @@ dictionaries = {
                              "+proj=", "+zone=32", "+init=epsg:", "+nadgrids=", "+towgs84=", "+type=crs",
                              "PROJCS[", "GEOGCS[", "COMPD_CS[", "BOUNDCRS[", "UNIT[\"metre\",1]", "PARAMETER[",
                              "AUTHORITY[\"EPSG\",\"4326\"]", "AXIS[\"N\",NORTH]", "utm", "longlat", "webmerc"]),
+    "profile": (["photometry/*.c"], ["TILT=", "TILT=INCLUDE\n", "TILT=NONE\n", "[LUMINAIRE]", "-1", "0 90 180\n",
+                                     "1 -1 1 ", "0 90\n", "90 270\n"]),
     "spec": (["lab/*.c", "render/options.c"],
              ["builtin:city", "builtin:mess", "../", "16x9", "street", "aerial", "overview"]),
 }

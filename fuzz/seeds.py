@@ -535,6 +535,39 @@ for i, spelling in enumerate([
         'PARAMETER["false_northing",0],UNIT["metre",1]]']):
     put("crs", "%02d" % i, spelling)
 
+# ---- luminaires ----
+
+
+def ies(head, planes, gammas, kind=1, tilt="NONE", lamp="1 1000 1"):
+    lines = [*head, "TILT=" + tilt, "%s %d %d %d 2 .1 .1 0" % (lamp, len(gammas), len(planes), kind), "1 1 20",
+             " ".join("%g" % g for g in gammas), " ".join("%g" % c for c in planes)]
+    lines += [" ".join("%g" % (100 + (c % 7) * (90 - abs(g))) for g in gammas) for c in planes]
+    return "\r\n".join(lines) + "\r\n"
+
+
+quarter = range(0, 91, 15)
+put("ies", "1986.ies", ies(["A luminaire"], [0], quarter))
+put("ies", "1991.ies", ies(["IESNA91", "[LUMINAIRE] one"], [0, 45, 90], quarter))
+put("ies", "1995.ies", ies(["IESNA:LM-63-1995"], range(0, 181, 30), range(0, 181, 30), lamp="2 -1 1.5"))
+put("ies", "2002.ies", ies(["IESNA:LM-63-2002", "[LAMP] x"], range(90, 271, 30), quarter))
+put("ies", "2019.ies", ies(["IES:LM-63-2019"], range(0, 361, 45), [0, 45, 90, 180]))
+put("ies", "tilt.ies", ies(["IESNA:LM-63-1995"], [0], quarter, tilt="INCLUDE\r\n1\r\n2\r\n0 90\r\n1 .9"))
+put("ies", "a.ies", ies(["IESNA:LM-63-1995"], range(-90, 91, 30), range(-90, 91, 30), 3))
+put("ies", "b.ies", ies(["IESNA:LM-63-1995"], range(0, 91, 30), range(-90, 91, 30), 2))
+
+
+def ldt(isym, planes, stored, gammas, sets=1):
+    lines = ["maker", "1", isym, planes, 360 / planes, len(gammas), 15, "report", "name", "no", "file", "date", 300,
+             200, 100, 250, 150, 0, 0, 0, 0, 100, 80, 1, 0, sets]
+    lines += [1, "LED", 1000, "3000", "80", 20] * sets + [.5] * 10
+    lines += [360 / planes * i for i in range(planes)] + list(gammas)
+    lines += [100 + (c % 5) * (90 - g) for c in range(stored) for g in gammas]
+    return "\r\n".join(str(line) for line in lines) + "\r\n"
+
+
+for isym, stored in enumerate([12, 1, 7, 7, 4]):
+    put("ldt", "%d.ldt" % isym, ldt(isym, 12, stored, quarter, 1 + isym % 2))
+
 # ---- specs ----
 
 folder = os.path.join(here, "..", "experiments")

@@ -9,7 +9,8 @@ root=${NOC_SOURCE:-$(cd "$(dirname "$0")/.." && pwd)}
 arrows='
 base:
 core:
-scene: core
+photometry:
+scene: core photometry
 geo: scene
 image:
 light: scene core
@@ -123,6 +124,7 @@ wrong() {
     rm -r "${tree:?}"/*
 }
 wrong base/a.c '#include "scene/scene.h"'
+wrong photometry/a.c '#include "scene/scene.h"'
 wrong core/a.h '#include "base/base.h"'
 wrong core/a.h '#include <nocturne/log.h>'
 wrong scene/a.c '  #  include "render/backend.h"'

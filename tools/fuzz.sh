@@ -29,6 +29,8 @@ png image 4096 - png
 exr image 8192 - exr
 compare image 8192 - -
 crs crs 2048 crs -
+ies profile 4096 profile ies,IES
+ldt profile 4096 profile ldt
 spec spec 8192 spec -
 pipeline pipeline 32768 citygml -
 wire wire 16384 - -

@@ -19,7 +19,8 @@ static const char *const placing[] = { "scene-crs", "infer-lamps", NULL };
 const cli_command cli_info = {
     "info",
     "FILE...",
-    "Tells what files hold: format, CRS, extent, objects, lamps, and what was skipped or repaired.",
+    "Tells what files hold: format, CRS, extent, objects, lamps, and what was skipped or repaired; of luminaires (IES, "
+    "EULUMDAT) their flux, peak and zones.",
     "Examples\n"
     "  nocturne info city.gml lamps.geojson\n"
     "  nocturne info --json city.gml.gz\n",
@@ -263,6 +264,11 @@ static noc_status inspect(const info_args *args, const char *path, noc_log *log,
     noc_report *report = NULL;
     noc_scene *scene = NULL;
     noc_status status;
+    if (!cli_builtin(path) && info_is_profile(path)) {
+        if (args->json)
+            fputs(first ? "\n" : ",\n", stdout);
+        return info_profile(path, args->json, log);
+    }
     if (cli_builtin(path))
         status = inspect_builtin(args, cli_builtin(path), log, &scene);
     else

@@ -17,4 +17,8 @@ const char *info_action(const noc_report_line *line);
 /* One input as a JSON object: an error, a report, or the built-in scene; the others are NULL. */
 void cli_info_json(const char *path, const char *error, const noc_report *report, const noc_scene_info *scene);
 
+/* info_profile.c: a luminaire's file (IES, EULUMDAT), as text or as a JSON object. */
+bool info_is_profile(const char *path);
+noc_status info_profile(const char *path, bool json, noc_log *log);
+
 #endif

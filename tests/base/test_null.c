@@ -108,6 +108,18 @@ static noc_camera camera;
     P(0, noc_option_needs_input(NULL, NULL, 1) == NULL)                                                                \
     P(0, noc_option_needs_input(noc_city_options(), NULL, 1) != NULL)                                                  \
     P(0, noc_image_is_black(NULL))                                                                                     \
+    P(0, noc_profile_load(NULL, NULL, &(noc_profile *){ 0 }) == NOC_ERR_ARGUMENT)                                      \
+    P(0, noc_profile_load(NULL, "a.ies", NULL) == NOC_ERR_ARGUMENT)                                                    \
+    P(0, noc_profile_read(NULL, NULL, 1, "a", &(noc_profile *){ 0 }) == NOC_ERR_ARGUMENT)                              \
+    P(0, noc_profile_read(NULL, "a", 1, NULL, &(noc_profile *){ 0 }) == NOC_ERR_ARGUMENT)                              \
+    P(0, noc_profile_read(NULL, "a", 1, "a", NULL) == NOC_ERR_ARGUMENT)                                                \
+    P(0, noc_profile_create(NULL, NULL, &(noc_profile *){ 0 }) == NOC_ERR_ARGUMENT)                                    \
+    P(0, noc_profile_create(NULL, &(noc_profile_params){ .planes = 1 }, &(noc_profile *){ 0 }) == NOC_ERR_ARGUMENT)    \
+    P(0, (noc_profile_destroy(NULL), true))                                                                            \
+    P(0, (noc_profile_get_info(NULL, NULL), true))                                                                     \
+    P(0, noc_profile_intensity(NULL, 0, 0) == 0)                                                                       \
+    P(0, noc_profile_flux(NULL, 0, 90, 0) == 0)                                                                        \
+    P(0, !noc_profile_probe(NULL, 9))                                                                                  \
     P(0, noc_text_count(NULL, 1)[0] == 0)                                                                              \
     P(0, noc_text_many(NULL, 1, "a")[0] == 0)                                                                          \
     P(0, noc_text_many((char[64]){ 0 }, 1, NULL)[0] == '1')                                                            \

@@ -38,6 +38,18 @@ test $status = 0 && grep -q 'CityGML 2.0' out && grep -q 'EPSG:25832' out && gre
 result $? "info of a house"
 run info whole.gml.gz "$gml"
 test $status = 0 && test "$(grep -c '^  format' out)" = 2; result $? "info of two files, one packed"
+printf '%s\n' IESNA:LM-63-2002 '[LUMINAIRE] ball' TILT=NONE '1 1000 1 3 1 1 2 0 0 0' '1 1 10' '0 90 180' 0 \
+    '100 100 100' >ball.ies
+run info ball.ies "$gml"
+test $status = 0 && grep -q '^  flux  *1257 lm' out && grep -q 'upward  *50.00%' out &&
+    grep -q '26 % more than the 1000' err && test "$(grep -c '^  format' out)" = 2
+result $? "info of a luminaire, which makes more light than its lamps"
+run info --json ball.ies
+grep -q '"flux_error": 0.256637' out && python3 -m json.tool <out >/dev/null; result $? "info of a luminaire as JSON"
+sed 's/^0 90/0 -90/' ball.ies >bad.ies
+run info bad.ies
+test $status = 1 && grep -q 'bad.ies:6: a vertical angle is out of its range' err
+result $? "a luminaire's angle that is none"
 run info missing.gml "$gml"
 test $status = 1 && grep -q 'CityGML 2.0' out && grep -q missing.gml err
 result $? "a missing file does not hide the next"

@@ -1,0 +1,82 @@
+/* photometry: luminous intensity distributions. Readers fill a measured grid; profile.c makes it whole around the axis
+ * and checks it against its own lumens; table.c makes the regular table that core looks up. */
+#ifndef NOC_PHOTOMETRY_ROOM_H
+#define NOC_PHOTOMETRY_ROOM_H
+
+#include "base/base.h"
+#include <nocturne/photometry.h>
+
+enum { PHOTOMETRY_MOST_ANGLES = 4096, PHOTOMETRY_MOST_VALUES = 1 << 22 };
+
+struct noc_profile {
+    NOC_ARRAY(double) c;     /* ascending, in [0, 360): all around */
+    NOC_ARRAY(double) gamma; /* ascending, in [0, 180] */
+    NOC_ARRAY(double) cd;    /* plane after plane */
+    noc_profile_info info;   /* without zones and pointers, which noc_profile_get_info makes */
+    noc_arena texts;
+};
+
+/* What a file holds before it is made whole. type: 'C', 'A' or 'B'; of A and B, c is horizontal and gamma vertical. */
+typedef struct photometry_grid {
+    NOC_ARRAY(double) c;
+    NOC_ARRAY(double) gamma;
+    NOC_ARRAY(double) cd;
+    char type;
+} photometry_grid;
+void photometry_grid_free(photometry_grid *g);
+
+/* profile.c. Both report. */
+noc_profile *photometry_new(noc_log *log, const char *name, const char *format);
+/* Takes the grid into the profile: its symmetry by its angles (noc_profile_create), its flux, peak and the rest of
+ * info. line: of the file where the angles stand, 0: none. */
+noc_status photometry_fill(noc_profile *p, photometry_grid *g, noc_log *log, const char *name, int line);
+/* Sets info's street: C angle c, or the one across from it where more light goes there below the horizon. Files of
+ * luminaires that are symmetric across the street differ in which end of it they begin at. */
+void photometry_face_street(noc_profile *p, double c);
+/* flux_error and what is to be said of it; info's lumens, lamp_lumens and lor are set. */
+void photometry_judge(noc_profile *p, noc_log *log, const char *name);
+
+/* integral.c: over the sphere, of what is linear in both angles between those of the grid: exact. */
+/* Of a + (b - a) (t - t0) / (t1 - t0), times sin t, over [from, to] within [t0, t1]; degrees. */
+double photometry_sine_integral(double t0, double t1, double a, double b, double from, double to);
+double photometry_grid_flux(const photometry_grid *g); /* of types A and B, mirrored where the angles begin at 0 */
+
+/* ies.c, eulumdat.c: data has a 0 behind its size bytes. */
+bool photometry_probe_ies(const char *head, size_t size);
+bool photometry_probe_eulumdat(const char *head, size_t size);
+noc_status photometry_read_ies(noc_log *log, const char *data, size_t size, const char *name, noc_profile **profile);
+noc_status photometry_read_eulumdat(noc_log *log, const char *data, size_t size, const char *name,
+                                    noc_profile **profile);
+
+/* lines.c: a text by lines and by numbers. */
+typedef struct photometry_text {
+    const char *at, *end, *name;
+    noc_log *log;
+    int line; /* the last that photometry_line gave, from 1; where numbers are read, the one that `at` is in */
+} photometry_text;
+/* The next line without its end and the blanks around it; false at the end. */
+bool photometry_line(photometry_text *t, const char **line, size_t *length);
+/* A number among blanks and commas, over as many lines as it takes; `what` is for messages. */
+noc_status photometry_number(photometry_text *t, const char *what, double *out);
+noc_status photometry_whole(photometry_text *t, const char *what, long least, long most, long *out);
+bool photometry_more(photometry_text *t); /* anything but blanks left? */
+/* The number that a line is, with a comma for a point where there is no other; false if it is none. */
+bool photometry_line_number(const char *line, size_t length, double *out);
+/* "NAME:LINE: ..." */
+noc_status photometry_bad(const photometry_text *t, int line, const char *fmt, ...) NOC_PRINTF(3, 4);
+/* Counts angles and values against the limits, and makes room. */
+noc_status photometry_reserve(photometry_text *t, photometry_grid *g, long planes, long gammas);
+
+/* table.c: what core/profile.h looks up. rows of gamma from 0 to `gamma_max`, columns of C all around, both at even
+ * steps, candela a lumen: bilinear between them, and nothing beyond gamma_max. */
+typedef struct photometry_table {
+    NOC_ARRAY(float) value; /* row after row */
+    int rows, columns;
+    double gamma_max;
+    float peak;  /* greatest value */
+    bool upward; /* sends something beyond 90 degrees */
+} photometry_table;
+noc_status photometry_table_make(photometry_table *t, const noc_profile *p, noc_log *log);
+void photometry_table_free(photometry_table *t);
+
+#endif

@@ -1,0 +1,307 @@
+/* Readers of luminaires: what files mean, and what is wrong with bad ones. */
+#include "made.h"
+#include "memory.h"
+
+static const double first[] = { 0, 0, 0, 90, 0 }, last[] = { 0, 90, 180, 270, 360 };
+
+/* At the file's own angles, all around. */
+static void assert_same(const noc_profile *p, symmetry s, const char *what) {
+    for (double c = 0; c < 360; c += 15)
+        for (double g = 0; g <= 180; g += 5) {
+            double got = noc_profile_intensity(p, c, g), want = made_cd(s, c, g);
+            if (fabs(got - want) > 1e-5 * want)
+                fail_msg("%s, symmetry %d: %g cd at C %g, gamma %g, not %g", what, (int)s, got, c, g, want);
+        }
+    double between = noc_profile_intensity(p, 7.5, 42.5), mean = 0;
+    for (int i = 0; i < 4; i++)
+        mean += made_cd(s, i & 1 ? 15 : 0, i & 2 ? 45 : 40) / 4;
+    assert_true(fabs(between - mean) < 1e-5 * mean);
+}
+
+static void test_ies_symmetries(void **state) {
+    static made m;
+    noc_profile_info info;
+    for (int s = 0; s < SYMMETRIES; s++) {
+        m.len = 0;
+        put(&m, "IESNA:LM-63-1995\n[LUMINAIRE] one\n[MANUFAC] us\n");
+        put_ies(&m, s, first[s], last[s], 1);
+        noc_profile *p = read_made(&m);
+        assert_same(p, s, "IES");
+        noc_profile_get_info(p, &info);
+        assert_string_equal(info.format, "IES LM-63-1995, type C");
+        assert_string_equal(info.name, "one");
+        assert_string_equal(info.manufacturer, "us");
+        assert_true(isnan(info.lamp_lumens) && isnan(info.flux_error));
+        noc_profile_destroy(p);
+    }
+}
+
+static void test_eulumdat_symmetries(void **state) {
+    static made m;
+    noc_profile_info info;
+    for (int s = 0; s < SYMMETRIES; s++) {
+        double flux = 0, lor = 80;
+        for (int again = 0; again < 2; again++) { /* first to learn the flux, then with lamps that fit it */
+            m.len = 0;
+            put_eulumdat(&m, s, again ? flux * 100 / lor : 2000, lor);
+            noc_profile *p = read_made(&m);
+            assert_same(p, s, "EULUMDAT");
+            noc_profile_get_info(p, &info);
+            flux = info.lumens;
+            assert_true(again ? fabs(info.flux_error) < 1e-5 : info.flux_error > 1);
+            assert_string_equal(info.name, "A lamp");
+            assert_true(fabs(info.size[0] - .15) < 1e-9 && fabs(info.size[1] - .25) < 1e-9);
+            noc_profile_destroy(p);
+        }
+    }
+}
+
+static void test_editions(void **state) {
+    static const char *const begins[][2] = { { "A luminaire\nwithout a header\n", "IES LM-63-1986, type C" },
+                                             { "IESNA91\n", "IES LM-63-1991, type C" },
+                                             { "IESNA:LM-63-1995\r\n", "IES LM-63-1995, type C" },
+                                             { "IESNA:LM-63-2002\n[TEST] 1\n", "IES LM-63-2002, type C" },
+                                             { "IES:LM-63-2019\n[TEST] 1\n", "IES LM-63-2019, type C" } };
+    static made m;
+    for (size_t i = 0; i < NOC_COUNT(begins); i++) {
+        m.len = 0;
+        put(&m, "%s", begins[i][0]);
+        put_ies(&m, ABOUT_AXIS, 0, 0, 1);
+        noc_profile *p = read_made(&m);
+        noc_profile_info info;
+        noc_profile_get_info(p, &info);
+        assert_string_equal(info.format, begins[i][1]);
+        noc_profile_destroy(p);
+    }
+}
+
+/* A ball of 100 cd: multiplied, driven, tilted. */
+static double ball_flux(const char *edition, const char *tilt, const char *numbers, noc_profile_info *info) {
+    static made m;
+    m.len = 0;
+    put(&m, "%s\nTILT=%s\n%s\n0 90 180\n0\n100,100 100\n", edition, tilt, numbers);
+    noc_profile *p = read_made(&m);
+    noc_profile_get_info(p, info);
+    noc_profile_destroy(p);
+    return info->lumens / (400 * M_PI);
+}
+
+static void test_factors(void **state) {
+    noc_profile_info info;
+    assert_true(fabs(ball_flux("IESNA:LM-63-2002", "NONE", "1 -1 1 3 1 1 2 0 0 0 1 1 10", &info) - 1) < 1e-9);
+    assert_true(fabs(ball_flux("IESNA:LM-63-2002", "NONE", "2 900 3 3 1 1 1 1 2 0\n.5 1.1 10", &info) - 1.5) < 1e-9);
+    assert_true(fabs(info.lamp_lumens - 900) < 1e-9 && fabs(info.size[0] - .3048) < 1e-9);
+    assert_true(fabs(info.flux_error - (600 * M_PI / 900 - 1)) < 1e-9);
+    /* of 1991 the ballast-lamp factor counts, later it says something else */
+    assert_true(fabs(ball_flux("IESNA91", "NONE", "1 9000 1 3 1 1 2 0 0 0 1 .9 10", &info) - .9) < 1e-9);
+    assert_true(info.flux_error == 0);
+    assert_true(
+        fabs(ball_flux("IESNA:LM-63-1995", "INCLUDE\n1\n3\n-90 0 90\n.7 .95 .8", "1 -1 1 3 1 1 2 0 0 0 1 1 10", &info) -
+             .95) < 1e-9);
+}
+
+/* A beam that is a function of the direction: the same whichever type it is measured by. */
+static double beam(double right, double up, double ahead) {
+    return ahead <= 0 ? 0 : 500 * ahead * ahead * (1 + .4 * right + .3 * up * up);
+}
+
+static void test_types(void **state) {
+    static made m;
+    for (int type = 2; type <= 3; type++) {
+        m.len = 0;
+        put(&m, "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 73 73 %d 2 0 0 0 1 1 10\n", type);
+        put_steps(&m, -90, 90, 2.5);
+        put_steps(&m, -90, 90, 2.5);
+        for (double h = -90; h <= 90; h += 2.5)
+            for (double v = -90; v <= 90; v += 2.5) {
+                double a = h * M_PI / 180, b = v * M_PI / 180;
+                double cd = type == 3 ? beam(cos(b) * sin(a), sin(b), cos(b) * cos(a))
+                                      : beam(sin(a), cos(a) * sin(b), cos(a) * cos(b));
+                put(&m, "%.6g ", fmax(cd, 0));
+            }
+        noc_profile *p = read_made(&m);
+        noc_profile_info info;
+        noc_profile_get_info(p, &info);
+        /* 500 (2 pi / 3 + .3 pi (1/3 - 1/5)): of cos^2, and of what is squared across it */
+        double flux = 500 * (2 * M_PI / 3 + .3 * M_PI * (1. / 3 - 1. / 5));
+        assert_true(fabs(info.lumens / flux - 1) < 2e-3);
+        for (double c = 0; c < 360; c += 17)
+            for (double g = 0; g < 90; g += 7) {
+                double x = sin(g * M_PI / 180), want;
+                want = beam(x * cos(c * M_PI / 180), x * sin(c * M_PI / 180), cos(g * M_PI / 180));
+                assert_true(fabs(noc_profile_intensity(p, c, g) - want) < 4);
+            }
+        noc_profile_destroy(p);
+    }
+}
+
+static void test_street(void **state) {
+    static made m;
+    static const double street[] = { 0, 0, 0, 90, 0 };
+    noc_profile_info info;
+    for (int s = 0; s < SYMMETRIES; s++) {
+        m.len = 0;
+        put(&m, "IESNA91\n");
+        put_ies(&m, s, first[s], last[s], 1);
+        noc_profile *p = read_made(&m);
+        noc_profile_get_info(p, &info);
+        assert_true(info.street == street[s]);
+        double forward = info.forward.low + info.forward.medium + info.forward.high + info.forward.very_high;
+        double back = info.back.low + info.back.medium + info.back.high + info.back.very_high;
+        assert_true(fabs(forward + back + info.up_low + info.up_high - info.lumens) < 1e-6 * info.lumens);
+        assert_true(s == HALVES || s == HALVES_ACROSS || s == NO_SYMMETRY ? forward > 1.05 * back
+                                                                          : fabs(forward / back - 1) < 1e-9);
+        noc_profile_destroy(p);
+    }
+}
+
+static void test_bad(void **state) {
+    static const struct {
+        const char *text, *says;
+    } bad[] = {
+        { "", "neither an IES" },
+        { "hello\nworld\n", "neither an IES" },
+        { "IESNA:LM-63-2077\nTILT=NONE\n", "bad:1: an edition" },
+        { "IESNA:LM-63-2002\n[TEST] x\n", "bad:2: no line of TILT" },
+        { "IESNA:LM-63-2002\nTILT=lamp.tlt\n1 1 1\n", "bad:2: its tilt factors are in a file" },
+        { "IESNA91\nTILT=NONE\n1 -1 1\n2 1 1 2 0\n", "ends before the length" },
+        { "IESNA91\nTILT=NONE\n1 -1 one 2 1 1 2 0 0 0 1 1 1\n", "bad:3: the multiplier is no number: \"one\"" },
+        { "IESNA91\nTILT=NONE\n1 -1 0 2 1 1 2 0 0 0 1 1 1\n", "bad:3: a multiplier of 0" },
+        { "IESNA91\nTILT=NONE\n1 -1 1 2 1 4 2 0 0 0 1 1 1\n", "bad:3: the photometric type must be" },
+        { "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n100\n", "ends before an intensity" },
+        { "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n100\n-5\n", "bad:8: an intensity is negative" },
+        { "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 0\n0\n1 1\n", "bad:5: vertical angles do not ascend" },
+        { "IESNA91\nTILT=NONE\n1 -1 1 2 2 1 2 0 0 0\n1 1 1\n0 90\n0 45\n1 1 1 1\n", "horizontal angles do not go" },
+        { "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n0 0\n", "sends no light" },
+        { "IESNA91\nTILT=NONE\n1 -1 1 4000 4000 1 2 0 0 0\n1 1 1\n0 90\n", "planes of 4000 angles" },
+        { "a\n1\n1\n1\n0\n2\n90\n", "bad:7: ends before" },
+        { "a\n1\n3\n6\n0\n2\n0\n", "bad:7: ends before" },
+    };
+    for (size_t i = 0; i < NOC_COUNT(bad); i++) {
+        noc_log *log = counting_log();
+        noc_profile *p = (noc_profile *)log;
+        refusing = (refusal){ 0 };
+        noc_status status = noc_profile_read(log, bad[i].text, strlen(bad[i].text), "bad", &p);
+        if (!status || p || refusing.errors != 1 || !strstr(refusing.first_error, bad[i].says))
+            fail_msg("%zu: status %d, %d errors: \"%s\", not \"%s\"", i, (int)status, refusing.errors,
+                     refusing.first_error, bad[i].says);
+        noc_log_destroy(log);
+    }
+}
+
+static void test_bad_eulumdat(void **state) {
+    static made m;
+    static const struct {
+        int line;
+        const char *text, *says;
+    } bad[] = { { 3, "5", "neither an IES" },
+                { 4, "23", "cannot have symmetry 3" },
+                { 24, "0", "conversion factor of 0" },
+                { 26, "none", "bad:26: the number of lamp sets is no number" },
+                { 29, "0", "lamps of 0 lm" },
+                { 44, "x", "bad:44: a C angle is no number" },
+                { 300, "-1", "bad:300: an intensity is negative" } };
+    for (size_t i = 0; i < NOC_COUNT(bad); i++) {
+        m.len = 0;
+        put_eulumdat(&m, HALVES_ACROSS, 1000, 100);
+        char *at = m.text;
+        for (int line = 1; line < bad[i].line; line++)
+            at = strchr(at, '\n') + 1;
+        char *rest = strdup(strchr(at, '\n'));
+        m.len = (size_t)(at - m.text);
+        put(&m, "%s%s", bad[i].text, rest);
+        free(rest);
+        noc_log *log = counting_log();
+        noc_profile *p = NULL;
+        refusing = (refusal){ 0 };
+        assert_int_not_equal(noc_profile_read(log, m.text, m.len, "bad", &p), NOC_OK);
+        assert_null(p);
+        if (refusing.errors != 1 || !strstr(refusing.first_error, bad[i].says))
+            fail_msg("line %d: \"%s\", not \"%s\"", bad[i].line, refusing.first_error, bad[i].says);
+        noc_log_destroy(log);
+    }
+}
+
+static void test_memory(void **state) {
+    static made m[2];
+    bool reached;
+    m[0].len = m[1].len = 0;
+    put(&m[0], "IESNA91\n[LAMP] x\n");
+    put_ies(&m[0], HALVES, 0, 180, 1);
+    put_eulumdat(&m[1], HALVES, 1000, 3000);
+    for (int i = 0; i < 2; i++)
+        FOR_EACH_REFUSAL(reached) {
+            noc_log *log = counting_log();
+            noc_profile *p = NULL;
+            begin_refusal(n, later);
+            noc_status status = noc_profile_read(log, m[i].text, m[i].len, "made", &p);
+            reached = end_refusal();
+            if (reached && status)
+                assert_refused(status, "profile");
+            else
+                assert_unharmed(p != NULL, "profile");
+            noc_profile_destroy(p);
+            noc_log_destroy(log);
+        }
+}
+
+static void test_numbers(void **state) {
+    const double c[] = { 0, 90 }, gamma[] = { 0, 45, 90 }, cd[] = { 1, 2, 3, 4, 5, 6 };
+    noc_profile_params params = { "mine", 2, 3, c, gamma, cd, 90 };
+    noc_profile *p = NULL;
+    noc_profile_info info;
+    assert_int_equal(noc_profile_create(NULL, &params, &p), NOC_OK);
+    assert_true(noc_profile_intensity(p, 270, 45) == 5 && noc_profile_intensity(p, 180, 90) == 3);
+    assert_true(fabs(noc_profile_intensity(p, -45, 22.5) - 3) < 1e-12 && noc_profile_intensity(p, 0, 90.01) == 0);
+    noc_profile_get_info(p, &info);
+    assert_true(info.street == 90 && info.c_count == 4);
+    noc_profile_destroy(p);
+    params.planes = 0;
+    assert_int_equal(noc_profile_create(NULL, &params, &p), NOC_ERR_ARGUMENT);
+    assert_null(p);
+}
+
+/* The regular table meets the file's angles, sends a lumen, and nothing beyond the horizon where the file does not. */
+static void test_table(void **state) {
+    static made m;
+    photometry_table t;
+    for (int s = 0; s < SYMMETRIES; s++) {
+        m.len = 0;
+        put(&m, "IESNA91\n");
+        put_ies(&m, s, first[s], last[s], 1);
+        noc_profile *p = read_made(&m);
+        noc_profile_info info;
+        noc_profile_get_info(p, &info);
+        assert_int_equal(photometry_table_make(&t, p, NULL), NOC_OK);
+        assert_true(t.rows == 37 && t.columns == (s == ABOUT_AXIS ? 1 : 24) && t.gamma_max == 180 && t.upward);
+        for (int r = 0; r < t.rows; r++)
+            for (int i = 0; i < t.columns; i++)
+                assert_true(fabs(t.value.data[r * t.columns + i] * info.lumens / made_cd(s, 15 * i, 5 * r) - 1) < 1e-5);
+        photometry_table_free(&t);
+        noc_profile_destroy(p);
+    }
+    const double zero = 0, gamma[] = { 0, 30, 85, 95, 180 }, cd[] = { 3, 3, 2, 0, 0 };
+    noc_profile *p = NULL;
+    assert_int_equal(noc_profile_create(NULL, &(noc_profile_params){ NULL, 1, 5, &zero, gamma, cd, 0 }, &p), NOC_OK);
+    assert_int_equal(photometry_table_make(&t, p, NULL), NOC_OK);
+    assert_true(t.gamma_max == 90 && !t.upward);
+    photometry_table_free(&t);
+    noc_profile_destroy(p);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ies_symmetries),
+        cmocka_unit_test(test_eulumdat_symmetries),
+        cmocka_unit_test(test_editions),
+        cmocka_unit_test(test_factors),
+        cmocka_unit_test(test_types),
+        cmocka_unit_test(test_street),
+        cmocka_unit_test(test_bad),
+        cmocka_unit_test(test_bad_eulumdat),
+        cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_numbers),
+        cmocka_unit_test(test_table),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
