@@ -276,6 +276,9 @@ int noc_cpu_tile_blocks(const stage_run *run, tile t, tile_block out[TILE_BLOCKS
 shadow_block *noc_cpu_gather(const stage_run *run, worker *w, size_t at, uint32_t valid);
 void noc_cpu_gather_segments(const stage_run *run, worker *w, size_t at, uint32_t valid, const gblock *g,
                              const uint32_t *light, const float *u, const float *v);
+/* Traces rays to the samples of `count` blocks at `at` in the stage's target that are not known to be seen from their
+ * own pixels, all in company: those that are left are known to be. */
+void noc_cpu_resolve(const stage_run *run, worker *w, const size_t *at, int count);
 
 /* list_rays.c: the passes of a tile where every pixel shares out several rays over its list, after the list was built
  * into w->lists.list */
@@ -309,6 +312,10 @@ bool noc_cpu_saw_emitter(const frame_buffers *b, size_t block, int lane);       
 void noc_cpu_free_coverage(coverage *c);
 void noc_cpu_free_aovs(aov_buffers *aovs);
 size_t noc_cpu_aov_bytes(uint32_t aovs); /* a pixel */
+
+static inline size_t block_at(const frame_buffers *b, int bx, int by) {
+    return (size_t)by * (size_t)b->blocks_x + (size_t)bx;
+}
 
 static inline uint32_t lanes_inside(const frame_buffers *b, int bx, int by) {
     uint32_t lanes = 0;

@@ -4,8 +4,6 @@
 #include "backend/cpu/lanes_tmpl.h"
 #include "core/shading.h"
 
-static size_t block_at(const frame_buffers *b, int bx, int by) { return (size_t)by * b->blocks_x + bx; }
-
 int noc_cpu_tile_blocks(const stage_run *run, tile t, tile_block out[TILE_BLOCKS * TILE_BLOCKS]) {
     int n = 0;
     for (int by = t.y0; by < t.y1; by++)
@@ -27,6 +25,28 @@ void noc_cpu_gather_segments(const stage_run *run, worker *w, size_t at, uint32_
     shadow_block *s = noc_cpu_gather(run, w, at, valid);
     memcpy(s->light, id, sizeof(s->light));
     run->k->segments(&run->ctx, g, id, u, v, &s->rays);
+}
+
+void noc_cpu_resolve(const stage_run *run, worker *w, const size_t *at, int count) {
+    const frame_buffers *b = &run->s->b;
+    const gblock *g = b->g[run->frame->gbuffer];
+    rblock *r = b->r[run->stage->target];
+    uint16_t *visible = b->visible[run->stage->target];
+    size_t asked[TILE_BLOCKS * TILE_BLOCKS];
+    w->batch.count = 0;
+    for (int i = 0; i < count; i++) {
+        uint32_t lanes = lanes_that_ask(&r[at[i]], visible[at[i]]);
+        if (!lanes)
+            continue;
+        asked[w->batch.count] = at[i];
+        noc_cpu_gather_segments(run, w, at[i], lanes, &g[at[i]], r[at[i]].light, r[at[i]].u, r[at[i]].v);
+    }
+    noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
+    for (int i = 0; i < w->batch.count; i++) {
+        const shadow_block *s = &w->batch.blocks[i];
+        block_samples(&r[asked[i]], s->valid & ~s->unoccluded);
+        visible[asked[i]] |= (uint16_t)s->unoccluded;
+    }
 }
 
 static void primary_block(stage_run *run, worker *w, int bx, int by) {
@@ -188,27 +208,12 @@ static void share_rays(stage_run *run, worker *w, tile t) {
 }
 
 static void visibility(stage_run *run, worker *w, tile t) {
-    frame_buffers *b = &run->s->b;
-    const gblock *g = b->g[run->frame->gbuffer];
-    rblock *r = b->r[run->stage->target];
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
-    size_t asked[TILE_BLOCKS * TILE_BLOCKS];
+    size_t at[TILE_BLOCKS * TILE_BLOCKS];
     int n = noc_cpu_tile_blocks(run, t, blocks);
-    w->batch.count = 0;
-    for (int i = 0; i < n; i++) {
-        size_t at = blocks[i].at;
-        uint32_t lanes = lanes_that_ask(&r[at], 0);
-        if (!lanes)
-            continue;
-        asked[w->batch.count] = at;
-        noc_cpu_gather_segments(run, w, at, lanes, &g[at], r[at].light, r[at].u, r[at].v);
-    }
-    noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
-    for (int i = 0; i < w->batch.count; i++) {
-        const shadow_block *s = &w->batch.blocks[i];
-        block_samples(&r[asked[i]], s->valid & ~s->unoccluded);
-        b->visible[run->stage->target][asked[i]] = (uint16_t)s->unoccluded;
-    }
+    for (int i = 0; i < n; i++)
+        at[i] = blocks[i].at;
+    noc_cpu_resolve(run, w, at, n);
 }
 
 /* Emitters seen directly begin the block's colour; seen: the lanes that see one. */

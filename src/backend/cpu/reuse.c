@@ -5,8 +5,6 @@
 #include "backend/cpu/lanes_tmpl.h"
 #include "core/neighbours.h"
 
-static size_t block_at(const frame_buffers *b, int bx, int by) { return (size_t)by * b->blocks_x + bx; }
-
 /* Lane `from` of a pixel's surface and reservoir into lane `to` of n. Blocks are arrays of BLOCK four-byte values. */
 static void fetch(const gblock *g, const rblock *r, int from, int to, neighbour *n) {
     const char *sg = (const char *)g + 4 * from, *sr = (const char *)r + 4 * from;
@@ -34,28 +32,6 @@ static void ask_neighbours(const stage_run *run, const struct core_context *ther
     }
 }
 
-/* Zeroes samples that are occluded at their own pixel, so that all that are left are known to be visible. */
-static void resolve(const stage_run *run, worker *w, int count) {
-    const gblock *g = run->s->b.g[run->frame->gbuffer];
-    rblock *r = run->s->b.r[run->stage->target];
-    combining *asked[TILE_BLOCKS * TILE_BLOCKS];
-    w->batch.count = 0;
-    for (int i = 0; i < count; i++) {
-        size_t at = w->combining[i].at;
-        uint32_t lanes = lanes_that_ask(&r[at], w->combining[i].visible);
-        if (!lanes)
-            continue;
-        asked[w->batch.count] = &w->combining[i];
-        noc_cpu_gather_segments(run, w, at, lanes, &g[at], r[at].light, r[at].u, r[at].v);
-    }
-    noc_cpu_trace_occlusion(run->s, w, NOC_RAYS_NOW, w->batch.blocks, w->batch.count);
-    for (int i = 0; i < w->batch.count; i++) {
-        const shadow_block *s = &w->batch.blocks[i];
-        asked[i]->visible |= s->unoccluded;
-        block_samples(&r[asked[i]->at], s->valid & ~s->unoccluded);
-    }
-}
-
 /* Combines the first `count` of w->combining into the stage's target. All rays of a step are traced in company. there:
  * the context with the lights that the neighbours' reservoirs were made with. */
 static void combine(stage_run *run, const struct core_context *there, noc_ray_world in, worker *w, int count) {
@@ -74,6 +50,7 @@ static void combine(stage_run *run, const struct core_context *there, noc_ray_wo
     }
     noc_cpu_trace_occlusion(run->s, w, in, w->batch.blocks, w->batch.count);
     const shadow_block *answer = w->batch.blocks;
+    size_t at[TILE_BLOCKS * TILE_BLOCKS];
     for (int i = 0; i < count; i++) {
         combining *c = &w->combining[i];
         rblock out; /* the old one may lie where the new one goes */
@@ -82,11 +59,10 @@ static void combine(stage_run *run, const struct core_context *there, noc_ray_wo
                 c->unoccluded[k] = answer++->unoccluded;
         run->k->reuse_end(&run->ctx, c, &out);
         b->r[run->stage->target][c->at] = out;
+        b->visible[run->stage->target][at[i] = c->at] = (uint16_t)c->visible;
     }
     if (run->stage->resolve_visibility)
-        resolve(run, w, count);
-    for (int i = 0; i < count; i++)
-        b->visible[run->stage->target][w->combining[i].at] = (uint16_t)w->combining[i].visible;
+        noc_cpu_resolve(run, w, at, count);
 }
 
 /* Lane l of n becomes the pixel at (x, y) of these buffers, if its surface is like `here`. */
