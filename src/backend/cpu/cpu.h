@@ -280,6 +280,8 @@ void noc_cpu_gather_segments(const stage_run *run, worker *w, size_t at, uint32_
  * own pixels, all in company: those that are left are known to be. */
 void noc_cpu_resolve(const stage_run *run, worker *w, const size_t *at, int count);
 
+void noc_cpu_no_receivers(gblock *g); /* none of its pixels sees anything */
+
 /* list_rays.c: the passes of a tile where every pixel shares out several rays over its list, after the list was built
  * into w->lists.list */
 void noc_cpu_share_candidates(stage_run *run, worker *w, const tile_points *points);

@@ -89,6 +89,18 @@ FN receiver receiver_load(const gblock *g, int l) {
     return r;
 }
 
+FN void receiver_store(gblock *g, int l, receiver r) {
+    rstore(g->px + l, r.p.x);
+    rstore(g->py + l, r.p.y);
+    rstore(g->pz + l, r.p.z);
+    rstore(g->nx + l, r.n.x);
+    rstore(g->ny + l, r.n.y);
+    rstore(g->nz + l, r.n.z);
+    rstore(g->depth + l, r.depth);
+    ustore(g->material + l, r.material);
+    ustore(g->light + l, r.light);
+}
+
 /* The receiving surfaces, seen from eye. Lanes without a surface get n = 0, and so reflect nothing. */
 FN surf surf_load(CTX const gblock *g, int l, const float eye[3]) {
     surf s;

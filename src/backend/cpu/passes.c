@@ -49,6 +49,11 @@ void noc_cpu_resolve(const stage_run *run, worker *w, const size_t *at, int coun
     }
 }
 
+void noc_cpu_no_receivers(gblock *g) {
+    for (int l = 0; l < BLOCK; l++)
+        receiver_store(g, l, receiver_none());
+}
+
 static void primary_block(stage_run *run, worker *w, int bx, int by) {
     const frame_camera *c = &run->ctx.frame->camera;
     frame_buffers *b = &run->s->b;
@@ -74,21 +79,17 @@ static void place_block(const stage_run *run, int bx, int by) {
     const frame_buffers *b = &run->s->b;
     const float *eye = run->ctx.frame->camera.eye;
     gblock *g = &b->g[run->frame->gbuffer][block_at(b, bx, by)];
-    *g = (gblock){ 0 };
-    memset(g->material, 0xff, sizeof(g->material));
-    memset(g->light, 0xff, sizeof(g->light));
+    noc_cpu_no_receivers(g);
     for (uint32_t bits = lanes_inside(b, bx, by); bits; bits &= bits - 1) {
         int l = __builtin_ctz(bits), x = bx * BLOCK_SIDE + (l & 3), y = by * BLOCK_SIDE + (l >> 2);
         const noc_receiver *r = &run->frame->receivers[(size_t)y * (size_t)b->width + (size_t)x];
-        float d[3] = { r->p[0] - eye[0], r->p[1] - eye[1], r->p[2] - eye[2] };
-        g->px[l] = r->p[0];
-        g->py[l] = r->p[1];
-        g->pz[l] = r->p[2];
-        g->nx[l] = r->n[0];
-        g->ny[l] = r->n[1];
-        g->nz[l] = r->n[2];
-        g->depth[l] = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-        g->material[l] = r->material;
+        receiver to = receiver_none();
+        to.p = V3(r->p[0], r->p[1], r->p[2]);
+        to.n = V3(r->n[0], r->n[1], r->n[2]);
+        v3 d = sub3(to.p, V3(eye[0], eye[1], eye[2]));
+        to.depth = sqrt_(dot3(d, d));
+        to.material = r->material;
+        receiver_store(g, l, to);
     }
 }
 

@@ -104,9 +104,7 @@ static void closest(const cpu_world *world, noc_ray_world in, const rayblock *ra
 void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g, float *object,
                      uint32_t *instance) {
     hitblock h;
-    *g = (gblock){ 0 };
-    memset(g->material, 0xff, sizeof(g->material));
-    memset(g->light, 0xff, sizeof(g->light));
+    noc_cpu_no_receivers(g);
     w->rays_primary += (uint64_t)__builtin_popcount(valid);
     keep(s, w, rays, NULL, valid, 1, true);
     closest(s->world, NOC_RAYS_NOW, rays, INFINITY, valid, true, &h);

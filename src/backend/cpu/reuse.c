@@ -87,7 +87,7 @@ static bool fetch_history(const stage_run *run, combining *c) {
             continue;
         fetch_alike(run, b->g[1 - run->frame->gbuffer], b->r[run->stage->source], receiver_load(g, l),
                     (pixel){ x[l], y[l], true }, l, n);
-        n->r.m[l] = NOC_MIN(n->r.m[l], run->ctx.frame->m_max);
+        n->r.m[l] = reservoir_cap(reservoir_load(&n->r, l), run->ctx.frame->m_max).m;
     }
     c->k = 1;
     return n->lanes != 0;
