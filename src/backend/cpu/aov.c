@@ -43,11 +43,11 @@ static bool allocate(float (**buffer)[BLOCK], size_t blocks) {
     return *buffer || (*buffer = noc_alloc_large(blocks, sizeof(**buffer))) != NULL;
 }
 
-noc_status noc_cpu_begin_aovs(cpu_view *s, uint32_t aovs, bool first_stage) {
+noc_status noc_cpu_begin_aovs(cpu_view *s, uint32_t aovs) {
     aov_buffers *v = &s->b.aovs;
     uint32_t need = buffers_of(aovs);
     size_t blocks = (size_t)s->b.blocks_x * s->b.blocks_y;
-    if (!first_stage || !(need | v->asked))
+    if (!(need | v->asked))
         return NOC_OK;
     v->asked = need;
     for (int aov = 0; aov < NOC_AOV_COUNT; aov++) {

@@ -189,7 +189,7 @@ typedef struct cpu_view {
     worker *workers;
     int worker_count;
     bool recording;
-    const kernels *kernels; /* of the last stage */
+    const kernels *kernels; /* of the last frame */
     int shaded_set;         /* reservoirs that the last frame shaded */
 } cpu_view;
 
@@ -299,7 +299,7 @@ void noc_cpu_temporal(stage_run *run, worker *w, tile t);
 void noc_cpu_spatial(stage_run *run, worker *w, tile t);
 
 /* aov.c */
-noc_status noc_cpu_begin_aovs(cpu_view *s, uint32_t aovs, bool first_stage);
+noc_status noc_cpu_begin_aovs(cpu_view *s, uint32_t aovs); /* of the frame that begins */
 /* What the candidates of a block were, as far as the frame asks; r: the reservoirs they ended in. */
 void noc_cpu_aov_candidates(const stage_run *run, const worker *w, int i, size_t block, uint32_t lanes,
                             const rblock *r);

@@ -40,9 +40,8 @@ static struct core_context context_of(const cpu_view *s, const noc_frame *frame)
                                   .ray_offset = s->world->ray_offset };
 }
 
-noc_status noc_cpu_stage(void *state, const noc_frame *frame, const noc_stage *st, const noc_progress *progress,
-                         double from, double to) {
-    cpu_view *s = state;
+/* What the passes of all stages find ready; the scene does not change until the frame is through. */
+static noc_status begin_frame(cpu_view *s, const noc_frame *frame) {
     s->kernels = noc_pick_kernels(frame->params->isa);
     noc_status status = noc_cpu_follow(s->world);
     if (status == NOC_OK)
@@ -54,12 +53,18 @@ noc_status noc_cpu_stage(void *state, const noc_frame *frame, const noc_stage *s
     if (status == NOC_OK)
         status = noc_cpu_prepare_lights(s, frame->plan, frame->params);
     if (status == NOC_OK)
-        status = noc_cpu_begin_aovs(s, frame->params->aovs, st == &frame->plan->stages[0]);
+        status = noc_cpu_begin_aovs(s, frame->params->aovs);
+    if (status == NOC_OK)
+        noc_cpu_forget_found(s);
+    return status == NOC_OK ? noc_cpu_begin_learning(s, frame) : status;
+}
+
+noc_status noc_cpu_stage(void *state, const noc_frame *frame, const noc_stage *st, const noc_progress *progress,
+                         double from, double to) {
+    cpu_view *s = state;
+    noc_status status = st == &frame->plan->stages[0] ? begin_frame(s, frame) : NOC_OK;
     if (status != NOC_OK)
         return status;
-    bool first = st == &frame->plan->stages[0];
-    if (first)
-        noc_cpu_forget_found(s);
     stage_run run = { .s = s,
                       .frame = frame,
                       .ctx = context_of(s, frame),
@@ -71,8 +76,6 @@ noc_status noc_cpu_stage(void *state, const noc_frame *frame, const noc_stage *s
                       .to = to,
                       .tiles = (size_t)s->b.tiles_x * s->b.tiles_y };
     s->shaded_set = st->target;
-    if (first && (status = noc_cpu_begin_learning(s, frame)) != NOC_OK)
-        return status;
     /* Asked before too: the calling thread may get no tile of a small picture. */
     if (progress && progress->update && !progress->update(progress->user, run.what, from))
         return NOC_ERR_CANCELLED;
