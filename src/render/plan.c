@@ -160,11 +160,11 @@ void noc_plan_make(const noc_render_params *p, int history_set, noc_plan *plan) 
                         .candidates = one ? NOC_CANDIDATES_UNIFORM : p->candidates,
                         .candidate_count = one ? 1 : p->draws,
                         .shares_rays = lists && (!restir || reuses_visibility(p)),
-                        .bias_rays = noc_uses_bias_rays(p),
                         .previous_lights = temporal && p->bias != NOC_BIAS_BIASED };
     plan->learns = plan->shares_rays && p->learn && p->final_ray;
     plan->mixes = plan->shares_rays && restir && !rounds;
-    maker m = { .plan = plan, .next = { .source = history, .target = fresh, .resolve_visibility = plan->bias_rays } };
+    bool resolve = noc_uses_bias_rays(p);
+    maker m = { .plan = plan, .next = { .source = history, .target = fresh, .resolve_visibility = resolve } };
     add(&m, NOC_PASS_PRIMARY);
     if (plan->draws)
         add_candidates(&m, p);
@@ -173,7 +173,7 @@ void noc_plan_make(const noc_render_params *p, int history_set, noc_plan *plan) 
     int from = fresh, to = 1 - fresh;
     for (int i = 0; i < rounds; i++) {
         m.next = (noc_stage){
-            .source = from, .target = to, .round = i, .resolve_visibility = plan->bias_rays && (i < rounds - 1 || feed)
+            .source = from, .target = to, .round = i, .resolve_visibility = resolve && (i < rounds - 1 || feed)
         };
         add(&m, NOC_PASS_SPATIAL);
         int next = from == fresh ? 2 : from; /* the temporal output is kept: it may be the next history */

@@ -83,14 +83,13 @@ typedef struct noc_plan {
     bool shares_rays;     /* lists: several rays a pixel over the entries of a list */
     bool mixes;           /* a pixel's light is shared between its reservoir and its shared rays */
     bool learns;          /* shared rays are steered by the visibility cache, and feed it */
-    bool bias_rays;       /* visibility is a part of the combination's target functions */
     bool previous_lights; /* reuse asks for lights as they were in the frame before */
 } noc_plan;
 
 /* What to run for these parameters. history_set: set with the previous frame's reservoirs, -1: none. */
 void noc_plan_make(const noc_render_params *params, int history_set, noc_plan *plan);
 
-/* Is visibility a part of the target functions that reuse weighs with? */
+/* Is visibility a part of the target functions that reuse weighs with? Passes are told by FRAME_BIAS_RAYS. */
 bool noc_uses_bias_rays(const noc_render_params *params);
 
 /* Does a stage of the plan have the pass? */
