@@ -58,8 +58,8 @@ typedef struct noc_backend {
     bool (*aov)(void *view, noc_aov aov, float *value);
     /* Adds up into stats: pass_seconds, rays, dropped, all since the last call; sets build_seconds, memory and path. */
     void (*stats)(void *view, noc_frame_stats *stats);
-    /* Of the structure that these parameters (of the last frame; NULL: there was none) draw candidates from. */
-    void (*light_stats)(void *view, const noc_render_params *params, noc_light_stats *stats);
+    /* Of the structure that the last frame drew candidates from, though other views' frames may have followed. */
+    void (*light_stats)(void *view, noc_light_stats *stats);
     /* Influence volumes for these parameters, whatever they draw from; the backend's own, until the next call of any.
      */
     noc_status (*influence)(void *view, const noc_render_params *params, const struct noc_influence **volumes);

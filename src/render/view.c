@@ -227,8 +227,10 @@ void noc_view_light_stats(const noc_view *v, noc_light_stats *stats) {
     if (!v)
         return;
     noc_scene_lock_read(v->scene);
-    v->backend->light_stats(v->state, v->history.started ? &v->history.params : NULL, stats);
+    v->backend->light_stats(v->state, stats);
     noc_scene_unlock_read(v->scene);
+    if (!v->history.started)
+        *stats = (noc_light_stats){ .lights = stats->lights, .scene_bytes = stats->scene_bytes };
 }
 
 noc_status noc_view_write_influence(noc_view *v, const noc_render_params *params, const char *path) {

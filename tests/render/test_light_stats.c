@@ -94,10 +94,41 @@ static void set_reach_is_not_looked_for(void **state) {
     noc_scene_destroy(s);
 }
 
+/* A view tells of what its own last frame drew from, when another view has followed an edit of the scene since. */
+static void told_after_an_edit(void **state) {
+    (void)state;
+    enum { LIGHTS = 300, MORE = 20 };
+    noc_scene *s = bundle(LIGHTS);
+    noc_device *device = noc_device_create(NULL, NULL);
+    noc_view *one = noc_view_create(device, s), *other = noc_view_create(device, s);
+    noc_camera c = view(0);
+    noc_render_params p = measure(16, 8, NOC_METHOD_RIS);
+    noc_light_stats told;
+    p.candidates = NOC_CANDIDATES_INFLUENCE;
+    p.influence_cluster = 1;
+    assert_int_equal(noc_view_render(one, &c, &p, NULL), NOC_OK);
+    for (int i = 0; i < MORE; i++)
+        point_light(s, i, 0, 3, 1);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    assert_int_equal(noc_view_render(other, &c, &p, NULL), NOC_OK);
+    noc_view_light_stats(one, &told);
+    assert_int_equal(told.volumes, LIGHTS);
+    noc_view_light_stats(other, &told);
+    assert_int_equal(told.volumes, LIGHTS + MORE);
+    noc_view_reset(one);
+    noc_view_light_stats(one, &told);
+    assert_true(told.lights == LIGHTS + MORE && told.scene_bytes > 0 && !told.volumes && !told.influence);
+    noc_view_destroy(one);
+    noc_view_destroy(other);
+    noc_device_destroy(device);
+    noc_scene_destroy(s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(number_of_lights_found),
         cmocka_unit_test(set_reach_is_not_looked_for),
+        cmocka_unit_test(told_after_an_edit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,7 +21,7 @@ noc_status noc_cpu_accumulate(void *view, const noc_frame *frame);
 void noc_cpu_read(void *view, noc_image *image);
 bool noc_cpu_read_aov(void *view, noc_aov aov, float *value);
 void noc_cpu_stats(void *view, noc_frame_stats *stats);
-void noc_cpu_light_stats(void *view, const noc_render_params *params, noc_light_stats *stats);
+void noc_cpu_light_stats(void *view, noc_light_stats *stats);
 noc_status noc_cpu_influence(void *view, const noc_render_params *params, const struct noc_influence **volumes);
 void noc_cpu_record(void *view, bool on);
 noc_status noc_cpu_replay(void *view, double *seconds);

@@ -1,12 +1,28 @@
 /* What the candidates of a view are drawn from, and what is told of it. */
 #include "backend/cpu/cpu.h"
 
-static bool draws_candidates(const noc_render_params *p) {
-    return p->method == NOC_METHOD_RIS || p->method == NOC_METHOD_RESTIR;
+/* Told after the frame, when other views may have had the volumes made anew. */
+static void note_volumes(cpu_view *s, const noc_plan *plan, const noc_render_params *p) {
+    const noc_influence *v = s->sources.influence;
+    s->told = (noc_light_stats){ .candidates = plan->candidates };
+    if (!v)
+        return;
+    s->told.influence = p->influence > 0 ? p->influence : v->scale;
+    s->told.volumes = v->volume_count;
+    s->told.volumes_seconds = v->seconds[NOC_STEP_VOLUMES];
+    s->told.tuning_seconds = v->seconds[NOC_STEP_TUNING];
+    s->told.hierarchy_seconds = v->seconds[NOC_STEP_HIERARCHY];
+    s->told.boxes_seconds = v->seconds[NOC_STEP_BOXES];
 }
 
 noc_status noc_cpu_prepare_lights(cpu_view *s, const noc_plan *plan, const noc_render_params *p) {
-    return plan->draws ? noc_light_set_get(s->world->lights, plan->candidates, p, &s->sources) : NOC_OK;
+    s->told = (noc_light_stats){ 0 };
+    if (!plan->draws)
+        return NOC_OK;
+    noc_status status = noc_light_set_get(s->world->lights, plan->candidates, p, &s->sources);
+    if (status == NOC_OK)
+        note_volumes(s, plan, p);
+    return status;
 }
 
 void noc_cpu_release_lights(cpu_view *s) {
@@ -54,23 +70,15 @@ static uint32_t percentile(const cpu_view *s, uint64_t surfaces, double share) {
     return 0;
 }
 
-void noc_cpu_light_stats(void *view, const noc_render_params *p, noc_light_stats *out) {
+void noc_cpu_light_stats(void *view, noc_light_stats *out) {
     cpu_view *s = view;
+    *out = s->told;
     out->lights = s->scene->lights.len;
     out->scene_bytes = scene_bytes(s->scene) + noc_cpu_rays_bytes(s->world);
-    if (!p || !draws_candidates(p))
+    out->build_seconds = noc_light_set_seconds(s->world->lights, out->candidates);
+    out->bytes = noc_light_set_bytes(s->world->lights, out->candidates);
+    if (out->candidates != NOC_CANDIDATES_INFLUENCE)
         return;
-    out->candidates = p->candidates;
-    out->build_seconds = noc_light_set_seconds(s->world->lights, p->candidates);
-    out->bytes = noc_light_set_bytes(s->world->lights, p->candidates);
-    if (p->candidates != NOC_CANDIDATES_INFLUENCE || !s->sources.influence)
-        return;
-    out->influence = p->influence > 0 ? p->influence : s->sources.influence->scale;
-    out->volumes = s->sources.influence->volume_count;
-    out->volumes_seconds = s->sources.influence->seconds[NOC_STEP_VOLUMES];
-    out->tuning_seconds = s->sources.influence->seconds[NOC_STEP_TUNING];
-    out->hierarchy_seconds = s->sources.influence->seconds[NOC_STEP_HIERARCHY];
-    out->boxes_seconds = s->sources.influence->seconds[NOC_STEP_BOXES];
     for (uint32_t k = 0; k < s->found_bins; k++)
         out->surfaces += surfaces_finding(s, k);
     if (!out->surfaces)
