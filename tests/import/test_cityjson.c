@@ -271,34 +271,17 @@ static void test_semantics(void **state) {
 
 static void test_kinds(void **state) {
     (void)state;
-    read_well(
-        FILE20(OBJECT(
-            "tin", "TINRelief", "",
-            "{'type':'CompositeSurface','lod':'1','boundaries':[[[0,1,2]],[[0,2,3]]]},"
-            "{'type':'CompositeSurface','lod':'2','boundaries':[[[4,5,6]]]}") "," OBJECT("tree",
-                                                                                         "SolitaryVegetationObject", "",
-                                                                                         SURFACES(
-                                                                                             "'1'",
-                                                                                             ROOF)) "," OBJECT("bridge",
-                                                                                                               "Bridge",
-                                                                                                               "",
-                                                                                                               SURFACES(
-                                                                                                                   "'1'",
-                                                                                                                   ROOF)) "," OBJECT("x",
-                                                                                                                                     "+Pavilion",
-                                                                                                                                     "",
-                                                                                                                                     SURFACES(
-                                                                                                                                         "'1'",
-                                                                                                                                         ROOF)) "," OBJECT("y",
-                                                                                                                                                           "Castle",
-                                                                                                                                                           "",
-                                                                                                                                                           SURFACES(
-                                                                                                                                                               "'1'",
-                                                                                                                                                               ROOF)) ","
-                                                                                                                                                                      "'z':{'geometry':[" SURFACES(
-                                                                                                                                                                          "'1'",
-                                                                                                                                                                          ROOF) "]},'n':null"),
-        3);
+    /* clang-format off */
+    read_well(FILE20(
+        OBJECT("tin", "TINRelief", "",
+               "{'type':'CompositeSurface','lod':'1','boundaries':[[[0,1,2]],[[0,2,3]]]},"
+               "{'type':'CompositeSurface','lod':'2','boundaries':[[[4,5,6]]]}") ","
+        OBJECT("tree", "SolitaryVegetationObject", "", SURFACES("'1'", ROOF)) ","
+        OBJECT("bridge", "Bridge", "", SURFACES("'1'", ROOF)) ","
+        OBJECT("x", "+Pavilion", "", SURFACES("'1'", ROOF)) ","
+        OBJECT("y", "Castle", "", SURFACES("'1'", ROOF)) ","
+        "'z':{'geometry':[" SURFACES("'1'", ROOF) "]},'n':null"), 3);
+    /* clang-format on */
     assert_int_equal(sink.objects.data[0].kind, GEO_TERRAIN);
     assert_int_equal(sink.objects.data[0].polygons, 1); /* the better level alone */
     assert_int_equal(of_class(NOC_CLASS_TERRAIN), 1);
@@ -328,14 +311,13 @@ static void test_geometries(void **state) {
     assert_int_equal(city_issue(&sink, "lines, which are not drawn"), 1);
     assert_int_equal(city_issue(&sink, "geometry of a type that is not known"), 2);
     /* holes; broken rings cost themselves alone */
-    read_well(
-        "{'type':'CityJSON','version':'1.0','CityObjects':{" OBJECT(
-            "b", "LandUse", "",
-            SURFACES(
-                "1",
-                "[[0,1,2,3],[4,5,6]],[[0,1,99]],[[0,1,-1]],[[0,1]],[[0,1,7]],[[0,1,'2']],"
-                "[[0,1,2,3,0]],[],5,[7]") ",{'type':'Solid','lod':1,'boundaries':[7]}") "},'vertices':[[0,0,0],[9,0,0],[9,9,0],[0,9,0],[1,1,0],[1,2,0],[2,2,0],[1,'x',0]]}",
-        3);
+    /* clang-format off */
+    read_well("{'type':'CityJSON','version':'1.0','CityObjects':{"
+              OBJECT("b", "LandUse", "",
+                     SURFACES("1", "[[0,1,2,3],[4,5,6]],[[0,1,99]],[[0,1,-1]],[[0,1]],[[0,1,7]],[[0,1,'2']],"
+                                   "[[0,1,2,3,0]],[],5,[7]") ",{'type':'Solid','lod':1,'boundaries':[7]}")
+              "},'vertices':[[0,0,0],[9,0,0],[9,9,0],[0,9,0],[1,1,0],[1,2,0],[2,2,0],[1,'x',0]]}", 3);
+    /* clang-format on */
     assert_int_equal(sink.polygons.len, 2);
     assert_int_equal(sink.polygons.data[0].rings, 2);
     assert_int_equal(sink.polygons.data[0].points, 7);
@@ -351,14 +333,13 @@ static void test_geometries(void **state) {
 
 static void test_templates(void **state) {
     (void)state;
-    read_well(
-        "{'type':'CityJSON','version':'1.1'," TRANSFORM
-        "'geometry-templates':{'templates':[" SURFACES("'2'", "[[0,1,2]]") "],'vertices-templates':[[1,0,0],[0,1,0],[0,0,1.5]]},'CityObjects':{" OBJECT(
-            "t", "SolitaryVegetationObject", "",
-            INSTANCE("0", TURNED)) "," OBJECT("u", "SolitaryVegetationObject", "",
-                                              INSTANCE("0", "")) "," OBJECT("v", "SolitaryVegetationObject", "",
-                                                                            INSTANCE("3", "")) "}," VERTICES "}",
-        3);
+    /* clang-format off */
+    read_well("{'type':'CityJSON','version':'1.1'," TRANSFORM "'geometry-templates':{'templates':["
+              SURFACES("'2'", "[[0,1,2]]") "],'vertices-templates':[[1,0,0],[0,1,0],[0,0,1.5]]},'CityObjects':{"
+              OBJECT("t", "SolitaryVegetationObject", "", INSTANCE("0", TURNED)) ","
+              OBJECT("u", "SolitaryVegetationObject", "", INSTANCE("0", "")) ","
+              OBJECT("v", "SolitaryVegetationObject", "", INSTANCE("3", "")) "}," VERTICES "}", 3);
+    /* clang-format on */
     assert_int_equal(sink.polygons.len, 2);
     const double turned[] = { 107, 203, 13, 106, 202, 13, 107, 202, 16 },
                  plain[] = { 103, 202, 13, 102, 203, 13, 102, 202, 14.5 };
