@@ -204,7 +204,8 @@ surfaces = lambda lod: {"type": "MultiSurface", "lod": lod, "boundaries": shell[
 instance = {"type": "GeometryInstance", "template": 0, "boundaries": [2],
             "transformationMatrix": [2, 0, 0, 1, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]}
 city_objects = {
-    "house": {"type": "Building", "children": ["part", "dormer"], "geometry": [surfaces("0.2"), surfaces("1.3"), solid]},
+    "house": {"type": "Building", "children": ["part", "dormer"],
+              "geometry": [surfaces("0.2"), surfaces("1.3"), solid]},
     "part": {"type": "BuildingPart", "parents": ["house"], "geometry": [
         {"type": "MultiSolid", "lod": "2", "boundaries": [[shell]]}]},
     "dormer": {"type": "BuildingInstallation", "parents": ["house"], "geometry": [surfaces("2")]},

@@ -1,6 +1,6 @@
 /* nocturne/import.h: from files to a scene. Inputs are told apart by content, never by name: CityGML and CityJSON
- * (plain, .gz, .zip), OBJ, glTF and GLB, OpenStreetMap XML and PBF, Overpass JSON, GeoJSON, CSV. Several inputs make one
- * scene. */
+ * (plain, .gz, .zip), OBJ, glTF and GLB, OpenStreetMap XML and PBF, Overpass JSON, GeoJSON, CSV. Several inputs make
+ * one scene. */
 #ifndef NOCTURNE_IMPORT_H
 #define NOCTURNE_IMPORT_H
 
@@ -38,6 +38,10 @@ typedef struct noc_import_params {
     /* CRS of the scene; NULL: the first input's if projected in metres, else UTM of its centre. Where its
      * lengths are not those of the ground, the scene is computed in UTM: noc_scene_info.given_crs */
     const char *scene_crs;
+    /* "X0,Y0,X1,Y1" or "X0,Y0,X1,Y1,CRS": the part that is taken of city models and lamps, in that CRS, else in the
+     * scene's: objects whose box meets it, terrain by whole triangles. Meshes and built-in scenes are whole. NULL: all
+     */
+    const char *bbox;
     /* highest level of detail of CityGML and CityJSON taken, 0..4; default 3. The best one at or under it wins */
     int lod;
     /* Place lamps by a rule? AUTO, the default: where the inputs hold none; inputs whose lamps are all of no use are an
@@ -188,15 +192,17 @@ NOC_API const noc_report_file *noc_report_get_file(const noc_report *report, siz
 NOC_API void noc_report_get_totals(const noc_report *report, noc_report_totals *totals);
 NOC_API void noc_report_destroy(noc_report *report);
 
-/* Loads all paths, and the files of lamps in params, into the scene as one, stands the lamps on the ground, and
+/* A path may be a folder (all files in it and below, by name; what is in no format that is read is left out, and told),
+ * a pattern of the shell's (where no file is called so), or "@LIST": a file with an input a line, from its own folder
+ * on. Loads all paths, and the files of lamps in params, into the scene as one, stands the lamps on the ground, and
  * commits. "builtin:NAME" is the built-in scene of that name; such scenes come before all files. On failure the scene
  * must be destroyed. *report may be NULL; where given it is set even on failure (possibly NULL). */
 NOC_API noc_status noc_scene_load(noc_scene *scene, const char *const *paths, size_t path_count,
                                   const noc_import_params *params, noc_report **report);
 
-/* Reads one file into a throwaway scene and reports what it holds; used by `nocturne info`. A file without a CRS is
- * fine, and so is a table of which nothing tells that its points are lamps. Files of lamps in params are not read: only
- * whether the path is one of them counts. */
+/* Reads one file (or what a folder, a pattern or a list stands for, as one) into a throwaway scene and reports what it
+ * holds; used by `nocturne info`. A file without a CRS is fine, and so is a table of which nothing tells that its
+ * points are lamps. Files of lamps in params are not read: only whether the path is one of them counts. */
 NOC_API noc_status noc_inspect(noc_log *log, const char *path, const noc_import_params *params, noc_report **report);
 
 /* All that the program nocturne-reader does: its main. Not for others to call. Returns its exit status, or does not

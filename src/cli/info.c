@@ -275,12 +275,16 @@ static noc_status inspect(const info_args *args, const char *path, noc_log *log,
         status = noc_inspect(log, path, &args->import, &report);
     cli_progress_clear();
     if (args->json && status != NOC_ERR_CANCELLED) {
-        fputs(first ? "\n" : ",\n", stdout);
         noc_scene_info info = { 0 };
         if (scene && !status)
             noc_scene_get_info(scene, &info);
-        cli_info_json(path, status ? noc_log_last_error(log) : NULL,
-                      (status && !args->import.strict) || scene ? NULL : report, scene && !status ? &info : NULL);
+        const char *error = status ? noc_log_last_error(log) : NULL;
+        size_t count = (status && !args->import.strict) || scene ? 0 : noc_report_file_count(report);
+        for (size_t i = 0; i < count || i == 0; i++) { /* a folder holds several files */
+            const noc_report_file *file = count ? noc_report_get_file(report, i) : NULL;
+            fputs(first && !i ? "\n" : ",\n", stdout);
+            cli_info_json(count > 1 ? file->path : path, error, file, scene && !status ? &info : NULL);
+        }
     } else if (!status && scene) {
         noc_scene_info info;
         noc_scene_get_info(scene, &info);

@@ -14,8 +14,8 @@ typedef struct info_args {
 /* "skipped", "repaired" or "guessed". */
 const char *info_action(const noc_report_line *line);
 
-/* One input as a JSON object: an error, a report, or the built-in scene; the others are NULL. */
-void cli_info_json(const char *path, const char *error, const noc_report *report, const noc_scene_info *scene);
+/* One file as a JSON object: an error, what is reported of it, or the built-in scene; the others are NULL. */
+void cli_info_json(const char *path, const char *error, const noc_report_file *file, const noc_scene_info *scene);
 
 /* info_profile.c: a luminaire's file (IES, EULUMDAT), as text or as a JSON object. */
 bool info_is_profile(const char *path);

@@ -154,13 +154,13 @@ static void report_file(const noc_report_file *file) {
     lines(file);
 }
 
-void cli_info_json(const char *path, const char *error, const noc_report *report, const noc_scene_info *scene) {
+void cli_info_json(const char *path, const char *error, const noc_report_file *file, const noc_scene_info *scene) {
     fputs("  {\"path\": ", stdout);
     cli_json_text(stdout, path);
     if (error)
         text("error", error);
-    for (size_t i = 0; report && i < noc_report_file_count(report); i++)
-        report_file(noc_report_get_file(report, i));
+    if (file)
+        report_file(file);
     if (scene) {
         text("format", "built-in scene");
         triple("extent_min", scene->bounds_min);

@@ -116,6 +116,7 @@ static const noc_option display_options[] = {
 static const noc_option import_options[] = {
     TEXT(P, crs, "crs", "City", "CRS", "CRS of inputs that name none, such as OBJ (EPSG:n, WKT, PROJ)"),
     TEXT(P, scene_crs, "scene-crs", "City", "CRS", "CRS of the scene; else the first input's, or UTM"),
+    TEXT(P, bbox, "bbox", "City", "X0,Y0,X1,Y1[,CRS]", "part of city models and lamps that is taken"),
     INT(P, lod, "lod", "City", 0, 4, "", "highest level of detail of city models that is taken"),
     SWITCH(P, infer_lamps, "infer-lamps", "City",
            "place lamps by a rule: where no input holds any; on: or none of use"),

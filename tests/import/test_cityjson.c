@@ -145,37 +145,18 @@ static void test_levels(void **state) {
 
 static void test_parts(void **state) {
     (void)state;
-    read_well(
-        FILE20(OBJECT("part", "BuildingPart", "'parents':['house'],", SURFACES("'2'", ROOF)) "," OBJECT("house", "Building", "'children':['part','dormer','room','gone'],", SURFACES("'2'", FLOOR)) "," OBJECT(
-            "dormer", "BuildingInstallation",
-            "'parents':['house'],",
-            SURFACES(
-                "'2'",
-                "[[0,1,5,4]]")) "," OBJECT("room", "BuildingRoom", "'parents':['house'],",
-                                           SOLID(
-                                               "'2'")) "," OBJECT("chair", "BuildingFurniture", "'parents':['room'],",
-                                                                  SOLID(
-                                                                      "'2'")) "," OBJECT("orphan", "BuildingPart",
-                                                                                         "'parents':['lost'],",
-                                                                                         SURFACES(
-                                                                                             "'2'",
-                                                                                             ROOF)) "," OBJECT("all",
-                                                                                                               "CityObjectGroup",
-                                                                                                               "'children':['house'],",
-                                                                                                               SURFACES(
-                                                                                                                   "'2'",
-                                                                                                                   ROOF)) "," OBJECT("a",
-                                                                                                                                     "BuildingPart",
-                                                                                                                                     "'parents':['b'],",
-                                                                                                                                     SURFACES(
-                                                                                                                                         "'2'",
-                                                                                                                                         ROOF)) "," OBJECT("b",
-                                                                                                                                                           "BuildingPart",
-                                                                                                                                                           "'parents':['a'],",
-                                                                                                                                                           SURFACES(
-                                                                                                                                                               "'2'",
-                                                                                                                                                               ROOF))),
-        3);
+    /* clang-format off */
+    read_well(FILE20(
+        OBJECT("part", "BuildingPart", "'parents':['house'],", SURFACES("'2'", ROOF)) ","
+        OBJECT("house", "Building", "'children':['part','dormer','room','gone'],", SURFACES("'2'", FLOOR)) ","
+        OBJECT("dormer", "BuildingInstallation", "'parents':['house'],", SURFACES("'2'", "[[0,1,5,4]]")) ","
+        OBJECT("room", "BuildingRoom", "'parents':['house'],", SOLID("'2'")) ","
+        OBJECT("chair", "BuildingFurniture", "'parents':['room'],", SOLID("'2'")) ","
+        OBJECT("orphan", "BuildingPart", "'parents':['lost'],", SURFACES("'2'", ROOF)) ","
+        OBJECT("all", "CityObjectGroup", "'children':['house'],", SURFACES("'2'", ROOF)) ","
+        OBJECT("a", "BuildingPart", "'parents':['b'],", SURFACES("'2'", ROOF)) ","
+        OBJECT("b", "BuildingPart", "'parents':['a'],", SURFACES("'2'", ROOF))), 3);
+    /* clang-format on */
     assert_int_equal(sink.objects.len, 3);
     assert_string_equal(sink.objects.data[0].id, "house");
     assert_int_equal(sink.objects.data[0].polygons, 3);

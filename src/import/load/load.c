@@ -6,12 +6,11 @@
 #include "import/lamps/tags.h"
 
 #include <math.h>
+#include <sys/stat.h>
 #include <nocturne/option.h>
 #include <unistd.h>
 
-#define HEAD_SIZE 65536
 #define MOST_THREADS 1024
-#define BUILTIN "builtin:" /* and the name of a scene */
 
 /* --crs and --scene-crs must be understood even where no input needs them. */
 static noc_status check_crs(const noc_import_params *p, noc_log *log) {
@@ -32,80 +31,6 @@ static noc_status check_crs(const noc_import_params *p, noc_log *log) {
             return status == NOC_ERR_MEMORY ? status : NOC_ERR_ARGUMENT;
     }
     return NOC_OK;
-}
-
-/* Reads as much of the head as there is, then a 0. */
-static noc_status read_head(noc_stream *stream, char *head, size_t *size) {
-    *size = 0;
-    for (;;) {
-        size_t got;
-        noc_status status = noc_stream_read(stream, head + *size, HEAD_SIZE - *size, &got);
-        if (status)
-            return status;
-        *size += got;
-        if (!got || *size == HEAD_SIZE) {
-            head[*size] = 0;
-            return NOC_OK;
-        }
-    }
-}
-
-/* A file that no probe knows: a table whose columns the user must explain? */
-static const noc_reader *find_named(const noc_reader *const *readers, const char *head, size_t size) {
-    for (; *readers; readers++)
-        if ((*readers)->probe_named && (*readers)->probe_named(head, size))
-            return *readers;
-    return NULL;
-}
-
-static noc_status refuse(importer *im, const char *name, const noc_reader *const *readers, const char *head,
-                         size_t size) {
-    const char *stranger = stranger_told(head);
-    if (stranger)
-        return noc_error(im->log, NOC_ERR_UNSUPPORTED, "%s: %s", name, stranger);
-    char names[300] = ""; /* "CityGML, OBJ, ..." */
-    for (size_t i = 0, n = 0; readers[i] && n < sizeof(names); i++)
-        n += (size_t)noc_snprintf(names + n, sizeof(names) - n, "%s%s", i ? ", " : "", readers[i]->name);
-    const char *offer =
-        find_named(readers, head, size)
-            ? ". If it is a table of lamps, say so with --lamps, and with --lamp-columns lon=A,lat=B where they are"
-            : "";
-    return noc_error(im->log, NOC_ERR_FORMAT, "%s: in none of the formats that are read (%s)%s", name, names, offer);
-}
-
-static noc_status recognise(importer *im, input *in, const noc_reader *const *readers) {
-    if (!strncmp(in->path, BUILTIN, strlen(BUILTIN)))
-        return in->named_lamps ? noc_error(im->log, NOC_ERR_ARGUMENT, "lamps: %s is no file of lamps", in->path)
-                               : NOC_OK;
-    noc_status status;
-    noc_stream *stream = noc_stream_open(in->path, im->log, &status);
-    if (!stream)
-        return status;
-    noc_stream_limit(stream, im->params);
-    size_t size = 0;
-    char *head = noc_alloc(HEAD_SIZE + 1);
-    status = head ? read_head(stream, head, &size) : noc_no_memory(im->log, in->path);
-    if (!status) {
-        in->bytes = noc_stream_size(stream);
-        in->reader = find_reader(readers, head, size);
-        if (!in->reader && in->named_lamps)
-            in->reader = find_named(readers, head, size);
-        in->remote = in->reader && in->reader->foreign && im->params->isolate && in->reader->foreign(head, size);
-        if (!size) {
-            status = noc_error(im->log, NOC_ERR_FORMAT, "%s: the file is empty", noc_stream_name(stream));
-        } else if (!in->reader) {
-            status = refuse(im, noc_stream_name(stream), readers, head, size);
-        } else if (in->named_lamps && in->reader->reads != NOC_READS_LAMPS) {
-            status = noc_error(im->log, NOC_ERR_FORMAT, "%s: this is %s, and --lamps is for tables and maps of points",
-                               noc_stream_name(stream), in->reader->name);
-        } else if (in->reader->missing) {
-            status = noc_error(im->log, NOC_ERR_UNSUPPORTED, "%s: this is %s, but %s", noc_stream_name(stream),
-                               in->reader->name, in->reader->missing);
-        }
-    }
-    free(head);
-    noc_stream_close(stream);
-    return status;
 }
 
 #define FAR_AWAY 20e3 /* m between a mesh and the rest of the scene that are worth a warning */
@@ -344,24 +269,36 @@ static noc_status check_columns(importer *im) {
 
 static noc_status run(importer *im, const noc_reader *const *readers) {
     for (size_t i = 0; i < im->input_count; i++) {
-        noc_status status = recognise(im, &im->inputs[i], readers);
+        noc_status status = recognise_input(im, &im->inputs[i], readers);
         if (status)
             return status;
-        im->inputs[i].repeated = repeat_file(im, i);
-        im->bytes_total += im->inputs[i].repeated ? 0 : (double)im->inputs[i].bytes;
+        im->inputs[i].repeated = !im->inputs[i].left_out && repeat_file(im, i);
+        bool read = !im->inputs[i].repeated && !im->inputs[i].left_out;
+        im->bytes_total += read ? (double)im->inputs[i].bytes : 0;
     }
+    noc_status status = recognise_told(im);
+    if (status)
+        return status;
     size_t *inputs = noc_calloc(im->input_count, sizeof(*inputs));
-    noc_status status = inputs ? NOC_OK : noc_no_memory(im->log, "import");
+    status = inputs ? NOC_OK : noc_no_memory(im->log, "import");
     for (int s = 0; s < STAGES && !status; s++) {
         size_t count = 0;
         for (size_t i = 0; i < im->input_count; i++)
-            if (!im->inputs[i].repeated && stage(im, &im->inputs[i]) == s)
+            if (!im->inputs[i].repeated && !im->inputs[i].left_out && stage(im, &im->inputs[i]) == s)
                 inputs[count++] = i;
         status = read_inputs(im, inputs, count, s == CITIES);
     }
     free(inputs);
     if (!status)
         status = check_columns(im);
+    if (!status && im->box.on && !im->scene->indices.len && !im->lamps.len)
+        status =
+            noc_error(im->log, NOC_ERR_ARGUMENT, "bbox: nothing of the inputs lies in %.10g,%.10g,%.10g,%.10g of %s",
+                      im->box.lo[0], im->box.lo[1], im->box.hi[0], im->box.hi[1],
+                      im->box.crs                 ? geo_crs_name(im->box.crs)
+                      : im->scene->given_crs_name ? im->scene->given_crs_name
+                      : im->scene_crs             ? geo_crs_name(im->scene_crs)
+                                                  : "their local metres");
     return status || im->inspect ? status : finish_city(im);
 }
 
@@ -372,24 +309,50 @@ static bool among(const char *path, const char *const *paths, size_t count) {
     return false;
 }
 
-/* The inputs are the paths, and the files of lamps that are not among them. */
+static bool among_inputs(const importer *im, const char *path) {
+    for (size_t i = 0; i < im->files.files.len; i++)
+        if (same_file(im->files.files.data[i].path, path))
+            return true;
+    return false;
+}
+
+/* What tells two files apart, asked once: a city may come in thousands of them. */
+static void know_file(input *in) {
+    struct stat st;
+    in->is_file = !stat(in->path, &st) && S_ISREG(st.st_mode);
+    if (!in->is_file)
+        return;
+    in->device = (uint64_t)st.st_dev;
+    in->inode = (uint64_t)st.st_ino;
+    in->size = (uint64_t)st.st_size;
+}
+
+/* The inputs are the paths, or what they stand for, and the files of lamps that are not among them. */
 static noc_status list_inputs(importer *im, const char *const *paths, size_t path_count) {
     const noc_texts *lamps = &im->params->lamps;
-    im->inputs = noc_calloc(path_count + lamps->count + 1, sizeof(*im->inputs));
+    noc_status status = expand_inputs(paths, path_count, im->log, &im->files);
+    if (status)
+        return status;
+    size_t count = im->files.files.len;
+    im->inputs = noc_calloc(count + lamps->count + 1, sizeof(*im->inputs));
     if (!im->inputs)
         return noc_no_memory(im->log, "import");
-    for (size_t i = 0; i < path_count + lamps->count; i++) {
-        bool named = i >= path_count;
-        const char *path = named ? lamps->text[i - path_count] : paths[i];
-        if (named && (im->inspect || among(path, paths, path_count) || among(path, lamps->text, i - path_count)))
+    for (size_t i = 0; i < count + lamps->count; i++) {
+        bool named = i >= count;
+        const expanded_file file = named ? (expanded_file){ lamps->text[i - count], NULL } : im->files.files.data[i];
+        if (named && (im->inspect || among_inputs(im, file.path) || among(file.path, lamps->text, i - count)))
             continue;
+        const char *path = arena_strdup(&im->report->arena, file.path);
         input *in = &im->inputs[im->input_count++];
-        *in = (input){
-            .path = path, .file = { .path = path }, .issues = geo_issues_create(), .found = geo_issues_create()
-        };
-        in->named_lamps = named || among(path, lamps->text, lamps->count);
-        if (!in->issues || !in->found)
+        *in = (input){ .path = path,
+                       .folder = file.folder,
+                       .file = { .path = path },
+                       .issues = geo_issues_create(),
+                       .found = geo_issues_create() };
+        if (!path || !in->issues || !in->found)
             return noc_no_memory(im->log, "import");
+        in->named_lamps = named || among(path, lamps->text, lamps->count);
+        know_file(in);
     }
     return NOC_OK;
 }
@@ -426,6 +389,11 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
                     .memory = import_budget_of(params).memory,
                     .inspect = inspect,
                     .lock = PTHREAD_MUTEX_INITIALIZER };
+    status = box_read(params, scene->log, &im.box);
+    if (status) {
+        box_free(&im.box);
+        return status;
+    }
     im.report = report_create();
     status = im.report ? list_inputs(&im, paths, path_count) : noc_no_memory(scene->log, "import");
     if (!status)
@@ -446,6 +414,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     if (!status && params->strict)
         status = report_strict(im.report, params, scene->log);
     free(im.inputs);
+    expanded_free(&im.files);
+    box_free(&im.box);
     take_destroy(&im);
     if (report)
         *report = im.report;

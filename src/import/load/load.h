@@ -26,8 +26,23 @@ typedef struct source_crs {
     double shift_x; /* zone number before the easting */
 } source_crs;
 
+/* expand.c: the files that inputs stand for: folders, patterns, lists. */
+typedef struct expanded_file {
+    const char *path, *folder; /* folder: the input in which it was found; NULL: it is named */
+} expanded_file;
+typedef struct expanded {
+    NOC_ARRAY(expanded_file) files;
+    noc_arena arena;
+} expanded;
+noc_status expand_inputs(const char *const *paths, size_t count, noc_log *log, expanded *out);
+void expanded_free(expanded *e);
+
 typedef struct input {
     const char *path;
+    const char *folder; /* the input that is a folder, in which it was found; NULL: it is named */
+    bool left_out;      /* found in a folder, and of no kind that is read */
+    bool is_file;       /* with the next three, which tell whether two are the same */
+    uint64_t device, inode, size;
     const noc_reader *reader; /* NULL: built-in */
     uint64_t bytes;
     geo_issues *issues;
@@ -77,15 +92,24 @@ typedef struct object_records {
     size_t size;        /* of both: a power of two */
 } object_records;
 
+/* The part of the inputs that is taken (box.c). */
+typedef struct load_box {
+    bool on;
+    double lo[2], hi[2];
+    geo_crs *crs; /* that they are in; NULL: the scene's, as it is given */
+} load_box;
+
 typedef struct importer {
     noc_log *log;
     noc_scene *scene;
     const noc_import_params *params;
     double memory; /* bytes that the scene may take */
     noc_report *report;
+    load_box box;
     bool inspect;
     input *inputs;
     size_t input_count;
+    expanded files; /* holds their paths' texts, until the report does */
     /* place of the scene (place.c) */
     bool placed;
     geo_crs *scene_crs; /* belongs to the scene; NULL: local metres */
@@ -123,6 +147,10 @@ typedef struct reading {
     /* the object that is being read (sink.c) */
     char *object_id;
     object_now now;
+    int object_lod;
+    geo_transform *to_box; /* NULL: none is needed */
+    bool to_box_made;
+    NOC_ARRAY(double) in_box; /* points, where the box is */
     NOC_ARRAY(double) scratch;
     geo_triangles surfaces[NOC_CLASS_COUNT];
 } reading;
@@ -183,6 +211,12 @@ const noc_reader *find_reader(const noc_reader *const *readers, const char *head
 /* stranger.c: what to say of a file whose format is known, though it is not read; NULL where it is not known. */
 const char *stranger_told(const char *head);
 
+/* recognise.c */
+#define BUILTIN "builtin:" /* and the name of a scene */
+noc_status recognise_input(importer *im, input *in, const noc_reader *const *readers);
+/* Of each folder what was left out is counted, and it is an error where that is all. */
+noc_status recognise_told(const importer *im);
+
 /* place.c */
 typedef struct place_sample {
     source_crs *source;
@@ -219,6 +253,13 @@ noc_status sink_hand_over(reading *r, const load_part *part); /* to the scene, o
 /* Asks whether to go on; bytes: of all inputs, that were read. */
 bool import_progress(importer *im, const input *in, double bytes);
 void reading_free(reading *r);
+
+/* box.c */
+noc_status box_read(const noc_import_params *params, noc_log *log, load_box *box);
+void box_free(load_box *box);
+noc_status box_point(reading *r, const double *xyz, bool *inside); /* local metres */
+/* Drops the surfaces of the object that is being read, where they are outside, or those triangles of a terrain. */
+noc_status box_object(reading *r, bool *inside);
 
 /* take.c: parts into the scene, in the order of the files. */
 typedef struct taking {

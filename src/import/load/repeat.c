@@ -57,16 +57,15 @@ bool same_file(const char *a, const char *b) {
 static const char *file_again(const input *a, const input *b) {
     if (a->reader != b->reader)
         return NULL;
-    struct stat s, t;
     if (!a->reader)
         return strcmp(a->path, b->path) ? NULL : "built-in scene that is named twice";
-    if (stat(a->path, &s) || stat(b->path, &t) || !S_ISREG(s.st_mode) || !S_ISREG(t.st_mode))
+    if (!a->is_file || !b->is_file)
         return NULL;
-    if (same_file(a->path, b->path))
+    if (a->device == b->device && a->inode == b->inode)
         return "file that is named twice";
     /* a glTF's buffers lie beside it: other ones in another folder */
     bool alone = a->reader != &noc_reader_gltf || same_folder(a->path, b->path);
-    return s.st_size == t.st_size && alone && same_content(a->path, b->path) ? "copy of another file" : NULL;
+    return a->size == b->size && alone && same_content(a->path, b->path) ? "copy of another file" : NULL;
 }
 
 bool repeat_file(importer *im, size_t index) {

@@ -11,8 +11,30 @@ noc_status sink_hand_over(reading *r, const load_part *part) {
 
 /* ---- surfaces ---- */
 
+/* Of the object that is being read nothing lies in the box. */
+static void leave_out_object(reading *r) {
+    noc_report_file *file = &r->in->file;
+    r->now.polygons = 0;
+    memset(r->now.by_class, 0, sizeof(r->now.by_class));
+    if (!r->object_id)
+        return;
+    geo_issue(r->in->issues, GEO_SPARED, "object outside of --bbox", r->object_id);
+    file->objects--;
+    if (r->now.kind != GEO_BUILDING)
+        return;
+    file->buildings--;
+    if (r->object_lod >= 0 && r->object_lod < (int)NOC_COUNT(file->lod_used))
+        file->lod_used[r->object_lod]--;
+}
+
 /* Hands over the surfaces of a class, or with NOC_CLASS_COUNT all of them, as the object ends. */
 static noc_status hand_over_object(reading *r, noc_class only) {
+    bool inside;
+    noc_status boxed = box_object(r, &inside);
+    if (boxed)
+        return boxed;
+    if (!inside && only == NOC_CLASS_COUNT && !r->now.given)
+        leave_out_object(r);
     part_surface surfaces[NOC_CLASS_COUNT];
     load_part part = { .kind = PART_OBJECT };
     part.u.object.id = r->object_id;
@@ -58,6 +80,7 @@ static noc_status on_begin_object(void *ctx, const geo_object *object) {
     if (!status && !r->object_id)
         status = noc_no_memory(r->log, r->in->path);
     r->now.kind = object->kind;
+    r->object_lod = object->lod;
     file->objects++;
     if (object->kind == GEO_BUILDING) {
         file->buildings++;
@@ -147,6 +170,12 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     }
     if (status || !usable)
         return status;
+    bool inside;
+    status = box_point(r, points[0], &inside);
+    if (!status && !inside)
+        geo_issue(r->in->issues, GEO_SPARED, "lamp outside of --bbox", lamp->id ? lamp->id : "");
+    if (status || !inside)
+        return status;
     memcpy(p.lamp.xyz, points[0], sizeof(points[0]));
     memcpy(p.lamp.head, points[1], heads * sizeof(points[0]));
     count_lamp(&r->in->file, lamp);
@@ -234,6 +263,8 @@ void reading_free(reading *r) {
     for (int c = 0; c < NOC_CLASS_COUNT; c++)
         geo_triangles_free(&r->surfaces[c]);
     array_free(&r->scratch);
+    array_free(&r->in_box);
+    geo_transform_destroy(r->to_box);
     array_free(&r->given);
     free(r->object_id);
 }
