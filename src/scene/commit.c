@@ -452,6 +452,8 @@ static void settle(commit *c) {
 static void apply(commit *c) {
     noc_scene *s = c->s;
     size_t materials = noc_scene_material_count(s);
+    noc_range lights = s->dirty_lights, changed = s->dirty_materials;
+    uint64_t commits = s->versions.commits;
     s->dirty_lights = s->dirty_materials = (noc_range){ 0, 0 };
     append(c);
     for (uint32_t i = 0; i < s->instance_slots.fresh; i++)
@@ -468,6 +470,10 @@ static void apply(commit *c) {
     for (size_t i = 0; i < s->edits.len; i++)
         apply_edit(c, &s->edits.data[i]);
     settle(c);
+    if (s->versions.commits == commits && commits) { /* nothing has changed: followers have not been told to look */
+        s->dirty_lights = lights;
+        s->dirty_materials = changed;
+    }
 }
 
 noc_status noc_scene_commit(noc_scene *scene) {

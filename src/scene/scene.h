@@ -161,7 +161,7 @@ struct noc_scene {
     bool scaled;                             /* a group's scale has been another than 1 */
     bool committed;
     noc_scene_versions versions;
-    noc_range dirty_lights, dirty_materials; /* records that the last commit wrote or added */
+    noc_range dirty_lights, dirty_materials; /* records that the last commit that changed anything wrote or added */
     /* What is staged: the editing thread's alone. Before the first commit meshes, materials and lights go straight
      * into the arrays above. */
     NOC_ARRAY(noc_edit) edits;

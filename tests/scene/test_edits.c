@@ -144,6 +144,7 @@ static void versions_count_what_changed(void **unused) {
     for (size_t i = 0; i < NOC_COUNT(table); i++) {
         noc_scene *s = made(NULL, NOTHING);
         const noc_scene_versions *v = &s->versions;
+        noc_range dirty = { 0 };
         assert_int_equal(v->commits, 0);
         for (int again = 1; again <= 2; again++) { /* to what it is already: nothing changes, but what is added is */
             if (again == 2 && strpbrk(table[i].counts, "gl") && !strchr(table[i].counts, 'm'))
@@ -156,6 +157,9 @@ static void versions_count_what_changed(void **unused) {
                 if (have[k] != (strchr(table[i].counts, "gimloesd"[k]) != NULL))
                     fail_msg("edit %d: %c counts %d", table[i].edit, "gimloesd"[k], (int)have[k]);
             assert_int_equal(v->commits, 1);
+            if (again == 1)
+                dirty = s->dirty_lights;
+            assert_memory_equal(&dirty, &s->dirty_lights, sizeof(dirty));
         }
         noc_scene_destroy(s);
     }
