@@ -3,6 +3,8 @@
 #include "rooms.h"
 #include "../own_view.h"
 
+#include <unistd.h>
+
 static noc_camera view(double t) { return look(1 + t, -10, 4, 0.5 * t, 0, 2, 60); }
 
 /* Point lights a few millimetres apart, and a floor before them. */
@@ -124,11 +126,49 @@ static void told_after_an_edit(void **state) {
     noc_scene_destroy(s);
 }
 
+static char *volumes_of(noc_view *view, const noc_render_params *p) {
+    char path[] = "/tmp/nocturne-volumes-XXXXXX", *text = noc_calloc(1 << 16, 1);
+    close(mkstemp(path));
+    assert_int_equal(noc_view_write_influence(view, p, path), NOC_OK);
+    FILE *f = fopen(path, "r");
+    assert_true(f && text && fread(text, 1, (1 << 16) - 1, f) > 0);
+    fclose(f);
+    unlink(path);
+    return text;
+}
+
+/* Volumes that are asked for before any frame has seen an edit are of the scene as it is. */
+static void volumes_after_an_edit(void **state) {
+    (void)state;
+    noc_scene *s = noc_scene_create(NULL);
+    int grey = matte(s, 0.5f);
+    add_floor(s, grey, 0, 0, 0, 20);
+    add_floor(s, grey, 0, 0, 1, 20); /* mesh 1: hides the other from the light */
+    point_light(s, 0, 0, 3, 10);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    noc_render_params p = measure(16, 8, NOC_METHOD_RIS);
+    p.candidates = NOC_CANDIDATES_INFLUENCE;
+    p.influence = 2;
+    p.influence_boxes = NOC_INFLUENCE_VISIBLE;
+    noc_view *before = own_view(s, 2, NULL);
+    assert_int_equal(noc_scene_remove_mesh(s, 1), NOC_OK);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    noc_view *after = own_view(s, 2, NULL);
+    char *have = volumes_of(before, &p), *want = volumes_of(after, &p);
+    assert_string_equal(have, want);
+    free(have);
+    free(want);
+    close_view(before);
+    close_view(after);
+    noc_scene_destroy(s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(number_of_lights_found),
         cmocka_unit_test(set_reach_is_not_looked_for),
         cmocka_unit_test(told_after_an_edit),
+        cmocka_unit_test(volumes_after_an_edit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -90,7 +90,9 @@ void noc_cpu_light_stats(void *view, noc_light_stats *out) {
 
 noc_status noc_cpu_influence(void *view, const noc_render_params *params, const struct noc_influence **volumes) {
     cpu_view *s = view;
-    noc_status status = noc_light_set_get(s->world->lights, NOC_CANDIDATES_INFLUENCE, params, &s->sources);
+    noc_status status = noc_cpu_follow(s->world); /* volumes are looked for by rays */
+    if (status == NOC_OK)
+        status = noc_light_set_get(s->world->lights, NOC_CANDIDATES_INFLUENCE, params, &s->sources);
     *volumes = s->sources.influence;
     return status;
 }
