@@ -191,9 +191,66 @@ static void models_are_added_later(void **unused) {
     (void)unused;
 }
 
+static int refused; /* errors told */
+static char last[200];
+
+static void count(void *user, noc_log_level level, const char *text) {
+    refused += level == NOC_LOG_ERROR;
+    snprintf(last, sizeof(last), "%s", text);
+    (void)user;
+}
+
+/* Indices of groups and models have sixteen bits. One more is refused, and what is there stays. */
+static void there_are_65535_at_most(void **unused) {
+    enum { MOST = 65535, EARLY = 40000 };
+    noc_log_params p = noc_log_default_params();
+    p.message = count;
+    noc_log *log = noc_log_create(&p);
+    noc_scene *s = noc_scene_create(log);
+    noc_mesh mesh = { .vertex_count = 3,
+                      .positions = (double[]){ 0, 0, 0, 1, 0, 0, 0, 1, 0 },
+                      .triangle_count = 1,
+                      .indices = (uint32_t[]){ 0, 1, 2 },
+                      .material = noc_scene_add_material(s, &(noc_material){ .roughness = 1 }) };
+    assert_int_equal(noc_scene_add_mesh(s, &mesh), 0);
+    refused = 0;
+    for (int i = 1; i <= MOST; i++) {
+        if (i == EARLY)
+            assert_int_equal(noc_scene_commit(s), NOC_OK); /* later ones are staged */
+        assert_int_equal(noc_scene_add_group(s, NULL), i);
+        assert_int_equal(noc_scene_add_model(s, NULL), i);
+    }
+    assert_int_equal(refused, 0);
+    assert_int_equal(noc_scene_add_group(s, "street"), -1);
+    assert_non_null(strstr(last, "street"));
+    assert_int_equal(noc_scene_add_model(s, "bus"), -1);
+    assert_non_null(strstr(last, "bus"));
+    assert_int_equal(refused, 2);
+    mesh.model = MOST;
+    noc_light lamp = lamp_at(0);
+    lamp.model = MOST;
+    lamp.group = MOST;
+    noc_instance in = { .model = MOST, .transform = { 1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0 } };
+    assert_int_equal(noc_scene_add_mesh(s, &mesh), 1);
+    assert_int_equal(noc_scene_add_light(s, &lamp), 0);
+    assert_int_equal(noc_scene_add_instance(s, &in), 0);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    assert_int_equal(noc_scene_set_group(s, MOST, (float[3]){ 0.5f, 0.5f, 0.5f }), NOC_OK);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    noc_light_info info;
+    assert_int_equal(noc_scene_get_light(s, noc_scene_instance_light(s, 0, 0), &info), NOC_OK);
+    assert_true(info.light.group == MOST && info.light.position[0] == 5);
+    assert_int_equal(refused, 2);
+    noc_scene_destroy(s);
+    noc_log_destroy(log);
+    (void)unused;
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(many_are_settled), cmocka_unit_test(slots_are_stable),
-                                        cmocka_unit_test(instances_have_lights), cmocka_unit_test(models_are_no_city),
-                                        cmocka_unit_test(models_are_added_later) };
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(many_are_settled),       cmocka_unit_test(slots_are_stable),
+        cmocka_unit_test(instances_have_lights),  cmocka_unit_test(models_are_no_city),
+        cmocka_unit_test(models_are_added_later), cmocka_unit_test(there_are_65535_at_most)
+    };
     return cmocka_run_group_tests_name("scene instances", tests, NULL, NULL);
 }

@@ -97,6 +97,36 @@ static noc_status by_hand(noc_scene *s) {
 
 static void test_by_hand(void **state) { refuse_each("by hand", by_hand); }
 
+/* Groups, models with lights that have shapes, and instances of them. */
+static noc_status by_models(noc_scene *s) {
+    noc_material glow = { .emission = { 5, 5, 5 }, .roughness = 1 };
+    bool ok = true;
+    for (int i = 0; ok && i < 9; i++) {
+        int group = noc_scene_add_group(s, "tail lamps"), model = group > 0 ? noc_scene_add_model(s, "car") : -1;
+        noc_mesh body = { .vertex_count = 3,
+                          .positions = (double[]){ 0, 0, 0, 1, 0, 0, 0, 1, 0 },
+                          .triangle_count = 1,
+                          .indices = (uint32_t[]){ 0, 1, 2 },
+                          .material = model > 0 ? noc_scene_add_material(s, &glow) : -1,
+                          .model = model,
+                          .group = group };
+        noc_light lamp = { .kind = NOC_LIGHT_DISC,
+                           .direction = { 1, 0, 0 },
+                           .radius = 0.1,
+                           .emission = { 9, 9, (float)i },
+                           .name = "lamp",
+                           .model = model,
+                           .group = group };
+        noc_light dot = { .kind = NOC_LIGHT_POINT, .emission = { 1, 1, 1 }, .model = model };
+        noc_instance car = { .model = model, .transform = { 1, 0, 0, 3 * i, 0, 1, 0, 0, 0, 0, 1, 0 } };
+        ok = body.material >= 0 && noc_scene_add_mesh(s, &body) >= 0 && noc_scene_add_light(s, &lamp) >= 0 &&
+             noc_scene_add_light(s, &dot) >= 0 && noc_scene_add_instance(s, &car) == i;
+    }
+    return or_memory(s, ok);
+}
+
+static void test_by_models(void **state) { refuse_each("models", by_models); }
+
 static noc_status builtin(noc_scene *s, const char *name) {
     noc_builtin_params params = noc_builtin_default_params();
     params.lights = 50;
@@ -179,8 +209,8 @@ static void test_ground(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_by_hand), cmocka_unit_test(test_builtin),
-                                        cmocka_unit_test(test_village), cmocka_unit_test(test_cameras),
-                                        cmocka_unit_test(test_ground) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_by_hand), cmocka_unit_test(test_by_models),
+                                        cmocka_unit_test(test_builtin), cmocka_unit_test(test_village),
+                                        cmocka_unit_test(test_cameras), cmocka_unit_test(test_ground) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
