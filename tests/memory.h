@@ -45,6 +45,11 @@ static inline uint64_t next_refusal(uint64_t number) { return number + 1 + (numb
     for (int later = 0; later < 2; later++)                                                                            \
         for (uint64_t n = ((reached) = true, 1); (reached); n = next_refusal(n))
 
+/* Each, where something is asked for once and late, as by a frame's passes. */
+#define FOR_EVERY_REFUSAL(reached)                                                                                     \
+    for (int later = 0; later < 2; later++)                                                                            \
+        for (uint64_t n = ((reached) = true, 1); (reached); n++)
+
 /* What a call said that met a refusal: memory, once. */
 static inline void assert_refused(noc_status status, const char *what) {
     if (status != NOC_ERR_MEMORY || refusing.errors != 1 || !strstr(refusing.first_error, "memory"))

@@ -22,10 +22,20 @@ static void pose(noc_scene *s, int frame) {
     assert_int_equal(noc_scene_commit(s), NOC_OK);
 }
 
-/* A floor, a wall, screens between, lamps and lit windows that stand, and some lights that move. */
+/* A floor, a wall, screens between, one of them an instance, lamps and lit windows that stand, and some lights that
+ * move. */
 static noc_scene *yard(void) {
     noc_scene *s = noc_scene_create(NULL);
     int grey = matte(s, 0.5f);
+    noc_mesh screen = { .vertex_count = 3,
+                        .positions = (double[]){ 0, 0, 0, 1, 0, 0, 0, 0, 2 },
+                        .triangle_count = 1,
+                        .indices = (uint32_t[]){ 0, 1, 2 },
+                        .material = grey,
+                        .model = noc_scene_add_model(s, "screen") };
+    noc_instance stands = { .model = screen.model, .transform = { 1, 0, 0, 3, 0, 1, 0, -2, 0, 0, 1, 0 } };
+    assert_int_equal(noc_scene_add_mesh(s, &screen), 0);
+    assert_int_equal(noc_scene_add_instance(s, &stands), 0);
     add_floor(s, grey, 0, 0, 0, 10);
     QUAD(s, grey, -8, 6, 0, 16, 0, 0, 0, 0, 6);
     for (int i = 0; i < 6; i++)
@@ -132,7 +142,7 @@ static void first_frame(const config *c) {
     picture second = next_frame(dropped, &p);
     assert_false(same(&first, &second));
     bool reached;
-    FOR_EACH_REFUSAL(reached) {
+    FOR_EVERY_REFUSAL(reached) {
         begin_refusal(n, later);
         noc_view *r = two_threads(s, log);
         noc_status status = r ? noc_view_render(r, camera(), &p, NULL) : NOC_ERR_MEMORY;
@@ -191,7 +201,7 @@ static void moved_frame(const config *c) {
     picture second = next_frame(untouched, &p);
     bool reached;
     int refused = 0;
-    FOR_EACH_REFUSAL(reached) {
+    FOR_EVERY_REFUSAL(reached) {
         noc_view *r = after_one_frame(s, &p, log);
         begin_refusal(n, later);
         noc_status status = noc_view_render(r, camera(), &p, NULL);
