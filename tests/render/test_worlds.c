@@ -182,11 +182,45 @@ static void frames_and_commits_do_not_mix(void **state) {
     noc_scene_destroy(s);
 }
 
+static double bytes_a_pixel(noc_view *v) {
+    noc_camera camera = look(0, -8, 3, 0, 0, 1, 60);
+    noc_frame_stats stats[2];
+    for (int i = 0; i < 2; i++) {
+        noc_render_params p = measure(64, 64 << i, NOC_METHOD_IS);
+        assert_int_equal(noc_view_render(v, &camera, &p, NULL), NOC_OK);
+        noc_view_get_stats(v, &stats[i]);
+    }
+    return ((double)stats[1].memory_bytes - (double)stats[0].memory_bytes) / (64 * 64);
+}
+
+/* Each pixel keeps which instance it sees, once a scene has some. */
+static void instances_take_memory(void **state) {
+    (void)state;
+    noc_scene *s = street();
+    noc_view *v = own_view(s, 1, NULL);
+    double without = bytes_a_pixel(v);
+    noc_mesh mesh = { .vertex_count = 3,
+                      .positions = (double[]){ 0, 0, 0, 1, 0, 0, 0, 0, 1 },
+                      .triangle_count = 1,
+                      .indices = (uint32_t[]){ 0, 1, 2 },
+                      .material = 0,
+                      .model = noc_scene_add_model(s, "sign") };
+    noc_instance sign = { .model = mesh.model, .transform = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 } };
+    assert_true(noc_scene_add_mesh(s, &mesh) >= 0 && noc_scene_add_instance(s, &sign) >= 0);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    double with = bytes_a_pixel(v);
+    print_message("# %.2f bytes a pixel, %.2f with instances\n", without, with);
+    assert_true(with - without == sizeof(uint32_t));
+    close_view(v);
+    noc_scene_destroy(s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(views_are_independent),
         cmocka_unit_test(worlds_go_with_their_last_view),
         cmocka_unit_test(frames_and_commits_do_not_mix),
+        cmocka_unit_test(instances_take_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

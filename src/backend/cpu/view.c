@@ -150,9 +150,10 @@ void noc_cpu_stats(void *state, noc_frame_stats *out) {
         w->rays_primary = w->rays_shadow = w->dropped = 0;
     }
     out->build_seconds = s->world->build_seconds;
+    size_t blocks = (size_t)s->b.blocks_x * s->b.blocks_y;
     out->memory_bytes = s->b.bytes + noc_cpu_rays_bytes(s->world) + noc_cpu_light_bytes(s->world) +
-                        noc_cpu_past_bytes(s) +
-                        (size_t)s->b.blocks_x * s->b.blocks_y * BLOCK * noc_cpu_aov_bytes(s->b.aovs.asked);
+                        noc_cpu_past_bytes(s) + (s->b.instance ? blocks * sizeof(*s->b.instance) : 0) +
+                        blocks * BLOCK * noc_cpu_aov_bytes(s->b.aovs.asked);
     out->path = s->kernels->name;
 }
 
