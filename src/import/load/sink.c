@@ -235,8 +235,11 @@ bool import_progress(importer *im, const input *in, double bytes) {
 
 static bool on_progress(void *ctx, double done) {
     reading *r = ctx;
-    double bytes = r->im->bytes_before + NOC_CLAMP(done, 0, 1) * (double)r->in->bytes;
-    bool go_on = r->queue ? queue_progress(r->queue, done) : import_progress(r->im, r->in, bytes);
+    bool go_on;
+    if (r->queue) /* another thread counts what is read */
+        go_on = queue_progress(r->queue, done);
+    else
+        go_on = import_progress(r->im, r->in, r->im->bytes_before + NOC_CLAMP(done, 0, 1) * (double)r->in->bytes);
     r->stopped = r->stopped || !go_on;
     return go_on;
 }
