@@ -30,6 +30,9 @@ dictionaries = {
                                      "1 -1 1 ", "0 90\n", "90 270\n"]),
     "spec": (["lab/*.c", "render/options.c"],
              ["builtin:city", "builtin:mess", "../", "16x9", "street", "aerial", "overview"]),
+    "recipe": (["recipe/*.c", "render/options.c", "scene/material.c"],
+               ["nocturne: 1\n", "inputs: [", "cameras:\n  ", "materials:\n  ", ": {", "}, ", "---\n", "&a ", "*a",
+                "<<: ", "!!", "|\n", ">\n", "? ", "%YAML 1.1\n", "builtin:mess", "../"]),
 }
 
 

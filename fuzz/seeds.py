@@ -586,6 +586,23 @@ put("spec", "small", json.dumps({
     "configurations": [{"name": "x", "method": "ris", "draws": [4, 8]},
                        {"name": "y", "method": "restir", "bias": "mis", "seconds": 2}]}))
 
+# ---- recipes ----
+
+put("recipe", "small", "nocturne: 1\ninputs: builtin:city\n")
+put("recipe", "whole", """# remark
+nocturne: 1
+name: "A: b"
+inputs: [a.gml, /b/c.osm, 'builtin:mess']
+crs: EPSG:25832
+preset: interactive
+sky: 1e-2
+lamps: { files: [l.csv], columns: 'height=H', height: 8.5 }
+materials: { wall: { albedo: 0.5, roughness: 0.8 }, road: { albedo: [.1, .2, .3], f0: .05 } }
+cameras:
+  near: { eye: &e [1, -2.5, 3], target: '4,5,6', crs: scene, fov: 70 }
+  far: { view: aerial }
+""")
+
 # ---- several inputs, to a scene ----
 
 lamps = json.dumps({"type": "FeatureCollection", "features": [point(11.5560, 48.1, highway="street_lamp")]})

@@ -19,6 +19,7 @@ import: geo city scene
 render: light scene image core
 backend: render light scene core
 lab:
+recipe:
 cli:
 reader:
 '
@@ -31,6 +32,7 @@ gdal|ogr_|cpl_ import
 assimp/ import
 expat.h import
 jansson.h import lab
+yaml.h recipe
 zip.h import
 GL/glu.h geo
 png.h image

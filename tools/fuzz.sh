@@ -32,6 +32,7 @@ crs crs 2048 crs -
 ies profile 4096 profile ies,IES
 ldt profile 4096 profile ldt
 spec spec 8192 spec -
+recipe recipe 4096 recipe -
 pipeline pipeline 32768 citygml -
 wire wire 16384 - -
 request request 4096 - -

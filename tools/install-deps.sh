@@ -45,6 +45,7 @@ need libgdal-dev "street lamps from OpenStreetMap, GeoJSON and CSV" module gdal
 need libproj-dev "coordinate reference systems" module proj
 need libexpat1-dev "CityGML (XML)" module expat
 need libjansson-dev "Overpass JSON, specs of experiments" module jansson
+need libyaml-dev "recipes" module yaml-0.1
 need libglu1-mesa-dev "cuts polygons into triangles" module glu
 need libassimp-dev "OBJ meshes" module assimp
 need libseccomp-dev "a fence around the program that reads OBJ and map files" module libseccomp

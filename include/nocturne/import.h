@@ -74,6 +74,10 @@ typedef struct noc_import_params {
                              three quarters of the machine's */
     double max_expansion; /* times its stored size that it may grow to, where that is over 1 GiB; 0: any; default
                              200 */
+    /* What surfaces of these classes are made of, one a class, in place of noc_class_material and of the colours that
+     * walls and roofs of real cities vary between; not owned; default none. Emission is not read */
+    const noc_material *materials;
+    size_t material_count;
     const noc_builtin_params *builtin; /* of built-in scenes among the inputs, not owned; NULL, the default: theirs */
     int threads; /* that read files of cities at once; 0, the default: one a core. The scene is the same for any number
                   */

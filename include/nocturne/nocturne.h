@@ -8,6 +8,7 @@
 #include <nocturne/log.h>
 #include <nocturne/option.h>
 #include <nocturne/photometry.h>
+#include <nocturne/recipe.h>
 #include <nocturne/render.h>
 #include <nocturne/scene.h>
 #include <nocturne/text.h>

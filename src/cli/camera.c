@@ -3,6 +3,36 @@
 #include <math.h>
 #include <string.h>
 
+int cli_choose_camera(render_args *args) {
+    const noc_recipe_camera *camera = cli_recipe_camera(&args->common, args->camera_name);
+    static const char *const others[] = { "view", "eye", "target", "camera-crs" };
+    if (args->camera_name && !args->common.recipe)
+        return cli_usage(&cli_render, "--camera is for a recipe among the inputs");
+    if (args->camera_name && !camera) {
+        const noc_recipe_info *recipe = noc_recipe_get_info(args->common.recipe);
+        const char *names[64];
+        size_t count = recipe->camera_count < 64 ? recipe->camera_count : 64;
+        for (size_t i = 0; i < count; i++)
+            names[i] = recipe->cameras[i].name;
+        const char *nearest = noc_text_nearest(args->camera_name, names, count);
+        return cli_usage(&cli_render, "--camera: %.200s has no camera \"%.60s\"%s%.60s%s", recipe->path,
+                         args->camera_name, nearest ? "; is it " : "", nearest ? nearest : "", nearest ? "?" : "");
+    }
+    for (size_t i = 0; i < sizeof(others) / sizeof(*others); i++) {
+        if (!cli_given(&args->common, others[i]))
+            continue;
+        if (args->camera_name)
+            return cli_usage(&cli_render, "--camera and --%s exclude each other", others[i]);
+        return CLI_OK;
+    }
+    double fov = args->camera.fov;
+    if (camera)
+        args->camera = camera->params;
+    if (camera && cli_given(&args->common, "fov"))
+        args->camera.fov = fov;
+    return CLI_OK;
+}
+
 /* All that can be wrong with it before the scene is there. */
 int cli_check_camera(const render_args *args) {
     const noc_camera_params *c = &args->camera;

@@ -8,7 +8,7 @@
 /* Exit statuses. An interruption by signal n ends with 128 + n, as shells do: 130 after Ctrl-C. */
 enum { CLI_OK = 0, CLI_FAILURE = 1, CLI_USAGE = 2, CLI_INTERRUPTED = 128 };
 
-#define CLI_SETS 10
+#define CLI_SETS 14
 #define CLI_GIVEN 96
 
 /* What every command's arguments begin with. */
@@ -16,8 +16,9 @@ typedef struct cli_args {
     const char **inputs; /* those that are no options; point into argv */
     size_t input_count;
     bool help, quiet, verbose;
-    const noc_option *given[CLI_GIVEN]; /* options that were set, in order */
+    const noc_option *given[CLI_GIVEN]; /* options that were set, in order: by the words, then by the recipe */
     size_t given_count;
+    noc_recipe *recipe; /* among the inputs; NULL: none */
 } cli_args;
 
 /* An option table and where its params struct lies in the command's arguments. */
@@ -97,6 +98,13 @@ void cli_catch_signals(void); /* the first signal is remembered, the second ends
 void cli_nothing_to_keep(bool nothing);
 int cli_interrupted(void); /* its number, 0 if there was none */
 double cli_now(void);      /* wall clock, seconds */
+
+/* recipe.c */
+/* Takes the recipe among the inputs of a command that reads cities, if there is one. CLI_OK, or an exit status after
+ * reporting. */
+int cli_use_recipe(const cli_command *command, void *args);
+/* The recipe's camera of that name, with NULL its first one; NULL: there is none. */
+const noc_recipe_camera *cli_recipe_camera(const cli_args *args, const char *name);
 
 /* builtin.c */
 const char *cli_builtin(const char *input); /* name of the built-in scene that an input is, NULL for a file */

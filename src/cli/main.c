@@ -59,8 +59,10 @@ static int run(const cli_command *command, int argc, char **argv) {
         cli_help(command, stdout);
         status = cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
     } else if (!status) {
-        status = command->run(args);
+        status = cli_use_recipe(command, args);
+        status = status ? status : command->run(args);
     }
+    noc_recipe_destroy(args->recipe);
     free(args->inputs);
     free(args);
     return status;

@@ -35,6 +35,12 @@ static const noc_option picture_options[] = {
 };
 static const noc_option *of_picture(void) { return picture_options; }
 
+static const noc_option recipe_options[] = {
+    TEXT("camera", "Camera", camera_name, "NAME", "a camera of the recipe among the inputs; else its first one"),
+    { NULL },
+};
+static const noc_option *of_recipe(void) { return recipe_options; }
+
 static int run(void *arguments);
 
 static const render_args defaults = {
@@ -62,6 +68,7 @@ const cli_command cli_render = {
     "Ctrl-C saves the picture so far and ends with status 130; a second one ends at\n"
     "once.\n",
     { { options, 0, NULL },
+      { of_recipe, 0, NULL },
       { noc_camera_options, offsetof(A, camera), NULL },
       { of_picture, 0, NULL },
       { noc_render_options, offsetof(A, render), NULL },
@@ -112,6 +119,9 @@ static int check_builtin(const render_args *args) {
 /* What the preset sets, but for options that were given themselves. */
 static void use_preset(render_args *args) {
     noc_render_params given = args->render, *p = &args->render;
+    const noc_recipe_info *recipe = noc_recipe_get_info(args->common.recipe);
+    if (recipe->has_preset && !cli_given(&args->common, "preset"))
+        args->preset = (int)recipe->preset;
     noc_render_use_preset(p, (noc_preset)args->preset);
     for (const noc_option *o = noc_render_options(); o->name; o++)
         for (size_t i = 0; i < args->common.given_count; i++)
@@ -149,13 +159,16 @@ static int check_influence(const render_args *args) {
 /* All that can be wrong with the arguments is found before any file is read. */
 static int check(render_job *job) {
     render_args *args = job->args;
+    int status = cli_choose_camera(args);
+    if (status)
+        return status;
     cli_add_lamps(&args->common, &args->import);
     cli_note_chosen(&args->common, &args->import);
     if (!args->common.input_count)
         return cli_usage(&cli_render, "nothing to draw: name a city model, or builtin:city");
     if (!args->output)
         return cli_usage(&cli_render, "where to? -o night.png");
-    int status = check_builtin(args);
+    status = check_builtin(args);
     use_preset(args);
     status = status ? status : parse_size(args);
     status = status ? status : cli_parse_exposure(&cli_render, args->exposure, &args->display);
@@ -173,6 +186,8 @@ static noc_status load(render_job *job) {
     char triangles[64], lights[64];
     args->import.progress = (noc_progress){ cli_load_progress, NULL };
     args->import.builtin = &args->builtin;
+    args->import.materials = noc_recipe_get_info(args->common.recipe)->materials;
+    args->import.material_count = noc_recipe_get_info(args->common.recipe)->material_count;
     args->import.threads = args->threads;
     /* what a frame would refuse, before a city is read */
     noc_status status = noc_render_check(&args->render, job->log);

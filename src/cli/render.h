@@ -15,6 +15,7 @@ typedef struct render_args {
     int show;   /* 0: the picture, else 1 + noc_aov */
     const char *show_range, *influence_obj;
     noc_channel_params range;
+    const char *camera_name;
     noc_camera_params camera;
     const char *size, *exposure;
     noc_render_params render;
@@ -45,6 +46,7 @@ typedef struct render_job {
 } render_job;
 
 /* camera.c */
+int cli_choose_camera(render_args *args); /* of the recipe, where the words say no other */
 int cli_check_camera(const render_args *args);
 
 /* show.c */

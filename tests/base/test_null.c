@@ -159,6 +159,13 @@ static noc_camera camera;
     P(0, noc_option_check(noc_render_options(), NULL, "", NULL) == NOC_ERR_ARGUMENT)                                   \
     P(0, noc_option_size(NULL) == 0)                                                                                   \
     P(0, !noc_option_idle(NULL, NULL, NULL, (char[8]){ 0 }, 8))                                                        \
+    P(0, !noc_recipe_is(NULL))                                                                                         \
+    P(0, noc_recipe_load(NULL, NULL, &(noc_recipe *){ 0 }) == NOC_ERR_ARGUMENT)                                        \
+    P(0, noc_recipe_load("a.yaml", NULL, NULL) == NOC_ERR_ARGUMENT)                                                    \
+    P(noc_recipe_destroy(NULL), true)                                                                                  \
+    P(0, noc_recipe_get_info(NULL)->input_count == 0)                                                                  \
+    P(0, noc_recipe_option(NULL, 0) == NULL)                                                                           \
+    P(0, noc_recipe_set(NULL, noc_render_options(), &camera, NULL) == NOC_ERR_ARGUMENT)                                \
     P(noc_render_use_preset(NULL, NOC_PRESET_STILL), true)                                                             \
     P(noc_device_destroy(noc_device_create(NULL, NULL)), true)                                                         \
     P(noc_device_destroy(NULL), true)                                                                                  \

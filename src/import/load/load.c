@@ -400,6 +400,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         status = run(&im, readers);
     if (scene->no_memory)
         status = NOC_ERR_MEMORY; /* some go on without what the scene refused */
+    for (size_t i = 0; i < params->material_count && !status && !inspect; i++)
+        status = noc_scene_set_class_material(scene, params->materials[i].cls, &params->materials[i]);
     if (!status && !inspect)
         status = noc_scene_commit(scene);
     if (status == NOC_ERR_CANCELLED)

@@ -1,0 +1,70 @@
+/* nocturne/recipe.h: a city in one file: its inputs, how they are read, what it is made of, and cameras by name.
+ *
+ * A recipe is YAML whose first key is "nocturne", the version of this format. Under it stand
+ *
+ *     nocturne: 1
+ *     name: Ingolstadt              # any text
+ *     inputs: [city.gml, dem.tif]   # as on the command line, as seen from the recipe's folder
+ *     crs: EPSG:25832               # and any other option of render by its name (docs/options.md)
+ *     lamps:                        # options whose names begin with "lamp-", and
+ *       files: [lamps.geojson]      # --lamps
+ *       height: 8                   # --lamp-height
+ *     windows:                      # the same of "window-"
+ *       ratio: 0.3
+ *     materials:                    # by class: noc_class_name
+ *       wall: { albedo: [0.5, 0.45, 0.4], roughness: 0.8 }
+ *     cameras:                      # by name; the first one is the recipe's own
+ *       square: { eye: [10, -40, 1.7], target: [0, 0, 4], fov: 60 }
+ *
+ * What a user says beside a recipe wins over it. */
+#ifndef NOCTURNE_RECIPE_H
+#define NOCTURNE_RECIPE_H
+
+#include <nocturne/option.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct noc_recipe noc_recipe;
+
+typedef struct noc_recipe_camera {
+    const char *name;
+    noc_camera_params params;
+} noc_recipe_camera;
+
+/* Texts and arrays belong to the recipe. */
+typedef struct noc_recipe_info {
+    const char *path;
+    const char *name; /* "" where it has none */
+    size_t input_count;
+    const char *const *inputs; /* builtin:NAME, or paths that the process can open */
+    size_t camera_count;
+    const noc_recipe_camera *cameras; /* in the file's order */
+    size_t material_count;
+    const noc_material *materials; /* for noc_import_params.materials: of one class each, the rest its defaults */
+    bool has_preset;
+    noc_preset preset; /* what the recipe's options stand on */
+} noc_recipe_info;
+
+/* Is the file a recipe? By its content; false where it cannot be read. */
+NOC_API bool noc_recipe_is(const char *path);
+
+/* Reads a recipe. Its inputs are not opened. The first thing that is wrong with it is reported with file, line and key.
+ * NOC_ERR_IO, NOC_ERR_FORMAT, NOC_ERR_ARGUMENT for a value that cannot be, NOC_ERR_MEMORY. *recipe is NULL then, else
+ * the caller's to destroy. */
+NOC_API noc_status noc_recipe_load(const char *path, noc_log *log, noc_recipe **recipe);
+NOC_API void noc_recipe_destroy(noc_recipe *recipe); /* NULL is allowed */
+
+NOC_API const noc_recipe_info *noc_recipe_get_info(const noc_recipe *recipe);
+
+/* The options that the recipe says, in its order; NULL beyond the last. They are rows of the tables of
+ * nocturne/option.h. */
+NOC_API const noc_option *noc_recipe_option(const noc_recipe *recipe, size_t index);
+/* Sets the field of params, a struct that this row is of, to what the recipe says. Texts in it are the recipe's. */
+NOC_API noc_status noc_recipe_set(const noc_recipe *recipe, const noc_option *option, void *params, noc_log *log);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,81 @@
+/* An input that is a recipe: its inputs in its place, and its options where the command line says nothing else. */
+#include "cli.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static bool reads_cities(const cli_command *command) {
+    bool reads = false;
+    for (const cli_set *set = command->sets; set->table; set++)
+        reads = reads || set->table == noc_import_options;
+    return reads;
+}
+
+/* Inputs of the recipe where it stood, the others around it. */
+static void replace_input(cli_args *args, size_t index, const noc_recipe_info *recipe) {
+    size_t count = args->input_count - 1 + recipe->input_count, n = 0;
+    /* cli_add_lamps needs room for what is named with --lamps, by the command line or by the recipe */
+    const char **inputs = cli_alloc(sizeof(char *) * (count + args->input_count + NOC_TEXTS + 1));
+    for (size_t i = 0; i < args->input_count; i++) {
+        for (size_t k = 0; i == index && k < recipe->input_count; k++)
+            inputs[n++] = recipe->inputs[k];
+        if (i != index)
+            inputs[n++] = args->inputs[i];
+    }
+    free(args->inputs);
+    args->inputs = inputs;
+    args->input_count = n;
+}
+
+/* Has the command line said it, or what excludes it? */
+static bool said(const cli_args *args, const char *name) {
+    bool side = !strcmp(name, "width") || !strcmp(name, "height");
+    bool exposure = !strcmp(name, "ev100") || !strcmp(name, "auto-exposure");
+    return cli_given(args, name) || (side && cli_given(args, "size")) || (exposure && cli_given(args, "exposure"));
+}
+
+static int take_options(const cli_command *command, cli_args *args) {
+    const noc_option *option;
+    for (size_t i = 0; (option = noc_recipe_option(args->recipe, i)); i++) {
+        for (const cli_set *set = command->sets; set->table && !said(args, option->name); set++)
+            for (const noc_option *o = set->table(); o->name; o++) {
+                if (o != option)
+                    continue;
+                if (noc_recipe_set(args->recipe, o, (char *)args + set->offset, NULL))
+                    return CLI_FAILURE; /* it was checked when it was read */
+                if (args->given_count < CLI_GIVEN)
+                    args->given[args->given_count++] = o;
+            }
+    }
+    return CLI_OK;
+}
+
+int cli_use_recipe(const cli_command *command, void *arguments) {
+    cli_args *args = arguments;
+    size_t index = args->input_count;
+    for (size_t i = 0; i < args->input_count && reads_cities(command); i++) {
+        if (!noc_recipe_is(args->inputs[i]))
+            continue;
+        if (index < args->input_count)
+            return cli_usage(command, "%.200s and %.200s are both recipes; one makes a city", args->inputs[index],
+                             args->inputs[i]);
+        index = i;
+    }
+    if (index == args->input_count)
+        return CLI_OK;
+    noc_log *log = cli_log_create(args);
+    noc_status status = noc_recipe_load(args->inputs[index], log, &args->recipe);
+    noc_log_destroy(log);
+    if (status)
+        return CLI_FAILURE;
+    replace_input(args, index, noc_recipe_get_info(args->recipe));
+    return take_options(command, args);
+}
+
+const noc_recipe_camera *cli_recipe_camera(const cli_args *args, const char *name) {
+    const noc_recipe_info *info = noc_recipe_get_info(args->recipe);
+    for (size_t i = 0; i < info->camera_count; i++)
+        if (!name || !strcmp(info->cameras[i].name, name))
+            return &info->cameras[i];
+    return NULL;
+}

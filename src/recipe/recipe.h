@@ -1,0 +1,55 @@
+/* recipe: a city in one YAML file. yaml.c reads the file into nodes that know their lines, recipe.c takes what they say
+ * into options, cameras and materials. */
+#ifndef NOC_RECIPE_H
+#define NOC_RECIPE_H
+
+#include "base/base.h"
+
+#include <nocturne/recipe.h>
+#include <nocturne/text.h>
+#include <yaml.h>
+
+/* An option and what the recipe says of it: one text, of NOC_OPTION_TEXTS several. */
+typedef struct recipe_setting {
+    const noc_option *option;
+    const char **texts;
+    size_t count;
+} recipe_setting;
+
+struct noc_recipe {
+    noc_recipe_info info;
+    noc_arena arena; /* of all texts and arrays */
+    NOC_ARRAY(recipe_setting) settings;
+    NOC_ARRAY(const char *) inputs;
+    NOC_ARRAY(noc_recipe_camera) cameras;
+    NOC_ARRAY(noc_material) materials;
+};
+
+/* A file while it is taken. */
+typedef struct recipe_file {
+    const char *path;
+    noc_log *log;
+    yaml_document_t yaml;
+    noc_recipe *recipe;
+} recipe_file;
+
+/* ---- yaml.c ---- */
+
+noc_status recipe_open(recipe_file *f); /* reads path into yaml, which is the caller's to delete where it is NOC_OK */
+/* NOC_ERR_FORMAT with "FILE:LINE: " before the message; of node, or of the file's end where it is NULL. */
+noc_status recipe_wrong(const recipe_file *f, const yaml_node_t *node, const char *fmt, ...) NOC_PRINTF(3, 4);
+yaml_node_t *recipe_node(recipe_file *f, int index);
+/* The text of a scalar, NULL for other nodes, and for one that is empty or holds a zero byte. */
+const char *recipe_text(const yaml_node_t *node);
+/* Calls take for each pair of a mapping. An error for anything but a mapping, for keys that are no texts, and for one
+ * that comes twice. what: of the node, for messages. */
+noc_status recipe_each(recipe_file *f, yaml_node_t *map, const char *what,
+                       noc_status (*take)(void *ctx, const yaml_node_t *key, yaml_node_t *value), void *ctx);
+/* The texts of a sequence, or a scalar's one, in the recipe's arena. */
+noc_status recipe_texts(recipe_file *f, yaml_node_t *node, const char *key, const char ***texts, size_t *count);
+/* Exactly count numbers of a sequence. */
+noc_status recipe_numbers(recipe_file *f, yaml_node_t *node, const char *key, size_t count, double *out);
+/* A path as seen from the recipe's folder; builtin:NAME stays. NULL: memory was refused. */
+const char *recipe_path(recipe_file *f, const char *path);
+
+#endif

@@ -1,0 +1,311 @@
+/* Recipes: what they say, and what is wrong with them. */
+#include "../memory.h"
+
+#include <nocturne/nocturne.h>
+#include <sys/stat.h>
+
+static char folder[] = "/tmp/nocturne-recipe-XXXXXX";
+static char path[100], last_error[1000];
+static int errors;
+
+static void on_message(void *user, noc_log_level level, const char *text) {
+    (void)user;
+    if (level == NOC_LOG_ERROR) {
+        errors++;
+        snprintf(last_error, sizeof(last_error), "%s", text);
+    }
+}
+
+static int make_folder(void **state) {
+    (void)state;
+    bool made = mkdtemp(folder) != NULL;
+    snprintf(path, sizeof(path), "%s/city.yaml", folder);
+    return !made;
+}
+
+static int remove_folder(void **state) {
+    (void)state;
+    unlink(path);
+    return rmdir(folder);
+}
+
+static void write_recipe(const char *text, size_t size) {
+    FILE *f = fopen(path, "wb");
+    assert_non_null(f);
+    assert_int_equal(fwrite(text, 1, size, f), size);
+    assert_int_equal(fclose(f), 0);
+}
+
+static noc_status load(const char *text, noc_recipe **recipe) {
+    write_recipe(text, strlen(text));
+    errors = 0;
+    *last_error = 0;
+    noc_log_params params = noc_log_default_params();
+    params.message = on_message;
+    noc_log *log = noc_log_create(&params);
+    noc_status status = noc_recipe_load(path, log, recipe);
+    noc_log_destroy(log);
+    return status;
+}
+
+static const noc_option *row(const noc_option *table, const char *name) {
+    while (table->name && strcmp(table->name, name))
+        table++;
+    return table->name ? table : NULL;
+}
+
+static const char whole[] = "# a city\n"
+                            "nocturne: 1\n"
+                            "name: \"The town: at night\"\n"
+                            "inputs: [a.gml, /b/c.osm, 'builtin:mess']\n"
+                            "crs: EPSG:25832\n"
+                            "preset: interactive\n"
+                            "sky: 0.01\n"
+                            "jitter: off\n"
+                            "lights: 77\n"
+                            "lamps:\n"
+                            "  files: [l.csv, m.csv]\n"
+                            "  columns: 'height=H'\n"
+                            "  height: 8.5\n"
+                            "materials:\n"
+                            "  wall: { albedo: 0.5, roughness: 0.8 }\n"
+                            "  road: { albedo: [.1, .2, .3], f0: .05 }\n"
+                            "cameras:\n"
+                            "  near: { eye: [1, -2.5, 3], target: '4,5,6', crs: scene, fov: 70 }\n"
+                            "  far: { view: aerial }\n";
+
+static void test_all_that_it_says(void **state) {
+    (void)state;
+    noc_recipe *r;
+    assert_int_equal(load(whole, &r), NOC_OK);
+    assert_true(noc_recipe_is(path));
+    const noc_recipe_info *info = noc_recipe_get_info(r);
+    char expected[200];
+    assert_string_equal(info->name, "The town: at night");
+    assert_int_equal(info->input_count, 3);
+    snprintf(expected, sizeof(expected), "%s/a.gml", folder);
+    assert_string_equal(info->inputs[0], expected);
+    assert_string_equal(info->inputs[1], "/b/c.osm");
+    assert_string_equal(info->inputs[2], "builtin:mess");
+    assert_true(info->has_preset && info->preset == NOC_PRESET_INTERACTIVE);
+
+    noc_import_params import = noc_import_default_params();
+    assert_int_equal(noc_recipe_set(r, row(noc_import_options(), "crs"), &import, NULL), NOC_OK);
+    assert_int_equal(noc_recipe_set(r, row(noc_import_options(), "lamp-height"), &import, NULL), NOC_OK);
+    import.lamps.count = 1; /* what was there is replaced */
+    assert_int_equal(noc_recipe_set(r, row(noc_import_options(), "lamps"), &import, NULL), NOC_OK);
+    assert_int_equal(noc_recipe_set(r, row(noc_import_options(), "lamp-columns"), &import, NULL), NOC_OK);
+    assert_string_equal(import.crs, "EPSG:25832");
+    assert_true(import.lamp_height == 8.5);
+    assert_int_equal(import.lamps.count, 2);
+    snprintf(expected, sizeof(expected), "%s/m.csv", folder);
+    assert_string_equal(import.lamps.text[1], expected);
+    assert_int_equal(import.lamp_columns.count, 1);
+    assert_string_equal(import.lamp_columns.text[0], "height=H");
+    noc_render_params render = noc_render_default_params();
+    assert_int_equal(noc_recipe_set(r, row(noc_render_options(), "sky"), &render, NULL), NOC_OK);
+    assert_int_equal(noc_recipe_set(r, row(noc_render_options(), "jitter"), &render, NULL), NOC_OK);
+    assert_true(render.sky == 0.01 && !render.jitter);
+    noc_builtin_params builtin = noc_builtin_default_params();
+    assert_int_equal(noc_recipe_set(r, row(noc_builtin_options(), "lights"), &builtin, NULL), NOC_OK);
+    assert_int_equal(builtin.lights, 77);
+    assert_int_equal(noc_recipe_set(r, row(noc_render_options(), "seed"), &render, NULL), NOC_ERR_ARGUMENT);
+    size_t count = 0;
+    while (noc_recipe_option(r, count))
+        count++;
+    assert_int_equal(count, 7);
+    assert_ptr_equal(noc_recipe_option(r, 0), row(noc_import_options(), "crs"));
+
+    assert_int_equal(info->material_count, 2);
+    const noc_material *wall = &info->materials[0], *road = &info->materials[1];
+    assert_true(wall->cls == NOC_CLASS_WALL && wall->albedo[2] == .5f && wall->roughness == .8f);
+    assert_true(road->cls == NOC_CLASS_ROAD && road->albedo[1] == .2f && road->f0 == .05f);
+    assert_true(road->roughness == noc_class_material(NOC_CLASS_ROAD).roughness);
+    assert_int_equal(info->camera_count, 2);
+    const noc_camera_params *near = &info->cameras[0].params, *far = &info->cameras[1].params;
+    assert_string_equal(info->cameras[0].name, "near");
+    assert_string_equal(near->eye, "1,-2.5,3");
+    assert_string_equal(near->target, "4,5,6");
+    assert_string_equal(near->crs, "scene");
+    assert_true(near->fov == 70 && far->viewpoint == NOC_VIEWPOINT_AERIAL && !far->eye);
+    noc_recipe_destroy(r);
+}
+
+/* Every row of the tables is a key, under its name or in a section, but for those of who reads. */
+static void test_every_option_is_a_key(void **state) {
+    (void)state;
+    const noc_option *tables[] = { noc_import_options(), noc_city_options(), noc_builtin_options(),
+                                   noc_render_options(), noc_display_options() };
+    noc_import_params import = noc_import_default_params();
+    noc_builtin_params builtin = noc_builtin_default_params();
+    noc_render_params render = noc_render_default_params();
+    noc_display_params display = noc_display_default_params();
+    const void *defaults[] = { &import, &builtin.city, &builtin, &render, &display };
+    size_t keys = 0;
+    for (size_t i = 0; i < 5; i++)
+        for (const noc_option *o = tables[i]; o->name; o++) {
+            char text[400], value[100];
+            noc_option_get(o, defaults[i], value, sizeof(value));
+            snprintf(text, sizeof(text), "nocturne: 1\ninputs: [a]\n%s: \"%s\"\n", o->name, *value ? value : "x");
+            noc_recipe *r;
+            noc_status status = load(text, &r);
+            bool section = !strcmp(o->name, "lamps"), hosts = !strcmp(o->group, "Reading");
+            if (section || hosts)
+                assert_int_equal(status, NOC_ERR_FORMAT);
+            else if (status || noc_recipe_option(r, 0) != o)
+                fail_msg("%s: %s", o->name, last_error);
+            keys += !status;
+            noc_recipe_destroy(r);
+        }
+    assert_true(keys > 40);
+}
+
+static void assert_wrong(const char *text, noc_status expected, int line, const char *message) {
+    noc_recipe *r = (noc_recipe *)text;
+    noc_status status = load(text, &r);
+    char place[200];
+    snprintf(place, sizeof(place), line ? "%s:%d: " : "%s: ", path, line);
+    if (status != expected || r || errors != 1 || strncmp(last_error, place, strlen(place)) ||
+        !strstr(last_error, message))
+        fail_msg("\"%s\": status %d, %d errors, \"%s\"", text, status, errors, last_error);
+}
+
+#define HEAD "nocturne: 1\ninputs: [a]\n"
+
+static void test_what_is_wrong_is_told_with_its_line(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        int line;
+        const char *message;
+    } wrong[] = {
+        { "", 0, "a recipe begins with" },
+        { "- a\n", 1, "a recipe begins with" },
+        { "inputs: [a]\nnocturne: 1\n", 1, "a recipe begins with" },
+        { "nocturne: 2\n", 1, "reads recipes of version 1" },
+        { "nocturne: 1\n", 0, "names no inputs" },
+        { "nocturne: 1\ninputs: []\n", 0, "names no inputs" },
+        { "nocturne: 1\ninputs: {a: b}\n", 2, "inputs is a list" },
+        { "nocturne: 1\ninputs: [a, [b]]\n", 2, "inputs: entry 2 is no text" },
+        { "nocturne: 1\ninputs: [a, '']\n", 2, "inputs: entry 2 is no text" },
+        { HEAD "lod: 7\n", 3, "lod: \"7\" is outside 0 to 4" },
+        { HEAD "lod: two\n", 3, "lod: \"two\" is not" },
+        { HEAD "\n# remark\nwidht: 3\n", 5, "no key widht in a recipe; is it width?" },
+        { HEAD "lamps:\n  hight: 3\n", 4, "no key hight in lamps; is it height?" },
+        { HEAD "lamps: [a]\n", 3, "lamps must be keys and their values" },
+        { HEAD "lamps: {height: 3, height: 4}\n", 3, "height is given twice" },
+        { HEAD "lamp-height: 3\nlamps: {height: 4}\n", 4, "lamp-height is given twice" },
+        { HEAD "isolate: false\n", 3, "--isolate on the command line" },
+        { HEAD "sky: [1, 2]\n", 3, "sky is one value" },
+        { HEAD "sky:\n", 3, "sky has no value" },
+        { HEAD "name: [a]\n", 3, "name must be a text" },
+        { HEAD "preset: fast\n", 3, "preset: \"fast\" is none of still|interactive" },
+        { HEAD "materials: {wal: {f0: 0}}\n", 3, "is it wall?" },
+        { HEAD "materials: {wall: {albdo: 0}}\n", 3, "no key albdo in a material; is it albedo?" },
+        { HEAD "materials: {wall: {albedo: [1, 2]}}\n", 3, "a list of 3 numbers" },
+        { HEAD "materials: {wall: {albedo: [1, 0, x]}}\n", 3, "entry 3 is no number" },
+        { HEAD "materials: {wall: {albedo: 1.5}}\n", 3, "albedo and f0 are 0 to 1" },
+        { HEAD "materials: {wall: {roughness: 0}}\n", 3, "roughness .05 to 1" },
+        { HEAD "cameras: {a: {eye: [1, 2], target: [1, 2, 3]}}\n", 3, "is not X, Y, Z" },
+        { HEAD "cameras: {a: {eye: [1, 2, 3]}}\n", 3, "eye and target go together" },
+        { HEAD "cameras: {a: {fov: 500}}\n", 3, "outside 1 to 170" },
+        { HEAD "cameras: {a: {camera-crs: x}}\n", 3, "no key camera-crs in a camera" },
+        { HEAD "a: [1\n", 4, "is no YAML" },
+        { HEAD "crs: *nothing\n", 3, "is no YAML" },
+        { HEAD "? [a, b]\n: c\n", 3, "is no text" },
+        { HEAD "---\nnocturne: 1\n", 0, "a second document" },
+        { HEAD "crs: \"a\\0b\"\n", 3, "crs has no value" },
+    };
+    for (size_t i = 0; i < sizeof(wrong) / sizeof(*wrong); i++)
+        assert_wrong(wrong[i].text, NOC_ERR_FORMAT, wrong[i].line, wrong[i].message);
+}
+
+static void test_files_that_cannot_be_read(void **state) {
+    (void)state;
+    noc_recipe *r;
+    noc_log *log = noc_log_create(NULL);
+    assert_int_equal(noc_recipe_load("/nowhere/city.yaml", log, &r), NOC_ERR_IO);
+    assert_int_equal(noc_recipe_load(folder, log, &r), NOC_ERR_IO);
+    assert_null(r);
+    assert_false(noc_recipe_is("/nowhere/city.yaml"));
+    assert_false(noc_recipe_is(folder));
+    assert_int_equal(noc_recipe_load(NULL, log, &r), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_recipe_load(path, log, NULL), NOC_ERR_ARGUMENT);
+    assert_int_equal(noc_recipe_get_info(NULL)->input_count, 0);
+    assert_null(noc_recipe_option(NULL, 0));
+    char *large = calloc(1, 1100000);
+    memset(large, '#', 1100000);
+    write_recipe(large, 1100000);
+    free(large);
+    assert_int_equal(noc_recipe_load(path, log, &r), NOC_ERR_FORMAT);
+    assert_non_null(strstr(noc_log_last_error(log), "1048576 bytes"));
+    write_recipe("\xff\xfe\x01", 3);
+    assert_int_equal(noc_recipe_load(path, log, &r), NOC_ERR_FORMAT);
+    noc_log_destroy(log);
+}
+
+static void test_a_recipe_is_known_by_its_first_key(void **state) {
+    (void)state;
+    static const char *const ours[] = { "nocturne: 1", "\n# x\n\n---\nnocturne : 1\n", "\xef\xbb\xbfnocturne: 1",
+                                        "%YAML 1.1\n---\nnocturne: 1\n" };
+    static const char *const others[] = { "", "#", "nocturnes: 1", "a: 1\nnocturne: 1\n", "{\"nocturne\": 1}", "\n\n" };
+    for (size_t i = 0; i < 4; i++) {
+        write_recipe(ours[i], strlen(ours[i]));
+        assert_true(noc_recipe_is(path));
+    }
+    for (size_t i = 0; i < 6; i++) {
+        write_recipe(others[i], strlen(others[i]));
+        assert_false(noc_recipe_is(path));
+    }
+}
+
+/* Anchors that stand for each other ten times each are a billion texts, if one writes them all. */
+static void test_a_bomb_is_an_error_at_once(void **state) {
+    (void)state;
+    noc_recipe *r;
+    char text[2000] = "nocturne: 1\ninputs: [x]\na0: &a0 [x]\n";
+    for (int i = 1; i < 10; i++)
+        snprintf(text + strlen(text), sizeof(text) - strlen(text), "a%d: &a%d [*a%d, *a%d, *a%d, *a%d, *a%d]\n", i, i,
+                 i - 1, i - 1, i - 1, i - 1, i - 1);
+    assert_int_equal(load(text, &r), NOC_ERR_FORMAT);
+    char *deep = malloc(200002);
+    memset(deep, '[', 200000);
+    memcpy(deep + 200000, "\n", 2);
+    memcpy(deep, "nocturne: ", 10);
+    assert_int_equal(load(deep, &r), NOC_ERR_FORMAT);
+    assert_int_equal(errors, 1);
+    free(deep);
+}
+
+static void test_memory_refused(void **state) {
+    (void)state;
+    noc_log *log = counting_log();
+    write_recipe(whole, strlen(whole));
+    bool reached;
+    FOR_EACH_REFUSAL(reached) {
+        noc_recipe *r;
+        begin_refusal(n, later);
+        noc_status status = noc_recipe_load(path, log, &r);
+        reached = end_refusal();
+        if (status)
+            assert_refused(status, "recipe");
+        else
+            assert_unharmed(noc_recipe_get_info(r)->camera_count == 2, "recipe");
+        assert_true(!r == (status != NOC_OK) && (status == NOC_OK || reached));
+        noc_recipe_destroy(r);
+    }
+    noc_log_destroy(log);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_all_that_it_says),
+        cmocka_unit_test(test_every_option_is_a_key),
+        cmocka_unit_test(test_what_is_wrong_is_told_with_its_line),
+        cmocka_unit_test(test_files_that_cannot_be_read),
+        cmocka_unit_test(test_a_recipe_is_known_by_its_first_key),
+        cmocka_unit_test(test_a_bomb_is_an_error_at_once),
+        cmocka_unit_test(test_memory_refused),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
