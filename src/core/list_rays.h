@@ -141,8 +141,8 @@ FN list_ray list_ask(CTX list_sums sums, real n, u32 key, u32 entry, real times)
 /* ---- use ---- */
 
 /* One of the draws, at random, as the ray that it became: it stands for the pixel in views of the candidates. */
-FN u32 list_shown(CTX u1 rays, real n, real pick) {
-    EXACT real at = min_(pick * n, n - K(1.0f));
+FN u32 list_shown(CTX u1 rays, real n, real xi) {
+    EXACT real at = min_(xi * n, n - K(1.0f));
     u32 ray = KU(0u);
     mask beyond = n > K(0.0f);
     for (u1 k = 0u; k < rays; k++) {
@@ -155,7 +155,7 @@ FN u32 list_shown(CTX u1 rays, real n, real pick) {
 }
 
 /* One of the samples that are seen, by what each adds; its W stands for all of them. */
-FN list_kept list_resample(CTX u1 rays, real pick) {
+FN list_kept list_resample(CTX u1 rays, real xi) {
     list_kept kept;
     kept.ray = KU(0u);
     real all = K(0.0f);
@@ -165,7 +165,7 @@ FN list_kept list_resample(CTX u1 rays, real pick) {
         EXACT real more = all + found_p(PASS k) * found_w(PASS k);
         all = more;
     }
-    EXACT real goal = pick * all;
+    EXACT real goal = xi * all;
     mask on = all == all;
     for (u1 k = 0u; k < rays; k++) {
         EXACT real w = found_p(PASS k) * found_w(PASS k);

@@ -2,8 +2,9 @@
  * item is one set of inputs, made from its number alone; what the functions answer goes out through the bridge, slot by
  * slot. What works on values that are one for a tile has each item as a tile. Includers supply put_real(CTX item, slot,
  * x) and put_u32(CTX item, slot, x), put_u1(CTX item, slot, x) for tiles, words of memory for a tile by word_load(CTX
- * i) and word_store(CTX i, x), i below TILE_WORDS, and lane_places(first): first, first + 1, ... of the lanes.
- * ITEM_SLOTS is the number of slots. */
+ * i) and word_store(CTX i, x), i below TILE_WORDS, words_load(CTX first) and words_store(CTX first, x) of as many as
+ * there are lanes, in C words_row(CTX first), where they lie, and lane_places(first): first, first + 1, ... of the
+ * lanes; ITEM_COUNT, how many items there are. ITEM_SLOTS is the number of slots. */
 #ifndef DIALECT_KERNEL_H
 #define DIALECT_KERNEL_H
 
@@ -29,7 +30,6 @@ static real dialect_weight;
 static u32 dialect_entries;
 #endif
 #define KERNEL_LIGHTS 1000u
-#define TILE_WORDS 2144
 
 /* Signed, of a magnitude that differs from item to item: 1/16 to 4096. */
 FN real any_real(u32 key, u32 dim) {
@@ -318,6 +318,7 @@ FN void picked(CTX u32 item, u32 key, surf s) {
 #include "dialect_frame.h"
 #include "dialect_influence.h"
 #include "dialect_learned.h"
+#include "dialect_lists.h"
 
 FN void dialect_item(CTX u32 item) {
     u32 key = rng_key(KU(5u), item, KU(9u));
@@ -335,12 +336,14 @@ FN void dialect_item(CTX u32 item) {
     picked(PASS item, key, s);
     frame_item(PASS item, key, s);
     influence_draws(PASS item, key, s);
+    lists_item(PASS item, key, s);
 }
 
 FN void dialect_tile(CTX u1 item) {
     dialect_frame = dialect_constants(BIAS_BIASED);
     dialect_volumes(PASS item);
     dialect_cells(PASS item);
+    lists_tile(PASS item);
 }
 
 #endif

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "core/dialect.h"
+#include "dialect_slots.h"
 
 struct core_context {
     uint32_t *out; /* slot-major: slot * items + item */
@@ -22,6 +23,13 @@ FN void put_real(CTX u32 item, int slot, real x) {
 FN void put_u1(CTX u1 item, int slot, u1 x) { ctx->out[(size_t)slot * ctx->items + item] = x; }
 FN u1 word_load(CTX u1 i) { return ctx->words[i]; }
 FN void word_store(CTX u1 i, u1 x) { ctx->words[i] = x; }
+FN u32 words_load(CTX u1 first) {
+    u32 x;
+    memcpy(&x, ctx->words + first, sizeof(x));
+    return x;
+}
+FN void words_store(CTX u1 first, u32 x) { memcpy(ctx->words + first, &x, sizeof(x)); }
+FN const float *words_row(CTX u1 first) { return (const float *)(const void *)(ctx->words + first); }
 FN u32 lane_places(u1 first) {
     uint32_t n[LANES];
     u32 r;
@@ -31,6 +39,7 @@ FN u32 lane_places(u1 first) {
     return r;
 }
 
+#define ITEM_COUNT ctx->items
 #include "dialect_kernel.h"
 
 #define JOIN2(a, b) a##b

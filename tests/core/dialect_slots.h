@@ -9,6 +9,9 @@
 #define INFLUENCE_SLOTS 10 /* dialect_influence.h */
 #define LEARNED_FIRST (INFLUENCE_FIRST + INFLUENCE_SLOTS)
 #define LEARNED_SLOTS 12 /* dialect_learned.h */
-#define ITEM_SLOTS (LEARNED_FIRST + LEARNED_SLOTS)
+#define LISTS_FIRST (LEARNED_FIRST + LEARNED_SLOTS)
+#define LISTS_SLOTS 78 /* dialect_lists.h */
+#define ITEM_SLOTS (LISTS_FIRST + LISTS_SLOTS)
+#define TILE_WORDS 2688 /* of memory for a tile */
 
 #endif
