@@ -109,7 +109,7 @@ static noc_status read_labels(photometry_text *t, noc_profile *p, header *h, con
 /* Factors by which a lamp's light changes as it is tilted. The luminaire as measured is at 0 degrees: that factor is 1,
  * or all intensities are off by it. */
 static noc_status read_tilt(photometry_text *t, double *factor) {
-    long geometry, pairs;
+    long geometry, pairs = 0;
     double angle, value, nearest = INFINITY;
     noc_status status = photometry_whole(t, "the lamp-to-luminaire geometry", 1, 3, &geometry);
     if (!status)
