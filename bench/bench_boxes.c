@@ -90,9 +90,9 @@ static void measure(bench *b, int points, float scale) {
         b->lane = (int)(i % BLOCK);
         if (!(lanes_with_surface(b->g) >> b->lane & 1) || b->g->light[b->lane] != NOC_NO_LIGHT)
             continue;
-        const float *p[3] = { b->g->px, b->g->py, b->g->pz }, *n[3] = { b->g->nx, b->g->ny, b->g->nz };
-        noc_near_query q = noc_near_none(scale, UINT32_MAX);
-        noc_near_add(&q, p, n, 1u << b->lane);
+        const float p[3] = { b->g->px[b->lane], b->g->py[b->lane], b->g->pz[b->lane] };
+        const float n[3] = { b->g->nx[b->lane], b->g->ny[b->lane], b->g->nz[b->lane] };
+        noc_near_query q = noc_near_point(p, n, scale);
         b->found = false;
         for (uint32_t id = 0; id < b->spheres->count; id++)
             if (noc_influence_finds(b->spheres, id, &q))

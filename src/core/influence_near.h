@@ -8,7 +8,7 @@
 #ifndef CORE_INFLUENCE_NEAR_H
 #define CORE_INFLUENCE_NEAR_H
 
-#include "core/influence.h"
+#include "core/influence_points.h"
 
 #define NEAR_HALVES 2u
 #define NEAR_STACK 128 /* of 8 levels: 15 nodes wait on each, and one more is looked at */
@@ -27,21 +27,9 @@ struct near_children {
     real root; /* the largest under it */
 };
 
-/* Points that look together: the box around them, the normal that they all have (0: not the same), and their least
- * dot(n, point) (where n = 0: -infinity). */
-struct near_query {
-    f3 lo;
-    f3 hi;
-    f3 n;
-    f1 back;
-    f1 scale; /* S_r */
-    u1 most;  /* volumes */
-};
-
 #ifndef CORE_GLSL
 typedef struct near_half near_half;
 typedef struct near_children near_children;
-typedef struct near_query near_query;
 #endif
 
 FN near_half near_half_load(CTX u1 k);
@@ -52,10 +40,6 @@ FN influence near_volumes_load(CTX u1 first, u1 end);
 FN void near_clear(CTX u1 list);
 FN b1 near_add(CTX u1 list, u1 volume); /* false: no room */
 FN u1 near_count(CTX u1 list);
-
-FN influence_region near_region(near_query q) {
-    return influence_box(spread3(q.lo), spread3(q.hi), spread3(q.n), K(q.back));
-}
 
 /* Is lo..hi within reach of the region, and not wholly behind its surfaces? Their normals are the same to 1e-5, and the
  * coordinates have their own precision, hence the 2 cm. */

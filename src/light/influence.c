@@ -1,7 +1,7 @@
-/* Point queries of influence volumes, but for the search itself: backend/cpu/influence_near_tmpl.h. */
+/* Point queries of influence volumes, but for the search itself: core/influence_find.h. */
 #include "light/influence.h"
 
-#include "core/influence.h"
+#include "core/influence_points.h"
 
 void noc_influence_destroy(noc_influence *v) {
     if (!v)
@@ -18,33 +18,13 @@ void noc_influence_destroy(noc_influence *v) {
     free(v);
 }
 
-/* ---- boxes of points ---- */
-
-noc_near_query noc_near_none(float scale, uint32_t most) {
-    return (noc_near_query){ .lo = { INFINITY, INFINITY, INFINITY },
-                             .hi = { -INFINITY, -INFINITY, -INFINITY },
-                             .back = INFINITY,
-                             .scale = scale,
-                             .most = most };
-}
-
-void noc_near_add(noc_near_query *q, const float *const p[3], const float *const n[3], uint32_t lanes) {
-    for (uint32_t bits = lanes; bits; bits &= bits - 1) {
-        int l = __builtin_ctz(bits);
-        bool first = q->lo[0] > q->hi[0], same = true;
-        for (int k = 0; k < 3; k++) {
-            if (first)
-                q->n[k] = n[k][l];
-            same = same && fabsf(q->n[k] - n[k][l]) <= NOC_SAME_NORMAL;
-            q->lo[k] = NOC_MIN(q->lo[k], p[k][l]);
-            q->hi[k] = NOC_MAX(q->hi[k], p[k][l]);
-        }
-        if (!same) {
-            memset(q->n, 0, sizeof(q->n));
-            q->back = -INFINITY;
-        }
-        q->back = NOC_MIN(q->back, q->n[0] * p[0][l] + q->n[1] * p[1][l] + q->n[2] * p[2][l]);
-    }
+noc_near_query noc_near_point(const float p[3], const float n[3], float scale) {
+    near_query have =
+        near_add_point(near_none(scale, 0, NEAR_NO_LIMIT), (f3){ p[0], p[1], p[2] }, (f3){ n[0], n[1], n[2] });
+    noc_near_query q;
+    _Static_assert(sizeof(q) == sizeof(have), "records are core's");
+    memcpy(&q, &have, sizeof(q));
+    return q;
 }
 
 void noc_found_free(noc_found *f) {

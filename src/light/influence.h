@@ -138,9 +138,7 @@ typedef struct noc_near {
     bool no_memory; /* for all of them */
 } noc_near;
 
-/* Normals that differ by so much in each coordinate count as one. */
-#define NOC_SAME_NORMAL 1e-5f
-
+/* struct near_query of core/influence_points.h */
 typedef struct noc_near_query {
     float lo[3], hi[3]; /* box of the points */
     float n[3];         /* normal that they all have, 0: not the same */
@@ -150,10 +148,8 @@ typedef struct noc_near_query {
     uint32_t most;      /* stops at more volumes than that */
 } noc_near_query;
 
-/* The query for points p (3 arrays) with normals n of the lanes in bits, added to what is in the query; start with
- * noc_near_none. */
-noc_near_query noc_near_none(float scale, uint32_t most);
-void noc_near_add(noc_near_query *query, const float *const p[3], const float *const n[3], uint32_t lanes);
+/* The query of one point p with normal n, of all lights. */
+noc_near_query noc_near_point(const float p[3], const float n[3], float scale);
 
 /* Points that ask as one, and what they found. Where S_r was set, the lights whose volumes hold the query; where it is
  * found, those of them that give at least as many lux as the points settled for. */
@@ -168,10 +164,11 @@ typedef struct noc_found {
     noc_found_group group[1 + NOC_QUERY_BLOCKS * NOC_QUERY_POINTS]; /* the first: points that did not ask */
     uint16_t of[NOC_QUERY_BLOCKS][NOC_QUERY_POINTS];                /* a point's group */
     NOC_ARRAY(uint32_t) ids;
-    noc_near near[2];        /* scratch: volumes near all points, near a group */
-    NOC_ARRAY(float) gives;  /* scratch: by volume near the group, lux; 0: does not hold it */
-    noc_influence_bins bins; /* scratch */
-    bool no_memory;          /* for all that the tile found: it is less */
+    uint32_t pending[NOC_QUERY_BLOCKS]; /* scratch: points that have not asked yet, as bits */
+    noc_near near[2];                   /* scratch: volumes near all points, near a group */
+    NOC_ARRAY(float) gives;             /* scratch: by volume near the group, lux; 0: does not hold it */
+    noc_influence_bins bins;            /* scratch */
+    bool no_memory;                     /* for all that the tile found: it is less */
 } noc_found;
 void noc_found_free(noc_found *found);
 

@@ -22,12 +22,14 @@ u32 dialect_key;
 real dialect_sums[2];
 real dialect_weight;
 u32 dialect_entries;
+u1 dialect_item_of; /* the tile at hand */
 #else
 static frame_constants dialect_frame;
 static u32 dialect_key;
 static real dialect_sums[2]; /* of the reference method: what its chunks sum up to, its entries */
 static real dialect_weight;
 static u32 dialect_entries;
+static u1 dialect_item_of; /* the tile at hand */
 #endif
 #define KERNEL_LIGHTS 1000u
 
@@ -70,9 +72,7 @@ FN light light_load(CTX u32 i) { return any_light(hash_u32(i + KU(77u))); }
 #include "core/sky.h"
 #include "core/alias.h"
 #include "core/given.h"
-#include "core/influence_draw.h"
-#include "core/influence_near.h"
-#include "core/influence_rule.h"
+#include "core/influence_find.h"
 #include "core/learned_cells.h"
 #include "core/tree.h"
 

@@ -6,7 +6,7 @@
 #define FRAME_FIRST KERNEL_SLOTS
 #define FRAME_SLOTS 91 /* dialect_frame.h */
 #define INFLUENCE_FIRST (FRAME_FIRST + FRAME_SLOTS)
-#define INFLUENCE_SLOTS 10 /* dialect_influence.h */
+#define INFLUENCE_SLOTS 17 /* dialect_influence.h */
 #define LEARNED_FIRST (INFLUENCE_FIRST + INFLUENCE_SLOTS)
 #define LEARNED_SLOTS 12 /* dialect_learned.h */
 #define LISTS_FIRST (LEARNED_FIRST + LEARNED_SLOTS)

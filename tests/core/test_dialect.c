@@ -116,6 +116,8 @@ static const struct {
     { INFLUENCE_FIRST + 5, "influence_near" },
     { INFLUENCE_FIRST + 8, "rule_best" },
     { INFLUENCE_FIRST + 9, "rule_limit" },
+    { INFLUENCE_FIRST + 10, "influence_groups" },
+    { INFLUENCE_FIRST + 12, "influence_find" },
     { LEARNED_FIRST, "cell_key_of" },
     { LEARNED_FIRST + 2, "cell_lane" },
     { LEARNED_FIRST + 3, "cell_turn" },

@@ -85,8 +85,7 @@ static void probe(void *user, noc_probes *r) {
 /* ---- a block of surfaces, and what it draws ---- */
 
 static bool holds(const noc_influence *v, uint32_t id, const float p[3], const float n[3]) {
-    noc_near_query q = noc_near_none(v->scale, UINT32_MAX);
-    noc_near_add(&q, (const float *const[3]){ p, p + 1, p + 2 }, (const float *const[3]){ n, n + 1, n + 2 }, 1);
+    noc_near_query q = noc_near_point(p, n, v->scale);
     return noc_influence_finds(v, id, &q);
 }
 

@@ -79,29 +79,38 @@ FN b1 near_add(CTX u1 list, u1 volume) {
     return true;
 }
 
-FN influence group_load(const noc_near_group *g, int l) {
+/* A query as light/influence.h keeps it, and as core/ does. */
+FN1 near_query query_of_record(const noc_near_query *have) {
+    near_query q;
+    _Static_assert(sizeof(q) == sizeof(*have), "records are core's");
+    memcpy(&q, have, sizeof(q));
+    return q;
+}
+FN1 noc_near_query record_of_query(near_query have) {
+    noc_near_query q;
+    memcpy(&q, &have, sizeof(q));
+    return q;
+}
+
+FN b1 near_lost(CTX u1 list) { return ctx->at.volumes->near[list].no_memory; }
+
+FN noc_near_group *near_group(CTX u1 list, u1 place) { return &ctx->at.volumes->near[list].groups.data[place / BLOCK]; }
+FN u1 near_id(CTX u1 list, u1 place) { return near_group(ctx, list, place)->volume[place % BLOCK]; }
+FN f1 near_lights(CTX u1 list, u1 place) { return near_group(ctx, list, place)->lights[place % BLOCK]; }
+FN u32 near_ids(CTX u1 list, u1 first) { return uload(near_group(ctx, list, first)->volume + first % BLOCK); }
+FN real near_turn(CTX u1 list, u1 first) { return rload(near_group(ctx, list, first)->turn + first % BLOCK); }
+FN void near_turn_store(CTX u1 list, u1 first, real turn) {
+    rstore(near_group(ctx, list, first)->turn + first % BLOCK, turn);
+}
+FN influence near_load(CTX u1 list, u1 first) {
+    const noc_near_group *g = near_group(ctx, list, first);
+    int l = (int)(first % BLOCK);
     influence a;
     a.c = load3(g->c, l);
     a.size = rload(g->size + l);
     a.m = load3(g->m, l);
     a.root = rload(g->root + l);
     return a;
-}
-
-/* What is near the query, with influence_turn of each volume. False: not all of it. */
-static bool look_near(const struct core_context *ctx, u1 list, const noc_near_query *q) {
-    noc_near *near = &ctx->at.volumes->near[list];
-    bool all = influence_near(ctx, list,
-                              (near_query){ { q->lo[0], q->lo[1], q->lo[2] },
-                                            { q->hi[0], q->hi[1], q->hi[2] },
-                                            { q->n[0], q->n[1], q->n[2] },
-                                            q->back,
-                                            q->scale,
-                                            q->most });
-    for (size_t i = 0; i < near->groups.len; i++)
-        for (int l = 0; l < BLOCK; l += LANES)
-            rstore(near->groups.data[i].turn + l, influence_turn(group_load(&near->groups.data[i], l)));
-    return all;
 }
 
 #endif
