@@ -54,6 +54,9 @@ typedef struct noc_import_params {
     double lamp_kelvin;   /* K, where not known; default 3000 */
     unsigned lamp_chosen; /* those of these three that are the caller's own word, so that strict lets them stand in for
                              what lamps do not tell: 1 << NOC_LAMP_HEIGHT and so on; default 0 */
+    /* Windows on the walls of buildings? AUTO, the default, and ON: on those of every city model. OFF: nowhere. */
+    noc_switch windows;
+    noc_window_params window;
     noc_texts lamps; /* files that hold lamps whatever their words say: each of their points is one, unless its status
                         says that it is gone. Read with the others; one that is among them is read once */
     noc_texts lamp_columns; /* "field=column", several separated by commas: what a table's column, an attribute or a tag
@@ -86,11 +89,13 @@ typedef struct noc_import_params {
 
 #define NOC_IMPORT_DEFAULTS(set)                                                                                       \
     set(lod, 3) set(infer_lamps, NOC_SWITCH_AUTO) set(lamp_height, 6) set(lamp_lumens, 5000) set(lamp_kelvin, 3000)    \
-        set(isolate, true) set(reader_time, 600) set(max_expansion, 200)
+        set(windows, NOC_SWITCH_AUTO) set(isolate, true) set(reader_time, 600) set(max_expansion, 200)
 #ifdef __cplusplus
-NOC_DEFAULT_PARAMS(noc_import_params, noc_import_default_params, NOC_IMPORT_DEFAULTS)
+#define NOC_IMPORT_ALL_DEFAULTS(set) set(window, noc_window_default_params()) NOC_IMPORT_DEFAULTS(set)
+NOC_DEFAULT_PARAMS(noc_import_params, noc_import_default_params, NOC_IMPORT_ALL_DEFAULTS)
 #else
-#define noc_import_default_params() ((noc_import_params){ NOC_IMPORT_DEFAULTS(NOC_DEFAULT_IN_C) })
+#define noc_import_default_params()                                                                                    \
+    ((noc_import_params){ .window = { NOC_WINDOW_DEFAULTS(NOC_DEFAULT_IN_C) }, NOC_IMPORT_DEFAULTS(NOC_DEFAULT_IN_C) })
 #endif
 
 /* What holds the process that reads other people's formats (noc_import_params.isolate) here: "files by Landlock, system

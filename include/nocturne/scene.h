@@ -165,6 +165,63 @@ NOC_API noc_status noc_scene_remove_light(noc_scene *scene, int light);
  * with the scene. */
 NOC_API noc_status noc_scene_remove_mesh(noc_scene *scene, int mesh);
 
+/* What is behind a window. */
+typedef enum noc_window_kind {
+    NOC_WINDOW_FLAT,
+    NOC_WINDOW_OFFICE, /* whole storeys are lit together */
+    NOC_WINDOW_SHOP,   /* a front at street level */
+    NOC_WINDOW_KIND_COUNT
+} noc_window_kind;
+
+/* What became of a wall of a building that windows were looked for in. */
+typedef enum noc_wall_verdict {
+    NOC_WALL_UNSEEN, /* no wall, or windows were not asked for */
+    NOC_WALL_TAKEN,  /* it has windows */
+    NOC_WALL_SMALL,  /* too small, or no cell fits into it */
+    NOC_WALL_TILTED,
+    NOC_WALL_PARTY, /* another wall stands close before it */
+    NOC_WALL_OWN,   /* of a building that comes with windows of its own */
+    NOC_WALL_VERDICT_COUNT
+} noc_wall_verdict;
+
+NOC_API const char *noc_wall_verdict_name(noc_wall_verdict verdict); /* "with windows", "too small", ... */
+
+/* Windows on the walls of cities that are read. A wall, whatever pieces it comes in, gets a grid of cells of `cell` by
+ * `storey_height`, centred on it and beginning at its foot, and a window in each cell that lies wholly in it. Which are
+ * lit is decided by a number that a window has for good, from its building's id and its place there: so lit_windows and
+ * hour switch windows and move none, and windows that are lit at one share are at a greater one. */
+typedef struct noc_window_params {
+    double lit_windows; /* share of windows that are lit at 21 h, 0..1 */
+    double hour; /* 0..24: of the night or day; 21 takes lit_windows as it is, others scale it (noc_window_share) */
+    double width, height; /* m, of a window; those of shops and offices fill their cells */
+    double cell;          /* m: width of a window's cell; its height is a storey's */
+    double storey_height; /* m */
+    double margin;        /* m of wall that must be left around a window */
+    double offset;        /* m: how far before the wall the pane lies */
+    double tilt;          /* degrees that a wall may lean */
+    double min_area;      /* m2: smaller walls get no windows */
+    double kelvin;        /* K: middle colour temperature of flats; shops are 1.2 and offices 1.4 times that */
+    double spread;        /* of the colour temperatures, as a share of them: about two standard deviations */
+    uint32_t seed;        /* another number, other windows lit */
+} noc_window_params;
+
+#define NOC_WINDOW_DEFAULTS(set)                                                                                       \
+    set(lit_windows, 0.35) set(hour, 21) set(width, 1.2) set(height, 1.4) set(cell, 2.4) set(storey_height, 3)         \
+        set(margin, 0.2) set(offset, 0.03) set(tilt, 10) set(min_area, 10) set(kelvin, 2900) set(spread, 0.15)         \
+            set(seed, 1)
+#ifdef __cplusplus
+NOC_DEFAULT_PARAMS(noc_window_params, noc_window_default_params, NOC_WINDOW_DEFAULTS)
+#else
+#define noc_window_default_params() ((noc_window_params){ NOC_WINDOW_DEFAULTS(NOC_DEFAULT_IN_C) })
+#endif
+
+/* Share of the windows of that kind that are lit where lit_windows of all are at 21 h: lit_windows times what the
+ * kind's curve has at that hour over 21 h, at most 1. */
+NOC_API double noc_window_share(noc_window_kind kind, double lit_windows, double hour);
+/* Switches the windows that a load has made, by lit_windows and hour; the rest of params is not read. It costs what
+ * switching their lights does: nothing is built anew. */
+NOC_API noc_status noc_scene_set_windows(noc_scene *scene, const noc_window_params *params);
+
 /* Index in the scene of an instance's light: light is its number in the model, where those that noc_scene_add_light
  * returned come first and triangles of meshes that shine follow. -1 after reporting: there is none, or it is not
  * committed yet. */
@@ -208,6 +265,7 @@ typedef struct noc_scene_info {
     /* of all that was not removed; models count once, whatever their instances */
     size_t triangles, vertices, meshes, materials;
     size_t models, instances;
+    size_t windows, windows_lit;
     size_t light_slots; /* indices of lights are below it */
     size_t lights, lights_by_kind[NOC_LIGHT_KIND_COUNT], lights_inferred;
     size_t triangles_by_class[NOC_CLASS_COUNT];

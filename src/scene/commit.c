@@ -334,8 +334,10 @@ static void remove_mesh(commit *c, noc_scene_mesh *m) {
         return;
     for (size_t t = m->first_triangle; t < (size_t)m->first_triangle + m->triangle_count; t++) {
         uint32_t light = s->triangle_light.data[t];
-        if (light != NOC_NO_LIGHT && s->lights.data[light].flags & NOC_LIGHT_OWNED)
+        if (light != NOC_NO_LIGHT && s->lights.data[light].flags & NOC_LIGHT_OWNED) {
             noc_light_release(s, light, &c->changes);
+            noc_window_forget(s, light);
+        }
     }
     m->removed = true;
     c->changes.geometry = c->changes.mesh_left = c->changes.ground_left = true;
@@ -369,6 +371,7 @@ static void apply_edit(commit *c, noc_edit *e) {
     case NOC_EDIT_ADD_INSTANCE: place_instance(c, e); break;
     case NOC_EDIT_TRANSFORM: move_instance(c, e); break;
     case NOC_EDIT_REMOVE_INSTANCE: remove_instance(c, e); break;
+    case NOC_EDIT_WINDOWS: noc_windows_switch(s, e->windows, &c->changes); break;
     }
 }
 

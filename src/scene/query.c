@@ -11,7 +11,8 @@ size_t noc_scene_bytes(const noc_scene *s) {
            (s->indices.cap + s->triangle_material.cap + s->triangle_light.cap + s->moving.cap) * sizeof(uint32_t) +
            s->lights.cap * sizeof(noc_light_record) + s->light_names.cap * sizeof(char *) +
            s->light_made.cap * sizeof(noc_rgb) + s->meshes.cap * sizeof(noc_scene_mesh) + s->names.bytes +
-           s->later_bytes + models + s->instances.cap * sizeof(noc_scene_instance);
+           s->later_bytes + models + s->instances.cap * sizeof(noc_scene_instance) +
+           s->windows.cap * sizeof(noc_scene_window);
 }
 
 static void count_meshes(const noc_scene *scene, noc_scene_info *info) {
@@ -23,6 +24,17 @@ static void count_meshes(const noc_scene *scene, noc_scene_info *info) {
         info->triangles += m->triangle_count;
         info->vertices += noc_mesh_end_vertex(scene, i) - m->first_vertex;
         info->triangles_by_class[scene->materials.data[m->material].cls] += m->triangle_count;
+    }
+}
+
+static void count_windows(const noc_scene *scene, noc_scene_info *info) {
+    for (size_t i = 0; i < scene->windows.len; i++) {
+        const noc_scene_window *w = &scene->windows.data[i];
+        if (w->removed)
+            continue;
+        const float *e = scene->lights.data[w->light].e;
+        info->windows++;
+        info->windows_lit += e[0] > 0 || e[1] > 0 || e[2] > 0;
     }
 }
 
@@ -68,6 +80,7 @@ void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info) {
     memcpy(info->origin, scene->origin, sizeof(info->origin));
     count_meshes(scene, info);
     count_lights(scene, info);
+    count_windows(scene, info);
     find_bounds(scene, info->bounds_min, info->bounds_max);
     info->memory_bytes = noc_scene_bytes(scene);
     noc_scene_unlock_read(scene);

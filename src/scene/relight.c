@@ -118,6 +118,8 @@ static noc_light_record light_of(const noc_scene *s, const noc_scene_mesh *m, si
 
 void noc_mesh_relight(noc_scene *s, const noc_scene_mesh *m, noc_changes *c) {
     bool shines = noc_material_shines(&s->materials.data[m->material]);
+    if (m->panes)
+        return; /* its windows shine, and are switched by themselves */
     for (size_t t = m->first_triangle; t < (size_t)m->first_triangle + m->triangle_count; t++) {
         uint32_t *light = &s->triangle_light.data[t];
         bool lit = *light != NOC_NO_LIGHT;

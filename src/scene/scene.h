@@ -37,8 +37,19 @@ typedef struct noc_scene_mesh {
     uint16_t model; /* 0: the world */
     uint16_t group;
     bool removed;     /* its ranges are dead */
+    bool panes;       /* triangles of it show windows: what it is made of does not shine */
     const char *name; /* the scene's */
 } noc_scene_mesh;
+
+/* A window: a light that comes and goes with its mesh. */
+typedef struct noc_scene_window {
+    uint32_t light;
+    float emission[3];    /* where it is lit */
+    float level;          /* lit where the share of its kind is above it */
+    unsigned kind : 8;    /* noc_window_kind */
+    unsigned removed : 1; /* with its mesh: the light may be another one now */
+} noc_scene_window;
+_Static_assert(sizeof(noc_scene_window) <= 32, "a million windows are 32 MB at most");
 
 /* Meshes and lights in coordinates of their own. Published by a commit it does not change any more. */
 typedef struct noc_scene_model {
@@ -86,6 +97,7 @@ typedef enum noc_edit_kind {
     NOC_EDIT_ADD_INSTANCE,
     NOC_EDIT_TRANSFORM,
     NOC_EDIT_REMOVE_INSTANCE,
+    NOC_EDIT_WINDOWS,
 } noc_edit_kind;
 
 /* One staged edit. */
@@ -99,6 +111,7 @@ typedef struct noc_edit {
         noc_material material;
         float rgb[3];
         float transform[12];
+        double windows[2]; /* share that is lit, hour */
         noc_light_record light;
     };
 } noc_edit;
@@ -149,6 +162,7 @@ struct noc_scene {
     NOC_ARRAY(const char *) light_names;             /* parallel to lights, entries may be NULL */
     NOC_ARRAY(noc_rgb) light_made;                   /* emission before the group's scale; filled where `scaled` */
     NOC_ARRAY(uint32_t) moving;                      /* lights of the moving half, ascending */
+    NOC_ARRAY(noc_scene_window) windows;             /* ascending by their lights */
     NOC_ARRAY(noc_scene_model) models;               /* model m is at m - 1 */
     NOC_ARRAY(noc_scene_instance) instances;
     NOC_ARRAY(noc_scene_group) groups; /* group g is at g - 1; only who edits looks at them */
@@ -270,6 +284,21 @@ void noc_model_relight(noc_scene *s, const noc_scene_mesh *mesh);
 static inline void noc_range_add(noc_range *r, size_t i) {
     *r = r->first < r->end ? (noc_range){ NOC_MIN(r->first, i), NOC_MAX(r->end, i + 1) } : (noc_range){ i, i + 1 };
 }
+
+/* window.c */
+typedef struct noc_pane {
+    uint32_t first_triangle, triangle_count; /* of the mesh */
+    noc_light shape;                         /* its emission is not read */
+    noc_scene_window window;                 /* its light is set */
+} noc_pane;
+/* Before the first commit: makes triangles of a mesh the window that the pane says; dark. false: no memory, reported.
+ */
+bool noc_scene_add_window(noc_scene *s, int mesh, const noc_pane *pane);
+/* Before the first commit: lit or dark, as params say. */
+void noc_scene_light_windows(noc_scene *s, const noc_window_params *params);
+void noc_windows_switch(noc_scene *s, const double lit_and_hour[2], noc_changes *c);
+void noc_window_forget(noc_scene *s, uint32_t light);     /* a light that goes; it need not be a window's */
+const char *noc_window_fault(const noc_window_params *p); /* what is wrong with lit_windows or hour, NULL if nothing */
 
 /* model.c */
 /* A model's light where the transform puts it. */

@@ -60,6 +60,8 @@ static noc_camera camera;
     P(0, noc_scene_set_transform(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                  \
     P(0, noc_scene_remove_instance(NULL, 0) == NOC_ERR_ARGUMENT)                                                       \
     P(0, noc_scene_instance_light(NULL, 0, 0) == -1)                                                                   \
+    P(0, noc_scene_set_windows(NULL, &(noc_window_params){ .hour = 21 }) == NOC_ERR_ARGUMENT)                          \
+    P(0, noc_scene_set_windows(scene, NULL) == NOC_ERR_ARGUMENT)                                                       \
     P(0, noc_scene_set_material(NULL, 0, &(noc_material){ .roughness = 1 }) == NOC_ERR_ARGUMENT)                       \
     P(0, noc_scene_set_material(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                   \
     P(0, noc_scene_set_class_material(NULL, NOC_CLASS_WALL, &(noc_material){ .roughness = 1 }) == NOC_ERR_ARGUMENT)    \

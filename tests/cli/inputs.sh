@@ -186,7 +186,7 @@ expect "a built-in scene is no file of lamps" 1 'builtin:city is no file of lamp
 test ! -e x.png; result $? "none of them leaves a picture"
 run render "$gml" --lamps plain.csv --lamps strange.csv --lamp-columns lon=XX,lat=YY --lamp-columns height_ft=ht \
     --crs EPSG:25832 \
-    --frames 1 --size 16x16 -o x.png
+    --frames 1 --size 16x16 --no-windows -o x.png
 test $status = 0 && grep -q ', 4 lights' out && test "$(meta x.png lamps)" = "plain.csv, strange.csv" &&
     test "$(meta x.png lamp-columns)" = "lon=XX,lat=YY,height_ft=ht"
 result $? "named as lamps, with columns mapped"

@@ -237,7 +237,13 @@ static inline void finish(struct run *r) {
 #define PATHS(...)                                                                                                     \
     sizeof((const char *[]){ __VA_ARGS__ }) / sizeof(char *), (const char *[]) { __VA_ARGS__ }
 #define LOAD(r, params, ...) (start(r), load_with(r, params, false, PATHS(__VA_ARGS__)))
-#define DEFAULTS noc_import_default_params()
+/* Windows have tests of their own. */
+static inline noc_import_params without_windows(void) {
+    noc_import_params p = noc_import_default_params();
+    p.windows = NOC_SWITCH_OFF;
+    return p;
+}
+#define DEFAULTS without_windows()
 
 static inline bool has_line(const noc_report_file *f, const char *reason, size_t count) {
     for (size_t i = 0; i < f->line_count; i++)

@@ -44,11 +44,12 @@ static noc_scene *corner(noc_camera *camera) {
     return s;
 }
 
-/* A house from CityGML, with the ground and the lamps that rules give it. */
+/* A house from CityGML, with the ground and the lamps that rules give it, without windows. */
 static noc_scene *house(noc_camera *camera) {
     noc_scene *s = noc_scene_create(NULL);
     char *path = noc_format("%s/tests/cli/city.gml", getenv("NOC_SOURCE"));
     noc_import_params p = noc_import_default_params();
+    p.windows = NOC_SWITCH_OFF;
     assert_int_equal(noc_scene_load(s, (const char *const[]){ path }, 1, &p, NULL), NOC_OK);
     free(path);
     assert_int_equal(noc_scene_camera(s, NOC_VIEWPOINT_OVERVIEW, (double)W / H, camera), NOC_OK);

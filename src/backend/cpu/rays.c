@@ -69,6 +69,12 @@ static void gather_corners(const noc_scene *scene, const hitblock *h, cornerbloc
     }
 }
 
+/* Does an emitter show light to this side? What is dark, as the back of a one-sided one or a window where nobody is, is
+ * a surface like others. */
+static bool shows(const noc_light_record *l, float side) {
+    return (side > 0 || l->flags & LIGHT_TWO_SIDED) && (l->e[0] > 0 || l->e[1] > 0 || l->e[2] > 0);
+}
+
 /* The receiver of lane l, whose point and normal are those of its triangle; its normal is turned to the viewer. */
 static void end_hit(const noc_scene *scene, const rayblock *rays, const hitblock *h, int l, gblock *g) {
     uint32_t prim = h->triangle[l], light = scene->triangle_light.data[prim];
@@ -91,8 +97,8 @@ static void end_hit(const noc_scene *scene, const rayblock *rays, const hitblock
     g->nz[l] = side * n[2];
     g->depth[l] = h->t[l] * sqrtf(d2);
     g->material[l] = scene->triangle_material.data[prim];
-    if (light != NOC_NO_LIGHT && side < 0 && !(scene->lights.data[light].flags & LIGHT_TWO_SIDED))
-        light = NOC_NO_LIGHT; /* the dark back of a one-sided emitter */
+    if (light != NOC_NO_LIGHT && !shows(&scene->lights.data[light], side))
+        light = NOC_NO_LIGHT;
     g->light[l] = light;
 }
 

@@ -286,7 +286,7 @@ static noc_status infer(importer *im, const extent *e, city_lamp_params *params,
     return NOC_OK;
 }
 
-noc_status finish_city(importer *im) {
+static noc_status finish_lamps(importer *im) {
     noc_scene *scene = im->scene;
     extent e = city_extent(scene);
     if (!e.any && !im->lamps.len && !scene->lights.len)
@@ -319,4 +319,9 @@ noc_status finish_city(importer *im) {
     warn_of_distance(im, &fate);
     warn_of_roofs(im, &tally);
     return shines(scene) ? NOC_OK : infer(im, &e, &params, &fate);
+}
+
+noc_status finish_city(importer *im) {
+    noc_status status = finish_lamps(im);
+    return status ? status : windows_add(im); /* behind lamps, so that those are placed where nothing else shines */
 }

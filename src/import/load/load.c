@@ -376,6 +376,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     if (!status)
         status = lamp_mapping_check(params, scene->log);
     if (!status)
+        status = windows_check(params, scene->log);
+    if (!status)
         status = check_crs(params, scene->log);
     if (status)
         return status;

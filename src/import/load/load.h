@@ -55,7 +55,7 @@ typedef struct input {
     NOC_ARRAY(source_crs *) sources;
     /* the scene's side: what is found as parts are taken, and the object that is being taken */
     geo_issues *found;
-    bool object_decided, object_repeated;
+    bool object_begun, object_decided, object_repeated;
 } input;
 
 /* Where a lamp was given: what would be if its axes were exchanged is asked of lamps that are of no use. */
@@ -99,6 +99,12 @@ typedef struct load_box {
     geo_crs *crs; /* that they are in; NULL: the scene's, as it is given */
 } load_box;
 
+/* Meshes of the scene that a building came in. */
+typedef struct taken_building {
+    uint32_t first, end;
+    size_t input;
+} taken_building;
+
 typedef struct importer {
     noc_log *log;
     noc_scene *scene;
@@ -119,6 +125,8 @@ typedef struct importer {
     /* what was taken (take.c) */
     object_records records;
     int material[NOC_CLASS_COUNT][PALETTE]; /* index + 1 in the scene, 0 if not made yet */
+    NOC_ARRAY(taken_building) buildings;    /* where windows are asked for */
+    size_t object_mesh;                     /* first mesh of the object that is being taken */
     bool has_roads;
     double open_area; /* m2 of terrain, roads, pavements, lawns and water, seen from above */
     NOC_ARRAY(pending_lamp) lamps;
@@ -274,6 +282,11 @@ noc_status take_finish(const taking *t, noc_status status);
 /* Is what waits and what the scene holds, and will hold with so many bytes more, within the limits? Else reported. */
 noc_status take_affords(importer *im, const input *in, size_t more);
 void take_destroy(importer *im);
+int take_material(importer *im, noc_class cls, const char *id); /* of an object's surfaces; < 0: refused, and said */
+
+/* windows.c: windows on the walls of the buildings that were taken. */
+noc_status windows_check(const noc_import_params *params, noc_log *log);
+noc_status windows_add(importer *im);
 
 /* repeat.c: what is given twice is taken once. */
 bool same_file(const char *a, const char *b); /* whatever they are called: "a.csv", "./a.csv", a link */

@@ -39,7 +39,7 @@ static uint32_t hash_id(const char *id) {
     return h ^ h >> 16;
 }
 
-static int material_of(importer *im, noc_class cls, const char *id) {
+int take_material(importer *im, noc_class cls, const char *id) {
     const float(*albedo)[3] = cls == NOC_CLASS_WALL ? wall_albedo : cls == NOC_CLASS_ROOF ? roof_albedo : NULL;
     uint32_t h = hash_id(id);
     uint32_t k = !albedo ? 0 : (cls == NOC_CLASS_WALL ? h : h >> 8) % PALETTE;
@@ -86,7 +86,7 @@ static noc_status take_surface(importer *im, input *in, const char *id, const pa
                       .positions = s->xyz,
                       .triangle_count = s->triangle_count,
                       .indices = s->indices,
-                      .material = material_of(im, s->cls, id),
+                      .material = take_material(im, s->cls, id),
                       .name = *id ? id : NULL };
     if (mesh.material < 0 || noc_scene_add_mesh(im->scene, &mesh) < 0)
         return NOC_ERR_UNSUPPORTED; /* said by the scene */
@@ -102,6 +102,9 @@ static noc_status take_object(importer *im, input *in, const load_part *part) {
     const object_now *now = &part->u.object.now;
     const char *id = part->u.object.id ? part->u.object.id : "";
     noc_status status = NOC_OK;
+    if (!in->object_begun)
+        im->object_mesh = im->scene->meshes.len;
+    in->object_begun = !part->u.object.last;
     if (part->u.object.id && part->u.object.surface_count)
         status = repeat_object(im, in, now, id);
     for (size_t i = 0; i < part->u.object.surface_count && !status && !in->object_repeated; i++)
@@ -111,6 +114,10 @@ static noc_status take_object(importer *im, input *in, const load_part *part) {
     for (int c = 0; c < NOC_CLASS_COUNT && !in->object_repeated; c++)
         in->file.polygons_by_class[c] += now->by_class[c];
     in->file.polygons += in->object_repeated ? 0 : now->polygons;
+    if (now->kind == GEO_BUILDING && im->object_mesh < im->scene->meshes.len && im->params->windows != NOC_SWITCH_OFF &&
+        !array_push(&im->buildings, (taken_building){ (uint32_t)im->object_mesh, (uint32_t)im->scene->meshes.len,
+                                                      (size_t)(in - im->inputs) }))
+        return noc_no_memory(im->log, in->path);
     in->object_decided = in->object_repeated = false;
     return NOC_OK;
 }
@@ -179,5 +186,6 @@ void take_destroy(importer *im) {
     repeat_free(&im->records);
     array_free(&im->lamps);
     array_free(&im->lost);
+    array_free(&im->buildings);
     arena_free(&im->names);
 }

@@ -1,0 +1,110 @@
+/* A building's walls to its windows. */
+#include "city/windows/parts.h"
+
+/* Places in a building are told by the corner of the box around its walls, in steps of this; the offset keeps round
+ * numbers away from where a step ends. */
+#define PLACE_STEP 0.1 /* m */
+#define PLACE_OFFSET 0.0371
+
+typedef struct building {
+    double lo[3], hi[3], width;
+} building;
+
+static building building_of(const wall_facets *f) {
+    building b = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY }, 0 };
+    for (size_t i = 0; i < f->pieces.len; i++)
+        for (int k = 0; k < 3; k++) {
+            b.lo[k] = fmin(b.lo[k], f->pieces.data[i].lo[k]);
+            b.hi[k] = fmax(b.hi[k], f->pieces.data[i].hi[k]);
+        }
+    for (size_t i = 0; i < f->facets.len; i++)
+        b.width = fmax(b.width, f->facets.data[i].hi[0] - f->facets.data[i].lo[0]);
+    return b;
+}
+
+static uint64_t step_of(double x) { return (uint64_t)(int64_t)floor((x + PLACE_OFFSET) / PLACE_STEP); }
+
+/* Numbers that a window shares with none, with its neighbour, with its storey. */
+static void give_light(city_window *w, const building *b, const building_use *use, const noc_window_params *params) {
+    uint64_t h = use->hash;
+    for (int k = 0; k < 3; k++)
+        h = city_window_hash(h, step_of(w->corner[k] + 0.5 * (w->edge_u[k] + w->edge_v[k]) - b->lo[k]));
+    w->hash = h;
+    uint64_t storey = city_window_hash(use->hash, (uint64_t)floor((w->corner[2] - b->lo[2]) / params->storey_height));
+    /* the facade's own number is by where it faces and stands: both ends of a pair see the same */
+    double n[3];
+    cross3(w->edge_u, w->edge_v, n);
+    double level = hypot(n[0], n[1]), d = 0;
+    for (int k = 0; k < 2; k++)
+        d += (w->corner[k] - b->lo[k]) * n[k] / level;
+    uint64_t pair = city_window_hash(storey, step_of(d));
+    pair = city_window_hash(pair, (uint64_t)(int64_t)floor(8 * atan2(n[1], n[0]) + 0.37));
+    pair = city_window_hash(pair, (uint64_t)(w->column / 2));
+    city_window_shine(w, storey, pair, params);
+}
+
+/* Takes the windows from `first` on that another wall hides away; returns how many. */
+static size_t drop_hidden(city_window_list *list, size_t first, const city_cover *cover) {
+    size_t kept = first;
+    for (size_t i = first; i < list->len; i++)
+        if (!city_cover_hides(cover, &list->data[i]))
+            list->data[kept++] = list->data[i];
+    size_t hidden = list->len - kept;
+    list->len = kept;
+    return hidden;
+}
+
+static bool add_facade(const wall_facets *f, const strip *s, const building *b, const building_use *use,
+                       const noc_window_params *params, const city_cover *cover, city_windows *out) {
+    city_facade facade = { .verdict = NOC_WALL_SMALL };
+    const facet *front = &f->facets.data[s->parts[0].facet];
+    size_t first = out->list.len, hidden = 0;
+    for (size_t i = 0; i < s->count; i++)
+        facade.area += f->facets.data[s->parts[i].facet].area;
+    if (fabs(front->plane.n[2]) > sin(params->tilt * M_PI / 180)) {
+        facade.verdict = NOC_WALL_TILTED;
+    } else if (facade.area >= params->min_area) {
+        if (!wall_cells_find(f, s, params, use, b->lo[2], &out->list))
+            return false;
+        hidden = drop_hidden(&out->list, first, cover);
+        facade.windows = out->list.len - first;
+        facade.verdict = facade.windows ? NOC_WALL_TAKEN : hidden ? NOC_WALL_PARTY : NOC_WALL_SMALL;
+    }
+    for (size_t i = first; i < out->list.len; i++) {
+        out->list.data[i].facade = (uint32_t)out->facades.len;
+        give_light(&out->list.data[i], b, use, params);
+    }
+    for (size_t i = 0; i < s->count; i++) {
+        const facet *a = &f->facets.data[s->parts[i].facet];
+        for (uint32_t k = a->first; k < a->first + a->count; k++)
+            out->verdicts.data[f->pieces.data[f->by_facet.data[k]].given] = (uint8_t)facade.verdict;
+    }
+    return array_push(&out->facades, facade);
+}
+
+noc_status city_windows_make(const char *id, const wall_triangle *walls, size_t count, const noc_window_params *params,
+                             const city_cover *cover, city_windows *out) {
+    wall_facets f = { 0 };
+    wall_strips strips = { 0 };
+    out->list.len = out->facades.len = out->verdicts.len = 0;
+    bool ok = wall_facets_find(walls, count, &f) && wall_strips_find(&f, params->cell, &strips) &&
+              array_reserve(&out->verdicts, NOC_MAX(count, 1u));
+    if (ok && count)
+        memset(out->verdicts.data, NOC_WALL_SMALL, count);
+    out->verdicts.len = ok ? count : 0;
+    building b = building_of(&f);
+    building_use use = city_building_use(id, b.hi[2] - b.lo[2], b.width);
+    for (size_t i = 0; ok && i + 1 < strips.first.len; i++) {
+        strip s = wall_strip_get(&f, &strips, i);
+        ok = add_facade(&f, &s, &b, &use, params, cover, out);
+    }
+    wall_strips_free(&strips);
+    wall_facets_free(&f);
+    return ok ? NOC_OK : NOC_ERR_MEMORY;
+}
+
+void city_windows_free(city_windows *w) {
+    array_free(&w->list);
+    array_free(&w->facades);
+    array_free(&w->verdicts);
+}

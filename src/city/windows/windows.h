@@ -1,0 +1,94 @@
+/* city/windows: windows on the walls of buildings.
+ *
+ * The walls of one building are merged into facades, whatever pieces they come in (facet.c, strip.c). A grid of cells,
+ * centred on a facade, storey upon storey from its foot, gives a window wherever one fits wholly into the wall
+ * (cells.c), and no other wall stands close before it (cover.c). What is behind it (a flat, an office, a shop), how
+ * bright and at which share of lit windows it shines are drawn from a hash of the building's id and the window's place
+ * in the building (shine.c): so windows stay what they are, whatever is loaded beside them and in which order. */
+#ifndef NOC_CITY_WINDOWS_H
+#define NOC_CITY_WINDOWS_H
+
+#include "base/base.h"
+#include "scene/scene.h"
+
+/* Pieces of a wall are one facade where all of a piece lies this near the plane of the largest, turned by no more than
+ * this from it, and where they touch or leave a gap no wider than this. */
+#define WINDOW_MERGE_MM 50.0
+#define WINDOW_MERGE_DEG 2.0
+#define WINDOW_GAP_MM 30.0
+/* Pieces side by side, each narrower than so many cells, are a curved wall where they turn by no more than this. */
+#define WINDOW_CURVE_CELLS 1.5
+#define WINDOW_CURVE_DEG 25.0
+/* A wall that stands so near before a window hides it; one with its back to it, also a little behind it. */
+#define WINDOW_PARTY_M 1.0
+#define WINDOW_PARTY_BEHIND_M 0.3
+
+typedef struct wall_triangle {
+    double p[3][3]; /* local metres, counter-clockwise seen from outside */
+} wall_triangle;
+
+typedef struct city_window {
+    double corner[3], edge_u[3], edge_v[3]; /* faces edge_u x edge_v */
+    uint32_t facade;                        /* of the building, from 0 */
+    int storey, column;                     /* from 0, of its facade */
+    noc_window_kind kind;
+    uint64_t hash;     /* of the building's id and the window's place in it */
+    float level;       /* lit where the share of lit windows of its kind is above it, 0..1 */
+    float emission[3]; /* cd/m2, where it is lit */
+} city_window;
+
+typedef NOC_ARRAY(city_window) city_window_list;
+
+/* A facade: what became of it, and the area of its pieces, m2. */
+typedef struct city_facade {
+    noc_wall_verdict verdict;
+    double area;
+    size_t windows;
+} city_facade;
+
+typedef struct city_windows {
+    city_window_list list;
+    NOC_ARRAY(city_facade) facades;
+    NOC_ARRAY(uint8_t) verdicts; /* noc_wall_verdict of each triangle, in the order they were given */
+} city_windows;
+
+/* Walls of all buildings, to ask what stands before a window. NULL is allowed where there are no others. */
+typedef struct city_cover city_cover;
+/* Copies nothing but corners, as floats. Triangles that are no walls (flatter than 45 degrees) are left out. */
+city_cover *city_cover_create(const float *xyz, size_t triangles) NOC_MUST_USE; /* NULL: memory was refused */
+void city_cover_destroy(city_cover *cover);
+/* Does a wall stand close before any of the window's corners or its middle? */
+bool city_cover_hides(const city_cover *cover, const city_window *w);
+
+/* The windows of a building. What is in `out` is replaced; zeroed it is empty. The result does not depend on the order
+ * of the triangles. NOC_ERR_MEMORY, not reported: memory was refused. */
+noc_status city_windows_make(const char *id, const wall_triangle *walls, size_t count, const noc_window_params *params,
+                             const city_cover *cover, city_windows *out);
+void city_windows_free(city_windows *w);
+
+/* The panes of windows that a model has itself: which triangles lie in one plane and touch, as groups of indices into
+ * `panes`, one after the other in `order`; first has groups + 1 entries. */
+typedef struct city_panes {
+    NOC_ARRAY(uint32_t) order;
+    NOC_ARRAY(uint32_t) first;
+} city_panes;
+noc_status city_panes_find(const wall_triangle *panes, size_t count, city_panes *out);
+void city_panes_free(city_panes *p);
+
+/* ---- shine.c ---- */
+
+typedef struct building_use {
+    bool shops;   /* at street level */
+    bool offices; /* above */
+    uint64_t hash;
+} building_use;
+/* height, m, and width of its widest facade, m */
+building_use city_building_use(const char *id, double height, double width);
+uint64_t city_window_hash(uint64_t a, uint64_t b);
+/* A number of 0..1 that hash and salt decide. */
+double city_window_number(uint64_t hash, uint64_t salt);
+/* Level and emission of a window by its kind and hash. floor: a number that the windows of its storey share; pair: one
+ * that its neighbour may share. */
+void city_window_shine(city_window *w, uint64_t floor, uint64_t pair, const noc_window_params *params);
+
+#endif

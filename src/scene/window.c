@@ -1,0 +1,118 @@
+/* Windows: lights that are lit or dark by the hour, and show the glass they are made of where they are dark. */
+#include "scene/scene.h"
+
+#include <math.h>
+
+/* How many windows are lit at each full hour, over how many are at 21 h: a winter's working day, homes by when people
+ * come home and go to bed, offices by their hours and cleaners, shops by theirs and by displays that stay lit. Ours:
+ * of measured curves we know shapes (homes go dark from 22 h on, a few stay lit all night), no figures by use. */
+static const float hours[NOC_WINDOW_KIND_COUNT][24] = {
+    [NOC_WINDOW_FLAT] = { .45f, .26f, .16f, .12f, .12f, .22f, .55f, .8f, .6f, .4f, .3f, .28f,
+                          .3f,  .28f, .28f, .35f, .55f, .8f,  .95f, 1,   1,   1,   .9f, .7f },
+    [NOC_WINDOW_OFFICE] = { .45f, .4f,  .38f, .38f, .4f,  .6f,  1.2f, 2.2f, 2.8f, 2.8f, 2.8f, 2.8f,
+                            2.8f, 2.8f, 2.8f, 2.8f, 2.8f, 2.8f, 2.3f, 1.7f, 1.3f, 1,    .75f, .55f },
+    [NOC_WINDOW_SHOP] = { .6f,  .55f, .5f,  .5f,  .5f,  .7f,  1.2f, 1.8f, 2.4f, 2.8f, 2.8f, 2.8f,
+                          2.8f, 2.8f, 2.8f, 2.8f, 2.8f, 2.8f, 2.8f, 2.4f, 1.6f, 1,    .8f,  .7f },
+};
+
+const char *noc_wall_verdict_name(noc_wall_verdict verdict) {
+    static const char *const names[NOC_WALL_VERDICT_COUNT] = {
+        [NOC_WALL_UNSEEN] = "not looked at", [NOC_WALL_TAKEN] = "with windows", [NOC_WALL_SMALL] = "too small",
+        [NOC_WALL_TILTED] = "tilted",        [NOC_WALL_PARTY] = "party wall",   [NOC_WALL_OWN] = "with its own windows",
+    };
+    return (unsigned)verdict < NOC_WALL_VERDICT_COUNT ? names[verdict] : "unknown";
+}
+
+double noc_window_share(noc_window_kind kind, double lit, double hour) {
+    if ((unsigned)kind >= NOC_WINDOW_KIND_COUNT)
+        return 0;
+    double h = fmod(hour, 24);
+    h = h < 0 ? h + 24 : h;
+    int a = (int)h % 24, b = (a + 1) % 24;
+    double part = h - floor(h), share = lit * ((1 - part) * (double)hours[kind][a] + part * (double)hours[kind][b]);
+    return NOC_CLAMP(share, 0, 1);
+}
+
+const char *noc_window_fault(const noc_window_params *p) {
+    if (!(p->lit_windows >= 0 && p->lit_windows <= 1))
+        return "lit_windows must be in 0..1";
+    return p->hour >= 0 && p->hour <= 24 ? NULL : "hour must be in 0..24";
+}
+
+static void emission_of(const noc_scene_window *w, const double share[NOC_WINDOW_KIND_COUNT], float e[3]) {
+    for (int k = 0; k < 3; k++)
+        e[k] = (double)w->level < share[w->kind] ? w->emission[k] : 0;
+}
+
+static void shares(const double lit_and_hour[2], double share[NOC_WINDOW_KIND_COUNT]) {
+    for (int kind = 0; kind < NOC_WINDOW_KIND_COUNT; kind++)
+        share[kind] = noc_window_share((noc_window_kind)kind, lit_and_hour[0], lit_and_hour[1]);
+}
+
+bool noc_scene_add_window(noc_scene *s, int mesh, const noc_pane *pane) {
+    noc_scene_mesh *m = &s->meshes.data[mesh];
+    uint32_t light = (uint32_t)s->lights.len;
+    if (!array_reserve(&s->lights, light + 1) || !array_reserve(&s->light_names, light + 1) ||
+        !array_reserve(&s->windows, s->windows.len + 1)) {
+        noc_scene_out_of_memory(s);
+        return false;
+    }
+    noc_scene_window w = pane->window;
+    noc_light_record r = noc_light_record_of(&pane->shape);
+    w.light = light;
+    r.flags |= NOC_LIGHT_OWNED;
+    memset(r.e, 0, sizeof(r.e));
+    m->panes = true;
+    s->windows.data[s->windows.len++] = w;
+    s->lights.data[s->lights.len++] = r;
+    s->light_names.data[s->light_names.len++] = m->name;
+    for (uint32_t t = 0; t < pane->triangle_count; t++)
+        s->triangle_light.data[m->first_triangle + pane->first_triangle + t] = light;
+    return true;
+}
+
+void noc_scene_light_windows(noc_scene *s, const noc_window_params *params) {
+    double share[NOC_WINDOW_KIND_COUNT];
+    shares((double[]){ params->lit_windows, params->hour }, share);
+    for (size_t i = 0; i < s->windows.len; i++)
+        emission_of(&s->windows.data[i], share, s->lights.data[s->windows.data[i].light].e);
+}
+
+void noc_windows_switch(noc_scene *s, const double lit_and_hour[2], noc_changes *c) {
+    double share[NOC_WINDOW_KIND_COUNT];
+    shares(lit_and_hour, share);
+    for (size_t i = 0; i < s->windows.len; i++) {
+        const noc_scene_window *w = &s->windows.data[i];
+        if (w->removed)
+            continue;
+        noc_light_record r = noc_light_made(s, w->light);
+        emission_of(w, share, r.e);
+        noc_light_change(s, w->light, &r, c);
+    }
+}
+
+/* They lie in the order of their lights. */
+void noc_window_forget(noc_scene *s, uint32_t light) {
+    size_t low = 0, high = s->windows.len;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (s->windows.data[middle].light < light)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    if (low < s->windows.len && s->windows.data[low].light == light)
+        s->windows.data[low].removed = true;
+}
+
+noc_status noc_scene_set_windows(noc_scene *scene, const noc_window_params *params) {
+    if (!scene || !params)
+        return noc_null(scene ? scene->log : NULL, __func__);
+    const char *wrong = noc_window_fault(params);
+    if (wrong)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "windows: %s", wrong);
+    if (scene->no_memory)
+        return NOC_ERR_MEMORY;
+    noc_edit edit = { .kind = NOC_EDIT_WINDOWS, .windows = { params->lit_windows, params->hour } };
+    return array_push(&scene->edits, edit) ? NOC_OK : noc_scene_out_of_memory(scene);
+}

@@ -1,0 +1,181 @@
+/* Windows of a city that is loaded: which are lit, how they are switched, and that dark ones are glass. */
+#include "fake_reader.h"
+
+#include <nocturne/image.h>
+#include <nocturne/render.h>
+
+/* A house of 40 m by 20 m, 18 m high, with all its walls; kind 0 is a building, 1 and 2 are walls and roofs. */
+#define BLOCK(kind, wall)                                                                                              \
+    "FAKE city\ncrs EPSG:25832\nobject " kind " block 2\n"                                                             \
+    "polygon " wall " 678000 5404000 370 678040 5404000 370 678040 5404000 388 678000 5404000 388\n"                   \
+    "polygon " wall " 678040 5404000 370 678040 5404020 370 678040 5404020 388 678040 5404000 388\n"                   \
+    "polygon " wall " 678040 5404020 370 678000 5404020 370 678000 5404020 388 678040 5404020 388\n"                   \
+    "polygon " wall " 678000 5404020 370 678000 5404000 370 678000 5404000 388 678000 5404020 388\n"                   \
+    "polygon 2 678000 5404000 388 678040 5404000 388 678040 5404020 388 678000 5404020 388\nend\n"
+#define LAMP "FAKE lamps\ncrs EPSG:25832\nlamp 678020 5403990\n"
+
+static void load(struct run *r, const char *city, double lit, double hour) {
+    noc_import_params p = noc_import_default_params();
+    p.window.lit_windows = lit;
+    p.window.hour = hour;
+    LOAD(r, p, file("a", city), file("l", LAMP));
+    assert_int_equal(r->status, NOC_OK);
+}
+
+static bool is_lit(const noc_scene *s, size_t i) {
+    const float *e = s->lights.data[s->windows.data[i].light].e;
+    return e[0] > 0 || e[1] > 0 || e[2] > 0;
+}
+
+static void test_made(void **state) {
+    (void)state;
+    struct run r;
+    load(&r, BLOCK("0", "1"), .35, 21);
+    assert_int_equal(r.info.windows, 2 * (16 + 8) * 6); /* cells and storeys; no shops by its id */
+    assert_int_equal(r.info.lights, r.info.windows + 1);
+    assert_int_equal(noc_report_get_file(r.report, 0)->buildings, 1);
+    finish(&r);
+    load(&r, BLOCK("0", "0"), .35, 21); /* without classes: by slope */
+    assert_int_equal(r.info.windows, 288);
+    finish(&r);
+    load(&r, BLOCK("6", "1"), .35, 21); /* a bridge */
+    assert_int_equal(r.info.windows, 0);
+    finish(&r);
+    noc_import_params p = noc_import_default_params();
+    p.window.width = 3;
+    start(&r);
+    load_with(&r, p, false, PATHS(file("a", BLOCK("0", "1"))));
+    assert_int_equal(r.status, NOC_ERR_ARGUMENT);
+    finish(&r);
+}
+
+/* What is lit at a share is lit at a greater one; none moves; hours are shares. */
+static void test_ratio(void **state) {
+    (void)state;
+    struct run r[4];
+    const double lit[] = { 0, .3, .5, 1 };
+    for (int i = 0; i < 4; i++)
+        load(&r[i], BLOCK("0", "1"), lit[i], 21);
+    size_t n = r[0].info.windows;
+    assert_int_equal(r[0].info.windows_lit, 0);
+    assert_int_equal(r[3].info.windows_lit, n);
+    for (int i = 0; i < 3; i++) {
+        const noc_scene *a = r[i].scene, *b = r[i + 1].scene;
+        assert_int_equal(r[i + 1].info.windows, n);
+        assert_memory_equal(a->positions.data, b->positions.data, a->positions.len * sizeof(float));
+        for (size_t k = 0; k < n; k++)
+            assert_true(!is_lit(a, k) || is_lit(b, k));
+        assert_true(r[i].info.windows_lit < r[i + 1].info.windows_lit);
+    }
+    struct run night;
+    load(&night, BLOCK("0", "1"), .5, 3);
+    assert_true(night.info.windows_lit < r[2].info.windows_lit);
+    finish(&night);
+    for (int i = 0; i < 4; i++)
+        finish(&r[i]);
+}
+
+/* A switched scene is the one that was loaded so: the same name for all that pictures depend on. */
+static void test_switched(void **state) {
+    (void)state;
+    struct run a, b;
+    char keys[3][NOC_CONTENT_KEY];
+    load(&a, BLOCK("0", "1"), .3, 21);
+    load(&b, BLOCK("0", "1"), .6, 23.5);
+    noc_scene_content(a.scene, keys[0]);
+    noc_scene_content(b.scene, keys[1]);
+    assert_string_not_equal(keys[0], keys[1]);
+    noc_window_params p = { .lit_windows = .6, .hour = 23.5 };
+    noc_scene_versions before = a.scene->versions;
+    assert_int_equal(noc_scene_set_windows(a.scene, &p), NOC_OK);
+    noc_scene_content(a.scene, keys[2]);
+    assert_string_equal(keys[0], keys[2]); /* staged */
+    assert_int_equal(noc_scene_commit(a.scene), NOC_OK);
+    noc_scene_content(a.scene, keys[2]);
+    assert_string_equal(keys[1], keys[2]);
+    assert_int_equal(a.scene->versions.geometry, before.geometry);
+    assert_int_equal(a.scene->versions.lights, before.lights);
+    assert_int_equal(a.scene->versions.emission, before.emission + 1);
+    p.hour = 25;
+    assert_int_equal(noc_scene_set_windows(a.scene, &p), NOC_ERR_ARGUMENT);
+    /* windows that went with their mesh are not switched; their lights may be others now */
+    size_t mesh = a.scene->meshes.len - 1;
+    while (!a.scene->meshes.data[mesh].panes)
+        mesh--;
+    assert_int_equal(noc_scene_remove_mesh(a.scene, (int)mesh), NOC_OK);
+    assert_int_equal(noc_scene_commit(a.scene), NOC_OK);
+    noc_light lamp = { .kind = NOC_LIGHT_POINT, .position = { 0, 0, 50 }, .emission = { 3, 2, 1 } };
+    int light = noc_scene_add_light(a.scene, &lamp);
+    assert_int_equal(noc_scene_commit(a.scene), NOC_OK);
+    p.hour = 21;
+    assert_int_equal(noc_scene_set_windows(a.scene, &p), NOC_OK);
+    assert_int_equal(noc_scene_commit(a.scene), NOC_OK);
+    assert_true(a.scene->lights.data[light].e[0] == 3);
+    noc_scene_get_info(a.scene, &a.info);
+    assert_int_equal(a.info.windows, 0);
+    finish(&a);
+    finish(&b);
+}
+
+static void test_share(void **state) {
+    (void)state;
+    for (int kind = 0; kind < NOC_WINDOW_KIND_COUNT; kind++) {
+        assert_close(noc_window_share((noc_window_kind)kind, .35, 21), .35, 1e-6);
+        for (int q = 0; q <= 96; q++) {
+            double share = noc_window_share((noc_window_kind)kind, .35, q / 4.);
+            assert_true(share > 0 && share <= 1);
+            assert_true(noc_window_share((noc_window_kind)kind, .3, q / 4.) <= share);
+        }
+        assert_close(noc_window_share((noc_window_kind)kind, .35, 0), noc_window_share((noc_window_kind)kind, .35, 24),
+                     1e-9);
+    }
+    assert_true(noc_window_share(NOC_WINDOW_FLAT, .35, 3) < noc_window_share(NOC_WINDOW_SHOP, .35, 3));
+    assert_true(noc_window_share(NOC_WINDOW_OFFICE, .35, 11) > noc_window_share(NOC_WINDOW_FLAT, .35, 11));
+}
+
+/* The class that is seen at a window, and what it looks like: dark, it is a surface that reflects. */
+static void test_glass(void **state) {
+    (void)state;
+    noc_device *device = noc_device_create(NULL, NULL);
+    for (int lit = 0; lit < 2; lit++) {
+        struct run r;
+        load(&r, BLOCK("0", "1"), lit, 21);
+        noc_render_params p = noc_render_default_params();
+        p.width = p.height = 32;
+        p.sky = 1;
+        noc_view *view = noc_view_create(device, r.scene);
+        assert_non_null(view);
+        const noc_scene_window *w = &r.scene->windows.data[0];
+        const noc_light_record *l = &r.scene->lights.data[w->light];
+        noc_camera c = noc_camera_default();
+        double n[3];
+        for (int k = 0; k < 3; k++) {
+            int i = (k + 1) % 3, j = (k + 2) % 3;
+            n[k] = ((double)l->a[i] * l->b[j] - (double)l->a[j] * l->b[i]) / l->area;
+            c.target[k] = l->p[k] + .5 * ((double)l->a[k] + l->b[k]);
+            c.eye[k] = c.target[k] + n[k];
+        }
+        c.fov_deg = 10;
+        for (int k = 0; k < 4; k++)
+            assert_int_equal(noc_view_render(view, &c, &p, NULL), NOC_OK);
+        noc_image *image = noc_view_image(view);
+        assert_non_null(image);
+        const float *rgb = image->rgb + 3 * (16 * 32 + 16);
+        if (lit)
+            assert_close(rgb[1], w->emission[1], .5); /* the sky is reflected, too */
+        else
+            assert_true(rgb[1] > 1e-3f && rgb[1] < 5);
+        noc_image_destroy(image);
+        noc_view_destroy(view);
+        finish(&r);
+    }
+    noc_device_destroy(device);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_made),  cmocka_unit_test(test_ratio), cmocka_unit_test(test_switched),
+        cmocka_unit_test(test_share), cmocka_unit_test(test_glass),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
