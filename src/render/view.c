@@ -263,9 +263,11 @@ noc_status noc_view_trace_floor(noc_view *v, const noc_camera *camera, const noc
     noc_status status = check(v, camera, params);
     if (status != NOC_OK)
         return status;
+    noc_scene_lock_frame(v->scene); /* until its rays are traced again: the structure stays as it is */
     v->backend->record(v->state, true);
-    status = run_frame(v, camera, params, NULL);
+    status = make_frame(v, camera, params, NULL);
     v->backend->record(v->state, false);
     noc_status traced = v->backend->replay(v->state, seconds);
+    noc_scene_unlock_frame(v->scene);
     return status != NOC_OK ? status : traced;
 }

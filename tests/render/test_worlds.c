@@ -1,9 +1,10 @@
 /* Many views of one world: from several threads, each with its own size, camera, options and history, while the scene
  * is edited. What they give is what each gives alone. */
+#include "render/device.h"
 #include "rooms.h"
 
-#include <pthread.h>
 #include <stdatomic.h>
+#include <unistd.h>
 
 enum { VIEWS = 5, FRAMES = 6, LAMPS = 60 };
 
@@ -215,12 +216,58 @@ static void instances_take_memory(void **state) {
     noc_scene_destroy(s);
 }
 
+/* A commit that is asked for while the rays of a frame are traced again. */
+static struct {
+    editor editor;
+    pthread_t thread;
+    atomic_bool committed;
+    bool early; /* it did not wait */
+} late;
+
+static void *edit_late(void *arg) {
+    edit(&late.editor);
+    late.committed = true;
+    return arg;
+}
+
+static noc_status replay_beside_a_commit(void *view, double *seconds) {
+    assert_int_equal(pthread_create(&late.thread, NULL, edit_late, NULL), 0);
+    for (int i = 0; i < 100 && !late.committed; i++)
+        usleep(1000);
+    late.early = late.committed;
+    return noc_backend_embree.replay(view, seconds);
+}
+
+/* The trace floor's rays are traced through the structure of their frame. */
+static void rays_are_replayed_before_a_commit(void **state) {
+    (void)state;
+    noc_scene *s = street();
+    noc_backend backend = noc_backend_embree;
+    noc_device *device = noc_device_create(&(noc_device_params){ .threads = 2 }, NULL);
+    backend.replay = replay_beside_a_commit;
+    device->backend = &backend;
+    noc_view *v = noc_view_create(device, s);
+    looker l = { 0 };
+    double seconds = 0;
+    describe(&l, 0);
+    late.editor = (editor){ .scene = s, .commits = 1 };
+    assert_int_equal(noc_view_trace_floor(v, &l.camera, &l.params, &seconds), NOC_OK);
+    pthread_join(late.thread, NULL);
+    assert_false(late.early);
+    assert_true(late.committed && !late.editor.failed && seconds > 0);
+    assert_int_equal(noc_view_render(v, &l.camera, &l.params, NULL), NOC_OK); /* the lock is free again */
+    noc_view_destroy(v);
+    noc_device_destroy(device);
+    noc_scene_destroy(s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(views_are_independent),
         cmocka_unit_test(worlds_go_with_their_last_view),
         cmocka_unit_test(frames_and_commits_do_not_mix),
         cmocka_unit_test(instances_take_memory),
+        cmocka_unit_test(rays_are_replayed_before_a_commit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
