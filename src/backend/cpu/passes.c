@@ -74,12 +74,15 @@ static void primary_block(stage_run *run, worker *w, int bx, int by) {
                     objects ? objects[at] : NULL, b->instance ? b->instance[at] : NULL);
 }
 
-/* Receivers that are given. */
+/* Receivers that are given: no instance shows them. */
 static void place_block(const stage_run *run, int bx, int by) {
     const frame_buffers *b = &run->s->b;
     const float *eye = run->ctx.frame->camera.eye;
-    gblock *g = &b->g[run->frame->gbuffer][block_at(b, bx, by)];
+    size_t at = block_at(b, bx, by);
+    gblock *g = &b->g[run->frame->gbuffer][at];
     noc_cpu_no_receivers(g);
+    for (int l = 0; b->instance && l < BLOCK; l++)
+        b->instance[at][l] = NO_INSTANCE;
     for (uint32_t bits = lanes_inside(b, bx, by); bits; bits &= bits - 1) {
         int l = __builtin_ctz(bits), x = bx * BLOCK_SIDE + (l & 3), y = by * BLOCK_SIDE + (l >> 2);
         const noc_receiver *r = &run->frame->receivers[(size_t)y * (size_t)b->width + (size_t)x];
