@@ -262,8 +262,37 @@ static void test_reading(void **state) {
     noc_scene_destroy(s);
 }
 
+/* A frame that asks for views which there is no memory for leaves those of the frame before. */
+static void test_views(void **state) {
+    noc_scene *s = yard();
+    noc_log *log = counting_log();
+    noc_render_params one = params_of(&configs[4]), others = one;
+    one.aovs = 1u << NOC_AOV_NORMAL;
+    others.aovs = SEEN & ~one.aovs;
+    noc_view *r = two_threads(s, log);
+    bool reached;
+    int refused = 0;
+    FOR_EACH_REFUSAL(reached) {
+        next_frame(r, &one);
+        begin_refusal(n, later);
+        noc_status status = noc_view_render(r, camera(), &others, NULL);
+        reached = end_refusal();
+        if (status == NOC_OK)
+            continue;
+        assert_refused(status, "views");
+        noc_channel *normal = noc_view_aov(r, NOC_AOV_NORMAL);
+        assert_non_null(normal);
+        noc_channel_destroy(normal);
+        refused++;
+    }
+    assert_true(refused > 0);
+    close_view(r);
+    noc_log_destroy(log);
+    noc_scene_destroy(s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_first_frame), cmocka_unit_test(test_moved_frame),
-                                        cmocka_unit_test(test_reading) };
+                                        cmocka_unit_test(test_reading), cmocka_unit_test(test_views) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

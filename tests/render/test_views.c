@@ -552,7 +552,14 @@ static bool stop_late(void *user, const char *what, double done) {
     return --*(int *)user > 0;
 }
 
-/* What a dropped frame had gathered is forgotten with it. */
+static uint64_t memory_of(const noc_view *r) {
+    noc_frame_stats stats;
+    noc_view_get_stats(r, &stats);
+    return stats.memory_bytes;
+}
+
+/* What a dropped frame had gathered is forgotten with it, and what the last complete one kept stays, whichever views
+ * the dropped one asked for. */
 static void cancelled_frames(void **state) {
     (void)state;
     noc_scene *s = street(30);
@@ -562,11 +569,16 @@ static void cancelled_frames(void **state) {
         p.width = 160;
         p.height = 96;
         noc_view *a = rendered(s, &c, &p, 3, 1), *b = rendered(s, &c, &p, 3, 1);
-        for (int left = 1; left < 60; left += 20) {
-            int n = left;
-            assert_int_equal(noc_view_render(b, &c, &p, &(noc_progress){ stop_late, &n }), NOC_ERR_CANCELLED);
+        noc_render_params other = p;
+        for (int i = 0; i < 9; i++) {
+            int n = 1 + i / 3 * 20;
+            other.aovs = i % 3 == 0 ? p.aovs : i % 3 == 1 ? 0 : 1u << NOC_AOV_RAYS | 1u << NOC_AOV_DEPTH;
+            assert_int_equal(noc_view_render(b, &c, &other, &(noc_progress){ stop_late, &n }), NOC_ERR_CANCELLED);
             assert_same_views(a, b, p.aovs);
         }
+        assert_int_equal(noc_view_render(a, &c, &p, NULL), NOC_OK);
+        assert_int_equal(noc_view_render(b, &c, &other, NULL), NOC_OK);
+        assert_true(memory_of(a) > memory_of(b)); /* which has dropped the others */
         close_view(a);
         close_view(b);
     }

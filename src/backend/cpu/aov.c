@@ -30,9 +30,15 @@ static void drop(aov_buffers *v, int aov) {
     v->held &= ~(1u << aov);
 }
 
-void noc_cpu_free_aovs(aov_buffers *v) {
+/* Drops those that are not among these bits. */
+static void drop_but(aov_buffers *v, uint32_t aovs) {
     for (int aov = 0; aov < NOC_AOV_COUNT; aov++)
-        drop(v, aov);
+        if (!(aovs >> aov & 1))
+            drop(v, aov);
+}
+
+void noc_cpu_free_aovs(aov_buffers *v) {
+    drop_but(v, 0);
     *v = (aov_buffers){ 0 };
 }
 
@@ -45,18 +51,17 @@ static bool allocate(float (**buffer)[BLOCK], size_t blocks) {
 
 noc_status noc_cpu_begin_aovs(cpu_view *s, uint32_t aovs) {
     aov_buffers *v = &s->b.aovs;
-    uint32_t need = buffers_of(aovs);
     size_t blocks = (size_t)s->b.blocks_x * s->b.blocks_y;
-    if (!(need | v->asked))
-        return NOC_OK;
-    v->asked = need;
+    v->asked = buffers_of(aovs);
     for (int aov = 0; aov < NOC_AOV_COUNT; aov++) {
         bool gathered = GATHERED >> aov & 1;
-        if (!(need >> aov & 1)) {
-            drop(v, aov);
+        if (!(v->asked >> aov & 1)) {
+            free(v->made[aov]);
+            v->made[aov] = NULL;
         } else if (!allocate(&v->kept[aov], components(aov) * blocks) ||
                    (gathered && !allocate(&v->made[aov], blocks))) {
-            noc_cpu_free_aovs(v);
+            v->asked = v->held;
+            drop_but(v, v->held);
             return noc_error(s->log, NOC_ERR_MEMORY, "render: no memory for views of %d x %d", s->b.width, s->b.height);
         } else if (gathered) {
             for (size_t i = 0; i < blocks; i++)
@@ -165,6 +170,7 @@ static void keep_row(void *arg, size_t row, int index) {
 
 void noc_cpu_keep_aovs(cpu_view *s, const noc_frame *frame) {
     aov_buffers *v = &s->b.aovs;
+    drop_but(v, v->asked);
     if (!v->asked)
         return;
     for (int aov = 0; aov < NOC_AOV_COUNT; aov++)

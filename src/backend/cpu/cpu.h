@@ -94,8 +94,8 @@ typedef struct worker {
     recorder record;
 } worker;
 
-/* Views (noc_aov): those of the frame being made, and of the last complete one. Entries that are not asked for are
- * NULL. */
+/* Views (noc_aov): those of the frame being made, and of the last complete one, which stay until the next is complete.
+ * Entries that neither asks for are NULL. */
 typedef struct aov_buffers {
     float (*made[NOC_AOV_COUNT])[BLOCK], (*kept[NOC_AOV_COUNT])[BLOCK];
     uint32_t asked, held; /* bits: buffers that the frame being made works on, that a complete frame has left */
