@@ -38,7 +38,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     params.crs = size & 1 ? "EPSG:25832" : NULL;
     params.infer_lamps = size & 2;
     for (int i = 0; i < n; i++) {
-        char name[16];
+        char name[24];
         snprintf(name, sizeof(name), "input%d", i);
         paths[i] = fuzz_file(name, part[i]);
     }
