@@ -2,7 +2,7 @@
  *
  * Keys are compared after folding: accents dropped, lower case, letters and digits only, so that `light:count`,
  * `LIGHT_COUNT` and `Light count` are one key. OSM tags and the columns of municipal inventories use the same table
- * (words.c), in several languages. */
+ * (columns.c), in several languages. */
 #ifndef NOC_LAMP_TAGS_H
 #define NOC_LAMP_TAGS_H
 
@@ -179,7 +179,11 @@ bool lamp_csv_probe(const char *head, size_t size);
 bool lamp_csv_probe_table(const char *head, size_t size); /* any table, whatever its columns are called */
 noc_status lamp_csv_read(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format);
 
-/* ---- words (words.c) ---- */
+/* ---- folding, and names of columns (columns.c) ---- */
+
+/* Folds text into out (always terminated): ASCII lower case letters and digits; UTF-8 or Latin-1 accents dropped. With
+ * blanks, every run of anything else becomes one blank. Returns the length. */
+size_t lamp_fold(const char *text, bool blanks, char *out, size_t size);
 
 typedef struct lamp_column {
     const char *key; /* folded */
@@ -190,6 +194,8 @@ typedef struct lamp_column {
 /* NULL if the folded key means nothing to us. "wattage1", "poleheightdesc", "mountht" are found as "wattage",
  * "poleheight", "mountheight". */
 const lamp_column *lamp_column_find(const char *folded);
+
+/* ---- words in values (words.c) ---- */
 
 /* Folded text (with blanks), and which characters are in it, anywhere and at the beginning of words: that rules out
  * most words. */
@@ -206,10 +212,6 @@ static inline bool lamp_has_word(const lamp_text *text, const char *wanted) {
     bool may = *wanted == '*' ? text->any & lamp_bit(wanted[1]) : text->first & lamp_bit(*wanted);
     return may && lamp_find_word(text, wanted);
 }
-
-/* Folds text into out (always terminated): ASCII lower case letters and digits; UTF-8 or Latin-1 accents dropped. With
- * blanks, every run of anything else becomes one blank. Returns the length. */
-size_t lamp_fold(const char *text, bool blanks, char *out, size_t size);
 
 /* Words in folded text (with blanks). Return -1 where none is found. */
 int lamp_source_word(const char *folded); /* geo_lamp.source */
