@@ -10,7 +10,7 @@
  *       files: [lamps.geojson]      # --lamps
  *       height: 8                   # --lamp-height
  *     windows:                      # the same of "window-"
- *       ratio: 0.3
+ *       lit: 0.3
  *     materials:                    # by class: noc_class_name
  *       wall: { albedo: [0.5, 0.45, 0.4], roughness: 0.8 }
  *     cameras:                      # by name; the first one is the recipe's own

@@ -37,7 +37,7 @@ typedef struct cli_command {
     int (*run)(void *args); /* returns the exit status */
 } cli_command;
 
-extern const cli_command cli_render, cli_info, cli_compare, cli_experiment;
+extern const cli_command cli_render, cli_info, cli_init, cli_compare, cli_experiment;
 extern const cli_command *const cli_commands[]; /* NULL-ended */
 const cli_command *cli_find_command(const char *name);
 

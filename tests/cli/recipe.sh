@@ -23,7 +23,7 @@ draw() {
     out=$1
     shift
     run render "$@" -q --frames 2 -o "$out"
-    result "$status" "draws $out"
+    result "$status" "draws $out of $1"
 }
 # shellcheck disable=SC2086 # a list of words
 draw words.exr city.gml $say
@@ -50,6 +50,37 @@ printf 'nocturne: 1\ninputs: [none.gml]\n' >none.yaml
 expect "an input that is not there" 1 'none.gml' render none.yaml -o a.png
 printf 'nocturne: 1\ninputs: [city.gml]\nlod: 12\n' >bad.yaml
 expect "a wrong value" 1 'bad.yaml:3: lod: "12" is outside 0 to 4' render bad.yaml -o a.png
+
+cp city.gml 'a "b" c.gml'
+expect "init without files" 2 'which files' init town
+expect "init without anything" 2 'which folder' init
+expect "init in a file" 2 'is no folder' init city.gml city.gml
+expect "init of a file that is not there" 1 'none.gml' init town none.gml
+[ ! -e town ]
+result $? "what failed leaves no folder"
+run init town city.gml 'a "b" c.gml' builtin:single
+result $status "init"
+expect "init does not overwrite" 1 'is left alone' init town city.gml
+[ "$(find town | wc -l)" = 2 ]
+result $? "init leaves its recipe alone" "$(ls -a town)"
+grep -q '"../city.gml" # CityGML' town/city.yaml
+result $? "paths are seen from the recipe's folder" "$(cat town/city.yaml)"
+draw town.exr town/city.yaml --size 48x32 --view aerial
+draw direct.exr city.gml 'a "b" c.gml' builtin:single --size 48x32 --view aerial
+run compare town.exr direct.exr
+grep -Eq 'all pixels +1,536 +0.000 +0 ' out
+result $? "its picture is that of the files"
+sed -e 's/^#\([a-z]\)/\1/' -e 's/^#\(  [a-z]\)/\1/' -e '/\.\.\./d' -e '/^crs:/d' town/city.yaml >town/all.yaml
+run render town/all.yaml -q --size 48x32 --frames 1 -o all.exr
+result $status "every key that waits to be used can be used"
+for city in "$source_dir"/cities/*.yaml; do
+    name=$(basename "$city")
+    if [ -d "$source_dir/../shared/data" ]; then
+        draw real.exr "$city" --size 32x18 --frames 1
+    else
+        skip "draws $name" "shared/data is not here"
+    fi
+done
 run info sub/city.yaml
 grep -q 'CityGML' out
 result $? "info tells of a recipe's inputs"
