@@ -230,6 +230,31 @@ put("cityjson", "lines.jsonl", "".join(json.dumps(v) + "\n" for v in [dict(city_
     {"type": "CityJSONFeature", "id": i, "CityObjects": {i: dict(city_objects["house"], children=[])},
      "vertices": corners} for i in ["a", "b"]]))
 
+# ---- terrain: little-endian TIFFs of one strip, by hand ----
+
+def tiff(width, height, values, code, bits, sample, extra=()):
+    data = b"".join(struct.pack("<" + code, v) for v in values)
+    entries = [(256, 3, 1, width), (257, 3, 1, height), (258, 3, 1, bits), (259, 3, 1, 1), (262, 3, 1, 1),
+               (277, 3, 1, 1), (278, 3, 1, height), (279, 4, 1, len(data)), (339, 3, 1, sample)]
+    arrays = [(33550, "d", (2, 2, 0)), (33922, "d", (0, 0, 0, 690000, 5330000, 0)),
+              (34735, "H", (1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 25832))] + list(extra)
+    count = len(entries) + len(arrays) + 1
+    at = 8 + 2 + 12 * count + 4
+    body = b""
+    for tag, kind, numbers in arrays:
+        packed = numbers if kind == "s" else struct.pack("<%d%s" % (len(numbers), kind), *numbers)
+        entries.append((tag, {"d": 12, "H": 3, "s": 2}[kind], len(numbers), at + len(body)))
+        body += packed + b"\0" * (len(packed) % 2)
+    entries.append((273, 4, 1, at + len(body)))
+    rows = b"".join(struct.pack("<HHI", t, k, n) + (struct.pack("<HH", v, 0) if k == 3 and n == 1 else
+                                                    struct.pack("<I", v)) for t, k, n, v in sorted(entries))
+    return b"II*\0" + struct.pack("<IH", 8, count) + rows + struct.pack("<I", 0) + body + data
+
+
+put("terrain", "floats.tif", tiff(9, 7, [500 + (i % 9) * (i // 9) / 3 for i in range(63)], "f", 32, 3,
+                                  [(42113, "s", b"-9999\0")]))
+put("terrain", "whole.tif", tiff(5, 5, [i * 7 % 13 if i != 12 else -9999 for i in range(25)], "h", 16, 2))
+
 # ---- lamps ----
 
 csv = ("id,lon,lat,height,lumens,watt,lamp_type,colour,direction\n1,11.5,48.1,8,5000,50,LED,3000K,90\n"

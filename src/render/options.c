@@ -118,6 +118,8 @@ static const noc_option import_options[] = {
     TEXT(P, scene_crs, "scene-crs", "City", "CRS", "CRS of the scene; else the first input's, or UTM"),
     TEXT(P, bbox, "bbox", "City", "X0,Y0,X1,Y1[,CRS]", "part of city models and lamps that is taken"),
     INT(P, lod, "lod", "City", 0, 4, "", "highest level of detail of city models that is taken"),
+    REAL(P, terrain_error, "terrain-error", "City", 0, 1000, "m", "what triangles of a GeoTIFF may be off its heights"),
+    INT(P, terrain_triangles, "terrain-triangles", "City", 100, 20000000, "", "that a GeoTIFF may become"),
     SWITCH(P, infer_lamps, "infer-lamps", "City",
            "place lamps by a rule: where no input holds any; on: or none of use"),
     BOOL(P, strict, "strict", "City", "what is left out of an input, guessed at or made up is an error"),

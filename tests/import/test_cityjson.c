@@ -365,6 +365,13 @@ static void test_lamps(void **state) {
     assert_float_equal(l->watts, 30, 0);
     assert_float_equal(sink.lamps.data[2].xyz[0], 102, 0);
     assert_int_equal(sink.polygons.len, 6); /* the bench's; the post is a block around its light */
+    /* a vertex that is none is no place */
+    read_well("{'type':'CityJSON','version':'1.0','CityObjects':{" OBJECT(
+                  "a", "CityFurniture", "'attributes':{'function':'1150'},",
+                  "{'type':'MultiPoint','lod':'0','boundaries':[0]}") "},'vertices':[[1,'x',2]]}",
+              3);
+    assert_int_equal(sink.lamps.len, 0);
+    assert_int_equal(city_issue(&sink, "points, which are not drawn"), 1);
 }
 
 /* ---- sequences ---- */

@@ -42,6 +42,12 @@ static const double *point_of(const builder *b, const json_t *index) {
     return json_is_integer(index) && i >= 0 && (uint64_t)i < b->points->count ? b->points->xyz + 3 * i : NULL;
 }
 
+/* That something stands at: NULL also where it is no number. */
+static const double *place_of(const builder *b, const json_t *geometry) {
+    const double *xyz = point_of(b, json_array_get(json_object_get(geometry, "boundaries"), 0));
+    return xyz && isfinite(xyz[0] + xyz[1] + xyz[2]) ? xyz : NULL;
+}
+
 static void read_ring(builder *b, const json_t *ring, bool exterior) {
     cg_parser *p = b->r->parser;
     size_t count = json_array_size(ring);
@@ -193,7 +199,7 @@ static const json_t *content_of(const cj_reading *r, const json_t *geometry) {
 
 static bool place_instance(builder *b, const json_t *geometry) {
     cg_parser *p = b->r->parser;
-    const double *point = point_of(b, json_array_get(json_object_get(geometry, "boundaries"), 0));
+    const double *point = place_of(b, geometry);
     const json_t *matrix = json_object_get(geometry, "transformationMatrix");
     if (!point) {
         issue(b, GEO_SKIPPED, "implicit geometry without a reference point");
@@ -227,7 +233,7 @@ static void read_other(builder *b, const json_t *geometry) {
     cg_object *object = &b->r->parser->object;
     const char *type = cj_text(geometry, "type");
     bool points = !strcmp(type, "MultiPoint");
-    const double *point = point_of(b, json_array_get(json_object_get(geometry, "boundaries"), 0));
+    const double *point = place_of(b, geometry);
     if (points && point && b->feature == 0 && cg_may_be_lamp(object->features.data[0].type)) {
         if (!object->has_point)
             memcpy(object->point, point, sizeof(object->point));

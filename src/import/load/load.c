@@ -73,9 +73,12 @@ static noc_status read_remote(reading *r, geo_sink *sink, const mesh_place *plac
     mesh_scene to = { .scene = im->scene, .place = place, .issues = in->issues };
     const mesh_parts parts = mesh_scene_parts(&to);
     noc_status status = remote_read(in->reader, in->path, im->params, sink, place ? &parts : NULL, result);
+    pthread_mutex_lock(&im->lock);
     if (*result->format)
         in->file.format = arena_strdup(&im->report->arena, result->format);
-    return !status && im->report->arena.refused ? noc_no_memory(im->log, in->path) : status;
+    bool refused = im->report->arena.refused;
+    pthread_mutex_unlock(&im->lock);
+    return !status && refused ? noc_no_memory(r->log, in->path) : status;
 }
 
 static noc_status read_mesh(reading *r, noc_stream *stream, remote_result *result) {

@@ -84,7 +84,8 @@ static const struct {
 } gdal_settings[] = {
     { "CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO" }, /* nothing is written beside the input */
     { "CPL_CURL_ENABLE_VSIMEM", "NO" },
-    { "GDAL_DISABLE_READDIR_ON_OPEN", "NO" },      /* a Shapefile's other parts are found */
+    { "GDAL_DISABLE_READDIR_ON_OPEN", "NO" }, /* a Shapefile's other parts are found */
+    { "GDAL_GEOREF_SOURCES", "" },
     { "GDAL_PAM_ENABLED", "NO" },                  /* no .aux.xml, neither read nor written */
     { "OGR_SQLITE_LOAD_EXTENSIONS", "" },          /* whatever the environment says */
     { "OGR_SQLITE_PRAGMA", "trusted_schema=OFF" }, /* no views or triggers over functions that touch files */
@@ -284,8 +285,14 @@ noc_status map_source_open(map_source *m, noc_stream *stream, const map_format *
         const char *const *options = format->kind == MAP_OSM                     ? osm_options
                                      : format->kind == MAP_GEOPACKAGE && !copied ? immutable
                                                                                  : none;
+        bool grid = format->kind == MAP_GEOTIFF;
+        if (grid) { /* nothing beside it: no overviews, masks, world files */
+            CPLSetThreadLocalConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "EMPTY_DIR");
+            CPLSetThreadLocalConfigOption("GDAL_GEOREF_SOURCES", "INTERNAL");
+        }
         m->dataset =
-            GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, format->drivers, options, NULL);
+            GDALOpenEx(path, (grid ? GDAL_OF_RASTER : GDAL_OF_VECTOR) | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+                       format->drivers, options, NULL);
         if (m->dataset && m->link[0])
             m->error[0] = 0; /* that it was not fetched is said below */
         status = m->dataset && !m->error[0] ? NOC_OK : map_source_error(m);

@@ -10,7 +10,7 @@ typedef struct map_format {
     const char *name;
     const char *drivers[3]; /* GDAL's, ended by NULL */
     bool (*probe)(const char *head, size_t size);
-    enum { MAP_GEOJSON, MAP_FLATGEOBUF, MAP_OSM, MAP_GEOPACKAGE, MAP_SHAPEFILE } kind;
+    enum { MAP_GEOJSON, MAP_FLATGEOBUF, MAP_OSM, MAP_GEOPACKAGE, MAP_SHAPEFILE, MAP_GEOTIFF } kind;
 } map_format;
 
 #if NOC_HAVE_GDAL

@@ -37,7 +37,10 @@ enum {
     REMOTE_PROGRESS, /* double */
     REMOTE_COLUMNS,  /* points, count, and of each column values, mapped, texts: name, field, unit, example */
     REMOTE_FEATURES, /* geo_features */
-    REMOTE_END,      /* remote_end, text: format */
+    REMOTE_OBJECT,   /* remote_object, text: id */
+    REMOTE_POLYGON,  /* class, count of rings, text: id, points of each ring, their coordinates */
+    REMOTE_OBJECT_END,
+    REMOTE_END, /* remote_end, text: format */
 };
 
 typedef struct remote_head {
@@ -47,6 +50,9 @@ typedef struct remote_asked {
     int32_t parent;
     bool named_lamps, inspect;
 } remote_asked;
+typedef struct remote_object {
+    int32_t kind, lod;
+} remote_object;
 typedef struct remote_mesh {
     uint64_t vertices, triangles;
     int32_t material;
@@ -124,6 +130,9 @@ typedef struct remote_taker {
     bool ended;
     char *error;              /* that the helper told, until it ends: one is reported, with the status */
     NOC_ARRAY(int) materials; /* as the scene numbers them */
+    bool placed, in_object;   /* a CRS was told; an object began and has not ended */
+    NOC_ARRAY(size_t) rings;  /* of a polygon */
+    NOC_ARRAY(double) xyz;
 } remote_taker;
 
 /* Where `size` bytes more may be put, before bytes.len grows by what came. NULL after reporting. */

@@ -20,7 +20,8 @@ static void emit(serving *s, uint32_t kind) {
     remote_add(&s->batch, kind, &s->out);
     if (s->batch.refused)
         _exit(REMOTE_NO_MEMORY);
-    bool waits = kind == REMOTE_LAMP || kind == REMOTE_MATERIAL || kind == REMOTE_ISSUE || kind == REMOTE_CRS;
+    bool waits = kind == REMOTE_LAMP || kind == REMOTE_MATERIAL || kind == REMOTE_ISSUE || kind == REMOTE_CRS ||
+                 kind == REMOTE_OBJECT || kind == REMOTE_POLYGON || kind == REMOTE_OBJECT_END;
     if ((!waits || s->batch.bytes.len > BATCH) && !remote_send(REMOTE_FD, &s->batch))
         _exit(1); /* whoever asked is gone: so are we */
 }
@@ -40,6 +41,36 @@ static noc_status on_crs(void *ctx, const char *srs_name, const char *place, boo
     remote_put_text(&s->out, place);
     emit(s, REMOTE_CRS);
     *lat_first = false;
+    return NOC_OK;
+}
+
+static noc_status on_begin_object(void *ctx, const geo_object *object) {
+    serving *s = ctx;
+    remote_object o = { (int32_t)object->kind, object->lod };
+    remote_put(&s->out, &o, sizeof(o));
+    remote_put_text(&s->out, object->id);
+    emit(s, REMOTE_OBJECT);
+    return NOC_OK;
+}
+
+static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
+    serving *s = ctx;
+    uint64_t numbers[] = { (uint64_t)polygon->cls, polygon->ring_count };
+    size_t points = 0;
+    remote_put(&s->out, numbers, sizeof(numbers));
+    remote_put_text(&s->out, polygon->id);
+    for (size_t i = 0; i < polygon->ring_count; i++) {
+        uint64_t size = polygon->ring_size[i];
+        remote_put(&s->out, &size, sizeof(size));
+        points += polygon->ring_size[i];
+    }
+    remote_put(&s->out, polygon->xyz, points * 3 * sizeof(double));
+    emit(s, REMOTE_POLYGON);
+    return NOC_OK;
+}
+
+static noc_status on_end_object(void *ctx) {
+    emit(ctx, REMOTE_OBJECT_END);
     return NOC_OK;
 }
 
@@ -130,6 +161,9 @@ static void serve(serving *s) {
                       .issues = issues,
                       .lamps_lost = &s->lamps_lost,
                       .crs = on_crs,
+                      .begin_object = on_begin_object,
+                      .polygon = on_polygon,
+                      .end_object = on_end_object,
                       .lamp = on_lamp,
                       .progress = on_progress,
                       .columns = on_columns,

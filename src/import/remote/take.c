@@ -48,6 +48,55 @@ static noc_status take_lamp(remote_taker *t, remote_record *one) {
     return t->sink->lamp(t->sink->ctx, &lamp);
 }
 
+static noc_status take_object(remote_taker *t, remote_record *one) {
+    remote_object o = { 0 };
+    remote_get(one, &o, sizeof(o));
+    const char *id = remote_get_text(one);
+    if (one->bad || t->in_object || t->parts || (uint32_t)o.kind >= GEO_KIND_COUNT || o.lod < -1 || o.lod > 4)
+        return garbled(t);
+    t->in_object = true;
+    return t->sink->begin_object(t->sink->ctx, &(geo_object){ (geo_kind)o.kind, id, o.lod });
+}
+
+static noc_status take_polygon(remote_taker *t, remote_record *one) {
+    uint64_t numbers[2] = { 0 }, points = 0; /* class, rings */
+    remote_get(one, numbers, sizeof(numbers));
+    const char *id = remote_get_text(one);
+    const char *sizes = remote_get_array(one, numbers[1], sizeof(uint64_t));
+    if (one->bad || !t->in_object || !t->placed || numbers[0] >= NOC_CLASS_COUNT || !numbers[1])
+        return garbled(t);
+    t->rings.len = t->xyz.len = 0;
+    for (uint64_t i = 0; i < numbers[1]; i++) {
+        uint64_t size;
+        memcpy(&size, sizes + i * sizeof(size), sizeof(size));
+        if (size < 3 || size > one->bytes.len)
+            return garbled(t);
+        points += size;
+        if (!array_push(&t->rings, (size_t)size))
+            return noc_no_memory(t->sink->log, t->path);
+    }
+    const void *xyz = remote_get_array(one, points, 3 * sizeof(double));
+    if (one->bad)
+        return garbled(t);
+    size_t count = 3 * (size_t)points;
+    if (!array_reserve(&t->xyz, count))
+        return noc_no_memory(t->sink->log, t->path);
+    memcpy(t->xyz.data, xyz, count * sizeof(double)); /* aligned */
+    const geo_polygon polygon = { .cls = (noc_class)numbers[0],
+                                  .id = id,
+                                  .ring_count = t->rings.len,
+                                  .ring_size = t->rings.data,
+                                  .xyz = t->xyz.data };
+    return t->sink->polygon(t->sink->ctx, &polygon);
+}
+
+static noc_status take_object_end(remote_taker *t) {
+    if (!t->in_object)
+        return garbled(t);
+    t->in_object = false;
+    return t->sink->end_object(t->sink->ctx);
+}
+
 static noc_status take_material(remote_taker *t, remote_record *one) {
     noc_material material;
     if (!remote_get(one, &material, sizeof(material)) || !t->parts || !is_bool(&material.two_sided))
@@ -137,7 +186,7 @@ static noc_status take_end(remote_taker *t, remote_record *one) {
     remote_end end = { 0 };
     remote_get(one, &end, sizeof(end));
     const char *format = remote_get_text(one);
-    if (one->bad || end.status < NOC_OK || end.status > NOC_ERR_CANCELLED ||
+    if (one->bad || (t->in_object && !end.status) || end.status < NOC_OK || end.status > NOC_ERR_CANCELLED ||
         (end.status != NOC_OK) != (t->error != NULL) || !is_bool(&end.trailing))
         return garbled(t);
     snprintf(t->result->format, sizeof(t->result->format), "%s", format);
@@ -155,6 +204,7 @@ static noc_status take(remote_taker *t, uint32_t kind, remote_record *one) {
     case REMOTE_CRS: {
         const char *srs_name = remote_get_text(one), *place = remote_get_text(one);
         bool lat_first;
+        t->placed = !one->bad;
         return one->bad ? garbled(t) : t->sink->crs(t->sink->ctx, srs_name, place, &lat_first);
     }
     case REMOTE_LAMP: return take_lamp(t, one);
@@ -164,6 +214,9 @@ static noc_status take(remote_taker *t, uint32_t kind, remote_record *one) {
     case REMOTE_PROGRESS: return remote_get(one, &t->done, sizeof(t->done)) && isfinite(t->done) ? NOC_OK : garbled(t);
     case REMOTE_COLUMNS: return take_columns(t, one);
     case REMOTE_FEATURES: return take_features(t, one);
+    case REMOTE_OBJECT: return take_object(t, one);
+    case REMOTE_POLYGON: return take_polygon(t, one);
+    case REMOTE_OBJECT_END: return take_object_end(t);
     case REMOTE_END: return take_end(t, one);
     default: return garbled(t);
     }
@@ -201,5 +254,7 @@ char *remote_room(remote_taker *t, size_t size) {
 void remote_taker_free(remote_taker *t) {
     array_free(&t->bytes);
     array_free(&t->materials);
+    array_free(&t->rings);
+    array_free(&t->xyz);
     free(t->error);
 }
