@@ -97,12 +97,47 @@ static noc_status check_inputs(const S *spec, const char *place, json_t *object,
 }
 
 /* Which defaults of lamps the spec has said, for strict. */
-static void note_chosen(json_t *object, noc_import_params *import) {
+static void note_chosen(json_t *object, lab_scene *scene) {
     static const char *const names[NOC_LAMP_DEFAULT_COUNT] = {
         [NOC_LAMP_HEIGHT] = "lamp-height", [NOC_LAMP_FLUX] = "lamp-lumens", [NOC_LAMP_COLOUR] = "lamp-kelvin"
     };
-    for (int i = 0; i < NOC_LAMP_DEFAULT_COUNT; i++)
-        import->lamp_chosen |= json_object_get(object, names[i]) ? 1u << i : 0;
+    for (int i = 0; i < NOC_LAMP_DEFAULT_COUNT; i++) {
+        const noc_option *o;
+        bool said = json_object_get(object, names[i]) != NULL;
+        for (size_t k = 0; (o = noc_recipe_option(scene->recipe, k)); k++)
+            said = said || !strcmp(o->name, names[i]);
+        scene->import.lamp_chosen |= said ? 1u << i : 0;
+    }
+}
+
+/* A recipe's inputs stand in its place. What it says of reading holds where the scene says nothing else; of pictures
+ * the spec says all. */
+static noc_status take_recipe(S *spec, const char *place, const char *path, size_t others, lab_scene *scene) {
+    if (scene->recipe)
+        return lab_wrong(spec, place, "%.80s is a second recipe; one makes a city", path);
+    noc_status status = noc_recipe_load(path, spec->log, &scene->recipe);
+    const noc_recipe_info *info = noc_recipe_get_info(scene->recipe);
+    status = status ? status : lab_too_many(spec, place, scene->input_count + info->input_count, LAB_INPUTS, "inputs");
+    const char **inputs = arena_alloc(&spec->arena, sizeof(char *) * (info->input_count + others + 1));
+    if (inputs && scene->input_count)
+        memcpy(inputs, scene->inputs, sizeof(char *) * scene->input_count);
+    scene->inputs = inputs ? inputs : scene->inputs;
+    for (size_t i = 0; inputs && i < info->input_count && !status; i++)
+        scene->inputs[scene->input_count++] = info->inputs[i];
+    scene->import.materials = info->materials;
+    scene->import.material_count = info->material_count;
+    return status;
+}
+
+static noc_status use_recipe(S *spec, json_t *object, lab_scene *scene) {
+    const noc_option *option;
+    noc_status status = NOC_OK;
+    for (size_t i = 0; !status && (option = noc_recipe_option(scene->recipe, i)); i++)
+        for (const lab_options *set = scene_options; set->table && !status; set++)
+            for (const noc_option *o = set->table(); o->name && !status; o++)
+                if (o == option && !json_object_get(object, o->name))
+                    status = noc_recipe_set(scene->recipe, o, (char *)scene + set->offset, spec->log);
+    return status;
 }
 
 static noc_status read_inputs(S *spec, const char *place, json_t *inputs, lab_scene *scene) {
@@ -119,8 +154,13 @@ static noc_status read_inputs(S *spec, const char *place, json_t *inputs, lab_sc
         const char *text = json_string_value(input);
         if (!text || !*text)
             return lab_wrong(spec, place, "inputs must be an array of files or builtin:NAME");
-        if (scene->inputs)
-            scene->inputs[scene->input_count++] = resolve(spec, text);
+        const char *path = scene->inputs ? resolve(spec, text) : NULL;
+        if (path && noc_recipe_is(path))
+            status = take_recipe(spec, place, path, json_array_size(inputs), scene);
+        else if (path)
+            scene->inputs[scene->input_count++] = path;
+        if (status)
+            return status;
     }
     for (i = 0; i < lamps->count; i++)
         lamps->text[i] = resolve(spec, lamps->text[i]);
@@ -134,7 +174,10 @@ static noc_status read_scene(S *spec, const char *place, json_t *object, lab_sce
     status = status ? status : read_inputs(spec, place, json_object_get(object, "inputs"), scene);
     if (status)
         return status;
-    note_chosen(object, &scene->import);
+    status = use_recipe(spec, object, scene);
+    if (status)
+        return status;
+    note_chosen(object, scene);
     return check_inputs(spec, place, object, scene);
 }
 

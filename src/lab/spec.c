@@ -4,6 +4,8 @@
 void noc_lab_spec_destroy(noc_lab_spec *spec) {
     if (!spec)
         return;
+    for (size_t i = 0; i < spec->scene_count; i++)
+        noc_recipe_destroy(spec->scenes[i].recipe);
     free(spec->scenes);
     free(spec->cameras);
     free(spec->configs);

@@ -6,6 +6,7 @@
 
 #include <nocturne/lab.h>
 #include <nocturne/option.h>
+#include <nocturne/recipe.h>
 #include <nocturne/text.h>
 
 enum {
@@ -28,6 +29,7 @@ typedef struct lab_scene {
     size_t input_count;
     noc_import_params import;
     noc_builtin_params builtin;
+    noc_recipe *recipe; /* among its inputs, whose texts it holds; NULL: none */
 } lab_scene;
 
 /* Parts of a camera's picture that are shown enlarged below it, in frames of a colour each. */

@@ -303,6 +303,60 @@ static void test_spec(void **state) {
     noc_log_destroy(log);
 }
 
+static void write_text(const char *path, const char *text) {
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    assert_true(fputs(text, f) >= 0);
+    assert_int_equal(fclose(f), 0);
+}
+
+/* The error of the last row of a spec whose scene is this. */
+static double error_of(const char *scene, const char *name, noc_log *log) {
+    char text[1000], place[200];
+    snprintf(text, sizeof(text),
+             "{ \"scene\": { \"name\": \"one\", %s }, \"cameras\": [ { \"name\": \"own\" } ], \"size\": \"16x12\","
+             "  \"frames\": 1, \"repetitions\": 1, \"reference\": { \"rays\": 4, \"frames\": 2 },"
+             "  \"configurations\": [ { \"name\": \"is\", \"method\": \"is\" } ] }",
+             scene);
+    snprintf(place, sizeof(place), "%s/a.json", folder);
+    noc_lab_spec *spec;
+    noc_lab *lab;
+    noc_lab_row row;
+    double error = -1;
+    if (noc_lab_spec_parse(text, place, &spec, log))
+        fail_msg("%s", last);
+    assert_int_equal(open_lab(spec, name, noc_lab_default_params(), &lab, log), NOC_OK);
+    assert_int_equal(noc_lab_run(lab), NOC_OK);
+    for (size_t r = 0; noc_lab_get_row(lab, r, &row); r++)
+        error = value(&row, "rmse8_all");
+    noc_lab_destroy(lab);
+    noc_lab_spec_destroy(spec);
+    return error;
+}
+
+/* A recipe in a spec is its inputs and its options; the spec's own options win. */
+static void test_recipe(void **state) {
+    (void)state;
+    noc_log *log = fresh_log();
+    char path[200];
+    snprintf(path, sizeof(path), "%s/town.yaml", folder);
+    write_text(path, "nocturne: 1\ninputs: [builtin:mess]\nlights: 40\nscene-seed: 5\nsky: 1\n");
+    double direct = error_of("\"inputs\": [\"builtin:mess\"], \"lights\": 40, \"scene-seed\": 5", "direct", log);
+    double other = error_of("\"inputs\": [\"builtin:mess\"], \"lights\": 9, \"scene-seed\": 5", "other", log);
+    assert_true(direct > 0 && other != direct);
+    assert_true(error_of("\"inputs\": [\"town.yaml\"]", "recipe", log) == direct);
+    assert_true(error_of("\"inputs\": [\"town.yaml\"], \"lights\": 9", "wins", log) == other);
+    assert_int_equal(errors, 0);
+
+    noc_lab_spec *spec;
+    snprintf(path, sizeof(path), "%s/a.json", folder);
+    const char *twice = "{ \"scene\": { \"name\": \"x\", \"inputs\": [\"town.yaml\", \"town.yaml\"] }, "
+                        "\"configurations\": [{}] }";
+    assert_int_equal(noc_lab_spec_parse(twice, path, &spec, log), NOC_ERR_FORMAT);
+    assert_non_null(strstr(last, "a second recipe"));
+    noc_log_destroy(log);
+}
+
 typedef struct watch {
     int frames, most; /* of them the end is asked for */
     int stages, notes;
@@ -388,7 +442,7 @@ static void test_locale(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_figures), cmocka_unit_test(test_measure_ends), cmocka_unit_test(test_spec),
-        cmocka_unit_test(test_going_on),     cmocka_unit_test(test_locale),
+        cmocka_unit_test(test_recipe),       cmocka_unit_test(test_going_on),     cmocka_unit_test(test_locale),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
