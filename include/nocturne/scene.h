@@ -54,6 +54,10 @@ typedef struct noc_material {
 } noc_material;
 
 NOC_API noc_material noc_class_material(noc_class cls);
+/* The same surface after rain: under a film of water it is darker (Angstrom 1925: the water's side of the surface
+ * reflects a / (n^2 (1 - a) + a) of what comes, n = 1.333) and reflects as water does, f0 = 0.02. For roads, pavements
+ * and ground; at run time by noc_scene_set_class_material. NULL is noc_class_material(NOC_CLASS_OTHER), wet. */
+NOC_API noc_material noc_material_wet(const noc_material *dry);
 
 typedef struct noc_mesh {
     size_t vertex_count;

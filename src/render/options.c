@@ -122,6 +122,7 @@ static const noc_option import_options[] = {
     INT(P, terrain_triangles, "terrain-triangles", "City", 100, 20000000, "", "that a GeoTIFF may become"),
     SWITCH(P, infer_lamps, "infer-lamps", "City",
            "place lamps by a rule: where no input holds any; on: or none of use"),
+    BOOL(P, wet, "wet", "City", "after rain: roads, pavements and ground are dark and reflect"),
     BOOL(P, strict, "strict", "City", "what is left out of an input, guessed at or made up is an error"),
     TEXTS(P, lamps, "lamps", "City", "FILE", "a file whose points are lamps whatever it says; repeatable"),
     TEXTS(P, lamp_columns, "lamp-columns", "City", "MAP", "columns, tags: height=A,watts=B (height_ft=A); repeatable"),

@@ -37,6 +37,18 @@ noc_material noc_class_material(noc_class cls) {
     return class_materials[(unsigned)cls < NOC_CLASS_COUNT ? cls : NOC_CLASS_OTHER];
 }
 
+/* A. Angstrom, "The albedo of various surfaces of ground", Geografiska Annaler 7 (1925) 323-342. The roughness is a
+ * choice of ours between puddles and a film that follows the grains. */
+noc_material noc_material_wet(const noc_material *dry) {
+    const float n2 = 1.333f * 1.333f, film = 0.15f;
+    noc_material m = dry ? *dry : noc_class_material(NOC_CLASS_OTHER);
+    for (int i = 0; i < 3; i++)
+        m.albedo[i] = m.albedo[i] / (n2 * (1 - m.albedo[i]) + m.albedo[i]);
+    m.f0 = 0.02f;
+    m.roughness = NOC_MIN(m.roughness, film);
+    return m;
+}
+
 static bool in_range(float x, float lo, float hi) { return x >= lo && x <= hi; } /* false for NaN */
 
 const char *noc_material_fault(const noc_material *m) {

@@ -168,6 +168,7 @@ static noc_camera camera;
     P(0, noc_recipe_get_info(NULL)->input_count == 0)                                                                  \
     P(0, noc_recipe_option(NULL, 0) == NULL)                                                                           \
     P(0, noc_recipe_set(NULL, noc_render_options(), &camera, NULL) == NOC_ERR_ARGUMENT)                                \
+    P(0, noc_material_wet(NULL).f0 > 0)                                                                                \
     P(noc_render_use_preset(NULL, NOC_PRESET_STILL), true)                                                             \
     P(noc_device_destroy(noc_device_create(NULL, NULL)), true)                                                         \
     P(noc_device_destroy(NULL), true)                                                                                  \

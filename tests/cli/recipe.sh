@@ -42,6 +42,8 @@ result $? "an eye wins over the recipe's cameras"
 printf 'materials: { ground: { albedo: 0.9 }, terrain: { albedo: 0.9 } }\n' | cat sub/city.yaml - >sub/white.yaml
 draw white.exr sub/white.yaml
 differ "materials of a class" recipe.exr white.exr
+draw wet.exr sub/city.yaml --wet
+differ "a wet ground" recipe.exr wet.exr
 expect "an unknown camera" 2 'has no camera "nera"; is it near\?' render sub/city.yaml --camera nera -o a.png
 expect "a camera without a recipe" 2 'for a recipe among the inputs' render city.gml --camera near -o a.png
 expect "a camera and a view" 2 'exclude each other' render sub/city.yaml --camera near --view street -o a.png

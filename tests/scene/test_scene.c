@@ -53,6 +53,14 @@ static void test_materials(void **state) {
     assert_string_equal(noc_class_name((noc_class)99), "unknown");
     assert_int_equal(noc_class_material((noc_class)-1).cls, NOC_CLASS_OTHER);
     assert_int_equal(f->messages, 0);
+    noc_material dry = noc_class_material(NOC_CLASS_ROAD), rain = noc_material_wet(&dry),
+                 again = noc_material_wet(&rain);
+    assert_true(rain.albedo[0] > .04f && rain.albedo[0] < dry.albedo[0] && rain.roughness < dry.roughness);
+    assert_true(rain.cls == NOC_CLASS_ROAD && again.albedo[0] < rain.albedo[0]);
+    dry.albedo[0] = 1; /* nothing is lost to what does not absorb, and nothing comes of black */
+    dry.albedo[1] = 0;
+    rain = noc_material_wet(&dry);
+    assert_true(rain.albedo[0] == 1 && rain.albedo[1] == 0 && noc_material_wet(NULL).f0 == .02f);
     noc_material good = noc_class_material(NOC_CLASS_WALL), bad[9];
     for (int i = 0; i < 9; i++)
         bad[i] = good;

@@ -360,6 +360,31 @@ static noc_status list_inputs(importer *im, const char *const *paths, size_t pat
     return NOC_OK;
 }
 
+/* Of classes, once all is there that is of them. */
+static noc_status set_materials(noc_scene *scene, const noc_import_params *params) {
+    static const noc_class wet[] = { NOC_CLASS_ROAD, NOC_CLASS_SIDEWALK, NOC_CLASS_TERRAIN, NOC_CLASS_GROUND };
+    noc_material of[NOC_CLASS_COUNT];
+    bool set[NOC_CLASS_COUNT] = { false };
+    noc_status status = NOC_OK;
+    for (int c = 0; c < NOC_CLASS_COUNT; c++)
+        of[c] = noc_class_material((noc_class)c);
+    for (size_t i = 0; i < params->material_count; i++) {
+        noc_class cls = params->materials[i].cls;
+        if ((unsigned)cls >= NOC_CLASS_COUNT)
+            return noc_error(scene->log, NOC_ERR_ARGUMENT, "import: materials[%zu] is of class %d", i, (int)cls);
+        of[cls] = params->materials[i];
+        set[cls] = true;
+    }
+    for (size_t i = 0; i < NOC_COUNT(wet) && params->wet; i++) {
+        of[wet[i]] = noc_material_wet(&of[wet[i]]);
+        set[wet[i]] = true;
+    }
+    for (int c = 0; c < NOC_CLASS_COUNT && !status; c++)
+        if (set[c])
+            status = noc_scene_set_class_material(scene, (noc_class)c, &of[c]);
+    return status;
+}
+
 noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const char *const *paths, size_t path_count,
                        const noc_import_params *params, bool inspect, noc_report **report) {
     const noc_import_params defaults = noc_import_default_params();
@@ -405,8 +430,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         status = run(&im, readers);
     if (scene->no_memory)
         status = NOC_ERR_MEMORY; /* some go on without what the scene refused */
-    for (size_t i = 0; i < params->material_count && !status && !inspect; i++)
-        status = noc_scene_set_class_material(scene, params->materials[i].cls, &params->materials[i]);
+    if (!status && !inspect)
+        status = set_materials(scene, params);
     if (!status && !inspect)
         status = noc_scene_commit(scene);
     if (status == NOC_ERR_CANCELLED)
