@@ -142,6 +142,15 @@ typedef struct noc_report_column {
     bool mapped;         /* by noc_import_params.lamp_columns */
 } noc_report_column;
 
+/* Windows of a city's buildings, and their walls by what became of them. */
+typedef struct noc_window_counts {
+    size_t windows;
+    size_t own; /* of them: of the models, not made */
+    size_t lit; /* of them, by lit_windows and hour of the load */
+    size_t walls[NOC_WALL_VERDICT_COUNT];
+    double area[NOC_WALL_VERDICT_COUNT]; /* of those walls, m2 */
+} noc_window_counts;
+
 typedef struct noc_report_file {
     const char *path, *format; /* "CityGML 2.0", "GeoJSON", ... */
     const char *crs;           /* as understood: "EPSG:25832 (ETRS89 / UTM zone 32N)", "" if none */
@@ -159,6 +168,7 @@ typedef struct noc_report_file {
     size_t polygons_by_class[NOC_CLASS_COUNT];
     size_t lod_used[5]; /* buildings by the level of detail that was taken */
     size_t triangles, lamps, lights;
+    noc_window_counts windows;
     size_t points;       /* of a table or map: lamps or not */
     size_t column_count; /* of a table or map, in its order; of maps with tags, those of its lamps */
     const noc_report_column *columns;
@@ -193,6 +203,7 @@ typedef struct noc_report_totals {
     size_t lamps_repeated, objects_repeated;
     size_t lamps_inferred;                        /* placed by a rule */
     size_t lamps_assumed[NOC_LAMP_DEFAULT_COUNT]; /* as in noc_report_file */
+    noc_window_counts windows;
     size_t skipped, repaired, guessed; /* features: counts of the files' lines; guessed are those of repaired that are
                                         not lossless */
 } noc_report_totals;

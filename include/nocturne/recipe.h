@@ -9,7 +9,8 @@
  *     lamps:                        # options whose names begin with "lamp-", and
  *       files: [lamps.geojson]      # --lamps
  *       height: 8                   # --lamp-height
- *     windows:                      # the same of "window-"
+ *     windows:                      # the same of "window-", and
+ *       make: on                    # --windows
  *       lit: 0.3
  *     materials:                    # by class: noc_class_name
  *       wall: { albedo: [0.5, 0.45, 0.4], roughness: 0.8 }

@@ -35,6 +35,26 @@ void cli_note_chosen(const cli_args *args, noc_import_params *import) {
         import->lamp_chosen |= cli_given(args, lamp_defaults[i].option) ? 1u << i : 0;
 }
 
+void cli_print_windows(const char *heading, const noc_window_counts *c) {
+    char a[64], b[32];
+    double area = 0;
+    const char *before = "; walls without: ";
+    for (int v = 0; v < NOC_WALL_VERDICT_COUNT; v++)
+        area += c->area[v];
+    if (!(area > 0))
+        return;
+    printf("%s%s, %s lit, %.1f on 100 m2 of wall", heading, noc_text_many(a, c->windows, "window"),
+           noc_text_count(b, c->lit), 100 * (double)c->windows / area);
+    for (int v = NOC_WALL_SMALL; v < NOC_WALL_OWN; v++)
+        if (c->walls[v]) {
+            printf("%s%s %s", before, noc_text_count(a, c->walls[v]), noc_wall_verdict_name((noc_wall_verdict)v));
+            before = ", ";
+        }
+    putchar('\n');
+    if (c->own)
+        printf("%*s%s of them are the model's own\n", (int)strlen(heading), "", noc_text_count(a, c->own));
+}
+
 void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAULT_COUNT],
                        const noc_import_params *import) {
     const double values[] = { import->lamp_height, import->lamp_lumens, import->lamp_kelvin };

@@ -113,6 +113,8 @@ void cli_add_lamps(cli_args *args, const noc_import_params *import);
 /* Which defaults of lamps the user has said, for --strict. */
 void cli_note_chosen(const cli_args *args, noc_import_params *import);
 /* A line on what lamps do not tell, and what is taken for it; nothing where they tell all. */
+/* "50 windows, 17 lit, 8.4 on 100 m2 of wall; walls without: 3 too small"; nothing where there are no walls */
+void cli_print_windows(const char *heading, const noc_window_counts *counts);
 void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAULT_COUNT],
                        const noc_import_params *import);
 

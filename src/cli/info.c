@@ -229,6 +229,7 @@ static void print_file(const noc_report_file *file, const noc_import_params *imp
     } else if (file->triangles) {
         printf("  %-11s %s\n", "triangles", noc_text_count(a, file->triangles));
     }
+    cli_print_windows("  windows     ", &file->windows);
     if (file->lamps)
         print_lamps(file, import);
     print_points(file);

@@ -146,6 +146,17 @@ static void report_file(const noc_report_file *file) {
         text("decimal_sign", (char[]){ file->decimal_sign == '?' ? 0 : file->decimal_sign, 0 });
     }
     number("lights", (double)file->lights);
+    number("windows", (double)file->windows.windows);
+    number("windows_own", (double)file->windows.own);
+    number("windows_lit", (double)file->windows.lit);
+    for (int v = NOC_WALL_TAKEN; v < NOC_WALL_VERDICT_COUNT; v++) {
+        static const char *const names[] = { "taken", "small", "tilted", "party", "own" };
+        char name[40];
+        snprintf(name, sizeof(name), "walls_%s", names[v - NOC_WALL_TAKEN]);
+        number(name, (double)file->windows.walls[v]);
+        snprintf(name, sizeof(name), "wall_area_%s", names[v - NOC_WALL_TAKEN]);
+        number(name, file->windows.area[v]);
+    }
     number("map_points", (double)file->map_points);
     number("map_lines", (double)file->map_lines);
     number("map_areas", (double)file->map_areas);

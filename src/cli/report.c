@@ -54,6 +54,14 @@ static void add_totals(meta_text *meta, const noc_report *report) {
                  { "lamps-moved", t.lamps_moved },
                  { "lamps-repeated", t.lamps_repeated },
                  { "objects-repeated", t.objects_repeated },
+                 { "windows-made", t.windows.windows - t.windows.own },
+                 { "windows-own", t.windows.own },
+                 { "windows-lit", t.windows.lit },
+                 { "walls-taken", t.windows.walls[NOC_WALL_TAKEN] },
+                 { "walls-small", t.windows.walls[NOC_WALL_SMALL] },
+                 { "walls-tilted", t.windows.walls[NOC_WALL_TILTED] },
+                 { "walls-party", t.windows.walls[NOC_WALL_PARTY] },
+                 { "walls-own", t.windows.walls[NOC_WALL_OWN] },
                  { "lamps-height-assumed", t.lamps_assumed[NOC_LAMP_HEIGHT] },
                  { "lamps-flux-assumed", t.lamps_assumed[NOC_LAMP_FLUX] },
                  { "lamps-colour-assumed", t.lamps_assumed[NOC_LAMP_COLOUR] },
@@ -296,6 +304,7 @@ static void print_lamps(const noc_report *report, const noc_import_params *impor
         }
     if (*before == ',')
         putchar('\n');
+    cli_print_windows("  windows   ", &t.windows);
     cli_print_assumed("  assumed   ", t.lamps_assumed, import);
 }
 

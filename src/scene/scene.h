@@ -287,9 +287,10 @@ static inline void noc_range_add(noc_range *r, size_t i) {
 
 /* window.c */
 typedef struct noc_pane {
-    uint32_t first_triangle, triangle_count; /* of the mesh */
-    noc_light shape;                         /* its emission is not read */
-    noc_scene_window window;                 /* its light is set */
+    const uint32_t *triangles; /* that show it, as numbers in the mesh */
+    size_t triangle_count;
+    noc_light shape;         /* its emission is not read */
+    noc_scene_window window; /* its light is set */
 } noc_pane;
 /* Before the first commit: makes triangles of a mesh the window that the pane says; dark. false: no memory, reported.
  */

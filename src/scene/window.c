@@ -66,8 +66,8 @@ bool noc_scene_add_window(noc_scene *s, int mesh, const noc_pane *pane) {
     s->windows.data[s->windows.len++] = w;
     s->lights.data[s->lights.len++] = r;
     s->light_names.data[s->light_names.len++] = m->name;
-    for (uint32_t t = 0; t < pane->triangle_count; t++)
-        s->triangle_light.data[m->first_triangle + pane->first_triangle + t] = light;
+    for (size_t t = 0; t < pane->triangle_count; t++)
+        s->triangle_light.data[m->first_triangle + pane->triangles[t]] = light;
     return true;
 }
 

@@ -33,7 +33,12 @@ static void test_made(void **state) {
     load(&r, BLOCK("0", "1"), .35, 21);
     assert_int_equal(r.info.windows, 2 * (16 + 8) * 6); /* cells and storeys; no shops by its id */
     assert_int_equal(r.info.lights, r.info.windows + 1);
-    assert_int_equal(noc_report_get_file(r.report, 0)->buildings, 1);
+    noc_report_totals t;
+    noc_report_get_totals(r.report, &t);
+    assert_int_equal(t.windows.windows, 288);
+    assert_int_equal(t.windows.lit, r.info.windows_lit);
+    assert_int_equal(t.windows.walls[NOC_WALL_TAKEN], 4);
+    assert_close(t.windows.area[NOC_WALL_TAKEN], 18 * 120, 1e-3);
     finish(&r);
     load(&r, BLOCK("0", "0"), .35, 21); /* without classes: by slope */
     assert_int_equal(r.info.windows, 288);
@@ -46,6 +51,41 @@ static void test_made(void **state) {
     start(&r);
     load_with(&r, p, false, PATHS(file("a", BLOCK("0", "1"))));
     assert_int_equal(r.status, NOC_ERR_ARGUMENT);
+    finish(&r);
+}
+
+/* A wall of 10 m by 6 m with a window of its own, as a body: a front, its back, a frame around it; and a gable's
+ * triangle of glass. Walls get no others. */
+static void test_own(void **state) {
+    (void)state;
+    struct run r;
+    load(&r,
+         "FAKE city\ncrs EPSG:25832\nobject 0 own 3\n"
+         "polygon 1 678000 5404000 370 678010 5404000 370 678010 5404000 376 678000 5404000 376\n"
+         "polygon 5 678002 5403999.95 371 678003 5403999.95 371 678003 5403999.95 373 678002 5403999.95 373\n"
+         "polygon 5 678002 5404000.05 371 678002 5404000.05 373 678003 5404000.05 373 678003 5404000.05 371\n"
+         "polygon 5 678002 5403999.95 371 678002 5404000.05 371 678003 5404000.05 371 678003 5403999.95 371\n"
+         "polygon 5 678006 5403999.95 374 678008 5403999.95 374 678007 5403999.95 375.5\n"
+         "end\n",
+         1, 21);
+    noc_report_totals t;
+    noc_report_get_totals(r.report, &t);
+    assert_int_equal(t.windows.windows, 2);
+    assert_int_equal(t.windows.own, 2);
+    assert_int_equal(t.windows.walls[NOC_WALL_OWN], 1);
+    assert_int_equal(r.info.windows, 2);
+    assert_int_equal(r.info.lights_by_kind[NOC_LIGHT_PARALLELOGRAM], 1);
+    assert_int_equal(r.info.lights_by_kind[NOC_LIGHT_TRIANGLE], 1);
+    noc_light_info info;
+    for (size_t i = 0; i < r.info.light_slots; i++) {
+        assert_int_equal(noc_scene_get_light(r.scene, i, &info), NOC_OK);
+        if (info.light.kind == NOC_LIGHT_PARALLELOGRAM) {
+            assert_close(info.area, 2, 1e-3);
+            assert_close(info.light.direction[1], -1, 1e-4);
+        } else if (info.light.kind == NOC_LIGHT_TRIANGLE) {
+            assert_close(info.area, 1.5, 1e-3);
+        }
+    }
     finish(&r);
 }
 
@@ -174,8 +214,8 @@ static void test_glass(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_made),  cmocka_unit_test(test_ratio), cmocka_unit_test(test_switched),
-        cmocka_unit_test(test_share), cmocka_unit_test(test_glass),
+        cmocka_unit_test(test_made),     cmocka_unit_test(test_own),   cmocka_unit_test(test_ratio),
+        cmocka_unit_test(test_switched), cmocka_unit_test(test_share), cmocka_unit_test(test_glass),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

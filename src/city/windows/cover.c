@@ -152,32 +152,42 @@ static bool meet(const float *t, const double o[3], const double d[3], double *x
     return u >= -1e-6 && v >= -1e-6 && u + v <= 1 + 1e-6;
 }
 
-static bool hides(const city_cover *c, uint32_t id, const double o[3], const double d[3]) {
-    double x, facing;
-    if (!meet(c->xyz.data + 9 * (size_t)id, o, d, &x, &facing) || x > WINDOW_PARTY_M)
-        return false;
-    return facing < 0 ? x > -WINDOW_PARTY_BEHIND_M : x > BEGIN;
+/* What is asked of a wall that a line meets, so far along it. */
+typedef bool meeting(double x, double facing, const double range[2]);
+
+static bool hides(double x, double facing, const double range[2]) {
+    (void)range;
+    return x <= WINDOW_PARTY_M && (facing < 0 ? x > -WINDOW_PARTY_BEHIND_M : x > BEGIN);
 }
 
-/* From o along the unit vector d, which is level. */
-static bool hidden(const city_cover *c, const double o[3], const double d[3]) {
-    double a[2], b[2];
+static bool between(double x, double facing, const double range[2]) {
+    (void)facing;
+    return x > range[0] && x < range[1];
+}
+
+/* Is there a wall for which `is` holds, on the line from o along the unit vector d, between these distances? */
+static bool any(const city_cover *c, const double o[3], const double d[3], const double range[2], meeting *is) {
+    double a[2], b[2], x, facing;
     for (int k = 0; k < 2; k++) {
-        double p = o[k] - WINDOW_PARTY_BEHIND_M * d[k], q = o[k] + WINDOW_PARTY_M * d[k];
+        double p = o[k] + range[0] * d[k], q = o[k] + range[1] * d[k];
         a[k] = fmin(p, q);
         b[k] = fmax(p, q);
     }
-    for (long y = (long)floor(a[1] / CELL); y <= (long)floor(b[1] / CELL); y++)
-        for (long x = (long)floor(a[0] / CELL); x <= (long)floor(b[0] / CELL); x++) {
-            size_t at = bucket_of(c, x, y);
-            for (uint32_t i = c->first[at]; i < c->first[at + 1]; i++)
-                if (hides(c, c->ids.data[i], o, d))
+    for (long j = (long)floor(a[1] / CELL); j <= (long)floor(b[1] / CELL); j++)
+        for (long i = (long)floor(a[0] / CELL); i <= (long)floor(b[0] / CELL); i++) {
+            size_t at = bucket_of(c, i, j);
+            for (uint32_t k = c->first[at]; k < c->first[at + 1]; k++)
+                if (meet(c->xyz.data + 9 * (size_t)c->ids.data[k], o, d, &x, &facing) && is(x, facing, range))
                     return true;
         }
     for (size_t i = 0; i < c->everywhere.len; i++)
-        if (hides(c, c->everywhere.data[i], o, d))
+        if (meet(c->xyz.data + 9 * (size_t)c->everywhere.data[i], o, d, &x, &facing) && is(x, facing, range))
             return true;
     return false;
+}
+
+bool city_cover_meets(const city_cover *c, const double o[3], const double d[3], double from, double to) {
+    return any(c, o, d, (double[]){ from, to }, between);
 }
 
 bool city_cover_hides(const city_cover *c, const city_window *w) {
@@ -190,7 +200,7 @@ bool city_cover_hides(const city_cover *c, const city_window *w) {
         double u = i == 4 ? 0.5 : i & 1 ? 0.98 : 0.02, v = i == 4 ? 0.5 : i & 2 ? 0.98 : 0.02, o[3];
         for (int k = 0; k < 3; k++)
             o[k] = w->corner[k] + u * w->edge_u[k] + v * w->edge_v[k];
-        if (hidden(c, o, d))
+        if (any(c, o, d, (double[]){ -WINDOW_PARTY_BEHIND_M, WINDOW_PARTY_M }, hides))
             return true;
     }
     return false;

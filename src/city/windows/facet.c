@@ -269,21 +269,3 @@ void wall_facets_free(wall_facets *f) {
     array_free(&f->facets);
     array_free(&f->by_facet);
 }
-
-noc_status city_panes_find(const wall_triangle *panes, size_t count, city_panes *out) {
-    wall_facets f = { 0 };
-    out->order.len = out->first.len = 0;
-    bool ok = wall_facets_find(panes, count, &f) && array_push(&out->first, 0);
-    for (size_t i = 0; ok && i < f.facets.len; i++) {
-        for (uint32_t k = 0; ok && k < f.facets.data[i].count; k++)
-            ok = array_push(&out->order, f.pieces.data[f.by_facet.data[f.facets.data[i].first + k]].given);
-        ok = ok && array_push(&out->first, (uint32_t)out->order.len);
-    }
-    wall_facets_free(&f);
-    return ok ? NOC_OK : NOC_ERR_MEMORY;
-}
-
-void city_panes_free(city_panes *p) {
-    array_free(&p->order);
-    array_free(&p->first);
-}

@@ -50,6 +50,12 @@ typedef struct wall_facets {
     NOC_ARRAY(uint32_t) by_facet; /* indices of pieces, facet after facet */
 } wall_facets;
 
+/* Around the walls of a building; width: of its widest facet. */
+typedef struct building_box {
+    double lo[3], hi[3], width;
+} building_box;
+building_box building_box_of(const wall_facets *f);
+
 /* facet.c. Triangles without area are in none: their facet is NO_FACET. */
 #define NO_FACET UINT32_MAX
 bool wall_facets_find(const wall_triangle *walls, size_t count, wall_facets *out) NOC_MUST_USE; /* false: no memory */

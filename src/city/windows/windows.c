@@ -6,12 +6,8 @@
 #define PLACE_STEP 0.1 /* m */
 #define PLACE_OFFSET 0.0371
 
-typedef struct building {
-    double lo[3], hi[3], width;
-} building;
-
-static building building_of(const wall_facets *f) {
-    building b = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY }, 0 };
+building_box building_box_of(const wall_facets *f) {
+    building_box b = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY }, 0 };
     for (size_t i = 0; i < f->pieces.len; i++)
         for (int k = 0; k < 3; k++) {
             b.lo[k] = fmin(b.lo[k], f->pieces.data[i].lo[k]);
@@ -22,13 +18,14 @@ static building building_of(const wall_facets *f) {
     return b;
 }
 
-static uint64_t step_of(double x) { return (uint64_t)(int64_t)floor((x + PLACE_OFFSET) / PLACE_STEP); }
+uint64_t city_window_step(double x) { return (uint64_t)(int64_t)floor((x + PLACE_OFFSET) / PLACE_STEP); }
 
 /* Numbers that a window shares with none, with its neighbour, with its storey. */
-static void give_light(city_window *w, const building *b, const building_use *use, const noc_window_params *params) {
+static void give_light(city_window *w, const building_box *b, const building_use *use,
+                       const noc_window_params *params) {
     uint64_t h = use->hash;
     for (int k = 0; k < 3; k++)
-        h = city_window_hash(h, step_of(w->corner[k] + 0.5 * (w->edge_u[k] + w->edge_v[k]) - b->lo[k]));
+        h = city_window_hash(h, city_window_step(w->corner[k] + 0.5 * (w->edge_u[k] + w->edge_v[k]) - b->lo[k]));
     w->hash = h;
     uint64_t storey = city_window_hash(use->hash, (uint64_t)floor((w->corner[2] - b->lo[2]) / params->storey_height));
     /* the facade's own number is by where it faces and stands: both ends of a pair see the same */
@@ -37,7 +34,7 @@ static void give_light(city_window *w, const building *b, const building_use *us
     double level = hypot(n[0], n[1]), d = 0;
     for (int k = 0; k < 2; k++)
         d += (w->corner[k] - b->lo[k]) * n[k] / level;
-    uint64_t pair = city_window_hash(storey, step_of(d));
+    uint64_t pair = city_window_hash(storey, city_window_step(d));
     pair = city_window_hash(pair, (uint64_t)(int64_t)floor(8 * atan2(n[1], n[0]) + 0.37));
     pair = city_window_hash(pair, (uint64_t)(w->column / 2));
     city_window_shine(w, storey, pair, params);
@@ -54,7 +51,7 @@ static size_t drop_hidden(city_window_list *list, size_t first, const city_cover
     return hidden;
 }
 
-static bool add_facade(const wall_facets *f, const strip *s, const building *b, const building_use *use,
+static bool add_facade(const wall_facets *f, const strip *s, const building_box *b, const building_use *use,
                        const noc_window_params *params, const city_cover *cover, city_windows *out) {
     city_facade facade = { .verdict = NOC_WALL_SMALL };
     const facet *front = &f->facets.data[s->parts[0].facet];
@@ -92,7 +89,7 @@ noc_status city_windows_make(const char *id, const wall_triangle *walls, size_t 
     if (ok && count)
         memset(out->verdicts.data, NOC_WALL_SMALL, count);
     out->verdicts.len = ok ? count : 0;
-    building b = building_of(&f);
+    building_box b = building_box_of(&f);
     building_use use = city_building_use(id, b.hi[2] - b.lo[2], b.width);
     for (size_t i = 0; ok && i + 1 < strips.first.len; i++) {
         strip s = wall_strip_get(&f, &strips, i);

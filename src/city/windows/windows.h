@@ -59,6 +59,8 @@ city_cover *city_cover_create(const float *xyz, size_t triangles) NOC_MUST_USE; 
 void city_cover_destroy(city_cover *cover);
 /* Does a wall stand close before any of the window's corners or its middle? */
 bool city_cover_hides(const city_cover *cover, const city_window *w);
+/* Does a ray from o along the unit vector d meet one of them between these distances, m? */
+bool city_cover_meets(const city_cover *cover, const double o[3], const double d[3], double from, double to);
 
 /* The windows of a building. What is in `out` is replaced; zeroed it is empty. The result does not depend on the order
  * of the triangles. NOC_ERR_MEMORY, not reported: memory was refused. */
@@ -66,14 +68,24 @@ noc_status city_windows_make(const char *id, const wall_triangle *walls, size_t 
                              const city_cover *cover, city_windows *out);
 void city_windows_free(city_windows *w);
 
-/* The panes of windows that a model has itself: which triangles lie in one plane and touch, as groups of indices into
- * `panes`, one after the other in `order`; first has groups + 1 entries. */
-typedef struct city_panes {
-    NOC_ARRAY(uint32_t) order;
-    NOC_ARRAY(uint32_t) first;
-} city_panes;
-noc_status city_panes_find(const wall_triangle *panes, size_t count, city_panes *out);
-void city_panes_free(city_panes *p);
+/* Windows that a model has itself (own.c). A pane is a light of its window: a rectangle, or a triangle. */
+typedef struct city_own_pane {
+    uint32_t first, count; /* of city_own_windows.triangles, which show it */
+    bool whole;            /* a rectangle */
+    bool leads;            /* the first of its window */
+    city_window window;    /* its edges are those of the rectangle or triangle */
+} city_own_pane;
+
+typedef struct city_own_windows {
+    NOC_ARRAY(city_own_pane) panes;
+    NOC_ARRAY(uint32_t) triangles; /* indices among those given */
+} city_own_windows;
+
+/* Panes among the surfaces of a building's windows that are seen from outside; frames, reveals and backs are none.
+ * What is in `out` is replaced; zeroed it is empty. NOC_ERR_MEMORY, not reported: memory was refused. */
+noc_status city_own_windows_find(const char *id, const wall_triangle *panes, size_t count, const wall_triangle *walls,
+                                 size_t wall_count, const noc_window_params *params, city_own_windows *out);
+void city_own_windows_free(city_own_windows *w);
 
 /* ---- shine.c ---- */
 
@@ -85,6 +97,8 @@ typedef struct building_use {
 /* height, m, and width of its widest facade, m */
 building_use city_building_use(const char *id, double height, double width);
 uint64_t city_window_hash(uint64_t a, uint64_t b);
+/* In which step a length along a building lies, for hashes. */
+uint64_t city_window_step(double length);
 /* A number of 0..1 that hash and salt decide. */
 double city_window_number(uint64_t hash, uint64_t salt);
 /* Level and emission of a window by its kind and hash. floor: a number that the windows of its storey share; pair: one

@@ -302,7 +302,9 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
                       : im->scene->given_crs_name ? im->scene->given_crs_name
                       : im->scene_crs             ? geo_crs_name(im->scene_crs)
                                                   : "their local metres");
-    return status || im->inspect ? status : finish_city(im);
+    if (status)
+        return status;
+    return im->inspect ? windows_add(im) : finish_city(im);
 }
 
 static bool among(const char *path, const char *const *paths, size_t count) {

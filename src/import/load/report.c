@@ -32,6 +32,16 @@ void noc_report_destroy(noc_report *report) {
     free(report);
 }
 
+static void add_windows(noc_window_counts *to, const noc_window_counts *from) {
+    to->windows += from->windows;
+    to->own += from->own;
+    to->lit += from->lit;
+    for (int v = 0; v < NOC_WALL_VERDICT_COUNT; v++) {
+        to->walls[v] += from->walls[v];
+        to->area[v] += from->area[v];
+    }
+}
+
 void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) {
     if (!totals)
         return;
@@ -45,6 +55,7 @@ void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) 
         totals->objects_repeated += f->objects_repeated;
         for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++)
             totals->lamps_assumed[what] += f->lamps_assumed[what];
+        add_windows(&totals->windows, &f->windows);
         for (size_t k = 0; k < f->line_count; k++)
             *(!f->lines[k].repaired  ? &totals->skipped
               : f->lines[k].lossless ? &totals->repaired

@@ -4,12 +4,15 @@
 
 #include <math.h>
 
+typedef NOC_ARRAY(wall_triangle) wall_triangles;
+
 typedef struct maker {
     importer *im;
     const noc_window_params *params;
     city_cover *cover;
-    NOC_ARRAY(wall_triangle) walls;
+    wall_triangles walls, panes;
     city_windows windows;
+    city_own_windows own;
     NOC_ARRAY(double) xyz;
     NOC_ARRAY(uint32_t) indices;
 } maker;
@@ -46,10 +49,10 @@ static bool is_steep(const wall_triangle *t, double tilt) {
     return fabs(n[2]) <= sin(tilt * M_PI / 180) * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
-static bool gather(maker *m, const taken_building *b, noc_class cls) {
+static bool gather(const maker *m, size_t first, size_t end, noc_class cls, wall_triangles *out) {
     const noc_scene *s = m->im->scene;
-    m->walls.len = 0;
-    for (size_t i = b->first; i < b->end; i++) {
+    out->len = 0;
+    for (size_t i = first; i < end; i++) {
         const noc_scene_mesh *mesh = &s->meshes.data[i];
         if (class_of(s, i) != cls)
             continue;
@@ -57,7 +60,7 @@ static bool gather(maker *m, const taken_building *b, noc_class cls) {
             wall_triangle w;
             for (int k = 0; k < 9; k++)
                 w.p[k / 3][k % 3] = (double)corner(s, t, k / 3)[k % 3];
-            if ((cls != NOC_CLASS_OTHER || is_steep(&w, m->params->tilt)) && !array_push(&m->walls, w))
+            if ((cls != NOC_CLASS_OTHER || is_steep(&w, m->params->tilt)) && !array_push(out, w))
                 return false;
         }
     }
@@ -70,7 +73,8 @@ static noc_status make_cover(maker *m) {
     NOC_ARRAY(float) xyz = { 0 };
     bool ok = true;
     for (size_t i = 0; ok && i < im->buildings.len; i++) {
-        ok = gather(m, &im->buildings.data[i], wall_class(im, &im->buildings.data[i]));
+        const taken_building *b = &im->buildings.data[i];
+        ok = gather(m, b->first, b->end, wall_class(im, b), &m->walls);
         for (size_t t = 0; ok && t < m->walls.len; t++)
             for (int k = 0; ok && k < 9; k++)
                 ok = array_push(&xyz, (float)m->walls.data[t].p[k / 3][k % 3]);
@@ -78,6 +82,24 @@ static noc_status make_cover(maker *m) {
     m->cover = ok ? city_cover_create(xyz.data, xyz.len / 9) : NULL;
     array_free(&xyz);
     return m->cover ? NOC_OK : noc_no_memory(im->log, "windows");
+}
+
+/* Is it lit in the beginning? */
+static bool is_lit(const maker *m, const city_window *w) {
+    return (double)w->level < noc_window_share(w->kind, m->params->lit_windows, m->params->hour);
+}
+
+static bool add_pane(maker *m, int mesh, const city_window *w, noc_light_kind kind, const uint32_t *triangles,
+                     size_t count) {
+    noc_pane pane = { .triangles = triangles,
+                      .triangle_count = count,
+                      .shape = { .kind = kind },
+                      .window = { .level = w->level, .kind = (unsigned char)w->kind } };
+    memcpy(pane.shape.position, w->corner, sizeof(w->corner));
+    memcpy(pane.shape.edge_u, w->edge_u, sizeof(w->edge_u));
+    memcpy(pane.shape.edge_v, w->edge_v, sizeof(w->edge_v));
+    memcpy(pane.window.emission, w->emission, sizeof(w->emission));
+    return noc_scene_add_window(m->im->scene, mesh, &pane);
 }
 
 /* All windows of a building are one mesh. */
@@ -106,30 +128,63 @@ static noc_status add_mesh(maker *m, const char *id) {
     if (index < 0)
         return NOC_ERR_UNSUPPORTED; /* said by the scene */
     for (size_t i = 0; i < list->len; i++) {
-        const city_window *w = &list->data[i];
-        noc_pane pane = { .first_triangle = 2 * (uint32_t)i,
-                          .triangle_count = 2,
-                          .shape = { .kind = NOC_LIGHT_PARALLELOGRAM },
-                          .window = { .level = w->level, .kind = (unsigned char)w->kind } };
-        memcpy(pane.shape.position, w->corner, sizeof(w->corner));
-        memcpy(pane.shape.edge_u, w->edge_u, sizeof(w->edge_u));
-        memcpy(pane.shape.edge_v, w->edge_v, sizeof(w->edge_v));
-        memcpy(pane.window.emission, w->emission, sizeof(w->emission));
-        if (!noc_scene_add_window(im->scene, index, &pane))
+        const uint32_t both[2] = { 2 * (uint32_t)i, 2 * (uint32_t)i + 1 };
+        if (!add_pane(m, index, &list->data[i], NOC_LIGHT_PARALLELOGRAM, both, 2))
             return NOC_ERR_MEMORY;
     }
     return NOC_OK;
 }
 
+/* Those of the model shine themselves, where they are. */
+static noc_status take_own(maker *m, size_t mesh, const char *id, noc_window_counts *counts) {
+    city_own_windows *own = &m->own;
+    if (city_own_windows_find(id, m->panes.data, m->panes.len, m->walls.data, m->walls.len, m->params, own))
+        return noc_no_memory(m->im->log, "windows");
+    for (size_t i = 0; i < own->panes.len; i++) {
+        const city_own_pane *p = &own->panes.data[i];
+        counts->windows += p->leads;
+        counts->own += p->leads;
+        counts->lit += p->leads && is_lit(m, &p->window);
+        if (!add_pane(m, (int)mesh, &p->window, p->whole ? NOC_LIGHT_PARALLELOGRAM : NOC_LIGHT_TRIANGLE,
+                      own->triangles.data + p->first, p->count))
+            return NOC_ERR_MEMORY;
+    }
+    return NOC_OK;
+}
+
+static void count_walls(const maker *m, bool own, noc_window_counts *counts) {
+    for (size_t i = 0; i < m->windows.facades.len; i++) {
+        const city_facade *f = &m->windows.facades.data[i];
+        noc_wall_verdict verdict = own ? NOC_WALL_OWN : f->verdict;
+        counts->walls[verdict]++;
+        counts->area[verdict] += f->area;
+    }
+    for (size_t i = 0; !own && i < m->windows.list.len; i++) {
+        counts->windows++;
+        counts->lit += is_lit(m, &m->windows.list.data[i]);
+    }
+}
+
 static noc_status add_building(maker *m, const taken_building *b) {
     const char *name = m->im->scene->meshes.data[b->first].name, *id = name ? name : "";
-    if (has_class(m->im, b, NOC_CLASS_WINDOW))
-        return NOC_OK; /* it has windows of its own */
-    if (!gather(m, b, wall_class(m->im, b)))
+    noc_window_counts *counts = &m->im->inputs[b->input].file.windows;
+    if (!gather(m, b->first, b->end, wall_class(m->im, b), &m->walls))
         return noc_no_memory(m->im->log, "windows");
-    if (city_windows_make(id, m->walls.data, m->walls.len, m->params, m->cover, &m->windows))
-        return noc_no_memory(m->im->log, "windows");
-    return m->windows.list.len ? add_mesh(m, id) : NOC_OK;
+    noc_status status = NOC_OK;
+    bool own = has_class(m->im, b, NOC_CLASS_WINDOW);
+    for (size_t i = b->first; own && i < b->end && !status; i++) {
+        if (class_of(m->im->scene, i) != NOC_CLASS_WINDOW)
+            continue;
+        status = gather(m, i, i + 1, NOC_CLASS_WINDOW, &m->panes) ? take_own(m, i, id, counts)
+                                                                  : noc_no_memory(m->im->log, "windows");
+    }
+    /* walls of a building that has its own windows are counted, and no more */
+    if (!status && city_windows_make(id, m->walls.data, m->walls.len, m->params, own ? NULL : m->cover, &m->windows))
+        status = noc_no_memory(m->im->log, "windows");
+    if (status)
+        return status;
+    count_walls(m, own, counts);
+    return own || !m->windows.list.len ? NOC_OK : add_mesh(m, id);
 }
 
 noc_status windows_check(const noc_import_params *params, noc_log *log) {
@@ -167,7 +222,9 @@ noc_status windows_add(importer *im) {
     noc_scene_light_windows(im->scene, m.params);
     city_cover_destroy(m.cover);
     city_windows_free(&m.windows);
+    city_own_windows_free(&m.own);
     array_free(&m.walls);
+    array_free(&m.panes);
     array_free(&m.xyz);
     array_free(&m.indices);
     return status;
