@@ -124,6 +124,20 @@ static noc_status lamp(void *ctx, const geo_lamp *l) {
     return NOC_OK;
 }
 
+static noc_status footprint(void *ctx, const geo_footprint *f) {
+    fuzz_sink *s = ctx;
+    const double *xyz = f->xyz;
+    FUZZ_REQUIRE(!s->in_object && s->told && f->ring_count);
+    FUZZ_REQUIRE(!(f->height > 1000) && !(f->levels > 1000) && !(f->min_height < 0));
+    for (size_t r = 0; r < f->ring_count; r++) {
+        FUZZ_REQUIRE(f->ring_size[r] >= 3);
+        for (size_t i = 0; i < 3 * f->ring_size[r]; i++)
+            s->sum += *xyz++;
+    }
+    s->sum += (double)strlen(f->id);
+    return NOC_OK;
+}
+
 static bool progress(void *ctx, double done) {
     (void)ctx;
     FUZZ_REQUIRE(done >= 0 && done <= 1);
@@ -140,6 +154,7 @@ void fuzz_sink_start(fuzz_sink *s, noc_log *log) {
                           .polygon = polygon,
                           .end_object = end_object,
                           .lamp = lamp,
+                          .footprint = footprint,
                           .progress = progress };
 }
 

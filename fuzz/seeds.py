@@ -289,6 +289,15 @@ features = {"type": "FeatureCollection", "name": "lamps",
                                        "geometries": [{"type": "Polygon",
                                                        "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]}]}}]}
 put("geojson", "collection.json", json.dumps(features))
+put("geojson", "buildings.json", json.dumps({"type": "FeatureCollection", "name": "buildings", "features": [
+    {"type": "Feature", "properties": {"building": "yes", "height": "12 m", "min_height": 3, "roof:height": 2},
+     "geometry": {"type": "MultiPolygon", "coordinates": [[[[11.5, 48.1], [11.501, 48.1], [11.501, 48.101],
+                                                            [11.5, 48.1]],
+                                                           [[11.5005, 48.1002], [11.5007, 48.1002], [11.5007, 48.1004],
+                                                            [11.5005, 48.1002]]]]}},
+    {"type": "Feature", "properties": {"building:levels": "3", "building": "house"},
+     "geometry": {"type": "Polygon", "coordinates": [[[11.5, 48.2], [11.501, 48.2], [11.501, 48.201],
+                                                      [11.5, 48.2]]]}}]}))
 put("geojson", "plain.json",
     json.dumps({"type": "FeatureCollection", "features": [point(11.5, 48.1, highway="street_lamp")]}))
 hstore = ",".join('"%s"=>"%s"' % (key, value.replace("8 m", 'a \\"quote\\" and \\\\')) for key, value in tags.items())

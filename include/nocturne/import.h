@@ -44,8 +44,11 @@ typedef struct noc_import_params {
     const char *bbox;
     /* highest level of detail of CityGML and CityJSON taken, 0..4; default 3. The best one at or under it wins */
     int lod;
-    double terrain_error;  /* m that triangles may lie off the heights of a GeoTIFF; default 0.25 */
-    int terrain_triangles; /* that one may become, with a larger error where that takes one; default 500000 */
+    double terrain_error;   /* m that triangles may lie off the heights of a GeoTIFF; default 0.25 */
+    int terrain_triangles;  /* that one may become, with a larger error where that takes one; default 500000 */
+    bool footprints;        /* outlines of buildings in maps become blocks, where no city model has a building; default
+                               false */
+    double building_height; /* m, of those that tell neither height nor storeys; default 9 */
     /* Place lamps by a rule? AUTO, the default: where the inputs hold none; inputs whose lamps are all of no use are an
      * error. ON: where no lamp of the inputs is of use. OFF: nowhere. */
     noc_switch infer_lamps;
@@ -91,9 +94,9 @@ typedef struct noc_import_params {
 } noc_import_params;
 
 #define NOC_IMPORT_DEFAULTS(set)                                                                                       \
-    set(lod, 3) set(terrain_error, 0.25) set(terrain_triangles, 500000) set(infer_lamps, NOC_SWITCH_AUTO)              \
-        set(lamp_height, 6) set(lamp_lumens, 5000) set(lamp_kelvin, 3000) set(windows, NOC_SWITCH_AUTO)                \
-            set(isolate, true) set(reader_time, 600) set(max_expansion, 200)
+    set(lod, 3) set(building_height, 9) set(terrain_error, 0.25) set(terrain_triangles, 500000)                        \
+        set(infer_lamps, NOC_SWITCH_AUTO) set(lamp_height, 6) set(lamp_lumens, 5000) set(lamp_kelvin, 3000)            \
+            set(windows, NOC_SWITCH_AUTO) set(isolate, true) set(reader_time, 600) set(max_expansion, 200)
 #ifdef __cplusplus
 #define NOC_IMPORT_ALL_DEFAULTS(set) set(window, noc_window_default_params()) NOC_IMPORT_DEFAULTS(set)
 NOC_DEFAULT_PARAMS(noc_import_params, noc_import_default_params, NOC_IMPORT_ALL_DEFAULTS)

@@ -112,6 +112,16 @@ typedef struct geo_lamp {
     bool head_globe;                /* spheres around the body's head; else discs under it, facing down */
 } geo_lamp;
 
+/* A building of a map: its outline, first the outer ring, z is of no use. What it tells of its height, NaN where it
+ * does not: m above the ground, with the roof, and storeys. */
+typedef struct geo_footprint {
+    const char *id;
+    size_t ring_count;
+    const size_t *ring_size;
+    const double *xyz;
+    double height, min_height, levels, min_level, roof_height;
+} geo_footprint;
+
 /* A column of a table, an attribute or a tag, and what a reader of lamps took it for. Texts are valid during the call.
  */
 typedef struct geo_column {
@@ -163,6 +173,7 @@ typedef struct geo_sink {
     noc_status (*polygon)(void *ctx, const geo_polygon *polygon);
     noc_status (*end_object)(void *ctx);
     noc_status (*lamp)(void *ctx, const geo_lamp *lamp);
+    noc_status (*footprint)(void *ctx, const geo_footprint *footprint); /* NULL: none is wanted */
     /* Of a file of points, at its end: how many there are, lamps or not, and its columns. May be NULL. */
     noc_status (*columns)(void *ctx, size_t points, const geo_column *columns, size_t count);
     /* Of a map, at its end. May be NULL. */

@@ -120,6 +120,8 @@ static const noc_option import_options[] = {
     INT(P, lod, "lod", "City", 0, 4, "", "highest level of detail of city models that is taken"),
     REAL(P, terrain_error, "terrain-error", "City", 0, 1000, "m", "what triangles of a GeoTIFF may be off its heights"),
     INT(P, terrain_triangles, "terrain-triangles", "City", 100, 20000000, "", "that a GeoTIFF may become"),
+    BOOL(P, footprints, "footprints", "City", "outlines of buildings in maps become blocks where no model has one"),
+    REAL(P, building_height, "building-height", "City", 1, 500, "m", "height of such a block that tells none"),
     SWITCH(P, infer_lamps, "infer-lamps", "City",
            "place lamps by a rule: where no input holds any; on: or none of use"),
     BOOL(P, wet, "wet", "City", "after rain: roads, pavements and ground are dark and reflect"),

@@ -416,7 +416,9 @@ static void test_unread(void **state) {
     assert_int_equal(issue_count(&s, "polygon that is not read"), 1);
     assert_int_equal(issue_count(&s, "line that is not read"), 1);
     assert_int_equal(s.warnings, 1);
-    assert_non_null(strstr(s.warning, "1 line, 1 polygon are not read: outlines of buildings are not extruded yet"));
+    assert_non_null(
+        strstr(s.warning,
+               "1 line, 1 polygon are not read: of maps only lamps are read, and with --footprints buildings"));
     lamp_sink_end(&s);
     static const char ways[] =
         "<?xml version='1.0'?><osm version='0.6'><node id='1' lat='50' lon='8'>"

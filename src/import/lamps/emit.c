@@ -79,9 +79,9 @@ static const struct {
 } unread[] = {
     [GEO_POINTS] = { "set of points", "sets of points", "set of points that is not read: a lamp is a single one" },
     [GEO_LINES] = { "line", "lines", "line that is not read: of maps only lamps are read" },
-    [GEO_AREAS] = { "polygon", "polygons", "polygon that is not read: outlines of buildings are not extruded yet" },
-    [GEO_DIMENSIONS] = { "building", "buildings",
-                         "building that is not read: outlines of buildings are not extruded yet" },
+    [GEO_AREAS] = { "polygon", "polygons",
+                    "polygon that is not read: of maps only lamps are, and with --footprints buildings" },
+    [GEO_DIMENSIONS] = { "building", "buildings", "building that is not read: --footprints does" },
     { "street or path", "streets and paths", "street or path that is not read: of maps only lamps are read" },
 };
 
@@ -114,7 +114,10 @@ static uint64_t tell_unread(lamp_writer *w) {
                                 f->streets };
     char list[240] = "", number[32];
     uint64_t sum = 0;
-    geo_issues_add(w->sink->issues, GEO_SKIPPED, unread[GEO_DIMENSIONS].reason, f->buildings, "");
+    geo_issues_add(w->sink->issues, GEO_SKIPPED,
+                   w->sink->footprint ? "part of a building, or outline that is not whole, not read"
+                                      : unread[GEO_DIMENSIONS].reason,
+                   f->buildings, "");
     geo_issues_add(w->sink->issues, GEO_SKIPPED, unread[GEO_DIMENSIONS + 1].reason, f->streets, "");
     for (size_t i = 0, n = 0; i < NOC_COUNT(counts); i++) {
         if (!counts[i])
@@ -127,7 +130,7 @@ static uint64_t tell_unread(lamp_writer *w) {
     bool outlines = f->unread[GEO_AREAS] || f->buildings;
     if (sum && !w->sink->inspect)
         noc_warn(w->sink->log, "%s: %s %s not read: %s", w->place, list, sum == 1 ? "is" : "are",
-                 outlines ? "outlines of buildings are not extruded yet, and of maps only lamps are read"
+                 outlines ? "of maps only lamps are read, and with --footprints buildings"
                           : "of maps only lamps are read");
     return sum;
 }
@@ -155,7 +158,7 @@ noc_status lamp_writer_end(lamp_writer *w) {
             w->place);
     if (w->lost && !w->lamps)
         return NOC_OK; /* the importer says that none of its lamps is of use */
-    if (w->lamps)
+    if (w->lamps || w->footprints)
         return NOC_OK;
     if (w->strange_points && !w->sink->inspect)
         return noc_error(

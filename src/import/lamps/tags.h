@@ -156,6 +156,7 @@ typedef struct lamp_writer {
     bool strange;     /* nothing tells what the points are: they are noted and counted */
     size_t points, strange_points;
     geo_features seen;
+    size_t footprints; /* buildings that were handed on */
 } lamp_writer;
 
 noc_status lamp_writer_start(lamp_writer *w, geo_sink *sink, const char *place,

@@ -10,12 +10,13 @@
 
 /* What a reader emitted, in its order. Texts and arrays in the arena. */
 typedef struct ahead_event {
-    enum { AHEAD_BEGIN, AHEAD_POLYGON, AHEAD_END, AHEAD_LAMP } kind;
+    enum { AHEAD_BEGIN, AHEAD_POLYGON, AHEAD_END, AHEAD_LAMP, AHEAD_FOOTPRINT } kind;
     source_crs *source;
     union {
         geo_object object;
         geo_polygon polygon;
         geo_lamp lamp;
+        geo_footprint footprint;
     } u;
 } ahead_event;
 
@@ -36,6 +37,7 @@ static noc_status replay(struct look_ahead *a, const ahead_event *e) {
     case AHEAD_BEGIN: return a->sink.begin_object(a->sink.ctx, &e->u.object);
     case AHEAD_POLYGON: return a->sink.polygon(a->sink.ctx, &e->u.polygon);
     case AHEAD_END: return a->sink.end_object(a->sink.ctx);
+    case AHEAD_FOOTPRINT: return a->sink.footprint(a->sink.ctx, &e->u.footprint);
     case AHEAD_LAMP: break;
     }
     return a->sink.lamp(a->sink.ctx, &e->u.lamp);
@@ -146,6 +148,31 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     return status ? status : keep_points(a, lamp->xyz, 1, e.u.lamp.id ? e.u.lamp.id : "");
 }
 
+static noc_status on_footprint(void *ctx, const geo_footprint *footprint) {
+    struct look_ahead *a = ctx;
+    if (a->passing)
+        return a->sink.footprint(a->sink.ctx, footprint);
+    noc_status status = ensure_source(a);
+    if (status)
+        return status;
+    size_t count = 0;
+    for (size_t r = 0; r < footprint->ring_count; r++)
+        count += footprint->ring_size[r];
+    size_t *ring_size = arena_alloc(&a->arena, (footprint->ring_count + 1) * sizeof(*ring_size));
+    double *xyz = arena_alloc(&a->arena, (count + 1) * 3 * sizeof(*xyz));
+    if (a->arena.refused)
+        return no_memory(a);
+    memcpy(ring_size, footprint->ring_size, footprint->ring_count * sizeof(*ring_size));
+    memcpy(xyz, footprint->xyz, count * 3 * sizeof(*xyz));
+    ahead_event e = { .kind = AHEAD_FOOTPRINT, .u.footprint = *footprint };
+    e.u.footprint.ring_size = ring_size;
+    e.u.footprint.xyz = xyz;
+    e.u.footprint.id = arena_strdup(&a->arena, footprint->id);
+    status = push(a, e);
+    a->in_object = false;
+    return status ? status : keep_points(a, xyz, count, e.u.footprint.id ? e.u.footprint.id : "");
+}
+
 static noc_status on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
     struct look_ahead *a = ctx;
     return a->sink.columns(a->sink.ctx, points, columns, count);
@@ -173,6 +200,7 @@ struct look_ahead *ahead_create(reading *r, geo_sink *sink) {
     sink->polygon = on_polygon;
     sink->end_object = on_end_object;
     sink->lamp = on_lamp;
+    sink->footprint = a->sink.footprint ? on_footprint : NULL;
     sink->columns = on_columns;
     sink->features = on_features;
     sink->progress = on_progress;

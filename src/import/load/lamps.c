@@ -288,6 +288,9 @@ static noc_status infer(importer *im, const extent *e, city_lamp_params *params,
 
 static noc_status finish_lamps(importer *im) {
     noc_scene *scene = im->scene;
+    noc_status stood = footprints_stand(im);
+    if (stood)
+        return stood;
     extent e = city_extent(scene);
     if (!e.any && !im->lamps.len && !scene->lights.len)
         noc_warn(im->log, "the inputs hold nothing that can be seen: no surfaces and no lamps");

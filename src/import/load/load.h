@@ -99,6 +99,12 @@ typedef struct load_box {
     geo_crs *crs; /* that they are in; NULL: the scene's, as it is given */
 } load_box;
 
+/* A building of a map that waits for the ground. */
+typedef struct pending_footprint {
+    geo_footprint footprint; /* local metres; texts and arrays in importer.names */
+    size_t input;
+} pending_footprint;
+
 /* Meshes of the scene that a building came in. */
 typedef struct taken_building {
     uint32_t first, end;
@@ -129,6 +135,7 @@ typedef struct importer {
     size_t object_mesh;                     /* first mesh of the object that is being taken */
     bool has_roads;
     double open_area; /* m2 of terrain, roads, pavements, lawns and water, seen from above */
+    NOC_ARRAY(pending_footprint) footprints;
     NOC_ARRAY(pending_lamp) lamps;
     size_t lamp_looks;           /* lamps that repeat_lamps compared: for tests */
     NOC_ARRAY(given_place) lost; /* lamps that have no place in the scene's CRS */
@@ -261,6 +268,11 @@ noc_status sink_hand_over(reading *r, const load_part *part); /* to the scene, o
 /* Asks whether to go on; bytes: of all inputs, that were read. */
 bool import_progress(importer *im, const input *in, double bytes);
 void reading_free(reading *r);
+
+/* footprints.c: of maps, which are read after all city models. */
+noc_status footprint_keep(importer *im, input *in, size_t index, const geo_footprint *f);
+/* Those that no city model has become blocks on the ground. */
+noc_status footprints_stand(importer *im);
 
 /* box.c */
 noc_status box_read(const noc_import_params *params, noc_log *log, load_box *box);

@@ -188,6 +188,28 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     return sink_hand_over(r, &(load_part){ .kind = PART_LAMP, .u.lamp = p });
 }
 
+static noc_status on_footprint(void *ctx, const geo_footprint *footprint) {
+    reading *r = ctx;
+    size_t count = 0;
+    for (size_t i = 0; i < footprint->ring_count; i++)
+        count += footprint->ring_size[i];
+    size_t numbers = 3 * count;
+    r->scratch.len = 0;
+    if (!array_append(&r->scratch, footprint->xyz, numbers))
+        return noc_no_memory(r->log, r->in->path);
+    bool usable, inside = true;
+    noc_status status = place_points(r, r->scratch.data, count, footprint->id, &usable);
+    if (!status && usable)
+        status = box_point(r, r->scratch.data, &inside);
+    if (!status && !inside)
+        geo_issue(r->in->issues, GEO_SPARED, "object outside of --bbox", footprint->id);
+    if (status || !usable || !inside)
+        return status;
+    geo_footprint local = *footprint;
+    local.xyz = r->scratch.data;
+    return footprint_keep(r->im, r->in, r->index, &local);
+}
+
 /* Of a file that has been read. */
 static noc_status on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
     reading *r = ctx;
@@ -255,6 +277,7 @@ geo_sink sink_create(reading *r) {
                        .polygon = on_polygon,
                        .end_object = on_end_object,
                        .lamp = on_lamp,
+                       .footprint = r->im->params->footprints ? on_footprint : NULL,
                        .columns = on_columns,
                        .features = on_features,
                        .progress = on_progress,

@@ -40,7 +40,8 @@ enum {
     REMOTE_OBJECT,   /* remote_object, text: id */
     REMOTE_POLYGON,  /* class, count of rings, text: id, points of each ring, their coordinates */
     REMOTE_OBJECT_END,
-    REMOTE_END, /* remote_end, text: format */
+    REMOTE_FOOTPRINT, /* remote_footprint, text: id, points of each ring, their coordinates */
+    REMOTE_END,       /* remote_end, text: format */
 };
 
 typedef struct remote_head {
@@ -48,11 +49,15 @@ typedef struct remote_head {
 } remote_head;
 typedef struct remote_asked {
     int32_t parent;
-    bool named_lamps, inspect;
+    bool named_lamps, inspect, footprints;
 } remote_asked;
 typedef struct remote_object {
     int32_t kind, lod;
 } remote_object;
+typedef struct remote_footprint {
+    uint64_t rings;
+    double height, min_height, levels, min_level, roof_height;
+} remote_footprint;
 typedef struct remote_mesh {
     uint64_t vertices, triangles;
     int32_t material;

@@ -21,7 +21,8 @@ static void emit(serving *s, uint32_t kind) {
     if (s->batch.refused)
         _exit(REMOTE_NO_MEMORY);
     bool waits = kind == REMOTE_LAMP || kind == REMOTE_MATERIAL || kind == REMOTE_ISSUE || kind == REMOTE_CRS ||
-                 kind == REMOTE_OBJECT || kind == REMOTE_POLYGON || kind == REMOTE_OBJECT_END;
+                 kind == REMOTE_OBJECT || kind == REMOTE_POLYGON || kind == REMOTE_OBJECT_END ||
+                 kind == REMOTE_FOOTPRINT;
     if ((!waits || s->batch.bytes.len > BATCH) && !remote_send(REMOTE_FD, &s->batch))
         _exit(1); /* whoever asked is gone: so are we */
 }
@@ -53,19 +54,33 @@ static noc_status on_begin_object(void *ctx, const geo_object *object) {
     return NOC_OK;
 }
 
+static void put_rings(serving *s, size_t count, const size_t *sizes, const double *xyz) {
+    size_t points = 0;
+    for (size_t i = 0; i < count; i++) {
+        uint64_t size = sizes[i];
+        remote_put(&s->out, &size, sizeof(size));
+        points += sizes[i];
+    }
+    remote_put(&s->out, xyz, points * 3 * sizeof(double));
+}
+
 static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
     serving *s = ctx;
     uint64_t numbers[] = { (uint64_t)polygon->cls, polygon->ring_count };
-    size_t points = 0;
     remote_put(&s->out, numbers, sizeof(numbers));
     remote_put_text(&s->out, polygon->id);
-    for (size_t i = 0; i < polygon->ring_count; i++) {
-        uint64_t size = polygon->ring_size[i];
-        remote_put(&s->out, &size, sizeof(size));
-        points += polygon->ring_size[i];
-    }
-    remote_put(&s->out, polygon->xyz, points * 3 * sizeof(double));
+    put_rings(s, polygon->ring_count, polygon->ring_size, polygon->xyz);
     emit(s, REMOTE_POLYGON);
+    return NOC_OK;
+}
+
+static noc_status on_footprint(void *ctx, const geo_footprint *f) {
+    serving *s = ctx;
+    remote_footprint r = { f->ring_count, f->height, f->min_height, f->levels, f->min_level, f->roof_height };
+    remote_put(&s->out, &r, sizeof(r));
+    remote_put_text(&s->out, f->id);
+    put_rings(s, f->ring_count, f->ring_size, f->xyz);
+    emit(s, REMOTE_FOOTPRINT);
     return NOC_OK;
 }
 
@@ -165,6 +180,7 @@ static void serve(serving *s) {
                       .polygon = on_polygon,
                       .end_object = on_end_object,
                       .lamp = on_lamp,
+                      .footprint = s->asked.sink.footprints ? on_footprint : NULL,
                       .progress = on_progress,
                       .columns = on_columns,
                       .features = on_features,

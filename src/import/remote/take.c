@@ -58,15 +58,14 @@ static noc_status take_object(remote_taker *t, remote_record *one) {
     return t->sink->begin_object(t->sink->ctx, &(geo_object){ (geo_kind)o.kind, id, o.lod });
 }
 
-static noc_status take_polygon(remote_taker *t, remote_record *one) {
-    uint64_t numbers[2] = { 0 }, points = 0; /* class, rings */
-    remote_get(one, numbers, sizeof(numbers));
-    const char *id = remote_get_text(one);
-    const char *sizes = remote_get_array(one, numbers[1], sizeof(uint64_t));
-    if (one->bad || !t->in_object || !t->placed || numbers[0] >= NOC_CLASS_COUNT || !numbers[1])
+/* Into t->rings and t->xyz, aligned. */
+static noc_status take_rings(remote_taker *t, remote_record *one, uint64_t rings) {
+    const char *sizes = remote_get_array(one, rings, sizeof(uint64_t));
+    uint64_t points = 0;
+    if (one->bad || !t->placed || !rings)
         return garbled(t);
     t->rings.len = t->xyz.len = 0;
-    for (uint64_t i = 0; i < numbers[1]; i++) {
+    for (uint64_t i = 0; i < rings; i++) {
         uint64_t size;
         memcpy(&size, sizes + i * sizeof(size), sizeof(size));
         if (size < 3 || size > one->bytes.len)
@@ -81,13 +80,33 @@ static noc_status take_polygon(remote_taker *t, remote_record *one) {
     size_t count = 3 * (size_t)points;
     if (!array_reserve(&t->xyz, count))
         return noc_no_memory(t->sink->log, t->path);
-    memcpy(t->xyz.data, xyz, count * sizeof(double)); /* aligned */
-    const geo_polygon polygon = { .cls = (noc_class)numbers[0],
-                                  .id = id,
-                                  .ring_count = t->rings.len,
-                                  .ring_size = t->rings.data,
-                                  .xyz = t->xyz.data };
-    return t->sink->polygon(t->sink->ctx, &polygon);
+    memcpy(t->xyz.data, xyz, count * sizeof(double));
+    return NOC_OK;
+}
+
+static noc_status take_polygon(remote_taker *t, remote_record *one) {
+    uint64_t numbers[2] = { 0 }; /* class, rings */
+    remote_get(one, numbers, sizeof(numbers));
+    const char *id = remote_get_text(one);
+    if (one->bad || !t->in_object || numbers[0] >= NOC_CLASS_COUNT)
+        return garbled(t);
+    noc_status status = take_rings(t, one, numbers[1]);
+    const geo_polygon polygon = { (noc_class)numbers[0], id, t->rings.len, t->rings.data, t->xyz.data };
+    return status ? status : t->sink->polygon(t->sink->ctx, &polygon);
+}
+
+static noc_status take_footprint(remote_taker *t, remote_record *one) {
+    remote_footprint f = { 0 };
+    remote_get(one, &f, sizeof(f));
+    const char *id = remote_get_text(one);
+    const double most = 1000; /* m, storeys; or NaN */
+    if (one->bad || t->in_object || t->parts || !t->sink->footprint || f.height > most || f.min_height < 0 ||
+        f.levels > most || f.min_level < 0 || f.roof_height > most)
+        return garbled(t);
+    noc_status status = take_rings(t, one, f.rings);
+    const geo_footprint footprint = { id,           t->rings.len, t->rings.data, t->xyz.data,  f.height,
+                                      f.min_height, f.levels,     f.min_level,   f.roof_height };
+    return status ? status : t->sink->footprint(t->sink->ctx, &footprint);
 }
 
 static noc_status take_object_end(remote_taker *t) {
@@ -217,6 +236,7 @@ static noc_status take(remote_taker *t, uint32_t kind, remote_record *one) {
     case REMOTE_OBJECT: return take_object(t, one);
     case REMOTE_POLYGON: return take_polygon(t, one);
     case REMOTE_OBJECT_END: return take_object_end(t);
+    case REMOTE_FOOTPRINT: return take_footprint(t, one);
     case REMOTE_END: return take_end(t, one);
     default: return garbled(t);
     }

@@ -1,0 +1,68 @@
+#include "import/map/outlines.h"
+
+#include <math.h>
+
+#define MOST_METRES 1000
+#define MOST_LEVELS 250
+
+int outline_verdict(const lamp_tag *tags, size_t count) {
+    int verdict = -1;
+    for (size_t i = 0; i < count; i++) {
+        if (!strcmp(tags[i].key, "building:part") && verdict < 0)
+            return 0; /* lies in the outline of a building */
+        if (!strcmp(tags[i].key, "building"))
+            verdict = strcmp(tags[i].value, "no") && *tags[i].value ? 1 : 0;
+    }
+    for (size_t i = 0; i < count && verdict > 0; i++) /* it has no walls above the ground */
+        if (!strcmp(tags[i].key, "location") && !strcmp(tags[i].value, "underground"))
+            verdict = 0;
+    return verdict;
+}
+
+bool outline_layer(const char *name) {
+    static const char *const words[] = { "building", "footprint", "gebaeude", "gebaude", "batiment", "edific",
+                                         "pand",     "bygning",   "byggnad",  "rakennu", "budova",   "budynki" };
+    char folded[200];
+    lamp_fold(name, false, folded, sizeof(folded));
+    for (size_t i = 0; i < NOC_COUNT(words); i++)
+        if (strstr(folded, words[i]))
+            return true;
+    return false;
+}
+
+enum { WHOLE, FROM, LEVELS, FROM_LEVEL, ROOF, KEYS };
+
+static void read_one(const lamp_tag *tag, int what, double *out) {
+    double value;
+    int times;
+    bool levels = what == LEVELS || what == FROM_LEVEL;
+    bool told =
+        levels ? noc_parse_double(tag->value, &value) : lamp_quantity(tag->value, LAMP_METRES, 1, '.', &value, &times);
+    if (told && isnan(*out) && value >= 0 && value <= (levels ? MOST_LEVELS : MOST_METRES))
+        *out = value;
+}
+
+void outline_read(const lamp_tag *tags, size_t count, geo_footprint *footprint) {
+    static const char *const keys[KEYS][8] = {
+        [WHOLE] = { "height", "buildingheight", "measuredheight", "estheight", "hoehe", "hauteur", "altura",
+                    "bldgheight" },
+        [FROM] = { "minheight", "buildingminheight" },
+        [LEVELS] = { "buildinglevels", "levels", "storeys", "stories", "numfloors", "floors", "nbetages", "geschosse" },
+        [FROM_LEVEL] = { "buildingminlevel", "minlevel" },
+        [ROOF] = { "roofheight", "buildingroofheight" },
+    };
+    double value[KEYS] = { NAN, NAN, NAN, NAN, NAN };
+    for (size_t i = 0; i < count; i++) {
+        char folded[64];
+        lamp_fold(tags[i].key, false, folded, sizeof(folded));
+        for (int what = 0; what < KEYS; what++)
+            for (size_t k = 0; k < NOC_COUNT(keys[what]) && keys[what][k]; k++)
+                if (!strcmp(folded, keys[what][k]))
+                    read_one(&tags[i], what, &value[what]);
+    }
+    footprint->height = value[WHOLE];
+    footprint->min_height = value[FROM];
+    footprint->levels = value[LEVELS];
+    footprint->min_level = value[FROM_LEVEL];
+    footprint->roof_height = value[ROOF];
+}

@@ -1,0 +1,257 @@
+/* Buildings of maps: outlines become blocks on the ground, with the heights that they tell, where no model has one. */
+#include "test.h"
+
+#include "import/load/load.h"
+#include "noc_config.h"
+#include <nocturne/nocturne.h>
+
+#include <math.h>
+
+#if NOC_HAVE_GDAL
+
+static char folder[] = "/tmp/noc-footprints-XXXXXX";
+static noc_log *log_;
+static noc_scene *scene;
+static noc_report *report;
+
+static const char *write_file(const char *name, const char *text) {
+    static char paths[4][300];
+    static int next;
+    char *path = paths[next++ % 4];
+    snprintf(path, sizeof(paths[0]), "%s/%s", folder, name);
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    fputs(text, f);
+    fclose(f);
+    return path;
+}
+
+static void forget(void) {
+    noc_report_destroy(report);
+    noc_scene_destroy(scene);
+    report = NULL;
+    scene = NULL;
+}
+
+static noc_status load(bool footprints, bool isolate, const char *a, const char *b) {
+    const char *paths[] = { a, b };
+    noc_import_params params = noc_import_default_params();
+    params.infer_lamps = params.windows = NOC_SWITCH_OFF;
+    params.footprints = footprints;
+    params.isolate = isolate;
+    params.scene_crs = "EPSG:25832";
+    forget();
+    scene = noc_scene_create(log_);
+    return noc_scene_load(scene, paths, b ? 2 : 1, &params, &report);
+}
+
+static void load_well(const char *a, const char *b) {
+    if (load(true, true, a, b) != NOC_OK)
+        fail_msg("%s", noc_log_last_error(log_));
+}
+
+static size_t line(size_t file, const char *reason) {
+    const noc_report_file *f = noc_report_get_file(report, file);
+    for (size_t i = 0; i < f->line_count; i++)
+        if (!strcmp(f->lines[i].reason, reason))
+            return f->lines[i].count;
+    return 0;
+}
+
+typedef struct seen {
+    size_t meshes, wall_triangles, roof_triangles;
+    double low, high, roof_area;
+} seen;
+
+/* Of the building whose id is this one. */
+static seen look(const char *id) {
+    seen s = { .low = INFINITY, .high = -INFINITY };
+    for (size_t m = 0; m < scene->meshes.len; m++) {
+        const noc_scene_mesh *mesh = &scene->meshes.data[m];
+        noc_class cls = scene->materials.data[mesh->material].cls;
+        if (!mesh->name || strcmp(mesh->name, id))
+            continue;
+        s.meshes++;
+        for (size_t t = mesh->first_triangle; t < mesh->first_triangle + mesh->triangle_count; t++) {
+            const float *p[3];
+            for (size_t k = 0; k < 3; k++) {
+                p[k] = scene->positions.data + 3 * (size_t)scene->indices.data[3 * t + k];
+                s.low = fmin(s.low, (double)p[k][2]);
+                s.high = fmax(s.high, (double)p[k][2]);
+            }
+            double twice =
+                (double)((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]));
+            s.wall_triangles += cls == NOC_CLASS_WALL;
+            s.roof_triangles += cls == NOC_CLASS_ROOF;
+            s.roof_area += cls == NOC_CLASS_ROOF ? twice / 2 : 0;
+        }
+    }
+    return s;
+}
+
+#define FEATURE(id, properties, rings)                                                                                 \
+    "{\"type\":\"Feature\",\"id\":" id ",\"properties\":{" properties "},\"geometry\":{\"type\":\"Polygon\","          \
+    "\"coordinates\":[" rings "]}}"
+#define MAP(name, features)                                                                                            \
+    "{\"type\":\"FeatureCollection\",\"name\":\"" name "\",\"crs\":{\"type\":\"name\",\"properties\":{\"name\":"       \
+    "\"urn:ogc:def:crs:EPSG::25832\"}},\"features\":[" features "]}"
+/* Squares of 10 m; one is drawn clockwise, and one has a yard of 4 m. */
+#define SQUARE "[[690000,5330000],[690010,5330000],[690010,5330010],[690000,5330010],[690000,5330000]]"
+#define BACKWARDS "[[690020,5330000],[690020,5330010],[690030,5330010],[690030,5330000],[690020,5330000]]"
+#define YARD                                                                                                           \
+    "[[690040,5330000],[690050,5330000],[690050,5330010],[690040,5330010],[690040,5330000]],"                          \
+    "[[690043,5330003],[690047,5330003],[690047,5330007],[690043,5330007],[690043,5330003]]"
+#define FAR "[[690080,5330000],[690090,5330000],[690090,5330010],[690080,5330010],[690080,5330000]]"
+
+/* clang-format off */
+static const char town[] = MAP("areas",
+    FEATURE("1", "\"building\":\"yes\",\"height\":\"12 m\"", SQUARE) ","
+    FEATURE("2", "\"building\":\"house\",\"building:levels\":\"2\",\"roof:height\":\"1.5\"", BACKWARDS) ","
+    FEATURE("3", "\"building\":\"yes\",\"height\":\"20\",\"min_height\":\"8\"", YARD) ","
+    FEATURE("4", "\"building\":\"yes\"", FAR) ","
+    FEATURE("5", "\"building\":\"no\"", FAR) ","
+    FEATURE("6", "\"building:part\":\"yes\",\"height\":\"90\"", FAR) ","
+    FEATURE("7", "\"landuse\":\"grass\"", FAR));
+/* clang-format on */
+
+static void test_blocks(void **state) {
+    load_well(write_file("town.geojson", town), NULL);
+    const noc_report_file *f = noc_report_get_file(report, 0);
+    assert_int_equal(f->buildings, 4);
+    assert_int_equal(f->lod_used[1], 4);
+    assert_int_equal(f->polygons_by_class[NOC_CLASS_WALL], 4 + 4 + 8 + 4);
+    seen s = look("feature 1");
+    assert_float_equal(s.high - s.low, 12, 1e-4);
+    assert_int_equal(s.wall_triangles, 8);
+    assert_float_equal(s.roof_area, 100, 1e-2);
+    s = look("feature 2"); /* the roof faces up, whichever way the outline runs */
+    assert_float_equal(s.high - s.low, 7.5, 1e-4);
+    assert_float_equal(s.roof_area, 100, 1e-2);
+    s = look("feature 3");
+    assert_float_equal(s.high - s.low, 12, 1e-4);
+    assert_float_equal(s.roof_area, 100 - 16, 1e-2);
+    s = look("feature 4");
+    assert_float_equal(s.high - s.low, 9, 1e-4);
+    assert_int_equal(line(0, "height of a building, by --building-height"), 1);
+    assert_int_equal(look("feature 5").meshes + look("feature 6").meshes + look("feature 7").meshes, 0);
+    assert_int_equal(f->map_areas, 7);
+    /* the same in this process; and nothing without the option */
+    size_t triangles = f->triangles;
+    assert_int_equal(load(true, false, write_file("town.geojson", town), NULL), NOC_OK);
+    assert_int_equal(noc_report_get_file(report, 0)->triangles, triangles);
+    assert_int_equal(load(false, true, write_file("town.geojson", town), NULL), NOC_OK);
+    assert_int_equal(noc_report_get_file(report, 0)->triangles, 0);
+}
+
+/* Walls face outwards: what they enclose is positive. */
+static void test_facing(void **state) {
+    load_well(write_file("town.geojson", town), NULL);
+    double x = 0;
+    for (size_t m = 0; m < scene->meshes.len; m++) {
+        const noc_scene_mesh *mesh = &scene->meshes.data[m];
+        if (!mesh->name || strcmp(mesh->name, "feature 2") ||
+            scene->materials.data[mesh->material].cls != NOC_CLASS_WALL)
+            continue;
+        double volume = 0;
+        const float *o = scene->positions.data + 3 * (size_t)scene->indices.data[3 * mesh->first_triangle];
+        for (size_t t = mesh->first_triangle; t < mesh->first_triangle + mesh->triangle_count; t++) {
+            double p[3][3];
+            for (size_t k = 0; k < 9; k++)
+                p[k / 3][k % 3] =
+                    (double)(scene->positions.data[3 * (size_t)scene->indices.data[3 * t + k / 3] + k % 3] - o[k % 3]);
+            volume += p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) -
+                      p[0][1] * (p[1][0] * p[2][2] - p[1][2] * p[2][0]) +
+                      p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
+        }
+        assert_true(volume / 6 > 0);
+        x = volume;
+    }
+    assert_true(x > 0);
+}
+
+/* Only where no model stands, and at the height of the terrain. */
+static void test_model_and_terrain(void **state) {
+    const char *model = write_file(
+        "model.json",
+        "{\"type\":\"CityJSON\",\"version\":\"1.0\",\"metadata\":{\"referenceSystem\":\"EPSG:25832\"},"
+        "\"CityObjects\":{\"roof\":{\"type\":\"Building\",\"geometry\":[{\"type\":\"MultiSurface\",\"lod\":2,"
+        "\"boundaries\":[[[0,1,2,3]]],\"semantics\":{\"surfaces\":[{\"type\":\"RoofSurface\"}],\"values\":[0]}}]},"
+        "\"tin\":{\"type\":\"TINRelief\",\"geometry\":[{\"type\":\"CompositeSurface\",\"lod\":1,"
+        "\"boundaries\":[[[4,5,6]],[[4,6,7]]]}]}},\"vertices\":["
+        "[690002,5330002,460],[690008,5330002,460],[690008,5330008,460],[690002,5330008,460],"
+        "[689900,5329900,450],[690200,5329900,450],[690200,5330100,450],[689900,5330100,450]]}");
+    load_well(write_file("town.geojson", town), model);
+    assert_int_equal(look("feature 1").meshes, 0);
+    assert_int_equal(line(0, "outline of a building that a city model has"), 1);
+    seen s = look("feature 2");
+    assert_float_equal(s.low, 450, 1e-3);
+    assert_float_equal(s.high, 457.5, 1e-3);
+    s = look("feature 3");
+    assert_float_equal(s.low, 458, 1e-3);
+    assert_int_equal(noc_report_get_file(report, 0)->buildings, 3);
+}
+
+/* A layer whose name says what it holds. */
+static void test_layer(void **state) {
+    load_well(write_file("layer.geojson", MAP("Buildings 2020", FEATURE("1", "\"NUM_FLOORS\":4", SQUARE))), NULL);
+    seen s = look("feature 1");
+    assert_float_equal(s.high - s.low, 12, 1e-4);
+    assert_int_equal(load(true, true, write_file("layer.geojson", MAP("trees", FEATURE("1", "\"a\":4", SQUARE))), NULL),
+                     NOC_OK);
+    assert_int_equal(noc_report_get_file(report, 0)->buildings, 0);
+}
+
+static void test_osm(void **state) {
+    static const char osm[] =
+        "<?xml version='1.0'?><osm version='0.6'>"
+        "<node id='1' lat='48.1' lon='11.5'/><node id='2' lat='48.1' lon='11.5002'/>"
+        "<node id='3' lat='48.1002' lon='11.5002'/><node id='4' lat='48.1002' lon='11.5'/>"
+        "<node id='5' lat='48.10005' lon='11.50005'/><node id='6' lat='48.10005' lon='11.50015'/>"
+        "<node id='7' lat='48.10015' lon='11.50015'/><node id='8' lat='48.1003' lon='11.5004'>"
+        "<tag k='highway' v='street_lamp'/></node>"
+        "<node id='9' lat='48.1' lon='11.501'/><node id='10' lat='48.1' lon='11.5012'/>"
+        "<node id='11' lat='48.1002' lon='11.5012'/>"
+        "<way id='1'><nd ref='1'/><nd ref='2'/><nd ref='3'/><nd ref='4'/><nd ref='1'/></way>"
+        "<way id='2'><nd ref='5'/><nd ref='6'/><nd ref='7'/><nd ref='5'/></way>"
+        "<way id='3'><nd ref='9'/><nd ref='10'/><nd ref='11'/><nd ref='9'/>"
+        "<tag k='building' v='yes'/><tag k='building:levels' v='5'/></way>"
+        "<relation id='7'><member type='way' ref='1' role='outer'/><member type='way' ref='2' role='inner'/>"
+        "<tag k='type' v='multipolygon'/><tag k='building' v='yes'/><tag k='height' v='30'/></relation></osm>";
+    load_well(write_file("town.osm", osm), NULL);
+    const noc_report_file *f = noc_report_get_file(report, 0);
+    assert_int_equal(f->buildings, 2);
+    assert_int_equal(f->lamps, 1);
+    assert_int_equal(f->buildings_unread, 0);
+    seen s = look("relation/7");
+    assert_float_equal(s.high - s.low, 30, 1e-4);
+    assert_int_equal(s.wall_triangles, 2 * (4 + 3));
+    s = look("way/3");
+    assert_float_equal(s.high - s.low, 15, 1e-4);
+}
+
+static int start(void **state) {
+    log_ = noc_log_create(NULL);
+    return !mkdtemp(folder);
+}
+
+static int finish(void **state) {
+    char command[100];
+    forget();
+    noc_log_destroy(log_);
+    snprintf(command, sizeof(command), "rm -r %s", folder);
+    return system(command);
+}
+#endif
+
+int main(void) {
+#if NOC_HAVE_GDAL
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_blocks), cmocka_unit_test(test_facing), cmocka_unit_test(test_model_and_terrain),
+        cmocka_unit_test(test_layer),  cmocka_unit_test(test_osm),
+    };
+    return cmocka_run_group_tests_name("import/footprints", tests, start, finish);
+#else
+    print_message("1..0 # SKIP without GDAL\n");
+    return 0;
+#endif
+}
