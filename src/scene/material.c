@@ -24,14 +24,16 @@
     CLASS(NOC_CLASS_VEHICLE, "vehicle", .20f, .05f, .05f, .05f, .25f)
 
 #define CLASS(id, text, r, g, b, spec, rough) [id] = text,
-const char *const noc_class_names[NOC_CLASS_COUNT] = { CLASSES };
+const char *const noc_label_names[NOC_LABEL_COUNT] = { CLASSES[NOC_CLASS_COUNT] = "wall with windows",
+                                                       "wall, too small", "wall, tilted", "party wall",
+                                                       "wall with its own windows" };
 #undef CLASS
 #define CLASS(id, text, r, g, b, spec, rough)                                                                          \
     [id] = { .albedo = { r, g, b }, .f0 = spec, .roughness = rough, .cls = id },
 static const noc_material class_materials[NOC_CLASS_COUNT] = { CLASSES };
 #undef CLASS
 
-const char *noc_class_name(noc_class cls) { return (unsigned)cls < NOC_CLASS_COUNT ? noc_class_names[cls] : "unknown"; }
+const char *noc_class_name(noc_class cls) { return (unsigned)cls < NOC_CLASS_COUNT ? noc_label_names[cls] : "unknown"; }
 
 noc_material noc_class_material(noc_class cls) {
     return class_materials[(unsigned)cls < NOC_CLASS_COUNT ? cls : NOC_CLASS_OTHER];

@@ -12,7 +12,7 @@ size_t noc_scene_bytes(const noc_scene *s) {
            s->lights.cap * sizeof(noc_light_record) + s->light_names.cap * sizeof(char *) +
            s->light_made.cap * sizeof(noc_rgb) + s->meshes.cap * sizeof(noc_scene_mesh) + s->names.bytes +
            s->later_bytes + models + s->instances.cap * sizeof(noc_scene_instance) +
-           s->windows.cap * sizeof(noc_scene_window);
+           s->windows.cap * sizeof(noc_scene_window) + s->walls.cap;
 }
 
 static void count_meshes(const noc_scene *scene, noc_scene_info *info) {

@@ -66,6 +66,7 @@ void noc_scene_destroy(noc_scene *scene) {
     array_free(&scene->light_made);
     array_free(&scene->moving);
     array_free(&scene->windows);
+    array_free(&scene->walls);
     array_free(&scene->models);
     array_free(&scene->instances);
     array_free(&scene->groups);

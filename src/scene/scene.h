@@ -8,7 +8,9 @@
 
 #define NOC_NO_LIGHT NO_LIGHT
 
-extern const char *const noc_class_names[NOC_CLASS_COUNT];
+/* Labels of surfaces: classes by their numbers, then walls by what became of them (noc_wall_verdict less 1). */
+#define NOC_LABEL_COUNT (NOC_CLASS_COUNT + NOC_WALL_VERDICT_COUNT - 1)
+extern const char *const noc_label_names[NOC_LABEL_COUNT];
 
 /* The same records for C and shaders (core/records.h). */
 typedef light_record noc_light_record;
@@ -163,6 +165,7 @@ struct noc_scene {
     NOC_ARRAY(noc_rgb) light_made;                   /* emission before the group's scale; filled where `scaled` */
     NOC_ARRAY(uint32_t) moving;                      /* lights of the moving half, ascending */
     NOC_ARRAY(noc_scene_window) windows;             /* ascending by their lights */
+    NOC_ARRAY(uint8_t) walls;                        /* noc_wall_verdict of triangles; of those behind its end UNSEEN */
     NOC_ARRAY(noc_scene_model) models;               /* model m is at m - 1 */
     NOC_ARRAY(noc_scene_instance) instances;
     NOC_ARRAY(noc_scene_group) groups; /* group g is at g - 1; only who edits looks at them */
@@ -286,6 +289,11 @@ static inline void noc_range_add(noc_range *r, size_t i) {
 }
 
 /* window.c */
+static inline noc_wall_verdict noc_scene_wall(const noc_scene *s, size_t triangle) {
+    return triangle < s->walls.len ? (noc_wall_verdict)s->walls.data[triangle] : NOC_WALL_UNSEEN;
+}
+/* Before the first commit: room for verdicts on all triangles that are there. false: no memory, reported. */
+bool noc_scene_reserve_walls(noc_scene *s);
 typedef struct noc_pane {
     const uint32_t *triangles; /* that show it, as numbers in the mesh */
     size_t triangle_count;

@@ -49,6 +49,18 @@ static void shares(const double lit_and_hour[2], double share[NOC_WINDOW_KIND_CO
         share[kind] = noc_window_share((noc_window_kind)kind, lit_and_hour[0], lit_and_hour[1]);
 }
 
+bool noc_scene_reserve_walls(noc_scene *s) {
+    size_t had = s->walls.len, count = s->triangle_light.len;
+    if (!array_reserve(&s->walls, count)) {
+        noc_scene_out_of_memory(s);
+        return false;
+    }
+    if (count > had)
+        memset(s->walls.data + had, NOC_WALL_UNSEEN, count - had);
+    s->walls.len = count;
+    return true;
+}
+
 bool noc_scene_add_window(noc_scene *s, int mesh, const noc_pane *pane) {
     noc_scene_mesh *m = &s->meshes.data[mesh];
     uint32_t light = (uint32_t)s->lights.len;

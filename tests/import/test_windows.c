@@ -206,6 +206,19 @@ static void test_glass(void **state) {
         else
             assert_true(rgb[1] > 1e-3f && rgb[1] < 5);
         noc_image_destroy(image);
+        noc_view_reset(view);
+        p.aovs = 1u << NOC_AOV_CLASS;
+        c.fov_deg = 100;
+        assert_int_equal(noc_view_render(view, &c, &p, NULL), NOC_OK);
+        noc_channel *cls = noc_view_aov(view, NOC_AOV_CLASS);
+        assert_non_null(cls);
+        assert_int_equal(cls->value[16 * 32 + 16], NOC_CLASS_WINDOW);
+        int walls = 0;
+        for (int k = 0; k < 32 * 32; k++)
+            walls += cls->value[k] == (float)(NOC_CLASS_COUNT + NOC_WALL_TAKEN - 1);
+        assert_true(walls > 100);
+        assert_string_equal(cls->labels[NOC_CLASS_COUNT + NOC_WALL_TAKEN - 1], "wall with windows");
+        noc_channel_destroy(cls);
         noc_view_destroy(view);
         finish(&r);
     }

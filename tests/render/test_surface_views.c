@@ -28,7 +28,7 @@ static void surfaces_that_are_seen(void **state) {
     noc_view *r = rendered(s, &c, &p, 2, 1);
     noc_channel *depth = view(r, NOC_AOV_DEPTH), *normal = view(r, NOC_AOV_NORMAL), *cls = view(r, NOC_AOV_CLASS),
                 *object = view(r, NOC_AOV_OBJECT);
-    assert_int_equal(cls->label_count, NOC_CLASS_COUNT);
+    assert_int_equal(cls->label_count, NOC_LABEL_COUNT);
     for (int i = 0; i < NOC_CLASS_COUNT; i++)
         assert_string_equal(cls->labels[i], noc_class_name((noc_class)i));
     assert_true(!object->labels && !object->label_count);

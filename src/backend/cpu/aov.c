@@ -8,7 +8,7 @@
 #define BIT(aov) (1u << NOC_AOV_##aov)
 enum {
     /* by the passes, so a dropped frame must not touch what is kept */
-    GATHERED = BIT(LIGHTS) | BIT(DENSITY) | BIT(RAYS) | BIT(OBJECT),
+    GATHERED = BIT(LIGHTS) | BIT(DENSITY) | BIT(RAYS) | BIT(OBJECT) | BIT(CLASS),
     RESERVOIRS = BIT(LIGHT) | BIT(WEIGHT) | BIT(CONFIDENCE),
     SURFACES = BIT(DEPTH) | BIT(NORMAL) | BIT(CLASS) | BIT(OBJECT), /* what is seen: emitters too */
     MOMENTS = BIT(VARIANCE) | BIT(ERROR), /* kept[VARIANCE]: sum of squared deviations; kept[ERROR]: mean luminance */
@@ -121,8 +121,10 @@ static void keep_surfaces(const noc_scene *scene, aov_buffers *v, size_t block, 
         bool some = g->material[l] != NO_SURFACE;
         if (v->kept[NOC_AOV_DEPTH])
             v->kept[NOC_AOV_DEPTH][block][l] = some ? g->depth[l] : -1;
-        if (v->kept[NOC_AOV_CLASS])
-            v->kept[NOC_AOV_CLASS][block][l] = some ? (float)scene->materials.data[g->material[l]].cls : -1;
+        if (v->kept[NOC_AOV_CLASS]) { /* a wall's label was gathered */
+            float *label = &v->kept[NOC_AOV_CLASS][block][l];
+            *label = !some ? -1 : *label >= 0 ? *label : (float)scene->materials.data[g->material[l]].cls;
+        }
         for (int k = 0; v->kept[NOC_AOV_NORMAL] && k < 3; k++)
             v->kept[NOC_AOV_NORMAL][3 * block + (size_t)k][l] = some ? (k == 0 ? g->nx : k == 1 ? g->ny : g->nz)[l] : 0;
     }

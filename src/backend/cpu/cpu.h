@@ -240,9 +240,10 @@ noc_status noc_cpu_fit_scene(cpu_view *s);
  * Counts rays where each block says, and keeps them when recording. */
 void noc_cpu_trace_occlusion(cpu_view *s, worker *w, noc_ray_world in, shadow_block *blocks, int count);
 /* Nearest hits of camera rays into a block; lanes outside `valid` see nothing.
- * object: of each lane, -1 where there is none; instance: NO_INSTANCE; both may be NULL. */
+ * object: of each lane, -1 where there is none; wall: its label, of walls that windows were looked for in, else
+ * untouched; instance: NO_INSTANCE; all may be NULL. */
 void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g, float *object,
-                     uint32_t *instance);
+                     float *wall, uint32_t *instance);
 void noc_cpu_probe(void *user, noc_probes *probes); /* a noc_probe_fn; user is the cpu_world */
 noc_status noc_cpu_replay_rays(cpu_view *s, double *seconds);
 

@@ -68,10 +68,10 @@ static void primary_block(stage_run *run, worker *w, int bx, int by) {
         rays.d[1][l] = d.y;
         rays.d[2][l] = d.z;
     }
-    float(*objects)[BLOCK] = b->aovs.made[NOC_AOV_OBJECT];
+    float(*objects)[BLOCK] = b->aovs.made[NOC_AOV_OBJECT], (*walls)[BLOCK] = b->aovs.made[NOC_AOV_CLASS];
     size_t at = block_at(b, bx, by);
     noc_cpu_primary(run->s, w, &rays, lanes_inside(b, bx, by), &b->g[run->frame->gbuffer][at],
-                    objects ? objects[at] : NULL, b->instance ? b->instance[at] : NULL);
+                    objects ? objects[at] : NULL, walls ? walls[at] : NULL, b->instance ? b->instance[at] : NULL);
 }
 
 /* Receivers that are given: no instance shows them. */

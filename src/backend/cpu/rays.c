@@ -108,7 +108,7 @@ static void closest(const cpu_world *world, noc_ray_world in, const rayblock *ra
 }
 
 void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t valid, gblock *g, float *object,
-                     uint32_t *instance) {
+                     float *wall, uint32_t *instance) {
     hitblock h;
     noc_cpu_no_receivers(g);
     w->rays_primary += (uint64_t)__builtin_popcount(valid);
@@ -124,6 +124,9 @@ void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t vali
             end_hit(s->scene, rays, &h, l, g);
             if (object)
                 object[l] = (float)noc_scene_object_of(s->scene, h.triangle[l]);
+            noc_wall_verdict verdict = wall ? noc_scene_wall(s->scene, h.triangle[l]) : NOC_WALL_UNSEEN;
+            if (verdict)
+                wall[l] = (float)(NOC_CLASS_COUNT + (int)verdict - 1);
         }
 }
 

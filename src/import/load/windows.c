@@ -49,6 +49,17 @@ static bool is_steep(const wall_triangle *t, double tilt) {
     return fabs(n[2]) <= sin(tilt * M_PI / 180) * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
+static wall_triangle triangle_of(const noc_scene *s, size_t t) {
+    wall_triangle w;
+    for (int k = 0; k < 9; k++)
+        w.p[k / 3][k % 3] = (double)corner(s, t, k / 3)[k % 3];
+    return w;
+}
+
+static bool is_wall(const maker *m, noc_class cls, const wall_triangle *w) {
+    return cls != NOC_CLASS_OTHER || is_steep(w, m->params->tilt);
+}
+
 static bool gather(const maker *m, size_t first, size_t end, noc_class cls, wall_triangles *out) {
     const noc_scene *s = m->im->scene;
     out->len = 0;
@@ -57,10 +68,8 @@ static bool gather(const maker *m, size_t first, size_t end, noc_class cls, wall
         if (class_of(s, i) != cls)
             continue;
         for (size_t t = mesh->first_triangle; t < (size_t)mesh->first_triangle + mesh->triangle_count; t++) {
-            wall_triangle w;
-            for (int k = 0; k < 9; k++)
-                w.p[k / 3][k % 3] = (double)corner(s, t, k / 3)[k % 3];
-            if ((cls != NOC_CLASS_OTHER || is_steep(&w, m->params->tilt)) && !array_push(out, w))
+            wall_triangle w = triangle_of(s, t);
+            if (is_wall(m, cls, &w) && !array_push(out, w))
                 return false;
         }
     }
@@ -165,6 +174,21 @@ static void count_walls(const maker *m, bool own, noc_window_counts *counts) {
     }
 }
 
+/* Of the triangles that were gathered, in that order. */
+static void keep_verdicts(const maker *m, const taken_building *b, noc_class cls, bool own) {
+    noc_scene *s = m->im->scene;
+    size_t n = 0;
+    for (size_t i = b->first; i < b->end; i++) {
+        const noc_scene_mesh *mesh = &s->meshes.data[i];
+        for (size_t t = mesh->first_triangle;
+             class_of(s, i) == cls && t < (size_t)mesh->first_triangle + mesh->triangle_count; t++) {
+            wall_triangle w = triangle_of(s, t);
+            if (is_wall(m, cls, &w))
+                s->walls.data[t] = own ? NOC_WALL_OWN : m->windows.verdicts.data[n++];
+        }
+    }
+}
+
 static noc_status add_building(maker *m, const taken_building *b) {
     const char *name = m->im->scene->meshes.data[b->first].name, *id = name ? name : "";
     noc_window_counts *counts = &m->im->inputs[b->input].file.windows;
@@ -184,6 +208,7 @@ static noc_status add_building(maker *m, const taken_building *b) {
     if (status)
         return status;
     count_walls(m, own, counts);
+    keep_verdicts(m, b, wall_class(m->im, b), own);
     return own || !m->windows.list.len ? NOC_OK : add_mesh(m, id);
 }
 
@@ -217,7 +242,7 @@ noc_status windows_add(importer *im) {
     maker m = { .im = im, .params = &im->params->window };
     if (!im->buildings.len)
         return NOC_OK;
-    noc_status status = make_cover(&m);
+    noc_status status = noc_scene_reserve_walls(im->scene) ? make_cover(&m) : NOC_ERR_MEMORY;
     status = status ? status : add_all(&m);
     noc_scene_light_windows(im->scene, m.params);
     city_cover_destroy(m.cover);
