@@ -12,6 +12,7 @@
 #include "light/bound.h"
 
 #include "core/surface.h"
+#include "../tests/core/no_profiles.h"
 
 #include <math.h>
 
@@ -66,7 +67,7 @@ static void look_at(bench *b, uint32_t id, bool kept) {
                .albedo = { 0.3f, 0.3f, 0.3f } };
     y.wo = y.n;
     b->waiting[b->count].kept = kept;
-    b->waiting[b->count].light = target(y, record, 0.5f, 0.5f);
+    b->waiting[b->count].light = target(NULL, y, record, 0.5f, 0.5f);
     float o[3] = { y.p.x + 0.01f * y.n.x, y.p.y + 0.01f * y.n.y, y.p.z + 0.01f * y.n.z }, length = 0;
     for (int k = 0; k < 3; k++)
         length += (at.p[k] - o[k]) * (at.p[k] - o[k]);

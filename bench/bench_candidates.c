@@ -6,6 +6,7 @@
 
 #include "base/base.h"
 #include "core/light.h"
+#include "../tests/core/no_profiles.h"
 #include "core/random.h"
 #include "scene/scene.h"
 

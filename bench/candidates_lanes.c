@@ -52,6 +52,7 @@ FN light light_load(CTX u32 i) {
     return l;
 }
 
+#include "../tests/core/no_profiles.h"
 #include "core/reservoir.h"
 
 static inline __attribute__((always_inline)) uint64_t run(const candidates_job *job, int layout) {

@@ -11,6 +11,7 @@
 #define NOCTURNE_SCENE_H
 
 #include <nocturne/log.h>
+#include <nocturne/photometry.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -92,12 +93,19 @@ typedef struct noc_light {
     double direction[3];
     double radius;
     double inner_deg, outer_deg; /* spot: degrees off its direction, 0 <= inner <= outer, outer within 1 to 90 */
-    float emission[3];           /* cd/m2, or cd for NOC_LIGHT_POINT and NOC_LIGHT_SPOT; one-sided */
-    const char *name;            /* may be NULL; copied */
-    bool inferred;               /* placed by a rule, not found in data */
-    bool moving;                 /* noc_scene_move_light may change it; not read of a model's */
-    int model;                   /* from noc_scene_add_model: it is in that model's coordinates; 0: in the scene's */
-    int group;                   /* from noc_scene_add_group; 0: none */
+    /* cd/m2, or cd for NOC_LIGHT_POINT and NOC_LIGHT_SPOT; one-sided. With a profile lm: the light's flux is its
+     * luminance, whatever the flux of the profile */
+    float emission[3];
+    const char *name; /* may be NULL; copied */
+    bool inferred;    /* placed by a rule, not found in data */
+    bool moving;      /* noc_scene_move_light may change it; not read of a model's */
+    int model;        /* from noc_scene_add_model: it is in that model's coordinates; 0: in the scene's */
+    int group;        /* from noc_scene_add_group; 0: none */
+    /* From noc_scene_add_profile, of points, spheres and discs; 0: none. Its axis is `direction`, its C 0 is c0, made
+     * upright to that; 0,0,0: any. The shape softens shadows: intensity and distance are those of the place on a disc,
+     * and of a sphere's centre. Seen itself it is as bright as a Lambertian one of its flux. */
+    int profile;
+    double c0[3];
 } noc_light;
 
 /* A model placed in the scene. */
@@ -130,6 +138,14 @@ NOC_API int noc_scene_add_model(noc_scene *scene, const char *name);
  * and noc_light, or -1 after reporting. name may be NULL; copied. */
 NOC_API int noc_scene_add_group(noc_scene *scene, const char *name);
 
+/* A luminous intensity distribution for lights: a copy of it at even angles, which meet the profile's own where those
+ * are whole hundredths of a degree. Returns its index >= 1, for `profile` of noc_light, or -1 after reporting. Waits
+ * for frames, as a commit does. */
+NOC_API int noc_scene_add_profile(noc_scene *scene, const noc_profile *profile);
+/* c0 of a light whose axis is that, so that the profile's street lies in the direction `street`; 0,0,0 where there is
+ * none. */
+NOC_API void noc_profile_orient(const noc_profile *profile, const double axis[3], const double street[3], double c0[3]);
+
 /* An instance. Returns its index >= 0, its own until it is removed, or -1 after reporting. It is there from the next
  * commit on. Each light of its model becomes a light of the scene, of the kind that moves. */
 NOC_API int noc_scene_add_instance(noc_scene *scene, const noc_instance *instance);
@@ -157,7 +173,7 @@ NOC_API noc_status noc_scene_set_emission(noc_scene *scene, int light, const flo
  * is as made. 0..1000000. */
 NOC_API noc_status noc_scene_set_group(noc_scene *scene, int group, const float scale[3]);
 /* Places a light anew that was made with `moving`: position, shape, direction and emission as `to` has them. The kind
- * stays; name, inferred, model and group are not read. */
+ * and the profile stay; name, inferred, model and group are not read. */
 NOC_API noc_status noc_scene_move_light(noc_scene *scene, int light, const noc_light *to);
 /* Places an instance anew, and its lights with it; transform as in noc_instance. */
 NOC_API noc_status noc_scene_set_transform(noc_scene *scene, int instance, const double transform[12]);

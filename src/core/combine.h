@@ -42,7 +42,7 @@ FN real reuse_offered(CTX surf s, reservoir q) {
     mask has = q.w > K(0.0f);
     real p = K(0.0f);
     if (ANY(has))
-        p = sel(has, target(s, light_load(PASS q.light), q.u, q.v), K(0.0f));
+        p = sel(has, target(PASS s, light_load(PASS q.light), q.u, q.v), K(0.0f));
     return p;
 }
 
@@ -76,7 +76,7 @@ FN real reuse_target(CTX int i, reservoir_builder held, light l) {
     mask on = neighbour_on(PASS i);
     real p = K(0.0f);
     if (ANY(on))
-        p = sel(on, target(neighbour_surf(PASS i), l, held.u, held.v), K(0.0f));
+        p = sel(on, target(PASS neighbour_surf(PASS i), l, held.u, held.v), K(0.0f));
     return p;
 }
 

@@ -18,7 +18,7 @@ FN reservoir ris_given(CTX surf s, u32 key, int m) {
         real u = unit_low(place);
         real v = unit_high(place);
         pick c = pick_load(PASS i);
-        real p = target(s, light_load(PASS c.light), u, v);
+        real p = target(PASS s, light_load(PASS c.light), u, v);
         EXACT real w = p * c.inverse;
         st = builder_add(st, c.light, u, v, p, w, K(1.0f), K(0.0f), rng(key, dim + KU(2u)));
     }

@@ -10,11 +10,18 @@
  * unless flagged.
  *
  * A spot is a point whose intensity is I f^2, f = clamp(s cos(t) + o, 0, 1), at an angle t from its axis: I within the
- * inner cone, 0 beyond the outer one (KHR_lights_punctual, "Inner and Outer Cone Angles"). */
+ * inner cone, 0 beyond the outer one (KHR_lights_punctual, "Inner and Outer Cone Angles").
+ *
+ * Points, spheres and discs may have a profile (core/profile.h): `e` is then their flux in lumens. shining_sample gives
+ * a sample with it: le = e I / d^2, with I in cd/lm towards y. A disc is sampled by its area at any distance, and I and
+ * d are those of the place on it: no cosine is divided by, for intensity is what was measured, not radiance. A sphere
+ * is sampled as ever, and I and d are those of its centre. So the shape softens shadows, and the light's flux is that
+ * of the profile. Seen itself, its shape is as bright as a Lambertian one of that flux. */
 #ifndef CORE_LIGHT_H
 #define CORE_LIGHT_H
 
 #include "core/fan.h"
+#include "core/profile.h"
 #include "core/records.h"
 
 /* Flat lights are sampled by solid angle where p is nearer than so many times `radius`; discs, which lose a fifth of
@@ -29,7 +36,7 @@ struct light {
     real radius; /* triangle, parallelogram: the longest way between two corners */
     v3 b;        /* edge v; disc: second radius vector; faces a x b; spot: o, then both angles, which only C reads */
     u32 flags;
-    v3 e; /* radiance, cd/m2; point: intensity, cd; spot: its greatest */
+    v3 e; /* radiance, cd/m2; point: intensity, cd; spot: its greatest; with a profile: flux, lm */
     real area;
 };
 
@@ -67,6 +74,8 @@ FN light light_of_record(light_record r) {
 
 /* A place without extent, that no shape shows. */
 FN mask is_point(light l) { return l.kind >= KU(LIGHT_POINT); }
+
+FN u32 profile_of(light l) { return shr(l.flags & KU(LIGHT_PROFILE_BITS), LIGHT_PROFILE); }
 
 FN light_sample sample_round(light l, v3 y, real u, real v) {
     light_sample s;
@@ -171,6 +180,7 @@ FN light_sample sample_flat(light l, v3 y, real u, real v) {
     if (ANY(close)) {
         EXACT real disc_reach = l.radius * K(LIGHT_CLOSE_DISC);
         close = and_(close, or_(l.kind != KU(LIGHT_DISC), w2 < disc_reach * disc_reach));
+        close = and_(close, profile_of(l) == KU(0u));
         light_sample c = sample_close(l, y, u, v);
         s.wi = sel3(close, c.wi, s.wi);
         s.dist = sel(close, c.dist, s.dist);
@@ -179,6 +189,7 @@ FN light_sample sample_flat(light l, v3 y, real u, real v) {
     return s;
 }
 
+/* Without its profile. */
 FN light_sample sample_light(light l, v3 y, real u, real v) {
     mask round = l.kind == KU(LIGHT_SPHERE);
     light_sample s;
@@ -194,6 +205,38 @@ FN light_sample sample_light(light l, v3 y, real u, real v) {
         s.le = sel3(round, r.le, s.le);
     }
     return s;
+}
+
+/* A sample's le where the light has a profile. */
+CALL v3 profiled_le(CTX light l, light_sample s, v3 y, mask on) {
+    mask round = l.kind == KU(LIGHT_SPHERE);
+    v3 w = sub3(l.p, y);
+    v3 d = sel3(round, w, mul3(s.wi, s.dist));
+    EXACT real d2 = max_(dot3(d, d), K(1e-12f));
+    real cd = profile_towards(PASS selu(on, profile_of(l), KU(1u)), l.a, l.b, sub3(fill3(K(0.0f)), d));
+    mask reaches = or_(not_(round), d2 > l.radius * l.radius * K(1.000001f));
+    EXACT real g = cd / d2;
+    return mul3(l.e, sel(reaches, g, K(0.0f)));
+}
+
+FN light_sample shining_sample(CTX light l, v3 y, real u, real v) {
+    light_sample s = sample_light(l, y, u, v);
+    mask on = (l.flags & KU(LIGHT_PROFILE_BITS)) != KU(0u);
+    if (ANY(on))
+        s.le = sel3(on, profiled_le(PASS l, s, y, on), s.le);
+    return s;
+}
+
+/* What its shape shows of it, cd/m2. */
+FN v3 light_shown(light l) {
+    mask on = (l.flags & KU(LIGHT_PROFILE_BITS)) != KU(0u);
+    v3 e = l.e;
+    if (ANY(on)) {
+        real sides = sel(l.kind == KU(LIGHT_SPHERE), K(4.0f), K(1.0f));
+        EXACT real per_lumen = K(0.101321184f) / max_(sides * l.radius * l.radius, K(1e-12f));
+        e = sel3(on, mul3(e, per_lumen), e);
+    }
+    return e;
 }
 
 #endif

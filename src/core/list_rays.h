@@ -60,7 +60,8 @@ FN list_sums list_weigh(CTX surf s, mask on, u32 key, u1 count) {
     u32 shift_v = rng_bits(key, KU(DIM_LIST_PLACE + 1u));
     for (u1 i = 0u; i < count; i++) {
         list_prior b = prior_load(PASS i);
-        real p = target(s, light_splat(PASS entry_load(PASS i).light), list_u(shift_u, KU(i)), list_v(shift_v, KU(i)));
+        real p =
+            target(PASS s, light_splat(PASS entry_load(PASS i).light), list_u(shift_u, KU(i)), list_v(shift_v, KU(i)));
         p = sel(on, p, K(0.0f));
         EXACT real w = p * K(b.share);
         weighed_store(PASS i, w);

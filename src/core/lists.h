@@ -25,7 +25,7 @@ FN reservoir ris_list(CTX surf s, u32 key, u1 count) {
         list_entry e = entry_load(PASS i);
         real u = list_u(shift_u, KU(i));
         real v = list_v(shift_v, KU(i));
-        real p = target(s, light_splat(PASS e.light), u, v);
+        real p = target(PASS s, light_splat(PASS e.light), u, v);
         st =
             builder_add(st, KU(e.light), u, v, p, p * K(e.weight), K(0.0f), K(0.0f), rng(key, KU(DIM_LIST_CHOICE + i)));
     }

@@ -18,20 +18,24 @@
 #define LIGHT_POINT 4u
 #define LIGHT_SPOT 5u
 #define LIGHT_TWO_SIDED 1u /* flag of a light; the other bits are the scene's */
+/* Bits of a light's flags: the number of its profile, 0 for none. */
+#define LIGHT_PROFILE 6
+#define LIGHT_PROFILE_BITS 0xffc0u
 #define NO_LIGHT 0xffffffffu
 
 /* A light: core/light.h says what each kind keeps where. One cache line. */
 struct light_record {
     float p[3];    /* centre or corner */
     uint32_t kind; /* LIGHT_SPHERE, ... */
-    float a[3];    /* edge u; disc: first radius vector; spot: its axis, times the scale of its falloff */
+    float a[3];    /* edge u; disc: first radius vector; spot: its axis, times the scale of its falloff; sphere and
+                    * point with a profile: C 0, unit */
     float radius;  /* triangle, parallelogram: the longest way between two corners; 0 for points and spots */
     /* edge v; disc: second radius vector; the light faces a x b. Spot: offset of its falloff, inner and
-     * outer angle in radians */
+     * outer angle in radians. Sphere and point with a profile: C 270, unit */
     float b[3];
     uint32_t flags;
-    float e[3]; /* cd/m2; point, spot: cd */
-    float area; /* m2; 0 for points and spots */
+    float e[3]; /* cd/m2; point, spot: cd; with a profile: lm */
+    float area; /* m2; 0 for points and spots; with a profile: its greatest intensity, cd a lumen */
 };
 
 /* Half a cache line. */

@@ -27,7 +27,7 @@ FN v3 reference_place(u32 key, u32 id) {
 
 FN real reference_target(CTX surf s, u32 key, uint32_t i) {
     v3 at = reference_place(key, KU(i));
-    return target(s, light_of_all(PASS i), at.x, at.y);
+    return target(PASS s, light_of_all(PASS i), at.x, at.y);
 }
 
 /* Entries below the cumulative luminance c: the number of thresholds under it. */

@@ -96,7 +96,7 @@ FN reservoir_builder builder_candidate(CTX reservoir_builder st, surf s, u32 key
     u32 place = rng_bits(key, dim + KU(1u));
     real u = unit_low(place);
     real v = unit_high(place);
-    real p = target(s, light_load(PASS id), u, v);
+    real p = target(PASS s, light_load(PASS id), u, v);
     return builder_add(st, id, u, v, p, p, K(1.0f), K(0.0f), rng(key, dim + KU(2u)));
 }
 

@@ -24,12 +24,14 @@ FN v3 emitter_shade(CTX u32 id) {
     mask on = sees_emitter(id);
     if ((FRAME.flags & FRAME_EMITTERS) != 0u)
         if (ANY(on))
-            e = sel3(on, light_load(PASS selu(on, id, KU(0u))).e, e);
+            e = sel3(on, light_shown(light_load(PASS selu(on, id, KU(0u)))), e);
     return e;
 }
 
 /* The light of a reservoir's sample, unshadowed. l: its light. */
-FN v3 sample_shade(surf s, reservoir r, light l) { return mul3(reflected(s, sample_light(l, s.p, r.u, r.v)), r.w); }
+FN v3 sample_shade(CTX surf s, reservoir r, light l) {
+    return mul3(reflected(s, shining_sample(PASS l, s.p, r.u, r.v)), r.w);
+}
 
 /* How many rays go to the sky: SKY_RAYS where this frame's lights brought less than the sky may, c: there its noise is
  * all the noise there is, and no time went into shadow rays. It is settled before any of them is traced, so it adds no

@@ -97,8 +97,8 @@ FN v3 reflect(surf s, v3 wi) {
 FN v3 reflected(surf s, light_sample l) { return tint3(reflect(s, l.wi), l.le); }
 
 /* The target p_hat: its luminance. NaN and what overflows count as 0. */
-FN real target(surf s, light l, real u, real v) {
-    light_sample ls = sample_light(l, s.p, u, v);
+FN real target(CTX surf s, light l, real u, real v) {
+    light_sample ls = shining_sample(PASS l, s.p, u, v);
     lobes f = reflect_lobes(s, ls.wi);
     EXACT real p = luminance(tint3(s.albedo, ls.le)) * f.diffuse;
     mask shiny = f.gloss > K(0.0f);

@@ -93,6 +93,15 @@ FN light light_from_records(const float *records, u32 index) {
     return l;
 }
 
+FN profile_cell profile_from_cells(const float *cells, u32 place) {
+    uint32_t at[CORE_LANES];
+    memcpy(at, &place, sizeof(at));
+    __asm__("" : "+m"(at));
+    wide_quad q = wide_quad_load(cells, 4, at);
+    profile_cell c = { q.f[0], q.f[1], q.f[2], q.f[3] };
+    return c;
+}
+
 FN void light_prefetch(const float *records, u32 index) {
     uint32_t at[CORE_LANES];
     memcpy(at, &index, sizeof(at));
@@ -107,6 +116,12 @@ FN light light_from_records(const float *records, u32 index) {
     light l;
     memcpy(&l, records + (size_t)index * LIGHT_RECORD_FLOATS, sizeof(l));
     return l;
+}
+
+FN profile_cell profile_from_cells(const float *cells, u32 place) {
+    profile_cell c;
+    memcpy(&c, cells + (size_t)place * 4, sizeof(c));
+    return c;
 }
 
 FN void light_prefetch(const float *records, u32 index) {

@@ -6,6 +6,8 @@ static float luminance(const float e[3]) { return 0.2126f * e[0] + 0.7152f * e[1
 
 float noc_light_intensity(const noc_light_record *l) {
     float y = luminance(l->e);
+    if (noc_light_has_profile(l))
+        return y * l->area;
     switch (l->kind) {
     case NOC_LIGHT_SPHERE: return y * (float)M_PI * l->radius * l->radius;
     case NOC_LIGHT_POINT:
@@ -17,7 +19,8 @@ float noc_light_intensity(const noc_light_record *l) {
 noc_light_bound noc_bound_light(const noc_light_record *l) {
     noc_light_bound b = { .intensity = noc_light_intensity(l) };
     memcpy(b.p, l->p, sizeof(b.p));
-    if (l->kind == NOC_LIGHT_SPHERE || l->kind == NOC_LIGHT_POINT) {
+    bool profile = noc_light_has_profile(l); /* it is two-sided where it sends anything behind its axis */
+    if (!profile && (l->kind == NOC_LIGHT_SPHERE || l->kind == NOC_LIGHT_POINT)) {
         b.radius = l->radius;
         return b;
     }
@@ -35,7 +38,7 @@ noc_light_bound noc_bound_light(const noc_light_record *l) {
         for (int k = 0; k < 3 && len > 0; k++)
             b.n[k] = (float)(n[k] / len);
     }
-    if (l->kind == NOC_LIGHT_DISC) {
+    if (l->kind == NOC_LIGHT_DISC || profile) {
         b.radius = l->radius;
         return b;
     }

@@ -25,7 +25,7 @@ static content_hash add_array(content_hash h, const void *data, size_t count, si
 
 /* Of what flags say only what a picture can show; groups are in the emission already. */
 static content_hash add_light(content_hash h, noc_light_record r) {
-    r.flags &= NOC_LIGHT_TWO_SIDED | NOC_LIGHT_INFERRED | NOC_LIGHT_MOVES;
+    r.flags &= NOC_LIGHT_TWO_SIDED | NOC_LIGHT_INFERRED | NOC_LIGHT_MOVES | LIGHT_PROFILE_BITS;
     return add(h, &r, sizeof(r));
 }
 
@@ -105,6 +105,8 @@ void noc_scene_content(const noc_scene *s, char key[NOC_CONTENT_KEY]) {
         if (is_bare(&s->lights.data[i]))
             h = add_light(h, s->lights.data[i]);
     h = add_instances(h, s);
+    if (s->profile_cells.len)
+        h = add_array(h, s->profile_cells.data, s->profile_cells.len, sizeof(float));
     noc_scene_unlock_read(s);
     snprintf(key, NOC_CONTENT_KEY, "%016llx%016llx", (unsigned long long)(h >> 64), (unsigned long long)h);
 }

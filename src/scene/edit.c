@@ -113,7 +113,11 @@ noc_status noc_scene_move_light(noc_scene *scene, int index, const noc_light *to
     const noc_light_record *have = light_at(scene, index);
     if (!have)
         return NOC_ERR_ARGUMENT;
+    noc_light with = *to;
+    with.profile = (int)((have->flags & LIGHT_PROFILE_BITS) >> LIGHT_PROFILE);
     const char *wrong = noc_light_fault(to);
+    if (!wrong)
+        wrong = noc_light_profile_fault(scene, &with);
     if (have->flags & NOC_LIGHT_OWNED)
         wrong = "it is part of a mesh or of an instance";
     else if (!(have->flags & NOC_LIGHT_MOVES))
@@ -122,7 +126,9 @@ noc_status noc_scene_move_light(noc_scene *scene, int index, const noc_light *to
         wrong = "a light's kind cannot change";
     if (wrong)
         return light_error(scene, index, wrong);
-    noc_edit edit = { .kind = NOC_EDIT_MOVE_LIGHT, .index = (uint32_t)index, .light = noc_light_record_of(to) };
+    noc_edit edit = { .kind = NOC_EDIT_MOVE_LIGHT,
+                      .index = (uint32_t)index,
+                      .light = noc_light_record_of(scene, &with) };
     edit.light.flags = have->flags;
     return stage(scene, &edit);
 }

@@ -117,10 +117,13 @@ static int find_material(const noc_scene *of, const noc_material *m) {
     return -1;
 }
 
-/* The material that shows a light: emits, reflects nothing. Lights of one colour share it. */
+/* The material that shows a light: emits, reflects nothing. Lights of one colour share it. That of a profile's lumens
+ * is as core/light.h's light_shown has it. */
 static int light_material(noc_scene *scene, const noc_light *l) {
     noc_material m = { .roughness = 1, .cls = NOC_CLASS_LAMP, .two_sided = false };
-    memcpy(m.emission, l->emission, sizeof(m.emission));
+    double shown = l->profile ? 1 / (M_PI * M_PI * l->radius * l->radius * (l->kind == NOC_LIGHT_SPHERE ? 4 : 1)) : 1;
+    for (int k = 0; k < 3; k++)
+        m.emission[k] = (float)(l->emission[k] * shown);
     int staged = scene->added ? find_material(scene->added, &m) : -1;
     int i = staged >= 0 ? staged + (int)scene->materials.len : find_material(scene, &m);
     return i >= 0 ? i : noc_scene_add_material(scene, &m);
@@ -188,15 +191,17 @@ static double spot_angle(const noc_light_record *r) {
 }
 
 /* A Lambertian emitter of luminance L sends pi L from each m2 of each side that it emits from; a point of I candela 4
- * pi I. */
+ * pi I. One with a profile is told by its flux. */
 double noc_light_flux(const noc_light_record *r) {
     double e = 0.2126 * r->e[0] + 0.7152 * r->e[1] + 0.0722 * r->e[2];
+    if (noc_light_has_profile(r))
+        return e;
     if (r->kind == NOC_LIGHT_POINT || r->kind == NOC_LIGHT_SPOT)
         return (r->kind == NOC_LIGHT_SPOT ? spot_angle(r) : 4 * M_PI) * e;
     return M_PI * e * r->area * (r->flags & NOC_LIGHT_TWO_SIDED ? 2 : 1);
 }
 
-noc_light_record noc_light_record_of(const noc_light *l) {
+noc_light_record noc_light_record_of(const noc_scene *scene, const noc_light *l) {
     noc_light_record r = { .kind = (uint32_t)l->kind,
                            .flags = (l->inferred ? NOC_LIGHT_INFERRED : 0) | (l->moving ? NOC_LIGHT_MOVES : 0) |
                                     (uint32_t)l->group << NOC_LIGHT_GROUP,
@@ -220,6 +225,8 @@ noc_light_record noc_light_record_of(const noc_light *l) {
         r.radius = noc_flat_size(&r);
     if (l->kind == NOC_LIGHT_SPOT)
         set_cones(&r, l);
+    if (l->profile)
+        noc_light_set_profile(scene, l, &r);
     return r;
 }
 
@@ -291,7 +298,7 @@ static int add_to_model(noc_scene *scene, const noc_light *l, const char *name) 
     }
     if (!is_point(l) && !add_shape(scene, l, index))
         return -1;
-    m->lights.data[m->lights.len++] = noc_light_record_of(l);
+    m->lights.data[m->lights.len++] = noc_light_record_of(scene, l);
     m->light_names.data[m->light_names.len++] = name;
     return (int)index;
 }
@@ -306,7 +313,7 @@ static int add_to_arrays(noc_scene *scene, const noc_light *l, const char *name)
     }
     if (!is_point(l) && !l->moving && !add_shape(scene, l, index))
         return -1;
-    scene->lights.data[scene->lights.len++] = noc_light_record_of(l);
+    scene->lights.data[scene->lights.len++] = noc_light_record_of(scene, l);
     scene->light_names.data[scene->light_names.len++] = name;
     if (l->moving)
         scene->moving.data[scene->moving.len++] = index;
@@ -325,7 +332,7 @@ static int stage_light(noc_scene *scene, const noc_light *l, const char *name) {
         return -1;
     noc_slot_take(&scene->light_slots);
     scene->edits.data[scene->edits.len++] =
-        (noc_edit){ .kind = NOC_EDIT_ADD_LIGHT, .index = slot, .name = name, .light = noc_light_record_of(l) };
+        (noc_edit){ .kind = NOC_EDIT_ADD_LIGHT, .index = slot, .name = name, .light = noc_light_record_of(scene, l) };
     return (int)slot;
 }
 
@@ -337,6 +344,8 @@ int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
     if (scene->no_memory)
         return -1;
     const char *wrong = noc_light_fault(l), *name;
+    if (!wrong)
+        wrong = noc_light_profile_fault(scene, l);
     if (!wrong)
         wrong = l->group < 0 || (size_t)l->group > scene->groups.len ? "no such group"
                                                                      : noc_scene_model_fault(scene, l->model);

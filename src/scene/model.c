@@ -141,7 +141,8 @@ noc_light_record noc_light_placed(const noc_light_record *l, const float m[12]) 
     if (!spot)
         turned(m, l->b, 1, r.b);
     r.radius = (float)(l->radius * scale);
-    r.area = (float)(l->area * scale * scale);
+    if (!noc_light_has_profile(l))
+        r.area = (float)(l->area * scale * scale);
     return r;
 }
 

@@ -11,8 +11,8 @@ size_t noc_scene_bytes(const noc_scene *s) {
            (s->indices.cap + s->triangle_material.cap + s->triangle_light.cap + s->moving.cap) * sizeof(uint32_t) +
            s->lights.cap * sizeof(noc_light_record) + s->light_names.cap * sizeof(char *) +
            s->light_made.cap * sizeof(noc_rgb) + s->meshes.cap * sizeof(noc_scene_mesh) + s->names.bytes +
-           s->later_bytes + models + s->instances.cap * sizeof(noc_scene_instance) +
-           s->windows.cap * sizeof(noc_scene_window) + s->walls.cap;
+           s->later_bytes + models + s->profile_cells.cap * sizeof(float) +
+           s->instances.cap * sizeof(noc_scene_instance) + s->windows.cap * sizeof(noc_scene_window) + s->walls.cap;
 }
 
 static void count_meshes(const noc_scene *scene, noc_scene_info *info) {
@@ -86,6 +86,12 @@ void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info) {
     noc_scene_unlock_read(scene);
 }
 
+/* As made without a profile. */
+static double area_of_round(const noc_light_record *r) {
+    double round = r->kind == NOC_LIGHT_SPHERE ? 4 : r->kind == NOC_LIGHT_DISC ? 1 : 0;
+    return round * M_PI * r->radius * r->radius;
+}
+
 static void describe_light(const noc_scene *scene, size_t index, noc_light_info *info) {
     const noc_light_record *r = &scene->lights.data[index];
     if (r->flags & NOC_LIGHT_FREE) {
@@ -93,12 +99,13 @@ static void describe_light(const noc_scene *scene, size_t index, noc_light_info 
         return;
     }
     *info = (noc_light_info){ .lumens = noc_light_flux(r),
-                              .area = r->area,
-                              .two_sided = r->flags & NOC_LIGHT_TWO_SIDED,
+                              .area = noc_light_has_profile(r) ? area_of_round(r) : r->area,
+                              .two_sided = r->flags & NOC_LIGHT_TWO_SIDED && !noc_light_has_profile(r),
                               .light = { .kind = (noc_light_kind)r->kind,
                                          .name = scene->light_names.data[index],
                                          .inferred = (r->flags & NOC_LIGHT_INFERRED) != 0,
                                          .group = (int)noc_light_group(r),
+                                         .profile = (int)((r->flags & LIGHT_PROFILE_BITS) >> LIGHT_PROFILE),
                                          .moving = (r->flags & NOC_LIGHT_MOVES) != 0 } };
     bool triangle = r->kind == NOC_LIGHT_TRIANGLE, flat = triangle || r->kind == NOC_LIGHT_PARALLELOGRAM;
     info->light.radius = flat ? 0 : r->radius;
@@ -116,7 +123,7 @@ static void describe_light(const noc_scene *scene, size_t index, noc_light_info 
         info->light.inner_deg = r->b[1] * 180 / M_PI;
         info->light.outer_deg = r->b[2] * 180 / M_PI;
     }
-    if (flat || r->kind == NOC_LIGHT_DISC) {
+    if (flat || r->kind == NOC_LIGHT_DISC || noc_light_has_profile(r)) {
         double n[3] = { (double)r->a[1] * r->b[2] - (double)r->a[2] * r->b[1],
                         (double)r->a[2] * r->b[0] - (double)r->a[0] * r->b[2],
                         (double)r->a[0] * r->b[1] - (double)r->a[1] * r->b[0] };
@@ -124,6 +131,9 @@ static void describe_light(const noc_scene *scene, size_t index, noc_light_info 
         for (int k = 0; k < 3; k++)
             info->light.direction[k] = length > 0 ? n[k] / length : 0;
     }
+    double scale = r->kind == NOC_LIGHT_DISC ? r->radius : 1;
+    for (int k = 0; k < 3 && noc_light_has_profile(r); k++)
+        info->light.c0[k] = r->a[k] / scale;
 }
 
 noc_status noc_scene_get_light(const noc_scene *scene, size_t index, noc_light_info *info) {

@@ -70,6 +70,8 @@ void noc_scene_destroy(noc_scene *scene) {
     array_free(&scene->models);
     array_free(&scene->instances);
     array_free(&scene->groups);
+    array_free(&scene->profiles);
+    array_free(&scene->profile_cells);
     array_free(&scene->gaps);
     array_free(&scene->edits);
     free_slots(&scene->light_slots);

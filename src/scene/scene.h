@@ -26,7 +26,8 @@ _Static_assert((int)LIGHT_SPHERE == NOC_LIGHT_SPHERE && (int)LIGHT_DISC == NOC_L
 #define NOC_LIGHT_FREE 8u   /* a slot without a light: no emission, never drawn */
 #define NOC_LIGHT_OWNED 16u /* comes and goes with a mesh or an instance */
 #define NOC_LIGHT_LATER 32u /* stands, and is of the moving half: it was added since what stands was last settled */
-#define NOC_LIGHT_GROUP 16
+#define NOC_LIGHT_GROUP 16  /* before it the profile's number: LIGHT_PROFILE */
+static inline bool noc_light_has_profile(const noc_light_record *r) { return r->flags & LIGHT_PROFILE_BITS; }
 static inline uint32_t noc_light_group(const noc_light_record *r) { return r->flags >> NOC_LIGHT_GROUP; }
 /* Is a light of these flags in the half that stands? */
 static inline bool noc_light_stands(uint32_t flags) { return !(flags & (NOC_LIGHT_MOVES | NOC_LIGHT_LATER)); }
@@ -74,6 +75,13 @@ typedef struct noc_scene_group {
     const char *name;
     float scale[3];
 } noc_scene_group;
+
+/* What lights with that profile need to know of it. */
+typedef struct noc_scene_profile {
+    const char *name;
+    float peak;  /* greatest intensity, cd a lumen */
+    bool upward; /* sends something beyond 90 degrees of its axis: such lights are two-sided, others never are */
+} noc_scene_profile;
 
 /* Of the triangles between first and end none are the city's: the backdrop, models, removed meshes. before: so many
  * triangles of earlier gaps. */
@@ -168,8 +176,10 @@ struct noc_scene {
     NOC_ARRAY(uint8_t) walls;                        /* noc_wall_verdict of triangles; of those behind its end UNSEEN */
     NOC_ARRAY(noc_scene_model) models;               /* model m is at m - 1 */
     NOC_ARRAY(noc_scene_instance) instances;
-    NOC_ARRAY(noc_scene_group) groups; /* group g is at g - 1; only who edits looks at them */
-    NOC_ARRAY(noc_scene_gap) gaps;     /* ascending, none touches the next */
+    NOC_ARRAY(noc_scene_group) groups;     /* group g is at g - 1; only who edits looks at them */
+    NOC_ARRAY(noc_scene_profile) profiles; /* profile p is at p - 1 */
+    NOC_ARRAY(float) profile_cells;        /* core/profile.h; data is 16-byte aligned */
+    NOC_ARRAY(noc_scene_gap) gaps;         /* ascending, none touches the next */
     noc_arena names;
     size_t triangles_dropped, triangles_flat /* of these, for they have no area */, lights_inferred;
     double bounds_min[3], bounds_max[3];
@@ -258,7 +268,13 @@ bool noc_material_of_light(const noc_material *m);
 
 /* light.c */
 const char *noc_light_fault(const noc_light *l); /* what is wrong with it, NULL if nothing */
-noc_light_record noc_light_record_of(const noc_light *l);
+noc_light_record noc_light_record_of(const noc_scene *scene, const noc_light *l);
+
+/* profile.c: what is wrong with a light's profile, NULL if nothing; and the profile in its record: the frame, the
+ * number, the greatest intensity. */
+const char *noc_light_profile_fault(const noc_scene *scene, const noc_light *l);
+void noc_light_set_profile(const noc_scene *scene, const noc_light *l, noc_light_record *r);
+
 /* The light that a triangle of these corners is. */
 noc_light_record noc_triangle_light(const float *a, const float *b, const float *c, const noc_material *material);
 double noc_double_area(const float *a, const float *b, const float *c); /* twice a triangle's area */

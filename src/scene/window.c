@@ -70,7 +70,7 @@ bool noc_scene_add_window(noc_scene *s, int mesh, const noc_pane *pane) {
         return false;
     }
     noc_scene_window w = pane->window;
-    noc_light_record r = noc_light_record_of(&pane->shape);
+    noc_light_record r = noc_light_record_of(s, &pane->shape);
     w.light = light;
     r.flags |= NOC_LIGHT_OWNED;
     memset(r.e, 0, sizeof(r.e));

@@ -4,7 +4,7 @@
 
 #include "backend/cpu/kernels.h"
 
-enum { LIGHTS = 77, MATERIALS = 9, ROUNDS = 40 };
+enum { PROFILE_CELLS = 22, LIGHTS = 77, MATERIALS = 9, ROUNDS = 40 };
 
 static uint32_t state_ = 1;
 static uint32_t bits(void) { return state_ = state_ * 1664525u + 1013904223u, state_ >> 4 ^ state_ << 7; }
@@ -12,6 +12,7 @@ static float real_in(float lo, float hi) { return lo + (hi - lo) * (float)(bits(
 
 typedef struct world {
     ALIGNED noc_light_record lights[LIGHTS];
+    ALIGNED float profiles[4 * PROFILE_CELLS];
     noc_material_record materials[MATERIALS];
     noc_render_params params;
     frame_constants frame;
@@ -31,6 +32,18 @@ static void make_world(world *w) {
             r->e[k] = real_in(0, 100);
         }
     }
+    /* a point, a sphere or a disc in three has one of two profiles: 3 by 4 and 8 by 1 steps */
+    const uint32_t heads[2][2] = { { 2, 3u << 16 | 4 }, { 14, 8u << 16 | 1 } };
+    for (int i = 0; i < LIGHTS; i++)
+        if (w->lights[i].kind % 4 < 2 && i % 3 == 1)
+            w->lights[i].flags |= (1u + (uint32_t)(i % 2)) << LIGHT_PROFILE;
+    for (int i = 0; i < 4 * PROFILE_CELLS; i++)
+        w->profiles[i] = real_in(0, 3);
+    for (int p = 0; p < 2; p++) {
+        memcpy(w->profiles + 4 * p, heads[p], sizeof(heads[p]));
+        w->profiles[4 * p + 2] = p ? 16 : 12;
+        w->profiles[4 * p + 3] = p ? 0.5f : 0.25f;
+    }
     for (int i = 0; i < MATERIALS; i++)
         w->materials[i] = (noc_material_record){ .albedo = { real_in(0, 1), real_in(0, 1), real_in(0, 1) },
                                                  .f0 = i % 2 ? real_in(0, 0.2f) : 0,
@@ -42,9 +55,11 @@ static void make_world(world *w) {
     noc_camera c = look(20, 3, 4, 0, 0, 0, 50), d = look(19, 4, 4, 0, 0, 1, 50);
     noc_make_frame_camera(&c, &w->params, 3, &w->frame.camera);
     noc_make_frame_camera(&d, &w->params, 2, &w->frame.previous);
-    w->ctx = (struct core_context){
-        .frame = &w->frame, .lights = w->lights, .light_count = LIGHTS, .materials = w->materials
-    };
+    w->ctx = (struct core_context){ .frame = &w->frame,
+                                    .lights = w->lights,
+                                    .profiles = w->profiles,
+                                    .light_count = LIGHTS,
+                                    .materials = w->materials };
 }
 
 static void random_surface(gblock *g) {

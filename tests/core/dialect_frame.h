@@ -166,7 +166,7 @@ FN void references(CTX u32 item, u32 key, surf s) {
 /* Slots 65 to 80. */
 FN void shades(CTX u32 item, u32 key, surf s) {
     reservoir r = ris_uniform(PASS s, key, KU(KERNEL_LIGHTS), 4);
-    v3 c = sample_shade(s, r, light_load(PASS r.light));
+    v3 c = sample_shade(PASS s, r, light_load(PASS r.light));
     put_v3(PASS item, FRAME_FIRST + 65, c);
     u32 turns = sky_turns(PASS mul3(c, K(1e-3f)));
     put_u32(PASS item, FRAME_FIRST + 68, turns);

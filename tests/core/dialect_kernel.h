@@ -65,6 +65,22 @@ FN light any_light(u32 key) {
     return l;
 }
 
+/* Ten heads, then whatever: 30 steps of gamma by 40 of C at most. */
+FN profile_cell profile_load(CTX u32 place) {
+    profile_cell c;
+    u32 key = hash_u32(place + KU(78u));
+    mask head = place < KU(10u);
+    u32 rows = KU(2u) + scale_u32(rng_bits(key, KU(0u)), KU(28u));
+    u32 columns = KU(1u) + scale_u32(rng_bits(key, KU(1u)), KU(40u));
+    real last = K(0.05f) + K(0.45f) * rng(key, KU(2u));
+    EXACT real per_turn = to_real(rows) / last;
+    c.near_ = sel(head, real_of_bits(place * KU(1200u) + KU(10u)), rng(key, KU(3u)));
+    c.next = sel(head, real_of_bits(shl(rows, 16) | columns), rng(key, KU(4u)));
+    c.far_ = sel(head, per_turn, rng(key, KU(5u)));
+    c.last = sel(head, last, rng(key, KU(6u)));
+    return c;
+}
+
 FN light light_load(CTX u32 i) { return any_light(hash_u32(i + KU(77u))); }
 
 #include "core/reuse.h" /* GLSL wants the bridge above it */
@@ -187,6 +203,23 @@ FN void spots(CTX u32 item, u32 key, v3 y, light any) {
     put_sample(PASS item, 163, sample_light(l, y, rng(key, KU(2002u)), rng(key, KU(2003u))));
 }
 
+/* Slots 179 to 202: lights of the kinds that have a profile, 7 a kind; what a light shows; a target. */
+FN void profiles(CTX u32 item, u32 key, surf s, light any) {
+    light l = any;
+    real u = rng(key, KU(2008u));
+    real v = rng(key, KU(2009u));
+    l.flags = l.flags | shl(KU(1u) + scale_u32(rng_bits(key, KU(2007u)), KU(10u)), LIGHT_PROFILE);
+    for (int i = 0; i < 3; i++) {
+        l.kind = KU(U32(i) + U32(i) / 2u * 2u);
+        put_sample(PASS item, 179 + 7 * i, shining_sample(PASS l, s.p, u, v));
+    }
+    put_real(PASS item, 200, luminance(light_shown(l)));
+    /* profiled and plain lights side by side */
+    l.flags = selu(u < K(0.5f), l.flags, any.flags);
+    put_real(PASS item, 201, target(PASS s, l, u, v));
+    put_real(PASS item, 202, luminance(light_shown(l)));
+}
+
 /* Slots 141 to 161: flat lights sampled by solid angle, 7 a kind; 162: turn_of. */
 FN void close_lights(CTX u32 item, u32 key, v3 y, light any) {
     light l = any;
@@ -205,7 +238,7 @@ FN void surfaces(CTX u32 item, u32 key, surf s, light any) {
     surf d = s;
     d.f0 = K(0.0f);
     put_v3(PASS item, 59, reflect(d, wi));
-    put_real(PASS item, 62, target(s, any, rng(key, KU(2020u)), rng(key, KU(2021u))));
+    put_real(PASS item, 62, target(PASS s, any, rng(key, KU(2020u)), rng(key, KU(2021u))));
     camera c;
     c.eye = any_v3(key, KU(2030u));
     c.forward = unit3(any_v3(key, KU(2036u)));
@@ -328,6 +361,7 @@ FN void dialect_item(CTX u32 item) {
     lights(PASS item, key, s.p, any);
     close_lights(PASS item, key, s.p, any);
     spots(PASS item, key, s.p, any);
+    profiles(PASS item, key, s, any);
     surfaces(PASS item, key, s, any);
     reservoirs(PASS item, key, s);
     reuse(PASS item, key);

@@ -2,7 +2,7 @@
 #ifndef DIALECT_SLOTS_H
 #define DIALECT_SLOTS_H
 
-#define KERNEL_SLOTS 179 /* dialect_kernel.h */
+#define KERNEL_SLOTS 203 /* dialect_kernel.h */
 #define FRAME_FIRST KERNEL_SLOTS
 #define FRAME_SLOTS 91 /* dialect_frame.h */
 #define INFLUENCE_FIRST (FRAME_FIRST + FRAME_SLOTS)

@@ -2,6 +2,17 @@
 #include "core_test.h"
 #include "core/surface.h"
 
+/* One profile: 3 + 2 cos C at gamma 0 to 60, in steps of 30 and 90 degrees, falling to 0 at 90. */
+FN profile_cell profile_load(CTX u32 place) {
+    static const float row[] = { 1, 1, 1, 0 };
+    static const float column[] = { 5, 3, 1, 3 };
+    if (place == 0)
+        return (profile_cell){ real_of_bits(1), real_of_bits(3u << 16 | 4), 12, 0.25f };
+    uint32_t r = (place - 1) / 4, c = (place - 1) % 4;
+    return (profile_cell){ row[r] * column[c], row[r] * column[(c + 1) % 4], row[r + 1] * column[c],
+                           row[r + 1] * column[(c + 1) % 4] };
+}
+
 static const float L = 100; /* cd/m2, or cd */
 
 static light make_sphere(v3 centre, float r) {
@@ -301,6 +312,97 @@ static void test_spot(void **state) {
 }
 
 /* The place a sample stands for lies on the light, on the side that y sees, in the direction that is told. */
+/* Of the profile above, cd a lumen. */
+static double profile_of_angles(double c, double gamma) {
+    double column[] = { 5, 3, 1, 3, 5 }, row[] = { 1, 1, 1, 0 }, x = c / 90, z = gamma / 30;
+    int i = (int)fmin(x, 3), k = (int)fmin(z, 2);
+    return gamma > 90
+               ? 0
+               : (column[i] + (column[i + 1] - column[i]) * (x - i)) * (row[k] + (row[k + 1] - row[k]) * (z - k));
+}
+
+/* A light of 100 lm whose axis is n and whose C 0 is a. */
+static light make_profiled(uint32_t kind, v3 p, v3 n, v3 a, float radius) {
+    float length = kind == LIGHT_DISC ? radius : 1;
+    light l = { .p = p, .kind = kind, .radius = radius, .e = { L, L, L }, .flags = 1u << LIGHT_PROFILE };
+    l.a = mul3(a, length);
+    l.b = mul3(cross3(n, a), length);
+    return l;
+}
+
+/* E = I cos / d^2 under a point, whichever way it is turned; under what is small and far away, too. */
+static void test_profile(void **state) {
+    dice d = { 91 };
+    for (int i = 0; i < samples(20000); i++) {
+        v3 n = random_direction(&d), a = normalised(cross3(n, random_direction(&d))), b = cross3(n, a);
+        double c = uniform(&d, 0, 360), gamma = uniform(&d, 0, 170), dist = uniform(&d, 0.5, 40);
+        double cc = cos(c * M_PI / 180), sc = sin(c * M_PI / 180), cg = cos(gamma * M_PI / 180),
+               sg = sin(gamma * M_PI / 180);
+        v3 way = V3((float)(sg * (cc * a.x - sc * b.x) + cg * n.x), (float)(sg * (cc * a.y - sc * b.y) + cg * n.y),
+                    (float)(sg * (cc * a.z - sc * b.z) + cg * n.z));
+        v3 p = random_in_box(&d, 10), y = add3(p, mul3(way, (float)dist));
+        double want = L * profile_of_angles(c, gamma) / (dist * dist);
+        float u = (float)uniform(&d, 0, 1), v = (float)uniform(&d, 0, 1);
+        light point = make_profiled(LIGHT_POINT, p, n, a, 0), disc = make_profiled(LIGHT_DISC, p, n, a, 1e-3f);
+        light sphere = make_profiled(LIGHT_SPHERE, p, n, a, 0.3f);
+        assert_true(fabs(shining_sample(NULL, point, y, u, v).le.x - want) <= 2e-4 * L * 5 / (dist * dist));
+        if (gamma > 10 && fabs(gamma - 90) > 1) /* C turns fast next to the axis */
+            assert_true(fabs(shining_sample(NULL, disc, y, u, v).le.x - want) <= 0.02 * L * 5 / (dist * dist));
+        light_sample s = shining_sample(NULL, sphere, y, u, v);
+        assert_true(fabs(s.le.x - want) <= 2e-4 * L * 5 / (dist * dist));
+        assert_true(s.dist < (float)dist &&
+                    s.dist > (float)dist - 0.301f); /* its shape is what shadows are cast from */
+    }
+}
+
+/* The flux through a ball around the light is what it is said to be: the light's lumens, times those of the profile. */
+static void test_profile_flux(void **state) {
+    double profile = 0, sums[3] = { 0 };
+    const int steps = 600;
+    v3 n = { 0, 0, -1 }, a = { 1, 0, 0 };
+    light l[] = { make_profiled(LIGHT_POINT, V3(0, 0, 0), n, a, 0),
+                  make_profiled(LIGHT_SPHERE, V3(0, 0, 0), n, a, 0.2f),
+                  make_profiled(LIGHT_DISC, V3(0, 0, 0), n, a, 0.2f) };
+    dice d = { 92 };
+    for (int i = 0; i < steps; i++)
+        for (int k = 0; k < steps; k++) {
+            double g = M_PI * (i + .5) / steps, c = 2 * M_PI * (k + .5) / steps,
+                   area = 2 * M_PI * M_PI / steps / steps * sin(g);
+            v3 y = V3((float)(20 * sin(g) * cos(c)), (float)(20 * sin(g) * sin(c)), (float)(-20 * cos(g)));
+            profile += area * profile_of_angles(c * 180 / M_PI, g * 180 / M_PI);
+            for (int m = 0; m < 3; m++) {
+                light_sample s = shining_sample(NULL, l[m], y, (float)uniform(&d, 0, 1), (float)uniform(&d, 0, 1));
+                double cosine = -((double)s.wi.x * y.x + (double)s.wi.y * y.y + (double)s.wi.z * y.z) / 20;
+                sums[m] += area * 400 * s.le.x * cosine;
+            }
+        }
+    for (int m = 0; m < 3; m++)
+        assert_true(fabs(sums[m] / (L * profile) - 1) < (m ? 3e-3 : 1e-4));
+}
+
+/* From a metre to a millimetre from a disc: finite, and never more than from its nearest place. */
+static void test_profile_near(void **state) {
+    light l = make_profiled(LIGHT_DISC, V3(0, 0, 0), V3(0, 0, -1), V3(1, 0, 0), 0.15f);
+    dice d = { 93 };
+    for (double z = 1; z > 1e-3; z /= 2)
+        for (int i = 0; i < 100; i++) {
+            light_sample s =
+                shining_sample(NULL, l, V3(0.05f, 0, (float)-z), (float)uniform(&d, 0, 1), (float)uniform(&d, 0, 1));
+            assert_true(s.le.x >= 0 && s.le.x <= L * 5 / (z * z) * 1.001);
+            assert_true(shining_sample(NULL, l, V3(0.05f, 0, (float)z), 0.3f, 0.3f).le.x == 0);
+        }
+}
+
+/* A plain light is what it was. */
+static void test_profile_of_none(void **state) {
+    light l = make_disc(V3(0, 0, 3), V3(0, 0, -1), 0.2f);
+    light_sample s = sample_light(l, V3(1, 0, 0), 0.3f, 0.7f), t = shining_sample(NULL, l, V3(1, 0, 0), 0.3f, 0.7f);
+    assert_memory_equal(&s, &t, sizeof(s));
+    assert_true(light_shown(l).x == L);
+    l = make_profiled(LIGHT_DISC, V3(0, 0, 3), V3(0, 0, -1), V3(1, 0, 0), 0.2f);
+    assert_true(fabs(light_shown(l).x * M_PI * M_PI * .2 * .2 / L - 1) < 1e-5);
+}
+
 static void test_samples_lie_on_the_light(void **state) {
     dice d = { 6 };
     for (int i = 0; i < 20000; i++) {
@@ -400,7 +502,7 @@ static void test_extreme_input(void **state) {
         float u = (float)(roll(&d) % 3) / 2, v = (float)uniform(&d, 0, 1);
         light_sample got = sample_light(l, s.p, u, v);
         v3 c = reflected(s, got);
-        float p = target(s, l, u, v);
+        float p = target(NULL, s, l, u, v);
         if (!finite3(got.wi) || !isfinite(got.dist) || !finite3(got.le) || !finite3(c))
             fail_msg("case %d, kind %u: wi %g %g %g, dist %g, le %g", i, l.kind, got.wi.x, got.wi.y, got.wi.z, got.dist,
                      got.le.x);
@@ -430,7 +532,7 @@ static void test_target_of_nonsense(void **state) {
                    .albedo = { f[22], f[23], f[24] },
                    .f0 = f[25],
                    .alpha = f[26] };
-        float p = target(s, l, (float)uniform(&d, 0, 1), (float)uniform(&d, 0, 1));
+        float p = target(NULL, s, l, (float)uniform(&d, 0, 1), (float)uniform(&d, 0, 1));
         assert_true(p >= 0 && isfinite(p));
     }
 }
@@ -448,6 +550,10 @@ int main(void) {
         cmocka_unit_test(test_turn_of),
         cmocka_unit_test(test_point),
         cmocka_unit_test(test_spot),
+        cmocka_unit_test(test_profile),
+        cmocka_unit_test(test_profile_flux),
+        cmocka_unit_test(test_profile_near),
+        cmocka_unit_test(test_profile_of_none),
         cmocka_unit_test(test_samples_lie_on_the_light),
         cmocka_unit_test(test_receiver_where_no_light_comes),
         cmocka_unit_test(test_extreme_input),

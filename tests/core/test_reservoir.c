@@ -2,6 +2,7 @@
 #include "core_test.h"
 #include "core/light.h"
 #include "core/wide_load.h"
+#include "no_profiles.h"
 
 enum { LIGHTS = 40 };
 struct core_context {
@@ -65,7 +66,7 @@ static reservoir ris_from(const struct core_context *ctx, surf s, dice *d, const
         uint32_t id = 0;
         while (id < LIGHTS - 1 && x >= weight[id])
             x -= weight[id++];
-        float u = (float)uniform(d, 0, 1), v = (float)uniform(d, 0, 1), p = target(s, ctx->lights[id], u, v);
+        float u = (float)uniform(d, 0, 1), v = (float)uniform(d, 0, 1), p = target(ctx, s, ctx->lights[id], u, v);
         st = builder_add(st, id, u, v, p, p / (float)pmf[id], 1, 0, (float)uniform(d, 0, 0.99999994));
     }
     return builder_end(st, 1.0f / (float)m);

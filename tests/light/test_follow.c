@@ -162,6 +162,7 @@ typedef struct asker {
 static struct core_context context(asker *a, const noc_light_sources *from) {
     noc_make_frame_constants(&a->params, 0, false, &a->frame);
     return (struct core_context){ .lights = a->scene->lights.data,
+                                  .profiles = a->scene->profile_cells.data,
                                   .light_count = (uint32_t)a->scene->lights.len,
                                   .frame = &a->frame,
                                   .alias = from->alias,

@@ -13,6 +13,13 @@
 #define RULE_BINS_OF(ctx) (&(ctx)->at.volumes->bins)
 #include "light/influence_bins.h"
 #include "core/surface.h"
+#include "profiles.h"
+
+FN profile_cell profile_load(CTX u32 place) {
+    profile_cell c;
+    memcpy(&c, ctx->profiles + (size_t)place * 4, sizeof(c));
+    return c;
+}
 
 enum { DRAWS = 32, EVERY = 4, POINT = 5, LANES_ASKED = 0xfff7 };
 
@@ -60,8 +67,10 @@ static noc_scene *world(uint32_t lights, sort what) {
     noc_scene *s = noc_scene_create(NULL);
     float half = 10 + 2 * sqrtf((float)lights);
     add_floor(s, matte(s, 0.5f), 0, 0, 0, half);
+    int profiles = add_test_profiles(s);
     for (uint32_t i = 0; i < lights; i++) {
         noc_light l = what == WINDOWS ? window_of(i, half) : light_of(i, what, half);
+        give_profile(&l, i, profiles);
         assert_true(noc_scene_add_light(s, &l) >= 0);
     }
     assert_int_equal(noc_scene_commit(s), NOC_OK);
@@ -113,9 +122,11 @@ static asked *begin(const noc_scene *s, const noc_influence *v, const kernels *k
     a->params.influence = scale;
     a->params.uniform_every = EVERY;
     noc_make_frame_constants(&a->params, 0, false, &a->frame);
-    a->ctx = (struct core_context){
-        .lights = s->lights.data, .light_count = (uint32_t)s->lights.len, .frame = &a->frame, .influence = v
-    };
+    a->ctx = (struct core_context){ .lights = s->lights.data,
+                                    .profiles = s->profile_cells.data,
+                                    .light_count = (uint32_t)s->lights.len,
+                                    .frame = &a->frame,
+                                    .influence = v };
     return a;
 }
 
@@ -174,7 +185,7 @@ static double pmf(const asked *a, uint32_t id, int l) {
 static double shine(const asked *a, uint32_t i, int lane) {
     light l;
     memcpy(&l, &a->scene->lights.data[i], sizeof(l));
-    return target(a->y[lane], l, 0.3f, 0.6f);
+    return target(&a->ctx, a->y[lane], l, 0.3f, 0.6f);
 }
 
 /* ---- checks ---- */

@@ -60,6 +60,7 @@ static void close_drawer(drawer *d) {
 static struct core_context context(drawer *d) {
     noc_make_frame_constants(&d->params, 0, false, &d->frame);
     return (struct core_context){ .lights = d->scene->lights.data,
+                                  .profiles = d->scene->profile_cells.data,
                                   .light_count = (uint32_t)d->scene->lights.len,
                                   .frame = &d->frame,
                                   .tree = d->tree };

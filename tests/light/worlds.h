@@ -3,9 +3,17 @@
 #define NOC_TEST_WORLDS_H
 
 #include "../render/rooms.h"
+#include "profiles.h"
 
 #include "core/random.h"
 #include "core/surface.h"
+
+static const float *cells_; /* of the world that is looked at */
+FN profile_cell profile_load(CTX u32 place) {
+    profile_cell c;
+    memcpy(&c, cells_ + (size_t)place * 4, sizeof(c));
+    return c;
+}
 
 static uint32_t state_ = 1;
 static inline uint32_t bits(void) { return state_ = hash_u32(state_ + 0x9e3779b9u); }
@@ -18,6 +26,7 @@ static inline noc_scene *world(uint32_t lights, sort what) {
     noc_scene *s = noc_scene_create(NULL);
     float half = 10 + 2 * sqrtf((float)lights);
     add_floor(s, matte(s, 0.5f), 0, 0, 0, half);
+    int profiles = add_test_profiles(s);
     for (uint32_t i = 0; i < lights; i++) {
         noc_light l = { .kind = (noc_light_kind)((i + i / 6) % NOC_LIGHT_KIND_COUNT),
                         .radius = real_in(0.05f, 0.4f),
@@ -32,6 +41,7 @@ static inline noc_scene *world(uint32_t lights, sort what) {
             l.direction[k] = real_in(-1, 1) - (k == 2 ? 1.2f : 0);
             l.emission[k] = dark ? 0 : real_in(0.1f, 1) * strong;
         }
+        give_profile(&l, i, profiles);
         assert_true(noc_scene_add_light(s, &l) >= 0);
     }
     assert_int_equal(noc_scene_commit(s), NOC_OK);
@@ -52,7 +62,8 @@ static inline surf random_surf(float half) {
 static inline double shine(const noc_scene *s, surf y, uint32_t i) {
     light l;
     memcpy(&l, &s->lights.data[i], sizeof(l));
-    return target(y, l, 0.3f, 0.6f);
+    cells_ = s->profile_cells.data;
+    return target(NULL, y, l, 0.3f, 0.6f);
 }
 
 static const struct {

@@ -141,6 +141,47 @@ static void rectangle_over_plane(void **state) {
     noc_scene_destroy(s);
 }
 
+/* E = I(C, gamma) cos / d^2 under a lamp of 1000 lm whose profile is uneven around its axis, by every method. */
+static void profile_over_plane(void **state) {
+    (void)state;
+    double c[] = { 0, 90, 180, 270 }, gamma[] = { 0, 30, 60, 90 }, cd[16];
+    for (int i = 0; i < 16; i++)
+        cd[i] = i % 4 == 3 ? 0 : (1 + i / 4) * (1 + i % 4);
+    noc_profile *profile = NULL;
+    assert_int_equal(noc_profile_create(NULL, &(noc_profile_params){ NULL, 4, 4, c, gamma, cd, 0 }, &profile), NOC_OK);
+    noc_scene *s = noc_scene_create(NULL);
+    add_floor(s, matte(s, 0.5f), 0, 0, 0, 20);
+    noc_light l = { .kind = NOC_LIGHT_POINT,
+                    .position = { 0.5, -1, 4 },
+                    .direction = { 0, 0, -1 },
+                    .c0 = { 0, 1, 0 },
+                    .profile = noc_scene_add_profile(s, profile),
+                    .emission = { 1000, 1000, 1000 } };
+    assert_true(noc_scene_add_light(s, &l) >= 0);
+    scene_done(s);
+    noc_camera eye = look(0, -6, 5, 0, 0, 0, 60);
+    for (int m = NOC_METHOD_REFERENCE; m <= NOC_METHOD_RESTIR; m++) {
+        noc_render_params p = measure(32, 24, (noc_method)m);
+        noc_image *image = render(s, &eye, &p, 1);
+        for (int y = 10; y < 24; y++)
+            for (int x = 0; x < 32; x++) {
+                double q[3];
+                floor_point(&eye, &p, x, y, 0, q);
+                double dx = q[0] - .5, dy = q[1] + 1, d2 = dx * dx + dy * dy + 16;
+                /* C 0 is +y, and C turns counter-clockwise from above: C 90 is -x */
+                double at = atan2(-dx, dy) * 180 / M_PI, g = acos(4 / sqrt(d2)) * 180 / M_PI;
+                double lux = 1000 * noc_profile_intensity(profile, at, g) / noc_profile_flux(profile, 0, 180, NAN) * 4 /
+                             (d2 * sqrt(d2));
+                double got = luma(image->rgb + 3 * (y * 32 + x)) * M_PI / 0.5;
+                if (fabs(got - lux) > 2e-4 * lux + 1e-3)
+                    fail_msg("method %d, C %g, gamma %g: %g lx, not %g", m, at, g, got, lux);
+            }
+        noc_image_destroy(image);
+    }
+    noc_profile_destroy(profile);
+    noc_scene_destroy(s);
+}
+
 /* A floor lit with 100 lx by a far small lamp reads 100 lx: pi L / albedo. */
 static void hundred_lux(void **state) {
     (void)state;
@@ -167,10 +208,8 @@ static void hundred_lux(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(point_over_plane),
-        cmocka_unit_test(spot_over_plane),
-        cmocka_unit_test(rectangle_over_plane),
-        cmocka_unit_test(hundred_lux),
+        cmocka_unit_test(point_over_plane),   cmocka_unit_test(spot_over_plane), cmocka_unit_test(rectangle_over_plane),
+        cmocka_unit_test(profile_over_plane), cmocka_unit_test(hundred_lux),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
  * moving camera. The same comparison must reject the biased combinations: a test that accepts everything proves
  * nothing. */
 #include "unbiased.h"
+#include "../light/profiles.h"
 #include "../own_view.h"
 
 #include <nocturne/option.h>
@@ -15,10 +16,10 @@ static noc_scene *finish(noc_scene *s) {
 }
 
 /* A yard with a glossy floor, two walls, boxes that stand in the light, and lights of every kind: 3 x 60 windows,
- * lamps. */
+ * lamps, some of them with profiles. */
 static noc_scene *yard(void) {
     noc_scene *s = noc_scene_create(NULL);
-    int wall = matte(s, 0.5f);
+    int wall = matte(s, 0.5f), profiles = add_test_profiles(s);
     int wet =
         noc_scene_add_material(s, &(noc_material){ .albedo = { 0.15f, 0.16f, 0.2f }, .f0 = 0.05f, .roughness = 0.3f });
     add_floor(s, wet, 0, 0, 0, 15);
@@ -44,6 +45,11 @@ static noc_scene *yard(void) {
                            .position = { -5 + 2.5 * i, -4 + i % 3, 4.5 },
                            .radius = 0.15,
                            .emission = { 900, 700, 400 } };
+        if (i % 2) {
+            lamp.profile = profiles + i;
+            lamp.direction[2] = -1;
+            lamp.c0[0] = 1;
+        }
         assert_true(noc_scene_add_light(s, &lamp) >= 0);
     }
     noc_light disc = { .kind = NOC_LIGHT_DISC,
@@ -58,6 +64,15 @@ static noc_scene *yard(void) {
                            .emission = { 80, 20, 20 } };
     noc_light point = { .kind = NOC_LIGHT_POINT, .position = { 0, -6, 3.5 }, .emission = { 20, 30, 20 } };
     assert_true(noc_scene_add_light(s, &disc) >= 0);
+    for (int i = 0; i < 4; i++) {
+        noc_light profiled = { .kind = i % 2 ? NOC_LIGHT_DISC : NOC_LIGHT_POINT,
+                               .position = { -7 + 4 * i, -2 - i, 4 + .5 * i },
+                               .direction = { .3 * i - .4, .2, -1 },
+                               .radius = 0.3,
+                               .profile = profiles + i,
+                               .emission = { 300, 250, 400 } };
+        assert_true(noc_scene_add_light(s, &profiled) >= 0);
+    }
     assert_true(noc_scene_add_light(s, &triangle) >= 0);
     assert_true(noc_scene_add_light(s, &point) >= 0);
     for (int i = 0; i < 2; i++) {

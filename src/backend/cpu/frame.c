@@ -30,6 +30,7 @@ static struct core_context context_of(const cpu_view *s, const noc_frame *frame)
     const noc_light_sources *from = &s->sources;
     return (struct core_context){ .lights = scene->lights.data,
                                   .light_count = (uint32_t)scene->lights.len,
+                                  .profiles = scene->profile_cells.data,
                                   .materials = scene->material_records.len ? scene->material_records.data
                                                                            : &s->world->no_material,
                                   .frame = &frame->constants,

@@ -58,6 +58,7 @@ struct core_context {
     const frame_constants *frame;
     const light_record *lights;
     uint32_t light_count;
+    const float *profiles;            /* core/profile.h: cells, 16-byte aligned; NULL: no light has one */
     float ray_offset;                 /* of shadow rays at least, m: core/shadow.h */
     const material_record *materials; /* at least one */
     const noc_clusters *clusters[2];  /* lists only: of lights that stand, of those that move; NULL: none */

@@ -68,7 +68,7 @@ static uint32_t shade(const struct core_context *ctx, const gblock *g, const rbl
             continue;
         reservoir q = reservoir_load(r, l);
         surf s = surf_load(ctx, g, l, ctx->frame->camera.eye);
-        dropped |= add_colour(out, l, sample_shade(s, q, light_load(ctx, q.light)), lanes);
+        dropped |= add_colour(out, l, sample_shade(ctx, s, q, light_load(ctx, q.light)), lanes);
     }
     return dropped;
 }

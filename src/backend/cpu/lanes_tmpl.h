@@ -62,6 +62,8 @@ FN u32 key_of(const struct core_context *ctx, int x, int y, int first) {
 
 FN light light_load(CTX u32 i) { return light_from_records((const float *)ctx->lights, i); }
 
+FN profile_cell profile_load(CTX u32 place) { return profile_from_cells(ctx->profiles, place); }
+
 /* The same light in every lane. */
 FN light light_splat(CTX uint32_t i) { return light_of_record(ctx->lights[i]); }
 

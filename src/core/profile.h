@@ -1,0 +1,60 @@
+/* core/profile.h: luminous intensity distributions: which way a light sends how much, in the angles C and gamma of CIE
+ * 121. A light's flags tell the number of its profile, 0 for none.
+ *
+ * Its frame lies in a and b: C 0 is a, C 90 is -b, and gamma is the angle from the axis a x b, so that C turns
+ * counter-clockwise as seen from behind the luminaire. A profile is a table at even steps of both angles, bilinear
+ * between them, in candela for each lumen; nothing goes beyond its last gamma.
+ *
+ * Tables lie in one array of cells of four floats. The first ones are the profiles' heads, then each table's cells: the
+ * four corners of a step of gamma and of C, so that one look at memory is enough. Includers supply profile_load. */
+#ifndef CORE_PROFILE_H
+#define CORE_PROFILE_H
+
+#include "core/records.h"
+#include "core/warp.h"
+
+/* A head: place of the table's first cell and its steps, gamma's from bit 16 on, as bits; steps of gamma a turn; the
+ * last gamma, in turns. */
+struct profile_cell {
+    real near_; /* at the lower gamma and C */
+    real next;  /* at the lower gamma, the higher C */
+    real far_;
+    real last;
+};
+
+#ifndef CORE_GLSL
+typedef struct profile_cell profile_cell;
+FN profile_cell profile_load(CTX u32 place);
+#else
+profile_cell profile_load(uint place);
+#endif
+
+/* Candela a lumen of profile `number`, in the frame a, b, towards d, which need not be unit. */
+FN real profile_towards(CTX u32 number, v3 a, v3 b, v3 d) {
+    EXACT real scale = K(1.0f) / sqrt_(max_(dot3(a, a), K(1e-30f)));
+    EXACT real x = dot3(a, d) * scale;
+    EXACT real y = dot3(b, d) * scale;
+    EXACT real z = dot3(cross3(a, b), d) * (scale * scale);
+    EXACT real across2 = x * x + y * y;
+    real gamma = turn_of(z, sqrt_(across2));
+    real c = turn_of(x, abs_(y));
+    c = sel(y > K(0.0f), K(1.0f) - c, c); /* -b is C 90 */
+    profile_cell head = profile_load(PASS number - KU(1u));
+    u32 steps = bits_of_real(head.next);
+    u32 columns = steps & KU(0xffffu);
+    real rows = to_real(shr(steps, 16));
+    EXACT real at_row = min_(gamma * head.far_, rows);
+    EXACT real at_column = c * to_real(columns);
+    real row = to_real(to_u32(min_(at_row, rows - K(1.0f))));
+    u32 column = to_u32(at_column);
+    column = selu(column < columns, column, columns - KU(1u));
+    real s = at_row - row;
+    real t = at_column - to_real(column);
+    profile_cell v = profile_load(PASS bits_of_real(head.near_) + to_u32(row) * columns + column);
+    EXACT real low = v.near_ + (v.next - v.near_) * t;
+    EXACT real high = v.far_ + (v.last - v.far_) * t;
+    EXACT real value = low + (high - low) * s;
+    return sel(gamma <= head.last, max_(value, K(0.0f)), K(0.0f));
+}
+
+#endif
