@@ -199,7 +199,7 @@ typedef enum noc_wall_verdict {
     NOC_WALL_TAKEN,  /* it has windows */
     NOC_WALL_SMALL,  /* too small, or no cell fits into it */
     NOC_WALL_TILTED,
-    NOC_WALL_PARTY, /* another wall stands close before it */
+    NOC_WALL_PARTY, /* another wall stands close before it, or the ground */
     NOC_WALL_OWN,   /* of a building that comes with windows of its own */
     NOC_WALL_VERDICT_COUNT
 } noc_wall_verdict;

@@ -14,7 +14,8 @@ typedef struct section {
     const char *name, *prefix;   /* "windows" and "window-": its keys are the rest of the names */
     const char *list_key, *list; /* a key for an option without the prefix; NULL: none */
 } section;
-static const section sections[] = { { "lamps", "lamp-", "files", "lamps" }, { "windows", "window-", "make", "windows" } };
+static const section sections[] = { { "lamps", "lamp-", "files", "lamps" },
+                                    { "windows", "window-", "make", "windows" } };
 
 typedef struct taken {
     recipe_file *file;

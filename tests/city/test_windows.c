@@ -187,7 +187,7 @@ static city_cover *cover_of(const walls *w) {
     assert_true(w->count <= 64);
     for (size_t i = 0; i < 9 * w->count; i++)
         xyz[i] = (float)w->t[i / 9].p[i % 9 / 3][i % 3];
-    city_cover *cover = city_cover_create(xyz, w->count);
+    city_cover *cover = city_cover_create(xyz, w->count, NULL);
     assert_non_null(cover);
     return cover;
 }

@@ -43,6 +43,12 @@ static void test_made(void **state) {
     load(&r, BLOCK("0", "0"), .35, 21); /* without classes: by slope */
     assert_int_equal(r.info.windows, 288);
     finish(&r);
+    load(&r,
+         BLOCK("0", "1") "object 1 dem -1\npolygon 8 677900 5403900 372 678100 5403900 372 678100 5404100 372 "
+                         "677900 5404100 372\nend\n",
+         .35, 21); /* a storey under the ground */
+    assert_int_equal(r.info.windows, 240);
+    finish(&r);
     load(&r, BLOCK("6", "1"), .35, 21); /* a bridge */
     assert_int_equal(r.info.windows, 0);
     finish(&r);
@@ -54,20 +60,21 @@ static void test_made(void **state) {
     finish(&r);
 }
 
+#define OWN                                                                                                            \
+    "FAKE city\ncrs EPSG:25832\nobject 0 own 3\n"                                                                      \
+    "polygon 1 678000 5404000 370 678010 5404000 370 678010 5404000 376 678000 5404000 376\n"                          \
+    "polygon 5 678002 5403999.95 371 678003 5403999.95 371 678003 5403999.95 373 678002 5403999.95 373\n"              \
+    "polygon 5 678002 5404000.05 371 678002 5404000.05 373 678003 5404000.05 373 678003 5404000.05 371\n"              \
+    "polygon 5 678002 5403999.95 371 678002 5404000.05 371 678003 5404000.05 371 678003 5403999.95 371\n"              \
+    "polygon 5 678006 5403999.95 374 678008 5403999.95 374 678007 5403999.95 375.5\n"                                  \
+    "end\n"
+
 /* A wall of 10 m by 6 m with a window of its own, as a body: a front, its back, a frame around it; and a gable's
  * triangle of glass. Walls get no others. */
 static void test_own(void **state) {
     (void)state;
     struct run r;
-    load(&r,
-         "FAKE city\ncrs EPSG:25832\nobject 0 own 3\n"
-         "polygon 1 678000 5404000 370 678010 5404000 370 678010 5404000 376 678000 5404000 376\n"
-         "polygon 5 678002 5403999.95 371 678003 5403999.95 371 678003 5403999.95 373 678002 5403999.95 373\n"
-         "polygon 5 678002 5404000.05 371 678002 5404000.05 373 678003 5404000.05 373 678003 5404000.05 371\n"
-         "polygon 5 678002 5403999.95 371 678002 5404000.05 371 678003 5404000.05 371 678003 5403999.95 371\n"
-         "polygon 5 678006 5403999.95 374 678008 5403999.95 374 678007 5403999.95 375.5\n"
-         "end\n",
-         1, 21);
+    load(&r, OWN, 1, 21);
     noc_report_totals t;
     noc_report_get_totals(r.report, &t);
     assert_int_equal(t.windows.windows, 2);
@@ -225,10 +232,34 @@ static void test_glass(void **state) {
     noc_device_destroy(device);
 }
 
+/* Wherever memory is refused to windows, that is the status, told once. */
+static void test_no_memory(void **state) {
+    (void)state;
+    const char *const cities[] = { BLOCK("0", "1"), OWN };
+    for (int i = 0; i < 2; i++) {
+        bool reached = true;
+        for (uint64_t n = 1; reached; n += 1 + n / 16) {
+            struct run r;
+            const char *paths[] = { file("a", cities[i]), file("l", LAMP) };
+            noc_import_params p = noc_import_default_params();
+            start(&r);
+            noc_refuse_allocation(n, false);
+            r.status = load_inputs(r.scene, fakes, paths, 2, &p, false, &r.report);
+            reached = noc_allocations() >= n;
+            noc_refuse_allocation(0, false);
+            if (r.status != (reached ? NOC_ERR_MEMORY : NOC_OK) || r.errors != reached)
+                fail_msg("city %d, allocation %llu: status %d, %d errors", i, (unsigned long long)n, r.status,
+                         r.errors);
+            finish(&r);
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_made),     cmocka_unit_test(test_own),   cmocka_unit_test(test_ratio),
-        cmocka_unit_test(test_switched), cmocka_unit_test(test_share), cmocka_unit_test(test_glass),
+        cmocka_unit_test(test_made),      cmocka_unit_test(test_own),   cmocka_unit_test(test_ratio),
+        cmocka_unit_test(test_switched),  cmocka_unit_test(test_share), cmocka_unit_test(test_glass),
+        cmocka_unit_test(test_no_memory),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

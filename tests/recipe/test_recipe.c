@@ -149,7 +149,8 @@ static void test_every_option_is_a_key(void **state) {
             snprintf(text, sizeof(text), "nocturne: 1\ninputs: [a]\n%s: \"%s\"\n", o->name, *value ? value : "x");
             noc_recipe *r;
             noc_status status = load(text, &r);
-            bool section = !strcmp(o->name, "lamps") || !strcmp(o->name, "windows"), hosts = !strcmp(o->group, "Reading");
+            bool section = !strcmp(o->name, "lamps") || !strcmp(o->name, "windows"),
+                 hosts = !strcmp(o->group, "Reading");
             if (section || hosts)
                 assert_int_equal(status, NOC_ERR_FORMAT);
             else if (status || noc_recipe_option(r, 0) != o)

@@ -11,7 +11,12 @@ struct city_cover {
     NOC_ARRAY(uint32_t) ids;
     NOC_ARRAY(uint32_t) everywhere;
     size_t buckets; /* a power of two */
+    const noc_scene *ground;
 };
+
+#define GROUND (1u << NOC_CLASS_TERRAIN | 1u << NOC_CLASS_ROAD | 1u << NOC_CLASS_SIDEWALK | 1u << NOC_CLASS_GREEN)
+#define GROUND_BEFORE 0.4 /* m: where the ground before a window is looked for */
+#define GROUND_OVER 0.05  /* m that it may lie over the window's foot */
 
 static size_t bucket_of(const city_cover *c, long x, long y) {
     uint64_t h = (uint64_t)x * 0x9e3779b97f4a7c15u ^ (uint64_t)y * 0xc2b2ae3d27d4eb4fu;
@@ -100,7 +105,7 @@ static bool fill(city_cover *c) {
     return true;
 }
 
-city_cover *city_cover_create(const float *xyz, size_t triangles) {
+city_cover *city_cover_create(const float *xyz, size_t triangles, const noc_scene *ground) {
     city_cover *c = noc_calloc(1, sizeof(*c));
     size_t n = 0;
     bool ok = c != NULL;
@@ -116,8 +121,10 @@ city_cover *city_cover_create(const float *xyz, size_t triangles) {
         for (c->buckets = 64; c->buckets < n; c->buckets *= 2)
             ;
     ok = ok && (c->first = noc_calloc(c->buckets + 1, sizeof(*c->first))) && fill(c);
-    if (ok)
+    if (ok) {
+        c->ground = ground;
         return c;
+    }
     city_cover_destroy(c);
     return NULL;
 }
@@ -190,12 +197,25 @@ bool city_cover_meets(const city_cover *c, const double o[3], const double d[3],
     return any(c, o, d, (double[]){ from, to }, between);
 }
 
+/* Is one end of the window's foot under the ground before it? d: the way it faces, level. */
+static bool is_buried(const noc_scene *ground, const city_window *w, const double d[3]) {
+    double z;
+    for (int end = 0; end < 2; end++)
+        if (noc_scene_highest(ground, GROUND, w->corner[0] + end * w->edge_u[0] + GROUND_BEFORE * d[0],
+                              w->corner[1] + end * w->edge_u[1] + GROUND_BEFORE * d[1], &z) &&
+            z > w->corner[2] + GROUND_OVER)
+            return true;
+    return false;
+}
+
 bool city_cover_hides(const city_cover *c, const city_window *w) {
     double n[3];
     if (!c)
         return false;
     cross3(w->edge_u, w->edge_v, n);
     double level = hypot(n[0], n[1]), d[3] = { n[0] / level, n[1] / level, 0 };
+    if (c->ground && is_buried(c->ground, w, d))
+        return true;
     for (int i = 0; i < 5; i++) {
         double u = i == 4 ? 0.5 : i & 1 ? 0.98 : 0.02, v = i == 4 ? 0.5 : i & 2 ? 0.98 : 0.02, o[3];
         for (int k = 0; k < 3; k++)

@@ -174,7 +174,7 @@ noc_status city_own_windows_find(const char *id, const wall_triangle *panes, siz
     float *xyz = noc_alloc(NOC_MAX(9 * count, 1u) * sizeof(*xyz));
     for (size_t i = 0; xyz && i < 9 * count; i++)
         xyz[i] = (float)panes[i / 9].p[i % 9 / 3][i % 3];
-    bool ok = xyz && (bodies = city_cover_create(xyz, count)) && wall_facets_find(panes, count, &f) &&
+    bool ok = xyz && (bodies = city_cover_create(xyz, count, NULL)) && wall_facets_find(panes, count, &f) &&
               wall_facets_find(walls, wall_count, &w) && find(id, &f, &w, bodies, params, out);
     free(xyz);
     city_cover_destroy(bodies);

@@ -54,10 +54,11 @@ typedef struct city_windows {
 
 /* Walls of all buildings, to ask what stands before a window. NULL is allowed where there are no others. */
 typedef struct city_cover city_cover;
-/* Copies nothing but corners, as floats. Triangles that are no walls (flatter than 45 degrees) are left out. */
-city_cover *city_cover_create(const float *xyz, size_t triangles) NOC_MUST_USE; /* NULL: memory was refused */
+/* Copies nothing but corners, as floats. Triangles that are no walls (flatter than 45 degrees) are left out. ground:
+ * the scene whose ground hides what lies under it; NULL: none does. NULL: memory was refused. */
+city_cover *city_cover_create(const float *xyz, size_t triangles, const noc_scene *ground) NOC_MUST_USE;
 void city_cover_destroy(city_cover *cover);
-/* Does a wall stand close before any of the window's corners or its middle? */
+/* Does a wall stand close before any of the window's corners or its middle, or the ground before its foot? */
 bool city_cover_hides(const city_cover *cover, const city_window *w);
 /* Does a ray from o along the unit vector d meet one of them between these distances, m? */
 bool city_cover_meets(const city_cover *cover, const double o[3], const double d[3], double from, double to);

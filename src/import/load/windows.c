@@ -88,7 +88,7 @@ static noc_status make_cover(maker *m) {
             for (int k = 0; ok && k < 9; k++)
                 ok = array_push(&xyz, (float)m->walls.data[t].p[k / 3][k % 3]);
     }
-    m->cover = ok ? city_cover_create(xyz.data, xyz.len / 9) : NULL;
+    m->cover = ok ? city_cover_create(xyz.data, xyz.len / 9, im->inspect ? NULL : im->scene) : NULL;
     array_free(&xyz);
     return m->cover ? NOC_OK : noc_no_memory(im->log, "windows");
 }
