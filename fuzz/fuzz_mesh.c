@@ -1,5 +1,5 @@
-/* Meshes to a committed scene: glTF and GLB (FUZZ_GLTF 1), or OBJ. A second part is the buffer or material library
- * beside it. */
+/* Meshes to a committed scene: glTF and GLB (FUZZ_MESH 1), PLY (2), or OBJ (0). A second part is the buffer or material
+ * library beside it. */
 #include "fuzz.h"
 
 #include "import/import.h"
@@ -14,14 +14,14 @@ static noc_status as_it_is(void *ctx, double *xyz, size_t count) {
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_part part[FUZZ_PARTS];
     int n = fuzz_parts(data, size, part), errors = 0;
-    const noc_reader *reader = FUZZ_GLTF ? &noc_reader_gltf : &noc_reader_mesh;
+    const noc_reader *reader = FUZZ_MESH == 1 ? &noc_reader_gltf : FUZZ_MESH ? &noc_reader_ply : &noc_reader_mesh;
     noc_log *log = fuzz_log(&errors);
     noc_scene *scene = noc_scene_create(log);
     geo_issues *issues = geo_issues_create();
     noc_import_params params = noc_import_default_params();
     double sum = 0;
-    char *beside = fuzz_file(FUZZ_GLTF ? "side.bin" : "side.mtl", n > 1 ? part[1] : (fuzz_part){ data, 0 });
-    char *path = fuzz_file(FUZZ_GLTF ? "mesh.gltf" : "mesh.obj", part[0]);
+    char *beside = fuzz_file(FUZZ_MESH == 1 ? "side.bin" : "side.mtl", n > 1 ? part[1] : (fuzz_part){ data, 0 });
+    char *path = fuzz_file(FUZZ_MESH == 1 ? "mesh.gltf" : FUZZ_MESH ? "mesh.ply" : "mesh.obj", part[0]);
     const char *format;
     fuzz_memory(data, size);
     noc_stream *stream = noc_stream_open(path, log, NULL);

@@ -230,6 +230,18 @@ put("cityjson", "lines.jsonl", "".join(json.dumps(v) + "\n" for v in [dict(city_
     {"type": "CityJSONFeature", "id": i, "CityObjects": {i: dict(city_objects["house"], children=[])},
      "vertices": corners} for i in ["a", "b"]]))
 
+# ---- PLY ----
+
+ply = ("ply\nformat %s 1.0\ncomment made here\nelement vertex 5\nproperty %s x\nproperty %s y\nproperty %s z\n"
+       "property uchar red\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n")
+ply_points = [(0, 0, 0), (10, 0, 0), (10, 8, 0), (0, 8, 0), (5, 4, 6)]
+put("ply", "text.ply", ply % (("ascii",) + ("double",) * 3) + "".join("%g %g %g 255\n" % p for p in ply_points) +
+    "4 0 1 2 3\n3 0 1 4\n")
+for order, name in (("<", "little"), (">", "big")):
+    put("ply", name + ".ply", (ply % (("binary_%s_endian" % name,) + ("float",) * 3)).encode() +
+        b"".join(struct.pack(order + "fffB", *p, 7) for p in ply_points) + struct.pack(order + "B4i", 4, 0, 1, 2, 3) +
+        struct.pack(order + "B3i", 3, 0, 1, 4))
+
 # ---- terrain: little-endian TIFFs of one strip, by hand ----
 
 def tiff(width, height, values, code, bits, sample, extra=()):

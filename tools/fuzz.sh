@@ -16,6 +16,7 @@ citygml citygml 32768 citygml gml
 cityjson cityjson 16384 cityjson json,jsonl
 gltf gltf 16384 gltf gltf,glb
 obj obj 8192 obj obj
+ply ply 8192 - ply
 terrain terrain 8192 - tif
 csv lamps 4096 lamps csv
 overpass lamps 8192 lamps json

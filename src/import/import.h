@@ -111,7 +111,7 @@ typedef struct noc_reader {
 } noc_reader;
 
 /* The table, ended by a NULL name. */
-extern const noc_reader noc_reader_citygml, noc_reader_cityjson, noc_reader_terrain, noc_reader_mesh, noc_reader_gltf,
-    noc_reader_overpass, noc_reader_vector;
+extern const noc_reader noc_reader_citygml, noc_reader_cityjson, noc_reader_terrain, noc_reader_mesh, noc_reader_ply,
+    noc_reader_gltf, noc_reader_overpass, noc_reader_vector;
 
 #endif

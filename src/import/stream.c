@@ -145,7 +145,8 @@ static bool ends_with(const char *text, const char *end) {
 static int zip_rank(const char *name) {
     static const char *const endings[][8] = { { ".xml", ".json" },
                                               { ".geojson", ".osm", ".pbf", ".csv", ".shp", ".gpkg", ".fgb", ".tif" },
-                                              { ".gml", ".citygml", ".obj", ".city.json", ".cityjson", ".jsonl" } };
+                                              { ".gml", ".citygml", ".obj", ".ply", ".city.json", ".cityjson",
+                                                ".jsonl" } };
     /* macOS archives hold a shadow file of the same ending beside every file. */
     if (!name || !*name || ends_with(name, "/") || !strncmp(name, "__MACOSX/", 9))
         return -1;
