@@ -13,6 +13,13 @@ static char folder[] = "/tmp/noc-footprints-XXXXXX";
 static noc_log *log_;
 static noc_scene *scene;
 static noc_report *report;
+static char told[4000]; /* warnings */
+
+static void hear(void *user, noc_log_level level, const char *text) {
+    size_t n = strlen(told);
+    if (level == NOC_LOG_WARN)
+        snprintf(told + n, sizeof(told) - n, "%s\n", text);
+}
 
 static const char *write_file(const char *name, const char *text) {
     static char paths[4][300];
@@ -201,6 +208,25 @@ static void test_layer(void **state) {
     assert_int_equal(noc_report_get_file(report, 0)->buildings, 0);
 }
 
+/* Heights in feet: the storeys tell. */
+static void test_units(void **state) {
+    for (int feet = 0; feet < 2; feet++) {
+        char text[8000];
+        size_t n = (size_t)snprintf(text, sizeof(text), "{\"type\":\"FeatureCollection\",\"features\":[");
+        for (int i = 0; i < 12; i++)
+            n += (size_t)snprintf(text + n, sizeof(text) - n,
+                                  "%s{\"type\":\"Feature\",\"properties\":{\"building\":\"yes\",\"height\":%d,"
+                                  "\"building:levels\":%d},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":[[[%.4f,"
+                                  "48.1],[%.4f,48.1],[%.4f,48.1001],[%.4f,48.1]]]}}",
+                                  i ? "," : "", (feet ? 10 : 3) * (2 + i % 3), 2 + i % 3, 11.5 + i * 0.001,
+                                  11.5001 + i * 0.001, 11.5001 + i * 0.001, 11.5 + i * 0.001);
+        snprintf(text + n, sizeof(text) - n, "]}");
+        *told = 0;
+        load_well(write_file("feet.geojson", text), NULL);
+        assert_true((strstr(told, "are heights in feet? Times 0.3048 it would be 3.05 m") != NULL) == (feet == 1));
+    }
+}
+
 static void test_osm(void **state) {
     static const char osm[] =
         "<?xml version='1.0'?><osm version='0.6'>"
@@ -230,7 +256,7 @@ static void test_osm(void **state) {
 }
 
 static int start(void **state) {
-    log_ = noc_log_create(NULL);
+    log_ = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = hear });
     return !mkdtemp(folder);
 }
 
@@ -247,7 +273,7 @@ int main(void) {
 #if NOC_HAVE_GDAL
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_blocks), cmocka_unit_test(test_facing), cmocka_unit_test(test_model_and_terrain),
-        cmocka_unit_test(test_layer),  cmocka_unit_test(test_osm),
+        cmocka_unit_test(test_layer),  cmocka_unit_test(test_osm),    cmocka_unit_test(test_units),
     };
     return cmocka_run_group_tests_name("import/footprints", tests, start, finish);
 #else

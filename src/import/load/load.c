@@ -294,6 +294,8 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
     free(inputs);
     if (!status)
         status = check_columns(im);
+    if (!status)
+        units_check(im);
     if (!status && im->box.on && !im->scene->indices.len && !im->lamps.len)
         status =
             noc_error(im->log, NOC_ERR_ARGUMENT, "bbox: nothing of the inputs lies in %.10g,%.10g,%.10g,%.10g of %s",

@@ -134,7 +134,9 @@ typedef struct importer {
     NOC_ARRAY(taken_building) buildings;    /* where windows are asked for */
     size_t object_mesh;                     /* first mesh of the object that is being taken */
     bool has_roads;
-    double open_area; /* m2 of terrain, roads, pavements, lawns and water, seen from above */
+    double open_area;         /* m2 of terrain, roads, pavements, lawns and water, seen from above */
+    NOC_ARRAY(float) heights; /* of buildings, m */
+    NOC_ARRAY(float) storeys; /* of those that tell how many they have */
     NOC_ARRAY(pending_footprint) footprints;
     NOC_ARRAY(pending_lamp) lamps;
     size_t lamp_looks;           /* lamps that repeat_lamps compared: for tests */
@@ -273,6 +275,9 @@ void reading_free(reading *r);
 noc_status footprint_keep(importer *im, input *in, size_t index, const geo_footprint *f);
 /* Those that no city model has become blocks on the ground. */
 noc_status footprints_stand(importer *im);
+
+/* units.c: a warning where the median height of buildings, or of a storey, is hardly one in metres. */
+void units_check(importer *im);
 
 /* box.c */
 noc_status box_read(const noc_import_params *params, noc_log *log, load_box *box);

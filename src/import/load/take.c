@@ -115,6 +115,10 @@ static noc_status take_object(importer *im, input *in, const load_part *part) {
     for (int c = 0; c < NOC_CLASS_COUNT && !in->object_repeated; c++)
         in->file.polygons_by_class[c] += now->by_class[c];
     in->file.polygons += in->object_repeated ? 0 : now->polygons;
+    double height = now->hi[2] - now->lo[2];
+    if (now->kind == GEO_BUILDING && now->any && !in->object_repeated && height > 0.1 &&
+        !array_push(&im->heights, (float)height))
+        return noc_no_memory(im->log, in->path);
     if (now->kind == GEO_BUILDING && im->object_mesh < im->scene->meshes.len && im->params->windows != NOC_SWITCH_OFF &&
         !array_push(&im->buildings, (taken_building){ (uint32_t)im->object_mesh, (uint32_t)im->scene->meshes.len,
                                                       (size_t)(in - im->inputs) }))
@@ -187,6 +191,8 @@ void take_destroy(importer *im) {
     repeat_free(&im->records);
     array_free(&im->lamps);
     array_free(&im->footprints);
+    array_free(&im->heights);
+    array_free(&im->storeys);
     array_free(&im->lost);
     array_free(&im->buildings);
     arena_free(&im->names);
