@@ -123,8 +123,8 @@ for cmd in render info compare; do
     test $status = 0 && cmp -s out first; result $? "$cmd --help is the same"
     run $cmd -h
     test $status = 0 && cmp -s out first; result $? "$cmd -h is the same"
-    test "$(wc -l <first)" -le 180 && ! grep -Eq '^.{81}' first && ! grep -q ' $' first
-    result $? "help $cmd fits three screens of 80 columns"
+    test "$(wc -l <first)" -le 240 && ! grep -Eq '^.{81}' first && ! grep -q ' $' first
+    result $? "help $cmd fits four screens of 80 columns"
 done
 if [ -e /dev/full ]; then
     "$program" help render >/dev/full 2>err
