@@ -48,6 +48,8 @@ void city_add_ground(noc_scene *scene, const double *points, size_t point_count)
  * to stand under, or the scene is out of memory. Until it is laid, which frees it, the scene does not change. */
 typedef struct city_ground city_ground;
 city_ground *city_ground_start(noc_scene *scene, const double *points, size_t count);
+/* Meshes before that one have a ground of their own: their walls end where they end. */
+void city_ground_keep(city_ground *g, size_t first_mesh);
 /* Height by what the city tells, and how far away the nearest of that is, m (INFINITY: it tells nothing). */
 double city_ground_height(const city_ground *g, double x, double y, double *distance);
 void city_ground_lay(city_ground *g, const double *points, size_t count); /* through those that have a height */
@@ -56,8 +58,8 @@ void city_ground_free(city_ground *g);                                    /* one
 /* Is the edge from a to b the level lower edge of a piece of wall whose third corner is c? */
 bool city_wall_foot(const float *a, const float *b, const float *c);
 
-/* Extends walls down to the terrain they stand over. */
-void city_add_skirts(noc_scene *scene);
+/* Extends walls down to the terrain they stand over, from that mesh on. */
+void city_add_skirts(noc_scene *scene, size_t first_mesh);
 
 /* Country around the city, to the horizon: from a rim (count points, counter-clockwise, around its own middle)
  * outwards. */

@@ -356,6 +356,7 @@ struct city_ground {
     bool known; /* something in the scene tells a height */
     bool level;
     double z; /* of a level one */
+    size_t first_mesh;
 };
 
 /* Heights from what is known in the cells. False: no memory. */
@@ -425,6 +426,8 @@ double city_ground_height(const city_ground *g, double x, double y, double *dist
     return field_height(&g->f, x, y);
 }
 
+void city_ground_keep(city_ground *g, size_t first_mesh) { g->first_mesh = first_mesh; }
+
 void city_ground_lay(city_ground *g, const double *points, size_t count) {
     bool off = false;
     for (size_t i = 0; i < count && !off; i++)
@@ -433,7 +436,7 @@ void city_ground_lay(city_ground *g, const double *points, size_t count) {
     if (off || !g->level)
         field_follow(&g->f, points, count);
     add_mesh(g->scene, &g->f, g->z, g->level && !off);
-    city_add_skirts(g->scene);
+    city_add_skirts(g->scene, g->first_mesh);
     city_ground_free(g);
 }
 

@@ -101,14 +101,14 @@ static void add_skirt(noc_scene *scene, skirt *s, const float *a, const float *b
     }
 }
 
-void city_add_skirts(noc_scene *scene) {
+void city_add_skirts(noc_scene *scene, size_t first_mesh) {
     size_t materials = scene->materials.len, meshes = scene->meshes.len;
     skirt *skirts = noc_calloc(materials, sizeof(*skirts));
     if (!skirts) {
         noc_scene_out_of_memory(scene);
         return;
     }
-    for (size_t m = 0; m < meshes && !scene->no_memory; m++) {
+    for (size_t m = first_mesh; m < meshes && !scene->no_memory; m++) {
         const noc_scene_mesh *mesh = &scene->meshes.data[m];
         if (scene->materials.data[mesh->material].cls != NOC_CLASS_WALL)
             continue;

@@ -149,8 +149,33 @@ static void test_ingolstadt(void **state) {
     noc_scene_destroy(scene);
 }
 
+static size_t walls(const struct run *r) {
+    noc_scene_info info;
+    assert_int_equal(r->status, NOC_OK);
+    noc_scene_get_info(r->scene, &info);
+    return info.triangles_by_class[NOC_CLASS_WALL];
+}
+
+/* Walls of a built-in scene stand on its own ground: no ground of ours closes their doors and shops. */
+static void test_built_in(void **state) {
+    (void)state;
+    struct run r;
+    char houses[4000];
+    LOAD(&r, DEFAULTS, "builtin:city");
+    size_t alone = walls(&r);
+    finish(&r);
+    LOAD(&r, DEFAULTS, row_of_houses(houses, sizeof(houses)));
+    size_t row = walls(&r);
+    finish(&r);
+    LOAD(&r, DEFAULTS, "builtin:city", row_of_houses(houses, sizeof(houses)));
+    size_t both = walls(&r);
+    finish(&r);
+    assert_true(alone > 1000 && both >= alone && both <= alone + row + 40);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_followed), cmocka_unit_test(test_other_system),
-                                        cmocka_unit_test(test_bridge), cmocka_unit_test(test_ingolstadt) };
+                                        cmocka_unit_test(test_bridge), cmocka_unit_test(test_built_in),
+                                        cmocka_unit_test(test_ingolstadt) };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -73,6 +73,8 @@ static noc_status lay_ground(importer *im, const extent *e) {
         return noc_no_memory(im->log, "import");
     city_ground *ground = city_ground_start(im->scene, points, places_of_lamps(im, e, points));
     noc_status status = ground && e->any ? heights_check(im, ground) : NOC_OK;
+    if (ground)
+        city_ground_keep(ground, im->first_mesh);
     if (ground && status)
         city_ground_free(ground);
     else if (ground) /* heights that are not of this city are gone now */

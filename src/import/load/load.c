@@ -290,6 +290,8 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
             if (!im->inputs[i].repeated && !im->inputs[i].left_out && stage(im, &im->inputs[i]) == s)
                 inputs[count++] = i;
         status = read_inputs(im, inputs, count, s == CITIES);
+        if (s == BUILT_IN)
+            im->first_mesh = im->scene->meshes.len;
     }
     free(inputs);
     if (!status)

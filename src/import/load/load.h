@@ -134,7 +134,8 @@ typedef struct importer {
     NOC_ARRAY(taken_building) buildings;    /* where windows are asked for */
     size_t object_mesh;                     /* first mesh of the object that is being taken */
     bool has_roads;
-    double open_area;         /* m2 of terrain, roads, pavements, lawns and water, seen from above */
+    size_t first_mesh; /* of those that inputs are read into: what was there before, and built-in scenes, is whole */
+    double open_area;  /* m2 of terrain, roads, pavements, lawns and water, seen from above */
     NOC_ARRAY(float) heights; /* of buildings, m */
     NOC_ARRAY(float) storeys; /* of those that tell how many they have */
     NOC_ARRAY(pending_footprint) footprints;
