@@ -16,8 +16,6 @@ typedef struct init_args {
 
 static int run(void *arguments);
 static const init_args defaults = { .import = noc_import_default_params() };
-/* What is no matter of looking at files: it is the recipe's to say. */
-static const char *const placing[] = { "scene-crs", "infer-lamps", "strict", NULL };
 
 const cli_command cli_init = {
     "init",
@@ -26,7 +24,7 @@ const cli_command cli_init = {
     "Examples\n"
     "  nocturne init town city.gml lamps.geojson\n"
     "  nocturne render town/city.yaml -o town.png\n",
-    { { noc_import_options, offsetof(A, import), placing }, { cli_common_options, 0, NULL } },
+    { { noc_import_options, offsetof(A, import), NULL }, { cli_common_options, 0, NULL } },
     sizeof(init_args),
     &defaults,
     run,
@@ -34,7 +32,8 @@ const cli_command cli_init = {
 
 /* What the files hold together. */
 typedef struct found {
-    size_t lamps, lamp_files, polygons[NOC_CLASS_COUNT], without_crs;
+    bool builtin;
+    size_t lamps, polygons[NOC_CLASS_COUNT], without_crs;
     size_t lamps_assumed[NOC_LAMP_DEFAULT_COUNT];
 } found;
 
@@ -80,62 +79,111 @@ static void print_text(FILE *out, const char *text) {
 
 /* ---- what it says ---- */
 
-static void print_remark(FILE *out, const noc_report_file *file) {
-    char a[64], b[64], crs[100];
-    fprintf(out, " # %s", file->format && *file->format ? file->format : "unknown format");
-    if (file->crs && *file->crs)
-        fprintf(out, ", %s", noc_text_clean(crs, sizeof(crs), file->crs));
-    else
-        fputs(", names no CRS", out);
-    if (file->buildings)
-        fprintf(out, ", %s", noc_text_many(a, file->buildings, "building"));
-    if (file->polygons)
-        fprintf(out, ", %s", noc_text_many(a, file->polygons, "polygon"));
-    else if (file->triangles)
-        fprintf(out, ", %s", noc_text_many(a, file->triangles, "triangle"));
-    if (file->lamps)
-        fprintf(out, ", %s", noc_text_many(b, file->lamps, "lamp"));
+/* What an input holds, which may be a folder of files. */
+static void print_remark(FILE *out, const noc_report *report) {
+    const noc_report_file *first = noc_report_get_file(report, 0);
+    size_t files = noc_report_file_count(report), buildings = 0, polygons = 0, triangles = 0, lamps = 0;
+    char a[64], crs[100];
+    for (size_t i = 0; i < files; i++) {
+        const noc_report_file *file = noc_report_get_file(report, i);
+        buildings += file->buildings;
+        polygons += file->polygons;
+        triangles += file->triangles;
+        lamps += file->lamps;
+    }
+    if (files > 1)
+        fprintf(out, " # %s, the first", noc_text_many(a, files, "file"));
+    fprintf(out, " %s%s", files > 1 ? "" : "# ", first->format && *first->format ? first->format : "unknown format");
+    if (first->crs && *first->crs)
+        fprintf(out, ", %s", noc_text_clean(crs, sizeof(crs), first->crs));
+    if (buildings)
+        fprintf(out, ", %s", noc_text_many(a, buildings, "building"));
+    if (polygons)
+        fprintf(out, ", %s", noc_text_many(a, polygons, "polygon"));
+    else if (triangles)
+        fprintf(out, ", %s", noc_text_many(a, triangles, "triangle"));
+    if (lamps)
+        fprintf(out, ", %s", noc_text_many(a, lamps, "lamp"));
     fputc('\n', out);
 }
 
-static void add_found(found *all, const noc_report_file *file) {
-    all->lamps += file->lamps;
-    all->lamp_files += file->lamps > 0;
-    all->without_crs += !(file->crs && *file->crs);
-    for (int c = 0; c < NOC_CLASS_COUNT; c++)
-        all->polygons[c] += file->polygons_by_class[c];
-    for (int i = 0; i < NOC_LAMP_DEFAULT_COUNT; i++)
-        all->lamps_assumed[i] += file->lamps_assumed[i];
-}
-
-/* Rows whose names begin with prefix, as keys of a section that waits to be used; their values are the defaults. */
-static void print_section(FILE *out, const char *section, const char *prefix) {
-    noc_import_params params = noc_import_default_params();
-    bool any = false;
-    for (const noc_option *o = noc_import_options(); o->name; o++) {
-        if (strncmp(o->name, prefix, strlen(prefix)) || o->kind == NOC_OPTION_TEXTS)
-            continue;
-        if (!any)
-            fprintf(out, "\n#%s:\n", section);
-        any = true;
-        char *value = cli_option_value(o, &params);
-        fprintf(out, "#  %s: %s%*s # %s%s%s\n", o->name + strlen(prefix), *value ? value : "...",
-                (int)(18 - strlen(o->name + strlen(prefix)) - strlen(value)) > 0
-                    ? (int)(18 - strlen(o->name + strlen(prefix)) - strlen(value))
-                    : 0,
-                "", *o->unit ? o->unit : "", *o->unit ? ": " : "", o->help);
-        free(value);
+static void add_found(found *all, const noc_report *report) {
+    for (size_t k = 0; k < noc_report_file_count(report); k++) {
+        const noc_report_file *file = noc_report_get_file(report, k);
+        all->lamps += file->lamps;
+        all->without_crs += file->has_extent && !(file->crs && *file->crs);
+        for (int c = 0; c < NOC_CLASS_COUNT; c++)
+            all->polygons[c] += file->polygons_by_class[c];
+        for (int i = 0; i < NOC_LAMP_DEFAULT_COUNT; i++)
+            all->lamps_assumed[i] += file->lamps_assumed[i];
     }
 }
 
-static void print_lamps(FILE *out, const found *all) {
+/* "height: 8 # m: of lamps ..."; one that the words say is a key in use, others wait. */
+static void print_key(FILE *out, const init_args *args, const noc_option *o, const char *key, const char *indent) {
+    bool said = cli_given(&args->common, o->name);
+    char *value = cli_option_value(o, &args->import);
+    int room = 22 + said - (int)(strlen(indent) + strlen(key) + strlen(value));
+    fprintf(out, "%s%s%s: ", said ? "" : "#", indent, key);
+    if (o->kind == NOC_OPTION_TEXT && *value)
+        print_text(out, value);
+    else
+        fputs(*value ? value : "...", out);
+    fprintf(out, "%*s # %s%s%s\n", room > 0 ? room : 0, "", o->unit, *o->unit ? ": " : "", o->help);
+    free(value);
+}
+
+static bool any_given(const init_args *args, const char *prefix) {
+    for (size_t i = 0; i < args->common.given_count; i++)
+        if (!strncmp(args->common.given[i]->name, prefix, strlen(prefix)) &&
+            args->common.given[i]->kind != NOC_OPTION_TEXTS)
+            return true;
+    return false;
+}
+
+static bool in_section(const noc_option *o, const char *prefix, const char *group) {
+    return o->kind != NOC_OPTION_TEXTS &&
+           (!strncmp(o->name, prefix, strlen(prefix)) || (group && !strcmp(o->group, group)));
+}
+
+/* Rows whose names begin with the prefix, and all others of the group. */
+static void print_section(FILE *out, const init_args *args, const char *section, const char *prefix,
+                          const char *group) {
+    bool said = false;
+    for (const noc_option *o = noc_import_options(); o->name; o++)
+        said = said || (in_section(o, prefix, group) && cli_given(&args->common, o->name));
+    fprintf(out, "\n%s%s:\n", said ? "" : "#", section);
+    for (const noc_option *o = noc_import_options(); o->name; o++)
+        if (in_section(o, prefix, group))
+            print_key(out, args, o, o->name + (strncmp(o->name, prefix, strlen(prefix)) ? 0 : strlen(prefix)), "  ");
+}
+
+/* What stands in no section, but for what protects who reads. */
+static void print_others(FILE *out, const init_args *args) {
+    fputc('\n', out);
+    for (const noc_option *o = noc_import_options(); o->name; o++)
+        if (!in_section(o, "lamp-", NULL) && !in_section(o, "window-", "Windows") && o->kind != NOC_OPTION_TEXTS &&
+            strcmp(o->group, "Reading"))
+            print_key(out, args, o, o->name, "");
+}
+
+/* Files that are told of with --lamps, and what columns are read as. */
+static void print_texts(FILE *out, const noc_texts *texts, const char *key, const char *remark) {
+    fprintf(out, "%s  %s: [", texts->count ? "" : "#", key);
+    for (size_t i = 0; i < texts->count; i++) {
+        char *path = strcmp(key, "files") ? NULL : realpath(texts->text[i], NULL);
+        fputs(i ? ", " : "", out);
+        print_text(out, path ? path : texts->text[i]);
+        free(path);
+    }
+    fprintf(out, "]%*s # %s\n", texts->count ? 0 : 12, "", remark);
+}
+
+static void print_lamps(FILE *out, const init_args *args, const found *all) {
     static const char *const what[NOC_LAMP_DEFAULT_COUNT] = { "height", "flux", "colour" };
     char a[32], b[32];
-    if (!all->lamp_files) {
-        fputs("\n# No file holds lamps: some are placed by a rule. infer-lamps: off leaves the city dark.\n"
-              "#infer-lamps: on\n",
-              out);
-    }
+    if (!all->lamps && !all->builtin)
+        fputs("\n# No file holds lamps: some are placed by a rule, unless infer-lamps is off.\n", out);
     const char *before = "\n";
     for (int i = 0; i < NOC_LAMP_DEFAULT_COUNT; i++) {
         if (!all->lamps_assumed[i])
@@ -144,8 +192,12 @@ static void print_lamps(FILE *out, const found *all) {
                 noc_text_count(a, all->lamps_assumed[i]), noc_text_count(b, all->lamps), what[i]);
         before = "";
     }
-    print_section(out, "lamps", "lamp-");
-    fputs("#  files: []            # tables whose points are lamps whatever their words say\n", out);
+    bool texts = args->import.lamps.count || args->import.lamp_columns.count;
+    print_section(out, args, "lamps", "lamp-", NULL);
+    if (texts && !any_given(args, "lamp-"))
+        fputs("lamps:\n", out);
+    print_texts(out, &args->import.lamps, "files", "tables whose points are lamps whatever their words say");
+    print_texts(out, &args->import.lamp_columns, "columns", "what columns are read as: \"height=H,watts=P\"");
 }
 
 static void print_materials(FILE *out, const found *all) {
@@ -187,14 +239,14 @@ static noc_status print_recipe(const init_args *args, const char *folder, noc_lo
             cli_error("%.400s: %s", input, strerror(errno));
             return NOC_ERR_IO;
         }
+        all.builtin = all.builtin || cli_builtin(input);
         status = inspect(args, input, log, &report);
         char *shown = cli_builtin(input) ? cli_format("%s", input) : relative(folder, path);
         fputs("  - ", out);
         print_text(out, shown);
         if (report && !status) {
-            const noc_report_file *file = noc_report_get_file(report, 0);
-            add_found(&all, file);
-            print_remark(out, file);
+            add_found(&all, report);
+            print_remark(out, report);
         } else {
             fputc('\n', out);
         }
@@ -204,19 +256,17 @@ static noc_status print_recipe(const init_args *args, const char *folder, noc_lo
     }
     if (status)
         return status;
-    if (args->import.crs)
-        fprintf(out, "\ncrs: %s\n", args->import.crs);
-    else
-        fprintf(out, "\n%s#crs: EPSG:25832       # of inputs that name none\n",
-                all.without_crs ? "# Some inputs name no CRS. To put them in place:\n" : "");
-    fputs("#scene-crs: EPSG:25832 # of the scene; else the first input's, or UTM\n", out);
-    print_lamps(out, &all);
-    print_section(out, "windows", "window-");
+    if (all.without_crs && !args->import.crs)
+        fputs("\n# Some inputs name no CRS: crs puts them in place.", out);
+    print_others(out, args);
+    print_lamps(out, args, &all);
+    print_section(out, args, "windows", "window-", "Windows");
     print_materials(out, &all);
     fputs("\n# The first one is used unless --camera NAME, --view or --eye says another.\n"
           "cameras:\n"
           "  street: { view: street }\n"
           "  aerial: { view: aerial }\n"
+          "  overview: { view: overview }\n"
           "#  mine: { eye: [0, -30, 1.7], target: [0, 0, 5], fov: 60 }  # the summary of render tells a camera so\n"
           "\n# Any option of nocturne render by its name.\n"
           "width: 1280\nheight: 720\n#sky: 0.02\n",
@@ -262,7 +312,7 @@ static int run(void *arguments) {
     if (args->common.input_count < 2)
         return cli_usage(&cli_init, "which files? nocturne init %.100s city.gml lamps.geojson", named);
     if (!there && mkdir(named, 0777)) {
-        cli_error("%.400s: %s", named, strerror(errno));
+        cli_error("%.400s: this folder cannot be made: %s", named, strerror(errno));
         return CLI_FAILURE;
     }
     char *folder = realpath(named, NULL);

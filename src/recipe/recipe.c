@@ -11,11 +11,12 @@ static const noc_option *(*const tables[])(void) = { noc_import_options, noc_cit
 #define HOSTS "Reading"
 
 typedef struct section {
-    const char *name, *prefix;   /* "windows" and "window-": its keys are the rest of the names */
+    const char *name, *prefix;   /* "windows" and "window-": its keys are the rest of the names, */
+    const char *group;           /* and whole names of this group; NULL: none */
     const char *list_key, *list; /* a key for an option without the prefix; NULL: none */
 } section;
-static const section sections[] = { { "lamps", "lamp-", "files", "lamps" },
-                                    { "windows", "window-", "make", "windows" } };
+static const section sections[] = { { "lamps", "lamp-", NULL, "files", "lamps" },
+                                    { "windows", "window-", "Windows", NULL, NULL } };
 
 typedef struct taken {
     recipe_file *file;
@@ -58,6 +59,8 @@ static noc_status unknown_option(const taken *t, const yaml_node_t *key) {
         for (const noc_option *o = tables[i](); o->name && count < NOC_COUNT(words); o++)
             if (!t->section || !strncmp(o->name, t->section->prefix, prefix))
                 words[count++] = o->name + prefix;
+            else if (t->section->group && !strcmp(o->group, t->section->group))
+                words[count++] = o->name;
     for (size_t i = 0; !t->section && i < NOC_COUNT(others) && count < NOC_COUNT(words); i++)
         words[count++] = others[i];
     for (size_t i = 0; !t->section && i < NOC_COUNT(sections) && count < NOC_COUNT(words); i++)
@@ -132,6 +135,8 @@ static noc_status take_section_key(void *ctx, const yaml_node_t *key, yaml_node_
     bool list = s->list_key && !strcmp(name, s->list_key);
     noc_snprintf(whole, sizeof(whole), "%s%s", list ? s->list : s->prefix, list ? "" : name);
     const noc_option *o = find_option(whole);
+    if (!o && s->group && (o = find_option(name)) && strcmp(o->group, s->group))
+        o = NULL;
     return o ? take_option(t->file, o, key, value) : unknown_option(t, key);
 }
 
@@ -282,7 +287,8 @@ static noc_status take_top(void *ctx, const yaml_node_t *key, yaml_node_t *value
     if (!strcmp(name, "cameras"))
         return recipe_each(f, value, "cameras", take_camera, t);
     for (size_t i = 0; i < NOC_COUNT(sections); i++)
-        if (!strcmp(name, sections[i].name)) {
+        /* a scalar switches the whole: windows: off */
+        if (!strcmp(name, sections[i].name) && (value->type != YAML_SCALAR_NODE || sections[i].list_key)) {
             t->section = &sections[i];
             noc_status status = recipe_each(f, value, name, take_section_key, t);
             t->section = NULL;

@@ -62,6 +62,12 @@ expect "init of a file that is not there" 1 'none.gml' init town none.gml
 result $? "what failed leaves no folder"
 run init town city.gml 'a "b" c.gml' builtin:single
 result $status "init"
+run init said city.gml --lamp-height 8 --lod 2 --window-lit 0.6 --no-windows --wet
+draw said.exr said/city.yaml --size 48x32 --view aerial
+draw words.exr city.gml --lamp-height 8 --lod 2 --window-lit 0.6 --no-windows --wet --size 48x32 --view aerial
+run compare said.exr words.exr
+grep -Eq 'all pixels +1,536 +0.000 +0 ' out && grep -q '^  height: 8' said/city.yaml
+result $? "what init is told is in the recipe" "$(cat said/city.yaml)"
 expect "init does not overwrite" 1 'is left alone' init town city.gml
 [ "$(find town | wc -l)" = 2 ]
 result $? "init leaves its recipe alone" "$(ls -a town)"

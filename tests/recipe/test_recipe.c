@@ -149,8 +149,7 @@ static void test_every_option_is_a_key(void **state) {
             snprintf(text, sizeof(text), "nocturne: 1\ninputs: [a]\n%s: \"%s\"\n", o->name, *value ? value : "x");
             noc_recipe *r;
             noc_status status = load(text, &r);
-            bool section = !strcmp(o->name, "lamps") || !strcmp(o->name, "windows"),
-                 hosts = !strcmp(o->group, "Reading");
+            bool section = !strcmp(o->name, "lamps"), hosts = !strcmp(o->group, "Reading");
             if (section || hosts)
                 assert_int_equal(status, NOC_ERR_FORMAT);
             else if (status || noc_recipe_option(r, 0) != o)
@@ -159,6 +158,23 @@ static void test_every_option_is_a_key(void **state) {
             noc_recipe_destroy(r);
         }
     assert_true(keys > 40);
+}
+
+/* A section has its prefix' options, all of its group, and may be switched as a whole. */
+static void test_sections(void **state) {
+    (void)state;
+    static const char *const said[] = { "windows: off\n", "windows: {lit: 0.6}\n", "windows: {hour: 0.6}\n",
+                                        "windows: {window-lit: 0.6}\n", "windows: {windows: off}\n" };
+    static const char *const rows[] = { "windows", "window-lit", "hour", "window-lit", "windows" };
+    for (size_t i = 0; i < 5; i++) {
+        char text[100];
+        noc_recipe *r;
+        snprintf(text, sizeof(text), "nocturne: 1\ninputs: [a]\n%s", said[i]);
+        assert_int_equal(load(text, &r), NOC_OK);
+        assert_ptr_equal(noc_recipe_option(r, 0), row(noc_import_options(), rows[i]));
+        assert_null(noc_recipe_option(r, 1));
+        noc_recipe_destroy(r);
+    }
 }
 
 static void assert_wrong(const char *text, noc_status expected, int line, const char *message) {
@@ -189,6 +205,10 @@ static void test_what_is_wrong_is_told_with_its_line(void **state) {
         { "nocturne: 1\ninputs: {a: b}\n", 2, "inputs is a list" },
         { "nocturne: 1\ninputs: [a, [b]]\n", 2, "inputs: entry 2 is no text" },
         { "nocturne: 1\ninputs: [a, '']\n", 2, "inputs: entry 2 is no text" },
+        { HEAD "windows: {sky: 3}\n", 3, "no key sky in windows" },
+        { HEAD "windows: [1]\n", 3, "windows must be keys" },
+        { HEAD "windows: maybe\n", 3, "neither true nor false" },
+        { HEAD "lamps: off\n", 3, "lamps must be keys" },
         { HEAD "lod: 7\n", 3, "lod: \"7\" is outside 0 to 4" },
         { HEAD "lod: two\n", 3, "lod: \"two\" is not" },
         { HEAD "\n# remark\nwidht: 3\n", 5, "no key widht in a recipe; is it width?" },
@@ -302,6 +322,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_all_that_it_says),
         cmocka_unit_test(test_every_option_is_a_key),
+        cmocka_unit_test(test_sections),
         cmocka_unit_test(test_what_is_wrong_is_told_with_its_line),
         cmocka_unit_test(test_files_that_cannot_be_read),
         cmocka_unit_test(test_a_recipe_is_known_by_its_first_key),
