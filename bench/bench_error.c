@@ -42,6 +42,7 @@ static const variant variants[] = {
     { "pairwise + rays, lists", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, .candidates = NOC_CANDIDATES_LISTS },
     { "spatial p. + rays, lists", NOC_METHOD_RESTIR, NOC_BIAS_PAIRWISE, true, true, NOC_CANDIDATES_LISTS },
 };
+_Static_assert(NOC_COUNT(variants) == NOC_CANDIDATES_COUNT + 9, "ris of every picker, and the other methods");
 
 static uint64_t mix(uint64_t h, const void *data, size_t size) {
     const unsigned char *p = data;

@@ -76,6 +76,7 @@ static const picker pickers[] = {
     { "light-bvh", NOC_CANDIDATES_LIGHT_BVH, 1 },
     { "lists", NOC_CANDIDATES_LISTS, 1 },
 };
+_Static_assert(NOC_COUNT(pickers) == NOC_CANDIDATES_COUNT, "every picker but uniform, and influence twice");
 
 typedef struct bench {
     noc_scene *scene;

@@ -80,6 +80,8 @@ static const structure structures[] = {
     { "light-bvh", NOC_CANDIDATES_LIGHT_BVH, 1, NOC_INFLUENCE_SPHERE },
     { "lists", NOC_CANDIDATES_LISTS, 1, NOC_INFLUENCE_SPHERE },
 };
+_Static_assert(sizeof(structures) / sizeof(*structures) == NOC_CANDIDATES_COUNT + 2,
+               "every picker but uniform, and influence four times");
 
 static bool row(const noc_scene *s, int threads, const structure *what) {
     noc_view *r = own_view(s, threads, NULL);

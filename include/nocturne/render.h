@@ -17,7 +17,8 @@ typedef enum noc_candidates {
     NOC_CANDIDATES_LISTS,
     NOC_CANDIDATES_POWER,
     NOC_CANDIDATES_INFLUENCE,
-    NOC_CANDIDATES_LIGHT_BVH
+    NOC_CANDIDATES_LIGHT_BVH,
+    NOC_CANDIDATES_COUNT
 } noc_candidates;
 /* influence: what bounds a light's influence volume: distance, or what its light reaches as well. */
 typedef enum noc_influence_boxes { NOC_INFLUENCE_SPHERE, NOC_INFLUENCE_VISIBLE } noc_influence_boxes;

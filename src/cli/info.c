@@ -250,6 +250,7 @@ static void print_scene(const char *name, const noc_scene_info *info) {
     print_counts("", info->triangles_by_class);
     printf("  %-11s %s\n", "lights", noc_text_count(a, info->lights));
     static const char *const kinds[] = { "sphere", "disc", "triangle", "parallelogram", "point", "spot" };
+    _Static_assert(sizeof(kinds) / sizeof(*kinds) == NOC_LIGHT_KIND_COUNT, "every kind has its name");
     for (int i = 0; i < NOC_LIGHT_KIND_COUNT; i++)
         if (info->lights_by_kind[i])
             printf("    %-13s %10s\n", kinds[i], noc_text_count(a, info->lights_by_kind[i]));

@@ -25,7 +25,7 @@ struct noc_light_set {
     const noc_influence *last;
     uint64_t numbers;         /* of volumes, that have been given out */
     noc_scene_versions known; /* of the scene, that these know of */
-    double seconds[NOC_CANDIDATES_LIGHT_BVH + 1];
+    double seconds[NOC_CANDIDATES_COUNT];
 };
 
 noc_light_set *noc_light_set_create(const noc_scene *scene, noc_pool *pool, noc_probe_fn *probe, void *user,
@@ -222,6 +222,7 @@ static noc_status make(noc_light_set *set, noc_candidates candidates, const noc_
     double start = noc_wall_seconds();
     bool made = false;
     switch (candidates) {
+    case NOC_CANDIDATES_COUNT:
     case NOC_CANDIDATES_UNIFORM: break;
     case NOC_CANDIDATES_LISTS:
         made = !set->clusters[NOC_STANDING];
@@ -272,6 +273,7 @@ void noc_light_set_release(noc_light_set *set, noc_light_sources *sources) {
 static size_t bytes_of(const noc_light_set *set, noc_candidates candidates) {
     size_t bytes = 0;
     switch (candidates) {
+    case NOC_CANDIDATES_COUNT:
     case NOC_CANDIDATES_UNIFORM: return 0;
     case NOC_CANDIDATES_LISTS:
         for (int half = 0; half < NOC_HALVES; half++)

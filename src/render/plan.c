@@ -109,6 +109,7 @@ static void add_candidates(maker *m, const noc_render_params *p) {
         [NOC_CANDIDATES_INFLUENCE] = NOC_PASS_CANDIDATES_INFLUENCE,
         [NOC_CANDIDATES_LIGHT_BVH] = NOC_PASS_CANDIDATES_LIGHT_BVH,
     };
+    _Static_assert(NOC_COUNT(draw) == NOC_CANDIDATES_COUNT, "every picker has its pass");
     if (m->plan->candidates == NOC_CANDIDATES_LISTS)
         add(m, NOC_PASS_BUILD_LIST);
     if (m->plan->candidates == NOC_CANDIDATES_INFLUENCE)

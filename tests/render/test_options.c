@@ -142,6 +142,20 @@ static void aliases_name_choices(void **state) {
     assert_true(tried >= 2);
 }
 
+/* A choice is an enum's value, and what goes round an enum goes to its count. */
+static void choices_are_as_many_as_values(void **state) {
+    static const struct {
+        const char *name;
+        int values;
+    } enums[] = { { "candidates", NOC_CANDIDATES_COUNT }, { "isa", NOC_ISA_COUNT } };
+    for (size_t i = 0; i < NOC_COUNT(enums); i++) {
+        int choices = 1;
+        for (const char *c = find(noc_render_options(), enums[i].name)->choices; *c; c++)
+            choices += *c == '|';
+        assert_int_equal(choices, enums[i].values);
+    }
+}
+
 /* The names that candidates had once are still taken. */
 static void former_names_of_candidates(void **state) {
     const noc_option *o = find(noc_render_options(), "candidates");
@@ -366,6 +380,7 @@ int main(void) {
         cmocka_unit_test_setup(rows_are_sound, setup),
         cmocka_unit_test_setup(defaults_round_trip, setup),
         cmocka_unit_test_setup(ranges_and_choices, setup),
+        cmocka_unit_test(choices_are_as_many_as_values),
         cmocka_unit_test_setup(aliases_name_choices, setup),
         cmocka_unit_test_setup(former_names_of_candidates, setup),
         cmocka_unit_test_setup(bools, setup),

@@ -7,7 +7,7 @@
 static int each_plan(void (*check)(const noc_render_params *p, const noc_plan *plan, int history)) {
     int count = 0;
     for (int method = 0; method <= NOC_METHOD_RESTIR; method++)
-        for (int from = 0; from <= NOC_CANDIDATES_LIGHT_BVH; from++)
+        for (int from = 0; from < NOC_CANDIDATES_COUNT; from++)
             for (int bias = 0; bias <= NOC_BIAS_PAIRWISE; bias++)
                 for (int bits = 0; bits < 64; bits++)
                     for (int passes = 1; passes <= 4; passes++)
@@ -87,7 +87,7 @@ static void check_stages(const noc_render_params *p, const noc_plan *plan, int h
 
 static void stages_may_run_tile_by_tile(void **state) {
     (void)state;
-    assert_int_equal(each_plan(check_stages), 4 * 5 * 3 * 64 * 4 * 4);
+    assert_int_equal(each_plan(check_stages), 4 * NOC_CANDIDATES_COUNT * 3 * 64 * 4 * 4);
 }
 
 static void check_shading(const noc_render_params *p, const noc_plan *plan, int history) {

@@ -40,7 +40,7 @@ void noc_cpu_forget_found(cpu_view *s) {
 
 size_t noc_cpu_light_bytes(const cpu_world *world) {
     size_t bytes = 0;
-    for (int c = 0; c <= NOC_CANDIDATES_LIGHT_BVH; c++)
+    for (int c = 0; c < NOC_CANDIDATES_COUNT; c++)
         bytes += noc_light_set_bytes(world->lights, (noc_candidates)c);
     return bytes;
 }
