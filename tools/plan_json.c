@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-static const char *const lifetimes[] = { "tile", "frame", "on" }, *const domains[] = { "pixel", "tile", "world" },
+static const char *const lifetimes[] = { "tile", "frame", "on" }, *const domains[] = { "pixel", "tile", "view" },
                          *const rays[] = { "", "nearest hits", "occlusion" };
 
 static void print_bits(const char *name, uint32_t bits) {

@@ -24,8 +24,8 @@ typedef enum noc_buffer {
 /* An item of a buffer, or of a pass. */
 typedef enum noc_domain {
     NOC_DOMAIN_PIXEL,
-    NOC_DOMAIN_TILE,  /* 16 x 16 pixels */
-    NOC_DOMAIN_WORLD, /* places in the scene, whatever the picture */
+    NOC_DOMAIN_TILE, /* 16 x 16 pixels */
+    NOC_DOMAIN_VIEW, /* all of a view: it is of places in the scene, whatever the picture's size */
 } noc_domain;
 
 typedef enum noc_lifetime {

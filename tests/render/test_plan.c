@@ -48,8 +48,18 @@ static uint32_t living(noc_lifetime lifetime) {
     return bits;
 }
 
+/* Colour is a sum: whoever comes first sets it, and others add to what is there. */
+static uint32_t check_sum(const noc_pass_row *row, uint32_t summed) {
+    uint32_t colour = 1u << NOC_BUFFER_COLOUR;
+    if (!(row->writes & colour))
+        return summed;
+    if (!(row->reads & colour) != !summed)
+        fail_msg("%s: it %s the frame's colour", row->name, summed ? "replaces" : "adds to nothing in");
+    return colour;
+}
+
 static void check_stages(const noc_render_params *p, const noc_plan *plan, int history) {
-    uint32_t sets = 0, written = 1u << NOC_BUFFER_PREVIOUS | 1u << NOC_BUFFER_CACHE;
+    uint32_t sets = 0, summed = 0, written = 1u << NOC_BUFFER_PREVIOUS | 1u << NOC_BUFFER_CACHE;
     (void)p;
     assert_in_range(plan->count, 1, NOC_MAX_STAGES);
     assert_int_equal(plan->stages[0].passes[0], NOC_PASS_PRIMARY);
@@ -69,6 +79,7 @@ static void check_stages(const noc_render_params *p, const noc_plan *plan, int h
             if (row->others && s->passes[k] == NOC_PASS_SPATIAL)
                 assert_int_not_equal(s->source, s->target);
             here |= writes;
+            summed = check_sum(row, summed);
         }
         for (int later = 0; later < s->count; later++) /* nor does a later pass write what an earlier one looked at */
             for (int k = 0; k < later; k++)
