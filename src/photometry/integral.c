@@ -21,7 +21,7 @@ static double plane_weight(const noc_profile *p, size_t plane, double c0, double
         double edge = side ? (plane + 1 < n ? p->c.data[plane + 1] : p->c.data[0] + 360)
                            : (plane > 0 ? p->c.data[plane - 1] : p->c.data[n - 1] - 360);
         double width = fabs(edge - mid);
-        for (int turn = -720; turn <= 720; turn += 360) {
+        for (int turn = -360; turn <= 720; turn += 360) {
             double lo = fmax(fmin(edge, mid) + turn, c0), hi = fmin(fmax(edge, mid) + turn, c1);
             if (lo >= hi)
                 continue;
@@ -34,8 +34,9 @@ static double plane_weight(const noc_profile *p, size_t plane, double c0, double
 
 double noc_profile_flux(const noc_profile *p, double gamma_min, double gamma_max, double c) {
     double flux = 0;
-    if (!p)
+    if (!p || isinf(c))
         return 0;
+    c -= 360 * floor(c / 360);
     size_t n = p->gamma.len;
     for (size_t i = 0; i < p->c.len; i++) {
         const double *cd = p->cd.data + i * n, *g = p->gamma.data;

@@ -90,8 +90,10 @@ bool photometry_line_number(const char *line, size_t length, double *out) {
 noc_status photometry_reserve(photometry_text *t, photometry_grid *g, long planes, long gammas) {
     if (planes < 1 || gammas < 2 || planes > PHOTOMETRY_MOST_ANGLES || gammas > PHOTOMETRY_MOST_ANGLES ||
         planes * gammas > PHOTOMETRY_MOST_VALUES)
-        return photometry_bad(t, t->line, "%ld planes of %ld angles: at least 1 of 2 are needed, at most %d of %d read",
-                              planes, gammas, PHOTOMETRY_MOST_ANGLES, PHOTOMETRY_MOST_ANGLES);
+        return photometry_bad(t, t->line,
+                              "%ld planes of %ld angles: at least 1 of 2 are needed, at most %d of %d read, and %d "
+                              "values",
+                              planes, gammas, PHOTOMETRY_MOST_ANGLES, PHOTOMETRY_MOST_ANGLES, PHOTOMETRY_MOST_VALUES);
     /* every value takes two bytes at least, so a short file cannot ask for much memory */
     if ((size_t)(planes + gammas) > (size_t)(t->end - t->at))
         return photometry_bad(t, t->line, "ends before its %ld planes of %ld angles", planes, gammas);

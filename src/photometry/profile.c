@@ -187,6 +187,8 @@ static const char *const shape_names[] = { "about the axis", "C 0-90", "C 0-180"
 
 /* ---- filling ---- */
 
+#define CLOSEST 1e-6 /* degrees between two angles: what lies between them is divided by it */
+
 /* What is wrong with angles, NULL if nothing. */
 static const char *angle_fault(const photometry_grid *g) {
     double most_c = g->type == 'C' ? 360 : g->type == 'A' ? 180 : 90, least_c = g->type == 'C' ? 0 : -most_c;
@@ -196,12 +198,16 @@ static const char *angle_fault(const photometry_grid *g) {
             return "a horizontal angle is out of its range";
         if (i > 0 && !(g->c.data[i] > g->c.data[i - 1]))
             return "horizontal angles do not ascend";
+        if (i > 0 && g->c.data[i] - g->c.data[i - 1] < CLOSEST)
+            return "two horizontal angles are nearly the same";
     }
     for (size_t i = 0; i < g->gamma.len; i++) {
         if (!(g->gamma.data[i] >= least_g && g->gamma.data[i] <= most_g))
             return "a vertical angle is out of its range";
         if (i > 0 && !(g->gamma.data[i] > g->gamma.data[i - 1]))
             return "vertical angles do not ascend";
+        if (i > 0 && g->gamma.data[i] - g->gamma.data[i - 1] < CLOSEST)
+            return "two vertical angles are nearly the same";
     }
     if (g->type != 'C')
         return g->c.len < 2 ? "types A and B need two horizontal angles at least" : NULL;
@@ -289,6 +295,8 @@ noc_status noc_profile_create(noc_log *log, const noc_profile_params *params, no
     for (size_t i = 0; i < count; i++)
         if (!(params->cd[i] >= 0 && params->cd[i] < 1e12))
             return noc_error(log, NOC_ERR_ARGUMENT, "%s: an intensity is negative or not finite", what);
+    if (!isfinite(params->street))
+        return noc_error(log, NOC_ERR_ARGUMENT, "%s: street is not finite", what);
     photometry_grid g = { .type = 'C' };
     noc_profile *p = photometry_new(log, what, "numbers");
     noc_status status = p ? NOC_OK : NOC_ERR_MEMORY;
@@ -301,7 +309,7 @@ noc_status noc_profile_create(noc_log *log, const noc_profile_params *params, no
     if (!status)
         status = photometry_fill(p, &g, log, what, 0);
     if (!status)
-        p->info.street = params->street;
+        p->info.street = params->street - 360 * floor(params->street / 360);
     photometry_grid_free(&g);
     if (status) {
         noc_profile_destroy(p);

@@ -171,6 +171,9 @@ static void test_bad(void **state) {
         { "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n100\n", "ends before an intensity" },
         { "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n100\n-5\n", "bad:8: an intensity is negative" },
         { "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 0\n0\n1 1\n", "bad:5: vertical angles do not ascend" },
+        { "IESNA91\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 1\n0 1e-320 90\n0\n1 1 1\n",
+          "two vertical angles are nearly" },
+        { "IESNA91\nTILT=NONE\n1 -1 1 3600 3600 1 2 0 0 0\n1 1 1\n0 90\n", "and 4194304 values" },
         { "IESNA91\nTILT=NONE\n1 -1 1 2 2 1 2 0 0 0\n1 1 1\n0 90\n0 45\n1 1 1 1\n", "horizontal angles do not go" },
         { "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n0 0\n", "sends no light" },
         { "IESNA91\nTILT=NONE\n1 -1 1 4000 4000 1 2 0 0 0\n1 1 1\n0 90\n", "planes of 4000 angles" },
@@ -255,7 +258,20 @@ static void test_numbers(void **state) {
     assert_true(fabs(noc_profile_intensity(p, -45, 22.5) - 3) < 1e-12 && noc_profile_intensity(p, 0, 90.01) == 0);
     noc_profile_get_info(p, &info);
     assert_true(info.street == 90 && info.c_count == 4);
+    double half = noc_profile_flux(p, 0, 90, 280), back = info.back.low;
+    for (int turn = -5; turn <= 5; turn++) { /* a direction is the same after any turns */
+        assert_true(fabs(noc_profile_flux(p, 0, 90, 280 + 360 * turn) - half) < 1e-9);
+        params.street = 90 + 360 * turn;
+        noc_profile_destroy(p);
+        assert_int_equal(noc_profile_create(NULL, &params, &p), NOC_OK);
+        noc_profile_get_info(p, &info);
+        assert_true(info.street == 90 && fabs(info.back.low - back) < 1e-9);
+    }
     noc_profile_destroy(p);
+    for (int i = 0; i < 2; i++) {
+        params.street = i ? INFINITY : NAN;
+        assert_int_equal(noc_profile_create(NULL, &params, &p), NOC_ERR_ARGUMENT);
+    }
     params.planes = 0;
     assert_int_equal(noc_profile_create(NULL, &params, &p), NOC_ERR_ARGUMENT);
     assert_null(p);
