@@ -144,27 +144,25 @@ const char *recipe_text(const yaml_node_t *node) {
     return strlen(text) == node->data.scalar.length ? text : NULL;
 }
 
-/* Whether an earlier key of the map is the same. */
-static bool comes_twice(recipe_file *f, const yaml_node_t *map, const yaml_node_pair_t *pair) {
-    for (const yaml_node_pair_t *p = map->data.mapping.pairs.start; p < pair; p++)
-        if (!strcmp(recipe_text(recipe_node(f, p->key)), recipe_text(recipe_node(f, pair->key))))
-            return true;
-    return false;
-}
-
 noc_status recipe_each(recipe_file *f, yaml_node_t *map, const char *what,
                        noc_status (*take)(void *ctx, const yaml_node_t *key, yaml_node_t *value), void *ctx) {
     if (!map || map->type != YAML_MAPPING_NODE)
         return recipe_wrong(f, map, "%s must be keys and their values", what);
+    noc_map keys = { 0 };
     noc_status status = NOC_OK;
     for (const yaml_node_pair_t *p = map->data.mapping.pairs.start; p < map->data.mapping.pairs.top && !status; p++) {
         const yaml_node_t *key = recipe_node(f, p->key);
-        if (!recipe_text(key))
-            return recipe_wrong(f, key ? key : map, "a key of %s is no text", what);
-        if (comes_twice(f, map, p))
-            return recipe_wrong(f, key, "%.60s is given twice", recipe_text(key));
-        status = take(ctx, key, recipe_node(f, p->value));
+        const char *text = recipe_text(key);
+        bool fresh = true;
+        if (!text)
+            status = recipe_wrong(f, key ? key : map, "a key of %s is no text", what);
+        else if (!map_put(&keys, text, 0, &fresh))
+            status = noc_no_memory(f->log, f->path);
+        else if (!fresh)
+            status = recipe_wrong(f, key, "%.60s is given twice", text);
+        status = status ? status : take(ctx, key, recipe_node(f, p->value));
     }
+    map_free(&keys);
     return status;
 }
 
@@ -199,10 +197,10 @@ noc_status recipe_numbers(recipe_file *f, yaml_node_t *node, const char *key, si
 }
 
 const char *recipe_path(recipe_file *f, const char *path) {
-    const char *slash = strrchr(f->path, '/');
-    if (*path == '/' || !slash || !strncmp(path, "builtin:", strlen("builtin:")))
+    const char *slash = strrchr(f->path, '/'), *at = *path == '@' ? "@" : ""; /* @LIST is a list of inputs */
+    if (path[*at == '@'] == '/' || !slash || !strncmp(path, "builtin:", strlen("builtin:")))
         return arena_strdup(&f->recipe->arena, path);
-    return arena_format(&f->recipe->arena, "%.*s/%s", (int)(slash - f->path), f->path, path);
+    return arena_format(&f->recipe->arena, "%s%.*s/%s", at, (int)(slash - f->path), f->path, path + strlen(at));
 }
 
 /* The first line that is neither blank nor a comment begins with the key. */

@@ -57,7 +57,7 @@ static const noc_option *row(const noc_option *table, const char *name) {
 static const char whole[] = "# a city\n"
                             "nocturne: 1\n"
                             "name: \"The town: at night\"\n"
-                            "inputs: [a.gml, /b/c.osm, 'builtin:mess']\n"
+                            "inputs: [a.gml, /b/c.osm, 'builtin:mess', '@list', '@/list']\n"
                             "crs: EPSG:25832\n"
                             "preset: interactive\n"
                             "sky: 0.01\n"
@@ -82,11 +82,14 @@ static void test_all_that_it_says(void **state) {
     const noc_recipe_info *info = noc_recipe_get_info(r);
     char expected[200];
     assert_string_equal(info->name, "The town: at night");
-    assert_int_equal(info->input_count, 3);
+    assert_int_equal(info->input_count, 5);
     snprintf(expected, sizeof(expected), "%s/a.gml", folder);
     assert_string_equal(info->inputs[0], expected);
     assert_string_equal(info->inputs[1], "/b/c.osm");
     assert_string_equal(info->inputs[2], "builtin:mess");
+    snprintf(expected, sizeof(expected), "@%s/list", folder);
+    assert_string_equal(info->inputs[3], expected);
+    assert_string_equal(info->inputs[4], "@/list");
     assert_true(info->has_preset && info->preset == NOC_PRESET_INTERACTIVE);
 
     noc_import_params import = noc_import_default_params();
@@ -289,6 +292,16 @@ static void test_a_bomb_is_an_error_at_once(void **state) {
         snprintf(text + strlen(text), sizeof(text) - strlen(text), "a%d: &a%d [*a%d, *a%d, *a%d, *a%d, *a%d]\n", i, i,
                  i - 1, i - 1, i - 1, i - 1, i - 1);
     assert_int_equal(load(text, &r), NOC_ERR_FORMAT);
+    size_t room = 1000000, n = 0;
+    char *many = malloc(room);
+    n += (size_t)snprintf(many, room, "nocturne: 1\ninputs: [x]\ncameras: {");
+    for (int i = 0; i < 60000; i++) /* quick, however many there are: keys are hashed */
+        n += (size_t)snprintf(many + n, room - n, "%x: {},", i);
+    snprintf(many + n, room - n, "}\n");
+    assert_int_equal(load(many, &r), NOC_OK);
+    assert_int_equal(noc_recipe_get_info(r)->camera_count, 60000);
+    noc_recipe_destroy(r);
+    free(many);
     char *deep = malloc(200002);
     memset(deep, '[', 200000);
     memcpy(deep + 200000, "\n", 2);
