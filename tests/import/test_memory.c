@@ -39,7 +39,7 @@ static const char *write_text(const char *name, const char *text) {
 typedef struct import {
     const char *inputs[3]; /* files; NULL behind the last */
     const char *crs, *scene_crs, *lamps, *columns;
-    bool isolate, inspect;
+    bool isolate, inspect, footprints;
     bool all; /* of the first 300 allocations every one; else of the first 40, and of later ones ever fewer */
 } import;
 
@@ -54,6 +54,7 @@ static noc_status run(const import *in, uint64_t number, bool and_later, bool *r
     params.crs = in->crs;
     params.scene_crs = in->scene_crs;
     params.isolate = in->isolate;
+    params.footprints = in->footprints;
     if (in->lamps)
         params.lamps = (noc_texts){ .text = { path_of(in->lamps) }, .count = 1 };
     if (in->columns)
@@ -166,6 +167,8 @@ static void gltf(void **state) {
     refuse_each("glTF with its buffer beside it", &(import){ { "library.gltf" }, .crs = "EPSG:25832" });
 }
 
+static void ply(void **state) { refuse_each("PLY", &(import){ { "ply/text.ply" }, .crs = "EPSG:25832" }); }
+
 static void obj(void **state) {
     write_text("house.obj",
                "mtllib house.mtl none.mtl\nv 0 0 0\nv 10 0 0\nv 10 0 8\nv 0 0 8\nv 5 0 12\nv 5 x 12\nusemtl wall\n"
@@ -197,6 +200,11 @@ static void maps(void **state) {
     refuse_each("PBF", &(import){ { "pbf/lamps.pbf" } });
     refuse_each("GeoPackage", &(import){ { "gpkg/lamps.gpkg" } });
     refuse_each("Shapefile, zip", &(import){ { "shp/lamps.zip" } });
+    refuse_each("Buildings of a map", &(import){ { "geojson/buildings.json" }, .footprints = true });
+    refuse_each("Buildings of a map by the helper",
+                &(import){ { "geojson/buildings.json" }, .footprints = true, .isolate = true });
+    refuse_each("GeoTIFF", &(import){ { "terrain/floats.tif" } });
+    refuse_each("GeoTIFF by the helper", &(import){ { "terrain/floats.tif" }, .isolate = true });
     refuse_each("GeoJSON by the helper", &(import){ { "geojson/plain.json" }, .isolate = true });
 }
 
@@ -388,6 +396,7 @@ int main(void) {
         cmocka_unit_test(citygml),
         cmocka_unit_test(cityjson),
         cmocka_unit_test(gltf),
+        cmocka_unit_test(ply),
         cmocka_unit_test(obj),
         cmocka_unit_test(lamps),
         cmocka_unit_test(maps),
