@@ -3,10 +3,13 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 bool info_is_profile(const char *path) {
     static char head[1 << 14];
-    FILE *f = fopen(path, "rb");
+    struct stat st;
+    bool file = !stat(path, &st) && S_ISREG(st.st_mode); /* a pipe would be waited for */
+    FILE *f = file ? fopen(path, "rb") : NULL;
     size_t n = f ? fread(head, 1, sizeof(head), f) : 0;
     if (f)
         fclose(f);
