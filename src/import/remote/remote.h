@@ -37,11 +37,11 @@ enum {
     REMOTE_PROGRESS, /* double */
     REMOTE_COLUMNS,  /* points, count, and of each column values, mapped, texts: name, field, unit, example */
     REMOTE_FEATURES, /* geo_features */
+    REMOTE_END,      /* remote_end, text: format */
     REMOTE_OBJECT,   /* remote_object, text: id */
     REMOTE_POLYGON,  /* class, count of rings, text: id, points of each ring, their coordinates */
     REMOTE_OBJECT_END,
     REMOTE_FOOTPRINT, /* remote_footprint, text: id, points of each ring, their coordinates */
-    REMOTE_END,       /* remote_end, text: format */
 };
 
 typedef struct remote_head {
