@@ -25,7 +25,7 @@ typedef enum noc_class {
     NOC_CLASS_WALL,
     NOC_CLASS_ROOF,
     NOC_CLASS_GROUND,  /* a building's ground surface */
-    NOC_CLASS_CLOSURE, /* virtual surface that closes a volume: read and counted, not rendered */
+    NOC_CLASS_CLOSURE, /* virtual surface that closes a volume: read and counted, not rendered, not in bounds */
     NOC_CLASS_WINDOW,
     NOC_CLASS_DOOR,
     NOC_CLASS_INSTALLATION, /* balconies, chimneys, stairs */
@@ -162,8 +162,8 @@ NOC_API noc_status noc_scene_commit(noc_scene *scene);
  * is not staged then. */
 
 /* Another material in place of that one, for all that is made of it. Meshes become triangle lights, or none any more,
- * as its emission says; a model's mesh keeps its emission. The materials of a transaction are set before its other
- * edits. */
+ * as its emission says; a model's mesh keeps its emission. Closures (NOC_CLASS_CLOSURE) stay such, and nothing else
+ * becomes one. The materials of a transaction are set before its other edits. */
 NOC_API noc_status noc_scene_set_material(noc_scene *scene, int material, const noc_material *to);
 /* Albedo, f0 and roughness of all materials of that class, also of those added in the transaction. */
 NOC_API noc_status noc_scene_set_class_material(noc_scene *scene, noc_class cls, const noc_material *to);

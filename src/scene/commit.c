@@ -119,7 +119,7 @@ static bool need_edit(const noc_scene *s, noc_edit *e, need *n) {
         return (e->lights = noc_calloc(NOC_MAX(lights, 1u), sizeof(*e->lights))) != NULL;
     case NOC_EDIT_REMOVE_INSTANCE:
         n->released_instances++;
-        n->released_lights += s->models.data[s->instances.data[e->index].model - 1].lights.len;
+        n->released_lights += model_lights(s, e->model);
         return true;
     default: return true;
     }
@@ -341,7 +341,7 @@ static void remove_mesh(commit *c, noc_scene_mesh *m) {
     }
     m->removed = true;
     c->changes.geometry = c->changes.mesh_left = c->changes.ground_left = true;
-    if (m->triangle_count && m->first_triangle == s->backdrop_first)
+    if (s->backdrop_count && m->triangle_count && m->first_triangle == s->backdrop_first)
         s->backdrop_count = 0;
     else if (touches_bounds(s, m))
         s->bounds_min[0] = NAN; /* found anew when all are removed */
@@ -355,8 +355,8 @@ static void apply_edit(commit *c, noc_edit *e) {
     noc_light_record r = light ? noc_light_made(s, e->index) : e->light;
     switch (e->kind) {
     case NOC_EDIT_MATERIAL:
-    case NOC_EDIT_CLASS: break; /* done before */
-    case NOC_EDIT_GROUP: noc_light_scale_group(s, e->index, e->rgb, &c->changes); break;
+    case NOC_EDIT_CLASS:
+    case NOC_EDIT_GROUP: break; /* done before */
     case NOC_EDIT_EMISSION:
         memcpy(r.e, e->rgb, sizeof(r.e));
         noc_light_change(s, e->index, &r, &c->changes);
@@ -394,7 +394,7 @@ static void find_bounds(noc_scene *s) {
     for (size_t j = 0; j < s->meshes.len; j++) {
         const noc_scene_mesh *m = &s->meshes.data[j];
         size_t first = 3 * (size_t)m->first_triangle, end = first + 3 * (size_t)m->triangle_count;
-        for (size_t i = first; noc_mesh_in_city(s, m) && i < end; i++)
+        for (size_t i = first; noc_mesh_in_city(s, m) && !noc_mesh_closes(s, m) && i < end; i++)
             for (int k = 0; k < 3; k++) {
                 double x = s->positions.data[3 * (size_t)s->indices.data[i] + (size_t)k];
                 s->bounds_min[k] = NOC_MIN(s->bounds_min[k], x);
@@ -470,6 +470,7 @@ static void apply(commit *c) {
         else
             noc_mesh_relight(s, &s->meshes.data[i], &c->changes);
     }
+    noc_lights_scale(s, &c->changes);
     for (size_t i = 0; i < s->edits.len; i++)
         apply_edit(c, &s->edits.data[i]);
     settle(c);

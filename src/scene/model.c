@@ -88,8 +88,23 @@ static const noc_scene_instance *instance_of(const noc_scene *scene, int index) 
     return &scene->instances.data[index];
 }
 
-static noc_status stage(noc_scene *scene, int index, const char *wrong, const noc_edit *edit) {
-    if (!instance_of(scene, index))
+/* The model of an instance that may be edited, 0 where there is none: a published one, or before the first commit one
+ * that is staged. The i-th of those was staged as the i-th edit, or later. */
+static uint32_t model_of(const noc_scene *scene, int index) {
+    const noc_scene_instance *there = instance_of(scene, index);
+    if (there)
+        return there->model;
+    if (scene->committed || index < 0 || (uint32_t)index >= scene->instance_slots.fresh)
+        return 0;
+    const noc_edit *e = scene->edits.data + index;
+    while (e->kind != NOC_EDIT_ADD_INSTANCE || e->index != (uint32_t)index)
+        e++;
+    return e->model;
+}
+
+static noc_status stage(noc_scene *scene, int index, const char *wrong, noc_edit *edit) {
+    edit->model = model_of(scene, index);
+    if (!edit->model)
         wrong = "the scene has no such instance, or it is not committed yet";
     if (wrong)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "instance %d: %s", index, wrong);

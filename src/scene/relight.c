@@ -89,22 +89,39 @@ void noc_light_change(noc_scene *s, uint32_t slot, const noc_light_record *made,
                 memcmp(before.b, now->b, sizeof(now->b)) || before.radius != now->radius;
 }
 
-void noc_light_scale_group(noc_scene *s, uint32_t group, const float scale[3], noc_changes *c) {
-    noc_scene_group *g = &s->groups.data[group - 1];
-    if (!memcmp(g->scale, scale, sizeof(g->scale)))
-        return;
-    memcpy(g->scale, scale, sizeof(g->scale));
-    if (!s->scaled)
+/* Gives each group the last scale that was staged for it. Is any of them another one than before? */
+static bool scale_groups(noc_scene *s) {
+    bool any = false;
+    for (size_t i = s->edits.len; i-- > 0;) {
+        const noc_edit *e = &s->edits.data[i];
+        noc_scene_group *g = e->kind == NOC_EDIT_GROUP ? &s->groups.data[e->index - 1] : NULL;
+        if (!g || g->edited)
+            continue;
+        g->edited = true;
+        g->rescaled = memcmp(g->scale, e->rgb, sizeof(g->scale)) != 0;
+        memcpy(g->scale, e->rgb, sizeof(g->scale));
+        any |= g->rescaled;
+    }
+    return any;
+}
+
+void noc_lights_scale(noc_scene *s, noc_changes *c) {
+    bool any = scale_groups(s);
+    if (any && !s->scaled)
         for (; s->light_made.len < s->lights.len; s->light_made.len++)
             memcpy(s->light_made.data[s->light_made.len].v, s->lights.data[s->light_made.len].e, sizeof(noc_rgb));
-    s->scaled = true;
-    for (uint32_t i = 0; i < s->lights.len; i++)
-        if (noc_light_group(&s->lights.data[i]) == group) {
-            noc_light_record made = noc_light_made(s, i);
-            write_record(s, i, &made);
-            c->emission = true;
-            c->standing |= noc_light_stands(made.flags);
-        }
+    s->scaled |= any;
+    for (uint32_t i = 0; any && i < s->lights.len; i++) {
+        uint32_t group = noc_light_group(&s->lights.data[i]);
+        if (!group || !s->groups.data[group - 1].rescaled)
+            continue;
+        noc_light_record made = noc_light_made(s, i);
+        write_record(s, i, &made);
+        c->emission = true;
+        c->standing |= noc_light_stands(made.flags);
+    }
+    for (size_t i = 0; i < s->groups.len; i++)
+        s->groups.data[i].edited = s->groups.data[i].rescaled = false;
 }
 
 static noc_light_record light_of(const noc_scene *s, const noc_scene_mesh *m, size_t t) {

@@ -232,7 +232,13 @@ int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
                             .group = (uint16_t)mesh->group,
                             .name = kept_name };
     noc_scene_model *model = noc_scene_model_of(scene, mesh->model);
-    push_triangles(to, mesh, model ? model->bounds_min : to->bounds_min, model ? model->bounds_max : to->bounds_max);
+    double nowhere[2][3] = { { 0 } }; /* closures have no bounds, as nobody sees them */
+    if (noc_scene_material_at(scene, mesh->material)->cls == NOC_CLASS_CLOSURE)
+        push_triangles(to, mesh, nowhere[0], nowhere[1]);
+    else if (model)
+        push_triangles(to, mesh, model->bounds_min, model->bounds_max);
+    else
+        push_triangles(to, mesh, to->bounds_min, to->bounds_max);
     made.triangle_count = (uint32_t)(to->triangle_light.len - made.first_triangle);
     to->meshes.data[to->meshes.len++] = made;
     if (model)

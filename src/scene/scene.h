@@ -74,6 +74,7 @@ typedef struct noc_scene_instance {
 typedef struct noc_scene_group {
     const char *name;
     float scale[3];
+    bool edited, rescaled; /* by the commit at work */
 } noc_scene_group;
 
 /* What lights with that profile need to know of it. */
@@ -114,7 +115,7 @@ typedef enum noc_edit_kind {
 typedef struct noc_edit {
     noc_edit_kind kind;
     uint32_t index;   /* of what is edited */
-    uint32_t model;   /* added instance */
+    uint32_t model;   /* instances: that one's */
     uint32_t *lights; /* of an added instance; made by the commit at work, else NULL */
     const char *name;
     union {
@@ -217,6 +218,10 @@ size_t noc_scene_city_triangle(const noc_scene *s, size_t i);
 static inline bool noc_mesh_in_city(const noc_scene *s, const noc_scene_mesh *m) {
     return !m->removed && !m->model && !(s->backdrop_count && m->first_triangle == s->backdrop_first);
 }
+/* Is it of closures, which are counted and that is all? A material stays a closure, and others never become one. */
+static inline bool noc_mesh_closes(const noc_scene *s, const noc_scene_mesh *m) {
+    return s->materials.data[m->material].cls == NOC_CLASS_CLOSURE;
+}
 /* Triangles behind all gaps that are no city's; room for one gap was reserved. */
 void noc_scene_add_gap(noc_scene *s, size_t first, size_t count);
 /* Index of the mesh that a triangle is of. */
@@ -251,6 +256,11 @@ const char *noc_scene_model_fault(const noc_scene *s, int model);
 /* Published and staged. */
 static inline size_t noc_scene_material_count(const noc_scene *s) {
     return s->materials.len + (s->added ? s->added->materials.len : 0);
+}
+/* Of an index that is below that. */
+static inline const noc_material *noc_scene_material_at(const noc_scene *s, int material) {
+    size_t i = (size_t)material, have = s->materials.len;
+    return i < have ? &s->materials.data[i] : &s->added->materials.data[i - have];
 }
 /* Places in arrays: see noc_slots. have: the array's length. */
 uint32_t noc_slot_next(const noc_slots *slots, size_t have);
@@ -293,7 +303,8 @@ void noc_light_release(noc_scene *s, uint32_t slot, noc_changes *c);
 /* Its record as made, which keeps its flags and is scaled by its group. */
 void noc_light_change(noc_scene *s, uint32_t slot, const noc_light_record *made, noc_changes *c);
 noc_light_record noc_light_made(const noc_scene *s, uint32_t slot); /* its record before the group's scale */
-void noc_light_scale_group(noc_scene *s, uint32_t group, const float scale[3], noc_changes *c);
+/* By the last scales that are staged for groups: one look at all lights, however many there are. */
+void noc_lights_scale(noc_scene *s, noc_changes *c);
 /* After all edits: the list of those of the moving half; and, where it is time, what stands is settled. */
 void noc_lights_settle(noc_scene *s, noc_changes *c);
 /* Makes the triangles of a mesh into lights, or anew, or puts them out, as its material says. */

@@ -192,6 +192,8 @@ static void wrong_edits_are_told(void **unused) {
     REFUSED(noc_scene_set_material(s, GLOW, &bad));
     bad = s->materials.data[BODY], bad.emission[1] = 4;
     REFUSED(noc_scene_set_material(s, BODY, &bad));
+    bad = m, bad.cls = NOC_CLASS_CLOSURE;
+    REFUSED(noc_scene_set_material(s, WALL, &bad));
     REFUSED(noc_scene_set_class_material(s, (noc_class)99, &m));
     REFUSED(noc_scene_set_emission(s, -1, (float[3]){ 1, 1, 1 }));
     REFUSED(noc_scene_set_emission(s, LAMP, (float[3]){ 1, -1, 1 }));
@@ -260,6 +262,133 @@ static void wrong_edits_are_told(void **unused) {
     (void)unused;
 }
 
+static void bounds_are(const noc_scene *s, double low, double high) {
+    noc_scene_info info;
+    noc_scene_get_info(s, &info);
+    assert_true(info.bounds_min[0] == low);
+    assert_true(info.bounds_max[0] == high);
+}
+
+/* The first mesh is the backdrop only where there is one. */
+static void bounds_shrink_with_the_first_mesh(void **unused) {
+    noc_scene *s = noc_scene_create(NULL);
+    materials(s, NOTHING);
+    piece(s, WALL, 0, 0, "far", 5000, 10);
+    piece(s, WALL, 0, 0, "near", 0, 10);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    bounds_are(s, 0, 5010);
+    assert_int_equal(noc_scene_remove_mesh(s, 0), NOC_OK);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    bounds_are(s, 0, 10);
+    noc_scene_destroy(s);
+    (void)unused;
+}
+
+enum { CLOSED_WORLD = 1, CLOSED_LATER = 2, CLOSED_MODEL = 4 };
+
+/* A floor under a light, and closures between the two. */
+static noc_scene *closed(int where) {
+    noc_scene *s = noc_scene_create(NULL);
+    noc_material closure = noc_class_material(NOC_CLASS_CLOSURE);
+    closure.emission[0] = 100;
+    int floor = matte(s, .5f), m = noc_scene_add_material(s, &closure);
+    noc_instance in = { .model = noc_scene_add_model(s, "gate"), .transform = { 1, [5] = 1, [10] = 1 } };
+    add_floor(s, floor, 0, 0, 0, 5);
+    if (where & CLOSED_WORLD)
+        add_floor(s, m, 0, 0, 1, 30);
+    if (where & CLOSED_MODEL) {
+        piece(s, m, in.model, 0, "closure", 0, 40);
+        assert_int_equal(noc_scene_add_instance(s, &in), 0);
+    }
+    point_light(s, 0, 0, 4, 100);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    if (where & CLOSED_LATER) {
+        add_floor(s, m, 0, 0, 2, 30);
+        assert_int_equal(noc_scene_commit(s), NOC_OK);
+    }
+    return s;
+}
+
+static void closures_are_counted_not_seen(void **unused) {
+    noc_camera c = look(0, -4, .5, 0, 0, 0, 60);
+    noc_render_params p = measure(16, 16, NOC_METHOD_REFERENCE);
+    noc_scene *open = closed(0);
+    noc_image *want = render(open, &c, &p, 1);
+    for (int where = 1; where < 8; where++) {
+        noc_scene *s = closed(where);
+        noc_image *have = render(s, &c, &p, 1);
+        noc_scene_info info;
+        noc_scene_get_info(s, &info);
+        assert_memory_equal(have->rgb, want->rgb, sizeof(float) * 3 * 16 * 16);
+        assert_int_equal(info.triangles_by_class[NOC_CLASS_CLOSURE], 2 * (where & 1) + (where & 2) + (where & 4) / 2);
+        bounds_are(s, -5, 5);
+        assert_int_equal(noc_scene_remove_mesh(s, 0), NOC_OK); /* bounds are found anew */
+        assert_int_equal(noc_scene_commit(s), NOC_OK);
+        bounds_are(s, 0, 0);
+        noc_image_destroy(have);
+        noc_scene_destroy(s);
+    }
+    noc_image_destroy(want);
+    noc_scene_destroy(open);
+    (void)unused;
+}
+
+/* The last scale of a group is the one that counts: to there and back is nowhere. */
+static void the_last_scale_of_a_group_holds(void **unused) {
+    noc_scene *s = made(NULL, NOTHING), *want = made(NULL, DIMMED);
+    float one[3] = { 1, 1, 1 };
+    assert_int_equal(edit(s, DIMMED), NOC_OK);
+    assert_int_equal(edit(s, INSTANCE_DARK), NOC_OK);
+    for (int group = STREET; group <= CARS; group++)
+        assert_int_equal(noc_scene_set_group(s, group, one), NOC_OK);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    assert_int_equal(s->versions.commits, 0);
+    assert_int_equal(edit(s, INSTANCE_DARK), NOC_OK);
+    assert_int_equal(edit(s, SWITCHED_OFF), NOC_OK);
+    assert_int_equal(edit(s, DIMMED), NOC_OK);
+    assert_int_equal(noc_scene_set_group(s, CARS, one), NOC_OK);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    assert_int_equal(s->versions.emission, 1);
+    assert_alike(s, want);
+    noc_scene_destroy(s);
+    noc_scene_destroy(want);
+    (void)unused;
+}
+
+/* A scene in the making: its second instance goes again, the first one moves, and its slot is another's then. */
+static void instances_are_edited_before_the_first_commit(void **unused) {
+    noc_scene *s[2];
+    noc_log *log = counting_log();
+    for (int i = 0; i < 2; i++) {
+        s[i] = noc_scene_create(log);
+        double there[12];
+        materials(s[i], NOTHING);
+        noc_scene_add_group(s[i], "street");
+        noc_scene_add_group(s[i], "cars");
+        car(s[i]);
+        instance(s[i], 0, 1, i ? 0 : 70);
+        if (i) {
+            assert_int_equal(noc_scene_set_group(s[i], CARS, (float[3]){ 1, 1, 1 }), NOC_OK);
+            instance(s[i], 1, 1, 10);
+            place(0, 1, 70, there);
+            assert_int_equal(noc_scene_set_transform(s[i], 0, there), NOC_OK);
+            assert_int_equal(noc_scene_remove_instance(s[i], 1), NOC_OK);
+            assert_int_equal(noc_scene_remove_instance(s[i], 1), NOC_OK);
+            assert_int_equal(noc_scene_remove_instance(s[i], 2), NOC_ERR_ARGUMENT);
+        }
+        assert_int_equal(noc_scene_commit(s[i]), NOC_OK);
+    }
+    assert_alike(s[1], s[0]);
+    assert_int_equal(noc_scene_add_instance(s[1],
+                                            &(noc_instance){ .model = CAR, .transform = { 1, [5] = 1, [10] = 1 } }),
+                     1);
+    assert_int_equal(noc_scene_commit(s[1]), NOC_OK);
+    noc_scene_destroy(s[0]);
+    noc_scene_destroy(s[1]);
+    noc_log_destroy(log);
+    (void)unused;
+}
+
 /* Frames never see half of a transaction, though readers follow each other without a gap. */
 enum { COMMITS = 300, LOOKS = 200 };
 
@@ -312,10 +441,15 @@ static void frames_see_whole_transactions(void **unused) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(edited_is_as_if_made_so),        cmocka_unit_test(transactions_add_up),
-        cmocka_unit_test(refused_memory_changes_nothing), cmocka_unit_test(versions_count_what_changed),
-        cmocka_unit_test(wrong_edits_are_told),           cmocka_unit_test(frames_see_whole_transactions)
-    };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(edited_is_as_if_made_so),
+                                        cmocka_unit_test(transactions_add_up),
+                                        cmocka_unit_test(refused_memory_changes_nothing),
+                                        cmocka_unit_test(versions_count_what_changed),
+                                        cmocka_unit_test(wrong_edits_are_told),
+                                        cmocka_unit_test(frames_see_whole_transactions),
+                                        cmocka_unit_test(bounds_shrink_with_the_first_mesh),
+                                        cmocka_unit_test(closures_are_counted_not_seen),
+                                        cmocka_unit_test(the_last_scale_of_a_group_holds),
+                                        cmocka_unit_test(instances_are_edited_before_the_first_commit) };
     return cmocka_run_group_tests_name("scene edits", tests, NULL, NULL);
 }

@@ -36,7 +36,7 @@ noc_status noc_cpu_device_create(const noc_tracer *tracer, const noc_device_para
 static void find_ray_offset(cpu_world *w) {
     const noc_scene *s = w->scene;
     for (size_t mesh = noc_scene_mesh_at_vertex(s, w->vertices); mesh < s->meshes.len; mesh++)
-        if (!s->meshes.data[mesh].model)
+        if (!s->meshes.data[mesh].model && !noc_mesh_closes(s, &s->meshes.data[mesh]))
             for (size_t i = 3 * (size_t)s->meshes.data[mesh].first_vertex; i < 3 * noc_mesh_end_vertex(s, mesh); i++)
                 w->largest = NOC_MAX(w->largest, fabsf(s->positions.data[i]));
     for (size_t i = 0; i < s->instances.len; i++) {

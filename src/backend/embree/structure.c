@@ -84,13 +84,15 @@ static bool attach_triangles(embree_structure *s, embree_part *part, size_t firs
     return !s->failed;
 }
 
-static bool belongs(const noc_scene_mesh *m, uint32_t model) { return !m->removed && m->model == model; }
+static bool belongs(const noc_scene *scene, const noc_scene_mesh *m, uint32_t model) {
+    return !m->removed && m->model == model && !noc_mesh_closes(scene, m);
+}
 
-/* What is there of a part now. */
+/* What rays meet of a part now. */
 static void count_part(const noc_scene *scene, uint32_t model, embree_part *part) {
     part->meshes = part->triangles = 0;
     for (size_t i = part->first_mesh; i < part->end_mesh; i++)
-        if (belongs(&scene->meshes.data[i], model)) {
+        if (belongs(scene, &scene->meshes.data[i], model)) {
             part->meshes++;
             part->triangles += scene->meshes.data[i].triangle_count;
         }
@@ -104,7 +106,7 @@ static bool build_part(embree_structure *s, uint32_t model, embree_part *part) {
         return false;
     for (size_t i = part->first_mesh; i < part->end_mesh; i++) {
         const noc_scene_mesh *m = &scene->meshes.data[i];
-        if (!belongs(m, model))
+        if (!belongs(scene, m, model))
             continue;
         if (m->first_triangle != end) {
             if (!attach_triangles(s, part, first, end - first))
