@@ -98,6 +98,10 @@ static void test_pieces(void **state) {
     for (int i = 0; i < 5; i++)
         front(&w, 2 * i + .01, 2 * i + 1.99, 100, 106.5);
     assert_int_equal(count_of(&w), 8);
+    w.count = 0; /* of pieces that would have three columns by themselves */
+    front(&w, 0, 4, 100, 106.5);
+    front(&w, 4.02, 10, 100, 106.5);
+    assert_int_equal(count_of(&w), 8);
     w.count = 0; /* but not of half a metre, in which a window would hang */
     for (int i = 0; i < 5; i++)
         front(&w, 2 * i + .25, 2 * i + 1.75, 100, 106.5);
