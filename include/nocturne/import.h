@@ -54,9 +54,13 @@ typedef struct noc_import_params {
     noc_switch infer_lamps;
     bool strict; /* an input of which anything is left out or guessed at is an error, and so are lamps placed by a
                     rule that infer_lamps does not ask for by ON; default false */
-    double lamp_height;   /* m, where not tagged; default 6 */
-    double lamp_lumens;   /* lm, where neither flux nor wattage is known; default 5000 */
-    double lamp_kelvin;   /* K, where not known; default 3000 */
+    double lamp_height; /* m, where not tagged; default 6 */
+    double lamp_lumens; /* lm, where neither flux nor wattage is known; default 5000 */
+    double lamp_kelvin; /* K, where not known; default 3000 */
+    bool profiles;      /* lamps have luminous intensity distributions, built-in ones by their kind; default true.
+                           false: Lambertian discs, spheres that shine alike to all sides */
+    const char
+        *lamp_profile;    /* a luminaire's file (IES, EULUMDAT) that all lamps have; NULL, the default: built-in ones */
     unsigned lamp_chosen; /* those of these three that are the caller's own word, so that strict lets them stand in for
                              what lamps do not tell: 1 << NOC_LAMP_HEIGHT and so on; default 0 */
     /* Windows on the walls of buildings? AUTO, the default, and ON: on those of every city model. OFF: nowhere. */
@@ -96,7 +100,8 @@ typedef struct noc_import_params {
 #define NOC_IMPORT_DEFAULTS(set)                                                                                       \
     set(lod, 3) set(building_height, 9) set(terrain_error, 0.25) set(terrain_triangles, 500000)                        \
         set(infer_lamps, NOC_SWITCH_AUTO) set(lamp_height, 6) set(lamp_lumens, 5000) set(lamp_kelvin, 3000)            \
-            set(windows, NOC_SWITCH_AUTO) set(isolate, true) set(reader_time, 600) set(max_expansion, 200)
+            set(profiles, true) set(windows, NOC_SWITCH_AUTO) set(isolate, true) set(reader_time, 600)                 \
+                set(max_expansion, 200)
 #ifdef __cplusplus
 #define NOC_IMPORT_ALL_DEFAULTS(set) set(window, noc_window_default_params()) NOC_IMPORT_DEFAULTS(set)
 NOC_DEFAULT_PARAMS(noc_import_params, noc_import_default_params, NOC_IMPORT_ALL_DEFAULTS)
@@ -205,6 +210,7 @@ typedef struct noc_report_totals {
     size_t lamps_mapped, lamps_moved, lamps_dropped; /* as in noc_report_file */
     size_t lamps_repeated, objects_repeated;
     size_t lamps_inferred;                        /* placed by a rule */
+    char profiles[160];                           /* of lamps: "cobra-head 40, post-top 3"; "": none have any */
     size_t lamps_assumed[NOC_LAMP_DEFAULT_COUNT]; /* as in noc_report_file */
     noc_window_counts windows;
     size_t skipped, repaired, guessed; /* features: counts of the files' lines; guessed are those of repaired that are

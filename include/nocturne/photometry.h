@@ -74,6 +74,13 @@ typedef struct noc_profile_params {
 } noc_profile_params;
 NOC_API noc_status noc_profile_create(noc_log *log, const noc_profile_params *params, noc_profile **profile);
 
+/* Distributions of our own making, none of which is a measured luminaire: "cobra-head" (a road luminaire on an arm,
+ * full cut-off, two beams along the road), "post-top" (a lantern, alike all around, not cut off), "wall" (all forward,
+ * full cut-off), "flood" (about its own axis, half its peak at 30 degrees), "bollard" (a ring on the ground, full
+ * cut-off). C 0 is the street. */
+NOC_API noc_status noc_profile_builtin(noc_log *log, const char *name, noc_profile **profile);
+NOC_API const char *noc_profile_builtin_name(int i); /* from 0; NULL beyond the last */
+
 NOC_API void noc_profile_destroy(noc_profile *profile); /* NULL is allowed */
 NOC_API void noc_profile_get_info(const noc_profile *profile, noc_profile_info *info);
 /* Luminous intensity in a direction, cd, linear between the angles of the grid. */

@@ -5,12 +5,21 @@
 #include "geo/geo.h"
 #include <nocturne/import.h>
 
+/* Distributions that a scene's lamps have. file: the user's own for all lamps, NULL: built-in ones. NULL after an
+ * error, which *status gets. */
+typedef struct city_profiles city_profiles;
+city_profiles *city_profiles_create(noc_scene *scene, const char *file, noc_status *status);
+void city_profiles_destroy(city_profiles *profiles);
+/* "cobra-head 40, post-top 3": which lights have which; NULL: "". */
+void city_profiles_tell(const city_profiles *profiles, char *text, size_t size);
+
 /* Lamps stand on the ground by a downward ray, on a pole with a head. */
 typedef struct city_lamp_params {
     double height, lumens, kelvin;
     bool has_floor;
     double floor;                  /* where a lamp stands that has no ground near: taken before any lamp is stood */
     struct city_lamp_tally *tally; /* counted up; may be NULL */
+    city_profiles *profiles;       /* NULL: lamps are Lambertian discs, and spheres that shine alike to all sides */
 } city_lamp_params;
 
 typedef struct city_lamp_tally {

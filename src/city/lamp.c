@@ -2,7 +2,7 @@
  *
  * Emission. A disc facing down radiates like a Lambertian surface on one side: flux = pi L A = pi^2 r^2 L. A sphere
  * radiates L from every point: flux = pi L 4 pi r^2 = 4 pi^2 r^2 L. The radius is a choice of ours; the flux is the
- * lamp's. */
+ * lamp's. With a profile the emission is the flux itself. */
 #include "city/lamp.h"
 
 #include <math.h>
@@ -57,7 +57,7 @@ typedef struct fitting {
     enum { FITTING_DISC, FITTING_SPHERE, FITTING_FLOOD } kind;
     double height, radius, lumens;
     int heads;
-    float emission[3];
+    float emission[3]; /* of a profile where there are profiles, else of the shape */
 } fitting;
 
 static double known(double tagged, double otherwise) { return isfinite(tagged) && tagged > 0 ? tagged : otherwise; }
@@ -116,7 +116,9 @@ static fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *para
         f.radius = lamp->head_radius;
         f.lumens *= lamp->count > 0 ? (double)f.heads / lamp->body_heads : 1;
     }
-    double luminance = f.lumens / (M_PI * M_PI * f.radius * f.radius * (f.kind == FITTING_SPHERE ? 4 : 1));
+    double luminance = params->profiles
+                           ? f.lumens
+                           : f.lumens / (M_PI * M_PI * f.radius * f.radius * (f.kind == FITTING_SPHERE ? 4 : 1));
     float rgb[3];
     if (!told_colour(lamp, rgb))
         city_kelvin_rgb(params->kelvin, rgb);
@@ -250,11 +252,23 @@ typedef struct builder {
     const geo_lamp *lamp;
     const fitting *fitting;
     const placing *placing;
+    city_profiles *profiles;
     bool inferred, pole;
     lamp_shape shape;
 } builder;
 
-static bool add_light(const builder *b, const double position[3], const double direction[3]) {
+/* By what stands there: bollards are low, lanterns stand on posts, others hang over a road or on a wall. */
+static city_profile_kind profile_kind(const builder *b) {
+    const fitting *f = b->fitting;
+    if (f->kind == FITTING_FLOOD)
+        return CITY_PROFILE_FLOOD;
+    if (f->kind == FITTING_SPHERE)
+        return f->height < 1.5 && !b->lamp->body_heads ? CITY_PROFILE_BOLLARD : CITY_PROFILE_POST_TOP;
+    return b->placing->on_wall ? CITY_PROFILE_WALL : CITY_PROFILE_COBRA_HEAD;
+}
+
+/* towards: the way to the street, level. */
+static bool add_light(const builder *b, const double position[3], const double direction[3], const double towards[2]) {
     noc_light light = { .kind = b->fitting->kind == FITTING_SPHERE ? NOC_LIGHT_SPHERE : NOC_LIGHT_DISC,
                         .radius = b->fitting->radius,
                         .name = b->lamp->id,
@@ -262,6 +276,9 @@ static bool add_light(const builder *b, const double position[3], const double d
     memcpy(light.position, position, sizeof(light.position));
     memcpy(light.direction, direction, sizeof(light.direction));
     memcpy(light.emission, b->fitting->emission, sizeof(light.emission));
+    const double street[3] = { towards[0], towards[1], 0 };
+    if (b->profiles && !city_profile_give(b->profiles, profile_kind(b), street, &light))
+        return false;
     return noc_scene_add_light(b->scene, &light) >= 0;
 }
 
@@ -290,14 +307,14 @@ static bool add_head(builder *b, double dx, double dy, const double root[3]) {
     const double flood[3] = { sin(FLOOD_TILT) * dx, sin(FLOOD_TILT) * dy, -cos(FLOOD_TILT) };
     /* however many there are, no more stands there than fits: each next lamp would meet all of it */
     if (b->placing->crowded)
-        return add_light(b, at, f->kind == FITTING_FLOOD ? flood : down);
+        return add_light(b, at, f->kind == FITTING_FLOOD ? flood : down, along);
     if (f->kind == FITTING_SPHERE) {
         if (off > 0 || !b->pole) {
             double end[3] = { at[0], at[1], z - f->radius - .02 };
             if (root)
                 shape_bar(&b->shape, root, end, .02);
         }
-        return add_light(b, at, down);
+        return add_light(b, at, down, along);
     }
     double gap = .01; /* the light's disc hangs below its housing, which never lies before it */
     if (f->kind == FITTING_FLOOD) {
@@ -309,13 +326,13 @@ static bool add_head(builder *b, double dx, double dy, const double root[3]) {
         shape_housing(&b->shape, face, flood, side, f->radius * 1.3, f->radius * 1.15, .13);
         if (root)
             shape_bar(&b->shape, root, back, .025);
-        return add_light(b, at, flood);
+        return add_light(b, at, flood, along);
     }
     double face[3] = { at[0], at[1], z + gap }, neck[3] = { at[0] - .3 * dx, at[1] - .3 * dy, z + .07 };
     shape_housing(&b->shape, face, down, along, f->radius * 1.9, f->radius * 1.15, .12);
     if (root && off > .3)
         shape_bar(&b->shape, root, neck, .03);
-    return add_light(b, at, down);
+    return add_light(b, at, down, along);
 }
 
 static int add_heads(builder *b) {
@@ -357,8 +374,23 @@ static void add_pole(builder *b) {
 static int add_to_body(const builder *b) {
     int lights = 0;
     for (int i = 0; i < NOC_MIN(b->lamp->body_heads, GEO_BODY_HEADS); i++)
-        lights += add_light(b, b->lamp->head[i], down);
+        lights += add_light(b, b->lamp->head[i], down, b->placing->facing);
     return lights;
+}
+
+/* The street of a lamp whose body is modelled: where its first head hangs, else as of a lamp without one. */
+static void face_body(const noc_scene *scene, const geo_lamp *lamp, double facing[2]) {
+    double dx = lamp->head[0][0] - lamp->xyz[0], dy = lamp->head[0][1] - lamp->xyz[1], off = hypot(dx, dy), z;
+    if (off > .2) {
+        facing[0] = dx / off;
+        facing[1] = dy / off;
+    } else if (isfinite(lamp->direction)) {
+        facing[0] = sin(lamp->direction * M_PI / 180);
+        facing[1] = cos(lamp->direction * M_PI / 180);
+    } else if (!site_ground(scene, lamp->xyz[0], lamp->xyz[1], &z) ||
+               !site_facing(scene, lamp->xyz[0], lamp->xyz[1], z, facing)) {
+        arbitrary_facing(lamp->xyz, facing);
+    }
 }
 
 int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params *params, bool inferred,
@@ -374,11 +406,14 @@ int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params
     placing p = { 0 };
     if (!lamp->body_heads && !place(scene, lamp, params, &p, issues))
         return 0;
+    if (lamp->body_heads && params->profiles)
+        face_body(scene, lamp, p.facing);
     fitting f = choose_fitting(lamp, params);
     builder b = { .scene = scene,
                   .lamp = lamp,
                   .fitting = &f,
                   .placing = &p,
+                  .profiles = params->profiles,
                   .inferred = inferred,
                   .pole = !p.on_wall && lamp->mount != GEO_MOUNT_SUSPENDED };
     if (b.pole && !lamp->body_heads && !p.crowded)

@@ -22,6 +22,22 @@ bool site_facing(const noc_scene *scene, double x, double y, double z, double fa
 /* Does a lamp stand there already? */
 bool site_taken(const noc_scene *scene, double x, double y, double z);
 
+/* ---- distributions (lamp_profiles.c) ---- */
+
+/* In the order of noc_profile_builtin_name. */
+typedef enum city_profile_kind {
+    CITY_PROFILE_COBRA_HEAD,
+    CITY_PROFILE_POST_TOP,
+    CITY_PROFILE_WALL,
+    CITY_PROFILE_FLOOD,
+    CITY_PROFILE_BOLLARD,
+    CITY_PROFILE_OWN,
+    CITY_PROFILES
+} city_profile_kind;
+
+/* Gives a light that profile, with the way to the street; false after reporting. */
+bool city_profile_give(city_profiles *p, city_profile_kind kind, const double street[3], noc_light *light);
+
 /* ---- shapes (lamp_shape.c) ---- */
 
 typedef struct lamp_shape {

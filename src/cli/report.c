@@ -70,6 +70,7 @@ static void add_totals(meta_text *meta, const noc_report *report) {
                  { "features-guessed", t.guessed } };
     for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
         add(meta, rows[i].key, cli_format("%zu", rows[i].count));
+    add(meta, "lamp-profiles", cli_format("%s", *t.profiles ? t.profiles : "none"));
 }
 
 /* Paths as they read from their ends: files of one name lie side by side, then those in folders of one name, and so on.
@@ -305,6 +306,8 @@ static void print_lamps(const noc_report *report, const noc_import_params *impor
     if (*before == ',')
         putchar('\n');
     cli_print_windows("  windows   ", &t.windows);
+    if (*t.profiles)
+        printf("  profiles  %s\n", t.profiles);
     cli_print_assumed("  assumed   ", t.lamps_assumed, import);
 }
 

@@ -131,6 +131,8 @@ static const noc_option import_options[] = {
     REAL(P, lamp_height, "lamp-height", "City", 0.5, 60, "m", "height of lamps that are not tagged"),
     REAL(P, lamp_lumens, "lamp-lumens", "City", 0, 1e7, "lm", "flux of lamps with neither flux nor wattage"),
     REAL(P, lamp_kelvin, "lamp-kelvin", "City", 1000, 25000, "K", "colour temperature of lamps that tell none"),
+    BOOL(P, profiles, "profiles", "City", "lamps shine as street lights do: light distributions by their kind"),
+    TEXT(P, lamp_profile, "lamp-profile", "City", "FILE", "IES or EULUMDAT file of all lamps, for built-in ones"),
     CHOICE(P, obj_up, "obj-up", "City", "y|z", "axis of OBJ files that points up"),
     SWITCH(P, windows, "windows", "Windows", "windows on the walls of cities; auto: on"),
     REAL(P, window.lit_windows, "window-lit", "Windows", 0, 1, "", "share of windows that are lit at 21 h"),

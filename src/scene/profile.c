@@ -42,8 +42,14 @@ int noc_scene_add_profile(noc_scene *scene, const noc_profile *profile) {
         noc_error(scene->log, NOC_ERR_ARGUMENT, "profile %s: a scene has at most %d", info.name, MOST_PROFILES);
         return -1;
     }
-    if (photometry_table_make(&t, profile, scene->log) || !noc_scene_keep_name(scene, info.name, &made.name))
+    noc_status status = photometry_table_make(&t, profile, NULL); /* a profile sends light, so it is memory */
+    if (status || !noc_scene_keep_name(scene, info.name, &made.name)) {
+        if (status)
+            noc_scene_out_of_memory(scene);
+        else
+            photometry_table_free(&t);
         return -1;
+    }
     made.peak = t.peak;
     made.upward = t.upward;
     size_t cells = (size_t)(t.rows - 1) * (size_t)t.columns;

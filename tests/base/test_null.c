@@ -120,6 +120,9 @@ static noc_camera camera;
     P(0, noc_profile_read(NULL, "a", 1, "a", NULL) == NOC_ERR_ARGUMENT)                                                \
     P(0, noc_profile_create(NULL, NULL, &(noc_profile *){ 0 }) == NOC_ERR_ARGUMENT)                                    \
     P(0, noc_profile_create(NULL, &(noc_profile_params){ .planes = 1 }, &(noc_profile *){ 0 }) == NOC_ERR_ARGUMENT)    \
+    P(0, noc_profile_builtin(NULL, NULL, &(noc_profile *){ 0 }) == NOC_ERR_ARGUMENT)                                   \
+    P(0, noc_profile_builtin(NULL, "wall", NULL) == NOC_ERR_ARGUMENT)                                                  \
+    P(0, noc_profile_builtin_name(-1) == NULL)                                                                         \
     P(0, (noc_profile_destroy(NULL), true))                                                                            \
     P(0, (noc_profile_get_info(NULL, NULL), true))                                                                     \
     P(0, noc_profile_intensity(NULL, 0, 0) == 0)                                                                       \

@@ -75,6 +75,47 @@ static void test_assumes(void **state) {
     assert_true(city_lamp_assumes(&l, NOC_LAMP_FLUX));
 }
 
+/* With profiles each light has its lamp's lumens exactly, by what kind of lamp it is, and looks across the road. */
+static void test_profiles(void **state) {
+    noc_scene *scene = noc_scene_create(NULL);
+    add_plane(scene, NOC_CLASS_ROAD, -40, 2, 40, 8, 0, 0);
+    add_plane(scene, NOC_CLASS_GREEN, -40, -8, 40, 2, 0, 0);
+    noc_status status;
+    city_profiles *profiles = city_profiles_create(scene, NULL, &status);
+    assert_non_null(profiles);
+    city_lamp_params params = defaults;
+    params.profiles = profiles;
+    geo_lamp lamp[4];
+    for (int i = 0; i < 4; i++) {
+        lamp[i] = lamp_at(-15 + 10 * i, 0);
+        lamp[i].lumens = 3000 + 1000 * i;
+    }
+    lamp[1].type = GEO_LAMP_LANTERN;
+    lamp[2].type = GEO_LAMP_FLOOD;
+    lamp[3].height = 1;
+    for (int i = 0; i < 4; i++)
+        assert_int_equal(city_add_lamp(scene, &lamp[i], &params, false, NULL), 1);
+    char text[160];
+    city_profiles_tell(profiles, text, sizeof(text));
+    assert_string_equal(text, "cobra-head 1, post-top 1, flood 1, bollard 1");
+    assert_int_equal(noc_scene_commit(scene), NOC_OK);
+    for (size_t i = 0; i < 4; i++) {
+        noc_light_info info;
+        assert_int_equal(noc_scene_get_light(scene, i, &info), NOC_OK);
+        assert_float_equal(info.lumens, lamp[i].lumens, 1e-6 * lamp[i].lumens);
+        assert_true(info.light.profile == (int)i + 1);
+        if (i != 2) { /* C 0 looks at the road, the axis down */
+            assert_float_equal(info.light.c0[1], 1, 1e-3);
+            assert_float_equal(info.light.direction[2], -1, 1e-6);
+        }
+    }
+    assert_true(scene->lights.data[0].flags & LIGHT_PROFILE_BITS && !(scene->lights.data[0].flags & LIGHT_TWO_SIDED));
+    city_profiles_destroy(profiles);
+    assert_null(city_profiles_create(scene, "/no/such/file.ies", &status));
+    assert_int_equal(status, NOC_ERR_IO);
+    noc_scene_destroy(scene);
+}
+
 static void test_flux(void **state) {
     noc_scene *scene = noc_scene_create(NULL);
     add_plane(scene, NOC_CLASS_TERRAIN, -100, -100, 100, 100, 5, 0);
@@ -378,6 +419,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_kelvin),
         cmocka_unit_test(test_assumes),
+        cmocka_unit_test(test_profiles),
         cmocka_unit_test(test_flux),
         cmocka_unit_test(test_direction_and_sources),
         cmocka_unit_test(test_efficacies),

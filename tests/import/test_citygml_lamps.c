@@ -360,9 +360,7 @@ static void test_light_reaches_the_ground(void **state) {
     assert_string_equal(file->columns[0].field, "lumens");
     for (size_t i = 0; i < scene->lights.len; i++) {
         const noc_light_record *l = &scene->lights.data[i];
-        double luminance = .2126 * l->e[0] + .7152 * l->e[1] + .0722 * l->e[2], r = l->radius;
-        double flux = M_PI * M_PI * r * r * luminance * (l->kind == NOC_LIGHT_SPHERE ? 4 : 1);
-        assert_float_equal(flux / 3000, 1, 1e-3);
+        assert_float_equal(noc_light_flux(l) / 3000, 1, 1e-3);
         assert_false(l->flags & NOC_LIGHT_INFERRED);
         int seen = 0, all = 0;
         for (int a = 0; a < 12; a++)
@@ -371,7 +369,7 @@ static void test_light_reaches_the_ground(void **state) {
                 for (int j = 0; j < 3; j++)
                     d[j] = l->p[j] - o[j];
                 double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]),
-                       shorter = l->kind == NOC_LIGHT_SPHERE ? (length - r) / length : 1;
+                       shorter = l->kind == NOC_LIGHT_SPHERE ? (length - l->radius) / length : 1;
                 for (int j = 0; j < 3; j++)
                     d[j] *= shorter;
                 seen += !blocked(scene, o, d);

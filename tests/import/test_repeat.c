@@ -4,10 +4,8 @@
 /* Lumens of all lights: pi L A, of one side or of a sphere's whole surface. */
 static double flux(const noc_scene *scene) {
     double sum = 0;
-    for (size_t i = 0; i < scene->lights.len; i++) {
-        const noc_light_record *l = &scene->lights.data[i];
-        sum += M_PI * (0.2126 * l->e[0] + 0.7152 * l->e[1] + 0.0722 * l->e[2]) * l->area;
-    }
+    for (size_t i = 0; i < scene->lights.len; i++)
+        sum += noc_light_flux(&scene->lights.data[i]);
     return sum;
 }
 

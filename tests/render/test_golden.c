@@ -50,6 +50,7 @@ static noc_scene *house(noc_camera *camera) {
     char *path = noc_format("%s/tests/cli/city.gml", getenv("NOC_SOURCE"));
     noc_import_params p = noc_import_default_params();
     p.windows = NOC_SWITCH_OFF;
+    p.profiles = false; /* the picture is of Lambertian lamps */
     assert_int_equal(noc_scene_load(s, (const char *const[]){ path }, 1, &p, NULL), NOC_OK);
     free(path);
     assert_int_equal(noc_scene_camera(s, NOC_VIEWPOINT_OVERVIEW, (double)W / H, camera), NOC_OK);

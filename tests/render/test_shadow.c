@@ -4,6 +4,7 @@
 #include "../own_view.h"
 
 #include "core/sky.h"
+#include "../core/no_profiles.h"
 
 static double sum(const noc_image *image) {
     double s = 0;

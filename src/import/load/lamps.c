@@ -288,6 +288,33 @@ static noc_status infer(importer *im, const extent *e, city_lamp_params *params,
     return NOC_OK;
 }
 
+/* Lamps, of the inputs or by a rule. */
+static noc_status light_city(importer *im, const extent *e, city_profiles *profiles) {
+    noc_scene *scene = im->scene;
+    city_lamp_tally tally = { 0 };
+    city_lamp_params params = { .height = im->params->lamp_height,
+                                .lumens = im->params->lamp_lumens,
+                                .kelvin = im->params->lamp_kelvin,
+                                .has_floor = true,
+                                .floor = city_floor(scene),
+                                .tally = &tally,
+                                .profiles = profiles };
+    lamp_fate fate;
+    noc_status status = stand_lamps(im, e, &params, &fate);
+    if (im->cancelled)
+        return NOC_ERR_CANCELLED;
+    if (scene->no_memory)
+        return NOC_ERR_MEMORY; /* said by the scene; what it means for the lamps is not */
+    status = status ? status : refuse_useless(im, e, &fate);
+    if (status)
+        return status;
+    if (fate.outside && fate.mapped)
+        noc_info(im->log, "outside the city, and left out: %zu of %zu lamps", fate.outside, fate.given);
+    warn_of_distance(im, &fate);
+    warn_of_roofs(im, &tally);
+    return shines(scene) ? NOC_OK : infer(im, e, &params, &fate);
+}
+
 static noc_status finish_lamps(importer *im) {
     noc_scene *scene = im->scene;
     noc_status stood = footprints_stand(im);
@@ -306,24 +333,13 @@ static noc_status finish_lamps(importer *im) {
         status = needs_ground(im, &e) ? lay_ground(im, &e) : heights_check(im, NULL);
     if (status)
         return status;
-    city_lamp_tally tally = { 0 };
-    city_lamp_params params = { im->params->lamp_height, im->params->lamp_lumens,
-                                im->params->lamp_kelvin, true,
-                                city_floor(scene),       &tally };
-    lamp_fate fate;
-    status = stand_lamps(im, &e, &params, &fate);
-    if (im->cancelled)
-        return NOC_ERR_CANCELLED;
-    if (scene->no_memory)
-        return NOC_ERR_MEMORY; /* said by the scene; what it means for the lamps is not */
-    status = status ? status : refuse_useless(im, &e, &fate);
-    if (status)
-        return status;
-    if (fate.outside && fate.mapped)
-        noc_info(im->log, "outside the city, and left out: %zu of %zu lamps", fate.outside, fate.given);
-    warn_of_distance(im, &fate);
-    warn_of_roofs(im, &tally);
-    return shines(scene) ? NOC_OK : infer(im, &e, &params, &fate);
+    city_profiles *profiles =
+        im->params->profiles ? city_profiles_create(scene, im->params->lamp_profile, &status) : NULL;
+    if (!status)
+        status = light_city(im, &e, profiles);
+    city_profiles_tell(profiles, im->report->profiles, sizeof(im->report->profiles));
+    city_profiles_destroy(profiles);
+    return status;
 }
 
 noc_status finish_city(importer *im) {

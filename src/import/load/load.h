@@ -210,6 +210,7 @@ struct noc_report {
     noc_arena arena;
     NOC_ARRAY(noc_report_file) files;
     size_t lamps_inferred;
+    char profiles[160];
 };
 
 /* report.c */

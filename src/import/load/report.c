@@ -46,6 +46,8 @@ void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) 
     if (!totals)
         return;
     *totals = (noc_report_totals){ .lamps_inferred = report ? report->lamps_inferred : 0 };
+    if (report)
+        memcpy(totals->profiles, report->profiles, sizeof(totals->profiles));
     for (size_t i = 0; i < noc_report_file_count(report); i++) {
         const noc_report_file *f = &report->files.data[i];
         totals->lamps_mapped += f->lamps_mapped;
