@@ -45,7 +45,7 @@ static const noc_option render_options[] = {
     INT(P, height, "height", "Picture", 1, NOC_IMAGE_MAX_SIDE, "px", "height of the picture", SAMPLES),
     UINT(P, seed, "seed", "Picture", "start of the random numbers; equal seeds give equal pictures", ALL),
     BOOL(P, jitter, "jitter", "Picture", "move sub-pixel positions from frame to frame (antialiasing)", MEAN),
-    BOOL(P, accumulate, "accumulate", "Picture", "mean of all frames; off: the last frame alone"),
+    BOOL(P, accumulate, "accumulate", "Picture", "mean of all frames; off: the last frame alone", MEAN),
     REAL(P, sky, "sky", "Picture", 0, 1e6, "cd/m2",
          "luminance of the zenith: 0.02 large city, 0.0002 natural; 0 = off", MEAN),
     BOOL(P, emitters, "emitters", "Picture", "show light sources that are seen directly", MEAN),

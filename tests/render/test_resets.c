@@ -114,11 +114,11 @@ static void check_option(const noc_scene *s, const noc_option *o, noc_render_par
     alone.accumulate = false;
     frame(single, &alone);
     bool mean = o->resets & NOC_RESETS_MEAN;
-    if (frames_of(after) != (mean || !q.accumulate ? 1 : BEFORE + 1))
+    if (frames_of(after) != (mean ? 1 : BEFORE + 1))
         fail_msg("%s: %d frames in the mean", o->name, (int)frames_of(after));
     if (mean && !equal(after, single))
         fail_msg("%s: the mean does not start anew", o->name);
-    if (!mean && q.accumulate && !goes_on(before, single, after, BEFORE))
+    if (!mean && !goes_on(before, single, after, BEFORE))
         fail_msg("%s: the mean does not go on", o->name);
     if ((o->resets == NOC_RESETS_ALL) != equal(after, fresh))
         fail_msg("%s: %s", o->name, o->resets == NOC_RESETS_ALL ? "something is remembered" : "all is forgotten");
@@ -148,6 +148,24 @@ static void rows_are_true(void **state) {
         check_option(s, o, basic(NOC_METHOD_RIS));
         check_option(s, o, basic(NOC_METHOD_REFERENCE));
     }
+    noc_scene_destroy(s);
+}
+
+/* A mean that was left for single frames is gone: it begins with the first frame that is accumulated again. */
+static void a_mean_that_was_left_begins_anew(void **state) {
+    (void)state;
+    noc_scene *s = yard();
+    noc_render_params p = basic(NOC_METHOD_RIS), alone = p;
+    alone.accumulate = false;
+    noc_view *a = rendered(s, &p, BEFORE), *b = rendered(s, &p, BEFORE);
+    frame(a, &alone);
+    frame(b, &alone);
+    frame(a, &p);
+    frame(b, &alone);
+    assert_int_equal(frames_of(a), 1);
+    assert_true(equal(a, b));
+    close_view(a);
+    close_view(b);
     noc_scene_destroy(s);
 }
 
@@ -243,6 +261,7 @@ static void what_is_kept_is_unbiased(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rows_are_true),
+        cmocka_unit_test(a_mean_that_was_left_begins_anew),
         cmocka_unit_test(sizes_keep_what_was_learned),
         cmocka_unit_test(idle_options_and_aovs_reset_nothing),
         cmocka_unit_test(what_is_kept_is_unbiased),
