@@ -346,9 +346,9 @@ int noc_scene_add_light(noc_scene *scene, const noc_light *l) {
     const char *wrong = noc_light_fault(l), *name;
     if (!wrong)
         wrong = noc_light_profile_fault(scene, l);
-    if (!wrong)
-        wrong = l->group < 0 || (size_t)l->group > scene->groups.len ? "no such group"
-                                                                     : noc_scene_model_fault(scene, l->model);
+    char text[NOC_FAULT];
+    if (!wrong && !noc_scene_takes(scene, l->group, l->model, text))
+        wrong = text;
     if (wrong) {
         noc_error(scene->log, NOC_ERR_ARGUMENT, "light %s: %s", l->name ? l->name : "unnamed", wrong);
         return -1;

@@ -115,12 +115,16 @@ noc_scene_model *noc_scene_model_of(const noc_scene *scene, int model) {
     return i < have ? &scene->models.data[i] : &scene->added->models.data[i - have];
 }
 
-const char *noc_scene_model_fault(const noc_scene *scene, int model) {
-    if (model && !noc_scene_model_of(scene, model))
-        return "no such model";
-    if (model && scene->committed && (size_t)model <= scene->models.len)
-        return "its model is committed, and does not change any more";
-    return NULL;
+bool noc_scene_takes(const noc_scene *scene, int group, int model, char wrong[NOC_FAULT]) {
+    if (group < 0 || (size_t)group > scene->groups.len)
+        noc_snprintf(wrong, NOC_FAULT, "there is no group %d", group);
+    else if (model && !noc_scene_model_of(scene, model))
+        noc_snprintf(wrong, NOC_FAULT, "there is no model %d", model);
+    else if (model && scene->committed && (size_t)model <= scene->models.len)
+        noc_snprintf(wrong, NOC_FAULT, "model %d is committed, and does not change any more", model);
+    else
+        return true;
+    return false;
 }
 
 uint32_t noc_slot_next(const noc_slots *slots, size_t have) {
@@ -158,13 +162,11 @@ static bool reserve_mesh(noc_scene *s, const noc_mesh *mesh) {
            array_reserve(&s->triangle_light, triangles) && array_reserve(&s->meshes, s->meshes.len + 1);
 }
 
-/* What is wrong with a mesh, NULL if nothing. */
-static const char *mesh_fault(const noc_scene *s, const noc_mesh *mesh) {
-    if (mesh->material < 0 || (size_t)mesh->material >= noc_scene_material_count(s))
-        return "no such material";
-    if (mesh->group < 0 || (size_t)mesh->group > s->groups.len)
-        return "no such group";
-    return noc_scene_model_fault(s, mesh->model);
+static bool takes_mesh(const noc_scene *s, const noc_mesh *mesh, char wrong[NOC_FAULT]) {
+    if (mesh->material >= 0 && (size_t)mesh->material < noc_scene_material_count(s))
+        return noc_scene_takes(s, mesh->group, mesh->model, wrong);
+    noc_snprintf(wrong, NOC_FAULT, "there is no material %d", mesh->material);
+    return false;
 }
 
 /* The triangles of a mesh that are any good, behind those that `to` has. */
@@ -201,10 +203,11 @@ int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
         noc_null(scene ? scene->log : NULL, __func__);
         return -1;
     }
-    const char *name = mesh->name ? mesh->name : "unnamed", *wrong = mesh_fault(scene, mesh), *kept_name;
+    const char *name = mesh->name ? mesh->name : "unnamed", *kept_name;
+    char wrong[NOC_FAULT];
     if (scene->no_memory)
         return -1;
-    if (wrong) {
+    if (!takes_mesh(scene, mesh, wrong)) {
         noc_error(scene->log, NOC_ERR_ARGUMENT, "mesh %s: %s", name, wrong);
         return -1;
     }

@@ -251,8 +251,9 @@ noc_scene *noc_scene_adding(noc_scene *s);
 bool noc_scene_keep_name(noc_scene *s, const char *name, const char **kept);
 /* The model of this number, published or staged; NULL where there is none. */
 noc_scene_model *noc_scene_model_of(const noc_scene *s, int model);
-/* What is wrong with adding to that model, NULL if nothing. */
-const char *noc_scene_model_fault(const noc_scene *s, int model);
+/* Can a mesh or light of that group be added to that model? Else `wrong` says why not, naming the number. */
+enum { NOC_FAULT = 80 };
+bool noc_scene_takes(const noc_scene *s, int group, int model, char wrong[NOC_FAULT]);
 /* Published and staged. */
 static inline size_t noc_scene_material_count(const noc_scene *s) {
     return s->materials.len + (s->added ? s->added->materials.len : 0);

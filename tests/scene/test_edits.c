@@ -440,12 +440,40 @@ static void frames_see_whole_transactions(void **unused) {
     (void)unused;
 }
 
+/* Of what is not there the error gives the number. */
+static void numbers_are_told(void **unused) {
+    noc_log *log = counting_log();
+    noc_scene *s = made(log, NOTHING);
+    const noc_mesh meshes[] = { { .material = 123 },
+                                { .material = DARK, .group = 124 },
+                                { .material = DARK, .model = 125 },
+                                { .material = DARK, .model = CAR } };
+    static const char *const says[] = { "there is no material 123", "there is no group 124", "there is no model 125",
+                                        "model 1 is committed" };
+    for (size_t i = 0; i < NOC_COUNT(meshes); i++) {
+        noc_light l = lamp_at(0);
+        l.group = meshes[i].group, l.model = meshes[i].model;
+        refusing = (refusal){ 0 };
+        assert_int_equal(noc_scene_add_mesh(s, &meshes[i]), -1);
+        assert_true(refusing.errors == 1 && strstr(refusing.first_error, says[i]));
+        refusing = (refusal){ 0 };
+        if (!i)
+            continue; /* a light has no material */
+        assert_int_equal(noc_scene_add_light(s, &l), -1);
+        assert_true(refusing.errors == 1 && strstr(refusing.first_error, says[i]));
+    }
+    noc_scene_destroy(s);
+    noc_log_destroy(log);
+    (void)unused;
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(edited_is_as_if_made_so),
                                         cmocka_unit_test(transactions_add_up),
                                         cmocka_unit_test(refused_memory_changes_nothing),
                                         cmocka_unit_test(versions_count_what_changed),
                                         cmocka_unit_test(wrong_edits_are_told),
+                                        cmocka_unit_test(numbers_are_told),
                                         cmocka_unit_test(frames_see_whole_transactions),
                                         cmocka_unit_test(bounds_shrink_with_the_first_mesh),
                                         cmocka_unit_test(closures_are_counted_not_seen),
