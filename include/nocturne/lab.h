@@ -133,7 +133,8 @@ typedef struct noc_lab_progress {
     noc_lab_stage stage;
     double done; /* 0..1, of the scene, of the reference, of all runs */
     double left; /* seconds; below 0: not known */
-    /* loading: what is read or built, NULL when that is over; of a reference: "scene, camera"; else the configuration
+    /* loading: the scene's name, then what is read or built, NULL when that is over; of a reference: "scene, camera";
+     * else the configuration
      */
     const char *what;
     int frame, frames; /* the frame that is rendered, from 1, and how many there will be at most */

@@ -58,9 +58,9 @@ static bool progress(void *user, const noc_lab_progress *p) {
         cli_progress_show(p->done, p->left, "%s: reference, frame %d of %d", p->what, p->frame, p->frames);
     else if (p->stage == NOC_LAB_MEASURING)
         cli_progress_show(p->done, p->left, "%s, frame %d", p->what, p->frame);
-    else if (p->what && *p->what)
+    else if (p->what)
         return cli_load_progress(NULL, p->what, p->done);
-    else if (!p->what)
+    else
         cli_progress_clear();
     return !cli_interrupted();
 }

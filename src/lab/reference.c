@@ -24,7 +24,7 @@ noc_status lab_load_scene(lab_session *lab, size_t index) {
     lab->scene = noc_scene_create(lab->log);
     if (!lab->scene)
         return NOC_ERR_MEMORY;
-    noc_status status = loading(lab, "", 0)
+    noc_status status = loading(lab, scene->name, 0)
                             ? noc_scene_load(lab->scene, scene->inputs, scene->input_count, &import, NULL)
                             : NOC_ERR_CANCELLED;
     loading(lab, NULL, 1);

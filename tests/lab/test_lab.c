@@ -366,6 +366,7 @@ static bool watch_progress(void *user, const noc_lab_progress *p) {
     watch *w = user;
     w->stages |= 1 << p->stage;
     assert_true(p->done >= 0 && p->done <= 1);
+    assert_true(p->what ? *p->what : p->stage == NOC_LAB_LOADING && p->done == 1);
     w->frames += p->stage == NOC_LAB_MEASURING && p->done == 0;
     return !(p->stage == NOC_LAB_MEASURING && p->done >= 0.5 && w->most);
 }
