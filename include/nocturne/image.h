@@ -129,7 +129,7 @@ NOC_API noc_status noc_image_compare(const noc_image *x, const noc_image *r, con
 NOC_API noc_status noc_image_difference(const noc_image *x, const noc_image *r, const char *unit, uint8_t **out,
                                         int *width, int *height, noc_log *log);
 
-/* A number or a vector a pixel that is no colour, such as a view of the light sampling (noc_renderer_aov). Rows from
+/* A number or a vector a pixel that is no colour, such as a view of the light sampling (noc_view_aov). Rows from
  * the top. */
 typedef enum noc_channel_scale {
     NOC_CHANNEL_LINEAR,

@@ -23,7 +23,8 @@ typedef enum noc_option_kind {
 } noc_option_kind;
 
 /* What a view forgets when an option changes: bits. Where the option is idle before and after (noc_option_idle),
- * nothing. What lights are seen from where stays with the scene, whatever changes but the seed. */
+ * nothing. What a view has learned of the lights' visibility is forgotten with NOC_RESETS_ALL alone: it is of places in
+ * the scene, whatever the camera, size and other options. */
 typedef enum noc_resets {
     NOC_RESETS_NOTHING = 0,
     NOC_RESETS_MEAN = 1,       /* accumulation: the picture is another one, or is to be judged anew */

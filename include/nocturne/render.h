@@ -39,7 +39,8 @@ NOC_API bool noc_isa_runs(noc_isa isa);        /* on this processor */
 typedef enum noc_aov {
     /* lights that the query found: influence: volumes that hold the point; lists: entries of the tile's list */
     NOC_AOV_LIGHTS,
-    /* of the light that this frame's candidates chose: how often it is expected among a pixel's candidates */
+    /* of the light that this frame's candidates chose: how many of a pixel's M draws fall on it on average, M times its
+     * probability; of a tile's list how often it is in it, 1 for lights that always are */
     NOC_AOV_DENSITY,
     NOC_AOV_LIGHT,      /* the reservoir's light: its index in the scene, exact below 2^24 */
     NOC_AOV_WEIGHT,     /* the reservoir's W: 1 / (density of its sample), 0 where it holds none */
@@ -61,8 +62,10 @@ typedef struct noc_render_params {
     noc_candidates candidates; /* ris, restir: source of the light candidates */
     int draws;                 /* M: candidates a pixel and frame, 1..1024 */
     int list, tail;            /* lists: strongest lights of a tile, 0..128; draws from all others, 1..128 */
-    int shadow_rays;           /* lists: shadow rays a pixel and frame: a target, 1 to twice as many; 1..8 */
-    bool learn;                /* lists: visibility found in earlier frames says where rays are sent */
+    /* lists: shadow rays that a pixel is to send in a frame, 1..8. It sends from 1 to twice as many, by how much of the
+     * light around it is expected to arrive */
+    int shadow_rays;
+    bool learn; /* lists: visibility found in earlier frames says where rays are sent */
     /* influence: S_r, the distance at which a light of 1 cd is last found, m; 0 = found for the scene;
      * points then list the strongest lights within it */
     double influence;
@@ -151,9 +154,11 @@ NOC_API void noc_device_destroy(noc_device *device);
  * serve them all. One view belongs to one thread at a time: while noc_view_render or noc_view_trace_floor runs, no
  * other call may be made on it, neither from another thread nor from the progress callback, which comes from the thread
  * that made the call. What only reads the scene (noc_scene_get_info, get_light, object_name, ground, camera, to_local,
- * from_local) may be called at any time from any thread, also during a frame and in callbacks; noc_scene_move_light
- * only while no frame of the scene is rendered. noc_image and noc_channel are the caller's: any thread may use them
- * once the call that made them has returned. The log's callback may come from any thread. */
+ * from_local) may be called at any time from any thread, also during a frame and in callbacks. What edits the scene may
+ * be called during a frame, too, by one thread at a time: it only stages (nocturne/scene.h). noc_scene_commit waits for
+ * the frames that are being rendered, so it must not be called from their callbacks. noc_image and noc_channel are the
+ * caller's: any thread may use them once the call that made them has returned. The log's callback may come from any
+ * thread. */
 typedef struct noc_view noc_view;
 
 /* The scene must be committed and outlive the view, as must the device. NULL after reporting an error. */
@@ -172,7 +177,8 @@ NOC_API noc_status noc_render_check(const noc_render_params *params, noc_log *lo
  * next frame may succeed. */
 NOC_API noc_status noc_view_render(noc_view *view, const noc_camera *camera, const noc_render_params *params,
                                    const noc_progress *progress);
-NOC_API void noc_view_reset(noc_view *view); /* forgets history and accumulation, frame number too */
+/* Forgets history and accumulation, the frame number, and what was learned of the lights' visibility. */
+NOC_API void noc_view_reset(noc_view *view);
 
 /* Copy of the picture so far (accumulated or last frame), with its emitter mask. NULL before the first frame. */
 NOC_API noc_image *noc_view_image(noc_view *view);

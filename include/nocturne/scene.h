@@ -152,18 +152,19 @@ NOC_API int noc_scene_add_instance(noc_scene *scene, const noc_instance *instanc
 
 /* Publishes what is staged. The first commit freezes what was added until then for rendering, and noc_scene_load
  * commits by itself. Later ones wait for the frames that are being rendered and are done before the next begin: so they
- * must not be called from a frame's progress. Renderers take notice with their next frame. NOC_ERR_MEMORY after
+ * must not be called from a frame's progress. Views see it with their next frame. NOC_ERR_MEMORY after
  * reporting it: the scene is as it was, and what is staged stays staged. */
 NOC_API noc_status noc_scene_commit(noc_scene *scene);
 
 /* Edits: staged in the order of the calls, and published by noc_scene_commit. They are of things that are there since
- * the last commit (before the first one: that were added); of what the same transaction removes they do nothing. All
- * return NOC_ERR_ARGUMENT after reporting an edit that cannot be, and NOC_ERR_MEMORY where memory is refused: that edit
- * is not staged then. */
+ * the last commit (before the first one: that were added). Where the same transaction removes a thing, other edits of
+ * it have no effect. All return NOC_ERR_ARGUMENT after reporting an edit that cannot be, and NOC_ERR_MEMORY where
+ * memory is refused: that edit is not staged then. */
 
 /* Another material in place of that one, for all that is made of it. Meshes become triangle lights, or none any more,
- * as its emission says; a model's mesh keeps its emission. Closures (NOC_CLASS_CLOSURE) stay such, and nothing else
- * becomes one. The materials of a transaction are set before its other edits. */
+ * as its emission says. Where a mesh of a model is made of it, `to` must have the same emission, and the same two_sided
+ * where it shines: else NOC_ERR_ARGUMENT. Closures (NOC_CLASS_CLOSURE) stay such, and nothing else becomes one. The
+ * materials of a transaction are set before its other edits. */
 NOC_API noc_status noc_scene_set_material(noc_scene *scene, int material, const noc_material *to);
 /* Albedo, f0 and roughness of all materials of that class, also of those added in the transaction. */
 NOC_API noc_status noc_scene_set_class_material(noc_scene *scene, noc_class cls, const noc_material *to);
@@ -179,10 +180,13 @@ NOC_API noc_status noc_scene_move_light(noc_scene *scene, int light, const noc_l
 NOC_API noc_status noc_scene_set_transform(noc_scene *scene, int instance, const double transform[12]);
 /* An instance's index, and the indices of its lights, may be those of others that are added after the commit. */
 NOC_API noc_status noc_scene_remove_instance(noc_scene *scene, int instance);
-/* A light that was added as one, with its shape. One added after the commit may take its index. */
+/* A light that was added as one, with its shape: to take that away costs what noc_scene_remove_mesh does. One added
+ * after the commit may take its index. */
 NOC_API noc_status noc_scene_remove_light(noc_scene *scene, int light);
 /* A mesh of the scene itself, with the lights that its triangles are. Its index is not used again, and its memory stays
- * with the scene. */
+ * with the scene. One that was there at the first commit costs the next frame a new ray tracing structure of all that
+ * was, which is seconds in a large city; one that was added later costs milliseconds, as other edits do
+ * (docs/measurements.md, "Edits of a scene"). */
 NOC_API noc_status noc_scene_remove_mesh(noc_scene *scene, int mesh);
 
 /* What is behind a window. */
@@ -320,7 +324,7 @@ NOC_API bool noc_scene_ground(const noc_scene *scene, double x, double y, double
 typedef struct noc_camera {
     double eye[3], target[3]; /* local metres */
     double up[3];
-    double fov_deg; /* vertical field of view */
+    double fov_deg; /* vertical field of view: noc_view_render takes 0.01..179, noc_scene_set_camera 1..170 */
 } noc_camera;
 
 #define noc_camera_default() ((noc_camera){ .up = { 0, 0, 1 }, .fov_deg = 50 })

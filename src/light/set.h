@@ -13,8 +13,9 @@
  *              anew where it has become bad
  *
  * Lights that are added after the first commit come to the moving half, and those that stood and are removed stay in
- * the standing half as dark ones, which costs what a change of emission does. Once there are many of both the scene
- * settles them (scene/relight.c), and both halves are made anew. */
+ * the standing half as dark ones, which costs what a change of emission does. When these two together have become many,
+ * a commit settles them (scene/relight.c): the standing half takes in what was added and forgets what was removed, and
+ * both halves are made anew. */
 #ifndef NOC_LIGHT_SET_H
 #define NOC_LIGHT_SET_H
 
