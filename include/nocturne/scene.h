@@ -181,7 +181,8 @@ NOC_API noc_status noc_scene_set_transform(noc_scene *scene, int instance, const
 /* An instance's index, and the indices of its lights, may be those of others that are added after the commit. */
 NOC_API noc_status noc_scene_remove_instance(noc_scene *scene, int instance);
 /* A light that was added as one, with its shape: to take that away costs what noc_scene_remove_mesh does. One added
- * after the commit may take its index. */
+ * after the commit may take its index. Where it was itself added after the first commit, one of its kind takes the
+ * memory of its shape, too. Its name's memory stays with the scene. */
 NOC_API noc_status noc_scene_remove_light(noc_scene *scene, int light);
 /* A mesh of the scene itself, with the lights that its triangles are. Its index is not used again, and its memory stays
  * with the scene. One that was there at the first commit costs the next frame a new ray tracing structure of all that

@@ -156,6 +156,13 @@ static bool reserve_slots(noc_slots *slots, size_t released) {
     return array_reserve(&slots->released, released) && array_reserve(&slots->free, slots->free.len + released);
 }
 
+static bool reserve_shapes(noc_scene *s, size_t released) {
+    bool ok = true;
+    for (int kind = 0; ok && kind < NOC_SHAPE_KINDS; kind++)
+        ok = reserve_slots(&s->shapes[kind], released);
+    return ok;
+}
+
 static bool reserve_arrays(noc_scene *s, const need *n) {
     const noc_scene *more = added(s);
     size_t triangles = s->triangle_light.len + more->triangle_light.len,
@@ -164,9 +171,11 @@ static bool reserve_arrays(noc_scene *s, const need *n) {
            array_reserve(&s->indices, 3 * triangles) && array_reserve(&s->triangle_material, triangles) &&
            array_reserve(&s->triangle_light, triangles) &&
            array_reserve(&s->meshes, s->meshes.len + more->meshes.len) &&
-           array_reserve(&s->gaps, s->gaps.len + more->gaps.len + n->gaps) &&
+           array_reserve(&s->gaps,
+                         s->gaps.len + more->gaps.len + n->gaps + (s->reshaped ? s->reshaped->meshes.len : 0)) &&
            array_reserve(&s->materials, s->materials.len + more->materials.len) &&
            array_reserve(&s->material_records, s->materials.len + more->materials.len) &&
+           array_reserve(&s->material_uses, s->materials.len + more->materials.len) &&
            array_reserve(&s->models, s->models.len + more->models.len) &&
            array_reserve(&s->instances, s->instances.len + s->instance_slots.fresh) && reserve_lights(s, lights) &&
            array_reserve(&s->light_names, lights) &&
@@ -174,7 +183,8 @@ static bool reserve_arrays(noc_scene *s, const need *n) {
            array_reserve(&s->moving, s->moving.len + n->moving + (s->committed ? n->lights : 0)) &&
            array_reserve(&s->dark_slots, s->dark_slots.len + n->released_lights) &&
            reserve_slots(&s->light_slots, s->dark_slots.len + n->released_lights) &&
-           reserve_slots(&s->instance_slots, n->released_instances);
+           reserve_slots(&s->instance_slots, n->released_instances) && reserve_slots(&s->light_materials, n->gaps) &&
+           reserve_shapes(s, n->gaps);
 }
 
 static bool reserve(commit *c) {
@@ -215,6 +225,7 @@ static void append(commit *c) {
     APPEND(&s->triangle_light, &more->triangle_light);
     APPEND(&s->meshes, &more->meshes);
     APPEND(&s->models, &more->models);
+    APPEND(&s->material_uses, &more->material_uses);
     more->models.len = 0; /* they are the scene's now */
     for (; index < s->indices.len; index++)
         s->indices.data[index] += (uint32_t)vertices;
@@ -340,6 +351,7 @@ static void remove_mesh(commit *c, noc_scene_mesh *m) {
         }
     }
     m->removed = true;
+    noc_material_drop(s, m);
     c->changes.geometry = c->changes.mesh_left = c->changes.ground_left = true;
     if (s->backdrop_count && m->triangle_count && m->first_triangle == s->backdrop_first)
         s->backdrop_count = 0;
@@ -381,8 +393,10 @@ static void remove_shapes(commit *c) {
     for (size_t i = 0; i < s->meshes.len; i++) {
         noc_scene_mesh *m = &s->meshes.data[i];
         uint32_t light = m->triangle_count && !m->model ? s->triangle_light.data[m->first_triangle] : NOC_NO_LIGHT;
-        if (!m->removed && light != NOC_NO_LIGHT && s->lights.data[light].flags & NOC_LIGHT_FREE)
+        if (!m->removed && light != NOC_NO_LIGHT && s->lights.data[light].flags & NOC_LIGHT_FREE) {
             remove_mesh(c, m);
+            noc_shape_release(s, i);
+        }
     }
 }
 
@@ -445,10 +459,15 @@ static void settle(commit *c) {
     }
     settle_slots(&s->light_slots);
     settle_slots(&s->instance_slots);
+    settle_slots(&s->light_materials);
+    for (int kind = 0; kind < NOC_SHAPE_KINDS; kind++)
+        settle_slots(&s->shapes[kind]);
     s->edits.len = 0;
     s->later_bytes = s->later_names.bytes;
     if (s->committed)
         count_versions(&s->versions, &c->changes);
+    else
+        s->first_later = s->meshes.len;
     s->committed = true;
 }
 
@@ -464,7 +483,9 @@ static void apply(commit *c) {
     for (uint32_t i = 0; i < s->light_slots.fresh; i++) /* those that were promised come before others */
         noc_light_add_slot(s);
     apply_materials(c, materials);
+    noc_shapes_put(s, &c->changes);
     for (size_t i = c->first_mesh; i < s->meshes.len; i++) {
+        noc_material_use(s, &s->meshes.data[i]);
         if (s->meshes.data[i].model)
             noc_model_relight(s, &s->meshes.data[i]);
         else

@@ -111,7 +111,8 @@ static size_t sphere_shape(const noc_light *l, double *xyz, uint32_t *indices, s
 static int find_material(const noc_scene *of, const noc_material *m) {
     for (size_t i = of->materials.len; i-- > 0 && i + 256 > of->materials.len;) {
         const noc_material *have = &of->materials.data[i];
-        if (noc_material_of_light(have) && !memcmp(have->emission, m->emission, sizeof(m->emission)))
+        bool free = of->committed && !of->material_uses.data[i]; /* it may be another one soon */
+        if (!free && noc_material_of_light(have) && !memcmp(have->emission, m->emission, sizeof(m->emission)))
             return (int)i;
     }
     return -1;
@@ -126,7 +127,7 @@ static int light_material(noc_scene *scene, const noc_light *l) {
         m.emission[k] = (float)(l->emission[k] * shown);
     int staged = scene->added ? find_material(scene->added, &m) : -1;
     int i = staged >= 0 ? staged + (int)scene->materials.len : find_material(scene, &m);
-    return i >= 0 ? i : noc_scene_add_material(scene, &m);
+    return i >= 0 ? i : noc_scene_add_light_material(scene, &m);
 }
 
 static bool is_round(const noc_light *l) { return l->kind == NOC_LIGHT_SPHERE || l->kind == NOC_LIGHT_DISC; }
@@ -256,8 +257,8 @@ noc_light_record noc_triangle_light(const float *a, const float *b, const float 
     return r;
 }
 
-/* The mesh that shows the light of this index. */
-static bool add_shape(noc_scene *scene, const noc_light *l, uint32_t index) {
+/* The mesh that shows the light of this index; name: the scene's. */
+static bool add_shape(noc_scene *scene, const noc_light *l, uint32_t index, const char *name) {
     double xyz[3 * SPHERE_VERTICES], u[3], v[3];
     uint32_t indices[3 * SPHERE_TRIANGLES];
     size_t vertices, triangles;
@@ -281,7 +282,12 @@ static bool add_shape(noc_scene *scene, const noc_light *l, uint32_t index) {
                       .material = material,
                       .model = l->model,
                       .name = l->name };
-    if (material < 0 || noc_scene_add_mesh(scene, &mesh) < 0)
+    bool staged = false;
+    if (material < 0 || (!l->model && noc_shape_stage(scene, &mesh, index, name, &staged) != NOC_OK))
+        return false;
+    if (staged)
+        return true;
+    if (noc_scene_add_mesh(scene, &mesh) < 0)
         return false;
     for (size_t t = first; t < to->triangle_light.len; t++)
         to->triangle_light.data[t] = index;
@@ -296,7 +302,7 @@ static int add_to_model(noc_scene *scene, const noc_light *l, const char *name) 
         noc_scene_out_of_memory(scene);
         return -1;
     }
-    if (!is_point(l) && !add_shape(scene, l, index))
+    if (!is_point(l) && !add_shape(scene, l, index, name))
         return -1;
     m->lights.data[m->lights.len++] = noc_light_record_of(scene, l);
     m->light_names.data[m->light_names.len++] = name;
@@ -311,7 +317,7 @@ static int add_to_arrays(noc_scene *scene, const noc_light *l, const char *name)
         noc_scene_out_of_memory(scene);
         return -1;
     }
-    if (!is_point(l) && !l->moving && !add_shape(scene, l, index))
+    if (!is_point(l) && !l->moving && !add_shape(scene, l, index, name))
         return -1;
     scene->lights.data[scene->lights.len++] = noc_light_record_of(scene, l);
     scene->light_names.data[scene->light_names.len++] = name;
@@ -324,11 +330,11 @@ static int add_to_arrays(noc_scene *scene, const noc_light *l, const char *name)
 /* Into the slot that commit will find free. */
 static int stage_light(noc_scene *scene, const noc_light *l, const char *name) {
     uint32_t slot = noc_slot_next(&scene->light_slots, scene->lights.len);
-    if (!array_reserve(&scene->edits, scene->edits.len + 1)) {
+    if (!array_reserve(&scene->edits, scene->edits.len + 2)) { /* the shape's material may be one, too */
         noc_scene_out_of_memory(scene);
         return -1;
     }
-    if (!is_point(l) && !l->moving && !add_shape(scene, l, slot))
+    if (!is_point(l) && !l->moving && !add_shape(scene, l, slot, name))
         return -1;
     noc_slot_take(&scene->light_slots);
     scene->edits.data[scene->edits.len++] =

@@ -72,11 +72,7 @@ bool noc_material_of_light(const noc_material *m) {
            !m->two_sided;
 }
 
-int noc_scene_add_material(noc_scene *scene, const noc_material *m) {
-    if (!scene || !m) {
-        noc_null(scene ? scene->log : NULL, __func__);
-        return -1;
-    }
+static int add_material(noc_scene *scene, const noc_material *m, uint32_t uses) {
     if (scene->no_memory)
         return -1;
     const char *wrong = noc_material_fault(m);
@@ -88,11 +84,33 @@ int noc_scene_add_material(noc_scene *scene, const noc_material *m) {
     if (!to)
         return -1;
     if (!array_reserve(&to->materials, to->materials.len + 1) ||
-        !array_reserve(&to->material_records, to->materials.len + 1)) {
+        !array_reserve(&to->material_records, to->materials.len + 1) ||
+        !array_reserve(&to->material_uses, to->materials.len + 1)) {
         noc_scene_out_of_memory(scene);
         return -1;
     }
     to->materials.data[to->materials.len++] = *m;
     to->material_records.data[to->material_records.len++] = noc_material_record_of(m);
+    to->material_uses.data[to->material_uses.len++] = uses;
     return (int)noc_scene_material_count(scene) - 1;
+}
+
+int noc_scene_add_material(noc_scene *scene, const noc_material *m) {
+    if (scene && m)
+        return add_material(scene, m, NOC_NOT_OF_LIGHTS);
+    noc_null(scene ? scene->log : NULL, __func__);
+    return -1;
+}
+
+int noc_scene_add_light_material(noc_scene *scene, const noc_material *m) {
+    noc_slots *slots = &scene->light_materials;
+    if (slots->taken == slots->free.len)
+        return add_material(scene, m, 0);
+    noc_edit edit = { .kind = NOC_EDIT_MATERIAL, .index = noc_slot_next(slots, 0), .material = *m };
+    if (!array_push(&scene->edits, edit)) {
+        noc_scene_out_of_memory(scene);
+        return -1;
+    }
+    noc_slot_take(slots);
+    return (int)edit.index;
 }

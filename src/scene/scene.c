@@ -10,8 +10,7 @@ static void forget_bounds(double lo[3], double hi[3]) {
     }
 }
 
-/* Its arrays, empty. */
-static noc_scene *create_arrays(void) {
+noc_scene *noc_scene_create_arrays(void) {
     noc_scene *scene = noc_calloc(1, sizeof(*scene));
     if (scene)
         forget_bounds(scene->bounds_min, scene->bounds_max);
@@ -19,7 +18,7 @@ static noc_scene *create_arrays(void) {
 }
 
 noc_scene *noc_scene_create(noc_log *log) {
-    noc_scene *scene = create_arrays();
+    noc_scene *scene = noc_scene_create_arrays();
     if (!scene || !(scene->lock = noc_scene_lock_create())) {
         free(scene);
         noc_no_memory(log, "scene");
@@ -61,6 +60,7 @@ void noc_scene_destroy(noc_scene *scene) {
     array_free(&scene->meshes);
     array_free(&scene->materials);
     array_free(&scene->material_records);
+    array_free(&scene->material_uses);
     array_free(&scene->lights);
     array_free(&scene->light_names);
     array_free(&scene->light_made);
@@ -77,6 +77,11 @@ void noc_scene_destroy(noc_scene *scene) {
     free_slots(&scene->light_slots);
     array_free(&scene->dark_slots);
     free_slots(&scene->instance_slots);
+    free_slots(&scene->light_materials);
+    for (int i = 0; i < NOC_SHAPE_KINDS; i++)
+        free_slots(&scene->shapes[i]);
+    array_free(&scene->reshapes);
+    noc_scene_destroy(scene->reshaped);
     arena_free(&scene->names);
     arena_free(&scene->later_names);
     noc_scene_destroy(scene->added);
@@ -95,7 +100,7 @@ noc_status noc_scene_out_of_memory(noc_scene *scene) {
 noc_scene *noc_scene_adding(noc_scene *scene) {
     if (!scene->committed)
         return scene;
-    if (!scene->added && !(scene->added = create_arrays()))
+    if (!scene->added && !(scene->added = noc_scene_create_arrays()))
         noc_scene_out_of_memory(scene);
     return scene->added;
 }
@@ -155,7 +160,7 @@ static bool finite_position(const double *p) {
 }
 
 /* Room for all of a mesh, and for Embree, which reads 16 bytes a vertex. */
-static bool reserve_mesh(noc_scene *s, const noc_mesh *mesh) {
+bool noc_scene_reserve_mesh(noc_scene *s, const noc_mesh *mesh) {
     size_t triangles = s->triangle_light.len + mesh->triangle_count;
     return array_reserve(&s->positions, s->positions.len + mesh->vertex_count * 3 + 1) &&
            array_reserve(&s->indices, 3 * triangles) && array_reserve(&s->triangle_material, triangles) &&
@@ -169,8 +174,7 @@ static bool takes_mesh(const noc_scene *s, const noc_mesh *mesh, char wrong[NOC_
     return false;
 }
 
-/* The triangles of a mesh that are any good, behind those that `to` has. */
-static void push_triangles(noc_scene *to, const noc_mesh *mesh, double lo[3], double hi[3]) {
+void noc_scene_push_triangles(noc_scene *to, const noc_mesh *mesh, double lo[3], double hi[3]) {
     size_t first_vertex = to->positions.len / 3;
     for (size_t i = 0; i < mesh->vertex_count * 3; i++)
         to->positions.data[to->positions.len++] = (float)mesh->positions[i];
@@ -224,7 +228,7 @@ int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
     }
     if (!noc_scene_keep_name(scene, mesh->name, &kept_name))
         return -1;
-    if (!reserve_mesh(to, mesh) || !array_reserve(&to->gaps, to->gaps.len + 1)) {
+    if (!noc_scene_reserve_mesh(to, mesh) || !array_reserve(&to->gaps, to->gaps.len + 1)) {
         noc_scene_out_of_memory(scene);
         return -1;
     }
@@ -233,15 +237,16 @@ int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
                             .material = mesh->material,
                             .model = (uint16_t)mesh->model,
                             .group = (uint16_t)mesh->group,
+                            .made = later ? (uint32_t)scene->versions.geometry + 1 : 0,
                             .name = kept_name };
     noc_scene_model *model = noc_scene_model_of(scene, mesh->model);
     double nowhere[2][3] = { { 0 } }; /* closures have no bounds, as nobody sees them */
     if (noc_scene_material_at(scene, mesh->material)->cls == NOC_CLASS_CLOSURE)
-        push_triangles(to, mesh, nowhere[0], nowhere[1]);
+        noc_scene_push_triangles(to, mesh, nowhere[0], nowhere[1]);
     else if (model)
-        push_triangles(to, mesh, model->bounds_min, model->bounds_max);
+        noc_scene_push_triangles(to, mesh, model->bounds_min, model->bounds_max);
     else
-        push_triangles(to, mesh, to->bounds_min, to->bounds_max);
+        noc_scene_push_triangles(to, mesh, to->bounds_min, to->bounds_max);
     made.triangle_count = (uint32_t)(to->triangle_light.len - made.first_triangle);
     to->meshes.data[to->meshes.len++] = made;
     if (model)
@@ -297,18 +302,6 @@ size_t noc_scene_mesh_of(const noc_scene *scene, size_t triangle) {
     while (high - low > 1) {
         size_t middle = (low + high) / 2;
         *(scene->meshes.data[middle].first_triangle <= triangle ? &low : &high) = middle;
-    }
-    return low;
-}
-
-size_t noc_scene_mesh_at_vertex(const noc_scene *scene, size_t vertex) {
-    size_t low = 0, high = scene->meshes.len;
-    while (low < high) {
-        size_t middle = (low + high) / 2;
-        if (scene->meshes.data[middle].first_vertex < vertex)
-            low = middle + 1;
-        else
-            high = middle;
     }
     return low;
 }

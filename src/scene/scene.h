@@ -41,6 +41,7 @@ typedef struct noc_scene_mesh {
     uint16_t group;
     bool removed;     /* its ranges are dead */
     bool panes;       /* triangles of it show windows: what it is made of does not shine */
+    uint32_t made;    /* versions.geometry of the commit that filled it */
     const char *name; /* the scene's */
 } noc_scene_mesh;
 
@@ -89,6 +90,10 @@ typedef struct noc_scene_profile {
 typedef struct noc_scene_gap {
     size_t first, end, before;
 } noc_scene_gap;
+
+enum { NOC_SHAPE_KINDS = NOC_LIGHT_PARALLELOGRAM + 1 }; /* kinds of lights that are seen */
+_Static_assert(NOC_LIGHT_SPHERE == 0 && NOC_SHAPE_KINDS == 4, "points and spots come last");
+#define NOC_NOT_OF_LIGHTS UINT32_MAX /* a material that noc_scene_add_material made for the program */
 
 /* Which places of an array are free. Who stages an addition gets the place that commit will give it. */
 typedef struct noc_slots {
@@ -169,6 +174,7 @@ struct noc_scene {
     NOC_ARRAY(noc_scene_mesh) meshes;
     NOC_ARRAY(noc_material) materials;
     NOC_ARRAY(noc_material_record) material_records; /* parallel to materials */
+    NOC_ARRAY(uint32_t) material_uses;               /* parallel: published meshes of it, or NOC_NOT_OF_LIGHTS */
     NOC_ARRAY(noc_light_record) lights;              /* data is 64-byte aligned after commit */
     NOC_ARRAY(const char *) light_names;             /* parallel to lights, entries may be NULL */
     NOC_ARRAY(noc_rgb) light_made;                   /* emission before the group's scale; filled where `scaled` */
@@ -193,8 +199,12 @@ struct noc_scene {
     /* What is staged: the editing thread's alone. Before the first commit meshes, materials and lights go straight
      * into the arrays above. */
     NOC_ARRAY(noc_edit) edits;
-    noc_scene *added; /* arrays that commit appends; its lights are empty. NULL: never needed */
+    noc_scene *added;             /* arrays that commit appends; its lights are empty. NULL: never needed */
+    noc_scene *reshaped;          /* shapes that come in place of removed ones; NULL: none */
+    NOC_ARRAY(uint32_t) reshapes; /* of those arrays, parallel to meshes: each one's place in the scene */
     noc_slots light_slots, instance_slots;
+    noc_slots shapes[NOC_SHAPE_KINDS], light_materials; /* meshes and materials of lights that went */
+    size_t first_later;                                 /* meshes of the first commit */
     NOC_ARRAY(uint32_t) dark_slots; /* of lights that stood: no other light comes there before what stands is settled */
     size_t later;                   /* lights with NOC_LIGHT_LATER */
     noc_arena later_names;          /* of all that is named after the first commit */
@@ -226,8 +236,6 @@ static inline bool noc_mesh_closes(const noc_scene *s, const noc_scene_mesh *m) 
 void noc_scene_add_gap(noc_scene *s, size_t first, size_t count);
 /* Index of the mesh that a triangle is of. */
 size_t noc_scene_mesh_of(const noc_scene *s, size_t triangle);
-/* Index of the first mesh whose vertices begin there or behind. */
-size_t noc_scene_mesh_at_vertex(const noc_scene *s, size_t vertex);
 static inline size_t noc_mesh_end_vertex(const noc_scene *s, size_t mesh) {
     return mesh + 1 < s->meshes.len ? s->meshes.data[mesh + 1].first_vertex : s->positions.len / 3;
 }
@@ -267,7 +275,15 @@ static inline const noc_material *noc_scene_material_at(const noc_scene *s, int 
 uint32_t noc_slot_next(const noc_slots *slots, size_t have);
 void noc_slot_take(noc_slots *slots);
 
-/* material.c */
+/* scene.c: parts of noc_scene_add_mesh. Arrays without anything in them; room for a mesh; its triangles that are any
+ * good, behind those that `to` has. */
+noc_scene *noc_scene_create_arrays(void) NOC_MUST_USE;
+bool noc_scene_reserve_mesh(noc_scene *to, const noc_mesh *mesh);
+void noc_scene_push_triangles(noc_scene *to, const noc_mesh *mesh, double lo[3], double hi[3]);
+
+/* material.c: adds one that only lights show. Its index, or -1 after reporting. */
+int noc_scene_add_light_material(noc_scene *scene, const noc_material *m);
+
 /* What is wrong with a material, NULL if nothing. */
 const char *noc_material_fault(const noc_material *m);
 noc_material_record noc_material_record_of(const noc_material *m);
@@ -290,13 +306,23 @@ void noc_light_set_profile(const noc_scene *scene, const noc_light *l, noc_light
 noc_light_record noc_triangle_light(const float *a, const float *b, const float *c, const noc_material *material);
 double noc_double_area(const float *a, const float *b, const float *c); /* twice a triangle's area */
 
+typedef struct noc_changes noc_changes;
+/* reuse.c: stages the shape of a light where one of a removed light was, if there is such a place. */
+noc_status noc_shape_stage(noc_scene *s, const noc_mesh *shape, uint32_t light, const char *name, bool *staged);
+/* Commit: puts those there. None of these fails. */
+void noc_shapes_put(noc_scene *s, noc_changes *c);
+void noc_shape_release(noc_scene *s, size_t mesh); /* of a light that went */
+/* Meshes of a light's material that come and go. */
+void noc_material_use(noc_scene *s, const noc_scene_mesh *m);
+void noc_material_drop(noc_scene *s, const noc_scene_mesh *m);
+
 /* relight.c: slots of lights, and what commits put into them. None of these fails: commit has reserved. */
-typedef struct noc_changes {
+struct noc_changes {
     bool geometry, instances, materials, lights, moved, emission, standing, settled;
     bool moving_came;            /* to the moving half */
     bool shape_left;             /* a light with a shape was removed */
-    bool mesh_left, ground_left; /* a mesh was removed; the ground's grids are stale */
-} noc_changes;
+    bool mesh_left, ground_left; /* gaps are others; the ground's grids are stale */
+};
 uint32_t noc_light_add_slot(noc_scene *s);  /* behind all others */
 uint32_t noc_light_take_slot(noc_scene *s); /* a free one, or that */
 void noc_light_put(noc_scene *s, uint32_t slot, const noc_light_record *made, const char *name, noc_changes *c);

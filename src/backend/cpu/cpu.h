@@ -158,6 +158,7 @@ typedef struct cpu_world {
     cpu_places places[2]; /* of instances: now, and then */
     double build_seconds;
     size_t vertices;                 /* that ray_offset knows */
+    uint32_t made;                   /* and the last version of geometry that it knows */
     float largest;                   /* coordinate of them, and of instances */
     float ray_offset;                /* of shadow rays at least, m */
     noc_material_record no_material; /* stands in where the scene has none */

@@ -35,10 +35,12 @@ noc_status noc_cpu_device_create(const noc_tracer *tracer, const noc_device_para
  * to 2^-24 of theirs. It looks at what is new only, and stays as it is where something is removed. */
 static void find_ray_offset(cpu_world *w) {
     const noc_scene *s = w->scene;
-    for (size_t mesh = noc_scene_mesh_at_vertex(s, w->vertices); mesh < s->meshes.len; mesh++)
-        if (!s->meshes.data[mesh].model && !noc_mesh_closes(s, &s->meshes.data[mesh]))
+    for (size_t mesh = 0; mesh < s->meshes.len; mesh++) {
+        const noc_scene_mesh *m = &s->meshes.data[mesh];
+        if ((m->first_vertex >= w->vertices || m->made > w->made) && !m->model && !noc_mesh_closes(s, m))
             for (size_t i = 3 * (size_t)s->meshes.data[mesh].first_vertex; i < 3 * noc_mesh_end_vertex(s, mesh); i++)
                 w->largest = NOC_MAX(w->largest, fabsf(s->positions.data[i]));
+    }
     for (size_t i = 0; i < s->instances.len; i++) {
         double box[2][3] = { { 0 } };
         if (s->instances.data[i].model)
@@ -47,6 +49,7 @@ static void find_ray_offset(cpu_world *w) {
             w->largest = NOC_MAX(w->largest, fabsf((float)box[k / 3][k % 3]));
     }
     w->vertices = s->positions.len / 3;
+    w->made = (uint32_t)s->versions.geometry;
     w->ray_offset = NOC_MIN(w->largest * 0x1p-19f, 1e-4f);
 }
 

@@ -24,7 +24,7 @@ typedef struct embree_part {
     RTCScene rtc;
     NOC_ARRAY(uint32_t) first; /* of each geometry of rtc, its first triangle in the scene */
     size_t first_mesh, end_mesh;
-    size_t meshes, triangles; /* not removed */
+    size_t meshes, triangles, newest; /* not removed; the greatest `made` of them */
     int holders;
 } embree_part;
 

@@ -90,10 +90,11 @@ static bool belongs(const noc_scene *scene, const noc_scene_mesh *m, uint32_t mo
 
 /* What rays meet of a part now. */
 static void count_part(const noc_scene *scene, uint32_t model, embree_part *part) {
-    part->meshes = part->triangles = 0;
+    part->meshes = part->triangles = part->newest = 0;
     for (size_t i = part->first_mesh; i < part->end_mesh; i++)
         if (belongs(scene, &scene->meshes.data[i], model)) {
             part->meshes++;
+            part->newest = NOC_MAX(part->newest, scene->meshes.data[i].made);
             part->triangles += scene->meshes.data[i].triangle_count;
         }
 }
@@ -146,7 +147,7 @@ static size_t plan(const embree_structure *s, embree_part *parts) {
         const embree_part *have = s->world.data[n];
         parts[n] = (embree_part){ .rtc = have->rtc, .first_mesh = have->first_mesh, .end_mesh = have->end_mesh };
         count_part(s->scene, 0, &parts[n]);
-        if (parts[n].meshes != have->meshes)
+        if (parts[n].meshes != have->meshes || parts[n].newest != have->newest)
             parts[n].rtc = NULL;
         end = have->end_mesh;
     }
