@@ -47,11 +47,15 @@ static bool make_materials(commit *c) {
         memcpy(c->materials, s->materials.data, s->materials.len * sizeof(*c->materials));
     if (more->materials.len)
         memcpy(c->materials + s->materials.len, more->materials.data, more->materials.len * sizeof(*c->materials));
+    const noc_edit *last[NOC_CLASS_COUNT] = { 0 }; /* of each class: it overwrites those before it */
+    for (size_t i = 0; i < s->edits.len; i++)
+        if (s->edits.data[i].kind == NOC_EDIT_CLASS)
+            last[s->edits.data[i].index] = &s->edits.data[i];
     for (size_t i = 0; i < s->edits.len; i++) {
         const noc_edit *e = &s->edits.data[i];
         if (e->kind == NOC_EDIT_MATERIAL)
             c->materials[e->index] = e->material;
-        else if (e->kind == NOC_EDIT_CLASS)
+        else if (e->kind == NOC_EDIT_CLASS && e == last[e->index])
             edit_class(c->materials, count, e);
     }
     return true;

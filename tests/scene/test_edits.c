@@ -355,6 +355,21 @@ static void the_last_scale_of_a_group_holds(void **unused) {
     (void)unused;
 }
 
+/* Of a class, too, though black lamps in between would be what lights show. */
+static void the_last_material_of_a_class_holds(void **unused) {
+    noc_scene *s = noc_scene_create(NULL);
+    noc_material m = noc_class_material(NOC_CLASS_LAMP), black = { .roughness = 1 }, white = { .roughness = 1 };
+    white.albedo[0] = white.albedo[1] = white.albedo[2] = .9f;
+    assert_int_equal(noc_scene_add_material(s, &m), 0);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    assert_int_equal(noc_scene_set_class_material(s, NOC_CLASS_LAMP, &black), NOC_OK);
+    assert_int_equal(noc_scene_set_class_material(s, NOC_CLASS_LAMP, &white), NOC_OK);
+    assert_int_equal(noc_scene_commit(s), NOC_OK);
+    assert_true(s->materials.data[0].albedo[1] == .9f);
+    noc_scene_destroy(s);
+    (void)unused;
+}
+
 /* A scene in the making: its second instance goes again, the first one moves, and its slot is another's then. */
 static void instances_are_edited_before_the_first_commit(void **unused) {
     noc_scene *s[2];
@@ -585,6 +600,7 @@ int main(void) {
                                         cmocka_unit_test(closures_are_counted_not_seen),
                                         cmocka_unit_test(the_last_scale_of_a_group_holds),
                                         cmocka_unit_test(instances_are_edited_before_the_first_commit),
+                                        cmocka_unit_test(the_last_material_of_a_class_holds),
                                         cmocka_unit_test(lights_that_come_and_go_take_no_room),
                                         cmocka_unit_test(a_light_in_the_place_of_another_is_itself),
                                         cmocka_unit_test(memory_for_anothers_place_may_be_refused) };
