@@ -6,7 +6,7 @@
 #define BIT(cls) (1u << NOC_CLASS_##cls)
 #define BUILDING (BIT(ROOF) | BIT(WALL) | BIT(WINDOW) | BIT(DOOR) | BIT(INSTALLATION))
 
-enum { DIRECTIONS = 16 };
+enum { DIRECTIONS = 16, FINE_DIRECTIONS = 256 };
 
 static void direction(int i, double d[2]) {
     d[0] = sin(2 * M_PI * i / DIRECTIONS);
@@ -71,25 +71,34 @@ bool site_free_spot(const noc_scene *scene, double *x, double *y, double z, doub
     return false;
 }
 
-/* Mean direction of the spots that satisfy a test on the nearest ring where any does. */
+/* Sum of `count` directions on a ring in which something of the classes lies higher than min_z. */
+static double lies_there(const noc_scene *scene, uint32_t classes, double x, double y, double min_z, double r,
+                         int count, double sum[2]) {
+    sum[0] = sum[1] = 0;
+    for (int i = 0; i < count; i++) {
+        double d[2] = { sin(2 * M_PI * i / count), cos(2 * M_PI * i / count) }, top;
+        if (noc_scene_highest(scene, classes, x + r * d[0], y + r * d[1], &top) && top > min_z) {
+            sum[0] += d[0];
+            sum[1] += d[1];
+        }
+    }
+    return hypot(sum[0], sum[1]);
+}
+
+/* Mean direction of what lies on the nearest ring where any does, to a degree: lamps shine that way. */
 static bool nearest(const noc_scene *scene, uint32_t classes, double x, double y, double min_z, double reach,
                     double mean[2]) {
+    double sum[2];
     for (double r = 1; r <= reach; r += 1) {
-        double sum[2] = { 0 };
-        for (int i = 0; i < DIRECTIONS; i++) {
-            double d[2], top;
-            direction(i, d);
-            if (noc_scene_highest(scene, classes, x + r * d[0], y + r * d[1], &top) && top > min_z) {
-                sum[0] += d[0];
-                sum[1] += d[1];
-            }
-        }
-        double l = hypot(sum[0], sum[1]);
-        if (l > .1) { /* else it lies all around, or nowhere */
-            mean[0] = sum[0] / l;
-            mean[1] = sum[1] / l;
-            return true;
-        }
+        if (!(lies_there(scene, classes, x, y, min_z, r, DIRECTIONS, sum) > .1))
+            continue; /* it lies all around, or nowhere */
+        double fine[2], l = lies_there(scene, classes, x, y, min_z, r + .5, FINE_DIRECTIONS, fine);
+        bool found = l > 1; /* a thin edge may lie between the two rings */
+        if (!found)
+            l = hypot(sum[0], sum[1]);
+        for (int k = 0; k < 2; k++)
+            mean[k] = (found ? fine[k] : sum[k]) / l;
+        return true;
     }
     return false;
 }
