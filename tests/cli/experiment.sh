@@ -379,7 +379,8 @@ mkdir town
 cp "$source_dir/tests/cli/city.gml" town/city.gml
 printf 'lat,lon,power\n48.76,11.42,70\n48.7601,11.4201,100\n' >town/plain.csv
 cat >town/lamps.json <<'SPEC'
-{ "scene": { "name": "town", "inputs": ["city.gml"], "lamps": ["plain.csv"], "lamp-columns": ["watts=power"] },
+{ "scene": { "name": "town", "inputs": ["city.gml"], "lamps": ["plain.csv"], "lamp-columns": ["watts=power"],
+             "windows": false },
   "cameras": [ { "name": "a", "view": "aerial" } ], "size": "32x16", "frames": 1, "repetitions": 1,
   "reference": { "rays": 2, "frames": 1 }, "configurations": [ { "name": "is", "method": "is" } ] }
 SPEC

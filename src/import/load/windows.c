@@ -6,6 +6,11 @@
 
 typedef NOC_ARRAY(wall_triangle) wall_triangles;
 
+/* Once, whoever met it: the scene tells what it refuses itself. */
+static noc_status no_memory(const importer *im) {
+    return im->scene->no_memory ? NOC_ERR_MEMORY : noc_no_memory(im->log, "windows");
+}
+
 typedef struct maker {
     importer *im;
     const noc_window_params *params;
@@ -90,7 +95,7 @@ static noc_status make_cover(maker *m) {
     }
     m->cover = ok ? city_cover_create(xyz.data, xyz.len / 9, im->inspect ? NULL : im->scene) : NULL;
     array_free(&xyz);
-    return m->cover ? NOC_OK : noc_no_memory(im->log, "windows");
+    return m->cover ? NOC_OK : no_memory(im);
 }
 
 /* Is it lit in the beginning? */
@@ -117,7 +122,7 @@ static noc_status add_mesh(maker *m, const char *id) {
     const city_window_list *list = &m->windows.list;
     m->xyz.len = m->indices.len = 0;
     if (!array_reserve(&m->xyz, 12 * list->len) || !array_reserve(&m->indices, 6 * list->len))
-        return noc_no_memory(im->log, "windows");
+        return no_memory(im);
     for (size_t i = 0; i < list->len; i++) {
         const city_window *w = &list->data[i];
         for (uint32_t j = 0; j < 6; j++)
@@ -148,7 +153,7 @@ static noc_status add_mesh(maker *m, const char *id) {
 static noc_status take_own(maker *m, size_t mesh, const char *id, noc_window_counts *counts) {
     city_own_windows *own = &m->own;
     if (city_own_windows_find(id, m->panes.data, m->panes.len, m->walls.data, m->walls.len, m->params, own))
-        return noc_no_memory(m->im->log, "windows");
+        return no_memory(m->im);
     for (size_t i = 0; i < own->panes.len; i++) {
         const city_own_pane *p = &own->panes.data[i];
         counts->windows += p->leads;
@@ -193,18 +198,17 @@ static noc_status add_building(maker *m, const taken_building *b) {
     const char *name = m->im->scene->meshes.data[b->first].name, *id = name ? name : "";
     noc_window_counts *counts = &m->im->inputs[b->input].file.windows;
     if (!gather(m, b->first, b->end, wall_class(m->im, b), &m->walls))
-        return noc_no_memory(m->im->log, "windows");
+        return no_memory(m->im);
     noc_status status = NOC_OK;
     bool own = has_class(m->im, b, NOC_CLASS_WINDOW);
     for (size_t i = b->first; own && i < b->end && !status; i++) {
         if (class_of(m->im->scene, i) != NOC_CLASS_WINDOW)
             continue;
-        status = gather(m, i, i + 1, NOC_CLASS_WINDOW, &m->panes) ? take_own(m, i, id, counts)
-                                                                  : noc_no_memory(m->im->log, "windows");
+        status = gather(m, i, i + 1, NOC_CLASS_WINDOW, &m->panes) ? take_own(m, i, id, counts) : no_memory(m->im);
     }
     /* walls of a building that has its own windows are counted, and no more */
     if (!status && city_windows_make(id, m->walls.data, m->walls.len, m->params, own ? NULL : m->cover, &m->windows))
-        status = noc_no_memory(m->im->log, "windows");
+        status = no_memory(m->im);
     if (status)
         return status;
     count_walls(m, own, counts);
@@ -240,6 +244,8 @@ static noc_status add_all(maker *m) {
 
 noc_status windows_add(importer *im) {
     maker m = { .im = im, .params = &im->params->window };
+    if (im->scene->no_memory)
+        return NOC_ERR_MEMORY;
     if (!im->buildings.len)
         return NOC_OK;
     noc_status status = noc_scene_reserve_walls(im->scene) ? make_cover(&m) : NOC_ERR_MEMORY;
