@@ -44,6 +44,7 @@
 #define or_(a, b) ((a) || (b))
 #define not_(a) (!(a))
 #define ANY(c) (c)
+#define SELDOM(c) (c) /* a condition that compilers lay out for being false */
 #define sqrt_ sqrt
 #define abs_ abs
 #define to_real(u) float(u)
@@ -78,6 +79,7 @@ uint high_u32(uint a, uint b) {
 }
 
 #else /* C */
+#define SELDOM(c) __builtin_expect((c) ? 1 : 0, 0)
 
 #include <math.h>
 #include <stdbool.h>

@@ -222,7 +222,7 @@ CALL v3 profiled_le(CTX light l, light_sample s, v3 y, mask on) {
 FN light_sample shining_sample(CTX light l, v3 y, real u, real v) {
     light_sample s = sample_light(l, y, u, v);
     mask on = (l.flags & KU(LIGHT_PROFILE_BITS)) != KU(0u);
-    if (ANY(on))
+    if (SELDOM(ANY(on)))
         s.le = sel3(on, profiled_le(PASS l, s, y, on), s.le);
     return s;
 }
