@@ -2,7 +2,6 @@
 #include "cli.h"
 
 #include <errno.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -122,23 +121,16 @@ static void add_found(found *all, const noc_report *report) {
 /* "height: 8 # m: of lamps ..."; one that the words say is a key in use, others wait. */
 static void print_key(FILE *out, const init_args *args, const noc_option *o, const char *key, const char *indent) {
     bool said = cli_given(&args->common, o->name);
-    char *value = cli_option_value(o, &args->import);
+    char *value = cli_option_value(o, &args->import), *path = strcmp(o->unit, "FILE") ? NULL : realpath(value, NULL);
     int room = 22 + said - (int)(strlen(indent) + strlen(key) + strlen(value));
     fprintf(out, "%s%s%s: ", said ? "" : "#", indent, key);
     if (o->kind == NOC_OPTION_TEXT && *value)
-        print_text(out, value);
+        print_text(out, path ? path : value); /* as seen from here; a recipe sees files from its folder */
     else
         fputs(*value ? value : "...", out);
     fprintf(out, "%*s # %s%s%s\n", room > 0 ? room : 0, "", o->unit, *o->unit ? ": " : "", o->help);
+    free(path);
     free(value);
-}
-
-static bool any_given(const init_args *args, const char *prefix) {
-    for (size_t i = 0; i < args->common.given_count; i++)
-        if (!strncmp(args->common.given[i]->name, prefix, strlen(prefix)) &&
-            args->common.given[i]->kind != NOC_OPTION_TEXTS)
-            return true;
-    return false;
 }
 
 static bool in_section(const noc_option *o, const char *prefix, const char *group) {
@@ -146,13 +138,12 @@ static bool in_section(const noc_option *o, const char *prefix, const char *grou
            (!strncmp(o->name, prefix, strlen(prefix)) || (group && !strcmp(o->group, group)));
 }
 
-/* Rows whose names begin with the prefix, and all others of the group. */
-static void print_section(FILE *out, const init_args *args, const char *section, const char *prefix,
-                          const char *group) {
-    bool said = false;
+/* Rows whose names begin with the prefix, and all others of the group. used: it has keys beside these. */
+static void print_section(FILE *out, const init_args *args, const char *section, const char *prefix, const char *group,
+                          bool used) {
     for (const noc_option *o = noc_import_options(); o->name; o++)
-        said = said || (in_section(o, prefix, group) && cli_given(&args->common, o->name));
-    fprintf(out, "\n%s%s:\n", said ? "" : "#", section);
+        used = used || (in_section(o, prefix, group) && cli_given(&args->common, o->name));
+    fprintf(out, "\n%s%s:\n", used ? "" : "#", section);
     for (const noc_option *o = noc_import_options(); o->name; o++)
         if (in_section(o, prefix, group))
             print_key(out, args, o, o->name + (strncmp(o->name, prefix, strlen(prefix)) ? 0 : strlen(prefix)), "  ");
@@ -192,10 +183,7 @@ static void print_lamps(FILE *out, const init_args *args, const found *all) {
                 noc_text_count(a, all->lamps_assumed[i]), noc_text_count(b, all->lamps), what[i]);
         before = "";
     }
-    bool texts = args->import.lamps.count || args->import.lamp_columns.count;
-    print_section(out, args, "lamps", "lamp-", NULL);
-    if (texts && !any_given(args, "lamp-"))
-        fputs("lamps:\n", out);
+    print_section(out, args, "lamps", "lamp-", NULL, args->import.lamps.count || args->import.lamp_columns.count);
     print_texts(out, &args->import.lamps, "files", "tables whose points are lamps whatever their words say");
     print_texts(out, &args->import.lamp_columns, "columns", "what columns are read as: \"height=H,watts=P\"");
 }
@@ -260,7 +248,7 @@ static noc_status print_recipe(const init_args *args, const char *folder, noc_lo
         fputs("\n# Some inputs name no CRS: crs puts them in place.", out);
     print_others(out, args);
     print_lamps(out, args, &all);
-    print_section(out, args, "windows", "window-", "Windows");
+    print_section(out, args, "windows", "window-", "Windows", false);
     print_materials(out, &all);
     fputs("\n# The first one is used unless --camera NAME, --view or --eye says another.\n"
           "cameras:\n"

@@ -62,6 +62,12 @@ expect "init of a file that is not there" 1 'none.gml' init town none.gml
 result $? "what failed leaves no folder"
 run init town city.gml 'a "b" c.gml' builtin:single
 result $status "init"
+printf 'IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 1\n0 45 90\n0\n100 80 0\n' >lamp.ies
+printf 'lat,lon\n48.1,11.5\n' >plain.csv
+run init files city.gml --lamp-profile lamp.ies --lamps plain.csv
+grep -q "^  profile: \"$PWD/lamp.ies\"" files/city.yaml && grep -q "^  files: \[\"$PWD/plain.csv\"\]" files/city.yaml &&
+    [ "$(grep -c '^#*lamps:' files/city.yaml)" = 1 ]
+result $? "files that init is told are found from the recipe" "$(cat files/city.yaml)"
 run init said city.gml --lamp-height 8 --lod 2 --window-lit 0.6 --no-windows --wet
 draw said.exr said/city.yaml --size 48x32 --view aerial
 draw words.exr city.gml --lamp-height 8 --lod 2 --window-lit 0.6 --no-windows --wet --size 48x32 --view aerial
