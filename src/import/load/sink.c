@@ -98,19 +98,27 @@ static noc_status on_end_object(void *ctx) {
     return status;
 }
 
+/* Corners of all rings to r->scratch, in local metres. *usable is false if they cannot be transformed. */
+static noc_status place_rings(reading *r, const double *xyz, const size_t *ring_size, size_t ring_count, const char *id,
+                              size_t *count, bool *usable) {
+    *count = 0;
+    for (size_t i = 0; i < ring_count; i++)
+        *count += ring_size[i];
+    size_t numbers = 3 * *count;
+    r->scratch.len = 0;
+    if (!array_append(&r->scratch, xyz, numbers))
+        return noc_no_memory(r->log, r->in->path);
+    return place_points(r, r->scratch.data, *count, id, usable);
+}
+
 static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
     reading *r = ctx;
     input *in = r->in;
     noc_class cls = (unsigned)polygon->cls < NOC_CLASS_COUNT ? polygon->cls : NOC_CLASS_OTHER;
-    size_t count = 0;
-    for (size_t i = 0; i < polygon->ring_count; i++)
-        count += polygon->ring_size[i];
-    size_t numbers = 3 * count;
-    r->scratch.len = 0;
-    if (!array_append(&r->scratch, polygon->xyz, numbers))
-        return noc_no_memory(r->log, in->path);
+    size_t count;
     bool usable;
-    noc_status status = place_points(r, r->scratch.data, count, polygon->id, &usable);
+    noc_status status =
+        place_rings(r, polygon->xyz, polygon->ring_size, polygon->ring_count, polygon->id, &count, &usable);
     if (status || !usable)
         return status;
     if (r->object_id && !r->now.given)
@@ -190,15 +198,10 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
 
 static noc_status on_footprint(void *ctx, const geo_footprint *footprint) {
     reading *r = ctx;
-    size_t count = 0;
-    for (size_t i = 0; i < footprint->ring_count; i++)
-        count += footprint->ring_size[i];
-    size_t numbers = 3 * count;
-    r->scratch.len = 0;
-    if (!array_append(&r->scratch, footprint->xyz, numbers))
-        return noc_no_memory(r->log, r->in->path);
+    size_t count;
     bool usable, inside = true;
-    noc_status status = place_points(r, r->scratch.data, count, footprint->id, &usable);
+    noc_status status =
+        place_rings(r, footprint->xyz, footprint->ring_size, footprint->ring_count, footprint->id, &count, &usable);
     if (!status && usable)
         status = box_point(r, r->scratch.data, &inside);
     if (!status && !inside)
