@@ -192,4 +192,39 @@ static inline const seen_polygon *city_find(const city_sink *s, const char *id) 
     return found;
 }
 
+/* A file below shared/data/cities, and what was counted in it by other means (shared/data/README.md). */
+typedef struct city_file {
+    const char *path, *format;
+    size_t objects, polygons;
+    size_t holes;
+    const char *crs; /* NULL: one, whichever */
+} city_file;
+
+/* Reads each that is there, without any issue; skips the test where none is. */
+static inline void city_files(city_sink *s, const city_file *files, size_t count) {
+    size_t present = 0;
+    for (size_t i = 0; i < count; i++) {
+        char *relative = noc_format("data/cities/%s", files[i].path);
+        const char *path = shared_path(relative);
+        free(relative);
+        if (!path)
+            continue;
+        present++;
+        noc_status status = city_read(s, path, 3);
+        size_t holes = 0;
+        for (size_t k = 0; k < s->polygons.len; k++)
+            holes += s->polygons.data[k].rings - 1;
+        if (status != NOC_OK || s->polygons.len != files[i].polygons || s->objects.len != files[i].objects ||
+            holes != files[i].holes || s->crs.len != 1 || (files[i].crs && strcmp(s->crs.data[0], files[i].crs)) ||
+            strcmp(s->format, files[i].format))
+            fail_msg("%s: %s, %zu objects, %zu polygons, %zu holes, %zu CRSs", path, s->format, s->objects.len,
+                     s->polygons.len, holes, s->crs.len);
+        assert_int_equal(geo_issues_count(s->sink.issues), 0);
+    }
+    if (!present) {
+        print_message("# skipped: shared/data/cities is not here\n");
+        skip();
+    }
+}
+
 #endif

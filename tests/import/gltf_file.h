@@ -2,64 +2,11 @@
 #ifndef NOC_TEST_GLTF_FILE_H
 #define NOC_TEST_GLTF_FILE_H
 
-#include "import/import.h"
-#include "scene/scene.h"
-
-#include <stdio.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include "../test.h"
-
-typedef struct loaded {
-    noc_log *log;
-    noc_scene *scene;
-    geo_issues *issues;
-    noc_status status;
-    char error[1024];
-    int errors, warnings;
-    const char *format;
-} loaded;
-
-static char folder[200];
-
-static inline void on_message(void *user, noc_log_level level, const char *text) {
-    loaded *l = user;
-    if (level == NOC_LOG_ERROR)
-        snprintf(l->error, sizeof(l->error), "%s", text);
-    *(level == NOC_LOG_ERROR ? &l->errors : &l->warnings) += 1;
-}
-
-static inline noc_status as_it_is(void *ctx, double *xyz, size_t count) { return NOC_OK; }
-
-static inline void write_file(const char *name, const void *data, size_t size) {
-    char path[300];
-    snprintf(path, sizeof(path), "%s/%s", folder, name);
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_int_equal(fwrite(data, 1, size, f), size);
-    fclose(f);
-}
+#include "mesh_file.h"
 
 static inline void load(loaded *l, const char *name) {
-    *l = (loaded){ 0 };
-    char path[300];
-    snprintf(path, sizeof(path), "%s/%s", folder, name);
-    l->log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = on_message, .user = l });
-    l->scene = noc_scene_create(l->log);
-    l->issues = geo_issues_create();
     noc_import_params params = noc_import_default_params();
-    noc_stream *stream = noc_stream_open(path, l->log, NULL);
-    l->status = stream ? noc_reader_gltf.read_mesh(path, stream, &params, l->scene, &(mesh_place){ NULL, as_it_is },
-                                                   l->issues, &l->format)
-                       : NOC_ERR_IO;
-    noc_stream_close(stream);
-}
-
-static inline void unload(loaded *l) {
-    noc_scene_destroy(l->scene);
-    geo_issues_destroy(l->issues);
-    noc_log_destroy(l->log);
+    load_with(l, &noc_reader_gltf, name, &params, &(mesh_place){ NULL, as_it_is });
 }
 
 static inline void load_text(loaded *l, const char *text) {
@@ -132,20 +79,11 @@ static inline void assert_place(const loaded *l, size_t vertex, double x, double
     assert_float_equal(p[2], z, 1e-5);
 }
 
-static inline int set_up(void **state) {
-    const char *tmp = getenv("TMPDIR");
-    snprintf(folder, sizeof(folder), "%s/nocturne-gltf-%d", tmp && *tmp ? tmp : "/tmp", (int)getpid());
-    return mkdir(folder, 0700);
-}
+static inline int set_up(void **state) { return make_mesh_folder(); }
 
 static inline int tear_down(void **state) {
     static const char *const files[] = { "a.gltf", "a.glb", "b c.bin" };
-    for (size_t i = 0; i < NOC_COUNT(files); i++) {
-        char path[300];
-        snprintf(path, sizeof(path), "%s/%s", folder, files[i]);
-        unlink(path);
-    }
-    return rmdir(folder);
+    return remove_mesh_folder(files, NOC_COUNT(files));
 }
 
 #endif

@@ -13,65 +13,37 @@ static int finish(void **state) {
     return 0;
 }
 
-static size_t holes(void) {
-    size_t count = 0;
-    for (size_t i = 0; i < sink.polygons.len; i++)
-        count += sink.polygons.data[i].rings - 1;
-    return count;
-}
-
 /* Files of one level of detail: what is used must be what was counted in them by other means (shared/data/README.md).
  */
 static void test_models_of_one_level(void **state) {
     (void)state;
-    const struct {
-        const char *path, *crs, *format;
-        size_t objects, polygons, holes;
-    } files[] = {
-        { "berlin/berlin_mitte_lod2_v10.gml.gz", "EPSG:25833", "CityGML 1.0", 61, 1125, 5 },
-        { "dresden/LoD2_33_416_5656_2_SN_14_Buildings.gml.gz", "urn:adv:crs:ETRS89_UTM33*DE_DHHN2016_NH", "CityGML 1.0",
-          14, 586, 1 },
-        { "nrw/LoD2_32_280_5659_1_NW.gml.gz", "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH*GCG2016", "CityGML 1.0", 109,
-          1441, 0 },
-        { "zurich/zurich-lod2-citygml1.gml", "CH1903", "CityGML 1.0", 4, 61, 0 },
-        { "denhaag/dh_1.gml", "urn:ogc:def:crs:EPSG::28992", "CityGML 1.0", 1, 52, 0 },
-        { "potsdam/Potsdam_LoD1.gml.gz", "urn:ogc:def:crs,crs:EPSG:6.12:25833,crs:EPSG:6.12:5783", "CityGML 1.0", 97,
-          1547, 0 },
-        { "helsinki/viikintiedepuisto.gml.gz", "urn:ogc:def:crs:EPSG::3879", "CityGML 2.0", 23, 1080, 6 },
-        { "lyon/LYON_1ER_BATI_2015_small_house.gml", "(none)", "CityGML 2.0", 1, 7, 0 },
-        { "plateau_tamana/49303414_brid_6697_op.gml.gz", "http://www.opengis.net/def/crs/EPSG/0/6697", "CityGML 2.0", 3,
-          1772, 0 },
-        { "plateau_yokosuka/523965_dem_6697_05_op.gml.gz", "http://www.opengis.net/def/crs/EPSG/0/6697", "CityGML 2.0",
-          2, 1066, 0 },
-        { "samples/citygml4j/lod3_building_v2.gml.gz", "urn:ogc:def:crs,crs:EPSG:6.12:3068,crs:EPSG:6.12:5783",
-          "CityGML 2.0", 1, 3092, 0 },
-        { "samples/ogc_xlink/3_Building_With_Nested_Features__CityGML_2.gml", "urn:adv:crs:ETRS89_UTM32*DE_DHHN92_NH",
-          "CityGML 2.0", 1, 17, 1 },
-        { "samples/ogc_xlink/4_Cross-Top-Level-XLink__CityGML_2.gml", "(none)", "CityGML 2.0", 2, 14, 0 },
-        { "samples/ogc_xlink/5_Building_with_Building_Installation__CityGML_2.gml.gz", "EPSG:25832", "CityGML 2.0", 1,
-          3142, 665 },
-        { "samples/citygml4j/lod2_buildings_v3.gml.gz", "urn:ogc:def:crs,crs:EPSG:6.12:3068,crs:EPSG:6.12:5783",
-          "CityGML 3.0", 100, 700, 0 },
+    static const city_file files[] = {
+        { "berlin/berlin_mitte_lod2_v10.gml.gz", "CityGML 1.0", 61, 1125, 5, "EPSG:25833" },
+        { "dresden/LoD2_33_416_5656_2_SN_14_Buildings.gml.gz", "CityGML 1.0", 14, 586, 1,
+          "urn:adv:crs:ETRS89_UTM33*DE_DHHN2016_NH" },
+        { "nrw/LoD2_32_280_5659_1_NW.gml.gz", "CityGML 1.0", 109, 1441, 0,
+          "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH*GCG2016" },
+        { "zurich/zurich-lod2-citygml1.gml", "CityGML 1.0", 4, 61, 0, "CH1903" },
+        { "denhaag/dh_1.gml", "CityGML 1.0", 1, 52, 0, "urn:ogc:def:crs:EPSG::28992" },
+        { "potsdam/Potsdam_LoD1.gml.gz", "CityGML 1.0", 97, 1547, 0,
+          "urn:ogc:def:crs,crs:EPSG:6.12:25833,crs:EPSG:6.12:5783" },
+        { "helsinki/viikintiedepuisto.gml.gz", "CityGML 2.0", 23, 1080, 6, "urn:ogc:def:crs:EPSG::3879" },
+        { "lyon/LYON_1ER_BATI_2015_small_house.gml", "CityGML 2.0", 1, 7, 0, "(none)" },
+        { "plateau_tamana/49303414_brid_6697_op.gml.gz", "CityGML 2.0", 3, 1772, 0,
+          "http://www.opengis.net/def/crs/EPSG/0/6697" },
+        { "plateau_yokosuka/523965_dem_6697_05_op.gml.gz", "CityGML 2.0", 2, 1066, 0,
+          "http://www.opengis.net/def/crs/EPSG/0/6697" },
+        { "samples/citygml4j/lod3_building_v2.gml.gz", "CityGML 2.0", 1, 3092, 0,
+          "urn:ogc:def:crs,crs:EPSG:6.12:3068,crs:EPSG:6.12:5783" },
+        { "samples/ogc_xlink/3_Building_With_Nested_Features__CityGML_2.gml", "CityGML 2.0", 1, 17, 1,
+          "urn:adv:crs:ETRS89_UTM32*DE_DHHN92_NH" },
+        { "samples/ogc_xlink/4_Cross-Top-Level-XLink__CityGML_2.gml", "CityGML 2.0", 2, 14, 0, "(none)" },
+        { "samples/ogc_xlink/5_Building_with_Building_Installation__CityGML_2.gml.gz", "CityGML 2.0", 1, 3142, 665,
+          "EPSG:25832" },
+        { "samples/citygml4j/lod2_buildings_v3.gml.gz", "CityGML 3.0", 100, 700, 0,
+          "urn:ogc:def:crs,crs:EPSG:6.12:3068,crs:EPSG:6.12:5783" },
     };
-    size_t present = 0;
-    for (size_t i = 0; i < NOC_COUNT(files); i++) {
-        char *relative = noc_format("data/cities/%s", files[i].path);
-        const char *path = shared_path(relative);
-        free(relative);
-        if (!path)
-            continue;
-        present++;
-        if (city_read(&sink, path, 3) != NOC_OK || sink.polygons.len != files[i].polygons ||
-            sink.objects.len != files[i].objects || holes() != files[i].holes || sink.crs.len != 1 ||
-            strcmp(sink.crs.data[0], files[i].crs) || strcmp(sink.format, files[i].format))
-            fail_msg("%s: %s, %zu objects, %zu polygons, %zu holes, %zu CRSs", path, sink.format, sink.objects.len,
-                     sink.polygons.len, holes(), sink.crs.len);
-        assert_int_equal(geo_issues_count(sink.sink.issues), 0);
-    }
-    if (!present) {
-        print_message("# skipped: shared/data/cities is not here\n");
-        skip();
-    }
+    city_files(&sink, files, NOC_COUNT(files));
 }
 
 static void test_ingolstadt(void **state) {

@@ -1,26 +1,7 @@
 /* OBJ and MTL: units, axes, emission, gloss, n-gons, missing libraries, broken files. */
-#include "lamp_sink.h"
+#include "mesh_file.h"
 
-#include "scene/scene.h"
-#include <sys/stat.h>
-
-typedef struct loaded {
-    noc_log *log;
-    noc_scene *scene;
-    geo_issues *issues;
-    noc_status status;
-    char error[1024], warning[1024];
-    int errors, warnings;
-    const char *format;
-} loaded;
-
-static void on_message(void *user, noc_log_level level, const char *text) {
-    loaded *l = user;
-    snprintf(level == NOC_LOG_ERROR ? l->error : l->warning, 1024, "%s", text);
-    *(level == NOC_LOG_ERROR ? &l->errors : &l->warnings) += 1;
-}
-
-static noc_status as_it_is(void *ctx, double *xyz, size_t count) { return NOC_OK; }
+#include <math.h>
 
 /* takes the map's origin off, as the importer does */
 static noc_status from_munich(void *ctx, double *xyz, size_t count) {
@@ -32,37 +13,11 @@ static noc_status from_munich(void *ctx, double *xyz, size_t count) {
 }
 
 static noc_status (*place_by)(void *, double *, size_t) = as_it_is;
-static char folder[200];
-
-static void write_file(const char *name, const void *data, size_t size) {
-    char path[300];
-    snprintf(path, sizeof(path), "%s/%s", folder, name);
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_int_equal(fwrite(data, 1, size, f), size);
-    fclose(f);
-}
 
 static void load(loaded *l, const char *name, noc_obj_up up) {
-    *l = (loaded){ 0 };
-    char path[300];
-    snprintf(path, sizeof(path), "%s/%s", folder, name);
-    l->log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = on_message, .user = l });
-    l->scene = noc_scene_create(l->log);
-    l->issues = geo_issues_create();
     noc_import_params params = noc_import_default_params();
     params.obj_up = up;
-    noc_stream *stream = noc_stream_open(path, l->log, NULL);
-    l->status = stream ? noc_reader_mesh.read_mesh(path, stream, &params, l->scene, &(mesh_place){ NULL, place_by },
-                                                   l->issues, &l->format)
-                       : NOC_ERR_IO;
-    noc_stream_close(stream);
-}
-
-static void unload(loaded *l) {
-    noc_scene_destroy(l->scene);
-    geo_issues_destroy(l->issues);
-    noc_log_destroy(l->log);
+    load_with(l, &noc_reader_mesh, name, &params, &(mesh_place){ NULL, place_by });
 }
 
 static const char obj[] = "# a test\n"
@@ -425,21 +380,12 @@ static void test_broken(void **state) {
     }
 }
 
-static int set_up(void **state) {
-    const char *tmp = getenv("TMPDIR");
-    snprintf(folder, sizeof(folder), "%s/nocturne-mesh-%d", tmp && *tmp ? tmp : "/tmp", (int)getpid());
-    return mkdir(folder, 0700);
-}
+static int set_up(void **state) { return make_mesh_folder(); }
 
 static int tear_down(void **state) {
     static const char *const files[] = { "test.mtl", "named.anything", "missing.obj", "material.obj", "bad.obj",
                                          "map.obj",  "faces.obj",      "my test.mtl", "other.mtl" };
-    for (size_t i = 0; i < NOC_COUNT(files); i++) {
-        char path[300];
-        snprintf(path, sizeof(path), "%s/%s", folder, files[i]);
-        unlink(path);
-    }
-    return rmdir(folder);
+    return remove_mesh_folder(files, NOC_COUNT(files));
 }
 
 int main(void) {
