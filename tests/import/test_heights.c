@@ -11,17 +11,19 @@ static double ground_at(const noc_scene *scene, double x, double y) {
 /* Houses in a row along a street that falls by 3 %, their feet at 370 and below; lamps before them. */
 static double slope(double x) { return 370 - .03 * (x - 678000); }
 
-static const char *row_of_houses(char *text, size_t size) {
+static const char *row_of_high_houses(char *text, size_t size, int count, double height) {
     size_t n = (size_t)snprintf(text, size, "FAKE city\ncrs EPSG:25832\n");
-    for (int i = 0; i < 10; i++) {
+    for (int i = 0; i < count; i++) {
         double x = 678000 + 30 * i, z = slope(x + 5);
         n += (size_t)snprintf(text + n, size - n,
                               "object 0 h%d 2\npolygon 3 %g 5404000 %g %g 5404010 %g %g 5404010 %g %g 5404000 %g\n"
                               "polygon 1 %g 5404000 %g %g 5404000 %g %g 5404000 %g %g 5404000 %g\nend\n",
-                              i, x, z, x, z, x + 10, z, x + 10, z, x, z, x + 10, z, x + 10, z + 8, x, z + 8);
+                              i, x, z, x, z, x + 10, z, x + 10, z, x, z, x + 10, z, x + 10, z + height, x, z + height);
     }
     return file("row", text);
 }
+
+static const char *row_of_houses(char *text, size_t size) { return row_of_high_houses(text, size, 10, 8); }
 
 /* Twelve lamps 12 m before the houses, `above` the slope; the last one `slip` more. */
 static const char *row_of_lamps(char *text, size_t size, double above, double slip) {
@@ -173,9 +175,43 @@ static void test_built_in(void **state) {
     assert_true(alone > 1000 && both >= alone && both <= alone + row + 40);
 }
 
+/* The median height of ten buildings and more is hardly one of buildings, and the unit that it may be in is offered. */
+static void test_units(void **state) {
+    static const struct {
+        int houses;
+        double height;
+        const char *told; /* NULL: nothing */
+    } rows[] = {
+        { 10, 8, NULL },
+        { 10, 2.1, NULL },
+        { 10, 59, NULL },
+        { 9, 80, NULL }, /* too few */
+        { 10, 80,
+          "the median height of a building, of 10, is 80 m, which is hardly one: are heights in decimetres? "
+          "Times 0.1 it would be 8 m" },
+        { 10, 70, "are heights in feet? Times 0.3048 it would be 21.3 m" },
+        { 10, 800, "are heights in centimetres? Times 0.01 it would be 8 m" },
+        { 10, 8000, "are heights in millimetres? Times 0.001 it would be 8 m" },
+        { 10, .8, "are heights in metres, converted as if they were feet? Times 3.2808 it would be 2.62 m" },
+        { 10, .25,
+          "the median height of a building, of 10, is 0.25 m, which is hardly one: in which unit are heights?" },
+    };
+    noc_import_params params = DEFAULTS;
+    params.infer_lamps = NOC_SWITCH_OFF;
+    for (size_t i = 0; i < NOC_COUNT(rows); i++) {
+        struct run r;
+        char houses[4000];
+        LOAD(&r, params, row_of_high_houses(houses, sizeof(houses), rows[i].houses, rows[i].height));
+        assert_int_equal(r.status, NOC_OK);
+        if (r.warnings != (rows[i].told != NULL) || (rows[i].told && !strstr(r.last_warning, rows[i].told)))
+            fail_msg("%g m: %d warnings: %s", rows[i].height, r.warnings, r.last_warning);
+        finish(&r);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_followed), cmocka_unit_test(test_other_system),
-                                        cmocka_unit_test(test_bridge), cmocka_unit_test(test_built_in),
-                                        cmocka_unit_test(test_ingolstadt) };
+                                        cmocka_unit_test(test_bridge),   cmocka_unit_test(test_built_in),
+                                        cmocka_unit_test(test_units),    cmocka_unit_test(test_ingolstadt) };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
