@@ -187,21 +187,20 @@ static void test_units(void **state) {
         { 10, 59, NULL },
         { 9, 80, NULL }, /* too few */
         { 10, 80,
-          "the median height of a building, of 10, is 80 m, which is hardly one: are heights in decimetres? "
-          "Times 0.1 it would be 8 m" },
-        { 10, 70, "are heights in feet? Times 0.3048 it would be 21.3 m" },
+          "the median height of a building, of 10, is 80 m, which is hardly one: are heights in feet? "
+          "Times 0.3048 it would be 24.4 m" },
+        { 10, 250, "are heights in decimetres? Times 0.1 it would be 25 m" },
         { 10, 800, "are heights in centimetres? Times 0.01 it would be 8 m" },
         { 10, 8000, "are heights in millimetres? Times 0.001 it would be 8 m" },
         { 10, .8, "are heights in metres, converted as if they were feet? Times 3.2808 it would be 2.62 m" },
         { 10, .25,
           "the median height of a building, of 10, is 0.25 m, which is hardly one: in which unit are heights?" },
     };
-    noc_import_params params = DEFAULTS;
-    params.infer_lamps = NOC_SWITCH_OFF;
     for (size_t i = 0; i < NOC_COUNT(rows); i++) {
         struct run r;
-        char houses[4000];
-        LOAD(&r, params, row_of_high_houses(houses, sizeof(houses), rows[i].houses, rows[i].height));
+        char houses[4000], lamps[2000];
+        LOAD(&r, DEFAULTS, row_of_high_houses(houses, sizeof(houses), rows[i].houses, rows[i].height),
+             row_of_lamps(lamps, sizeof(lamps), 0, 0));
         assert_int_equal(r.status, NOC_OK);
         if (r.warnings != (rows[i].told != NULL) || (rows[i].told && !strstr(r.last_warning, rows[i].told)))
             fail_msg("%g m: %d warnings: %s", rows[i].height, r.warnings, r.last_warning);

@@ -11,7 +11,8 @@ static int by_value(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 
-/* The unit that brings a value next to what is usual; NULL where none brings it between least and most. */
+/* Feet where they bring a value between least and most, because whole countries measure in them; else the unit that
+ * brings it next to what is usual; NULL where none brings it between. */
 static const char *unit_for(double value, double usual, double least, double most, double *factor) {
     static const struct {
         const char *name;
@@ -23,11 +24,13 @@ static const char *unit_for(double value, double usual, double least, double mos
     double nearest = INFINITY;
     for (size_t i = 0; i < NOC_COUNT(units); i++) {
         double x = value * units[i].metres, off = fabs(log(x / usual));
-        if (x >= least && x <= most && off < nearest) {
-            nearest = off;
-            best = units[i].name;
-            *factor = units[i].metres;
-        }
+        if (x < least || x > most || off >= nearest)
+            continue;
+        nearest = off;
+        best = units[i].name;
+        *factor = units[i].metres;
+        if (i == 0)
+            break;
     }
     return best;
 }
