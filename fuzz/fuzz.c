@@ -138,6 +138,17 @@ static noc_status footprint(void *ctx, const geo_footprint *f) {
     return NOC_OK;
 }
 
+static noc_status road(void *ctx, const geo_road *r) {
+    fuzz_sink *s = ctx;
+    FUZZ_REQUIRE(!s->in_object && s->told && r->point_count >= 2);
+    FUZZ_REQUIRE((unsigned)r->cls < GEO_ROAD_CLASSES && (unsigned)r->lit <= GEO_LIT_YES);
+    FUZZ_REQUIRE(!(r->width <= 0) && !(r->speed <= 0) && r->lanes >= 0 && r->lanes <= GEO_ROAD_MOST_LANES);
+    for (size_t i = 0; i < 3 * r->point_count; i++)
+        s->sum += r->xyz[i];
+    s->sum += (double)(strlen(r->id) + strlen(r->name));
+    return NOC_OK;
+}
+
 static bool progress(void *ctx, double done) {
     (void)ctx;
     FUZZ_REQUIRE(done >= 0 && done <= 1);
@@ -155,6 +166,7 @@ void fuzz_sink_start(fuzz_sink *s, noc_log *log) {
                           .end_object = end_object,
                           .lamp = lamp,
                           .footprint = footprint,
+                          .road = road,
                           .progress = progress };
 }
 

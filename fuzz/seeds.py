@@ -286,6 +286,13 @@ put("overpass", "nodes.json",
     {"type": "way", "id": 2, "center": {"lat": 48.1, "lon": 11.501}, "tags": tags},
     {"type": "relation", "id": 3, "bounds": {"minlat": 48, "minlon": 11, "maxlat": 48.2, "maxlon": 11.1},
      "tags": {"highway": "street_lamp"}}], "remark": "timed out"}))
+street = {"highway": "primary_link", "lanes": "3", "lanes:forward": "2", "oneway": "-1", "maxspeed": "30 mph",
+          "width": "8,5 m", "lit": "yes", "name": "Main Street", "bridge": "yes", "layer": "1", "access": "private"}
+put("overpass", "roads.json", json.dumps({"version": 0.6, "elements": [
+    {"type": "node", "id": 1, "lat": 48.1, "lon": 11.5}, {"type": "node", "id": 2, "lat": 48.101, "lon": 11.5},
+    {"type": "way", "id": 3, "nodes": [1, 2, 9], "tags": street},
+    {"type": "way", "id": 4, "geometry": [{"lat": 48.1, "lon": 11.5}, None, {"lat": 48.1, "lon": 11.502}],
+     "tags": {"railway": "tram", "tunnel": "yes"}}]}))
 point = lambda x, y, **p: {"type": "Feature", "id": 7, "properties": p,
                            "geometry": {"type": "Point", "coordinates": [x, y]}}
 features = {"type": "FeatureCollection", "name": "lamps",
@@ -310,6 +317,11 @@ put("geojson", "buildings.json", json.dumps({"type": "FeatureCollection", "name"
     {"type": "Feature", "properties": {"building:levels": "3", "building": "house"},
      "geometry": {"type": "Polygon", "coordinates": [[[11.5, 48.2], [11.501, 48.2], [11.501, 48.201],
                                                       [11.5, 48.2]]]}}]}))
+put("geojson", "roads.json", json.dumps({"type": "FeatureCollection", "features": [
+    {"type": "Feature", "properties": dict(street, **{"@id": "way/3"}),
+     "geometry": {"type": "LineString", "coordinates": [[11.5, 48.1], [11.5, 48.101]]}},
+    {"type": "Feature", "properties": {"railway": "rail"},
+     "geometry": {"type": "MultiLineString", "coordinates": [[[11.5, 48.1], [11.502, 48.1]], [[11.5, 48.1]]]}}]}))
 put("geojson", "plain.json",
     json.dumps({"type": "FeatureCollection", "features": [point(11.5, 48.1, highway="street_lamp")]}))
 hstore = ",".join('"%s"=>"%s"' % (key, value.replace("8 m", 'a \\"quote\\" and \\\\')) for key, value in tags.items())
@@ -327,6 +339,9 @@ osm = ('<?xml version="1.0" encoding="UTF-8"?>\n'
        '<tag k="highway" v="street_lamp"/></relation></osm>\n'
        % "".join('<tag k="%s" v="%s"/>' % t for t in tags.items()))
 put("osm", "lamps.osm", osm)
+put("osm", "roads.osm", '<osm version="0.6"><node id="1" lat="48.1" lon="11.5"/><node id="2" lat="48.101" lon="11.5"/>'
+    '<way id="3"><nd ref="1"/><nd ref="2"/>%s</way></osm>'
+    % "".join('<tag k="%s" v="%s"/>' % t for t in street.items()))
 
 
 def varint(n):

@@ -201,6 +201,9 @@ typedef struct noc_report_file {
      * these. */
     size_t map_points, map_lines, map_areas;
     size_t buildings_unread, streets_unread; /* of OpenStreetMap, by the tags of ways and relations */
+    /* Roads of a map, read unless noc_import_params.infer_lamps is OFF, and those of them that are tagged as lit */
+    size_t roads, roads_lit, railways;
+    double road_metres, road_metres_lit;
     size_t line_count;
     const noc_report_line *lines;
 } noc_report_file;

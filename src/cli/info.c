@@ -213,13 +213,24 @@ static void print_features(const noc_report_file *file) {
         putchar('\n');
 }
 
+static void print_roads(const noc_report_file *file) {
+    char a[64], b[64], c[64];
+    if (!file->roads && !file->railways)
+        return;
+    printf("  %-11s %s, %.1f km, %s of them lit, %.1f km; %s\n", "roads", noc_text_count(a, file->roads),
+           file->road_metres / 1000, noc_text_count(b, file->roads_lit), file->road_metres_lit / 1000,
+           noc_text_many(c, file->railways, "railway"));
+}
+
 static void print_file(const noc_report_file *file, const noc_import_params *import) {
     char a[32], b[64], path[400];
     printf("%s\n", noc_text_clean(path, sizeof(path), file->path));
     print_source(file);
     print_extent(file);
     print_features(file);
-    bool map = file->map_points || file->map_lines || file->map_areas || file->buildings_unread || file->streets_unread;
+    print_roads(file);
+    bool map = file->roads || file->railways || file->map_points || file->map_lines || file->map_areas ||
+               file->buildings_unread || file->streets_unread;
     if (file->objects || (!file->lamps && !map))
         print_objects(file);
     if (file->polygons) {

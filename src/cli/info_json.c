@@ -162,6 +162,11 @@ static void report_file(const noc_report_file *file) {
     number("map_areas", (double)file->map_areas);
     number("buildings_unread", (double)file->buildings_unread);
     number("streets_unread", (double)file->streets_unread);
+    number("roads", (double)file->roads);
+    number("roads_lit", (double)file->roads_lit);
+    number("road_metres", file->road_metres);
+    number("road_metres_lit", file->road_metres_lit);
+    number("railways", (double)file->railways);
     lines(file);
 }
 

@@ -122,6 +122,44 @@ typedef struct geo_footprint {
     double height, min_height, levels, min_level, roof_height;
 } geo_footprint;
 
+/* What a line of a map is to those who drive and walk there. The value of highway; links are of the class that they
+ * lead to. */
+typedef enum geo_road_class {
+    GEO_ROAD_MOTORWAY,
+    GEO_ROAD_TRUNK,
+    GEO_ROAD_PRIMARY,
+    GEO_ROAD_SECONDARY,
+    GEO_ROAD_TERTIARY,
+    GEO_ROAD_MINOR, /* residential, unclassified, road */
+    GEO_ROAD_LIVING,
+    GEO_ROAD_SERVICE,
+    GEO_ROAD_PEDESTRIAN,
+    GEO_ROAD_PATH, /* footway, cycleway, path, steps, bridleway */
+    GEO_ROAD_TRACK,
+    GEO_ROAD_RAIL, /* railway and tram, where no road runs on it */
+    GEO_ROAD_CLASSES
+} geo_road_class;
+
+#define GEO_ROAD_MOST_LANES 32
+#define GEO_ROAD_MOST_LAYER 100
+
+/* A road or railway of a map: its centre line, in the direction in which it is drawn. NaN, 0 and "" where the map does
+ * not tell. */
+typedef struct geo_road {
+    const char *id, *name; /* "way/12"; neither is NULL */
+    geo_road_class cls;
+    bool link, roundabout, bridge;
+    bool tunnel; /* or covered */
+    bool motor;  /* cars may drive on it, by its class and its access */
+    int lanes, lanes_forward, lanes_backward;
+    int oneway; /* 1: as it is drawn, -1: against that, 0: both ways */
+    int layer;
+    enum { GEO_LIT_UNKNOWN, GEO_LIT_NO, GEO_LIT_YES } lit;
+    double width, speed; /* m, of the carriageway; km/h, the limit */
+    size_t point_count;  /* 2 or more */
+    const double *xyz;   /* file CRS; z NaN where it stands on the ground */
+} geo_road;
+
 /* A column of a table, an attribute or a tag, and what a reader of lamps took it for. Texts are valid during the call.
  */
 typedef struct geo_column {
@@ -135,7 +173,7 @@ enum { GEO_POINTS, GEO_LINES, GEO_AREAS, GEO_DIMENSIONS };
 typedef struct geo_features {
     uint64_t total[GEO_DIMENSIONS];  /* by geometry; of OpenStreetMap points alone */
     uint64_t unread[GEO_DIMENSIONS]; /* of them: sets of points, lines and areas that are no lamps */
-    uint64_t buildings, streets;     /* ways and relations of OpenStreetMap, which are not read */
+    uint64_t buildings, streets;     /* ways and relations of OpenStreetMap that are not read */
     bool any;                        /* the box is that of the unread ones, where the file holds no lamps */
     double lo[2], hi[2];
 } geo_features;
@@ -174,6 +212,7 @@ typedef struct geo_sink {
     noc_status (*end_object)(void *ctx);
     noc_status (*lamp)(void *ctx, const geo_lamp *lamp);
     noc_status (*footprint)(void *ctx, const geo_footprint *footprint); /* NULL: none is wanted */
+    noc_status (*road)(void *ctx, const geo_road *road);                /* the same; those of a map come last */
     /* Of a file of points, at its end: how many there are, lamps or not, and its columns. May be NULL. */
     noc_status (*columns)(void *ctx, size_t points, const geo_column *columns, size_t count);
     /* Of a map, at its end. May be NULL. */

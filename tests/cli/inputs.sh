@@ -145,7 +145,8 @@ END
         ! grep -q objects out
     result $? "info of outlines tells their CRS, extent and number"
     run render "$gml" outlines.geojson --frames 1 --size 32x18 -o x.png
-    test $status = 0 && grep -q '2 polygons are not read: of maps only lamps are read, and with --footprints' err &&
+    test $status = 0 &&
+        grep -q '2 polygons are not read: of maps only lamps and roads are read, and with --footprints' err &&
         grep -q '2 x polygon that is not read' out
     result $? "outlines are told of by render"
     rm -f x.png

@@ -190,6 +190,7 @@ static void lamps(void **state) {
                                                                .columns = "watts=pow,x=x,y=y",
                                                                .crs = "EPSG:25832" });
     refuse_each("Overpass", &(import){ { "overpass/nodes.json" } });
+    refuse_each("Roads of Overpass", &(import){ { "overpass/roads.json" } });
 }
 
 static void maps(void **state) {
@@ -203,6 +204,8 @@ static void maps(void **state) {
     refuse_each("Buildings of a map", &(import){ { "geojson/buildings.json" }, .footprints = true });
     refuse_each("Buildings of a map by the helper",
                 &(import){ { "geojson/buildings.json" }, .footprints = true, .isolate = true });
+    refuse_each("Roads of a map", &(import){ { "osm/roads.osm" } });
+    refuse_each("Roads of a map by the helper", &(import){ { "geojson/roads.json" }, .isolate = true });
     refuse_each("GeoTIFF", &(import){ { "terrain/floats.tif" } });
     refuse_each("GeoTIFF by the helper", &(import){ { "terrain/floats.tif" }, .isolate = true });
     refuse_each("GeoJSON by the helper", &(import){ { "geojson/plain.json" }, .isolate = true });

@@ -75,19 +75,26 @@ noc_status lamp_writer_point(lamp_writer *w, const lamp_tag *tags, size_t count,
 /* ---- what is not read ---- */
 
 static const struct {
-    const char *one, *many, *reason;
+    const char *one, *many, *reason, *reason_with_roads;
 } unread[] = {
     [GEO_POINTS] = { "set of points", "sets of points", "set of points that is not read: a lamp is a single one" },
-    [GEO_LINES] = { "line", "lines", "line that is not read: of maps only lamps are read" },
+    [GEO_LINES] = { "line", "lines", "line that is not read: of maps only lamps are read",
+                    "line that is not read: of maps only lamps and roads are read" },
     [GEO_AREAS] = { "polygon", "polygons",
                     "polygon that is not read: of maps only lamps are, and with --footprints buildings" },
     [GEO_DIMENSIONS] = { "building", "buildings", "building that is not read: --footprints does" },
-    { "street or path", "streets and paths", "street or path that is not read: of maps only lamps are read" },
+    { "street or path", "streets and paths", "street or path that is not read: of maps only lamps are read",
+      "street or path that is an area or not in use, not read" },
 };
+
+static const char *reason_of(const lamp_writer *w, int what) {
+    const char *with_roads = unread[what].reason_with_roads;
+    return w->sink->road && with_roads ? with_roads : unread[what].reason;
+}
 
 void lamp_writer_unread(lamp_writer *w, int dimension, const char *id, const double box[4]) {
     w->seen.unread[dimension]++;
-    geo_issue(w->sink->issues, GEO_SKIPPED, unread[dimension].reason, id);
+    geo_issue(w->sink->issues, GEO_SKIPPED, reason_of(w, dimension), id);
     for (int k = 0; k < 2 && box; k++) {
         w->seen.lo[k] = w->seen.any ? NOC_MIN(w->seen.lo[k], box[2 * k]) : box[2 * k];
         w->seen.hi[k] = w->seen.any ? NOC_MAX(w->seen.hi[k], box[2 * k + 1]) : box[2 * k + 1];
@@ -118,7 +125,7 @@ static uint64_t tell_unread(lamp_writer *w) {
                    w->sink->footprint ? "part of a building, or outline that is not whole, not read"
                                       : unread[GEO_DIMENSIONS].reason,
                    f->buildings, "");
-    geo_issues_add(w->sink->issues, GEO_SKIPPED, unread[GEO_DIMENSIONS + 1].reason, f->streets, "");
+    geo_issues_add(w->sink->issues, GEO_SKIPPED, reason_of(w, GEO_DIMENSIONS + 1), f->streets, "");
     for (size_t i = 0, n = 0; i < NOC_COUNT(counts); i++) {
         if (!counts[i])
             continue;
@@ -129,9 +136,9 @@ static uint64_t tell_unread(lamp_writer *w) {
     }
     bool outlines = f->unread[GEO_AREAS] || f->buildings;
     if (sum && !w->sink->inspect)
-        noc_warn(w->sink->log, "%s: %s %s not read: %s", w->place, list, sum == 1 ? "is" : "are",
-                 outlines ? "of maps only lamps are read, and with --footprints buildings"
-                          : "of maps only lamps are read");
+        noc_warn(w->sink->log, "%s: %s %s not read: of maps only lamps%s are read%s", w->place, list,
+                 sum == 1 ? "is" : "are", w->sink->road ? " and roads" : "",
+                 outlines ? ", and with --footprints buildings" : "");
     return sum;
 }
 
@@ -158,7 +165,7 @@ noc_status lamp_writer_end(lamp_writer *w) {
             w->place);
     if (w->lost && !w->lamps)
         return NOC_OK; /* the importer says that none of its lamps is of use */
-    if (w->lamps || w->footprints)
+    if (w->lamps || w->footprints || w->streets || w->rails)
         return NOC_OK;
     if (w->strange_points && !w->sink->inspect)
         return noc_error(

@@ -156,7 +156,8 @@ typedef struct lamp_writer {
     bool strange;     /* nothing tells what the points are: they are noted and counted */
     size_t points, strange_points;
     geo_features seen;
-    size_t footprints; /* buildings that were handed on */
+    size_t footprints;     /* buildings that were handed on */
+    size_t streets, rails; /* roads that were, and railways */
 } lamp_writer;
 
 noc_status lamp_writer_start(lamp_writer *w, geo_sink *sink, const char *place,

@@ -10,13 +10,14 @@
 
 /* What a reader emitted, in its order. Texts and arrays in the arena. */
 typedef struct ahead_event {
-    enum { AHEAD_BEGIN, AHEAD_POLYGON, AHEAD_END, AHEAD_LAMP, AHEAD_FOOTPRINT } kind;
+    enum { AHEAD_BEGIN, AHEAD_POLYGON, AHEAD_END, AHEAD_LAMP, AHEAD_FOOTPRINT, AHEAD_ROAD } kind;
     source_crs *source;
     union {
         geo_object object;
         geo_polygon polygon;
         geo_lamp lamp;
         geo_footprint footprint;
+        geo_road road;
     } u;
 } ahead_event;
 
@@ -38,6 +39,7 @@ static noc_status replay(struct look_ahead *a, const ahead_event *e) {
     case AHEAD_POLYGON: return a->sink.polygon(a->sink.ctx, &e->u.polygon);
     case AHEAD_END: return a->sink.end_object(a->sink.ctx);
     case AHEAD_FOOTPRINT: return a->sink.footprint(a->sink.ctx, &e->u.footprint);
+    case AHEAD_ROAD: return a->sink.road(a->sink.ctx, &e->u.road);
     case AHEAD_LAMP: break;
     }
     return a->sink.lamp(a->sink.ctx, &e->u.lamp);
@@ -173,6 +175,26 @@ static noc_status on_footprint(void *ctx, const geo_footprint *footprint) {
     return status ? status : keep_points(a, xyz, count, e.u.footprint.id ? e.u.footprint.id : "");
 }
 
+static noc_status on_road(void *ctx, const geo_road *road) {
+    struct look_ahead *a = ctx;
+    if (a->passing)
+        return a->sink.road(a->sink.ctx, road);
+    noc_status status = ensure_source(a);
+    if (status)
+        return status;
+    ahead_event e = { .kind = AHEAD_ROAD, .u.road = *road };
+    double *xyz = arena_alloc(&a->arena, road->point_count * 3 * sizeof(*xyz));
+    e.u.road.id = arena_strdup(&a->arena, road->id);
+    e.u.road.name = arena_strdup(&a->arena, road->name);
+    if (a->arena.refused)
+        return no_memory(a);
+    memcpy(xyz, road->xyz, road->point_count * 3 * sizeof(*xyz));
+    e.u.road.xyz = xyz;
+    status = push(a, e);
+    a->in_object = false;
+    return status ? status : keep_points(a, xyz, road->point_count, e.u.road.id);
+}
+
 static noc_status on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
     struct look_ahead *a = ctx;
     return a->sink.columns(a->sink.ctx, points, columns, count);
@@ -201,6 +223,7 @@ struct look_ahead *ahead_create(reading *r, geo_sink *sink) {
     sink->end_object = on_end_object;
     sink->lamp = on_lamp;
     sink->footprint = a->sink.footprint ? on_footprint : NULL;
+    sink->road = a->sink.road ? on_road : NULL;
     sink->columns = on_columns;
     sink->features = on_features;
     sink->progress = on_progress;

@@ -86,18 +86,21 @@ static bool meets(const load_box *box, const bounds *b) {
     return b->lo[0] <= box->hi[0] && b->hi[0] >= box->lo[0] && b->lo[1] <= box->hi[1] && b->hi[1] >= box->lo[1];
 }
 
-noc_status box_point(reading *r, const double *xyz, bool *inside) {
+noc_status box_line(reading *r, const double *xyz, size_t count, bool *inside) {
     bounds b = nowhere;
     *inside = true;
     if (!r->im->box.on)
         return NOC_OK;
-    noc_status status = to_box(r, xyz, 1);
+    noc_status status = to_box(r, xyz, count);
     if (status)
         return status;
-    widen(&b, r->in_box.data);
+    for (size_t i = 0; i < count; i++)
+        widen(&b, r->in_box.data + 3 * i);
     *inside = meets(&r->im->box, &b);
     return NOC_OK;
 }
+
+noc_status box_point(reading *r, const double *xyz, bool *inside) { return box_line(r, xyz, 1, inside); }
 
 /* Drops triangles that lie outside. */
 static noc_status clip(reading *r, geo_triangles *t) {

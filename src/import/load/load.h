@@ -105,6 +105,11 @@ typedef struct pending_footprint {
     size_t input;
 } pending_footprint;
 
+typedef struct pending_road {
+    geo_road road; /* local metres; texts and coordinates in importer.names */
+    size_t input;
+} pending_road;
+
 /* Meshes of the scene that a building came in. */
 typedef struct taken_building {
     uint32_t first, end;
@@ -139,6 +144,8 @@ typedef struct importer {
     NOC_ARRAY(float) heights; /* of buildings, m */
     NOC_ARRAY(float) storeys; /* of those that tell how many they have */
     NOC_ARRAY(pending_footprint) footprints;
+    NOC_ARRAY(pending_road) roads;
+    noc_map road_places; /* of those, by which a second one is told */
     NOC_ARRAY(pending_lamp) lamps;
     size_t lamp_looks;           /* lamps that repeat_lamps compared: for tests */
     NOC_ARRAY(given_place) lost; /* lamps that have no place in the scene's CRS */
@@ -278,6 +285,10 @@ noc_status footprint_keep(importer *im, input *in, size_t index, const geo_footp
 /* Those that no city model has become blocks on the ground. */
 noc_status footprints_stand(importer *im);
 
+/* roads.c: of maps. */
+bool roads_wanted(const noc_import_params *params);
+noc_status road_keep(importer *im, input *in, size_t index, const geo_road *road);
+
 /* units.c: a warning where the median height of buildings, or of a storey, is hardly one in metres. */
 void units_check(importer *im);
 
@@ -285,6 +296,7 @@ void units_check(importer *im);
 noc_status box_read(const noc_import_params *params, noc_log *log, load_box *box);
 void box_free(load_box *box);
 noc_status box_point(reading *r, const double *xyz, bool *inside); /* local metres */
+noc_status box_line(reading *r, const double *xyz, size_t count, bool *inside);
 /* Drops the surfaces of the object that is being read, where they are outside, or those triangles of a terrain. */
 noc_status box_object(reading *r, bool *inside);
 

@@ -213,6 +213,25 @@ static noc_status on_footprint(void *ctx, const geo_footprint *footprint) {
     return footprint_keep(r->im, r->in, r->index, &local);
 }
 
+static noc_status on_road(void *ctx, const geo_road *road) {
+    reading *r = ctx;
+    size_t numbers = 3 * road->point_count;
+    r->scratch.len = 0;
+    if (!array_append(&r->scratch, road->xyz, numbers))
+        return noc_no_memory(r->log, r->in->path);
+    bool usable, inside = true;
+    noc_status status = place_points(r, r->scratch.data, road->point_count, road->id, &usable);
+    if (!status && usable)
+        status = box_line(r, r->scratch.data, road->point_count, &inside);
+    if (!status && !inside)
+        geo_issue(r->in->issues, GEO_SPARED, "road outside of --bbox", road->id);
+    if (status || !usable || !inside)
+        return status;
+    geo_road local = *road;
+    local.xyz = r->scratch.data;
+    return road_keep(r->im, r->in, r->index, &local);
+}
+
 /* Of a file that has been read. */
 static noc_status on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
     reading *r = ctx;
@@ -281,6 +300,7 @@ geo_sink sink_create(reading *r) {
                        .end_object = on_end_object,
                        .lamp = on_lamp,
                        .footprint = r->im->params->footprints ? on_footprint : NULL,
+                       .road = roads_wanted(r->im->params) ? on_road : NULL,
                        .columns = on_columns,
                        .features = on_features,
                        .progress = on_progress,

@@ -1,6 +1,7 @@
 /* Overpass JSON: nodes with lat and lon, ways and relations with a center or a geometry. */
 #include "import/lamps/tags.h"
 #include "import/map/osm_ways.h"
+#include "import/map/roads.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -116,6 +117,90 @@ static noc_status emit(json_t *elements, lamp_writer *w) {
     return status;
 }
 
+/* ---- roads ---- */
+
+typedef struct road_list {
+    lamp_writer *w;
+    json_t *elements;
+    noc_map nodes; /* their numbers among the elements, by id */
+    bool nodes_known;
+    tag_list tags;
+    NOC_ARRAY(double) xyz;
+} road_list;
+
+static bool know_nodes(road_list *list) {
+    size_t count = json_array_size(list->elements);
+    for (size_t i = 0; i < count && !list->nodes_known; i++) {
+        const json_t *element = json_array_get(list->elements, i);
+        char id[32];
+        snprintf(id, sizeof(id), "%" JSON_INTEGER_FORMAT, json_integer_value(json_object_get(element, "id")));
+        if (is_node(element) && !map_put(&list->nodes, id, i, NULL))
+            return false;
+    }
+    list->nodes_known = true;
+    return true;
+}
+
+static bool add_point(road_list *list, const json_t *at) {
+    double xyz[3] = { NAN, NAN, NAN };
+    bool placed = number(at, "lon", &xyz[0]) && number(at, "lat", &xyz[1]);
+    return !placed || array_append(&list->xyz, xyz, (size_t)3);
+}
+
+/* The points of a way: its geometry ("out geom"), else those of its nodes that are there. False: memory was refused. */
+static bool trace(road_list *list, const json_t *way) {
+    const json_t *geometry = json_object_get(way, "geometry"), *nodes = json_object_get(way, "nodes");
+    bool kept = true;
+    list->xyz.len = 0;
+    for (size_t i = 0; i < json_array_size(geometry) && kept; i++)
+        kept = add_point(list, json_array_get(geometry, i));
+    if (json_array_size(geometry) || !json_array_size(nodes))
+        return kept;
+    kept = know_nodes(list);
+    for (size_t i = 0; i < json_array_size(nodes) && kept; i++) {
+        char id[32];
+        uint64_t at;
+        snprintf(id, sizeof(id), "%" JSON_INTEGER_FORMAT, json_integer_value(json_array_get(nodes, i)));
+        kept = !map_get(&list->nodes, id, &at) || add_point(list, json_array_get(list->elements, (size_t)at));
+    }
+    return kept;
+}
+
+static noc_status emit_road(road_list *list, json_t *way) {
+    geo_road road;
+    const char *type = json_string_value(json_object_get(way, "type"));
+    if (!type || strcmp(type, "way") != 0 || !json_object_size(json_object_get(way, "tags")))
+        return NOC_OK;
+    bool kept = collect_tags(way, &list->tags);
+    if (kept && !road_read(list->tags.tags.data, list->tags.tags.len, &road))
+        return NOC_OK;
+    if (!kept || !trace(list, way))
+        return noc_no_memory(list->w->sink->log, list->w->place);
+    if (list->xyz.len < 6) /* "out tags", "out center": it stays unread */
+        return NOC_OK;
+    road.id = list->tags.id;
+    road.point_count = list->xyz.len / 3;
+    road.xyz = list->xyz.data;
+    *(road.cls == GEO_ROAD_RAIL ? &list->w->rails : &list->w->streets) += 1;
+    return list->w->sink->road(list->w->sink->ctx, &road);
+}
+
+static noc_status emit_roads(json_t *elements, lamp_writer *w) {
+    road_list list = { .w = w, .elements = elements };
+    noc_status status = NOC_OK;
+    size_t count = w->sink->road ? json_array_size(elements) : 0;
+    for (size_t i = 0; i < count && !status; i++) {
+        status = emit_road(&list, json_array_get(elements, i));
+        if (!status && i % 1024 == 0 && w->sink->progress && !w->sink->progress(w->sink->ctx, 1))
+            status = NOC_ERR_CANCELLED;
+    }
+    w->seen.streets -= NOC_MIN(w->seen.streets, w->streets);
+    map_free(&list.nodes);
+    array_free(&list.tags.tags);
+    array_free(&list.xyz);
+    return status;
+}
+
 typedef struct source {
     noc_stream *stream;
     noc_status status; /* of the stream: already reported */
@@ -162,6 +247,8 @@ static noc_status read_overpass(noc_stream *stream, const noc_import_params *par
         w.inventory = sink->named_lamps && !any_lamp(elements);
         if (!status)
             status = emit(elements, &w);
+        if (!status)
+            status = emit_roads(elements, &w);
         if (!status)
             status = lamp_writer_end(&w);
     }

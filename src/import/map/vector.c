@@ -4,7 +4,7 @@
  * The format is known from the content, and only its driver may open the file, so no name and no content can make GDAL
  * fetch something or run another driver. GDAL's messages never reach stderr: the first failure becomes our error. */
 #include "import/lamps/tags.h"
-#include "import/map/source.h"
+#include "import/map/features.h"
 #include "import/map/osm_ways.h"
 #include "import/map/outlines.h"
 
@@ -78,12 +78,7 @@ static noc_status read_head(noc_stream *stream, char *head, size_t size, size_t 
 
 /* ---- features ---- */
 
-typedef struct tag_buffer {
-    NOC_ARRAY(lamp_tag) tags;
-    NOC_ARRAY(char *) owned;
-    char id[64];
-    bool refused; /* memory, to one of them; stays set */
-} tag_buffer;
+noc_status map_no_memory(const map_reading *m) { return noc_no_memory(m->writer.sink->log, m->writer.place); }
 
 static void tag_buffer_clear(tag_buffer *b) {
     for (size_t i = 0; i < b->owned.len; i++)
@@ -135,7 +130,7 @@ static void add_hstore(tag_buffer *b, const char *text) {
 }
 
 /* False: memory was refused. */
-static bool collect_fields(OGRFeatureH feature, OGRFeatureDefnH defn, bool osm, tag_buffer *b) {
+bool map_collect_fields(OGRFeatureH feature, OGRFeatureDefnH defn, bool osm, tag_buffer *b) {
     tag_buffer_clear(b);
     int count = OGR_FD_GetFieldCount(defn);
     for (int i = 0; i < count; i++) {
@@ -186,20 +181,6 @@ static int dimension_of(OGRFeatureH feature) {
     return g ? NOC_CLAMP(OGR_G_GetDimension(g), GEO_POINTS, GEO_AREAS) : GEO_POINTS;
 }
 
-typedef struct map_reading {
-    const map_format *format;
-    noc_stream *stream;
-    const noc_import_params *params;
-    lamp_writer writer;
-    tag_buffer tags;
-    map_source source;
-    bool building_layer; /* by its name */
-    NOC_ARRAY(size_t) rings;
-    NOC_ARRAY(double) xyz;
-} map_reading;
-
-static noc_status no_memory(const map_reading *m) { return noc_no_memory(m->writer.sink->log, m->writer.place); }
-
 /* The layer's CRS as AUTHORITY:CODE or WKT, behind GEO_CRS_TAKEN where the file names none; NULL if there is none;
  * free() it. False: memory was refused. */
 static bool layer_crs(OGRLayerH layer, bool named, bool *geographic, char **crs) {
@@ -246,7 +227,7 @@ static noc_status start_layer(map_reading *m, OGRLayerH layer) {
     }
     char *crs;
     if (!layer_crs(layer, m->source.crs_named && !m->source.link[0], &m->writer.geographic, &crs))
-        return no_memory(m);
+        return map_no_memory(m);
     const char *given = m->params ? m->params->crs : NULL;
     bool replaced = crs && m->writer.geographic && given && m->format->kind == MAP_GEOJSON && looks_projected(layer);
     if (replaced)
@@ -285,78 +266,11 @@ static void leave(map_reading *m, OGRFeatureH feature, const double xyz[3]) {
                        somewhere ? (double[]){ box.MinX, box.MaxX, box.MinY, box.MaxY } : NULL);
 }
 
-/* ---- buildings ---- */
-
-static bool add_ring(map_reading *m, OGRGeometryH ring) {
-    int count = OGR_G_GetPointCount(ring);
-    size_t first = m->xyz.len;
-    for (int i = 0; i < count; i++) {
-        const double xyz[3] = { OGR_G_GetX(ring, i), OGR_G_GetY(ring, i), 0 };
-        if (!array_append(&m->xyz, xyz, (size_t)3))
-            return false;
-    }
-    bool closed = count > 1 && !memcmp(m->xyz.data + first, m->xyz.data + m->xyz.len - 3, 2 * sizeof(double));
-    m->xyz.len -= closed ? 3 : 0;
-    size_t points = (m->xyz.len - first) / 3;
-    if (points >= 3)
-        return array_push(&m->rings, points);
-    m->xyz.len = first;
-    return true;
-}
-
-static noc_status emit_polygon(map_reading *m, OGRGeometryH polygon, geo_footprint *footprint) {
-    int rings = OGR_G_GetGeometryCount(polygon);
-    m->rings.len = m->xyz.len = 0;
-    for (int i = 0; i < rings; i++) {
-        if (!add_ring(m, OGR_G_GetGeometryRef(polygon, i)))
-            return no_memory(m);
-        if (!m->rings.len) {
-            geo_issue(m->writer.sink->issues, GEO_SKIPPED, "ring with too few points", footprint->id);
-            return NOC_OK;
-        }
-    }
-    footprint->ring_count = m->rings.len;
-    footprint->ring_size = m->rings.data;
-    footprint->xyz = m->xyz.data;
-    return m->rings.len ? m->writer.sink->footprint(m->writer.sink->ctx, footprint) : NOC_OK;
-}
-
-/* Hands on a feature that is a building; *is: whether it is one. */
-static noc_status read_building(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn, bool *is) {
-    OGRGeometryH g = OGR_F_GetGeometryRef(feature);
-    OGRwkbGeometryType type = g ? wkbFlatten(OGR_G_GetGeometryType(g)) : wkbUnknown;
-    *is = false;
-    if (!m->writer.sink->footprint || (type != wkbPolygon && type != wkbMultiPolygon) || OGR_G_IsEmpty(g))
-        return NOC_OK;
-    if (!collect_fields(feature, defn, false, &m->tags))
-        return no_memory(m);
-    int verdict = outline_verdict(m->tags.tags.data, m->tags.tags.len);
-    if (verdict == 0 || (verdict < 0 && !m->building_layer))
-        return NOC_OK;
-    *is = true;
-    geo_footprint footprint = { .id = m->tags.id };
-    char id[64];
-    for (size_t i = 0; i < m->tags.tags.len && m->format->kind == MAP_OSM; i++) {
-        const lamp_tag *tag = &m->tags.tags.data[i];
-        bool way = !strcmp(tag->key, "osm_way_id");
-        if (way || !strcmp(tag->key, "osm_id"))
-            snprintf(id, sizeof(id), "%s/%.40s", way ? "way" : "relation", tag->value), footprint.id = id;
-    }
-    outline_read(m->tags.tags.data, m->tags.tags.len, &footprint);
-    m->writer.footprints++;
-    noc_status status = NOC_OK;
-    if (type == wkbPolygon)
-        return emit_polygon(m, g, &footprint);
-    for (int i = 0; i < OGR_G_GetGeometryCount(g) && !status; i++)
-        status = emit_polygon(m, OGR_G_GetGeometryRef(g, i), &footprint);
-    return status;
-}
-
 static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn) {
-    bool building;
-    noc_status taken = read_building(m, feature, defn, &building);
-    if (taken || building) {
-        m->writer.seen.total[GEO_AREAS] += building;
+    bool shape;
+    noc_status taken = map_read_shape(m, feature, defn, &shape);
+    if (taken || shape) {
+        m->writer.seen.total[dimension_of(feature)] += shape;
         return taken;
     }
     double xyz[3] = { NAN, NAN, NAN };
@@ -368,8 +282,8 @@ static noc_status read_feature(map_reading *m, OGRFeatureH feature, OGRFeatureDe
             leave(m, feature, xyz);
         return NOC_OK;
     }
-    if (!collect_fields(feature, defn, m->format->kind == MAP_OSM, &m->tags))
-        return no_memory(m);
+    if (!map_collect_fields(feature, defn, m->format->kind == MAP_OSM, &m->tags))
+        return map_no_memory(m);
     size_t before = m->writer.lamps, points = m->writer.points;
     noc_status status = lamp_writer_point(&m->writer, m->tags.tags.data, m->tags.tags.len, m->tags.id, xyz);
     if (!status && placed && !is_point && m->writer.points == points) {
@@ -412,13 +326,13 @@ static noc_status read_kinds(map_reading *m, OGRLayerH layer) {
         double xyz[3];
         bool is_point;
         if (place_of(feature, xyz, &is_point) && is_point)
-            kept = collect_fields(feature, defn, false, &m->tags) &&
+            kept = map_collect_fields(feature, defn, false, &m->tags) &&
                    lamp_kinds_count(&m->writer.kinds, m->tags.tags.data, m->tags.tags.len);
         OGR_F_Destroy(feature);
     }
     OGR_L_ResetReading(layer);
     lamp_kinds_decide(&m->writer.kinds);
-    return kept ? NOC_OK : no_memory(m);
+    return kept ? NOC_OK : map_no_memory(m);
 }
 
 /* What tells that a layer's points are lamps: the user, tags, columns, values, or nothing. */
@@ -427,7 +341,7 @@ static noc_status judge(map_reading *m, OGRLayerH layer) {
     noc_status status = NOC_OK;
     lamp_writer *w = &m->writer;
     if (!layer_kind(layer, w->keys, &tags, &w->inventory))
-        return no_memory(m);
+        return map_no_memory(m);
     w->kinds.any = w->strange = false;
     if (w->sink->named_lamps)
         w->inventory = m->format->kind != MAP_OSM;
@@ -443,7 +357,7 @@ static noc_status read_layer(map_reading *m, OGRLayerH layer) {
     lamp_writer *w = &m->writer;
     noc_status status = judge(m, layer);
     m->building_layer = w->sink->footprint && outline_layer(OGR_L_GetName(layer));
-    if (!status && (!w->strange || w->sink->inspect || w->sink->footprint))
+    if (!status && (!w->strange || w->sink->inspect || w->sink->footprint || w->sink->road))
         status = start_layer(m, layer);
     if (!status)
         status = read_features(m, layer);
@@ -458,47 +372,17 @@ static noc_status read_layer(map_reading *m, OGRLayerH layer) {
     return status;
 }
 
-/* Geometries of other layers are not assembled. */
-static void choose_layer(map_reading *m, const char *command) {
-    OGRLayerH none = GDALDatasetExecuteSQL(m->source.dataset, command, NULL, NULL);
-    if (none)
-        GDALDatasetReleaseResultSet(m->source.dataset, none);
-}
-
-/* The file anew: GDAL reads it once, and only for the layers that are asked for before. */
-static noc_status read_osm_buildings(map_reading *m) {
-    map_source_close(&m->source);
-    noc_status status =
-        map_source_open(&m->source, m->stream, m->format, m->params && m->params->allow_outside, m->writer.sink->log);
-    if (status)
-        return status;
-    choose_layer(m, "SET interest_layers = multipolygons");
-    OGRLayerH layer = GDALDatasetGetLayerByName(m->source.dataset, "multipolygons");
-    if (!layer)
-        return map_source_error(&m->source);
-    OGRFeatureDefnH defn = OGR_L_GetLayerDefn(layer);
-    OGRFeatureH feature;
-    size_t n = 0;
-    while (!status && (feature = OGR_L_GetNextFeature(layer))) {
-        bool building;
-        status = read_building(m, feature, defn, &building);
-        OGR_F_Destroy(feature);
-        if (++n % 1024 == 0 && !status && !m->writer.sink->progress(m->writer.sink->ctx, 0.5))
-            status = NOC_ERR_CANCELLED;
-    }
-    return !status && m->source.error[0] ? map_source_error(&m->source) : status;
-}
-
 static noc_status read_layers(map_reading *m) {
     if (m->format->kind == MAP_OSM) {
-        choose_layer(m, "SET interest_layers = points");
+        map_choose_layers(m, "points");
         OGRLayerH points = GDALDatasetGetLayerByName(m->source.dataset, "points");
         noc_status status = points ? read_layer(m, points) : map_source_error(&m->source);
-        if (!status && m->writer.sink->footprint)
-            status = read_osm_buildings(m);
+        if (!status && (m->writer.sink->footprint || m->writer.sink->road))
+            status = map_read_osm_shapes(m);
         if (!status)
             status = osm_count_ways(m->stream, m->format->probe == probe_pbf, m->writer.sink, &m->writer.seen);
         m->writer.seen.buildings -= NOC_MIN(m->writer.seen.buildings, m->writer.footprints);
+        m->writer.seen.streets -= NOC_MIN(m->writer.seen.streets, m->writer.streets);
         return status;
     }
     noc_status status = NOC_OK;

@@ -42,6 +42,7 @@ enum {
     REMOTE_POLYGON,  /* class, count of rings, text: id, points of each ring, their coordinates */
     REMOTE_OBJECT_END,
     REMOTE_FOOTPRINT, /* remote_footprint, text: id, points of each ring, their coordinates */
+    REMOTE_ROAD,      /* geo_road, texts: id, name, coordinates */
 };
 
 typedef struct remote_head {
@@ -49,7 +50,7 @@ typedef struct remote_head {
 } remote_head;
 typedef struct remote_asked {
     int32_t parent;
-    bool named_lamps, inspect, footprints;
+    bool named_lamps, inspect, footprints, roads;
 } remote_asked;
 typedef struct remote_object {
     int32_t kind, lod;

@@ -22,7 +22,7 @@ static void emit(serving *s, uint32_t kind) {
         _exit(REMOTE_NO_MEMORY);
     bool waits = kind == REMOTE_LAMP || kind == REMOTE_MATERIAL || kind == REMOTE_ISSUE || kind == REMOTE_CRS ||
                  kind == REMOTE_OBJECT || kind == REMOTE_POLYGON || kind == REMOTE_OBJECT_END ||
-                 kind == REMOTE_FOOTPRINT;
+                 kind == REMOTE_FOOTPRINT || kind == REMOTE_ROAD;
     if ((!waits || s->batch.bytes.len > BATCH) && !remote_send(REMOTE_FD, &s->batch))
         _exit(1); /* whoever asked is gone: so are we */
 }
@@ -81,6 +81,16 @@ static noc_status on_footprint(void *ctx, const geo_footprint *f) {
     remote_put_text(&s->out, f->id);
     put_rings(s, f->ring_count, f->ring_size, f->xyz);
     emit(s, REMOTE_FOOTPRINT);
+    return NOC_OK;
+}
+
+static noc_status on_road(void *ctx, const geo_road *road) {
+    serving *s = ctx;
+    remote_put(&s->out, road, sizeof(*road));
+    remote_put_text(&s->out, road->id);
+    remote_put_text(&s->out, road->name);
+    remote_put(&s->out, road->xyz, road->point_count * 3 * sizeof(double));
+    emit(s, REMOTE_ROAD);
     return NOC_OK;
 }
 
@@ -181,6 +191,7 @@ static void serve(serving *s) {
                       .end_object = on_end_object,
                       .lamp = on_lamp,
                       .footprint = s->asked.sink.footprints ? on_footprint : NULL,
+                      .road = s->asked.sink.roads ? on_road : NULL,
                       .progress = on_progress,
                       .columns = on_columns,
                       .features = on_features,

@@ -109,6 +109,33 @@ static noc_status take_footprint(remote_taker *t, remote_record *one) {
     return status ? status : t->sink->footprint(t->sink->ctx, &footprint);
 }
 
+static noc_status take_road(remote_taker *t, remote_record *one) {
+    geo_road road;
+    if (!remote_get(one, &road, sizeof(road)))
+        return garbled(t);
+    road.id = remote_get_text(one);
+    road.name = remote_get_text(one);
+    bool flags = is_bool(&road.link) && is_bool(&road.roundabout) && is_bool(&road.bridge) && is_bool(&road.tunnel) &&
+                 is_bool(&road.motor);
+    bool kinds = (unsigned)road.cls < GEO_ROAD_CLASSES && (unsigned)road.lit <= GEO_LIT_YES && abs(road.oneway) <= 1;
+    const int counts[] = { road.lanes, road.lanes_forward, road.lanes_backward };
+    for (size_t i = 0; i < NOC_COUNT(counts); i++)
+        kinds = kinds && counts[i] >= 0 && counts[i] <= GEO_ROAD_MOST_LANES;
+    kinds = kinds && road.layer >= -GEO_ROAD_MOST_LAYER && road.layer <= GEO_ROAD_MOST_LAYER;
+    bool numbers = !(road.width <= 0) && !(road.width > LAMP_MOST_METRES) && !(road.speed <= 0) && !(road.speed > 500);
+    const void *xyz = remote_get_array(one, road.point_count, 3 * sizeof(double));
+    if (one->bad || !flags || !kinds || !numbers || !t->placed || t->in_object || t->parts || !t->sink->road ||
+        road.point_count < 2)
+        return garbled(t);
+    size_t count = 3 * road.point_count;
+    t->xyz.len = 0;
+    if (!array_reserve(&t->xyz, count)) /* aligned */
+        return noc_no_memory(t->sink->log, t->path);
+    memcpy(t->xyz.data, xyz, count * sizeof(double));
+    road.xyz = t->xyz.data;
+    return t->sink->road(t->sink->ctx, &road);
+}
+
 static noc_status take_object_end(remote_taker *t) {
     if (!t->in_object)
         return garbled(t);
@@ -237,6 +264,7 @@ static noc_status take(remote_taker *t, uint32_t kind, remote_record *one) {
     case REMOTE_POLYGON: return take_polygon(t, one);
     case REMOTE_OBJECT_END: return take_object_end(t);
     case REMOTE_FOOTPRINT: return take_footprint(t, one);
+    case REMOTE_ROAD: return take_road(t, one);
     case REMOTE_END: return take_end(t, one);
     default: return garbled(t);
     }

@@ -1,0 +1,56 @@
+/* Roads of maps, which are kept until all inputs are read. */
+#include "import/load/load.h"
+
+#include <math.h>
+
+bool roads_wanted(const noc_import_params *params) { return params->infer_lamps != NOC_SWITCH_OFF; }
+
+static double length_of(const geo_road *road) {
+    double sum = 0;
+    for (size_t i = 0; i + 1 < road->point_count; i++)
+        sum += hypot(road->xyz[3 * i + 3] - road->xyz[3 * i], road->xyz[3 * i + 4] - road->xyz[3 * i + 1]);
+    return sum;
+}
+
+static void count_road(noc_report_file *file, const geo_road *road) {
+    if (road->cls == GEO_ROAD_RAIL) {
+        file->railways++;
+        return;
+    }
+    double length = length_of(road);
+    file->roads++;
+    file->road_metres += length;
+    file->roads_lit += road->lit == GEO_LIT_YES;
+    file->road_metres_lit += road->lit == GEO_LIT_YES ? length : 0;
+}
+
+/* Extracts that meet hold the same ways. *fresh: none like it was kept. */
+static noc_status look_up(importer *im, const input *in, const geo_road *road, bool *fresh) {
+    const double *a = road->xyz, *b = road->xyz + 3 * (road->point_count - 1);
+    char *key = noc_format("%s %.2f %.2f %.2f %.2f", road->id, a[0], a[1], b[0], b[1]);
+    bool kept = key && map_put(&im->road_places, key, 1, fresh);
+    free(key);
+    return kept ? NOC_OK : noc_no_memory(im->log, in->path);
+}
+
+noc_status road_keep(importer *im, input *in, size_t index, const geo_road *road) {
+    bool fresh;
+    noc_status status = look_up(im, in, road, &fresh);
+    if (!status && !fresh)
+        geo_issue(in->issues, GEO_SPARED, "road that is given twice", road->id);
+    if (status || !fresh)
+        return status;
+    count_road(&in->file, road);
+    if (im->inspect)
+        return NOC_OK;
+    pending_road p = { .road = *road, .input = index };
+    size_t bytes = 3 * road->point_count * sizeof(double);
+    double *xyz = arena_alloc(&im->names, bytes);
+    p.road.id = arena_strdup(&im->names, road->id);
+    p.road.name = arena_strdup(&im->names, road->name);
+    p.road.xyz = xyz;
+    if (!xyz || !p.road.id || !p.road.name || !array_push(&im->roads, p))
+        return noc_no_memory(im->log, in->path);
+    memcpy(xyz, road->xyz, bytes);
+    return im->roads.len % 1024 ? NOC_OK : take_affords(im, in, 0);
+}

@@ -1,0 +1,44 @@
+/* features: what the reader of maps (vector.c) and that of their shapes (shapes.c) share. */
+#ifndef NOC_IMPORT_MAP_FEATURES_H
+#define NOC_IMPORT_MAP_FEATURES_H
+
+#include "import/lamps/tags.h"
+#include "import/map/source.h"
+
+#if NOC_HAVE_GDAL
+
+#include <ogr_api.h>
+
+typedef struct tag_buffer {
+    NOC_ARRAY(lamp_tag) tags;
+    NOC_ARRAY(char *) owned;
+    char id[64];
+    bool refused; /* memory, to one of them; stays set */
+} tag_buffer;
+
+typedef struct map_reading {
+    const map_format *format;
+    noc_stream *stream;
+    const noc_import_params *params;
+    lamp_writer writer;
+    tag_buffer tags;
+    map_source source;
+    bool building_layer; /* by its name */
+    bool lines;          /* the shape that is being read is made of lines */
+    NOC_ARRAY(size_t) rings;
+    NOC_ARRAY(double) xyz;
+} map_reading;
+
+noc_status map_no_memory(const map_reading *m); /* reported */
+/* Fills b with the tags or columns of a feature. False: memory was refused. */
+bool map_collect_fields(OGRFeatureH feature, OGRFeatureDefnH defn, bool osm, tag_buffer *b);
+
+/* Hands on a feature that is a building or a road, where the sink wants such; *is: whether it is one. */
+noc_status map_read_shape(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn, bool *is);
+/* The same of all lines and areas of a file of OpenStreetMap, from its beginning. */
+noc_status map_read_osm_shapes(map_reading *m);
+/* Layers of OpenStreetMap that are to be read; geometries of others are not assembled. */
+void map_choose_layers(map_reading *m, const char *layers);
+
+#endif
+#endif

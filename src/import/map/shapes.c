@@ -1,0 +1,158 @@
+/* Shapes of maps: areas that are buildings, lines that are roads. */
+#include "import/map/features.h"
+#include "import/map/outlines.h"
+#include "import/map/roads.h"
+
+#if NOC_HAVE_GDAL
+
+#include <math.h>
+#include <stdio.h>
+
+/* ---- buildings ---- */
+
+static bool add_ring(map_reading *m, OGRGeometryH ring) {
+    int count = OGR_G_GetPointCount(ring);
+    size_t first = m->xyz.len;
+    for (int i = 0; i < count; i++) {
+        const double xyz[3] = { OGR_G_GetX(ring, i), OGR_G_GetY(ring, i), 0 };
+        if (!array_append(&m->xyz, xyz, (size_t)3))
+            return false;
+    }
+    bool closed = count > 1 && !memcmp(m->xyz.data + first, m->xyz.data + m->xyz.len - 3, 2 * sizeof(double));
+    m->xyz.len -= closed ? 3 : 0;
+    size_t points = (m->xyz.len - first) / 3;
+    if (points >= 3)
+        return array_push(&m->rings, points);
+    m->xyz.len = first;
+    return true;
+}
+
+static noc_status emit_polygon(map_reading *m, OGRGeometryH polygon, geo_footprint *footprint) {
+    int rings = OGR_G_GetGeometryCount(polygon);
+    m->rings.len = m->xyz.len = 0;
+    for (int i = 0; i < rings; i++) {
+        if (!add_ring(m, OGR_G_GetGeometryRef(polygon, i)))
+            return map_no_memory(m);
+        if (!m->rings.len) {
+            geo_issue(m->writer.sink->issues, GEO_SKIPPED, "ring with too few points", footprint->id);
+            return NOC_OK;
+        }
+    }
+    footprint->ring_count = m->rings.len;
+    footprint->ring_size = m->rings.data;
+    footprint->xyz = m->xyz.data;
+    return m->rings.len ? m->writer.sink->footprint(m->writer.sink->ctx, footprint) : NOC_OK;
+}
+
+static noc_status read_building(map_reading *m, OGRGeometryH g, OGRwkbGeometryType type, bool *is) {
+    int verdict = outline_verdict(m->tags.tags.data, m->tags.tags.len);
+    if (verdict == 0 || (verdict < 0 && !m->building_layer))
+        return NOC_OK;
+    *is = true;
+    geo_footprint footprint = { .id = m->tags.id };
+    outline_read(m->tags.tags.data, m->tags.tags.len, &footprint);
+    m->writer.footprints++;
+    noc_status status = NOC_OK;
+    if (type == wkbPolygon)
+        return emit_polygon(m, g, &footprint);
+    for (int i = 0; i < OGR_G_GetGeometryCount(g) && !status; i++)
+        status = emit_polygon(m, OGR_G_GetGeometryRef(g, i), &footprint);
+    return status;
+}
+
+/* ---- roads ---- */
+
+static noc_status emit_line(map_reading *m, OGRGeometryH line, geo_road *road) {
+    int count = OGR_G_GetPointCount(line);
+    if (count < 2)
+        return NOC_OK;
+    m->xyz.len = 0;
+    for (int i = 0; i < count; i++) {
+        const double xyz[3] = { OGR_G_GetX(line, i), OGR_G_GetY(line, i), NAN };
+        if (!array_append(&m->xyz, xyz, (size_t)3))
+            return map_no_memory(m);
+    }
+    road->point_count = (size_t)count;
+    road->xyz = m->xyz.data;
+    return m->writer.sink->road(m->writer.sink->ctx, road);
+}
+
+static noc_status read_road(map_reading *m, OGRGeometryH g, OGRwkbGeometryType type, bool *is) {
+    geo_road road;
+    *is = road_read(m->tags.tags.data, m->tags.tags.len, &road);
+    if (!*is)
+        return NOC_OK;
+    road.id = m->tags.id;
+    *(road.cls == GEO_ROAD_RAIL ? &m->writer.rails : &m->writer.streets) += 1;
+    noc_status status = NOC_OK;
+    if (type == wkbLineString)
+        return emit_line(m, g, &road);
+    for (int i = 0; i < OGR_G_GetGeometryCount(g) && !status; i++)
+        status = emit_line(m, OGR_G_GetGeometryRef(g, i), &road);
+    return status;
+}
+
+/* As OpenStreetMap calls it, where the feature says so. */
+static void name_shape(map_reading *m) {
+    for (size_t i = 0; i < m->tags.tags.len; i++) {
+        const lamp_tag *tag = &m->tags.tags.data[i];
+        bool osm = m->format->kind == MAP_OSM, way = !strcmp(tag->key, "osm_way_id");
+        if (osm && way)
+            snprintf(m->tags.id, sizeof(m->tags.id), "way/%.40s", tag->value);
+        else if (osm && !strcmp(tag->key, "osm_id"))
+            snprintf(m->tags.id, sizeof(m->tags.id), "%s/%.40s", m->lines ? "way" : "relation", tag->value);
+        else if (!osm && !strcmp(tag->key, "@id"))
+            snprintf(m->tags.id, sizeof(m->tags.id), "%.60s", tag->value);
+    }
+}
+
+noc_status map_read_shape(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn, bool *is) {
+    OGRGeometryH g = OGR_F_GetGeometryRef(feature);
+    OGRwkbGeometryType type = g ? wkbFlatten(OGR_G_GetGeometryType(g)) : wkbUnknown;
+    bool area = type == wkbPolygon || type == wkbMultiPolygon,
+         line = type == wkbLineString || type == wkbMultiLineString;
+    *is = false;
+    if (!(area && m->writer.sink->footprint) && !(line && m->writer.sink->road))
+        return NOC_OK;
+    if (OGR_G_IsEmpty(g))
+        return NOC_OK;
+    if (!map_collect_fields(feature, defn, false, &m->tags))
+        return map_no_memory(m);
+    m->lines = line;
+    name_shape(m);
+    return area ? read_building(m, g, type, is) : read_road(m, g, type, is);
+}
+
+/* ---- OpenStreetMap ---- */
+
+void map_choose_layers(map_reading *m, const char *layers) {
+    char command[80];
+    snprintf(command, sizeof(command), "SET interest_layers = %s", layers);
+    OGRLayerH none = GDALDatasetExecuteSQL(m->source.dataset, command, NULL, NULL);
+    if (none)
+        GDALDatasetReleaseResultSet(m->source.dataset, none);
+}
+
+/* GDAL reads the file once, and only for the layers that are asked for before: so this is the file anew. */
+noc_status map_read_osm_shapes(map_reading *m) {
+    const geo_sink *sink = m->writer.sink;
+    map_source_close(&m->source);
+    noc_status status =
+        map_source_open(&m->source, m->stream, m->format, m->params && m->params->allow_outside, sink->log);
+    if (status)
+        return status;
+    map_choose_layers(m, !sink->road ? "multipolygons" : sink->footprint ? "lines,multipolygons" : "lines");
+    OGRFeatureH feature;
+    OGRLayerH layer;
+    size_t n = 0;
+    while (!status && (feature = GDALDatasetGetNextFeature(m->source.dataset, &layer, NULL, NULL, NULL))) {
+        bool is;
+        status = map_read_shape(m, feature, OGR_L_GetLayerDefn(layer), &is);
+        OGR_F_Destroy(feature);
+        if (++n % 1024 == 0 && !status && sink->progress && !sink->progress(sink->ctx, 0.5))
+            status = NOC_ERR_CANCELLED;
+    }
+    return !status && m->source.error[0] ? map_source_error(&m->source) : status;
+}
+
+#endif
