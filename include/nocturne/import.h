@@ -210,6 +210,8 @@ typedef struct noc_report_file {
 
 /* Sums over the files of a report. */
 typedef struct noc_report_totals {
+    size_t objects, buildings;
+    uint64_t bytes_read;                             /* after decompression */
     size_t lamps_mapped, lamps_moved, lamps_dropped; /* as in noc_report_file */
     size_t lamps_repeated, objects_repeated;
     size_t lamps_inferred;                        /* placed by a rule */

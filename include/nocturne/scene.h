@@ -290,6 +290,7 @@ typedef struct noc_scene_info {
     /* of all that was not removed; models count once, whatever their instances */
     size_t triangles, vertices, meshes, materials;
     size_t models, instances;
+    size_t instance_triangles; /* that instances show: of each those of its model */
     size_t windows, windows_lit;
     size_t light_slots; /* indices of lights are below it */
     size_t lights, lights_by_kind[NOC_LIGHT_KIND_COUNT], lights_inferred;

@@ -43,8 +43,8 @@ void cli_print_windows(const char *heading, const noc_window_counts *c) {
         area += c->area[v];
     if (!(area > 0))
         return;
-    printf("%s%s, %s lit, %.1f on 100 m2 of wall", heading, noc_text_many(a, c->windows, "window"),
-           noc_text_count(b, c->lit), 100 * (double)c->windows / area);
+    printf("%s%s, %s lit, %.1f on 100 m2 of wall, %.1f lit", heading, noc_text_many(a, c->windows, "window"),
+           noc_text_count(b, c->lit), 100 * (double)c->windows / area, 100 * (double)c->lit / area);
     for (int v = NOC_WALL_SMALL; v < NOC_WALL_OWN; v++)
         if (c->walls[v]) {
             printf("%s%s %s", before, noc_text_count(a, c->walls[v]), noc_wall_verdict_name((noc_wall_verdict)v));

@@ -113,10 +113,16 @@ void cli_add_lamps(cli_args *args, const noc_import_params *import);
 /* Which defaults of lamps the user has said, for --strict. */
 void cli_note_chosen(const cli_args *args, noc_import_params *import);
 /* A line on what lamps do not tell, and what is taken for it; nothing where they tell all. */
-/* "50 windows, 17 lit, 8.4 on 100 m2 of wall; walls without: 3 too small"; nothing where there are no walls */
+/* "50 windows, 17 lit, 8.4 on 100 m2 of wall, 2.9 lit; walls without: 3 too small"; nothing where there are no walls */
 void cli_print_windows(const char *heading, const noc_window_counts *counts);
 void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAULT_COUNT],
                        const noc_import_params *import);
+
+/* report.c */
+/* The inputs' and the lamps' troubles, the same reason in several files as one, the gravest first. Texts are the
+ * report's; free() the array. */
+noc_report_line *cli_issues(const noc_report *report, size_t *count);
+uint64_t cli_peak_memory(void); /* of this process so far, bytes */
 
 /* render.c */
 /* compare takes it too */

@@ -7,25 +7,31 @@
 #define A info_args
 static const noc_option own_options[] = {
     { "json", "Output", NOC_OPTION_BOOL, offsetof(A, json), 0, 1, NULL, "", "print JSON instead of text" },
+    { "scene", "Output", NOC_OPTION_SWITCH, offsetof(A, scene), 0, 2, NULL, "",
+      "tell of all inputs as one scene, too, as render loads them: buildings, triangles, windows, lamps, what was "
+      "skipped; where neither is said, of recipes" },
+    { "timing", "Output", NOC_OPTION_BOOL, offsetof(A, timing), 0, 1, NULL, "",
+      "tell how long reading took, and with a scene the peak memory" },
     { NULL },
 };
 static const noc_option *options(void) { return own_options; }
 static int run(void *arguments);
 
-static const info_args defaults = { .import = noc_import_default_params(), .builtin = noc_builtin_default_params() };
-/* Nothing is placed, so the rules for placing do not matter here. */
-static const char *const placing[] = { "scene-crs", "infer-lamps", NULL };
+static const info_args defaults = { .scene = NOC_SWITCH_AUTO,
+                                    .import = noc_import_default_params(),
+                                    .builtin = noc_builtin_default_params() };
 
 const cli_command cli_info = {
     "info",
-    "FILE...",
-    "Tells what files hold: format, CRS, extent, objects, lamps, and what was skipped or repaired; of luminaires (IES, "
-    "EULUMDAT) their flux, peak and zones.",
+    "INPUT...",
+    "Tells what files hold: format, CRS, extent, objects, lamps, and what was skipped or repaired; what the scene of a "
+    "recipe or of all inputs holds; of luminaires (IES, EULUMDAT) their flux, peak and zones.",
     "Examples\n"
     "  nocturne info city.gml lamps.geojson\n"
-    "  nocturne info --json city.gml.gz\n",
+    "  nocturne info --json city.gml.gz\n"
+    "  nocturne info --scene --timing city.gml lamps.geojson\n",
     { { options, 0, NULL },
-      { noc_import_options, offsetof(A, import), placing },
+      { noc_import_options, offsetof(A, import), NULL },
       { noc_city_options, offsetof(A, builtin.city), NULL },
       { noc_builtin_options, offsetof(A, builtin), NULL },
       { cli_common_options, 0, NULL } },
@@ -34,22 +40,22 @@ const cli_command cli_info = {
     run,
 };
 
-static void print_counts(const char *title, const size_t counts[NOC_CLASS_COUNT]) {
+void info_print_counts(const size_t counts[NOC_CLASS_COUNT]) {
     char a[32];
     for (int i = 0; i < NOC_CLASS_COUNT; i++)
         if (counts[i])
-            printf("    %-13s %10s%s\n", noc_class_name((noc_class)i), noc_text_count(a, counts[i]), title);
+            printf("    %-13s %10s\n", noc_class_name((noc_class)i), noc_text_count(a, counts[i]));
 }
 
 const char *info_action(const noc_report_line *line) {
     return !line->repaired ? "skipped" : line->lossless ? "repaired" : "guessed";
 }
 
-static void print_lines(const noc_report_file *file, const char *action) {
+void info_print_lines(const noc_report_line *lines, size_t count, const char *action) {
     char a[32], reason[160]; /* a line holds an id or two; JSON has five */
     bool first = true;
-    for (size_t i = 0; i < file->line_count; i++) {
-        const noc_report_line *line = &file->lines[i];
+    for (size_t i = 0; i < count; i++) {
+        const noc_report_line *line = &lines[i];
         if (strcmp(info_action(line), action))
             continue;
         printf("  %-11s %s x %s", first ? action : "", noc_text_count(a, line->count),
@@ -61,15 +67,16 @@ static void print_lines(const noc_report_file *file, const char *action) {
     }
 }
 
-static void print_source(const noc_report_file *file) {
+static void print_source(const noc_report_file *file, bool timing) {
     char a[32], b[32], c[32], text[240];
     printf("  %-11s %s\n", "format",
            noc_text_clean(text, sizeof(text), file->format && *file->format ? file->format : "unknown"));
     printf("  %-11s %s", "size", noc_text_bytes(a, file->bytes));
     if (file->bytes_read > file->bytes)
         printf(", %s unpacked", noc_text_bytes(b, file->bytes_read));
-    printf("; read in %s", noc_text_seconds(c, file->seconds));
-    if (file->bytes_read > 1000000 && file->seconds > 0)
+    if (timing)
+        printf("; read in %s", noc_text_seconds(c, file->seconds));
+    if (timing && file->bytes_read > 1000000 && file->seconds > 0)
         printf(" (%.0f MB/s)", 1e-6 * (double)file->bytes_read / file->seconds);
     bool known = file->crs && *file->crs;
     printf("\n  %-11s %s", "CRS", known ? noc_text_clean(text, sizeof(text), file->crs) : "none");
@@ -222,10 +229,10 @@ static void print_roads(const noc_report_file *file) {
            noc_text_many(c, file->railways, "railway"));
 }
 
-static void print_file(const noc_report_file *file, const noc_import_params *import) {
+void info_print_file(const noc_report_file *file, const info_args *args) {
     char a[32], b[64], path[400];
     printf("%s\n", noc_text_clean(path, sizeof(path), file->path));
-    print_source(file);
+    print_source(file, args->timing);
     print_extent(file);
     print_features(file);
     print_roads(file);
@@ -236,19 +243,19 @@ static void print_file(const noc_report_file *file, const noc_import_params *imp
     if (file->polygons) {
         printf("  %-11s %s, %s\n", "surfaces", noc_text_count(a, file->polygons),
                noc_text_many(b, file->triangles, "triangle"));
-        print_counts("", file->polygons_by_class);
+        info_print_counts(file->polygons_by_class);
     } else if (file->triangles) {
         printf("  %-11s %s\n", "triangles", noc_text_count(a, file->triangles));
     }
     cli_print_windows("  windows     ", &file->windows);
     if (file->lamps)
-        print_lamps(file, import);
+        print_lamps(file, &args->import);
     print_points(file);
     if (file->lights)
         printf("  %-11s %s\n", "lights", noc_text_count(a, file->lights));
-    print_lines(file, "skipped");
-    print_lines(file, "repaired");
-    print_lines(file, "guessed");
+    info_print_lines(file->lines, file->line_count, "skipped");
+    info_print_lines(file->lines, file->line_count, "repaired");
+    info_print_lines(file->lines, file->line_count, "guessed");
 }
 
 static void print_scene(const char *name, const noc_scene_info *info) {
@@ -258,7 +265,7 @@ static void print_scene(const char *name, const noc_scene_info *info) {
            info->bounds_max[0], info->bounds_min[1], info->bounds_max[1], info->bounds_min[2], info->bounds_max[2]);
     printf("  %-11s %s in %s mesh%s\n", "triangles", noc_text_count(a, info->triangles),
            noc_text_count(b, info->meshes), info->meshes == 1 ? "" : "es");
-    print_counts("", info->triangles_by_class);
+    info_print_counts(info->triangles_by_class);
     printf("  %-11s %s\n", "lights", noc_text_count(a, info->lights));
     static const char *const kinds[] = { "sphere", "disc", "triangle", "parallelogram", "point", "spot" };
     _Static_assert(sizeof(kinds) / sizeof(*kinds) == NOC_LIGHT_KIND_COUNT, "every kind has its name");
@@ -296,7 +303,7 @@ static noc_status inspect(const info_args *args, const char *path, noc_log *log,
         for (size_t i = 0; i < count || i == 0; i++) { /* a folder holds several files */
             const noc_report_file *file = count ? noc_report_get_file(report, i) : NULL;
             fputs(first && !i ? "\n" : ",\n", stdout);
-            cli_info_json(count > 1 ? file->path : path, error, file, scene && !status ? &info : NULL);
+            info_json_file(count > 1 ? file->path : path, error, file, scene && !status ? &info : NULL, args->timing);
         }
     } else if (!status && scene) {
         noc_scene_info info;
@@ -304,11 +311,59 @@ static noc_status inspect(const info_args *args, const char *path, noc_log *log,
         print_scene(path, &info);
     } else if (!status || args->import.strict) { /* strictness does not hide what it found */
         for (size_t i = 0; i < noc_report_file_count(report); i++)
-            print_file(noc_report_get_file(report, i), &args->import);
+            info_print_file(noc_report_get_file(report, i), args);
     }
     noc_report_destroy(report);
     noc_scene_destroy(scene);
     return status;
+}
+
+/* A bad file does not keep the others from being told about. */
+static int inspect_each(const info_args *args, const char *const *inputs, size_t count, noc_log *log) {
+    int status = CLI_OK;
+    for (size_t i = 0; i < count && !cli_interrupted(); i++)
+        if (inspect(args, inputs[i], log, i == 0))
+            status = CLI_FAILURE;
+    return status;
+}
+
+/* Luminaires first, which are no part of a scene, then the files as the scene has them, then the scene. */
+static int tell_scene(const info_args *args, noc_log *log) {
+    const char **inputs = cli_alloc((args->common.input_count + 1) * sizeof(*inputs));
+    size_t count = 0, profiles = 0;
+    int status = CLI_OK;
+    for (size_t i = 0; i < args->common.input_count; i++) {
+        const char *path = args->common.inputs[i];
+        if (!cli_builtin(path) && info_is_profile(path))
+            status = inspect(args, path, log, !profiles++) ? CLI_FAILURE : status;
+        else
+            inputs[count++] = path;
+    }
+    info_city city;
+    noc_status loaded = info_load(args, inputs, count, log, &city);
+    for (size_t i = 0; i < noc_report_file_count(city.report); i++) {
+        const noc_report_file *file = noc_report_get_file(city.report, i);
+        if (!args->json) {
+            info_print_file(file, args);
+        } else {
+            fputs(i || profiles ? ",\n" : "\n", stdout);
+            info_json_file(file->path, NULL, file, NULL, args->timing);
+        }
+    }
+    if (args->json)
+        printf("\n]");
+    if (args->json && loaded) {
+        fputs(", \"error\": ", stdout);
+        cli_json_text(stdout, noc_log_last_error(log));
+    } else if (args->json) {
+        fputs(", \"scene\": ", stdout);
+        info_json_city(&city, args->timing);
+    } else if (!loaded) {
+        info_print_city(&city, args);
+    }
+    info_city_end(&city);
+    free(inputs);
+    return loaded ? CLI_FAILURE : status;
 }
 
 static int run(void *arguments) {
@@ -321,16 +376,14 @@ static int run(void *arguments) {
     cli_nothing_to_keep(true);
     cli_progress_start(args->common.quiet);
     args->import.progress = (noc_progress){ cli_load_progress, NULL };
+    args->import.builtin = &args->builtin;
     noc_log *log = cli_log_create(&args->common);
-    int status = CLI_OK;
     if (args->json)
         printf("{\"nocturne\": \"%s\", \"files\": [", noc_version());
-    /* A bad file does not keep the others from being told about. */
-    for (size_t i = 0; i < args->common.input_count && !cli_interrupted(); i++)
-        if (inspect(args, args->common.inputs[i], log, i == 0))
-            status = CLI_FAILURE;
+    bool scene = args->scene == NOC_SWITCH_AUTO ? args->common.recipe != NULL : args->scene == NOC_SWITCH_ON;
+    int status = scene ? tell_scene(args, log) : inspect_each(args, args->common.inputs, args->common.input_count, log);
     if (args->json)
-        printf("\n]}\n");
+        printf(scene ? "}\n" : "\n]}\n");
     noc_log_destroy(log);
     if (cli_interrupted()) {
         cli_error("interrupted");

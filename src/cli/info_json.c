@@ -51,11 +51,11 @@ static void examples(const char *list) {
     putchar(']');
 }
 
-static void lines(const noc_report_file *file) {
+static void lines(const noc_report_line *all, size_t count) {
     key("issues");
     putchar('[');
-    for (size_t i = 0; i < file->line_count; i++) {
-        const noc_report_line *line = &file->lines[i];
+    for (size_t i = 0; i < count; i++) {
+        const noc_report_line *line = &all[i];
         printf("%s\n      {\"action\": \"%s\", \"lossless\": %s, \"count\": %zu, \"reason\": ", i ? "," : "",
                info_action(line), line->lossless ? "true" : "false", line->count);
         cli_json_text(stdout, line->reason);
@@ -116,14 +116,35 @@ static void columns(const noc_report_file *file) {
     putchar(']');
 }
 
-static void report_file(const noc_report_file *file) {
+static void windows(const noc_window_counts *w) {
+    double area = 0;
+    number("windows", (double)w->windows);
+    number("windows_own", (double)w->own);
+    number("windows_lit", (double)w->lit);
+    for (int v = NOC_WALL_TAKEN; v < NOC_WALL_VERDICT_COUNT; v++) {
+        static const char *const names[] = { "taken", "small", "tilted", "party", "own" };
+        char name[40];
+        snprintf(name, sizeof(name), "walls_%s", names[v - NOC_WALL_TAKEN]);
+        number(name, (double)w->walls[v]);
+        snprintf(name, sizeof(name), "wall_area_%s", names[v - NOC_WALL_TAKEN]);
+        number(name, w->area[v]);
+        area += w->area[v];
+    }
+    if (area > 0) {
+        number("windows_per_100_m2", 100 * (double)w->windows / area);
+        number("windows_lit_per_100_m2", 100 * (double)w->lit / area);
+    }
+}
+
+static void report_file(const noc_report_file *file, bool timing) {
     text("format", file->format);
     text("crs", file->crs);
     text("crs_given", file->crs_given);
     text("crs_from", *file->crs_given ? "file" : file->crs_taken ? "format" : *file->crs ? "option" : "");
     number("bytes", (double)file->bytes);
     number("bytes_unpacked", (double)file->bytes_read);
-    number("seconds", file->seconds);
+    if (timing)
+        number("seconds", file->seconds);
     if (file->has_extent) {
         triple("extent_min", file->extent_min);
         triple("extent_max", file->extent_max);
@@ -146,17 +167,7 @@ static void report_file(const noc_report_file *file) {
         text("decimal_sign", (char[]){ file->decimal_sign == '?' ? 0 : file->decimal_sign, 0 });
     }
     number("lights", (double)file->lights);
-    number("windows", (double)file->windows.windows);
-    number("windows_own", (double)file->windows.own);
-    number("windows_lit", (double)file->windows.lit);
-    for (int v = NOC_WALL_TAKEN; v < NOC_WALL_VERDICT_COUNT; v++) {
-        static const char *const names[] = { "taken", "small", "tilted", "party", "own" };
-        char name[40];
-        snprintf(name, sizeof(name), "walls_%s", names[v - NOC_WALL_TAKEN]);
-        number(name, (double)file->windows.walls[v]);
-        snprintf(name, sizeof(name), "wall_area_%s", names[v - NOC_WALL_TAKEN]);
-        number(name, file->windows.area[v]);
-    }
+    windows(&file->windows);
     number("map_points", (double)file->map_points);
     number("map_lines", (double)file->map_lines);
     number("map_areas", (double)file->map_areas);
@@ -167,16 +178,17 @@ static void report_file(const noc_report_file *file) {
     number("road_metres", file->road_metres);
     number("road_metres_lit", file->road_metres_lit);
     number("railways", (double)file->railways);
-    lines(file);
+    lines(file->lines, file->line_count);
 }
 
-void cli_info_json(const char *path, const char *error, const noc_report_file *file, const noc_scene_info *scene) {
+void info_json_file(const char *path, const char *error, const noc_report_file *file, const noc_scene_info *scene,
+                    bool timing) {
     fputs("  {\"path\": ", stdout);
     cli_json_text(stdout, path);
     if (error)
         text("error", error);
     if (file)
-        report_file(file);
+        report_file(file, timing);
     if (scene) {
         text("format", "built-in scene");
         triple("extent_min", scene->bounds_min);
@@ -184,6 +196,42 @@ void cli_info_json(const char *path, const char *error, const noc_report_file *f
         number("triangles", (double)scene->triangles);
         classes("triangles_by_class", scene->triangles_by_class);
         number("lights", (double)scene->lights);
+    }
+    putchar('}');
+}
+
+void info_json_city(const info_city *city, bool timing) {
+    const noc_scene_info *info = &city->info;
+    const noc_report_totals *t = &city->totals;
+    printf("{\"files\": %zu", noc_report_file_count(city->report));
+    text("crs", info->given_crs);
+    triple("extent_min", info->bounds_min);
+    triple("extent_max", info->bounds_max);
+    number("objects", (double)t->objects);
+    number("buildings", (double)t->buildings);
+    number("triangles", (double)info->triangles);
+    classes("triangles_by_class", info->triangles_by_class);
+    number("instances", (double)info->instances);
+    number("instance_triangles", (double)info->instance_triangles);
+    windows(&t->windows);
+    number("lights", (double)info->lights);
+    number("lamps_mapped", (double)t->lamps_mapped);
+    number("lamps_moved", (double)t->lamps_moved);
+    number("lamps_inferred", (double)t->lamps_inferred);
+    number("lamps_dropped", (double)t->lamps_dropped);
+    number("lamps_repeated", (double)t->lamps_repeated);
+    number("features_skipped", (double)t->skipped);
+    number("features_repaired", (double)t->repaired);
+    number("features_guessed", (double)t->guessed);
+    size_t count;
+    noc_report_line *issues = cli_issues(city->report, &count);
+    lines(issues, count);
+    free(issues);
+    number("scene_bytes", (double)info->memory_bytes);
+    if (timing) {
+        number("bytes_unpacked", (double)t->bytes_read);
+        number("seconds", city->seconds);
+        number("peak_bytes", (double)cli_peak_memory());
     }
     putchar('}');
 }

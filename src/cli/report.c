@@ -203,7 +203,7 @@ void cli_warn_of_picture(const render_job *job) {
                   surfaces ? ", or do the surfaces that shine look away" : "");
 }
 
-static uint64_t peak_memory(void) {
+uint64_t cli_peak_memory(void) {
     struct rusage usage;
     return getrusage(RUSAGE_SELF, &usage) ? 0 : (uint64_t)usage.ru_maxrss * 1024;
 }
@@ -214,11 +214,6 @@ static const char *choice_name(const char *option, const void *params, char *tex
             noc_option_get(o, params, text, size);
     return text;
 }
-
-typedef struct issue {
-    const noc_report_line *line; /* of the first file that has it */
-    size_t count;                /* in all files */
-} issue;
 
 /* Is it about a lamp, or a value of one? */
 static bool is_of_lamps(const char *reason) {
@@ -233,50 +228,55 @@ static bool is_of_lamps(const char *reason) {
 /* Lamps before surfaces, what is lost or guessed at before what is not, what was skipped before what was repaired, then
  * the most frequent; the order of the files decides between equals. */
 static int compare_issues(const void *a, const void *b) {
-    const issue *x = a, *y = b;
-    bool lamps[2] = { is_of_lamps(x->line->reason), is_of_lamps(y->line->reason) };
+    const noc_report_line *x = a, *y = b;
+    bool lamps[2] = { is_of_lamps(x->reason), is_of_lamps(y->reason) };
     if (lamps[0] != lamps[1])
         return lamps[0] ? -1 : 1;
-    if (x->line->lossless != y->line->lossless)
-        return x->line->lossless ? 1 : -1;
-    if (x->line->repaired != y->line->repaired)
-        return x->line->repaired ? 1 : -1;
-    return x->count != y->count ? (x->count < y->count ? 1 : -1) : (x->line > y->line) - (x->line < y->line);
+    if (x->lossless != y->lossless)
+        return x->lossless ? 1 : -1;
+    if (x->repaired != y->repaired)
+        return x->repaired ? 1 : -1;
+    return x->count != y->count ? (x->count < y->count ? 1 : -1) : (x->reason > y->reason) - (x->reason < y->reason);
 }
 
-/* The inputs' and the lamps' troubles, the same reason in several files as one. */
-static void print_issues(const noc_report *report) {
-    enum { SHOWN = 8 };
+noc_report_line *cli_issues(const noc_report *report, size_t *count) {
     size_t lines = 0, n = 0;
-    noc_report_totals t;
-    noc_report_get_totals(report, &t);
     for (size_t i = 0; i < noc_report_file_count(report); i++)
         lines += noc_report_get_file(report, i)->line_count;
-    if (!lines)
-        return;
-    issue *issues = cli_alloc(lines * sizeof(*issues));
+    noc_report_line *issues = cli_alloc((lines + 1) * sizeof(*issues));
     for (size_t i = 0; i < noc_report_file_count(report); i++) {
         const noc_report_file *file = noc_report_get_file(report, i);
         for (size_t j = 0; j < file->line_count; j++) {
             const noc_report_line *line = &file->lines[j];
             size_t k = 0;
-            while (k < n &&
-                   (issues[k].line->repaired != line->repaired || strcmp(issues[k].line->reason, line->reason)))
+            while (k < n && (issues[k].repaired != line->repaired || strcmp(issues[k].reason, line->reason)))
                 k++;
             if (k == n)
-                issues[n++] = (issue){ line, 0 };
-            issues[k].count += line->count;
+                issues[n++] = *line;
+            else
+                issues[k].count += line->count;
         }
     }
     qsort(issues, n, sizeof(*issues), compare_issues);
+    *count = n;
+    return issues;
+}
+
+static void print_issues(const noc_report *report) {
+    enum { SHOWN = 8 };
+    size_t n;
+    noc_report_totals t;
+    noc_report_get_totals(report, &t);
+    noc_report_line *issues = cli_issues(report, &n);
     char a[64], b[32], c[32], reason[160];
-    printf("  inputs    features skipped: %s, repaired: %s, guessed at: %s\n", noc_text_count(a, t.skipped),
-           noc_text_count(b, t.repaired), noc_text_count(c, t.guessed));
+    if (n)
+        printf("  inputs    features skipped: %s, repaired: %s, guessed at: %s\n", noc_text_count(a, t.skipped),
+               noc_text_count(b, t.repaired), noc_text_count(c, t.guessed));
     for (size_t i = 0; i < n && i < SHOWN; i++) {
-        const noc_report_line *line = issues[i].line;
-        printf("            %s x %s", noc_text_count(a, issues[i].count),
+        const noc_report_line *line = &issues[i];
+        printf("            %s x %s", noc_text_count(a, line->count),
                noc_text_clean(reason, sizeof(reason), line->reason));
-        char *ids = cli_ids(line->examples, issues[i].count, CLI_IDS_WIDTH);
+        char *ids = cli_ids(line->examples, line->count, CLI_IDS_WIDTH);
         printf("%s%s\n", *ids ? ": " : "", ids);
         free(ids);
     }
@@ -348,7 +348,7 @@ void cli_print_summary(const render_job *job) {
     printf("ray tracing structure %s, ", noc_text_seconds(a, job->last.build_seconds));
     printf("%s a frame (%s)\n", noc_text_seconds(a, job->frame_seconds / job->frames),
            job->last.path ? job->last.path : "");
-    printf("  memory    %s at most\n", noc_text_bytes(a, peak_memory()));
+    printf("  memory    %s at most\n", noc_text_bytes(a, cli_peak_memory()));
     if (job->last.dropped)
         printf("  dropped   %s, not finite\n", noc_text_many(a, job->last.dropped, "sample"));
 }

@@ -22,6 +22,8 @@ static void count_meshes(const noc_scene *scene, noc_scene_info *info) {
             continue;
         info->meshes++;
         info->triangles += m->triangle_count;
+        if (m->model)
+            info->instance_triangles += (size_t)m->triangle_count * scene->models.data[m->model - 1].instances;
         info->vertices += noc_mesh_end_vertex(scene, i) - m->first_vertex;
         info->triangles_by_class[scene->materials.data[m->material].cls] += m->triangle_count;
     }

@@ -96,6 +96,33 @@ for city in "$source_dir"/cities/*.yaml; do
     fi
 done
 run info sub/city.yaml
-grep -q 'CityGML' out
-result $? "info tells of a recipe's inputs"
+grep -q 'CityGML' out && grep -q '^scene of 1 input' out && grep -q '^  objects     1, 1 of them buildings' out &&
+    grep -q '^  windows     28 windows, 14 lit, 13.0 on 100 m2 of wall, 6.5 lit' out && grep -Eq '^    wall +24$' out &&
+    grep -q '^  lamps       0 mapped, 1 inferred' out && grep -q '^  skipped     1 x ring with too few points' out
+result $? "info tells of a recipe's inputs, and of the scene that they make"
+mv out first.txt
+run info sub/city.yaml
+same "what it tells is the same each time" first.txt out
+run info --timing sub/city.yaml
+grep -q 'read in' out && grep -q '^  import ' out && grep -Eq '^  memory .* at most, .* of them the scene' out
+result $? "but for --timing"
+run info --no-scene sub/city.yaml
+! grep -q '^scene' out && grep -q CityGML out
+result $? "--no-scene tells of its inputs alone"
+cat >lamps.csv <<'END'
+id,lon,lat,lamp_type
+a,11.421884,48.754457,LED
+END
+run info --json --scene city.gml lamps.csv
+python3 - out >err <<'END'
+import json, sys
+told = json.load(open(sys.argv[1]))
+assert len(told["files"]) == 2 and "seconds" not in told["files"][0], told
+scene = told["scene"]
+expected = {"files": 2, "objects": 1, "buildings": 1, "windows": 28, "windows_lit": 14, "lamps_mapped": 1,
+            "lamps_inferred": 0, "lamps_dropped": 0, "features_skipped": 1, "instances": 0}
+wrong = {k: (scene.get(k), v) for k, v in expected.items() if scene.get(k) != v}
+assert not wrong, wrong
+END
+result $? "a scene as JSON"
 finish

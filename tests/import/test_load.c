@@ -139,6 +139,11 @@ static void test_useless_lamps(void **state) {
             noc_report_get_totals(r.report, &t);
             assert_int_equal(t.lamps_mapped, 0);
             assert_int_equal(t.lamps_dropped, i == 0 ? 1 : 2);
+            const noc_report_file *city = noc_report_get_file(r.report, 0), *lamps = noc_report_get_file(r.report, 1);
+            assert_int_equal(t.objects, city->objects);
+            assert_int_equal(t.buildings, city->buildings);
+            assert_int_equal(t.bytes_read, city->bytes_read + lamps->bytes_read);
+            assert_true(t.buildings > 0 && t.bytes_read > strlen(text));
             if (infer == NOC_SWITCH_ON) {
                 assert_int_equal(r.warnings, 2); /* why, and how many were inferred */
                 assert_int_equal(t.lamps_inferred, r.info.lights);

@@ -151,6 +151,7 @@ static void models_are_no_city(void **unused) {
     assert_float_equal(info.bounds_max[0], 502.5, 1e-3);
     assert_int_equal(info.models, 1);
     assert_int_equal(info.instances, 1);
+    assert_int_equal(info.instance_triangles, info.triangles - 2); /* all but the ground's */
     assert_string_equal(noc_scene_object_name(s, noc_scene_object_of(s, 0)), "body");
     place(0, 1, 0, at);
     noc_scene_destroy(s);

@@ -50,6 +50,9 @@ void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) 
         memcpy(totals->profiles, report->profiles, sizeof(totals->profiles));
     for (size_t i = 0; i < noc_report_file_count(report); i++) {
         const noc_report_file *f = &report->files.data[i];
+        totals->objects += f->objects;
+        totals->buildings += f->buildings;
+        totals->bytes_read += f->bytes_read;
         totals->lamps_mapped += f->lamps_mapped;
         totals->lamps_moved += f->lamps_moved;
         totals->lamps_dropped += f->lamps_dropped;
