@@ -49,8 +49,9 @@ typedef struct noc_import_params {
     bool footprints;        /* outlines of buildings in maps become blocks, where no city model has a building; default
                                false */
     double building_height; /* m, of those that tell neither height nor storeys; default 9 */
-    /* Place lamps by a rule? AUTO, the default: where the inputs hold none; inputs whose lamps are all of no use are an
-     * error. ON: where no lamp of the inputs is of use. OFF: nowhere. */
+    /* Place lamps by a rule? AUTO, the default: where the inputs hold none, along the lit roads of maps, else along
+     * streets or buildings; inputs whose lamps are all of no use are an error. ON: along lit roads of maps that have
+     * none, beside those that are mapped, too, and where no lamp of the inputs is of use. OFF: nowhere. */
     noc_switch infer_lamps;
     bool strict; /* an input of which anything is left out or guessed at is an error, and so are lamps placed by a
                     rule that infer_lamps does not ask for by ON; default false */

@@ -45,6 +45,39 @@ bool city_lamp_assumes(const geo_lamp *lamp, noc_lamp_default what);
 noc_status city_infer_lamps(noc_scene *scene, const city_lamp_params *params, const noc_progress *progress,
                             geo_issues *issues, int *lights);
 
+/* Roads of maps, found by place. The roads (local metres) stay the caller's, as long as it is there. NULL: memory was
+ * refused. */
+typedef struct city_roads city_roads;
+city_roads *city_roads_create(const geo_road *roads, size_t count);
+void city_roads_destroy(city_roads *roads); /* NULL is allowed */
+/* Unit vector from a point to the middle of the nearest road that a lamp there lights; false where none is near. */
+bool city_roads_facing(const city_roads *roads, const double xy[2], double facing[2]);
+
+/* A place for a lamp beside a road, on the ground. */
+typedef struct city_road_lamp {
+    const geo_road *road;
+    uint32_t number; /* of those that the road could have, along it */
+    double xy[2], facing[2];
+    double height; /* m */
+    uint64_t rank; /* less is kept first, where two are too near */
+} city_road_lamp;
+
+typedef struct city_road_params {
+    double height;        /* m, of lamps in streets where people live; others in proportion */
+    const double *mapped; /* 2 a lamp that is there: within a spacing of it none is placed */
+    size_t mapped_count;
+    bool (*inside)(void *user, const double xy[2]); /* may one stand there at all? NULL: anywhere */
+    void *user;
+    const noc_progress *progress; /* NULL: none */
+} city_road_params;
+
+/* Places for lamps along roads that are lit by their own word, or, where no lamp is mapped and no road tells whether it
+ * is lit, by their class: off other carriageways and so the middle of junctions, off railways, water, tunnels and
+ * buildings of the scene. *lamps: to be freed, whatever order the roads are in with the same places in the same order.
+ */
+noc_status city_road_lamps(noc_scene *scene, const city_roads *roads, const city_road_params *params,
+                           city_road_lamp **lamps, size_t *count);
+
 /* Linear Rec.709 of a black body / daylight at a colour temperature, luminance 1. Source: see lamp.c. */
 void city_kelvin_rgb(double kelvin, float rgb[3]);
 

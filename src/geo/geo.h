@@ -160,6 +160,10 @@ typedef struct geo_road {
     const double *xyz;   /* file CRS; z NaN where it stands on the ground */
 } geo_road;
 
+/* Of the carriageway, m: as it is told, else by its lanes, else as wide as its class usually is. */
+double geo_road_width(const geo_road *road);
+double geo_road_length(const geo_road *road); /* seen from above, in the unit of its coordinates */
+
 /* A column of a table, an attribute or a tag, and what a reader of lamps took it for. Texts are valid during the call.
  */
 typedef struct geo_column {
@@ -222,6 +226,20 @@ typedef struct geo_sink {
     bool named_lamps; /* the user says that the file's points are lamps */
     bool inspect;     /* a file of no use is told about, and no error */
 } geo_sink;
+
+/* ---- points by place (cells.c) ---- */
+
+/* Finds points by where they are, whatever the extent: chains of those whose cell has one hash. */
+typedef struct geo_cells {
+    uint32_t *first, *next; /* index + 1 in the order of its user; 0: no more */
+    size_t size;            /* of first: a power of two */
+    double edge;            /* m */
+} geo_cells;
+bool geo_cells_create(geo_cells *cells, size_t points, double edge) NOC_MUST_USE;
+/* 0..8: the cells around; 4: the point's own */
+uint32_t *geo_cells_at(const geo_cells *cells, const double xy[2], int neighbour);
+void geo_cells_add(geo_cells *cells, const double xy[2], size_t index);
+void geo_cells_free(geo_cells *cells);
 
 /* ---- polygons (polygon.c) ---- */
 

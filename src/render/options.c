@@ -123,7 +123,7 @@ static const noc_option import_options[] = {
     BOOL(P, footprints, "footprints", "City", "outlines of buildings in maps become blocks where no model has one"),
     REAL(P, building_height, "building-height", "City", 1, 500, "m", "height of such a block that tells none"),
     SWITCH(P, infer_lamps, "infer-lamps", "City",
-           "place lamps by a rule: where no input holds any; on: or none of use"),
+           "place lamps by a rule: where no input holds any; on: on all lit roads without"),
     BOOL(P, wet, "wet", "City", "after rain: roads, pavements and ground are dark and reflect"),
     BOOL(P, strict, "strict", "City", "what is left out of an input, guessed at or made up is an error"),
     TEXTS(P, lamps, "lamps", "City", "FILE", "a file whose points are lamps whatever it says; repeatable"),

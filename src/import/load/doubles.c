@@ -14,12 +14,12 @@
 
 /* The input of the lamp of another file that is this one, it seems: it is near, and less than half as far as the next
  * lamp of the own file. SIZE_MAX: there is none. */
-static size_t twin(const pending_lamp *lamps, const lamp_cells *cells, const pending_lamp *p) {
+static size_t twin(const pending_lamp *lamps, const geo_cells *cells, const pending_lamp *p) {
     double own = INFINITY, other = INFINITY;
     size_t found = SIZE_MAX;
     for (int c = 0; c < 9; c++) {
         size_t seen = 0;
-        for (uint32_t k = *lamp_cells_at(cells, p->lamp.xyz, c); k && seen++ < MOST; k = cells->next[k - 1]) {
+        for (uint32_t k = *geo_cells_at(cells, p->lamp.xyz, c); k && seen++ < MOST; k = cells->next[k - 1]) {
             const pending_lamp *q = &lamps[k - 1];
             double d = hypot(q->lamp.xyz[0] - p->lamp.xyz[0], q->lamp.xyz[1] - p->lamp.xyz[1]);
             if (q->input == p->input) {
@@ -35,7 +35,7 @@ static size_t twin(const pending_lamp *lamps, const lamp_cells *cells, const pen
 
 /* Lamps [from, to) are those of one input. counts: zeros, one for each input, as they are left. told: the other input +
  * 1 that a warning of an input was about. */
-static void judge_file(const importer *im, const lamp_cells *cells, size_t from, size_t to, size_t *counts,
+static void judge_file(const importer *im, const geo_cells *cells, size_t from, size_t to, size_t *counts,
                        size_t *told) {
     const pending_lamp *lamps = im->lamps.data;
     size_t self = lamps[from].input, best = 0;
@@ -62,17 +62,17 @@ noc_status warn_of_doubles(const importer *im) {
     size_t count = im->lamps.len;
     if (!count || lamps[0].input == lamps[count - 1].input) /* they lie file by file */
         return NOC_OK;
-    lamp_cells cells;
+    geo_cells cells;
     size_t *counts = noc_calloc(2 * im->input_count, sizeof(*counts));
-    bool kept = lamp_cells_create(&cells, count, CELL) && counts;
+    bool kept = geo_cells_create(&cells, count, CELL) && counts;
     for (size_t i = 0; i < count && kept; i++)
-        lamp_cells_add(&cells, lamps[i].lamp.xyz, i);
+        geo_cells_add(&cells, lamps[i].lamp.xyz, i);
     for (size_t from = 0, to; from < count && kept; from = to) {
         for (to = from; to < count && lamps[to].input == lamps[from].input;)
             to++;
         judge_file(im, &cells, from, to, counts, counts + im->input_count);
     }
-    lamp_cells_free(&cells);
+    geo_cells_free(&cells);
     free(counts);
     return kept ? NOC_OK : noc_no_memory(im->log, "import");
 }

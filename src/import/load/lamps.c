@@ -139,20 +139,37 @@ typedef struct lamp_fate {
     size_t exchanged;
 } lamp_fate;
 
-/* Stands the lamps that were read. */
+/* One that was placed along a road, whose lights are of no input. */
+static void stand_inferred(importer *im, pending_lamp *p, const city_lamp_params *params) {
+    city_lamp_params untold = *params;
+    untold.tally = NULL; /* of surveyed lamps alone, as are the report's issues */
+    road_lamps_raise(im, p);
+    int lights = city_add_lamp(im->scene, &p->lamp, &untold, true, NULL);
+    im->report->lamps_inferred += lights > 0 ? (size_t)lights : 0;
+}
+
+/* Stands the lamps that were read, and those along roads. */
 static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_params *params, lamp_fate *fate) {
     noc_status status = NOC_OK;
-    *fate = (lamp_fate){
-        .given = im->lamps.len, .nearest = INFINITY, .closest = INFINITY, .others = im->scene->lights.len
-    };
+    *fate = (lamp_fate){ .nearest = INFINITY, .closest = INFINITY, .others = im->scene->lights.len };
+    for (size_t i = 0; i < im->lamps.len; i++)
+        fate->given += !im->lamps.data[i].along;
     for (size_t i = 0; i < im->input_count; i++) {
         fate->lost += im->inputs[i].lamps_lost;
         im->inputs[i].file.lamps_dropped = im->inputs[i].lamps_lost;
     }
     fate->given += fate->lost;
     for (size_t i = 0; i < im->lamps.len; i++) {
-        const pending_lamp *p = &im->lamps.data[i];
+        pending_lamp *p = &im->lamps.data[i];
         input *in = &im->inputs[p->input];
+        if (i % 256 == 0 && !go_on(im, 0.9 + 0.1 * (double)i / (double)im->lamps.len))
+            break;
+        if (i % 256 == 0 && (status = take_affords(im, in, 0)))
+            break;
+        if (p->along) {
+            stand_inferred(im, p, params);
+            continue;
+        }
         double d = e->any ? distance_outside(e, p->lamp.xyz) : 0;
         if (d > OUTSIDE) {
             geo_issue(in->issues, GEO_SKIPPED, "lamp more than 2 km outside the city", p->lamp.id);
@@ -170,10 +187,6 @@ static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_par
             report_assumed(&in->file, &p->lamp);
         fate->mapped += lights > 0;
         fate->closest = lights > 0 ? NOC_MIN(fate->closest, d) : fate->closest;
-        if (i % 256 == 0 && !go_on(im, 0.9 + 0.1 * (double)i / (double)im->lamps.len))
-            break;
-        if (i % 256 == 0 && (status = take_affords(im, in, 0)))
-            break;
     }
     return status;
 }
@@ -181,8 +194,8 @@ static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_par
 static void count_exchanged(importer *im, const extent *e, lamp_fate *fate) {
     double xy[2];
     for (size_t i = 0; i < im->lamps.len; i++)
-        fate->exchanged +=
-            place_exchanged(im, &im->lamps.data[i].given, xy) && e->any && distance_outside(e, xy) <= OUTSIDE;
+        fate->exchanged += !im->lamps.data[i].along && place_exchanged(im, &im->lamps.data[i].given, xy) && e->any &&
+                           distance_outside(e, xy) <= OUTSIDE;
     for (size_t i = 0; i < im->lost.len; i++)
         fate->exchanged += place_exchanged(im, &im->lost.data[i], xy) && e->any && distance_outside(e, xy) <= OUTSIDE;
 }
@@ -288,6 +301,15 @@ static noc_status infer(importer *im, const extent *e, city_lamp_params *params,
     return NOC_OK;
 }
 
+static void tell_along_roads(const importer *im, const lamp_fate *fate) {
+    size_t count = im->report->lamps_inferred;
+    if (count && !fate->given)
+        noc_warn(im->log, "no lamps in the inputs: %zu placed along roads of the map (inferred, not surveyed)", count);
+    else if (count)
+        noc_info(im->log, "%zu lamps placed along roads of the map that are lit and have none (inferred, not surveyed)",
+                 count);
+}
+
 /* Lamps, of the inputs or by a rule. */
 static noc_status light_city(importer *im, const extent *e, city_profiles *profiles) {
     noc_scene *scene = im->scene;
@@ -312,7 +334,25 @@ static noc_status light_city(importer *im, const extent *e, city_profiles *profi
         noc_info(im->log, "outside the city, and left out: %zu of %zu lamps", fate.outside, fate.given);
     warn_of_distance(im, &fate);
     warn_of_roofs(im, &tally);
+    tell_along_roads(im, &fate);
     return shines(scene) ? NOC_OK : infer(im, e, &params, &fate);
+}
+
+/* What the roads of maps tell of lamps, before the ground is laid that those need. */
+static noc_status ask_roads(importer *im) {
+    bool missing = !im->lamps.len && !im->lost.len && !shines(im->scene);
+    if (!im->roads.len)
+        return NOC_OK;
+    city_roads *roads = city_roads_create(im->roads.data, im->roads.len);
+    if (!roads)
+        return noc_no_memory(im->log, "import");
+    if (!im->has_roads) /* surfaces are nearer to the truth */
+        road_lamps_face(im, roads);
+    noc_status status = NOC_OK;
+    if (im->params->infer_lamps == NOC_SWITCH_ON || (im->params->infer_lamps == NOC_SWITCH_AUTO && missing))
+        status = road_lamps_add(im, roads);
+    city_roads_destroy(roads);
+    return status;
 }
 
 static noc_status finish_lamps(importer *im) {
@@ -329,6 +369,8 @@ static noc_status finish_lamps(importer *im) {
     noc_status status = repeat_lamps(im);
     if (!status)
         status = warn_of_doubles(im);
+    if (!status)
+        status = ask_roads(im);
     if (!status)
         status = needs_ground(im, &e) ? lay_ground(im, &e) : heights_check(im, NULL);
     if (status)

@@ -68,6 +68,7 @@ typedef struct pending_lamp {
     geo_lamp lamp; /* local metres; id in importer.names */
     given_place given;
     size_t input;
+    const geo_road *along; /* a lamp that is placed along this one; NULL: it is the input's */
 } pending_lamp;
 
 /* The object that is being read, as far as it tells it from others (repeat.c). */
@@ -105,11 +106,6 @@ typedef struct pending_footprint {
     size_t input;
 } pending_footprint;
 
-typedef struct pending_road {
-    geo_road road; /* local metres; texts and coordinates in importer.names */
-    size_t input;
-} pending_road;
-
 /* Meshes of the scene that a building came in. */
 typedef struct taken_building {
     uint32_t first, end;
@@ -144,8 +140,8 @@ typedef struct importer {
     NOC_ARRAY(float) heights; /* of buildings, m */
     NOC_ARRAY(float) storeys; /* of those that tell how many they have */
     NOC_ARRAY(pending_footprint) footprints;
-    NOC_ARRAY(pending_road) roads;
-    noc_map road_places; /* of those, by which a second one is told */
+    NOC_ARRAY(geo_road) roads; /* local metres; texts and coordinates in importer.names */
+    noc_map road_places;       /* of those, by which a second one is told */
     NOC_ARRAY(pending_lamp) lamps;
     size_t lamp_looks;           /* lamps that repeat_lamps compared: for tests */
     NOC_ARRAY(given_place) lost; /* lamps that have no place in the scene's CRS */
@@ -287,7 +283,15 @@ noc_status footprints_stand(importer *im);
 
 /* roads.c: of maps. */
 bool roads_wanted(const noc_import_params *params);
-noc_status road_keep(importer *im, input *in, size_t index, const geo_road *road);
+noc_status road_keep(importer *im, input *in, const geo_road *road);
+
+/* road_lamps.c: lamps along lit roads are added to those of the inputs. */
+struct city_roads;
+noc_status road_lamps_add(importer *im, const struct city_roads *roads);
+/* Lamps that do not say which way they face look across the nearest road. */
+void road_lamps_face(importer *im, const struct city_roads *roads);
+/* One on a bridge stands on the line between the ground at its ends. */
+void road_lamps_raise(const importer *im, pending_lamp *p);
 
 /* units.c: a warning where the median height of buildings, or of a storey, is hardly one in metres. */
 void units_check(importer *im);
@@ -328,18 +332,6 @@ void repeat_polygon(object_now *now, noc_class cls, const double *xyz, size_t co
 noc_status repeat_object(importer *im, input *in, const object_now *now, const char *id);
 noc_status repeat_lamps(importer *im); /* drops lamps that an earlier file holds */
 void repeat_free(object_records *records);
-
-/* lamp_cells.c: finds lamps by where they are, whatever the extent: chains of those whose cell has one hash. */
-typedef struct lamp_cells {
-    uint32_t *first, *next; /* index + 1 in the order of its user; 0: no more */
-    size_t size;            /* of first: a power of two */
-    double edge;            /* m */
-} lamp_cells;
-bool lamp_cells_create(lamp_cells *cells, size_t lamps, double edge) NOC_MUST_USE;
-/* 0..8: the cells around; 4: the point's own */
-uint32_t *lamp_cells_at(const lamp_cells *cells, const double xy[2], int neighbour);
-void lamp_cells_add(lamp_cells *cells, const double xy[2], size_t index);
-void lamp_cells_free(lamp_cells *cells);
 
 /* doubles.c: a warning where most lamps of a file seem to be another file's. */
 noc_status warn_of_doubles(const importer *im);

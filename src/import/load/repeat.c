@@ -254,10 +254,10 @@ static bool given_twice(const pending_lamp *a, const pending_lamp *b) {
 }
 
 /* One of those around that is this lamp; NULL: there is none. */
-static const pending_lamp *find_lamp(importer *im, const lamp_cells *cells, const pending_lamp *p) {
+static const pending_lamp *find_lamp(importer *im, const geo_cells *cells, const pending_lamp *p) {
     for (int c = 0; c < 9; c++) {
         size_t seen = 0;
-        for (uint32_t k = *lamp_cells_at(cells, p->lamp.xyz, c); k && seen++ < MOST;
+        for (uint32_t k = *geo_cells_at(cells, p->lamp.xyz, c); k && seen++ < MOST;
              k = cells->next[k - 1], im->lamp_looks++)
             if (same_lamp(&im->lamps.data[k - 1], p) || given_twice(&im->lamps.data[k - 1], p))
                 return &im->lamps.data[k - 1];
@@ -267,9 +267,9 @@ static const pending_lamp *find_lamp(importer *im, const lamp_cells *cells, cons
 
 /* Does one of its own file stand at the very place? A thousand lamps of one file at one place are one, to those of
  * another. */
-static bool stands_there(importer *im, const lamp_cells *cells, const pending_lamp *p) {
+static bool stands_there(importer *im, const geo_cells *cells, const pending_lamp *p) {
     size_t seen = 0;
-    for (uint32_t k = *lamp_cells_at(cells, p->lamp.xyz, 4); k && seen++ < MOST;
+    for (uint32_t k = *geo_cells_at(cells, p->lamp.xyz, 4); k && seen++ < MOST;
          k = cells->next[k - 1], im->lamp_looks++) {
         const pending_lamp *q = &im->lamps.data[k - 1];
         if (q->input == p->input && q->lamp.xyz[0] == p->lamp.xyz[0] && q->lamp.xyz[1] == p->lamp.xyz[1])
@@ -280,14 +280,14 @@ static bool stands_there(importer *im, const lamp_cells *cells, const pending_la
 
 noc_status repeat_lamps(importer *im) {
     pending_lamp *lamps = im->lamps.data;
-    lamp_cells cells;
+    geo_cells cells;
     size_t kept = 0;
     bool several = false;
     for (size_t i = 1; i < im->lamps.len; i++)
         several = several || lamps[i].input != lamps[0].input || lamps[i].lamp.body_heads;
     if (!several)
         return NOC_OK;
-    if (!lamp_cells_create(&cells, im->lamps.len, LAMP_CELL))
+    if (!geo_cells_create(&cells, im->lamps.len, LAMP_CELL))
         return noc_no_memory(im->log, "import");
     for (size_t i = 0; i < im->lamps.len; i++) {
         const pending_lamp p = lamps[i];
@@ -303,10 +303,10 @@ noc_status repeat_lamps(importer *im) {
         }
         lamps[kept] = p;
         if (!stands_there(im, &cells, &p))
-            lamp_cells_add(&cells, p.lamp.xyz, kept);
+            geo_cells_add(&cells, p.lamp.xyz, kept);
         kept++;
     }
     im->lamps.len = kept;
-    lamp_cells_free(&cells);
+    geo_cells_free(&cells);
     return NOC_OK;
 }

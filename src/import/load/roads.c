@@ -1,23 +1,14 @@
 /* Roads of maps, which are kept until all inputs are read. */
 #include "import/load/load.h"
 
-#include <math.h>
-
 bool roads_wanted(const noc_import_params *params) { return params->infer_lamps != NOC_SWITCH_OFF; }
-
-static double length_of(const geo_road *road) {
-    double sum = 0;
-    for (size_t i = 0; i + 1 < road->point_count; i++)
-        sum += hypot(road->xyz[3 * i + 3] - road->xyz[3 * i], road->xyz[3 * i + 4] - road->xyz[3 * i + 1]);
-    return sum;
-}
 
 static void count_road(noc_report_file *file, const geo_road *road) {
     if (road->cls == GEO_ROAD_RAIL) {
         file->railways++;
         return;
     }
-    double length = length_of(road);
+    double length = geo_road_length(road);
     file->roads++;
     file->road_metres += length;
     file->roads_lit += road->lit == GEO_LIT_YES;
@@ -33,7 +24,7 @@ static noc_status look_up(importer *im, const input *in, const geo_road *road, b
     return kept ? NOC_OK : noc_no_memory(im->log, in->path);
 }
 
-noc_status road_keep(importer *im, input *in, size_t index, const geo_road *road) {
+noc_status road_keep(importer *im, input *in, const geo_road *road) {
     bool fresh;
     noc_status status = look_up(im, in, road, &fresh);
     if (!status && !fresh)
@@ -43,13 +34,13 @@ noc_status road_keep(importer *im, input *in, size_t index, const geo_road *road
     count_road(&in->file, road);
     if (im->inspect)
         return NOC_OK;
-    pending_road p = { .road = *road, .input = index };
+    geo_road kept = *road;
     size_t bytes = 3 * road->point_count * sizeof(double);
     double *xyz = arena_alloc(&im->names, bytes);
-    p.road.id = arena_strdup(&im->names, road->id);
-    p.road.name = arena_strdup(&im->names, road->name);
-    p.road.xyz = xyz;
-    if (!xyz || !p.road.id || !p.road.name || !array_push(&im->roads, p))
+    kept.id = arena_strdup(&im->names, road->id);
+    kept.name = arena_strdup(&im->names, road->name);
+    kept.xyz = xyz;
+    if (!xyz || !kept.id || !kept.name || !array_push(&im->roads, kept))
         return noc_no_memory(im->log, in->path);
     memcpy(xyz, road->xyz, bytes);
     return im->roads.len % 1024 ? NOC_OK : take_affords(im, in, 0);

@@ -229,7 +229,7 @@ static noc_status on_road(void *ctx, const geo_road *road) {
         return status;
     geo_road local = *road;
     local.xyz = r->scratch.data;
-    return road_keep(r->im, r->in, r->index, &local);
+    return road_keep(r->im, r->in, &local);
 }
 
 /* Of a file that has been read. */

@@ -1,0 +1,304 @@
+/* Lamps along the roads of maps that are lit and have none.
+ *
+ * Arrangements are those of road lighting (W. van Bommel, Road Lighting, Springer 2015, section 13.1; EN 13201 asks for
+ * what they give, and not for them): on one side where the carriageway is no wider than the lamps are high, by turns on
+ * both up to one and a half times that, opposite each other beyond; 3 to 4 times their height apart. Heights by class
+ * are usual ones (Thorn Lighting Handbook, roads: 10 m and more on main roads, 8 to 10 m on roads around and into
+ * towns; 4 to 6 m where people walk), as shares of the height that lamps have for want of a better one; flux goes with
+ * the square of it, so that the ground below gets as much light as everywhere. That is ours.
+ *
+ * A way is divided evenly, so its lamps hang on nothing but itself: its id, its line and what is beside it. Lamps of
+ * two ways that come too near are told apart by class, then by a hash of the way's id. So no order of files or ways
+ * changes a lamp. */
+#include "city/lamp.h"
+#include "city/roads.h"
+
+#include <math.h>
+
+#define SPACING 4.0     /* heights between lamps */
+#define KERB 0.6        /* m behind the carriageway's edge */
+#define CLEAR 0.4       /* m that a lamp stands off other carriageways */
+#define RAIL_CLEAR 2.5  /* m off the middle of a track: half of the structure gauge of EN 15273 */
+#define PATH_BESIDE 8.0 /* m from a lit road's edge in which its lamps light a path */
+#define OWN_WAY 0.5     /* of its spacing in which a lamp bears none of another way */
+#define OWN_OTHER 0.25  /* the same of one that faces it, across the two carriageways */
+#define MOST_LAMPS 200000
+#define MOST_NEAR 4096 /* mapped lamps in a square of the spacing: there is no room for more */
+#define LONGEST 200e3  /* m of a way that gets lamps */
+
+enum {
+    MOTOR_LIT = 1u << GEO_ROAD_PRIMARY | 1u << GEO_ROAD_SECONDARY | 1u << GEO_ROAD_TERTIARY | 1u << GEO_ROAD_MINOR |
+                1u << GEO_ROAD_LIVING | 1u << GEO_ROAD_PEDESTRIAN
+};
+
+/* Of lamp_height. */
+static const double heights[GEO_ROAD_CLASSES] = {
+    [GEO_ROAD_MOTORWAY] = 2,       [GEO_ROAD_TRUNK] = 5 / 3.,    [GEO_ROAD_PRIMARY] = 5 / 3.,
+    [GEO_ROAD_SECONDARY] = 5 / 3., [GEO_ROAD_TERTIARY] = 4 / 3., [GEO_ROAD_MINOR] = 1,
+    [GEO_ROAD_LIVING] = 3 / 4.,    [GEO_ROAD_SERVICE] = 1,       [GEO_ROAD_PEDESTRIAN] = 3 / 4.,
+    [GEO_ROAD_PATH] = 3 / 4.,      [GEO_ROAD_TRACK] = 1,         [GEO_ROAD_RAIL] = 0,
+};
+
+typedef struct placing {
+    const city_roads *roads;
+    const city_road_params *params;
+    noc_scene *scene;
+    geo_cells mapped;
+    double reach; /* m: the largest spacing */
+    bool by_class, no_memory, cancelled;
+    NOC_ARRAY(double) sums; /* of the present way: its length up to each point */
+    NOC_ARRAY(city_road_lamp) found;
+} placing;
+
+static uint64_t mix(uint64_t h) {
+    h = (h ^ h >> 33) * 0xff51afd7ed558ccdu;
+    h = (h ^ h >> 33) * 0xc4ceb9fe1a85ec53u;
+    return h ^ h >> 33;
+}
+
+/* FNV-1a: the same in every process. */
+static uint64_t hash_of(const char *text) {
+    uint64_t h = 0xcbf29ce484222325u;
+    for (; *text; text++)
+        h = (h ^ (unsigned char)*text) * 0x100000001b3u;
+    return mix(h);
+}
+
+static bool is_lit(const placing *p, const geo_road *road) {
+    if (road->cls == GEO_ROAD_RAIL || road->tunnel)
+        return false;
+    return p->by_class ? MOTOR_LIT >> road->cls & 1 && !road->link : road->lit == GEO_LIT_YES;
+}
+
+static double height_of(const placing *p, const geo_road *road) { return heights[road->cls] * p->params->height; }
+
+static double spacing_of(const placing *p, const geo_road *road) { return SPACING * height_of(p, road); }
+
+/* ---- whether a lamp may stand somewhere ---- */
+
+/* At another height than the road, whatever lies there. */
+static bool elsewhere(const geo_road *road, const geo_road *other) {
+    return other->tunnel || other->layer != road->layer ||
+           (other->bridge != road->bridge && other->cls == GEO_ROAD_RAIL);
+}
+
+/* Off other carriageways, so off the middle of junctions, and off railways. */
+static bool clear_of_roads(const placing *p, const geo_road *road, const double xy[2]) {
+    bool path = road->cls == GEO_ROAD_PATH;
+    for (road_walk w = road_walk_start(p->roads, xy); road_walk_next(&w);) {
+        const geo_road *other = &p->roads->roads[w.piece->road];
+        double d = road_distance(w.piece, xy, NULL), half = geo_road_width(other) / 2;
+        if (elsewhere(road, other) && other != road)
+            continue;
+        if (other->cls == GEO_ROAD_RAIL ? d < RAIL_CLEAR : d < half + CLEAR && (path || other->cls != GEO_ROAD_PATH))
+            return false;
+        if (path && other->cls != GEO_ROAD_PATH && is_lit(p, other) && d < half + PATH_BESIDE)
+            return false;
+    }
+    return true;
+}
+
+static bool on_water(const noc_scene *scene, const double xy[2]) {
+    double water, ground;
+    const uint32_t firm = 1u << NOC_CLASS_TERRAIN | 1u << NOC_CLASS_ROAD | 1u << NOC_CLASS_SIDEWALK |
+                          1u << NOC_CLASS_GREEN | 1u << NOC_CLASS_BRIDGE;
+    return noc_scene_highest(scene, 1u << NOC_CLASS_WATER, xy[0], xy[1], &water) &&
+           !(noc_scene_highest(scene, firm, xy[0], xy[1], &ground) && ground > water);
+}
+
+static bool is_mapped(const placing *p, const double xy[2], double within) {
+    for (int c = 0; c < 9; c++) {
+        size_t seen = 0;
+        for (uint32_t k = *geo_cells_at(&p->mapped, xy, c); k; k = p->mapped.next[k - 1]) {
+            const double *at = p->params->mapped + 2 * (size_t)(k - 1);
+            if (hypot(at[0] - xy[0], at[1] - xy[1]) < within || seen++ == MOST_NEAR)
+                return true;
+        }
+    }
+    return false;
+}
+
+static bool may_stand(const placing *p, const geo_road *road, const double xy[2]) {
+    double z;
+    if (!(fabs(xy[0]) < ROADS_FARTHEST && fabs(xy[1]) < ROADS_FARTHEST))
+        return false;
+    if (is_mapped(p, xy, spacing_of(p, road)) || (p->params->inside && !p->params->inside(p->params->user, xy)) ||
+        !clear_of_roads(p, road, xy) || (!road->bridge && on_water(p->scene, xy)))
+        return false;
+    return !site_covered(p->scene, xy[0], xy[1], noc_scene_ground(p->scene, xy[0], xy[1], &z) ? z : -INFINITY);
+}
+
+/* ---- along one way ---- */
+
+static bool measure(placing *p, const geo_road *road) {
+    double sum = 0;
+    p->sums.len = 0;
+    for (size_t i = 0; i < road->point_count; i++) {
+        const double *a = road->xyz + 3 * i;
+        sum += i ? hypot(a[0] - a[-3], a[1] - a[-2]) : 0;
+        if (!array_push(&p->sums, sum))
+            return false;
+    }
+    return true;
+}
+
+/* The place on the way so far along it, and where it goes there. */
+static void point_at(const placing *p, const geo_road *road, double along, double at[2], double way[2]) {
+    size_t low = 0, high = road->point_count - 1;
+    while (high - low > 1) {
+        size_t middle = (low + high) / 2;
+        *(p->sums.data[middle] <= along ? &low : &high) = middle;
+    }
+    const double *a = road->xyz + 3 * low, *b = a + 3;
+    double length = p->sums.data[high] - p->sums.data[low], t = length > 0 ? (along - p->sums.data[low]) / length : 0;
+    for (int k = 0; k < 2; k++) {
+        at[k] = a[k] + NOC_CLAMP(t, 0, 1) * (b[k] - a[k]);
+        way[k] = length > 0 ? (b[k] - a[k]) / length : k == 0;
+    }
+}
+
+/* side: 1 right of the line as it is drawn, -1 left. */
+static bool propose(placing *p, const geo_road *road, double along, int side, uint64_t rank, uint32_t number) {
+    double at[2], way[2];
+    point_at(p, road, along, at, way);
+    double off = side * (geo_road_width(road) / 2 + KERB);
+    city_road_lamp lamp = { .road = road, .number = number, .rank = rank, .height = height_of(p, road) };
+    lamp.xy[0] = at[0] + off * way[1];
+    lamp.xy[1] = at[1] - off * way[0];
+    lamp.facing[0] = -side * way[1];
+    lamp.facing[1] = side * way[0];
+    if (!may_stand(p, road, lamp.xy))
+        return false;
+    p->no_memory = p->no_memory || !array_push(&p->found, lamp);
+    return true;
+}
+
+/* A lamp in the middle of its share of the way, else a little before or behind, else, where it may, across it. */
+static void put(placing *p, const geo_road *road, double along, double share, int side, bool either, uint64_t rank,
+                uint32_t number) {
+    static const double moves[] = { 0, -.15, .15, -.3, .3 };
+    for (int across = 0; across <= either; across++)
+        for (size_t i = 0; i < NOC_COUNT(moves); i++)
+            if (propose(p, road, along + moves[i] * share, across ? -side : side, rank, number))
+                return;
+}
+
+/* The side of the street on which lamps stand: of one way the outer one, else any, but the same along the street,
+ * however its ways are drawn. */
+static int side_of(const geo_road *road) {
+    if (road->oneway)
+        return road->oneway;
+    const double *a = road->xyz, *b = road->xyz + 3 * (road->point_count - 1);
+    double east = b[0] - a[0], north = b[1] - a[1];
+    bool turned = fabs(east) > fabs(north) ? east < 0 : north < 0;
+    bool right = hash_of(*road->name ? road->name : road->id) & 1;
+    return right != turned ? 1 : -1;
+}
+
+static void along_way(placing *p, const geo_road *road) {
+    if (!is_lit(p, road))
+        return;
+    if (!measure(p, road)) {
+        p->no_memory = true;
+        return;
+    }
+    double length = p->sums.data[p->sums.len - 1], height = height_of(p, road), width = geo_road_width(road);
+    double spacing = spacing_of(p, road);
+    if (!(length > 0) || length > LONGEST)
+        return;
+    uint64_t hash = hash_of(road->id);
+    /* one that is shorter than the spacing has its share of a lamp */
+    double share = length / spacing, chance = (double)(hash >> 11) / 9007199254740992.0;
+    uint32_t count = (uint32_t)(share >= 1 ? floor(share + .5) : chance < share);
+    bool opposite = width > 1.5 * height, turns = !opposite && width > height;
+    int side = side_of(road);
+    for (uint32_t i = 0; i < count && p->found.len < MOST_LAMPS; i++) {
+        double along = (i + .5) * length / count;
+        uint64_t rank = (uint64_t)road->cls << 56 | mix(hash + i) >> 8;
+        int here = turns && i % 2 ? -side : side;
+        put(p, road, along, length / count, here, !opposite, rank, opposite ? 2 * i : i);
+        if (opposite)
+            put(p, road, along, length / count, -here, false, rank, 2 * i + 1);
+    }
+}
+
+/* ---- all of them ---- */
+
+static bool too_near(const placing *p, const city_road_lamp *a, const city_road_lamp *b) {
+    if (a->road == b->road)
+        return false;
+    double across = a->facing[0] * b->facing[0] + a->facing[1] * b->facing[1] < -.5 ? OWN_OTHER : OWN_WAY;
+    double spacing = NOC_MIN(spacing_of(p, a->road), spacing_of(p, b->road));
+    return hypot(a->xy[0] - b->xy[0], a->xy[1] - b->xy[1]) < across * spacing;
+}
+
+/* Ways of one rank and number are one way, given twice. */
+static int by_rank(const void *a, const void *b) {
+    const city_road_lamp *x = a, *y = b;
+    if (x->rank != y->rank)
+        return x->rank < y->rank ? -1 : 1;
+    if (x->number != y->number)
+        return x->number < y->number ? -1 : 1;
+    return (x->xy[0] > y->xy[0]) - (x->xy[0] < y->xy[0]);
+}
+
+/* Keeps those that no better one is too near to. */
+static void thin_out(placing *p) {
+    geo_cells cells;
+    size_t kept = 0;
+    if (p->found.len > 1)
+        qsort(p->found.data, p->found.len, sizeof(*p->found.data), by_rank);
+    if (!geo_cells_create(&cells, p->found.len + 1, p->reach)) {
+        p->no_memory = true;
+        return;
+    }
+    for (size_t i = 0; i < p->found.len; i++) {
+        const city_road_lamp lamp = p->found.data[i];
+        bool alone = true;
+        for (int c = 0; c < 9 && alone; c++)
+            for (uint32_t k = *geo_cells_at(&cells, lamp.xy, c); k && alone; k = cells.next[k - 1])
+                alone = !too_near(p, &lamp, &p->found.data[k - 1]);
+        if (!alone)
+            continue;
+        p->found.data[kept] = lamp;
+        geo_cells_add(&cells, lamp.xy, kept++);
+    }
+    p->found.len = kept;
+    geo_cells_free(&cells);
+}
+
+/* Does the map tell of no road whether it is lit? */
+static bool tells_nothing(const city_roads *roads) {
+    for (size_t i = 0; i < roads->count; i++)
+        if (roads->roads[i].lit != GEO_LIT_UNKNOWN)
+            return false;
+    return true;
+}
+
+noc_status city_road_lamps(noc_scene *scene, const city_roads *roads, const city_road_params *params,
+                           city_road_lamp **lamps, size_t *count) {
+    placing p = { .roads = roads, .params = params, .scene = scene, .reach = SPACING * 2 * params->height };
+    p.by_class = !params->mapped_count && tells_nothing(roads);
+    *lamps = NULL;
+    *count = 0;
+    p.no_memory = !geo_cells_create(&p.mapped, params->mapped_count + 1, p.reach);
+    for (size_t i = 0; i < params->mapped_count && !p.no_memory; i++)
+        geo_cells_add(&p.mapped, params->mapped + 2 * i, i);
+    for (size_t i = 0; i < roads->count && !p.no_memory && !p.cancelled; i++) {
+        const noc_progress *progress = params->progress;
+        along_way(&p, &roads->roads[i]);
+        p.cancelled = i % 256 == 0 && progress && progress->update &&
+                      !progress->update(progress->user, "lamps", (double)i / (double)roads->count);
+    }
+    geo_cells_free(&p.mapped);
+    array_free(&p.sums);
+    if (!p.no_memory && !p.cancelled)
+        thin_out(&p);
+    if (!p.no_memory && !p.cancelled) {
+        *lamps = p.found.data;
+        *count = p.found.len;
+        return NOC_OK;
+    }
+    array_free(&p.found);
+    return p.no_memory ? noc_scene_out_of_memory(scene) : NOC_ERR_CANCELLED;
+}

@@ -1,0 +1,33 @@
+#include "geo/geo.h"
+
+#include <math.h>
+
+/* Ours. Lanes are as wide as RASt 06 (FGSV, 2006) makes them in towns, 2.75 to 3.25 m, and on motorways 3.5 to 3.75 m;
+ * carriageways of two ways and unmarked ones of its residential streets are some 5.5 m wide. */
+static const struct {
+    double lane, both_ways, one_way; /* m; the last two of a road that does not tell its lanes */
+} usual[GEO_ROAD_CLASSES] = {
+    [GEO_ROAD_MOTORWAY] = { 3.75, 15, 7.5 }, [GEO_ROAD_TRUNK] = { 3.5, 7, 7 },
+    [GEO_ROAD_PRIMARY] = { 3.25, 6.5, 6.5 }, [GEO_ROAD_SECONDARY] = { 3.25, 6.5, 6.5 },
+    [GEO_ROAD_TERTIARY] = { 3, 6, 4.5 },     [GEO_ROAD_MINOR] = { 2.75, 5.5, 4 },
+    [GEO_ROAD_LIVING] = { 2.75, 5, 4 },      [GEO_ROAD_SERVICE] = { 2.75, 3.5, 3.5 },
+    [GEO_ROAD_PEDESTRIAN] = { 2.75, 4, 4 },  [GEO_ROAD_PATH] = { 2, 2, 2 },
+    [GEO_ROAD_TRACK] = { 2.75, 2.75, 2.75 }, [GEO_ROAD_RAIL] = { 3, 3, 3 },
+};
+
+double geo_road_width(const geo_road *road) {
+    if (isfinite(road->width))
+        return road->width;
+    if (road->lanes > 0)
+        return road->lanes * usual[road->cls].lane;
+    return road->link          ? usual[road->cls].lane + 1
+           : road->oneway != 0 ? usual[road->cls].one_way
+                               : usual[road->cls].both_ways;
+}
+
+double geo_road_length(const geo_road *road) {
+    double sum = 0;
+    for (size_t i = 0; i + 1 < road->point_count; i++)
+        sum += hypot(road->xyz[3 * i + 3] - road->xyz[3 * i], road->xyz[3 * i + 4] - road->xyz[3 * i + 1]);
+    return sum;
+}

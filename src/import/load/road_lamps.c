@@ -1,0 +1,107 @@
+/* Lamps and the roads of maps: which way lamps face that do not tell it, and lamps along lit roads that have none. */
+#include "city/city.h"
+#include "import/load/load.h"
+
+#include <math.h>
+
+#define BESIDE 150.0 /* m around the city in which streets get lamps */
+
+typedef struct where {
+    importer *im;
+    reading reading; /* of no file: for the way to the box */
+    noc_status status;
+} where;
+
+/* In the box that is taken, and in the city where there is one. */
+static bool is_inside(void *user, const double xy[2]) {
+    where *w = user;
+    const noc_scene *scene = w->im->scene;
+    for (int k = 0; k < 2 && scene->indices.len; k++)
+        if (xy[k] < scene->bounds_min[k] - BESIDE || xy[k] > scene->bounds_max[k] + BESIDE)
+            return false;
+    bool inside = true;
+    w->status = w->status ? w->status : box_point(&w->reading, (double[]){ xy[0], xy[1], 0 }, &inside);
+    return inside && !w->status;
+}
+
+static bool update(void *user, const char *what, double done) {
+    importer *im = user;
+    const noc_progress *progress = &im->params->progress;
+    im->cancelled = im->cancelled || (progress->update && !progress->update(progress->user, what, 0.9 + 0.02 * done));
+    return !im->cancelled;
+}
+
+static bool keep(importer *im, const city_road_lamp *place) {
+    char *id = noc_format("inferred/%s/%u", place->road->id, place->number + 1);
+    double share = place->height / im->params->lamp_height;
+    bool on_foot = place->road->cls == GEO_ROAD_PATH || place->road->cls == GEO_ROAD_PEDESTRIAN ||
+                   place->road->cls == GEO_ROAD_LIVING;
+    pending_lamp p = { .lamp = { .xyz = { place->xy[0], place->xy[1], NAN },
+                                 .height = place->height,
+                                 .direction = atan2(place->facing[0], place->facing[1]) * 180 / M_PI,
+                                 .lumens = im->params->lamp_lumens * share * share,
+                                 .watts = NAN,
+                                 .kelvin = NAN,
+                                 .rgb = { -1, -1, -1 },
+                                 .type = on_foot ? GEO_LAMP_LANTERN : GEO_LAMP_STREET,
+                                 .id = id ? arena_strdup(&im->names, id) : NULL,
+                                 .ref = "" },
+                       .along = place->road };
+    free(id);
+    return p.lamp.id && array_push(&im->lamps, p);
+}
+
+static noc_status place_along(importer *im, const city_roads *roads, const double *mapped) {
+    where w = { .im = im, .reading = { .im = im, .in = &im->inputs[0], .log = im->log } };
+    const noc_progress progress = { update, im };
+    const city_road_params params = { .height = im->params->lamp_height,
+                                      .mapped = mapped,
+                                      .mapped_count = im->lamps.len,
+                                      .inside = is_inside,
+                                      .user = &w,
+                                      .progress = &progress };
+    city_road_lamp *places;
+    size_t count;
+    noc_status status = city_road_lamps(im->scene, roads, &params, &places, &count);
+    reading_free(&w.reading);
+    status = status ? status : w.status;
+    for (size_t i = 0; i < count && !status; i++)
+        if (!keep(im, &places[i]))
+            status = noc_no_memory(im->log, "import");
+    free(places);
+    return status;
+}
+
+noc_status road_lamps_add(importer *im, const city_roads *roads) {
+    size_t count = im->lamps.len;
+    double *mapped = noc_alloc((count + 1) * 2 * sizeof(*mapped));
+    if (!mapped)
+        return noc_no_memory(im->log, "import");
+    for (size_t i = 0; i < count; i++)
+        memcpy(mapped + 2 * i, im->lamps.data[i].lamp.xyz, 2 * sizeof(*mapped));
+    noc_status status = place_along(im, roads, mapped);
+    free(mapped);
+    return status;
+}
+
+void road_lamps_face(importer *im, const city_roads *roads) {
+    double facing[2];
+    for (size_t i = 0; i < im->lamps.len; i++) {
+        geo_lamp *lamp = &im->lamps.data[i].lamp;
+        if (!isfinite(lamp->direction) && lamp->mount != GEO_MOUNT_WALL && city_roads_facing(roads, lamp->xyz, facing))
+            lamp->direction = atan2(facing[0], facing[1]) * 180 / M_PI;
+    }
+}
+
+void road_lamps_raise(const importer *im, pending_lamp *p) {
+    const geo_road *road = p->along;
+    const double *a = road->xyz, *b = a + 3 * (road->point_count - 1), *at = p->lamp.xyz;
+    double low, from, to;
+    if (!road->bridge || !noc_scene_ground(im->scene, at[0], at[1], &low) ||
+        !noc_scene_ground(im->scene, a[0], a[1], &from) || !noc_scene_ground(im->scene, b[0], b[1], &to))
+        return;
+    double before = hypot(at[0] - a[0], at[1] - a[1]), behind = hypot(at[0] - b[0], at[1] - b[1]);
+    double deck = from + (to - from) * before / (before + behind);
+    if (deck > low + 1)
+        p->lamp.xyz[2] = deck;
+}
