@@ -81,6 +81,9 @@ NOC_API int noc_text_srgb8(uint8_t *rgb, int width, int height, int x, int y, co
 NOC_API noc_status noc_image_check_path(const char *path, noc_log *log);
 /* Reads by content. PNG is taken as sRGB and turned linear with white = 1 (units are lost; compare says so). */
 NOC_API noc_image *noc_image_read(const char *path, noc_log *log, bool *is_linear);
+/* What the metadata of a PNG or OpenEXR file says under that key, as noc_image_meta wrote it: *text is a copy (free
+ * it), NULL where the file says nothing, and after an error. Its pixels are not read, nor more than its first MiB. */
+NOC_API noc_status noc_image_read_text(const char *path, const char *key, char **text, noc_log *log);
 
 /* Error figures of picture x against reference r (docs/estimator.md, "Error figures"). */
 typedef struct noc_metrics {

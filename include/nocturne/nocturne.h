@@ -7,6 +7,7 @@
 #include <nocturne/lab.h>
 #include <nocturne/log.h>
 #include <nocturne/option.h>
+#include <nocturne/path.h>
 #include <nocturne/photometry.h>
 #include <nocturne/recipe.h>
 #include <nocturne/render.h>

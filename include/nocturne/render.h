@@ -179,6 +179,9 @@ NOC_API noc_status noc_view_render(noc_view *view, const noc_camera *camera, con
                                    const noc_progress *progress);
 /* Forgets history and accumulation, the frame number, and what was learned of the lights' visibility. */
 NOC_API void noc_view_reset(noc_view *view);
+/* Begins the mean anew with the next frame, as for the next picture of an animation whose camera rests. History, and
+ * what was learned, go on. */
+NOC_API void noc_view_restart(noc_view *view);
 
 /* Copy of the picture so far (accumulated or last frame), with its emitter mask. NULL before the first frame. */
 NOC_API noc_image *noc_view_image(noc_view *view);

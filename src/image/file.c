@@ -109,24 +109,22 @@ noc_status noc_image_write_srgb8(const uint8_t *rgb, int width, int height, cons
     return status;
 }
 
-typedef enum format { FORMAT_UNKNOWN, FORMAT_PNG, FORMAT_EXR } format;
-
-static format probe(const uint8_t *data, size_t size) {
+image_format image_probe(const uint8_t *data, size_t size) {
     static const uint8_t png[8] = { 0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n' }, exr[4] = { 0x76, 0x2f, 0x31, 0x01 };
     if (size >= sizeof(png) && memcmp(data, png, sizeof(png)) == 0)
-        return FORMAT_PNG;
+        return IMAGE_PNG;
     if (size >= sizeof(exr) && memcmp(data, exr, sizeof(exr)) == 0)
-        return FORMAT_EXR;
-    return FORMAT_UNKNOWN;
+        return IMAGE_EXR;
+    return IMAGE_UNKNOWN;
 }
 
 noc_image *image_read_memory(const uint8_t *data, size_t size, const char *name, noc_log *log, bool *is_linear) {
-    format f = probe(data, size);
+    image_format f = image_probe(data, size);
     if (is_linear)
-        *is_linear = f == FORMAT_EXR;
-    if (f == FORMAT_PNG)
+        *is_linear = f == IMAGE_EXR;
+    if (f == IMAGE_PNG)
         return image_read_png(data, size, name, log);
-    if (f == FORMAT_EXR)
+    if (f == IMAGE_EXR)
         return image_read_exr(data, size, name, log);
     noc_error(log, NOC_ERR_FORMAT, "%s: neither a PNG nor an OpenEXR file", name);
     return NULL;
@@ -145,7 +143,7 @@ static uint8_t *read_file(FILE *file, const char *path, size_t *size, noc_log *l
         noc_error(log, NOC_ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
         return NULL;
     }
-    if (probe(head, got) == FORMAT_UNKNOWN) {
+    if (image_probe(head, got) == IMAGE_UNKNOWN) {
         noc_error(log, NOC_ERR_FORMAT, "%s: neither a PNG nor an OpenEXR file", path);
         return NULL;
     }

@@ -18,6 +18,8 @@ void *image_alloc_pixels(int width, int height, size_t size, noc_log *log);
 /* file.c */
 bool image_path_ends_in(const char *path, const char *ending);
 bool image_size_allowed(int width, int height);
+typedef enum image_format { IMAGE_UNKNOWN, IMAGE_PNG, IMAGE_EXR } image_format;
+image_format image_probe(const uint8_t *data, size_t size); /* by its first 8 bytes */
 /* The mask all zero; false after reporting when refused. */
 bool image_add_mask(noc_image *image, noc_log *log);
 /* Luminance of 1.2 cd/m2 * 2^EV100 is where a camera of that exposure saturates. */

@@ -65,6 +65,11 @@ void noc_view_reset(noc_view *v) {
     v->stats.frames = 0;
 }
 
+void noc_view_restart(noc_view *v) {
+    if (v)
+        noc_history_forget(&v->history, NOC_RESETS_MEAN);
+}
+
 static uint64_t read_number(const char *path) {
     FILE *f = fopen(path, "r");
     unsigned long long n = UINT64_MAX;

@@ -28,6 +28,9 @@ static noc_camera camera;
     P(0, noc_image_write_srgb8((uint8_t[3]){ 0 }, 1, 1, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                         \
     P(0, noc_image_check_path(NULL, NULL) == NOC_ERR_ARGUMENT)                                                         \
     P(0, noc_image_read(NULL, NULL, NULL) == NULL)                                                                     \
+    P(0, noc_image_read_text(NULL, "key", &(char *){ 0 }, NULL) == NOC_ERR_ARGUMENT)                                   \
+    P(0, noc_image_read_text("a.png", NULL, &(char *){ 0 }, NULL) == NOC_ERR_ARGUMENT)                                 \
+    P(0, noc_image_read_text("a.png", "key", NULL, NULL) == NOC_ERR_ARGUMENT)                                          \
     P(0, noc_image_compare(NULL, image, NULL, &(noc_comparison){ 0 }, NULL) == NOC_ERR_ARGUMENT)                       \
     P(0, noc_image_compare(image, NULL, NULL, &(noc_comparison){ 0 }, NULL) == NOC_ERR_ARGUMENT)                       \
     P(0, noc_image_compare(image, image, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                        \
@@ -174,6 +177,21 @@ static noc_camera camera;
     P(0, noc_recipe_get_info(NULL)->input_count == 0)                                                                  \
     P(0, noc_recipe_option(NULL, 0) == NULL)                                                                           \
     P(0, noc_recipe_set(NULL, noc_render_options(), &camera, NULL) == NOC_ERR_ARGUMENT)                                \
+    P(0, noc_camera_path_create(NULL, 1, false, 0, NULL, &(noc_camera_path *){ 0 }) == NOC_ERR_ARGUMENT)               \
+    P(0, noc_camera_path_create(&(noc_camera_key){ 0 }, 1, false, 0, NULL, NULL) == NOC_ERR_ARGUMENT)                  \
+    P(0, noc_camera_path_orbit(NULL, 0, NULL, &(noc_camera_path *){ 0 }) == NOC_ERR_ARGUMENT)                          \
+    P(0, noc_camera_path_orbit(&camera, 0, NULL, NULL) == NOC_ERR_ARGUMENT)                                            \
+    P(0, noc_camera_path_pan(NULL, 0, NULL, &(noc_camera_path *){ 0 }) == NOC_ERR_ARGUMENT)                            \
+    P(0, noc_camera_path_pan(&camera, 0, NULL, NULL) == NOC_ERR_ARGUMENT)                                              \
+    P(noc_camera_path_destroy(NULL), true)                                                                             \
+    P(0, noc_camera_path_seconds(NULL) == 0)                                                                           \
+    P(0, !noc_camera_path_loops(NULL))                                                                                 \
+    P(0, noc_camera_path_at(NULL, 0, &camera) == NOC_ERR_ARGUMENT)                                                     \
+    P(0, noc_camera_path_hour(NULL, 0) < 0)                                                                            \
+    P(0,                                                                                                               \
+      noc_scene_place_path(NULL, &(noc_path_key){ 0 }, 1, false, 0, 1, &(noc_camera_path *){ 0 }) == NOC_ERR_ARGUMENT) \
+    P(0, noc_scene_place_path(scene, NULL, 1, false, 0, 1, &(noc_camera_path *){ 0 }) == NOC_ERR_ARGUMENT)             \
+    P(0, noc_scene_place_path(scene, &(noc_path_key){ 0 }, 1, false, 0, 1, NULL) == NOC_ERR_ARGUMENT)                  \
     P(0, noc_material_wet(NULL).f0 > 0)                                                                                \
     P(noc_render_use_preset(NULL, NOC_PRESET_STILL), true)                                                             \
     P(noc_device_destroy(noc_device_create(NULL, NULL)), true)                                                         \
@@ -185,6 +203,7 @@ static noc_camera camera;
     P(0, noc_render_check(NULL, NULL) == NOC_ERR_ARGUMENT)                                                             \
     P(0, noc_view_render(NULL, &camera, NULL, NULL) == NOC_ERR_ARGUMENT)                                               \
     P(0, noc_view_render(view, NULL, NULL, NULL) == NOC_ERR_ARGUMENT)                                                  \
+    P(noc_view_restart(NULL), true)                                                                                    \
     P(noc_view_reset(NULL), true)                                                                                      \
     P(0, noc_view_image(NULL) == NULL)                                                                                 \
     P(0, noc_view_aov(NULL, NOC_AOV_LIGHT) == NULL)                                                                    \

@@ -3,6 +3,7 @@
 #include "scene/scene.h"
 
 #include <math.h>
+#include <nocturne/path.h>
 #include <nocturne/text.h>
 
 #define FAR_AWAY 20 /* extents of the scene */
@@ -103,5 +104,25 @@ noc_status noc_scene_place_camera(const noc_scene *scene, const noc_camera_param
         placed.fov_deg = params->fov;
     if (!status)
         *camera = placed;
+    return status;
+}
+
+noc_status noc_scene_place_path(const noc_scene *scene, const noc_path_key *keys, size_t count, bool loop,
+                                double seconds, double aspect, noc_camera_path **path) {
+    if (!scene || !keys || !path)
+        return noc_null(scene ? scene->log : NULL, "noc_scene_place_path");
+    *path = NULL;
+    if (!count || count > NOC_PATH_MOST_KEYS)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "camera path: it has %zu keys, must have 1 to %d", count,
+                         NOC_PATH_MOST_KEYS);
+    noc_camera_key *placed = noc_calloc(count, sizeof(*placed));
+    noc_status status = placed ? NOC_OK : noc_no_memory(scene->log, "camera path");
+    for (size_t i = 0; i < count && !status; i++) {
+        placed[i] = (noc_camera_key){ .seconds = keys[i].seconds, .hour = keys[i].hour };
+        status = noc_scene_place_camera(scene, &keys[i].camera, aspect, &placed[i].camera, NULL);
+    }
+    if (!status)
+        status = noc_camera_path_create(placed, count, loop, seconds, scene->log, path);
+    free(placed);
     return status;
 }
