@@ -16,12 +16,16 @@
  *       wall: { albedo: [0.5, 0.45, 0.4], roughness: 0.8 }
  *     cameras:                      # by name; the first one is the recipe's own
  *       square: { eye: [10, -40, 1.7], target: [0, 0, 4], fov: 60 }
+ *     paths:                        # of cameras, by name: keys of nocturne/path.h
+ *       flight: { loop: off, keys: [{ camera: square }, { eye: [10, 40, 90], target: [0, 0, 4], seconds: 8, hour: 23 }]
+ * }
  *
  * What a user says beside a recipe wins over it. */
 #ifndef NOCTURNE_RECIPE_H
 #define NOCTURNE_RECIPE_H
 
 #include <nocturne/option.h>
+#include <nocturne/path.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -34,6 +38,13 @@ typedef struct noc_recipe_camera {
     noc_camera_params params;
 } noc_recipe_camera;
 
+typedef struct noc_recipe_path {
+    const char *name;
+    bool loop;
+    size_t key_count;
+    const noc_path_key *keys;
+} noc_recipe_path;
+
 /* Texts and arrays belong to the recipe. */
 typedef struct noc_recipe_info {
     const char *path;
@@ -42,6 +53,8 @@ typedef struct noc_recipe_info {
     const char *const *inputs; /* builtin:NAME, or paths that the process can open */
     size_t camera_count;
     const noc_recipe_camera *cameras; /* in the file's order */
+    size_t path_count;
+    const noc_recipe_path *paths; /* in the file's order */
     size_t material_count;
     const noc_material *materials; /* for noc_import_params.materials: of one class each, the rest its defaults */
     bool has_preset;

@@ -23,6 +23,7 @@ typedef struct taken {
     const section *section;    /* NULL: the top */
     noc_recipe_camera *camera; /* that is read */
     noc_material *material;
+    yaml_node_t *paths; /* taken last: they name cameras */
 } taken;
 
 /* ---- options ---- */
@@ -41,8 +42,7 @@ static const noc_option *find_option(const char *name) {
     return found;
 }
 
-/* "no key ratoi in windows; is it ratio?" */
-static noc_status unknown(const recipe_file *f, const yaml_node_t *key, const char *where, const char *const *words,
+noc_status recipe_unknown(const recipe_file *f, const yaml_node_t *key, const char *where, const char *const *words,
                           size_t count) {
     const char *text = recipe_text(key), *nearest = noc_text_nearest(text, words, count);
     char shown[64];
@@ -52,7 +52,7 @@ static noc_status unknown(const recipe_file *f, const yaml_node_t *key, const ch
 }
 
 static noc_status unknown_option(const taken *t, const yaml_node_t *key) {
-    static const char *const others[] = { "nocturne", "name", "inputs", "preset", "materials", "cameras" };
+    static const char *const others[] = { "nocturne", "name", "inputs", "preset", "materials", "cameras", "paths" };
     const char *words[256];
     size_t count = 0, prefix = t->section ? strlen(t->section->prefix) : 0;
     for (size_t i = 0; i < NOC_COUNT(tables); i++)
@@ -67,7 +67,7 @@ static noc_status unknown_option(const taken *t, const yaml_node_t *key) {
         words[count++] = sections[i].name;
     if (t->section && t->section->list_key && count < NOC_COUNT(words))
         words[count++] = t->section->list_key;
-    return unknown(t->file, key, t->section ? t->section->name : "a recipe", words, count);
+    return recipe_unknown(t->file, key, t->section ? t->section->name : "a recipe", words, count);
 }
 
 typedef struct told {
@@ -78,9 +78,8 @@ static void keep(void *user, noc_log_level level, const char *text) {
         noc_snprintf(((told *)user)->text, sizeof(((told *)user)->text), "%s", text);
 }
 
-/* Sets the field in a scratch struct, so that what is wrong is told with its line. */
-static noc_status set_checked(const recipe_file *f, const yaml_node_t *node, const noc_option *o, void *params,
-                              const char *text) {
+noc_status recipe_set(const recipe_file *f, const yaml_node_t *node, const noc_option *o, void *params,
+                      const char *text) {
     told message = { "" };
     noc_log *log = noc_log_create(&(noc_log_params){ .message = keep, .user = &message });
     if (!log)
@@ -120,7 +119,7 @@ static noc_status take_option(recipe_file *f, const noc_option *o, const yaml_no
     for (size_t i = 0; i < s.count && !status; i++) {
         if (!strcmp(o->unit, "FILE"))
             s.texts[i] = recipe_path(f, s.texts[i]);
-        status = s.texts[i] ? set_checked(f, value, o, &scratch, s.texts[i]) : noc_no_memory(f->log, f->path);
+        status = s.texts[i] ? recipe_set(f, value, o, &scratch, s.texts[i]) : noc_no_memory(f->log, f->path);
     }
     if (!status && !array_push(&r->settings, s))
         status = noc_no_memory(f->log, f->path);
@@ -142,15 +141,12 @@ static noc_status take_section_key(void *ctx, const yaml_node_t *key, yaml_node_
 
 /* ---- cameras ---- */
 
-static noc_status take_camera_key(void *ctx, const yaml_node_t *key, yaml_node_t *value) {
-    taken *t = ctx;
-    recipe_file *f = t->file;
+noc_status recipe_camera_key(recipe_file *f, noc_camera_params *params, const yaml_node_t *key, yaml_node_t *value,
+                             const char *what, const char *const *words, size_t word_count) {
     const char *name = recipe_text(key), *row = !strcmp(name, "crs") ? "camera-crs" : name, **texts = NULL;
     const noc_option *o = find_in(noc_camera_options(), row);
-    if (!o || !strcmp(name, "camera-crs")) {
-        static const char *const words[] = { "view", "eye", "target", "crs", "fov" };
-        return unknown(f, key, "a camera", words, NOC_COUNT(words));
-    }
+    if (!o || !strcmp(name, "camera-crs"))
+        return recipe_unknown(f, key, what, words, word_count);
     bool place = !strcmp(name, "eye") || !strcmp(name, "target");
     size_t count;
     if (value->type == YAML_MAPPING_NODE || (value->type == YAML_SEQUENCE_NODE && !place))
@@ -163,7 +159,17 @@ static noc_status take_camera_key(void *ctx, const yaml_node_t *key, yaml_node_t
         status = count ? noc_no_memory(f->log, f->path) : recipe_wrong(f, value, "%s has no value", name);
     if (!status && place && !noc_text_numbers(texts[0], ',', 3, xyz))
         status = recipe_wrong(f, value, "%s: \"%.60s\" is not X, Y, Z", name, texts[0]);
-    return status ? status : set_checked(f, value, o, &t->camera->params, texts[0]);
+    return status ? status : recipe_set(f, value, o, params, texts[0]);
+}
+
+bool recipe_is_placed(const noc_camera_params *params) {
+    return !params->eye == !params->target && (params->eye || !params->crs);
+}
+
+static noc_status take_camera_key(void *ctx, const yaml_node_t *key, yaml_node_t *value) {
+    static const char *const words[] = { "view", "eye", "target", "crs", "fov" };
+    taken *t = ctx;
+    return recipe_camera_key(t->file, &t->camera->params, key, value, "a camera", words, NOC_COUNT(words));
 }
 
 static noc_status take_camera(void *ctx, const yaml_node_t *key, yaml_node_t *value) {
@@ -172,8 +178,7 @@ static noc_status take_camera(void *ctx, const yaml_node_t *key, yaml_node_t *va
     noc_recipe_camera camera = { arena_strdup(&r->arena, recipe_text(key)), noc_camera_default_params() };
     t->camera = &camera;
     noc_status status = recipe_each(t->file, value, "a camera", take_camera_key, t);
-    const noc_camera_params *p = &camera.params;
-    if (!status && (!p->eye != !p->target || (p->crs && !p->eye)))
+    if (!status && !recipe_is_placed(&camera.params))
         status = recipe_wrong(t->file, key, "camera %.60s: eye and target go together, and crs with them", camera.name);
     if (!status && !(camera.name && array_push(&r->cameras, camera)))
         status = noc_no_memory(t->file->log, t->file->path);
@@ -211,7 +216,7 @@ static noc_status take_material_key(void *ctx, const yaml_node_t *key, yaml_node
         status = take_number(f, value, name, &m->roughness);
     } else {
         static const char *const words[] = { "albedo", "f0", "roughness" };
-        return unknown(f, key, "a material", words, NOC_COUNT(words));
+        return recipe_unknown(f, key, "a material", words, NOC_COUNT(words));
     }
     bool ok = m->f0 >= 0 && m->f0 <= 1 && m->roughness >= .05f && m->roughness <= 1;
     for (int i = 0; i < 3; i++)
@@ -229,7 +234,7 @@ static noc_status take_material(void *ctx, const yaml_node_t *key, yaml_node_t *
         cls = !strcmp(words[i], recipe_text(key)) ? i : cls;
     }
     if (cls < 0)
-        return unknown(t->file, key, "materials, whose keys are classes", words, NOC_CLASS_COUNT);
+        return recipe_unknown(t->file, key, "materials, whose keys are classes", words, NOC_CLASS_COUNT);
     noc_material material = noc_class_material((noc_class)cls);
     t->material = &material;
     noc_status status = recipe_each(t->file, value, "a material", take_material_key, t);
@@ -257,7 +262,7 @@ static noc_status take_preset(recipe_file *f, yaml_node_t *value) {
     int preset = 0; /* the row's field, whatever the enum is stored as */
     noc_option o = row[0];
     o.offset = 0;
-    noc_status status = recipe_text(value) ? set_checked(f, value, &o, &preset, recipe_text(value))
+    noc_status status = recipe_text(value) ? recipe_set(f, value, &o, &preset, recipe_text(value))
                                            : recipe_wrong(f, value, "preset has no value");
     f->recipe->info.preset = (noc_preset)preset;
     return status;
@@ -286,6 +291,10 @@ static noc_status take_top(void *ctx, const yaml_node_t *key, yaml_node_t *value
         return recipe_each(f, value, "materials", take_material, t);
     if (!strcmp(name, "cameras"))
         return recipe_each(f, value, "cameras", take_camera, t);
+    if (!strcmp(name, "paths")) {
+        t->paths = value;
+        return NOC_OK;
+    }
     for (size_t i = 0; i < NOC_COUNT(sections); i++)
         /* a scalar switches the whole: windows: off */
         if (!strcmp(name, sections[i].name) && (value->type != YAML_SCALAR_NODE || sections[i].list_key)) {
@@ -307,6 +316,8 @@ static noc_status take_all(recipe_file *f) {
     if (!key || strcmp(key, "nocturne"))
         return recipe_wrong(f, root, "a recipe begins with \"nocturne: " VERSION "\"");
     noc_status status = recipe_each(f, root, "a recipe", take_top, &t);
+    if (!status && t.paths)
+        status = recipe_take_paths(f, t.paths);
     bool any = f->recipe->inputs.len > 0;
     for (size_t i = 0; i < f->recipe->settings.len; i++)
         any = any || !strcmp(f->recipe->settings.data[i].option->name, "lamps");
@@ -338,6 +349,8 @@ noc_status noc_recipe_load(const char *path, noc_log *log, noc_recipe **recipe) 
     info->input_count = f.recipe->inputs.len;
     info->cameras = f.recipe->cameras.data;
     info->camera_count = f.recipe->cameras.len;
+    info->paths = f.recipe->paths.data;
+    info->path_count = f.recipe->paths.len;
     info->materials = f.recipe->materials.data;
     info->material_count = f.recipe->materials.len;
     *recipe = f.recipe;
@@ -350,6 +363,7 @@ void noc_recipe_destroy(noc_recipe *recipe) {
     array_free(&recipe->settings);
     array_free(&recipe->inputs);
     array_free(&recipe->cameras);
+    array_free(&recipe->paths);
     array_free(&recipe->materials);
     arena_free(&recipe->arena);
     free(recipe);

@@ -1,5 +1,5 @@
 /* recipe: a city in one YAML file. yaml.c reads the file into nodes that know their lines, recipe.c takes what they say
- * into options, cameras and materials. */
+ * into options, cameras and materials, paths.c what it says of paths. */
 #ifndef NOC_RECIPE_H
 #define NOC_RECIPE_H
 
@@ -22,6 +22,7 @@ struct noc_recipe {
     NOC_ARRAY(recipe_setting) settings;
     NOC_ARRAY(const char *) inputs;
     NOC_ARRAY(noc_recipe_camera) cameras;
+    NOC_ARRAY(noc_recipe_path) paths;
     NOC_ARRAY(noc_material) materials;
 };
 
@@ -51,5 +52,22 @@ noc_status recipe_texts(recipe_file *f, yaml_node_t *node, const char *key, cons
 noc_status recipe_numbers(recipe_file *f, yaml_node_t *node, const char *key, size_t count, double *out);
 /* A path as seen from the recipe's folder; builtin:NAME stays. NULL: memory was refused. */
 const char *recipe_path(recipe_file *f, const char *path);
+
+/* ---- recipe.c ---- */
+
+/* "no key ratoi in windows; is it ratio?" */
+noc_status recipe_unknown(const recipe_file *f, const yaml_node_t *key, const char *where, const char *const *words,
+                          size_t count);
+/* Sets the option's field of params. What is wrong is told with its line. */
+noc_status recipe_set(const recipe_file *f, const yaml_node_t *node, const noc_option *o, void *params,
+                      const char *text);
+/* A key of a camera: view, eye, target, crs or fov. what: the camera, for messages; words: all that it may have. */
+noc_status recipe_camera_key(recipe_file *f, noc_camera_params *params, const yaml_node_t *key, yaml_node_t *value,
+                             const char *what, const char *const *words, size_t word_count);
+bool recipe_is_placed(const noc_camera_params *params); /* eye and target together, and crs only with them */
+
+/* ---- paths.c ---- */
+
+noc_status recipe_take_paths(recipe_file *f, yaml_node_t *value); /* once the cameras are known */
 
 #endif

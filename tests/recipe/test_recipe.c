@@ -54,25 +54,30 @@ static const noc_option *row(const noc_option *table, const char *name) {
     return table->name ? table : NULL;
 }
 
-static const char whole[] = "# a city\n"
-                            "nocturne: 1\n"
-                            "name: \"The town: at night\"\n"
-                            "inputs: [a.gml, /b/c.osm, 'builtin:mess', '@list', '@/list']\n"
-                            "crs: EPSG:25832\n"
-                            "preset: interactive\n"
-                            "sky: 0.01\n"
-                            "jitter: off\n"
-                            "lights: 77\n"
-                            "lamps:\n"
-                            "  files: [l.csv, m.csv]\n"
-                            "  columns: 'height=H'\n"
-                            "  height: 8.5\n"
-                            "materials:\n"
-                            "  wall: { albedo: 0.5, roughness: 0.8 }\n"
-                            "  road: { albedo: [.1, .2, .3], f0: .05 }\n"
-                            "cameras:\n"
-                            "  near: { eye: [1, -2.5, 3], target: '4,5,6', crs: scene, fov: 70 }\n"
-                            "  far: { view: aerial }\n";
+static const char whole[] =
+    "# a city\n"
+    "nocturne: 1\n"
+    "name: \"The town: at night\"\n"
+    "inputs: [a.gml, /b/c.osm, 'builtin:mess', '@list', '@/list']\n"
+    "crs: EPSG:25832\n"
+    "preset: interactive\n"
+    "sky: 0.01\n"
+    "jitter: off\n"
+    "lights: 77\n"
+    "lamps:\n"
+    "  files: [l.csv, m.csv]\n"
+    "  columns: 'height=H'\n"
+    "  height: 8.5\n"
+    "materials:\n"
+    "  wall: { albedo: 0.5, roughness: 0.8 }\n"
+    "  road: { albedo: [.1, .2, .3], f0: .05 }\n"
+    "cameras:\n"
+    "  near: { eye: [1, -2.5, 3], target: '4,5,6', crs: scene, fov: 70 }\n"
+    "  far: { view: aerial }\n"
+    "paths:\n"
+    "  flight: { loop: on, keys: [{camera: near, fov: 20}, {view: street, seconds: 4, hour: 23},"
+    " {eye: [1, 2, 3], target: [4, 5, 6], crs: scene, seconds: 9.5}] }\n"
+    "  still: { keys: [{fov: 35, camera: far}] }\n";
 
 static void test_all_that_it_says(void **state) {
     (void)state;
@@ -131,6 +136,18 @@ static void test_all_that_it_says(void **state) {
     assert_string_equal(near->target, "4,5,6");
     assert_string_equal(near->crs, "scene");
     assert_true(near->fov == 70 && far->viewpoint == NOC_VIEWPOINT_AERIAL && !far->eye);
+    assert_int_equal(info->path_count, 2);
+    const noc_recipe_path *flight = &info->paths[0], *still = &info->paths[1];
+    assert_true(!strcmp(flight->name, "flight") && flight->loop && flight->key_count == 3);
+    assert_true(!strcmp(still->name, "still") && !still->loop && still->key_count == 1);
+    const noc_path_key *keys = flight->keys;
+    assert_string_equal(keys[0].camera.eye, "1,-2.5,3");
+    assert_true(keys[0].camera.fov == 20 && keys[0].seconds < 0 && keys[0].hour < 0);
+    assert_true(keys[1].camera.viewpoint == NOC_VIEWPOINT_STREET && keys[1].seconds == 4 && keys[1].hour == 23);
+    assert_string_equal(keys[2].camera.target, "4,5,6");
+    assert_string_equal(keys[2].camera.crs, "scene");
+    assert_true(keys[2].seconds == 9.5 && keys[2].camera.fov == 0);
+    assert_true(still->keys[0].camera.viewpoint == NOC_VIEWPOINT_AERIAL && still->keys[0].camera.fov == 35);
     noc_recipe_destroy(r);
 }
 
@@ -234,6 +251,24 @@ static void test_what_is_wrong_is_told_with_its_line(void **state) {
         { HEAD "cameras: {a: {eye: [1, 2, 3]}}\n", 3, "eye and target go together" },
         { HEAD "cameras: {a: {fov: 500}}\n", 3, "outside 1 to 170" },
         { HEAD "cameras: {a: {camera-crs: x}}\n", 3, "no key camera-crs in a camera" },
+        { HEAD "paths: {a: {keys: []}}\n", 3, "1 to 10000 keys, not 0" },
+        { HEAD "paths: {a: {loop: on}}\n", 3, "path a has no keys" },
+        { HEAD "paths: {a: [{view: own}]}\n", 3, "a path must be keys" },
+        { HEAD "paths: {a: {keys: {view: own}}}\n", 3, "keys is a list of cameras" },
+        { HEAD "paths: {a: {keys: [own]}}\n", 3, "a key of a path must be keys" },
+        { HEAD "paths: {a: {loop: maybe, keys: [{view: own}]}}\n", 3, "neither true nor false" },
+        { HEAD "paths: {a: {kyes: [{view: own}]}}\n", 3, "is it keys?" },
+        { HEAD "paths:\n  a:\n    keys:\n    - {seconds: 3}\n", 6, "a camera, a view, or an eye" },
+        { HEAD "paths:\n  a:\n    keys:\n    - {camera: b}\n", 6, "has no camera b" },
+        { HEAD "cameras: {b: {view: own}}\npaths: {a: {keys: [{camera: b, view: own}]}}\n", 4, "a camera, a view, or" },
+        { HEAD "paths: {a: {keys: [{eye: [1, 2, 3]}]}}\n", 3, "eye and target go together" },
+        { HEAD "paths: {a: {keys: [{view: own, time: 3}]}}\n", 3, "no key time in a key of a path" },
+        { HEAD "paths: {a: {keys: [{view: own, seconds: -1}]}}\n", 3, "seconds: \"-1\" is outside 0 to" },
+        { HEAD "paths: {a: {keys: [{view: own, hour: 25}]}}\n", 3, "hour: \"25\" is outside 0 to 24" },
+        { HEAD "paths: {a: {keys: [{view: own, seconds: 3},\n {view: own, seconds: 3}]}}\n", 4, "must grow" },
+        { HEAD "paths: {a: {keys: [{view: own},\n {view: own, seconds: 0}]}}\n", 4, "must grow" },
+        { HEAD "paths: {a: {keys: [{view: own, seconds: 3},\n {view: own}]}}\n", 4, "all keys of a path tell" },
+        { HEAD "paths: {a: {keys: [{view: own}, {view: own},\n {view: own, seconds: 1}]}}\n", 4, "all keys of a path" },
         { HEAD "a: [1\n", 4, "is no YAML" },
         { HEAD "crs: *nothing\n", 3, "is no YAML" },
         { HEAD "? [a, b]\n: c\n", 3, "is no text" },
@@ -324,7 +359,7 @@ static void test_memory_refused(void **state) {
         if (status)
             assert_refused(status, "recipe");
         else
-            assert_unharmed(noc_recipe_get_info(r)->camera_count == 2, "recipe");
+            assert_unharmed(noc_recipe_get_info(r)->path_count == 2, "recipe");
         assert_true(!r == (status != NOC_OK) && (status == NOC_OK || reached));
         noc_recipe_destroy(r);
     }
