@@ -17,7 +17,7 @@ static const noc_option own_options[] = {
          "write the influence volumes of --candidates influence, and boxes, as OBJ too"),
     NOC_OPTION_PRESET(A, "Estimator"),
     { "frames", "Output", NOC_OPTION_INT, offsetof(A, frames), 1, 1e9, NULL, "",
-      "frames that are rendered and averaged" },
+      "frames that are rendered and averaged; pictures of an animation" },
     { "time", "Output", NOC_OPTION_REAL, offsetof(A, time), 0, 1e9, NULL, "s",
       "render for about this long instead; 0 = no limit" },
     { "stats", "Output", NOC_OPTION_BOOL, offsetof(A, stats), 0, 1, NULL, "",
@@ -51,6 +51,7 @@ static const render_args defaults = {
     .display = noc_display_default_params(),
     .import = noc_import_default_params(),
     .builtin = noc_builtin_default_params(),
+    .animation = { .fps = 30, .samples = 16 },
 };
 static const char *const by_exposure[] = { "auto-exposure", "ev100", NULL }; /* --exposure says both */
 
@@ -64,10 +65,12 @@ const cli_command cli_render = {
     "  nocturne render city.gml lamps.geojson --view aerial -o city.png\n"
     "  nocturne render builtin:city --candidates influence --show lights -o a.png\n"
     "  nocturne render city.gml --method reference --frames 64 -o reference.exr\n"
+    "  nocturne render builtin:city --animate --frames 240 -o frame-%04d.png\n"
     "Built-in scenes are builtin:city, cityscape, mess, single and atrium.\n"
     "Ctrl-C saves the picture so far and ends with status 130; a second one ends at\n"
     "once.\n",
     { { options, 0, NULL },
+      { cli_animation_options, offsetof(A, animation), NULL },
       { of_recipe, 0, NULL },
       { noc_camera_options, offsetof(A, camera), NULL },
       { of_picture, 0, NULL },
@@ -174,7 +177,9 @@ static int check(render_job *job) {
     status = status ? status : cli_parse_exposure(&cli_render, args->exposure, &args->display);
     status = status ? status : cli_check_camera(args);
     status = status ? status : cli_parse_show(args);
-    status = status ? status : cli_check_output(&cli_render, args->output, CLI_PNG | CLI_EXR, &args->common);
+    status = status ? status : cli_check_animation(args);
+    if (!status && !args->animation.on)
+        status = cli_check_output(&cli_render, args->output, CLI_PNG | CLI_EXR, &args->common);
     status = status ? status : check_influence(args);
     if (!status)
         warn_of_idle(args);
@@ -218,7 +223,7 @@ static bool frame_progress(void *user, const char *what, double done) {
     return !cli_interrupted();
 }
 
-static void add_stats(render_job *job) {
+void cli_add_stats(render_job *job) {
     noc_view_get_stats(job->view, &job->last);
     job->frame_seconds += job->last.wall_seconds;
     job->cpu_seconds += job->last.cpu_seconds;
@@ -243,7 +248,7 @@ static noc_status render_frames(render_job *job) {
             break;
         status = noc_view_render(job->view, &job->camera, &args->render, &progress);
         if (!status)
-            add_stats(job);
+            cli_add_stats(job);
     }
     cli_progress_clear();
     job->rendered = cli_now();
@@ -251,7 +256,7 @@ static noc_status render_frames(render_job *job) {
 }
 
 /* Ctrl-C is no failure of the work: what is complete is kept. */
-static bool is_failure(noc_status status) { return status && !(status == NOC_ERR_CANCELLED && cli_interrupted()); }
+bool cli_is_failure(noc_status status) { return status && !(status == NOC_ERR_CANCELLED && cli_interrupted()); }
 
 /* What the picture and its writing take is asked for before the frames: an hour's work must not fail at its end. It is
  * not touched, so it costs addresses only. */
@@ -266,26 +271,29 @@ static noc_status reserve(render_job *job) {
     return NOC_ERR_MEMORY;
 }
 
-static int work(render_job *job) {
+noc_status cli_start_view(render_job *job) {
+    noc_status status = reserve(job);
+    if (status)
+        return status;
+    cli_nothing_to_keep(true); /* until a frame is complete */
+    job->device = noc_device_create(&(noc_device_params){ .threads = job->args->threads }, job->log);
+    job->view = noc_view_create(job->device, job->scene);
+    return job->view ? NOC_OK : NOC_ERR_MEMORY;
+}
+
+/* One picture of all frames. */
+static int draw(render_job *job) {
     render_args *args = job->args;
-    noc_status status = load(job);
-    if (!status && !job->scene_info.triangles) {
-        cli_error("the inputs hold no surface that can be drawn; nocturne info tells what they hold");
-        return CLI_FAILURE;
-    }
-    if (!status && !cli_interrupted())
+    noc_status status = NOC_OK;
+    if (!cli_interrupted())
         status = noc_scene_place_camera(job->scene, &args->camera, (double)args->render.width / args->render.height,
                                         &job->camera, &job->far_away);
-    if (!status)
-        status = reserve(job);
-    if (!status && !cli_interrupted()) {
-        cli_nothing_to_keep(true); /* until a frame is complete */
-        job->device = noc_device_create(&(noc_device_params){ .threads = args->threads }, job->log);
-        job->view = noc_view_create(job->device, job->scene);
-        status = job->view ? render_frames(job) : NOC_ERR_MEMORY;
-        cli_nothing_to_keep(false);
-    }
-    if (is_failure(status))
+    if (!status && !cli_interrupted())
+        status = cli_start_view(job);
+    if (!status && !cli_interrupted())
+        status = render_frames(job);
+    cli_nothing_to_keep(false);
+    if (cli_is_failure(status))
         return CLI_FAILURE;
     char text[64];
     int ending = cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;
@@ -293,6 +301,8 @@ static int work(render_job *job) {
         cli_error("interrupted: no frame was complete, nothing was saved");
         return ending;
     }
+    job->file = args->output;
+    job->averaged = job->frames;
     if (cli_write_picture(job) ||
         (args->influence_obj && noc_view_write_influence(job->view, &args->render, args->influence_obj)))
         return CLI_FAILURE;
@@ -311,6 +321,17 @@ static int work(render_job *job) {
     return cli_flush(stdout) ? ending : CLI_FAILURE;
 }
 
+static int work(render_job *job) {
+    noc_status status = load(job);
+    if (!status && !job->scene_info.triangles) {
+        cli_error("the inputs hold no surface that can be drawn; nocturne info tells what they hold");
+        return CLI_FAILURE;
+    }
+    if (cli_is_failure(status))
+        return CLI_FAILURE;
+    return job->args->animation.on ? cli_animate(job) : draw(job);
+}
+
 static int run(void *arguments) {
     render_job job = { .args = arguments };
     int status = check(&job);
@@ -324,6 +345,7 @@ static int run(void *arguments) {
     status = job.scene ? work(&job) : CLI_FAILURE;
     cli_progress_clear();
     free(job.room);
+    free(job.animation);
     noc_image_destroy(job.image);
     noc_channel_destroy(job.shown);
     noc_view_destroy(job.view);

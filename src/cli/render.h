@@ -4,6 +4,14 @@
 
 #include "cli.h"
 
+/* --animate and its options */
+typedef struct animation_args {
+    bool on, overwrite;
+    const char *path;
+    double fps, duration; /* s; 0: what the path, or the number of pictures, says */
+    int samples, segment;
+} animation_args;
+
 typedef struct render_args {
     cli_args common;
     const char *output;
@@ -22,6 +30,7 @@ typedef struct render_args {
     noc_display_params display;
     noc_import_params import;
     noc_builtin_params builtin;
+    animation_args animation;
 } render_args;
 
 /* One run of the command: inputs to picture. */
@@ -33,6 +42,9 @@ typedef struct render_job {
     noc_view *view;
     noc_image *image;
     noc_channel *shown; /* --show */
+    const char *file;   /* that the picture goes to */
+    int averaged;       /* frames in it */
+    char *animation;    /* of an animation's picture, for its metadata; NULL: it is none */
     void *room;         /* memory that the picture and its file will take, held while frames are rendered */
     noc_camera camera;
     bool far_away; /* the camera is, and it was said */
@@ -45,6 +57,26 @@ typedef struct render_job {
     double floor_seconds;                                            /* trace floor of one frame; 0: not measured */
 } render_job;
 
+/* render.c */
+noc_status cli_start_view(render_job *job);
+void cli_add_stats(render_job *job);    /* of a frame that is complete */
+bool cli_is_failure(noc_status status); /* and no interruption */
+
+/* animate.c: a picture for each step along a path */
+const noc_option *cli_animation_options(void); /* fields of animation_args */
+int cli_check_animation(const render_args *args);
+int cli_animate(render_job *job); /* once the scene is there; returns the exit status */
+
+/* series.c: the files of an animation */
+typedef struct cli_series {
+    char *prefix, *suffix; /* around the number */
+    int digits;            /* of it, at least */
+} cli_series;
+/* Of what -o says: a name with one %d or %04d in it. CLI_OK, or CLI_USAGE after reporting. */
+int cli_series_parse(const char *output, cli_series *series);
+void cli_series_free(cli_series *series);
+char *cli_series_file(const cli_series *series, int number); /* free() it */
+
 /* camera.c */
 int cli_choose_camera(render_args *args); /* of the recipe, where the words say no other */
 int cli_check_camera(const render_args *args);
@@ -56,6 +88,7 @@ void cli_print_view_kind(const render_job *job, bool numbers); /* what the file 
 void cli_print_view(const render_job *job);
 
 /* report.c */
+char *cli_options_text(const render_args *args); /* all that decides a picture but inputs and camera; free() it */
 void cli_print_summary(const render_job *job);
 void cli_print_stats(const render_job *job);
 void cli_warn_of_picture(const render_job *job); /* once it is written */

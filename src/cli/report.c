@@ -23,6 +23,8 @@ static bool counts(const render_args *args, const noc_option *o) {
         return !args->camera.eye;
     if (!strcmp(o->group, "Display"))
         return !args->show;
+    if (!strcmp(o->group, "Animation"))
+        return args->animation.on;
     return !noc_option_needs_input(o, args->common.inputs, args->common.input_count);
 }
 
@@ -33,12 +35,36 @@ static void add_options(meta_text *meta, const render_args *args) {
             static const char *const told_otherwise[] = { "output",  "eye",    "target",     "camera-crs", "fov",
                                                           "stats",   "frames", "size",       "exposure",   "time",
                                                           "threads", "show",   "show-range", "quiet",      "verbose",
-                                                          "help",    "lamps",  NULL };
+                                                          "help",    "lamps",  "animate",    "overwrite",  "path",
+                                                          NULL };
             if (cli_hidden(set, o) || cli_hidden(&(cli_set){ .hidden = told_otherwise }, o) || !counts(args, o))
                 continue;
             add(meta, o->name, cli_option_value(o, (const char *)args + set->offset));
         }
     }
+}
+
+static void forget(meta_text *meta) {
+    for (size_t i = 0; i < meta->count; i++) {
+        free(meta->keys[i]);
+        free(meta->values[i]);
+    }
+}
+
+char *cli_options_text(const render_args *args) {
+    meta_text meta = { .count = 0 };
+    size_t size = 1, at = 0;
+    add(&meta, "version", cli_format("%s", noc_version()));
+    add(&meta, "exposure", cli_format("%s", args->exposure));
+    add_options(&meta, args);
+    for (size_t i = 0; i < meta.count; i++)
+        size += strlen(meta.keys[i]) + strlen(meta.values[i]) + 2;
+    char *text = cli_alloc(size);
+    for (size_t i = 0; i < meta.count; i++)
+        if (strcmp(meta.keys[i], "isa")) /* all of them give the same bits */
+            at += (size_t)sprintf(text + at, "%s=%s\n", meta.keys[i], meta.values[i]);
+    forget(&meta);
+    return text;
 }
 
 /* What became of the inputs' lamps and features. */
@@ -148,13 +174,16 @@ noc_status cli_write_picture(render_job *job) {
     const noc_camera *c = &job->camera;
     free(job->room);
     job->room = NULL;
+    noc_image_destroy(job->image); /* of an animation's picture before */
     job->image = noc_view_image(job->view);
     if (!job->image)
         return NOC_ERR_MEMORY;
     meta_text meta = { .count = 0 };
     add(&meta, "inputs", join_names(args->common.inputs, args->common.input_count));
     add(&meta, "lamps", join_names(args->import.lamps.text, args->import.lamps.count));
-    add(&meta, "frames", cli_format("%d", job->frames));
+    add(&meta, "frames", cli_format("%d", job->averaged));
+    if (job->animation)
+        add(&meta, "animation", cli_format("%s", job->animation));
     add(&meta, "camera-eye", cli_format("%.17g %.17g %.17g", c->eye[0], c->eye[1], c->eye[2]));
     add(&meta, "camera-target", cli_format("%.17g %.17g %.17g", c->target[0], c->target[1], c->target[2]));
     add(&meta, "camera-up", cli_format("%.17g %.17g %.17g", c->up[0], c->up[1], c->up[2]));
@@ -171,17 +200,14 @@ noc_status cli_write_picture(render_job *job) {
         cli_format("%.12g %.12g %.12g", job->scene_info.origin[0], job->scene_info.origin[1],
                    job->scene_info.origin[2]));
     add_options(&meta, args);
-    if (!args->show && is_exr(args->output))
+    if (!args->show && is_exr(job->file))
         add(&meta, "auto-ev100", cli_format("%.4f", auto_ev100(job)));
     if (args->show)
         add(&meta, "show", cli_format("%s", noc_aov_name((noc_aov)(args->show - 1))));
     noc_image_meta texts = { meta.count, (const char *const *)meta.keys, (const char *const *)meta.values };
     noc_status status = args->show ? cli_write_view(job, &texts)
-                                   : noc_image_write(job->image, args->output, &args->display, &texts, job->log);
-    for (size_t i = 0; i < meta.count; i++) {
-        free(meta.keys[i]);
-        free(meta.values[i]);
-    }
+                                   : noc_image_write(job->image, job->file, &args->display, &texts, job->log);
+    forget(&meta);
     return status;
 }
 
@@ -315,9 +341,11 @@ void cli_print_summary(const render_job *job) {
     const render_args *args = job->args;
     const noc_scene_info *scene = &job->scene_info;
     char a[64], b[64], c[32], name[24] = "", path[240];
-    printf("%s\n", noc_text_clean(path, sizeof(path), args->output));
+    if (!args->animation.on)
+        printf("%s\n", noc_text_clean(path, sizeof(path), args->output));
     printf("  picture   %d x %d, %s of %s, ", args->render.width, args->render.height,
-           noc_text_many(a, (uint64_t)job->frames, "frame"), choice_name("method", &args->render, name, sizeof(name)));
+           noc_text_many(a, (uint64_t)job->averaged, "frame"),
+           choice_name("method", &args->render, name, sizeof(name)));
     if (job->shown)
         cli_print_view_kind(job, is_exr(args->output));
     else if (is_exr(args->output))

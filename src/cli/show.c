@@ -27,9 +27,9 @@ int cli_parse_show(render_args *args) {
 }
 
 noc_status cli_write_view(render_job *job, const noc_image_meta *meta) {
+    noc_channel_destroy(job->shown); /* of an animation's picture before */
     job->shown = noc_view_aov(job->view, shown(job->args));
-    return job->shown ? noc_channel_write(job->shown, job->args->output, &job->args->range, meta, job->log)
-                      : NOC_ERR_MEMORY;
+    return job->shown ? noc_channel_write(job->shown, job->file, &job->args->range, meta, job->log) : NOC_ERR_MEMORY;
 }
 
 static int compare_values(const void *a, const void *b) {

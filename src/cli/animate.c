@@ -1,0 +1,400 @@
+/* nocturne render --animate: a picture for each step along a camera path, each whole on the disk before the next
+ * begins.
+ *
+ * Pictures come in segments. A segment knows nothing of those before it: its random numbers are its own, and its
+ * history begins with frames that are not kept, of the pictures just before it. So a picture is the same whether the
+ * run that made it began with the first one or with its segment, and a run that was interrupted goes on as if it had
+ * not been. */
+#include "render.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define GROUP "Animation"
+#define MOST_PICTURES 1000000
+#define PICTURES 240     /* where neither the path nor the user says */
+#define SEGMENT 48       /* pictures that reuse samples of each other */
+#define MOST_WARM_UP 32  /* frames */
+#define WARM_UP 8        /* of what is learned alone */
+#define METERED 8        /* places of the path that the exposure is measured at, */
+#define METERED_FRAMES 4 /* each by so many frames */
+#define METERED_SIDE 192 /* of so many pixels at most */
+#define KEY_SAMPLES 256  /* places of the path that its key is made of */
+
+#define A animation_args
+static const noc_option animation_options[] = {
+    { "animate", GROUP, NOC_OPTION_BOOL, offsetof(A, on), 0, 1, NULL, "",
+      "a picture for each step along a camera path: -o frame-%04d.png" },
+    { "path", GROUP, NOC_OPTION_TEXT, offsetof(A, path), 0, 0, NULL, "NAME",
+      "orbit or pan about the camera, or a path of the recipe; else its first one, or orbit" },
+    { "fps", GROUP, NOC_OPTION_REAL, offsetof(A, fps), 0.01, 1000, NULL, "", "pictures a second" },
+    { "duration", GROUP, NOC_OPTION_REAL, offsetof(A, duration), 0, NOC_PATH_MOST_SECONDS, NULL, "s",
+      "time that the path takes; 0 = what its keys say, else what --frames take" },
+    { "samples", GROUP, NOC_OPTION_INT, offsetof(A, samples), 1, 1e6, NULL, "", "frames averaged in each picture" },
+    { "segment", GROUP, NOC_OPTION_INT, offsetof(A, segment), 0, MOST_PICTURES, NULL, "",
+      "pictures that learn from those before them; 1 = none does; 0 = 1, or 48 with reuse in time" },
+    { "overwrite", GROUP, NOC_OPTION_BOOL, offsetof(A, overwrite), 0, 1, NULL, "",
+      "render pictures that are there, too, and replace files that are none of this animation" },
+    { NULL },
+};
+#undef A
+const noc_option *cli_animation_options(void) { return animation_options; }
+
+/* One run. */
+typedef struct animation {
+    render_job *job;
+    const animation_args *args;
+    noc_camera_path *path;
+    cli_series series;
+    char key[17]; /* of all that decides its pictures */
+    int pictures, segment, warm_up;
+    bool *kept; /* by picture: it is there already */
+    int kept_count, made;
+    double frames, done; /* to render, and rendered */
+    double began;        /* wall clock */
+    double hour;         /* that windows are switched for; < 0: as loaded */
+} animation;
+
+/* ---- before anything is read ---- */
+
+static const noc_recipe_path *recipe_path(const render_args *args, const char *name) {
+    const noc_recipe_info *recipe = noc_recipe_get_info(args->common.recipe);
+    for (size_t i = 0; i < recipe->path_count; i++)
+        if (!name || !strcmp(recipe->paths[i].name, name))
+            return &recipe->paths[i];
+    return NULL;
+}
+
+static int check_path(const render_args *args) {
+    enum { NAMES = 64 };
+    const noc_recipe_info *recipe = noc_recipe_get_info(args->common.recipe);
+    const char *name = args->animation.path, *names[NAMES] = { "orbit", "pan" };
+    size_t count = 2;
+    for (size_t i = 0; i < recipe->path_count && count < NAMES; i++)
+        names[count++] = recipe->paths[i].name;
+    if (!name || recipe_path(args, name) || !strcmp(name, names[0]) || !strcmp(name, names[1]))
+        return CLI_OK;
+    const char *nearest = noc_text_nearest(name, names, count);
+    return cli_usage(&cli_render, "--path: no path \"%.60s\"%s%.60s%s", name, nearest ? "; is it " : "",
+                     nearest               ? nearest
+                     : args->common.recipe ? ""
+                                           : "; paths besides orbit and pan are of recipes",
+                     nearest ? "?" : "");
+}
+
+int cli_check_animation(const render_args *args) {
+    const animation_args *a = &args->animation;
+    for (const noc_option *o = animation_options; o->name && !a->on; o++)
+        if (cli_given(&args->common, o->name) && strcmp(o->name, "animate"))
+            return cli_usage(&cli_render, "--%s is for --animate", o->name);
+    if (!a->on)
+        return CLI_OK;
+    static const char *const others[] = { "time", "influence-obj" };
+    for (size_t i = 0; i < sizeof(others) / sizeof(*others); i++)
+        if (cli_given(&args->common, others[i]))
+            return cli_usage(&cli_render, "--animate and --%s exclude each other", others[i]);
+    if (!args->render.accumulate)
+        return cli_usage(&cli_render, "--animate and --no-accumulate exclude each other; --samples 1 averages nothing");
+    if (args->frames > MOST_PICTURES)
+        return cli_usage(&cli_render, "--frames: an animation has %d pictures at most", MOST_PICTURES);
+    int status = check_path(args);
+    cli_series series;
+    if (status || (status = cli_series_parse(args->output, &series)))
+        return status;
+    char *first = cli_series_file(&series, 1);
+    status = cli_check_output(&cli_render, first, CLI_PNG | CLI_EXR, &args->common);
+    free(first);
+    cli_series_free(&series);
+    return status;
+}
+
+/* ---- the path ---- */
+
+/* Pictures at even times: of an open path the last one lies at its end, of a loop a step before it. */
+static double pictures_in(double seconds, double fps, bool loop) {
+    return loop ? fmax(1, round(seconds * fps)) : floor(seconds * fps + 1e-6) + 1;
+}
+
+static noc_status make_path(animation *a) {
+    render_args *args = a->job->args;
+    const noc_recipe_path *recipe = recipe_path(args, a->args->path);
+    bool pan = a->args->path && !strcmp(a->args->path, "pan"), orbit = a->args->path && !pan && !recipe;
+    if (orbit || pan)
+        recipe = recipe_path(args, a->args->path);
+    bool loop = !recipe || recipe->loop, told = recipe && recipe->keys[recipe->key_count - 1].seconds >= 0;
+    bool counted = cli_given(&args->common, "frames");
+    double fps = a->args->fps, seconds = a->args->duration, aspect = (double)args->render.width / args->render.height;
+    double pictures = counted ? args->frames : PICTURES;
+    if (!(seconds > 0) && !told)
+        seconds = fmax(pictures - !loop, 1) / fps;
+    noc_status status;
+    if (recipe) {
+        status = noc_scene_place_path(a->job->scene, recipe->keys, recipe->key_count, loop, seconds, aspect, &a->path);
+    } else {
+        noc_camera_params base = args->camera;
+        if (!pan && !base.eye && !cli_given(&args->common, "view") && !args->common.recipe)
+            base.viewpoint = NOC_VIEWPOINT_AERIAL;
+        status = noc_scene_place_camera(a->job->scene, &base, aspect, &a->job->camera, &a->job->far_away);
+        if (!status)
+            status =
+                (pan ? noc_camera_path_pan : noc_camera_path_orbit)(&a->job->camera, seconds, a->job->log, &a->path);
+    }
+    if (status)
+        return status;
+    if (!counted && (told || a->args->duration > 0))
+        pictures = pictures_in(noc_camera_path_seconds(a->path), fps, loop);
+    if (pictures > MOST_PICTURES) {
+        cli_error("--animate: %.0f pictures are more than %d", pictures, MOST_PICTURES);
+        return NOC_ERR_ARGUMENT;
+    }
+    a->pictures = (int)pictures;
+    return NOC_OK;
+}
+
+static void hash(uint64_t *h, const void *data, size_t size) {
+    for (const unsigned char *p = data; size--; p++) /* FNV-1a */
+        *h = (*h ^ *p) * 0x100000001b3;
+}
+
+/* A name for all that decides the pictures: options, the scene, the path. */
+static void make_key(animation *a) {
+    uint64_t h = 0xcbf29ce484222325;
+    char *options = cli_options_text(a->job->args), content[NOC_CONTENT_KEY];
+    noc_scene_content(a->job->scene, content);
+    hash(&h, options, strlen(options));
+    hash(&h, content, strlen(content));
+    double seconds = noc_camera_path_seconds(a->path);
+    hash(&h, &seconds, sizeof(seconds));
+    for (int i = 0; i < KEY_SAMPLES; i++) {
+        double t = seconds * (i + 0.5) / KEY_SAMPLES, hour = noc_camera_path_hour(a->path, t);
+        noc_camera c;
+        noc_camera_path_at(a->path, t, &c);
+        hash(&h, &c, sizeof(c));
+        hash(&h, &hour, sizeof(hour));
+    }
+    free(options);
+    snprintf(a->key, sizeof(a->key), "%016llx", (unsigned long long)h);
+}
+
+/* ---- what is there ---- */
+
+static char *tag_of(const animation *a, int picture) { return cli_format("%s/%d", a->key, picture + 1); }
+
+/* A file that is there is this animation's picture, or in the way. */
+static noc_status look_at_picture(animation *a, int picture) {
+    char *file = cli_series_file(&a->series, picture + 1), *tag = tag_of(a, picture), *told = NULL;
+    struct stat st;
+    noc_status status = NOC_OK;
+    if (!lstat(file, &st)) {
+        if (noc_image_read_text(file, "animation", &told, NULL) || !told || strcmp(told, tag)) {
+            cli_error("%s is there, and is %s: --overwrite replaces it", file,
+                      told ? "of other options, another path or another scene" : "no picture of an animation");
+            status = NOC_ERR_ARGUMENT;
+        } else {
+            a->kept[picture] = true;
+            a->kept_count++;
+        }
+    }
+    free(told);
+    free(tag);
+    free(file);
+    return status;
+}
+
+static noc_status look_at_pictures(animation *a) {
+    noc_status status = NOC_OK;
+    a->kept = cli_alloc((size_t)a->pictures * sizeof(*a->kept));
+    for (int i = 0; i < a->pictures && !a->args->overwrite && !status; i++)
+        status = look_at_picture(a, i);
+    return status;
+}
+
+/* ---- frames ---- */
+
+/* The scene and the camera as they are at that picture; before the first one, too. */
+static noc_status go_to(animation *a, int picture) {
+    double t = picture / a->args->fps, hour = noc_camera_path_hour(a->path, t);
+    noc_status status = noc_camera_path_at(a->path, t, &a->job->camera);
+    if (status || hour < 0 || hour == a->hour)
+        return status;
+    noc_window_params windows = a->job->args->import.window;
+    windows.hour = a->hour = hour;
+    status = noc_scene_set_windows(a->job->scene, &windows);
+    return status ? status : noc_scene_commit(a->job->scene);
+}
+
+static bool progress(void *user, const char *what, double done) {
+    const animation *a = user;
+    double share = (a->done + done) / a->frames, spent = cli_now() - a->began;
+    cli_progress_show(share, share > 0 && spent > 0.5 ? spent / share - spent : -1, "picture %d of %d",
+                      a->kept_count + a->made + 1, a->pictures);
+    return !cli_interrupted();
+}
+
+static noc_status render_frame(animation *a, const noc_render_params *params) {
+    noc_status status = noc_view_render(a->job->view, &a->job->camera, params, &(noc_progress){ progress, a });
+    if (!status) {
+        cli_add_stats(a->job);
+        a->done++;
+    }
+    return status;
+}
+
+/* One exposure for all pictures: the mean, in stops, of what places along the path would have. */
+static noc_status meter(animation *a) {
+    render_job *job = a->job;
+    render_args *args = job->args;
+    noc_render_params p = args->render;
+    double sum = 0, scale = fmin(1, (double)METERED_SIDE / fmax(p.width, p.height));
+    noc_render_use_preset(&p, NOC_PRESET_STILL);
+    p.aovs = 0;
+    p.width = (int)fmax(1, p.width * scale);
+    p.height = (int)fmax(1, p.height * scale);
+    noc_view *view = noc_view_create(job->device, job->scene);
+    noc_status status = view ? NOC_OK : NOC_ERR_MEMORY;
+    for (int i = 0; i < METERED && !status; i++) {
+        status = go_to(a, (int)((i + 0.5) * a->pictures / METERED));
+        for (int k = 0; k < METERED_FRAMES && !status; k++) {
+            cli_progress_show((double)i / METERED, -1, "exposure");
+            status = cli_interrupted() ? NOC_ERR_CANCELLED : noc_view_render(view, &job->camera, &p, NULL);
+        }
+        noc_image *image = status ? NULL : noc_view_image(view);
+        if (!status && !image)
+            status = NOC_ERR_MEMORY;
+        if (image)
+            sum += cli_auto_ev100(image);
+        noc_image_destroy(image);
+    }
+    noc_view_destroy(view);
+    args->display.auto_exposure = false;
+    args->display.ev100 = sum / METERED - args->display.compensation;
+    return status;
+}
+
+static noc_status write_picture(animation *a, int picture) {
+    render_job *job = a->job;
+    char *file = cli_series_file(&a->series, picture + 1);
+    free(job->animation);
+    job->animation = tag_of(a, picture);
+    job->file = file;
+    job->averaged = a->args->samples;
+    noc_status status = cli_write_picture(job);
+    if (!status && job->args->common.verbose)
+        cli_error("%s", file);
+    a->made += !status;
+    job->file = NULL;
+    free(file);
+    return status;
+}
+
+/* Pictures of a segment up to the last that is not there. Those that are there between them are rendered again: others
+ * learn from them. */
+static noc_status render_segment(animation *a, int first, int last) {
+    noc_render_params p = a->job->args->render;
+    noc_status status = NOC_OK;
+    int64_t samples = a->args->samples, from = first * samples - a->warm_up;
+    p.seed += (uint32_t)(first / a->segment) * 2654435769u; /* by the golden ratio: other numbers, no history */
+    for (int64_t frame = from; frame < last * samples && !status; frame++) {
+        int picture = (int)(frame >= 0 ? frame / samples : -((samples - 1 - frame) / samples));
+        if (frame == from || frame == picture * samples) {
+            status = go_to(a, picture);
+            noc_view_restart(a->job->view);
+        }
+        status = status ? status : render_frame(a, &p);
+        bool ends = !status && frame >= first * samples && frame == (picture + 1) * samples - 1;
+        if (ends && !a->kept[picture])
+            status = write_picture(a, picture);
+        if (!status && cli_interrupted())
+            status = NOC_ERR_CANCELLED;
+    }
+    return status;
+}
+
+/* How far the segment that begins there is to be rendered; first: not at all. */
+static int segment_end(const animation *a, int first) {
+    int end = first;
+    for (int i = first; i < a->pictures && i < first + a->segment; i++)
+        end = a->kept[i] ? end : i + 1;
+    return end;
+}
+
+static noc_status render_all(animation *a) {
+    noc_status status = NOC_OK;
+    for (int i = 0; i < a->pictures; i += a->segment) {
+        int end = segment_end(a, i);
+        a->frames += end > i ? a->warm_up + (double)(end - i) * a->args->samples : 0;
+    }
+    a->began = a->job->ready = cli_now();
+    for (int i = 0; i < a->pictures && !status; i += a->segment) {
+        int end = segment_end(a, i);
+        status = end > i ? render_segment(a, i, end) : NOC_OK;
+    }
+    cli_progress_clear();
+    a->job->rendered = cli_now();
+    return status;
+}
+
+/* ---- the run ---- */
+
+static void choose_segments(animation *a) {
+    const noc_render_params *p = &a->job->args->render;
+    bool reuse = p->method == NOC_METHOD_RESTIR && p->temporal;
+    a->segment = a->args->segment ? a->args->segment : reuse ? SEGMENT : 1;
+    a->warm_up = a->segment == 1 ? 0 : reuse ? (int)fmin(ceil(p->history), MOST_WARM_UP) : WARM_UP;
+}
+
+static noc_status make(animation *a) {
+    noc_status status = make_path(a);
+    if (status)
+        return status;
+    choose_segments(a);
+    make_key(a);
+    status = look_at_pictures(a);
+    if (status || a->kept_count == a->pictures || cli_interrupted())
+        return status;
+    status = cli_start_view(a->job);
+    if (!status && a->job->args->display.auto_exposure && !a->job->args->show)
+        status = meter(a);
+    status = status ? status : render_all(a);
+    cli_nothing_to_keep(false);
+    return status;
+}
+
+static void tell(const animation *a) {
+    char first[200], *name = cli_series_file(&a->series, 1), *last = cli_series_file(&a->series, a->pictures);
+    printf("%s ... %s\n", noc_text_clean(first, sizeof(first), name), last);
+    printf("  animation %d pictures", a->pictures);
+    if (a->kept_count)
+        printf(", %d of them were there", a->kept_count);
+    printf(", %.2f s at %g a second\n", a->pictures / a->args->fps, a->args->fps);
+    free(name);
+    free(last);
+}
+
+int cli_animate(render_job *job) {
+    animation a = { .job = job, .args = &job->args->animation, .hour = -1 };
+    cli_series_parse(job->args->output, &a.series); /* it was checked */
+    noc_status status = cli_interrupted() ? NOC_ERR_CANCELLED : make(&a);
+    int ending = cli_interrupted() ? CLI_INTERRUPTED + cli_interrupted() : CLI_OK;
+    if (cli_is_failure(status)) {
+        ending = CLI_FAILURE;
+    } else if (ending) {
+        cli_error("interrupted: %d of %d pictures are there; the same command goes on", a.kept_count + a.made,
+                  a.pictures);
+    } else {
+        if (!job->args->common.quiet)
+            tell(&a);
+        if (!job->args->common.quiet && a.made)
+            cli_print_summary(job);
+        if (job->args->stats && a.made)
+            cli_print_stats(job);
+        ending = cli_flush(stdout) ? CLI_OK : CLI_FAILURE;
+    }
+    noc_camera_path_destroy(a.path);
+    cli_series_free(&a.series);
+    free(a.kept);
+    return ending;
+}

@@ -1,0 +1,46 @@
+/* Files of an animation: pictures by number. */
+#include "render.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST_DIGITS 9
+
+/* The number's place in a name: "%d", or "%04d". */
+static const char *parse_number(const char *percent, int *digits) {
+    const char *p = percent + 1;
+    *digits = 1;
+    if (*p == '0' && isdigit((unsigned char)p[1])) {
+        char *end;
+        *digits = (int)strtol(p, &end, 10);
+        p = end;
+    }
+    return *p == 'd' && p - percent <= 4 && *digits >= 1 && *digits <= MOST_DIGITS ? p + 1 : NULL;
+}
+
+int cli_series_parse(const char *output, cli_series *series) {
+    *series = (cli_series){ NULL, NULL, 6 };
+    const char *percent = strchr(output, '%');
+    if (!percent)
+        return cli_usage(&cli_render,
+                         "--animate: \"%.80s\" names one picture; frame-%%04d.png names one for each number", output);
+    const char *rest = parse_number(percent, &series->digits);
+    if (!rest || strchr(rest, '%') || strchr(rest, '/'))
+        return cli_usage(&cli_render,
+                         "--animate: \"%.80s\": the file's name holds one %%d, or %%0Nd for N digits, and no other %%",
+                         output);
+    series->prefix = cli_format("%.*s", (int)(percent - output), output);
+    series->suffix = cli_format("%s", rest);
+    return CLI_OK;
+}
+
+void cli_series_free(cli_series *series) {
+    free(series->prefix);
+    free(series->suffix);
+    *series = (cli_series){ NULL, NULL, 0 };
+}
+
+char *cli_series_file(const cli_series *series, int number) {
+    return cli_format("%s%0*d%s", series->prefix, series->digits, number, series->suffix);
+}
