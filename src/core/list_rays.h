@@ -78,7 +78,8 @@ FN list_sums list_weigh(CTX surf s, mask on, u32 key, u1 count) {
 FN real list_draws(list_sums sums, f1 rays, f1 brightness, real rounding) {
     EXACT f1 unknown = LEARNED_UNKNOWN / learned_pull(LEARNED_UNKNOWN);
     EXACT real mean = K(rays * unknown) * sums.all / (sums.bright + K(0.01f * brightness));
-    real n = to_real(to_u32(min_(max_(mean, K(1.0f)), K(2.0f * rays)) + rounding));
+    /* a sum that is rounded up must not be a draw too many: there is no room for it */
+    real n = to_real(to_u32(min_(max_(mean, K(1.0f)) + rounding, K(2.0f * rays))));
     return sel(sums.all > K(0.0f), n, K(0.0f));
 }
 
