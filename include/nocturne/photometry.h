@@ -77,7 +77,8 @@ NOC_API noc_status noc_profile_create(noc_log *log, const noc_profile_params *pa
 /* Distributions of our own making, none of which is a measured luminaire: "cobra-head" (a road luminaire on an arm,
  * full cut-off, two beams along the road), "post-top" (a lantern, alike all around, not cut off), "wall" (all forward,
  * full cut-off), "flood" (about its own axis, half its peak at 30 degrees), "bollard" (a ring on the ground, full
- * cut-off). C 0 is the street. */
+ * cut-off): C 0 is the street. "low-beam" is a car's headlamp on roads that are driven on the right: its axis looks
+ * ahead and level, C 0 to the right. */
 NOC_API noc_status noc_profile_builtin(noc_log *log, const char *name, noc_profile **profile);
 NOC_API const char *noc_profile_builtin_name(int i); /* from 0; NULL beyond the last */
 
