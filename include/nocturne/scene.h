@@ -247,6 +247,12 @@ NOC_API double noc_window_share(noc_window_kind kind, double lit_windows, double
  * switching their lights does: nothing is built anew. */
 NOC_API noc_status noc_scene_set_windows(noc_scene *scene, const noc_window_params *params);
 
+/* Cars of a load (noc_import_params.traffic) where they are at that time, s: of any sign, 0 is where a load puts them
+ * unless noc_traffic_params.time says otherwise. A car is a function of the time alone, so frames may be asked for in
+ * any order. At the end of its track a car is at once at the track's beginning, or that of its next part: nothing lies
+ * between. Costs what noc_scene_set_transform of every car does; without cars nothing happens. */
+NOC_API noc_status noc_scene_set_time(noc_scene *scene, double seconds);
+
 /* Index in the scene of an instance's light: light is its number in the model, where those that noc_scene_add_light
  * returned come first and triangles of meshes that shine follow. -1 after reporting: there is none, or it is not
  * committed yet. */
@@ -291,6 +297,8 @@ typedef struct noc_scene_info {
     size_t triangles, vertices, meshes, materials;
     size_t models, instances;
     size_t instance_triangles; /* that instances show: of each those of its model */
+    size_t cars;               /* of the instances those that noc_scene_set_time moves */
+    double time;               /* s, of the cars, as published or staged last */
     size_t windows, windows_lit;
     size_t light_slots; /* indices of lights are below it */
     size_t lights, lights_by_kind[NOC_LIGHT_KIND_COUNT], lights_inferred;

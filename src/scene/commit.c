@@ -327,6 +327,7 @@ static void remove_instance(commit *c, const noc_edit *e) {
     for (size_t k = 0; k < model->lights.len; k++)
         noc_light_release(s, i->lights[k], &c->changes);
     free(i->lights);
+    noc_car_forget(s, e->index);
     *i = (noc_scene_instance){ .model = 0 };
     model->instances--;
     c->changes.instances = true;

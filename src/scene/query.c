@@ -12,7 +12,9 @@ size_t noc_scene_bytes(const noc_scene *s) {
            s->lights.cap * sizeof(noc_light_record) + s->light_names.cap * sizeof(char *) +
            s->light_made.cap * sizeof(noc_rgb) + s->meshes.cap * sizeof(noc_scene_mesh) + s->names.bytes +
            s->later_bytes + models + s->profile_cells.cap * sizeof(float) +
-           s->instances.cap * sizeof(noc_scene_instance) + s->windows.cap * sizeof(noc_scene_window) + s->walls.cap;
+           s->instances.cap * sizeof(noc_scene_instance) + s->stops.cap * sizeof(noc_scene_stop) +
+           s->routes.cap * sizeof(noc_scene_route) + s->cars.cap * sizeof(noc_scene_car) +
+           s->windows.cap * sizeof(noc_scene_window) + s->walls.cap;
 }
 
 static void count_meshes(const noc_scene *scene, noc_scene_info *info) {
@@ -77,6 +79,8 @@ void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info) {
                               .crs = scene->crs_name ? scene->crs_name : "" };
     for (size_t i = 0; i < scene->instances.len; i++)
         info->instances += scene->instances.data[i].model > 0;
+    info->cars = scene->cars.len;
+    info->time = scene->time;
     info->given_crs = scene->given_crs_name ? scene->given_crs_name : info->crs;
     memcpy(info->given_origin, scene->given_crs_name ? scene->given_origin : scene->origin, sizeof(info->given_origin));
     memcpy(info->origin, scene->origin, sizeof(info->origin));

@@ -69,6 +69,9 @@ void noc_scene_destroy(noc_scene *scene) {
     array_free(&scene->walls);
     array_free(&scene->models);
     array_free(&scene->instances);
+    array_free(&scene->stops);
+    array_free(&scene->routes);
+    array_free(&scene->cars);
     array_free(&scene->groups);
     array_free(&scene->profiles);
     array_free(&scene->profile_cells);

@@ -72,6 +72,24 @@ typedef struct noc_scene_instance {
     uint32_t *lights;    /* [lights of the model] each one's slot; owned */
 } noc_scene_instance;
 
+/* A place on a route. Legs lie one behind the other; the first stop of a leg is 0 m along it, and is reached in the
+ * second in which the leg before ends. */
+typedef struct noc_scene_stop {
+    double seconds; /* from the route's beginning; never less than the stop's before it */
+    float p[3];
+    float along; /* m from the leg's beginning */
+} noc_scene_stop;
+
+typedef struct noc_scene_route {
+    size_t first, count; /* of the scene's stops: two or more, and the last one is reached in more than 0 s */
+} noc_scene_route;
+
+/* An instance that takes a route, again and again. */
+typedef struct noc_scene_car {
+    uint32_t instance, route;
+    double start; /* s from the route's beginning, at time 0 */
+} noc_scene_car;
+
 typedef struct noc_scene_group {
     const char *name;
     float scale[3];
@@ -183,6 +201,10 @@ struct noc_scene {
     NOC_ARRAY(uint8_t) walls;                        /* noc_wall_verdict of triangles; of those behind its end UNSEEN */
     NOC_ARRAY(noc_scene_model) models;               /* model m is at m - 1 */
     NOC_ARRAY(noc_scene_instance) instances;
+    NOC_ARRAY(noc_scene_stop) stops;
+    NOC_ARRAY(noc_scene_route) routes;
+    NOC_ARRAY(noc_scene_car) cars;         /* ascending by their instances */
+    double time;                           /* s, of the cars */
     NOC_ARRAY(noc_scene_group) groups;     /* group g is at g - 1; only who edits looks at them */
     NOC_ARRAY(noc_scene_profile) profiles; /* profile p is at p - 1 */
     NOC_ARRAY(float) profile_cells;        /* core/profile.h; data is 16-byte aligned */
@@ -368,6 +390,13 @@ const char *noc_window_fault(const noc_window_params *p); /* what is wrong with 
 noc_light_record noc_light_placed(const noc_light_record *light, const float transform[12]);
 /* Bounds of a model where it stands, joined to lo..hi. */
 void noc_join_instance_bounds(const noc_scene *s, const noc_scene_instance *instance, double lo[3], double hi[3]);
+
+/* traffic.c */
+/* Before the first commit: a route, whose stops are copied. Its number, or -1 after reporting: no memory. */
+int noc_scene_add_route(noc_scene *s, const noc_scene_stop *stops, size_t count);
+/* An instance of the model that takes it, where it is at the scene's time. false after reporting. */
+bool noc_scene_add_car(noc_scene *s, int model, int route, double start);
+void noc_car_forget(noc_scene *s, uint32_t instance); /* one that goes; it need not be a car's */
 
 /* Bytes that it takes, about. */
 size_t noc_scene_bytes(const noc_scene *s);

@@ -66,6 +66,7 @@ static noc_camera camera;
     P(0, noc_scene_set_transform(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                  \
     P(0, noc_scene_remove_instance(NULL, 0) == NOC_ERR_ARGUMENT)                                                       \
     P(0, noc_scene_instance_light(NULL, 0, 0) == -1)                                                                   \
+    P(0, noc_scene_set_time(NULL, 0) == NOC_ERR_ARGUMENT)                                                              \
     P(0, noc_scene_set_windows(NULL, &(noc_window_params){ .hour = 21 }) == NOC_ERR_ARGUMENT)                          \
     P(0, noc_scene_set_windows(scene, NULL) == NOC_ERR_ARGUMENT)                                                       \
     P(0, noc_scene_set_material(NULL, 0, &(noc_material){ .roughness = 1 }) == NOC_ERR_ARGUMENT)                       \
