@@ -1,6 +1,7 @@
 /* nocturne/import.h: from files to a scene. Inputs are told apart by content, never by name: CityGML and CityJSON
  * (plain, .gz, .zip); OBJ, PLY, glTF and GLB; terrain as GeoTIFF; OpenStreetMap XML and PBF, Overpass JSON, GeoJSON,
- * GeoJSONSeq, GeoPackage, Shapefile (also zipped), FlatGeobuf, CSV. Several inputs make one scene. */
+ * GeoJSONSeq, GeoPackage, Shapefile (also zipped), FlatGeobuf, CSV; tracks of cars as GPX. Several inputs make one
+ * scene. */
 #ifndef NOCTURNE_IMPORT_H
 #define NOCTURNE_IMPORT_H
 
@@ -31,6 +32,27 @@ typedef struct noc_texts {
     const char *text[NOC_TEXTS];
     size_t count;
 } noc_texts;
+
+typedef enum noc_driving_side { NOC_DRIVE_RIGHT, NOC_DRIVE_LEFT } noc_driving_side;
+
+/* Cars (docs/traffic.md). */
+typedef struct noc_traffic_params {
+    double spacing; /* m between cars of a lane on a main road; other roads have fewer, by their class; default 60 */
+    double speed;   /* km/h, on roads that tell no limit and on tracks without times; 0, the default: by the road's
+                       class, on tracks 40 */
+    noc_driving_side side; /* of the road that is driven on; default right */
+    double time;           /* s: where on their ways the cars are when the load ends (noc_scene_set_time); default 0 */
+    double headlamp;       /* lm, of one headlamp; default 700 */
+    double tail_lamp;      /* cd, of one tail lamp straight back; default 8 */
+    uint32_t seed;         /* another number, other cars */
+} noc_traffic_params;
+
+#define NOC_TRAFFIC_DEFAULTS(set) set(spacing, 60) set(headlamp, 700) set(tail_lamp, 8) set(seed, 1)
+#ifdef __cplusplus
+NOC_DEFAULT_PARAMS(noc_traffic_params, noc_traffic_default_params, NOC_TRAFFIC_DEFAULTS)
+#else
+#define noc_traffic_default_params() ((noc_traffic_params){ NOC_TRAFFIC_DEFAULTS(NOC_DEFAULT_IN_C) })
+#endif
 
 typedef struct noc_import_params {
     /* CRS of inputs that name none (any PROJ definition), NULL: such inputs fail if they need one */
@@ -72,6 +94,11 @@ typedef struct noc_import_params {
     noc_texts lamp_columns; /* "field=column", several separated by commas: what a table's column, an attribute or a tag
                                is read as. height_ft=H says a unit. Fields: height, lumens, watts, kelvin, colour,
                                source, direction, count, mount, status, id, ele, lon, lat, x, y, wkt, latlon */
+    /* Cars? AUTO, the default: one along each track that inputs hold. ON: also along the roads of maps. OFF: none. */
+    noc_switch traffic;
+    noc_traffic_params cars;
+    noc_texts tracks; /* files whose lines are tracks of cars. Read with the others; one that is among them is read
+                         once */
     /* axis of OBJ files that points up (they do not say it); default y, as most programs write */
     noc_obj_up obj_up;
     bool allow_outside; /* files that an input names (mtllib, glTF buffers, parts of a Shapefile) may lie anywhere;
@@ -101,14 +128,17 @@ typedef struct noc_import_params {
 #define NOC_IMPORT_DEFAULTS(set)                                                                                       \
     set(lod, 3) set(building_height, 9) set(terrain_error, 0.25) set(terrain_triangles, 500000)                        \
         set(infer_lamps, NOC_SWITCH_AUTO) set(lamp_height, 6) set(lamp_lumens, 5000) set(lamp_kelvin, 3000)            \
-            set(profiles, true) set(windows, NOC_SWITCH_AUTO) set(isolate, true) set(reader_time, 600)                 \
-                set(max_expansion, 200)
+            set(profiles, true) set(windows, NOC_SWITCH_AUTO) set(traffic, NOC_SWITCH_AUTO) set(isolate, true)         \
+                set(reader_time, 600) set(max_expansion, 200)
 #ifdef __cplusplus
-#define NOC_IMPORT_ALL_DEFAULTS(set) set(window, noc_window_default_params()) NOC_IMPORT_DEFAULTS(set)
+#define NOC_IMPORT_ALL_DEFAULTS(set)                                                                                   \
+    set(window, noc_window_default_params()) set(cars, noc_traffic_default_params()) NOC_IMPORT_DEFAULTS(set)
 NOC_DEFAULT_PARAMS(noc_import_params, noc_import_default_params, NOC_IMPORT_ALL_DEFAULTS)
 #else
 #define noc_import_default_params()                                                                                    \
-    ((noc_import_params){ .window = { NOC_WINDOW_DEFAULTS(NOC_DEFAULT_IN_C) }, NOC_IMPORT_DEFAULTS(NOC_DEFAULT_IN_C) })
+    ((noc_import_params){ .window = { NOC_WINDOW_DEFAULTS(NOC_DEFAULT_IN_C) },                                         \
+                          .cars = { NOC_TRAFFIC_DEFAULTS(NOC_DEFAULT_IN_C) },                                          \
+                          NOC_IMPORT_DEFAULTS(NOC_DEFAULT_IN_C) })
 #endif
 
 /* What holds the process that reads other people's formats (noc_import_params.isolate) here: "files by Landlock, system
@@ -198,6 +228,8 @@ typedef struct noc_report_file {
     size_t lamps_dropped;    /* of no use: outside the city, in a building, without a place */
     size_t lamps_repeated;   /* that another file holds, too, or the file twice: taken once, and counted there */
     size_t objects_repeated; /* the same of objects; of a file's own, too */
+    size_t tracks;           /* of cars, that can be driven */
+    size_t cars;             /* along them */
     /* Of a map: its features by their geometry, of which only lamps are read; of OpenStreetMap only points are in
      * these. */
     size_t map_points, map_lines, map_areas;
@@ -219,6 +251,7 @@ typedef struct noc_report_totals {
     char profiles[160];                           /* of lamps: "cobra-head 40, post-top 3"; "": none have any */
     size_t lamps_assumed[NOC_LAMP_DEFAULT_COUNT]; /* as in noc_report_file */
     noc_window_counts windows;
+    size_t tracks, cars;               /* as in noc_report_file */
     size_t skipped, repaired, guessed; /* features: counts of the files' lines; guessed are those of repaired that are
                                         not lossless */
 } noc_report_totals;

@@ -10,15 +10,20 @@ const char *cli_builtin(const char *input) {
     return strncmp(input, BUILTIN, strlen(BUILTIN)) ? NULL : input + strlen(BUILTIN);
 }
 
-void cli_add_lamps(cli_args *args, const noc_import_params *import) {
-    for (size_t i = 0; i < import->lamps.count; i++) {
+static void add_texts(cli_args *args, const noc_texts *texts) {
+    for (size_t i = 0; i < texts->count; i++) {
         bool there = false;
         for (size_t k = 0; k < args->input_count && !there; k++)
-            there = !strcmp(args->inputs[k], import->lamps.text[i]);
+            there = !strcmp(args->inputs[k], texts->text[i]);
         if (!there)
             /* there is room for every word of the command line */
-            args->inputs[args->input_count++] = import->lamps.text[i];
+            args->inputs[args->input_count++] = texts->text[i];
     }
+}
+
+void cli_add_named(cli_args *args, const noc_import_params *import) {
+    add_texts(args, &import->lamps);
+    add_texts(args, &import->tracks);
 }
 
 /* By noc_lamp_default. */

@@ -108,8 +108,8 @@ const noc_recipe_camera *cli_recipe_camera(const cli_args *args, const char *nam
 
 /* builtin.c */
 const char *cli_builtin(const char *input); /* name of the built-in scene that an input is, NULL for a file */
-/* Files named with --lamps are inputs like the others: appended to those of the command line. */
-void cli_add_lamps(cli_args *args, const noc_import_params *import);
+/* Files named with --lamps and --tracks are inputs like the others: appended to those of the command line. */
+void cli_add_named(cli_args *args, const noc_import_params *import);
 /* Which defaults of lamps the user has said, for --strict. */
 void cli_note_chosen(const cli_args *args, noc_import_params *import);
 /* A line on what lamps do not tell, and what is taken for it; nothing where they tell all. */

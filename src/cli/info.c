@@ -237,7 +237,7 @@ void info_print_file(const noc_report_file *file, const info_args *args) {
     print_features(file);
     print_roads(file);
     bool map = file->roads || file->railways || file->map_points || file->map_lines || file->map_areas ||
-               file->buildings_unread || file->streets_unread;
+               file->buildings_unread || file->streets_unread || file->tracks;
     if (file->objects || (!file->lamps && !map))
         print_objects(file);
     if (file->polygons) {
@@ -251,6 +251,8 @@ void info_print_file(const noc_report_file *file, const info_args *args) {
     if (file->lamps)
         print_lamps(file, &args->import);
     print_points(file);
+    if (file->tracks)
+        printf("  %-11s %s of cars\n", "tracks", noc_text_count(a, file->tracks));
     if (file->lights)
         printf("  %-11s %s\n", "lights", noc_text_count(a, file->lights));
     info_print_lines(file->lines, file->line_count, "skipped");
@@ -368,7 +370,7 @@ static int tell_scene(const info_args *args, noc_log *log) {
 
 static int run(void *arguments) {
     info_args *args = arguments;
-    cli_add_lamps(&args->common, &args->import);
+    cli_add_named(&args->common, &args->import);
     cli_note_chosen(&args->common, &args->import);
     if (!args->common.input_count)
         return cli_usage(&cli_info, "which file?");

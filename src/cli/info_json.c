@@ -166,6 +166,7 @@ static void report_file(const noc_report_file *file, bool timing) {
         columns(file);
         text("decimal_sign", (char[]){ file->decimal_sign == '?' ? 0 : file->decimal_sign, 0 });
     }
+    number("tracks", (double)file->tracks);
     number("lights", (double)file->lights);
     windows(&file->windows);
     number("map_points", (double)file->map_points);

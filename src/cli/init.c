@@ -153,8 +153,8 @@ static void print_section(FILE *out, const init_args *args, const char *section,
 static void print_others(FILE *out, const init_args *args) {
     fputc('\n', out);
     for (const noc_option *o = noc_import_options(); o->name; o++)
-        if (!in_section(o, "lamp-", NULL) && !in_section(o, "window-", "Windows") && o->kind != NOC_OPTION_TEXTS &&
-            strcmp(o->group, "Reading"))
+        if (!in_section(o, "lamp-", NULL) && !in_section(o, "window-", "Windows") &&
+            !in_section(o, "traffic-", "Traffic") && o->kind != NOC_OPTION_TEXTS && strcmp(o->group, "Reading"))
             print_key(out, args, o, o->name, "");
 }
 
@@ -162,7 +162,7 @@ static void print_others(FILE *out, const init_args *args) {
 static void print_texts(FILE *out, const noc_texts *texts, const char *key, const char *remark) {
     fprintf(out, "%s  %s: [", texts->count ? "" : "#", key);
     for (size_t i = 0; i < texts->count; i++) {
-        char *path = strcmp(key, "files") ? NULL : realpath(texts->text[i], NULL);
+        char *path = !strcmp(key, "columns") ? NULL : realpath(texts->text[i], NULL);
         fputs(i ? ", " : "", out);
         print_text(out, path ? path : texts->text[i]);
         free(path);
@@ -249,6 +249,8 @@ static noc_status print_recipe(const init_args *args, const char *folder, noc_lo
     print_others(out, args);
     print_lamps(out, args, &all);
     print_section(out, args, "windows", "window-", "Windows", false);
+    print_section(out, args, "traffic", "traffic-", "Traffic", args->import.tracks.count);
+    print_texts(out, &args->import.tracks, "tracks", "files whose lines are tracks of cars");
     print_materials(out, &all);
     fputs("\n# The first one is used unless --camera NAME, --view or --eye says another.\n"
           "cameras:\n"

@@ -165,7 +165,7 @@ static int check(render_job *job) {
     int status = cli_choose_camera(args);
     if (status)
         return status;
-    cli_add_lamps(&args->common, &args->import);
+    cli_add_named(&args->common, &args->import);
     cli_note_chosen(&args->common, &args->import);
     if (!args->common.input_count)
         return cli_usage(&cli_render, "nothing to draw: name a city model, or builtin:city");

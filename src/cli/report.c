@@ -36,7 +36,7 @@ static void add_options(meta_text *meta, const render_args *args) {
                                                           "stats",   "frames", "size",       "exposure",   "time",
                                                           "threads", "show",   "show-range", "quiet",      "verbose",
                                                           "help",    "lamps",  "animate",    "overwrite",  "path",
-                                                          NULL };
+                                                          "tracks",  NULL };
             if (cli_hidden(set, o) || cli_hidden(&(cli_set){ .hidden = told_otherwise }, o) || !counts(args, o))
                 continue;
             add(meta, o->name, cli_option_value(o, (const char *)args + set->offset));
@@ -91,6 +91,8 @@ static void add_totals(meta_text *meta, const noc_report *report) {
                  { "lamps-height-assumed", t.lamps_assumed[NOC_LAMP_HEIGHT] },
                  { "lamps-flux-assumed", t.lamps_assumed[NOC_LAMP_FLUX] },
                  { "lamps-colour-assumed", t.lamps_assumed[NOC_LAMP_COLOUR] },
+                 { "tracks-of-cars", t.tracks },
+                 { "cars", t.cars },
                  { "features-skipped", t.skipped },
                  { "features-repaired", t.repaired },
                  { "features-guessed", t.guessed } };
@@ -181,6 +183,7 @@ noc_status cli_write_picture(render_job *job) {
     meta_text meta = { .count = 0 };
     add(&meta, "inputs", join_names(args->common.inputs, args->common.input_count));
     add(&meta, "lamps", join_names(args->import.lamps.text, args->import.lamps.count));
+    add(&meta, "tracks", join_names(args->import.tracks.text, args->import.tracks.count));
     add(&meta, "frames", cli_format("%d", job->averaged));
     if (job->animation)
         add(&meta, "animation", cli_format("%s", job->animation));
@@ -313,7 +316,7 @@ static void print_issues(const noc_report *report) {
 
 static void print_lamps(const noc_report *report, const noc_import_params *import) {
     noc_report_totals t;
-    char a[32];
+    char a[32], b[64];
     noc_report_get_totals(report, &t);
     const struct {
         const char *what;
@@ -332,6 +335,8 @@ static void print_lamps(const noc_report *report, const noc_import_params *impor
     if (*before == ',')
         putchar('\n');
     cli_print_windows("  windows   ", &t.windows);
+    if (t.tracks || t.cars)
+        printf("  cars      %s along %s\n", noc_text_count(a, t.cars), noc_text_many(b, t.tracks, "track"));
     if (*t.profiles)
         printf("  profiles  %s\n", t.profiles);
     cli_print_assumed("  assumed   ", t.lamps_assumed, import);

@@ -164,6 +164,16 @@ typedef struct geo_road {
 double geo_road_width(const geo_road *road);
 double geo_road_length(const geo_road *road); /* seen from above, in the unit of its coordinates */
 
+/* A car's track, in parts between which nothing is driven; z is of no use. seconds: when it is at each point, from any
+ * beginning on; NULL: that is not told. */
+typedef struct geo_track {
+    const char *id;
+    size_t part_count;
+    const size_t *part_size; /* points */
+    const double *xyz;
+    const double *seconds;
+} geo_track;
+
 /* A column of a table, an attribute or a tag, and what a reader of lamps took it for. Texts are valid during the call.
  */
 typedef struct geo_column {
@@ -217,6 +227,7 @@ typedef struct geo_sink {
     noc_status (*lamp)(void *ctx, const geo_lamp *lamp);
     noc_status (*footprint)(void *ctx, const geo_footprint *footprint); /* NULL: none is wanted */
     noc_status (*road)(void *ctx, const geo_road *road);                /* the same; those of a map come last */
+    noc_status (*track)(void *ctx, const geo_track *track);
     /* Of a file of points, at its end: how many there are, lamps or not, and its columns. May be NULL. */
     noc_status (*columns)(void *ctx, size_t points, const geo_column *columns, size_t count);
     /* Of a map, at its end. May be NULL. */

@@ -92,7 +92,7 @@ mesh_parts mesh_scene_parts(mesh_scene *to);
 
 typedef struct noc_reader {
     const char *name; /* "CityGML" */
-    enum { NOC_READS_CITY, NOC_READS_MESH, NOC_READS_LAMPS } reads;
+    enum { NOC_READS_CITY, NOC_READS_MESH, NOC_READS_LAMPS, NOC_READS_TRACKS } reads;
     /* Does the beginning of the (decompressed) content look like this format? head is size bytes and then a 0. */
     bool (*probe)(const char *head, size_t size);
     /* The same of a file that the user names as lamps, asked where no probe knows it; may be NULL. */
@@ -112,6 +112,6 @@ typedef struct noc_reader {
 
 /* The table, ended by a NULL name. */
 extern const noc_reader noc_reader_citygml, noc_reader_cityjson, noc_reader_terrain, noc_reader_mesh, noc_reader_ply,
-    noc_reader_gltf, noc_reader_overpass, noc_reader_vector;
+    noc_reader_gltf, noc_reader_overpass, noc_reader_tracks, noc_reader_vector;
 
 #endif

@@ -34,7 +34,6 @@ const char *stranger_told(const char *head) {
     } known[] = {
         { "IESNA", "", PHOTOMETRY("IES") },
         { "", "\nTILT=", PHOTOMETRY("IES") },
-        { "<", "<gpx", "this is GPX, which is not read: convert it to GeoJSON, with ogr2ogr for example" },
         { "<", "<kml", "this is KML, which is not read: convert it to GeoJSON, with ogr2ogr for example" },
         { "<", "<OpenDRIVE",
           "this is OpenDRIVE (roads for driving simulators), which is not read: "

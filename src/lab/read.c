@@ -93,6 +93,8 @@ static noc_status check_inputs(const S *spec, const char *place, json_t *object,
         status = check_input(spec, place, scene->inputs[i]);
     for (size_t i = 0; i < scene->import.lamps.count && !status; i++)
         status = check_input(spec, place, scene->import.lamps.text[i]);
+    for (size_t i = 0; i < scene->import.tracks.count && !status; i++)
+        status = check_input(spec, place, scene->import.tracks.text[i]);
     return status;
 }
 
@@ -143,7 +145,7 @@ static noc_status use_recipe(S *spec, json_t *object, lab_scene *scene) {
 static noc_status read_inputs(S *spec, const char *place, json_t *inputs, lab_scene *scene) {
     size_t i;
     json_t *input;
-    noc_texts *lamps = &scene->import.lamps;
+    noc_texts *lamps = &scene->import.lamps, *tracks = &scene->import.tracks;
     if (!json_array_size(inputs) && !lamps->count)
         return lab_wrong(spec, place, "inputs must be an array of files or builtin:NAME");
     noc_status status = lab_too_many(spec, place, json_array_size(inputs) + lamps->count, LAB_INPUTS, "inputs");
@@ -164,6 +166,8 @@ static noc_status read_inputs(S *spec, const char *place, json_t *inputs, lab_sc
     }
     for (i = 0; i < lamps->count; i++)
         lamps->text[i] = resolve(spec, lamps->text[i]);
+    for (i = 0; i < tracks->count; i++)
+        tracks->text[i] = resolve(spec, tracks->text[i]);
     return spec->arena.refused ? lab_spec_no_memory(spec) : NOC_OK;
 }
 

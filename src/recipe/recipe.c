@@ -16,7 +16,8 @@ typedef struct section {
     const char *list_key, *list; /* a key for an option without the prefix; NULL: none */
 } section;
 static const section sections[] = { { "lamps", "lamp-", NULL, "files", "lamps" },
-                                    { "windows", "window-", "Windows", NULL, NULL } };
+                                    { "windows", "window-", "Windows", NULL, NULL },
+                                    { "traffic", "traffic-", "Traffic", NULL, NULL } };
 
 typedef struct taken {
     recipe_file *file;

@@ -77,7 +77,6 @@ refused() { # name, part of the message; the file is "stranger"
 }
 printf 'IESNA:LM-63-2002\r\n[TEST] 1\r\nTILT=NONE\r\n1 1000 1 5 1 1 2 0 0 0\r\n' >stranger; refused IES '(IES)'
 printf 'ACME\r\n1\r\n2\r\n36\r\n10\r\n37\r\n2,5\r\nREPORT\r\n' >stranger; refused EULUMDAT '(EULUMDAT)'
-printf '<?xml version="1.0"?><gpx version="1.1"><wpt lat="48" lon="11"/></gpx>' >stranger; refused GPX 'GPX.*GeoJSON'
 printf '<?xml version="1.0"?>\n<OpenDRIVE>\n<header revMajor="1"/></OpenDRIVE>' >stranger
 refused OpenDRIVE 'OpenDRIVE.*CityGML'
 printf '<?xml version="1.0"?><kml xmlns="http://www.opengis.net/kml/2.2"><Document/></kml>' >stranger

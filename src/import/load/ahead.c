@@ -10,7 +10,7 @@
 
 /* What a reader emitted, in its order. Texts and arrays in the arena. */
 typedef struct ahead_event {
-    enum { AHEAD_BEGIN, AHEAD_POLYGON, AHEAD_END, AHEAD_LAMP, AHEAD_FOOTPRINT, AHEAD_ROAD } kind;
+    enum { AHEAD_BEGIN, AHEAD_POLYGON, AHEAD_END, AHEAD_LAMP, AHEAD_FOOTPRINT, AHEAD_ROAD, AHEAD_TRACK } kind;
     source_crs *source;
     union {
         geo_object object;
@@ -18,6 +18,7 @@ typedef struct ahead_event {
         geo_lamp lamp;
         geo_footprint footprint;
         geo_road road;
+        geo_track track;
     } u;
 } ahead_event;
 
@@ -40,6 +41,7 @@ static noc_status replay(struct look_ahead *a, const ahead_event *e) {
     case AHEAD_END: return a->sink.end_object(a->sink.ctx);
     case AHEAD_FOOTPRINT: return a->sink.footprint(a->sink.ctx, &e->u.footprint);
     case AHEAD_ROAD: return a->sink.road(a->sink.ctx, &e->u.road);
+    case AHEAD_TRACK: return a->sink.track(a->sink.ctx, &e->u.track);
     case AHEAD_LAMP: break;
     }
     return a->sink.lamp(a->sink.ctx, &e->u.lamp);
@@ -109,6 +111,22 @@ static noc_status on_end_object(void *ctx) {
     return push(a, (ahead_event){ .kind = AHEAD_END });
 }
 
+/* A copy in the arena; its sum goes to *points. */
+static size_t *keep_sizes(struct look_ahead *a, const size_t *sizes, size_t count, size_t *points) {
+    size_t *kept = arena_alloc(&a->arena, (count + 1) * sizeof(*kept));
+    *points = 0;
+    for (size_t i = 0; i < count && kept; i++)
+        *points += kept[i] = sizes[i];
+    return kept;
+}
+
+static double *keep_numbers(struct look_ahead *a, const double *numbers, size_t count) {
+    double *kept = arena_alloc(&a->arena, (count + 1) * sizeof(*kept));
+    if (kept && count)
+        memcpy(kept, numbers, count * sizeof(*kept));
+    return kept;
+}
+
 static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
     struct look_ahead *a = ctx;
     if (a->passing)
@@ -116,23 +134,13 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
     noc_status status = ensure_source(a);
     if (status)
         return status;
-    size_t count = 0;
-    for (size_t r = 0; r < polygon->ring_count; r++)
-        count += polygon->ring_size[r];
-    size_t *ring_size = arena_alloc(&a->arena, (polygon->ring_count + 1) * sizeof(*ring_size));
-    double *xyz = arena_alloc(&a->arena, (count + 1) * 3 * sizeof(*xyz));
-    if (a->arena.refused)
-        return no_memory(a);
-    if (polygon->ring_count)
-        memcpy(ring_size, polygon->ring_size, polygon->ring_count * sizeof(*ring_size));
-    if (count)
-        memcpy(xyz, polygon->xyz, count * 3 * sizeof(*xyz));
+    size_t count;
     ahead_event e = { .kind = AHEAD_POLYGON, .u.polygon = *polygon };
-    e.u.polygon.ring_size = ring_size;
-    e.u.polygon.xyz = xyz;
+    e.u.polygon.ring_size = keep_sizes(a, polygon->ring_size, polygon->ring_count, &count);
+    e.u.polygon.xyz = keep_numbers(a, polygon->xyz, 3 * count);
     e.u.polygon.id = arena_strdup(&a->arena, polygon->id);
     status = push(a, e);
-    return status ? status : keep_points(a, xyz, count, e.u.polygon.id);
+    return status ? status : keep_points(a, e.u.polygon.xyz, count, e.u.polygon.id);
 }
 
 static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
@@ -157,22 +165,32 @@ static noc_status on_footprint(void *ctx, const geo_footprint *footprint) {
     noc_status status = ensure_source(a);
     if (status)
         return status;
-    size_t count = 0;
-    for (size_t r = 0; r < footprint->ring_count; r++)
-        count += footprint->ring_size[r];
-    size_t *ring_size = arena_alloc(&a->arena, (footprint->ring_count + 1) * sizeof(*ring_size));
-    double *xyz = arena_alloc(&a->arena, (count + 1) * 3 * sizeof(*xyz));
-    if (a->arena.refused)
-        return no_memory(a);
-    memcpy(ring_size, footprint->ring_size, footprint->ring_count * sizeof(*ring_size));
-    memcpy(xyz, footprint->xyz, count * 3 * sizeof(*xyz));
+    size_t count;
     ahead_event e = { .kind = AHEAD_FOOTPRINT, .u.footprint = *footprint };
-    e.u.footprint.ring_size = ring_size;
-    e.u.footprint.xyz = xyz;
+    e.u.footprint.ring_size = keep_sizes(a, footprint->ring_size, footprint->ring_count, &count);
+    e.u.footprint.xyz = keep_numbers(a, footprint->xyz, 3 * count);
     e.u.footprint.id = arena_strdup(&a->arena, footprint->id);
     status = push(a, e);
     a->in_object = false;
-    return status ? status : keep_points(a, xyz, count, e.u.footprint.id ? e.u.footprint.id : "");
+    return status ? status : keep_points(a, e.u.footprint.xyz, count, e.u.footprint.id);
+}
+
+static noc_status on_track(void *ctx, const geo_track *track) {
+    struct look_ahead *a = ctx;
+    if (a->passing)
+        return a->sink.track(a->sink.ctx, track);
+    noc_status status = ensure_source(a);
+    if (status)
+        return status;
+    size_t count;
+    ahead_event e = { .kind = AHEAD_TRACK, .u.track = *track };
+    e.u.track.part_size = keep_sizes(a, track->part_size, track->part_count, &count);
+    e.u.track.xyz = keep_numbers(a, track->xyz, 3 * count);
+    e.u.track.seconds = track->seconds ? keep_numbers(a, track->seconds, count) : NULL;
+    e.u.track.id = arena_strdup(&a->arena, track->id);
+    status = push(a, e);
+    a->in_object = false;
+    return status ? status : keep_points(a, e.u.track.xyz, count, e.u.track.id);
 }
 
 static noc_status on_road(void *ctx, const geo_road *road) {
@@ -224,6 +242,7 @@ struct look_ahead *ahead_create(reading *r, geo_sink *sink) {
     sink->lamp = on_lamp;
     sink->footprint = a->sink.footprint ? on_footprint : NULL;
     sink->road = a->sink.road ? on_road : NULL;
+    sink->track = on_track;
     sink->columns = on_columns;
     sink->features = on_features;
     sink->progress = on_progress;

@@ -386,5 +386,6 @@ static noc_status finish_lamps(importer *im) {
 
 noc_status finish_city(importer *im) {
     noc_status status = finish_lamps(im);
-    return status ? status : windows_add(im); /* behind lamps, so that those are placed where nothing else shines */
+    status = status ? status : windows_add(im); /* behind lamps, so that those are placed where nothing else shines */
+    return status ? status : traffic_add(im);
 }

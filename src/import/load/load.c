@@ -336,20 +336,26 @@ static void know_file(input *in) {
     in->size = (uint64_t)st.st_size;
 }
 
-/* The inputs are the paths, or what they stand for, and the files of lamps that are not among them. */
+/* The inputs are the paths, or what they stand for, and the files of lamps and of tracks that are not among them. */
 static noc_status list_inputs(importer *im, const char *const *paths, size_t path_count) {
-    const noc_texts *lamps = &im->params->lamps;
+    const noc_texts *lamps = &im->params->lamps, *tracks = &im->params->tracks;
     noc_status status = expand_inputs(paths, path_count, im->log, &im->files);
     if (status)
         return status;
-    size_t count = im->files.files.len;
-    im->inputs = noc_calloc(count + lamps->count + 1, sizeof(*im->inputs));
+    size_t count = im->files.files.len, with_lamps = count + lamps->count, all = with_lamps + tracks->count;
+    im->inputs = noc_calloc(all + 1, sizeof(*im->inputs));
     if (!im->inputs)
         return noc_no_memory(im->log, "import");
-    for (size_t i = 0; i < count + lamps->count; i++) {
-        bool named = i >= count;
-        const expanded_file file = named ? (expanded_file){ lamps->text[i - count], NULL } : im->files.files.data[i];
-        if (named && (im->inspect || among_inputs(im, file.path) || among(file.path, lamps->text, i - count)))
+    for (size_t i = 0; i < all; i++) {
+        expanded_file file = { NULL, NULL };
+        if (i < count)
+            file = im->files.files.data[i];
+        else
+            file.path = i < with_lamps ? lamps->text[i - count] : tracks->text[i - with_lamps];
+        if (i >= count && (im->inspect || among_inputs(im, file.path)))
+            continue;
+        if (i >= count && (i < with_lamps ? among(file.path, lamps->text, i - count)
+                                          : among(file.path, tracks->text, i - with_lamps)))
             continue;
         const char *path = arena_strdup(&im->report->arena, file.path);
         input *in = &im->inputs[im->input_count++];
@@ -360,7 +366,8 @@ static noc_status list_inputs(importer *im, const char *const *paths, size_t pat
                        .found = geo_issues_create() };
         if (!path || !in->issues || !in->found)
             return noc_no_memory(im->log, "import");
-        in->named_lamps = named || among(path, lamps->text, lamps->count);
+        in->named_lamps = among(path, lamps->text, lamps->count);
+        in->named_tracks = among(path, tracks->text, tracks->count);
         know_file(in);
     }
     return NOC_OK;
@@ -415,7 +422,7 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         status = check_crs(params, scene->log);
     if (status)
         return status;
-    if (!path_count && !params->lamps.count)
+    if (!path_count && !params->lamps.count && !params->tracks.count)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "import: no input");
     if (scene->committed)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "import: the scene is committed");

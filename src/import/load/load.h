@@ -51,6 +51,7 @@ typedef struct input {
     bool started, repeated;
     size_t lamps_lost; /* that the reader or the sink found to have no place */
     bool named_lamps;  /* by noc_import_params.lamps */
+    bool named_tracks; /* by noc_import_params.tracks */
     int strange_crs;   /* that were not understood and not replaced by --crs */
     NOC_ARRAY(source_crs *) sources;
     /* the scene's side: what is found as parts are taken, and the object that is being taken */
@@ -106,6 +107,12 @@ typedef struct pending_footprint {
     size_t input;
 } pending_footprint;
 
+/* A track of a car that waits for the ground. */
+typedef struct pending_track {
+    geo_track track; /* local metres; texts and arrays in importer.names */
+    size_t input;
+} pending_track;
+
 /* Meshes of the scene that a building came in. */
 typedef struct taken_building {
     uint32_t first, end;
@@ -142,6 +149,7 @@ typedef struct importer {
     NOC_ARRAY(pending_footprint) footprints;
     NOC_ARRAY(geo_road) roads; /* local metres; texts and coordinates in importer.names */
     noc_map road_places;       /* of those, by which a second one is told */
+    NOC_ARRAY(pending_track) tracks;
     NOC_ARRAY(pending_lamp) lamps;
     size_t lamp_looks;           /* lamps that repeat_lamps compared: for tests */
     NOC_ARRAY(given_place) lost; /* lamps that have no place in the scene's CRS */
@@ -292,6 +300,10 @@ noc_status road_lamps_add(importer *im, const struct city_roads *roads);
 void road_lamps_face(importer *im, const struct city_roads *roads);
 /* One on a bridge stands on the line between the ground at its ends. */
 void road_lamps_raise(const importer *im, pending_lamp *p);
+
+/* tracks.c */
+noc_status track_keep(importer *im, input *in, size_t index, const geo_track *track);
+noc_status traffic_add(importer *im); /* cars along them */
 
 /* units.c: a warning where the median height of buildings, or of a storey, is hardly one in metres. */
 void units_check(importer *im);

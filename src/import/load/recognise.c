@@ -62,6 +62,9 @@ static noc_status find_for(importer *im, input *in, const noc_reader *const *rea
     if (in->named_lamps && in->reader->reads != NOC_READS_LAMPS)
         return noc_error(log, NOC_ERR_FORMAT, "%s: this is %s, and --lamps is for tables and maps of points", name,
                          in->reader->name);
+    if (in->named_tracks && in->reader->reads != NOC_READS_TRACKS)
+        return noc_error(log, NOC_ERR_FORMAT, "%s: this is %s, and --tracks is for tracks of cars", name,
+                         in->reader->name);
     if (in->reader->missing)
         return noc_error(log, NOC_ERR_UNSUPPORTED, "%s: this is %s, but %s", name, in->reader->name,
                          in->reader->missing);
@@ -70,8 +73,9 @@ static noc_status find_for(importer *im, input *in, const noc_reader *const *rea
 
 noc_status recognise_input(importer *im, input *in, const noc_reader *const *readers) {
     if (!strncmp(in->path, BUILTIN, strlen(BUILTIN)))
-        return in->named_lamps ? noc_error(im->log, NOC_ERR_ARGUMENT, "lamps: %s is no file of lamps", in->path)
-                               : NOC_OK;
+        return in->named_lamps    ? noc_error(im->log, NOC_ERR_ARGUMENT, "lamps: %s is no file of lamps", in->path)
+               : in->named_tracks ? noc_error(im->log, NOC_ERR_ARGUMENT, "tracks: %s is no file of tracks", in->path)
+                                  : NOC_OK;
     noc_log *log = in->folder ? NULL : im->log; /* a folder may hold anything */
     noc_status status;
     noc_stream *stream = noc_stream_open(in->path, log, &status);

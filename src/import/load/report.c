@@ -58,6 +58,8 @@ void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) 
         totals->lamps_dropped += f->lamps_dropped;
         totals->lamps_repeated += f->lamps_repeated;
         totals->objects_repeated += f->objects_repeated;
+        totals->tracks += f->tracks;
+        totals->cars += f->cars;
         for (int what = 0; what < NOC_LAMP_DEFAULT_COUNT; what++)
             totals->lamps_assumed[what] += f->lamps_assumed[what];
         add_windows(&totals->windows, &f->windows);

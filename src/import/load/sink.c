@@ -232,6 +232,30 @@ static noc_status on_road(void *ctx, const geo_road *road) {
     return road_keep(r->im, r->in, &local);
 }
 
+static noc_status on_track(void *ctx, const geo_track *track) {
+    reading *r = ctx;
+    size_t count = 0;
+    for (size_t i = 0; i < track->part_count; i++)
+        count += track->part_size[i];
+    size_t numbers = 3 * count;
+    r->scratch.len = 0;
+    if (!array_append(&r->scratch, track->xyz, numbers))
+        return noc_no_memory(r->log, r->in->path);
+    bool usable, inside = false;
+    noc_status status = place_points(r, r->scratch.data, count, track->id, &usable);
+    if (!status && !usable)
+        geo_issue(r->in->issues, GEO_SKIPPED, "track without a place", track->id);
+    for (size_t i = 0; i < count && !status && usable && !inside; i++)
+        status = box_point(r, r->scratch.data + 3 * i, &inside);
+    if (!status && usable && !inside)
+        geo_issue(r->in->issues, GEO_SPARED, "track outside of --bbox", track->id);
+    if (status || !usable || !inside)
+        return status;
+    geo_track local = *track;
+    local.xyz = r->scratch.data;
+    return track_keep(r->im, r->in, r->index, &local);
+}
+
 /* Of a file that has been read. */
 static noc_status on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
     reading *r = ctx;
@@ -301,6 +325,7 @@ geo_sink sink_create(reading *r) {
                        .lamp = on_lamp,
                        .footprint = r->im->params->footprints ? on_footprint : NULL,
                        .road = roads_wanted(r->im->params) ? on_road : NULL,
+                       .track = on_track,
                        .columns = on_columns,
                        .features = on_features,
                        .progress = on_progress,

@@ -193,6 +193,7 @@ void take_destroy(importer *im) {
     array_free(&im->footprints);
     array_free(&im->roads);
     map_free(&im->road_places);
+    array_free(&im->tracks);
     array_free(&im->heights);
     array_free(&im->storeys);
     array_free(&im->lost);

@@ -1,0 +1,116 @@
+/* Cars along tracks. */
+#include "city/traffic/traffic.h"
+#include "city/windows/windows.h"
+
+#include <math.h>
+
+#define TRACK_SPEED 40.0 /* km/h, of a track that tells no times, where the user says none */
+#define FASTEST 300.0    /* km/h: what is faster between two points of a track is a jump */
+
+struct city_traffic {
+    noc_scene *scene;
+    const noc_traffic_params *params;
+    route_maker route;
+    int models[TRAFFIC_MODELS];
+    bool have_models;
+};
+
+city_traffic *city_traffic_create(noc_scene *scene, const noc_traffic_params *params) {
+    city_traffic *t = noc_calloc(1, sizeof(*t));
+    if (!t) {
+        noc_scene_out_of_memory(scene);
+        return NULL;
+    }
+    *t = (city_traffic){ .scene = scene, .params = params, .route = { .scene = scene } };
+    scene->time = params->time;
+    return t;
+}
+
+void city_traffic_destroy(city_traffic *t) {
+    if (t)
+        route_free(&t->route);
+    free(t);
+}
+
+static uint64_t hash_of(const char *id, uint32_t seed) {
+    uint64_t hash = 14695981039346656037u;
+    for (; *id; id++)
+        hash = (hash ^ (unsigned char)*id) * 1099511628211u;
+    return city_window_hash(hash, seed);
+}
+
+static bool add_car(city_traffic *t, int route, uint64_t hash, double start) {
+    if (!t->have_models && !traffic_models(t->scene, t->params, t->models))
+        return false;
+    t->have_models = true;
+    return noc_scene_add_car(t->scene, t->models[traffic_model(city_window_number(hash, 1))], route, start);
+}
+
+/* ---- tracks ---- */
+
+/* Seconds from point i - 1 to i of the track; negative: a jump. */
+static double seconds_to(const geo_track *track, size_t i, bool timed, double speed) {
+    const double *a = track->xyz + 3 * (i - 1), *b = a + 3;
+    double length = hypot(b[0] - a[0], b[1] - a[1]);
+    if (!timed)
+        return length / (speed / 3.6);
+    double seconds = track->seconds[i] - track->seconds[i - 1];
+    return length > seconds * FASTEST / 3.6 ? -1 : seconds;
+}
+
+/* Do its times go forward everywhere? */
+static bool is_timed(const geo_track *track) {
+    bool timed = track->seconds != NULL;
+    for (size_t part = 0, first = 0; timed && part < track->part_count; first += track->part_size[part++])
+        for (size_t i = 0; i < track->part_size[part]; i++)
+            timed = timed && isfinite(track->seconds[first + i]) &&
+                    (!i || track->seconds[first + i] >= track->seconds[first + i - 1]);
+    return timed;
+}
+
+static void make_route(city_traffic *t, const geo_track *track, bool timed, size_t *jumps, size_t *outside) {
+    double speed = t->params->speed > 0 ? t->params->speed : TRACK_SPEED;
+    size_t first = 0;
+    route_clear(&t->route);
+    *jumps = *outside = 0;
+    for (size_t part = 0; part < track->part_count; first += track->part_size[part++]) {
+        for (size_t i = 0; i < track->part_size[part]; i++) {
+            const double *p = track->xyz + 3 * (first + i);
+            bool inside = route_inside(&t->route, p);
+            double seconds = i ? seconds_to(track, first + i, timed, speed) : 0;
+            *outside += !inside;
+            *jumps += inside && seconds < 0;
+            if (!inside || seconds < 0)
+                route_end_leg(&t->route);
+            if (inside)
+                route_point(&t->route, p, NOC_MAX(seconds, 0));
+        }
+        route_end_leg(&t->route);
+    }
+}
+
+noc_status city_traffic_follow(city_traffic *t, const geo_track *track, geo_issues *issues, size_t *cars) {
+    size_t jumps, outside;
+    bool timed = is_timed(track);
+    *cars = 0;
+    if (track->seconds && !timed)
+        geo_issue(issues, GEO_GUESSED, "track whose times do not go forward, driven at one speed", track->id);
+    make_route(t, track, timed, &jumps, &outside);
+    if (t->route.refused)
+        return noc_scene_out_of_memory(t->scene);
+    for (size_t i = 0; i < jumps; i++)
+        geo_issue(issues, GEO_GUESSED, "points of a track too far apart for its times, where a car jumps", track->id);
+    if (!t->route.stops.len) {
+        geo_issue(issues, GEO_SKIPPED,
+                  t->route.groundless ? "track with no ground under it"
+                  : outside           ? "track outside of the city"
+                                      : "track too short to drive",
+                  track->id);
+        return NOC_OK;
+    }
+    int route = noc_scene_add_route(t->scene, t->route.stops.data, t->route.stops.len);
+    if (route < 0 || !add_car(t, route, hash_of(track->id, t->params->seed), 0))
+        return t->scene->no_memory ? NOC_ERR_MEMORY : NOC_ERR_ARGUMENT;
+    *cars = 1;
+    return NOC_OK;
+}

@@ -1,0 +1,48 @@
+/* traffic: cars along tracks. A car is an instance of a model (body.c), which takes a route (route.c). Which model
+ * it is, and where on its way, is drawn from a hash of ids. */
+#ifndef NOC_CITY_TRAFFIC_H
+#define NOC_CITY_TRAFFIC_H
+
+#include "geo/geo.h"
+#include "scene/scene.h"
+#include <nocturne/import.h>
+
+typedef struct city_traffic city_traffic;
+/* scene: with all that cars stand on, not committed yet. NULL after reporting: no memory. */
+city_traffic *city_traffic_create(noc_scene *scene, const noc_traffic_params *params);
+void city_traffic_destroy(city_traffic *traffic);
+/* A car along the track, whose points are local metres, from its beginning on at time 0. *cars: 0 where the track
+ * cannot be driven, which goes to issues. */
+noc_status city_traffic_follow(city_traffic *traffic, const geo_track *track, geo_issues *issues, size_t *cars);
+
+/* ---- route.c ---- */
+
+typedef struct route_maker {
+    const noc_scene *scene;
+    NOC_ARRAY(noc_scene_stop) stops;
+    size_t leg;        /* first stop of the leg that is being made */
+    double seconds;    /* when its last stop is reached */
+    double xy[2];      /* of its last point, not rounded */
+    double along;      /* m of it */
+    size_t groundless; /* legs that were dropped, for there is no ground under them */
+    bool refused;      /* memory was; stays set */
+} route_maker;
+
+void route_clear(route_maker *m);
+/* On to the next point of the leg, which is reached so many seconds after the last one; or its first. Stops between lie
+ * on the ground. */
+void route_point(route_maker *m, const double xy[2], double seconds);
+/* Ends the leg: what is too short to drive, or without a ground, is dropped, and takes no time. */
+void route_end_leg(route_maker *m);
+bool route_inside(const route_maker *m, const double xy[2]); /* the city's extent? */
+void route_free(route_maker *m);
+
+/* ---- body.c ---- */
+
+enum { TRAFFIC_MODELS = 8 };
+/* Models of cars, with their lamps: their numbers. false after reporting. */
+bool traffic_models(noc_scene *scene, const noc_traffic_params *params, int models[TRAFFIC_MODELS]);
+/* Which one a car is, by a number of 0..1. */
+int traffic_model(double number);
+
+#endif

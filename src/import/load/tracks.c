@@ -1,0 +1,46 @@
+/* Tracks of cars are kept until all that they lie on is in. */
+#include "import/load/load.h"
+#include "city/traffic/traffic.h"
+
+noc_status track_keep(importer *im, input *in, size_t index, const geo_track *track) {
+    pending_track p = { .track = *track, .input = index };
+    size_t points = 0;
+    in->file.tracks++;
+    if (im->inspect || im->params->traffic == NOC_SWITCH_OFF)
+        return NOC_OK;
+    for (size_t i = 0; i < track->part_count; i++)
+        points += track->part_size[i];
+    size_t *sizes = arena_alloc(&im->names, track->part_count * sizeof(*sizes));
+    double *xyz = arena_alloc(&im->names, 3 * points * sizeof(*xyz));
+    double *seconds = track->seconds ? arena_alloc(&im->names, points * sizeof(*seconds)) : NULL;
+    p.track.id = arena_strdup(&im->names, track->id);
+    if (!sizes || !xyz || (track->seconds && !seconds) || !p.track.id)
+        return noc_no_memory(im->log, in->path);
+    memcpy(sizes, track->part_size, track->part_count * sizeof(*sizes));
+    memcpy(xyz, track->xyz, 3 * points * sizeof(*xyz));
+    if (seconds)
+        memcpy(seconds, track->seconds, points * sizeof(*seconds));
+    p.track.part_size = sizes;
+    p.track.xyz = xyz;
+    p.track.seconds = seconds;
+    if (!array_push(&im->tracks, p))
+        return noc_no_memory(im->log, in->path);
+    return im->tracks.len % 1024 ? NOC_OK : take_affords(im, in, 0);
+}
+
+noc_status traffic_add(importer *im) {
+    if (!im->tracks.len)
+        return NOC_OK;
+    city_traffic *traffic = city_traffic_create(im->scene, &im->params->cars);
+    noc_status status = traffic ? NOC_OK : NOC_ERR_MEMORY;
+    for (size_t i = 0; i < im->tracks.len && !status; i++) {
+        const pending_track *p = &im->tracks.data[i];
+        size_t cars;
+        status = city_traffic_follow(traffic, &p->track, im->inputs[p->input].issues, &cars);
+        im->inputs[p->input].file.cars += cars;
+        if (i % 256 == 0 && !import_progress(im, &im->inputs[p->input], im->bytes_before))
+            status = NOC_ERR_CANCELLED;
+    }
+    city_traffic_destroy(traffic);
+    return status;
+}

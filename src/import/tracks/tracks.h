@@ -1,0 +1,40 @@
+/* tracks: ways that cars have gone or are to go, point by point. */
+#ifndef NOC_IMPORT_TRACKS_H
+#define NOC_IMPORT_TRACKS_H
+
+#include "import/import.h"
+
+#define TRACK_WGS84 "=OGC:CRS84" /* with GEO_CRS_TAKEN: of files that name none */
+
+/* ---- writer.c: puts points together to tracks, and hands those to a sink ---- */
+
+typedef struct track_writer {
+    geo_sink *sink;
+    const char *place; /* of messages */
+    const import_budget *budget;
+    char id[64]; /* of the track that is written; "": none is */
+    NOC_ARRAY(size_t) parts;
+    NOC_ARRAY(double) xyz;
+    NOC_ARRAY(double) seconds;
+    size_t part;       /* points of the part that is written */
+    size_t timed;      /* points of the track with a time */
+    size_t tracks;     /* that were begun */
+    bool geographic;   /* points are longitude and latitude, and are looked at as such */
+    noc_status status; /* not NOC_OK: reported, and nothing more is taken */
+} track_writer;
+
+void track_writer_start(track_writer *w, geo_sink *sink, noc_stream *stream);
+void track_writer_free(track_writer *w);
+/* id: "" for a number of its own. Ends the track before. */
+void track_begin(track_writer *w, const char *id);
+void track_point(track_writer *w, double x, double y, double seconds); /* seconds: NaN: not told */
+void track_end_part(track_writer *w);
+void track_end(track_writer *w);
+
+/* ---- time.c ---- */
+
+/* Seconds since 1970 of a time as XML Schema and ISO 8601 write it ("2013-03-16T14:56:31.69Z", with an offset, or with
+ * neither: UTC), or of a number alone. NaN where it is neither. */
+double track_time(const char *text);
+
+#endif
