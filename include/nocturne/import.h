@@ -120,8 +120,8 @@ typedef struct noc_import_params {
     const noc_material *materials;
     size_t material_count;
     const noc_builtin_params *builtin; /* of built-in scenes among the inputs, not owned; NULL, the default: theirs */
-    int threads; /* that read files of cities at once; 0, the default: one a core. The scene is the same for any number
-                  */
+    int threads; /* that read files of cities at once, and make windows; 0, the default: one a core. The scene is the
+                  * same for any number */
     noc_progress progress;
 } noc_import_params;
 

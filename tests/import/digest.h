@@ -31,11 +31,14 @@ static uint64_t digest_of(const noc_scene *scene, const noc_report *report) {
         add_text(&d, scene->meshes.data[i].name);
     for (size_t i = 0; i < scene->light_names.len; i++)
         add_text(&d, scene->light_names.data[i]);
+    for (size_t i = 0; i < scene->walls.len; i++)
+        add_number(&d, scene->walls.data[i]);
     for (size_t i = 0; i < noc_report_file_count(report); i++) {
         const noc_report_file *f = noc_report_get_file(report, i);
         const char *texts[] = { f->path, f->format, f->crs, f->crs_given };
-        const size_t numbers[] = { f->objects,      f->polygons, f->triangles,    f->lights,    f->lamps,
-                                   f->lamps_mapped, f->points,   f->column_count, f->line_count };
+        const size_t numbers[] = { f->objects,    f->polygons,        f->triangles,   f->lights,
+                                   f->lamps,      f->lamps_mapped,    f->points,      f->column_count,
+                                   f->line_count, f->windows.windows, f->windows.own, f->windows.lit };
         for (size_t k = 0; k < NOC_COUNT(texts); k++)
             add_text(&d, texts[k]);
         for (size_t k = 0; k < NOC_COUNT(numbers); k++)

@@ -118,7 +118,7 @@ static bool hold(noc_stream *stream, double bytes) {
 
 static noc_status fake_read(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
     (void)params;
-    static _Thread_local char text[20000]; /* files may be read at once */
+    static _Thread_local char text[100000]; /* files may be read at once */
     size_t size = 0, got;
     do {
         assert_int_equal(noc_stream_read(stream, text + size, sizeof(text) - 1 - size, &got), NOC_OK);

@@ -1,4 +1,5 @@
 /* Windows of a city that is loaded: which are lit, how they are switched, and that dark ones are glass. */
+#include "digest.h"
 #include "fake_reader.h"
 
 #include <nocturne/image.h>
@@ -260,11 +261,49 @@ static void test_no_memory(void **state) {
     }
 }
 
+/* A row of houses that touch, some with windows of their own: more than are found at once. The same scene and report
+ * by any number of threads. */
+static void test_threads(void **state) {
+    (void)state;
+    enum { HOUSES = 300, ROOM = 800 };
+    char *text = noc_alloc(HOUSES * ROOM);
+    assert_non_null(text);
+    size_t n = (size_t)sprintf(text, "FAKE city\ncrs EPSG:25832\n");
+    for (int i = 0; i < HOUSES; i++) {
+        double x = 678000 + 12 * i, top = 376 + i % 5;
+        n += (size_t)snprintf(text + n, HOUSES * ROOM - n,
+                              "object 0 h%d 2\npolygon 1 %g 5404000 370 %g 5404000 370 %g 5404000 %g %g 5404000 %g\n"
+                              "polygon 1 %g 5404000 370 %g 5404008 370 %g 5404008 %g %g 5404000 %g\n",
+                              i, x, x + 12, x + 12, top, x, top, x + 12, x + 12, x + 12, top, x + 12, top);
+        if (i % 7 == 3)
+            n += (size_t)snprintf(text + n, HOUSES * ROOM - n,
+                                  "polygon 5 %g 5403999.95 371 %g 5403999.95 371 %g 5403999.95 373 %g 5403999.95 373\n",
+                                  x + 2, x + 3, x + 3, x + 2);
+        n += (size_t)snprintf(text + n, HOUSES * ROOM - n, "end\n");
+    }
+    const char *city = file("row", text);
+    uint64_t first = 0;
+    static const int threads[] = { 1, 2, 3, 8, 8, 8 };
+    for (size_t t = 0; t < NOC_COUNT(threads); t++) {
+        struct run r;
+        noc_import_params p = noc_import_default_params();
+        p.threads = threads[t];
+        LOAD(&r, p, city, file("l", LAMP));
+        assert_int_equal(r.status, NOC_OK);
+        assert_true(r.info.windows > 10 * HOUSES);
+        uint64_t sum = digest_of(r.scene, r.report);
+        assert_true(!t || sum == first);
+        first = sum;
+        finish(&r);
+    }
+    free(text);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_made),      cmocka_unit_test(test_own),   cmocka_unit_test(test_ratio),
-        cmocka_unit_test(test_switched),  cmocka_unit_test(test_share), cmocka_unit_test(test_glass),
-        cmocka_unit_test(test_no_memory),
+        cmocka_unit_test(test_made),      cmocka_unit_test(test_own),     cmocka_unit_test(test_ratio),
+        cmocka_unit_test(test_switched),  cmocka_unit_test(test_share),   cmocka_unit_test(test_glass),
+        cmocka_unit_test(test_no_memory), cmocka_unit_test(test_threads),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

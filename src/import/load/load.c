@@ -208,10 +208,14 @@ static int stage(const importer *im, const input *in) {
     return im->params->crs && *im->params->crs ? MESHES_IN_CRS : MESHES;
 }
 
+size_t import_threads(const noc_import_params *params, size_t items) {
+    long cores = params->threads ? params->threads : sysconf(_SC_NPROCESSORS_ONLN);
+    return NOC_MIN(items, (size_t)NOC_CLAMP(cores, 1, MOST_THREADS));
+}
+
 /* One by one, or, where the order of their parts alone matters, several at once. */
 static noc_status read_inputs(importer *im, const size_t *inputs, size_t count, bool at_once) {
-    long cores = im->params->threads ? im->params->threads : sysconf(_SC_NPROCESSORS_ONLN);
-    size_t threads = NOC_MIN(count, (size_t)NOC_CLAMP(cores, 1, MOST_THREADS));
+    size_t threads = import_threads(im->params, count);
     if (at_once && threads > 1) {
         noc_pool *pool = noc_pool_create((int)threads + 1);
         if (!pool)

@@ -1,4 +1,5 @@
-/* Windows on the walls of the buildings that were taken: made ones, or those of the model. */
+/* Windows on the walls of the buildings that were taken: made ones, or those of the model. Those of some buildings at a
+ * time are found on all threads, and taken in the buildings' order. */
 #include "import/load/load.h"
 #include "city/windows/windows.h"
 
@@ -11,13 +12,35 @@ static noc_status no_memory(const importer *im) {
     return im->scene->no_memory ? NOC_ERR_MEMORY : noc_no_memory(im->log, "windows");
 }
 
+enum { AT_ONCE = 256 }; /* buildings that are found before they are taken */
+
+/* Windows that a mesh of a building is itself. */
+typedef struct own_mesh {
+    size_t mesh;
+    city_own_windows windows;
+} own_mesh;
+
+/* What was found of a building. */
+typedef struct found_building {
+    bool own; /* it has windows of its own, and gets no others */
+    bool no_memory;
+    NOC_ARRAY(own_mesh) meshes;
+    city_windows made;
+} found_building;
+
+/* Of a thread. */
+typedef struct scratch {
+    wall_triangles walls, panes;
+} scratch;
+
 typedef struct maker {
     importer *im;
     const noc_window_params *params;
     city_cover *cover;
-    wall_triangles walls, panes;
-    city_windows windows;
-    city_own_windows own;
+    noc_pool *pool;
+    scratch *scratch;      /* [threads] */
+    found_building *found; /* [AT_ONCE] */
+    size_t first;          /* of the buildings that found[0] is */
     NOC_ARRAY(double) xyz;
     NOC_ARRAY(uint32_t) indices;
 } maker;
@@ -88,10 +111,11 @@ static noc_status make_cover(maker *m) {
     bool ok = true;
     for (size_t i = 0; ok && i < im->buildings.len; i++) {
         const taken_building *b = &im->buildings.data[i];
-        ok = gather(m, b->first, b->end, wall_class(im, b), &m->walls);
-        for (size_t t = 0; ok && t < m->walls.len; t++)
+        const wall_triangles *walls = &m->scratch->walls;
+        ok = gather(m, b->first, b->end, wall_class(im, b), &m->scratch->walls);
+        for (size_t t = 0; ok && t < walls->len; t++)
             for (int k = 0; ok && k < 9; k++)
-                ok = array_push(&xyz, (float)m->walls.data[t].p[k / 3][k % 3]);
+                ok = array_push(&xyz, (float)walls->data[t].p[k / 3][k % 3]);
     }
     m->cover = ok ? city_cover_create(xyz.data, xyz.len / 9, im->inspect ? NULL : im->scene) : NULL;
     array_free(&xyz);
@@ -117,9 +141,8 @@ static bool add_pane(maker *m, int mesh, const city_window *w, noc_light_kind ki
 }
 
 /* All windows of a building are one mesh. */
-static noc_status add_mesh(maker *m, const char *id) {
+static noc_status add_mesh(maker *m, const char *id, const city_window_list *list) {
     importer *im = m->im;
-    const city_window_list *list = &m->windows.list;
     m->xyz.len = m->indices.len = 0;
     if (!array_reserve(&m->xyz, 12 * list->len) || !array_reserve(&m->indices, 6 * list->len))
         return no_memory(im);
@@ -150,38 +173,37 @@ static noc_status add_mesh(maker *m, const char *id) {
 }
 
 /* Those of the model shine themselves, where they are. */
-static noc_status take_own(maker *m, size_t mesh, const char *id, noc_window_counts *counts) {
-    city_own_windows *own = &m->own;
-    if (city_own_windows_find(id, m->panes.data, m->panes.len, m->walls.data, m->walls.len, m->params, own))
-        return no_memory(m->im);
+static noc_status take_own(maker *m, const own_mesh *o, noc_window_counts *counts) {
+    const city_own_windows *own = &o->windows;
     for (size_t i = 0; i < own->panes.len; i++) {
         const city_own_pane *p = &own->panes.data[i];
         counts->windows += p->leads;
         counts->own += p->leads;
         counts->lit += p->leads && is_lit(m, &p->window);
-        if (!add_pane(m, (int)mesh, &p->window, p->whole ? NOC_LIGHT_PARALLELOGRAM : NOC_LIGHT_TRIANGLE,
+        if (!add_pane(m, (int)o->mesh, &p->window, p->whole ? NOC_LIGHT_PARALLELOGRAM : NOC_LIGHT_TRIANGLE,
                       own->triangles.data + p->first, p->count))
             return NOC_ERR_MEMORY;
     }
     return NOC_OK;
 }
 
-static void count_walls(const maker *m, bool own, noc_window_counts *counts) {
-    for (size_t i = 0; i < m->windows.facades.len; i++) {
-        const city_facade *f = &m->windows.facades.data[i];
-        noc_wall_verdict verdict = own ? NOC_WALL_OWN : f->verdict;
+static void count_walls(const maker *m, const found_building *found, noc_window_counts *counts) {
+    for (size_t i = 0; i < found->made.facades.len; i++) {
+        const city_facade *f = &found->made.facades.data[i];
+        noc_wall_verdict verdict = found->own ? NOC_WALL_OWN : f->verdict;
         counts->walls[verdict]++;
         counts->area[verdict] += f->area;
     }
-    for (size_t i = 0; !own && i < m->windows.list.len; i++) {
+    for (size_t i = 0; !found->own && i < found->made.list.len; i++) {
         counts->windows++;
-        counts->lit += is_lit(m, &m->windows.list.data[i]);
+        counts->lit += is_lit(m, &found->made.list.data[i]);
     }
 }
 
 /* Of the triangles that were gathered, in that order. */
-static void keep_verdicts(const maker *m, const taken_building *b, noc_class cls, bool own) {
+static void keep_verdicts(const maker *m, const taken_building *b, const found_building *found) {
     noc_scene *s = m->im->scene;
+    noc_class cls = wall_class(m->im, b);
     size_t n = 0;
     for (size_t i = b->first; i < b->end; i++) {
         const noc_scene_mesh *mesh = &s->meshes.data[i];
@@ -189,31 +211,57 @@ static void keep_verdicts(const maker *m, const taken_building *b, noc_class cls
              class_of(s, i) == cls && t < (size_t)mesh->first_triangle + mesh->triangle_count; t++) {
             wall_triangle w = triangle_of(s, t);
             if (is_wall(m, cls, &w))
-                s->walls.data[t] = own ? NOC_WALL_OWN : m->windows.verdicts.data[n++];
+                s->walls.data[t] = found->own ? NOC_WALL_OWN : found->made.verdicts.data[n++];
         }
     }
 }
 
-static noc_status add_building(maker *m, const taken_building *b) {
-    const char *name = m->im->scene->meshes.data[b->first].name, *id = name ? name : "";
-    noc_window_counts *counts = &m->im->inputs[b->input].file.windows;
-    if (!gather(m, b->first, b->end, wall_class(m->im, b), &m->walls))
-        return no_memory(m->im);
-    noc_status status = NOC_OK;
-    bool own = has_class(m->im, b, NOC_CLASS_WINDOW);
-    for (size_t i = b->first; own && i < b->end && !status; i++) {
-        if (class_of(m->im->scene, i) != NOC_CLASS_WINDOW)
-            continue;
-        status = gather(m, i, i + 1, NOC_CLASS_WINDOW, &m->panes) ? take_own(m, i, id, counts) : no_memory(m->im);
-    }
+static const char *id_of(const importer *im, const taken_building *b) {
+    const char *name = im->scene->meshes.data[b->first].name;
+    return name ? name : "";
+}
+
+/* Those of a mesh of the building itself. false: memory was refused. */
+static bool find_own(const maker *m, scratch *at, size_t mesh, const char *id, found_building *found) {
+    if (!gather(m, mesh, mesh + 1, NOC_CLASS_WINDOW, &at->panes) || !array_push(&found->meshes, (own_mesh){ mesh }))
+        return false;
+    return city_own_windows_find(id, at->panes.data, at->panes.len, at->walls.data, at->walls.len, m->params,
+                                 &found->meshes.data[found->meshes.len - 1].windows) == NOC_OK;
+}
+
+/* On any thread: it reads the scene, and writes what is its own. */
+static void find_building(void *ctx, size_t item, int worker) {
+    const maker *m = ctx;
+    const taken_building *b = &m->im->buildings.data[m->first + item];
+    found_building *found = &m->found[item];
+    scratch *at = &m->scratch[worker];
+    const char *id = id_of(m->im, b);
+    bool ok = gather(m, b->first, b->end, wall_class(m->im, b), &at->walls);
+    found->own = has_class(m->im, b, NOC_CLASS_WINDOW);
+    for (size_t i = b->first; ok && found->own && i < b->end; i++)
+        ok = class_of(m->im->scene, i) != NOC_CLASS_WINDOW || find_own(m, at, i, id, found);
     /* walls of a building that has its own windows are counted, and no more */
-    if (!status && city_windows_make(id, m->walls.data, m->walls.len, m->params, own ? NULL : m->cover, &m->windows))
-        status = no_memory(m->im);
+    ok = ok &&
+         !city_windows_make(id, at->walls.data, at->walls.len, m->params, found->own ? NULL : m->cover, &found->made);
+    found->no_memory = !ok;
+}
+
+static noc_status take_building(maker *m, const taken_building *b, found_building *found) {
+    noc_window_counts *counts = &m->im->inputs[b->input].file.windows;
+    noc_status status = found->no_memory ? no_memory(m->im) : NOC_OK;
+    for (size_t i = 0; i < found->meshes.len && !status; i++)
+        status = take_own(m, &found->meshes.data[i], counts);
     if (status)
         return status;
-    count_walls(m, own, counts);
-    keep_verdicts(m, b, wall_class(m->im, b), own);
-    return own || !m->windows.list.len ? NOC_OK : add_mesh(m, id);
+    count_walls(m, found, counts);
+    keep_verdicts(m, b, found);
+    return found->own || !found->made.list.len ? NOC_OK : add_mesh(m, id_of(m->im, b), &found->made.list);
+}
+
+static void forget_own(found_building *found) {
+    for (size_t i = 0; i < found->meshes.len; i++)
+        city_own_windows_free(&found->meshes.data[i].windows);
+    found->meshes.len = 0;
 }
 
 noc_status windows_check(const noc_import_params *params, noc_log *log) {
@@ -227,19 +275,61 @@ noc_status windows_check(const noc_import_params *params, noc_log *log) {
     return NOC_OK;
 }
 
+/* Some buildings. The ground is made ready first, so that no thread finds it wanting. */
+static noc_status add_some(maker *m, size_t count) {
+    importer *im = m->im;
+    if (!im->inspect && noc_ground_ready(im->scene))
+        return NOC_ERR_MEMORY;
+    noc_pool_run(m->pool, count, find_building, m);
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < count; i++) {
+        if (!status)
+            status = take_building(m, &im->buildings.data[m->first + i], &m->found[i]);
+        forget_own(&m->found[i]);
+    }
+    return status;
+}
+
 static noc_status add_all(maker *m) {
     importer *im = m->im;
     const noc_progress *progress = &im->params->progress;
+    size_t buildings = im->buildings.len;
     noc_status status = NOC_OK;
-    for (size_t i = 0; i < im->buildings.len && !status; i++) {
-        status = add_building(m, &im->buildings.data[i]);
-        if (status || i % 64)
-            continue;
-        if (progress->update && !progress->update(progress->user, "windows", (double)i / (double)im->buildings.len))
+    for (m->first = 0; m->first < buildings && !status; m->first += AT_ONCE) {
+        status = add_some(m, NOC_MIN(buildings - m->first, (size_t)AT_ONCE));
+        if (status)
+            break;
+        if (progress->update && !progress->update(progress->user, "windows", (double)m->first / (double)buildings))
             return NOC_ERR_CANCELLED;
-        status = take_affords(im, &im->inputs[im->buildings.data[i].input], 0);
+        status = take_affords(im, &im->inputs[im->buildings.data[m->first].input], 0);
     }
     return status;
+}
+
+/* What it works with; false: memory was refused. */
+static bool equip(maker *m) {
+    m->pool = noc_pool_create((int)import_threads(m->im->params, m->im->buildings.len));
+    m->scratch = m->pool ? noc_calloc((size_t)noc_pool_threads(m->pool), sizeof(*m->scratch)) : NULL;
+    m->found = noc_calloc(AT_ONCE, sizeof(*m->found));
+    return m->scratch && m->found;
+}
+
+static void put_away(maker *m) {
+    for (int i = 0; m->scratch && i < noc_pool_threads(m->pool); i++) {
+        array_free(&m->scratch[i].walls);
+        array_free(&m->scratch[i].panes);
+    }
+    for (int i = 0; m->found && i < AT_ONCE; i++) {
+        array_free(&m->found[i].meshes);
+        city_windows_free(&m->found[i].made);
+    }
+    free(m->scratch);
+    free(m->found);
+    if (m->pool)
+        noc_pool_destroy(m->pool);
+    city_cover_destroy(m->cover);
+    array_free(&m->xyz);
+    array_free(&m->indices);
 }
 
 noc_status windows_add(importer *im) {
@@ -248,15 +338,11 @@ noc_status windows_add(importer *im) {
         return NOC_ERR_MEMORY;
     if (!im->buildings.len)
         return NOC_OK;
-    noc_status status = noc_scene_reserve_walls(im->scene) ? make_cover(&m) : NOC_ERR_MEMORY;
+    noc_status status = equip(&m) ? NOC_OK : no_memory(im);
+    if (!status)
+        status = noc_scene_reserve_walls(im->scene) ? make_cover(&m) : NOC_ERR_MEMORY;
     status = status ? status : add_all(&m);
     noc_scene_light_windows(im->scene, m.params);
-    city_cover_destroy(m.cover);
-    city_windows_free(&m.windows);
-    city_own_windows_free(&m.own);
-    array_free(&m.walls);
-    array_free(&m.panes);
-    array_free(&m.xyz);
-    array_free(&m.indices);
+    put_away(&m);
     return status;
 }
