@@ -1,4 +1,4 @@
-/* nocturne/image.h: linear pictures, PNG and OpenEXR, exposure and tone mapping, error figures.
+/* nocturne/image.h: linear pictures, PNG, OpenEXR and Radiance HDR, exposure and tone mapping, error figures.
  *
  * A noc_image holds linear Rec.709 in cd/m2, three floats a pixel, rows from the top. */
 #ifndef NOCTURNE_IMAGE_H
@@ -79,7 +79,8 @@ NOC_API int noc_text_srgb8(uint8_t *rgb, int width, int height, int x, int y, co
 /* Could a file be written under this name? Makes and removes the writers' file beside it; the target is left alone. To
  * be asked before long work. */
 NOC_API noc_status noc_image_check_path(const char *path, noc_log *log);
-/* Reads by content. PNG is taken as sRGB and turned linear with white = 1 (units are lost; compare says so). */
+/* Reads by content: PNG, OpenEXR, Radiance HDR. PNG is taken as sRGB and turned linear with white = 1 (units are lost;
+ * compare says so). */
 NOC_API noc_image *noc_image_read(const char *path, noc_log *log, bool *is_linear);
 /* What the metadata of a PNG or OpenEXR file says under that key, as noc_image_meta wrote it: *text is a copy (free
  * it), NULL where the file says nothing, and after an error. Its pixels are not read, nor more than its first MiB. */

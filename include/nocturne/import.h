@@ -114,7 +114,9 @@ typedef struct noc_import_params {
                              three quarters of the machine's */
     double max_expansion; /* times its stored size that it may grow to, where that is over 1 GiB; 0: any; default
                              200 */
-    bool wet;             /* after rain: roads, pavements, terrain and ground are noc_material_wet; default false */
+    /* an equirectangular picture (EXR, Radiance HDR) for noc_scene_set_environment; NULL, the default: none */
+    const char *environment;
+    bool wet; /* after rain: roads, pavements, terrain and ground are noc_material_wet; default false */
     /* What surfaces of these classes are made of, one a class, in place of noc_class_material and of the colours that
      * walls and roofs of real cities vary between; not owned; default none. Emission is not read */
     const noc_material *materials;

@@ -12,6 +12,10 @@
  *     windows:                      # the same of "window-", and
  *       make: on                    # --windows
  *       lit: 0.3
+ *     sky:                          # options whose names begin with "environment-", and
+ *       zenith: 0.02                # --sky; sky: 0.02 says it alone
+ *       environment: night.exr      # --environment
+ *       light: on                   # --environment-light
  *     materials:                    # by class: noc_class_name
  *       wall: { albedo: [0.5, 0.45, 0.4], roughness: 0.8 }
  *     cameras:                      # by name; the first one is the recipe's own

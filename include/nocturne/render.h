@@ -93,6 +93,13 @@ typedef struct noc_render_params {
     bool accumulate; /* running mean over frames, else the last frame alone */
     double sky;      /* luminance of the sky at the zenith, cd/m2; 0 = off */
     bool emitters;   /* emitters seen directly are shown */
+    /* Of the map around the scene (noc_scene_set_environment), where it has one; it is the background then. A change of
+     * them builds nothing anew. */
+    double environment_scale;    /* cd/m2 for 1 in the map; default 1 */
+    double environment_lux;      /* lx: what the map is to light an open horizontal surface with, before that scale; 0,
+                                    the default: its numbers are taken as they are */
+    double environment_rotation; /* degrees: bearing of the map's middle, clockwise from north (y); default 0 */
+    bool environment_light;      /* it lights the scene, in place of sky; default false */
     /* instruction set; one that the processor lacks is NOC_ERR_UNSUPPORTED. Embree's own code for
      * rays is chosen by Embree */
     noc_isa isa;
@@ -108,7 +115,7 @@ typedef struct noc_render_params {
                 set(radius, 10) set(passes, 1) set(history, 20) set(bias, NOC_BIAS_PAIRWISE) set(bias_rays, true)      \
                     set(visibility_reuse, true) set(final_ray, true) set(reject_depth, 0.1) set(reject_normal, 0.9)    \
                         set(seed, 1) set(jitter, true) set(accumulate, true) set(sky, 0.02) set(emitters, true)        \
-                            set(isa, NOC_ISA_AUTO)
+                            set(environment_scale, 1) set(isa, NOC_ISA_AUTO)
 #ifdef __cplusplus
 NOC_DEFAULT_PARAMS(noc_render_params, noc_render_default_params, NOC_RENDER_DEFAULTS)
 #else

@@ -10,6 +10,7 @@
 #ifndef NOCTURNE_SCENE_H
 #define NOCTURNE_SCENE_H
 
+#include <nocturne/image.h>
 #include <nocturne/log.h>
 #include <nocturne/photometry.h>
 
@@ -292,6 +293,16 @@ NOC_API const char *noc_scene_object_name(const noc_scene *scene, size_t object)
  * otherwise. */
 NOC_API noc_status noc_scene_set_crs(noc_scene *scene, const char *crs, const double origin[3]);
 
+/* What is around the scene, to the horizon and beyond: an equirectangular picture, twice as wide as high, which frames
+ * show where they see no surface, and which lights where noc_render_params.environment_light says so. Its rows go from
+ * the zenith to the nadir, its middle lies in the north (y), what is right of it further east, unless
+ * environment_rotation turns it. Numbers times environment_scale are cd/m2. Numbers below 0 and those that are not
+ * finite are taken as 0, what is over 1e9 as 1e9, and a warning counts them. The picture is copied; one that is wider
+ * than 8192 pixels is averaged down, and what lights has at most 4096 columns. NULL: none, the default. Waits for
+ * frames, as a commit does; the next one begins its mean anew, and nothing else is made anew. NOC_ERR_ARGUMENT after
+ * reporting a picture that is not twice as wide as high; NOC_ERR_MEMORY: the scene is as it was. */
+NOC_API noc_status noc_scene_set_environment(noc_scene *scene, const noc_image *map);
+
 typedef struct noc_scene_info {
     /* of all that was not removed; models count once, whatever their instances */
     size_t triangles, vertices, meshes, materials;
@@ -313,6 +324,8 @@ typedef struct noc_scene_info {
      * adding an origin. */
     const char *given_crs;
     double given_origin[3];
+    int environment_width;  /* pixels of the map around it as given; 0: it has none */
+    double environment_lux; /* what that lights an open horizontal surface with at scale 1, lx */
     size_t memory_bytes;
 } noc_scene_info;
 

@@ -76,6 +76,8 @@ void arena_free(noc_arena *arena);
 /* Log. log may be NULL everywhere (then warnings and errors go nowhere). noc_error returns its status, so
  * `return noc_error(log, NOC_ERR_FORMAT, "%s:%d: ...", path, line, ...)`. */
 noc_status noc_error(noc_log *log, noc_status status, const char *fmt, ...) NOC_PRINTF(3, 4);
+/* Of the last error, for who called what reports a failure and returns NULL; NOC_ERR_IO where log is NULL. */
+noc_status noc_log_last_status(const noc_log *log);
 /* Of memory that was refused: NOC_ERR_MEMORY, with "WHERE: out of memory". */
 noc_status noc_no_memory(noc_log *log, const char *where);
 /* Of a call whose caller gave NULL for what is needed: NOC_ERR_ARGUMENT. */

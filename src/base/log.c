@@ -6,6 +6,7 @@ struct noc_log {
     noc_log_params params;
     pthread_mutex_t lock;
     char last_error[1024];
+    noc_status last_status;
 };
 
 noc_log *noc_log_create(const noc_log_params *params) {
@@ -25,6 +26,8 @@ void noc_log_destroy(noc_log *log) {
 }
 
 const char *noc_log_last_error(const noc_log *log) { return log ? log->last_error : ""; }
+
+noc_status noc_log_last_status(const noc_log *log) { return log && log->last_status ? log->last_status : NOC_ERR_IO; }
 
 const char *noc_status_text(noc_status status) {
     switch (status) {
@@ -62,6 +65,11 @@ noc_status noc_error(noc_log *log, noc_status status, const char *fmt, ...) {
     va_start(ap, fmt);
     emit(log, NOC_LOG_ERROR, true, fmt, ap);
     va_end(ap);
+    if (log) {
+        pthread_mutex_lock(&log->lock);
+        log->last_status = status;
+        pthread_mutex_unlock(&log->lock);
+    }
     return status;
 }
 

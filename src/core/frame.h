@@ -28,6 +28,9 @@ typedef struct frame_camera frame_camera;
 #define FRAME_FINAL_RAY 4u /* shadow rays to what is shaded; without it nothing is shadowed */
 #define FRAME_BIAS_RAYS 8u /* visibility is a part of the targets of a combination: core/reuse.h */
 
+#define FRAME_ENVIRONMENT 16u /* a map is the background */
+#define FRAME_MAP_LIGHTS 32u  /* a map lights, in the sky's place */
+
 #define MAX_NEIGHBOURS 16
 #define REFERENCE_CHUNK 32u /* lights that the reference method sums at once */
 
@@ -46,19 +49,27 @@ struct frame_constants {
     uint32_t index; /* of the frame since the last reset: its random numbers */
     uint32_t flags;
     uint32_t bias;
-    uint32_t draws;         /* M: candidates a pixel */
-    uint32_t list;          /* lights of a tile's list */
-    uint32_t tail;          /* draws from all others */
-    uint32_t shadow_rays;   /* over a list, a pixel: a target */
-    uint32_t uniform_every; /* influence: of so many draws one is from all lights */
-    uint32_t rays;          /* reference: shadow rays a pixel */
-    uint32_t neighbours;    /* k: of the spatial passes */
-    float influence;        /* S_r, m; 0: found for the scene */
-    float radius;           /* pixels, of the neighbours */
-    float m_max;            /* cap of M for history */
-    float reject_depth;     /* relative distance to a neighbour's plane that rejects it */
-    float reject_normal;    /* cosine between normals that rejects it */
-    float sky;              /* luminance at the zenith, cd/m2; 0: none */
+    uint32_t draws;             /* M: candidates a pixel */
+    uint32_t list;              /* lights of a tile's list */
+    uint32_t tail;              /* draws from all others */
+    uint32_t shadow_rays;       /* over a list, a pixel: a target */
+    uint32_t uniform_every;     /* influence: of so many draws one is from all lights */
+    uint32_t rays;              /* reference: shadow rays a pixel */
+    uint32_t neighbours;        /* k: of the spatial passes */
+    float influence;            /* S_r, m; 0: found for the scene */
+    float radius;               /* pixels, of the neighbours */
+    float m_max;                /* cap of M for history */
+    float reject_depth;         /* relative distance to a neighbour's plane that rejects it */
+    float reject_normal;        /* cosine between normals that rejects it */
+    float sky;                  /* luminance at the zenith, cd/m2; 0: none */
+    uint32_t environment_width; /* texels of the map that lights: core/environment.h */
+    uint32_t environment_height;
+    uint32_t backdrop_width; /* of the map that is seen */
+    uint32_t backdrop_height;
+    float environment_turn;          /* of its left edge, counter-clockwise from x, 0 to 1 */
+    float environment_scale;         /* cd/m2 for 1 in the file */
+    float environment_inverse_power; /* 1 over luminance summed over solid angles, as in the file */
+    float environment_level;         /* what it lights an upward surface with, over pi: cd/m2 */
 };
 
 #if !defined(CORE_GLSL)
@@ -75,7 +86,7 @@ RECORD_FIELD(frame_camera, width, 14);
 RECORD_FIELD(frame_camera, height, 15);
 RECORD_FIELD(frame_camera, jitter, 16);
 
-RECORD_SIZE(frame_constants, 56);
+RECORD_SIZE(frame_constants, 64);
 RECORD_FIELD(frame_constants, camera, 0);
 RECORD_FIELD(frame_constants, previous, 18);
 RECORD_FIELD(frame_constants, width, 36);
@@ -98,6 +109,14 @@ RECORD_FIELD(frame_constants, m_max, 52);
 RECORD_FIELD(frame_constants, reject_depth, 53);
 RECORD_FIELD(frame_constants, reject_normal, 54);
 RECORD_FIELD(frame_constants, sky, 55);
+RECORD_FIELD(frame_constants, environment_width, 56);
+RECORD_FIELD(frame_constants, environment_height, 57);
+RECORD_FIELD(frame_constants, backdrop_width, 58);
+RECORD_FIELD(frame_constants, backdrop_height, 59);
+RECORD_FIELD(frame_constants, environment_turn, 60);
+RECORD_FIELD(frame_constants, environment_scale, 61);
+RECORD_FIELD(frame_constants, environment_inverse_power, 62);
+RECORD_FIELD(frame_constants, environment_level, 63);
 #endif
 
 /* The constants of the frame at hand, in functions that take CTX; includers may say what that is. */

@@ -1,9 +1,10 @@
 /* core/shading.h: what a pixel's colour is made of: the emitter that it sees, its samples' light, the sky's light, and
- * the sky behind everything. Includers supply FRAME: core/frame.h. */
+ * the sky or the map behind everything. Includers supply FRAME: core/frame.h. */
 #ifndef CORE_SHADING_H
 #define CORE_SHADING_H
 
 #include "core/camera.h"
+#include "core/environment.h"
 #include "core/reservoir.h"
 #include "core/shadow.h"
 #include "core/sky.h"
@@ -36,17 +37,27 @@ FN v3 sample_shade(CTX surf s, reservoir r, light l) {
 /* How many rays go to the sky: SKY_RAYS where this frame's lights brought less than the sky may, c: there its noise is
  * all the noise there is, and no time went into shadow rays. It is settled before any of them is traced, so it adds no
  * bias. */
-FN u32 sky_turns(CTX v3 c) { return selu(luminance(c) < K(FRAME.sky), KU(U32(SKY_RAYS)), KU(1u)); }
+FN u32 sky_turns(CTX v3 c) {
+    real bright = K(FRAME.sky);
+    if ((FRAME.flags & FRAME_MAP_LIGHTS) != 0u)
+        bright = K(FRAME.environment_level);
+    return selu(luminance(c) < bright, KU(U32(SKY_RAYS)), KU(1u));
+}
 
 /* A ray that leaves the scene, from place `number` of the pixel's sequence. key: of the pixel, frame 0. least: as in
  * shadow_segment. */
-FN segment sky_ray(surf s, u32 key, u32 number, real least) {
-    v3 at = sky_numbers(key, number);
+FN segment sky_ray(CTX surf s, u32 key, u32 number, real least) {
     mask on = dot3(s.n, s.n) > K(0.5f);
     s.n = sel3(on, s.n, V3(K(0.0f), K(0.0f), K(1.0f)));
     segment r;
     r.o = add3(s.p, mul3(s.n, ray_offset(max_abs3(s.p), least)));
-    v3 d = sky_direction(s, at.x, at.y);
+    v3 d;
+    if ((FRAME.flags & FRAME_MAP_LIGHTS) != 0u) {
+        d = environment_ray(PASS s, key, number);
+    } else {
+        v3 at = sky_numbers(key, number);
+        d = sky_direction(s, at.x, at.y);
+    }
     EXACT real dx = d.x * K(SKY_REACH);
     EXACT real dy = d.y * K(SKY_REACH);
     EXACT real dz = d.z * K(SKY_REACH);
@@ -60,10 +71,18 @@ FN v3 sky_shade(CTX surf s, v3 way, real share) {
     EXACT real dy = way.y * K(SKY_REACH_BACK);
     EXACT real dz = way.z * K(SKY_REACH_BACK);
     v3 d = V3(dx, dy, dz);
-    real p = sky_density(s, d);
+    real p;
+    v3 sky;
+    if ((FRAME.flags & FRAME_MAP_LIGHTS) != 0u) {
+        v3 radiance = environment_radiance(PASS d);
+        p = environment_ray_density(PASS s, d, radiance);
+        sky = mul3(radiance, K(FRAME.environment_scale));
+    } else {
+        p = sky_density(s, d);
+        sky = sky_radiance(d, K(FRAME.sky));
+    }
     mask some = p > K(0.0f);
     v3 f = reflect(s, d);
-    v3 sky = sky_radiance(d, K(FRAME.sky));
     EXACT real w = sel(some, share / sel(some, p, K(1.0f)), K(0.0f));
     EXACT real x = f.x * sky.x * w;
     EXACT real y = f.y * sky.y * w;
@@ -75,7 +94,13 @@ FN v3 sky_shade(CTX surf s, v3 way, real share) {
 FN v3 sky_behind(CTX u32 x, u32 y) {
     v3 d = camera_direction(camera_of(FRAME.camera), to_real(x) + K(FRAME.camera.jitter[0]),
                             to_real(y) + K(FRAME.camera.jitter[1]));
-    return sky_backdrop(mul3(d, K(1.0f) / sqrt_(dot3(d, d))), K(FRAME.sky));
+    d = mul3(d, K(1.0f) / sqrt_(dot3(d, d)));
+    v3 behind;
+    if ((FRAME.flags & FRAME_ENVIRONMENT) != 0u)
+        behind = environment_backdrop(PASS d);
+    else
+        behind = sky_backdrop(d, K(FRAME.sky));
+    return behind;
 }
 
 #endif

@@ -39,10 +39,10 @@ FN v3 sky_backdrop(v3 d, real zenith) {
 /* Two numbers in [0, 1) a pixel and frame, in x and y: random in the first frame (key: of the pixel, frame 0), then
  * along the two-dimensional golden ratio's sequence (Roberts 2018: R2), which spreads the frames of a pixel evenly.
  * Each frame's numbers are uniform, so each frame is unbiased. */
+FN u32 sky_bits_x(u32 key, u32 frame) { return rng_bits(key, KU(DIM_SKY)) + frame * KU(0xc13fa9a9u); }
+FN u32 sky_bits_y(u32 key, u32 frame) { return rng_bits(key, KU(DIM_SKY + 1u)) + frame * KU(0x91e10da5u); }
 FN v3 sky_numbers(u32 key, u32 frame) {
-    u32 a = rng_bits(key, KU(DIM_SKY)) + frame * KU(0xc13fa9a9u);
-    u32 b = rng_bits(key, KU(DIM_SKY + 1u)) + frame * KU(0x91e10da5u);
-    return V3(unit_real(a), unit_real(b), K(0.0f));
+    return V3(unit_real(sky_bits_x(key, frame)), unit_real(sky_bits_y(key, frame)), K(0.0f));
 }
 
 /* The share of directions that are drawn for the lobe: what it reflects of all, by Fresnel's term as it is seen. */

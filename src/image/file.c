@@ -115,18 +115,20 @@ image_format image_probe(const uint8_t *data, size_t size) {
         return IMAGE_PNG;
     if (size >= sizeof(exr) && memcmp(data, exr, sizeof(exr)) == 0)
         return IMAGE_EXR;
-    return IMAGE_UNKNOWN;
+    return image_is_hdr(data, size) ? IMAGE_HDR : IMAGE_UNKNOWN;
 }
 
 noc_image *image_read_memory(const uint8_t *data, size_t size, const char *name, noc_log *log, bool *is_linear) {
     image_format f = image_probe(data, size);
     if (is_linear)
-        *is_linear = f == IMAGE_EXR;
+        *is_linear = f == IMAGE_EXR || f == IMAGE_HDR;
     if (f == IMAGE_PNG)
         return image_read_png(data, size, name, log);
     if (f == IMAGE_EXR)
         return image_read_exr(data, size, name, log);
-    noc_error(log, NOC_ERR_FORMAT, "%s: neither a PNG nor an OpenEXR file", name);
+    if (f == IMAGE_HDR)
+        return image_read_hdr(data, size, name, log);
+    noc_error(log, NOC_ERR_FORMAT, "%s: not a PNG, OpenEXR or Radiance HDR file", name);
     return NULL;
 }
 
@@ -144,7 +146,7 @@ static uint8_t *read_file(FILE *file, const char *path, size_t *size, noc_log *l
         return NULL;
     }
     if (image_probe(head, got) == IMAGE_UNKNOWN) {
-        noc_error(log, NOC_ERR_FORMAT, "%s: neither a PNG nor an OpenEXR file", path);
+        noc_error(log, NOC_ERR_FORMAT, "%s: not a PNG, OpenEXR or Radiance HDR file", path);
         return NULL;
     }
     *size = (size_t)st.st_size;

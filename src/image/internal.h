@@ -18,7 +18,7 @@ void *image_alloc_pixels(int width, int height, size_t size, noc_log *log);
 /* file.c */
 bool image_path_ends_in(const char *path, const char *ending);
 bool image_size_allowed(int width, int height);
-typedef enum image_format { IMAGE_UNKNOWN, IMAGE_PNG, IMAGE_EXR } image_format;
+typedef enum image_format { IMAGE_UNKNOWN, IMAGE_PNG, IMAGE_EXR, IMAGE_HDR } image_format;
 image_format image_probe(const uint8_t *data, size_t size); /* by its first 8 bytes */
 /* The mask all zero; false after reporting when refused. */
 bool image_add_mask(noc_image *image, noc_log *log);
@@ -78,13 +78,15 @@ void meta_add_long(meta_list *list, const char *key, const char *value);
 noc_status meta_add_all(meta_list *list, const noc_image_meta *meta, const char *path, noc_log *log);
 void meta_free(meta_list *list);
 
-/* png.c and exr.c. Readers take the whole file; name is for messages. */
+/* png.c, exr_read.c, exr_write.c and hdr.c. Readers take the whole file; name is for messages. */
 noc_status image_write_png(output *o, const uint8_t *rgb, int width, int height, const meta_list *meta, noc_log *log);
 noc_status image_write_exr(output *o, const noc_image *image, const meta_list *meta, noc_log *log);
 noc_status image_write_exr_channel(output *o, const noc_channel *channel, const meta_list *meta, noc_log *log);
 noc_image *image_read_png(const uint8_t *data, size_t size, const char *name, noc_log *log);
 noc_image *image_read_exr(const uint8_t *data, size_t size, const char *name, noc_log *log);
-/* Either, told apart by their first bytes. is_linear may be NULL. */
+noc_image *image_read_hdr(const uint8_t *data, size_t size, const char *name, noc_log *log);
+bool image_is_hdr(const uint8_t *data, size_t size); /* by its first six bytes */
+/* Any of them, told apart by their first bytes. is_linear may be NULL. */
 noc_image *image_read_memory(const uint8_t *data, size_t size, const char *name, noc_log *log, bool *is_linear);
 
 /* compare.c. Same size, and every pixel finite: a figure that silently left some out would not be one. */

@@ -104,7 +104,7 @@ noc_status noc_image_read_text(const char *path, const char *key, char **text, n
     head h = { 0 };
     noc_status status = read_head(path, &h, log);
     image_format format = status ? IMAGE_UNKNOWN : image_probe(h.data, h.size);
-    if (!status && format == IMAGE_UNKNOWN)
+    if (!status && (format == IMAGE_UNKNOWN || format == IMAGE_HDR))
         status = noc_error(log, NOC_ERR_FORMAT, "%s: neither a PNG nor an OpenEXR file", path);
     size_t length = 0, at = status || h.size < 8  ? 0
                             : format == IMAGE_PNG ? find_png(&h, key, &length)

@@ -57,23 +57,53 @@ static void fill(noc_alias *a, const double *weight, double *left, uint32_t *sta
         a->slots[i].inverse_other = a->slots[a->slots[i].other].inverse;
 }
 
+/* A table with room for n slots, and none yet. */
+static noc_alias *make(size_t n) {
+    noc_alias *a = noc_calloc(1, sizeof(*a));
+    if (a && !(a->slots = noc_alloc_large(n + 1, sizeof(*a->slots)))) {
+        free(a);
+        return NULL;
+    }
+    if (a)
+        a->bytes = (n + 1) * sizeof(*a->slots);
+    return a;
+}
+
 noc_alias *noc_alias_create(const noc_scene *scene, noc_log *log) {
     size_t n = scene->lights.len;
-    noc_alias *a = noc_calloc(1, sizeof(*a));
+    noc_alias *a = make(n);
     double *weight = noc_alloc_large(2 * n + 1, sizeof(*weight));
     uint32_t *stack = noc_alloc_large(n + 1, sizeof(*stack));
-    if (!a || !weight || !stack || !(a->slots = noc_alloc_large(n + 1, sizeof(*a->slots)))) {
+    if (!a || !weight || !stack) {
         noc_error(log, NOC_ERR_MEMORY, "alias table: no memory for %zu lights", n);
         noc_alias_destroy(a);
         a = NULL;
-    } else {
-        a->bytes = (n + 1) * sizeof(*a->slots);
-        if (weigh(scene, weight)) {
-            a->count = (uint32_t)n;
-            fill(a, weight, weight + n, stack);
-        }
+    } else if (weigh(scene, weight)) {
+        a->count = (uint32_t)n;
+        fill(a, weight, weight + n, stack);
     }
     free(weight);
+    free(stack);
+    return a;
+}
+
+noc_alias *noc_alias_of(const double *weight, size_t n, const char *what, noc_log *log) {
+    noc_alias *a = make(n);
+    double *mean = noc_alloc_large(2 * n + 1, sizeof(*mean)), total = 0;
+    uint32_t *stack = noc_alloc_large(n + 1, sizeof(*stack));
+    for (size_t i = 0; i < n; i++)
+        total += weight[i];
+    if (!a || !mean || !stack) {
+        noc_error(log, NOC_ERR_MEMORY, "%s: no memory for an alias table of %zu slots", what, n);
+        noc_alias_destroy(a);
+        a = NULL;
+    } else if (total > 0) {
+        for (size_t i = 0; i < n; i++)
+            mean[i] = weight[i] * ((double)n / total);
+        a->count = (uint32_t)n;
+        fill(a, mean, mean + n, stack);
+    }
+    free(mean);
     free(stack);
     return a;
 }

@@ -1,4 +1,4 @@
-/* light/alias: alias table over the lights' luminous flux (core/alias.h). */
+/* light/alias: alias table over the lights' luminous flux, or other numbers (core/alias.h). */
 #ifndef NOC_LIGHT_ALIAS_H
 #define NOC_LIGHT_ALIAS_H
 
@@ -18,6 +18,8 @@ typedef struct noc_alias {
 
 /* Returns NULL after reporting that memory was refused. */
 noc_alias *noc_alias_create(const noc_scene *scene, noc_log *log);
+/* The same over n numbers that are not negative, their sum finite. what: for messages. */
+noc_alias *noc_alias_of(const double *weight, size_t n, const char *what, noc_log *log);
 void noc_alias_destroy(noc_alias *alias); /* NULL is allowed */
 
 #endif

@@ -20,6 +20,8 @@ struct noc_light_set {
     noc_clusters *clusters[NOC_HALVES];
     noc_alias *alias;
     noc_tree *tree;
+    noc_map_light *map;
+    uint64_t map_known; /* version of the scene's map that it is of */
     /* Those that are held, and the last ones that were asked for. */
     NOC_ARRAY(volumes) volumes;
     const noc_influence *last;
@@ -61,6 +63,7 @@ void noc_light_set_destroy(noc_light_set *set) {
     drop_clusters(set, NOC_MOVING);
     noc_alias_destroy(set->alias);
     noc_tree_destroy(set->tree);
+    noc_map_light_destroy(set->map);
     drop_volumes(set);
     array_free(&set->volumes);
     pthread_mutex_destroy(&set->lock);
@@ -268,6 +271,28 @@ void noc_light_set_release(noc_light_set *set, noc_light_sources *sources) {
     pthread_mutex_lock(&set->lock);
     let_go(set, sources);
     pthread_mutex_unlock(&set->lock);
+}
+
+/* A map that is another one was set between frames, so nobody reads that of the old one. */
+noc_status noc_light_set_map(noc_light_set *set, const noc_map_light **map) {
+    pthread_mutex_lock(&set->lock);
+    if (set->map_known != set->scene->versions.environment) {
+        noc_map_light_destroy(set->map);
+        set->map = NULL;
+    }
+    set->map_known = set->scene->versions.environment;
+    if (!set->map)
+        set->map = noc_map_light_create(set->scene, set->log);
+    *map = set->map;
+    pthread_mutex_unlock(&set->lock);
+    return *map ? NOC_OK : NOC_ERR_MEMORY;
+}
+
+size_t noc_light_set_map_bytes(noc_light_set *set) {
+    pthread_mutex_lock(&set->lock);
+    size_t bytes = set->map ? set->map->bytes : 0;
+    pthread_mutex_unlock(&set->lock);
+    return bytes;
 }
 
 static size_t bytes_of(const noc_light_set *set, noc_candidates candidates) {

@@ -21,6 +21,7 @@
 
 #include "light/alias.h"
 #include "light/clusters.h"
+#include "light/environment.h"
 #include "light/influence.h"
 #include "light/tree.h"
 
@@ -49,6 +50,11 @@ void noc_light_set_destroy(noc_light_set *set); /* NULL is allowed */
 noc_status noc_light_set_get(noc_light_set *set, noc_candidates candidates, const noc_render_params *params,
                              noc_light_sources *sources);
 void noc_light_set_release(noc_light_set *set, noc_light_sources *sources);
+
+/* What directions are drawn from of the scene's map, which it must have: made when it is first asked for, and anew
+ * where the map is another one. */
+noc_status noc_light_set_map(noc_light_set *set, const noc_map_light **map);
+size_t noc_light_set_map_bytes(noc_light_set *set); /* 0 where it is not there */
 
 /* Bytes of what candidates of that kind are drawn from, 0 where it is not there; and wall seconds that it took to make.
  */

@@ -10,14 +10,21 @@ static const noc_option *(*const tables[])(void) = { noc_import_options, noc_cit
 /* Who uses a file decides what may be read, and at what cost, not who wrote it. */
 #define HOSTS "Reading"
 
+enum { OWN_KEYS = 2 };
 typedef struct section {
-    const char *name, *prefix;   /* "windows" and "window-": its keys are the rest of the names, */
-    const char *group;           /* and whole names of this group; NULL: none */
-    const char *list_key, *list; /* a key for an option without the prefix; NULL: none */
+    const char *name, *prefix; /* "windows" and "window-": its keys are the rest of the names, */
+    const char *group;         /* and whole names of this group; NULL: none */
+    bool scalar;               /* one value in its place is that of the option of its name */
+    struct {
+        const char *key, *option;
+    } own[OWN_KEYS]; /* keys for options without the prefix; key NULL: none */
 } section;
-static const section sections[] = { { "lamps", "lamp-", NULL, "files", "lamps" },
-                                    { "windows", "window-", "Windows", NULL, NULL },
-                                    { "traffic", "traffic-", "Traffic", NULL, NULL } };
+static const section sections[] = {
+    { "lamps", "lamp-", NULL, false, { { "files", "lamps" } } },
+    { "windows", "window-", "Windows", true, { { NULL } } },
+    { "traffic", "traffic-", "Traffic", true, { { NULL } } },
+    { "sky", "environment-", NULL, true, { { "zenith", "sky" }, { "environment", "environment" } } },
+};
 
 typedef struct taken {
     recipe_file *file;
@@ -66,8 +73,8 @@ static noc_status unknown_option(const taken *t, const yaml_node_t *key) {
         words[count++] = others[i];
     for (size_t i = 0; !t->section && i < NOC_COUNT(sections) && count < NOC_COUNT(words); i++)
         words[count++] = sections[i].name;
-    if (t->section && t->section->list_key && count < NOC_COUNT(words))
-        words[count++] = t->section->list_key;
+    for (int i = 0; t->section && i < OWN_KEYS && t->section->own[i].key && count < NOC_COUNT(words); i++)
+        words[count++] = t->section->own[i].key;
     return recipe_unknown(t->file, key, t->section ? t->section->name : "a recipe", words, count);
 }
 
@@ -132,8 +139,10 @@ static noc_status take_section_key(void *ctx, const yaml_node_t *key, yaml_node_
     const section *s = t->section;
     const char *name = recipe_text(key);
     char whole[100];
-    bool list = s->list_key && !strcmp(name, s->list_key);
-    noc_snprintf(whole, sizeof(whole), "%s%s", list ? s->list : s->prefix, list ? "" : name);
+    noc_snprintf(whole, sizeof(whole), "%s%s", s->prefix, name);
+    for (int i = 0; i < OWN_KEYS && s->own[i].key; i++)
+        if (!strcmp(name, s->own[i].key))
+            noc_snprintf(whole, sizeof(whole), "%s", s->own[i].option);
     const noc_option *o = find_option(whole);
     if (!o && s->group && (o = find_option(name)) && strcmp(o->group, s->group))
         o = NULL;
@@ -298,7 +307,7 @@ static noc_status take_top(void *ctx, const yaml_node_t *key, yaml_node_t *value
     }
     for (size_t i = 0; i < NOC_COUNT(sections); i++)
         /* a scalar switches the whole: windows: off */
-        if (!strcmp(name, sections[i].name) && (value->type != YAML_SCALAR_NODE || sections[i].list_key)) {
+        if (!strcmp(name, sections[i].name) && (value->type != YAML_SCALAR_NODE || !sections[i].scalar)) {
             t->section = &sections[i];
             noc_status status = recipe_each(f, value, name, take_section_key, t);
             t->section = NULL;

@@ -78,6 +78,9 @@ void noc_make_frame_camera(const noc_camera *camera, const noc_render_params *pa
 /* The constants of a frame of these parameters, but for its cameras. history: as in noc_frame. */
 void noc_make_frame_constants(const noc_render_params *params, uint32_t frame, bool history, frame_constants *out);
 
+/* Those of them that are of the scene's map, where it has one. */
+void noc_make_frame_environment(const noc_scene *scene, const noc_render_params *params, frame_constants *out);
+
 /* isa.c */
 #define NOC_ISA_VARIABLE "NOCTURNE_ISA"
 /* What auto stands for here, or the level asked for; reports one that is unknown or not of this processor, from the

@@ -128,7 +128,7 @@ static void add_candidates(maker *m, const noc_render_params *p) {
         add(m, NOC_PASS_RESAMPLE);
 }
 
-static void add_shading(maker *m, const noc_render_params *p, bool reused) {
+static void add_shading(maker *m, const noc_render_params *p, bool sky, bool reused) {
     noc_plan *plan = m->plan;
     add(m, NOC_PASS_EMITTERS);
     if (p->method == NOC_METHOD_REFERENCE)
@@ -137,7 +137,7 @@ static void add_shading(maker *m, const noc_render_params *p, bool reused) {
         add(m, NOC_PASS_SHADE_SHARED);
     if (plan->draws && (!plan->shares_rays || p->method == NOC_METHOD_RESTIR))
         add(m, NOC_PASS_SHADE);
-    if (p->sky > 0)
+    if (sky)
         add(m, NOC_PASS_SKY);
 }
 
@@ -148,7 +148,7 @@ static void add_shading(maker *m, const noc_render_params *p, bool reused) {
  * 32 alone, at the same cost), else the temporal output: biased spatial output fed back compounds its bias, and that of
  * the balance rule, which picks a sample before it weighs it, compounds its outliers (frame 32 alone: .93 against .66).
  */
-void noc_plan_make(const noc_render_params *p, int history_set, noc_plan *plan) {
+void noc_plan_make(const noc_render_params *p, bool map, int history_set, noc_plan *plan) {
     bool restir = p->method == NOC_METHOD_RESTIR, one = p->method == NOC_METHOD_IS;
     int rounds = restir && p->spatial && p->neighbours > 0 ? p->passes : 0;
     bool temporal = restir && p->temporal, feed = temporal && rounds && feeds_spatial(p);
@@ -183,7 +183,7 @@ void noc_plan_make(const noc_render_params *p, int history_set, noc_plan *plan) 
         from = to;
         to = next;
     }
-    add_shading(&m, p, rounds > 0);
+    add_shading(&m, p, p->sky > 0 || map, rounds > 0);
     if (feed)
         plan->next_history = from;
 }

@@ -1,5 +1,6 @@
-/* render/plan: the passes of a frame as data. A plan is made from the options alone; backends walk it and decide
- * nothing. Two tables stand behind it: what each buffer is, and what each pass reads, writes and traces. */
+/* render/plan: the passes of a frame as data. A plan is made from the options, and from whether there is a map;
+ * backends walk it and decide nothing. Two tables stand behind it: what each buffer is, and what each pass reads,
+ * writes and traces. */
 #ifndef NOC_PLAN_H
 #define NOC_PLAN_H
 
@@ -86,8 +87,9 @@ typedef struct noc_plan {
     bool previous_lights; /* reuse asks for lights as they were in the frame before */
 } noc_plan;
 
-/* What to run for these parameters. history_set: set with the previous frame's reservoirs, -1: none. */
-void noc_plan_make(const noc_render_params *params, int history_set, noc_plan *plan);
+/* What to run for these parameters. map: the scene has one around it. history_set: set with the previous frame's
+ * reservoirs, -1: none. */
+void noc_plan_make(const noc_render_params *params, bool map, int history_set, noc_plan *plan);
 
 /* Is visibility a part of the target functions that reuse weighs with? Passes are told by FRAME_BIAS_RAYS. */
 bool noc_uses_bias_rays(const noc_render_params *params);

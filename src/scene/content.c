@@ -107,6 +107,10 @@ void noc_scene_content(const noc_scene *s, char key[NOC_CONTENT_KEY]) {
     h = add_instances(h, s);
     if (s->profile_cells.len)
         h = add_array(h, s->profile_cells.data, s->profile_cells.len, sizeof(float));
+    if (s->environment) {
+        const noc_environment *e = s->environment;
+        h = add_array(h, e->texels, 3 * (size_t)e->width * (size_t)e->height, sizeof(float));
+    }
     noc_scene_unlock_read(s);
     snprintf(key, NOC_CONTENT_KEY, "%016llx%016llx", (unsigned long long)(h >> 64), (unsigned long long)h);
 }

@@ -12,9 +12,9 @@ size_t noc_scene_bytes(const noc_scene *s) {
            s->lights.cap * sizeof(noc_light_record) + s->light_names.cap * sizeof(char *) +
            s->light_made.cap * sizeof(noc_rgb) + s->meshes.cap * sizeof(noc_scene_mesh) + s->names.bytes +
            s->later_bytes + models + s->profile_cells.cap * sizeof(float) +
-           s->instances.cap * sizeof(noc_scene_instance) + s->stops.cap * sizeof(noc_scene_stop) +
-           s->routes.cap * sizeof(noc_scene_route) + s->cars.cap * sizeof(noc_scene_car) +
-           s->windows.cap * sizeof(noc_scene_window) + s->walls.cap;
+           (s->environment ? s->environment->bytes : 0) + s->instances.cap * sizeof(noc_scene_instance) +
+           s->stops.cap * sizeof(noc_scene_stop) + s->routes.cap * sizeof(noc_scene_route) +
+           s->cars.cap * sizeof(noc_scene_car) + s->windows.cap * sizeof(noc_scene_window) + s->walls.cap;
 }
 
 static void count_meshes(const noc_scene *scene, noc_scene_info *info) {
@@ -88,6 +88,10 @@ void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info) {
     count_lights(scene, info);
     count_windows(scene, info);
     find_bounds(scene, info->bounds_min, info->bounds_max);
+    if (scene->environment) {
+        info->environment_width = scene->environment->given;
+        info->environment_lux = scene->environment->lux;
+    }
     info->memory_bytes = noc_scene_bytes(scene);
     noc_scene_unlock_read(scene);
 }

@@ -48,6 +48,7 @@ void noc_scene_destroy(noc_scene *scene) {
     free(scene->given_crs_name);
     free(scene->without_crs);
     noc_ground_free(scene->ground);
+    noc_environment_free(scene->environment);
     free(scene->crs_name);
     for (size_t i = 0; i < scene->models.len; i++)
         free_model(&scene->models.data[i]);

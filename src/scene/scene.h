@@ -150,17 +150,31 @@ typedef struct noc_edit {
     };
 } noc_edit;
 
+/* What is around the scene, as core/environment.h has it: linear Rec.709 as in the file, never negative. */
+typedef struct noc_environment {
+    int given;                     /* columns of the picture that was given */
+    int width, height;             /* of what is seen */
+    int light_width, light_height; /* of what lights */
+    float *texels, *light;         /* 3 a texel; light may be texels */
+    double power;                  /* of what lights: luminance summed over solid angles, cd/m2 sr */
+    double lux;                    /* of what lights, on an open horizontal surface */
+    size_t bytes;
+} noc_environment;
+enum { NOC_ENVIRONMENT_SEEN = 8192, NOC_ENVIRONMENT_LIGHTS = 2048 }; /* columns at most, where they can be halved */
+enum { NOC_ENVIRONMENT_TEXELS = 1 << 23 };                           /* that light: fewer than these */
+
 /* How often commits have changed what. A follower compares with what it has seen. */
 typedef struct noc_scene_versions {
-    uint64_t commits;   /* that changed anything */
-    uint64_t geometry;  /* meshes added or removed, of the world or in new models */
-    uint64_t instances; /* added, removed, moved */
-    uint64_t materials; /* added or changed */
-    uint64_t lights;    /* added or removed: a slot holds another light than before */
-    uint64_t moved;     /* places, directions and shapes of lights of the moving half */
-    uint64_t emission;  /* what a light emits in all */
-    uint64_t standing;  /* of lights and emission those commits that changed the static half */
-    uint64_t settled;   /* the static half is to be made anew; where it is not, its lights only went dark */
+    uint64_t commits;     /* that changed anything */
+    uint64_t geometry;    /* meshes added or removed, of the world or in new models */
+    uint64_t instances;   /* added, removed, moved */
+    uint64_t materials;   /* added or changed */
+    uint64_t lights;      /* added or removed: a slot holds another light than before */
+    uint64_t moved;       /* places, directions and shapes of lights of the moving half */
+    uint64_t emission;    /* what a light emits in all */
+    uint64_t standing;    /* of lights and emission those commits that changed the static half */
+    uint64_t settled;     /* the static half is to be made anew; where it is not, its lights only went dark */
+    uint64_t environment; /* another map */
 } noc_scene_versions;
 
 typedef struct noc_range {
@@ -209,6 +223,7 @@ struct noc_scene {
     NOC_ARRAY(noc_scene_profile) profiles; /* profile p is at p - 1 */
     NOC_ARRAY(float) profile_cells;        /* core/profile.h; data is 16-byte aligned */
     NOC_ARRAY(noc_scene_gap) gaps;         /* ascending, none touches the next */
+    noc_environment *environment;          /* NULL: none */
     noc_arena names;
     size_t triangles_dropped, triangles_flat /* of these, for they have no area */, lights_inferred;
     double bounds_min[3], bounds_max[3];
@@ -363,6 +378,10 @@ void noc_model_relight(noc_scene *s, const noc_scene_mesh *mesh);
 static inline void noc_range_add(noc_range *r, size_t i) {
     *r = r->first < r->end ? (noc_range){ NOC_MIN(r->first, i), NOC_MAX(r->end, i + 1) } : (noc_range){ i, i + 1 };
 }
+
+/* environment.c: sine of the elevation of a row's upper edge, of so many rows. */
+double noc_environment_sine(int row, int rows);
+void noc_environment_free(noc_environment *e); /* NULL is allowed */
 
 /* window.c */
 static inline noc_wall_verdict noc_scene_wall(const noc_scene *s, size_t triangle) {

@@ -54,6 +54,14 @@ FN frame_constants dialect_constants(uint32_t bias) {
     f.reject_depth = 0.1f;
     f.reject_normal = 0.9f;
     f.sky = 0.02f;
+    f.environment_width = 1000u;
+    f.environment_height = 500u;
+    f.backdrop_width = 2000u;
+    f.backdrop_height = 1000u;
+    f.environment_turn = 0.7f;
+    f.environment_scale = 3.0f;
+    f.environment_inverse_power = 0.02f;
+    f.environment_level = 0.4f;
     return f;
 }
 
@@ -170,7 +178,7 @@ FN void shades(CTX u32 item, u32 key, surf s) {
     put_v3(PASS item, FRAME_FIRST + 65, c);
     u32 turns = sky_turns(PASS mul3(c, K(1e-3f)));
     put_u32(PASS item, FRAME_FIRST + 68, turns);
-    segment ray = sky_ray(s, key, item, K(1e-4f));
+    segment ray = sky_ray(PASS s, key, item, K(1e-4f));
     put_v3(PASS item, FRAME_FIRST + 69, ray.d);
     v3 sky = sky_shade(PASS s, ray.d, K(1.0f) / to_real(turns));
     put_v3(PASS item, FRAME_FIRST + 72, sky);
@@ -182,6 +190,32 @@ FN void shades(CTX u32 item, u32 key, surf s) {
     put_real(PASS item, FRAME_FIRST + 78, m.squares);
     put_real(PASS item, FRAME_FIRST + 79, mean_add(m.mean, rng(key, KU(4605u)), K(0.25f)));
     put_u32(PASS item, FRAME_FIRST + 80, flag_of(colour_finite(mul3(c, K(1e29f)))));
+}
+
+/* Slots 91 to 117: the sky's light and the background where a map is around the scene. */
+FN void environments(CTX u32 item, u32 key, surf s) {
+    v3 d = unit3(any_v3(key, KU(4800u)));
+    v3 at = environment_place(d, K(FRAME.environment_turn));
+    put_real(PASS item, FRAME_FIRST + 91, at.x);
+    put_real(PASS item, FRAME_FIRST + 92, at.y);
+    put_v3(PASS item, FRAME_FIRST + 93, environment_direction(at.x, d.z, K(FRAME.environment_turn)));
+    put_u32(PASS item, FRAME_FIRST + 96, environment_cell(at.x, KU(777u)));
+    v3 radiance = environment_radiance(PASS d);
+    put_v3(PASS item, FRAME_FIRST + 97, radiance);
+    put_v3(PASS item, FRAME_FIRST + 100,
+           environment_draw(PASS rng_bits(key, KU(4810u)), rng(key, KU(4811u)), rng_bits(key, KU(4812u))));
+    put_v3(PASS item, FRAME_FIRST + 103, environment_ray(PASS s, key, item));
+    put_real(PASS item, FRAME_FIRST + 106, environment_ray_density(PASS s, d, radiance));
+    put_v3(PASS item, FRAME_FIRST + 107, environment_backdrop(PASS d));
+    dialect_frame.flags = FRAME_ENVIRONMENT | FRAME_MAP_LIGHTS;
+    u32 turns = sky_turns(PASS mul3(radiance, K(0.4f)));
+    put_u32(PASS item, FRAME_FIRST + 110, turns);
+    segment ray = sky_ray(PASS s, key, item, K(1e-4f));
+    put_real(PASS item, FRAME_FIRST + 111, ray.d.z);
+    put_v3(PASS item, FRAME_FIRST + 112, sky_shade(PASS s, ray.d, K(1.0f) / to_real(turns)));
+    put_v3(PASS item, FRAME_FIRST + 115,
+           sky_behind(PASS shr(rng_bits(key, KU(4600u)), 22), shr(rng_bits(key, KU(4601u)), 23)));
+    dialect_frame.flags = FRAME_BIAS_RAYS | FRAME_EMITTERS;
 }
 
 /* Slots 81 to 86. */
@@ -213,6 +247,7 @@ FN void frame_item(CTX u32 item, u32 key, surf s) {
     shades(PASS item, key, s);
     triangles_hit(PASS item, key);
     emitters(PASS item, key);
+    environments(PASS item, key, s);
 }
 
 #endif

@@ -116,6 +116,26 @@ FN alias_slot alias_load(CTX u32 i) {
     return s;
 }
 
+/* A map of 1000 x 500 texels that lights, and of 2000 x 1000 that are seen. */
+FN v3 environment_texel(CTX u32 i) {
+    u32 key = hash_u32(i + KU(15u));
+    return mul3(V3(rng(key, KU(0u)), rng(key, KU(1u)), rng(key, KU(2u))), K(2.0f));
+}
+FN v3 backdrop_texel(CTX u32 i) {
+    u32 key = hash_u32(i + KU(16u));
+    return V3(rng(key, KU(0u)), rng(key, KU(1u)), rng(key, KU(2u)));
+}
+FN alias_slot environment_slot(CTX u32 i) {
+    alias_slot s;
+    u32 key = hash_u32(i + KU(17u));
+    s.keep = rng(key, KU(0u));
+    s.other = scale_u32(rng_bits(key, KU(1u)), KU(500000u));
+    s.inverse = K(0.0f);
+    s.inverse_other = K(0.0f);
+    return s;
+}
+FN real environment_sine(CTX u32 row) { return K(1.0f) - to_real(row) * K(0.004f); }
+
 /* A whole tree of 127 pairs. */
 FN tree_child any_child(u32 i) {
     tree_child c;

@@ -111,6 +111,18 @@ static const struct {
     { FRAME_FIRST + 84, "hit_normal" },
     { FRAME_FIRST + 87, "emitter_shade" },
     { FRAME_FIRST + 90, "sees_emitter" },
+    { FRAME_FIRST + 91, "environment_place" },
+    { FRAME_FIRST + 93, "environment_direction" },
+    { FRAME_FIRST + 96, "environment_cell" },
+    { FRAME_FIRST + 97, "environment_radiance" },
+    { FRAME_FIRST + 100, "environment_draw" },
+    { FRAME_FIRST + 103, "environment_ray" },
+    { FRAME_FIRST + 106, "environment_ray_density" },
+    { FRAME_FIRST + 107, "environment_backdrop" },
+    { FRAME_FIRST + 110, "sky_turns, map" },
+    { FRAME_FIRST + 111, "sky_ray, map" },
+    { FRAME_FIRST + 112, "sky_shade, map" },
+    { FRAME_FIRST + 115, "sky_behind, map" },
     { INFLUENCE_FIRST, "influence_candidate" },
     { INFLUENCE_FIRST + 4, "influence_lists" },
     { INFLUENCE_FIRST + 5, "influence_near" },
@@ -162,8 +174,8 @@ static const struct {
     { LISTS_FIRST + 73, "list_build and list_fill" },
 };
 
-static const int frame_integers[] = { 0,  3,  4,  5,  6,  7,  8,  9,  11, 17, 23, 25,
-                                      31, 37, 39, 45, 51, 53, 59, 62, 64, 68, 80, 90 };
+static const int frame_integers[] = { 0,  3,  4,  5,  6,  7,  8,  9,  11, 17, 23, 25, 31,
+                                      37, 39, 45, 51, 53, 59, 62, 64, 68, 80, 90, 96, 110 };
 static const int list_integers[] = { 2, 11, 12, 13, 14, 15, 20, 21, 35, 36, 53, 54, 56, 57, 58, 67, 73, 74, 75 };
 
 static bool holds_integers(int slot) {

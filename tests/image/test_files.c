@@ -424,11 +424,11 @@ static void reading_fails_once(void **state) {
     fputs("this is not a picture", f);
     fclose(f);
     assert_null(noc_image_read(in_folder("text.png"), log_, NULL));
-    one_error(NOC_OK, NOC_OK, "neither a PNG nor an OpenEXR file");
+    one_error(NOC_OK, NOC_OK, "not a PNG, OpenEXR or Radiance HDR file");
     f = fopen(in_folder("empty.exr"), "wb");
     fclose(f);
     assert_null(noc_image_read(in_folder("empty.exr"), log_, NULL));
-    one_error(NOC_OK, NOC_OK, "neither a PNG nor an OpenEXR file");
+    one_error(NOC_OK, NOC_OK, "not a PNG, OpenEXR or Radiance HDR file");
 }
 
 static void sizes_are_checked(void **state) {

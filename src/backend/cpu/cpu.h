@@ -171,8 +171,9 @@ typedef struct cpu_view {
     const noc_scene *scene; /* of the world, as are the next two */
     noc_log *log;
     noc_pool *pool;
-    noc_light_sources sources; /* of the last frame; what it does not hold may be gone when that is over */
-    noc_light_stats told;      /* of that frame's candidates and volumes */
+    noc_light_sources sources;      /* of the last frame; what it does not hold may be gone when that is over */
+    const noc_map_light *map_light; /* of the last frame that was lit by the scene's map */
+    noc_light_stats told;           /* of that frame's candidates and volumes */
     frame_buffers b;
     /* of a worker: from 0 to the number of lights; the last of FOUND_MOST + 1 counts what finds more too */
     uint32_t found_bins;

@@ -38,6 +38,8 @@ static struct core_context context_of(const cpu_view *s, const noc_frame *frame)
                                   .alias = from->alias,
                                   .tree = from->tree,
                                   .influence = from->influence,
+                                  .environment = scene->environment,
+                                  .map_light = s->map_light,
                                   .ray_offset = s->world->ray_offset };
 }
 
@@ -53,6 +55,8 @@ static noc_status begin_frame(cpu_view *s, const noc_frame *frame) {
         status = noc_cpu_prepare_scratch(s, frame->plan);
     if (status == NOC_OK)
         status = noc_cpu_prepare_lights(s, frame->plan, frame->params);
+    if (status == NOC_OK && frame->constants.flags & FRAME_MAP_LIGHTS)
+        status = noc_light_set_map(s->world->lights, &s->map_light);
     if (status == NOC_OK)
         status = noc_cpu_begin_aovs(s, frame->params->aovs);
     if (status == NOC_OK)

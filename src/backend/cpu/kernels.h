@@ -9,6 +9,7 @@
 #include "core/list_limits.h"
 #include "light/alias.h"
 #include "light/clusters.h"
+#include "light/environment.h"
 #include "light/influence.h"
 #include "light/tree.h"
 #include "render/backend.h"
@@ -58,13 +59,15 @@ struct core_context {
     const frame_constants *frame;
     const light_record *lights;
     uint32_t light_count;
-    const float *profiles;            /* core/profile.h: cells, 16-byte aligned; NULL: no light has one */
-    float ray_offset;                 /* of shadow rays at least, m: core/shadow.h */
-    const material_record *materials; /* at least one */
-    const noc_clusters *clusters[2];  /* lists only: of lights that stand, of those that move; NULL: none */
-    const noc_alias *alias;           /* power only */
-    const noc_tree *tree;             /* light-bvh only */
-    const noc_influence *influence;   /* influence only */
+    const float *profiles;              /* core/profile.h: cells, 16-byte aligned; NULL: no light has one */
+    float ray_offset;                   /* of shadow rays at least, m: core/shadow.h */
+    const material_record *materials;   /* at least one */
+    const noc_clusters *clusters[2];    /* lists only: of lights that stand, of those that move; NULL: none */
+    const noc_alias *alias;             /* power only */
+    const noc_tree *tree;               /* light-bvh only */
+    const noc_influence *influence;     /* influence only */
+    const noc_environment *environment; /* NULL: no map around the scene */
+    const noc_map_light *map_light;     /* where it lights only */
     core_cursors at;
 };
 

@@ -78,8 +78,8 @@ static uint32_t shade(const struct core_context *ctx, const gblock *g, const rbl
 static void sky_rays(const struct core_context *ctx, const gblock *g, int x, int y, const uint32_t *number,
                      rayblock *out) {
     for (int l = 0; l < BLOCK; l += LANES) {
-        segment r = sky_ray(surf_load(ctx, g, l, ctx->frame->camera.eye), key_in(ctx, x, y, l, 0), uload(number + l),
-                            K(ctx->ray_offset));
+        segment r = sky_ray(ctx, surf_load(ctx, g, l, ctx->frame->camera.eye), key_in(ctx, x, y, l, 0),
+                            uload(number + l), K(ctx->ray_offset));
         ray_store(out, l, r.o, r.d);
     }
 }

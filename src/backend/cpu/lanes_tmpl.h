@@ -5,6 +5,7 @@
 
 #include "backend/cpu/kernels.h"
 
+#include "core/alias.h"
 #include "core/camera.h"
 #include "core/random.h"
 #include "core/reservoir.h"
@@ -61,6 +62,48 @@ FN u32 key_of(const struct core_context *ctx, int x, int y, int first) {
 }
 
 FN light light_load(CTX u32 i) { return light_from_records((const float *)ctx->lights, i); }
+
+/* Words of memory, one a lane. */
+FN u32 word_gather(const void *base, u32 index) {
+#if defined(CORE_LANES) && CORE_LANES == 16 && defined(__AVX512F__)
+    return (u32)_mm512_i32gather_epi32((__m512i)index, base, 4);
+#elif defined(CORE_LANES) && CORE_LANES == 8 && defined(__AVX2__)
+    return (u32)_mm256_i32gather_epi32(base, (__m256i)index, 4);
+#else
+    uint32_t at[LANES];
+    ustore(at, index);
+    for (int i = 0; i < LANES; i++)
+        at[i] = ((const uint32_t *)base)[at[i]];
+    return uload(at);
+#endif
+}
+FN real real_gather(const void *base, u32 index) {
+    u32 bits = word_gather(base, index);
+    real r;
+    memcpy(&r, &bits, sizeof(r));
+    return r;
+}
+
+FN alias_slot slot_gather(const noc_alias_slot *slots, u32 i) {
+    u32 at = shl(i, 2);
+    alias_slot s;
+    s.keep = real_gather(slots, at);
+    s.other = word_gather(slots, at + KU(1u));
+    s.inverse = real_gather(slots, at + KU(2u));
+    s.inverse_other = real_gather(slots, at + KU(3u));
+    return s;
+}
+FN alias_slot alias_load(CTX u32 i) { return slot_gather(ctx->alias->slots, i); }
+
+FN v3 texel_gather(const float *texels, u32 i) {
+    u32 at = i * KU(3u);
+    return V3(real_gather(texels, at), real_gather(texels, at + KU(1u)), real_gather(texels, at + KU(2u)));
+}
+
+FN v3 environment_texel(CTX u32 i) { return texel_gather(ctx->environment->light, i); }
+FN v3 backdrop_texel(CTX u32 i) { return texel_gather(ctx->environment->texels, i); }
+FN alias_slot environment_slot(CTX u32 i) { return slot_gather(ctx->map_light->texels->slots, i); }
+FN real environment_sine(CTX u32 row) { return real_gather(ctx->map_light->sines, row); }
 
 FN profile_cell profile_load(CTX u32 place) { return profile_from_cells(ctx->profiles, place); }
 

@@ -42,7 +42,7 @@ size_t noc_cpu_light_bytes(const cpu_world *world) {
     size_t bytes = 0;
     for (int c = 0; c < NOC_CANDIDATES_COUNT; c++)
         bytes += noc_light_set_bytes(world->lights, (noc_candidates)c);
-    return bytes;
+    return bytes + noc_light_set_map_bytes(world->lights);
 }
 
 static size_t scene_bytes(const noc_scene *s) {

@@ -339,7 +339,9 @@ static void sky(stage_run *run, worker *w, tile t) {
     tile_block blocks[TILE_BLOCKS * TILE_BLOCKS];
     uint8_t turns[TILE_BLOCKS * TILE_BLOCKS][BLOCK];
     size_t asked[TILE_BLOCKS * TILE_BLOCKS];
-    int n = noc_cpu_tile_blocks(run, t, blocks);
+    int n = noc_cpu_tile_blocks(run, t, blocks), most = f->params->sky > 0 ? SKY_RAYS : 0;
+    if (f->constants.flags & FRAME_MAP_LIGHTS)
+        most = SKY_RAYS;
     for (int i = 0; i < n; i++) {
         size_t at = blocks[i].at;
         uint32_t background =
@@ -351,7 +353,7 @@ static void sky(stage_run *run, worker *w, tile t) {
         if (background)
             run->k->sky_background(&run->ctx, background, blocks[i].x, blocks[i].y, &b->colour[at]);
     }
-    for (int turn = 0; turn < SKY_RAYS; turn++) {
+    for (int turn = 0; turn < most; turn++) {
         float share[TILE_BLOCKS * TILE_BLOCKS][BLOCK];
         w->batch.count = 0;
         for (int i = 0; i < n; i++) {

@@ -6,37 +6,6 @@
 #include "core/alias.h"
 #include "core/given.h"
 
-/* Words of memory, one a lane. */
-FN u32 word_gather(const void *base, u32 index) {
-#if defined(CORE_LANES) && CORE_LANES == 16 && defined(__AVX512F__)
-    return (u32)_mm512_i32gather_epi32((__m512i)index, base, 4);
-#elif defined(CORE_LANES) && CORE_LANES == 8 && defined(__AVX2__)
-    return (u32)_mm256_i32gather_epi32(base, (__m256i)index, 4);
-#else
-    uint32_t at[LANES];
-    ustore(at, index);
-    for (int i = 0; i < LANES; i++)
-        at[i] = ((const uint32_t *)base)[at[i]];
-    return uload(at);
-#endif
-}
-FN real real_gather(const void *base, u32 index) {
-    u32 bits = word_gather(base, index);
-    real r;
-    memcpy(&r, &bits, sizeof(r));
-    return r;
-}
-
-FN alias_slot alias_load(CTX u32 i) {
-    u32 at = shl(i, 2);
-    alias_slot s;
-    s.keep = real_gather(ctx->alias->slots, at);
-    s.other = word_gather(ctx->alias->slots, at + KU(1u));
-    s.inverse = real_gather(ctx->alias->slots, at + KU(2u));
-    s.inverse_other = real_gather(ctx->alias->slots, at + KU(3u));
-    return s;
-}
-
 /* Candidate i, while the light of a later one is asked for. Entries up to PICK_AHEAD past the last are there to be
  * read. */
 FN pick pick_load(CTX int i) {

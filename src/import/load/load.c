@@ -402,6 +402,20 @@ static noc_status set_materials(noc_scene *scene, const noc_import_params *param
     return status;
 }
 
+/* The map around the scene, by its file. */
+static noc_status set_environment(noc_scene *scene, const char *path) {
+    bool linear;
+    noc_image *map = noc_image_read(path, scene->log, &linear);
+    if (!map)
+        return noc_log_last_status(scene->log);
+    noc_status status = linear
+                            ? noc_scene_set_environment(scene, map)
+                            : noc_error(scene->log, NOC_ERR_FORMAT,
+                                        "%s: a PNG holds no luminances: an environment is an EXR or HDR picture", path);
+    noc_image_destroy(map);
+    return status;
+}
+
 noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const char *const *paths, size_t path_count,
                        const noc_import_params *params, bool inspect, noc_report **report) {
     const noc_import_params defaults = noc_import_default_params();
@@ -437,6 +451,12 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
                     .inspect = inspect,
                     .lock = PTHREAD_MUTEX_INITIALIZER };
     status = box_read(params, scene->log, &im.box);
+    if (status) {
+        box_free(&im.box);
+        return status;
+    }
+    if (params->environment && !inspect)
+        status = set_environment(scene, params->environment);
     if (status) {
         box_free(&im.box);
         return status;
