@@ -253,7 +253,8 @@ typedef struct noc_report_totals {
     char profiles[160];                           /* of lamps: "cobra-head 40, post-top 3"; "": none have any */
     size_t lamps_assumed[NOC_LAMP_DEFAULT_COUNT]; /* as in noc_report_file */
     noc_window_counts windows;
-    size_t tracks, cars;               /* as in noc_report_file */
+    size_t tracks;                     /* as in noc_report_file */
+    size_t cars, road_cars;            /* along tracks and along roads of maps, and the latter */
     size_t skipped, repaired, guessed; /* features: counts of the files' lines; guessed are those of repaired that are
                                         not lossless */
 } noc_report_totals;

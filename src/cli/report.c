@@ -93,6 +93,7 @@ static void add_totals(meta_text *meta, const noc_report *report) {
                  { "lamps-colour-assumed", t.lamps_assumed[NOC_LAMP_COLOUR] },
                  { "tracks-of-cars", t.tracks },
                  { "cars", t.cars },
+                 { "cars-on-roads", t.road_cars },
                  { "features-skipped", t.skipped },
                  { "features-repaired", t.repaired },
                  { "features-guessed", t.guessed } };
@@ -316,7 +317,7 @@ static void print_issues(const noc_report *report) {
 
 static void print_lamps(const noc_report *report, const noc_import_params *import) {
     noc_report_totals t;
-    char a[32], b[64];
+    char a[32], b[64], c[32];
     noc_report_get_totals(report, &t);
     const struct {
         const char *what;
@@ -336,7 +337,8 @@ static void print_lamps(const noc_report *report, const noc_import_params *impor
         putchar('\n');
     cli_print_windows("  windows   ", &t.windows);
     if (t.tracks || t.cars)
-        printf("  cars      %s along %s\n", noc_text_count(a, t.cars), noc_text_many(b, t.tracks, "track"));
+        printf("  cars      %s along %s, %s along roads of maps\n", noc_text_count(a, t.cars - t.road_cars),
+               noc_text_many(b, t.tracks, "track"), noc_text_count(c, t.road_cars));
     if (*t.profiles)
         printf("  profiles  %s\n", t.profiles);
     cli_print_assumed("  assumed   ", t.lamps_assumed, import);

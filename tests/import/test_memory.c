@@ -39,7 +39,7 @@ static const char *write_text(const char *name, const char *text) {
 typedef struct import {
     const char *inputs[3]; /* files; NULL behind the last */
     const char *crs, *scene_crs, *lamps, *columns;
-    bool isolate, inspect, footprints;
+    bool isolate, inspect, footprints, traffic;
     bool all; /* of the first 300 allocations every one; else of the first 40, and of later ones ever fewer */
 } import;
 
@@ -55,6 +55,7 @@ static noc_status run(const import *in, uint64_t number, bool and_later, bool *r
     params.scene_crs = in->scene_crs;
     params.isolate = in->isolate;
     params.footprints = in->footprints;
+    params.traffic = in->traffic ? NOC_SWITCH_ON : NOC_SWITCH_AUTO;
     if (in->lamps)
         params.lamps = (noc_texts){ .text = { path_of(in->lamps) }, .count = 1 };
     if (in->columns)
@@ -132,6 +133,13 @@ static const char strange[] =
                                      "5330000 0")) "</core:CityModel>";
 /* clang-format on */
 
+/* In the extent of citygml/whole.gml. */
+static const char trip[] = "<gpx><trk><trkseg><trkpt lat='48.09626' lon='11.55218'/><trkpt lat='48.09618' "
+                           "lon='11.55567'/></trkseg></trk></gpx>";
+static const char street[] = "<osm version='0.6'><node id='1' lat='48.09505' lon='11.55387'/><node id='2' "
+                             "lat='48.09739' lon='11.55398'/><way id='3'><nd ref='1'/><nd ref='2'/><tag k='highway' "
+                             "v='primary'/></way></osm>";
+
 static void citygml(void **state) {
     refuse_each("CityGML", &(import){ { "citygml/whole.gml" }, .all = true });
     refuse_each("CityGML with references between objects", &(import){ { write_text("links.gml", links) } });
@@ -206,6 +214,9 @@ static void maps(void **state) {
                 &(import){ { "geojson/buildings.json" }, .footprints = true, .isolate = true });
     refuse_each("Roads of a map", &(import){ { "osm/roads.osm" } });
     refuse_each("Roads of a map by the helper", &(import){ { "geojson/roads.json" }, .isolate = true });
+    refuse_each("Cars",
+                &(import){ { "citygml/whole.gml", write_text("street.osm", street), write_text("trip.gpx", trip) },
+                           .traffic = true });
     refuse_each("GeoTIFF", &(import){ { "terrain/floats.tif" } });
     refuse_each("GeoTIFF by the helper", &(import){ { "terrain/floats.tif" }, .isolate = true });
     refuse_each("GeoJSON by the helper", &(import){ { "geojson/plain.json" }, .isolate = true });

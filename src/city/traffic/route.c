@@ -10,6 +10,7 @@
 void route_clear(route_maker *m) {
     m->stops.len = m->leg = m->groundless = 0;
     m->seconds = m->along = 0;
+    m->bridge = false;
 }
 
 void route_free(route_maker *m) { array_free(&m->stops); }
@@ -20,9 +21,10 @@ bool route_inside(const route_maker *m, const double xy[2]) {
            xy[1] >= s->bounds_min[1] - MARGIN && xy[1] <= s->bounds_max[1] + MARGIN;
 }
 
-static void push(route_maker *m, double x, double y, double seconds, double along) {
+static void push(route_maker *m, double x, double y, double seconds, double along, bool on_bridge) {
     double z;
-    if (!noc_scene_ground(m->scene, x, y, &z))
+    if (on_bridge ? !noc_scene_highest(m->scene, 1u << NOC_CLASS_BRIDGE, x, y, &z)
+                  : !noc_scene_ground(m->scene, x, y, &z))
         z = NAN;
     if (!array_push(&m->stops, (noc_scene_stop){ seconds, { (float)x, (float)y, (float)z }, (float)along }))
         m->refused = true;
@@ -31,14 +33,14 @@ static void push(route_maker *m, double x, double y, double seconds, double alon
 void route_point(route_maker *m, const double xy[2], double seconds) {
     if (m->stops.len == m->leg) {
         m->along = 0;
-        push(m, xy[0], xy[1], m->seconds, 0);
+        push(m, xy[0], xy[1], m->seconds, 0, false);
     } else {
         double from[2] = { m->xy[0], m->xy[1] }, length = hypot(xy[0] - from[0], xy[1] - from[1]);
         int steps = (int)NOC_CLAMP(ceil(length / STEP), 1, 1e6);
         for (int i = 1; i <= steps && !m->refused; i++) {
             double t = (double)i / steps;
             push(m, from[0] + t * (xy[0] - from[0]), from[1] + t * (xy[1] - from[1]), m->seconds + t * seconds,
-                 m->along + t * length);
+                 m->along + t * length, m->bridge && i < steps);
         }
         m->seconds += seconds;
         m->along += length;

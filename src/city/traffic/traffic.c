@@ -32,19 +32,25 @@ void city_traffic_destroy(city_traffic *t) {
     free(t);
 }
 
-static uint64_t hash_of(const char *id, uint32_t seed) {
+uint64_t traffic_hash(const char *id, uint32_t seed) {
     uint64_t hash = 14695981039346656037u;
     for (; *id; id++)
         hash = (hash ^ (unsigned char)*id) * 1099511628211u;
     return city_window_hash(hash, seed);
 }
 
-static bool add_car(city_traffic *t, int route, uint64_t hash, double start) {
+bool traffic_add_car(city_traffic *t, int route, uint64_t hash, double start) {
     if (!t->have_models && !traffic_models(t->scene, t->params, t->models))
         return false;
     t->have_models = true;
     return noc_scene_add_car(t->scene, t->models[traffic_model(city_window_number(hash, 1))], route, start);
 }
+
+noc_status traffic_failed(const city_traffic *t) { return t->scene->no_memory ? NOC_ERR_MEMORY : NOC_ERR_ARGUMENT; }
+
+noc_scene *traffic_scene(const city_traffic *t) { return t->scene; }
+
+const noc_traffic_params *traffic_params(const city_traffic *t) { return t->params; }
 
 /* ---- tracks ---- */
 
@@ -109,8 +115,8 @@ noc_status city_traffic_follow(city_traffic *t, const geo_track *track, geo_issu
         return NOC_OK;
     }
     int route = noc_scene_add_route(t->scene, t->route.stops.data, t->route.stops.len);
-    if (route < 0 || !add_car(t, route, hash_of(track->id, t->params->seed), 0))
-        return t->scene->no_memory ? NOC_ERR_MEMORY : NOC_ERR_ARGUMENT;
+    if (route < 0 || !traffic_add_car(t, route, traffic_hash(track->id, t->params->seed), 0))
+        return traffic_failed(t);
     *cars = 1;
     return NOC_OK;
 }

@@ -15,6 +15,19 @@ void city_traffic_destroy(city_traffic *traffic);
  * cannot be driven, which goes to issues. */
 noc_status city_traffic_follow(city_traffic *traffic, const geo_track *track, geo_issues *issues, size_t *cars);
 
+/* Cars along those of the roads that cars drive on; tunnels are left out. Coordinates are local metres. */
+noc_status city_traffic_roads(city_traffic *traffic, const geo_road *roads, size_t count, const noc_progress *progress,
+                              size_t *cars);
+
+/* ---- traffic.c, for lanes.c ---- */
+
+noc_scene *traffic_scene(const city_traffic *traffic);
+const noc_traffic_params *traffic_params(const city_traffic *traffic);
+uint64_t traffic_hash(const char *id, uint32_t seed);
+/* Its model is drawn from the hash. false after reporting. */
+bool traffic_add_car(city_traffic *traffic, int route, uint64_t hash, double start);
+noc_status traffic_failed(const city_traffic *traffic); /* the status of that */
+
 /* ---- route.c ---- */
 
 typedef struct route_maker {
@@ -24,6 +37,7 @@ typedef struct route_maker {
     double seconds;    /* when its last stop is reached */
     double xy[2];      /* of its last point, not rounded */
     double along;      /* m of it */
+    bool bridge;       /* what comes does not lie on the ground: on a deck, or straight from where it left it */
     size_t groundless; /* legs that were dropped, for there is no ground under them */
     bool refused;      /* memory was; stays set */
 } route_maker;

@@ -221,6 +221,7 @@ struct noc_report {
     noc_arena arena;
     NOC_ARRAY(noc_report_file) files;
     size_t lamps_inferred;
+    size_t road_cars; /* along roads of maps */
     char profiles[160];
 };
 

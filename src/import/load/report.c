@@ -45,7 +45,9 @@ static void add_windows(noc_window_counts *to, const noc_window_counts *from) {
 void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) {
     if (!totals)
         return;
-    *totals = (noc_report_totals){ .lamps_inferred = report ? report->lamps_inferred : 0 };
+    *totals = (noc_report_totals){ .lamps_inferred = report ? report->lamps_inferred : 0,
+                                   .cars = report ? report->road_cars : 0,
+                                   .road_cars = report ? report->road_cars : 0 };
     if (report)
         memcpy(totals->profiles, report->profiles, sizeof(totals->profiles));
     for (size_t i = 0; i < noc_report_file_count(report); i++) {

@@ -1,7 +1,9 @@
 /* Roads of maps, which are kept until all inputs are read. */
 #include "import/load/load.h"
 
-bool roads_wanted(const noc_import_params *params) { return params->infer_lamps != NOC_SWITCH_OFF; }
+bool roads_wanted(const noc_import_params *params) {
+    return params->infer_lamps != NOC_SWITCH_OFF || params->traffic == NOC_SWITCH_ON;
+}
 
 static void count_road(noc_report_file *file, const geo_road *road) {
     if (road->cls == GEO_ROAD_RAIL) {

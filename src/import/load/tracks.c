@@ -29,18 +29,22 @@ noc_status track_keep(importer *im, input *in, size_t index, const geo_track *tr
 }
 
 noc_status traffic_add(importer *im) {
-    if (!im->tracks.len)
+    size_t roads = im->params->traffic == NOC_SWITCH_ON ? im->roads.len : 0, cars;
+    if (!im->tracks.len && !roads)
         return NOC_OK;
     city_traffic *traffic = city_traffic_create(im->scene, &im->params->cars);
     noc_status status = traffic ? NOC_OK : NOC_ERR_MEMORY;
     for (size_t i = 0; i < im->tracks.len && !status; i++) {
         const pending_track *p = &im->tracks.data[i];
-        size_t cars;
         status = city_traffic_follow(traffic, &p->track, im->inputs[p->input].issues, &cars);
         im->inputs[p->input].file.cars += cars;
         if (i % 256 == 0 && !import_progress(im, &im->inputs[p->input], im->bytes_before))
             status = NOC_ERR_CANCELLED;
     }
+    if (!status && roads)
+        status = city_traffic_roads(traffic, im->roads.data, roads, &im->params->progress, &im->report->road_cars);
     city_traffic_destroy(traffic);
+    if (!status && im->scene->cars.len)
+        noc_info(im->log, "%zu cars, %zu of them along roads of maps", im->scene->cars.len, im->report->road_cars);
     return status;
 }
