@@ -149,6 +149,17 @@ static noc_status road(void *ctx, const geo_road *r) {
     return NOC_OK;
 }
 
+static noc_status water(void *ctx, const geo_polygon *area) {
+    fuzz_sink *s = ctx;
+    const double *xyz = area->xyz;
+    FUZZ_REQUIRE(!s->in_object && s->told && area->ring_count);
+    for (size_t r = 0; r < area->ring_count; r++)
+        for (size_t i = 0; i < 3 * area->ring_size[r]; i++)
+            s->sum += *xyz++;
+    s->sum += (double)strlen(area->id);
+    return NOC_OK;
+}
+
 static bool progress(void *ctx, double done) {
     (void)ctx;
     FUZZ_REQUIRE(done >= 0 && done <= 1);
@@ -167,6 +178,7 @@ void fuzz_sink_start(fuzz_sink *s, noc_log *log) {
                           .lamp = lamp,
                           .footprint = footprint,
                           .road = road,
+                          .water = water,
                           .progress = progress };
 }
 

@@ -321,7 +321,10 @@ put("geojson", "roads.json", json.dumps({"type": "FeatureCollection", "features"
     {"type": "Feature", "properties": dict(street, **{"@id": "way/3"}),
      "geometry": {"type": "LineString", "coordinates": [[11.5, 48.1], [11.5, 48.101]]}},
     {"type": "Feature", "properties": {"railway": "rail"},
-     "geometry": {"type": "MultiLineString", "coordinates": [[[11.5, 48.1], [11.502, 48.1]], [[11.5, 48.1]]]}}]}))
+     "geometry": {"type": "MultiLineString", "coordinates": [[[11.5, 48.1], [11.502, 48.1]], [[11.5, 48.1]]]}},
+    {"type": "Feature", "properties": {"natural": "water"},
+     "geometry": {"type": "Polygon", "coordinates": [[[11.5, 48.1003], [11.501, 48.1003], [11.501, 48.1006],
+                                                      [11.5, 48.1003]]]}}]}))
 put("geojson", "plain.json",
     json.dumps({"type": "FeatureCollection", "features": [point(11.5, 48.1, highway="street_lamp")]}))
 hstore = ",".join('"%s"=>"%s"' % (key, value.replace("8 m", 'a \\"quote\\" and \\\\')) for key, value in tags.items())

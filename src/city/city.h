@@ -66,6 +66,7 @@ typedef struct city_road_params {
     double height;        /* m, of lamps in streets where people live; others in proportion */
     const double *mapped; /* 2 a lamp that is there: within a spacing of it none is placed */
     size_t mapped_count;
+    const noc_scene *water; /* surfaces of water that the scene has not, seen from above; NULL: none */
     bool (*inside)(void *user, const double xy[2]); /* may one stand there at all? NULL: anywhere */
     void *user;
     const noc_progress *progress; /* NULL: none */

@@ -98,8 +98,11 @@ static bool clear_of_roads(const placing *p, const geo_road *road, const double 
     return true;
 }
 
-static bool on_water(const noc_scene *scene, const double xy[2]) {
+static bool on_water(const placing *p, const double xy[2]) {
     double water, ground;
+    const noc_scene *scene = p->scene, *more = p->params->water;
+    if (more && noc_scene_highest(more, 1u << NOC_CLASS_WATER, xy[0], xy[1], &water))
+        return true;
     const uint32_t firm = 1u << NOC_CLASS_TERRAIN | 1u << NOC_CLASS_ROAD | 1u << NOC_CLASS_SIDEWALK |
                           1u << NOC_CLASS_GREEN | 1u << NOC_CLASS_BRIDGE;
     return noc_scene_highest(scene, 1u << NOC_CLASS_WATER, xy[0], xy[1], &water) &&
@@ -123,7 +126,7 @@ static bool may_stand(const placing *p, const geo_road *road, const double xy[2]
     if (!(fabs(xy[0]) < ROADS_FARTHEST && fabs(xy[1]) < ROADS_FARTHEST))
         return false;
     if (is_mapped(p, xy, spacing_of(p, road)) || (p->params->inside && !p->params->inside(p->params->user, xy)) ||
-        !clear_of_roads(p, road, xy) || (!road->bridge && on_water(p->scene, xy)))
+        !clear_of_roads(p, road, xy) || (!road->bridge && on_water(p, xy)))
         return false;
     return !site_covered(p->scene, xy[0], xy[1], noc_scene_ground(p->scene, xy[0], xy[1], &z) ? z : -INFINITY);
 }

@@ -10,7 +10,16 @@
 
 /* What a reader emitted, in its order. Texts and arrays in the arena. */
 typedef struct ahead_event {
-    enum { AHEAD_BEGIN, AHEAD_POLYGON, AHEAD_END, AHEAD_LAMP, AHEAD_FOOTPRINT, AHEAD_ROAD, AHEAD_TRACK } kind;
+    enum {
+        AHEAD_BEGIN,
+        AHEAD_POLYGON,
+        AHEAD_END,
+        AHEAD_LAMP,
+        AHEAD_FOOTPRINT,
+        AHEAD_ROAD,
+        AHEAD_WATER,
+        AHEAD_TRACK
+    } kind;
     source_crs *source;
     union {
         geo_object object;
@@ -41,6 +50,7 @@ static noc_status replay(struct look_ahead *a, const ahead_event *e) {
     case AHEAD_END: return a->sink.end_object(a->sink.ctx);
     case AHEAD_FOOTPRINT: return a->sink.footprint(a->sink.ctx, &e->u.footprint);
     case AHEAD_ROAD: return a->sink.road(a->sink.ctx, &e->u.road);
+    case AHEAD_WATER: return a->sink.water(a->sink.ctx, &e->u.polygon);
     case AHEAD_TRACK: return a->sink.track(a->sink.ctx, &e->u.track);
     case AHEAD_LAMP: break;
     }
@@ -127,20 +137,31 @@ static double *keep_numbers(struct look_ahead *a, const double *numbers, size_t 
     return kept;
 }
 
-static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
-    struct look_ahead *a = ctx;
-    if (a->passing)
-        return a->sink.polygon(a->sink.ctx, polygon);
+static noc_status keep_polygon(struct look_ahead *a, ahead_event e) {
+    const geo_polygon *polygon = &e.u.polygon;
     noc_status status = ensure_source(a);
     if (status)
         return status;
     size_t count;
-    ahead_event e = { .kind = AHEAD_POLYGON, .u.polygon = *polygon };
     e.u.polygon.ring_size = keep_sizes(a, polygon->ring_size, polygon->ring_count, &count);
     e.u.polygon.xyz = keep_numbers(a, polygon->xyz, 3 * count);
     e.u.polygon.id = arena_strdup(&a->arena, polygon->id);
     status = push(a, e);
     return status ? status : keep_points(a, e.u.polygon.xyz, count, e.u.polygon.id);
+}
+
+static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
+    struct look_ahead *a = ctx;
+    return a->passing ? a->sink.polygon(a->sink.ctx, polygon)
+                      : keep_polygon(a, (ahead_event){ .kind = AHEAD_POLYGON, .u.polygon = *polygon });
+}
+
+static noc_status on_water(void *ctx, const geo_polygon *area) {
+    struct look_ahead *a = ctx;
+    if (a->passing)
+        return a->sink.water(a->sink.ctx, area);
+    a->in_object = false;
+    return keep_polygon(a, (ahead_event){ .kind = AHEAD_WATER, .u.polygon = *area });
 }
 
 static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
@@ -242,6 +263,7 @@ struct look_ahead *ahead_create(reading *r, geo_sink *sink) {
     sink->lamp = on_lamp;
     sink->footprint = a->sink.footprint ? on_footprint : NULL;
     sink->road = a->sink.road ? on_road : NULL;
+    sink->water = a->sink.water ? on_water : NULL;
     sink->track = on_track;
     sink->columns = on_columns;
     sink->features = on_features;

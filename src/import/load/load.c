@@ -302,7 +302,7 @@ static noc_status run(importer *im, const noc_reader *const *readers) {
         status = check_columns(im);
     if (!status)
         units_check(im);
-    if (!status && im->box.on && !im->scene->indices.len && !im->lamps.len)
+    if (!status && im->box.on && !im->scene->indices.len && !im->lamps.len && !im->roads.len)
         status =
             noc_error(im->log, NOC_ERR_ARGUMENT, "bbox: nothing of the inputs lies in %.10g,%.10g,%.10g,%.10g of %s",
                       im->box.lo[0], im->box.lo[1], im->box.hi[0], im->box.hi[1],

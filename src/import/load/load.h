@@ -150,6 +150,7 @@ typedef struct importer {
     NOC_ARRAY(geo_road) roads; /* local metres; texts and coordinates in importer.names */
     noc_map road_places;       /* of those, by which a second one is told */
     NOC_ARRAY(pending_track) tracks;
+    geo_triangles water; /* of maps that are read for their roads; local metres, z of no use */
     NOC_ARRAY(pending_lamp) lamps;
     size_t lamp_looks;           /* lamps that repeat_lamps compared: for tests */
     NOC_ARRAY(given_place) lost; /* lamps that have no place in the scene's CRS */

@@ -51,10 +51,31 @@ static bool keep(importer *im, const city_road_lamp *place) {
     return p.lamp.id && array_push(&im->lamps, p);
 }
 
+/* Water of the maps as a scene of its own: what asks what lies below a place asks scenes. NULL: memory was refused,
+ * and that is said. */
+static noc_scene *water_of(const importer *im) {
+    noc_scene *scene = noc_scene_create(im->log);
+    const noc_material material = noc_class_material(NOC_CLASS_WATER);
+    const noc_mesh mesh = { .vertex_count = im->water.xyz.len / 3,
+                            .positions = im->water.xyz.data,
+                            .triangle_count = im->water.indices.len / 3,
+                            .indices = im->water.indices.data };
+    bool made = scene && noc_scene_add_material(scene, &material) == 0 &&
+                (!mesh.triangle_count || noc_scene_add_mesh(scene, &mesh) >= 0);
+    if (made)
+        return scene;
+    noc_scene_destroy(scene);
+    return NULL;
+}
+
 static noc_status place_along(importer *im, const city_roads *roads, const double *mapped) {
     where w = { .im = im, .reading = { .im = im, .in = &im->inputs[0], .log = im->log } };
     const noc_progress progress = { update, im };
+    noc_scene *water = water_of(im);
+    if (!water)
+        return NOC_ERR_MEMORY;
     const city_road_params params = { .height = im->params->lamp_height,
+                                      .water = water,
                                       .mapped = mapped,
                                       .mapped_count = im->lamps.len,
                                       .inside = is_inside,
@@ -64,6 +85,8 @@ static noc_status place_along(importer *im, const city_roads *roads, const doubl
     size_t count;
     noc_status status = city_road_lamps(im->scene, roads, &params, &places, &count);
     reading_free(&w.reading);
+    status = status || !water->no_memory ? status : NOC_ERR_MEMORY;
+    noc_scene_destroy(water);
     status = status ? status : w.status;
     for (size_t i = 0; i < count && !status; i++)
         if (!keep(im, &places[i]))

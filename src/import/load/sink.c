@@ -256,6 +256,27 @@ static noc_status on_track(void *ctx, const geo_track *track) {
     return track_keep(r->im, r->in, r->index, &local);
 }
 
+static noc_status on_water(void *ctx, const geo_polygon *area) {
+    reading *r = ctx;
+    size_t count = 0;
+    for (size_t i = 0; i < area->ring_count; i++)
+        count += area->ring_size[i];
+    size_t numbers = 3 * count;
+    r->scratch.len = 0;
+    if (!array_append(&r->scratch, area->xyz, numbers))
+        return noc_no_memory(r->log, r->in->path);
+    bool usable, inside = true;
+    noc_status status = place_points(r, r->scratch.data, count, area->id, &usable);
+    if (!status && usable)
+        status = box_line(r, r->scratch.data, count, &inside);
+    if (status || !usable || !inside || r->im->inspect)
+        return status;
+    geo_polygon local = *area;
+    local.xyz = r->scratch.data;
+    geo_triangulate(&local, &r->im->water, NULL); /* nothing of it is drawn, so nothing of it is told */
+    return r->im->water.no_memory ? noc_no_memory(r->log, r->in->path) : NOC_OK;
+}
+
 /* Of a file that has been read. */
 static noc_status on_columns(void *ctx, size_t points, const geo_column *columns, size_t count) {
     reading *r = ctx;
@@ -326,6 +347,7 @@ geo_sink sink_create(reading *r) {
                        .footprint = r->im->params->footprints ? on_footprint : NULL,
                        .road = roads_wanted(r->im->params) ? on_road : NULL,
                        .track = on_track,
+                       .water = roads_wanted(r->im->params) ? on_water : NULL,
                        .columns = on_columns,
                        .features = on_features,
                        .progress = on_progress,

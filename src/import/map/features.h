@@ -33,7 +33,8 @@ noc_status map_no_memory(const map_reading *m); /* reported */
 /* Fills b with the tags or columns of a feature. False: memory was refused. */
 bool map_collect_fields(OGRFeatureH feature, OGRFeatureDefnH defn, bool osm, tag_buffer *b);
 
-/* Hands on a feature that is a building or a road, where the sink wants such; *is: whether it is one. */
+/* Hands on a feature that is a building, a road or water, where the sink wants such; *is: whether it is one of the
+ * first two. */
 noc_status map_read_shape(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH defn, bool *is);
 /* The same of all lines and areas of a file of OpenStreetMap, from its beginning. */
 noc_status map_read_osm_shapes(map_reading *m);

@@ -167,3 +167,12 @@ bool road_read(const lamp_tag *tags, size_t count, geo_road *road) {
     road->speed = speed_of(value_of(tags, count, "maxspeed"));
     return true;
 }
+
+bool water_read(const lamp_tag *tags, size_t count) {
+    static const char *const ways[] = { "riverbank", "dock", "river", "canal", NULL };
+    static const char *const uses[] = { "basin", "reservoir", NULL };
+    const char *natural = value_of(tags, count, "natural");
+    bool water = (natural && !strcmp(natural, "water")) || is(value_of(tags, count, "waterway"), ways) ||
+                 is(value_of(tags, count, "landuse"), uses);
+    return water && !has(tags, count, "tunnel") && !has(tags, count, "covered") && !has(tags, count, "intermittent");
+}

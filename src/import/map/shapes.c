@@ -1,4 +1,4 @@
-/* Shapes of maps: areas that are buildings, lines that are roads. */
+/* Shapes of maps: areas that are buildings or water, lines that are roads. */
 #include "import/map/features.h"
 #include "import/map/outlines.h"
 #include "import/map/roads.h"
@@ -27,37 +27,57 @@ static bool add_ring(map_reading *m, OGRGeometryH ring) {
     return true;
 }
 
-static noc_status emit_polygon(map_reading *m, OGRGeometryH polygon, geo_footprint *footprint) {
+/* Into m->rings and m->xyz: no rings where it is none. */
+static noc_status take_polygon(map_reading *m, OGRGeometryH polygon) {
     int rings = OGR_G_GetGeometryCount(polygon);
     m->rings.len = m->xyz.len = 0;
     for (int i = 0; i < rings; i++) {
         if (!add_ring(m, OGR_G_GetGeometryRef(polygon, i)))
             return map_no_memory(m);
         if (!m->rings.len) {
-            geo_issue(m->writer.sink->issues, GEO_SKIPPED, "ring with too few points", footprint->id);
+            geo_issue(m->writer.sink->issues, GEO_SKIPPED, "ring with too few points", m->tags.id);
             return NOC_OK;
         }
     }
+    return NOC_OK;
+}
+
+/* Hands on a polygon of a building, or, where that is NULL, of water. */
+static noc_status emit_polygon(map_reading *m, OGRGeometryH polygon, geo_footprint *footprint) {
+    const geo_sink *sink = m->writer.sink;
+    noc_status status = take_polygon(m, polygon);
+    if (status || !m->rings.len)
+        return status;
+    const geo_polygon water = { NOC_CLASS_WATER, m->tags.id, m->rings.len, m->rings.data, m->xyz.data };
+    if (!footprint)
+        return sink->water(sink->ctx, &water);
     footprint->ring_count = m->rings.len;
     footprint->ring_size = m->rings.data;
     footprint->xyz = m->xyz.data;
-    return m->rings.len ? m->writer.sink->footprint(m->writer.sink->ctx, footprint) : NOC_OK;
+    return sink->footprint(sink->ctx, footprint);
 }
 
-static noc_status read_building(map_reading *m, OGRGeometryH g, OGRwkbGeometryType type, bool *is) {
+static noc_status emit_area(map_reading *m, OGRGeometryH g, OGRwkbGeometryType type, geo_footprint *footprint) {
+    noc_status status = NOC_OK;
+    if (type == wkbPolygon)
+        return emit_polygon(m, g, footprint);
+    for (int i = 0; i < OGR_G_GetGeometryCount(g) && !status; i++)
+        status = emit_polygon(m, OGR_G_GetGeometryRef(g, i), footprint);
+    return status;
+}
+
+static noc_status read_area(map_reading *m, OGRGeometryH g, OGRwkbGeometryType type, bool *is) {
+    const geo_sink *sink = m->writer.sink;
     int verdict = outline_verdict(m->tags.tags.data, m->tags.tags.len);
-    if (verdict == 0 || (verdict < 0 && !m->building_layer))
+    if (verdict < 0 && sink->water && water_read(m->tags.tags.data, m->tags.tags.len))
+        return emit_area(m, g, type, NULL);
+    if (!sink->footprint || verdict == 0 || (verdict < 0 && !m->building_layer))
         return NOC_OK;
     *is = true;
     geo_footprint footprint = { .id = m->tags.id };
     outline_read(m->tags.tags.data, m->tags.tags.len, &footprint);
     m->writer.footprints++;
-    noc_status status = NOC_OK;
-    if (type == wkbPolygon)
-        return emit_polygon(m, g, &footprint);
-    for (int i = 0; i < OGR_G_GetGeometryCount(g) && !status; i++)
-        status = emit_polygon(m, OGR_G_GetGeometryRef(g, i), &footprint);
-    return status;
+    return emit_area(m, g, type, &footprint);
 }
 
 /* ---- roads ---- */
@@ -112,15 +132,15 @@ noc_status map_read_shape(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH d
     bool area = type == wkbPolygon || type == wkbMultiPolygon,
          line = type == wkbLineString || type == wkbMultiLineString;
     *is = false;
-    if (!(area && m->writer.sink->footprint) && !(line && m->writer.sink->road))
-        return NOC_OK;
-    if (OGR_G_IsEmpty(g))
+    const geo_sink *sink = m->writer.sink;
+    bool wanted = (area && (sink->footprint || sink->water)) || (line && sink->road);
+    if (!wanted || OGR_G_IsEmpty(g))
         return NOC_OK;
     if (!map_collect_fields(feature, defn, false, &m->tags))
         return map_no_memory(m);
     m->lines = line;
     name_shape(m);
-    return area ? read_building(m, g, type, is) : read_road(m, g, type, is);
+    return area ? read_area(m, g, type, is) : read_road(m, g, type, is);
 }
 
 /* ---- OpenStreetMap ---- */
@@ -141,7 +161,7 @@ noc_status map_read_osm_shapes(map_reading *m) {
         map_source_open(&m->source, m->stream, m->format, m->params && m->params->allow_outside, sink->log);
     if (status)
         return status;
-    map_choose_layers(m, !sink->road ? "multipolygons" : sink->footprint ? "lines,multipolygons" : "lines");
+    map_choose_layers(m, sink->road ? "lines,multipolygons" : "multipolygons");
     OGRFeatureH feature;
     OGRLayerH layer;
     size_t n = 0;

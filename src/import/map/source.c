@@ -60,7 +60,7 @@ static CPLHTTPResult *refuse_fetch(const char *url, CSLConstList options, GDALPr
     return none;
 }
 
-static const char osm_config[] = "closed_ways_are_polygons=building\n"
+static const char osm_config[] = "closed_ways_are_polygons=building,natural,landuse,waterway\n"
                                  "attribute_name_laundering=no\n"
                                  "report_all_nodes=no\nreport_all_ways=no\n"
                                  "[points]\nosm_id=yes\nall_tags=yes\n"

@@ -22,7 +22,7 @@ static void emit(serving *s, uint32_t kind) {
         _exit(REMOTE_NO_MEMORY);
     bool waits = kind == REMOTE_LAMP || kind == REMOTE_MATERIAL || kind == REMOTE_ISSUE || kind == REMOTE_CRS ||
                  kind == REMOTE_OBJECT || kind == REMOTE_POLYGON || kind == REMOTE_OBJECT_END ||
-                 kind == REMOTE_FOOTPRINT || kind == REMOTE_ROAD;
+                 kind == REMOTE_FOOTPRINT || kind == REMOTE_ROAD || kind == REMOTE_WATER;
     if ((!waits || s->batch.bytes.len > BATCH) && !remote_send(REMOTE_FD, &s->batch))
         _exit(1); /* whoever asked is gone: so are we */
 }
@@ -91,6 +91,16 @@ static noc_status on_road(void *ctx, const geo_road *road) {
     remote_put_text(&s->out, road->name);
     remote_put(&s->out, road->xyz, road->point_count * 3 * sizeof(double));
     emit(s, REMOTE_ROAD);
+    return NOC_OK;
+}
+
+static noc_status on_water(void *ctx, const geo_polygon *area) {
+    serving *s = ctx;
+    uint64_t rings = area->ring_count;
+    remote_put(&s->out, &rings, sizeof(rings));
+    remote_put_text(&s->out, area->id);
+    put_rings(s, area->ring_count, area->ring_size, area->xyz);
+    emit(s, REMOTE_WATER);
     return NOC_OK;
 }
 
@@ -192,6 +202,7 @@ static void serve(serving *s) {
                       .lamp = on_lamp,
                       .footprint = s->asked.sink.footprints ? on_footprint : NULL,
                       .road = s->asked.sink.roads ? on_road : NULL,
+                      .water = s->asked.sink.roads ? on_water : NULL,
                       .progress = on_progress,
                       .columns = on_columns,
                       .features = on_features,

@@ -1,0 +1,210 @@
+/* Lamps along the roads of a map, from files to a scene: when there are some, and where. */
+#include "test.h"
+
+#include "import/load/load.h"
+#include "noc_config.h"
+#include <nocturne/nocturne.h>
+
+#include <math.h>
+
+#if NOC_HAVE_GDAL
+
+static char folder[] = "/tmp/noc-road-lamps-XXXXXX";
+static noc_log *log_;
+static noc_scene *scene;
+static noc_report *report;
+
+static const char *write_file(const char *name, const char *text) {
+    static char paths[4][300];
+    static int next;
+    char *path = paths[next++ % 4];
+    snprintf(path, sizeof(paths[0]), "%s/%s", folder, name);
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    fputs(text, f);
+    fclose(f);
+    return path;
+}
+
+static void forget(void) {
+    noc_report_destroy(report);
+    noc_scene_destroy(scene);
+    report = NULL;
+    scene = NULL;
+}
+
+static noc_import_params params_of(noc_switch infer, bool isolate) {
+    noc_import_params params = noc_import_default_params();
+    params.infer_lamps = infer;
+    params.windows = NOC_SWITCH_OFF;
+    params.isolate = isolate;
+    params.scene_crs = "EPSG:25832";
+    return params;
+}
+
+static void load_params(const noc_import_params *params, const char *a, const char *b) {
+    const char *paths[] = { a, b };
+    forget();
+    scene = noc_scene_create(log_);
+    if (noc_scene_load(scene, paths, b ? 2 : 1, params, &report))
+        fail_msg("%s", noc_log_last_error(log_));
+}
+
+/* Returns how many lamps are inferred. */
+static size_t load(noc_switch infer, const char *a, const char *b) {
+    const noc_import_params params = params_of(infer, false);
+    noc_report_totals totals;
+    noc_scene_info info;
+    load_params(&params, a, b);
+    noc_scene_get_info(scene, &info);
+    noc_report_get_totals(report, &totals);
+    assert_int_equal(totals.lamps_inferred, info.lights_inferred);
+    return totals.lamps_inferred;
+}
+
+/* Those whose easting and northing, less 690000 and 5330000, lie in the box. */
+static size_t within(double x0, double y0, double x1, double y1, bool inferred) {
+    size_t n = 0;
+    for (size_t i = 0; i < scene->lights.len; i++) {
+        noc_light_info light;
+        double xyz[3];
+        noc_scene_get_light(scene, i, &light);
+        memcpy(xyz, light.light.position, sizeof(xyz));
+        assert_int_equal(noc_scene_from_local(scene, NULL, xyz), NOC_OK);
+        double x = xyz[0] - 690000, y = xyz[1] - 5330000;
+        n += light.light.inferred == inferred && x >= x0 && x <= x1 && y >= y0 && y <= y1;
+    }
+    return n;
+}
+
+#define FEATURE(id, properties, geometry)                                                                              \
+    "{\"type\":\"Feature\",\"properties\":{\"@id\":\"" id "\"," properties "},\"geometry\":{" geometry "}}"
+#define LINE(id, properties, points) FEATURE(id, properties, "\"type\":\"LineString\",\"coordinates\":[" points "]")
+#define MAP(features)                                                                                                  \
+    "{\"type\":\"FeatureCollection\",\"crs\":{\"type\":\"name\",\"properties\":{\"name\":"                             \
+    "\"urn:ogc:def:crs:EPSG::25832\"}},\"features\":[" features "]}"
+#define LAMP(id, place) FEATURE(id, "\"highway\":\"street_lamp\"", "\"type\":\"Point\",\"coordinates\":" place)
+#define LIT(id) LINE(id, "\"highway\":\"residential\",\"lit\":\"yes\"", "[690000,5330000],[690240,5330000]")
+#define DARK(id) LINE(id, "\"highway\":\"residential\"", "[690000,5330100],[690240,5330100]")
+#define FAR_LAMP LAMP("node/1", "[690120,5330300]")
+#define NEAR_LAMP LAMP("node/2", "[690001,5330004]")
+
+/* Where no lamp is mapped: along what is lit. Where some are: only where that is asked for. */
+static void when(void **state) {
+    const char *plain = write_file("plain.json", MAP(LIT("way/1") "," DARK("way/2")));
+    const char *lamps = write_file("lamps.json", MAP(LIT("way/1") "," DARK("way/2") "," FAR_LAMP "," NEAR_LAMP));
+    assert_int_equal(load(NOC_SWITCH_AUTO, plain, NULL), 10);
+    assert_int_equal(within(-5, -10, 245, 10, true), 10);
+    assert_int_equal(load(NOC_SWITCH_ON, plain, NULL), 10);
+    assert_int_equal(load(NOC_SWITCH_OFF, plain, NULL), 0);
+    assert_int_equal(load(NOC_SWITCH_AUTO, lamps, NULL), 0);
+    assert_int_equal(load(NOC_SWITCH_ON, lamps, NULL), 9); /* one spacing from the mapped one there is none */
+    assert_int_equal(within(24, -10, 245, 10, true), 9);
+    assert_int_equal(within(-10, -10, 400, 400, false), 2);
+    noc_report_totals totals;
+    noc_report_get_totals(report, &totals);
+    assert_int_equal(totals.lamps_mapped, 2);
+}
+
+/* The helper tells the same, two files of one road hold one, and what other files hold changes nothing. */
+static void stable(void **state) {
+    const char *one = write_file("one.json", MAP(LIT("way/1")));
+    const char *two = write_file("two.json", MAP(DARK("way/2") "," LIT("way/1")));
+    noc_light_info light[2];
+    for (int i = 0; i < 2; i++) {
+        const noc_import_params params = params_of(NOC_SWITCH_AUTO, i);
+        load_params(&params, one, i ? two : NULL);
+        assert_int_equal(scene->lights_inferred, 10);
+        noc_scene_get_light(scene, 3, &light[i]);
+    }
+    assert_string_equal(light[1].light.name, scene->light_names.data[3]);
+    assert_true(!memcmp(light[0].light.position, light[1].light.position, sizeof(light[0].light.position)));
+}
+
+#define POND(id, tags)                                                                                                 \
+    FEATURE(id, tags,                                                                                                  \
+            "\"type\":\"Polygon\",\"coordinates\":[[[690100,5329900],[690200,5329900],[690200,5330090],"               \
+            "[690100,5330090],[690100,5329900]],[[690140,5329990],[690140,5330010],[690160,5330010],"                  \
+            "[690160,5329990],[690140,5329990]]]")
+
+/* Not over water, but on its island, and on a bridge. */
+static void water(void **state) {
+    const char *pond = write_file("pond.json", MAP(LIT("way/1") "," POND("way/3", "\"natural\":\"water\"")));
+    const char *land = write_file("land.json", MAP(LIT("way/1") "," POND("way/3", "\"natural\":\"wood\"")));
+    const char *bridge =
+        write_file("bridge.json",
+                   MAP(LINE("way/1", "\"highway\":\"residential\",\"lit\":\"yes\",\"bridge\":\"yes\"",
+                            "[690000,5330000],[690240,5330000]") "," POND("way/3", "\"waterway\":\"riverbank\"")));
+    for (int isolate = 0; isolate < 2; isolate++) {
+        const noc_import_params params = params_of(NOC_SWITCH_AUTO, isolate);
+        load_params(&params, pond, NULL);
+        assert_int_equal(within(100, -10, 200, 10, true), within(140, -10, 160, 10, true));
+        assert_int_equal(within(140, -10, 160, 10, true), 1);
+        assert_true(scene->lights_inferred >= 7);
+        load_params(&params, land, NULL);
+        assert_int_equal(within(100, -10, 200, 10, true), 4);
+        load_params(&params, bridge, NULL);
+        assert_int_equal(within(100, -10, 200, 10, true), 4);
+    }
+}
+
+static void box(void **state) {
+    const char *plain =
+        write_file("plain.json", MAP(LIT("way/1") "," LINE("way/9", "\"highway\":\"residential\",\"lit\":\"yes\"",
+                                                           "[691000,5330000],[691240,5330000]")));
+    noc_import_params params = params_of(NOC_SWITCH_AUTO, false);
+    params.bbox = "690100,5329900,690300,5330100";
+    load_params(&params, plain, NULL);
+    assert_int_equal(within(100, -100, 300, 100, true), scene->lights.len);
+    assert_int_equal(scene->lights.len, 6);
+}
+
+/* A lamp that is mapped looks across the road of the map. */
+static void facing(void **state) {
+    const char *map = write_file("facing.json", MAP(DARK("way/1") "," LAMP("node/5", "[690100,5330095.8]")));
+    load(NOC_SWITCH_AUTO, map, NULL);
+    assert_int_equal(scene->lights.len, 1);
+    assert_int_equal(within(99.9, 96.3, 100.1, 98, false), 1); /* its arm reaches north */
+}
+
+/* What is made up is an error, unless it is asked for. */
+static void strict(void **state) {
+    const char *paths[] = { write_file("plain.json", MAP(LIT("way/1"))) };
+    for (int asked = 0; asked < 2; asked++) {
+        noc_import_params params = params_of(asked ? NOC_SWITCH_ON : NOC_SWITCH_AUTO, false);
+        params.strict = true;
+        forget();
+        scene = noc_scene_create(log_);
+        assert_int_equal(noc_scene_load(scene, paths, 1, &params, &report), asked ? NOC_OK : NOC_ERR_FORMAT);
+    }
+}
+
+static int start(void **state) {
+    log_ = noc_log_create(&(noc_log_params){ .level = NOC_LOG_ERROR });
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int finish(void **state) {
+    forget();
+    noc_log_destroy(log_);
+    char command[100];
+    snprintf(command, sizeof(command), "rm -r %s", folder);
+    return system(command);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(when), cmocka_unit_test(stable), cmocka_unit_test(water),
+        cmocka_unit_test(box),  cmocka_unit_test(facing), cmocka_unit_test(strict),
+    };
+    return cmocka_run_group_tests_name("import/road_lamps", tests, start, finish);
+}
+
+#else
+
+int main(void) {
+    puts("1..0 # SKIP no GDAL");
+    return 0;
+}
+
+#endif
