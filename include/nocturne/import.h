@@ -186,8 +186,9 @@ typedef struct noc_report_column {
 /* Windows of a city's buildings, and their walls by what became of them. */
 typedef struct noc_window_counts {
     size_t windows;
-    size_t own; /* of them: of the models, not made */
-    size_t lit; /* of them, by lit_windows and hour of the load */
+    size_t own;                      /* of them: of the models, not made */
+    size_t lit;                      /* of them, by lit_windows and hour of the load */
+    size_t buildings[NOC_USE_COUNT]; /* whose walls were looked at */
     size_t walls[NOC_WALL_VERDICT_COUNT];
     double area[NOC_WALL_VERDICT_COUNT]; /* of those walls, m2 */
 } noc_window_counts;

@@ -199,6 +199,20 @@ typedef enum noc_window_kind {
     NOC_WINDOW_KIND_COUNT
 } noc_window_kind;
 
+/* What a building is for, as its file says. */
+typedef enum noc_building_use {
+    NOC_USE_UNKNOWN, /* not told: drawn by its size (docs/windows.md) */
+    NOC_USE_FLATS,
+    NOC_USE_MIXED,   /* flats over shops */
+    NOC_USE_OFFICES, /* and what is used like them: schools, authorities */
+    NOC_USE_SHOPS,   /* offices over them */
+    NOC_USE_DARK,    /* has windows, which are never lit: churches, factories, sports halls */
+    NOC_USE_BARE,    /* has none: garages, sheds, barns, works */
+    NOC_USE_COUNT
+} noc_building_use;
+
+NOC_API const char *noc_building_use_name(noc_building_use use); /* "not told", "flats", ... */
+
 /* What became of a wall of a building that windows were looked for in. */
 typedef enum noc_wall_verdict {
     NOC_WALL_UNSEEN, /* no wall, or windows were not asked for */
@@ -206,6 +220,7 @@ typedef enum noc_wall_verdict {
     NOC_WALL_SMALL,  /* too small, or no cell fits into it */
     NOC_WALL_TILTED,
     NOC_WALL_PARTY, /* another wall stands close before it, or the ground */
+    NOC_WALL_BARE,  /* of a building whose use has no windows */
     NOC_WALL_OWN,   /* of a building that comes with windows of its own */
     NOC_WALL_VERDICT_COUNT
 } noc_wall_verdict;

@@ -56,6 +56,19 @@ void cli_print_windows(const char *heading, const noc_window_counts *c) {
             before = ", ";
         }
     putchar('\n');
+    size_t told = 0;
+    for (int u = NOC_USE_UNKNOWN + 1; u < NOC_USE_COUNT; u++)
+        told += c->buildings[u];
+    before = "buildings by use: ";
+    for (int u = 0; told && u < NOC_USE_COUNT; u++)
+        if (c->buildings[u]) {
+            if (*before == 'b')
+                printf("%*s", (int)strlen(heading), "");
+            printf("%s%s %s", before, noc_text_count(a, c->buildings[u]), noc_building_use_name((noc_building_use)u));
+            before = ", ";
+        }
+    if (told)
+        putchar('\n');
     if (c->own)
         printf("%*s%s of them are the model's own\n", (int)strlen(heading), "", noc_text_count(a, c->own));
 }

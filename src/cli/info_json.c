@@ -121,8 +121,12 @@ static void windows(const noc_window_counts *w) {
     number("windows", (double)w->windows);
     number("windows_own", (double)w->own);
     number("windows_lit", (double)w->lit);
+    key("buildings_by_use");
+    for (int u = 0; u < NOC_USE_COUNT; u++)
+        printf("%s\"%s\": %zu", u ? ", " : "{", noc_building_use_name((noc_building_use)u), w->buildings[u]);
+    putchar('}');
     for (int v = NOC_WALL_TAKEN; v < NOC_WALL_VERDICT_COUNT; v++) {
-        static const char *const names[] = { "taken", "small", "tilted", "party", "own" };
+        static const char *const names[] = { "taken", "small", "tilted", "party", "bare", "own" };
         char name[40];
         snprintf(name, sizeof(name), "walls_%s", names[v - NOC_WALL_TAKEN]);
         number(name, (double)w->walls[v]);

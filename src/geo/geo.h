@@ -68,6 +68,7 @@ typedef struct geo_object {
     geo_kind kind;
     const char *id; /* gml:id, "" if none; valid during the call */
     int lod;        /* taken, -1 if not applicable */
+    noc_building_use use;
 } geo_object;
 
 /* Rings without the repeated last point. Coordinates in the file's CRS, easting northing height order. */
@@ -120,6 +121,7 @@ typedef struct geo_footprint {
     const size_t *ring_size;
     const double *xyz;
     double height, min_height, levels, min_level, roof_height;
+    noc_building_use use;
 } geo_footprint;
 
 /* What a line of a map is to those who drive and walk there. The value of highway; links are of the class that they

@@ -39,30 +39,19 @@ noc_status noc_check_aovs(const noc_render_params *p, noc_log *log) {
 
 /* What one expects on a map of land use: grey roads, green plants, blue water, brown earth, red roofs. */
 static const uint8_t class_colours[NOC_LABEL_COUNT][3] = {
-    [NOC_CLASS_OTHER] = { 232, 184, 240 },
-    [NOC_CLASS_WALL] = { 232, 201, 160 },
-    [NOC_CLASS_ROOF] = { 192, 57, 43 },
-    [NOC_CLASS_GROUND] = { 142, 90, 168 },
-    [NOC_CLASS_CLOSURE] = { 61, 43, 122 },
-    [NOC_CLASS_WINDOW] = { 127, 227, 245 },
-    [NOC_CLASS_DOOR] = { 230, 110, 0 },
-    [NOC_CLASS_INSTALLATION] = { 255, 143, 163 },
-    [NOC_CLASS_TERRAIN] = { 139, 107, 74 },
-    [NOC_CLASS_ROAD] = { 150, 150, 150 },
-    [NOC_CLASS_SIDEWALK] = { 205, 205, 205 },
-    [NOC_CLASS_GREEN] = { 111, 191, 74 },
-    [NOC_CLASS_TREE] = { 31, 122, 51 },
-    [NOC_CLASS_WATER] = { 47, 111, 208 },
-    [NOC_CLASS_BRIDGE] = { 63, 167, 155 },
-    [NOC_CLASS_FURNITURE] = { 200, 150, 0 },
-    [NOC_CLASS_LAMP] = { 255, 241, 77 },
-    [NOC_CLASS_VEHICLE] = { 255, 30, 150 },
+    [NOC_CLASS_OTHER] = { 232, 184, 240 },    [NOC_CLASS_WALL] = { 232, 201, 160 },
+    [NOC_CLASS_ROOF] = { 192, 57, 43 },       [NOC_CLASS_GROUND] = { 142, 90, 168 },
+    [NOC_CLASS_CLOSURE] = { 61, 43, 122 },    [NOC_CLASS_WINDOW] = { 127, 227, 245 },
+    [NOC_CLASS_DOOR] = { 230, 110, 0 },       [NOC_CLASS_INSTALLATION] = { 255, 143, 163 },
+    [NOC_CLASS_TERRAIN] = { 139, 107, 74 },   [NOC_CLASS_ROAD] = { 150, 150, 150 },
+    [NOC_CLASS_SIDEWALK] = { 205, 205, 205 }, [NOC_CLASS_GREEN] = { 111, 191, 74 },
+    [NOC_CLASS_TREE] = { 31, 122, 51 },       [NOC_CLASS_WATER] = { 47, 111, 208 },
+    [NOC_CLASS_BRIDGE] = { 63, 167, 155 },    [NOC_CLASS_FURNITURE] = { 200, 150, 0 },
+    [NOC_CLASS_LAMP] = { 255, 241, 77 },      [NOC_CLASS_VEHICLE] = { 255, 30, 150 },
 #define WALL(verdict) [NOC_CLASS_COUNT + NOC_WALL_##verdict - 1]
-    WALL(TAKEN) = { 245, 214, 110 },
-    WALL(SMALL) = { 178, 150, 122 },
-    WALL(TILTED) = { 214, 120, 84 },
-    WALL(PARTY) = { 122, 84, 74 },
-    WALL(OWN) = { 200, 226, 150 },
+    WALL(TAKEN) = { 245, 214, 110 },          WALL(SMALL) = { 178, 150, 122 },
+    WALL(TILTED) = { 214, 120, 84 },          WALL(PARTY) = { 122, 84, 74 },
+    WALL(BARE) = { 120, 120, 140 },           WALL(OWN) = { 200, 226, 150 },
 #undef WALL
 };
 

@@ -15,10 +15,19 @@ static const float hours[NOC_WINDOW_KIND_COUNT][24] = {
                           2.8f, 2.8f, 2.8f, 2.8f, 2.8f, 2.8f, 2.8f, 2.4f, 1.6f, 1,    .8f,  .7f },
 };
 
+const char *noc_building_use_name(noc_building_use use) {
+    static const char *const names[NOC_USE_COUNT] = {
+        "not told", "flats", "mixed", "offices", "shops", "dark", "bare"
+    };
+    return (unsigned)use < NOC_USE_COUNT ? names[use] : "unknown";
+}
+
 const char *noc_wall_verdict_name(noc_wall_verdict verdict) {
     static const char *const names[NOC_WALL_VERDICT_COUNT] = {
-        [NOC_WALL_UNSEEN] = "not looked at", [NOC_WALL_TAKEN] = "with windows", [NOC_WALL_SMALL] = "too small",
-        [NOC_WALL_TILTED] = "tilted",        [NOC_WALL_PARTY] = "party wall",   [NOC_WALL_OWN] = "with its own windows",
+        [NOC_WALL_UNSEEN] = "not looked at",     [NOC_WALL_TAKEN] = "with windows",
+        [NOC_WALL_SMALL] = "too small",          [NOC_WALL_TILTED] = "tilted",
+        [NOC_WALL_PARTY] = "party wall",         [NOC_WALL_BARE] = "of sheds and the like",
+        [NOC_WALL_OWN] = "with its own windows",
     };
     return (unsigned)verdict < NOC_WALL_VERDICT_COUNT ? names[verdict] : "unknown";
 }

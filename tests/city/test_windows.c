@@ -25,12 +25,43 @@ static void front(walls *w, double x0, double x1, double z0, double z1) {
     add(w, (double[]){ x0, 0 }, (double[]){ x1, 0 }, z0, z1, z1);
 }
 
+/* What the file says of the use decides, whatever the id. */
+static void test_uses(void **state) {
+    (void)state;
+    walls w = { .count = 0 };
+    front(&w, 0, 60, 100, 130); /* wide and high: half of such buildings are offices where nothing is told */
+    noc_window_params p = noc_window_default_params();
+    for (int i = 0; i < 40; i++) {
+        char id[16];
+        snprintf(id, sizeof(id), "b%d", i);
+        for (int use = NOC_USE_FLATS; use < NOC_USE_COUNT; use++) {
+            city_windows out = { 0 };
+            assert_int_equal(city_windows_make(id, (noc_building_use)use, w.t, w.count, &p, NULL, &out), NOC_OK);
+            size_t kinds[NOC_WINDOW_KIND_COUNT] = { 0 }, never = 0;
+            for (size_t k = 0; k < out.list.len; k++) {
+                kinds[out.list.data[k].kind]++;
+                never += out.list.data[k].level >= 1;
+            }
+            bool office = use == NOC_USE_OFFICES || use == NOC_USE_SHOPS;
+            assert_int_equal(out.verdicts.data[0], use == NOC_USE_BARE ? NOC_WALL_BARE : NOC_WALL_TAKEN);
+            assert_int_equal(kinds[NOC_WINDOW_OFFICE] > 0, office);
+            assert_int_equal(kinds[NOC_WINDOW_FLAT] > 0, !office && use != NOC_USE_BARE);
+            assert_int_equal(never, use == NOC_USE_DARK ? out.list.len : 0);
+            if (use == NOC_USE_SHOPS || use == NOC_USE_MIXED)
+                assert_true(kinds[NOC_WINDOW_SHOP] > 0);
+            else if (use != NOC_USE_OFFICES)
+                assert_int_equal(kinds[NOC_WINDOW_SHOP], 0);
+            city_windows_free(&out);
+        }
+    }
+}
+
 /* Neither shops nor offices: they have rules of their own. */
 static const char *home(double height, double width) {
     static char id[16];
     for (int i = 0;; i++) {
         snprintf(id, sizeof(id), "home%d", i);
-        building_use use = city_building_use(id, height, width);
+        building_use use = city_building_use(id, NOC_USE_UNKNOWN, height, width);
         if (!use.shops && !use.offices)
             return id;
     }
@@ -38,7 +69,7 @@ static const char *home(double height, double width) {
 
 static city_windows make_as(const char *id, const walls *w, const noc_window_params *p, const city_cover *cover) {
     city_windows out = { 0 };
-    assert_int_equal(city_windows_make(id, w->t, w->count, p, cover, &out), NOC_OK);
+    assert_int_equal(city_windows_make(id, NOC_USE_UNKNOWN, w->t, w->count, p, cover, &out), NOC_OK);
     assert_int_equal(out.verdicts.len, w->count);
     return out;
 }
@@ -363,7 +394,8 @@ static void test_no_memory(void **state) {
     for (uint64_t n = 1; !done; n++) {
         city_windows out = { 0 };
         noc_refuse_allocation(n, false);
-        noc_status status = city_windows_make("b", w.t, w.count, &noc_window_default_params(), NULL, &out);
+        noc_status status =
+            city_windows_make("b", NOC_USE_UNKNOWN, w.t, w.count, &noc_window_default_params(), NULL, &out);
         done = noc_allocations() < n;
         noc_refuse_allocation(0, false);
         assert_int_equal(status, done ? NOC_OK : NOC_ERR_MEMORY);
@@ -373,10 +405,10 @@ static void test_no_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_grid),      cmocka_unit_test(test_pieces), cmocka_unit_test(test_doubles),
-        cmocka_unit_test(test_shapes),    cmocka_unit_test(test_curved), cmocka_unit_test(test_party),
-        cmocka_unit_test(test_inside),    cmocka_unit_test(test_order),  cmocka_unit_test(test_levels),
-        cmocka_unit_test(test_no_memory),
+        cmocka_unit_test(test_grid),   cmocka_unit_test(test_pieces),    cmocka_unit_test(test_doubles),
+        cmocka_unit_test(test_shapes), cmocka_unit_test(test_curved),    cmocka_unit_test(test_party),
+        cmocka_unit_test(test_uses),   cmocka_unit_test(test_inside),    cmocka_unit_test(test_order),
+        cmocka_unit_test(test_levels), cmocka_unit_test(test_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

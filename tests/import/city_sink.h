@@ -18,6 +18,7 @@ typedef struct seen_object {
     char *id;
     int lod;
     size_t polygons;
+    noc_building_use use;
 } seen_object;
 
 typedef struct city_sink {
@@ -51,7 +52,8 @@ static noc_status city_begin(void *ctx, const geo_object *object) {
     city_sink *s = ctx;
     assert_false(s->in_object);
     s->in_object = true;
-    assert_true(array_push(&s->objects, (seen_object){ object->kind, noc_strdup(object->id), object->lod, 0 }));
+    assert_true(
+        array_push(&s->objects, (seen_object){ object->kind, noc_strdup(object->id), object->lod, 0, object->use }));
     return city_count(s);
 }
 

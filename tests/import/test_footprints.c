@@ -227,6 +227,38 @@ static void test_units(void **state) {
     }
 }
 
+/* What the tags say of the use reaches the windows, by the helper and without it. */
+static void test_use(void **state) {
+    static const char *const tags[] = { "\"building\":\"garage\"", "\"building\":\"apartments\"",
+                                        "\"building\":\"yes\",\"amenity\":\"place_of_worship\"",
+                                        "\"building\":\"yes\"" };
+    char text[4000];
+    size_t n = (size_t)snprintf(text, sizeof(text), "{\"type\":\"FeatureCollection\",\"features\":[");
+    for (size_t i = 0; i < NOC_COUNT(tags); i++)
+        n += (size_t)snprintf(text + n, sizeof(text) - n,
+                              "%s{\"type\":\"Feature\",\"properties\":{%s},\"geometry\":{\"type\":\"Polygon\","
+                              "\"coordinates\":[[[%.4f,48.1],[%.4f,48.1],[%.4f,48.1003],[%.4f,48.1]]]}}",
+                              i ? "," : "", tags[i], 11.5 + .001 * (double)i, 11.5005 + .001 * (double)i,
+                              11.5005 + .001 * (double)i, 11.5 + .001 * (double)i);
+    snprintf(text + n, sizeof(text) - n, "]}");
+    const char *path = write_file("uses.geojson", text);
+    for (int isolate = 0; isolate < 2; isolate++) {
+        noc_import_params params = noc_import_default_params();
+        params.infer_lamps = NOC_SWITCH_OFF;
+        params.footprints = true;
+        params.isolate = isolate;
+        forget();
+        scene = noc_scene_create(log_);
+        assert_int_equal(noc_scene_load(scene, &path, 1, &params, &report), NOC_OK);
+        const noc_window_counts *c = &noc_report_get_file(report, 0)->windows;
+        static const noc_building_use uses[] = { NOC_USE_BARE, NOC_USE_FLATS, NOC_USE_DARK, NOC_USE_UNKNOWN };
+        for (size_t i = 0; i < NOC_COUNT(uses); i++)
+            assert_int_equal(c->buildings[uses[i]], 1);
+        assert_int_equal(c->walls[NOC_WALL_BARE], 3);
+        assert_true(c->walls[NOC_WALL_TAKEN] == 9 && c->windows > 50);
+    }
+}
+
 static void test_osm(void **state) {
     static const char osm[] =
         "<?xml version='1.0'?><osm version='0.6'>"
@@ -274,6 +306,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_blocks), cmocka_unit_test(test_facing), cmocka_unit_test(test_model_and_terrain),
         cmocka_unit_test(test_layer),  cmocka_unit_test(test_osm),    cmocka_unit_test(test_units),
+        cmocka_unit_test(test_use),
     };
     return cmocka_run_group_tests_name("import/footprints", tests, start, finish);
 #else

@@ -130,15 +130,15 @@ static city_window shine_of(const glass *box, const double lo[3], const building
     w.hash = use->hash;
     for (int k = 0; k < 3; k++)
         w.hash = city_window_hash(w.hash, city_window_step(box->lo[k] - lo[k]));
-    city_window_shine(&w, city_window_hash(use->hash, (uint64_t)w.storey), w.hash, params);
+    city_window_shine(&w, use, city_window_hash(use->hash, (uint64_t)w.storey), w.hash, params);
     return w;
 }
 
-static bool find(const char *id, const wall_facets *panes, const wall_facets *walls, const city_cover *bodies,
-                 const noc_window_params *params, city_own_windows *out) {
+static bool find(const char *id, noc_building_use told, const wall_facets *panes, const wall_facets *walls,
+                 const city_cover *bodies, const noc_window_params *params, city_own_windows *out) {
     size_t count = 0;
     building_box b = building_box_of(walls->pieces.len ? walls : panes);
-    building_use use = city_building_use(id, b.hi[2] - b.lo[2], b.width);
+    building_use use = city_building_use(id, told, b.hi[2] - b.lo[2], b.width);
     glass *g = noc_alloc(NOC_MAX(2 * panes->facets.len, 1u) * sizeof(*g));
     if (!g)
         return false;
@@ -166,8 +166,9 @@ static bool find(const char *id, const wall_facets *panes, const wall_facets *wa
     return ok;
 }
 
-noc_status city_own_windows_find(const char *id, const wall_triangle *panes, size_t count, const wall_triangle *walls,
-                                 size_t wall_count, const noc_window_params *params, city_own_windows *out) {
+noc_status city_own_windows_find(const char *id, noc_building_use told, const wall_triangle *panes, size_t count,
+                                 const wall_triangle *walls, size_t wall_count, const noc_window_params *params,
+                                 city_own_windows *out) {
     wall_facets f = { 0 }, w = { 0 };
     city_cover *bodies = NULL;
     out->panes.len = out->triangles.len = 0;
@@ -175,7 +176,7 @@ noc_status city_own_windows_find(const char *id, const wall_triangle *panes, siz
     for (size_t i = 0; xyz && i < 9 * count; i++)
         xyz[i] = (float)panes[i / 9].p[i % 9 / 3][i % 3];
     bool ok = xyz && (bodies = city_cover_create(xyz, count, NULL)) && wall_facets_find(panes, count, &f) &&
-              wall_facets_find(walls, wall_count, &w) && find(id, &f, &w, bodies, params, out);
+              wall_facets_find(walls, wall_count, &w) && find(id, told, &f, &w, bodies, params, out);
     free(xyz);
     city_cover_destroy(bodies);
     wall_facets_free(&f);

@@ -36,7 +36,7 @@ double city_window_number(uint64_t hash, uint64_t salt) {
     return (double)(city_window_hash(hash, salt) >> 11) * 0x1p-53;
 }
 
-building_use city_building_use(const char *id, double height, double width) {
+building_use city_building_use(const char *id, noc_building_use told, double height, double width) {
     building_use use = { .hash = 14695981039346656037u };
     for (; *id; id++)
         use.hash = (use.hash ^ (unsigned char)*id) * 1099511628211u;
@@ -44,17 +44,25 @@ building_use city_building_use(const char *id, double height, double width) {
     double offices = height >= HIGH ? OFFICES_HIGH : width >= WIDE ? OFFICES_WIDE : OFFICES_ELSE;
     use.offices = city_window_number(use.hash, 1) < offices;
     use.shops = height >= SHOPS_FROM && city_window_number(use.hash, 2) < SHOPS;
+    if (told != NOC_USE_UNKNOWN) {
+        use.shops = told == NOC_USE_SHOPS || (told == NOC_USE_MIXED && height >= SHOPS_FROM) ||
+                    (told == NOC_USE_OFFICES && use.shops);
+        use.offices = told == NOC_USE_OFFICES || told == NOC_USE_SHOPS;
+        use.dark = told == NOC_USE_DARK;
+        use.bare = told == NOC_USE_BARE;
+    }
     return use;
 }
 
-void city_window_shine(city_window *w, uint64_t floor, uint64_t pair, const noc_window_params *params) {
+void city_window_shine(city_window *w, const building_use *use, uint64_t floor, uint64_t pair,
+                       const noc_window_params *params) {
     uint64_t own = city_window_hash(w->hash, params->seed), shared = own;
     if (w->kind == NOC_WINDOW_OFFICE && city_window_number(own, 1) < WITH_STOREY)
         shared = city_window_hash(floor, params->seed);
     else if (w->kind != NOC_WINDOW_OFFICE &&
              city_window_number(city_window_hash(pair, params->seed), 1) < WITH_NEIGHBOUR)
         shared = city_window_hash(pair, params->seed);
-    w->level = (float)city_window_number(shared, 2);
+    w->level = use->dark ? 1 : (float)city_window_number(shared, 2); /* no share is above 1 */
     double v = city_window_number(shared, 3), kelvin = params->kelvin, brightness = 1, spread = params->spread;
     bool screen = w->kind == NOC_WINDOW_FLAT && v < SCREENS;
     double level = levels[(int)(city_window_number(shared, 4) * LEVELS)];

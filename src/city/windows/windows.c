@@ -37,7 +37,7 @@ static void give_light(city_window *w, const building_box *b, const building_use
     uint64_t pair = city_window_hash(storey, city_window_step(d));
     pair = city_window_hash(pair, (uint64_t)(int64_t)floor(8 * atan2(n[1], n[0]) + 0.37));
     pair = city_window_hash(pair, (uint64_t)(w->column / 2));
-    city_window_shine(w, storey, pair, params);
+    city_window_shine(w, use, storey, pair, params);
 }
 
 /* Takes the windows from `first` on that another wall hides away; returns how many. */
@@ -58,7 +58,9 @@ static bool add_facade(const wall_facets *f, const strip *s, const building_box 
     size_t first = out->list.len, hidden = 0;
     for (size_t i = 0; i < s->count; i++)
         facade.area += f->facets.data[s->parts[i].facet].area;
-    if (fabs(front->plane.n[2]) > sin(params->tilt * M_PI / 180)) {
+    if (use->bare) {
+        facade.verdict = NOC_WALL_BARE;
+    } else if (fabs(front->plane.n[2]) > sin(params->tilt * M_PI / 180)) {
         facade.verdict = NOC_WALL_TILTED;
     } else if (facade.area >= params->min_area) {
         if (!wall_cells_find(f, s, params, use, b->lo[2], &out->list))
@@ -79,8 +81,8 @@ static bool add_facade(const wall_facets *f, const strip *s, const building_box 
     return array_push(&out->facades, facade);
 }
 
-noc_status city_windows_make(const char *id, const wall_triangle *walls, size_t count, const noc_window_params *params,
-                             const city_cover *cover, city_windows *out) {
+noc_status city_windows_make(const char *id, noc_building_use told, const wall_triangle *walls, size_t count,
+                             const noc_window_params *params, const city_cover *cover, city_windows *out) {
     wall_facets f = { 0 };
     wall_strips strips = { 0 };
     out->list.len = out->facades.len = out->verdicts.len = 0;
@@ -90,7 +92,7 @@ noc_status city_windows_make(const char *id, const wall_triangle *walls, size_t 
         memset(out->verdicts.data, NOC_WALL_SMALL, count);
     out->verdicts.len = ok ? count : 0;
     building_box b = building_box_of(&f);
-    building_use use = city_building_use(id, b.hi[2] - b.lo[2], b.width);
+    building_use use = city_building_use(id, told, b.hi[2] - b.lo[2], b.width);
     for (size_t i = 0; ok && i + 1 < strips.first.len; i++) {
         strip s = wall_strip_get(&f, &strips, i);
         ok = add_facade(&f, &s, &b, &use, params, cover, out);

@@ -65,8 +65,8 @@ bool city_cover_meets(const city_cover *cover, const double o[3], const double d
 
 /* The windows of a building. What is in `out` is replaced; zeroed it is empty. The result does not depend on the order
  * of the triangles. NOC_ERR_MEMORY, not reported: memory was refused. */
-noc_status city_windows_make(const char *id, const wall_triangle *walls, size_t count, const noc_window_params *params,
-                             const city_cover *cover, city_windows *out);
+noc_status city_windows_make(const char *id, noc_building_use told, const wall_triangle *walls, size_t count,
+                             const noc_window_params *params, const city_cover *cover, city_windows *out);
 void city_windows_free(city_windows *w);
 
 /* Windows that a model has itself (own.c). A pane is a light of its window: a rectangle, or a triangle. */
@@ -84,8 +84,9 @@ typedef struct city_own_windows {
 
 /* Panes among the surfaces of a building's windows that are seen from outside; frames, reveals and backs are none.
  * What is in `out` is replaced; zeroed it is empty. NOC_ERR_MEMORY, not reported: memory was refused. */
-noc_status city_own_windows_find(const char *id, const wall_triangle *panes, size_t count, const wall_triangle *walls,
-                                 size_t wall_count, const noc_window_params *params, city_own_windows *out);
+noc_status city_own_windows_find(const char *id, noc_building_use told, const wall_triangle *panes, size_t count,
+                                 const wall_triangle *walls, size_t wall_count, const noc_window_params *params,
+                                 city_own_windows *out);
 void city_own_windows_free(city_own_windows *w);
 
 /* ---- shine.c ---- */
@@ -93,10 +94,12 @@ void city_own_windows_free(city_own_windows *w);
 typedef struct building_use {
     bool shops;   /* at street level */
     bool offices; /* above */
+    bool dark;    /* no window is ever lit */
+    bool bare;    /* there are none */
     uint64_t hash;
 } building_use;
-/* height, m, and width of its widest facade, m */
-building_use city_building_use(const char *id, double height, double width);
+/* told: what its file says; height, m, and width of its widest facade, m */
+building_use city_building_use(const char *id, noc_building_use told, double height, double width);
 uint64_t city_window_hash(uint64_t a, uint64_t b);
 /* In which step a length along a building lies, for hashes. */
 uint64_t city_window_step(double length);
@@ -104,6 +107,7 @@ uint64_t city_window_step(double length);
 double city_window_number(uint64_t hash, uint64_t salt);
 /* Level and emission of a window by its kind and hash. floor: a number that the windows of its storey share; pair: one
  * that its neighbour may share. */
-void city_window_shine(city_window *w, uint64_t floor, uint64_t pair, const noc_window_params *params);
+void city_window_shine(city_window *w, const building_use *use, uint64_t floor, uint64_t pair,
+                       const noc_window_params *params);
 
 #endif

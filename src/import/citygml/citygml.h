@@ -172,6 +172,8 @@ typedef struct cg_object {
     bool has_point;  /* a geometry that is a point: the first */
     double point[3]; /* in the file's tuple order; height NaN in two dimensions */
     uint32_t point_srs;
+    noc_building_use use; /* of a building, by what tells it best: use_rank, 0 where nothing does */
+    int use_rank;
     bool other_function;            /* a code of the standard's list says that it is something other than a lamp */
     NOC_ARRAY(cg_feature) features; /* the first is the object itself */
     NOC_ARRAY(cg_geometry) geometries;

@@ -150,7 +150,10 @@ static noc_status hand_over(block *b) {
 }
 
 static noc_status stand(importer *im, const pending_footprint *p, double ground) {
-    block b = { .im = im, .in = &im->inputs[p->input], .f = &p->footprint, .now = { .kind = GEO_BUILDING } };
+    block b = { .im = im,
+                .in = &im->inputs[p->input],
+                .f = &p->footprint,
+                .now = { .kind = GEO_BUILDING, .use = p->footprint.use } };
     double from, to;
     heights_of(im, b.f, &from, &to);
     if (to - from < 0.5) {

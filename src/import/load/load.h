@@ -80,6 +80,7 @@ typedef struct object_now {
     uint64_t shape; /* of its corners and their classes, in any order */
     double lo[3], hi[3];
     size_t polygons, by_class[NOC_CLASS_COUNT]; /* that wait to be counted */
+    noc_building_use use;
 } object_now;
 
 typedef struct object_record {
@@ -117,6 +118,7 @@ typedef struct pending_track {
 typedef struct taken_building {
     uint32_t first, end;
     size_t input;
+    noc_building_use use;
 } taken_building;
 
 typedef struct importer {

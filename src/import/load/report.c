@@ -36,6 +36,8 @@ static void add_windows(noc_window_counts *to, const noc_window_counts *from) {
     to->windows += from->windows;
     to->own += from->own;
     to->lit += from->lit;
+    for (int u = 0; u < NOC_USE_COUNT; u++)
+        to->buildings[u] += from->buildings[u];
     for (int v = 0; v < NOC_WALL_VERDICT_COUNT; v++) {
         to->walls[v] += from->walls[v];
         to->area[v] += from->area[v];

@@ -80,6 +80,7 @@ static noc_status on_begin_object(void *ctx, const geo_object *object) {
     if (!status && !r->object_id)
         status = noc_no_memory(r->log, r->in->path);
     r->now.kind = object->kind;
+    r->now.use = object->use;
     r->object_lod = object->lod;
     file->objects++;
     if (object->kind == GEO_BUILDING) {

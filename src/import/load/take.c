@@ -122,7 +122,7 @@ static noc_status take_object(importer *im, input *in, const load_part *part) {
         return noc_no_memory(im->log, in->path);
     if (now->kind == GEO_BUILDING && im->object_mesh < im->scene->meshes.len && im->params->windows != NOC_SWITCH_OFF &&
         !array_push(&im->buildings, (taken_building){ (uint32_t)im->object_mesh, (uint32_t)im->scene->meshes.len,
-                                                      (size_t)(in - im->inputs) }))
+                                                      (size_t)(in - im->inputs), now->use }))
         return noc_no_memory(im->log, in->path);
     in->object_decided = in->object_repeated = false;
     return NOC_OK;

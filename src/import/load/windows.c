@@ -222,11 +222,11 @@ static const char *id_of(const importer *im, const taken_building *b) {
 }
 
 /* Those of a mesh of the building itself. false: memory was refused. */
-static bool find_own(const maker *m, scratch *at, size_t mesh, const char *id, found_building *found) {
+static bool find_own(const maker *m, scratch *at, size_t mesh, const taken_building *b, found_building *found) {
     if (!gather(m, mesh, mesh + 1, NOC_CLASS_WINDOW, &at->panes) || !array_push(&found->meshes, (own_mesh){ mesh }))
         return false;
-    return city_own_windows_find(id, at->panes.data, at->panes.len, at->walls.data, at->walls.len, m->params,
-                                 &found->meshes.data[found->meshes.len - 1].windows) == NOC_OK;
+    return city_own_windows_find(id_of(m->im, b), b->use, at->panes.data, at->panes.len, at->walls.data, at->walls.len,
+                                 m->params, &found->meshes.data[found->meshes.len - 1].windows) == NOC_OK;
 }
 
 /* On any thread: it reads the scene, and writes what is its own. */
@@ -235,14 +235,13 @@ static void find_building(void *ctx, size_t item, int worker) {
     const taken_building *b = &m->im->buildings.data[m->first + item];
     found_building *found = &m->found[item];
     scratch *at = &m->scratch[worker];
-    const char *id = id_of(m->im, b);
     bool ok = gather(m, b->first, b->end, wall_class(m->im, b), &at->walls);
     found->own = has_class(m->im, b, NOC_CLASS_WINDOW);
     for (size_t i = b->first; ok && found->own && i < b->end; i++)
-        ok = class_of(m->im->scene, i) != NOC_CLASS_WINDOW || find_own(m, at, i, id, found);
+        ok = class_of(m->im->scene, i) != NOC_CLASS_WINDOW || find_own(m, at, i, b, found);
     /* walls of a building that has its own windows are counted, and no more */
-    ok = ok &&
-         !city_windows_make(id, at->walls.data, at->walls.len, m->params, found->own ? NULL : m->cover, &found->made);
+    ok = ok && !city_windows_make(id_of(m->im, b), b->use, at->walls.data, at->walls.len, m->params,
+                                  found->own ? NULL : m->cover, &found->made);
     found->no_memory = !ok;
 }
 
@@ -253,6 +252,7 @@ static noc_status take_building(maker *m, const taken_building *b, found_buildin
         status = take_own(m, &found->meshes.data[i], counts);
     if (status)
         return status;
+    counts->buildings[b->use]++;
     count_walls(m, found, counts);
     keep_verdicts(m, b, found);
     return found->own || !found->made.list.len ? NOC_OK : add_mesh(m, id_of(m->im, b), &found->made.list);

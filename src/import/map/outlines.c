@@ -1,4 +1,5 @@
 #include "import/map/outlines.h"
+#include "import/use.h"
 
 #include <math.h>
 
@@ -42,6 +43,21 @@ static void read_one(const lamp_tag *tag, int what, double *out) {
         *out = value;
 }
 
+/* What the first of the keys that tell it says. */
+static noc_building_use use_of(const lamp_tag *tags, size_t count) {
+    static const char *const keys[] = { "building", "buildinguse", "use",          "usage",
+                                        "function", "nutzung",     "gebruiksdoel", "amenity" };
+    noc_building_use use = NOC_USE_UNKNOWN;
+    for (size_t k = 0; k < NOC_COUNT(keys) && use == NOC_USE_UNKNOWN; k++)
+        for (size_t i = 0; i < count && use == NOC_USE_UNKNOWN; i++) {
+            char folded[64];
+            lamp_fold(tags[i].key, false, folded, sizeof(folded));
+            if (!strcmp(folded, keys[k]))
+                use = building_use_told(keys[k], tags[i].value);
+        }
+    return use;
+}
+
 void outline_read(const lamp_tag *tags, size_t count, geo_footprint *footprint) {
     static const char *const keys[KEYS][8] = {
         [WHOLE] = { "height", "buildingheight", "measuredheight", "estheight", "hoehe", "hauteur", "altura",
@@ -65,4 +81,5 @@ void outline_read(const lamp_tag *tags, size_t count, geo_footprint *footprint) 
     footprint->levels = value[LEVELS];
     footprint->min_level = value[FROM_LEVEL];
     footprint->roof_height = value[ROOF];
+    footprint->use = use_of(tags, count);
 }

@@ -8,7 +8,7 @@
 int outline_verdict(const lamp_tag *tags, size_t count);
 /* Does the name of a layer say that it holds buildings ("buildings", "Gebaeude", "bati", ...)? */
 bool outline_layer(const char *name);
-/* Fills heights: what the tags tell of them, NaN where they do not. */
+/* Fills heights, NaN where the tags do not tell them, and the use. */
 void outline_read(const lamp_tag *tags, size_t count, geo_footprint *footprint);
 
 #endif

@@ -59,6 +59,7 @@ typedef struct remote_object {
 typedef struct remote_footprint {
     uint64_t rings;
     double height, min_height, levels, min_level, roof_height;
+    uint64_t use;
 } remote_footprint;
 typedef struct remote_mesh {
     uint64_t vertices, triangles;

@@ -76,7 +76,7 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
 
 static noc_status on_footprint(void *ctx, const geo_footprint *f) {
     serving *s = ctx;
-    remote_footprint r = { f->ring_count, f->height, f->min_height, f->levels, f->min_level, f->roof_height };
+    remote_footprint r = { f->ring_count, f->height, f->min_height, f->levels, f->min_level, f->roof_height, f->use };
     remote_put(&s->out, &r, sizeof(r));
     remote_put_text(&s->out, f->id);
     put_rings(s, f->ring_count, f->ring_size, f->xyz);

@@ -101,11 +101,13 @@ static noc_status take_footprint(remote_taker *t, remote_record *one) {
     const char *id = remote_get_text(one);
     const double most = 1000; /* m, storeys; or NaN */
     if (one->bad || t->in_object || t->parts || !t->sink->footprint || f.height > most || f.min_height < 0 ||
-        f.levels > most || f.min_level < 0 || f.roof_height > most)
+        f.levels > most || f.min_level < 0 || f.roof_height > most || f.use >= NOC_USE_COUNT)
         return garbled(t);
     noc_status status = take_rings(t, one, f.rings);
-    const geo_footprint footprint = { id,           t->rings.len, t->rings.data, t->xyz.data,  f.height,
-                                      f.min_height, f.levels,     f.min_level,   f.roof_height };
+    const geo_footprint footprint = {
+        id,           t->rings.len, t->rings.data, t->xyz.data,   f.height,
+        f.min_height, f.levels,     f.min_level,   f.roof_height, (noc_building_use)f.use
+    };
     return status ? status : t->sink->footprint(t->sink->ctx, &footprint);
 }
 
