@@ -10,12 +10,13 @@ arrows='
 base:
 core:
 photometry:
-scene: core photometry
+noct:
+scene: core photometry noct
 geo: scene
 image:
 light: scene core
 city: geo scene
-import: geo city scene
+import: geo city scene noct
 render: light scene image core
 backend: render light scene core
 lab:

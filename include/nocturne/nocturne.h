@@ -2,6 +2,7 @@
 #ifndef NOCTURNE_NOCTURNE_H
 #define NOCTURNE_NOCTURNE_H
 
+#include <nocturne/built.h>
 #include <nocturne/image.h>
 #include <nocturne/import.h>
 #include <nocturne/lab.h>

@@ -65,12 +65,13 @@ typedef struct noc_recipe_info {
     noc_preset preset; /* what the recipe's options stand on */
 } noc_recipe_info;
 
-/* Is the file a recipe? By its content; false where it cannot be read. */
+/* Is the file a recipe, or a built city (nocturne/built.h), which holds one? By its content; false where it cannot be
+ * read. */
 NOC_API bool noc_recipe_is(const char *path);
 
-/* Reads a recipe. Its inputs are not opened. The first thing that is wrong with it is reported with file, line and key.
- * NOC_ERR_IO, NOC_ERR_FORMAT, NOC_ERR_ARGUMENT for a value that cannot be, NOC_ERR_MEMORY. *recipe is NULL then, else
- * the caller's to destroy. */
+/* Reads a recipe. Its inputs are not opened; a built city's is itself. The first thing that is wrong with it is
+ * reported with file, line and key. NOC_ERR_IO, NOC_ERR_FORMAT, NOC_ERR_ARGUMENT for a value that cannot be,
+ * NOC_ERR_MEMORY. *recipe is NULL then, else the caller's to destroy. */
 NOC_API noc_status noc_recipe_load(const char *path, noc_log *log, noc_recipe **recipe);
 NOC_API void noc_recipe_destroy(noc_recipe *recipe); /* NULL is allowed */
 

@@ -40,25 +40,37 @@ void *noc_alloc_large(size_t count, size_t size) NOC_MUST_USE;
  * pointer, which is as it was when memory is refused. */
 bool noc_resize_large(void *array, size_t have, size_t count, size_t size) NOC_MUST_USE;
 
+/* Whole pages, zeroed and writable, which cost nothing before they are touched; NULL where they are refused. */
+void *noc_alloc_pages(size_t size) NOC_MUST_USE;
+void noc_free_pages(void *pages, size_t size); /* NULL is nothing */
+
 /* Growable array: NOC_ARRAY(float) a = { 0 }; if (!array_push(&a, 1.f)) ...; array_free(&a). False, and the array is as
- * it was, when memory is refused. */
+ * it was, when memory is refused.
+ *
+ * One with data and a cap of 0 borrows what it has: its items may be written, and as it grows it gets memory of its own
+ * (array_borrow). */
 #define NOC_ARRAY(T)                                                                                                   \
     struct {                                                                                                           \
         T *data;                                                                                                       \
         size_t len, cap;                                                                                               \
     }
 #define array_reserve(a, n)                                                                                            \
-    noc_must_use((n) <= (a)->cap || noc_array_grow(&(a)->data, &(a)->cap, (n), sizeof(*(a)->data)))
+    noc_must_use((n) <= ((a)->cap || !(a)->data ? (a)->cap : (a)->len) ||                                              \
+                 noc_array_grow(&(a)->data, (a)->len, &(a)->cap, (n), sizeof(*(a)->data)))
 #define array_push(a, ...)                                                                                             \
-    noc_must_use(((a)->len < (a)->cap || noc_array_grow(&(a)->data, &(a)->cap, (a)->len + 1, sizeof(*(a)->data))) &&   \
-                 ((a)->data[(a)->len++] = (__VA_ARGS__), true))
+    noc_must_use(                                                                                                      \
+        ((a)->len < (a)->cap || noc_array_grow(&(a)->data, (a)->len, &(a)->cap, (a)->len + 1, sizeof(*(a)->data))) &&  \
+        ((a)->data[(a)->len++] = (__VA_ARGS__), true))
 #define array_append(a, src, n)                                                                                        \
     noc_must_use(                                                                                                      \
-        ((n) <= (a)->cap - (a)->len || noc_array_grow(&(a)->data, &(a)->cap, (a)->len + (n), sizeof(*(a)->data))) &&   \
+        (((a)->len <= (a)->cap && (n) <= (a)->cap - (a)->len) ||                                                       \
+         noc_array_grow(&(a)->data, (a)->len, &(a)->cap, (a)->len + (n), sizeof(*(a)->data))) &&                       \
         ((n) ? (void)memcpy((a)->data + (a)->len, (src), (n) * sizeof(*(a)->data)) : (void)0, (a)->len += (n), true))
-#define array_free(a) (free((a)->data), (a)->data = NULL, (a)->len = (a)->cap = 0, (void)0)
-/* data: address of the array's pointer */
-bool noc_array_grow(void *data, size_t *cap, size_t need, size_t item) NOC_MUST_USE;
+#define array_free(a) (free((a)->cap ? (a)->data : NULL), (a)->data = NULL, (a)->len = (a)->cap = 0, (void)0)
+/* of an empty array; what it borrows is there as long as it */
+#define array_borrow(a, items, n) ((a)->data = (items), (a)->len = (n), (a)->cap = 0, (void)0)
+/* data: address of the array's pointer; len: items that a borrowing one has */
+bool noc_array_grow(void *data, size_t len, size_t *cap, size_t need, size_t item) NOC_MUST_USE;
 
 /* Arena: everything in it is freed at once. Zero-initialise; not thread-safe. What is refused is NULL, and `refused`
  * stays set, so that who fills a record with many texts looks once, at its end. */

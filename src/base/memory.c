@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdatomic.h>
+#include <sys/mman.h>
 #include <sys/random.h>
 #include <time.h>
 #include <unistd.h>
@@ -95,17 +96,35 @@ bool noc_resize_large(void *array, size_t have, size_t count, size_t size) {
     return true;
 }
 
+void *noc_alloc_pages(size_t size) {
+    if (noc_allocation_refused())
+        return NULL;
+    void *pages = mmap(NULL, size ? size : 1, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (pages == MAP_FAILED)
+        return NULL;
+    madvise(pages, size, MADV_HUGEPAGE); /* fewer faults; where there are none, small ones do */
+    return pages;
+}
+
+void noc_free_pages(void *pages, size_t size) {
+    if (pages)
+        munmap(pages, size ? size : 1);
+}
+
 /* Items that an array has room for after growing. */
 static size_t grown(size_t cap, size_t need) {
     return need <= EXACT_ITEMS ? need : NOC_MAX(cap ? cap + cap / 2 : 16, need);
 }
 
-bool noc_array_grow(void *data, size_t *cap, size_t need, size_t item) {
+bool noc_array_grow(void *data, size_t len, size_t *cap, size_t need, size_t item) {
     size_t n = grown(*cap, need), bytes;
     void *old, *now;
     memcpy(&old, data, sizeof(old)); /* a pointer of any type */
-    if (__builtin_mul_overflow(n, item, &bytes) || !(now = noc_realloc(old, bytes)))
+    bool borrows = old && !*cap;
+    if (__builtin_mul_overflow(n, item, &bytes) || !(now = noc_realloc(borrows ? NULL : old, bytes)))
         return false;
+    if (borrows)
+        memcpy(now, old, NOC_MIN(len, n) * item);
     memcpy(data, &now, sizeof(now));
     *cap = n;
     return true;

@@ -17,8 +17,8 @@ typedef struct cli_args {
     size_t input_count;
     bool help, quiet, verbose;
     const noc_option *given[CLI_GIVEN]; /* options that were set, in order: by the words, then by the recipe */
-    size_t given_count;
-    noc_recipe *recipe; /* among the inputs; NULL: none */
+    size_t given_count, given_by_words; /* those of the words are the first ones */
+    noc_recipe *recipe;                 /* among the inputs; NULL: none */
 } cli_args;
 
 /* An option table and where its params struct lies in the command's arguments. */
@@ -37,7 +37,7 @@ typedef struct cli_command {
     int (*run)(void *args); /* returns the exit status */
 } cli_command;
 
-extern const cli_command cli_render, cli_info, cli_init, cli_compare, cli_experiment;
+extern const cli_command cli_render, cli_build, cli_info, cli_init, cli_compare, cli_experiment;
 extern const cli_command *const cli_commands[]; /* NULL-ended */
 const cli_command *cli_find_command(const char *name);
 
@@ -81,6 +81,7 @@ char *cli_format(const char *fmt, ...) NOC_PRINTF(1, 2) __attribute__((nonnull(1
 #define CLI_IDS_WIDTH 72
 char *cli_ids(const char *list, size_t count, size_t width);
 void cli_json_text(FILE *out, const char *text); /* quoted and escaped; valid UTF-8 whatever came in */
+void cli_yaml_text(FILE *out, const char *text); /* in double quotes, as YAML reads it */
 void cli_json_number(FILE *out, double v);       /* null where it is not finite */
 /* false after saying that stdout could not be written */
 bool cli_flush(FILE *out);
@@ -124,12 +125,18 @@ void cli_print_assumed(const char *heading, const size_t assumed[NOC_LAMP_DEFAUL
 noc_report_line *cli_issues(const noc_report *report, size_t *count);
 uint64_t cli_peak_memory(void); /* of this process so far, bytes */
 
+/* built.c: the inputs are a built city (nocturne/built.h). */
+bool cli_is_built(const cli_args *args);
+void cli_warn_of_built(const cli_args *args); /* of options that its build has decided */
+/* Its windows and cars, as the words say; nothing where they say nothing of them. */
+noc_status cli_switch_built(const cli_args *args, noc_scene *scene, const noc_import_params *import);
+
 /* render.c */
 /* compare takes it too */
 int cli_parse_exposure(const cli_command *command, const char *text, noc_display_params *display);
 
 /* output.c */
-typedef enum cli_ending { CLI_PNG = 1, CLI_EXR = 2, CLI_OBJ = 4 } cli_ending;
+typedef enum cli_ending { CLI_PNG = 1, CLI_EXR = 2, CLI_OBJ = 4, CLI_NOCT = 8 } cli_ending;
 /* Can path be written as one of these formats? Asked before the long work. CLI_OK, or an exit status after reporting.
  */
 int cli_check_output(const cli_command *command, const char *path, int endings, const cli_args *args);

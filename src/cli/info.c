@@ -291,6 +291,14 @@ static noc_status inspect(const info_args *args, const char *path, noc_log *log,
             fputs(first ? "\n" : ",\n", stdout);
         return info_profile(path, args->json, log);
     }
+    if (!cli_builtin(path) && noc_built_is(path)) { /* its head, then what it is built from */
+        if (args->json)
+            fputs(first ? "\n" : ",\n", stdout);
+        status = info_built(path, args->json, log);
+        if (status)
+            return status;
+        first = false;
+    }
     if (cli_builtin(path))
         status = inspect_builtin(args, cli_builtin(path), log, &scene);
     else
@@ -343,6 +351,11 @@ static int tell_scene(const info_args *args, noc_log *log) {
     }
     info_city city;
     noc_status loaded = info_load(args, inputs, count, log, &city);
+    if (cli_is_built(&args->common) && !loaded) {
+        fputs(args->json ? "\n" : "", stdout);
+        info_built(inputs[0], args->json, log);
+        profiles++;
+    }
     for (size_t i = 0; i < noc_report_file_count(city.report); i++) {
         const noc_report_file *file = noc_report_get_file(city.report, i);
         if (!args->json) {

@@ -36,6 +36,9 @@ void info_json_file(const char *path, const char *error, const noc_report_file *
                     bool timing);
 void info_json_city(const info_city *city, bool timing);
 
+/* info_built.c: the head of a built city, as text or as a JSON object. */
+noc_status info_built(const char *path, bool json, noc_log *log);
+
 /* info_profile.c: a luminaire's file (IES, EULUMDAT), as text or as a JSON object. */
 bool info_is_profile(const char *path);
 noc_status info_profile(const char *path, bool json, noc_log *log);

@@ -63,19 +63,6 @@ static char *relative(const char *folder, const char *path) {
     return whole;
 }
 
-/* A text in double quotes, as YAML reads it. */
-static void print_text(FILE *out, const char *text) {
-    fputc('"', out);
-    for (const char *c = text; *c; c++)
-        if (*c == '"' || *c == '\\')
-            fprintf(out, "\\%c", *c);
-        else if ((unsigned char)*c < 32)
-            fprintf(out, "\\x%02x", (unsigned char)*c);
-        else
-            fputc(*c, out);
-    fputc('"', out);
-}
-
 /* ---- what it says ---- */
 
 /* What an input holds, which may be a folder of files. */
@@ -125,7 +112,7 @@ static void print_key(FILE *out, const init_args *args, const noc_option *o, con
     int room = 22 + said - (int)(strlen(indent) + strlen(key) + strlen(value));
     fprintf(out, "%s%s%s: ", said ? "" : "#", indent, key);
     if (o->kind == NOC_OPTION_TEXT && *value)
-        print_text(out, path ? path : value); /* as seen from here; a recipe sees files from its folder */
+        cli_yaml_text(out, path ? path : value); /* as seen from here; a recipe sees files from its folder */
     else
         fputs(*value ? value : "...", out);
     fprintf(out, "%*s # %s%s%s\n", room > 0 ? room : 0, "", o->unit, *o->unit ? ": " : "", o->help);
@@ -164,7 +151,7 @@ static void print_texts(FILE *out, const noc_texts *texts, const char *key, cons
     for (size_t i = 0; i < texts->count; i++) {
         char *path = !strcmp(key, "columns") ? NULL : realpath(texts->text[i], NULL);
         fputs(i ? ", " : "", out);
-        print_text(out, path ? path : texts->text[i]);
+        cli_yaml_text(out, path ? path : texts->text[i]);
         free(path);
     }
     fprintf(out, "]%*s # %s\n", texts->count ? 0 : 12, "", remark);
@@ -217,7 +204,7 @@ static noc_status print_recipe(const init_args *args, const char *folder, noc_lo
     fprintf(out, "# Made by nocturne init (%s). docs/recipes.md tells all keys; # begins what waits to be used.\n",
             noc_version());
     fputs("nocturne: 1\nname: ", out);
-    print_text(out, *name ? name : "city");
+    cli_yaml_text(out, *name ? name : "city");
     fputs("\n\ninputs:\n", out);
     for (size_t i = 1; i < args->common.input_count && !status && !cli_interrupted(); i++) {
         const char *input = args->common.inputs[i];
@@ -231,7 +218,7 @@ static noc_status print_recipe(const init_args *args, const char *folder, noc_lo
         status = inspect(args, input, log, &report);
         char *shown = cli_builtin(input) ? cli_format("%s", input) : relative(folder, path);
         fputs("  - ", out);
-        print_text(out, shown);
+        cli_yaml_text(out, shown);
         if (report && !status) {
             add_found(&all, report);
             print_remark(out, report);

@@ -7,7 +7,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-const cli_command *const cli_commands[] = { &cli_render, &cli_info, &cli_init, &cli_compare, &cli_experiment, NULL };
+const cli_command *const cli_commands[] = { &cli_render,  &cli_build,      &cli_info, &cli_init,
+                                            &cli_compare, &cli_experiment, NULL };
 
 const cli_command *cli_find_command(const char *name) {
     for (const cli_command *const *c = cli_commands; *c; c++)

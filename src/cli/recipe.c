@@ -53,12 +53,13 @@ static int take_options(const cli_command *command, cli_args *args) {
 int cli_use_recipe(const cli_command *command, void *arguments) {
     cli_args *args = arguments;
     size_t index = args->input_count;
+    args->given_by_words = args->given_count;
     for (size_t i = 0; i < args->input_count && reads_cities(command); i++) {
         if (!noc_recipe_is(args->inputs[i]))
             continue;
         if (index < args->input_count)
-            return cli_usage(command, "%.200s and %.200s are both recipes; one makes a city", args->inputs[index],
-                             args->inputs[i]);
+            return cli_usage(command, "%.200s and %.200s are both recipes, or built; one makes a city",
+                             args->inputs[index], args->inputs[i]);
         index = i;
     }
     if (index == args->input_count)

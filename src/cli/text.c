@@ -135,6 +135,18 @@ void cli_json_text(FILE *out, const char *text) {
     fputc('"', out);
 }
 
+void cli_yaml_text(FILE *out, const char *text) {
+    fputc('"', out);
+    for (const char *c = text; *c; c++)
+        if (*c == '"' || *c == '\\')
+            fprintf(out, "\\%c", *c);
+        else if ((unsigned char)*c < 32)
+            fprintf(out, "\\x%02x", (unsigned char)*c);
+        else
+            fputc(*c, out);
+    fputc('"', out);
+}
+
 void cli_json_number(FILE *out, double v) {
     if (isfinite(v))
         fprintf(out, "%.15g", v);

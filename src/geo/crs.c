@@ -15,7 +15,7 @@ struct geo_crs {
     PJ *pj;              /* horizontal; a three-dimensional one is used as if at height 0 */
     PJ *to_wgs84;        /* made on first use of geo_crs_lonlat */
     PJ *easting_first;   /* made on first use of geo_crs_scale */
-    char *name;
+    char *name, *definition;
     bool geographic, metric, lat_first;
     double height_unit; /* metres */
     bool has_area;
@@ -175,6 +175,8 @@ static noc_status create(geo_crs *crs, const char *definition, bool strict, cons
     if (!(crs->context = crs_context_take(strict)))
         return no_memory(definition, place, log);
     crs->strict = strict;
+    if (!(crs->definition = noc_strdup(definition)))
+        return no_memory(definition, place, log);
     if (registered || (strlen(definition) < sizeof(crs->key) && !crs_text_names_file(definition, what)))
         snprintf(crs->key, sizeof(crs->key), "%s", registered ? spelling.horizontal : definition);
     crs->pj = registered ? create_registered(crs->context, spelling.horizontal)
@@ -266,7 +268,8 @@ geo_crs *geo_crs_clone(const geo_crs *crs) {
     copy->context = crs_context_take(false);
     copy->pj = copy->context ? proj_clone(copy->context, crs->pj) : NULL;
     copy->name = noc_strdup(crs->name);
-    if (copy->pj && copy->name)
+    copy->definition = noc_strdup(crs->definition);
+    if (copy->pj && copy->name && copy->definition)
         return copy;
     geo_crs_destroy(copy);
     return NULL;
@@ -280,10 +283,12 @@ void geo_crs_destroy(geo_crs *crs) {
     proj_destroy(crs->pj);
     crs_context_give(crs->context, crs->strict);
     free(crs->name);
+    free(crs->definition);
     free(crs);
 }
 
 const char *geo_crs_name(const geo_crs *crs) { return crs ? crs->name : ""; }
+const char *geo_crs_definition(const geo_crs *crs) { return crs->definition; }
 bool geo_crs_is_geographic(const geo_crs *crs) { return crs->geographic; }
 bool geo_crs_is_metric(const geo_crs *crs) { return crs->metric; }
 bool geo_crs_lat_first(const geo_crs *crs) { return crs->lat_first; }

@@ -20,7 +20,8 @@ geo_crs *geo_crs_create_plain(const char *definition, const char *place, noc_log
 geo_crs *geo_crs_utm(double lon, double lat); /* WGS 84 UTM zone of a place; NULL: memory was refused */
 geo_crs *geo_crs_clone(const geo_crs *crs);   /* NULL: memory was refused, or crs is NULL */
 void geo_crs_destroy(geo_crs *crs);
-const char *geo_crs_name(const geo_crs *crs); /* "EPSG:25832 (ETRS89 / UTM zone 32N)" */
+const char *geo_crs_name(const geo_crs *crs);       /* "EPSG:25832 (ETRS89 / UTM zone 32N)" */
+const char *geo_crs_definition(const geo_crs *crs); /* what it was made from */
 bool geo_crs_is_geographic(const geo_crs *crs);
 bool geo_crs_is_metric(const geo_crs *crs); /* projected, axes in metres */
 bool geo_crs_lat_first(const geo_crs *crs); /* the authority's order is northing/latitude first */

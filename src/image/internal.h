@@ -3,6 +3,7 @@
 #define NOC_IMAGE_INTERNAL_H
 
 #include "base/base.h"
+#include "base/output.h"
 #include <nocturne/image.h>
 #include <stdio.h>
 
@@ -47,20 +48,6 @@ bool display_ev100(const noc_image *image, const noc_display_params *params, dou
 void display_pixel(const display_map *d, const float rgb[3], uint8_t out[3]);
 double tonemap_curve(noc_tonemap tonemap, double x);
 const char *tonemap_name(noc_tonemap tonemap);
-
-/* output.c: a file that appears under its name only when it is complete. */
-typedef struct output {
-    FILE *file;
-    char *path;      /* the target, as given: for messages */
-    char *target;    /* with symbolic links resolved */
-    char *temporary; /* beside target */
-} output;
-/* on failure nothing is left, and o need not be closed */
-noc_status output_open(output *o, const char *path, noc_log *log);
-/* Closes; if status is NOC_OK renames, else removes. Returns status, or the reported failure of the closing or
- * renaming. */
-noc_status output_close(output *o, noc_status status, noc_log *log);
-noc_status output_failed(output *o, noc_log *log); /* reports errno as a failure of writing */
 
 /* Metadata of a file: the caller's and ours; the caller's win where the keys are equal. */
 typedef struct meta_entry {

@@ -256,6 +256,8 @@ static noc_status take_material(void *ctx, const yaml_node_t *key, yaml_node_t *
 static noc_status take_inputs(recipe_file *f, yaml_node_t *value) {
     const char **texts;
     size_t count;
+    if (f->built)
+        return recipe_wrong(f, value, "the recipe of a built city names no inputs");
     if (value->type == YAML_MAPPING_NODE)
         return recipe_wrong(f, value, "inputs is a list of files");
     noc_status status = recipe_texts(f, value, "inputs", &texts, &count);
@@ -328,7 +330,7 @@ static noc_status take_all(recipe_file *f) {
     noc_status status = recipe_each(f, root, "a recipe", take_top, &t);
     if (!status && t.paths)
         status = recipe_take_paths(f, t.paths);
-    bool any = f->recipe->inputs.len > 0;
+    bool any = f->recipe->inputs.len > 0 || f->built;
     for (size_t i = 0; i < f->recipe->settings.len; i++)
         any = any || !strcmp(f->recipe->settings.data[i].option->name, "lamps");
     return status || any ? status : recipe_wrong(f, NULL, "names no inputs");
@@ -338,7 +340,9 @@ noc_status noc_recipe_load(const char *path, noc_log *log, noc_recipe **recipe) 
     if (!path || !recipe)
         return noc_null(log, __func__);
     *recipe = NULL;
-    recipe_file f = { .path = path, .log = log, .recipe = noc_calloc(1, sizeof(*f.recipe)) };
+    recipe_file f = {
+        .path = path, .log = log, .built = noc_built_is(path), .recipe = noc_calloc(1, sizeof(*f.recipe))
+    };
     if (!f.recipe)
         return noc_no_memory(log, path);
     noc_status status = recipe_open(&f);
@@ -349,7 +353,7 @@ noc_status noc_recipe_load(const char *path, noc_log *log, noc_recipe **recipe) 
     noc_recipe_info *info = &f.recipe->info;
     info->path = arena_strdup(&f.recipe->arena, path);
     info->name = info->name ? info->name : "";
-    if (!status && !info->path)
+    if (!status && (!info->path || (f.built && !array_push(&f.recipe->inputs, info->path))))
         status = noc_no_memory(log, path);
     if (status) {
         noc_recipe_destroy(f.recipe);

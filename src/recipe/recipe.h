@@ -5,6 +5,7 @@
 
 #include "base/base.h"
 
+#include <nocturne/built.h>
 #include <nocturne/recipe.h>
 #include <nocturne/text.h>
 #include <yaml.h>
@@ -30,6 +31,7 @@ struct noc_recipe {
 typedef struct recipe_file {
     const char *path;
     noc_log *log;
+    bool built; /* a built city's, which is its input */
     yaml_document_t yaml;
     noc_recipe *recipe;
 } recipe_file;

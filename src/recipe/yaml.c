@@ -124,9 +124,15 @@ static noc_status with_parser(recipe_file *f, const char *text, size_t size, boo
 }
 
 noc_status recipe_open(recipe_file *f) {
+    static const char none[] = "nocturne: 1\n"; /* of a built city without a recipe */
     char *text = NULL;
     size_t size = 0;
-    noc_status status = read_text(f, &text, &size);
+    noc_status status = f->built ? noc_built_get_recipe(f->path, f->log, &text) : read_text(f, &text, &size);
+    if (!status && f->built) {
+        text = text ? text : noc_strdup(none);
+        size = text ? strlen(text) : 0;
+        status = text ? NOC_OK : noc_no_memory(f->log, f->path);
+    }
     if (!status)
         status = with_parser(f, text, size, false);
     if (!status)
@@ -203,10 +209,12 @@ const char *recipe_path(recipe_file *f, const char *path) {
     return arena_format(&f->recipe->arena, "%s%.*s/%s", at, (int)(slash - f->path), f->path, path + strlen(at));
 }
 
-/* The first line that is neither blank nor a comment begins with the key. */
+/* A built city, or the first line that is neither blank nor a comment begins with the key. */
 bool noc_recipe_is(const char *path) {
     char head[4096];
     struct stat st;
+    if (noc_built_is(path))
+        return true;
     int fd = path ? open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK) : -1;
     ssize_t n = fd >= 0 && !fstat(fd, &st) && S_ISREG(st.st_mode) ? read(fd, head, sizeof(head) - 1) : 0;
     if (fd >= 0)

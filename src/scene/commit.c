@@ -142,7 +142,7 @@ static void need_relit(const commit *c, need *n) {
 
 /* Lights are 64-byte aligned from the first commit on. */
 static bool reserve_lights(noc_scene *s, size_t count) {
-    if (s->committed && count <= s->lights.cap)
+    if (s->committed && count <= (s->lights.cap ? s->lights.cap : s->lights.len))
         return true;
     size_t room = s->committed ? NOC_MAX(count, s->lights.cap + s->lights.cap / 2) : count;
     noc_light_record *more = noc_alloc_large(room, sizeof(*more));
@@ -150,7 +150,7 @@ static bool reserve_lights(noc_scene *s, size_t count) {
         return false;
     if (s->lights.len)
         memcpy(more, s->lights.data, s->lights.len * sizeof(*more));
-    free(s->lights.data);
+    free(s->lights.cap ? s->lights.data : NULL);
     s->lights.data = more;
     s->lights.cap = room;
     return true;
@@ -171,9 +171,10 @@ static bool reserve_arrays(noc_scene *s, const need *n) {
     const noc_scene *more = added(s);
     size_t triangles = s->triangle_light.len + more->triangle_light.len,
            lights = s->lights.len + s->light_slots.fresh + n->lights;
-    return array_reserve(&s->positions, s->positions.len + more->positions.len + 1) &&
-           array_reserve(&s->indices, 3 * triangles) && array_reserve(&s->triangle_material, triangles) &&
-           array_reserve(&s->triangle_light, triangles) &&
+    return array_reserve(&s->positions,
+                         s->positions.len + more->positions.len + (more->positions.len > 0)) && /* Embree's */
+           array_reserve(&s->indices, 3 * triangles) &&
+           array_reserve(&s->triangle_material, triangles) && array_reserve(&s->triangle_light, triangles) &&
            array_reserve(&s->meshes, s->meshes.len + more->meshes.len) &&
            array_reserve(&s->gaps,
                          s->gaps.len + more->gaps.len + n->gaps + (s->reshaped ? s->reshaped->meshes.len : 0)) &&

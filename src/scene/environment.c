@@ -86,8 +86,7 @@ void noc_environment_free(noc_environment *e) {
     free(e);
 }
 
-/* NULL: no memory. */
-static noc_environment *make(const noc_image *map, size_t *bad) {
+noc_environment *noc_environment_make(const noc_image *map, size_t *bad) {
     noc_environment *e = noc_calloc(1, sizeof(*e));
     if (!e)
         return NULL;
@@ -117,7 +116,7 @@ static noc_environment *make(const noc_image *map, size_t *bad) {
 }
 
 /* Whether it can be taken down to as few texels as are drawn from. */
-static bool fits(int width, int height) {
+bool noc_environment_fits(int width, int height) {
     while (width > NOC_ENVIRONMENT_LIGHTS && can_be_halved(width, height)) {
         width /= 2;
         height /= 2;
@@ -135,11 +134,11 @@ noc_status noc_scene_set_environment(noc_scene *scene, const noc_image *map) {
             scene->log, NOC_ERR_ARGUMENT,
             "environment: a picture of %d x %d pixels is not equirectangular: that is twice as wide as high",
             map->width, map->height);
-    if (map && !fits(map->width, map->height))
+    if (map && !noc_environment_fits(map->width, map->height))
         return noc_error(scene->log, NOC_ERR_ARGUMENT,
                          "environment: a picture of %d x %d pixels is too large, and cannot be halved to below %d",
                          map->width, map->height, NOC_ENVIRONMENT_TEXELS);
-    if (map && !(e = make(map, &bad)))
+    if (map && !(e = noc_environment_make(map, &bad)))
         return noc_error(scene->log, NOC_ERR_MEMORY, "environment: no memory for %d x %d pixels", map->width,
                          map->height);
     if (bad)

@@ -7,7 +7,7 @@ size_t noc_scene_bytes(const noc_scene *s) {
     size_t models = 0;
     for (size_t i = 0; i < s->models.len; i++)
         models += s->models.data[i].lights.cap * sizeof(noc_light_record);
-    return s->positions.cap * sizeof(float) +
+    return s->page_bytes + s->positions.cap * sizeof(float) +
            (s->indices.cap + s->triangle_material.cap + s->triangle_light.cap + s->moving.cap) * sizeof(uint32_t) +
            s->lights.cap * sizeof(noc_light_record) + s->light_names.cap * sizeof(char *) +
            s->light_made.cap * sizeof(noc_rgb) + s->meshes.cap * sizeof(noc_scene_mesh) + s->names.bytes +

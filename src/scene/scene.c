@@ -90,6 +90,7 @@ void noc_scene_destroy(noc_scene *scene) {
     arena_free(&scene->later_names);
     noc_scene_destroy(scene->added);
     noc_scene_lock_destroy(scene->lock);
+    noc_free_pages(scene->pages, scene->page_bytes);
     free(scene);
 }
 

@@ -195,6 +195,8 @@ struct noc_scene {
     char *given_crs_name;
     double given_origin[3]; /* where the local frame's origin lies in it */
     void (*crs_free)(struct geo_crs *);
+    /* Of a built city, which makes them when they are asked for: what they are made from, in its pages. NULL: none. */
+    const char *crs_kept, *given_crs_kept;
     bool lit_elsewhere; /* no lamp stands in the city: views look at its buildings */
     char *without_crs;  /* the input that settled the place and names no CRS; NULL where there is none */
 
@@ -247,6 +249,8 @@ struct noc_scene {
     noc_arena later_names;          /* of all that is named after the first commit */
     size_t later_bytes;             /* of them, at the last commit */
     struct noc_scene_lock *lock;
+    void *pages; /* of a built city, which arrays and names lie in (keep.h); noc_free_pages */
+    size_t page_bytes;
     bool no_memory;            /* was refused and reported: nothing more is added, and it cannot be committed */
     struct noc_ground *ground; /* built on first use of noc_scene_ground; freed with the scene */
 };
@@ -382,6 +386,10 @@ static inline void noc_range_add(noc_range *r, size_t i) {
 /* environment.c: sine of the elevation of a row's upper edge, of so many rows. */
 double noc_environment_sine(int row, int rows);
 void noc_environment_free(noc_environment *e); /* NULL is allowed */
+/* Of a picture that is twice as wide as high, and fits: can be taken down to as few texels as are drawn from. bad:
+ * pixels that are not light. NULL: no memory. */
+noc_environment *noc_environment_make(const noc_image *map, size_t *bad);
+bool noc_environment_fits(int width, int height);
 
 /* window.c */
 static inline noc_wall_verdict noc_scene_wall(const noc_scene *s, size_t triangle) {

@@ -81,6 +81,13 @@ static noc_camera camera;
     P(0, noc_scene_set_group(scene, 1, NULL) == NOC_ERR_ARGUMENT)                                                      \
     P(0, noc_scene_remove_light(NULL, 0) == NOC_ERR_ARGUMENT)                                                          \
     P(0, noc_scene_remove_mesh(NULL, 0) == NOC_ERR_ARGUMENT)                                                           \
+    P(0, noc_scene_save(NULL, "a.noct", NULL) == NOC_ERR_ARGUMENT)                                                     \
+    P(0, noc_scene_save(scene, NULL, NULL) == NOC_ERR_ARGUMENT)                                                        \
+    P(0, noc_built_is(NULL) == false)                                                                                  \
+    P(0, noc_built_get_info(NULL, NULL, &(noc_built_info){ 0 }) == NOC_ERR_ARGUMENT)                                   \
+    P(0, noc_built_get_info("a.noct", NULL, NULL) == NOC_ERR_ARGUMENT)                                                 \
+    P(0, noc_built_get_recipe(NULL, NULL, &(char *){ 0 }) == NOC_ERR_ARGUMENT)                                         \
+    P(0, noc_built_get_recipe("a.noct", NULL, NULL) == NOC_ERR_ARGUMENT)                                               \
     P(0, noc_scene_get_light(NULL, 0, &(noc_light_info){ 0 }) == NOC_ERR_ARGUMENT)                                     \
     P(0, noc_scene_get_light(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                      \
     P(0, noc_scene_object_name(NULL, 0) == NULL)                                                                       \

@@ -58,7 +58,7 @@ mkdir files home
 mkdir files/folder
 cat >offers <<'OFFERS'
 nocturne comp: compare
-nocturne : compare experiment help info init render
+nocturne : build compare experiment help info init render
 nocturne help co: compare
 nocturne render --method re: reference restir
 nocturne render --method=re: reference restir

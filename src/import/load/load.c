@@ -1,6 +1,7 @@
 /* Runs the inputs: all are opened and recognised before any is read; then cities, meshes and lamps, in an order that
  * lets the city settle the place. Lamps are stood on the ground at the end. */
 #include "import/load/load.h"
+#include "import/built/built.h"
 #include "import/remote/remote.h"
 #include "city/city.h"
 #include "import/lamps/tags.h"
@@ -416,6 +417,25 @@ static noc_status set_environment(noc_scene *scene, const char *path) {
     return status;
 }
 
+/* The first of the inputs that is a built city, but for those that a folder holds; NULL where there is none. */
+static const char *find_built(const importer *im) {
+    for (size_t i = 0; i < im->input_count; i++)
+        if (im->inputs[i].is_file && !im->inputs[i].folder && noct_is(im->inputs[i].path))
+            return im->inputs[i].path;
+    return NULL;
+}
+
+static noc_status load_built(importer *im, const char *path) {
+    const noc_scene *s = im->scene;
+    if (im->input_count > 1)
+        return noc_error(im->log, NOC_ERR_ARGUMENT,
+                         "%s: is a built city, which is an input alone: build it together with the others", path);
+    if (s->meshes.len || s->lights.len || s->materials.len || s->models.len || s->edits.len || s->crs_name)
+        return noc_error(im->log, NOC_ERR_ARGUMENT, "%s: is a built city, and the scene has something in it already",
+                         path);
+    return built_read(im, path);
+}
+
 noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const char *const *paths, size_t path_count,
                        const noc_import_params *params, bool inspect, noc_report **report) {
     const noc_import_params defaults = noc_import_default_params();
@@ -463,11 +483,14 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     }
     im.report = report_create();
     status = im.report ? list_inputs(&im, paths, path_count) : noc_no_memory(scene->log, "import");
-    if (!status)
+    const char *built = status ? NULL : find_built(&im);
+    if (built)
+        status = load_built(&im, built);
+    else if (!status)
         status = run(&im, readers);
     if (scene->no_memory)
         status = NOC_ERR_MEMORY; /* some go on without what the scene refused */
-    if (!status && !inspect)
+    if (!status && !inspect && !built)
         status = set_materials(scene, params);
     if (!status && !inspect)
         status = noc_scene_commit(scene);
@@ -509,14 +532,22 @@ noc_status noc_inspect(noc_log *log, const char *path, const noc_import_params *
     return status;
 }
 
-/* By its definition, or a copy of one where that is NULL. */
-static geo_crs *crs_of(const noc_scene *scene, const char *definition, const char *place, const geo_crs *known,
-                       noc_status *status) {
-    geo_crs *crs = definition ? geo_crs_create(definition, place, scene->log, status) : geo_crs_clone(known);
-    if (!definition)
-        *status = crs ? NOC_OK : noc_no_memory(scene->log, "CRS");
-    else if (*status && *status != NOC_ERR_MEMORY)
+/* By its definition, which is a user's word, or that of a file where `file` is set. */
+static geo_crs *make_crs(const noc_scene *scene, const char *definition, const char *place, bool file,
+                         noc_status *status) {
+    geo_crs *crs = file ? geo_crs_create_plain(definition, place, scene->log, status)
+                        : geo_crs_create(definition, place, scene->log, status);
+    if (*status && *status != NOC_ERR_MEMORY)
         *status = NOC_ERR_ARGUMENT;
+    return crs;
+}
+
+/* A copy of one that the scene has, or of one that its file tells. */
+static geo_crs *scene_crs(const noc_scene *scene, const geo_crs *known, const char *kept, noc_status *status) {
+    if (!known)
+        return make_crs(scene, kept ? kept : scene->crs_name, "scene", scene->pages, status);
+    geo_crs *crs = geo_crs_clone(known);
+    *status = crs ? NOC_OK : noc_no_memory(scene->log, "CRS");
     return crs;
 }
 
@@ -531,8 +562,9 @@ static noc_status convert(const noc_scene *scene, const char *crs, bool to_local
                    : noc_error(scene->log, NOC_ERR_ARGUMENT,
                                "the scene has no CRS, so coordinates in %s have no place in it", crs);
     noc_status status;
-    geo_crs *user = crs_of(scene, crs, NULL, scene->given_crs, &status);
-    geo_crs *own = user ? crs_of(scene, scene->crs ? NULL : scene->crs_name, "scene", scene->crs, &status) : NULL;
+    geo_crs *user = crs ? make_crs(scene, crs, NULL, false, &status)
+                        : scene_crs(scene, scene->given_crs, scene->given_crs_kept, &status);
+    geo_crs *own = user ? scene_crs(scene, scene->crs, scene->crs_kept, &status) : NULL;
     geo_transform *t =
         user && own ? geo_transform_create(to_local ? user : own, to_local ? own : user, scene->log, &status) : NULL;
     double p[3] = { xyz[0], xyz[1], xyz[2] };
@@ -547,10 +579,12 @@ static noc_status convert(const noc_scene *scene, const char *crs, bool to_local
     return status;
 }
 
+static bool has_given_crs(const noc_scene *scene) { return scene->given_crs || scene->given_crs_kept; }
+
 noc_status noc_scene_to_local(const noc_scene *scene, const char *crs, double xyz[3]) {
     if (!scene || !xyz)
         return NOC_ERR_ARGUMENT;
-    noc_status status = crs || scene->given_crs ? convert(scene, crs, true, xyz) : NOC_OK;
+    noc_status status = crs || has_given_crs(scene) ? convert(scene, crs, true, xyz) : NOC_OK;
     for (int k = 0; !status && k < 3; k++)
         xyz[k] -= scene->origin[k];
     return status;
@@ -562,7 +596,7 @@ noc_status noc_scene_from_local(const noc_scene *scene, const char *crs, double 
     double p[3];
     for (int k = 0; k < 3; k++)
         p[k] = xyz[k] + scene->origin[k];
-    noc_status status = crs || scene->given_crs ? convert(scene, crs, false, p) : NOC_OK;
+    noc_status status = crs || has_given_crs(scene) ? convert(scene, crs, false, p) : NOC_OK;
     if (!status)
         memcpy(xyz, p, sizeof(p));
     return status;

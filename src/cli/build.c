@@ -1,0 +1,222 @@
+/* nocturne build: inputs to one file, a built city. */
+#include "cli.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct build_args {
+    cli_args common;
+    const char *output;
+    int threads;
+    int preset; /* of the recipe; not an option here */
+    noc_import_params import;
+    noc_builtin_params builtin;
+} build_args;
+#define A build_args
+
+static const noc_option own_options[] = {
+    { "output", "Output", NOC_OPTION_TEXT, offsetof(A, output), 0, 0, NULL, "FILE", "built city to write: .noct" },
+    { "threads", "Output", NOC_OPTION_INT, offsetof(A, threads), 0, 1024, NULL, "", "threads; 0 = one a core" },
+    { NULL },
+};
+static const noc_option *options(void) { return own_options; }
+static int run(void *arguments);
+static const build_args defaults = { .import = noc_import_default_params(), .builtin = noc_builtin_default_params() };
+
+const cli_command cli_build = {
+    "build",
+    "INPUT... -o FILE",
+    "Makes one file of a city, which every command that takes inputs reads many times faster, and draws alike.",
+    "Examples\n"
+    "  nocturne build city.yaml -o city.noct\n"
+    "  nocturne build city.gml lamps.geojson -o city.noct\n"
+    "  nocturne render city.noct --hour 23 -o night.png\n"
+    "The file holds the recipe's cameras and options, too. It is made again where an\n"
+    "input changes, or nocturne: it is no format to keep a city in.\n",
+    { { options, 0, NULL },
+      { noc_import_options, offsetof(A, import), NULL },
+      { noc_city_options, offsetof(A, builtin.city), NULL },
+      { noc_builtin_options, offsetof(A, builtin), NULL },
+      { cli_common_options, 0, NULL } },
+    sizeof(build_args),
+    &defaults,
+    run,
+};
+
+/* ---- the recipe in it ---- */
+
+static void print_option(FILE *out, const noc_option *o, const void *params) {
+    char *value = cli_option_value(o, params);
+    fprintf(out, "%s: ", o->name);
+    cli_yaml_text(out, value);
+    fputc('\n', out);
+    free(value);
+}
+
+static bool in_table(const noc_option *table, const noc_option *o) {
+    while (table->name && table != o)
+        table++;
+    return table->name != NULL;
+}
+
+/* What a build decides and pictures tell, as it was given; then what the recipe says of pictures. */
+static void print_options(FILE *out, const build_args *args) {
+    union {
+        noc_render_params render;
+        noc_display_params display;
+    } params;
+    const noc_option *o;
+    for (size_t i = 0; i < args->common.given_count; i++) {
+        o = args->common.given[i];
+        if (in_table(noc_import_options(), o) && o->kind != NOC_OPTION_TEXTS && strcmp(o->unit, "FILE") &&
+            strcmp(o->group, "Reading"))
+            print_option(out, o, &args->import);
+    }
+    for (size_t i = 0; (o = noc_recipe_option(args->common.recipe, i)); i++)
+        if (in_table(noc_render_options(), o) || in_table(noc_display_options(), o))
+            if (!noc_recipe_set(args->common.recipe, o, &params, NULL))
+                print_option(out, o, &params);
+}
+
+/* "view: aerial" or "eye: ..., target: ...", each behind a comma but the first. */
+static void print_place(FILE *out, const noc_camera_params *camera, const char *before) {
+    for (const noc_option *o = noc_camera_options(); o->name; o++) {
+        char *value = cli_option_value(o, camera);
+        bool said = strcmp(o->name, "fov") ? *value != 0 : camera->fov > 0;
+        if (said && (strcmp(o->name, "view") || !camera->eye)) {
+            fprintf(out, "%s%s: ", before, strcmp(o->name, "camera-crs") ? o->name : "crs");
+            cli_yaml_text(out, value);
+            before = ", ";
+        }
+        free(value);
+    }
+}
+
+static void print_camera(FILE *out, const noc_recipe_camera *camera) {
+    fputs("  ", out);
+    cli_yaml_text(out, camera->name);
+    fputs(": { ", out);
+    print_place(out, &camera->params, "");
+    fputs(" }\n", out);
+}
+
+static void print_path(FILE *out, const noc_recipe_path *path) {
+    fputs("  ", out);
+    cli_yaml_text(out, path->name);
+    fprintf(out, ":\n    loop: %s\n    keys:\n", path->loop ? "on" : "off");
+    for (size_t i = 0; i < path->key_count; i++) {
+        fputs("      - { ", out);
+        print_place(out, &path->keys[i].camera, "");
+        if (path->keys[i].seconds >= 0)
+            fprintf(out, ", seconds: %.17g", path->keys[i].seconds);
+        if (path->keys[i].hour >= 0)
+            fprintf(out, ", hour: %.17g", path->keys[i].hour);
+        fputs(" }\n", out);
+    }
+}
+
+/* free() it. */
+static char *make_recipe(const build_args *args) {
+    static const noc_option preset[] = { NOC_OPTION_PRESET(A, "") };
+    const noc_recipe_info *recipe = noc_recipe_get_info(args->common.recipe);
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        cli_no_memory();
+    fputs("nocturne: 1\nname: ", out);
+    cli_yaml_text(out, *recipe->name ? recipe->name : "city");
+    fputc('\n', out);
+    if (recipe->has_preset)
+        print_option(out, preset, &(build_args){ .preset = (int)recipe->preset });
+    print_options(out, args);
+    if (recipe->camera_count)
+        fputs("cameras:\n", out);
+    for (size_t i = 0; i < recipe->camera_count; i++)
+        print_camera(out, &recipe->cameras[i]);
+    if (recipe->path_count)
+        fputs("paths:\n", out);
+    for (size_t i = 0; i < recipe->path_count; i++)
+        print_path(out, &recipe->paths[i]);
+    if (fclose(out) || !text)
+        cli_no_memory();
+    return text;
+}
+
+/* ---- the build ---- */
+
+static int check(build_args *args) {
+    cli_add_named(&args->common, &args->import);
+    cli_note_chosen(&args->common, &args->import);
+    if (!args->common.input_count)
+        return cli_usage(&cli_build, "nothing to build: name a recipe, or a city model");
+    if (!args->output)
+        return cli_usage(&cli_build, "where to? -o city.noct");
+    for (size_t i = 0; i < args->common.given_count; i++) {
+        const noc_option *o = args->common.given[i];
+        const char *needed = noc_option_needs_input(o, args->common.inputs, args->common.input_count);
+        if (needed)
+            return cli_usage(&cli_build, "--%s is for the input %s", o->name, needed);
+    }
+    return cli_check_output(&cli_build, args->output, CLI_NOCT, &args->common);
+}
+
+static void print_summary(const build_args *args, const noc_scene *scene, const noc_report *report, double seconds) {
+    noc_built_info file = { 0 };
+    noc_scene_info info;
+    noc_report_totals totals;
+    char a[64], b[64], path[240];
+    noc_scene_get_info(scene, &info);
+    noc_report_get_totals(report, &totals);
+    noc_built_get_info(args->output, NULL, &file);
+    printf("%s\n", noc_text_clean(path, sizeof(path), args->output));
+    printf("  built     %s in %s\n", noc_text_bytes(a, file.bytes), noc_text_seconds(b, seconds));
+    printf("  scene     %s, %s", noc_text_many(a, info.triangles, "triangle"), noc_text_many(b, info.lights, "light"));
+    if (info.windows)
+        printf(", %s", noc_text_many(a, info.windows, "window"));
+    printf("\n  inputs    features skipped: %zu, repaired: %zu, guessed at: %zu\n", totals.skipped, totals.repaired,
+           totals.guessed);
+    printf("  draw it: nocturne render %s -o night.png\n", path);
+}
+
+static noc_status build(build_args *args, noc_log *log, noc_scene *scene) {
+    double started = cli_now();
+    noc_report *report = NULL;
+    args->import.progress = (noc_progress){ cli_load_progress, NULL };
+    args->import.builtin = &args->builtin;
+    args->import.materials = noc_recipe_get_info(args->common.recipe)->materials;
+    args->import.material_count = noc_recipe_get_info(args->common.recipe)->material_count;
+    args->import.threads = args->threads;
+    noc_status status = noc_scene_load(scene, args->common.inputs, args->common.input_count, &args->import, &report);
+    status = status ? status : cli_switch_built(&args->common, scene, &args->import);
+    cli_progress_clear();
+    if (!status && !cli_interrupted()) {
+        char *recipe = make_recipe(args);
+        status = noc_scene_save(scene, args->output, &(noc_save_params){ report, recipe });
+        free(recipe);
+        if (!status && !args->common.quiet)
+            print_summary(args, scene, report, cli_now() - started);
+    }
+    noc_report_destroy(report);
+    return status;
+}
+
+static int run(void *arguments) {
+    build_args *args = arguments;
+    int status = check(args);
+    if (status)
+        return status;
+    cli_catch_signals();
+    cli_nothing_to_keep(true);
+    cli_progress_start(args->common.quiet);
+    noc_log *log = cli_log_create(&args->common);
+    noc_scene *scene = noc_scene_create(log);
+    status = scene && !build(args, log, scene) ? CLI_OK : CLI_FAILURE;
+    noc_scene_destroy(scene);
+    noc_log_destroy(log);
+    if (cli_interrupted()) {
+        cli_error("interrupted");
+        return CLI_INTERRUPTED + cli_interrupted();
+    }
+    return cli_flush(stdout) ? status : CLI_FAILURE;
+}

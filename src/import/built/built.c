@@ -1,0 +1,118 @@
+/* The parts of a built city, in the order in which they are read. */
+#include "import/built/built.h"
+#include "scene/keep.h"
+
+#include <nocturne/built.h>
+
+#define RECIPE "recipe"
+#define MOST_RECIPE ((size_t)1 << 20) /* bytes */
+
+typedef struct built_part {
+    void (*write)(noct_writer *w, const noc_scene *s);
+    noc_status (*read)(noct_file *f, noc_scene *s);
+} built_part;
+
+static const char *definition(const struct geo_crs *crs, const char *kept) {
+    return crs ? geo_crs_definition(crs) : kept;
+}
+
+static void write_crs(noct_writer *w, const noc_scene *s) {
+    noct_begin(w, "crs");
+    noct_put_text(w, definition(s->crs, s->crs_kept));
+    noct_put_text(w, definition(s->given_crs, s->given_crs_kept));
+    noct_end(w);
+}
+
+/* They are made when they are asked for: PROJ takes longer to open its database than a city to load. */
+static noc_status read_crs(noct_file *f, noc_scene *s) {
+    noct_cursor c = noct_section(f, "crs");
+    s->crs_kept = noct_get_text(&c);
+    s->given_crs_kept = noct_get_text(&c);
+    noct_read_whole(f, &c, "crs");
+    return f->status;
+}
+
+/* What a part needs of others stands before it. */
+static const built_part parts[] = {
+    { noc_keep_scene, noc_kept_scene },         { write_crs, read_crs },
+    { noc_keep_groups, noc_kept_groups },       { noc_keep_profiles, noc_kept_profiles },
+    { noc_keep_models, noc_kept_models },       { noc_keep_lights, noc_kept_lights },
+    { noc_keep_windows, noc_kept_windows },     { noc_keep_instances, noc_kept_instances },
+    { noc_keep_traffic, noc_kept_traffic },     { noc_keep_environment, noc_kept_environment },
+    { noc_keep_materials, noc_kept_materials }, { noc_keep_meshes, noc_kept_meshes },
+};
+
+/* All that must be the same where a file is written and where it is read. */
+static uint64_t layout(void) {
+    const uint64_t numbers[] = { sizeof(noc_light_record), NOC_CLASS_COUNT,        NOC_LIGHT_KIND_COUNT,
+                                 NOC_WINDOW_KIND_COUNT,    NOC_WALL_VERDICT_COUNT, LIGHT_PROFILE_BITS,
+                                 sizeof(noc_scene_stop),   NOC_COUNT(parts),       built_report_layout() };
+    return noct_sum(numbers, sizeof(numbers));
+}
+
+noc_status noc_scene_save(const noc_scene *scene, const char *path, const noc_save_params *params) {
+    if (!scene || !path)
+        return noc_null(scene ? scene->log : NULL, __func__);
+    if (!scene->committed || scene->edits.len || scene->added)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "%.400s: the scene is not committed, or edits of it are not",
+                         path);
+    if (params && params->recipe && strlen(params->recipe) > MOST_RECIPE)
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "%.400s: its recipe has more than 1 MiB", path);
+    noc_status status;
+    noct_writer *w = noct_create(path, layout(), scene->log, &status);
+    if (!w)
+        return status;
+    noc_scene_lock_read(scene);
+    for (size_t i = 0; i < NOC_COUNT(parts); i++)
+        parts[i].write(w, scene);
+    noc_scene_unlock_read(scene);
+    built_write_report(w, params ? params->report : NULL);
+    if (params && params->recipe)
+        noct_put_array(w, RECIPE, params->recipe, strlen(params->recipe), 1);
+    return noct_close(w, NOC_OK);
+}
+
+noc_status built_read(importer *im, const char *path) {
+    noct_file f;
+    noc_scene *s = im->scene;
+    noc_status status = noct_open(&f, path, layout(), im->memory, im->params->threads, &im->params->progress, im->log);
+    for (size_t i = 0; i < NOC_COUNT(parts) && !status; i++)
+        status = parts[i].read(&f, s);
+    if (!status)
+        status = built_read_report(&f, im->report);
+    if (!status)
+        status = noc_kept_done(&f, s);
+    if (status)
+        noc_kept_forget(s);
+    noc_kept_take(&f, s);
+    noct_close_file(&f);
+    return status;
+}
+
+bool noc_built_is(const char *path) { return path && noct_is(path); }
+
+noc_status noc_built_get_recipe(const char *path, noc_log *log, char **text) {
+    if (!path || !text)
+        return noc_null(log, __func__);
+    return noct_read_text(path, RECIPE, MOST_RECIPE, log, text);
+}
+
+noc_status noc_built_get_info(const char *path, noc_log *log, noc_built_info *info) {
+    _Alignas(64) uint8_t page[NOCT_HEAD];
+    noct_file f;
+    if (!path || !info)
+        return noc_null(log, __func__);
+    *info = (noc_built_info){ 0 };
+    noc_status status = noct_read_head(&f, path, page, log);
+    if (status)
+        return status;
+    info->version = f.head->version;
+    memcpy(info->writer, f.head->writer, sizeof(f.head->writer));
+    info->bytes = f.head->size;
+    info->section_count = f.head->sections;
+    for (uint32_t i = 0; i < f.head->sections; i++) {
+        memcpy(info->sections[i].name, f.entries[i].name, sizeof(f.entries[i].name));
+        info->sections[i].bytes = f.entries[i].bytes;
+    }
+    return NOC_OK;
+}

@@ -1,0 +1,147 @@
+/* Models, and where they stand. */
+#include "scene/keep.h"
+
+#include <math.h>
+
+typedef struct kept_model {
+    double bounds_min[3], bounds_max[3];
+    uint32_t name, lights;
+} kept_model;
+_Static_assert(sizeof(kept_model) == 56, "it has no gaps");
+
+void noc_keep_models(noct_writer *w, const noc_scene *s) {
+    noct_begin(w, "models");
+    for (size_t i = 0; i < s->models.len; i++) {
+        const noc_scene_model *m = &s->models.data[i];
+        kept_model k = { .name = noct_name(w, m->name), .lights = (uint32_t)m->lights.len };
+        memcpy(k.bounds_min, m->bounds_min, sizeof(k.bounds_min));
+        memcpy(k.bounds_max, m->bounds_max, sizeof(k.bounds_max));
+        noct_put(w, &k, sizeof(k));
+    }
+    noct_end(w);
+    noct_begin(w, "modelli");
+    for (size_t i = 0; i < s->models.len; i++)
+        noct_put(w, s->models.data[i].lights.data, s->models.data[i].lights.len * sizeof(noc_light_record));
+    noct_end(w);
+    noct_begin(w, "modelnam");
+    for (size_t i = 0; i < s->models.len; i++)
+        for (size_t k = 0; k < s->models.data[i].lights.len; k++)
+            noct_put_u32(w, noct_name(w, s->models.data[i].light_names.data[k]));
+    noct_end(w);
+}
+
+/* Of its triangles; min > max where it has none. */
+static bool bounds_fit(const kept_model *k) {
+    bool ok = true;
+    for (int c = 0; c < 3; c++) {
+        bool none = k->bounds_min[c] == INFINITY && k->bounds_max[c] == -INFINITY;
+        ok = ok &&
+             (none || (k->bounds_min[c] >= -1e7 && k->bounds_max[c] <= 1e7 && k->bounds_min[c] <= k->bounds_max[c]));
+    }
+    return ok;
+}
+
+static noc_status take_model(noct_file *f, noc_scene *s, const kept_model *k, noc_light_record *lights,
+                             const uint32_t *names) {
+    noc_scene_model m = { .name = noct_name_at(f, k->name) };
+    memcpy(m.bounds_min, k->bounds_min, sizeof(m.bounds_min));
+    memcpy(m.bounds_max, k->bounds_max, sizeof(m.bounds_max));
+    noc_scene_model *to = &s->models.data[s->models.len++];
+    *to = m;
+    if (!array_reserve(&to->light_names, k->lights))
+        return noct_no_memory(f);
+    array_borrow(&to->lights, lights, k->lights);
+    for (uint32_t i = 0; i < k->lights; i++) {
+        to->light_names.data[to->light_names.len++] = noct_name_at(f, names[i]);
+        if (!noc_kept_light_fits(s, &lights[i]) || lights[i].flags & NOC_LIGHT_FREE)
+            return noct_wrong(f, "a light of model %zu is none", s->models.len);
+    }
+    return bounds_fit(k) ? f->status : noct_wrong(f, "model %zu lies nowhere", s->models.len);
+}
+
+noc_status noc_kept_models(noct_file *f, noc_scene *s) {
+    size_t count, lights, names, taken = 0;
+    const kept_model *k = noct_array(f, "models", sizeof(*k), &count);
+    noc_light_record *light = noct_array(f, "modelli", sizeof(*light), &lights);
+    const uint32_t *name = noct_array(f, "modelnam", sizeof(*name), &names);
+    if (count > UINT16_MAX || lights != names)
+        return noct_wrong(f, "it has %zu models with %zu lights", count, lights);
+    if (!array_reserve(&s->models, count))
+        return noct_no_memory(f);
+    for (size_t i = 0; i < count && !f->status; taken += k[i++].lights)
+        if (k[i].lights > lights - taken)
+            noct_wrong(f, "model %zu has lights of others", i + 1);
+        else
+            take_model(f, s, &k[i], light + taken, name + taken);
+    return f->status || taken == lights ? f->status : noct_wrong(f, "lights of no model");
+}
+
+typedef struct kept_instance {
+    uint32_t model;
+    float transform[12];
+} kept_instance;
+
+void noc_keep_instances(noct_writer *w, const noc_scene *s) {
+    noct_begin(w, "instance");
+    for (size_t i = 0; i < s->instances.len; i++) {
+        kept_instance k = { .model = s->instances.data[i].model };
+        memcpy(k.transform, s->instances.data[i].transform, sizeof(k.transform));
+        noct_put(w, &k, sizeof(k));
+    }
+    noct_end(w);
+    noct_begin(w, "instlit");
+    for (size_t i = 0; i < s->instances.len; i++) {
+        const noc_scene_instance *in = &s->instances.data[i];
+        if (in->model)
+            noct_put(w, in->lights, s->models.data[in->model - 1].lights.len * sizeof(*in->lights));
+    }
+    noct_end(w);
+}
+
+static bool transform_fits(const float m[12]) {
+    double square = (double)m[0] * m[0] + (double)m[4] * m[4] + (double)m[8] * m[8];
+    return noc_kept_finite(m, 12, 1e7f) && square > 0.99e-6 && square < 1.01e6;
+}
+
+/* One that stands, with its lights, which are its own. */
+static noc_status take_instance(noct_file *f, noc_scene *s, const kept_instance *k, const uint32_t *lights) {
+    noc_scene_model *model = &s->models.data[k->model - 1];
+    noc_scene_instance *in = &s->instances.data[s->instances.len - 1];
+    in->lights = noc_calloc(NOC_MAX(model->lights.len, 1u), sizeof(*in->lights));
+    if (!in->lights)
+        return noct_no_memory(f);
+    in->model = k->model;
+    model->instances++;
+    for (size_t i = 0; i < model->lights.len; i++) {
+        uint32_t flags = lights[i] < s->lights.len ? s->lights.data[lights[i]].flags : 0;
+        if (!(flags & NOC_LIGHT_OWNED) || !(flags & NOC_LIGHT_MOVES) || flags & NOC_LIGHT_FREE)
+            return noct_wrong(f, "instance %zu has lights of others", s->instances.len - 1);
+        in->lights[i] = lights[i];
+    }
+    return NOC_OK;
+}
+
+noc_status noc_kept_instances(noct_file *f, noc_scene *s) {
+    size_t count, lights, taken = 0, empty = 0;
+    const kept_instance *k = noct_array(f, "instance", sizeof(*k), &count);
+    const uint32_t *light = noct_array(f, "instlit", sizeof(*light), &lights);
+    for (size_t i = 0; i < count; i++)
+        empty += !k[i].model;
+    if (count >= INT32_MAX)
+        return noct_wrong(f, "it has %zu instances", count);
+    if (!array_reserve(&s->instances, count) || !array_reserve(&s->instance_slots.free, empty))
+        return noct_no_memory(f);
+    for (size_t i = 0; i < count && !f->status; i++) {
+        s->instances.data[s->instances.len++] = (noc_scene_instance){ .model = 0 };
+        memcpy(s->instances.data[i].transform, k[i].transform, sizeof(k[i].transform));
+        size_t own = k[i].model && k[i].model <= s->models.len ? s->models.data[k[i].model - 1].lights.len : 0;
+        if (!k[i].model)
+            s->instance_slots.free.data[s->instance_slots.free.len++] = (uint32_t)i;
+        else if (k[i].model > s->models.len || !transform_fits(k[i].transform) || own > lights - taken)
+            noct_wrong(f, "instance %zu is none", i);
+        else
+            take_instance(f, s, &k[i], light + taken);
+        taken += own;
+    }
+    return f->status || taken == lights ? f->status : noct_wrong(f, "lights of no instance");
+}
