@@ -66,11 +66,11 @@ static const struct {
 } words[] = {
     { " apartments house detached residential semidetached_house terrace bungalow dormitory hotel hostel farm cabin "
       "allotment_house houseboat static_caravan annexe tower_block individualresidence collectiveresidence "
-      "twodwellings morethantwodwellings residenceforcommunities woonfunctie logiesfunctie hospital nursing_home ",
+      "twodwellings morethantwodwellings residenceforcommunities woonfunctie logiesfunctie nursing_home ",
       FLATS },
     { " mixed_use mixed mixed_residential ", MIXED },
-    { " office offices commercial government civic public university college school kindergarten fire_station police "
-      "townhall commerceandservices publicservices kantoorfunctie onderwijsfunctie gezondheidszorgfunctie "
+    { " office offices commercial government civic public university hospital college school kindergarten fire_station "
+      "police townhall commerceandservices publicservices kantoorfunctie onderwijsfunctie gezondheidszorgfunctie "
       "train_station ",
       OFFICES },
     { " retail supermarket kiosk shop mall department_store restaurant pub trade winkelfunctie ", SHOPS },

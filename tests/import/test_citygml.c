@@ -67,6 +67,12 @@ static void test_lod_best_under_limit(void **state) {
     expect(LEVELS, 0, "foot edge");
     assert_int_equal(city_find(&sink, "foot")->cls, NOC_CLASS_GROUND);
     assert_int_equal(city_find(&sink, "edge")->cls, NOC_CLASS_ROOF);
+    /* of 3.0, where a building's own surfaces are its footprint */
+    expect(MODEL(MEMBER(BUILDING("B", BOUND("RoofSurface", "0", SQUARE("edge", "1", "3"))
+                                          LOD_SURFACES("0", SQUARE("foot", "1", "0"))))),
+           3, "edge foot");
+    assert_int_equal(city_find(&sink, "foot")->cls, NOC_CLASS_GROUND);
+    assert_int_equal(city_find(&sink, "edge")->cls, NOC_CLASS_ROOF);
 }
 
 static void test_lod_per_building(void **state) {

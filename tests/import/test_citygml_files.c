@@ -46,6 +46,49 @@ static void test_models_of_one_level(void **state) {
     city_files(&sink, files, NOC_COUNT(files));
 }
 
+/* Models that are there in version 2.0 and in 3.0: as many surfaces of each class. */
+static void test_versions(void **state) {
+    (void)state;
+    static const char *const pairs[][2] = {
+        { "berlin/Berlin_Moabit_1Bldg_v2.gml", "berlin/Berlin_Moabit_1Bldg_v3.gml" },
+        { "samples/ogc_v2/Building_LOD0-EPSG25832.gml", "samples/ogc_v3/Building_LOD0-EPSG25832.gml" },
+        { "samples/ogc_v2/Building_LOD1-EPSG25832.gml", "samples/ogc_v3/Building_LOD1-EPSG25832.gml" },
+        { "samples/ogc_v2/Building_LOD2-EPSG25832.gml", "samples/ogc_v3/Building_LOD2-EPSG25832.gml" },
+        { "samples/ogc_v2/Building_LOD3-EPSG25832.gml", "samples/ogc_v3/Building_LOD3-EPSG25832.gml.gz" },
+        { "samples/ogc_xlink/1_SimpleBuilding__CityGML_2.gml", "samples/ogc_xlink/1_SimpleBuilding__CityGML_3.gml" },
+        { "samples/ogc_xlink/2_SimpleBuilding_Roof_Overhangs__CityGML_2.gml",
+          "samples/ogc_xlink/2_SimpleBuilding_Roof_Overhangs__CityGML_3.gml" },
+        { "samples/ogc_xlink/3_Building_With_Nested_Features__CityGML_2.gml",
+          "samples/ogc_xlink/3_Building_With_Nested_Features__CityGML_3.gml" },
+        { "samples/ogc_xlink/5_Building_with_Building_Installation__CityGML_2.gml.gz",
+          "samples/ogc_xlink/5_Building_with_Building_Installation__CityGML_3.gml.gz" },
+    };
+    size_t present = 0;
+    for (size_t i = 0; i < NOC_COUNT(pairs); i++) {
+        size_t classes[2][NOC_CLASS_COUNT] = { { 0 } }, read = 0;
+        for (int version = 0; version < 2; version++) {
+            char *relative = noc_format("data/cities/%s", pairs[i][version]);
+            const char *path = shared_path(relative);
+            free(relative);
+            if (!path)
+                continue;
+            assert_int_equal(city_read(&sink, path, 3), NOC_OK);
+            read += !version || !strcmp(sink.format, "CityGML 3.0");
+            for (size_t k = 0; k < sink.polygons.len; k++)
+                classes[version][sink.polygons.data[k].cls]++;
+        }
+        present += read == 2;
+        for (int c = 0; c < NOC_CLASS_COUNT && read == 2; c++)
+            if (classes[0][c] != classes[1][c])
+                fail_msg("%s: %zu surfaces of %s, not %zu", pairs[i][1], classes[1][c], noc_class_name((noc_class)c),
+                         classes[0][c]);
+    }
+    if (!present) {
+        print_message("# skipped: shared/data/cities is not here\n");
+        skip();
+    }
+}
+
 static void test_ingolstadt(void **state) {
     (void)state;
     REQUIRE_SHARED(path, "data/cities/ingolstadt/ingolstadt_lod3_combined.gml.gz")
@@ -232,8 +275,9 @@ static void test_cut_building(void **state) {
 int main(void) {
 #define T(f) cmocka_unit_test_teardown(f, finish)
     const struct CMUnitTest tests[] = {
-        T(test_models_of_one_level), T(test_ingolstadt), T(test_levels_of_plateau), T(test_bad_files),
-        T(test_known_faults),        T(test_mutations),  T(test_garbage),           T(test_cut_building),
+        T(test_models_of_one_level), T(test_versions),  T(test_ingolstadt),
+        T(test_levels_of_plateau),   T(test_bad_files), T(test_known_faults),
+        T(test_mutations),           T(test_garbage),   T(test_cut_building),
     };
     return cmocka_run_group_tests_name("import/citygml_files", tests, NULL, NULL);
 }

@@ -256,6 +256,10 @@ static bool start_geometry_property(cg_parser *p, cg_frame *frame, const attribu
         p->object.features.data[frame->feature].type->part == CG_PART_SPACE)
         return false;
     cg_geometry geometry = { .lod = frame->name.value >> 4, .role = frame->name.value & 15, .feature = frame->feature };
+    const cg_feature_type *type = p->object.features.data[frame->feature].type;
+    bool surfaces = geometry.role == CG_ROLE_SURFACES && geometry.lod == 0;
+    if (surfaces && type->kind == GEO_BUILDING && type->part == CG_PART_BODY)
+        geometry.role = CG_ROLE_FOOTPRINT; /* of 3.0, whose edges of roofs are surfaces of a roof */
     if (geometry.role == CG_ROLE_FOOTPRINT || geometry.role == CG_ROLE_ROOF_EDGE)
         geometry.lod = 0; /* flat outlines, whatever level they claim */
     frame->geometry = (uint32_t)p->object.geometries.len;
