@@ -11,7 +11,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #define GROUP "Animation"
 #define MOST_PICTURES 1000000
@@ -36,6 +38,8 @@ static const noc_option animation_options[] = {
     { "samples", GROUP, NOC_OPTION_INT, offsetof(A, samples), 1, 1e6, NULL, "", "frames averaged in each picture" },
     { "segment", GROUP, NOC_OPTION_INT, offsetof(A, segment), 0, MOST_PICTURES, NULL, "",
       "pictures that learn from those before them; 1 = none does; 0 = 1, or 48 with reuse in time" },
+    { "mp4", GROUP, NOC_OPTION_SWITCH, offsetof(A, film), 0, 2, NULL, "",
+      "a film of the pictures, too, by the program ffmpeg; auto: where it is found" },
     { "overwrite", GROUP, NOC_OPTION_BOOL, offsetof(A, overwrite), 0, 1, NULL, "",
       "render pictures that are there, too, and replace files that are none of this animation" },
     { NULL },
@@ -51,7 +55,9 @@ typedef struct animation {
     cli_series series;
     char key[17]; /* of all that decides its pictures */
     int pictures, segment, warm_up;
-    bool *kept; /* by picture: it is there already */
+    char *film, *ffmpeg; /* NULL: none is made */
+    bool filmed;         /* it is there */
+    bool *kept;          /* by picture: it is there already */
     int kept_count, made;
     double frames, done; /* to render, and rendered */
     double began;        /* wall clock */
@@ -85,6 +91,51 @@ static int check_path(const render_args *args) {
                      nearest ? "?" : "");
 }
 
+static bool is_png(const cli_series *series) {
+    size_t n = strlen(series->suffix);
+    return n >= 4 && !strcasecmp(series->suffix + n - 4, ".png");
+}
+
+/* auto: of pictures as they are seen. */
+static bool wants_film(const render_args *args, const cli_series *series) {
+    bool likely = is_png(series) && !args->show;
+    return args->animation.film == NOC_SWITCH_AUTO ? likely : args->animation.film == NOC_SWITCH_ON;
+}
+
+static int check_film(const render_args *args, const cli_series *series) {
+    bool only = cli_is_film(args->output);
+    if (only && args->animation.film == NOC_SWITCH_OFF)
+        return cli_usage(&cli_render, "--no-mp4: -o %.80s is a film; frame-%%04d.png makes pictures", args->output);
+    if (!wants_film(args, series) && !only)
+        return CLI_OK;
+    if (!is_png(series))
+        return cli_usage(&cli_render, "--mp4 is for .png: a film of linear pictures would be dark");
+    char *ffmpeg = cli_find_ffmpeg(), *film = only ? cli_format("%s", args->output) : cli_series_film(series);
+    int status = cli_check_output(&cli_render, film, CLI_MP4, &args->common);
+    if (!status && !ffmpeg && (only || args->animation.film == NOC_SWITCH_ON)) {
+        cli_error("%s: films are made by the program ffmpeg, which is not on PATH; -o frame-%%04d.png makes pictures",
+                  film);
+        status = CLI_FAILURE;
+    }
+    free(ffmpeg);
+    free(film);
+    return status;
+}
+
+static int check_files(const render_args *args) {
+    cli_series series;
+    int status = cli_series_parse(args->output, &series);
+    if (status)
+        return status;
+    char *first = cli_series_file(&series, 1);
+    if (!cli_is_film(args->output)) /* whose pictures lie in a folder that is made when they are */
+        status = cli_check_output(&cli_render, first, CLI_PNG | CLI_EXR, &args->common);
+    status = status ? status : check_film(args, &series);
+    free(first);
+    cli_series_free(&series);
+    return status;
+}
+
 int cli_check_animation(const render_args *args) {
     const animation_args *a = &args->animation;
     for (const noc_option *o = animation_options; o->name && !a->on; o++)
@@ -101,14 +152,7 @@ int cli_check_animation(const render_args *args) {
     if (args->frames > MOST_PICTURES)
         return cli_usage(&cli_render, "--frames: an animation has %d pictures at most", MOST_PICTURES);
     int status = check_path(args);
-    cli_series series;
-    if (status || (status = cli_series_parse(args->output, &series)))
-        return status;
-    char *first = cli_series_file(&series, 1);
-    status = cli_check_output(&cli_render, first, CLI_PNG | CLI_EXR, &args->common);
-    free(first);
-    cli_series_free(&series);
-    return status;
+    return status ? status : check_files(args);
 }
 
 /* ---- the path ---- */
@@ -212,11 +256,70 @@ static noc_status look_at_pictures(animation *a) {
     return status;
 }
 
+/* ---- the film ---- */
+
+#define FILM_COMMENT "Nocturne animation "
+static char *film_comment(const animation *a) { return cli_format(FILM_COMMENT "%s/%d", a->key, a->pictures); }
+
+/* One that is there and was not asked for by its name is replaced where it is such a film. */
+static void plan_film(animation *a) {
+    const render_args *args = a->job->args;
+    bool only = cli_is_film(args->output);
+    struct stat st;
+    if (!only && !wants_film(args, &a->series))
+        return;
+    a->film = only ? cli_format("%s", args->output) : cli_series_film(&a->series);
+    a->ffmpeg = cli_find_ffmpeg();
+    char *comment = film_comment(a);
+    a->filmed = !a->args->overwrite && cli_file_holds(a->film, comment);
+    free(comment);
+    if (only || a->args->film == NOC_SWITCH_ON || stat(a->film, &st) || cli_file_holds(a->film, FILM_COMMENT))
+        return;
+    if (!args->common.quiet)
+        cli_error("warning: %s is there, and is no film of an animation: it is left alone; --mp4 replaces it", a->film);
+    free(a->film);
+    a->film = NULL;
+}
+
+/* The folder of a film's pictures. */
+static noc_status make_folder(const animation *a) {
+    if (!cli_is_film(a->job->args->output))
+        return NOC_OK;
+    char *folder = cli_format("%.*s", (int)strlen(a->series.prefix) - 1, a->series.prefix);
+    noc_status status = mkdir(folder, 0777) && errno != EEXIST ? NOC_ERR_IO : NOC_OK;
+    if (status)
+        cli_error("%s: cannot be made: %s", folder, strerror(errno));
+    free(folder);
+    return status;
+}
+
+/* Pictures of a film alone go when it is there. */
+static void remove_pictures(const animation *a) {
+    for (int i = 0; i < a->pictures; i++) {
+        char *file = cli_series_file(&a->series, i + 1);
+        unlink(file);
+        free(file);
+    }
+    rmdir(a->series.prefix);
+}
+
+static noc_status make_film(animation *a) {
+    if (!a->film || !a->ffmpeg || (a->filmed && !a->made))
+        return NOC_OK;
+    char *comment = film_comment(a);
+    noc_status status = cli_make_film(a->ffmpeg, &a->series, a->pictures, a->args->fps, a->film, comment);
+    free(comment);
+    if (!status && cli_is_film(a->job->args->output))
+        remove_pictures(a);
+    a->filmed = !status;
+    return status;
+}
+
 /* ---- frames ---- */
 
-/* The scene and the camera as they are at that picture; before the first one, too. */
-static noc_status go_to(animation *a, int picture) {
-    double t = picture / a->args->fps, hour = noc_camera_path_hour(a->path, t);
+/* The scene and the camera as they are at that time, in seconds; before the first picture, too. */
+static noc_status go_to(animation *a, double t) {
+    double hour = noc_camera_path_hour(a->path, t);
     noc_status status = noc_camera_path_at(a->path, t, &a->job->camera);
     if (status || hour < 0 || hour == a->hour)
         return status;
@@ -256,7 +359,7 @@ static noc_status meter(animation *a) {
     noc_view *view = noc_view_create(job->device, job->scene);
     noc_status status = view ? NOC_OK : NOC_ERR_MEMORY;
     for (int i = 0; i < METERED && !status; i++) {
-        status = go_to(a, (int)((i + 0.5) * a->pictures / METERED));
+        status = go_to(a, noc_camera_path_seconds(a->path) * (i + 0.5) / METERED);
         for (int k = 0; k < METERED_FRAMES && !status; k++) {
             cli_progress_show((double)i / METERED, -1, "exposure");
             status = cli_interrupted() ? NOC_ERR_CANCELLED : noc_view_render(view, &job->camera, &p, NULL);
@@ -300,7 +403,7 @@ static noc_status render_segment(animation *a, int first, int last) {
     for (int64_t frame = from; frame < last * samples && !status; frame++) {
         int picture = (int)(frame >= 0 ? frame / samples : -((samples - 1 - frame) / samples));
         if (frame == from || frame == picture * samples) {
-            status = go_to(a, picture);
+            status = go_to(a, picture / a->args->fps);
             noc_view_restart(a->job->view);
         }
         status = status ? status : render_frame(a, &p);
@@ -346,16 +449,12 @@ static void choose_segments(animation *a) {
     a->warm_up = a->segment == 1 ? 0 : reuse ? (int)fmin(ceil(p->history), MOST_WARM_UP) : WARM_UP;
 }
 
-static noc_status make(animation *a) {
-    noc_status status = make_path(a);
-    if (status)
-        return status;
-    choose_segments(a);
-    make_key(a);
-    status = look_at_pictures(a);
+static noc_status make_pictures(animation *a) {
+    noc_status status = look_at_pictures(a);
     if (status || a->kept_count == a->pictures || cli_interrupted())
         return status;
-    status = cli_start_view(a->job);
+    status = make_folder(a);
+    status = status ? status : cli_start_view(a->job);
     if (!status && a->job->args->display.auto_exposure && !a->job->args->show)
         status = meter(a);
     status = status ? status : render_all(a);
@@ -363,14 +462,34 @@ static noc_status make(animation *a) {
     return status;
 }
 
+static noc_status make(animation *a) {
+    noc_status status = make_path(a);
+    if (status)
+        return status;
+    choose_segments(a);
+    make_key(a);
+    plan_film(a);
+    if (a->filmed && cli_is_film(a->job->args->output))
+        return NOC_OK;
+    status = make_pictures(a);
+    return status ? status : make_film(a);
+}
+
 static void tell(const animation *a) {
-    char first[200], *name = cli_series_file(&a->series, 1), *last = cli_series_file(&a->series, a->pictures);
-    printf("%s ... %s\n", noc_text_clean(first, sizeof(first), name), last);
+    char text[240], *first = cli_series_file(&a->series, 1), *last = cli_series_file(&a->series, a->pictures);
+    if (cli_is_film(a->job->args->output))
+        puts(noc_text_clean(text, sizeof(text), a->film));
+    else
+        printf("%s ... %s\n", noc_text_clean(text, sizeof(text), first), last);
     printf("  animation %d pictures", a->pictures);
     if (a->kept_count)
         printf(", %d of them were there", a->kept_count);
     printf(", %.2f s at %g a second\n", a->pictures / a->args->fps, a->args->fps);
-    free(name);
+    if (a->filmed)
+        printf("  film      %s%s\n", noc_text_clean(text, sizeof(text), a->film), a->made ? "" : ", was there");
+    else if (a->film)
+        puts("  film      none: the program ffmpeg is not on PATH");
+    free(first);
     free(last);
 }
 
@@ -395,6 +514,8 @@ int cli_animate(render_job *job) {
     }
     noc_camera_path_destroy(a.path);
     cli_series_free(&a.series);
+    free(a.film);
+    free(a.ffmpeg);
     free(a.kept);
     return ending;
 }

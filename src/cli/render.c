@@ -51,7 +51,7 @@ static const render_args defaults = {
     .display = noc_display_default_params(),
     .import = noc_import_default_params(),
     .builtin = noc_builtin_default_params(),
-    .animation = { .fps = 30, .samples = 16 },
+    .animation = { .fps = 30, .samples = 16, .film = NOC_SWITCH_AUTO },
 };
 static const char *const by_exposure[] = { "auto-exposure", "ev100", NULL }; /* --exposure says both */
 

@@ -10,6 +10,7 @@ typedef struct animation_args {
     const char *path;
     double fps, duration; /* s; 0: what the path, or the number of pictures, says */
     int samples, segment;
+    int film; /* noc_switch */
 } animation_args;
 
 typedef struct render_args {
@@ -72,10 +73,21 @@ typedef struct cli_series {
     char *prefix, *suffix; /* around the number */
     int digits;            /* of it, at least */
 } cli_series;
-/* Of what -o says: a name with one %d or %04d in it. CLI_OK, or CLI_USAGE after reporting. */
+/* Of what -o says: a name with one %d or %04d in it, or FILM.mp4, whose pictures lie in the folder FILM-frames. CLI_OK,
+ * or CLI_USAGE after reporting. */
 int cli_series_parse(const char *output, cli_series *series);
 void cli_series_free(cli_series *series);
 char *cli_series_file(const cli_series *series, int number); /* free() it */
+char *cli_series_film(const cli_series *series);             /* the film of such pictures; free() it */
+bool cli_is_film(const char *output);
+
+/* film.c */
+char *cli_find_ffmpeg(void); /* free() it; NULL: it is not in the folders of PATH */
+bool cli_file_holds(const char *file, const char *text);
+/* A film of the pictures from number 1 on, so many a second, with the comment in its metadata. It appears under its
+ * name when it is whole. NOC_ERR_CANCELLED, or NOC_ERR_IO after reporting it. */
+noc_status cli_make_film(const char *ffmpeg, const cli_series *series, int pictures, double fps, const char *name,
+                         const char *comment);
 
 /* camera.c */
 int cli_choose_camera(render_args *args); /* of the recipe, where the words say no other */

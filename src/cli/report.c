@@ -35,8 +35,8 @@ static void add_options(meta_text *meta, const render_args *args) {
             static const char *const told_otherwise[] = { "output",  "eye",    "target",     "camera-crs", "fov",
                                                           "stats",   "frames", "size",       "exposure",   "time",
                                                           "threads", "show",   "show-range", "quiet",      "verbose",
-                                                          "help",    "lamps",  "animate",    "overwrite",  "path",
-                                                          "tracks",  NULL };
+                                                          "help",    "lamps",  "animate",    "overwrite",  "mp4",
+                                                          "path",    "tracks", NULL };
             if (cli_hidden(set, o) || cli_hidden(&(cli_set){ .hidden = told_otherwise }, o) || !counts(args, o))
                 continue;
             add(meta, o->name, cli_option_value(o, (const char *)args + set->offset));

@@ -1,11 +1,18 @@
-/* Files of an animation: pictures by number. */
+/* Files of an animation: pictures by number, and their film. */
 #include "render.h"
 
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
+#define FILM ".mp4"
 #define MOST_DIGITS 9
+
+bool cli_is_film(const char *output) {
+    size_t n = strlen(output), m = strlen(FILM);
+    return n > m && output[n - m - 1] != '/' && !strcasecmp(output + n - m, FILM);
+}
 
 /* The number's place in a name: "%d", or "%04d". */
 static const char *parse_number(const char *percent, int *digits) {
@@ -21,6 +28,11 @@ static const char *parse_number(const char *percent, int *digits) {
 
 int cli_series_parse(const char *output, cli_series *series) {
     *series = (cli_series){ NULL, NULL, 6 };
+    if (cli_is_film(output)) {
+        series->prefix = cli_format("%.*s-frames/", (int)(strlen(output) - strlen(FILM)), output);
+        series->suffix = cli_format(".png");
+        return CLI_OK;
+    }
     const char *percent = strchr(output, '%');
     if (!percent)
         return cli_usage(&cli_render,
@@ -43,4 +55,17 @@ void cli_series_free(cli_series *series) {
 
 char *cli_series_file(const cli_series *series, int number) {
     return cli_format("%s%0*d%s", series->prefix, series->digits, number, series->suffix);
+}
+
+/* The pictures' name without their number, and without what parts that from it. */
+char *cli_series_film(const cli_series *series) {
+    const char *slash = strrchr(series->prefix, '/'), *name = slash ? slash + 1 : series->prefix;
+    const char *ending = strrchr(series->suffix, '.');
+    size_t n = strlen(name);
+    while (n && strchr("-_. ", name[n - 1]))
+        n--;
+    char *stem = cli_format("%.*s%.*s", (int)n, name, (int)(ending ? ending - series->suffix : 0), series->suffix);
+    char *film = cli_format("%.*s%s" FILM, (int)(name - series->prefix), series->prefix, *stem ? stem : "animation");
+    free(stem);
+    return film;
 }

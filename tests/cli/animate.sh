@@ -63,6 +63,62 @@ result $? "and leaves whole pictures alone" "$said"
 run render lamp.yaml --animate --frames 9 --samples 2 --segment 3 -o part/%02d.png
 test "$status" = 0 && grep -q '9 of them were there' out; result $? "nothing is left to do"
 
+# a film, by a program that takes pictures and tells what it was asked for
+mkdir bin
+cat >bin/ffmpeg <<'END'
+#!/bin/sh
+for last; do :; done
+{ cat; printf '%s\n' "$@"; } >"${last#file:}"
+END
+chmod +x bin/ffmpeg
+path=$PATH
+film() { PATH=$PWD/bin:$path run render lamp.yaml --animate --frames 3 --samples 1 --fps 12.5 "$@"; }
+name='-a "$(touch b)"; 100%.mp4'
+mkdir there
+film -o "there/$name"
+test "$status" = 0 && grep -aq '^comment=Nocturne animation [0-9a-f]*/3$' "there/$name" && test ! -e b &&
+    test "$(ls -A there)" = "$name" && grep -aq '^12.5$' "there/$name"
+result $? "a film alone, of any name" "$(ls -A there)"
+test "$(tr -cd '\211' <"there/$name" | wc -c)" -ge 3 && test "$(grep -ac IEND "there/$name")" = 3
+result $? "of all pictures"
+before=$(cksum <"there/$name")
+film -o "there/$name"
+grep -q 'was there' out && test "$(cksum <"there/$name")" = "$before"; result $? "it is not made twice"
+film --seed 3 -o "there/$name"
+test "$(cksum <"there/$name")" != "$before"; result $? "but anew with other options"
+film -o there/x-%02d.png
+test -e there/x.mp4 && test "$(numbers there 'x-*.png')" = 3; result $? "a film beside pictures"
+film --no-mp4 -o there/y-%02d.png
+test "$status" = 0 && test ! -e there/y.mp4; result $? "no film on request"
+echo mine >there/z.mp4
+film -o there/z-%02d.png
+test "$status" = 0 && test "$(cat there/z.mp4)" = mine && grep -q 'no film of an animation: it is left alone' err
+result $? "a file that is something else stays"
+film --mp4 -o there/z-%02d.png
+grep -aq 'Nocturne animation' there/z.mp4; result $? "unless it is asked for"
+printf '#!/bin/sh\necho one >&2\necho no such codec >&2\nexit 3\n' >bin/ffmpeg
+film -o there/f.mp4
+test "$status" = 1 && grep -q 'there/f.mp4: ffmpeg made no film of the pictures, which are there: no such codec' err &&
+    test "$(wc -l <err)" = 1 && test ! -e there/f.mp4 && test "$(numbers there/f-frames '*.png')" = 3
+result $? "a film that fails is one error, and leaves the pictures" "$(cat err)"
+test -z "$(find there -name '.*.part')"; result $? "and nothing else"
+without() { (PATH=/nowhere && export PATH && exec "$program" "$@") >out 2>err </dev/null; status=$?; }
+without render lamp.yaml --animate --frames 3 --samples 1 -o there/g-%d.png
+test "$status" = 0 && grep -q 'film      none: the program ffmpeg is not on PATH' out; result $? "without ffmpeg: pictures"
+without render lamp.yaml --animate --frames 3 -o there/h.mp4
+test "$status" = 1 && grep -q 'made by the program ffmpeg, which is not on PATH' err && test ! -e there/h-frames
+result $? "without ffmpeg: no film alone, and that is known before"
+expect "a film of linear pictures" 2 'linear pictures' render lamp.yaml --animate --mp4 -o a%d.exr
+expect "a film and none" 2 'is a film' render lamp.yaml --animate --no-mp4 -o a.mp4
+if command -v ffmpeg >/dev/null && command -v ffprobe >/dev/null; then
+    run render lamp.yaml --animate --frames 5 --size 31x17 --samples 1 --fps 25 -o there/real.mp4
+    ffprobe -v error -count_frames -show_entries stream=nb_read_frames,width,height,r_frame_rate -of csv=p=0 \
+        there/real.mp4 >real
+    test "$(cat real)" = "32,18,25/1,5"; result $? "a film by ffmpeg itself" "$(cat real)"
+else
+    skip "a film by ffmpeg itself" "ffmpeg and ffprobe are not here"
+fi
+
 # what is of something else is not touched
 before=$(cksum <part/05.png)
 expect "other options are noticed" 1 'part/01.png is there, and is of other options' \

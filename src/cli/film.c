@@ -1,0 +1,233 @@
+/* A film of an animation's pictures, by the program ffmpeg: they go to it through a pipe, so no name is read as a
+ * pattern or an option, and no shell is asked. */
+#include "render.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#define TICK 50 /* ms between looks at whether it has ended */
+
+extern char **environ;
+
+char *cli_find_ffmpeg(void) {
+    struct stat st;
+    for (const char *at = getenv("PATH"); at && *at;) {
+        size_t n = strcspn(at, ":");
+        char *program = cli_format("%.*s/ffmpeg", (int)n, at);
+        if (*at == '/' && !stat(program, &st) && S_ISREG(st.st_mode) && !access(program, X_OK))
+            return program;
+        free(program);
+        at += n + (at[n] == ':');
+    }
+    return NULL;
+}
+
+bool cli_file_holds(const char *file, const char *text) {
+    enum { CHUNK = 1 << 16 };
+    char buffer[CHUNK];
+    size_t have = 0, n, length = strlen(text);
+    bool found = false;
+    int fd = open(file, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    FILE *f = fd >= 0 ? fdopen(fd, "rb") : NULL;
+    while (f && !found && (n = fread(buffer + have, 1, sizeof(buffer) - have, f))) {
+        found = memmem(buffer, have + n, text, length) != NULL;
+        size_t tail = have + n < length ? have + n : length - 1;
+        memmove(buffer, buffer + have + n - tail, tail);
+        have = tail;
+    }
+    if (f)
+        fclose(f);
+    else if (fd >= 0)
+        close(fd);
+    return found;
+}
+
+typedef struct film {
+    pid_t pid;
+    int to;       /* its standard input */
+    FILE *said;   /* its standard error */
+    char *making; /* the file that it writes */
+} film;
+
+/* H.264 at a quality without visible loss, in the colours that players take a film's for; its sides must be even. */
+static int start(film *f, const char *ffmpeg, double fps, const char *comment) {
+    char rate[32], *said = cli_format("comment=%s", comment), *out = cli_format("file:%s", f->making);
+    snprintf(rate, sizeof(rate), "%.10g", fps);
+    const char *arguments[] = { "ffmpeg",
+                                "-nostdin",
+                                "-hide_banner",
+                                "-loglevel",
+                                "error",
+                                "-y",
+                                "-f",
+                                "image2pipe",
+                                "-c:v",
+                                "png",
+                                "-framerate",
+                                rate,
+                                "-i",
+                                "pipe:0",
+                                "-vf",
+                                "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
+                                "-c:v",
+                                "libx264",
+                                "-crf",
+                                "18",
+                                "-pix_fmt",
+                                "yuv420p",
+                                "-colorspace",
+                                "bt709",
+                                "-color_primaries",
+                                "bt709",
+                                "-color_trc",
+                                "iec61966-2-1",
+                                "-metadata",
+                                said,
+                                "-movflags",
+                                "+faststart",
+                                "-f",
+                                "mp4",
+                                out,
+                                NULL };
+    int ends[2], error = 0;
+    sigset_t none, all;
+    posix_spawn_file_actions_t actions;
+    posix_spawnattr_t attributes;
+    sigemptyset(&none);
+    sigfillset(&all);
+    f->said = tmpfile();
+    if (!f->said || pipe2(ends, O_CLOEXEC))
+        error = errno;
+    if (!error) {
+        posix_spawn_file_actions_init(&actions);
+        posix_spawnattr_init(&attributes);
+        posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
+        posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+        posix_spawn_file_actions_adddup2(&actions, fileno(f->said), STDERR_FILENO);
+        posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
+        /* signals of the terminal are ours to pass on */
+        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+        posix_spawnattr_setpgroup(&attributes, 0);
+        posix_spawnattr_setsigmask(&attributes, &none);
+        posix_spawnattr_setsigdefault(&attributes, &all);
+        error = posix_spawn(&f->pid, ffmpeg, &actions, &attributes, (char *const *)(uintptr_t)arguments, environ);
+        posix_spawnattr_destroy(&attributes);
+        posix_spawn_file_actions_destroy(&actions);
+        close(ends[0]);
+        f->to = ends[1];
+    }
+    free(said);
+    free(out);
+    return error;
+}
+
+/* One picture's bytes. False: it cannot be read, which is told; or ffmpeg has hung up, and tells why. */
+static bool send_picture(const film *f, const char *file, bool *told) {
+    char buffer[1 << 16];
+    ssize_t n = 0, sent = 0;
+    int fd = open(file, O_RDONLY | O_CLOEXEC);
+    while (fd >= 0 && sent >= 0 && (n = read(fd, buffer, sizeof(buffer))) > 0)
+        for (ssize_t at = 0; at < n && sent >= 0; at += sent)
+            sent = write(f->to, buffer + at, (size_t)(n - at));
+    if (fd < 0 || n < 0) {
+        cli_error("%s: cannot be read: %s", file, strerror(errno));
+        *told = true;
+    }
+    if (fd >= 0)
+        close(fd);
+    return fd >= 0 && n >= 0 && sent >= 0;
+}
+
+static bool send_pictures(const film *f, const cli_series *series, int pictures, bool *told) {
+    bool going = true;
+    for (int i = 0; i < pictures && going && !cli_interrupted(); i++) {
+        char *file = cli_series_file(series, i + 1);
+        cli_progress_show((double)i / pictures, -1, "film, picture %d of %d", i + 1, pictures);
+        going = send_picture(f, file, told);
+        free(file);
+    }
+    return going;
+}
+
+/* Its exit status; -1: it was ended. */
+static int wait_for_end(const film *f) {
+    int how;
+    pid_t got;
+    while (!(got = waitpid(f->pid, &how, WNOHANG)) || (got < 0 && errno == EINTR)) {
+        if (cli_interrupted())
+            kill(f->pid, SIGKILL);
+        poll(NULL, 0, TICK);
+    }
+    return got > 0 && WIFEXITED(how) ? WEXITSTATUS(how) : -1;
+}
+
+/* The last line of what it said. */
+static void last_line(FILE *said, char *line, size_t size) {
+    char next[512];
+    snprintf(line, size, "it said nothing");
+    rewind(said);
+    while (fgets(next, sizeof(next), said)) {
+        next[strcspn(next, "\r\n")] = 0;
+        if (*next)
+            noc_text_clean(line, size, next);
+    }
+}
+
+/* Under its name only when it is whole. */
+static bool publish(const film *f, const char *name) {
+    int fd = open(f->making, O_RDONLY | O_CLOEXEC);
+    bool done = fd >= 0 && (!fsync(fd) || errno == EINVAL) && !rename(f->making, name);
+    if (!done)
+        cli_error("%s: cannot be written: %s", name, strerror(errno));
+    if (fd >= 0)
+        close(fd);
+    return done;
+}
+
+noc_status cli_make_film(const char *ffmpeg, const cli_series *series, int pictures, double fps, const char *name,
+                         const char *comment) {
+    const char *slash = strrchr(name, '/'), *base = slash ? slash + 1 : name;
+    film f = { .to = -1, .making = cli_format("%.*s.%.200s.part", (int)(base - name), name, base) };
+    struct sigaction before, ignore = { .sa_handler = SIG_IGN };
+    sigaction(SIGPIPE, &ignore, &before); /* one that hangs up is an error, not our end */
+    int error = start(&f, ffmpeg, fps, comment), ended = 0;
+    bool told = false, sent = !error && send_pictures(&f, series, pictures, &told);
+    if (f.to >= 0)
+        close(f.to);
+    if (error) {
+        cli_error("%s: %s cannot be started: %s", name, ffmpeg, strerror(error));
+    } else {
+        if (told)
+            kill(f.pid, SIGKILL);
+        ended = wait_for_end(&f);
+    }
+    cli_progress_clear();
+    sigaction(SIGPIPE, &before, NULL);
+    noc_status status = NOC_OK;
+    char line[300];
+    if (cli_interrupted()) {
+        status = NOC_ERR_CANCELLED;
+    } else if (error || told || !sent || ended) {
+        if (!error && !told) {
+            last_line(f.said, line, sizeof(line));
+            cli_error("%s: ffmpeg made no film of the pictures, which are there: %s", name, line);
+        }
+        status = NOC_ERR_IO;
+    } else if (!publish(&f, name)) {
+        status = NOC_ERR_IO;
+    }
+    if (status)
+        unlink(f.making);
+    if (f.said)
+        fclose(f.said);
+    free(f.making);
+    return status;
+}
