@@ -319,14 +319,19 @@ static noc_status make_film(animation *a) {
 
 /* The scene and the camera as they are at that time, in seconds; before the first picture, too. */
 static noc_status go_to(animation *a, double t) {
+    render_job *job = a->job;
+    const noc_import_params *import = &job->args->import;
     double hour = noc_camera_path_hour(a->path, t);
-    noc_status status = noc_camera_path_at(a->path, t, &a->job->camera);
-    if (status || hour < 0 || hour == a->hour)
-        return status;
-    noc_window_params windows = a->job->args->import.window;
-    windows.hour = a->hour = hour;
-    status = noc_scene_set_windows(a->job->scene, &windows);
-    return status ? status : noc_scene_commit(a->job->scene);
+    bool switches = hour >= 0 && hour != a->hour;
+    noc_status status = noc_camera_path_at(a->path, t, &job->camera);
+    if (!status && switches) {
+        noc_window_params windows = import->window;
+        windows.hour = a->hour = hour;
+        status = noc_scene_set_windows(job->scene, &windows);
+    }
+    if (!status && job->scene_info.cars)
+        status = noc_scene_set_time(job->scene, import->cars.time + t);
+    return status || !(switches || job->scene_info.cars) ? status : noc_scene_commit(job->scene);
 }
 
 static bool progress(void *user, const char *what, double done) {

@@ -104,7 +104,8 @@ result $? "a film that fails is one error, and leaves the pictures" "$(cat err)"
 test -z "$(find there -name '.*.part')"; result $? "and nothing else"
 without() { (PATH=/nowhere && export PATH && exec "$program" "$@") >out 2>err </dev/null; status=$?; }
 without render lamp.yaml --animate --frames 3 --samples 1 -o there/g-%d.png
-test "$status" = 0 && grep -q 'film      none: the program ffmpeg is not on PATH' out; result $? "without ffmpeg: pictures"
+test "$status" = 0 && grep -q 'film      none: the program ffmpeg is not on PATH' out
+result $? "without ffmpeg: pictures"
 without render lamp.yaml --animate --frames 3 -o there/h.mp4
 test "$status" = 1 && grep -q 'made by the program ffmpeg, which is not on PATH' err && test ! -e there/h-frames
 result $? "without ffmpeg: no film alone, and that is known before"
@@ -118,6 +119,52 @@ if command -v ffmpeg >/dev/null && command -v ffprobe >/dev/null; then
 else
     skip "a film by ffmpeg itself" "ffmpeg and ffprobe are not here"
 fi
+
+# the scene moves with the pictures: a car of 10 m/s, and windows by the hour
+cp "$source_dir/tests/cli/city.gml" .
+cat >track.gpx <<'END'
+<?xml version='1.0'?><gpx version='1.1' xmlns='http://www.topografix.com/GPX/1/1'><trk><trkseg>
+<trkpt lat='48.75448' lon='11.42168'><time>2026-11-22T22:00:00Z</time></trkpt>
+<trkpt lat='48.75447' lon='11.42222'><time>2026-11-22T22:00:04Z</time></trkpt></trkseg></trk></gpx>
+END
+cat >town.yaml <<'END'
+nocturne: 1
+inputs: [city.gml, track.gpx]
+width: 48
+height: 27
+paths:
+  stand: { keys: [{ eye: [5, -35, 408], target: [5, -10, 401] }] }
+  night:
+    keys:
+      - { eye: [5, -12, 404], target: [5, 0, 403], hour: 21 }
+      - { eye: [5, -12, 404], target: [5, 0, 403], hour: 4, seconds: 2 }
+END
+pictures="--animate --frames 6 --fps 2 --samples 2 --preset interactive --segment 4 --no-mp4"
+mkdir cars cars-part
+# shellcheck disable=SC2086 # options
+run render town.yaml $pictures -o cars/%d.png
+cp cars/2.png cars/6.png cars-part
+# shellcheck disable=SC2086
+run render town.yaml $pictures -o cars-part/%d.png
+for f in cars/*; do cmp -s "$f" "cars-part/${f#cars/}" || echo "$f"; done >why
+test "$(numbers cars-part '*.png')" = 6 && test ! -s why; result $? "goes on where a car moves" "$(cat why)"
+classes="--show class --no-jitter --samples 1 --fps 2 --frames 3"
+# shellcheck disable=SC2086
+run render town.yaml --animate $classes -o class-%d.png
+run render town.yaml --show class --no-jitter --eye 5,-35,408 --target 5,-10,401 --traffic-time 1 --frames 1 -o car.png
+test "$(meta class-3.png pixels)" = "$(meta car.png pixels)" &&
+    test "$(meta class-1.png pixels)" != "$(meta car.png pixels)"
+result $? "a car is where the picture's time has it"
+dark="--samples 8 --no-traffic --no-infer-lamps --sky 0"
+# shellcheck disable=SC2086
+run render town.yaml --animate --path night --fps 1 $dark -o hour-%d.exr
+run render town.yaml --no-traffic --no-infer-lamps --sky 0 --eye 5,-12,404 --target 5,0,403 --hour 4 --frames 8 -o 4.exr
+for i in 1 3; do
+    run compare hour-$i.exr 4.exr
+    awk '/see no emitter/ { print $NF }' out
+done >bias
+awk 'NR == 1 { first = $1 } NR == 2 { last = $1 } END { exit !(first > 3 && last > 0.98 && last < 1.02) }' bias
+result $? "windows are lit by the hour of the path" "$(tr '\n' ' ' <bias)"
 
 # what is of something else is not touched
 before=$(cksum <part/05.png)
