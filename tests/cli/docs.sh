@@ -121,7 +121,7 @@ sed 's/.*: *//' offers >wanted
 for command in render info compare experiment; do # all its options, as its help has them
     echo "nocturne $command --" >>lines
     "$program" help $command | grep -o -- '^  \(-., \)\?--[^ ]*' |
-        sed 's/.*--/--/; s/--\[no-\]\(infer-lamps\|scene\|traffic\|windows\)/--\1 --no-\1/; s/\[no-\]/no-/' |
+        sed 's/.*--/--/; s/--\[no-\]\(infer-lamps\|mp4\|scene\|traffic\|windows\)/--\1 --no-\1/; s/\[no-\]/no-/' |
         tr '\n' ' ' >>wanted
     echo >>wanted
 done
