@@ -160,6 +160,21 @@ static noc_status water(void *ctx, const geo_polygon *area) {
     return NOC_OK;
 }
 
+static noc_status track(void *ctx, const geo_track *t) {
+    fuzz_sink *s = ctx;
+    const double *xyz = t->xyz, *seconds = t->seconds;
+    FUZZ_REQUIRE(!s->in_object && s->told && t->part_count);
+    for (size_t p = 0; p < t->part_count; p++) {
+        FUZZ_REQUIRE(t->part_size[p] >= 2);
+        for (size_t i = 0; i < t->part_size[p]; i++, xyz += 3, seconds += t->seconds != NULL) {
+            FUZZ_REQUIRE(isfinite(xyz[0]) && isfinite(xyz[1]) && (!t->seconds || isfinite(*seconds)));
+            s->sum += xyz[0] + xyz[1];
+        }
+    }
+    s->sum += (double)strlen(t->id);
+    return NOC_OK;
+}
+
 static bool progress(void *ctx, double done) {
     (void)ctx;
     FUZZ_REQUIRE(done >= 0 && done <= 1);
@@ -179,6 +194,7 @@ void fuzz_sink_start(fuzz_sink *s, noc_log *log) {
                           .footprint = footprint,
                           .road = road,
                           .water = water,
+                          .track = track,
                           .progress = progress };
 }
 

@@ -650,6 +650,24 @@ put("spec", "small", json.dumps({
     "configurations": [{"name": "x", "method": "ris", "draws": [4, 8]},
                        {"name": "y", "method": "restir", "bias": "mis", "seconds": 2}]}))
 
+# ---- tracks ----
+
+trkpt = '<trkpt lat="%s" lon="%s"><ele>500</ele><time>2026-11-22T22:00:%02dZ</time></trkpt>'
+gpx = ('<?xml version="1.0"?><gpx version="1.1" xmlns="http://www.topografix.com/GPX/1/1"><wpt lat="1" lon="2"/><trk>'
+       '<name>a</name><trkseg>%s</trkseg><trkseg>%s</trkseg></trk><rte><rtept lat="48" lon="11"/>'
+       '<rtept lat="48.1" lon="11"/></rte></gpx>'
+       % ("".join(trkpt % (48.1 + i / 1000, 11.5, i) for i in range(3)),
+          "".join(trkpt % (48.1, 11.5 + i / 1000, i + 9) for i in range(2))))
+put("tracks", "small.gpx", gpx)
+put("tracks", "points.xml", '<points><point lat="48.1" lon="11.5" end="false"/>'
+    '<point lat="48.2" lon="11.5" end="true"/>'
+    '<p><latitude>48</latitude><longitude>11</longitude><end>false</end></p></points>')
+put("tracks", "rows.csv", "track_id,time,lon,lat\na,1,11.5,48.1\nb,2026-11-22T22:00:00+01:00,11.6,48.1\n"
+    "a,2,11.5,48.2\n")
+put("tracks", "lines.json", json.dumps({"type": "FeatureCollection", "features": [
+    {"type": "Feature", "properties": {"@id": "way/7"}, "geometry":
+     {"type": "MultiLineString", "coordinates": [[[11.5, 48.1], [11.5, 48.2]], [[11, 48], [11, 48.1]]]}}]}))
+
 # ---- recipes ----
 
 put("recipe", "small", "nocturne: 1\ninputs: builtin:city\n")

@@ -26,6 +26,7 @@ pbf lamps 8192 lamps pbf
 gpkg lamps 65536 lamps gpkg
 shp lamps 8192 lamps shp
 fgb lamps 8192 lamps fgb
+tracks tracks 8192 tracks gpx
 stream stream 4096 - gz,zip
 png image 4096 - png
 exr image 8192 - exr

@@ -238,8 +238,9 @@ typedef struct geo_sink {
     noc_status (*features)(void *ctx, const geo_features *features);
     /* fraction of the file read; false: cancelled */
     bool (*progress)(void *ctx, double done);
-    bool named_lamps; /* the user says that the file's points are lamps */
-    bool inspect;     /* a file of no use is told about, and no error */
+    bool named_lamps;  /* the user says that the file's points are lamps */
+    bool named_tracks; /* that its lines are tracks: those of maps come as roads, whatever they are */
+    bool inspect;      /* a file of no use is told about, and no error */
 } geo_sink;
 
 /* ---- points by place (cells.c) ---- */

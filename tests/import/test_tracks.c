@@ -2,6 +2,7 @@
 #include "test.h"
 
 #include "import/import.h"
+#include "noc_config.h"
 #include "import/tracks/tracks.h"
 #include "scene/scene.h"
 #include <nocturne/nocturne.h>
@@ -138,6 +139,60 @@ static void test_points(void **state) {
     assert_place(at(0, 1e-3), 0, 0);
 }
 
+static void name_it(noc_import_params *params) {
+    *params = noc_import_default_params();
+    params->tracks = (noc_texts){ { path }, 1 };
+}
+
+/* Two tracks whose rows come by turns; times, or none. */
+static void test_table(void **state) {
+    noc_import_params params;
+    name_it(&params);
+    assert_int_equal(load(&params,
+                          "Track ID;Time;lon;lat\na;2026-01-01T00:00:00Z;15;45\nb;2026-01-01T00:00:00Z;15.005;45\n"
+                          "a;2026-01-01T00:00:10Z;15;45.001\nb;2026-01-01T00:00:20Z;15.005;45.001\n"
+                          "b;late;x;45\n"),
+                     NOC_OK);
+    assert_int_equal(noc_report_get_file(report, 0)->tracks, 2);
+    assert_int_equal(line("point of a track without a place"), 1);
+    assert_int_equal(scene->cars.len, 2);
+    assert_place(at(0, 5), 0, .0005 * DEGREE_N);
+    assert_place(at(1, 5), .005 * DEGREE_E, .00025 * DEGREE_N);
+    params.crs = "EPSG:32633";
+    assert_int_equal(load(&params, "x,y\n500000,4982950.4\n500000,4983050.4\n"), NOC_OK);
+    assert_place(at(0, 3.6), 0, 40);
+    assert_int_equal(load(&params, "a,b\n1,2\n"), NOC_ERR_FORMAT); /* no coordinates */
+    params.crs = NULL;
+    params.tracks.count = 0;
+    assert_int_equal(load(&params, "Track ID;Time;lon;lat\na;1;15;45\na;2;15;45.001\n"),
+                     NOC_ERR_FORMAT); /* nobody says so */
+}
+
+#if NOC_HAVE_GDAL
+static void test_maps(void **state) {
+    noc_import_params params;
+    name_it(&params);
+    for (int isolate = 0; isolate < 2; isolate++) {
+        params.isolate = isolate;
+        assert_int_equal(load(&params,
+                              "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":{"
+                              "\"route\":\"7\"},\"geometry\":{\"type\":\"MultiLineString\",\"coordinates\":[[[15,45],"
+                              "[15,45.001]],[[15.005,45],[15.005,45.001]]]}}]}"),
+                         NOC_OK);
+        assert_int_equal(scene->cars.len, 2);
+        assert_place(at(1, 3.6), .005 * DEGREE_E, 40);
+        assert_int_equal(load(&params,
+                              "<osm version='0.6'><node id='1' lat='45' lon='15'/><node id='2' lat='45.001' "
+                              "lon='15'/><way id='3'><nd ref='1'/><nd ref='2'/><tag k='highway' v='service'/></way>"
+                              "<way id='4'><nd ref='1'/><nd ref='2'/><tag k='railway' v='tram'/></way></osm>"),
+                         NOC_OK);
+        assert_int_equal(scene->cars.len, 1);
+        assert_int_equal(line("line that cars do not drive on"), 1);
+        assert_place(at(0, 3.6), 0, 40);
+    }
+}
+#endif
+
 static void test_skipped(void **state) {
     load_well("<gpx><trk><trkseg><trkpt lat='45' lon='15'/></trkseg></trk><rte><rtept lat='45' lon='15'/><rtept "
               "lat='91' lon='15'/><rtept lat='45.00001' lon='15'/></rte><trk><trkseg><trkpt lat='47' lon='15'/><trkpt "
@@ -195,8 +250,17 @@ static int finish(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_gpx),    cmocka_unit_test(test_removed),
-                                        cmocka_unit_test(test_points), cmocka_unit_test(test_skipped),
-                                        cmocka_unit_test(test_times),  cmocka_unit_test(test_switch) };
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_gpx),
+        cmocka_unit_test(test_removed),
+        cmocka_unit_test(test_points),
+        cmocka_unit_test(test_skipped),
+        cmocka_unit_test(test_times),
+        cmocka_unit_test(test_switch),
+        cmocka_unit_test(test_table),
+#if NOC_HAVE_GDAL
+        cmocka_unit_test(test_maps),
+#endif
+    };
     return cmocka_run_group_tests(tests, start, finish);
 }

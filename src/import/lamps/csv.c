@@ -1,5 +1,6 @@
 /* Tables of lamps with a header line: commas, semicolons, tabs or bars, quotes as in RFC 4180, UTF-8 or Latin-1. */
 #include "import/lamps/tags.h"
+#include "import/tracks/tracks.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -428,6 +429,51 @@ static noc_status read_rows(csv *c, const columns *cols, lamp_writer *w) {
     return status;
 }
 
+/* A table that the user names as tracks: a row is a point of one. */
+static noc_status read_track_rows(csv *c, const columns *cols, geo_sink *sink, track_rows *rows) {
+    const track_columns of = track_columns_of((const char *const *)cols->names, cols->count);
+    noc_status status;
+    while (!(status = read_record(c)) && c->start.len) {
+        char row[32];
+        double x, y;
+        name_row(row, c->line);
+        if (c->start.len == 1 && !*field(c, 0))
+            continue;
+        if (c->start.len != cols->count) {
+            geo_issue(sink->issues, GEO_SKIPPED, "row with too few or too many columns", row);
+            continue;
+        }
+        if (!read_place(c, cols, &x, &y)) {
+            geo_issue(sink->issues, GEO_SKIPPED, "point of a track without a place", row);
+            continue;
+        }
+        const char *track = of.track >= 0 ? field(c, (size_t)of.track) : "";
+        if (!track_rows_add(rows, track, x, y, of.time >= 0 ? field(c, (size_t)of.time) : NULL))
+            return no_memory(c);
+        size_t count = rows->rows.len;
+        if (count % 4096)
+            continue;
+        status = import_affords(noc_stream_budget(c->stream), 128.0 * (double)count, noc_stream_name(c->stream),
+                                "its tracks", c->log);
+        if (!status && sink->progress && !sink->progress(sink->ctx, noc_stream_progress(c->stream)))
+            status = NOC_ERR_CANCELLED;
+        if (status)
+            return status;
+    }
+    return status;
+}
+
+static noc_status read_tracks(csv *c, columns *cols, lamp_writer *w, const noc_import_params *params) {
+    track_rows rows = { 0 };
+    noc_status status = settle_crs(c, cols, w, params);
+    if (!status)
+        status = read_track_rows(c, cols, w->sink, &rows);
+    if (!status)
+        status = track_rows_emit(&rows, w->sink, c->stream, w->geographic);
+    track_rows_free(&rows);
+    return status;
+}
+
 /* What tells that the rows are lamps: the user, tags, columns, values, or nothing. */
 static noc_status judge(csv *c, columns *cols, lamp_writer *w) {
     noc_status status = NOC_OK;
@@ -456,15 +502,18 @@ noc_status lamp_csv_read(noc_stream *stream, const noc_import_params *params, ge
     status = read_header(c, &cols);
     if (!status)
         status = find_decimal_sign(c, &cols);
-    if (!status && sink->decimal_sign)
+    if (!status && sink->decimal_sign && !sink->named_tracks)
         *sink->decimal_sign = lamp_keys_decimal(w.keys) ? lamp_keys_decimal(w.keys) : '?';
-    if (!status)
+    bool tracks = sink->named_tracks;
+    if (!status && tracks)
+        status = read_tracks(c, &cols, &w, params);
+    if (!status && !tracks)
         status = judge(c, &cols, &w);
-    if (!status && !w.strange)
+    if (!status && !tracks && !w.strange)
         status = settle_crs(c, &cols, &w, params);
-    if (!status)
+    if (!status && !tracks)
         status = read_rows(c, &cols, &w);
-    if (!status)
+    if (!status && !tracks)
         status = lamp_writer_end(&w);
     lamp_writer_free(&w);
     free_columns(&cols);

@@ -52,7 +52,7 @@ static noc_status find_for(importer *im, input *in, const noc_reader *const *rea
     const char *name = noc_stream_name(stream);
     in->bytes = noc_stream_size(stream);
     in->reader = find_reader(readers, head, size);
-    if (!in->reader && in->named_lamps)
+    if (!in->reader && (in->named_lamps || in->named_tracks))
         in->reader = find_named(readers, head, size);
     in->remote = in->reader && in->reader->foreign && im->params->isolate && in->reader->foreign(head, size);
     if (!size)
@@ -62,8 +62,8 @@ static noc_status find_for(importer *im, input *in, const noc_reader *const *rea
     if (in->named_lamps && in->reader->reads != NOC_READS_LAMPS)
         return noc_error(log, NOC_ERR_FORMAT, "%s: this is %s, and --lamps is for tables and maps of points", name,
                          in->reader->name);
-    if (in->named_tracks && in->reader->reads != NOC_READS_TRACKS)
-        return noc_error(log, NOC_ERR_FORMAT, "%s: this is %s, and --tracks is for tracks of cars", name,
+    if (in->named_tracks && in->reader->reads != NOC_READS_TRACKS && in->reader->reads != NOC_READS_LAMPS)
+        return noc_error(log, NOC_ERR_FORMAT, "%s: this is %s, and --tracks is for GPX, tables and maps of lines", name,
                          in->reader->name);
     if (in->reader->missing)
         return noc_error(log, NOC_ERR_UNSUPPORTED, "%s: this is %s, but %s", name, in->reader->name,

@@ -214,6 +214,15 @@ static noc_status on_footprint(void *ctx, const geo_footprint *footprint) {
     return footprint_keep(r->im, r->in, r->index, &local);
 }
 
+/* Of a map whose lines are tracks. */
+static noc_status road_to_track(reading *r, const geo_road *road) {
+    const geo_track track = { road->id, 1, &road->point_count, road->xyz, NULL };
+    if (road->cls != GEO_ROAD_RAIL && road->motor)
+        return track_keep(r->im, r->in, r->index, &track);
+    geo_issue(r->in->issues, GEO_SPARED, "line that cars do not drive on", road->id);
+    return NOC_OK;
+}
+
 static noc_status on_road(void *ctx, const geo_road *road) {
     reading *r = ctx;
     size_t numbers = 3 * road->point_count;
@@ -230,6 +239,8 @@ static noc_status on_road(void *ctx, const geo_road *road) {
         return status;
     geo_road local = *road;
     local.xyz = r->scratch.data;
+    if (r->in->named_tracks)
+        return road_to_track(r, &local);
     return road_keep(r->im, r->in, &local);
 }
 
@@ -346,13 +357,14 @@ geo_sink sink_create(reading *r) {
                        .end_object = on_end_object,
                        .lamp = on_lamp,
                        .footprint = r->im->params->footprints ? on_footprint : NULL,
-                       .road = roads_wanted(r->im->params) ? on_road : NULL,
+                       .road = roads_wanted(r->im->params) || r->in->named_tracks ? on_road : NULL,
                        .track = on_track,
                        .water = roads_wanted(r->im->params) ? on_water : NULL,
                        .columns = on_columns,
                        .features = on_features,
                        .progress = on_progress,
                        .named_lamps = r->in->named_lamps,
+                       .named_tracks = r->in->named_tracks,
                        .inspect = r->im->inspect };
 }
 

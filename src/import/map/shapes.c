@@ -100,6 +100,10 @@ static noc_status emit_line(map_reading *m, OGRGeometryH line, geo_road *road) {
 static noc_status read_road(map_reading *m, OGRGeometryH g, OGRwkbGeometryType type, bool *is) {
     geo_road road;
     *is = road_read(m->tags.tags.data, m->tags.tags.len, &road);
+    if (!*is && m->writer.sink->named_tracks && m->format->kind != MAP_OSM) { /* what it is says the user */
+        *is = true;
+        road = (geo_road){ .name = "", .cls = GEO_ROAD_MINOR, .motor = true, .width = NAN, .speed = NAN };
+    }
     if (!*is)
         return NOC_OK;
     road.id = m->tags.id;

@@ -51,7 +51,7 @@ typedef struct remote_head {
 } remote_head;
 typedef struct remote_asked {
     int32_t parent;
-    bool named_lamps, inspect, footprints, roads;
+    bool named_lamps, inspect, footprints, roads, named_tracks;
 } remote_asked;
 typedef struct remote_object {
     int32_t kind, lod;

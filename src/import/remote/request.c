@@ -41,8 +41,8 @@ void remote_ask(remote_record *batch, const noc_reader *reader, const char *path
     remote_put_text(&one, path);
     remote_add(batch, REMOTE_PATH, &one);
     ask_options(params, batch, &one);
-    remote_asked asked = { (int32_t)getpid(), sink->named_lamps, sink->inspect, sink->footprint != NULL,
-                           sink->road != NULL };
+    remote_asked asked = { (int32_t)getpid(),       sink->named_lamps,  sink->inspect,
+                           sink->footprint != NULL, sink->road != NULL, sink->named_tracks };
     remote_put(&one, &asked, sizeof(asked));
     remote_add(batch, REMOTE_SINK, &one);
     remote_add(batch, REMOTE_GO, &one);
@@ -74,7 +74,7 @@ static bool take(remote_request *q, uint32_t kind, remote_record *r) {
         unsigned char flags[sizeof(q->sink)];
         bool whole = remote_get(r, flags, sizeof(flags)) && flags[offsetof(remote_asked, named_lamps)] <= 1 &&
                      flags[offsetof(remote_asked, inspect)] <= 1 && flags[offsetof(remote_asked, footprints)] <= 1 &&
-                     flags[offsetof(remote_asked, roads)] <= 1;
+                     flags[offsetof(remote_asked, roads)] <= 1 && flags[offsetof(remote_asked, named_tracks)] <= 1;
         if (whole)
             memcpy(&q->sink, flags, sizeof(flags));
         r->bad = !whole;

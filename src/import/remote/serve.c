@@ -207,6 +207,7 @@ static void serve(serving *s) {
                       .columns = on_columns,
                       .features = on_features,
                       .named_lamps = s->asked.sink.named_lamps,
+                      .named_tracks = s->asked.sink.named_tracks,
                       .inspect = s->asked.sink.inspect };
     const mesh_parts parts = { .ctx = s, .log = log, .issues = issues, .material = on_material, .mesh = on_mesh };
     const char *format = s->asked.reader->name;

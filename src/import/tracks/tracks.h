@@ -31,6 +31,30 @@ void track_point(track_writer *w, double x, double y, double seconds); /* second
 void track_end_part(track_writer *w);
 void track_end(track_writer *w);
 
+/* ---- table.c ---- */
+
+typedef struct track_columns {
+    int track, time; /* -1: none */
+} track_columns;
+track_columns track_columns_of(const char *const *names, size_t count);
+
+typedef struct track_row {
+    double x, y, seconds;
+    uint32_t track, order;
+} track_row;
+
+typedef struct track_rows {
+    NOC_ARRAY(track_row) rows;
+    NOC_ARRAY(const char *) names; /* of tracks */
+    noc_map tracks;                /* their numbers */
+    noc_arena arena;
+} track_rows;
+/* time: NULL: there is none. false: memory was refused. */
+bool track_rows_add(track_rows *rows, const char *track, double x, double y, const char *time) NOC_MUST_USE;
+/* A track's points in the order of its rows. */
+noc_status track_rows_emit(track_rows *rows, geo_sink *sink, noc_stream *stream, bool geographic);
+void track_rows_free(track_rows *rows);
+
 /* ---- time.c ---- */
 
 /* Seconds since 1970 of a time as XML Schema and ISO 8601 write it ("2013-03-16T14:56:31.69Z", with an offset, or with
