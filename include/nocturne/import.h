@@ -83,7 +83,12 @@ typedef struct noc_import_params {
     bool profiles;      /* lamps have luminous intensity distributions, built-in ones by their kind; default true.
                            false: Lambertian discs, spheres that shine alike to all sides */
     const char
-        *lamp_profile;    /* a luminaire's file (IES, EULUMDAT) that all lamps have; NULL, the default: built-in ones */
+        *lamp_profile; /* a luminaire's file (IES, EULUMDAT) that all lamps have; NULL, the default: built-in ones */
+    /* The user's own body for lamps that stand on poles or hang on walls: an OBJ, a PLY or a glTF, shown by instances.
+     * z is up, its front looks along -y (a glTF's +z), metres. A mesh that is called "light" (not shown), or a glTF's
+     * light, is where it shines: then it is a whole lamp, which stands on 0 and is scaled to the lamp's height. Else it
+     * is a head, which shines from 0 downwards, on poles of ours. NULL, the default: bodies of ours */
+    const char *lamp_body;
     unsigned lamp_chosen; /* those of these three that are the caller's own word, so that strict lets them stand in for
                              what lamps do not tell: 1 << NOC_LAMP_HEIGHT and so on; default 0 */
     /* Windows on the walls of buildings? AUTO, the default, and ON: on those of every city model. OFF: nowhere. */

@@ -13,12 +13,20 @@ void city_profiles_destroy(city_profiles *profiles);
 /* "cobra-head 40, post-top 3": which lights have which; NULL: "". */
 void city_profiles_tell(const city_profiles *profiles, char *text, size_t size);
 
+/* A body of the user's for lamps, shown by instances: z is up, its front looks along -y. */
+typedef struct city_body {
+    int model;       /* of the scene */
+    bool whole;      /* with its pole: it stands on 0, and shines from `light`; else a head that shines from 0 */
+    double light[3]; /* m */
+} city_body;
+
 /* Lamps stand on the ground by a downward ray, on a pole with a head. */
 typedef struct city_lamp_params {
     double height, lumens, kelvin;
     bool has_floor;
     double floor;                  /* where a lamp stands that has no ground near: taken before any lamp is stood */
     struct city_lamp_tally *tally; /* counted up; may be NULL */
+    const city_body *body;         /* NULL: bodies of our own */
     city_profiles *profiles;       /* NULL: lamps are Lambertian discs, and spheres that shine alike to all sides */
 } city_lamp_params;
 

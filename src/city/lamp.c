@@ -253,6 +253,7 @@ typedef struct builder {
     const fitting *fitting;
     const placing *placing;
     city_profiles *profiles;
+    const city_body *body; /* the user's; NULL: ours */
     bool inferred, pole;
     lamp_shape shape;
 } builder;
@@ -297,6 +298,18 @@ static double reach(const builder *b) {
 static const double down[3] = { 0, 0, -1 };
 #define FLOOD_TILT (50 * M_PI / 180) /* from straight down */
 
+/* The same with the user's body. */
+static bool add_own_head(builder *b, const double at[3], const double axis[3], const double street[2],
+                         const double root[3]) {
+    double light[3];
+    if (b->body->whole)
+        return body_show_whole(b->scene, b->body, b->placing->foot, b->fitting->height, street, light) &&
+               add_light(b, light, axis, street);
+    if (root && hypot(at[0] - root[0], at[1] - root[1]) > .3)
+        shape_bar(&b->shape, root, (double[]){ at[0], at[1], root[2] }, .03);
+    return body_show_head(b->scene, b->body, at, axis, street) && add_light(b, at, axis, street);
+}
+
 /* One head towards (dx, dy), its light at the lamp's height; `root` is where its arm begins. */
 static bool add_head(builder *b, double dx, double dy, const double root[3]) {
     const fitting *f = b->fitting;
@@ -308,6 +321,8 @@ static bool add_head(builder *b, double dx, double dy, const double root[3]) {
     /* however many there are, no more stands there than fits: each next lamp would meet all of it */
     if (b->placing->crowded)
         return add_light(b, at, f->kind == FITTING_FLOOD ? flood : down, along);
+    if (b->body)
+        return add_own_head(b, at, f->kind == FITTING_FLOOD ? flood : down, along, root);
     if (f->kind == FITTING_SPHERE) {
         if (off > 0 || !b->pole) {
             double end[3] = { at[0], at[1], z - f->radius - .02 };
@@ -416,7 +431,9 @@ int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params
                   .profiles = params->profiles,
                   .inferred = inferred,
                   .pole = !p.on_wall && lamp->mount != GEO_MOUNT_SUSPENDED };
-    if (b.pole && !lamp->body_heads && !p.crowded)
+    if (params->body && !lamp->body_heads && (b.pole || !params->body->whole)) /* one with a pole hangs on no wall */
+        b.body = params->body;
+    if (b.pole && !lamp->body_heads && !p.crowded && !(b.body && b.body->whole))
         add_pole(&b);
     int lights = lamp->body_heads ? add_to_body(&b) : add_heads(&b);
     if (!shape_add(&b.shape, scene, lamp->id) || !lights) /* the scene said why */

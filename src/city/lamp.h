@@ -38,6 +38,16 @@ typedef enum city_profile_kind {
 /* Gives a light that profile, with the way to the street; false after reporting. */
 bool city_profile_give(city_profiles *p, city_profile_kind kind, const double street[3], noc_light *light);
 
+/* ---- the user's bodies (lamp_body.c) ---- */
+
+/* A head above its light, which shines along axis; street: the unit vector to the street, level. false after reporting.
+ */
+bool body_show_head(noc_scene *scene, const city_body *body, const double light[3], const double axis[3],
+                    const double street[2]);
+/* A lamp from its foot on, scaled to be as high as its light is to hang: light[3] gets where. false after reporting. */
+bool body_show_whole(noc_scene *scene, const city_body *body, const double foot[3], double height,
+                     const double street[2], double light[3]);
+
 /* ---- shapes (lamp_shape.c) ---- */
 
 typedef struct lamp_shape {

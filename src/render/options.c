@@ -141,6 +141,7 @@ static const noc_option import_options[] = {
     REAL(P, lamp_lumens, "lamp-lumens", "City", 0, 1e7, "lm", "flux of lamps with neither flux nor wattage"),
     REAL(P, lamp_kelvin, "lamp-kelvin", "City", 1000, 25000, "K", "colour temperature of lamps that tell none"),
     BOOL(P, profiles, "profiles", "City", "lamps shine as street lights do: light distributions by their kind"),
+    TEXT(P, lamp_body, "lamp-body", "City", "FILE", "OBJ, PLY or glTF that lamps look like, a head or a whole one"),
     TEXT(P, lamp_profile, "lamp-profile", "City", "FILE", "IES or EULUMDAT file of all lamps, for built-in ones"),
     CHOICE(P, obj_up, "obj-up", "City", "y|z", "axis of OBJ files that points up"),
     SWITCH(P, windows, "windows", "Windows", "windows on the walls of cities; auto: on"),

@@ -38,7 +38,7 @@ static const char *write_text(const char *name, const char *text) {
 
 typedef struct import {
     const char *inputs[3]; /* files; NULL behind the last */
-    const char *crs, *scene_crs, *lamps, *columns;
+    const char *crs, *scene_crs, *lamps, *columns, *body;
     bool isolate, inspect, footprints, traffic;
     bool all; /* of the first 300 allocations every one; else of the first 40, and of later ones ever fewer */
 } import;
@@ -55,6 +55,7 @@ static noc_status run(const import *in, uint64_t number, bool and_later, bool *r
     params.scene_crs = in->scene_crs;
     params.isolate = in->isolate;
     params.footprints = in->footprints;
+    params.lamp_body = in->body ? path_of(in->body) : NULL;
     params.traffic = in->traffic ? NOC_SWITCH_ON : NOC_SWITCH_AUTO;
     if (in->lamps)
         params.lamps = (noc_texts){ .text = { path_of(in->lamps) }, .count = 1 };
@@ -188,6 +189,7 @@ static void obj(void **state) {
 
 static void lamps(void **state) {
     refuse_each("CSV", &(import){ { "csv/comma.csv" } });
+    refuse_each("A body for lamps", &(import){ { "csv/comma.csv" }, .body = "gltf/embedded.gltf" });
     refuse_each("CSV with a CRS", &(import){ { "csv/semicolon.csv" }, .crs = "EPSG:31468" });
     write_text("kinds.csv", "x;y;art\n690110;5330110;Lichtmast mit Auslegerleuchte\n690150;5330110;Lichtmast\n"
                             "690180;5330110;\"Mast \"\"alt\"\"\"\n");

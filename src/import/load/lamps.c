@@ -321,8 +321,13 @@ static noc_status light_city(importer *im, const extent *e, city_profiles *profi
                                 .floor = city_floor(scene),
                                 .tally = &tally,
                                 .profiles = profiles };
+    city_body body;
+    noc_status status = im->params->lamp_body ? body_load(im, im->params->lamp_body, &body) : NOC_OK;
+    if (status)
+        return status;
+    params.body = im->params->lamp_body ? &body : NULL;
     lamp_fate fate;
-    noc_status status = stand_lamps(im, e, &params, &fate);
+    status = stand_lamps(im, e, &params, &fate);
     if (im->cancelled)
         return NOC_ERR_CANCELLED;
     if (scene->no_memory)

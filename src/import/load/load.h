@@ -297,6 +297,10 @@ noc_status footprints_stand(importer *im);
 bool roads_wanted(const noc_import_params *params);
 noc_status road_keep(importer *im, input *in, const geo_road *road);
 
+/* body.c: the user's own body for lamps becomes a model of the scene. */
+struct city_body;
+noc_status body_load(importer *im, const char *path, struct city_body *body);
+
 /* road_lamps.c: lamps along lit roads are added to those of the inputs. */
 struct city_roads;
 noc_status road_lamps_add(importer *im, const struct city_roads *roads);

@@ -1,0 +1,162 @@
+/* The user's own body for lamps: an OBJ, PLY or glTF that becomes a model of the scene, with the place where it shines.
+ */
+#include "import/load/load.h"
+#include "city/city.h"
+#include "import/remote/remote.h"
+
+#include <math.h>
+#include <strings.h>
+
+#define LIGHT "light" /* what marks that place */
+
+typedef struct reading_body {
+    importer *im;
+    const char *path;
+    noc_scene *own; /* what the file holds */
+    geo_issues *issues;
+} reading_body;
+
+static noc_status as_they_are(void *ctx, double *xyz, size_t count) { return NOC_OK; }
+
+static bool on_progress(void *ctx, double done) {
+    importer *im = ctx;
+    const noc_progress *progress = &im->params->progress;
+    im->cancelled = im->cancelled || (progress->update && !progress->update(progress->user, "lamps", 0.9));
+    return !im->cancelled;
+}
+
+static noc_status read_it(reading_body *b) {
+    enum { HEAD = 4096 };
+    const noc_import_params *params = b->im->params;
+    const mesh_place place = { NULL, as_they_are };
+    mesh_scene to = { .scene = b->own, .place = &place, .issues = b->issues };
+    const mesh_parts parts = mesh_scene_parts(&to);
+    char head[HEAD + 1] = "";
+    size_t size = 0;
+    noc_status status;
+    noc_stream *stream = noc_stream_open(b->path, b->im->log, &status);
+    if (!stream)
+        return status;
+    noc_stream_limit(stream, params);
+    for (size_t got = 1; !status && got && size < HEAD; size += got)
+        status = noc_stream_read(stream, head + size, HEAD - size, &got);
+    const noc_reader *reader = status ? NULL : find_reader(noc_readers, head, size);
+    bool mesh = reader && reader->read_mesh;
+    if (!status && !mesh)
+        status = noc_error(b->im->log, NOC_ERR_FORMAT, "%s: --lamp-body is an OBJ, a PLY or a glTF", b->path);
+    else if (!status && reader->missing)
+        status = noc_error(b->im->log, NOC_ERR_UNSUPPORTED, "%s: this is %s, but %s", b->path, reader->name,
+                           reader->missing);
+    status = status ? status : noc_stream_rewind(stream);
+    if (!status && reader->foreign && params->isolate && reader->foreign(head, size)) {
+        geo_sink sink = { .ctx = b->im, .log = b->im->log, .issues = b->issues, .progress = on_progress };
+        remote_result result = { 0 };
+        status = remote_read(reader, b->path, params, &sink, &parts, &result);
+    } else if (!status) {
+        const char *format;
+        status = reader->read_mesh(b->path, stream, params, b->own, &place, b->issues, &format);
+    }
+    noc_stream_close(stream);
+    return status;
+}
+
+/* ---- from the file's scene to a model of the lamps' ---- */
+
+static const float *corner(const noc_scene *s, size_t i) { return &s->positions.data[3 * (size_t)s->indices.data[i]]; }
+
+/* The place of what is called "light": the middle of a mesh, else a light of the file. False: there is none. */
+static bool find_light(const noc_scene *s, double at[3]) {
+    for (size_t m = 0; m < s->meshes.len; m++) {
+        const noc_scene_mesh *mesh = &s->meshes.data[m];
+        double lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY };
+        if (!mesh->name || strcasecmp(mesh->name, LIGHT) != 0 || !mesh->triangle_count)
+            continue;
+        for (size_t i = 3 * mesh->first_triangle; i < 3 * (mesh->first_triangle + mesh->triangle_count); i++)
+            for (int k = 0; k < 3; k++) {
+                lo[k] = NOC_MIN(lo[k], corner(s, i)[k]);
+                hi[k] = NOC_MAX(hi[k], corner(s, i)[k]);
+            }
+        for (int k = 0; k < 3; k++)
+            at[k] = (lo[k] + hi[k]) / 2;
+        return true;
+    }
+    for (int k = 0; k < 3 && s->lights.len; k++)
+        at[k] = s->lights.data[0].p[k];
+    return s->lights.len > 0;
+}
+
+static noc_status add_mesh(noc_scene *to, const noc_scene *from, const noc_scene_mesh *mesh, int model) {
+    size_t corners = 3 * mesh->triangle_count;
+    noc_material material = from->materials.data[mesh->material];
+    material.cls = NOC_CLASS_LAMP;
+    memset(material.emission, 0, sizeof(material.emission)); /* the lamp's light is its own */
+    double *xyz = noc_alloc((corners + 1) * 3 * sizeof(*xyz));
+    uint32_t *indices = noc_alloc((corners + 1) * sizeof(*indices));
+    noc_status status = xyz && indices ? NOC_OK : noc_no_memory(to->log, "import");
+    for (size_t i = 0; i < corners && !status; i++) {
+        indices[i] = (uint32_t)i;
+        for (int k = 0; k < 3; k++)
+            xyz[3 * i + (size_t)k] = corner(from, 3 * mesh->first_triangle + i)[k];
+    }
+    int index = status ? -1 : noc_scene_add_material(to, &material);
+    const noc_mesh one = { .vertex_count = corners,
+                           .positions = xyz,
+                           .triangle_count = mesh->triangle_count,
+                           .indices = indices,
+                           .material = index,
+                           .model = model };
+    if (!status && (index < 0 || noc_scene_add_mesh(to, &one) < 0))
+        status = to->no_memory ? NOC_ERR_MEMORY : NOC_ERR_UNSUPPORTED;
+    free(xyz);
+    free(indices);
+    return status;
+}
+
+static noc_status make_model(const reading_body *b, city_body *body) {
+    noc_scene *to = b->im->scene;
+    bool any = false;
+    noc_status status = NOC_OK;
+    body->whole = find_light(b->own, body->light);
+    if (body->whole && !(body->light[2] > 0.1))
+        return noc_error(b->im->log, NOC_ERR_FORMAT,
+                         "%s: its light lies %.3g m above its foot: a lamp stands on 0, and z is up (--obj-up)",
+                         b->path, body->light[2]);
+    body->model = noc_scene_add_model(to, "lamp");
+    if (body->model < 0)
+        return NOC_ERR_MEMORY;
+    for (size_t m = 0; m < b->own->meshes.len && !status; m++) {
+        const noc_scene_mesh *mesh = &b->own->meshes.data[m];
+        if (!mesh->triangle_count || (mesh->name && !strcasecmp(mesh->name, LIGHT)))
+            continue;
+        status = add_mesh(to, b->own, mesh, body->model);
+        any = true;
+    }
+    if (!status && !any)
+        status = noc_error(b->im->log, NOC_ERR_FORMAT, "%s: the lamp's body has no triangles", b->path);
+    return status;
+}
+
+noc_status body_load(importer *im, const char *path, struct city_body *body) {
+    reading_body b = { .im = im, .path = path, .own = noc_scene_create(im->log), .issues = geo_issues_create() };
+    noc_status status = b.own && b.issues ? NOC_OK : NOC_ERR_MEMORY;
+    if (b.own && !b.issues)
+        noc_no_memory(im->log, path);
+    status = status ? status : read_it(&b);
+    if (!status && b.own->no_memory)
+        status = NOC_ERR_MEMORY;
+    if (!status && geo_issues_refused(b.issues))
+        status = noc_no_memory(im->log, path);
+    status = status ? status : make_model(&b, body);
+    for (size_t i = 0; i < geo_issues_count(b.issues) && !status; i++) {
+        const char *reason, *examples;
+        bool repaired;
+        size_t count;
+        if (!geo_issues_get(b.issues, i, &reason, &repaired, &count, &examples))
+            status = noc_no_memory(im->log, path);
+        else if (geo_issues_kind(b.issues, i) != GEO_SPARED)
+            noc_warn(im->log, "%s: %zu x %s", path, count, reason);
+    }
+    geo_issues_destroy(b.issues);
+    noc_scene_destroy(b.own);
+    return status;
+}
