@@ -10,7 +10,7 @@ typedef struct ldt {
 } ldt;
 
 /* Of the first lines: names, then numbers that are small and whole. */
-bool photometry_probe_eulumdat(const char *head, size_t size) {
+static bool probe(const char *head, size_t size) {
     static const double most[] = { 3, 4, 721, 360, 361, 180 };
     photometry_text t = { head, head + size, "", NULL, 0 };
     const char *line;
@@ -40,12 +40,7 @@ static noc_status number_line(photometry_text *t, const char *what, double *out)
 static noc_status whole_line(photometry_text *t, const char *what, long least, long most, long *out) {
     double x;
     noc_status status = number_line(t, what, &x);
-    if (status)
-        return status;
-    if (x < (double)least || x > (double)most || x != floor(x))
-        return photometry_bad(t, t->line, "%s must be a whole number in %ld..%ld, not %g", what, least, most, x);
-    *out = (long)x;
-    return NOC_OK;
+    return status ? status : photometry_as_whole(t, what, x, least, most, out);
 }
 
 static noc_status text_line(photometry_text *t, noc_profile *p, const char *what, const char **to) {
@@ -225,16 +220,4 @@ static noc_status read_body(photometry_text *t, noc_profile *p) {
     return status;
 }
 
-noc_status photometry_read_eulumdat(noc_log *log, const char *data, size_t size, const char *name,
-                                    noc_profile **profile) {
-    photometry_text t = { data, data + size, name, log, 0 };
-    noc_profile *p = photometry_new(log, name, "EULUMDAT");
-    noc_status status = p ? read_body(&t, p) : NOC_ERR_MEMORY;
-    if (!status && p->texts.refused)
-        status = noc_no_memory(log, name);
-    if (status)
-        noc_profile_destroy(p);
-    else
-        *profile = p;
-    return status;
-}
+const photometry_format photometry_eulumdat = { probe, read_body };

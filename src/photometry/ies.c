@@ -28,7 +28,7 @@ static const char *tilt_of(const char *line, size_t n) {
     return s;
 }
 
-bool photometry_probe_ies(const char *head, size_t size) {
+static bool probe(const char *head, size_t size) {
     photometry_text t = { head, head + size, "", NULL, 0 };
     const char *line;
     size_t n;
@@ -241,15 +241,4 @@ static noc_status read_body(photometry_text *t, noc_profile *p) {
     return status;
 }
 
-noc_status photometry_read_ies(noc_log *log, const char *data, size_t size, const char *name, noc_profile **profile) {
-    photometry_text t = { data, data + size, name, log, 0 };
-    noc_profile *p = photometry_new(log, name, "");
-    noc_status status = p ? read_body(&t, p) : NOC_ERR_MEMORY;
-    if (!status && p->texts.refused)
-        status = noc_no_memory(log, name);
-    if (status)
-        noc_profile_destroy(p);
-    else
-        *profile = p;
-    return status;
-}
+const photometry_format photometry_ies = { probe, read_body };

@@ -67,8 +67,10 @@ noc_status photometry_number(photometry_text *t, const char *what, double *out) 
 noc_status photometry_whole(photometry_text *t, const char *what, long least, long most, long *out) {
     double x;
     noc_status status = photometry_number(t, what, &x);
-    if (status)
-        return status;
+    return status ? status : photometry_as_whole(t, what, x, least, most, out);
+}
+
+noc_status photometry_as_whole(const photometry_text *t, const char *what, double x, long least, long most, long *out) {
     if (x < (double)least || x > (double)most || x != floor(x))
         return photometry_bad(t, t->line, "%s must be a whole number in %ld..%ld, not %g", what, least, most, x);
     *out = (long)x;

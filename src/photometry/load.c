@@ -8,27 +8,35 @@
 
 enum { MOST_BYTES = 64 << 20 };
 
-static const struct {
-    bool (*probe)(const char *head, size_t size);
-    noc_status (*read)(noc_log *log, const char *data, size_t size, const char *name, noc_profile **profile);
-} readers[] = { { photometry_probe_ies, photometry_read_ies },
-                { photometry_probe_eulumdat, photometry_read_eulumdat } };
+static const photometry_format *const formats[] = { &photometry_ies, &photometry_eulumdat };
 
-bool noc_profile_probe(const void *head, size_t size) {
-    for (size_t i = 0; head && i < NOC_COUNT(readers); i++)
-        if (readers[i].probe(head, size))
-            return true;
-    return false;
+/* NULL: none looks like it. */
+static const photometry_format *find_format(const void *head, size_t size) {
+    for (size_t i = 0; i < NOC_COUNT(formats); i++)
+        if (formats[i]->probe(head, size))
+            return formats[i];
+    return NULL;
 }
+
+bool noc_profile_probe(const void *head, size_t size) { return head && find_format(head, size); }
 
 noc_status noc_profile_read(noc_log *log, const void *data, size_t size, const char *name, noc_profile **profile) {
     if (!data || !name || !profile)
         return noc_null(log, __func__);
     *profile = NULL;
-    for (size_t i = 0; i < NOC_COUNT(readers); i++)
-        if (readers[i].probe(data, size))
-            return readers[i].read(log, data, size, name, profile);
-    return noc_error(log, NOC_ERR_FORMAT, "%s: neither an IES LM-63 nor an EULUMDAT file", name);
+    const photometry_format *format = find_format(data, size);
+    if (!format)
+        return noc_error(log, NOC_ERR_FORMAT, "%s: neither an IES LM-63 nor an EULUMDAT file", name);
+    photometry_text t = { data, (const char *)data + size, name, log, 0 };
+    noc_profile *p = photometry_new(log, name, "");
+    noc_status status = p ? format->read(&t, p) : NOC_ERR_MEMORY;
+    if (!status && p->texts.refused)
+        status = noc_no_memory(log, name);
+    if (status)
+        noc_profile_destroy(p);
+    else
+        *profile = p;
+    return status;
 }
 
 static noc_status read_file(noc_log *log, int fd, const char *path, noc_profile **profile) {

@@ -41,13 +41,6 @@ void photometry_judge(noc_profile *p, noc_log *log, const char *name);
 double photometry_sine_integral(double t0, double t1, double a, double b, double from, double to);
 double photometry_grid_flux(const photometry_grid *g); /* of types A and B, mirrored where the angles begin at 0 */
 
-/* ies.c, eulumdat.c: data has a 0 behind its size bytes. */
-bool photometry_probe_ies(const char *head, size_t size);
-bool photometry_probe_eulumdat(const char *head, size_t size);
-noc_status photometry_read_ies(noc_log *log, const char *data, size_t size, const char *name, noc_profile **profile);
-noc_status photometry_read_eulumdat(noc_log *log, const char *data, size_t size, const char *name,
-                                    noc_profile **profile);
-
 /* lines.c: a text by lines and by numbers. */
 typedef struct photometry_text {
     const char *at, *end, *name;
@@ -59,6 +52,8 @@ bool photometry_line(photometry_text *t, const char **line, size_t *length);
 /* A number among blanks and commas, over as many lines as it takes; `what` is for messages. */
 noc_status photometry_number(photometry_text *t, const char *what, double *out);
 noc_status photometry_whole(photometry_text *t, const char *what, long least, long most, long *out);
+/* The same of a number that is read: of the line that t is in. */
+noc_status photometry_as_whole(const photometry_text *t, const char *what, double x, long least, long most, long *out);
 bool photometry_more(photometry_text *t); /* anything but blanks left? */
 /* The number that a line is, with a comma for a point where there is no other; false if it is none. */
 bool photometry_line_number(const char *line, size_t length, double *out);
@@ -66,6 +61,15 @@ bool photometry_line_number(const char *line, size_t length, double *out);
 noc_status photometry_bad(const photometry_text *t, int line, const char *fmt, ...) NOC_PRINTF(3, 4);
 /* Counts angles and values against the limits, and makes room. */
 noc_status photometry_reserve(photometry_text *t, photometry_grid *g, long planes, long gammas);
+
+/* A kind of file (ies.c, eulumdat.c; load.c has their table). */
+typedef struct photometry_format {
+    bool (*probe)(const char *head, size_t size);
+    /* The whole text, which has a 0 behind it, into a new profile. Texts that p->texts has no memory for may be left
+     * out: who calls looks at it. */
+    noc_status (*read)(photometry_text *t, noc_profile *p);
+} photometry_format;
+extern const photometry_format photometry_ies, photometry_eulumdat;
 
 /* table.c: what core/profile.h looks up. rows of gamma from 0 to `gamma_max`, columns of C all around, both at even
  * steps, candela a lumen: bilinear between them, and nothing beyond gamma_max. */
