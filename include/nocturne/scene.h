@@ -174,6 +174,12 @@ NOC_API noc_status noc_scene_set_emission(noc_scene *scene, int light, const flo
 /* Scales the emission of all lights of a group, channel by channel, from what they were made with: 0 puts them out, 1
  * is as made. 0..1000000. */
 NOC_API noc_status noc_scene_set_group(noc_scene *scene, int group, const float scale[3]);
+/* Gives all lights of a group that colour, linear Rec.709, each at the luminance it was made with: its flux stays,
+ * whatever colours the group is made of. NULL: each its own colour again. The group's scale comes on top. Black is
+ * no colour: NOC_ERR_ARGUMENT. */
+NOC_API noc_status noc_scene_colour_group(noc_scene *scene, int group, const float rgb[3]);
+/* The first group of that name; 0: there is none. */
+NOC_API int noc_scene_find_group(const noc_scene *scene, const char *name);
 /* Places a light anew that was made with `moving`: position, shape, direction and emission as `to` has them. The kind
  * and the profile stay; name, inferred, model and group are not read. */
 NOC_API noc_status noc_scene_move_light(noc_scene *scene, int light, const noc_light *to);
@@ -286,6 +292,19 @@ typedef struct noc_light_info {
     bool two_sided;
     bool removed; /* there is no light of this index (now); all else is 0 */
 } noc_light_info;
+
+/* A group as it is since the last commit. */
+typedef struct noc_group_info {
+    const char *name; /* "" where it has none; belongs to the scene */
+    size_t lights;    /* those that are out among them */
+    double lumens;    /* luminous flux that leaves them */
+    float scale[3];   /* noc_scene_set_group */
+    float colour[3];  /* noc_scene_colour_group, of luminance 1; 0,0,0: each light has its own */
+} noc_group_info;
+
+/* The first `count` of the scene's groups, by their index; groups[0] has the lights of none. Returns how many there
+ * are, with that one. For the thread that edits. One look at all lights, however many groups there are. */
+NOC_API size_t noc_scene_groups(const noc_scene *scene, noc_group_info *groups, size_t count);
 
 /* index is below noc_scene_info.light_slots, and what NOC_AOV_LIGHT shows; else NOC_ERR_ARGUMENT after reporting. */
 NOC_API noc_status noc_scene_get_light(const noc_scene *scene, size_t index, noc_light_info *info);

@@ -6,7 +6,7 @@
 /* What a commit needs beyond what is there. */
 typedef struct need {
     size_t lights, moving, released_lights, released_instances, gaps;
-    bool scales; /* a group's scale becomes another than 1 */
+    bool scales; /* a group is dimmed or coloured */
 } need;
 
 typedef struct commit {
@@ -107,6 +107,7 @@ static bool need_edit(const noc_scene *s, noc_edit *e, need *n) {
     size_t lights;
     switch (e->kind) {
     case NOC_EDIT_GROUP: n->scales |= e->rgb[0] != 1 || e->rgb[1] != 1 || e->rgb[2] != 1; return true;
+    case NOC_EDIT_GROUP_COLOUR: n->scales = true; return true;
     case NOC_EDIT_ADD_LIGHT: n->moving++; return true;
     case NOC_EDIT_REMOVE_LIGHT:
         n->released_lights++;
@@ -374,7 +375,8 @@ static void apply_edit(commit *c, noc_edit *e) {
     switch (e->kind) {
     case NOC_EDIT_MATERIAL:
     case NOC_EDIT_CLASS:
-    case NOC_EDIT_GROUP: break; /* done before */
+    case NOC_EDIT_GROUP:
+    case NOC_EDIT_GROUP_COLOUR: break; /* done before */
     case NOC_EDIT_EMISSION:
         memcpy(r.e, e->rgb, sizeof(r.e));
         noc_light_change(s, e->index, &r, &c->changes);

@@ -72,16 +72,69 @@ int noc_scene_add_group(noc_scene *scene, const char *name) {
     return (int)scene->groups.len;
 }
 
+/* Also reports that there is no such group. */
+static bool group_there(const noc_scene *scene, int group) {
+    bool there = group >= 1 && (size_t)group <= scene->groups.len;
+    if (!there)
+        noc_error(scene->log, NOC_ERR_ARGUMENT, "group %d: the scene has %zu groups", group, scene->groups.len);
+    return there;
+}
+
+noc_status noc_scene_colour_group(noc_scene *scene, int group, const float rgb[3]) {
+    if (!scene)
+        return noc_null(NULL, __func__);
+    if (!group_there(scene, group))
+        return NOC_ERR_ARGUMENT;
+    noc_edit edit = { .kind = NOC_EDIT_GROUP_COLOUR, .index = (uint32_t)group };
+    float luminance = rgb ? 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2] : 1;
+    if (rgb && !(colour_within(rgb, 1e12f) && luminance > 0))
+        return noc_error(scene->log, NOC_ERR_ARGUMENT, "group %d: its colour is black, negative or not finite", group);
+    for (int k = 0; k < 3 && rgb; k++)
+        edit.rgb[k] = rgb[k] / luminance;
+    return stage(scene, &edit);
+}
+
 noc_status noc_scene_set_group(noc_scene *scene, int group, const float scale[3]) {
     if (!scene || !scale)
         return noc_null(scene ? scene->log : NULL, __func__);
-    if (group < 1 || (size_t)group > scene->groups.len)
-        return noc_error(scene->log, NOC_ERR_ARGUMENT, "group %d: the scene has %zu groups", group, scene->groups.len);
+    if (!group_there(scene, group))
+        return NOC_ERR_ARGUMENT;
     noc_edit edit = { .kind = NOC_EDIT_GROUP, .index = (uint32_t)group };
     memcpy(edit.rgb, scale, sizeof(edit.rgb));
     if (!colour_within(scale, 1e6f))
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "group %d: its scale must be in 0..1000000", group);
     return stage(scene, &edit);
+}
+
+int noc_scene_find_group(const noc_scene *scene, const char *name) {
+    for (size_t i = 0; scene && name && i < scene->groups.len; i++)
+        if (scene->groups.data[i].name && !strcmp(scene->groups.data[i].name, name))
+            return (int)i + 1;
+    return 0;
+}
+
+size_t noc_scene_groups(const noc_scene *scene, noc_group_info *groups, size_t count) {
+    if (!scene)
+        return 0;
+    size_t all = scene->groups.len + 1;
+    for (size_t i = 0; groups && i < NOC_MIN(count, all); i++) {
+        static const noc_scene_group none = { .scale = { 1, 1, 1 } };
+        const noc_scene_group *g = i ? &scene->groups.data[i - 1] : &none;
+        groups[i] = (noc_group_info){ .name = g->name ? g->name : "" };
+        memcpy(groups[i].scale, g->scale, sizeof(g->scale));
+        memcpy(groups[i].colour, g->colour, sizeof(g->colour));
+    }
+    noc_scene_lock_read(scene);
+    for (size_t i = 0; groups && i < scene->lights.len; i++) {
+        const noc_light_record *r = &scene->lights.data[i];
+        uint32_t group = noc_light_group(r);
+        if (r->flags & NOC_LIGHT_FREE || group >= count)
+            continue;
+        groups[group].lights++;
+        groups[group].lumens += noc_light_flux(r);
+    }
+    noc_scene_unlock_read(scene);
+    return all;
 }
 
 /* Also reports that there is no such light. */

@@ -21,15 +21,23 @@ uint32_t noc_light_take_slot(noc_scene *s) {
                                           : noc_light_add_slot(s);
 }
 
-/* Writes a slot's record: `made`, scaled by its group. */
+/* What a group makes of an emission: its own colour of the same luminance, then scaled. */
+static void shine_as_group(const noc_scene_group *g, float e[3]) {
+    float luminance = 0.2126f * e[0] + 0.7152f * e[1] + 0.0722f * e[2];
+    bool coloured = g->colour[0] > 0 || g->colour[1] > 0 || g->colour[2] > 0;
+    for (int k = 0; k < 3; k++)
+        e[k] = (coloured ? luminance * g->colour[k] : e[k]) * g->scale[k];
+}
+
+/* Writes a slot's record: `made`, as its group has it. */
 static void write_record(noc_scene *s, uint32_t slot, const noc_light_record *made) {
     noc_light_record *r = &s->lights.data[slot];
     uint32_t group = noc_light_group(made);
     *r = *made;
     if (s->scaled)
         memcpy(s->light_made.data[slot].v, made->e, sizeof(made->e));
-    for (int k = 0; group && k < 3; k++)
-        r->e[k] *= s->groups.data[group - 1].scale[k];
+    if (group)
+        shine_as_group(&s->groups.data[group - 1], r->e);
     noc_range_add(&s->dirty_lights, slot);
 }
 
@@ -89,31 +97,36 @@ void noc_light_change(noc_scene *s, uint32_t slot, const noc_light_record *made,
                 memcmp(before.b, now->b, sizeof(now->b)) || before.radius != now->radius;
 }
 
-/* Gives each group the last scale that was staged for it. Is any of them another one than before? */
-static bool scale_groups(noc_scene *s) {
+/* Gives each group the last scale and the last colour that were staged for it. Was any of them another one before? */
+static bool edit_groups(noc_scene *s) {
     bool any = false;
     for (size_t i = s->edits.len; i-- > 0;) {
         const noc_edit *e = &s->edits.data[i];
-        noc_scene_group *g = e->kind == NOC_EDIT_GROUP ? &s->groups.data[e->index - 1] : NULL;
-        if (!g || g->edited)
+        bool scale = e->kind == NOC_EDIT_GROUP;
+        if (!scale && e->kind != NOC_EDIT_GROUP_COLOUR)
             continue;
-        g->edited = true;
-        g->rescaled = memcmp(g->scale, e->rgb, sizeof(g->scale)) != 0;
-        memcpy(g->scale, e->rgb, sizeof(g->scale));
-        any |= g->rescaled;
+        noc_scene_group *g = &s->groups.data[e->index - 1];
+        float *to = scale ? g->scale : g->colour;
+        bool *told = scale ? &g->scaled : &g->coloured;
+        if (*told)
+            continue;
+        *told = true;
+        g->edited |= memcmp(to, e->rgb, sizeof(e->rgb)) != 0;
+        memcpy(to, e->rgb, sizeof(e->rgb));
+        any |= g->edited;
     }
     return any;
 }
 
 void noc_lights_scale(noc_scene *s, noc_changes *c) {
-    bool any = scale_groups(s);
+    bool any = edit_groups(s);
     if (any && !s->scaled)
         for (; s->light_made.len < s->lights.len; s->light_made.len++)
             memcpy(s->light_made.data[s->light_made.len].v, s->lights.data[s->light_made.len].e, sizeof(noc_rgb));
     s->scaled |= any;
     for (uint32_t i = 0; any && i < s->lights.len; i++) {
         uint32_t group = noc_light_group(&s->lights.data[i]);
-        if (!group || !s->groups.data[group - 1].rescaled)
+        if (!group || !s->groups.data[group - 1].edited)
             continue;
         noc_light_record made = noc_light_made(s, i);
         write_record(s, i, &made);
@@ -121,7 +134,7 @@ void noc_lights_scale(noc_scene *s, noc_changes *c) {
         c->standing |= noc_light_stands(made.flags);
     }
     for (size_t i = 0; i < s->groups.len; i++)
-        s->groups.data[i].edited = s->groups.data[i].rescaled = false;
+        s->groups.data[i].scaled = s->groups.data[i].coloured = s->groups.data[i].edited = false;
 }
 
 static noc_light_record light_of(const noc_scene *s, const noc_scene_mesh *m, size_t t) {

@@ -93,7 +93,9 @@ typedef struct noc_scene_car {
 typedef struct noc_scene_group {
     const char *name;
     float scale[3];
-    bool edited, rescaled; /* by the commit at work */
+    float colour[3];       /* of luminance 1, of all its lights; 0,0,0: each has its own */
+    bool scaled, coloured; /* told so by the commit at work, */
+    bool edited;           /* and otherwise than before */
 } noc_scene_group;
 
 /* What lights with that profile need to know of it. */
@@ -123,6 +125,7 @@ typedef enum noc_edit_kind {
     NOC_EDIT_MATERIAL,
     NOC_EDIT_CLASS,
     NOC_EDIT_GROUP,
+    NOC_EDIT_GROUP_COLOUR,
     NOC_EDIT_EMISSION,
     NOC_EDIT_ADD_LIGHT,
     NOC_EDIT_MOVE_LIGHT,
