@@ -37,8 +37,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         FUZZ_REQUIRE(once.bytes.len == twice.bytes.len && !memcmp(once.bytes.data, twice.bytes.data, once.bytes.len));
         array_free(&once.bytes);
         array_free(&twice.bytes);
-        arena_free(&same.texts);
+        remote_request_free(&same);
     }
-    arena_free(&q.texts);
+    remote_request_free(q);
     return 0;
 }

@@ -5,7 +5,7 @@
 #ifndef NOCTURNE_IMPORT_H
 #define NOCTURNE_IMPORT_H
 
-#include <nocturne/scene.h>
+#include <nocturne/luminaire.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -77,13 +77,13 @@ typedef struct noc_import_params {
     noc_switch infer_lamps;
     bool strict; /* an input of which anything is left out or guessed at is an error, and so are lamps placed by a
                     rule that infer_lamps does not ask for by ON; default false */
-    double lamp_height; /* m, where not tagged; default 6 */
-    double lamp_lumens; /* lm, where neither flux nor wattage is known; default 5000 */
-    double lamp_kelvin; /* K, where not known; default 3000 */
-    bool profiles;      /* lamps have luminous intensity distributions, built-in ones by their kind; default true.
-                           false: Lambertian discs, spheres that shine alike to all sides */
-    const char
-        *lamp_profile; /* a luminaire's file (IES, EULUMDAT) that all lamps have; NULL, the default: built-in ones */
+    double lamp_height;       /* m, where not tagged; default 6 */
+    double lamp_lumens;       /* lm, where neither flux nor wattage is known; default 5000 */
+    double lamp_kelvin;       /* K, where not known; default 3000 */
+    bool profiles;            /* lamps have luminous intensity distributions, built-in ones by their kind; default true.
+                                 false: Lambertian discs, spheres that shine alike to all sides */
+    const char *lamp_profile; /* a luminaire's file (IES, EULUMDAT) of all lamps that no rule gives another; NULL, the
+                                 default: built-in ones */
     /* The user's own body for lamps that stand on poles or hang on walls: an OBJ, a PLY or a glTF, shown by instances.
      * z is up, its front looks along -y (a glTF's +z), metres. A mesh that is called "light" (not shown), or a glTF's
      * light, is where it shines: then it is a whole lamp, which stands on 0 and is scaled to the lamp's height. Else it
@@ -126,6 +126,12 @@ typedef struct noc_import_params {
      * walls and roofs of real cities vary between; not owned; default none. Emission is not read */
     const noc_material *materials;
     size_t material_count;
+    /* Rules for lamps, and groups of lights, in their order; not owned; default none */
+    const noc_luminaire_rule *luminaires;
+    size_t luminaire_count;
+    const noc_group_rule *groups;
+    size_t group_count;
+    noc_texts group_states; /* "NAME=STATE", as noc_scene_say_group has it: of groups once all is there; default none */
     const noc_builtin_params *builtin; /* of built-in scenes among the inputs, not owned; NULL, the default: theirs */
     int threads; /* that read files of cities at once, and make windows; 0, the default: one a core. The scene is the
                   * same for any number */
@@ -160,20 +166,6 @@ typedef struct noc_report_line {
     const char *examples; /* up to 5 ids, comma separated */
     bool lossless;        /* nothing is lost or guessed by it, so noc_import_params.strict lets it pass */
 } noc_report_line;
-
-/* What makes a lamp's light. */
-typedef enum noc_lamp_source {
-    NOC_SOURCE_UNKNOWN,
-    NOC_SOURCE_LED,
-    NOC_SOURCE_SODIUM, /* high pressure, or not told which */
-    NOC_SOURCE_MERCURY,
-    NOC_SOURCE_METAL_HALIDE,
-    NOC_SOURCE_FLUORESCENT,
-    NOC_SOURCE_INCANDESCENT,
-    NOC_SOURCE_GAS,
-    NOC_SOURCE_LOW_SODIUM, /* low pressure: one orange line */
-    NOC_SOURCE_COUNT
-} noc_lamp_source;
 
 NOC_API const char *noc_lamp_source_name(noc_lamp_source source); /* "unknown", "LED", "sodium", ... */
 
@@ -249,6 +241,12 @@ typedef struct noc_report_file {
     const noc_report_line *lines;
 } noc_report_file;
 
+/* What became of a rule of noc_import_params.luminaires. */
+typedef struct noc_report_rule {
+    const char *place; /* noc_luminaire_rule.place, or "rule 1", ... */
+    size_t lamps;      /* that it matched: in the scene, and of all where none was loaded */
+} noc_report_rule;
+
 /* Sums over the files of a report. */
 typedef struct noc_report_totals {
     size_t objects, buildings;
@@ -271,6 +269,11 @@ NOC_API size_t noc_report_file_count(const noc_report *report);
 NOC_API const noc_report_file *noc_report_get_file(const noc_report *report, size_t index);
 /* all 0 where report is NULL */
 NOC_API void noc_report_get_totals(const noc_report *report, noc_report_totals *totals);
+/* Groups of the scene that was loaded, by their index there, as noc_scene_groups has them: the first has the lights of
+ * none. NULL beyond the last. */
+NOC_API const noc_group_info *noc_report_get_group(const noc_report *report, size_t index);
+/* The rules in their order; NULL beyond the last. */
+NOC_API const noc_report_rule *noc_report_get_rule(const noc_report *report, size_t index);
 NOC_API void noc_report_destroy(noc_report *report);
 
 /* A path may be a folder (all files in it and below, by name; what is in no format that is read is left out, and told),

@@ -7,6 +7,7 @@
 #include <nocturne/import.h>
 #include <nocturne/lab.h>
 #include <nocturne/log.h>
+#include <nocturne/luminaire.h>
 #include <nocturne/option.h>
 #include <nocturne/path.h>
 #include <nocturne/photometry.h>

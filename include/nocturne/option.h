@@ -48,12 +48,14 @@ typedef struct noc_option {
     const char *aliases;
 } noc_option;
 
-NOC_API const noc_option *noc_render_options(void);  /* fields of noc_render_params */
-NOC_API const noc_option *noc_display_options(void); /* fields of noc_display_params */
-NOC_API const noc_option *noc_import_options(void);  /* fields of noc_import_params */
-NOC_API const noc_option *noc_city_options(void);    /* fields of noc_city_params */
-NOC_API const noc_option *noc_builtin_options(void); /* fields of noc_builtin_params, but for the city's */
-NOC_API const noc_option *noc_camera_options(void);  /* fields of noc_camera_params */
+NOC_API const noc_option *noc_render_options(void);    /* fields of noc_render_params */
+NOC_API const noc_option *noc_display_options(void);   /* fields of noc_display_params */
+NOC_API const noc_option *noc_import_options(void);    /* fields of noc_import_params */
+NOC_API const noc_option *noc_luminaire_options(void); /* fields of noc_luminaire_rule, which recipes say */
+NOC_API const noc_option *noc_group_options(void);     /* fields of noc_group_rule, which recipes say */
+NOC_API const noc_option *noc_city_options(void);      /* fields of noc_city_params */
+NOC_API const noc_option *noc_builtin_options(void);   /* fields of noc_builtin_params, but for the city's */
+NOC_API const noc_option *noc_camera_options(void);    /* fields of noc_camera_params */
 
 /* Row of an option "preset", for tables of one's own: field preset, an int that is a noc_preset, of struct S. */
 #define NOC_OPTION_PRESET(S, group)                                                                                    \

@@ -18,6 +18,10 @@
  *       light: on                   # --environment-light
  *     materials:                    # by class: noc_class_name
  *       wall: { albedo: [0.5, 0.45, 0.4], roughness: 0.8 }
+ *     luminaires:                   # rules for lamps: nocturne/luminaire.h
+ *       - { match: { lamp_type: "LED*", watts: ">= 60" }, profile: road.ies, kelvin: 4000 }
+ *     groups:                       # of lights, by name
+ *       square: { match: { street: "Market*" }, scale: 0.5, kelvin: 2200 }
  *     cameras:                      # by name; the first one is the recipe's own
  *       square: { eye: [10, -40, 1.7], target: [0, 0, 4], fov: 60 }
  *     paths:                        # of cameras, by name: keys of nocturne/path.h
@@ -61,6 +65,9 @@ typedef struct noc_recipe_info {
     const noc_recipe_path *paths; /* in the file's order */
     size_t material_count;
     const noc_material *materials; /* for noc_import_params.materials: of one class each, the rest its defaults */
+    size_t luminaire_count, group_count;
+    const noc_luminaire_rule *luminaires; /* for noc_import_params, in the file's order */
+    const noc_group_rule *groups;
     bool has_preset;
     noc_preset preset; /* what the recipe's options stand on */
 } noc_recipe_info;
@@ -76,6 +83,9 @@ NOC_API noc_status noc_recipe_load(const char *path, noc_log *log, noc_recipe **
 NOC_API void noc_recipe_destroy(noc_recipe *recipe); /* NULL is allowed */
 
 NOC_API const noc_recipe_info *noc_recipe_get_info(const noc_recipe *recipe);
+
+/* Sets what params take as lists to the recipe's: materials, luminaires, groups. NULL for either changes nothing. */
+NOC_API void noc_recipe_lists(const noc_recipe *recipe, noc_import_params *params);
 
 /* The options that the recipe says, in its order; NULL beyond the last. They are rows of the tables of
  * nocturne/option.h. */

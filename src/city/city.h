@@ -10,6 +10,10 @@
 typedef struct city_profiles city_profiles;
 city_profiles *city_profiles_create(noc_scene *scene, const char *file, noc_status *status);
 void city_profiles_destroy(city_profiles *profiles);
+/* One that rules name: a built-in one, or the file at path, which is told as `name`. Returns its number for
+ * geo_fitting.profile, or 0 after an error that was reported. */
+int city_profiles_builtin(const char *name); /* 0: there is none, not reported */
+int city_profiles_read(city_profiles *profiles, const char *path, const char *name);
 /* "cobra-head 40, post-top 3": which lights have which; NULL: "". */
 void city_profiles_tell(const city_profiles *profiles, char *text, size_t size);
 
@@ -28,6 +32,9 @@ typedef struct city_lamp_params {
     struct city_lamp_tally *tally; /* counted up; may be NULL */
     const city_body *body;         /* NULL: bodies of our own */
     city_profiles *profiles;       /* NULL: lamps are Lambertian discs, and spheres that shine alike to all sides */
+    /* What rules say of a lamp that is placed here (city_infer_lamps); NULL: nothing. Changes the lamp. */
+    void (*dress)(void *dresser, geo_lamp *lamp, geo_fitting *fitting);
+    void *dresser;
 } city_lamp_params;
 
 typedef struct city_lamp_tally {
@@ -61,6 +68,9 @@ void city_roads_destroy(city_roads *roads); /* NULL is allowed */
 /* Unit vector from a point to the middle of the nearest road that a lamp there lights; false where none is near. */
 bool city_roads_facing(const city_roads *roads, const double xy[2], double facing[2]);
 
+/* The nearest road with a name, whose middle is within 25 m; NULL: there is none. */
+const geo_road *city_roads_street(const city_roads *roads, const double xy[2]);
+
 /* A place for a lamp beside a road, on the ground. */
 typedef struct city_road_lamp {
     const geo_road *road;
@@ -86,9 +96,6 @@ typedef struct city_road_params {
  */
 noc_status city_road_lamps(noc_scene *scene, const city_roads *roads, const city_road_params *params,
                            city_road_lamp **lamps, size_t *count);
-
-/* Linear Rec.709 of a black body / daylight at a colour temperature, luminance 1. Source: see lamp.c. */
-void city_kelvin_rgb(double kelvin, float rgb[3]);
 
 /* A ground under a city without terrain, a little larger than it, at the height its buildings stand at; skirts from
  * walls that stand over it; its surroundings. points (3 doubles each, local; heights may be NaN) are places it must

@@ -103,6 +103,11 @@ static void propose(inference *in, double x, double y, double dx, double dy, dou
                       .kelvin = NAN,
                       .rgb = { -1, -1, -1 },
                       .id = id };
+    geo_fitting fitting = geo_no_fitting();
+    if (in->params->dress) {
+        in->params->dress(in->params->dresser, &lamp, &fitting);
+        lamp.fitting = &fitting;
+    }
     int lights = city_add_lamp(in->scene, &lamp, in->params, true, in->issues);
     if (!lights)
         return;

@@ -34,7 +34,7 @@ static const struct {
  * calculate correlated colour temperature", Color Research & Application 10 (1985) 38-40. Then (u, v) -> (x, y) -> XYZ
  * with Y = 1 -> linear Rec.709 (IEC 61966-2-1 matrix). What lies outside the gamut is clipped, and the luminance made 1
  * again. */
-void city_kelvin_rgb(double kelvin, float rgb[3]) {
+void noc_kelvin_rgb(double kelvin, float rgb[3]) {
     double t = isfinite(kelvin) ? NOC_CLAMP(kelvin, 1000, 15000) : 6500;
     double u =
         (0.860117757 + 1.54118254e-4 * t + 1.28641212e-7 * t * t) / (1 + 8.42420235e-4 * t + 7.08145163e-7 * t * t);
@@ -47,7 +47,7 @@ void city_kelvin_rgb(double kelvin, float rgb[3]) {
     for (int i = 0; i < 3; i++)
         c[i] = NOC_MAX(c[i], 0);
     double luminance = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3 && rgb; i++)
         rgb[i] = (float)(c[i] / luminance);
 }
 
@@ -55,9 +55,13 @@ void city_kelvin_rgb(double kelvin, float rgb[3]) {
 
 typedef struct fitting {
     enum { FITTING_DISC, FITTING_SPHERE, FITTING_FLOOD } kind;
+    noc_light_kind light;
     double height, radius, lumens;
+    double tilt; /* of its axis from straight down, radians */
     int heads;
-    float emission[3]; /* of a profile where there are profiles, else of the shape */
+    bool profiled;
+    geo_fitting ruled; /* what rules say of it */
+    float emission[3]; /* of a profile where it has one, else of the shape */
 } fitting;
 
 static double known(double tagged, double otherwise) { return isfinite(tagged) && tagged > 0 ? tagged : otherwise; }
@@ -78,13 +82,14 @@ static bool told_colour(const geo_lamp *lamp, float rgb[3]) {
         return true;
     double kelvin = known(lamp->kelvin, sources[lamp->source].kelvin);
     if (kelvin > 0)
-        city_kelvin_rgb(kelvin, rgb);
+        noc_kelvin_rgb(kelvin, rgb);
     return kelvin > 0;
 }
 
 /* Of one head; 0 if neither the lamp nor its source tells it. */
 static double told_lumens(const geo_lamp *lamp) {
-    double watts = known(lamp->watts, 0) * sources[lamp->source].lumens_per_watt;
+    double efficacy = lamp->fitting ? lamp->fitting->efficacy : NAN;
+    double watts = known(lamp->watts, 0) * known(efficacy, sources[lamp->source].lumens_per_watt);
     return known(lamp->lumens, watts > 0 ? watts : sources[lamp->source].lumens);
 }
 
@@ -99,8 +104,32 @@ bool city_lamp_assumes(const geo_lamp *lamp, noc_lamp_default what) {
     return false;
 }
 
+#define FLOOD_TILT 50.0 /* degrees */
+
+/* Lambertian radiance of a flux of 1 lm; of a point, which shines alike to all sides, its intensity. */
+static double of_a_lumen(const fitting *f) {
+    double r2 = f->radius * f->radius;
+    switch (f->light) {
+    case NOC_LIGHT_POINT: return 1 / (4 * M_PI);
+    case NOC_LIGHT_SPHERE: return 1 / (M_PI * M_PI * r2 * 4);
+    default: return 1 / (M_PI * M_PI * r2);
+    }
+}
+
+/* What shines, and whether by a profile. */
+static void choose_light(fitting *f, const city_lamp_params *params) {
+    static const noc_light_kind kinds[NOC_LAMP_SHAPE_COUNT] = {
+        [NOC_LAMP_POINT] = NOC_LIGHT_POINT, [NOC_LAMP_SPHERE] = NOC_LIGHT_SPHERE, [NOC_LAMP_DISC] = NOC_LIGHT_DISC
+    };
+    f->light = f->ruled.shape ? kinds[f->ruled.shape] : f->kind == FITTING_SPHERE ? NOC_LIGHT_SPHERE : NOC_LIGHT_DISC;
+    f->radius = known(f->ruled.radius, f->radius);
+    f->tilt = (isfinite(f->ruled.tilt) ? f->ruled.tilt : f->kind == FITTING_FLOOD ? FLOOD_TILT : 0) * M_PI / 180;
+    f->profiled = params->profiles && f->ruled.profile != GEO_NO_PROFILE;
+}
+
 static fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *params) {
-    fitting f = { .height = known(lamp->height, params->height) };
+    fitting f = { .height = known(lamp->height, params->height),
+                  .ruled = lamp->fitting ? *lamp->fitting : geo_no_fitting() };
     f.heads = NOC_CLAMP(lamp->count, 1, GEO_MAX_HEADS);
     f.lumens = known(told_lumens(lamp), params->lumens);
     if (lamp->type == GEO_LAMP_FLOOD)
@@ -116,12 +145,11 @@ static fitting choose_fitting(const geo_lamp *lamp, const city_lamp_params *para
         f.radius = lamp->head_radius;
         f.lumens *= lamp->count > 0 ? (double)f.heads / lamp->body_heads : 1;
     }
-    double luminance = params->profiles
-                           ? f.lumens
-                           : f.lumens / (M_PI * M_PI * f.radius * f.radius * (f.kind == FITTING_SPHERE ? 4 : 1));
+    choose_light(&f, params);
+    double luminance = f.lumens * (f.profiled ? 1 : of_a_lumen(&f));
     float rgb[3];
     if (!told_colour(lamp, rgb))
-        city_kelvin_rgb(params->kelvin, rgb);
+        noc_kelvin_rgb(params->kelvin, rgb);
     for (int i = 0; i < 3; i++)
         f.emission[i] = (float)(luminance * rgb[i]);
     return f;
@@ -270,15 +298,17 @@ static city_profile_kind profile_kind(const builder *b) {
 
 /* towards: the way to the street, level. */
 static bool add_light(const builder *b, const double position[3], const double direction[3], const double towards[2]) {
-    noc_light light = { .kind = b->fitting->kind == FITTING_SPHERE ? NOC_LIGHT_SPHERE : NOC_LIGHT_DISC,
-                        .radius = b->fitting->radius,
+    const fitting *f = b->fitting;
+    noc_light light = { .kind = f->light,
+                        .radius = f->light == NOC_LIGHT_POINT ? 0 : f->radius,
                         .name = b->lamp->id,
+                        .group = f->ruled.group,
                         .inferred = b->inferred };
     memcpy(light.position, position, sizeof(light.position));
     memcpy(light.direction, direction, sizeof(light.direction));
     memcpy(light.emission, b->fitting->emission, sizeof(light.emission));
     const double street[3] = { towards[0], towards[1], 0 };
-    if (b->profiles && !city_profile_give(b->profiles, profile_kind(b), street, &light))
+    if (f->profiled && !city_profile_give(b->profiles, profile_kind(b), f->ruled.profile, street, &light))
         return false;
     return noc_scene_add_light(b->scene, &light) >= 0;
 }
@@ -288,6 +318,8 @@ static double reach(const builder *b) {
     const fitting *f = b->fitting;
     if (!b->pole)
         return f->heads > 1 ? .35 : 0;
+    if (isfinite(f->ruled.arm) && f->kind != FITTING_SPHERE)
+        return f->ruled.arm;
     switch (f->kind) {
     case FITTING_SPHERE: return f->heads > 1 ? f->radius + .25 : 0;
     case FITTING_FLOOD: return .35;
@@ -295,8 +327,12 @@ static double reach(const builder *b) {
     }
 }
 
-static const double down[3] = { 0, 0, -1 };
-#define FLOOD_TILT (50 * M_PI / 180) /* from straight down */
+/* The axis of a head that faces (dx, dy). */
+static void head_axis(const fitting *f, double dx, double dy, double axis[3]) {
+    axis[0] = sin(f->tilt) * dx;
+    axis[1] = sin(f->tilt) * dy;
+    axis[2] = -cos(f->tilt);
+}
 
 /* The same with the user's body. */
 static bool add_own_head(builder *b, const double at[3], const double axis[3], const double street[2],
@@ -316,38 +352,44 @@ static bool add_head(builder *b, double dx, double dy, const double root[3]) {
     const double *foot = b->placing->foot;
     double off = reach(b), z = foot[2] + f->height;
     double at[3] = { foot[0] + off * dx, foot[1] + off * dy, z };
-    const double along[3] = { dx, dy, 0 };
-    const double flood[3] = { sin(FLOOD_TILT) * dx, sin(FLOOD_TILT) * dy, -cos(FLOOD_TILT) };
+    const double street[2] = { dx, dy }, along[3] = { cos(f->tilt) * dx, cos(f->tilt) * dy, sin(f->tilt) };
+    double axis[3];
+    head_axis(f, dx, dy, axis);
     /* however many there are, no more stands there than fits: each next lamp would meet all of it */
     if (b->placing->crowded)
-        return add_light(b, at, f->kind == FITTING_FLOOD ? flood : down, along);
+        return add_light(b, at, axis, street);
     if (b->body)
-        return add_own_head(b, at, f->kind == FITTING_FLOOD ? flood : down, along, root);
+        return add_own_head(b, at, axis, street, root);
     if (f->kind == FITTING_SPHERE) {
         if (off > 0 || !b->pole) {
             double end[3] = { at[0], at[1], z - f->radius - .02 };
             if (root)
                 shape_bar(&b->shape, root, end, .02);
         }
-        return add_light(b, at, down, along);
+        return add_light(b, at, axis, street);
     }
-    double gap = .01; /* the light's disc hangs below its housing, which never lies before it */
+    /* the light's disc hangs below its housing, which never lies before it; a sphere, wholly */
+    double gap = .01, drop = f->light == NOC_LIGHT_SPHERE ? f->radius : 0, face[3], lit[3];
+    for (int k = 0; k < 3; k++) {
+        face[k] = at[k] - gap * axis[k];
+        lit[k] = at[k] + drop * axis[k];
+    }
     if (f->kind == FITTING_FLOOD) {
-        double side[3] = { -dy, dx, 0 }, face[3], back[3];
-        for (int k = 0; k < 3; k++) {
-            face[k] = at[k] - gap * flood[k];
-            back[k] = at[k] - .14 * flood[k];
-        }
-        shape_housing(&b->shape, face, flood, side, f->radius * 1.3, f->radius * 1.15, .13);
+        double side[3] = { -dy, dx, 0 }, back[3];
+        for (int k = 0; k < 3; k++)
+            back[k] = at[k] - .14 * axis[k];
+        shape_housing(&b->shape, face, axis, side, f->radius * 1.3, f->radius * 1.15, .13);
         if (root)
             shape_bar(&b->shape, root, back, .025);
-        return add_light(b, at, flood, along);
+        return add_light(b, lit, axis, street);
     }
-    double face[3] = { at[0], at[1], z + gap }, neck[3] = { at[0] - .3 * dx, at[1] - .3 * dy, z + .07 };
-    shape_housing(&b->shape, face, down, along, f->radius * 1.9, f->radius * 1.15, .12);
+    double neck[3];
+    for (int k = 0; k < 3; k++)
+        neck[k] = at[k] - .3 * along[k] - .07 * axis[k];
+    shape_housing(&b->shape, face, axis, along, f->radius * 1.9, f->radius * 1.15, .12);
     if (root && off > .3)
         shape_bar(&b->shape, root, neck, .03);
-    return add_light(b, at, down, along);
+    return add_light(b, lit, axis, street);
 }
 
 static int add_heads(builder *b) {
@@ -388,8 +430,10 @@ static void add_pole(builder *b) {
 /* A lamp whose body is modelled: its lights alone, where the body has them. */
 static int add_to_body(const builder *b) {
     int lights = 0;
+    double axis[3];
+    head_axis(b->fitting, b->placing->facing[0], b->placing->facing[1], axis);
     for (int i = 0; i < NOC_MIN(b->lamp->body_heads, GEO_BODY_HEADS); i++)
-        lights += add_light(b, b->lamp->head[i], down, b->placing->facing);
+        lights += add_light(b, b->lamp->head[i], axis, b->placing->facing);
     return lights;
 }
 
@@ -421,7 +465,7 @@ int city_add_lamp(noc_scene *scene, const geo_lamp *lamp, const city_lamp_params
     placing p = { 0 };
     if (!lamp->body_heads && !place(scene, lamp, params, &p, issues))
         return 0;
-    if (lamp->body_heads && params->profiles)
+    if (lamp->body_heads && (params->profiles || lamp->fitting))
         face_body(scene, lamp, p.facing);
     fitting f = choose_fitting(lamp, params);
     builder b = { .scene = scene,

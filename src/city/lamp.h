@@ -35,8 +35,9 @@ typedef enum city_profile_kind {
     CITY_PROFILES
 } city_profile_kind;
 
-/* Gives a light that profile, with the way to the street; false after reporting. */
-bool city_profile_give(city_profiles *p, city_profile_kind kind, const double street[3], noc_light *light);
+/* Gives a light that profile, or the one that a rule says (geo_fitting.profile, 0: none does), with the way to the
+ * street; false after reporting. */
+bool city_profile_give(city_profiles *p, city_profile_kind kind, int ruled, const double street[3], noc_light *light);
 
 /* ---- the user's bodies (lamp_body.c) ---- */
 

@@ -1,28 +1,33 @@
-/* Which distribution a lamp has: a built-in one by its fitting, or the user's for all. They go to the scene when the
- * first lamp wants them. */
+/* Which distribution a lamp has: what a rule says, the user's for all, or a built-in one by its fitting. They go to the
+ * scene when the first lamp wants them. */
 #include "city/lamp.h"
 
 #include <stdio.h>
 
+typedef struct kept_profile {
+    noc_profile *profile;
+    int index; /* in the scene; 0: not there yet */
+    size_t lights;
+    char *name, *path; /* NULL: of the kinds; path: of files */
+} kept_profile;
+
 struct city_profiles {
     noc_scene *scene;
-    struct {
-        noc_profile *profile;
-        int index; /* in the scene; 0: not there yet */
-        size_t lights;
-    } of[CITY_PROFILES];
+    NOC_ARRAY(kept_profile) of; /* CITY_PROFILES of kinds, and those of rules */
     bool own;
 };
 
 city_profiles *city_profiles_create(noc_scene *scene, const char *file, noc_status *status) {
     city_profiles *p = noc_calloc(1, sizeof(*p));
-    *status = p ? NOC_OK : noc_scene_out_of_memory(scene);
-    if (p) {
+    *status = p && array_reserve(&p->of, CITY_PROFILES) ? NOC_OK : noc_scene_out_of_memory(scene);
+    if (!*status) {
+        p->of.len = CITY_PROFILES;
+        memset(p->of.data, 0, CITY_PROFILES * sizeof(*p->of.data));
         p->scene = scene;
         p->own = file && *file;
     }
-    if (p && p->own)
-        *status = noc_profile_load(scene->log, file, &p->of[CITY_PROFILE_OWN].profile);
+    if (!*status && p->own)
+        *status = noc_profile_load(scene->log, file, &p->of.data[CITY_PROFILE_OWN].profile);
     if (!*status)
         return p;
     city_profiles_destroy(p);
@@ -30,33 +35,66 @@ city_profiles *city_profiles_create(noc_scene *scene, const char *file, noc_stat
 }
 
 void city_profiles_destroy(city_profiles *p) {
-    for (int i = 0; p && i < CITY_PROFILES; i++)
-        noc_profile_destroy(p->of[i].profile);
+    for (size_t i = 0; p && i < p->of.len; i++) {
+        noc_profile_destroy(p->of.data[i].profile);
+        free(p->of.data[i].name);
+        free(p->of.data[i].path);
+    }
+    if (p)
+        array_free(&p->of);
     free(p);
 }
 
-static const char *name_of(int kind) { return kind == CITY_PROFILE_OWN ? "own" : noc_profile_builtin_name(kind); }
+static const char *name_of(const city_profiles *p, size_t i) {
+    return i >= CITY_PROFILES ? p->of.data[i].name : i == CITY_PROFILE_OWN ? "own" : noc_profile_builtin_name((int)i);
+}
 
-bool city_profile_give(city_profiles *p, city_profile_kind kind, const double street[3], noc_light *light) {
-    int i = p->own ? CITY_PROFILE_OWN : (int)kind;
-    if (!p->of[i].profile && noc_profile_builtin(NULL, name_of(i), &p->of[i].profile)) {
+int city_profiles_builtin(const char *name) {
+    for (int i = 0; noc_profile_builtin_name(i); i++)
+        if (!strcmp(noc_profile_builtin_name(i), name))
+            return i + 1;
+    return 0;
+}
+
+int city_profiles_read(city_profiles *p, const char *path, const char *name) {
+    for (size_t i = CITY_PROFILES; i < p->of.len; i++)
+        if (!strcmp(p->of.data[i].path, path))
+            return (int)i + 1;
+    kept_profile made = { .name = noc_strdup(name), .path = noc_strdup(path) };
+    bool room = made.name && made.path && array_reserve(&p->of, p->of.len + 1);
+    if (room && !noc_profile_load(p->scene->log, path, &made.profile)) {
+        p->of.data[p->of.len++] = made;
+        return (int)p->of.len;
+    }
+    if (!room)
+        noc_scene_out_of_memory(p->scene);
+    free(made.name);
+    free(made.path);
+    return 0;
+}
+
+bool city_profile_give(city_profiles *p, city_profile_kind kind, int ruled, const double street[3], noc_light *light) {
+    size_t i = ruled > 0 ? (size_t)ruled - 1 : p->own ? CITY_PROFILE_OWN : (size_t)kind;
+    kept_profile *k = &p->of.data[i];
+    if (!k->profile && noc_profile_builtin(NULL, name_of(p, i), &k->profile)) {
         noc_scene_out_of_memory(p->scene); /* there is one of each name */
         return false;
     }
-    if (!p->of[i].index)
-        p->of[i].index = noc_scene_add_profile(p->scene, p->of[i].profile);
-    if (p->of[i].index < 1)
+    if (!k->index)
+        k->index = noc_scene_add_profile(p->scene, k->profile);
+    if (k->index < 1)
         return false;
-    p->of[i].lights++;
-    light->profile = p->of[i].index;
-    noc_profile_orient(p->of[i].profile, light->direction, street, light->c0);
+    k->lights++;
+    light->profile = k->index;
+    noc_profile_orient(k->profile, light->direction, street, light->c0);
     return true;
 }
 
 void city_profiles_tell(const city_profiles *p, char *text, size_t size) {
     size_t n = 0;
     *text = 0;
-    for (int i = 0; p && i < CITY_PROFILES; i++)
-        if (p->of[i].lights && n < size)
-            n += (size_t)noc_snprintf(text + n, size - n, "%s%s %zu", n ? ", " : "", name_of(i), p->of[i].lights);
+    for (size_t i = 0; p && i < p->of.len; i++)
+        if (p->of.data[i].lights && n < size)
+            n += (size_t)noc_snprintf(text + n, size - n, "%s%s %zu", n ? ", " : "", name_of(p, i),
+                                      p->of.data[i].lights);
 }

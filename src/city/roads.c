@@ -81,6 +81,21 @@ bool road_walk_next(road_walk *w) {
     return true;
 }
 
+const geo_road *city_roads_street(const city_roads *roads, const double xy[2]) {
+    const geo_road *found = NULL;
+    double best = INFINITY;
+    for (road_walk w = road_walk_start(roads, xy); road_walk_next(&w);) {
+        const geo_road *road = &roads->roads[w.piece->road];
+        double d = road_distance(w.piece, xy, NULL), off = d - geo_road_width(road) / 2;
+        bool nearer = off < best || (off == best && found && strcmp(road->id, found->id) < 0);
+        if (!*road->name || road->cls == GEO_ROAD_RAIL || road->tunnel || d > BESIDE || !nearer)
+            continue;
+        best = off;
+        found = road;
+    }
+    return found;
+}
+
 bool city_roads_facing(const city_roads *roads, const double xy[2], double facing[2]) {
     double best = INFINITY, to[2] = { 0 };
     for (road_walk w = road_walk_start(roads, xy); road_walk_next(&w);) {

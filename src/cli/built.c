@@ -9,6 +9,7 @@ bool cli_is_built(const cli_args *args) {
 
 /* What costs nothing to switch. */
 static bool of_windows(const noc_option *o) { return !strcmp(o->name, "window-lit") || !strcmp(o->name, "hour"); }
+static bool of_groups(const noc_option *o) { return !strcmp(o->name, "group"); }
 static bool of_cars(const noc_option *o) { return !strcmp(o->name, "traffic-time"); }
 
 static bool of_import(const noc_option *option) {
@@ -20,7 +21,8 @@ static bool of_import(const noc_option *option) {
 
 void cli_warn_of_built(const cli_args *args) {
     for (size_t i = 0; i < args->given_by_words && cli_is_built(args) && !args->quiet; i++)
-        if (of_import(args->given[i]) && !of_windows(args->given[i]) && !of_cars(args->given[i]))
+        if (of_import(args->given[i]) && !of_windows(args->given[i]) && !of_groups(args->given[i]) &&
+            !of_cars(args->given[i]))
             cli_error("warning: --%s has no effect: %.200s is built already", args->given[i]->name, args->inputs[0]);
 }
 

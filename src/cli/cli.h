@@ -131,6 +131,13 @@ void cli_warn_of_built(const cli_args *args); /* of options that its build has d
 /* Its windows and cars, as the words say; nothing where they say nothing of them. */
 noc_status cli_switch_built(const cli_args *args, noc_scene *scene, const noc_import_params *import);
 
+/* lights.c */
+/* "city.yaml:12 3,963, city.yaml:14 40": how many lamps each rule matched; "none". free() it. */
+char *cli_rules(const noc_report *report);
+/* "lamps 40 (312 klm), windows 8,000 (out)": groups that have lights; "none". free() it. */
+char *cli_groups(const noc_report *report);
+void cli_print_lights(const char *rules, const char *groups, const noc_report *report); /* after these headings */
+
 /* render.c */
 /* compare takes it too */
 int cli_parse_exposure(const cli_command *command, const char *text, noc_display_params *display);

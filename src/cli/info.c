@@ -322,6 +322,7 @@ static noc_status inspect(const info_args *args, const char *path, noc_log *log,
     } else if (!status || args->import.strict) { /* strictness does not hide what it found */
         for (size_t i = 0; i < noc_report_file_count(report); i++)
             info_print_file(noc_report_get_file(report, i), args);
+        cli_print_lights("  rules       ", "  groups      ", report);
     }
     noc_report_destroy(report);
     noc_scene_destroy(scene);
@@ -385,6 +386,7 @@ static int run(void *arguments) {
     info_args *args = arguments;
     cli_add_named(&args->common, &args->import);
     cli_note_chosen(&args->common, &args->import);
+    noc_recipe_lists(args->common.recipe, &args->import);
     if (!args->common.input_count)
         return cli_usage(&cli_info, "which file?");
     cli_catch_signals();

@@ -205,6 +205,36 @@ void info_json_file(const char *path, const char *error, const noc_report_file *
     putchar('}');
 }
 
+static void rules(const noc_report *report) {
+    const noc_report_rule *rule;
+    key("rules");
+    putchar('[');
+    for (size_t i = 0; (rule = noc_report_get_rule(report, i)); i++) {
+        printf("%s{\"place\": ", i ? ", " : "");
+        cli_json_text(stdout, rule->place);
+        printf(", \"lamps\": %zu}", rule->lamps);
+    }
+    putchar(']');
+}
+
+/* The first one has the lights of none. */
+static void groups(const noc_report *report) {
+    const noc_group_info *g;
+    key("groups");
+    putchar('[');
+    for (size_t i = 0; (g = noc_report_get_group(report, i)); i++) {
+        printf("%s{\"name\": ", i ? ", " : "");
+        if (i)
+            cli_json_text(stdout, g->name);
+        else
+            fputs("null", stdout);
+        printf(", \"lights\": %zu, \"lumens\": ", g->lights);
+        cli_json_number(stdout, g->lumens);
+        putchar('}');
+    }
+    putchar(']');
+}
+
 void info_json_city(const info_city *city, bool timing) {
     const noc_scene_info *info = &city->info;
     const noc_report_totals *t = &city->totals;
@@ -225,6 +255,8 @@ void info_json_city(const info_city *city, bool timing) {
     number("lamps_inferred", (double)t->lamps_inferred);
     number("lamps_dropped", (double)t->lamps_dropped);
     number("lamps_repeated", (double)t->lamps_repeated);
+    rules(city->report);
+    groups(city->report);
     number("features_skipped", (double)t->skipped);
     number("features_repaired", (double)t->repaired);
     number("features_guessed", (double)t->guessed);

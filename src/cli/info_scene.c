@@ -70,6 +70,7 @@ void info_print_city(const info_city *city, const info_args *args) {
     cli_print_windows("  windows     ", &t->windows);
     print_lamps(t);
     printf("  %-11s %s\n", "lights", noc_text_count(a, info->lights));
+    cli_print_lights("  rules       ", "  groups      ", city->report);
     size_t count;
     noc_report_line *issues = cli_issues(city->report, &count);
     info_print_lines(issues, count, "skipped");

@@ -193,8 +193,7 @@ static noc_status load(render_job *job) {
     char triangles[64], lights[64];
     args->import.progress = (noc_progress){ cli_load_progress, NULL };
     args->import.builtin = &args->builtin;
-    args->import.materials = noc_recipe_get_info(args->common.recipe)->materials;
-    args->import.material_count = noc_recipe_get_info(args->common.recipe)->material_count;
+    noc_recipe_lists(args->common.recipe, &args->import);
     args->import.threads = args->threads;
     /* what a frame would refuse, before a city is read */
     noc_status status = noc_render_check(&args->render, job->log);

@@ -107,6 +107,8 @@ static void add_totals(meta_text *meta, const noc_report *report) {
     for (size_t i = 0; i < sizeof(rows) / sizeof(*rows); i++)
         add(meta, rows[i].key, cli_format("%zu", rows[i].count));
     add(meta, "lamp-profiles", cli_format("%s", *t.profiles ? t.profiles : "none"));
+    add(meta, "lamp-rules", cli_rules(report));
+    add(meta, "light-groups", cli_groups(report));
 }
 
 /* Paths as they read from their ends: files of one name lie side by side, then those in folders of one name, and so on.
@@ -348,6 +350,7 @@ static void print_lamps(const noc_report *report, const noc_import_params *impor
                noc_text_many(b, t.tracks, "track"), noc_text_count(c, t.road_cars));
     if (*t.profiles)
         printf("  profiles  %s\n", t.profiles);
+    cli_print_lights("  rules     ", "  groups    ", report);
     cli_print_assumed("  assumed   ", t.lamps_assumed, import);
 }
 

@@ -4,6 +4,7 @@
 #define NOC_GEO_H
 
 #include "base/base.h"
+#include <nocturne/luminaire.h>
 #include <nocturne/scene.h> /* noc_class */
 
 /* ---- coordinate reference systems (crs.c, crs_files.c: the only PROJ calls of the library) ---- */
@@ -84,6 +85,18 @@ typedef struct geo_polygon {
 #define GEO_MAX_HEADS 24 /* on one pole */
 #define GEO_BODY_HEADS 4 /* of a lamp that is modelled */
 
+enum { GEO_CONDITIONS = 256 }; /* of rules and groups, on tags */
+
+/* What rules say of a lamp besides what its tags may. */
+typedef struct geo_fitting {
+    noc_lamp_shape shape;
+    double efficacy, radius, tilt, arm; /* lm/W, m, degrees, m; NaN: nothing */
+    int profile;                        /* of city_profiles; 0: by its kind; GEO_NO_PROFILE: none */
+    int group;                          /* of the scene; 0: none */
+} geo_fitting;
+#define GEO_NO_PROFILE (-1)
+#define geo_no_fitting() ((geo_fitting){ .efficacy = NAN, .radius = NAN, .tilt = NAN, .arm = NAN })
+
 /* A lamp as tagged. NaN / 0 / NULL where unknown. */
 typedef struct geo_lamp {
     double xyz[3];    /* file CRS; xyz[2] NaN: stands on the ground */
@@ -105,7 +118,12 @@ typedef struct geo_lamp {
         GEO_SOURCE_LOW_SODIUM
     } source;
     enum { GEO_MOUNT_UNKNOWN, GEO_MOUNT_POLE, GEO_MOUNT_WALL, GEO_MOUNT_SUSPENDED } mount;
-    const char *id, *ref; /* what else it is called, for other files may call it so; ref may be NULL */
+    /* Bits: which conditions of rules and groups on tags hold, by their numbers (import/lamps/conditions.h), and
+     * whether its tags tell its street. */
+    uint64_t holds[GEO_CONDITIONS / 64];
+    bool tells_street;
+    const geo_fitting *fitting; /* NULL: no rule says anything; never of a reader's */
+    const char *id, *ref;       /* what else it is called, for other files may call it so; ref may be NULL */
     /* A lamp whose body is among the surfaces shines from here, and gets neither a pole nor another place. body_heads
      * 0: none. */
     int body_heads;

@@ -126,8 +126,7 @@ static noc_status take_recipe(S *spec, const char *place, const char *path, size
     scene->inputs = inputs ? inputs : scene->inputs;
     for (size_t i = 0; inputs && i < info->input_count && !status; i++)
         scene->inputs[scene->input_count++] = info->inputs[i];
-    scene->import.materials = info->materials;
-    scene->import.material_count = info->material_count;
+    noc_recipe_lists(scene->recipe, &scene->import);
     return status;
 }
 

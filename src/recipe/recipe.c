@@ -60,7 +60,8 @@ noc_status recipe_unknown(const recipe_file *f, const yaml_node_t *key, const ch
 }
 
 static noc_status unknown_option(const taken *t, const yaml_node_t *key) {
-    static const char *const others[] = { "nocturne", "name", "inputs", "preset", "materials", "cameras", "paths" };
+    static const char *const others[] = { "nocturne", "name",  "inputs",     "preset", "materials",
+                                          "cameras",  "paths", "luminaires", "groups" };
     const char *words[256];
     size_t count = 0, prefix = t->section ? strlen(t->section->prefix) : 0;
     for (size_t i = 0; i < NOC_COUNT(tables); i++)
@@ -78,23 +79,28 @@ static noc_status unknown_option(const taken *t, const yaml_node_t *key) {
     return recipe_unknown(t->file, key, t->section ? t->section->name : "a recipe", words, count);
 }
 
-typedef struct told {
-    char text[400];
-} told;
 static void keep(void *user, noc_log_level level, const char *text) {
+    recipe_file *f = user;
     if (level == NOC_LOG_ERROR)
-        noc_snprintf(((told *)user)->text, sizeof(((told *)user)->text), "%s", text);
+        noc_snprintf(f->told, sizeof(f->told), "%s", text);
+}
+
+noc_status recipe_said(const recipe_file *f, const yaml_node_t *node, noc_status status) {
+    return !status                    ? NOC_OK
+           : status == NOC_ERR_MEMORY ? noc_no_memory(f->log, f->path)
+                                      : recipe_wrong(f, node, "%s", f->told);
 }
 
 noc_status recipe_set(const recipe_file *f, const yaml_node_t *node, const noc_option *o, void *params,
                       const char *text) {
-    told message = { "" };
-    noc_log *log = noc_log_create(&(noc_log_params){ .message = keep, .user = &message });
-    if (!log)
-        return noc_no_memory(f->log, f->path);
-    noc_status status = noc_option_set(o, params, text, log);
-    noc_log_destroy(log);
-    return status ? recipe_wrong(f, node, "%s", message.text) : NOC_OK;
+    return recipe_said(f, node, noc_option_set(o, params, text, f->listener));
+}
+
+noc_status recipe_option(recipe_file *f, const noc_option *o, yaml_node_t *value, void *params) {
+    const char *text = recipe_text(value), *kept = text ? arena_strdup(&f->recipe->arena, text) : NULL;
+    if (!text)
+        return recipe_wrong(f, value, value->type == YAML_SCALAR_NODE ? "%s has no value" : "%s is one value", o->name);
+    return kept ? recipe_set(f, value, o, params, kept) : noc_no_memory(f->log, f->path);
 }
 
 static noc_status set_all(const recipe_setting *s, void *params, noc_log *log) {
@@ -307,6 +313,10 @@ static noc_status take_top(void *ctx, const yaml_node_t *key, yaml_node_t *value
         t->paths = value;
         return NOC_OK;
     }
+    if (!strcmp(name, "luminaires"))
+        return recipe_take_luminaires(f, value);
+    if (!strcmp(name, "groups"))
+        return recipe_take_groups(f, value);
     for (size_t i = 0; i < NOC_COUNT(sections); i++)
         /* a scalar switches the whole: windows: off */
         if (!strcmp(name, sections[i].name) && (value->type != YAML_SCALAR_NODE || !sections[i].scalar)) {
@@ -343,22 +353,23 @@ noc_status noc_recipe_load(const char *path, noc_log *log, noc_recipe **recipe) 
     recipe_file f = {
         .path = path, .log = log, .built = noc_built_is(path), .recipe = noc_calloc(1, sizeof(*f.recipe))
     };
-    if (!f.recipe)
-        return noc_no_memory(log, path);
-    noc_status status = recipe_open(&f);
+    f.listener = noc_log_create(&(noc_log_params){ .message = keep, .user = &f });
+    noc_status status = f.recipe && f.listener ? recipe_open(&f) : noc_no_memory(log, path);
     if (!status) {
         status = take_all(&f);
         yaml_document_delete(&f.yaml);
     }
-    noc_recipe_info *info = &f.recipe->info;
-    info->path = arena_strdup(&f.recipe->arena, path);
-    info->name = info->name ? info->name : "";
-    if (!status && (!info->path || (f.built && !array_push(&f.recipe->inputs, info->path))))
+    noc_log_destroy(f.listener);
+    const char *kept = status ? NULL : arena_strdup(&f.recipe->arena, path);
+    if (!status && (!kept || (f.built && !array_push(&f.recipe->inputs, kept))))
         status = noc_no_memory(log, path);
     if (status) {
         noc_recipe_destroy(f.recipe);
         return status;
     }
+    noc_recipe_info *info = &f.recipe->info;
+    info->path = kept;
+    info->name = info->name ? info->name : "";
     info->inputs = f.recipe->inputs.data;
     info->input_count = f.recipe->inputs.len;
     info->cameras = f.recipe->cameras.data;
@@ -367,6 +378,10 @@ noc_status noc_recipe_load(const char *path, noc_log *log, noc_recipe **recipe) 
     info->path_count = f.recipe->paths.len;
     info->materials = f.recipe->materials.data;
     info->material_count = f.recipe->materials.len;
+    info->luminaires = f.recipe->luminaires.data;
+    info->luminaire_count = f.recipe->luminaires.len;
+    info->groups = f.recipe->groups.data;
+    info->group_count = f.recipe->groups.len;
     *recipe = f.recipe;
     return NOC_OK;
 }
@@ -379,6 +394,8 @@ void noc_recipe_destroy(noc_recipe *recipe) {
     array_free(&recipe->cameras);
     array_free(&recipe->paths);
     array_free(&recipe->materials);
+    array_free(&recipe->luminaires);
+    array_free(&recipe->groups);
     arena_free(&recipe->arena);
     free(recipe);
 }
@@ -386,6 +403,17 @@ void noc_recipe_destroy(noc_recipe *recipe) {
 const noc_recipe_info *noc_recipe_get_info(const noc_recipe *recipe) {
     static const noc_recipe_info none = { .path = "", .name = "" };
     return recipe ? &recipe->info : &none;
+}
+
+void noc_recipe_lists(const noc_recipe *recipe, noc_import_params *params) {
+    if (!recipe || !params)
+        return;
+    params->materials = recipe->info.materials;
+    params->material_count = recipe->info.material_count;
+    params->luminaires = recipe->info.luminaires;
+    params->luminaire_count = recipe->info.luminaire_count;
+    params->groups = recipe->info.groups;
+    params->group_count = recipe->info.group_count;
 }
 
 const noc_option *noc_recipe_option(const noc_recipe *recipe, size_t index) {

@@ -1,5 +1,6 @@
 /* recipe: a city in one YAML file. yaml.c reads the file into nodes that know their lines, recipe.c takes what they say
- * into options, cameras and materials, paths.c what it says of paths. */
+ * into options, cameras and materials, paths.c what it says of paths, rules.c into rules for lamps and groups of
+ * lights. */
 #ifndef NOC_RECIPE_H
 #define NOC_RECIPE_H
 
@@ -25,6 +26,8 @@ struct noc_recipe {
     NOC_ARRAY(noc_recipe_camera) cameras;
     NOC_ARRAY(noc_recipe_path) paths;
     NOC_ARRAY(noc_material) materials;
+    NOC_ARRAY(noc_luminaire_rule) luminaires;
+    NOC_ARRAY(noc_group_rule) groups;
 };
 
 /* A file while it is taken. */
@@ -34,7 +37,14 @@ typedef struct recipe_file {
     bool built; /* a built city's, which is its input */
     yaml_document_t yaml;
     noc_recipe *recipe;
+    noc_log *listener; /* of calls whose errors are told with their line: the last one is in `told` */
+    char told[400];
 } recipe_file;
+
+/* ---- rules.c ---- */
+
+noc_status recipe_take_luminaires(recipe_file *f, yaml_node_t *list);
+noc_status recipe_take_groups(recipe_file *f, yaml_node_t *map);
 
 /* ---- yaml.c ---- */
 
@@ -57,6 +67,10 @@ const char *recipe_path(recipe_file *f, const char *path);
 
 /* ---- recipe.c ---- */
 
+/* What a call that told f->listener returned, as an error of that node. */
+noc_status recipe_said(const recipe_file *f, const yaml_node_t *node, noc_status status);
+/* Sets the row's field of params to a scalar. A text stays the recipe's. */
+noc_status recipe_option(recipe_file *f, const noc_option *o, yaml_node_t *value, void *params);
 /* "no key ratoi in windows; is it ratio?" */
 noc_status recipe_unknown(const recipe_file *f, const yaml_node_t *key, const char *where, const char *const *words,
                           size_t count);

@@ -143,6 +143,7 @@ static const noc_option import_options[] = {
     BOOL(P, profiles, "profiles", "City", "lamps shine as street lights do: light distributions by their kind"),
     TEXT(P, lamp_body, "lamp-body", "City", "FILE", "OBJ, PLY or glTF that lamps look like, a head or a whole one"),
     TEXT(P, lamp_profile, "lamp-profile", "City", "FILE", "IES or EULUMDAT file of all lamps, for built-in ones"),
+    TEXTS(P, group_states, "group", "City", "NAME=STATE", "lights of a group: off, 0.3, 2200K, #ffb060; repeatable"),
     CHOICE(P, obj_up, "obj-up", "City", "y|z", "axis of OBJ files that points up"),
     SWITCH(P, windows, "windows", "Windows", "windows on the walls of cities; auto: on"),
     REAL(P, window.lit_windows, "window-lit", "Windows", 0, 1, "", "share of windows that are lit at 21 h"),
@@ -175,6 +176,39 @@ static const noc_option import_options[] = {
     END,
 };
 /* clang-format on */
+#undef P
+
+#define P noc_luminaire_rule
+/* Of recipes alone. */
+static const noc_option luminaire_options[] = {
+    CHOICE(P, source, "source", "Luminaires",
+           "unknown|LED|sodium|mercury|metal-halide|fluorescent|incandescent|gas|low-sodium", "what makes the light"),
+    CHOICE(P, type, "type", "Luminaires", "any|street|lantern|flood", "the fitting"),
+    CHOICE(P, mount, "mount", "Luminaires", "any|pole|wall|suspended", "what it hangs on"),
+    REAL(P, watts, "watts", "Luminaires", 0.5, 5000, "W", "of a head"),
+    REAL(P, lumens, "lumens", "Luminaires", 1, 500000, "lm", "of a head"),
+    REAL(P, efficacy, "efficacy", "Luminaires", 0.1, 400, "lm/W", "of the luminaire, for its watts"),
+    REAL(P, kelvin, "kelvin", "Luminaires", 1000, 25000, "K", "colour temperature"),
+    TEXT(P, colour, "colour", "Luminaires", "#RRGGBB", "colour, sRGB"),
+    REAL(P, height, "height", "Luminaires", 0.2, 60, "m", "of the light above the ground"),
+    INT(P, heads, "heads", "Luminaires", 1, 24, "", "on a pole"),
+    CHOICE(P, shape, "shape", "Luminaires", "fitting|point|sphere|disc", "what shines"),
+    REAL(P, radius, "radius", "Luminaires", 0.005, 2, "m", "of a sphere or disc"),
+    REAL(P, tilt, "tilt", "Luminaires", 0, 120, "degrees", "of its axis from straight down, to where it faces"),
+    REAL(P, arm, "arm", "Luminaires", 0, 10, "m", "of heads, from the pole's axis"),
+    TEXT(P, profile, "profile", "Luminaires", "PROFILE", "built-in one, IES or EULUMDAT file, or none"),
+    END,
+};
+#undef P
+
+#define P noc_group_rule
+static const noc_option group_options[] = {
+    BOOL(P, on, "on", "Groups", "whether its lights shine"),
+    REAL(P, scale, "scale", "Groups", 0, 1e6, "", "of what its lights emit"),
+    REAL(P, kelvin, "kelvin", "Groups", 1000, 25000, "K", "colour temperature of all its lights"),
+    TEXT(P, colour, "colour", "Groups", "#RRGGBB", "colour of all its lights, sRGB"),
+    END,
+};
 #undef P
 
 #define P noc_city_params
@@ -210,6 +244,8 @@ static const noc_option camera_options[] = {
 const noc_option *noc_render_options(void) { return render_options; }
 const noc_option *noc_display_options(void) { return display_options; }
 const noc_option *noc_import_options(void) { return import_options; }
+const noc_option *noc_luminaire_options(void) { return luminaire_options; }
+const noc_option *noc_group_options(void) { return group_options; }
 const noc_option *noc_city_options(void) { return city_options; }
 const noc_option *noc_builtin_options(void) { return builtin_options; }
 const noc_option *noc_camera_options(void) { return camera_options; }

@@ -77,6 +77,7 @@ void noc_keep_groups(noct_writer *w, const noc_scene *s) {
     for (size_t i = 0; i < s->groups.len; i++) {
         noct_put_u32(w, noct_name(w, s->groups.data[i].name));
         noct_put(w, s->groups.data[i].scale, sizeof(s->groups.data[i].scale));
+        noct_put(w, s->groups.data[i].colour, sizeof(s->groups.data[i].colour));
     }
     noct_end(w);
 }
@@ -84,7 +85,7 @@ void noc_keep_groups(noct_writer *w, const noc_scene *s) {
 noc_status noc_kept_groups(noct_file *f, noc_scene *s) {
     typedef struct kept {
         uint32_t name;
-        float scale[3];
+        float scale[3], colour[3];
     } kept;
     size_t count;
     const kept *k = noct_array(f, "groups", sizeof(*k), &count);
@@ -95,9 +96,10 @@ noc_status noc_kept_groups(noct_file *f, noc_scene *s) {
     for (size_t i = 0; i < count; i++) {
         noc_scene_group g = { .name = noct_name_at(f, k[i].name) };
         memcpy(g.scale, k[i].scale, sizeof(g.scale));
+        memcpy(g.colour, k[i].colour, sizeof(g.colour));
         for (int c = 0; c < 3; c++)
-            if (!(g.scale[c] >= 0 && g.scale[c] <= 1e6f))
-                return noct_wrong(f, "group %zu of its lights has no scale", i + 1);
+            if (!(g.scale[c] >= 0 && g.scale[c] <= 1e6f && g.colour[c] >= 0 && g.colour[c] <= 20))
+                return noct_wrong(f, "group %zu of its lights has no scale or colour", i + 1);
         s->groups.data[s->groups.len++] = g;
     }
     return f->status;

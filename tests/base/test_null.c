@@ -79,6 +79,14 @@ static noc_camera camera;
     P(0, noc_scene_set_emission(scene, 0, NULL) == NOC_ERR_ARGUMENT)                                                   \
     P(0, noc_scene_set_group(NULL, 1, (float[3]){ 0 }) == NOC_ERR_ARGUMENT)                                            \
     P(0, noc_scene_set_group(scene, 1, NULL) == NOC_ERR_ARGUMENT)                                                      \
+    P(0, noc_scene_colour_group(NULL, 1, NULL) == NOC_ERR_ARGUMENT)                                                    \
+    P(0, noc_scene_find_group(NULL, "lamps") == 0 && noc_scene_find_group(scene, NULL) == 0)                           \
+    P(0, noc_scene_groups(NULL, NULL, 1) == 0 && noc_scene_groups(scene, NULL, 1) > 0)                                 \
+    P(0, noc_scene_say_group(NULL, 1, "off") == NOC_ERR_ARGUMENT)                                                      \
+    P(0, noc_scene_say_group(scene, 1, NULL) == NOC_ERR_ARGUMENT)                                                      \
+    P(0, noc_condition_check(NULL, NULL) == NOC_ERR_ARGUMENT)                                                          \
+    P(0, noc_condition_check(&(noc_condition){ 0 }, NULL) == NOC_ERR_ARGUMENT)                                         \
+    P(noc_kelvin_rgb(3000, NULL), true)                                                                                \
     P(0, noc_scene_remove_light(NULL, 0) == NOC_ERR_ARGUMENT)                                                          \
     P(0, noc_scene_remove_mesh(NULL, 0) == NOC_ERR_ARGUMENT)                                                           \
     P(0, noc_scene_save(NULL, "a.noct", NULL) == NOC_ERR_ARGUMENT)                                                     \
@@ -112,6 +120,7 @@ static noc_camera camera;
     P(0, noc_scene_add_builtin(scene, NULL, NULL) == NOC_ERR_ARGUMENT)                                                 \
     P(0, noc_report_file_count(NULL) == 0 && !noc_report_get_file(NULL, 0))                                            \
     P(noc_report_get_totals(NULL, NULL), true)                                                                         \
+    P(0, !noc_report_get_rule(NULL, 0) && !noc_report_get_group(NULL, 0))                                              \
     P(noc_report_destroy(NULL), true)                                                                                  \
     P(0, noc_scene_load(NULL, (const char *[]){ "a" }, 1, NULL, NULL) == NOC_ERR_ARGUMENT)                             \
     P(0, noc_scene_load(noc_scene_create(NULL), NULL, 1, NULL, NULL) == NOC_ERR_ARGUMENT)                              \
@@ -185,6 +194,7 @@ static noc_camera camera;
     P(0, noc_recipe_load("a.yaml", NULL, NULL) == NOC_ERR_ARGUMENT)                                                    \
     P(noc_recipe_destroy(NULL), true)                                                                                  \
     P(0, noc_recipe_get_info(NULL)->input_count == 0)                                                                  \
+    P(noc_recipe_lists(NULL, NULL), true)                                                                              \
     P(0, noc_recipe_option(NULL, 0) == NULL)                                                                           \
     P(0, noc_recipe_set(NULL, noc_render_options(), &camera, NULL) == NOC_ERR_ARGUMENT)                                \
     P(0, noc_camera_path_create(NULL, 1, false, 0, NULL, &(noc_camera_path *){ 0 }) == NOC_ERR_ARGUMENT)               \

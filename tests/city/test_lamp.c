@@ -38,7 +38,7 @@ static void test_kelvin(void **state) {
     for (size_t i = 0; i < NOC_COUNT(table); i++) {
         float rgb[3];
         double xy[2];
-        city_kelvin_rgb(table[i][0], rgb);
+        noc_kelvin_rgb(table[i][0], rgb);
         chromaticity(rgb, xy);
         assert_float_equal(xy[0], table[i][1], .002);
         assert_float_equal(xy[1], table[i][2], .002);
@@ -46,7 +46,7 @@ static void test_kelvin(void **state) {
     }
     for (double k = -1000; k < 1e6; k += 333) { /* anything gives a colour */
         float rgb[3];
-        city_kelvin_rgb(k, rgb);
+        noc_kelvin_rgb(k, rgb);
         assert_true(rgb[0] >= 0 && rgb[1] >= 0 && rgb[2] >= 0);
         assert_float_equal(luminance(rgb), 1, 1e-4);
     }

@@ -332,7 +332,7 @@ static void a_request(void **state) {
         assert_true(received == !short_of && request.texts.refused == short_of);
         assert_true(!received || (!strcmp(request.path, "house.obj") && !strcmp(request.params.crs, "EPSG:25832")));
         reached = reached || short_of;
-        arena_free(&request.texts);
+        remote_request_free(&request);
         array_free(&batch.bytes);
         close(ends[0]);
         close(ends[1]);

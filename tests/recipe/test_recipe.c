@@ -1,6 +1,7 @@
 /* Recipes: what they say, and what is wrong with them. */
 #include "../memory.h"
 
+#include <math.h>
 #include <nocturne/nocturne.h>
 #include <sys/stat.h>
 
@@ -71,6 +72,13 @@ static const char whole[] =
     "materials:\n"
     "  wall: { albedo: 0.5, roughness: 0.8 }\n"
     "  road: { albedo: [.1, .2, .3], f0: .05 }\n"
+    "luminaires:\n"
+    "  - { match: { LAMP: [HPS*, SON], watts: '>= 70 W' }, kelvin: 2050, profile: a/b.ies }\n"
+    "  - tilt: 15\n"
+    "    shape: sphere\n"
+    "groups:\n"
+    "  main: { match: { street: 'Main *' }, scale: 0.5 }\n"
+    "  lamps: { on: off, colour: '#ff8000' }\n"
     "cameras:\n"
     "  near: { eye: [1, -2.5, 3], target: '4,5,6', crs: scene, fov: 70 }\n"
     "  far: { view: aerial }\n"
@@ -148,6 +156,34 @@ static void test_all_that_it_says(void **state) {
     assert_string_equal(keys[2].camera.crs, "scene");
     assert_true(keys[2].seconds == 9.5 && keys[2].camera.fov == 0);
     assert_true(still->keys[0].camera.viewpoint == NOC_VIEWPOINT_AERIAL && still->keys[0].camera.fov == 35);
+    noc_recipe_destroy(r);
+}
+
+static void test_rules_and_groups(void **state) {
+    (void)state;
+    noc_recipe *r;
+    char place[200];
+    noc_import_params params = noc_import_default_params();
+    assert_int_equal(load(whole, &r), NOC_OK);
+    noc_recipe_lists(r, &params);
+    assert_true(params.luminaire_count == 2 && params.group_count == 2 && params.material_count == 2);
+    const noc_luminaire_rule *a = &params.luminaires[0], *b = &params.luminaires[1];
+    assert_int_equal(a->condition_count, 2);
+    assert_string_equal(a->conditions[0].key, "LAMP");
+    assert_string_equal(a->conditions[0].test, "HPS*|SON");
+    assert_string_equal(a->conditions[1].test, ">= 70 W");
+    assert_string_equal(a->profile, "a/b.ies");
+    assert_memory_equal(a->profile_base, folder, strlen(folder));
+    assert_string_equal(a->profile_base + strlen(folder), "/");
+    snprintf(place, sizeof(place), "%s:18", path);
+    assert_string_equal(a->place, place);
+    assert_true(a->kelvin == 2050 && isnan(a->lumens) && isnan(a->tilt) && !a->shape && !a->heads && !a->colour);
+    assert_true(b->tilt == 15 && b->shape == NOC_LAMP_SPHERE && !b->condition_count && isnan(b->kelvin));
+    const noc_group_rule *main = &params.groups[0], *lamps = &params.groups[1];
+    assert_string_equal(main->name, "main");
+    assert_true(main->condition_count == 1 && main->scale == 0.5 && main->on && isnan(main->kelvin));
+    assert_string_equal(lamps->colour, "#ff8000");
+    assert_true(!lamps->on && !lamps->condition_count && lamps->scale == 1);
     noc_recipe_destroy(r);
 }
 
@@ -250,6 +286,28 @@ static void test_what_is_wrong_is_told_with_its_line(void **state) {
         { HEAD "materials: {wall: {albedo: [1, 0, x]}}\n", 3, "entry 3 is no number" },
         { HEAD "materials: {wall: {albedo: 1.5}}\n", 3, "albedo and f0 are 0 to 1" },
         { HEAD "materials: {wall: {roughness: 0}}\n", 3, "roughness .05 to 1" },
+        { HEAD "luminaires: {kelvin: 3}\n", 3, "luminaires is a list of rules" },
+        { HEAD "luminaires:\n- {kelvin: 3000}\n- {kelwin: 3}\n", 5, "no key kelwin in a luminaire; is it kelvin?" },
+        { HEAD "luminaires:\n- {kelvin: 3}\n", 4, "outside 1000 to 25000" },
+        { HEAD "luminaires:\n- {kelvin: [3]}\n", 4, "kelvin is one value" },
+        { HEAD "luminaires:\n- {kelvin: }\n", 4, "kelvin has no value" },
+        { HEAD "luminaires:\n- {shape: cube}\n", 4, "none of fitting|point|sphere|disc" },
+        { HEAD "luminaires:\n- [a]\n", 4, "a luminaire must be keys and their values" },
+        { HEAD "luminaires:\n- {match: [a]}\n", 4, "match must be keys and their values" },
+        { HEAD "luminaires:\n- match:\n    a: {b: c}\n", 5, "match a is one value, or a list" },
+        { HEAD "luminaires:\n- match:\n    a: []\n", 5, "match a is an empty list" },
+        { HEAD "luminaires:\n- match:\n    a: x\n    b: 'y[z'\n", 6, "match b: \"y[z\" has a [ without its ]" },
+        { HEAD "luminaires:\n- match: {a: '>= much'}\n", 4, "is no number" },
+        { HEAD "luminaires:\n- match: {a: 'x||y'}\n", 4, "a pattern of no characters" },
+        { HEAD "luminaires:\n- match: {a: }\n", 4, "a has no value" },
+        { HEAD "luminaires:\n- match: {'tag:': x}\n", 4, "has no key" },
+        { HEAD "luminaires:\n- match: {street: '> 3'}\n", 4, "is asked for a number" },
+        { HEAD "groups: [a]\n", 3, "groups must be keys" },
+        { HEAD "groups: {a: {scale: -1}}\n", 3, "scale: \"-1\" is outside" },
+        { HEAD "groups: {a: {dim: 1}}\n", 3, "no key dim in a group" },
+        { HEAD "groups: {a: {on: maybe}}\n", 3, "neither true nor false" },
+        { HEAD "groups: {a=b: {on: off}}\n", 3, "no = and no comma" },
+        { HEAD "groups: {a: {}, a: {}}\n", 3, "a is given twice" },
         { HEAD "cameras: {a: {eye: [1, 2], target: [1, 2, 3]}}\n", 3, "is not X, Y, Z" },
         { HEAD "cameras: {a: {eye: [1, 2, 3]}}\n", 3, "eye and target go together" },
         { HEAD "cameras: {a: {fov: 500}}\n", 3, "outside 1 to 170" },
@@ -372,6 +430,7 @@ static void test_memory_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_all_that_it_says),
+        cmocka_unit_test(test_rules_and_groups),
         cmocka_unit_test(test_every_option_is_a_key),
         cmocka_unit_test(test_sections),
         cmocka_unit_test(test_what_is_wrong_is_told_with_its_line),

@@ -83,7 +83,7 @@ static void add_materials(town *t) {
         [LIGHT_NEUTRAL] = 4100, [LIGHT_COOL] = 5500,   [LIGHT_SCREEN] = 8500
     };
     for (size_t i = 0; i < NOC_COUNT(kelvin); i++)
-        city_kelvin_rgb(kelvin[i], t->white[i]);
+        noc_kelvin_rgb(kelvin[i], t->white[i]);
 }
 
 /* Divides one axis into blocks of uneven width and the streets between them. */

@@ -212,7 +212,7 @@ static bool add_lamps(noc_scene *scene, int model, const shape *s, const noc_tra
     bool good = true;
     /* a Lambertian disc of I cd is of I / area cd/m2; of red its Rec.709 primary, whose luminance is 0.2126 */
     const float red = (float)(p->tail_lamp / (M_PI * LAMP_RADIUS * LAMP_RADIUS) / .2126);
-    city_kelvin_rgb(kelvin, white);
+    noc_kelvin_rgb(kelvin, white);
     for (int side = -1; side <= 1 && good; side += 2) {
         noc_light head = { .kind = NOC_LIGHT_DISC,
                            .position = { s->headlamp[0] + LAMP_CLEAR, side * s->lamps_apart, s->headlamp[1] },

@@ -76,7 +76,7 @@ void city_window_shine(city_window *w, const building_use *use, uint64_t floor, 
     double bell = city_window_number(shared, 5) + city_window_number(shared, 6) + city_window_number(shared, 7) - 1.5;
     kelvin *= 1 + spread * bell;
     brightness *= 0.8 + 0.4 * city_window_number(own, 8); /* curtains differ from window to window */
-    city_kelvin_rgb(NOC_CLAMP(kelvin, 1000, 20000), w->emission);
+    noc_kelvin_rgb(NOC_CLAMP(kelvin, 1000, 20000), w->emission);
     for (int k = 0; k < 3; k++)
         w->emission[k] *= (float)(level * brightness);
 }

@@ -1,6 +1,6 @@
 /* What the keys of a file mean: by the words, and by what the user maps with --lamp-columns; and which values they had,
  * so that a person can see what was read as what. */
-#include "import/lamps/tags.h"
+#include "import/lamps/conditions.h"
 
 #define MAX_KEYS 4096 /* of one file: tags may be anything, columns end there as well */
 #define EXAMPLE 32    /* bytes of an example that are kept */
@@ -48,8 +48,7 @@ static const char *field_name(lamp_field field) {
     return "";
 }
 
-/* In which units the values of a field are; LAMP_PLAIN: in none. */
-static lamp_unit unit_of(lamp_field field) {
+lamp_unit lamp_field_unit(lamp_field field) {
     switch (field) {
     case LAMP_FIELD_HEIGHT:
     case LAMP_FIELD_ELEVATION: return LAMP_METRES;
@@ -73,7 +72,7 @@ static lamp_field find_with_unit(const char *folded, lamp_field (*find)(const ch
     *m = (lamp_meaning){ .scale = 1, .unit = "" };
     m->field = find(folded, m);
     if (m->field) {
-        m->unit = default_unit(unit_of(m->field));
+        m->unit = default_unit(lamp_field_unit(m->field));
         return m->field;
     }
     char stem[64];
@@ -85,7 +84,7 @@ static lamp_field find_with_unit(const char *folded, lamp_field (*find)(const ch
         memcpy(stem, folded, length);
         stem[length] = 0;
         m->field = find(stem, m);
-        if (m->field && unit_of(m->field) == (lamp_unit)kind)
+        if (m->field && lamp_field_unit(m->field) == (lamp_unit)kind)
             return m->field;
     }
     return LAMP_FIELD_NONE;
@@ -202,7 +201,9 @@ typedef struct key {
     char *example;
     const char *ignored; /* the heading's unit, where a mapped field names another one; else NULL */
     bool tells;          /* what is a lamp */
-    bool noted;          /* belongs into the table of columns; the others were only asked for */
+    bool asked;          /* by conditions: */
+    uint64_t conditions[GEO_CONDITIONS / 64];
+    bool noted; /* belongs into the table of columns; the others were only asked for */
 } key;
 
 struct lamp_keys {
@@ -210,12 +211,16 @@ struct lamp_keys {
     noc_arena arena;
     noc_map index;
     NOC_ARRAY(key) keys;
-    size_t commas, points; /* values with such a decimal sign */
+    size_t commas, points;       /* values with such a decimal sign */
+    lamp_conditions *conditions; /* NULL: none */
 };
 
 lamp_keys *lamp_keys_create(const noc_import_params *params) {
     lamp_keys *keys = noc_calloc(1, sizeof(*keys));
-    if (!keys || !parse_mappings(params, &keys->maps, NULL)) /* understood, as lamp_mapping_check was asked */
+    noc_status status = NOC_OK;
+    if (keys) /* both are understood, as lamp_mapping_check was asked, and luminaires_start */
+        keys->conditions = lamp_conditions_create(params, NULL, &status);
+    if (!keys || (!status && !parse_mappings(params, &keys->maps, NULL)))
         return keys;
     lamp_keys_destroy(keys);
     return NULL;
@@ -228,6 +233,7 @@ void lamp_keys_destroy(lamp_keys *keys) {
     array_free(&keys->keys);
     map_free(&keys->index);
     arena_free(&keys->arena);
+    lamp_conditions_destroy(keys->conditions);
     free(keys);
 }
 
@@ -238,7 +244,7 @@ static bool heading_unit(const char *name, lamp_field field, double *scale, cons
     lamp_meaning m = lamp_meaning_of(name);
     lamp_fold(name, true, folded, sizeof(folded));
     const char *word = strrchr(folded, ' ');
-    if (word && lamp_unit_word(word + 1, unit_of(field), scale, unit))
+    if (word && lamp_unit_word(word + 1, lamp_field_unit(field), scale, unit))
         return true;
     *scale = m.scale;
     *unit = m.unit;
@@ -278,6 +284,7 @@ static key *get(lamp_keys *keys, const char *name) {
             return NULL;
         key k = { .name = arena_strdup(&keys->arena, name) };
         k.meaning = find_meaning(keys, name, &k.ignored);
+        k.asked = lamp_conditions_of_key(keys->conditions, name, k.conditions);
         if (!k.name || !array_push(&keys->keys, k)) {
             keys->arena.refused = true;
             return NULL;
@@ -305,7 +312,7 @@ unsigned lamp_keys_know(lamp_keys *keys, const char *name) {
 void lamp_keys_weigh(lamp_keys *keys, const lamp_tag *tag) {
     lamp_field field = lamp_tag_meaning(keys, tag).field;
     bool number = field == LAMP_FIELD_LON || field == LAMP_FIELD_LAT || field == LAMP_FIELD_X ||
-                  field == LAMP_FIELD_Y || (field && unit_of(field) != LAMP_PLAIN);
+                  field == LAMP_FIELD_Y || (field && lamp_field_unit(field) != LAMP_PLAIN);
     char sign = number && tag->value ? lamp_decimal_sign(tag->value) : 0;
     keys->commas += sign == ',';
     keys->points += sign == '.';
@@ -321,6 +328,23 @@ static key *get_tag(lamp_keys *keys, const lamp_tag *tag) {
 
 lamp_meaning lamp_tag_meaning(lamp_keys *keys, const lamp_tag *tag) {
     return keys && tag->known ? get_tag(keys, tag)->meaning : lamp_keys_meaning(keys, tag->key);
+}
+
+void lamp_keys_ask(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *lamp) {
+    if (!keys || !keys->conditions)
+        return;
+    lamp_conditions_none(keys->conditions, lamp);
+    for (size_t i = 0; i < count; i++) {
+        const key *known = get_tag(keys, &tags[i]);
+        key one = { 0 }; /* of too many to be known */
+        if (!known) {
+            one.meaning = lamp_tag_meaning(keys, &tags[i]);
+            one.asked = lamp_conditions_of_key(keys->conditions, tags[i].key, one.conditions);
+        }
+        const key *k = known ? known : &one;
+        if (k->asked)
+            lamp_conditions_tag(keys->conditions, k->conditions, &tags[i], &k->meaning, lamp_keys_decimal(keys), lamp);
+    }
 }
 
 /* The length of the first bytes of text that may be kept without cutting a character. */

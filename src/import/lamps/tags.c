@@ -329,6 +329,7 @@ bool lamp_read(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *la
                 lamp->ref = said[i].value;
     if (said != few)
         free(said);
+    lamp_keys_ask(keys, tags, count, lamp);
     if (!lamp->count && r.times > 1)
         lamp->count = r.times;
     if (lamp->source == GEO_SOURCE_GAS && !r.type_known)

@@ -15,6 +15,8 @@ typedef struct lamp_tag {
 
 /* ---- what keys mean (keys.c) ---- */
 
+typedef enum lamp_unit { LAMP_METRES, LAMP_WATTS, LAMP_LUMENS, LAMP_KELVIN, LAMP_PLAIN } lamp_unit;
+
 typedef enum lamp_field {
     LAMP_FIELD_NONE,
     LAMP_FIELD_HEIGHT,
@@ -63,6 +65,9 @@ typedef struct lamp_meaning {
 /* role, makes and after of a key. */
 void lamp_roles_of(const char *key, lamp_meaning *meaning);
 
+/* In which unit the values of a field are; LAMP_PLAIN: in none. */
+lamp_unit lamp_field_unit(lamp_field field);
+
 /* By the words alone. Field NONE where they do not know it. */
 lamp_meaning lamp_meaning_of(const char *key);
 
@@ -78,6 +83,9 @@ lamp_meaning lamp_tag_meaning(lamp_keys *keys, const lamp_tag *tag); /* keys may
  * do not tell. */
 void lamp_keys_weigh(lamp_keys *keys, const lamp_tag *tag);
 char lamp_keys_decimal(const lamp_keys *keys); /* keys may be NULL */
+/* Asks what params' rules and groups want to know of the tags of a lamp (geo_lamp.holds, tells_street); keys may be
+ * NULL: none. */
+void lamp_keys_ask(lamp_keys *keys, const lamp_tag *tags, size_t count, geo_lamp *lamp);
 /* Notes a tag's value for the table of columns; blank ones count as none. */
 void lamp_keys_note(lamp_keys *keys, const lamp_tag *tag);
 /* The values of this key say what is a lamp: its field is "kind". */
@@ -227,8 +235,6 @@ bool lamp_colour_word(const char *folded, double *kelvin, float rgb[3]);
 
 /* The most that is believed of a lamp. */
 enum { LAMP_MOST_METRES = 60, LAMP_MOST_LUMENS = 500000, LAMP_MOST_WATTS = 5000 };
-
-typedef enum lamp_unit { LAMP_METRES, LAMP_WATTS, LAMP_LUMENS, LAMP_KELVIN, LAMP_PLAIN } lamp_unit;
 
 /* "16 ft", "5,5 m", "16'6\"", "2x70 W", "3,000 K", "8.5;6". scale is for values that name no unit. *times gets the
  * factor of "2x", else 1. decimal: the file's decimal sign, '.' or ','; 0: not known. */

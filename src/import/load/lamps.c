@@ -144,7 +144,10 @@ static void stand_inferred(importer *im, pending_lamp *p, const city_lamp_params
     city_lamp_params untold = *params;
     untold.tally = NULL; /* of surveyed lamps alone, as are the report's issues */
     road_lamps_raise(im, p);
-    int lights = city_add_lamp(im->scene, &p->lamp, &untold, true, NULL);
+    geo_lamp lamp = p->lamp;
+    geo_fitting fitting;
+    luminaires_dress(im, NULL, p->along, &lamp, &fitting);
+    int lights = city_add_lamp(im->scene, &lamp, &untold, true, NULL);
     im->report->lamps_inferred += lights > 0 ? (size_t)lights : 0;
 }
 
@@ -179,12 +182,15 @@ static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_par
             continue;
         }
         size_t moved = params->tally->moved;
-        int lights = city_add_lamp(im->scene, &p->lamp, params, false, in->issues);
+        geo_lamp lamp = p->lamp;
+        geo_fitting fitting;
+        luminaires_dress(im, in, p->street, &lamp, &fitting);
+        int lights = city_add_lamp(im->scene, &lamp, params, false, in->issues);
         in->file.lights += lights > 0 ? (size_t)lights : 0;
         in->file.lamps_moved += lights > 0 ? params->tally->moved - moved : 0;
         *(lights > 0 ? &in->file.lamps_mapped : &in->file.lamps_dropped) += 1;
         if (lights > 0)
-            report_assumed(&in->file, &p->lamp);
+            report_assumed(&in->file, &lamp);
         fate->mapped += lights > 0;
         fate->closest = lights > 0 ? NOC_MIN(fate->closest, d) : fate->closest;
     }
@@ -311,7 +317,7 @@ static void tell_along_roads(const importer *im, const lamp_fate *fate) {
 }
 
 /* Lamps, of the inputs or by a rule. */
-static noc_status light_city(importer *im, const extent *e, city_profiles *profiles) {
+static noc_status light_city(importer *im, const extent *e) {
     noc_scene *scene = im->scene;
     city_lamp_tally tally = { 0 };
     city_lamp_params params = { .height = im->params->lamp_height,
@@ -320,7 +326,9 @@ static noc_status light_city(importer *im, const extent *e, city_profiles *profi
                                 .has_floor = true,
                                 .floor = city_floor(scene),
                                 .tally = &tally,
-                                .profiles = profiles };
+                                .profiles = im->profiles,
+                                .dress = luminaires_dress_inferred,
+                                .dresser = im };
     city_body body;
     noc_status status = im->params->lamp_body ? body_load(im, im->params->lamp_body, &body) : NOC_OK;
     if (status)
@@ -353,6 +361,8 @@ static noc_status ask_roads(importer *im) {
         return noc_no_memory(im->log, "import");
     if (!im->has_roads) /* surfaces are nearer to the truth */
         road_lamps_face(im, roads);
+    if (luminaires_ask_street(im))
+        road_lamps_street(im, roads);
     noc_status status = NOC_OK;
     if (im->params->infer_lamps == NOC_SWITCH_ON || (im->params->infer_lamps == NOC_SWITCH_AUTO && missing))
         status = road_lamps_add(im, roads);
@@ -380,12 +390,8 @@ static noc_status finish_lamps(importer *im) {
         status = needs_ground(im, &e) ? lay_ground(im, &e) : heights_check(im, NULL);
     if (status)
         return status;
-    city_profiles *profiles =
-        im->params->profiles ? city_profiles_create(scene, im->params->lamp_profile, &status) : NULL;
-    if (!status)
-        status = light_city(im, &e, profiles);
-    city_profiles_tell(profiles, im->report->profiles, sizeof(im->report->profiles));
-    city_profiles_destroy(profiles);
+    status = light_city(im, &e);
+    city_profiles_tell(im->profiles, im->report->profiles, sizeof(im->report->profiles));
     return status;
 }
 

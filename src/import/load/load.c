@@ -102,6 +102,7 @@ static noc_status read_mesh(reading *r, noc_stream *stream, remote_result *resul
     in->file.triangles = im->scene->indices.len / 3 - triangles;
     in->file.objects = im->scene->meshes.len - meshes;
     in->file.lights = im->scene->lights.len - lights;
+    luminaires_take(im, in, lights, meshes);
     for (size_t i = meshes; i < im->scene->meshes.len; i++) {
         const noc_scene_mesh *m = &im->scene->meshes.data[i];
         const float *e = im->scene->materials.data[m->material].emission;
@@ -487,13 +488,19 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     if (built)
         status = load_built(&im, built);
     else if (!status)
+        status = luminaires_start(&im);
+    if (!status && !built)
         status = run(&im, readers);
+    if (!status)
+        status = built ? luminaires_say(&im) : luminaires_finish(&im);
     if (scene->no_memory)
         status = NOC_ERR_MEMORY; /* some go on without what the scene refused */
     if (!status && !inspect && !built)
         status = set_materials(scene, params);
     if (!status && !inspect)
         status = noc_scene_commit(scene);
+    if (!status && !inspect)
+        status = luminaires_report(&im);
     if (status == NOC_ERR_CANCELLED)
         noc_cancelled(scene->log, "import: cancelled");
     for (size_t i = 0; i < im.input_count; i++) {
@@ -509,6 +516,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     expanded_free(&im.files);
     box_free(&im.box);
     take_destroy(&im);
+    luminaires_free(im.luminaires);
+    city_profiles_destroy(im.profiles);
     if (report)
         *report = im.report;
     else

@@ -69,7 +69,8 @@ typedef struct pending_lamp {
     geo_lamp lamp; /* local metres; id in importer.names */
     given_place given;
     size_t input;
-    const geo_road *along; /* a lamp that is placed along this one; NULL: it is the input's */
+    const geo_road *along;  /* a lamp that is placed along this one; NULL: it is the input's */
+    const geo_road *street; /* that it stands beside, where rules or groups ask; NULL: none */
 } pending_lamp;
 
 /* The object that is being read, as far as it tells it from others (repeat.c). */
@@ -127,6 +128,8 @@ typedef struct importer {
     const noc_import_params *params;
     double memory; /* bytes that the scene may take */
     noc_report *report;
+    struct luminaires *luminaires;
+    struct city_profiles *profiles; /* NULL: lamps have none */
     load_box box;
     bool inspect;
     input *inputs;
@@ -161,7 +164,8 @@ typedef struct importer {
     double bytes_total, bytes_before; /* of all inputs; of those that were taken */
     size_t scene_before;              /* bytes of the scene before the present input */
     bool cancelled;
-    pthread_mutex_t lock; /* of the report's arena, and of scene_crs, where readings make their ways to it */
+    /* of the report's arena, of scene_crs, where readings make their ways to it, and of counts of rules */
+    pthread_mutex_t lock;
 } importer;
 
 /* One file while it is read. */
@@ -220,7 +224,31 @@ typedef struct load_part {
     } u;
 } load_part;
 
+/* luminaires.c: rules for lamps, and groups of lights. */
+typedef struct luminaires luminaires;
+struct lamp_subject;
+noc_status luminaires_start(importer *im); /* what is wrong with them is told before anything is read */
+void luminaires_free(luminaires *l);
+bool luminaires_ask_street(const importer *im); /* of a lamp that does not tell it */
+/* A lamp as the rules have it. Its fitting is the one given, for as long as that lives. in: its input; NULL: it is
+ * placed by a rule. street: the road that it stands beside; NULL: none is known. */
+void luminaires_dress(importer *im, const input *in, const geo_road *street, geo_lamp *lamp, geo_fitting *fitting);
+void luminaires_dress_inferred(void *importer, geo_lamp *lamp, geo_fitting *fitting); /* city_lamp_params.dress */
+/* Of one that is looked at and not stood: counts what the rules leave untold. */
+void luminaires_see(importer *im, input *in, geo_lamp *lamp);
+/* The group of the scene that a light is of; 0: none. */
+int luminaires_group(importer *im, const struct lamp_subject *of);
+/* Lights and meshes from those on are an input's that is no city. */
+void luminaires_take(importer *im, const input *in, size_t first_light, size_t first_mesh);
+noc_status luminaires_finish(importer *im); /* groups begin as they are said to; idle rules are told */
+noc_status luminaires_say(importer *im);    /* what params say of groups at the end; all of a built city */
+noc_status luminaires_report(importer *im); /* the groups, once they have begun */
+
 struct noc_report {
+    const noc_report_rule *rules;
+    size_t rule_count;
+    const noc_group_info *groups;
+    size_t group_count;
     noc_arena arena;
     NOC_ARRAY(noc_report_file) files;
     size_t lamps_inferred;
@@ -294,7 +322,7 @@ noc_status footprint_keep(importer *im, input *in, size_t index, const geo_footp
 noc_status footprints_stand(importer *im);
 
 /* roads.c: of maps. */
-bool roads_wanted(const noc_import_params *params);
+bool roads_wanted(const importer *im);
 noc_status road_keep(importer *im, input *in, const geo_road *road);
 
 /* body.c: the user's own body for lamps becomes a model of the scene. */
@@ -306,6 +334,8 @@ struct city_roads;
 noc_status road_lamps_add(importer *im, const struct city_roads *roads);
 /* Lamps that do not say which way they face look across the nearest road. */
 void road_lamps_face(importer *im, const struct city_roads *roads);
+/* Finds the road that each lamp stands beside. */
+void road_lamps_street(importer *im, const struct city_roads *roads);
 /* One on a bridge stands on the line between the ground at its ends. */
 void road_lamps_raise(const importer *im, pending_lamp *p);
 

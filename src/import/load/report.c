@@ -24,6 +24,14 @@ const noc_report_file *noc_report_get_file(const noc_report *report, size_t inde
     return report && index < report->files.len ? &report->files.data[index] : NULL;
 }
 
+const noc_group_info *noc_report_get_group(const noc_report *report, size_t index) {
+    return report && index < report->group_count ? &report->groups[index] : NULL;
+}
+
+const noc_report_rule *noc_report_get_rule(const noc_report *report, size_t index) {
+    return report && index < report->rule_count ? &report->rules[index] : NULL;
+}
+
 void noc_report_destroy(noc_report *report) {
     if (!report)
         return;

@@ -116,6 +116,11 @@ void road_lamps_face(importer *im, const city_roads *roads) {
     }
 }
 
+void road_lamps_street(importer *im, const city_roads *roads) {
+    for (size_t i = 0; i < im->lamps.len; i++)
+        im->lamps.data[i].street = city_roads_street(roads, im->lamps.data[i].lamp.xyz);
+}
+
 void road_lamps_raise(const importer *im, pending_lamp *p) {
     const geo_road *road = p->along;
     const double *a = road->xyz, *b = a + 3 * (road->point_count - 1), *at = p->lamp.xyz;

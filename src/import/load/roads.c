@@ -1,8 +1,9 @@
 /* Roads of maps, which are kept until all inputs are read. */
 #include "import/load/load.h"
 
-bool roads_wanted(const noc_import_params *params) {
-    return params->infer_lamps != NOC_SWITCH_OFF || params->traffic == NOC_SWITCH_ON;
+bool roads_wanted(const importer *im) {
+    const noc_import_params *p = im->params;
+    return p->infer_lamps != NOC_SWITCH_OFF || p->traffic == NOC_SWITCH_ON || luminaires_ask_street(im);
 }
 
 static void count_road(noc_report_file *file, const geo_road *road) {

@@ -189,7 +189,9 @@ static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
     memcpy(p.lamp.head, points[1], heads * sizeof(points[0]));
     count_lamp(&r->in->file, lamp);
     if (r->im->inspect) {
-        report_assumed(&r->in->file, lamp);
+        pthread_mutex_lock(&r->im->lock);
+        luminaires_see(r->im, r->in, &p.lamp);
+        pthread_mutex_unlock(&r->im->lock);
         return NOC_OK;
     }
     p.lamp.id = lamp->id ? lamp->id : "";
@@ -357,9 +359,9 @@ geo_sink sink_create(reading *r) {
                        .end_object = on_end_object,
                        .lamp = on_lamp,
                        .footprint = r->im->params->footprints ? on_footprint : NULL,
-                       .road = roads_wanted(r->im->params) || r->in->named_tracks ? on_road : NULL,
+                       .road = roads_wanted(r->im) || r->in->named_tracks ? on_road : NULL,
                        .track = on_track,
-                       .water = roads_wanted(r->im->params) ? on_water : NULL,
+                       .water = roads_wanted(r->im) ? on_water : NULL,
                        .columns = on_columns,
                        .features = on_features,
                        .progress = on_progress,

@@ -1,5 +1,6 @@
 /* Windows on the walls of the buildings that were taken: made ones, or those of the model. Those of some buildings at a
  * time are found on all threads, and taken in the buildings' order. */
+#include "import/lamps/conditions.h"
 #include "import/load/load.h"
 #include "city/windows/windows.h"
 
@@ -36,6 +37,7 @@ typedef struct scratch {
 typedef struct maker {
     importer *im;
     const noc_window_params *params;
+    int group; /* of the windows of the building that is taken */
     city_cover *cover;
     noc_pool *pool;
     scratch *scratch;      /* [threads] */
@@ -131,7 +133,7 @@ static bool add_pane(maker *m, int mesh, const city_window *w, noc_light_kind ki
                      size_t count) {
     noc_pane pane = { .triangles = triangles,
                       .triangle_count = count,
-                      .shape = { .kind = kind },
+                      .shape = { .kind = kind, .group = m->group },
                       .window = { .level = w->level, .kind = (unsigned char)w->kind } };
     memcpy(pane.shape.position, w->corner, sizeof(w->corner));
     memcpy(pane.shape.edge_u, w->edge_u, sizeof(w->edge_u));
@@ -246,7 +248,9 @@ static void find_building(void *ctx, size_t item, int worker) {
 }
 
 static noc_status take_building(maker *m, const taken_building *b, found_building *found) {
-    noc_window_counts *counts = &m->im->inputs[b->input].file.windows;
+    input *in = &m->im->inputs[b->input];
+    noc_window_counts *counts = &in->file.windows;
+    m->group = luminaires_group(m->im, &(lamp_subject){ .cls = "window", .file = in->path });
     noc_status status = found->no_memory ? no_memory(m->im) : NOC_OK;
     for (size_t i = 0; i < found->meshes.len && !status; i++)
         status = take_own(m, &found->meshes.data[i], counts);

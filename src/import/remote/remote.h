@@ -27,6 +27,7 @@ enum {
     REMOTE_PATH,       /* text */
     REMOTE_OPTION,     /* texts: name and value of one import option */
     REMOTE_SINK,       /* remote_asked */
+    REMOTE_CONDITION,  /* texts: key and test of one that rules or groups ask, in their order */
     REMOTE_GO,
     REMOTE_LOG = 32, /* level, text */
     REMOTE_CRS,      /* texts: srsName, place */
@@ -106,12 +107,14 @@ typedef struct remote_request {
     const char *path;
     noc_import_params params;
     remote_asked sink;
+    NOC_ARRAY(noc_condition) conditions; /* what `rule` asks, */
+    noc_luminaire_rule rule;             /* params' only one */
     noc_arena texts;
 } remote_request;
 
-/* Takes it from the socket; false where it is none, or (texts.refused) memory was refused. Its texts are the arena's,
- * in any case. */
+/* Takes it from the socket; false where it is none, or (texts.refused) memory was refused. */
 bool remote_receive(int fd, remote_request *request);
+void remote_request_free(remote_request *request); /* in any case */
 
 /* ---- the library's side (remote.c, take.c) ---- */
 

@@ -33,6 +33,15 @@ static void ask_options(const noc_import_params *params, remote_record *batch, r
     }
 }
 
+/* A reader needs what they ask, whatever for. */
+static void ask_conditions(const noc_condition *conditions, size_t count, remote_record *batch, remote_record *one) {
+    for (size_t i = 0; i < count; i++) {
+        remote_put_text(one, conditions[i].key);
+        remote_put_text(one, conditions[i].test);
+        remote_add(batch, REMOTE_CONDITION, one);
+    }
+}
+
 void remote_ask(remote_record *batch, const noc_reader *reader, const char *path, const noc_import_params *params,
                 const geo_sink *sink) {
     remote_record one = { 0 };
@@ -41,6 +50,10 @@ void remote_ask(remote_record *batch, const noc_reader *reader, const char *path
     remote_put_text(&one, path);
     remote_add(batch, REMOTE_PATH, &one);
     ask_options(params, batch, &one);
+    for (size_t i = 0; i < params->luminaire_count; i++)
+        ask_conditions(params->luminaires[i].conditions, params->luminaires[i].condition_count, batch, &one);
+    for (size_t i = 0; i < params->group_count; i++)
+        ask_conditions(params->groups[i].conditions, params->groups[i].condition_count, batch, &one);
     remote_asked asked = { (int32_t)getpid(),       sink->named_lamps,  sink->inspect,
                            sink->footprint != NULL, sink->road != NULL, sink->named_tracks };
     remote_put(&one, &asked, sizeof(asked));
@@ -70,6 +83,11 @@ static bool take(remote_request *q, uint32_t kind, remote_record *r) {
         const char *name = remote_get_text(r), *value = remote_get_text(r);
         if (!r->bad)
             set_option(q, name, value);
+    } else if (kind == REMOTE_CONDITION) {
+        noc_condition c = { .key = arena_strdup(&q->texts, remote_get_text(r)) };
+        c.test = arena_strdup(&q->texts, remote_get_text(r));
+        r->bad = r->bad || noc_condition_check(&c, NULL);
+        q->texts.refused = !array_push(&q->conditions, c) || q->texts.refused;
     } else if (kind == REMOTE_SINK) {
         unsigned char flags[sizeof(q->sink)];
         bool whole = remote_get(r, flags, sizeof(flags)) && flags[offsetof(remote_asked, named_lamps)] <= 1 &&
@@ -80,6 +98,11 @@ static bool take(remote_request *q, uint32_t kind, remote_record *r) {
         r->bad = !whole;
     }
     return !r->bad && !q->texts.refused;
+}
+
+void remote_request_free(remote_request *q) {
+    array_free(&q->conditions);
+    arena_free(&q->texts);
 }
 
 bool remote_receive(int fd, remote_request *q) {
@@ -96,7 +119,13 @@ bool remote_receive(int fd, remote_request *q) {
         r.bytes.len = head.size_low;
         bool good = remote_pass(fd, r.bytes.data, r.bytes.len, false) && take(q, head.kind, &r);
         array_free(&r.bytes);
-        if (!good || head.kind == REMOTE_GO)
+        if (!good || head.kind == REMOTE_GO) {
+            q->rule = noc_luminaire_default_rule();
+            q->rule.conditions = q->conditions.data;
+            q->rule.condition_count = q->conditions.len;
+            q->params.luminaires = &q->rule;
+            q->params.luminaire_count = q->conditions.len > 0;
             return good && q->reader && q->path;
+        }
     }
 }

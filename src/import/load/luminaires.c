@@ -1,0 +1,356 @@
+/* What rules say of lamps, and which group a light is of. Rules and groups ask what files tell, never what an earlier
+ * rule has made of it. */
+#include "city/city.h"
+#include "import/lamps/conditions.h"
+#include "import/load/load.h"
+
+#include <math.h>
+#include <nocturne/option.h>
+#include <nocturne/text.h>
+
+struct luminaires {
+    lamp_conditions *conditions; /* NULL: there are no rules and no groups */
+    int *profile;                /* of each rule: geo_fitting.profile */
+    int *group;                  /* of the scene, of each of params */
+    noc_report_rule *matched;    /* in the report's arena */
+};
+
+/* Those that lights are of which no group takes, by their class; a group that is called so and asks nothing says how
+ * that one begins. */
+static const struct { const char *cls, *group; } own_groups[] = { { "lamp", "lamps" }, { "window", "windows" } };
+
+static bool is_own_group(const noc_group_rule *g) {
+    bool own = !strcmp(g->name, "cars"); /* of built-in scenes */
+    for (size_t i = 0; i < NOC_COUNT(own_groups); i++)
+        own = own || !strcmp(g->name, own_groups[i].group);
+    return own && !g->condition_count;
+}
+
+/* ---- what is given ---- */
+
+/* Fields that say nothing are not looked at. */
+static noc_status check_fields(const noc_option *table, const void *params, size_t size, const char *place,
+                               noc_log *log) {
+    union {
+        noc_luminaire_rule rule;
+        noc_group_rule group;
+    } said;
+    memcpy(&said, params, size);
+    for (const noc_option *o = table; o->name; o++) {
+        double *real = (double *)((char *)&said + o->offset);
+        int *whole = (int *)((char *)&said + o->offset);
+        if (o->kind == NOC_OPTION_REAL && isnan(*real))
+            *real = o->min;
+        if (o->kind == NOC_OPTION_INT && !*whole)
+            *whole = (int)o->min;
+    }
+    return noc_option_check(table, &said, place, log);
+}
+
+static noc_status check_colour(const char *colour, const char *place, noc_log *log) {
+    float rgb[3];
+    char shown[60];
+    if (!colour || (lamp_hex_colour(colour, rgb) && rgb[0] + rgb[1] + rgb[2] > 0))
+        return NOC_OK;
+    return noc_error(log, NOC_ERR_ARGUMENT, "%s: colour \"%s\" is no #rrggbb, or it is black", place,
+                     noc_text_clean(shown, sizeof(shown), colour));
+}
+
+static noc_status check_rules(const noc_import_params *p, noc_log *log) {
+    char text[40];
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < p->luminaire_count && !status; i++) {
+        const noc_luminaire_rule *r = &p->luminaires[i];
+        const char *place = lamp_rule_place(r->place, "rule", i, text);
+        status = check_fields(noc_luminaire_options(), r, sizeof(*r), place, log);
+        status = status ? status : check_colour(r->colour, place, log);
+    }
+    for (size_t i = 0; i < p->group_count && !status; i++) {
+        const noc_group_rule *g = &p->groups[i];
+        const char *place = lamp_rule_place(g->place, "group", i, text);
+        status = check_fields(noc_group_options(), g, sizeof(*g), place, log);
+        status = status ? status : check_colour(g->colour, place, log);
+        if (!status && (!g->name || !*g->name))
+            status = noc_error(log, NOC_ERR_ARGUMENT, "%s: it has no name", place);
+        for (size_t k = 0; k < i && !status; k++)
+            if (!strcmp(p->groups[k].name, g->name))
+                status = noc_error(log, NOC_ERR_ARGUMENT, "%s: there are two groups %.60s", place, g->name);
+    }
+    return status;
+}
+
+/* The number of the profile that a rule names; *profile is 0 where it names none. */
+static noc_status find_profile(importer *im, const noc_luminaire_rule *r, const char *place, int *profile) {
+    const char *name = r->profile ? r->profile : "", *slash = strrchr(name, '/'), *why = NULL;
+    *profile = !strcmp(name, "none") ? GEO_NO_PROFILE : city_profiles_builtin(name);
+    if (*profile || !*name || !im->profiles)
+        return NOC_OK;
+    char *path = noc_format("%s%s", r->profile_base && *name != '/' ? r->profile_base : "", name);
+    if (!path)
+        return noc_no_memory(im->log, place);
+    if (r->profile_base)
+        why = import_named_trouble(r->profile_base, path, im->params->allow_outside);
+    noc_status status = NOC_OK;
+    if (why)
+        status = noc_error(im->log, NOC_ERR_IO, "%s: profile %.300s: %s%s", place, name, why,
+                           slash || strchr(name, '.') ? "" : ", and no built-in one is called so");
+    else if (!(*profile = city_profiles_read(im->profiles, path, slash ? slash + 1 : name)))
+        status = im->scene->no_memory ? NOC_ERR_MEMORY : NOC_ERR_FORMAT; /* said, with the file's name */
+    free(path);
+    return status;
+}
+
+static noc_status add_groups(importer *im) {
+    const noc_import_params *p = im->params;
+    for (size_t i = 0; i < p->group_count; i++) {
+        int there = noc_scene_find_group(im->scene, p->groups[i].name);
+        im->luminaires->group[i] = there ? there : noc_scene_add_group(im->scene, p->groups[i].name);
+        if (im->luminaires->group[i] < 0)
+            return im->scene->no_memory ? NOC_ERR_MEMORY : NOC_ERR_UNSUPPORTED; /* said */
+    }
+    return NOC_OK;
+}
+
+noc_status luminaires_start(importer *im) {
+    const noc_import_params *p = im->params;
+    noc_status status = check_rules(p, im->log);
+    if (!status && p->profiles)
+        im->profiles = city_profiles_create(im->scene, p->lamp_profile, &status);
+    luminaires *l = status ? NULL : noc_calloc(1, sizeof(*l));
+    if (!status && !l)
+        status = noc_no_memory(im->log, "rules");
+    if (status)
+        return status;
+    im->luminaires = l;
+    l->conditions = lamp_conditions_create(p, im->log, &status);
+    if (status)
+        return status;
+    l->profile = noc_calloc(p->luminaire_count + 1, sizeof(*l->profile));
+    l->group = noc_calloc(p->group_count + 1, sizeof(*l->group));
+    l->matched = arena_alloc(&im->report->arena, (p->luminaire_count + 1) * sizeof(*l->matched));
+    if (!l->profile || !l->group || !l->matched)
+        return noc_no_memory(im->log, "rules");
+    char text[40];
+    for (size_t i = 0; i < p->luminaire_count && !status; i++) {
+        const char *place = lamp_rule_place(p->luminaires[i].place, "rule", i, text);
+        l->matched[i].place = arena_strdup(&im->report->arena, place);
+        status = l->matched[i].place ? find_profile(im, &p->luminaires[i], place, &l->profile[i])
+                                     : noc_no_memory(im->log, "rules");
+    }
+    im->report->rules = l->matched;
+    im->report->rule_count = p->luminaire_count;
+    return status ? status : add_groups(im);
+}
+
+void luminaires_free(luminaires *l) {
+    if (!l)
+        return;
+    lamp_conditions_destroy(l->conditions);
+    free(l->profile);
+    free(l->group);
+    free(l);
+}
+
+bool luminaires_ask_street(const importer *im) { return lamp_conditions_ask_street(im->luminaires->conditions); }
+
+/* ---- lamps ---- */
+
+static void apply(const noc_luminaire_rule *r, int profile, geo_lamp *lamp, geo_fitting *f) {
+    if (r->source)
+        lamp->source = (int)r->source;
+    if (r->type)
+        lamp->type = (int)r->type - NOC_LAMP_STREET + GEO_LAMP_STREET;
+    if (r->mount)
+        lamp->mount = (int)r->mount - NOC_LAMP_POLE + GEO_MOUNT_POLE;
+    if (isfinite(r->watts)) {
+        lamp->watts = r->watts;
+        lamp->lumens = NAN;
+    }
+    lamp->lumens = isfinite(r->lumens) ? r->lumens : lamp->lumens;
+    if (isfinite(r->kelvin)) {
+        lamp->kelvin = r->kelvin;
+        lamp->rgb[0] = lamp->rgb[1] = lamp->rgb[2] = -1;
+    }
+    if (r->colour)
+        lamp_hex_colour(r->colour, lamp->rgb);
+    lamp->height = isfinite(r->height) ? r->height : lamp->height;
+    lamp->count = r->heads ? r->heads : lamp->count;
+    f->efficacy = isfinite(r->efficacy) ? r->efficacy : f->efficacy;
+    f->shape = r->shape ? r->shape : f->shape;
+    f->radius = isfinite(r->radius) ? r->radius : f->radius;
+    f->tilt = isfinite(r->tilt) ? r->tilt : f->tilt;
+    f->arm = isfinite(r->arm) ? r->arm : f->arm;
+    f->profile = profile ? profile : f->profile;
+}
+
+int luminaires_group(importer *im, const lamp_subject *of) {
+    const luminaires *l = im->luminaires;
+    for (size_t i = 0; i < im->params->group_count; i++)
+        if (!is_own_group(&im->params->groups[i]) && lamp_group_holds(l->conditions, i, of))
+            return l->group[i];
+    for (size_t i = 0; i < NOC_COUNT(own_groups); i++) {
+        if (strcmp(own_groups[i].cls, of->cls))
+            continue;
+        int there = noc_scene_find_group(im->scene, own_groups[i].group);
+        int group = there ? there : noc_scene_add_group(im->scene, own_groups[i].group);
+        return NOC_MAX(group, 0); /* refused memory is looked at by who adds the light */
+    }
+    return 0;
+}
+
+void luminaires_dress(importer *im, const input *in, const geo_road *street, geo_lamp *lamp, geo_fitting *fitting) {
+    luminaires *l = im->luminaires;
+    if (!in)
+        lamp_conditions_none(l->conditions, lamp);
+    const geo_lamp told = *lamp;
+    const lamp_subject of = { .lamp = &told,
+                              .cls = "lamp",
+                              .file = in ? in->path : NULL,
+                              .street = street ? street->name : NULL,
+                              .inferred = !in };
+    *fitting = geo_no_fitting();
+    for (size_t i = 0; i < im->params->luminaire_count; i++) {
+        if (!lamp_rule_holds(l->conditions, i, &of))
+            continue;
+        l->matched[i].lamps++;
+        apply(&im->params->luminaires[i], l->profile[i], lamp, fitting);
+    }
+    fitting->group = luminaires_group(im, &of);
+    lamp->fitting = fitting;
+}
+
+void luminaires_see(importer *im, input *in, geo_lamp *lamp) {
+    geo_fitting fitting;
+    luminaires_dress(im, in, NULL, lamp, &fitting);
+    report_assumed(&in->file, lamp);
+    lamp->fitting = NULL;
+}
+
+void luminaires_dress_inferred(void *im, geo_lamp *lamp, geo_fitting *fitting) {
+    luminaires_dress(im, NULL, NULL, lamp, fitting);
+}
+
+/* Lights of an input that is no city: those from there on, and triangles of meshes. */
+void luminaires_take(importer *im, const input *in, size_t first_light, size_t first_mesh) {
+    noc_scene *s = im->scene;
+    const lamp_subject of = { .cls = "other", .file = in->path };
+    int group = im->params->group_count ? luminaires_group(im, &of) : 0;
+    for (size_t i = first_light; group && i < s->lights.len; i++)
+        if (!noc_light_group(&s->lights.data[i]))
+            s->lights.data[i].flags |= (uint32_t)group << NOC_LIGHT_GROUP;
+    for (size_t i = first_mesh; group && i < s->meshes.len; i++)
+        if (!s->meshes.data[i].group)
+            s->meshes.data[i].group = (uint16_t)group;
+}
+
+/* ---- once all is there ---- */
+
+static noc_status start_group(importer *im, const noc_group_rule *g, int group) {
+    float scale = g->on ? (float)g->scale : 0, rgb[3];
+    noc_status status = NOC_OK;
+    if (scale != 1)
+        status = noc_scene_set_group(im->scene, group, (float[]){ scale, scale, scale });
+    bool coloured = g->colour ? lamp_hex_colour(g->colour, rgb) : isfinite(g->kelvin) != 0;
+    if (coloured && !g->colour)
+        noc_kelvin_rgb(g->kelvin, rgb);
+    return status || !coloured ? status : noc_scene_colour_group(im->scene, group, rgb);
+}
+
+/* "main, lamps, windows" */
+static void tell_groups(const noc_scene *s, char *text, size_t size) {
+    size_t n = 0;
+    noc_snprintf(text, size, "none");
+    for (size_t i = 0; i < s->groups.len && n < size; i++)
+        if (s->groups.data[i].name)
+            n += (size_t)noc_snprintf(text + n, size - n, "%s%.40s", n ? ", " : "", s->groups.data[i].name);
+}
+
+static noc_status say_group(importer *im, const char *text) {
+    const char *equals = strchr(text, '=');
+    char name[80] = "", there[300];
+    if (equals && (size_t)(equals - text) < sizeof(name))
+        noc_snprintf(name, sizeof(name), "%.*s", (int)(equals - text), text);
+    if (!*name)
+        return noc_error(im->log, NOC_ERR_ARGUMENT, "group: \"%.60s\" is not NAME=STATE", text);
+    int group = noc_scene_find_group(im->scene, name);
+    tell_groups(im->scene, there, sizeof(there));
+    return group
+               ? noc_scene_say_group(im->scene, group, equals + 1)
+               : noc_error(im->log, NOC_ERR_ARGUMENT, "group: there is no group %s; the scene's are: %s", name, there);
+}
+
+noc_status luminaires_say(importer *im) {
+    const noc_texts *states = &im->params->group_states;
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < states->count && !status; i++)
+        status = say_group(im, states->text[i]);
+    return status;
+}
+
+noc_status luminaires_finish(importer *im) {
+    const noc_import_params *p = im->params;
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < p->luminaire_count && !im->inspect; i++)
+        if (!im->luminaires->matched[i].lamps)
+            noc_warn(im->log, "%s: the rule matches no lamp", im->luminaires->matched[i].place);
+    for (size_t i = 0; i < p->group_count && !status; i++)
+        status = start_group(im, &p->groups[i], im->luminaires->group[i]);
+    return status ? status : luminaires_say(im);
+}
+
+noc_status luminaires_report(importer *im) {
+    size_t count = noc_scene_groups(im->scene, NULL, 0);
+    noc_group_info *groups = arena_alloc(&im->report->arena, count * sizeof(*groups));
+    if (!groups)
+        return noc_no_memory(im->log, "groups");
+    noc_scene_groups(im->scene, groups, count);
+    for (size_t i = 0; i < count; i++) {
+        groups[i].name = arena_strdup(&im->report->arena, groups[i].name); /* the scene's go with it */
+        if (!groups[i].name)
+            return noc_no_memory(im->log, "groups");
+    }
+    im->report->groups = groups;
+    im->report->group_count = count;
+    return NOC_OK;
+}
+
+noc_status noc_scene_say_group(noc_scene *scene, int group, const char *text) {
+    float scale[3] = { 0 }, rgb[3];
+    bool scaled = false, coloured = false, own = false;
+    if (!scene || !text)
+        return noc_null(scene ? scene->log : NULL, __func__);
+    for (const char *s = text;; s++) {
+        size_t n = strcspn(s, ",");
+        char word[40] = "";
+        double x = NAN;
+        if (n < sizeof(word))
+            noc_snprintf(word, sizeof(word), "%.*s", (int)n, s);
+        size_t length = strlen(word);
+        bool kelvin = length > 1 && (word[length - 1] == 'K' || word[length - 1] == 'k');
+        if (kelvin)
+            word[length - 1] = 0;
+        bool number = noc_parse_double(word, &x), on = noc_ieq(word, "on"), off = noc_ieq(word, "off");
+        if (kelvin && number && x >= 1000 && x <= 25000) {
+            noc_kelvin_rgb(x, rgb);
+            coloured = true;
+        } else if (!kelvin && (on || off || (number && x >= 0 && x <= 1e6))) {
+            scale[0] = scale[1] = scale[2] = on ? 1 : off ? 0 : (float)x;
+            scaled = true;
+        } else if (noc_ieq(word, "own")) {
+            own = true;
+        } else if (*word == '#' && lamp_hex_colour(word, rgb) && rgb[0] + rgb[1] + rgb[2] > 0) {
+            coloured = true;
+        } else {
+            return noc_error(scene->log, NOC_ERR_ARGUMENT,
+                             "group: \"%.60s\" is no state: off, on, a factor (0.3), a colour (2200K, #ffb060) or own",
+                             text);
+        }
+        s += n;
+        if (!*s)
+            break;
+    }
+    noc_status status = scaled ? noc_scene_set_group(scene, group, scale) : NOC_OK;
+    if (!status && (coloured || own))
+        status = noc_scene_colour_group(scene, group, coloured ? rgb : NULL);
+    return status;
+}
