@@ -39,6 +39,10 @@ NOC_API noc_status noc_camera_path_create(const noc_camera_key *keys, size_t cou
 NOC_API noc_status noc_camera_path_orbit(const noc_camera *camera, double seconds, noc_log *log,
                                          noc_camera_path **path);
 NOC_API noc_status noc_camera_path_pan(const noc_camera *camera, double seconds, noc_log *log, noc_camera_path **path);
+/* The same orbit in a scene: where something stands up to its height, within 10 m of its way, the eye rises in time and
+ * flies 8 m over it. */
+NOC_API noc_status noc_scene_orbit(const noc_scene *scene, const noc_camera *camera, double seconds,
+                                   noc_camera_path **path);
 NOC_API void noc_camera_path_destroy(noc_camera_path *path); /* NULL is allowed */
 
 NOC_API double noc_camera_path_seconds(const noc_camera_path *path); /* what it takes; 0 of NULL */

@@ -183,8 +183,8 @@ static noc_status make_path(animation *a) {
             base.viewpoint = NOC_VIEWPOINT_AERIAL;
         status = noc_scene_place_camera(a->job->scene, &base, aspect, &a->job->camera, &a->job->far_away);
         if (!status)
-            status =
-                (pan ? noc_camera_path_pan : noc_camera_path_orbit)(&a->job->camera, seconds, a->job->log, &a->path);
+            status = pan ? noc_camera_path_pan(&a->job->camera, seconds, a->job->log, &a->path)
+                         : noc_scene_orbit(a->job->scene, &a->job->camera, seconds, &a->path);
     }
     if (status)
         return status;
@@ -460,7 +460,7 @@ static noc_status make_pictures(animation *a) {
         return status;
     status = make_folder(a);
     status = status ? status : cli_start_view(a->job);
-    if (!status && a->job->args->display.auto_exposure && !a->job->args->show)
+    if (!status && a->job->args->display.auto_exposure && !a->job->args->show && is_png(&a->series))
         status = meter(a);
     status = status ? status : render_all(a);
     cli_nothing_to_keep(false);

@@ -1,8 +1,7 @@
 /* Camera paths: a curve through keys, and where on it one is at a time. */
-#include "base/base.h"
+#include "scene/camera.h"
 
 #include <math.h>
-#include <nocturne/path.h>
 
 /* Numbers of a place on a path. The first MEASURED of them are metres, and say how long a way is: zoom is the logarithm
  * of the picture's half height at distance 1, times the mean distance of targets. */
@@ -237,13 +236,10 @@ void noc_camera_path_destroy(noc_camera_path *path) {
     free(path);
 }
 
-enum { TURN_KEYS = 36 }; /* a Catmull-Rom curve through them is a circle to 2e-5 of its radius */
-
-static noc_status turn(const noc_camera *camera, bool about_eye, double seconds, noc_log *log, noc_camera_path **path) {
-    noc_camera_key keys[TURN_KEYS];
+void noc_turn_keys(const noc_camera *camera, bool about_eye, noc_camera_key keys[NOC_TURN_KEYS]) {
     const double *centre = about_eye ? camera->eye : camera->target;
-    for (int i = 0; i < TURN_KEYS; i++) {
-        double c = cos(2 * M_PI * i / TURN_KEYS), s = sin(2 * M_PI * i / TURN_KEYS);
+    for (int i = 0; i < NOC_TURN_KEYS; i++) {
+        double c = cos(2 * M_PI * i / NOC_TURN_KEYS), s = sin(2 * M_PI * i / NOC_TURN_KEYS);
         keys[i] = (noc_camera_key){ .camera = *camera, .seconds = -1, .hour = -1 };
         double *turned = about_eye ? keys[i].camera.target : keys[i].camera.eye, *up = keys[i].camera.up;
         double x = turned[0] - centre[0], y = turned[1] - centre[1], ux = up[0], uy = up[1];
@@ -252,7 +248,12 @@ static noc_status turn(const noc_camera *camera, bool about_eye, double seconds,
         up[0] = c * ux - s * uy;
         up[1] = s * ux + c * uy;
     }
-    return noc_camera_path_create(keys, TURN_KEYS, true, seconds, log, path);
+}
+
+static noc_status turn(const noc_camera *camera, bool about_eye, double seconds, noc_log *log, noc_camera_path **path) {
+    noc_camera_key keys[NOC_TURN_KEYS];
+    noc_turn_keys(camera, about_eye, keys);
+    return noc_camera_path_create(keys, NOC_TURN_KEYS, true, seconds, log, path);
 }
 
 noc_status noc_camera_path_orbit(const noc_camera *camera, double seconds, noc_log *log, noc_camera_path **path) {

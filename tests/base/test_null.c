@@ -203,6 +203,9 @@ static noc_camera camera;
     P(0, noc_camera_path_orbit(&camera, 0, NULL, NULL) == NOC_ERR_ARGUMENT)                                            \
     P(0, noc_camera_path_pan(NULL, 0, NULL, &(noc_camera_path *){ 0 }) == NOC_ERR_ARGUMENT)                            \
     P(0, noc_camera_path_pan(&camera, 0, NULL, NULL) == NOC_ERR_ARGUMENT)                                              \
+    P(0, noc_scene_orbit(NULL, &camera, 0, &(noc_camera_path *){ 0 }) == NOC_ERR_ARGUMENT)                             \
+    P(0, noc_scene_orbit(scene, NULL, 0, &(noc_camera_path *){ 0 }) == NOC_ERR_ARGUMENT)                               \
+    P(0, noc_scene_orbit(scene, &camera, 0, NULL) == NOC_ERR_ARGUMENT)                                                 \
     P(noc_camera_path_destroy(NULL), true)                                                                             \
     P(0, noc_camera_path_seconds(NULL) == 0)                                                                           \
     P(0, !noc_camera_path_loops(NULL))                                                                                 \

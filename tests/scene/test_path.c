@@ -155,6 +155,40 @@ static void turns_are_circles(void **state) {
     (void)state;
 }
 
+/* A tower of 90 m on the way of an orbit at 60 m: the eye is over it when it comes there, at its own height elsewhere,
+ * and rises and sinks no steeper than it says, with room for the curve between keys. */
+static void an_orbit_clears_what_stands_in_its_way(void **state) {
+    static const double corners[8][2] = { { -5, 145 },    { 5, 145 },    { 5, 155 },   { -5, 155 },
+                                          { -500, -500 }, { 500, -500 }, { 500, 500 }, { -500, 500 } };
+    double p[24];
+    for (int i = 0; i < 8; i++)
+        memcpy(p + 3 * i, (double[3]){ corners[i][0], corners[i][1], i < 4 ? 90 : 0 }, 3 * sizeof(*p));
+    const uint32_t t[12] = { 0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7 };
+    noc_scene *scene = noc_scene_create(NULL);
+    noc_material m = noc_class_material(NOC_CLASS_ROOF);
+    noc_mesh mesh = { 8, p, 4, t, noc_scene_add_material(scene, &m), 0, 0, "tower" };
+    assert_int_equal(noc_scene_add_mesh(scene, &mesh), 0);
+    assert_int_equal(noc_scene_commit(scene), NOC_OK);
+    noc_camera camera = noc_camera_default();
+    memcpy(camera.eye, (double[3]){ 150, 0, 60 }, sizeof(camera.eye));
+    noc_camera_path *path;
+    assert_int_equal(noc_scene_orbit(scene, &camera, 360, &path), NOC_OK);
+    double seconds = noc_camera_path_seconds(path);
+    noc_camera before = at(path, 0);
+    for (int i = 0; i <= 3600; i++) {
+        noc_camera c = at(path, seconds * i / 3600);
+        double over = hypot(c.eye[0], c.eye[1] - 150), rise = fabs(c.eye[2] - before.eye[2]);
+        if (over < 12 && c.eye[2] < 95)
+            fail_msg("%g m from the tower at %g m", over, c.eye[2]);
+        assert_true(over < 160 || fabs(c.eye[2] - 60) < 0.5);
+        assert_true(rise <= 0.7 * apart(c.eye, before.eye));
+        before = c;
+    }
+    noc_camera_path_destroy(path);
+    noc_scene_destroy(scene);
+    (void)state;
+}
+
 static void hours_go_on_over_midnight(void **state) {
     noc_camera_key keys[] = { key(0, 0, 0), key(1, 0, 2), key(2, 0, 4), key(3, 0, 6), key(4, 0, 8) };
     noc_camera_path *path = make(keys, 5, false, 0);
@@ -236,11 +270,11 @@ static void memory_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(goes_through_its_keys), cmocka_unit_test(is_smooth),
-        cmocka_unit_test(never_turns_back),      cmocka_unit_test(two_equal_keys_are_a_rest),
-        cmocka_unit_test(turns_are_circles),     cmocka_unit_test(hours_go_on_over_midnight),
-        cmocka_unit_test(seconds_are_stretched), cmocka_unit_test(what_is_no_path_is_told),
-        cmocka_unit_test(memory_is_refused),
+        cmocka_unit_test(goes_through_its_keys),     cmocka_unit_test(is_smooth),
+        cmocka_unit_test(never_turns_back),          cmocka_unit_test(two_equal_keys_are_a_rest),
+        cmocka_unit_test(turns_are_circles),         cmocka_unit_test(an_orbit_clears_what_stands_in_its_way),
+        cmocka_unit_test(hours_go_on_over_midnight), cmocka_unit_test(seconds_are_stretched),
+        cmocka_unit_test(what_is_no_path_is_told),   cmocka_unit_test(memory_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
