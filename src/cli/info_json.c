@@ -257,6 +257,9 @@ void info_json_city(const info_city *city, bool timing) {
     number("lamps_repeated", (double)t->lamps_repeated);
     rules(city->report);
     groups(city->report);
+    number("tracks", (double)t->tracks);
+    number("cars", (double)t->cars);
+    number("cars_along_roads", (double)t->road_cars);
     number("features_skipped", (double)t->skipped);
     number("features_repaired", (double)t->repaired);
     number("features_guessed", (double)t->guessed);

@@ -69,6 +69,9 @@ void info_print_city(const info_city *city, const info_args *args) {
                noc_text_many(b, info->instance_triangles, "triangle"));
     cli_print_windows("  windows     ", &t->windows);
     print_lamps(t);
+    if (t->tracks || t->cars)
+        printf("  %-11s %s, %s of them along roads\n", "cars", noc_text_count(a, t->cars),
+               noc_text_count(b, t->road_cars));
     printf("  %-11s %s\n", "lights", noc_text_count(a, info->lights));
     cli_print_lights("  rules       ", "  groups      ", city->report);
     size_t count;

@@ -38,6 +38,7 @@ static const field fields[] = {
     FIELD(SIZE, windows.windows, 1),
     FIELD(SIZE, windows.own, 1),
     FIELD(SIZE, windows.lit, 1),
+    FIELD(SIZE, windows.buildings, NOC_USE_COUNT),
     FIELD(SIZE, windows.walls, NOC_WALL_VERDICT_COUNT),
     FIELD(DOUBLE, windows.area, NOC_WALL_VERDICT_COUNT),
     FIELD(SIZE, points, 1),
