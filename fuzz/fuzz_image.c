@@ -1,4 +1,4 @@
-/* PNG and EXR, and with two parts the comparison of two pictures, its figures and its difference. */
+/* PNG, EXR and Radiance HDR, and with two parts the comparison of two pictures, its figures and its difference. */
 #include "fuzz.h"
 
 #include "image/internal.h"

@@ -574,6 +574,15 @@ put("exr", "half.exr", exr(5, 4, [(b"A", 1), (b"B", 1), (b"G", 1), (b"R", 1)], 0
 put("exr", "zip.exr", exr(20, 18, colours, 3))
 put("exr", "zips.exr", exr(20, 3, colours, 2))
 put("exr", "grey.exr", exr(5, 4, [(b"Y", 2)], 0))
+
+
+def hdr(width, height, rows, more=""):
+    return ("#?RADIANCE\n%sFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (more, height, width)).encode() + rows
+
+
+put("hdr", "plain.hdr", hdr(4, 2, bytes(range(100, 132))))
+put("hdr", "runs.hdr", hdr(10, 3, (b"\2\2\0\x0a" + b"\x8a\x80" * 3 + b"\x84\x81\6abcdef") * 3, "EXPOSURE=2.5\n"))
+put("hdr", "exposed.hdr", hdr(2, 1, b"\x80\x90\xa0\x82" * 2, "# made here\nEXPOSURE=.5\nEXPOSURE=4\n"))
 put("compare", "exr", parts(exr(5, 4, colours, 0), exr(5, 4, [(b"B", 1), (b"G", 1), (b"R", 1)], 0)))
 put("compare", "png", parts(rgb, png(5, 4, 8, 2, (b"\0" + bytes(15)) * 4)))
 put("compare", "wider", parts(exr(5, 4, colours, 0), exr(6, 4, colours, 0)))

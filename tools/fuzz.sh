@@ -30,6 +30,7 @@ tracks tracks 8192 tracks gpx
 stream stream 4096 - gz,zip
 png image 4096 - png
 exr image 8192 - exr
+hdr image 4096 - hdr
 compare image 8192 - -
 crs crs 2048 crs -
 ies profile 4096 profile ies,IES

@@ -66,10 +66,13 @@ typedef struct noc_import_params {
     const char *bbox;
     /* highest level of detail of CityGML and CityJSON taken, 0..4; default 3. The best one at or under it wins */
     int lod;
-    double terrain_error;   /* m that triangles may lie off the heights of a GeoTIFF; default 0.25 */
-    int terrain_triangles;  /* that one may become, with a larger error where that takes one; default 500000 */
-    bool footprints;        /* outlines of buildings in maps become blocks, where no city model has a building; default
-                               false */
+    double terrain_error;  /* m that triangles may lie off the heights of a GeoTIFF; default 0.25 */
+    int terrain_triangles; /* that one may become, with a larger error where that takes one; default 500000 */
+    bool footprints;       /* outlines of buildings in maps become blocks, where no city model has a building; default
+                              false */
+    /* Surfaces of the roads and paths of maps, on the ground? AUTO, the default: with footprints, where no city model
+     * has roads of its own. ON: always. */
+    noc_switch map_surfaces;
     double building_height; /* m, of those that tell neither height nor storeys; default 9 */
     /* Place lamps by a rule? AUTO, the default: where the inputs hold none, along the lit roads of maps, else along
      * streets or buildings; inputs whose lamps are all of no use are an error. ON: along lit roads of maps that have
@@ -140,9 +143,9 @@ typedef struct noc_import_params {
 
 #define NOC_IMPORT_DEFAULTS(set)                                                                                       \
     set(lod, 3) set(building_height, 9) set(terrain_error, 0.25) set(terrain_triangles, 500000)                        \
-        set(infer_lamps, NOC_SWITCH_AUTO) set(lamp_height, 6) set(lamp_lumens, 5000) set(lamp_kelvin, 3000)            \
-            set(profiles, true) set(windows, NOC_SWITCH_AUTO) set(traffic, NOC_SWITCH_AUTO) set(isolate, true)         \
-                set(reader_time, 600) set(max_expansion, 200)
+        set(infer_lamps, NOC_SWITCH_AUTO) set(map_surfaces, NOC_SWITCH_AUTO) set(lamp_height, 6)                       \
+            set(lamp_lumens, 5000) set(lamp_kelvin, 3000) set(profiles, true) set(windows, NOC_SWITCH_AUTO)            \
+                set(traffic, NOC_SWITCH_AUTO) set(isolate, true) set(reader_time, 600) set(max_expansion, 200)
 #ifdef __cplusplus
 #define NOC_IMPORT_ALL_DEFAULTS(set)                                                                                   \
     set(window, noc_window_default_params()) set(cars, noc_traffic_default_params()) NOC_IMPORT_DEFAULTS(set)
@@ -254,6 +257,7 @@ typedef struct noc_report_totals {
     size_t lamps_mapped, lamps_moved, lamps_dropped; /* as in noc_report_file */
     size_t lamps_repeated, objects_repeated;
     size_t lamps_inferred;                        /* placed by a rule */
+    size_t roads_drawn;                           /* roads of maps that surfaces were made of */
     char profiles[160];                           /* of lamps: "cobra-head 40, post-top 3"; "": none have any */
     size_t lamps_assumed[NOC_LAMP_DEFAULT_COUNT]; /* as in noc_report_file */
     noc_window_counts windows;

@@ -71,6 +71,22 @@ bool city_roads_facing(const city_roads *roads, const double xy[2], double facin
 /* The nearest road with a name, whose middle is within 25 m; NULL: there is none. */
 const geo_road *city_roads_street(const city_roads *roads, const double xy[2]);
 
+/* What became of roads that were to be drawn. */
+typedef struct city_paved {
+    size_t roads;   /* have a surface */
+    size_t unpaved; /* railways, and tracks across fields */
+    size_t tunnels;
+    size_t off_ground; /* lie nowhere over the scene's ground */
+    size_t too_many;
+    size_t triangles;
+} city_paved;
+
+/* Makes surfaces of roads of maps (local metres), on the ground that the scene has: roads where cars drive, pavements
+ * where one walks, each as wide as its carriageway and named by its id. Bridges go straight from end to end. Bounded in
+ * triangles and time: what is more is counted. progress may be NULL; NOC_ERR_CANCELLED where it says so. */
+noc_status city_pave_roads(noc_scene *scene, const geo_road *roads, size_t count, const noc_progress *progress,
+                           city_paved *paved);
+
 /* A place for a lamp beside a road, on the ground. */
 typedef struct city_road_lamp {
     const geo_road *road;

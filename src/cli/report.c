@@ -76,6 +76,7 @@ static void add_totals(meta_text *meta, const noc_report *report) {
         size_t count;
     } rows[] = { { "lamps-mapped", t.lamps_mapped },
                  { "lamps-inferred", t.lamps_inferred },
+                 { "roads-drawn", t.roads_drawn },
                  { "lamps-dropped", t.lamps_dropped },
                  { "lamps-moved", t.lamps_moved },
                  { "lamps-repeated", t.lamps_repeated },
@@ -348,6 +349,8 @@ static void print_lamps(const noc_report *report, const noc_import_params *impor
     if (t.tracks || t.cars)
         printf("  cars      %s along %s, %s along roads of maps\n", noc_text_count(a, t.cars - t.road_cars),
                noc_text_many(b, t.tracks, "track"), noc_text_count(c, t.road_cars));
+    if (t.roads_drawn)
+        printf("  roads     %s of maps\n", noc_text_count(a, t.roads_drawn));
     if (*t.profiles)
         printf("  profiles  %s\n", t.profiles);
     cli_print_lights("  rules     ", "  groups    ", report);

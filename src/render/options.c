@@ -128,6 +128,8 @@ static const noc_option import_options[] = {
     REAL(P, terrain_error, "terrain-error", "City", 0, 1000, "m", "what triangles of a GeoTIFF may be off its heights"),
     INT(P, terrain_triangles, "terrain-triangles", "City", 100, 20000000, "", "that a GeoTIFF may become"),
     BOOL(P, footprints, "footprints", "City", "outlines of buildings in maps become blocks where no model has one"),
+    SWITCH(P, map_surfaces, "map-surfaces", "City",
+           "surfaces of roads and paths of maps; auto: with footprints, where no model has roads"),
     REAL(P, building_height, "building-height", "City", 1, 500, "m", "height of such a block that tells none"),
     SWITCH(P, infer_lamps, "infer-lamps", "City",
            "place lamps by a rule: where no input holds any; on: on all lit roads without"),

@@ -121,7 +121,8 @@ sed 's/.*: *//' offers >wanted
 for command in render info compare experiment; do # all its options, as its help has them
     echo "nocturne $command --" >>lines
     "$program" help $command | grep -o -- '^  \(-., \)\?--[^ ]*' |
-        sed 's/.*--/--/; s/--\[no-\]\(infer-lamps\|mp4\|scene\|traffic\|windows\)/--\1 --no-\1/; s/\[no-\]/no-/' |
+        sed -e 's/.*--/--/' -e 's/--\[no-\]\(infer-lamps\|map-surfaces\|mp4\|scene\|traffic\|windows\)/--\1 --no-\1/' \
+            -e 's/\[no-\]/no-/' |
         tr '\n' ' ' >>wanted
     echo >>wanted
 done

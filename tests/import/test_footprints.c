@@ -40,6 +40,8 @@ static void forget(void) {
     scene = NULL;
 }
 
+static noc_switch surfaces = NOC_SWITCH_AUTO;
+
 static noc_status load(bool footprints, bool isolate, const char *a, const char *b) {
     const char *paths[] = { a, b };
     noc_import_params params = noc_import_default_params();
@@ -47,6 +49,7 @@ static noc_status load(bool footprints, bool isolate, const char *a, const char 
     params.footprints = footprints;
     params.isolate = isolate;
     params.scene_crs = "EPSG:25832";
+    params.map_surfaces = surfaces;
     forget();
     scene = noc_scene_create(log_);
     return noc_scene_load(scene, paths, b ? 2 : 1, &params, &report);
@@ -54,6 +57,11 @@ static noc_status load(bool footprints, bool isolate, const char *a, const char 
 
 static void load_well(const char *a, const char *b) {
     if (load(true, true, a, b) != NOC_OK)
+        fail_msg("%s", noc_log_last_error(log_));
+}
+
+static void load_as(bool footprints, const char *path) {
+    if (load(footprints, true, path, NULL) != NOC_OK)
         fail_msg("%s", noc_log_last_error(log_));
 }
 
@@ -287,6 +295,39 @@ static void test_osm(void **state) {
     assert_float_equal(s.high - s.low, 15, 1e-4);
 }
 
+static size_t of_class(noc_class cls) {
+    noc_scene_info info;
+    noc_scene_get_info(scene, &info);
+    return info.triangles_by_class[cls];
+}
+
+/* Roads of a map have surfaces where its buildings are drawn, and lamps stand on them; else where that is asked for. */
+static void test_map_surfaces(void **state) {
+    static const char osm[] =
+        "<?xml version='1.0'?><osm version='0.6'>"
+        "<node id='1' lat='48.1' lon='11.5'/><node id='2' lat='48.1' lon='11.5004'/>"
+        "<node id='3' lat='48.1003' lon='11.5004'/><node id='4' lat='48.0998' lon='11.4999'/>"
+        "<node id='5' lat='48.0998' lon='11.5006'/><node id='6' lat='48.0998' lon='11.5002'>"
+        "<tag k='highway' v='street_lamp'/></node><node id='7' lat='48.1005' lon='11.5006'/>"
+        "<way id='1'><nd ref='1'/><nd ref='2'/><nd ref='3'/><nd ref='1'/><tag k='building' v='yes'/></way>"
+        "<way id='2'><nd ref='4'/><nd ref='5'/><tag k='highway' v='residential'/></way>"
+        "<way id='3'><nd ref='5'/><nd ref='7'/><tag k='highway' v='footway'/></way></osm>";
+    const char *path = write_file("streets.osm", osm);
+    noc_report_totals t;
+    for (int wanted = NOC_SWITCH_OFF; wanted <= NOC_SWITCH_AUTO; wanted++)
+        for (int footprints = 0; footprints < 2; footprints++) {
+            surfaces = (noc_switch)wanted;
+            load_as(footprints, path);
+            bool drawn = wanted == NOC_SWITCH_ON || (wanted == NOC_SWITCH_AUTO && footprints);
+            noc_report_get_totals(report, &t);
+            assert_int_equal(t.roads_drawn, drawn ? 2 : 0);
+            assert_int_equal(of_class(NOC_CLASS_ROAD) > 0, drawn);
+            assert_int_equal(of_class(NOC_CLASS_SIDEWALK) > 0, drawn);
+            assert_int_equal(t.lamps_mapped, 1);
+        }
+    surfaces = NOC_SWITCH_AUTO;
+}
+
 static int start(void **state) {
     log_ = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = hear });
     return !mkdtemp(folder);
@@ -304,9 +345,9 @@ static int finish(void **state) {
 int main(void) {
 #if NOC_HAVE_GDAL
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_blocks), cmocka_unit_test(test_facing), cmocka_unit_test(test_model_and_terrain),
-        cmocka_unit_test(test_layer),  cmocka_unit_test(test_osm),    cmocka_unit_test(test_units),
-        cmocka_unit_test(test_use),
+        cmocka_unit_test(test_blocks), cmocka_unit_test(test_facing),       cmocka_unit_test(test_model_and_terrain),
+        cmocka_unit_test(test_layer),  cmocka_unit_test(test_osm),          cmocka_unit_test(test_units),
+        cmocka_unit_test(test_use),    cmocka_unit_test(test_map_surfaces),
     };
     return cmocka_run_group_tests_name("import/footprints", tests, start, finish);
 #else

@@ -253,6 +253,7 @@ struct noc_report {
     NOC_ARRAY(noc_report_file) files;
     size_t lamps_inferred;
     size_t road_cars; /* along roads of maps */
+    size_t roads_drawn;
     char profiles[160];
 };
 
@@ -324,6 +325,8 @@ noc_status footprints_stand(importer *im);
 /* roads.c: of maps. */
 bool roads_wanted(const importer *im);
 noc_status road_keep(importer *im, input *in, const geo_road *road);
+/* Surfaces of them, once the ground is there, where params want those. */
+noc_status roads_pave(importer *im);
 
 /* body.c: the user's own body for lamps becomes a model of the scene. */
 struct city_body;

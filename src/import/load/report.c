@@ -57,7 +57,8 @@ void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) 
         return;
     *totals = (noc_report_totals){ .lamps_inferred = report ? report->lamps_inferred : 0,
                                    .cars = report ? report->road_cars : 0,
-                                   .road_cars = report ? report->road_cars : 0 };
+                                   .road_cars = report ? report->road_cars : 0,
+                                   .roads_drawn = report ? report->roads_drawn : 0 };
     if (report)
         memcpy(totals->profiles, report->profiles, sizeof(totals->profiles));
     for (size_t i = 0; i < noc_report_file_count(report); i++) {

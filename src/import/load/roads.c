@@ -1,9 +1,15 @@
 /* Roads of maps, which are kept until all inputs are read. */
 #include "import/load/load.h"
+#include "city/city.h"
+
+static bool surfaces_wanted(const noc_import_params *params) {
+    return params->map_surfaces == NOC_SWITCH_ON || (params->map_surfaces == NOC_SWITCH_AUTO && params->footprints);
+}
 
 bool roads_wanted(const importer *im) {
     const noc_import_params *p = im->params;
-    return p->infer_lamps != NOC_SWITCH_OFF || p->traffic == NOC_SWITCH_ON || luminaires_ask_street(im);
+    return p->infer_lamps != NOC_SWITCH_OFF || p->traffic == NOC_SWITCH_ON || luminaires_ask_street(im) ||
+           surfaces_wanted(p);
 }
 
 static void count_road(noc_report_file *file, const geo_road *road) {
@@ -47,4 +53,42 @@ noc_status road_keep(importer *im, input *in, const geo_road *road) {
         return noc_no_memory(im->log, in->path);
     memcpy(xyz, road->xyz, bytes);
     return im->roads.len % 1024 ? NOC_OK : take_affords(im, in, 0);
+}
+
+static bool update(void *user, const char *what, double done) {
+    const importer *im = user;
+    (void)done; /* of the load it is little */
+    return !im->params->progress.update || im->params->progress.update(im->params->progress.user, what, 0.9);
+}
+
+static void tell_paved(const importer *im, const city_paved *p) {
+    char left[200] = "";
+    const struct {
+        size_t count;
+        const char *what;
+    } rows[] = { { p->unpaved, "railways and tracks" },
+                 { p->tunnels, "tunnels" },
+                 { p->off_ground, "beyond the ground" },
+                 { p->too_many, "too many or too long" } };
+    for (size_t i = 0, n = 0; i < NOC_COUNT(rows) && n < sizeof(left) - 1; i++)
+        if (rows[i].count)
+            n += (size_t)noc_snprintf(left + n, sizeof(left) - n, "%s%zu %s", n ? ", " : "; left out: ", rows[i].count,
+                                      rows[i].what);
+    noc_info(im->log, "%zu roads of maps have surfaces of %zu triangles%s", p->roads, p->triangles, left);
+    if (p->too_many)
+        noc_warn(im->log, "%zu roads of maps have no surface: they are too many, or too long", p->too_many);
+}
+
+noc_status roads_pave(importer *im) {
+    city_paved paved;
+    bool own = im->has_roads && im->params->map_surfaces != NOC_SWITCH_ON;
+    if (!surfaces_wanted(im->params) || own || !im->roads.len)
+        return NOC_OK;
+    noc_status status =
+        city_pave_roads(im->scene, im->roads.data, im->roads.len, &(noc_progress){ update, im }, &paved);
+    if (status)
+        return status;
+    im->report->roads_drawn = paved.roads;
+    tell_paved(im, &paved);
+    return NOC_OK;
 }
