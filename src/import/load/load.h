@@ -23,6 +23,7 @@ typedef struct source_crs {
     bool axes_decided, swap;
     int tries;
     double outside; /* degrees outside the CRS's area of use, of the last try */
+    bool opposite;  /* its numbers would fit with the other sign */
     double shift_x; /* zone number before the easting */
 } source_crs;
 

@@ -133,6 +133,7 @@ static void decide_axes(reading *r, source_crs *s, double x, double y, const cha
         geo_issue(issues, GEO_REPAIRED, "zone number taken off the easting", id);
     } else {
         s->outside = given;
+        s->opposite = geo_crs_outside(s->crs, -x, -y) == 0 || geo_crs_outside(s->crs, -y, -x) == 0;
         s->axes_decided = ++s->tries == AXIS_TRIES;
     }
 }
@@ -562,8 +563,12 @@ void place_finish_file(reading *r, bool read) {
         const source_crs *s = r->in->sources.data[i];
         bool doubtful = s->tries && (!s->axes_decided || s->tries == AXIS_TRIES);
         if (read && doubtful && s->outside > FAR_OUTSIDE)
-            noc_warn(r->log, "%s: the coordinates lie far outside the area that %s is for: is it the right CRS?",
-                     r->in->path, geo_crs_name(s->crs));
+            noc_warn(r->log, "%s: the coordinates lie far outside the area that %s is for: is it the right CRS?%s",
+                     r->in->path, geo_crs_name(s->crs),
+                     s->opposite
+                         ? " With the other sign they fit: what is counted southwards and westwards has a CRS of "
+                           "its own, which for S-JTSK is EPSG:5513"
+                         : "");
     }
 }
 
