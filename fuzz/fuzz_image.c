@@ -12,6 +12,14 @@ static noc_image *read_part(fuzz_part part, noc_log *log, int *errors) {
     return image;
 }
 
+static void find_text(fuzz_part part) {
+    static const char *const keys[] = { "Title", "comments", "Software", "" };
+    for (size_t i = 0; i < sizeof(keys) / sizeof(*keys); i++) {
+        size_t length = 0, at = image_find_text(part.data, part.size, keys[i], &length);
+        FUZZ_REQUIRE(!at || (at <= part.size && length <= part.size - at));
+    }
+}
+
 static void compare(const noc_image *x, const noc_image *r, noc_log *log, int *errors) {
     noc_comparison c;
     uint8_t *rgb = NULL;
@@ -33,6 +41,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_part part[FUZZ_PARTS];
     int n = fuzz_parts(data, size, part), errors;
     noc_log *log = fuzz_log(&errors);
+    find_text(part[0]);
     fuzz_memory(data, size);
     noc_image *x = read_part(part[0], log, &errors), *r = n > 1 && x ? read_part(part[1], log, &errors) : NULL;
     if (x && r)

@@ -692,6 +692,9 @@ materials: { wall: { albedo: 0.5, roughness: 0.8 }, road: { albedo: [.1, .2, .3]
 cameras:
   near: { eye: &e [1, -2.5, 3], target: '4,5,6', crs: scene, fov: 70 }
   far: { view: aerial }
+paths:
+  way: { loop: on, keys: [{ camera: near }, { eye: [1, 2, 3], target: [4, 5, 6], seconds: 2, hour: 23 }] }
+  round: { keys: [{ eye: [1, 2, 3], target: [4, 5, 6] }, { eye: [9, 2, 3], target: [4, 5, 6], fov: 20 }] }
 """)
 
 # ---- several inputs, to a scene ----

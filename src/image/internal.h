@@ -21,6 +21,8 @@ bool image_path_ends_in(const char *path, const char *ending);
 bool image_size_allowed(int width, int height);
 typedef enum image_format { IMAGE_UNKNOWN, IMAGE_PNG, IMAGE_EXR, IMAGE_HDR } image_format;
 image_format image_probe(const uint8_t *data, size_t size); /* by its first 8 bytes */
+/* metadata.c. Where in the file the value of that key begins, of *length bytes; 0: it has none */
+size_t image_find_text(const uint8_t *data, size_t size, const char *key, size_t *length);
 /* The mask all zero; false after reporting when refused. */
 bool image_add_mask(noc_image *image, noc_log *log);
 /* Luminance of 1.2 cd/m2 * 2^EV100 is where a camera of that exposure saturates. */

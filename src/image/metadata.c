@@ -97,6 +97,12 @@ static noc_status read_head(const char *path, head *h, noc_log *log) {
     return status;
 }
 
+size_t image_find_text(const uint8_t *data, size_t size, const char *key, size_t *length) {
+    head h = { (uint8_t *)(uintptr_t)data, size };
+    image_format format = size < 8 ? IMAGE_UNKNOWN : image_probe(data, size);
+    return format == IMAGE_PNG ? find_png(&h, key, length) : format == IMAGE_EXR ? find_exr(&h, key, length) : 0;
+}
+
 noc_status noc_image_read_text(const char *path, const char *key, char **text, noc_log *log) {
     if (!path || !key || !text)
         return noc_null(log, __func__);
@@ -106,9 +112,7 @@ noc_status noc_image_read_text(const char *path, const char *key, char **text, n
     image_format format = status ? IMAGE_UNKNOWN : image_probe(h.data, h.size);
     if (!status && (format == IMAGE_UNKNOWN || format == IMAGE_HDR))
         status = noc_error(log, NOC_ERR_FORMAT, "%s: neither a PNG nor an OpenEXR file", path);
-    size_t length = 0, at = status || h.size < 8  ? 0
-                            : format == IMAGE_PNG ? find_png(&h, key, &length)
-                                                  : find_exr(&h, key, &length);
+    size_t length = 0, at = status ? 0 : image_find_text(h.data, h.size, key, &length);
     if (at && !(*text = noc_strndup((const char *)h.data + at, length)))
         status = noc_no_memory(log, path);
     free(h.data);
