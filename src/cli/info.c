@@ -10,6 +10,9 @@ static const noc_option own_options[] = {
     { "scene", "Output", NOC_OPTION_SWITCH, offsetof(A, scene), 0, 2, NULL, "",
       "tell of all inputs as one scene, too, as render loads them: buildings, triangles, windows, lamps, what was "
       "skipped; where neither is said, of recipes" },
+    { "each-lamp", "Output", NOC_OPTION_BOOL, offsetof(A, each_lamp), 0, 1, NULL, "",
+      "a line of CSV for each lamp of the scene, instead of all else: its place, flux, and whether it is mapped or "
+      "inferred; with --json beside the rest" },
     { "timing", "Output", NOC_OPTION_BOOL, offsetof(A, timing), 0, 1, NULL, "",
       "tell how long reading took, and with a scene the peak memory" },
     { NULL },
@@ -29,7 +32,8 @@ const cli_command cli_info = {
     "Examples\n"
     "  nocturne info city.gml lamps.geojson\n"
     "  nocturne info --json city.gml.gz\n"
-    "  nocturne info --scene --timing city.gml lamps.geojson\n",
+    "  nocturne info --scene --timing city.gml lamps.geojson\n"
+    "  nocturne info --each-lamp --infer-lamps map.osm.pbf >lamps.csv\n",
     { { options, 0, NULL },
       { noc_import_options, offsetof(A, import), NULL },
       { noc_city_options, offsetof(A, builtin.city), NULL },
@@ -357,6 +361,12 @@ static int tell_scene(const info_args *args, noc_log *log) {
         info_built(inputs[0], args->json, log);
         profiles++;
     }
+    if (args->each_lamp && !args->json) {
+        loaded = loaded ? loaded : info_lamps(&city, false);
+        info_city_end(&city);
+        free(inputs);
+        return loaded ? CLI_FAILURE : status;
+    }
     for (size_t i = 0; i < noc_report_file_count(city.report); i++) {
         const noc_report_file *file = noc_report_get_file(city.report, i);
         if (!args->json) {
@@ -373,7 +383,7 @@ static int tell_scene(const info_args *args, noc_log *log) {
         cli_json_text(stdout, noc_log_last_error(log));
     } else if (args->json) {
         fputs(", \"scene\": ", stdout);
-        info_json_city(&city, args->timing);
+        loaded = info_json_city(&city, args);
     } else if (!loaded) {
         info_print_city(&city, args);
     }
@@ -397,7 +407,8 @@ static int run(void *arguments) {
     noc_log *log = cli_log_create(&args->common);
     if (args->json)
         printf("{\"nocturne\": \"%s\", \"files\": [", noc_version());
-    bool scene = args->scene == NOC_SWITCH_AUTO ? args->common.recipe != NULL : args->scene == NOC_SWITCH_ON;
+    bool scene =
+        args->scene == NOC_SWITCH_AUTO ? args->common.recipe != NULL || args->each_lamp : args->scene == NOC_SWITCH_ON;
     int status = scene ? tell_scene(args, log) : inspect_each(args, args->common.inputs, args->common.input_count, log);
     if (args->json)
         printf(scene ? "}\n" : "\n]}\n");

@@ -6,7 +6,7 @@
 
 typedef struct info_args {
     cli_args common;
-    bool json, timing;
+    bool json, timing, each_lamp;
     noc_switch scene;
     noc_import_params import;
     noc_builtin_params builtin;
@@ -34,7 +34,10 @@ void info_print_city(const info_city *city, const info_args *args);
 /* One file as a JSON object: an error, what is reported of it, or the built-in scene; the others are NULL. */
 void info_json_file(const char *path, const char *error, const noc_report_file *file, const noc_scene_info *scene,
                     bool timing);
-void info_json_city(const info_city *city, bool timing);
+noc_status info_json_city(const info_city *city, const info_args *args);
+
+/* info_lamps.c: a line of CSV, or a JSON object, for each lamp of the scene. */
+noc_status info_lamps(const info_city *city, bool json);
 
 /* info_built.c: the head of a built city, as text or as a JSON object. */
 noc_status info_built(const char *path, bool json, noc_log *log);

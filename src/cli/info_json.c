@@ -235,7 +235,8 @@ static void groups(const noc_report *report) {
     putchar(']');
 }
 
-void info_json_city(const info_city *city, bool timing) {
+noc_status info_json_city(const info_city *city, const info_args *args) {
+    noc_status status = NOC_OK;
     const noc_scene_info *info = &city->info;
     const noc_report_totals *t = &city->totals;
     printf("{\"files\": %zu", noc_report_file_count(city->report));
@@ -268,10 +269,15 @@ void info_json_city(const info_city *city, bool timing) {
     lines(issues, count);
     free(issues);
     number("scene_bytes", (double)info->memory_bytes);
-    if (timing) {
+    if (args->each_lamp) {
+        fputs(", \"lamps\": ", stdout);
+        status = info_lamps(city, true);
+    }
+    if (args->timing) {
         number("bytes_unpacked", (double)t->bytes_read);
         number("seconds", city->seconds);
         number("peak_bytes", (double)cli_peak_memory());
     }
     putchar('}');
+    return status;
 }

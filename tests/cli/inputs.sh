@@ -155,6 +155,23 @@ else
     skip "outlines of buildings" "no GDAL"
 fi
 
+# A line a lamp, mapped or inferred.
+cat >lit.osm <<'END'
+<osm version="0.6"><node id="1" lat="50" lon="8"/><node id="2" lat="50" lon="8.002"/>
+<node id="3" lat="50.01" lon="8"><tag k="highway" v="street_lamp"/></node>
+<way id="4"><nd ref="1"/><nd ref="2"/><tag k="highway" v="residential"/><tag k="lit" v="yes"/></way></osm>
+END
+if [ "$("$program" --version | grep -ci gdal)" != 0 ]; then
+    run info --each-lamp --infer-lamps lit.osm
+    test $status = 0 && test "$(head -n 1 out)" = name,placed,x,y,z,lumens,shape && test "$(wc -l <out)" = 8 &&
+        grep -q '^"node/3",mapped,.*,5000,disc$' out && test "$(grep -c '^"inferred/way/4/[1-6]",inferred,' out)" = 6
+    result $? "info of each lamp"
+    run info --each-lamp --infer-lamps --json lit.osm
+    test $status = 0 && test "$(grep -c '"placed": "inferred"' out)" = 6; result $? "info of each lamp as JSON"
+else
+    skip "info of each lamp" "no GDAL"
+fi
+
 # Tables of which nothing tells that they are lamps: the user says so, and what their columns mean.
 printf 'lat,lon,power\n48.76,11.42,70\n48.7601,11.4201,100\n' >plain.csv
 printf 'ASSET,HT,XX,YY\nA,30,11.4202,48.7602\nB,,11.4203,48.7603\n' >strange.csv
