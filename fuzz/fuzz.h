@@ -60,4 +60,7 @@ void fuzz_sink_end(fuzz_sink *s);
  * longer. */
 void fuzz_check_scene(const noc_scene *scene, bool camera);
 
+/* built_seeds.c: of record alone. */
+void built_seeds(const char *out);
+
 #endif

@@ -1,5 +1,5 @@
 /* record HELPER OUT FILE...: what the library and its helper say of each file, as seeds: OUT/request/NAME and
- * OUT/wire/NAME. */
+ * OUT/wire/NAME; and built cities. */
 #include "fuzz.h"
 
 #include "import/load/load.h"
@@ -67,6 +67,7 @@ static void record(const char *helper, const char *out, const char *path) {
 }
 
 int main(int argc, char **argv) {
+    built_seeds(argv[2]);
     for (int i = 3; i < argc; i++)
         record(argv[1], argv[2], argv[i]);
     return 0;

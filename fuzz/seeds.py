@@ -710,7 +710,7 @@ put("pipeline", "zip", parts(gzip.compress(whole.encode(), mtime=0), zipped(lamp
 
 # ---- the library and its helper ----
 
-for corpus in "wire", "request":
+for corpus in "wire", "request", "noct":
     os.makedirs(os.path.join(root, corpus), exist_ok=True)
 foreign = [os.path.join(root, corpus, name) for corpus in ("obj", "osm", "pbf", "geojson", "gpkg", "fgb", "shp")
            for name in os.listdir(os.path.join(root, corpus))]

@@ -37,6 +37,7 @@ ies profile 4096 profile ies,IES
 ldt profile 4096 profile ldt
 spec spec 8192 spec -
 recipe recipe 4096 recipe -
+noct noct 131072 - -
 pipeline pipeline 32768 citygml -
 wire wire 16384 - -
 request request 4096 - -

@@ -184,8 +184,7 @@ static noc_status build(build_args *args, noc_log *log, noc_scene *scene) {
     noc_report *report = NULL;
     args->import.progress = (noc_progress){ cli_load_progress, NULL };
     args->import.builtin = &args->builtin;
-    args->import.materials = noc_recipe_get_info(args->common.recipe)->materials;
-    args->import.material_count = noc_recipe_get_info(args->common.recipe)->material_count;
+    noc_recipe_lists(args->common.recipe, &args->import);
     args->import.threads = args->threads;
     noc_status status = noc_scene_load(scene, args->common.inputs, args->common.input_count, &args->import, &report);
     status = status ? status : cli_switch_built(&args->common, scene, &args->import);

@@ -43,7 +43,7 @@ static const built_part parts[] = {
 };
 
 /* All that must be the same where a file is written and where it is read. */
-static uint64_t layout(void) {
+uint64_t built_layout(void) {
     const uint64_t numbers[] = { sizeof(noc_light_record), sizeof(noc_scene_group), NOC_CLASS_COUNT,
                                  NOC_LIGHT_KIND_COUNT,     NOC_WINDOW_KIND_COUNT,   NOC_WALL_VERDICT_COUNT,
                                  LIGHT_PROFILE_BITS,       sizeof(noc_scene_stop),  NOC_COUNT(parts),
@@ -60,7 +60,7 @@ noc_status noc_scene_save(const noc_scene *scene, const char *path, const noc_sa
     if (params && params->recipe && strlen(params->recipe) > MOST_RECIPE)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "%.400s: its recipe has more than 1 MiB", path);
     noc_status status;
-    noct_writer *w = noct_create(path, layout(), scene->log, &status);
+    noct_writer *w = noct_create(path, built_layout(), scene->log, &status);
     if (!w)
         return status;
     noc_scene_lock_read(scene);
@@ -76,7 +76,8 @@ noc_status noc_scene_save(const noc_scene *scene, const char *path, const noc_sa
 noc_status built_read(importer *im, const char *path) {
     noct_file f;
     noc_scene *s = im->scene;
-    noc_status status = noct_open(&f, path, layout(), im->memory, im->params->threads, &im->params->progress, im->log);
+    noc_status status =
+        noct_open(&f, path, built_layout(), im->memory, im->params->threads, &im->params->progress, im->log);
     for (size_t i = 0; i < NOC_COUNT(parts) && !status; i++)
         status = parts[i].read(&f, s);
     if (!status)

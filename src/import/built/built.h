@@ -6,6 +6,8 @@
 #include "import/load/load.h"
 #include "noct/noct.h"
 
+/* A number for all that must be the same where a file is written and where it is read. */
+uint64_t built_layout(void);
 /* Into an empty scene and the importer's report. */
 noc_status built_read(importer *im, const char *path);
 

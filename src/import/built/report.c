@@ -9,7 +9,6 @@ typedef struct field {
 } field;
 #define FIELD(kind, name, n)                                                                                           \
     { FIELD_##kind, offsetof(noc_report_file, name), n, sizeof(((noc_report_file *)0)->name) }
-#define WINDOWS offsetof(noc_report_file, windows)
 
 /* All but lines and columns. tests/import/test_built.c finds what is missing here. */
 static const field fields[] = {
@@ -131,12 +130,22 @@ static void put_lines(noct_writer *w, const noc_report_file *file) {
     }
 }
 
+_Static_assert(offsetof(noc_report, profiles) - offsetof(noc_report, lamps_inferred) == 3 * sizeof(size_t),
+               "each number of a report is written and read below");
+
 void built_write_report(noct_writer *w, const noc_report *report) {
     if (!report)
         return;
     noct_begin(w, "report");
     noct_put_u64(w, report->lamps_inferred);
+    noct_put_u64(w, report->road_cars);
+    noct_put_u64(w, report->roads_drawn);
     noct_put_text(w, report->profiles);
+    noct_put_u64(w, report->rule_count);
+    for (size_t i = 0; i < report->rule_count; i++) {
+        noct_put_text(w, last_name(report->rules[i].place));
+        noct_put_u64(w, report->rules[i].lamps);
+    }
     noct_put_u64(w, report->files.len);
     for (size_t i = 0; i < report->files.len; i++) {
         for (size_t k = 0; k < NOC_COUNT(fields); k++)
@@ -208,13 +217,27 @@ static void get_lines(noct_cursor *c, noc_report *report, noc_report_file *file)
     file->lines = lines;
 }
 
+static void get_rules(noct_cursor *c, noc_report *report) {
+    report->rule_count = get_count(c, 10);
+    noc_report_rule *rules = arena_alloc(&report->arena, report->rule_count * sizeof(*rules));
+    for (size_t i = 0; i < report->rule_count && rules; i++) {
+        rules[i].place = get_text(c, report);
+        rules[i].lamps = (size_t)noct_get_u64(c);
+        c->bad = c->bad || !rules[i].place;
+    }
+    report->rules = rules;
+}
+
 noc_status built_read_report(noct_file *f, noc_report *report) {
     noct_cursor c = noct_section(f, "report");
     if (!c.at)
         return NOC_OK; /* it was saved without */
     report->lamps_inferred = (size_t)noct_get_u64(&c);
+    report->road_cars = (size_t)noct_get_u64(&c);
+    report->roads_drawn = (size_t)noct_get_u64(&c);
     const char *profiles = noct_get_text(&c);
     noc_snprintf(report->profiles, sizeof(report->profiles), "%s", profiles ? profiles : "");
+    get_rules(&c, report);
     size_t files = get_count(&c, NOC_COUNT(fields));
     for (size_t i = 0; i < files && !c.bad; i++) {
         noc_report_file file = { 0 };
