@@ -53,6 +53,8 @@ static place on_leg(const noc_camera_path *path, size_t i, double u) {
  * and stops straight along its leg, or not at all. */
 static void make_tangents(noc_camera_path *path) {
     size_t n = path->legs;
+    if (!n)
+        return; /* a camera that stands */
     for (size_t i = 0; i < n; i++)
         path->keys[i].knot = sqrt(distance(&path->keys[i].at, &path->keys[i + 1].at));
     for (size_t i = 0; i <= n; i++) {
