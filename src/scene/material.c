@@ -25,7 +25,10 @@
 
 #define CLASS(id, text, r, g, b, spec, rough) [id] = text,
 const char *const noc_label_names[NOC_LABEL_COUNT] = { CLASSES[NOC_CLASS_COUNT] = "wall with windows",
-                                                       "wall, too small", "wall, tilted", "party wall",
+                                                       "wall, too small",
+                                                       "wall, tilted",
+                                                       "party wall",
+                                                       "wall of a shed or the like",
                                                        "wall with its own windows" };
 #undef CLASS
 #define CLASS(id, text, r, g, b, spec, rough)                                                                          \

@@ -31,6 +31,9 @@ static void surfaces_that_are_seen(void **state) {
     assert_int_equal(cls->label_count, NOC_LABEL_COUNT);
     for (int i = 0; i < NOC_CLASS_COUNT; i++)
         assert_string_equal(cls->labels[i], noc_class_name((noc_class)i));
+    assert_int_equal(cls->label_count, NOC_CLASS_COUNT + NOC_WALL_VERDICT_COUNT - 1);
+    for (size_t i = 0; i < cls->label_count; i++)
+        assert_true(cls->labels[i] && *cls->labels[i]);
     assert_true(!object->labels && !object->label_count);
     int none = 0, floors = 0, signs = 0;
     for (int i = 0; i < N; i++) {
