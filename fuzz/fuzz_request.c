@@ -39,6 +39,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         array_free(&twice.bytes);
         remote_request_free(&same);
     }
-    remote_request_free(q);
+    remote_request_free(&q);
     return 0;
 }
