@@ -688,6 +688,12 @@ crs: EPSG:25832
 preset: interactive
 sky: 1e-2
 lamps: { files: [l.csv], columns: 'height=H', height: 8.5 }
+luminaires:
+  - { match: { LAMP: [HPS*, 'S[a-o]?'], watts: '>= 70 W', 'tag:id': '1..2 ft' }, kelvin: 2050, profile: a/b.ies, tilt: 5 }
+  - { match: { street: '!Main *', x: absent }, shape: sphere, radius: .2, colour: '#ff8000', heads: 2, source: LED }
+groups:
+  main: { match: { file: '*.csv', class: window }, scale: 0.5, kelvin: 2200 }
+  lamps: { on: off }
 materials: { wall: { albedo: 0.5, roughness: 0.8 }, road: { albedo: [.1, .2, .3], f0: .05 } }
 cameras:
   near: { eye: &e [1, -2.5, 3], target: '4,5,6', crs: scene, fov: 70 }

@@ -113,6 +113,12 @@ int noc_scene_find_group(const noc_scene *scene, const char *name) {
     return 0;
 }
 
+int noc_scene_group_named(noc_scene *s, const char *name) {
+    int group = noc_scene_find_group(s, name);
+    group = group ? group : noc_scene_add_group(s, name);
+    return NOC_MAX(group, 0);
+}
+
 size_t noc_scene_groups(const noc_scene *scene, noc_group_info *groups, size_t count) {
     if (!scene)
         return 0;

@@ -303,6 +303,8 @@ noc_scene *noc_scene_adding(noc_scene *s);
 bool noc_scene_keep_name(noc_scene *s, const char *name, const char **kept);
 /* The model of this number, published or staged; NULL where there is none. */
 noc_scene_model *noc_scene_model_of(const noc_scene *s, int model);
+/* The group of that name, which is added where there is none. 0: memory was refused, or there are too many groups. */
+int noc_scene_group_named(noc_scene *s, const char *name);
 /* Can a mesh or light of that group be added to that model? Else `wrong` says why not, naming the number. */
 enum { NOC_FAULT = 80 };
 bool noc_scene_takes(const noc_scene *s, int group, int model, char wrong[NOC_FAULT]);

@@ -419,6 +419,26 @@ static void test_they_are_told_of_a_file(void **state) {
     noc_report_destroy(report);
 }
 
+/* Lights of the built-in city are in groups of their own. */
+static void test_groups_of_the_built_in_city(void **state) {
+    (void)state;
+    noc_builtin_params city = noc_builtin_default_params();
+    noc_import_params params = noc_import_default_params();
+    noc_scene *scene = noc_scene_create(log_);
+    noc_group_info info[4];
+    city.city.size = 250; /* a smaller one has no cars */
+    params.builtin = &city;
+    params.group_states = (noc_texts){ { "windows=off", "cars=0.5" }, 2 };
+    assert_int_equal(noc_scene_load(scene, (const char *[]){ "builtin:city" }, 1, &params, NULL), NOC_OK);
+    assert_int_equal(noc_scene_groups(scene, info, 4), 4);
+    for (int i = 1; i < 4; i++) {
+        static const char *const names[] = { "", "lamps", "windows", "cars" };
+        assert_string_equal(info[i].name, names[i]);
+        assert_true(info[i].lights > 0 && (info[i].lumens > 0) == (i != 2));
+    }
+    noc_scene_destroy(scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_conditions),
@@ -428,6 +448,7 @@ int main(void) {
         cmocka_unit_test(test_groups),
         cmocka_unit_test(test_what_is_wrong),
         cmocka_unit_test(test_they_are_told_of_a_file),
+        cmocka_unit_test(test_groups_of_the_built_in_city),
     };
     return cmocka_run_group_tests(tests, start, end);
 }

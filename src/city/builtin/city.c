@@ -319,6 +319,9 @@ noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dr
     axis_make(t, 0, false);
     axis_make(t, 1, t->half > 120);
     add_materials(t);
+    t->lamps = noc_scene_group_named(scene, "lamps");
+    t->windows = noc_scene_group_named(scene, "windows");
+    t->cars = noc_scene_group_named(scene, "cars");
     town_roads(t);
     town_river(t);
     int id = 0;

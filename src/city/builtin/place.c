@@ -136,7 +136,8 @@ static void uplight(town *t, vec2 p, vec2 at, double z, double rise, double lume
                     .position = { p.x + 0.05 * dir.x, p.y + 0.05 * dir.y, z + 0.4 },
                     .direction = { dir.x * reach, dir.y * reach, rise },
                     .radius = r,
-                    .name = "floodlight" };
+                    .name = "floodlight",
+                    .group = t->lamps };
     town_light(t, &l, LIGHT_WARM, lumens / (3.14159265358979 * 3.14159265358979 * r * r));
 }
 

@@ -70,7 +70,8 @@ void town_arm_lamp(town *t, vec2 p, double z, vec2 to_road) {
                     .position = { head.x, head.y, z + height - 0.015 },
                     .direction = { 0, 0, -1 },
                     .radius = radius,
-                    .name = "lamp" };
+                    .name = "lamp",
+                    .group = t->lamps };
     town_light(t, &l, LIGHT_SODIUM, lumens / (3.14159265358979 * 3.14159265358979 * radius * radius));
 }
 
@@ -79,7 +80,11 @@ void town_globe_lamp(town *t, vec2 p, double z, int colour) {
     const double height = 4.4, radius = 0.2, lumens = 3600;
     town_pole(t, TM_POLE, p, 6, 0.12, 0.1, z, z + 0.6);
     town_pole(t, TM_POLE, p, 5, 0.06, 0.045, z + 0.6, z + height - radius - 0.02);
-    noc_light l = { .kind = NOC_LIGHT_SPHERE, .position = { p.x, p.y, z + height }, .radius = radius, .name = "lamp" };
+    noc_light l = { .kind = NOC_LIGHT_SPHERE,
+                    .position = { p.x, p.y, z + height },
+                    .radius = radius,
+                    .name = "lamp",
+                    .group = t->lamps };
     town_light(t, &l, colour, lumens / (4 * 3.14159265358979 * 3.14159265358979 * radius * radius));
 }
 
@@ -140,14 +145,17 @@ void town_car(town *t, vec2 p, vec2 dir, double z, bool lights, uint32_t seed) {
         town_quad(t, i == 1 ? paint : TM_CAR_GLASS, q[0], q[1], q[2], q[3]);
     }
     for (int side = -1; lights && side <= 1; side += 2) {
-        noc_light head = {
-            .kind = NOC_LIGHT_DISC, .radius = 0.08, .direction = { dir.x, dir.y, -0.12 }, .name = "headlamp"
-        };
+        noc_light head = { .kind = NOC_LIGHT_DISC,
+                           .radius = 0.08,
+                           .direction = { dir.x, dir.y, -0.12 },
+                           .name = "headlamp",
+                           .group = t->cars };
         noc_light tail = { .kind = NOC_LIGHT_DISC,
                            .radius = 0.07,
                            .direction = { -dir.x, -dir.y, 0 },
                            .emission = { 650, 25, 12 },
-                           .name = "tail lamp" };
+                           .name = "tail lamp",
+                           .group = t->cars };
         town_wall_point(&w, 2.2, z + 0.6, side * 0.62, head.position);
         town_wall_point(&w, -2.12, z + 0.68, side * 0.66, tail.position);
         town_light(t, &head, LIGHT_WHITE, 7000);

@@ -116,6 +116,7 @@ typedef struct town {
     noc_scene *scene;
     noc_city_params params;
     int material[TM_COUNT];
+    int lamps, windows, cars;   /* groups of lights */
     town_batch batch[TM_COUNT]; /* waiting for town_flush */
     double half;                /* half the edge of the plan */
     town_axis axis[2];          /* streets across x, across y */

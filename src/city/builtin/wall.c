@@ -55,7 +55,7 @@ void town_wall_band(town *t, town_mat mat, const town_wall *w, double z0, double
 
 void town_wall_light(town *t, const town_wall *w, double s0, double s1, double z0, double z1, double before, int colour,
                      double luminance, const char *name) {
-    noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM, .name = name };
+    noc_light l = { .kind = NOC_LIGHT_PARALLELOGRAM, .name = name, .group = t->windows };
     town_wall_point(w, s0, z0, before, l.position);
     l.edge_u[0] = w->dir.x * (s1 - s0);
     l.edge_u[1] = w->dir.y * (s1 - s0);
@@ -170,7 +170,9 @@ static void shop(town *t, const town_wall *w, const town_facade *f, int column, 
     if (kind < 0.7 && r[0] > 6 && r[1] < w->length - 6) { /* rooms keep clear of the corners */
         const double depth = 2.6, sm = 0.5 * (r[0] + r[1]), z = r[3] - 0.03;
         recess(t, TM_SHOP, TM_SHOP, w, r, depth);
-        noc_light panel = { .kind = NOC_LIGHT_PARALLELOGRAM, .name = "shop" }; /* in the ceiling, facing down */
+        noc_light panel = { .kind = NOC_LIGHT_PARALLELOGRAM,
+                            .name = "shop",
+                            .group = t->windows }; /* in the ceiling, facing down */
         town_wall_point(w, sm - 0.9, z, -depth + 0.7, panel.position);
         for (int k = 0; k < 2; k++) {
             panel.edge_u[k] = 1.8 * (k ? w->dir.y : w->dir.x);

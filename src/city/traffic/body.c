@@ -212,6 +212,7 @@ static bool add_lamps(noc_scene *scene, int model, const shape *s, const noc_tra
     bool good = true;
     /* a Lambertian disc of I cd is of I / area cd/m2; of red its Rec.709 primary, whose luminance is 0.2126 */
     const float red = (float)(p->tail_lamp / (M_PI * LAMP_RADIUS * LAMP_RADIUS) / .2126);
+    int group = noc_scene_group_named(scene, "cars");
     noc_kelvin_rgb(kelvin, white);
     for (int side = -1; side <= 1 && good; side += 2) {
         noc_light head = { .kind = NOC_LIGHT_DISC,
@@ -220,6 +221,7 @@ static bool add_lamps(noc_scene *scene, int model, const shape *s, const noc_tra
                            .radius = LAMP_RADIUS,
                            .name = "headlamp",
                            .model = model,
+                           .group = group,
                            .profile = beam,
                            .c0 = { 0, -1, 0 } };
         noc_light tail = { .kind = NOC_LIGHT_DISC,
@@ -228,7 +230,8 @@ static bool add_lamps(noc_scene *scene, int model, const shape *s, const noc_tra
                            .radius = LAMP_RADIUS,
                            .emission = { red, 0, 0 },
                            .name = "tail lamp",
-                           .model = model };
+                           .model = model,
+                           .group = group };
         for (int k = 0; k < 3; k++)
             head.emission[k] = (float)p->headlamp * white[k];
         good = (p->headlamp <= 0 || noc_scene_add_light(scene, &head) >= 0) &&

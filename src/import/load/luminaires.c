@@ -103,9 +103,8 @@ static noc_status find_profile(importer *im, const noc_luminaire_rule *r, const 
 static noc_status add_groups(importer *im) {
     const noc_import_params *p = im->params;
     for (size_t i = 0; i < p->group_count; i++) {
-        int there = noc_scene_find_group(im->scene, p->groups[i].name);
-        im->luminaires->group[i] = there ? there : noc_scene_add_group(im->scene, p->groups[i].name);
-        if (im->luminaires->group[i] < 0)
+        im->luminaires->group[i] = noc_scene_group_named(im->scene, p->groups[i].name);
+        if (!im->luminaires->group[i])
             return im->scene->no_memory ? NOC_ERR_MEMORY : NOC_ERR_UNSUPPORTED; /* said */
     }
     return NOC_OK;
@@ -188,13 +187,9 @@ int luminaires_group(importer *im, const lamp_subject *of) {
     for (size_t i = 0; i < im->params->group_count; i++)
         if (!is_own_group(&im->params->groups[i]) && lamp_group_holds(l->conditions, i, of))
             return l->group[i];
-    for (size_t i = 0; i < NOC_COUNT(own_groups); i++) {
-        if (strcmp(own_groups[i].cls, of->cls))
-            continue;
-        int there = noc_scene_find_group(im->scene, own_groups[i].group);
-        int group = there ? there : noc_scene_add_group(im->scene, own_groups[i].group);
-        return NOC_MAX(group, 0); /* refused memory is looked at by who adds the light */
-    }
+    for (size_t i = 0; i < NOC_COUNT(own_groups); i++)
+        if (!strcmp(own_groups[i].cls, of->cls))
+            return noc_scene_group_named(im->scene, own_groups[i].group);
     return 0;
 }
 
