@@ -689,7 +689,8 @@ preset: interactive
 sky: 1e-2
 lamps: { files: [l.csv], columns: 'height=H', height: 8.5 }
 luminaires:
-  - { match: { LAMP: [HPS*, 'S[a-o]?'], watts: '>= 70 W', 'tag:id': '1..2 ft' }, kelvin: 2050, profile: a/b.ies, tilt: 5 }
+  - { match: { LAMP: [HPS*, 'S[a-o]?'], watts: '>= 70 W', 'tag:id': '1..2 ft' }, kelvin: 2050, tilt: 5 }
+  - { profile: a/b.ies, arm: 2 }
   - { match: { street: '!Main *', x: absent }, shape: sphere, radius: .2, colour: '#ff8000', heads: 2, source: LED }
 groups:
   main: { match: { file: '*.csv', class: window }, scale: 0.5, kelvin: 2200 }
