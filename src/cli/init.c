@@ -175,6 +175,19 @@ static void print_lamps(FILE *out, const init_args *args, const found *all) {
     print_texts(out, &args->import.lamp_columns, "columns", "what columns are read as: \"height=H,watts=P\"");
 }
 
+/* Examples that mean something of any lamp. */
+static void print_rules(FILE *out) {
+    fputs("\n# Rules for lamps, by tags and columns or by what was understood; the later one's word counts\n"
+          "# (docs/luminaires.md).\n"
+          "#luminaires:\n"
+          "#  - { match: { source: sodium, watts: \">= 150\" }, profile: cobra-head, tilt: 5 }\n"
+          "\n# Lights that are switched, dimmed and coloured together; --group NAME=STATE does it too.\n"
+          "#groups:\n"
+          "#  lamps: { scale: 0.5 }\n"
+          "#  station: { match: { street: \"Station*\" }, kelvin: 2200 }\n",
+          out);
+}
+
 static void print_materials(FILE *out, const found *all) {
     fputs("\n# By class; what is not said stays as the class has it.\n#materials:\n", out);
     for (int c = 0; c < NOC_CLASS_COUNT; c++) {
@@ -238,6 +251,7 @@ static noc_status print_recipe(const init_args *args, const char *folder, noc_lo
     print_section(out, args, "windows", "window-", "Windows", false);
     print_section(out, args, "traffic", "traffic-", "Traffic", args->import.tracks.count);
     print_texts(out, &args->import.tracks, "tracks", "files whose lines are tracks of cars");
+    print_rules(out);
     print_materials(out, &all);
     fputs("\n# The first one is used unless --camera NAME, --view or --eye says another.\n"
           "cameras:\n"
