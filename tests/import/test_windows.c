@@ -299,11 +299,41 @@ static void test_threads(void **state) {
     free(text);
 }
 
+static bool rises(void *user, const char *what, double done) {
+    double *last = user;
+    assert_true(done >= *last && done <= 1);
+    *last = done;
+    return strcmp(what, "windows") || done < .8;
+}
+
+/* One progress, from the first byte to the last window; it stops windows, too. */
+static void test_progress(void **state) {
+    (void)state;
+    enum { HOUSES = 600, ROOM = 150 };
+    char *text = noc_alloc(HOUSES * ROOM);
+    assert_non_null(text);
+    size_t n = (size_t)sprintf(text, "FAKE city\ncrs EPSG:25832\n");
+    for (int i = 0; i < HOUSES; i++)
+        n += (size_t)
+            snprintf(text + n, HOUSES * ROOM - n,
+                     "object 0 h%d 2\npolygon 1 %d 5404000 370 %d 5404000 370 %d 5404000 376 %d 5404000 376\nend\n", i,
+                     678000 + 12 * i, 678010 + 12 * i, 678010 + 12 * i, 678000 + 12 * i);
+    struct run r;
+    double last = 0;
+    noc_import_params p = noc_import_default_params();
+    p.progress = (noc_progress){ rises, &last };
+    LOAD(&r, p, file("row", text), file("l", LAMP));
+    assert_int_equal(r.status, NOC_ERR_CANCELLED);
+    assert_true(last >= .8 && last < 1);
+    finish(&r);
+    free(text);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_made),      cmocka_unit_test(test_own),     cmocka_unit_test(test_ratio),
         cmocka_unit_test(test_switched),  cmocka_unit_test(test_share),   cmocka_unit_test(test_glass),
-        cmocka_unit_test(test_no_memory), cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_no_memory), cmocka_unit_test(test_threads), cmocka_unit_test(test_progress),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

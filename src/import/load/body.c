@@ -21,7 +21,8 @@ static noc_status as_they_are(void *ctx, double *xyz, size_t count) { return NOC
 static bool on_progress(void *ctx, double done) {
     importer *im = ctx;
     const noc_progress *progress = &im->params->progress;
-    im->cancelled = im->cancelled || (progress->update && !progress->update(progress->user, "lamps", 0.9));
+    im->cancelled = im->cancelled || (progress->update && !progress->update(progress->user, "lamps",
+                                                                            import_done(im, DONE_LAMPS, LAMPS_PLACED)));
     return !im->cancelled;
 }
 

@@ -119,14 +119,14 @@ static void warn_if_coarse(const importer *im) {
 
 static bool go_on(importer *im, double done) {
     const noc_progress *progress = &im->params->progress;
-    if (progress->update && !progress->update(progress->user, "lamps", done))
+    if (progress->update && !progress->update(progress->user, "lamps", import_done(im, DONE_LAMPS, done)))
         im->cancelled = true;
     return !im->cancelled;
 }
 
 static bool infer_update(void *user, const char *what, double done) {
     (void)what;
-    return go_on(user, 0.9 + 0.1 * done);
+    return go_on(user, LAMPS_PLACED + (1 - LAMPS_PLACED) * done);
 }
 
 /* What became of the lamps of the inputs. */
@@ -165,7 +165,7 @@ static noc_status stand_lamps(importer *im, const extent *e, const city_lamp_par
     for (size_t i = 0; i < im->lamps.len; i++) {
         pending_lamp *p = &im->lamps.data[i];
         input *in = &im->inputs[p->input];
-        if (i % 256 == 0 && !go_on(im, 0.9 + 0.1 * (double)i / (double)im->lamps.len))
+        if (i % 256 == 0 && !go_on(im, LAMPS_PLACED + (1 - LAMPS_PLACED) * (double)i / (double)im->lamps.len))
             break;
         if (i % 256 == 0 && (status = take_affords(im, in, 0)))
             break;
@@ -378,7 +378,7 @@ static noc_status finish_lamps(importer *im) {
     extent e = city_extent(scene);
     if (!e.any && !im->lamps.len && !scene->lights.len)
         noc_warn(im->log, "the inputs hold nothing that can be seen: no surfaces and no lamps");
-    if (!go_on(im, 0.9))
+    if (!go_on(im, 0))
         return NOC_ERR_CANCELLED;
     warn_if_coarse(im);
     noc_status status = repeat_lamps(im);

@@ -314,6 +314,10 @@ void ahead_destroy(struct look_ahead *a);       /* NULL is allowed */
 geo_sink sink_create(reading *r);
 noc_status sink_flush(reading *r);
 noc_status sink_hand_over(reading *r, const load_part *part); /* to the scene, or to where it waits */
+/* What progress tells: of the whole load, where so much of that part of it is done. It never falls. */
+typedef enum load_part_done { DONE_READING, DONE_LAMPS, DONE_WINDOWS } load_part_done;
+#define LAMPS_PLACED 0.2 /* share of DONE_LAMPS that those along roads take */
+double import_done(const importer *im, load_part_done part, double share);
 /* Asks whether to go on; bytes: of all inputs, that were read. */
 bool import_progress(importer *im, const input *in, double bytes);
 void reading_free(reading *r);

@@ -27,7 +27,9 @@ static bool is_inside(void *user, const double xy[2]) {
 static bool update(void *user, const char *what, double done) {
     importer *im = user;
     const noc_progress *progress = &im->params->progress;
-    im->cancelled = im->cancelled || (progress->update && !progress->update(progress->user, what, 0.9 + 0.02 * done));
+    im->cancelled =
+        im->cancelled ||
+        (progress->update && !progress->update(progress->user, what, import_done(im, DONE_LAMPS, LAMPS_PLACED * done)));
     return !im->cancelled;
 }
 

@@ -303,7 +303,8 @@ static noc_status add_all(maker *m) {
         status = add_some(m, NOC_MIN(buildings - m->first, (size_t)AT_ONCE));
         if (status)
             break;
-        if (progress->update && !progress->update(progress->user, "windows", (double)m->first / (double)buildings))
+        if (progress->update && !progress->update(progress->user, "windows",
+                                                  import_done(im, DONE_WINDOWS, (double)m->first / (double)buildings)))
             return NOC_ERR_CANCELLED;
         status = take_affords(im, &im->inputs[im->buildings.data[m->first].input], 0);
     }
