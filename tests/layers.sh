@@ -16,7 +16,7 @@ geo: scene
 image:
 light: scene core
 city: geo scene
-import: geo city scene noct
+import: geo city scene image noct
 render: light scene image core
 backend: render light scene core
 lab:
@@ -37,6 +37,7 @@ yaml.h recipe
 zip.h import
 GL/glu.h geo
 png.h image
+turbojpeg.h image
 openexr image
 '
 

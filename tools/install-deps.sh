@@ -50,6 +50,7 @@ need libglu1-mesa-dev "cuts polygons into triangles" module glu
 need libassimp-dev "OBJ meshes" module assimp
 need libseccomp-dev "a fence around the program that reads OBJ and map files" module libseccomp
 need libopenexr-dev "EXR pictures" module OpenEXR
+need libturbojpeg0-dev "JPEG textures" module libturbojpeg
 need libpng-dev "PNG pictures" module libpng
 need libzip-dev "zipped city models" module libzip
 need zlib1g-dev "gzipped city models" module zlib

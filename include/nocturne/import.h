@@ -124,6 +124,10 @@ typedef struct noc_import_params {
                              200 */
     /* an equirectangular picture (EXR, Radiance HDR) for noc_scene_set_environment; NULL, the default: none */
     const char *environment;
+    bool textures; /* surfaces look as city models say: images and colours of their appearances; default true */
+    /* MB (1e6 bytes) that their images take in the scene, with their pyramids: they are reduced by halves, the largest
+     * first, until they fit; default 512 */
+    double texture_memory;
     bool wet; /* after rain: roads, pavements, terrain and ground are noc_material_wet; default false */
     /* What surfaces of these classes are made of, one a class, in place of noc_class_material and of the colours that
      * walls and roofs of real cities vary between; not owned; default none. Emission is not read */
@@ -144,8 +148,9 @@ typedef struct noc_import_params {
 #define NOC_IMPORT_DEFAULTS(set)                                                                                       \
     set(lod, 3) set(building_height, 9) set(terrain_error, 0.25) set(terrain_triangles, 500000)                        \
         set(infer_lamps, NOC_SWITCH_AUTO) set(map_surfaces, NOC_SWITCH_AUTO) set(lamp_height, 6)                       \
-            set(lamp_lumens, 5000) set(lamp_kelvin, 3000) set(profiles, true) set(windows, NOC_SWITCH_AUTO)            \
-                set(traffic, NOC_SWITCH_AUTO) set(isolate, true) set(reader_time, 600) set(max_expansion, 200)
+            set(lamp_lumens, 5000) set(lamp_kelvin, 3000) set(profiles, true) set(textures, true)                      \
+                set(texture_memory, 512) set(windows, NOC_SWITCH_AUTO) set(traffic, NOC_SWITCH_AUTO)                   \
+                    set(isolate, true) set(reader_time, 600) set(max_expansion, 200)
 #ifdef __cplusplus
 #define NOC_IMPORT_ALL_DEFAULTS(set)                                                                                   \
     set(window, noc_window_default_params()) set(cars, noc_traffic_default_params()) NOC_IMPORT_DEFAULTS(set)
@@ -211,6 +216,7 @@ typedef struct noc_report_file {
     size_t lod_used[5]; /* buildings by the level of detail that was taken */
     size_t triangles, lamps, lights;
     noc_window_counts windows;
+    size_t images;       /* that surfaces of it have their colours from; of several files the first's */
     size_t points;       /* of a table or map: lamps or not */
     size_t column_count; /* of a table or map, in its order; of maps with tags, those of its lamps */
     const noc_report_column *columns;
@@ -263,6 +269,7 @@ typedef struct noc_report_totals {
     noc_window_counts windows;
     size_t tracks;                     /* as in noc_report_file */
     size_t cars, road_cars;            /* along tracks and along roads of maps, and the latter */
+    size_t images, images_reduced;     /* of all; of them: by halves, to fit into noc_import_params.texture_memory */
     size_t skipped, repaired, guessed; /* features: counts of the files' lines; guessed are those of repaired that are
                                         not lossless */
 } noc_report_totals;

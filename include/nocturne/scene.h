@@ -53,6 +53,8 @@ typedef struct noc_material {
     float emission[3]; /* radiance, cd/m2; a mesh with emission becomes triangle lights */
     bool two_sided;    /* emission leaves both sides; reflection always works on both sides */
     noc_class cls;
+    /* From noc_scene_add_texture; 0: none. Where a mesh has uv, its albedo is this one times the texture's */
+    int texture;
 } noc_material;
 
 NOC_API noc_material noc_class_material(noc_class cls);
@@ -60,6 +62,29 @@ NOC_API noc_material noc_class_material(noc_class cls);
  * reflects a / (n^2 (1 - a) + a) of what comes, n = 1.333) and reflects as water does, f0 = 0.02. For roads, pavements
  * and ground; at run time by noc_scene_set_class_material. NULL is noc_class_material(NOC_CLASS_OTHER), wet. */
 NOC_API noc_material noc_material_wet(const noc_material *dry);
+
+/* What is seen beyond the edges of an image. */
+typedef enum noc_wrap {
+    NOC_WRAP_REPEAT, /* the image again */
+    NOC_WRAP_MIRROR, /* the image again, every second time turned over */
+    NOC_WRAP_CLAMP   /* its outermost pixels */
+} noc_wrap;
+
+#define NOC_TEXTURE_SIDE 16384 /* pixels */
+/* Albedos of a texture: what is beyond becomes these. Of building materials fresh snow and whitewash are the brightest,
+ * soot and tar the darkest, and a photograph holds shades that are no albedos at all. */
+#define NOC_TEXTURE_DARKEST 0.02
+#define NOC_TEXTURE_BRIGHTEST 0.9
+
+/* An image that surfaces have their albedo from. It is taken as it is: what light a photograph was made in stays in it.
+ */
+typedef struct noc_texture {
+    int width, height;        /* pixels, 1..NOC_TEXTURE_SIDE */
+    const unsigned char *rgb; /* 3 a pixel, rows from the top; copied */
+    bool linear;              /* 255 is an albedo of 1 and all else in proportion; false: sRGB */
+    noc_wrap wrap;
+    int leave_out; /* levels of its pyramid, the finest ones: each saves three quarters of the memory; 0..15 */
+} noc_texture;
 
 typedef struct noc_mesh {
     size_t vertex_count;
@@ -70,6 +95,9 @@ typedef struct noc_mesh {
     int model;               /* from noc_scene_add_model: it is in that model's coordinates; 0: in the scene's */
     int group;               /* from noc_scene_add_group, of its triangles as lights; 0: none */
     const char *name;        /* object id, gml:id; may be NULL. Copied */
+    /* 2 a vertex: its place in the image of the material's texture, whose lower left corner is (0, 0) and whose upper
+     * right one is (1, 1). What is not finite or beyond 1000000 is taken as 0. NULL: the texture is not seen */
+    const float *uv;
 } noc_mesh;
 
 typedef enum noc_light_kind {
@@ -130,6 +158,11 @@ NOC_API int noc_scene_add_material(noc_scene *scene, const noc_material *materia
 NOC_API int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh);
 NOC_API int noc_scene_add_light(noc_scene *scene, const noc_light *light);
 
+/* A texture, with its pyramid of halves: some 5.4 bytes a pixel (noc_scene_info.texture_bytes). Returns its index >= 1,
+ * for `texture` of noc_material, or -1 after reporting. It stays as long as the scene. Waits for frames, as a commit
+ * does. Only what cameras see looks at textures: no light is drawn by them. */
+NOC_API int noc_scene_add_texture(noc_scene *scene, const noc_texture *texture);
+
 /* A model: meshes and lights in coordinates of their own (a car with its lamps), which are seen where instances stand.
  * Returns its index >= 1, for `model` of noc_mesh and noc_light, or -1 after reporting. It takes meshes and lights
  * until the commit that publishes it, and is never removed. name may be NULL; copied. */
@@ -167,7 +200,7 @@ NOC_API noc_status noc_scene_commit(noc_scene *scene);
  * where it shines: else NOC_ERR_ARGUMENT. Closures (NOC_CLASS_CLOSURE) stay such, and nothing else becomes one. The
  * materials of a transaction are set before its other edits. */
 NOC_API noc_status noc_scene_set_material(noc_scene *scene, int material, const noc_material *to);
-/* Albedo, f0 and roughness of all materials of that class, also of those added in the transaction. */
+/* Albedo, f0, roughness and texture of all materials of that class, also of those added in the transaction. */
 NOC_API noc_status noc_scene_set_class_material(noc_scene *scene, noc_class cls, const noc_material *to);
 /* Emission of a light by its index, an instance's too, in the light's unit; 0: out. Its group's scale comes on top. */
 NOC_API noc_status noc_scene_set_emission(noc_scene *scene, int light, const float emission[3]);
@@ -341,9 +374,10 @@ typedef struct noc_scene_info {
     /* of all that was not removed; models count once, whatever their instances */
     size_t triangles, vertices, meshes, materials;
     size_t models, instances;
-    size_t instance_triangles; /* that instances show: of each those of its model */
-    size_t cars;               /* of the instances those that noc_scene_set_time moves */
-    double time;               /* s, of the cars, as published or staged last */
+    size_t instance_triangles;      /* that instances show: of each those of its model */
+    size_t cars;                    /* of the instances those that noc_scene_set_time moves */
+    double time;                    /* s, of the cars, as published or staged last */
+    size_t textures, texture_bytes; /* with their pyramids */
     size_t windows, windows_lit;
     size_t light_slots; /* indices of lights are below it */
     size_t lights, lights_by_kind[NOC_LIGHT_KIND_COUNT], lights_inferred;

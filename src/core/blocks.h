@@ -27,6 +27,7 @@ struct gblock {
     float depth[BLOCK];       /* distance from the eye */
     uint32_t material[BLOCK]; /* NO_SURFACE: sky */
     uint32_t light[BLOCK];    /* light whose emitting side is seen, or NO_LIGHT */
+    uint32_t texel[BLOCK];    /* albedo that is not the material's, as core/texture.h packs it; 0: none */
 };
 
 /* Reservoirs: see core/reservoir.h for the fields. */
@@ -56,7 +57,7 @@ typedef struct rblock rblock;
 typedef struct cblock cblock;
 typedef struct rayblock rayblock;
 
-RECORD_SIZE(gblock, 9 * BLOCK);
+RECORD_SIZE(gblock, 10 * BLOCK);
 RECORD_FIELD(gblock, px, 0);
 RECORD_FIELD(gblock, py, BLOCK);
 RECORD_FIELD(gblock, pz, 2 * BLOCK);
@@ -66,6 +67,7 @@ RECORD_FIELD(gblock, nz, 5 * BLOCK);
 RECORD_FIELD(gblock, depth, 6 * BLOCK);
 RECORD_FIELD(gblock, material, 7 * BLOCK);
 RECORD_FIELD(gblock, light, 8 * BLOCK);
+RECORD_FIELD(gblock, texel, 9 * BLOCK);
 
 RECORD_SIZE(rblock, 6 * BLOCK);
 RECORD_FIELD(rblock, light, 0);

@@ -22,6 +22,13 @@
 #define LIGHT_PROFILE 6
 #define LIGHT_PROFILE_BITS 0xffc0u
 #define NO_LIGHT 0xffffffffu
+/* Textures: core/texture.h. */
+#define TEXTURE_HEAD 32u /* words, enough for the levels of a longer side of 2^15 - 1 texels */
+#define TEXEL_THERE 0x40000000u
+/* What is beyond the edges of an image: noc_wrap. */
+#define WRAP_REPEAT 0u
+#define WRAP_MIRROR 1u
+#define WRAP_CLAMP 2u
 
 /* A light: core/light.h says what each kind keeps where. One cache line. */
 struct light_record {

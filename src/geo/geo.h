@@ -80,7 +80,18 @@ typedef struct geo_polygon {
     size_t ring_count;       /* first one exterior */
     const size_t *ring_size; /* points a ring */
     const double *xyz;       /* 3 a point, rings one after the other */
+    uint32_t appearance;     /* as geo_sink.appearance has numbered it; 0: none */
+    const float *uv;         /* 2 a point: where it is in the appearance's image, as noc_mesh has it; NULL: nowhere */
 } geo_polygon;
+
+/* What a file says of how surfaces look. */
+typedef struct geo_appearance {
+    const char *image; /* file's name, as the file that is read has it; NULL: none */
+    noc_wrap wrap;
+    bool coloured; /* albedo is told */
+    float albedo[3];
+    float f0, roughness; /* negative: not told */
+} geo_appearance;
 
 #define GEO_MAX_HEADS 24 /* on one pole */
 #define GEO_BODY_HEADS 4 /* of a lamp that is modelled */
@@ -242,6 +253,8 @@ typedef struct geo_sink {
      * changes. Returns in *lat_first whether the file's tuples are in latitude/northing first order; the reader swaps
      * them before emitting. */
     noc_status (*crs)(void *ctx, const char *srs_name, const char *place, bool *lat_first);
+    /* Numbers an appearance for polygons that follow; *number 0: nothing of it is of use. NULL: none is wanted. */
+    noc_status (*appearance)(void *ctx, const geo_appearance *appearance, uint32_t *number);
     noc_status (*begin_object)(void *ctx, const geo_object *object);
     noc_status (*polygon)(void *ctx, const geo_polygon *polygon);
     noc_status (*end_object)(void *ctx);
@@ -282,11 +295,13 @@ void geo_cells_free(geo_cells *cells);
  * or is beyond repair goes to `issues`. Returns triangles as index triples into the cleaned points. */
 typedef struct geo_triangles {
     NOC_ARRAY(double) xyz;       /* 3 a vertex */
+    NOC_ARRAY(float) uv;         /* 2 a vertex, where all polygons have uv; else empty */
     NOC_ARRAY(uint32_t) indices; /* 3 a triangle */
     bool no_memory;              /* a polygon was left out as memory was refused; stays set */
 } geo_triangles;
 
-/* Points in metres. Appends to out; returns false if the polygon was skipped. */
+/* Points in metres. Appends to out, whose polygons have uv either all or none; returns false if the polygon was
+ * skipped. */
 bool geo_triangulate(const geo_polygon *polygon, geo_triangles *out, geo_issues *issues);
 void geo_triangles_free(geo_triangles *t);
 

@@ -19,6 +19,7 @@ struct work {
     geo_issues *issues;
     NOC_ARRAY(double) xyz;
     NOC_ARRAY(double) uv;
+    NOC_ARRAY(size_t) given; /* of each point: its number in the polygon */
     NOC_ARRAY(size_t) ring_size;
     NOC_ARRAY(double) ring_sum; /* of the ring's points, 3 a ring */
     double centre[3], normal[3];
@@ -59,8 +60,9 @@ struct defects {
     bool repeated, spike, non_finite;
 };
 
-/* Removes what the last points of the ring p[0..n) show; removing a spike may bring another to light. */
-static size_t clean_end(double *p, size_t n, struct defects *found) {
+/* Removes what the last points of the ring p[0..n) show; removing a spike may bring another to light. given: of each
+ * point, goes with it. */
+static size_t clean_end(double *p, size_t *given, size_t n, struct defects *found) {
     for (;;) {
         if (n >= 2 && near(p + 3 * (n - 2), p + 3 * (n - 1))) {
             found->repeated = true;
@@ -68,6 +70,7 @@ static size_t clean_end(double *p, size_t n, struct defects *found) {
         } else if (n >= 3 && is_spike(p + 3 * (n - 3), p + 3 * (n - 2), p + 3 * (n - 1))) {
             found->spike = true;
             memmove(p + 3 * (n - 2), p + 3 * (n - 1), 3 * sizeof(double));
+            given[n - 2] = given[n - 1];
             n--;
         } else {
             return n;
@@ -76,7 +79,7 @@ static size_t clean_end(double *p, size_t n, struct defects *found) {
 }
 
 /* The same where the ring closes. What goes at its beginning is moved away once, at the end. */
-static size_t clean_seam(double *ring, size_t n, struct defects *found) {
+static size_t clean_seam(double *ring, size_t *given, size_t n, struct defects *found) {
     double *p = ring;
     while (n >= 3) {
         if (near(p, p + 3 * (n - 1))) {
@@ -93,16 +96,18 @@ static size_t clean_seam(double *ring, size_t n, struct defects *found) {
             break;
         }
     }
-    if (p != ring)
+    if (p != ring) {
+        memmove(given, given + (p - ring) / 3, n * sizeof(*given));
         memmove(ring, p, 3 * n * sizeof(double));
+    }
     return n;
 }
 
-/* Appends one ring, cleaned; returns its number of points. */
-static size_t add_ring(struct work *w, const double *xyz, size_t count, struct defects *found) {
+/* Appends one ring, cleaned; returns its number of points. before: points of the polygon before it. */
+static size_t add_ring(struct work *w, const double *xyz, size_t before, size_t count, struct defects *found) {
     size_t first = w->xyz.len;
     double *p = w->xyz.data + first;
-    size_t n = 0;
+    size_t n = 0, *given = w->given.data + first / 3;
     for (size_t i = 0; i < count; i++) {
         double q[3];
         subtract(xyz + 3 * i, w->centre, q);
@@ -110,10 +115,11 @@ static size_t add_ring(struct work *w, const double *xyz, size_t count, struct d
             found->non_finite = true;
             continue;
         }
+        given[n] = before + i;
         memcpy(p + 3 * n++, q, sizeof(q));
-        n = clean_end(p, n, found);
+        n = clean_end(p, given, n, found);
     }
-    n = clean_seam(p, n, found);
+    n = clean_seam(p, given, n, found);
     w->xyz.len = first + 3 * n;
     return n;
 }
@@ -229,6 +235,8 @@ static void reverse_ring(struct work *w, size_t first, size_t n) {
             double *a = &w->uv.data[2 * (first + i) + k], *b = &w->uv.data[2 * (first + j) + k], t = *a;
             *a = *b, *b = t;
         }
+        size_t *a = &w->given.data[first + i], *b = &w->given.data[first + j], t = *a;
+        *a = *b, *b = t;
     }
 }
 
@@ -299,7 +307,7 @@ static bool prepare(struct work *w, const geo_polygon *polygon) {
         return false;
     }
     w->no_memory = !array_reserve(&w->xyz, 3 * points) || !array_reserve(&w->uv, 2 * points) ||
-                   !array_reserve(&w->ring_size, polygon->ring_count) ||
+                   !array_reserve(&w->given, points) || !array_reserve(&w->ring_size, polygon->ring_count) ||
                    !array_reserve(&w->ring_sum, 3 * polygon->ring_count);
     if (w->no_memory)
         return false;
@@ -308,7 +316,7 @@ static bool prepare(struct work *w, const geo_polygon *polygon) {
     if (i < count)
         memcpy(w->centre, p + 3 * i, sizeof(w->centre));
     for (size_t r = 0; r < polygon->ring_count; p += 3 * polygon->ring_size[r++]) {
-        size_t n = add_ring(w, p, polygon->ring_size[r], &found);
+        size_t n = add_ring(w, p, (size_t)(p - polygon->xyz) / 3, polygon->ring_size[r], &found);
         if (n < 3) {
             bool few = polygon->ring_size[r] < 3;
             geo_issue(w->issues,
@@ -395,14 +403,25 @@ static void drop_flat_triangles(geo_triangles *t, size_t first_index) {
     t->indices.len = kept;
 }
 
-static bool triangulate(struct work *w, geo_triangles *out) {
-    size_t first_index = out->indices.len, first_vertex = out->xyz.len;
+/* Where the cleaned points are in the image. */
+static bool place_in_image(struct work *w, const float *uv, geo_triangles *out) {
+    size_t points = w->xyz.len / 3;
+    if (!array_reserve(&out->uv, out->uv.len + 2 * points))
+        return false;
+    for (size_t i = 0; i < 2 * points; i++)
+        out->uv.data[out->uv.len++] = uv[2 * w->given.data[i / 2] + i % 2];
+    return true;
+}
+
+static bool triangulate(struct work *w, const float *uv, geo_triangles *out) {
+    size_t first_index = out->indices.len, first_vertex = out->xyz.len, first_uv = out->uv.len;
     if (out->xyz.len / 3 + w->xyz.len / 3 > UINT32_MAX / 2)
         return false;
     /* With two triangles fewer than points, and two more a hole. */
     size_t triangles = w->xyz.len / 3 + 2 * w->ring_size.len;
-    if (!array_reserve(&out->indices, out->indices.len + 3 * triangles) ||
+    if (!array_reserve(&out->indices, out->indices.len + 3 * triangles) || (uv && !place_in_image(w, uv, out)) ||
         !array_append(&out->xyz, w->xyz.data, w->xyz.len)) {
+        out->uv.len = first_uv;
         w->no_memory = true;
         return false;
     }
@@ -424,6 +443,7 @@ static bool triangulate(struct work *w, geo_triangles *out) {
                           w->id);
             out->indices.len = first_index;
             out->xyz.len = first_vertex;
+            out->uv.len = first_uv;
             return false;
         }
     }
@@ -435,10 +455,11 @@ static bool triangulate(struct work *w, geo_triangles *out) {
 
 bool geo_triangulate(const geo_polygon *polygon, geo_triangles *out, geo_issues *issues) {
     struct work w = { .id = polygon->id, .issues = issues };
-    bool ok = prepare(&w, polygon) && triangulate(&w, out);
+    bool ok = prepare(&w, polygon) && triangulate(&w, polygon->uv, out);
     out->no_memory = out->no_memory || w.no_memory;
     array_free(&w.xyz);
     array_free(&w.uv);
+    array_free(&w.given);
     array_free(&w.ring_size);
     array_free(&w.ring_sum);
     return ok;
@@ -446,5 +467,6 @@ bool geo_triangulate(const geo_polygon *polygon, geo_triangles *out, geo_issues 
 
 void geo_triangles_free(geo_triangles *t) {
     array_free(&t->xyz);
+    array_free(&t->uv);
     array_free(&t->indices);
 }

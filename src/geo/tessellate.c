@@ -42,6 +42,8 @@ static void on_combine(GLdouble place[3], void *data[4], GLfloat weight[4], void
     (void)place;
     struct job *job = user;
     double p[3] = { 0 }, sum = 0;
+    float at[2] = { 0 };
+    bool in_image = job->out->uv.len > 0;
     size_t count = 0;
     for (int i = 0; i < 4 && data[i]; i++, count++)
         sum += weight[i];
@@ -54,6 +56,8 @@ static void on_combine(GLdouble place[3], void *data[4], GLfloat weight[4], void
             p[k] += q[k] * (double)weight[i] / sum;
             touch = touch && q[k] == q0[k];
         }
+        for (size_t k = 0; k < 2 && in_image; k++)
+            at[k] += job->out->uv.data[2 * ((uintptr_t)data[i] - 1) + k] * (float)((double)weight[i] / sum);
     }
     if (touch) {
         job->result.touches += given;
@@ -66,7 +70,7 @@ static void on_combine(GLdouble place[3], void *data[4], GLfloat weight[4], void
     else
         job->result.touches += given;
     *out = as_pointer(job->out->xyz.len / 3);
-    if (!array_append(&job->out->xyz, p, 3)) {
+    if ((in_image && !array_append(&job->out->uv, at, 2)) || !array_append(&job->out->xyz, p, 3)) {
         *out = data[0];
         refuse(job);
     }
@@ -260,12 +264,20 @@ static void find_crossings(struct job *job, const piece *p, cut_line *line) {
             const double *y = job->out->xyz.data + 3 * (size_t)p->vertex.data[b];
             for (int k = 0; k < 3; k++)
                 xyz[k] = x[k] + t * (y[k] - x[k]);
+            float at[2];
+            const float *in_image = job->out->uv.len ? job->out->uv.data : NULL;
+            for (size_t k = 0; k < 2 && in_image; k++) {
+                float from = in_image[2 * (size_t)p->vertex.data[a] + k],
+                      to = in_image[2 * (size_t)p->vertex.data[b] + k];
+                at[k] = from + (float)t * (to - from);
+            }
             crossing c = { .v = uv[2 * a + 1] + t * (uv[2 * b + 1] - uv[2 * a + 1]),
                            .vertex = (uint32_t)(job->out->xyz.len / 3),
                            .to = b,
                            .edge = a,
                            .up = uv[2 * b] > line->at };
-            if (!array_append(&job->out->xyz, xyz, 3) || !array_push(&line->crossings, c)) {
+            if ((in_image && !array_append(&job->out->uv, at, 2)) || !array_append(&job->out->xyz, xyz, 3) ||
+                !array_push(&line->crossings, c)) {
                 refuse(job);
                 return;
             }

@@ -15,9 +15,10 @@ typedef struct png_job {
     const uint8_t *data; /* reading */
     size_t size, at;
     noc_image *image;
-    bool refused;     /* memory, to libpng, which does without it where it can */
-    png_byte *buffer; /* one row, or all of an interlaced picture */
-    float *table;     /* code value to linear */
+    pixel_bytes *bytes; /* where 8-bit pixels are asked for, in place of an image */
+    bool refused;       /* memory, to libpng, which does without it where it can */
+    png_byte *buffer;   /* one row, or all of an interlaced picture */
+    float *table;       /* code value to linear */
 } png_job;
 
 static void on_error(png_structp png, png_const_charp message) {
@@ -159,6 +160,17 @@ static bool plausible(png_job *job) {
     return false;
 }
 
+/* The colour, whatever shines through it. */
+static void store_bytes(uint8_t *rgb, const png_byte *row, int width, int depth) {
+    for (size_t x = 0; x < (size_t)width; x++)
+        for (size_t k = 0; k < 3; k++) {
+            uint16_t v;
+            if (depth == 16)
+                memcpy(&v, row + 8 * x + 2 * k, sizeof(v));
+            rgb[3 * x + k] = depth == 16 ? (uint8_t)(v / 257) : row[4 * x + k];
+        }
+}
+
 /* What Nocturne's writers tell of a picture, before its pixels. */
 static void read_texts(png_job *job) {
     png_textp texts = NULL;
@@ -173,6 +185,27 @@ static void read_texts(png_job *job) {
         else if (!strcmp(texts[i].key, "ev100") && noc_parse_double(texts[i].text, &ev100))
             job->image->ev100 = ev100;
     }
+}
+
+static bool make_room(png_job *job, int width, int height, int depth) {
+    if (job->bytes) {
+        if (width != job->bytes->width || height != job->bytes->height)
+            png_error(job->png, "two heads");
+        job->bytes->rgb = noc_alloc_large((size_t)width * (size_t)height, 3);
+        if (!job->bytes->rgb)
+            job->status = noc_no_memory(job->log, job->name);
+        return job->bytes->rgb;
+    }
+    job->image = noc_image_create(width, height, job->log);
+    if (!job->image) {
+        job->status = NOC_ERR_MEMORY;
+        return false;
+    }
+    read_texts(job);
+    job->table = decode_table(depth);
+    if (!job->table)
+        job->status = noc_no_memory(job->log, job->name);
+    return job->table;
 }
 
 /* libpng may jump out of here, so what must be freed is kept in the job. */
@@ -191,20 +224,11 @@ static void read_pixels(png_job *job) {
     size_t row_bytes = png_get_rowbytes(job->png, job->info), rows = passes > 1 ? (size_t)height : 1;
     if (row_bytes != (size_t)width * 4 * (size_t)(depth / 8))
         png_error(job->png, "unexpected layout of a row");
-    job->image = noc_image_create(width, height, job->log);
-    if (!job->image) {
-        job->status = NOC_ERR_MEMORY;
+    if (!make_room(job, width, height, depth))
         return;
-    }
-    read_texts(job);
     job->buffer = noc_alloc_large(rows, row_bytes);
     if (!job->buffer) {
         job->status = noc_error(job->log, NOC_ERR_MEMORY, "%s: no memory for %d x %d pixels", job->name, width, height);
-        return;
-    }
-    job->table = decode_table(depth);
-    if (!job->table) {
-        job->status = noc_no_memory(job->log, job->name);
         return;
     }
     /* An interlaced picture is whole only after its last pass: its rows are kept until then. */
@@ -214,26 +238,38 @@ static void read_pixels(png_job *job) {
     for (int y = 0; y < height; y++) {
         png_byte *row = job->buffer + (rows > 1 ? (size_t)y : 0) * row_bytes;
         png_read_row(job->png, row, NULL);
-        store_row(job->image->rgb + (size_t)y * (size_t)width * 3, row, width, depth, job->table);
+        if (job->bytes)
+            store_bytes(job->bytes->rgb + (size_t)y * (size_t)width * 3, row, width, depth);
+        else
+            store_row(job->image->rgb + (size_t)y * (size_t)width * 3, row, width, depth, job->table);
     }
     png_read_end(job->png, NULL);
 }
 
+static noc_status read_all(png_job *job) {
+    job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, on_error, on_warning, job, on_alloc, on_free);
+    job->info = job->png ? png_create_info_struct(job->png) : NULL;
+    if (!job->info) {
+        png_destroy_read_struct(&job->png, NULL, NULL);
+        return noc_no_memory(job->log, job->name);
+    }
+    if (setjmp(job->escape) == 0)
+        read_pixels(job);
+    png_destroy_read_struct(&job->png, &job->info, NULL);
+    check_refused(job);
+    free(job->buffer);
+    free(job->table);
+    return job->status;
+}
+
+noc_status image_read_png8(const uint8_t *data, size_t size, const char *name, noc_log *log, pixel_bytes *out) {
+    png_job job = { .name = name, .log = log, .data = data, .size = size, .bytes = out };
+    return read_all(&job);
+}
+
 noc_image *image_read_png(const uint8_t *data, size_t size, const char *name, noc_log *log) {
     png_job job = { .name = name, .log = log, .data = data, .size = size };
-    job.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning, &job, on_alloc, on_free);
-    job.info = job.png ? png_create_info_struct(job.png) : NULL;
-    if (!job.info) {
-        png_destroy_read_struct(&job.png, NULL, NULL);
-        noc_no_memory(log, name);
-        return NULL;
-    }
-    if (setjmp(job.escape) == 0)
-        read_pixels(&job);
-    png_destroy_read_struct(&job.png, &job.info, NULL);
-    check_refused(&job);
-    free(job.buffer);
-    free(job.table);
+    job.status = read_all(&job);
     if (job.status != NOC_OK) {
         noc_image_destroy(job.image);
         return NULL;

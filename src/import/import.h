@@ -54,6 +54,10 @@ void noc_stream_limit(noc_stream *s, const noc_import_params *params); /* the de
 import_budget *noc_stream_budget(noc_stream *s);                       /* what compressed data grows to is held to it */
 double noc_stream_progress(const noc_stream *s);                       /* share of the stored bytes consumed, 0..1 */
 
+/* x3d.c: a diffuse colour, which is a display's as other programs take it; a specular colour and shininess, 0..1. */
+void import_x3d_colour(geo_appearance *a, const double rgb[3]);
+void import_x3d_gloss(geo_appearance *a, const double specular[3], double shininess);
+
 /* Files that another file names (beside.c). `folder` is that file's, with a slash at its end, or "" for the working
  * one. */
 /* What keeps the file at path (as it is to be opened) from being read: it is not there, no regular file, or, unless

@@ -32,6 +32,7 @@ static void edit_class(noc_material *all, size_t count, const noc_edit *e) {
             memcpy(all[i].albedo, e->material.albedo, sizeof(all[i].albedo));
             all[i].f0 = e->material.f0;
             all[i].roughness = e->material.roughness;
+            all[i].texture = e->material.texture;
         }
 }
 
@@ -177,6 +178,7 @@ static bool reserve_arrays(noc_scene *s, const need *n) {
            array_reserve(&s->indices, 3 * triangles) &&
            array_reserve(&s->triangle_material, triangles) && array_reserve(&s->triangle_light, triangles) &&
            array_reserve(&s->meshes, s->meshes.len + more->meshes.len) &&
+           array_reserve(&s->uv, s->uv.len + more->uv.len) &&
            array_reserve(&s->gaps,
                          s->gaps.len + more->gaps.len + n->gaps + (s->reshaped ? s->reshaped->meshes.len : 0)) &&
            array_reserve(&s->materials, s->materials.len + more->materials.len) &&
@@ -223,13 +225,14 @@ static void append(commit *c) {
     if (!more)
         return;
     size_t vertices = s->positions.len / 3, triangles = s->triangle_light.len, index = s->indices.len,
-           mesh = s->meshes.len;
+           mesh = s->meshes.len, uv = s->uv.len / 2;
     c->changes.geometry |= more->meshes.len || more->models.len;
     APPEND(&s->positions, &more->positions);
     APPEND(&s->indices, &more->indices);
     APPEND(&s->triangle_material, &more->triangle_material);
     APPEND(&s->triangle_light, &more->triangle_light);
     APPEND(&s->meshes, &more->meshes);
+    APPEND(&s->uv, &more->uv);
     APPEND(&s->models, &more->models);
     APPEND(&s->material_uses, &more->material_uses);
     more->models.len = 0; /* they are the scene's now */
@@ -238,6 +241,7 @@ static void append(commit *c) {
     for (; mesh < s->meshes.len; mesh++) {
         s->meshes.data[mesh].first_triangle += (uint32_t)triangles;
         s->meshes.data[mesh].first_vertex += (uint32_t)vertices;
+        s->meshes.data[mesh].uv += s->meshes.data[mesh].uv ? (uint32_t)uv : 0;
     }
     for (size_t i = 0; i < more->gaps.len; i++) {
         const noc_scene_gap *g = &more->gaps.data[i];
@@ -273,7 +277,7 @@ static void apply_materials(commit *c, size_t count) {
         noc_material *have = &s->materials.data[i];
         noc_material_record record = noc_material_record_of(&next[i]);
         if (!fresh && !memcmp(&record, &s->material_records.data[i], sizeof(record)) && have->cls == next[i].cls &&
-            have->two_sided == next[i].two_sided)
+            have->two_sided == next[i].two_sided && have->texture == next[i].texture)
             continue;
         c->changes.ground_left |= !fresh && (have->cls != next[i].cls || have->cls == NOC_CLASS_LAMP);
         c->changes.materials = true;

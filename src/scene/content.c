@@ -51,10 +51,20 @@ static content_hash add_shown(content_hash h, const noc_scene *s, const noc_scen
     return h;
 }
 
+/* The image, and where the mesh's vertices are in it. */
+static content_hash add_texture(content_hash h, const noc_scene *s, const noc_scene_mesh *m, size_t vertices) {
+    size_t t = (size_t)s->materials.data[m->material].texture;
+    if (!t || !m->uv)
+        return h;
+    h = add(h, s->textures.data[t - 1].content, sizeof(s->textures.data->content));
+    return add_array(h, s->uv.data + 2 * (size_t)(m->uv - 1), 2 * vertices, sizeof(float));
+}
+
 static content_hash add_mesh(content_hash h, const noc_scene *s, size_t mesh) {
     const noc_scene_mesh *m = &s->meshes.data[mesh];
     size_t vertices = noc_mesh_end_vertex(s, mesh) - m->first_vertex;
     h = add_material(h, &s->materials.data[m->material]);
+    h = add_texture(h, s, m, vertices);
     h = add_array(h, s->positions.data + 3 * (size_t)m->first_vertex, 3 * vertices, sizeof(float));
     h = add(h, &m->triangle_count, sizeof(m->triangle_count));
     for (size_t i = 3 * (size_t)m->first_triangle; i < 3 * ((size_t)m->first_triangle + m->triangle_count); i++) {

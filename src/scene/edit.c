@@ -29,7 +29,7 @@ static bool lights_model(const noc_scene *scene, int material, const noc_materia
 noc_status noc_scene_set_material(noc_scene *scene, int material, const noc_material *m) {
     if (!scene || !m)
         return noc_null(scene ? scene->log : NULL, __func__);
-    const char *wrong = noc_material_fault(m);
+    const char *wrong = noc_material_fault(scene, m);
     if (material < 0 || (size_t)material >= scene->materials.len)
         wrong = "the scene has no such material, or it is not committed yet";
     else if (!wrong && (m->cls == NOC_CLASS_CLOSURE) != (scene->materials.data[material].cls == NOC_CLASS_CLOSURE))
@@ -44,7 +44,7 @@ noc_status noc_scene_set_material(noc_scene *scene, int material, const noc_mate
 noc_status noc_scene_set_class_material(noc_scene *scene, noc_class cls, const noc_material *m) {
     if (!scene || !m)
         return noc_null(scene ? scene->log : NULL, __func__);
-    const char *wrong = (unsigned)cls < NOC_CLASS_COUNT ? noc_material_fault(m) : "there is no such class";
+    const char *wrong = (unsigned)cls < NOC_CLASS_COUNT ? noc_material_fault(scene, m) : "there is no such class";
     if (wrong)
         return noc_error(scene->log, NOC_ERR_ARGUMENT, "material of class %d: %s", (int)cls, wrong);
     return stage(scene, &(noc_edit){ .kind = NOC_EDIT_CLASS, .index = cls, .material = *m });

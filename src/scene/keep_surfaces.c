@@ -3,7 +3,7 @@
 
 typedef struct kept_material {
     float albedo[3], f0, roughness, emission[3];
-    uint32_t two_sided, cls, of_lights;
+    uint32_t two_sided, cls, of_lights, texture;
 } kept_material;
 
 void noc_keep_materials(noct_writer *w, const noc_scene *s) {
@@ -14,6 +14,7 @@ void noc_keep_materials(noct_writer *w, const noc_scene *s) {
                             .roughness = m->roughness,
                             .two_sided = m->two_sided,
                             .cls = m->cls,
+                            .texture = (uint32_t)m->texture,
                             .of_lights = s->material_uses.data[i] != NOC_NOT_OF_LIGHTS };
         memcpy(k.albedo, m->albedo, sizeof(k.albedo));
         memcpy(k.emission, m->emission, sizeof(k.emission));
@@ -33,10 +34,11 @@ noc_status noc_kept_materials(noct_file *f, noc_scene *s) {
     for (size_t i = 0; i < count; i++) {
         noc_material m = { .f0 = k[i].f0, .roughness = k[i].roughness, .two_sided = k[i].two_sided != 0 };
         m.cls = (noc_class)NOC_MIN(k[i].cls, (uint32_t)NOC_CLASS_COUNT);
+        m.texture = (int)NOC_MIN(k[i].texture, (uint32_t)INT32_MAX);
         memcpy(m.albedo, k[i].albedo, sizeof(m.albedo));
         memcpy(m.emission, k[i].emission, sizeof(m.emission));
-        if (noc_material_fault(&m))
-            return noct_wrong(f, "material %zu: %s", i, noc_material_fault(&m));
+        if (noc_material_fault(s, &m))
+            return noct_wrong(f, "material %zu: %s", i, noc_material_fault(s, &m));
         s->materials.data[s->materials.len++] = m;
         s->material_records.data[s->material_records.len++] = noc_material_record_of(&m);
         s->material_uses.data[s->material_uses.len++] = k[i].of_lights ? 0 : NOC_NOT_OF_LIGHTS;
@@ -50,9 +52,9 @@ enum { REMOVED = 1, PANES = 2 };
 typedef struct kept_mesh {
     uint32_t first_triangle, triangle_count, first_vertex, material, name;
     uint16_t model, group;
-    uint32_t flags;
+    uint32_t flags, uv;
 } kept_mesh;
-_Static_assert(sizeof(kept_mesh) == 28, "it has no gaps");
+_Static_assert(sizeof(kept_mesh) == 32, "it has no gaps");
 
 void noc_keep_meshes(noct_writer *w, const noc_scene *s) {
     noct_begin(w, "meshes");
@@ -65,6 +67,7 @@ void noc_keep_meshes(noct_writer *w, const noc_scene *s) {
                         .name = noct_name(w, m->name),
                         .model = m->model,
                         .group = m->group,
+                        .uv = m->uv,
                         .flags = (m->removed ? REMOVED : 0) | (m->panes ? PANES : 0) };
         noct_put(w, &k, sizeof(k));
     }
@@ -80,6 +83,12 @@ static bool mesh_fits(const noc_scene *s, const kept_mesh *k, size_t triangle, s
     return k->first_triangle == triangle && k->triangle_count <= s->triangle_light.len - triangle &&
            k->first_vertex >= vertex && k->first_vertex <= s->positions.len / 3 && k->material < s->materials.len &&
            k->model <= s->models.len && k->group <= s->groups.len && k->flags <= (REMOVED | PANES);
+}
+
+static bool uv_fits(const noc_scene *s, size_t mesh) {
+    const noc_scene_mesh *m = &s->meshes.data[mesh];
+    size_t places = s->uv.len / 2;
+    return !m->uv || (m->uv - 1 <= places && noc_mesh_end_vertex(s, mesh) - m->first_vertex <= places - (m->uv - 1));
 }
 
 static noc_status take_meshes(noct_file *f, noc_scene *s) {
@@ -98,10 +107,14 @@ static noc_status take_meshes(noct_file *f, noc_scene *s) {
                                                             .material = (int)k[i].material,
                                                             .model = k[i].model,
                                                             .group = k[i].group,
+                                                            .uv = k[i].uv,
                                                             .removed = k[i].flags & REMOVED,
                                                             .panes = (k[i].flags & PANES) != 0,
                                                             .name = noct_name_at(f, k[i].name) };
     }
+    for (size_t i = 0; i < count; i++)
+        if (!uv_fits(s, i))
+            return noct_wrong(f, "mesh %zu has no place in an image", i);
     if (triangle != s->triangle_light.len || (!count && s->positions.len))
         return noct_wrong(f, "it has triangles of no mesh");
     return f->status;

@@ -56,7 +56,9 @@ noc_material noc_material_wet(const noc_material *dry) {
 
 static bool in_range(float x, float lo, float hi) { return x >= lo && x <= hi; } /* false for NaN */
 
-const char *noc_material_fault(const noc_material *m) {
+const char *noc_material_fault(const noc_scene *scene, const noc_material *m) {
+    if (m->texture < 0 || (size_t)m->texture > scene->textures.len)
+        return "there is no such texture";
     bool ok = in_range(m->f0, 0, 1) && in_range(m->roughness, 0.05f, 1) && (unsigned)m->cls < NOC_CLASS_COUNT;
     for (int i = 0; i < 3; i++)
         ok = ok && in_range(m->albedo[i], 0, 1) && in_range(m->emission[i], 0, 1e12f);
@@ -78,7 +80,7 @@ bool noc_material_of_light(const noc_material *m) {
 static int add_material(noc_scene *scene, const noc_material *m, uint32_t uses) {
     if (scene->no_memory)
         return -1;
-    const char *wrong = noc_material_fault(m);
+    const char *wrong = noc_material_fault(scene, m);
     if (wrong) {
         noc_error(scene->log, NOC_ERR_ARGUMENT, "material: %s", wrong);
         return -1;

@@ -11,10 +11,11 @@ size_t noc_scene_bytes(const noc_scene *s) {
            (s->indices.cap + s->triangle_material.cap + s->triangle_light.cap + s->moving.cap) * sizeof(uint32_t) +
            s->lights.cap * sizeof(noc_light_record) + s->light_names.cap * sizeof(char *) +
            s->light_made.cap * sizeof(noc_rgb) + s->meshes.cap * sizeof(noc_scene_mesh) + s->names.bytes +
-           s->later_bytes + models + s->profile_cells.cap * sizeof(float) +
-           (s->environment ? s->environment->bytes : 0) + s->instances.cap * sizeof(noc_scene_instance) +
-           s->stops.cap * sizeof(noc_scene_stop) + s->routes.cap * sizeof(noc_scene_route) +
-           s->cars.cap * sizeof(noc_scene_car) + s->windows.cap * sizeof(noc_scene_window) + s->walls.cap;
+           s->later_bytes + models + (s->profile_cells.cap + s->uv.cap) * sizeof(float) +
+           s->texels.cap * sizeof(uint32_t) + (s->environment ? s->environment->bytes : 0) +
+           s->instances.cap * sizeof(noc_scene_instance) + s->stops.cap * sizeof(noc_scene_stop) +
+           s->routes.cap * sizeof(noc_scene_route) + s->cars.cap * sizeof(noc_scene_car) +
+           s->windows.cap * sizeof(noc_scene_window) + s->walls.cap;
 }
 
 static void count_meshes(const noc_scene *scene, noc_scene_info *info) {
@@ -74,6 +75,8 @@ void noc_scene_get_info(const noc_scene *scene, noc_scene_info *info) {
     noc_scene_lock_read(scene);
     *info = (noc_scene_info){ .materials = scene->materials.len,
                               .models = scene->models.len,
+                              .textures = scene->textures.len,
+                              .texture_bytes = scene->texels.len * sizeof(uint32_t),
                               .lights_inferred = scene->lights_inferred,
                               .triangles_dropped = scene->triangles_dropped,
                               .crs = scene->crs_name ? scene->crs_name : "" };

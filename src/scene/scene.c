@@ -59,6 +59,7 @@ void noc_scene_destroy(noc_scene *scene) {
     array_free(&scene->triangle_material);
     array_free(&scene->triangle_light);
     array_free(&scene->meshes);
+    array_free(&scene->uv);
     array_free(&scene->materials);
     array_free(&scene->material_records);
     array_free(&scene->material_uses);
@@ -76,6 +77,8 @@ void noc_scene_destroy(noc_scene *scene) {
     array_free(&scene->groups);
     array_free(&scene->profiles);
     array_free(&scene->profile_cells);
+    array_free(&scene->texels);
+    array_free(&scene->textures);
     array_free(&scene->gaps);
     array_free(&scene->edits);
     free_slots(&scene->light_slots);
@@ -169,7 +172,8 @@ bool noc_scene_reserve_mesh(noc_scene *s, const noc_mesh *mesh) {
     size_t triangles = s->triangle_light.len + mesh->triangle_count;
     return array_reserve(&s->positions, s->positions.len + mesh->vertex_count * 3 + 1) &&
            array_reserve(&s->indices, 3 * triangles) && array_reserve(&s->triangle_material, triangles) &&
-           array_reserve(&s->triangle_light, triangles) && array_reserve(&s->meshes, s->meshes.len + 1);
+           array_reserve(&s->triangle_light, triangles) && array_reserve(&s->meshes, s->meshes.len + 1) &&
+           (!mesh->uv || array_reserve(&s->uv, s->uv.len + 2 * mesh->vertex_count));
 }
 
 static bool takes_mesh(const noc_scene *s, const noc_mesh *mesh, char wrong[NOC_FAULT]) {
@@ -205,6 +209,13 @@ void noc_scene_push_triangles(noc_scene *to, const noc_mesh *mesh, double lo[3],
         to->triangle_material.data[to->triangle_material.len++] = (uint32_t)mesh->material;
         to->triangle_light.data[to->triangle_light.len++] = NOC_NO_LIGHT;
     }
+}
+
+/* Where the room for them was reserved. */
+static void push_uv(noc_scene *to, const noc_mesh *mesh, noc_scene_mesh *made) {
+    made->uv = (uint32_t)(to->uv.len / 2) + 1;
+    for (size_t i = 0; i < 2 * mesh->vertex_count; i++)
+        to->uv.data[to->uv.len++] = fabsf(mesh->uv[i]) <= 1e6f ? mesh->uv[i] : 0;
 }
 
 int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
@@ -253,6 +264,8 @@ int noc_scene_add_mesh(noc_scene *scene, const noc_mesh *mesh) {
     else
         noc_scene_push_triangles(to, mesh, to->bounds_min, to->bounds_max);
     made.triangle_count = (uint32_t)(to->triangle_light.len - made.first_triangle);
+    if (mesh->uv)
+        push_uv(to, mesh, &made);
     to->meshes.data[to->meshes.len++] = made;
     if (model)
         noc_scene_add_gap(to, made.first_triangle, made.triangle_count);

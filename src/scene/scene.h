@@ -19,6 +19,9 @@ _Static_assert((int)LIGHT_SPHERE == NOC_LIGHT_SPHERE && (int)LIGHT_DISC == NOC_L
                    (int)LIGHT_TRIANGLE == NOC_LIGHT_TRIANGLE && (int)LIGHT_PARALLELOGRAM == NOC_LIGHT_PARALLELOGRAM &&
                    (int)LIGHT_POINT == NOC_LIGHT_POINT && (int)LIGHT_SPOT == NOC_LIGHT_SPOT,
                "a record's kind is a noc_light_kind");
+_Static_assert((int)WRAP_REPEAT == NOC_WRAP_REPEAT && (int)WRAP_MIRROR == NOC_WRAP_MIRROR &&
+                   (int)WRAP_CLAMP == NOC_WRAP_CLAMP && NOC_TEXTURE_SIDE < 1 << 15,
+               "a texture's head has its wrap and all its levels");
 /* Flags of a light; from bit NOC_LIGHT_GROUP on its group. */
 #define NOC_LIGHT_TWO_SIDED LIGHT_TWO_SIDED
 #define NOC_LIGHT_INFERRED 2u
@@ -41,6 +44,7 @@ typedef struct noc_scene_mesh {
     uint16_t group;
     bool removed;     /* its ranges are dead */
     bool panes;       /* triangles of it show windows: what it is made of does not shine */
+    uint32_t uv;      /* place + 1 of its first vertex in `uv`; 0: it has none */
     uint32_t made;    /* versions.geometry of the commit that filled it */
     const char *name; /* the scene's */
 } noc_scene_mesh;
@@ -104,6 +108,12 @@ typedef struct noc_scene_profile {
     float peak;  /* greatest intensity, cd a lumen */
     bool upward; /* sends something beyond 90 degrees of its axis: such lights are two-sided, others never are */
 } noc_scene_profile;
+
+/* Where a texture begins in texels, and a hash of what it holds. */
+typedef struct noc_scene_texture {
+    uint32_t place;
+    uint64_t content[2];
+} noc_scene_texture;
 
 /* Of the triangles between first and end none are the city's: the backdrop, models, removed meshes. before: so many
  * triangles of earlier gaps. */
@@ -209,6 +219,7 @@ struct noc_scene {
     NOC_ARRAY(uint32_t) triangle_material; /* index into material_records */
     NOC_ARRAY(uint32_t) triangle_light;    /* light that this triangle shows, or NOC_NO_LIGHT */
     NOC_ARRAY(noc_scene_mesh) meshes;
+    NOC_ARRAY(float) uv; /* 2 a vertex of the meshes that have a place in an image */
     NOC_ARRAY(noc_material) materials;
     NOC_ARRAY(noc_material_record) material_records; /* parallel to materials */
     NOC_ARRAY(uint32_t) material_uses;               /* parallel: published meshes of it, or NOC_NOT_OF_LIGHTS */
@@ -227,6 +238,8 @@ struct noc_scene {
     NOC_ARRAY(noc_scene_group) groups;     /* group g is at g - 1; only who edits looks at them */
     NOC_ARRAY(noc_scene_profile) profiles; /* profile p is at p - 1 */
     NOC_ARRAY(float) profile_cells;        /* core/profile.h; data is 16-byte aligned */
+    NOC_ARRAY(uint32_t) texels;            /* core/texture.h */
+    NOC_ARRAY(noc_scene_texture) textures; /* texture t is at t - 1 */
     NOC_ARRAY(noc_scene_gap) gaps;         /* ascending, none touches the next */
     noc_environment *environment;          /* NULL: none */
     noc_arena names;
@@ -331,11 +344,13 @@ void noc_scene_push_triangles(noc_scene *to, const noc_mesh *mesh, double lo[3],
 int noc_scene_add_light_material(noc_scene *scene, const noc_material *m);
 
 /* What is wrong with a material, NULL if nothing. */
-const char *noc_material_fault(const noc_material *m);
+const char *noc_material_fault(const noc_scene *scene, const noc_material *m);
 noc_material_record noc_material_record_of(const noc_material *m);
 static inline bool noc_material_shines(const noc_material *m) { /* closures are not rendered, so they do not either */
     return (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0) && m->cls != NOC_CLASS_CLOSURE;
 }
+/* texture.c: words of the scene's texels that an image of that size takes */
+size_t noc_texture_words(int width, int height);
 /* Does it show a light that was added as one? It emits as that does, and reflects nothing. */
 bool noc_material_of_light(const noc_material *m);
 

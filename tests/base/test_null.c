@@ -60,6 +60,8 @@ static noc_camera camera;
     P(0, noc_scene_add_profile(scene, NULL) == -1)                                                                     \
     P(0, noc_scene_set_environment(NULL, NULL) == NOC_ERR_ARGUMENT)                                                    \
     P(0, noc_scene_set_environment(scene, &(noc_image){ .width = 2, .height = 1 }) == NOC_ERR_ARGUMENT)                \
+    P(0, noc_scene_add_texture(NULL, NULL) == -1)                                                                      \
+    P(0, noc_scene_add_texture(scene, NULL) == -1)                                                                     \
     P(0, (noc_profile_orient(NULL, NULL, NULL, NULL), true))                                                           \
     P(0, noc_scene_add_group(NULL, "street") == -1)                                                                    \
     P(0, noc_scene_add_instance(NULL, &(noc_instance){ 0 }) == -1)                                                     \

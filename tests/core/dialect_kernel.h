@@ -372,6 +372,7 @@ FN void picked(CTX u32 item, u32 key, surf s) {
 #include "dialect_influence.h"
 #include "dialect_learned.h"
 #include "dialect_lists.h"
+#include "dialect_textures.h"
 
 FN void dialect_item(CTX u32 item) {
     u32 key = rng_key(KU(5u), item, KU(9u));
@@ -391,6 +392,7 @@ FN void dialect_item(CTX u32 item) {
     frame_item(PASS item, key, s);
     influence_draws(PASS item, key, s);
     lists_item(PASS item, key, s);
+    textures(PASS item, key);
 }
 
 FN void dialect_tile(CTX u1 item) {

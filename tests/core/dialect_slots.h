@@ -11,7 +11,9 @@
 #define LEARNED_SLOTS 12 /* dialect_learned.h */
 #define LISTS_FIRST (LEARNED_FIRST + LEARNED_SLOTS)
 #define LISTS_SLOTS 78 /* dialect_lists.h */
-#define ITEM_SLOTS (LISTS_FIRST + LISTS_SLOTS)
+#define TEXTURES_FIRST (LISTS_FIRST + LISTS_SLOTS)
+#define TEXTURES_SLOTS 17 /* dialect_textures.h */
+#define ITEM_SLOTS (TEXTURES_FIRST + TEXTURES_SLOTS)
 #define TILE_WORDS 2688 /* of memory for a tile */
 
 #endif

@@ -172,6 +172,15 @@ static const struct {
     { LISTS_FIRST + 70, "learned_visibility" },
     { LISTS_FIRST + 71, "list_prior_of" },
     { LISTS_FIRST + 73, "list_build and list_fill" },
+    { TEXTURES_FIRST, "texture_level" },
+    { TEXTURES_FIRST + 1, "texture_albedo" },
+    { TEXTURES_FIRST + 4, "texture_albedo, first level" },
+    { TEXTURES_FIRST + 7, "texel_pack" },
+    { TEXTURES_FIRST + 8, "texel_albedo" },
+    { TEXTURES_FIRST + 11, "rough_log2" },
+    { TEXTURES_FIRST + 12, "whole_under" },
+    { TEXTURES_FIRST + 13, "image_wrap" },
+    { TEXTURES_FIRST + 16, "texels_at" },
 };
 
 static const int frame_integers[] = { 0,  3,  4,  5,  6,  7,  8,  9,  11, 17, 23, 25, 31,
@@ -187,8 +196,8 @@ static bool holds_integers(int slot) {
             return true;
     return slot == 0 || slot == 4 || slot == 5 || slot == 71 || slot == 77 || slot == 83 || slot == 89 || slot == 103 ||
            slot == 126 || slot == 129 || slot == 134 || slot == 135 || slot == 170 || (slot >= 172 && slot <= 174) ||
-           slot == 177 || slot == INFLUENCE_FIRST || slot == INFLUENCE_FIRST + 2 ||
-           (slot >= INFLUENCE_FIRST + 4 && slot < LISTS_FIRST);
+           slot == 177 || slot == TEXTURES_FIRST + 7 || slot == TEXTURES_FIRST + 16 || slot == INFLUENCE_FIRST ||
+           slot == INFLUENCE_FIRST + 2 || (slot >= INFLUENCE_FIRST + 4 && slot < LISTS_FIRST);
 }
 
 static const char *group_name(int slot) {

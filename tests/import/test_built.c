@@ -199,7 +199,7 @@ static void test_fields(void **state) {
     noc_report *report = report_create(), *after;
     noc_report_file file;
     memset(&file, 1, sizeof(file));
-    report->lamps_inferred = 3, report->road_cars = 4, report->roads_drawn = 5;
+    report->lamps_inferred = 3, report->road_cars = 4, report->roads_drawn = 5, report->images_reduced = 6;
     file.path = "a/b.gml", file.format = "F", file.crs = "C", file.crs_given = "";
     file.columns = NULL;
     file.lines = NULL;

@@ -33,6 +33,7 @@ static struct core_context context_of(const cpu_view *s, const noc_frame *frame)
                                   .profiles = scene->profile_cells.data,
                                   .materials = scene->material_records.len ? scene->material_records.data
                                                                            : &s->world->no_material,
+                                  .texels = scene->texels.len ? scene->texels.data : NULL,
                                   .frame = &frame->constants,
                                   .clusters = { from->clusters[NOC_STANDING], from->clusters[NOC_MOVING] },
                                   .alias = from->alias,

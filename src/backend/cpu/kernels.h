@@ -62,6 +62,7 @@ struct core_context {
     const float *profiles;              /* core/profile.h: cells, 16-byte aligned; NULL: no light has one */
     float ray_offset;                   /* of shadow rays at least, m: core/shadow.h */
     const material_record *materials;   /* at least one */
+    const uint32_t *texels;             /* core/texture.h; NULL: no material has a texture */
     const noc_clusters *clusters[2];    /* lists only: of lights that stand, of those that move; NULL: none */
     const noc_alias *alias;             /* power only */
     const noc_tree *tree;               /* light-bvh only */
@@ -160,10 +161,21 @@ typedef struct cornerblock {
     float u[BLOCK], v[BLOCK];
 } cornerblock;
 
+/* What the lanes of a block have hit of textures: the texture; each corner's place in its image; how wide a pixel is
+ * there along the surface, in the corners' unit. */
+typedef struct imageblock {
+    ALIGNED uint32_t place[BLOCK];
+    float at[3][2][BLOCK]; /* corner, u or v */
+    float width[BLOCK];
+} imageblock;
+
 typedef struct kernels {
     const char *name;
     /* Points of hits, and the normals of their triangles; 0 where the corners are one point. */
     void (*hits)(const cornerblock *c, gblock *g);
+    /* Albedos of `lanes`, from their materials and the textures of these. */
+    void (*texels)(const struct core_context *ctx, const cornerblock *c, const imageblock *image, uint32_t lanes,
+                   gblock *g);
     /* M candidates a lane of `lanes`; w = m = 0 elsewhere. x, y: pixel of lane 0. */
     void (*candidates)(const struct core_context *ctx, const gblock *g, uint32_t lanes, int x, int y, int m,
                        rblock *out);

@@ -37,6 +37,25 @@ static void hits(const cornerblock *c, gblock *g) {
     }
 }
 
+static void texels(const struct core_context *ctx, const cornerblock *c, const imageblock *image, uint32_t lanes,
+                   gblock *g) {
+    for (int l = 0; l < BLOCK; l += LANES) {
+        mask on = mload(lanes, l);
+        if (!ANY(on))
+            continue;
+        corners t = { corner_load(c, 0, l), corner_load(c, 1, l), corner_load(c, 2, l) };
+        image_corners at;
+        at.u = V3(rload(image->at[0][0] + l), rload(image->at[1][0] + l), rload(image->at[2][0] + l));
+        at.v = V3(rload(image->at[0][1] + l), rload(image->at[1][1] + l), rload(image->at[2][1] + l));
+        real u = image_at(at.u, rload(c->u + l), rload(c->v + l)), v = image_at(at.v, rload(c->u + l), rload(c->v + l));
+        u32 place = uload(image->place + l), m = selu(on, uload(g->material + l), KU(0u));
+        v3 a = texture_albedo(ctx, place, u, v, texture_level(ctx, place, t, at, rload(image->width + l)));
+        v3 of = V3(material_field(ctx->materials, m, 0), material_field(ctx->materials, m, 1),
+                   material_field(ctx->materials, m, 2));
+        ustore(g->texel + l, selu(on, texel_pack(tint3(a, of)), KU(0u)));
+    }
+}
+
 static void segments(const struct core_context *ctx, const gblock *g, const uint32_t *id, const float *u,
                      const float *v, rayblock *out) {
     for (int l = 0; l < BLOCK; l += LANES) {
@@ -109,6 +128,7 @@ static void sky_background(const struct core_context *ctx, uint32_t lanes, int x
 const kernels KERNELS = {
     .name = KERNELS_NAME,
     .hits = hits,
+    .texels = texels,
     .candidates = candidates,
     .list_build = build_list,
     .list_candidates = list_candidates,

@@ -13,6 +13,7 @@
 #include "core/reuse.h"
 #include "core/shadow.h"
 #include "core/sky.h"
+#include "core/texture.h"
 #include "core/wide_load.h"
 
 #include <string.h>
@@ -124,6 +125,18 @@ FN real material_field(const noc_material_record *base, u32 index, int field) {
 #endif
 }
 
+FN u32 texel_load(CTX u32 place) {
+#if defined(CORE_LANES) && CORE_LANES == 16 && defined(__AVX512F__)
+    return (u32)_mm512_i32gather_epi32((__m512i)place, (const int *)ctx->texels, 4);
+#else
+    uint32_t t[LANES], at[LANES];
+    ustore(at, place);
+    for (int i = 0; i < LANES; i++)
+        t[i] = ctx->texels[at[i]];
+    return uload(t);
+#endif
+}
+
 FN receiver receiver_load(const gblock *g, int l) {
     receiver r;
     r.p = V3(rload(g->px + l), rload(g->py + l), rload(g->pz + l));
@@ -157,6 +170,12 @@ FN surf surf_load(CTX const gblock *g, int l, const float eye[3]) {
     m = selu(m == KU(NO_SURFACE), KU(0u), m);
     s.albedo = V3(material_field(ctx->materials, m, 0), material_field(ctx->materials, m, 1),
                   material_field(ctx->materials, m, 2));
+    if (ctx->texels) {
+        u32 texel = uload(g->texel + l);
+        mask there = texel != KU(0u);
+        if (ANY(there))
+            s.albedo = sel3(there, texel_albedo(texel), s.albedo);
+    }
     s.f0 = material_field(ctx->materials, m, 3);
     s.alpha = material_field(ctx->materials, m, 7);
     return s;

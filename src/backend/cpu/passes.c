@@ -52,6 +52,7 @@ void noc_cpu_resolve(const stage_run *run, worker *w, const size_t *at, int coun
 void noc_cpu_no_receivers(gblock *g) {
     for (int l = 0; l < BLOCK; l++)
         receiver_store(g, l, receiver_none());
+    memset(g->texel, 0, sizeof(g->texel));
 }
 
 static void primary_block(stage_run *run, worker *w, int bx, int by) {

@@ -102,6 +102,44 @@ static void end_hit(const noc_scene *scene, const rayblock *rays, const hitblock
     g->light[l] = light;
 }
 
+/* What the block sees of textures, as its albedos. Rays of two rows are as far from each other as a pixel is high. */
+static void look_up(const cpu_view *s, const rayblock *rays, const hitblock *h, const cornerblock *corners, gblock *g) {
+    const noc_scene *scene = s->scene;
+    struct core_context ctx = { .materials = scene->material_records.data, .texels = scene->texels.data };
+    imageblock image = { 0 };
+    uint32_t lanes = 0;
+    for (int l = 0; l < BLOCK; l++) {
+        if (h->triangle[l] == NO_HIT)
+            continue;
+        int texture = scene->materials.data[g->material[l]].texture;
+        const noc_scene_mesh *mesh = texture ? &scene->meshes.data[noc_scene_mesh_of(scene, h->triangle[l])] : NULL;
+        if (!mesh || !mesh->uv)
+            continue;
+        float apart = 0, toward = 0, d2 = 0, scale2 = 1;
+        const float n[3] = { g->nx[l], g->ny[l], g->nz[l] };
+        for (int k = 0; k < 3; k++) {
+            float a = rays->d[k][4] - rays->d[k][0];
+            apart += a * a;
+            toward += n[k] * rays->d[k][l];
+            d2 += rays->d[k][l] * rays->d[k][l];
+        }
+        if (h->instance[l] != NO_INSTANCE) {
+            const float *m = scene->instances.data[h->instance[l]].transform;
+            scale2 = m[0] * m[0] + m[4] * m[4] + m[8] * m[8];
+        }
+        image.place[l] = scene->textures.data[texture - 1].place;
+        image.width[l] = h->t[l] * sqrtf(apart * d2 / scale2) / NOC_MAX(fabsf(toward), 0.01f * sqrtf(d2));
+        const uint32_t *v = scene->indices.data + 3 * (size_t)h->triangle[l];
+        for (int corner = 0; corner < 3; corner++)
+            for (int k = 0; k < 2; k++)
+                image.at[corner][k][l] =
+                    scene->uv.data[2 * (mesh->uv - 1 + (size_t)(v[corner] - mesh->first_vertex)) + (size_t)k];
+        lanes |= 1u << l;
+    }
+    if (lanes)
+        s->kernels->texels(&ctx, corners, &image, lanes, g);
+}
+
 static void closest(const cpu_world *world, noc_ray_world in, const rayblock *rays, float far, uint32_t valid,
                     bool coherent, hitblock *hits) {
     world->device->tracer->closest(world->rays, in, rays, far, valid, coherent, hits);
@@ -128,6 +166,8 @@ void noc_cpu_primary(cpu_view *s, worker *w, const rayblock *rays, uint32_t vali
             if (verdict)
                 wall[l] = (float)(NOC_CLASS_COUNT + (int)verdict - 1);
         }
+    if (s->scene->texels.len)
+        look_up(s, rays, &h, &corners, g);
 }
 
 void noc_cpu_probe(void *user, noc_probes *p) {

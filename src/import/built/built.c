@@ -34,12 +34,13 @@ static noc_status read_crs(noct_file *f, noc_scene *s) {
 
 /* What a part needs of others stands before it. */
 static const built_part parts[] = {
-    { noc_keep_scene, noc_kept_scene },         { write_crs, read_crs },
-    { noc_keep_groups, noc_kept_groups },       { noc_keep_profiles, noc_kept_profiles },
-    { noc_keep_models, noc_kept_models },       { noc_keep_lights, noc_kept_lights },
-    { noc_keep_windows, noc_kept_windows },     { noc_keep_instances, noc_kept_instances },
-    { noc_keep_traffic, noc_kept_traffic },     { noc_keep_environment, noc_kept_environment },
-    { noc_keep_materials, noc_kept_materials }, { noc_keep_meshes, noc_kept_meshes },
+    { noc_keep_scene, noc_kept_scene },       { write_crs, read_crs },
+    { noc_keep_groups, noc_kept_groups },     { noc_keep_profiles, noc_kept_profiles },
+    { noc_keep_models, noc_kept_models },     { noc_keep_lights, noc_kept_lights },
+    { noc_keep_windows, noc_kept_windows },   { noc_keep_instances, noc_kept_instances },
+    { noc_keep_traffic, noc_kept_traffic },   { noc_keep_environment, noc_kept_environment },
+    { noc_keep_textures, noc_kept_textures }, { noc_keep_materials, noc_kept_materials },
+    { noc_keep_meshes, noc_kept_meshes },
 };
 
 /* All that must be the same where a file is written and where it is read. */

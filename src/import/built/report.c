@@ -34,6 +34,7 @@ static const field fields[] = {
     FIELD(SIZE, lights, 1),
     FIELD(SIZE, tracks, 1),
     FIELD(SIZE, cars, 1),
+    FIELD(SIZE, images, 1),
     FIELD(SIZE, windows.windows, 1),
     FIELD(SIZE, windows.own, 1),
     FIELD(SIZE, windows.lit, 1),
@@ -130,7 +131,7 @@ static void put_lines(noct_writer *w, const noc_report_file *file) {
     }
 }
 
-_Static_assert(offsetof(noc_report, profiles) - offsetof(noc_report, lamps_inferred) == 3 * sizeof(size_t),
+_Static_assert(offsetof(noc_report, profiles) - offsetof(noc_report, lamps_inferred) == 4 * sizeof(size_t),
                "each number of a report is written and read below");
 
 void built_write_report(noct_writer *w, const noc_report *report) {
@@ -140,6 +141,7 @@ void built_write_report(noct_writer *w, const noc_report *report) {
     noct_put_u64(w, report->lamps_inferred);
     noct_put_u64(w, report->road_cars);
     noct_put_u64(w, report->roads_drawn);
+    noct_put_u64(w, report->images_reduced);
     noct_put_text(w, report->profiles);
     noct_put_u64(w, report->rule_count);
     for (size_t i = 0; i < report->rule_count; i++) {
@@ -235,6 +237,7 @@ noc_status built_read_report(noct_file *f, noc_report *report) {
     report->lamps_inferred = (size_t)noct_get_u64(&c);
     report->road_cars = (size_t)noct_get_u64(&c);
     report->roads_drawn = (size_t)noct_get_u64(&c);
+    report->images_reduced = (size_t)noct_get_u64(&c);
     const char *profiles = noct_get_text(&c);
     noc_snprintf(report->profiles, sizeof(report->profiles), "%s", profiles ? profiles : "");
     get_rules(&c, report);

@@ -82,7 +82,7 @@ static noc_status after_chunk(void *user) {
     cg_parser *p = user;
     if (p->status)
         return p->status;
-    double done = p->pass == 1 ? noc_stream_progress(p->stream) : 1;
+    double done = !p->pass ? 0 : p->pass == 1 ? noc_stream_progress(p->stream) : 1;
     return p->sink->progress(p->sink->ctx, done) ? NOC_OK : NOC_ERR_CANCELLED;
 }
 
@@ -94,7 +94,8 @@ static noc_status parse(cg_parser *p) {
     return fault ? xml_error(p, fault) : NOC_OK;
 }
 
-static noc_status run_pass(cg_parser *p, int pass) {
+noc_status cg_parse(cg_parser *p, int pass, XML_StartElementHandler start, XML_EndElementHandler end,
+                    XML_CharacterDataHandler text) {
     p->pass = pass;
     p->depth = p->skip = 0;
     p->in_polygon = p->in_ring = false;
@@ -104,15 +105,19 @@ static noc_status run_pass(cg_parser *p, int pass) {
     if (!p->xml)
         return p->status = noc_no_memory(p->sink->log, noc_stream_name(p->stream));
     XML_SetUserData(p->xml, p);
-    XML_SetElementHandler(p->xml, cg_start_element, cg_end_element);
-    XML_SetCharacterDataHandler(p->xml, cg_characters);
+    XML_SetElementHandler(p->xml, start, end);
+    XML_SetCharacterDataHandler(p->xml, text);
     XML_SetEntityDeclHandler(p->xml, refuse_entities);
     parse(p);
-    if (!p->status && !p->version)
+    if (!p->status && !p->version && pass)
         cg_fail(p, NOC_ERR_FORMAT, "no CityGML in this GML file");
     XML_ParserFree(p->xml);
     p->xml = NULL;
     return p->status;
+}
+
+static noc_status run_pass(cg_parser *p, int pass) {
+    return cg_parse(p, pass, cg_start_element, cg_end_element, cg_characters);
 }
 
 cg_parser *cg_parser_create(noc_stream *stream, const noc_import_params *params, geo_sink *sink, const char **format) {
@@ -141,17 +146,21 @@ void cg_parser_destroy(cg_parser *p) {
     cg_names_free(&p->names);
     cg_object_free(&p->object);
     cg_store_free(&p->store);
+    cg_looks_free(&p->looks);
     array_free(&p->selection.items);
     array_free(&p->selection.missing);
     array_free(&p->selection.shapes);
     array_free(&p->selection.bodies);
     array_free(&p->deferred);
     array_free(&p->xyz);
+    array_free(&p->ring_id);
+    array_free(&p->ring_uv);
     array_free(&p->rings);
     array_free(&p->terrain_id);
     array_free(&p->numbers.values);
     array_free(&p->out);
     array_free(&p->out_rings);
+    array_free(&p->out_uv);
     arena_free(&p->persistent);
     free(p);
 }
@@ -168,7 +177,9 @@ static noc_status read_citygml(noc_stream *stream, const noc_import_params *para
     cg_parser *p = cg_parser_create(stream, params, sink, format);
     if (!p)
         return NOC_ERR_MEMORY;
-    noc_status status = run_pass(p, 1);
+    noc_status status = cg_read_looks(p);
+    if (!status)
+        status = run_pass(p, 1);
     for (int pass = 2; pass <= 3 && !status && p->deferred.len; pass++) {
         noc_debug(sink->log, "%s: %zu objects refer to others; reading once more", noc_stream_name(stream),
                   p->deferred.len);

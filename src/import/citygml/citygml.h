@@ -117,8 +117,10 @@ typedef struct cg_polygon {
     uint32_t ring_count;
     uint32_t shown; /* selection it was last chosen in; 0: none; CG_EMITTED: stored, and given to the sink */
     const size_t *ring_size;
-    const double *xyz;       /* 3 a point, in the file's tuple order */
-    struct cg_polygon *copy; /* in the store, NULL if none: one, however many ids lead to it */
+    const double *xyz;          /* 3 a point, in the file's tuple order */
+    const float *uv;            /* 2 a point, in the image of its texture; NULL where it has none */
+    uint32_t texture, material; /* looks that the file gives it: cg_looks; 0: none */
+    struct cg_polygon *copy;    /* in the store, NULL if none: one, however many ids lead to it */
 } cg_polygon;
 
 typedef struct cg_surface {
@@ -228,6 +230,36 @@ typedef struct cg_store {
     size_t item_bytes; /* of all their lists */
 } cg_store;
 
+/* ---- what surfaces look like (look.c) ---- */
+
+/* A texture or a material of an appearance. */
+typedef struct cg_look {
+    bool material;
+    geo_appearance as;
+    double diffuse[3], specular[3], emissive[3], shininess, transparency; /* of a material, as written */
+} cg_look;
+
+/* Where a ring's points are in an image. */
+typedef struct cg_ring_image {
+    uint32_t look;       /* from 1 */
+    size_t first, count; /* numbers in uv, points */
+} cg_ring_image;
+
+typedef struct cg_looks {
+    NOC_ARRAY(cg_look) all; /* look n is at n - 1 */
+    NOC_ARRAY(cg_ring_image) rings;
+    NOC_ARRAY(float) uv;
+    noc_map by_ring;   /* id -> index into rings */
+    noc_map by_target; /* id -> material */
+    noc_map pairs;     /* material and texture -> number that the sink gave */
+    /* of the one being read */
+    bool inside, front;
+    NOC_ARRAY(char) text;
+    NOC_ARRAY(uint32_t) lists; /* rings of the list of coordinates at hand */
+    size_t named;              /* of them, by elements that follow */
+    char *reference;           /* an attribute that says what is meant, or NULL */
+} cg_looks;
+
 /* ---- the parser ---- */
 
 typedef struct cg_frame {
@@ -248,7 +280,7 @@ typedef struct cg_parser {
     int max_lod;
     const char **format;
     noc_status status;
-    int pass;    /* 1, 2, 3 */
+    int pass;    /* 0: appearances; 1, 2, 3 */
     int version; /* major, 0 until seen */
 
     cg_names names;
@@ -262,6 +294,7 @@ typedef struct cg_parser {
     NOC_ARRAY(size_t) deferred;          /* ordinals that wait for surfaces of other objects, ascending */
     size_t deferred_next, deferred_kept; /* position in it; of those seen in the second pass, how many wait on */
     cg_store store;
+    cg_looks looks;
     uint32_t selections; /* marks polygons as shown in the present selection */
 
     /* polygon being read */
@@ -270,8 +303,12 @@ typedef struct cg_parser {
     const char *polygon_id;
     NOC_ARRAY(char) terrain_id; /* ids of triangles must not pile up in the arena */
     bool in_polygon, in_ring, ring_exterior, has_exterior;
-    bool polygon_counted;   /* a fault of one of its rings has been reported */
-    const char *ring_fault; /* why the ring cannot be used, NULL if it can */
+    bool polygon_counted;     /* a fault of one of its rings has been reported */
+    NOC_ARRAY(char) ring_id;  /* of the ring, "" if none */
+    NOC_ARRAY(float) ring_uv; /* of the polygon's rings, as far as they have any */
+    uint32_t polygon_texture; /* of its rings; 0: none */
+    bool polygon_unplaced;    /* a ring of it is in no image, or in another one */
+    const char *ring_fault;   /* why the ring cannot be used, NULL if it can */
     bool ring_curved;
     size_t ring_first; /* index into xyz of the ring's first number */
     cg_numbers numbers;
@@ -297,6 +334,7 @@ typedef struct cg_parser {
     /* scratch of the emitter */
     NOC_ARRAY(double) out;
     NOC_ARRAY(size_t) out_rings;
+    NOC_ARRAY(float) out_uv;
     bool object_open;               /* begin_object was called and end_object not yet */
     size_t emitted, dropped, twins; /* polygons: used; there already; of these with the shape of another one */
     uint32_t kinds_told;            /* of objects that were left out */
@@ -310,6 +348,20 @@ cg_parser *cg_parser_create(noc_stream *stream, const noc_import_params *params,
 void cg_parser_destroy(cg_parser *p);
 /* What is told of a file that has been read; nothing is freed. */
 noc_status cg_parser_end(cg_parser *p);
+
+/* look.c: gathers what the file's appearances say, where they are asked for, and rewinds it. */
+noc_status cg_read_looks(cg_parser *p);
+void cg_looks_free(cg_looks *looks);
+/* Of a ring of so many points that is good: its place in an image, into p->ring_uv. */
+void cg_ring_look(cg_parser *p, const char *id, size_t points);
+uint32_t cg_material_of(const cg_parser *p, const char *id); /* 0: none */
+/* Gives the object's surfaces the materials of what they are in. */
+void cg_spread_materials(cg_parser *p);
+/* The sink's number for a material and a texture, either may be 0. */
+uint32_t cg_appearance_of(cg_parser *p, uint32_t material, uint32_t texture);
+/* citygml.c: one pass over the file by these handlers. */
+noc_status cg_parse(cg_parser *p, int pass, XML_StartElementHandler start, XML_EndElementHandler end,
+                    XML_CharacterDataHandler text);
 
 /* parse.c: expat handlers; user data is the parser. */
 void cg_start_element(void *user, const XML_Char *name, const XML_Char **attributes);
@@ -353,7 +405,7 @@ void cg_emit_installed_lamps(cg_parser *p);
 /* ring.c: rings and polygons from coordinates. */
 void cg_polygon_begin(cg_parser *p, const char *id);
 void cg_polygon_end(cg_parser *p, const cg_frame *frame);
-void cg_ring_begin(cg_parser *p, bool exterior);
+void cg_ring_begin(cg_parser *p, bool exterior, const char *id);
 void cg_ring_end(cg_parser *p, const cg_frame *frame);
 /* The numbers collected are tuples of the ring: dimension 2 or 3, 0: as many as a position has. */
 void cg_ring_add(cg_parser *p, cg_code code, uint32_t dimension);

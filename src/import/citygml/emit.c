@@ -64,14 +64,23 @@ void cg_place_point(const cg_parser *p, const cg_implicit *implicit, double *poi
 /* Into p->out, p->out_rings: easting northing height, turned over where asked. p->status tells where memory is refused.
  */
 void cg_transform(cg_parser *p, const cg_polygon *polygon, const cg_implicit *implicit, bool flip) {
-    p->out.len = p->out_rings.len = 0;
+    p->out.len = p->out_rings.len = p->out_uv.len = 0;
     const double *in = polygon->xyz;
+    const float *uv = polygon->uv;
     for (uint32_t r = 0; r < polygon->ring_count; r++) {
         size_t points = polygon->ring_size[r], first = p->out.len, numbers = 3 * points;
         if (!array_push(&p->out_rings, points) || !array_append(&p->out, in, numbers)) {
             cg_no_memory(p);
             return;
         }
+        size_t places = 2 * points;
+        if (uv && !array_append(&p->out_uv, uv, places)) {
+            cg_no_memory(p);
+            return;
+        }
+        for (size_t i = 0; uv && flip && i < points; i++)
+            memcpy(p->out_uv.data + p->out_uv.len - 2 * (i + 1), uv + 2 * i, 2 * sizeof(*uv));
+        uv = uv ? uv + 2 * points : NULL;
         for (size_t i = 0; flip && i < points; i++)
             memcpy(p->out.data + first + 3 * i, in + 3 * (points - 1 - i), 3 * sizeof(double));
         in += numbers;
@@ -159,7 +168,11 @@ void cg_emit_polygon(cg_parser *p, const cg_polygon *polygon, uint32_t geometry,
                         .id = cg_report_id(p, polygon->id, g->feature),
                         .ring_count = p->out_rings.len,
                         .ring_size = p->out_rings.data,
-                        .xyz = p->out.data };
+                        .xyz = p->out.data,
+                        .appearance = cg_appearance_of(p, polygon->material, polygon->texture),
+                        .uv = p->out_uv.len ? p->out_uv.data : NULL };
+    if (p->status)
+        return;
     cg_stop(p, p->sink->polygon(p->sink->ctx, &out));
     p->emitted++;
 }
@@ -229,6 +242,7 @@ static cg_polygon *copy_polygon(cg_store *store, cg_polygon *polygon) {
     for (uint32_t r = 0; r < polygon->ring_count; r++)
         points += polygon->ring_size[r];
     double *xyz = arena_alloc(&store->arena, 3 * points * sizeof(double));
+    float *uv = polygon->uv ? arena_alloc(&store->arena, 2 * points * sizeof(float)) : NULL;
     const char *id = arena_strdup(&store->arena, polygon->id);
     if (store->arena.refused)
         return NULL;
@@ -238,6 +252,8 @@ static cg_polygon *copy_polygon(cg_store *store, cg_polygon *polygon) {
     copy->id = id;
     copy->ring_size = sizes;
     copy->xyz = xyz;
+    if (uv)
+        copy->uv = memcpy(uv, polygon->uv, 2 * points * sizeof(float));
     copy->shown = 0;
     return polygon->copy = copy;
 }
@@ -344,6 +360,7 @@ static void finish_object(cg_parser *p) {
 }
 
 void cg_object_end(cg_parser *p) {
+    cg_spread_materials(p);
     if (p->object.features.data[0].type->kind == GEO_TERRAIN) {
         for (size_t i = 0; i < p->object.surfaces.len; i++)
             cg_issue(p, GEO_SKIPPED, "unresolved xlink", p->object.surfaces.data[i].href);

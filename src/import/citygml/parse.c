@@ -418,7 +418,7 @@ static bool enter(cg_parser *p, cg_frame *frame, const cg_frame *parent, const c
     case CG_RING:
         if (!p->in_polygon || p->in_ring)
             return false;
-        cg_ring_begin(p, parent->name.code != CG_INTERIOR);
+        cg_ring_begin(p, parent->name.code != CG_INTERIOR, a.id);
         return true;
     case CG_ARC: p->ring_curved = true; return p->in_ring;
     case CG_POS_LIST:

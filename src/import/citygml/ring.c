@@ -21,9 +21,15 @@ void cg_polygon_begin(cg_parser *p, const char *id) {
     p->polygon_id = id;
     p->xyz.len = 0;
     p->rings.len = 0;
+    p->ring_uv.len = 0;
+    p->polygon_texture = 0;
+    p->polygon_unplaced = false;
 }
 
-void cg_ring_begin(cg_parser *p, bool exterior) {
+void cg_ring_begin(cg_parser *p, bool exterior, const char *id) {
+    p->ring_id.len = 0;
+    if (!array_append(&p->ring_id, id ? id : "", (id ? strlen(id) : 0) + 1))
+        cg_no_memory(p);
     p->in_ring = true;
     p->ring_exterior = exterior;
     p->ring_fault = NULL;
@@ -101,7 +107,9 @@ void cg_ring_end(cg_parser *p, const cg_frame *frame) {
         memmove(p->xyz.data, p->xyz.data + p->ring_first, points * 3 * sizeof(double));
         p->xyz.len = points * 3;
         p->rings.len = 0;
+        p->ring_uv.len = 0;
     }
+    cg_ring_look(p, p->ring_id.data, points);
     p->has_exterior |= p->ring_exterior;
     if (!array_push(&p->rings, points))
         cg_no_memory(p);
@@ -125,7 +133,12 @@ void cg_polygon_end(cg_parser *p, const cg_frame *frame) {
                            .srs = frame->srs,
                            .ring_count = (uint32_t)p->rings.len,
                            .ring_size = p->rings.data,
-                           .xyz = p->xyz.data };
+                           .xyz = p->xyz.data,
+                           .material = cg_material_of(p, p->polygon_id) };
+    if (p->polygon_texture && !p->polygon_unplaced) {
+        polygon.texture = p->polygon_texture;
+        polygon.uv = p->ring_uv.data;
+    }
     /* Terrain has no levels to choose from and no references: it goes straight through, however large it is. */
     if (object->features.data[0].type->kind == GEO_TERRAIN) {
         if (p->pass == 1)
@@ -136,9 +149,12 @@ void cg_polygon_end(cg_parser *p, const cg_frame *frame) {
         return;
     polygon.ring_size = arena_copy(&object->arena, p->rings.data, p->rings.len * sizeof(size_t));
     polygon.xyz = arena_copy(&object->arena, p->xyz.data, p->xyz.len * sizeof(double));
+    if (polygon.uv)
+        polygon.uv = arena_copy(&object->arena, p->ring_uv.data, p->ring_uv.len * sizeof(float));
     cg_surface surface = { .polygon = arena_copy(&object->arena, &polygon, sizeof(polygon)),
                            .geometry = frame->geometry,
                            .flip = frame->flip };
-    if (!polygon.ring_size || !polygon.xyz || !surface.polygon || !array_push(&object->surfaces, surface))
+    if (!polygon.ring_size || !polygon.xyz || (polygon.texture && !polygon.uv) || !surface.polygon ||
+        !array_push(&object->surfaces, surface))
         cg_no_memory(p);
 }

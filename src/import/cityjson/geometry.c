@@ -51,7 +51,7 @@ static const double *place_of(const builder *b, const json_t *geometry) {
 static void read_ring(builder *b, const json_t *ring, bool exterior) {
     cg_parser *p = b->r->parser;
     size_t count = json_array_size(ring);
-    cg_ring_begin(p, exterior);
+    cg_ring_begin(p, exterior, NULL);
     if (p->xyz.len + 3 * count > CG_MAX_NUMBERS)
         p->ring_fault = "polygon with too many points";
     for (size_t i = 0; i < count && !p->ring_fault; i++) {

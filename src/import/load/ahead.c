@@ -102,6 +102,11 @@ static noc_status on_crs(void *ctx, const char *srs_name, const char *place, boo
     return a->sink.crs(a->sink.ctx, srs_name, place, lat_first);
 }
 
+static noc_status on_appearance(void *ctx, const geo_appearance *appearance, uint32_t *number) {
+    struct look_ahead *a = ctx;
+    return a->sink.appearance(a->sink.ctx, appearance, number);
+}
+
 static noc_status on_begin_object(void *ctx, const geo_object *object) {
     struct look_ahead *a = ctx;
     if (a->passing)
@@ -137,6 +142,13 @@ static double *keep_numbers(struct look_ahead *a, const double *numbers, size_t 
     return kept;
 }
 
+static float *keep_places(struct look_ahead *a, const float *uv, size_t count) {
+    float *kept = arena_alloc(&a->arena, (count + 1) * sizeof(*kept));
+    if (kept && count)
+        memcpy(kept, uv, count * sizeof(*kept));
+    return kept;
+}
+
 static noc_status keep_polygon(struct look_ahead *a, ahead_event e) {
     const geo_polygon *polygon = &e.u.polygon;
     noc_status status = ensure_source(a);
@@ -145,6 +157,7 @@ static noc_status keep_polygon(struct look_ahead *a, ahead_event e) {
     size_t count;
     e.u.polygon.ring_size = keep_sizes(a, polygon->ring_size, polygon->ring_count, &count);
     e.u.polygon.xyz = keep_numbers(a, polygon->xyz, 3 * count);
+    e.u.polygon.uv = polygon->uv ? keep_places(a, polygon->uv, 2 * count) : NULL;
     e.u.polygon.id = arena_strdup(&a->arena, polygon->id);
     status = push(a, e);
     return status ? status : keep_points(a, e.u.polygon.xyz, count, e.u.polygon.id);
@@ -257,6 +270,7 @@ struct look_ahead *ahead_create(reading *r, geo_sink *sink) {
     a->sink = *sink;
     sink->ctx = a;
     sink->crs = on_crs;
+    sink->appearance = a->sink.appearance ? on_appearance : NULL;
     sink->begin_object = on_begin_object;
     sink->polygon = on_polygon;
     sink->end_object = on_end_object;

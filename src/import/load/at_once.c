@@ -91,6 +91,11 @@ static load_part copy_part(noc_arena *arena, load_part p) {
         for (size_t i = 0; s && i < p.u.object.surface_count; i++) {
             s[i].xyz = copied(arena, s[i].xyz, 3 * s[i].vertex_count * sizeof(*s[i].xyz));
             s[i].indices = copied(arena, s[i].indices, 3 * s[i].triangle_count * sizeof(*s[i].indices));
+            s[i].uv = s[i].uv ? copied(arena, s[i].uv, 2 * s[i].vertex_count * sizeof(*s[i].uv)) : NULL;
+            surface_look *look = s[i].look ? copied(arena, s[i].look, sizeof(*look)) : NULL;
+            if (look)
+                look->image = arena_strdup(arena, look->image);
+            s[i].look = look;
         }
         p.u.object.surfaces = s;
         p.u.object.id = arena_strdup(arena, p.u.object.id);

@@ -117,7 +117,7 @@ static noc_status clip(reading *r, geo_triangles *t) {
     }
     t->indices.len = kept;
     if (!kept)
-        t->xyz.len = 0;
+        triangles_clear(t);
     return status;
 }
 
@@ -126,8 +126,9 @@ noc_status box_object(reading *r, bool *inside) {
     bounds b = nowhere;
     bool terrain = r->now.kind == GEO_TERRAIN && r->object_id, any = false;
     *inside = true;
-    for (int c = 0; c < NOC_CLASS_COUNT && r->im->box.on && !status; c++) {
-        geo_triangles *t = &r->surfaces[c];
+    size_t count = NOC_CLASS_COUNT + r->group_count;
+    for (size_t c = 0; c < count && r->im->box.on && !status; c++) {
+        geo_triangles *t = triangles_of(r, c);
         any = any || t->indices.len;
         if (!t->indices.len)
             continue;
@@ -139,12 +140,12 @@ noc_status box_object(reading *r, bool *inside) {
         return status;
     if (terrain) {
         *inside = false;
-        for (int c = 0; c < NOC_CLASS_COUNT; c++)
-            *inside = *inside || r->surfaces[c].indices.len;
+        for (size_t c = 0; c < count; c++)
+            *inside = *inside || triangles_of(r, c)->indices.len;
     } else {
         *inside = r->now.given || meets(&r->im->box, &b);
     }
-    for (int c = 0; c < NOC_CLASS_COUNT && !*inside; c++)
-        r->surfaces[c].xyz.len = r->surfaces[c].indices.len = 0;
+    for (size_t c = 0; c < count && !*inside; c++)
+        triangles_clear(triangles_of(r, c));
     return NOC_OK;
 }

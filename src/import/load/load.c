@@ -496,6 +496,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
     if (scene->no_memory)
         status = NOC_ERR_MEMORY; /* some go on without what the scene refused */
     if (!status && !inspect && !built)
+        status = look_read_images(&im);
+    if (!status && !inspect && !built)
         status = set_materials(scene, params);
     if (!status && !inspect)
         status = noc_scene_commit(scene);

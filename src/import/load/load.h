@@ -74,6 +74,34 @@ typedef struct pending_lamp {
     const geo_road *street; /* that it stands beside, where rules or groups ask; NULL: none */
 } pending_lamp;
 
+/* How surfaces of a file look: a geo_appearance that is of use. */
+typedef struct surface_look {
+    const char *image; /* path; NULL: none */
+    geo_appearance as; /* its image is not read */
+} surface_look;
+
+/* Surfaces of an object that look like one, of a class. */
+typedef struct look_group {
+    uint32_t look; /* from 1 */
+    noc_class cls;
+    uint32_t next; /* + 1, of that look; 0: no more */
+    geo_triangles triangles;
+} look_group;
+
+/* An image that surfaces of the scene look like. */
+typedef struct scene_image {
+    const char *path; /* in importer.names */
+    noc_wrap wrap;
+    size_t input; /* the first that names it */
+    int width, height, leave_out;
+    int texture; /* the scene's; 0: it was of no use */
+} scene_image;
+
+typedef struct image_use {
+    int material;
+    uint32_t image;
+} image_use;
+
 /* The object that is being read, as far as it tells it from others (repeat.c). */
 typedef struct object_now {
     geo_kind kind;
@@ -145,8 +173,12 @@ typedef struct importer {
     /* what was taken (take.c) */
     object_records records;
     int material[NOC_CLASS_COUNT][PALETTE]; /* index + 1 in the scene, 0 if not made yet */
-    NOC_ARRAY(taken_building) buildings;    /* where windows are asked for */
-    size_t object_mesh;                     /* first mesh of the object that is being taken */
+    noc_map looks;                          /* what else surfaces look like (look.c) -> material */
+    noc_map image_numbers;                  /* path and wrap -> place in images */
+    NOC_ARRAY(scene_image) images;
+    NOC_ARRAY(image_use) image_uses;
+    NOC_ARRAY(taken_building) buildings; /* where windows are asked for */
+    size_t object_mesh;                  /* first mesh of the object that is being taken */
     bool has_roads;
     size_t first_mesh; /* of those that inputs are read into: what was there before, and built-in scenes, is whole */
     double open_area;  /* m2 of terrain, roads, pavements, lawns and water, seen from above */
@@ -169,6 +201,16 @@ typedef struct importer {
     pthread_mutex_t lock;
 } importer;
 
+/* What a reading hands over. Texts and arrays are valid during the call. */
+typedef struct part_surface {
+    noc_class cls;
+    size_t vertex_count, triangle_count;
+    const double *xyz; /* local metres */
+    const uint32_t *indices;
+    const float *uv;          /* NULL: none */
+    const surface_look *look; /* NULL: as surfaces of the class do */
+} part_surface;
+
 /* One file while it is read. */
 typedef struct load_queue load_queue;
 typedef struct reading {
@@ -190,15 +232,13 @@ typedef struct reading {
     NOC_ARRAY(double) in_box; /* points, where the box is */
     NOC_ARRAY(double) scratch;
     geo_triangles surfaces[NOC_CLASS_COUNT];
+    NOC_ARRAY(surface_look) looks;   /* of the file; appearance n is at n - 1 */
+    NOC_ARRAY(uint32_t) first_group; /* of each look: + 1, 0: none */
+    NOC_ARRAY(look_group) groups;    /* of the object; the first group_count are in use */
+    size_t group_count;
+    noc_arena look_texts;
+    NOC_ARRAY(part_surface) parts; /* that are handed over */
 } reading;
-
-/* What a reading hands over. Texts and arrays are valid during the call. */
-typedef struct part_surface {
-    noc_class cls;
-    size_t vertex_count, triangle_count;
-    const double *xyz; /* local metres */
-    const uint32_t *indices;
-} part_surface;
 
 typedef struct load_part {
     enum {
@@ -255,6 +295,7 @@ struct noc_report {
     size_t lamps_inferred;
     size_t road_cars; /* along roads of maps */
     size_t roads_drawn;
+    size_t images_reduced;
     char profiles[160];
 };
 
@@ -311,6 +352,11 @@ noc_status ahead_release(struct look_ahead *a); /* settles the place with what t
 void ahead_destroy(struct look_ahead *a);       /* NULL is allowed */
 
 /* sink.c */
+/* Of the object that is being read: those of each class, then those that look otherwise. */
+static inline geo_triangles *triangles_of(reading *r, size_t i) {
+    return i < NOC_CLASS_COUNT ? &r->surfaces[i] : &r->groups.data[i - NOC_CLASS_COUNT].triangles;
+}
+static inline void triangles_clear(geo_triangles *t) { t->xyz.len = t->uv.len = t->indices.len = 0; }
 geo_sink sink_create(reading *r);
 noc_status sink_flush(reading *r);
 noc_status sink_hand_over(reading *r, const load_part *part); /* to the scene, or to where it waits */
@@ -376,6 +422,17 @@ noc_status take_finish(const taking *t, noc_status status);
 noc_status take_affords(importer *im, const input *in, size_t more);
 void take_destroy(importer *im);
 int take_material(importer *im, noc_class cls, const char *id); /* of an object's surfaces; < 0: refused, and said */
+
+/* look.c: what surfaces look like where files say it. */
+noc_status look_number(reading *r, const geo_appearance *appearance, uint32_t *number); /* geo_sink.appearance */
+/* Where triangles of that look and class go; NULL: memory was refused. */
+geo_triangles *look_triangles(reading *r, uint32_t look, noc_class cls);
+void look_end_object(reading *r);
+void look_free(reading *r);
+/* The material of such surfaces of the scene; < 0: refused, and said. */
+int look_material(importer *im, const input *in, noc_class cls, const surface_look *look);
+/* Reads the images, when all surfaces are there, and gives them to their materials. */
+noc_status look_read_images(importer *im);
 
 /* windows.c: windows on the walls of the buildings that were taken. */
 noc_status windows_check(const noc_import_params *params, noc_log *log);

@@ -59,6 +59,7 @@ void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) 
                                    .cars = report ? report->road_cars : 0,
                                    .road_cars = report ? report->road_cars : 0,
                                    .roads_drawn = report ? report->roads_drawn : 0 };
+    totals->images_reduced = report ? report->images_reduced : 0;
     if (report)
         memcpy(totals->profiles, report->profiles, sizeof(totals->profiles));
     for (size_t i = 0; i < noc_report_file_count(report); i++) {
@@ -66,6 +67,7 @@ void noc_report_get_totals(const noc_report *report, noc_report_totals *totals) 
         totals->objects += f->objects;
         totals->buildings += f->buildings;
         totals->bytes_read += f->bytes_read;
+        totals->images += f->images;
         totals->lamps_mapped += f->lamps_mapped;
         totals->lamps_moved += f->lamps_moved;
         totals->lamps_dropped += f->lamps_dropped;

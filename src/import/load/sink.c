@@ -35,28 +35,40 @@ static noc_status hand_over_object(reading *r, noc_class only) {
         return boxed;
     if (!inside && only == NOC_CLASS_COUNT && !r->now.given)
         leave_out_object(r);
-    part_surface surfaces[NOC_CLASS_COUNT];
+    r->parts.len = 0;
+    if (!array_reserve(&r->parts, NOC_CLASS_COUNT + r->group_count))
+        return noc_no_memory(r->log, r->in->path);
+    part_surface *surfaces = r->parts.data;
     load_part part = { .kind = PART_OBJECT };
     part.u.object.id = r->object_id;
     part.u.object.now = r->now;
     part.u.object.last = only == NOC_CLASS_COUNT;
     part.u.object.surfaces = surfaces;
-    for (int c = 0; c < NOC_CLASS_COUNT; c++) {
-        const geo_triangles *t = &r->surfaces[c];
-        if (t->indices.len && (part.u.object.last || c == (int)only))
-            surfaces[part.u.object.surface_count++] = (part_surface){ .cls = (noc_class)c,
-                                                                      .vertex_count = t->xyz.len / 3,
-                                                                      .triangle_count = t->indices.len / 3,
-                                                                      .xyz = t->xyz.data,
-                                                                      .indices = t->indices.data };
+    for (size_t i = 0; i < NOC_CLASS_COUNT + r->group_count; i++) {
+        const geo_triangles *t = triangles_of(r, i);
+        const look_group *group = i < NOC_CLASS_COUNT ? NULL : &r->groups.data[i - NOC_CLASS_COUNT];
+        noc_class cls = group ? group->cls : (noc_class)i;
+        if (t->indices.len && (part.u.object.last || cls == only))
+            surfaces[part.u.object.surface_count++] =
+                (part_surface){ .cls = cls,
+                                .vertex_count = t->xyz.len / 3,
+                                .triangle_count = t->indices.len / 3,
+                                .xyz = t->xyz.data,
+                                .indices = t->indices.data,
+                                .uv = t->uv.len ? t->uv.data : NULL,
+                                .look = group ? &r->looks.data[group->look - 1] : NULL };
     }
-    if (!part.u.object.surface_count && !r->now.polygons && !r->now.given)
+    if (!part.u.object.surface_count && !r->now.polygons && !r->now.given) {
+        look_end_object(r);
         return NOC_OK;
-    noc_status status = sink_hand_over(r, &part);
-    for (size_t i = 0; i < part.u.object.surface_count; i++) {
-        geo_triangles *t = &r->surfaces[surfaces[i].cls];
-        t->xyz.len = t->indices.len = 0;
     }
+    noc_status status = sink_hand_over(r, &part);
+    for (size_t i = 0; i < NOC_CLASS_COUNT + r->group_count; i++)
+        if (part.u.object.last || i == (size_t)only ||
+            (i >= NOC_CLASS_COUNT && r->groups.data[i - NOC_CLASS_COUNT].cls == only))
+            triangles_clear(triangles_of(r, i));
+    if (part.u.object.last)
+        look_end_object(r);
     r->now.given = true;
     return status;
 }
@@ -69,6 +81,10 @@ noc_status sink_flush(reading *r) {
 
 static noc_status on_crs(void *ctx, const char *srs_name, const char *place, bool *lat_first) {
     return place_crs(ctx, srs_name, place, lat_first);
+}
+
+static noc_status on_appearance(void *ctx, const geo_appearance *appearance, uint32_t *number) {
+    return look_number(ctx, appearance, number);
 }
 
 static noc_status on_begin_object(void *ctx, const geo_object *object) {
@@ -124,15 +140,20 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
         return status;
     if (r->object_id && !r->now.given)
         repeat_polygon(&r->now, cls, r->scratch.data, count);
+    geo_triangles *to = &r->surfaces[cls];
     if (cls != NOC_CLASS_CLOSURE) {
         geo_polygon local = *polygon;
         local.xyz = r->scratch.data;
-        if (!geo_triangulate(&local, &r->surfaces[cls], in->issues))
-            return r->surfaces[cls].no_memory ? noc_no_memory(r->log, in->path) : NOC_OK;
+        bool image = polygon->appearance && r->looks.data[polygon->appearance - 1].image;
+        local.uv = image ? polygon->uv : NULL;
+        if (polygon->appearance && (!image || polygon->uv) && !(to = look_triangles(r, polygon->appearance, cls)))
+            return noc_no_memory(r->log, in->path);
+        if (!geo_triangulate(&local, to, in->issues))
+            return to->no_memory ? noc_no_memory(r->log, in->path) : NOC_OK;
     }
     r->now.polygons++;
     r->now.by_class[cls]++;
-    return r->surfaces[cls].indices.len >= 3 * FLUSH_TRIANGLES ? hand_over_object(r, cls) : NOC_OK;
+    return to->indices.len >= 3 * FLUSH_TRIANGLES ? hand_over_object(r, cls) : NOC_OK;
 }
 
 _Static_assert((int)GEO_SOURCE_LED == NOC_SOURCE_LED && (int)GEO_SOURCE_LOW_SODIUM == NOC_SOURCE_LOW_SODIUM,
@@ -361,6 +382,7 @@ geo_sink sink_create(reading *r) {
                        .lamps_lost = &r->in->lamps_lost,
                        .decimal_sign = &r->in->file.decimal_sign,
                        .crs = on_crs,
+                       .appearance = r->im->params->textures ? on_appearance : NULL,
                        .begin_object = on_begin_object,
                        .polygon = on_polygon,
                        .end_object = on_end_object,
@@ -380,6 +402,8 @@ geo_sink sink_create(reading *r) {
 void reading_free(reading *r) {
     for (int c = 0; c < NOC_CLASS_COUNT; c++)
         geo_triangles_free(&r->surfaces[c]);
+    look_free(r);
+    array_free(&r->parts);
     array_free(&r->scratch);
     array_free(&r->in_box);
     geo_transform_destroy(r->to_box);

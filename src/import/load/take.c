@@ -88,7 +88,8 @@ static noc_status take_surface(importer *im, input *in, const char *id, const pa
                       .positions = s->xyz,
                       .triangle_count = s->triangle_count,
                       .indices = s->indices,
-                      .material = take_material(im, s->cls, id),
+                      .material = s->look ? look_material(im, in, s->cls, s->look) : take_material(im, s->cls, id),
+                      .uv = s->uv,
                       .name = *id ? id : NULL };
     if (mesh.material < 0 || noc_scene_add_mesh(im->scene, &mesh) < 0)
         return NOC_ERR_UNSUPPORTED; /* said by the scene */
@@ -200,5 +201,9 @@ void take_destroy(importer *im) {
     array_free(&im->storeys);
     array_free(&im->lost);
     array_free(&im->buildings);
+    map_free(&im->looks);
+    map_free(&im->image_numbers);
+    array_free(&im->images);
+    array_free(&im->image_uses);
     arena_free(&im->names);
 }

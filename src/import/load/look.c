@@ -1,0 +1,338 @@
+/* How surfaces look where their file says it: colours and images. A file's looks are numbered as it is read, its
+ * surfaces are kept apart by them, and the scene gets a material for each. Images are read last, when it is known how
+ * many must share the memory for them. */
+#include "import/load/load.h"
+
+#include "image/pixels.h"
+
+#include <math.h>
+
+#define MOST_LOOKS 1000000       /* of a file */
+#define MOST_BYTES (256u << 20)  /* of an image's file */
+#define PIXELS_AT_ONCE 100000000 /* of images that are read at the same time, but for the last of them */
+
+/* ---- a file's ---- */
+
+/* The folder of a file, with a slash at its end, or "": so many bytes of its path. */
+static size_t folder_length(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash + 1 - path) : 0;
+}
+
+/* Where the image lies, in the reading's texts; NULL where it is of no use, which is counted, or memory was refused. */
+static const char *find_image(reading *r, const char *name) {
+    char *named = arena_strdup(&r->look_texts, name);
+    for (char *c = named; c && *c; c++)
+        *c = *c == '\\' ? '/' : *c;
+    const char *folder = arena_strndup(&r->look_texts, r->in->path, folder_length(r->in->path));
+    char *path = named && folder ? arena_format(&r->look_texts, "%s%s", *named == '/' ? "" : folder, named) : NULL;
+    if (!path)
+        return NULL;
+    const char *trouble = import_named_trouble(folder, path, r->im->params->allow_outside);
+    if (!trouble)
+        return path;
+    bool outside = strstr(trouble, "outside") != NULL;
+    geo_issue(r->in->issues, GEO_GUESSED, outside ? "image outside of the file's folder" : "image that is not there",
+              name);
+    return NULL;
+}
+
+noc_status look_number(reading *r, const geo_appearance *appearance, uint32_t *number) {
+    surface_look look = { .as = *appearance };
+    *number = 0;
+    if (appearance->image && *appearance->image)
+        look.image = find_image(r, appearance->image);
+    if (r->look_texts.refused)
+        return noc_no_memory(r->log, r->in->path);
+    look.as.image = NULL;
+    if (!look.image && !look.as.coloured)
+        return NOC_OK;
+    if (r->looks.len == MOST_LOOKS) {
+        geo_issue(r->in->issues, GEO_GUESSED, "appearance beyond the first million", "");
+        return NOC_OK;
+    }
+    if (!array_push(&r->first_group, 0) || !array_push(&r->looks, look))
+        return noc_no_memory(r->log, r->in->path);
+    *number = (uint32_t)r->looks.len;
+    return NOC_OK;
+}
+
+geo_triangles *look_triangles(reading *r, uint32_t look, noc_class cls) {
+    uint32_t *first = &r->first_group.data[look - 1];
+    for (uint32_t g = *first; g; g = r->groups.data[g - 1].next)
+        if (r->groups.data[g - 1].cls == cls)
+            return &r->groups.data[g - 1].triangles;
+    if (r->group_count == r->groups.len && !array_push(&r->groups, (look_group){ 0 }))
+        return NULL;
+    look_group *group = &r->groups.data[r->group_count++];
+    group->look = look;
+    group->cls = cls;
+    group->next = *first;
+    *first = (uint32_t)r->group_count;
+    return &group->triangles;
+}
+
+void look_end_object(reading *r) {
+    for (size_t i = 0; i < r->group_count; i++)
+        r->first_group.data[r->groups.data[i].look - 1] = 0;
+    r->group_count = 0;
+}
+
+void look_free(reading *r) {
+    for (size_t i = 0; i < r->groups.len; i++)
+        geo_triangles_free(&r->groups.data[i].triangles);
+    array_free(&r->groups);
+    array_free(&r->looks);
+    array_free(&r->first_group);
+    arena_free(&r->look_texts);
+}
+
+/* ---- the scene's ---- */
+
+/* The number of the image, whose file `in` is if it is new. false: no memory. */
+static bool number_image(importer *im, const input *in, const char *path, noc_wrap wrap, uint64_t *number) {
+    char *key = noc_format("%d %s", (int)wrap, path);
+    bool ok = key && true;
+    if (ok && !map_get(&im->image_numbers, key, number)) {
+        scene_image image = { .path = arena_strdup(&im->names, path),
+                              .wrap = wrap,
+                              .input = (size_t)(in - im->inputs) };
+        *number = im->images.len;
+        ok = image.path && array_push(&im->images, image) && map_put(&im->image_numbers, key, *number, NULL);
+    }
+    free(key);
+    return ok;
+}
+
+/* Classes whose light is behind glass keep to it: what a file calls a window's colour is what it is drawn with. */
+static noc_material material_of(noc_class cls, const geo_appearance *as) {
+    noc_material m = noc_class_material(cls);
+    if (as->coloured)
+        memcpy(m.albedo, as->albedo, sizeof(m.albedo));
+    if (as->f0 >= 0)
+        m.f0 = as->f0;
+    if (as->roughness >= 0)
+        m.roughness = as->roughness;
+    return m;
+}
+
+int look_material(importer *im, const input *in, noc_class cls, const surface_look *look) {
+    const geo_appearance *as = &look->as;
+    uint64_t image = 0, found;
+    int material = -1;
+    if (look->image && !number_image(im, in, look->image, as->wrap, &image)) {
+        noc_no_memory(im->log, in->path);
+        return -1;
+    }
+    char *key = noc_format("%d %lld %d %.9g %.9g %.9g %.9g %.9g", (int)cls, look->image ? (long long)image : -1,
+                           as->coloured, as->albedo[0], as->albedo[1], as->albedo[2], as->f0, as->roughness);
+    if (key && map_get(&im->looks, key, &found)) {
+        material = (int)found;
+    } else if (key) {
+        noc_material m = material_of(cls, as);
+        material = noc_scene_add_material(im->scene, &m);
+        bool kept = material >= 0 && map_put(&im->looks, key, (uint64_t)material, NULL) &&
+                    (!look->image || array_push(&im->image_uses, (image_use){ material, (uint32_t)image }));
+        if (material >= 0 && !kept) {
+            noc_no_memory(im->log, in->path);
+            material = -1;
+        }
+    } else {
+        noc_no_memory(im->log, in->path);
+    }
+    free(key);
+    return material;
+}
+
+/* ---- images ---- */
+
+/* The whole file. NOC_ERR_FORMAT with *why where it is of no use. */
+static noc_status read_bytes(const importer *im, const scene_image *image, uint8_t **data, size_t *size,
+                             const char **why) {
+    const char *from = im->inputs[image->input].path, *name = image->path;
+    size_t length = folder_length(from);
+    char *folder = noc_strndup(from, length);
+    FILE *f = NULL;
+    *data = NULL;
+    *why = NULL;
+    if (!strncmp(name, from, length))
+        name += length;
+    if (folder)
+        f = import_open_named(folder, name, im->params->allow_outside, size, why);
+    free(folder);
+    noc_status status = f ? NOC_OK : *why ? NOC_ERR_FORMAT : NOC_ERR_MEMORY;
+    if (f && *size > MOST_BYTES) {
+        *why = "image of more than 256 MB";
+        status = NOC_ERR_FORMAT;
+    }
+    if (!status && !(*data = noc_alloc(*size + 1)))
+        status = NOC_ERR_MEMORY;
+    if (!status && fread(*data, 1, *size, f) != *size) {
+        *why = "image that cannot be read";
+        status = NOC_ERR_FORMAT;
+    }
+    if (f)
+        fclose(f);
+    return status;
+}
+
+/* One image of several that are read at once. */
+typedef struct image_job {
+    const importer *im;
+    scene_image *image;
+    bool whole; /* its pixels too; else its size */
+    pixel_bytes pixels;
+    noc_status status;
+    const char *why;
+} image_job;
+
+static void run_job(void *ctx, size_t item, int worker) {
+    image_job *job = (image_job *)ctx + item;
+    uint8_t *data;
+    size_t size;
+    (void)worker;
+    job->status = read_bytes(job->im, job->image, &data, &size, &job->why);
+    if (!job->status && job->whole)
+        job->status = pixels_read(data, size, job->image->path, NULL, &job->pixels);
+    else if (!job->status)
+        job->status = pixels_size(data, size, job->image->path, NULL, &job->image->width, &job->image->height);
+    if (job->status == NOC_ERR_UNSUPPORTED)
+        job->why = "image of a format that is not read (PNG and JPEG are)";
+    else if (job->status == NOC_ERR_FORMAT && !job->why)
+        job->why = "broken image";
+    free(data);
+}
+
+/* Counts what is of no use; only memory that is refused is a failure. */
+static noc_status told(importer *im, const image_job *job) {
+    geo_issues *issues = im->inputs[job->image->input].issues;
+    if (job->status == NOC_ERR_MEMORY)
+        return noc_no_memory(im->log, job->image->path);
+    if (job->status)
+        geo_issue(issues, GEO_GUESSED, job->why, job->image->path);
+    else if (job->pixels.damaged)
+        geo_issue(issues, GEO_GUESSED, "damaged image", job->image->path);
+    return NOC_OK;
+}
+
+/* Of all images, which are of no use where theirs stays 0. */
+static noc_status read_sizes(importer *im, noc_pool *pool, image_job *jobs) {
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < im->images.len; i++)
+        jobs[i] = (image_job){ .im = im, .image = &im->images.data[i] };
+    noc_pool_run(pool, im->images.len, run_job, jobs);
+    for (size_t i = 0; i < im->images.len && !status; i++) {
+        status = told(im, &jobs[i]);
+        if (jobs[i].status)
+            im->images.data[i].width = im->images.data[i].height = 0;
+    }
+    return status;
+}
+
+static double bytes_of(const scene_image *i) {
+    int width = NOC_MAX(i->width >> i->leave_out, 1), height = NOC_MAX(i->height >> i->leave_out, 1);
+    return i->width ? (double)noc_texture_words(width, height) * sizeof(uint32_t) : 0;
+}
+
+/* Leaves finest levels out until all fit: of the largest first, so that none is finer than it need be. */
+static void fit(importer *im) {
+    double most = im->params->texture_memory * 1e6, sum = 0, largest = 0;
+    for (size_t i = 0; i < im->images.len; i++)
+        sum += bytes_of(&im->images.data[i]);
+    while (sum > most) {
+        largest = 0;
+        for (size_t i = 0; i < im->images.len; i++)
+            largest = NOC_MAX(largest, bytes_of(&im->images.data[i]));
+        if (largest <= (TEXTURE_HEAD + 1) * sizeof(uint32_t))
+            return;
+        for (size_t i = 0; i < im->images.len && sum > most; i++) {
+            scene_image *image = &im->images.data[i];
+            double had = bytes_of(image);
+            if (had <= largest / 2 || had <= (TEXTURE_HEAD + 1) * sizeof(uint32_t))
+                continue;
+            im->report->images_reduced += !image->leave_out;
+            image->leave_out++;
+            sum += bytes_of(image) - had;
+        }
+    }
+}
+
+/* As many from `first` on as are read at once; returns the next one. */
+static size_t some(const importer *im, size_t first) {
+    double sum = 0;
+    for (; first < im->images.len && sum < PIXELS_AT_ONCE; first++)
+        sum += (double)im->images.data[first].width * im->images.data[first].height;
+    return first;
+}
+
+static noc_status add_image(importer *im, image_job *job) {
+    scene_image *image = job->image;
+    noc_status status = told(im, job);
+    if (status || job->status)
+        return status;
+    noc_texture texture = { .width = job->pixels.width,
+                            .height = job->pixels.height,
+                            .rgb = job->pixels.rgb,
+                            .wrap = image->wrap,
+                            .leave_out = image->leave_out };
+    image->texture = noc_scene_add_texture(im->scene, &texture);
+    if (image->texture < 0)
+        return NOC_ERR_MEMORY;
+    im->inputs[image->input].file.images++;
+    return NOC_OK;
+}
+
+static noc_status read_pixels(importer *im, noc_pool *pool, image_job *jobs) {
+    noc_status status = NOC_OK;
+    const noc_progress *progress = &im->params->progress;
+    for (size_t first = 0, end; first < im->images.len && !status; first = end) {
+        size_t count = 0;
+        end = some(im, first);
+        for (size_t i = first; i < end; i++)
+            if (im->images.data[i].width)
+                jobs[count++] = (image_job){ .im = im, .image = &im->images.data[i], .whole = true };
+        noc_pool_run(pool, count, run_job, jobs);
+        for (size_t i = 0; i < count; i++) {
+            if (!status)
+                status = add_image(im, &jobs[i]);
+            free(jobs[i].pixels.rgb);
+        }
+        if (!status && progress->update && !progress->update(progress->user, "images", 0.9))
+            status = NOC_ERR_CANCELLED;
+    }
+    return status;
+}
+
+/* Surfaces have the colours of their images; where one is of no use, those that the file gives them besides. */
+static noc_status use_images(importer *im) {
+    noc_status status = NOC_OK;
+    for (size_t i = 0; i < im->image_uses.len && !status; i++) {
+        const image_use *use = &im->image_uses.data[i];
+        noc_material m = *noc_scene_material_at(im->scene, use->material);
+        if (!(m.texture = im->images.data[use->image].texture))
+            continue;
+        m.albedo[0] = m.albedo[1] = m.albedo[2] = 1;
+        status = noc_scene_set_material(im->scene, use->material, &m);
+    }
+    return status;
+}
+
+noc_status look_read_images(importer *im) {
+    if (!im->images.len)
+        return NOC_OK;
+    noc_pool *pool = noc_pool_create(im->params->threads);
+    image_job *jobs = noc_calloc(im->images.len, sizeof(*jobs));
+    noc_status status = pool && jobs ? NOC_OK : noc_no_memory(im->log, "import");
+    if (!status)
+        status = read_sizes(im, pool, jobs);
+    if (!status)
+        fit(im);
+    if (!status)
+        status = read_pixels(im, pool, jobs);
+    if (!status)
+        status = use_images(im);
+    free(jobs);
+    if (pool)
+        noc_pool_destroy(pool);
+    return status;
+}
