@@ -170,6 +170,18 @@ static char *join_names(const char *const *paths, size_t count) {
     return text;
 }
 
+/* The files that a built city is built from. */
+static void add_sources(meta_text *meta, const render_job *job) {
+    size_t count = noc_report_file_count(job->report);
+    if (!cli_is_built(&job->args->common))
+        return;
+    const char **paths = cli_alloc((count + 1) * sizeof(*paths));
+    for (size_t i = 0; i < count; i++)
+        paths[i] = noc_report_get_file(job->report, i)->path;
+    add(meta, "built-from", join_names(paths, count));
+    free(paths);
+}
+
 static bool is_exr(const char *path) {
     size_t n = strlen(path);
     return n >= 4 && (path[n - 1] | 32) == 'r';
@@ -193,6 +205,7 @@ noc_status cli_write_picture(render_job *job) {
         return NOC_ERR_MEMORY;
     meta_text meta = { .count = 0 };
     add(&meta, "inputs", join_names(args->common.inputs, args->common.input_count));
+    add_sources(&meta, job);
     add(&meta, "lamps", join_names(args->import.lamps.text, args->import.lamps.count));
     add(&meta, "tracks", join_names(args->import.tracks.text, args->import.tracks.count));
     add(&meta, "frames", cli_format("%d", job->averaged));

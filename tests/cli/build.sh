@@ -52,6 +52,10 @@ result "$status" "is built again of itself"
 draw files.exr city.yaml --window-lit 0.2
 draw built.exr again.noct
 same "with windows as they were switched" files.exr built.exr
+run render city.noct --frames 1 -q -o meta.png
+python3 "$source_dir/tests/cli/png_text.py" meta.png >out
+grep -q '^built-from: city.gml$' out && grep -q '^window-lit: 0.9$' out
+result $? "metadata tell what it is built from, and how"
 expect "what is decided" 0 'warning: --lod has no effect: city.noct is built already' \
     render city.noct --lod 1 --frames 1 -o a.png
 run info city.noct

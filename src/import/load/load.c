@@ -457,7 +457,8 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
         status = lamp_mapping_check(params, scene->log);
     if (!status)
         status = windows_check(params, scene->log);
-    if (!status)
+    bool alone = path_count == 1 && noct_is(paths[0]); /* a built city, to which CRSs and boxes are words of its past */
+    if (!status && !alone)
         status = check_crs(params, scene->log);
     if (status)
         return status;
@@ -471,7 +472,7 @@ noc_status load_inputs(noc_scene *scene, const noc_reader *const *readers, const
                     .memory = import_budget_of(params).memory,
                     .inspect = inspect,
                     .lock = PTHREAD_MUTEX_INITIALIZER };
-    status = box_read(params, scene->log, &im.box);
+    status = alone ? NOC_OK : box_read(params, scene->log, &im.box);
     if (status) {
         box_free(&im.box);
         return status;
