@@ -258,6 +258,35 @@ static void what_is_kept_is_unbiased(void **state) {
     assert_int_equal(wrong, 0);
 }
 
+/* noc_view_restart: the mean is that of the frames since then, and those are what they would have been without it. */
+static void a_restart_begins_the_mean_alone(void **state) {
+    enum { ALL = 4, AFTER = 2, NUMBERS = 3 * SIDE * SIDE };
+    noc_scene *s = yard();
+    noc_render_params p = basic(NOC_METHOD_RESTIR), alone = p;
+    noc_view *v = own_view(s, 1, NULL), *single = own_view(s, 1, NULL);
+    double mean[NUMBERS] = { 0 };
+    alone.accumulate = false;
+    for (int i = 0; i < ALL; i++) {
+        if (i == AFTER)
+            noc_view_restart(v);
+        frame(v, &p);
+        frame(single, &alone);
+        assert_int_equal(frames_of(v), 1 + i % AFTER);
+        noc_image *image = noc_view_image(single);
+        for (int k = 0; k < NUMBERS && i >= AFTER; k++)
+            mean[k] += (double)image->rgb[k] / (ALL - AFTER);
+        noc_image_destroy(image);
+    }
+    noc_image *image = noc_view_image(v);
+    for (int k = 0; k < NUMBERS; k++)
+        assert_true(fabs((double)image->rgb[k] - mean[k]) <= 1e-5 * (1 + mean[k]));
+    noc_image_destroy(image);
+    close_view(v);
+    close_view(single);
+    noc_scene_destroy(s);
+    (void)state;
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rows_are_true),
@@ -265,6 +294,7 @@ int main(void) {
         cmocka_unit_test(sizes_keep_what_was_learned),
         cmocka_unit_test(idle_options_and_aovs_reset_nothing),
         cmocka_unit_test(what_is_kept_is_unbiased),
+        cmocka_unit_test(a_restart_begins_the_mean_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
