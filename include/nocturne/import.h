@@ -239,7 +239,7 @@ typedef struct noc_report_file {
     size_t objects_repeated; /* the same of objects; of a file's own, too */
     size_t tracks;           /* of cars, that can be driven */
     size_t cars;             /* along them */
-    /* Of a map: its features by their geometry, of which only lamps are read; of OpenStreetMap only points are in
+    /* Of a map: its features by their geometry, whether they are read or not; of OpenStreetMap only points are in
      * these. */
     size_t map_points, map_lines, map_areas;
     size_t buildings_unread, streets_unread; /* of OpenStreetMap, by the tags of ways and relations */

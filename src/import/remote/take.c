@@ -121,7 +121,8 @@ static noc_status take_road(remote_taker *t, remote_record *one) {
     road.name = remote_get_text(one);
     bool flags = is_bool(&road.link) && is_bool(&road.roundabout) && is_bool(&road.bridge) && is_bool(&road.tunnel) &&
                  is_bool(&road.motor);
-    bool kinds = (unsigned)road.cls < GEO_ROAD_CLASSES && (unsigned)road.lit <= GEO_LIT_YES && abs(road.oneway) <= 1;
+    bool kinds = (unsigned)road.cls < GEO_ROAD_CLASSES && (unsigned)road.lit <= GEO_LIT_YES && road.oneway >= -1 &&
+                 road.oneway <= 1;
     const int counts[] = { road.lanes, road.lanes_forward, road.lanes_backward };
     for (size_t i = 0; i < NOC_COUNT(counts); i++)
         kinds = kinds && counts[i] >= 0 && counts[i] <= GEO_ROAD_MOST_LANES;
