@@ -10,10 +10,10 @@
 typedef struct city_profiles city_profiles;
 city_profiles *city_profiles_create(noc_scene *scene, const char *file, noc_status *status);
 void city_profiles_destroy(city_profiles *profiles);
-/* One that rules name: a built-in one, or the file at path, which is told as `name`. Returns its number for
- * geo_fitting.profile, or 0 after an error that was reported. */
+/* One that rules name: a built-in one, or the file at path, which is told as `name`. Their number is for
+ * geo_fitting.profile. An error is reported. */
 int city_profiles_builtin(const char *name); /* 0: there is none, not reported */
-int city_profiles_read(city_profiles *profiles, const char *path, const char *name);
+noc_status city_profiles_read(city_profiles *profiles, const char *path, const char *name, int *number);
 /* "cobra-head 40, post-top 3": which lights have which; NULL: "". */
 void city_profiles_tell(const city_profiles *profiles, char *text, size_t size);
 

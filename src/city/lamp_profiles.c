@@ -56,21 +56,23 @@ int city_profiles_builtin(const char *name) {
     return 0;
 }
 
-int city_profiles_read(city_profiles *p, const char *path, const char *name) {
+noc_status city_profiles_read(city_profiles *p, const char *path, const char *name, int *number) {
     for (size_t i = CITY_PROFILES; i < p->of.len; i++)
-        if (!strcmp(p->of.data[i].path, path))
-            return (int)i + 1;
+        if (!strcmp(p->of.data[i].path, path)) {
+            *number = (int)i + 1;
+            return NOC_OK;
+        }
     kept_profile made = { .name = noc_strdup(name), .path = noc_strdup(path) };
     bool room = made.name && made.path && array_reserve(&p->of, p->of.len + 1);
-    if (room && !noc_profile_load(p->scene->log, path, &made.profile)) {
+    noc_status status = room ? noc_profile_load(p->scene->log, path, &made.profile) : noc_scene_out_of_memory(p->scene);
+    if (!status) {
         p->of.data[p->of.len++] = made;
-        return (int)p->of.len;
+        *number = (int)p->of.len;
+        return NOC_OK;
     }
-    if (!room)
-        noc_scene_out_of_memory(p->scene);
     free(made.name);
     free(made.path);
-    return 0;
+    return status;
 }
 
 bool city_profile_give(city_profiles *p, city_profile_kind kind, int ruled, const double street[3], noc_light *light) {

@@ -128,13 +128,24 @@ static const char *take_bound(test *t, const char *from, size_t n, char to[40]) 
     return NULL;
 }
 
+/* "16..20 ft": the first number is in feet, too. */
+static void share_unit(const char *from, char to[40]) {
+    const char *unit = from + strspn(from, "0123456789., ");
+    size_t n = strlen(to);
+    if (unit_named(to) == LAMP_PLAIN && *unit)
+        noc_snprintf(to + n, 40 - n, " %s", unit);
+}
+
 static const char *read_number(const char *text, test *t) {
     const char *dots = strstr(text, "..");
     t->kind = TEST_NUMBER;
     t->unit = LAMP_PLAIN;
     if (dots) {
         const char *wrong = take_bound(t, text, (size_t)(dots - text), t->low), *to = after_blanks(dots + 2);
-        return wrong ? wrong : take_bound(t, to, strlen(to), t->high);
+        wrong = wrong ? wrong : take_bound(t, to, strlen(to), t->high);
+        if (!wrong)
+            share_unit(t->high, t->low);
+        return wrong;
     }
     bool equal = text[1] == '=', low = *text != '<', high = *text != '>';
     const char *number = after_blanks(text + 1 + (equal && *text != '='));

@@ -94,8 +94,8 @@ static noc_status find_profile(importer *im, const noc_luminaire_rule *r, const 
     if (why)
         status = noc_error(im->log, NOC_ERR_IO, "%s: profile %.300s: %s%s", place, name, why,
                            slash || strchr(name, '.') ? "" : ", and no built-in one is called so");
-    else if (!(*profile = city_profiles_read(im->profiles, path, slash ? slash + 1 : name)))
-        status = im->scene->no_memory ? NOC_ERR_MEMORY : NOC_ERR_FORMAT; /* said, with the file's name */
+    else
+        status = city_profiles_read(im->profiles, path, slash ? slash + 1 : name, profile);
     free(path);
     return status;
 }
