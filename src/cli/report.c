@@ -77,6 +77,8 @@ static void add_totals(meta_text *meta, const noc_report *report) {
     } rows[] = { { "lamps-mapped", t.lamps_mapped },
                  { "lamps-inferred", t.lamps_inferred },
                  { "roads-drawn", t.roads_drawn },
+                 { "images", t.images },
+                 { "images-reduced", t.images_reduced },
                  { "lamps-dropped", t.lamps_dropped },
                  { "lamps-moved", t.lamps_moved },
                  { "lamps-repeated", t.lamps_repeated },
@@ -362,6 +364,9 @@ static void print_lamps(const noc_report *report, const noc_import_params *impor
     if (t.tracks || t.cars)
         printf("  cars      %s along %s, %s along roads of maps\n", noc_text_count(a, t.cars - t.road_cars),
                noc_text_many(b, t.tracks, "track"), noc_text_count(c, t.road_cars));
+    if (t.images)
+        printf("  images    %s on surfaces, %s of them reduced to fit into --texture-memory\n",
+               noc_text_count(a, t.images), noc_text_count(b, t.images_reduced));
     if (t.roads_drawn)
         printf("  roads     %s of maps\n", noc_text_count(a, t.roads_drawn));
     if (*t.profiles)
