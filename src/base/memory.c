@@ -100,10 +100,7 @@ void *noc_alloc_pages(size_t size) {
     if (noc_allocation_refused())
         return NULL;
     void *pages = mmap(NULL, size ? size : 1, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (pages == MAP_FAILED)
-        return NULL;
-    madvise(pages, size, MADV_HUGEPAGE); /* fewer faults; where there are none, small ones do */
-    return pages;
+    return pages == MAP_FAILED ? NULL : pages;
 }
 
 void noc_free_pages(void *pages, size_t size) {
