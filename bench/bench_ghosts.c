@@ -1,7 +1,7 @@
 /* How soon a picture forgets a car that vanishes, and sees one that appears: frames, without a mean over them, until
  * what the car's lamps light is within 5 % of a converged picture of the new state, and what is off in the first ones.
  *
- *   bench_ghosts [SCENE [WIDTH HEIGHT [AHEAD [RUNS]]]]     default: city 240 135 14 6
+ *   bench_ghosts [SCENE [WIDTH HEIGHT [AHEAD [RUNS [ROW]]]]]     default: city 240 135 14 6, all rows
  *
  * SCENE as bench_scene has it. The car stands AHEAD metres before its street camera and looks away from it; the bench's
  * camera hangs behind the car and looks at what it lights. Compared are the pixels that the car changes by a quarter or
@@ -202,8 +202,11 @@ int main(int argc, char **argv) {
     ok = ok && converge(&b, false, b.without) && converge(&b, true, b.with) && find_mask(&b);
     printf("# until within 5 %%, error of the mean in frames 1 to %d, of blocks in those, and of blocks in the end\n",
            SHOWN);
+    size_t only = argc > 6 ? (size_t)atoi(argv[6]) : sizeof(rows) / sizeof(*rows);
     for (size_t i = 0; i < sizeof(rows) / sizeof(*rows) && ok; i++)
         for (int appears = 1; appears >= 0 && ok; appears--) {
+            if (only < sizeof(rows) / sizeof(*rows) && i != only)
+                continue;
             if (rows[i].interactive)
                 noc_render_use_preset(&b.params, NOC_PRESET_INTERACTIVE);
             else

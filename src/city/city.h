@@ -5,6 +5,10 @@
 #include "geo/geo.h"
 #include <nocturne/import.h>
 
+/* A street of the built-in city, whose params are within their rows: number i from 0 on, local metres. Its texts and
+ * points are the arena's. false: there is none of that number, or (arena->refused) memory was refused. */
+bool city_builtin_street(const noc_city_params *params, size_t i, noc_arena *arena, geo_road *street);
+
 /* Distributions that a scene's lamps have. file: the user's own for all lamps, NULL: built-in ones. NULL after an
  * error, which *status gets. */
 typedef struct city_profiles city_profiles;

@@ -197,6 +197,27 @@ static void test_bridge(void **state) {
     }
 }
 
+/* The built-in city has some too, in its streets, and none unless they are asked for. */
+static void test_builtin(void **state) {
+    static const char *const inputs[] = { "builtin:city" };
+    noc_import_params p = noc_import_default_params();
+    noc_builtin_params small = noc_builtin_default_params();
+    small.city.size = 300;
+    p.builtin = &small;
+    for (int on = 0; on < 2; on++) {
+        p.traffic = on ? NOC_SWITCH_ON : NOC_SWITCH_AUTO;
+        noc_scene_destroy(scene);
+        scene = noc_scene_create(NULL);
+        assert_int_equal(noc_scene_load(scene, inputs, 1, &p, NULL), NOC_OK);
+        assert_true(on ? scene->cars.len > 10 : !scene->cars.len);
+        for (size_t i = 0; i < scene->cars.len; i++) {
+            const float *m = scene->instances.data[scene->cars.data[i].instance].transform;
+            double z;
+            assert_true(noc_scene_highest(scene, 1u << NOC_CLASS_ROAD, m[3], m[7], &z) && fabs(m[11] - z) < .02);
+        }
+    }
+}
+
 static int finish(void **state) {
     noc_scene_destroy(scene);
     return 0;
@@ -205,6 +226,7 @@ static int finish(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_lanes),    cmocka_unit_test(test_more_lanes),
                                         cmocka_unit_test(test_chain),    cmocka_unit_test(test_order),
-                                        cmocka_unit_test(test_left_out), cmocka_unit_test(test_bridge) };
+                                        cmocka_unit_test(test_left_out), cmocka_unit_test(test_bridge),
+                                        cmocka_unit_test(test_builtin) };
     return cmocka_run_group_tests(tests, NULL, finish);
 }

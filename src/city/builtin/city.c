@@ -305,6 +305,13 @@ static void belt(town *t) {
     town_flush(t, "belt");
 }
 
+void town_plan(town *t, const noc_city_params *params) {
+    t->params = *params;
+    t->half = 0.5 * params->size - BELT;
+    axis_make(t, 0, false);
+    axis_make(t, 1, t->half > 120);
+}
+
 noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dress)(town *t)) {
     if (noc_option_check(noc_city_options(), params, "city", scene->log))
         return NOC_ERR_ARGUMENT;
@@ -314,10 +321,7 @@ noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dr
     if (!t)
         return noc_scene_out_of_memory(scene);
     t->scene = scene;
-    t->params = *params;
-    t->half = 0.5 * params->size - BELT;
-    axis_make(t, 0, false);
-    axis_make(t, 1, t->half > 120);
+    town_plan(t, params);
     add_materials(t);
     t->lamps = noc_scene_group_named(scene, "lamps");
     t->windows = noc_scene_group_named(scene, "windows");

@@ -129,6 +129,8 @@ enum { LIGHT_SODIUM, LIGHT_CANDLE, LIGHT_WARM, LIGHT_WHITE, LIGHT_NEUTRAL, LIGHT
 /* Builds the city into the scene; dress, where not NULL, adds to it when all else is there. */
 noc_status town_build(noc_scene *scene, const noc_city_params *params, void (*dress)(town *t));
 
+/* Streets and blocks, of an empty town. params are within their rows. */
+void town_plan(town *t, const noc_city_params *params);
 vec2 town_warp(const town *t, vec2 plan); /* plan to world */
 
 /* Corners counter-clockwise seen from outside. */

@@ -116,6 +116,17 @@ static noc_status read_mesh(reading *r, noc_stream *stream, remote_result *resul
     return status;
 }
 
+/* The streets of the built-in city are roads, for cars. */
+static noc_status keep_streets(importer *im, const input *in) {
+    const noc_city_params defaults = noc_city_default_params();
+    const noc_city_params *params = im->params->builtin ? &im->params->builtin->city : &defaults;
+    geo_road street;
+    for (size_t i = 0; city_builtin_street(params, i, &im->names, &street); i++)
+        if (!array_push(&im->roads, street))
+            return noc_no_memory(im->log, in->path);
+    return im->names.refused ? noc_no_memory(im->log, in->path) : NOC_OK;
+}
+
 static noc_status read_builtin(importer *im, input *in) {
     double start = noc_wall_seconds();
     size_t triangles = im->scene->indices.len / 3, lights = im->scene->lights.len;
@@ -126,6 +137,8 @@ static noc_status read_builtin(importer *im, input *in) {
     if (progress->update && !progress->update(progress->user, what, 0))
         return NOC_ERR_CANCELLED;
     noc_status status = noc_scene_add_builtin(im->scene, name, im->params->builtin);
+    if (!status && !strcmp(name, "city") && im->params->traffic == NOC_SWITCH_ON)
+        status = keep_streets(im, in);
     in->file.format = "built-in scene";
     in->file.seconds = noc_wall_seconds() - start;
     in->file.triangles = im->scene->indices.len / 3 - triangles;
