@@ -149,7 +149,7 @@ static noc_status road(void *ctx, const geo_road *r) {
     return NOC_OK;
 }
 
-static noc_status water(void *ctx, const geo_polygon *area) {
+static noc_status area_of(void *ctx, const geo_polygon *area) {
     fuzz_sink *s = ctx;
     const double *xyz = area->xyz;
     FUZZ_REQUIRE(!s->in_object && s->told && area->ring_count);
@@ -193,7 +193,7 @@ void fuzz_sink_start(fuzz_sink *s, noc_log *log) {
                           .lamp = lamp,
                           .footprint = footprint,
                           .road = road,
-                          .water = water,
+                          .area = area_of,
                           .track = track,
                           .progress = progress };
 }

@@ -75,6 +75,12 @@ bool city_roads_facing(const city_roads *roads, const double xy[2], double facin
 /* The nearest road with a name, whose middle is within 25 m; NULL: there is none. */
 const geo_road *city_roads_street(const city_roads *roads, const double xy[2]);
 
+/* Makes a surface of areas of maps (local metres, their z is not read), `lift` m over the ground that the scene has, of
+ * that class; nothing where there is no ground. Bounded in triangles; *made: how many. progress may be NULL;
+ * NOC_ERR_CANCELLED where it says so. */
+noc_status city_lay_area(noc_scene *scene, const geo_triangles *triangles, noc_class cls, double lift,
+                         const noc_progress *progress, size_t *made);
+
 /* What became of roads that were to be drawn. */
 typedef struct city_paved {
     size_t roads;   /* have a surface */

@@ -262,7 +262,8 @@ typedef struct geo_sink {
     noc_status (*footprint)(void *ctx, const geo_footprint *footprint); /* NULL: none is wanted */
     noc_status (*road)(void *ctx, const geo_road *road);                /* the same; those of a map come last */
     noc_status (*track)(void *ctx, const geo_track *track);
-    noc_status (*water)(void *ctx, const geo_polygon *area); /* with the roads: NULL where those are; z is of no use */
+    /* of a map: water, lawns, squares by their class; with the roads: NULL where those are; z is of no use */
+    noc_status (*area)(void *ctx, const geo_polygon *area);
     /* Of a file of points, at its end: how many there are, lamps or not, and its columns. May be NULL. */
     noc_status (*columns)(void *ctx, size_t points, const geo_column *columns, size_t count);
     /* Of a map, at its end. May be NULL. */

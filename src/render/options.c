@@ -129,7 +129,7 @@ static const noc_option import_options[] = {
     INT(P, terrain_triangles, "terrain-triangles", "City", 100, 20000000, "", "that a GeoTIFF may become"),
     BOOL(P, footprints, "footprints", "City", "outlines of buildings in maps become blocks where no model has one"),
     SWITCH(P, map_surfaces, "map-surfaces", "City",
-           "surfaces of roads and paths of maps; auto: with footprints, where no model has roads"),
+           "surfaces of roads and areas of maps; auto: with footprints, no roads of models"),
     REAL(P, building_height, "building-height", "City", 1, 500, "m", "height of such a block that tells none"),
     SWITCH(P, infer_lamps, "infer-lamps", "City",
            "place lamps by a rule: where no input holds any; on: on all lit roads without"),

@@ -185,6 +185,36 @@ static void left_out(void **state) {
     noc_scene_destroy(s);
 }
 
+/* An area is as large as it is, faces upwards whichever way it goes round, follows the ground and ends with it. */
+static void areas(void **state) {
+    (void)state;
+    size_t made;
+    for (int way = 0; way < 2; way++) {
+        const double ring[] = { -20, -10, 0, 15, -10, 0, 15, 12, 0, -20, 12, 0, -20, -10, 0 },
+                     back[] = { -20, -10, 0, -20, 12, 0, 15, 12, 0, 15, -10, 0, -20, -10, 0 };
+        const size_t size = 5;
+        geo_triangles t = { 0 };
+        assert_true(geo_triangulate(&(geo_polygon){ NOC_CLASS_GREEN, "a", 1, &size, way ? back : ring }, &t, NULL));
+        noc_scene *s = land(folded, 60);
+        assert_int_equal(city_lay_area(s, &t, NOC_CLASS_GREEN, 0.01, NULL, &made), NOC_OK);
+        assert_true(made > 100);
+        assert_true(fabs(area_of(s, NOC_CLASS_GREEN) - 35 * 22) < 0.1);
+        for (double x = -19; x < 15; x += 1.7)
+            for (double y = -9; y < 12; y += 1.3) {
+                double green, ground;
+                assert_true(top(s, NOC_CLASS_GREEN, x, y, &green) && top(s, NOC_CLASS_TERRAIN, x, y, &ground));
+                assert_true(fabs(green - ground) < 0.25); /* edges of 4 m over folds of 40 % */
+            }
+        noc_scene_destroy(s);
+        s = land(level, 10);
+        assert_int_equal(city_lay_area(s, &t, NOC_CLASS_WATER, 0.01, NULL, &made), NOC_OK);
+        double in = area_of(s, NOC_CLASS_WATER);
+        assert_true(in > 300 && in <= 400.1);
+        noc_scene_destroy(s);
+        geo_triangles_free(&t);
+    }
+}
+
 static bool stop(void *user, const char *what, double done) {
     (void)user;
     (void)what;
@@ -216,8 +246,13 @@ static void refused_and_cancelled(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(straight_road), cmocka_unit_test(bends),    cmocka_unit_test(folds),
-        cmocka_unit_test(crossings),     cmocka_unit_test(left_out), cmocka_unit_test(refused_and_cancelled),
+        cmocka_unit_test(straight_road),
+        cmocka_unit_test(bends),
+        cmocka_unit_test(folds),
+        cmocka_unit_test(crossings),
+        cmocka_unit_test(areas),
+        cmocka_unit_test(left_out),
+        cmocka_unit_test(refused_and_cancelled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -301,7 +301,11 @@ static size_t of_class(noc_class cls) {
     return info.triangles_by_class[cls];
 }
 
-/* Roads of a map have surfaces where its buildings are drawn, and lamps stand on them; else where that is asked for. */
+#define AREA(id, key, value)                                                                                           \
+    "<way id='" id "'><nd ref='4'/><nd ref='5'/><nd ref='7'/><nd ref='4'/><tag k='" key "' v='" value "'/></way>"
+
+/* Roads, water and lawns of a map have surfaces where its buildings are drawn, and lamps stand on them; else where that
+ * is asked for. */
 static void test_map_surfaces(void **state) {
     static const char osm[] =
         "<?xml version='1.0'?><osm version='0.6'>"
@@ -311,7 +315,8 @@ static void test_map_surfaces(void **state) {
         "<tag k='highway' v='street_lamp'/></node><node id='7' lat='48.1005' lon='11.5006'/>"
         "<way id='1'><nd ref='1'/><nd ref='2'/><nd ref='3'/><nd ref='1'/><tag k='building' v='yes'/></way>"
         "<way id='2'><nd ref='4'/><nd ref='5'/><tag k='highway' v='residential'/></way>"
-        "<way id='3'><nd ref='5'/><nd ref='7'/><tag k='highway' v='footway'/></way></osm>";
+        "<way id='3'><nd ref='5'/><nd ref='7'/><tag k='highway' v='footway'/></way>" AREA("4", "natural", "water")
+            AREA("5", "leisure", "park") AREA("6", "landuse", "construction") "</osm>";
     const char *path = write_file("streets.osm", osm);
     noc_report_totals t;
     for (int wanted = NOC_SWITCH_OFF; wanted <= NOC_SWITCH_AUTO; wanted++)
@@ -323,6 +328,8 @@ static void test_map_surfaces(void **state) {
             assert_int_equal(t.roads_drawn, drawn ? 2 : 0);
             assert_int_equal(of_class(NOC_CLASS_ROAD) > 0, drawn);
             assert_int_equal(of_class(NOC_CLASS_SIDEWALK) > 0, drawn);
+            assert_int_equal(of_class(NOC_CLASS_WATER) > 0, drawn);
+            assert_int_equal(of_class(NOC_CLASS_GREEN) > 0, drawn);
             assert_int_equal(t.lamps_mapped, 1);
         }
     surfaces = NOC_SWITCH_AUTO;

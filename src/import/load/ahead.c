@@ -17,7 +17,7 @@ typedef struct ahead_event {
         AHEAD_LAMP,
         AHEAD_FOOTPRINT,
         AHEAD_ROAD,
-        AHEAD_WATER,
+        AHEAD_AREA,
         AHEAD_TRACK
     } kind;
     source_crs *source;
@@ -50,7 +50,7 @@ static noc_status replay(struct look_ahead *a, const ahead_event *e) {
     case AHEAD_END: return a->sink.end_object(a->sink.ctx);
     case AHEAD_FOOTPRINT: return a->sink.footprint(a->sink.ctx, &e->u.footprint);
     case AHEAD_ROAD: return a->sink.road(a->sink.ctx, &e->u.road);
-    case AHEAD_WATER: return a->sink.water(a->sink.ctx, &e->u.polygon);
+    case AHEAD_AREA: return a->sink.area(a->sink.ctx, &e->u.polygon);
     case AHEAD_TRACK: return a->sink.track(a->sink.ctx, &e->u.track);
     case AHEAD_LAMP: break;
     }
@@ -169,12 +169,12 @@ static noc_status on_polygon(void *ctx, const geo_polygon *polygon) {
                       : keep_polygon(a, (ahead_event){ .kind = AHEAD_POLYGON, .u.polygon = *polygon });
 }
 
-static noc_status on_water(void *ctx, const geo_polygon *area) {
+static noc_status on_area(void *ctx, const geo_polygon *area) {
     struct look_ahead *a = ctx;
     if (a->passing)
-        return a->sink.water(a->sink.ctx, area);
+        return a->sink.area(a->sink.ctx, area);
     a->in_object = false;
-    return keep_polygon(a, (ahead_event){ .kind = AHEAD_WATER, .u.polygon = *area });
+    return keep_polygon(a, (ahead_event){ .kind = AHEAD_AREA, .u.polygon = *area });
 }
 
 static noc_status on_lamp(void *ctx, const geo_lamp *lamp) {
@@ -277,7 +277,7 @@ struct look_ahead *ahead_create(reading *r, geo_sink *sink) {
     sink->lamp = on_lamp;
     sink->footprint = a->sink.footprint ? on_footprint : NULL;
     sink->road = a->sink.road ? on_road : NULL;
-    sink->water = a->sink.water ? on_water : NULL;
+    sink->area = a->sink.area ? on_area : NULL;
     sink->track = on_track;
     sink->columns = on_columns;
     sink->features = on_features;

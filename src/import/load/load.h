@@ -188,7 +188,8 @@ typedef struct importer {
     NOC_ARRAY(geo_road) roads; /* local metres; texts and coordinates in importer.names */
     noc_map road_places;       /* of those, by which a second one is told */
     NOC_ARRAY(pending_track) tracks;
-    geo_triangles water; /* of maps that are read for their roads; local metres, z of no use */
+    geo_triangles green, squares, lots; /* areas of maps that are drawn: lawns, pavements, roads; as water */
+    geo_triangles water;                /* of maps that are read for their roads; local metres, z of no use */
     NOC_ARRAY(pending_lamp) lamps;
     size_t lamp_looks;           /* lamps that repeat_lamps compared: for tests */
     NOC_ARRAY(given_place) lost; /* lamps that have no place in the scene's CRS */
@@ -376,7 +377,9 @@ noc_status footprints_stand(importer *im);
 /* roads.c: of maps. */
 bool roads_wanted(const importer *im);
 noc_status road_keep(importer *im, input *in, const geo_road *road);
-/* Surfaces of them, once the ground is there, where params want those. */
+/* Where areas of a class are kept; NULL: they are of no use. */
+geo_triangles *area_kept(importer *im, noc_class cls);
+/* Surfaces of roads and areas, once the ground is there, where params want those. */
 noc_status roads_pave(importer *im);
 
 /* body.c: the user's own body for lamps becomes a model of the scene. */

@@ -79,13 +79,52 @@ static void tell_paved(const importer *im, const city_paved *p) {
         noc_warn(im->log, "%zu roads of maps have no surface: they are too many, or too long", p->too_many);
 }
 
+geo_triangles *area_kept(importer *im, noc_class cls) {
+    if (cls == NOC_CLASS_WATER)
+        return &im->water;
+    if (!surfaces_wanted(im->params))
+        return NULL;
+    return cls == NOC_CLASS_GREEN      ? &im->green
+           : cls == NOC_CLASS_SIDEWALK ? &im->squares
+           : cls == NOC_CLASS_ROAD     ? &im->lots
+                                       : NULL;
+}
+
+/* One above the other, and roads above all; heights of the ground that they lie on come to that. */
+static noc_status lay_areas(importer *im, size_t *made) {
+    const struct {
+        const geo_triangles *triangles;
+        noc_class cls;
+        double lift; /* m */
+    } rows[] = { { &im->water, NOC_CLASS_WATER, 0.004 },
+                 { &im->green, NOC_CLASS_GREEN, 0.004 },
+                 { &im->lots, NOC_CLASS_ROAD, 0.004 },
+                 { &im->squares, NOC_CLASS_SIDEWALK, 0.004 } };
+    noc_status status = NOC_OK;
+    *made = 0;
+    for (size_t i = 0; i < NOC_COUNT(rows) && !status; i++) {
+        size_t count;
+        status = city_lay_area(im->scene, rows[i].triangles, rows[i].cls, rows[i].lift, &(noc_progress){ update, im },
+                               &count);
+        *made += status ? 0 : count;
+    }
+    return status;
+}
+
 noc_status roads_pave(importer *im) {
     city_paved paved;
     bool own = im->has_roads && im->params->map_surfaces != NOC_SWITCH_ON;
-    if (!surfaces_wanted(im->params) || own || !im->roads.len)
+    if (!surfaces_wanted(im->params) || own)
         return NOC_OK;
-    noc_status status =
-        city_pave_roads(im->scene, im->roads.data, im->roads.len, &(noc_progress){ update, im }, &paved);
+    size_t made;
+    noc_status status = lay_areas(im, &made);
+    if (status)
+        return status;
+    if (made)
+        noc_info(im->log, "water, lawns, car parks and squares of maps have surfaces of %zu triangles", made);
+    if (!im->roads.len)
+        return NOC_OK;
+    status = city_pave_roads(im->scene, im->roads.data, im->roads.len, &(noc_progress){ update, im }, &paved);
     if (status)
         return status;
     im->report->roads_drawn = paved.roads;

@@ -291,7 +291,7 @@ static noc_status on_track(void *ctx, const geo_track *track) {
     return track_keep(r->im, r->in, r->index, &local);
 }
 
-static noc_status on_water(void *ctx, const geo_polygon *area) {
+static noc_status on_area(void *ctx, const geo_polygon *area) {
     reading *r = ctx;
     size_t count = 0;
     for (size_t i = 0; i < area->ring_count; i++)
@@ -308,8 +308,11 @@ static noc_status on_water(void *ctx, const geo_polygon *area) {
         return status;
     geo_polygon local = *area;
     local.xyz = r->scratch.data;
-    geo_triangulate(&local, &r->im->water, NULL); /* nothing of it is drawn, so nothing of it is told */
-    return r->im->water.no_memory ? noc_no_memory(r->log, r->in->path) : NOC_OK;
+    geo_triangles *to = area_kept(r->im, area->cls);
+    if (!to)
+        return NOC_OK;
+    geo_triangulate(&local, to, NULL); /* what is wrong with it is little of a city: nothing of it is told */
+    return to->no_memory ? noc_no_memory(r->log, r->in->path) : NOC_OK;
 }
 
 /* Of a file that has been read. */
@@ -390,7 +393,7 @@ geo_sink sink_create(reading *r) {
                        .footprint = r->im->params->footprints ? on_footprint : NULL,
                        .road = roads_wanted(r->im) || r->in->named_tracks ? on_road : NULL,
                        .track = on_track,
-                       .water = roads_wanted(r->im) ? on_water : NULL,
+                       .area = roads_wanted(r->im) ? on_area : NULL,
                        .columns = on_columns,
                        .features = on_features,
                        .progress = on_progress,

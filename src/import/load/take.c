@@ -73,7 +73,8 @@ static double area_from_above(const part_surface *s) {
 noc_status take_affords(importer *im, const input *in, size_t more) {
     size_t scene = noc_scene_bytes(im->scene) + more, made = scene - NOC_MIN(scene, im->scene_before);
     size_t waiting = im->lamps.cap * sizeof(*im->lamps.data) + im->footprints.cap * sizeof(*im->footprints.data) +
-                     im->roads.cap * sizeof(*im->roads.data) + im->water.xyz.cap * sizeof(double) +
+                     im->roads.cap * sizeof(*im->roads.data) +
+                     (im->water.xyz.cap + im->green.xyz.cap + im->squares.xyz.cap + im->lots.xyz.cap) * sizeof(double) +
                      im->lost.cap * sizeof(*im->lost.data) + im->names.bytes +
                      im->records.list.cap * sizeof(*im->records.list.data);
     import_budget memory = { .memory = im->memory }, growth = { INFINITY, 0, (double)in->bytes };
@@ -197,6 +198,9 @@ void take_destroy(importer *im) {
     map_free(&im->road_places);
     array_free(&im->tracks);
     geo_triangles_free(&im->water);
+    geo_triangles_free(&im->green);
+    geo_triangles_free(&im->squares);
+    geo_triangles_free(&im->lots);
     array_free(&im->heights);
     array_free(&im->storeys);
     array_free(&im->lost);

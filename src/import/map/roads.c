@@ -168,11 +168,37 @@ bool road_read(const lamp_tag *tags, size_t count, geo_road *road) {
     return true;
 }
 
-bool water_read(const lamp_tag *tags, size_t count) {
+static bool is_water(const lamp_tag *tags, size_t count) {
     static const char *const ways[] = { "riverbank", "dock", "river", "canal", NULL };
     static const char *const uses[] = { "basin", "reservoir", NULL };
     const char *natural = value_of(tags, count, "natural");
-    bool water = (natural && !strcmp(natural, "water")) || is(value_of(tags, count, "waterway"), ways) ||
-                 is(value_of(tags, count, "landuse"), uses);
-    return water && !has(tags, count, "tunnel") && !has(tags, count, "covered") && !has(tags, count, "intermittent");
+    return (natural && !strcmp(natural, "water")) || is(value_of(tags, count, "waterway"), ways) ||
+           is(value_of(tags, count, "landuse"), uses);
+}
+
+static bool is_green(const lamp_tag *tags, size_t count) {
+    static const char *const uses[] = { "grass",   "meadow",   "village_green", "recreation_ground", "forest",
+                                        "orchard", "cemetery", "allotments",    "flowerbed",         NULL };
+    static const char *const natural[] = { "grassland", "wood", "scrub", "heath", NULL };
+    static const char *const leisure[] = { "park", "garden", "golf_course", "common", NULL };
+    return is(value_of(tags, count, "landuse"), uses) || is(value_of(tags, count, "natural"), natural) ||
+           is(value_of(tags, count, "leisure"), leisure);
+}
+
+noc_class area_class(const lamp_tag *tags, size_t count) {
+    static const char *const on_foot[] = { "pedestrian", "footway", "path", "cycleway", "steps", NULL };
+    static const char *const under[] = { "underground", "multi-storey", NULL };
+    const char *surface = value_of(tags, count, "area:highway"), *highway = value_of(tags, count, "highway");
+    const char *amenity = value_of(tags, count, "amenity"), *place = value_of(tags, count, "place");
+    if (has(tags, count, "tunnel") || has(tags, count, "covered") || has(tags, count, "intermittent"))
+        return NOC_CLASS_OTHER;
+    if (is_water(tags, count))
+        return NOC_CLASS_WATER;
+    if (surface)
+        return is(surface, on_foot) ? NOC_CLASS_SIDEWALK : NOC_CLASS_ROAD;
+    if (is(highway, on_foot) || (place && !strcmp(place, "square")))
+        return NOC_CLASS_SIDEWALK;
+    if (amenity && !strcmp(amenity, "parking") && !is(value_of(tags, count, "parking"), under))
+        return NOC_CLASS_ROAD;
+    return is_green(tags, count) ? NOC_CLASS_GREEN : NOC_CLASS_OTHER;
 }

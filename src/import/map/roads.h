@@ -7,7 +7,7 @@
 /* Do the tags make a line a road or a railway in use? Then fills all of it but id, point_count and xyz. name points
  * into tags. */
 bool road_read(const lamp_tag *tags, size_t count, geo_road *road);
-/* Do the tags make an area open water? */
-bool water_read(const lamp_tag *tags, size_t count);
+/* The class that the tags make of an area: water, green, sidewalk, road; NOC_CLASS_OTHER: none of them. */
+noc_class area_class(const lamp_tag *tags, size_t count);
 
 #endif

@@ -1,4 +1,4 @@
-/* Shapes of maps: areas that are buildings or water, lines that are roads. */
+/* Shapes of maps: areas that are buildings, water, lawns or squares, lines that are roads. */
 #include "import/map/features.h"
 #include "import/map/outlines.h"
 #include "import/map/roads.h"
@@ -42,42 +42,44 @@ static noc_status take_polygon(map_reading *m, OGRGeometryH polygon) {
     return NOC_OK;
 }
 
-/* Hands on a polygon of a building, or, where that is NULL, of water. */
-static noc_status emit_polygon(map_reading *m, OGRGeometryH polygon, geo_footprint *footprint) {
+/* Hands on a polygon of a building, or, where that is NULL, an area of that class. */
+static noc_status emit_polygon(map_reading *m, OGRGeometryH polygon, geo_footprint *footprint, noc_class cls) {
     const geo_sink *sink = m->writer.sink;
     noc_status status = take_polygon(m, polygon);
     if (status || !m->rings.len)
         return status;
-    const geo_polygon water = { NOC_CLASS_WATER, m->tags.id, m->rings.len, m->rings.data, m->xyz.data };
+    const geo_polygon area = { cls, m->tags.id, m->rings.len, m->rings.data, m->xyz.data };
     if (!footprint)
-        return sink->water(sink->ctx, &water);
+        return sink->area(sink->ctx, &area);
     footprint->ring_count = m->rings.len;
     footprint->ring_size = m->rings.data;
     footprint->xyz = m->xyz.data;
     return sink->footprint(sink->ctx, footprint);
 }
 
-static noc_status emit_area(map_reading *m, OGRGeometryH g, OGRwkbGeometryType type, geo_footprint *footprint) {
+static noc_status emit_area(map_reading *m, OGRGeometryH g, OGRwkbGeometryType type, geo_footprint *footprint,
+                            noc_class cls) {
     noc_status status = NOC_OK;
     if (type == wkbPolygon)
-        return emit_polygon(m, g, footprint);
+        return emit_polygon(m, g, footprint, cls);
     for (int i = 0; i < OGR_G_GetGeometryCount(g) && !status; i++)
-        status = emit_polygon(m, OGR_G_GetGeometryRef(g, i), footprint);
+        status = emit_polygon(m, OGR_G_GetGeometryRef(g, i), footprint, cls);
     return status;
 }
 
 static noc_status read_area(map_reading *m, OGRGeometryH g, OGRwkbGeometryType type, bool *is) {
     const geo_sink *sink = m->writer.sink;
     int verdict = outline_verdict(m->tags.tags.data, m->tags.tags.len);
-    if (verdict < 0 && sink->water && water_read(m->tags.tags.data, m->tags.tags.len))
-        return emit_area(m, g, type, NULL);
+    noc_class cls = verdict < 0 && sink->area ? area_class(m->tags.tags.data, m->tags.tags.len) : NOC_CLASS_OTHER;
+    if (cls != NOC_CLASS_OTHER)
+        return emit_area(m, g, type, NULL, cls);
     if (!sink->footprint || verdict == 0 || (verdict < 0 && !m->building_layer))
         return NOC_OK;
     *is = true;
     geo_footprint footprint = { .id = m->tags.id };
     outline_read(m->tags.tags.data, m->tags.tags.len, &footprint);
     m->writer.footprints++;
-    return emit_area(m, g, type, &footprint);
+    return emit_area(m, g, type, &footprint, NOC_CLASS_OTHER);
 }
 
 /* ---- roads ---- */
@@ -137,7 +139,7 @@ noc_status map_read_shape(map_reading *m, OGRFeatureH feature, OGRFeatureDefnH d
          line = type == wkbLineString || type == wkbMultiLineString;
     *is = false;
     const geo_sink *sink = m->writer.sink;
-    bool wanted = (area && (sink->footprint || sink->water)) || (line && sink->road);
+    bool wanted = (area && (sink->footprint || sink->area)) || (line && sink->road);
     if (!wanted || OGR_G_IsEmpty(g))
         return NOC_OK;
     if (!map_collect_fields(feature, defn, false, &m->tags))

@@ -60,14 +60,15 @@ static CPLHTTPResult *refuse_fetch(const char *url, CSLConstList options, GDALPr
     return none;
 }
 
-static const char osm_config[] = "closed_ways_are_polygons=building,natural,landuse,waterway\n"
-                                 "attribute_name_laundering=no\n"
-                                 "report_all_nodes=no\nreport_all_ways=no\n"
-                                 "[points]\nosm_id=yes\nall_tags=yes\n"
-                                 "[lines]\nosm_id=yes\nall_tags=yes\n"
-                                 "[multipolygons]\nosm_id=yes\nall_tags=yes\n"
-                                 "[multilinestrings]\nosm_id=yes\nall_tags=yes\n"
-                                 "[other_relations]\nosm_id=yes\nall_tags=yes\n";
+static const char osm_config[] =
+    "closed_ways_are_polygons=building,natural,landuse,waterway,leisure,place,amenity,area:highway\n"
+    "attribute_name_laundering=no\n"
+    "report_all_nodes=no\nreport_all_ways=no\n"
+    "[points]\nosm_id=yes\nall_tags=yes\n"
+    "[lines]\nosm_id=yes\nall_tags=yes\n"
+    "[multipolygons]\nosm_id=yes\nall_tags=yes\n"
+    "[multilinestrings]\nosm_id=yes\nall_tags=yes\n"
+    "[other_relations]\nosm_id=yes\nall_tags=yes\n";
 #define OSM_CONFIG_PATH "/vsimem/nocturne/osmconf.ini"
 
 static pthread_once_t gdal_once = PTHREAD_ONCE_INIT;

@@ -44,7 +44,7 @@ enum {
     REMOTE_OBJECT_END,
     REMOTE_FOOTPRINT, /* remote_footprint, text: id, points of each ring, their coordinates */
     REMOTE_ROAD,      /* geo_road, texts: id, name, coordinates */
-    REMOTE_WATER,     /* count of rings, text: id, points of each ring, their coordinates */
+    REMOTE_AREA,      /* count of rings, class, text: id, points of each ring, their coordinates */
 };
 
 typedef struct remote_head {

@@ -22,7 +22,7 @@ static void emit(serving *s, uint32_t kind) {
         _exit(REMOTE_NO_MEMORY);
     bool waits = kind == REMOTE_LAMP || kind == REMOTE_MATERIAL || kind == REMOTE_ISSUE || kind == REMOTE_CRS ||
                  kind == REMOTE_OBJECT || kind == REMOTE_POLYGON || kind == REMOTE_OBJECT_END ||
-                 kind == REMOTE_FOOTPRINT || kind == REMOTE_ROAD || kind == REMOTE_WATER;
+                 kind == REMOTE_FOOTPRINT || kind == REMOTE_ROAD || kind == REMOTE_AREA;
     if ((!waits || s->batch.bytes.len > BATCH) && !remote_send(REMOTE_FD, &s->batch))
         _exit(1); /* whoever asked is gone: so are we */
 }
@@ -94,13 +94,13 @@ static noc_status on_road(void *ctx, const geo_road *road) {
     return NOC_OK;
 }
 
-static noc_status on_water(void *ctx, const geo_polygon *area) {
+static noc_status on_area(void *ctx, const geo_polygon *area) {
     serving *s = ctx;
-    uint64_t rings = area->ring_count;
-    remote_put(&s->out, &rings, sizeof(rings));
+    uint64_t head[2] = { area->ring_count, (uint64_t)area->cls };
+    remote_put(&s->out, head, sizeof(head));
     remote_put_text(&s->out, area->id);
     put_rings(s, area->ring_count, area->ring_size, area->xyz);
-    emit(s, REMOTE_WATER);
+    emit(s, REMOTE_AREA);
     return NOC_OK;
 }
 
@@ -202,7 +202,7 @@ static void serve(serving *s) {
                       .lamp = on_lamp,
                       .footprint = s->asked.sink.footprints ? on_footprint : NULL,
                       .road = s->asked.sink.roads ? on_road : NULL,
-                      .water = s->asked.sink.roads ? on_water : NULL,
+                      .area = s->asked.sink.roads ? on_area : NULL,
                       .progress = on_progress,
                       .columns = on_columns,
                       .features = on_features,

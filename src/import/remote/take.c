@@ -141,15 +141,15 @@ static noc_status take_road(remote_taker *t, remote_record *one) {
     return t->sink->road(t->sink->ctx, &road);
 }
 
-static noc_status take_water(remote_taker *t, remote_record *one) {
-    uint64_t rings = 0;
-    remote_get(one, &rings, sizeof(rings));
+static noc_status take_area(remote_taker *t, remote_record *one) {
+    uint64_t head[2] = { 0, 0 };
+    remote_get(one, head, sizeof(head));
     const char *id = remote_get_text(one);
-    if (one->bad || t->in_object || t->parts || !t->sink->water)
+    if (one->bad || t->in_object || t->parts || !t->sink->area || head[1] >= NOC_CLASS_COUNT)
         return garbled(t);
-    noc_status status = take_rings(t, one, rings);
-    const geo_polygon area = { NOC_CLASS_WATER, id, t->rings.len, t->rings.data, t->xyz.data };
-    return status ? status : t->sink->water(t->sink->ctx, &area);
+    noc_status status = take_rings(t, one, head[0]);
+    const geo_polygon area = { (noc_class)head[1], id, t->rings.len, t->rings.data, t->xyz.data };
+    return status ? status : t->sink->area(t->sink->ctx, &area);
 }
 
 static noc_status take_object_end(remote_taker *t) {
@@ -281,7 +281,7 @@ static noc_status take(remote_taker *t, uint32_t kind, remote_record *one) {
     case REMOTE_OBJECT_END: return take_object_end(t);
     case REMOTE_FOOTPRINT: return take_footprint(t, one);
     case REMOTE_ROAD: return take_road(t, one);
-    case REMOTE_WATER: return take_water(t, one);
+    case REMOTE_AREA: return take_area(t, one);
     case REMOTE_END: return take_end(t, one);
     default: return garbled(t);
     }
