@@ -218,6 +218,32 @@ static void test_builtin(void **state) {
     }
 }
 
+/* Thousands of times across the city: too much for a track, and for a road's lanes. */
+static void test_too_long(void **state) {
+    enum { POINTS = 6200 };
+    static double xyz[POINTS][3];
+    const size_t part = POINTS;
+    const geo_track track = { "track", 1, &part, xyz[0], NULL };
+    const char *reason = "", *examples;
+    bool repaired;
+    size_t cars, count;
+    for (size_t i = 0; i < POINTS; i++)
+        memcpy(xyz[i], (double[]){ i % 2 ? 990 : -990, 0.1 * (double)i - 310, NAN }, sizeof(xyz[i]));
+    make_plain();
+    geo_issues *issues = geo_issues_create();
+    city_traffic *traffic = city_traffic_create(scene, &params);
+    assert_int_equal(city_traffic_follow(traffic, &track, issues, &cars), NOC_OK);
+    assert_int_equal(cars, 0);
+    assert_int_equal(geo_issues_count(issues), 1);
+    assert_true(geo_issues_get(issues, 0, &reason, &repaired, &count, &examples));
+    assert_string_equal(reason, "track too long to drive, or one too many");
+    city_traffic_destroy(traffic);
+    geo_issues_destroy(issues);
+    const geo_road road = road_of("way/1", xyz[0], POINTS);
+    assert_int_equal(drive_here(&road, 1), 0);
+    assert_int_equal(scene->stops.len, 0);
+}
+
 static int finish(void **state) {
     noc_scene_destroy(scene);
     return 0;
@@ -227,6 +253,6 @@ int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_lanes),    cmocka_unit_test(test_more_lanes),
                                         cmocka_unit_test(test_chain),    cmocka_unit_test(test_order),
                                         cmocka_unit_test(test_left_out), cmocka_unit_test(test_bridge),
-                                        cmocka_unit_test(test_builtin) };
+                                        cmocka_unit_test(test_builtin),  cmocka_unit_test(test_too_long) };
     return cmocka_run_group_tests(tests, NULL, finish);
 }

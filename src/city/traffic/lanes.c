@@ -64,6 +64,7 @@ typedef struct network {
     NOC_ARRAY(chain_point) points;
     route_maker route;
     size_t cars;
+    size_t too_long; /* lanes without cars */
     bool refused;
 } network;
 
@@ -273,6 +274,10 @@ static double trace(network *n, int lane) {
         memcpy(from, at, sizeof(from));
     }
     route_end_leg(&n->route);
+    if (n->route.too_long) {
+        route_clear(&n->route);
+        n->too_long++;
+    }
     return expected;
 }
 
@@ -334,6 +339,9 @@ noc_status city_traffic_roads(city_traffic *traffic, const geo_road *roads, size
         qsort(n.edges.data, n.edges.len, sizeof(edge), compare_edges);
     join_all(&n);
     noc_status status = n.refused ? noc_scene_out_of_memory(traffic_scene(traffic)) : drive_all(&n, progress);
+    if (n.too_long)
+        noc_warn(traffic_scene(traffic)->log, "%zu lanes of roads have no cars: they are too long, or too many",
+                 n.too_long);
     *cars = n.cars;
     array_free(&n.edges);
     array_free(&n.meetings);

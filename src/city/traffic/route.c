@@ -7,10 +7,12 @@
 #define SHORTEST 10.0 /* m of a leg that is worth driving */
 #define MARGIN 5.0    /* m outside of the city's extent */
 
+enum { MOST_STOPS = 2000000, MOST_IN_ALL = 20000000 }; /* of a route: 12000 km; of all tracks, and of all roads */
+
 void route_clear(route_maker *m) {
     m->stops.len = m->leg = m->groundless = 0;
     m->seconds = m->along = 0;
-    m->bridge = false;
+    m->bridge = m->too_long = false;
 }
 
 void route_free(route_maker *m) { array_free(&m->stops); }
@@ -28,15 +30,21 @@ static void push(route_maker *m, double x, double y, double seconds, double alon
         z = NAN;
     if (!array_push(&m->stops, (noc_scene_stop){ seconds, { (float)x, (float)y, (float)z }, (float)along }))
         m->refused = true;
+    m->made++;
 }
 
 void route_point(route_maker *m, const double xy[2], double seconds) {
+    if (m->too_long)
+        return;
     if (m->stops.len == m->leg) {
         m->along = 0;
         push(m, xy[0], xy[1], m->seconds, 0, false);
     } else {
         double from[2] = { m->xy[0], m->xy[1] }, length = hypot(xy[0] - from[0], xy[1] - from[1]);
-        int steps = (int)NOC_CLAMP(ceil(length / STEP), 1, 1e6);
+        int steps = (int)NOC_CLAMP(ceil(length / STEP), 1, MOST_STOPS);
+        m->too_long = m->stops.len + (size_t)steps > MOST_STOPS || m->made + (size_t)steps > MOST_IN_ALL;
+        if (m->too_long)
+            return;
         for (int i = 1; i <= steps && !m->refused; i++) {
             double t = (double)i / steps;
             push(m, from[0] + t * (xy[0] - from[0]), from[1] + t * (xy[1] - from[1]), m->seconds + t * seconds,

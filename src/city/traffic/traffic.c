@@ -104,6 +104,10 @@ noc_status city_traffic_follow(city_traffic *t, const geo_track *track, geo_issu
     make_route(t, track, timed, &jumps, &outside);
     if (t->route.refused)
         return noc_scene_out_of_memory(t->scene);
+    if (t->route.too_long) {
+        geo_issue(issues, GEO_SKIPPED, "track too long to drive, or one too many", track->id);
+        return NOC_OK;
+    }
     for (size_t i = 0; i < jumps; i++)
         geo_issue(issues, GEO_GUESSED, "points of a track too far apart for its times, where a car jumps", track->id);
     if (!t->route.stops.len) {

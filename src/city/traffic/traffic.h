@@ -33,12 +33,14 @@ noc_status traffic_failed(const city_traffic *traffic); /* the status of that */
 typedef struct route_maker {
     const noc_scene *scene;
     NOC_ARRAY(noc_scene_stop) stops;
+    size_t made;       /* stops of all routes */
     size_t leg;        /* first stop of the leg that is being made */
     double seconds;    /* when its last stop is reached */
     double xy[2];      /* of its last point, not rounded */
     double along;      /* m of it */
     bool bridge;       /* what comes does not lie on the ground: on a deck, or straight from where it left it */
     size_t groundless; /* legs that were dropped, for there is no ground under them */
+    bool too_long;     /* it has more stops than are kept, and some are missing */
     bool refused;      /* memory was; stays set */
 } route_maker;
 
