@@ -45,7 +45,7 @@ typedef struct placing {
     noc_scene *scene;
     geo_cells mapped;
     double reach; /* m: the largest spacing */
-    bool by_class, no_memory, cancelled;
+    bool by_class, no_memory, cancelled, too_many;
     NOC_ARRAY(double) sums; /* of the present way: its length up to each point */
     NOC_ARRAY(city_road_lamp) found;
 } placing;
@@ -215,7 +215,10 @@ static void along_way(placing *p, const geo_road *road) {
     uint32_t count = (uint32_t)(share >= 1 ? floor(share + .5) : chance < share);
     bool opposite = width > 1.5 * height, turns = !opposite && width > height;
     int side = side_of(road);
-    for (uint32_t i = 0; i < count && p->found.len < MOST_LAMPS; i++) {
+    for (uint32_t i = 0; i < count; i++) {
+        p->too_many = p->too_many || p->found.len >= MOST_LAMPS;
+        if (p->too_many)
+            return;
         double along = (i + .5) * length / count;
         uint64_t rank = (uint64_t)road->cls << 56 | mix(hash + i) >> 8;
         int here = turns && i % 2 ? -side : side;
@@ -297,6 +300,9 @@ noc_status city_road_lamps(noc_scene *scene, const city_roads *roads, const city
     array_free(&p.sums);
     if (!p.no_memory && !p.cancelled)
         thin_out(&p);
+    if (p.too_many && !p.no_memory && !p.cancelled)
+        noc_warn(scene->log, "roads of maps have no lamps beyond the first %d: --bbox takes less of the maps",
+                 MOST_LAMPS);
     if (!p.no_memory && !p.cancelled) {
         *lamps = p.found.data;
         *count = p.found.len;

@@ -356,6 +356,43 @@ static void facing(void **state) {
     end(&t);
 }
 
+static void on_message(void *user, noc_log_level level, const char *text) {
+    *(size_t *)user += level == NOC_LOG_WARN && strstr(text, "beyond the first 200000") != NULL;
+}
+
+/* More lamps than are kept are said. */
+static void too_many(void **state) {
+    enum { ROADS = 13 };
+    size_t warned = 0;
+    static geo_road roads[ROADS];
+    static double xyz[ROADS][6];
+    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = on_message, .user = &warned });
+    noc_scene *scene = noc_scene_create(log);
+    for (int i = 0; i < ROADS; i++) {
+        memcpy(xyz[i], (double[]){ 0, 1e3 * i, NAN, 199e3, 1e3 * i, NAN }, sizeof(xyz[i]));
+        roads[i] = (geo_road){ .id = "way",
+                               .name = "",
+                               .cls = GEO_ROAD_MINOR,
+                               .lit = GEO_LIT_YES,
+                               .width = 12,
+                               .speed = NAN,
+                               .point_count = 2,
+                               .xyz = xyz[i] };
+    }
+    for (size_t count = ROADS - 1; count <= ROADS; count++) {
+        city_roads *of = city_roads_create(roads, count);
+        city_road_lamp *lamps;
+        size_t found;
+        assert_int_equal(city_road_lamps(scene, of, &(city_road_params){ .height = 6 }, &lamps, &found), NOC_OK);
+        assert_true(count == ROADS ? found >= 200000 && found < 200002 : found > 190000 && found < 200000);
+        assert_int_equal(warned, count == ROADS);
+        free(lamps);
+        city_roads_destroy(of);
+    }
+    noc_scene_destroy(scene);
+    noc_log_destroy(log);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_side),    cmocka_unit_test(both_sides),
@@ -366,7 +403,7 @@ int main(void) {
         cmocka_unit_test(half_mapped), cmocka_unit_test(path_beside),
         cmocka_unit_test(buildings),   cmocka_unit_test(stable),
         cmocka_unit_test(asked),       cmocka_unit_test(odd),
-        cmocka_unit_test(facing),
+        cmocka_unit_test(facing),      cmocka_unit_test(too_many),
     };
     return cmocka_run_group_tests_name("city/road_lamps", tests, NULL, NULL);
 }
