@@ -181,8 +181,10 @@ static bool add_body(noc_scene *scene, int model, const shape *s, const int mate
 /* The passing beam, turned over for driving on the left: its number in the scene, 0 after reporting. */
 static int add_beam(noc_scene *scene, noc_driving_side side) {
     noc_profile *right = NULL, *left = NULL;
-    if (noc_profile_builtin(scene->log, "low-beam", &right))
+    if (noc_profile_builtin(NULL, "low-beam", &right)) { /* there is one of that name, so it is memory */
+        noc_scene_out_of_memory(scene);
         return 0;
+    }
     int number = 0;
     if (side == NOC_DRIVE_RIGHT) {
         number = noc_scene_add_profile(scene, right);
@@ -195,9 +197,9 @@ static int add_beam(noc_scene *scene, noc_driving_side side) {
             memcpy(cd + (size_t)i * row, info.cd + (size_t)((3 * info.c_count / 2 - i) % info.c_count) * row,
                    row * sizeof(*cd));
         const noc_profile_params p = { "low-beam", info.c_count, info.gamma_count, info.c, info.gamma, cd, 0 };
-        if (!cd)
+        if (!cd || noc_profile_create(NULL, &p, &left))
             noc_scene_out_of_memory(scene);
-        else if (!noc_profile_create(scene->log, &p, &left))
+        else
             number = noc_scene_add_profile(scene, left);
         free(cd);
     }

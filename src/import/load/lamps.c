@@ -330,6 +330,8 @@ static noc_status light_city(importer *im, const extent *e) {
                                 .dress = luminaires_dress_inferred,
                                 .dresser = im };
     city_body body;
+    if (scene->no_memory) /* for the ground, and said so: the body's scene would say it again */
+        return NOC_ERR_MEMORY;
     noc_status status = im->params->lamp_body ? body_load(im, im->params->lamp_body, &body) : NOC_OK;
     if (status)
         return status;
