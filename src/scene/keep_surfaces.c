@@ -169,6 +169,37 @@ static bool check_triangles(const void *ctx, size_t first, size_t end) {
     return ok;
 }
 
+/* Of a light that was added as one a mesh shows that alone; of others those that come and go with it. */
+static bool shows_its_own(const noc_scene *s, uint32_t mesh, uint32_t *shown_by) {
+    const noc_scene_mesh *m = &s->meshes.data[mesh];
+    const uint32_t *light = s->triangle_light.data + m->first_triangle, none = NOC_NO_LIGHT;
+    bool shape = light[0] != none && !(s->lights.data[light[0]].flags & NOC_LIGHT_OWNED);
+    for (uint32_t t = 0; t < m->triangle_count; t++) {
+        if (light[t] == none && !shape)
+            continue;
+        uint32_t flags = light[t] == none ? NOC_LIGHT_FREE : s->lights.data[light[t]].flags;
+        if (flags & (NOC_LIGHT_FREE | NOC_LIGHT_MOVES) || (shape ? light[t] != light[0] : !(flags & NOC_LIGHT_OWNED)) ||
+            (shown_by[light[t]] && shown_by[light[t]] != mesh + 1))
+            return false;
+        shown_by[light[t]] = mesh + 1;
+    }
+    return true;
+}
+
+/* Commits reserve room for what goes with an edit: they rely on it that no light is shown by two meshes. */
+static noc_status check_shown(noct_file *f, const noc_scene *s) {
+    uint32_t *shown_by = noc_calloc(s->lights.len, sizeof(*shown_by)); /* number of the mesh + 1 */
+    if (!shown_by)
+        return noct_no_memory(f);
+    for (uint32_t i = 0; i < s->meshes.len && !f->status; i++) {
+        const noc_scene_mesh *m = &s->meshes.data[i];
+        if (m->triangle_count && !m->removed && !m->model && !shows_its_own(s, i, shown_by))
+            noct_wrong(f, "mesh %u shows a light that is not its own", i);
+    }
+    free(shown_by);
+    return f->status;
+}
+
 noc_status noc_kept_meshes(noct_file *f, noc_scene *s) {
     size_t vertices, triangles, shown, walls;
     float *places = noct_array(f, "vertices", 3 * sizeof(float), &vertices);
@@ -189,6 +220,8 @@ noc_status noc_kept_meshes(noct_file *f, noc_scene *s) {
     triangle_check check = { s, noct_each(f, vertices, check_places, s) };
     if (!noct_each(f, triangles, check_triangles, &check))
         return noct_wrong(f, "a triangle has no corners, or shows a light that is none");
+    if (check_shown(f, s))
+        return f->status;
     return noct_each(f, walls, check_walls, verdicts) ? NOC_OK : noct_wrong(f, "the verdict on a wall is none");
 }
 

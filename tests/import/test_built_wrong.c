@@ -145,6 +145,45 @@ static void test_hostile(void **state) {
     free(b.data);
 }
 
+/* Meshes that show lights of others: an edit of such a scene would take out more than it has made room for. */
+static void test_shown(void **state) {
+    (void)state;
+    save_city();
+    bytes b = read_all();
+    const noct_head *head = (const noct_head *)b.data;
+    const noct_entry *e = (const noct_entry *)(b.data + sizeof(*head)), *end = e + head->sections;
+    while (e < end && strncmp(e->name, "shown", sizeof(e->name)))
+        e++;
+    assert_true(e < end);
+    uint32_t *shown = (uint32_t *)(void *)(b.data + e->offset), count = (uint32_t)(e->bytes / sizeof(*shown)), last = 0;
+    noc_scene *s = load_again(NULL);
+    size_t owned = 0, shape = count;
+    while (owned < s->lights.len &&
+           (s->lights.data[owned].flags & (NOC_LIGHT_OWNED | NOC_LIGHT_MOVES)) != NOC_LIGHT_OWNED)
+        owned++;
+    for (uint32_t t = count; t-- > 0;)
+        if (!s->meshes.data[noc_scene_mesh_of(s, t)].model) {
+            shape = shown[t] == NOC_LIGHT_SPHERE ? t : shape;
+            last = shown[t] == NOC_NO_LIGHT ? NOC_MAX(last, t) : last;
+        }
+    assert_true(owned < s->lights.len && shape < count && last);
+    noc_scene_destroy(s);
+    const struct {
+        size_t triangle;
+        uint32_t light;
+    } wrong[] = { { shape + 1, (uint32_t)owned }, /* goes with the sphere, and with its own mesh */
+                  { shape + 1, NOC_NO_LIGHT },
+                  { last, NOC_LIGHT_SPHERE } };
+    for (size_t i = 0; i < NOC_COUNT(wrong); i++) {
+        uint32_t before = shown[wrong[i].triangle];
+        shown[wrong[i].triangle] = wrong[i].light;
+        mend(b);
+        assert_refused_as(b, "shows a light that is not its own");
+        shown[wrong[i].triangle] = before;
+    }
+    free(b.data);
+}
+
 static void test_alone(void **state) {
     (void)state;
     save_city();
@@ -239,7 +278,7 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_damage), cmocka_unit_test(test_hostile),
-                                        cmocka_unit_test(test_alone), cmocka_unit_test(test_recipe),
-                                        cmocka_unit_test(test_memory) };
+                                        cmocka_unit_test(test_shown),  cmocka_unit_test(test_alone),
+                                        cmocka_unit_test(test_recipe), cmocka_unit_test(test_memory) };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
