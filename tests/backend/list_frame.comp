@@ -49,7 +49,7 @@ uint answer(uint at) { return wu(HEAD_ANSWER) + tile_ * uint(ANSWER_WORDS) + at;
 uint pixel_answer(uint at) { return answer(uint(ANSWER_PIXELS) + (block_ * 16u + place_) * uint(PIXEL_WORDS) + at); }
 uint ray_answer(uint ray, uint at) { return pixel_answer(uint(PIXEL_RAYS) + ray * uint(RAY_WORDS) + at); }
 uint gword(uint block, uint field, uint place) {
-    return wu(HEAD_BLOCKS) + ((tile_ * 16u + block) * 9u + field) * 16u + place;
+    return wu(HEAD_BLOCKS) + ((tile_ * 16u + block) * BLOCK_FIELDS + field) * 16u + place;
 }
 
 light light_load(uint i) {

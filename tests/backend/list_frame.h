@@ -11,6 +11,8 @@
 #define DISPATCH_TILES 0u  /* a list each */
 #define DISPATCH_PIXELS 1u /* the rays of a block each */
 
+#define BLOCK_FIELDS 10u /* of a gblock, a word a pixel each */
+
 #define HEAD_TILES 0
 #define HEAD_TILES_X 1
 #define HEAD_WIDTH 2

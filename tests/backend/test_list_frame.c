@@ -39,6 +39,8 @@ static size_t append(trial *t, const void *data, size_t words) {
     return at;
 }
 
+_Static_assert(sizeof(gblock) == 4 * BLOCK * BLOCK_FIELDS, "the shader finds the fields of a block");
+
 static const gblock *block_of(const trial *t, int number, int block) {
     size_t bx = (size_t)(number % TILES_X * 4 + block % 4), by = (size_t)(number / TILES_X * 4 + block / 4);
     return &t->view->b.g[0][by * (size_t)t->view->b.blocks_x + bx];

@@ -84,7 +84,7 @@ draw direct.exr city.gml 'a "b" c.gml' builtin:single --size 48x32 --view aerial
 run compare town.exr direct.exr
 grep -Eq 'all pixels +1,536 +0.000 +0 ' out
 result $? "its picture is that of the files"
-sed -e 's/^#\([a-z]\)/\1/' -e 's/^#\(  [a-z]\)/\1/' -e '/\.\.\./d' -e '/^crs:/d' town/city.yaml >town/all.yaml
+sed -e 's/^#\([a-z]\)/\1/' -e 's/^#\(  [-a-z]\)/\1/' -e '/\.\.\./d' -e '/^crs:/d' town/city.yaml >town/all.yaml
 run render town/all.yaml -q --size 48x32 --frames 1 -o all.exr
 result $status "every key that waits to be used can be used"
 for city in "$source_dir"/cities/*.yaml; do
