@@ -149,7 +149,7 @@ static uint8_t *read_file(FILE *file, const char *path, size_t *size, noc_log *l
         noc_error(log, NOC_ERR_FORMAT, "%s: not a PNG, OpenEXR or Radiance HDR file", path);
         return NULL;
     }
-    *size = (size_t)st.st_size;
+    *size = NOC_MAX((size_t)st.st_size, got); /* a file may grow meanwhile, and those of /proc have a size of 0 */
     uint8_t *data = noc_alloc_large(*size, 1);
     if (!data) {
         noc_error(log, NOC_ERR_MEMORY, "%s: no memory for its %zu bytes", path, *size);

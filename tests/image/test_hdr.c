@@ -5,6 +5,7 @@
 #include "image/internal.h"
 
 #include <math.h>
+#include <sys/prctl.h>
 
 static char last_error[400];
 static int error_count;
@@ -123,6 +124,19 @@ static void what_is_refused(void **state) {
     }
 }
 
+/* One that holds more than its size said, as if it had grown meanwhile: the name of this thread. */
+static void longer_than_its_size(void **state) {
+    (void)state;
+    char before[16];
+    noc_log *log = noc_log_create(&(noc_log_params){ .message = hear });
+    assert_int_equal(prctl(PR_GET_NAME, before), 0);
+    assert_int_equal(prctl(PR_SET_NAME, "#?RADIANCE"), 0);
+    assert_null(noc_image_read("/proc/thread-self/comm", log, NULL));
+    assert_non_null(strstr(last_error, "HDR: its header does not end"));
+    assert_int_equal(prctl(PR_SET_NAME, before), 0);
+    noc_log_destroy(log);
+}
+
 static void memory_is_refused(void **state) {
     (void)state;
     file f = { .size = 0 };
@@ -140,9 +154,8 @@ static void memory_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers),
-        cmocka_unit_test(rows_in_runs),
-        cmocka_unit_test(what_is_refused),
+        cmocka_unit_test(numbers),           cmocka_unit_test(rows_in_runs),
+        cmocka_unit_test(what_is_refused),   cmocka_unit_test(longer_than_its_size),
         cmocka_unit_test(memory_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
