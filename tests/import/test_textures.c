@@ -147,12 +147,33 @@ static void test_broken(void **state) {
     noc_scene_destroy(s);
 }
 
+/* Each takes memory, whatever little it says. */
+static void test_many_materials(void **state) {
+    (void)state;
+    enum { MATERIALS = 100000 };
+    FILE *f = fopen(path, "wb");
+    assert_true(f && fputs(HEAD "<app:surfaceDataMember>", f) >= 0);
+    for (int i = 0; i < MATERIALS; i++)
+        assert_true(fputs("<app:X3DMaterial/>", f) >= 0);
+    assert_true(fputs("</app:surfaceDataMember>" TAIL, f) >= 0 && !fclose(f));
+    const char *paths[] = { path };
+    noc_import_params p = noc_import_default_params();
+    p.max_memory = 0.008;
+    noc_log *log = noc_log_create(NULL);
+    noc_scene *scene = noc_scene_create(log);
+    assert_int_equal(noc_scene_load(scene, paths, 1, &p, NULL), NOC_ERR_MEMORY);
+    assert_non_null(strstr(noc_log_last_error(log), "its appearances"));
+    noc_scene_destroy(scene);
+    noc_log_destroy(log);
+}
+
 int main(void) {
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof(path), "%s/city.gml", folder);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_citygml),
         cmocka_unit_test(test_broken),
+        cmocka_unit_test(test_many_materials),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     char command[96];

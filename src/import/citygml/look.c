@@ -245,8 +245,9 @@ static void on_end(void *user, const XML_Char *name) {
     k->inside = k->inside && is != WORD_TEXTURE && is != WORD_MATERIAL && is != WORD_GEOREFERENCED;
     k->text.len = 0;
     cg_affords(p,
-               k->uv.len * sizeof(*k->uv.data) + k->rings.len * sizeof(*k->rings.data) + k->by_ring.keys.bytes +
-                   k->by_target.keys.bytes + (k->by_ring.cap + k->by_target.cap) * 3 * sizeof(uint64_t),
+               k->all.len * sizeof(*k->all.data) + k->uv.len * sizeof(*k->uv.data) +
+                   k->rings.len * sizeof(*k->rings.data) + k->by_ring.keys.bytes + k->by_target.keys.bytes +
+                   (k->by_ring.cap + k->by_target.cap) * 3 * sizeof(uint64_t),
                "its appearances");
 }
 
