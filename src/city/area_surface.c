@@ -7,7 +7,7 @@
 #define SHORT 4.0 /* m: shorter edges are not split */
 #define LONG 40.0 /* m: longer ones are */
 #define FLAT 0.01 /* m that the ground may lie off the middle of an edge */
-enum { MOST_TRIANGLES = 4000000, DEEPEST = 24 };
+enum { MOST_TRIANGLES = 4000000, MOST_PIECES = 20000000, DEEPEST = 24, AT_ONCE = 4096 };
 
 typedef struct corner {
     double xyz[3];
@@ -24,8 +24,22 @@ typedef struct layer {
     NOC_ARRAY(piece) waiting;
     NOC_ARRAY(double) position;
     NOC_ARRAY(uint32_t) index;
+    size_t pieces; /* that were looked at */
     bool no_memory;
 } layer;
+
+static bool is_full(const layer *l) { return l->index.len / 3 >= MOST_TRIANGLES || l->pieces >= MOST_PIECES; }
+
+/* Beyond what the scene has there is no ground. */
+static bool is_outside(const layer *l, const piece *p) {
+    bool outside = false;
+    for (int k = 0; k < 2; k++) {
+        double lo = fmin(fmin(p->c[0].xyz[k], p->c[1].xyz[k]), p->c[2].xyz[k]);
+        double hi = fmax(fmax(p->c[0].xyz[k], p->c[1].xyz[k]), p->c[2].xyz[k]);
+        outside = outside || hi < l->scene->bounds_min[k] || lo > l->scene->bounds_max[k];
+    }
+    return outside;
+}
 
 static corner on_ground(const layer *l, double x, double y) {
     double z;
@@ -65,6 +79,9 @@ static void take(layer *l, const piece *p) {
     corner m[3];
     bool split[3];
     int count = 0;
+    l->pieces++;
+    if (is_outside(l, p))
+        return;
     for (int i = 0; i < 3; i++)
         count += split[i] = p->depth < DEEPEST && splits(l, &p->c[i], &p->c[(i + 1) % 3], &m[i]);
     if (!count) {
@@ -107,22 +124,29 @@ static piece piece_of(const layer *l, const geo_triangles *t, size_t triangle) {
     return (piece){ { on_ground(l, at[0][0], at[0][1]), on_ground(l, b[0], b[1]), on_ground(l, c[0], c[1]) }, 0 };
 }
 
+/* A triangle and all that it is split into. */
+static noc_status lay(layer *l, piece p, const noc_progress *progress) {
+    take(l, &p);
+    while (l->waiting.len && !l->no_memory && !is_full(l)) {
+        p = l->waiting.data[--l->waiting.len];
+        take(l, &p);
+        if (l->pieces % AT_ONCE == 0 && progress && progress->update && !progress->update(progress->user, "areas", 0))
+            return NOC_ERR_CANCELLED;
+    }
+    return l->no_memory ? noc_scene_out_of_memory(l->scene) : NOC_OK;
+}
+
 noc_status city_lay_area(noc_scene *scene, const geo_triangles *triangles, noc_class cls, double lift,
                          const noc_progress *progress, size_t *made) {
     layer l = { .scene = scene, .lift = lift };
     noc_status status = NOC_OK;
-    for (size_t t = 0; t < triangles->indices.len / 3 && !status && l.index.len / 3 < MOST_TRIANGLES; t++) {
+    for (size_t t = 0; t < triangles->indices.len / 3 && !status && !is_full(&l); t++) {
         if (t % 256 == 0 && progress && progress->update && !progress->update(progress->user, "areas", 0))
             status = NOC_ERR_CANCELLED;
-        piece p = piece_of(&l, triangles, t);
-        take(&l, &p);
-        while (l.waiting.len && !l.no_memory && l.index.len / 3 < MOST_TRIANGLES) {
-            p = l.waiting.data[--l.waiting.len];
-            take(&l, &p);
-        }
-        if (l.no_memory && !status)
-            status = noc_scene_out_of_memory(scene);
+        status = status ? status : lay(&l, piece_of(&l, triangles, t), progress);
     }
+    if (!status && is_full(&l))
+        noc_warn(scene->log, "areas of maps (%s) are too many or too large: some have no surface", noc_class_name(cls));
     *made = l.index.len / 3;
     if (!status && *made) {
         noc_material m = noc_class_material(cls);

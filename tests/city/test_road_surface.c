@@ -222,6 +222,25 @@ static bool stop(void *user, const char *what, double done) {
     return false;
 }
 
+/* An area that reaches far beyond the ground is cut down to it, not split all over; it can be stopped. */
+static void large_area(void **state) {
+    (void)state;
+    const double far = 2e5, ring[] = { -far, -far, 0, far, -far, 0, far, far, 0, -far, far, 0, -far, -far, 0 };
+    const size_t size = 5;
+    size_t made;
+    geo_triangles t = { 0 };
+    assert_true(geo_triangulate(&(geo_polygon){ NOC_CLASS_GREEN, "a", 1, &size, ring }, &t, NULL));
+    noc_scene *s = land(level, 60);
+    assert_int_equal(city_lay_area(s, &t, NOC_CLASS_GREEN, 0.01, NULL, &made), NOC_OK);
+    double in = area_of(s, NOC_CLASS_GREEN);
+    assert_true(in > 100 * 100 && in <= 120 * 120.1);
+    assert_true(made < 10000);
+    assert_int_equal(city_lay_area(s, &t, NOC_CLASS_GREEN, 0.01, &(noc_progress){ stop, NULL }, &made),
+                     NOC_ERR_CANCELLED);
+    noc_scene_destroy(s);
+    geo_triangles_free(&t);
+}
+
 static void refused_and_cancelled(void **state) {
     (void)state;
     const double line[] = { -30, 5, NAN, 10, 25, NAN, 20, 5, NAN };
@@ -246,13 +265,10 @@ static void refused_and_cancelled(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(straight_road),
-        cmocka_unit_test(bends),
-        cmocka_unit_test(folds),
-        cmocka_unit_test(crossings),
-        cmocka_unit_test(areas),
-        cmocka_unit_test(left_out),
-        cmocka_unit_test(refused_and_cancelled),
+        cmocka_unit_test(straight_road), cmocka_unit_test(bends),
+        cmocka_unit_test(folds),         cmocka_unit_test(crossings),
+        cmocka_unit_test(areas),         cmocka_unit_test(large_area),
+        cmocka_unit_test(left_out),      cmocka_unit_test(refused_and_cancelled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
