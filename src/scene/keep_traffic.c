@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#define LATEST 1e30 /* s: tracks whose times are nanoseconds make routes of a hundred thousand years and more */
+
 typedef struct kept_route {
     uint64_t first, count;
 } kept_route;
@@ -32,7 +34,7 @@ static bool check_stops(const void *ctx, size_t first, size_t end) {
     const noc_scene_stop *stops = ctx;
     bool ok = true;
     for (size_t i = first; ok && i < end; i++)
-        ok = stops[i].seconds >= 0 && stops[i].seconds <= 1e12 && stops[i].along >= 0 && stops[i].along <= 1e12f &&
+        ok = stops[i].seconds >= 0 && stops[i].seconds <= LATEST && stops[i].along >= 0 && stops[i].along <= 1e12f &&
              noc_kept_finite(stops[i].p, 3, 1e7f);
     return ok;
 }
@@ -67,7 +69,7 @@ noc_status noc_kept_traffic(noct_file *f, noc_scene *s) {
     }
     for (size_t i = 0; i < cars; i++) {
         bool there = car[i].instance < s->instances.len && s->instances.data[car[i].instance].model;
-        if (!there || car[i].route >= routes || !(fabs(car[i].start) <= 1e12) ||
+        if (!there || car[i].route >= routes || !(fabs(car[i].start) <= LATEST) ||
             (i && car[i].instance <= car[i - 1].instance))
             return noct_wrong(f, "car %zu is none", i);
         s->cars.data[s->cars.len++] = (noc_scene_car){ car[i].instance, car[i].route, car[i].start };

@@ -84,8 +84,10 @@ static inline void add_car(noc_scene *s, int group, int profile) {
     assert_true(noc_scene_add_light(s, &lamp) >= 0);
     noc_scene_stop stops[] = { { 0, { -20, -10, 0 }, 0 }, { 9, { 20, -10, 0 }, 40 } };
     int route = noc_scene_add_route(s, stops, 2);
+    stops[1].seconds = 3600e9; /* an hour, of a track that tells nanoseconds */
+    int slow = noc_scene_add_route(s, stops, 2);
     for (int i = 0; i < 3; i++)
-        assert_true(noc_scene_add_car(s, model, route, 2.0 * i));
+        assert_true(noc_scene_add_car(s, model, i < 2 ? route : slow, 2.0 * i));
     assert_int_equal(noc_scene_remove_instance(s, 1), NOC_OK);
 }
 

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #define TRACK_SPEED 40.0 /* km/h, of a track that tells no times, where the user says none */
+#define LATEST 1e20      /* s: what says a later time says none */
 #define FASTEST 300.0    /* km/h: what is faster between two points of a track is a jump */
 
 struct city_traffic {
@@ -69,7 +70,7 @@ static bool is_timed(const geo_track *track) {
     bool timed = track->seconds != NULL;
     for (size_t part = 0, first = 0; timed && part < track->part_count; first += track->part_size[part++])
         for (size_t i = 0; i < track->part_size[part]; i++)
-            timed = timed && isfinite(track->seconds[first + i]) &&
+            timed = timed && fabs(track->seconds[first + i]) <= LATEST &&
                     (!i || track->seconds[first + i] >= track->seconds[first + i - 1]);
     return timed;
 }
