@@ -2,8 +2,10 @@
 #include "../test.h"
 #include "import/load/load.h"
 #include "import/mesh/obj_materials.h"
+#include "noc_config.h"
 #include "nocturne/nocturne.h"
 
+#include <math.h>
 #include <zlib.h>
 
 static char folder[] = "/tmp/noc-budget-XXXXXX";
@@ -368,15 +370,49 @@ static void limits_are_checked(void **state) {
     assert_int_equal(inspect("undefined.obj", -1, &file), NOC_ERR_ARGUMENT);
 }
 
+#if NOC_HAVE_GDAL
+/* Lakes of a map that wait for the ground. */
+static void areas_of_maps_are_bounded(void **state) {
+    enum { LAKES = 8000, POINTS = 40 };
+    FILE *f = create("lakes.osm");
+    fputs("<osm version='0.6'>", f);
+    for (int i = 0; i < POINTS; i++)
+        fprintf(f, "<node id='%d' lat='%.6f' lon='%.6f'/>", i + 1, 48 + .01 * cos(2 * M_PI * i / POINTS),
+                11 + .01 * sin(2 * M_PI * i / POINTS));
+    for (int i = 1; i <= LAKES; i++) {
+        fprintf(f, "<way id='%d'>", i);
+        for (int k = 0; k <= POINTS; k++)
+            fprintf(f, "<nd ref='%d'/>", k % POINTS + 1);
+        fputs("<tag k='natural' v='water'/></way>", f);
+    }
+    fputs("</osm>", f);
+    fclose(f);
+    assert_int_equal(load("lakes.osm", 0.01), NOC_ERR_MEMORY);
+    assert_int_equal(error_count, 1);
+    assert_non_null(strstr(errors, "lakes.osm"));
+    assert_non_null(strstr(errors, "the scene with it"));
+    assert_int_not_equal(load("lakes.osm", 1), NOC_ERR_MEMORY);
+}
+#endif
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(compressed_data_is_bounded),  cmocka_unit_test(json_is_bounded),
-        cmocka_unit_test(gltf_copies_are_bounded),     cmocka_unit_test(gltf_is_added_up_first),
-        cmocka_unit_test(archives_are_measured),       cmocka_unit_test(lamps_are_bounded),
-        cmocka_unit_test(cities_are_bounded),          cmocka_unit_test(attributes_are_bounded),
-        cmocka_unit_test(city_links_are_bounded),      cmocka_unit_test(obj_materials_are_bounded),
-        cmocka_unit_test(obj_libraries_are_read_once), cmocka_unit_test(city_tags_are_bounded),
+        cmocka_unit_test(compressed_data_is_bounded),
+        cmocka_unit_test(json_is_bounded),
+        cmocka_unit_test(gltf_copies_are_bounded),
+        cmocka_unit_test(gltf_is_added_up_first),
+        cmocka_unit_test(archives_are_measured),
+        cmocka_unit_test(lamps_are_bounded),
+        cmocka_unit_test(cities_are_bounded),
+        cmocka_unit_test(attributes_are_bounded),
+        cmocka_unit_test(city_links_are_bounded),
+        cmocka_unit_test(obj_materials_are_bounded),
+        cmocka_unit_test(obj_libraries_are_read_once),
+        cmocka_unit_test(city_tags_are_bounded),
         cmocka_unit_test(limits_are_checked),
+#if NOC_HAVE_GDAL
+        cmocka_unit_test(areas_of_maps_are_bounded),
+#endif
     };
     return cmocka_run_group_tests_name("budgets", tests, set_up, tear_down);
 }

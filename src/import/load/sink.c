@@ -312,7 +312,7 @@ static noc_status on_area(void *ctx, const geo_polygon *area) {
     if (!to)
         return NOC_OK;
     geo_triangulate(&local, to, NULL); /* what is wrong with it is little of a city: nothing of it is told */
-    return to->no_memory ? noc_no_memory(r->log, r->in->path) : NOC_OK;
+    return to->no_memory ? noc_no_memory(r->log, r->in->path) : take_affords(r->im, r->in, 0);
 }
 
 /* Of a file that has been read. */

@@ -75,6 +75,8 @@ noc_status take_affords(importer *im, const input *in, size_t more) {
     size_t waiting = im->lamps.cap * sizeof(*im->lamps.data) + im->footprints.cap * sizeof(*im->footprints.data) +
                      im->roads.cap * sizeof(*im->roads.data) +
                      (im->water.xyz.cap + im->green.xyz.cap + im->squares.xyz.cap + im->lots.xyz.cap) * sizeof(double) +
+                     (im->water.indices.cap + im->green.indices.cap + im->squares.indices.cap + im->lots.indices.cap) *
+                         sizeof(uint32_t) +
                      im->lost.cap * sizeof(*im->lost.data) + im->names.bytes +
                      im->records.list.cap * sizeof(*im->records.list.data);
     import_budget memory = { .memory = im->memory }, growth = { INFINITY, 0, (double)in->bytes };
