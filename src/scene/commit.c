@@ -142,11 +142,12 @@ static void need_relit(const commit *c, need *n) {
     }
 }
 
-/* Lights are 64-byte aligned from the first commit on. */
+/* Lights are 64-byte aligned from the first commit on. There is room for one at least: an array without room is
+ * another's (array_borrow). */
 static bool reserve_lights(noc_scene *s, size_t count) {
     if (s->committed && count <= (s->lights.cap ? s->lights.cap : s->lights.len))
         return true;
-    size_t room = s->committed ? NOC_MAX(count, s->lights.cap + s->lights.cap / 2) : count;
+    size_t room = s->committed ? NOC_MAX(count, s->lights.cap + s->lights.cap / 2) : NOC_MAX(count, 1);
     noc_light_record *more = noc_alloc_large(room, sizeof(*more));
     if (!more)
         return false;

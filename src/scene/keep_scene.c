@@ -52,14 +52,15 @@ static bool get_text(noct_file *f, noct_cursor *c, char **text) {
 noc_status noc_kept_scene(noct_file *f, noc_scene *s) {
     noct_cursor c = noct_section(f, "scene");
     noc_camera *camera = &s->own_camera;
-    bool ok = get_doubles(&c, s->origin, 3, 1e300) & get_doubles(&c, s->given_origin, 3, 1e300);
-    bool bounds = get_doubles(&c, s->bounds_min, 3, FARTHEST) & get_doubles(&c, s->bounds_max, 3, FARTHEST);
+    bool ok = get_doubles(&c, s->origin, 3, 1e300) && get_doubles(&c, s->given_origin, 3, 1e300);
+    bool bounds = get_doubles(&c, s->bounds_min, 3, FARTHEST);
+    bounds = get_doubles(&c, s->bounds_max, 3, FARTHEST) && bounds;
     bool empty = s->bounds_min[0] == INFINITY && s->bounds_min[1] == INFINITY && s->bounds_min[2] == INFINITY &&
                  s->bounds_max[0] == -INFINITY && s->bounds_max[1] == -INFINITY && s->bounds_max[2] == -INFINITY;
     for (int k = 0; k < 3; k++)
         bounds = bounds && s->bounds_min[k] <= s->bounds_max[k];
-    ok &= get_doubles(&c, camera->eye, 3, 1e7) & get_doubles(&c, camera->target, 3, 1e7) &
-          get_doubles(&c, camera->up, 3, 1e7) & get_doubles(&c, &camera->fov_deg, 1, 180);
+    ok = ok && get_doubles(&c, camera->eye, 3, 1e7) && get_doubles(&c, camera->target, 3, 1e7) &&
+         get_doubles(&c, camera->up, 3, 1e7) && get_doubles(&c, &camera->fov_deg, 1, 180);
     s->triangles_dropped = noct_get_u64(&c);
     s->triangles_flat = noct_get_u64(&c);
     s->backdrop_first = noct_get_u32(&c);
