@@ -52,7 +52,7 @@ static bool take_line(paver *p, const geo_road *road) {
     for (size_t i = 0; i < road->point_count; i++) {
         const double *at = road->xyz + 3 * i;
         size_t n = p->line.len;
-        if (!(fabs(at[0]) < 1e7 && fabs(at[1]) < 1e7))
+        if (p->no_memory || !(fabs(at[0]) < 1e7 && fabs(at[1]) < 1e7))
             return false;
         if (n && hypot(at[0] - p->line.data[n - 2], at[1] - p->line.data[n - 1]) < 0.05)
             continue;
