@@ -162,12 +162,13 @@ static noc_status area_of(void *ctx, const geo_polygon *area) {
 
 static noc_status track(void *ctx, const geo_track *t) {
     fuzz_sink *s = ctx;
-    const double *xyz = t->xyz, *seconds = t->seconds;
+    const double *xyz = t->xyz;
+    size_t number = 0;
     FUZZ_REQUIRE(!s->in_object && s->told && t->part_count);
     for (size_t p = 0; p < t->part_count; p++) {
         FUZZ_REQUIRE(t->part_size[p] >= 2);
-        for (size_t i = 0; i < t->part_size[p]; i++, xyz += 3, seconds += t->seconds != NULL) {
-            FUZZ_REQUIRE(isfinite(xyz[0]) && isfinite(xyz[1]) && (!t->seconds || isfinite(*seconds)));
+        for (size_t i = 0; i < t->part_size[p]; i++, xyz += 3, number++) {
+            FUZZ_REQUIRE(isfinite(xyz[0]) && isfinite(xyz[1]) && (!t->seconds || isfinite(t->seconds[number])));
             s->sum += xyz[0] + xyz[1];
         }
     }
