@@ -83,23 +83,26 @@ static void write_lamp(const char *name, double lon, double lat) {
     write_text(name, text);
 }
 
+static noc_log *told; /* for all scenes; it outlives them */
+
 /* As the program does it; crs wins over the recipe's where it is not NULL. */
 static noc_status load(const char *recipe, const char *crs, noc_scene **scene) {
     noc_recipe *r;
     errors[0] = warnings[0] = 0;
-    noc_log *log = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = hear });
-    assert_int_equal(noc_recipe_load(in_folder(recipe), log, &r), NOC_OK);
+    if (!told)
+        told = noc_log_create(&(noc_log_params){ .level = NOC_LOG_WARN, .message = hear });
+    assert_int_equal(noc_recipe_load(in_folder(recipe), told, &r), NOC_OK);
     noc_import_params params = noc_import_default_params();
     const noc_option *o;
     for (size_t i = 0; (o = noc_recipe_option(r, i)); i++)
         for (const noc_option *row = noc_import_options(); row->name; row++)
             if (row == o)
-                assert_int_equal(noc_recipe_set(r, o, &params, log), NOC_OK);
+                assert_int_equal(noc_recipe_set(r, o, &params, told), NOC_OK);
     params.crs = crs ? crs : params.crs;
     params.profiles = false;
     params.infer_lamps = params.windows = NOC_SWITCH_OFF;
     const noc_recipe_info *info = noc_recipe_get_info(r);
-    *scene = noc_scene_create(log);
+    *scene = noc_scene_create(told);
     noc_status status = noc_scene_load(*scene, info->inputs, info->input_count, &params, NULL);
     noc_recipe_destroy(r);
     return status;
@@ -250,6 +253,7 @@ static int finish(void **state) {
     char command[100];
     (void)state;
     snprintf(command, sizeof(command), "rm -r %s", folder);
+    noc_log_destroy(told);
     return system(command);
 }
 
