@@ -442,9 +442,9 @@ typedef enum noc_viewpoint {
 NOC_API noc_status noc_scene_set_camera(noc_scene *scene, const noc_camera *camera);
 
 /* A camera derived from the city: street stands at eye height in open ground near lamps and looks along it, aerial
- * flies over the roofs, overview sees the whole extent; own is the one that the scene comes with, street where it has
- * none. Meshes that are no city have no street: a room is then seen from inside, anything else as by overview. aspect =
- * width / height of the picture. */
+ * flies over the roofs, overview sees all that stands on the land, or the land where nothing does; own is the one that
+ * the scene comes with, street where it has none. Meshes that are no city have no street: a room is then seen from
+ * inside, anything else as by overview. aspect = width / height of the picture. */
 NOC_API noc_status noc_scene_camera(const noc_scene *scene, noc_viewpoint view, double aspect, noc_camera *camera);
 
 /* The built-in procedural night city. The same seed and size give the same city on every machine. NULL params are the

@@ -173,57 +173,6 @@ static double light_in_view(const view_city *city, const double eye[3], double d
 
 static double half_width(double fov_deg, double aspect) { return atan(tan(fov_deg * M_PI / 360) * aspect); }
 
-static void overview(const view_city *city, double aspect, noc_camera *camera) {
-    double size[3], centre[3];
-    for (int k = 0; k < 3; k++) {
-        size[k] = city->max[k] - city->min[k];
-        centre[k] = 0.5 * (city->min[k] + city->max[k]);
-    }
-    /* from the south, or the east where the city is longer that way, turned so that no street is seen end on */
-    double yaw = (size[1] > 1.2 * size[0] ? 0 : -M_PI / 2) + 0.3, pitch = 0.55;
-    double d[3] = { cos(yaw) * cos(pitch), sin(yaw) * cos(pitch), sin(pitch) };
-    double right[3] = { -sin(yaw), cos(yaw), 0 },
-           up[3] = { -cos(yaw) * sin(pitch), -sin(yaw) * sin(pitch), cos(pitch) };
-    camera->fov_deg = 36;
-    /* frame what is there, not the box around it: the nearest distance, then the middle of what is seen */
-    double tv = tan(camera->fov_deg * M_PI / 360) / 1.04, th = tv * aspect;
-    double shift[2] = { 0, 0 }, distance = 0.1;
-    const noc_scene *s = city->scene;
-    size_t corners = 3 * noc_scene_city_triangles(s), n = NOC_MIN(corners, (size_t)SAMPLES);
-    size_t first = n < corners ? 0 : 8; /* where all corners of triangles are asked, the ground's are not */
-    for (int round = 0; round < 4; round++) {
-        double lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
-        for (int pass = 0; pass < 2; pass++) {
-            for (size_t i = first; i < n + 8; i++) {
-                double along = 0, x = -shift[0], y = -shift[1];
-                size_t corner = i < 8 ? 0 : (i - 8) * corners / n; /* the corners of the ground, then of triangles */
-                size_t v = s->indices.data[3 * noc_scene_city_triangle(s, corner / 3) + corner % 3];
-                for (int k = 0; k < 3; k++) {
-                    double c = i < 8 ? (k == 2 || !(i >> k & 1) ? city->min[k] : city->max[k])
-                                     : (double)s->positions.data[3 * v + (size_t)k];
-                    double q = NOC_CLAMP(c, city->min[k], city->max[k]) - centre[k];
-                    along += q * d[k], x += q * right[k], y += q * up[k];
-                }
-                if (!pass) {
-                    double need = along + NOC_MAX(fabs(x) / th, fabs(y) / tv);
-                    distance = i > first ? NOC_MAX(distance, need) : need;
-                    continue;
-                }
-                lo[0] = NOC_MIN(lo[0], x / (distance - along)), hi[0] = NOC_MAX(hi[0], x / (distance - along));
-                lo[1] = NOC_MIN(lo[1], y / (distance - along)), hi[1] = NOC_MAX(hi[1], y / (distance - along));
-            }
-            distance = NOC_MAX(distance, 0.1);
-        }
-        if (round < 3)
-            for (int k = 0; k < 2; k++)
-                shift[k] += 0.5 * (lo[k] + hi[k]) * distance;
-    }
-    for (int k = 0; k < 3; k++) {
-        camera->target[k] = centre[k] + shift[0] * right[k] + shift[1] * up[k];
-        camera->eye[k] = camera->target[k] + distance * d[k];
-    }
-}
-
 /* Highest surface within r of (x, y), on a pattern of 25 points; fallback where nothing is. */
 static double top_around(const noc_scene *scene, double x, double y, double r, double fallback) {
     double best = -DBL_MAX, z;
@@ -480,7 +429,7 @@ static noc_status derive(const noc_scene *scene, noc_viewpoint view, double aspe
     if (view == NOC_VIEWPOINT_AERIAL)
         aerial(&city, aspect, &c);
     else if (!found)
-        overview(&city, aspect, &c);
+        city.no_memory = !noc_overview_camera(scene, city.min, city.max, aspect, &c);
     array_free(&city.lights);
     if (city.no_memory)
         return noc_error(scene->log, NOC_ERR_MEMORY, "camera: no memory to look at the scene");

@@ -14,6 +14,11 @@ double noc_light_weight(const noc_light_record *r);
  * else. */
 bool noc_room_camera(const noc_scene *scene, const double lo[3], const double hi[3], double aspect, noc_camera *camera);
 
+/* From outside, so that what lies within lo..hi fills the picture; what lies beyond counts as at its border. False
+ * where memory was refused. */
+bool noc_overview_camera(const noc_scene *scene, const double lo[3], const double hi[3], double aspect,
+                         noc_camera *camera);
+
 /* Keys of one turn about the vertical through the target, or the eye. A path through them is a circle to 2e-5 of its
  * radius. */
 enum { NOC_TURN_KEYS = 36 };
